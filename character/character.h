@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include "wrinkle/rig.h"
+#include "wrinkle/skeleton.h"
+#include "wrinkle/status.h"
+
+namespace furrow::character {
+
+// A decoded picture: 8 or 16 bits a channel, rows from the top, linear unless the use says sRGB.
+struct Picture {
+  std::string name;
+  int width = 0;
+  int height = 0;
+  int channels = 4;
+  std::vector<std::uint8_t> pixels;    // width * height * channels, when 8 bits
+  std::vector<std::uint16_t> pixels16;  // the same, when 16 bits; one of the two is empty
+};
+
+// glTF's metallic-roughness material, as far as it is drawn, and what it is made of.
+struct Material {
+  enum class Kind { kSkin, kCloth, kEye, kHair, kOther };
+  std::string name;
+  Kind kind = Kind::kOther;
+  glm::vec4 base_colour{1.0f};         // linear
+  int base_colour_texture = -1;        // index into Character::pictures; sRGB
+  int normal_texture = -1;             // tangent space, green up (glTF)
+  float roughness = 0.6f;
+  int roughness_texture = -1;          // green channel
+  bool double_sided = false;
+  float alpha_cutoff = 0.0f;           // 0: opaque
+};
+
+struct Vertex {
+  glm::vec3 position{0.0f};            // model space, rest pose, metres
+  glm::vec3 normal{0.0f, 0.0f, 1.0f};  // unit
+  glm::vec4 tangent{1.0f, 0.0f, 0.0f, 1.0f};  // w: handedness of the bitangent (glTF)
+  glm::vec2 uv{0.0f};                  // v down (glTF)
+  std::uint16_t joints[4] = {0, 0, 0, 0};  // into Character::skeleton
+  float skin_weights[4] = {1.0f, 0.0f, 0.0f, 0.0f};  // sum to 1
+};
+
+struct Mesh {
+  std::string name;
+  int material = -1;
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from outside
+};
+
+// What is drawn and how it wrinkles: a .glb and a wrinkle rig, both verified.
+struct Character {
+  std::string name;
+  wrinkle::Skeleton skeleton;
+  std::vector<glm::mat4> inverse_bind_matrices;  // one a joint of the skeleton
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials;
+  std::vector<Picture> pictures;
+  wrinkle::Rig rig;
+  std::filesystem::path folder;        // where the rig's own files are looked up first
+  // The rig's masks and wrinkle maps, loaded: name in the rig -> index into pictures.
+  std::vector<std::pair<std::string, int>> rig_pictures;
+
+  [[nodiscard]] int FindRigPicture(std::string_view name) const;  // -1 when there is none
+};
+
+// Reads a .glb/.gltf and its rig (`rig` empty: "<stem>.rig.json" beside it, when it is there).
+//
+// Everything in the file is hostile until checked: sizes before allocation, indices, finite numbers,
+// skin weights (renormalised), a skeleton that is a tree. Errors name the file and the field.
+[[nodiscard]] Result<Character> LoadCharacter(const std::filesystem::path& glb,
+                                              const std::filesystem::path& rig = {});
+
+// Writes skeleton, skin, meshes and textures as one .glb (atomically: a temporary file, then a rename).
+[[nodiscard]] Status SaveCharacterGlb(const Character& character, const std::filesystem::path& glb);
+
+}  // namespace furrow::character

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+# Language level, warnings, sanitizers, ccache and the linker.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+
+set(FURROW_SANITIZE "" CACHE STRING "Sanitizers, comma-separated: address,undefined | thread | fuzzer")
+set(FURROW_COVERAGE OFF CACHE BOOL "Instrument for gcov")
+
+find_program(FURROW_CCACHE ccache)
+if(FURROW_CCACHE)
+  set(CMAKE_C_COMPILER_LAUNCHER "${FURROW_CCACHE}")
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${FURROW_CCACHE}")
+endif()
+
+add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wimplicit-fallthrough
+                    -ffp-contract=off -fno-math-errno)
+
+if(FURROW_SANITIZE)
+  set(_sanitize "${FURROW_SANITIZE}")
+  if(_sanitize MATCHES "fuzzer")
+    # Libraries get coverage instrumentation alone; the targets link the fuzzer's main.
+    string(REPLACE "fuzzer" "fuzzer-no-link" _sanitize "${_sanitize}")
+  endif()
+  add_compile_options(-fsanitize=${_sanitize} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${_sanitize})
+  if(FURROW_SANITIZE MATCHES "undefined")
+    add_compile_options(-fno-sanitize-recover=undefined)
+  endif()
+endif()
+if(FURROW_COVERAGE)
+  add_compile_options(--coverage)
+  add_link_options(--coverage)
+endif()
+
+find_program(FURROW_LLD NAMES ld.lld ld.lld-14)
+if(FURROW_LLD AND NOT FURROW_SANITIZE)
+  add_link_options(-fuse-ld=lld)
+endif()

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+# Debian's libraries as imported targets (deploy/install-deps.sh installs them). Nothing is downloaded.
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+
+find_package(spdlog REQUIRED)
+find_package(Flatbuffers REQUIRED)
+find_package(OpenImageIO REQUIRED)
+find_package(tomlplusplus REQUIRED)
+
+pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
+pkg_check_modules(EGL REQUIRED IMPORTED_TARGET egl)
+pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
+
+find_program(FURROW_FLATC flatc REQUIRED)
+
+# Header-only libraries that come without a usable CMake package.
+add_library(furrow_glm INTERFACE)
+find_path(FURROW_GLM_INCLUDE glm/glm.hpp REQUIRED)
+target_include_directories(furrow_glm SYSTEM INTERFACE "${FURROW_GLM_INCLUDE}")
+
+add_library(furrow_asio INTERFACE)
+find_path(FURROW_ASIO_INCLUDE asio.hpp REQUIRED)
+target_include_directories(furrow_asio SYSTEM INTERFACE "${FURROW_ASIO_INCLUDE}")
+target_compile_definitions(furrow_asio INTERFACE ASIO_STANDALONE ASIO_NO_DEPRECATED)
+target_link_libraries(furrow_asio INTERFACE Threads::Threads)
+
+add_library(furrow_cli11 INTERFACE)
+find_path(FURROW_CLI11_INCLUDE CLI/CLI.hpp REQUIRED)
+target_include_directories(furrow_cli11 SYSTEM INTERFACE "${FURROW_CLI11_INCLUDE}")
+
+if(FURROW_BUILD_TESTS)
+  find_package(GTest REQUIRED)
+  find_package(Python3 COMPONENTS Interpreter REQUIRED)
+endif()
+if(FURROW_BUILD_BENCH)
+  find_package(benchmark REQUIRED)
+endif()

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+# How a folder becomes a library, a schema becomes code, and a test folder becomes a test program.
+include(GoogleTest)
+
+# furrow_library(NAME SOURCES... LINK libs... PRIVATE_LINK libs...): headers are included from the root.
+function(furrow_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  if(NOT ARG_SOURCES)
+    return()
+  endif()
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_include_directories(${name} PUBLIC "${CMAKE_SOURCE_DIR}")
+  target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK})
+endfunction()
+
+# furrow_flatbuffers(TARGET SCHEMAS...): generated headers, included as "<folder>/<name>_generated.h".
+function(furrow_flatbuffers target)
+  set(outputs)
+  foreach(schema IN LISTS ARGN)
+    get_filename_component(stem "${schema}" NAME_WE)
+    file(RELATIVE_PATH folder "${CMAKE_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}/${schema}")
+    get_filename_component(folder "${folder}" DIRECTORY)
+    set(output_dir "${CMAKE_BINARY_DIR}/generated/${folder}")
+    set(output "${output_dir}/${stem}_generated.h")
+    add_custom_command(
+      OUTPUT "${output}"
+      COMMAND "${FURROW_FLATC}" --cpp --scoped-enums --no-prefix --gen-compare
+              -I "${CMAKE_CURRENT_SOURCE_DIR}" -o "${output_dir}" "${CMAKE_CURRENT_SOURCE_DIR}/${schema}"
+      DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${schema}" VERBATIM)
+    list(APPEND outputs "${output}")
+  endforeach()
+  add_custom_target(${target}_schemas DEPENDS ${outputs})
+  add_dependencies(${target} ${target}_schemas)
+  target_sources(${target} PRIVATE ${outputs})
+  target_include_directories(${target} SYSTEM PRIVATE "${CMAKE_BINARY_DIR}/generated")
+endfunction()
+
+# furrow_test(NAME SOURCES... LINK libs... [ONE_PROCESS] [LABEL l]): a GoogleTest program. Each test is a
+# CTest test; ONE_PROCESS runs the whole program as one (dear set-up: GL contexts, daemons).
+function(furrow_test name)
+  cmake_parse_arguments(ARG "ONE_PROCESS" "LABEL" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_include_directories(${name} PRIVATE "${CMAKE_SOURCE_DIR}")
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} GTest::gtest GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE
+    FURROW_SOURCE_DIR="${CMAKE_SOURCE_DIR}" FURROW_BINARY_DIR="${CMAKE_BINARY_DIR}"
+    FURROW_SHARED_DATA="${FURROW_SHARED_DATA}")
+  if(NOT ARG_LABEL)
+    set(ARG_LABEL unit)
+  endif()
+  if(ARG_ONE_PROCESS)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT 600)
+  else()
+    gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
+                         PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT 300)
+  endif()
+endfunction()

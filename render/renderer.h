@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "character/character.h"
+#include "wrinkle/solver.h"
+#include "wrinkle/status.h"
+
+namespace furrow::render {
+
+enum class View { kFinal, kNormal, kMaskDynamic, kMaskTexture, kWeights, kWireframe };
+enum class NormalBlend { kPartialDerivative, kTangentSpace };  // 2.1 / 4.5
+enum class MaskMode { kRig, kDynamic, kTexture };  // as each region says, or all of one kind
+enum class ImageFormat { kJpeg, kPng };
+
+[[nodiscard]] std::string_view ViewName(View view);                 // "mask_dynamic"
+[[nodiscard]] Result<View> ParseView(std::string_view name);        // error lists the names
+
+// Where the camera stands: metres, model space of the character's rest pose, degrees.
+struct Camera {
+  glm::vec3 position{0.0f, 1.6f, 0.8f};
+  glm::vec3 target{0.0f, 1.6f, 0.0f};
+  float fov_y_degrees = 24.0f;
+};
+
+// What a picture shows. Ranges are checked by Renderer; the message names the field.
+struct Settings {
+  View view = View::kFinal;
+  NormalBlend normal_blend = NormalBlend::kPartialDerivative;
+  MaskMode mask_mode = MaskMode::kRig;
+  bool wrinkles = true;
+  float wrinkle_strength = 1.0f;                    // [0, 4]
+  glm::vec3 background{0.11f, 0.115f, 0.125f};      // linear, [0, 1]
+  float exposure = 1.0f;                            // (0, 16]
+};
+
+struct FrameRequest {
+  // In the character's skeleton, model space; num_joints long.
+  std::span<const glm::mat4> model;
+  // The binding whose values these are (its rig names the regions), weights, and filtered values.
+  const wrinkle::RigBinding* binding = nullptr;  // null: no wrinkles
+  std::span<const float> wrinkle_weights;
+  std::span<const float> filtered_values;
+  Settings settings;
+  Camera camera;
+  int width = 640;    // [16, 4096]
+  int height = 640;
+  std::uint64_t token = 0;  // comes back with the picture
+};
+
+// 8-bit sRGB RGB, rows from the top.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;
+  std::uint64_t token = 0;
+};
+
+struct RendererOptions {
+  std::string device;  // EGL device index, "surfaceless", or empty: the first that gives GL 4.5
+};
+
+// Draws one character headless. Owns its EGL context: one thread, the one that created it.
+//
+// Two ways to a picture: Render() waits; Submit() then Poll() keeps up to two read-backs in flight.
+class Renderer {
+ public:
+  // Errors: kUnavailable (no EGL device gives OpenGL 4.5: says which were tried), kInternal (a shader
+  // does not compile here: the driver's log), kInvalidArgument.
+  [[nodiscard]] static Result<std::unique_ptr<Renderer>> Create(const character::Character& character,
+                                                                const RendererOptions& options = {});
+  virtual ~Renderer() = default;
+
+  [[nodiscard]] virtual Status Submit(const FrameRequest& request) = 0;  // kUnavailable: two in flight
+  // The oldest picture that is ready; `wait`: blocks for it. An image of width 0: none yet.
+  [[nodiscard]] virtual Result<Image> Poll(bool wait) = 0;
+  [[nodiscard]] virtual int in_flight() const = 0;
+  [[nodiscard]] Result<Image> Render(const FrameRequest& request);
+
+  // Vendor, renderer and version of the context, for the log.
+  [[nodiscard]] virtual std::string description() const = 0;
+
+  // A camera preset for this character: face, three_quarter, profile, eyes, mouth, body; the error
+  // lists them. Works for any character: from its bounds and its anchor joint.
+  [[nodiscard]] virtual Result<Camera> Preset(std::string_view name) const = 0;
+};
+
+// `quality` in [1, 100], for JPEG alone (TurboJPEG, 4:2:0 below 90, 4:4:4 from there).
+[[nodiscard]] Result<std::vector<std::uint8_t>> EncodeImage(const Image& image, ImageFormat format,
+                                                            int quality = 85);
+
+}  // namespace furrow::render

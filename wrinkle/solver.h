@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "wrinkle/pose.h"
+#include "wrinkle/rig.h"
+
+namespace furrow::wrinkle {
+
+struct BindingData;  // the rig compiled for one skeleton, in evaluation order; private to wrinkle/
+
+struct BindOptions {
+  // false: a joint or blend shape that the skeleton lacks is an error. true (live streams): its driver
+  // rests at 0, and it is listed in missing_joints() / missing_blend_shapes().
+  bool allow_missing = false;
+};
+
+// A rig bound to one skeleton: names resolved, reference poses turned into displacements, immutable,
+// shared by all subjects of that skeleton.
+class RigBinding {
+ public:
+  // Errors: kNotFound (names the driver and the joint), kInvalidArgument (names the field), kLimit.
+  [[nodiscard]] static Result<RigBinding> Create(const Rig& rig, const Skeleton& skeleton,
+                                                 std::span<const std::string> blend_shape_names,
+                                                 const BindOptions& options = {});
+  RigBinding(RigBinding&&) noexcept;
+  RigBinding& operator=(RigBinding&&) noexcept;
+  ~RigBinding();
+
+  // "<region>.<map>", in the order of the rig's regions and their feeds.
+  [[nodiscard]] std::span<const std::string> weight_names() const;
+  // "<driver>.<value>", in the order of the rig's drivers.
+  [[nodiscard]] std::span<const std::string> driver_value_names() const;
+  [[nodiscard]] std::span<const std::string> missing_joints() const;
+  [[nodiscard]] std::span<const std::string> missing_blend_shapes() const;
+  [[nodiscard]] const Skeleton& skeleton() const;
+  [[nodiscard]] const Rig& rig() const;
+  [[nodiscard]] const BindingData& data() const { return *data_; }
+
+ private:
+  explicit RigBinding(std::unique_ptr<BindingData> data);
+  std::unique_ptr<BindingData> data_;
+};
+
+// Pose to driver values, unfiltered: `<driver>.<value>` in [0, 1].
+//
+// - `model` from LocalToModelJob on the same pose; `blend_shapes` as bound (may be shorter: 0).
+// - `driver_values` at least driver_value_names().size() long. Does not allocate.
+// Source: thesis 4.1, 4.6 with the corrections of docs/ALGORITHM.md.
+struct DriverJob {
+  const RigBinding* binding = nullptr;
+  std::span<const Transform> local;
+  std::span<const glm::mat4> model;
+  std::span<const float> blend_shapes;
+  std::span<float> driver_values;
+
+  [[nodiscard]] JobStatus Validate() const;
+  [[nodiscard]] JobStatus Run() const;
+};
+
+// Driver values to wrinkle weights: combine, modulate, resolve incongruence. Stateless, no allocation.
+struct WrinkleWeightsJob {
+  const RigBinding* binding = nullptr;
+  std::span<const float> driver_values;
+  std::span<float> wrinkle_weights;  // at least weight_names().size()
+
+  [[nodiscard]] JobStatus Validate() const;
+  [[nodiscard]] JobStatus Run() const;
+};
+
+// What the filter remembers of one subject: owned by the caller, sized once by Resize().
+struct FilterContext {
+  std::vector<float> value;       // last output
+  std::vector<float> raw;         // last input
+  std::vector<float> derivative;  // low-passed, 1/s
+  double since_input = 0.0;       // seconds since the last real input
+  bool started = false;
+
+  void Resize(int num_weights);
+  void Reset();
+};
+
+// One-Euro, slew and (without input) hold and decay, applied to driver values or weights alike.
+//
+// - `dt` seconds since the last call, >= 0. The first input passes unchanged.
+// - `input` empty: nothing arrived; the output holds for Filter::hold_seconds, then decays to 0.
+// - `output` as long as the context. Outputs stay in [0, 1].
+struct FilterJob {
+  const Filter* filter = nullptr;
+  FilterContext* context = nullptr;
+  double dt = 0.0;
+  std::span<const float> input;
+  std::span<float> output;
+
+  [[nodiscard]] JobStatus Validate() const;
+  [[nodiscard]] JobStatus Run() const;
+};
+
+// All of a subject's evaluation, in the order the daemon, `furrow solve` and the renderer share:
+// local -> model -> driver values -> filter (on driver values, since cubic amplifies noise at
+// neutral) -> wrinkle weights. Allocates in the constructor alone.
+class SubjectSolver {
+ public:
+  // `binding` outlives the solver (shared so that a stream may swap it).
+  explicit SubjectSolver(std::shared_ptr<const RigBinding> binding, bool filter = true);
+
+  // `pose` has the binding's joints. `dt`: seconds of capture time since the last pose.
+  [[nodiscard]] JobStatus Update(const LocalPose& pose, double dt);
+  // No pose arrived for `dt`: hold, then decay to neutral.
+  [[nodiscard]] JobStatus Decay(double dt);
+  void Reset();
+
+  [[nodiscard]] std::span<const float> wrinkle_weights() const { return weights_; }
+  [[nodiscard]] std::span<const float> driver_values() const { return raw_values_; }       // before
+  [[nodiscard]] std::span<const float> filtered_values() const { return filtered_values_; }  // after
+  [[nodiscard]] std::span<const glm::mat4> model() const { return model_; }
+  [[nodiscard]] const RigBinding& binding() const { return *binding_; }
+
+ private:
+  std::shared_ptr<const RigBinding> binding_;
+  std::vector<glm::mat4> model_;
+  std::vector<float> raw_values_;
+  std::vector<float> filtered_values_;
+  std::vector<float> weights_;
+  FilterContext filter_;
+  bool use_filter_ = true;
+};
+
+// The dynamic mask's per-joint part (4.2): for regions with a skinning mask, how strongly each joint
+// calls for each of a region's maps, already modulated. The vertex side is
+// clamp(sum over its influences of lambda(skin_weight) * influence, 0, 1); see shaders/.
+//
+// - `influences` is num_joints * num maps of the rig, joint-major. Does not allocate.
+struct JointInfluenceJob {
+  const RigBinding* binding = nullptr;
+  std::span<const float> driver_values;  // filtered
+  std::span<float> influences;
+
+  [[nodiscard]] JobStatus Validate() const;
+  [[nodiscard]] JobStatus Run() const;
+};
+
+}  // namespace furrow::wrinkle

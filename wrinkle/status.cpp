@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/status.h"
+
+namespace furrow {
+
+std::string_view StatusCodeName(StatusCode code) {
+  switch (code) {
+    case StatusCode::kOk: return "ok";
+    case StatusCode::kInvalidArgument: return "invalid_argument";
+    case StatusCode::kNotFound: return "not_found";
+    case StatusCode::kParse: return "parse";
+    case StatusCode::kSchema: return "schema";
+    case StatusCode::kLimit: return "limit";
+    case StatusCode::kNonFinite: return "non_finite";
+    case StatusCode::kCyclic: return "cyclic";
+    case StatusCode::kUnsupported: return "unsupported";
+    case StatusCode::kIo: return "io";
+    case StatusCode::kUnavailable: return "unavailable";
+    case StatusCode::kInternal: return "internal";
+  }
+  return "unknown";
+}
+
+Status::Status(StatusCode code, std::string what, std::string where, std::string todo)
+    : code_(code), what_(std::move(what)), where_(std::move(where)), todo_(std::move(todo)) {}
+
+std::string Status::ToString() const {
+  if (ok()) return "ok";
+  std::string text;
+  if (!where_.empty()) text += where_ + ": ";
+  text += what_;
+  if (!todo_.empty()) text += " (" + todo_ + ")";
+  return text;
+}
+
+Status Status::At(std::string_view where) const {
+  if (ok() || !where_.empty()) return *this;
+  return {code_, what_, std::string(where), todo_};
+}
+
+}  // namespace furrow
