@@ -4,12 +4,13 @@ find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 
 find_package(spdlog REQUIRED)
-find_package(Flatbuffers REQUIRED)
-find_package(OpenImageIO REQUIRED)
+find_package(FlatBuffers REQUIRED)
 find_package(tomlplusplus REQUIRED)
 
 pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(EGL REQUIRED IMPORTED_TARGET egl)
+# By pkg-config: the CMake package drags in Imath's Python targets, which Debian ships apart.
+pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
 
 find_program(FURROW_FLATC flatc REQUIRED)
@@ -31,6 +32,7 @@ target_include_directories(furrow_cli11 SYSTEM INTERFACE "${FURROW_CLI11_INCLUDE
 
 if(FURROW_BUILD_TESTS)
   find_package(GTest REQUIRED)
+  find_program(Python3_EXECUTABLE NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
   find_package(Python3 COMPONENTS Interpreter REQUIRED)
 endif()
 if(FURROW_BUILD_BENCH)
