@@ -18,6 +18,8 @@ namespace furrow::wrinkle {
 //
 // A joint's departure from rest travels in model axes (see JointDelta), so local frames may differ;
 // both rest poses should show the same stance. Translations are scaled by the ratio of sizes.
+// Scales are carried as a ratio to rest; where local frames differ by no multiple of 90 degrees, a
+// non-uniform ratio is spread over the target's axes (uniform ones are always exact).
 // Joints that the source lacks rest; source joints that the target lacks are listed once.
 class Retarget {
  public:
@@ -38,8 +40,11 @@ class Retarget {
     glm::quat to_target;             // inverse(G_target) * G_source
     glm::quat parent_to_target;      // inverse(G_target_parent) * G_source_parent
     glm::vec3 source_rest_translation{0.0f};
+    glm::vec3 source_rest_scale{1.0f};
     Transform rest;                  // target's
   };
+  [[nodiscard]] Transform Carry(const Joint& joint, const Transform& source) const;
+
   std::vector<Joint> joints_;
   std::vector<std::string> unmatched_;
   std::size_t num_source_ = 0;

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "wrinkle/status.h"
@@ -32,8 +33,9 @@ class Skeleton {
  public:
   Skeleton() = default;
 
-  // Errors: kLimit (none, or more than kMaxJoints), kInvalidArgument (empty or duplicate name, parent
-  // out of range), kCyclic, kNonFinite (rest pose). The message names the joint.
+  // Errors: kLimit (none, or more than kMaxJoints), kInvalidArgument (empty, overlong or duplicate
+  // name, parent out of range, rest rotation not unit), kCyclic, kNonFinite (rest pose or tail). The
+  // message names the joint.
   [[nodiscard]] static Result<Skeleton> Create(std::vector<JointDesc> joints);
 
   [[nodiscard]] int num_joints() const { return static_cast<int>(names_.size()); }
@@ -56,7 +58,8 @@ class Skeleton {
   [[nodiscard]] std::uint64_t hash() const { return hash_; }
 
  private:
-  void Finish();  // everything derived from names, parents, rest and stated tails
+  // Everything derived from names, parents, rest pose and the tails that the input stated.
+  void Finish(std::span<const std::optional<glm::vec3>> stated_tails);
 
   std::vector<std::string> names_;
   std::vector<std::int16_t> parents_;

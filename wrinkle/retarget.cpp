@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/retarget.h"
+
+#include <algorithm>
+
+#include <glm/mat3x3.hpp>
+#include <glm/vector_relational.hpp>
+
+#include "wrinkle/finite.h"
+
+namespace furrow::wrinkle {
+namespace {
+
+glm::vec3 RestOrigin(const Skeleton& skeleton, int joint) {
+  return glm::vec3(skeleton.rest_model()[joint][3]);
+}
+
+glm::quat RestRotation(const Skeleton& skeleton, int joint) {
+  return joint == kNoJoint ? glm::quat(1.0f, 0.0f, 0.0f, 0.0f)
+                           : skeleton.rest_model_rotations()[joint];
+}
+
+float SumOfBones(const Skeleton& skeleton, const Skeleton* other) {
+  float sum = 0.0f;
+  for (int joint = 0; joint < skeleton.num_joints(); ++joint) {
+    const int parent = skeleton.joint_parents()[joint];
+    if (parent == kNoJoint) continue;
+    if (other != nullptr && other->Find(skeleton.joint_names()[joint]) == kNoJoint) continue;
+    sum += glm::distance(RestOrigin(skeleton, joint), RestOrigin(skeleton, parent));
+  }
+  return sum;
+}
+
+float SumOfTails(const Skeleton& skeleton) {
+  float sum = 0.0f;
+  for (int joint = 0; joint < skeleton.num_joints(); ++joint) {
+    const glm::vec3 tail(skeleton.rest_model()[joint] * glm::vec4(skeleton.tails()[joint], 0.0f));
+    sum += glm::length(tail);
+  }
+  return sum;
+}
+
+// Each target joint's joint of the source, by alias and then by name.
+std::vector<int> MatchJoints(const Skeleton& source, const Skeleton& target,
+                             std::span<const std::pair<std::string, std::string>> aliases) {
+  std::vector<int> match;
+  for (const std::string& name : target.joint_names()) {
+    int found = kNoJoint;
+    for (const auto& [source_name, target_name] : aliases) {
+      if (target_name == name && found == kNoJoint) found = source.Find(source_name);
+    }
+    match.push_back(found != kNoJoint ? found : source.Find(name));
+  }
+  return match;
+}
+
+// Ratio of sizes over the spans between matched joints, so that joints which only one of the two
+// skeletons has between them (a longer chain of spine joints) do not count.
+float SizeRatio(const Skeleton& source, const Skeleton& target, std::span<const int> match) {
+  float source_sum = 0.0f;
+  float target_sum = 0.0f;
+  for (int joint = 0; joint < target.num_joints(); ++joint) {
+    if (match[joint] == kNoJoint) continue;
+    int above = target.joint_parents()[joint];
+    while (above != kNoJoint && match[above] == kNoJoint) above = target.joint_parents()[above];
+    if (above == kNoJoint) continue;
+    source_sum += glm::distance(RestOrigin(source, match[joint]), RestOrigin(source, match[above]));
+    target_sum += glm::distance(RestOrigin(target, joint), RestOrigin(target, above));
+  }
+  if (source_sum <= 0.0f || target_sum <= 0.0f) {
+    source_sum = SkeletonSize(source, &target);
+    target_sum = SkeletonSize(target, &source);
+  }
+  return source_sum > 0.0f && target_sum > 0.0f ? target_sum / source_sum : 1.0f;
+}
+
+}  // namespace
+
+float SkeletonSize(const Skeleton& skeleton, const Skeleton* other) {
+  float size = SumOfBones(skeleton, other);
+  if (size <= 0.0f) size = SumOfBones(skeleton, nullptr);
+  return size > 0.0f ? size : SumOfTails(skeleton);
+}
+
+Retarget Retarget::Create(const Skeleton& source, const Skeleton& target,
+                          std::span<const std::pair<std::string, std::string>> aliases) {
+  const std::vector<int> match = MatchJoints(source, target, aliases);
+  Retarget retarget;
+  retarget.num_source_ = static_cast<std::size_t>(source.num_joints());
+  retarget.scale_ = SizeRatio(source, target, match);
+  for (int i = 0; i < target.num_joints(); ++i) {
+    Joint joint;
+    joint.rest = target.rest_pose()[i];
+    joint.source = match[i];
+    if (joint.source != kNoJoint) {
+      const Transform& source_rest = source.rest_pose()[joint.source];
+      const glm::quat target_inverse = glm::conjugate(RestRotation(target, i));
+      const glm::quat parent_inverse =
+          glm::conjugate(RestRotation(target, target.joint_parents()[i]));
+      joint.source_rest_inverse = glm::conjugate(glm::normalize(source_rest.rotation));
+      joint.to_target = target_inverse * RestRotation(source, joint.source);
+      joint.parent_to_target =
+          parent_inverse * RestRotation(source, source.joint_parents()[joint.source]);
+      joint.source_rest_translation = source_rest.translation;
+      joint.source_rest_scale = source_rest.scale;
+    }
+    retarget.joints_.push_back(joint);
+  }
+  for (int i = 0; i < source.num_joints(); ++i) {
+    if (std::find(match.begin(), match.end(), i) == match.end()) {
+      retarget.unmatched_.push_back(source.joint_names()[i]);
+    }
+  }
+  return retarget;
+}
+
+int Retarget::num_matched() const {
+  return static_cast<int>(std::count_if(
+      joints_.begin(), joints_.end(), [](const Joint& joint) { return joint.source != kNoJoint; }));
+}
+
+Transform Retarget::Carry(const Joint& joint, const Transform& source) const {
+  Transform result = joint.rest;
+  const glm::quat departure = joint.source_rest_inverse * source.rotation;
+  result.rotation = glm::normalize(joint.rest.rotation * joint.to_target * departure *
+                                   glm::conjugate(joint.to_target));
+  result.translation +=
+      joint.parent_to_target * (source.translation - joint.source_rest_translation) * scale_;
+  if (source.scale != joint.source_rest_scale &&
+      glm::all(glm::notEqual(joint.source_rest_scale, glm::vec3(0.0f)))) {
+    // Diagonal of Q S inverse(Q): a scale along the source's axes, seen along the target's.
+    glm::mat3 squared = glm::mat3_cast(joint.to_target);
+    for (int column = 0; column < 3; ++column) squared[column] *= squared[column];
+    result.scale *= squared * (source.scale / joint.source_rest_scale);
+  }
+  return result;
+}
+
+JobStatus Retarget::Run(std::span<const Transform> source, std::span<Transform> target) const {
+  if (source.size() < num_source_ || target.size() < joints_.size()) {
+    return JobStatus::kSizeMismatch;
+  }
+  if (!AllFinite(source.first(num_source_))) return JobStatus::kNonFinite;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const Joint& joint = joints_[i];
+    target[i] = joint.source == kNoJoint ? joint.rest : Carry(joint, source[joint.source]);
+  }
+  return JobStatus::kOk;
+}
+
+}  // namespace furrow::wrinkle
