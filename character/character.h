@@ -10,6 +10,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
+#include "wrinkle/pose_frame.h"
 #include "wrinkle/rig.h"
 #include "wrinkle/skeleton.h"
 #include "wrinkle/status.h"
@@ -74,10 +75,15 @@ struct Character {
 
 // Reads a .glb/.gltf and its rig (`rig` empty: "<stem>.rig.json" beside it, when it is there).
 //
-// Everything in the file is hostile until checked: sizes before allocation, indices, finite numbers,
-// skin weights (renormalised), a skeleton that is a tree. Errors name the file and the field.
+// - `poses` reads the rig's reference poses that name a file (see rig_file.h).
+// - Everything in the file is hostile until checked: sizes before allocation, indices, finite numbers,
+//   skin weights (the strongest four, renormalised), a skeleton that is a tree. Errors name the file
+//   and the field ("face.glb: meshes[0].primitives[0].attributes.JOINTS_0").
+// - Missing normals and tangents are computed. Pictures named by the rig are loaded: embedded ones by
+//   name, files by FindAsset(); a mask that cannot be found is an error.
 [[nodiscard]] Result<Character> LoadCharacter(const std::filesystem::path& glb,
-                                              const std::filesystem::path& rig = {});
+                                              const std::filesystem::path& rig = {},
+                                              const wrinkle::PoseSource& poses = {});
 
 // Writes skeleton, skin, meshes and textures as one .glb (atomically: a temporary file, then a rename).
 [[nodiscard]] Status SaveCharacterGlb(const Character& character, const std::filesystem::path& glb);

@@ -5,24 +5,36 @@
 #include <string>
 #include <string_view>
 
+#include "character/asset_path.h"
+#include "wrinkle/pose_frame.h"
 #include "wrinkle/rig.h"
 #include "wrinkle/status.h"
 
 namespace furrow::character {
 
+// The text of character/rig.fbs, which rigs are checked against.
+[[nodiscard]] std::string_view RigSchemaText();
+
 // Reads a wrinkle rig (JSON, checked against character/rig.fbs; docs/RIG.md is the manual).
 //
-// Reference poses that name a file and frame are loaded: beside the rig, then in the folders of
-// FURROW_ASSET_PATH. Every error carries file, line and field. Textures are not opened here.
-[[nodiscard]] Result<wrinkle::Rig> LoadRig(const std::filesystem::path& path);
+// - Reference poses that name a file and frame are looked up beside the rig, then in the folders of
+//   FURROW_ASSET_PATH, and read by `poses` (see motion/pose_source.h). Without a source such a rig is
+//   kUnsupported. Mixes are resolved; a pose that only mixes use is left out.
+// - Names are checked within the rig: unique, and what refers to them exists. Joints are not: that is
+//   RigBinding's, once a skeleton is known. Textures are not opened.
+// - Errors: kNotFound, kIo, kLimit (size, depth, counts), kParse (not JSON), kSchema (a field unknown,
+//   missing or of the wrong type), kInvalidArgument (out of range, unknown name), kNonFinite,
+//   kCyclic (mixes). `where` is "file:line: field", the field as a path: "drivers[3].hinge.axis".
+[[nodiscard]] Result<wrinkle::Rig> LoadRig(const std::filesystem::path& path,
+                                           const wrinkle::PoseSource& poses = {});
+// `source_name` stands for the file in errors; `folder` is where files are looked up first.
 [[nodiscard]] Result<wrinkle::Rig> ParseRig(std::string_view json, std::string_view source_name,
-                                            const std::filesystem::path& folder);
+                                            const std::filesystem::path& folder,
+                                            const wrinkle::PoseSource& poses = {});
+
 // The rig as JSON that ParseRig() reads back equal; reference poses are written inline.
 [[nodiscard]] std::string RigToJson(const wrinkle::Rig& rig);
-
-// The first of `folder`/name and FURROW_ASSET_PATH's folders that holds `name`; kNotFound lists them.
-// Refuses absolute names and "..": a rig from outside reaches nothing outside its folders.
-[[nodiscard]] Result<std::filesystem::path> FindAsset(std::string_view name,
-                                                      const std::filesystem::path& folder);
+// RigToJson() into a file, atomically.
+[[nodiscard]] Status SaveRig(const wrinkle::Rig& rig, const std::filesystem::path& path);
 
 }  // namespace furrow::character
