@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/paint/strokes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace furrow::character::paint {
+namespace {
+
+constexpr std::size_t kRun = 64;  // texels (of one row, mostly) that are skipped by their bounds
+constexpr float kReach = 2.5f;    // widths from the line beyond which a stroke is nothing
+
+struct Bounds {
+  glm::vec3 low{std::numeric_limits<float>::max()};
+  glm::vec3 high{std::numeric_limits<float>::lowest()};
+
+  void Include(const glm::vec3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  [[nodiscard]] bool Overlaps(const Bounds& other) const {
+    return glm::all(glm::lessThanEqual(low, other.high)) &&
+           glm::all(glm::greaterThanEqual(high, other.low));
+  }
+};
+
+struct Nearest {
+  float distance = std::numeric_limits<float>::max();
+  float place = 0.0f;    // along the line, [0, 1]
+  glm::vec3 away{0.0f};  // unit, from the line to the point
+};
+
+std::vector<float> Places(const std::vector<glm::vec3>& points) {
+  std::vector<float> places(points.size(), 0.0f);
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    places[i] = places[i - 1] + glm::distance(points[i], points[i - 1]);
+  }
+  const float length = std::max(places.back(), 1e-9f);
+  for (float& place : places) place /= length;
+  return places;
+}
+
+Nearest FindNearest(const std::vector<glm::vec3>& points, const std::vector<float>& places,
+                    const glm::vec3& p) {
+  Nearest nearest;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const glm::vec3 along = points[i + 1] - points[i];
+    const float t = std::clamp(
+        glm::dot(p - points[i], along) / std::max(glm::dot(along, along), 1e-12f), 0.0f, 1.0f);
+    const glm::vec3 away = p - (points[i] + along * t);
+    const float distance = glm::length(away);
+    if (distance < nearest.distance) {
+      nearest.distance = distance;
+      nearest.place = places[i] + (places[i + 1] - places[i]) * t;
+      nearest.away = distance > 1e-9f ? away / distance : glm::vec3(0.0f);
+    }
+  }
+  return nearest;
+}
+
+float Taper(float place, float taper) {
+  const float end = std::min(place, 1.0f - place) / std::max(0.5f * taper, 1e-3f);
+  const float x = std::clamp(end, 0.0f, 1.0f);
+  return x * x * (3.0f - 2.0f * x);
+}
+
+// Height in depths and its derivative by distance in widths. The valley's 1/(1 + ...) shape is
+// narrower at the bottom than a Gaussian of the same foot: skin creases, it does not undulate.
+struct Profile {
+  float height;
+  float slope;
+};
+
+Profile FoldProfile(float x, float ridge) {
+  const float q = 1.0f + 14.0f * x * x;
+  const float fade = std::exp(-x * x);
+  const float valley = fade / q;
+  const float valley_slope = -2.0f * x * valley - fade * 28.0f * x / (q * q);
+  const float r = (x - 1.0f) * 2.0f;
+  const float bump = ridge * std::exp(-r * r);
+  return {bump - valley, -4.0f * r * bump - valley_slope};
+}
+
+void AddStroke(std::span<const Texel> texels, const FoldStroke& stroke,
+               const std::vector<float>& places, std::span<glm::vec2> slopes) {
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const Texel& texel = texels[i];
+    if (glm::dot(texel.normal, stroke.facing) < 0.0f) continue;
+    const Nearest nearest = FindNearest(stroke.points, places, texel.position);
+    if (nearest.distance > kReach * stroke.width) continue;
+    const Profile profile = FoldProfile(nearest.distance / stroke.width, stroke.ridge);
+    const float slope =
+        profile.slope * stroke.depth / stroke.width * Taper(nearest.place, stroke.taper);
+    slopes[i] -= slope * glm::vec2(glm::dot(nearest.away, texel.tangent),
+                                   glm::dot(nearest.away, texel.bitangent));
+  }
+}
+
+Bounds Reach(const FoldStroke& stroke) {
+  Bounds bounds;
+  for (const glm::vec3& point : stroke.points) bounds.Include(point);
+  bounds.low -= glm::vec3(kReach * stroke.width);
+  bounds.high += glm::vec3(kReach * stroke.width);
+  return bounds;
+}
+
+}  // namespace
+
+float StrokeHeight(const FoldStroke& stroke, const glm::vec3& position) {
+  if (stroke.points.size() < 2) return 0.0f;
+  const Nearest nearest = FindNearest(stroke.points, Places(stroke.points), position);
+  if (nearest.distance > kReach * stroke.width) return 0.0f;
+  return FoldProfile(nearest.distance / stroke.width, stroke.ridge).height * stroke.depth *
+         Taper(nearest.place, stroke.taper);
+}
+
+std::vector<glm::vec2> StrokeSlopes(std::span<const Texel> texels,
+                                    std::span<const FoldStroke> strokes) {
+  std::vector<glm::vec2> slopes(texels.size(), glm::vec2(0.0f));
+  std::vector<Bounds> reaches;
+  std::vector<std::vector<float>> places;
+  for (const FoldStroke& stroke : strokes) {
+    reaches.push_back(Reach(stroke));
+    places.push_back(stroke.points.empty() ? std::vector<float>() : Places(stroke.points));
+  }
+  for (std::size_t start = 0; start < texels.size(); start += kRun) {
+    const auto run = texels.subspan(start, std::min(kRun, texels.size() - start));
+    Bounds bounds;
+    for (const Texel& texel : run) bounds.Include(texel.position);
+    for (std::size_t s = 0; s < strokes.size(); ++s) {
+      if (strokes[s].points.size() < 2 || !reaches[s].Overlaps(bounds)) continue;
+      AddStroke(run, strokes[s], places[s], std::span(slopes).subspan(start, run.size()));
+    }
+  }
+  return slopes;
+}
+
+Picture EncodeNormals(const std::vector<Texel>& texels, std::span<const glm::vec2> slopes,
+                      int width, int height) {
+  constexpr int kDilation = 16;
+  Picture picture;
+  picture.width = width;
+  picture.height = height;
+  picture.channels = 3;
+  const auto encode = [](float v) {
+    return static_cast<std::uint16_t>(std::lround((v * 0.5f + 0.5f) * 65535.0f));
+  };
+  picture.pixels16.resize(static_cast<std::size_t>(width) * height * 3, encode(0.0f));
+  for (std::size_t i = 2; i < picture.pixels16.size(); i += 3) picture.pixels16[i] = encode(1.0f);
+  for (std::size_t i = 0; i < texels.size() && i < slopes.size(); ++i) {
+    const glm::vec3 n = glm::normalize(glm::vec3(slopes[i], 1.0f));
+    const std::size_t at = (static_cast<std::size_t>(texels[i].y) * width + texels[i].x) * 3;
+    for (int c = 0; c < 3; ++c) picture.pixels16[at + c] = encode(n[c]);
+  }
+  Dilate(&picture, texels, kDilation);
+  return picture;
+}
+
+std::vector<glm::vec3> Smooth(std::span<const glm::vec3> points, int per_segment) {
+  std::vector<glm::vec3> line;
+  const int count = static_cast<int>(points.size());
+  for (int i = 0; i + 1 < count; ++i) {
+    const glm::vec3 p0 = points[std::max(i - 1, 0)];
+    const glm::vec3 p1 = points[i];
+    const glm::vec3 p2 = points[i + 1];
+    const glm::vec3 p3 = points[std::min(i + 2, count - 1)];
+    for (int k = 0; k < per_segment; ++k) {
+      const float t = static_cast<float>(k) / static_cast<float>(per_segment);
+      line.push_back(0.5f * (2.0f * p1 + (p2 - p0) * t +
+                             (2.0f * p0 - 5.0f * p1 + 4.0f * p2 - p3) * (t * t) +
+                             (3.0f * p1 - p0 - 3.0f * p2 + p3) * (t * t * t)));
+    }
+  }
+  if (count > 0) line.push_back(points.back());
+  return line;
+}
+
+}  // namespace furrow::character::paint

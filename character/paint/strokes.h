@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "character/character.h"
+#include "character/paint/uv_raster.h"
+
+namespace furrow::character::paint {
+
+// One fold, drawn as a line in model space: a valley with a round ridge on either side, which
+// tapers to nothing at both ends.
+//
+//   height = depth * (ridge * exp(-(2 (x - 1))^2) - exp(-x^2) / (1 + 14 x^2)) * taper(s)
+// with x the distance from the line in widths and s in [0, 1] the place along it.
+struct FoldStroke {
+  std::vector<glm::vec3> points;  // two or more, on or near the surface, model units (metres)
+  float width = 0.002f;           // valley to ridge, metres: half the wavelength of a set of folds
+  float depth = 0.0006f;          // of the valley, metres; negative: a bulge
+  float ridge = 0.35f;            // height of the ridges as a fraction of the depth, [0, 1]
+  float taper = 0.6f;             // fraction of the length over which the ends fade, (0, 1]
+  // Only surface whose normal lies within 90 degrees of this is touched; zero: any.
+  glm::vec3 facing{0.0f};
+};
+
+// Height of a stroke over the rest surface at a point near it, metres.
+[[nodiscard]] float StrokeHeight(const FoldStroke& stroke, const glm::vec3& position);
+
+// Slopes of all strokes together at every texel: -dh/d(tangent), -dh/d(bitangent), which is
+// n.xy / n.z of the tangent-space normal. As long as `texels`. Sums are exact for superposed
+// heights, and no UV seam shows, since distances are measured in model space.
+[[nodiscard]] std::vector<glm::vec2> StrokeSlopes(std::span<const Texel> texels,
+                                                  std::span<const FoldStroke> strokes);
+
+// Slopes as a tangent-space normal map of width x height, 16 bits a channel, RGB = n * 0.5 + 0.5,
+// green up (glTF), dilated by 16 texels; flat elsewhere. 16 bits, since 8 cannot say 0 and show
+// bands on smooth skin.
+[[nodiscard]] Picture EncodeNormals(const std::vector<Texel>& texels,
+                                    std::span<const glm::vec2> slopes, int width, int height);
+
+// A polyline through `points` by a Catmull-Rom spline, `per_segment` >= 1 pieces each.
+[[nodiscard]] std::vector<glm::vec3> Smooth(std::span<const glm::vec3> points, int per_segment);
+
+}  // namespace furrow::character::paint
