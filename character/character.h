@@ -23,7 +23,7 @@ struct Picture {
   int width = 0;
   int height = 0;
   int channels = 4;
-  std::vector<std::uint8_t> pixels;    // width * height * channels, when 8 bits
+  std::vector<std::uint8_t> pixels;     // width * height * channels, when 8 bits
   std::vector<std::uint16_t> pixels16;  // the same, when 16 bits; one of the two is empty
 };
 
@@ -32,21 +32,21 @@ struct Material {
   enum class Kind { kSkin, kCloth, kEye, kHair, kOther };
   std::string name;
   Kind kind = Kind::kOther;
-  glm::vec4 base_colour{1.0f};         // linear
-  int base_colour_texture = -1;        // index into Character::pictures; sRGB
-  int normal_texture = -1;             // tangent space, green up (glTF)
+  glm::vec4 base_colour{1.0f};   // linear
+  int base_colour_texture = -1;  // index into Character::pictures; sRGB
+  int normal_texture = -1;       // tangent space, green up (glTF)
   float roughness = 0.6f;
-  int roughness_texture = -1;          // green channel
+  int roughness_texture = -1;  // green channel
   bool double_sided = false;
-  float alpha_cutoff = 0.0f;           // 0: opaque
+  float alpha_cutoff = 0.0f;  // 0: opaque
 };
 
 struct Vertex {
-  glm::vec3 position{0.0f};            // model space, rest pose, metres
-  glm::vec3 normal{0.0f, 0.0f, 1.0f};  // unit
-  glm::vec4 tangent{1.0f, 0.0f, 0.0f, 1.0f};  // w: handedness of the bitangent (glTF)
-  glm::vec2 uv{0.0f};                  // v down (glTF)
-  std::uint16_t joints[4] = {0, 0, 0, 0};  // into Character::skeleton
+  glm::vec3 position{0.0f};                          // model space, rest pose, metres
+  glm::vec3 normal{0.0f, 0.0f, 1.0f};                // unit
+  glm::vec4 tangent{1.0f, 0.0f, 0.0f, 1.0f};         // w: handedness of the bitangent (glTF)
+  glm::vec2 uv{0.0f};                                // v down (glTF)
+  std::uint16_t joints[4] = {0, 0, 0, 0};            // into Character::skeleton
   float skin_weights[4] = {1.0f, 0.0f, 0.0f, 0.0f};  // sum to 1
 };
 
@@ -66,7 +66,7 @@ struct Character {
   std::vector<Material> materials;
   std::vector<Picture> pictures;
   wrinkle::Rig rig;
-  std::filesystem::path folder;        // where the rig's own files are looked up first
+  std::filesystem::path folder;  // where the rig's own files are looked up first
   // The rig's masks and wrinkle maps, loaded: name in the rig -> index into pictures.
   std::vector<std::pair<std::string, int>> rig_pictures;
 
@@ -76,16 +76,19 @@ struct Character {
 // Reads a .glb/.gltf and its rig (`rig` empty: "<stem>.rig.json" beside it, when it is there).
 //
 // - `poses` reads the rig's reference poses that name a file (see rig_file.h).
-// - Everything in the file is hostile until checked: sizes before allocation, indices, finite numbers,
-//   skin weights (the strongest four, renormalised), a skeleton that is a tree. Errors name the file
-//   and the field ("face.glb: meshes[0].primitives[0].attributes.JOINTS_0").
-// - Missing normals and tangents are computed. Pictures named by the rig are loaded: embedded ones by
+// - Everything in the file is hostile until checked: sizes before allocation, indices, finite
+// numbers,
+//   skin weights (the strongest four, renormalised), a skeleton that is a tree. Errors name the
+//   file and the field ("face.glb: meshes[0].primitives[0].attributes.JOINTS_0").
+// - Missing normals and tangents are computed. Pictures named by the rig are loaded: embedded ones
+// by
 //   name, files by FindAsset(); a mask that cannot be found is an error.
 [[nodiscard]] Result<Character> LoadCharacter(const std::filesystem::path& glb,
                                               const std::filesystem::path& rig = {},
                                               const wrinkle::PoseSource& poses = {});
 
-// Writes skeleton, skin, meshes and textures as one .glb (atomically: a temporary file, then a rename).
+// Writes skeleton, skin, meshes and textures as one .glb (atomically: a temporary file, then a
+// rename).
 [[nodiscard]] Status SaveCharacterGlb(const Character& character, const std::filesystem::path& glb);
 
 }  // namespace furrow::character
