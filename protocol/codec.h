@@ -48,7 +48,7 @@ enum class DecodeStatus : std::uint8_t {
   kBadCount,   // counts that contradict each other, or unordered indices
   kLimit,      // more joints, names or characters than limits.h allows
   kNonFinite,  // NaN or infinity
-  kNotUnit,    // a quaternion further than 1e-2 from unit length
+  kNotUnit,    // a quaternion further than 1e-3 from unit length
   kBadValue,   // an unknown enum value or a number out of its range
   kBadText,    // not UTF-8, empty or twice where that is not allowed
   kBadHash,    // an offer or name table that does not hash to what it says
@@ -94,7 +94,7 @@ struct MessageView {
 struct PoseEncoding {
   bool quantise_rotations = false;     // 6 bytes a joint, off by at most 1.5e-4 rad (quantise.h)
   bool quantise_translations = false;  // 6 bytes, off by at most largest offset / 65534 an axis
-  bool quantise_blend_shapes = false;  // 2 bytes, clamped to [-2, 2], off by at most 1/32768
+  bool quantise_blend_shapes = false;  // 2 bytes, clamped to [-2, 2], off by at most 1/32767
   [[nodiscard]] static PoseEncoding Small() { return {true, true, true}; }
 };
 
@@ -133,8 +133,9 @@ class Encoder {
   void Encode(const Header& header, const WeightFrame& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const ImageFrame& message, std::vector<std::uint8_t>& out);
 
+  struct State;  // defined where FlatBuffers is known
+
  private:
-  struct State;
   std::unique_ptr<State> state_;
 };
 

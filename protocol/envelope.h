@@ -25,7 +25,6 @@ enum class EnvelopeStatus : std::uint8_t {
   kBadVersion,  // a version that this build does not speak
   kBadFlags,    // a bit that version 1 does not define
   kBadSession,  // session 0
-  kBadSize,     // payload size beyond what the transport may carry
 };
 
 struct Envelope {

@@ -14,7 +14,6 @@ namespace furrow::protocol {
 // Not a defence against anyone: it tells skeletons and name tables apart, nothing more.
 class Hasher {
  public:
-  void Bytes(std::span<const std::uint8_t> bytes);
   void String(std::string_view text);
   void U16(std::uint16_t value);
   void F32(float value);  // the bits as they stand

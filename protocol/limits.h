@@ -19,11 +19,16 @@ inline constexpr int kMaxJoints = 1024;
 inline constexpr int kMaxBlendShapes = 512;
 inline constexpr int kMaxWeights = 2048;       // names of one subscription
 inline constexpr int kMaxNameBytes = 255;      // joint, blend shape, subject, weight, view, camera
+inline constexpr int kMaxProgramBytes = 64;    // Hello's client, Welcome's server
 inline constexpr int kMaxPatternBytes = 4096;  // comma list of globs
 inline constexpr int kMaxTextBytes = 1024;     // messages for people
 inline constexpr int kMaxImageSize = 4096;     // pixels a side
 inline constexpr int kMinImageSize = 16;
 inline constexpr float kMaxRateHz = 1000.0f;
+inline constexpr float kMaxMagnitude = 1e6f;  // of any coordinate, scale or coefficient
+
+// A Hello has at least this many bytes, a Welcome at most: the answer never exceeds the question.
+inline constexpr std::size_t kHelloBytes = 256;
 
 inline constexpr int kMaxVerifierDepth = 8;  // FlatBuffers nesting
 inline constexpr int kMaxVerifierTables = 256;

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace furrow::protocol {
+
+// Integers in a stated byte order at any address; the compiler makes single moves of them.
+template <class T>
+[[nodiscard]] T LoadLittle(const std::uint8_t* bytes) {
+  std::make_unsigned_t<T> value = 0;
+  for (std::size_t i = 0; i < sizeof(T); ++i) {
+    value |= static_cast<std::make_unsigned_t<T>>(bytes[i]) << (8 * i);
+  }
+  return static_cast<T>(value);
+}
+
+template <class T>
+void StoreLittle(T value, std::uint8_t* bytes) {
+  const auto bits = static_cast<std::make_unsigned_t<T>>(value);
+  for (std::size_t i = 0; i < sizeof(T); ++i) {
+    bytes[i] = static_cast<std::uint8_t>(bits >> (8 * i));
+  }
+}
+
+template <class T>
+[[nodiscard]] T LoadBig(const std::uint8_t* bytes) {
+  std::make_unsigned_t<T> value = 0;
+  for (std::size_t i = 0; i < sizeof(T); ++i) {
+    value |= static_cast<std::make_unsigned_t<T>>(bytes[i]) << (8 * (sizeof(T) - 1 - i));
+  }
+  return static_cast<T>(value);
+}
+
+template <class T>
+void StoreBig(T value, std::uint8_t* bytes) {
+  const auto bits = static_cast<std::make_unsigned_t<T>>(value);
+  for (std::size_t i = 0; i < sizeof(T); ++i) {
+    bytes[i] = static_cast<std::uint8_t>(bits >> (8 * (sizeof(T) - 1 - i)));
+  }
+}
+
+}  // namespace furrow::protocol

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "protocol/quantise.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace furrow::protocol {
+namespace {
+
+constexpr float kSqrt2 = 1.41421356f;
+constexpr int kQuatSteps = 32766;  // even, so that 0 has a code of its own
+constexpr int kOffsetSteps = 32767;
+
+std::uint64_t PackComponent(float value) {
+  const float scaled = std::round((value * kSqrt2 + 1.0f) * 0.5f * kQuatSteps);
+  return static_cast<std::uint64_t>(std::clamp(scaled, 0.0f, static_cast<float>(kQuatSteps)));
+}
+
+float UnpackComponent(std::uint64_t code) {
+  return (static_cast<float>(code) * (2.0f / kQuatSteps) - 1.0f) / kSqrt2;
+}
+
+}  // namespace
+
+PackedQuat PackQuat(const Quat& rotation) {
+  const std::array<float, 4> q = {rotation.x, rotation.y, rotation.z, rotation.w};
+  std::size_t largest = 0;
+  float length_squared = 0.0f;
+  for (std::size_t i = 0; i < 4; ++i) {
+    length_squared += q[i] * q[i];
+    if (std::fabs(q[i]) > std::fabs(q[largest])) largest = i;
+  }
+  const float scale = (q[largest] < 0.0f ? -1.0f : 1.0f) / std::sqrt(length_squared);
+  std::uint64_t bits = static_cast<std::uint64_t>(largest) << 45;
+  int shift = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (i == largest) continue;
+    bits |= PackComponent(q[i] * scale) << shift;
+    shift += 15;
+  }
+  return {static_cast<std::uint16_t>(bits), static_cast<std::uint16_t>(bits >> 16),
+          static_cast<std::uint16_t>(bits >> 32)};
+}
+
+bool UnpackQuat(const PackedQuat& packed, Quat& rotation) {
+  rotation = Quat{};
+  const std::uint64_t bits = packed[0] | static_cast<std::uint64_t>(packed[1]) << 16 |
+                             static_cast<std::uint64_t>(packed[2]) << 32;
+  if (bits >> 47 != 0) return false;
+  const auto largest = static_cast<std::size_t>(bits >> 45 & 3);
+  std::array<float, 4> q{};
+  float sum = 0.0f;
+  int shift = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (i == largest) continue;
+    const std::uint64_t code = bits >> shift & 0x7FFF;
+    shift += 15;
+    if (code > kQuatSteps) return false;
+    q[i] = UnpackComponent(code);
+    sum += q[i] * q[i];
+  }
+  if (sum > 1.0f) return false;
+  q[largest] = std::sqrt(1.0f - sum);
+  rotation = {q[0], q[1], q[2], q[3]};
+  return true;
+}
+
+std::int16_t PackOffset(float value, float range) {
+  if (!(range > 0.0f)) return 0;
+  const float scaled = std::round(std::clamp(value / range, -1.0f, 1.0f) * kOffsetSteps);
+  return static_cast<std::int16_t>(scaled);
+}
+
+float UnpackOffset(std::int16_t packed, float range) {
+  return range * (static_cast<float>(packed) / kOffsetSteps);
+}
+
+std::uint8_t PackWeight(float value) {
+  return static_cast<std::uint8_t>(std::round(std::clamp(value, 0.0f, 1.0f) * 255.0f));
+}
+
+float UnpackWeight(std::uint8_t packed) { return static_cast<float>(packed) / 255.0f; }
+
+}  // namespace furrow::protocol
