@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "character/character.h"
+#include "character/import/mesh_builder.h"
+#include "character/import/mhclo.h"
+#include "character/import/obj.h"
+#include "character/import/skin_weights.h"
+#include "wrinkle/skeleton.h"
+
+namespace furrow::character {
+
+// MakeHuman's base mesh, ready to be cut into what is drawn.
+struct BaseMesh {
+  ObjMesh obj;
+  std::vector<glm::vec3> positions;  // metres, feet on y = 0; all vertices, helpers too
+  SkinWeights skin;
+};
+
+// The faces of a group of `obj`; empty when there is no such group.
+[[nodiscard]] std::vector<std::uint32_t> FacesOf(const ObjMesh& obj, std::string_view group);
+
+// The skin: the group "body" without the faces all of whose vertices `deleted` (by base vertex; may
+// be empty) names. UV islands move so that the face's fills three quarters of the picture and the
+// others share the rest: it is where the detail is needed.
+[[nodiscard]] Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
+                             const std::vector<bool>& deleted, int material, int* hidden_faces);
+
+// One group of helpers as it stands (teeth, tongue).
+[[nodiscard]] Mesh BuildHelper(const BaseMesh& base, std::string_view group, int material);
+
+// A smooth ball with a slight cornea in place of the group's coarse one; it follows `joint` and
+// looks along `forward` (unit). UVs as PaintEye() has them.
+[[nodiscard]] Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint,
+                            const glm::vec3& forward, int material);
+
+}  // namespace furrow::character

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/import/face_folds.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "character/import/noise.h"
+
+namespace furrow::character {
+namespace {
+
+using paint::FoldStroke;
+using paint::Texel;
+
+// Sizes in millimetres of a face of usual size.
+struct FoldSize {
+  float width;
+  float depth;
+  float ridge = 0.35f;
+  float taper = 0.6f;
+};
+
+// Collects strokes; places are moved a little at random (always the same way), since evenly spaced
+// folds read as stripes.
+class FoldDrawing {
+ public:
+  explicit FoldDrawing(const FaceLandmarks& face) : face_(face) {}
+
+  void Add(std::vector<glm::vec3> points, FoldSize size) {
+    FoldStroke stroke;
+    const int serial = static_cast<int>(strokes_.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const int n = static_cast<int>(i);
+      points[i] += face_.Millimetres(1.4f) * glm::vec3(HashLattice(serial, n, 1) - 0.5f,
+                                                       HashLattice(serial, n, 2) - 0.5f, 0.0f);
+    }
+    stroke.points = std::move(points);
+    const float vary = 0.8f + 0.4f * HashLattice(serial, 7, 3);
+    stroke.width = face_.Millimetres(size.width);
+    stroke.depth = face_.Millimetres(size.depth) * vary;
+    stroke.ridge = size.ridge;
+    stroke.taper = size.taper;
+    strokes_.push_back(std::move(stroke));
+  }
+
+  // A point given in millimetres from a landmark: `out` away from the middle of the face, `up`.
+  [[nodiscard]] glm::vec3 From(const glm::vec3& landmark, int side, float out, float up) const {
+    return landmark + face_.Millimetres(1.0f) * glm::vec3(side == 0 ? out : -out, up, 0.0f);
+  }
+
+  [[nodiscard]] std::vector<FoldStroke> Take() { return std::move(strokes_); }
+
+ private:
+  const FaceLandmarks& face_;
+  std::vector<FoldStroke> strokes_;
+};
+
+// Four furrows from temple to temple, each broken once so that no two are alike.
+void Forehead(const FaceLandmarks& face, FoldDrawing* drawing) {
+  constexpr std::array<float, 4> kHeights{13.0f, 22.0f, 31.5f, 40.0f};
+  for (std::size_t row = 0; row < kHeights.size(); ++row) {
+    const float up = kHeights[row];
+    const FoldSize size{row == 3 ? 2.6f : 3.0f, row == 3 ? 0.45f : 0.75f};
+    for (int s = 0; s < 2; ++s) {
+      const FaceLandmarks::Side& side = face.sides[s];
+      const float inner = row % 2 == 0 ? -9.0f : -17.0f;  // past the middle, in turn
+      drawing->Add({drawing->From(side.brow_inner, s, inner, up - 1.0f),
+                    drawing->From(side.brow_inner, s, 6.0f, up),
+                    drawing->From(side.brow_middle, s, 0.0f, up + 1.5f),
+                    drawing->From(side.brow_middle, s, 14.0f, up - 1.5f)},
+                   size);
+    }
+  }
+}
+
+void Glabella(const FaceLandmarks& face, FoldDrawing* drawing) {
+  for (int s = 0; s < 2; ++s) {
+    const glm::vec3& brow = face.sides[s].brow_inner;
+    drawing->Add({drawing->From(brow, s, -6.0f, 13.0f), drawing->From(brow, s, -7.5f, 2.0f),
+                  drawing->From(brow, s, -8.5f, -8.0f)},
+                 {2.6f, 0.95f});
+    drawing->Add({drawing->From(brow, s, 1.0f, 9.0f), drawing->From(brow, s, -2.0f, 2.5f)},
+                 {2.2f, 0.5f});
+    // The brow's own roll: skin pushed up over its inner end.
+    drawing->Add({drawing->From(brow, s, -3.0f, 8.0f), drawing->From(brow, s, 8.0f, 9.5f),
+                  drawing->From(brow, s, 20.0f, 9.0f)},
+                 {3.0f, 0.5f});
+  }
+  const glm::vec3 root = glm::mix(face.sides[0].brow_inner, face.sides[1].brow_inner, 0.5f);
+  for (const float down : {15.0f, 20.0f})
+    drawing->Add({drawing->From(root, 0, -8.0f, -down + 1.5f), drawing->From(root, 0, 0.0f, -down),
+                  drawing->From(root, 0, 8.0f, -down + 1.5f)},
+                 {1.9f, 0.6f});
+}
+
+void BunnyLines(const FaceLandmarks& face, FoldDrawing* drawing) {
+  for (int s = 0; s < 2; ++s) {
+    for (int line = 0; line < 3; ++line) {
+      const float down = 4.0f * static_cast<float>(line);
+      drawing->Add({drawing->From(face.nose_bridge, s, 3.0f, 2.0f - down),
+                    drawing->From(face.nose_bridge, s, 8.5f, 0.0f - down),
+                    drawing->From(face.nose_bridge, s, 13.0f, 4.0f - down)},
+                   {1.6f, 0.5f});
+    }
+  }
+}
+
+// A fan from the outer corner of the eye, and lines that follow the lower lid.
+void EyeFolds(const FaceLandmarks& face, FoldDrawing* drawing) {
+  constexpr std::array<std::array<float, 2>, 5> kFan{
+      {{9.0f, 9.0f}, {14.0f, 3.5f}, {15.0f, -2.5f}, {13.0f, -8.5f}, {8.0f, -14.0f}}};
+  for (int s = 0; s < 2; ++s) {
+    const FaceLandmarks::Side& side = face.sides[s];
+    for (const auto& [out, up] : kFan) {
+      drawing->Add({drawing->From(side.eye, s, 19.0f + 0.15f * out, 0.35f * up - 1.0f),
+                    drawing->From(side.eye, s, 21.0f + 0.6f * out, 0.7f * up - 1.5f),
+                    drawing->From(side.eye, s, 21.0f + out, up - 2.5f)},
+                   {1.7f, 0.5f});
+    }
+    for (int line = 0; line < 3; ++line) {
+      const float down = 6.0f + 4.2f * static_cast<float>(line);
+      drawing->Add({drawing->From(side.lower_lid, s, -11.0f, 2.0f - down),
+                    drawing->From(side.lower_lid, s, 0.0f, -1.0f - down),
+                    drawing->From(side.lower_lid, s, 12.0f, 1.5f - down)},
+                   {1.9f, line == 0 ? 0.45f : 0.32f});
+    }
+  }
+}
+
+void Nasolabial(const FaceLandmarks& face, FoldDrawing* drawing) {
+  for (int s = 0; s < 2; ++s) {
+    const FaceLandmarks::Side& side = face.sides[s];
+    drawing->Add(
+        {drawing->From(side.fold_top, s, 1.0f, 5.0f), drawing->From(side.fold_top, s, 4.0f, -5.0f),
+         drawing->From(side.fold_middle, s, 5.5f, -2.0f),
+         drawing->From(side.fold_bottom, s, 7.0f, -2.0f),
+         drawing->From(side.mouth_corner, s, 9.0f, -6.0f)},
+        {3.4f, 1.25f, 0.5f, 0.7f});
+    // The dimple's arc, outside the fold's lower end.
+    drawing->Add({drawing->From(side.fold_bottom, s, 14.0f, 7.0f),
+                  drawing->From(side.fold_bottom, s, 16.0f, -1.0f),
+                  drawing->From(side.fold_bottom, s, 14.0f, -9.0f)},
+                 {2.6f, 0.55f});
+  }
+}
+
+void Marionette(const FaceLandmarks& face, FoldDrawing* drawing) {
+  for (int s = 0; s < 2; ++s) {
+    const FaceLandmarks::Side& side = face.sides[s];
+    drawing->Add({drawing->From(side.mouth_corner, s, 4.0f, 1.0f),
+                  drawing->From(side.mouth_corner, s, 6.5f, -9.0f),
+                  drawing->From(side.mouth_corner, s, 6.0f, -20.0f)},
+                 {2.8f, 0.9f});
+    drawing->Add({drawing->From(side.fold_bottom, s, 8.0f, 9.0f),
+                  drawing->From(side.fold_bottom, s, 11.0f, -3.0f)},
+                 {2.4f, 0.4f});
+  }
+}
+
+void Chin(const FaceLandmarks& face, FoldDrawing* drawing) {
+  const glm::vec3& under = face.lower_lip_bottom;
+  drawing->Add({drawing->From(under, 0, -14.0f, -4.0f), drawing->From(under, 0, 0.0f, -1.5f),
+                drawing->From(under, 0, 14.0f, -4.0f)},
+               {2.8f, 0.8f});
+  // Pebbles: short dents over the mentalis.
+  for (int i = 0; i < 16; ++i) {
+    const float out = (HashLattice(i, 11, 5) - 0.5f) * 24.0f;
+    const float up = -6.0f - 14.0f * HashLattice(i, 12, 5);
+    const float turn = (HashLattice(i, 13, 5) - 0.5f) * 4.0f;
+    drawing->Add(
+        {drawing->From(under, 0, out - 1.6f, up), drawing->From(under, 0, out + 1.6f, up + turn)},
+        {1.7f, 0.4f});
+  }
+}
+
+glm::vec3 NearestOnSurface(const std::vector<const Texel*>& surface, const glm::vec3& p) {
+  float nearest = std::numeric_limits<float>::max();
+  glm::vec3 found = p;
+  for (const Texel* texel : surface) {
+    const glm::vec3 away = texel->position - p;
+    const float distance = glm::dot(away, away);
+    if (distance >= nearest) continue;
+    nearest = distance;
+    found = texel->position;
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<FoldStroke> StretchFolds(const FaceLandmarks& face) {
+  FoldDrawing drawing(face);
+  Forehead(face, &drawing);
+  Marionette(face, &drawing);
+  Chin(face, &drawing);
+  return drawing.Take();
+}
+
+std::vector<FoldStroke> SquashFolds(const FaceLandmarks& face) {
+  FoldDrawing drawing(face);
+  Glabella(face, &drawing);
+  BunnyLines(face, &drawing);
+  EyeFolds(face, &drawing);
+  Nasolabial(face, &drawing);
+  return drawing.Take();
+}
+
+Picture PaintFolds(const char* name, const std::vector<Texel>& texels,
+                   std::vector<FoldStroke> strokes, int size) {
+  // A texel in three is fine enough to stand for the surface, which must face forward: the inside
+  // of the mouth is nearer to some landmarks than the cheek is.
+  std::vector<const Texel*> surface;
+  for (std::size_t i = 0; i < texels.size(); i += 3) {
+    if (texels[i].normal.z > -0.2f) surface.push_back(&texels[i]);
+  }
+  constexpr int kPieces = 5;
+  for (FoldStroke& stroke : strokes) {
+    for (glm::vec3& point : stroke.points) point = NearestOnSurface(surface, point);
+    stroke.points = paint::Smooth(stroke.points, kPieces);
+    for (glm::vec3& point : stroke.points) point = NearestOnSurface(surface, point);
+    stroke.facing = glm::vec3(0.0f, 0.0f, 1.0f);
+  }
+  // Temples face sideways: there, folds are let round the corner.
+  for (FoldStroke& stroke : strokes) {
+    if (std::abs(stroke.points.back().x) > std::abs(stroke.points.back().z))
+      stroke.facing = glm::vec3(0.0f);
+  }
+  Picture picture = paint::EncodeNormals(texels, paint::StrokeSlopes(texels, strokes), size, size);
+  picture.name = name;
+  return picture;
+}
+
+}  // namespace furrow::character

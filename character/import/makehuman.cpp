@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/import/makehuman.h"
+
+#include <algorithm>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "character/data_dir.h"
+#include "character/import/body_parts.h"
+#include "character/import/face_folds.h"
+#include "character/import/face_landmarks.h"
+#include "character/import/mhclo.h"
+#include "character/import/mhskel.h"
+#include "character/import/obj.h"
+#include "character/import/prop_paint.h"
+#include "character/import/skin_paint.h"
+#include "character/import/text_lines.h"
+#include "character/paint/uv_raster.h"
+#include "character/rig_file.h"
+#include "wrinkle/solver.h"
+
+namespace furrow::character {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kMetresPerUnit = 0.1f;  // MakeHuman's unit is the decimetre
+
+// The one importer run: reads, fits, cuts and paints, in that order.
+class MakeHumanImport {
+ public:
+  MakeHumanImport(const fs::path& folder, const ImportOptions& options)
+      : folder_(folder), options_(options) {}
+
+  Result<Character> Run(ImportReport* report) {
+    if (options_.texture_size < 64 || options_.texture_size > 4096)
+      return Status(StatusCode::kInvalidArgument, "texture_size is not in [64, 4096]");
+    character_.name = "makehuman";
+    using Step = Status (MakeHumanImport::*)();
+    for (const Step step : {&MakeHumanImport::ReadBase, &MakeHumanImport::ReadGarment,
+                            &MakeHumanImport::ReadRig, &MakeHumanImport::BuildBody,
+                            &MakeHumanImport::BuildGarment, &MakeHumanImport::CollectRigPictures}) {
+      if (Status status = (this->*step)(); !status.ok()) return status;
+    }
+    FinishReport();
+    if (report != nullptr) *report = std::move(report_);
+    return std::move(character_);
+  }
+
+ private:
+  Status ReadBase() {
+    const fs::path obj_path = folder_ / "3dobjs" / "base.obj";
+    const Result<std::string> obj_text = ReadTextFile(obj_path);
+    if (!obj_text.ok()) return obj_text.status();
+    Result<ObjMesh> obj = ParseObj(*obj_text, obj_path.string());
+    if (!obj.ok()) return obj.status();
+    base_.obj = std::move(*obj);
+    if (Status status = PlaceBase(obj_path); !status.ok()) return status;
+
+    const fs::path skeleton_path = folder_ / "rigs" / "default.mhskel";
+    const Result<std::string> skeleton_text = ReadTextFile(skeleton_path);
+    if (!skeleton_text.ok()) return skeleton_text.status();
+    const Result<MhSkeleton> mh_skeleton = ParseMhskel(*skeleton_text, skeleton_path.string());
+    if (!mh_skeleton.ok()) return mh_skeleton.status();
+    Result<wrinkle::Skeleton> skeleton =
+        BuildSkeleton(*mh_skeleton, base_.positions, skeleton_path.string());
+    if (!skeleton.ok()) return skeleton.status();
+    character_.skeleton = std::move(*skeleton);
+    for (const glm::mat4& model : character_.skeleton.rest_model())
+      character_.inverse_bind_matrices.push_back(glm::inverse(model));
+    const Result<FaceLandmarks> face = FindFaceLandmarks(character_.skeleton);
+    if (!face.ok()) return face.status().At(skeleton_path.string());
+    face_ = *face;
+
+    const fs::path weights_path = folder_ / "rigs" / "default_weights.mhw";
+    const Result<std::string> weights_text = ReadTextFile(weights_path);
+    if (!weights_text.ok()) return weights_text.status();
+    const Result<MhWeights> weights = ParseMhw(*weights_text, weights_path.string());
+    if (!weights.ok()) return weights.status();
+    Result<SkinWeights> skin =
+        BindBaseMesh(*weights, character_.skeleton, base_.positions.size(), weights_path.string());
+    if (!skin.ok()) return skin.status();
+    base_.skin = std::move(*skin);
+    return {};
+  }
+
+  // Metres, with the body's lowest point (not the helpers': a skirt may hang lower) on the ground.
+  Status PlaceBase(const fs::path& path) {
+    const std::vector<std::uint32_t> body = FacesOf(base_.obj, "body");
+    if (body.empty())
+      return Status(StatusCode::kSchema, "has no group 'body'", path.string(),
+                    "is it MakeHuman's base mesh?");
+    float ground = base_.obj.positions[base_.obj.corners[0].position].y;
+    for (const std::uint32_t f : body) {
+      const ObjMesh::Face& face = base_.obj.faces[f];
+      for (std::size_t i = 0; i < face.num_corners; ++i)
+        ground = std::min(ground,
+                          base_.obj.positions[base_.obj.corners[face.first_corner + i].position].y);
+    }
+    base_.positions = base_.obj.positions;
+    for (glm::vec3& p : base_.positions) p = (p - glm::vec3(0.0f, ground, 0.0f)) * kMetresPerUnit;
+    return {};
+  }
+
+  // The garment's folder: the one that was asked for, or the first.
+  Result<fs::path> FindGarment() {
+    const fs::path clothes = folder_ / "clothes";
+    if (!options_.clothes.empty())
+      return clothes / options_.clothes / (options_.clothes + ".mhclo");
+    std::vector<fs::path> found;
+    std::error_code error;
+    for (fs::directory_iterator it(clothes, error), end; !error && it != end; it.increment(error)) {
+      const fs::path file = it->path() / (it->path().filename().string() + ".mhclo");
+      std::error_code ignored;
+      if (fs::is_regular_file(file, ignored)) found.push_back(file);
+    }
+    if (found.empty()) return fs::path();
+    return *std::min_element(found.begin(), found.end());
+  }
+
+  Status ReadGarment() {
+    const Result<fs::path> path = FindGarment();
+    if (!path.ok()) return path.status();
+    if (path->empty()) {
+      report_.warnings.push_back((folder_ / "clothes").string() +
+                                 " holds no clothes: the body is bare");
+      return {};
+    }
+    const Result<std::string> text = ReadTextFile(*path);
+    if (!text.ok()) return text.status();
+    Result<Mhclo> garment = ParseMhclo(*text, path->string(), base_.positions.size());
+    if (!garment.ok()) return garment.status();
+    const fs::path obj_path = path->parent_path() / garment->obj_file;
+    const Result<std::string> obj_text = ReadTextFile(obj_path);
+    if (!obj_text.ok()) return obj_text.status();
+    Result<ObjMesh> obj = ParseObj(*obj_text, obj_path.string());
+    if (!obj.ok()) return obj.status();
+    if (obj->positions.size() != garment->vertices.size())
+      return Status(StatusCode::kSchema,
+                    "fits " + std::to_string(garment->vertices.size()) + " vertices, but " +
+                        garment->obj_file + " has " + std::to_string(obj->positions.size()),
+                    path->string());
+    garment_ = std::move(*garment);
+    garment_obj_ = std::move(*obj);
+    return {};
+  }
+
+  Status ReadRig() {
+    fs::path path = options_.rig;
+    if (path.empty()) {
+      Result<fs::path> found = FindDataFile("rigs/makehuman.json");
+      if (!found.ok()) return found.status();
+      path = std::move(*found);
+    }
+    const Result<std::string> text = ReadTextFile(path);
+    if (!text.ok()) return text.status();
+    Result<wrinkle::Rig> rig =
+        ParseRig(*text, path.string(), folder_ / "poseunits", options_.poses);
+    if (!rig.ok()) return rig.status();
+    const Result<wrinkle::RigBinding> binding =
+        wrinkle::RigBinding::Create(*rig, character_.skeleton, {});
+    if (!binding.ok()) return binding.status().At(path.string());
+    character_.rig = std::move(*rig);
+    return {};
+  }
+
+  Status BuildBody() {
+    const int size = options_.texture_size;
+    Material skin{.name = "skin", .kind = Material::Kind::kSkin, .roughness = 0.5f};
+    character_.meshes.push_back(BuildSkin(base_, character_.skeleton,
+                                          garment_ ? garment_->deleted : std::vector<bool>(), 0,
+                                          &report_.hidden_faces));
+    const std::vector<paint::Texel> texels =
+        paint::RasterizeUv(character_.meshes.back(), size, size);
+    skin.base_colour_texture = AddPicture(PaintSkinColour(texels, face_, size));
+    skin.normal_texture = AddPicture(PaintSkinNormals(texels, face_, size));
+    character_.materials.push_back(skin);
+    FaceMasks masks = PaintFaceMasks(texels, face_, size);
+    AddPicture(std::move(masks.first));
+    AddPicture(std::move(masks.second));
+    AddPicture(PaintFolds("face_stretch", texels, StretchFolds(face_), size));
+    AddPicture(PaintFolds("face_squash", texels, SquashFolds(face_), size));
+    BuildEyes();
+    BuildMouth();
+    return {};
+  }
+
+  void BuildEyes() {
+    Material material{.name = "eye", .kind = Material::Kind::kEye, .roughness = 0.12f};
+    material.base_colour_texture = AddPicture(PaintEye(std::max(options_.texture_size / 2, 64)));
+    const int index = AddMaterial(material);
+    constexpr const char* kGroups[2] = {"helper-l-eye", "helper-r-eye"};
+    constexpr const char* kJoints[2] = {"eye.L", "eye.R"};
+    for (std::size_t s = 0; s < 2; ++s) {
+      const FaceLandmarks::Side& side = face_.sides[s];
+      const glm::vec3 sight = side.pupil - side.eye;
+      const glm::vec3 forward =
+          glm::length(sight) > 1e-6f ? glm::normalize(sight) : glm::vec3(0.0f, 0.0f, 1.0f);
+      AddPart(BuildEye(base_, kGroups[s], character_.skeleton.Find(kJoints[s]), forward, index));
+    }
+  }
+
+  void BuildMouth() {
+    const int teeth = AddMaterial({.name = "teeth",
+                                   .base_colour = glm::vec4(0.62f, 0.57f, 0.47f, 1.0f),
+                                   .roughness = 0.25f,
+                                   .double_sided = true});
+    const int tongue = AddMaterial({.name = "tongue",
+                                    .base_colour = glm::vec4(0.33f, 0.09f, 0.09f, 1.0f),
+                                    .roughness = 0.35f});
+    AddPart(BuildHelper(base_, "helper-upper-teeth", teeth));
+    AddPart(BuildHelper(base_, "helper-lower-teeth", teeth));
+    AddPart(BuildHelper(base_, "helper-tongue", tongue));
+  }
+
+  Status BuildGarment() {
+    if (!garment_) return {};
+    const std::vector<glm::vec3> positions = FitGarment(*garment_, base_.positions);
+    const SkinWeights skin = BindGarment(*garment_, base_.skin);
+    std::vector<std::uint32_t> faces(garment_obj_.faces.size());
+    for (std::uint32_t f = 0; f < faces.size(); ++f) faces[f] = f;
+    const std::vector<glm::vec3> normals = SmoothNormals(garment_obj_, positions, faces);
+    MeshSource source;
+    source.obj = &garment_obj_;
+    source.positions = positions;
+    source.normals = normals;
+    source.influences = skin.vertices;
+    source.faces = std::move(faces);
+    const int size = options_.texture_size;
+    Mesh mesh = BuildMesh("clothes", 0, source);
+    const std::vector<paint::Texel> texels = paint::RasterizeUv(mesh, size, size);
+    Material cloth{.name = "cloth", .kind = Material::Kind::kCloth, .roughness = 0.85f};
+    cloth.double_sided = true;  // cuffs and collars show their inside
+    cloth.base_colour_texture = AddPicture(PaintCloth(texels, Waist(), size));
+    cloth.normal_texture = AddPicture(PaintWeaveNormals(texels, size));
+    AddPicture(PaintClothFolds(texels, size));
+    mesh.material = AddMaterial(cloth);
+    AddPart(std::move(mesh));
+    report_.unweighted_vertices += skin.unweighted;
+    report_.truncated_vertices += skin.truncated;
+    return {};
+  }
+
+  // Where the spine leaves the pelvis; half the body's height where there is no such joint.
+  float Waist() const {
+    const int joint = character_.skeleton.Find("spine04");
+    if (joint == wrinkle::kNoJoint) return 0.5f * face_.crown.y;
+    return character_.skeleton.rest_model()[static_cast<std::size_t>(joint)][3].y;
+  }
+
+  // The rig's pictures are the ones painted here; a bare body has no folds of cloth to show.
+  Status CollectRigPictures() {
+    const auto add = [this](const std::string& name) {
+      if (name.empty()) return;
+      for (std::size_t i = 0; i < character_.pictures.size(); ++i) {
+        if (character_.pictures[i].name == name) {
+          character_.rig_pictures.emplace_back(name, static_cast<int>(i));
+          return;
+        }
+      }
+      report_.warnings.push_back("the rig names the picture '" + name +
+                                 "', which this import does not paint");
+    };
+    std::vector<std::string> names;
+    for (const wrinkle::Region& region : character_.rig.regions)
+      names.push_back(region.mask.texture);
+    for (const wrinkle::WrinkleMap& map : character_.rig.wrinkle_maps)
+      names.insert(names.end(), {map.normal, map.derivative, map.colour, map.cavity});
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    for (const std::string& name : names) add(name);
+    return {};
+  }
+
+  void FinishReport() {
+    report_.joints = character_.skeleton.num_joints();
+    report_.unweighted_vertices += base_.skin.unweighted;
+    report_.truncated_vertices += base_.skin.truncated;
+    for (const Mesh& mesh : character_.meshes) {
+      report_.vertices += static_cast<int>(mesh.vertices.size());
+      report_.triangles += static_cast<int>(mesh.indices.size() / 3);
+    }
+    if (report_.unweighted_vertices > 0)
+      report_.warnings.push_back(std::to_string(report_.unweighted_vertices) +
+                                 " vertices have no weights and follow the root joint");
+  }
+
+  // A part that the folder lacks is left out, and said.
+  void AddPart(Mesh mesh) {
+    if (mesh.indices.empty()) {
+      report_.warnings.push_back("base.obj has no group '" + mesh.name + "': left out");
+      return;
+    }
+    character_.meshes.push_back(std::move(mesh));
+  }
+
+  int AddMaterial(Material material) {
+    character_.materials.push_back(std::move(material));
+    return static_cast<int>(character_.materials.size()) - 1;
+  }
+
+  int AddPicture(Picture picture) {
+    character_.pictures.push_back(std::move(picture));
+    return static_cast<int>(character_.pictures.size()) - 1;
+  }
+
+  fs::path folder_;
+  const ImportOptions& options_;
+  BaseMesh base_;
+  std::optional<Mhclo> garment_;
+  ObjMesh garment_obj_;
+  FaceLandmarks face_;
+  Character character_;
+  ImportReport report_;
+};
+
+}  // namespace
+
+Result<Character> ImportMakeHuman(const fs::path& folder, const ImportOptions& options,
+                                  ImportReport* report) {
+  return MakeHumanImport(folder, options).Run(report);
+}
+
+Status WritePackage(const Character& character, const fs::path& glb) {
+  if (Status status = SaveCharacterGlb(character, glb); !status.ok()) return status;
+  fs::path rig = glb;
+  rig.replace_extension(".rig.json");
+  return SaveRig(character.rig, rig);
+}
+
+}  // namespace furrow::character

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/import/skin_paint.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "character/import/noise.h"
+#include "character/import/polyline.h"
+#include "character/paint/strokes.h"
+
+namespace furrow::character {
+namespace {
+
+using paint::Texel;
+
+constexpr int kDilation = 16;
+
+// sRGB in [0, 1]. What the eye reads as living skin is the difference between the regions.
+constexpr glm::vec3 kSkin{0.80f, 0.615f, 0.52f};
+constexpr glm::vec3 kRed{0.77f, 0.48f, 0.42f};
+constexpr glm::vec3 kYellow{0.82f, 0.66f, 0.54f};
+constexpr glm::vec3 kLips{0.67f, 0.40f, 0.38f};
+constexpr glm::vec3 kLids{0.70f, 0.51f, 0.45f};
+constexpr glm::vec3 kBrow{0.23f, 0.165f, 0.13f};
+constexpr glm::vec3 kStubble{0.47f, 0.39f, 0.35f};
+
+Picture Blank(const char* name, int size, int channels) {
+  Picture picture;
+  picture.name = name;
+  picture.width = picture.height = size;
+  picture.channels = channels;
+  picture.pixels.assign(static_cast<std::size_t>(size) * static_cast<std::size_t>(size) *
+                            static_cast<std::size_t>(channels),
+                        0);
+  return picture;
+}
+
+std::uint8_t To8(float value) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
+}
+
+std::uint8_t* At(Picture* picture, const Texel& texel) {
+  return &picture->pixels[(static_cast<std::size_t>(texel.y) *
+                               static_cast<std::size_t>(picture->width) +
+                           static_cast<std::size_t>(texel.x)) *
+                          static_cast<std::size_t>(picture->channels)];
+}
+
+// How much of the face's front a point belongs to: keeps features off the inside of the mouth,
+// whose surface lies close behind the lips.
+float Front(const Texel& texel) { return glm::smoothstep(-0.1f, 0.35f, texel.normal.z); }
+
+float Redness(const glm::vec3& p, const FaceLandmarks& face) {
+  float red = 0.75f * FadeOut(glm::distance(p, face.nose_tip), 0.0f, face.Millimetres(22.0f));
+  for (const FaceLandmarks::Side& side : face.sides) {
+    const glm::vec3 apple = glm::mix(side.cheek, side.fold_top, 0.35f);
+    red = std::max(red, 0.75f * FadeOut(glm::distance(p, apple), 0.0f, face.Millimetres(34.0f)));
+    glm::vec3 ear = side.temple;  // ears lie level with the temples, well behind them
+    ear.z = face.head.z;
+    red = std::max(red, 0.6f * FadeOut(glm::distance(p, ear), face.Millimetres(10.0f),
+                                       face.Millimetres(40.0f)));
+  }
+  return red;
+}
+
+float Lips(const glm::vec3& p, const FaceLandmarks& face) {
+  float distance = 1.0f;
+  for (const FaceLandmarks::Side& side : face.sides) {
+    const glm::vec3 above = glm::mix(face.upper_lip_top, face.upper_lip, 0.6f);
+    const glm::vec3 below = glm::mix(face.lower_lip_bottom, face.lower_lip, 0.62f);
+    const glm::vec3 corner = glm::mix(side.mouth_corner, side.lower_lip, 0.3f);
+    distance =
+        std::min(distance, DistanceToLine(p, {above, glm::mix(above, corner, 0.55f), corner}));
+    distance =
+        std::min(distance, DistanceToLine(p, {below, glm::mix(below, corner, 0.55f), corner}));
+  }
+  return FadeOut(distance, face.Millimetres(3.4f), face.Millimetres(6.0f));
+}
+
+float Brow(const glm::vec3& p, const FaceLandmarks& face) {
+  float amount = 0.0f;
+  for (const FaceLandmarks::Side& side : face.sides) {
+    const float distance = DistanceToLine(
+        p, {side.brow_inner, side.brow_middle, glm::mix(side.brow_middle, side.brow_outer, 0.75f)});
+    // Thick at the nose, thin at the temple.
+    const float along = std::abs(p.x - side.brow_inner.x) /
+                        std::max(std::abs(side.brow_outer.x - side.brow_inner.x), 1e-4f);
+    const float half = face.Millimetres(glm::mix(4.4f, 1.8f, std::clamp(along, 0.0f, 1.0f)));
+    amount = std::max(amount, FadeOut(distance, 0.45f * half, 1.25f * half));
+  }
+  return amount;
+}
+
+// Hairline: an ellipsoid of face is cut out of the scalp.
+float Scalp(const glm::vec3& p, const FaceLandmarks& face) {
+  const float brow = face.sides[0].brow_middle.y;
+  const float hairline = glm::mix(brow, face.crown.y, 0.62f);
+  const float back = face.sides[0].temple.z - face.Millimetres(6.0f);
+  const float top =
+      glm::smoothstep(hairline - face.Millimetres(4.0f), hairline + face.Millimetres(6.0f), p.y);
+  const float ear = face.sides[0].lower_lid.y;
+  const float sides =
+      glm::smoothstep(ear - face.Millimetres(18.0f), ear + face.Millimetres(10.0f), p.y) *
+      glm::smoothstep(back, back - face.Millimetres(14.0f), p.z);
+  return std::max(top, sides);
+}
+
+float LidShade(const glm::vec3& p, const FaceLandmarks& face) {
+  float shade = 0.0f;
+  for (const FaceLandmarks::Side& side : face.sides) {
+    shade = std::max(shade, FadeOut(glm::distance(p, side.eye), face.Millimetres(14.0f),
+                                    face.Millimetres(24.0f)));
+  }
+  return shade;
+}
+
+glm::vec3 SkinColour(const Texel& texel, const FaceLandmarks& face) {
+  const glm::vec3& p = texel.position;
+  const float blotches = ValueNoise(p / face.Millimetres(11.0f)) - 0.5f;
+  const float speckle = ValueNoise(p / face.Millimetres(1.7f)) - 0.5f;
+  glm::vec3 colour = kSkin;
+  if (p.y > face.sides[0].brow_middle.y || p.y < face.lower_lip_bottom.y)
+    colour = glm::mix(colour, kYellow, 0.5f);
+  colour = glm::mix(colour, kRed, Redness(p, face) + 0.25f * blotches);
+  const float front = Front(texel);
+  colour = glm::mix(colour, kLids, 0.55f * LidShade(p, face) * front);
+  colour = glm::mix(colour, kLips, Lips(p, face) * front);
+  const float grain = ValueNoise(p / face.Millimetres(0.9f));
+  colour = glm::mix(colour, kStubble, Scalp(p, face) * (0.65f + 0.3f * grain));
+  colour = glm::mix(colour, kBrow, Brow(p, face) * front * (0.62f + 0.38f * grain));
+  return colour * (1.0f + 0.05f * blotches + 0.05f * speckle);
+}
+
+// Weight of the eight regions at a point, before overlaps are settled.
+std::array<float, 8> RegionFields(const glm::vec3& p, const FaceLandmarks& face) {
+  std::array<float, 8> field{};
+  const auto mm = [&face](float v) { return face.Millimetres(v); };
+  const float middle = 0.5f * (face.sides[0].eye.x + face.sides[1].eye.x);
+  const float left = glm::smoothstep(-mm(9.0f), mm(9.0f), p.x - middle);
+  const glm::vec3 between = 0.5f * (face.sides[0].brow_inner + face.sides[1].brow_inner);
+  const float glabella =
+      FadeOut(DistanceToLine(p, {between + glm::vec3(0.0f, mm(7.0f), 0.0f), face.nose_bridge}),
+              mm(6.0f), mm(17.0f));
+  const float nose =
+      FadeOut(DistanceToLine(p, {face.nose_bridge, face.nose_tip}), mm(13.0f), mm(27.0f));
+  const float brow_line = 0.5f * (face.sides[0].brow_middle.y + face.sides[1].brow_middle.y);
+  const float hairline = glm::mix(brow_line, face.crown.y, 0.72f);
+  for (std::size_t s = 0; s < 2; ++s) {
+    const FaceLandmarks::Side& side = face.sides[s];
+    const float half = s == 0 ? left : 1.0f - left;
+    field[s] = half * glm::smoothstep(brow_line - mm(13.0f), brow_line + mm(3.0f), p.y) *
+               glm::smoothstep(hairline + mm(8.0f), hairline - mm(10.0f), p.y) *
+               glm::smoothstep(side.temple.z - mm(22.0f), side.temple.z + mm(4.0f), p.z);
+    const glm::vec3 corner = glm::mix(side.eye, side.temple, 0.85f);
+    field[4 + s] =
+        half * FadeOut(DistanceToLine(p, {side.pupil, side.eye, corner}), mm(23.0f), mm(36.0f));
+    field[6 + s] = half * FadeOut(DistanceToLine(p, {side.fold_top, side.fold_middle,
+                                                     side.mouth_corner, side.chin_side, face.chin}),
+                                  mm(24.0f), mm(40.0f));
+  }
+  field[2] = glabella;
+  field[3] = nose * (1.0f - glabella);
+  for (const std::size_t beside : {0u, 1u, 4u, 5u}) field[beside] *= 1.0f - glabella;
+  for (const std::size_t beside : {4u, 5u, 6u, 7u}) field[beside] *= 1.0f - 0.8f * nose;
+  return field;
+}
+
+}  // namespace
+
+Picture PaintSkinColour(const std::vector<Texel>& texels, const FaceLandmarks& face, int size) {
+  Picture picture = Blank("skin_colour", size, 3);
+  for (const Texel& texel : texels) {
+    const glm::vec3 colour = SkinColour(texel, face);
+    std::uint8_t* out = At(&picture, texel);
+    for (int c = 0; c < 3; ++c) out[c] = To8(colour[c]);
+  }
+  paint::Dilate(&picture, texels, kDilation);
+  return picture;
+}
+
+Picture PaintSkinNormals(const std::vector<Texel>& texels, const FaceLandmarks& face, int size) {
+  const auto height = [&face](const glm::vec3& p) {
+    // Ridges of |noise| read as the net of fine furrows between pores.
+    const float net = std::abs(ValueNoise(p / face.Millimetres(1.6f)) - 0.5f);
+    const float pores = ValueNoise(p / face.Millimetres(0.8f));
+    return face.Millimetres(0.16f) * net + face.Millimetres(0.05f) * pores;
+  };
+  const float step = face.Millimetres(0.25f);
+  Picture picture = Blank("skin_normal", size, 3);
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+    picture.pixels[i] = i % 3 == 2 ? 255 : 128;
+  for (const Texel& texel : texels) {
+    const auto slope = [&](const glm::vec3& along) {
+      return (height(texel.position + along * step) - height(texel.position - along * step)) /
+             (2.0f * step);
+    };
+    const glm::vec3 n =
+        glm::normalize(glm::vec3(-slope(texel.tangent), -slope(texel.bitangent), 1.0f));
+    std::uint8_t* out = At(&picture, texel);
+    for (int c = 0; c < 3; ++c) out[c] = To8(n[c] * 0.5f + 0.5f);
+  }
+  paint::Dilate(&picture, texels, kDilation);
+  return picture;
+}
+
+FaceMasks PaintFaceMasks(const std::vector<Texel>& texels, const FaceLandmarks& face, int size) {
+  FaceMasks masks{Blank("face_masks_a", size, 4), Blank("face_masks_b", size, 4)};
+  for (const Texel& texel : texels) {
+    std::array<float, 8> field = RegionFields(texel.position, face);
+    float sum = 0.0f;
+    for (const float value : field) sum += value;
+    // Temples face sideways and still wrinkle; what faces backwards does not.
+    const float forward = glm::smoothstep(-0.5f, -0.1f, texel.normal.z);
+    const float scale = forward / std::max(sum, 1.0f);
+    std::uint8_t* first = At(&masks.first, texel);
+    std::uint8_t* second = At(&masks.second, texel);
+    for (std::size_t c = 0; c < 4; ++c) {
+      first[c] = To8(field[c] * scale);
+      second[c] = To8(field[4 + c] * scale);
+    }
+  }
+  paint::Dilate(&masks.first, texels, kDilation);
+  paint::Dilate(&masks.second, texels, kDilation);
+  return masks;
+}
+
+}  // namespace furrow::character

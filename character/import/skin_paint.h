@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "character/character.h"
+#include "character/import/face_landmarks.h"
+#include "character/paint/uv_raster.h"
+
+namespace furrow::character {
+
+// MakeHuman's pictures are not read: the skin is painted here, by position, from the landmarks.
+
+// 8-bit sRGB: skin with its regional hues (cheeks, nose and ears redder, chin and forehead
+// yellower), lips, brows, a shaven scalp, and blotches at two scales.
+[[nodiscard]] Picture PaintSkinColour(const std::vector<paint::Texel>& texels,
+                                      const FaceLandmarks& face, int size);
+
+// Tangent-space normal map of pores and fine furrows, 8 bits, green up.
+[[nodiscard]] Picture PaintSkinNormals(const std::vector<paint::Texel>& texels,
+                                       const FaceLandmarks& face, int size);
+
+// The eight facial regions, four a picture (RGBA, 8 bits, linear), with soft borders; where regions
+// overlap their sum stays at most 1.
+//   first:  brow_l, brow_r, glabella, nose      second: eye_l, eye_r, mouth_l, mouth_r
+struct FaceMasks {
+  Picture first;
+  Picture second;
+};
+[[nodiscard]] FaceMasks PaintFaceMasks(const std::vector<paint::Texel>& texels,
+                                       const FaceLandmarks& face, int size);
+
+}  // namespace furrow::character
