@@ -11,16 +11,16 @@ namespace furrow::wrinkle {
 // Why a job did not run. Jobs are on the packet path: they never throw, allocate or format text.
 enum class JobStatus {
   kOk = 0,
-  kNoSkeleton,      // a pointer that must be set is null
-  kSizeMismatch,    // a span is shorter than the skeleton or the rig needs
-  kNonFinite,       // a NaN or infinity in the input; outputs are unchanged
-  kBadTime,         // dt negative or not finite
+  kNoSkeleton,    // a pointer that must be set is null
+  kSizeMismatch,  // a span is shorter than the skeleton or the rig needs
+  kNonFinite,     // a NaN or infinity in the input; outputs are unchanged
+  kBadTime,       // dt negative or not finite
 };
 
 // A subject's pose: one local transform a joint and one coefficient a blend shape.
 struct LocalPose {
-  std::vector<Transform> joints;      // num_joints, in the skeleton's order
-  std::vector<float> blend_shapes;    // in the stream's order of names; empty when it has none
+  std::vector<Transform> joints;    // num_joints, in the skeleton's order
+  std::vector<float> blend_shapes;  // in the stream's order of names; empty when it has none
 
   void SetRest(const Skeleton& skeleton);
 };

@@ -10,8 +10,9 @@
 
 namespace furrow::wrinkle {
 
-// A length that tells a skeleton's scale: the sum of its rest bones' lengths over the joints it shares
-// by name with `other` (over all joints when `other` is null). Never 0 for a skeleton with extent.
+// A length that tells a skeleton's scale: the sum of its rest bones' lengths over the joints it
+// shares by name with `other` (over all joints when `other` is null). Never 0 for a skeleton with
+// extent.
 [[nodiscard]] float SkeletonSize(const Skeleton& skeleton, const Skeleton* other = nullptr);
 
 // Carries poses of one skeleton to another by joint name: made once a stream, then one pass a pose.
@@ -24,8 +25,9 @@ namespace furrow::wrinkle {
 class Retarget {
  public:
   // `aliases`: (source name, target name), tried before equal names.
-  [[nodiscard]] static Retarget Create(const Skeleton& source, const Skeleton& target,
-                                       std::span<const std::pair<std::string, std::string>> aliases = {});
+  [[nodiscard]] static Retarget Create(
+      const Skeleton& source, const Skeleton& target,
+      std::span<const std::pair<std::string, std::string>> aliases = {});
 
   [[nodiscard]] int num_matched() const;
   [[nodiscard]] std::span<const std::string> unmatched_source() const { return unmatched_; }
@@ -36,12 +38,12 @@ class Retarget {
  private:
   struct Joint {
     int source = kNoJoint;
-    glm::quat source_rest_inverse;   // of the source's local rest rotation
-    glm::quat to_target;             // inverse(G_target) * G_source
-    glm::quat parent_to_target;      // inverse(G_target_parent) * G_source_parent
+    glm::quat source_rest_inverse;  // of the source's local rest rotation
+    glm::quat to_target;            // inverse(G_target) * G_source
+    glm::quat parent_to_target;     // inverse(G_target_parent) * G_source_parent
     glm::vec3 source_rest_translation{0.0f};
     glm::vec3 source_rest_scale{1.0f};
-    Transform rest;                  // target's
+    Transform rest;  // target's
   };
   [[nodiscard]] Transform Carry(const Joint& joint, const Transform& source) const;
 

@@ -11,13 +11,14 @@
 // character/rig_file.h reads it from JSON; wrinkle/solver.h binds it (RigBinding) and evaluates it.
 namespace furrow::wrinkle {
 
-// A joint's departure from its rest pose, in model axes, so that a reference pose made on one skeleton
-// can be applied to another whose joints have other local frames.
+// A joint's departure from its rest pose, in model axes, so that a reference pose made on one
+// skeleton can be applied to another whose joints have other local frames.
 //
 // With rest-pose model rotation G of the joint and G_p of its parent (identity for a root):
 //   local rotation    = rest.rotation * inverse(G) * rotation * G
 //   local translation = rest.translation + inverse(G_p) * translation * bound_size / source_size
-// For a skeleton whose rest rotations are all identity (BVH), `rotation` is the local rotation itself.
+// For a skeleton whose rest rotations are all identity (BVH), `rotation` is the local rotation
+// itself.
 struct JointDelta {
   std::string joint;
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
@@ -27,7 +28,7 @@ struct JointDelta {
 struct ReferencePose {
   std::string name;
   std::vector<JointDelta> joints;  // joints not named rest
-  float source_size = 0.0f;        // SkeletonSize() of the source; 0: same units as the bound skeleton
+  float source_size = 0.0f;  // SkeletonSize() of the source; 0: same units as the bound skeleton
 };
 
 // Where on a joint a pose driver looks (4.1's B).
@@ -35,7 +36,7 @@ struct ControlPoint {
   enum class Kind { kTail, kOrigin, kOffset };
   std::string joint;
   Kind kind = Kind::kTail;
-  glm::vec3 offset{0.0f};  // kOffset: in the joint's space, as a fraction of `offset_size`
+  glm::vec3 offset{0.0f};    // kOffset: in the joint's space, as a fraction of `offset_size`
   float offset_size = 0.0f;  // SkeletonSize() the offset was measured on; 0: bound skeleton's units
 };
 
@@ -45,7 +46,10 @@ enum class BallMode { kSmooth, kThesis };
 // 4.1: one or several control points against named reference poses. Several points are stacked into
 // one long vector, so that a group of joints is fitted at once.
 struct PoseDriver {
-  struct Value { std::string name; std::string reference_pose; };  // driver value <- reference pose
+  struct Value {
+    std::string name;
+    std::string reference_pose;
+  };  // driver value <- reference pose
   std::vector<ControlPoint> points;
   std::vector<Value> values;
   PoseSolve solve = PoseSolve::kProjection;
@@ -54,22 +58,22 @@ struct PoseDriver {
 
 // 4.6: values "flexed" and "extended".
 struct HingeDriver {
-  std::string parent;  // upper bone: from parent's origin to joint's origin
-  std::string joint;   // lower bone: joint's origin to its tail (or to `end`)
-  std::string end;     // optional joint whose origin ends the lower bone
+  std::string parent;             // upper bone: from parent's origin to joint's origin
+  std::string joint;              // lower bone: joint's origin to its tail (or to `end`)
+  std::string end;                // optional joint whose origin ends the lower bone
   std::optional<glm::vec3> axis;  // model axes in the rest pose, right-handed about it flexes
                                   // (+); none: unsigned, as printed
-  float beta_degrees = 30.0f;     // angle between the bones when fully flexed, [0, 180)
+  float beta_degrees = 30.0f;     // angle between the bones when fully flexed, [0, 179]
 };
 
 // Clothing at ball joints: values "front", "back", "left", "right" (the subject's left and right).
 struct BallDriver {
   std::string parent;  // upper bone's joint: its direction and its frame
   std::string joint;
-  std::string end;                        // as HingeDriver
-  glm::vec3 bone{0.0f};                   // the direction that counts as straight, model axes at rest;
-                                          // zero: the parent bone's own direction
-  glm::vec3 forward{0.0f, 0.0f, 1.0f};    // model axes in the rest pose
+  std::string end;       // as HingeDriver
+  glm::vec3 bone{0.0f};  // the direction that counts as straight, model axes at rest;
+                         // zero: the parent bone's own direction
+  glm::vec3 forward{0.0f, 0.0f, 1.0f};  // model axes in the rest pose
   float beta_degrees = 30.0f;
   BallMode mode = BallMode::kSmooth;
 };
@@ -77,8 +81,8 @@ struct BallDriver {
 // Swing-twist about the bone: values "twist_left" and "twist_right" (positive angle: left).
 struct TwistDriver {
   std::string joint;
-  std::optional<glm::vec3> axis;  // model axes in the rest pose; none: along the joint's tail
-  float full_degrees = 90.0f;     // (0, 180]: the angle that gives 1
+  std::optional<glm::vec3> axis;     // model axes in the rest pose; none: along the joint's tail
+  float full_degrees = 90.0f;        // (0, 180]: the angle that gives 1
   std::vector<std::string> through;  // further joints whose twists add up (neck01..03)
 };
 
@@ -107,7 +111,11 @@ enum class LambdaMode { kSmooth, kBinary, kLinear };  // 4.2
 
 // Which driver values feed one wrinkle map of a region.
 struct Feed {
-  struct Source { std::string driver; std::string value; float gain = 1.0f; };
+  struct Source {
+    std::string driver;
+    std::string value;
+    float gain = 1.0f;
+  };
   std::string map;  // a WrinkleMap's name; with the region's it names the wrinkle weight
   std::vector<Source> sources;
 };
@@ -115,8 +123,8 @@ struct Feed {
 struct Mask {
   enum class Kind { kTexture, kSkinning };
   Kind kind = Kind::kTexture;
-  std::string texture;   // file, or empty for one embedded in the character by this name
-  int channel = 0;       // 0..3 = r, g, b, a
+  std::string texture;  // file, or empty for one embedded in the character by this name
+  int channel = 0;      // 0..3 = r, g, b, a
   LambdaMode lambda = LambdaMode::kSmooth;
   float smooth_width = 0.25f;  // w0 of smoothstep(0, w0, skin_weight)
 };
@@ -131,26 +139,30 @@ struct Region {
 };
 
 struct WrinkleMap {
-  std::string name;          // "stretch", "squash", "folds", ...
-  std::string normal;        // tangent-space normal map; or
-  std::string derivative;    // partial-derivative map (n.xy / n.z)
-  std::string colour;        // optional
-  std::string cavity;        // optional
-  float amplitude = 1.0f;    // scales the derivatives
-  std::string opposes;       // the map that must not meet this one over a shared border, if any
+  std::string name;        // "stretch", "squash", "folds", ...
+  std::string normal;      // tangent-space normal map; or
+  std::string derivative;  // partial-derivative map (n.xy / n.z)
+  std::string colour;      // optional
+  std::string cavity;      // optional
+  float amplitude = 1.0f;  // scales the derivatives
+  std::string opposes;     // the map that must not meet this one over a shared border, if any
 };
 
 struct Filter {
   bool enabled = true;
-  float min_cutoff_hz = 4.0f;   // One-Euro (Casiez, Roussel and Vogel 2012)
-  float beta = 1.0f;            // One-Euro speed coefficient
+  float min_cutoff_hz = 4.0f;  // One-Euro (Casiez, Roussel and Vogel 2012)
+  float beta = 1.0f;           // One-Euro speed coefficient
   float derivative_cutoff_hz = 1.0f;
   float slew_per_second = 30.0f;  // largest change of a weight; 0: no limit
   float hold_seconds = 0.25f;     // on loss: keep, then
   float decay_seconds = 0.5f;     // time constant of the decay to neutral
 };
 
-struct Export { std::string profile; std::string weight; std::string name; };  // metahuman, osc, ...
+struct Export {
+  std::string profile;
+  std::string weight;
+  std::string name;
+};  // metahuman, osc, ...
 
 struct Rig {
   std::string name;

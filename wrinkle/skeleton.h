@@ -19,23 +19,23 @@ inline constexpr int kMaxJoints = 1024;
 
 // One joint as a file or a stream states it.
 struct JointDesc {
-  std::string name;                 // unique, not empty, at most 255 bytes
-  int parent = kNoJoint;            // index into the same list, in any order; kNoJoint for a root
-  Transform rest;                   // local: relative to the parent
-  std::optional<glm::vec3> tail;    // local end of a leaf (BVH's End Site); none: derived
+  std::string name;               // unique, not empty, at most 255 bytes
+  int parent = kNoJoint;          // index into the same list, in any order; kNoJoint for a root
+  Transform rest;                 // local: relative to the parent
+  std::optional<glm::vec3> tail;  // local end of a leaf (BVH's End Site); none: derived
 };
 
 // An immutable tree (or forest) of named joints with their rest pose.
 //
-// Joints are stored parents first, so one forward loop computes model space. Create() sorts where the
-// input does not, and keeps the input order otherwise; `source_index` maps back.
+// Joints are stored parents first, so one forward loop computes model space. Create() sorts where
+// the input does not, and keeps the input order otherwise; `source_index` maps back.
 class Skeleton {
  public:
   Skeleton() = default;
 
   // Errors: kLimit (none, or more than kMaxJoints), kInvalidArgument (empty, overlong or duplicate
-  // name, parent out of range, rest rotation not unit), kCyclic, kNonFinite (rest pose or tail). The
-  // message names the joint.
+  // name, parent out of range, rest rotation not unit), kCyclic, kNonFinite (rest pose or tail).
+  // The message names the joint.
   [[nodiscard]] static Result<Skeleton> Create(std::vector<JointDesc> joints);
 
   [[nodiscard]] int num_joints() const { return static_cast<int>(names_.size()); }

@@ -15,16 +15,17 @@ namespace furrow::wrinkle {
 struct BindingData;  // the rig compiled for one skeleton, in evaluation order; private to wrinkle/
 
 struct BindOptions {
-  // false: a joint or blend shape that the skeleton lacks is an error. true (live streams): its driver
-  // rests at 0, and it is listed in missing_joints() / missing_blend_shapes().
+  // false: a joint or blend shape that the skeleton lacks is an error. true (live streams): its
+  // driver rests at 0, and it is listed in missing_joints() / missing_blend_shapes().
   bool allow_missing = false;
 };
 
-// A rig bound to one skeleton: names resolved, reference poses turned into displacements, immutable,
-// shared by all subjects of that skeleton.
+// A rig bound to one skeleton: names resolved, reference poses turned into displacements,
+// immutable, shared by all subjects of that skeleton.
 class RigBinding {
  public:
-  // Errors: kNotFound (names the driver and the joint), kInvalidArgument (names the field), kLimit.
+  // Errors: kNotFound (names the driver and the joint), kInvalidArgument and kNonFinite (name the
+  // driver and the field), kLimit.
   [[nodiscard]] static Result<RigBinding> Create(const Rig& rig, const Skeleton& skeleton,
                                                  std::span<const std::string> blend_shape_names,
                                                  const BindOptions& options = {});
@@ -38,6 +39,10 @@ class RigBinding {
   [[nodiscard]] std::span<const std::string> driver_value_names() const;
   [[nodiscard]] std::span<const std::string> missing_joints() const;
   [[nodiscard]] std::span<const std::string> missing_blend_shapes() const;
+  // What binds but cannot do what was meant: a reference pose that moves none of its driver's
+  // control points (I_k is 0 for good), a control point that does not hang from the anchor and,
+  // where things may be missing, a driver that makes no sense on this skeleton.
+  [[nodiscard]] std::span<const std::string> warnings() const;
   [[nodiscard]] const Skeleton& skeleton() const;
   [[nodiscard]] const Rig& rig() const;
   [[nodiscard]] const BindingData& data() const { return *data_; }
@@ -49,13 +54,15 @@ class RigBinding {
 
 // Pose to driver values, unfiltered: `<driver>.<value>` in [0, 1].
 //
-// - `model` from LocalToModelJob on the same pose; `blend_shapes` as bound (may be shorter: 0).
+// - `local` num_joints of the binding's skeleton; `blend_shapes` as bound (may be shorter: 0).
 // - `driver_values` at least driver_value_names().size() long. Does not allocate.
+// - Drivers compare joints with one another from the local pose alone, not in model space: where
+// the
+//   character stands and how it is turned changes no value by a single bit.
 // Source: thesis 4.1, 4.6 with the corrections of docs/ALGORITHM.md.
 struct DriverJob {
   const RigBinding* binding = nullptr;
   std::span<const Transform> local;
-  std::span<const glm::mat4> model;
   std::span<const float> blend_shapes;
   std::span<float> driver_values;
 
@@ -63,7 +70,8 @@ struct DriverJob {
   [[nodiscard]] JobStatus Run() const;
 };
 
-// Driver values to wrinkle weights: combine, modulate, resolve incongruence. Stateless, no allocation.
+// Driver values to wrinkle weights: combine, modulate, resolve incongruence. Stateless, no
+// allocation.
 struct WrinkleWeightsJob {
   const RigBinding* binding = nullptr;
   std::span<const float> driver_values;
@@ -87,9 +95,12 @@ struct FilterContext {
 
 // One-Euro, slew and (without input) hold and decay, applied to driver values or weights alike.
 //
-// - `dt` seconds since the last call, >= 0. The first input passes unchanged.
+// - `dt` seconds since the last call, >= 0. The first input passes unchanged; a later one at dt = 0
+//   changes nothing.
 // - `input` empty: nothing arrived; the output holds for Filter::hold_seconds, then decays to 0.
+// - Filter::enabled false: input passes as it is; hold and decay stay.
 // - `output` as long as the context. Outputs stay in [0, 1].
+// - Does not allocate. Formulas: one_euro.h.
 struct FilterJob {
   const Filter* filter = nullptr;
   FilterContext* context = nullptr;
@@ -102,8 +113,8 @@ struct FilterJob {
 };
 
 // All of a subject's evaluation, in the order the daemon, `furrow solve` and the renderer share:
-// local -> model -> driver values -> filter (on driver values, since cubic amplifies noise at
-// neutral) -> wrinkle weights. Allocates in the constructor alone.
+// driver values -> filter (on driver values, since cubic amplifies noise at neutral) -> wrinkle
+// weights. Allocates in the constructor alone. A call that fails changes nothing.
 class SubjectSolver {
  public:
   // `binding` outlives the solver (shared so that a stream may swap it).
@@ -116,26 +127,32 @@ class SubjectSolver {
   void Reset();
 
   [[nodiscard]] std::span<const float> wrinkle_weights() const { return weights_; }
-  [[nodiscard]] std::span<const float> driver_values() const { return raw_values_; }       // before
-  [[nodiscard]] std::span<const float> filtered_values() const { return filtered_values_; }  // after
-  [[nodiscard]] std::span<const glm::mat4> model() const { return model_; }
+  [[nodiscard]] std::span<const float> driver_values() const { return raw_values_; }  // before
+  [[nodiscard]] std::span<const float> filtered_values() const {
+    return filtered_values_;
+  }  // after
   [[nodiscard]] const RigBinding& binding() const { return *binding_; }
 
  private:
   std::shared_ptr<const RigBinding> binding_;
-  std::vector<glm::mat4> model_;
+  [[nodiscard]] JobStatus Finish(double dt, std::span<const float> input);
+
+  Filter filter_;
+  FilterContext filter_context_;
   std::vector<float> raw_values_;
   std::vector<float> filtered_values_;
   std::vector<float> weights_;
-  FilterContext filter_;
-  bool use_filter_ = true;
 };
 
-// The dynamic mask's per-joint part (4.2): for regions with a skinning mask, how strongly each joint
-// calls for each of a region's maps, already modulated. The vertex side is
-// clamp(sum over its influences of lambda(skin_weight) * influence, 0, 1); see shaders/.
+// The dynamic mask's per-joint part (4.2): for regions with a skinning mask, how strongly each
+// joint calls for each of a region's maps, already modulated. The vertex side is clamp(sum over its
+// influences of lambda(skin_weight) * influence, 0, 1); see shaders/.
 //
 // - `influences` is num_joints * num maps of the rig, joint-major. Does not allocate.
+// - A pose driver concerns its control points' joints, a hinge or ball its lower joint, a twist all
+// of
+//   its joints, a blend shape none; the largest of a joint's influences on a map counts.
+// - The vertex side for the processor, and lambda: vertex_influence.h.
 struct JointInfluenceJob {
   const RigBinding* binding = nullptr;
   std::span<const float> driver_values;  // filtered

@@ -11,17 +11,17 @@ namespace furrow {
 // Why something failed. The names are the vocabulary of logs, exit codes and tests.
 enum class StatusCode {
   kOk = 0,
-  kInvalidArgument,     // the caller broke a contract: wrong size, unknown name, out of range
-  kNotFound,            // a file, joint, region or subject that is not there
-  kParse,               // the text or bytes are not what the format says
-  kSchema,              // well-formed, but a field is missing, unknown or of the wrong type
-  kLimit,               // larger or deeper than we accept from outside
-  kNonFinite,           // NaN or infinity where a number is due
-  kCyclic,              // a hierarchy that is not a tree
-  kUnsupported,         // valid, but nothing we implement
-  kIo,                  // the operating system said no
-  kUnavailable,         // a service (GL, a socket, a peer) cannot be had now
-  kInternal,            // our own fault
+  kInvalidArgument,  // the caller broke a contract: wrong size, unknown name, out of range
+  kNotFound,         // a file, joint, region or subject that is not there
+  kParse,            // the text or bytes are not what the format says
+  kSchema,           // well-formed, but a field is missing, unknown or of the wrong type
+  kLimit,            // larger or deeper than we accept from outside
+  kNonFinite,        // NaN or infinity where a number is due
+  kCyclic,           // a hierarchy that is not a tree
+  kUnsupported,      // valid, but nothing we implement
+  kIo,               // the operating system said no
+  kUnavailable,      // a service (GL, a socket, a peer) cannot be had now
+  kInternal,         // our own fault
 };
 
 // The stable, lower-case name of a code ("not_found"), for logs and messages.
@@ -29,8 +29,9 @@ enum class StatusCode {
 
 // Success, or one clear message: what went wrong, where, and what to do.
 //
-// `where` is "file:line" for text, "file" or "file: field" for the rest, empty when there is no place.
-// Not for the packet path: there, jobs and decoders return bare enums (see JobStatus and protocol/).
+// `where` is "file:line" for text, "file" or "file: field" for the rest, empty when there is no
+// place. Not for the packet path: there, jobs and decoders return bare enums (see JobStatus and
+// protocol/).
 class [[nodiscard]] Status {
  public:
   Status() = default;
@@ -59,8 +60,8 @@ class [[nodiscard]] Status {
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}          // NOLINT: implicit
-  Result(Status status) : state_(std::in_place_index<1>, std::move(status)) {}   // NOLINT: implicit
+  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}         // NOLINT: implicit
+  Result(Status status) : state_(std::in_place_index<1>, std::move(status)) {}  // NOLINT: implicit
 
   [[nodiscard]] bool ok() const { return state_.index() == 0; }
   [[nodiscard]] Status status() const { return ok() ? Status() : std::get<1>(state_); }

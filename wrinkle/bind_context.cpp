@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/bind_context.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "wrinkle/retarget.h"
+
+namespace furrow::wrinkle {
+namespace {
+
+// Deltas smaller than this (radians, source units) leave a joint at rest: pose files list every
+// joint.
+constexpr float kLeastDelta = 1e-6f;
+
+bool IsRest(const JointDelta& delta) {
+  const float turn = glm::length(glm::vec3(delta.rotation.x, delta.rotation.y, delta.rotation.z));
+  return turn < kLeastDelta && glm::length(delta.translation) < kLeastDelta;
+}
+
+void AddOnce(const std::string& name, std::vector<std::string>* list) {
+  if (std::find(list->begin(), list->end(), name) == list->end()) list->push_back(name);
+}
+
+bool EqualsWithoutCase(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char x, char y) { return lower(x) == lower(y); });
+}
+
+}  // namespace
+
+BindContext::BindContext(const Rig& rig, const Skeleton& skeleton,
+                         std::span<const std::string> blend_shape_names, const BindOptions& options,
+                         JointChains* chains)
+    : rig_(rig),
+      skeleton_(skeleton),
+      blend_shape_names_(blend_shape_names),
+      options_(options),
+      chains_(chains),
+      size_(SkeletonSize(skeleton)) {}
+
+Status BindContext::ResolveAnchorAndPoses() {
+  if (!rig_.anchor.empty()) {
+    const bool needed = std::any_of(rig_.drivers.begin(), rig_.drivers.end(),
+                                    [](const Driver& d) { return d.kind == Driver::Kind::kPose; });
+    if (needed) {
+      Result<int> anchor = Joint("the rig", "anchor", rig_.anchor);
+      if (!anchor.ok()) return anchor.status();
+      anchor_ = *anchor;
+      anchor_missing_ = anchor_ == kNoJoint;
+    }
+  }
+  for (const ReferencePose& pose : rig_.reference_poses) {
+    std::vector<Transform> locals(skeleton_.rest_pose().begin(), skeleton_.rest_pose().end());
+    if (Status status = ApplyReferencePose(pose, &locals); !status.ok()) return status;
+    reference_locals_.push_back(std::move(locals));
+  }
+  return {};
+}
+
+Status BindContext::ApplyReferencePose(const ReferencePose& pose, std::vector<Transform>* locals) {
+  const float scale = pose.source_size > 0.0f ? size_ / pose.source_size : 1.0f;
+  for (const JointDelta& delta : pose.joints) {
+    if (IsRest(delta)) continue;
+    const Result<int> found = Joint("reference pose '" + pose.name + "'", "joint", delta.joint);
+    if (!found.ok()) return found.status();
+    const int joint = *found;
+    if (joint == kNoJoint) continue;
+    const glm::quat& rest_model = skeleton_.rest_model_rotations()[joint];
+    Transform& local = (*locals)[joint];
+    local.rotation =
+        glm::normalize(local.rotation * glm::conjugate(rest_model) * delta.rotation * rest_model);
+    local.translation +=
+        ToJointAxes(skeleton_, skeleton_.joint_parents()[joint], delta.translation) * scale;
+  }
+  return {};
+}
+
+Result<int> BindContext::Joint(std::string_view whose, std::string_view field,
+                               const std::string& name) {
+  const int joint = skeleton_.Find(name);
+  if (joint != kNoJoint) return joint;
+  if (!options_.allow_missing) {
+    return Status(StatusCode::kNotFound, std::string(whose) + ": " + std::string(field) +
+                                             " names joint '" + name +
+                                             "', which the skeleton does not have");
+  }
+  AddOnce(name, &missing_joints_);
+  return kNoJoint;
+}
+
+Result<int> BindContext::BlendShape(std::string_view whose, const std::string& name) {
+  for (std::size_t i = 0; i < blend_shape_names_.size(); ++i) {
+    if (EqualsWithoutCase(blend_shape_names_[i], name)) return static_cast<int>(i);
+  }
+  if (!options_.allow_missing) {
+    return Status(StatusCode::kNotFound,
+                  std::string(whose) + ": blend shape '" + name + "' is not among the stream's");
+  }
+  AddOnce(name, &missing_blend_shapes_);
+  return -1;
+}
+
+Status BindContext::Unusable(std::string_view whose, std::string_view why) {
+  std::string what = std::string(whose) + ": " + std::string(why);
+  if (!options_.allow_missing) return {StatusCode::kInvalidArgument, std::move(what)};
+  Warn(std::move(what) + "; it rests at 0");
+  return {};
+}
+
+const std::vector<Transform>* BindContext::ReferenceLocals(std::string_view name) const {
+  for (std::size_t i = 0; i < rig_.reference_poses.size(); ++i) {
+    if (rig_.reference_poses[i].name == name) return &reference_locals_[i];
+  }
+  return nullptr;
+}
+
+glm::vec3 Direction(const glm::vec3& v) {
+  const float length = glm::length(v);
+  return length > 1e-12f ? v / length : glm::vec3(0.0f);
+}
+
+glm::vec3 ToJointAxes(const Skeleton& skeleton, int joint, const glm::vec3& direction) {
+  if (joint == kNoJoint) return direction;
+  return glm::conjugate(skeleton.rest_model_rotations()[joint]) * direction;
+}
+
+}  // namespace furrow::wrinkle

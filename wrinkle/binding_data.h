@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "wrinkle/ball_driver.h"
+#include "wrinkle/blend_shape_driver.h"
+#include "wrinkle/hinge_driver.h"
+#include "wrinkle/influence_table.h"
+#include "wrinkle/joint_chain.h"
+#include "wrinkle/pose_driver.h"
+#include "wrinkle/solver.h"
+#include "wrinkle/twist_driver.h"
+#include "wrinkle/weight_table.h"
+
+namespace furrow::wrinkle {
+
+// A rig compiled for one skeleton, private to wrinkle/: contiguous arrays a driver kind, immutable,
+// and nothing in it belongs to a subject. A loop over many subjects can therefore take one entry at
+// a time and keep its constants in registers.
+struct BindingData {
+  Rig rig;
+  Skeleton skeleton;
+  JointChains chains;
+  PoseDriverSet pose_drivers;
+  HingeDriverSet hinge_drivers;
+  BallDriverSet ball_drivers;
+  TwistDriverSet twist_drivers;
+  BlendShapeDriverSet blend_shape_drivers;
+  WeightTable weights;
+  InfluenceTable influences;
+  std::vector<std::string> driver_value_names;
+  std::vector<std::string> missing_joints;
+  std::vector<std::string> missing_blend_shapes;
+  std::vector<std::string> warnings;
+};
+
+}  // namespace furrow::wrinkle

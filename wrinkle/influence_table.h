@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "wrinkle/rig.h"
+#include "wrinkle/skeleton.h"
+
+namespace furrow::wrinkle {
+
+// Which driver values each joint answers for in the dynamic masks (4.2). Private to wrinkle/.
+//
+// A pose driver concerns the joints of its control points; a hinge or ball its lower joint; a twist
+// its joint and those it passes through; a blend shape none. Where several values reach one joint
+// and map, the largest counts.
+class InfluenceTable {
+ public:
+  // The rig is already known to refer to what there is; drivers with missing joints are passed
+  // over.
+  void Bind(const Rig& rig, const Skeleton& skeleton,
+            const std::unordered_map<std::string, int>& value_index);
+
+  // `influences`: num_joints x num maps, joint-major; all of it is written.
+  void Evaluate(std::span<const float> driver_values, std::span<float> influences) const;
+
+ private:
+  struct Entry {
+    std::uint32_t place = 0;  // joint * num maps + map
+    int driver_value = 0;
+    float gain = 1.0f;
+    Modulation modulation = Modulation::kCosine;
+  };
+  std::vector<Entry> entries_;
+};
+
+}  // namespace furrow::wrinkle

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/pose_driver.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "wrinkle/nnls.h"
+#include "wrinkle/pose_projection.h"
+#include "wrinkle/scalar.h"
+
+namespace furrow::wrinkle {
+namespace {
+
+// Below this share of the skeleton's size a displacement is rounding, not a pose.
+constexpr float kLeastDisplacement = 1e-6f;
+// Added to the Gram matrix's diagonal (which is 1): poses that nearly coincide share their weight
+// instead of trading it back and forth from frame to frame.
+constexpr double kRidge = 1e-7;
+
+std::string Whose(const Driver& driver) { return "driver '" + driver.name + "'"; }
+
+glm::vec3 LocalOffset(const ControlPoint& point, const Skeleton& skeleton, int joint, float size) {
+  switch (point.kind) {
+    case ControlPoint::Kind::kTail: return skeleton.tails()[joint];
+    case ControlPoint::Kind::kOrigin: return glm::vec3(0.0f);
+    case ControlPoint::Kind::kOffset: break;
+  }
+  return point.offset_size > 0.0f ? point.offset * (size / point.offset_size) : point.offset;
+}
+
+}  // namespace
+
+Status PoseDriverSet::Bind(const Driver& driver, int first_value, BindContext* context) {
+  Entry entry;
+  entry.first_value = first_value;
+  entry.num_values = static_cast<int>(driver.pose.values.size());
+  entry.first_point = static_cast<std::uint32_t>(points_.size());
+  entry.first_displacement = static_cast<std::uint32_t>(displacements_.size());
+  entry.first_square = static_cast<std::uint32_t>(squared_displacements_.size());
+  entry.solve = driver.pose.solve;
+  entry.falloff = driver.pose.falloff;
+  bool usable = false;
+  if (Status status = BindPoints(driver, context, &usable); !status.ok()) return status;
+  if (!usable) return {};
+  entry.num_points = static_cast<std::uint32_t>(points_.size()) - entry.first_point;
+  for (const PoseDriver::Value& value : driver.pose.values) {
+    if (Status status = BindValue(driver, value, entry, context); !status.ok()) return status;
+  }
+  if (entry.solve == PoseSolve::kNnls) BindGram(&entry);
+  entries_.push_back(entry);
+  return {};
+}
+
+Status PoseDriverSet::BindPoints(const Driver& driver, BindContext* context, bool* usable) {
+  const Skeleton& skeleton = context->skeleton();
+  std::vector<int> joints;
+  *usable = !context->anchor_missing();
+  for (const ControlPoint& point : driver.pose.points) {
+    const Result<int> joint = context->Joint(Whose(driver), "points", point.joint);
+    if (!joint.ok()) return joint.status();
+    joints.push_back(*joint);
+    *usable = *usable && *joint != kNoJoint;
+  }
+  if (!*usable) return {};
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (context->anchor() != kNoJoint && !skeleton.IsAncestor(context->anchor(), joints[i])) {
+      context->Warn(Whose(driver) + ": joint '" + driver.pose.points[i].joint +
+                    "' does not hang from the anchor, so moving the anchor moves its value");
+    }
+    const glm::vec3 offset =
+        LocalOffset(driver.pose.points[i], skeleton, joints[i], context->size());
+    const int point = context->chains().Add(skeleton, joints[i], offset, context->anchor());
+    points_.push_back(point);
+    rest_.push_back(context->chains().Evaluate(skeleton.rest_pose(), point));
+  }
+  return {};
+}
+
+Status PoseDriverSet::BindValue(const Driver& driver, const PoseDriver::Value& value,
+                                const Entry& entry, BindContext* context) {
+  const std::vector<Transform>* locals = context->ReferenceLocals(value.reference_pose);
+  if (locals == nullptr) {
+    return {StatusCode::kNotFound, Whose(driver) + ": value '" + value.name +
+                                       "' names reference pose '" + value.reference_pose +
+                                       "', which the rig does not have"};
+  }
+  const std::size_t first = displacements_.size();
+  for (std::uint32_t i = entry.first_point; i < entry.first_point + entry.num_points; ++i) {
+    displacements_.push_back(context->chains().Evaluate(*locals, points_[i]) - rest_[i]);
+  }
+  const StackedPoints d = StackedPoints(displacements_).subspan(first);
+  const float length = std::sqrt(Dot(d, d));
+  const bool moves = length > kLeastDisplacement * context->size();
+  squared_displacements_.push_back(moves ? length * length : 0.0f);
+  if (!moves) {
+    context->Warn(Whose(driver) + ": reference pose '" + value.reference_pose +
+                  "' does not move its control points, so value '" + value.name + "' stays 0");
+  }
+  return {};
+}
+
+void PoseDriverSet::BindGram(Entry* entry) {
+  entry->first_gram = static_cast<std::uint32_t>(gram_.size());
+  for (int row = 0; row < entry->num_values; ++row) {
+    for (int column = 0; column < entry->num_values; ++column) {
+      const double norm = std::sqrt(double{squared_displacements_[entry->first_square + row]} *
+                                    double{squared_displacements_[entry->first_square + column]});
+      double cosine = row == column ? 1.0 : 0.0;
+      if (row != column && norm > 0.0) {
+        cosine = Dot(Displacement(*entry, row), Displacement(*entry, column)) / norm;
+      }
+      gram_.push_back(row == column ? cosine + kRidge : cosine);
+    }
+  }
+}
+
+StackedPoints PoseDriverSet::Displacement(const Entry& entry, int value) const {
+  return StackedPoints(displacements_)
+      .subspan(entry.first_displacement + entry.num_points * static_cast<std::uint32_t>(value),
+               entry.num_points);
+}
+
+StackedPoints PoseDriverSet::Displacement(int entry, int value) const {
+  return Displacement(entries_[entry], value);
+}
+
+float PoseDriverSet::SquaredDisplacement(int entry, int value) const {
+  return squared_displacements_[entries_[entry].first_square + static_cast<std::uint32_t>(value)];
+}
+
+int PoseDriverSet::Measure(int entry, std::span<const Transform> local, const JointChains& chains,
+                           std::span<glm::vec3> moved) const {
+  const Entry& e = entries_[entry];
+  for (std::uint32_t i = 0; i < e.num_points; ++i) {
+    const std::uint32_t point = e.first_point + i;
+    moved[i] = chains.Evaluate(local, points_[point]) - rest_[point];
+  }
+  return static_cast<int>(e.num_points);
+}
+
+void PoseDriverSet::Solve(int entry, StackedPoints moved, std::span<Fit> fits) const {
+  const Entry& e = entries_[entry];
+  if (e.solve == PoseSolve::kNnls) {
+    SolveNonNegative(e, moved, fits);
+  } else {
+    SolveProjection(e, moved, fits);
+  }
+}
+
+void PoseDriverSet::SolveProjection(const Entry& entry, StackedPoints moved,
+                                    std::span<Fit> fits) const {
+  for (int k = 0; k < entry.num_values; ++k) {
+    const StackedPoints d = Displacement(entry, k);
+    const float square = squared_displacements_[entry.first_square + static_cast<std::uint32_t>(k)];
+    fits[k].along = ProjectionAlong(moved, d, square);
+    fits[k].squared_perpendicular = SquaredDistance(moved, d, fits[k].along);
+  }
+}
+
+void PoseDriverSet::SolveNonNegative(const Entry& entry, StackedPoints moved,
+                                     std::span<Fit> fits) const {
+  const std::size_t count = static_cast<std::size_t>(entry.num_values);
+  std::array<double, kMaxNnlsValues> rhs{};
+  std::array<double, kMaxNnlsValues>
+      lengths{};  // the unknowns are lengths along unit displacements
+  for (int k = 0; k < entry.num_values; ++k) {
+    const float square = squared_displacements_[entry.first_square + static_cast<std::uint32_t>(k)];
+    rhs[k] = square > 0.0f ? Dot(moved, Displacement(entry, k)) / std::sqrt(square) : 0.0f;
+  }
+  SolveNnls(std::span(gram_).subspan(entry.first_gram, count * count), std::span(rhs).first(count),
+            std::span(lengths).first(count));
+
+  std::array<glm::vec3, kMaxControlPoints> left_over;
+  std::copy(moved.begin(), moved.end(), left_over.begin());
+  for (int k = 0; k < entry.num_values; ++k) {
+    const float square = squared_displacements_[entry.first_square + static_cast<std::uint32_t>(k)];
+    fits[k].along = square > 0.0f ? static_cast<float>(lengths[k]) / std::sqrt(square) : 0.0f;
+    if (fits[k].along <= 0.0f) continue;
+    const StackedPoints d = Displacement(entry, k);
+    for (std::size_t i = 0; i < moved.size(); ++i) left_over[i] -= fits[k].along * d[i];
+  }
+  const StackedPoints residual = StackedPoints(left_over).first(moved.size());
+  for (int k = 0; k < entry.num_values; ++k) {
+    fits[k].squared_perpendicular = Dot(residual, residual);
+  }
+}
+
+float PoseDriverSet::Value(int entry, int value, const Fit& fit) const {
+  const float square = SquaredDisplacement(entry, value);
+  if (square <= 0.0f) return 0.0f;
+  return Saturate(Saturate(fit.along) *
+                  Falloff(fit.squared_perpendicular, square, entries_[entry].falloff));
+}
+
+void PoseDriverSet::Evaluate(std::span<const Transform> local, const JointChains& chains,
+                             std::span<float> driver_values) const {
+  std::array<glm::vec3, kMaxControlPoints> moved;
+  std::array<Fit, kMaxPoseValues> fits;
+  for (int i = 0; i < num_entries(); ++i) {
+    const int num_points = Measure(i, local, chains, moved);
+    Solve(i, StackedPoints(moved).first(static_cast<std::size_t>(num_points)), fits);
+    for (int k = 0; k < num_values(i); ++k) {
+      driver_values[first_value(i) + k] = Value(i, k, fits[k]);
+    }
+  }
+}
+
+}  // namespace furrow::wrinkle

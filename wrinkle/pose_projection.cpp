@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/pose_projection.h"
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace furrow::wrinkle {
+
+float Dot(StackedPoints a, StackedPoints b) {
+  float sum = 0.0f;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += glm::dot(a[i], b[i]);
+  return sum;
+}
+
+float SquaredDistance(StackedPoints a, StackedPoints b, float scale) {
+  float sum = 0.0f;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const glm::vec3 difference = a[i] - scale * b[i];
+    sum += glm::dot(difference, difference);
+  }
+  return sum;
+}
+
+float ProjectionAlong(StackedPoints moved, StackedPoints d, float squared_displacement) {
+  return squared_displacement > 0.0f ? Dot(moved, d) / squared_displacement : 0.0f;
+}
+
+float Falloff(float squared_perpendicular, float squared_displacement, float falloff) {
+  if (falloff <= 0.0f || squared_displacement <= 0.0f) return 1.0f;
+  return std::exp(-squared_perpendicular / (2.0f * falloff * falloff * squared_displacement));
+}
+
+}  // namespace furrow::wrinkle

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include <glm/vec3.hpp>
+
+namespace furrow::wrinkle {
+
+// Control points stacked into one long vector: points of one driver, in one space and unit.
+using StackedPoints = std::span<const glm::vec3>;
+
+[[nodiscard]] float Dot(StackedPoints a, StackedPoints b);
+
+// |a - scale * b|^2, equally long.
+[[nodiscard]] float SquaredDistance(StackedPoints a, StackedPoints b, float scale);
+
+// Thesis 4.1 with dot(d, d), `squared_displacement`, in the denominator: how far along displacement
+// `d` the points have `moved`; 0 at rest, 1 at the reference pose, not clamped. 0 where that square
+// is 0.
+[[nodiscard]] float ProjectionAlong(StackedPoints moved, StackedPoints d,
+                                    float squared_displacement);
+
+// exp(-perpendicular^2 / (2 falloff^2 |d|^2)); 1 where `falloff` is 0 (none).
+[[nodiscard]] float Falloff(float squared_perpendicular, float squared_displacement, float falloff);
+
+}  // namespace furrow::wrinkle

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/weight_table.h"
+
+#include <algorithm>
+
+#include "wrinkle/incongruence.h"
+#include "wrinkle/modulation.h"
+#include "wrinkle/scalar.h"
+
+namespace furrow::wrinkle {
+namespace {
+
+bool Lists(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// A rig without maps is for weights alone: any map name will do.
+Status CheckMapName(const Rig& rig, const std::string& whose, const std::string& map) {
+  const bool known =
+      rig.wrinkle_maps.empty() ||
+      std::any_of(rig.wrinkle_maps.begin(), rig.wrinkle_maps.end(),
+                  [&](const WrinkleMap& candidate) { return candidate.name == map; });
+  if (known) return {};
+  return {StatusCode::kNotFound,
+          whose + " names wrinkle map '" + map + "', which the rig does not have"};
+}
+
+Status CheckNeighbours(const Rig& rig, const Region& region) {
+  for (const std::string& neighbour : region.neighbours) {
+    const bool known = std::any_of(rig.regions.begin(), rig.regions.end(),
+                                   [&](const Region& other) { return other.name == neighbour; });
+    if (!known || neighbour == region.name) {
+      return {known ? StatusCode::kInvalidArgument : StatusCode::kNotFound,
+              "region '" + region.name + "': neighbours names '" + neighbour + "', which is " +
+                  (known ? "the region itself" : "no region of the rig")};
+    }
+  }
+  return {};
+}
+
+bool Oppose(const Rig& rig, const std::string& a, const std::string& b) {
+  return std::any_of(rig.wrinkle_maps.begin(), rig.wrinkle_maps.end(), [&](const WrinkleMap& map) {
+    return (map.name == a && map.opposes == b) || (map.name == b && map.opposes == a);
+  });
+}
+
+}  // namespace
+
+float CombineSources(Combine combine, std::span<const WeightSource> sources,
+                     std::span<const float> driver_values) {
+  float largest = 0.0f;
+  float sum = 0.0f;
+  float gains = 0.0f;
+  for (const WeightSource& source : sources) {
+    const float term = source.gain * driver_values[source.driver_value];
+    largest = std::max(largest, term);
+    sum += term;
+    gains += source.gain;
+  }
+  switch (combine) {
+    case Combine::kMax: return Saturate(largest);
+    case Combine::kSum: return Saturate(sum);
+    case Combine::kMean: return gains > 0.0f ? Saturate(sum / gains) : 0.0f;
+  }
+  return 0.0f;
+}
+
+Status WeightTable::Bind(const Rig& rig, const std::unordered_map<std::string, int>& value_index) {
+  for (const WrinkleMap& map : rig.wrinkle_maps) {
+    if (map.opposes.empty()) continue;
+    const std::string whose = "wrinkle map '" + map.name + "': opposes";
+    if (Status status = CheckMapName(rig, whose, map.opposes); !status.ok()) return status;
+  }
+  for (const Region& region : rig.regions) {
+    if (Status status = CheckNeighbours(rig, region); !status.ok()) return status;
+    for (const Feed& feed : region.feeds) {
+      const std::string whose = "region '" + region.name + "': a feed";
+      if (Status status = CheckMapName(rig, whose, feed.map); !status.ok()) return status;
+      if (Status status = BindFeed(region, feed, value_index); !status.ok()) return status;
+    }
+  }
+  BindOpponents(rig);
+  for (const Export& entry : rig.exports) {
+    if (Lists(names_, entry.weight)) continue;
+    return {StatusCode::kNotFound, "export '" + entry.profile + "' names wrinkle weight '" +
+                                       entry.weight + "', which the rig does not have"};
+  }
+  return {};
+}
+
+Status WeightTable::BindFeed(const Region& region, const Feed& feed,
+                             const std::unordered_map<std::string, int>& value_index) {
+  Entry entry;
+  entry.first_source = static_cast<std::uint32_t>(sources_.size());
+  entry.num_sources = static_cast<std::uint32_t>(feed.sources.size());
+  entry.combine = region.combine;
+  entry.modulation = region.modulation;
+  for (const Feed::Source& source : feed.sources) {
+    const auto found = value_index.find(source.driver + "." + source.value);
+    if (found == value_index.end()) {
+      return {StatusCode::kNotFound, "region '" + region.name + "': feed '" + feed.map +
+                                         "' names driver value '" + source.driver + "." +
+                                         source.value + "', which the rig does not have"};
+    }
+    sources_.push_back({.driver_value = found->second, .gain = source.gain});
+  }
+  entries_.push_back(entry);
+  names_.push_back(region.name + "." + feed.map);
+  return {};
+}
+
+void WeightTable::BindOpponents(const Rig& rig) {
+  struct Place {
+    const Region* region;
+    const Feed* feed;
+  };
+  std::vector<Place> places;
+  for (const Region& region : rig.regions) {
+    for (const Feed& feed : region.feeds) places.push_back({&region, &feed});
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    entries_[i].first_opponent = static_cast<std::uint32_t>(opponents_.size());
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const Region& own = *places[i].region;
+      const Region& other = *places[k].region;
+      // Either may name the other: a border has two sides.
+      const bool adjacent = Lists(own.neighbours, other.name) || Lists(other.neighbours, own.name);
+      if (!adjacent || !Oppose(rig, places[i].feed->map, places[k].feed->map)) continue;
+      opponents_.push_back(static_cast<std::uint16_t>(k));
+      ++entries_[i].num_opponents;
+    }
+  }
+}
+
+std::span<const WeightSource> WeightTable::sources(int weight) const {
+  const Entry& entry = entries_[weight];
+  return std::span(sources_).subspan(entry.first_source, entry.num_sources);
+}
+
+std::span<const std::uint16_t> WeightTable::opponents(int weight) const {
+  const Entry& entry = entries_[weight];
+  return std::span(opponents_).subspan(entry.first_opponent, entry.num_opponents);
+}
+
+float WeightTable::Combined(int weight, std::span<const float> driver_values) const {
+  return CombineSources(entries_[weight].combine, sources(weight), driver_values);
+}
+
+float WeightTable::Modulated(int weight, std::span<const float> driver_values) const {
+  return Modulate(entries_[weight].modulation, Combined(weight, driver_values));
+}
+
+float WeightTable::Congruence(int weight, std::span<const float> modulated) const {
+  float factor = 1.0f;
+  for (const std::uint16_t opponent : opponents(weight)) {
+    factor *= CongruenceFactor(modulated[weight], modulated[opponent]);
+  }
+  return factor;
+}
+
+}  // namespace furrow::wrinkle
