@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/clip.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <utility>
+
+#include "motion/bvh.h"
+#include "motion/file_io.h"
+#include "motion/gltf_animation.h"
+#include "motion/limits.h"
+#include "motion/livelink_csv.h"
+#include "motion/up_axis.h"
+
+namespace furrow::motion {
+namespace {
+
+enum class Format { kUnknown, kBvh, kGlb, kGltf, kCsv };
+
+Format FormatOf(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  if (extension == ".bvh") return Format::kBvh;
+  if (extension == ".glb" || extension == ".vrma") return Format::kGlb;
+  if (extension == ".gltf") return Format::kGltf;
+  if (extension == ".csv") return Format::kCsv;
+  return Format::kUnknown;
+}
+
+Status UnknownFormat(const std::filesystem::path& path, std::string todo) {
+  const std::string extension = path.extension().string();
+  return {StatusCode::kUnsupported,
+          extension.empty() ? "the file's name has no extension to tell its format"
+                            : "'" + extension + "' is no recording we know",
+          path.string(), std::move(todo)};
+}
+
+Result<Clip> Parse(Format format, std::string_view bytes, const std::filesystem::path& path,
+                   const LoadOptions& options, ClipReport* report) {
+  const std::string name = path.string();
+  if (bytes.empty()) return Status(StatusCode::kParse, "the file is empty", name);
+  switch (format) {
+    case Format::kBvh: return ParseBvh(bytes, name, options, report);
+    case Format::kCsv: return ParseLiveLinkCsv(bytes, name, options, report);
+    default:
+      return ParseGltfAnimation(bytes, name, {.load = options, .folder = path.parent_path()},
+                                report);
+  }
+}
+
+// A BVH file as the rest of Furrow wants it: Y up. glTF is so by definition.
+Status SetUpright(UpAxis up, Clip* clip) {
+  if (up == UpAxis::kAuto) up = FindUpAxis(clip->skeleton);
+  return up == UpAxis::kZ ? TurnZUpToYUp(clip) : Status();
+}
+
+// What writers and drawing code rely on, so that a clip made by a caller cannot break them.
+Status CheckSizes(const Clip& clip) {
+  const std::size_t frames = clip.times.size();
+  if (clip.locals.size() == frames * static_cast<std::size_t>(clip.skeleton.num_joints()) &&
+      clip.blend_shapes.size() == frames * clip.blend_shape_names.size() &&
+      std::is_sorted(clip.times.begin(), clip.times.end(), std::less_equal<>())) {
+    return {};
+  }
+  return {StatusCode::kInvalidArgument, "the clip's frames, joints and blend shapes do not fit"};
+}
+
+}  // namespace
+
+void Clip::GetPose(int frame, wrinkle::LocalPose* pose) const {
+  const auto f = static_cast<std::size_t>(frame);
+  const auto joints = static_cast<std::size_t>(skeleton.num_joints());
+  const std::size_t shapes = blend_shape_names.size();
+  const auto first_joint = locals.begin() + static_cast<std::ptrdiff_t>(f * joints);
+  const auto first_shape = blend_shapes.begin() + static_cast<std::ptrdiff_t>(f * shapes);
+  pose->joints.assign(first_joint, first_joint + static_cast<std::ptrdiff_t>(joints));
+  pose->blend_shapes.assign(first_shape, first_shape + static_cast<std::ptrdiff_t>(shapes));
+}
+
+Result<Clip> LoadClip(const std::filesystem::path& path, const LoadOptions& options,
+                      ClipReport* report) {
+  const Format format = FormatOf(path);
+  if (format == Format::kUnknown) {
+    return UnknownFormat(path, "recordings are .bvh, .glb, .gltf, .vrma or .csv");
+  }
+  const Result<std::string> bytes = ReadFile(path, kMaxFileBytes);
+  if (!bytes.ok()) return bytes.status();
+  Result<Clip> clip = Parse(format, *bytes, path, options, report);
+  if (!clip.ok()) return clip.status().At(path.string());
+  if (format == Format::kBvh) {
+    if (Status status = SetUpright(options.up_axis, &*clip); !status.ok())
+      return status.At(path.string());
+  }
+  if (clip->name.empty()) clip->name = path.stem().string();
+  return clip;
+}
+
+Status SaveClip(const Clip& clip, const std::filesystem::path& path, ClipReport* report) {
+  if (Status status = CheckSizes(clip); !status.ok()) return status.At(path.string());
+  Result<std::string> bytes = std::string();
+  switch (FormatOf(path)) {
+    case Format::kBvh: bytes = BvhToText(clip, report); break;
+    case Format::kCsv: bytes = LiveLinkCsvToText(clip, report); break;
+    case Format::kGlb: bytes = ClipToGlb(clip); break;
+    default: return UnknownFormat(path, "recordings are written as .bvh, .glb or .csv");
+  }
+  if (!bytes.ok()) return bytes.status().At(path.string());
+  return WriteFileAtomically(path, *bytes);
+}
+
+}  // namespace furrow::motion

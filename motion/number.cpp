@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/number.h"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace furrow::motion {
+namespace {
+
+// from_chars says "out of range" of 1e-999 and of 1e999 alike.
+bool HasNegativeExponent(std::string_view token) {
+  const std::size_t e = token.find_first_of("eE");
+  return e != std::string_view::npos && e + 1 < token.size() && token[e + 1] == '-';
+}
+
+bool LooksNonFinite(std::string_view token) {
+  return token.find('#') != std::string_view::npos;  // MSVC: 1.#INF, -1.#IND, 1.#QNAN
+}
+
+enum class Outcome { kNumber, kNonFinite, kNoNumber };
+
+Outcome Convert(std::string_view token, double* value) {
+  std::string_view digits = token;
+  if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
+  const char* end = digits.data() + digits.size();
+  const auto [rest, error] = std::from_chars(digits.data(), end, *value);
+  if (error == std::errc::result_out_of_range && rest == end) {
+    if (!HasNegativeExponent(digits)) return Outcome::kNonFinite;
+    *value = 0.0;
+    return Outcome::kNumber;
+  }
+  if (error != std::errc() || rest != end) {
+    return LooksNonFinite(token) ? Outcome::kNonFinite : Outcome::kNoNumber;
+  }
+  // What does not fit into a float would become infinite later.
+  const bool fits = std::abs(*value) <= static_cast<double>(std::numeric_limits<float>::max());
+  return fits ? Outcome::kNumber : Outcome::kNonFinite;  // false for NaN as well
+}
+
+std::string Quoted(std::string_view token) {
+  constexpr std::size_t kShown = 40;
+  std::string text = "'";
+  for (const char c : token.substr(0, kShown)) text += (c >= ' ' && c < 127) ? c : '?';
+  return text + (token.size() > kShown ? "...'" : "'");
+}
+
+}  // namespace
+
+Result<double> ParseNumber(std::string_view token, std::string_view where) {
+  double value = 0.0;
+  switch (Convert(token, &value)) {
+    case Outcome::kNumber: return value;
+    case Outcome::kNonFinite:
+      return Status(StatusCode::kNonFinite, Quoted(token) + " is not a finite number",
+                    std::string(where));
+    case Outcome::kNoNumber: break;
+  }
+  const bool comma = token.find(',') != std::string_view::npos;
+  return Status(StatusCode::kParse, Quoted(token) + " is not a number", std::string(where),
+                comma ? "the decimal sign is a point" : "");
+}
+
+bool TryParseNumber(std::string_view token, double* value) {
+  return Convert(token, value) == Outcome::kNumber;
+}
+
+void AppendFixed(double value, int decimals, std::string* text) {
+  char buffer[384];  // the largest double has 309 digits before the point
+  const auto [end, error] =
+      std::to_chars(buffer, buffer + sizeof(buffer), value, std::chars_format::fixed, decimals);
+  if (error != std::errc()) return;
+  std::string_view digits(buffer, static_cast<std::size_t>(end - buffer));
+  if (digits.find('.') != std::string_view::npos) {
+    while (digits.back() == '0') digits.remove_suffix(1);
+    if (digits.back() == '.') digits.remove_suffix(1);
+  }
+  text->append(digits == "-0" ? std::string_view("0") : digits);
+}
+
+void AppendShortest(float value, std::string* text) {
+  char buffer[64];
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof(buffer), value);
+  if (error == std::errc()) text->append(buffer, end);
+}
+
+}  // namespace furrow::motion
