@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "protocol/text.h"
 
-#include <cstddef>
+#include <algorithm>
 #include <cstdint>
 
 namespace furrow::protocol {
@@ -33,6 +33,14 @@ bool IsPlainText(std::string_view text) {
     at += size;
   }
   return true;
+}
+
+std::string_view PlainPrefix(std::string_view text, std::size_t max_bytes) {
+  std::size_t end = std::min(text.size(), max_bytes);
+  while (end > 0 && end < text.size() && (static_cast<std::uint8_t>(text[end]) & 0xC0) == 0x80) {
+    --end;
+  }
+  return text.substr(0, end);
 }
 
 }  // namespace furrow::protocol

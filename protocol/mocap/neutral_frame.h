@@ -10,10 +10,11 @@
 namespace furrow::protocol::mocap {
 
 struct NeutralJoint {
-  std::string name;  // as the sender calls it
-  int parent = -1;   // index of an earlier joint of the same frame; -1 for a root
-  Vec3 translation;  // local, metres
-  Quat rotation;     // local, unit
+  std::string name;       // as the sender calls it
+  int parent = -1;        // index of an earlier joint of the same frame; -1 for a root
+  Vec3 translation;       // local, metres
+  Quat rotation;          // local, unit
+  Vec3 rest_translation;  // local, metres; does not change while NeutralFrame::layout stands
 };
 
 struct NeutralBlendShape {
@@ -34,8 +35,7 @@ struct NeutralFrame {
   std::vector<NeutralBlendShape> blend_shapes;
 };
 
-// The skeleton that such a frame implies: rest translations are those of `frame`, rest rotations
-// identity (foreign wires send none).
+// The skeleton that such a frame implies; rest rotations are identity (foreign wires send none).
 [[nodiscard]] SkeletonOffer MakeOffer(const NeutralFrame& frame);
 
 // The pose of `frame` against an offer made from a frame of the same layout. Reuses `pose`'s

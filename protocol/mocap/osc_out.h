@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -32,6 +33,10 @@ class OscWeightWriter {
              const Emit& emit);
 
  private:
+  // As bundle elements.
+  [[nodiscard]] std::size_t MessageBytes(const std::string& address) const;
+  [[nodiscard]] std::size_t MarkBytes() const;
+
   OscProfile profile_;
   std::string prefix_;
   std::string frame_address_;

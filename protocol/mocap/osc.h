@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+// Open Sound Control 1.0: big-endian, everything padded to four bytes.
+namespace furrow::protocol::mocap {
+
+inline constexpr int kMaxOscDepth = 4;        // bundles in bundles
+inline constexpr int kMaxOscMessages = 4096;  // in one packet
+
+// One message inside a packet that was checked: nothing here is copied.
+struct OscMessage {
+  std::string_view address;
+  std::string_view tags;                    // without the comma
+  std::span<const std::uint8_t> arguments;  // as long as `tags` says
+};
+
+// Reads arguments in order. Each call is false, and takes nothing, where the next tag is another
+// type.
+class OscArguments {
+ public:
+  explicit OscArguments(const OscMessage& message);
+
+  [[nodiscard]] bool Float(float& value);              // f
+  [[nodiscard]] bool Int(std::int32_t& value);         // i
+  [[nodiscard]] bool String(std::string_view& value);  // s or S
+  [[nodiscard]] char next_tag() const;                 // 0 at the end
+
+ private:
+  std::string_view tags_;
+  std::span<const std::uint8_t> bytes_;
+};
+
+enum class OscStatus : std::uint8_t {
+  kOk = 0,
+  kMalformed,  // sizes, padding or tags that are not OSC
+  kTooDeep,
+  kTooMany,
+};
+
+using OscVisitor = std::function<void(const OscMessage& message)>;
+
+// Calls `visit` for every message of a packet, bare or in nested bundles, in order; time tags count
+// as immediate. The whole packet is checked first: a malformed one is not visited at all.
+[[nodiscard]] OscStatus VisitOsc(std::span<const std::uint8_t> packet, const OscVisitor& visit);
+
+// Appends OSC to a byte vector.
+//
+//   OscWriter writer(bytes);
+//   writer.BeginBundle();                       // optional, then any number of messages
+//   writer.BeginMessage("/a", "sf"); writer.String("x"); writer.Float(1); writer.EndMessage();
+class OscWriter {
+ public:
+  // Clears `out`, which must outlive the writer.
+  explicit OscWriter(std::vector<std::uint8_t>& out);
+
+  void BeginBundle();  // time tag "immediately"
+  void BeginMessage(std::string_view address, std::string_view tags);
+  void Float(float value);
+  void Int(std::int32_t value);
+  void Int64(std::int64_t value);
+  void String(std::string_view value);
+  void EndMessage();
+
+ private:
+  std::vector<std::uint8_t>& out_;
+  bool in_bundle_ = false;
+  std::size_t size_at_ = 0;
+};
+
+// Bytes of an OSC string with its terminator and padding.
+[[nodiscard]] constexpr std::size_t OscStringBytes(std::size_t length) {
+  return (length / 4 + 1) * 4;
+}
+
+}  // namespace furrow::protocol::mocap

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace furrow::protocol::mocap {
+
+// Turns a sender's clock, which may restart or pass midnight, into one that never runs backwards.
+class SourceClock {
+ public:
+  enum class Order : std::uint8_t { kNewer, kNotNewer };
+
+  // `source_us` at most `tolerance_us` behind the newest (or equal) is kNotNewer: a straggler.
+  // Further behind, the clock has restarted: time goes on by what passed on the receiver's clock.
+  [[nodiscard]] Order Advance(std::int64_t source_us, std::int64_t now_us,
+                              std::int64_t tolerance_us) {
+    if (started_ && source_us <= newest_us_ && newest_us_ - source_us <= tolerance_us) {
+      return Order::kNotNewer;
+    }
+    if (!started_) {
+      time_us_ = source_us;
+    } else if (source_us > newest_us_) {
+      time_us_ += source_us - newest_us_;
+    } else {
+      time_us_ += std::max<std::int64_t>(now_us - arrived_us_, 1);
+    }
+    started_ = true;
+    newest_us_ = source_us;
+    arrived_us_ = now_us;
+    return Order::kNewer;
+  }
+
+  [[nodiscard]] std::int64_t time_us() const { return time_us_; }
+
+ private:
+  bool started_ = false;
+  std::int64_t newest_us_ = 0;   // of the sender
+  std::int64_t arrived_us_ = 0;  // of the receiver, when that came
+  std::int64_t time_us_ = 0;
+};
+
+}  // namespace furrow::protocol::mocap
