@@ -3,10 +3,11 @@
 
 #include <charconv>
 #include <cmath>
-#include <limits>
 
 namespace furrow::motion {
 namespace {
+
+constexpr double kBeyondFloat = 0x1.ffffffp127;  // half-way from the largest float to the next
 
 // from_chars says "out of range" of 1e-999 and of 1e999 alike.
 bool HasNegativeExponent(std::string_view token) {
@@ -33,9 +34,9 @@ Outcome Convert(std::string_view token, double* value) {
   if (error != std::errc() || rest != end) {
     return LooksNonFinite(token) ? Outcome::kNonFinite : Outcome::kNoNumber;
   }
-  // What does not fit into a float would become infinite later.
-  const bool fits = std::abs(*value) <= static_cast<double>(std::numeric_limits<float>::max());
-  return fits ? Outcome::kNumber : Outcome::kNonFinite;  // false for NaN as well
+  // What does not round to a finite float would become infinite later; NaN compares false.
+  const bool fits = std::abs(*value) < kBeyondFloat;
+  return fits ? Outcome::kNumber : Outcome::kNonFinite;
 }
 
 std::string Quoted(std::string_view token) {

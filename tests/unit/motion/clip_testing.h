@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "motion/clip.h"
+#include "wrinkle/pose.h"
+
+// What several of motion's tests need.
+namespace furrow::motion {
+
+inline std::vector<glm::mat4> ModelMatrices(const Clip& clip, int frame) {
+  wrinkle::LocalPose pose;
+  clip.GetPose(frame, &pose);
+  std::vector<glm::mat4> model(pose.joints.size());
+  wrinkle::LocalToModelJob job{&clip.skeleton, pose.joints, model};
+  return job.Run() == wrinkle::JobStatus::kOk ? model : std::vector<glm::mat4>();
+}
+
+inline glm::vec3 ModelPosition(const Clip& clip, int frame, std::string_view joint) {
+  const int index = clip.skeleton.Find(joint);
+  return glm::vec3(ModelMatrices(clip, frame).at(static_cast<std::size_t>(index))[3]);
+}
+
+// The largest distance of any joint between two clips, matched by name, over all frames of `a`.
+inline float WorstDistance(const Clip& a, const Clip& b) {
+  float worst = 0.0f;
+  for (int frame = 0; frame < a.num_frames(); ++frame) {
+    const std::vector<glm::mat4> in_a = ModelMatrices(a, frame);
+    const std::vector<glm::mat4> in_b = ModelMatrices(b, frame);
+    for (std::size_t j = 0; j < in_a.size(); ++j) {
+      const int other = b.skeleton.Find(a.skeleton.joint_names()[j]);
+      const glm::vec3 p(in_a[j][3]);
+      const glm::vec3 q(in_b.at(static_cast<std::size_t>(other))[3]);
+      worst = std::max(worst, glm::length(p - q));
+    }
+  }
+  return worst;
+}
+
+inline std::filesystem::path SharedFile(const std::string& name) {
+  return std::filesystem::path(FURROW_SHARED_DATA) / name;
+}
+
+inline std::string ReadAll(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// A folder of this process's own that goes away with the fixture.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "furrow-motion-XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace furrow::motion
