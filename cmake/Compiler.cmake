@@ -17,7 +17,7 @@ if(FURROW_CCACHE)
 endif()
 
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wimplicit-fallthrough
-                    -ffp-contract=off -fno-math-errno)
+                    -Wno-missing-field-initializers -ffp-contract=off -fno-math-errno)
 
 if(FURROW_SANITIZE)
   set(_sanitize "${FURROW_SANITIZE}")

@@ -4,6 +4,7 @@ find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 
 find_package(spdlog REQUIRED)
+find_package(nlohmann_json REQUIRED)
 find_package(FlatBuffers REQUIRED)
 find_package(tomlplusplus REQUIRED)
 

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cpp/publisher.h"
+
+#include <random>
+#include <utility>
+
+#include "protocol/hash.h"
+#include "protocol/limits.h"
+
+namespace furrow::client {
+
+std::uint64_t NewSession() {
+  std::random_device random;
+  std::uint64_t session = 0;
+  while (session == 0) session = (std::uint64_t{random()} << 32) | random();
+  return session;
+}
+
+Publisher::Publisher(std::unique_ptr<Transport> transport)
+    : transport_(std::move(transport)), session_(NewSession()) {}
+
+std::uint16_t Publisher::AddSubject(const protocol::SkeletonOffer& offer, std::int64_t now_us) {
+  const auto number = static_cast<std::uint16_t>(streams_.size());
+  Stream& stream = streams_.emplace_back();
+  stream.skeleton_hash = protocol::SkeletonHash(offer);
+  encoder_.Encode({.session = session_, .stream = number}, offer, stream.offer);
+  SendOffer(stream, now_us);
+  return number;
+}
+
+void Publisher::SendOffer(Stream& stream, std::int64_t now_us) {
+  stream.offered_us = now_us;
+  (void)transport_->Send(stream.offer);  // sent again until it is answered
+}
+
+IoStatus Publisher::Send(std::uint16_t number, protocol::PoseFrame& pose,
+                         std::int64_t capture_time_us, const protocol::PoseEncoding& encoding) {
+  Stream& stream = streams_.at(number);
+  pose.skeleton_hash = stream.skeleton_hash;
+  encoder_.Encode({.session = session_,
+                   .stream = number,
+                   .sequence = stream.next_sequence++,
+                   .capture_time_us = capture_time_us},
+                  pose, bytes_, encoding);
+  return transport_->Send(bytes_);
+}
+
+IoStatus Publisher::Poll(std::int64_t now_us, std::chrono::milliseconds wait) {
+  for (Stream& stream : streams_) {
+    const bool due = now_us - stream.offered_us >= protocol::kOfferResendMicroseconds;
+    if (!stream.accepted && stream.rejection.empty() && due) SendOffer(stream, now_us);
+  }
+  std::span<const std::uint8_t> message;
+  IoStatus status = transport_->Receive(message, wait);
+  while (status == IoStatus::kOk) {
+    Handle(message, now_us);
+    const IoStatus more = transport_->Receive(message, std::chrono::milliseconds(0));
+    if (more == IoStatus::kTimeout) break;
+    status = more;
+  }
+  return status;
+}
+
+void Publisher::Handle(std::span<const std::uint8_t> message, std::int64_t now_us) {
+  using protocol::DecodeStatus;
+  protocol::MessageView view;
+  if (protocol::OpenMessage(message, view, protocol::kMaxReplyBytes) != DecodeStatus::kOk) return;
+  if (view.kind == protocol::MessageKind::kError) {
+    if (protocol::Decode(view, error_) == DecodeStatus::kOk) last_error_ = error_.message;
+    return;
+  }
+  if (view.kind != protocol::MessageKind::kSkeletonReply || view.header.stream >= streams_.size())
+    return;
+  if (protocol::Decode(view, reply_) != DecodeStatus::kOk) return;
+  Stream& stream = streams_[view.header.stream];
+  if (reply_.skeleton_hash != stream.skeleton_hash) return;
+  switch (reply_.status) {
+    case protocol::SkeletonStatus::kAccepted: stream.accepted = true; break;
+    case protocol::SkeletonStatus::kRejected:
+      stream.rejection = reply_.message.empty() ? "the daemon gave no reason" : reply_.message;
+      break;
+    case protocol::SkeletonStatus::kNeeded:
+      stream.accepted = false;
+      SendOffer(stream, now_us);
+      break;
+  }
+}
+
+void Publisher::Close() {
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    encoder_.Encode({.session = session_,
+                     .stream = static_cast<std::uint16_t>(i),
+                     .sequence = streams_[i].next_sequence},
+                    protocol::Goodbye{}, bytes_);
+    (void)transport_->Send(bytes_);  // the daemon notices silence too
+  }
+  streams_.clear();
+}
+
+bool Publisher::accepted(std::uint16_t stream) const { return streams_.at(stream).accepted; }
+
+const std::string& Publisher::rejection(std::uint16_t stream) const {
+  return streams_.at(stream).rejection;
+}
+
+}  // namespace furrow::client

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "client/cpp/transport.h"
+#include "protocol/codec.h"
+
+namespace furrow::client {
+
+// Sends the poses of one or several subjects to a daemon.
+//
+//   Publisher publisher(std::move(transport));
+//   auto stream = publisher.AddSubject(offer, now_us);
+//   publisher.Poll(now_us, 100ms);                 // until accepted(stream)
+//   publisher.Send(stream, pose, capture_time_us);
+//
+// Time is a parameter (microseconds on any clock that does not go back); no thread, one thread.
+class Publisher {
+ public:
+  explicit Publisher(std::unique_ptr<Transport> transport);
+
+  // Offers a subject and returns its stream number. The offer is sent again until it is answered,
+  // and whenever the daemon asks for it (it may have been restarted).
+  std::uint16_t AddSubject(const protocol::SkeletonOffer& offer, std::int64_t now_us);
+
+  // Sends one pose, numbered from 0 a stream. `pose.skeleton_hash` is filled in.
+  [[nodiscard]] IoStatus Send(std::uint16_t stream, protocol::PoseFrame& pose,
+                              std::int64_t capture_time_us,
+                              const protocol::PoseEncoding& encoding = {});
+
+  // Reads answers for at most `wait` and sends offers again that are due. Call it between poses.
+  // kOk and kTimeout are both fine; kNoConnection on UDP means that nobody listens there at
+  // present.
+  IoStatus Poll(std::int64_t now_us, std::chrono::milliseconds wait);
+
+  // Says goodbye for every stream: subscribers hear it at once instead of waiting for silence.
+  void Close();
+
+  [[nodiscard]] bool accepted(std::uint16_t stream) const;
+  // Why the daemon refused the stream; empty while it has not.
+  [[nodiscard]] const std::string& rejection(std::uint16_t stream) const;
+  // The last error message of the daemon, empty when there was none.
+  [[nodiscard]] const std::string& last_error() const { return last_error_; }
+  [[nodiscard]] std::uint64_t session() const { return session_; }
+
+ private:
+  struct Stream {
+    std::vector<std::uint8_t> offer;  // encoded
+    std::uint64_t skeleton_hash = 0;
+    std::int64_t offered_us = 0;
+    std::uint32_t next_sequence = 0;
+    bool accepted = false;
+    std::string rejection;
+  };
+
+  void SendOffer(Stream& stream, std::int64_t now_us);
+  void Handle(std::span<const std::uint8_t> message, std::int64_t now_us);
+
+  std::unique_ptr<Transport> transport_;
+  protocol::Encoder encoder_;
+  std::uint64_t session_;
+  std::vector<Stream> streams_;
+  std::vector<std::uint8_t> bytes_;
+  protocol::SkeletonReply reply_;
+  protocol::ErrorMessage error_;
+  std::string last_error_;
+};
+
+// A random session number, never 0: new at every start, so that a restart is told from a replay.
+[[nodiscard]] std::uint64_t NewSession();
+
+}  // namespace furrow::client

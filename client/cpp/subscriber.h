@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "client/cpp/transport.h"
+#include "protocol/codec.h"
+
+namespace furrow::client {
+
+// What Subscriber::Next() found. The message that `kind` names is valid until the next call.
+struct Event {
+  enum class Kind {
+    kTimeout,       // nothing in the time given
+    kReply,         // reply(): a subscription began, or its names changed
+    kWeights,       // weights()
+    kPicture,       // picture()
+    kError,         // error(): request `header.sequence`, or subscription `header.stream`, failed
+    kGoodbye,       // goodbye()
+    kClosed,        // TCP: the daemon closed the connection
+    kNoConnection,  // UDP: nobody listens there
+  };
+  Kind kind = Kind::kTimeout;
+  protocol::Header header;  // stream: the subscription; sequence and capture time: the pose's
+};
+
+// Receives weights and pictures from a daemon: over TCP both, over UDP weights alone.
+//
+//   Subscriber subscriber(std::move(transport), "my engine 1.0");
+//   subscriber.Subscribe(protocol::SubscribeWeights{.subject = "ada"});
+//   for (;;) { const Event event = subscriber.Next(now_us, 16ms); ... }
+//
+// Over UDP it proves its address first and keeps its lease; lost requests are sent again. Time is a
+// parameter (microseconds on any clock that does not go back); no thread, one thread.
+class Subscriber {
+ public:
+  Subscriber(std::unique_ptr<Transport> transport, std::string name);
+
+  // Ask, and get the request's number, which the answer repeats in header.sequence.
+  std::uint32_t Subscribe(const protocol::SubscribeWeights& request);
+  std::uint32_t Subscribe(const protocol::SubscribePictures& request);
+  void Unsubscribe(std::uint16_t subscription);
+
+  [[nodiscard]] Event Next(std::int64_t now_us, std::chrono::milliseconds wait);
+
+  [[nodiscard]] const protocol::SubscribeReply& reply() const { return reply_; }
+  [[nodiscard]] const protocol::WeightFrame& weights() const { return weights_; }
+  [[nodiscard]] const protocol::ImageFrame& picture() const { return picture_; }
+  [[nodiscard]] const protocol::ErrorMessage& error() const { return error_; }
+  [[nodiscard]] const protocol::Goodbye& goodbye() const { return goodbye_; }
+
+  // Messages that could not be decoded, and so were dropped.
+  [[nodiscard]] std::uint64_t malformed() const { return malformed_; }
+
+ private:
+  struct Request {
+    std::uint32_t number = 0;
+    std::vector<std::uint8_t> bytes;
+  };
+
+  template <class Message>
+  std::uint32_t Ask(const Message& message);
+  void SendHello();
+  void Maintain(std::int64_t now_us);  // UDP: hello, lease, requests without answer
+  bool Handle(std::span<const std::uint8_t> message, Event& event);
+  bool HandleWelcome(const protocol::MessageView& view);
+  void Answered(std::uint32_t number);
+
+  std::unique_ptr<Transport> transport_;
+  std::string name_;
+  protocol::Encoder encoder_;
+  std::uint64_t session_;
+  std::uint32_t next_request_ = 1;
+  std::vector<Request> waiting_;  // asked, not yet answered
+  bool proven_;
+  std::uint64_t token_ = 0;
+  std::int64_t last_sent_us_ = 0;
+  bool started_ = false;
+  std::uint64_t malformed_ = 0;
+
+  std::vector<std::uint8_t> bytes_;
+  protocol::SubscribeReply reply_;
+  protocol::WeightFrame weights_;
+  protocol::ImageFrame picture_;
+  protocol::ErrorMessage error_;
+  protocol::Goodbye goodbye_;
+};
+
+}  // namespace furrow::client

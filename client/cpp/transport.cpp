@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cpp/transport.h"
+
+#include <array>
+#include <vector>
+
+#include <asio/buffer.hpp>
+#include <asio/connect.hpp>
+#include <asio/io_context.hpp>
+#include <asio/ip/tcp.hpp>
+#include <asio/ip/udp.hpp>
+#include <asio/write.hpp>
+
+#include "protocol/fragment.h"
+#include "protocol/limits.h"
+#include "protocol/tcp_framing.h"
+
+namespace furrow::client {
+namespace {
+
+using asio::ip::tcp;
+using asio::ip::udp;
+using Clock = std::chrono::steady_clock;
+
+std::int64_t Microseconds(Clock::time_point time) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(time.time_since_epoch()).count();
+}
+
+// One read is always under way; waiting is running the context until it ends or time is up, so a
+// timeout loses nothing.
+class ReadPump {
+ public:
+  template <class Socket>
+  void Start(Socket& socket, std::span<std::uint8_t> buffer) {
+    if (pending_) return;
+    pending_ = true;
+    done_ = false;
+    const auto on_read = [this](const asio::error_code& error, std::size_t bytes) {
+      pending_ = false;
+      done_ = true;
+      error_ = error;
+      bytes_ = bytes;
+    };
+    if constexpr (std::is_same_v<Socket, udp::socket>) {
+      socket.async_receive(asio::buffer(buffer.data(), buffer.size()), on_read);
+    } else {
+      socket.async_read_some(asio::buffer(buffer.data(), buffer.size()), on_read);
+    }
+  }
+
+  // True when the read has ended; then error() and bytes() say how.
+  bool Wait(asio::io_context& context, Clock::time_point deadline) {
+    if (!done_) {
+      context.restart();
+      context.run_one_until(deadline);
+      if (!done_) context.poll();
+    }
+    return std::exchange(done_, false);
+  }
+
+  [[nodiscard]] const asio::error_code& error() const { return error_; }
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+
+ private:
+  bool pending_ = false;
+  bool done_ = false;
+  asio::error_code error_;
+  std::size_t bytes_ = 0;
+};
+
+class TcpTransport : public Transport {
+ public:
+  TcpTransport() : Transport(TransportKind::kTcp) {}
+
+  asio::error_code Connect(const std::string& host, std::uint16_t port,
+                           Clock::time_point deadline) {
+    asio::error_code error;
+    tcp::resolver resolver(context_);
+    const auto endpoints = resolver.resolve(host, std::to_string(port), error);
+    if (error) return error;
+    error = asio::error::timed_out;
+    asio::async_connect(
+        socket_, endpoints,
+        [&](const asio::error_code& result, const tcp::endpoint&) { error = result; });
+    context_.run_until(deadline);
+    if (error == asio::error::timed_out) {
+      asio::error_code ignored;
+      socket_.close(ignored);
+      context_.restart();
+      context_.run();  // the handler must not outlive this frame
+      return asio::error::timed_out;
+    }
+    if (!error) socket_.set_option(tcp::no_delay(true), error);
+    return error;
+  }
+
+  IoStatus Send(std::span<const std::uint8_t> message) override {
+    if (message.size() > protocol::kMaxRequestBytes) return IoStatus::kTooLarge;
+    const auto prefix = protocol::FramePrefix(message.size());
+    const std::array<asio::const_buffer, 2> buffers{asio::buffer(prefix),
+                                                    asio::buffer(message.data(), message.size())};
+    asio::error_code error;
+    asio::write(socket_, buffers, error);
+    return error ? IoStatus::kClosed : IoStatus::kOk;
+  }
+
+  IoStatus Receive(std::span<const std::uint8_t>& message,
+                   std::chrono::milliseconds timeout) override {
+    const auto deadline = Clock::now() + timeout;
+    for (;;) {
+      if (!unread_.empty()) {
+        switch (frames_.Push(unread_, message)) {
+          case protocol::FrameStatus::kFrame: return IoStatus::kOk;
+          case protocol::FrameStatus::kBadLength: return IoStatus::kMalformed;
+          case protocol::FrameStatus::kNeedMore: break;
+        }
+      }
+      pump_.Start(socket_, buffer_);
+      if (!pump_.Wait(context_, deadline)) return IoStatus::kTimeout;
+      if (pump_.error()) return IoStatus::kClosed;
+      unread_ = std::span<const std::uint8_t>(buffer_).first(pump_.bytes());
+    }
+  }
+
+ private:
+  asio::io_context context_{1};
+  tcp::socket socket_{context_};
+  ReadPump pump_;
+  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(64 * 1024);
+  std::span<const std::uint8_t> unread_;
+  protocol::FrameReader frames_{protocol::kMaxReplyBytes};
+};
+
+class UdpTransport : public Transport {
+ public:
+  UdpTransport() : Transport(TransportKind::kUdp) {}
+
+  asio::error_code Connect(const std::string& host, std::uint16_t port) {
+    asio::error_code error;
+    udp::resolver resolver(context_);
+    const auto endpoints = resolver.resolve(host, std::to_string(port), error);
+    if (error) return error;
+    // The first address that can be routed to; 127.0.0.1 before ::1, as the daemon's default binds.
+    for (const bool want_v4 : {true, false}) {
+      for (const auto& entry : endpoints) {
+        if (entry.endpoint().address().is_v4() != want_v4) continue;
+        asio::error_code ignored;
+        socket_.close(ignored);
+        socket_.open(entry.endpoint().protocol(), error);
+        if (!error) socket_.connect(entry.endpoint(), error);
+        if (!error) return error;
+      }
+    }
+    return error;
+  }
+
+  IoStatus Send(std::span<const std::uint8_t> message) override {
+    if (message.size() > protocol::kMaxUdpMessageBytes) return IoStatus::kTooLarge;
+    const std::size_t count = protocol::NumDatagrams(message.size());
+    const std::uint32_t id = next_message_id_++;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t bytes = protocol::WriteDatagram(message, id, i, datagram_);
+      asio::error_code error;
+      socket_.send(asio::buffer(datagram_.data(), bytes), 0, error);
+      // A refusal is the answer to an earlier datagram: this one did not leave, so try it once
+      // more.
+      if (error == asio::error::connection_refused) {
+        refused_ = true;
+        socket_.send(asio::buffer(datagram_.data(), bytes), 0, error);
+      }
+      if (error) return IoStatus::kNoConnection;
+    }
+    return IoStatus::kOk;
+  }
+
+  IoStatus Receive(std::span<const std::uint8_t>& message,
+                   std::chrono::milliseconds timeout) override {
+    const auto deadline = Clock::now() + timeout;
+    for (;;) {
+      if (std::exchange(refused_, false)) return IoStatus::kNoConnection;
+      pump_.Start(socket_, buffer_);
+      if (!pump_.Wait(context_, deadline)) return IoStatus::kTimeout;
+      if (pump_.error()) return IoStatus::kNoConnection;
+      const auto datagram = std::span<const std::uint8_t>(buffer_).first(pump_.bytes());
+      switch (reassembler_.Push(0, datagram, Microseconds(Clock::now()), message)) {
+        case protocol::FragmentStatus::kWhole:
+        case protocol::FragmentStatus::kComplete: return IoStatus::kOk;
+        default: break;  // a piece, or nothing of ours: wait on
+      }
+    }
+  }
+
+ private:
+  asio::io_context context_{1};
+  udp::socket socket_{context_};
+  ReadPump pump_;
+  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(64 * 1024);
+  std::array<std::uint8_t, protocol::kMaxDatagramBytes> datagram_{};
+  protocol::Reassembler reassembler_;
+  std::uint32_t next_message_id_ = 0;
+  bool refused_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Transport> Transport::Open(TransportKind kind, const std::string& host,
+                                           std::uint16_t port, std::chrono::milliseconds timeout,
+                                           std::string* error) {
+  asio::error_code code;
+  std::unique_ptr<Transport> result;
+  if (kind == TransportKind::kTcp) {
+    auto transport = std::make_unique<TcpTransport>();
+    code = transport->Connect(host, port, Clock::now() + timeout);
+    result = std::move(transport);
+  } else {
+    auto transport = std::make_unique<UdpTransport>();
+    code = transport->Connect(host, port);
+    result = std::move(transport);
+  }
+  if (!code) return result;
+  *error = "no connection to " + host + ":" + std::to_string(port) + " over " +
+           (kind == TransportKind::kTcp ? "TCP" : "UDP") + ": " + code.message();
+  return nullptr;
+}
+
+}  // namespace furrow::client

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "client/cpp/transport.h"
+#include "protocol/codec.h"
+
+namespace furrow::client {
+
+// The far end, played by a test: what was sent, and what will be received next.
+struct FarEnd {
+  std::vector<std::vector<std::uint8_t>> sent;
+  std::deque<std::vector<std::uint8_t>> to_receive;
+  IoStatus when_empty = IoStatus::kTimeout;
+
+  template <class Message>
+  void Answer(const protocol::Header& header, const Message& message) {
+    protocol::Encoder encoder;
+    encoder.Encode(header, message, to_receive.emplace_back());
+  }
+
+  // The kind of every message sent since the last call.
+  std::vector<protocol::MessageKind> TakeKinds() {
+    std::vector<protocol::MessageKind> kinds;
+    for (const auto& bytes : sent) {
+      protocol::MessageView view;
+      (void)protocol::OpenMessage(bytes, view);
+      kinds.push_back(view.kind);
+    }
+    sent.clear();
+    return kinds;
+  }
+};
+
+class FakeTransport : public Transport {
+ public:
+  FakeTransport(TransportKind kind, std::shared_ptr<FarEnd> far)
+      : Transport(kind), far_(std::move(far)) {}
+
+  IoStatus Send(std::span<const std::uint8_t> message) override {
+    far_->sent.emplace_back(message.begin(), message.end());
+    return IoStatus::kOk;
+  }
+
+  IoStatus Receive(std::span<const std::uint8_t>& message, std::chrono::milliseconds) override {
+    if (far_->to_receive.empty()) return far_->when_empty;
+    current_ = std::move(far_->to_receive.front());
+    far_->to_receive.pop_front();
+    message = current_;
+    return IoStatus::kOk;
+  }
+
+ private:
+  std::shared_ptr<FarEnd> far_;
+  std::vector<std::uint8_t> current_;
+};
+
+}  // namespace furrow::client

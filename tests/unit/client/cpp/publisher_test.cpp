@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cpp/publisher.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "fake_transport.h"
+#include "protocol/hash.h"
+
+namespace furrow::client {
+namespace {
+
+using protocol::MessageKind;
+using protocol::SkeletonStatus;
+using std::chrono::milliseconds;
+
+protocol::SkeletonOffer OneJoint() {
+  protocol::SkeletonOffer offer;
+  offer.subject = "ada";
+  offer.joints = {{.name = "root"}};
+  return offer;
+}
+
+class PublisherTest : public ::testing::Test {
+ protected:
+  std::shared_ptr<FarEnd> far_ = std::make_shared<FarEnd>();
+  Publisher publisher_{std::make_unique<FakeTransport>(TransportKind::kUdp, far_)};
+
+  void Reply(std::uint16_t stream, SkeletonStatus status, const std::string& message = {},
+             std::uint64_t hash = protocol::SkeletonHash(OneJoint())) {
+    far_->Answer(
+        {.session = 7, .stream = stream},
+        protocol::SkeletonReply{.skeleton_hash = hash, .status = status, .message = message});
+  }
+};
+
+TEST_F(PublisherTest, OfferIsSentAgainUntilItIsAnswered) {
+  const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSkeletonOffer});
+  publisher_.Poll(100'000, milliseconds(0));
+  EXPECT_TRUE(far_->sent.empty()) << "not yet due";
+  publisher_.Poll(200'000, milliseconds(0));
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSkeletonOffer});
+  Reply(stream, SkeletonStatus::kAccepted);
+  publisher_.Poll(300'000, milliseconds(0));
+  EXPECT_TRUE(publisher_.accepted(stream));
+  publisher_.Poll(900'000, milliseconds(0));
+  EXPECT_TRUE(far_->sent.empty());
+}
+
+TEST_F(PublisherTest, DaemonThatForgotGetsTheOfferAtOnce) {
+  const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  Reply(stream, SkeletonStatus::kAccepted);
+  publisher_.Poll(1, milliseconds(0));
+  (void)far_->TakeKinds();
+  Reply(stream, SkeletonStatus::kNeeded);
+  publisher_.Poll(2, milliseconds(0));
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSkeletonOffer});
+  EXPECT_FALSE(publisher_.accepted(stream));
+}
+
+TEST_F(PublisherTest, RejectionIsFinalAndSaysWhy) {
+  const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  (void)far_->TakeKinds();
+  Reply(stream, SkeletonStatus::kRejected, "no joint of the rig");
+  publisher_.Poll(1, milliseconds(0));
+  EXPECT_EQ(publisher_.rejection(stream), "no joint of the rig");
+  publisher_.Poll(900'000, milliseconds(0));
+  EXPECT_TRUE(far_->sent.empty());
+}
+
+TEST_F(PublisherTest, RepliesForOtherStreamsOrSkeletonsAreIgnored) {
+  const auto stream = publisher_.AddSubject(OneJoint(), 0);
+  Reply(static_cast<std::uint16_t>(stream + 9), SkeletonStatus::kAccepted);
+  Reply(stream, SkeletonStatus::kAccepted, {}, 12345);
+  far_->to_receive.push_back({1, 2, 3});
+  publisher_.Poll(1, milliseconds(0));
+  EXPECT_FALSE(publisher_.accepted(stream));
+}
+
+TEST_F(PublisherTest, PosesAreNumberedByStreamAndCarryTheHash) {
+  const auto first = publisher_.AddSubject(OneJoint(), 0);
+  const auto second = publisher_.AddSubject(OneJoint(), 0);
+  far_->sent.clear();
+  protocol::PoseFrame pose;
+  pose.num_joints = 1;
+  pose.rotation_joints = {0};
+  pose.rotations = {{}};
+  ASSERT_EQ(publisher_.Send(first, pose, 10), IoStatus::kOk);
+  ASSERT_EQ(publisher_.Send(first, pose, 20), IoStatus::kOk);
+  ASSERT_EQ(publisher_.Send(second, pose, 30), IoStatus::kOk);
+  std::vector<std::uint32_t> sequences;
+  for (const auto& bytes : far_->sent) {
+    protocol::MessageView view;
+    protocol::PoseFrame sent;
+    ASSERT_EQ(protocol::OpenMessage(bytes, view), protocol::DecodeStatus::kOk);
+    ASSERT_EQ(protocol::Decode(view, sent), protocol::DecodeStatus::kOk);
+    EXPECT_EQ(sent.skeleton_hash, protocol::SkeletonHash(OneJoint()));
+    sequences.push_back(view.header.sequence);
+  }
+  EXPECT_EQ(sequences, (std::vector<std::uint32_t>{0, 1, 0}));
+}
+
+TEST_F(PublisherTest, CloseSaysGoodbyeForEveryStream) {
+  publisher_.AddSubject(OneJoint(), 0);
+  publisher_.AddSubject(OneJoint(), 0);
+  far_->sent.clear();
+  publisher_.Close();
+  EXPECT_EQ(far_->TakeKinds(), (std::vector{MessageKind::kGoodbye, MessageKind::kGoodbye}));
+}
+
+TEST(NewSessionTest, IsNeverZeroAndNeverTwiceTheSame) {
+  std::set<std::uint64_t> seen;
+  for (int i = 0; i < 1000; ++i) seen.insert(NewSession());
+  EXPECT_EQ(seen.size(), 1000u);
+  EXPECT_FALSE(seen.contains(0));
+}
+
+}  // namespace
+}  // namespace furrow::client

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cpp/subscriber.h"
+
+#include <gtest/gtest.h>
+
+#include "fake_transport.h"
+#include "protocol/hash.h"
+#include "protocol/limits.h"
+
+namespace furrow::client {
+namespace {
+
+using protocol::MessageKind;
+using std::chrono::milliseconds;
+using Kind = Event::Kind;
+
+class SubscriberTest : public ::testing::Test {
+ protected:
+  std::shared_ptr<FarEnd> far_ = std::make_shared<FarEnd>();
+
+  Subscriber Make(TransportKind kind) {
+    return {std::make_unique<FakeTransport>(kind, far_), "test"};
+  }
+};
+
+TEST_F(SubscriberTest, OverTcpRequestsGoOutAtOnce) {
+  Subscriber subscriber = Make(TransportKind::kTcp);
+  subscriber.Subscribe(protocol::SubscribeWeights{});
+  subscriber.Subscribe(protocol::SubscribePictures{});
+  EXPECT_EQ(far_->TakeKinds(), (std::vector{MessageKind::kHello, MessageKind::kSubscribeWeights,
+                                            MessageKind::kSubscribePictures}));
+}
+
+TEST_F(SubscriberTest, OverUdpTheAddressIsProvenFirst) {
+  Subscriber subscriber = Make(TransportKind::kUdp);
+  subscriber.Subscribe(protocol::SubscribeWeights{});
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kHello});
+
+  far_->Answer({.session = 5}, protocol::Welcome{.server = "furrowd", .token = 99});
+  EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kTimeout);
+  ASSERT_EQ(far_->sent.size(), 1u);
+  protocol::MessageView view;
+  protocol::Hello hello;
+  ASSERT_EQ(protocol::OpenMessage(far_->sent[0], view), protocol::DecodeStatus::kOk);
+  ASSERT_EQ(protocol::Decode(view, hello), protocol::DecodeStatus::kOk);
+  EXPECT_EQ(hello.token, 99u);
+  far_->sent.clear();
+
+  far_->Answer({.session = 5}, protocol::Welcome{.server = "furrowd", .token = 0});
+  EXPECT_EQ(subscriber.Next(1, milliseconds(0)).kind, Kind::kTimeout);
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSubscribeWeights});
+}
+
+TEST_F(SubscriberTest, LostUdpRequestsAreSentAgainAndTheLeaseIsKept) {
+  Subscriber subscriber = Make(TransportKind::kUdp);
+  far_->Answer({.session = 5}, protocol::Welcome{.server = "furrowd", .token = 0});
+  (void)subscriber.Next(0, milliseconds(0));
+  const std::uint32_t request = subscriber.Subscribe(protocol::SubscribeWeights{});
+  (void)far_->TakeKinds();
+  (void)subscriber.Next(250'000, milliseconds(0));
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSubscribeWeights});
+
+  far_->Answer({.session = 5, .stream = 3, .sequence = request},
+               protocol::SubscribeReply{.subject = "ada"});
+  const Event event = subscriber.Next(260'000, milliseconds(0));
+  EXPECT_EQ(event.kind, Kind::kReply);
+  EXPECT_EQ(event.header.stream, 3);
+  (void)subscriber.Next(700'000, milliseconds(0));
+  EXPECT_TRUE(far_->sent.empty()) << "answered, and the lease is fresh";
+  (void)subscriber.Next(250'000 + protocol::kUdpLeaseMicroseconds / 2, milliseconds(0));
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kPing});
+}
+
+TEST_F(SubscriberTest, WeightsPicturesErrorsAndGoodbyesReachTheCaller) {
+  Subscriber subscriber = Make(TransportKind::kTcp);
+  const std::vector<std::string> names{"a.x", "b.x"};
+  protocol::WeightFrame weights;
+  weights.names_hash = protocol::NamesHash(names);
+  weights.values = {0.25f, 1.0f};
+  far_->Answer({.session = 5, .stream = 1, .sequence = 42, .capture_time_us = 77}, weights);
+  far_->Answer({.session = 5, .stream = 2},
+               protocol::ImageFrame{.width = 16, .height = 16, .bytes = {1, 2, 3}});
+  far_->Answer({.session = 5}, protocol::ErrorMessage{.message = "no such subject"});
+  far_->Answer({.session = 5}, protocol::Goodbye{.reason = protocol::GoodbyeReason::kDraining});
+
+  const Event event = subscriber.Next(0, milliseconds(0));
+  EXPECT_EQ(event.kind, Kind::kWeights);
+  EXPECT_EQ(event.header.sequence, 42u);
+  EXPECT_EQ(event.header.capture_time_us, 77);
+  EXPECT_EQ(subscriber.weights().values, (std::vector<float>{0.25f, 1.0f}));
+  EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kPicture);
+  EXPECT_EQ(subscriber.picture().bytes.size(), 3u);
+  EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kError);
+  EXPECT_EQ(subscriber.error().message, "no such subject");
+  EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kGoodbye);
+  EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kTimeout);
+}
+
+TEST_F(SubscriberTest, GarbageIsCountedAndPassedOver) {
+  Subscriber subscriber = Make(TransportKind::kTcp);
+  far_->to_receive.push_back({});
+  far_->to_receive.push_back(std::vector<std::uint8_t>(100, 0xAB));
+  far_->Answer({.session = 5}, protocol::Goodbye{});
+  EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kGoodbye);
+  EXPECT_EQ(subscriber.malformed(), 2u);
+}
+
+TEST_F(SubscriberTest, TheEndOfTheTransportIsAnEvent) {
+  Subscriber subscriber = Make(TransportKind::kTcp);
+  far_->when_empty = IoStatus::kClosed;
+  EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kClosed);
+  far_->when_empty = IoStatus::kNoConnection;
+  EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kNoConnection);
+}
+
+}  // namespace
+}  // namespace furrow::client

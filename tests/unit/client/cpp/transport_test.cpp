@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cpp/transport.h"
+
+#include <cstring>
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "protocol/codec.h"
+#include "protocol/fragment.h"
+#include "protocol/tcp_framing.h"
+
+namespace furrow::client {
+namespace {
+
+using std::chrono::milliseconds;
+constexpr milliseconds kGuard{10'000};  // only a failure takes so long
+
+// A bare socket of the operating system's as the other end, on a free port of the loopback.
+class Socket {
+ public:
+  explicit Socket(int type) : fd_(::socket(AF_INET, type, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(::bind(fd_, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+    socklen_t size = sizeof address;
+    ::getsockname(fd_, reinterpret_cast<sockaddr*>(&address), &size);
+    port_ = ntohs(address.sin_port);
+    if (type == SOCK_STREAM) {
+      EXPECT_EQ(::listen(fd_, 1), 0);
+    }
+  }
+  ~Socket() { ::close(fd_); }
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
+
+  [[nodiscard]] int fd() const { return fd_; }
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+
+ private:
+  int fd_;
+  std::uint16_t port_ = 0;
+};
+
+std::vector<std::uint8_t> BigMessage() {
+  protocol::SkeletonOffer offer;
+  offer.subject = "ada";
+  for (int i = 0; i < 200; ++i) {
+    offer.joints.push_back(
+        {.name = "joint_" + std::to_string(i), .parent = static_cast<std::int16_t>(i - 1)});
+  }
+  std::vector<std::uint8_t> bytes;
+  protocol::Encoder().Encode({.session = 3}, offer, bytes);
+  return bytes;
+}
+
+std::unique_ptr<Transport> Open(TransportKind kind, std::uint16_t port) {
+  std::string error;
+  auto transport = Transport::Open(kind, "localhost", port, kGuard, &error);
+  EXPECT_NE(transport, nullptr) << error;
+  return transport;
+}
+
+TEST(TcpTransportTest, FramesCrossInBothDirectionsHoweverTheyAreCut) {
+  Socket listener(SOCK_STREAM);
+  auto transport = Open(TransportKind::kTcp, listener.port());
+  const int peer = ::accept(listener.fd(), nullptr, nullptr);
+  const auto message = BigMessage();
+  ASSERT_EQ(transport->Send(message), IoStatus::kOk);
+  std::vector<std::uint8_t> wire(message.size() + protocol::kFramePrefixBytes);
+  ASSERT_EQ(::recv(peer, wire.data(), wire.size(), MSG_WAITALL), static_cast<ssize_t>(wire.size()));
+  EXPECT_TRUE(
+      std::equal(message.begin(), message.end(), wire.begin() + protocol::kFramePrefixBytes));
+
+  // Sent back in two pieces, with a second frame behind: two messages, nothing between them.
+  std::span<const std::uint8_t> received;
+  const auto first = static_cast<ssize_t>(wire.size() / 3);
+  ASSERT_EQ(::send(peer, wire.data(), first, 0), first);
+  EXPECT_EQ(transport->Receive(received, milliseconds(1)), IoStatus::kTimeout);
+  ASSERT_EQ(::send(peer, wire.data() + first, wire.size() - first, 0),
+            static_cast<ssize_t>(wire.size()) - first);
+  ASSERT_EQ(::send(peer, wire.data(), wire.size(), 0), static_cast<ssize_t>(wire.size()));
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_EQ(transport->Receive(received, kGuard), IoStatus::kOk);
+    EXPECT_TRUE(std::equal(received.begin(), received.end(), message.begin(), message.end()));
+  }
+  ::close(peer);
+  EXPECT_EQ(transport->Receive(received, kGuard), IoStatus::kClosed);
+}
+
+TEST(TcpTransportTest, LengthThatCannotBeIsMalformed) {
+  Socket listener(SOCK_STREAM);
+  auto transport = Open(TransportKind::kTcp, listener.port());
+  const int peer = ::accept(listener.fd(), nullptr, nullptr);
+  const std::uint8_t huge[] = {0xff, 0xff, 0xff, 0xff};
+  ASSERT_EQ(::send(peer, huge, sizeof huge, 0), 4);
+  std::span<const std::uint8_t> received;
+  EXPECT_EQ(transport->Receive(received, kGuard), IoStatus::kMalformed);
+  ::close(peer);
+}
+
+TEST(TcpTransportTest, NobodyThereIsAnErrorThatNamesTheAddress) {
+  std::uint16_t port = 0;
+  { port = Socket(SOCK_STREAM).port(); }
+  std::string error;
+  EXPECT_EQ(Transport::Open(TransportKind::kTcp, "127.0.0.1", port, kGuard, &error), nullptr);
+  EXPECT_NE(error.find("127.0.0.1:" + std::to_string(port)), std::string::npos) << error;
+}
+
+TEST(UdpTransportTest, LargeMessagesCrossInFragments) {
+  Socket peer(SOCK_DGRAM);
+  auto transport = Open(TransportKind::kUdp, peer.port());
+  const auto message = BigMessage();
+  ASSERT_GT(protocol::NumDatagrams(message.size()), 2u);
+  ASSERT_EQ(transport->Send(message), IoStatus::kOk);
+
+  // Sent back as it came, last fragment first.
+  std::vector<std::vector<std::uint8_t>> datagrams;
+  sockaddr_in from{};
+  for (std::size_t i = 0; i < protocol::NumDatagrams(message.size()); ++i) {
+    std::vector<std::uint8_t> datagram(2000);
+    socklen_t size = sizeof from;
+    const ssize_t bytes = ::recvfrom(peer.fd(), datagram.data(), datagram.size(), 0,
+                                     reinterpret_cast<sockaddr*>(&from), &size);
+    ASSERT_GT(bytes, 0);
+    ASSERT_LE(bytes, static_cast<ssize_t>(protocol::kMaxDatagramBytes));
+    datagram.resize(static_cast<std::size_t>(bytes));
+    datagrams.insert(datagrams.begin(), datagram);
+  }
+  for (const auto& datagram : datagrams) {
+    ::sendto(peer.fd(), datagram.data(), datagram.size(), 0, reinterpret_cast<sockaddr*>(&from),
+             sizeof from);
+  }
+  std::span<const std::uint8_t> received;
+  ASSERT_EQ(transport->Receive(received, kGuard), IoStatus::kOk);
+  EXPECT_TRUE(std::equal(received.begin(), received.end(), message.begin(), message.end()));
+}
+
+TEST(UdpTransportTest, NobodyThereShowsWhenReceiving) {
+  std::uint16_t port = 0;
+  { port = Socket(SOCK_DGRAM).port(); }
+  auto transport = Open(TransportKind::kUdp, port);
+  std::vector<std::uint8_t> bytes;
+  protocol::Encoder().Encode({.session = 3}, protocol::Ping{}, bytes);
+  (void)transport->Send(bytes);
+  std::span<const std::uint8_t> received;
+  EXPECT_EQ(transport->Receive(received, kGuard), IoStatus::kNoConnection);
+}
+
+TEST(TransportTest, MessagesBeyondTheLimitAreRefused) {
+  Socket peer(SOCK_DGRAM);
+  auto transport = Open(TransportKind::kUdp, peer.port());
+  EXPECT_EQ(transport->Send(std::vector<std::uint8_t>(1 << 20)), IoStatus::kTooLarge);
+}
+
+}  // namespace
+}  // namespace furrow::client
