@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "character/character.h"
+#include "server/config.h"
+#include "wrinkle/rig.h"
+#include "wrinkle/status.h"
+
+namespace furrow::server {
+
+// What the daemon evaluates, and what it draws.
+struct Assets {
+  std::shared_ptr<const wrinkle::Rig> rig;
+  std::shared_ptr<const character::Character> character;  // null: weights only
+};
+
+// Where the default character, rigs and recordings are: $FURROW_DATA_DIR, else ../share/furrow
+// beside the running program.
+[[nodiscard]] std::filesystem::path DataFolder();
+
+// Loads what `config` names, or the default character. Errors: those of LoadCharacter() and
+// LoadRig(); kNotFound where there is no default character (says how to come by one).
+[[nodiscard]] Result<Assets> LoadAssets(const Config& config);
+
+}  // namespace furrow::server

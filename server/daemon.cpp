@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/daemon.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <random>
+#include <string>
+#include <utility>
+
+#include <asio/co_spawn.hpp>
+#include <asio/detached.hpp>
+#include <asio/experimental/as_tuple.hpp>
+#include <asio/io_context.hpp>
+#include <asio/post.hpp>
+#include <asio/signal_set.hpp>
+#include <asio/steady_timer.hpp>
+#include <asio/use_awaitable.hpp>
+#include <spdlog/spdlog.h>
+
+#include "protocol/mocap/livelink_face.h"
+#include "protocol/mocap/vmc.h"
+#include "server/assets.h"
+#include "server/net/clock.h"
+#include "server/net/mocap_input.h"
+#include "server/net/osc_output.h"
+#include "server/net/tcp_server.h"
+#include "server/net/udp_server.h"
+#include "server/pipeline/render_thread.h"
+#include "server/session/hub.h"
+#include "server/status_line.h"
+
+namespace furrow::server {
+namespace {
+
+constexpr auto kToken = asio::experimental::as_tuple(asio::use_awaitable);
+constexpr auto kTick = std::chrono::milliseconds(10);
+constexpr auto kSecond = std::chrono::seconds(1);
+constexpr auto kDrainPoll = std::chrono::milliseconds(5);
+
+// Unpredictable and never 0: session numbers, and the tokens that prove an address.
+std::uint64_t RandomNumber() {
+  std::random_device source;
+  std::uint64_t number = 0;
+  while (number == 0) number = (static_cast<std::uint64_t>(source()) << 32) | source();
+  return number;
+}
+
+// One daemon: its parts, in the order in which they depend on each other.
+class Daemon {
+ public:
+  Daemon(const Config& config, const RunOptions& options, Assets assets)
+      : config_(config),
+        options_(options),
+        assets_(std::move(assets)),
+        metrics_(options.metrics != nullptr ? options.metrics : &own_metrics_),
+        signals_(io_),
+        osc_(io_, metrics_) {}
+
+  Status StartRendering();
+  Status Listen();
+  void Serve();
+
+ private:
+  void MakeHub();
+  Status OpenMocap();
+  void Announce() const;
+  asio::awaitable<void> TickLoop();
+  asio::awaitable<void> SecondLoop();
+  asio::awaitable<void> Drain();
+  void RequestDrain();
+
+  const Config& config_;
+  const RunOptions& options_;
+  Assets assets_;
+  Metrics own_metrics_;
+  Metrics* const metrics_;
+  asio::io_context io_{1};  // one thread runs it
+  asio::signal_set signals_;
+  OscOutput osc_;
+  std::unique_ptr<RenderThread> render_;
+  std::unique_ptr<Hub> hub_;
+  std::unique_ptr<TcpServer> tcp_;
+  std::unique_ptr<UdpServer> udp_;
+  std::unique_ptr<MocapInput> vmc_;
+  std::unique_ptr<MocapInput> livelink_face_;
+  bool draining_ = false;
+};
+
+Status Daemon::StartRendering() {
+  if (!config_.render || assets_.character == nullptr) return {};
+  auto started = RenderThread::Start(
+      assets_.character, {.device = config_.render_device}, metrics_,
+      [this](FinishedPicture picture) {
+        asio::post(io_, [this, picture = std::move(picture)] { hub_->OnPicture(picture); });
+      });
+  if (started.ok()) {
+    render_ = *std::move(started);
+    spdlog::info("rendering on {}", render_->description());
+    return {};
+  }
+  if (config_.require_render) return started.status();
+  spdlog::error("no pictures will be drawn: {}", started.status().ToString());
+  return {};
+}
+
+void Daemon::MakeHub() {
+  Hub::Parts parts;
+  parts.limits = config_.limits;
+  parts.session = RandomNumber();
+  parts.rig = assets_.rig;
+  parts.character = render_ != nullptr ? &assets_.character->skeleton : nullptr;
+  parts.pictures = render_.get();
+  parts.metrics = metrics_;
+  parts.make_token = RandomNumber;
+  if (config_.osc_out) parts.on_weights = [this](const Subject& subject) { osc_.Send(subject); };
+  hub_ = std::make_unique<Hub>(std::move(parts));
+}
+
+Status Daemon::Listen() {
+  MakeHub();
+  const auto address = asio::ip::make_address(config_.bind);
+  tcp_ = std::make_unique<TcpServer>(io_, config_.limits, hub_.get(), metrics_);
+  if (Status status = tcp_->Open({address, config_.tcp}); !status.ok()) return status;
+  udp_ = std::make_unique<UdpServer>(io_, config_.limits, hub_.get(), metrics_);
+  if (Status status = udp_->Open({address, config_.udp}); !status.ok()) return status;
+  if (config_.osc_out) {
+    if (Status status = osc_.Open(*config_.osc_out, config_.osc_prefix); !status.ok())
+      return status;
+  }
+  return OpenMocap();
+}
+
+Status Daemon::OpenMocap() {
+  const auto address = asio::ip::make_address(config_.bind);
+  if (config_.vmc) {
+    vmc_ = std::make_unique<MocapInput>(io_, "--vmc", protocol::mocap::MakeVmcAdapter(), hub_.get(),
+                                        metrics_);
+    if (Status status = vmc_->Open({address, *config_.vmc}); !status.ok()) return status;
+  }
+  if (config_.livelink_face) {
+    livelink_face_ = std::make_unique<MocapInput>(
+        io_, "--livelink-face", protocol::mocap::MakeLiveLinkFaceAdapter(), hub_.get(), metrics_);
+    return livelink_face_->Open({address, *config_.livelink_face});
+  }
+  return {};
+}
+
+void Daemon::Announce() const {
+  Ready ready{.tcp = tcp_->port(), .udp = udp_->port(), .render = render_ != nullptr};
+  if (vmc_) ready.vmc = vmc_->port();
+  if (livelink_face_) ready.livelink_face = livelink_face_->port();
+  std::string line = "furrowd ready tcp=" + config_.bind + ":" + std::to_string(ready.tcp) +
+                     " udp=" + config_.bind + ":" + std::to_string(ready.udp) +
+                     " render=" + (ready.render ? "on" : "off");
+  if (ready.vmc) line += " vmc=" + std::to_string(*ready.vmc);
+  if (ready.livelink_face) line += " livelink-face=" + std::to_string(*ready.livelink_face);
+  std::printf("%s\n", line.c_str());
+  std::fflush(stdout);
+  if (options_.on_ready) options_.on_ready(ready);
+}
+
+void Daemon::Serve() {
+  tcp_->Start();
+  udp_->Start();
+  if (vmc_) vmc_->Start();
+  if (livelink_face_) livelink_face_->Start();
+  asio::co_spawn(io_, TickLoop(), asio::detached);
+  asio::co_spawn(io_, SecondLoop(), asio::detached);
+  if (options_.handle_signals) {
+    signals_.add(SIGTERM);
+    signals_.add(SIGINT);
+    signals_.async_wait([this](const asio::error_code& error, int) {
+      if (!error) RequestDrain();
+    });
+  }
+  const std::stop_callback on_stop(options_.stop,
+                                   [this] { asio::post(io_, [this] { RequestDrain(); }); });
+  Announce();
+  io_.run();
+  render_.reset();  // before io_, to which it posts
+}
+
+asio::awaitable<void> Daemon::TickLoop() {
+  asio::steady_timer timer(io_);
+  auto due = std::chrono::steady_clock::now();
+  while (true) {
+    due += kTick;
+    timer.expires_at(due);
+    co_await timer.async_wait(kToken);
+    const Time now = ReadClock();
+    hub_->Tick(now);
+    if (vmc_) vmc_->Tick(now);
+    if (livelink_face_) livelink_face_->Tick(now);
+  }
+}
+
+asio::awaitable<void> Daemon::SecondLoop() {
+  asio::steady_timer timer(io_);
+  StatusLine status_line(metrics_);
+  while (true) {
+    timer.expires_after(kSecond);
+    co_await timer.async_wait(kToken);
+    const Time now = ReadClock();
+    udp_->Expire(now);
+    if (config_.verbose) {
+      spdlog::info("{}", status_line.Next(hub_->num_subjects(), hub_->num_subscriptions(), now));
+    }
+  }
+}
+
+void Daemon::RequestDrain() {
+  if (std::exchange(draining_, true)) return;
+  asio::co_spawn(io_, Drain(), asio::detached);
+}
+
+// Goodbye to everybody; what is queued may leave until the deadline; then the loop ends.
+asio::awaitable<void> Daemon::Drain() {
+  spdlog::info("draining");
+  const Time deadline = ReadClock() + FromSeconds(config_.limits.drain_seconds);
+  hub_->Drain();
+  udp_->Close();
+  if (vmc_) vmc_->Close();
+  if (livelink_face_) livelink_face_->Close();
+  tcp_->Drain();
+  asio::steady_timer timer(io_);
+  while (tcp_->num_sessions() > 0 && ReadClock() < deadline) {
+    timer.expires_after(kDrainPoll);
+    co_await timer.async_wait(kToken);
+  }
+  tcp_->CloseAll();
+  io_.stop();
+}
+
+ExitCode Fail(ExitCode code, const Status& status) {
+  spdlog::error("{}", status.ToString());
+  return code;
+}
+
+}  // namespace
+
+ExitCode Run(const Config& config, const RunOptions& options) {
+  if (Status status = ValidateConfig(config); !status.ok()) return Fail(ExitCode::kUsage, status);
+  Result<Assets> assets = LoadAssets(config);
+  if (!assets.ok()) return Fail(ExitCode::kBadInput, assets.status());
+  Daemon daemon(config, options, *std::move(assets));
+  if (Status status = daemon.StartRendering(); !status.ok()) {
+    return Fail(ExitCode::kFailed, status);
+  }
+  if (Status status = daemon.Listen(); !status.ok()) return Fail(ExitCode::kFailed, status);
+  daemon.Serve();
+  return ExitCode::kOk;
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "server/config.h"
+#include "server/daemon.h"
+#include "server/log.h"
+
+int main(int argc, char** argv) {
+  using furrow::server::ExitCode;
+  const std::vector<std::string> args(argv + 1, argv + argc);
+  const furrow::server::CommandLine line = furrow::server::ParseCommandLine(args);
+  if (!line.config) {
+    std::fputs(line.text.c_str(), line.exit_code == ExitCode::kOk ? stdout : stderr);
+    return static_cast<int>(line.exit_code);
+  }
+  furrow::server::SetUpLog(*line.config);
+  furrow::server::RunOptions options;
+  options.handle_signals = true;
+  return static_cast<int>(furrow::server::Run(*line.config, options));
+}

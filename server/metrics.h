@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace furrow::server {
+
+// Everything that is counted, above all everything that is dropped. Counts only grow; base units,
+// Prometheus' naming, never labelled by subject or peer.
+enum class Counter {
+  kDatagramsReceived,
+  kDatagramsSent,
+  kDatagramsMalformed,   // no verified message: wrong magic, truncated, hostile
+  kDatagramsUnsendable,  // the socket's buffer was full, or the address is gone
+  kDatagramsUnproven,    // not sent: the address is unproven and has had its share
+  kFragmentsMalformed,
+  kFragmentsRefused,  // over the limits of reassembly
+  kFragmentsExpired,  // messages whose rest never came
+  kConnectionsAccepted,
+  kConnectionsRefused,    // over the limit
+  kConnectionsMalformed,  // closed for a frame of impossible length
+  kConnectionsOverrun,    // closed because they do not read their replies
+  kConnectionsIdle,       // closed by the watchdog
+  kMessagesReceived,
+  kMessagesThrottled,  // over a peer's token bucket; not looked at
+  kMessagesMalformed,  // an envelope, but not what it says
+  kMessagesRefused,    // verified, but not to be obeyed; answered
+  kPosesReceived,
+  kPosesLate,
+  kPosesDuplicate,
+  kPosesInvalid,         // wrong counts, non-finite, not a unit quaternion
+  kPosesUnknownStream,   // no skeleton offered under this session and hash
+  kPosesRetiredSession,  // of a sender that has restarted or lost its subject
+  kSkeletonsOffered,
+  kSkeletonsRejected,
+  kSkeletonsRequested,  // 'needed' answers to poses without an offer
+  kSubjectsRestarted,   // a new session took over a subject
+  kSubjectsLost,        // a publisher vanished; its subject decays to neutral
+  kSubscriptionsAccepted,
+  kSubscriptionsRefused,
+  kWeightsSent,
+  kFramesSkippedRate,   // weights or pictures not due yet at the subscriber's rate
+  kWeightsDroppedSlow,  // replaced in a full outbox by a newer one
+  kPicturesRendered,
+  kPicturesEncoded,
+  kPicturesSent,
+  kPicturesDroppedSlow,  // replaced in an outbox by a newer one
+  kPicturesFailed,
+  kSnapshotsReplaced,  // a newer pose came before the renderer took the older one
+  kRendererRestarts,
+  kMocapPackets,
+  kMocapMalformed,
+  kMocapReordered,   // older than what was used already
+  kMocapIncomplete,  // frames used without their sender's mark of the end
+  kMocapStale,       // of a sender that says its tracking is off
+  kMocapFrames,
+  kOscPacketsSent,
+  kOscPacketsUnsendable,
+  kCount,
+};
+
+// "furrow_poses_late_total".
+[[nodiscard]] std::string_view CounterName(Counter counter);
+
+// The counters of one daemon. Any thread may add and read; reading sees each counter by itself.
+class Metrics {
+ public:
+  void Add(Counter counter, std::uint64_t count = 1) {
+    values_[static_cast<std::size_t>(counter)].fetch_add(count, std::memory_order_relaxed);
+  }
+  [[nodiscard]] std::uint64_t Get(Counter counter) const {
+    return values_[static_cast<std::size_t>(counter)].load(std::memory_order_relaxed);
+  }
+
+ private:
+  std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(Counter::kCount)> values_{};
+};
+
+}  // namespace furrow::server

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/net/mocap_input.h"
+
+#include <utility>
+
+#include <asio/co_spawn.hpp>
+#include <asio/detached.hpp>
+#include <asio/experimental/as_tuple.hpp>
+#include <asio/use_awaitable.hpp>
+
+#include "server/net/clock.h"
+
+namespace furrow::server {
+
+using asio::ip::udp;
+
+MocapInput::MocapInput(asio::io_context& io, std::string flag,
+                       std::unique_ptr<protocol::mocap::MocapAdapter> adapter, Hub* hub,
+                       Metrics* metrics)
+    : io_(io),
+      socket_(io),
+      flag_(std::move(flag)),
+      adapter_(std::move(adapter)),
+      hub_(hub),
+      metrics_(metrics) {}
+
+Status MocapInput::Open(const udp::endpoint& endpoint) {
+  asio::error_code error;
+  socket_.open(endpoint.protocol(), error);
+  if (!error) socket_.bind(endpoint, error);
+  if (!error) return {};
+  return Status(StatusCode::kUnavailable,
+                "cannot listen on UDP " + endpoint.address().to_string() + " port " +
+                    std::to_string(endpoint.port()) + ": " + error.message(),
+                "", "end what uses the port, or choose another with " + flag_);
+}
+
+std::uint16_t MocapInput::port() const {
+  asio::error_code error;
+  return socket_.local_endpoint(error).port();
+}
+
+void MocapInput::Start() {
+  peer_ = hub_->AddPeer(Transport::kMocap, flag_.substr(2), &link_, ReadClock());
+  asio::co_spawn(io_, Read(), asio::detached);
+}
+
+void MocapInput::Close() {
+  asio::error_code error;
+  socket_.close(error);
+}
+
+asio::awaitable<void> MocapInput::Read() {
+  udp::endpoint sender;
+  while (socket_.is_open()) {
+    const auto [error, size] = co_await socket_.async_receive_from(
+        asio::buffer(buffer_), sender, asio::experimental::as_tuple(asio::use_awaitable));
+    if (error == asio::error::operation_aborted || !socket_.is_open()) co_return;
+    if (error) continue;  // of the datagram, not of the socket
+    metrics_->Add(Counter::kMocapPackets);
+    const Time now = ReadClock();
+    adapter_->Push({buffer_.data(), size}, ToMicroseconds(now),
+                   [&](const auto& frame) { hub_->OnMocapFrame(peer_, frame, now); });
+    Count();
+  }
+}
+
+void MocapInput::Tick(Time now) {
+  adapter_->Tick(ToMicroseconds(now),
+                 [&](const auto& frame) { hub_->OnMocapFrame(peer_, frame, now); });
+  Count();
+}
+
+void MocapInput::Count() {
+  const protocol::mocap::AdapterCounters& counters = adapter_->counters();
+  metrics_->Add(Counter::kMocapFrames, counters.accepted - counted_.accepted);
+  metrics_->Add(Counter::kMocapMalformed, counters.malformed - counted_.malformed);
+  metrics_->Add(Counter::kMocapReordered, counters.reordered - counted_.reordered);
+  metrics_->Add(Counter::kMocapIncomplete, counters.incomplete - counted_.incomplete);
+  metrics_->Add(Counter::kMocapStale, counters.stale - counted_.stale);
+  counted_ = counters;
+}
+
+}  // namespace furrow::server

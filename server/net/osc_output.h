@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <unordered_map>
+
+#include <asio/io_context.hpp>
+#include <asio/ip/udp.hpp>
+
+#include "protocol/mocap/osc_out.h"
+#include "server/config.h"
+#include "server/metrics.h"
+#include "server/session/subject_registry.h"
+#include "wrinkle/status.h"
+
+namespace furrow::server {
+
+// Sends every subject's weights as OSC to one address (--osc-out), each pose as it comes.
+class OscOutput {
+ public:
+  OscOutput(asio::io_context& io, Metrics* metrics) : socket_(io), metrics_(metrics) {}
+
+  // Errors: kUnavailable.
+  [[nodiscard]] Status Open(const HostPort& destination, const std::string& prefix);
+  void Send(const Subject& subject);
+
+ private:
+  struct Writer {
+    protocol::mocap::OscWeightWriter osc;
+    const wrinkle::RigBinding* named_for = nullptr;  // whose names the writer has
+  };
+  Writer& WriterOf(const Subject& subject);
+
+  asio::ip::udp::socket socket_;
+  asio::ip::udp::endpoint destination_;
+  std::string prefix_;
+  Metrics* const metrics_;
+  std::unordered_map<SubjectId, Writer> writers_;
+};
+
+}  // namespace furrow::server

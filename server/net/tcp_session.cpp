@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/net/tcp_session.h"
+
+#include <array>
+#include <chrono>
+#include <string>
+#include <utility>
+
+#include <asio/buffer.hpp>
+#include <asio/co_spawn.hpp>
+#include <asio/detached.hpp>
+#include <asio/experimental/as_tuple.hpp>
+#include <asio/post.hpp>
+#include <asio/use_awaitable.hpp>
+#include <asio/write.hpp>
+
+#include "protocol/limits.h"
+#include "protocol/tcp_framing.h"
+#include "server/net/clock.h"
+
+namespace furrow::server {
+namespace {
+
+constexpr auto kToken = asio::experimental::as_tuple(asio::use_awaitable);
+constexpr std::size_t kReadBytes = 64 * 1024;
+constexpr std::size_t kMaxReplies = 1024;
+constexpr auto kWatchInterval = std::chrono::milliseconds(500);
+
+std::string NameOf(const asio::ip::tcp::socket& socket) {
+  asio::error_code error;
+  const auto endpoint = socket.remote_endpoint(error);
+  if (error) return "tcp, already gone";
+  return "tcp " + endpoint.address().to_string() + " port " + std::to_string(endpoint.port());
+}
+
+}  // namespace
+
+TcpSession::TcpSession(asio::ip::tcp::socket socket, const Limits& limits, Hub* hub,
+                       Metrics* metrics,
+                       std::function<void(const std::shared_ptr<TcpSession>&)> on_closed)
+    : socket_(std::move(socket)),
+      limits_(limits),
+      hub_(hub),
+      metrics_(metrics),
+      on_closed_(std::move(on_closed)),
+      wake_(socket_.get_executor()),
+      watch_(socket_.get_executor()),
+      outbox_(kMaxReplies, static_cast<std::size_t>(limits.outbox_messages)),
+      frames_(protocol::kMaxRequestBytes),
+      in_(kReadBytes) {}
+
+void TcpSession::Start() {
+  asio::error_code error;
+  socket_.set_option(asio::ip::tcp::no_delay(true), error);
+  peer_ = hub_->AddPeer(Transport::kTcp, NameOf(socket_), this, ReadClock());
+  const auto self = shared_from_this();
+  const auto executor = socket_.get_executor();
+  asio::co_spawn(
+      executor, [self] { return self->Read(); }, asio::detached);
+  asio::co_spawn(
+      executor, [self] { return self->Write(); }, asio::detached);
+  asio::co_spawn(
+      executor, [self] { return self->Watch(); }, asio::detached);
+}
+
+asio::awaitable<void> TcpSession::Read() {
+  while (state_ != State::kClosed) {
+    const auto [error, size] = co_await socket_.async_read_some(asio::buffer(in_), kToken);
+    if (error) break;
+    if (state_ != State::kOpen) continue;  // ignored: only the end is waited for
+    if (!OnBytes({in_.data(), size}, ReadClock())) {
+      metrics_->Add(Counter::kConnectionsMalformed);
+      CloseAfterFlush(/*linger=*/true);
+    }
+  }
+  Close();
+}
+
+bool TcpSession::OnBytes(std::span<const std::uint8_t> bytes, Time now) {
+  std::span<const std::uint8_t> frame;
+  while (!bytes.empty() && state_ == State::kOpen) {
+    switch (frames_.Push(bytes, frame)) {
+      case protocol::FrameStatus::kNeedMore: break;
+      case protocol::FrameStatus::kFrame: hub_->OnMessage(peer_, frame, now); break;
+      case protocol::FrameStatus::kBadLength: hub_->OnBadFrame(peer_); return false;
+    }
+  }
+  return true;
+}
+
+asio::awaitable<void> TcpSession::Write() {
+  while (state_ == State::kOpen || state_ == State::kFlushing) {
+    if (outbox_.Pop(&out_)) {
+      writing_ = true;
+      write_started_ = ReadClock();
+      const auto prefix = protocol::FramePrefix(out_.size());
+      const std::array<asio::const_buffer, 2> parts = {asio::buffer(prefix), asio::buffer(out_)};
+      const auto [error, size] = co_await asio::async_write(socket_, parts, kToken);
+      writing_ = false;
+      if (error) Close();
+    } else if (state_ == State::kFlushing) {
+      if (!linger_) {
+        Close();
+        co_return;
+      }
+      state_ = State::kLingering;
+      asio::error_code error;
+      socket_.shutdown(asio::ip::tcp::socket::shutdown_send, error);
+    } else {
+      wake_.expires_at(asio::steady_timer::time_point::max());
+      co_await wake_.async_wait(kToken);
+    }
+  }
+}
+
+asio::awaitable<void> TcpSession::Watch() {
+  while (state_ != State::kClosed) {
+    watch_.expires_after(kWatchInterval);
+    co_await watch_.async_wait(kToken);
+    if (state_ != State::kClosed && IsOverdue(ReadClock())) {
+      metrics_->Add(Counter::kConnectionsIdle);
+      Close();
+    }
+  }
+}
+
+// A peer that neither sends nor watches, one that does not read, one that does not hang up.
+bool TcpSession::IsOverdue(Time now) {
+  if (writing_ && now - write_started_ > FromSeconds(limits_.idle_seconds)) return true;
+  if (state_ == State::kOpen) return hub_->IsIdle(peer_, now);
+  return now - closing_since_ > FromSeconds(limits_.drain_seconds);
+}
+
+void TcpSession::CloseAfterFlush(bool linger) {
+  if (state_ != State::kOpen) return;
+  state_ = State::kFlushing;
+  linger_ = linger;
+  closing_since_ = ReadClock();
+  hub_->RemovePeer(peer_);
+  wake_.cancel();
+}
+
+void TcpSession::Close() {
+  if (state_ == State::kClosed) return;
+  state_ = State::kClosed;
+  hub_->RemovePeer(peer_);
+  asio::error_code error;
+  socket_.close(error);
+  wake_.cancel();
+  watch_.cancel();
+  on_closed_(shared_from_this());
+}
+
+void TcpSession::SendReply(std::span<const std::uint8_t> message) {
+  if (state_ != State::kOpen) return;
+  if (outbox_.PushReply(message)) {
+    if (!writing_) wake_.cancel();
+    return;
+  }
+  metrics_->Add(Counter::kConnectionsOverrun);
+  // Not here: the hub is at work with this very peer.
+  asio::post(socket_.get_executor(), [self = shared_from_this()] { self->Close(); });
+}
+
+int TcpSession::SendFrame(std::uint64_t key, std::span<const std::uint8_t> message) {
+  if (state_ != State::kOpen) return 0;
+  const int dropped = outbox_.PushFrame(key, message);
+  if (!writing_) wake_.cancel();
+  return dropped;
+}
+
+void TcpSession::DropFrames(std::uint64_t key) { outbox_.DropFrame(key); }
+
+}  // namespace furrow::server

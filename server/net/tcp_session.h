@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <asio/awaitable.hpp>
+#include <asio/ip/tcp.hpp>
+#include <asio/steady_timer.hpp>
+
+#include "server/config.h"
+#include "server/metrics.h"
+#include "server/session/hub.h"
+#include "server/session/outbox.h"
+
+namespace furrow::server {
+
+// One TCP connection: three coroutines, each with one concern (reader, writer, watchdog), and a
+// bounded outbox between the hub and the writer.
+class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> {
+ public:
+  // `on_closed` is called once, when the connection has ended.
+  TcpSession(asio::ip::tcp::socket socket, const Limits& limits, Hub* hub, Metrics* metrics,
+             std::function<void(const std::shared_ptr<TcpSession>&)> on_closed);
+
+  void Start();
+  // Sends what waits, then closes. `linger`: reads on (and ignores) until the peer has closed, so
+  // that the last answer is not lost to a reset.
+  void CloseAfterFlush(bool linger);
+  // Ends at once.
+  void Close();
+
+  void SendReply(std::span<const std::uint8_t> message) override;
+  int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message) override;
+  void DropFrames(std::uint64_t key) override;
+
+ private:
+  enum class State { kOpen, kFlushing, kLingering, kClosed };
+
+  asio::awaitable<void> Read();
+  asio::awaitable<void> Write();
+  asio::awaitable<void> Watch();
+  bool OnBytes(std::span<const std::uint8_t> bytes, Time now);
+  bool IsOverdue(Time now);
+
+  asio::ip::tcp::socket socket_;
+  const Limits limits_;
+  Hub* const hub_;
+  Metrics* const metrics_;
+  std::function<void(const std::shared_ptr<TcpSession>&)> on_closed_;
+  asio::steady_timer wake_;  // the writer's: cancelled when there is something to do
+  asio::steady_timer watch_;
+  Outbox outbox_;
+  protocol::FrameReader frames_;
+  std::vector<std::uint8_t> in_;
+  std::vector<std::uint8_t> out_;
+  PeerId peer_ = 0;
+  State state_ = State::kOpen;
+  bool linger_ = false;
+  bool writing_ = false;
+  Time write_started_{0};
+  Time closing_since_{0};
+};
+
+}  // namespace furrow::server

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <asio/ip/udp.hpp>
+#include <sys/socket.h>
+
+#include "protocol/limits.h"
+
+namespace furrow::server {
+
+// A batch of datagrams by one recvmmsg: the hot path's only system call per up to kSize packets.
+class UdpBatch {
+ public:
+  static constexpr std::size_t kSize = 64;
+
+  UdpBatch();
+  UdpBatch(const UdpBatch&) = delete;
+  UdpBatch& operator=(const UdpBatch&) = delete;
+
+  // Fills the batch from a non-blocking socket; the number received, 0 when none waits.
+  std::size_t Receive(int socket);
+
+  // Of datagram `i` of the last Receive(). A datagram longer than the wire allows shows as
+  // kMaxDatagramBytes + 1 bytes.
+  [[nodiscard]] std::span<const std::uint8_t> bytes(std::size_t i) const;
+  [[nodiscard]] asio::ip::udp::endpoint sender(std::size_t i) const;
+
+ private:
+  static constexpr std::size_t kBufferBytes = protocol::kMaxDatagramBytes + 1;
+  std::vector<std::uint8_t> buffer_;
+  std::array<mmsghdr, kSize> headers_{};
+  std::array<iovec, kSize> slices_{};
+  std::array<sockaddr_storage, kSize> senders_{};
+};
+
+}  // namespace furrow::server

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/net/udp_server.h"
+
+#include <algorithm>
+#include <string>
+
+#include <asio/co_spawn.hpp>
+#include <asio/detached.hpp>
+#include <asio/experimental/as_tuple.hpp>
+#include <asio/post.hpp>
+#include <asio/use_awaitable.hpp>
+
+#include "protocol/envelope.h"
+#include "server/net/clock.h"
+
+namespace furrow::server {
+namespace {
+
+using asio::ip::udp;
+
+// A burst of a thousand subjects at once must fit while the thread is busy.
+constexpr int kReceiveBufferBytes = 4 * 1024 * 1024;
+// Batches taken before other work of the thread gets its turn.
+constexpr int kBatchesPerTurn = 8;
+constexpr int kEvictionCandidates = 16;
+
+}  // namespace
+
+// One UDP address. Sends at once, without blocking: a full socket buffer drops, as UDP may.
+class UdpServer::UdpPeer : public Link {
+ public:
+  UdpPeer(UdpServer* server, udp::endpoint endpoint) : server_(server), endpoint_(endpoint) {}
+
+  void SendReply(std::span<const std::uint8_t> message) override { Send(message); }
+  int SendFrame(std::uint64_t, std::span<const std::uint8_t> message) override {
+    Send(message);
+    return 0;
+  }
+  void DropFrames(std::uint64_t) override {}  // nothing ever waits
+
+  PeerId id = 0;
+
+ private:
+  void Send(std::span<const std::uint8_t> message) {
+    const std::size_t count = protocol::NumDatagrams(message.size());
+    const std::uint32_t message_id = count > 1 ? next_message_id_++ : 0;
+    std::array<std::uint8_t, protocol::kMaxDatagramBytes> datagram;
+    for (std::size_t index = 0; index < count; ++index) {
+      const std::size_t size = protocol::WriteDatagram(message, message_id, index, datagram);
+      asio::error_code error;
+      server_->socket_.send_to(asio::buffer(datagram.data(), size), endpoint_, 0, error);
+      server_->metrics_->Add(error ? Counter::kDatagramsUnsendable : Counter::kDatagramsSent);
+    }
+  }
+
+  UdpServer* server_;
+  udp::endpoint endpoint_;
+  std::uint32_t next_message_id_ = 0;
+};
+
+UdpServer::UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics)
+    : io_(io), socket_(io), limits_(limits), hub_(hub), metrics_(metrics) {}
+
+UdpServer::~UdpServer() = default;
+
+Status UdpServer::Open(const udp::endpoint& endpoint) {
+  asio::error_code error;
+  socket_.open(endpoint.protocol(), error);
+  if (!error) socket_.bind(endpoint, error);
+  if (!error) socket_.non_blocking(true, error);
+  if (error) {
+    return Status(StatusCode::kUnavailable,
+                  "cannot listen on UDP " + endpoint.address().to_string() + " port " +
+                      std::to_string(endpoint.port()) + ": " + error.message(),
+                  "", "end what uses the port, or choose another with --udp");
+  }
+  // As much as the system allows; less only means earlier drops.
+  socket_.set_option(asio::socket_base::receive_buffer_size(kReceiveBufferBytes), error);
+  return {};
+}
+
+std::uint16_t UdpServer::port() const {
+  asio::error_code error;
+  return socket_.local_endpoint(error).port();
+}
+
+void UdpServer::Start() { asio::co_spawn(io_, Read(), asio::detached); }
+
+void UdpServer::Close() {
+  asio::error_code error;
+  socket_.close(error);
+}
+
+asio::awaitable<void> UdpServer::Read() {
+  while (socket_.is_open()) {
+    const auto [error] = co_await socket_.async_wait(
+        udp::socket::wait_read, asio::experimental::as_tuple(asio::use_awaitable));
+    if (error) co_return;
+    for (int turn = 0; turn < kBatchesPerTurn; ++turn) {
+      const std::size_t count = batch_.Receive(socket_.native_handle());
+      const Time now = ReadClock();
+      metrics_->Add(Counter::kDatagramsReceived, count);
+      for (std::size_t i = 0; i < count; ++i) OnDatagram(batch_.bytes(i), batch_.sender(i), now);
+      if (count < UdpBatch::kSize) break;
+    }
+    // Let timers and TCP have their turn, however fast datagrams come.
+    co_await asio::post(io_, asio::use_awaitable);
+  }
+}
+
+void UdpServer::OnDatagram(std::span<const std::uint8_t> bytes, const udp::endpoint& sender,
+                           Time now) {
+  protocol::Envelope envelope;
+  if (bytes.size() > protocol::kMaxDatagramBytes ||
+      protocol::ReadEnvelope(bytes, envelope) != protocol::EnvelopeStatus::kOk) {
+    metrics_->Add(Counter::kDatagramsMalformed);
+    return;
+  }
+  UdpPeer* peer = FindOrAdd(sender, now);
+  hub_->OnBytesReceived(peer->id, bytes.size(), now);
+  std::span<const std::uint8_t> message;
+  switch (reassembler_.Push(peer->id, bytes, ToMicroseconds(now), message)) {
+    case protocol::FragmentStatus::kWhole:
+    case protocol::FragmentStatus::kComplete: hub_->OnMessage(peer->id, message, now); break;
+    case protocol::FragmentStatus::kPending:
+    case protocol::FragmentStatus::kDuplicate: break;
+    case protocol::FragmentStatus::kMalformed: metrics_->Add(Counter::kFragmentsMalformed); break;
+    case protocol::FragmentStatus::kOverLimit: metrics_->Add(Counter::kFragmentsRefused); break;
+  }
+}
+
+UdpServer::UdpPeer* UdpServer::FindOrAdd(const udp::endpoint& sender, Time now) {
+  Address address{};
+  const auto ip = sender.address().is_v4()
+                      ? asio::ip::make_address_v6(asio::ip::v4_mapped, sender.address().to_v4())
+                      : sender.address().to_v6();
+  std::ranges::copy(ip.to_bytes(), address.begin());
+  address[16] = static_cast<std::uint8_t>(sender.port() >> 8);
+  address[17] = static_cast<std::uint8_t>(sender.port() & 0xFF);
+  auto found = peers_.find(address);
+  if (found != peers_.end()) return found->second.get();
+  if (peers_.size() >= static_cast<std::size_t>(limits_.max_udp_peers)) {
+    // The least worth of a few: a flood of forged addresses must not cost a walk over all peers
+    // each.
+    auto victim = peers_.begin();
+    int looks = kEvictionCandidates;
+    for (auto it = peers_.begin(); it != peers_.end() && looks-- > 0; ++it) {
+      if (hub_->IsLessWorthKeeping(it->second->id, victim->second->id)) victim = it;
+    }
+    hub_->RemovePeer(victim->second->id);
+    reassembler_.ForgetPeer(victim->second->id);
+    peers_.erase(victim);
+  }
+  auto peer = std::make_unique<UdpPeer>(this, sender);
+  const std::string name =
+      "udp " + sender.address().to_string() + " port " + std::to_string(sender.port());
+  peer->id = hub_->AddPeer(Transport::kUdp, name, peer.get(), now);
+  return peers_.emplace(address, std::move(peer)).first->second.get();
+}
+
+void UdpServer::Expire(Time now) {
+  metrics_->Add(Counter::kFragmentsExpired, reassembler_.Expire(ToMicroseconds(now)));
+  std::erase_if(peers_, [&](const auto& entry) {
+    const PeerId id = entry.second->id;
+    if (!hub_->IsIdle(id, now)) return false;
+    hub_->RemovePeer(id);
+    reassembler_.ForgetPeer(id);
+    return true;
+  });
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "render/renderer.h"
+#include "server/pipeline/snapshot.h"
+
+namespace furrow::server {
+
+// What a picture shows, apart from the pose: equal ones of one subject are drawn once.
+struct PictureSpec {
+  render::View view = render::View::kFinal;
+  render::Camera camera;
+  int width = 640;
+  int height = 640;
+
+  [[nodiscard]] bool operator==(const PictureSpec& other) const;
+};
+
+// How a drawn picture is packed: equal ones are encoded once.
+struct Encoding {
+  render::ImageFormat format = render::ImageFormat::kJpeg;
+  int quality = 85;  // JPEG: [1, 100]
+
+  [[nodiscard]] bool operator==(const Encoding&) const = default;
+};
+
+// Who gets a picture, and packed how.
+struct PictureTicket {
+  std::uint64_t subscription = 0;  // Subscription::uid
+  Encoding encoding;
+};
+
+// A picture to be drawn of one subject, for everybody who waits for this very one.
+struct RenderJob {
+  std::uint64_t subject = 0;
+  PictureSpec spec;
+  std::shared_ptr<const Snapshot> snapshot;
+  std::vector<PictureTicket> tickets;
+};
+
+// The way from the network threads to the render thread: at most one job a (subject, spec) waits,
+// the newest snapshot wins, and no put ever blocks on drawing. Bounded by `capacity` keys.
+class RenderMailbox {
+ public:
+  explicit RenderMailbox(std::size_t capacity) : capacity_(capacity) {}
+
+  enum class PutResult { kQueued, kReplaced, kFull };
+  // kReplaced: an older snapshot of the same subject and spec was dropped; its tickets join the new
+  // job's, one a subscription.
+  PutResult Put(RenderJob job);
+
+  // The longest waiting job. With `wait`, blocks until there is one or Close() was called.
+  [[nodiscard]] std::optional<RenderJob> Take(bool wait);
+
+  // Take() no longer blocks, and what waits is dropped.
+  void Close();
+  [[nodiscard]] bool closed() const;
+
+ private:
+  const std::size_t capacity_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<RenderJob> jobs_;
+  bool closed_ = false;
+};
+
+}  // namespace furrow::server

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/pipeline/render_thread.h"
+
+#include <algorithm>
+
+#include <spdlog/spdlog.h>
+
+#include "wrinkle/pose.h"
+
+namespace furrow::server {
+namespace {
+
+constexpr std::size_t kMaxWaitingJobs = 256;
+constexpr int kMaxReadBacks = 2;  // render::Renderer's own limit
+constexpr std::string_view kPresets[] = {"face", "three_quarter", "profile",
+                                         "eyes", "mouth",         "body"};
+
+}  // namespace
+
+Result<std::unique_ptr<RenderThread>> RenderThread::Start(
+    std::shared_ptr<const character::Character> character, render::RendererOptions options,
+    Metrics* metrics, Deliver deliver) {
+  std::unique_ptr<RenderThread> self(
+      new RenderThread(std::move(character), std::move(options), metrics, std::move(deliver)));
+  std::promise<Status> started;
+  std::future<Status> status = started.get_future();
+  self->thread_ = std::thread(&RenderThread::Run, self.get(), std::move(started));
+  if (Status failed = status.get(); !failed.ok()) return failed;
+  return self;
+}
+
+RenderThread::RenderThread(std::shared_ptr<const character::Character> character,
+                           render::RendererOptions options, Metrics* metrics, Deliver deliver)
+    : character_(std::move(character)),
+      options_(std::move(options)),
+      metrics_(metrics),
+      deliver_(std::move(deliver)),
+      mailbox_(kMaxWaitingJobs) {}
+
+RenderThread::~RenderThread() {
+  mailbox_.Close();
+  if (thread_.joinable()) thread_.join();
+}
+
+void RenderThread::Submit(RenderJob job) {
+  switch (mailbox_.Put(std::move(job))) {
+    case RenderMailbox::PutResult::kQueued: break;
+    case RenderMailbox::PutResult::kReplaced: metrics_->Add(Counter::kSnapshotsReplaced); break;
+    case RenderMailbox::PutResult::kFull: metrics_->Add(Counter::kPicturesFailed); break;
+  }
+}
+
+Result<render::Camera> RenderThread::Preset(std::string_view name) const {
+  std::string names;
+  for (const auto& [known, camera] : presets_) {
+    if (known == name) return camera;
+    names += (names.empty() ? "" : ", ") + known;
+  }
+  return Status(StatusCode::kNotFound, "no camera '" + std::string(name) + "'", "",
+                "one of: " + names);
+}
+
+Status RenderThread::CreateRenderer() {
+  auto renderer = render::Renderer::Create(*character_, options_);
+  if (!renderer.ok()) return renderer.status();
+  renderer_ = *std::move(renderer);
+  return {};
+}
+
+void RenderThread::Run(std::promise<Status> started) {
+  const Status status = CreateRenderer();
+  if (status.ok()) {
+    description_ = renderer_->description();
+    for (const std::string_view name : kPresets) {
+      if (auto camera = renderer_->Preset(name); camera.ok()) presets_.emplace_back(name, *camera);
+    }
+    pose_.resize(character_->skeleton.num_joints());
+    model_.resize(character_->skeleton.num_joints());
+  }
+  started.set_value(status);
+  if (!status.ok()) return;
+  while (!mailbox_.closed()) {
+    while (static_cast<int>(in_flight_.size()) < kMaxReadBacks) {
+      std::optional<RenderJob> job = mailbox_.Take(/*wait=*/in_flight_.empty());
+      if (!job) break;
+      Draw(*std::move(job));
+    }
+    if (!in_flight_.empty()) Collect(/*wait=*/true);
+  }
+  renderer_.reset();  // on the thread that owns the context
+}
+
+void RenderThread::Draw(RenderJob job) {
+  if (renderer_ == nullptr && !CreateRenderer().ok()) {
+    metrics_->Add(Counter::kPicturesFailed);
+    return;
+  }
+  const Snapshot& snapshot = *job.snapshot;
+  const wrinkle::LocalToModelJob to_model{&character_->skeleton, pose_, model_};
+  if (snapshot.retarget->Run(snapshot.joints, pose_) != wrinkle::JobStatus::kOk ||
+      to_model.Run() != wrinkle::JobStatus::kOk) {
+    metrics_->Add(Counter::kPicturesFailed);
+    return;
+  }
+  render::FrameRequest request;
+  request.model = model_;
+  request.binding = snapshot.binding.get();
+  request.wrinkle_weights = snapshot.wrinkle_weights;
+  request.filtered_values = snapshot.filtered_values;
+  request.settings.view = job.spec.view;
+  request.camera = job.spec.camera;
+  request.width = job.spec.width;
+  request.height = job.spec.height;
+  if (Status status = renderer_->Submit(request); !status.ok()) {
+    metrics_->Add(Counter::kPicturesFailed);
+    // What the job itself gets wrong (a size, a camera) says nothing about the context.
+    if (status.code() != StatusCode::kInvalidArgument) Rebuild(status);
+    return;
+  }
+  in_flight_.push_back(std::move(job));
+}
+
+void RenderThread::Collect(bool wait) {
+  Result<render::Image> image = renderer_->Poll(wait);
+  if (!image.ok()) {
+    Rebuild(image.status());
+    return;
+  }
+  if (image->width == 0) return;
+  metrics_->Add(Counter::kPicturesRendered);
+  const RenderJob job = std::move(in_flight_.front());
+  in_flight_.pop_front();
+  Finish(*image, job);
+}
+
+void RenderThread::Finish(const render::Image& image, const RenderJob& job) {
+  std::vector<Encoding> done;
+  for (const PictureTicket& first : job.tickets) {
+    if (std::find(done.begin(), done.end(), first.encoding) != done.end()) continue;
+    done.push_back(first.encoding);
+    auto bytes = render::EncodeImage(image, first.encoding.format, first.encoding.quality);
+    if (!bytes.ok()) {
+      metrics_->Add(Counter::kPicturesFailed);
+      spdlog::warn("a picture could not be encoded: {}", bytes.status().ToString());
+      continue;
+    }
+    metrics_->Add(Counter::kPicturesEncoded);
+    FinishedPicture picture{.sequence = job.snapshot->sequence,
+                            .capture_time_us = job.snapshot->capture_time_us,
+                            .age_us = job.snapshot->age_us,
+                            .width = image.width,
+                            .height = image.height,
+                            .encoding = first.encoding,
+                            .bytes = *std::move(bytes),
+                            .tickets = {}};
+    for (const PictureTicket& ticket : job.tickets) {
+      if (ticket.encoding == first.encoding) picture.tickets.push_back(ticket);
+    }
+    deliver_(std::move(picture));
+  }
+}
+
+void RenderThread::Rebuild(const Status& reason) {
+  spdlog::error("the renderer failed and is rebuilt: {}", reason.ToString());
+  metrics_->Add(Counter::kRendererRestarts);
+  metrics_->Add(Counter::kPicturesFailed, in_flight_.size());
+  in_flight_.clear();
+  renderer_.reset();
+  if (Status status = CreateRenderer(); !status.ok()) {
+    spdlog::error("no renderer for now: {}", status.ToString());
+  }
+}
+
+}  // namespace furrow::server

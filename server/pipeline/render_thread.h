@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <future>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "character/character.h"
+#include "render/renderer.h"
+#include "server/metrics.h"
+#include "server/pipeline/picture_source.h"
+#include "server/pipeline/render_mailbox.h"
+#include "wrinkle/status.h"
+
+namespace furrow::server {
+
+// The thread that owns the EGL context: takes jobs from the mailbox, draws with two read-backs in
+// flight, encodes once an encoding, hands pictures to `deliver`.
+//
+// It sleeps while nobody watches. A context that is lost is rebuilt; while that fails, jobs are
+// dropped and counted.
+class RenderThread : public PictureSource {
+ public:
+  // Called on the render thread; must not block.
+  using Deliver = std::function<void(FinishedPicture)>;
+
+  // Returns when the context stands. Errors: those of render::Renderer::Create.
+  [[nodiscard]] static Result<std::unique_ptr<RenderThread>> Start(
+      std::shared_ptr<const character::Character> character, render::RendererOptions options,
+      Metrics* metrics, Deliver deliver);
+  ~RenderThread() override;  // closes the mailbox and joins
+  RenderThread(const RenderThread&) = delete;
+  RenderThread& operator=(const RenderThread&) = delete;
+
+  void Submit(RenderJob job) override;
+  [[nodiscard]] Result<render::Camera> Preset(std::string_view name) const override;
+  [[nodiscard]] const std::string& description() const { return description_; }
+
+ private:
+  RenderThread(std::shared_ptr<const character::Character> character,
+               render::RendererOptions options, Metrics* metrics, Deliver deliver);
+
+  Status CreateRenderer();
+  void Run(std::promise<Status> started);
+  void Draw(RenderJob job);
+  void Collect(bool wait);
+  void Finish(const render::Image& image, const RenderJob& job);
+  void Rebuild(const Status& reason);
+
+  const std::shared_ptr<const character::Character> character_;
+  const render::RendererOptions options_;
+  Metrics* const metrics_;
+  const Deliver deliver_;
+  RenderMailbox mailbox_;
+  std::vector<std::pair<std::string, render::Camera>> presets_;  // written before Start() returns
+  std::string description_;
+
+  // The render thread's own.
+  std::unique_ptr<render::Renderer> renderer_;
+  std::deque<RenderJob> in_flight_;  // as the renderer's read-backs, oldest first
+  std::vector<wrinkle::Transform> pose_;
+  std::vector<glm::mat4> model_;
+
+  std::thread thread_;
+};
+
+}  // namespace furrow::server

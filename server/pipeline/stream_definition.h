@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "wrinkle/retarget.h"
+#include "wrinkle/rig.h"
+#include "wrinkle/skeleton.h"
+#include "wrinkle/solver.h"
+#include "wrinkle/status.h"
+
+namespace furrow::server {
+
+// What a sender says of its stream before the first pose.
+struct StreamOffer {
+  std::vector<wrinkle::JointDesc> joints;  // in wire order; none: blend shapes alone
+  std::vector<std::string> blend_shapes;
+};
+
+// A stream's skeleton bound to the daemon's rig, made once and shared by all its subjects.
+struct StreamDefinition {
+  wrinkle::Skeleton skeleton;
+  std::vector<std::string> blend_shapes;
+  std::vector<std::int16_t> joint_of_wire;  // wire index -> index in `skeleton`
+  std::shared_ptr<const wrinkle::RigBinding> binding;
+  std::shared_ptr<const wrinkle::Retarget> retarget;  // null where nothing is drawn
+};
+
+// Makes stream definitions and keeps the newest `capacity` of them by skeleton and names: a sender
+// that restarts, or a second one like it, costs nothing.
+class StreamDefinitions {
+ public:
+  // `character` (may be null: nothing is drawn) outlives this.
+  StreamDefinitions(std::shared_ptr<const wrinkle::Rig> rig, const wrinkle::Skeleton* character,
+                    std::size_t capacity)
+      : rig_(std::move(rig)), character_(character), capacity_(capacity) {}
+
+  // Errors: those of Skeleton::Create and RigBinding::Create; kNotFound where the stream has no
+  // joint and no blend shape that the rig asks for. Joints the rig misses are logged once a stream.
+  [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Get(StreamOffer offer);
+
+  [[nodiscard]] const wrinkle::Rig& rig() const { return *rig_; }
+
+ private:
+  [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Make(
+      wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes);
+
+  std::shared_ptr<const wrinkle::Rig> rig_;
+  const wrinkle::Skeleton* character_;
+  std::size_t capacity_;
+  std::list<std::shared_ptr<const StreamDefinition>> known_;  // most recently used first
+};
+
+}  // namespace furrow::server

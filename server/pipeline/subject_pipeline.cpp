@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/pipeline/subject_pipeline.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace furrow::server {
+
+SubjectPipeline::SubjectPipeline(std::shared_ptr<const StreamDefinition> stream)
+    : stream_(std::move(stream)), solver_(stream_->binding) {
+  pose_.SetRest(stream_->skeleton);
+  pose_.blend_shapes.assign(stream_->blend_shapes.size(), 0.0f);
+}
+
+wrinkle::JobStatus SubjectPipeline::Solve(std::uint32_t sequence, std::int64_t capture_time_us) {
+  double dt = 0.0;
+  if (has_pose_ && capture_time_us >= capture_time_us_) {
+    dt = static_cast<double>(capture_time_us - capture_time_us_) * 1e-6;
+  } else if (has_pose_) {
+    solver_.Reset();
+  }
+  const wrinkle::JobStatus status = solver_.Update(pose_, dt);
+  if (status != wrinkle::JobStatus::kOk) return status;
+  sequence_ = sequence;
+  capture_time_us_ = capture_time_us;
+  has_pose_ = true;
+  return status;
+}
+
+wrinkle::JobStatus SubjectPipeline::Decay(double dt) { return solver_.Decay(dt); }
+
+bool SubjectPipeline::neutral() const {
+  // Below half a u8 step there is nothing left to see or to send.
+  constexpr float kNothing = 0.5f / 255.0f;
+  return std::ranges::all_of(solver_.wrinkle_weights(),
+                             [](float weight) { return weight < kNothing; });
+}
+
+std::shared_ptr<const Snapshot> SubjectPipeline::TakeSnapshot(std::int64_t age_us) const {
+  const auto weights = solver_.wrinkle_weights();
+  const auto filtered = solver_.filtered_values();
+  auto snapshot = std::make_shared<Snapshot>();
+  snapshot->sequence = sequence_;
+  snapshot->capture_time_us = capture_time_us_;
+  snapshot->age_us = age_us;
+  snapshot->binding = stream_->binding;
+  snapshot->retarget = stream_->retarget;
+  snapshot->joints = pose_.joints;
+  snapshot->wrinkle_weights.assign(weights.begin(), weights.end());
+  snapshot->filtered_values.assign(filtered.begin(), filtered.end());
+  return snapshot;
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/pipeline/wire_adapter.h"
+
+#include <algorithm>
+#include <span>
+
+namespace furrow::server {
+namespace {
+
+glm::vec3 ToVec(const protocol::Vec3& v) { return {v.x, v.y, v.z}; }
+
+// The wire allows 1e-2 off unit length; the algorithm wants better.
+glm::quat ToUnitQuat(const protocol::Quat& q) {
+  return glm::normalize(glm::quat(q.w, q.x, q.y, q.z));
+}
+
+bool IndicesFit(std::span<const std::uint16_t> indices, std::size_t count) {
+  return std::ranges::all_of(indices, [count](std::uint16_t index) { return index < count; });
+}
+
+// An empty list of indices beside values means all of them, in order.
+std::size_t IndexAt(std::span<const std::uint16_t> indices, std::size_t i) {
+  return indices.empty() ? i : indices[i];
+}
+
+}  // namespace
+
+StreamOffer ToStreamOffer(const protocol::SkeletonOffer& offer) {
+  StreamOffer result;
+  result.joints.reserve(offer.joints.size());
+  for (const protocol::OfferedJoint& joint : offer.joints) {
+    wrinkle::JointDesc desc;
+    desc.name = joint.name;
+    desc.parent = joint.parent < 0 ? wrinkle::kNoJoint : joint.parent;
+    desc.rest.translation = ToVec(joint.rest_translation);
+    desc.rest.rotation = ToUnitQuat(joint.rest_rotation);
+    desc.rest.scale = ToVec(joint.rest_scale);
+    if (joint.has_tail) desc.tail = ToVec(joint.tail);
+    result.joints.push_back(std::move(desc));
+  }
+  result.blend_shapes = offer.blend_shape_names;
+  return result;
+}
+
+bool PoseFits(const protocol::PoseFrame& frame, const StreamDefinition& stream) {
+  const std::size_t joints = stream.joint_of_wire.size();
+  const std::size_t shapes = stream.blend_shapes.size();
+  return frame.num_joints == joints && frame.num_blend_shapes == shapes &&
+         IndicesFit(frame.rotation_joints, joints) &&
+         IndicesFit(frame.translation_joints, joints) && IndicesFit(frame.scale_joints, joints) &&
+         IndicesFit(frame.blend_shape_indices, shapes) && frame.rotations.size() <= joints &&
+         frame.translations.size() <= joints && frame.scales.size() <= joints &&
+         frame.blend_shapes.size() <= shapes;
+}
+
+void ApplyPose(const protocol::PoseFrame& frame, const StreamDefinition& stream,
+               wrinkle::LocalPose* pose) {
+  const std::span<const wrinkle::Transform> rest = stream.skeleton.rest_pose();
+  if (!frame.partial) {
+    std::ranges::copy(rest, pose->joints.begin());
+    std::ranges::fill(pose->blend_shapes, 0.0f);
+  }
+  for (std::size_t i = 0; i < frame.rotations.size(); ++i) {
+    const auto joint =
+        static_cast<std::size_t>(stream.joint_of_wire[IndexAt(frame.rotation_joints, i)]);
+    pose->joints[joint].rotation = ToUnitQuat(frame.rotations[i]);
+  }
+  for (std::size_t i = 0; i < frame.translations.size(); ++i) {
+    const auto joint =
+        static_cast<std::size_t>(stream.joint_of_wire[IndexAt(frame.translation_joints, i)]);
+    pose->joints[joint].translation = rest[joint].translation + ToVec(frame.translations[i]);
+  }
+  for (std::size_t i = 0; i < frame.scales.size(); ++i) {
+    const auto joint =
+        static_cast<std::size_t>(stream.joint_of_wire[IndexAt(frame.scale_joints, i)]);
+    pose->joints[joint].scale = ToVec(frame.scales[i]);
+  }
+  for (std::size_t i = 0; i < frame.blend_shapes.size(); ++i) {
+    pose->blend_shapes[IndexAt(frame.blend_shape_indices, i)] = frame.blend_shapes[i];
+  }
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/hub.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <spdlog/spdlog.h>
+
+#include "protocol/limits.h"
+
+namespace furrow::server {
+namespace {
+
+using protocol::DecodeStatus;
+using protocol::ErrorCode;
+using protocol::MessageKind;
+
+constexpr Time kUdpLease = std::chrono::microseconds(protocol::kUdpLeaseMicroseconds);
+constexpr std::size_t kMaxMocapStreams = 64;
+constexpr char kServerName[] = "furrowd " FURROW_VERSION;
+
+std::int64_t ToMicroseconds(Time time) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
+}
+
+}  // namespace
+
+Hub::Hub(Parts parts)
+    : limits_(parts.limits),
+      metrics_(parts.metrics),
+      make_token_(std::move(parts.make_token)),
+      on_weights_(std::move(parts.on_weights)),
+      postman_(parts.session, parts.metrics),
+      definitions_(std::move(parts.rig), parts.character,
+                   static_cast<std::size_t>(parts.limits.max_skeletons)),
+      publishers_(limits_, &definitions_, &subjects_, &postman_, metrics_),
+      subscribers_(limits_, &subjects_, parts.pictures, &postman_, metrics_) {}
+
+PeerId Hub::AddPeer(Transport transport, std::string name, Link* link, Time now) {
+  const TokenBucket bucket(limits_.packets_per_second, limits_.packet_burst);
+  return peers_.Add(transport, std::move(name), link, bucket, now).id;
+}
+
+void Hub::RemovePeer(PeerId id) {
+  Peer* peer = peers_.Find(id);
+  if (peer == nullptr) return;
+  subscribers_.RemovePeer(*peer);
+  subjects_.ForgetPeer(id);
+  peers_.Remove(id);
+}
+
+void Hub::OnBytesReceived(PeerId id, std::size_t bytes, Time now) {
+  if (Peer* peer = peers_.Find(id); peer != nullptr) {
+    peer->credit.Received(bytes);
+    peer->last_heard = now;
+  }
+}
+
+void Hub::OnMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now) {
+  Peer* peer = peers_.Find(id);
+  if (peer == nullptr) return;
+  metrics_->Add(Counter::kMessagesReceived);
+  if (!peer->bucket.Take(now)) {
+    metrics_->Add(Counter::kMessagesThrottled);
+    return;
+  }
+  peer->last_heard = now;
+  protocol::MessageView view;
+  const DecodeStatus status = protocol::OpenMessage(bytes, view);
+  if (status == DecodeStatus::kOk) {
+    Dispatch(*peer, view, now);
+  } else {
+    RefuseEnvelope(*peer, view, status);
+  }
+}
+
+void Hub::OnBadFrame(PeerId id) {
+  if (Peer* peer = peers_.Find(id); peer != nullptr) {
+    postman_.Error(*peer, {}, ErrorCode::kMalformed,
+                   "a frame is 32 to " + std::to_string(protocol::kMaxRequestBytes) +
+                       " bytes long, after its length as u32, little-endian");
+  }
+}
+
+void Hub::RefuseEnvelope(Peer& peer, const protocol::MessageView& view, DecodeStatus status) {
+  metrics_->Add(Counter::kMessagesMalformed);
+  if (peer.transport != Transport::kTcp) return;
+  ErrorCode code = ErrorCode::kMalformed;
+  if (status == DecodeStatus::kBadVersion) code = ErrorCode::kUnsupportedVersion;
+  if (status == DecodeStatus::kUnknownKind) code = ErrorCode::kUnsupported;
+  postman_.Error(peer, view.header, code,
+                 "not a message of this wire: " + std::string(DecodeStatusName(status)));
+}
+
+template <class Message, class Handler>
+void Hub::Decoded(Peer& peer, const protocol::MessageView& view, Message& message,
+                  Handler handler) {
+  const DecodeStatus status = protocol::Decode(view, message);
+  if (status == DecodeStatus::kOk) {
+    handler();
+    return;
+  }
+  metrics_->Add(view.kind == MessageKind::kPose ? Counter::kPosesInvalid
+                                                : Counter::kMessagesMalformed);
+  if (peer.transport == Transport::kTcp) {
+    postman_.Error(peer, view.header, ErrorCode::kMalformed,
+                   std::string(MessageKindName(view.kind)) +
+                       " cannot be read: " + std::string(DecodeStatusName(status)));
+  }
+}
+
+void Hub::Dispatch(Peer& peer, const protocol::MessageView& view, Time now) {
+  const protocol::Header& header = view.header;
+  Scratch& in = scratch_;
+  switch (view.kind) {
+    case MessageKind::kPose:
+      return Decoded(peer, view, in.pose,
+                     [&] { Published(publishers_.OnPose(peer, header, in.pose, now), now); });
+    case MessageKind::kSkeletonOffer:
+      return Decoded(peer, view, in.offer, [&] {
+        Subject* subject = publishers_.OnOffer(peer, header, in.offer, now);
+        if (subject != nullptr) subscribers_.OnSubjectReady(*subject);
+      });
+    case MessageKind::kHello:
+      return Decoded(peer, view, in.hello, [&] { OnHello(peer, header, in.hello); });
+    case MessageKind::kPing:
+      return Decoded(peer, view, in.ping, [&] {
+        postman_.Reply(peer, Postman::Answering(header),
+                       protocol::Pong{in.ping.time_us, ToMicroseconds(now)});
+      });
+    case MessageKind::kPong:
+      return Decoded(peer, view, in.pong, [] {});  // heard: that is all it is for
+    case MessageKind::kGoodbye:
+      return Decoded(peer, view, in.goodbye, [&] { OnGoodbye(peer, header, now); });
+    case MessageKind::kSubscribeWeights:
+      return Decoded(peer, view, in.subscribe_weights, [&] {
+        if (RefusedWhileDraining(peer, header)) return;
+        subscribers_.Subscribe(peer, header, in.subscribe_weights);
+      });
+    case MessageKind::kSubscribePictures:
+      return Decoded(peer, view, in.subscribe_pictures, [&] {
+        if (RefusedWhileDraining(peer, header)) return;
+        subscribers_.Subscribe(peer, header, in.subscribe_pictures);
+      });
+    case MessageKind::kUnsubscribe:
+      return Decoded(peer, view, in.unsubscribe,
+                     [&] { subscribers_.Unsubscribe(peer, header.stream); });
+    default:
+      postman_.Error(peer, header, ErrorCode::kUnsupported,
+                     std::string(MessageKindName(view.kind)) + " is what a daemon sends");
+  }
+}
+
+void Hub::OnHello(Peer& peer, const protocol::Header& header, const protocol::Hello& hello) {
+  protocol::Welcome welcome{kServerName, 0};
+  if (peer.transport == Transport::kUdp && !peer.credit.proven()) {
+    if (hello.token != 0 && hello.token == peer.token) {
+      peer.credit.Prove();
+    } else {
+      if (peer.token == 0) peer.token = make_token_();
+      welcome.token = peer.token;
+    }
+  }
+  postman_.Reply(peer, Postman::Answering(header), welcome);
+}
+
+// A stream that ends here, or a subscription: streams are looked for first.
+void Hub::OnGoodbye(Peer& peer, const protocol::Header& header, Time now) {
+  if (!publishers_.OnGoodbye(peer, header, now)) subscribers_.Unsubscribe(peer, header.stream);
+}
+
+bool Hub::RefusedWhileDraining(Peer& peer, const protocol::Header& header) {
+  if (draining_) postman_.Error(peer, header, ErrorCode::kDraining, "the daemon is shutting down");
+  return draining_;
+}
+
+void Hub::Published(Subject* subject, Time now) {
+  if (subject == nullptr) return;
+  subscribers_.Publish(*subject, 0, now);
+  if (on_weights_) on_weights_(*subject);
+}
+
+void Hub::OnMocapFrame(PeerId id, const protocol::mocap::NeutralFrame& frame, Time now) {
+  Peer* peer = peers_.Find(id);
+  // Lost by its own tracker: as if nothing had come, so that it holds and decays.
+  if (peer == nullptr || !frame.tracked) return;
+  auto entry = mocap_streams_.find({id, frame.subject});
+  const bool is_new = entry == mocap_streams_.end();
+  if (is_new) {
+    if (mocap_streams_.size() >= kMaxMocapStreams) return;
+    entry = mocap_streams_.try_emplace({id, frame.subject}).first;
+    entry->second.stream = next_mocap_stream_++;
+  }
+  MocapStream& stream = entry->second;
+  const protocol::Header header{.session = id,
+                                .stream = stream.stream,
+                                .sequence = frame.sequence,
+                                .capture_time_us = frame.capture_time_us};
+  if (is_new || stream.layout != frame.layout) {
+    stream.refused = !OfferMocap(*peer, header, stream, frame, now);
+  }
+  if (stream.refused) return;
+  protocol::mocap::MakePose(frame, stream.offer, scratch_.pose);
+  Published(publishers_.OnPose(*peer, header, scratch_.pose, now), now);
+}
+
+bool Hub::OfferMocap(Peer& peer, const protocol::Header& header, MocapStream& stream,
+                     const protocol::mocap::NeutralFrame& frame, Time now) {
+  stream.layout = frame.layout;
+  stream.offer = protocol::mocap::MakeOffer(frame);
+  Subject* subject = publishers_.OnOffer(peer, header, stream.offer, now);
+  if (subject != nullptr) subscribers_.OnSubjectReady(*subject);
+  return subject != nullptr;
+}
+
+void Hub::Tick(Time now) {
+  std::vector<Subject*> gone;
+  for (const auto& subject : subjects_.all()) {
+    switch (publishers_.Age(*subject, now)) {
+      case Publishers::Change::kNone: break;
+      case Publishers::Change::kDecayed:
+        subscribers_.Publish(*subject, ToMicroseconds(now - subject->last_pose), now);
+        if (on_weights_) on_weights_(*subject);
+        break;
+      case Publishers::Change::kGone: gone.push_back(subject.get()); break;
+    }
+  }
+  for (Subject* subject : gone) {
+    spdlog::info("subject '{}' is gone", subject->name);
+    subscribers_.OnSubjectGone(*subject);
+    std::erase_if(mocap_streams_,
+                  [subject](const auto& entry) { return entry.first.second == subject->name; });
+    subjects_.Remove(subject->id);
+  }
+  subscribers_.PublishOwed(now);
+  peers_.ForEach([&](Peer& peer) {
+    if (peer.transport != Transport::kUdp || now - peer.last_heard < kUdpLease) return;
+    if (peer.num_subscriptions > 0) {
+      subscribers_.RemovePeer(peer, protocol::GoodbyeReason::kTimedOut);
+    }
+    peer.credit = {};  // proven for as long as it is heard
+  });
+}
+
+void Hub::Drain() {
+  draining_ = true;
+  peers_.ForEach([&](Peer& peer) {
+    if (peer.transport == Transport::kMocap) return;
+    postman_.Reply(peer, {}, protocol::Goodbye{protocol::GoodbyeReason::kDraining});
+  });
+}
+
+bool Hub::IsIdle(PeerId id, Time now) {
+  const Peer* peer = peers_.Find(id);
+  return peer == nullptr || (peer->num_subscriptions == 0 &&
+                             now - peer->last_heard > FromSeconds(limits_.idle_seconds));
+}
+
+bool Hub::IsLessWorthKeeping(PeerId a, PeerId b) {
+  const auto worth = [this](PeerId id) {
+    const Peer* peer = peers_.Find(id);
+    return std::pair(peer->publishes || peer->num_subscriptions > 0, peer->last_heard);
+  };
+  return worth(a) < worth(b);
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "protocol/codec.h"
+#include "protocol/mocap/neutral_frame.h"
+#include "server/config.h"
+#include "server/metrics.h"
+#include "server/pipeline/picture_source.h"
+#include "server/pipeline/stream_definition.h"
+#include "server/session/peer_table.h"
+#include "server/session/postman.h"
+#include "server/session/publishers.h"
+#include "server/session/subject_registry.h"
+#include "server/session/subscribers.h"
+
+namespace furrow::server {
+
+// Everything one network thread knows: its peers, its subjects, its subscriptions. Messages go in,
+// links carry the answers away. No sockets, no clock: `now` comes with every call, so the whole of
+// a session's life is tested without waiting.
+//
+// One hub lives on one thread. Sharding by subject is a matter of several hubs, each with its own
+// io_context: a stream's offer names its subject, so the acceptor hands the stream to the hub that
+// hash(subject) picks, and subscriptions are posted to the hub of the subject they name. Nothing in
+// here is shared but the StreamDefinition objects, which are immutable.
+class Hub {
+ public:
+  struct Parts {
+    Limits limits;
+    std::uint64_t session = 1;  // random, not 0
+    std::shared_ptr<const wrinkle::Rig> rig;
+    const wrinkle::Skeleton* character = nullptr;  // null: nothing is drawn
+    PictureSource* pictures = nullptr;             // null: nothing is drawn
+    Metrics* metrics = nullptr;
+    std::function<std::uint64_t()> make_token;  // unpredictable, not 0
+    // Told of every new or decayed set of weights; for OSC out. May be empty.
+    std::function<void(const Subject&)> on_weights;
+  };
+  explicit Hub(Parts parts);
+
+  // `link` outlives the peer. The name is for the log.
+  PeerId AddPeer(Transport transport, std::string name, Link* link, Time now);
+  void RemovePeer(PeerId id);
+
+  // A whole message (a TCP frame, a datagram, a reassembled one). Whatever is wrong with it is
+  // counted and, where the transport allows, answered.
+  void OnMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now);
+  // UDP: bytes that came from the peer, fragments too; what it may be sent unproven.
+  void OnBytesReceived(PeerId id, std::size_t bytes, Time now);
+  // TCP: bytes that are no frame; the connection ends after the answer.
+  void OnBadFrame(PeerId id);
+  // A frame of a foreign wire; `peer` was added as Transport::kMocap.
+  void OnMocapFrame(PeerId peer, const protocol::mocap::NeutralFrame& frame, Time now);
+  void OnPicture(const FinishedPicture& picture) { subscribers_.OnPicture(picture); }
+
+  // Loss, decay, leases, what rates held back. Call it about every 10 ms.
+  void Tick(Time now);
+  // SIGTERM: everybody is told goodbye, no more subscriptions are taken.
+  void Drain();
+
+  // A peer that may be forgotten: nothing subscribed, silent for Limits::idle_seconds.
+  [[nodiscard]] bool IsIdle(PeerId id, Time now);
+  // Of two peers, the one to forget where there are too many: the one that subscribes to nothing
+  // and publishes nothing, then the longest silent.
+  [[nodiscard]] bool IsLessWorthKeeping(PeerId a, PeerId b);
+  [[nodiscard]] std::size_t num_subjects() const { return subjects_.size(); }
+  [[nodiscard]] std::size_t num_subscriptions() const { return subscribers_.size(); }
+
+ private:
+  struct MocapStream {
+    std::uint16_t stream = 0;
+    bool refused = false;  // its layout cannot be bound; wait for another one
+    std::uint32_t layout = 0;
+    protocol::SkeletonOffer offer;
+  };
+
+  void Dispatch(Peer& peer, const protocol::MessageView& view, Time now);
+  template <class Message, class Handler>
+  void Decoded(Peer& peer, const protocol::MessageView& view, Message& message, Handler handler);
+  void RefuseEnvelope(Peer& peer, const protocol::MessageView& view, protocol::DecodeStatus status);
+  void OnHello(Peer& peer, const protocol::Header& header, const protocol::Hello& hello);
+  void OnGoodbye(Peer& peer, const protocol::Header& header, Time now);
+  bool OfferMocap(Peer& peer, const protocol::Header& header, MocapStream& stream,
+                  const protocol::mocap::NeutralFrame& frame, Time now);
+  void Published(Subject* subject, Time now);
+  bool RefusedWhileDraining(Peer& peer, const protocol::Header& header);
+
+  const Limits limits_;
+  Metrics* const metrics_;
+  const std::function<std::uint64_t()> make_token_;
+  const std::function<void(const Subject&)> on_weights_;
+  Postman postman_;
+  PeerTable peers_;
+  StreamDefinitions definitions_;
+  SubjectRegistry subjects_;
+  Publishers publishers_;
+  Subscribers subscribers_;
+  std::map<std::pair<PeerId, std::string>, MocapStream> mocap_streams_;
+  std::uint16_t next_mocap_stream_ = 0;
+  bool draining_ = false;
+
+  // Decoded into again and again, so that the packet path does not allocate.
+  struct Scratch {
+    protocol::Hello hello;
+    protocol::Ping ping;
+    protocol::Pong pong;
+    protocol::Goodbye goodbye;
+    protocol::SkeletonOffer offer;
+    protocol::PoseFrame pose;
+    protocol::SubscribeWeights subscribe_weights;
+    protocol::SubscribePictures subscribe_pictures;
+    protocol::Unsubscribe unsubscribe;
+  } scratch_;
+};
+
+}  // namespace furrow::server

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/outbox.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace furrow::server {
+
+bool Outbox::PushReply(std::span<const std::uint8_t> bytes) {
+  if (replies_.size() >= max_replies_) return false;
+  replies_.emplace_back(bytes.begin(), bytes.end());
+  return true;
+}
+
+int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes) {
+  const auto waiting = std::find_if(frames_.begin(), frames_.end(),
+                                    [key](const Frame& frame) { return frame.key == key; });
+  if (waiting != frames_.end()) {
+    waiting->bytes.assign(bytes.begin(), bytes.end());  // keeps its place in the line
+    return 1;
+  }
+  int dropped = 0;
+  if (frames_.size() >= max_frames_) {
+    frames_.pop_front();
+    dropped = 1;
+  }
+  frames_.push_back({key, {bytes.begin(), bytes.end()}});
+  return dropped;
+}
+
+bool Outbox::Pop(std::vector<std::uint8_t>* out) {
+  if (!replies_.empty()) {
+    out->swap(replies_.front());
+    replies_.pop_front();
+    return true;
+  }
+  if (frames_.empty()) return false;
+  out->swap(frames_.front().bytes);
+  frames_.pop_front();
+  return true;
+}
+
+void Outbox::DropFrame(std::uint64_t key) {
+  std::erase_if(frames_, [key](const Frame& frame) { return frame.key == key; });
+}
+
+}  // namespace furrow::server

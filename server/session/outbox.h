@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+namespace furrow::server {
+
+// What waits for one peer's socket. Bounded: a slow peer loses old frames and slows nobody.
+//
+// - A reply is never dropped; when `max_replies` wait, the peer does not read and is to be closed.
+// - A frame has a key (its subscription): a newer frame takes the place of the one of the same key
+//   that still waits, so at most one a key waits and the newest wins.
+// - Frames of different keys together are at most `max_frames`; then the longest waiting one goes.
+class Outbox {
+ public:
+  Outbox(std::size_t max_replies, std::size_t max_frames)
+      : max_replies_(max_replies), max_frames_(max_frames) {}
+
+  // False: full, close the peer.
+  [[nodiscard]] bool PushReply(std::span<const std::uint8_t> bytes);
+  // The number of frames that were dropped for it: 0 or 1.
+  int PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes);
+
+  // Swaps the next bytes into `out`: replies first, in order; then the longest waiting frame.
+  // False: nothing waits.
+  bool Pop(std::vector<std::uint8_t>* out);
+
+  // A subscription ended: a frame of it that still waits is of no use.
+  void DropFrame(std::uint64_t key);
+
+  [[nodiscard]] bool empty() const { return replies_.empty() && frames_.empty(); }
+  [[nodiscard]] std::size_t num_frames() const { return frames_.size(); }
+
+ private:
+  struct Frame {
+    std::uint64_t key = 0;
+    std::vector<std::uint8_t> bytes;
+  };
+  std::size_t max_replies_;
+  std::size_t max_frames_;
+  std::deque<std::vector<std::uint8_t>> replies_;
+  std::deque<Frame> frames_;
+};
+
+}  // namespace furrow::server

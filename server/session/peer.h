@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "protocol/messages.h"
+#include "server/session/send_credit.h"
+#include "server/session/time.h"
+#include "server/session/token_bucket.h"
+
+namespace furrow::server {
+
+using PeerId = std::uint64_t;  // never used twice in a run; 0 is nobody
+
+enum class Transport { kTcp, kUdp, kMocap };
+
+// How bytes get to a peer. The net side implements it; tests do with a few lines.
+class Link {
+ public:
+  virtual ~Link() = default;
+  // Answers: in order, never replaced by anything newer.
+  virtual void SendReply(std::span<const std::uint8_t> message) = 0;
+  // Weights and pictures: the newest of a key wins where the peer is slow. Returns how many older
+  // frames were dropped for it.
+  virtual int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message) = 0;
+  // The frames of a key are no longer wanted.
+  virtual void DropFrames(std::uint64_t key) = 0;
+};
+
+// Somebody at the other end of a connection or a UDP address.
+struct Peer {
+  PeerId id = 0;
+  Transport transport = Transport::kTcp;
+  std::string name;  // "udp 127.0.0.1:50112", for the log
+  Link* link = nullptr;
+  TokenBucket bucket{1.0, 1.0};
+  SendCredit credit;        // UDP: how much may be sent before the address is proven
+  std::uint64_t token = 0;  // UDP: what Hello must bring back
+  Time last_heard{0};
+  Time last_skeleton_request{-1'000'000'000};
+  int num_subscriptions = 0;
+  bool publishes = false;               // had an offer accepted
+  std::uint16_t last_subscription = 0;  // the id given out last
+};
+
+}  // namespace furrow::server

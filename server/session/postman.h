@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "protocol/codec.h"
+#include "protocol/messages.h"
+#include "server/metrics.h"
+#include "server/session/peer.h"
+
+namespace furrow::server {
+
+// Writes messages to peers: one encoder, one buffer, the daemon's session number. What an unproven
+// UDP address has no credit for is dropped and counted.
+class Postman {
+ public:
+  Postman(std::uint64_t session, Metrics* metrics) : session_(session), metrics_(metrics) {}
+
+  template <class Message>
+  void Reply(Peer& peer, protocol::Header header, const Message& message) {
+    if (!Encode(peer, header, message)) return;
+    peer.link->SendReply(buffer_);
+  }
+  // Counts what the frame pushes out as `dropped`.
+  template <class Message>
+  void Frame(Peer& peer, std::uint64_t key, protocol::Header header, const Message& message,
+             Counter sent, Counter dropped) {
+    if (!Encode(peer, header, message)) return;
+    metrics_->Add(sent);
+    metrics_->Add(dropped, static_cast<std::uint64_t>(peer.link->SendFrame(key, buffer_)));
+  }
+  // An error about the request that `request` heads.
+  void Error(Peer& peer, const protocol::Header& request, protocol::ErrorCode code,
+             std::string text) {
+    metrics_->Add(Counter::kMessagesRefused);
+    Reply(peer, Answering(request), protocol::ErrorMessage{code, Clip(std::move(text))});
+  }
+
+  // The header of an answer: the request's stream and sequence.
+  [[nodiscard]] static protocol::Header Answering(const protocol::Header& request) {
+    return {.session = 0, .stream = request.stream, .sequence = request.sequence};
+  }
+  // At most as long as the wire carries, cut between characters.
+  [[nodiscard]] static std::string Clip(std::string text) {
+    if (text.size() <= protocol::kMaxTextBytes) return text;
+    std::size_t size = protocol::kMaxTextBytes;
+    while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xC0) == 0x80) --size;
+    text.resize(size);
+    return text;
+  }
+
+ private:
+  template <class Message>
+  bool Encode(Peer& peer, protocol::Header& header, const Message& message) {
+    header.session = session_;
+    encoder_.Encode(header, message, buffer_);
+    if (peer.transport != Transport::kUdp || peer.credit.Spend(buffer_.size())) return true;
+    metrics_->Add(Counter::kDatagramsUnproven);
+    return false;
+  }
+
+  std::uint64_t session_;
+  Metrics* metrics_;
+  protocol::Encoder encoder_;
+  std::vector<std::uint8_t> buffer_;
+};
+
+}  // namespace furrow::server

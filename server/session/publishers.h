@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "protocol/codec.h"
+#include "protocol/messages.h"
+#include "server/config.h"
+#include "server/metrics.h"
+#include "server/pipeline/stream_definition.h"
+#include "server/session/peer.h"
+#include "server/session/postman.h"
+#include "server/session/subject_registry.h"
+
+namespace furrow::server {
+
+// The publishing half of a daemon: offers become subjects, poses become wrinkle weights, whoever
+// falls silent decays (STANDARD.md sections 6 and 7). Knows no subscriber: what is to be sent on is
+// returned to the caller.
+class Publishers {
+ public:
+  Publishers(const Limits& limits, StreamDefinitions* definitions, SubjectRegistry* subjects,
+             Postman* postman, Metrics* metrics);
+
+  // Answers the offer. The subject that it starts or changes; null where nothing changed.
+  Subject* OnOffer(Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer,
+                   Time now);
+  // The subject whose weights are new; null where the pose was dropped (and counted).
+  Subject* OnPose(Peer& peer, const protocol::Header& header, const protocol::PoseFrame& pose,
+                  Time now);
+  // True when the stream fed a subject, which now decays and then leaves.
+  bool OnGoodbye(const Peer& peer, const protocol::Header& header, Time now);
+
+  enum class Change { kNone, kDecayed, kGone };
+  // Holds and decays a subject that gets no poses. kDecayed: its weights changed. kGone: nothing is
+  // left of it; the caller tells its subscribers and removes it from the registry.
+  Change Age(Subject& subject, Time now);
+
+ private:
+  Subject* Accept(Peer& peer, const StreamKey& key, const protocol::SkeletonOffer& offer, Time now);
+  void Reject(Peer& peer, const protocol::Header& header, std::uint64_t hash, std::string why,
+              Time now);
+  void AnswerStray(Peer& peer, const protocol::Header& header, std::uint64_t hash, Time now);
+  bool IsNew(Subject& subject, const protocol::Header& header);
+
+  const Limits limits_;
+  StreamDefinitions* const definitions_;
+  SubjectRegistry* const subjects_;
+  Postman* const postman_;
+  Metrics* const metrics_;
+  TokenBucket log_bucket_{2.0, 20.0};  // whoever repeats a bad offer fills no disk
+};
+
+}  // namespace furrow::server

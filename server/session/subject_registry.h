@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "protocol/sequence.h"
+#include "server/pipeline/subject_pipeline.h"
+#include "server/session/peer.h"
+#include "server/session/time.h"
+
+namespace furrow::server {
+
+// Who publishes: a peer, the session it drew at its start, its number for the subject.
+struct StreamKey {
+  PeerId peer = 0;
+  std::uint64_t session = 0;
+  std::uint16_t stream = 0;
+  friend auto operator<=>(const StreamKey&, const StreamKey&) = default;
+};
+
+using SubjectId = std::uint64_t;  // never used twice in a run; 0 is nobody
+
+// Somebody captured: a name, the stream that feeds it now, and what its poses come to.
+struct Subject {
+  SubjectId id = 0;
+  std::string name;
+  StreamKey owner;
+  std::uint64_t skeleton_hash = 0;  // of the owner's offer
+  protocol::SequenceWindow window;
+  std::unique_ptr<SubjectPipeline> pipeline;
+  Time last_pose{0};    // arrival
+  Time last_update{0};  // arrival or decay
+  bool ended = false;   // its publisher said goodbye: decays, then leaves
+  bool lost = false;    // no pose for too long: holds, decays
+};
+
+// All subjects of a daemon by name and by the stream that feeds them. In order of arrival: the
+// first is "the subject that has been there longest".
+class SubjectRegistry {
+ public:
+  [[nodiscard]] Subject* Find(std::string_view name);
+  [[nodiscard]] Subject* Find(SubjectId id);
+  [[nodiscard]] Subject* Find(const StreamKey& key);
+  [[nodiscard]] Subject* First();
+
+  // Precondition: no subject of this name.
+  Subject& Add(std::string name, Time now);
+  // Makes `key` the stream that feeds `subject`; the one that did is retired.
+  void SetOwner(Subject& subject, const StreamKey& key);
+  // A stream that fed a subject before another took over: its stragglers are not answered.
+  [[nodiscard]] bool IsRetired(const StreamKey& key) const { return retired_.contains(key); }
+  // The subject is fed by nobody now.
+  void Release(Subject& subject);
+
+  void Remove(SubjectId id);
+  // Forgets whatever this peer's streams retired.
+  void ForgetPeer(PeerId peer);
+
+  [[nodiscard]] std::size_t size() const { return subjects_.size(); }
+  [[nodiscard]] const std::vector<std::unique_ptr<Subject>>& all() const { return subjects_; }
+  [[nodiscard]] std::string Names() const;  // "a, b, c", for messages
+
+ private:
+  std::vector<std::unique_ptr<Subject>> subjects_;
+  std::map<StreamKey, Subject*> by_stream_;
+  std::map<std::string, Subject*, std::less<>> by_name_;
+  std::map<StreamKey, SubjectId> retired_;
+  SubjectId next_id_ = 1;
+};
+
+}  // namespace furrow::server

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/subscribers.h"
+
+#include <algorithm>
+
+#include <spdlog/spdlog.h>
+
+#include "protocol/hash.h"
+
+namespace furrow::server {
+
+using protocol::ErrorCode;
+
+Subscribers::Subscribers(const Limits& limits, SubjectRegistry* subjects, PictureSource* pictures,
+                         Postman* postman, Metrics* metrics)
+    : limits_(limits),
+      subjects_(subjects),
+      pictures_(pictures),
+      postman_(postman),
+      metrics_(metrics) {}
+
+void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
+                            const protocol::SubscribeWeights& request) {
+  if (!MayAdd(peer, header)) return;
+  auto subscription = std::make_unique<Subscription>();
+  subscription->subject_name = request.subject;
+  subscription->wait = request.wait;
+  subscription->gate = RateGate(request.max_rate_hz);
+  subscription->wish = WeightsWish{.pattern = request.pattern,
+                                   .format = request.format,
+                                   .source = request.source,
+                                   .indices = {},
+                                   .names_hash = 0};
+  Add(peer, header, std::move(subscription));
+}
+
+void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
+                            const protocol::SubscribePictures& request) {
+  if (peer.transport != Transport::kTcp) {
+    metrics_->Add(Counter::kSubscriptionsRefused);
+    postman_->Error(peer, header, ErrorCode::kNeedsTcp, "pictures go over TCP alone");
+    return;
+  }
+  if (!MayAdd(peer, header)) return;
+  if (pictures_ == nullptr) {
+    metrics_->Add(Counter::kSubscriptionsRefused);
+    postman_->Error(peer, header, ErrorCode::kNotRendering,
+                    "this daemon draws no pictures: it has no character or no OpenGL");
+    return;
+  }
+  Result<PicturesWish> wish = MakeWish(request);
+  if (!wish.ok()) {
+    metrics_->Add(Counter::kSubscriptionsRefused);
+    postman_->Error(peer, header, ErrorCode::kBadPicture, wish.status().ToString());
+    return;
+  }
+  auto subscription = std::make_unique<Subscription>();
+  subscription->subject_name = request.subject;
+  subscription->wait = request.wait;
+  subscription->gate = RateGate(request.max_rate_hz);
+  subscription->wish = *std::move(wish);
+  Add(peer, header, std::move(subscription));
+}
+
+Result<PicturesWish> Subscribers::MakeWish(const protocol::SubscribePictures& request) const {
+  PicturesWish wish;
+  const Result<render::View> view = render::ParseView(request.view);
+  if (!view.ok()) return view.status();
+  wish.spec.view = *view;
+  wish.spec.width = request.width;
+  wish.spec.height = request.height;
+  if (request.has_camera) {
+    const protocol::Camera& camera = request.camera;
+    wish.spec.camera.position = {camera.eye.x, camera.eye.y, camera.eye.z};
+    wish.spec.camera.target = {camera.target.x, camera.target.y, camera.target.z};
+    wish.spec.camera.fov_y_degrees = camera.vertical_fov_degrees;
+  } else {
+    const auto preset =
+        pictures_->Preset(request.camera_preset.empty() ? "face" : request.camera_preset);
+    if (!preset.ok()) return preset.status();
+    wish.spec.camera = *preset;
+  }
+  const bool png = request.format == protocol::ImageFormat::kPng;
+  wish.encoding.format = png ? render::ImageFormat::kPng : render::ImageFormat::kJpeg;
+  wish.encoding.quality = png ? 0 : request.quality;
+  return wish;
+}
+
+// Proof of address, repetition, limits: what both kinds of request share. False: already answered.
+bool Subscribers::MayAdd(Peer& peer, const protocol::Header& header) {
+  if (peer.transport == Transport::kUdp && !peer.credit.proven()) {
+    metrics_->Add(Counter::kSubscriptionsRefused);
+    postman_->Error(peer, header, ErrorCode::kUnprovenAddress,
+                    "say Hello with the token of Welcome first");
+    return false;
+  }
+  if (const Subscription* known = FindRepeated(peer, header); known != nullptr) {
+    std::vector<std::string> names;
+    if (const auto* wish = std::get_if<WeightsWish>(&known->wish);
+        wish != nullptr && known->subject != nullptr) {
+      const auto all = wish->Names(*known->subject->pipeline->stream().binding);
+      for (const std::uint16_t index : wish->indices) names.push_back(all[index]);
+    }
+    Reply(*known, std::move(names));
+    return false;
+  }
+  if (peer.num_subscriptions >= limits_.max_subscriptions) {
+    metrics_->Add(Counter::kSubscriptionsRefused);
+    postman_->Error(peer, header, ErrorCode::kLimit,
+                    "at most " + std::to_string(limits_.max_subscriptions) + " subscriptions");
+    return false;
+  }
+  return true;
+}
+
+Subscription* Subscribers::FindRepeated(const Peer& peer, const protocol::Header& header) {
+  if (peer.num_subscriptions == 0) return nullptr;
+  for (auto& [uid, subscription] : subscriptions_) {
+    if (subscription->peer == &peer && subscription->session == header.session &&
+        subscription->request == header.sequence) {
+      return subscription.get();
+    }
+  }
+  return nullptr;
+}
+
+void Subscribers::Add(Peer& peer, const protocol::Header& header,
+                      std::unique_ptr<Subscription> subscription) {
+  const std::string& name = subscription->subject_name;
+  Subject* subject = name.empty() ? subjects_->First() : subjects_->Find(name);
+  if (subject == nullptr && !subscription->wait) {
+    metrics_->Add(Counter::kSubscriptionsRefused);
+    const std::string known = subjects_->Names();
+    postman_->Error(peer, header, ErrorCode::kUnknownSubject,
+                    (name.empty() ? "there is no subject" : "no subject '" + name + "'") +
+                        (known.empty() ? "; none is here" : "; here are: " + known));
+    return;
+  }
+  subscription->uid = next_uid_++;
+  subscription->peer = &peer;
+  subscription->id = NewId(peer);
+  subscription->session = header.session;
+  subscription->request = header.sequence;
+  Subscription& added = *subscription;
+  subscriptions_.emplace(added.uid, std::move(subscription));
+  ++peer.num_subscriptions;
+  if (subject == nullptr) {
+    Reply(added, {});
+  } else if (!Bind(added, *subject)) {
+    return;
+  }
+  metrics_->Add(Counter::kSubscriptionsAccepted);
+}
+
+std::uint16_t Subscribers::NewId(Peer& peer) {
+  const auto is_taken = [&](std::uint16_t id) {
+    return std::ranges::any_of(subscriptions_, [&](const auto& entry) {
+      return entry.second->peer == &peer && entry.second->id == id;
+    });
+  };
+  do {
+    ++peer.last_subscription;
+  } while (peer.last_subscription == 0 || is_taken(peer.last_subscription));
+  return peer.last_subscription;
+}
+
+void Subscribers::Reply(const Subscription& subscription, std::vector<std::string> names) {
+  protocol::SubscribeReply reply;
+  if (subscription.subject != nullptr) reply.subject = subscription.subject->name;
+  reply.names_hash = protocol::NamesHash(names);
+  reply.names = std::move(names);
+  postman_->Reply(*subscription.peer, {.stream = subscription.id, .sequence = subscription.request},
+                  reply);
+}
+
+bool Subscribers::Bind(Subscription& subscription, Subject& subject) {
+  std::vector<std::string> names;
+  if (auto* wish = std::get_if<WeightsWish>(&subscription.wish); wish != nullptr) {
+    names = wish->Bind(*subject.pipeline->stream().binding);
+    if (names.empty()) {
+      metrics_->Add(Counter::kSubscriptionsRefused);
+      postman_->Error(*subscription.peer,
+                      {.stream = subscription.id, .sequence = subscription.request},
+                      ErrorCode::kNoMatch, "'" + wish->pattern + "' names no weight of the rig");
+      Erase(subscription);
+      return false;
+    }
+  }
+  if (subscription.subject != &subject) {
+    subscription.subject = &subject;
+    by_subject_[subject.id].push_back(&subscription);
+  }
+  subscription.owed = subject.pipeline->has_pose();  // the newest pose there is, at the next tick
+  Reply(subscription, std::move(names));
+  return true;
+}
+
+void Subscribers::Erase(Subscription& subscription) {
+  if (subscription.subject != nullptr) {
+    std::erase(by_subject_[subscription.subject->id], &subscription);
+  }
+  subscription.peer->link->DropFrames(subscription.uid);
+  --subscription.peer->num_subscriptions;
+  subscriptions_.erase(subscription.uid);
+}
+
+bool Subscribers::Unsubscribe(Peer& peer, std::uint16_t id) {
+  for (auto& [uid, subscription] : subscriptions_) {
+    if (subscription->peer != &peer || subscription->id != id) continue;
+    Erase(*subscription);
+    return true;
+  }
+  return false;
+}
+
+void Subscribers::RemovePeer(Peer& peer) {
+  std::vector<Subscription*> ending;
+  for (auto& [uid, subscription] : subscriptions_) {
+    if (subscription->peer == &peer) ending.push_back(subscription.get());
+  }
+  for (Subscription* subscription : ending) Erase(*subscription);
+}
+
+void Subscribers::RemovePeer(Peer& peer, protocol::GoodbyeReason goodbye) {
+  for (auto& [uid, subscription] : subscriptions_) {
+    if (subscription->peer != &peer) continue;
+    postman_->Reply(peer, {.stream = subscription->id, .sequence = subscription->request},
+                    protocol::Goodbye{goodbye});
+  }
+  RemovePeer(peer);
+}
+
+void Subscribers::OnSubjectReady(Subject& subject) {
+  std::vector<Subscription*> to_bind;
+  for (auto& [uid, subscription] : subscriptions_) {
+    const bool waits =
+        subscription->subject == nullptr &&
+        (subscription->subject_name.empty() || subscription->subject_name == subject.name);
+    if (waits) to_bind.push_back(subscription.get());
+  }
+  for (Subscription* subscription : by_subject_[subject.id]) {
+    auto* wish = std::get_if<WeightsWish>(&subscription->wish);
+    if (wish == nullptr) continue;
+    const std::uint64_t before = wish->names_hash;
+    wish->Bind(*subject.pipeline->stream().binding);
+    if (wish->names_hash != before) to_bind.push_back(subscription);
+  }
+  for (Subscription* subscription : to_bind) Bind(*subscription, subject);
+}
+
+void Subscribers::OnSubjectGone(Subject& subject) {
+  const std::vector<Subscription*> watching = std::move(by_subject_[subject.id]);
+  by_subject_.erase(subject.id);
+  for (Subscription* subscription : watching) {
+    postman_->Reply(*subscription->peer,
+                    {.stream = subscription->id, .sequence = subscription->request},
+                    protocol::Goodbye{protocol::GoodbyeReason::kSubjectGone});
+    subscription->subject = nullptr;
+    subscription->owed = false;
+    if (!subscription->wait) Erase(*subscription);
+  }
+}
+
+}  // namespace furrow::server

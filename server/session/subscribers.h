@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "protocol/messages.h"
+#include "server/config.h"
+#include "server/metrics.h"
+#include "server/pipeline/picture_source.h"
+#include "server/session/peer.h"
+#include "server/session/postman.h"
+#include "server/session/subject_registry.h"
+#include "server/session/subscription.h"
+
+namespace furrow::server {
+
+// The subscribing half of a daemon: who wants what of whom, and what is due to whom now
+// (STANDARD.md sections 8 and 9).
+class Subscribers {
+ public:
+  // `pictures` may be null: nothing is drawn here.
+  Subscribers(const Limits& limits, SubjectRegistry* subjects, PictureSource* pictures,
+              Postman* postman, Metrics* metrics);
+
+  // Both answer with SubscribeReply or an error.
+  void Subscribe(Peer& peer, const protocol::Header& header,
+                 const protocol::SubscribeWeights& request);
+  void Subscribe(Peer& peer, const protocol::Header& header,
+                 const protocol::SubscribePictures& request);
+  // False: the peer has no such subscription.
+  bool Unsubscribe(Peer& peer, std::uint16_t id);
+
+  // All of a peer's subscriptions end; with `goodbye` it is told why.
+  void RemovePeer(Peer& peer);
+  void RemovePeer(Peer& peer, protocol::GoodbyeReason goodbye);
+
+  // A subject has come, or its names may have changed: who waits for it is bound and told.
+  void OnSubjectReady(Subject& subject);
+  // A subject is about to be removed.
+  void OnSubjectGone(Subject& subject);
+
+  // Sends the subject's weights, and asks for its pictures, wherever they are due.
+  void Publish(Subject& subject, std::int64_t age_us, Time now);
+  // Sends what a rate held back, so that a pose after which none comes is still seen.
+  void PublishOwed(Time now);
+  // Hands a finished picture to those it was drawn for, as far as they are still there.
+  void OnPicture(const FinishedPicture& picture);
+
+  [[nodiscard]] std::size_t size() const { return subscriptions_.size(); }
+
+ private:
+  using Jobs = std::vector<RenderJob>;  // one a spec
+
+  bool MayAdd(Peer& peer, const protocol::Header& header);
+  Subscription* FindRepeated(const Peer& peer, const protocol::Header& header);
+  void Add(Peer& peer, const protocol::Header& header, std::unique_ptr<Subscription> subscription);
+  void Reply(const Subscription& subscription, std::vector<std::string> names);
+  bool Bind(Subscription& subscription, Subject& subject);  // false: no name matches
+  void Erase(Subscription& subscription);
+  std::uint16_t NewId(Peer& peer);
+
+  void Deliver(Subscription& subscription, std::int64_t age_us, Jobs* jobs);
+  void SendWeights(Subscription& subscription, const WeightsWish& wish, std::int64_t age_us);
+  void AddToJobs(const Subscription& subscription, const PicturesWish& wish, std::int64_t age_us,
+                 Jobs* jobs);
+  void SubmitJobs(Jobs* jobs);
+  Result<PicturesWish> MakeWish(const protocol::SubscribePictures& request) const;
+
+  const Limits limits_;
+  SubjectRegistry* const subjects_;
+  PictureSource* const pictures_;
+  Postman* const postman_;
+  Metrics* const metrics_;
+  std::unordered_map<std::uint64_t, std::unique_ptr<Subscription>> subscriptions_;  // by uid
+  std::unordered_map<SubjectId, std::vector<Subscription*>> by_subject_;
+  std::uint64_t next_uid_ = 1;
+  protocol::WeightFrame frame_;  // reused
+  protocol::ImageFrame image_;
+  Jobs jobs_;
+};
+
+}  // namespace furrow::server

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "protocol/messages.h"
+#include "server/pipeline/render_mailbox.h"
+#include "server/session/peer.h"
+#include "server/session/rate_gate.h"
+#include "server/session/subject_registry.h"
+
+namespace furrow::server {
+
+// Weights by pattern: which of the binding's values, in their order.
+struct WeightsWish {
+  std::string pattern;
+  protocol::WeightFormat format = protocol::WeightFormat::kF32;
+  protocol::WeightSource source = protocol::WeightSource::kWrinkleWeights;
+  std::vector<std::uint16_t> indices;  // of the bound subject's names that match
+  std::uint64_t names_hash = 0;
+
+  // All names this wish picks from.
+  [[nodiscard]] std::span<const std::string> Names(const wrinkle::RigBinding& binding) const;
+  // Picks the names that match; returns them.
+  std::vector<std::string> Bind(const wrinkle::RigBinding& binding);
+};
+
+struct PicturesWish {
+  PictureSpec spec;
+  Encoding encoding;
+};
+
+// What one peer asked for, and when it is next due.
+struct Subscription {
+  std::uint64_t uid = 0;      // never used twice in a run
+  Peer* peer = nullptr;       // outlives the subscription
+  std::uint16_t id = 0;       // the peer's name for it; never 0
+  std::uint64_t session = 0;  // with `request`: tells a repeated request from a new one
+  std::uint32_t request = 0;
+  std::string subject_name;  // as asked; empty: whoever has been there longest
+  bool wait = false;
+  Subject* subject = nullptr;  // null: waiting
+  RateGate gate;
+  bool owed = false;  // the newest pose was left out for its rate, and nothing newer has come
+  std::variant<WeightsWish, PicturesWish> wish;
+};
+
+}  // namespace furrow::server
