@@ -94,7 +94,7 @@ struct MessageView {
 struct PoseEncoding {
   bool quantise_rotations = false;     // 6 bytes a joint, off by at most 1.5e-4 rad (quantise.h)
   bool quantise_translations = false;  // 6 bytes, off by at most largest offset / 65534 an axis
-  bool quantise_blend_shapes = false;  // 2 bytes, clamped to [-2, 2], off by at most 1/32767
+  bool quantise_blend_shapes = false;  // 2 bytes, clamped to (-2, 2), off by at most 1/32768
   [[nodiscard]] static PoseEncoding Small() { return {true, true, true}; }
 };
 

@@ -98,7 +98,7 @@ DecodeStatus ReadBlendShapes(const wire::Pose& root, PoseFrame& pose) {
     if (root.packed_blend_shapes() != nullptr) {
       const std::int16_t packed = root.packed_blend_shapes()->Get(at);
       if (!IsOffset(packed)) return DecodeStatus::kBadValue;
-      pose.blend_shapes[i] = UnpackOffset(packed, kBlendShapeRange);
+      pose.blend_shapes[i] = UnpackBlendShape(packed);
     } else {
       pose.blend_shapes[i] = root.blend_shapes()->Get(at);
       FURROW_CHECK_DECODE(internal::CheckNumber(pose.blend_shapes[i]));
@@ -119,10 +119,14 @@ template <class Wire, class Value, class Convert>
 Offset<Vector<const Wire*>> WriteStructs(Builder& builder, const std::vector<Value>& values,
                                          const Convert& convert) {
   if (values.empty()) return 0;
-  Wire* out = nullptr;
-  const auto offset = builder.CreateUninitializedVectorOfStructs<Wire>(values.size(), &out);
-  for (std::size_t i = 0; i < values.size(); ++i) out[i] = convert(values[i]);
-  return offset;
+  // Not CreateUninitializedVectorOfStructs(): in FlatBuffers 2.0.8 it aligns to the size of the
+  // struct.
+  return builder.CreateVectorOfStructs<Wire>(
+      values.size(),
+      [&convert](std::size_t i, Wire* out, const std::vector<Value>* from) {
+        *out = convert((*from)[i]);
+      },
+      &values);
 }
 
 wire::Vec3 ToWire(const Vec3& v) { return {v.x, v.y, v.z}; }
@@ -139,7 +143,7 @@ Offset<Vector<std::int16_t>> WritePackedShapes(Builder& builder, const std::vect
   if (values.empty()) return 0;
   std::int16_t* out = nullptr;
   const auto offset = builder.CreateUninitializedVector<std::int16_t>(values.size(), &out);
-  for (std::size_t i = 0; i < values.size(); ++i) out[i] = PackOffset(values[i], kBlendShapeRange);
+  for (std::size_t i = 0; i < values.size(); ++i) out[i] = PackBlendShape(values[i]);
   return Offset<Vector<std::int16_t>>(offset);
 }
 

@@ -10,6 +10,7 @@ namespace {
 constexpr float kSqrt2 = 1.41421356f;
 constexpr int kQuatSteps = 32766;  // even, so that 0 has a code of its own
 constexpr int kOffsetSteps = 32767;
+constexpr float kBlendShapeSteps = 16384.0f;
 
 std::uint64_t PackComponent(float value) {
   const float scaled = std::round((value * kSqrt2 + 1.0f) * 0.5f * kQuatSteps);
@@ -73,6 +74,16 @@ std::int16_t PackOffset(float value, float range) {
 
 float UnpackOffset(std::int16_t packed, float range) {
   return range * (static_cast<float>(packed) / kOffsetSteps);
+}
+
+std::int16_t PackBlendShape(float value) {
+  constexpr float kLimit = 32767.0f;
+  return static_cast<std::int16_t>(
+      std::clamp(std::round(value * kBlendShapeSteps), -kLimit, kLimit));
+}
+
+float UnpackBlendShape(std::int16_t packed) {
+  return static_cast<float>(packed) / kBlendShapeSteps;
 }
 
 std::uint8_t PackWeight(float value) {

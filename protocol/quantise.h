@@ -29,8 +29,10 @@ using PackedQuat = std::array<std::uint16_t, 3>;  // low word first
 [[nodiscard]] std::int16_t PackOffset(float value, float range);
 [[nodiscard]] float UnpackOffset(std::int16_t packed, float range);
 
-// Blend shapes in [-2, 2] in 16 bits: an offset of range 2. Off by at most 1 / 32767.
-inline constexpr float kBlendShapeRange = 2.0f;
+// Blend shapes in (-2, 2) in 16 bits: value = i / 16384, so that 0 and 1 are exact; clamped. Off by
+// at most 1 / 32768.
+[[nodiscard]] std::int16_t PackBlendShape(float value);
+[[nodiscard]] float UnpackBlendShape(std::int16_t packed);
 
 // Weights in [0, 1] in 8 bits: value = i / 255; clamped.
 [[nodiscard]] std::uint8_t PackWeight(float value);

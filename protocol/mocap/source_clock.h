@@ -15,26 +15,37 @@ class SourceClock {
   // Further behind, the clock has restarted: time goes on by what passed on the receiver's clock.
   [[nodiscard]] Order Advance(std::int64_t source_us, std::int64_t now_us,
                               std::int64_t tolerance_us) {
-    if (started_ && source_us <= newest_us_ && newest_us_ - source_us <= tolerance_us) {
+    const bool follows = started_ && has_source_;
+    if (follows && source_us <= newest_us_ && newest_us_ - source_us <= tolerance_us) {
       return Order::kNotNewer;
     }
-    if (!started_) {
-      time_us_ = source_us;
-    } else if (source_us > newest_us_) {
+    if (follows && source_us > newest_us_) {
       time_us_ += source_us - newest_us_;
+      arrived_us_ = now_us;
+    } else if (!started_) {
+      AdvanceByArrival(now_us);
+      time_us_ = source_us;
     } else {
-      time_us_ += std::max<std::int64_t>(now_us - arrived_us_, 1);
+      AdvanceByArrival(now_us);
     }
-    started_ = true;
+    has_source_ = true;
     newest_us_ = source_us;
-    arrived_us_ = now_us;
     return Order::kNewer;
+  }
+
+  // A frame without a time of the sender's: time goes on by what passed on the receiver's clock.
+  void AdvanceByArrival(std::int64_t now_us) {
+    time_us_ = started_ ? time_us_ + std::max<std::int64_t>(now_us - arrived_us_, 0) : now_us;
+    started_ = true;
+    has_source_ = false;
+    arrived_us_ = now_us;
   }
 
   [[nodiscard]] std::int64_t time_us() const { return time_us_; }
 
  private:
   bool started_ = false;
+  bool has_source_ = false;      // newest_us_ counts
   std::int64_t newest_us_ = 0;   // of the sender
   std::int64_t arrived_us_ = 0;  // of the receiver, when that came
   std::int64_t time_us_ = 0;

@@ -163,8 +163,7 @@ class VmcAdapter final : public MocapAdapter {
       ++counters_.stale;
       return;
     }
-    const bool sender_time = Recent(last_time_us_);
-    if (!sender_time) (void)clock_.Advance(now_us_, now_us_, 0);
+    if (!Recent(last_time_us_)) clock_.AdvanceByArrival(now_us_);
     ++counters_.accepted;
     (*sink_)(state_.Frame(clock_.time_us(), tracked_));
   }

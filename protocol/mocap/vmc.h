@@ -24,7 +24,10 @@ struct VmcOptions {
 // usual
 //   parent was never sent hangs on the nearest ancestor that was); other names hang on Hips. The
 //   root joint "Root" carries /VMC/Ext/Root/Pos; motion may be in it, in Hips, or in both.
-// - Only Root and Hips use the sent translations each frame where the rest sends zeros.
+// - Many senders give zero for all translations but those of Root and Hips: such joints stand at
+// the
+//   distances of an average adult, so that drivers find limbs of some length. The first translation
+//   that is not zero becomes the joint's rest translation.
 // - Blend-shape names match whatever their case; shapes not sent keep their value.
 // - While /VMC/Ext/OK says loaded = 0, frames are dropped as stale.
 // Space: Unity's (left-handed, Y up, Z forward) by M = (-x, y, z), determinant -1: positions

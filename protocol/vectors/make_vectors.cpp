@@ -1,2 +1,396 @@
 // SPDX-License-Identifier: Apache-2.0
-int main() { return 0; }
+// Writes the example messages of protocol/vectors: furrow-make-vectors [--check] FOLDER. With
+// --check it writes nothing and fails where a committed file is not what the encoder makes today.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <map>
+#include <span>
+
+#include "protocol/bytes.h"
+#include "protocol/codec.h"
+#include "protocol/fragment.h"
+#include "protocol/hash.h"
+#include "protocol/tcp_framing.h"
+#include "protocol/vectors/json.h"
+
+namespace furrow::protocol::vectors {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using Files = std::map<std::string, std::string>;  // name, content
+
+constexpr Header kHeader{0x0123456789abcdefULL, 3, 41, 1'700'000'000'123'456};
+
+Fields FieldsOf(const Hello& m) {
+  return {{"client", Json(m.client)}, {"token", JsonHex(m.token)}};
+}
+Fields FieldsOf(const Welcome& m) {
+  return {{"server", Json(m.server)}, {"token", JsonHex(m.token)}};
+}
+Fields FieldsOf(const Ping& m) { return {{"time_us", Json(m.time_us)}}; }
+Fields FieldsOf(const Pong& m) {
+  return {{"time_us", Json(m.time_us)}, {"server_time_us", Json(m.server_time_us)}};
+}
+Fields FieldsOf(const Goodbye& m) { return {{"reason", Json(static_cast<int>(m.reason))}}; }
+Fields FieldsOf(const ErrorMessage& m) {
+  return {{"code", Json(static_cast<int>(m.code))}, {"message", Json(m.message)}};
+}
+
+std::string JointJson(const OfferedJoint& joint) {
+  Fields fields = {{"name", Json(joint.name)},
+                   {"parent", Json(static_cast<int>(joint.parent))},
+                   {"rest_translation", Json(joint.rest_translation)},
+                   {"rest_rotation", Json(joint.rest_rotation)},
+                   {"rest_scale", Json(joint.rest_scale)}};
+  if (joint.has_tail) fields.emplace_back("tail", Json(joint.tail));
+  return Json(fields, "    ");
+}
+
+Fields FieldsOf(const SkeletonOffer& m) {
+  std::string joints = "[";
+  for (const OfferedJoint& joint : m.joints)
+    joints += (joints.size() > 1 ? ", " : "") + JointJson(joint);
+  return {{"subject", Json(m.subject)},
+          {"skeleton_hash", JsonHex(m.skeleton_hash)},
+          {"metres_per_unit", Json(m.metres_per_unit)},
+          {"joints", joints + "]"},
+          {"blend_shape_names", Json(m.blend_shape_names)}};
+}
+Fields FieldsOf(const SkeletonReply& m) {
+  return {{"skeleton_hash", JsonHex(m.skeleton_hash)},
+          {"status", Json(static_cast<int>(m.status))},
+          {"message", Json(m.message)}};
+}
+Fields FieldsOf(const PoseFrame& m) {
+  return {{"skeleton_hash", JsonHex(m.skeleton_hash)},
+          {"partial", Json(m.partial)},
+          {"num_joints", Json(int{m.num_joints})},
+          {"num_blend_shapes", Json(int{m.num_blend_shapes})},
+          {"rotation_joints", Json(m.rotation_joints)},
+          {"rotations", Json(m.rotations)},
+          {"translation_joints", Json(m.translation_joints)},
+          {"translations", Json(m.translations)},
+          {"scale_joints", Json(m.scale_joints)},
+          {"scales", Json(m.scales)},
+          {"blend_shape_indices", Json(m.blend_shape_indices)},
+          {"blend_shapes", Json(m.blend_shapes)}};
+}
+Fields FieldsOf(const SubscribeWeights& m) {
+  return {{"subject", Json(m.subject)},
+          {"wait", Json(m.wait)},
+          {"pattern", Json(m.pattern)},
+          {"max_rate_hz", Json(m.max_rate_hz)},
+          {"format", Json(static_cast<int>(m.format))},
+          {"source", Json(static_cast<int>(m.source))}};
+}
+Fields FieldsOf(const SubscribePictures& m) {
+  Fields fields = {{"subject", Json(m.subject)},
+                   {"wait", Json(m.wait)},
+                   {"width", Json(int{m.width})},
+                   {"height", Json(int{m.height})},
+                   {"max_rate_hz", Json(m.max_rate_hz)},
+                   {"format", Json(static_cast<int>(m.format))},
+                   {"quality", Json(int{m.quality})},
+                   {"view", Json(m.view)},
+                   {"camera_preset", Json(m.camera_preset)}};
+  if (m.has_camera) {
+    fields.emplace_back("eye", Json(m.camera.eye));
+    fields.emplace_back("target", Json(m.camera.target));
+    fields.emplace_back("vertical_fov_degrees", Json(m.camera.vertical_fov_degrees));
+  }
+  return fields;
+}
+Fields FieldsOf(const Unsubscribe&) { return {}; }
+Fields FieldsOf(const SubscribeReply& m) {
+  return {{"subject", Json(m.subject)},
+          {"names_hash", JsonHex(m.names_hash)},
+          {"names", Json(m.names)}};
+}
+Fields FieldsOf(const WeightFrame& m) {
+  return {{"names_hash", JsonHex(m.names_hash)},
+          {"age_us", Json(m.age_us)},
+          {"format", Json(static_cast<int>(m.format))},
+          {"values", Json(m.values)}};
+}
+Fields FieldsOf(const ImageFrame& m) {
+  return {{"width", Json(int{m.width})},
+          {"height", Json(int{m.height})},
+          {"format", Json(static_cast<int>(m.format))},
+          {"age_us", Json(m.age_us)},
+          {"bytes", Json(m.bytes)}};
+}
+
+std::string Text(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
+
+std::string Document(const std::string& container, const MessageView& view, const Fields& fields) {
+  const Header& header = view.header;
+  return Json(Fields{{"container", Json(container)},
+                     {"kind", Json(MessageKindName(view.kind))},
+                     {"session", JsonHex(header.session)},
+                     {"stream", Json(int{header.stream})},
+                     {"sequence", Json(static_cast<std::int64_t>(header.sequence))},
+                     {"capture_time_us", Json(header.capture_time_us)},
+                     {"message", Json(fields, "  ")}}) +
+         "\n";
+}
+
+// Encodes, decodes and writes both; the JSON is what was decoded, so packed numbers stand as they
+// arrive. An example that does not decode is a fault of this program.
+template <class Message, class... Options>
+Bytes Add(Files& files, const std::string& name, const Message& message,
+          const Options&... options) {
+  Encoder encoder;
+  Bytes bytes;
+  encoder.Encode(kHeader, message, bytes, options...);
+  MessageView view;
+  Message decoded;
+  DecodeStatus status = OpenMessage(bytes, view);
+  if (status == DecodeStatus::kOk) status = Decode(view, decoded);
+  if (status != DecodeStatus::kOk) {
+    std::cerr << name << ": " << DecodeStatusName(status) << "\n";
+    std::exit(1);
+  }
+  files[name + ".bin"] = Text(bytes);
+  files[name + ".json"] = Document("message", view, FieldsOf(decoded));
+  return bytes;
+}
+
+// Exact to a rounding: sines would tie the files to one C library.
+constexpr std::array<Quat, 5> kTurns = {{{0.0f, 0.0f, 0.0f, 1.0f},
+                                         {0.2f, 0.4f, -0.4f, 0.8f},
+                                         {0.5f, -0.5f, 0.5f, -0.5f},
+                                         {-0.1f, 0.7f, -0.5f, 0.5f},
+                                         {0.0f, 0.0f, -0.6f, 0.8f}}};
+
+SkeletonOffer SmallOffer() {
+  SkeletonOffer offer;
+  offer.subject = "\u00c5nna \"1\"";
+  offer.metres_per_unit = 0.01f;
+  offer.joints.resize(5);
+  const char* names[] = {"hips", "spine", "head", "jaw", "eye_l"};
+  for (std::size_t i = 0; i < offer.joints.size(); ++i) {
+    offer.joints[i].name = names[i];
+    offer.joints[i].parent = static_cast<std::int16_t>(i == 4 ? 2 : static_cast<int>(i) - 1);
+    offer.joints[i].rest_translation = {0.5f * static_cast<float>(i), 10.0f, -0.25f};
+  }
+  offer.joints[2].rest_rotation = kTurns[1];
+  offer.joints[3].has_tail = offer.joints[4].has_tail = true;
+  offer.joints[3].tail = {0.0f, -2.0f, 6.0f};
+  offer.joints[4].tail = {0.0f, 0.0f, 1.5f};
+  offer.blend_shape_names = {"jawOpen", "browInnerUp", "cheekPuff"};
+  return offer;
+}
+
+SkeletonOffer LargeOffer() {
+  SkeletonOffer offer;
+  offer.subject = "large";
+  offer.joints.resize(163);
+  for (std::size_t i = 0; i < offer.joints.size(); ++i) {
+    offer.joints[i].name = "joint_with_a_long_name." + std::to_string(i);
+    offer.joints[i].parent = static_cast<std::int16_t>(static_cast<int>(i + 1) / 2 - 1);
+    offer.joints[i].rest_translation = {0.0f, 0.125f * static_cast<float>(i % 8), 0.0f};
+  }
+  offer.joints[7].rest_scale = {1.0f, 2.0f, 1.0f};
+  return offer;
+}
+
+PoseFrame SmallPose() {
+  PoseFrame pose;
+  pose.skeleton_hash = SkeletonHash(SmallOffer());
+  pose.num_joints = 5;
+  pose.num_blend_shapes = 3;
+  for (int i = 0; i < 5; ++i) {
+    pose.rotation_joints.push_back(static_cast<std::uint16_t>(i));
+    pose.rotations.push_back(kTurns[static_cast<std::size_t>(i)]);
+  }
+  pose.translation_joints = {0, 3};
+  pose.translations = {{12.5f, -1.0f, 300.0f}, {0.0f, -0.75f, 0.125f}};
+  pose.blend_shape_indices = {0, 1, 2};
+  pose.blend_shapes = {0.5f, 0.0f, 1.0f};
+  return pose;
+}
+
+PoseFrame PartialPose() {
+  PoseFrame pose = SmallPose();
+  pose.partial = true;
+  pose.rotation_joints = {1, 4};
+  pose.rotations = {kTurns[3], kTurns[4]};
+  pose.scale_joints = {2};
+  pose.scales = {{1.0f, 1.25f, 1.0f}};
+  pose.blend_shape_indices = {1};
+  pose.blend_shapes = {-0.375f};
+  return pose;
+}
+
+SubscribePictures PicturesWithCamera() {
+  SubscribePictures pictures;
+  pictures.subject = "anna";
+  pictures.width = 1280;
+  pictures.height = 720;
+  pictures.max_rate_hz = 25.0f;
+  pictures.format = ImageFormat::kPng;
+  pictures.view = "weights";
+  pictures.has_camera = true;
+  pictures.camera = {{0.5f, 1.5f, 3.0f}, {0.0f, 1.5f, 0.0f}, 24.0f};
+  return pictures;
+}
+
+void AddMeeting(Files& files) {
+  Add(files, "hello", Hello{"example/1.0", 0});
+  Add(files, "hello_token", Hello{"example/1.0", 0xfedcba9876543210ULL});
+  Add(files, "welcome", Welcome{"furrowd/0.1.0", 0xfedcba9876543210ULL});
+  Add(files, "ping", Ping{-5});
+  Add(files, "pong", Pong{-5, 1'234'567'890'123});
+  Add(files, "goodbye", Goodbye{GoodbyeReason::kSubjectGone});
+  Add(files, "error", ErrorMessage{ErrorCode::kUnknownSubject, "no subject 'bob'; there is: anna"});
+}
+
+void AddPublishing(Files& files) {
+  Add(files, "skeleton_offer", SmallOffer());
+  SkeletonOffer shapes;
+  shapes.subject = "phone";
+  shapes.blend_shape_names = {"jawOpen"};
+  Add(files, "skeleton_offer_shapes", shapes);
+  Add(files, "skeleton_reply", SkeletonReply{7, SkeletonStatus::kRejected, "too many joints"});
+  Add(files, "skeleton_needed", SkeletonReply{7, SkeletonStatus::kNeeded, ""});
+  Add(files, "pose", SmallPose());
+  Add(files, "pose_packed", SmallPose(), PoseEncoding::Small());
+  Add(files, "pose_partial", PartialPose());
+  Add(files, "pose_partial_packed", PartialPose(), PoseEncoding::Small());
+}
+
+void AddSubscribing(Files& files) {
+  Add(files, "subscribe_weights", SubscribeWeights{});
+  Add(files, "subscribe_weights_all",
+      SubscribeWeights{"anna", true, "brow_*, knee_?.folds", 30.0f, WeightFormat::kU8,
+                       WeightSource::kDriverValues});
+  Add(files, "subscribe_pictures", SubscribePictures{});
+  Add(files, "subscribe_pictures_camera", PicturesWithCamera());
+  Add(files, "unsubscribe", Unsubscribe{});
+  Add(files, "subscribe_reply", SubscribeReply{"anna", 0, {"brow_l.stretch", "brow_l.squash"}});
+  Add(files, "subscribe_reply_waiting", SubscribeReply{});
+  const std::vector<std::string> names = {"brow_l.stretch", "brow_l.squash", "nose.squash"};
+  WeightFrame frame{NamesHash(names), 0, WeightFormat::kF32, {0.0f, 0.3f, 1.0f}};
+  Add(files, "weights", frame);
+  frame.format = WeightFormat::kU8;
+  frame.age_us = 250'000;
+  Add(files, "weights_u8", frame);
+  Add(files, "image", ImageFrame{640, 480, ImageFormat::kJpeg, 0, {0xFF, 0xD8, 0xFF, 0xD9}});
+}
+
+// A message in fragments, last first, each datagram after its length as on TCP.
+void AddFragments(Files& files) {
+  Files ignored;
+  const Bytes message = Add(ignored, "large", LargeOffer());
+  std::string all;
+  std::array<std::uint8_t, kMaxDatagramBytes> datagram;
+  for (std::size_t i = NumDatagrams(message.size()); i-- > 0;) {
+    const std::size_t size = WriteDatagram(message, 77, i, datagram);
+    const auto prefix = FramePrefix(size);
+    all.append(prefix.begin(), prefix.end());
+    all.append(datagram.begin(), datagram.begin() + static_cast<std::ptrdiff_t>(size));
+  }
+  files["fragments.bin"] = all;
+  std::string json = ignored["large.json"];
+  const std::string from = "\"message\",";
+  json.replace(json.find(from), from.size(), "\"datagrams\",");
+  files["fragments.json"] = json;
+}
+
+// Each differs from a good message in one place and must be refused.
+void AddRefused(Files& files) {
+  const Bytes pose = Add(files, "pose", SmallPose());
+  const auto add = [&files](const std::string& name, const Bytes& bytes, const std::string& why) {
+    files["refuse_" + name + ".bin"] = Text(bytes);
+    files["refuse_" + name + ".json"] =
+        Json(Fields{{"container", Json(std::string_view("refuse"))}, {"why", Json(why)}}) + "\n";
+  };
+  Bytes bytes = pose;
+  bytes[0] = 'X';
+  add("magic", bytes, "another magic");
+  bytes = pose;
+  bytes[4] = 2;
+  add("version", bytes, "another version");
+  bytes = pose;
+  bytes[5] = 2;
+  add("flags", bytes, "a flag that version 1 does not define");
+  bytes = pose;
+  std::fill(bytes.begin() + 8, bytes.begin() + 16, std::uint8_t{0});
+  add("session", bytes, "session 0");
+  bytes = pose;
+  bytes.pop_back();
+  add("truncated", bytes, "fewer bytes than the payload size says");
+  PoseFrame bad = SmallPose();
+  Encoder encoder;
+  bad.rotations[2].y = std::nanf("");
+  encoder.Encode(kHeader, bad, bytes);
+  add("nan", bytes, "a rotation that is not a number");
+  bad = SmallPose();
+  bad.rotations[2].w += 0.25f;
+  encoder.Encode(kHeader, bad, bytes);
+  add("not_unit", bytes, "a rotation that is not of unit length");
+  bad = SmallPose();
+  bad.rotations.pop_back();
+  bad.rotation_joints.clear();
+  encoder.Encode(kHeader, bad, bytes);
+  add("count", bytes, "four rotations for five joints, and no mask");
+  const Bytes offer = Add(files, "skeleton_offer", SmallOffer());
+  bytes = offer;
+  const std::string name = "spine";
+  *std::search(bytes.begin(), bytes.end(), name.begin(), name.end()) = 'S';
+  add("hash", bytes, "an offer whose hash is not that of its content");
+}
+
+int Check(const std::filesystem::path& folder, const Files& files) {
+  int wrong = 0;
+  for (const auto& [name, content] : files) {
+    std::ifstream in(folder / name, std::ios::binary);
+    const std::string found{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    if (found == content) continue;
+    std::cerr << name << (in.is_open() ? " differs from" : " is missing, but is")
+              << " what the encoder makes\n";
+    ++wrong;
+  }
+  std::cout << files.size() << " files compared, " << wrong << " wrong\n";
+  return wrong == 0 ? 0 : 1;
+}
+
+int Write(const std::filesystem::path& folder, const Files& files) {
+  for (const auto& [name, content] : files) {
+    std::ofstream out(folder / name, std::ios::binary);
+    if (!(out << content << std::flush)) {
+      std::cerr << (folder / name).string() << ": cannot write\n";
+      return 1;
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+int Run(std::span<char* const> arguments) {
+  const bool check = arguments.size() == 3 && std::strcmp(arguments[1], "--check") == 0;
+  if (!check && arguments.size() != 2) {
+    std::cerr << "usage: furrow-make-vectors [--check] FOLDER\n";
+    return 2;
+  }
+  Files files;
+  AddMeeting(files);
+  AddPublishing(files);
+  AddSubscribing(files);
+  AddFragments(files);
+  AddRefused(files);
+  return check ? Check(arguments[2], files) : Write(arguments[1], files);
+}
+
+}  // namespace furrow::protocol::vectors
+
+int main(int argc, char** argv) {
+  return furrow::protocol::vectors::Run({argv, static_cast<std::size_t>(argc)});
+}

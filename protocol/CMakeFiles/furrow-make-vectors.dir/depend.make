@@ -1,0 +1,2 @@
+# Empty dependencies file for furrow-make-vectors.
+# This may be replaced when dependencies are built.

@@ -1,0 +1,3 @@
+file(REMOVE_RECURSE
+  "libfurrow_protocol.a"
+)

@@ -1,0 +1,428 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""A decoder of the Furrow wire, written from protocol/STANDARD.md alone (Python's own library only).
+
+    decode.py FILE...          print messages as JSON
+    decode.py --check FOLDER   decode every *.bin there and compare with the *.json beside it
+"""
+import json
+import math
+import struct
+import sys
+from pathlib import Path
+
+ENVELOPE = struct.Struct("<4sBBHQIIq")  # section 2
+MAX_DATAGRAM = 1200
+SLICE = 1160
+
+
+class Refused(Exception):
+    """The bytes are not a message of this protocol."""
+
+
+def require(condition, why):
+    if not condition:
+        raise Refused(why)
+
+
+# --- FlatBuffers: https://flatbuffers.dev/internals ---------------------------------------------------
+
+
+class Table:
+    """One table: slots are found through its vtable; an absent slot has its default."""
+
+    def __init__(self, data, position):
+        self.data, self.position = data, position
+        self.vtable = position - self.number("<i", position)
+        require(self.vtable >= 0, "a vtable outside the buffer")
+        self.vtable_bytes = self.number("<H", self.vtable)
+
+    def number(self, layout, position):
+        require(0 <= position and position + struct.calcsize(layout) <= len(self.data),
+                "an offset outside the buffer")
+        return struct.unpack_from(layout, self.data, position)[0]
+
+    def place(self, slot):
+        entry = 4 + 2 * slot
+        if entry + 2 > self.vtable_bytes:
+            return None
+        offset = self.number("<H", self.vtable + entry)
+        return self.position + offset if offset else None
+
+    def scalar(self, slot, layout, default=0):
+        place = self.place(slot)
+        return default if place is None else self.number("<" + layout, place)
+
+    def flag(self, slot):
+        return bool(self.scalar(slot, "B"))
+
+    def target(self, slot):
+        place = self.place(slot)
+        return None if place is None else place + self.number("<I", place)
+
+    def vector(self, slot, layout):
+        """Elements of a vector of scalars or of structs of equal scalars; None when absent."""
+        start = self.target(slot)
+        if start is None:
+            return None
+        count, size = self.number("<I", start), struct.calcsize("<" + layout)
+        require(start + 4 + count * size <= len(self.data), "a vector outside the buffer")
+        items = struct.iter_unpack("<" + layout, self.data[start + 4:start + 4 + count * size])
+        return [item[0] if len(item) == 1 else list(item) for item in items]
+
+    def text_at(self, start):
+        count = self.number("<I", start)
+        require(start + 4 + count <= len(self.data), "a string outside the buffer")
+        try:
+            text = self.data[start + 4:start + 4 + count].decode("utf-8")
+        except UnicodeDecodeError as error:
+            raise Refused("text that is not UTF-8") from error
+        require(all(c >= " " and c != "\x7f" for c in text), "control characters in text")
+        return text
+
+    def text(self, slot, default="", limit=255):
+        start = self.target(slot)
+        text = default if start is None else self.text_at(start)
+        require(len(text.encode()) <= limit, "text too long")
+        return text
+
+    def texts(self, slot):
+        start = self.target(slot)
+        if start is None:
+            return []
+        places = [start + 4 + 4 * i for i in range(self.number("<I", start))]
+        names = [self.text_at(place + self.number("<I", place)) for place in places]
+        require(len(set(names)) == len(names) and "" not in names, "names empty or twice")
+        return names
+
+    def struct(self, slot, layout):
+        place = self.place(slot)
+        if place is None:
+            return None
+        require(place + struct.calcsize("<" + layout) <= len(self.data), "a struct outside")
+        return list(struct.unpack_from("<" + layout, self.data, place))
+
+
+# --- Section 5: masks, packed numbers; checks of section 11 --------------------------------------------
+
+
+def masked(mask, n, values):
+    """Indices of the values."""
+    if mask is None:
+        require(len(values) in (0, n), "values for some, and no mask")
+        return list(range(len(values)))
+    require(len(mask) == (n + 7) // 8, "a mask of another length")
+    indices = [i for i in range(8 * len(mask)) if mask[i // 8] >> (i % 8) & 1]
+    require(all(i < n for i in indices), "mask bits beyond the last")
+    require(len(indices) == len(values), "as many bits as values")
+    return indices
+
+
+def finite(values):
+    for value in values:
+        require(math.isfinite(value) and abs(value) <= 1e6, "a number that is not finite or too large")
+    return list(values)
+
+
+def rotation(q):
+    finite(q)
+    require(abs(math.sqrt(sum(c * c for c in q)) - 1) <= 1e-3, "a rotation not of unit length")
+    return list(q)
+
+
+def unpack_rotation(words):
+    bits = words[0] | words[1] << 16 | words[2] << 32
+    require(bits >> 47 == 0, "bit 47 of a packed rotation")
+    codes = [bits >> shift & 0x7FFF for shift in (0, 15, 30)]
+    require(all(code <= 32766 for code in codes), "32767 in a packed rotation")
+    three = [(code / 32766 * 2 - 1) / math.sqrt(2) for code in codes]
+    rest = 1 - sum(c * c for c in three)
+    require(rest >= -1e-6, "a packed rotation longer than 1")
+    three.insert(bits >> 45 & 3, math.sqrt(max(rest, 0)))
+    return three
+
+
+def unpack_offset(value, scale):
+    require(value != -32768, "-32768 in packed numbers")
+    return scale * value
+
+
+def either(plain, packed):
+    require(plain is None or packed is None, "both forms of one thing")
+    return plain or packed or []
+
+
+def fnv1a(data):
+    value = 0xCBF29CE484222325
+    for byte in data:
+        value = (value ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
+    return value
+
+
+def hexadecimal(value):
+    return f"0x{value:016x}"
+
+
+def one_of(value, count):
+    require(value < count, "an unknown enumeration value")
+    return value
+
+
+# --- Messages, by file identifier ----------------------------------------------------------------------
+
+
+def hello(t):
+    return {"client": t.text(0, limit=64), "token": hexadecimal(t.scalar(1, "Q"))}
+
+
+def welcome(t):
+    return {"server": t.text(0, limit=64), "token": hexadecimal(t.scalar(1, "Q"))}
+
+
+def ping(t):
+    return {"time_us": t.scalar(0, "q")}
+
+
+def pong(t):
+    return {"time_us": t.scalar(0, "q"), "server_time_us": t.scalar(1, "q")}
+
+
+def goodbye(t):
+    return {"reason": one_of(t.scalar(0, "B"), 4)}
+
+
+def error(t):
+    code = t.scalar(0, "H")
+    require(1 <= code <= 13, "an unknown error code")
+    return {"code": code, "message": t.text(1, limit=1024)}
+
+
+def skeleton_offer(t):
+    subject = t.text(0)
+    require(subject != "", "no subject")
+    names, shapes = t.texts(3), t.texts(10)
+    count = len(names)
+    require(count + len(shapes) > 0, "neither joints nor blend shapes")
+    require(count <= 1024 and len(shapes) <= 512, "too many")
+    parents = t.vector(4, "h") or []
+    translations = t.vector(5, "3f") or []
+    rotations = t.vector(6, "4f") or []
+    scales = t.vector(7, "3f")
+    scales = [[1.0, 1.0, 1.0]] * count if scales is None else scales
+    require(all(len(v) == count for v in (parents, translations, rotations, scales)), "lengths differ")
+    tails = t.vector(9, "3f") or []
+    tail_of = dict(zip(masked(t.vector(8, "B"), count, tails), tails))
+    unit = t.scalar(2, "f", 1.0)
+    require(finite([unit])[0] > 0, "metres_per_unit")
+    joints, data = [], struct.pack("<H", count)
+    for i in range(count):
+        require(-1 <= parents[i] < i, "a parent that is not an earlier joint")
+        joint = {"name": names[i], "parent": parents[i],
+                 "rest_translation": finite(translations[i]),
+                 "rest_rotation": rotation(rotations[i]), "rest_scale": finite(scales[i])}
+        data += names[i].encode() + b"\0" + struct.pack(
+            "<h10f", parents[i], *translations[i], *rotations[i], *scales[i])
+        data += struct.pack("<H", i in tail_of)
+        if i in tail_of:
+            joint["tail"] = finite(tail_of[i])
+            data += struct.pack("<3f", *tail_of[i])
+        joints.append(joint)
+    data += struct.pack("<fH", unit, len(shapes)) + b"".join(s.encode() + b"\0" for s in shapes)
+    require(fnv1a(data) == t.scalar(1, "Q"), "another hash")
+    return {"subject": subject, "skeleton_hash": hexadecimal(t.scalar(1, "Q")),
+            "metres_per_unit": unit, "joints": joints, "blend_shape_names": shapes}
+
+
+def skeleton_reply(t):
+    return {"skeleton_hash": hexadecimal(t.scalar(0, "Q")), "status": one_of(t.scalar(1, "B"), 3),
+            "message": t.text(2, limit=1024)}
+
+
+def pose(t):
+    joints, shapes = t.scalar(1, "H"), t.scalar(2, "H")
+    require(joints <= 1024 and shapes <= 512, "too many")
+    plain, packed = t.vector(5, "4f"), t.vector(6, "3H")
+    either(plain, packed)
+    rotations = [unpack_rotation(w) for w in packed] if packed else [rotation(q) for q in plain or []]
+    plain, packed = t.vector(8, "3f"), t.vector(9, "3h")
+    either(plain, packed)
+    reach = finite([t.scalar(10, "f")])[0]
+    require(reach >= 0, "a range below 0")
+    translations = [[unpack_offset(c, reach / 32767) for c in v] for v in packed] if packed else [
+        finite(v) for v in plain or []]
+    scales = [finite(v) for v in t.vector(12, "3f") or []]
+    plain, packed = t.vector(14, "f"), t.vector(15, "h")
+    either(plain, packed)
+    values = [unpack_offset(v, 1 / 16384) for v in packed] if packed else finite(plain or [])
+    return {"skeleton_hash": hexadecimal(t.scalar(0, "Q")), "partial": t.flag(3),
+            "num_joints": joints, "num_blend_shapes": shapes,
+            "rotation_joints": masked(t.vector(4, "B"), joints, rotations), "rotations": rotations,
+            "translation_joints": masked(t.vector(7, "B"), joints, translations),
+            "translations": translations,
+            "scale_joints": masked(t.vector(11, "B"), joints, scales), "scales": scales,
+            "blend_shape_indices": masked(t.vector(13, "B"), shapes, values), "blend_shapes": values}
+
+
+def rate(value):
+    require(0 <= finite([value])[0] <= 1000, "a rate out of range")
+    return value
+
+
+def subscribe_weights(t):
+    return {"subject": t.text(0), "wait": t.flag(1), "pattern": t.text(2, "*", 4096),
+            "max_rate_hz": rate(t.scalar(3, "f")), "format": one_of(t.scalar(4, "B"), 2),
+            "source": one_of(t.scalar(5, "B"), 2)}
+
+
+def subscribe_pictures(t):
+    message = {"subject": t.text(0), "wait": t.flag(1), "width": t.scalar(2, "H", 640),
+               "height": t.scalar(3, "H", 480), "max_rate_hz": rate(t.scalar(4, "f")),
+               "format": one_of(t.scalar(5, "B"), 2), "quality": t.scalar(6, "B", 80),
+               "view": t.text(7, "final"), "camera_preset": t.text(8)}
+    require(16 <= message["width"] <= 4096 and 16 <= message["height"] <= 4096, "a size")
+    require(1 <= message["quality"] <= 100, "a quality")
+    camera = t.struct(9, "7f")
+    if camera is not None:
+        require(message["camera_preset"] == "", "a camera and a preset")
+        finite(camera)
+        require(1 < camera[6] < 170, "a field of view")
+        message.update(eye=camera[0:3], target=camera[3:6], vertical_fov_degrees=camera[6])
+    return message
+
+
+def unsubscribe(_):
+    return {}
+
+
+def subscribe_reply(t):
+    names = t.texts(2)
+    expected = fnv1a(b"".join(n.encode() + b"\0" for n in names)) if names else 0
+    require(t.scalar(1, "Q") == expected, "another hash of the names")
+    return {"subject": t.text(0), "names_hash": hexadecimal(expected), "names": names}
+
+
+def weights(t):
+    plain, packed = t.vector(2, "f"), t.vector(3, "B")
+    either(plain, packed)
+    values = [v / 255 for v in packed] if packed is not None else finite(plain or [])
+    require(all(0 <= v <= 1 for v in values), "a weight out of range")
+    return {"names_hash": hexadecimal(t.scalar(0, "Q")), "age_us": t.scalar(1, "q"),
+            "format": 0 if packed is None else 1, "values": values}
+
+
+def image(t):
+    data = t.vector(4, "B")
+    require(data, "no bytes")
+    return {"width": t.scalar(0, "H"), "height": t.scalar(1, "H"),
+            "format": one_of(t.scalar(2, "B"), 2), "age_us": t.scalar(3, "q"), "bytes": data}
+
+
+KINDS = {b"FHEL": hello, b"FWEL": welcome, b"FPIN": ping, b"FPON": pong, b"FBYE": goodbye,
+         b"FERR": error, b"FSKO": skeleton_offer, b"FSKR": skeleton_reply, b"FPOS": pose,
+         b"FSUW": subscribe_weights, b"FSUP": subscribe_pictures, b"FUNS": unsubscribe,
+         b"FSUR": subscribe_reply, b"FWGT": weights, b"FIMG": image}
+
+
+# --- Sections 1 to 3 -----------------------------------------------------------------------------------
+
+
+def envelope(data):
+    require(len(data) >= ENVELOPE.size, "shorter than an envelope")
+    magic, version, flags, stream, session, sequence, size, time = ENVELOPE.unpack_from(data)
+    require(magic == b"FRRW", "another magic")
+    require(version == 1, "another version")
+    require(flags & ~1 == 0, "undefined flags")
+    require(session != 0, "session 0")
+    return flags, size, {"session": hexadecimal(session), "stream": stream, "sequence": sequence,
+                         "capture_time_us": time}
+
+
+def decode(data):
+    flags, size, result = envelope(data)
+    require(flags == 0, "a fragment where a message is due")
+    payload = data[ENVELOPE.size:]
+    require(len(payload) == size and size >= 8, "payload size and bytes differ")
+    kind = KINDS.get(payload[4:8])
+    require(kind is not None, "an unknown identifier")
+    root = Table(payload, struct.unpack_from("<I", payload)[0])
+    return {"kind": kind.__name__, **result, "message": kind(root)}
+
+
+def frames(data):
+    """Section 1: what a TCP connection carries."""
+    while data:
+        require(len(data) >= 4, "half a length")
+        size = struct.unpack_from("<I", data)[0]
+        require(len(data) >= 4 + size, "half a frame")
+        yield data[4:4 + size]
+        data = data[4 + size:]
+
+
+def reassemble(datagrams):
+    slices, first = {}, None
+    for datagram in datagrams:
+        require(len(datagram) <= MAX_DATAGRAM, "a datagram above 1,200 bytes")
+        flags, size, head = envelope(datagram)
+        require(flags == 1, "not a fragment")
+        number, index, count = struct.unpack_from("<IHH", datagram, 32)
+        require(count == -(-size // SLICE) and index < count, "a count that lies")
+        require(len(datagram) == 40 + min(SLICE, size - SLICE * index), "a size that lies")
+        first = first or (head, size, number, datagram)
+        require(first[:3] == (head, size, number), "fragments of different messages")
+        slices[index] = datagram[40:]
+    require(first and len(slices) == -(-first[1] // SLICE), "fragments missing")
+    head = bytearray(first[3][:32])
+    head[5] = 0
+    return bytes(head) + b"".join(slices[i] for i in sorted(slices))
+
+
+# --- Comparison ------------------------------------------------------------------------------------------
+
+
+def equal(a, b):
+    if isinstance(a, float) or isinstance(b, float):
+        return math.isclose(a, b, rel_tol=1e-6, abs_tol=1e-6)
+    if isinstance(a, list):
+        return isinstance(b, list) and len(a) == len(b) and all(map(equal, a, b))
+    if isinstance(a, dict):
+        return isinstance(b, dict) and a.keys() == b.keys() and all(equal(a[k], b[k]) for k in a)
+    return a == b
+
+
+def check_one(path):
+    """None, or what is wrong."""
+    expected = json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
+    container = expected.pop("container")
+    data = path.read_bytes()
+    try:
+        decoded = decode(reassemble(frames(data)) if container == "datagrams" else data)
+    except Refused as refusal:
+        return None if container == "refuse" else f"refused: {refusal}"
+    if container == "refuse":
+        return f"accepted, but it has {expected['why']}"
+    return None if equal(expected, decoded) else f"decoded as {json.dumps(decoded)}"
+
+
+def check(folder):
+    paths = sorted(Path(folder).glob("*.bin"))
+    wrong = [(path.name, fault) for path in paths if (fault := check_one(path))]
+    for name, fault in wrong:
+        print(f"{name}: {fault}", file=sys.stderr)
+    kinds = {json.loads(p.with_suffix(".json").read_text(encoding="utf-8")).get("kind") for p in paths}
+    missing = {kind.__name__ for kind in KINDS.values()} - kinds
+    if missing:
+        print(f"no vector of: {', '.join(sorted(missing))}", file=sys.stderr)
+    print(f"{len(paths)} vectors, {len(wrong)} wrong")
+    return 1 if wrong or missing else 0
+
+
+def main(arguments):
+    if len(arguments) == 2 and arguments[0] == "--check":
+        return check(arguments[1])
+    for name in arguments:
+        print(json.dumps(decode(Path(name).read_bytes()), indent=2))
+    return 0 if arguments else 2
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
