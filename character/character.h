@@ -4,28 +4,21 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
+#include "character/picture.h"
 #include "wrinkle/pose_frame.h"
 #include "wrinkle/rig.h"
 #include "wrinkle/skeleton.h"
 #include "wrinkle/status.h"
 
 namespace furrow::character {
-
-// A decoded picture: 8 or 16 bits a channel, rows from the top, linear unless the use says sRGB.
-struct Picture {
-  std::string name;
-  int width = 0;
-  int height = 0;
-  int channels = 4;
-  std::vector<std::uint8_t> pixels;     // width * height * channels, when 8 bits
-  std::vector<std::uint16_t> pixels16;  // the same, when 16 bits; one of the two is empty
-};
 
 // glTF's metallic-roughness material, as far as it is drawn, and what it is made of.
 struct Material {
@@ -69,6 +62,8 @@ struct Character {
   std::filesystem::path folder;  // where the rig's own files are looked up first
   // The rig's masks and wrinkle maps, loaded: name in the rig -> index into pictures.
   std::vector<std::pair<std::string, int>> rig_pictures;
+  // Pictures that the rig names and nobody has: what needs them is not drawn (weights do not care).
+  std::vector<std::string> missing_rig_pictures;
 
   [[nodiscard]] int FindRigPicture(std::string_view name) const;  // -1 when there is none
 };
@@ -86,6 +81,19 @@ struct Character {
 [[nodiscard]] Result<Character> LoadCharacter(const std::filesystem::path& glb,
                                               const std::filesystem::path& rig = {},
                                               const wrinkle::PoseSource& poses = {});
+
+// As LoadCharacter() without a rig, from bytes in memory; `where` of errors is the field alone, and
+// the character's name may be empty. `folder`: where a .gltf's own files are.
+[[nodiscard]] Result<Character> ParseCharacter(std::string_view bytes,
+                                               const std::filesystem::path& folder);
+
+// Gives a character another rig, whose files are looked up in `folder` first, and loads its
+// pictures.
+[[nodiscard]] Status AttachRig(wrinkle::Rig rig, const std::filesystem::path& folder,
+                               Character* character);
+
+// Every picture that a rig names, masks first, each once.
+[[nodiscard]] std::vector<std::string> RigPictureNames(const wrinkle::Rig& rig);
 
 // Writes skeleton, skin, meshes and textures as one .glb (atomically: a temporary file, then a
 // rename).

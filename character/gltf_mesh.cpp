@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/gltf_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <tiny_gltf.h>
+
+#include "character/gltf_accessor.h"
+#include "character/gltf_tangent.h"
+
+namespace furrow::character {
+namespace {
+
+using tinygltf::Model;
+using tinygltf::Primitive;
+
+constexpr int kMaxInfluenceSets = 4;  // JOINTS_0 to JOINTS_3: 16 influences
+
+// One primitive on its way to a Mesh.
+class PrimitiveReader {
+ public:
+  PrimitiveReader(const Model& model, const Primitive& primitive, std::string at, Mesh* mesh)
+      : model_(model), primitive_(primitive), at_(std::move(at)), mesh_(mesh) {}
+
+  Status ReadGeometry() {
+    if (primitive_.mode != TINYGLTF_MODE_TRIANGLES) {
+      return {StatusCode::kUnsupported, "only triangles are drawn", at_ + ".mode"};
+    }
+    std::optional<GltfAccessor> position, normal, tangent, uv;
+    if (Status s = Attribute("POSITION", 3, true, &position); !s.ok()) return s;
+    if (position->size() > kMaxVertices) return {StatusCode::kLimit, "too many vertices", at_};
+    mesh_->vertices.resize(position->size());
+    if (Status s = Attribute("NORMAL", 3, false, &normal); !s.ok()) return s;
+    if (Status s = Attribute("TANGENT", 4, false, &tangent); !s.ok()) return s;
+    if (Status s = Attribute("TEXCOORD_0", 2, false, &uv); !s.ok()) return s;
+    bool normals_usable = normal.has_value();
+    bool tangents_usable = tangent.has_value();
+    for (std::size_t v = 0; v < mesh_->vertices.size(); ++v) {
+      Vertex& vertex = mesh_->vertices[v];
+      if (Status s = Vector(*position, v, "POSITION", &vertex.position); !s.ok()) return s;
+      if (uv) {
+        if (Status s = Vector(*uv, v, "TEXCOORD_0", &vertex.uv); !s.ok()) return s;
+      }
+      if (normal) {
+        if (Status s = Vector(*normal, v, "NORMAL", &vertex.normal); !s.ok()) return s;
+        normals_usable = normals_usable && MakeUnit(&vertex.normal);
+      }
+      if (tangent) {
+        if (Status s = Vector(*tangent, v, "TANGENT", &vertex.tangent); !s.ok()) return s;
+        glm::vec3 direction(vertex.tangent);
+        tangents_usable = tangents_usable && MakeUnit(&direction);
+        vertex.tangent = glm::vec4(direction, vertex.tangent.w < 0.0f ? -1.0f : 1.0f);
+      }
+    }
+    if (Status s = ReadIndices(); !s.ok()) return s;
+    if (!normals_usable) ComputeNormals(mesh_);
+    if (!tangents_usable || !normals_usable) ComputeTangents(mesh_);
+    return {};
+  }
+
+  // `joint_of`: index in the skin's list to joint of the skeleton.
+  Status ReadInfluences(const std::vector<int>& joint_of) {
+    std::vector<std::pair<std::optional<GltfAccessor>, std::optional<GltfAccessor>>> sets;
+    for (int set = 0; set < kMaxInfluenceSets; ++set) {
+      const std::string suffix = "_" + std::to_string(set);
+      auto& [joints, weights] = sets.emplace_back();
+      if (Status s = Attribute("JOINTS" + suffix, 4, set == 0, &joints); !s.ok()) return s;
+      if (Status s = Attribute("WEIGHTS" + suffix, 4, joints.has_value(), &weights); !s.ok())
+        return s;
+      if (joints && !joints->is_unsigned()) {
+        return {StatusCode::kSchema, "unsigned integers are due", Field("JOINTS" + suffix)};
+      }
+      if (!joints) {
+        sets.pop_back();
+        break;
+      }
+    }
+    for (std::size_t v = 0; v < mesh_->vertices.size(); ++v) {
+      std::vector<std::pair<float, int>> influences;
+      for (std::size_t set = 0; set < sets.size(); ++set) {
+        for (int i = 0; i < 4; ++i) {
+          const float weight = sets[set].second->Float(v, i);
+          const std::uint32_t joint = sets[set].first->Unsigned(v, i);
+          const std::string suffix = "_" + std::to_string(set);
+          if (!std::isfinite(weight)) return NotFinite("WEIGHTS" + suffix, v);
+          if (weight < 0.0f) {
+            return {StatusCode::kInvalidArgument,
+                    "a skin weight of vertex " + std::to_string(v) + " is negative",
+                    Field("WEIGHTS" + suffix)};
+          }
+          if (weight == 0.0f) continue;
+          if (joint >= joint_of.size()) {
+            return {StatusCode::kSchema,
+                    "vertex " + std::to_string(v) + " names joint " + std::to_string(joint) +
+                        ", the skin has " + std::to_string(joint_of.size()),
+                    Field("JOINTS" + suffix)};
+          }
+          influences.emplace_back(weight, joint_of[joint]);
+        }
+      }
+      if (Status s = Keep(influences, v); !s.ok()) return s;
+    }
+    return {};
+  }
+
+  void FollowJoint(int joint) {
+    for (Vertex& vertex : mesh_->vertices) {
+      vertex.joints[0] = static_cast<std::uint16_t>(joint);
+    }
+  }
+
+ private:
+  [[nodiscard]] std::string Field(const std::string& name) const {
+    return at_ + ".attributes." + name;
+  }
+
+  Status NotFinite(const std::string& name, std::size_t vertex) const {
+    return {StatusCode::kNonFinite, "vertex " + std::to_string(vertex) + " is not finite",
+            Field(name)};
+  }
+
+  static bool MakeUnit(glm::vec3* v) {
+    const float length = glm::length(*v);
+    if (!(length > 1e-6f)) return false;
+    if (std::abs(length - 1.0f) > 1e-6f) *v /= length;  // a unit stays as written
+    return true;
+  }
+
+  Status Attribute(const std::string& name, int components, bool required,
+                   std::optional<GltfAccessor>* accessor) const {
+    const auto found = primitive_.attributes.find(name);
+    if (found == primitive_.attributes.end()) {
+      if (!required) return {};
+      return {StatusCode::kSchema, "the attribute is missing", Field(name)};
+    }
+    Result<GltfAccessor> result =
+        GltfAccessor::Create(model_, found->second, components, Field(name));
+    if (!result.ok()) return result.status();
+    if (!mesh_->vertices.empty() && result->size() != mesh_->vertices.size()) {
+      return {StatusCode::kSchema,
+              std::to_string(result->size()) + " elements for " +
+                  std::to_string(mesh_->vertices.size()) + " vertices",
+              Field(name)};
+    }
+    *accessor = *result;
+    return {};
+  }
+
+  template <class V>
+  Status Vector(const GltfAccessor& accessor, std::size_t vertex, const char* name, V* to) const {
+    for (int i = 0; i < V::length(); ++i) {
+      (*to)[i] = accessor.Float(vertex, i);
+      if (!std::isfinite((*to)[i])) return NotFinite(name, vertex);
+    }
+    return {};
+  }
+
+  Status ReadIndices() {
+    const std::string where = at_ + ".indices";
+    const std::size_t num_vertices = mesh_->vertices.size();
+    if (primitive_.indices < 0) {
+      for (std::size_t i = 0; i < num_vertices; ++i) {
+        mesh_->indices.push_back(static_cast<std::uint32_t>(i));
+      }
+    } else {
+      const Result<GltfAccessor> indices =
+          GltfAccessor::Create(model_, primitive_.indices, 1, where);
+      if (!indices.ok()) return indices.status();
+      if (!indices->is_unsigned()) return {StatusCode::kSchema, "unsigned integers are due", where};
+      if (indices->size() > kMaxIndices) return {StatusCode::kLimit, "too many indices", where};
+      mesh_->indices.resize(indices->size());
+      for (std::size_t i = 0; i < indices->size(); ++i) {
+        const std::uint32_t index = indices->Unsigned(i);
+        if (index >= num_vertices) {
+          return {StatusCode::kSchema,
+                  "index " + std::to_string(index) + " of " + std::to_string(num_vertices) +
+                      " vertices",
+                  where};
+        }
+        mesh_->indices[i] = index;
+      }
+    }
+    if (mesh_->indices.size() % 3 == 0) return {};
+    return {StatusCode::kSchema, "the indices are not three a triangle", where};
+  }
+
+  // The strongest four of a vertex, with their sum 1.
+  Status Keep(std::vector<std::pair<float, int>>& influences, std::size_t v) {
+    std::stable_sort(influences.begin(), influences.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    influences.resize(std::min<std::size_t>(influences.size(), 4));
+    float sum = 0.0f;
+    for (const auto& [weight, joint] : influences) sum += weight;
+    if (!(sum > 0.0f) || !std::isfinite(sum)) {
+      return {StatusCode::kInvalidArgument,
+              "the skin weights of vertex " + std::to_string(v) + " sum to 0", Field("WEIGHTS_0"),
+              "bind every vertex to a joint"};
+    }
+    const bool unit = std::abs(sum - 1.0f) <= 1e-6f;
+    Vertex& vertex = mesh_->vertices[v];
+    for (std::size_t i = 0; i < 4; ++i) {
+      const bool used = i < influences.size();
+      vertex.joints[i] = static_cast<std::uint16_t>(used ? influences[i].second : 0);
+      vertex.skin_weights[i] = used ? influences[i].first / (unit ? 1.0f : sum) : 0.0f;
+    }
+    return {};
+  }
+
+  const Model& model_;
+  const Primitive& primitive_;
+  std::string at_;
+  Mesh* mesh_;
+};
+
+// Moves a mesh without skin to where its node stands in the rest pose.
+void Place(const glm::mat4& node_model, Mesh* mesh) {
+  const glm::mat3 axes(node_model);
+  const float determinant = glm::determinant(axes);
+  const glm::mat3 normals =
+      std::abs(determinant) > 1e-20f ? glm::transpose(glm::inverse(axes)) : glm::mat3(1.0f);
+  for (Vertex& vertex : mesh->vertices) {
+    vertex.position = glm::vec3(node_model * glm::vec4(vertex.position, 1.0f));
+    vertex.normal = glm::normalize(normals * vertex.normal);
+    vertex.tangent = glm::vec4(glm::normalize(axes * glm::vec3(vertex.tangent)), vertex.tangent.w);
+  }
+  if (determinant >= 0.0f) return;
+  for (std::size_t i = 0; i + 2 < mesh->indices.size(); i += 3) {
+    std::swap(mesh->indices[i + 1], mesh->indices[i + 2]);  // mirrored: keep the outside outside
+  }
+}
+
+Status ReadNode(const Model& model, const GltfSkeleton& skeleton, std::size_t n,
+                std::vector<Mesh>* meshes) {
+  const tinygltf::Node& node = model.nodes[n];
+  const std::string at = "nodes[" + std::to_string(n) + "]";
+  if (node.mesh >= static_cast<int>(model.meshes.size())) {
+    return {StatusCode::kSchema, "there is no such mesh", at + ".mesh"};
+  }
+  if (node.skin >= static_cast<int>(model.skins.size())) {
+    return {StatusCode::kSchema, "there is no such skin", at + ".skin"};
+  }
+  std::vector<int> joint_of;
+  if (node.skin >= 0) {
+    for (const int joint : model.skins[node.skin].joints) {
+      joint_of.push_back(skeleton.exact_joint[joint]);
+    }
+  }
+  const tinygltf::Mesh& from = model.meshes[node.mesh];
+  for (std::size_t p = 0; p < from.primitives.size(); ++p) {
+    const Primitive& primitive = from.primitives[p];
+    const std::string where =
+        "meshes[" + std::to_string(node.mesh) + "].primitives[" + std::to_string(p) + "]";
+    Mesh& mesh = meshes->emplace_back();
+    mesh.name = from.name.empty() ? "mesh_" + std::to_string(node.mesh) : from.name;
+    if (from.primitives.size() > 1) mesh.name += "_" + std::to_string(p);
+    mesh.material = primitive.material;
+    if (mesh.material >= static_cast<int>(model.materials.size())) {
+      return {StatusCode::kSchema, "there is no such material", where + ".material"};
+    }
+    PrimitiveReader reader(model, primitive, where, &mesh);
+    if (Status s = reader.ReadGeometry(); !s.ok()) return s;
+    if (node.skin >= 0) {
+      if (Status s = reader.ReadInfluences(joint_of); !s.ok()) return s;
+    } else {
+      Place(skeleton.node_model[n], &mesh);
+      reader.FollowJoint(skeleton.joint_of_node[n]);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<Mesh>> ReadGltfMeshes(const Model& model, const GltfSkeleton& skeleton) {
+  std::vector<Mesh> meshes;
+  std::size_t vertices = 0;
+  std::size_t indices = 0;
+  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
+    if (model.nodes[n].mesh < 0) continue;
+    const std::size_t before = meshes.size();
+    if (Status status = ReadNode(model, skeleton, n, &meshes); !status.ok()) return status;
+    for (std::size_t m = before; m < meshes.size(); ++m) {
+      vertices += meshes[m].vertices.size();
+      indices += meshes[m].indices.size();
+    }
+    // Many nodes may share one mesh: what they add up to is bounded, too.
+    if (vertices > kMaxVertices || indices > kMaxIndices) {
+      return Status(StatusCode::kLimit, "too many vertices or indices in all", "meshes");
+    }
+  }
+  if (meshes.empty()) return Status(StatusCode::kSchema, "no node has a mesh", "nodes");
+  return meshes;
+}
+
+}  // namespace furrow::character

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+// SaveCharacterGlb(): one .glb with everything in it. Equal characters give equal bytes: fields are
+// written in a fixed order, and no time or path goes in.
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <glm/gtc/type_ptr.hpp>
+#include <nlohmann/json.hpp>
+
+#include "character/asset_path.h"
+#include "character/character.h"
+#include "character/gltf_material.h"
+
+namespace furrow::character {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian");
+
+enum Target { kNoTarget = 0, kArrayBuffer = 34962, kElementBuffer = 34963 };
+enum Component { kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
+
+Json List(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+Json List(const glm::quat& q) { return {q.x, q.y, q.z, q.w}; }
+
+class GlbWriter {
+ public:
+  explicit GlbWriter(const Character& character) : character_(character) {}
+
+  Result<std::string> Run() {
+    if (Status status = CheckSizes(); !status.ok()) return status;
+    root_["asset"] = {{"version", "2.0"}, {"generator", "furrow"}};
+    root_["scene"] = 0;
+    AddNodes();
+    AddSkin();
+    for (const Mesh& mesh : character_.meshes) AddMesh(mesh);
+    AddMaterials();
+    for (const Picture& picture : character_.pictures) {
+      if (Status status = AddPicture(picture); !status.ok()) return status;
+    }
+    root_["accessors"] = std::move(accessors_);
+    root_["bufferViews"] = std::move(views_);
+    root_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
+    return Assemble();
+  }
+
+ private:
+  Status CheckSizes() const {
+    const int joints = character_.skeleton.num_joints();
+    if (joints == 0)
+      return {StatusCode::kInvalidArgument, "the character has no joints", "skeleton"};
+    if (static_cast<int>(character_.inverse_bind_matrices.size()) != joints) {
+      return {StatusCode::kInvalidArgument, "not one matrix a joint", "inverse_bind_matrices"};
+    }
+    if (character_.meshes.empty()) {
+      return {StatusCode::kInvalidArgument, "the character has no mesh", "meshes"};
+    }
+    for (const Mesh& mesh : character_.meshes) {
+      if (Status status = CheckMesh(mesh); !status.ok()) return status;
+    }
+    const auto pictures = static_cast<int>(character_.pictures.size());
+    for (const Material& m : character_.materials) {
+      if (std::max({m.base_colour_texture, m.normal_texture, m.roughness_texture}) >= pictures) {
+        return {StatusCode::kInvalidArgument, "material '" + m.name + "' names no picture",
+                "materials"};
+      }
+    }
+    return {};
+  }
+
+  Status CheckMesh(const Mesh& mesh) const {
+    const std::string where = "meshes '" + mesh.name + "'";
+    if (mesh.vertices.empty() || mesh.indices.empty() || mesh.indices.size() % 3 != 0) {
+      return {StatusCode::kInvalidArgument, "the mesh has no triangles", where};
+    }
+    if (mesh.material >= static_cast<int>(character_.materials.size())) {
+      return {StatusCode::kInvalidArgument, "there is no such material", where + ".material"};
+    }
+    const auto vertices = static_cast<std::uint32_t>(mesh.vertices.size());
+    if (*std::max_element(mesh.indices.begin(), mesh.indices.end()) >= vertices) {
+      return {StatusCode::kInvalidArgument, "an index is out of range", where + ".indices"};
+    }
+    const auto joints = static_cast<std::uint16_t>(character_.skeleton.num_joints());
+    for (const Vertex& vertex : mesh.vertices) {
+      for (const std::uint16_t joint : vertex.joints) {
+        if (joint >= joints) {
+          return {StatusCode::kInvalidArgument, "a joint is out of range", where + ".joints"};
+        }
+      }
+    }
+    return {};
+  }
+
+  // Bytes into the buffer, on a border of four; the view's index.
+  int AddView(const void* bytes, std::size_t size, Target target) {
+    binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
+    Json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", size}};
+    if (target != kNoTarget) view["target"] = static_cast<int>(target);
+    binary_.append(static_cast<const char*>(bytes), size);
+    views_.push_back(std::move(view));
+    return static_cast<int>(views_.size()) - 1;
+  }
+
+  template <class T>
+  int AddAccessor(const std::vector<T>& values, Component component, const char* type,
+                  Target target) {
+    Json accessor = {{"bufferView", AddView(values.data(), values.size() * sizeof(T), target)},
+                     {"componentType", static_cast<int>(component)},
+                     {"count", values.size()},
+                     {"type", type}};
+    accessors_.push_back(std::move(accessor));
+    return static_cast<int>(accessors_.size()) - 1;
+  }
+
+  // Joints are the first nodes, in the skeleton's order; meshes follow.
+  void AddNodes() {
+    const wrinkle::Skeleton& skeleton = character_.skeleton;
+    const int joints = skeleton.num_joints();
+    std::vector<Json> children(static_cast<std::size_t>(joints), Json::array());
+    Json roots = Json::array();
+    for (int j = 0; j < joints; ++j) {
+      const int parent = skeleton.joint_parents()[j];
+      (parent < 0 ? roots : children[static_cast<std::size_t>(parent)]).push_back(j);
+    }
+    Json nodes = Json::array();
+    for (int j = 0; j < joints; ++j) {
+      const wrinkle::Transform& rest = skeleton.rest_pose()[j];
+      Json node = {{"name", skeleton.joint_names()[j]}};
+      node["translation"] = List(rest.translation);
+      if (rest.rotation != glm::quat(1, 0, 0, 0)) node["rotation"] = List(rest.rotation);
+      if (rest.scale != glm::vec3(1)) node["scale"] = List(rest.scale);
+      if (!children[static_cast<std::size_t>(j)].empty()) {
+        node["children"] = std::move(children[static_cast<std::size_t>(j)]);
+      }
+      node["extras"] = {{"furrow_tail", List(skeleton.tails()[j])}};
+      nodes.push_back(std::move(node));
+    }
+    for (std::size_t m = 0; m < character_.meshes.size(); ++m) {
+      roots.push_back(nodes.size());
+      nodes.push_back({{"name", "mesh:" + character_.meshes[m].name}, {"mesh", m}, {"skin", 0}});
+    }
+    root_["scenes"] = Json::array({{{"name", character_.name}, {"nodes", std::move(roots)}}});
+    root_["nodes"] = std::move(nodes);
+  }
+
+  void AddSkin() {
+    const auto joints = static_cast<std::size_t>(character_.skeleton.num_joints());
+    Json list = Json::array();
+    for (std::size_t j = 0; j < joints; ++j) list.push_back(j);
+    root_["skins"] =
+        Json::array({{{"inverseBindMatrices",
+                       AddAccessor(character_.inverse_bind_matrices, kFloat, "MAT4", kNoTarget)},
+                      {"joints", std::move(list)}}});
+  }
+
+  void AddMesh(const Mesh& mesh) {
+    std::vector<glm::vec3> positions, normals;
+    std::vector<glm::vec4> tangents, weights;
+    std::vector<glm::vec2> uvs;
+    std::vector<glm::u16vec4> joints;
+    glm::vec3 low(std::numeric_limits<float>::max());
+    glm::vec3 high(-std::numeric_limits<float>::max());
+    for (const Vertex& v : mesh.vertices) {
+      positions.push_back(v.position);
+      low = glm::min(low, v.position);
+      high = glm::max(high, v.position);
+      normals.push_back(v.normal);
+      tangents.push_back(v.tangent);
+      uvs.push_back(v.uv);
+      weights.push_back(glm::make_vec4(v.skin_weights));
+      // A joint of weight 0 counts as unused and is written as 0.
+      glm::u16vec4 used(0);
+      for (int i = 0; i < 4; ++i) used[i] = v.skin_weights[i] > 0.0f ? v.joints[i] : 0;
+      joints.push_back(used);
+    }
+    Json attributes;
+    const int position = AddAccessor(positions, kFloat, "VEC3", kArrayBuffer);
+    accessors_[static_cast<std::size_t>(position)]["min"] = List(low);
+    accessors_[static_cast<std::size_t>(position)]["max"] = List(high);
+    attributes["POSITION"] = position;
+    attributes["NORMAL"] = AddAccessor(normals, kFloat, "VEC3", kArrayBuffer);
+    attributes["TANGENT"] = AddAccessor(tangents, kFloat, "VEC4", kArrayBuffer);
+    attributes["TEXCOORD_0"] = AddAccessor(uvs, kFloat, "VEC2", kArrayBuffer);
+    attributes["JOINTS_0"] = AddAccessor(joints, kUnsignedShort, "VEC4", kArrayBuffer);
+    attributes["WEIGHTS_0"] = AddAccessor(weights, kFloat, "VEC4", kArrayBuffer);
+    Json primitive = {
+        {"attributes", std::move(attributes)},
+        {"indices", AddAccessor(mesh.indices, kUnsignedInt, "SCALAR", kElementBuffer)}};
+    if (mesh.material >= 0) primitive["material"] = mesh.material;
+    root_["meshes"].push_back(
+        {{"name", mesh.name}, {"primitives", Json::array({std::move(primitive)})}});
+  }
+
+  // Texture i shows picture i.
+  void AddMaterials() {
+    for (const Material& m : character_.materials) {
+      Json pbr = {
+          {"baseColorFactor", {m.base_colour.r, m.base_colour.g, m.base_colour.b, m.base_colour.a}},
+          {"metallicFactor", 0},
+          {"roughnessFactor", m.roughness}};
+      if (m.base_colour_texture >= 0) pbr["baseColorTexture"] = {{"index", m.base_colour_texture}};
+      if (m.roughness_texture >= 0) {
+        pbr["metallicRoughnessTexture"] = {{"index", m.roughness_texture}};
+      }
+      Json material = {{"name", m.name}, {"pbrMetallicRoughness", std::move(pbr)}};
+      if (m.normal_texture >= 0) material["normalTexture"] = {{"index", m.normal_texture}};
+      if (m.alpha_cutoff > 0.0f) {
+        material["alphaMode"] = "MASK";
+        material["alphaCutoff"] = m.alpha_cutoff;
+      }
+      if (m.double_sided) material["doubleSided"] = true;
+      material["extras"] = {{"furrow_kind", MaterialKindName(m.kind)}};
+      root_["materials"].push_back(std::move(material));
+    }
+  }
+
+  Status AddPicture(const Picture& picture) {
+    const Result<std::string> png = EncodePng(picture);
+    if (!png.ok()) return png.status();
+    const int view = AddView(png->data(), png->size(), kNoTarget);
+    root_["textures"].push_back({{"source", root_["textures"].size()}});
+    root_["images"].push_back(
+        {{"name", picture.name}, {"mimeType", "image/png"}, {"bufferView", view}});
+    return {};
+  }
+
+  Result<std::string> Assemble() {
+    std::string text;
+    try {
+      text = root_.dump();
+    } catch (const Json::exception&) {
+      return Status(StatusCode::kInvalidArgument, "a name is not valid UTF-8");
+    }
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
+    const std::uint64_t total = 12 + 8 + text.size() + 8 + binary_.size();
+    if (total > std::numeric_limits<std::uint32_t>::max()) {
+      return Status(StatusCode::kLimit, "a GLB holds at most 4 GiB");
+    }
+    std::string glb = "glTF";
+    AppendWord(2, &glb);
+    AppendWord(total, &glb);
+    AppendWord(text.size(), &glb);
+    glb += "JSON" + text;
+    AppendWord(binary_.size(), &glb);
+    glb += std::string("BIN\0", 4) + binary_;
+    return glb;
+  }
+
+  static void AppendWord(std::uint64_t word, std::string* bytes) {
+    for (int shift = 0; shift < 32; shift += 8) *bytes += static_cast<char>((word >> shift) & 0xff);
+  }
+
+  const Character& character_;
+  Json root_;
+  Json accessors_ = Json::array();
+  Json views_ = Json::array();
+  std::string binary_;
+};
+
+}  // namespace
+
+Status SaveCharacterGlb(const Character& character, const std::filesystem::path& glb) {
+  Result<std::string> bytes = GlbWriter(character).Run();
+  if (!bytes.ok()) {
+    const Status s = bytes.status();
+    return {s.code(), s.what(), glb.string() + (s.where().empty() ? "" : ": " + s.where()),
+            s.todo()};
+  }
+  return WriteFileAtomically(glb, *bytes);
+}
+
+}  // namespace furrow::character
