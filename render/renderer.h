@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
 #include "character/character.h"
@@ -21,14 +22,18 @@ enum class NormalBlend { kPartialDerivative, kTangentSpace };  // 2.1 / 4.5
 enum class MaskMode { kRig, kDynamic, kTexture };  // as each region says, or all of one kind
 enum class ImageFormat { kJpeg, kPng };
 
-[[nodiscard]] std::string_view ViewName(View view);                 // "mask_dynamic"
-[[nodiscard]] Result<View> ParseView(std::string_view name);        // error lists the names
+[[nodiscard]] std::string_view ViewName(View view);           // "mask_dynamic"
+[[nodiscard]] Result<View> ParseView(std::string_view name);  // error lists the names
 
 // Where the camera stands: metres, model space of the character's rest pose, degrees.
 struct Camera {
   glm::vec3 position{0.0f, 1.6f, 0.8f};
   glm::vec3 target{0.0f, 1.6f, 0.0f};
-  float fov_y_degrees = 24.0f;
+  float fov_y_degrees = 24.0f;  // [1, 150]
+  // Carries the camera (and the lights, which stand around it) with the subject: to where this
+  // joint of the character went from its rest pose, turned about +Y as its root turned. -1: stands
+  // still.
+  int follow_joint = -1;
 };
 
 // What a picture shows. Ranges are checked by Renderer; the message names the field.
@@ -37,9 +42,9 @@ struct Settings {
   NormalBlend normal_blend = NormalBlend::kPartialDerivative;
   MaskMode mask_mode = MaskMode::kRig;
   bool wrinkles = true;
-  float wrinkle_strength = 1.0f;                    // [0, 4]
-  glm::vec3 background{0.11f, 0.115f, 0.125f};      // linear, [0, 1]
-  float exposure = 1.0f;                            // (0, 16]
+  float wrinkle_strength = 1.0f;                // [0, 4]
+  glm::vec3 background{0.11f, 0.115f, 0.125f};  // linear, [0, 1]
+  float exposure = 1.0f;                        // (0, 16]
 };
 
 struct FrameRequest {
@@ -51,7 +56,7 @@ struct FrameRequest {
   std::span<const float> filtered_values;
   Settings settings;
   Camera camera;
-  int width = 640;    // [16, 4096]
+  int width = 640;  // [16, 4096]
   int height = 640;
   std::uint64_t token = 0;  // comes back with the picture
 };
@@ -69,20 +74,28 @@ struct RendererOptions {
 };
 
 // Draws one character headless. Owns its EGL context: one thread, the one that created it.
+// Keeps nothing of the character given to Create().
 //
 // Two ways to a picture: Render() waits; Submit() then Poll() keeps up to two read-backs in flight.
 class Renderer {
  public:
-  // Errors: kUnavailable (no EGL device gives OpenGL 4.5: says which were tried), kInternal (a shader
-  // does not compile here: the driver's log), kInvalidArgument.
-  [[nodiscard]] static Result<std::unique_ptr<Renderer>> Create(const character::Character& character,
-                                                                const RendererOptions& options = {});
+  // Errors: kUnavailable (no EGL device gives OpenGL 4.5: says which were tried), kInternal (a
+  // shader does not compile here: the driver's log), kInvalidArgument and kLimit (the character's
+  // meshes and pictures), kNotFound (a mask or wrinkle map that the rig names is not among its
+  // pictures).
+  [[nodiscard]] static Result<std::unique_ptr<Renderer>> Create(
+      const character::Character& character, const RendererOptions& options = {});
   virtual ~Renderer() = default;
 
-  [[nodiscard]] virtual Status Submit(const FrameRequest& request) = 0;  // kUnavailable: two in flight
+  // Draws; what the request points at may go when it returns. Errors: kInvalidArgument and
+  // kNonFinite
+  // (`where` is the field), kUnavailable (two in flight, or the context was lost: create anew),
+  // kInternal (a shader).
+  [[nodiscard]] virtual Status Submit(const FrameRequest& request) = 0;
   // The oldest picture that is ready; `wait`: blocks for it. An image of width 0: none yet.
   [[nodiscard]] virtual Result<Image> Poll(bool wait) = 0;
   [[nodiscard]] virtual int in_flight() const = 0;
+  // Submit and wait. Pictures still in flight are dropped.
   [[nodiscard]] Result<Image> Render(const FrameRequest& request);
 
   // Vendor, renderer and version of the context, for the log.

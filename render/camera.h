@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include <glm/mat4x4.hpp>
+
+#include "render/renderer.h"
+
+namespace furrow::render {
+
+// A camera as the shaders need it. Model space of the posed character; the camera looks down its
+// -Z.
+struct CameraFrame {
+  glm::mat4 view_projection{1.0f};
+  glm::vec3 position{0.0f};
+  // The camera's heading: a rotation about +Y that takes "the camera looks to -Z" to where it
+  // looks. The lights turn with it, so that every preset is lit alike.
+  glm::mat3 heading{1.0f};
+};
+
+// `model`: the pose, num_joints long; the camera follows it as Camera::follow_joint says. `aspect`:
+// width / height. Near and far planes are set from the distance to the target.
+[[nodiscard]] CameraFrame ComputeCamera(const Camera& camera, const wrinkle::Skeleton& skeleton,
+                                        std::span<const glm::mat4> model, float aspect);
+
+// Renderer::Preset(), all of them: (name, camera).
+[[nodiscard]] std::vector<std::pair<std::string, Camera>> CameraPresets(
+    const character::Character& character);
+// The error that lists the names.
+[[nodiscard]] Status UnknownPreset(std::string_view name);
+
+}  // namespace furrow::render

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <utility>
+
+#include <epoxy/gl.h>
+
+// OpenGL names that delete themselves. Private to render/: no public header includes this one.
+namespace furrow::render::gl {
+
+// Owns one name. Destroy with its context current.
+template <class Kind>
+class Object {
+ public:
+  Object() = default;
+  explicit Object(GLuint name) : name_(name) {}
+  Object(Object&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  Object& operator=(Object&& other) noexcept {
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  ~Object() {
+    if (name_ != 0) Kind::Destroy(name_);
+  }
+  [[nodiscard]] GLuint name() const { return name_; }
+  explicit operator bool() const { return name_ != 0; }
+
+ private:
+  GLuint name_ = 0;
+};
+
+struct BufferKind {
+  static void Destroy(GLuint name) { glDeleteBuffers(1, &name); }
+};
+struct TextureKind {
+  static void Destroy(GLuint name) { glDeleteTextures(1, &name); }
+};
+struct FramebufferKind {
+  static void Destroy(GLuint name) { glDeleteFramebuffers(1, &name); }
+};
+struct VertexArrayKind {
+  static void Destroy(GLuint name) { glDeleteVertexArrays(1, &name); }
+};
+struct ShaderKind {
+  static void Destroy(GLuint name) { glDeleteShader(name); }
+};
+struct ProgramKind {
+  static void Destroy(GLuint name) { glDeleteProgram(name); }
+};
+
+using Buffer = Object<BufferKind>;
+using Texture = Object<TextureKind>;
+using Framebuffer = Object<FramebufferKind>;
+using VertexArray = Object<VertexArrayKind>;
+using Shader = Object<ShaderKind>;
+using Program = Object<ProgramKind>;
+
+[[nodiscard]] Buffer MakeBuffer();
+// Immutable contents, written once.
+[[nodiscard]] Buffer MakeStaticBuffer(const void* data, std::size_t bytes);
+[[nodiscard]] Texture MakeTexture(GLenum target);
+[[nodiscard]] Framebuffer MakeFramebuffer();
+[[nodiscard]] VertexArray MakeVertexArray();
+
+// New storage with new contents: a frame still in flight keeps the old one, so nothing waits. An
+// empty range becomes 16 zero bytes, since a shader's block must be backed by something.
+void Upload(const Buffer& buffer, const void* data, std::size_t bytes);
+
+}  // namespace furrow::render::gl

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/gpu_character.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+
+namespace furrow::render {
+namespace {
+
+using character::Character;
+using character::Material;
+using character::Picture;
+using character::Vertex;
+
+// Mirrors the Material block of scene.frag.glsl (std140).
+struct MaterialBlock {
+  glm::vec4 base_colour;
+  float roughness;
+  float specular;
+  float alpha_cutoff;
+  float padding = 0.0f;
+};
+static_assert(sizeof(MaterialBlock) == 32);
+
+// Scales the specular lobe. Skin reflects 2.8% face on, water before the eye 2%; the eye's film is
+// smooth, so that its highlight is a small bright point.
+float SpecularOf(Material::Kind kind) {
+  switch (kind) {
+    case Material::Kind::kSkin: return 0.028f;
+    case Material::Kind::kEye: return 0.04f;
+    case Material::Kind::kHair: return 0.03f;
+    case Material::Kind::kCloth: return 0.012f;
+    case Material::Kind::kOther: return 0.03f;
+  }
+  return 0.03f;
+}
+
+float RoughnessOf(const Material& material) {
+  return material.kind == Material::Kind::kEye ? std::min(material.roughness, 0.3f)
+                                               : material.roughness;
+}
+
+int NumMips(int width, int height) {
+  return std::bit_width(static_cast<unsigned>(std::max(width, height)));
+}
+
+void SetFiltering(const gl::Texture& texture, GLenum wrap) {
+  glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_S, static_cast<GLint>(wrap));
+  glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_T, static_cast<GLint>(wrap));
+}
+
+void DescribeVertices(const GpuMesh& mesh) {
+  const GLuint array = mesh.vertex_array.name();
+  glVertexArrayVertexBuffer(array, 0, mesh.vertices.name(), 0, sizeof(Vertex));
+  const auto attribute = [&](GLuint location, GLint size, std::size_t offset) {
+    glEnableVertexArrayAttrib(array, location);
+    glVertexArrayAttribFormat(array, location, size, GL_FLOAT, GL_FALSE,
+                              static_cast<GLuint>(offset));
+    glVertexArrayAttribBinding(array, location, 0);
+  };
+  attribute(0, 3, offsetof(Vertex, position));
+  attribute(1, 3, offsetof(Vertex, normal));
+  attribute(2, 4, offsetof(Vertex, tangent));
+  attribute(3, 2, offsetof(Vertex, uv));
+  attribute(5, 4, offsetof(Vertex, skin_weights));
+  glEnableVertexArrayAttrib(array, 4);
+  glVertexArrayAttribIFormat(array, 4, 4, GL_UNSIGNED_SHORT, offsetof(Vertex, joints));
+  glVertexArrayAttribBinding(array, 4, 0);
+}
+
+Status CheckMesh(const character::Mesh& mesh, const Character& character) {
+  const auto fail = [&](const char* what) {
+    return Status(StatusCode::kInvalidArgument, what, "mesh '" + mesh.name + "'");
+  };
+  if (mesh.material < 0 || mesh.material >= static_cast<int>(character.materials.size())) {
+    return fail("has no material");
+  }
+  if (mesh.indices.size() % 3 != 0) return fail("is not made of triangles");
+  for (const std::uint32_t index : mesh.indices) {
+    if (index >= mesh.vertices.size()) return fail("has an index beyond its vertices");
+  }
+  for (const Vertex& vertex : mesh.vertices) {
+    for (const std::uint16_t joint : vertex.joints) {
+      if (joint >= character.skeleton.num_joints())
+        return fail("is skinned to a joint out of range");
+    }
+  }
+  return {};
+}
+
+Status CheckPicture(const Picture& picture) {
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+  const std::size_t samples =
+      static_cast<std::size_t>(picture.width) * picture.height * picture.channels;
+  const std::string where = "picture '" + picture.name + "'";
+  if (picture.width < 1 || picture.height < 1 || picture.channels < 1 ||
+      std::max(picture.pixels.size(), picture.pixels16.size()) != samples) {
+    return {StatusCode::kInvalidArgument, "its pixels do not fit its size", where};
+  }
+  if (std::max(picture.width, picture.height) > limit) {
+    return {StatusCode::kLimit, "larger than the driver's " + std::to_string(limit) + " pixels",
+            where};
+  }
+  return {};
+}
+
+// 8-bit RGBA, nearest texel: only masks of other sizes than their neighbours come here.
+std::vector<std::uint8_t> ResizeRgba8(const Picture& picture, int width, int height) {
+  const std::vector<std::uint8_t> rgba = ToRgba8(picture);
+  if (picture.width == width && picture.height == height) return rgba;
+  std::vector<std::uint8_t> result(static_cast<std::size_t>(width) * height * 4);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const int sx = x * picture.width / width;
+      const int sy = y * picture.height / height;
+      const auto* from = &rgba[(static_cast<std::size_t>(sy) * picture.width + sx) * 4];
+      std::copy_n(from, 4, &result[(static_cast<std::size_t>(y) * width + x) * 4]);
+    }
+  }
+  return result;
+}
+
+gl::Texture MakeArray(GLenum format, int width, int height, int layers) {
+  gl::Texture texture = gl::MakeTexture(GL_TEXTURE_2D_ARRAY);
+  glTextureStorage3D(texture.name(), NumMips(width, height), format, width, height, layers);
+  SetFiltering(texture, GL_REPEAT);
+  return texture;
+}
+
+Status CheckLayers(std::size_t layers, const char* what) {
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &limit);
+  if (layers <= static_cast<std::size_t>(limit)) return {};
+  return {StatusCode::kLimit,
+          std::string("more ") + what + " than the driver's " + std::to_string(limit),
+          "wrinkle rig"};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<GpuCharacter>> GpuCharacter::Create(const Character& character) {
+  std::unique_ptr<GpuCharacter> gpu(new GpuCharacter());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  for (const Picture& picture : character.pictures) {
+    if (Status status = CheckPicture(picture); !status.ok()) return status;
+  }
+  if (Status status = gpu->AddMaterials(character); !status.ok()) return status;
+  if (Status status = gpu->AddMeshes(character); !status.ok()) return status;
+  if (Status status = gpu->AddMasks(character); !status.ok()) return status;
+  if (Status status = gpu->AddWrinkleMaps(character); !status.ok()) return status;
+  return gpu;
+}
+
+Status GpuCharacter::AddMaterials(const Character& character) {
+  const int num_pictures = static_cast<int>(character.pictures.size());
+  for (const Material& source : character.materials) {
+    for (const int picture :
+         {source.base_colour_texture, source.normal_texture, source.roughness_texture}) {
+      if (picture >= num_pictures) {
+        return {StatusCode::kInvalidArgument, "names a picture that is not there",
+                "material '" + source.name + "'"};
+      }
+    }
+    const MaterialBlock block{source.base_colour, RoughnessOf(source), SpecularOf(source.kind),
+                              source.alpha_cutoff};
+    GpuMaterial material;
+    material.block = gl::MakeStaticBuffer(&block, sizeof(block));
+    material.base_colour = ColourTexture(character, source.base_colour_texture, true);
+    material.roughness = ColourTexture(character, source.roughness_texture, false);
+    material.derivatives = DerivativeTexture(character, source.normal_texture);
+    material.group = GroupOf(character, source.kind);
+    material.alpha_test = source.alpha_cutoff > 0.0f;
+    material.double_sided = source.double_sided;
+    materials_.push_back(std::move(material));
+  }
+  return {};
+}
+
+Status GpuCharacter::AddMeshes(const Character& character) {
+  for (const character::Mesh& source : character.meshes) {
+    if (Status status = CheckMesh(source, character); !status.ok()) return status;
+    GpuMesh mesh;
+    mesh.vertices =
+        gl::MakeStaticBuffer(source.vertices.data(), source.vertices.size() * sizeof(Vertex));
+    mesh.indices = gl::MakeStaticBuffer(source.indices.data(), source.indices.size() * 4);
+    mesh.vertex_array = gl::MakeVertexArray();
+    mesh.num_indices = static_cast<GLsizei>(source.indices.size());
+    mesh.material = source.material;
+    DescribeVertices(mesh);
+    glVertexArrayElementBuffer(mesh.vertex_array.name(), mesh.indices.name());
+    meshes_.push_back(std::move(mesh));
+  }
+  return {};
+}
+
+const GpuMesh& GpuCharacter::Unindexed(std::size_t index) {
+  const auto found = unindexed_.find(index);
+  if (found != unindexed_.end()) return found->second;
+  const GpuMesh& source = meshes_[index];
+  const auto num_indices = static_cast<std::size_t>(source.num_indices);
+  std::vector<std::uint32_t> indices(num_indices);
+  glGetNamedBufferSubData(source.indices.name(), 0, static_cast<GLsizeiptr>(num_indices * 4),
+                          indices.data());
+  GLint bytes = 0;
+  glGetNamedBufferParameteriv(source.vertices.name(), GL_BUFFER_SIZE, &bytes);
+  std::vector<Vertex> vertices(static_cast<std::size_t>(bytes) / sizeof(Vertex));
+  glGetNamedBufferSubData(source.vertices.name(), 0,
+                          static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
+                          vertices.data());
+  std::vector<Vertex> expanded;
+  expanded.reserve(num_indices);
+  for (const std::uint32_t vertex : indices) expanded.push_back(vertices[vertex]);
+  GpuMesh mesh;
+  mesh.vertices = gl::MakeStaticBuffer(expanded.data(), num_indices * sizeof(Vertex));
+  mesh.vertex_array = gl::MakeVertexArray();
+  mesh.num_indices = source.num_indices;
+  mesh.material = source.material;
+  DescribeVertices(mesh);
+  return unindexed_.emplace(index, std::move(mesh)).first->second;
+}
+
+GLuint GpuCharacter::ColourTexture(const Character& character, int picture, bool srgb) {
+  if (picture < 0) return 0;
+  gl::Texture& texture = colour_textures_[{picture, srgb}];
+  if (texture) return texture.name();
+  const Picture& source = character.pictures[static_cast<std::size_t>(picture)];
+  const std::vector<std::uint8_t> rgba = ToRgba8(source);
+  texture = gl::MakeTexture(GL_TEXTURE_2D);
+  glTextureStorage2D(texture.name(), NumMips(source.width, source.height),
+                     srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8, source.width, source.height);
+  glTextureSubImage2D(texture.name(), 0, 0, 0, source.width, source.height, GL_RGBA,
+                      GL_UNSIGNED_BYTE, rgba.data());
+  glGenerateTextureMipmap(texture.name());
+  SetFiltering(texture, GL_REPEAT);
+  return texture.name();
+}
+
+GLuint GpuCharacter::DerivativeTexture(const Character& character, int picture) {
+  if (picture < 0) return 0;
+  gl::Texture& texture = derivative_textures_[picture];
+  if (texture) return texture.name();
+  const DerivativeMap map =
+      DerivativesFromNormalMap(character.pictures[static_cast<std::size_t>(picture)]);
+  texture = gl::MakeTexture(GL_TEXTURE_2D);
+  glTextureStorage2D(texture.name(), NumMips(map.width, map.height), GL_RG16F, map.width,
+                     map.height);
+  glTextureSubImage2D(texture.name(), 0, 0, 0, map.width, map.height, GL_RG, GL_FLOAT,
+                      map.texels.data());
+  glGenerateTextureMipmap(texture.name());
+  SetFiltering(texture, GL_REPEAT);
+  return texture.name();
+}
+
+Status GpuCharacter::AddMasks(const Character& character) {
+  std::vector<const Picture*> pictures;
+  int width = 1;
+  int height = 1;
+  for (const wrinkle::Region& region : character.rig.regions) {
+    const std::string& name = region.mask.texture;
+    if (region.mask.kind != wrinkle::Mask::Kind::kTexture || layout_.MaskLayer(name) >= 0) continue;
+    const int index = character.FindRigPicture(name);
+    if (index < 0) {
+      return {StatusCode::kNotFound, "mask texture '" + name + "' is not loaded",
+              "region '" + region.name + "'"};
+    }
+    pictures.push_back(&character.pictures[static_cast<std::size_t>(index)]);
+    width = std::max(width, pictures.back()->width);
+    height = std::max(height, pictures.back()->height);
+    layout_.masks.push_back({name, static_cast<int>(layout_.masks.size())});
+  }
+  if (Status status = CheckLayers(pictures.size(), "mask textures"); !status.ok()) return status;
+  layout_.num_mask_layers = std::max(1, static_cast<int>(pictures.size()));
+  masks_ = MakeArray(GL_RGBA8, width, height, layout_.num_mask_layers);
+  for (std::size_t layer = 0; layer < pictures.size(); ++layer) {
+    const std::vector<std::uint8_t> rgba = ResizeRgba8(*pictures[layer], width, height);
+    glTextureSubImage3D(masks_.name(), 0, 0, 0, static_cast<GLint>(layer), width, height, 1,
+                        GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+  }
+  glGenerateTextureMipmap(masks_.name());
+  return {};
+}
+
+Status GpuCharacter::AddWrinkleMaps(const Character& character) {
+  std::vector<DerivativeMap> maps;
+  int width = 1;
+  int height = 1;
+  for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
+    const bool derivative = !map.derivative.empty();
+    const std::string& name = derivative ? map.derivative : map.normal;
+    layout_.map_layers.push_back(name.empty() ? -1 : static_cast<int>(maps.size()));
+    if (name.empty()) continue;
+    const int index = character.FindRigPicture(name);
+    if (index < 0) {
+      return {StatusCode::kNotFound, "texture '" + name + "' is not loaded",
+              "wrinkle map '" + map.name + "'"};
+    }
+    const Picture& picture = character.pictures[static_cast<std::size_t>(index)];
+    maps.push_back(derivative ? DerivativesFromDerivativeMap(picture)
+                              : DerivativesFromNormalMap(picture));
+    width = std::max(width, picture.width);
+    height = std::max(height, picture.height);
+  }
+  if (Status status = CheckLayers(maps.size(), "wrinkle maps"); !status.ok()) return status;
+  const int layers = std::max(1, static_cast<int>(maps.size()));
+  wrinkle_derivatives_ = MakeArray(GL_RG16F, width, height, layers);
+  for (std::size_t layer = 0; layer < maps.size(); ++layer) {
+    const DerivativeMap map = Resample(maps[layer], width, height);
+    glTextureSubImage3D(wrinkle_derivatives_.name(), 0, 0, 0, static_cast<GLint>(layer), width,
+                        height, 1, GL_RG, GL_FLOAT, map.texels.data());
+  }
+  glGenerateTextureMipmap(wrinkle_derivatives_.name());
+  return {};
+}
+
+}  // namespace furrow::render

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "character/character.h"
+#include "render/derivative_map.h"
+#include "render/gl_objects.h"
+#include "render/wrinkle_table.h"
+
+namespace furrow::render {
+
+struct GpuMesh {
+  gl::VertexArray vertex_array;
+  gl::Buffer vertices;
+  gl::Buffer indices;
+  GLsizei num_indices = 0;
+  int material = 0;
+};
+
+struct GpuMaterial {
+  gl::Buffer block;        // the Material block of scene.frag.glsl
+  GLuint base_colour = 0;  // textures; 0: none
+  GLuint derivatives = 0;
+  GLuint roughness = 0;
+  WrinkleGroup group = WrinkleGroup::kNone;
+  bool alpha_test = false;
+  bool double_sided = false;
+};
+
+// A character's meshes, materials and textures on the GPU. Normal maps become derivative maps in
+// half floats, with mips averaged from the derivatives; masks and wrinkle maps become one array
+// each.
+class GpuCharacter {
+ public:
+  // Errors: kInvalidArgument (a mesh or material points to nothing), kLimit (more layers or larger
+  // textures than the driver takes). `character` is not kept.
+  [[nodiscard]] static Result<std::unique_ptr<GpuCharacter>> Create(
+      const character::Character& character);
+
+  [[nodiscard]] std::span<const GpuMesh> meshes() const { return meshes_; }
+  [[nodiscard]] const GpuMaterial& material(int index) const { return materials_[index]; }
+  [[nodiscard]] GLuint masks() const { return masks_.name(); }
+  [[nodiscard]] GLuint wrinkle_derivatives() const { return wrinkle_derivatives_.name(); }
+  [[nodiscard]] const WrinkleLayout& layout() const { return layout_; }
+  // A mesh with three vertices of its own to every triangle, for the view wireframe; made on first
+  // use.
+  [[nodiscard]] const GpuMesh& Unindexed(std::size_t mesh);
+
+ private:
+  GpuCharacter() = default;
+  [[nodiscard]] Status AddMaterials(const character::Character& character);
+  [[nodiscard]] Status AddMeshes(const character::Character& character);
+  [[nodiscard]] Status AddMasks(const character::Character& character);
+  [[nodiscard]] Status AddWrinkleMaps(const character::Character& character);
+  GLuint ColourTexture(const character::Character& character, int picture, bool srgb);
+  GLuint DerivativeTexture(const character::Character& character, int picture);
+
+  std::vector<GpuMesh> meshes_;
+  std::map<std::size_t, GpuMesh> unindexed_;
+  std::vector<GpuMaterial> materials_;
+  std::map<std::pair<int, bool>, gl::Texture> colour_textures_;  // (picture, is it sRGB)
+  std::map<int, gl::Texture> derivative_textures_;
+  gl::Texture masks_;
+  gl::Texture wrinkle_derivatives_;
+  WrinkleLayout layout_;
+};
+
+}  // namespace furrow::render

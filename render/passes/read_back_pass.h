@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "render/frame_graph.h"
+#include "render/gl_device.h"
+#include "render/read_back.h"
+
+namespace furrow::render {
+
+// Starts the picture's way back to memory: the side effect that keeps the passes before it.
+void AddReadBackPass(FrameGraph* graph, FrameGraph::Handle picture, std::uint64_t token,
+                     GlDevice* device, ReadBack* read_back);
+
+}  // namespace furrow::render

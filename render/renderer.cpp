@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/renderer.h"
+
+#include <array>
+
+#include "render/camera.h"
+#include "render/egl_context.h"
+#include "render/passes/composite_pass.h"
+#include "render/passes/read_back_pass.h"
+#include "render/passes/scene_pass.h"
+#include "render/request_check.h"
+
+namespace furrow::render {
+namespace {
+
+constexpr std::array<std::string_view, 6> kViewNames = {"final",        "normal",  "mask_dynamic",
+                                                        "mask_texture", "weights", "wireframe"};
+constexpr int kSamples = 4;  // of the scene's targets, for smooth silhouettes
+
+// Members in the order of need: what OpenGL objects live in is destroyed last.
+class GlRenderer final : public Renderer {
+ public:
+  static Result<std::unique_ptr<Renderer>> Create(const character::Character& character,
+                                                  std::string_view device) {
+    Result<std::unique_ptr<EglContext>> context = EglContext::Create(device);
+    if (!context.ok()) return context.status();
+    Result<std::unique_ptr<GpuCharacter>> gpu = GpuCharacter::Create(character);
+    if (!gpu.ok()) return gpu.status();
+    Result<std::unique_ptr<WrinkleTables>> tables =
+        WrinkleTables::Create(character, (*gpu)->layout());
+    if (!tables.ok()) return tables.status();
+    return std::unique_ptr<Renderer>(
+        new GlRenderer(character, std::move(*context), std::move(*gpu), std::move(*tables)));
+  }
+
+  ~GlRenderer() override {
+    // The objects below are deleted in their own context, whichever was current. If it was lost,
+    // the driver ignores the calls.
+    (void)context_->MakeCurrent().ok();
+  }
+
+  Status Submit(const FrameRequest& request) override {
+    if (Status status = CheckRequest(request, skeleton_.num_joints()); !status.ok()) {
+      return status;
+    }
+    if (read_back_.in_flight() == ReadBack::kCapacity) {
+      return {StatusCode::kUnavailable, "two pictures are in flight", "renderer", "poll first"};
+    }
+    if (Status status = context_->MakeCurrent(); !status.ok()) return status;
+    FrameGraph graph;
+    if (Status status = BuildFrame(request, &graph); !status.ok()) return status;
+    if (Status status = graph.Compile(); !status.ok()) return status;
+    const Status status = graph.Execute(&pool_);
+    pool_.EndFrame();
+    return status;
+  }
+
+  Result<Image> Poll(bool wait) override {
+    if (Status status = context_->MakeCurrent(); !status.ok()) return status;
+    Result<std::optional<Image>> image = read_back_.Take(wait);
+    if (!image.ok()) return image.status();
+    return image->value_or(Image());
+  }
+
+  int in_flight() const override { return read_back_.in_flight(); }
+  std::string description() const override { return context_->description(); }
+  Result<Camera> Preset(std::string_view name) const override {
+    for (const auto& [preset, camera] : presets_) {
+      if (preset == name) return camera;
+    }
+    return UnknownPreset(name);
+  }
+
+ private:
+  GlRenderer(const character::Character& character, std::unique_ptr<EglContext> context,
+             std::unique_ptr<GpuCharacter> gpu, std::unique_ptr<WrinkleTables> tables)
+      : skeleton_(character.skeleton),
+        inverse_bind_matrices_(character.inverse_bind_matrices),
+        presets_(CameraPresets(character)),
+        context_(std::move(context)),
+        pool_(&device_),
+        gpu_(std::move(gpu)),
+        tables_(std::move(tables)),
+        scene_pass_(skeleton_, inverse_bind_matrices_, gpu_.get(), tables_.get(), &shaders_,
+                    &device_),
+        composite_pass_(&shaders_, &device_) {}
+
+  // The pipeline, in its order.
+  Status BuildFrame(const FrameRequest& request, FrameGraph* graph) {
+    const ScenePass::Targets targets{request.width, request.height, PixelFormat::kRgba16F,
+                                     kSamples};
+    const Result<FrameGraph::Handle> scene = scene_pass_.Add(graph, request, targets);
+    if (!scene.ok()) return scene.status();
+    const TextureDesc scene_desc{targets.width, targets.height, targets.format, targets.samples};
+    const FrameGraph::Handle picture =
+        composite_pass_.Add(graph, *scene, scene_desc, request.settings);
+    AddReadBackPass(graph, picture, request.token, &device_, &read_back_);
+    return {};
+  }
+
+  const wrinkle::Skeleton skeleton_;
+  const std::vector<glm::mat4> inverse_bind_matrices_;
+  const std::vector<std::pair<std::string, Camera>> presets_;
+  std::unique_ptr<EglContext> context_;
+  GlDevice device_;
+  TransientPool pool_;
+  ShaderLibrary shaders_;
+  std::unique_ptr<GpuCharacter> gpu_;
+  std::unique_ptr<WrinkleTables> tables_;
+  ScenePass scene_pass_;
+  CompositePass composite_pass_;
+  ReadBack read_back_;
+};
+
+}  // namespace
+
+std::string_view ViewName(View view) { return kViewNames[static_cast<std::size_t>(view)]; }
+
+Result<View> ParseView(std::string_view name) {
+  std::string names;
+  for (std::size_t i = 0; i < kViewNames.size(); ++i) {
+    if (kViewNames[i] == name) return static_cast<View>(i);
+    names += (names.empty() ? "" : ", ") + std::string(kViewNames[i]);
+  }
+  return Status(StatusCode::kInvalidArgument, "no view '" + std::string(name) + "'", "view",
+                "one of " + names);
+}
+
+Result<std::unique_ptr<Renderer>> Renderer::Create(const character::Character& character,
+                                                   const RendererOptions& options) {
+  return GlRenderer::Create(character, options.device);
+}
+
+Result<Image> Renderer::Render(const FrameRequest& request) {
+  while (in_flight() > 0) {  // pictures that nobody polled: the caller wants this one
+    const Result<Image> old = Poll(true);
+    if (!old.ok()) return old;
+  }
+  if (Status status = Submit(request); !status.ok()) return status;
+  return Poll(true);
+}
+
+}  // namespace furrow::render

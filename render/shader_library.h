@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <compare>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "render/gl_objects.h"
+#include "render/renderer.h"
+#include "render/shader_loader.h"
+
+namespace furrow::render {
+
+// What a program of scene.{vert,frag}.glsl is compiled for. Everything that is the same for a whole
+// draw is settled here and not by branches: llvmpipe runs both sides of a branch.
+struct SceneShader {
+  View view = View::kFinal;
+  NormalBlend normal_blend = NormalBlend::kPartialDerivative;
+  bool wrinkle_texture = false;  // some active map is masked by textures
+  bool wrinkle_dynamic = false;  // ... by the joints' influences
+  bool base_colour_map = false;
+  bool base_normal_map = false;
+  bool roughness_map = false;
+  bool alpha_test = false;
+  int mask_layers = 1;
+  int map_slots = 1;  // vec4s of dynamic masks: a quarter of the rig's maps, rounded up
+
+  friend auto operator<=>(const SceneShader&, const SceneShader&) = default;
+};
+
+struct CompositeShader {
+  int samples = 4;
+  bool tonemap = true;
+
+  friend auto operator<=>(const CompositeShader&, const CompositeShader&) = default;
+};
+
+// "NAME VALUE" lines for ExpandShader().
+[[nodiscard]] std::vector<std::string> Defines(const SceneShader& shader);
+[[nodiscard]] std::vector<std::string> Defines(const CompositeShader& shader);
+
+// Programs, compiled when first asked for and kept. Needs a current context.
+//
+// Errors: kInternal with the driver's log, its source numbers replaced by file names.
+class ShaderLibrary {
+ public:
+  [[nodiscard]] Result<GLuint> Get(const SceneShader& shader);
+  [[nodiscard]] Result<GLuint> Get(const CompositeShader& shader);
+
+ private:
+  std::map<SceneShader, gl::Program> scene_;
+  std::map<CompositeShader, gl::Program> composite_;
+};
+
+// Compiles and links one vertex and one fragment shader of `files`.
+[[nodiscard]] Result<gl::Program> BuildProgram(std::string_view vertex, std::string_view fragment,
+                                               std::span<const std::string> defines,
+                                               std::span<const ShaderFile> files);
+
+}  // namespace furrow::render

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/wrinkle_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/vec3.hpp>
+
+namespace furrow::render {
+namespace {
+
+using character::Material;
+
+bool Has(const character::Character& character, Material::Kind kind) {
+  return std::any_of(character.materials.begin(), character.materials.end(),
+                     [&](const Material& material) { return material.kind == kind; });
+}
+
+// The thesis' figure 4.3: stretch green, squash red; what else there is in blue and amber.
+glm::vec4 MapColour(std::string_view name, int index) {
+  if (name == "stretch") return {0.05f, 0.8f, 0.1f, 1.0f};
+  if (name == "squash") return {0.9f, 0.04f, 0.03f, 1.0f};
+  return index % 2 == 0 ? glm::vec4{0.05f, 0.3f, 0.95f, 1.0f} : glm::vec4{0.95f, 0.5f, 0.02f, 1.0f};
+}
+
+// Evenly spread hues at full saturation; `turn` in [0, 1).
+glm::vec4 Hue(float turn) {
+  const auto channel = [&](float shift) {
+    const float x = std::abs(std::fmod(turn + shift, 1.0f) * 6.0f - 3.0f) - 1.0f;
+    return std::clamp(x, 0.0f, 1.0f);
+  };
+  return {channel(0.0f), channel(2.0f / 3.0f), channel(1.0f / 3.0f), 1.0f};
+}
+
+wrinkle::Rig WithSkinningMasks(wrinkle::Rig rig) {
+  for (wrinkle::Region& region : rig.regions) region.mask.kind = wrinkle::Mask::Kind::kSkinning;
+  return rig;
+}
+
+const wrinkle::Feed* FeedOf(const wrinkle::Region& region, std::string_view map) {
+  const auto found = std::find_if(region.feeds.begin(), region.feeds.end(),
+                                  [&](const wrinkle::Feed& feed) { return feed.map == map; });
+  return found == region.feeds.end() ? nullptr : &*found;
+}
+
+// Whether a pose or a blend shape feeds the map somewhere.
+bool IsFacial(const wrinkle::Rig& rig, std::string_view map) {
+  const auto facial = [&](const wrinkle::Feed::Source& source) {
+    return std::any_of(rig.drivers.begin(), rig.drivers.end(), [&](const wrinkle::Driver& driver) {
+      return driver.name == source.driver && (driver.kind == wrinkle::Driver::Kind::kPose ||
+                                              driver.kind == wrinkle::Driver::Kind::kBlendShape);
+    });
+  };
+  return std::any_of(rig.regions.begin(), rig.regions.end(), [&](const wrinkle::Region& region) {
+    const wrinkle::Feed* feed = FeedOf(region, map);
+    return feed != nullptr && std::any_of(feed->sources.begin(), feed->sources.end(), facial);
+  });
+}
+
+}  // namespace
+
+int WrinkleLayout::MaskLayer(std::string_view texture) const {
+  const auto found = std::find_if(masks.begin(), masks.end(),
+                                  [&](const MaskTexture& mask) { return mask.name == texture; });
+  return found == masks.end() ? -1 : found->layer;
+}
+
+WrinkleGroup GroupOf(const character::Character& character, Material::Kind kind) {
+  switch (kind) {
+    case Material::Kind::kSkin: return WrinkleGroup::kSkin;
+    case Material::Kind::kCloth: return WrinkleGroup::kCloth;
+    case Material::Kind::kEye:
+    case Material::Kind::kHair: return WrinkleGroup::kNone;
+    case Material::Kind::kOther: break;
+  }
+  return Has(character, Material::Kind::kSkin) ? WrinkleGroup::kNone : WrinkleGroup::kSkin;
+}
+
+void WrinkleTables::NameMap::Match(std::span<const std::string> from,
+                                   std::span<const std::string> to) {
+  if (!source_index.empty() && std::equal(from.begin(), from.end(), source.begin(), source.end())) {
+    return;
+  }
+  source.assign(from.begin(), from.end());
+  source_index.clear();
+  for (const std::string& name : to) {
+    const auto found = std::find(from.begin(), from.end(), name);
+    source_index.push_back(found == from.end() ? -1 : static_cast<int>(found - from.begin()));
+  }
+}
+
+void WrinkleTables::NameMap::Carry(std::span<const float> from, std::span<float> to) const {
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    to[i] = source_index[i] < 0 ? 0.0f : from[static_cast<std::size_t>(source_index[i])];
+  }
+}
+
+Result<std::unique_ptr<WrinkleTables>> WrinkleTables::Create(const character::Character& character,
+                                                             WrinkleLayout layout) {
+  // Missing joints are the rig's business where weights are solved; here their masks stay empty.
+  const wrinkle::BindOptions options{.allow_missing = true};
+  Result<wrinkle::RigBinding> binding =
+      wrinkle::RigBinding::Create(character.rig, character.skeleton, {}, options);
+  if (!binding.ok()) return binding.status();
+  Result<wrinkle::RigBinding> skinning = wrinkle::RigBinding::Create(
+      WithSkinningMasks(character.rig), character.skeleton, {}, options);
+  if (!skinning.ok()) return skinning.status();
+  return std::unique_ptr<WrinkleTables>(
+      new WrinkleTables(character, std::move(layout), std::move(*binding), std::move(*skinning)));
+}
+
+WrinkleTables::WrinkleTables(const character::Character& character, WrinkleLayout layout,
+                             wrinkle::RigBinding binding, wrinkle::RigBinding skinning)
+    : layout_(std::move(layout)), binding_(std::move(binding)), skinning_(std::move(skinning)) {
+  DescribeMaps(character);
+  DescribeRegions(character.rig);
+  weights_.resize(binding_.weight_names().size());
+  values_.resize(binding_.driver_value_names().size());
+  influences_.resize(static_cast<std::size_t>(character.skeleton.num_joints()) * maps_.size());
+  map_is_dynamic_.resize(maps_.size());
+}
+
+void WrinkleTables::DescribeMaps(const character::Character& character) {
+  const bool has_cloth = Has(character, Material::Kind::kCloth);
+  for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
+    const int index = static_cast<int>(maps_.size());
+    MapInfo info;
+    info.entry.colour = MapColour(map.name, index);
+    info.entry.layer = layout_.map_layers[static_cast<std::size_t>(index)];
+    info.entry.map = index;
+    info.entry.amplitude = map.amplitude;
+    for (const wrinkle::Region& region : character.rig.regions) {
+      if (FeedOf(region, map.name) == nullptr) continue;
+      info.entry.lambda = static_cast<std::int32_t>(region.mask.lambda);
+      info.entry.smooth_width = std::max(region.mask.smooth_width, 1e-6f);
+    }
+    const bool on_skin = !has_cloth || IsFacial(character.rig, map.name);
+    info.in_group[static_cast<int>(WrinkleGroup::kSkin)] = on_skin;
+    info.in_group[static_cast<int>(WrinkleGroup::kCloth)] = !on_skin;
+    maps_.push_back(info);
+  }
+}
+
+void WrinkleTables::DescribeRegions(const wrinkle::Rig& rig) {
+  palette_.assign(static_cast<std::size_t>(layout_.num_mask_layers) * 4, glm::vec4(0.0f));
+  int num_textured = 0;
+  for (const wrinkle::Region& region : rig.regions) {
+    const bool textured = region.mask.kind == wrinkle::Mask::Kind::kTexture;
+    const int layer = textured ? layout_.MaskLayer(region.mask.texture) : -1;
+    for (const wrinkle::Feed& feed : region.feeds) {
+      const auto map =
+          std::find_if(rig.wrinkle_maps.begin(), rig.wrinkle_maps.end(),
+                       [&](const auto& candidate) { return candidate.name == feed.map; });
+      const int index =
+          map == rig.wrinkle_maps.end() ? -1 : static_cast<int>(map - rig.wrinkle_maps.begin());
+      slots_.push_back({index, layer, region.mask.channel});
+    }
+    if (layer < 0) continue;
+    // The golden ratio spreads hues so that regions next to each other in the rig differ.
+    const float turn = std::fmod(0.61803399f * static_cast<float>(num_textured++), 1.0f);
+    palette_[static_cast<std::size_t>(layer * 4 + region.mask.channel)] = Hue(turn);
+  }
+}
+
+Status WrinkleTables::Update(const FrameRequest& request) {
+  const Settings& settings = request.settings;
+  std::fill(weights_.begin(), weights_.end(), 0.0f);
+  std::fill(values_.begin(), values_.end(), 0.0f);
+  if (request.binding != nullptr && settings.wrinkles) {
+    const auto weight_names = request.binding->weight_names();
+    const auto value_names = request.binding->driver_value_names();
+    if (request.wrinkle_weights.size() < weight_names.size()) {
+      return {StatusCode::kInvalidArgument, "fewer values than the binding has weights",
+              "wrinkle_weights"};
+    }
+    if (request.filtered_values.size() < value_names.size()) {
+      return {StatusCode::kInvalidArgument, "fewer values than the binding has driver values",
+              "filtered_values"};
+    }
+    weight_map_.Match(weight_names, binding_.weight_names());
+    value_map_.Match(value_names, binding_.driver_value_names());
+    weight_map_.Carry(request.wrinkle_weights, weights_);
+    value_map_.Carry(request.filtered_values, values_);
+  }
+  const MaskMode mode =
+      settings.view == View::kMaskDynamic ? MaskMode::kDynamic : settings.mask_mode;
+  UpdateInfluences(mode);
+  for (int group = 0; group < kNumWrinkleGroups; ++group) {
+    FillTable(group, mode, settings.wrinkle_strength);
+  }
+  return {};
+}
+
+void WrinkleTables::UpdateInfluences(MaskMode mode) {
+  std::fill(influences_.begin(), influences_.end(), 0.0f);
+  std::fill(map_is_dynamic_.begin(), map_is_dynamic_.end(), false);
+  if (mode == MaskMode::kTexture || maps_.empty()) return;
+  const wrinkle::RigBinding& binding = mode == MaskMode::kDynamic ? skinning_ : binding_;
+  const wrinkle::JointInfluenceJob job{&binding, values_, influences_};
+  if (job.Run() != wrinkle::JobStatus::kOk) {
+    std::fill(influences_.begin(), influences_.end(), 0.0f);  // non-finite values: no wrinkles
+    return;
+  }
+  for (std::size_t i = 0; i < influences_.size(); ++i) {
+    if (influences_[i] > 0.0f) map_is_dynamic_[i % maps_.size()] = true;
+  }
+}
+
+void WrinkleTables::FillTable(int group, MaskMode mode, float strength) {
+  WrinkleTable& table = tables_[group];
+  table = {};
+  for (std::size_t map = 0; map < maps_.size(); ++map) {
+    if (!maps_[map].in_group[group]) continue;
+    std::vector<glm::vec4> row(static_cast<std::size_t>(layout_.num_mask_layers), glm::vec4(0.0f));
+    bool textured = false;
+    for (std::size_t i = 0; i < slots_.size() && mode != MaskMode::kDynamic; ++i) {
+      const WeightSlot& slot = slots_[i];
+      if (slot.map != static_cast<int>(map) || slot.mask_layer < 0 || !(weights_[i] > 0.0f))
+        continue;
+      row[static_cast<std::size_t>(slot.mask_layer)][slot.channel] += weights_[i];
+      textured = true;
+    }
+    if (!textured && !map_is_dynamic_[map]) continue;
+    ActiveMap entry = maps_[map].entry;
+    entry.amplitude *= strength;
+    table.maps.push_back(entry);
+    table.mask_weights.insert(table.mask_weights.end(), row.begin(), row.end());
+    table.uses_texture = table.uses_texture || textured;
+    table.uses_dynamic = table.uses_dynamic || map_is_dynamic_[map];
+  }
+}
+
+}  // namespace furrow::render

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <glm/vec4.hpp>
+
+#include "render/renderer.h"
+
+namespace furrow::render {
+
+// Which surfaces a wrinkle map is drawn on. Faces are driven by poses and blend shapes, clothing by
+// the bend and twist of single joints (thesis 4.6): a map that some pose or blend shape feeds goes
+// on skin, any other on cloth, or on skin where the character wears none. Eyes and hair have no
+// wrinkles; other materials count as skin where the character marks no skin, and else have none.
+enum class WrinkleGroup { kSkin, kCloth, kNone };
+inline constexpr int kNumWrinkleGroups = 2;  // kNone has no table
+
+// One wrinkle map that this frame needs. Mirrors ActiveMap of shaders/common_wrinkles.glsl
+// (std430).
+struct ActiveMap {
+  glm::vec4 colour{1.0f};
+  std::int32_t layer = -1;
+  std::int32_t map = 0;
+  float amplitude = 1.0f;
+  std::int32_t lambda = 0;
+  float smooth_width = 0.25f;
+  float padding[3] = {};
+};
+static_assert(sizeof(ActiveMap) == 48);
+
+// The active list of one group of surfaces, as the shaders read it.
+struct WrinkleTable {
+  std::vector<ActiveMap> maps;
+  std::vector<glm::vec4> mask_weights;  // maps x mask layers
+  bool uses_texture = false;
+  bool uses_dynamic = false;
+};
+
+// Where the character's textures put the masks and maps of its rig.
+struct WrinkleLayout {
+  struct MaskTexture {
+    std::string name;
+    int layer = 0;
+  };
+  std::vector<MaskTexture> masks;
+  std::vector<int> map_layers;  // a map of the rig -> layer of the derivative array, -1: none
+  int num_mask_layers = 1;      // of the array; 1 where there is no mask at all
+
+  [[nodiscard]] int MaskLayer(std::string_view texture) const;  // -1: no such
+};
+
+[[nodiscard]] WrinkleGroup GroupOf(const character::Character& character,
+                                   character::Material::Kind kind);
+
+// Turns a request's wrinkle weights and driver values into what the shaders read.
+//
+// Values go by name from the request's binding to the character's own rig, bound to its own
+// skeleton: a stream may have other joints than the character, and its rig other drivers besides
+// the shared ones.
+class WrinkleTables {
+ public:
+  // `character` outlives the tables. Errors: those of wrinkle::RigBinding::Create.
+  [[nodiscard]] static Result<std::unique_ptr<WrinkleTables>> Create(
+      const character::Character& character, WrinkleLayout layout);
+
+  // kInvalidArgument: a span of the request is shorter than its binding's names; the message says
+  // which.
+  [[nodiscard]] Status Update(const FrameRequest& request);
+
+  [[nodiscard]] const WrinkleTable& table(WrinkleGroup group) const {
+    return tables_[static_cast<int>(group)];
+  }
+  [[nodiscard]] int num_maps() const { return static_cast<int>(maps_.size()); }
+  // num_joints of the character x num_maps(), joint-major; all 0 where no mask is dynamic.
+  [[nodiscard]] std::span<const float> joint_influences() const { return influences_; }
+  // Mask layers x 4 channels: each region's colour for the view mask_texture.
+  [[nodiscard]] std::span<const glm::vec4> mask_palette() const { return palette_; }
+
+ private:
+  struct MapInfo {
+    ActiveMap entry;
+    bool in_group[kNumWrinkleGroups] = {};
+  };
+  // One "<region>.<map>" of the rig, in the order of RigBinding::weight_names().
+  struct WeightSlot {
+    int map = -1;
+    int mask_layer = -1;  // -1: the region has no texture mask
+    int channel = 0;
+  };
+  // Where the values of one list of names are in another; -1: not there.
+  struct NameMap {
+    std::vector<std::string> source;
+    std::vector<int> source_index;  // one a target name
+    void Match(std::span<const std::string> from, std::span<const std::string> to);
+    void Carry(std::span<const float> from, std::span<float> to) const;
+  };
+
+  WrinkleTables(const character::Character& character, WrinkleLayout layout,
+                wrinkle::RigBinding binding, wrinkle::RigBinding skinning);
+  void DescribeMaps(const character::Character& character);
+  void DescribeRegions(const wrinkle::Rig& rig);
+  void UpdateInfluences(MaskMode mode);
+  void FillTable(int group, MaskMode mode, float strength);
+
+  WrinkleLayout layout_;
+  wrinkle::RigBinding binding_;   // the character's rig on its own skeleton
+  wrinkle::RigBinding skinning_;  // the same with every mask by skinning: MaskMode::kDynamic
+  std::vector<MapInfo> maps_;
+  std::vector<WeightSlot> slots_;
+  std::vector<glm::vec4> palette_;
+  NameMap weight_map_;
+  NameMap value_map_;
+  std::vector<float> weights_;  // of binding_
+  std::vector<float> values_;   // driver values of binding_
+  std::vector<float> influences_;
+  std::vector<bool> map_is_dynamic_;
+  WrinkleTable tables_[kNumWrinkleGroups];
+};
+
+}  // namespace furrow::render

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+
+const float PI = 3.14159265358979;
+
+float saturate(float x) { return clamp(x, 0.0, 1.0); }
+
+float pow5(float x) {
+  float x2 = x * x;
+  return x2 * x2 * x;
+}

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common_normals.glsl"
+#include "common_wrinkles.glsl"
+
+layout(binding = 2) uniform sampler2DArray u_masks;                // RGBA, one region a channel
+layout(binding = 3) uniform sampler2DArray u_wrinkle_derivatives;  // RG, n.xy / n.z
+
+// What the masks make of one active map here: the sum of the texture-masked regions' weight * mask,
+// plus the dynamic mask. Not below 0; above 1 only where masks overlap.
+float wrinkleCoefficient(int slot, vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS]) {
+  float sum = 0.0;
+#if WRINKLE_TEXTURE
+  for (int layer = 0; layer < MASK_LAYERS; ++layer) {
+    sum += dot(u_mask_weights[slot * MASK_LAYERS + layer], masks[layer]);
+  }
+#endif
+#if WRINKLE_DYNAMIC
+  sum += dynamicMasks[slot >> 2][slot & 3];
+#endif
+  return sum;
+}
+
+vec2 wrinkleDerivative(ActiveMap map, vec2 uv) {
+  return map.amplitude * texture(u_wrinkle_derivatives, vec3(uv, float(map.layer))).rg;
+}
+
+// Unit tangent-space normal of the base surface with its wrinkles. `base`: the base map's derivative.
+vec3 wrinkledNormal(vec2 base, vec2 uv, vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS]) {
+#if NORMAL_BLEND == 0
+  // Partial derivatives: p = p_base + sum w_i p_i. Heights superpose, so the sum is exact.
+  vec2 p = base;
+  for (int i = 0; i < u_active_count; ++i) {
+    ActiveMap map = u_active_maps[i];
+    if (map.layer < 0) continue;
+    p += wrinkleCoefficient(i, masks, dynamicMasks) * wrinkleDerivative(map, uv);
+  }
+  return normalFromDerivative(p);
+#else
+  // Thesis 4.5 with weights: normalize(b.xy + sum w_i n_i.xy, b.z * prod mix(1, n_i.z, w_i)).
+  vec3 b = normalFromDerivative(base);
+  for (int i = 0; i < u_active_count; ++i) {
+    ActiveMap map = u_active_maps[i];
+    if (map.layer < 0) continue;
+    float w = wrinkleCoefficient(i, masks, dynamicMasks);
+    vec3 n = normalFromDerivative(wrinkleDerivative(map, uv));
+    b.xy += w * n.xy;
+    b.z *= mix(1.0, n.z, min(w, 1.0));
+  }
+  return normalize(b);
+#endif
+}
+
+// Figure 4.3 of the thesis: the maps' colours, each by its coefficient. Linear, may exceed 1.
+vec3 wrinkleColour(vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS]) {
+  vec3 colour = vec3(0.0);
+  for (int i = 0; i < u_active_count; ++i) {
+    colour += wrinkleCoefficient(i, masks, dynamicMasks) * u_active_maps[i].colour.rgb;
+  }
+  return colour;
+}
