@@ -149,7 +149,10 @@ Status Daemon::OpenMocap() {
 }
 
 void Daemon::Announce() const {
-  Ready ready{.tcp = tcp_->port(), .udp = udp_->port(), .render = render_ != nullptr};
+  Ready ready;
+  ready.tcp = tcp_->port();
+  ready.udp = udp_->port();
+  ready.render = render_ != nullptr;
   if (vmc_) ready.vmc = vmc_->port();
   if (livelink_face_) ready.livelink_face = livelink_face_->port();
   std::string line = "furrowd ready tcp=" + config_.bind + ":" + std::to_string(ready.tcp) +

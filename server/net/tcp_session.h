@@ -11,6 +11,7 @@
 #include <asio/ip/tcp.hpp>
 #include <asio/steady_timer.hpp>
 
+#include "protocol/tcp_framing.h"
 #include "server/config.h"
 #include "server/metrics.h"
 #include "server/session/hub.h"

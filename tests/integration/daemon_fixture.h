@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "motion/clip.h"
+#include "protocol/messages.h"
+#include "raw_client.h"
+#include "server/daemon.h"
+
+namespace furrow::testing_net {
+
+// A daemon in a thread of this process, on ports that the system picked; drained when it goes.
+class DaemonThread {
+ public:
+  explicit DaemonThread(server::Config config);
+  ~DaemonThread();
+
+  // False: it ended before it served.
+  [[nodiscard]] bool serves() const { return ready_.has_value(); }
+  [[nodiscard]] const server::Ready& ready() const { return *ready_; }
+  [[nodiscard]] std::uint64_t Count(server::Counter counter) const { return metrics_.Get(counter); }
+  server::ExitCode Stop();
+
+ private:
+  server::Config config_;
+  server::Metrics metrics_;
+  std::stop_source stop_;
+  std::optional<server::Ready> ready_;
+  std::future<server::ExitCode> exit_code_;
+  std::optional<server::ExitCode> ended_;
+  std::jthread thread_;
+};
+
+// Weights only, on ephemeral ports, with the shipped rig of this name.
+[[nodiscard]] server::Config WeightsConfig(const std::string& rig);
+
+// What a publisher makes of a clip.
+[[nodiscard]] protocol::SkeletonOffer OfferOf(const motion::Clip& clip, const std::string& subject);
+[[nodiscard]] protocol::PoseFrame PoseOf(const motion::Clip& clip, int frame,
+                                         const protocol::SkeletonOffer& offer);
+
+// A face of the 52 shapes of arkit.json, moving smoothly; no joints.
+[[nodiscard]] motion::Clip ArkitClip(int num_frames);
+
+// Offers until it is accepted.
+void Offer(RawClient& client, const protocol::SkeletonOffer& offer, std::uint16_t stream = 1);
+// Subscribes; the reply, or none when an error came.
+[[nodiscard]] std::optional<protocol::SubscribeReply> Watch(
+    RawClient& client, const protocol::SubscribeWeights& request, std::uint32_t sequence = 1);
+
+}  // namespace furrow::testing_net

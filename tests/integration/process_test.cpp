@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// furrowd as a process: its ready line, its exit codes, its signals.
+#include "process.h"
+
+#include <csignal>
+#include <filesystem>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "raw_client.h"
+
+namespace furrow::testing_net {
+namespace {
+
+using testing::HasSubstr;
+
+const char kProgram[] = FURROW_BINARY_DIR "/bin/furrowd";
+const char kRig[] = FURROW_SOURCE_DIR "/character/rigs/arkit.json";
+
+std::vector<std::string> Command(std::vector<std::string> more = {}) {
+  std::vector<std::string> command = {kProgram, "--rig", kRig, "--no-render"};
+  command.insert(command.end(), more.begin(), more.end());
+  return command;
+}
+
+// The ports of the ready line; zeros where it is not one.
+std::pair<int, int> Ports(const std::string& line) {
+  std::smatch match;
+  const std::regex ready(
+      R"(furrowd ready tcp=127\.0\.0\.1:(\d+) udp=127\.0\.0\.1:(\d+) render=off)");
+  if (!std::regex_match(line, match, ready)) return {0, 0};
+  return {std::stoi(match[1]), std::stoi(match[2])};
+}
+
+TEST(Furrowd, SaysWhereItServesAndEndsWellOnSigterm) {
+  for (const int signal : {SIGTERM, SIGINT}) {
+    Process daemon(Command({"--tcp", "0", "--udp", "0"}));
+    const auto [tcp, udp] = Ports(daemon.ReadLine().value_or(""));
+    ASSERT_NE(tcp, 0);
+    TcpClient client(static_cast<std::uint16_t>(tcp));
+    client.Send(protocol::Hello{"test", 0});
+    ASSERT_TRUE(client.Await<protocol::Welcome>().has_value());
+    daemon.Signal(signal);
+    EXPECT_EQ(client.Await<protocol::Goodbye>()->reason, protocol::GoodbyeReason::kDraining);
+    EXPECT_EQ(daemon.Wait(), 0);
+  }
+}
+
+TEST(Furrowd, ASecondOneOnTheSamePortSaysWhichAndFails) {
+  Process first(Command({"--tcp", "0", "--udp", "0"}));
+  const auto [tcp, udp] = Ports(first.ReadLine().value_or(""));
+  ASSERT_NE(tcp, 0);
+  Process second(Command({"--tcp", std::to_string(tcp), "--udp", "0"}));
+  EXPECT_EQ(second.Wait(), 1);
+  EXPECT_THAT(second.ReadErrors(), HasSubstr("port " + std::to_string(tcp)));
+  Process third(Command({"--tcp", "0", "--udp", std::to_string(udp)}));
+  EXPECT_EQ(third.Wait(), 1);
+  EXPECT_THAT(third.ReadErrors(), HasSubstr("port " + std::to_string(udp)));
+}
+
+TEST(Furrowd, WrongUsageIsTwoAndBadInputThree) {
+  Process usage({kProgram, "--nonsense"});
+  EXPECT_EQ(usage.Wait(), 2);
+  EXPECT_FALSE(usage.ReadErrors().empty());
+  Process rig({kProgram, "--rig", "/nowhere.json", "--no-render"});
+  EXPECT_EQ(rig.Wait(), 3);
+  EXPECT_THAT(rig.ReadErrors(), HasSubstr("/nowhere.json"));
+  Process config({kProgram, "--config", "/nowhere.toml"});
+  EXPECT_EQ(config.Wait(), 3);
+  EXPECT_THAT(config.ReadErrors(), HasSubstr("/nowhere.toml"));
+}
+
+TEST(Furrowd, HelpEndsWellAndNamesTheExitCodes) {
+  Process help({kProgram, "--help"});
+  std::string text;
+  while (auto line = help.ReadLine()) text += *line + "\n";
+  EXPECT_EQ(help.Wait(), 0);
+  EXPECT_THAT(text, HasSubstr("Exit codes"));
+}
+
+TEST(Furrowd, LogsAsJsonWhenAsked) {
+  Process daemon(Command({"--tcp", "0", "--udp", "0", "--log-json"}));
+  ASSERT_TRUE(daemon.ReadLine().has_value());
+  daemon.Signal(SIGTERM);
+  EXPECT_EQ(daemon.Wait(), 0);
+  EXPECT_THAT(daemon.ReadErrors(), HasSubstr(R"("level":"info","message":"draining"})"));
+}
+
+}  // namespace
+}  // namespace furrow::testing_net

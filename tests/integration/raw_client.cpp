@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raw_client.h"
+
+#include <array>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace furrow::testing_net {
+namespace {
+
+constexpr int kGuardMilliseconds = 60'000;
+
+int Connect(int type, std::uint16_t port) {
+  const int socket = ::socket(AF_INET, type, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address)) != 0) {
+    ::close(socket);
+    return -1;
+  }
+  return socket;
+}
+
+}  // namespace
+
+RawClient::~RawClient() {
+  if (socket_ >= 0) ::close(socket_);
+}
+
+void RawClient::SendRaw(std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (sent <= 0) return;  // closed by the other end: what follows will show it
+    bytes = bytes.subspan(static_cast<std::size_t>(sent));
+  }
+}
+
+long RawClient::ReadSome(std::span<std::uint8_t> buffer) {
+  pollfd poll_socket{socket_, POLLIN, 0};
+  if (::poll(&poll_socket, 1, kGuardMilliseconds) <= 0) return -1;
+  return ::recv(socket_, buffer.data(), buffer.size(), 0);
+}
+
+std::optional<Received> RawClient::Next() {
+  while (ready_.empty()) {
+    if (!Fill()) return std::nullopt;
+  }
+  Received received;
+  received.bytes = std::move(ready_.front());
+  ready_.pop_front();
+  if (protocol::OpenMessage(received.bytes, received.view, protocol::kMaxReplyBytes) !=
+      protocol::DecodeStatus::kOk) {
+    return std::nullopt;
+  }
+  return received;
+}
+
+bool RawClient::AwaitClose() {
+  while (auto received = Next()) skipped.push_back(*std::move(received));
+  std::array<std::uint8_t, 16> rest;
+  return ReadSome(rest) <= 0;
+}
+
+std::uint16_t RawClient::local_port() const {
+  sockaddr_in address{};
+  socklen_t size = sizeof(address);
+  ::getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size);
+  return ntohs(address.sin_port);
+}
+
+TcpClient::TcpClient(std::uint16_t port) : RawClient(Connect(SOCK_STREAM, port)) {}
+
+void TcpClient::SendBytes(std::span<const std::uint8_t> message) {
+  SendRaw(protocol::FramePrefix(message.size()));
+  SendRaw(message);
+}
+
+bool TcpClient::Fill() {
+  std::array<std::uint8_t, 16384> buffer;
+  const long size = ReadSome(buffer);
+  if (size <= 0) return false;
+  std::span<const std::uint8_t> bytes(buffer.data(), static_cast<std::size_t>(size));
+  std::span<const std::uint8_t> frame;
+  while (!bytes.empty()) {
+    const protocol::FrameStatus status = frames_.Push(bytes, frame);
+    if (status == protocol::FrameStatus::kBadLength) return false;
+    if (status == protocol::FrameStatus::kFrame) ready_.emplace_back(frame.begin(), frame.end());
+  }
+  return true;
+}
+
+UdpClient::UdpClient(std::uint16_t port) : RawClient(Connect(SOCK_DGRAM, port)) {}
+
+void UdpClient::SendBytes(std::span<const std::uint8_t> message) {
+  const std::size_t count = protocol::NumDatagrams(message.size());
+  const std::uint32_t id = message_id_++;
+  std::array<std::uint8_t, protocol::kMaxDatagramBytes> datagram;
+  for (std::size_t index = 0; index < count; ++index) {
+    const std::size_t size = protocol::WriteDatagram(message, id, index, datagram);
+    SendRaw({datagram.data(), size});
+  }
+}
+
+bool UdpClient::Fill() {
+  std::array<std::uint8_t, 2048> buffer;
+  const long size = ReadSome(buffer);
+  if (size <= 0) return false;
+  std::span<const std::uint8_t> message;
+  const auto status =
+      reassembler_.Push(1, {buffer.data(), static_cast<std::size_t>(size)}, 0, message);
+  if (status == protocol::FragmentStatus::kWhole || status == protocol::FragmentStatus::kComplete) {
+    ready_.emplace_back(message.begin(), message.end());
+  }
+  return true;
+}
+
+bool UdpClient::Prove() {
+  Send(protocol::Hello{"test", 0}, 0, 1);
+  const auto welcome = Await<protocol::Welcome>();
+  if (!welcome) return false;
+  Send(protocol::Hello{"test", welcome->token}, 0, 2);
+  const auto proven = Await<protocol::Welcome>();
+  return proven && proven->token == 0;
+}
+
+}  // namespace furrow::testing_net

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "protocol/codec.h"
+#include "protocol/fragment.h"
+#include "protocol/tcp_framing.h"
+
+namespace furrow::testing_net {
+
+// A message as it came: kept whole, decoded on demand.
+struct Received {
+  std::vector<std::uint8_t> bytes;
+  protocol::MessageView view;
+};
+
+// A client made of one blocking socket and protocol/ alone, for tests. Reads block until something
+// comes; the long timeout is a guard against hanging, never a measure.
+class RawClient {
+ public:
+  virtual ~RawClient();
+  RawClient(const RawClient&) = delete;
+  RawClient& operator=(const RawClient&) = delete;
+
+  template <class Message>
+  void Send(const Message& message, std::uint16_t stream = 0, std::uint32_t sequence = 0,
+            std::int64_t capture_time_us = 0, auto... encoding) {
+    encoder_.Encode({session, stream, sequence, capture_time_us}, message, out_, encoding...);
+    SendBytes(out_);
+  }
+  // Raw bytes as they are: a datagram, or a piece of a TCP stream.
+  void SendRaw(std::span<const std::uint8_t> bytes);
+
+  // The next message of any kind; none when the peer has closed or the guard has run out.
+  std::optional<Received> Next();
+  // The next message of this kind; others that come before it are kept in `skipped`.
+  template <class Message>
+  std::optional<Message> Await(protocol::Header* header = nullptr) {
+    while (auto received = Next()) {
+      Message message;
+      if (protocol::Decode(received->view, message) == protocol::DecodeStatus::kOk) {
+        if (header != nullptr) *header = received->view.header;
+        return message;
+      }
+      skipped.push_back(*std::move(received));
+    }
+    return std::nullopt;
+  }
+  // True when the other end has closed the connection, after whatever it sent before.
+  bool AwaitClose();
+  [[nodiscard]] std::uint16_t local_port() const;
+  [[nodiscard]] int socket() const { return socket_; }
+
+  std::uint64_t session = 0x5E5510;
+  std::vector<Received> skipped;
+
+ protected:
+  explicit RawClient(int socket) : socket_(socket) {}
+  virtual void SendBytes(std::span<const std::uint8_t> message) = 0;
+  // Takes more bytes off the socket into `ready_`; false at the end.
+  virtual bool Fill() = 0;
+  long ReadSome(std::span<std::uint8_t> buffer);
+
+  int socket_;
+  std::deque<std::vector<std::uint8_t>> ready_;
+
+ private:
+  protocol::Encoder encoder_;
+  std::vector<std::uint8_t> out_;
+};
+
+class TcpClient : public RawClient {
+ public:
+  explicit TcpClient(std::uint16_t port);
+
+ private:
+  void SendBytes(std::span<const std::uint8_t> message) override;
+  bool Fill() override;
+  protocol::FrameReader frames_{protocol::kMaxReplyBytes};
+};
+
+class UdpClient : public RawClient {
+ public:
+  explicit UdpClient(std::uint16_t port);
+  // Hello, Welcome, Hello: false when the daemon did not play along.
+  bool Prove();
+
+ private:
+  void SendBytes(std::span<const std::uint8_t> message) override;
+  bool Fill() override;
+  protocol::Reassembler reassembler_;
+  std::uint32_t message_id_ = 0;
+};
+
+}  // namespace furrow::testing_net

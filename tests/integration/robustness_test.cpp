@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// Garbage, malformed streams, slow readers, taken ports: each costs itself and nobody else.
+#include <array>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "daemon_fixture.h"
+
+namespace furrow::testing_net {
+namespace {
+
+using server::Counter;
+
+TEST(Robustness, GarbageDatagramsLeaveARealStreamUnharmed) {
+  DaemonThread daemon(WeightsConfig("arkit.json"));
+  ASSERT_TRUE(daemon.serves());
+  const motion::Clip clip = ArkitClip(200);
+  const protocol::SkeletonOffer offer = OfferOf(clip, "ann");
+  UdpClient sender(daemon.ready().udp);
+  UdpClient hostile(daemon.ready().udp);
+  TcpClient viewer(daemon.ready().tcp);
+  Offer(sender, offer);
+  ASSERT_TRUE(Watch(viewer, {.subject = "ann"}).has_value());
+  std::mt19937 random(5);
+  std::vector<std::uint8_t> good;
+  protocol::Encoder().Encode({1, 1, 1, 1}, PoseOf(clip, 0, offer), good);
+  for (int frame = 0; frame < 200; ++frame) {
+    // At 60 Hz these are 12,000 a second: noise, truncated and damaged messages.
+    for (int i = 0; i < 200; ++i) {
+      std::vector<std::uint8_t> bytes(good.begin(), good.begin() + random() % good.size());
+      if (i % 3 == 0) bytes.assign(random() % 1400, static_cast<std::uint8_t>(random()));
+      if (i % 3 == 1) {
+        bytes = good;
+        bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1 + random() % 255);
+      }
+      hostile.SendRaw(bytes);
+    }
+    sender.Send(PoseOf(clip, frame, offer), 1, static_cast<std::uint32_t>(frame), frame * 16'667);
+    protocol::Header header;
+    ASSERT_TRUE(viewer.Await<protocol::WeightFrame>(&header).has_value()) << frame;
+    ASSERT_EQ(header.sequence, static_cast<std::uint32_t>(frame));
+  }
+  EXPECT_GT(daemon.Count(Counter::kDatagramsMalformed), 1000u);
+  EXPECT_EQ(daemon.Count(Counter::kPosesLate), 0u);
+}
+
+TEST(Robustness, AFrameOfImpossibleLengthEndsThatConnectionAloneAndIsAnswered) {
+  DaemonThread daemon(WeightsConfig("arkit.json"));
+  ASSERT_TRUE(daemon.serves());
+  TcpClient other(daemon.ready().tcp);
+  for (const std::uint32_t length : {0u, 31u, 512u * 1024u + 1u, 0xFFFFFFFFu}) {
+    TcpClient bad(daemon.ready().tcp);
+    bad.SendRaw(protocol::FramePrefix(length));
+    bad.SendRaw(std::vector<std::uint8_t>(5000, 0xAB));
+    const auto error = bad.Await<protocol::ErrorMessage>();
+    ASSERT_TRUE(error.has_value()) << length;
+    EXPECT_EQ(error->code, protocol::ErrorCode::kMalformed);
+    EXPECT_TRUE(bad.AwaitClose());
+  }
+  EXPECT_EQ(daemon.Count(Counter::kConnectionsMalformed), 4u);
+  other.Send(protocol::Ping{9});
+  EXPECT_EQ(other.Await<protocol::Pong>()->time_us, 9);
+}
+
+TEST(Robustness, AMalformedMessageInAGoodFrameCostsOnlyItself) {
+  DaemonThread daemon(WeightsConfig("arkit.json"));
+  ASSERT_TRUE(daemon.serves());
+  TcpClient client(daemon.ready().tcp);
+  const std::vector<std::uint8_t> noise(100, 0x11);
+  client.SendRaw(protocol::FramePrefix(noise.size()));
+  client.SendRaw(noise);
+  EXPECT_EQ(client.Await<protocol::ErrorMessage>()->code, protocol::ErrorCode::kMalformed);
+  client.Send(protocol::Ping{3});
+  EXPECT_EQ(client.Await<protocol::Pong>()->time_us, 3);
+}
+
+TEST(Robustness, AByteAtATimeIsStillAMessage) {
+  DaemonThread daemon(WeightsConfig("arkit.json"));
+  ASSERT_TRUE(daemon.serves());
+  TcpClient client(daemon.ready().tcp);
+  std::vector<std::uint8_t> message;
+  protocol::Encoder().Encode({1, 0, 0, 0}, protocol::Ping{77}, message);
+  const auto prefix = protocol::FramePrefix(message.size());
+  for (const std::uint8_t byte : prefix) client.SendRaw({&byte, 1});
+  for (const std::uint8_t byte : message) client.SendRaw({&byte, 1});
+  EXPECT_EQ(client.Await<protocol::Pong>()->time_us, 77);
+}
+
+TEST(Robustness, UnknownSubjectsAndPicturesWithoutARendererAreErrors) {
+  DaemonThread daemon(WeightsConfig("arkit.json"));
+  ASSERT_TRUE(daemon.serves());
+  TcpClient client(daemon.ready().tcp);
+  client.Send(protocol::SubscribeWeights{.subject = "nobody"}, 0, 5);
+  protocol::Header header;
+  const auto error = client.Await<protocol::ErrorMessage>(&header);
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->code, protocol::ErrorCode::kUnknownSubject);
+  EXPECT_EQ(header.sequence, 5u);
+  client.Send(protocol::SubscribePictures{.wait = true}, 0, 6);
+  EXPECT_EQ(client.Await<protocol::ErrorMessage>()->code, protocol::ErrorCode::kNotRendering);
+}
+
+TEST(Robustness, ASlowSubscriberLosesOldFramesAndSlowsNobody) {
+  DaemonThread daemon(WeightsConfig("arkit.json"));
+  ASSERT_TRUE(daemon.serves());
+  const motion::Clip clip = ArkitClip(1);
+  const protocol::SkeletonOffer offer = OfferOf(clip, "ann");
+  TcpClient sender(daemon.ready().tcp);
+  TcpClient slow(daemon.ready().tcp);
+  TcpClient fast(daemon.ready().tcp);
+  Offer(sender, offer);
+  // Many subscriptions of one peer that does not read, so that the socket's buffers fill soon.
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    ASSERT_TRUE(Watch(slow, {.subject = "ann", .source = protocol::WeightSource::kDriverValues}, i)
+                    .has_value());
+  }
+  ASSERT_TRUE(Watch(fast, {.subject = "ann"}).has_value());
+  std::uint32_t sent = 0;
+  while (daemon.Count(Counter::kWeightsDroppedSlow) < 1000 && sent < 20'000) {
+    sender.Send(PoseOf(clip, 0, offer), 1, sent, sent * 1000);
+    protocol::Header header;
+    ASSERT_TRUE(fast.Await<protocol::WeightFrame>(&header).has_value());
+    ASSERT_EQ(header.sequence, sent++);
+  }
+  EXPECT_GE(daemon.Count(Counter::kWeightsDroppedSlow), 1000u);
+  // Once it reads again, it comes to the newest frame, in order.
+  std::int64_t newest = -1;
+  while (newest + 1 < sent) {
+    protocol::Header header;
+    ASSERT_TRUE(slow.Await<protocol::WeightFrame>(&header).has_value());
+    ASSERT_GE(static_cast<std::int64_t>(header.sequence), newest);
+    newest = header.sequence;
+  }
+}
+
+TEST(Robustness, ConnectionsBeyondTheLimitAreClosed) {
+  server::Config config = WeightsConfig("arkit.json");
+  config.limits.max_connections = 2;
+  DaemonThread daemon(config);
+  ASSERT_TRUE(daemon.serves());
+  TcpClient first(daemon.ready().tcp);
+  TcpClient second(daemon.ready().tcp);
+  for (TcpClient* client : {&first, &second}) {
+    client->Send(protocol::Ping{1});
+    ASSERT_TRUE(client->Await<protocol::Pong>().has_value());
+  }
+  TcpClient third(daemon.ready().tcp);
+  EXPECT_TRUE(third.AwaitClose());
+  EXPECT_EQ(daemon.Count(Counter::kConnectionsRefused), 1u);
+}
+
+TEST(Robustness, ASecondDaemonOnAPortFails) {
+  DaemonThread daemon(WeightsConfig("arkit.json"));
+  ASSERT_TRUE(daemon.serves());
+  server::Config same_tcp = WeightsConfig("arkit.json");
+  same_tcp.tcp = daemon.ready().tcp;
+  server::Config same_udp = WeightsConfig("arkit.json");
+  same_udp.udp = daemon.ready().udp;
+  for (const server::Config& config : {same_tcp, same_udp}) {
+    DaemonThread second(config);
+    EXPECT_FALSE(second.serves());
+    EXPECT_EQ(second.Stop(), server::ExitCode::kFailed);
+  }
+}
+
+TEST(Robustness, ARigThatIsNotThereIsBadInput) {
+  DaemonThread daemon(WeightsConfig("nowhere.json"));
+  EXPECT_FALSE(daemon.serves());
+  EXPECT_EQ(daemon.Stop(), server::ExitCode::kBadInput);
+}
+
+TEST(Robustness, DrainingSaysGoodbyeAndCloses) {
+  DaemonThread daemon(WeightsConfig("arkit.json"));
+  ASSERT_TRUE(daemon.serves());
+  TcpClient client(daemon.ready().tcp);
+  client.Send(protocol::Ping{1});
+  ASSERT_TRUE(client.Await<protocol::Pong>().has_value());
+  EXPECT_EQ(daemon.Stop(), server::ExitCode::kOk);
+  const auto goodbye = client.Await<protocol::Goodbye>();
+  ASSERT_TRUE(goodbye.has_value());
+  EXPECT_EQ(goodbye->reason, protocol::GoodbyeReason::kDraining);
+  EXPECT_TRUE(client.AwaitClose());
+}
+
+}  // namespace
+}  // namespace furrow::testing_net

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/pipeline/render_mailbox.h"
+
+#include <memory>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+namespace furrow::server {
+namespace {
+
+RenderJob Job(std::uint64_t subject, std::uint32_t sequence, std::uint64_t subscription,
+              int width = 64) {
+  auto snapshot = std::make_shared<Snapshot>();
+  snapshot->sequence = sequence;
+  RenderJob job;
+  job.subject = subject;
+  job.spec.width = width;
+  job.snapshot = snapshot;
+  job.tickets.push_back({subscription, {}});
+  return job;
+}
+
+TEST(RenderMailbox, TheNewestSnapshotWinsAndNobodyIsForgotten) {
+  RenderMailbox mailbox(8);
+  EXPECT_EQ(mailbox.Put(Job(1, 10, 100)), RenderMailbox::PutResult::kQueued);
+  EXPECT_EQ(mailbox.Put(Job(1, 11, 101)), RenderMailbox::PutResult::kReplaced);
+  EXPECT_EQ(mailbox.Put(Job(1, 12, 100)), RenderMailbox::PutResult::kReplaced);
+  const auto job = mailbox.Take(false);
+  ASSERT_TRUE(job.has_value());
+  EXPECT_EQ(job->snapshot->sequence, 12u);
+  ASSERT_EQ(job->tickets.size(), 2u);
+  EXPECT_EQ(job->tickets[0].subscription, 100u);
+  EXPECT_EQ(job->tickets[1].subscription, 101u);
+  EXPECT_FALSE(mailbox.Take(false).has_value());
+}
+
+TEST(RenderMailbox, OtherSubjectsAndOtherSpecsWaitForThemselves) {
+  RenderMailbox mailbox(8);
+  EXPECT_EQ(mailbox.Put(Job(1, 1, 1)), RenderMailbox::PutResult::kQueued);
+  EXPECT_EQ(mailbox.Put(Job(2, 2, 2)), RenderMailbox::PutResult::kQueued);
+  EXPECT_EQ(mailbox.Put(Job(1, 3, 3, 128)), RenderMailbox::PutResult::kQueued);
+  EXPECT_EQ(mailbox.Take(false)->subject, 1u);
+  EXPECT_EQ(mailbox.Take(false)->subject, 2u);
+  EXPECT_EQ(mailbox.Take(false)->spec.width, 128);
+}
+
+TEST(RenderMailbox, IsBounded) {
+  RenderMailbox mailbox(2);
+  EXPECT_EQ(mailbox.Put(Job(1, 1, 1)), RenderMailbox::PutResult::kQueued);
+  EXPECT_EQ(mailbox.Put(Job(2, 1, 1)), RenderMailbox::PutResult::kQueued);
+  EXPECT_EQ(mailbox.Put(Job(3, 1, 1)), RenderMailbox::PutResult::kFull);
+  EXPECT_EQ(mailbox.Put(Job(2, 2, 1)), RenderMailbox::PutResult::kReplaced);
+}
+
+TEST(RenderMailbox, ClosingWakesWhoWaits) {
+  RenderMailbox mailbox(2);
+  std::thread taker([&] { EXPECT_FALSE(mailbox.Take(true).has_value()); });
+  mailbox.Close();
+  taker.join();
+  EXPECT_TRUE(mailbox.closed());
+  EXPECT_EQ(mailbox.Put(Job(1, 1, 1)), RenderMailbox::PutResult::kFull);
+}
+
+TEST(RenderMailbox, AJobPutByAnotherThreadIsTaken) {
+  RenderMailbox mailbox(2);
+  std::thread putter(
+      [&] { EXPECT_EQ(mailbox.Put(Job(1, 7, 1)), RenderMailbox::PutResult::kQueued); });
+  const auto job = mailbox.Take(true);
+  putter.join();
+  ASSERT_TRUE(job.has_value());
+  EXPECT_EQ(job->snapshot->sequence, 7u);
+}
+
+}  // namespace
+}  // namespace furrow::server

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "protocol/codec.h"
+#include "protocol/hash.h"
+#include "server/session/hub.h"
+
+namespace furrow::server {
+
+// A peer made of memory: keeps what the hub sends, and makes what a client would send.
+class FakePeer : public Link {
+ public:
+  void SendReply(std::span<const std::uint8_t> message) override { Receive(message); }
+  int SendFrame(std::uint64_t, std::span<const std::uint8_t> message) override {
+    Receive(message);
+    return 0;
+  }
+  void DropFrames(std::uint64_t key) override { dropped_keys.push_back(key); }
+
+  template <class Message>
+  struct Got {
+    protocol::Header header;
+    Message message;
+  };
+  // The next message if it is a `Message`, taken off the queue; a failure otherwise.
+  template <class Message>
+  std::optional<Got<Message>> Take() {
+    if (inbox.empty()) return std::nullopt;
+    protocol::MessageView view;
+    EXPECT_EQ(protocol::OpenMessage(inbox.front(), view, protocol::kMaxReplyBytes),
+              protocol::DecodeStatus::kOk);
+    Got<Message> got;
+    got.header = view.header;
+    const auto status = protocol::Decode(view, got.message);
+    if (status != protocol::DecodeStatus::kOk) {
+      ADD_FAILURE() << "got a " << protocol::MessageKindName(view.kind);
+      return std::nullopt;
+    }
+    inbox.pop_front();
+    return got;
+  }
+
+  std::deque<std::vector<std::uint8_t>> inbox;
+  std::vector<std::uint64_t> dropped_keys;
+  std::uint64_t bytes_received = 0;
+  PeerId id = 0;
+  std::uint64_t session = 77;
+
+ private:
+  void Receive(std::span<const std::uint8_t> message) {
+    bytes_received += message.size();
+    inbox.emplace_back(message.begin(), message.end());
+  }
+};
+
+class FakePictures : public PictureSource {
+ public:
+  void Submit(RenderJob job) override { jobs.push_back(std::move(job)); }
+  Result<render::Camera> Preset(std::string_view name) const override {
+    if (name == "face" || name == "body") return render::Camera();
+    return Status(StatusCode::kNotFound, "no camera '" + std::string(name) + "'");
+  }
+  std::vector<RenderJob> jobs;
+};
+
+// A hub on a rig of two blend shapes and an unsigned hinge, filters off unless a test turns them
+// on.
+class HubTest : public testing::Test {
+ protected:
+  void SetUp() override { Make({}); }
+
+  static wrinkle::Rig MakeRig(bool filter) {
+    wrinkle::Rig rig;
+    rig.name = "test";
+    rig.filter.enabled = filter;
+    rig.wrinkle_maps.push_back({.name = "squash"});
+    for (const char* name : {"brow", "nose"}) {
+      wrinkle::Driver driver;
+      driver.name = name;
+      driver.kind = wrinkle::Driver::Kind::kBlendShape;
+      driver.blend_shape.blend_shape = name;
+      rig.drivers.push_back(driver);
+      wrinkle::Region region;
+      region.name = name;
+      region.modulation = wrinkle::Modulation::kLinear;
+      region.feeds.push_back({"squash", {{name, "value", 1.0f}}});
+      rig.regions.push_back(region);
+    }
+    return rig;
+  }
+
+  void Make(Limits limits, bool filter = false) {
+    Hub::Parts parts;
+    parts.limits = limits;
+    parts.session = 4242;
+    parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(filter));
+    parts.pictures = &pictures;
+    parts.metrics = &metrics;
+    parts.make_token = [this] { return ++last_token; };
+    hub = std::make_unique<Hub>(std::move(parts));
+  }
+
+  void Connect(FakePeer* peer, Transport transport = Transport::kTcp) {
+    peer->id = hub->AddPeer(transport, "fake", peer, now);
+  }
+
+  template <class Message>
+  std::size_t Send(FakePeer& peer, const Message& message, std::uint16_t stream = 0,
+                   std::uint32_t sequence = 0, std::int64_t capture_us = 0) {
+    std::vector<std::uint8_t> bytes;
+    encoder.Encode({peer.session, stream, sequence, capture_us}, message, bytes);
+    hub->OnBytesReceived(peer.id, bytes.size(), now);
+    hub->OnMessage(peer.id, bytes, now);
+    return bytes.size();
+  }
+
+  static protocol::SkeletonOffer Offer(std::string subject) {
+    protocol::SkeletonOffer offer;
+    offer.subject = std::move(subject);
+    offer.blend_shape_names = {"brow", "nose"};
+    offer.skeleton_hash = protocol::SkeletonHash(offer);
+    return offer;
+  }
+  static protocol::PoseFrame Pose(float brow, float nose = 0.0f) {
+    protocol::PoseFrame pose;
+    pose.skeleton_hash = Offer("any").skeleton_hash;
+    pose.num_blend_shapes = 2;
+    pose.blend_shape_indices = {0, 1};
+    pose.blend_shapes = {brow, nose};
+    return pose;
+  }
+  void Publish(FakePeer& peer, const std::string& subject, std::uint16_t stream = 1) {
+    Send(peer, Offer(subject), stream);
+    const auto reply = peer.Take<protocol::SkeletonReply>();
+    ASSERT_TRUE(reply.has_value());
+    ASSERT_EQ(reply->message.status, protocol::SkeletonStatus::kAccepted) << reply->message.message;
+  }
+  // The subscription's number; 0 where the answer is something else.
+  std::uint16_t Watch(FakePeer& peer, const protocol::SubscribeWeights& request,
+                      std::uint32_t sequence = 1) {
+    Send(peer, request, 0, sequence);
+    const auto reply = peer.Take<protocol::SubscribeReply>();
+    return reply ? reply->header.stream : 0;
+  }
+  void Advance(double seconds) { now += FromSeconds(seconds); }
+  std::uint64_t Count(Counter counter) const { return metrics.Get(counter); }
+
+  Metrics metrics;
+  FakePictures pictures;
+  std::unique_ptr<Hub> hub;
+  protocol::Encoder encoder;
+  Time now = FromSeconds(1000);
+  std::uint64_t last_token = 900;
+};
+
+}  // namespace furrow::server

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/outbox.h"
+
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace furrow::server {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using testing::ElementsAre;
+
+std::vector<int> PopAll(Outbox* outbox) {
+  std::vector<int> first_bytes;
+  Bytes bytes;
+  while (outbox->Pop(&bytes)) first_bytes.push_back(bytes.at(0));
+  return first_bytes;
+}
+
+TEST(Outbox, RepliesGoFirstAndInOrder) {
+  Outbox outbox(4, 4);
+  outbox.PushFrame(1, Bytes{10});
+  ASSERT_TRUE(outbox.PushReply(Bytes{1}));
+  ASSERT_TRUE(outbox.PushReply(Bytes{2}));
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(1, 2, 10));
+  EXPECT_TRUE(outbox.empty());
+}
+
+TEST(Outbox, TheNewestFrameOfAKeyWinsAndKeepsItsPlace) {
+  Outbox outbox(4, 4);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{10}), 0);
+  EXPECT_EQ(outbox.PushFrame(2, Bytes{20}), 0);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{11, 12, 13}), 1);
+  EXPECT_EQ(outbox.num_frames(), 2u);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(11, 20));
+}
+
+TEST(Outbox, AStalledPeerHoldsAtMostSoManyFramesAndTheOldestGoes) {
+  Outbox outbox(4, 3);
+  for (std::uint8_t key = 0; key < 3; ++key) EXPECT_EQ(outbox.PushFrame(key, Bytes{key}), 0);
+  for (std::uint8_t key = 3; key < 10; ++key) EXPECT_EQ(outbox.PushFrame(key, Bytes{key}), 1);
+  EXPECT_EQ(outbox.num_frames(), 3u);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(7, 8, 9));
+}
+
+TEST(Outbox, RepliesAreNeverDroppedButRefused) {
+  Outbox outbox(2, 1);
+  EXPECT_TRUE(outbox.PushReply(Bytes{1}));
+  EXPECT_TRUE(outbox.PushReply(Bytes{2}));
+  EXPECT_FALSE(outbox.PushReply(Bytes{3}));
+  outbox.PushFrame(1, Bytes{9});
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(1, 2, 9));
+}
+
+TEST(Outbox, AnEndedSubscriptionLeavesNothingBehind) {
+  Outbox outbox(2, 4);
+  outbox.PushFrame(1, Bytes{1});
+  outbox.PushFrame(2, Bytes{2});
+  outbox.DropFrame(1);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(2));
+}
+
+}  // namespace
+}  // namespace furrow::server
