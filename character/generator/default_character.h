@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "character/character.h"
+#include "wrinkle/status.h"
+
+namespace furrow::character::generator {
+
+struct CharacterOptions {
+  int texture_size = 1024;  // of skin, cloth and wrinkle maps; masks, eyes and hair take half
+};
+
+// The default character (CC0): a clothed body with a face on muscle joints, textures, masks and
+// wrinkle maps as embedded pictures under the names that character/rigs/default.json uses. `rig` is
+// stored in it. The same options give the same bytes on every run.
+[[nodiscard]] Character MakeDefaultCharacter(const wrinkle::Rig& rig,
+                                             const CharacterOptions& options = {});
+
+// Writes the data that programs find in share/furrow: default.glb, default.rig.json, the rigs of
+// `rigs` under rigs/, and recordings/*.bvh. Folders are made. Errors: those of reading and writing.
+[[nodiscard]] Status WriteShare(const std::filesystem::path& rigs,
+                                const std::filesystem::path& share);
+
+}  // namespace furrow::character::generator

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/generator/ear_mesh.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "character/generator/head_shape.h"
+#include "character/generator/mesh_tools.h"
+
+namespace furrow::character::generator {
+namespace {
+
+using glm::vec2;
+using glm::vec3;
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr int kSegments = 32;
+constexpr float kRadii[] = {0.0f,  0.18f, 0.34f, 0.46f, 0.56f, 0.65f,
+                            0.73f, 0.80f, 0.87f, 0.93f, 0.98f, 1.0f};
+constexpr int kFrontRings = static_cast<int>(std::size(kRadii));
+constexpr int kBackRings = 3;
+
+// The ear's plane: s toward the back of the head, t up; phi = 0 is back, counter-clockwise.
+vec2 Outline(float phi) {
+  const float s = std::cos(phi);
+  const float t = std::sin(phi);
+  const float lobe = SmoothStep(0.2f, 1.0f, -t);
+  const float width = (1.72f - 0.62f * lobe) * (s < 0.0f ? 0.92f : 1.0f);
+  return {s * width + 0.12f * t - 0.25f * lobe, t * 3.15f};
+}
+
+// Height over the ear's plane, centimetres.
+float Relief(float rho, float phi) {
+  const float s = std::cos(phi);
+  const float t = std::sin(phi);
+  const float rim = SmoothStep(-0.75f, -0.25f, t) * (1.0f - SmoothStep(0.6f, 0.95f, -s));
+  const float lobe = SmoothStep(0.45f, 0.9f, -t);
+  const float helix = 0.34f * Bump(rho - 0.91f, 0.085f) * rim;
+  const float anti = 0.36f * Bump(rho - 0.6f, 0.12f) * SmoothStep(-0.35f, 0.3f, s) * (1.0f - lobe);
+  const vec2 p = vec2(rho * s, rho * t);
+  const float concha =
+      -0.62f * Bump(glm::length((p - vec2(-0.18f, -0.12f)) / vec2(0.85f, 0.75f)), 0.42f);
+  const float tragus = 0.42f * Bump(glm::length(p - vec2(-0.78f, -0.16f)), 0.2f);
+  const float swell = 0.25f * lobe * (1.0f - rho * rho);
+  return helix + anti + concha + tragus + swell - 0.12f * SmoothStep(0.95f, 1.0f, rho);
+}
+
+}  // namespace
+
+void AddEar(float side, HeadMesh* head) {
+  const auto first = static_cast<std::uint32_t>(head->mesh.vertices.size());
+  // Leaning back 12 degrees, standing off the head by 24.
+  const float lean = 12.0f * kPi / 180.0f;
+  const float stand = 26.0f * kPi / 180.0f;
+  const vec3 back = vec3(side * std::sin(stand), 0.0f, -std::cos(stand));
+  const vec3 out = vec3(side * std::cos(stand), 0.0f, std::sin(stand));
+  const vec3 up(0.0f, 1.0f, 0.0f);
+  const vec3 up_leaning = up * std::cos(lean) + back * std::sin(lean);
+  const vec3 back_leaning = back * std::cos(lean) - up * std::sin(lean);
+  const vec3 centre(side * 7.55f, -1.35f, -1.3f);
+  for (int i = 0; i < kFrontRings + kBackRings; ++i) {
+    const bool behind = i >= kFrontRings;
+    const int step = i - kFrontRings + 1;
+    const float rho = behind ? 1.0f - 0.09f * static_cast<float>(step * step) : kRadii[i];
+    for (int k = 0; k <= kSegments; ++k) {
+      const float phi = 2.0f * kPi * static_cast<float>(k % kSegments) / kSegments;
+      const vec2 st = Outline(phi) * rho;
+      float height = Relief(std::min(rho, 1.0f), phi);
+      if (behind) height = -0.12f - 0.26f * static_cast<float>(step);
+      HeadVertex info;
+      info.part = kEar;
+      info.place = centre + back_leaning * st.x + up_leaning * st.y + out * height;
+      Vertex vertex;
+      vertex.position = HeadToModel(info.place);
+      const float reach =
+          (behind ? 0.80f + 0.065f * static_cast<float>(step) : 0.80f * rho) * 0.062f;
+      vertex.uv = {(side > 0.0f ? 0.25f : 0.75f) + 3.0f * reach * std::cos(phi),
+                   0.932f - reach * std::sin(phi)};
+      head->mesh.vertices.push_back(vertex);
+      head->info.push_back(info);
+    }
+  }
+  const auto index = [&](int ring, int k) {
+    return first + static_cast<std::uint32_t>(ring * (kSegments + 1) + k);
+  };
+  for (int i = 0; i + 1 < kFrontRings + kBackRings; ++i) {
+    for (int k = 0; k < kSegments; ++k) {
+      const std::uint32_t a = index(i, k), b = index(i + 1, k), c = index(i + 1, k + 1),
+                          d = index(i, k + 1);
+      // s runs backward: on the left side the plane is seen mirrored.
+      if (side > 0.0f) {
+        AddQuad(&head->mesh, d, c, b, a);
+      } else {
+        AddQuad(&head->mesh, a, b, c, d);
+      }
+    }
+  }
+}
+
+}  // namespace furrow::character::generator

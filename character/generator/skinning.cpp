@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/generator/skinning.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "character/generator/head_shape.h"
+#include "character/generator/mesh_tools.h"
+
+namespace furrow::character::generator {
+namespace {
+
+using glm::vec3;
+
+// Weights under way: joints may be named twice, Store() sorts that out.
+class Weights {
+ public:
+  explicit Weights(const wrinkle::Skeleton& skeleton) : by_joint_(skeleton.num_joints(), 0.0f) {}
+
+  void Add(const wrinkle::Skeleton& skeleton, const std::string& joint, float weight) {
+    const int index = skeleton.Find(joint);
+    if (index >= 0 && weight > 0.0f) by_joint_[index] += weight;
+  }
+
+  // The four strongest, summing to 1.
+  void Store(Vertex* vertex) const {
+    std::vector<int> order(by_joint_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+    std::partial_sort(order.begin(), order.begin() + 4, order.end(), [&](int a, int b) {
+      return by_joint_[a] != by_joint_[b] ? by_joint_[a] > by_joint_[b] : a < b;
+    });
+    float sum = 0.0f;
+    for (int k = 0; k < 4; ++k) sum += by_joint_[order[k]];
+    for (int k = 0; k < 4; ++k) {
+      const float weight = by_joint_[order[k]] / sum;
+      vertex->joints[k] = static_cast<std::uint16_t>(weight > 0.0f ? order[k] : 0);
+      vertex->skin_weights[k] = weight;
+    }
+  }
+
+ private:
+  std::vector<float> by_joint_;
+};
+
+// The field of a muscle: full at its centre, nothing beyond its radii (head space, left side).
+struct Muscle {
+  const char* name;  // "*" stands for the side
+  vec3 centre;
+  vec3 radii;
+  float strength;
+  int lip;  // +1 upper alone, -1 lower alone, 0 both
+};
+
+const Muscle kMuscles[] = {
+    {"frontalis_inner*", {1.5f, 2.6f, 9.0f}, {2.5f, 3.0f, 3.0f}, 0.85f, 0},
+    {"frontalis_outer*", {4.5f, 2.7f, 7.2f}, {2.6f, 3.0f, 3.5f}, 0.85f, 0},
+    {"corrugator*", {0.95f, 1.6f, 9.2f}, {1.5f, 1.4f, 2.0f}, 0.7f, 0},
+    {"orbicularis_oculi_lower*", {3.3f, -1.0f, 8.2f}, {2.3f, 1.15f, 2.2f}, 0.8f, 0},
+    {"nasalis*", {1.2f, -3.4f, 9.6f}, {1.35f, 1.9f, 2.0f}, 0.75f, 0},
+    {"levator*", {1.7f, -5.4f, 9.2f}, {1.5f, 1.35f, 2.0f}, 0.75f, 1},
+    {"zygomaticus*", {4.2f, -3.3f, 7.2f}, {2.4f, 2.3f, 3.0f}, 0.85f, 0},
+    {"risorius*", {2.75f, -6.95f, 8.5f}, {1.75f, 1.75f, 2.2f}, 1.0f, 0},
+    {"orbicularis_oris_upper*", {0.9f, -6.5f, 9.8f}, {1.6f, 0.95f, 1.8f}, 0.95f, 1},
+    {"orbicularis_oris_lower*", {0.9f, -7.5f, 9.6f}, {1.6f, 1.0f, 1.8f}, 0.95f, -1},
+    {"depressor*", {2.7f, -8.5f, 8.2f}, {1.7f, 1.6f, 2.4f}, 0.7f, -1},
+    {"mentalis", {0.0f, -9.6f, 9.2f}, {2.0f, 1.3f, 2.0f}, 0.8f, -1},
+    {"platysma*", {3.2f, -13.0f, 2.4f}, {3.0f, 3.2f, 3.5f}, 0.7f, 0},
+};
+
+float Field(const Muscle& muscle, const vec3& p, float side) {
+  const vec3 centre(muscle.centre.x * side, muscle.centre.y, muscle.centre.z);
+  const float d = glm::length((p - centre) / muscle.radii);
+  const float fall = std::max(0.0f, 1.0f - d * d);
+  return muscle.strength * fall * fall * (3.0f - 2.0f * fall);
+}
+
+// Share of the neck (against the head), and of the chest below it.
+float NeckShare(const vec3& p) {
+  const float top = -4.0f - 7.5f * SmoothStep(-3.0f, 5.0f, p.z);
+  return SmoothStep(top, top - 6.0f, p.y);
+}
+
+float JawShare(const HeadVertex& v) {
+  const vec3& p = v.place;
+  // The border runs from the corner of the mouth to the joint of the jaw.
+  const float border = -3.6f - 3.35f * std::clamp((p.z - 0.6f) / 8.0f, 0.0f, 1.2f);
+  const float soft = SmoothStep(1.0f, -1.6f, p.y - border) * SmoothStep(-1.5f, 1.5f, p.z);
+  const float hard = v.mouth_side < 0.0f ? 1.0f : (v.mouth_side > 0.0f ? 0.0f : 0.5f);
+  const float lips = SmoothStep(3.3f, 2.0f, std::abs(p.x)) * SmoothStep(1.0f, 3.0f, p.z);
+  return soft + (hard - soft) * lips;
+}
+
+float UpperLid(const HeadVertex& v, float side) {
+  const vec3 d = v.place - EyeCentre(side);
+  if (v.eye_side <= 0.0f || d.z < -0.2f) return 0.0f;
+  const float across = std::max(0.0f, 1.0f - d.x * d.x / (1.62f * 1.62f));
+  return SmoothStep(1.3f, 0.62f, d.y) * std::sqrt(across);
+}
+
+void SkinHeadVertex(const wrinkle::Skeleton& skeleton, const HeadVertex& v, Vertex* vertex) {
+  Weights weights(skeleton);
+  const auto add = [&](const std::string& joint, float w) { weights.Add(skeleton, joint, w); };
+  const vec3& p = v.place;
+  const std::string suffix = p.x >= 0.0f ? "_l" : "_r";
+  if (v.part == kEyeball) {
+    add("eye" + suffix, 1.0f);
+  } else if (v.part == kHairCap || v.part == kEar) {
+    add("head", 1.0f);
+  } else if (v.part == kTeeth) {
+    add(v.mouth_side < 0.0f ? "jaw" : "head", 1.0f);
+  } else {
+    float rest = 1.0f;
+    const auto take = [&](const std::string& joint, float share) {
+      add(joint, rest * share);
+      rest *= 1.0f - share;
+    };
+    const float behind = v.part == kMouthInside ? SmoothStep(5.5f, 8.5f, p.z) : 1.0f;
+    take("orbicularis_oculi_upper" + suffix, UpperLid(v, p.x >= 0.0f ? 1.0f : -1.0f));
+    float fields = 0.0f;
+    std::vector<std::pair<std::string, float>> found;
+    for (const Muscle& muscle : kMuscles) {
+      if (muscle.lip != 0 && static_cast<float>(muscle.lip) * v.mouth_side < 0.0f) continue;
+      if (std::string(muscle.name).starts_with("orbicularis_oculi_lower") && v.eye_side > 0.0f)
+        continue;
+      const std::string name = muscle.name;
+      const std::size_t star = name.find('*');
+      for (const float side : {1.0f, -1.0f}) {
+        if (star == std::string::npos && side < 0.0f) continue;
+        const float field = behind * Field(muscle, p, side);
+        if (field <= 0.0f) continue;
+        const char* end = side > 0.0f ? "_l" : "_r";
+        found.emplace_back(star == std::string::npos ? name : name.substr(0, star) + end, field);
+        fields += field;
+      }
+    }
+    const float scale = rest * (fields > 1.0f ? 1.0f / fields : 1.0f);
+    for (const auto& [name, field] : found) add(name, field * scale);
+    rest *= std::max(0.0f, 1.0f - fields);
+    const float neck = NeckShare(p);
+    const float chest = SmoothStep(-15.5f, -20.0f, p.y);
+    take("chest", chest);
+    take("neck", neck);
+    take("jaw", JawShare(v));
+    add("head", rest);
+  }
+  weights.Store(vertex);
+}
+
+// Blends along a limb: `stops` are (place of a border, half its width) between successive joints.
+struct Border {
+  float at;
+  float half_width;
+};
+
+void Chain(const wrinkle::Skeleton& skeleton, std::span<const std::string> joints,
+           std::span<const Border> borders, float place, float share, Weights* weights) {
+  float rest = share;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const float beyond = i < borders.size()
+                             ? SmoothStep(borders[i].at - borders[i].half_width,
+                                          borders[i].at + borders[i].half_width, place)
+                             : 0.0f;
+    weights->Add(skeleton, joints[i], rest * (1.0f - beyond));
+    rest *= beyond;
+  }
+}
+
+void SkinTorso(const wrinkle::Skeleton& skeleton, const vec3& p, const std::string& side,
+               Weights* weights) {
+  const std::string joints[] = {"hips", "spine", "chest", "neck"};
+  const Border borders[] = {{1.04f, 0.09f}, {1.2f, 0.10f}, {1.50f, 0.03f}};
+  const float shoulder =
+      0.75f * SmoothStep(0.06f, 0.19f, std::abs(p.x)) * SmoothStep(1.26f, 1.42f, p.y);
+  const float arm = 0.45f * SmoothStep(0.14f, 0.20f, std::abs(p.x)) * SmoothStep(1.24f, 1.36f, p.y);
+  weights->Add(skeleton, "upper_arm" + side, arm);
+  weights->Add(skeleton, "shoulder" + side, (1.0f - arm) * shoulder);
+  Chain(skeleton, joints, borders, p.y, (1.0f - arm) * (1.0f - shoulder), weights);
+}
+
+void SkinBodyVertex(const wrinkle::Skeleton& skeleton, BodyPart part, Vertex* vertex) {
+  Weights weights(skeleton);
+  const vec3 p = vertex->position;
+  const std::string side = p.x >= 0.0f ? "_l" : "_r";
+  switch (part) {
+    case BodyPart::kTorso: SkinTorso(skeleton, p, side, &weights); break;
+    case BodyPart::kArm:
+    case BodyPart::kHand: {
+      const std::string joints[] = {"shoulder" + side, "upper_arm" + side, "lower_arm" + side,
+                                    "hand" + side};
+      const Border borders[] = {{0.165f, 0.06f}, {0.455f, 0.055f}, {0.70f, 0.02f}};
+      Chain(skeleton, joints, borders, std::abs(p.x), 1.0f, &weights);
+      break;
+    }
+    case BodyPart::kPelvis: {
+      const float leg =
+          0.5f * SmoothStep(0.02f, 0.12f, std::abs(p.x)) * SmoothStep(0.98f, 0.84f, p.y);
+      weights.Add(skeleton, "upper_leg" + side, leg);
+      const std::string joints[] = {"hips", "spine"};
+      const Border borders[] = {{1.04f, 0.09f}};
+      Chain(skeleton, joints, borders, p.y, 1.0f - leg, &weights);
+      break;
+    }
+    case BodyPart::kLeg: {
+      const std::string joints[] = {"hips", "upper_leg" + side, "lower_leg" + side, "foot" + side};
+      const Border borders[] = {{-0.90f, 0.08f}, {-0.495f, 0.07f}, {-0.075f, 0.02f}};
+      Chain(skeleton, joints, borders, -p.y, 1.0f, &weights);
+      break;
+    }
+    case BodyPart::kShoe: {
+      const std::string joints[] = {"foot" + side, "toes" + side};
+      const Border borders[] = {{0.115f, 0.025f}};
+      Chain(skeleton, joints, borders, p.z, 1.0f, &weights);
+      break;
+    }
+  }
+  weights.Store(vertex);
+}
+
+}  // namespace
+
+void SkinHead(const wrinkle::Skeleton& skeleton, HeadMesh* head) {
+  for (std::size_t i = 0; i < head->info.size(); ++i) {
+    SkinHeadVertex(skeleton, head->info[i], &head->mesh.vertices[i]);
+  }
+}
+
+void SkinBody(const wrinkle::Skeleton& skeleton, BodyPart part, std::span<Vertex> vertices) {
+  for (Vertex& vertex : vertices) SkinBodyVertex(skeleton, part, &vertex);
+}
+
+}  // namespace furrow::character::generator
