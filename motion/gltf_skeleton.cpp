@@ -22,10 +22,16 @@ std::string NodeField(int node, const char* member = "") {
   return "nodes[" + std::to_string(node) + "]" + member;
 }
 
+// tinygltf asserts on a member of what is no object: outside data decides, so we look first.
+const tinygltf::Value& Member(const tinygltf::Value& object, const char* key) {
+  static const tinygltf::Value kNull;
+  return object.IsObject() ? object.Get(key) : kNull;
+}
+
 // The node index in {"node": 3}, or an error.
 Result<int> NodeOf(const GltfDocument& document, const tinygltf::Value& object,
                    const std::string& field) {
-  const tinygltf::Value& node = object.Get("node");
+  const tinygltf::Value& node = Member(object, "node");
   if (!node.IsInt() || node.GetNumberAsInt() < 0 || node.GetNumberAsInt() >= document.num_nodes()) {
     return document.Error(StatusCode::kSchema, field + ".node", "is missing or out of range");
   }
@@ -60,7 +66,7 @@ Transform FromMatrix(const std::vector<double>& m) {
 }
 
 std::optional<glm::vec3> ReadTail(const tinygltf::Node& node) {
-  const tinygltf::Value& tail = node.extras.Get(kTailKey);
+  const tinygltf::Value& tail = Member(node.extras, kTailKey);
   if (!tail.IsArray() || tail.ArrayLen() != 3) return std::nullopt;
   glm::vec3 value(0.0f);
   for (int i = 0; i < 3; ++i) value[i] = static_cast<float>(tail.Get(i).GetNumberAsDouble());
@@ -198,16 +204,16 @@ Result<VrmAnimation> ReadVrmAnimation(const GltfDocument& document) {
   if (found == extensions.end() || !found->second.IsObject()) return vrm;
   vrm.present = true;
   const std::string field = "extensions.VRMC_vrm_animation";
-  Status status = ReadNamedNodes(document, found->second.Get("humanoid").Get("humanBones"),
+  Status status = ReadNamedNodes(document, Member(Member(found->second, "humanoid"), "humanBones"),
                                  field + ".humanoid.humanBones", &vrm.human_bones);
   for (const char* kind : {"preset", "custom"}) {
     if (!status.ok()) return status;
-    status = ReadNamedNodes(document, found->second.Get("expressions").Get(kind),
+    status = ReadNamedNodes(document, Member(Member(found->second, "expressions"), kind),
                             field + ".expressions." + kind, &vrm.expressions);
   }
   if (!status.ok()) return status;
-  if (found->second.Get("lookAt").IsObject()) {
-    const Result<int> node = NodeOf(document, found->second.Get("lookAt"), field + ".lookAt");
+  if (Member(found->second, "lookAt").IsObject()) {
+    const Result<int> node = NodeOf(document, Member(found->second, "lookAt"), field + ".lookAt");
     if (!node.ok()) return node.status();
     vrm.look_at = *node;
   }

@@ -164,7 +164,7 @@ class GlbWriter {
                                       {"target", {{"node", node}, {"path", path}}}});
   }
 
-  // Morph weights need a mesh: one triangle in one point. Targets without a buffer view are zeros.
+  // Morph weights need a mesh: one triangle in one point, whose zeros serve as every target.
   void AddBlendShapes() {
     const std::size_t num_shapes = clip_.blend_shape_names.size();
     const std::size_t position = AddAccessor("VEC3", 3, [](std::string* out) {
@@ -172,10 +172,7 @@ class GlbWriter {
     });
     json_["accessors"][position]["min"] = {0.0, 0.0, 0.0};
     json_["accessors"][position]["max"] = {0.0, 0.0, 0.0};
-    Json zeros = json_["accessors"][position];
-    zeros.erase("bufferView");
-    json_["accessors"].push_back(std::move(zeros));
-    const Json target = {{"POSITION", json_["accessors"].size() - 1}};
+    const Json target = {{"POSITION", position}};
     const Json primitive = {{"attributes", {{"POSITION", position}}},
                             {"targets", Json(num_shapes, target)}};
     json_["meshes"] = Json::array({{{"name", "blend_shapes"},
