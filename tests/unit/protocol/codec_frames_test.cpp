@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/protocol/samples.h"
+
+namespace furrow::protocol {
+namespace {
+
+using test::Encoded;
+using test::OpenAndDecode;
+
+TEST(CodecFrames, WeightsComeBack) {
+  WeightFrame sent{77, 1000, WeightFormat::kF32, {0.0f, 0.123456f, 1.0f}};
+  WeightFrame out;
+  ASSERT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kOk);
+  EXPECT_EQ(out.names_hash, 77u);
+  EXPECT_EQ(out.age_us, 1000);
+  EXPECT_EQ(out.format, WeightFormat::kF32);
+  EXPECT_EQ(out.values, sent.values);
+  sent.format = WeightFormat::kU8;
+  ASSERT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kOk);
+  EXPECT_EQ(out.format, WeightFormat::kU8);
+  ASSERT_EQ(out.values.size(), 3u);
+  EXPECT_EQ(out.values[0], 0.0f);
+  EXPECT_NEAR(out.values[1], 0.123456f, 1.0f / 510);
+  EXPECT_EQ(out.values[2], 1.0f);
+}
+
+TEST(CodecFrames, AnEmptySetOfWeightsKeepsItsFormat) {
+  WeightFrame out;
+  ASSERT_EQ(OpenAndDecode(Encoded(WeightFrame{0, 0, WeightFormat::kU8, {}}), out),
+            DecodeStatus::kOk);
+  EXPECT_EQ(out.format, WeightFormat::kU8);
+  EXPECT_TRUE(out.values.empty());
+}
+
+TEST(CodecFrames, WeightsAreChecked) {
+  const auto decoded = [](const WeightFrame& sent) {
+    WeightFrame out;
+    return OpenAndDecode(Encoded(sent), out);
+  };
+  EXPECT_EQ(decoded({0, 0, WeightFormat::kF32, {NAN}}), DecodeStatus::kNonFinite);
+  EXPECT_EQ(decoded({0, 0, WeightFormat::kF32, {1.001f}}), DecodeStatus::kBadValue);
+  EXPECT_EQ(decoded({0, 0, WeightFormat::kF32, {-0.001f}}), DecodeStatus::kBadValue);
+  EXPECT_EQ(decoded({0, -1, WeightFormat::kF32, {0.5f}}), DecodeStatus::kBadValue);
+  EXPECT_EQ(decoded({0, 0, WeightFormat::kU8, std::vector<float>(kMaxWeights + 1)}),
+            DecodeStatus::kLimit);
+}
+
+TEST(CodecFrames, ImagesComeBackAndAreChecked) {
+  const ImageFrame sent{1280, 720, ImageFormat::kPng, 5, std::vector<std::uint8_t>(300'000, 7)};
+  ImageFrame out;
+  MessageView view;
+  const auto bytes = Encoded(sent);
+  ASSERT_EQ(OpenMessage(bytes, view, kMaxReplyBytes), DecodeStatus::kOk);
+  ASSERT_EQ(Decode(view, out), DecodeStatus::kOk);
+  EXPECT_EQ(out.width, 1280);
+  EXPECT_EQ(out.height, 720);
+  EXPECT_EQ(out.format, ImageFormat::kPng);
+  EXPECT_EQ(out.age_us, 5);
+  EXPECT_EQ(out.bytes, sent.bytes);
+  EXPECT_EQ(OpenAndDecode(Encoded(ImageFrame{4, 4, ImageFormat::kPng, 0, {}}), out),
+            DecodeStatus::kMissingField);
+  EXPECT_EQ(OpenAndDecode(Encoded(ImageFrame{0, 4, ImageFormat::kPng, 0, {1}}), out),
+            DecodeStatus::kBadValue);
+  EXPECT_EQ(OpenAndDecode(Encoded(ImageFrame{4, 4097, ImageFormat::kPng, 0, {1}}), out),
+            DecodeStatus::kBadValue);
+  EXPECT_EQ(OpenAndDecode(Encoded(ImageFrame{4, 4, static_cast<ImageFormat>(2), 0, {1}}), out),
+            DecodeStatus::kBadValue);
+}
+
+}  // namespace
+}  // namespace furrow::protocol

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "protocol/mocap/osc_out.h"
+
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "protocol/mocap/osc.h"
+#include "protocol/mocap/vmc.h"
+#include "tests/unit/protocol/drill.h"
+
+namespace furrow::protocol::mocap {
+namespace {
+
+std::vector<std::string> Names(int count) {
+  std::vector<std::string> names;
+  for (int i = 0; i < count; ++i) names.push_back("region_" + std::to_string(i) + ".squash");
+  return names;
+}
+
+std::vector<float> Values(int count) {
+  std::vector<float> values;
+  for (int i = 0; i < count; ++i) values.push_back(static_cast<float>(i) / 512.0f);
+  return values;
+}
+
+TEST(OscWeightWriter, EveryWeightArrivesInBoundedBundlesAndTheMarkIsLast) {
+  OscWeightWriter writer;
+  writer.SetNames("anna b", Names(100));
+  std::vector<test::Bytes> datagrams;
+  writer.Write(41, 1'234'567'890'123, Values(100), [&](std::span<const std::uint8_t> datagram) {
+    datagrams.emplace_back(datagram.begin(), datagram.end());
+  });
+  EXPECT_GT(datagrams.size(), 2u);
+  std::map<std::string, float> heard;
+  std::string last;
+  for (const test::Bytes& datagram : datagrams) {
+    EXPECT_LE(datagram.size(), 1200u);
+    ASSERT_EQ(VisitOsc(datagram,
+                       [&](const OscMessage& message) {
+                         last = message.address;
+                         OscArguments arguments(message);
+                         float value = -1;
+                         if (arguments.Float(value)) heard[last] = value;
+                         std::int32_t sequence = 0;
+                         if (arguments.Int(sequence)) {
+                           EXPECT_EQ(sequence, 41);
+                           EXPECT_EQ(message.tags, "ih");
+                         }
+                       }),
+              OscStatus::kOk);
+  }
+  EXPECT_EQ(last, "/furrow/anna_b/frame");
+  ASSERT_EQ(heard.size(), 100u);
+  EXPECT_EQ(heard["/furrow/anna_b/region_64.squash"], 0.125f);
+}
+
+TEST(OscWeightWriter, TheVmcProfileIsWhatAVmcReceiverTakes) {
+  OscWeightWriter writer(OscProfile::kVmc);
+  writer.SetNames("anna", Names(60));
+  const auto receiver = MakeVmcAdapter();
+  std::vector<NeutralFrame> frames;
+  writer.Write(0, 0, Values(60), [&](std::span<const std::uint8_t> datagram) {
+    EXPECT_LE(datagram.size(), 1200u);
+    receiver->Push(datagram, 0, [&](const NeutralFrame& frame) { frames.push_back(frame); });
+  });
+  ASSERT_EQ(frames.size(), 1u);
+  ASSERT_EQ(frames[0].blend_shapes.size(), 60u);
+  EXPECT_EQ(frames[0].blend_shapes[32].name, "region_32.squash");
+  EXPECT_EQ(frames[0].blend_shapes[32].value, 0.0625f);
+  EXPECT_EQ(receiver->counters().malformed, 0u);
+}
+
+TEST(OscWeightWriter, ForbiddenCharactersDoNotReachTheAddress) {
+  OscWeightWriter writer(OscProfile::kFurrow, "/w");
+  writer.SetNames("a/b#*", std::vector<std::string>{"x,y?[z]{q}"});
+  writer.Write(0, 0, Values(1), [](std::span<const std::uint8_t> datagram) {
+    std::vector<std::string> addresses;
+    ASSERT_EQ(VisitOsc(datagram, [&](const OscMessage& m) { addresses.emplace_back(m.address); }),
+              OscStatus::kOk);
+    EXPECT_EQ(addresses, (std::vector<std::string>{"/w/a_b__/x_y__z__q_", "/w/a_b__/frame"}));
+  });
+}
+
+TEST(OscWeightWriter, DoesNotAllocateOnceWarm) {
+  OscWeightWriter writer;
+  writer.SetNames("anna", Names(100));
+  const std::vector<float> values = Values(100);
+  const OscWeightWriter::Emit emit = [](std::span<const std::uint8_t>) {};
+  writer.Write(0, 0, values, emit);
+  const std::uint64_t before = test::AllocationCount();
+  for (std::uint32_t i = 1; i < 10; ++i) writer.Write(i, i, values, emit);
+  EXPECT_EQ(test::AllocationCount(), before);
+}
+
+}  // namespace
+}  // namespace furrow::protocol::mocap
