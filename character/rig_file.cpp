@@ -54,6 +54,10 @@ Status FromParser(const std::string& error, const JsonIndex& index, const std::s
   } else {
     path = index.PathAt(complaint.line, complaint.column);
   }
+  if (what == "wrong number of unnamed fields in table vector") {
+    what = "the list has too few or too many entries";
+    path = path.substr(0, path.rfind('['));
+  }
   return {StatusCode::kSchema, what, source + ":" + index.Where(path),
           "character/rig.fbs lists the fields"};
 }
