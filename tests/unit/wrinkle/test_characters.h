@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "wrinkle/pose.h"
+#include "wrinkle/rig.h"
+#include "wrinkle/skeleton.h"
+
+namespace furrow::wrinkle {
+
+// A joint as one would draw it: where it is in model space.
+struct ModelJoint {
+  std::string name;
+  std::string parent;  // empty: a root
+  glm::vec3 origin{0.0f};
+  std::optional<glm::vec3> tail;
+};
+
+// `frame_seed` 0: all rest rotations are the identity (BVH); else every joint has a local frame of
+// its own, by chance, while shape and stance stay the same.
+Skeleton MakeSkeleton(const std::vector<ModelJoint>& joints, unsigned frame_seed = 0);
+
+// Hips, spine, neck, head with brows and cheeks, a left arm and both legs: 1.7 units tall, facing
+// +Z.
+Skeleton MakeBody(unsigned frame_seed = 0, float scale = 1.0f);
+
+// A rig over MakeBody() with drivers of every kind: see the source.
+Rig MakeRig();
+
+LocalPose RestPose(const Skeleton& skeleton);
+
+// Turns `joint` away from rest by `rotation`, given in model axes at rest (as JointDelta).
+void Turn(const Skeleton& skeleton, const std::string& joint, const glm::quat& rotation,
+          LocalPose* pose);
+void Move(const Skeleton& skeleton, const std::string& joint, const glm::vec3& translation,
+          LocalPose* pose);
+
+glm::quat AngleAxis(float degrees, const glm::vec3& axis);
+glm::quat RandomRotation(std::mt19937* random);
+glm::vec3 RandomVector(std::mt19937* random, float length);
+void RandomPose(const Skeleton& skeleton, std::mt19937* random, LocalPose* pose);
+
+}  // namespace furrow::wrinkle
