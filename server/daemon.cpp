@@ -155,11 +155,13 @@ void Daemon::Announce() const {
   ready.render = render_ != nullptr;
   if (vmc_) ready.vmc = vmc_->port();
   if (livelink_face_) ready.livelink_face = livelink_face_->port();
-  std::string line = "furrowd ready tcp=" + config_.bind + ":" + std::to_string(ready.tcp) +
-                     " udp=" + config_.bind + ":" + std::to_string(ready.udp) +
-                     " render=" + (ready.render ? "on" : "off");
-  if (ready.vmc) line += " vmc=" + std::to_string(*ready.vmc);
-  if (ready.livelink_face) line += " livelink-face=" + std::to_string(*ready.livelink_face);
+  // IPv6 addresses in brackets, as in a URL.
+  const std::string host =
+      (config_.bind.find(':') == std::string::npos ? config_.bind : "[" + config_.bind + "]") + ":";
+  std::string line = "furrowd ready tcp=" + host + std::to_string(ready.tcp) + " udp=" + host +
+                     std::to_string(ready.udp) + " render=" + (ready.render ? "on" : "off");
+  if (ready.vmc) line += " vmc=" + host + std::to_string(*ready.vmc);
+  if (ready.livelink_face) line += " livelink_face=" + host + std::to_string(*ready.livelink_face);
   std::printf("%s\n", line.c_str());
   std::fflush(stdout);
   if (options_.on_ready) options_.on_ready(ready);

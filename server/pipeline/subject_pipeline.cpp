@@ -32,8 +32,9 @@ wrinkle::JobStatus SubjectPipeline::Decay(double dt) { return solver_.Decay(dt);
 bool SubjectPipeline::neutral() const {
   // Below half a u8 step there is nothing left to see or to send.
   constexpr float kNothing = 0.5f / 255.0f;
-  return std::ranges::all_of(solver_.wrinkle_weights(),
-                             [](float weight) { return weight < kNothing; });
+  const auto is_nothing = [](float value) { return value < kNothing; };
+  return std::ranges::all_of(solver_.filtered_values(), is_nothing) &&
+         std::ranges::all_of(solver_.wrinkle_weights(), is_nothing);
 }
 
 std::shared_ptr<const Snapshot> SubjectPipeline::TakeSnapshot(std::int64_t age_us) const {

@@ -69,7 +69,7 @@ class Pictures : public testing::Test {
   std::optional<TcpClient> viewer;
 };
 
-TEST_F(Pictures, AreOfTheSizeAndFormatAskedForAndCarryThePosesSequence) {
+TEST_F(Pictures, AreOfTheSizeAndFormatAskedFor) {
   for (const auto format : {protocol::ImageFormat::kJpeg, protocol::ImageFormat::kPng}) {
     TcpClient client(daemon->ready().tcp);
     client.Send(
@@ -78,8 +78,7 @@ TEST_F(Pictures, AreOfTheSizeAndFormatAskedForAndCarryThePosesSequence) {
     ASSERT_TRUE(client.Await<protocol::SubscribeReply>().has_value());
     const int frame = format == protocol::ImageFormat::kJpeg ? 3 : 4;
     SendPose(frame);
-    protocol::Header header;
-    const auto image = client.Await<protocol::ImageFrame>(&header);
+    const auto image = client.Await<protocol::ImageFrame>();
     ASSERT_TRUE(image.has_value());
     EXPECT_EQ(image->width, 96);
     EXPECT_EQ(image->height, 64);

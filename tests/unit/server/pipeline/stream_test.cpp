@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the wire's structs to a solved subject: adapter, shared definitions, pipeline.
+#include <cmath>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "server/pipeline/stream_definition.h"
+#include "server/pipeline/subject_pipeline.h"
+#include "server/pipeline/wire_adapter.h"
+
+namespace furrow::server {
+namespace {
+
+// A knee: straight along -Y at rest, full wrinkle at 150 degrees between the bones' continuations.
+std::shared_ptr<const wrinkle::Rig> KneeRig(bool filter = false) {
+  auto rig = std::make_shared<wrinkle::Rig>();
+  rig->name = "knee";
+  rig->filter.enabled = filter;
+  rig->wrinkle_maps.push_back({.name = "folds"});
+  wrinkle::Driver driver;
+  driver.name = "knee";
+  driver.kind = wrinkle::Driver::Kind::kHinge;
+  driver.hinge.parent = "thigh";
+  driver.hinge.joint = "shin";
+  driver.hinge.axis = glm::vec3(1, 0, 0);
+  rig->drivers.push_back(driver);
+  wrinkle::Region region;
+  region.name = "knee";
+  region.modulation = wrinkle::Modulation::kLinear;
+  region.feeds.push_back({"folds", {{"knee", "flexed", 1.0f}}});
+  rig->regions.push_back(region);
+  return rig;
+}
+
+protocol::SkeletonOffer KneeOffer() {
+  protocol::SkeletonOffer offer;
+  offer.subject = "ann";
+  for (const auto& [name, parent, y] : {std::tuple{"hips", -1, 1.0f},
+                                        {"thigh", 0, -0.1f},
+                                        {"shin", 1, -0.4f},
+                                        {"foot", 2, -0.4f}}) {
+    protocol::OfferedJoint joint;
+    joint.name = name;
+    joint.parent = static_cast<std::int16_t>(parent);
+    joint.rest_translation = {0.0f, y, 0.0f};
+    offer.joints.push_back(joint);
+  }
+  return offer;
+}
+
+protocol::PoseFrame Bend(float radians) {
+  protocol::PoseFrame pose;
+  pose.num_joints = 4;
+  pose.rotation_joints = {2};
+  pose.rotations = {{std::sin(radians / 2), 0.0f, 0.0f, std::cos(radians / 2)}};
+  return pose;
+}
+
+std::shared_ptr<const StreamDefinition> Define(bool filter = false) {
+  StreamDefinitions definitions(KneeRig(filter), nullptr, 4);
+  auto definition = definitions.Get(ToStreamOffer(KneeOffer()));
+  EXPECT_TRUE(definition.ok()) << definition.status().ToString();
+  return *std::move(definition);
+}
+
+TEST(WireAdapter, TakesNamesParentsRestAndTails) {
+  protocol::SkeletonOffer offer = KneeOffer();
+  offer.joints[3].has_tail = true;
+  offer.joints[3].tail = {0.0f, 0.0f, 0.2f};
+  offer.blend_shape_names = {"a"};
+  const StreamOffer result = ToStreamOffer(offer);
+  ASSERT_EQ(result.joints.size(), 4u);
+  EXPECT_EQ(result.joints[0].parent, wrinkle::kNoJoint);
+  EXPECT_EQ(result.joints[3].parent, 2);
+  EXPECT_EQ(result.joints[2].name, "shin");
+  EXPECT_FLOAT_EQ(result.joints[2].rest.translation.y, -0.4f);
+  EXPECT_FALSE(result.joints[2].tail.has_value());
+  EXPECT_FLOAT_EQ(result.joints[3].tail->z, 0.2f);
+  EXPECT_EQ(result.blend_shapes.size(), 1u);
+}
+
+TEST(WireAdapter, TranslationsAreOffsetsFromRestAndTheUnlistedRests) {
+  const auto stream = Define();
+  wrinkle::LocalPose pose;
+  pose.SetRest(stream->skeleton);
+  protocol::PoseFrame frame = Bend(1.0f);
+  frame.translation_joints = {0};
+  frame.translations = {{0.5f, 0.25f, 0.0f}};
+  frame.scale_joints = {3};
+  frame.scales = {{2.0f, 2.0f, 2.0f}};
+  ASSERT_TRUE(PoseFits(frame, *stream));
+  ApplyPose(frame, *stream, &pose);
+  EXPECT_FLOAT_EQ(pose.joints[0].translation.x, 0.5f);
+  EXPECT_FLOAT_EQ(pose.joints[0].translation.y, 1.25f);
+  EXPECT_FLOAT_EQ(pose.joints[3].scale.x, 2.0f);
+  EXPECT_NEAR(pose.joints[2].rotation.x, std::sin(0.5f), 1e-6);
+
+  protocol::PoseFrame partial;
+  partial.num_joints = 4;
+  partial.partial = true;
+  ApplyPose(partial, *stream, &pose);
+  EXPECT_NEAR(pose.joints[2].rotation.x, std::sin(0.5f), 1e-6);
+  partial.partial = false;
+  ApplyPose(partial, *stream, &pose);
+  EXPECT_FLOAT_EQ(pose.joints[2].rotation.x, 0.0f);
+  EXPECT_FLOAT_EQ(pose.joints[0].translation.y, 1.0f);
+}
+
+TEST(WireAdapter, RefusesWhatIsNotOfTheStream) {
+  const auto stream = Define();
+  protocol::PoseFrame frame = Bend(1.0f);
+  frame.num_joints = 5;
+  EXPECT_FALSE(PoseFits(frame, *stream));
+  frame = Bend(1.0f);
+  frame.rotation_joints = {4};
+  EXPECT_FALSE(PoseFits(frame, *stream));
+  frame = Bend(1.0f);
+  frame.num_blend_shapes = 1;
+  EXPECT_FALSE(PoseFits(frame, *stream));
+  frame = Bend(1.0f);
+  frame.rotation_joints.clear();
+  frame.rotations.resize(5);
+  EXPECT_FALSE(PoseFits(frame, *stream));
+}
+
+TEST(StreamDefinitions, EqualStreamsShareOneAndTheOldestGoes) {
+  StreamDefinitions definitions(KneeRig(), nullptr, 2);
+  const auto get = [&](const protocol::SkeletonOffer& offer) {
+    return definitions.Get(ToStreamOffer(offer)).value();
+  };
+  protocol::SkeletonOffer longer = KneeOffer();
+  longer.joints[3].rest_translation.y = -0.5f;
+  protocol::SkeletonOffer shapes = KneeOffer();
+  shapes.blend_shape_names = {"smile"};
+  const auto first = get(KneeOffer());
+  EXPECT_EQ(first, get(KneeOffer()));
+  EXPECT_NE(first, get(longer));
+  EXPECT_EQ(first, get(KneeOffer()));  // used again: now the newest
+  EXPECT_NE(first, get(shapes));       // pushes `longer` out
+  EXPECT_EQ(first, get(KneeOffer()));
+}
+
+TEST(StreamDefinitions, AStreamThatIsNoTreeIsRefused) {
+  StreamDefinitions definitions(KneeRig(), nullptr, 2);
+  StreamOffer offer = ToStreamOffer(KneeOffer());
+  offer.joints[1].parent = 2;
+  const auto result = definitions.Get(std::move(offer));
+  EXPECT_EQ(result.status().code(), StatusCode::kCyclic);
+}
+
+TEST(SubjectPipeline, FollowsTheBend) {
+  SubjectPipeline subject(Define());
+  float last = -1.0f;
+  for (int step = 0; step <= 10; ++step) {
+    ApplyPose(Bend(0.2f * static_cast<float>(step)), subject.stream(), subject.mutable_pose());
+    ASSERT_EQ(subject.Solve(static_cast<std::uint32_t>(step), step * 1000),
+              wrinkle::JobStatus::kOk);
+    EXPECT_GT(subject.wrinkle_weights()[0], last);
+    last = subject.wrinkle_weights()[0];
+  }
+  EXPECT_GT(last, 0.5f);
+  EXPECT_EQ(subject.sequence(), 10u);
+  EXPECT_EQ(subject.capture_time_us(), 10'000);
+}
+
+TEST(SubjectPipeline, ACaptureTimeThatGoesBackStartsTheFilterAnew) {
+  SubjectPipeline subject(Define(/*filter=*/true));
+  const auto solve = [&](float bend, std::uint32_t sequence, std::int64_t time_us) {
+    ApplyPose(Bend(bend), subject.stream(), subject.mutable_pose());
+    EXPECT_EQ(subject.Solve(sequence, time_us), wrinkle::JobStatus::kOk);
+    return subject.wrinkle_weights()[0];
+  };
+  const float bent = solve(2.0f, 0, 50'000'000);
+  EXPECT_GT(solve(0.0f, 1, 50'001'000), 0.0f) << "a millisecond on, the filter still holds";
+  EXPECT_EQ(solve(2.0f, 2, 1'000), bent) << "a first pose passes unchanged";
+}
+
+TEST(SubjectPipeline, DecaysToNeutralAndTheSnapshotShowsIt) {
+  SubjectPipeline subject(Define(/*filter=*/true));
+  ApplyPose(Bend(2.0f), subject.stream(), subject.mutable_pose());
+  ASSERT_EQ(subject.Solve(7, 0), wrinkle::JobStatus::kOk);
+  EXPECT_FALSE(subject.neutral());
+  const auto before = subject.TakeSnapshot(0);
+  for (int i = 0; i < 600; ++i) ASSERT_EQ(subject.Decay(0.02), wrinkle::JobStatus::kOk);
+  EXPECT_TRUE(subject.neutral());
+  const auto after = subject.TakeSnapshot(12'000'000);
+  EXPECT_GT(before->wrinkle_weights[0], 0.5f) << "a snapshot is a value";
+  EXPECT_LT(after->wrinkle_weights[0], 0.01f);
+  EXPECT_EQ(after->age_us, 12'000'000);
+  EXPECT_EQ(after->joints[2].rotation.x, before->joints[2].rotation.x) << "the pose stays";
+}
+
+}  // namespace
+}  // namespace furrow::server
