@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a UDP socket hands on: reassembly, then any message decoded as the kind it claims to be.
+// What is accepted is encoded and decoded again: it must be accepted again.
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+#include <vector>
+
+#include "protocol/codec.h"
+#include "protocol/fragment.h"
+
+namespace {
+
+using furrow::protocol::DecodeStatus;
+using furrow::protocol::Encoder;
+using furrow::protocol::MessageKind;
+using furrow::protocol::MessageView;
+
+template <class Message>
+void RoundTrip(const MessageView& view) {
+  Message message;
+  if (Decode(view, message) != DecodeStatus::kOk) return;
+  static Encoder encoder;
+  static std::vector<std::uint8_t> bytes;
+  encoder.Encode(view.header, message, bytes);
+  MessageView again;
+  if (OpenMessage(bytes, again, furrow::protocol::kMaxReplyBytes) != DecodeStatus::kOk ||
+      Decode(again, message) != DecodeStatus::kOk) {
+    std::abort();
+  }
+}
+
+void DecodeAny(std::span<const std::uint8_t> bytes) {
+  namespace p = furrow::protocol;
+  MessageView view;
+  if (OpenMessage(bytes, view) != DecodeStatus::kOk) return;
+  switch (view.kind) {
+    case MessageKind::kHello: return RoundTrip<p::Hello>(view);
+    case MessageKind::kWelcome: return RoundTrip<p::Welcome>(view);
+    case MessageKind::kPing: return RoundTrip<p::Ping>(view);
+    case MessageKind::kPong: return RoundTrip<p::Pong>(view);
+    case MessageKind::kGoodbye: return RoundTrip<p::Goodbye>(view);
+    case MessageKind::kError: return RoundTrip<p::ErrorMessage>(view);
+    case MessageKind::kSkeletonOffer: return RoundTrip<p::SkeletonOffer>(view);
+    case MessageKind::kSkeletonReply: return RoundTrip<p::SkeletonReply>(view);
+    case MessageKind::kPose: return RoundTrip<p::PoseFrame>(view);
+    case MessageKind::kSubscribeWeights: return RoundTrip<p::SubscribeWeights>(view);
+    case MessageKind::kSubscribePictures: return RoundTrip<p::SubscribePictures>(view);
+    case MessageKind::kUnsubscribe: return RoundTrip<p::Unsubscribe>(view);
+    case MessageKind::kSubscribeReply: return RoundTrip<p::SubscribeReply>(view);
+    case MessageKind::kWeights: return RoundTrip<p::WeightFrame>(view);
+    case MessageKind::kImage: return RoundTrip<p::ImageFrame>(view);
+    case MessageKind::kUnknown: return;
+  }
+}
+
+}  // namespace
+
+// The input is cut into datagrams by a length in two bytes before each.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  DecodeAny({data, size});
+  furrow::protocol::Reassembler reassembler;
+  std::span<const std::uint8_t> rest(data, size);
+  std::int64_t now_us = 0;
+  while (rest.size() > 2) {
+    const std::size_t length = std::min<std::size_t>(rest[0] | rest[1] << 8, rest.size() - 2);
+    std::span<const std::uint8_t> message;
+    using furrow::protocol::FragmentStatus;
+    const FragmentStatus status = reassembler.Push(1, rest.subspan(2, length), now_us, message);
+    if (status == FragmentStatus::kComplete) DecodeAny(message);
+    rest = rest.subspan(2 + length);
+    (void)reassembler.Expire(now_us += 100'000);
+  }
+  return 0;
+}

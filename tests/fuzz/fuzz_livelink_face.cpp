@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Live Link Face datagrams; a second one with the next byte counts as another frame.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+
+#include "protocol/mocap/livelink_face.h"
+
+namespace {
+
+void CheckFrame(const furrow::protocol::mocap::NeutralFrame& frame) {
+  if (frame.subject.empty() || frame.blend_shapes.size() != 61) std::abort();
+  for (const auto& shape : frame.blend_shapes) {
+    if (!std::isfinite(shape.value)) std::abort();
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto adapter = furrow::protocol::mocap::MakeLiveLinkFaceAdapter();
+  const std::span<const std::uint8_t> packet(data, size);
+  adapter->Push(packet, 0, CheckFrame);
+  if (size > 1) adapter->Push(packet.subspan(1), 10'000, CheckFrame);
+  return 0;
+}
