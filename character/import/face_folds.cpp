@@ -37,7 +37,7 @@ class FoldDrawing {
     const int serial = static_cast<int>(strokes_.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       const int n = static_cast<int>(i);
-      points[i] += face_.Millimetres(1.4f) * glm::vec3(HashLattice(serial, n, 1) - 0.5f,
+      points[i] += face_.Millimetres(0.9f) * glm::vec3(HashLattice(serial, n, 1) - 0.5f,
                                                        HashLattice(serial, n, 2) - 0.5f, 0.0f);
     }
     stroke.points = std::move(points);
@@ -66,7 +66,7 @@ void Forehead(const FaceLandmarks& face, FoldDrawing* drawing) {
   constexpr std::array<float, 4> kHeights{13.0f, 22.0f, 31.5f, 40.0f};
   for (std::size_t row = 0; row < kHeights.size(); ++row) {
     const float up = kHeights[row];
-    const FoldSize size{row == 3 ? 2.6f : 3.0f, row == 3 ? 0.45f : 0.75f};
+    const FoldSize size{row == 3 ? 3.6f : 4.2f, row == 3 ? 0.8f : 1.3f};
     for (int s = 0; s < 2; ++s) {
       const FaceLandmarks::Side& side = face.sides[s];
       const float inner = row % 2 == 0 ? -9.0f : -17.0f;  // past the middle, in turn
@@ -84,29 +84,29 @@ void Glabella(const FaceLandmarks& face, FoldDrawing* drawing) {
     const glm::vec3& brow = face.sides[s].brow_inner;
     drawing->Add({drawing->From(brow, s, -6.0f, 13.0f), drawing->From(brow, s, -7.5f, 2.0f),
                   drawing->From(brow, s, -8.5f, -8.0f)},
-                 {2.6f, 0.95f});
+                 {3.5f, 1.6f});
     drawing->Add({drawing->From(brow, s, 1.0f, 9.0f), drawing->From(brow, s, -2.0f, 2.5f)},
-                 {2.2f, 0.5f});
+                 {3.0f, 0.85f});
     // The brow's own roll: skin pushed up over its inner end.
     drawing->Add({drawing->From(brow, s, -3.0f, 8.0f), drawing->From(brow, s, 8.0f, 9.5f),
                   drawing->From(brow, s, 20.0f, 9.0f)},
-                 {3.0f, 0.5f});
+                 {4.1f, 0.85f});
   }
   const glm::vec3 root = glm::mix(face.sides[0].brow_inner, face.sides[1].brow_inner, 0.5f);
   for (const float down : {15.0f, 20.0f})
     drawing->Add({drawing->From(root, 0, -8.0f, -down + 1.5f), drawing->From(root, 0, 0.0f, -down),
                   drawing->From(root, 0, 8.0f, -down + 1.5f)},
-                 {1.9f, 0.6f});
+                 {2.6f, 1.0f});
 }
 
 void BunnyLines(const FaceLandmarks& face, FoldDrawing* drawing) {
   for (int s = 0; s < 2; ++s) {
     for (int line = 0; line < 3; ++line) {
-      const float down = 4.0f * static_cast<float>(line);
+      const float down = 4.5f * static_cast<float>(line) - 4.0f;
       drawing->Add({drawing->From(face.nose_bridge, s, 3.0f, 2.0f - down),
                     drawing->From(face.nose_bridge, s, 8.5f, 0.0f - down),
-                    drawing->From(face.nose_bridge, s, 13.0f, 4.0f - down)},
-                   {1.6f, 0.5f});
+                    drawing->From(face.nose_bridge, s, 14.0f, 4.5f - down)},
+                   {2.2f, 0.85f});
     }
   }
 }
@@ -118,17 +118,17 @@ void EyeFolds(const FaceLandmarks& face, FoldDrawing* drawing) {
   for (int s = 0; s < 2; ++s) {
     const FaceLandmarks::Side& side = face.sides[s];
     for (const auto& [out, up] : kFan) {
-      drawing->Add({drawing->From(side.eye, s, 19.0f + 0.15f * out, 0.35f * up - 1.0f),
-                    drawing->From(side.eye, s, 21.0f + 0.6f * out, 0.7f * up - 1.5f),
-                    drawing->From(side.eye, s, 21.0f + out, up - 2.5f)},
-                   {1.7f, 0.5f});
+      drawing->Add({drawing->From(side.eye, s, 16.5f + 0.15f * out, 0.4f * up - 1.0f),
+                    drawing->From(side.eye, s, 18.0f + 0.7f * out, 0.8f * up - 1.5f),
+                    drawing->From(side.eye, s, 19.0f + 1.3f * out, 1.25f * up - 2.5f)},
+                   {2.3f, 0.8f});
     }
     for (int line = 0; line < 3; ++line) {
-      const float down = 6.0f + 4.2f * static_cast<float>(line);
+      const float down = 1.0f + 4.0f * static_cast<float>(line);
       drawing->Add({drawing->From(side.lower_lid, s, -11.0f, 2.0f - down),
                     drawing->From(side.lower_lid, s, 0.0f, -1.0f - down),
                     drawing->From(side.lower_lid, s, 12.0f, 1.5f - down)},
-                   {1.9f, line == 0 ? 0.45f : 0.32f});
+                   {2.5f, line == 0 ? 0.75f : 0.5f});
     }
   }
 }
@@ -141,12 +141,12 @@ void Nasolabial(const FaceLandmarks& face, FoldDrawing* drawing) {
          drawing->From(side.fold_middle, s, 5.5f, -2.0f),
          drawing->From(side.fold_bottom, s, 7.0f, -2.0f),
          drawing->From(side.mouth_corner, s, 9.0f, -6.0f)},
-        {3.4f, 1.25f, 0.5f, 0.7f});
+        {4.6f, 2.1f, 0.5f, 0.7f});
     // The dimple's arc, outside the fold's lower end.
     drawing->Add({drawing->From(side.fold_bottom, s, 14.0f, 7.0f),
                   drawing->From(side.fold_bottom, s, 16.0f, -1.0f),
                   drawing->From(side.fold_bottom, s, 14.0f, -9.0f)},
-                 {2.6f, 0.55f});
+                 {3.5f, 0.94f});
   }
 }
 
@@ -156,10 +156,10 @@ void Marionette(const FaceLandmarks& face, FoldDrawing* drawing) {
     drawing->Add({drawing->From(side.mouth_corner, s, 4.0f, 1.0f),
                   drawing->From(side.mouth_corner, s, 6.5f, -9.0f),
                   drawing->From(side.mouth_corner, s, 6.0f, -20.0f)},
-                 {2.8f, 0.9f});
+                 {3.8f, 1.5f});
     drawing->Add({drawing->From(side.fold_bottom, s, 8.0f, 9.0f),
                   drawing->From(side.fold_bottom, s, 11.0f, -3.0f)},
-                 {2.4f, 0.4f});
+                 {3.2f, 0.68f});
   }
 }
 
@@ -167,7 +167,7 @@ void Chin(const FaceLandmarks& face, FoldDrawing* drawing) {
   const glm::vec3& under = face.lower_lip_bottom;
   drawing->Add({drawing->From(under, 0, -14.0f, -4.0f), drawing->From(under, 0, 0.0f, -1.5f),
                 drawing->From(under, 0, 14.0f, -4.0f)},
-               {2.8f, 0.8f});
+               {3.8f, 1.35f});
   // Pebbles: short dents over the mentalis.
   for (int i = 0; i < 16; ++i) {
     const float out = (HashLattice(i, 11, 5) - 0.5f) * 24.0f;
@@ -175,7 +175,7 @@ void Chin(const FaceLandmarks& face, FoldDrawing* drawing) {
     const float turn = (HashLattice(i, 13, 5) - 0.5f) * 4.0f;
     drawing->Add(
         {drawing->From(under, 0, out - 1.6f, up), drawing->From(under, 0, out + 1.6f, up + turn)},
-        {1.7f, 0.4f});
+        {2.3f, 0.65f});
   }
 }
 

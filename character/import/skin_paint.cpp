@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -25,6 +26,7 @@ constexpr glm::vec3 kRed{0.77f, 0.48f, 0.42f};
 constexpr glm::vec3 kYellow{0.82f, 0.66f, 0.54f};
 constexpr glm::vec3 kLips{0.67f, 0.40f, 0.38f};
 constexpr glm::vec3 kLids{0.70f, 0.51f, 0.45f};
+constexpr glm::vec3 kMouth{0.36f, 0.15f, 0.14f};
 constexpr glm::vec3 kBrow{0.23f, 0.165f, 0.13f};
 constexpr glm::vec3 kStubble{0.47f, 0.39f, 0.35f};
 
@@ -55,10 +57,10 @@ std::uint8_t* At(Picture* picture, const Texel& texel) {
 float Front(const Texel& texel) { return glm::smoothstep(-0.1f, 0.35f, texel.normal.z); }
 
 float Redness(const glm::vec3& p, const FaceLandmarks& face) {
-  float red = 0.75f * FadeOut(glm::distance(p, face.nose_tip), 0.0f, face.Millimetres(22.0f));
+  float red = 0.4f * FadeOut(glm::distance(p, face.nose_tip), 0.0f, face.Millimetres(22.0f));
   for (const FaceLandmarks::Side& side : face.sides) {
     const glm::vec3 apple = glm::mix(side.cheek, side.fold_top, 0.35f);
-    red = std::max(red, 0.75f * FadeOut(glm::distance(p, apple), 0.0f, face.Millimetres(34.0f)));
+    red = std::max(red, 0.42f * FadeOut(glm::distance(p, apple), 0.0f, face.Millimetres(36.0f)));
     glm::vec3 ear = side.temple;  // ears lie level with the temples, well behind them
     ear.z = face.head.z;
     red = std::max(red, 0.6f * FadeOut(glm::distance(p, ear), face.Millimetres(10.0f),
@@ -67,41 +69,67 @@ float Redness(const glm::vec3& p, const FaceLandmarks& face) {
   return red;
 }
 
-float Lips(const glm::vec3& p, const FaceLandmarks& face) {
-  float distance = 1.0f;
-  for (const FaceLandmarks::Side& side : face.sides) {
-    const glm::vec3 above = glm::mix(face.upper_lip_top, face.upper_lip, 0.6f);
-    const glm::vec3 below = glm::mix(face.lower_lip_bottom, face.lower_lip, 0.62f);
-    const glm::vec3 corner = glm::mix(side.mouth_corner, side.lower_lip, 0.3f);
-    distance =
-        std::min(distance, DistanceToLine(p, {above, glm::mix(above, corner, 0.55f), corner}));
-    distance =
-        std::min(distance, DistanceToLine(p, {below, glm::mix(below, corner, 0.55f), corner}));
+// Distance as seen from the front: lips and brows curve round the face, away from straight lines.
+float FrontDistance(glm::vec3 p, std::initializer_list<glm::vec3> line) {
+  p.z = 0.0f;
+  float nearest = 1.0f;
+  for (const glm::vec3* a = line.begin(); a + 1 < line.end(); ++a) {
+    nearest = std::min(nearest, DistanceToLine(p, {glm::vec3(a[0].x, a[0].y, 0.0f),
+                                                   glm::vec3(a[1].x, a[1].y, 0.0f)}));
   }
-  return FadeOut(distance, face.Millimetres(3.4f), face.Millimetres(6.0f));
+  return nearest;
+}
+
+float Lips(const glm::vec3& p, const FaceLandmarks& face) {
+  const glm::vec3 above = glm::mix(face.upper_lip, face.lower_lip, 0.4f);
+  const glm::vec3 below = glm::mix(face.lower_lip, face.lower_lip_bottom, 0.25f);
+  float amount = 0.0f;
+  for (const FaceLandmarks::Side& side : face.sides) {
+    const glm::vec3 corner = glm::mix(side.fold_bottom, side.mouth_corner, 0.4f);
+    if (p.z < corner.z - face.Millimetres(8.0f)) continue;  // the back of the head
+    const float along =
+        std::clamp(std::abs(p.x - above.x) / std::abs(corner.x - above.x), 0.0f, 1.0f);
+    const float half = face.Millimetres(glm::mix(3.9f, 0.9f, along * along));
+    const float distance =
+        std::min(FrontDistance(p, {above, corner}), FrontDistance(p, {below, corner}));
+    amount = std::max(amount, FadeOut(distance, 0.75f * half, 1.35f * half));
+  }
+  return amount;
 }
 
 float Brow(const glm::vec3& p, const FaceLandmarks& face) {
   float amount = 0.0f;
   for (const FaceLandmarks::Side& side : face.sides) {
-    const float distance = DistanceToLine(
-        p, {side.brow_inner, side.brow_middle, glm::mix(side.brow_middle, side.brow_outer, 0.75f)});
+    if (p.z < side.temple.z) continue;
+    glm::vec3 inner = side.brow_inner, arch = side.brow_middle;
+    glm::vec3 end = glm::mix(side.brow_middle, side.brow_outer, 0.8f);
+    inner.y -= face.Millimetres(3.0f);
+    arch.y += face.Millimetres(1.0f);
+    end.y = glm::mix(arch.y, end.y, 0.4f);
+    const float distance = FrontDistance(p, {inner, arch, end});
     // Thick at the nose, thin at the temple.
-    const float along = std::abs(p.x - side.brow_inner.x) /
-                        std::max(std::abs(side.brow_outer.x - side.brow_inner.x), 1e-4f);
-    const float half = face.Millimetres(glm::mix(4.4f, 1.8f, std::clamp(along, 0.0f, 1.0f)));
-    amount = std::max(amount, FadeOut(distance, 0.45f * half, 1.25f * half));
+    const float along = std::clamp((p.x - inner.x) / (end.x - inner.x), 0.0f, 1.0f);
+    const float half = face.Millimetres(glm::mix(4.0f, 1.4f, along));
+    amount = std::max(amount, FadeOut(distance, 0.4f * half, 1.4f * half));
   }
   return amount;
 }
 
-// Hairline: an ellipsoid of face is cut out of the scalp.
+// The inside of the mouth: a ball behind the lips.
+float MouthInside(const glm::vec3& p, const FaceLandmarks& face) {
+  glm::vec3 middle = glm::mix(face.upper_lip, face.lower_lip, 0.5f);
+  middle.z -= face.Millimetres(36.0f);
+  return FadeOut(glm::distance(p, middle), face.Millimetres(24.0f), face.Millimetres(31.0f));
+}
+
+// Hairline: high over the brows, falling to the temples.
 float Scalp(const glm::vec3& p, const FaceLandmarks& face) {
-  const float brow = face.sides[0].brow_middle.y;
-  const float hairline = glm::mix(brow, face.crown.y, 0.62f);
-  const float back = face.sides[0].temple.z - face.Millimetres(6.0f);
+  const float aside = p.x / face.Millimetres(62.0f);
+  const float hairline = glm::mix(face.sides[0].brow_middle.y, face.crown.y, 0.62f) -
+                         face.Millimetres(26.0f) * aside * aside;
+  const float back = face.sides[0].temple.z - face.Millimetres(8.0f);
   const float top =
-      glm::smoothstep(hairline - face.Millimetres(4.0f), hairline + face.Millimetres(6.0f), p.y);
+      glm::smoothstep(hairline - face.Millimetres(5.0f), hairline + face.Millimetres(8.0f), p.y);
   const float ear = face.sides[0].lower_lid.y;
   const float sides =
       glm::smoothstep(ear - face.Millimetres(18.0f), ear + face.Millimetres(10.0f), p.y) *
@@ -123,12 +151,16 @@ glm::vec3 SkinColour(const Texel& texel, const FaceLandmarks& face) {
   const float blotches = ValueNoise(p / face.Millimetres(11.0f)) - 0.5f;
   const float speckle = ValueNoise(p / face.Millimetres(1.7f)) - 0.5f;
   glm::vec3 colour = kSkin;
-  if (p.y > face.sides[0].brow_middle.y || p.y < face.lower_lip_bottom.y)
-    colour = glm::mix(colour, kYellow, 0.5f);
+  const float brow = face.sides[0].brow_middle.y, chin = face.lower_lip_bottom.y;
+  const float soft = face.Millimetres(10.0f);
+  const float yellow = glm::smoothstep(brow - soft, brow + soft, p.y) +
+                       glm::smoothstep(chin + soft, chin - soft, p.y);
+  colour = glm::mix(colour, kYellow, 0.5f * yellow);
   colour = glm::mix(colour, kRed, Redness(p, face) + 0.25f * blotches);
   const float front = Front(texel);
   colour = glm::mix(colour, kLids, 0.55f * LidShade(p, face) * front);
   colour = glm::mix(colour, kLips, Lips(p, face) * front);
+  colour = glm::mix(colour, kMouth, MouthInside(p, face));
   const float grain = ValueNoise(p / face.Millimetres(0.9f));
   colour = glm::mix(colour, kStubble, Scalp(p, face) * (0.65f + 0.3f * grain));
   colour = glm::mix(colour, kBrow, Brow(p, face) * front * (0.62f + 0.38f * grain));
