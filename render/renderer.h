@@ -43,7 +43,7 @@ struct Settings {
   MaskMode mask_mode = MaskMode::kRig;
   bool wrinkles = true;
   float wrinkle_strength = 1.0f;                // [0, 4]
-  glm::vec3 background{0.11f, 0.115f, 0.125f};  // linear, [0, 1]
+  glm::vec3 background{0.030f, 0.032f, 0.036f};  // linear, [0, 1]
   float exposure = 1.0f;                        // (0, 16]
 };
 

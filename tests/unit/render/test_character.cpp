@@ -114,8 +114,8 @@ Mesh MakeEgg() {
   mesh.material = 0;
   for (std::uint32_t row = 0; row <= kRows; ++row) {
     for (std::uint32_t column = 0; column <= kColumns; ++column) {
-      mesh.vertices.push_back(EggVertex(static_cast<float>(column) / kColumns,
-                                        static_cast<float>(row) / kRows));
+      mesh.vertices.push_back(
+          EggVertex(static_cast<float>(column) / kColumns, static_cast<float>(row) / kRows));
     }
   }
   for (std::uint32_t row = 0; row < kRows; ++row) {
@@ -159,15 +159,14 @@ void AddHeadRig(Character* character) {
 
 void AddHeadPictures(Character* character) {
   AddRigPicture(character, MakePicture("masks.png", 64, [](float u, float v) {
-    const float left = std::clamp((u - 0.5f) * 16.0f, 0.0f, 1.0f);
-    const float right = std::clamp((0.5f - u) * 16.0f, 0.0f, 1.0f);
-    const float band = v > 0.25f && v < 0.75f ? 1.0f : 0.0f;
-    return glm::vec4(left * band, right * band, 0.0f, 0.0f);
-  }));
+                  const float left = std::clamp((u - 0.5f) * 16.0f, 0.0f, 1.0f);
+                  const float right = std::clamp((0.5f - u) * 16.0f, 0.0f, 1.0f);
+                  const float band = v > 0.25f && v < 0.75f ? 1.0f : 0.0f;
+                  return glm::vec4(left * band, right * band, 0.0f, 0.0f);
+                }));
   const auto waves = [](float cycles_u, float cycles_v, float height) {
-    return [=](float u, float v) {
-      return height * std::cos(kTwoPi * (cycles_u * u + cycles_v * v));
-    };
+    return
+        [=](float u, float v) { return height * std::cos(kTwoPi * (cycles_u * u + cycles_v * v)); };
   };
   AddRigPicture(character, NormalMapOf("stretch.png", 128, waves(16, 0, 0.004f)));
   AddRigPicture(character, NormalMapOf("squash.png", 128, waves(0, 12, 0.006f)));
@@ -206,9 +205,9 @@ character::Picture NormalMapOf(const std::string& name, int size,
 Character MakeHead() {
   Character character;
   character.name = "egg";
-  character.skeleton = Expect(wrinkle::Skeleton::Create(
-      {Joint("root", -1, {0.0f, 1.4f, 0.0f}), Joint("head", 0, {0.0f, 0.2f, 0.0f}),
-       Joint("brow", 1, {0.0f, 0.04f, 0.05f})}));
+  character.skeleton = Expect(wrinkle::Skeleton::Create({Joint("root", -1, {0.0f, 1.4f, 0.0f}),
+                                                         Joint("head", 0, {0.0f, 0.2f, 0.0f}),
+                                                         Joint("brow", 1, {0.0f, 0.04f, 0.05f})}));
   Finish(&character);
   Material skin;
   skin.name = "skin";

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Milliseconds a picture, of the character named by FURROW_BENCH_CHARACTER (a .glb), or without it of the
+// tests' procedural head.
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
+
+#include "render/renderer.h"
+#include "tests/unit/render/test_character.h"
+
+namespace furrow::render {
+namespace {
+
+character::Character LoadSubject() {
+  const char* path = std::getenv("FURROW_BENCH_CHARACTER");
+  if (path == nullptr) return test::MakeHead();
+  auto loaded = character::LoadCharacter(path);
+  if (!loaded.ok()) std::abort();
+  return std::move(*loaded);
+}
+
+class Scene {
+ public:
+  Scene() : character_(LoadSubject()), subject_(character_) {
+    auto renderer = Renderer::Create(character_);
+    if (!renderer.ok()) std::abort();
+    renderer_ = std::move(*renderer);
+    std::fill(subject_.weights.begin(), subject_.weights.end(), 0.7f);
+    request_.model = subject_.model;
+    request_.binding = &subject_.binding;
+    request_.wrinkle_weights = subject_.weights;
+    request_.filtered_values = subject_.driver_values;
+    request_.camera = *renderer_->Preset("face");
+  }
+
+  character::Character character_;
+  test::Subject subject_;
+  std::unique_ptr<Renderer> renderer_;
+  FrameRequest request_;
+};
+
+Scene& TheScene() {
+  static Scene scene;
+  return scene;
+}
+
+void BM_Render(benchmark::State& state) {
+  Scene& scene = TheScene();
+  FrameRequest request = scene.request_;
+  request.settings.wrinkles = state.range(1) != 0;
+  request.width = request.height = static_cast<int>(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(scene.renderer_->Render(request));
+}
+BENCHMARK(BM_Render)
+    ->ArgNames({"size", "wrinkles"})
+    ->ArgsProduct({{320, 640, 1024}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+// Two in flight, as the daemon draws.
+void BM_Pipelined(benchmark::State& state) {
+  Scene& scene = TheScene();
+  FrameRequest request = scene.request_;
+  for (auto _ : state) {
+    if (scene.renderer_->in_flight() == 2) {
+      benchmark::DoNotOptimize(scene.renderer_->Poll(true));
+    }
+    if (!scene.renderer_->Submit(request).ok()) std::abort();
+  }
+  while (scene.renderer_->in_flight() > 0) (void)scene.renderer_->Poll(true).ok();
+}
+BENCHMARK(BM_Pipelined)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void BM_Encode(benchmark::State& state) {
+  Scene& scene = TheScene();
+  const auto image = scene.renderer_->Render(scene.request_);
+  const auto format = state.range(0) == 0 ? ImageFormat::kJpeg : ImageFormat::kPng;
+  for (auto _ : state) benchmark::DoNotOptimize(EncodeImage(*image, format));
+}
+BENCHMARK(BM_Encode)->ArgName("png")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace furrow::render
+
+BENCHMARK_MAIN();

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/renderer.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "test_character.h"
+
+namespace furrow::render {
+namespace {
+
+constexpr int kSize = 96;
+
+class RendererTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto renderer = Renderer::Create(head_);
+    ASSERT_TRUE(renderer.ok()) << renderer.status().ToString();
+    renderer_ = std::move(*renderer);
+  }
+  FrameRequest Request(const test::Subject& subject, View view = View::kFinal) {
+    FrameRequest request;
+    request.model = subject.model;
+    request.binding = &subject.binding;
+    request.wrinkle_weights = subject.weights;
+    request.filtered_values = subject.driver_values;
+    request.settings.view = view;
+    request.camera = *renderer_->Preset("face");
+    request.width = request.height = kSize;
+    return request;
+  }
+  Image Render(const FrameRequest& request) {
+    Result<Image> image = renderer_->Render(request);
+    EXPECT_TRUE(image.ok()) << image.status().ToString();
+    return image.ok() ? *image : Image();
+  }
+  static glm::ivec3 Pixel(const Image& image, int x, int y) {
+    const std::uint8_t* rgb = &image.rgb[static_cast<std::size_t>(3 * (y * image.width + x))];
+    return {rgb[0], rgb[1], rgb[2]};
+  }
+
+  const character::Character head_ = test::MakeHead();
+  std::unique_ptr<Renderer> renderer_;
+  test::Subject subject_{head_};
+};
+
+TEST_F(RendererTest, SaysWhatItDrawsWith) {
+  EXPECT_NE(renderer_->description().find("4."), std::string::npos) << renderer_->description();
+}
+
+TEST_F(RendererTest, RowsStartAtTheTopAndLightComesFromTheUpperLeft) {
+  const Image normals = Render(Request(subject_, View::kNormal));
+  EXPECT_GT(Pixel(normals, kSize / 2, 14).g, 180);             // the crown looks up
+  EXPECT_LT(Pixel(normals, kSize / 2, kSize - 15).g, 80);      // the chin looks down
+  EXPECT_GT(Pixel(normals, kSize * 2 / 3, kSize / 2).r, 140);  // +X is right of the picture
+  const Image lit = Render(Request(subject_));
+  const int upper_left = Pixel(lit, kSize * 3 / 8, kSize / 3).g;
+  EXPECT_GT(upper_left, Pixel(lit, kSize * 5 / 8, kSize * 2 / 3).g + 40);
+}
+
+TEST_F(RendererTest, TheBackgroundIsWhatTheSettingsSay) {
+  FrameRequest request = Request(subject_);
+  request.settings.background = {0.0f, 0.0f, 0.0f};
+  EXPECT_EQ(Pixel(Render(request), 2, 2), glm::ivec3(0));
+  request.settings.background = {0.5f, 0.5f, 0.5f};
+  // Khronos PBR Neutral takes 0.04 off a grey below its knee: sRGB(0.46) = 180.
+  EXPECT_NEAR(Pixel(Render(request), 2, 2).g, 180, 1);
+}
+
+TEST_F(RendererTest, WrinklesChangeOnlyMaskedPixels) {
+  const Image mask = Render(Request(subject_, View::kMaskTexture));
+  const Image base = Render(Request(subject_));
+  subject_.Set("l_squash", 1.0f);
+  subject_.Set("r_stretch", 1.0f);
+  subject_.Solve();
+  const Image wrinkled = Render(Request(subject_));
+  int changed = 0;
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const bool same = Pixel(base, x, y) == Pixel(wrinkled, x, y);
+      if (!same) ++changed;
+      if (Pixel(mask, x, y) == glm::ivec3(0)) EXPECT_TRUE(same) << x << ", " << y;
+    }
+  }
+  EXPECT_GT(changed, kSize * kSize / 10);
+}
+
+TEST_F(RendererTest, TheWeightsViewIsGreenForStretchAndRedForSquash) {
+  subject_.Set("l_squash", 1.0f);
+  subject_.Set("r_stretch", 1.0f);
+  subject_.Solve();
+  const Image image = Render(Request(subject_, View::kWeights));
+  const glm::ivec3 right = Pixel(image, kSize * 3 / 8, kSize / 2);  // the subject's right
+  const glm::ivec3 left = Pixel(image, kSize * 5 / 8, kSize / 2);
+  EXPECT_GT(right.g, right.r + 40);
+  EXPECT_GT(left.r, left.g + 40);
+  const glm::ivec3 crown =
+      Pixel(image, kSize / 2, 14);  // no region: grey, but for the lights' tint
+  EXPECT_LT(std::abs(crown.r - crown.g), 20);
+}
+
+TEST_F(RendererTest, MaskModesChooseWhichRegionsShow) {
+  subject_.Set("l_squash", 1.0f);
+  subject_.Solve();
+  FrameRequest request = Request(subject_);
+  const Image as_rig = Render(request);
+  request.settings.mask_mode = MaskMode::kTexture;
+  EXPECT_EQ(Render(request).rgb, as_rig.rgb);  // the only weight is texture-masked
+  request.settings.mask_mode = MaskMode::kDynamic;
+  // Blend shapes move no joint: with dynamic masks alone this weight shows nowhere.
+  const Image dynamic = Render(request);
+  request.settings.wrinkles = false;
+  EXPECT_EQ(Render(request).rgb, dynamic.rgb);
+}
+
+TEST_F(RendererTest, TheSameRequestGivesTheSamePicture) {
+  subject_.Set("l_squash", 0.6f);
+  subject_.Solve();
+  for (const View view : {View::kFinal, View::kNormal, View::kWeights, View::kWireframe}) {
+    const Image first = Render(Request(subject_, view));
+    EXPECT_EQ(Render(Request(subject_, view)).rgb, first.rgb) << ViewName(view);
+    auto other = Renderer::Create(head_);
+    ASSERT_TRUE(other.ok());
+    const Result<Image> again = (*other)->Render(Request(subject_, view));
+    ASSERT_TRUE(again.ok());
+    EXPECT_EQ(again->rgb, first.rgb) << ViewName(view);
+  }
+}
+
+TEST_F(RendererTest, TwoPicturesFlyAndLandInOrder) {
+  FrameRequest first = Request(subject_, View::kNormal);
+  first.token = 1;
+  FrameRequest second = Request(subject_, View::kWireframe);
+  second.token = 2;
+  second.width = 48;  // the ring's buffers take any size
+  ASSERT_TRUE(renderer_->Submit(first).ok());
+  ASSERT_TRUE(renderer_->Submit(second).ok());
+  EXPECT_EQ(renderer_->in_flight(), 2);
+  const Status third = renderer_->Submit(first);
+  EXPECT_EQ(third.code(), StatusCode::kUnavailable);
+  const Result<Image> one = renderer_->Poll(true);
+  const Result<Image> two = renderer_->Poll(true);
+  ASSERT_TRUE(one.ok() && two.ok());
+  EXPECT_EQ(one->token, 1u);
+  EXPECT_EQ(two->token, 2u);
+  EXPECT_EQ(two->width, 48);
+  EXPECT_EQ(renderer_->in_flight(), 0);
+  EXPECT_EQ(one->rgb, Render(first).rgb);
+  EXPECT_EQ(two->rgb, Render(second).rgb);
+  const Result<Image> none = renderer_->Poll(true);
+  ASSERT_TRUE(none.ok());
+  EXPECT_EQ(none->width, 0);
+}
+
+TEST_F(RendererTest, RenderGivesTheNewestPicture) {
+  FrameRequest request = Request(subject_);
+  request.token = 1;
+  ASSERT_TRUE(renderer_->Submit(request).ok());
+  request.token = 2;
+  EXPECT_EQ(Render(request).token, 2u);
+  EXPECT_EQ(renderer_->in_flight(), 0);
+}
+
+TEST_F(RendererTest, ARefusedRequestLeavesTheRendererWell) {
+  FrameRequest bad = Request(subject_);
+  bad.wrinkle_weights = bad.wrinkle_weights.first(1);
+  const Status status = renderer_->Submit(bad);
+  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(status.where(), "wrinkle_weights");
+  bad = Request(subject_);
+  bad.width = 0;
+  EXPECT_EQ(renderer_->Submit(bad).where(), "width");
+  EXPECT_EQ(renderer_->in_flight(), 0);
+  EXPECT_EQ(Render(Request(subject_)).width, kSize);
+}
+
+TEST_F(RendererTest, TwoRenderersOfOneThreadDoNotDisturbEachOther) {
+  const Image before = Render(Request(subject_));
+  {
+    auto other = Renderer::Create(head_);
+    ASSERT_TRUE(other.ok());
+    ASSERT_TRUE((*other)->Submit(Request(subject_, View::kNormal)).ok());
+    EXPECT_EQ(Render(Request(subject_)).rgb, before.rgb);
+  }
+  EXPECT_EQ(Render(Request(subject_)).rgb, before.rgb);
+}
+
+TEST(RendererCreate, NamesWhatTheRigLacks) {
+  character::Character head = test::MakeHead();
+  head.rig_pictures.erase(head.rig_pictures.begin());  // masks.png
+  const Status status = Renderer::Create(head).status();
+  EXPECT_EQ(status.code(), StatusCode::kNotFound);
+  EXPECT_NE(status.ToString().find("masks.png"), std::string::npos) << status.ToString();
+  EXPECT_NE(status.ToString().find("left"), std::string::npos) << status.ToString();
+}
+
+TEST(RendererCreate, RefusesMeshesThatPointOutside) {
+  character::Character head = test::MakeHead();
+  head.meshes[0].indices[5] = 1u << 30;
+  EXPECT_EQ(Renderer::Create(head).status().code(), StatusCode::kInvalidArgument);
+  head = test::MakeHead();
+  head.meshes[0].vertices[3].joints[1] = 77;
+  EXPECT_EQ(Renderer::Create(head).status().code(), StatusCode::kInvalidArgument);
+  head = test::MakeHead();
+  head.meshes[0].material = 4;
+  EXPECT_EQ(Renderer::Create(head).status().code(), StatusCode::kInvalidArgument);
+  head = test::MakeHead();
+  head.pictures[0].width = 9999;
+  EXPECT_EQ(Renderer::Create(head).status().code(), StatusCode::kInvalidArgument);
+}
+
+TEST(ParseView, KnowsItsNamesAndListsThem) {
+  EXPECT_EQ(*ParseView("mask_dynamic"), View::kMaskDynamic);
+  EXPECT_EQ(ViewName(View::kWireframe), "wireframe");
+  const Status status = ParseView("x-ray").status();
+  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+  EXPECT_NE(status.ToString().find("mask_texture"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace furrow::render

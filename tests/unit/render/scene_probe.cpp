@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_probe.h"
+
+#include <cstdlib>
+#include <iostream>
+
+#include <gtest/gtest.h>
+
+namespace furrow::render::test {
+namespace {
+
+template <class T>
+T Expect(Result<T> result) {
+  if (!result.ok()) {
+    std::cerr << result.status().ToString() << std::endl;
+    std::abort();
+  }
+  return std::move(result).value();
+}
+
+struct SinkData {
+  FrameGraph::Handle colour;
+};
+
+}  // namespace
+
+SceneProbe::SceneProbe(const character::Character& character)
+    : character_(character),
+      context_(Expect(EglContext::Create(""))),
+      gpu_(Expect(GpuCharacter::Create(character))),
+      tables_(Expect(WrinkleTables::Create(character, gpu_->layout()))),
+      pass_(std::make_unique<ScenePass>(character_.skeleton, character_.inverse_bind_matrices,
+                                        gpu_.get(), tables_.get(), &shaders_, &device_)) {}
+
+std::vector<glm::vec4> SceneProbe::Draw(const FrameRequest& request) {
+  FrameGraph graph;
+  const ScenePass::Targets targets{request.width, request.height, PixelFormat::kRgba32F, 1};
+  const FrameGraph::Handle colour = Expect(pass_->Add(&graph, request, targets));
+  std::vector<glm::vec4> pixels(static_cast<std::size_t>(request.width) * request.height);
+  graph.AddPass<SinkData>(
+      "probe",
+      [&](FrameGraph::Builder& builder, SinkData& data) {
+        data.colour = colour;
+        builder.Read(colour);
+        builder.SideEffect();
+      },
+      [&pixels](const FrameGraph::Resources& resources, const SinkData& data) {
+        glGetTextureImage(resources.Get(data.colour), 0, GL_RGBA, GL_FLOAT,
+                          static_cast<GLsizei>(pixels.size() * sizeof(glm::vec4)), pixels.data());
+        return Status();
+      });
+  const Status compiled = graph.Compile();
+  EXPECT_TRUE(compiled.ok()) << compiled.ToString();
+  const Status drawn = graph.Execute(&pool_);
+  EXPECT_TRUE(drawn.ok()) << drawn.ToString();
+  pool_.EndFrame();
+  return pixels;
+}
+
+}  // namespace furrow::render::test

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/shader_library.h"
+
+#include <gtest/gtest.h>
+
+#include "render/egl_context.h"
+
+namespace furrow::render {
+namespace {
+
+class ShaderLibraryTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto context = EglContext::Create("");
+    ASSERT_TRUE(context.ok()) << context.status().ToString();
+    context_ = std::move(*context);
+  }
+  std::unique_ptr<EglContext> context_;
+  ShaderLibrary library_;
+};
+
+constexpr View kViews[] = {View::kFinal,       View::kNormal,  View::kMaskDynamic,
+                           View::kMaskTexture, View::kWeights, View::kWireframe};
+
+// The table of configurations in shaders/README.md: every view with every switch.
+TEST_F(ShaderLibraryTest, EverySceneConfigurationCompiles) {
+  for (const View view : kViews) {
+    for (int bits = 0; bits < 128; ++bits) {
+      SceneShader shader;
+      shader.view = view;
+      shader.normal_blend = static_cast<NormalBlend>(bits & 1);
+      shader.wrinkle_texture = (bits & 2) != 0;
+      shader.wrinkle_dynamic = (bits & 4) != 0;
+      shader.base_colour_map = (bits & 8) != 0;
+      shader.base_normal_map = (bits & 16) != 0;
+      shader.roughness_map = (bits & 32) != 0;
+      shader.alpha_test = (bits & 64) != 0;
+      shader.mask_layers = 2;
+      const Result<GLuint> program = library_.Get(shader);
+      ASSERT_TRUE(program.ok()) << ViewName(view) << " " << bits << "\n"
+                                << program.status().ToString();
+    }
+  }
+}
+
+TEST_F(ShaderLibraryTest, AnyNumberOfMasksAndMapsCompiles) {
+  for (const int mask_layers : {1, 3, 8}) {
+    for (const int map_slots : {1, 2, 4}) {
+      SceneShader shader;
+      shader.wrinkle_texture = true;
+      shader.wrinkle_dynamic = true;
+      shader.mask_layers = mask_layers;
+      shader.map_slots = map_slots;
+      const Result<GLuint> program = library_.Get(shader);
+      ASSERT_TRUE(program.ok()) << program.status().ToString();
+    }
+  }
+}
+
+TEST_F(ShaderLibraryTest, EveryCompositeConfigurationCompiles) {
+  for (const bool tonemap : {false, true}) {
+    const Result<GLuint> program = library_.Get(CompositeShader{4, tonemap});
+    ASSERT_TRUE(program.ok()) << program.status().ToString();
+  }
+}
+
+TEST_F(ShaderLibraryTest, AProgramIsCompiledOnce) {
+  EXPECT_EQ(*library_.Get(SceneShader{}), *library_.Get(SceneShader{}));
+}
+
+TEST_F(ShaderLibraryTest, AnErrorCarriesTheDriversLogAndTheFilesName) {
+  constexpr ShaderFile kFiles[] = {{"good.glsl", "void main() { gl_Position = vec4(0.0); }\n"},
+                                   {"part.glsl", "float broken() { return undeclared; }\n"},
+                                   {"bad.glsl", "#include \"part.glsl\"\nvoid main() {}\n"}};
+  const Status status = BuildProgram("good.glsl", "bad.glsl", {}, kFiles).status();
+  EXPECT_EQ(status.code(), StatusCode::kInternal);
+  EXPECT_EQ(status.where(), "bad.glsl");
+  EXPECT_NE(status.what().find("part.glsl"), std::string::npos) << status.what();
+  EXPECT_NE(status.what().find("undeclared"), std::string::npos) << status.what();
+}
+
+TEST(EglContext, AnUnknownDeviceIsRefusedByName) {
+  const Status status = EglContext::Create("gpu9").status();
+  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+  EXPECT_NE(status.what().find("gpu9"), std::string::npos);
+  EXPECT_EQ(EglContext::Create("9999").status().code(), StatusCode::kInvalidArgument);
+}
+
+TEST(EglContext, TwoContextsOfOneThreadTakeTurns) {
+  auto first = EglContext::Create("");
+  auto second = EglContext::Create("");
+  ASSERT_TRUE(first.ok() && second.ok());
+  EXPECT_TRUE((*first)->MakeCurrent().ok());
+  (*second).reset();
+  EXPECT_TRUE((*first)->MakeCurrent().ok());
+  EXPECT_NE((*first)->description().find("device"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace furrow::render

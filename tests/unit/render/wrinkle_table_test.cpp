@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/wrinkle_table.h"
+
+#include <gtest/gtest.h>
+
+#include "test_character.h"
+
+namespace furrow::render {
+namespace {
+
+class WrinkleTableTest : public testing::Test {
+ protected:
+  void Make(const character::Character& character) {
+    WrinkleLayout layout;
+    layout.masks = {{"masks.png", 0}};
+    layout.map_layers = {0, 1, 2};
+    auto tables = WrinkleTables::Create(character, layout);
+    ASSERT_TRUE(tables.ok()) << tables.status().ToString();
+    tables_ = std::move(*tables);
+  }
+  Status Update(const test::Subject& subject) {
+    FrameRequest request;
+    request.binding = &subject.binding;
+    request.wrinkle_weights = subject.weights;
+    request.filtered_values = subject.driver_values;
+    request.settings = settings_;
+    return tables_->Update(request);
+  }
+  const WrinkleTable& Skin() const { return tables_->table(WrinkleGroup::kSkin); }
+  const WrinkleTable& Cloth() const { return tables_->table(WrinkleGroup::kCloth); }
+
+  character::Character head_ = test::MakeHead();
+  Settings settings_;
+  std::unique_ptr<WrinkleTables> tables_;
+};
+
+TEST_F(WrinkleTableTest, ANeutralFaceNeedsNoMap) {
+  Make(head_);
+  ASSERT_TRUE(Update(test::Subject(head_)).ok());
+  EXPECT_TRUE(Skin().maps.empty());
+  EXPECT_FALSE(Skin().uses_texture);
+  EXPECT_FALSE(Skin().uses_dynamic);
+}
+
+TEST_F(WrinkleTableTest, ListsTheActiveMapsWithTheRegionsWeightsByChannel) {
+  Make(head_);
+  test::Subject subject(head_);
+  subject.Set("l_squash", 0.25f);
+  subject.Set("r_squash", 0.75f);
+  subject.Solve();
+  settings_.wrinkle_strength = 2.0f;
+  ASSERT_TRUE(Update(subject).ok());
+  ASSERT_EQ(Skin().maps.size(), 1u);
+  EXPECT_EQ(Skin().maps[0].map, 1);
+  EXPECT_EQ(Skin().maps[0].layer, 1);
+  EXPECT_FLOAT_EQ(Skin().maps[0].amplitude, 2.0f);
+  ASSERT_EQ(Skin().mask_weights.size(), 1u);
+  EXPECT_EQ(Skin().mask_weights[0], glm::vec4(0.25f, 0.75f, 0.0f, 0.0f));
+  EXPECT_TRUE(Skin().uses_texture);
+  EXPECT_FALSE(Skin().uses_dynamic);
+}
+
+TEST_F(WrinkleTableTest, AHingeRaisesADynamicMap) {
+  Make(head_);
+  test::Subject subject(head_);
+  subject.pose.joints[2].rotation = glm::angleAxis(1.2f, glm::vec3(1, 0, 0));
+  subject.Solve();
+  ASSERT_TRUE(Update(subject).ok());
+  ASSERT_EQ(Skin().maps.size(), 1u);
+  EXPECT_EQ(Skin().maps[0].map, 2);
+  EXPECT_TRUE(Skin().uses_dynamic);
+  const float brow = tables_->joint_influences()[2 * 3 + 2];
+  EXPECT_GT(brow, 0.1f);
+  settings_.mask_mode = MaskMode::kTexture;
+  ASSERT_TRUE(Update(subject).ok());
+  EXPECT_TRUE(Skin().maps.empty());
+}
+
+TEST_F(WrinkleTableTest, JointDrivenMapsGoOnClothWhereThereIsCloth) {
+  character::Material cloth;
+  cloth.kind = character::Material::Kind::kCloth;
+  head_.materials.push_back(cloth);
+  Make(head_);
+  test::Subject subject(head_);
+  subject.Set("l_stretch", 1.0f);
+  subject.pose.joints[2].rotation = glm::angleAxis(1.2f, glm::vec3(1, 0, 0));
+  subject.Solve();
+  ASSERT_TRUE(Update(subject).ok());
+  ASSERT_EQ(Skin().maps.size(), 1u);
+  EXPECT_EQ(Skin().maps[0].map, 0);
+  ASSERT_EQ(Cloth().maps.size(), 1u);
+  EXPECT_EQ(Cloth().maps[0].map, 2);
+}
+
+// A stream with its own skeleton and rig: what both rigs name travels, the rest is left out.
+TEST_F(WrinkleTableTest, ValuesTravelByNameFromAnotherRig) {
+  Make(head_);
+  character::Character other = head_;
+  std::swap(other.rig.regions[0], other.rig.regions[1]);
+  other.rig.regions.pop_back();
+  test::Subject subject(other);
+  subject.Set("l_squash", 0.5f);
+  subject.Solve();
+  ASSERT_TRUE(Update(subject).ok());
+  ASSERT_EQ(Skin().maps.size(), 1u);
+  EXPECT_EQ(Skin().mask_weights[0], glm::vec4(0.5f, 0.0f, 0.0f, 0.0f));
+  // And back to a binding with the character's own order.
+  test::Subject own(head_);
+  own.Set("r_squash", 1.0f);
+  own.Solve();
+  ASSERT_TRUE(Update(own).ok());
+  EXPECT_EQ(Skin().mask_weights[0], glm::vec4(0.0f, 1.0f, 0.0f, 0.0f));
+}
+
+TEST_F(WrinkleTableTest, ShortSpansAreNamed) {
+  Make(head_);
+  test::Subject subject(head_);
+  subject.weights.pop_back();
+  EXPECT_EQ(Update(subject).where(), "wrinkle_weights");
+  subject.weights.push_back(0.0f);
+  subject.driver_values.pop_back();
+  EXPECT_EQ(Update(subject).where(), "filtered_values");
+}
+
+TEST_F(WrinkleTableTest, EveryTexturedRegionHasAColourOfItsOwn) {
+  Make(head_);
+  const auto palette = tables_->mask_palette();
+  ASSERT_EQ(palette.size(), 4u);
+  EXPECT_NE(palette[0], palette[1]);
+  EXPECT_EQ(palette[2], glm::vec4(0.0f));
+}
+
+}  // namespace
+}  // namespace furrow::render
