@@ -20,8 +20,8 @@ std::string_view FormatOf(std::span<const std::uint8_t> bytes) {
   const auto starts_with = [&](std::initializer_list<std::uint8_t> magic) {
     return bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
   };
-  if (starts_with({0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a})) return "picture.png";
-  if (starts_with({0xff, 0xd8, 0xff})) return "picture.jpg";
+  if (starts_with({0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a})) return "png";
+  if (starts_with({0xff, 0xd8, 0xff})) return "jpeg";
   return {};
 }
 
@@ -53,15 +53,18 @@ Result<Picture> DecodePicture(std::string name, std::span<const std::uint8_t> by
   if (format.empty()) {
     return Status(StatusCode::kUnsupported, "the picture is neither PNG nor JPEG");
   }
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
+  OIIO::Filesystem::IOProxy* proxy = &memory;
   OIIO::ImageSpec config;
+  OIIO::ImageSpec spec;
   config["oiio:UnassociatedAlpha"] = 1;  // a mask's alpha is a channel like the others
-  OIIO::Filesystem::IOMemReader memory(OIIO::cspan<std::uint8_t>(
-      bytes.data(), static_cast<OIIO::span<std::uint8_t>::index_type>(bytes.size())));
-  const auto input = OIIO::ImageInput::open(std::string(format), &config, &memory);
-  if (input == nullptr) {
-    return Status(StatusCode::kParse, "the picture is damaged: " + OneLine(OIIO::geterror()));
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  const auto input = OIIO::ImageInput::create(std::string(format));
+  if (input == nullptr || !input->open(std::string(format), spec, config)) {
+    return Status(StatusCode::kParse,
+                  "the picture is damaged: " +
+                      OneLine(input == nullptr ? OIIO::geterror() : input->geterror()));
   }
-  const OIIO::ImageSpec spec = input->spec();
   if (Status status = CheckSize(spec); !status.ok()) return status;
 
   Picture picture;

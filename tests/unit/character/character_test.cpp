@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/character.h"
+
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "character/asset_path.h"
+#include "character/gltf_container.h"
+
+namespace furrow::character {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+Vertex At(glm::vec3 position, glm::vec2 uv) {
+  Vertex vertex;
+  vertex.position = position;
+  vertex.uv = uv;
+  vertex.joints[1] = 1;
+  vertex.skin_weights[0] = 0.75f;
+  vertex.skin_weights[1] = 0.25f;
+  return vertex;
+}
+
+// A square on two joints, with a picture of two pixels.
+Character Square() {
+  Character c;
+  c.name = "square";
+  c.skeleton = *wrinkle::Skeleton::Create(
+      {{"root", -1, {glm::vec3(0, 1, 0)}, {}},
+       {"tip", 0, {glm::vec3(0, 0.5f, 0), glm::quat(0.6f, 0.8f, 0, 0)}, glm::vec3(0, 0.1f, 0.3f)}});
+  for (const glm::mat4& rest : c.skeleton.rest_model()) {
+    c.inverse_bind_matrices.push_back(glm::inverse(rest));
+  }
+  Mesh mesh;
+  mesh.name = "face";
+  mesh.material = 0;
+  mesh.vertices = {At({0, 0, 0}, {0, 1}), At({1, 0, 0}, {1, 1}), At({1, 1, 0}, {1, 0}),
+                   At({0, 1, 0}, {0, 0})};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  c.meshes.push_back(mesh);
+  Material material;
+  material.name = "anything";
+  material.kind = Material::Kind::kCloth;
+  material.base_colour = {0.5f, 0.25f, 1, 1};
+  material.base_colour_texture = 0;
+  material.double_sided = true;
+  c.materials.push_back(material);
+  Picture picture;
+  picture.name = "mask.png";
+  picture.width = 2;
+  picture.height = 1;
+  picture.pixels = {10, 20, 30, 0, 40, 50, 60, 128};
+  c.pictures.push_back(picture);
+  return c;
+}
+
+std::string GlbOf(const Character& character) {
+  const fs::path path = fs::temp_directory_path() / "furrow_character_test.glb";
+  EXPECT_TRUE(SaveCharacterGlb(character, path).ok());
+  std::string bytes = *ReadFile(path, 1u << 20);
+  fs::remove(path);
+  return bytes;
+}
+
+std::string Words(std::initializer_list<std::size_t> words) {
+  std::string bytes;
+  for (const std::size_t word : words) {
+    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>((word >> shift) & 0xff);
+  }
+  return bytes;
+}
+
+// The square's file with its JSON, and its buffer, changed.
+std::string Changed(const std::function<void(json&, std::string&)>& change) {
+  const std::string glb = GlbOf(Square());
+  const GlbParts parts = *SplitGlb(glb);
+  json root = json::parse(parts.json);
+  std::string binary(parts.binary);
+  change(root, binary);
+  std::string text = root.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  return "glTF" + Words({2, 12 + 8 + text.size() + 8 + binary.size(), text.size()}) + "JSON" +
+         text + Words({binary.size()}) + std::string("BIN\0", 4) + binary;
+}
+
+// Where the data of one of the first primitive's attributes begins in the buffer.
+std::size_t OffsetOf(const json& root, const char* attribute) {
+  const int accessor = root["meshes"][0]["primitives"][0]["attributes"][attribute];
+  return root["bufferViews"][root["accessors"][accessor]["bufferView"].get<int>()]["byteOffset"];
+}
+
+void PutFloat(std::string* binary, std::size_t at, float value) {
+  binary->replace(at, 4, reinterpret_cast<const char*>(&value), 4);
+}
+
+TEST(Character, ReadsBackWhatItWrote) {
+  const Character square = Square();
+  const auto again = ParseCharacter(GlbOf(square), ".");
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  EXPECT_EQ(again->name, "square");
+  EXPECT_EQ(again->skeleton.hash(), square.skeleton.hash());
+  EXPECT_EQ(again->inverse_bind_matrices, square.inverse_bind_matrices);
+  ASSERT_EQ(again->meshes.size(), 1u);
+  EXPECT_EQ(again->meshes[0].name, "face");
+  EXPECT_EQ(again->meshes[0].indices, square.meshes[0].indices);
+  for (int v = 0; v < 4; ++v) {
+    const Vertex& a = square.meshes[0].vertices[v];
+    const Vertex& b = again->meshes[0].vertices[v];
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.normal, b.normal);
+    EXPECT_EQ(a.tangent, b.tangent);
+    EXPECT_EQ(a.uv, b.uv);
+    EXPECT_EQ(b.joints[1], 1);
+    EXPECT_EQ(b.skin_weights[0], 0.75f);
+  }
+  ASSERT_EQ(again->materials.size(), 1u);
+  EXPECT_EQ(again->materials[0].kind, Material::Kind::kCloth);
+  EXPECT_EQ(again->materials[0].base_colour, square.materials[0].base_colour);
+  EXPECT_EQ(again->materials[0].base_colour_texture, 0);
+  EXPECT_TRUE(again->materials[0].double_sided);
+  ASSERT_EQ(again->pictures.size(), 1u);
+  EXPECT_EQ(again->pictures[0].name, "mask.png");
+  EXPECT_EQ(again->pictures[0].pixels, square.pictures[0].pixels) << "alpha 0 keeps its colours";
+}
+
+TEST(Character, WritesEqualBytesForEqualCharacters) {
+  const std::string first = GlbOf(Square());
+  EXPECT_EQ(first, GlbOf(Square()));
+  EXPECT_EQ(first, GlbOf(*ParseCharacter(first, ".")));
+}
+
+TEST(Character, WillNotWriteWhatItCouldNotRead) {
+  const fs::path path = fs::temp_directory_path() / "furrow_character_broken.glb";
+  Character broken = Square();
+  broken.meshes[0].indices[0] = 4;
+  const Status status = SaveCharacterGlb(broken, path);
+  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+  EXPECT_THAT(status.where(), HasSubstr("indices"));
+  broken = Square();
+  broken.pictures[0].width = 3;
+  EXPECT_EQ(SaveCharacterGlb(broken, path).code(), StatusCode::kInvalidArgument);
+  broken = Square();
+  broken.inverse_bind_matrices.pop_back();
+  EXPECT_EQ(SaveCharacterGlb(broken, path).code(), StatusCode::kInvalidArgument);
+  EXPECT_FALSE(fs::exists(path));
+}
+
+TEST(Character, RefusesEveryTruncation) {
+  const std::string whole = GlbOf(Square());
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const std::string part(whole.data(), length);  // a buffer of its own
+    const auto character = ParseCharacter(part, ".");
+    ASSERT_FALSE(character.ok()) << length;
+    ASSERT_EQ(character.status().code(), StatusCode::kParse) << character.status().ToString();
+  }
+  EXPECT_EQ(ParseCharacter(whole + '\0', ".").status().where(), "header.length");
+}
+
+struct Wrong {
+  const char* name;
+  std::function<void(json&, std::string&)> change;
+  StatusCode code;
+  const char* where;
+};
+
+class CharacterErrors : public ::testing::TestWithParam<Wrong> {};
+
+TEST_P(CharacterErrors, NameTheField) {
+  const auto character = ParseCharacter(Changed(GetParam().change), ".");
+  ASSERT_FALSE(character.ok());
+  EXPECT_EQ(character.status().code(), GetParam().code) << character.status().ToString();
+  EXPECT_EQ(character.status().where(), GetParam().where) << character.status().ToString();
+}
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+INSTANTIATE_TEST_SUITE_P(
+    All, CharacterErrors,
+    ::testing::Values(
+        Wrong{"cycle", [](json& r, std::string&) { r["nodes"][1]["children"] = {0}; },
+              StatusCode::kCyclic, "nodes[0].children"},
+        Wrong{"self", [](json& r, std::string&) { r["nodes"][2]["children"] = {2}; },
+              StatusCode::kCyclic, "nodes[2].children"},
+        Wrong{"child", [](json& r, std::string&) { r["nodes"][0]["children"] = {99}; },
+              StatusCode::kSchema, "nodes[0].children"},
+        Wrong{"twins", [](json& r, std::string&) { r["nodes"][1]["name"] = "root"; },
+              StatusCode::kInvalidArgument, "nodes"},
+        Wrong{"rotation", [](json& r, std::string&) { r["nodes"][1]["rotation"] = {0, 0, 0, 0}; },
+              StatusCode::kNonFinite, "nodes[1]"},
+        Wrong{"skin joint", [](json& r, std::string&) { r["skins"][0]["joints"] = {0, 77}; },
+              StatusCode::kSchema, "skins[0].joints"},
+        Wrong{"bind", [](json& r, std::string& b) {
+                PutFloat(&b, r["bufferViews"][0]["byteOffset"], kNan);
+              }, StatusCode::kNonFinite, "skins[0].inverseBindMatrices"},
+        Wrong{"mesh", [](json& r, std::string&) { r["nodes"][2]["mesh"] = 5; }, StatusCode::kSchema,
+              "nodes[2].mesh"},
+        Wrong{"view", [](json& r, std::string&) { r["bufferViews"][1]["byteLength"] = 1u << 30; },
+              StatusCode::kParse, "bufferViews[1].byteLength"},
+        Wrong{"view offset", [](json& r, std::string&) { r["bufferViews"][1]["byteOffset"] = -4; },
+              StatusCode::kSchema, "bufferViews[1].byteOffset"},
+        Wrong{"buffer", [](json& r, std::string&) { r["bufferViews"][0]["buffer"] = 1; },
+              StatusCode::kSchema, "bufferViews[0].buffer"},
+        Wrong{"no bytes", [](json& r, std::string&) { r["buffers"][0]["byteLength"] = 0; },
+              StatusCode::kSchema, "buffers[0].byteLength"},
+        Wrong{"count", [](json& r, std::string&) { r["accessors"][1]["count"] = 1000000000u; },
+              StatusCode::kParse, "meshes[0].primitives[0].attributes.POSITION"},
+        Wrong{"counts differ", [](json& r, std::string&) { r["accessors"][2]["count"] = 3; },
+              StatusCode::kSchema, "meshes[0].primitives[0].attributes.NORMAL"},
+        Wrong{"type", [](json& r, std::string&) { r["accessors"][1]["type"] = "VEC2"; },
+              StatusCode::kSchema, "meshes[0].primitives[0].attributes.POSITION"},
+        Wrong{"nan", [](json& r, std::string& b) { PutFloat(&b, OffsetOf(r, "POSITION"), kNan); },
+              StatusCode::kNonFinite, "meshes[0].primitives[0].attributes.POSITION"},
+        Wrong{"negative", [](json& r, std::string& b) {
+                PutFloat(&b, OffsetOf(r, "WEIGHTS_0"), -1.0f);
+              }, StatusCode::kInvalidArgument, "meshes[0].primitives[0].attributes.WEIGHTS_0"},
+        Wrong{"no weight", [](json& r, std::string& b) {
+                PutFloat(&b, OffsetOf(r, "WEIGHTS_0"), 0.0f);
+                PutFloat(&b, OffsetOf(r, "WEIGHTS_0") + 4, 0.0f);
+              }, StatusCode::kInvalidArgument, "meshes[0].primitives[0].attributes.WEIGHTS_0"},
+        Wrong{"joint", [](json& r, std::string& b) { b[OffsetOf(r, "JOINTS_0")] = 9; },
+              StatusCode::kSchema, "meshes[0].primitives[0].attributes.JOINTS_0"},
+        Wrong{"index", [](json& r, std::string& b) {
+                const int a = r["meshes"][0]["primitives"][0]["indices"];
+                b[r["bufferViews"][r["accessors"][a]["bufferView"].get<int>()]["byteOffset"]
+                      .get<std::size_t>()] = 4;
+              }, StatusCode::kSchema, "meshes[0].primitives[0].indices"},
+        Wrong{"lines", [](json& r, std::string&) { r["meshes"][0]["primitives"][0]["mode"] = 1; },
+              StatusCode::kUnsupported, "meshes[0].primitives[0].mode"},
+        Wrong{"material", [](json& r, std::string&) {
+                r["meshes"][0]["primitives"][0]["material"] = 3;
+              }, StatusCode::kSchema, "meshes[0].primitives[0].material"},
+        Wrong{"texture", [](json& r, std::string&) { r["textures"][0]["source"] = 8; },
+              StatusCode::kSchema, "textures[0].source"},
+        Wrong{"picture", [](json& r, std::string& b) {
+                b[r["bufferViews"].back()["byteOffset"].get<std::size_t>()] = 'x';
+              }, StatusCode::kUnsupported, "images[0]"},
+        Wrong{"outside", [](json& r, std::string&) {
+                r["images"][0] = {{"uri", "../../etc/passwd"}};
+              }, StatusCode::kInvalidArgument, "images[0]"},
+        Wrong{"draco", [](json& r, std::string&) {
+                r["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+              }, StatusCode::kUnsupported, "extensionsRequired"},
+        Wrong{"deep", [](json& r, std::string&) {
+                json deep = 1;
+                for (int i = 0; i < 100; ++i) deep = json::array({deep});
+                r["extras"] = deep;
+              }, StatusCode::kLimit, "json"}),
+    [](const auto& test) {
+      std::string name = test.param.name;
+      for (char& c : name) c = c == ' ' ? '_' : c;
+      return name;
+    });
+
+TEST(Character, KeepsTheStrongestFourInfluences) {
+  // A second set of influences: the first set's data again, with other weights.
+  const auto character = ParseCharacter(Changed([](json& r, std::string& b) {
+                                          const auto offset = OffsetOf(r, "WEIGHTS_0");
+                                          for (int v = 0; v < 4; ++v) {
+                                            for (int i = 0; i < 4; ++i)
+                                              PutFloat(&b, offset + 16 * v + 4 * i, 0.1f * (i + 1));
+                                          }
+                                          auto& attributes =
+                                              r["meshes"][0]["primitives"][0]["attributes"];
+                                          attributes["JOINTS_1"] = attributes["JOINTS_0"];
+                                          attributes["WEIGHTS_1"] = attributes["WEIGHTS_0"];
+                                        }),
+                                        ".");
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  const Vertex& vertex = character->meshes[0].vertices[0];
+  // 0.4, 0.4, 0.3, 0.3 of 1.4.
+  EXPECT_NEAR(vertex.skin_weights[0], 0.4 / 1.4, 1e-6);
+  EXPECT_NEAR(vertex.skin_weights[3], 0.3 / 1.4, 1e-6);
+}
+
+TEST(Character, ComputesNormalsAndTangentsThatAreMissing) {
+  const auto character = ParseCharacter(Changed([](json& r, std::string&) {
+                                          auto& attributes =
+                                              r["meshes"][0]["primitives"][0]["attributes"];
+                                          attributes.erase("NORMAL");
+                                          attributes.erase("TANGENT");
+                                        }),
+                                        ".");
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  for (const Vertex& vertex : character->meshes[0].vertices) {
+    EXPECT_EQ(vertex.normal, glm::vec3(0, 0, 1));
+    // u grows along +X, v shrinks along +Y: a square seen upright is not mirrored.
+    EXPECT_EQ(vertex.tangent, glm::vec4(1, 0, 0, 1));
+  }
+}
+
+TEST(Character, FindsTheRigsPictures) {
+  const fs::path folder = fs::temp_directory_path() / "furrow_character_rig";
+  fs::create_directories(folder);
+  ASSERT_TRUE(SaveCharacterGlb(Square(), folder / "square.glb").ok());
+  ASSERT_TRUE(WriteFileAtomically(folder / "square.rig.json", R"({"name": "r",
+    "drivers": [{"name": "d", "blend_shape": {"blend_shape": "jawOpen"}}],
+    "regions": [{"name": "face", "mask": {"texture": "mask.png"},
+                 "feeds": [{"map": "m", "sources": [{"from": "d.value"}]}]}],
+    "wrinkle_maps": [{"name": "m", "normal": "beside.png", "cavity": "nowhere.png"}]})")
+                  .ok());
+  Picture picture = Square().pictures[0];
+  ASSERT_TRUE(WriteFileAtomically(folder / "beside.png", *EncodePng(picture)).ok());
+  const auto character = LoadCharacter(folder / "square.glb");
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  EXPECT_EQ(character->rig.name, "r");
+  EXPECT_EQ(character->FindRigPicture("mask.png"), 0) << "the one inside the file";
+  EXPECT_EQ(character->FindRigPicture("beside.png"), 1);
+  EXPECT_EQ(character->FindRigPicture("nowhere.png"), -1);
+  EXPECT_THAT(character->missing_rig_pictures, ::testing::ElementsAre("nowhere.png"));
+
+  ASSERT_TRUE(WriteFileAtomically(folder / "beside.png", "\x89PNG\r\n\x1a\n damaged").ok());
+  const Status damaged = LoadCharacter(folder / "square.glb").status();
+  EXPECT_EQ(damaged.code(), StatusCode::kParse);
+  EXPECT_EQ(damaged.where(), (folder / "beside.png").string());
+  fs::remove_all(folder);
+}
+
+TEST(Character, NamesTheFile) {
+  EXPECT_EQ(LoadCharacter("no/such.glb").status().where(), "no/such.glb");
+  const fs::path empty = fs::temp_directory_path() / "furrow_empty.glb";
+  ASSERT_TRUE(WriteFileAtomically(empty, "").ok());
+  const Status status = LoadCharacter(empty).status();
+  fs::remove(empty);
+  EXPECT_EQ(status.code(), StatusCode::kParse);
+  EXPECT_EQ(status.where(), empty.string() + ": header");
+  EXPECT_THAT(status.what(), HasSubstr("empty"));
+}
+
+}  // namespace
+}  // namespace furrow::character
