@@ -61,20 +61,29 @@ class FoldDrawing {
   std::vector<FoldStroke> strokes_;
 };
 
-// Four furrows from temple to temple, each broken once so that no two are alike.
+// Four furrows from temple to temple: two that cross the middle, two that are broken there, so that
+// no two are alike.
 void Forehead(const FaceLandmarks& face, FoldDrawing* drawing) {
-  constexpr std::array<float, 4> kHeights{13.0f, 22.0f, 31.5f, 40.0f};
-  for (std::size_t row = 0; row < kHeights.size(); ++row) {
-    const float up = kHeights[row];
-    const FoldSize size{row == 3 ? 3.6f : 4.2f, row == 3 ? 0.8f : 1.3f};
+  const FaceLandmarks::Side& left = face.sides[0];
+  const FaceLandmarks::Side& right = face.sides[1];
+  for (const float up : {13.0f, 31.5f}) {
+    drawing->Add({drawing->From(right.brow_middle, 1, 15.0f, up - 1.5f),
+                  drawing->From(right.brow_middle, 1, 0.0f, up + 1.5f),
+                  drawing->From(right.brow_inner, 1, 2.0f, up),
+                  drawing->From(left.brow_inner, 0, 2.0f, up - 0.5f),
+                  drawing->From(left.brow_middle, 0, 0.0f, up + 1.0f),
+                  drawing->From(left.brow_middle, 0, 16.0f, up - 2.0f)},
+                 {4.2f, 1.3f, 0.35f, 0.5f});
+  }
+  for (const float up : {22.5f, 40.0f}) {
+    const bool top = up > 30.0f;
     for (int s = 0; s < 2; ++s) {
       const FaceLandmarks::Side& side = face.sides[s];
-      const float inner = row % 2 == 0 ? -9.0f : -17.0f;  // past the middle, in turn
-      drawing->Add({drawing->From(side.brow_inner, s, inner, up - 1.0f),
-                    drawing->From(side.brow_inner, s, 6.0f, up),
+      drawing->Add({drawing->From(side.brow_inner, s, -19.0f, up - 1.5f),
+                    drawing->From(side.brow_inner, s, 4.0f, up),
                     drawing->From(side.brow_middle, s, 0.0f, up + 1.5f),
-                    drawing->From(side.brow_middle, s, 14.0f, up - 1.5f)},
-                   size);
+                    drawing->From(side.brow_middle, s, top ? 8.0f : 15.0f, up - 1.0f)},
+                   {top ? 3.6f : 4.2f, top ? 0.8f : 1.25f, 0.35f, 0.5f});
     }
   }
 }
@@ -137,15 +146,15 @@ void Nasolabial(const FaceLandmarks& face, FoldDrawing* drawing) {
   for (int s = 0; s < 2; ++s) {
     const FaceLandmarks::Side& side = face.sides[s];
     drawing->Add(
-        {drawing->From(side.fold_top, s, 1.0f, 5.0f), drawing->From(side.fold_top, s, 4.0f, -5.0f),
-         drawing->From(side.fold_middle, s, 5.5f, -2.0f),
-         drawing->From(side.fold_bottom, s, 7.0f, -2.0f),
-         drawing->From(side.mouth_corner, s, 9.0f, -6.0f)},
+        {drawing->From(side.fold_top, s, -2.0f, 6.0f), drawing->From(side.fold_top, s, 0.5f, -4.0f),
+         drawing->From(side.fold_middle, s, 2.0f, -2.0f),
+         drawing->From(side.fold_bottom, s, 3.5f, -1.0f),
+         drawing->From(side.mouth_corner, s, 7.0f, -6.0f)},
         {4.6f, 2.1f, 0.5f, 0.7f});
     // The dimple's arc, outside the fold's lower end.
-    drawing->Add({drawing->From(side.fold_bottom, s, 14.0f, 7.0f),
-                  drawing->From(side.fold_bottom, s, 16.0f, -1.0f),
-                  drawing->From(side.fold_bottom, s, 14.0f, -9.0f)},
+    drawing->Add({drawing->From(side.fold_bottom, s, 11.0f, 7.0f),
+                  drawing->From(side.fold_bottom, s, 13.0f, -1.0f),
+                  drawing->From(side.fold_bottom, s, 11.0f, -9.0f)},
                  {3.5f, 0.94f});
   }
 }
@@ -175,21 +184,23 @@ void Chin(const FaceLandmarks& face, FoldDrawing* drawing) {
     const float turn = (HashLattice(i, 13, 5) - 0.5f) * 4.0f;
     drawing->Add(
         {drawing->From(under, 0, out - 1.6f, up), drawing->From(under, 0, out + 1.6f, up + turn)},
-        {2.3f, 0.65f});
+        {2.8f, 0.45f});
   }
 }
 
-glm::vec3 NearestOnSurface(const std::vector<const Texel*>& surface, const glm::vec3& p) {
+// Along the normal of the nearest texel onto its plane: snapping to texels would make lines jagged.
+glm::vec3 OntoSurface(const std::vector<const Texel*>& surface, const glm::vec3& p) {
   float nearest = std::numeric_limits<float>::max();
-  glm::vec3 found = p;
+  const Texel* found = nullptr;
   for (const Texel* texel : surface) {
     const glm::vec3 away = texel->position - p;
     const float distance = glm::dot(away, away);
     if (distance >= nearest) continue;
     nearest = distance;
-    found = texel->position;
+    found = texel;
   }
-  return found;
+  if (found == nullptr) return p;
+  return p + found->normal * glm::dot(found->position - p, found->normal);
 }
 
 }  // namespace
@@ -221,9 +232,9 @@ Picture PaintFolds(const char* name, const std::vector<Texel>& texels,
   }
   constexpr int kPieces = 5;
   for (FoldStroke& stroke : strokes) {
-    for (glm::vec3& point : stroke.points) point = NearestOnSurface(surface, point);
+    for (glm::vec3& point : stroke.points) point = OntoSurface(surface, point);
     stroke.points = paint::Smooth(stroke.points, kPieces);
-    for (glm::vec3& point : stroke.points) point = NearestOnSurface(surface, point);
+    for (glm::vec3& point : stroke.points) point = OntoSurface(surface, point);
     stroke.facing = glm::vec3(0.0f, 0.0f, 1.0f);
   }
   // Temples face sideways: there, folds are let round the corner.

@@ -174,9 +174,9 @@ std::array<float, 8> RegionFields(const glm::vec3& p, const FaceLandmarks& face)
   const float middle = 0.5f * (face.sides[0].eye.x + face.sides[1].eye.x);
   const float left = glm::smoothstep(-mm(9.0f), mm(9.0f), p.x - middle);
   const glm::vec3 between = 0.5f * (face.sides[0].brow_inner + face.sides[1].brow_inner);
-  const float glabella =
-      FadeOut(DistanceToLine(p, {between + glm::vec3(0.0f, mm(7.0f), 0.0f), face.nose_bridge}),
-              mm(6.0f), mm(17.0f));
+  const float glabella = FadeOut(DistanceToLine(p, {between + glm::vec3(0.0f, mm(7.0f), 0.0f),
+                                                    glm::mix(between, face.nose_bridge, 0.4f)}),
+                                 mm(6.0f), mm(17.0f));
   const float nose =
       FadeOut(DistanceToLine(p, {face.nose_bridge, face.nose_tip}), mm(13.0f), mm(27.0f));
   const float brow_line = 0.5f * (face.sides[0].brow_middle.y + face.sides[1].brow_middle.y);
