@@ -55,6 +55,21 @@ Status SetUpright(UpAxis up, Clip* clip) {
   return up == UpAxis::kZ ? TurnZUpToYUp(clip) : Status();
 }
 
+// A root that rests elsewhere and is at the origin in every frame was written by a tool whose
+// position channels add to the OFFSET (MakeHuman): it stays where it rests.
+void StandAtOffset(Clip* clip) {
+  const auto joints = static_cast<std::size_t>(clip->skeleton.num_joints());
+  for (std::size_t j = 0; j < joints; ++j) {
+    if (clip->skeleton.joint_parents()[j] != wrinkle::kNoJoint) continue;
+    bool moves = false;
+    for (std::size_t at = j; at < clip->locals.size(); at += joints)
+      moves = moves || clip->locals[at].translation != glm::vec3(0.0f);
+    if (moves) continue;
+    for (std::size_t at = j; at < clip->locals.size(); at += joints)
+      clip->locals[at].translation = clip->skeleton.rest_pose()[j].translation;
+  }
+}
+
 // What writers and drawing code rely on, so that a clip made by a caller cannot break them.
 Status CheckSizes(const Clip& clip) {
   const std::size_t frames = clip.times.size();
@@ -89,6 +104,7 @@ Result<Clip> LoadClip(const std::filesystem::path& path, const LoadOptions& opti
   Result<Clip> clip = Parse(format, *bytes, path, options, report);
   if (!clip.ok()) return clip.status().At(path.string());
   if (format == Format::kBvh) {
+    StandAtOffset(&*clip);
     if (Status status = SetUpright(options.up_axis, &*clip); !status.ok())
       return status.At(path.string());
   }

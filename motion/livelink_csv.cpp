@@ -278,7 +278,8 @@ Result<std::string> LiveLinkCsvToText(const Clip& clip, ClipReport* report) {
                   "the clip has no blend shapes, and a Live Link Face take holds nothing else");
   }
   if (clip.num_frames() == 0) return Status(StatusCode::kInvalidArgument, "the clip has no frames");
-  if (clip.duration() >= kSecondsADay) return Status(StatusCode::kLimit, "longer than a day");
+  // The last second is kept free: a time may round up to midnight.
+  if (clip.duration() >= kSecondsADay - 1.0) return Status(StatusCode::kLimit, "longer than a day");
   if (clip.skeleton.num_joints() > 0 && report != nullptr) {
     report->warnings.emplace_back("a Live Link Face take has no joints: they are left out");
   }

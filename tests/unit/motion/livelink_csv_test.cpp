@@ -140,6 +140,8 @@ TEST(LiveLinkCsv, SaysWhatItCannotWrite) {
   EXPECT_EQ(LiveLinkCsvToText(comma).status().code(), StatusCode::kInvalidArgument);
   Clip day = MakeTake(1e-5, 3);
   EXPECT_EQ(LiveLinkCsvToText(day).status().code(), StatusCode::kLimit);
+  day.times = {0.0, 1.0, 86399.9999999};  // would round to 24:00:00:00
+  EXPECT_EQ(LiveLinkCsvToText(day).status().code(), StatusCode::kLimit);
 }
 
 TEST(LiveLinkCsv, TruncationDrill) {

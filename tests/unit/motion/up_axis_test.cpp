@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "motion/up_axis.h"
 
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace furrow::motion {
 namespace {
@@ -54,6 +59,38 @@ TEST(UpAxis, TurningAClipTurnsItsPoses) {
     EXPECT_NEAR(after[j][3].z, -before[j][3].y, 1e-5f);
   }
   EXPECT_EQ(FindUpAxis(clip.skeleton), UpAxis::kY);
+}
+
+std::string Bvh(const char* offset, const char* positions) {
+  return std::string("HIERARCHY\nROOT Hips\n{\nOFFSET ") + offset +
+         "\nCHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation\n"
+         "JOINT Head\n{\nOFFSET 0 0 2\nCHANNELS 3 Zrotation Yrotation Xrotation\n"
+         "End Site\n{\nOFFSET 0 0 1\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.1\n" +
+         positions + " 0 0 0 0 0 0\n" + positions + " 0 0 0 0 0 0\n";
+}
+
+TEST(UpAxis, LoadClipStandsBvhUpAndLetsAnUnmovedRootRest) {
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("furrow_up_axis_" + std::to_string(getpid()) + ".bvh");
+  const auto load = [&path](const std::string& text, UpAxis up) {
+    std::ofstream(path) << text;
+    LoadOptions options;
+    options.up_axis = up;
+    Result<Clip> clip = LoadClip(path, options);
+    std::filesystem::remove(path);
+    EXPECT_TRUE(clip.ok()) << clip.status().ToString();
+    return clip.ok() ? std::move(*clip) : Clip();
+  };
+  const Clip unmoved = load(Bvh("1 2 3", "0 0 0"), UpAxis::kAuto);
+  ASSERT_EQ(unmoved.locals.size(), 4u);
+  EXPECT_EQ(unmoved.skeleton.rest_pose()[1].translation, glm::vec3(0, 2, 0));
+  EXPECT_EQ(unmoved.locals[2].translation, glm::vec3(1, 3, -2));
+  const Clip moved = load(Bvh("1 2 3", "0 0 5"), UpAxis::kAuto);
+  ASSERT_EQ(moved.locals.size(), 4u);
+  EXPECT_EQ(moved.locals[2].translation, glm::vec3(0, 5, 0));
+  const Clip as_it_is = load(Bvh("1 2 3", "0 0 5"), UpAxis::kY);
+  ASSERT_EQ(as_it_is.locals.size(), 4u);
+  EXPECT_EQ(as_it_is.locals[2].translation, glm::vec3(0, 0, 5));
 }
 
 }  // namespace

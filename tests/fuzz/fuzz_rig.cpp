@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Wrinkle rigs: what is read passes every check again once it is written and read back.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "character/rig_check.h"
+#include "character/rig_file.h"
+#include "character/rig_report.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace furrow::character;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const auto rig = ParseRig(text, "fuzz.json", "no/such/folder");
+  if (!rig.ok()) {
+    if (!rig.status().where().starts_with("fuzz.json:")) std::abort();
+    return 0;
+  }
+  const std::string written = RigToJson(*rig);
+  const auto again = ParseRig(written, "written.json", "no/such/folder");
+  if (!again.ok() || RigToJson(*again) != written) std::abort();
+  if (ReportOnRig(*rig).name != rig->name) std::abort();
+  return 0;
+}
