@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+
+#include "client/cli/command.h"
+#include "client/cli/exit_code.h"
+#include "motion/clip.h"
+
+namespace furrow::cli {
+namespace {
+
+struct ConvertOptions {
+  std::string in;
+  std::string out;
+  motion::LoadOptions load;
+};
+
+int ConvertFile(const ConvertOptions& options) {
+  const auto clip = motion::LoadClip(options.in, options.load);
+  if (!clip.ok()) return Fail(clip.status());
+  if (Status status = motion::SaveClip(*clip, options.out); !status.ok()) return Fail(status);
+  std::fprintf(stderr, "furrow: %s: %d joints, %zu blend shapes, %d frames, %.3f s\n",
+               options.out.c_str(), clip->skeleton.num_joints(), clip->blend_shape_names.size(),
+               clip->num_frames(), clip->duration());
+  return kDone;
+}
+
+}  // namespace
+
+void AddConvert(CLI::App& app, Action& action) {
+  auto options = std::make_shared<ConvertOptions>();
+  CLI::App* command =
+      app.add_subcommand("convert", "A recording in another format, by the files' extensions");
+  command->add_option("IN", options->in, ".bvh, .glb, .gltf, .vrma or .csv (Live Link Face)")
+      ->required();
+  command->add_option("OUT", options->out, ".bvh, .glb or .csv")->required();
+  command->add_option("--scale", options->load.scale, "Multiplies every length (BVH has no unit)")
+      ->check(CLI::Range(1e-6, 1e6))
+      ->capture_default_str();
+  command
+      ->add_option("--sample-rate", options->load.sample_rate,
+                   "Hz for formats made of curves; 0: the file's own keys")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+  command->callback([options, &action] { action = [options] { return ConvertFile(*options); }; });
+}
+
+}  // namespace furrow::cli

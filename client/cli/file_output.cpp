@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/file_output.h"
+
+#include <cstdio>
+#include <fstream>
+
+namespace furrow::cli {
+
+Status WriteFile(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (!file) return {StatusCode::kIo, "cannot write the file", path.string(), "is the disk full?"};
+  return {};
+}
+
+Status WriteStandardOutput(std::span<const std::uint8_t> bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size() &&
+      std::fflush(stdout) == 0)
+    return {};
+  return {StatusCode::kIo, "standard output is closed"};
+}
+
+}  // namespace furrow::cli

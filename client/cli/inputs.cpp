@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/inputs.h"
+
+#include "character/data_dir.h"
+#include "character/rig_file.h"
+#include "motion/pose_source.h"
+
+namespace furrow::cli {
+
+namespace fs = std::filesystem;
+
+fs::path ResolveRigPath(const std::string& argument) {
+  std::error_code error;
+  if (fs::exists(argument, error) || argument.find('/') != std::string::npos) return argument;
+  const std::string file = argument.ends_with(".json") ? argument : argument + ".json";
+  const auto shipped = character::FindDataFile("rigs/" + file);
+  return shipped.ok() ? *shipped : fs::path(argument);
+}
+
+Result<wrinkle::Rig> LoadRigArgument(const std::string& argument) {
+  return character::LoadRig(ResolveRigPath(argument), motion::CachedPoseSource());
+}
+
+Result<character::Character> LoadCharacterArgument(const std::string& glb, const std::string& rig) {
+  fs::path package = glb;
+  if (glb.empty()) {
+    const auto shipped = character::FindDataFile("default.glb");
+    if (!shipped.ok()) return shipped.status();
+    package = *shipped;
+  }
+  return character::LoadCharacter(package, rig.empty() ? fs::path() : ResolveRigPath(rig),
+                                  motion::CachedPoseSource());
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/listen.h"
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+
+#include "client/cli/endpoint.h"
+#include "client/cli/exit_code.h"
+
+namespace furrow::cli {
+namespace {
+
+std::atomic<bool> g_interrupted{false};
+
+void OnSignal(int) { g_interrupted.store(true); }
+
+const char* GoodbyeText(protocol::GoodbyeReason reason) {
+  switch (reason) {
+    case protocol::GoodbyeReason::kSubjectGone: return "the subject has left";
+    case protocol::GoodbyeReason::kDraining: return "the daemon shuts down";
+    case protocol::GoodbyeReason::kTimedOut:
+      return "the daemon heard nothing from here for too long";
+    case protocol::GoodbyeReason::kDone: break;
+  }
+  return "the subscription ended";
+}
+
+int OnGoodbye(protocol::GoodbyeReason reason) {
+  std::fprintf(stderr, "furrow: %s\n", GoodbyeText(reason));
+  return reason == protocol::GoodbyeReason::kTimedOut ? kNoConnection : kDone;
+}
+
+}  // namespace
+
+int Listen(client::Subscriber& subscriber,
+           const std::function<bool(const client::Event&)>& on_event) {
+  constexpr std::int64_t kSilence = 5'000'000;
+  using Kind = client::Event::Kind;
+  std::signal(SIGINT, OnSignal);
+  std::signal(SIGTERM, OnSignal);
+  const std::int64_t start = SteadyMicroseconds();
+  bool heard = false;
+  while (!g_interrupted.load()) {
+    const std::int64_t now = SteadyMicroseconds();
+    const client::Event event = subscriber.Next(now, std::chrono::milliseconds(100));
+    switch (event.kind) {
+      case Kind::kTimeout:
+        if (heard || now - start < kSilence) continue;
+        std::fprintf(stderr, "furrow: nobody answers (is furrowd running there?)\n");
+        return kNoConnection;
+      case Kind::kNoConnection:
+        if (!heard && now - start < kSilence) continue;
+        std::fprintf(stderr, "furrow: nobody listens at that port\n");
+        return kNoConnection;
+      case Kind::kClosed:
+        std::fprintf(stderr, "furrow: the daemon closed the connection\n");
+        return kNoConnection;
+      case Kind::kError:
+        std::fprintf(stderr, "furrow: the daemon says: %s\n", subscriber.error().message.c_str());
+        return kFailed;
+      case Kind::kGoodbye: return OnGoodbye(subscriber.goodbye().reason);
+      case Kind::kReply:
+      case Kind::kWeights:
+      case Kind::kPicture:
+        heard = true;
+        if (!on_event(event)) return kDone;
+        break;
+    }
+  }
+  return kDone;
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cinttypes>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "client/cli/command.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/file_output.h"
+#include "client/cli/inputs.h"
+#include "client/cli/progress.h"
+#include "motion/clip.h"
+#include "render/renderer.h"
+#include "wrinkle/retarget.h"
+#include "wrinkle/solver.h"
+
+namespace furrow::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RenderOptions {
+  std::string file;
+  std::string out;
+  std::string character;
+  std::string rig;
+  std::string frames;
+  std::string size = "640x640";
+  std::string view = "final";
+  std::string camera = "face";
+  std::string format = "png";
+  std::string device;
+  bool wrinkles = true;
+  bool tangent_space = false;
+  bool allow_missing = false;
+  int quality = 90;
+};
+
+// "A:B" (both included), "A", or empty for all, within [0, count).
+bool ParseFrames(const std::string& text, int count, int* first, int* last) {
+  *first = 0;
+  *last = count - 1;
+  if (text.empty()) return count > 0;
+  char extra = 0;
+  if (std::sscanf(text.c_str(), "%d:%d%c", first, last, &extra) != 2) {
+    if (std::sscanf(text.c_str(), "%d%c", first, &extra) != 1) return false;
+    *last = *first;
+  }
+  return *first >= 0 && *first <= *last && *last < count;
+}
+
+// The recording, its solver and the character it is drawn on.
+class Performance {
+ public:
+  static Result<std::unique_ptr<Performance>> Create(const RenderOptions& options);
+
+  [[nodiscard]] int num_frames() const { return clip_.num_frames(); }
+  [[nodiscard]] const character::Character& character() const { return character_; }
+  // Solves frame `frame`, which must follow the one before: the filter remembers.
+  Status Advance(int frame);
+  // What to draw of the last frame solved; spans point into this object.
+  [[nodiscard]] render::FrameRequest Request() const;
+
+ private:
+  motion::Clip clip_;
+  character::Character character_;
+  wrinkle::Retarget retarget_;
+  std::unique_ptr<wrinkle::SubjectSolver> solver_;
+  wrinkle::LocalPose pose_;
+  std::vector<wrinkle::Transform> local_;
+  std::vector<glm::mat4> model_;
+};
+
+Result<std::unique_ptr<Performance>> Performance::Create(const RenderOptions& options) {
+  auto self = std::make_unique<Performance>();
+  auto clip = motion::LoadClip(options.file);
+  if (!clip.ok()) return clip.status();
+  self->clip_ = std::move(*clip);
+  auto character = LoadCharacterArgument(options.character, options.rig);
+  if (!character.ok()) return character.status();
+  self->character_ = std::move(*character);
+
+  auto binding = wrinkle::RigBinding::Create(self->character_.rig, self->clip_.skeleton,
+                                             self->clip_.blend_shape_names,
+                                             {.allow_missing = options.allow_missing});
+  if (!binding.ok()) return binding.status();
+  self->solver_ = std::make_unique<wrinkle::SubjectSolver>(
+      std::make_shared<const wrinkle::RigBinding>(std::move(*binding)));
+  self->retarget_ = wrinkle::Retarget::Create(self->clip_.skeleton, self->character_.skeleton);
+  const int joints = self->character_.skeleton.num_joints();
+  self->local_.resize(joints);
+  self->model_.resize(joints);
+  return self;
+}
+
+Status Performance::Advance(int frame) {
+  clip_.GetPose(frame, &pose_);
+  const double dt = frame == 0 ? 0.0 : clip_.times[frame] - clip_.times[frame - 1];
+  const bool solved = solver_->Update(pose_, dt) == wrinkle::JobStatus::kOk &&
+                      retarget_.Run(pose_.joints, local_) == wrinkle::JobStatus::kOk &&
+                      wrinkle::LocalToModelJob{&character_.skeleton, local_, model_}.Run() ==
+                          wrinkle::JobStatus::kOk;
+  if (!solved)
+    return {StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved"};
+  return {};
+}
+
+render::FrameRequest Performance::Request() const {
+  render::FrameRequest request;
+  request.model = model_;
+  request.binding = &solver_->binding();
+  request.wrinkle_weights = solver_->wrinkle_weights();
+  request.filtered_values = solver_->filtered_values();
+  return request;
+}
+
+// Writes pictures as they come back from the renderer: two stay in flight while the next is solved.
+class PictureSink {
+ public:
+  PictureSink(render::Renderer& renderer, const RenderOptions& options)
+      : renderer_(renderer), options_(options) {}
+
+  Status Submit(const render::FrameRequest& request) {
+    if (renderer_.in_flight() >= 2) {
+      if (Status status = WriteOldest(); !status.ok()) return status;
+    }
+    return renderer_.Submit(request);
+  }
+
+  Status Finish() {
+    while (renderer_.in_flight() > 0) {
+      if (Status status = WriteOldest(); !status.ok()) return status;
+    }
+    return {};
+  }
+
+ private:
+  Status WriteOldest() {
+    const auto image = renderer_.Poll(true);
+    if (!image.ok()) return image.status();
+    const bool jpeg = options_.format == "jpeg";
+    const auto bytes = render::EncodeImage(
+        *image, jpeg ? render::ImageFormat::kJpeg : render::ImageFormat::kPng, options_.quality);
+    if (!bytes.ok()) return bytes.status();
+    char name[32];
+    std::snprintf(name, sizeof name, "%06" PRIu64 ".%s", image->token, jpeg ? "jpg" : "png");
+    return WriteFile(fs::path(options_.out) / name, *bytes);
+  }
+
+  render::Renderer& renderer_;
+  const RenderOptions& options_;
+};
+
+int RenderFile(const RenderOptions& options) {
+  const auto view = render::ParseView(options.view);
+  if (!view.ok()) return Fail(view.status());
+  auto performance = Performance::Create(options);
+  if (!performance.ok()) return Fail(performance.status());
+  int first = 0;
+  int last = 0;
+  if (!ParseFrames(options.frames, (*performance)->num_frames(), &first, &last)) {
+    return Fail({StatusCode::kInvalidArgument,
+                 "--frames " + options.frames + " is not a range within the recording's " +
+                     std::to_string((*performance)->num_frames()) + " frames",
+                 options.file, "write A:B, both included, counted from 0"});
+  }
+  auto renderer = render::Renderer::Create((*performance)->character(), {.device = options.device});
+  if (!renderer.ok()) return Fail(renderer.status());
+  const auto camera = (*renderer)->Preset(options.camera);
+  if (!camera.ok()) return Fail(camera.status());
+  std::error_code error;
+  fs::create_directories(options.out, error);
+  if (error) return Fail({StatusCode::kIo, error.message(), options.out});
+
+  PictureSink sink(**renderer, options);
+  Progress progress("rendering", last + 1);
+  for (int frame = 0; frame <= last; ++frame) {
+    if (Status status = (*performance)->Advance(frame); !status.ok())
+      return Fail(status.At(options.file));
+    progress.Set(frame + 1);
+    if (frame < first) continue;
+    render::FrameRequest request = (*performance)->Request();
+    request.settings.view = *view;
+    request.settings.wrinkles = options.wrinkles;
+    if (options.tangent_space) request.settings.normal_blend = render::NormalBlend::kTangentSpace;
+    request.camera = *camera;
+    (void)ParseSize(options.size, &request.width, &request.height);  // checked while parsing
+    request.token = static_cast<std::uint64_t>(frame);
+    if (Status status = sink.Submit(request); !status.ok()) return Fail(status);
+  }
+  if (Status status = sink.Finish(); !status.ok()) return Fail(status);
+  return kDone;
+}
+
+}  // namespace
+
+void AddRender(CLI::App& app, Action& action) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App* command = app.add_subcommand(
+      "render", "Pictures of a recording, no network: DIR/000123.png for frame 123");
+  command->add_option("FILE", options->file, "BVH, glTF/GLB, VRMA or Live Link Face CSV")
+      ->required();
+  command->add_option("--out", options->out, "Folder for the pictures; made if it is not there")
+      ->required();
+  command->add_option("--character", options->character,
+                      "Character package (.glb); default: the one that ships");
+  command->add_option("--rig", options->rig, "Wrinkle rig; default: the package's own");
+  command->add_option("--frames", options->frames, "A:B, both included, from 0; default: all");
+  command->add_option("--size", options->size, "WxH in pixels, 16 to 4096")
+      ->check(SizeValidator())
+      ->capture_default_str();
+  command
+      ->add_option("--view", options->view,
+                   "final, normal, mask_dynamic, mask_texture, weights, wireframe")
+      ->capture_default_str();
+  command
+      ->add_option("--camera", options->camera, "face, three_quarter, profile, eyes, mouth, body")
+      ->capture_default_str();
+  command->add_option("--format", options->format, "png or jpeg")
+      ->check(CLI::IsMember({"png", "jpeg"}))
+      ->capture_default_str();
+  command->add_option("--quality", options->quality, "JPEG quality")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  const std::map<std::string, bool> switches{{"on", true}, {"off", false}};
+  command->add_option("--wrinkles", options->wrinkles, "on (default) or off")
+      ->transform(CLI::CheckedTransformer(switches, CLI::ignore_case));
+  const std::map<std::string, bool> blends{{"partial_derivative", false}, {"tangent_space", true}};
+  command
+      ->add_option("--normal-blend", options->tangent_space,
+                   "partial_derivative (default) or tangent_space")
+      ->transform(CLI::CheckedTransformer(blends, CLI::ignore_case));
+  command->add_option("--device", options->device,
+                      "EGL device index or 'surfaceless'; default: the first that works");
+  command->add_flag("--allow-missing", options->allow_missing,
+                    "Joints of the rig that the recording lacks rest instead of being an error");
+  command->callback([options, &action] { action = [options] { return RenderFile(*options); }; });
+}
+
+}  // namespace furrow::cli

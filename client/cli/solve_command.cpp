@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <map>
+#include <memory>
+
+#include "client/cli/command.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/inputs.h"
+#include "client/cli/progress.h"
+#include "client/cli/weight_writer.h"
+#include "motion/clip.h"
+#include "wrinkle/solver.h"
+
+namespace furrow::cli {
+namespace {
+
+struct SolveOptions {
+  std::string file;
+  std::string rig;
+  TableFormat format = TableFormat::kCsv;
+  bool drivers = false;
+  bool no_filter = false;
+  bool allow_missing = false;
+};
+
+int SolveFile(const SolveOptions& options) {
+  const auto clip = motion::LoadClip(options.file);
+  if (!clip.ok()) return Fail(clip.status());
+  const auto rig = LoadRigArgument(options.rig);
+  if (!rig.ok()) return Fail(rig.status());
+  auto binding = wrinkle::RigBinding::Create(*rig, clip->skeleton, clip->blend_shape_names,
+                                             {.allow_missing = options.allow_missing});
+  if (!binding.ok()) return Fail(binding.status().At(options.rig));
+
+  wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(std::move(*binding)),
+                                !options.no_filter);
+  const auto writer = WeightWriter::Create(options.format);
+  writer->Names(options.drivers ? solver.binding().driver_value_names()
+                                : solver.binding().weight_names());
+  Progress progress("solving", clip->num_frames());
+  wrinkle::LocalPose pose;
+  for (int frame = 0; frame < clip->num_frames(); ++frame) {
+    clip->GetPose(frame, &pose);
+    const double dt = frame == 0 ? 0.0 : clip->times[frame] - clip->times[frame - 1];
+    if (solver.Update(pose, dt) != wrinkle::JobStatus::kOk) {
+      return Fail({StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved",
+                   options.file, "please report this file"});
+    }
+    const auto values = options.drivers ? solver.driver_values() : solver.wrinkle_weights();
+    if (!writer->Row(frame, clip->times[frame] - clip->times[0], values)) return kFailed;
+    progress.Set(frame + 1);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddSolve(CLI::App& app, Action& action) {
+  auto options = std::make_shared<SolveOptions>();
+  CLI::App* command = app.add_subcommand(
+      "solve", "The weights of a recording, no network: what the daemon would send");
+  command->add_option("FILE", options->file, "BVH, glTF/GLB, VRMA or Live Link Face CSV")
+      ->required();
+  command
+      ->add_option("--rig", options->rig,
+                   "Wrinkle rig (JSON), or the name of one that ships: cmu, arkit ...")
+      ->required();
+  const std::map<std::string, TableFormat> formats{{"csv", TableFormat::kCsv},
+                                                   {"jsonl", TableFormat::kJsonl}};
+  command->add_option("--format", options->format, "csv (default) or jsonl")
+      ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case));
+  command->add_flag("--drivers", options->drivers,
+                    "Print driver values before modulation and filter");
+  command->add_flag("--no-filter", options->no_filter, "Leave the filter out");
+  command->add_flag(
+      "--allow-missing", options->allow_missing,
+      "Joints and blend shapes that the recording lacks rest at 0 instead of being an error");
+  command->callback([options, &action] { action = [options] { return SolveFile(*options); }; });
+}
+
+}  // namespace furrow::cli

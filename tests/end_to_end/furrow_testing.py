@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the end-to-end tests share: the programs, a daemon on free ports, tables of weights."""
+import csv
+import io
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import unittest
+
+BIN = pathlib.Path(os.environ["FURROW_BIN"])
+SOURCE = pathlib.Path(os.environ["FURROW_SOURCE"])
+SHARED = pathlib.Path(os.environ.get("FURROW_SHARED_DATA", "/nonexistent"))
+SHARE = BIN.parent / "share" / "furrow"
+GUARD = 300  # seconds; only a failure takes so long
+
+
+def needs_shared(*parts):
+    """A file of the shared data, or the test says SKIPPED."""
+    path = SHARED.joinpath(*parts)
+    if not path.exists():
+        raise unittest.SkipTest(f"{path} is absent")
+    return path
+
+
+def furrow(*args, env=None, check=None, stdin=None):
+    """Runs `furrow` to its end. `check`: the exit code it must have."""
+    result = subprocess.run([BIN / "furrow", *map(str, args)], capture_output=True, timeout=GUARD,
+                            env={**os.environ, **(env or {})}, input=stdin)
+    if check is not None:
+        assert result.returncode == check, (args, result.returncode, result.stderr.decode())
+    return result
+
+
+def spawn(*args, env=None):
+    """Starts `furrow` and goes on."""
+    return subprocess.Popen([BIN / "furrow", *map(str, args)], stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, env={**os.environ, **(env or {})})
+
+
+class Table:
+    """Weights as CSV: names, and rows by frame."""
+
+    def __init__(self, text):
+        rows = list(csv.reader(io.StringIO(text)))
+        self.names = rows[0][2:]
+        self.rows = {int(row[0]): [float(x) for x in row[2:]] for row in rows[1:]}
+        self.times = {int(row[0]): float(row[1]) for row in rows[1:]}
+
+    def column(self, name):
+        index = self.names.index(name)
+        return {frame: row[index] for frame, row in self.rows.items()}
+
+
+def solve(*args, env=None):
+    return Table(furrow("solve", *args, env=env, check=0).stdout.decode())
+
+
+def worst_difference(a, b):
+    """The largest difference over the frames that both have, and how many those are."""
+    assert a.names == b.names, (a.names[:3], b.names[:3])
+    common = sorted(a.rows.keys() & b.rows.keys())
+    worst = max((abs(x - y) for f in common for x, y in zip(a.rows[f], b.rows[f])), default=None)
+    return worst, len(common)
+
+
+class Daemon:
+    """A furrowd on free ports for the length of a with-block; ends by SIGTERM, and must exit 0."""
+
+    def __init__(self, *args, env=None):
+        self.args = [BIN / "furrowd", "--tcp", "0", "--udp", "0", *map(str, args)]
+        self.env = {**os.environ, **(env or {})}
+        self.expect = 0
+
+    def __enter__(self):
+        self.process = subprocess.Popen(self.args, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=self.env)
+        self.ready = self.process.stdout.readline().decode()
+        if not self.ready.startswith("furrowd ready"):
+            self.process.kill()
+            raise AssertionError(f"no ready line: {self.ready!r} {self.process.stderr.read().decode()}")
+        self.ports = {name: int(port) for name, port in re.findall(r"(\w+)=[^ ]*?:(\d+)", self.ready)}
+        self.tcp = f"127.0.0.1:{self.ports['tcp']}"
+        self.udp = f"127.0.0.1:{self.ports['udp']}"
+        return self
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGTERM)
+        _, stderr = self.process.communicate(timeout=GUARD)
+        self.stderr = stderr.decode()
+        if self.process.returncode != self.expect:
+            raise AssertionError(f"furrowd exited {self.process.returncode}: {self.stderr[-2000:]}")
+
+
+def finish(process):
+    """Waits for a spawned program: (exit code, stdout, stderr)."""
+    out, err = process.communicate(timeout=GUARD)
+    return process.returncode, out, err.decode()
+
+
+def jpeg_size(data):
+    """Width and height in a JPEG's frame header; fails on what is no JPEG."""
+    assert data[:2] == b"\xff\xd8" and data[-2:] == b"\xff\xd9", "not a whole JPEG"
+    at = 2
+    while True:
+        assert data[at] == 0xFF
+        marker, length = data[at + 1], int.from_bytes(data[at + 2:at + 4], "big")
+        if 0xC0 <= marker <= 0xC3:
+            return (int.from_bytes(data[at + 7:at + 9], "big"), int.from_bytes(data[at + 5:at + 7], "big"))
+        at += 2 + length
+
+
+def png_size(data):
+    assert data[:8] == b"\x89PNG\r\n\x1a\n", "not a PNG"
+    return int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")

@@ -1,0 +1,212 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Bad input: one clear message, the right exit code, and nothing else harmed."""
+import json
+import pathlib
+import random
+import signal
+import socket
+import struct
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+
+from furrow_testing import (BIN, GUARD, SHARE, SOURCE, Daemon, Table, finish, furrow, solve, spawn, worst_difference)
+
+PERFORMANCE = SHARE / "recordings" / "performance.bvh"
+RIG = SHARE / "default.rig.json"
+BVH = """HIERARCHY
+ROOT hips
+{
+  OFFSET 0 0 0
+  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+  JOINT knee
+  {
+    OFFSET 0 -1 0
+    CHANNELS 3 Zrotation Xrotation Yrotation
+    End Site
+    {
+      OFFSET 0 -1 0
+    }
+  }
+}
+MOTION
+Frames: 2
+Frame Time: 0.0333
+0 0 0 0 0 0 0 0 0
+0 0 0 0 0 0 0 10 0
+"""
+KNEE_RIG = {"name": "knee", "drivers": [{"name": "knee", "hinge": {"parent": "hips", "joint": "knee"}}]}
+
+DONE, FAILED, USAGE, BAD_INPUT, NO_CONNECTION = range(5)
+
+
+class BadFileTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.root = pathlib.Path(self.folder.name)
+
+    def file(self, name, text):
+        path = self.root / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+    def refuse(self, code, *args, says=()):
+        """`furrow ARGS` must exit with `code` and say each of `says` in one short message."""
+        result = furrow(*args)
+        message = result.stderr.decode()
+        self.assertEqual(result.returncode, code, message)
+        for text in says:
+            self.assertIn(text, message)
+        self.assertLessEqual(message.count("\n"), 3, message)
+        return message
+
+    def test_truncated_bvh(self):
+        for end in (0, 10, BVH.index("JOINT"), BVH.index("MOTION"), BVH.index("0 0 0 0 0 0 0 10 0")):
+            path = self.file("cut.bvh", BVH[:end])
+            self.refuse(BAD_INPUT, "solve", path, "--rig", RIG, says=["cut.bvh"])
+
+    def test_wrong_channel_count_names_the_line(self):
+        line = BVH.count("\n")
+        path = self.file("short.bvh", BVH.replace("0 0 0 0 0 0 0 10 0", "0 0 0 0 0 0 0 10"))
+        self.refuse(BAD_INPUT, "solve", path, "--rig", RIG, says=[f"short.bvh:{line}"])
+
+    def test_nan_names_the_line(self):
+        path = self.file("nan.bvh", BVH.replace("10 0\n", "nan 0\n"))
+        self.refuse(BAD_INPUT, "solve", path, "--rig", RIG, says=[f"nan.bvh:{BVH.count(chr(10))}"])
+
+    def test_rig_that_names_a_joint_that_is_not_there(self):
+        rig = json.loads(json.dumps(KNEE_RIG))
+        rig["drivers"][0]["hinge"]["joint"] = "elbow_of_nobody"
+        self.refuse(BAD_INPUT, "solve", self.file("ok.bvh", BVH), "--rig", self.file("r.json", json.dumps(rig)),
+                    says=["elbow_of_nobody", "knee"])
+
+    def test_rig_with_an_unknown_field_names_file_line_and_field(self):
+        rig = '{\n "name": "x",\n "drivrs": []\n}\n'
+        self.refuse(BAD_INPUT, "rig", "check", self.file("typo.json", rig), says=["typo.json:3", "drivrs"])
+
+    def test_glb_of_no_bytes(self):
+        self.refuse(BAD_INPUT, "render", PERFORMANCE, "--out", self.root / "out", "--character",
+                    self.file("empty.glb", b""), says=["empty.glb"])
+        self.assertFalse((self.root / "out").exists())
+        self.refuse(BAD_INPUT, "convert", self.root / "empty.glb", self.root / "out.bvh", says=["empty.glb"])
+
+    def test_cyclic_skeleton(self):
+        gltf = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+                "nodes": [{"name": "a", "children": [1]}, {"name": "b", "children": [0]}],
+                "skins": [{"joints": [0, 1]}],
+                "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "rotation"}}],
+                                "samplers": [{"input": 0, "output": 1}]}],
+                "buffers": [{"byteLength": 20}],
+                "bufferViews": [{"buffer": 0, "byteLength": 4}, {"buffer": 0, "byteOffset": 4, "byteLength": 16}],
+                "accessors": [{"bufferView": 0, "componentType": 5126, "count": 1, "type": "SCALAR", "min": [0],
+                               "max": [0]},
+                              {"bufferView": 1, "componentType": 5126, "count": 1, "type": "VEC4"}]}
+        text = json.dumps(gltf).encode()
+        text += b" " * (-len(text) % 4)
+        data = struct.pack("<5f", 0, 0, 0, 0, 1)
+        glb = struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + len(data))
+        glb += struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(data), b"BIN\0") + data
+        path = self.file("ring.glb", glb)
+        self.refuse(BAD_INPUT, "solve", path, "--rig", RIG, says=["ring.glb"])
+
+    def test_missing_files_and_wrong_usage(self):
+        self.refuse(BAD_INPUT, "solve", self.root / "no.bvh", "--rig", RIG, says=["no.bvh"])
+        self.refuse(BAD_INPUT, "solve", self.file("ok.bvh", BVH), "--rig", self.root / "no.json", says=["no.json"])
+        for args in ((), ("solve",), ("dance",), ("render", "x.bvh", "--out", "y", "--size", "9x9"),
+                     ("play", "x.bvh", "--to", "localhost:0x7")):
+            result = furrow(*args)
+            self.assertIn(result.returncode, (USAGE, BAD_INPUT), args)
+        self.assertEqual(furrow("watch", "localhost:99999").returncode, USAGE)
+
+    def test_help_names_the_exit_codes(self):
+        for program in ("furrow", "furrowd"):
+            result = subprocess.run([BIN / program, "--help"], capture_output=True, timeout=GUARD, check=True)
+            for word in ("0 done", "bad input"):
+                self.assertIn(word, result.stdout.decode())
+
+
+class DaemonTest(unittest.TestCase):
+    def test_second_daemon_on_the_same_port(self):
+        with Daemon("--no-render") as daemon:
+            port = daemon.ports["tcp"]
+            result = subprocess.run([BIN / "furrowd", "--no-render", "--tcp", str(port), "--udp", "0"],
+                                    capture_output=True, timeout=GUARD)
+            self.assertEqual(result.returncode, FAILED, result.stderr)
+            self.assertIn(str(port), result.stderr.decode())
+
+    def test_bad_files_end_the_daemon_before_it_serves(self):
+        with tempfile.TemporaryDirectory() as folder:
+            empty = pathlib.Path(folder, "empty.glb")
+            empty.write_bytes(b"")
+            result = subprocess.run([BIN / "furrowd", "--character", empty, "--tcp", "0", "--udp", "0"],
+                                    capture_output=True, timeout=GUARD)
+            self.assertEqual(result.returncode, BAD_INPUT, result.stderr)
+            self.assertIn("empty.glb", result.stderr.decode())
+            self.assertNotIn(b"ready", result.stdout)
+
+    def test_subscriber_to_an_unknown_subject(self):
+        with Daemon("--no-render") as daemon:
+            for target, flags in ((daemon.tcp, ()), (daemon.udp, ("--udp",))):
+                result = furrow("watch", target, "--subject", "nobody", *flags)
+                self.assertEqual(result.returncode, FAILED)
+                self.assertIn("nobody", result.stderr.decode())
+
+    def test_nobody_there(self):
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        for args in (("watch", f"127.0.0.1:{port}"), ("watch", f"127.0.0.1:{port}", "--udp"),
+                     ("play", PERFORMANCE, "--to", f"127.0.0.1:{port}", "--udp"),
+                     ("play", PERFORMANCE, "--to", f"127.0.0.1:{port}", "--tcp")):
+            self.assertEqual(furrow(*args).returncode, NO_CONNECTION, args)
+
+    def test_garbage_leaves_a_real_stream_unharmed(self):
+        solved = solve(PERFORMANCE, "--rig", RIG)
+        with Daemon("--no-render") as daemon:
+            stop = threading.Event()
+            sent = [0]
+
+            def flood():
+                """Datagrams of every size, some with our magic, as fast as 10,000 a second."""
+                rng = random.Random(1)
+                out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+                out.connect(("127.0.0.1", daemon.ports["udp"]))
+                start = time.monotonic()
+                while not stop.is_set():
+                    body = rng.randbytes(rng.choice((0, 1, 31, 32, 200, 1200, 1400)))
+                    if rng.random() < 0.5:
+                        body = b"FRRW\x01" + body
+                    try:
+                        out.send(body)
+                    except OSError:
+                        pass
+                    sent[0] += 1
+                    ahead = sent[0] / 10_000 - (time.monotonic() - start)
+                    if ahead > 0:
+                        stop.wait(ahead)
+
+            thread = threading.Thread(target=flood)
+            thread.start()
+            watcher = spawn("watch", daemon.tcp, "--subject", "ada", "--wait", "--format", "csv")
+            furrow("play", PERFORMANCE, "--to", daemon.udp, "--subject", "ada", check=0)
+            code, out, err = finish(watcher)
+            stop.set()
+            thread.join()
+            self.assertEqual(code, 0, err)
+            worst, frames = worst_difference(Table(out.decode()), solved)
+            print(f"{sent[0]} garbage datagrams; {frames} of {len(solved.rows)} frames, worst {worst:.2e}")
+            self.assertGreater(frames, 0)
+            self.assertLess(worst, 1e-3)
+
+    def test_interrupt_ends_well(self):
+        with Daemon("--no-render") as daemon:
+            daemon.process.send_signal(signal.SIGINT)
+            self.assertEqual(daemon.process.wait(timeout=GUARD), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

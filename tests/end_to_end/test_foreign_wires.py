@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""VMC by oscsend, Live Link Face by an encoder of the test's own, and OSC out read by oscdump."""
+import select
+import shutil
+import socket
+import struct
+import subprocess
+import unittest
+
+from furrow_testing import SOURCE, Daemon, Table, finish, spawn
+
+ARKIT = SOURCE / "character" / "rigs" / "arkit.json"
+# Live Link Face's order of curves, as the wire has it.
+CURVES = """EyeBlinkLeft EyeLookDownLeft EyeLookInLeft EyeLookOutLeft EyeLookUpLeft EyeSquintLeft EyeWideLeft
+EyeBlinkRight EyeLookDownRight EyeLookInRight EyeLookOutRight EyeLookUpRight EyeSquintRight EyeWideRight
+JawForward JawLeft JawRight JawOpen MouthClose MouthFunnel MouthPucker MouthLeft MouthRight MouthSmileLeft
+MouthSmileRight MouthFrownLeft MouthFrownRight MouthDimpleLeft MouthDimpleRight MouthStretchLeft MouthStretchRight
+MouthRollLower MouthRollUpper MouthShrugLower MouthShrugUpper MouthPressLeft MouthPressRight MouthLowerDownLeft
+MouthLowerDownRight MouthUpperUpLeft MouthUpperUpRight BrowDownLeft BrowDownRight BrowInnerUp BrowOuterUpLeft
+BrowOuterUpRight CheekPuff CheekSquintLeft CheekSquintRight NoseSneerLeft NoseSneerRight TongueOut HeadYaw HeadPitch
+HeadRoll LeftEyeYaw LeftEyePitch LeftEyeRoll RightEyeYaw RightEyePitch RightEyeRoll""".split()
+
+
+def livelink_face(subject, frame, shapes):
+    """One datagram of version 6."""
+    device = b"12345678-1234-1234-1234-123456789ABC"
+    name = subject.encode()
+    packet = struct.pack(">B", 6)
+    packet += struct.pack(">i", len(device)) + device + struct.pack(">i", len(name)) + name
+    packet += struct.pack(">ifii", frame, 0.0, 60, 1)
+    packet += struct.pack(">B61f", 61, *(shapes.get(curve, 0.0) for curve in CURVES))
+    return packet
+
+
+class ForeignWireTest(unittest.TestCase):
+    def row_with(self, watcher, send, wanted):
+        """Sends until the watcher has printed a row in which `wanted(table)` holds; that table."""
+        lines = [watcher.stdout.readline().decode()]
+        self.assertTrue(lines[0].startswith("frame,time"), lines)
+        for _ in range(400):
+            send()
+            line = watcher.stdout.readline().decode()
+            self.assertTrue(line, "the watcher ended")
+            table = Table(lines[0] + line)
+            if wanted({n: table.column(n) for n in table.names}):
+                return table
+        self.fail("the weights never rose")
+
+    def test_livelink_face_raises_the_right_weights(self):
+        with Daemon("--rig", ARKIT, "--livelink-face", "0") as daemon:
+            out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            frame = [0]
+
+            def send():
+                frame[0] += 1
+                out.sendto(livelink_face("phone", frame[0], {"BrowInnerUp": 1.0, "MouthSmileLeft": 0.9}),
+                           ("127.0.0.1", daemon.ports["livelink_face"]))
+
+            send()
+            watcher = spawn("watch", daemon.tcp, "--subject", "phone", "--wait", "--format", "csv")
+            self.keep_sending_until_header(watcher, send)
+            table = self.row_with(watcher, send, lambda w: max(w["brow_l.stretch"].values()) > 0.3)
+            row = {n: list(table.column(n).values())[0] for n in table.names}
+            watcher.terminate()
+            self.assertEqual(finish(watcher)[0], 0)
+        self.assertEqual(len(livelink_face("x" * 13, 1, {})), 319)
+        self.assertGreater(row["brow_r.stretch"], 0.3)
+        self.assertGreater(max(row["mouth_l.squash"], row["mouth_l.stretch"]), 0.2)
+        self.assertLess(max(row["mouth_r.squash"], row["mouth_r.stretch"]), 0.1)
+        self.assertLess(row["glabella.squash"], 0.05)
+
+    def keep_sending_until_header(self, watcher, send):
+        """The subject appears with its first frames; datagrams may come before the socket is read."""
+        for _ in range(2000):
+            send()
+            if select.select([watcher.stdout], [], [], 0.02)[0]:
+                return
+        self.fail("no subject")
+
+    @unittest.skipUnless(shutil.which("oscsend"), "liblo-tools is not installed")
+    def test_oscsend_into_vmc(self):
+        with Daemon("--rig", ARKIT, "--vmc", "0") as daemon:
+            port = str(daemon.ports["vmc"])
+
+            def send():
+                for address, *args in (("/VMC/Ext/OK", "i", "1"),
+                                       ("/VMC/Ext/Blend/Val", "sf", "browDownLeft", "1.0"),
+                                       ("/VMC/Ext/Blend/Val", "sf", "browDownRight", "1.0"),
+                                       ("/VMC/Ext/Blend/Apply",)):
+                    subprocess.run(["oscsend", "localhost", port, address, *args], check=True)
+
+            watcher = spawn("watch", daemon.tcp, "--wait", "--format", "csv")
+            self.keep_sending_until_header(watcher, send)
+            table = self.row_with(watcher, send, lambda w: max(w["glabella.squash"].values()) > 0.3)
+            row = {n: list(table.column(n).values())[0] for n in table.names}
+            watcher.terminate()
+            finish(watcher)
+        self.assertLess(row["mouth_l.squash"], 0.05)
+
+    @unittest.skipUnless(shutil.which("oscdump"), "liblo-tools is not installed")
+    def test_oscdump_reads_what_we_send(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        dump = subprocess.Popen(["oscdump", "-L", str(port)], stdout=subprocess.PIPE)
+        self.addCleanup(dump.stdout.close)
+        self.addCleanup(dump.wait)
+        self.addCleanup(dump.kill)
+        with Daemon("--rig", ARKIT, "--livelink-face", "0", "--osc-out", f"127.0.0.1:{port}") as daemon:
+            out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            for frame in range(2000):
+                out.sendto(livelink_face("phone", frame, {"NoseSneerLeft": 1.0}),
+                           ("127.0.0.1", daemon.ports["livelink_face"]))
+                if select.select([dump.stdout], [], [], 0.02)[0]:
+                    break
+            lines = [dump.stdout.readline().decode() for _ in range(20)]
+        weights = [l for l in lines if "/furrow/phone/" in l and " f " in l]
+        self.assertTrue(weights, lines)
+        for line in weights:
+            self.assertTrue(0.0 <= float(line.split()[-1]) <= 1.0, line)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The real face: MakeHuman's character imported, five expressions played to the daemon."""
+import math
+import pathlib
+import tempfile
+import unittest
+
+from furrow_testing import (SOURCE, Daemon, Table, finish, furrow, jpeg_size, needs_shared, solve, spawn,
+                            worst_difference)
+
+FACE = ("brow_l", "brow_r", "glabella", "nose", "eye_l", "eye_r", "mouth_l", "mouth_r")
+EXPRESSIONS = ("smile", "anger", "sadness", "disgust", "laugh")  # 120 frames each, at their height at 60
+
+
+def facial(names):
+    return [n for n in names if n.split(".")[0] in FACE]
+
+
+class MakeHumanTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.recording = needs_shared("performances", "emotions.bvh")
+        cls.env = {"FURROW_ASSET_PATH": str(needs_shared("makehuman", "poseunits"))}
+        cls.rig = SOURCE / "character" / "rigs" / "makehuman.json"
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.root = pathlib.Path(cls.folder.name)
+        cls.package = cls.root / "makehuman.glb"
+        furrow("character", "import", needs_shared("makehuman"), "--out", cls.package, check=0)
+        cls.solved = solve(cls.recording, "--rig", cls.rig, env=cls.env)
+
+    def test_package_rig_gives_the_weights_of_the_rig_file(self):
+        seen = solve(self.recording, "--rig", self.package.with_suffix(".rig.json"))
+        self.assertLess(worst_difference(seen, self.solved)[0], 1e-4)
+
+    def test_weights_lie_in_range_and_rest_at_neutral(self):
+        for values in self.solved.rows.values():
+            self.assertTrue(all(0.0 <= v <= 1.0 for v in values))
+        for name in facial(self.solved.names):
+            self.assertLess(self.solved.column(name)[0], 0.02, name)
+
+    def test_five_expressions_are_five_different_sets_of_weights(self):
+        names = facial(self.solved.names)
+        self.assertGreaterEqual(len(names), 16)
+        heights = []
+        for index, expression in enumerate(EXPRESSIONS):
+            row = self.solved.rows[120 * index + 60]
+            values = [row[self.solved.names.index(n)] for n in names]
+            self.assertGreater(max(values), 0.3, f"{expression} leaves the face smooth")
+            heights.append(values)
+            strongest = sorted(zip(values, names), reverse=True)[:5]
+            print(expression + ":", ", ".join(f"{n} {v:.2f}" for v, n in strongest))
+        for i in range(5):
+            for j in range(i):
+                if {EXPRESSIONS[i], EXPRESSIONS[j]} == {"smile", "laugh"}:
+                    continue  # cousins: a laugh is a smile with the jaw down
+                self.assertGreater(math.dist(heights[i], heights[j]), 0.3, (EXPRESSIONS[i], EXPRESSIONS[j]))
+
+    def test_root_that_turns_and_travels_changes_no_facial_weight(self):
+        lines = self.recording.read_text().splitlines()
+        first = lines.index(next(l for l in lines if l.strip().startswith("Frame Time"))) + 1
+        for i in range(first, len(lines)):
+            values = lines[i].split()
+            if len(values) < 6:
+                continue
+            t = (i - first) / 30.0
+            root = (3 * math.sin(t), 0.5 * t, -2 * t, 40 * math.sin(t), 170 * math.sin(0.3 * t), 25 * math.cos(t))
+            lines[i] = " ".join([f"{x:.6f}" for x in root] + values[6:])
+        moved = self.root / "moved.bvh"
+        moved.write_text("\n".join(lines) + "\n")
+        seen = solve(moved, "--rig", self.rig, env=self.env)
+        worst = max(abs(seen.column(n)[f] - self.solved.column(n)[f])
+                    for n in facial(seen.names) for f in seen.rows)
+        print(f"worst difference under a moving root {worst:.2e}")
+        self.assertLess(worst, 1e-3)
+
+    def test_live_weights_equal_solve_and_pictures_move(self):
+        with Daemon("--character", self.package) as daemon:
+            pictures = self.root / "pictures"
+            watcher = spawn("watch", daemon.tcp, "--subject", "ada", "--wait", "--format", "csv")
+            camera = spawn("frames", daemon.tcp, "--subject", "ada", "--wait", "--out", pictures, "--size", "256x256",
+                           "--rate", "5")
+            furrow("play", self.recording, "--to", daemon.udp, "--udp", "--subject", "ada", check=0)
+            code, out, err = finish(watcher)
+            self.assertEqual(code, 0, err)
+            self.assertEqual(finish(camera)[0], 0)
+        worst, frames = worst_difference(Table(out.decode()), self.solved)
+        print(f"{frames} of {len(self.solved.rows)} frames arrived, worst difference {worst:.2e}")
+        self.assertGreater(frames, 0)
+        self.assertLess(worst, 1e-3)
+        files = sorted(pictures.iterdir())
+        self.assertTrue(files)
+        self.assertEqual({jpeg_size(f.read_bytes()) for f in files}, {(256, 256)})
+        self.assertGreater(len({f.read_bytes() for f in files}), 1)
+
+    def test_explain_names_drivers_and_poses(self):
+        result = furrow("rig", "explain", self.rig, self.recording, "--frame", 60, env=self.env, check=0)
+        text = result.stdout.decode()
+        strongest = max(facial(self.solved.names), key=lambda n: self.solved.column(n)[60])
+        self.assertIn(strongest, text)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""A recording crosses real sockets: weights equal `furrow solve`, pictures arrive and change."""
+import pathlib
+import tempfile
+import unittest
+
+from furrow_testing import (SHARE, SOURCE, Daemon, Table, finish, furrow, jpeg_size, needs_shared, png_size, solve,
+                            spawn, worst_difference)
+
+PERFORMANCE = SHARE / "recordings" / "performance.bvh"
+TOLERANCE = 1e-3
+
+
+class StreamTest(unittest.TestCase):
+    def stream(self, recording, daemon, play=(), watch=()):
+        """Plays `recording` to `daemon`; what `watch` saw of it."""
+        watcher = spawn("watch", daemon.tcp if "--udp" not in watch else daemon.udp, "--subject", "ada", "--wait",
+                        "--format", "csv", *watch)
+        target = daemon.tcp if "--tcp" in play else daemon.udp
+        furrow("play", recording, "--to", target, "--subject", "ada", *play, check=0)
+        code, out, err = finish(watcher)
+        self.assertEqual(code, 0, err)
+        return Table(out.decode())
+
+    def assert_same(self, seen, solved, tolerance=TOLERANCE):
+        worst, frames = worst_difference(seen, solved)
+        print(f"{frames} of {len(solved.rows)} frames arrived, worst difference {worst:.2e}")
+        self.assertGreater(frames, 0)
+        self.assertLess(worst, tolerance)
+
+    def test_default_character_over_udp(self):
+        solved = solve(PERFORMANCE, "--rig", SHARE / "default.rig.json")
+        with Daemon() as daemon:
+            self.assert_same(self.stream(PERFORMANCE, daemon, ["--udp", "--speed", 4]), solved)
+
+    def test_over_tcp_quantised_to_a_udp_subscriber(self):
+        solved = solve(PERFORMANCE, "--rig", SHARE / "default.rig.json")
+        with Daemon("--no-render") as daemon:
+            seen = self.stream(PERFORMANCE, daemon, ["--tcp", "--quantise", "--speed", 4], ["--udp", "--u8"])
+            # Half a step of 1/255, and what 1.5e-4 rad a joint come to.
+            self.assert_same(seen, solved, 1 / 510 + 0.02)
+
+    def test_two_subjects_do_not_mix(self):
+        happy, sad = (SHARE / "recordings" / f"{name}.bvh" for name in ("happiness", "sadness"))
+        with Daemon("--no-render") as daemon:
+            watchers = [spawn("watch", daemon.tcp, "--subject", s, "--wait", "--format", "csv") for s in "ab"]
+            players = [spawn("play", file, "--to", daemon.udp, "--subject", s, "--speed", 4)
+                       for s, file in zip("ab", (happy, sad))]
+            for player in players:
+                self.assertEqual(finish(player)[0], 0)
+            for watcher, file in zip(watchers, (happy, sad)):
+                self.assert_same(Table(finish(watcher)[1].decode()), solve(file, "--rig", SHARE / "default.rig.json"))
+
+    def test_pattern_and_drivers(self):
+        with Daemon("--no-render") as daemon:
+            seen = self.stream(PERFORMANCE, daemon, ["--speed", 8], ["--pattern", "brow_*,*.folds"])
+            self.assertIn("brow_l.squash", seen.names)
+            self.assertTrue(all(n.startswith("brow_") or n.endswith(".folds") for n in seen.names), seen.names)
+        with Daemon("--no-render") as daemon:
+            seen = self.stream(PERFORMANCE, daemon, ["--speed", 8], ["--drivers"])
+            self.assert_same(seen, solve(PERFORMANCE, "--rig", SHARE / "default.rig.json", "--drivers"))
+
+    def test_pictures_arrive_and_change_as_the_pose_does(self):
+        with tempfile.TemporaryDirectory() as folder, Daemon() as daemon:
+            jpegs = pathlib.Path(folder, "jpeg")
+            pngs = pathlib.Path(folder, "png")
+            watchers = [spawn("frames", daemon.tcp, "--subject", "ada", "--wait", "--out", jpegs, "--size", "160x120"),
+                        spawn("frames", daemon.tcp, "--subject", "ada", "--wait", "--out", pngs, "--size", "96x96",
+                              "--format", "png", "--view", "weights", "--camera", "three_quarter")]
+            furrow("play", PERFORMANCE, "--to", daemon.udp, "--subject", "ada", check=0)
+            for watcher in watchers:
+                code, _, err = finish(watcher)
+                self.assertEqual(code, 0, err)
+            pictures = [p.read_bytes() for p in sorted(jpegs.iterdir())]
+            self.assertEqual({jpeg_size(p) for p in pictures}, {(160, 120)})
+            self.assertGreater(len(set(pictures)), 1, "the face never moved")
+            self.assertEqual({png_size(p.read_bytes()) for p in pngs.iterdir()}, {(96, 96)})
+
+    def test_cmu_body(self):
+        recording = needs_shared("cmu", "01_01.bvh")
+        rig = SOURCE / "character" / "rigs" / "cmu.json"
+        solved = solve(recording, "--rig", rig)
+        with Daemon("--rig", rig) as daemon:
+            self.assert_same(self.stream(recording, daemon, ["--speed", 8]), solved)
+        knee = solve(recording, "--rig", rig, "--drivers").column("knee_l.flexed")
+        self.assertGreater(max(knee.values()), 0.1)
+        self.assertLess(min(knee.values()), 0.02)
+
+
+if __name__ == "__main__":
+    unittest.main()
