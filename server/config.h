@@ -17,6 +17,7 @@ namespace furrow::server {
 struct HostPort {
   std::string host;
   std::uint16_t port = 0;
+  friend bool operator==(const HostPort&, const HostPort&) = default;
 };
 
 // What one daemon takes on before it refuses or drops. All per daemon unless said otherwise.
@@ -32,9 +33,10 @@ struct Limits {
   double idle_seconds = 30;           // a peer that is silent and gets nothing is forgotten
   double loss_seconds = 0.5;          // a subject without poses for so long is lost and decays
   double drain_seconds = 2;           // after SIGTERM: what is queued may still leave
+  friend bool operator==(const Limits&, const Limits&) = default;
 };
 
-// All that furrowd can be told, by flags or by a TOML file with the same names.
+// All that furrowd can be told, by flags or by a TOML file (furrow.example.toml shows every key).
 struct Config {
   std::filesystem::path character;  // both empty: the default character of FURROW_DATA_DIR
   std::filesystem::path rig;        // alone: weights only; with a character: instead of its own
@@ -51,6 +53,7 @@ struct Config {
   bool verbose = false;               // one status line a second
   bool log_json = false;
   Limits limits;
+  friend bool operator==(const Config&, const Config&) = default;
 };
 
 // Reads a TOML config over `config`: what the file does not say stays.

@@ -250,6 +250,9 @@ ExitCode Run(const Config& config, const RunOptions& options) {
   if (Status status = ValidateConfig(config); !status.ok()) return Fail(ExitCode::kUsage, status);
   Result<Assets> assets = LoadAssets(config);
   if (!assets.ok()) return Fail(ExitCode::kBadInput, assets.status());
+  if (assets->rig->regions.empty()) {
+    spdlog::warn("the character has no wrinkle rig: there will be no weights; see --rig");
+  }
   Daemon daemon(config, options, *std::move(assets));
   if (Status status = daemon.StartRendering(); !status.ok()) {
     return Fail(ExitCode::kFailed, status);

@@ -34,7 +34,9 @@ DaemonThread::DaemonThread(server::Config config) : config_(std::move(config)) {
 
 DaemonThread::~DaemonThread() {
   const server::ExitCode code = Stop();
-  if (serves()) EXPECT_EQ(code, server::ExitCode::kOk);
+  if (serves()) {
+    EXPECT_EQ(code, server::ExitCode::kOk);
+  }
 }
 
 server::ExitCode DaemonThread::Stop() {

@@ -102,7 +102,9 @@ TEST_F(Pictures, ShowThePose) {
     ASSERT_TRUE(image.has_value());
     ASSERT_EQ(header.sequence, static_cast<std::uint32_t>(frame * 5));
     ASSERT_EQ(header.capture_time_us, frame * 5000);
-    if (last) EXPECT_NE(last->bytes, image->bytes) << "the character has turned";
+    if (last) {
+      EXPECT_NE(last->bytes, image->bytes) << "the character has turned";
+    }
     last = std::move(image);
   }
 }

@@ -77,8 +77,11 @@ std::uint16_t RawClient::local_port() const {
 TcpClient::TcpClient(std::uint16_t port) : RawClient(Connect(SOCK_STREAM, port)) {}
 
 void TcpClient::SendBytes(std::span<const std::uint8_t> message) {
-  SendRaw(protocol::FramePrefix(message.size()));
-  SendRaw(message);
+  // In one piece: two would wait for each other's acknowledgement (Nagle).
+  const auto prefix = protocol::FramePrefix(message.size());
+  std::vector<std::uint8_t> frame(prefix.begin(), prefix.end());
+  frame.insert(frame.end(), message.begin(), message.end());
+  SendRaw(frame);
 }
 
 bool TcpClient::Fill() {

@@ -156,6 +156,15 @@ TEST(ParseConfig, ReadsEveryTable) {
   EXPECT_EQ(config.limits.max_connections, Limits().max_connections);
 }
 
+TEST(ParseConfig, TheExampleShowsTheDefaults) {
+  Config config;
+  config.tcp = config.udp = 1;
+  config.limits.max_subjects = config.limits.max_skeletons = 1;
+  const Status status = LoadConfigFile(FURROW_SOURCE_DIR "/server/furrow.example.toml", &config);
+  ASSERT_TRUE(status.ok()) << status.ToString();
+  EXPECT_EQ(config, Config());
+}
+
 TEST(ParseConfig, RelativeFilesAreRelativeToTheConfig) {
   Config config;
   ASSERT_TRUE(ParseConfig("rig = 'rig.json'", "/etc/furrow/furrow.toml", &config).ok());
