@@ -48,18 +48,13 @@ FaceLandmarks::Side FindSide(JointPoints* points, std::string_view side) {
   s.temple = points->Head("temporalis01", side);
   s.eye = points->Head("eye", side);
   s.pupil = points->Tail("eye", side);
-  s.upper_lid = points->Tail("orbicularis03", side);
   s.lower_lid = points->Tail("orbicularis04", side);
-  s.nostril = points->Tail("levator06", side);
   s.fold_top = points->Head("levator03", side);
   s.fold_middle = points->Head("levator04", side);
   s.fold_bottom = points->Head("levator05", side);
   s.mouth_corner = points->Tail("levator05", side);
-  s.upper_lip = points->Head("oris03", side);
-  s.lower_lip = points->Tail("oris07", side);
   s.chin_side = points->Tail("oris06", side);
   s.cheek = points->Tail("risorius02", side);
-  s.cheek_low = points->Tail("risorius03", side);
   return s;
 }
 
@@ -73,7 +68,6 @@ Result<FaceLandmarks> FindFaceLandmarks(const wrinkle::Skeleton& skeleton) {
   face.nose_bridge = points.Head("levator02", ".L");
   face.nose_bridge.x = 0.5f * (face.nose_bridge.x + points.Head("levator02", ".R").x);
   face.nose_tip = points.Tail("special03");
-  face.upper_lip_top = points.Head("oris05");
   face.upper_lip = points.Tail("oris05");
   face.lower_lip = points.Tail("oris01");
   face.lower_lip_bottom = points.Head("oris01");

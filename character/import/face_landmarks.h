@@ -19,23 +19,17 @@ struct FaceLandmarks {
     glm::vec3 temple;
     glm::vec3 eye;  // centre of the eyeball
     glm::vec3 pupil;
-    glm::vec3 upper_lid;
     glm::vec3 lower_lid;
-    glm::vec3 nostril;   // wing of the nose
     glm::vec3 fold_top;  // the nasolabial fold, beside the wing
     glm::vec3 fold_middle;
     glm::vec3 fold_bottom;  // beside the corner of the mouth
     glm::vec3 mouth_corner;
-    glm::vec3 upper_lip;  // border of the upper lip, half-way
-    glm::vec3 lower_lip;
     glm::vec3 chin_side;
     glm::vec3 cheek;
-    glm::vec3 cheek_low;
   };
   Side sides[2];  // the subject's left (+X), right
   glm::vec3 nose_bridge;
   glm::vec3 nose_tip;
-  glm::vec3 upper_lip_top;
   glm::vec3 upper_lip;  // fullest point
   glm::vec3 lower_lip;
   glm::vec3 lower_lip_bottom;

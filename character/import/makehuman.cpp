@@ -219,6 +219,13 @@ class MakeHumanImport {
   Status BuildGarment() {
     if (!garment_) return {};
     const std::vector<glm::vec3> positions = FitGarment(*garment_, base_.positions);
+    for (const glm::vec3& p : positions) {
+      constexpr float kFar = 100.0f;  // metres
+      if (!(glm::length(p) < kFar))
+        return Status(StatusCode::kInvalidArgument,
+                      "the garment '" + garment_->name + "' lies 100 m away from the body",
+                      garment_->obj_file, "are its scales and offsets right?");
+    }
     const SkinWeights skin = BindGarment(*garment_, base_.skin);
     std::vector<std::uint32_t> faces(garment_obj_.faces.size());
     for (std::uint32_t f = 0; f < faces.size(); ++f) faces[f] = f;

@@ -12,6 +12,7 @@ namespace furrow::character {
 namespace {
 
 constexpr std::size_t kMaxElements = 4'000'000;
+constexpr float kMaxCoordinate = 1e6f;
 constexpr std::size_t kMaxCorners = 64;
 constexpr std::size_t kMaxGroups = 65'535;
 
@@ -57,6 +58,8 @@ class ObjParser {
       if (!value) return Error(StatusCode::kParse, Quoted(words_[i + 1]) + " is not a number");
       if (!std::isfinite(*value))
         return Error(StatusCode::kNonFinite, Quoted(words_[i + 1]) + " is not finite");
+      if (std::abs(*value) > kMaxCoordinate)
+        return Error(StatusCode::kLimit, Quoted(words_[i + 1]) + " is beyond a million");
       out[i] = *value;
     }
     return {};

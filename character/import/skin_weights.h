@@ -20,7 +20,7 @@ struct Influences {
 
 struct SkinWeights {
   std::vector<Influences> vertices;
-  int unweighted = 0;  // vertices without any weight; they follow the root (or their nearest bones)
+  int unweighted = 0;  // vertices without any weight; they follow the root
   int truncated = 0;   // vertices with more than four joints; the weakest were dropped
 };
 

@@ -45,6 +45,8 @@ class TriangleFill {
     if (!(std::abs(area) > 1e-9f)) return;
     const glm::vec2 low = glm::min(pa, glm::min(pb, pc));
     const glm::vec2 high = glm::max(pa, glm::max(pb, pc));
+    constexpr float kFarthest = 1e6f;  // texels; beyond, an int could not count them
+    if (!(std::max({-low.x, -low.y, high.x, high.y}) < kFarthest)) return;
     const int first_y = static_cast<int>(std::ceil(low.y - 0.5f));
     const int last_y = std::min(static_cast<int>(std::floor(high.y - 0.5f)), first_y + height_ - 1);
     const int first_x = static_cast<int>(std::ceil(low.x - 0.5f));

@@ -155,6 +155,21 @@ TEST(ImportMakeHuman, FilesThatDoNotFitOneAnother) {
   EXPECT_NE(status.ToString().find("tail"), std::string::npos);
 }
 
+TEST(ImportMakeHuman, NumbersThatAreTooLarge) {
+  const ToyFolder folder;
+  folder.Write("clothes/cap/cap.obj",
+               "v 0 0 0\nv 0 0 0\nv 0 0 0\nvt 0 0\nvt 1e30 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+  Status status = ImportMakeHuman(folder.path(), ToyOptions(folder)).status();
+  EXPECT_EQ(status.code(), StatusCode::kLimit);
+  EXPECT_EQ(status.where(), (folder.path() / "clothes/cap/cap.obj").string() + ":5");
+
+  const ToyFolder other;
+  other.Write("clothes/cap/cap.mhclo", "obj_file cap.obj\nverts 0\n1\n2\n0 8 16 1e30 0 0 0 0 0\n");
+  status = ImportMakeHuman(other.path(), ToyOptions(other)).status();
+  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+  EXPECT_NE(status.what().find("away from the body"), std::string::npos);
+}
+
 TEST(ImportMakeHuman, AFaceJointThatIsMissing) {
   const ToyFolder folder;
   std::string skeleton = folder.Read("rigs/default.mhskel");

@@ -46,18 +46,13 @@ std::vector<ToyJoint> ToyJoints() {
     add("oculi02", {0.55f, 3.2f, 0.8f}, {0.34f, 3.35f, 0.87f});
     add("temporalis01", {0.8f, 3.2f, 0.5f}, {0.6f, 3.2f, 0.7f});
     add("eye", {0.31f, 3.1f, 0.7f}, {0.31f, 3.1f, 1.0f});
-    add("orbicularis03", {0.31f, 3.1f, 0.7f}, {0.31f, 3.2f, 0.95f});
     add("orbicularis04", {0.31f, 3.1f, 0.7f}, {0.31f, 3.0f, 0.95f});
     add("levator02", {0.03f, 3.0f, 1.0f}, {0.2f, 2.8f, 0.95f});
     add("levator03", {0.2f, 2.8f, 0.95f}, {0.26f, 2.65f, 0.9f});
     add("levator04", {0.26f, 2.65f, 0.9f}, {0.3f, 2.55f, 0.84f});
     add("levator05", {0.3f, 2.55f, 0.84f}, {0.26f, 2.5f, 0.83f});
-    add("levator06", {0.06f, 2.8f, 1.0f}, {0.17f, 2.8f, 0.97f});
-    add("oris03", {0.13f, 2.7f, 0.94f}, {0.18f, 2.64f, 0.92f});
-    add("oris07", {0.13f, 2.4f, 0.8f}, {0.19f, 2.5f, 0.85f});
     add("oris06", {0, 2.2f, 0.6f}, {0.13f, 2.4f, 0.8f});
     add("risorius02", {0.6f, 3.0f, 0.75f}, {0.55f, 2.8f, 0.8f});
-    add("risorius03", {0.55f, 2.8f, 0.8f}, {0.5f, 2.6f, 0.75f});
   }
   return joints;
 }
