@@ -117,15 +117,15 @@ void AddSkinnedTube(const wrinkle::Skeleton& skeleton, BodyPart part, const Tube
 Tube Torso() {
   Tube tube;
   const float rows[][4] = {// y, half width, half depth, z of the middle
-                           {0.885f, 0.160f, 0.108f, 0.000f},  {0.878f, 0.176f, 0.122f, 0.000f},
-                           {0.895f, 0.180f, 0.126f, 0.000f},  {0.94f, 0.177f, 0.125f, 0.002f},
-                           {1.00f, 0.168f, 0.119f, 0.004f},   {1.07f, 0.161f, 0.113f, 0.006f},
-                           {1.14f, 0.163f, 0.114f, 0.006f},   {1.22f, 0.173f, 0.121f, 0.004f},
-                           {1.30f, 0.184f, 0.126f, 0.000f},   {1.36f, 0.188f, 0.122f, -0.008f},
-                           {1.41f, 0.180f, 0.110f, -0.016f},  {1.445f, 0.150f, 0.094f, -0.022f},
-                           {1.468f, 0.112f, 0.083f, -0.026f}, {1.486f, 0.086f, 0.077f, -0.026f},
-                           {1.505f, 0.074f, 0.074f, -0.024f}, {1.519f, 0.0715f, 0.073f, -0.023f},
-                           {1.523f, 0.068f, 0.069f, -0.023f}, {1.505f, 0.063f, 0.064f, -0.023f}};
+                           {0.885f, 0.160f, 0.108f, 0.000f},   {0.878f, 0.176f, 0.122f, 0.000f},
+                           {0.895f, 0.180f, 0.126f, 0.000f},   {0.94f, 0.177f, 0.125f, 0.002f},
+                           {1.00f, 0.168f, 0.119f, 0.004f},    {1.07f, 0.161f, 0.113f, 0.006f},
+                           {1.14f, 0.163f, 0.114f, 0.006f},    {1.22f, 0.173f, 0.121f, 0.004f},
+                           {1.30f, 0.184f, 0.126f, 0.000f},    {1.36f, 0.188f, 0.122f, -0.008f},
+                           {1.402f, 0.180f, 0.112f, -0.016f},  {1.428f, 0.156f, 0.098f, -0.022f},
+                           {1.445f, 0.122f, 0.086f, -0.028f},  {1.457f, 0.094f, 0.079f, -0.031f},
+                           {1.470f, 0.080f, 0.0765f, -0.031f}, {1.486f, 0.0755f, 0.0755f, -0.030f},
+                           {1.490f, 0.072f, 0.072f, -0.030f},  {1.472f, 0.066f, 0.066f, -0.030f}};
   for (const auto& r : rows) tube.stations.push_back({{0, r[0], r[3]}, r[1], r[2]});
   tube.across = {-1, 0, 0};
   tube.up = {0, 0, 1};
@@ -138,8 +138,8 @@ Tube Torso() {
 Tube Sleeve(float side) {
   Tube tube;
   const float rows[][4] = {// x, half height, half depth, y of the middle
-                           {0.120f, 0.062f, 0.066f, 1.402f}, {0.150f, 0.072f, 0.074f, 1.402f},
-                           {0.185f, 0.074f, 0.074f, 1.404f}, {0.225f, 0.068f, 0.068f, 1.408f},
+                           {0.120f, 0.052f, 0.060f, 1.392f}, {0.150f, 0.063f, 0.070f, 1.394f},
+                           {0.185f, 0.068f, 0.071f, 1.400f}, {0.225f, 0.065f, 0.067f, 1.406f},
                            {0.275f, 0.060f, 0.061f, 1.413f}, {0.330f, 0.055f, 0.056f, 1.417f},
                            {0.385f, 0.052f, 0.053f, 1.420f}, {0.425f, 0.050f, 0.051f, 1.422f},
                            {0.455f, 0.049f, 0.050f, 1.424f}, {0.485f, 0.048f, 0.049f, 1.425f},
@@ -161,8 +161,8 @@ Tube Sleeve(float side) {
 
 Tube Pelvis() {
   Tube tube;
-  const float rows[][4] = {{0.795f, 0.020f, 0.030f, 0.0f}, {0.805f, 0.070f, 0.070f, 0.0f},
-                           {0.83f, 0.130f, 0.098f, 0.0f},  {0.87f, 0.163f, 0.110f, 0.0f},
+  const float rows[][4] = {{0.815f, 0.012f, 0.020f, 0.0f}, {0.825f, 0.050f, 0.050f, 0.0f},
+                           {0.845f, 0.110f, 0.080f, 0.0f}, {0.88f, 0.158f, 0.104f, 0.0f},
                            {0.92f, 0.168f, 0.112f, 0.0f},  {0.98f, 0.155f, 0.106f, 0.002f},
                            {1.03f, 0.145f, 0.100f, 0.004f}};
   for (const auto& r : rows) tube.stations.push_back({{0, r[0], r[3]}, r[1], r[2]});
@@ -273,7 +273,14 @@ Tube Palm(float side, const Rect& uv) {
 Mesh MakeClothes(const wrinkle::Skeleton& skeleton) {
   Mesh mesh;
   mesh.name = "clothes";
-  AddSkinnedTube(skeleton, BodyPart::kTorso, Torso(), &mesh);
+  AddTube(Torso(), &mesh);
+  // The collar dips in front.
+  for (Vertex& vertex : mesh.vertices) {
+    vec3& p = vertex.position;
+    p.y -= 0.22f * (p.z + 0.03f) * SmoothStep(1.41f, 1.47f, p.y);
+  }
+  SkinBody(skeleton, BodyPart::kTorso, mesh.vertices);
+
   AddSkinnedTube(skeleton, BodyPart::kPelvis, Pelvis(), &mesh);
   for (const float side : {1.0f, -1.0f}) {
     AddSkinnedTube(skeleton, BodyPart::kArm, Sleeve(side), &mesh);

@@ -124,20 +124,21 @@ void AddLimbs(Draper* drape) {
 
 void AddShirt(Draper* drape) {
   const vec3 waist(0, 1.07f, 0.0f);
-  for (int i = 0; i < 8; ++i) {
-    const float t = static_cast<float>(i) / 7.0f;
+  for (int i = 0; i < 6; ++i) {
+    const float t = static_cast<float>(i) / 5.0f;
     const float y = waist.y - 0.13f + 0.26f * t;
     const float bow = 0.03f * (0.5f - t);
     for (const float side : {1.0f, -1.0f}) {
-      const float stray = 0.012f * (Hash(i, side > 0 ? 1 : 2, 60) - 0.5f);
+      const float stray = 0.03f * (Hash(i, side > 0 ? 1 : 2, 60) - 0.5f);
+      const float inner = 0.02f + 0.07f * Hash(i, side > 0 ? 3 : 4, 61);
       // From the flank toward the middle, in front and behind.
       drape->Add({{side * 0.165f, y + stray, 0.02f},
                   {side * 0.12f, y + bow + stray, 0.095f},
-                  {side * 0.03f, y + 2.2f * bow, 0.118f}},
+                  {side * inner, y + 2.2f * bow - 0.4f * stray, 0.118f}},
                  0.011f, 0.0036f);
       drape->Add({{side * 0.165f, y - stray, -0.02f},
                   {side * 0.12f, y + bow - stray, -0.09f},
-                  {side * 0.02f, y + 2.0f * bow, -0.115f}},
+                  {side * inner, y + 2.0f * bow + 0.4f * stray, -0.115f}},
                  0.011f, 0.0034f);
     }
   }

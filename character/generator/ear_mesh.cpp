@@ -27,8 +27,8 @@ vec2 Outline(float phi) {
   const float s = std::cos(phi);
   const float t = std::sin(phi);
   const float lobe = SmoothStep(0.2f, 1.0f, -t);
-  const float width = (1.72f - 0.62f * lobe) * (s < 0.0f ? 0.92f : 1.0f);
-  return {s * width + 0.12f * t - 0.25f * lobe, t * 3.15f};
+  const float width = (1.75f - 0.45f * lobe) * (s < 0.0f ? 0.9f : 1.0f);
+  return {s * width + 0.12f * t - 0.35f * lobe, t * 3.15f};
 }
 
 // Height over the ear's plane, centimetres.
@@ -41,10 +41,12 @@ float Relief(float rho, float phi) {
   const float anti = 0.36f * Bump(rho - 0.6f, 0.12f) * SmoothStep(-0.35f, 0.3f, s) * (1.0f - lobe);
   const vec2 p = vec2(rho * s, rho * t);
   const float concha =
-      -0.62f * Bump(glm::length((p - vec2(-0.18f, -0.12f)) / vec2(0.85f, 0.75f)), 0.42f);
+      -0.45f * Bump(glm::length((p - vec2(-0.18f, -0.12f)) / vec2(0.85f, 0.75f)), 0.42f);
   const float tragus = 0.42f * Bump(glm::length(p - vec2(-0.78f, -0.16f)), 0.2f);
   const float swell = 0.25f * lobe * (1.0f - rho * rho);
-  return helix + anti + concha + tragus + swell - 0.12f * SmoothStep(0.95f, 1.0f, rho);
+  const float root =
+      -0.45f * SmoothStep(0.35f, 1.0f, -rho * s);  // the front edge sinks into the head
+  return helix + anti + concha + tragus + swell + root - 0.12f * SmoothStep(0.95f, 1.0f, rho);
 }
 
 }  // namespace
@@ -59,7 +61,7 @@ void AddEar(float side, HeadMesh* head) {
   const vec3 up(0.0f, 1.0f, 0.0f);
   const vec3 up_leaning = up * std::cos(lean) + back * std::sin(lean);
   const vec3 back_leaning = back * std::cos(lean) - up * std::sin(lean);
-  const vec3 centre(side * 7.55f, -1.35f, -1.3f);
+  const vec3 centre(side * 7.75f, -1.35f, -1.35f);
   for (int i = 0; i < kFrontRings + kBackRings; ++i) {
     const bool behind = i >= kFrontRings;
     const int step = i - kFrontRings + 1;
@@ -68,7 +70,7 @@ void AddEar(float side, HeadMesh* head) {
       const float phi = 2.0f * kPi * static_cast<float>(k % kSegments) / kSegments;
       const vec2 st = Outline(phi) * rho;
       float height = Relief(std::min(rho, 1.0f), phi);
-      if (behind) height = -0.12f - 0.26f * static_cast<float>(step);
+      if (behind) height = Relief(1.0f, phi) - 0.34f * static_cast<float>(step);
       HeadVertex info;
       info.part = kEar;
       info.place = centre + back_leaning * st.x + up_leaning * st.y + out * height;

@@ -49,7 +49,7 @@ vec3 Along(const std::vector<vec3>& line, float t) {
 void AddLash(const vec3& root, const vec3& out, const vec3& curl, const vec3& across, float length,
              float eye_side, int cell, HeadMesh* lashes) {
   const auto first = static_cast<std::uint32_t>(lashes->mesh.vertices.size());
-  constexpr float kHalf[] = {0.028f, 0.022f, 0.004f};
+  constexpr float kHalf[] = {0.022f, 0.017f, 0.003f};
   const vec2 corner(static_cast<float>(cell % 16) / 16.0f, static_cast<float>(cell / 16) / 16.0f);
   for (int k = 0; k < 3; ++k) {
     const float t = 0.5f * static_cast<float>(k);
@@ -71,7 +71,7 @@ void AddLash(const vec3& root, const vec3& out, const vec3& curl, const vec3& ac
 void AddLashRow(const HeadGrid& grid, float side, bool upper, int* cell, HeadMesh* lashes) {
   const std::vector<vec3> edge = LidEdge(grid, side, upper);
   const vec3 centre = EyeCentre(side);
-  const int count = upper ? 34 : 22;
+  const int count = upper ? 30 : 16;
   for (int i = 0; i < count; ++i) {
     const float t = (static_cast<float>(i) + 0.7f) / (static_cast<float>(count) + 0.4f);
     const float stray = Hash(i, upper, side > 0.0f) - 0.5f;
@@ -83,7 +83,7 @@ void AddLashRow(const HeadGrid& grid, float side, bool upper, int* cell, HeadMes
     const float rise = upper ? 0.15f : -0.35f;
     const vec3 out = glm::normalize(vec3(0, rise, 1.0f) + fan);
     const vec3 curl(0, upper ? 0.55f : -0.15f, -0.1f);
-    const float length = (upper ? 0.62f : 0.32f) *
+    const float length = (upper ? 0.52f : 0.2f) *
                          (0.55f + 0.45f * std::sin(kPi * std::min(t + 0.12f, 1.0f))) *
                          (0.85f + 0.3f * Hash(i, 3, upper));
     const vec3 across = glm::normalize(glm::cross(out, vec3(0, 1, 0)));
@@ -113,7 +113,7 @@ void AddTeethRow(bool upper, HeadMesh* teeth) {
       const float height =
           edge + (root - edge) * t + (upper ? -0.05f : 0.05f) * (crown - 1.0f) * -(1.0f - t);
       info.place = vec3((2.35f - inset + bulge) * std::sin(angle), height,
-                        5.7f + (3.15f - inset + bulge) * std::cos(angle));
+                        5.6f + (2.8f - inset + bulge) * std::cos(angle));
       AddVertex(
           teeth, info,
           {0.01f + 0.98f * static_cast<float>(i) / kSegments, (upper ? 0.01f : 0.51f) + 0.48f * t});

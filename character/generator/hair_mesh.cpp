@@ -21,8 +21,8 @@ constexpr float kDegrees = 180.0f / std::numbers::pi_v<float>;
 
 // Height of the hairline by azimuth, degrees from the front: forehead, temple, sideburn, ear, nape.
 constexpr Knot kHairline[] = {{0, 6.7f},    {18, 6.9f},   {33, 6.8f},  {44, 5.9f},  {52, 4.4f},
-                              {58, 3.2f},   {64, 2.2f},   {69, 0.2f},  {73, -1.8f}, {79, -2.0f},
-                              {84, 1.0f},   {90, 2.3f},   {104, 2.2f}, {113, 0.0f}, {122, -4.0f},
+                              {58, 3.2f},   {64, 2.2f},   {68, 0.6f},  {71, -1.5f}, {75, -1.6f},
+                              {79, 1.6f},   {90, 2.5f},   {104, 2.2f}, {113, 0.0f}, {122, -4.0f},
                               {135, -6.6f}, {160, -7.6f}, {180, -7.8f}};
 
 // Thickness of the hair, centimetres.
@@ -40,7 +40,7 @@ float Thickness(const vec3& p, float inside) {
 
 float InsideHairline(const vec3& p) {
   const float azimuth = std::abs(std::atan2(p.x, p.z - 0.0f)) * kDegrees;
-  const float ragged = 0.18f * Noise({p.x * 1.7f, p.z * 1.7f, 3.0f});
+  const float ragged = 0.09f * Noise({p.x * 1.7f, p.z * 1.7f, 3.0f});
   return p.y - Interpolate(kHairline, azimuth) + ragged;
 }
 

@@ -33,11 +33,11 @@ struct Row {
   float texture_height;  // share of the texture that the step from the row below takes
 };
 
-constexpr Row kRows[] = {{-19.5f, 0, -3.8f, 90, 0.0f},
-                         {-18.0f, 0, -3.7f, 90, 0.8f},
-                         {-16.5f, 0, -3.6f, 90, 0.8f},
-                         {-15.2f, 0, -3.4f, 90, 0.7f},
-                         {-14.0f, 0, -3.2f, 90, 0.7f},
+constexpr Row kRows[] = {{-22.5f, 0, -3.9f, 90, 0.0f},
+                         {-20.0f, 0, -3.8f, 90, 0.8f},
+                         {-17.8f, 0, -3.7f, 90, 0.8f},
+                         {-15.9f, 0, -3.5f, 90, 0.7f},
+                         {-14.3f, 0, -3.2f, 90, 0.7f},
                          {-13.1f, 0, -3.0f, 90, 0.6f},
                          // Under the chin: heights follow from the fan's origin at (0, -8.5, 1).
                          {-23.0f, -60, 1.0f, 75, 0.6f},
@@ -45,12 +45,12 @@ constexpr Row kRows[] = {{-19.5f, 0, -3.8f, 90, 0.0f},
                          {-16.0f, -42, 1.0f, 75, 0.6f},
                          {-14.1f, -34, 1.0f, 75, 0.6f},
                          {-12.7f, -27, 1.0f, 75, 0.6f},
-                         {-11.65f, -20, 1.0f, 75, 0.6f},
-                         {-10.9f, -13, 1.0f, 75, 0.55f},
-                         {-10.3f, -7, 1.0f, 75, 0.55f},
-                         {-9.75f, -3, 1.0f, 60, 0.5f},
-                         {-9.2f, 0, 1.0f, 40, 0.5f},
-                         {-8.75f, 0, 1.0f, 40, 0.45f},
+                         {-11.55f, -20, 1.0f, 75, 0.6f},
+                         {-10.75f, -15, 1.0f, 75, 0.55f},
+                         {-10.1f, -11, 1.0f, 75, 0.55f},
+                         {-9.6f, -7.5f, 1.0f, 75, 0.5f},
+                         {-9.15f, -4, 1.0f, 75, 0.45f},
+                         {-8.75f, -1.5f, 1.0f, 75, 0.4f},
                          {-8.35f, 0, 1.0f, 40, 0.4f},
                          {-7.95f, 0, 1.0f, 40, 0.4f},
                          {-7.6f, 0, 1.0f, 40, 0.35f},
@@ -184,7 +184,7 @@ float FanBase(float row, float azimuth, float elevation) {
   // Fans under the chin stay where they are while they open to the sides; all others keep the
   // height at which they meet the face.
   const float chin = SmoothStep(first_chin - 1.0f, static_cast<float>(first_chin), row) *
-                     (1.0f - SmoothStep(first_chin + 5.0f, first_chin + 8.0f, row));
+                     (1.0f - SmoothStep(first_chin + 11.0f, first_chin + 12.0f, row));
   const float level = height - kFrontRadius * std::tan(elevation);
   const float base = level + (front - level) * chin;
   // Far from the front a row has the height that the even spacing of the back gives it.
@@ -277,7 +277,7 @@ std::vector<glm::ivec2> HeadGrid::MouthOutline() const {
 
 glm::vec2 HeadGrid::PlaceAt(float x, float y) const {
   const glm::vec3 p = CastOnHead({x, y, 20.0f}, {0, 0, -1}, 20.0f);
-  float row = static_cast<float>(FindRow(-9.2f));  // rows below are not in order of height
+  float row = static_cast<float>(FindRow(-9.15f));  // rows below are not in order of height
   while (kRows[static_cast<int>(row) + 1].height < y) row += 1.0f;
   const Row& low = kRows[static_cast<int>(row)];
   const Row& high = kRows[static_cast<int>(row) + 1];

@@ -188,7 +188,7 @@ void AddEye(float side, HeadMesh* eyes) {
   for (int i = 0; i < kRings; ++i) {
     const float angle = kAngles[i] * kPi / 180.0f;
     const float cornea = std::max(0.0f, 1.0f - kAngles[i] * kAngles[i] / (31.0f * 31.0f));
-    const float radius = kEyeRadius + 0.13f * cornea;
+    const float radius = kEyeRadius + 0.07f * cornea;
     for (int k = 0; k <= kSegments; ++k) {
       const float turn = 2.0f * kPi * static_cast<float>(k % kSegments) / kSegments;
       const vec3 direction(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn),

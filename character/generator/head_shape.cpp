@@ -42,8 +42,8 @@ float Skull(const vec3& q) {
 }
 
 float Jaw(const vec3& q) {
-  float d = Limb(q, {5.25f, -6.9f, 0.2f}, {2.0f, -9.9f, 6.6f}, 1.15f, 1.4f);
-  d = Join(d, Limb(q, {5.75f, -1.0f, -0.6f}, {5.25f, -6.9f, 0.2f}, 1.0f, 1.15f), 1.5f);
+  float d = Limb(q, {4.95f, -6.6f, 0.3f}, {1.9f, -9.9f, 6.6f}, 1.1f, 1.4f);
+  d = Join(d, Limb(q, {5.6f, -1.0f, -0.6f}, {4.95f, -6.6f, 0.3f}, 1.0f, 1.1f), 1.5f);
   d = Join(d, Ellipsoid(q, {0, -9.95f, 7.55f}, {1.9f, 1.35f, 1.65f}), 1.6f);  // chin
   d = Join(d, Ellipsoid(q, {0, -8.2f, 3.2f}, {4.6f, 2.4f, 4.8f}), 1.8f);      // floor of the mouth
   return d;
@@ -54,7 +54,7 @@ float Neck(const vec3& q) {
   d = Join(d, Limb(q, {5.6f, -3.5f, -3.2f}, {1.3f, -19.5f, 0.6f}, 0.8f, 0.9f),
            1.4f);                                                          // sternomastoid
   d = Join(d, Ellipsoid(q, {0, -14.3f, 1.6f}, {0.9f, 1.3f, 0.9f}), 1.2f);  // larynx
-  d = Join(d, Limb(q, {2.6f, -9.0f, -7.2f}, {8.5f, -22.5f, -6.5f}, 1.6f, 3.0f), 3.0f);  // trapezius
+  d = Join(d, Limb(q, {2.4f, -9.0f, -7.0f}, {7.0f, -23.5f, -7.2f}, 1.5f, 2.2f), 3.0f);  // trapezius
   return d;
 }
 
@@ -70,7 +70,7 @@ float EyeSocket(float d, const vec3& q) {
   d = Cut(d, Ellipsoid(q, {3.15f, 0.05f, 9.0f}, {1.95f, 1.3f, 1.55f}), 1.1f);
   d = Cut(d, Ellipsoid(q, {1.35f, 0.2f, 9.5f}, {0.75f, 1.1f, 1.1f}), 0.9f);  // beside the root
   // Lids: a shell over the ball, longer than high so that it runs out at the corners.
-  const float lids = Ellipsoid(q, kEyeCentre, {1.62f, 1.36f, 1.36f});
+  const float lids = Ellipsoid(q, kEyeCentre, {1.64f, 1.43f, 1.42f});
   d = Join(d, lids, 0.35f);
   // The fold over the upper lid.
   d = Cut(d, Limb(q, {2.2f, 0.74f, 8.25f}, {4.2f, 0.78f, 7.65f}, 0.10f, 0.10f), 0.3f);

@@ -75,7 +75,7 @@ float LipShare(const vec3& p) {
 float BrowShare(const vec3& p) {
   const vec3 q = Mirrored(p);
   constexpr Knot kLine[] = {
-      {0.9f, 1.62f}, {2.0f, 1.95f}, {3.4f, 2.32f}, {4.3f, 2.25f}, {5.4f, 1.55f}};
+      {0.9f, 1.78f}, {2.0f, 1.98f}, {3.4f, 2.16f}, {4.3f, 2.03f}, {5.4f, 1.42f}};
   constexpr Knot kHeight[] = {
       {0.85f, 0.15f}, {1.3f, 0.36f}, {2.6f, 0.34f}, {4.2f, 0.24f}, {5.5f, 0.04f}};
   if (q.x < 0.6f || q.x > 5.8f || q.z < 3.0f) return 0.0f;
@@ -84,7 +84,7 @@ float BrowShare(const vec3& p) {
   const float slant = q.x < 1.8f ? 0.9f : 0.25f;
   const float hair =
       Noise({(q.x - q.y * slant) * 16.0f, q.y * 3.5f + q.x * 1.2f, p.x > 0 ? 1.0f : 9.0f});
-  const float body = SmoothStep(1.15f, 0.35f, std::abs(d) + 0.35f * hair);
+  const float body = SmoothStep(1.5f, 0.7f, std::abs(d) + 0.45f * hair);
   return body * SmoothStep(0.75f, 1.2f, q.x) * SmoothStep(5.7f, 4.9f, q.x);
 }
 
@@ -94,7 +94,7 @@ float BeardShare(const vec3& p) {
   const float jaw =
       SmoothStep(-5.2f, -7.8f, q.y + 0.24f * (8.0f - q.z)) * SmoothStep(-14.0f, -11.5f, q.y);
   const float lip = Spot(q, {1.0f, -5.6f, 9.4f}, {1.6f, 0.6f, 2.0f});
-  return std::max(jaw * SmoothStep(-2.5f, 0.5f, q.z), lip);
+  return std::max(jaw * SmoothStep(-2.5f, 0.5f, q.z), lip) * SmoothStep(10.3f, 9.8f, q.z);
 }
 
 vec3 SkinColour(const vec3& p, const vec3& normal) {
@@ -109,7 +109,7 @@ vec3 SkinColour(const vec3& p, const vec3& normal) {
       0.5f * Spot(q, {1.5f, -4.3f, 9.5f}, {0.9f, 0.8f, 1.2f}) +
       0.3f * SmoothStep(6.6f, 7.6f, q.x) * SmoothStep(3.0f, 1.0f, std::abs(q.y + 1.5f));
   colour = glm::mix(colour, vec3(0.80f, 0.47f, 0.40f),
-                    std::clamp(red * (0.75f + 0.4f * blotch), 0.0f, 0.75f));
+                    std::clamp(red * (0.55f + 0.3f * blotch), 0.0f, 0.6f));
   const float yellow = Spot(q, {0, 5.0f, 8.5f}, {5.0f, 2.6f, 4.0f});
   colour = glm::mix(colour, vec3(0.83f, 0.65f, 0.53f), 0.5f * yellow);
   // Round the eyes: thinner, cooler, darker skin.
@@ -121,8 +121,8 @@ vec3 SkinColour(const vec3& p, const vec3& normal) {
   colour *= 1.0f + 0.035f * blotch + 0.03f * fine;
   // Freckles and a mole.
   const float freckle =
-      SmoothStep(0.62f, 0.75f, Noise(p * 5.2f)) * Spot(q, {2.6f, -2.4f, 8.5f}, {3.2f, 1.6f, 3.5f});
-  colour = glm::mix(colour, vec3(0.55f, 0.36f, 0.27f), 0.35f * freckle);
+      SmoothStep(0.55f, 0.75f, Noise(p * 9.0f)) * Spot(q, {2.6f, -2.4f, 8.5f}, {3.2f, 1.6f, 3.5f});
+  colour = glm::mix(colour, vec3(0.55f, 0.36f, 0.27f), 0.16f * freckle);
   colour = glm::mix(colour, vec3(0.30f, 0.19f, 0.15f),
                     0.8f * SmoothStep(0.16f, 0.1f, glm::distance(p, vec3(-3.3f, -5.6f, 8.15f))));
   // Nostrils are dark inside.
@@ -145,11 +145,11 @@ vec4 HeadColour(const Texel& texel) {
   // Edges of the lids: wet and pink by the ball, dark where the lashes grow.
   const vec3 eye = q - vec3(kEyeCentre);
   const float ball = glm::length(eye);
-  const float rim = SmoothStep(1.42f, 1.30f, ball) * SmoothStep(1.75f, 1.55f, std::abs(eye.x));
+  const float rim = SmoothStep(1.38f, 1.27f, ball) * SmoothStep(1.75f, 1.55f, std::abs(eye.x));
   colour = glm::mix(colour, vec3(0.62f, 0.33f, 0.30f), 0.55f * rim);
   const float caruncle = Spot(q, {kInnerCanthusX + 0.1f, -0.1f, 7.6f}, {0.22f, 0.22f, 0.6f});
   colour = glm::mix(colour, vec3(0.78f, 0.42f, 0.38f), 0.7f * caruncle);
-  colour = glm::mix(colour, vec3(0.13f, 0.085f, 0.06f), 0.88f * BrowShare(p));
+  colour = glm::mix(colour, vec3(0.13f, 0.085f, 0.06f), 0.78f * BrowShare(p));
   const float stubble = SmoothStep(-0.7f, 0.5f, InsideHairline(p)) * SmoothStep(7.9f, 7.2f, q.x);
   colour = glm::mix(colour, vec3(0.20f, 0.14f, 0.11f), 0.75f * stubble);
   return vec4(colour, 1.0f);
