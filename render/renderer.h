@@ -42,9 +42,9 @@ struct Settings {
   NormalBlend normal_blend = NormalBlend::kPartialDerivative;
   MaskMode mask_mode = MaskMode::kRig;
   bool wrinkles = true;
-  float wrinkle_strength = 1.0f;                // [0, 4]
-  glm::vec3 background{0.030f, 0.032f, 0.036f};  // linear, [0, 1]
-  float exposure = 1.0f;                        // (0, 16]
+  float wrinkle_strength = 1.0f;                 // [0, 4]
+  glm::vec3 background{0.028f, 0.029f, 0.031f};  // linear, [0, 1]
+  float exposure = 1.0f;                         // (0, 16]
 };
 
 struct FrameRequest {

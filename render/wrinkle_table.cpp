@@ -43,6 +43,12 @@ const wrinkle::Feed* FeedOf(const wrinkle::Region& region, std::string_view map)
   return found == region.feeds.end() ? nullptr : &*found;
 }
 
+int FindMap(const wrinkle::Rig& rig, std::string_view name) {
+  const auto found = std::find_if(rig.wrinkle_maps.begin(), rig.wrinkle_maps.end(),
+                                  [&](const wrinkle::WrinkleMap& map) { return map.name == name; });
+  return found == rig.wrinkle_maps.end() ? -1 : static_cast<int>(found - rig.wrinkle_maps.begin());
+}
+
 // Whether a pose or a blend shape feeds the map somewhere.
 bool IsFacial(const wrinkle::Rig& rig, std::string_view map) {
   const auto facial = [&](const wrinkle::Feed::Source& source) {
@@ -114,6 +120,7 @@ WrinkleTables::WrinkleTables(const character::Character& character, WrinkleLayou
     : layout_(std::move(layout)), binding_(std::move(binding)), skinning_(std::move(skinning)) {
   DescribeMaps(character);
   DescribeRegions(character.rig);
+  DescribePalettes(character.rig);
   weights_.resize(binding_.weight_names().size());
   values_.resize(binding_.driver_value_names().size());
   influences_.resize(static_cast<std::size_t>(character.skeleton.num_joints()) * maps_.size());
@@ -142,23 +149,34 @@ void WrinkleTables::DescribeMaps(const character::Character& character) {
 }
 
 void WrinkleTables::DescribeRegions(const wrinkle::Rig& rig) {
-  palette_.assign(static_cast<std::size_t>(layout_.num_mask_layers) * 4, glm::vec4(0.0f));
-  int num_textured = 0;
   for (const wrinkle::Region& region : rig.regions) {
     const bool textured = region.mask.kind == wrinkle::Mask::Kind::kTexture;
     const int layer = textured ? layout_.MaskLayer(region.mask.texture) : -1;
     for (const wrinkle::Feed& feed : region.feeds) {
-      const auto map =
-          std::find_if(rig.wrinkle_maps.begin(), rig.wrinkle_maps.end(),
-                       [&](const auto& candidate) { return candidate.name == feed.map; });
-      const int index =
-          map == rig.wrinkle_maps.end() ? -1 : static_cast<int>(map - rig.wrinkle_maps.begin());
-      slots_.push_back({index, layer, region.mask.channel});
+      slots_.push_back({FindMap(rig, feed.map), layer, region.mask.channel});
     }
-    if (layer < 0) continue;
+  }
+}
+
+void WrinkleTables::DescribePalettes(const wrinkle::Rig& rig) {
+  for (std::vector<glm::vec4>& palette : palettes_) {
+    palette.assign(static_cast<std::size_t>(layout_.num_mask_layers) * 4, glm::vec4(0.0f));
+  }
+  float turn = 0.0f;
+  for (const wrinkle::Region& region : rig.regions) {
+    if (region.mask.kind != wrinkle::Mask::Kind::kTexture) continue;
+    const int place = layout_.MaskLayer(region.mask.texture) * 4 + region.mask.channel;
+    const glm::vec4 colour = Hue(turn);
     // The golden ratio spreads hues so that regions next to each other in the rig differ.
-    const float turn = std::fmod(0.61803399f * static_cast<float>(num_textured++), 1.0f);
-    palette_[static_cast<std::size_t>(layer * 4 + region.mask.channel)] = Hue(turn);
+    turn = std::fmod(turn + 0.61803399f, 1.0f);
+    for (const wrinkle::Feed& feed : region.feeds) {
+      const int map = FindMap(rig, feed.map);
+      for (int group = 0; group < kNumWrinkleGroups && map >= 0 && place >= 0; ++group) {
+        if (maps_[static_cast<std::size_t>(map)].in_group[group]) {
+          palettes_[group][static_cast<std::size_t>(place)] = colour;
+        }
+      }
+    }
   }
 }
 

@@ -78,8 +78,11 @@ class WrinkleTables {
   [[nodiscard]] int num_maps() const { return static_cast<int>(maps_.size()); }
   // num_joints of the character x num_maps(), joint-major; all 0 where no mask is dynamic.
   [[nodiscard]] std::span<const float> joint_influences() const { return influences_; }
-  // Mask layers x 4 channels: each region's colour for the view mask_texture.
-  [[nodiscard]] std::span<const glm::vec4> mask_palette() const { return palette_; }
+  // Mask layers x 4 channels: each region's colour for the view mask_texture; black for channels of
+  // regions that are not drawn on the group's surfaces. kNone: all black.
+  [[nodiscard]] std::span<const glm::vec4> mask_palette(WrinkleGroup group) const {
+    return palettes_[static_cast<int>(group)];
+  }
 
  private:
   struct MapInfo {
@@ -104,6 +107,7 @@ class WrinkleTables {
                 wrinkle::RigBinding binding, wrinkle::RigBinding skinning);
   void DescribeMaps(const character::Character& character);
   void DescribeRegions(const wrinkle::Rig& rig);
+  void DescribePalettes(const wrinkle::Rig& rig);
   void UpdateInfluences(MaskMode mode);
   void FillTable(int group, MaskMode mode, float strength);
 
@@ -112,7 +116,7 @@ class WrinkleTables {
   wrinkle::RigBinding skinning_;  // the same with every mask by skinning: MaskMode::kDynamic
   std::vector<MapInfo> maps_;
   std::vector<WeightSlot> slots_;
-  std::vector<glm::vec4> palette_;
+  std::vector<glm::vec4> palettes_[kNumWrinkleGroups + 1];
   NameMap weight_map_;
   NameMap value_map_;
   std::vector<float> weights_;  // of binding_

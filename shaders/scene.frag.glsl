@@ -89,10 +89,10 @@ vec3 maskColour(vec4 masks[MASK_LAYERS]) {
 }
 
 #if VIEW == VIEW_WIREFRAME
-// 1 on an edge, 0 away from it; lines 1.2 pixels wide whatever the triangle's size.
+// 1 on an edge, 0 away from it; lines about a pixel wide whatever the triangle's size.
 float edge() {
   vec3 width = fwidth(v_barycentric);
-  vec3 near = smoothstep(vec3(0.0), 1.2 * width, v_barycentric);
+  vec3 near = smoothstep(vec3(0.0), 0.9 * width, v_barycentric);
   return 1.0 - min(near.x, min(near.y, near.z));
 }
 #endif

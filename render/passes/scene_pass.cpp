@@ -57,8 +57,10 @@ ScenePass::ScenePass(const wrinkle::Skeleton& skeleton,
     wrinkle_tables_[group] = gl::MakeBuffer();
     mask_weights_[group] = gl::MakeBuffer();
   }
-  palette_ =
-      gl::MakeStaticBuffer(tables_->mask_palette().data(), tables_->mask_palette().size_bytes());
+  for (int group = 0; group <= kNumWrinkleGroups; ++group) {
+    const auto palette = tables_->mask_palette(static_cast<WrinkleGroup>(group));
+    palettes_[group] = gl::MakeStaticBuffer(palette.data(), palette.size_bytes());
+  }
 }
 
 Result<FrameGraph::Handle> ScenePass::Add(FrameGraph* graph, const FrameRequest& request,
@@ -143,7 +145,6 @@ Status ScenePass::Draw(const Settings& settings, GLuint framebuffer, const Textu
   glBindBufferBase(GL_UNIFORM_BUFFER, kFrameBlock, frame_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kJointRows, joints_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kJointInfluences, influences_.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMaskPalette, palette_.name());
   glBindTextureUnit(kMasksUnit, gpu_->masks());
   glBindTextureUnit(kWrinkleDerivativesUnit, gpu_->wrinkle_derivatives());
   for (std::size_t mesh = 0; mesh < gpu_->meshes().size(); ++mesh) {
@@ -163,6 +164,8 @@ Status ScenePass::DrawMesh(const Settings& settings, std::size_t index) {
   const int group = material.group == WrinkleGroup::kNone ? 0 : static_cast<int>(material.group);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kWrinkleTable, wrinkle_tables_[group].name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMaskWeights, mask_weights_[group].name());
+  const GLuint palette = palettes_[static_cast<int>(material.group)].name();
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMaskPalette, palette);
   glBindTextureUnit(kBaseColourUnit, material.base_colour);
   glBindTextureUnit(kBaseDerivativesUnit, material.derivatives);
   glBindTextureUnit(kRoughnessUnit, material.roughness);

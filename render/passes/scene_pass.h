@@ -51,7 +51,7 @@ class ScenePass {
   gl::Buffer wrinkle_tables_[kNumWrinkleGroups];
   gl::Buffer mask_weights_[kNumWrinkleGroups];
   gl::Buffer influences_;
-  gl::Buffer palette_;
+  gl::Buffer palettes_[kNumWrinkleGroups + 1];  // by group, kNone included
 };
 
 }  // namespace furrow::render

@@ -124,10 +124,13 @@ TEST_F(WrinkleTableTest, ShortSpansAreNamed) {
 
 TEST_F(WrinkleTableTest, EveryTexturedRegionHasAColourOfItsOwn) {
   Make(head_);
-  const auto palette = tables_->mask_palette();
+  const auto palette = tables_->mask_palette(WrinkleGroup::kSkin);
   ASSERT_EQ(palette.size(), 4u);
   EXPECT_NE(palette[0], palette[1]);
   EXPECT_EQ(palette[2], glm::vec4(0.0f));
+  for (const WrinkleGroup group : {WrinkleGroup::kCloth, WrinkleGroup::kNone}) {
+    for (const glm::vec4& colour : tables_->mask_palette(group)) EXPECT_EQ(colour, glm::vec4(0.0f));
+  }
 }
 
 }  // namespace
