@@ -37,15 +37,15 @@ float Relief(float rho, float phi) {
   const float t = std::sin(phi);
   const float rim = SmoothStep(-0.75f, -0.25f, t) * (1.0f - SmoothStep(0.6f, 0.95f, -s));
   const float lobe = SmoothStep(0.45f, 0.9f, -t);
-  const float helix = 0.34f * Bump(rho - 0.91f, 0.085f) * rim;
+  const float helix = 0.40f * Bump(rho - 0.91f, 0.08f) * rim;
   const float anti = 0.36f * Bump(rho - 0.6f, 0.12f) * SmoothStep(-0.35f, 0.3f, s) * (1.0f - lobe);
   const vec2 p = vec2(rho * s, rho * t);
   const float concha =
-      -0.45f * Bump(glm::length((p - vec2(-0.18f, -0.12f)) / vec2(0.85f, 0.75f)), 0.42f);
+      -0.5f * Bump(glm::length((p - vec2(-0.18f, -0.12f)) / vec2(0.85f, 0.75f)), 0.42f);
   const float tragus = 0.42f * Bump(glm::length(p - vec2(-0.78f, -0.16f)), 0.2f);
   const float swell = 0.25f * lobe * (1.0f - rho * rho);
   const float root =
-      -0.45f * SmoothStep(0.35f, 1.0f, -rho * s);  // the front edge sinks into the head
+      -0.6f * SmoothStep(0.72f, 1.0f, -rho * s);  // the front edge sinks into the head
   return helix + anti + concha + tragus + swell + root - 0.12f * SmoothStep(0.95f, 1.0f, rho);
 }
 
@@ -61,7 +61,7 @@ void AddEar(float side, HeadMesh* head) {
   const vec3 up(0.0f, 1.0f, 0.0f);
   const vec3 up_leaning = up * std::cos(lean) + back * std::sin(lean);
   const vec3 back_leaning = back * std::cos(lean) - up * std::sin(lean);
-  const vec3 centre(side * 7.75f, -1.35f, -1.35f);
+  const vec3 centre(side * 8.0f, -1.35f, -1.35f);
   for (int i = 0; i < kFrontRings + kBackRings; ++i) {
     const bool behind = i >= kFrontRings;
     const int step = i - kFrontRings + 1;
@@ -91,11 +91,11 @@ void AddEar(float side, HeadMesh* head) {
     for (int k = 0; k < kSegments; ++k) {
       const std::uint32_t a = index(i, k), b = index(i + 1, k), c = index(i + 1, k + 1),
                           d = index(i, k + 1);
-      // s runs backward: on the left side the plane is seen mirrored.
+      // Backward, up, outward: right-handed on the left side alone.
       if (side > 0.0f) {
-        AddQuad(&head->mesh, d, c, b, a);
-      } else {
         AddQuad(&head->mesh, a, b, c, d);
+      } else {
+        AddQuad(&head->mesh, d, c, b, a);
       }
     }
   }

@@ -20,9 +20,9 @@ using glm::vec3;
 constexpr float kDegrees = 180.0f / std::numbers::pi_v<float>;
 
 // Height of the hairline by azimuth, degrees from the front: forehead, temple, sideburn, ear, nape.
-constexpr Knot kHairline[] = {{0, 6.7f},    {18, 6.9f},   {33, 6.8f},  {44, 5.9f},  {52, 4.4f},
-                              {58, 3.2f},   {64, 2.2f},   {68, 0.6f},  {71, -1.5f}, {75, -1.6f},
-                              {79, 1.6f},   {90, 2.5f},   {104, 2.2f}, {113, 0.0f}, {122, -4.0f},
+constexpr Knot kHairline[] = {{0, 6.7f},    {18, 6.9f},   {33, 6.8f},  {44, 5.9f},   {52, 4.4f},
+                              {58, 3.2f},   {64, 2.2f},   {68, 0.6f},  {71, -1.5f},  {75, -1.6f},
+                              {80, 0.7f},   {90, 1.3f},   {104, 1.2f}, {113, -0.6f}, {122, -4.0f},
                               {135, -6.6f}, {160, -7.6f}, {180, -7.8f}};
 
 // Thickness of the hair, centimetres.

@@ -154,6 +154,20 @@ TEST(GeneratorMesh, NormalsPointOutOfTheHead) {
   EXPECT_GT(outward, front * 99 / 100);
 }
 
+// Seen from the side, more of an ear faces outward than inward.
+TEST(GeneratorMesh, EarsFaceOutward) {
+  const HeadMesh head = MakeHeadSkin();
+  float outward[2] = {0.0f, 0.0f};
+  for (std::size_t i = 0; i < head.mesh.indices.size(); i += 3) {
+    const std::uint32_t* t = &head.mesh.indices[i];
+    if (head.info[t[0]].part != kEar) continue;
+    const glm::vec3 a = head.info[t[0]].place, b = head.info[t[1]].place, c = head.info[t[2]].place;
+    outward[a.x > 0.0f] += (a.x > 0.0f ? 1.0f : -1.0f) * glm::cross(b - a, c - a).x;
+  }
+  EXPECT_GT(outward[0], 1.0f);
+  EXPECT_GT(outward[1], 1.0f);
+}
+
 TEST(GeneratorMesh, ProportionsAreThoseOfAnAdult) {
   const HeadMesh head = MakeHeadSkin();
   glm::vec3 low(1e9f), high(-1e9f);
