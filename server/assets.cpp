@@ -33,7 +33,7 @@ Result<Assets> LoadAssets(const Config& config) {
     glb = (DataFolder() / "default.glb").lexically_normal();
     if (std::error_code error; !std::filesystem::exists(glb, error)) {
       return Status(StatusCode::kNotFound, "there is no default character", glb.string(),
-                    "build the target furrow_data, set FURROW_DATA_DIR, or give --character or "
+                    "build the target furrow_share, set FURROW_DATA_DIR, or give --character or "
                     "--rig");
     }
   }

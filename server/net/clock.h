@@ -13,8 +13,4 @@ namespace furrow::server {
   return std::chrono::duration_cast<Time>(std::chrono::steady_clock::now().time_since_epoch());
 }
 
-[[nodiscard]] inline std::int64_t ToMicroseconds(Time time) {
-  return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
-}
-
 }  // namespace furrow::server

@@ -24,8 +24,9 @@ void Subscribers::PublishOwed(Time now) {
   for (auto& [uid, subscription] : subscriptions_) {
     if (!subscription->owed || !subscription->gate.Pass(now)) continue;
     subscription->owed = false;
-    if (!subscription->subject->pipeline->has_pose()) continue;  // offered anew meanwhile
-    Deliver(*subscription, 0, &jobs_);
+    const Subject& subject = *subscription->subject;
+    if (!subject.pipeline->has_pose()) continue;  // offered anew meanwhile
+    Deliver(*subscription, subject.lost ? ToMicroseconds(now - subject.last_pose) : 0, &jobs_);
     SubmitJobs(&jobs_);
   }
 }

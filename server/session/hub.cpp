@@ -19,10 +19,6 @@ constexpr Time kUdpLease = std::chrono::microseconds(protocol::kUdpLeaseMicrosec
 constexpr std::size_t kMaxMocapStreams = 64;
 constexpr char kServerName[] = "furrowd " FURROW_VERSION;
 
-std::int64_t ToMicroseconds(Time time) {
-  return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
-}
-
 }  // namespace
 
 Hub::Hub(Parts parts)

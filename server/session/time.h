@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 
 namespace furrow::server {
 
@@ -14,6 +15,10 @@ using Time = std::chrono::nanoseconds;
 }
 [[nodiscard]] constexpr Time FromSeconds(double seconds) {
   return std::chrono::duration_cast<Time>(std::chrono::duration<double>(seconds));
+}
+
+[[nodiscard]] constexpr std::int64_t ToMicroseconds(Time time) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(time).count();
 }
 
 }  // namespace furrow::server

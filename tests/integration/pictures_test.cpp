@@ -42,7 +42,7 @@ class Pictures : public testing::Test {
   void SetUp() override {
     const std::filesystem::path glb =
         std::filesystem::path(FURROW_BINARY_DIR) / "share" / "furrow" / "default.glb";
-    if (!std::filesystem::exists(glb)) GTEST_SKIP() << "no " << glb << ": build furrow_data";
+    if (!std::filesystem::exists(glb)) GTEST_SKIP() << "no " << glb << ": build furrow_share";
     server::Config config;
     config.character = glb;
     config.tcp = config.udp = 0;
