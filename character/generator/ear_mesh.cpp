@@ -78,7 +78,7 @@ void AddEar(float side, HeadMesh* head) {
       vertex.position = HeadToModel(info.place);
       const float reach =
           (behind ? 0.80f + 0.065f * static_cast<float>(step) : 0.80f * rho) * 0.062f;
-      vertex.uv = {(side > 0.0f ? 0.25f : 0.75f) + 3.0f * reach * std::cos(phi),
+      vertex.uv = {(side > 0.0f ? 0.25f : 0.75f) + 2.3f * reach * std::cos(phi),
                    0.932f - reach * std::sin(phi)};
       head->mesh.vertices.push_back(vertex);
       head->info.push_back(info);

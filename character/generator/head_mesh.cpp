@@ -24,6 +24,8 @@ constexpr float kGridTop = 0.01f;  // the grid's island in the atlas
 constexpr float kGridHeight = 0.85f;
 constexpr float kGridLeft = 0.01f;
 constexpr float kGridWidth = 0.98f;
+constexpr vec2 kMouthIsland(0.05f, 0.932f);
+constexpr vec2 kMouthIslandSize(0.045f, 0.055f);
 
 vec2 Atlas(const vec2& uv) {
   return {kGridLeft + kGridWidth * uv.x, kGridTop + kGridHeight * uv.y};
@@ -131,44 +133,44 @@ class SkinBuilder {
     }
   }
 
-  // From the lips' line back into a dark bag.
+  // From the lips' line back into a dark bag, which has a round island of its own: in the grid's
+  // unwrapping closed lips leave it no room.
   void AddMouth() {
     const std::vector<glm::ivec2> outline = layout_.MouthOutline();
-    std::vector<std::uint32_t> ring;
-    vec2 middle(0.0f);
-    for (const glm::ivec2& vertex : outline) {
-      ring.push_back(GridIndex(vertex.x, vertex.y));
-      middle += layout_.Warped(vertex.x, vertex.y) / static_cast<float>(outline.size());
-    }
+    const auto island = [&](std::size_t i, float radius) {
+      const float turn = 2.0f * kPi * static_cast<float>(i) / static_cast<float>(outline.size());
+      return kMouthIsland + radius * kMouthIslandSize * vec2(std::cos(turn), -std::sin(turn));
+    };
     struct Step {
       float back;
       float height;
       float narrow;
-      float shrink;
+      float radius;
     };
-    constexpr Step kSteps[] = {{0.35f, 0.06f, 0.98f, 0.85f},
-                               {0.9f, 0.35f, 0.97f, 0.65f},
+    constexpr Step kSteps[] = {{0.0f, 0.0f, 1.0f, 1.0f},
+                               {0.35f, 0.06f, 0.98f, 0.8f},
+                               {0.9f, 0.35f, 0.97f, 0.62f},
                                {2.6f, 1.1f, 0.95f, 0.4f},
-                               {4.6f, 0.7f, 0.6f, 0.15f}};
+                               {4.6f, 0.7f, 0.6f, 0.18f}};
+    std::vector<std::uint32_t> ring;
     for (const Step& step : kSteps) {
       std::vector<std::uint32_t> next;
-      for (const glm::ivec2& vertex : outline) {
-        HeadVertex info = head_.info[GridIndex(vertex.x, vertex.y)];
+      for (std::size_t i = 0; i < outline.size(); ++i) {
+        HeadVertex info = head_.info[GridIndex(outline[i].x, outline[i].y)];
         info.part = kMouthInside;
         const float corner = 1.0f - std::abs(info.place.x) / kMouthCornerX;
         info.place.x *= step.narrow;
         info.place.y += info.mouth_side * step.height * std::sqrt(std::max(corner, 0.0f));
         info.place.z -= step.back;
-        const vec2 place = glm::mix(middle, layout_.Warped(vertex.x, vertex.y), step.shrink);
-        next.push_back(AddVertex(&head_, info, Atlas(layout_.Uv(place))));
+        next.push_back(AddVertex(&head_, info, island(i, step.radius)));
       }
-      Bridge(ring, next);
+      if (!ring.empty()) Bridge(ring, next);
       ring = std::move(next);
     }
     HeadVertex back;
     back.part = kMouthInside;
     back.place = vec3(0.0f, kMouthY, 3.6f);
-    const std::uint32_t tip = AddVertex(&head_, back, Atlas(layout_.Uv(middle)));
+    const std::uint32_t tip = AddVertex(&head_, back, kMouthIsland);
     for (std::size_t i = 0; i < ring.size(); ++i) {
       AddQuad(&head_.mesh, ring[i], ring[(i + 1) % ring.size()], tip, tip);
     }
