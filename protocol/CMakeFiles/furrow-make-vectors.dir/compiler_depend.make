@@ -1,2 +1,0 @@
-# Empty compiler generated dependencies file for furrow-make-vectors.
-# This may be replaced when dependencies are built.
