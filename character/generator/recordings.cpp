@@ -55,7 +55,7 @@ const std::vector<Script>& Scripts() {
         {"chin_raise", 1.6f, 0.5f, 6.8f, 0.8f, 0.4f},
         {"nose_wrinkle", 3.6f, 0.4f, 5.6f, 0.8f, 0.45f},
         {"lip_corner_down", 1.6f, 0.5f, 7.2f, 0.9f, 0.35f}},
-       {0.5f, 4.9f, 8.6f}},
+       {0.5f, 5.7f, 8.6f}},
       {"sadness",
        10.0f,
        {{"brow_raise_inner", 1.1f, 0.6f, 7.6f, 1.3f, 1.0f},

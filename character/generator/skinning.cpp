@@ -2,7 +2,6 @@
 #include "character/generator/skinning.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -103,51 +102,61 @@ float UpperLid(const HeadVertex& v, float side) {
   return SmoothStep(1.3f, 0.62f, d.y) * std::sqrt(across);
 }
 
+struct NamedField {
+  std::string joint;
+  float weight;
+};
+
+// The muscles that hold a vertex, those of the other lip and of the other lid left out.
+std::vector<NamedField> MuscleFields(const HeadVertex& v) {
+  std::vector<NamedField> fields;
+  for (const Muscle& muscle : kMuscles) {
+    const std::string name = muscle.name;
+    if (muscle.lip != 0 && static_cast<float>(muscle.lip) * v.mouth_side < 0.0f) continue;
+    if (name.starts_with("orbicularis_oculi_lower") && v.eye_side > 0.0f) continue;
+    const std::size_t star = name.find('*');
+    for (const float side : {1.0f, -1.0f}) {
+      if (star == std::string::npos && side < 0.0f) continue;
+      const float field = Field(muscle, v.place, side);
+      if (field <= 0.0f) continue;
+      const char* end = side > 0.0f ? "_l" : "_r";
+      fields.push_back({star == std::string::npos ? name : name.substr(0, star) + end, field});
+    }
+  }
+  return fields;
+}
+
+// Face and neck: lids first, then muscles, then chest, neck and jaw of what is left.
+void WeighSkin(const wrinkle::Skeleton& skeleton, const HeadVertex& v, Weights* weights) {
+  float rest = 1.0f;
+  const auto take = [&](const std::string& joint, float share) {
+    weights->Add(skeleton, joint, rest * share);
+    rest *= 1.0f - share;
+  };
+  const bool left = v.place.x >= 0.0f;
+  take(left ? "orbicularis_oculi_upper_l" : "orbicularis_oculi_upper_r",
+       UpperLid(v, left ? 1.0f : -1.0f));
+  const float hold = v.part == kMouthInside ? SmoothStep(5.5f, 8.5f, v.place.z) : 1.0f;
+  const std::vector<NamedField> fields = MuscleFields(v);
+  float sum = 0.0f;
+  for (const NamedField& field : fields) sum += hold * field.weight;
+  const float scale = rest * hold / std::max(sum, 1.0f);
+  for (const NamedField& field : fields) weights->Add(skeleton, field.joint, field.weight * scale);
+  rest *= std::max(0.0f, 1.0f - sum);
+  take("chest", SmoothStep(-15.5f, -20.0f, v.place.y));
+  take("neck", NeckShare(v.place));
+  take("jaw", JawShare(v));
+  weights->Add(skeleton, "head", rest);
+}
+
 void SkinHeadVertex(const wrinkle::Skeleton& skeleton, const HeadVertex& v, Vertex* vertex) {
   Weights weights(skeleton);
-  const auto add = [&](const std::string& joint, float w) { weights.Add(skeleton, joint, w); };
-  const vec3& p = v.place;
-  const std::string suffix = p.x >= 0.0f ? "_l" : "_r";
-  if (v.part == kEyeball) {
-    add("eye" + suffix, 1.0f);
-  } else if (v.part == kHairCap || v.part == kEar) {
-    add("head", 1.0f);
-  } else if (v.part == kTeeth) {
-    add(v.mouth_side < 0.0f ? "jaw" : "head", 1.0f);
-  } else {
-    float rest = 1.0f;
-    const auto take = [&](const std::string& joint, float share) {
-      add(joint, rest * share);
-      rest *= 1.0f - share;
-    };
-    const float behind = v.part == kMouthInside ? SmoothStep(5.5f, 8.5f, p.z) : 1.0f;
-    take("orbicularis_oculi_upper" + suffix, UpperLid(v, p.x >= 0.0f ? 1.0f : -1.0f));
-    float fields = 0.0f;
-    std::vector<std::pair<std::string, float>> found;
-    for (const Muscle& muscle : kMuscles) {
-      if (muscle.lip != 0 && static_cast<float>(muscle.lip) * v.mouth_side < 0.0f) continue;
-      if (std::string(muscle.name).starts_with("orbicularis_oculi_lower") && v.eye_side > 0.0f)
-        continue;
-      const std::string name = muscle.name;
-      const std::size_t star = name.find('*');
-      for (const float side : {1.0f, -1.0f}) {
-        if (star == std::string::npos && side < 0.0f) continue;
-        const float field = behind * Field(muscle, p, side);
-        if (field <= 0.0f) continue;
-        const char* end = side > 0.0f ? "_l" : "_r";
-        found.emplace_back(star == std::string::npos ? name : name.substr(0, star) + end, field);
-        fields += field;
-      }
-    }
-    const float scale = rest * (fields > 1.0f ? 1.0f / fields : 1.0f);
-    for (const auto& [name, field] : found) add(name, field * scale);
-    rest *= std::max(0.0f, 1.0f - fields);
-    const float neck = NeckShare(p);
-    const float chest = SmoothStep(-15.5f, -20.0f, p.y);
-    take("chest", chest);
-    take("neck", neck);
-    take("jaw", JawShare(v));
-    add("head", rest);
+  switch (v.part) {
+    case kEyeball: weights.Add(skeleton, v.place.x >= 0.0f ? "eye_l" : "eye_r", 1.0f); break;
+    case kHairCap:
+    case kEar: weights.Add(skeleton, "head", 1.0f); break;
+    case kTeeth: weights.Add(skeleton, v.mouth_side < 0.0f ? "jaw" : "head", 1.0f); break;
+    default: WeighSkin(skeleton, v, &weights); break;
   }
   weights.Store(vertex);
 }

@@ -2,7 +2,6 @@
 #include "character/generator/textures.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -270,7 +269,7 @@ Picture PaintClothColour(const Mesh& clothes, int size) {
                  const float weave =
                      Hash(texel.x / 2, 0, trousers) + Hash(0, texel.y / 2, trousers) - 1.0f;
                  const float worn = FractalNoise(p * 0.12f);
-                 vec3 colour = trousers ? vec3(0.20f, 0.215f, 0.25f) : vec3(0.34f, 0.41f, 0.47f);
+                 vec3 colour = trousers ? vec3(0.29f, 0.30f, 0.335f) : vec3(0.34f, 0.41f, 0.47f);
                  colour *= 1.0f + 0.07f * weave + 0.06f * worn;
                  const float placket =
                      trousers ? 0.0f : Bump(std::abs(p.x) - 1.6f, 0.12f) * SmoothStep(2, 6, p.z);
