@@ -49,41 +49,52 @@ float Relief(float rho, float phi) {
   return helix + anti + concha + tragus + swell + root - 0.12f * SmoothStep(0.95f, 1.0f, rho);
 }
 
+// Where the ear sits: its middle and its plane's axes, leaning back, standing off the head.
+struct Seat {
+  vec3 centre;
+  vec3 back;
+  vec3 up;
+  vec3 out;
+};
+
+Seat SeatOf(float side) {
+  const float lean = 12.0f * kPi / 180.0f;
+  const float stand = 26.0f * kPi / 180.0f;
+  const vec3 back = vec3(side * std::sin(stand), 0.0f, -std::cos(stand));
+  const vec3 up(0.0f, 1.0f, 0.0f);
+  return {vec3(side * 8.0f, -1.35f, -1.35f), back * std::cos(lean) - up * std::sin(lean),
+          up * std::cos(lean) + back * std::sin(lean),
+          vec3(side * std::cos(stand), 0.0f, std::sin(stand))};
+}
+
+// Ring `ring` of the ear: the front side from its middle to the rim, then the back of it.
+void AddRing(float side, int ring, HeadMesh* head) {
+  const Seat seat = SeatOf(side);
+  const bool behind = ring >= kFrontRings;
+  const float step = static_cast<float>(ring - kFrontRings + 1);
+  const float rho = behind ? 1.0f - 0.09f * step * step : kRadii[ring];
+  const float reach = (behind ? 0.80f + 0.065f * step : 0.80f * rho) * 0.062f;
+  for (int k = 0; k <= kSegments; ++k) {
+    const float phi = 2.0f * kPi * static_cast<float>(k % kSegments) / kSegments;
+    const vec2 st = Outline(phi) * rho;
+    const float height = behind ? Relief(1.0f, phi) - 0.34f * step : Relief(rho, phi);
+    HeadVertex info;
+    info.part = kEar;
+    info.place = seat.centre + seat.back * st.x + seat.up * st.y + seat.out * height;
+    Vertex vertex;
+    vertex.position = HeadToModel(info.place);
+    vertex.uv = {(side > 0.0f ? 0.25f : 0.75f) + 2.3f * reach * std::cos(phi),
+                 0.932f - reach * std::sin(phi)};
+    head->mesh.vertices.push_back(vertex);
+    head->info.push_back(info);
+  }
+}
+
 }  // namespace
 
 void AddEar(float side, HeadMesh* head) {
   const auto first = static_cast<std::uint32_t>(head->mesh.vertices.size());
-  // Leaning back 12 degrees, standing off the head by 24.
-  const float lean = 12.0f * kPi / 180.0f;
-  const float stand = 26.0f * kPi / 180.0f;
-  const vec3 back = vec3(side * std::sin(stand), 0.0f, -std::cos(stand));
-  const vec3 out = vec3(side * std::cos(stand), 0.0f, std::sin(stand));
-  const vec3 up(0.0f, 1.0f, 0.0f);
-  const vec3 up_leaning = up * std::cos(lean) + back * std::sin(lean);
-  const vec3 back_leaning = back * std::cos(lean) - up * std::sin(lean);
-  const vec3 centre(side * 8.0f, -1.35f, -1.35f);
-  for (int i = 0; i < kFrontRings + kBackRings; ++i) {
-    const bool behind = i >= kFrontRings;
-    const int step = i - kFrontRings + 1;
-    const float rho = behind ? 1.0f - 0.09f * static_cast<float>(step * step) : kRadii[i];
-    for (int k = 0; k <= kSegments; ++k) {
-      const float phi = 2.0f * kPi * static_cast<float>(k % kSegments) / kSegments;
-      const vec2 st = Outline(phi) * rho;
-      float height = Relief(std::min(rho, 1.0f), phi);
-      if (behind) height = Relief(1.0f, phi) - 0.34f * static_cast<float>(step);
-      HeadVertex info;
-      info.part = kEar;
-      info.place = centre + back_leaning * st.x + up_leaning * st.y + out * height;
-      Vertex vertex;
-      vertex.position = HeadToModel(info.place);
-      const float reach =
-          (behind ? 0.80f + 0.065f * static_cast<float>(step) : 0.80f * rho) * 0.062f;
-      vertex.uv = {(side > 0.0f ? 0.25f : 0.75f) + 2.3f * reach * std::cos(phi),
-                   0.932f - reach * std::sin(phi)};
-      head->mesh.vertices.push_back(vertex);
-      head->info.push_back(info);
-    }
-  }
+  for (int i = 0; i < kFrontRings + kBackRings; ++i) AddRing(side, i, head);
   const auto index = [&](int ring, int k) {
     return first + static_cast<std::uint32_t>(ring * (kSegments + 1) + k);
   };
