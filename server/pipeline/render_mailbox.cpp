@@ -21,7 +21,8 @@ void MergeTickets(const std::vector<PictureTicket>& from, std::vector<PictureTic
 bool PictureSpec::operator==(const PictureSpec& other) const {
   return view == other.view && width == other.width && height == other.height &&
          camera.position == other.camera.position && camera.target == other.camera.target &&
-         camera.fov_y_degrees == other.camera.fov_y_degrees;
+         camera.fov_y_degrees == other.camera.fov_y_degrees &&
+         camera.follow_joint == other.camera.follow_joint;
 }
 
 RenderMailbox::PutResult RenderMailbox::Put(RenderJob job) {

@@ -113,8 +113,10 @@ void RenderThread::Draw(RenderJob job) {
   request.height = job.spec.height;
   if (Status status = renderer_->Submit(request); !status.ok()) {
     metrics_->Add(Counter::kPicturesFailed);
-    // What the job itself gets wrong (a size, a camera) says nothing about the context.
-    if (status.code() != StatusCode::kInvalidArgument) Rebuild(status);
+    // What the job itself gets wrong (a size, a pose) says nothing about the context.
+    if (status.code() == StatusCode::kUnavailable || status.code() == StatusCode::kInternal) {
+      Rebuild(status);
+    }
     return;
   }
   in_flight_.push_back(std::move(job));

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include "protocol/hash.h"
+#include "render/request_check.h"
 
 namespace furrow::server {
 
@@ -74,6 +75,9 @@ Result<PicturesWish> Subscribers::MakeWish(const protocol::SubscribePictures& re
     wish.spec.camera.position = {camera.eye.x, camera.eye.y, camera.eye.z};
     wish.spec.camera.target = {camera.target.x, camera.target.y, camera.target.z};
     wish.spec.camera.fov_y_degrees = camera.vertical_fov_degrees;
+    render::FrameRequest drawn;
+    drawn.camera = wish.spec.camera;
+    if (Status status = render::CheckRequest(drawn, /*num_joints=*/0); !status.ok()) return status;
   } else {
     const auto preset =
         pictures_->Preset(request.camera_preset.empty() ? "face" : request.camera_preset);

@@ -282,6 +282,11 @@ TEST_F(HubSubscribe, PicturesThatCannotBeHadAreErrors) {
   ExpectError(viewer, ErrorCode::kBadPicture);
   Send(viewer, protocol::SubscribePictures{.camera_preset = "moon"});
   ExpectError(viewer, ErrorCode::kBadPicture);
+  protocol::SubscribePictures inside_out;
+  inside_out.has_camera = true;
+  inside_out.camera.target = inside_out.camera.eye;
+  Send(viewer, inside_out);
+  ExpectError(viewer, ErrorCode::kBadPicture);
   FakePeer udp;
   Connect(&udp, Transport::kUdp);
   hub->OnBytesReceived(udp.id, 1000, now);
