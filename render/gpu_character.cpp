@@ -140,6 +140,24 @@ Status CheckLayers(std::size_t layers, const char* what) {
           "wrinkle rig"};
 }
 
+// The active list must fit a uniform block, and the dynamic masks the varyings.
+Status CheckBlock(const WrinkleLayout& layout) {
+  const int num_maps = static_cast<int>(layout.map_layers.size());
+  GLint block_limit = 0;
+  GLint varying_limit = 0;
+  glGetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &block_limit);
+  glGetIntegerv(GL_MAX_VARYING_VECTORS, &varying_limit);
+  constexpr int kOtherVaryings = 5;  // of scene.vert.glsl
+  if (WrinkleBlockSize(num_maps, layout.num_mask_layers) <= static_cast<std::size_t>(block_limit) &&
+      MapSlots(num_maps) + kOtherVaryings <= varying_limit) {
+    return {};
+  }
+  return {StatusCode::kLimit,
+          std::to_string(num_maps) + " wrinkle maps and " + std::to_string(layout.num_mask_layers) +
+              " mask textures are more than the driver's uniform blocks and varyings hold",
+          "wrinkle rig"};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<GpuCharacter>> GpuCharacter::Create(const Character& character) {
@@ -281,6 +299,7 @@ Status GpuCharacter::AddMasks(const Character& character) {
                         GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
   }
   glGenerateTextureMipmap(masks_.name());
+  glTextureParameteri(masks_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
   return {};
 }
 
@@ -305,6 +324,7 @@ Status GpuCharacter::AddWrinkleMaps(const Character& character) {
     height = std::max(height, picture.height);
   }
   if (Status status = CheckLayers(maps.size(), "wrinkle maps"); !status.ok()) return status;
+  if (Status status = CheckBlock(layout_); !status.ok()) return status;
   const int layers = std::max(1, static_cast<int>(maps.size()));
   wrinkle_derivatives_ = MakeArray(GL_RG16F, width, height, layers);
   for (std::size_t layer = 0; layer < maps.size(); ++layer) {

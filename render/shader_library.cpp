@@ -60,6 +60,7 @@ std::vector<std::string> Defines(const SceneShader& shader) {
       Define("HAS_BASE_NORMAL", shader.base_normal_map),
       Define("HAS_ROUGHNESS", shader.roughness_map),
       Define("ALPHA_TEST", shader.alpha_test),
+      Define("ACTIVE_MAPS", shader.active_maps),
       Define("MASK_LAYERS", shader.mask_layers),
       Define("MAP_SLOTS", shader.map_slots),
   };

@@ -23,6 +23,7 @@ struct SceneShader {
   bool base_normal_map = false;
   bool roughness_map = false;
   bool alpha_test = false;
+  int active_maps = 0;  // wrinkle maps at work on this surface
   int mask_layers = 1;
   int map_slots = 1;  // vec4s of dynamic masks: a quarter of the rig's maps, rounded up
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include <glm/vec3.hpp>
 
@@ -71,6 +72,24 @@ int WrinkleLayout::MaskLayer(std::string_view texture) const {
   return found == masks.end() ? -1 : found->layer;
 }
 
+std::size_t WrinkleBlockSize(int num_maps, int num_mask_layers) {
+  const std::size_t maps = 4 * static_cast<std::size_t>(MapSlots(num_maps));
+  return 16 + maps * (sizeof(ActiveMap) + sizeof(glm::vec4) * num_mask_layers);
+}
+
+std::vector<std::uint8_t> WrinkleBlock(const WrinkleTable& table, int num_maps,
+                                       const WrinkleLayout& layout) {
+  std::vector<std::uint8_t> block(WrinkleBlockSize(num_maps, layout.num_mask_layers));
+  const std::int32_t map_count = num_maps;
+  std::memcpy(block.data(), &map_count, sizeof(map_count));
+  if (table.maps.empty()) return block;
+  const std::size_t weights = 16 + 4 * MapSlots(num_maps) * sizeof(ActiveMap);
+  std::memcpy(&block[16], table.maps.data(), table.maps.size() * sizeof(ActiveMap));
+  std::memcpy(&block[weights], table.mask_weights.data(),
+              table.mask_weights.size() * sizeof(glm::vec4));
+  return block;
+}
+
 WrinkleGroup GroupOf(const character::Character& character, Material::Kind kind) {
   switch (kind) {
     case Material::Kind::kSkin: return WrinkleGroup::kSkin;
@@ -133,9 +152,10 @@ void WrinkleTables::DescribeMaps(const character::Character& character) {
     const int index = static_cast<int>(maps_.size());
     MapInfo info;
     info.entry.colour = MapColour(map.name, index);
-    info.entry.layer = layout_.map_layers[static_cast<std::size_t>(index)];
+    const int layer = layout_.map_layers[static_cast<std::size_t>(index)];
+    info.entry.layer = std::max(layer, 0);
     info.entry.map = index;
-    info.entry.amplitude = map.amplitude;
+    info.entry.amplitude = layer < 0 ? 0.0f : map.amplitude;  // no texture: no relief
     for (const wrinkle::Region& region : character.rig.regions) {
       if (FeedOf(region, map.name) == nullptr) continue;
       info.entry.lambda = static_cast<std::int32_t>(region.mask.lambda);

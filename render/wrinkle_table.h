@@ -24,7 +24,7 @@ inline constexpr int kNumWrinkleGroups = 2;  // kNone has no table
 // (std430).
 struct ActiveMap {
   glm::vec4 colour{1.0f};
-  std::int32_t layer = -1;
+  std::int32_t layer = 0;
   std::int32_t map = 0;
   float amplitude = 1.0f;
   std::int32_t lambda = 0;
@@ -53,6 +53,13 @@ struct WrinkleLayout {
 
   [[nodiscard]] int MaskLayer(std::string_view texture) const;  // -1: no such
 };
+
+// vec4s that carry the dynamic masks of `num_maps` maps: MAP_SLOTS of the shaders.
+[[nodiscard]] constexpr int MapSlots(int num_maps) { return num_maps < 1 ? 1 : (num_maps + 3) / 4; }
+// The WrinkleTable block of shaders/common_wrinkles.glsl, byte for byte (std140), and its size.
+[[nodiscard]] std::size_t WrinkleBlockSize(int num_maps, int num_mask_layers);
+[[nodiscard]] std::vector<std::uint8_t> WrinkleBlock(const WrinkleTable& table, int num_maps,
+                                                     const WrinkleLayout& layout);
 
 [[nodiscard]] WrinkleGroup GroupOf(const character::Character& character,
                                    character::Material::Kind kind);

@@ -29,18 +29,16 @@ vec3 wrinkledNormal(vec2 base, vec2 uv, vec4 masks[MASK_LAYERS], vec4 dynamicMas
 #if NORMAL_BLEND == 0
   // Partial derivatives: p = p_base + sum w_i p_i. Heights superpose, so the sum is exact.
   vec2 p = base;
-  for (int i = 0; i < u_active_count; ++i) {
+  for (int i = 0; i < ACTIVE_MAPS; ++i) {
     ActiveMap map = u_active_maps[i];
-    if (map.layer < 0) continue;
     p += wrinkleCoefficient(i, masks, dynamicMasks) * wrinkleDerivative(map, uv);
   }
   return normalFromDerivative(p);
 #else
   // Thesis 4.5 with weights: normalize(b.xy + sum w_i n_i.xy, b.z * prod mix(1, n_i.z, w_i)).
   vec3 b = normalFromDerivative(base);
-  for (int i = 0; i < u_active_count; ++i) {
+  for (int i = 0; i < ACTIVE_MAPS; ++i) {
     ActiveMap map = u_active_maps[i];
-    if (map.layer < 0) continue;
     float w = wrinkleCoefficient(i, masks, dynamicMasks);
     vec3 n = normalFromDerivative(wrinkleDerivative(map, uv));
     b.xy += w * n.xy;
@@ -53,7 +51,7 @@ vec3 wrinkledNormal(vec2 base, vec2 uv, vec4 masks[MASK_LAYERS], vec4 dynamicMas
 // Figure 4.3 of the thesis: the maps' colours, each by its coefficient. Linear, may exceed 1.
 vec3 wrinkleColour(vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS]) {
   vec3 colour = vec3(0.0);
-  for (int i = 0; i < u_active_count; ++i) {
+  for (int i = 0; i < ACTIVE_MAPS; ++i) {
     colour += wrinkleCoefficient(i, masks, dynamicMasks) * u_active_maps[i].colour.rgb;
   }
   return colour;

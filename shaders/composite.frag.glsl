@@ -23,6 +23,6 @@ void main() {
   // Upside down: the rows of a picture start at the top, those of a read-back at the bottom.
   ivec2 pixel = ivec2(gl_FragCoord.x, u_height - 1 - int(gl_FragCoord.y));
   vec3 sum = vec3(0.0);
-  for (int i = 0; i < SAMPLES; ++i) sum += displayColour(texelFetch(u_scene, pixel, i).rgb);
-  f_colour = vec4(sum / float(SAMPLES), 1.0);
+  for (int i = 0; i < SAMPLES; ++i) sum += texelFetch(u_scene, pixel, i).rgb;
+  f_colour = vec4(displayColour(sum / float(SAMPLES)), 1.0);
 }

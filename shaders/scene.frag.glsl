@@ -22,7 +22,7 @@ layout(std140, binding = 1) uniform Material {
 };
 
 // One row a mask layer's channel: the colour of its region in the view `mask_texture`.
-layout(std430, binding = 4) readonly buffer MaskPalette { vec4 u_mask_palette[]; };
+layout(std430, binding = 2) readonly buffer MaskPalette { vec4 u_mask_palette[]; };
 
 layout(binding = 0) uniform sampler2D u_base_colour_map;        // sRGB
 layout(binding = 1) uniform sampler2D u_base_derivatives;       // RG, n.xy / n.z

@@ -35,7 +35,7 @@ void main() {
 #endif
 #if WRINKLE_DYNAMIC
   for (int slot = 0; slot < MAP_SLOTS; ++slot) v_dynamic_masks[slot] = vec4(0.0);
-  for (int i = 0; i < u_active_count; ++i) {
+  for (int i = 0; i < ACTIVE_MAPS; ++i) {
     v_dynamic_masks[i >> 2][i & 3] = dynamicMask(u_active_maps[i], a_joints, a_skin_weights);
   }
 #endif

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/passes/scene_pass.h"
 
-#include <algorithm>
 #include <array>
-#include <cstring>
 
 #include "render/lighting.h"
 
@@ -11,14 +9,8 @@ namespace furrow::render {
 namespace {
 
 // Binding points of shaders/common_*.glsl and scene.frag.glsl.
-enum UniformBinding : GLuint { kFrameBlock = 0, kMaterialBlock = 1 };
-enum StorageBinding : GLuint {
-  kJointRows = 0,
-  kWrinkleTable = 1,
-  kMaskWeights = 2,
-  kJointInfluences = 3,
-  kMaskPalette = 4
-};
+enum UniformBinding : GLuint { kFrameBlock = 0, kMaterialBlock = 1, kWrinkleTable = 2 };
+enum StorageBinding : GLuint { kJointRows = 0, kJointInfluences = 1, kMaskPalette = 2 };
 enum TextureUnit : GLuint {
   kBaseColourUnit = 0,
   kBaseDerivativesUnit = 1,
@@ -55,7 +47,6 @@ ScenePass::ScenePass(const wrinkle::Skeleton& skeleton,
   for (gl::Buffer* buffer : {&frame_, &joints_, &influences_}) *buffer = gl::MakeBuffer();
   for (int group = 0; group < kNumWrinkleGroups; ++group) {
     wrinkle_tables_[group] = gl::MakeBuffer();
-    mask_weights_[group] = gl::MakeBuffer();
   }
   for (int group = 0; group <= kNumWrinkleGroups; ++group) {
     const auto palette = tables_->mask_palette(static_cast<WrinkleGroup>(group));
@@ -112,19 +103,9 @@ void ScenePass::UploadJoints(std::span<const glm::mat4> model) {
 
 void ScenePass::UploadWrinkles() {
   for (int group = 0; group < kNumWrinkleGroups; ++group) {
-    const WrinkleTable& table = tables_->table(static_cast<WrinkleGroup>(group));
-    // The block's head, padded to the alignment of its array, then the array.
-    const std::int32_t head[4] = {static_cast<std::int32_t>(table.maps.size()), tables_->num_maps(),
-                                  0, 0};
-    std::vector<std::uint8_t> bytes(sizeof(head) + table.maps.size() * sizeof(ActiveMap));
-    std::memcpy(bytes.data(), head, sizeof(head));
-    if (!table.maps.empty()) {
-      std::memcpy(bytes.data() + sizeof(head), table.maps.data(),
-                  table.maps.size() * sizeof(ActiveMap));
-    }
-    gl::Upload(wrinkle_tables_[group], bytes.data(), bytes.size());
-    gl::Upload(mask_weights_[group], table.mask_weights.data(),
-               table.mask_weights.size() * sizeof(glm::vec4));
+    const std::vector<std::uint8_t> block = WrinkleBlock(
+        tables_->table(static_cast<WrinkleGroup>(group)), tables_->num_maps(), gpu_->layout());
+    gl::Upload(wrinkle_tables_[group], block.data(), block.size());
   }
   gl::Upload(influences_, tables_->joint_influences().data(),
              tables_->joint_influences().size_bytes());
@@ -162,8 +143,7 @@ Status ScenePass::DrawMesh(const Settings& settings, std::size_t index) {
   glUseProgram(*program);
   glBindBufferBase(GL_UNIFORM_BUFFER, kMaterialBlock, material.block.name());
   const int group = material.group == WrinkleGroup::kNone ? 0 : static_cast<int>(material.group);
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kWrinkleTable, wrinkle_tables_[group].name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMaskWeights, mask_weights_[group].name());
+  glBindBufferBase(GL_UNIFORM_BUFFER, kWrinkleTable, wrinkle_tables_[group].name());
   const GLuint palette = palettes_[static_cast<int>(material.group)].name();
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMaskPalette, palette);
   glBindTextureUnit(kBaseColourUnit, material.base_colour);
@@ -188,6 +168,7 @@ SceneShader ScenePass::ShaderFor(const GpuMaterial& material, const Settings& se
   shader.view = settings.view;
   shader.normal_blend = settings.normal_blend;
   if (material.group != WrinkleGroup::kNone) {
+    shader.active_maps = static_cast<int>(tables_->table(material.group).maps.size());
     shader.wrinkle_texture = tables_->table(material.group).uses_texture;
     shader.wrinkle_dynamic = tables_->table(material.group).uses_dynamic;
   }
@@ -196,7 +177,7 @@ SceneShader ScenePass::ShaderFor(const GpuMaterial& material, const Settings& se
   shader.roughness_map = material.roughness != 0;
   shader.alpha_test = material.alpha_test;
   shader.mask_layers = gpu_->layout().num_mask_layers;
-  shader.map_slots = std::max(1, (tables_->num_maps() + 3) / 4);
+  shader.map_slots = MapSlots(tables_->num_maps());
   return shader;
 }
 

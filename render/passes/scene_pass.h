@@ -49,7 +49,6 @@ class ScenePass {
   gl::Buffer frame_;
   gl::Buffer joints_;
   gl::Buffer wrinkle_tables_[kNumWrinkleGroups];
-  gl::Buffer mask_weights_[kNumWrinkleGroups];
   gl::Buffer influences_;
   gl::Buffer palettes_[kNumWrinkleGroups + 1];  // by group, kNone included
 };

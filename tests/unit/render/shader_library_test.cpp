@@ -35,6 +35,7 @@ TEST_F(ShaderLibraryTest, EverySceneConfigurationCompiles) {
       shader.base_normal_map = (bits & 16) != 0;
       shader.roughness_map = (bits & 32) != 0;
       shader.alpha_test = (bits & 64) != 0;
+      shader.active_maps = shader.wrinkle_texture || shader.wrinkle_dynamic ? 2 : 0;
       shader.mask_layers = 2;
       const Result<GLuint> program = library_.Get(shader);
       ASSERT_TRUE(program.ok()) << ViewName(view) << " " << bits << "\n"
@@ -51,6 +52,7 @@ TEST_F(ShaderLibraryTest, AnyNumberOfMasksAndMapsCompiles) {
       shader.wrinkle_dynamic = true;
       shader.mask_layers = mask_layers;
       shader.map_slots = map_slots;
+      shader.active_maps = 4 * map_slots;
       const Result<GLuint> program = library_.Get(shader);
       ASSERT_TRUE(program.ok()) << program.status().ToString();
     }
