@@ -34,8 +34,9 @@ void Subscriber::SendHello() {
 
 template <class Message>
 std::uint32_t Subscriber::Ask(const Message& message) {
-  Request& request = waiting_.emplace_back();
+  Request& request = requests_.emplace_back();
   request.number = next_request_++;
+  request.wait = message.wait;
   encoder_.Encode({.session = session_, .sequence = request.number}, message, request.bytes);
   if (proven_) (void)transport_->Send(request.bytes);  // a closed connection shows in Next()
   return request.number;
@@ -52,6 +53,28 @@ void Subscriber::Unsubscribe(std::uint16_t subscription) {
   encoder_.Encode({.session = session_, .stream = subscription, .sequence = next_request_++},
                   protocol::Unsubscribe{}, bytes_);
   (void)transport_->Send(bytes_);
+  std::erase_if(requests_,
+                [=](const Request& request) { return request.subscription == subscription; });
+}
+
+void Subscriber::SendWaiting() {
+  for (const Request& request : requests_) {
+    if (request.waiting) (void)transport_->Send(request.bytes);
+  }
+}
+
+// The daemon does not know this address (any more): from the beginning, with all that was asked.
+void Subscriber::ProveAgain() {
+  proven_ = false;
+  token_ = 0;
+  for (Request& request : requests_) request.waiting = true;
+  SendHello();
+}
+
+void Subscriber::NoticeRestart(std::uint64_t server_session) {
+  const bool restarted = server_session_ != 0 && server_session != server_session_;
+  server_session_ = server_session;
+  if (restarted && proven_ && transport_->kind() == TransportKind::kUdp) ProveAgain();
 }
 
 void Subscriber::Maintain(std::int64_t now_us) {
@@ -61,15 +84,15 @@ void Subscriber::Maintain(std::int64_t now_us) {
     last_sent_us_ = now_us;
     return;
   }
-  const bool unsettled = !proven_ || !waiting_.empty();
+  const bool asking = std::ranges::any_of(requests_, &Request::waiting);
+  const bool unsettled = !proven_ || asking;
   if (now_us - last_sent_us_ < (unsettled ? kResendMicroseconds : kRenewMicroseconds)) return;
   last_sent_us_ = now_us;
   if (!proven_) {
     SendHello();
-    return;
-  }
-  for (const Request& request : waiting_) (void)transport_->Send(request.bytes);
-  if (waiting_.empty()) {
+  } else if (asking) {
+    SendWaiting();
+  } else {
     encoder_.Encode({.session = session_}, protocol::Ping{.time_us = now_us}, bytes_);
     (void)transport_->Send(bytes_);
   }
@@ -100,12 +123,14 @@ bool Subscriber::Handle(std::span<const std::uint8_t> message, Event& event) {
     ++malformed_;
     return false;
   }
+  NoticeRestart(view.header.session);
   event.header = view.header;
   DecodeStatus status = DecodeStatus::kOk;
   switch (view.kind) {
     case MessageKind::kWeights:
       status = protocol::Decode(view, weights_);
       event.kind = Event::Kind::kWeights;
+      if (status == DecodeStatus::kOk) OnWeights(view.header.stream);
       break;
     case MessageKind::kImage:
       status = protocol::Decode(view, picture_);
@@ -114,16 +139,17 @@ bool Subscriber::Handle(std::span<const std::uint8_t> message, Event& event) {
     case MessageKind::kSubscribeReply:
       status = protocol::Decode(view, reply_);
       event.kind = Event::Kind::kReply;
-      if (status == DecodeStatus::kOk) Answered(view.header.sequence);
+      if (status == DecodeStatus::kOk) OnReply(view.header);
       break;
     case MessageKind::kError:
       status = protocol::Decode(view, error_);
       event.kind = Event::Kind::kError;
-      if (status == DecodeStatus::kOk) Answered(view.header.sequence);
+      if (status == DecodeStatus::kOk && !OnError(view.header)) return false;
       break;
     case MessageKind::kGoodbye:
       status = protocol::Decode(view, goodbye_);
       event.kind = Event::Kind::kGoodbye;
+      if (status == DecodeStatus::kOk) OnGoodbye(view.header.stream);
       break;
     case MessageKind::kWelcome: return HandleWelcome(view);
     default: return false;  // pongs, and what a newer daemon may say
@@ -143,14 +169,44 @@ bool Subscriber::HandleWelcome(const protocol::MessageView& view) {
       SendHello();
     } else {
       proven_ = true;
-      for (const Request& request : waiting_) (void)transport_->Send(request.bytes);
+      SendWaiting();
     }
   }
   return false;
 }
 
-void Subscriber::Answered(std::uint32_t number) {
-  std::erase_if(waiting_, [number](const Request& request) { return request.number == number; });
+void Subscriber::OnReply(const protocol::Header& header) {
+  const auto found = std::ranges::find(requests_, header.sequence, &Request::number);
+  if (found == requests_.end()) return;
+  found->waiting = false;
+  found->subscription = header.stream;
+  found->names_hash = reply_.names_hash;
+}
+
+// Weights of names that never came: their reply was lost.
+void Subscriber::OnWeights(std::uint16_t subscription) {
+  const auto found = std::ranges::find(requests_, subscription, &Request::subscription);
+  if (found != requests_.end() && found->names_hash != weights_.names_hash) found->waiting = true;
+}
+
+// False: dealt with here, nothing for the caller.
+bool Subscriber::OnError(const protocol::Header& header) {
+  if (error_.code == protocol::ErrorCode::kUnprovenAddress &&
+      transport_->kind() == TransportKind::kUdp) {
+    if (proven_) ProveAgain();
+    return false;
+  }
+  std::erase_if(requests_,
+                [&](const Request& request) { return request.number == header.sequence; });
+  return true;
+}
+
+// A subject that left may return to a subscription that waits; any other reason ends it.
+void Subscriber::OnGoodbye(std::uint16_t subscription) {
+  const bool may_return = goodbye_.reason == protocol::GoodbyeReason::kSubjectGone;
+  std::erase_if(requests_, [=](const Request& request) {
+    return request.subscription == subscription && !(request.wait && may_return);
+  });
 }
 
 }  // namespace furrow::client

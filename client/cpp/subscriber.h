@@ -33,7 +33,8 @@ struct Event {
 //   subscriber.Subscribe(protocol::SubscribeWeights{.subject = "ada"});
 //   for (;;) { const Event event = subscriber.Next(now_us, 16ms); ... }
 //
-// Over UDP it proves its address first and keeps its lease; lost requests are sent again. Time is a
+// Over UDP it proves its address first and keeps its lease; what was lost is asked for again: an
+// answer, the names of weights that came, or everything where the daemon was restarted. Time is a
 // parameter (microseconds on any clock that does not go back); no thread, one thread.
 class Subscriber {
  public:
@@ -56,25 +57,37 @@ class Subscriber {
   [[nodiscard]] std::uint64_t malformed() const { return malformed_; }
 
  private:
+  // Kept as long as its subscription, so that it can be repeated.
   struct Request {
     std::uint32_t number = 0;
+    bool wait = false;
+    bool waiting = true;  // for an answer
+    std::uint16_t subscription = 0;
+    std::uint64_t names_hash = 0;
     std::vector<std::uint8_t> bytes;
   };
 
   template <class Message>
   std::uint32_t Ask(const Message& message);
   void SendHello();
+  void SendWaiting();
+  void ProveAgain();
   void Maintain(std::int64_t now_us);  // UDP: hello, lease, requests without answer
+  void NoticeRestart(std::uint64_t server_session);
   bool Handle(std::span<const std::uint8_t> message, Event& event);
   bool HandleWelcome(const protocol::MessageView& view);
-  void Answered(std::uint32_t number);
+  void OnReply(const protocol::Header& header);
+  void OnWeights(std::uint16_t subscription);
+  [[nodiscard]] bool OnError(const protocol::Header& header);
+  void OnGoodbye(std::uint16_t subscription);
 
   std::unique_ptr<Transport> transport_;
   std::string name_;
   protocol::Encoder encoder_;
   std::uint64_t session_;
   std::uint32_t next_request_ = 1;
-  std::vector<Request> waiting_;  // asked, not yet answered
+  std::vector<Request> requests_;
+  std::uint64_t server_session_ = 0;  // 0: not heard yet
   bool proven_;
   std::uint64_t token_ = 0;
   std::int64_t last_sent_us_ = 0;

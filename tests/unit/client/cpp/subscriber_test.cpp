@@ -71,6 +71,57 @@ TEST_F(SubscriberTest, LostUdpRequestsAreSentAgainAndTheLeaseIsKept) {
   EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kPing});
 }
 
+TEST_F(SubscriberTest, NamesThatWereLostAreAskedForAgain) {
+  Subscriber subscriber = Make(TransportKind::kUdp);
+  far_->Answer({.session = 5}, protocol::Welcome{.server = "furrowd", .token = 0});
+  (void)subscriber.Next(0, milliseconds(0));
+  const std::uint32_t request = subscriber.Subscribe(protocol::SubscribeWeights{.wait = true});
+  far_->Answer({.session = 5, .stream = 3, .sequence = request}, protocol::SubscribeReply{});
+  EXPECT_EQ(subscriber.Next(10, milliseconds(0)).kind, Kind::kReply);
+  (void)far_->TakeKinds();
+
+  // The subject came, but the reply with its names did not.
+  const std::vector<std::string> names{"a.x"};
+  protocol::WeightFrame weights;
+  weights.names_hash = protocol::NamesHash(names);
+  weights.values = {0.5f};
+  far_->Answer({.session = 5, .stream = 3}, weights);
+  EXPECT_EQ(subscriber.Next(300'000, milliseconds(0)).kind, Kind::kWeights);
+  (void)subscriber.Next(600'000, milliseconds(0));
+  EXPECT_EQ(far_->TakeKinds(), (std::vector{MessageKind::kSubscribeWeights}));
+
+  far_->Answer({.session = 5, .stream = 3, .sequence = request},
+               protocol::SubscribeReply{.subject = "ada", .names = names});
+  EXPECT_EQ(subscriber.Next(610'000, milliseconds(0)).kind, Kind::kReply);
+  far_->Answer({.session = 5, .stream = 3}, weights);
+  EXPECT_EQ(subscriber.Next(620'000, milliseconds(0)).kind, Kind::kWeights);
+  (void)subscriber.Next(900'000, milliseconds(0));
+  EXPECT_TRUE(far_->sent.empty());
+}
+
+TEST_F(SubscriberTest, ADaemonThatWasRestartedIsAskedAnewOverUdp) {
+  Subscriber subscriber = Make(TransportKind::kUdp);
+  far_->Answer({.session = 5}, protocol::Welcome{.server = "furrowd", .token = 0});
+  (void)subscriber.Next(0, milliseconds(0));
+  const std::uint32_t request = subscriber.Subscribe(protocol::SubscribeWeights{});
+  far_->Answer({.session = 5, .stream = 3, .sequence = request}, protocol::SubscribeReply{});
+  EXPECT_EQ(subscriber.Next(10, milliseconds(0)).kind, Kind::kReply);
+  (void)far_->TakeKinds();
+
+  far_->Answer({.session = 6}, protocol::Pong{});
+  EXPECT_EQ(subscriber.Next(20, milliseconds(0)).kind, Kind::kTimeout);
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kHello});
+  far_->Answer({.session = 6}, protocol::Welcome{.server = "furrowd", .token = 0});
+  EXPECT_EQ(subscriber.Next(30, milliseconds(0)).kind, Kind::kTimeout);
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSubscribeWeights});
+
+  // It forgot the address alone: the same again, and no error for the caller.
+  far_->Answer({.session = 6, .sequence = request},
+               protocol::ErrorMessage{.code = protocol::ErrorCode::kUnprovenAddress});
+  EXPECT_EQ(subscriber.Next(40, milliseconds(0)).kind, Kind::kTimeout);
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kHello});
+}
+
 TEST_F(SubscriberTest, WeightsPicturesErrorsAndGoodbyesReachTheCaller) {
   Subscriber subscriber = Make(TransportKind::kTcp);
   const std::vector<std::string> names{"a.x", "b.x"};
