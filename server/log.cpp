@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/log.h"
 
+#include <cstddef>
 #include <memory>
 #include <string>
 
+#include <spdlog/async.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 namespace furrow::server {
 namespace {
+
+constexpr std::size_t kMaxWaitingLines = 4096;
 
 // The message as the inside of a JSON string.
 class JsonText : public spdlog::custom_flag_formatter {
@@ -37,9 +41,11 @@ class JsonText : public spdlog::custom_flag_formatter {
 
 }  // namespace
 
-void SetUpLog(const Config& config) {
-  auto logger = std::make_shared<spdlog::logger>(
-      "furrowd", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+Log::Log(const Config& config) {
+  spdlog::init_thread_pool(kMaxWaitingLines, /*threads=*/1);
+  auto logger = std::make_shared<spdlog::async_logger>(
+      "furrowd", std::make_shared<spdlog::sinks::stderr_color_sink_mt>(), spdlog::thread_pool(),
+      spdlog::async_overflow_policy::overrun_oldest);
   if (config.log_json) {
     auto formatter = std::make_unique<spdlog::pattern_formatter>(spdlog::pattern_time_type::utc);
     formatter->add_flag<JsonText>('*').set_pattern(
@@ -50,5 +56,7 @@ void SetUpLog(const Config& config) {
   }
   spdlog::set_default_logger(std::move(logger));
 }
+
+Log::~Log() { spdlog::shutdown(); }
 
 }  // namespace furrow::server

@@ -5,8 +5,18 @@
 
 namespace furrow::server {
 
-// Sends the program's log to stderr, a line a message: for people, or (--log-json) one JSON object
-// a line with "time", "level" and "message".
-void SetUpLog(const Config& config);
+// The program's log, on stderr, a line a message: for people, or (--log-json) one JSON object a
+// line with "time", "level" and "message".
+//
+// A thread of its own writes, and where it cannot keep up the oldest lines go: whoever reads our
+// stderr slowly, or not at all, never blocks a network thread. The destructor writes what still
+// waits.
+class Log {
+ public:
+  explicit Log(const Config& config);
+  ~Log();
+  Log(const Log&) = delete;
+  Log& operator=(const Log&) = delete;
+};
 
 }  // namespace furrow::server

@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
     std::fputs(line.text.c_str(), line.exit_code == ExitCode::kOk ? stdout : stderr);
     return static_cast<int>(line.exit_code);
   }
-  furrow::server::SetUpLog(*line.config);
+  const furrow::server::Log log(*line.config);
   furrow::server::RunOptions options;
   options.handle_signals = true;
   return static_cast<int>(furrow::server::Run(*line.config, options));

@@ -282,10 +282,10 @@ TEST_F(HubSubscribe, PicturesThatCannotBeHadAreErrors) {
   ExpectError(viewer, ErrorCode::kBadPicture);
   Send(viewer, protocol::SubscribePictures{.camera_preset = "moon"});
   ExpectError(viewer, ErrorCode::kBadPicture);
-  protocol::SubscribePictures inside_out;
-  inside_out.has_camera = true;
-  inside_out.camera.target = inside_out.camera.eye;
-  Send(viewer, inside_out);
+  protocol::SubscribePictures fisheye;
+  fisheye.has_camera = true;
+  fisheye.camera.vertical_fov_degrees = 165.0f;  // the wire carries it, the renderer does not
+  Send(viewer, fisheye);
   ExpectError(viewer, ErrorCode::kBadPicture);
   FakePeer udp;
   Connect(&udp, Transport::kUdp);
