@@ -5,6 +5,7 @@
 #include "character/import/makehuman.h"
 #include "client/cli/command.h"
 #include "client/cli/exit_code.h"
+#include "client/cli/inputs.h"
 #include "motion/pose_source.h"
 
 namespace furrow::cli {
@@ -26,8 +27,7 @@ int Import(const ImportArguments& arguments) {
   if (!character.ok()) return Fail(character.status());
   if (Status status = character::WritePackage(*character, arguments.out); !status.ok())
     return Fail(status);
-  for (const std::string& warning : report.warnings)
-    std::fprintf(stderr, "furrow: warning: %s\n", warning.c_str());
+  PrintWarnings(report.warnings);
   std::fprintf(
       stderr,
       "furrow: %s: %d joints, %d vertices, %d triangles; %d body faces hidden under clothes, "

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
+#include <map>
 #include <memory>
 
 #include "client/cli/command.h"
 #include "client/cli/exit_code.h"
+#include "client/cli/inputs.h"
 #include "motion/clip.h"
 
 namespace furrow::cli {
@@ -16,9 +18,12 @@ struct ConvertOptions {
 };
 
 int ConvertFile(const ConvertOptions& options) {
-  const auto clip = motion::LoadClip(options.in, options.load);
+  const auto clip = LoadClipArgument(options.in, options.load);
   if (!clip.ok()) return Fail(clip.status());
-  if (Status status = motion::SaveClip(*clip, options.out); !status.ok()) return Fail(status);
+  motion::ClipReport report;
+  Status status = motion::SaveClip(*clip, options.out, &report);
+  PrintWarnings(report.warnings);
+  if (!status.ok()) return Fail(status);
   std::fprintf(stderr, "furrow: %s: %d joints, %zu blend shapes, %d frames, %.3f s\n",
                options.out.c_str(), clip->skeleton.num_joints(), clip->blend_shape_names.size(),
                clip->num_frames(), clip->duration());
@@ -42,6 +47,19 @@ void AddConvert(CLI::App& app, Action& action) {
                    "Hz for formats made of curves; 0: the file's own keys")
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
+  const std::map<std::string, motion::BvhPositions> positions{
+      {"replace", motion::BvhPositions::kReplace}, {"add", motion::BvhPositions::kAdd}};
+  command
+      ->add_option(
+          "--bvh-positions", options->load.bvh_positions,
+          "What a BVH joint's position channels do to its offset: replace (default) or add")
+      ->transform(CLI::CheckedTransformer(positions, CLI::ignore_case));
+  const std::map<std::string, motion::UpAxis> axes{
+      {"auto", motion::UpAxis::kAuto}, {"y", motion::UpAxis::kY}, {"z", motion::UpAxis::kZ}};
+  command
+      ->add_option("--up-axis", options->load.up_axis,
+                   "Which axis points up in a BVH: auto (default), y or z")
+      ->transform(CLI::CheckedTransformer(axes, CLI::ignore_case));
   command->callback([options, &action] { action = [options] { return ConvertFile(*options); }; });
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/inputs.h"
 
+#include <cstdio>
+
 #include "character/data_dir.h"
 #include "character/rig_file.h"
 #include "motion/pose_source.h"
@@ -8,6 +10,18 @@
 namespace furrow::cli {
 
 namespace fs = std::filesystem;
+
+void PrintWarnings(const std::vector<std::string>& warnings) {
+  for (const std::string& text : warnings)
+    std::fprintf(stderr, "furrow: warning: %s\n", text.c_str());
+}
+
+Result<motion::Clip> LoadClipArgument(const std::string& path, const motion::LoadOptions& options) {
+  motion::ClipReport report;
+  auto clip = motion::LoadClip(path, options, &report);
+  PrintWarnings(report.warnings);
+  return clip;
+}
 
 fs::path ResolveRigPath(const std::string& argument) {
   std::error_code error;

@@ -10,6 +10,7 @@
 #include "client/cli/command.h"
 #include "client/cli/endpoint.h"
 #include "client/cli/exit_code.h"
+#include "client/cli/inputs.h"
 #include "client/cli/progress.h"
 #include "client/cli/wire_pose.h"
 #include "client/cpp/publisher.h"
@@ -142,7 +143,7 @@ int SendAll(client::Publisher& publisher, std::uint16_t stream, const motion::Cl
 }
 
 int PlayFile(const PlayOptions& options) {
-  const auto clip = motion::LoadClip(options.file);
+  const auto clip = LoadClipArgument(options.file);
   if (!clip.ok()) return Fail(clip.status());
   if (clip->num_frames() == 0) {
     return Fail({StatusCode::kInvalidArgument, "the recording has no frames", options.file});

@@ -74,7 +74,7 @@ class Performance {
 
 Result<std::unique_ptr<Performance>> Performance::Create(const RenderOptions& options) {
   auto self = std::make_unique<Performance>();
-  auto clip = motion::LoadClip(options.file);
+  auto clip = LoadClipArgument(options.file);
   if (!clip.ok()) return clip.status();
   self->clip_ = std::move(*clip);
   auto character = LoadCharacterArgument(options.character, options.rig);

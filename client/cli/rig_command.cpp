@@ -24,7 +24,7 @@ struct RigOptions {
 int Explain(const RigOptions& options) {
   const auto rig = LoadRigArgument(options.rig);
   if (!rig.ok()) return Fail(rig.status());
-  const auto clip = motion::LoadClip(options.file);
+  const auto clip = LoadClipArgument(options.file);
   if (!clip.ok()) return Fail(clip.status());
   if (options.frame >= clip->num_frames()) {
     return Fail({StatusCode::kInvalidArgument,
@@ -52,7 +52,7 @@ int Check(const RigOptions& options) {
   report_options.folder = ResolveRigPath(options.rig).parent_path();
   std::optional<motion::Clip> clip;
   if (!options.file.empty()) {
-    auto loaded = motion::LoadClip(options.file);
+    auto loaded = LoadClipArgument(options.file);
     if (!loaded.ok()) return Fail(loaded.status());
     clip = std::move(*loaded);
     report_options.skeleton = &clip->skeleton;

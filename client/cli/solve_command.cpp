@@ -23,7 +23,7 @@ struct SolveOptions {
 };
 
 int SolveFile(const SolveOptions& options) {
-  const auto clip = motion::LoadClip(options.file);
+  const auto clip = LoadClipArgument(options.file);
   if (!clip.ok()) return Fail(clip.status());
   const auto rig = LoadRigArgument(options.rig);
   if (!rig.ok()) return Fail(rig.status());

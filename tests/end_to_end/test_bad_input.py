@@ -65,9 +65,15 @@ class BadFileTest(unittest.TestCase):
         return message
 
     def test_truncated_bvh(self):
-        for end in (0, 10, BVH.index("JOINT"), BVH.index("MOTION"), BVH.index("0 0 0 0 0 0 0 10 0")):
+        for end in (0, 10, BVH.index("JOINT"), BVH.index("MOTION"), BVH.index("10 0\n")):
             path = self.file("cut.bvh", BVH[:end])
             self.refuse(BAD_INPUT, "solve", path, "--rig", RIG, says=["cut.bvh"])
+
+    def test_bvh_with_fewer_frames_than_it_says_is_a_warning(self):
+        path = self.file("few.bvh", BVH[:BVH.index("0 0 0 0 0 0 0 10 0")])
+        result = furrow("solve", path, "--rig", self.file("knee.json", json.dumps(KNEE_RIG)), "--drivers", check=DONE)
+        self.assertIn("few.bvh", result.stderr.decode())
+        self.assertEqual(result.stdout.decode().count("\n"), 2)
 
     def test_wrong_channel_count_names_the_line(self):
         line = BVH.count("\n")
@@ -125,7 +131,7 @@ class BadFileTest(unittest.TestCase):
     def test_help_names_the_exit_codes(self):
         for program in ("furrow", "furrowd"):
             result = subprocess.run([BIN / program, "--help"], capture_output=True, timeout=GUARD, check=True)
-            for word in ("0 done", "bad input"):
+            for word in ("Exit codes: 0", "2 wrong usage", "3 bad input"):
                 self.assertIn(word, result.stdout.decode())
 
 
