@@ -10,11 +10,11 @@ Lighting StudioLighting(const glm::mat3& heading) {
     return Light{glm::vec4(heading * glm::normalize(towards), 0.0f), glm::vec4(radiance, 0.0f)};
   };
   // Directions in the camera's frame: x to its right, y up, z back towards it.
-  return {.lights = {light({-0.75f, 0.75f, 0.55f}, {1.05f, 0.93f, 0.80f}),
-                     light({0.85f, 0.10f, 0.55f}, {0.13f, 0.18f, 0.26f}),
+  return {.lights = {light({-0.75f, 0.75f, 0.55f}, {1.12f, 0.98f, 0.83f}),
+                     light({0.85f, 0.10f, 0.55f}, {0.10f, 0.14f, 0.20f}),
                      light({0.70f, 0.45f, -0.75f}, {0.42f, 0.50f, 0.62f})},
-          .ambient_sky = {0.10f, 0.115f, 0.14f, 0.0f},
-          .ambient_ground = {0.055f, 0.045f, 0.04f, 0.0f}};
+          .ambient_sky = {0.060f, 0.070f, 0.086f, 0.0f},
+          .ambient_ground = {0.030f, 0.025f, 0.022f, 0.0f}};
 }
 
 }  // namespace furrow::render

@@ -209,6 +209,16 @@ TEST(RendererCreate, RefusesMeshesThatPointOutside) {
   EXPECT_EQ(Renderer::Create(head).status().code(), StatusCode::kInvalidArgument);
 }
 
+TEST(RendererCreate, SaysWhenARigHasMoreMapsThanTheDriverHolds) {
+  character::Character head = test::MakeHead();
+  for (int i = 0; i < 4000; ++i) {
+    head.rig.wrinkle_maps.emplace_back().name = "m" + std::to_string(i);
+  }
+  const Status status = Renderer::Create(head).status();
+  EXPECT_EQ(status.code(), StatusCode::kLimit);
+  EXPECT_NE(status.what().find("4003 wrinkle maps"), std::string::npos) << status.ToString();
+}
+
 TEST(ParseView, KnowsItsNamesAndListsThem) {
   EXPECT_EQ(*ParseView("mask_dynamic"), View::kMaskDynamic);
   EXPECT_EQ(ViewName(View::kWireframe), "wireframe");
