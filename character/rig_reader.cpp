@@ -13,9 +13,10 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "character/asset_path.h"
-#include "character/rig_check.h"
 #include "character/rig_generated.h"
 #include "character/rig_reference_pose.h"
+#include "wrinkle/rig_check.h"
+#include "wrinkle/rig_field.h"
 
 namespace furrow::character {
 namespace {
@@ -23,6 +24,8 @@ namespace {
 using flatbuffers::Offset;
 using flatbuffers::String;
 using flatbuffers::Vector;
+using wrinkle::FieldAt;
+using wrinkle::InvalidField;
 
 template <class T>
 using List = Vector<Offset<T>>;
@@ -31,19 +34,11 @@ std::string Text(const String* text) { return text == nullptr ? std::string() : 
 
 glm::vec3 ToVec3(const schema::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-std::string At(std::string_view list, std::size_t i) {
-  return std::string(list) + "[" + std::to_string(i) + "]";
-}
-
-Status Invalid(std::string what, std::string where, std::string todo = {}) {
-  return {StatusCode::kInvalidArgument, std::move(what), std::move(where), std::move(todo)};
-}
-
 // The schema's enumerations name the same things in the same order as wrinkle/rig.h's. JSON may
 // also state one by number, and nobody has checked that number yet.
 template <class To, class From>
 Status Enum(From from, To* to, const std::string& where) {
-  if (from < From::MIN || from > From::MAX) return Invalid("there is no such choice", where);
+  if (from < From::MIN || from > From::MAX) return InvalidField("there is no such choice", where);
   *to = static_cast<To>(from);
   return {};
 }
@@ -53,7 +48,7 @@ template <class T, class Each>
 Status ForEach(const List<T>* list, const std::string& path, Each each) {
   if (list == nullptr) return {};
   for (flatbuffers::uoffset_t i = 0; i < list->size(); ++i) {
-    if (Status status = each(*list->Get(i), At(path, i)); !status.ok()) return status;
+    if (Status status = each(*list->Get(i), FieldAt(path, i)); !status.ok()) return status;
   }
   return {};
 }
@@ -67,14 +62,15 @@ class PoseReader {
 
   Status Run(std::vector<wrinkle::ReferencePose>* poses) {
     const std::size_t count = list_ == nullptr ? 0 : list_->size();
-    if (count > kMaxReferencePoses) {
-      return {StatusCode::kLimit, "more than " + std::to_string(kMaxReferencePoses) + " poses",
+    if (count > wrinkle::kMaxReferencePoses) {
+      return {StatusCode::kLimit,
+              "more than " + std::to_string(wrinkle::kMaxReferencePoses) + " poses",
               "reference_poses"};
     }
     for (std::size_t i = 0; i < count; ++i) {
       if (!index_.emplace(list_->Get(i)->name()->str(), i).second) {
-        return Invalid("the name '" + list_->Get(i)->name()->str() + "' is given twice",
-                       At("reference_poses", i) + ".name");
+        return InvalidField("the name '" + list_->Get(i)->name()->str() + "' is given twice",
+                            FieldAt("reference_poses", i) + ".name");
       }
     }
     poses_.resize(count);
@@ -93,11 +89,11 @@ class PoseReader {
     if (state_[i] == State::kDone) return {};
     state_[i] = State::kOpen;
     const schema::ReferencePose& pose = *list_->Get(i);
-    const std::string at = At("reference_poses", i);
+    const std::string at = FieldAt("reference_poses", i);
     const int ways =
         (pose.joints() != nullptr) + (pose.file() != nullptr) + (pose.mix() != nullptr);
     if (ways != 1) {
-      return Invalid(
+      return InvalidField(
           "a reference pose has exactly one of joints, file and mix, not " + std::to_string(ways),
           at);
     }
@@ -117,8 +113,8 @@ class PoseReader {
                      wrinkle::JointDelta delta;
                      delta.joint = joint.joint()->str();
                      if (joint.rotation() != nullptr && joint.euler_degrees() != nullptr) {
-                       return Invalid("rotation and euler_degrees are both stated",
-                                      where + ".euler_degrees", "leave one out");
+                       return InvalidField("rotation and euler_degrees are both stated",
+                                           where + ".euler_degrees", "leave one out");
                      }
                      if (const schema::Quat* q = joint.rotation()) {
                        delta.rotation = glm::quat(q->w(), q->x(), q->y(), q->z());
@@ -143,7 +139,7 @@ class PoseReader {
 
   Result<wrinkle::PoseFrame> Frame(const std::filesystem::path& path, int frame,
                                    const std::string& where) {
-    if (frame < 0) return Invalid("frames count from 0", where);
+    if (frame < 0) return InvalidField("frames count from 0", where);
     Result<wrinkle::PoseFrame> result = source_(path, frame);
     if (result.ok()) return result;
     const Status s = result.status();
@@ -183,21 +179,22 @@ class PoseReader {
     const auto resolve = [&](const schema::MixPart& part, const std::string& where) -> Status {
       const auto found = index_.find(part.pose()->str());
       if (found == index_.end()) {
-        return Invalid("there is no reference pose '" + part.pose()->str() + "'", where + ".pose");
+        return InvalidField("there is no reference pose '" + part.pose()->str() + "'",
+                            where + ".pose");
       }
       if (state_[found->second] == State::kOpen) {
         return {StatusCode::kCyclic,
                 "the mix contains itself, by way of '" + part.pose()->str() + "'", where + ".pose"};
       }
       if (!(std::abs(part.weight()) <= 10.0f)) {
-        return Invalid("the weight is not a number in [-10, 10]", where + ".weight");
+        return InvalidField("the weight is not a number in [-10, 10]", where + ".weight");
       }
       parts.push_back(found->second);
       weights.push_back(part.weight());
       return Resolve(found->second);
     };
     if (Status s = ForEach(from.mix(), at + ".mix", resolve); !s.ok()) return s;
-    if (parts.empty()) return Invalid("a mix needs a part", at + ".mix");
+    if (parts.empty()) return InvalidField("a mix needs a part", at + ".mix");
     std::vector<WeightedPose> weighted;
     for (std::size_t i = 0; i < parts.size(); ++i) {
       weighted.push_back({&poses_[parts[i]], weights[i]});
@@ -263,9 +260,10 @@ Status ReadDriver(const schema::Driver& from, const std::string& at, wrinkle::Dr
                     (from.ball() != nullptr) + (from.twist() != nullptr) +
                     (from.blend_shape() != nullptr);
   if (kinds != 1) {
-    return Invalid("a driver has exactly one of pose, hinge, ball, twist and blend_shape, not " +
-                       std::to_string(kinds),
-                   at);
+    return InvalidField(
+        "a driver has exactly one of pose, hinge, ball, twist and blend_shape, not " +
+            std::to_string(kinds),
+        at);
   }
   using Kind = wrinkle::Driver::Kind;
   if (from.pose() != nullptr) {
@@ -297,8 +295,8 @@ Status ReadFeed(const schema::Feed& from, const std::string& at, wrinkle::Feed* 
         const std::string name = source.from()->str();
         const std::size_t dot = name.rfind('.');
         if (dot == std::string::npos) {
-          return Invalid("'" + name + "' is not a driver's value", where + ".from",
-                         "write \"<driver>.<value>\"");
+          return InvalidField("'" + name + "' is not a driver's value", where + ".from",
+                              "write \"<driver>.<value>\"");
         }
         to->sources.push_back({name.substr(0, dot), name.substr(dot + 1), source.gain()});
         return {};
@@ -329,11 +327,11 @@ Status ReadExports(const List<schema::ExportProfile>* list, std::vector<wrinkle:
   return ForEach(
       list, "export", [&](const schema::ExportProfile& from, const std::string& where) -> Status {
         if (!profiles.insert(from.profile()->str()).second) {
-          return Invalid("the profile '" + from.profile()->str() + "' is given twice",
-                         where + ".profile");
+          return InvalidField("the profile '" + from.profile()->str() + "' is given twice",
+                              where + ".profile");
         }
         if (from.names()->size() == 0) {
-          return Invalid("a profile needs a name", where + ".names");
+          return InvalidField("a profile needs a name", where + ".names");
         }
         for (const schema::ExportName* name : *from.names()) {
           exports->push_back({from.profile()->str(), name->weight()->str(), name->name()->str()});

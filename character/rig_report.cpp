@@ -6,7 +6,7 @@
 
 #include "character/asset_path.h"
 #include "character/character.h"
-#include "character/rig_check.h"
+#include "wrinkle/driver_values.h"
 #include "wrinkle/retarget.h"
 #include "wrinkle/solver.h"
 
@@ -26,7 +26,7 @@ void Count(const Rig& rig, RigReport* report) {
     }
   }
   for (const Driver& driver : rig.drivers) {
-    for (const std::string& value : DriverValueNames(driver)) {
+    for (const std::string& value : wrinkle::DriverValueNames(driver)) {
       report->driver_value_names.push_back(driver.name + "." + value);
     }
   }

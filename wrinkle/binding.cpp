@@ -28,7 +28,7 @@ Status BindDriver(const Driver& driver, int first_value, BindContext* context, B
 Result<RigBinding> RigBinding::Create(const Rig& rig, const Skeleton& skeleton,
                                       std::span<const std::string> blend_shape_names,
                                       const BindOptions& options) {
-  if (Status status = CheckRigNumbers(rig); !status.ok()) return status;
+  if (Status status = CheckRigFields(rig); !status.ok()) return status;
   auto data = std::make_unique<BindingData>();
   data->rig = rig;
   data->skeleton = skeleton;

@@ -1,206 +1,264 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrinkle/rig_check.h"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <unordered_set>
+#include <utility>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
 #include "wrinkle/finite.h"
 #include "wrinkle/nnls.h"
 #include "wrinkle/pose_driver.h"
+#include "wrinkle/rig_field.h"
 
 namespace furrow::wrinkle {
 namespace {
 
-constexpr float kMax = std::numeric_limits<float>::max();
+constexpr std::size_t kMaxNameBytes = 255;
+constexpr float kMaxSize = 1e6f;         // of a skeleton, in its own units
+constexpr float kMaxCoefficient = 1e3f;  // of a blend shape
 
-// Collects the first complaint about one driver, region or other named thing.
+std::string Text(float value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+// The first complaint about a rig; later ones are passed over. A field is given in two parts, the
+// path of what it belongs to and its own name, which are put together for a complaint alone.
 class Complaints {
  public:
-  explicit Complaints(std::string whose) : whose_(std::move(whose)) {}
-
-  void Range(std::string_view field, float value, float low, float high) {
+  void Range(const std::string& at, std::string_view field, float value, float low, float high) {
     if (!std::isfinite(value)) {
-      Set(StatusCode::kNonFinite, field, "is not finite");
+      Set({StatusCode::kNonFinite, "the number is not finite"}, at, field);
     } else if (value < low || value > high) {
-      const std::string bounds =
-          high == kMax ? "at least " + Text(low) : "in [" + Text(low) + ", " + Text(high) + "]";
-      Set(StatusCode::kInvalidArgument, field, "is " + Text(value) + "; it must be " + bounds);
+      Set({StatusCode::kInvalidArgument,
+           Text(value) + " is out of range [" + Text(low) + ", " + Text(high) + "]"},
+          at, field);
     }
   }
-  void Finite(std::string_view field, const glm::vec3& v) {
-    if (!AllFinite(v)) Set(StatusCode::kNonFinite, field, "is not finite");
+  template <class Vector>
+  void Finite(const std::string& at, std::string_view field, const Vector& v) {
+    if (!AllFinite(v)) Set({StatusCode::kNonFinite, "the numbers are not finite"}, at, field);
   }
-  void NotZero(std::string_view field, const glm::vec3& v) {
-    Finite(field, v);
-    if (!(glm::length(v) > 1e-6f)) Set(StatusCode::kInvalidArgument, field, "has no length");
+  void Direction(const std::string& at, std::string_view field, const glm::vec3& v) {
+    Finite(at, field, v);
+    const float length = glm::length(v);  // infinite where a square is beyond a float
+    Require(length > 1e-6f && std::isfinite(length), at, field,
+            "the direction has no length, or one beyond a float");
   }
-  void Count(std::string_view field, std::size_t count, std::size_t least, std::size_t most) {
-    if (count < least) Set(StatusCode::kInvalidArgument, field, "is empty");
-    if (count > most) {
-      Set(StatusCode::kLimit, field,
-          "has " + std::to_string(count) + " entries; at most " + std::to_string(most) +
-              " are accepted");
-    }
+  void Count(const std::string& at, std::string_view field, std::size_t count, std::size_t most) {
+    if (count <= most) return;
+    Set({StatusCode::kLimit,
+         std::to_string(count) + " entries, at most " + std::to_string(most) + " are accepted"},
+        at, field);
   }
-  void Require(bool holds, std::string_view field, std::string_view otherwise) {
-    if (!holds) Set(StatusCode::kInvalidArgument, field, otherwise);
+  void Label(const std::string& at, std::string_view field, std::string_view label) {
+    if (first_.ok()) Set(CheckLabel(label, {}), at, field);
+  }
+  void Name(const std::string& at, std::string_view field, std::string_view name) {
+    if (first_.ok()) Set(CheckName(name, {}), at, field);
+  }
+  // `name` is one of a list; `seen` holds those before it.
+  void Once(const std::string& at, std::string_view field, std::string_view name,
+            std::unordered_set<std::string_view>* seen) {
+    if (seen->insert(name).second) return;
+    Set({StatusCode::kInvalidArgument, "the name '" + std::string(name) + "' is given twice"}, at,
+        field);
+  }
+  void Require(bool holds, const std::string& at, std::string_view field, const char* otherwise,
+               const char* todo = "") {
+    if (!holds) Set({StatusCode::kInvalidArgument, otherwise, {}, todo}, at, field);
   }
   [[nodiscard]] Status Take() { return std::move(first_); }
 
  private:
-  static std::string Text(float value) {
-    std::string text = std::to_string(value);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-    return text;
+  void Set(const Status& complaint, const std::string& at, std::string_view field) {
+    if (first_.ok() && !complaint.ok()) first_ = complaint.At(at + std::string(field));
   }
-  void Set(StatusCode code, std::string_view field, std::string_view what) {
-    if (!first_.ok()) return;
-    first_ = Status(code, whose_ + ": " + std::string(field) + " " + std::string(what));
-  }
-  std::string whose_;
   Status first_;
 };
 
-Status CheckName(std::string_view kind, const std::string& name,
-                 std::unordered_set<std::string>* seen) {
-  if (name.empty()) {
-    return {StatusCode::kInvalidArgument, "a " + std::string(kind) + " has no name"};
+void CheckReferencePose(const ReferencePose& pose, const std::string& at, Complaints* complaints) {
+  complaints->Range(at, ".source_size", pose.source_size, 0.0f, kMaxSize);
+  complaints->Count(at, ".joints", pose.joints.size(), kMaxJoints);
+  std::unordered_set<std::string_view> joints;
+  for (std::size_t i = 0; i < pose.joints.size(); ++i) {
+    const JointDelta& delta = pose.joints[i];
+    const std::string joint = FieldAt(at + ".joints", i);
+    complaints->Label(joint, ".joint", delta.joint);
+    complaints->Once(joint, ".joint", delta.joint, &joints);
+    complaints->Finite(joint, ".translation", delta.translation);
+    complaints->Finite(joint, ".rotation", delta.rotation);
+    complaints->Require(std::abs(glm::length(delta.rotation) - 1.0f) <= 1e-3f, joint, ".rotation",
+                        "the rotation is not a unit quaternion",
+                        "write [x, y, z, w] of length 1, or euler_degrees");
   }
-  if (seen->insert(name).second) return {};
-  return {StatusCode::kInvalidArgument,
-          "two " + std::string(kind) + "s have the name '" + name + "'"};
 }
 
-Status CheckReferencePose(const ReferencePose& pose) {
-  Complaints complaints("reference pose '" + pose.name + "'");
-  complaints.Range("source_size", pose.source_size, 0.0f, kMax);
-  for (const JointDelta& delta : pose.joints) {
-    complaints.Finite("translation of '" + delta.joint + "'", delta.translation);
-    complaints.Range("length of the rotation of '" + delta.joint + "'", glm::length(delta.rotation),
-                     0.999f, 1.001f);
-  }
-  return complaints.Take();
-}
-
-void CheckPose(const PoseDriver& pose, Complaints* complaints) {
+void CheckPose(const PoseDriver& pose, const std::string& at, Complaints* complaints) {
   const bool nnls = pose.solve == PoseSolve::kNnls;
-  complaints->Count("points", pose.points.size(), 1, kMaxControlPoints);
-  complaints->Count("values", pose.values.size(), 1, nnls ? kMaxNnlsValues : kMaxPoseValues);
-  complaints->Range("falloff", pose.falloff, 0.0f, kMax);
-  for (const ControlPoint& point : pose.points) {
-    complaints->Finite("offset", point.offset);
-    complaints->Range("offset_size", point.offset_size, 0.0f, kMax);
+  complaints->Require(!pose.points.empty(), at, ".points", "a pose driver needs a control point");
+  complaints->Require(!pose.values.empty(), at, ".values", "a pose driver needs a value");
+  complaints->Count(at, ".points", pose.points.size(), kMaxControlPoints);
+  complaints->Count(at, ".values", pose.values.size(), nnls ? kMaxNnlsValues : kMaxPoseValues);
+  complaints->Range(at, ".falloff", pose.falloff, 0.0f, 1000.0f);
+  for (std::size_t i = 0; i < pose.points.size(); ++i) {
+    const std::string point = FieldAt(at + ".points", i);
+    complaints->Label(point, ".joint", pose.points[i].joint);
+    complaints->Finite(point, ".offset", pose.points[i].offset);
+    complaints->Range(point, ".offset_size", pose.points[i].offset_size, 0.0f, kMaxSize);
   }
   std::unordered_set<std::string_view> names;
-  for (const PoseDriver::Value& value : pose.values) {
-    complaints->Require(!value.name.empty(), "values", "hold one without a name");
-    complaints->Require(names.insert(value.name).second, "values",
-                        "hold '" + value.name + "' twice");
+  for (std::size_t i = 0; i < pose.values.size(); ++i) {
+    const std::string value = FieldAt(at + ".values", i);
+    complaints->Name(value, ".name", pose.values[i].name);
+    complaints->Once(value, ".name", pose.values[i].name, &names);
   }
 }
 
-Status CheckDriver(const Driver& driver) {
-  Complaints complaints("driver '" + driver.name + "'");
+void CheckHinge(const HingeDriver& hinge, const std::string& at, Complaints* complaints) {
+  complaints->Label(at, ".parent", hinge.parent);
+  complaints->Label(at, ".joint", hinge.joint);
+  if (!hinge.end.empty()) complaints->Label(at, ".end", hinge.end);
+  if (hinge.axis) complaints->Direction(at, ".axis", *hinge.axis);
+  complaints->Range(at, ".beta_degrees", hinge.beta_degrees, 0.0f, kMaxBetaDegrees);
+}
+
+void CheckBall(const BallDriver& ball, const std::string& at, Complaints* complaints) {
+  complaints->Label(at, ".parent", ball.parent);
+  complaints->Label(at, ".joint", ball.joint);
+  if (!ball.end.empty()) complaints->Label(at, ".end", ball.end);
+  if (ball.bone != glm::vec3(0.0f)) complaints->Direction(at, ".bone", ball.bone);
+  complaints->Direction(at, ".forward", ball.forward);
+  complaints->Range(at, ".beta_degrees", ball.beta_degrees, 0.0f, kMaxBetaDegrees);
+}
+
+void CheckTwist(const TwistDriver& twist, const std::string& at, Complaints* complaints) {
+  complaints->Label(at, ".joint", twist.joint);
+  complaints->Count(at, ".through", twist.through.size(), 64);
+  for (std::size_t i = 0; i < twist.through.size(); ++i) {
+    complaints->Label(FieldAt(at + ".through", i), "", twist.through[i]);
+  }
+  if (twist.axis) complaints->Direction(at, ".axis", *twist.axis);
+  complaints->Range(at, ".full_degrees", twist.full_degrees, 1.0f, 180.0f);
+}
+
+void CheckBlendShape(const BlendShapeDriver& shape, const std::string& at, Complaints* complaints) {
+  complaints->Label(at, ".blend_shape", shape.blend_shape);
+  complaints->Range(at, ".neutral", shape.neutral, -kMaxCoefficient, kMaxCoefficient);
+  complaints->Range(at, ".full", shape.full, -kMaxCoefficient, kMaxCoefficient);
+  complaints->Require(std::abs(shape.full - shape.neutral) >= 1e-4f, at, ".full",
+                      "full and neutral are the same coefficient");
+}
+
+void CheckDriver(const Driver& driver, const std::string& at, Complaints* complaints) {
   switch (driver.kind) {
-    case Driver::Kind::kPose: CheckPose(driver.pose, &complaints); break;
-    case Driver::Kind::kHinge:
-      if (driver.hinge.axis) complaints.NotZero("axis", *driver.hinge.axis);
-      complaints.Range("beta_degrees", driver.hinge.beta_degrees, 0.0f, kMaxBetaDegrees);
-      break;
-    case Driver::Kind::kBall:
-      complaints.Finite("bone", driver.ball.bone);
-      complaints.NotZero("forward", driver.ball.forward);
-      complaints.Range("beta_degrees", driver.ball.beta_degrees, 0.0f, kMaxBetaDegrees);
-      break;
-    case Driver::Kind::kTwist:
-      if (driver.twist.axis) complaints.NotZero("axis", *driver.twist.axis);
-      complaints.Range("full_degrees", driver.twist.full_degrees, 1.0f, 180.0f);
-      break;
-    case Driver::Kind::kBlendShape: {
-      const BlendShapeDriver& shape = driver.blend_shape;
-      complaints.Range("neutral", shape.neutral, -kMax, kMax);
-      complaints.Range("full", shape.full, -kMax, kMax);
-      complaints.Require(std::abs(shape.full - shape.neutral) >= 1e-4f, "full",
-                         "is the same coefficient as neutral");
-      break;
-    }
+    case Driver::Kind::kPose: return CheckPose(driver.pose, at + ".pose", complaints);
+    case Driver::Kind::kHinge: return CheckHinge(driver.hinge, at + ".hinge", complaints);
+    case Driver::Kind::kBall: return CheckBall(driver.ball, at + ".ball", complaints);
+    case Driver::Kind::kTwist: return CheckTwist(driver.twist, at + ".twist", complaints);
+    case Driver::Kind::kBlendShape:
+      return CheckBlendShape(driver.blend_shape, at + ".blend_shape", complaints);
   }
-  return complaints.Take();
 }
 
-Status CheckRegion(const Region& region) {
-  Complaints complaints("region '" + region.name + "'");
-  complaints.Range("channel", static_cast<float>(region.mask.channel), 0.0f, 3.0f);
-  complaints.Range("smooth_width", region.mask.smooth_width, 1e-4f, 1.0f);
+void CheckFeed(const Feed& feed, const std::string& at, Combine combine, Complaints* complaints) {
+  complaints->Require(!feed.sources.empty(), at, ".sources", "a feed needs a source");
+  complaints->Count(at, ".sources", feed.sources.size(), kMaxSources);
+  float gains = 0.0f;
+  for (std::size_t i = 0; i < feed.sources.size(); ++i) {
+    const float gain = feed.sources[i].gain;
+    complaints->Range(FieldAt(at + ".sources", i), ".gain", gain, 0.0f, 100.0f);
+    gains += gain;
+  }
+  complaints->Require(combine != Combine::kMean || gains > 0.0f, at, ".sources",
+                      "all gains are 0, which leaves no mean");
+}
+
+void CheckRegion(const Region& region, const std::string& at, Complaints* complaints) {
+  complaints->Require(region.mask.channel >= 0 && region.mask.channel <= 3, at, ".mask.channel",
+                      "there is no such channel");
+  complaints->Range(at, ".mask.smooth_width", region.mask.smooth_width, 1e-4f, 1.0f);
+  complaints->Count(at, ".neighbours", region.neighbours.size(), kMaxRegions);
+  complaints->Count(at, ".feeds", region.feeds.size(), kMaxWrinkleMaps);
   std::unordered_set<std::string_view> maps;
-  for (const Feed& feed : region.feeds) {
-    complaints.Require(!feed.map.empty(), "feeds", "hold one without a map");
-    complaints.Require(maps.insert(feed.map).second, "feeds", "hold map '" + feed.map + "' twice");
-    complaints.Count("sources of '" + feed.map + "'", feed.sources.size(), 1, kMaxWeights);
-    float gains = 0.0f;
-    for (const Feed::Source& source : feed.sources) {
-      complaints.Range("gain of '" + source.driver + "." + source.value + "'", source.gain, 0.0f,
-                       100.0f);
-      gains += source.gain;
-    }
-    complaints.Require(region.combine != Combine::kMean || gains > 0.0f,
-                       "gains of '" + feed.map + "'", "are all 0, which leaves no mean");
+  for (std::size_t i = 0; i < region.feeds.size(); ++i) {
+    const std::string feed = FieldAt(at + ".feeds", i);
+    complaints->Name(feed, ".map", region.feeds[i].map);
+    complaints->Once(feed, ".map", region.feeds[i].map, &maps);
+    CheckFeed(region.feeds[i], feed, region.combine, complaints);
   }
-  return complaints.Take();
 }
 
-Status CheckFilter(const Filter& filter) {
-  Complaints complaints("filter");
-  complaints.Range("min_cutoff_hz", filter.min_cutoff_hz, 1e-3f, 1000.0f);
-  complaints.Range("beta", filter.beta, 0.0f, 1000.0f);
-  complaints.Range("derivative_cutoff_hz", filter.derivative_cutoff_hz, 1e-3f, 1000.0f);
-  complaints.Range("slew_per_second", filter.slew_per_second, 0.0f, kMax);
-  complaints.Range("hold_seconds", filter.hold_seconds, 0.0f, 3600.0f);
-  complaints.Range("decay_seconds", filter.decay_seconds, 0.0f, 3600.0f);
-  return complaints.Take();
+void CheckMap(const WrinkleMap& map, const std::string& at, Complaints* complaints) {
+  complaints->Range(at, ".amplitude", map.amplitude, 0.0f, 100.0f);
+  complaints->Require(map.opposes != map.name, at, ".opposes", "a map cannot oppose itself");
 }
 
-Status CheckMap(const WrinkleMap& map) {
-  Complaints complaints("wrinkle map '" + map.name + "'");
-  complaints.Range("amplitude", map.amplitude, 0.0f, 100.0f);
-  complaints.Require(map.opposes != map.name, "opposes", "names the map itself");
-  return complaints.Take();
+void CheckFilter(const Filter& filter, Complaints* complaints) {
+  const std::string at = "filter";
+  complaints->Range(at, ".min_cutoff_hz", filter.min_cutoff_hz, 1e-3f, 1000.0f);
+  complaints->Range(at, ".beta", filter.beta, 0.0f, 1000.0f);
+  complaints->Range(at, ".derivative_cutoff_hz", filter.derivative_cutoff_hz, 1e-3f, 1000.0f);
+  complaints->Range(at, ".slew_per_second", filter.slew_per_second, 0.0f, 1e6f);
+  complaints->Range(at, ".hold_seconds", filter.hold_seconds, 0.0f, 3600.0f);
+  complaints->Range(at, ".decay_seconds", filter.decay_seconds, 0.0f, 3600.0f);
 }
 
-// Every item has a name of its own and passes `check`.
+// At most `most` items, each with a name of its own, checked by `check_name` and then by `check`.
 template <class Item, class Check>
-Status CheckAll(std::string_view kind, const std::vector<Item>& items, Check check) {
-  std::unordered_set<std::string> names;
-  for (const Item& item : items) {
-    if (Status status = CheckName(kind, item.name, &names); !status.ok()) return status;
-    if (Status status = check(item); !status.ok()) return status;
+void CheckList(const std::string& list, const std::vector<Item>& items, std::size_t most,
+               void (Complaints::*check_name)(const std::string&, std::string_view,
+                                              std::string_view),
+               Check check, Complaints* complaints) {
+  complaints->Count(list, "", items.size(), most);
+  std::unordered_set<std::string_view> names;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const std::string at = FieldAt(list, i);
+    (complaints->*check_name)(at, ".name", items[i].name);
+    complaints->Once(at, ".name", items[i].name, &names);
+    check(items[i], at, complaints);
   }
-  return {};
 }
 
 }  // namespace
 
-Status CheckRigNumbers(const Rig& rig) {
-  if (Status s = CheckAll("reference pose", rig.reference_poses, CheckReferencePose); !s.ok()) {
-    return s;
+Status CheckLabel(std::string_view label, const std::string& where) {
+  if (label.empty()) return InvalidField("the name is empty", where);
+  if (label.size() > kMaxNameBytes) {
+    return {StatusCode::kLimit, "the name is longer than 255 bytes", where};
   }
-  if (Status s = CheckAll("driver", rig.drivers, CheckDriver); !s.ok()) return s;
-  if (Status s = CheckAll("wrinkle map", rig.wrinkle_maps, CheckMap); !s.ok()) return s;
-  if (Status s = CheckAll("region", rig.regions, CheckRegion); !s.ok()) return s;
-  std::size_t num_weights = 0;
-  for (const Region& region : rig.regions) num_weights += region.feeds.size();
-  if (num_weights > static_cast<std::size_t>(kMaxWeights)) {
-    return {StatusCode::kLimit, "the rig has " + std::to_string(num_weights) +
-                                    " wrinkle weights; at most " + std::to_string(kMaxWeights) +
-                                    " are accepted"};
-  }
-  return CheckFilter(rig.filter);
+  const bool printable = std::all_of(label.begin(), label.end(), [](char c) {
+    return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;
+  });
+  return printable ? Status() : InvalidField("the name holds a control byte", where);
+}
+
+Status CheckName(std::string_view name, const std::string& where) {
+  if (Status status = CheckLabel(name, where); !status.ok()) return status;
+  if (name.find_first_of(" .,;:*?\"'/\\[]{}#") == std::string_view::npos) return {};
+  return InvalidField("the name '" + std::string(name) +
+                          "' holds a blank or one of . , ; : * ? / # or a quote or bracket",
+                      where, "use letters, digits, '_' and '-'");
+}
+
+Status CheckRigFields(const Rig& rig) {
+  Complaints complaints;
+  CheckList("reference_poses", rig.reference_poses, kMaxReferencePoses, &Complaints::Label,
+            CheckReferencePose, &complaints);
+  CheckList("drivers", rig.drivers, kMaxRigDrivers, &Complaints::Name, CheckDriver, &complaints);
+  CheckList("wrinkle_maps", rig.wrinkle_maps, kMaxWrinkleMaps, &Complaints::Name, CheckMap,
+            &complaints);
+  CheckList("regions", rig.regions, kMaxRegions, &Complaints::Name, CheckRegion, &complaints);
+  CheckFilter(rig.filter, &complaints);
+  return complaints.Take();
 }
 
 }  // namespace furrow::wrinkle

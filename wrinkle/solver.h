@@ -24,8 +24,8 @@ struct BindOptions {
 // immutable, shared by all subjects of that skeleton.
 class RigBinding {
  public:
-  // Errors: kNotFound (names the driver and the joint), kInvalidArgument and kNonFinite (name the
-  // driver and the field), kLimit.
+  // Errors: CheckRigFields()'s (rig_check.h), kNotFound (names the driver and the joint), and
+  // kInvalidArgument for a driver that makes no sense on this skeleton.
   [[nodiscard]] static Result<RigBinding> Create(const Rig& rig, const Skeleton& skeleton,
                                                  std::span<const std::string> blend_shape_names,
                                                  const BindOptions& options = {});

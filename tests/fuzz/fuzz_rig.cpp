@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "character/rig_check.h"
 #include "character/rig_file.h"
 #include "character/rig_report.h"
 

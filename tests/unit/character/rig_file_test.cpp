@@ -193,6 +193,18 @@ INSTANTIATE_TEST_SUITE_P(
               "7: reference_poses[0].joints[0].euler_degrees[0]"},
         Wrong{"\"kind\": \"skinning\"", "\"kind\": 7", kInvalid, "23: regions[1].mask.kind"}));
 
+TEST(RigFile, RefusesMoreValuesThanNnlsSolves) {
+  std::string values = "\"solve\": \"nnls\", \"values\": [";
+  for (int i = 0; i < 17; ++i) {
+    values += (i == 0 ? "" : ", ") + std::string("{\"name\": \"v") + std::to_string(i) +
+              "\", \"reference_pose\": \"up\"}";
+  }
+  const auto rig = Parse(Replaced(
+      kSmallRig, "\"values\": [{\"name\": \"stretch\", \"reference_pose\": \"up\"}", values));
+  EXPECT_EQ(rig.status().code(), StatusCode::kLimit);
+  EXPECT_EQ(rig.status().where(), "a.rig.json:12: drivers[0].pose.values");
+}
+
 TEST(RigFile, RefusesEveryTruncation) {
   const std::string whole(kSmallRig, std::string_view(kSmallRig).find_last_of('}'));
   for (std::size_t length = 0; length <= whole.size(); ++length) {

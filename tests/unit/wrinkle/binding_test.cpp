@@ -118,25 +118,32 @@ const Fault kReferenceFaults[] = {
 
 const Fault kNumberFaults[] = {
     {"duplicate_driver", [](Rig* r) { r->drivers[1].name = "brow_l"; },
-     StatusCode::kInvalidArgument, "two drivers have the name 'brow_l'"},
+     StatusCode::kInvalidArgument, "drivers[1].name: the name 'brow_l' is given twice"},
     {"duplicate_pose", [](Rig* r) { r->reference_poses[1].name = "stretch"; },
-     StatusCode::kInvalidArgument, "two reference poses have"},
+     StatusCode::kInvalidArgument, "reference_poses[1].name: the name 'stretch' is given twice"},
     {"duplicate_map", [](Rig* r) { r->wrinkle_maps[1].name = "stretch"; },
-     StatusCode::kInvalidArgument, "two wrinkle maps have"},
+     StatusCode::kInvalidArgument, "wrinkle_maps[1].name: the name 'stretch' is given twice"},
     {"duplicate_region", [](Rig* r) { r->regions[1].name = "brow_l"; },
-     StatusCode::kInvalidArgument, "two regions have"},
+     StatusCode::kInvalidArgument, "regions[1].name: the name 'brow_l' is given twice"},
     {"duplicate_value", [](Rig* r) { r->drivers[0].pose.values[1].name = "stretch"; },
-     StatusCode::kInvalidArgument, "'stretch' twice"},
+     StatusCode::kInvalidArgument,
+     "drivers[0].pose.values[1].name: the name 'stretch' is given twice"},
     {"duplicate_feed", [](Rig* r) { r->regions[0].feeds[1].map = "stretch"; },
-     StatusCode::kInvalidArgument, "map 'stretch' twice"},
+     StatusCode::kInvalidArgument, "regions[0].feeds[1].map: the name 'stretch' is given twice"},
+    {"dotted_driver", [](Rig* r) { r->drivers[0].name = "brow.l"; }, StatusCode::kInvalidArgument,
+     "drivers[0].name: the name 'brow.l' holds"},
+    {"long_region", [](Rig* r) { r->regions[0].name.assign(256, 'r'); }, StatusCode::kLimit,
+     "regions[0].name: the name is longer"},
+    {"control_byte", [](Rig* r) { r->drivers[0].pose.points[0].joint = "brow\n"; },
+     StatusCode::kInvalidArgument, "drivers[0].pose.points[0].joint: the name holds a control"},
     {"unnamed_driver", [](Rig* r) { r->drivers[0].name.clear(); }, StatusCode::kInvalidArgument,
-     "has no name"},
+     "drivers[0].name: the name is empty"},
     {"no_points", [](Rig* r) { r->drivers[0].pose.points.clear(); }, StatusCode::kInvalidArgument,
-     "driver 'brow_l': points is empty"},
+     "drivers[0].pose.points: a pose driver needs"},
     {"no_values", [](Rig* r) { r->drivers[0].pose.values.clear(); }, StatusCode::kInvalidArgument,
-     "driver 'brow_l': values is empty"},
+     "drivers[0].pose.values: a pose driver needs"},
     {"no_sources", [](Rig* r) { r->regions[0].feeds[0].sources.clear(); },
-     StatusCode::kInvalidArgument, "sources of 'stretch' is empty"},
+     StatusCode::kInvalidArgument, "regions[0].feeds[0].sources: a feed needs a source"},
     {"too_many_nnls",
      [](Rig* r) {
        r->drivers[0].pose.solve = PoseSolve::kNnls;
@@ -145,42 +152,48 @@ const Fault kNumberFaults[] = {
          r->drivers[0].pose.values.push_back({"v" + std::to_string(i), "stretch"});
        }
      },
-     StatusCode::kLimit, "values has 17 entries; at most 16"},
+     StatusCode::kLimit, "drivers[0].pose.values: 17 entries, at most 16"},
     {"too_many_points",
      [](Rig* r) { r->drivers[0].pose.points.resize(kMaxControlPoints + 1, {.joint = "brow_l"}); },
-     StatusCode::kLimit, "points has"},
+     StatusCode::kLimit, "drivers[0].pose.points: 257 entries"},
     {"falloff", [](Rig* r) { r->drivers[0].pose.falloff = -1.0f; }, StatusCode::kInvalidArgument,
-     "driver 'brow_l': falloff is -1; it must be at least 0"},
+     "drivers[0].pose.falloff: -1 is out of range [0, 1000]"},
     {"falloff_nan", [](Rig* r) { r->drivers[0].pose.falloff = kNan; }, StatusCode::kNonFinite,
-     "driver 'brow_l': falloff"},
+     "drivers[0].pose.falloff"},
     {"offset_nan", [](Rig* r) { r->drivers[0].pose.points[0].offset.y = kNan; },
-     StatusCode::kNonFinite, "offset"},
+     StatusCode::kNonFinite, "drivers[0].pose.points[0].offset"},
     {"beta", [](Rig* r) { DriverNamed(r, "knee_l").hinge.beta_degrees = 180.0f; },
-     StatusCode::kInvalidArgument, "driver 'knee_l': beta_degrees is 180; it must be in [0, 179]"},
+     StatusCode::kInvalidArgument, ".hinge.beta_degrees: 180 is out of range [0, 179]"},
+    {"axis_too_long", [](Rig* r) { DriverNamed(r, "knee_l").hinge.axis = glm::vec3(1e30f); },
+     StatusCode::kInvalidArgument, ".hinge.axis: the direction has no"},
+    {"bone_too_short", [](Rig* r) { DriverNamed(r, "waist").ball.bone = glm::vec3(1e-20f); },
+     StatusCode::kInvalidArgument, ".ball.bone: the direction has no"},
     {"axis_zero", [](Rig* r) { DriverNamed(r, "knee_l").hinge.axis = glm::vec3(0.0f); },
-     StatusCode::kInvalidArgument, "driver 'knee_l': axis has no length"},
+     StatusCode::kInvalidArgument, ".hinge.axis: the direction has no length"},
     {"ball_beta", [](Rig* r) { DriverNamed(r, "waist").ball.beta_degrees = -1.0f; },
-     StatusCode::kInvalidArgument, "driver 'waist': beta_degrees"},
+     StatusCode::kInvalidArgument, ".ball.beta_degrees"},
     {"ball_bone", [](Rig* r) { DriverNamed(r, "waist").ball.bone.x = kNan; },
-     StatusCode::kNonFinite, "driver 'waist': bone"},
+     StatusCode::kNonFinite, ".ball.bone"},
     {"ball_forward", [](Rig* r) { DriverNamed(r, "waist").ball.forward = glm::vec3(0.0f); },
-     StatusCode::kInvalidArgument, "driver 'waist': forward"},
+     StatusCode::kInvalidArgument, ".ball.forward"},
     {"twist_full", [](Rig* r) { DriverNamed(r, "neck").twist.full_degrees = 0.0f; },
-     StatusCode::kInvalidArgument, "driver 'neck': full_degrees is 0; it must be in [1, 180]"},
+     StatusCode::kInvalidArgument, ".twist.full_degrees: 0 is out of range [1, 180]"},
     {"twist_axis", [](Rig* r) { DriverNamed(r, "neck").twist.axis = glm::vec3(0.0f); },
-     StatusCode::kInvalidArgument, "driver 'neck': axis"},
+     StatusCode::kInvalidArgument, ".twist.axis"},
     {"blend_shape_range", [](Rig* r) { DriverNamed(r, "jaw").blend_shape.full = 0.0f; },
-     StatusCode::kInvalidArgument, "driver 'jaw': full"},
+     StatusCode::kInvalidArgument, ".blend_shape.full"},
     {"delta_rotation", [](Rig* r) { r->reference_poses[0].joints[0].rotation.w = 3.0f; },
-     StatusCode::kInvalidArgument, "reference pose 'stretch': length of the rotation of 'brow_l'"},
+     StatusCode::kInvalidArgument,
+     "reference_poses[0].joints[0].rotation: the rotation is not a unit quaternion"},
     {"delta_translation", [](Rig* r) { r->reference_poses[2].joints[0].translation.x = kNan; },
-     StatusCode::kNonFinite, "reference pose 'smile': translation of 'cheek_l'"},
+     StatusCode::kNonFinite, "reference_poses[2].joints[0].translation"},
     {"source_size", [](Rig* r) { r->reference_poses[0].source_size = -1.0f; },
-     StatusCode::kInvalidArgument, "source_size"},
+     StatusCode::kInvalidArgument, "reference_poses[0].source_size"},
     {"gain", [](Rig* r) { r->regions[0].feeds[0].sources[0].gain = -0.5f; },
-     StatusCode::kInvalidArgument, "region 'brow_l': gain of 'brow_l.stretch' is -0.5"},
+     StatusCode::kInvalidArgument,
+     "regions[0].feeds[0].sources[0].gain: -0.5 is out of range [0, 100]"},
     {"gain_nan", [](Rig* r) { r->regions[0].feeds[0].sources[0].gain = kNan; },
-     StatusCode::kNonFinite, "gain of"},
+     StatusCode::kNonFinite, "regions[0].feeds[0].sources[0].gain"},
     {"mean_of_nothing",
      [](Rig* r) {
        r->regions[0].combine = Combine::kMean;
@@ -188,25 +201,25 @@ const Fault kNumberFaults[] = {
      },
      StatusCode::kInvalidArgument, "which leaves no mean"},
     {"channel", [](Rig* r) { r->regions[0].mask.channel = 4; }, StatusCode::kInvalidArgument,
-     "region 'brow_l': channel"},
+     "regions[0].mask.channel"},
     {"smooth_width", [](Rig* r) { r->regions[0].mask.smooth_width = 0.0f; },
-     StatusCode::kInvalidArgument, "region 'brow_l': smooth_width"},
+     StatusCode::kInvalidArgument, "regions[0].mask.smooth_width"},
     {"amplitude", [](Rig* r) { r->wrinkle_maps[0].amplitude = kNan; }, StatusCode::kNonFinite,
-     "wrinkle map 'stretch': amplitude"},
+     "wrinkle_maps[0].amplitude"},
     {"opposes_itself", [](Rig* r) { r->wrinkle_maps[0].opposes = "stretch"; },
-     StatusCode::kInvalidArgument, "wrinkle map 'stretch': opposes"},
+     StatusCode::kInvalidArgument, "wrinkle_maps[0].opposes: a map cannot"},
     {"min_cutoff", [](Rig* r) { r->filter.min_cutoff_hz = 0.0f; }, StatusCode::kInvalidArgument,
-     "filter: min_cutoff_hz"},
+     "filter.min_cutoff_hz"},
     {"filter_beta", [](Rig* r) { r->filter.beta = -1.0f; }, StatusCode::kInvalidArgument,
-     "filter: beta"},
+     "filter.beta"},
     {"derivative_cutoff", [](Rig* r) { r->filter.derivative_cutoff_hz = kNan; },
-     StatusCode::kNonFinite, "filter: derivative_cutoff_hz"},
+     StatusCode::kNonFinite, "filter.derivative_cutoff_hz"},
     {"slew", [](Rig* r) { r->filter.slew_per_second = -1.0f; }, StatusCode::kInvalidArgument,
-     "filter: slew_per_second"},
+     "filter.slew_per_second"},
     {"hold", [](Rig* r) { r->filter.hold_seconds = -1.0f; }, StatusCode::kInvalidArgument,
-     "filter: hold_seconds"},
+     "filter.hold_seconds"},
     {"decay", [](Rig* r) { r->filter.decay_seconds = kNan; }, StatusCode::kNonFinite,
-     "filter: decay_seconds"},
+     "filter.decay_seconds"},
 };
 
 const auto kFaultName = [](const testing::TestParamInfo<Fault>& info) {
@@ -215,13 +228,15 @@ const auto kFaultName = [](const testing::TestParamInfo<Fault>& info) {
 INSTANTIATE_TEST_SUITE_P(References, RigFaults, testing::ValuesIn(kReferenceFaults), kFaultName);
 INSTANTIATE_TEST_SUITE_P(Numbers, RigFaults, testing::ValuesIn(kNumberFaults), kFaultName);
 
-TEST(RigBinding, RefusesMoreWeightsThanItCounts) {
+TEST(RigBinding, RefusesMoreRegionsThanItCounts) {
   Rig rig = MakeRig();
-  const Region region = rig.regions[3];
-  for (int i = 0; i <= kMaxWeights; ++i) {
-    rig.regions.push_back(region);
-    rig.regions.back().name = "r" + std::to_string(i);
+  while (rig.regions.size() < kMaxRegions) {
+    rig.regions.push_back(rig.regions[3]);
+    rig.regions.back().name = "r" + std::to_string(rig.regions.size());
   }
+  EXPECT_TRUE(Bind(rig).ok());
+  rig.regions.push_back(rig.regions[3]);
+  rig.regions.back().name = "one_more";
   EXPECT_EQ(Bind(rig).status().code(), StatusCode::kLimit);
 }
 
