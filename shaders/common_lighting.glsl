@@ -14,8 +14,8 @@ vec3 ambientRadiance(vec3 normal) {
   return mix(u_ambient_ground.rgb, u_ambient_sky.rgb, normal.y * 0.5 + 0.5);
 }
 
-// Blinn-Phong, normalised so that a wider lobe is dimmer: (n + 8) / 8 over pi, pi being in the lights'
-// units; with Schlick's Fresnel, scaled so that it is 1 face on.
+// Blinn-Phong, normalised so that a wider lobe is dimmer: (n + 8) / 8 over pi, pi being in the
+// lights' units; with Schlick's Fresnel, scaled so that it is 1 face on.
 float specularLobe(Surface surface, vec3 toLight, vec3 toCamera) {
   vec3 h = normalize(toLight + toCamera);
   float fresnel = 1.0 + 24.0 * pow5(1.0 - saturate(dot(h, toCamera)));

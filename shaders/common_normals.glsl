@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tangent-space normals as partial derivatives. A derivative is n.xy / n.z of the unit normal n; for a
-// height field h(x, y) it is -grad h. x runs along the tangent (u), y along the bitangent, which points
-// up in the picture (-v), as glTF's normal maps have it: green above the middle leans upwards.
+// Tangent-space normals as partial derivatives. A derivative is n.xy / n.z of the unit normal n;
+// for a height field h(x, y) it is -grad h. x runs along the tangent (u), y along the bitangent,
+// which points up in the picture (-v), as glTF's normal maps have it: green above the middle leans
+// upwards.
 
 // Unit tangent-space normal of a derivative of any size.
 vec3 normalFromDerivative(vec2 derivative) {

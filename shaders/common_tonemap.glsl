@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Khronos PBR Neutral (2024) without its toe, which takes away the 4% that a dielectric reflects from
-// everywhere: our specular has no such constant part. Colours below 0.76 stay as they are, highlights
-// are compressed and desaturated. Linear in, linear [0, 1] out.
+// Khronos PBR Neutral (2024) without its toe, which takes away the 4% that a dielectric reflects
+// from everywhere: our specular has no such constant part. Colours below 0.76 stay as they are,
+// highlights are compressed and desaturated. Linear in, linear [0, 1] out.
 vec3 tonemapNeutral(vec3 colour) {
   const float startCompression = 0.76;
   const float desaturation = 0.15;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The wrinkle maps that this frame needs: an active list made on the CPU, so that a map whose wrinkle
-// weights are all 0 costs nothing. Mirrors ActiveMap and WrinkleBlock() in render/wrinkle_table.h.
+// The wrinkle maps that this frame needs: an active list made on the CPU, so that a map whose
+// wrinkle weights are all 0 costs nothing. Mirrors ActiveMap and WrinkleBlock() in
+// render/wrinkle_table.h.
 //
-// ACTIVE_MAPS  length of the list for this surface: a constant, so that loops unroll and llvmpipe reads
-//              the list once for all lanes; half the price of a list in a storage buffer
+// ACTIVE_MAPS  length of the list for this surface: a constant, so that loops unroll and llvmpipe
+//              reads the list once for all lanes; half the price of a list in a storage buffer
 // MASK_LAYERS  RGBA mask textures of the character, at least 1
 // MAP_SLOTS    vec4s that carry the dynamic masks of the rig's maps, at least 1
 

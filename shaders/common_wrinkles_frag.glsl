@@ -24,7 +24,8 @@ vec2 wrinkleDerivative(ActiveMap map, vec2 uv) {
   return map.amplitude * texture(u_wrinkle_derivatives, vec3(uv, float(map.layer))).rg;
 }
 
-// Unit tangent-space normal of the base surface with its wrinkles. `base`: the base map's derivative.
+// Unit tangent-space normal of the base surface with its wrinkles. `base`: the base map's
+// derivative.
 vec3 wrinkledNormal(vec2 base, vec2 uv, vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS]) {
 #if NORMAL_BLEND == 0
   // Partial derivatives: p = p_base + sum w_i p_i. Heights superpose, so the sum is exact.

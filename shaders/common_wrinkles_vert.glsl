@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common_wrinkles.glsl"
 
-// How much of a joint's influence a vertex takes, by its skin weight in [0, 1]. Thesis 4.2; the smooth
-// form has no seam where a skin weight fades out.
+// How much of a joint's influence a vertex takes, by its skin weight in [0, 1]. Thesis 4.2; the
+// smooth form has no seam where a skin weight fades out.
 float lambdaOf(ActiveMap map, float skinWeight) {
   if (map.lambda == 1) return skinWeight > 0.0 ? 1.0 : 0.0;
   if (map.lambda == 2) return skinWeight;
