@@ -16,6 +16,31 @@ std::uint64_t NewSession() {
   return session;
 }
 
+namespace {
+
+// Why the wire cannot carry an offer; empty when it can.
+std::string Unsendable(std::span<const std::uint8_t> offer) {
+  using protocol::DecodeStatus;
+  protocol::MessageView view;
+  protocol::SkeletonOffer decoded;
+  DecodeStatus status = protocol::OpenMessage(offer, view);
+  if (status == DecodeStatus::kOk) status = protocol::Decode(view, decoded);
+  switch (status) {
+    case DecodeStatus::kOk: return {};
+    case DecodeStatus::kBadText:
+      return "a name of a joint or blend shape, or the subject's, is empty, there twice, not UTF-8 "
+             "or has control characters";
+    case DecodeStatus::kLimit:
+    case DecodeStatus::kBadLength:
+      return "it has more than " + std::to_string(protocol::kMaxJoints) + " joints or " +
+             std::to_string(protocol::kMaxBlendShapes) + " blend shapes, or a name above " +
+             std::to_string(protocol::kMaxNameBytes) + " bytes";
+    default: return "it cannot be put on the wire (" + std::string(DecodeStatusName(status)) + ")";
+  }
+}
+
+}  // namespace
+
 Publisher::Publisher(std::unique_ptr<Transport> transport)
     : transport_(std::move(transport)), session_(NewSession()) {}
 
@@ -24,13 +49,19 @@ std::uint16_t Publisher::AddSubject(const protocol::SkeletonOffer& offer, std::i
   Stream& stream = streams_.emplace_back();
   stream.skeleton_hash = protocol::SkeletonHash(offer);
   encoder_.Encode({.session = session_, .stream = number}, offer, stream.offer);
-  SendOffer(stream, now_us);
+  // A daemon does not answer malformed datagrams: who offers nonsense would wait in vain.
+  stream.rejection = Unsendable(stream.offer);
+  if (stream.rejection.empty()) SendOffer(stream, now_us);
   return number;
 }
 
 void Publisher::SendOffer(Stream& stream, std::int64_t now_us) {
   stream.offered_us = now_us;
-  (void)transport_->Send(stream.offer);  // sent again until it is answered
+  // Sent again until it is answered, so that only what will never fit is an error.
+  if (transport_->Send(stream.offer) == IoStatus::kTooLarge) {
+    stream.rejection = "it takes " + std::to_string(stream.offer.size()) +
+                       " bytes, more than UDP carries: send it over TCP";
+  }
 }
 
 IoStatus Publisher::Send(std::uint16_t number, protocol::PoseFrame& pose,
@@ -69,8 +100,8 @@ void Publisher::Handle(std::span<const std::uint8_t> message, std::int64_t now_u
     if (protocol::Decode(view, error_) == DecodeStatus::kOk) last_error_ = error_.message;
     return;
   }
-  if (view.kind != protocol::MessageKind::kSkeletonReply || view.header.stream >= streams_.size())
-    return;
+  if (view.kind != protocol::MessageKind::kSkeletonReply) return;
+  if (view.header.stream >= streams_.size()) return;
   if (protocol::Decode(view, reply_) != DecodeStatus::kOk) return;
   Stream& stream = streams_[view.header.stream];
   if (reply_.skeleton_hash != stream.skeleton_hash) return;

@@ -33,15 +33,14 @@ class Publisher {
                               const protocol::PoseEncoding& encoding = {});
 
   // Reads answers for at most `wait` and sends offers again that are due. Call it between poses.
-  // kOk and kTimeout are both fine; kNoConnection on UDP means that nobody listens there at
-  // present.
+  // kOk and kTimeout are both fine; kNoConnection on UDP means that nobody listens there now.
   IoStatus Poll(std::int64_t now_us, std::chrono::milliseconds wait);
 
   // Says goodbye for every stream: subscribers hear it at once instead of waiting for silence.
   void Close();
 
   [[nodiscard]] bool accepted(std::uint16_t stream) const;
-  // Why the daemon refused the stream; empty while it has not.
+  // Why the stream was refused, by the daemon or before it was sent; empty while it has not been.
   [[nodiscard]] const std::string& rejection(std::uint16_t stream) const;
   // The last error message of the daemon, empty when there was none.
   [[nodiscard]] const std::string& last_error() const { return last_error_; }

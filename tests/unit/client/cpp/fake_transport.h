@@ -15,6 +15,7 @@ struct FarEnd {
   std::vector<std::vector<std::uint8_t>> sent;
   std::deque<std::vector<std::uint8_t>> to_receive;
   IoStatus when_empty = IoStatus::kTimeout;
+  IoStatus when_sent = IoStatus::kOk;
 
   template <class Message>
   void Answer(const protocol::Header& header, const Message& message) {
@@ -42,7 +43,7 @@ class FakeTransport : public Transport {
 
   IoStatus Send(std::span<const std::uint8_t> message) override {
     far_->sent.emplace_back(message.begin(), message.end());
-    return IoStatus::kOk;
+    return far_->when_sent;
   }
 
   IoStatus Receive(std::span<const std::uint8_t>& message, std::chrono::milliseconds) override {

@@ -70,6 +70,23 @@ TEST_F(PublisherTest, RejectionIsFinalAndSaysWhy) {
   EXPECT_TRUE(far_->sent.empty());
 }
 
+TEST_F(PublisherTest, WhatTheWireCannotCarryIsRejectedWithoutAsking) {
+  protocol::SkeletonOffer offer = OneJoint();
+  offer.joints[0].name = "caf\xe9";  // Latin-1
+  EXPECT_NE(publisher_.rejection(publisher_.AddSubject(offer, 0)).find("UTF-8"), std::string::npos);
+  offer = OneJoint();
+  offer.subject = std::string(256, 'x');
+  EXPECT_NE(publisher_.rejection(publisher_.AddSubject(offer, 0)).find("255"), std::string::npos);
+  offer = OneJoint();
+  offer.metres_per_unit = 0.0f;
+  EXPECT_NE(publisher_.rejection(publisher_.AddSubject(offer, 0)), "");
+  publisher_.Poll(900'000, milliseconds(0));
+  EXPECT_TRUE(far_->sent.empty());
+  far_->when_sent = IoStatus::kTooLarge;
+  EXPECT_NE(publisher_.rejection(publisher_.AddSubject(OneJoint(), 0)).find("TCP"),
+            std::string::npos);
+}
+
 TEST_F(PublisherTest, RepliesForOtherStreamsOrSkeletonsAreIgnored) {
   const auto stream = publisher_.AddSubject(OneJoint(), 0);
   Reply(static_cast<std::uint16_t>(stream + 9), SkeletonStatus::kAccepted);
