@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/listen.h"
 
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 
 #include "client/cli/endpoint.h"
 #include "client/cli/exit_code.h"
+#include "client/cli/interrupt.h"
 
 namespace furrow::cli {
 namespace {
-
-std::atomic<bool> g_interrupted{false};
-
-void OnSignal(int) { g_interrupted.store(true); }
 
 const char* GoodbyeText(protocol::GoodbyeReason reason) {
   switch (reason) {
@@ -37,11 +32,10 @@ int Listen(client::Subscriber& subscriber,
            const std::function<bool(const client::Event&)>& on_event) {
   constexpr std::int64_t kSilence = 5'000'000;
   using Kind = client::Event::Kind;
-  std::signal(SIGINT, OnSignal);
-  std::signal(SIGTERM, OnSignal);
+  CatchInterrupts();
   const std::int64_t start = SteadyMicroseconds();
   bool heard = false;
-  while (!g_interrupted.load()) {
+  while (!Interrupted()) {
     const std::int64_t now = SteadyMicroseconds();
     const client::Event event = subscriber.Next(now, std::chrono::milliseconds(100));
     switch (event.kind) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
+#include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -11,7 +12,9 @@
 #include "client/cli/endpoint.h"
 #include "client/cli/exit_code.h"
 #include "client/cli/inputs.h"
+#include "client/cli/interrupt.h"
 #include "client/cli/progress.h"
+#include "client/cli/schedule.h"
 #include "client/cli/wire_pose.h"
 #include "client/cpp/publisher.h"
 #include "motion/clip.h"
@@ -37,53 +40,27 @@ struct PlayOptions {
   float scale = 1.0f;
 };
 
-// Which frames are sent, and when: seconds of the recording's own time since its start.
-struct Schedule {
-  std::vector<int> frames;
-  std::vector<double> seconds;
-  double lap = 0.0;  // from the start of one round to the next
-};
-
-Schedule MakeSchedule(const motion::Clip& clip, double rate) {
-  Schedule schedule;
-  const double start = clip.times.front();
-  if (rate <= 0.0) {
-    for (int frame = 0; frame < clip.num_frames(); ++frame) {
-      schedule.frames.push_back(frame);
-      schedule.seconds.push_back(clip.times[frame] - start);
-    }
-    const int last = clip.num_frames() - 1;
-    schedule.lap = clip.duration() + (last > 0 ? clip.duration() / last : 1.0 / 30.0);
-    return schedule;
-  }
-  const auto count = static_cast<std::int64_t>(std::floor(clip.duration() * rate + 1e-6)) + 1;
-  for (std::int64_t i = 0; i < count; ++i) {
-    const double seconds = static_cast<double>(i) / rate;
-    const auto after =
-        std::upper_bound(clip.times.begin(), clip.times.end(), start + seconds + 1e-9);
-    schedule.frames.push_back(static_cast<int>(after - clip.times.begin()) - 1);
-    schedule.seconds.push_back(seconds);
-  }
-  schedule.lap = static_cast<double>(count) / rate;
-  return schedule;
+bool IsOver(IoStatus status) {
+  return status == IoStatus::kClosed || status == IoStatus::kMalformed;
 }
 
 // Offers the skeleton and waits for the answer; prints why when there is none.
 int WaitUntilAccepted(client::Publisher& publisher, std::uint16_t stream, const std::string& host) {
   const std::int64_t deadline = SteadyMicroseconds() + 5'000'000;
   IoStatus last = IoStatus::kTimeout;
-  while (SteadyMicroseconds() < deadline) {
+  while (SteadyMicroseconds() < deadline && !Interrupted()) {
     const IoStatus status = publisher.Poll(SteadyMicroseconds(), milliseconds(50));
     if (publisher.accepted(stream)) return kDone;
     if (!publisher.rejection(stream).empty()) {
-      std::fprintf(stderr, "furrow: the daemon refuses this skeleton: %s\n",
+      std::fprintf(stderr, "furrow: this skeleton is refused: %s\n",
                    publisher.rejection(stream).c_str());
       return kBadInput;
     }
     if (status != IoStatus::kTimeout) last = status;
-    if (status == IoStatus::kClosed) break;
+    if (IsOver(status)) break;
     if (status == IoStatus::kNoConnection) std::this_thread::sleep_for(milliseconds(50));
   }
+  if (Interrupted()) return kDone;
   if (!publisher.last_error().empty()) {
     std::fprintf(stderr, "furrow: the daemon says: %s\n", publisher.last_error().c_str());
     return kFailed;
@@ -93,54 +70,84 @@ int WaitUntilAccepted(client::Publisher& publisher, std::uint16_t stream, const 
   return kNoConnection;
 }
 
-int SendAll(client::Publisher& publisher, std::uint16_t stream, const motion::Clip& clip,
-            const PlayOptions& options) {
-  const Schedule schedule = MakeSchedule(clip, options.rate);
-  const auto encoding =
-      options.quantise ? protocol::PoseEncoding::Small() : protocol::PoseEncoding{};
-  const std::int64_t capture_start = SystemMicroseconds();
-  const std::int64_t send_start = SteadyMicroseconds();
-  Progress progress("playing", static_cast<std::int64_t>(schedule.frames.size()));
-  protocol::PoseFrame pose;
-  double lap_start = 0.0;
-  std::int64_t refused = 0;
-  do {
-    for (std::size_t i = 0; i < schedule.frames.size(); ++i) {
-      const double seconds = lap_start + schedule.seconds[i];
-      const std::int64_t due = send_start + std::llround(seconds * 1e6 / options.speed);
-      // Answers are read while waiting: a daemon that was restarted asks for the skeleton again.
-      for (std::int64_t now = SteadyMicroseconds(); now < due; now = SteadyMicroseconds()) {
-        const auto left = std::chrono::duration_cast<milliseconds>(microseconds(due - now));
-        const IoStatus status = left.count() > 0 ? publisher.Poll(now, left) : IoStatus::kTimeout;
-        if (status == IoStatus::kClosed) {
-          std::fprintf(stderr, "furrow: the daemon closed the connection\n");
-          return kNoConnection;
-        }
-        const std::int64_t rest = due - SteadyMicroseconds();
-        if (rest > 0 && (left.count() == 0 || status == IoStatus::kNoConnection)) {
-          std::this_thread::sleep_for(microseconds(rest));
-        }
-      }
-      (void)publisher.Poll(SteadyMicroseconds(), milliseconds(0));
-      FillPose(clip, schedule.frames[i], &pose);
-      const IoStatus sent =
-          publisher.Send(stream, pose, capture_start + std::llround(seconds * 1e6), encoding);
-      if (sent == IoStatus::kClosed) {
-        std::fprintf(stderr, "furrow: the daemon closed the connection\n");
-        return kNoConnection;
-      }
-      if (sent != IoStatus::kOk) ++refused;
-      progress.Set(static_cast<std::int64_t>(i) + 1);
+// Sends the poses of an accepted stream, each at its time.
+class Player {
+ public:
+  Player(client::Publisher& publisher, std::uint16_t stream, const motion::Clip& clip,
+         const PlayOptions& options)
+      : publisher_(publisher), stream_(stream), clip_(clip), options_(options) {}
+
+  // To the end, or an interrupt, or what makes going on useless.
+  int Run() {
+    const Schedule schedule(clip_, options_.rate);
+    const auto encoding =
+        options_.quantise ? protocol::PoseEncoding::Small() : protocol::PoseEncoding{};
+    const std::int64_t capture_start = SystemMicroseconds();
+    const std::int64_t send_start = SteadyMicroseconds();
+    Progress progress("playing", schedule.count());
+    protocol::PoseFrame pose;
+    for (std::int64_t i = 0; options_.loop || i < schedule.count(); ++i) {
+      const double seconds = schedule.Seconds(i);
+      if (!WaitUntil(send_start + std::llround(seconds * 1e6 / options_.speed))) break;
+      FillPose(clip_, schedule.Frame(i), &pose);
+      Note(publisher_.Send(stream_, pose, capture_start + std::llround(seconds * 1e6), encoding));
+      ++sent_;
+      progress.Set(i % schedule.count() + 1);
     }
-    lap_start += schedule.lap;
-  } while (options.loop);
-  if (refused > 0) {
-    std::fprintf(stderr, "furrow: %lld of %zu poses found nobody listening\n",
-                 static_cast<long long>(refused), schedule.frames.size());
-    return kNoConnection;
+    return Report();
   }
-  return kDone;
-}
+
+ private:
+  // Reads answers meanwhile: a daemon that was restarted asks for the skeleton again. False when
+  // there is no use in going on.
+  bool WaitUntil(std::int64_t due_us) {
+    constexpr std::int64_t kLongestWait = 100'000;  // until the next look at interrupts
+    Note(publisher_.Poll(SteadyMicroseconds(), milliseconds(0)));
+    for (;;) {
+      if (closed_ || Interrupted() || !publisher_.rejection(stream_).empty()) return false;
+      const std::int64_t now = SteadyMicroseconds();
+      if (now >= due_us) return true;
+      const microseconds wait(std::min(due_us - now, kLongestWait));
+      const auto whole = std::chrono::duration_cast<milliseconds>(wait);
+      const IoStatus status = whole.count() > 0 ? publisher_.Poll(now, whole) : IoStatus::kTimeout;
+      Note(status);
+      // A refusal comes at once, and a rest of less than a millisecond cannot be polled.
+      if (whole.count() == 0 || status == IoStatus::kNoConnection) {
+        std::this_thread::sleep_for(wait);
+      }
+    }
+  }
+
+  void Note(IoStatus status) {
+    closed_ = closed_ || IsOver(status);
+    if (status == IoStatus::kNoConnection) ++refused_;
+  }
+
+  int Report() const {
+    if (closed_) {
+      std::fprintf(stderr, "furrow: the daemon closed the connection\n");
+      return kNoConnection;
+    }
+    if (const std::string& why = publisher_.rejection(stream_); !why.empty()) {
+      std::fprintf(stderr, "furrow: the daemon takes no more poses: %s\n", why.c_str());
+      return kFailed;
+    }
+    if (refused_ > 0) {
+      std::fprintf(stderr, "furrow: nobody listened for %" PRId64 " of %" PRId64 " poses\n",
+                   std::min(refused_, sent_), sent_);
+      return kNoConnection;
+    }
+    return kDone;
+  }
+
+  client::Publisher& publisher_;
+  std::uint16_t stream_;
+  const motion::Clip& clip_;
+  const PlayOptions& options_;
+  std::int64_t sent_ = 0;
+  std::int64_t refused_ = 0;  // over UDP: answers that nobody listens at the port
+  bool closed_ = false;
+};
 
 int PlayFile(const PlayOptions& options) {
   const auto clip = LoadClipArgument(options.file);
@@ -152,6 +159,7 @@ int PlayFile(const PlayOptions& options) {
   auto transport = OpenTransport(
       options.host, options.tcp ? TransportKind::kTcp : TransportKind::kUdp, &exit_code);
   if (!transport) return exit_code;
+  CatchInterrupts();
   client::Publisher publisher(std::move(transport));
   const std::string subject = options.subject.empty()
                                   ? std::filesystem::path(options.file).stem().string()
@@ -159,8 +167,8 @@ int PlayFile(const PlayOptions& options) {
   const std::uint16_t stream =
       publisher.AddSubject(OfferOf(*clip, subject, options.scale), SteadyMicroseconds());
   exit_code = WaitUntilAccepted(publisher, stream, options.host);
-  if (exit_code != kDone) return exit_code;
-  exit_code = SendAll(publisher, stream, *clip, options);
+  if (exit_code != kDone || Interrupted()) return exit_code;
+  exit_code = Player(publisher, stream, *clip, options).Run();
   publisher.Close();
   return exit_code;
 }
@@ -182,9 +190,11 @@ void AddPlay(CLI::App& app, Action& action) {
   command->add_option("--speed", options->speed, "How many times as fast as recorded")
       ->check(CLI::Range(0.001, 1000.0))
       ->capture_default_str();
-  command->add_flag("--loop", options->loop, "Begin again at the end, with the numbers going on");
+  command->add_flag("--loop", options->loop,
+                    "Begin again at the end, until Ctrl-C; the numbers go on");
   command->add_flag("--quantise", options->quantise,
-                    "Send rotations in 6 bytes (off by at most 1.5e-4 rad) instead of 16");
+                    "Send 6 bytes a rotation (off by at most 1.5e-4 rad) and a translation (off by "
+                    "1/65534 of the largest in the pose), 2 a blend shape (off by 1/32768)");
   command->add_option("--scale", options->scale, "Metres per unit of the recording's lengths")
       ->check(CLI::Range(1e-6, 1e6))
       ->capture_default_str();
