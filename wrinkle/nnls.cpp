@@ -27,8 +27,7 @@ struct PassiveSet {
   }
 };
 
-// Least squares over the passive unknowns alone, by Cholesky. False where a pivot is lost to
-// rounding.
+// Least squares over the passive unknowns alone, by Cholesky. False where rounding costs a pivot.
 bool SolvePassive(std::span<const double> gram, std::span<const double> rhs, int n,
                   const PassiveSet& set, Vector* solution) {
   std::array<Vector, kMaxNnlsValues> lower;
@@ -116,10 +115,7 @@ void SolveNnls(std::span<const double> gram, std::span<const double> rhs, std::s
     set.Add(entering);
     Vector solution{};
     while (set.size > 0) {
-      if (!SolvePassive(gram, rhs, n, set, &solution)) {
-        set.RemoveIf([&](int value) { return value == entering; });
-        return;
-      }
+      if (!SolvePassive(gram, rhs, n, set, &solution)) return;  // x is feasible as it stands
       if (StepTowards(solution, &set, x)) break;
     }
   }

@@ -14,8 +14,8 @@ namespace {
 
 // Below this share of the skeleton's size a displacement is rounding, not a pose.
 constexpr float kLeastDisplacement = 1e-6f;
-// Added to the Gram matrix's diagonal (which is 1): poses that nearly coincide share their weight
-// instead of trading it back and forth from frame to frame.
+// Added to the Gram matrix's diagonal (which is about 1): poses that nearly coincide share their
+// weight instead of trading it back and forth from frame to frame.
 constexpr double kRidge = 1e-7;
 
 std::string Whose(const Driver& driver) { return "driver '" + driver.name + "'"; }
@@ -90,9 +90,9 @@ Status PoseDriverSet::BindValue(const Driver& driver, const PoseDriver::Value& v
     displacements_.push_back(context->chains().Evaluate(*locals, points_[i]) - rest_[i]);
   }
   const StackedPoints d = StackedPoints(displacements_).subspan(first);
-  const float length = std::sqrt(Dot(d, d));
-  const bool moves = length > kLeastDisplacement * context->size();
-  squared_displacements_.push_back(moves ? length * length : 0.0f);
+  const double square = Dot(d, d);
+  const bool moves = std::sqrt(square) > double{kLeastDisplacement * context->size()};
+  squared_displacements_.push_back(moves ? static_cast<float>(square) : 0.0f);
   if (!moves) {
     context->Warn(Whose(driver) + ": reference pose '" + value.reference_pose +
                   "' does not move its control points, so value '" + value.name + "' stays 0");
@@ -106,10 +106,9 @@ void PoseDriverSet::BindGram(Entry* entry) {
     for (int column = 0; column < entry->num_values; ++column) {
       const double norm = std::sqrt(double{squared_displacements_[entry->first_square + row]} *
                                     double{squared_displacements_[entry->first_square + column]});
+      // Not simply 1 on the diagonal: the norm is rounded, alike in every entry.
       double cosine = row == column ? 1.0 : 0.0;
-      if (row != column && norm > 0.0) {
-        cosine = Dot(Displacement(*entry, row), Displacement(*entry, column)) / norm;
-      }
+      if (norm > 0.0) cosine = Dot(Displacement(*entry, row), Displacement(*entry, column)) / norm;
       gram_.push_back(row == column ? cosine + kRidge : cosine);
     }
   }
@@ -161,12 +160,12 @@ void PoseDriverSet::SolveProjection(const Entry& entry, StackedPoints moved,
 void PoseDriverSet::SolveNonNegative(const Entry& entry, StackedPoints moved,
                                      std::span<Fit> fits) const {
   const std::size_t count = static_cast<std::size_t>(entry.num_values);
+  const float* squares = squared_displacements_.data() + entry.first_square;
   std::array<double, kMaxNnlsValues> rhs{};
-  std::array<double, kMaxNnlsValues>
-      lengths{};  // the unknowns are lengths along unit displacements
+  std::array<double, kMaxNnlsValues> lengths{};  // the unknowns: along unit displacements
   for (int k = 0; k < entry.num_values; ++k) {
-    const float square = squared_displacements_[entry.first_square + static_cast<std::uint32_t>(k)];
-    rhs[k] = square > 0.0f ? Dot(moved, Displacement(entry, k)) / std::sqrt(square) : 0.0f;
+    if (squares[k] > 0.0f)
+      rhs[k] = Dot(moved, Displacement(entry, k)) / std::sqrt(double{squares[k]});
   }
   SolveNnls(std::span(gram_).subspan(entry.first_gram, count * count), std::span(rhs).first(count),
             std::span(lengths).first(count));
@@ -174,16 +173,15 @@ void PoseDriverSet::SolveNonNegative(const Entry& entry, StackedPoints moved,
   std::array<glm::vec3, kMaxControlPoints> left_over;
   std::copy(moved.begin(), moved.end(), left_over.begin());
   for (int k = 0; k < entry.num_values; ++k) {
-    const float square = squared_displacements_[entry.first_square + static_cast<std::uint32_t>(k)];
-    fits[k].along = square > 0.0f ? static_cast<float>(lengths[k]) / std::sqrt(square) : 0.0f;
+    fits[k].along =
+        squares[k] > 0.0f ? static_cast<float>(lengths[k] / std::sqrt(double{squares[k]})) : 0.0f;
     if (fits[k].along <= 0.0f) continue;
     const StackedPoints d = Displacement(entry, k);
     for (std::size_t i = 0; i < moved.size(); ++i) left_over[i] -= fits[k].along * d[i];
   }
   const StackedPoints residual = StackedPoints(left_over).first(moved.size());
-  for (int k = 0; k < entry.num_values; ++k) {
-    fits[k].squared_perpendicular = Dot(residual, residual);
-  }
+  const auto squared_residual = static_cast<float>(Dot(residual, residual));
+  for (int k = 0; k < entry.num_values; ++k) fits[k].squared_perpendicular = squared_residual;
 }
 
 float PoseDriverSet::Value(int entry, int value, const Fit& fit) const {

@@ -7,9 +7,9 @@
 
 namespace furrow::wrinkle {
 
-float Dot(StackedPoints a, StackedPoints b) {
-  float sum = 0.0f;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += glm::dot(a[i], b[i]);
+double Dot(StackedPoints a, StackedPoints b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += glm::dot(glm::dvec3(a[i]), glm::dvec3(b[i]));
   return sum;
 }
 
@@ -23,7 +23,8 @@ float SquaredDistance(StackedPoints a, StackedPoints b, float scale) {
 }
 
 float ProjectionAlong(StackedPoints moved, StackedPoints d, float squared_displacement) {
-  return squared_displacement > 0.0f ? Dot(moved, d) / squared_displacement : 0.0f;
+  if (squared_displacement <= 0.0f) return 0.0f;
+  return static_cast<float>(Dot(moved, d) / double{squared_displacement});
 }
 
 float Falloff(float squared_perpendicular, float squared_displacement, float falloff) {

@@ -10,7 +10,8 @@ namespace furrow::wrinkle {
 // Control points stacked into one long vector: points of one driver, in one space and unit.
 using StackedPoints = std::span<const glm::vec3>;
 
-[[nodiscard]] float Dot(StackedPoints a, StackedPoints b);
+// In double: a Gram matrix of rounded products may not be positive definite.
+[[nodiscard]] double Dot(StackedPoints a, StackedPoints b);
 
 // |a - scale * b|^2, equally long.
 [[nodiscard]] float SquaredDistance(StackedPoints a, StackedPoints b, float scale);

@@ -188,8 +188,8 @@ TEST(Nnls, IsContinuousInItsTarget) {
       worst = std::max(worst, std::abs(x[k] - before[k]));
     before = x;
   }
-  EXPECT_LT(worst,
-            0.02);  // a jump between active sets would be of the size of the weights (about 1)
+  // A jump between active sets would be of the size of the weights, about 1.
+  EXPECT_LT(worst, 0.02);
 }
 
 }  // namespace

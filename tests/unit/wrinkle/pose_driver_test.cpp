@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -94,12 +95,17 @@ TEST(PoseDriver, NnlsFalloffMeasuresWhatTheFitLeavesOver) {
   EXPECT_NEAR(rig.values()[0], std::exp(-0.5f), 1e-5f);  // |left over| = |d| = 2
 }
 
+// However their lengths round: a product of floats may exceed the product of the lengths.
 TEST(PoseDriver, PosesThatCoincideShare) {
   const Skeleton pole = Pole();
-  BoundRig rig(MoverRig({{1, 0, 0}, {1, 0, 0}}, PoseSolve::kNnls), pole);
-  rig.Solve(Moved(pole, {1, 0, 0}));
-  EXPECT_NEAR(rig.values()[0], 0.5f, 1e-3f);
-  EXPECT_NEAR(rig.values()[1], 0.5f, 1e-3f);
+  std::mt19937 random(12);
+  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+  for (int i = 0; i < 200; ++i) {
+    const glm::vec3 d(uniform(random), uniform(random), uniform(random));
+    BoundRig rig(MoverRig({d, d, d}, PoseSolve::kNnls), pole);
+    rig.Solve(Moved(pole, d));
+    for (const float value : rig.values()) EXPECT_NEAR(value, 1.0f / 3.0f, 1e-3f) << i;
+  }
 }
 
 // A joint that only rotates moves its tail and not its origin: the reason for control points.
@@ -120,8 +126,7 @@ TEST(PoseDriver, LooksAtTheTailOfAJointThatOnlyRotates) {
   EXPECT_TRUE(tail.binding()->warnings().empty());
   LocalPose pose = RestPose(pole);
   Turn(pole, "pole", AngleAxis(30.0f, {0, 0, 1}), &pose);
-  // Tail from (0, 1) to (-sin a, cos a): chord of 30 onto chord of 60 degrees (a unit vector at
-  // 150):
+  // Tail from (0, 1) to (-sin a, cos a): chord of 30 onto chord of 60 degrees (unit vector at 150):
   // (-1/2, sqrt(3)/2 - 1) . (-sqrt(3)/2, -1/2) = sqrt(3)/4 - sqrt(3)/4 + 1/2.
   EXPECT_NEAR(tail.ValueAt(pose, "d.lean"), 0.5f, 1e-6f);
 }
@@ -129,17 +134,18 @@ TEST(PoseDriver, LooksAtTheTailOfAJointThatOnlyRotates) {
 TEST(PoseDriver, OffsetPointIsInTheJointsSpaceAndScaled) {
   const Skeleton pole = Pole();
   Rig rig = MoverRig({{1, 0, 0}}, PoseSolve::kProjection);
-  rig.reference_poses[0].joints[0] = {"pole", AngleAxis(90.0f, {0, 0, 1})};
-  rig.drivers[0].pose.points = {
-      {.joint = "pole", .kind = ControlPoint::Kind::kOffset, .offset = {0, 3, 0}}};
-  BoundRig bound(rig, pole);
+  rig.reference_poses[0].joints[0] = {"pole", AngleAxis(90.0f, {0, 0, 1}), {-1, 0, 0}};
+  ControlPoint& point = rig.drivers[0].pose.points[0];
+  point = {.joint = "pole", .kind = ControlPoint::Kind::kOffset, .offset = {0, 3, 0}};
   LocalPose pose = RestPose(pole);
   Turn(pole, "pole", AngleAxis(90.0f, {0, 0, 1}), &pose);
-  EXPECT_NEAR(bound.ValueAt(pose, "d.p0"), 1.0f, 1e-6f);
-  // The same offset on a skeleton of twice the size is twice as far out: against an origin that
-  // moves, only a scaled offset keeps the ratio.
-  rig.drivers[0].pose.points[0].offset_size = SkeletonSize(pole);
-  EXPECT_NEAR(BoundRig(rig, pole).ValueAt(pose, "d.p0"), 1.0f, 1e-6f);
+  // An offset of 3s moves by (-3s, -3s), and in the reference pose, whose origin moves as well, by
+  // (-3s - 1, -3s): (9s^2 + 3s + 9s^2) / ((3s + 1)^2 + 9s^2).
+  EXPECT_NEAR(BoundRig(rig, pole).ValueAt(pose, "d.p0"), 21.0f / 25.0f, 1e-6f);
+  point.offset_size = SkeletonSize(pole);
+  EXPECT_NEAR(BoundRig(rig, pole).ValueAt(pose, "d.p0"), 21.0f / 25.0f, 1e-6f);
+  point.offset_size = SkeletonSize(pole) / 2.0f;  // measured on a skeleton of half the size
+  EXPECT_NEAR(BoundRig(rig, pole).ValueAt(pose, "d.p0"), 78.0f / 85.0f, 1e-6f);
 }
 
 // A pose recorded on one skeleton works on one of twice the size with other local frames.
@@ -171,8 +177,7 @@ TEST(PoseDriver, SweepOfAReferencePoseIsContinuous) {
     before = value;
   }
   std::printf("pose: at most %.6f per 0.1 degree\n", worst);
-  // 25 degrees give 1: 0.004 a step on average, and the chord of a circle varies by cos(25
-  // degrees).
+  // 25 degrees give 1: 0.004 a step on average; the chord of a circle varies by cos(25 degrees).
   EXPECT_LE(worst, 0.0045f);
 }
 

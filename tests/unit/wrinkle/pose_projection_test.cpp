@@ -21,7 +21,7 @@ TEST(Projection, IsZeroAtRestAndOneAtTheReferencePose) {
 TEST(Projection, StacksPointsIntoOneVector) {
   const std::vector<glm::vec3> moved = {{9.0f, 1.0f, 0.0f}, {0.0f, -2.0f, 2.0f}};
   EXPECT_FLOAT_EQ(ProjectionAlong(moved, kDisplacement, 25.0f), (3.0f + 8.0f) / 25.0f);
-  EXPECT_FLOAT_EQ(Dot(moved, kDisplacement), 11.0f);
+  EXPECT_DOUBLE_EQ(Dot(moved, kDisplacement), 11.0);
   // (9, 1 - 1.5, 0) and (0, -2, 2 - 2)
   EXPECT_FLOAT_EQ(SquaredDistance(moved, kDisplacement, 0.5f), 81.0f + 0.25f + 4.0f);
 }
