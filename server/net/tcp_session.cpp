@@ -162,13 +162,14 @@ void TcpSession::SendReply(std::span<const std::uint8_t> message) {
   asio::post(socket_.get_executor(), [self = shared_from_this()] { self->Close(); });
 }
 
-int TcpSession::SendFrame(std::uint64_t key, std::span<const std::uint8_t> message) {
+int TcpSession::SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
+                          std::size_t keep) {
   if (state_ != State::kOpen) return 0;
-  const int dropped = outbox_.PushFrame(key, message);
+  const int dropped = outbox_.PushFrame(key, message, keep);
   if (!writing_) wake_.cancel();
   return dropped;
 }
 
-void TcpSession::DropFrames(std::uint64_t key) { outbox_.DropFrame(key); }
+void TcpSession::DropFrames(std::uint64_t key) { outbox_.DropFrames(key); }
 
 }  // namespace furrow::server

@@ -35,7 +35,8 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
   void Close();
 
   void SendReply(std::span<const std::uint8_t> message) override;
-  int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message) override;
+  int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
+                std::size_t keep) override;
   void DropFrames(std::uint64_t key) override;
 
  private:

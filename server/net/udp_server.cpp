@@ -32,7 +32,7 @@ class UdpServer::UdpPeer : public Link {
   UdpPeer(UdpServer* server, udp::endpoint endpoint) : server_(server), endpoint_(endpoint) {}
 
   void SendReply(std::span<const std::uint8_t> message) override { Send(message); }
-  int SendFrame(std::uint64_t, std::span<const std::uint8_t> message) override {
+  int SendFrame(std::uint64_t, std::span<const std::uint8_t> message, std::size_t) override {
     Send(message);
     return 0;
   }

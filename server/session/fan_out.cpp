@@ -5,6 +5,13 @@
 #include "server/session/subscribers.h"
 
 namespace furrow::server {
+namespace {
+
+// How many frames of a subscription may wait for a slow peer.
+constexpr std::size_t kWeightsKept = 4;
+constexpr std::size_t kPicturesKept = 1;
+
+}  // namespace
 
 void Subscribers::Publish(Subject& subject, std::int64_t age_us, Time now) {
   const auto watching = by_subject_.find(subject.id);
@@ -55,7 +62,7 @@ void Subscribers::SendWeights(Subscription& subscription, const WeightsWish& wis
                   {.stream = subscription.id,
                    .sequence = pipeline.sequence(),
                    .capture_time_us = pipeline.capture_time_us()},
-                  frame_, Counter::kWeightsSent, Counter::kWeightsDroppedSlow);
+                  frame_, Counter::kWeightsSent, Counter::kWeightsDroppedSlow, kWeightsKept);
 }
 
 // Subscriptions of one subject that show the same share one job, and with it one picture.
@@ -93,7 +100,7 @@ void Subscribers::OnPicture(const FinishedPicture& picture) {
                     {.stream = subscription.id,
                      .sequence = picture.sequence,
                      .capture_time_us = picture.capture_time_us},
-                    image_, Counter::kPicturesSent, Counter::kPicturesDroppedSlow);
+                    image_, Counter::kPicturesSent, Counter::kPicturesDroppedSlow, kPicturesKept);
   }
 }
 

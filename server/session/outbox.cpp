@@ -12,15 +12,19 @@ bool Outbox::PushReply(std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes) {
-  const auto waiting = std::find_if(frames_.begin(), frames_.end(),
-                                    [key](const Frame& frame) { return frame.key == key; });
-  if (waiting != frames_.end()) {
-    waiting->bytes.assign(bytes.begin(), bytes.end());  // keeps its place in the line
-    return 1;
-  }
+int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep) {
+  const auto is_same = [key](const Frame& frame) { return frame.key == key; };
+  const auto of_key = static_cast<std::size_t>(std::ranges::count_if(frames_, is_same));
   int dropped = 0;
-  if (frames_.size() >= max_frames_) {
+  if (of_key > 0 && of_key >= keep) {
+    const auto oldest = std::ranges::find_if(frames_, is_same);
+    if (keep == 1) {
+      oldest->bytes.assign(bytes.begin(), bytes.end());  // keeps its place in the line
+      return 1;
+    }
+    frames_.erase(oldest);
+    dropped = 1;
+  } else if (frames_.size() >= max_frames_) {
     frames_.pop_front();
     dropped = 1;
   }
@@ -40,7 +44,7 @@ bool Outbox::Pop(std::vector<std::uint8_t>* out) {
   return true;
 }
 
-void Outbox::DropFrame(std::uint64_t key) {
+void Outbox::DropFrames(std::uint64_t key) {
   std::erase_if(frames_, [key](const Frame& frame) { return frame.key == key; });
 }
 

@@ -12,8 +12,9 @@ namespace furrow::server {
 // What waits for one peer's socket. Bounded: a slow peer loses old frames and slows nobody.
 //
 // - A reply is never dropped; when `max_replies` wait, the peer does not read and is to be closed.
-// - A frame has a key (its subscription): a newer frame takes the place of the one of the same key
-//   that still waits, so at most one a key waits and the newest wins.
+// - A frame has a key (its subscription), of which at most `keep` wait: beyond it the oldest of the
+//   key goes and the newest wins. 1 for pictures; a few for weights, so that poses that came in one
+//   burst are not lost to a peer that keeps up.
 // - Frames of different keys together are at most `max_frames`; then the longest waiting one goes.
 class Outbox {
  public:
@@ -23,14 +24,14 @@ class Outbox {
   // False: full, close the peer.
   [[nodiscard]] bool PushReply(std::span<const std::uint8_t> bytes);
   // The number of frames that were dropped for it: 0 or 1.
-  int PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes);
+  int PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep = 1);
 
   // Swaps the next bytes into `out`: replies first, in order; then the longest waiting frame.
   // False: nothing waits.
   bool Pop(std::vector<std::uint8_t>* out);
 
-  // A subscription ended: a frame of it that still waits is of no use.
-  void DropFrame(std::uint64_t key);
+  // A subscription ended: what still waits of it is of no use.
+  void DropFrames(std::uint64_t key);
 
   [[nodiscard]] bool empty() const { return replies_.empty() && frames_.empty(); }
   [[nodiscard]] std::size_t num_frames() const { return frames_.size(); }

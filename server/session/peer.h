@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -22,9 +23,10 @@ class Link {
   virtual ~Link() = default;
   // Answers: in order, never replaced by anything newer.
   virtual void SendReply(std::span<const std::uint8_t> message) = 0;
-  // Weights and pictures: the newest of a key wins where the peer is slow. Returns how many older
-  // frames were dropped for it.
-  virtual int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message) = 0;
+  // Weights and pictures: where the peer is slow, the newest `keep` of a key win. Returns how many
+  // older frames were dropped.
+  virtual int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
+                        std::size_t keep) = 0;
   // The frames of a key are no longer wanted.
   virtual void DropFrames(std::uint64_t key) = 0;
 };

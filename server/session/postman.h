@@ -23,13 +23,13 @@ class Postman {
     if (!Encode(peer, header, message)) return;
     peer.link->SendReply(buffer_);
   }
-  // Counts what the frame pushes out as `dropped`.
+  // Counts what the frame pushes out as `dropped`; `keep` as in Link::SendFrame().
   template <class Message>
   void Frame(Peer& peer, std::uint64_t key, protocol::Header header, const Message& message,
-             Counter sent, Counter dropped) {
+             Counter sent, Counter dropped, std::size_t keep) {
     if (!Encode(peer, header, message)) return;
     metrics_->Add(sent);
-    metrics_->Add(dropped, static_cast<std::uint64_t>(peer.link->SendFrame(key, buffer_)));
+    metrics_->Add(dropped, static_cast<std::uint64_t>(peer.link->SendFrame(key, buffer_, keep)));
   }
   // An error about the request that `request` heads.
   void Error(Peer& peer, const protocol::Header& request, protocol::ErrorCode code,

@@ -37,6 +37,14 @@ TEST(Outbox, TheNewestFrameOfAKeyWinsAndKeepsItsPlace) {
   EXPECT_THAT(PopAll(&outbox), ElementsAre(11, 20));
 }
 
+TEST(Outbox, ABurstOfAKeyMayWaitUpToItsLimit) {
+  Outbox outbox(4, 8);
+  for (std::uint8_t i = 0; i < 4; ++i) EXPECT_EQ(outbox.PushFrame(1, Bytes{i}, 4), 0);
+  EXPECT_EQ(outbox.PushFrame(2, Bytes{20}, 4), 0);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{4}, 4), 1);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(1, 2, 3, 20, 4));
+}
+
 TEST(Outbox, AStalledPeerHoldsAtMostSoManyFramesAndTheOldestGoes) {
   Outbox outbox(4, 3);
   for (std::uint8_t key = 0; key < 3; ++key) EXPECT_EQ(outbox.PushFrame(key, Bytes{key}), 0);
@@ -58,7 +66,7 @@ TEST(Outbox, AnEndedSubscriptionLeavesNothingBehind) {
   Outbox outbox(2, 4);
   outbox.PushFrame(1, Bytes{1});
   outbox.PushFrame(2, Bytes{2});
-  outbox.DropFrame(1);
+  outbox.DropFrames(1);
   EXPECT_THAT(PopAll(&outbox), ElementsAre(2));
 }
 
