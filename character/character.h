@@ -72,12 +72,10 @@ struct Character {
 //
 // - `poses` reads the rig's reference poses that name a file (see rig_file.h).
 // - Everything in the file is hostile until checked: sizes before allocation, indices, finite
-// numbers,
-//   skin weights (the strongest four, renormalised), a skeleton that is a tree. Errors name the
-//   file and the field ("face.glb: meshes[0].primitives[0].attributes.JOINTS_0").
+//   numbers, skin weights (the strongest four, renormalised), a skeleton that is a tree. Errors
+//   name the file and the field ("face.glb: meshes[0].primitives[0].attributes.JOINTS_0").
 // - Missing normals and tangents are computed. Pictures named by the rig are loaded: embedded ones
-// by
-//   name, files by FindAsset(); a mask that cannot be found is an error.
+//   by name, files by FindAsset(); a mask that cannot be found is an error.
 [[nodiscard]] Result<Character> LoadCharacter(const std::filesystem::path& glb,
                                               const std::filesystem::path& rig = {},
                                               const wrinkle::PoseSource& poses = {});
@@ -87,16 +85,16 @@ struct Character {
 [[nodiscard]] Result<Character> ParseCharacter(std::string_view bytes,
                                                const std::filesystem::path& folder);
 
-// Gives a character another rig, whose files are looked up in `folder` first, and loads its
-// pictures.
+// Gives a character another rig, whose files are looked up
+// in `folder` first, and loads its pictures.
 [[nodiscard]] Status AttachRig(wrinkle::Rig rig, const std::filesystem::path& folder,
                                Character* character);
 
 // Every picture that a rig names, masks first, each once.
 [[nodiscard]] std::vector<std::string> RigPictureNames(const wrinkle::Rig& rig);
 
-// Writes skeleton, skin, meshes and textures as one .glb (atomically: a temporary file, then a
-// rename).
+// Writes skeleton, skin, meshes and textures as one .glb
+// (atomically: a temporary file, then a rename).
 [[nodiscard]] Status SaveCharacterGlb(const Character& character, const std::filesystem::path& glb);
 
 }  // namespace furrow::character

@@ -21,12 +21,11 @@ namespace furrow::character {
 //   FURROW_ASSET_PATH, and read by `poses` (see motion/pose_source.h). Without a source such a rig
 //   is kUnsupported. Mixes are resolved; a pose that only mixes use is left out.
 // - Names are checked within the rig: unique, and what refers to them exists. Joints are not: that
-// is
-//   RigBinding's, once a skeleton is known. Textures are not opened.
+//   is RigBinding's, once a skeleton is known. Textures are not opened.
 // - Errors: kNotFound, kIo, kLimit (size, depth, counts), kParse (not JSON), kSchema (a field
-// unknown,
-//   missing or of the wrong type), kInvalidArgument (out of range, unknown name), kNonFinite,
-//   kCyclic (mixes). `where` is "file:line: field", the field as a path: "drivers[3].hinge.axis".
+//   unknown, missing or of the wrong type), kInvalidArgument (out of range, unknown name),
+//   kNonFinite, kCyclic (mixes). `where` is "file:line: field", the field as a path:
+//   "drivers[3].hinge.axis".
 [[nodiscard]] Result<wrinkle::Rig> LoadRig(const std::filesystem::path& path,
                                            const wrinkle::PoseSource& poses = {});
 // `source_name` stands for the file in errors; `folder` is where files are looked up first.

@@ -98,13 +98,13 @@ struct PoseEncoding {
   [[nodiscard]] static PoseEncoding Small() { return {true, true, true}; }
 };
 
-// Writes messages. Keeps its working memory: one a thread, reused, does not allocate in the long
-// run.
+// Writes messages. Keeps its working memory: one a thread,
+// reused, does not allocate in the long run.
 //
-// Encode() replaces the content of `out` by envelope and payload: what goes into one TCP frame, one
-// datagram, or fragments (fragment.h). Precondition: the message would pass Decode(); lists of
-// indices may be left empty to mean "all, in order" when their values are as many as the
-// skeleton's.
+// Encode() replaces the content of `out` by envelope and payload: what goes
+// into one TCP frame, one datagram, or fragments (fragment.h). Precondition:
+// the message would pass Decode(); lists of indices may be left empty to
+// mean "all, in order" when their values are as many as the skeleton's.
 class Encoder {
  public:
   Encoder();

@@ -23,8 +23,8 @@ DecodeStatus Decode(const MessageView& view, Hello& message) {
 }
 
 void Encoder::Encode(const Header& header, const Hello& message, std::vector<std::uint8_t>& out) {
-  // What the other fields take depends on alignment, so one try without padding says what is
-  // missing.
+  // What the other fields take depends on alignment, so one
+  // try without padding says what is missing.
   std::size_t padding = 0;
   do {
     internal::Builder& builder = state_->builder;

@@ -119,8 +119,8 @@ template <class Wire, class Value, class Convert>
 Offset<Vector<const Wire*>> WriteStructs(Builder& builder, const std::vector<Value>& values,
                                          const Convert& convert) {
   if (values.empty()) return 0;
-  // Not CreateUninitializedVectorOfStructs(): in FlatBuffers 2.0.8 it aligns to the size of the
-  // struct.
+  // Not CreateUninitializedVectorOfStructs(): in
+  // FlatBuffers 2.0.8 it aligns to the size of the struct.
   return builder.CreateVectorOfStructs<Wire>(
       values.size(),
       [&convert](std::size_t i, Wire* out, const std::vector<Value>* from) {

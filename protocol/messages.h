@@ -42,9 +42,9 @@ struct Header {
 
 // --- Meeting ------------------------------------------------------------------------------------
 
-// Client to server. Over UDP a subscriber says Hello twice: with token 0, then with Welcome's
-// token, which proves that it receives at its address. Padded by the encoder (see STANDARD.md
-// section 4).
+// Client to server. Over UDP a subscriber says Hello twice: with
+// token 0, then with Welcome's token, which proves that it receives
+// at its address. Padded by the encoder (see STANDARD.md section 4).
 struct Hello {
   std::string client;  // program and version, for logs
   std::uint64_t token = 0;
@@ -204,9 +204,9 @@ struct SubscribePictures {
 // header.stream names the subscription.
 struct Unsubscribe {};
 
-// header.stream: the subscription's id; header.sequence: the request's. Sent again of its own
-// accord whenever the names change (another rig or skeleton), before the first frame that uses
-// them.
+// header.stream: the subscription's id; header.sequence: the
+// request's. Sent again of its own accord whenever the names change
+// (another rig or skeleton), before the first frame that uses them.
 struct SubscribeReply {
   std::string subject;             // who was chosen; empty while waiting for one
   std::uint64_t names_hash = 0;    // NamesHash(names); 0 while unknown, and for pictures

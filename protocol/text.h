@@ -6,8 +6,8 @@
 
 namespace furrow::protocol {
 
-// Well-formed UTF-8 (no overlong forms, no surrogates, at most U+10FFFF) without control
-// characters.
+// Well-formed UTF-8 (no overlong forms, no surrogates, at
+// most U+10FFFF) without control characters.
 [[nodiscard]] bool IsPlainText(std::string_view text);
 
 // The longest beginning of at most `max_bytes` that does not cut a character of plain text in two.

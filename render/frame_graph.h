@@ -35,8 +35,8 @@ class FrameGraphDevice {
   virtual void DestroyTexture(TextureId texture) = 0;
 };
 
-// Keeps released textures for the next frame, or the next pass of the same frame, that wants one
-// alike.
+// Keeps released textures for the next frame, or the next
+// pass of the same frame, that wants one alike.
 class TransientPool {
  public:
   static constexpr int kKeepFrames = 8;  // a texture unused for so many frames is destroyed
@@ -65,8 +65,7 @@ class TransientPool {
 // One frame. Add passes in pipeline order, Compile(), Execute().
 //
 // - A handle names one *version* of a texture: Write() gives a new one, so a pass that reads a
-// stale
-//   picture is a mistake that Compile() reports, by the names of pass and texture.
+//   stale picture is a mistake that Compile() reports, by the names of pass and texture.
 // - A pass whose results nobody reads is culled, unless it has a side effect.
 // - A transient texture lives from the first to the last pass that uses it; two whose lives do not
 //   overlap may share memory. Its contents are undefined before the first write.
@@ -103,9 +102,9 @@ class FrameGraph {
     int pass_;
   };
 
-  // `setup(Builder&, Data&)` declares, now; `execute(const Resources&, const Data&)` draws, later,
-  // and returns a Status. Data is what one tells the other: its handles. Returns it, for the next
-  // pass.
+  // `setup(Builder&, Data&)` declares, now; `execute(const Resources&,
+  // const Data&)` draws, later, and returns a Status. Data is what one
+  // tells the other: its handles. Returns it, for the next pass.
   template <class Data, class Setup, class Execute>
   Data AddPass(std::string_view name, Setup&& setup, Execute execute) {
     const auto data = std::make_shared<Data>();

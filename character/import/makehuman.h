@@ -39,8 +39,8 @@ struct ImportReport {
 // - Decimetres become metres; the lowest point of the body stands on y = 0.
 // - Joints keep MakeHuman's names, with axes parallel to the model's in the rest pose.
 // - Colours, pores, masks and wrinkle maps are painted (skin_paint.h, face_folds.h, prop_paint.h).
-// - The rig is bound to the skeleton once, so that a rig and a folder that do not fit are found
-// here.
+// - The rig is bound to the skeleton once, so that a rig
+//   and a folder that do not fit are found here.
 //
 // Errors name the file and line or field: kNotFound (a file, a joint), kParse, kSchema, kNonFinite,
 // kInvalidArgument (an index out of range, an option), kLimit, kIo.

@@ -27,8 +27,8 @@ struct NeutralFrame {
   std::string subject;
   std::int64_t capture_time_us = 0;  // the sender's clock where it has one, else arrival
   std::uint32_t sequence = 0;        // counts the frames of this subject from 0, by the adapter
-  // Changes whenever the names, parents or order of joints and blend shapes do: offer a skeleton
-  // anew.
+  // Changes whenever the names, parents or order of joints
+  // and blend shapes do: offer a skeleton anew.
   std::uint32_t layout = 0;
   bool tracked = true;  // false: the sender says it lost the subject; values are its last
   std::vector<NeutralJoint> joints;
@@ -38,8 +38,8 @@ struct NeutralFrame {
 // The skeleton that such a frame implies; rest rotations are identity (foreign wires send none).
 [[nodiscard]] SkeletonOffer MakeOffer(const NeutralFrame& frame);
 
-// The pose of `frame` against an offer made from a frame of the same layout. Reuses `pose`'s
-// memory.
+// The pose of `frame` against an offer made from a frame of
+// the same layout. Reuses `pose`'s memory.
 void MakePose(const NeutralFrame& frame, const SkeletonOffer& offer, PoseFrame& pose);
 
 }  // namespace furrow::protocol::mocap

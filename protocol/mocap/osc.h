@@ -21,8 +21,8 @@ struct OscMessage {
   std::span<const std::uint8_t> arguments;  // as long as `tags` says
 };
 
-// Reads arguments in order. Each call is false, and takes nothing, where the next tag is another
-// type.
+// Reads arguments in order. Each call is false, and takes
+// nothing, where the next tag is another type.
 class OscArguments {
  public:
   explicit OscArguments(const OscMessage& message);
