@@ -16,13 +16,12 @@ struct BallShares {
 // Splits `bend` (Bend() of the two bones) by where the lower bone points.
 //
 // - `forward`, `right`: the lower bone projected across the straight direction; any length, since
-// only
-//   psi = atan2(right, forward) counts. All shares are 0 where the projection has no length.
+//   only psi = atan2(right, forward) counts. All shares are 0 where the projection has no length.
 // - kSmooth: bend times the squares of the positive parts of cos(psi), -cos(psi), sin(psi) and
 //   -sin(psi). They sum to `bend` and are C1 in psi.
-// - kThesis: all of it to front where cos(psi) > 0.75, to back where < -0.75, and between them to
-// left
-//   or right. Jumps at psi = 41.4 degrees; at exactly +-0.75 the thesis states no case: all are 0.
+// - kThesis: all of it to front where cos(psi) > 0.75, to back where
+//   < -0.75, and between them to left or right. Jumps at psi = 41.4
+//   degrees; at exactly +-0.75 the thesis states no case: all are 0.
 [[nodiscard]] BallShares SplitBend(BallMode mode, float bend, float forward, float right);
 
 }  // namespace furrow::wrinkle

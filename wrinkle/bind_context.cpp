@@ -2,18 +2,18 @@
 #include "wrinkle/bind_context.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include <glm/geometric.hpp>
 
+#include "wrinkle/ascii.h"
 #include "wrinkle/retarget.h"
 
 namespace furrow::wrinkle {
 namespace {
 
-// Deltas smaller than this (radians, source units) leave a joint at rest: pose files list every
-// joint.
+// Deltas smaller than this (radians, source units) leave a
+// joint at rest: pose files list every joint.
 constexpr float kLeastDelta = 1e-6f;
 
 bool IsRest(const JointDelta& delta) {
@@ -23,12 +23,6 @@ bool IsRest(const JointDelta& delta) {
 
 void AddOnce(const std::string& name, std::vector<std::string>* list) {
   if (std::find(list->begin(), list->end(), name) == list->end()) list->push_back(name);
-}
-
-bool EqualsWithoutCase(std::string_view a, std::string_view b) {
-  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [&](char x, char y) { return lower(x) == lower(y); });
 }
 
 }  // namespace
@@ -95,7 +89,7 @@ Result<int> BindContext::Joint(std::string_view whose, std::string_view field,
 
 Result<int> BindContext::BlendShape(std::string_view whose, const std::string& name) {
   for (std::size_t i = 0; i < blend_shape_names_.size(); ++i) {
-    if (EqualsWithoutCase(blend_shape_names_[i], name)) return static_cast<int>(i);
+    if (EqualsIgnoreCase(blend_shape_names_[i], name)) return static_cast<int>(i);
   }
   if (!options_.allow_missing) {
     return Status(StatusCode::kNotFound,

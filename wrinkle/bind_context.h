@@ -23,8 +23,8 @@ class BindContext {
   // The rig's anchor and its reference poses as poses of this skeleton. To be called first.
   [[nodiscard]] Status ResolveAnchorAndPoses();
 
-  // The joint, or kNoJoint where it is missing and may be. `whose` is "driver 'x'", `field` its
-  // field.
+  // The joint, or kNoJoint where it is missing and may be.
+  // `whose` is "driver 'x'", `field` its field.
   [[nodiscard]] Result<int> Joint(std::string_view whose, std::string_view field,
                                   const std::string& name);
   // Index of the blend shape, matched without case; -1 where it is missing and may be.

@@ -48,8 +48,8 @@ struct Explanation {
   // A hinge, ball or twist driver's geometry, in degrees.
   struct Angle {
     std::string driver;
-    std::string
-        what;  // "flexion", "bend", "direction" (from forward to the subject's right), "twist"
+    // "flexion", "bend", "direction" (from forward towards the subject's right) or "twist".
+    std::string what;
     float degrees = 0.0f;
   };
   std::vector<Weight> weights;         // in the order of RigBinding::weight_names()

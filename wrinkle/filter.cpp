@@ -70,8 +70,8 @@ void HoldAndDecay(const FilterJob& job) {
 
 }  // namespace
 
-void FilterContext::Resize(int num_weights) {
-  const std::size_t count = static_cast<std::size_t>(num_weights);
+void FilterContext::Resize(int num_values) {
+  const std::size_t count = static_cast<std::size_t>(num_values);
   value.assign(count, 0.0f);
   raw.assign(count, 0.0f);
   derivative.assign(count, 0.0f);
@@ -79,16 +79,10 @@ void FilterContext::Resize(int num_weights) {
   started = false;
 }
 
-void FilterContext::Reset() {
-  std::fill(value.begin(), value.end(), 0.0f);
-  std::fill(raw.begin(), raw.end(), 0.0f);
-  std::fill(derivative.begin(), derivative.end(), 0.0f);
-  since_input = 0.0;
-  started = false;
-}
+void FilterContext::Reset() { Resize(static_cast<int>(value.size())); }
 
 JobStatus FilterJob::Validate() const {
-  if (filter == nullptr || context == nullptr) return JobStatus::kNoSkeleton;
+  if (filter == nullptr || context == nullptr) return JobStatus::kNullPointer;
   if (!std::isfinite(dt) || dt < 0.0) return JobStatus::kBadTime;
   const std::size_t count = context->value.size();
   if (!input.empty() && input.size() != count) return JobStatus::kSizeMismatch;

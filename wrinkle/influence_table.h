@@ -19,8 +19,8 @@ namespace furrow::wrinkle {
 // and map, the largest counts.
 class InfluenceTable {
  public:
-  // The rig is already known to refer to what there is; drivers with missing joints are passed
-  // over.
+  // The rig is already known to refer to what there is;
+  // drivers with missing joints are passed over.
   void Bind(const Rig& rig, const Skeleton& skeleton,
             const std::unordered_map<std::string, int>& value_index);
 

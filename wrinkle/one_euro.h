@@ -11,8 +11,7 @@ namespace furrow::wrinkle {
 // that rest is steady and motion is not late.
 //
 // - `speed` is the low-passed derivative, 1/s, updated in place; `raw_slope` the derivative of the
-// raw
-//   signal over the last step. `dt` > 0.
+//   raw signal over the last step. `dt` > 0.
 // - Source: Casiez, Roussel and Vogel, 1 Euro Filter (CHI 2012).
 struct OneEuro {
   double min_cutoff_hz = 4.0;

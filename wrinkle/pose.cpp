@@ -13,7 +13,7 @@ void LocalPose::SetRest(const Skeleton& skeleton) {
 }
 
 JobStatus LocalToModelJob::Validate() const {
-  if (skeleton == nullptr) return JobStatus::kNoSkeleton;
+  if (skeleton == nullptr) return JobStatus::kNullPointer;
   const std::size_t count = static_cast<std::size_t>(skeleton->num_joints());
   if (local.size() < count || model.size() < count) return JobStatus::kSizeMismatch;
   return AllFinite(local.first(count)) ? JobStatus::kOk : JobStatus::kNonFinite;

@@ -11,7 +11,7 @@ namespace furrow::wrinkle {
 // Why a job did not run. Jobs are on the packet path: they never throw, allocate or format text.
 enum class JobStatus {
   kOk = 0,
-  kNoSkeleton,    // a pointer that must be set is null
+  kNullPointer,   // a pointer that must be set is null
   kSizeMismatch,  // a span is shorter than the skeleton or the rig needs
   kNonFinite,     // a NaN or infinity in the input; outputs are unchanged
   kBadTime,       // dt negative or not finite

@@ -16,9 +16,9 @@ using StackedPoints = std::span<const glm::vec3>;
 // |a - scale * b|^2, equally long.
 [[nodiscard]] float SquaredDistance(StackedPoints a, StackedPoints b, float scale);
 
-// Thesis 4.1 with dot(d, d), `squared_displacement`, in the denominator: how far along displacement
-// `d` the points have `moved`; 0 at rest, 1 at the reference pose, not clamped. 0 where that square
-// is 0.
+// Thesis 4.1 with dot(d, d), `squared_displacement`, in the denominator:
+// how far along displacement `d` the points have `moved`; 0 at rest, 1
+// at the reference pose, not clamped. 0 where that square is 0.
 [[nodiscard]] float ProjectionAlong(StackedPoints moved, StackedPoints d,
                                     float squared_displacement);
 

@@ -10,9 +10,9 @@
 
 namespace furrow::wrinkle {
 
-// A length that tells a skeleton's scale: the sum of its rest bones' lengths over the joints it
-// shares by name with `other` (over all joints when `other` is null). Never 0 for a skeleton with
-// extent.
+// A length that tells a skeleton's scale: the sum of its rest bones'
+// lengths over the joints it shares by name with `other` (over all
+// joints when `other` is null). Never 0 for a skeleton with extent.
 [[nodiscard]] float SkeletonSize(const Skeleton& skeleton, const Skeleton* other = nullptr);
 
 // Carries poses of one skeleton to another by joint name: made once a stream, then one pass a pose.

@@ -17,8 +17,8 @@ namespace furrow::wrinkle {
 // With rest-pose model rotation G of the joint and G_p of its parent (identity for a root):
 //   local rotation    = rest.rotation * inverse(G) * rotation * G
 //   local translation = rest.translation + inverse(G_p) * translation * bound_size / source_size
-// For a skeleton whose rest rotations are all identity (BVH), `rotation` is the local rotation
-// itself.
+// For a skeleton whose rest rotations are all identity
+// (BVH), `rotation` is the local rotation itself.
 struct JointDelta {
   std::string joint;
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};

@@ -13,7 +13,7 @@
 namespace furrow::wrinkle {
 
 JobStatus DriverJob::Validate() const {
-  if (binding == nullptr) return JobStatus::kNoSkeleton;
+  if (binding == nullptr) return JobStatus::kNullPointer;
   const std::size_t num_joints = static_cast<std::size_t>(binding->skeleton().num_joints());
   if (local.size() < num_joints) return JobStatus::kSizeMismatch;
   if (driver_values.size() < binding->driver_value_names().size()) return JobStatus::kSizeMismatch;
@@ -34,7 +34,7 @@ JobStatus DriverJob::Run() const {
 }
 
 JobStatus WrinkleWeightsJob::Validate() const {
-  if (binding == nullptr) return JobStatus::kNoSkeleton;
+  if (binding == nullptr) return JobStatus::kNullPointer;
   if (driver_values.size() < binding->driver_value_names().size()) return JobStatus::kSizeMismatch;
   if (wrinkle_weights.size() < binding->weight_names().size()) return JobStatus::kSizeMismatch;
   return AllFinite(driver_values) ? JobStatus::kOk : JobStatus::kNonFinite;
@@ -53,7 +53,7 @@ JobStatus WrinkleWeightsJob::Run() const {
 }
 
 JobStatus JointInfluenceJob::Validate() const {
-  if (binding == nullptr) return JobStatus::kNoSkeleton;
+  if (binding == nullptr) return JobStatus::kNullPointer;
   const std::size_t needed = static_cast<std::size_t>(binding->skeleton().num_joints()) *
                              binding->rig().wrinkle_maps.size();
   if (driver_values.size() < binding->driver_value_names().size()) return JobStatus::kSizeMismatch;

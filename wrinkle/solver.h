@@ -57,8 +57,7 @@ class RigBinding {
 // - `local` num_joints of the binding's skeleton; `blend_shapes` as bound (may be shorter: 0).
 // - `driver_values` at least driver_value_names().size() long. Does not allocate.
 // - Drivers compare joints with one another from the local pose alone, not in model space: where
-// the
-//   character stands and how it is turned changes no value by a single bit.
+//   the character stands and how it is turned changes no value by a single bit.
 // Source: thesis 4.1, 4.6 with the corrections of docs/ALGORITHM.md.
 struct DriverJob {
   const RigBinding* binding = nullptr;
@@ -70,8 +69,8 @@ struct DriverJob {
   [[nodiscard]] JobStatus Run() const;
 };
 
-// Driver values to wrinkle weights: combine, modulate, resolve incongruence. Stateless, no
-// allocation.
+// Driver values to wrinkle weights: combine, modulate,
+// resolve incongruence. Stateless, no allocation.
 struct WrinkleWeightsJob {
   const RigBinding* binding = nullptr;
   std::span<const float> driver_values;
@@ -89,8 +88,8 @@ struct FilterContext {
   double since_input = 0.0;       // seconds since the last real input
   bool started = false;
 
-  void Resize(int num_weights);
-  void Reset();
+  void Resize(int num_values);
+  void Reset();  // as after Resize(): the next input passes unchanged
 };
 
 // One-Euro, slew and (without input) hold and decay, applied to driver values or weights alike.
@@ -127,16 +126,15 @@ class SubjectSolver {
   void Reset();
 
   [[nodiscard]] std::span<const float> wrinkle_weights() const { return weights_; }
-  [[nodiscard]] std::span<const float> driver_values() const { return raw_values_; }  // before
-  [[nodiscard]] std::span<const float> filtered_values() const {
-    return filtered_values_;
-  }  // after
+  // Driver values before the filter, and after it.
+  [[nodiscard]] std::span<const float> driver_values() const { return raw_values_; }
+  [[nodiscard]] std::span<const float> filtered_values() const { return filtered_values_; }
   [[nodiscard]] const RigBinding& binding() const { return *binding_; }
 
  private:
-  std::shared_ptr<const RigBinding> binding_;
   [[nodiscard]] JobStatus Finish(double dt, std::span<const float> input);
 
+  std::shared_ptr<const RigBinding> binding_;
   Filter filter_;
   FilterContext filter_context_;
   std::vector<float> raw_values_;
@@ -150,8 +148,7 @@ class SubjectSolver {
 //
 // - `influences` is num_joints * num maps of the rig, joint-major. Does not allocate.
 // - A pose driver concerns its control points' joints, a hinge or ball its lower joint, a twist all
-// of
-//   its joints, a blend shape none; the largest of a joint's influences on a map counts.
+//   of its joints, a blend shape none; the largest of a joint's influences on a map counts.
 // - The vertex side for the processor, and lambda: vertex_influence.h.
 struct JointInfluenceJob {
   const RigBinding* binding = nullptr;

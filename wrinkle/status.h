@@ -29,9 +29,9 @@ enum class StatusCode {
 
 // Success, or one clear message: what went wrong, where, and what to do.
 //
-// `where` is "file:line" for text, "file" or "file: field" for the rest, empty when there is no
-// place. Not for the packet path: there, jobs and decoders return bare enums (see JobStatus and
-// protocol/).
+// `where` is "file:line" for text, "file" or "file: field" for the
+// rest, empty when there is no place. Not for the packet path: there,
+// jobs and decoders return bare enums (see JobStatus and protocol/).
 class [[nodiscard]] Status {
  public:
   Status() = default;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrinkle/transform.h"
 
-#include <cmath>
+#include "wrinkle/finite.h"
 
 namespace furrow::wrinkle {
 
@@ -15,9 +15,7 @@ glm::mat4 ToMatrix(const Transform& transform) {
 }
 
 bool IsValid(const Transform& transform) {
-  const float sum = transform.translation.x + transform.translation.y + transform.translation.z +
-                    transform.scale.x + transform.scale.y + transform.scale.z;
-  if (!std::isfinite(sum)) return false;
+  if (!AllFinite(transform.translation) || !AllFinite(transform.scale)) return false;
   const float length = glm::length(transform.rotation);
   return length > 0.999f && length < 1.001f;  // false for NaN as well
 }

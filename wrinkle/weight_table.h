@@ -22,12 +22,12 @@ struct WeightSource {
 [[nodiscard]] float CombineSources(Combine combine, std::span<const WeightSource> sources,
                                    std::span<const float> driver_values);
 
-// How driver values become wrinkle weights: one entry a weight, over flat pools. Private to
-// wrinkle/.
+// How driver values become wrinkle weights: one entry a
+// weight, over flat pools. Private to wrinkle/.
 class WeightTable {
  public:
-  // `value_index`: "<driver>.<value>" to its index. Errors: kNotFound for a name that leads
-  // nowhere.
+  // `value_index`: "<driver>.<value>" to its index. Errors:
+  // kNotFound for a name that leads nowhere.
   [[nodiscard]] Status Bind(const Rig& rig,
                             const std::unordered_map<std::string, int>& value_index);
 

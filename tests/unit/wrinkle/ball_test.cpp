@@ -89,8 +89,8 @@ TEST(Ball, ThesisJumpsAt41Point4Degrees) {
 
 // The thesis says > 0.75, < -0.75 and "between": at the threshold itself nothing is chosen.
 TEST(Ball, ThesisStatesNoCaseAtItsThreshold) {
-  // hypot(3, sqrt(7)) = 4, so cos(psi) is 0.75 to the last bit, or the test below would see a
-  // share.
+  // hypot(3, sqrt(7)) = 4, so cos(psi) is 0.75 to the last
+  // bit, or the test below would see a share.
   const float side = std::sqrt(7.0f);
   ASSERT_EQ(3.0f / std::hypot(3.0f, side), 0.75f);
   ExpectShares(SplitBend(BallMode::kThesis, 0.8f, 3.0f, side), 0.0f, 0.0f, 0.0f, 0.0f);

@@ -58,8 +58,8 @@ TEST(OneEuro, FollowsAWorkedExample) {
   const double first = filter.Step(0.0, 0.5, 5.0, 0.1, &speed);
   EXPECT_NEAR(speed, 1.929346, 1e-5);
   EXPECT_NEAR(first, 0.376629, 1e-5);
-  // speed = 1.929346 * (1 - 0.385869) = 1.184872; cut-off 3.369745, share = 1 / 1.472306 =
-  // 0.679207.
+  // speed = 1.929346 * (1 - 0.385869) = 1.184872; cut-off
+  // 3.369745, share = 1 / 1.472306 = 0.679207.
   const double second = filter.Step(first, 0.5, 0.0, 0.1, &speed);
   EXPECT_NEAR(speed, 1.184872, 1e-5);
   EXPECT_NEAR(second, first + 0.679207 * (0.5 - first), 1e-5);
@@ -196,10 +196,10 @@ TEST_F(FilterTest, ValidatesOneInputAtATime) {
   EXPECT_EQ(good.Validate(), JobStatus::kOk);
   FilterJob job = good;
   job.filter = nullptr;
-  EXPECT_EQ(job.Validate(), JobStatus::kNoSkeleton);
+  EXPECT_EQ(job.Validate(), JobStatus::kNullPointer);
   job = good;
   job.context = nullptr;
-  EXPECT_EQ(job.Validate(), JobStatus::kNoSkeleton);
+  EXPECT_EQ(job.Validate(), JobStatus::kNullPointer);
   for (const double dt : {-1e-9, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     job = good;
     job.dt = dt;

@@ -49,7 +49,7 @@ TEST_F(LocalToModelTest, ValidatesOneInputAtATime) {
   EXPECT_EQ(Job().Validate(), JobStatus::kOk);
   LocalToModelJob job = Job();
   job.skeleton = nullptr;
-  EXPECT_EQ(job.Validate(), JobStatus::kNoSkeleton);
+  EXPECT_EQ(job.Validate(), JobStatus::kNullPointer);
   job = Job();
   job.local = job.local.first(job.local.size() - 1);
   EXPECT_EQ(job.Validate(), JobStatus::kSizeMismatch);

@@ -41,8 +41,8 @@ TEST(Retarget, ToTheSameSkeletonChangesNothing) {
   }
 }
 
-// The same shape with other local frames, twice as large: the same motion in model space, twice as
-// far.
+// The same shape with other local frames, twice as large:
+// the same motion in model space, twice as far.
 TEST(Retarget, GivesTheSameModelSpaceMotionWhateverTheLocalFrames) {
   std::mt19937 random(2);
   const Skeleton source = MakeBody(11);

@@ -143,7 +143,7 @@ TEST(DriverJob, ValidatesOneInputAtATime) {
   EXPECT_EQ(job().Validate(), JobStatus::kOk);
   DriverJob broken = job();
   broken.binding = nullptr;
-  EXPECT_EQ(broken.Validate(), JobStatus::kNoSkeleton);
+  EXPECT_EQ(broken.Validate(), JobStatus::kNullPointer);
   broken = job();
   broken.local = broken.local.first(broken.local.size() - 1);
   EXPECT_EQ(broken.Validate(), JobStatus::kSizeMismatch);
@@ -168,7 +168,7 @@ TEST(WrinkleWeightsJob, ValidatesOneInputAtATime) {
   EXPECT_EQ(job.Validate(), JobStatus::kOk);
   WrinkleWeightsJob broken = job;
   broken.binding = nullptr;
-  EXPECT_EQ(broken.Validate(), JobStatus::kNoSkeleton);
+  EXPECT_EQ(broken.Validate(), JobStatus::kNullPointer);
   broken = job;
   broken.driver_values = broken.driver_values.first(broken.driver_values.size() - 1);
   EXPECT_EQ(broken.Validate(), JobStatus::kSizeMismatch);
@@ -188,7 +188,7 @@ TEST(JointInfluenceJob, ValidatesOneInputAtATime) {
   EXPECT_EQ(job.Validate(), JobStatus::kOk);
   JointInfluenceJob broken = job;
   broken.binding = nullptr;
-  EXPECT_EQ(broken.Validate(), JobStatus::kNoSkeleton);
+  EXPECT_EQ(broken.Validate(), JobStatus::kNullPointer);
   broken = job;
   broken.driver_values = broken.driver_values.first(broken.driver_values.size() - 1);
   EXPECT_EQ(broken.Validate(), JobStatus::kSizeMismatch);

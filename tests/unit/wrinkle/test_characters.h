@@ -26,8 +26,8 @@ struct ModelJoint {
 // its own, by chance, while shape and stance stay the same.
 Skeleton MakeSkeleton(const std::vector<ModelJoint>& joints, unsigned frame_seed = 0);
 
-// Hips, spine, neck, head with brows and cheeks, a left arm and both legs: 1.7 units tall, facing
-// +Z.
+// Hips, spine, neck, head with brows and cheeks, a left arm
+// and both legs: 1.7 units tall, facing +Z.
 Skeleton MakeBody(unsigned frame_seed = 0, float scale = 1.0f);
 
 // A rig over MakeBody() with drivers of every kind: see the source.
