@@ -9,10 +9,12 @@
 
 #include "motion/clip.h"
 #include "motion/number.h"
+#include "wrinkle/ascii.h"
 
 namespace furrow::motion {
 namespace {
 
+using wrinkle::EqualsIgnoreCase;
 using wrinkle::JointDesc;
 using wrinkle::kNoJoint;
 
@@ -27,13 +29,6 @@ std::optional<BvhChannel> FindChannel(std::string_view name) {
     if (EqualsIgnoreCase(text, name)) return channel;
   }
   return std::nullopt;
-}
-
-std::string Shown(std::string_view token) {
-  if (token.empty()) return "the end of the file";
-  std::string text = "'";
-  for (const char c : token.substr(0, 40)) text += (c >= ' ' && c < 127) ? c : '?';
-  return text + "'";
 }
 
 // Recursive descent without recursion: the open joints are a stack, so depth costs no call stack.
@@ -71,7 +66,8 @@ class HierarchyParser {
   };
 
   Status Unexpected(std::string_view token, std::string_view wanted) const {
-    std::string what = "expected " + std::string(wanted) + ", found " + Shown(token);
+    std::string what = "expected " + std::string(wanted) + ", found " +
+                       (token.empty() ? "the end of the file" : Quoted(token));
     return cursor_.Error(StatusCode::kParse, std::move(what),
                          token.empty() ? "the file seems to be cut off" : "");
   }
@@ -89,7 +85,7 @@ class HierarchyParser {
       return cursor_.Error(StatusCode::kLimit, "the joint's name is longer than 255 bytes");
     }
     if (!names_.insert(name).second) {
-      return cursor_.Error(StatusCode::kParse, "a second joint is named " + Shown(name),
+      return cursor_.Error(StatusCode::kParse, "a second joint is named " + Quoted(name),
                            "rename one of them");
     }
     if (hierarchy_.joints.size() >= static_cast<std::size_t>(wrinkle::kMaxJoints)) {
@@ -109,7 +105,8 @@ class HierarchyParser {
   Status CloseJoint() {
     if (open_.empty()) return Unexpected("}", "ROOT or MOTION");
     if (!open_.back().has_offset) {
-      return cursor_.Error(StatusCode::kParse, "joint " + Shown(Current().name) + " has no OFFSET");
+      return cursor_.Error(StatusCode::kParse,
+                           "joint " + Quoted(Current().name) + " has no OFFSET");
     }
     open_.pop_back();
     return {};
@@ -145,7 +142,7 @@ class HierarchyParser {
     const Result<double> count = ParseNumber(token, cursor_.Where());
     if (!count.ok()) return count.status();
     if (*count < 0.0 || *count > 6.0 || *count != static_cast<int>(*count)) {
-      return cursor_.Error(StatusCode::kParse, "a joint has 0 to 6 channels, not " + Shown(token));
+      return cursor_.Error(StatusCode::kParse, "a joint has 0 to 6 channels, not " + Quoted(token));
     }
     BvhJointChannels& channels = hierarchy_.channels.back();
     // CHANNELS after a child would belong to a joint that is not the newest.
@@ -176,7 +173,7 @@ class HierarchyParser {
     }
     for (int i = 0; *channel <= BvhChannel::kZPosition && i < channels->count; ++i) {
       if (channels->channels[static_cast<std::size_t>(i)] == *channel) {
-        return cursor_.Error(StatusCode::kParse, "channel " + Shown(token) + " comes twice");
+        return cursor_.Error(StatusCode::kParse, "channel " + Quoted(token) + " comes twice");
       }
     }
     channels->channels[static_cast<std::size_t>(channels->count++)] = *channel;
@@ -194,7 +191,7 @@ class HierarchyParser {
     if (!Current().tail) {
       Current().tail = tail;
     } else if (report_ != nullptr) {
-      report_->warnings.push_back(cursor_.Where() + ": joint " + Shown(Current().name) +
+      report_->warnings.push_back(cursor_.Where() + ": joint " + Quoted(Current().name) +
                                   " has several End Sites; the first counts");
     }
     return {};

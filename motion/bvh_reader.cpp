@@ -13,10 +13,12 @@
 #include "motion/limits.h"
 #include "motion/number.h"
 #include "motion/text_cursor.h"
+#include "wrinkle/ascii.h"
 
 namespace furrow::motion {
 namespace {
 
+using wrinkle::EqualsIgnoreCase;
 using wrinkle::Transform;
 
 struct MotionHeader {

@@ -135,8 +135,8 @@ class BvhWriter {
     }
   }
 
-  // A translation in the parent's frame, in the axes the parent has after its rest rotation is
-  // gone.
+  // A translation in the parent's frame, in the axes the
+  // parent has after its rest rotation is gone.
   [[nodiscard]] glm::vec3 Offset(std::size_t j, const glm::vec3& translation) const {
     if (Parent(j) == kNoJoint) return translation;
     const auto parent = static_cast<std::size_t>(Parent(j));

@@ -12,6 +12,7 @@
 #include "motion/limits.h"
 #include "motion/livelink_csv.h"
 #include "motion/up_axis.h"
+#include "wrinkle/ascii.h"
 
 namespace furrow::motion {
 namespace {
@@ -20,7 +21,7 @@ enum class Format { kUnknown, kBvh, kGlb, kGltf, kCsv };
 
 Format FormatOf(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (char& c : extension) c = wrinkle::AsciiLower(c);
   if (extension == ".bvh") return Format::kBvh;
   if (extension == ".glb" || extension == ".vrma") return Format::kGlb;
   if (extension == ".gltf") return Format::kGltf;

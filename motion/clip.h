@@ -11,8 +11,8 @@
 
 namespace furrow::motion {
 
-// A recorded performance of one subject, sampled: what every reader of this folder yields and every
-// writer takes.
+// A recorded performance of one subject, sampled: what every
+// reader of this folder yields and every writer takes.
 struct Clip {
   std::string name;
   wrinkle::Skeleton skeleton;  // may be empty (0 joints): blend shapes alone
@@ -31,8 +31,8 @@ struct Clip {
 
 // What a BVH joint's position channels do to its OFFSET: the format does not say. Most tools
 // replace the offset; some add to it. A channel that is not there leaves its axis of the offset
-// alone in both.
-// LoadClip() lets a root that is at the origin in every frame stay at its offset (MakeHuman's files).
+// alone in both. Either way LoadClip() lets a root that is at the origin in every frame stay at its
+// offset (MakeHuman's files).
 enum class BvhPositions { kReplace, kAdd };
 
 // Which axis points up in a BVH file, which does not say (motion/up_axis.h tells how kAuto finds

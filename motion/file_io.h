@@ -10,8 +10,8 @@
 
 namespace furrow::motion {
 
-// The whole of a regular file. Errors: kNotFound, kIo, kLimit (more than `max_bytes`); `where` is
-// the path.
+// The whole of a regular file. Errors: kNotFound, kIo,
+// kLimit (more than `max_bytes`); `where` is the path.
 [[nodiscard]] Result<std::string> ReadFile(const std::filesystem::path& path,
                                            std::uint64_t max_bytes);
 

@@ -18,10 +18,10 @@ struct GltfOptions {
 
 // Reads the first animation of a glTF file, binary or JSON.
 //
-// - Joints: the joints of all skins and their ancestors; without a skin, every node of the trees in
-//   which a node moves. For VRMA the human bones, named as VRM names them ("hips", "leftUpperArm"),
-//   and their ancestors. A joint without a name is "node_<index>"; a repeated name gets "_2", "_3",
-//   ...
+// - Joints: the joints of all skins and their ancestors; without a skin, every
+//   node of the trees in which a node moves. For VRMA the human bones, named
+//   as VRM names them ("hips", "leftUpperArm"), and their ancestors. A joint
+//   without a name is "node_<index>"; a repeated name gets "_2", "_3", ...
 // - A joint's tail is its node's extras "furrow_tail" ([x, y, z], local), where ClipToGlb() put it.
 // - Blend shapes: animated morph weights, named by the mesh's extras "targetNames" (else
 //   "<mesh>.<index>"); a name that several meshes have is taken once. For VRMA the expressions,
@@ -38,17 +38,16 @@ struct GltfOptions {
                                               const GltfOptions& options = {},
                                               ClipReport* report = nullptr);
 
-// The clip as one GLB: a node a joint with its rest pose, a skin that lists them in order (without
-// a mesh), one LINEAR animation with a sampler for each rotation, translation and scale that leaves
-// rest.
+// The clip as one GLB: a node a joint with its rest pose, a skin that
+// lists them in order (without a mesh), one LINEAR animation with a
+// sampler for each rotation, translation and scale that leaves rest.
 //
-// - Blend shapes are the morph weights of a mesh "blend_shapes": one triangle without extent, whose
-//   targets are all zero and named by extras "targetNames", the way Blender and three.js read
-//   names.
+// - Blend shapes are the morph weights of a mesh "blend_shapes": one
+//   triangle without extent, whose targets are all zero and named by
+//   extras "targetNames", the way Blender and three.js read names.
 // - Every joint's tail is kept in its node's extras "furrow_tail".
 // - Times are floats from the clip's first frame on; kInvalidArgument where two frames would
-// coincide,
-//   or without frames.
+//   coincide, or without frames.
 [[nodiscard]] Result<std::string> ClipToGlb(const Clip& clip);
 
 }  // namespace furrow::motion

@@ -14,9 +14,9 @@
 // A glTF file opened safely; private to motion/'s glTF reader.
 namespace furrow::motion {
 
-// A verified model: every node, mesh, skin, animation index within it is in range and the nodes
-// form a forest. Only what animation needs was kept; `model().meshes`, materials and pictures are
-// empty.
+// A verified model: every node, mesh, skin, animation index within it
+// is in range and the nodes form a forest. Only what animation needs
+// was kept; `model().meshes`, materials and pictures are empty.
 class GltfDocument {
  public:
   // See ParseGltfAnimation() for what is accepted.
@@ -33,9 +33,9 @@ class GltfDocument {
   // Names of the morph targets of a mesh; empty for -1.
   [[nodiscard]] const std::vector<std::string>& MorphTargets(int mesh) const;
 
-  // An accessor's elements as floats; integers must be normalised. `type` is TINYGLTF_TYPE_*.
-  // `field` names the user of the accessor in errors. What one document hands out in all is
-  // bounded.
+  // An accessor's elements as floats; integers must be normalised.
+  // `type` is TINYGLTF_TYPE_*. `field` names the user of the accessor
+  // in errors. What one document hands out in all is bounded.
   [[nodiscard]] Result<std::vector<float>> ReadFloats(int accessor, int type,
                                                       const std::string& field);
 

@@ -28,7 +28,7 @@ constexpr int kMaxJsonDepth = 64;
 constexpr std::size_t kMaxBuffers = 256;
 constexpr std::size_t kMaxNameBytes = 255;
 
-// Little-endian on the file and on every machine we build for; the bytes may stand anywhere.
+// Little-endian, as the container says; the host's order does not matter.
 std::uint32_t ReadU32(std::string_view bytes, std::size_t at) {
   const auto* b = reinterpret_cast<const unsigned char*>(bytes.data()) + at;
   return b[0] | std::uint32_t{b[1]} << 8 | std::uint32_t{b[2]} << 16 | std::uint32_t{b[3]} << 24;

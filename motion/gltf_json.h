@@ -18,8 +18,8 @@ struct GltfChunks {
   bool has_binary = false;
 };
 
-// Checks the GLB header and the chunk sizes against the bytes that are there. Errors: kParse,
-// kLimit.
+// Checks the GLB header and the chunk sizes against the
+// bytes that are there. Errors: kParse, kLimit.
 [[nodiscard]] Result<GltfChunks> SplitGlb(std::string_view bytes, std::string_view source_name);
 
 // What an animation reader needs of a glTF JSON.

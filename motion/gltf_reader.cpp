@@ -22,8 +22,8 @@ namespace {
 
 using wrinkle::Transform;
 
-constexpr double kSameTime =
-    1e-5;  // seconds: keys of different samplers nearer than this are one frame
+// Seconds: keys of different samplers nearer than this are one frame.
+constexpr double kSameTime = 1e-5;
 
 enum class Path { kTranslation, kRotation, kScale, kWeights };
 
@@ -31,6 +31,11 @@ struct NodeTrack {
   int node = -1;
   Path path = Path::kTranslation;
   GltfTrack track;
+};
+
+struct JointTrack {
+  int joint = wrinkle::kNoJoint;
+  const NodeTrack* track = nullptr;
 };
 
 // Where a column of Clip::blend_shapes comes from.
@@ -247,22 +252,33 @@ class AnimationReader {
     return document_.Error(StatusCode::kLimit, "animations[0]", "too many frames");
   }
 
-  Result<Clip> Sample() {
-    const auto rest = clip_.skeleton.rest_pose();
+  // The tracks that move a joint; a file may hold thousands for other nodes.
+  [[nodiscard]] std::vector<JointTrack> ListJointTracks() const {
     std::vector<int> joint_of_node(static_cast<std::size_t>(document_.num_nodes()),
                                    wrinkle::kNoJoint);
     for (std::size_t j = 0; j < joints_.joint_nodes.size(); ++j) {
       joint_of_node[static_cast<std::size_t>(joints_.joint_nodes[j])] = static_cast<int>(j);
     }
+    std::vector<JointTrack> result;
+    for (const NodeTrack& track : tracks_) {
+      const int joint = joint_of_node[static_cast<std::size_t>(track.node)];
+      if (track.path != Path::kWeights && joint != wrinkle::kNoJoint) {
+        result.push_back({joint, &track});
+      }
+    }
+    return result;
+  }
+
+  Result<Clip> Sample() {
+    const auto rest = clip_.skeleton.rest_pose();
+    const std::vector<JointTrack> joint_tracks = ListJointTracks();
     clip_.locals.reserve(clip_.times.size() * rest.size());
     std::vector<float> shape_values;
     for (std::size_t f = 0; f < clip_.times.size(); ++f) {
       clip_.locals.insert(clip_.locals.end(), rest.begin(), rest.end());
       Transform* locals = clip_.locals.data() + f * rest.size();
-      for (const NodeTrack& track : tracks_) {
-        const int joint = joint_of_node[static_cast<std::size_t>(track.node)];
-        if (track.path == Path::kWeights || joint == wrinkle::kNoJoint) continue;
-        Apply(track, clip_.times[f], locals + joint);
+      for (const auto& [joint, track] : joint_tracks) {
+        Apply(*track, clip_.times[f], locals + joint);
       }
       KeepSigns(f, rest.size());
       SampleShapes(clip_.times[f], &shape_values);

@@ -9,6 +9,8 @@
 
 #include <glm/gtc/quaternion.hpp>
 
+#include "motion/limits.h"
+
 namespace furrow::motion {
 namespace {
 
@@ -39,8 +41,13 @@ Result<int> NodeOf(const GltfDocument& document, const tinygltf::Value& object,
 }
 
 Status ReadNamedNodes(const GltfDocument& document, const tinygltf::Value& map,
-                      const std::string& field, std::vector<std::pair<std::string, int>>* named) {
-  for (const std::string& name : map.Keys()) {
+                      const std::string& field, std::size_t most,
+                      std::vector<std::pair<std::string, int>>* named) {
+  const std::vector<std::string> names = map.Keys();
+  if (names.size() > most) {
+    return document.Error(StatusCode::kLimit, field, "more than " + std::to_string(most));
+  }
+  for (const std::string& name : names) {
     const Result<int> node = NodeOf(document, map.Get(name), field + "." + name);
     if (!node.ok()) return node.status();
     named->emplace_back(name, *node);
@@ -204,12 +211,13 @@ Result<VrmAnimation> ReadVrmAnimation(const GltfDocument& document) {
   if (found == extensions.end() || !found->second.IsObject()) return vrm;
   vrm.present = true;
   const std::string field = "extensions.VRMC_vrm_animation";
-  Status status = ReadNamedNodes(document, Member(Member(found->second, "humanoid"), "humanBones"),
-                                 field + ".humanoid.humanBones", &vrm.human_bones);
+  Status status =
+      ReadNamedNodes(document, Member(Member(found->second, "humanoid"), "humanBones"),
+                     field + ".humanoid.humanBones", wrinkle::kMaxJoints, &vrm.human_bones);
   for (const char* kind : {"preset", "custom"}) {
     if (!status.ok()) return status;
     status = ReadNamedNodes(document, Member(Member(found->second, "expressions"), kind),
-                            field + ".expressions." + kind, &vrm.expressions);
+                            field + ".expressions." + kind, kMaxBlendShapes, &vrm.expressions);
   }
   if (!status.ok()) return status;
   if (Member(found->second, "lookAt").IsObject()) {

@@ -8,8 +8,8 @@
 #include "motion/gltf_document.h"
 #include "wrinkle/skeleton.h"
 
-// Which nodes of a glTF file are joints, and what they are called; private to motion/'s glTF
-// reader.
+// Which nodes of a glTF file are joints, and what they are
+// called; private to motion/'s glTF reader.
 namespace furrow::motion {
 
 struct ClipReport;

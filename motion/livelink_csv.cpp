@@ -14,6 +14,7 @@
 #include "motion/number.h"
 #include "motion/resample.h"
 #include "motion/text_cursor.h"
+#include "wrinkle/ascii.h"
 
 namespace furrow::motion {
 namespace {
@@ -33,14 +34,20 @@ std::string_view Trim(std::string_view text) {
   return text;
 }
 
-std::vector<std::string_view> SplitCells(std::string_view line) {
+std::size_t CountCells(std::string_view line) {
+  return static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) + 1;
+}
+
+// The first `most` cells: a line of commas alone must not become a list of millions.
+std::vector<std::string_view> SplitCells(std::string_view line, std::size_t most) {
   std::vector<std::string_view> cells;
-  while (true) {
+  while (cells.size() < most) {
     const std::size_t comma = line.find(',');
     cells.push_back(Trim(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return cells;
+    if (comma == std::string_view::npos) break;
     line.remove_prefix(comma + 1);
   }
+  return cells;
 }
 
 Result<Timecode> ParseTimecode(std::string_view text, const TextCursor& cursor) {
@@ -90,14 +97,18 @@ class TakeReader {
   static constexpr int kCount = -3;
 
   Status ReadHeader(std::string_view line) {
+    if (CountCells(line) > kMaxBlendShapes) {
+      return cursor_.Error(StatusCode::kLimit,
+                           "more than " + std::to_string(kMaxBlendShapes) + " columns");
+    }
     std::unordered_set<std::string> seen;
-    for (const std::string_view cell : SplitCells(line)) {
+    for (const std::string_view cell : SplitCells(line, kMaxBlendShapes)) {
       if (!cell.empty() && !seen.insert(std::string(cell)).second) {
         return cursor_.Error(StatusCode::kParse, "column '" + std::string(cell) + "' comes twice");
       }
-      if (EqualsIgnoreCase(cell, "Timecode")) {
+      if (wrinkle::EqualsIgnoreCase(cell, "Timecode")) {
         columns_.push_back(kTimecode);
-      } else if (EqualsIgnoreCase(cell, "BlendShapeCount")) {
+      } else if (wrinkle::EqualsIgnoreCase(cell, "BlendShapeCount")) {
         columns_.push_back(kCount);
       } else if (cell.empty()) {  // a comma at the end of every line
         columns_.push_back(kIgnored);
@@ -113,23 +124,19 @@ class TakeReader {
     if (clip_.blend_shape_names.empty()) {
       return cursor_.Error(StatusCode::kParse, "the header names no blend shape");
     }
-    if (clip_.blend_shape_names.size() > kMaxBlendShapes) {
-      return cursor_.Error(StatusCode::kLimit,
-                           "more than " + std::to_string(kMaxBlendShapes) + " columns");
-    }
     return {};
   }
 
   Status ReadRow(std::string_view line) {
-    const std::vector<std::string_view> cells = SplitCells(line);
+    const std::vector<std::string_view> cells = SplitCells(line, columns_.size());
     const std::string_view timecode = cells[TimecodeColumn(cells.size())];
     if (HasNoFace(cells)) {
       ++rows_without_face_;
       return {};
     }
-    if (cells.size() != columns_.size()) {
+    if (const std::size_t count = CountCells(line); count != columns_.size()) {
       return cursor_.Error(StatusCode::kParse,
-                           "the row has " + std::to_string(cells.size()) + " cells, the header " +
+                           "the row has " + std::to_string(count) + " cells, the header " +
                                std::to_string(columns_.size()),
                            cursor_.line_was_ended() ? "" : "the file seems to be cut off");
     }
@@ -144,9 +151,10 @@ class TakeReader {
     float* values = clip_.blend_shapes.data() + clip_.blend_shapes.size() - num_shapes;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (columns_[i] < 0) continue;
-      const Result<double> number = ParseNumber(cells[i], cursor_.Where());
-      if (!number.ok()) return number.status();
-      values[columns_[i]] = static_cast<float>(*number);
+      double number = 0.0;
+      if (!TryParseNumber(cells[i], &number))
+        return ParseNumber(cells[i], cursor_.Where()).status();
+      values[columns_[i]] = static_cast<float>(number);
     }
     timecodes_.push_back(*time);
     lines_.push_back(cursor_.line());

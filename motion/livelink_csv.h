@@ -15,11 +15,9 @@ namespace furrow::motion {
 // as they stand) without joints. Times count from the first row.
 //
 // - Columns are found by the header's names, in any order; only Timecode must be there. The order
-// of
-//   shapes differs between versions and is never assumed.
+//   of shapes differs between versions and is never assumed.
 // - Timecode is HH:MM:SS:FF.mmm (";FF" likewise): FF frames and mmm thousandths of one. The file
-// does
-//   not say its rate: `timecode_rate`, else the smallest usual rate above the highest FF seen;
+//   does not say its rate: `timecode_rate`, else the smallest usual rate above the highest FF seen;
 //   where no second ended within the take, 60 (with a warning). Midnight may pass.
 // - Rows without a face (BlendShapeCount 0) and repeated timecodes are left out (a warning).
 //

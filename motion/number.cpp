@@ -1,18 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "motion/number.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+
+#include "motion/text_cursor.h"
 
 namespace furrow::motion {
 namespace {
 
 constexpr double kBeyondFloat = 0x1.ffffffp127;  // half-way from the largest float to the next
 
-// from_chars says "out of range" of 1e-999 and of 1e999 alike.
-bool HasNegativeExponent(std::string_view token) {
-  const std::size_t e = token.find_first_of("eE");
-  return e != std::string_view::npos && e + 1 < token.size() && token[e + 1] == '-';
+// from_chars says "out of range" of 1e-999 and of 1e999 alike: where the first digit that counts
+// stands tells which.
+bool IsTiny(std::string_view digits) {
+  const std::size_t e = std::min(digits.find_first_of("eE"), digits.size());
+  const std::size_t point = std::min(digits.substr(0, e).find('.'), e);
+  const std::size_t first = std::min(digits.find_first_of("123456789"), e);
+  int exponent = 0;
+  if (e < digits.size()) {
+    std::string_view power = digits.substr(e + 1);
+    if (power.starts_with('+')) power.remove_prefix(1);
+    const auto result = std::from_chars(power.data(), power.data() + power.size(), exponent);
+    if (result.ec != std::errc()) return power.starts_with('-');  // beyond any length of the digits
+  }
+  return static_cast<long long>(point) + exponent < static_cast<long long>(first);
 }
 
 bool LooksNonFinite(std::string_view token) {
@@ -27,7 +40,7 @@ Outcome Convert(std::string_view token, double* value) {
   const char* end = digits.data() + digits.size();
   const auto [rest, error] = std::from_chars(digits.data(), end, *value);
   if (error == std::errc::result_out_of_range && rest == end) {
-    if (!HasNegativeExponent(digits)) return Outcome::kNonFinite;
+    if (!IsTiny(digits)) return Outcome::kNonFinite;
     *value = 0.0;
     return Outcome::kNumber;
   }
@@ -37,13 +50,6 @@ Outcome Convert(std::string_view token, double* value) {
   // What does not round to a finite float would become infinite later; NaN compares false.
   const bool fits = std::abs(*value) < kBeyondFloat;
   return fits ? Outcome::kNumber : Outcome::kNonFinite;
-}
-
-std::string Quoted(std::string_view token) {
-  constexpr std::size_t kShown = 40;
-  std::string text = "'";
-  for (const char c : token.substr(0, kShown)) text += (c >= ' ' && c < 127) ? c : '?';
-  return text + (token.size() > kShown ? "...'" : "'");
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 // Numbers in text files: a point is the decimal sign whatever the process's locale says.
 namespace furrow::motion {
 
-// A whole token as a number: "1", "-.0083333", "+2.5e-3". `where` ("file:line") goes into the
-// error.
+// A whole token as a number: "1", "-.0083333", "+2.5e-3".
+// `where` ("file:line") goes into the error.
 //
 // Errors: kNonFinite ("nan", "inf", MSVC's "1.#IND", or beyond a float's range), kParse (anything
 // else that is not a number). Too small to be told from 0 is 0.
@@ -19,8 +19,8 @@ namespace furrow::motion {
 // As ParseNumber() without an error's text, for hot loops: false where ParseNumber() would fail.
 [[nodiscard]] bool TryParseNumber(std::string_view token, double* value);
 
-// Appends `value` with at most `decimals` digits after the point, trailing zeros dropped; "-0" is
-// "0".
+// Appends `value` with at most `decimals` digits after the
+// point, trailing zeros dropped; "-0" is "0".
 void AppendFixed(double value, int decimals, std::string* text);
 // Appends the shortest text that reads back as the same float.
 void AppendShortest(float value, std::string* text);

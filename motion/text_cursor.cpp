@@ -12,7 +12,6 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 bool IsLineEnd(char c) { return c == '\n' || c == '\r'; }
 bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 bool IsBrace(char c) { return c == '{' || c == '}'; }
-char Lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 }  // namespace
 
@@ -99,9 +98,11 @@ std::string_view TakeToken(std::string_view* line) {
   return token;
 }
 
-bool EqualsIgnoreCase(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](char x, char y) { return Lower(x) == Lower(y); });
+std::string Quoted(std::string_view token) {
+  constexpr std::size_t kShown = 40;
+  std::string text = "'";
+  for (const char c : token.substr(0, kShown)) text += (c >= ' ' && c < 127) ? c : '?';
+  return text + (token.size() > kShown ? "...'" : "'");
 }
 
 }  // namespace furrow::motion

@@ -21,8 +21,8 @@ class TextCursor {
   std::string_view NextToken();
   // What NextToken() would return; the cursor stays.
   [[nodiscard]] std::string_view PeekToken() const;
-  // What is left of this line up to '{' or '}', without blanks at either end; stays before the
-  // brace.
+  // What is left of this line up to '{' or '}', without
+  // blanks at either end; stays before the brace.
   std::string_view RestOfLine();
   // The next whole line with something on it, or false at the end of the text. After it, line() is
   // its number and line_was_ended() tells whether a line end followed it.
@@ -46,7 +46,7 @@ class TextCursor {
 
 // The next blank-separated token of `line`, taken off its front; empty when there is none.
 std::string_view TakeToken(std::string_view* line);
-// ASCII letters alike in either case.
-[[nodiscard]] bool EqualsIgnoreCase(std::string_view a, std::string_view b);
+// A foreign file's token as a message shows it: in quotes, printable, not endless.
+[[nodiscard]] std::string Quoted(std::string_view token);
 
 }  // namespace furrow::motion

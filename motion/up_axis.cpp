@@ -6,11 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "wrinkle/ascii.h"
+
 namespace furrow::motion {
 namespace {
 
 bool NamesHead(std::string name) {
-  for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (char& c : name) c = wrinkle::AsciiLower(c);
   return name.find("head") != std::string::npos;
 }
 

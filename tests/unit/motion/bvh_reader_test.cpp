@@ -49,9 +49,9 @@ TEST(BvhReader, ReadsHierarchyTailsAndTimes) {
   ExpectNear(ModelPosition(clip, 1, "Lower"), {1.0f, 3.0f, 3.0f});
 }
 
-// R = R1 * R2 * R3 in the joint's own order. Worked by hand: with Z first, v = Rz(90) Rx(90)
-// (0,1,0) = Rz(90) (0,0,1) = (0,0,1); with X first, v = Rx(90) Rz(90) (0,1,0) = Rx(90) (-1,0,0) =
-// (-1,0,0).
+// R = R1 * R2 * R3 in the joint's own order. Worked by hand: with Z
+// first, v = Rz(90) Rx(90) (0,1,0) = Rz(90) (0,0,1) = (0,0,1); with
+// X first, v = Rx(90) Rz(90) (0,1,0) = Rx(90) (-1,0,0) = (-1,0,0).
 TEST(BvhReader, TakesTheChannelOrderOfEachJoint) {
   const std::string head = "HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS ";
   const std::string tail =
@@ -223,9 +223,9 @@ TEST(BvhReader, RefusesMoreJointsThanASkeletonHolds) {
   EXPECT_EQ(clip.status().code(), StatusCode::kLimit);
 }
 
-// Cut anywhere, a file is an error, or what stands before the cut is whole: the last line may lack
-// its newline, and blanks at its end. Each length in a buffer of its own, for the address
-// sanitizer.
+// Cut anywhere, a file is an error, or what stands before the cut is
+// whole: the last line may lack its newline, and blanks at its end.
+// Each length in a buffer of its own, for the address sanitizer.
 TEST(BvhReader, TruncationDrill) {
   const std::string whole = Arm(kZxy, kZxy, "Frames: 2\nFrame Time: 1\n0 0 0 0 0 0\n1 2 3 4 5 6\n");
   int accepted = 0;

@@ -41,8 +41,8 @@ TEST(GltfTrack, LinearAndStepAndTheEnds) {
   EXPECT_FLOAT_EQ(At(step, 4.0), 0.0f);
 }
 
-// A cubic Hermite spline reproduces every cubic: f(t) = t^3 - 2 t on keys 0, 1, 3 with its
-// derivatives.
+// A cubic Hermite spline reproduces every cubic:
+// f(t) = t^3 - 2 t on keys 0, 1, 3 with its derivatives.
 TEST(GltfTrack, CubicSplineReproducesACubic) {
   const auto f = [](float t) { return t * t * t - 2.0f * t; };
   const auto d = [](float t) { return 3.0f * t * t - 2.0f; };

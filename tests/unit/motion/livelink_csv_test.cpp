@@ -103,6 +103,9 @@ TEST(LiveLinkCsv, NamesTheLineOfEveryError) {
   std::string wide = "Timecode";
   for (int i = 0; i < 3000; ++i) wide += ",c" + std::to_string(i);
   EXPECT_EQ(ParseLiveLinkCsv(wide, "t.csv").status().code(), StatusCode::kLimit);
+  const Status long_row =
+      ParseLiveLinkCsv(good + "00:00:02:00,3" + std::string(100'000, ','), "t.csv").status();
+  EXPECT_THAT(long_row.ToString(), HasSubstr("t.csv:3: the row has 100002 cells, the header 5"));
 }
 
 Clip MakeTake(double rate, int frames) {

@@ -23,6 +23,21 @@ TEST(ParseNumber, TakesWhatExportersWrite) {
   }
 }
 
+// Beyond a double's range on either side, written in every way.
+TEST(ParseNumber, TellsTheTinyFromTheHuge) {
+  const std::string zeros(400, '0');
+  for (const std::string& tiny : {"0." + zeros + "1", "-0." + zeros + "1e+20", "." + zeros + "7",
+                                  std::string("-1e-99999999999999999999"), "1" + zeros + "e-999"}) {
+    const Result<double> number = ParseNumber(tiny, "f:1");
+    ASSERT_TRUE(number.ok()) << tiny;
+    EXPECT_EQ(*number, 0.0) << tiny;
+  }
+  for (const std::string& huge : {"1" + zeros, "-1" + zeros + ".5e-20", std::string("0.1e+999"),
+                                  std::string("1e99999999999999999999"), "0." + zeros + "1e999"}) {
+    EXPECT_EQ(ParseNumber(huge, "f:1").status().code(), StatusCode::kNonFinite) << huge;
+  }
+}
+
 TEST(ParseNumber, RefusesWithAReason) {
   const std::pair<const char*, StatusCode> kCases[] = {{"nan", StatusCode::kNonFinite},
                                                        {"-inf", StatusCode::kNonFinite},
