@@ -2,6 +2,7 @@
 #include "client/cpp/transport.h"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <asio/buffer.hpp>
@@ -70,7 +71,8 @@ class ReadPump {
 
 class TcpTransport : public Transport {
  public:
-  TcpTransport() : Transport(TransportKind::kTcp) {}
+  explicit TcpTransport(std::chrono::milliseconds send_timeout)
+      : Transport(TransportKind::kTcp), send_timeout_(send_timeout) {}
 
   asio::error_code Connect(const std::string& host, std::uint16_t port,
                            Clock::time_point deadline) {
@@ -84,10 +86,7 @@ class TcpTransport : public Transport {
         [&](const asio::error_code& result, const tcp::endpoint&) { error = result; });
     context_.run_until(deadline);
     if (error == asio::error::timed_out) {
-      asio::error_code ignored;
-      socket_.close(ignored);
-      context_.restart();
-      context_.run();  // the handler must not outlive this frame
+      Close();
       return asio::error::timed_out;
     }
     if (!error) socket_.set_option(tcp::no_delay(true), error);
@@ -99,9 +98,15 @@ class TcpTransport : public Transport {
     const auto prefix = protocol::FramePrefix(message.size());
     const std::array<asio::const_buffer, 2> buffers{asio::buffer(prefix),
                                                     asio::buffer(message.data(), message.size())};
-    asio::error_code error;
-    asio::write(socket_, buffers, error);
-    return error ? IoStatus::kClosed : IoStatus::kOk;
+    std::optional<asio::error_code> result;
+    asio::async_write(socket_, buffers,
+                      [&](const asio::error_code& error, std::size_t) { result = error; });
+    const auto deadline = Clock::now() + send_timeout_;
+    context_.restart();
+    while (!result && context_.run_one_until(deadline) > 0) {
+    }
+    if (!result) Close();  // half a frame may have left: nothing can follow it
+    return *result ? IoStatus::kClosed : IoStatus::kOk;
   }
 
   IoStatus Receive(std::span<const std::uint8_t>& message,
@@ -111,7 +116,10 @@ class TcpTransport : public Transport {
       if (!unread_.empty()) {
         switch (frames_.Push(unread_, message)) {
           case protocol::FrameStatus::kFrame: return IoStatus::kOk;
-          case protocol::FrameStatus::kBadLength: return IoStatus::kMalformed;
+          case protocol::FrameStatus::kBadLength:
+            unread_ = {};
+            Close();
+            return IoStatus::kMalformed;
           case protocol::FrameStatus::kNeedMore: break;
         }
       }
@@ -123,6 +131,15 @@ class TcpTransport : public Transport {
   }
 
  private:
+  // Handlers run to their end here: they must not outlive the frame that they refer to.
+  void Close() {
+    asio::error_code ignored;
+    socket_.close(ignored);
+    context_.restart();
+    context_.run();
+  }
+
+  std::chrono::milliseconds send_timeout_;
   asio::io_context context_{1};
   tcp::socket socket_{context_};
   ReadPump pump_;
@@ -162,8 +179,7 @@ class UdpTransport : public Transport {
       const std::size_t bytes = protocol::WriteDatagram(message, id, i, datagram_);
       asio::error_code error;
       socket_.send(asio::buffer(datagram_.data(), bytes), 0, error);
-      // A refusal is the answer to an earlier datagram: this one did not leave, so try it once
-      // more.
+      // A refusal answers an earlier datagram. This one did not leave, so try it once more.
       if (error == asio::error::connection_refused) {
         refused_ = true;
         socket_.send(asio::buffer(datagram_.data(), bytes), 0, error);
@@ -175,8 +191,10 @@ class UdpTransport : public Transport {
 
   IoStatus Receive(std::span<const std::uint8_t>& message,
                    std::chrono::milliseconds timeout) override {
+    constexpr int kMostPieces = 1024;  // a flood of pieces must not outlast the timeout
     const auto deadline = Clock::now() + timeout;
-    for (;;) {
+    (void)reassembler_.Expire(Microseconds(Clock::now()));
+    for (int piece = 0; piece < kMostPieces; ++piece) {
       if (std::exchange(refused_, false)) return IoStatus::kNoConnection;
       pump_.Start(socket_, buffer_);
       if (!pump_.Wait(context_, deadline)) return IoStatus::kTimeout;
@@ -188,6 +206,7 @@ class UdpTransport : public Transport {
         default: break;  // a piece, or nothing of ours: wait on
       }
     }
+    return IoStatus::kTimeout;
   }
 
  private:
@@ -209,7 +228,7 @@ std::unique_ptr<Transport> Transport::Open(TransportKind kind, const std::string
   asio::error_code code;
   std::unique_ptr<Transport> result;
   if (kind == TransportKind::kTcp) {
-    auto transport = std::make_unique<TcpTransport>();
+    auto transport = std::make_unique<TcpTransport>(timeout);
     code = transport->Connect(host, port, Clock::now() + timeout);
     result = std::move(transport);
   } else {
@@ -218,8 +237,9 @@ std::unique_ptr<Transport> Transport::Open(TransportKind kind, const std::string
     result = std::move(transport);
   }
   if (!code) return result;
-  *error = "no connection to " + host + ":" + std::to_string(port) + " over " +
-           (kind == TransportKind::kTcp ? "TCP" : "UDP") + ": " + code.message();
+  const bool bare_v6 = host.find(':') != std::string::npos;
+  *error = "no connection to " + (bare_v6 ? "[" + host + "]" : host) + ":" + std::to_string(port) +
+           " over " + (kind == TransportKind::kTcp ? "TCP" : "UDP") + ": " + code.message();
   return nullptr;
 }
 

@@ -23,19 +23,21 @@ enum class IoStatus {
 // One connected socket that carries whole messages of the Furrow protocol (protocol/STANDARD.md):
 // length-prefixed over TCP, one a datagram or in fragments over UDP.
 //
-// Not thread-safe: one thread a transport. Blocks only in Open() and Receive(), never beyond the
-// time given.
+// Not thread-safe: one thread a transport. Waits never beyond the times given, except that the
+// system's resolver takes its own time over a name.
 class Transport {
  public:
-  // `host`: a name or a numeric address. On failure null, and `error` says why in one sentence.
-  // UDP has no handshake: a missing server shows in Receive().
+  // `host`: a name or a numeric address. `timeout`: for connecting, and over TCP for each Send()
+  // that the other end is slow to take. On failure null, and `error` says why in one sentence. UDP
+  // has no handshake: a missing server shows in Receive().
   [[nodiscard]] static std::unique_ptr<Transport> Open(TransportKind kind, const std::string& host,
                                                        std::uint16_t port,
                                                        std::chrono::milliseconds timeout,
                                                        std::string* error);
   virtual ~Transport() = default;
 
-  // `message` as protocol::Encoder makes it.
+  // `message` as protocol::Encoder makes it. kClosed over TCP also when the other end took too
+  // long; the connection is closed then.
   [[nodiscard]] virtual IoStatus Send(std::span<const std::uint8_t> message) = 0;
 
   // Waits for one whole message, at most `timeout` (0: only what is there). `message` points into

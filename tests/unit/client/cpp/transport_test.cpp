@@ -58,9 +58,10 @@ std::vector<std::uint8_t> BigMessage() {
   return bytes;
 }
 
-std::unique_ptr<Transport> Open(TransportKind kind, std::uint16_t port) {
+std::unique_ptr<Transport> Open(TransportKind kind, std::uint16_t port,
+                                milliseconds timeout = kGuard) {
   std::string error;
-  auto transport = Transport::Open(kind, "localhost", port, kGuard, &error);
+  auto transport = Transport::Open(kind, "localhost", port, timeout, &error);
   EXPECT_NE(transport, nullptr) << error;
   return transport;
 }
@@ -100,7 +101,20 @@ TEST(TcpTransportTest, LengthThatCannotBeIsMalformed) {
   ASSERT_EQ(::send(peer, huge, sizeof huge, 0), 4);
   std::span<const std::uint8_t> received;
   EXPECT_EQ(transport->Receive(received, kGuard), IoStatus::kMalformed);
+  EXPECT_EQ(transport->Receive(received, kGuard), IoStatus::kClosed);
+  EXPECT_EQ(transport->Send(BigMessage()), IoStatus::kClosed);
   ::close(peer);
+}
+
+TEST(TcpTransportTest, AnEndThatTakesNothingDoesNotBlockForEver) {
+  Socket listener(SOCK_STREAM);
+  auto transport = Open(TransportKind::kTcp, listener.port(), milliseconds(50));
+  const std::vector<std::uint8_t> message(protocol::kMaxRequestBytes);
+  IoStatus status = IoStatus::kOk;
+  for (int i = 0; i < 10'000 && status == IoStatus::kOk; ++i) status = transport->Send(message);
+  EXPECT_EQ(status, IoStatus::kClosed);
+  std::span<const std::uint8_t> received;
+  EXPECT_EQ(transport->Receive(received, kGuard), IoStatus::kClosed);
 }
 
 TEST(TcpTransportTest, NobodyThereIsAnErrorThatNamesTheAddress) {
