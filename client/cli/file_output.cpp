@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/file_output.h"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
+
+#include "client/cli/exit_code.h"
 
 namespace furrow::cli {
 
@@ -17,9 +21,15 @@ Status WriteFile(const std::filesystem::path& path, std::span<const std::uint8_t
 
 Status WriteStandardOutput(std::span<const std::uint8_t> bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size() &&
-      std::fflush(stdout) == 0)
+      std::fflush(stdout) == 0) {
     return {};
-  return {StatusCode::kIo, "standard output is closed"};
+  }
+  return {StatusCode::kIo, std::strerror(errno), "standard output"};
+}
+
+int StandardOutputFailed() {
+  if (errno == EPIPE) return kDone;
+  return Fail({StatusCode::kIo, std::strerror(errno), "standard output"});
 }
 
 }  // namespace furrow::cli

@@ -13,7 +13,11 @@ namespace furrow::cli {
 [[nodiscard]] Status WriteFile(const std::filesystem::path& path,
                                std::span<const std::uint8_t> bytes);
 
-// Writes to standard output and flushes; kIo when it is closed.
+// Writes to standard output and flushes; kIo says why it could not.
 [[nodiscard]] Status WriteStandardOutput(std::span<const std::uint8_t> bytes);
+
+// What to exit with just after standard output took no more (errno says why): kDone where its
+// reader has had enough (`... | head`), else the reason is printed and it is kFailed.
+[[nodiscard]] int StandardOutputFailed();
 
 }  // namespace furrow::cli

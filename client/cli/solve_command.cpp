@@ -4,6 +4,7 @@
 
 #include "client/cli/command.h"
 #include "client/cli/exit_code.h"
+#include "client/cli/file_output.h"
 #include "client/cli/inputs.h"
 #include "client/cli/progress.h"
 #include "client/cli/weight_writer.h"
@@ -46,7 +47,9 @@ int SolveFile(const SolveOptions& options) {
                    options.file, "please report this file"});
     }
     const auto values = options.drivers ? solver.driver_values() : solver.wrinkle_weights();
-    if (!writer->Row(frame, clip->times[frame] - clip->times[0], values)) return kFailed;
+    if (!writer->Row(frame, clip->times[frame] - clip->times[0], values)) {
+      return StandardOutputFailed();
+    }
     progress.Set(frame + 1);
   }
   return kDone;

@@ -7,6 +7,7 @@
 #include "client/cli/command.h"
 #include "client/cli/endpoint.h"
 #include "client/cli/exit_code.h"
+#include "client/cli/file_output.h"
 #include "client/cli/listen.h"
 #include "client/cli/weight_writer.h"
 #include "protocol/limits.h"
@@ -45,9 +46,14 @@ class WeightRows {
     if (frame.age_us > 0 || !names_hash_ || frame.names_hash != *names_hash_) return true;
     if (!first_us_) first_us_ = event.header.capture_time_us;
     const double seconds = static_cast<double>(event.header.capture_time_us - *first_us_) * 1e-6;
-    if (!writer_->Row(event.header.sequence, seconds, frame.values)) return false;
+    if (!writer_->Row(event.header.sequence, seconds, frame.values)) {
+      failure_ = StandardOutputFailed();
+      return false;
+    }
     return --left_ != 0;
   }
+
+  [[nodiscard]] int failure() const { return failure_; }
 
  private:
   void OnReply() {
@@ -65,6 +71,7 @@ class WeightRows {
   std::int64_t left_;  // 0: without end
   std::optional<std::uint64_t> names_hash_;
   std::optional<std::int64_t> first_us_;
+  int failure_ = kDone;
 };
 
 int Watch(const WatchOptions& options) {
@@ -78,7 +85,8 @@ int Watch(const WatchOptions& options) {
   if (options.drivers) request.source = protocol::WeightSource::kDriverValues;
   subscriber.Subscribe(request);
   WeightRows rows(options, subscriber);
-  return Listen(subscriber, std::ref(rows));
+  exit_code = Listen(subscriber, std::ref(rows));
+  return rows.failure() != kDone ? rows.failure() : exit_code;
 }
 
 }  // namespace
