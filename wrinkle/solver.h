@@ -57,7 +57,8 @@ class RigBinding {
 // - `local` num_joints of the binding's skeleton; `blend_shapes` as bound (may be shorter: 0).
 // - `driver_values` at least driver_value_names().size() long. Does not allocate.
 // - Drivers compare joints with one another from the local pose alone, not in model space: where
-//   the character stands and how it is turned changes no value by a single bit.
+//   the character stands and how it is turned changes no value by a single bit (but for the pose
+//   drivers of a rig without an anchor).
 // Source: thesis 4.1, 4.6 with the corrections of docs/ALGORITHM.md.
 struct DriverJob {
   const RigBinding* binding = nullptr;

@@ -2,6 +2,7 @@
 #include "wrinkle/weight_table.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "wrinkle/incongruence.h"
 #include "wrinkle/modulation.h"
@@ -38,10 +39,19 @@ Status CheckNeighbours(const Rig& rig, const Region& region) {
   return {};
 }
 
-bool Oppose(const Rig& rig, const std::string& a, const std::string& b) {
-  return std::any_of(rig.wrinkle_maps.begin(), rig.wrinkle_maps.end(), [&](const WrinkleMap& map) {
-    return (map.name == a && map.opposes == b) || (map.name == b && map.opposes == a);
-  });
+// The maps that must not meet `map` over a border, whichever of the two says so.
+std::vector<std::string> OpposedMaps(const Rig& rig, const std::string& map) {
+  std::vector<std::string> opposed;
+  for (const WrinkleMap& candidate : rig.wrinkle_maps) {
+    if (candidate.name == map && !candidate.opposes.empty()) opposed.push_back(candidate.opposes);
+    if (candidate.opposes == map) opposed.push_back(candidate.name);
+  }
+  return opposed;
+}
+
+// Either may name the other: a border has two sides.
+bool Adjacent(const Region& a, const Region& b) {
+  return Lists(a.neighbours, b.name) || Lists(b.neighbours, a.name);
 }
 
 }  // namespace
@@ -110,24 +120,25 @@ Status WeightTable::BindFeed(const Region& region, const Feed& feed,
 }
 
 void WeightTable::BindOpponents(const Rig& rig) {
-  struct Place {
-    const Region* region;
-    const Feed* feed;
-  };
-  std::vector<Place> places;
-  for (const Region& region : rig.regions) {
-    for (const Feed& feed : region.feeds) places.push_back({&region, &feed});
-  }
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    entries_[i].first_opponent = static_cast<std::uint32_t>(opponents_.size());
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      const Region& own = *places[i].region;
-      const Region& other = *places[k].region;
-      // Either may name the other: a border has two sides.
-      const bool adjacent = Lists(own.neighbours, other.name) || Lists(other.neighbours, own.name);
-      if (!adjacent || !Oppose(rig, places[i].feed->map, places[k].feed->map)) continue;
-      opponents_.push_back(static_cast<std::uint16_t>(k));
-      ++entries_[i].num_opponents;
+  std::size_t weight = 0;
+  for (const Region& own : rig.regions) {
+    std::vector<std::pair<const Feed*, std::uint16_t>> neighbours;  // their feeds and weights
+    std::uint16_t first = 0;
+    for (const Region& other : rig.regions) {
+      const std::size_t count = Adjacent(own, other) ? other.feeds.size() : 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        neighbours.emplace_back(&other.feeds[i], static_cast<std::uint16_t>(first + i));
+      }
+      first = static_cast<std::uint16_t>(first + other.feeds.size());
+    }
+    for (const Feed& feed : own.feeds) {
+      Entry& entry = entries_[weight++];
+      entry.first_opponent = static_cast<std::uint32_t>(opponents_.size());
+      const std::vector<std::string> opposed = OpposedMaps(rig, feed.map);
+      for (const auto& [other, index] : neighbours) {
+        if (Lists(opposed, other->map)) opponents_.push_back(index);
+      }
+      entry.num_opponents = static_cast<std::uint32_t>(opponents_.size()) - entry.first_opponent;
     }
   }
 }
