@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <utility>
 
 #include "protocol/bytes.h"
 
@@ -81,21 +82,13 @@ FragmentStatus Reassembler::Push(std::uint64_t peer, std::span<const std::uint8_
   if (!ReadSlice(datagram, envelope, limits_.max_message_bytes, slice)) {
     return FragmentStatus::kMalformed;
   }
-  const Key key{peer, envelope.header.session, slice.message_id};
-  auto it = pending_.find(key);
-  if (it == pending_.end()) {
-    const std::size_t bytes = kEnvelopeBytes + envelope.payload_bytes;
-    if (!MakeRoom(peer, bytes)) return FragmentStatus::kOverLimit;
-    Pending pending{envelope, now_us, slice.count, std::vector<bool>(slice.count),
-                    std::vector<std::uint8_t>(bytes)};
-    Envelope whole = envelope;
-    whole.flags = 0;
-    WriteEnvelope(whole,
-                  std::span<std::uint8_t, kEnvelopeBytes>(pending.bytes.data(), kEnvelopeBytes));
-    it = pending_.emplace(key, std::move(pending)).first;
-    pending_bytes_ += bytes;
+  if (kEnvelopeBytes + envelope.payload_bytes > limits_.max_total_bytes) {
+    return FragmentStatus::kOverLimit;
   }
-  Pending& pending = it->second;
+  const Key key{peer, envelope.header.session, slice.message_id};
+  const auto found = pending_.find(key);
+  Pending& pending =
+      found != pending_.end() ? found->second : Begin(key, envelope, slice.count, now_us);
   if (pending.envelope.header != envelope.header ||
       pending.envelope.payload_bytes != envelope.payload_bytes) {
     return FragmentStatus::kMalformed;
@@ -105,41 +98,68 @@ FragmentStatus Reassembler::Push(std::uint64_t peer, std::span<const std::uint8_
   std::memcpy(&pending.bytes[kEnvelopeBytes + slice.index * kFragmentPayloadBytes],
               slice.bytes.data(), slice.bytes.size());
   if (--pending.missing > 0) return FragmentStatus::kPending;
+  pending_bytes_ -= pending.bytes.size();
   done_.swap(pending.bytes);
-  pending_bytes_ -= done_.size();
-  pending_.erase(it);
+  pending.bytes.clear();
+  Remove(pending_.find(key));
   message = done_;
   return FragmentStatus::kComplete;
 }
 
-// The peer's oldest unfinished message gives way; other peers' never do.
-bool Reassembler::MakeRoom(std::uint64_t peer, std::size_t bytes) {
-  const auto first = pending_.lower_bound(Key{peer, 0, 0});
+Reassembler::Pending& Reassembler::Begin(const Key& key, const Envelope& envelope,
+                                         std::size_t count, std::int64_t now_us) {
+  const std::size_t bytes = kEnvelopeBytes + envelope.payload_bytes;
+  MakeRoom(key.peer, bytes);
+  Pending& pending = pending_[key];
+  pending.age = by_age_.insert(by_age_.end(), key);
+  pending.envelope = envelope;
+  pending.first_us = now_us;
+  pending.missing = count;
+  pending.have.resize(count);
+  pending.bytes.resize(bytes);
+  Envelope whole = envelope;
+  whole.flags = 0;
+  WriteEnvelope(whole,
+                std::span<std::uint8_t, kEnvelopeBytes>(pending.bytes.data(), kEnvelopeBytes));
+  pending_bytes_ += bytes;
+  return pending;
+}
+
+// First the peer's own oldest gives way, then anybody's. The pieces of a message come one behind
+// the other, so a flood of beginnings pushes out other beginnings; were it refused instead, a few
+// datagrams a second from many ports could keep every large message out.
+void Reassembler::MakeRoom(std::uint64_t peer, std::size_t bytes) {
   std::size_t count = 0;
   auto oldest = pending_.end();
-  for (auto it = first; it != pending_.end() && it->first.peer == peer; ++it, ++count) {
+  for (auto it = pending_.lower_bound(Key{peer, 0, 0});
+       it != pending_.end() && it->first.peer == peer; ++it, ++count) {
     if (oldest == pending_.end() || it->second.first_us < oldest->second.first_us) oldest = it;
   }
-  if (count >= limits_.max_pending_per_peer && oldest != pending_.end()) Remove(oldest);
-  return pending_bytes_ + bytes <= limits_.max_total_bytes;
+  if (count >= limits_.max_pending_per_peer && oldest != pending_.end()) {
+    Remove(oldest);
+    ++pushed_out_;
+  }
+  while (pending_bytes_ + bytes > limits_.max_total_bytes) {
+    Remove(pending_.find(by_age_.front()));
+    ++pushed_out_;
+  }
 }
 
 void Reassembler::Remove(PendingMap::iterator it) {
   pending_bytes_ -= it->second.bytes.size();
+  by_age_.erase(it->second.age);
   pending_.erase(it);
 }
 
 std::size_t Reassembler::Expire(std::int64_t now_us) {
-  std::size_t expired = 0;
-  for (auto it = pending_.begin(); it != pending_.end();) {
-    const auto next = std::next(it);
-    if (now_us - it->second.first_us > limits_.max_age_us) {
-      Remove(it);
-      ++expired;
-    }
-    it = next;
+  std::size_t given_up = std::exchange(pushed_out_, 0);
+  while (!by_age_.empty()) {
+    const auto oldest = pending_.find(by_age_.front());
+    if (now_us - oldest->second.first_us <= limits_.max_age_us) break;
+    Remove(oldest);
+    ++given_up;
   }
-  return expired;
+  return given_up;
 }
 
 void Reassembler::ForgetPeer(std::uint64_t peer) {

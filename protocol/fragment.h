@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <list>
 #include <map>
 #include <span>
 #include <vector>
@@ -30,7 +31,7 @@ std::size_t WriteDatagram(std::span<const std::uint8_t> message, std::uint32_t m
 struct ReassemblyLimits {
   std::size_t max_message_bytes = kMaxUdpMessageBytes;
   std::size_t max_pending_per_peer = 4;           // unfinished messages; the oldest gives way
-  std::size_t max_total_bytes = 8 * 1024 * 1024;  // over all peers; beyond it fragments are refused
+  std::size_t max_total_bytes = 8 * 1024 * 1024;  // over all peers; the oldest give way
   std::int64_t max_age_us = 1'000'000;            // an unfinished message is forgotten after this
 };
 
@@ -40,20 +41,23 @@ enum class FragmentStatus : std::uint8_t {
   kPending,    // kept
   kDuplicate,
   kMalformed,  // sizes that do not follow from the envelope, or differ from earlier fragments
-  kOverLimit,
+  kOverLimit,  // a message above max_total_bytes by itself
 };
 
 // Puts messages together again; bounded in memory, and time is a parameter.
 class Reassembler {
  public:
   explicit Reassembler(const ReassemblyLimits& limits = {});
+  Reassembler(const Reassembler&) = delete;
+  Reassembler& operator=(const Reassembler&) = delete;
 
   // `peer`: the caller's number for the source address. On kWhole and kComplete `message` is a
   // whole message for OpenMessage(), valid until the next call.
   [[nodiscard]] FragmentStatus Push(std::uint64_t peer, std::span<const std::uint8_t> datagram,
                                     std::int64_t now_us, std::span<const std::uint8_t>& message);
 
-  // Forgets what is too old; returns how many messages. Call it about once a second.
+  // Forgets what is too old. Returns how many messages were given up since the last call, for their
+  // age or for want of room. Call it about once a second.
   std::size_t Expire(std::int64_t now_us);
   void ForgetPeer(std::uint64_t peer);
 
@@ -68,6 +72,7 @@ class Reassembler {
     friend auto operator<=>(const Key&, const Key&) = default;
   };
   struct Pending {
+    std::list<Key>::iterator age;  // its place in by_age_
     Envelope envelope;
     std::int64_t first_us = 0;
     std::size_t missing = 0;
@@ -76,12 +81,16 @@ class Reassembler {
   };
   using PendingMap = std::map<Key, Pending>;
 
-  bool MakeRoom(std::uint64_t peer, std::size_t bytes);
+  [[nodiscard]] Pending& Begin(const Key& key, const Envelope& envelope, std::size_t count,
+                               std::int64_t now_us);
+  void MakeRoom(std::uint64_t peer, std::size_t bytes);
   void Remove(PendingMap::iterator it);
 
   ReassemblyLimits limits_;
   PendingMap pending_;
+  std::list<Key> by_age_;  // oldest first
   std::size_t pending_bytes_ = 0;
+  std::size_t pushed_out_ = 0;  // since the last Expire()
   std::vector<std::uint8_t> done_;
 };
 
