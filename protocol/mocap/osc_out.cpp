@@ -20,7 +20,9 @@ std::string AddressPart(std::string_view name) {
   std::string part(name);
   std::replace_if(
       part.begin(), part.end(),
-      [kForbidden](char c) { return kForbidden.find(c) != std::string_view::npos || c < ' '; },
+      [kForbidden](char c) {
+        return kForbidden.find(c) != std::string_view::npos || static_cast<unsigned char>(c) < ' ';
+      },
       '_');
   return part;
 }

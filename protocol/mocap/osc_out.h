@@ -25,7 +25,8 @@ class OscWeightWriter {
   explicit OscWeightWriter(OscProfile profile = OscProfile::kFurrow,
                            std::string prefix = "/furrow");
 
-  // Characters that OSC addresses may not have (space # * , / ? [ ] { }) become '_'.
+  // Characters that OSC addresses may not have (space # * , / ? [ ] { } and controls) become '_';
+  // UTF-8 beyond ASCII stays, so that subjects of other scripts stay apart.
   void SetNames(const std::string& subject, std::span<const std::string> names);
 
   // Writes min(values, names) messages and the mark. `emit` is called once a datagram.

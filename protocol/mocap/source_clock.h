@@ -12,15 +12,15 @@ class SourceClock {
   enum class Order : std::uint8_t { kNewer, kNotNewer };
 
   // `source_us` at most `tolerance_us` behind the newest (or equal) is kNotNewer: a straggler.
-  // Further behind, the clock has restarted: time goes on by what passed on the receiver's clock.
+  // Further behind, or further ahead than what passed on the receiver's clock by more than
+  // `tolerance_us`, the clock was set anew: time goes on by what passed on the receiver's.
   [[nodiscard]] Order Advance(std::int64_t source_us, std::int64_t now_us,
                               std::int64_t tolerance_us) {
     const bool follows = started_ && has_source_;
-    if (follows && source_us <= newest_us_ && newest_us_ - source_us <= tolerance_us) {
-      return Order::kNotNewer;
-    }
-    if (follows && source_us > newest_us_) {
-      time_us_ += source_us - newest_us_;
+    const std::int64_t step = source_us - newest_us_;
+    if (follows && step <= 0 && step >= -tolerance_us) return Order::kNotNewer;
+    if (follows && step > 0 && step - (now_us - arrived_us_) <= tolerance_us) {
+      time_us_ += step;
       arrived_us_ = now_us;
     } else if (!started_) {
       AdvanceByArrival(now_us);

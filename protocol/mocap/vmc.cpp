@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "protocol/hash.h"
 #include "protocol/mocap/osc.h"
 #include "protocol/mocap/source_clock.h"
 #include "protocol/mocap/vmc_state.h"
@@ -72,6 +74,7 @@ class VmcAdapter final : public MocapAdapter {
     if (what == "Root/Pos") return Root(arguments);
     if (what == "T") return Time(arguments);
     if (what == "OK") return Available(arguments);
+    if (what == "VRM") return Avatar(arguments);
     return Read::kIgnored;
   }
 
@@ -126,12 +129,17 @@ class VmcAdapter final : public MocapAdapter {
     last_time_us_ = now_us_;
     if (!pending_) return Read::kUsed;
     const auto source_us = static_cast<std::int64_t>(std::llround(double{seconds} * 1e6));
-    if (clock_.Advance(source_us, now_us_, kStragglerUs) == SourceClock::Order::kNotNewer) {
+    if (source_us == last_source_us_) {
+      // Seconds in 32 bits: after a day or two they stand still for a
+      // frame, and with some senders always.
+      clock_.AdvanceByArrival(now_us_);
+    } else if (clock_.Advance(source_us, now_us_, kStragglerUs) == SourceClock::Order::kNotNewer) {
       ++counters_.reordered;
       pending_ = false;
       state_.EndFrame();
       return Read::kUsed;
     }
+    last_source_us_ = source_us;
     Commit();
     return Read::kUsed;
   }
@@ -144,6 +152,22 @@ class VmcAdapter final : public MocapAdapter {
     loaded_ = loaded != 0;
     tracked_ = true;
     if (arguments.Int(value) && arguments.Int(value) && arguments.Int(value)) tracked_ = value != 0;
+    return Read::kUsed;
+  }
+
+  // path, title [, hash of the file]
+  Read Avatar(OscArguments& arguments) {
+    std::string_view path;
+    std::string_view title;
+    if (!arguments.String(path) || !arguments.String(title)) return Read::kMalformed;
+    Hasher hasher;
+    hasher.String(path);
+    hasher.String(title);
+    if (avatar_hash_ && *avatar_hash_ != hasher.value()) {
+      state_.Clear();
+      pending_ = false;
+    }
+    avatar_hash_ = hasher.value();
     return Read::kUsed;
   }
 
@@ -177,7 +201,9 @@ class VmcAdapter final : public MocapAdapter {
   std::int64_t now_us_ = 0;
   std::int64_t last_time_us_ = kNever;
   std::int64_t last_apply_us_ = kNever;
+  std::int64_t last_source_us_ = kNever;  // what the last /T said
   std::int64_t pending_since_us_ = 0;
+  std::optional<std::uint64_t> avatar_hash_;
   bool pending_ = false;
   bool loaded_ = true;
   bool tracked_ = true;

@@ -26,6 +26,7 @@ struct VmcOptions {
 //   the distances of an average adult, so that drivers find limbs of some length. The first
 //   translation that is not zero becomes the joint's rest translation.
 // - Blend-shape names match whatever their case; shapes not sent keep their value.
+// - Another avatar (/VMC/Ext/VRM) begins with nothing known: what the last one had is forgotten.
 // - While /VMC/Ext/OK says loaded = 0, frames are dropped as stale.
 // Space: Unity's (left-handed, Y up, Z forward) by M = (-x, y, z), determinant -1: positions
 // (-x, y, z), quaternions (x, -y, -z, w).

@@ -115,6 +115,14 @@ void VmcState::EndFrame() {
   for (Joint& joint : joints_) joint.in_frame = false;
 }
 
+void VmcState::Clear() {
+  joints_.clear();
+  frame_.blend_shapes.clear();
+  last_joint_ = 0;
+  last_shape_ = 0;
+  layout_changed_ = true;
+}
+
 int VmcState::SlotOfHumanoid(int humanoid) const {
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     if (joints_[i].humanoid == humanoid) return static_cast<int>(i);

@@ -26,6 +26,8 @@ class VmcState {
   // False where the name is not usable or there are too many.
   [[nodiscard]] bool SetBlendShape(std::string_view name, float value);
   void EndFrame();
+  // Forgets all joints and blend shapes; the numbers of frames and layouts go on.
+  void Clear();
 
   // The frame as it stands, numbered; rebuilt in place, valid until the next call.
   [[nodiscard]] const NeutralFrame& Frame(std::int64_t capture_time_us, bool tracked);

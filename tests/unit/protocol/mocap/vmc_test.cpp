@@ -38,6 +38,13 @@ class Packet {
     writer_.EndMessage();
     return *this;
   }
+  Packet& Texts(std::string_view address, std::string_view first, std::string_view second) {
+    writer_.BeginMessage(address, "ss");
+    writer_.String(first);
+    writer_.String(second);
+    writer_.EndMessage();
+    return *this;
+  }
   Packet& Message(std::string_view address, std::string_view tags, std::string_view text,
                   std::initializer_list<float> values) {
     writer_.BeginMessage(address, tags);
@@ -190,6 +197,26 @@ TEST_F(Vmc, BlendShapesMatchWithoutCaseAndKeepTheirValues) {
   EXPECT_EQ(frames_[0].layout, frames_[1].layout);
 }
 
+TEST_F(Vmc, AnotherAvatarBeginsWithNothingKnown) {
+  const auto avatar = [](std::string_view title) {
+    return Packet().Texts("/VMC/Ext/VRM", "avatar.vrm", title);
+  };
+  Push(avatar("Anna"));
+  Push(Packet().Bone("Hips", {0, 1, 0}).Blend("Joy", 1).Apply());
+  Push(avatar("Anna"), 1000);
+  Push(Packet().Blend("Fun", 1).Apply(), 2000);
+  ASSERT_EQ(frames_.size(), 2u);
+  EXPECT_EQ(frames_[1].blend_shapes.size(), 2u) << "said again, it is the same";
+  Push(avatar("Bert"), 3000);
+  Push(Packet().Blend("A", 0.5f).Apply(), 4000);
+  ASSERT_EQ(frames_.size(), 3u);
+  EXPECT_TRUE(frames_[2].joints.empty());
+  ASSERT_EQ(frames_[2].blend_shapes.size(), 1u);
+  EXPECT_EQ(frames_[2].blend_shapes[0].name, "A");
+  EXPECT_NE(frames_[2].layout, frames_[1].layout);
+  EXPECT_EQ(frames_[2].sequence, 2u);
+}
+
 TEST_F(Vmc, NothingIsGivenWhileNoModelIsLoaded) {
   Push(Packet().Ok(0).Bone("Hips", {0, 1, 0}).Apply());
   EXPECT_TRUE(frames_.empty());
@@ -206,6 +233,23 @@ TEST_F(Vmc, StragglersByTimeAreDroppedAndRestartsAreNot) {
   Push(frame(1.0f), 20'000);
   ASSERT_EQ(frames_.size(), 2u);
   EXPECT_EQ(frames_[1].capture_time_us - frames_[0].capture_time_us, 20'000);
+}
+
+TEST_F(Vmc, AClockThatStandsStillLosesNoFrame) {
+  const auto frame = [](float seconds) { return Packet().Bone("Hips", {0, 1, 0}).Time(seconds); };
+  for (int i = 0; i < 4; ++i) Push(frame(300'000.0f), i * 16'000);
+  ASSERT_EQ(frames_.size(), 4u);
+  EXPECT_EQ(frames_[3].capture_time_us - frames_[0].capture_time_us, 48'000);
+  EXPECT_EQ(counters().reordered, 0u);
+}
+
+// A clock thrown to and fro, as by somebody hostile, must not add up to an overflow.
+TEST_F(Vmc, AClockThatLeapsAheadGoesOnByArrival) {
+  const auto frame = [](float seconds) { return Packet().Bone("Hips", {0, 1, 0}).Time(seconds); };
+  Push(frame(1.0f), 0);
+  for (int i = 1; i <= 10'000; ++i) Push(frame(i % 2 == 0 ? 1.0f : 9e8f), i * 10'000);
+  ASSERT_EQ(frames_.size(), 10'001u);
+  EXPECT_EQ(frames_.back().capture_time_us - frames_.front().capture_time_us, 100'000'000);
 }
 
 TEST_F(Vmc, RotationsKeepTheirSign) {
@@ -274,7 +318,7 @@ TEST_F(Vmc, DoesNotAllocateOnceWarm) {
                           .Bone("Spine", {})
                           .Blend("A", 1)
                           .Apply()
-                          .Time(static_cast<float>(i))
+                          .Time(0.25f * static_cast<float>(i))
                           .bytes());
   }
   const FrameSink sink = [](const NeutralFrame&) {};
