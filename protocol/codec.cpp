@@ -41,6 +41,9 @@ constexpr std::array<std::string_view, kNumDecodeStatuses> kStatusNames = {
     "bad_length", "unknown_kind", "wrong_kind", "unverified",  "missing_field", "bad_count",
     "limit",      "non_finite",   "not_unit",   "bad_value",   "bad_text",      "bad_hash"};
 
+// Exclusive, either way: any two capture times may be subtracted.
+constexpr std::int64_t kCaptureTimeBound = std::int64_t{1} << 62;
+
 // Root offset and file identifier.
 constexpr std::size_t kMinPayloadBytes = 8;
 
@@ -75,6 +78,8 @@ DecodeStatus OpenMessage(std::span<const std::uint8_t> bytes, MessageView& view,
   Envelope envelope;
   FURROW_CHECK_DECODE(FromEnvelope(ReadEnvelope(bytes, envelope)));
   if ((envelope.flags & kFlagFragment) != 0) return DecodeStatus::kBadFlags;
+  const std::int64_t time = envelope.header.capture_time_us;
+  if (time <= -kCaptureTimeBound || time >= kCaptureTimeBound) return DecodeStatus::kBadValue;
   view.header = envelope.header;
   view.payload = bytes.subspan(kEnvelopeBytes);
   if (bytes.size() > max_bytes || view.payload.size() != envelope.payload_bytes ||

@@ -286,6 +286,7 @@ def subscribe_pictures(t):
         require(message["camera_preset"] == "", "a camera and a preset")
         finite(camera)
         require(1 < camera[6] < 170, "a field of view")
+        require(camera[0:3] != camera[3:6], "an eye at its target")
         message.update(eye=camera[0:3], target=camera[3:6], vertical_fov_degrees=camera[6])
     return message
 
@@ -301,20 +302,27 @@ def subscribe_reply(t):
     return {"subject": t.text(0), "names_hash": hexadecimal(expected), "names": names}
 
 
+def age(value):
+    require(value >= 0, "an age below 0")
+    return value
+
+
 def weights(t):
     plain, packed = t.vector(2, "f"), t.vector(3, "B")
     either(plain, packed)
     values = [v / 255 for v in packed] if packed is not None else finite(plain or [])
     require(all(0 <= v <= 1 for v in values), "a weight out of range")
-    return {"names_hash": hexadecimal(t.scalar(0, "Q")), "age_us": t.scalar(1, "q"),
+    return {"names_hash": hexadecimal(t.scalar(0, "Q")), "age_us": age(t.scalar(1, "q")),
             "format": 0 if packed is None else 1, "values": values}
 
 
 def image(t):
     data = t.vector(4, "B")
     require(data, "no bytes")
-    return {"width": t.scalar(0, "H"), "height": t.scalar(1, "H"),
-            "format": one_of(t.scalar(2, "B"), 2), "age_us": t.scalar(3, "q"), "bytes": data}
+    width, height = t.scalar(0, "H"), t.scalar(1, "H")
+    require(1 <= width <= 4096 and 1 <= height <= 4096, "a size")
+    return {"width": width, "height": height, "format": one_of(t.scalar(2, "B"), 2),
+            "age_us": age(t.scalar(3, "q")), "bytes": data}
 
 
 KINDS = {b"FHEL": hello, b"FWEL": welcome, b"FPIN": ping, b"FPON": pong, b"FBYE": goodbye,
@@ -333,6 +341,7 @@ def envelope(data):
     require(version == 1, "another version")
     require(flags & ~1 == 0, "undefined flags")
     require(session != 0, "session 0")
+    require(abs(time) < 2**62, "a capture time that cannot be")
     return flags, size, {"session": hexadecimal(session), "stream": stream, "sequence": sequence,
                          "capture_time_us": time}
 

@@ -102,6 +102,22 @@ TEST(Codec, NoTruncationWithAnAgreeingEnvelopeIsReadBeyond) {
   }
 }
 
+// So that the difference of any two does not overflow.
+TEST(Codec, CaptureTimesAreBounded) {
+  constexpr std::int64_t kBound = std::int64_t{1} << 62;
+  const auto status = [](std::int64_t time) {
+    test::Bytes bytes;
+    Encoder().Encode({.session = 1, .capture_time_us = time}, PoseFrame{}, bytes);
+    return DecodeAny(bytes);
+  };
+  for (const std::int64_t time : {kBound - 1, -kBound + 1, std::int64_t{0}}) {
+    EXPECT_EQ(status(time), DecodeStatus::kOk) << time;
+  }
+  for (const std::int64_t time : {kBound, -kBound, INT64_MAX, INT64_MIN}) {
+    EXPECT_EQ(status(time), DecodeStatus::kBadValue) << time;
+  }
+}
+
 TEST(Codec, ExtraBytesAreRefused) {
   for (test::Bytes bytes : OneOfEach()) {
     bytes.push_back(0);
