@@ -72,6 +72,29 @@ Transform FromMatrix(const std::vector<double>& m) {
   return transform;
 }
 
+// A node's own transform.
+Result<Transform> NodeTransform(const GltfDocument& document, int index) {
+  const tinygltf::Node& node = document.model().nodes[static_cast<std::size_t>(index)];
+  if (!node.matrix.empty()) return FromMatrix(node.matrix);
+  Transform transform;
+  for (int i = 0; i < 3; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (!node.translation.empty())
+      transform.translation[i] = static_cast<float>(node.translation[at]);
+    if (!node.scale.empty()) transform.scale[i] = static_cast<float>(node.scale[at]);
+  }
+  if (!node.rotation.empty()) {
+    const std::vector<double>& r = node.rotation;
+    const glm::dquat rotation(r[3], r[0], r[1], r[2]);
+    const double length = glm::length(rotation);
+    if (length < 1e-6) {
+      return document.Error(StatusCode::kSchema, NodeField(index, ".rotation"), "has no length");
+    }
+    transform.rotation = glm::quat(rotation / length);
+  }
+  return transform;
+}
+
 std::optional<glm::vec3> ReadTail(const tinygltf::Node& node) {
   const tinygltf::Value& tail = Member(node.extras, kTailKey);
   if (!tail.IsArray() || tail.ArrayLen() != 3) return std::nullopt;
@@ -181,28 +204,6 @@ std::vector<std::string> UniqueNames(const GltfDocument& document, const VrmAnim
 }
 
 }  // namespace
-
-Result<wrinkle::Transform> NodeTransform(const GltfDocument& document, int index) {
-  const tinygltf::Node& node = document.model().nodes[static_cast<std::size_t>(index)];
-  if (!node.matrix.empty()) return FromMatrix(node.matrix);
-  Transform transform;
-  for (int i = 0; i < 3; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (!node.translation.empty())
-      transform.translation[i] = static_cast<float>(node.translation[at]);
-    if (!node.scale.empty()) transform.scale[i] = static_cast<float>(node.scale[at]);
-  }
-  if (!node.rotation.empty()) {
-    const std::vector<double>& r = node.rotation;
-    const glm::dquat rotation(r[3], r[0], r[1], r[2]);
-    const double length = glm::length(rotation);
-    if (length < 1e-6) {
-      return document.Error(StatusCode::kSchema, NodeField(index, ".rotation"), "has no length");
-    }
-    transform.rotation = glm::quat(rotation / length);
-  }
-  return transform;
-}
 
 Result<VrmAnimation> ReadVrmAnimation(const GltfDocument& document) {
   VrmAnimation vrm;

@@ -35,7 +35,4 @@ struct GltfSkeleton {
                                                      const VrmAnimation& vrm,
                                                      const std::vector<int>& moving, float scale);
 
-// A node's own transform. Errors: kSchema (a rotation of length 0).
-[[nodiscard]] Result<wrinkle::Transform> NodeTransform(const GltfDocument& document, int node);
-
 }  // namespace furrow::motion

@@ -37,13 +37,6 @@ struct CachedPoseSource::Entry {
   std::optional<Clip> clip;
 };
 
-Result<wrinkle::PoseFrame> ReadPoseFrame(const std::filesystem::path& path, int frame,
-                                         const LoadOptions& options) {
-  const Result<Clip> clip = LoadClip(path, options);
-  if (!clip.ok()) return clip.status();
-  return GetFrame(*clip, path, frame);
-}
-
 CachedPoseSource::CachedPoseSource(const LoadOptions& options)
     : options_(options), entry_(std::make_shared<Entry>()) {}
 

@@ -9,16 +9,12 @@
 
 namespace furrow::motion {
 
-// One frame of a recording as a wrinkle rig's reference pose. Errors: LoadClip()'s,
-// kInvalidArgument (no such frame; the message says how many there are), kUnsupported (a recording
-// without joints).
-[[nodiscard]] Result<wrinkle::PoseFrame> ReadPoseFrame(const std::filesystem::path& path, int frame,
-                                                       const LoadOptions& options = {});
-
-// A wrinkle::PoseSource that keeps the recording it read last: a rig that names sixty frames of one
-// file reads it once. A file that changed on disk (size or time) is read anew.
+// A wrinkle::PoseSource over LoadClip() that keeps the recording it read last: a rig that names
+// sixty frames of one file reads it once. A file that changed on disk (size or time) is read anew.
 //
-// Copies share the recording. Not for several threads at once.
+// - Copies share the recording. Not for several threads at once.
+// - Errors: LoadClip()'s, kInvalidArgument (no such frame; the message says how many there are),
+//   kUnsupported (a recording without joints).
 class CachedPoseSource {
  public:
   explicit CachedPoseSource(const LoadOptions& options = {});

@@ -114,11 +114,6 @@ Retarget Retarget::Create(const Skeleton& source, const Skeleton& target,
   return retarget;
 }
 
-int Retarget::num_matched() const {
-  return static_cast<int>(std::count_if(
-      joints_.begin(), joints_.end(), [](const Joint& joint) { return joint.source != kNoJoint; }));
-}
-
 Transform Retarget::Carry(const Joint& joint, const Transform& source) const {
   Transform result = joint.rest;
   const glm::quat departure = joint.source_rest_inverse * source.rotation;

@@ -29,7 +29,6 @@ class Retarget {
       const Skeleton& source, const Skeleton& target,
       std::span<const std::pair<std::string, std::string>> aliases = {});
 
-  [[nodiscard]] int num_matched() const;
   [[nodiscard]] std::span<const std::string> unmatched_source() const { return unmatched_; }
 
   // `source` num_joints of the source, `target` of the target. Does not allocate.

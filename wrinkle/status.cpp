@@ -3,24 +3,6 @@
 
 namespace furrow {
 
-std::string_view StatusCodeName(StatusCode code) {
-  switch (code) {
-    case StatusCode::kOk: return "ok";
-    case StatusCode::kInvalidArgument: return "invalid_argument";
-    case StatusCode::kNotFound: return "not_found";
-    case StatusCode::kParse: return "parse";
-    case StatusCode::kSchema: return "schema";
-    case StatusCode::kLimit: return "limit";
-    case StatusCode::kNonFinite: return "non_finite";
-    case StatusCode::kCyclic: return "cyclic";
-    case StatusCode::kUnsupported: return "unsupported";
-    case StatusCode::kIo: return "io";
-    case StatusCode::kUnavailable: return "unavailable";
-    case StatusCode::kInternal: return "internal";
-  }
-  return "unknown";
-}
-
 Status::Status(StatusCode code, std::string what, std::string where, std::string todo)
     : code_(code), what_(std::move(what)), where_(std::move(where)), todo_(std::move(todo)) {}
 

@@ -8,7 +8,7 @@
 
 namespace furrow {
 
-// Why something failed. The names are the vocabulary of logs, exit codes and tests.
+// Why something failed: what exit codes, replies to peers and tests go by. Words are Status's.
 enum class StatusCode {
   kOk = 0,
   kInvalidArgument,  // the caller broke a contract: wrong size, unknown name, out of range
@@ -23,9 +23,6 @@ enum class StatusCode {
   kUnavailable,      // a service (GL, a socket, a peer) cannot be had now
   kInternal,         // our own fault
 };
-
-// The stable, lower-case name of a code ("not_found"), for logs and messages.
-[[nodiscard]] std::string_view StatusCodeName(StatusCode code);
 
 // Success, or one clear message: what went wrong, where, and what to do.
 //

@@ -33,7 +33,7 @@ class PoseSourceTest : public ::testing::Test {
 
 TEST_F(PoseSourceTest, GivesOneFrame) {
   Write(Bvh(180));
-  const Result<wrinkle::PoseFrame> frame = ReadPoseFrame(path_, 1);
+  const Result<wrinkle::PoseFrame> frame = CachedPoseSource()(path_, 1);
   ASSERT_TRUE(frame.ok()) << frame.status().ToString();
   EXPECT_EQ(frame->skeleton.num_joints(), 1);
   EXPECT_NEAR(std::abs(frame->pose.joints[0].rotation.x), 1.0f, 1e-6f);
@@ -42,15 +42,16 @@ TEST_F(PoseSourceTest, GivesOneFrame) {
 TEST_F(PoseSourceTest, SaysHowManyFramesThereAre) {
   Write(Bvh(0));
   for (const int frame : {-1, 2}) {
-    const Result<wrinkle::PoseFrame> result = ReadPoseFrame(path_, frame);
+    const Result<wrinkle::PoseFrame> result = CachedPoseSource()(path_, frame);
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.status().code(), StatusCode::kInvalidArgument);
     EXPECT_THAT(result.status().ToString(), HasSubstr("has 2"));
     EXPECT_THAT(result.status().ToString(), HasSubstr("a.bvh"));
   }
-  EXPECT_EQ(ReadPoseFrame(folder_.path() / "b.bvh", 0).status().code(), StatusCode::kNotFound);
+  EXPECT_EQ(CachedPoseSource()(folder_.path() / "b.bvh", 0).status().code(), StatusCode::kNotFound);
   std::ofstream(folder_.path() / "c.csv") << "Timecode,JawOpen\n00:00:00:00,1\n";
-  EXPECT_EQ(ReadPoseFrame(folder_.path() / "c.csv", 0).status().code(), StatusCode::kUnsupported);
+  EXPECT_EQ(CachedPoseSource()(folder_.path() / "c.csv", 0).status().code(),
+            StatusCode::kUnsupported);
 }
 
 // A file that is rewritten with the same size and time cannot be told from an unchanged one: that

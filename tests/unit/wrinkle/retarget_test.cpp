@@ -28,7 +28,6 @@ TEST(Retarget, ToTheSameSkeletonChangesNothing) {
   std::mt19937 random(1);
   const Skeleton body = MakeBody(5);
   const Retarget retarget = Retarget::Create(body, body);
-  EXPECT_EQ(retarget.num_matched(), body.num_joints());
   EXPECT_TRUE(retarget.unmatched_source().empty());
   LocalPose pose;
   RandomPose(body, &random, &pose);
@@ -64,7 +63,6 @@ TEST(Retarget, RestsWhatTheSourceLacksAndNamesWhatTheTargetLacks) {
   const Skeleton source = MakeSkeleton({{"hips", "", {}, {}}, {"tail", "hips", {0, 0, -1}, {}}});
   const Skeleton target = MakeBody(4);
   const Retarget retarget = Retarget::Create(source, target);
-  EXPECT_EQ(retarget.num_matched(), 1);
   ASSERT_EQ(retarget.unmatched_source().size(), 1u);
   EXPECT_EQ(retarget.unmatched_source()[0], "tail");
   const std::vector<Transform> result = Carried(retarget, target, RestPose(source));

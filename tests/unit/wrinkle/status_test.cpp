@@ -2,7 +2,6 @@
 #include "wrinkle/status.h"
 
 #include <memory>
-#include <set>
 
 #include <gtest/gtest.h>
 
@@ -21,15 +20,6 @@ TEST(Status, KeepsTheInnermostPlace) {
   const Status inner(StatusCode::kIo, "cannot read");
   EXPECT_EQ(inner.At("a.json").At("b.json").where(), "a.json");
   EXPECT_EQ(Status().At("a.json").ToString(), "ok");
-}
-
-TEST(Status, EveryCodeHasANameOfItsOwn) {
-  std::set<std::string_view> names;
-  for (int code = 0; code <= static_cast<int>(StatusCode::kInternal); ++code) {
-    names.insert(StatusCodeName(static_cast<StatusCode>(code)));
-  }
-  EXPECT_EQ(names.size(), static_cast<std::size_t>(StatusCode::kInternal) + 1);
-  EXPECT_EQ(names.count("unknown"), 0u);
 }
 
 TEST(Result, HoldsAValueOrTheReason) {
