@@ -88,9 +88,8 @@ class Renderer {
   virtual ~Renderer() = default;
 
   // Draws; what the request points at may go when it returns. Errors: kInvalidArgument and
-  // kNonFinite
-  // (`where` is the field), kUnavailable (two in flight, or the context was lost: create anew),
-  // kInternal (a shader).
+  // kNonFinite (`where` is the field), kUnavailable (two in flight, or the context was lost: create
+  // anew), kInternal (a shader).
   [[nodiscard]] virtual Status Submit(const FrameRequest& request) = 0;
   // The oldest picture that is ready; `wait`: blocks for it. An image of width 0: none yet.
   [[nodiscard]] virtual Result<Image> Poll(bool wait) = 0;
