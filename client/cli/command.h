@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,23 @@ void AddCharacter(CLI::App& app, Action& action);
 void AddPlay(CLI::App& app, Action& action);
 void AddWatch(CLI::App& app, Action& action);
 void AddFrames(CLI::App& app, Action& action);
+
+// An option that takes one of some words, whatever their case; help shows "csv|jsonl|table".
+template <class T>
+CLI::Option* AddChoice(CLI::App& app, const std::string& name, T& value,
+                       const std::map<std::string, T>& choices, const std::string& help) {
+  std::string words;
+  for (const auto& [word, meaning] : choices) words += (words.empty() ? "" : "|") + word;
+  const auto to_number = [choices, words](std::string& text) {
+    const auto found = choices.find(CLI::detail::to_lower(text));
+    if (found == choices.end()) return "'" + text + "' is not one of " + words;
+    text = std::to_string(static_cast<int>(found->second));
+    return std::string();
+  };
+  return app.add_option(name, value, help)
+      ->transform(CLI::Validator(to_number, ""))
+      ->type_name(words);
+}
 
 // Parses "WxH" with both in [16, 4096].
 [[nodiscard]] bool ParseSize(const std::string& text, int* width, int* height);

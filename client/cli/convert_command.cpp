@@ -49,17 +49,12 @@ void AddConvert(CLI::App& app, Action& action) {
       ->capture_default_str();
   const std::map<std::string, motion::BvhPositions> positions{
       {"replace", motion::BvhPositions::kReplace}, {"add", motion::BvhPositions::kAdd}};
-  command
-      ->add_option(
-          "--bvh-positions", options->load.bvh_positions,
-          "What a BVH joint's position channels do to its offset: replace (default) or add")
-      ->transform(CLI::CheckedTransformer(positions, CLI::ignore_case));
+  AddChoice(*command, "--bvh-positions", options->load.bvh_positions, positions,
+            "What a BVH joint's position channels do to its offset: replace (default) or add");
   const std::map<std::string, motion::UpAxis> axes{
       {"auto", motion::UpAxis::kAuto}, {"y", motion::UpAxis::kY}, {"z", motion::UpAxis::kZ}};
-  command
-      ->add_option("--up-axis", options->load.up_axis,
-                   "Which axis points up in a BVH: auto (default), y or z")
-      ->transform(CLI::CheckedTransformer(axes, CLI::ignore_case));
+  AddChoice(*command, "--up-axis", options->load.up_axis, axes,
+            "Which axis points up in a BVH: auto (default), y or z");
   command->callback([options, &action] { action = [options] { return ConvertFile(*options); }; });
 }
 

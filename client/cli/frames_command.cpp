@@ -101,8 +101,7 @@ void AddFrames(CLI::App& app, Action& action) {
       ->capture_default_str();
   const std::map<std::string, protocol::ImageFormat> formats{{"jpeg", protocol::ImageFormat::kJpeg},
                                                              {"png", protocol::ImageFormat::kPng}};
-  command->add_option("--format", options->request.format, "jpeg (default) or png")
-      ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case));
+  AddChoice(*command, "--format", options->request.format, formats, "jpeg (default) or png");
   command->add_option("--quality", options->quality, "JPEG quality")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
@@ -37,17 +39,30 @@ struct RenderOptions {
   int quality = 90;
 };
 
-// "A:B" (both included), "A", or empty for all, within [0, count).
-bool ParseFrames(const std::string& text, int count, int* first, int* last) {
-  *first = 0;
-  *last = count - 1;
-  if (text.empty()) return count > 0;
-  char extra = 0;
-  if (std::sscanf(text.c_str(), "%d:%d%c", first, last, &extra) != 2) {
-    if (std::sscanf(text.c_str(), "%d%c", first, &extra) != 1) return false;
-    *last = *first;
+// "A:B", both included, or "A".
+bool ParseRange(const std::string& text, int* first, int* last) {
+  const char* const end = text.data() + text.size();
+  const auto a = std::from_chars(text.data(), end, *first);
+  if (a.ec != std::errc()) return false;
+  *last = *first;
+  if (a.ptr != end) {
+    if (*a.ptr != ':') return false;
+    const auto b = std::from_chars(a.ptr + 1, end, *last);
+    if (b.ec != std::errc() || b.ptr != end) return false;
   }
-  return *first >= 0 && *first <= *last && *last < count;
+  return *first >= 0 && *first <= *last;
+}
+
+std::string CheckRange(std::string& text) {
+  int first = 0;
+  int last = 0;
+  if (ParseRange(text, &first, &last)) return {};
+  return "'" + text + "' is not A:B, both included and counted from 0, nor a single A";
+}
+
+std::string CheckView(std::string& text) {
+  const auto view = render::ParseView(text);
+  return view.ok() ? std::string() : view.status().ToString();
 }
 
 // The recording, its solver and the character it is drawn on.
@@ -158,12 +173,13 @@ int RenderFile(const RenderOptions& options) {
   auto performance = Performance::Create(options);
   if (!performance.ok()) return Fail(performance.status());
   int first = 0;
-  int last = 0;
-  if (!ParseFrames(options.frames, (*performance)->num_frames(), &first, &last)) {
+  int last = (*performance)->num_frames() - 1;
+  if (!options.frames.empty()) (void)ParseRange(options.frames, &first, &last);  // checked before
+  if (last >= (*performance)->num_frames() || last < 0) {
     return Fail({StatusCode::kInvalidArgument,
-                 "--frames " + options.frames + " is not a range within the recording's " +
-                     std::to_string((*performance)->num_frames()) + " frames",
-                 options.file, "write A:B, both included, counted from 0"});
+                 "there is no frame " + std::to_string(std::max(last, 0)) + ": the recording has " +
+                     std::to_string((*performance)->num_frames()) + ", counted from 0",
+                 options.file});
   }
   auto renderer = render::Renderer::Create((*performance)->character(), {.device = options.device});
   if (!renderer.ok()) return Fail(renderer.status());
@@ -206,13 +222,15 @@ void AddRender(CLI::App& app, Action& action) {
   command->add_option("--character", options->character,
                       "Character package (.glb); default: the one that ships");
   command->add_option("--rig", options->rig, "Wrinkle rig; default: the package's own");
-  command->add_option("--frames", options->frames, "A:B, both included, from 0; default: all");
+  command->add_option("--frames", options->frames, "A:B, both included, from 0; default: all")
+      ->check(CLI::Validator(CheckRange, ""));
   command->add_option("--size", options->size, "WxH in pixels, 16 to 4096")
       ->check(SizeValidator())
       ->capture_default_str();
   command
       ->add_option("--view", options->view,
                    "final, normal, mask_dynamic, mask_texture, weights, wireframe")
+      ->check(CLI::Validator(CheckView, ""))
       ->capture_default_str();
   command
       ->add_option("--camera", options->camera, "face, three_quarter, profile, eyes, mouth, body")
@@ -224,13 +242,10 @@ void AddRender(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   const std::map<std::string, bool> switches{{"on", true}, {"off", false}};
-  command->add_option("--wrinkles", options->wrinkles, "on (default) or off")
-      ->transform(CLI::CheckedTransformer(switches, CLI::ignore_case));
+  AddChoice(*command, "--wrinkles", options->wrinkles, switches, "on (default) or off");
   const std::map<std::string, bool> blends{{"partial_derivative", false}, {"tangent_space", true}};
-  command
-      ->add_option("--normal-blend", options->tangent_space,
-                   "partial_derivative (default) or tangent_space")
-      ->transform(CLI::CheckedTransformer(blends, CLI::ignore_case));
+  AddChoice(*command, "--normal-blend", options->tangent_space, blends,
+            "partial_derivative (default) or tangent_space");
   command->add_option("--device", options->device,
                       "EGL device index or 'surfaceless'; default: the first that works");
   command->add_flag("--allow-missing", options->allow_missing,

@@ -69,8 +69,7 @@ void AddSolve(CLI::App& app, Action& action) {
       ->required();
   const std::map<std::string, TableFormat> formats{{"csv", TableFormat::kCsv},
                                                    {"jsonl", TableFormat::kJsonl}};
-  command->add_option("--format", options->format, "csv (default) or jsonl")
-      ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case));
+  AddChoice(*command, "--format", options->format, formats, "csv (default) or jsonl");
   command->add_flag("--drivers", options->drivers,
                     "Print driver values before modulation and filter");
   command->add_flag("--no-filter", options->no_filter, "Leave the filter out");

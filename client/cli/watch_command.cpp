@@ -104,8 +104,7 @@ void AddWatch(CLI::App& app, Action& action) {
       ->capture_default_str();
   const std::map<std::string, TableFormat> formats{
       {"table", TableFormat::kTable}, {"csv", TableFormat::kCsv}, {"jsonl", TableFormat::kJsonl}};
-  command->add_option("--format", options->format, "table (default), csv or jsonl")
-      ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case));
+  AddChoice(*command, "--format", options->format, formats, "table (default), csv or jsonl");
   command
       ->add_option("--frames", options->frames,
                    "End after so many; default: when the subject leaves")

@@ -123,10 +123,26 @@ class BadFileTest(unittest.TestCase):
         self.refuse(BAD_INPUT, "solve", self.root / "no.bvh", "--rig", RIG, says=["no.bvh"])
         self.refuse(BAD_INPUT, "solve", self.file("ok.bvh", BVH), "--rig", self.root / "no.json", says=["no.json"])
         for args in ((), ("solve",), ("dance",), ("render", "x.bvh", "--out", "y", "--size", "9x9"),
-                     ("play", "x.bvh", "--to", "localhost:0x7")):
-            result = furrow(*args)
-            self.assertIn(result.returncode, (USAGE, BAD_INPUT), args)
-        self.assertEqual(furrow("watch", "localhost:99999").returncode, USAGE)
+                     ("render", "x.bvh", "--out", "y", "--frames", "5:"),
+                     ("render", "x.bvh", "--out", "y", "--view", "inside"),
+                     ("play", self.file("ok.bvh", BVH), "--to", "localhost:0x7"), ("watch", "localhost:99999")):
+            self.assertEqual(furrow(*args).returncode, USAGE, args)
+        self.refuse(BAD_INPUT, "render", self.file("ok.bvh", BVH), "--out", self.root / "out", "--rig",
+                    self.file("r.json", json.dumps(KNEE_RIG)), "--frames", "0:2", says=["no frame 2", "ok.bvh"])
+
+    def test_full_disk_behind_standard_output_is_said(self):
+        with open("/dev/full", "wb") as full:
+            result = subprocess.run([BIN / "furrow", "solve", self.file("ok.bvh", BVH), "--rig",
+                                     self.file("r.json", json.dumps(KNEE_RIG))], stdout=full,
+                                    stderr=subprocess.PIPE, timeout=GUARD)
+        self.assertEqual(result.returncode, FAILED)
+        self.assertIn("No space left", result.stderr.decode())
+
+    def test_name_that_is_not_utf8_is_refused_before_it_is_sent(self):
+        path = self.file("latin.bvh", BVH.replace("knee", "caf\u00e9").encode("latin-1"))
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as nobody:
+            nobody.bind(("127.0.0.1", 0))
+            self.refuse(BAD_INPUT, "play", path, "--to", f"127.0.0.1:{nobody.getsockname()[1]}", says=["UTF-8"])
 
     def test_help_names_the_exit_codes(self):
         for program in ("furrow", "furrowd"):
