@@ -4,7 +4,7 @@
 // render/wrinkle_table.h.
 //
 // ACTIVE_MAPS  length of the list for this surface: a constant, so that loops unroll and llvmpipe
-//              reads the list once for all lanes; half the price of a list in a storage buffer
+//              reads the list once for all lanes, which a list in a storage buffer cannot
 // MASK_LAYERS  RGBA mask textures of the character, at least 1
 // MAP_SLOTS    vec4s that carry the dynamic masks of the rig's maps, at least 1
 
