@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Every command line that the documents show runs: fenced lines that begin with furrow or furrowd."""
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import tempfile
+import unittest
+
+from furrow_testing import BIN, GUARD, SHARE, SHARED, SOURCE, Daemon, finish, furrow, spawn
+
+PERFORMANCE = SHARE / "recordings" / "performance.bvh"
+
+
+def commands(document):
+    """The command lines in the fenced blocks of a document, comments off, as lists of words."""
+    text = (SOURCE / document).read_text()
+    for block in re.findall(r"^```(?:sh)?\n(.*?)^```", text, re.M | re.S):
+        for line in block.splitlines():
+            if re.match(r"furrowd?( |$)", line):
+                yield shlex.split(line, comments=True)
+
+
+class DocumentTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        for name in ("take.bvh", "performance.bvh"):
+            (self.root / name).symlink_to(PERFORMANCE)
+
+    def run_here(self, words):
+        """Runs one command in a folder of its own; `>` works as in a shell."""
+        out = None
+        if ">" in words:
+            at = words.index(">")
+            out, words = self.root / words[at + 1], words[:at]
+        result = subprocess.run([BIN / words[0], *words[1:]], cwd=self.root, capture_output=True, timeout=GUARD,
+                                env={**os.environ, "FURROW_ASSET_PATH": str(SHARED / "makehuman" / "poseunits")})
+        self.assertEqual(result.returncode, 0, (words, result.stderr.decode()))
+        if out:
+            out.write_bytes(result.stdout)
+            self.assertGreater(out.stat().st_size, 0)
+
+    def test_readme(self):
+        seen = set()
+        with Daemon() as daemon:
+            stage = spawn("play", PERFORMANCE, "--to", daemon.udp, "--loop", "--subject", "stage")
+            self.addCleanup(stage.kill)
+            furrow("watch", daemon.tcp, "--subject", "stage", "--wait", "--frames", "1", check=0)
+            for words in commands("README.md"):
+                seen.add(" ".join(words[:2]))
+                if words[0] == "furrowd":
+                    with Daemon(*words[1:]):
+                        continue
+                to = daemon.udp if words[1] == "play" else daemon.tcp
+                words = [to if w == "localhost" else w for w in words]
+                if words[1] in ("render", "frames"):
+                    words += ["--size", "160x160"]  # as quick as a test should be
+                if words[1] in ("watch", "frames"):
+                    words += ["--frames", "2"]  # the stage goes on for ever
+                if words[1] == "play":
+                    words += ["--speed", "20"]
+                self.run_here(words)
+            stage.terminate()
+            finish(stage)
+        self.assertLessEqual({"furrowd", "furrow play", "furrow watch", "furrow frames", "furrow solve",
+                              "furrow render", "furrow rig"}, seen)
+
+    def test_import_howto(self):
+        if not SHARED.exists():
+            self.skipTest(f"{SHARED} is absent")
+        seen = []
+        for words in commands("docs/HOWTO-import.md"):
+            words = [str(SHARED / "makehuman") if w == "path/to/makehuman" else w for w in words]
+            words = [str(SHARED / "performances" / "emotions.bvh") if w == "performance.bvh" else w for w in words]
+            if words[1] == "render":
+                words += ["--frames", "60", "--size", "64x64"]
+            self.run_here(words)
+            seen.append(words[1])
+        self.assertEqual(seen[:2], ["character", "render"])
+
+
+if __name__ == "__main__":
+    unittest.main()
