@@ -19,7 +19,7 @@ struct MaterialBlock {
   float roughness;
   float specular;
   float alpha_cutoff;
-  float padding = 0.0f;
+  float cavity_albedo;
 };
 static_assert(sizeof(MaterialBlock) == 32);
 
@@ -35,6 +35,9 @@ float SpecularOf(Material::Kind kind) {
   }
   return 0.03f;
 }
+
+// Base colour below which a surface counts as hollow. Eyes have black pupils and glossy ones.
+float CavityAlbedoOf(Material::Kind kind) { return kind == Material::Kind::kSkin ? 0.02f : 0.0f; }
 
 float RoughnessOf(const Material& material) {
   return material.kind == Material::Kind::kEye ? std::min(material.roughness, 0.3f)
@@ -184,7 +187,7 @@ Status GpuCharacter::AddMaterials(const Character& character) {
       }
     }
     const MaterialBlock block{source.base_colour, RoughnessOf(source), SpecularOf(source.kind),
-                              source.alpha_cutoff};
+                              source.alpha_cutoff, CavityAlbedoOf(source.kind)};
     GpuMaterial material;
     material.block = gl::MakeStaticBuffer(&block, sizeof(block));
     material.base_colour = ColourTexture(character, source.base_colour_texture, true);

@@ -19,6 +19,7 @@ layout(std140, binding = 1) uniform Material {
   float u_roughness;       // [0, 1]
   float u_specular;
   float u_alpha_cutoff;
+  float u_cavity_albedo;   // see cavity(); 0: none
 };
 
 // One row a mask layer's channel: the colour of its region in the view `mask_texture`.
@@ -72,6 +73,12 @@ vec3 surfaceNormal(vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS]) {
   return gl_FrontFacing ? normal : -normal;
 }
 
+// Share of the specular light that gets in and out again, [0, 1]. No skin reflects less than 2%:
+// where the base colour is darker, it is painted hollow (mouth, nostrils), which nothing shadows.
+float cavity(vec3 albedo) {
+  return u_cavity_albedo > 0.0 ? saturate(albedo.g / u_cavity_albedo) : 1.0;
+}
+
 // Beckmann's roughness squared to a Blinn-Phong exponent: n = 2 / alpha^2 - 2, alpha = roughness^2.
 float exponentOf(float rough) {
   float alpha = max(rough * rough, 0.04);
@@ -123,7 +130,8 @@ void main() {
 #if VIEW == VIEW_NORMAL
   f_colour = vec4(normal * 0.5 + 0.5, 1.0);
 #else
-  Surface surface = Surface(base.rgb, normal, exponentOf(roughness()), u_specular);
+  Surface surface = Surface(base.rgb, normal, exponentOf(roughness()),
+                            u_specular * cavity(base.rgb));
 #if VIEW != VIEW_FINAL
   surface.albedo = vec3(0.35);  // neutral grey under the colours and lines
 #endif

@@ -27,7 +27,7 @@ constexpr Knot kHairline[] = {{0, 6.7f},    {18, 6.9f},   {33, 6.8f},  {44, 5.9f
 
 // Thickness of the hair, centimetres.
 float Thickness(const vec3& p, float inside) {
-  const float grow = SmoothStep(-0.15f, 1.5f, inside);
+  const float grow = SmoothStep(-0.15f, 2.4f, inside);
   const float top = SmoothStep(5.0f, 10.5f, p.y);
   const float front = SmoothStep(1.0f, 7.0f, p.z) * SmoothStep(4.5f, 8.0f, p.y);
   const float side = 0.35f + 0.25f * SmoothStep(2.0f, -6.0f, p.z);

@@ -157,7 +157,8 @@ class SkinBuilder {
       std::vector<std::uint32_t> next;
       for (std::size_t i = 0; i < outline.size(); ++i) {
         HeadVertex info = head_.info[GridIndex(outline[i].x, outline[i].y)];
-        info.part = kMouthInside;
+        // The first ring is the lips' line itself and stays skin: it must move as the grid does.
+        if (!ring.empty()) info.part = kMouthInside;
         const float corner = 1.0f - std::abs(info.place.x) / kMouthCornerX;
         info.place.x *= step.narrow;
         info.place.y += info.mouth_side * step.height * std::sqrt(std::max(corner, 0.0f));

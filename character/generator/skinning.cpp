@@ -102,6 +102,15 @@ float UpperLid(const HeadVertex& v, float side) {
   return SmoothStep(1.3f, 0.62f, d.y) * std::sqrt(across);
 }
 
+// How much of the corner's muscle the lower lip feels: little in the middle, where it swings with
+// the jaw, all at the corner. An open mouth is then an arc, not a box.
+float CornerHold(const HeadVertex& v) {
+  if (v.mouth_side >= 0.0f) return 1.0f;
+  const float x = std::min(std::abs(v.place.x) / kMouthCornerX, 1.0f);
+  const float arc = 1.0f - std::sqrt(1.0f - x * x);
+  return glm::mix(arc, 1.0f, SmoothStep(kMouthY - 0.8f, kMouthY - 2.2f, v.place.y));
+}
+
 struct NamedField {
   std::string joint;
   float weight;
@@ -117,7 +126,8 @@ std::vector<NamedField> MuscleFields(const HeadVertex& v) {
     const std::size_t star = name.find('*');
     for (const float side : {1.0f, -1.0f}) {
       if (star == std::string::npos && side < 0.0f) continue;
-      const float field = Field(muscle, v.place, side);
+      float field = Field(muscle, v.place, side);
+      if (name.starts_with("risorius")) field *= CornerHold(v);
       if (field <= 0.0f) continue;
       const char* end = side > 0.0f ? "_l" : "_r";
       fields.push_back({star == std::string::npos ? name : name.substr(0, star) + end, field});

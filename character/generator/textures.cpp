@@ -254,7 +254,10 @@ Picture PaintHairColour(const Mesh& hair, int size) {
                  const float across = std::atan2(p.x, p.y + 2.0f) * 9.0f;
                  const float strand = 0.6f * Noise({across * 6.0f, p.z * 0.6f, p.y * 0.5f}) +
                                       0.4f * Noise({across * 15.0f, p.z * 0.9f, 4.0f});
-                 return vec4(vec3(0.17f, 0.115f, 0.08f) * (1.0f + 0.55f * strand), 1.0f);
+                 const vec3 colour = vec3(0.17f, 0.115f, 0.08f) * (1.0f + 0.55f * strand);
+                 // Skin shines through where the hair begins, between some strands farther in.
+                 const float thick = SmoothStep(0.2f, 1.1f, InsideHairline(p) + 0.5f * strand);
+                 return vec4(glm::mix(vec3(0.40f, 0.29f, 0.235f), colour, thick), 1.0f);
                });
 }
 

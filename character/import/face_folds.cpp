@@ -91,15 +91,15 @@ void Forehead(const FaceLandmarks& face, FoldDrawing* drawing) {
 void Glabella(const FaceLandmarks& face, FoldDrawing* drawing) {
   for (int s = 0; s < 2; ++s) {
     const glm::vec3& brow = face.sides[s].brow_inner;
-    drawing->Add({drawing->From(brow, s, -6.0f, 13.0f), drawing->From(brow, s, -7.5f, 2.0f),
-                  drawing->From(brow, s, -8.5f, -8.0f)},
-                 {3.5f, 1.6f});
-    drawing->Add({drawing->From(brow, s, 1.0f, 9.0f), drawing->From(brow, s, -2.0f, 2.5f)},
-                 {3.0f, 0.85f});
-    // The brow's own roll: skin pushed up over its inner end.
-    drawing->Add({drawing->From(brow, s, -3.0f, 8.0f), drawing->From(brow, s, 8.0f, 9.5f),
-                  drawing->From(brow, s, 20.0f, 9.0f)},
-                 {4.1f, 0.85f});
+    // One line is longer than the other: no face is a mirror.
+    const float top = s == 0 ? 14.0f : 9.5f;
+    drawing->Add({drawing->From(brow, s, -4.5f, top), drawing->From(brow, s, -7.5f, 2.0f),
+                  drawing->From(brow, s, -8.0f, -8.0f)},
+                 {4.0f, 1.4f, 0.35f, 0.9f});
+    // The brow's own roll: skin pushed up over its inner end, an arc that rises from the frown.
+    drawing->Add({drawing->From(brow, s, -1.0f, 3.5f), drawing->From(brow, s, 3.5f, 8.5f),
+                  drawing->From(brow, s, 11.0f, 11.5f), drawing->From(brow, s, 21.0f, 11.0f)},
+                 {5.0f, 0.6f, 0.35f, 1.0f});
   }
   const glm::vec3 root = glm::mix(face.sides[0].brow_inner, face.sides[1].brow_inner, 0.5f);
   for (const float down : {15.0f, 20.0f})
@@ -110,34 +110,40 @@ void Glabella(const FaceLandmarks& face, FoldDrawing* drawing) {
 
 void BunnyLines(const FaceLandmarks& face, FoldDrawing* drawing) {
   for (int s = 0; s < 2; ++s) {
-    for (int line = 0; line < 3; ++line) {
-      const float down = 4.5f * static_cast<float>(line) - 4.0f;
-      drawing->Add({drawing->From(face.nose_bridge, s, 3.0f, 2.0f - down),
-                    drawing->From(face.nose_bridge, s, 8.5f, 0.0f - down),
-                    drawing->From(face.nose_bridge, s, 14.0f, 4.5f - down)},
-                   {2.2f, 0.85f});
+    // {start, fall, length}: they slant down and outward, none like the next.
+    constexpr std::array<std::array<float, 3>, 3> kLines{
+        {{5.0f, 3.0f, 8.0f}, {0.0f, 5.0f, 11.0f}, {-6.0f, 4.5f, 9.0f}}};
+    for (const auto& [up, fall, length] : kLines) {
+      drawing->Add({drawing->From(face.nose_bridge, s, 4.0f, up),
+                    drawing->From(face.nose_bridge, s, 4.0f + 0.5f * length, up - 0.35f * fall),
+                    drawing->From(face.nose_bridge, s, 4.0f + length, up - fall)},
+                   {2.6f, 0.6f, 0.35f, 1.0f});
     }
   }
 }
 
 // A fan from the outer corner of the eye, and lines that follow the lower lid.
 void EyeFolds(const FaceLandmarks& face, FoldDrawing* drawing) {
-  constexpr std::array<std::array<float, 2>, 5> kFan{
-      {{9.0f, 9.0f}, {14.0f, 3.5f}, {15.0f, -2.5f}, {13.0f, -8.5f}, {8.0f, -14.0f}}};
+  // {out, up, depth}: the middle ones are long and deep.
+  constexpr std::array<std::array<float, 3>, 5> kFan{{{7.0f, 10.0f, 0.35f},
+                                                      {14.0f, 4.0f, 0.65f},
+                                                      {17.0f, -3.0f, 0.75f},
+                                                      {12.0f, -9.5f, 0.5f},
+                                                      {6.0f, -15.0f, 0.3f}}};
   for (int s = 0; s < 2; ++s) {
     const FaceLandmarks::Side& side = face.sides[s];
-    for (const auto& [out, up] : kFan) {
+    for (const auto& [out, up, depth] : kFan) {
       drawing->Add({drawing->From(side.eye, s, 16.5f + 0.15f * out, 0.4f * up - 1.0f),
                     drawing->From(side.eye, s, 18.0f + 0.7f * out, 0.8f * up - 1.5f),
                     drawing->From(side.eye, s, 19.0f + 1.3f * out, 1.25f * up - 2.5f)},
-                   {2.3f, 0.8f});
+                   {2.3f, depth, 0.35f, 0.9f});
     }
     for (int line = 0; line < 3; ++line) {
       const float down = 1.0f + 4.0f * static_cast<float>(line);
       drawing->Add({drawing->From(side.lower_lid, s, -11.0f, 2.0f - down),
                     drawing->From(side.lower_lid, s, 0.0f, -1.0f - down),
                     drawing->From(side.lower_lid, s, 12.0f, 1.5f - down)},
-                   {2.5f, line == 0 ? 0.75f : 0.5f});
+                   {2.7f, line == 0 ? 0.6f : 0.35f, 0.35f, 0.9f});
     }
   }
 }
@@ -150,12 +156,12 @@ void Nasolabial(const FaceLandmarks& face, FoldDrawing* drawing) {
          drawing->From(side.fold_middle, s, 2.0f, -2.0f),
          drawing->From(side.fold_bottom, s, 3.5f, -1.0f),
          drawing->From(side.mouth_corner, s, 7.0f, -6.0f)},
-        {4.6f, 2.1f, 0.5f, 0.7f});
+        {5.4f, 1.8f, 0.5f, 0.8f});
     // The dimple's arc, outside the fold's lower end.
     drawing->Add({drawing->From(side.fold_bottom, s, 11.0f, 7.0f),
                   drawing->From(side.fold_bottom, s, 13.0f, -1.0f),
                   drawing->From(side.fold_bottom, s, 11.0f, -9.0f)},
-                 {3.5f, 0.94f});
+                 {3.8f, 0.5f, 0.35f, 0.9f});
   }
 }
 
@@ -184,7 +190,7 @@ void Chin(const FaceLandmarks& face, FoldDrawing* drawing) {
     const float turn = (HashLattice(i, 13, 5) - 0.5f) * 4.0f;
     drawing->Add(
         {drawing->From(under, 0, out - 1.6f, up), drawing->From(under, 0, out + 1.6f, up + turn)},
-        {2.8f, 0.45f});
+        {3.2f, 0.3f});
   }
 }
 

@@ -208,11 +208,16 @@ class MakeHumanImport {
                                    .base_colour = glm::vec4(0.62f, 0.57f, 0.47f, 1.0f),
                                    .roughness = 0.25f,
                                    .double_sided = true});
-    const int tongue = AddMaterial({.name = "tongue",
-                                    .base_colour = glm::vec4(0.33f, 0.09f, 0.09f, 1.0f),
-                                    .roughness = 0.35f});
-    AddPart(BuildHelper(base_, "helper-upper-teeth", teeth));
-    AddPart(BuildHelper(base_, "helper-lower-teeth", teeth));
+    const int tongue = AddMaterial(
+        {.name = "tongue", .base_colour = glm::vec4(0.20f, 0.05f, 0.05f, 1.0f), .roughness = 0.5f});
+    for (const char* group : {"helper-upper-teeth", "helper-lower-teeth"}) {
+      Mesh row = BuildHelper(base_, group, teeth);
+      // The row is a coarse closed box, whose smooth normals lean up or down; crowns stand upright.
+      for (Vertex& vertex : row.vertices) {
+        vertex.normal = glm::normalize(vertex.normal * glm::vec3(1.0f, 0.25f, 1.0f));
+      }
+      AddPart(std::move(row));
+    }
     AddPart(BuildHelper(base_, "helper-tongue", tongue));
   }
 

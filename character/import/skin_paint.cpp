@@ -26,7 +26,7 @@ constexpr glm::vec3 kRed{0.77f, 0.48f, 0.42f};
 constexpr glm::vec3 kYellow{0.82f, 0.66f, 0.54f};
 constexpr glm::vec3 kLips{0.67f, 0.40f, 0.38f};
 constexpr glm::vec3 kLids{0.70f, 0.51f, 0.45f};
-constexpr glm::vec3 kMouth{0.36f, 0.15f, 0.14f};
+constexpr glm::vec3 kMouth{0.25f, 0.09f, 0.085f};
 constexpr glm::vec3 kBrow{0.23f, 0.165f, 0.13f};
 constexpr glm::vec3 kStubble{0.47f, 0.39f, 0.35f};
 
