@@ -85,16 +85,16 @@ struct Character {
 [[nodiscard]] Result<Character> ParseCharacter(std::string_view bytes,
                                                const std::filesystem::path& folder);
 
-// Gives a character another rig, whose files are looked up
-// in `folder` first, and loads its pictures.
+// Gives a character another rig, whose files are looked up in `folder` first, and loads its
+// pictures.
 [[nodiscard]] Status AttachRig(wrinkle::Rig rig, const std::filesystem::path& folder,
                                Character* character);
 
 // Every picture that a rig names, masks first, each once.
 [[nodiscard]] std::vector<std::string> RigPictureNames(const wrinkle::Rig& rig);
 
-// Writes skeleton, skin, meshes and textures as one .glb
-// (atomically: a temporary file, then a rename).
+// Writes skeleton, skin, meshes and textures as one .glb (atomically: a temporary file, then a
+// rename).
 [[nodiscard]] Status SaveCharacterGlb(const Character& character, const std::filesystem::path& glb);
 
 }  // namespace furrow::character

@@ -16,9 +16,8 @@ namespace furrow::character {
 // A glTF accessor whose every element has been found to lie inside its buffer.
 class GltfAccessor {
  public:
-  // `components`: how many are due (3 for a VEC3); `where` names the field in errors.
-  // Errors: kSchema (no such accessor, other type), kParse
-  // (past its buffer view), kUnsupported (sparse).
+  // `components`: how many are due (3 for a VEC3); `where` names the field in errors. Errors:
+  // kSchema (no such accessor, other type), kParse (past its buffer view), kUnsupported (sparse).
   [[nodiscard]] static Result<GltfAccessor> Create(const tinygltf::Model& model, int accessor,
                                                    int components, const std::string& where);
 

@@ -29,8 +29,8 @@ struct GlbParts {
 // since tinygltf trusts them. Buffers beside a .gltf are read through FindAsset(); pictures stay
 // encoded (see gltf_material.h). Accessors and everything that counts on them are not checked yet.
 //
-// Errors: kParse, kSchema, kLimit, kUnsupported (a required
-// extension), kNotFound; `where` is a field.
+// Errors: kParse, kSchema, kLimit, kUnsupported (a required extension), kNotFound; `where` is a
+// field.
 [[nodiscard]] Result<std::unique_ptr<tinygltf::Model>> ParseGltf(
     std::string_view bytes, const std::filesystem::path& folder);
 

@@ -10,8 +10,8 @@ namespace furrow::render {
 // Steepest slope that is kept: a normal map's texel below the horizon has no derivative.
 inline constexpr float kMaxDerivative = 16.0f;
 
-// Two floats a texel, rows from the top: n.xy / n.z of the
-// tangent-space normal, y up in the picture.
+// Two floats a texel, rows from the top: n.xy / n.z of the tangent-space normal, y up in the
+// picture.
 struct DerivativeMap {
   int width = 0;
   int height = 0;
@@ -22,8 +22,8 @@ struct DerivativeMap {
 // maps are taken as they are, since only the ratio counts; slopes are clamped to kMaxDerivative.
 [[nodiscard]] DerivativeMap DerivativesFromNormalMap(const character::Picture& picture);
 
-// From a derivative map: the first two channels, 2 value - 1,
-// in (-1, 1); the rig's amplitude scales.
+// From a derivative map: the first two channels, 2 value - 1, in (-1, 1); the rig's amplitude
+// scales.
 [[nodiscard]] DerivativeMap DerivativesFromDerivativeMap(const character::Picture& picture);
 
 // Bilinear, texel centres at halves, edges clamped: to give maps of one array one size.

@@ -16,10 +16,10 @@ namespace furrow::render {
 // take it from every other context of the same device.
 class EglContext {
  public:
-  // `device`: an index into EGL's device list, "surfaceless" (Mesa's platform
-  // without a device), or empty: every device in EGL's order, those that
-  // render in software last, then surfaceless. Errors: kInvalidArgument (not
-  // such a name), kUnavailable (lists each candidate and why it failed).
+  // `device`: an index into EGL's device list, "surfaceless" (Mesa's platform without a device), or
+  // empty: every device in EGL's order, those that render in software last, then surfaceless.
+  // Errors: kInvalidArgument (not such a name), kUnavailable (lists each candidate and why it
+  // failed).
   [[nodiscard]] static Result<std::unique_ptr<EglContext>> Create(std::string_view device);
   ~EglContext();
   EglContext(const EglContext&) = delete;

@@ -35,8 +35,8 @@ class FrameGraphDevice {
   virtual void DestroyTexture(TextureId texture) = 0;
 };
 
-// Keeps released textures for the next frame, or the next
-// pass of the same frame, that wants one alike.
+// Keeps released textures for the next frame, or the next pass of the same frame, that wants one
+// alike.
 class TransientPool {
  public:
   static constexpr int kKeepFrames = 8;  // a texture unused for so many frames is destroyed
@@ -102,9 +102,9 @@ class FrameGraph {
     int pass_;
   };
 
-  // `setup(Builder&, Data&)` declares, now; `execute(const Resources&,
-  // const Data&)` draws, later, and returns a Status. Data is what one
-  // tells the other: its handles. Returns it, for the next pass.
+  // `setup(Builder&, Data&)` declares, now; `execute(const Resources&, const Data&)` draws, later,
+  // and returns a Status. Data is what one tells the other: its handles. Returns it, for the next
+  // pass.
   template <class Data, class Setup, class Execute>
   Data AddPass(std::string_view name, Setup&& setup, Execute execute) {
     const auto data = std::make_shared<Data>();

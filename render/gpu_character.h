@@ -30,9 +30,9 @@ struct GpuMaterial {
   bool double_sided = false;
 };
 
-// A character's meshes, materials and textures on the GPU. Normal
-// maps become derivative maps in half floats, with mips averaged from
-// the derivatives; masks and wrinkle maps become one array each.
+// A character's meshes, materials and textures on the GPU. Normal maps become derivative maps in
+// half floats, with mips averaged from the derivatives; masks and wrinkle maps become one array
+// each.
 class GpuCharacter {
  public:
   // Errors: kInvalidArgument (a mesh or material points to nothing), kLimit (more layers or larger
@@ -45,8 +45,8 @@ class GpuCharacter {
   [[nodiscard]] GLuint masks() const { return masks_.name(); }
   [[nodiscard]] GLuint wrinkle_derivatives() const { return wrinkle_derivatives_.name(); }
   [[nodiscard]] const WrinkleLayout& layout() const { return layout_; }
-  // A mesh with three vertices of its own to every
-  // triangle, for the view wireframe; made on first use.
+  // A mesh with three vertices of its own to every triangle, for the view wireframe; made on first
+  // use.
   [[nodiscard]] const GpuMesh& Unindexed(std::size_t mesh);
 
  private:

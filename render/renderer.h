@@ -30,9 +30,9 @@ struct Camera {
   glm::vec3 position{0.0f, 1.6f, 0.8f};
   glm::vec3 target{0.0f, 1.6f, 0.0f};
   float fov_y_degrees = 24.0f;  // [1, 150]
-  // Carries the camera (and the lights, which stand around it) with
-  // the subject: to where this joint of the character went from its
-  // rest pose, turned about +Y as its root turned. -1: stands still.
+  // Carries the camera (and the lights, which stand around it) with the subject: to where this
+  // joint of the character went from its rest pose, turned about +Y as its root turned. -1: stands
+  // still.
   int follow_joint = -1;
 };
 
@@ -79,10 +79,10 @@ struct RendererOptions {
 // Two ways to a picture: Render() waits; Submit() then Poll() keeps up to two read-backs in flight.
 class Renderer {
  public:
-  // Errors: kUnavailable (no EGL device gives OpenGL 4.5: says which were
-  // tried), kInternal (a shader does not compile here: the driver's log),
-  // kInvalidArgument and kLimit (the character's meshes and pictures), kNotFound
-  // (a mask or wrinkle map that the rig names is not among its pictures).
+  // Errors: kUnavailable (no EGL device gives OpenGL 4.5: says which were tried), kInternal (a
+  // shader does not compile here: the driver's log), kInvalidArgument and kLimit (the character's
+  // meshes and pictures), kNotFound (a mask or wrinkle map that the rig names is not among its
+  // pictures).
   [[nodiscard]] static Result<std::unique_ptr<Renderer>> Create(
       const character::Character& character, const RendererOptions& options = {});
   virtual ~Renderer() = default;

@@ -20,8 +20,8 @@ namespace furrow::render {
 enum class WrinkleGroup { kSkin, kCloth, kNone };
 inline constexpr int kNumWrinkleGroups = 2;  // kNone has no table
 
-// One wrinkle map that this frame needs. Mirrors ActiveMap
-// of shaders/common_wrinkles.glsl (std430).
+// One wrinkle map that this frame needs. Mirrors ActiveMap of shaders/common_wrinkles.glsl
+// (std430).
 struct ActiveMap {
   glm::vec4 colour{1.0f};
   std::int32_t layer = 0;
@@ -75,8 +75,8 @@ class WrinkleTables {
   [[nodiscard]] static Result<std::unique_ptr<WrinkleTables>> Create(
       const character::Character& character, WrinkleLayout layout);
 
-  // kInvalidArgument: a span of the request is shorter than
-  // its binding's names; the message says which.
+  // kInvalidArgument: a span of the request is shorter than its binding's names; the message says
+  // which.
   [[nodiscard]] Status Update(const FrameRequest& request);
 
   [[nodiscard]] const WrinkleTable& table(WrinkleGroup group) const {

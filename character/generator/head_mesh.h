@@ -21,8 +21,8 @@ struct HeadVertex {
 
 enum HeadPart { kFacePart = 0, kMouthInside, kEar, kEyeball, kHairCap, kLash, kTeeth };
 
-// A mesh of the head in model space, its vertices without
-// influences yet, and what is known of them.
+// A mesh of the head in model space, its vertices without influences yet, and what is known of
+// them.
 struct HeadMesh {
   Mesh mesh;
   std::vector<HeadVertex> info;  // one a vertex

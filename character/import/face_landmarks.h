@@ -8,9 +8,9 @@
 
 namespace furrow::character {
 
-// Where a face's features are, read off MakeHuman's virtual-muscle
-// joints (model space, metres, rest pose): what the painters place
-// colours, masks and folds by, so that they fit any shape of the mesh.
+// Where a face's features are, read off MakeHuman's virtual-muscle joints (model space, metres,
+// rest pose): what the painters place colours, masks and folds by, so that they fit any shape of
+// the mesh.
 struct FaceLandmarks {
   struct Side {
     glm::vec3 brow_inner;  // above the inner corner of the eye
@@ -41,8 +41,8 @@ struct FaceLandmarks {
   [[nodiscard]] float Millimetres(float mm) const { return mm * 0.001f * scale; }
 };
 
-// Error: kNotFound, naming the joint that the skeleton
-// lacks; kInvalidArgument where both eyes are in one place.
+// Error: kNotFound, naming the joint that the skeleton lacks; kInvalidArgument where both eyes are
+// in one place.
 [[nodiscard]] Result<FaceLandmarks> FindFaceLandmarks(const wrinkle::Skeleton& skeleton);
 
 }  // namespace furrow::character

@@ -36,9 +36,9 @@ struct MeshSource {
   std::vector<UvMove> uv_moves;
 };
 
-// Smooth normals, weighted by the corners' angles, from `faces` of
-// the mesh: computed before vertices are split, so that UV seams do
-// not show, and from hidden faces too, so that borders do not bend.
+// Smooth normals, weighted by the corners' angles, from `faces` of the mesh: computed before
+// vertices are split, so that UV seams do not show, and from hidden faces too, so that borders do
+// not bend.
 [[nodiscard]] std::vector<glm::vec3> SmoothNormals(const ObjMesh& obj,
                                                    std::span<const glm::vec3> positions,
                                                    std::span<const std::uint32_t> faces);

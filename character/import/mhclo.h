@@ -24,8 +24,8 @@ struct Mhclo {
     std::array<float, 3> weights{};
     glm::vec3 offset{0.0f};
   };
-  // One axis' scale: the distance along the axis of two
-  // base vertices, over what it was for the author.
+  // One axis' scale: the distance along the axis of two base vertices, over what it was for the
+  // author.
   struct Scale {
     std::uint32_t first = 0;
     std::uint32_t second = 0;
@@ -41,9 +41,9 @@ struct Mhclo {
 
 // `num_base_vertices`: of the mesh it was made for; every index is checked against it.
 //
-// Errors carry "source:line": kParse, kInvalidArgument (index out
-// of range, a range that runs backwards), kNonFinite, kSchema (no
-// obj_file or verts, a scale of zero, a file name with a folder).
+// Errors carry "source:line": kParse, kInvalidArgument (index out of range, a range that runs
+// backwards), kNonFinite, kSchema (no obj_file or verts, a scale of zero, a file name with a
+// folder).
 [[nodiscard]] Result<Mhclo> ParseMhclo(std::string_view text, std::string_view source,
                                        std::size_t num_base_vertices);
 

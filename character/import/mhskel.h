@@ -42,9 +42,9 @@ struct MhWeights {
 // Errors as above, and kNonFinite or kInvalidArgument for a weight that is not a number in [0, 1].
 [[nodiscard]] Result<MhWeights> ParseMhw(std::string_view text, std::string_view source);
 
-// The skeleton on `positions` (model space, any unit): origins at the
-// heads, tails stored, and every joint's axes parallel to the model's,
-// so that a BVH rotation of MakeHuman's applies as it stands.
+// The skeleton on `positions` (model space, any unit): origins at the heads, tails stored, and
+// every joint's axes parallel to the model's, so that a BVH rotation of MakeHuman's applies as it
+// stands.
 //
 // Errors name `source` and the joint: kInvalidArgument (a vertex the mesh lacks), kNotFound (a
 // parent that is not there), kCyclic, kLimit.

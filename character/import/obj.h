@@ -36,10 +36,10 @@ struct ObjMesh {
 
 // Other statements (vn, s, usemtl, ...) are skipped: normals are computed anew.
 //
-// Errors carry "source:line": kParse (a number or face that is none, fewer than 3
-// or more than 64 corners), kInvalidArgument (index out of range), kNonFinite,
-// kLimit (a number beyond a million, over 4 million positions, UVs or corners, or
-// 65535 groups). Negative indices count back from the latest, as the format says.
+// Errors carry "source:line": kParse (a number or face that is none, fewer than 3 or more than 64
+// corners), kInvalidArgument (index out of range), kNonFinite, kLimit (a number beyond a million,
+// over 4 million positions, UVs or corners, or 65535 groups). Negative indices count back from the
+// latest, as the format says.
 [[nodiscard]] Result<ObjMesh> ParseObj(std::string_view text, std::string_view source);
 
 }  // namespace furrow::character
