@@ -51,6 +51,8 @@ std::string_view CounterName(Counter counter) {
     case Counter::kMocapIncomplete: return "furrow_mocap_incomplete_total";
     case Counter::kMocapStale: return "furrow_mocap_stale_total";
     case Counter::kMocapFrames: return "furrow_mocap_frames_total";
+    case Counter::kMocapLockedOut: return "furrow_mocap_locked_out_total";
+    case Counter::kMocapRefused: return "furrow_mocap_refused_total";
     case Counter::kOscPacketsSent: return "furrow_osc_packets_sent_total";
     case Counter::kOscPacketsUnsendable: return "furrow_osc_packets_unsendable_total";
     case Counter::kCount: break;

@@ -58,6 +58,8 @@ enum class Counter {
   kMocapIncomplete,  // frames used without their sender's mark of the end
   kMocapStale,       // of a sender that says its tracking is off
   kMocapFrames,
+  kMocapLockedOut,  // of a sender that the port does not listen to
+  kMocapRefused,    // frames of a subject that is refused or one too many
   kOscPacketsSent,
   kOscPacketsUnsendable,
   kCount,

@@ -28,6 +28,8 @@ constexpr std::pair<Counter, std::string_view> kDrops[] = {
     {Counter::kPicturesDroppedSlow, "pictures to slow subscribers"},
     {Counter::kPicturesFailed, "failed pictures"},
     {Counter::kMocapMalformed, "malformed mocap packets"},
+    {Counter::kMocapLockedOut, "mocap packets of locked-out senders"},
+    {Counter::kMocapRefused, "frames of refused mocap subjects"},
 };
 
 }  // namespace

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of Subscribers that runs at every pose: who is due, and what they get.
 #include <algorithm>
+#include <utility>
 
+#include <spdlog/spdlog.h>
+
+#include "protocol/limits.h"
 #include "server/session/subscribers.h"
 
 namespace furrow::server {
@@ -10,6 +14,8 @@ namespace {
 // How many frames of a subscription may wait for a slow peer.
 constexpr std::size_t kWeightsKept = 4;
 constexpr std::size_t kPicturesKept = 1;
+// What a message of kMaxReplyBytes has room for beside its envelope and table.
+constexpr std::size_t kMaxPictureBytes = protocol::kMaxReplyBytes - 1024;
 
 }  // namespace
 
@@ -57,7 +63,7 @@ void Subscribers::SendWeights(Subscription& subscription, const WeightsWish& wis
   frame_.format = wish.format;
   frame_.values.resize(wish.indices.size());
   std::ranges::transform(wish.indices, frame_.values.begin(),
-                         [values](std::uint16_t index) { return values[index]; });
+                         [values](std::uint32_t index) { return values[index]; });
   postman_->Frame(*subscription.peer, subscription.uid,
                   {.stream = subscription.id,
                    .sequence = pipeline.sequence(),
@@ -92,6 +98,14 @@ void Subscribers::OnPicture(const FinishedPicture& picture) {
                       : protocol::ImageFormat::kJpeg;
   image_.age_us = picture.age_us;
   image_.bytes = picture.bytes;
+  if (picture.bytes.size() > kMaxPictureBytes) {
+    metrics_->Add(Counter::kPicturesFailed, picture.tickets.size());
+    if (!std::exchange(has_named_large_picture_, true)) {
+      spdlog::warn("a picture of {} x {} has {} bytes, more than the wire carries: ask for JPEG",
+                   picture.width, picture.height, picture.bytes.size());
+    }
+    return;
+  }
   for (const PictureTicket& ticket : picture.tickets) {
     const auto found = subscriptions_.find(ticket.subscription);
     if (found == subscriptions_.end()) continue;

@@ -17,6 +17,7 @@ using protocol::MessageKind;
 
 constexpr Time kUdpLease = std::chrono::microseconds(protocol::kUdpLeaseMicroseconds);
 constexpr std::size_t kMaxMocapStreams = 64;
+constexpr Time kMocapRetry = std::chrono::seconds(1);
 constexpr char kServerName[] = "furrowd " FURROW_VERSION;
 
 }  // namespace
@@ -180,29 +181,49 @@ void Hub::OnMocapFrame(PeerId id, const protocol::mocap::NeutralFrame& frame, Ti
   Peer* peer = peers_.Find(id);
   // Lost by its own tracker: as if nothing had come, so that it holds and decays.
   if (peer == nullptr || !frame.tracked) return;
-  auto entry = mocap_streams_.find({id, frame.subject});
-  const bool is_new = entry == mocap_streams_.end();
-  if (is_new) {
-    if (mocap_streams_.size() >= kMaxMocapStreams) return;
-    entry = mocap_streams_.try_emplace({id, frame.subject}).first;
-    entry->second.stream = next_mocap_stream_++;
+  MocapStream* stream = FindOrAddMocap(*peer, frame.subject);
+  if (stream == nullptr) {
+    metrics_->Add(Counter::kMocapRefused);
+    return;
   }
-  MocapStream& stream = entry->second;
+  stream->heard = now;
   const protocol::Header header{.session = id,
-                                .stream = stream.stream,
+                                .stream = stream->stream,
                                 .sequence = frame.sequence,
                                 .capture_time_us = frame.capture_time_us};
-  if (is_new || stream.layout != frame.layout) {
-    stream.refused = !OfferMocap(*peer, header, stream, frame, now);
+  const bool is_new = stream->offered == Time{0};
+  if (is_new || stream->layout != frame.layout ||
+      (stream->refused && now - stream->offered >= kMocapRetry)) {
+    stream->refused = !OfferMocap(*peer, header, *stream, frame, now);
   }
-  if (stream.refused) return;
-  protocol::mocap::MakePose(frame, stream.offer, scratch_.pose);
+  if (stream->refused) {
+    metrics_->Add(Counter::kMocapRefused);
+    return;
+  }
+  protocol::mocap::MakePose(frame, stream->offer, scratch_.pose);
   Published(publishers_.OnPose(*peer, header, scratch_.pose, now), now);
+}
+
+Hub::MocapStream* Hub::FindOrAddMocap(const Peer& peer, const std::string& subject) {
+  const auto entry = mocap_streams_.find({peer.id, subject});
+  if (entry != mocap_streams_.end()) return &entry->second;
+  if (mocap_streams_.size() >= kMaxMocapStreams) return nullptr;
+  MocapStream& added = mocap_streams_[{peer.id, subject}];
+  added.stream = next_mocap_stream_++;
+  return &added;
+}
+
+// Those that were taken go with their subject; a refused one has none.
+void Hub::ForgetRefusedMocap(Time now) {
+  std::erase_if(mocap_streams_, [&](const auto& entry) {
+    return entry.second.refused && now - entry.second.heard > FromSeconds(limits_.idle_seconds);
+  });
 }
 
 bool Hub::OfferMocap(Peer& peer, const protocol::Header& header, MocapStream& stream,
                      const protocol::mocap::NeutralFrame& frame, Time now) {
   stream.layout = frame.layout;
+  stream.offered = now;
   stream.offer = protocol::mocap::MakeOffer(frame);
   Subject* subject = publishers_.OnOffer(peer, header, stream.offer, now);
   if (subject != nullptr) subscribers_.OnSubjectReady(*subject);
@@ -228,6 +249,7 @@ void Hub::Tick(Time now) {
                   [subject](const auto& entry) { return entry.first.second == subject->name; });
     subjects_.Remove(subject->id);
   }
+  ForgetRefusedMocap(now);
   subscribers_.PublishOwed(now);
   peers_.ForEach([&](Peer& peer) {
     if (peer.transport != Transport::kUdp || now - peer.last_heard < kUdpLease) return;

@@ -77,7 +77,9 @@ class Hub {
  private:
   struct MocapStream {
     std::uint16_t stream = 0;
-    bool refused = false;  // its layout cannot be bound; wait for another one
+    bool refused = false;  // offered again after a while: what stood against it may be gone
+    Time offered{0};
+    Time heard{0};
     std::uint32_t layout = 0;
     protocol::SkeletonOffer offer;
   };
@@ -88,8 +90,10 @@ class Hub {
   void RefuseEnvelope(Peer& peer, const protocol::MessageView& view, protocol::DecodeStatus status);
   void OnHello(Peer& peer, const protocol::Header& header, const protocol::Hello& hello);
   void OnGoodbye(Peer& peer, const protocol::Header& header, Time now);
+  MocapStream* FindOrAddMocap(const Peer& peer, const std::string& subject);
   bool OfferMocap(Peer& peer, const protocol::Header& header, MocapStream& stream,
                   const protocol::mocap::NeutralFrame& frame, Time now);
+  void ForgetRefusedMocap(Time now);
   void Published(Subject* subject, Time now);
   bool RefusedWhileDraining(Peer& peer, const protocol::Header& header);
 

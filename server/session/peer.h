@@ -8,6 +8,7 @@
 
 #include "protocol/messages.h"
 #include "server/session/send_credit.h"
+#include "server/session/stray_limiter.h"
 #include "server/session/time.h"
 #include "server/session/token_bucket.h"
 
@@ -41,7 +42,7 @@ struct Peer {
   SendCredit credit;        // UDP: how much may be sent before the address is proven
   std::uint64_t token = 0;  // UDP: what Hello must bring back
   Time last_heard{0};
-  Time last_skeleton_request{-1'000'000'000};
+  StrayLimiter strays;  // poses without an offer
   int num_subscriptions = 0;
   bool publishes = false;               // had an offer accepted
   std::uint16_t last_subscription = 0;  // the id given out last

@@ -6,14 +6,11 @@
 
 #include <spdlog/spdlog.h>
 
-#include "protocol/limits.h"
 #include "server/pipeline/wire_adapter.h"
 
 namespace furrow::server {
 namespace {
 
-constexpr Time kNeedSkeletonInterval =
-    std::chrono::microseconds(protocol::kNeedSkeletonMicroseconds);
 constexpr Time kDecayInterval = FromSeconds(1.0 / 60.0);
 
 }  // namespace
@@ -133,13 +130,12 @@ bool Publishers::IsNew(Subject& subject, const protocol::Header& header) {
 }
 
 // Poses that no offer explains: the sender is asked for its skeleton, or, where another has taken
-// its subject over, told so; at most once an interval.
+// its subject over, told so; each stream at most once an interval.
 void Publishers::AnswerStray(Peer& peer, const protocol::Header& header, std::uint64_t hash,
                              Time now) {
   const bool retired = subjects_->IsRetired({peer.id, header.session, header.stream});
   metrics_->Add(retired ? Counter::kPosesRetiredSession : Counter::kPosesUnknownStream);
-  if (now - peer.last_skeleton_request < kNeedSkeletonInterval) return;
-  peer.last_skeleton_request = now;
+  if (!peer.strays.Take(header.session, header.stream, now)) return;
   protocol::SkeletonReply reply{hash, protocol::SkeletonStatus::kNeeded, {}};
   if (retired) {
     reply.status = protocol::SkeletonStatus::kRejected;

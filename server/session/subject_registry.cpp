@@ -43,11 +43,21 @@ void SubjectRegistry::SetOwner(Subject& subject, const StreamKey& key) {
   if (subject.owner == key) return;
   if (subject.owner.session != 0) {
     by_stream_.erase(subject.owner);
-    retired_[subject.owner] = subject.id;
+    Retire(subject.owner, subject.id);
   }
   retired_.erase(key);
   subject.owner = key;
   by_stream_[key] = &subject;
+}
+
+// One peer may restart a subject under a new session as often as it likes: what that leaves behind
+// is bounded.
+void SubjectRegistry::Retire(const StreamKey& key, SubjectId subject) {
+  retired_[key] = subject;
+  retired_order_.push_back(key);
+  if (retired_order_.size() <= kMaxRetired) return;
+  retired_.erase(retired_order_.front());
+  retired_order_.pop_front();
 }
 
 void SubjectRegistry::Release(Subject& subject) {

@@ -4,6 +4,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <string>
@@ -45,6 +46,8 @@ struct Subject {
 // first is "the subject that has been there longest".
 class SubjectRegistry {
  public:
+  static constexpr std::size_t kMaxRetired = 4096;
+
   [[nodiscard]] Subject* Find(std::string_view name);
   [[nodiscard]] Subject* Find(SubjectId id);
   [[nodiscard]] Subject* Find(const StreamKey& key);
@@ -54,7 +57,8 @@ class SubjectRegistry {
   Subject& Add(std::string name, Time now);
   // Makes `key` the stream that feeds `subject`; the one that did is retired.
   void SetOwner(Subject& subject, const StreamKey& key);
-  // A stream that fed a subject before another took over: its stragglers are not answered.
+  // A stream that fed a subject before another took over: its stragglers are not answered. The last
+  // kMaxRetired are remembered.
   [[nodiscard]] bool IsRetired(const StreamKey& key) const { return retired_.contains(key); }
   // The subject is fed by nobody now.
   void Release(Subject& subject);
@@ -68,10 +72,13 @@ class SubjectRegistry {
   [[nodiscard]] std::string Names() const;  // "a, b, c", for messages
 
  private:
+  void Retire(const StreamKey& key, SubjectId subject);
+
   std::vector<std::unique_ptr<Subject>> subjects_;
   std::map<StreamKey, Subject*> by_stream_;
   std::map<std::string, Subject*, std::less<>> by_name_;
   std::map<StreamKey, SubjectId> retired_;
+  std::deque<StreamKey> retired_order_;  // oldest first; may name what has been forgotten since
   SubjectId next_id_ = 1;
 };
 

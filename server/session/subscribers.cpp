@@ -6,11 +6,32 @@
 #include <spdlog/spdlog.h>
 
 #include "protocol/hash.h"
+#include "protocol/limits.h"
 #include "render/request_check.h"
 
 namespace furrow::server {
 
 using protocol::ErrorCode;
+
+namespace {
+
+// Why so many names cannot be answered; empty where they can.
+std::string Oversize(const std::vector<std::string>& names, Transport transport) {
+  if (names.size() > protocol::kMaxWeights) {
+    return std::to_string(names.size()) + " weights, at most " +
+           std::to_string(protocol::kMaxWeights) + " go into a subscription: take several";
+  }
+  constexpr std::size_t kPerName = 12;  // offset, length, end and padding
+  std::size_t bytes = 0;
+  for (const std::string& name : names) bytes += name.size() + kPerName;
+  if (transport != Transport::kUdp || bytes + kPerName * 100 <= protocol::kMaxUdpMessageBytes) {
+    return {};
+  }
+  return "weights whose names have " + std::to_string(bytes) +
+         " bytes, more than UDP carries: take several subscriptions, or TCP";
+}
+
+}  // namespace
 
 Subscribers::Subscribers(const Limits& limits, SubjectRegistry* subjects, PictureSource* pictures,
                          Postman* postman, Metrics* metrics)
@@ -103,7 +124,7 @@ bool Subscribers::MayAdd(Peer& peer, const protocol::Header& header) {
     if (const auto* wish = std::get_if<WeightsWish>(&known->wish);
         wish != nullptr && known->subject != nullptr) {
       const auto all = wish->Names(*known->subject->pipeline->stream().binding);
-      for (const std::uint16_t index : wish->indices) names.push_back(all[index]);
+      for (const std::uint32_t index : wish->indices) names.push_back(all[index]);
     }
     Reply(*known, std::move(names));
     return false;
@@ -182,11 +203,12 @@ bool Subscribers::Bind(Subscription& subscription, Subject& subject) {
   if (auto* wish = std::get_if<WeightsWish>(&subscription.wish); wish != nullptr) {
     names = wish->Bind(*subject.pipeline->stream().binding);
     if (names.empty()) {
-      metrics_->Add(Counter::kSubscriptionsRefused);
-      postman_->Error(*subscription.peer,
-                      {.stream = subscription.id, .sequence = subscription.request},
-                      ErrorCode::kNoMatch, "'" + wish->pattern + "' names no weight of the rig");
-      Erase(subscription);
+      Refuse(subscription, ErrorCode::kNoMatch,
+             "'" + wish->pattern + "' names no weight of the rig");
+      return false;
+    }
+    if (std::string why = Oversize(names, subscription.peer->transport); !why.empty()) {
+      Refuse(subscription, ErrorCode::kLimit, "'" + wish->pattern + "' names " + why);
       return false;
     }
   }
@@ -197,6 +219,13 @@ bool Subscribers::Bind(Subscription& subscription, Subject& subject) {
   subscription.owed = subject.pipeline->has_pose();  // the newest pose there is, at the next tick
   Reply(subscription, std::move(names));
   return true;
+}
+
+void Subscribers::Refuse(Subscription& subscription, ErrorCode code, std::string why) {
+  metrics_->Add(Counter::kSubscriptionsRefused);
+  postman_->Error(*subscription.peer, {.stream = subscription.id, .sequence = subscription.request},
+                  code, std::move(why));
+  Erase(subscription);
 }
 
 void Subscribers::Erase(Subscription& subscription) {

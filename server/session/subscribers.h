@@ -60,7 +60,9 @@ class Subscribers {
   Subscription* FindRepeated(const Peer& peer, const protocol::Header& header);
   void Add(Peer& peer, const protocol::Header& header, std::unique_ptr<Subscription> subscription);
   void Reply(const Subscription& subscription, std::vector<std::string> names);
-  bool Bind(Subscription& subscription, Subject& subject);  // false: no name matches
+  // False: no name matches, or more than an answer holds; the peer is told and it is erased.
+  bool Bind(Subscription& subscription, Subject& subject);
+  void Refuse(Subscription& subscription, protocol::ErrorCode code, std::string why);
   void Erase(Subscription& subscription);
   std::uint16_t NewId(Peer& peer);
 
@@ -81,6 +83,7 @@ class Subscribers {
   std::uint64_t next_uid_ = 1;
   protocol::WeightFrame frame_;  // reused
   protocol::ImageFrame image_;
+  bool has_named_large_picture_ = false;  // in the log
   Jobs jobs_;
 };
 

@@ -2,7 +2,6 @@
 #include "server/session/subscription.h"
 
 #include "protocol/hash.h"
-#include "protocol/limits.h"
 #include "protocol/pattern.h"
 
 namespace furrow::server {
@@ -16,9 +15,9 @@ std::vector<std::string> WeightsWish::Bind(const wrinkle::RigBinding& binding) {
   const std::span<const std::string> all = Names(binding);
   std::vector<std::string> chosen;
   indices.clear();
-  for (std::size_t i = 0; i < all.size() && chosen.size() < protocol::kMaxWeights; ++i) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
     if (!protocol::MatchesPattern(pattern, all[i])) continue;
-    indices.push_back(static_cast<std::uint16_t>(i));
+    indices.push_back(static_cast<std::uint32_t>(i));
     chosen.push_back(all[i]);
   }
   names_hash = protocol::NamesHash(chosen);

@@ -21,12 +21,12 @@ struct WeightsWish {
   std::string pattern;
   protocol::WeightFormat format = protocol::WeightFormat::kF32;
   protocol::WeightSource source = protocol::WeightSource::kWrinkleWeights;
-  std::vector<std::uint16_t> indices;  // of the bound subject's names that match
+  std::vector<std::uint32_t> indices;  // of the bound subject's names that match
   std::uint64_t names_hash = 0;
 
   // All names this wish picks from.
   [[nodiscard]] std::span<const std::string> Names(const wrinkle::RigBinding& binding) const;
-  // Picks the names that match; returns them.
+  // Picks the names that match; returns them, more than the wire carries too.
   std::vector<std::string> Bind(const wrinkle::RigBinding& binding);
 };
 

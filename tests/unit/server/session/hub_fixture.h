@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -98,11 +99,12 @@ class HubTest : public testing::Test {
     return rig;
   }
 
-  void Make(Limits limits, bool filter = false) {
+  void Make(Limits limits, bool filter = false) { MakeWith(MakeRig(filter), limits); }
+  void MakeWith(wrinkle::Rig rig, Limits limits = {}) {
     Hub::Parts parts;
     parts.limits = limits;
     parts.session = 4242;
-    parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(filter));
+    parts.rig = std::make_shared<const wrinkle::Rig>(std::move(rig));
     parts.pictures = &pictures;
     parts.metrics = &metrics;
     parts.make_token = [this] { return ++last_token; };

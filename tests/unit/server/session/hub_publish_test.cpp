@@ -73,6 +73,29 @@ TEST_F(HubPublish, PosesWithoutAnOfferAreAskedForAtMostOnceAnInterval) {
   EXPECT_EQ(Count(Counter::kSkeletonsRequested), 2u);
 }
 
+TEST_F(HubPublish, EveryStreamOfAPeerIsAskedForItsOwnSkeleton) {
+  for (const std::uint16_t stream : {3, 4, 3, 4}) Send(sender, Pose(1), stream);
+  EXPECT_EQ(sender.Take<protocol::SkeletonReply>()->header.stream, 3);
+  EXPECT_EQ(sender.Take<protocol::SkeletonReply>()->header.stream, 4);
+  EXPECT_TRUE(sender.inbox.empty());
+}
+
+TEST_F(HubPublish, ASubjectThatRestartsWithoutEndTakesBoundedMemory) {
+  Publish(sender, "ann");
+  const std::uint64_t first = sender.session;
+  for (std::size_t i = 0; i <= SubjectRegistry::kMaxRetired; ++i) {
+    Advance(0.001);
+    ++sender.session;
+    Publish(sender, "ann");
+  }
+  Advance(1);
+  sender.session = first + SubjectRegistry::kMaxRetired;  // the last but one: still known
+  Send(sender, Offer("ann"), 1);
+  EXPECT_EQ(sender.Take<protocol::SkeletonReply>()->message.status, SkeletonStatus::kRejected);
+  sender.session = first;  // forgotten: as good as new
+  Publish(sender, "ann");
+}
+
 TEST_F(HubPublish, LateAndRepeatedPosesAreDroppedAndCounted) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});

@@ -269,6 +269,55 @@ TEST_F(HubSubscribe, EqualPicturesAreDrawnOnceAndFoundByTheirTickets) {
   hub->OnPicture(picture);  // too late: nobody is there, nothing happens
 }
 
+TEST_F(HubSubscribe, APictureLargerThanTheWireCarriesIsCountedAndNotSent) {
+  Publish(sender, "ann");
+  Send(viewer, protocol::SubscribePictures{.subject = "ann"}, 0, 1);
+  viewer.Take<protocol::SubscribeReply>();
+  Send(sender, Pose(1), 1, 0);
+  ASSERT_EQ(pictures.jobs.size(), 1u);
+  FinishedPicture picture;
+  picture.width = picture.height = 4096;
+  picture.bytes.resize(protocol::kMaxReplyBytes);
+  picture.tickets = pictures.jobs[0].tickets;
+  hub->OnPicture(picture);
+  EXPECT_TRUE(viewer.inbox.empty());
+  EXPECT_EQ(Count(Counter::kPicturesFailed), 1u);
+  EXPECT_EQ(Count(Counter::kPicturesSent), 0u);
+}
+
+TEST_F(HubSubscribe, MoreNamesThanASubscriptionHoldsAreAnErrorAndNotCut) {
+  // 256 regions of nine maps: 2,304 weights, and eight of the maps are just as many as fit.
+  wrinkle::Rig rig = MakeRig(false);
+  wrinkle::Region region = rig.regions[0];
+  const wrinkle::Feed feed = region.feeds[0];
+  region.feeds.clear();
+  rig.wrinkle_maps.clear();
+  for (int map = 0; map < 9; ++map) {
+    region.feeds.push_back(feed);
+    region.feeds.back().map = "m" + std::to_string(map);
+    rig.wrinkle_maps.push_back({.name = region.feeds.back().map});
+  }
+  rig.regions.assign(256, region);
+  for (int i = 0; i < 256; ++i) rig.regions[i].name = std::string(60, 'r') + std::to_string(i);
+  const std::string fitting = "*m0,*m1,*m2,*m3,*m4,*m5,*m6,*m7";
+  MakeWith(std::move(rig));
+  Connect(&sender);
+  Connect(&viewer);
+  Publish(sender, "ann");
+  Send(viewer, protocol::SubscribeWeights{.subject = "ann"}, 0, 1);
+  ExpectError(viewer, ErrorCode::kLimit);
+  EXPECT_EQ(hub->num_subscriptions(), 0u);
+  EXPECT_NE(Watch(viewer, {.subject = "ann", .pattern = fitting}), 0);
+  FakePeer udp;
+  Connect(&udp, Transport::kUdp);
+  hub->OnBytesReceived(udp.id, 1000, now);
+  Send(udp, protocol::Hello{"test", 0}, 0, 1);
+  Send(udp, protocol::Hello{"test", udp.Take<protocol::Welcome>()->message.token}, 0, 2);
+  udp.Take<protocol::Welcome>();
+  Send(udp, protocol::SubscribeWeights{.subject = "ann", .pattern = fitting}, 0, 1);
+  ExpectError(udp, ErrorCode::kLimit);
+}
+
 TEST_F(HubSubscribe, NothingIsDrawnWhileNobodyWatches) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});
@@ -333,6 +382,31 @@ TEST_F(HubSubscribe, DrainingTellsEverybodyAndTakesNobodyNew) {
   EXPECT_EQ(viewer.Take<protocol::Goodbye>()->message.reason, protocol::GoodbyeReason::kDraining);
   Send(viewer, protocol::SubscribeWeights{.wait = true});
   ExpectError(viewer, ErrorCode::kDraining);
+}
+
+TEST_F(HubSubscribe, AForeignSubjectThatIsRefusedIsCountedAndTriedAgain) {
+  Limits limits;
+  limits.max_subjects = 1;
+  limits.idle_seconds = 5;
+  Make(limits);
+  Connect(&sender);
+  Publish(sender, "ben");
+  FakePeer tracker;
+  Connect(&tracker, Transport::kMocap);
+  protocol::mocap::NeutralFrame frame;
+  frame.subject = "phone";
+  frame.layout = 1;
+  frame.blend_shapes = {{"nose", 0.5f}};
+  for (; frame.sequence < 10; ++frame.sequence) hub->OnMocapFrame(tracker.id, frame, now);
+  EXPECT_EQ(Count(Counter::kMocapRefused), 10u);
+  EXPECT_EQ(Count(Counter::kSkeletonsRejected), 1u);
+  Send(sender, protocol::Goodbye{}, 1);
+  hub->Tick(now);
+  ASSERT_EQ(hub->num_subjects(), 0u);
+  Advance(1);
+  hub->OnMocapFrame(tracker.id, frame, now);
+  EXPECT_EQ(hub->num_subjects(), 1u) << "there is room now";
+  EXPECT_EQ(Count(Counter::kMocapRefused), 10u);
 }
 
 TEST_F(HubSubscribe, AForeignFrameIsASubjectLikeAnyOther) {
