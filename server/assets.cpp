@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/assets.h"
 
-#include <cstdlib>
-#include <system_error>
+#include <filesystem>
 #include <utility>
 
+#include "character/data_dir.h"
 #include "character/rig_file.h"
 #include "motion/pose_source.h"
 
 namespace furrow::server {
-
-std::filesystem::path DataFolder() {
-  if (const char* folder = std::getenv("FURROW_DATA_DIR"); folder != nullptr && *folder != '\0') {
-    return folder;
-  }
-  std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return program.parent_path() / ".." / "share" / "furrow";
-}
 
 Result<Assets> LoadAssets(const Config& config) {
   const wrinkle::PoseSource poses = motion::CachedPoseSource();
@@ -30,12 +21,13 @@ Result<Assets> LoadAssets(const Config& config) {
   }
   std::filesystem::path glb = config.character;
   if (glb.empty()) {
-    glb = (DataFolder() / "default.glb").lexically_normal();
-    if (std::error_code error; !std::filesystem::exists(glb, error)) {
-      return Status(StatusCode::kNotFound, "there is no default character", glb.string(),
-                    "build the target furrow_share, set FURROW_DATA_DIR, or give --character or "
-                    "--rig");
+    auto shipped = character::FindDataFile("default.glb");
+    if (!shipped.ok()) {
+      return Status(StatusCode::kNotFound, "there is no default character",
+                    shipped.status().where(),
+                    shipped.status().todo() + ", or give --character or --rig");
     }
+    glb = *std::move(shipped);
   }
   auto loaded = character::LoadCharacter(glb, config.rig, poses);
   if (!loaded.ok()) return loaded.status();

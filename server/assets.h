@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <memory>
 
 #include "character/character.h"
@@ -16,10 +15,6 @@ struct Assets {
   std::shared_ptr<const wrinkle::Rig> rig;
   std::shared_ptr<const character::Character> character;  // null: weights only
 };
-
-// Where the default character, rigs and recordings are: $FURROW_DATA_DIR, else ../share/furrow
-// beside the running program.
-[[nodiscard]] std::filesystem::path DataFolder();
 
 // Loads what `config` names, or the default character. Errors: those of LoadCharacter() and
 // LoadRig(); kNotFound where there is no default character (says how to come by one).

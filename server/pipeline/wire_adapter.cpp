@@ -9,7 +9,7 @@ namespace {
 
 glm::vec3 ToVec(const protocol::Vec3& v) { return {v.x, v.y, v.z}; }
 
-// The wire allows 1e-2 off unit length; the algorithm wants better.
+// The wire allows 1e-3 off unit length; the algorithm wants better.
 glm::quat ToUnitQuat(const protocol::Quat& q) {
   return glm::normalize(glm::quat(q.w, q.x, q.y, q.z));
 }
