@@ -7,6 +7,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "wrinkle/ascii.h"
+
 namespace furrow::server {
 namespace {
 
@@ -23,7 +25,40 @@ bool SameOrder(const wrinkle::Skeleton& a, const wrinkle::Skeleton& b) {
   return std::ranges::equal(a.source_index(), b.source_index());
 }
 
+bool Reads(const wrinkle::Rig& rig, const std::string& blend_shape) {
+  return std::ranges::any_of(rig.drivers, [&](const wrinkle::Driver& driver) {
+    return driver.kind == wrinkle::Driver::Kind::kBlendShape &&
+           wrinkle::EqualsIgnoreCase(driver.blend_shape.blend_shape, blend_shape);
+  });
+}
+
 }  // namespace
+
+std::set<std::string> StreamDefinitions::JointsOf(const wrinkle::Rig& rig) {
+  std::set<std::string> joints = {rig.anchor};
+  for (const wrinkle::ReferencePose& pose : rig.reference_poses) {
+    for (const wrinkle::JointDelta& joint : pose.joints) joints.insert(joint.joint);
+  }
+  for (const wrinkle::Driver& driver : rig.drivers) {
+    switch (driver.kind) {
+      case wrinkle::Driver::Kind::kPose:
+        for (const wrinkle::ControlPoint& point : driver.pose.points) joints.insert(point.joint);
+        break;
+      case wrinkle::Driver::Kind::kHinge:
+        joints.insert({driver.hinge.parent, driver.hinge.joint, driver.hinge.end});
+        break;
+      case wrinkle::Driver::Kind::kBall:
+        joints.insert({driver.ball.parent, driver.ball.joint, driver.ball.end});
+        break;
+      case wrinkle::Driver::Kind::kTwist:
+        joints.insert(driver.twist.joint);
+        joints.insert(driver.twist.through.begin(), driver.twist.through.end());
+        break;
+      case wrinkle::Driver::Kind::kBlendShape: break;
+    }
+  }
+  return joints;
+}
 
 Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Get(StreamOffer offer) {
   wrinkle::Skeleton skeleton;
@@ -53,8 +88,27 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
   auto binding =
       wrinkle::RigBinding::Create(*rig_, skeleton, blend_shapes, {.allow_missing = true});
   if (!binding.ok()) return binding.status();
-  const auto missing_joints = binding->missing_joints();
-  const auto missing_shapes = binding->missing_blend_shapes();
+  auto definition = std::make_shared<StreamDefinition>();
+  definition->joint_of_wire.resize(static_cast<std::size_t>(skeleton.num_joints()));
+  for (int joint = 0; joint < skeleton.num_joints(); ++joint) {
+    definition->joint_of_wire[static_cast<std::size_t>(skeleton.source_index()[joint])] =
+        static_cast<std::int16_t>(joint);
+  }
+  if (character_ != nullptr) {
+    definition->retarget =
+        std::make_shared<const wrinkle::Retarget>(wrinkle::Retarget::Create(skeleton, *character_));
+  }
+  definition->binding = std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
+  definition->skeleton = std::move(skeleton);
+  definition->blend_shapes = std::move(blend_shapes);
+  Report(*definition);
+  return std::shared_ptr<const StreamDefinition>(std::move(definition));
+}
+
+// Once a definition, so that a sender that offers again and again does not fill the log.
+void StreamDefinitions::Report(const StreamDefinition& stream) const {
+  const auto missing_joints = stream.binding->missing_joints();
+  const auto missing_shapes = stream.binding->missing_blend_shapes();
   if (!missing_joints.empty()) {
     spdlog::warn("the stream lacks joints of the rig, their drivers rest: {}",
                  Join(missing_joints));
@@ -63,24 +117,29 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
     spdlog::warn("the stream lacks blend shapes of the rig, their drivers rest: {}",
                  Join(missing_shapes));
   }
-  auto definition = std::make_shared<StreamDefinition>();
-  definition->joint_of_wire.resize(static_cast<std::size_t>(skeleton.num_joints()));
-  for (int joint = 0; joint < skeleton.num_joints(); ++joint) {
-    definition->joint_of_wire[static_cast<std::size_t>(skeleton.source_index()[joint])] =
-        static_cast<std::int16_t>(joint);
+  std::vector<std::string> ignored;
+  bool draws_any = false;
+  bool feeds_any = missing_joints.empty() && missing_shapes.empty();
+  for (const std::string& name : stream.skeleton.joint_names()) {
+    const bool drawn = character_ != nullptr && character_->Find(name) != wrinkle::kNoJoint;
+    const bool read = rig_joints_.contains(name);
+    if (!drawn && !read) ignored.push_back(name);
+    draws_any |= drawn;
+    feeds_any |= read;
   }
-  if (character_ != nullptr) {
-    auto retarget = wrinkle::Retarget::Create(skeleton, *character_);
-    if (!retarget.unmatched_source().empty()) {
-      spdlog::info("joints that the character does not have are ignored: {}",
-                   Join(retarget.unmatched_source()));
-    }
-    definition->retarget = std::make_shared<const wrinkle::Retarget>(std::move(retarget));
+  feeds_any |= std::ranges::any_of(
+      stream.blend_shapes, [this](const std::string& shape) { return Reads(*rig_, shape); });
+  if (!ignored.empty()) {
+    spdlog::info("joints that neither rig nor character knows are ignored: {}", Join(ignored));
   }
-  definition->binding = std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
-  definition->skeleton = std::move(skeleton);
-  definition->blend_shapes = std::move(blend_shapes);
-  return std::shared_ptr<const StreamDefinition>(std::move(definition));
+  if (!feeds_any) {
+    spdlog::warn("the rig reads nothing of the stream: all weights rest; is it the right --rig?");
+  }
+  if (character_ != nullptr && !draws_any) {
+    spdlog::warn(
+        "no joint of the stream is one of the character's: pictures show its rest pose; is it the "
+        "right --character?");
+  }
 }
 
 }  // namespace furrow::server

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <list>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,10 +38,14 @@ class StreamDefinitions {
   // `character` (may be null: nothing is drawn) outlives this.
   StreamDefinitions(std::shared_ptr<const wrinkle::Rig> rig, const wrinkle::Skeleton* character,
                     std::size_t capacity)
-      : rig_(std::move(rig)), character_(character), capacity_(capacity) {}
+      : rig_(std::move(rig)),
+        character_(character),
+        capacity_(capacity),
+        rig_joints_(JointsOf(*rig_)) {}
 
-  // Errors: those of Skeleton::Create and RigBinding::Create; kNotFound where the stream has no
-  // joint and no blend shape that the rig asks for. Joints the rig misses are logged once a stream.
+  // Errors: those of Skeleton::Create and RigBinding::Create. Logged, once a definition: what the
+  // rig misses in the stream; joints that neither the rig nor the character knows, which are
+  // ignored; a stream that moves no weight, or not the picture, at all.
   [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Get(StreamOffer offer);
 
   [[nodiscard]] const wrinkle::Rig& rig() const { return *rig_; }
@@ -48,10 +53,13 @@ class StreamDefinitions {
  private:
   [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Make(
       wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes);
+  [[nodiscard]] static std::set<std::string> JointsOf(const wrinkle::Rig& rig);
+  void Report(const StreamDefinition& stream) const;
 
   std::shared_ptr<const wrinkle::Rig> rig_;
   const wrinkle::Skeleton* character_;
   std::size_t capacity_;
+  std::set<std::string> rig_joints_;                          // all that the rig reads
   std::list<std::shared_ptr<const StreamDefinition>> known_;  // most recently used first
 };
 

@@ -2,11 +2,15 @@
 // From the wire's structs to a solved subject: adapter, shared definitions, pipeline.
 #include <cmath>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <tuple>
 #include <utility>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
 #include "server/pipeline/stream_definition.h"
 #include "server/pipeline/subject_pipeline.h"
@@ -14,6 +18,9 @@
 
 namespace furrow::server {
 namespace {
+
+using testing::HasSubstr;
+using testing::Not;
 
 // A knee: straight along -Y at rest, full wrinkle at 150 degrees between the bones' continuations.
 std::shared_ptr<const wrinkle::Rig> KneeRig(bool filter = false) {
@@ -150,6 +157,53 @@ TEST(StreamDefinitions, AStreamThatIsNoTreeIsRefused) {
   offer.joints[1].parent = 2;
   const auto result = definitions.Get(std::move(offer));
   EXPECT_EQ(result.status().code(), StatusCode::kCyclic);
+}
+
+// What is logged while it lives.
+class LogCapture {
+ public:
+  LogCapture() : before_(spdlog::default_logger()) {
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>(
+        "capture", std::make_shared<spdlog::sinks::ostream_sink_st>(text_)));
+  }
+  ~LogCapture() { spdlog::set_default_logger(before_); }
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::shared_ptr<spdlog::logger> before_;
+  std::ostringstream text_;
+};
+
+wrinkle::Skeleton Head(const char* joint) {
+  return wrinkle::Skeleton::Create({{.name = joint, .parent = wrinkle::kNoJoint}}).value();
+}
+
+TEST(StreamDefinitions, AStreamThatFitsNothingIsSaidToOnceAndClearly) {
+  const wrinkle::Skeleton character = Head("head");
+  StreamDefinitions definitions(KneeRig(), &character, 4);
+  StreamOffer offer;
+  offer.joints = {{.name = "tail_01", .parent = wrinkle::kNoJoint}};
+  LogCapture log;
+  ASSERT_TRUE(definitions.Get(offer).ok());
+  EXPECT_THAT(log.text(), HasSubstr("all weights rest"));
+  EXPECT_THAT(log.text(), HasSubstr("pictures show its rest pose"));
+  EXPECT_THAT(log.text(), HasSubstr("ignored: tail_01"));
+  const std::string once = log.text();
+  ASSERT_TRUE(definitions.Get(offer).ok());
+  EXPECT_EQ(log.text(), once);
+}
+
+TEST(StreamDefinitions, JointsThatNobodyReadsAreNamedWithAndWithoutPictures) {
+  const wrinkle::Skeleton character = Head("foot");
+  for (const wrinkle::Skeleton* drawn :
+       {static_cast<const wrinkle::Skeleton*>(nullptr), &character}) {
+    StreamDefinitions definitions(KneeRig(), drawn, 4);
+    LogCapture log;
+    ASSERT_TRUE(definitions.Get(ToStreamOffer(KneeOffer())).ok());
+    EXPECT_THAT(log.text(), HasSubstr(drawn == nullptr ? "ignored: hips, foot" : "ignored: hips"));
+    EXPECT_THAT(log.text(), Not(HasSubstr("thigh"))) << "the rig reads it";
+    EXPECT_THAT(log.text(), Not(HasSubstr("rest"))) << log.text();
+  }
 }
 
 TEST(SubjectPipeline, FollowsTheBend) {
