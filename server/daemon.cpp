@@ -92,7 +92,11 @@ class Daemon {
 Status Daemon::StartRendering() {
   if (!config_.render || assets_.character == nullptr) return {};
   auto started = RenderThread::Start(
-      assets_.character, {.device = config_.render_device}, metrics_,
+      &assets_.character->skeleton,
+      [this] {
+        return render::Renderer::Create(*assets_.character, {.device = config_.render_device});
+      },
+      metrics_,
       [this](FinishedPicture picture) {
         asio::post(io_, [this, picture = std::move(picture)] { hub_->OnPicture(picture); });
       });

@@ -5,8 +5,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include "wrinkle/pose.h"
-
 namespace furrow::server {
 namespace {
 
@@ -17,11 +15,11 @@ constexpr std::string_view kPresets[] = {"face", "three_quarter", "profile",
 
 }  // namespace
 
-Result<std::unique_ptr<RenderThread>> RenderThread::Start(
-    std::shared_ptr<const character::Character> character, render::RendererOptions options,
-    Metrics* metrics, Deliver deliver) {
+Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleton* skeleton,
+                                                          Factory make_renderer, Metrics* metrics,
+                                                          Deliver deliver) {
   std::unique_ptr<RenderThread> self(
-      new RenderThread(std::move(character), std::move(options), metrics, std::move(deliver)));
+      new RenderThread(skeleton, std::move(make_renderer), metrics, std::move(deliver)));
   std::promise<Status> started;
   std::future<Status> status = started.get_future();
   self->thread_ = std::thread(&RenderThread::Run, self.get(), std::move(started));
@@ -29,10 +27,10 @@ Result<std::unique_ptr<RenderThread>> RenderThread::Start(
   return self;
 }
 
-RenderThread::RenderThread(std::shared_ptr<const character::Character> character,
-                           render::RendererOptions options, Metrics* metrics, Deliver deliver)
-    : character_(std::move(character)),
-      options_(std::move(options)),
+RenderThread::RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer,
+                           Metrics* metrics, Deliver deliver)
+    : skeleton_(skeleton),
+      make_renderer_(std::move(make_renderer)),
       metrics_(metrics),
       deliver_(std::move(deliver)),
       mailbox_(kMaxWaitingJobs) {}
@@ -61,7 +59,7 @@ Result<render::Camera> RenderThread::Preset(std::string_view name) const {
 }
 
 Status RenderThread::CreateRenderer() {
-  auto renderer = render::Renderer::Create(*character_, options_);
+  auto renderer = make_renderer_();
   if (!renderer.ok()) return renderer.status();
   renderer_ = *std::move(renderer);
   return {};
@@ -74,8 +72,8 @@ void RenderThread::Run(std::promise<Status> started) {
     for (const std::string_view name : kPresets) {
       if (auto camera = renderer_->Preset(name); camera.ok()) presets_.emplace_back(name, *camera);
     }
-    pose_.resize(character_->skeleton.num_joints());
-    model_.resize(character_->skeleton.num_joints());
+    pose_.resize(skeleton_->num_joints());
+    model_.resize(skeleton_->num_joints());
   }
   started.set_value(status);
   if (!status.ok()) return;
@@ -91,12 +89,15 @@ void RenderThread::Run(std::promise<Status> started) {
 }
 
 void RenderThread::Draw(RenderJob job) {
-  if (renderer_ == nullptr && !CreateRenderer().ok()) {
-    metrics_->Add(Counter::kPicturesFailed);
-    return;
+  if (renderer_ == nullptr) {
+    if (!CreateRenderer().ok()) {
+      metrics_->Add(Counter::kPicturesFailed);
+      return;
+    }
+    spdlog::info("pictures are drawn again, on {}", renderer_->description());
   }
   const Snapshot& snapshot = *job.snapshot;
-  const wrinkle::LocalToModelJob to_model{&character_->skeleton, pose_, model_};
+  const wrinkle::LocalToModelJob to_model{skeleton_, pose_, model_};
   if (snapshot.retarget->Run(snapshot.joints, pose_) != wrinkle::JobStatus::kOk ||
       to_model.Run() != wrinkle::JobStatus::kOk) {
     metrics_->Add(Counter::kPicturesFailed);

@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include "character/character.h"
 #include "render/renderer.h"
 #include "server/metrics.h"
 #include "server/pipeline/picture_source.h"
 #include "server/pipeline/render_mailbox.h"
+#include "wrinkle/pose.h"
 #include "wrinkle/status.h"
 
 namespace furrow::server {
@@ -31,10 +31,14 @@ class RenderThread : public PictureSource {
   // Called on the render thread; must not block.
   using Deliver = std::function<void(FinishedPicture)>;
 
-  // Returns when the context stands. Errors: those of render::Renderer::Create.
+  // Makes the renderer of the character, at the start and whenever one was lost; called on the
+  // render thread. The daemon's is render::Renderer::Create.
+  using Factory = std::function<Result<std::unique_ptr<render::Renderer>>()>;
+
+  // `skeleton` is the character's and outlives the thread. Returns when the context stands. Errors:
+  // those of `make_renderer`.
   [[nodiscard]] static Result<std::unique_ptr<RenderThread>> Start(
-      std::shared_ptr<const character::Character> character, render::RendererOptions options,
-      Metrics* metrics, Deliver deliver);
+      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, Deliver deliver);
   ~RenderThread() override;  // closes the mailbox and joins
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
@@ -44,8 +48,8 @@ class RenderThread : public PictureSource {
   [[nodiscard]] const std::string& description() const { return description_; }
 
  private:
-  RenderThread(std::shared_ptr<const character::Character> character,
-               render::RendererOptions options, Metrics* metrics, Deliver deliver);
+  RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics,
+               Deliver deliver);
 
   Status CreateRenderer();
   void Run(std::promise<Status> started);
@@ -54,8 +58,8 @@ class RenderThread : public PictureSource {
   void Finish(const render::Image& image, const RenderJob& job);
   void Rebuild(const Status& reason);
 
-  const std::shared_ptr<const character::Character> character_;
-  const render::RendererOptions options_;
+  const wrinkle::Skeleton* const skeleton_;
+  const Factory make_renderer_;
   Metrics* const metrics_;
   const Deliver deliver_;
   RenderMailbox mailbox_;

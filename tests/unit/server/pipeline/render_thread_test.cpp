@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// The render thread over a renderer made of a few lines: what it does when the real one is lost.
+#include "server/pipeline/render_thread.h"
+
+#include <condition_variable>
+#include <deque>
+#include <latch>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+namespace furrow::server {
+namespace {
+
+const Status kLost(StatusCode::kUnavailable, "the context was lost");
+
+// What the renderers are to answer, in the order of the calls; then all goes well. Of the render
+// thread alone once it runs.
+struct Script {
+  std::deque<Status> create;
+  std::deque<Status> submit;
+  std::deque<Status> poll;
+  std::latch* hold_first_submit = nullptr;
+  int num_created = 0;
+
+  static Status Next(std::deque<Status>* of) {
+    if (of->empty()) return {};
+    const Status status = of->front();
+    of->pop_front();
+    return status;
+  }
+};
+
+class ScriptedRenderer : public render::Renderer {
+ public:
+  explicit ScriptedRenderer(Script* script) : script_(script) {}
+  Status Submit(const render::FrameRequest&) override {
+    if (auto* latch = std::exchange(script_->hold_first_submit, nullptr)) latch->wait();
+    Status status = Script::Next(&script_->submit);
+    if (status.ok()) ++in_flight_;
+    return status;
+  }
+  Result<render::Image> Poll(bool) override {
+    if (Status status = Script::Next(&script_->poll); !status.ok()) return status;
+    if (in_flight_ == 0) return render::Image();
+    --in_flight_;
+    return render::Image{16, 16, std::vector<std::uint8_t>(16 * 16 * 3), 0};
+  }
+  int in_flight() const override { return in_flight_; }
+  std::string description() const override { return "scripted"; }
+  Result<render::Camera> Preset(std::string_view) const override { return render::Camera(); }
+
+ private:
+  Script* script_;
+  int in_flight_ = 0;
+};
+
+// Pictures as they are delivered; Take() blocks for the next.
+class Pictures {
+ public:
+  void Put(FinishedPicture picture) {
+    const std::lock_guard lock(mutex_);
+    pictures_.push_back(std::move(picture));
+    changed_.notify_one();
+  }
+  FinishedPicture Take() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return !pictures_.empty(); });
+    FinishedPicture picture = std::move(pictures_.front());
+    pictures_.pop_front();
+    return picture;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<FinishedPicture> pictures_;
+};
+
+class RenderThreadTest : public testing::Test {
+ protected:
+  void Start() {
+    auto started = RenderThread::Start(
+        &skeleton, [this] { return Create(); }, &metrics,
+        [this](FinishedPicture picture) { pictures.Put(std::move(picture)); });
+    ASSERT_TRUE(started.ok()) << started.status().ToString();
+    thread = *std::move(started);
+  }
+  Result<std::unique_ptr<render::Renderer>> Create() {
+    if (Status status = Script::Next(&script.create); !status.ok()) return status;
+    ++script.num_created;
+    return std::unique_ptr<render::Renderer>(std::make_unique<ScriptedRenderer>(&script));
+  }
+  // A job of a subject of its own, so that none replaces another; its pose has that number too.
+  void Submit(std::uint32_t number) {
+    auto snapshot = std::make_shared<Snapshot>();
+    snapshot->sequence = number;
+    snapshot->retarget =
+        std::make_shared<const wrinkle::Retarget>(wrinkle::Retarget::Create(skeleton, skeleton));
+    snapshot->joints.assign(skeleton.rest_pose().begin(), skeleton.rest_pose().end());
+    thread->Submit({number, {.width = 16, .height = 16}, std::move(snapshot), {{number, {}}}});
+  }
+  std::uint64_t Count(Counter counter) const { return metrics.Get(counter); }
+
+  wrinkle::Skeleton skeleton =
+      wrinkle::Skeleton::Create({{.name = "head", .parent = wrinkle::kNoJoint}}).value();
+  Script script;
+  Metrics metrics;
+  Pictures pictures;
+  std::unique_ptr<RenderThread> thread;  // the first to go
+};
+
+TEST_F(RenderThreadTest, ALostContextIsRebuiltAndDrawingGoesOn) {
+  script.submit = {Status(), kLost};
+  Start();
+  Submit(1);
+  EXPECT_EQ(pictures.Take().sequence, 1u);
+  Submit(2);  // lost
+  Submit(3);
+  EXPECT_EQ(pictures.Take().sequence, 3u);
+  EXPECT_EQ(script.num_created, 2);
+  EXPECT_EQ(Count(Counter::kRendererRestarts), 1u);
+  EXPECT_EQ(Count(Counter::kPicturesFailed), 1u);
+  EXPECT_EQ(Count(Counter::kPicturesRendered), 2u);
+}
+
+TEST_F(RenderThreadTest, WhatWasInFlightIsCountedWhenTheContextGoes) {
+  std::latch both_wait(1);
+  script.hold_first_submit = &both_wait;
+  script.poll = {kLost};
+  Start();
+  Submit(1);
+  Submit(2);
+  both_wait.count_down();
+  Submit(3);
+  EXPECT_EQ(pictures.Take().sequence, 3u);
+  EXPECT_EQ(Count(Counter::kRendererRestarts), 1u);
+  EXPECT_EQ(Count(Counter::kPicturesFailed), 2u);
+}
+
+TEST_F(RenderThreadTest, WhileItCannotBeRebuiltJobsAreDroppedAndCounted) {
+  script.create = {Status(), kLost, kLost};
+  script.submit = {kLost};
+  Start();
+  Submit(1);  // lost; the rebuild fails
+  Submit(2);  // and fails again
+  Submit(3);
+  EXPECT_EQ(pictures.Take().sequence, 3u);
+  EXPECT_EQ(Count(Counter::kRendererRestarts), 1u);
+  EXPECT_EQ(Count(Counter::kPicturesFailed), 2u);
+}
+
+TEST_F(RenderThreadTest, AJobThatCannotBeDrawnCostsOnlyItself) {
+  script.submit = {Status(StatusCode::kInvalidArgument, "no such size")};
+  Start();
+  Submit(1);
+  Submit(2);
+  EXPECT_EQ(pictures.Take().sequence, 2u);
+  EXPECT_EQ(script.num_created, 1);
+  EXPECT_EQ(Count(Counter::kRendererRestarts), 0u);
+  EXPECT_EQ(Count(Counter::kPicturesFailed), 1u);
+}
+
+TEST_F(RenderThreadTest, WithoutARendererItDoesNotStart) {
+  script.create = {kLost};
+  const auto started = RenderThread::Start(
+      &skeleton, [this] { return Create(); }, &metrics, [](FinishedPicture) {});
+  EXPECT_EQ(started.status().code(), StatusCode::kUnavailable);
+}
+
+}  // namespace
+}  // namespace furrow::server
