@@ -42,6 +42,10 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--vmc", config->vmc, "UDP port for VMC over OSC (none; 39539 is usual)");
   app->add_option("--livelink-face", config->livelink_face,
                   "UDP port for Live Link Face (none; 11111 is usual)");
+  app->add_option("--mocap-allow", config->mocap_allow,
+                  "address that may send to those two, again for more (none: the first to come,\n"
+                  "until it is silent for 3 s; with them, --livelink-face takes all at once)")
+      ->allow_extra_args(false);
   app->add_option("--osc-out", flags->osc_out, "HOST:PORT that gets the weights as OSC (none)");
   app->add_option("--osc-prefix", config->osc_prefix, "first part of the OSC addresses (furrow)");
   app->add_flag("--verbose", config->verbose, "one status line a second");

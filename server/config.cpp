@@ -69,6 +69,12 @@ Status ValidateConfig(const Config& config) {
     return Status(StatusCode::kInvalidArgument, "--bind: '" + config.bind + "' is no address", "",
                   "give a numeric one: 127.0.0.1, 0.0.0.0, ::1");
   }
+  for (const std::string& address : config.mocap_allow) {
+    if (!IsNumericAddress(address)) {
+      return Status(StatusCode::kInvalidArgument, "--mocap-allow: '" + address + "' is no address",
+                    "", "give numeric ones: 192.168.0.20, ::1");
+    }
+  }
   if (config.require_render && !config.render) {
     return OutOfRange("--require-render and --no-render exclude each other");
   }

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "server/exit_code.h"
 #include "wrinkle/status.h"
@@ -48,6 +49,7 @@ struct Config {
   std::string render_device;    // see render::RendererOptions::device
   std::optional<std::uint16_t> vmc;
   std::optional<std::uint16_t> livelink_face;
+  std::vector<std::string> mocap_allow;  // numeric addresses that may feed those; none: anybody
   std::optional<HostPort> osc_out;
   std::string osc_prefix = "furrow";  // /<prefix>/<subject>/<wrinkle weight>
   bool verbose = false;               // one status line a second

@@ -90,6 +90,21 @@ Key Destination(std::string_view name, std::optional<HostPort>* target) {
           }};
 }
 
+Key Texts(std::string_view name, std::vector<std::string>* target) {
+  return {name, [target](const toml::node& node) -> std::string {
+            const toml::array* list = node.as_array();
+            if (list == nullptr) return "must be a list of strings";
+            std::vector<std::string> texts;
+            for (const toml::node& element : *list) {
+              const auto value = element.value_exact<std::string>();
+              if (!value) return "must be a list of strings";
+              texts.push_back(*value);
+            }
+            *target = std::move(texts);
+            return {};
+          }};
+}
+
 class Reader {
  public:
   Reader(std::string_view source_name) : source_name_(source_name) {}
@@ -138,7 +153,8 @@ Status ParseConfig(std::string_view text, std::string_view source_name, Config* 
   const Key listen[] = {Text("bind", &read.bind), Port("tcp", &read.tcp), Port("udp", &read.udp)};
   const Key render[] = {Flag("enabled", &read.render), Flag("required", &read.require_render),
                         Text("device", &read.render_device)};
-  const Key mocap[] = {Port("vmc", &read.vmc), Port("livelink_face", &read.livelink_face)};
+  const Key mocap[] = {Port("vmc", &read.vmc), Port("livelink_face", &read.livelink_face),
+                       Texts("allow", &read.mocap_allow)};
   const Key osc[] = {Destination("out", &read.osc_out), Text("prefix", &read.osc_prefix)};
   const Key log[] = {Flag("verbose", &read.verbose), Flag("json", &read.log_json)};
   Limits& limits_of = read.limits;

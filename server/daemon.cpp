@@ -9,6 +9,7 @@
 #include <random>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <asio/co_spawn.hpp>
 #include <asio/detached.hpp>
@@ -138,15 +139,22 @@ Status Daemon::Listen() {
 }
 
 Status Daemon::OpenMocap() {
+  using protocol::mocap::MakeLiveLinkFaceAdapter;
   const auto address = asio::ip::make_address(config_.bind);
+  std::vector<asio::ip::address> allowed;
+  for (const std::string& text : config_.mocap_allow) {
+    allowed.push_back(asio::ip::make_address(text));
+  }
   if (config_.vmc) {
-    vmc_ = std::make_unique<MocapInput>(io_, "--vmc", protocol::mocap::MakeVmcAdapter(), hub_.get(),
+    vmc_ = std::make_unique<MocapInput>(io_, "--vmc", protocol::mocap::MakeVmcAdapter(),
+                                        SenderGate(allowed, SenderGate::Holds::kOne), hub_.get(),
                                         metrics_);
     if (Status status = vmc_->Open({address, *config_.vmc}); !status.ok()) return status;
   }
   if (config_.livelink_face) {
     livelink_face_ = std::make_unique<MocapInput>(
-        io_, "--livelink-face", protocol::mocap::MakeLiveLinkFaceAdapter(), hub_.get(), metrics_);
+        io_, "--livelink-face", MakeLiveLinkFaceAdapter(),
+        SenderGate(allowed, SenderGate::Holds::kEveryAllowed), hub_.get(), metrics_);
     return livelink_face_->Open({address, *config_.livelink_face});
   }
   return {};

@@ -32,6 +32,9 @@ class MocapAdapter {
                     const FrameSink& sink) = 0;
   // Gives out what waited too long for its end. Call it every 10 ms or so.
   virtual void Tick(std::int64_t now_us, const FrameSink& sink) = 0;
+  // Another sender follows: what the last one said counts no more. Frames and layouts are numbered
+  // on. Nothing to do where the wire tells its senders apart.
+  virtual void Forget() {}
 
   [[nodiscard]] const AdapterCounters& counters() const { return counters_; }
 

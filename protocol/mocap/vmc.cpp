@@ -54,6 +54,14 @@ class VmcAdapter final : public MocapAdapter {
     sink_ = nullptr;
   }
 
+  void Forget() override {
+    state_.Clear();
+    pending_ = false;
+    loaded_ = tracked_ = true;
+    last_time_us_ = last_apply_us_ = last_source_us_ = kNever;
+    avatar_hash_.reset();
+  }
+
  private:
   void Dispatch(const OscMessage& message) {
     switch (Apply(message)) {

@@ -7,6 +7,7 @@
 #include <asio/detached.hpp>
 #include <asio/experimental/as_tuple.hpp>
 #include <asio/use_awaitable.hpp>
+#include <spdlog/spdlog.h>
 
 #include "server/net/clock.h"
 
@@ -15,12 +16,13 @@ namespace furrow::server {
 using asio::ip::udp;
 
 MocapInput::MocapInput(asio::io_context& io, std::string flag,
-                       std::unique_ptr<protocol::mocap::MocapAdapter> adapter, Hub* hub,
-                       Metrics* metrics)
+                       std::unique_ptr<protocol::mocap::MocapAdapter> adapter, SenderGate gate,
+                       Hub* hub, Metrics* metrics)
     : io_(io),
       socket_(io),
       flag_(std::move(flag)),
       adapter_(std::move(adapter)),
+      gate_(std::move(gate)),
       hub_(hub),
       metrics_(metrics) {}
 
@@ -58,11 +60,30 @@ asio::awaitable<void> MocapInput::Read() {
     if (error == asio::error::operation_aborted || !socket_.is_open()) co_return;
     if (error) continue;  // of the datagram, not of the socket
     metrics_->Add(Counter::kMocapPackets);
-    const Time now = ReadClock();
-    adapter_->Push({buffer_.data(), size}, ToMicroseconds(now),
-                   [&](const auto& frame) { hub_->OnMocapFrame(peer_, frame, now); });
-    Count();
+    OnDatagram({buffer_.data(), size}, sender.address(), ReadClock());
   }
+}
+
+void MocapInput::OnDatagram(std::span<const std::uint8_t> bytes, const asio::ip::address& sender,
+                            Time now) {
+  if (!gate_.Admits(sender, now)) return TurnAway(sender);
+  if (gate_.IsSuccessor(sender)) adapter_->Forget();
+  const std::uint64_t malformed = adapter_->counters().malformed;
+  adapter_->Push(bytes, ToMicroseconds(now),
+                 [&](const auto& frame) { hub_->OnMocapFrame(peer_, frame, now); });
+  const bool makes_sense = adapter_->counters().malformed == malformed;
+  if (makes_sense && gate_.Hold(sender, now)) {
+    spdlog::info("{} listens to {}", flag_, sender.to_string());
+    has_named_intruder_ = false;
+  }
+  Count();
+}
+
+void MocapInput::TurnAway(const asio::ip::address& sender) {
+  metrics_->Add(Counter::kMocapLockedOut);
+  if (std::exchange(has_named_intruder_, true)) return;
+  spdlog::warn("{} does not listen to {}: another sender has the port, or --mocap-allow lacks it",
+               flag_, sender.to_string());
 }
 
 void MocapInput::Tick(Time now) {

@@ -13,18 +13,21 @@
 
 #include "protocol/mocap/adapter.h"
 #include "server/metrics.h"
+#include "server/net/sender_gate.h"
 #include "server/session/hub.h"
 #include "wrinkle/status.h"
 
 namespace furrow::server {
 
 // A UDP port that speaks a foreign wire: datagrams to an adapter, its frames to the hub, as poses
-// of a peer that nobody answers.
+// of a peer that nobody answers. Whom it listens to is the gate's matter; what that turns away is
+// counted, and named in the log once a holder.
 class MocapInput {
  public:
   // `flag` names the port in errors ("--vmc").
   MocapInput(asio::io_context& io, std::string flag,
-             std::unique_ptr<protocol::mocap::MocapAdapter> adapter, Hub* hub, Metrics* metrics);
+             std::unique_ptr<protocol::mocap::MocapAdapter> adapter, SenderGate gate, Hub* hub,
+             Metrics* metrics);
 
   // Errors: kUnavailable, naming address and port.
   [[nodiscard]] Status Open(const asio::ip::udp::endpoint& endpoint);
@@ -43,12 +46,16 @@ class MocapInput {
   };
 
   asio::awaitable<void> Read();
+  void OnDatagram(std::span<const std::uint8_t> bytes, const asio::ip::address& sender, Time now);
+  void TurnAway(const asio::ip::address& sender);
   void Count();
 
   asio::io_context& io_;
   asio::ip::udp::socket socket_;
   const std::string flag_;
   const std::unique_ptr<protocol::mocap::MocapAdapter> adapter_;
+  SenderGate gate_;
+  bool has_named_intruder_ = false;  // in the log, since the port changed hands
   Hub* const hub_;
   Metrics* const metrics_;
   NoLink link_;

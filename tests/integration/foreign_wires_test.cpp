@@ -175,6 +175,24 @@ TEST(ForeignWires, VmcRaisesTheRightWeights) {
   EXPECT_LT(weights["brow_l.squash"], 0.05f);
 }
 
+TEST(ForeignWires, APortListensToItsFirstSenderAndCountsTheOthers) {
+  DaemonThread daemon(ForeignConfig());
+  ASSERT_TRUE(daemon.serves());
+  TcpClient viewer(daemon.ready().tcp);
+  AwaitSubject(viewer, "phone");
+  UdpClient garbage(*daemon.ready().livelink_face, "127.0.0.2");
+  UdpClient phone(*daemon.ready().livelink_face, "127.0.0.3");
+  garbage.SendRaw(Bytes(100, 0x11));  // does not take the port
+  phone.SendRaw(LiveLinkFace("phone", 1, {{41, 1.0f}}));
+  garbage.SendRaw(LiveLinkFace("phone", 2, {{41, 0.0f}}));
+  phone.SendRaw(LiveLinkFace("phone", 3, {{41, 1.0f}}));
+  ASSERT_TRUE(viewer.Await<protocol::WeightFrame>().has_value());
+  ASSERT_TRUE(viewer.Await<protocol::WeightFrame>().has_value());
+  EXPECT_EQ(daemon.Count(server::Counter::kMocapMalformed), 1u);
+  EXPECT_EQ(daemon.Count(server::Counter::kMocapLockedOut), 1u);
+  EXPECT_EQ(daemon.Count(server::Counter::kMocapFrames), 2u);
+}
+
 TEST(ForeignWires, OscsendOfLibloIsUnderstood) {
   const std::string oscsend = FindProgram("oscsend");
   if (oscsend.empty()) GTEST_SKIP() << "no oscsend: install liblo-tools";

@@ -14,13 +14,17 @@ namespace {
 
 constexpr int kGuardMilliseconds = 60'000;
 
-int Connect(int type, std::uint16_t port) {
+int Connect(int type, std::uint16_t port, const char* from = "127.0.0.1") {
   const int socket = ::socket(AF_INET, type, 0);
+  sockaddr_in own{};
+  own.sin_family = AF_INET;
+  ::inet_pton(AF_INET, from, &own.sin_addr);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address)) != 0) {
+  if (::bind(socket, reinterpret_cast<sockaddr*>(&own), sizeof(own)) != 0 ||
+      ::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address)) != 0) {
     ::close(socket);
     return -1;
   }
@@ -98,7 +102,8 @@ bool TcpClient::Fill() {
   return true;
 }
 
-UdpClient::UdpClient(std::uint16_t port) : RawClient(Connect(SOCK_DGRAM, port)) {}
+UdpClient::UdpClient(std::uint16_t port, const char* from)
+    : RawClient(Connect(SOCK_DGRAM, port, from)) {}
 
 void UdpClient::SendBytes(std::span<const std::uint8_t> message) {
   const std::size_t count = protocol::NumDatagrams(message.size());

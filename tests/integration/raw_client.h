@@ -88,7 +88,8 @@ class TcpClient : public RawClient {
 
 class UdpClient : public RawClient {
  public:
-  explicit UdpClient(std::uint16_t port);
+  // `from`: another address of the loopback than 127.0.0.1.
+  explicit UdpClient(std::uint16_t port, const char* from = "127.0.0.1");
   // Hello, Welcome, Hello: false when the daemon did not play along.
   bool Prove();
 

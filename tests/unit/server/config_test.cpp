@@ -60,6 +60,10 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
                                   "3",
                                   "--livelink-face",
                                   "4",
+                                  "--mocap-allow",
+                                  "10.0.0.1",
+                                  "--mocap-allow",
+                                  "::2",
                                   "--osc-out",
                                   "127.0.0.1:9000",
                                   "--osc-prefix",
@@ -78,6 +82,7 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
   EXPECT_FALSE(config.render);
   EXPECT_EQ(config.vmc, 3);
   EXPECT_EQ(config.livelink_face, 4);
+  EXPECT_THAT(config.mocap_allow, testing::ElementsAre("10.0.0.1", "::2"));
   ASSERT_TRUE(config.osc_out.has_value());
   EXPECT_EQ(config.osc_out->host, "127.0.0.1");
   EXPECT_EQ(config.osc_out->port, 9000);
@@ -102,6 +107,7 @@ TEST(CommandLine, WrongUsageIsTwo) {
                                              {"--tcp", "x"},
                                              {"--bind", "localhost"},
                                              {"--osc-out", "nowhere"},
+                                             {"--mocap-allow", "stage-pc"},
                                              {"--vmc", "7401"},
                                              {"--require-render", "--no-render"}}) {
     const CommandLine line = Parse(args);
@@ -112,12 +118,18 @@ TEST(CommandLine, WrongUsageIsTwo) {
 }
 
 TEST(CommandLine, FlagsWinOverTheFileAndTheFileOverTheDefaults) {
-  const ConfigFile file("[listen]\ntcp = 100\nudp = 200\n[mocap]\nvmc = 300\n");
-  const CommandLine line = Parse({"--config", file.path(), "--tcp", "101"});
+  const ConfigFile file(
+      "[listen]\ntcp = 100\nudp = 200\n[mocap]\nvmc = 300\n"
+      "allow = ['10.0.0.1', '10.0.0.2']\n");
+  CommandLine line = Parse({"--config", file.path(), "--tcp", "101"});
   ASSERT_TRUE(line.config.has_value()) << line.text;
   EXPECT_EQ(line.config->tcp, 101);
   EXPECT_EQ(line.config->udp, 200);
   EXPECT_EQ(line.config->vmc, 300);
+  EXPECT_THAT(line.config->mocap_allow, testing::ElementsAre("10.0.0.1", "10.0.0.2"));
+  line = Parse({"--config", file.path(), "--mocap-allow", "10.0.0.3"});
+  ASSERT_TRUE(line.config.has_value()) << line.text;
+  EXPECT_THAT(line.config->mocap_allow, testing::ElementsAre("10.0.0.3"));
 }
 
 TEST(CommandLine, AFaultInTheFileIsBadInputAndNamesTheLine) {

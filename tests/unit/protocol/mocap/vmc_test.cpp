@@ -217,6 +217,19 @@ TEST_F(Vmc, AnotherAvatarBeginsWithNothingKnown) {
   EXPECT_EQ(frames_[2].sequence, 2u);
 }
 
+TEST_F(Vmc, AnotherSenderBeginsWithNothingKnown) {
+  Push(Packet().Bone("Hips", {0, 1, 0}).Blend("Joy", 1).Apply());
+  Push(Packet().Ok(0), 1000);  // the last word of the one before
+  adapter_->Forget();
+  Push(Packet().Blend("A", 0.5f).Apply(), 4'000'000);
+  ASSERT_EQ(frames_.size(), 2u);
+  EXPECT_TRUE(frames_[1].joints.empty());
+  ASSERT_EQ(frames_[1].blend_shapes.size(), 1u);
+  EXPECT_EQ(frames_[1].sequence, 1u);
+  EXPECT_NE(frames_[1].layout, frames_[0].layout);
+  EXPECT_GT(frames_[1].capture_time_us, frames_[0].capture_time_us);
+}
+
 TEST_F(Vmc, NothingIsGivenWhileNoModelIsLoaded) {
   Push(Packet().Ok(0).Bone("Hips", {0, 1, 0}).Apply());
   EXPECT_TRUE(frames_.empty());
