@@ -117,8 +117,8 @@ void AddSkinnedTube(const wrinkle::Skeleton& skeleton, BodyPart part, const Tube
 Tube Torso() {
   Tube tube;
   const float rows[][4] = {// y, half width, half depth, z of the middle
-                           {0.885f, 0.160f, 0.108f, 0.000f},   {0.878f, 0.176f, 0.122f, 0.000f},
-                           {0.895f, 0.180f, 0.126f, 0.000f},   {0.94f, 0.177f, 0.125f, 0.002f},
+                           {0.885f, 0.160f, 0.108f, 0.000f},   {0.878f, 0.180f, 0.128f, 0.000f},
+                           {0.895f, 0.184f, 0.132f, 0.000f},   {0.94f, 0.179f, 0.128f, 0.002f},
                            {1.00f, 0.168f, 0.119f, 0.004f},    {1.07f, 0.161f, 0.113f, 0.006f},
                            {1.14f, 0.163f, 0.114f, 0.006f},    {1.22f, 0.173f, 0.121f, 0.004f},
                            {1.30f, 0.184f, 0.126f, 0.000f},    {1.36f, 0.188f, 0.122f, -0.008f},
@@ -161,9 +161,9 @@ Tube Sleeve(float side) {
 
 Tube Pelvis() {
   Tube tube;
-  const float rows[][4] = {{0.785f, 0.010f, 0.020f, 0.0f},  {0.792f, 0.030f, 0.050f, 0.0f},
-                           {0.810f, 0.060f, 0.080f, 0.0f},  {0.84f, 0.115f, 0.098f, 0.0f},
-                           {0.88f, 0.158f, 0.106f, 0.0f},   {0.92f, 0.168f, 0.112f, 0.0f},
+  const float rows[][4] = {{0.778f, 0.006f, 0.030f, 0.0f},  {0.783f, 0.020f, 0.055f, 0.0f},
+                           {0.800f, 0.045f, 0.082f, 0.0f},  {0.830f, 0.090f, 0.098f, 0.0f},
+                           {0.875f, 0.150f, 0.106f, 0.0f},  {0.92f, 0.168f, 0.112f, 0.0f},
                            {0.98f, 0.155f, 0.106f, 0.002f}, {1.03f, 0.145f, 0.100f, 0.004f}};
   for (const auto& r : rows) tube.stations.push_back({{0, r[0], r[3]}, r[1], r[2]});
   tube.across = {-1, 0, 0};

@@ -197,9 +197,12 @@ void SkinTorso(const wrinkle::Skeleton& skeleton, const vec3& p, const std::stri
   const float shoulder =
       0.75f * SmoothStep(0.06f, 0.19f, std::abs(p.x)) * SmoothStep(1.26f, 1.42f, p.y);
   const float arm = 0.45f * SmoothStep(0.14f, 0.20f, std::abs(p.x)) * SmoothStep(1.24f, 1.36f, p.y);
+  // The hem rides on a thigh that swings forward.
+  const float leg = 0.4f * SmoothStep(0.02f, 0.12f, std::abs(p.x)) * SmoothStep(1.00f, 0.87f, p.y);
   weights->Add(skeleton, "upper_arm" + side, arm);
   weights->Add(skeleton, "shoulder" + side, (1.0f - arm) * shoulder);
-  Chain(skeleton, joints, borders, p.y, (1.0f - arm) * (1.0f - shoulder), weights);
+  weights->Add(skeleton, "upper_leg" + side, leg);
+  Chain(skeleton, joints, borders, p.y, (1.0f - arm) * (1.0f - shoulder) * (1.0f - leg), weights);
 }
 
 void SkinBodyVertex(const wrinkle::Skeleton& skeleton, BodyPart part, Vertex* vertex) {

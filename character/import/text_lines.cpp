@@ -2,13 +2,14 @@
 #include "character/import/text_lines.h"
 
 #include <charconv>
-#include <fstream>
 #include <system_error>
+
+#include "character/asset_path.h"
 
 namespace furrow::character {
 namespace {
 
-constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{256} << 20;
+constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20;
 
 template <class T>
 std::optional<T> ToNumber(std::string_view word) {
@@ -22,17 +23,7 @@ std::optional<T> ToNumber(std::string_view word) {
 }  // namespace
 
 Result<std::string> ReadTextFile(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error))
-    return Status(StatusCode::kNotFound, "no such file", path.string());
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) return Status(StatusCode::kIo, error.message(), path.string());
-  if (size > kMaxFileBytes) return Status(StatusCode::kLimit, "larger than 256 MiB", path.string());
-  std::ifstream file(path, std::ios::binary);
-  std::string text(static_cast<std::size_t>(size), '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!file) return Status(StatusCode::kIo, "cannot be read", path.string());
-  return text;
+  return ReadFile(path, kMaxFileBytes);
 }
 
 bool LineReader::Next(std::string_view* line) {

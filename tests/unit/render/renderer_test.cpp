@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/renderer.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -65,6 +66,30 @@ TEST_F(RendererTest, TheBackgroundIsWhatTheSettingsSay) {
   EXPECT_EQ(Pixel(Render(request), 2, 2), glm::ivec3(0));
   request.settings.background = {0.5f, 0.5f, 0.5f};
   EXPECT_NEAR(Pixel(Render(request), 2, 2).g, 188, 1);  // sRGB(0.5); the tone map starts above it
+}
+
+// Skin painted black is the inside of a mouth, and dark; a black eye is a pupil, and glossy.
+TEST(Renderer, BlackSkinIsHollowAndABlackEyeShines) {
+  for (const auto kind : {character::Material::Kind::kSkin, character::Material::Kind::kEye}) {
+    character::Character head = test::MakeHead();
+    for (character::Material& material : head.materials) {
+      material.kind = kind;
+      material.base_colour = {0.0f, 0.0f, 0.0f, 1.0f};
+    }
+    const auto renderer = Renderer::Create(head);
+    ASSERT_TRUE(renderer.ok()) << renderer.status().ToString();
+    const test::Subject subject(head);
+    FrameRequest request;
+    request.model = subject.model;
+    request.settings.background = glm::vec3(0.0f);
+    request.camera = *(*renderer)->Preset("face");
+    request.width = request.height = kSize;
+    const Result<Image> image = (*renderer)->Render(request);
+    ASSERT_TRUE(image.ok()) << image.status().ToString();
+    const int brightest = *std::max_element(image->rgb.begin(), image->rgb.end());
+    if (kind == character::Material::Kind::kSkin) EXPECT_EQ(brightest, 0);
+    if (kind == character::Material::Kind::kEye) EXPECT_GT(brightest, 60);
+  }
 }
 
 TEST_F(RendererTest, WrinklesChangeOnlyMaskedPixels) {
