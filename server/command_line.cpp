@@ -45,6 +45,7 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--mocap-allow", config->mocap_allow,
                   "address that may send to those two, again for more (none: the first to come,\n"
                   "until it is silent for 3 s; with them, --livelink-face takes all at once)")
+      ->type_name("ADDRESS")
       ->allow_extra_args(false);
   app->add_option("--osc-out", flags->osc_out, "HOST:PORT that gets the weights as OSC (none)");
   app->add_option("--osc-prefix", config->osc_prefix, "first part of the OSC addresses (furrow)");

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/daemon.h"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <random>
@@ -204,7 +206,7 @@ asio::awaitable<void> Daemon::TickLoop() {
   asio::steady_timer timer(io_);
   auto due = std::chrono::steady_clock::now();
   while (true) {
-    due += kTick;
+    due = std::max(due + kTick, std::chrono::steady_clock::now());  // none to catch up with
     timer.expires_at(due);
     co_await timer.async_wait(kToken);
     const Time now = ReadClock();
@@ -256,9 +258,7 @@ ExitCode Fail(ExitCode code, const Status& status) {
   return code;
 }
 
-}  // namespace
-
-ExitCode Run(const Config& config, const RunOptions& options) {
+ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
   if (Status status = ValidateConfig(config); !status.ok()) return Fail(ExitCode::kUsage, status);
   Result<Assets> assets = LoadAssets(config);
   if (!assets.ok()) return Fail(ExitCode::kBadInput, assets.status());
@@ -272,6 +272,16 @@ ExitCode Run(const Config& config, const RunOptions& options) {
   if (Status status = daemon.Listen(); !status.ok()) return Fail(ExitCode::kFailed, status);
   daemon.Serve();
   return ExitCode::kOk;
+}
+
+}  // namespace
+
+ExitCode Run(const Config& config, const RunOptions& options) {
+  try {
+    return LoadAndServe(config, options);
+  } catch (const std::exception& error) {  // no memory, no threads: what no Status tells of
+    return Fail(ExitCode::kFailed, Status(StatusCode::kInternal, error.what(), "furrowd"));
+  }
 }
 
 }  // namespace furrow::server

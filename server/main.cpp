@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <csignal>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -15,6 +16,8 @@ int main(int argc, char** argv) {
     std::fputs(line.text.c_str(), line.exit_code == ExitCode::kOk ? stdout : stderr);
     return static_cast<int>(line.exit_code);
   }
+  // Whoever read our log, or the ready line, may leave: the daemon goes on.
+  std::signal(SIGPIPE, SIG_IGN);
   const furrow::server::Log log(*line.config);
   furrow::server::RunOptions options;
   options.handle_signals = true;

@@ -39,7 +39,12 @@ Process::~Process() {
     Wait();
   }
   ::close(out_);
-  ::close(errors_);
+  CloseErrors();
+}
+
+void Process::CloseErrors() {
+  if (errors_ >= 0) ::close(errors_);
+  errors_ = -1;
 }
 
 std::optional<std::string> Process::ReadLine() {

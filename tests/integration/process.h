@@ -20,6 +20,8 @@ class Process {
   // The next line of stdout without its end; none at the end of the stream.
   std::optional<std::string> ReadLine();
   void Signal(int signal) const;
+  // Nobody reads its stderr any more.
+  void CloseErrors();
   // Waits for the end: the exit code, or 128 + the signal that ended it.
   int Wait();
   // All of stderr; call it after Wait().

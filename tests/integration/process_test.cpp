@@ -82,6 +82,14 @@ TEST(Furrowd, HelpEndsWellAndNamesTheExitCodes) {
   EXPECT_THAT(text, HasSubstr("Exit codes"));
 }
 
+TEST(Furrowd, GoesOnWhenTheReaderOfItsLogHasLeft) {
+  Process daemon(Command({"--tcp", "0", "--udp", "0"}));
+  daemon.CloseErrors();
+  ASSERT_TRUE(daemon.ReadLine().has_value());
+  daemon.Signal(SIGTERM);  // which it logs
+  EXPECT_EQ(daemon.Wait(), 0);
+}
+
 TEST(Furrowd, LogsAsJsonWhenAsked) {
   Process daemon(Command({"--tcp", "0", "--udp", "0", "--log-json"}));
   ASSERT_TRUE(daemon.ReadLine().has_value());
