@@ -7,6 +7,7 @@ std::string_view CounterName(Counter counter) {
   switch (counter) {
     case Counter::kDatagramsReceived: return "furrow_datagrams_received_total";
     case Counter::kDatagramsSent: return "furrow_datagrams_sent_total";
+    case Counter::kDatagramsOverrun: return "furrow_datagrams_overrun_total";
     case Counter::kDatagramsMalformed: return "furrow_datagrams_malformed_total";
     case Counter::kDatagramsUnsendable: return "furrow_datagrams_unsendable_total";
     case Counter::kDatagramsUnproven: return "furrow_datagrams_unproven_total";

@@ -14,6 +14,7 @@ namespace furrow::server {
 enum class Counter {
   kDatagramsReceived,
   kDatagramsSent,
+  kDatagramsOverrun,     // lost in the socket's full buffer, as the system counts them
   kDatagramsMalformed,   // no verified message: wrong magic, truncated, hostile
   kDatagramsUnsendable,  // the socket's buffer was full, or the address is gone
   kDatagramsUnproven,    // not sent: the address is unproven and has had its share

@@ -15,10 +15,21 @@ constexpr std::pair<Counter, std::string_view> kRates[] = {
 };
 
 constexpr std::pair<Counter, std::string_view> kDrops[] = {
+    {Counter::kDatagramsOverrun, "datagrams that came too fast"},
     {Counter::kDatagramsMalformed, "malformed datagrams"},
     {Counter::kDatagramsUnsendable, "unsendable datagrams"},
+    {Counter::kDatagramsUnproven, "answers to unproven addresses"},
+    {Counter::kFragmentsMalformed, "malformed fragments"},
+    {Counter::kFragmentsRefused, "fragments over the limits"},
+    {Counter::kFragmentsExpired, "messages without their last fragments"},
+    {Counter::kConnectionsRefused, "connections over the limit"},
+    {Counter::kConnectionsMalformed, "malformed connections"},
+    {Counter::kConnectionsOverrun, "connections that do not read"},
+    {Counter::kConnectionsIdle, "idle connections"},
     {Counter::kMessagesMalformed, "malformed messages"},
     {Counter::kMessagesThrottled, "throttled messages"},
+    {Counter::kMessagesRefused, "refused messages"},
+    {Counter::kSkeletonsRejected, "rejected skeletons"},
     {Counter::kPosesInvalid, "invalid poses"},
     {Counter::kPosesLate, "late poses"},
     {Counter::kPosesDuplicate, "repeated poses"},
@@ -28,8 +39,11 @@ constexpr std::pair<Counter, std::string_view> kDrops[] = {
     {Counter::kPicturesDroppedSlow, "pictures to slow subscribers"},
     {Counter::kPicturesFailed, "failed pictures"},
     {Counter::kMocapMalformed, "malformed mocap packets"},
+    {Counter::kMocapReordered, "late mocap frames"},
+    {Counter::kMocapStale, "mocap frames without tracking"},
     {Counter::kMocapLockedOut, "mocap packets of locked-out senders"},
     {Counter::kMocapRefused, "frames of refused mocap subjects"},
+    {Counter::kOscPacketsUnsendable, "unsendable OSC packets"},
 };
 
 }  // namespace

@@ -12,17 +12,38 @@ UdpBatch::UdpBatch() : buffer_(kSize * kBufferBytes) {
     headers_[i].msg_hdr.msg_iov = &slices_[i];
     headers_[i].msg_hdr.msg_iovlen = 1;
     headers_[i].msg_hdr.msg_name = &senders_[i];
+    headers_[i].msg_hdr.msg_control = &controls_[i];
   }
 }
 
 std::size_t UdpBatch::Receive(int socket) {
-  for (mmsghdr& header : headers_) header.msg_hdr.msg_namelen = sizeof(sockaddr_storage);
+  for (mmsghdr& header : headers_) {
+    header.msg_hdr.msg_namelen = sizeof(sockaddr_storage);
+    header.msg_hdr.msg_controllen = sizeof(Control);
+  }
   int received = 0;
   do {
     received = recvmmsg(socket, headers_.data(), kSize, MSG_DONTWAIT, nullptr);
   } while (received < 0 && errno == EINTR);
   // Any other error is of an earlier send (ICMP) and has been taken by asking: the socket lives.
-  return received < 0 ? 0 : static_cast<std::size_t>(received);
+  if (received <= 0) return 0;
+  ReadDropped(&headers_[static_cast<std::size_t>(received) - 1].msg_hdr);
+  return static_cast<std::size_t>(received);
+}
+
+void UdpBatch::CountDropped(int socket) {
+  const int on = 1;  // where it cannot be had, nothing is counted
+  setsockopt(socket, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof(on));
+}
+
+// The count comes with every datagram once there is one, and never goes back but by wrapping.
+void UdpBatch::ReadDropped(msghdr* header) {
+  for (cmsghdr* item = CMSG_FIRSTHDR(header); item != nullptr; item = CMSG_NXTHDR(header, item)) {
+    if (item->cmsg_level != SOL_SOCKET || item->cmsg_type != SO_RXQ_OVFL) continue;
+    std::uint32_t ever = 0;
+    std::memcpy(&ever, CMSG_DATA(item), sizeof(ever));
+    dropped_ += ever - std::exchange(dropped_ever_, ever);
+  }
 }
 
 std::span<const std::uint8_t> UdpBatch::bytes(std::size_t i) const {

@@ -74,6 +74,7 @@ Status UdpServer::Open(const udp::endpoint& endpoint) {
                       std::to_string(endpoint.port()) + ": " + error.message(),
                   "", "end what uses the port, or choose another with --udp");
   }
+  UdpBatch::CountDropped(socket_.native_handle());
   // As much as the system allows; less only means earlier drops.
   socket_.set_option(asio::socket_base::receive_buffer_size(kReceiveBufferBytes), error);
   return {};
@@ -100,6 +101,7 @@ asio::awaitable<void> UdpServer::Read() {
       const std::size_t count = batch_.Receive(socket_.native_handle());
       const Time now = ReadClock();
       metrics_->Add(Counter::kDatagramsReceived, count);
+      metrics_->Add(Counter::kDatagramsOverrun, batch_.TakeDropped());
       for (std::size_t i = 0; i < count; ++i) OnDatagram(batch_.bytes(i), batch_.sender(i), now);
       if (count < UdpBatch::kSize) break;
     }

@@ -8,6 +8,8 @@ namespace furrow::server {
 
 bool Outbox::PushReply(std::span<const std::uint8_t> bytes) {
   if (replies_.size() >= max_replies_) return false;
+  if (!replies_.empty() && reply_bytes_ + bytes.size() > max_reply_bytes_) return false;
+  reply_bytes_ += bytes.size();
   replies_.emplace_back(bytes.begin(), bytes.end());
   return true;
 }
@@ -36,6 +38,7 @@ bool Outbox::Pop(std::vector<std::uint8_t>* out) {
   if (!replies_.empty()) {
     out->swap(replies_.front());
     replies_.pop_front();
+    reply_bytes_ -= out->size();
     return true;
   }
   if (frames_.empty()) return false;

@@ -11,15 +11,17 @@ namespace furrow::server {
 
 // What waits for one peer's socket. Bounded: a slow peer loses old frames and slows nobody.
 //
-// - A reply is never dropped; when `max_replies` wait, the peer does not read and is to be closed.
+// - A reply is never dropped; when `max_replies` wait, or `max_reply_bytes` of them, the peer does
+//   not read and is to be closed.
 // - A frame has a key (its subscription), of which at most `keep` wait: beyond it the oldest of the
 //   key goes and the newest wins. 1 for pictures; a few for weights, so that poses that came in one
 //   burst are not lost to a peer that keeps up.
 // - Frames of different keys together are at most `max_frames`; then the longest waiting one goes.
 class Outbox {
  public:
-  Outbox(std::size_t max_replies, std::size_t max_frames)
-      : max_replies_(max_replies), max_frames_(max_frames) {}
+  Outbox(std::size_t max_replies, std::size_t max_frames,
+         std::size_t max_reply_bytes = std::size_t{4} << 20)
+      : max_replies_(max_replies), max_frames_(max_frames), max_reply_bytes_(max_reply_bytes) {}
 
   // False: full, close the peer.
   [[nodiscard]] bool PushReply(std::span<const std::uint8_t> bytes);
@@ -43,6 +45,8 @@ class Outbox {
   };
   std::size_t max_replies_;
   std::size_t max_frames_;
+  std::size_t max_reply_bytes_;
+  std::size_t reply_bytes_ = 0;  // that wait
   std::deque<std::vector<std::uint8_t>> replies_;
   std::deque<Frame> frames_;
 };

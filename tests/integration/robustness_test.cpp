@@ -3,10 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 
 #include "daemon_fixture.h"
 
@@ -22,6 +24,8 @@ TEST(Robustness, GarbageDatagramsLeaveARealStreamUnharmed) {
   const protocol::SkeletonOffer offer = OfferOf(clip, "ann");
   UdpClient sender(daemon.ready().udp);
   UdpClient hostile(daemon.ready().udp);
+  UdpClient pacer(daemon.ready().udp);
+  ASSERT_TRUE(pacer.Prove());
   TcpClient viewer(daemon.ready().tcp);
   Offer(sender, offer);
   ASSERT_TRUE(Watch(viewer, {.subject = "ann"}).has_value());
@@ -38,6 +42,11 @@ TEST(Robustness, GarbageDatagramsLeaveARealStreamUnharmed) {
         bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1 + random() % 255);
       }
       hostile.SendRaw(bytes);
+      // A slow machine must not fill the socket's buffer: that is not what is tested here.
+      if (i % 50 == 0) {
+        pacer.Send(protocol::Ping{i});
+        ASSERT_TRUE(pacer.Await<protocol::Pong>().has_value());
+      }
     }
     sender.Send(PoseOf(clip, frame, offer), 1, static_cast<std::uint32_t>(frame), frame * 16'667);
     protocol::Header header;
@@ -135,6 +144,45 @@ TEST(Robustness, ASlowSubscriberLosesOldFramesAndSlowsNobody) {
     ASSERT_GE(static_cast<std::int64_t>(header.sequence), newest);
     newest = header.sequence;
   }
+}
+
+TEST(Robustness, AConnectionThatNeitherSendsNorWatchesIsClosed) {
+  server::Config config = WeightsConfig("arkit.json");
+  config.limits.idle_seconds = 0.01;
+  DaemonThread daemon(config);
+  ASSERT_TRUE(daemon.serves());
+  TcpClient silent(daemon.ready().tcp);
+  EXPECT_TRUE(silent.AwaitClose());
+  EXPECT_EQ(daemon.Count(Counter::kConnectionsIdle), 1u);
+}
+
+TEST(Robustness, WhoAsksAndNeverReadsTheAnswersIsClosed) {
+  server::Config config = WeightsConfig("arkit.json");
+  config.limits.packets_per_second = config.limits.packet_burst = 1e9;
+  config.limits.idle_seconds = 1e6;  // else it might be taken for idle on a slow machine
+  DaemonThread daemon(config);
+  ASSERT_TRUE(daemon.serves());
+  TcpClient asker(daemon.ready().tcp);
+  const int small = 4096;
+  ::setsockopt(asker.socket(), SOL_SOCKET, SO_RCVBUF, &small, sizeof(small));
+  std::vector<std::uint8_t> message;
+  protocol::Encoder().Encode({1, 0, 0, 0}, protocol::Ping{77}, message);
+  const auto prefix = protocol::FramePrefix(message.size());
+  std::vector<std::uint8_t> many;
+  for (int i = 0; i < 1000; ++i) {
+    many.insert(many.end(), prefix.begin(), prefix.end());
+    many.insert(many.end(), message.begin(), message.end());
+  }
+  while (daemon.Count(Counter::kConnectionsOverrun) == 0) asker.SendRaw(many);
+  TcpClient other(daemon.ready().tcp);
+  other.Send(protocol::Ping{9});
+  EXPECT_EQ(other.Await<protocol::Pong>()->time_us, 9);
+}
+
+TEST(Robustness, WhatIsThrownIsAFailureAndNotACrash) {
+  server::RunOptions options;
+  options.on_ready = [](const server::Ready&) { throw std::runtime_error("no thread to be had"); };
+  EXPECT_EQ(server::Run(WeightsConfig("arkit.json"), options), server::ExitCode::kFailed);
 }
 
 TEST(Robustness, ConnectionsBeyondTheLimitAreClosed) {

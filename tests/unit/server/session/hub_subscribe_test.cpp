@@ -318,6 +318,22 @@ TEST_F(HubSubscribe, MoreNamesThanASubscriptionHoldsAreAnErrorAndNotCut) {
   ExpectError(udp, ErrorCode::kLimit);
 }
 
+TEST_F(HubSubscribe, WhoNeitherSendsNorWatchesIsIdle) {
+  Limits limits;
+  limits.idle_seconds = 30;
+  Make(limits);
+  Connect(&sender);
+  Connect(&viewer);
+  Watch(viewer, {.subject = "ann", .wait = true});
+  Advance(29);
+  EXPECT_FALSE(hub->IsIdle(sender.id, now));
+  Advance(2);
+  EXPECT_TRUE(hub->IsIdle(sender.id, now));
+  EXPECT_FALSE(hub->IsIdle(viewer.id, now)) << "it waits for its subject";
+  Send(sender, protocol::Ping{});
+  EXPECT_FALSE(hub->IsIdle(sender.id, now));
+}
+
 TEST_F(HubSubscribe, NothingIsDrawnWhileNobodyWatches) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});

@@ -28,6 +28,17 @@ TEST(Outbox, RepliesGoFirstAndInOrder) {
   EXPECT_TRUE(outbox.empty());
 }
 
+TEST(Outbox, RepliesAreBoundedByTheirBytesToo) {
+  Outbox outbox(100, 4, 1000);
+  EXPECT_TRUE(outbox.PushReply(Bytes(2000))) << "one alone may always wait";
+  EXPECT_FALSE(outbox.PushReply(Bytes(1)));
+  Bytes bytes;
+  ASSERT_TRUE(outbox.Pop(&bytes));
+  EXPECT_TRUE(outbox.PushReply(Bytes(600)));
+  EXPECT_TRUE(outbox.PushReply(Bytes(400)));
+  EXPECT_FALSE(outbox.PushReply(Bytes(1)));
+}
+
 TEST(Outbox, TheNewestFrameOfAKeyWinsAndKeepsItsPlace) {
   Outbox outbox(4, 4);
   EXPECT_EQ(outbox.PushFrame(1, Bytes{10}), 0);
