@@ -13,7 +13,7 @@
 #include <tiny_gltf.h>
 
 #include "character/gltf_accessor.h"
-#include "character/gltf_tangent.h"
+#include "character/paint/tangents.h"
 
 namespace furrow::character {
 namespace {
@@ -60,8 +60,9 @@ class PrimitiveReader {
       }
     }
     if (Status s = ReadIndices(); !s.ok()) return s;
-    if (!normals_usable) ComputeNormals(mesh_);
-    if (!tangents_usable || !normals_usable) ComputeTangents(mesh_);
+    if (!normals_usable) paint::ComputeNormals(mesh_->vertices, mesh_->indices);
+    if (!tangents_usable || !normals_usable)
+      paint::ComputeTangents(mesh_->vertices, mesh_->indices);
     return {};
   }
 

@@ -89,6 +89,7 @@ Camera Frame(const glm::vec3& target, float height, float depth, float azimuth, 
   Camera camera;
   camera.target = target;
   camera.fov_y_degrees = kFovY;
+  camera.fit_shorter_side = true;
   camera.follow_joint = follow_joint;
   const float distance = 0.5f * height / std::tan(glm::radians(0.5f * kFovY)) + depth;
   const float angle = glm::radians(azimuth);

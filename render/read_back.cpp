@@ -4,7 +4,7 @@
 namespace furrow::render {
 namespace {
 
-constexpr GLuint64 kLongestWait = 10'000'000'000;  // nanoseconds; a frame that takes longer is lost
+constexpr GLuint64 kLongestWait = 60'000'000'000;  // nanoseconds: 4096 x 4096 on a busy CPU
 
 // RGBA to RGB.
 std::vector<std::uint8_t> DropAlpha(const std::uint8_t* rgba, std::size_t num_pixels) {

@@ -30,6 +30,9 @@ struct Camera {
   glm::vec3 position{0.0f, 1.6f, 0.8f};
   glm::vec3 target{0.0f, 1.6f, 0.0f};
   float fov_y_degrees = 24.0f;  // [1, 150]
+  // The angle counts across where the picture is higher than wide, so that a portrait format cuts
+  // no ears off. Presets do.
+  bool fit_shorter_side = false;
   // Carries the camera (and the lights, which stand around it) with the subject: to where this
   // joint of the character went from its rest pose, turned about +Y as its root turned. -1: stands
   // still.

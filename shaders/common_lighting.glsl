@@ -17,7 +17,7 @@ vec3 ambientRadiance(vec3 normal) {
 // Blinn-Phong, normalised so that a wider lobe is dimmer: (n + 8) / 8 over pi, pi being in the
 // lights' units; with Schlick's Fresnel, scaled so that it is 1 face on.
 float specularLobe(Surface surface, vec3 toLight, vec3 toCamera) {
-  vec3 h = normalize(toLight + toCamera);
+  vec3 h = normalizeOrZero(toLight + toCamera);
   float fresnel = 1.0 + 24.0 * pow5(1.0 - saturate(dot(h, toCamera)));
   float lobe = pow(max(dot(surface.normal, h), 1e-4), surface.exponent);
   return surface.specular * fresnel * (surface.exponent + 8.0) * 0.125 * lobe;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common_math.glsl"
+
 // Tangent-space normals as partial derivatives. A derivative is n.xy / n.z of the unit normal n;
 // for a height field h(x, y) it is -grad h. x runs along the tangent (u), y along the bitangent,
 // which points up in the picture (-v), as glTF's normal maps have it: green above the middle leans
@@ -9,10 +11,10 @@ vec3 normalFromDerivative(vec2 derivative) {
   return normalize(vec3(derivative, 1.0));
 }
 
-// Unit model-space normal. `normal` and `tangent` need not be unit; tangent.w is glTF's handedness.
+// Unit model-space normal; zero where skinning left none. `normal` and `tangent` need not be unit; tangent.w is glTF's handedness.
 vec3 tangentToModel(vec3 n, vec3 normal, vec4 tangent) {
-  vec3 unitNormal = normalize(normal);
-  vec3 t = normalize(tangent.xyz - unitNormal * dot(unitNormal, tangent.xyz));
+  vec3 unitNormal = normalizeOrZero(normal);
+  vec3 t = normalizeOrZero(tangent.xyz - unitNormal * dot(unitNormal, tangent.xyz));
   vec3 b = cross(unitNormal, t) * tangent.w;
-  return normalize(t * n.x + b * n.y + unitNormal * n.z);
+  return normalizeOrZero(t * n.x + b * n.y + unitNormal * n.z);
 }

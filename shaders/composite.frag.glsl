@@ -2,8 +2,8 @@
 #include "common_tonemap.glsl"
 
 // SAMPLES   of the scene's target, at least 1
-// TONEMAP   1: tone map and sRGB curve, each sample on its own, so that edges against bright light
-//           stay smooth; 0: the values are data (normals, masks) and stay as they are
+// TONEMAP   1: exposure, tone map and sRGB curve, after the samples were averaged in linear light;
+//           0: the values are data (normals, masks) and stay as they are
 
 layout(binding = 0) uniform sampler2DMS u_scene;   // linear
 layout(location = 0) uniform float u_exposure;     // > 0

@@ -8,11 +8,14 @@
 
 namespace furrow::character::paint {
 
-// Tangents from UVs, per vertex, glTF's way: along increasing u, with w so that the bitangent
-// cross(normal, tangent) * w points up the picture (decreasing v).
-//
-// `vertices` with unit normals and UVs, `indices` three a triangle. Vertices without UV area around
-// them get some unit tangent across their normal.
+// Smooth normals: of the triangles around each vertex, by area. Vertices that no triangle with
+// extent touches point along +Z. `indices`: three a triangle, all in range.
+void ComputeNormals(std::span<Vertex> vertices, std::span<const std::uint32_t> indices);
+
+// Tangents along increasing u, of the triangles around each vertex by their UV gradients, made
+// orthogonal to the unit normals that must be there; w so that cross(normal, tangent) * w points up
+// the picture (decreasing v), as glTF's green-up normal maps need. Where UVs have no extent: any
+// unit vector across the normal.
 void ComputeTangents(std::span<Vertex> vertices, std::span<const std::uint32_t> indices);
 
 }  // namespace furrow::character::paint

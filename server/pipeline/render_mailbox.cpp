@@ -22,6 +22,7 @@ bool PictureSpec::operator==(const PictureSpec& other) const {
   return view == other.view && width == other.width && height == other.height &&
          camera.position == other.camera.position && camera.target == other.camera.target &&
          camera.fov_y_degrees == other.camera.fov_y_degrees &&
+         camera.fit_shorter_side == other.camera.fit_shorter_side &&
          camera.follow_joint == other.camera.follow_joint;
 }
 

@@ -111,6 +111,28 @@ TEST(ComputeCamera, FollowsASubjectThatTravelsAndTurns) {
   EXPECT_EQ(ComputeCamera(fixed, head.skeleton, model, 1.0f).position, still.position);
 }
 
+// Presets hold the same square of the subject in the middle of a picture of any shape; a camera
+// given by hand keeps the vertical angle that it states.
+TEST(ComputeCamera, PresetsSeeAsMuchAcrossInAHighPictureAsInASquareOne) {
+  const character::Character head = test::MakeHead();
+  Camera camera = Preset(head, "face");
+  const auto project = [&](float aspect) {
+    const CameraFrame frame =
+        ComputeCamera(camera, head.skeleton, head.skeleton.rest_model(), aspect);
+    const glm::vec4 clip =
+        frame.view_projection * glm::vec4(camera.target + glm::vec3(0.05f, 0.05f, 0.0f), 1.0f);
+    return glm::vec2(clip) / clip.w;
+  };
+  const glm::vec2 square = project(1.0f);
+  EXPECT_GT(square.x, 0.1f);
+  EXPECT_NEAR(project(0.5f).x, square.x, 1e-5f);
+  EXPECT_NEAR(project(0.5f).y, square.y * 0.5f, 1e-5f);
+  EXPECT_NEAR(project(2.0f).x, square.x * 0.5f, 1e-5f);
+  EXPECT_NEAR(project(2.0f).y, square.y, 1e-5f);
+  camera.fit_shorter_side = false;
+  EXPECT_NEAR(project(0.5f).y, square.y, 1e-5f);
+}
+
 TEST(ComputeCamera, LooksStraightDownWithoutDegenerating) {
   const character::Character head = test::MakeHead();
   Camera camera;
