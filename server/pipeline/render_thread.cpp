@@ -89,12 +89,9 @@ void RenderThread::Run(std::promise<Status> started) {
 }
 
 void RenderThread::Draw(RenderJob job) {
-  if (renderer_ == nullptr) {
-    if (!CreateRenderer().ok()) {
-      metrics_->Add(Counter::kPicturesFailed);
-      return;
-    }
-    spdlog::info("pictures are drawn again, on {}", renderer_->description());
+  if (renderer_ == nullptr && !Revive()) {
+    metrics_->Add(Counter::kPicturesFailed);
+    return;
   }
   const Snapshot& snapshot = *job.snapshot;
   const wrinkle::LocalToModelJob to_model{skeleton_, pose_, model_};
@@ -130,6 +127,7 @@ void RenderThread::Collect(bool wait) {
     return;
   }
   if (image->width == 0) return;
+  next_skip_ = 0;
   metrics_->Add(Counter::kPicturesRendered);
   const RenderJob job = std::move(in_flight_.front());
   in_flight_.pop_front();
@@ -164,14 +162,31 @@ void RenderThread::Finish(const render::Image& image, const RenderJob& job) {
 }
 
 void RenderThread::Rebuild(const Status& reason) {
-  spdlog::error("the renderer failed and is rebuilt: {}", reason.ToString());
+  spdlog::error("the renderer failed and is made anew: {}", reason.ToString());
   metrics_->Add(Counter::kRendererRestarts);
   metrics_->Add(Counter::kPicturesFailed, in_flight_.size());
   in_flight_.clear();
   renderer_.reset();
-  if (Status status = CreateRenderer(); !status.ok()) {
-    spdlog::error("no renderer for now: {}", status.ToString());
+  BackOff();
+}
+
+bool RenderThread::Revive() {
+  if (jobs_to_skip_ > 0) {
+    --jobs_to_skip_;
+    return false;
   }
+  if (Status status = CreateRenderer(); !status.ok()) {
+    spdlog::error("no pictures for now: {}", status.ToString());
+    BackOff();
+    return false;
+  }
+  spdlog::info("pictures are drawn again, on {}", renderer_->description());
+  return true;
+}
+
+void RenderThread::BackOff() {
+  jobs_to_skip_ = next_skip_;
+  next_skip_ = std::min(2 * next_skip_ + 1, kMaxJobsSkipped);
 }
 
 }  // namespace furrow::server

@@ -24,10 +24,13 @@ namespace furrow::server {
 // The thread that owns the EGL context: takes jobs from the mailbox, draws with two read-backs in
 // flight, encodes once an encoding, hands pictures to `deliver`.
 //
-// It sleeps while nobody watches. A context that is lost is rebuilt; while that fails, jobs are
-// dropped and counted.
+// It sleeps while nobody watches. A context that is lost is rebuilt for the next job; while that
+// fails, jobs are dropped and counted, and twice as many each time before it is tried again (to
+// kMaxJobsSkipped), so that a GPU that is gone costs no core.
 class RenderThread : public PictureSource {
  public:
+  static constexpr int kMaxJobsSkipped = 255;
+
   // Called on the render thread; must not block.
   using Deliver = std::function<void(FinishedPicture)>;
 
@@ -52,6 +55,8 @@ class RenderThread : public PictureSource {
                Deliver deliver);
 
   Status CreateRenderer();
+  bool Revive();
+  void BackOff();
   void Run(std::promise<Status> started);
   void Draw(RenderJob job);
   void Collect(bool wait);
@@ -67,8 +72,10 @@ class RenderThread : public PictureSource {
   std::string description_;
 
   // The render thread's own.
-  std::unique_ptr<render::Renderer> renderer_;
-  std::deque<RenderJob> in_flight_;  // as the renderer's read-backs, oldest first
+  std::unique_ptr<render::Renderer> renderer_;  // null: lost
+  int jobs_to_skip_ = 0;                        // before it is made again
+  int next_skip_ = 0;                           // grows until a picture comes out
+  std::deque<RenderJob> in_flight_;             // as the renderer's read-backs, oldest first
   std::vector<wrinkle::Transform> pose_;
   std::vector<glm::mat4> model_;
 

@@ -140,16 +140,21 @@ TEST_F(RenderThreadTest, WhatWasInFlightIsCountedWhenTheContextGoes) {
   EXPECT_EQ(Count(Counter::kPicturesFailed), 2u);
 }
 
-TEST_F(RenderThreadTest, WhileItCannotBeRebuiltJobsAreDroppedAndCounted) {
+TEST_F(RenderThreadTest, WhileItCannotBeRebuiltJobsAreDroppedCountedAndTriedLessOften) {
   script.create = {Status(), kLost, kLost};
   script.submit = {kLost};
   Start();
-  Submit(1);  // lost; the rebuild fails
-  Submit(2);  // and fails again
-  Submit(3);
-  EXPECT_EQ(pictures.Take().sequence, 3u);
+  // 1 is lost; for 2 it cannot be made, 3 is left out; not for 4 either, three are left out.
+  for (std::uint32_t number = 1; number <= 8; ++number) Submit(number);
+  EXPECT_EQ(pictures.Take().sequence, 8u);
+  EXPECT_EQ(script.num_created, 2);
   EXPECT_EQ(Count(Counter::kRendererRestarts), 1u);
-  EXPECT_EQ(Count(Counter::kPicturesFailed), 2u);
+  EXPECT_EQ(Count(Counter::kPicturesFailed), 7u);
+  // A picture came out: the next loss is made good at once again.
+  script.submit = {kLost};
+  Submit(9);
+  Submit(10);
+  EXPECT_EQ(pictures.Take().sequence, 10u);
 }
 
 TEST_F(RenderThreadTest, AJobThatCannotBeDrawnCostsOnlyItself) {
