@@ -164,4 +164,23 @@ class HubTest : public testing::Test {
   std::uint64_t last_token = 900;
 };
 
+// And two peers on it.
+class HubPeersTest : public HubTest {
+ protected:
+  void SetUp() override {
+    HubTest::SetUp();
+    Connect(&sender);
+    Connect(&viewer);
+  }
+  static void ExpectError(FakePeer& peer, protocol::ErrorCode code) {
+    const auto error = peer.Take<protocol::ErrorMessage>();
+    ASSERT_TRUE(error.has_value());
+    EXPECT_EQ(error->message.code, code) << error->message.message;
+    EXPECT_FALSE(error->message.message.empty());
+  }
+
+  FakePeer sender;
+  FakePeer viewer;
+};
+
 }  // namespace furrow::server

@@ -16,16 +16,7 @@ using testing::ElementsAre;
 using testing::FloatEq;
 using testing::HasSubstr;
 
-class HubPublish : public HubTest {
- protected:
-  void SetUp() override {
-    HubTest::SetUp();
-    Connect(&sender);
-    Connect(&viewer);
-  }
-  FakePeer sender;
-  FakePeer viewer;
-};
+class HubPublish : public HubPeersTest {};
 
 TEST_F(HubPublish, APoseBecomesWeightsWithItsSequenceAndCaptureTime) {
   Publish(sender, "ann");

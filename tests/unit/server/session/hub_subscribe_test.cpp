@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Subscribing: patterns, rates, waiting, proof of address, pictures, limits.
+// Subscribing: patterns, rates, waiting, proof of address, limits.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,22 +13,7 @@ using testing::ElementsAre;
 using testing::FloatEq;
 using testing::HasSubstr;
 
-class HubSubscribe : public HubTest {
- protected:
-  void SetUp() override {
-    HubTest::SetUp();
-    Connect(&sender);
-    Connect(&viewer);
-  }
-  void ExpectError(FakePeer& peer, ErrorCode code) {
-    const auto error = peer.Take<protocol::ErrorMessage>();
-    ASSERT_TRUE(error.has_value());
-    EXPECT_EQ(error->message.code, code) << error->message.message;
-    EXPECT_FALSE(error->message.message.empty());
-  }
-  FakePeer sender;
-  FakePeer viewer;
-};
+class HubSubscribe : public HubPeersTest {};
 
 TEST_F(HubSubscribe, APatternPicksNamesInTheRigsOrder) {
   Publish(sender, "ann");
@@ -231,60 +216,6 @@ TEST_F(HubSubscribe, AUdpSubscriptionLapsesWhenItsOwnerIsSilent) {
   EXPECT_EQ(hub->num_subscriptions(), 0u);
 }
 
-TEST_F(HubSubscribe, EqualPicturesAreDrawnOnceAndFoundByTheirTickets) {
-  Publish(sender, "ann");
-  FakePeer second;
-  Connect(&second);
-  protocol::SubscribePictures request{.subject = "ann", .width = 320, .height = 200};
-  Send(viewer, request, 0, 1);
-  Send(second, request, 0, 1);
-  request.view = "normal";
-  Send(second, request, 0, 2);
-  ASSERT_EQ(viewer.Take<protocol::SubscribeReply>()->message.names_hash, 0u);
-  second.Take<protocol::SubscribeReply>();
-  const std::uint16_t normal = second.Take<protocol::SubscribeReply>()->header.stream;
-  Send(sender, Pose(1), 1, 42, 777);
-  ASSERT_EQ(pictures.jobs.size(), 2u);
-  EXPECT_EQ(pictures.jobs[0].tickets.size() + pictures.jobs[1].tickets.size(), 3u);
-  const RenderJob& job = pictures.jobs[0].tickets.size() == 1 ? pictures.jobs[0] : pictures.jobs[1];
-  EXPECT_EQ(job.spec.view, render::View::kNormal);
-  EXPECT_EQ(job.spec.width, 320);
-  EXPECT_EQ(job.snapshot->sequence, 42u);
-
-  FinishedPicture picture;
-  picture.sequence = 42;
-  picture.capture_time_us = 777;
-  picture.width = 320;
-  picture.height = 200;
-  picture.bytes = {1, 2, 3};
-  picture.tickets = job.tickets;
-  hub->OnPicture(picture);
-  EXPECT_TRUE(viewer.inbox.empty());
-  const auto image = second.Take<protocol::ImageFrame>();
-  ASSERT_TRUE(image.has_value());
-  EXPECT_EQ(image->header.stream, normal);
-  EXPECT_EQ(image->header.capture_time_us, 777);
-  EXPECT_THAT(image->message.bytes, ElementsAre(1, 2, 3));
-  hub->RemovePeer(second.id);
-  hub->OnPicture(picture);  // too late: nobody is there, nothing happens
-}
-
-TEST_F(HubSubscribe, APictureLargerThanTheWireCarriesIsCountedAndNotSent) {
-  Publish(sender, "ann");
-  Send(viewer, protocol::SubscribePictures{.subject = "ann"}, 0, 1);
-  viewer.Take<protocol::SubscribeReply>();
-  Send(sender, Pose(1), 1, 0);
-  ASSERT_EQ(pictures.jobs.size(), 1u);
-  FinishedPicture picture;
-  picture.width = picture.height = 4096;
-  picture.bytes.resize(protocol::kMaxReplyBytes);
-  picture.tickets = pictures.jobs[0].tickets;
-  hub->OnPicture(picture);
-  EXPECT_TRUE(viewer.inbox.empty());
-  EXPECT_EQ(Count(Counter::kPicturesFailed), 1u);
-  EXPECT_EQ(Count(Counter::kPicturesSent), 0u);
-}
-
 TEST_F(HubSubscribe, MoreNamesThanASubscriptionHoldsAreAnErrorAndNotCut) {
   // 256 regions of nine maps: 2,304 weights, and eight of the maps are just as many as fit.
   wrinkle::Rig rig = MakeRig(false);
@@ -334,42 +265,6 @@ TEST_F(HubSubscribe, WhoNeitherSendsNorWatchesIsIdle) {
   EXPECT_FALSE(hub->IsIdle(sender.id, now));
 }
 
-TEST_F(HubSubscribe, NothingIsDrawnWhileNobodyWatches) {
-  Publish(sender, "ann");
-  Watch(viewer, {.subject = "ann"});
-  Send(sender, Pose(1), 1, 0);
-  EXPECT_TRUE(pictures.jobs.empty());
-}
-
-TEST_F(HubSubscribe, PicturesThatCannotBeHadAreErrors) {
-  Publish(sender, "ann");
-  Send(viewer, protocol::SubscribePictures{.view = "xray"});
-  ExpectError(viewer, ErrorCode::kBadPicture);
-  Send(viewer, protocol::SubscribePictures{.camera_preset = "moon"});
-  ExpectError(viewer, ErrorCode::kBadPicture);
-  protocol::SubscribePictures fisheye;
-  fisheye.has_camera = true;
-  fisheye.camera.vertical_fov_degrees = 165.0f;  // the wire carries it, the renderer does not
-  Send(viewer, fisheye);
-  ExpectError(viewer, ErrorCode::kBadPicture);
-  FakePeer udp;
-  Connect(&udp, Transport::kUdp);
-  hub->OnBytesReceived(udp.id, 1000, now);
-  Send(udp, protocol::SubscribePictures{});
-  ExpectError(udp, ErrorCode::kNeedsTcp);
-}
-
-TEST_F(HubSubscribe, WithoutARendererPicturesAreRefused) {
-  Hub::Parts parts;
-  parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(false));
-  parts.metrics = &metrics;
-  parts.make_token = [] { return 1; };
-  hub = std::make_unique<Hub>(std::move(parts));
-  Connect(&viewer);
-  Send(viewer, protocol::SubscribePictures{.wait = true});
-  ExpectError(viewer, ErrorCode::kNotRendering);
-}
-
 TEST_F(HubSubscribe, GarbageIsAnsweredOnTcpAndIgnoredOnUdp) {
   FakePeer udp;
   Connect(&udp, Transport::kUdp);
@@ -398,55 +293,6 @@ TEST_F(HubSubscribe, DrainingTellsEverybodyAndTakesNobodyNew) {
   EXPECT_EQ(viewer.Take<protocol::Goodbye>()->message.reason, protocol::GoodbyeReason::kDraining);
   Send(viewer, protocol::SubscribeWeights{.wait = true});
   ExpectError(viewer, ErrorCode::kDraining);
-}
-
-TEST_F(HubSubscribe, AForeignSubjectThatIsRefusedIsCountedAndTriedAgain) {
-  Limits limits;
-  limits.max_subjects = 1;
-  limits.idle_seconds = 5;
-  Make(limits);
-  Connect(&sender);
-  Publish(sender, "ben");
-  FakePeer tracker;
-  Connect(&tracker, Transport::kMocap);
-  protocol::mocap::NeutralFrame frame;
-  frame.subject = "phone";
-  frame.layout = 1;
-  frame.blend_shapes = {{"nose", 0.5f}};
-  for (; frame.sequence < 10; ++frame.sequence) hub->OnMocapFrame(tracker.id, frame, now);
-  EXPECT_EQ(Count(Counter::kMocapRefused), 10u);
-  EXPECT_EQ(Count(Counter::kSkeletonsRejected), 1u);
-  Send(sender, protocol::Goodbye{}, 1);
-  hub->Tick(now);
-  ASSERT_EQ(hub->num_subjects(), 0u);
-  Advance(1);
-  hub->OnMocapFrame(tracker.id, frame, now);
-  EXPECT_EQ(hub->num_subjects(), 1u) << "there is room now";
-  EXPECT_EQ(Count(Counter::kMocapRefused), 10u);
-}
-
-TEST_F(HubSubscribe, AForeignFrameIsASubjectLikeAnyOther) {
-  FakePeer tracker;
-  Connect(&tracker, Transport::kMocap);
-  Watch(viewer, {.subject = "phone", .wait = true});
-  protocol::mocap::NeutralFrame frame;
-  frame.subject = "phone";
-  frame.layout = 1;
-  frame.blend_shapes = {{"nose", 0.5f}, {"other", 1.0f}};
-  hub->OnMocapFrame(tracker.id, frame, now);
-  viewer.Take<protocol::SubscribeReply>();
-  EXPECT_THAT(viewer.Take<protocol::WeightFrame>()->message.values,
-              ElementsAre(FloatEq(0.0f), FloatEq(0.5f)));
-  frame.sequence = 1;
-  frame.layout = 2;  // another shape appears
-  frame.blend_shapes.push_back({"brow", 1.0f});
-  hub->OnMocapFrame(tracker.id, frame, now);
-  EXPECT_THAT(viewer.Take<protocol::WeightFrame>()->message.values,
-              ElementsAre(FloatEq(1.0f), FloatEq(0.5f)));
-  frame.sequence = 2;
-  frame.tracked = false;
-  hub->OnMocapFrame(tracker.id, frame, now);
-  EXPECT_TRUE(viewer.inbox.empty()) << "lost by its tracker: nothing new";
 }
 
 }  // namespace
