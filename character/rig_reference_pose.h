@@ -15,10 +15,10 @@ namespace furrow::character {
 
 // A frame of a recording as departures from rest, in model axes (see wrinkle::JointDelta).
 //
-// - `rest`: the frame that counts as rest, on the same
-//   skeleton; null: the skeleton's own rest pose.
+// - `rest`: the frame that counts as rest, on the same skeleton; null: its own rest pose.
 // - Joints that do not move (by less than 1e-5 radians and 1e-6 of the skeleton's size) are left
-// out. Errors: kInvalidArgument (poses that do not fit the skeleton), kNonFinite (names the joint).
+//   out.
+// - Errors: kInvalidArgument (poses that do not fit the skeleton), kNonFinite (names the joint).
 [[nodiscard]] Result<wrinkle::ReferencePose> ReferencePoseFromFrame(
     std::string name, const wrinkle::PoseFrame& frame, const wrinkle::PoseFrame* rest = nullptr);
 

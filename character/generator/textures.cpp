@@ -16,6 +16,7 @@
 #include "character/generator/head_mesh.h"
 #include "character/generator/head_shape.h"
 #include "character/generator/mesh_tools.h"
+#include "character/paint/canvas.h"
 #include "character/paint/strokes.h"
 #include "character/paint/uv_raster.h"
 
@@ -31,19 +32,11 @@ constexpr int kDilation = 6;  // texels around islands
 
 Picture Paint(const char* name, const std::vector<Texel>& texels, int width, int height,
               int channels, const std::function<vec4(const Texel&)>& colour) {
-  Picture picture;
-  picture.name = name;
-  picture.width = width;
-  picture.height = height;
-  picture.channels = channels;
-  picture.pixels.resize(static_cast<std::size_t>(width) * height * channels);
+  Picture picture = paint::BlankPicture(name, width, height, channels);
   for (const Texel& texel : texels) {
     const vec4 value = colour(texel);
-    const std::size_t at = (static_cast<std::size_t>(texel.y) * width + texel.x) * channels;
-    for (int c = 0; c < channels; ++c) {
-      picture.pixels[at + c] =
-          static_cast<std::uint8_t>(std::lround(std::clamp(value[c], 0.0f, 1.0f) * 255.0f));
-    }
+    std::uint8_t* out = paint::TexelAt(&picture, texel.x, texel.y);
+    for (int c = 0; c < channels; ++c) out[c] = paint::ToByte(value[c]);
   }
   paint::Dilate(&picture, texels, kDilation);
   return picture;
@@ -211,11 +204,7 @@ Picture PaintSkinNormals(const Mesh& skin, int size) {
 }
 
 Picture PaintEyes(int size) {
-  Picture picture;
-  picture.name = "eye_colour";
-  picture.width = 2 * size;
-  picture.height = size;
-  picture.channels = 3;
+  Picture picture = paint::BlankPicture("eye_colour", 2 * size, size, 3);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < 2 * size; ++x) {
       const vec2 uv((static_cast<float>(x % size) + 0.5f) / static_cast<float>(size) - 0.5f,
@@ -228,7 +217,7 @@ Picture PaintEyes(int size) {
       const float vein =
           SmoothStep(0.72f, 0.95f, 1.0f - std::abs(FractalNoise(vec3(uv * 26.0f, 3.0f)))) *
           SmoothStep(38.0f, 62.0f, degrees);
-      vec3 colour = glm::mix(vec3(0.86f, 0.83f, 0.80f), vec3(0.78f, 0.60f, 0.56f),
+      vec3 colour = glm::mix(vec3(0.80f, 0.77f, 0.74f), vec3(0.76f, 0.60f, 0.56f),
                              SmoothStep(45, 75, degrees));
       colour = glm::mix(colour, vec3(0.72f, 0.32f, 0.28f), 0.35f * vein);
       vec3 iris = glm::mix(vec3(0.36f, 0.24f, 0.12f), vec3(0.20f, 0.27f, 0.24f),
@@ -237,10 +226,8 @@ Picture PaintEyes(int size) {
       iris = glm::mix(iris, vec3(0.06f, 0.06f, 0.06f), SmoothStep(23.0f, 29.0f, degrees));
       colour = glm::mix(iris, colour, SmoothStep(27.0f, 30.5f, degrees));
       colour = glm::mix(vec3(0.012f), colour, SmoothStep(9.5f, 11.5f, degrees));
-      for (int c = 0; c < 3; ++c) {
-        picture.pixels.push_back(
-            static_cast<std::uint8_t>(std::lround(std::clamp(colour[c], 0.0f, 1.0f) * 255.0f)));
-      }
+      std::uint8_t* out = paint::TexelAt(&picture, x, y);
+      for (int c = 0; c < 3; ++c) out[c] = paint::ToByte(colour[c]);
     }
   }
   return picture;

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "character/import/noise.h"
+#include "character/paint/canvas.h"
 #include "character/paint/strokes.h"
 
 namespace furrow::character {
@@ -18,27 +19,17 @@ using paint::Texel;
 
 constexpr int kDilation = 16;
 
-std::uint8_t To8(float value) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
-}
-
-Picture Blank(const char* name, int size, glm::vec3 fill) {
-  Picture picture;
-  picture.name = name;
-  picture.width = picture.height = size;
-  picture.channels = 3;
-  picture.pixels.resize(static_cast<std::size_t>(size) * static_cast<std::size_t>(size) * 3);
-  for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-    picture.pixels[i] = To8(fill[static_cast<int>(i % 3)]);
-  return picture;
-}
-
 void Put(Picture* picture, int x, int y, const glm::vec3& colour) {
-  std::uint8_t* out =
-      &picture->pixels[(static_cast<std::size_t>(y) * static_cast<std::size_t>(picture->width) +
-                        static_cast<std::size_t>(x)) *
-                       3];
-  for (int c = 0; c < 3; ++c) out[c] = To8(colour[c]);
+  std::uint8_t* out = paint::TexelAt(picture, x, y);
+  for (int c = 0; c < 3; ++c) out[c] = paint::ToByte(colour[c]);
+}
+
+Picture Filled(const char* name, int size, const glm::vec3& fill) {
+  Picture picture = paint::BlankPicture(name, size, size, 3);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) Put(&picture, x, y, fill);
+  }
+  return picture;
 }
 
 // Angles of an adult eye of 12 mm radius with an iris 11.7 mm across.
@@ -46,7 +37,7 @@ constexpr float kIris = 0.509f;
 constexpr float kPupil = 0.17f;
 
 glm::vec3 EyeColour(float angle, float around) {
-  constexpr glm::vec3 kWhite{0.86f, 0.83f, 0.80f};
+  constexpr glm::vec3 kWhite{0.80f, 0.77f, 0.74f};
   constexpr glm::vec3 kVeins{0.80f, 0.62f, 0.58f};
   constexpr glm::vec3 kRim{0.10f, 0.10f, 0.12f};
   constexpr glm::vec3 kOuter{0.22f, 0.30f, 0.34f};
@@ -97,7 +88,7 @@ glm::vec2 Slope(const Texel& texel, float step, const Height& height) {
 }  // namespace
 
 Picture PaintEye(int size) {
-  Picture picture = Blank("eye_colour", size, glm::vec3(0.8f));
+  Picture picture = paint::BlankPicture("eye_colour", size, size, 3);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
       const glm::vec2 p = (glm::vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) /
@@ -112,7 +103,7 @@ Picture PaintEye(int size) {
 Picture PaintCloth(const std::vector<Texel>& texels, float waist, int size) {
   constexpr glm::vec3 kShirt{0.42f, 0.46f, 0.50f};
   constexpr glm::vec3 kTrousers{0.20f, 0.22f, 0.27f};
-  Picture picture = Blank("cloth_colour", size, kShirt);
+  Picture picture = Filled("cloth_colour", size, kShirt);
   for (const Texel& texel : texels) {
     const float above = glm::smoothstep(waist - 0.004f, waist + 0.004f, texel.position.y);
     const float worn = ValueNoise(texel.position / 0.06f) - 0.5f;
@@ -125,7 +116,7 @@ Picture PaintCloth(const std::vector<Texel>& texels, float waist, int size) {
 }
 
 Picture PaintWeaveNormals(const std::vector<Texel>& texels, int size) {
-  Picture picture = Blank("cloth_normal", size, glm::vec3(0.5f, 0.5f, 1.0f));
+  Picture picture = Filled("cloth_normal", size, glm::vec3(0.5f, 0.5f, 1.0f));
   for (const Texel& texel : texels) {
     const glm::vec2 slope =
         Slope(texel, 0.0004f, [](const glm::vec3& p) { return 0.00012f * Weave(p); });

@@ -11,7 +11,7 @@
 
 #include "character/import/noise.h"
 #include "character/import/polyline.h"
-#include "character/paint/strokes.h"
+#include "character/paint/canvas.h"
 
 namespace furrow::character {
 namespace {
@@ -29,28 +29,6 @@ constexpr glm::vec3 kLids{0.70f, 0.51f, 0.45f};
 constexpr glm::vec3 kMouth{0.25f, 0.09f, 0.085f};
 constexpr glm::vec3 kBrow{0.23f, 0.165f, 0.13f};
 constexpr glm::vec3 kStubble{0.47f, 0.39f, 0.35f};
-
-Picture Blank(const char* name, int size, int channels) {
-  Picture picture;
-  picture.name = name;
-  picture.width = picture.height = size;
-  picture.channels = channels;
-  picture.pixels.assign(static_cast<std::size_t>(size) * static_cast<std::size_t>(size) *
-                            static_cast<std::size_t>(channels),
-                        0);
-  return picture;
-}
-
-std::uint8_t To8(float value) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
-}
-
-std::uint8_t* At(Picture* picture, const Texel& texel) {
-  return &picture->pixels[(static_cast<std::size_t>(texel.y) *
-                               static_cast<std::size_t>(picture->width) +
-                           static_cast<std::size_t>(texel.x)) *
-                          static_cast<std::size_t>(picture->channels)];
-}
 
 // How much of the face's front a point belongs to: keeps features off the inside of the mouth,
 // whose surface lies close behind the lips.
@@ -204,11 +182,11 @@ std::array<float, 8> RegionFields(const glm::vec3& p, const FaceLandmarks& face)
 }  // namespace
 
 Picture PaintSkinColour(const std::vector<Texel>& texels, const FaceLandmarks& face, int size) {
-  Picture picture = Blank("skin_colour", size, 3);
+  Picture picture = paint::BlankPicture("skin_colour", size, size, 3);
   for (const Texel& texel : texels) {
     const glm::vec3 colour = SkinColour(texel, face);
-    std::uint8_t* out = At(&picture, texel);
-    for (int c = 0; c < 3; ++c) out[c] = To8(colour[c]);
+    std::uint8_t* out = paint::TexelAt(&picture, texel.x, texel.y);
+    for (int c = 0; c < 3; ++c) out[c] = paint::ToByte(colour[c]);
   }
   paint::Dilate(&picture, texels, kDilation);
   return picture;
@@ -222,7 +200,7 @@ Picture PaintSkinNormals(const std::vector<Texel>& texels, const FaceLandmarks& 
     return face.Millimetres(0.16f) * net + face.Millimetres(0.05f) * pores;
   };
   const float step = face.Millimetres(0.25f);
-  Picture picture = Blank("skin_normal", size, 3);
+  Picture picture = paint::BlankPicture("skin_normal", size, size, 3);
   for (std::size_t i = 0; i < picture.pixels.size(); ++i)
     picture.pixels[i] = i % 3 == 2 ? 255 : 128;
   for (const Texel& texel : texels) {
@@ -232,15 +210,16 @@ Picture PaintSkinNormals(const std::vector<Texel>& texels, const FaceLandmarks& 
     };
     const glm::vec3 n =
         glm::normalize(glm::vec3(-slope(texel.tangent), -slope(texel.bitangent), 1.0f));
-    std::uint8_t* out = At(&picture, texel);
-    for (int c = 0; c < 3; ++c) out[c] = To8(n[c] * 0.5f + 0.5f);
+    std::uint8_t* out = paint::TexelAt(&picture, texel.x, texel.y);
+    for (int c = 0; c < 3; ++c) out[c] = paint::ToByte(n[c] * 0.5f + 0.5f);
   }
   paint::Dilate(&picture, texels, kDilation);
   return picture;
 }
 
 FaceMasks PaintFaceMasks(const std::vector<Texel>& texels, const FaceLandmarks& face, int size) {
-  FaceMasks masks{Blank("face_masks_a", size, 4), Blank("face_masks_b", size, 4)};
+  FaceMasks masks{paint::BlankPicture("face_masks_a", size, size, 4),
+                  paint::BlankPicture("face_masks_b", size, size, 4)};
   for (const Texel& texel : texels) {
     std::array<float, 8> field = RegionFields(texel.position, face);
     float sum = 0.0f;
@@ -248,11 +227,11 @@ FaceMasks PaintFaceMasks(const std::vector<Texel>& texels, const FaceLandmarks& 
     // Temples face sideways and still wrinkle; what faces backwards does not.
     const float forward = glm::smoothstep(-0.5f, -0.1f, texel.normal.z);
     const float scale = forward / std::max(sum, 1.0f);
-    std::uint8_t* first = At(&masks.first, texel);
-    std::uint8_t* second = At(&masks.second, texel);
+    std::uint8_t* first = paint::TexelAt(&masks.first, texel.x, texel.y);
+    std::uint8_t* second = paint::TexelAt(&masks.second, texel.x, texel.y);
     for (std::size_t c = 0; c < 4; ++c) {
-      first[c] = To8(field[c] * scale);
-      second[c] = To8(field[4 + c] * scale);
+      first[c] = paint::ToByte(field[c] * scale);
+      second[c] = paint::ToByte(field[4 + c] * scale);
     }
   }
   paint::Dilate(&masks.first, texels, kDilation);
