@@ -2,8 +2,10 @@
 #include "server/net/tcp_server.h"
 
 #include <chrono>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <asio/co_spawn.hpp>
 #include <asio/detached.hpp>
@@ -12,12 +14,35 @@
 #include <asio/use_awaitable.hpp>
 #include <spdlog/spdlog.h>
 
+#include "protocol/tcp_framing.h"
+
 namespace furrow::server {
 namespace {
 
 using asio::ip::tcp;
 constexpr auto kToken = asio::experimental::as_tuple(asio::use_awaitable);
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
+
+// One answer on a connection that is closed at once. A fresh socket's buffer has room for it; where
+// not, the closing says enough.
+class LastWord : public Link {
+ public:
+  explicit LastWord(tcp::socket* socket) : socket_(socket) {}
+  void SendReply(std::span<const std::uint8_t> message) override {
+    const auto prefix = protocol::FramePrefix(message.size());
+    std::vector<std::uint8_t> frame(prefix.begin(), prefix.end());
+    frame.insert(frame.end(), message.begin(), message.end());
+    asio::error_code error;
+    socket_->non_blocking(true, error);
+    socket_->send(asio::buffer(frame), 0, error);
+    socket_->shutdown(tcp::socket::shutdown_send, error);
+  }
+  int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t) override { return 0; }
+  void DropFrames(std::uint64_t) override {}
+
+ private:
+  tcp::socket* socket_;
+};
 
 }  // namespace
 
@@ -55,7 +80,7 @@ asio::awaitable<void> TcpServer::Accept() {
       asio::steady_timer pause(io_, kAcceptPause);
       co_await pause.async_wait(kToken);
     } else if (sessions_.size() >= static_cast<std::size_t>(limits_.max_connections)) {
-      metrics_->Add(Counter::kConnectionsRefused);  // and closed, with the socket
+      Refuse(std::move(socket));
     } else {
       metrics_->Add(Counter::kConnectionsAccepted);
       const auto session = std::make_shared<TcpSession>(
@@ -65,6 +90,12 @@ asio::awaitable<void> TcpServer::Accept() {
       session->Start();
     }
   }
+}
+
+void TcpServer::Refuse(tcp::socket socket) {
+  metrics_->Add(Counter::kConnectionsRefused);
+  LastWord last_word(&socket);
+  hub_->RefuseConnection(&last_word);
 }
 
 void TcpServer::Drain() {

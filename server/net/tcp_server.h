@@ -34,6 +34,7 @@ class TcpServer {
 
  private:
   asio::awaitable<void> Accept();
+  void Refuse(asio::ip::tcp::socket socket);
 
   asio::io_context& io_;
   asio::ip::tcp::acceptor acceptor_;

@@ -79,6 +79,14 @@ void Hub::OnBadFrame(PeerId id) {
   }
 }
 
+void Hub::RefuseConnection(Link* link) {
+  Peer nobody;
+  nobody.link = link;
+  postman_.Error(nobody, {}, ErrorCode::kLimit,
+                 "at most " + std::to_string(limits_.max_connections) +
+                     " connections, see limits.max_connections");
+}
+
 void Hub::RefuseEnvelope(Peer& peer, const protocol::MessageView& view, DecodeStatus status) {
   metrics_->Add(Counter::kMessagesMalformed);
   if (peer.transport != Transport::kTcp) return;

@@ -57,6 +57,8 @@ class Hub {
   void OnBytesReceived(PeerId id, std::size_t bytes, Time now);
   // TCP: bytes that are no frame; the connection ends after the answer.
   void OnBadFrame(PeerId id);
+  // TCP: a connection beyond Limits::max_connections is told so over `link`; it never was a peer.
+  void RefuseConnection(Link* link);
   // A frame of a foreign wire; `peer` was added as Transport::kMocap.
   void OnMocapFrame(PeerId peer, const protocol::mocap::NeutralFrame& frame, Time now);
   void OnPicture(const FinishedPicture& picture) { subscribers_.OnPicture(picture); }

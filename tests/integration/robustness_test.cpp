@@ -185,7 +185,7 @@ TEST(Robustness, WhatIsThrownIsAFailureAndNotACrash) {
   EXPECT_EQ(server::Run(WeightsConfig("arkit.json"), options), server::ExitCode::kFailed);
 }
 
-TEST(Robustness, ConnectionsBeyondTheLimitAreClosed) {
+TEST(Robustness, ConnectionsBeyondTheLimitAreToldSoAndClosed) {
   server::Config config = WeightsConfig("arkit.json");
   config.limits.max_connections = 2;
   DaemonThread daemon(config);
@@ -197,6 +197,9 @@ TEST(Robustness, ConnectionsBeyondTheLimitAreClosed) {
     ASSERT_TRUE(client->Await<protocol::Pong>().has_value());
   }
   TcpClient third(daemon.ready().tcp);
+  const auto error = third.Await<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->code, protocol::ErrorCode::kLimit);
   EXPECT_TRUE(third.AwaitClose());
   EXPECT_EQ(daemon.Count(Counter::kConnectionsRefused), 1u);
 }
