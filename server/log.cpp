@@ -10,6 +10,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "server/limited_sink.h"
+
 namespace furrow::server {
 namespace {
 
@@ -44,8 +46,9 @@ class JsonText : public spdlog::custom_flag_formatter {
 Log::Log(const Config& config) {
   spdlog::init_thread_pool(kMaxWaitingLines, /*threads=*/1);
   auto logger = std::make_shared<spdlog::async_logger>(
-      "furrowd", std::make_shared<spdlog::sinks::stderr_color_sink_mt>(), spdlog::thread_pool(),
-      spdlog::async_overflow_policy::overrun_oldest);
+      "furrowd",
+      std::make_shared<LimitedSink>(std::make_shared<spdlog::sinks::stderr_color_sink_mt>()),
+      spdlog::thread_pool(), spdlog::async_overflow_policy::overrun_oldest);
   if (config.log_json) {
     auto formatter = std::make_unique<spdlog::pattern_formatter>(spdlog::pattern_time_type::utc);
     formatter->add_flag<JsonText>('*').set_pattern(

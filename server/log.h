@@ -9,8 +9,8 @@ namespace furrow::server {
 // line with "time", "level" and "message".
 //
 // A thread of its own writes, and where it cannot keep up the oldest lines go: whoever reads our
-// stderr slowly, or not at all, never blocks a network thread. The destructor writes what still
-// waits.
+// stderr slowly, or not at all, never blocks a network thread. How much is written in a second is
+// limited (LimitedSink). The destructor writes what still waits.
 class Log {
  public:
   explicit Log(const Config& config);
