@@ -12,7 +12,7 @@ mkdir -p docs/pictures
 
 # still NAME RECORDING FRAME [OPTIONS...]
 still() {
-  "$furrow" render "$recordings/$2.bvh" --frames "$3" --out "$work/$1" --size 400x480 "${@:4}"
+  "$furrow" render "$recordings/$2.bvh" --frames "$3" --out "$work/$1" --size 480x480 "${@:4}"
   mv "$work/$1"/*.png "$work/$1.png"
 }
 

@@ -236,8 +236,7 @@ TEST_P(DynamicMask, EqualsTheReferenceOnTheCpu) {
         vertices[i].joints, vertices[i].skin_weights, probe.tables().joint_influences(),
         probe.tables().num_maps(), map.map, GetParam(), 0.25f);
     const float drawn = pixels[static_cast<std::size_t>(y * kSize + x)].b / map.colour.b;
-    // Triangles smaller than a pixel may miss its centre; those around them have the same mask
-    // nearly.
+    // Triangles smaller than a pixel may miss its centre; their neighbours' masks are near.
     EXPECT_NEAR(drawn, expected, GetParam() == wrinkle::LambdaMode::kBinary ? 0.71f : 0.25f);
     if (std::abs(drawn - expected) < 1e-3f) ++compared;
     if (expected > 0.1f) ++masked;

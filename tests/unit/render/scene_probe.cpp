@@ -1,22 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_probe.h"
 
-#include <cstdlib>
-#include <iostream>
-
 #include <gtest/gtest.h>
+
+#include "test_character.h"
 
 namespace furrow::render::test {
 namespace {
-
-template <class T>
-T Expect(Result<T> result) {
-  if (!result.ok()) {
-    std::cerr << result.status().ToString() << std::endl;
-    std::abort();
-  }
-  return std::move(result).value();
-}
 
 struct SinkData {
   FrameGraph::Handle colour;

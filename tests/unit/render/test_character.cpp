@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <iostream>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
@@ -18,16 +16,6 @@ using character::Mesh;
 using character::Vertex;
 
 constexpr float kTwoPi = glm::two_pi<float>();
-
-// Test set-up cannot go on without its value.
-template <class T>
-T Expect(Result<T> result) {
-  if (!result.ok()) {
-    std::cerr << result.status().ToString() << std::endl;
-    std::abort();
-  }
-  return std::move(result).value();
-}
 
 wrinkle::JointDesc Joint(const std::string& name, int parent, const glm::vec3& translation) {
   wrinkle::JointDesc joint;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdlib>
 #include <functional>
+#include <iostream>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,16 @@
 
 // Small characters made by formula, so that what they should look like is known.
 namespace furrow::render::test {
+
+// Test set-up cannot go on without its value.
+template <class T>
+T Expect(Result<T> result) {
+  if (!result.ok()) {
+    std::cerr << result.status().ToString() << std::endl;
+    std::abort();
+  }
+  return std::move(result).value();
+}
 
 // A 16-bit RGBA picture of a function of (u, v in [0, 1], v down) with values in [0, 1].
 [[nodiscard]] character::Picture MakePicture(
