@@ -284,10 +284,7 @@ Status GpuCharacter::AddMasks(const Character& character) {
     const std::string& name = region.mask.texture;
     if (region.mask.kind != wrinkle::Mask::Kind::kTexture || layout_.MaskLayer(name) >= 0) continue;
     const int index = character.FindRigPicture(name);
-    if (index < 0) {
-      return {StatusCode::kNotFound, "mask texture '" + name + "' is not loaded",
-              "region '" + region.name + "'"};
-    }
+    if (index < 0) continue;  // Character::missing_rig_pictures: not drawn
     pictures.push_back(&character.pictures[static_cast<std::size_t>(index)]);
     width = std::max(width, pictures.back()->width);
     height = std::max(height, pictures.back()->height);
@@ -312,14 +309,9 @@ Status GpuCharacter::AddWrinkleMaps(const Character& character) {
   int height = 1;
   for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
     const bool derivative = !map.derivative.empty();
-    const std::string& name = derivative ? map.derivative : map.normal;
-    layout_.map_layers.push_back(name.empty() ? -1 : static_cast<int>(maps.size()));
-    if (name.empty()) continue;
-    const int index = character.FindRigPicture(name);
-    if (index < 0) {
-      return {StatusCode::kNotFound, "texture '" + name + "' is not loaded",
-              "wrinkle map '" + map.name + "'"};
-    }
+    const int index = character.FindRigPicture(derivative ? map.derivative : map.normal);
+    layout_.map_layers.push_back(index < 0 ? -1 : static_cast<int>(maps.size()));
+    if (index < 0) continue;  // Character::missing_rig_pictures: no relief
     const Picture& picture = character.pictures[static_cast<std::size_t>(index)];
     maps.push_back(derivative ? DerivativesFromDerivativeMap(picture)
                               : DerivativesFromNormalMap(picture));

@@ -84,8 +84,8 @@ class Renderer {
  public:
   // Errors: kUnavailable (no EGL device gives OpenGL 4.5: says which were tried), kInternal (a
   // shader does not compile here: the driver's log), kInvalidArgument and kLimit (the character's
-  // meshes and pictures), kNotFound (a mask or wrinkle map that the rig names is not among its
-  // pictures).
+  // meshes and pictures). A mask or wrinkle map whose picture nobody has is not drawn
+  // (Character::missing_rig_pictures).
   [[nodiscard]] static Result<std::unique_ptr<Renderer>> Create(
       const character::Character& character, const RendererOptions& options = {});
   virtual ~Renderer() = default;

@@ -265,6 +265,11 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
   if (assets->rig->regions.empty()) {
     spdlog::warn("the character has no wrinkle rig: there will be no weights; see --rig");
   }
+  if (config.render && assets->character != nullptr) {
+    for (const std::string& name : assets->character->missing_rig_pictures) {
+      spdlog::warn("nobody has the rig's picture '{}': what needs it is not drawn", name);
+    }
+  }
   Daemon daemon(config, options, *std::move(assets));
   if (Status status = daemon.StartRendering(); !status.ok()) {
     return Fail(ExitCode::kFailed, status);

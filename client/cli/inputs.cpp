@@ -42,8 +42,13 @@ Result<character::Character> LoadCharacterArgument(const std::string& glb, const
     if (!shipped.ok()) return shipped.status();
     package = *shipped;
   }
-  return character::LoadCharacter(package, rig.empty() ? fs::path() : ResolveRigPath(rig),
-                                  motion::CachedPoseSource());
+  auto character = character::LoadCharacter(package, rig.empty() ? fs::path() : ResolveRigPath(rig),
+                                            motion::CachedPoseSource());
+  if (!character.ok()) return character;
+  for (const std::string& name : character->missing_rig_pictures) {
+    PrintWarnings({"nobody has the rig's picture '" + name + "': what needs it is not drawn"});
+  }
+  return character;
 }
 
 }  // namespace furrow::cli

@@ -210,13 +210,29 @@ TEST_F(RendererTest, TwoRenderersOfOneThreadDoNotDisturbEachOther) {
   EXPECT_EQ(Render(Request(subject_)).rgb, before.rgb);
 }
 
-TEST(RendererCreate, NamesWhatTheRigLacks) {
-  character::Character head = test::MakeHead();
-  head.rig_pictures.erase(head.rig_pictures.begin());  // masks.png
-  const Status status = Renderer::Create(head).status();
-  EXPECT_EQ(status.code(), StatusCode::kNotFound);
-  EXPECT_NE(status.ToString().find("masks.png"), std::string::npos) << status.ToString();
-  EXPECT_NE(status.ToString().find("left"), std::string::npos) << status.ToString();
+// A rig may name pictures that this character lacks: what needs them stays smooth, all else is
+// drawn.
+TEST_F(RendererTest, WhatTheRigLacksIsNotDrawn) {
+  subject_.Set("l_squash", 1.0f);
+  subject_.Solve();
+  FrameRequest request = Request(subject_);
+  const Image folded = Render(request);
+  request.settings.wrinkles = false;
+  const Image smooth = Render(request);
+  ASSERT_NE(folded.rgb, smooth.rgb);
+  request.settings.wrinkles = true;
+  for (const char* lacking : {"masks.png", "squash.png"}) {
+    character::Character head = test::MakeHead();
+    ASSERT_EQ(std::erase_if(head.rig_pictures,
+                            [&](const auto& picture) { return picture.first == lacking; }),
+              1u)
+        << lacking;
+    const auto renderer = Renderer::Create(head);
+    ASSERT_TRUE(renderer.ok()) << renderer.status().ToString();
+    const Result<Image> image = (*renderer)->Render(request);
+    ASSERT_TRUE(image.ok()) << image.status().ToString();
+    EXPECT_EQ(image->rgb, smooth.rgb) << lacking;
+  }
 }
 
 TEST(RendererCreate, RefusesMeshesThatPointOutside) {
