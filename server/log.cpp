@@ -57,6 +57,7 @@ Log::Log(const Config& config) {
   } else {
     logger->set_pattern("%H:%M:%S.%e %^%l%$ %v");
   }
+  logger_ = logger;
   spdlog::set_default_logger(std::move(logger));
 }
 

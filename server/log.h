@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+
 #include "server/config.h"
 
 namespace furrow::server {
@@ -17,6 +19,9 @@ class Log {
   ~Log();
   Log(const Log&) = delete;
   Log& operator=(const Log&) = delete;
+
+ private:
+  std::shared_ptr<void> logger_;  // outlives the writing thread, which the destructor joins
 };
 
 }  // namespace furrow::server
