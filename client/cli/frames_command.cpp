@@ -10,16 +10,14 @@
 #include "client/cli/exit_code.h"
 #include "client/cli/file_output.h"
 #include "client/cli/listen.h"
-#include "protocol/limits.h"
 
 namespace furrow::cli {
 namespace {
 
 struct FramesOptions {
-  std::string host;
+  ListenOptions listen;
   std::string out;
   std::string size = "640x640";
-  std::int64_t frames = 0;
   int quality = 85;
   protocol::SubscribePictures request;
 };
@@ -28,7 +26,7 @@ struct FramesOptions {
 class PictureFiles {
  public:
   PictureFiles(const FramesOptions& options, client::Subscriber& subscriber)
-      : subscriber_(subscriber), out_(options.out), left_(options.frames) {}
+      : subscriber_(subscriber), out_(options.out), left_(options.listen.frames) {}
 
   bool operator()(const client::Event& event) {
     if (event.kind != client::Event::Kind::kPicture) return true;
@@ -66,7 +64,7 @@ int Frames(const FramesOptions& options) {
     if (error) return Fail({StatusCode::kIo, error.message(), options.out});
   }
   int exit_code = kDone;
-  auto transport = OpenTransport(options.host, client::TransportKind::kTcp, &exit_code);
+  auto transport = OpenTransport(options.listen.host, client::TransportKind::kTcp, &exit_code);
   if (!transport) return exit_code;
   client::Subscriber subscriber(std::move(transport), "furrow frames " FURROW_VERSION);
   protocol::SubscribePictures request = options.request;
@@ -88,14 +86,9 @@ void AddFrames(CLI::App& app, Action& action) {
   auto options = std::make_shared<FramesOptions>();
   CLI::App* command =
       app.add_subcommand("frames", "Receives pictures of a subject, drawn by the daemon");
-  command
-      ->add_option("HOST", options->host,
-                   "HOST, HOST:PORT or [IPV6]:PORT of furrowd (TCP, port 7400)")
-      ->required();
+  AddListenOptions(*command, options->listen, options->request, "as many as can be drawn");
   command->add_option("--out", options->out, "Folder for <sequence>.jpg; - for standard output")
       ->required();
-  command->add_option("--subject", options->request.subject,
-                      "Who; default: the subject that has been there longest");
   command->add_option("--size", options->size, "WxH in pixels, 16 to 4096")
       ->check(SizeValidator())
       ->capture_default_str();
@@ -106,21 +99,11 @@ void AddFrames(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   command
-      ->add_option("--frames", options->frames,
-                   "End after so many; default: when the subject leaves")
-      ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--rate", options->request.max_rate_hz,
-                   "At most so many a second; default: as many as can be drawn")
-      ->check(CLI::Range(0.001f, protocol::kMaxRateHz));
-  command
       ->add_option("--view", options->request.view,
                    "final, normal, mask_dynamic, mask_texture, weights, wireframe")
       ->capture_default_str();
   command->add_option("--camera", options->request.camera_preset,
                       "face, three_quarter, profile, eyes, mouth, body");
-  command->add_flag("--wait", options->request.wait,
-                    "Wait for the subject when it is not there yet");
   command->callback([options, &action] { action = [options] { return Frames(*options); }; });
 }
 

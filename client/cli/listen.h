@@ -1,11 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <string>
+
+#include <CLI/CLI.hpp>
 
 #include "client/cpp/subscriber.h"
+#include "protocol/limits.h"
 
 namespace furrow::cli {
+
+// What every subscription of the command line can be told.
+struct ListenOptions {
+  std::string host;
+  std::int64_t frames = 0;  // end after so many; 0: when the subject leaves
+};
+
+// Adds HOST, --subject, --wait, --rate and --frames to `command`; `Request` is a SubscribeWeights
+// or a SubscribePictures. `every`: what comes without --rate.
+template <class Request>
+void AddListenOptions(CLI::App& command, ListenOptions& options, Request& request,
+                      const std::string& every) {
+  command.add_option("HOST", options.host, "HOST, HOST:PORT or [IPV6]:PORT of furrowd")->required();
+  command.add_option("--subject", request.subject,
+                     "Who; default: the subject that has been there longest");
+  command.add_flag("--wait", request.wait, "Wait for the subject when it is not there yet");
+  command.add_option("--rate", request.max_rate_hz, "At most so many a second; default: " + every)
+      ->check(CLI::Range(0.001f, protocol::kMaxRateHz));
+  command
+      .add_option("--frames", options.frames, "End after so many; default: when the subject leaves")
+      ->check(CLI::PositiveNumber);
+}
 
 // What `watch` and `frames` share: waits for events, prints what ends the wait, and tells which
 // exit code it comes to. `on_event` gets replies, weights and pictures; false ends it well.

@@ -10,7 +10,6 @@
 #include "client/cli/file_output.h"
 #include "client/cli/listen.h"
 #include "client/cli/weight_writer.h"
-#include "protocol/limits.h"
 
 namespace furrow::cli {
 namespace {
@@ -18,8 +17,7 @@ namespace {
 using client::TransportKind;
 
 struct WatchOptions {
-  std::string host;
-  std::int64_t frames = 0;
+  ListenOptions listen;
   TableFormat format = TableFormat::kTable;
   bool tcp = false;  // the default: said for clarity
   bool udp = false;
@@ -34,7 +32,7 @@ class WeightRows {
   WeightRows(const WatchOptions& options, client::Subscriber& subscriber)
       : subscriber_(subscriber),
         writer_(WeightWriter::Create(options.format)),
-        left_(options.frames) {}
+        left_(options.listen.frames) {}
 
   bool operator()(const client::Event& event) {
     if (event.kind == client::Event::Kind::kReply) {
@@ -77,7 +75,7 @@ class WeightRows {
 int Watch(const WatchOptions& options) {
   int exit_code = kDone;
   auto transport = OpenTransport(
-      options.host, options.udp ? TransportKind::kUdp : TransportKind::kTcp, &exit_code);
+      options.listen.host, options.udp ? TransportKind::kUdp : TransportKind::kTcp, &exit_code);
   if (!transport) return exit_code;
   client::Subscriber subscriber(std::move(transport), "furrow watch " FURROW_VERSION);
   protocol::SubscribeWeights request = options.request;
@@ -94,10 +92,7 @@ int Watch(const WatchOptions& options) {
 void AddWatch(CLI::App& app, Action& action) {
   auto options = std::make_shared<WatchOptions>();
   CLI::App* command = app.add_subcommand("watch", "Prints a subject's weights as they arrive");
-  command->add_option("HOST", options->host, "HOST, HOST:PORT or [IPV6]:PORT of furrowd")
-      ->required();
-  command->add_option("--subject", options->request.subject,
-                      "Who; default: the subject that has been there longest");
+  AddListenOptions(*command, options->listen, options->request, "every pose");
   command
       ->add_option("--pattern", options->request.pattern,
                    "Comma list of globs over weight names, as 'brow_*,knee_l_*'")
@@ -105,20 +100,10 @@ void AddWatch(CLI::App& app, Action& action) {
   const std::map<std::string, TableFormat> formats{
       {"table", TableFormat::kTable}, {"csv", TableFormat::kCsv}, {"jsonl", TableFormat::kJsonl}};
   AddChoice(*command, "--format", options->format, formats, "table (default), csv or jsonl");
-  command
-      ->add_option("--frames", options->frames,
-                   "End after so many; default: when the subject leaves")
-      ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--rate", options->request.max_rate_hz,
-                   "At most so many a second; default: every pose")
-      ->check(CLI::Range(0.001f, protocol::kMaxRateHz));
   auto* tcp = command->add_flag("--tcp", options->tcp, "Over TCP (default; port 7400)");
   command->add_flag("--udp", options->udp, "Over UDP (port 7401)")->excludes(tcp);
   command->add_flag("--u8", options->u8, "Ask for 8-bit weights (off by at most 1/510)");
   command->add_flag("--drivers", options->drivers, "Driver values before modulation and filter");
-  command->add_flag("--wait", options->request.wait,
-                    "Wait for the subject when it is not there yet");
   command->callback([options, &action] { action = [options] { return Watch(*options); }; });
 }
 
