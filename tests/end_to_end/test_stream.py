@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recording crosses real sockets: weights equal `furrow solve`, pictures arrive and change."""
 import pathlib
+import shutil
+import subprocess
 import tempfile
 import unittest
 
@@ -76,6 +78,23 @@ class StreamTest(unittest.TestCase):
             self.assertEqual({jpeg_size(p) for p in pictures}, {(160, 120)})
             self.assertGreater(len(set(pictures)), 1, "the face never moved")
             self.assertEqual({png_size(p.read_bytes()) for p in pngs.iterdir()}, {(96, 96)})
+
+    @unittest.skipUnless(shutil.which("oiiotool"), "oiiotool is not installed")
+    def test_live_pictures_are_those_of_render(self):
+        look = ["--size", "96x96", "--camera", "three_quarter"]
+        with tempfile.TemporaryDirectory() as folder, Daemon() as daemon:
+            live, drawn = pathlib.Path(folder, "live"), pathlib.Path(folder, "drawn")
+            watcher = spawn("frames", daemon.tcp, "--subject", "ada", "--wait", "--out", live, "--format", "png",
+                            "--rate", "2", *look)
+            furrow("play", PERFORMANCE, "--to", daemon.udp, "--subject", "ada", check=0)
+            self.assertEqual(finish(watcher)[0], 0)
+            pictures = sorted(live.iterdir())
+            for picture in (pictures[0], pictures[len(pictures) // 2], pictures[-1]):
+                furrow("render", PERFORMANCE, "--out", drawn, "--frames", int(picture.stem), *look, check=0)
+                # Capture times are whole microseconds on the wire: the filter may differ in the last digit.
+                diff = subprocess.run(["oiiotool", "--fail", "0.02", "--failpercent", "0.5", "--diff", picture,
+                                       drawn / picture.name], capture_output=True)
+                self.assertEqual(diff.returncode, 0, diff.stdout.decode())
 
     def test_cmu_body(self):
         recording = needs_shared("cmu", "01_01.bvh")
