@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Milliseconds a picture, of the character named by FURROW_BENCH_CHARACTER (a .glb), or without it of the
-// tests' procedural head.
-#include <benchmark/benchmark.h>
-
+// Milliseconds a picture, of the character named by FURROW_BENCH_CHARACTER (a .glb), or without it
+// of the tests' procedural head.
 #include <cstdlib>
+
+#include <benchmark/benchmark.h>
 
 #include "render/renderer.h"
 #include "tests/unit/render/test_character.h"
