@@ -13,9 +13,12 @@ namespace {
 using protocol::DecodeStatus;
 using protocol::MessageKind;
 
-// While something is unanswered it is sent again this often; a settled UDP lease is renewed rarely.
+// While something is unanswered over UDP it is sent again this often; a settled lease is renewed
+// rarely, and so is a TCP connection asked whether it is still alive.
 constexpr std::int64_t kResendMicroseconds = 200'000;
 constexpr std::int64_t kRenewMicroseconds = protocol::kUdpLeaseMicroseconds / 5;
+// What we ask goes unanswered for so long only where the network or the daemon is gone.
+constexpr std::int64_t kSilenceMicroseconds = 3 * protocol::kUdpLeaseMicroseconds;
 
 }  // namespace
 
@@ -78,16 +81,17 @@ void Subscriber::NoticeRestart(std::uint64_t server_session) {
 }
 
 void Subscriber::Maintain(std::int64_t now_us) {
-  if (transport_->kind() == TransportKind::kTcp) return;
   if (!started_) {
     started_ = true;
     last_sent_us_ = now_us;
     return;
   }
-  const bool asking = std::ranges::any_of(requests_, &Request::waiting);
+  const bool udp = transport_->kind() == TransportKind::kUdp;
+  const bool asking = udp && std::ranges::any_of(requests_, &Request::waiting);
   const bool unsettled = !proven_ || asking;
   if (now_us - last_sent_us_ < (unsettled ? kResendMicroseconds : kRenewMicroseconds)) return;
   last_sent_us_ = now_us;
+  if (!unanswered_since_us_) unanswered_since_us_ = now_us;
   if (!proven_) {
     SendHello();
   } else if (asking) {
@@ -104,17 +108,25 @@ Event Subscriber::Next(std::int64_t now_us, std::chrono::milliseconds wait) {
   std::span<const std::uint8_t> message;
   for (;;) {
     switch (transport_->Receive(message, wait)) {
-      case IoStatus::kOk: break;
+      case IoStatus::kOk: unanswered_since_us_.reset(); break;
       case IoStatus::kNoConnection: event.kind = Event::Kind::kNoConnection; return event;
       case IoStatus::kClosed:
       case IoStatus::kMalformed: event.kind = Event::Kind::kClosed; return event;
-      default: event.kind = Event::Kind::kTimeout; return event;
+      default: event.kind = Silence(now_us); return event;
     }
     if (Handle(message, event)) return event;
     // Not for the caller (a pong, a welcome). What is already there may be: look, but do not wait
     // on, since only the caller knows the time.
     wait = std::chrono::milliseconds(0);
   }
+}
+
+// What nothing to receive means: usually nothing.
+Event::Kind Subscriber::Silence(std::int64_t now_us) const {
+  const bool lost = unanswered_since_us_ && now_us - *unanswered_since_us_ > kSilenceMicroseconds;
+  if (!lost) return Event::Kind::kTimeout;
+  return transport_->kind() == TransportKind::kTcp ? Event::Kind::kClosed
+                                                   : Event::Kind::kNoConnection;
 }
 
 bool Subscriber::Handle(std::span<const std::uint8_t> message, Event& event) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,8 @@ struct Event {
     kPicture,       // picture()
     kError,         // error(): request `header.sequence`, or subscription `header.stream`, failed
     kGoodbye,       // goodbye()
-    kClosed,        // TCP: the daemon closed the connection
-    kNoConnection,  // UDP: nobody listens there
+    kClosed,        // TCP: the daemon closed the connection, or answers nothing for 15 s
+    kNoConnection,  // UDP: nobody listens there, or answers for 15 s
   };
   Kind kind = Kind::kTimeout;
   protocol::Header header;  // stream: the subscription; sequence and capture time: the pose's
@@ -72,7 +73,8 @@ class Subscriber {
   void SendHello();
   void SendWaiting();
   void ProveAgain();
-  void Maintain(std::int64_t now_us);  // UDP: hello, lease, requests without answer
+  void Maintain(std::int64_t now_us);  // pings; over UDP hello and requests without answer, too
+  [[nodiscard]] Event::Kind Silence(std::int64_t now_us) const;
   void NoticeRestart(std::uint64_t server_session);
   bool Handle(std::span<const std::uint8_t> message, Event& event);
   bool HandleWelcome(const protocol::MessageView& view);
@@ -91,6 +93,7 @@ class Subscriber {
   bool proven_;
   std::uint64_t token_ = 0;
   std::int64_t last_sent_us_ = 0;
+  std::optional<std::int64_t> unanswered_since_us_;  // when something was sent, nothing heard since
   bool started_ = false;
   std::uint64_t malformed_ = 0;
 

@@ -156,6 +156,26 @@ TEST_F(SubscriberTest, GarbageIsCountedAndPassedOver) {
   EXPECT_EQ(subscriber.malformed(), 2u);
 }
 
+TEST_F(SubscriberTest, ANetworkThatIsGoneShowsInPingsWithoutAnswer) {
+  constexpr std::int64_t kSecond = 1'000'000;
+  Subscriber subscriber = Make(TransportKind::kTcp);
+  (void)far_->TakeKinds();
+  EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kTimeout);
+  // A caller that was away for an hour has asked nothing meanwhile: silence proves nothing.
+  std::int64_t now = 3600 * kSecond;
+  EXPECT_EQ(subscriber.Next(now, milliseconds(0)).kind, Kind::kTimeout);
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kPing});
+  // Answered: the connection lives, however quiet the subject is.
+  far_->Answer({.session = 5}, protocol::Pong{});
+  now += 14 * kSecond;
+  EXPECT_EQ(subscriber.Next(now, milliseconds(0)).kind, Kind::kTimeout);
+  // That call pinged as well and got its answer; from the next on nothing comes back.
+  now += 2 * kSecond;
+  EXPECT_EQ(subscriber.Next(now, milliseconds(0)).kind, Kind::kTimeout);
+  EXPECT_EQ(subscriber.Next(now + 15 * kSecond, milliseconds(0)).kind, Kind::kTimeout);
+  EXPECT_EQ(subscriber.Next(now + 15 * kSecond + 1, milliseconds(0)).kind, Kind::kClosed);
+}
+
 TEST_F(SubscriberTest, TheEndOfTheTransportIsAnEvent) {
   Subscriber subscriber = Make(TransportKind::kTcp);
   far_->when_empty = IoStatus::kClosed;
