@@ -136,7 +136,7 @@ void Hub::Dispatch(Peer& peer, const protocol::MessageView& view, Time now) {
     case MessageKind::kPong:
       return Decoded(peer, view, in.pong, [] {});  // heard: that is all it is for
     case MessageKind::kGoodbye:
-      return Decoded(peer, view, in.goodbye, [&] { OnGoodbye(peer, header, now); });
+      return Decoded(peer, view, in.goodbye, [&] { publishers_.OnGoodbye(peer, header, now); });
     case MessageKind::kSubscribeWeights:
       return Decoded(peer, view, in.subscribe_weights, [&] {
         if (RefusedWhileDraining(peer, header)) return;
@@ -170,10 +170,6 @@ void Hub::OnHello(Peer& peer, const protocol::Header& header, const protocol::He
 }
 
 // A stream that ends here, or a subscription: streams are looked for first.
-void Hub::OnGoodbye(Peer& peer, const protocol::Header& header, Time now) {
-  if (!publishers_.OnGoodbye(peer, header, now)) subscribers_.Unsubscribe(peer, header.stream);
-}
-
 bool Hub::RefusedWhileDraining(Peer& peer, const protocol::Header& header) {
   if (draining_) postman_.Error(peer, header, ErrorCode::kDraining, "the daemon is shutting down");
   return draining_;

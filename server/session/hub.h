@@ -91,7 +91,6 @@ class Hub {
   void Decoded(Peer& peer, const protocol::MessageView& view, Message& message, Handler handler);
   void RefuseEnvelope(Peer& peer, const protocol::MessageView& view, protocol::DecodeStatus status);
   void OnHello(Peer& peer, const protocol::Header& header, const protocol::Hello& hello);
-  void OnGoodbye(Peer& peer, const protocol::Header& header, Time now);
   MocapStream* FindOrAddMocap(const Peer& peer, const std::string& subject);
   bool OfferMocap(Peer& peer, const protocol::Header& header, MocapStream& stream,
                   const protocol::mocap::NeutralFrame& frame, Time now);

@@ -146,13 +146,12 @@ void Publishers::AnswerStray(Peer& peer, const protocol::Header& header, std::ui
   postman_->Reply(peer, Postman::Answering(header), reply);
 }
 
-bool Publishers::OnGoodbye(const Peer& peer, const protocol::Header& header, Time now) {
+void Publishers::OnGoodbye(const Peer& peer, const protocol::Header& header, Time now) {
   Subject* subject = subjects_->Find(StreamKey{peer.id, header.session, header.stream});
-  if (subject == nullptr) return false;
+  if (subject == nullptr) return;
   spdlog::info("subject '{}' says goodbye", subject->name);
   subject->ended = true;
   subject->last_update = now;
-  return true;
 }
 
 Publishers::Change Publishers::Age(Subject& subject, Time now) {

@@ -29,8 +29,8 @@ class Publishers {
   // The subject whose weights are new; null where the pose was dropped (and counted).
   Subject* OnPose(Peer& peer, const protocol::Header& header, const protocol::PoseFrame& pose,
                   Time now);
-  // True when the stream fed a subject, which now decays and then leaves.
-  bool OnGoodbye(const Peer& peer, const protocol::Header& header, Time now);
+  // The subject that the stream feeds, if any, decays and then leaves.
+  void OnGoodbye(const Peer& peer, const protocol::Header& header, Time now);
 
   enum class Change { kNone, kDecayed, kGone };
   // Holds and decays a subject that gets no poses. kDecayed: its weights changed. kGone: nothing is

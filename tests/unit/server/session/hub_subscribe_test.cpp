@@ -61,6 +61,15 @@ TEST_F(HubSubscribe, AnUnknownSubjectIsAnErrorThatSaysWhoIsThere) {
   EXPECT_THAT(error->message.message, HasSubstr("ann"));
 }
 
+TEST_F(HubSubscribe, AGoodbyeSaidTwiceLeavesASubscriptionOfThatNumberAlone) {
+  const std::uint16_t id = Watch(sender, {.subject = "ann", .wait = true});
+  Publish(sender, "ben", id);
+  Send(sender, protocol::Goodbye{}, id);
+  hub->Tick(now);
+  Send(sender, protocol::Goodbye{}, id);  // the stream is gone by now
+  EXPECT_EQ(hub->num_subscriptions(), 1u);
+}
+
 TEST_F(HubSubscribe, WaitingBindsWhenTheSubjectComesAndAgainWhenItReturns) {
   const std::uint16_t id = Watch(viewer, {.subject = "ann", .wait = true});
   ASSERT_NE(id, 0);
