@@ -39,6 +39,14 @@ def spawn(*args, env=None):
                             stderr=subprocess.PIPE, env={**os.environ, **(env or {})})
 
 
+def spawn_watch(daemon_address, subject, *args):
+    """A `furrow watch` that has its subscription: what is played from now on, it may see whole."""
+    watcher = spawn("watch", daemon_address, "--subject", subject, "--wait", "--format", "csv", *args)
+    line = watcher.stderr.readline().decode()
+    assert "waiting" in line, line
+    return watcher
+
+
 class Table:
     """Weights as CSV: names, and rows by frame."""
 

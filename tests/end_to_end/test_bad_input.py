@@ -13,7 +13,8 @@ import threading
 import time
 import unittest
 
-from furrow_testing import (BIN, GUARD, SHARE, SOURCE, Daemon, Table, finish, furrow, solve, spawn, worst_difference)
+from furrow_testing import (BIN, GUARD, SHARE, SOURCE, Daemon, Table, finish, furrow, solve, spawn_watch,
+                            worst_difference)
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 RIG = SHARE / "default.rig.json"
@@ -210,10 +211,11 @@ class DaemonTest(unittest.TestCase):
                     ahead = sent[0] / 10_000 - (time.monotonic() - start)
                     if ahead > 0:
                         stop.wait(ahead)
+                out.close()
 
             thread = threading.Thread(target=flood)
             thread.start()
-            watcher = spawn("watch", daemon.tcp, "--subject", "ada", "--wait", "--format", "csv")
+            watcher = spawn_watch(daemon.tcp, "ada")
             furrow("play", PERFORMANCE, "--to", daemon.udp, "--subject", "ada", check=0)
             code, out, err = finish(watcher)
             stop.set()

@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 from furrow_testing import (SOURCE, Daemon, Table, finish, furrow, jpeg_size, needs_shared, solve, spawn,
-                            worst_difference)
+                            spawn_watch, worst_difference)
 
 FACE = ("brow_l", "brow_r", "glabella", "nose", "eye_l", "eye_r", "mouth_l", "mouth_r")
 EXPRESSIONS = ("smile", "anger", "sadness", "disgust", "laugh")  # 120 frames each, at their height at 60
@@ -78,7 +78,7 @@ class MakeHumanTest(unittest.TestCase):
     def test_live_weights_equal_solve_and_pictures_move(self):
         with Daemon("--character", self.package) as daemon:
             pictures = self.root / "pictures"
-            watcher = spawn("watch", daemon.tcp, "--subject", "ada", "--wait", "--format", "csv")
+            watcher = spawn_watch(daemon.tcp, "ada")
             camera = spawn("frames", daemon.tcp, "--subject", "ada", "--wait", "--out", pictures, "--size", "256x256",
                            "--rate", "5")
             furrow("play", self.recording, "--to", daemon.udp, "--udp", "--subject", "ada", check=0)

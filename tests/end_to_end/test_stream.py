@@ -8,7 +8,7 @@ import tempfile
 import unittest
 
 from furrow_testing import (SHARE, SOURCE, Daemon, Table, finish, furrow, jpeg_size, needs_shared, png_size, solve,
-                            spawn, worst_difference)
+                            spawn, spawn_watch, worst_difference)
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 TOLERANCE = 1e-3
@@ -17,8 +17,7 @@ TOLERANCE = 1e-3
 class StreamTest(unittest.TestCase):
     def stream(self, recording, daemon, play=(), watch=()):
         """Plays `recording` to `daemon`; what `watch` saw of it."""
-        watcher = spawn("watch", daemon.tcp if "--udp" not in watch else daemon.udp, "--subject", "ada", "--wait",
-                        "--format", "csv", *watch)
+        watcher = spawn_watch(daemon.udp if "--udp" in watch else daemon.tcp, "ada", *watch)
         target = daemon.tcp if "--tcp" in play else daemon.udp
         furrow("play", recording, "--to", target, "--subject", "ada", *play, check=0)
         code, out, err = finish(watcher)
@@ -46,7 +45,7 @@ class StreamTest(unittest.TestCase):
     def test_two_subjects_do_not_mix(self):
         happy, sad = (SHARE / "recordings" / f"{name}.bvh" for name in ("happiness", "sadness"))
         with Daemon("--no-render") as daemon:
-            watchers = [spawn("watch", daemon.tcp, "--subject", s, "--wait", "--format", "csv") for s in "ab"]
+            watchers = [spawn_watch(daemon.tcp, s) for s in "ab"]
             players = [spawn("play", file, "--to", daemon.udp, "--subject", s, "--speed", 4)
                        for s, file in zip("ab", (happy, sad))]
             for player in players:
