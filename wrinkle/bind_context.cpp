@@ -7,19 +7,11 @@
 #include <glm/geometric.hpp>
 
 #include "wrinkle/ascii.h"
+#include "wrinkle/reference_pose.h"
 #include "wrinkle/retarget.h"
 
 namespace furrow::wrinkle {
 namespace {
-
-// Deltas smaller than this (radians, source units) leave a
-// joint at rest: pose files list every joint.
-constexpr float kLeastDelta = 1e-6f;
-
-bool IsRest(const JointDelta& delta) {
-  const float turn = glm::length(glm::vec3(delta.rotation.x, delta.rotation.y, delta.rotation.z));
-  return turn < kLeastDelta && glm::length(delta.translation) < kLeastDelta;
-}
 
 void AddOnce(const std::string& name, std::vector<std::string>* list) {
   if (std::find(list->begin(), list->end(), name) == list->end()) list->push_back(name);
@@ -57,19 +49,13 @@ Status BindContext::ResolveAnchorAndPoses() {
 }
 
 Status BindContext::ApplyReferencePose(const ReferencePose& pose, std::vector<Transform>* locals) {
-  const float scale = pose.source_size > 0.0f ? size_ / pose.source_size : 1.0f;
+  const float scale = ReferencePoseScale(pose, skeleton_);
   for (const JointDelta& delta : pose.joints) {
     if (IsRest(delta)) continue;
-    const Result<int> found = Joint("reference pose '" + pose.name + "'", "joint", delta.joint);
-    if (!found.ok()) return found.status();
-    const int joint = *found;
-    if (joint == kNoJoint) continue;
-    const glm::quat& rest_model = skeleton_.rest_model_rotations()[joint];
-    Transform& local = (*locals)[joint];
-    local.rotation =
-        glm::normalize(local.rotation * glm::conjugate(rest_model) * delta.rotation * rest_model);
-    local.translation +=
-        ToJointAxes(skeleton_, skeleton_.joint_parents()[joint], delta.translation) * scale;
+    const Result<int> joint = Joint("reference pose '" + pose.name + "'", "joint", delta.joint);
+    if (!joint.ok()) return joint.status();
+    if (*joint == kNoJoint) continue;
+    ApplyJointDelta(delta, skeleton_, *joint, scale, &(*locals)[*joint]);
   }
   return {};
 }
