@@ -11,6 +11,7 @@
 #include "client/cli/exit_code.h"
 #include "client/cli/file_output.h"
 #include "client/cli/inputs.h"
+#include "client/cli/pose_clip.h"
 #include "client/cli/progress.h"
 #include "motion/clip.h"
 #include "render/renderer.h"
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 
 struct RenderOptions {
   std::string file;
+  std::string pose;
   std::string out;
   std::string character;
   std::string rig;
@@ -89,12 +91,13 @@ class Performance {
 
 Result<std::unique_ptr<Performance>> Performance::Create(const RenderOptions& options) {
   auto self = std::make_unique<Performance>();
-  auto clip = LoadClipArgument(options.file);
-  if (!clip.ok()) return clip.status();
-  self->clip_ = std::move(*clip);
   auto character = LoadCharacterArgument(options.character, options.rig);
   if (!character.ok()) return character.status();
   self->character_ = std::move(*character);
+  auto clip = options.pose.empty() ? LoadClipArgument(options.file)
+                                   : PoseClip(self->character_, options.pose);
+  if (!clip.ok()) return clip.status();
+  self->clip_ = std::move(*clip);
 
   auto binding = wrinkle::RigBinding::Create(self->character_.rig, self->clip_.skeleton,
                                              self->clip_.blend_shape_names,
@@ -214,9 +217,14 @@ int RenderFile(const RenderOptions& options) {
 void AddRender(CLI::App& app, Action& action) {
   auto options = std::make_shared<RenderOptions>();
   CLI::App* command = app.add_subcommand(
-      "render", "Pictures of a recording, no network: DIR/000123.png for frame 123");
-  command->add_option("FILE", options->file, "BVH, glTF/GLB, VRMA or Live Link Face CSV")
-      ->required();
+      "render", "Pictures of a recording or a pose, no network: DIR/000123.png for frame 123");
+  CLI::Option* file =
+      command->add_option("FILE", options->file, "BVH, glTF/GLB, VRMA or Live Link Face CSV");
+  CLI::Option* pose = command->add_option(
+      "--pose", options->pose,
+      "Instead of FILE, one picture of the rig's reference poses: NAME[=WEIGHT],... or neutral; a "
+      "wrinkle map's name stands for all poses that feed it");
+  file->excludes(pose);
   command->add_option("--out", options->out, "Folder for the pictures; made if it is not there")
       ->required();
   command->add_option("--character", options->character,
@@ -250,7 +258,10 @@ void AddRender(CLI::App& app, Action& action) {
                       "EGL device index or 'surfaceless'; default: the first that works");
   command->add_flag("--allow-missing", options->allow_missing,
                     "Joints of the rig that the recording lacks rest instead of being an error");
-  command->callback([options, &action] { action = [options] { return RenderFile(*options); }; });
+  command->callback([options, &action] {
+    if (options->file.empty() && options->pose.empty()) throw CLI::RequiredError("FILE or --pose");
+    action = [options] { return RenderFile(*options); };
+  });
 }
 
 }  // namespace furrow::cli
