@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <functional>
+
+#include <glm/vec3.hpp>
+
+// Ambient light from all around as nine spherical harmonics a channel (Ramamoorthi and Hanrahan
+// 2001): within 1% of the integral over the hemisphere for any sky as smooth as these. Y is up;
+// colours are linear. No OpenGL here.
+namespace furrow::render {
+
+// Radiance from straight above, all around the horizon and straight below; in between, smoothly by
+// the height y of the direction: mix(horizon, zenith or ground, y^2).
+struct GradientSky {
+  glm::vec3 zenith{0.0f};
+  glm::vec3 horizon{0.0f};
+  glm::vec3 ground{0.0f};
+};
+
+// `direction`: unit.
+[[nodiscard]] glm::vec3 SkyRadiance(const GradientSky& sky, const glm::vec3& direction);
+
+// Coefficients in the order 1; y, z, x; xy, yz, 3 z^2 - 1, xz, x^2 - y^2.
+using SphericalHarmonics = std::array<glm::vec3, 9>;
+
+// The first nine coefficients of a function of the direction (unit), by quadrature.
+[[nodiscard]] SphericalHarmonics ProjectRadiance(
+    const std::function<glm::vec3(const glm::vec3&)>& radiance);
+
+// What a white Lambertian surface with a normal n sends back, as the polynomial
+// c0 + c1 y + c2 z + c3 x + c4 xy + c5 yz + c6 (3 z^2 - 1) + c7 xz + c8 (x^2 - y^2) of n: radiance
+// convolved with the clamped cosine over pi, the basis' constants folded in.
+[[nodiscard]] SphericalHarmonics AmbientPolynomial(const SphericalHarmonics& radiance);
+
+// The polynomial's value; `normal`: unit.
+[[nodiscard]] glm::vec3 EvaluateAmbient(const SphericalHarmonics& polynomial,
+                                        const glm::vec3& normal);
+
+}  // namespace furrow::render
