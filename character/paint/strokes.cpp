@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -11,8 +12,9 @@
 namespace furrow::character::paint {
 namespace {
 
+using glm::vec3;
+
 constexpr std::size_t kRun = 64;  // texels (of one row, mostly) that are skipped by their bounds
-constexpr float kReach = 2.5f;    // widths from the line beyond which a stroke is nothing
 
 struct Bounds {
   glm::vec3 low{std::numeric_limits<float>::max()};
@@ -28,54 +30,75 @@ struct Bounds {
   }
 };
 
-struct Nearest {
-  float distance = std::numeric_limits<float>::max();
-  float place = 0.0f;    // along the line, [0, 1]
-  glm::vec3 away{0.0f};  // unit, from the line to the point
-};
-
-std::vector<float> Places(const std::vector<glm::vec3>& points) {
-  std::vector<float> places(points.size(), 0.0f);
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    places[i] = places[i - 1] + glm::distance(points[i], points[i - 1]);
+void AddStroke(std::span<const Texel> texels, const FoldStroke& stroke, const StrokeLine& line,
+               std::span<glm::vec2> slopes) {
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const Texel& texel = texels[i];
+    if (glm::dot(texel.normal, stroke.facing) < 0.0f) continue;
+    const StrokeLine::Nearest nearest = line.FindNearest(texel.position);
+    if (nearest.distance > kStrokeReach * stroke.width) continue;
+    const FoldShape shape = FoldShapeAt(nearest.distance / stroke.width, stroke.ridge);
+    const float slope =
+        shape.slope * stroke.depth / stroke.width * StrokeTaper(nearest.place, stroke.taper);
+    slopes[i] -= slope * glm::vec2(glm::dot(nearest.away, texel.tangent),
+                                   glm::dot(nearest.away, texel.bitangent));
   }
-  const float length = std::max(places.back(), 1e-9f);
-  for (float& place : places) place /= length;
-  return places;
 }
 
-Nearest FindNearest(const std::vector<glm::vec3>& points, const std::vector<float>& places,
-                    const glm::vec3& p) {
-  Nearest nearest;
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const glm::vec3 along = points[i + 1] - points[i];
-    const float t = std::clamp(
-        glm::dot(p - points[i], along) / std::max(glm::dot(along, along), 1e-12f), 0.0f, 1.0f);
-    const glm::vec3 away = p - (points[i] + along * t);
-    const float distance = glm::length(away);
-    if (distance < nearest.distance) {
-      nearest.distance = distance;
-      nearest.place = places[i] + (places[i + 1] - places[i]) * t;
-      nearest.away = distance > 1e-9f ? away / distance : glm::vec3(0.0f);
-    }
+Bounds Reach(const FoldStroke& stroke) {
+  Bounds bounds;
+  for (const glm::vec3& point : stroke.points) bounds.Include(point);
+  bounds.low -= glm::vec3(kStrokeReach * stroke.width);
+  bounds.high += glm::vec3(kStrokeReach * stroke.width);
+  return bounds;
+}
+
+}  // namespace
+
+StrokeLine::StrokeLine(std::vector<vec3> points) : points_(std::move(points)) {
+  places_.assign(points_.size(), 0.0f);
+  for (std::size_t i = 1; i < points_.size(); ++i) {
+    places_[i] = places_[i - 1] + glm::distance(points_[i], points_[i - 1]);
   }
+  length_ = places_.empty() ? 0.0f : places_.back();
+  for (float& place : places_) place /= std::max(length_, 1e-9f);
+}
+
+StrokeLine::Nearest StrokeLine::FindNearest(const vec3& p) const {
+  float best = std::numeric_limits<float>::max();
+  std::size_t piece = 0;
+  float place_in_piece = 0.0f;
+  for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
+    const vec3 along = points_[i + 1] - points_[i];
+    const vec3 from = p - points_[i];
+    const float t =
+        std::clamp(glm::dot(from, along) / std::max(glm::dot(along, along), 1e-12f), 0.0f, 1.0f);
+    const vec3 away = from - along * t;
+    const float squared = glm::dot(away, away);
+    if (squared >= best) continue;
+    best = squared;
+    piece = i;
+    place_in_piece = t;
+  }
+  Nearest nearest;
+  nearest.distance = std::sqrt(best);
+  nearest.along = points_[piece + 1] - points_[piece];
+  nearest.place = places_[piece] + (places_[piece + 1] - places_[piece]) * place_in_piece;
+  const vec3 away = p - (points_[piece] + nearest.along * place_in_piece);
+  if (nearest.distance > 1e-9f) nearest.away = away / nearest.distance;
   return nearest;
 }
 
-float Taper(float place, float taper) {
+float StrokeTaper(float place, float taper) {
   const float end = std::min(place, 1.0f - place) / std::max(0.5f * taper, 1e-3f);
   const float x = std::clamp(end, 0.0f, 1.0f);
   return x * x * (3.0f - 2.0f * x);
 }
 
-// Height in depths and its derivative by distance in widths. The valley's 1/(1 + ...) shape is
-// narrower at the bottom than a Gaussian of the same foot: skin creases, it does not undulate.
-struct Profile {
-  float height;
-  float slope;
-};
-
-Profile FoldProfile(float x, float ridge) {
+// The valley's 1/(1 + ...) shape is narrower at the bottom than a Gaussian of the same foot: skin
+// creases, it does not undulate.
+FoldShape FoldShapeAt(float widths, float ridge) {
+  const float x = widths;
   const float q = 1.0f + 14.0f * x * x;
   const float fade = std::exp(-x * x);
   const float valley = fade / q;
@@ -85,47 +108,22 @@ Profile FoldProfile(float x, float ridge) {
   return {bump - valley, -4.0f * r * bump - valley_slope};
 }
 
-void AddStroke(std::span<const Texel> texels, const FoldStroke& stroke,
-               const std::vector<float>& places, std::span<glm::vec2> slopes) {
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    const Texel& texel = texels[i];
-    if (glm::dot(texel.normal, stroke.facing) < 0.0f) continue;
-    const Nearest nearest = FindNearest(stroke.points, places, texel.position);
-    if (nearest.distance > kReach * stroke.width) continue;
-    const Profile profile = FoldProfile(nearest.distance / stroke.width, stroke.ridge);
-    const float slope =
-        profile.slope * stroke.depth / stroke.width * Taper(nearest.place, stroke.taper);
-    slopes[i] -= slope * glm::vec2(glm::dot(nearest.away, texel.tangent),
-                                   glm::dot(nearest.away, texel.bitangent));
-  }
-}
-
-Bounds Reach(const FoldStroke& stroke) {
-  Bounds bounds;
-  for (const glm::vec3& point : stroke.points) bounds.Include(point);
-  bounds.low -= glm::vec3(kReach * stroke.width);
-  bounds.high += glm::vec3(kReach * stroke.width);
-  return bounds;
-}
-
-}  // namespace
-
 float StrokeHeight(const FoldStroke& stroke, const glm::vec3& position) {
   if (stroke.points.size() < 2) return 0.0f;
-  const Nearest nearest = FindNearest(stroke.points, Places(stroke.points), position);
-  if (nearest.distance > kReach * stroke.width) return 0.0f;
-  return FoldProfile(nearest.distance / stroke.width, stroke.ridge).height * stroke.depth *
-         Taper(nearest.place, stroke.taper);
+  const StrokeLine::Nearest nearest = StrokeLine(stroke.points).FindNearest(position);
+  if (nearest.distance > kStrokeReach * stroke.width) return 0.0f;
+  return FoldShapeAt(nearest.distance / stroke.width, stroke.ridge).height * stroke.depth *
+         StrokeTaper(nearest.place, stroke.taper);
 }
 
 std::vector<glm::vec2> StrokeSlopes(std::span<const Texel> texels,
                                     std::span<const FoldStroke> strokes) {
   std::vector<glm::vec2> slopes(texels.size(), glm::vec2(0.0f));
   std::vector<Bounds> reaches;
-  std::vector<std::vector<float>> places;
+  std::vector<StrokeLine> lines;
   for (const FoldStroke& stroke : strokes) {
     reaches.push_back(Reach(stroke));
-    places.push_back(stroke.points.empty() ? std::vector<float>() : Places(stroke.points));
+    lines.emplace_back(stroke.points);
   }
   for (std::size_t start = 0; start < texels.size(); start += kRun) {
     const auto run = texels.subspan(start, std::min(kRun, texels.size() - start));
@@ -133,7 +131,7 @@ std::vector<glm::vec2> StrokeSlopes(std::span<const Texel> texels,
     for (const Texel& texel : run) bounds.Include(texel.position);
     for (std::size_t s = 0; s < strokes.size(); ++s) {
       if (strokes[s].points.size() < 2 || !reaches[s].Overlaps(bounds)) continue;
-      AddStroke(run, strokes[s], places[s], std::span(slopes).subspan(start, run.size()));
+      AddStroke(run, strokes[s], lines[s], std::span(slopes).subspan(start, run.size()));
     }
   }
   return slopes;

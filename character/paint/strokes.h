@@ -27,6 +27,40 @@ struct FoldStroke {
   glm::vec3 facing{0.0f};
 };
 
+// Beyond this many widths from its line a stroke is nothing.
+inline constexpr float kStrokeReach = 2.5f;
+
+// A polyline that is asked for its nearest point many times.
+class StrokeLine {
+ public:
+  explicit StrokeLine(std::vector<glm::vec3> points);  // two or more
+
+  struct Nearest {
+    float distance = 0.0f;  // metres
+    float place = 0.0f;     // along the line, [0, 1]
+    glm::vec3 away{0.0f};   // unit, from the line to the point; zero on the line
+    glm::vec3 along{0.0f};  // the line's direction there, as long as the piece it is of
+  };
+  [[nodiscard]] Nearest FindNearest(const glm::vec3& p) const;
+  [[nodiscard]] const std::vector<glm::vec3>& points() const { return points_; }
+  [[nodiscard]] float length() const { return length_; }
+
+ private:
+  std::vector<glm::vec3> points_;
+  std::vector<float> places_;
+  float length_ = 0.0f;
+};
+
+// 0 at both ends of a line, 1 between; `taper` as FoldStroke has it.
+[[nodiscard]] float StrokeTaper(float place, float taper);
+
+// A fold's height in depths and its derivative by the distance in widths.
+struct FoldShape {
+  float height = 0.0f;
+  float slope = 0.0f;
+};
+[[nodiscard]] FoldShape FoldShapeAt(float widths, float ridge);
+
 // Height of a stroke over the rest surface at a point near it, metres.
 [[nodiscard]] float StrokeHeight(const FoldStroke& stroke, const glm::vec3& position);
 

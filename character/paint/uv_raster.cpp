@@ -29,6 +29,7 @@ Texel Interpolate(const Vertex& a, const Vertex& b, const Vertex& c, glm::vec3 w
   const float tangent_length = glm::length(tangent);
   texel.tangent = tangent_length > 1e-6f ? tangent / tangent_length : glm::vec3(a.tangent);
   texel.bitangent = glm::cross(texel.normal, texel.tangent) * a.tangent.w;
+  texel.corners = w;
   return texel;
 }
 
@@ -38,7 +39,9 @@ class TriangleFill {
   TriangleFill(int width, int height, std::vector<char>* covered, std::vector<Texel>* out)
       : width_(width), height_(height), covered_(*covered), out_(*out) {}
 
-  void Fill(const Vertex& a, const Vertex& b, const Vertex& c) {
+  [[nodiscard]] std::int64_t overlaps() const { return overlaps_; }
+
+  void Fill(std::uint32_t triangle, const Vertex& a, const Vertex& b, const Vertex& c) {
     const glm::vec2 size(static_cast<float>(width_), static_cast<float>(height_));
     const glm::vec2 pa = a.uv * size, pb = b.uv * size, pc = c.uv * size;
     const float area = Cross(pb - pa, pc - pa);
@@ -56,26 +59,40 @@ class TriangleFill {
         const glm::vec2 p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
         const glm::vec3 w(Cross(pb - p, pc - p) / area, Cross(pc - p, pa - p) / area,
                           Cross(pa - p, pb - p) / area);
-        if (std::min({w.x, w.y, w.z}) >= -1e-5f) Emit(x, y, Interpolate(a, b, c, w));
+        const float inside = std::min({w.x, w.y, w.z});
+        if (inside < -1e-5f) continue;
+        if (!Claim(x, y)) {
+          overlaps_ += inside > kWellInside ? 1 : 0;
+          continue;
+        }
+        Texel texel = Interpolate(a, b, c, w);
+        texel.x = Wrap(x, width_);
+        texel.y = Wrap(y, height_);
+        texel.triangle = triangle;
+        out_.push_back(texel);
       }
     }
   }
 
  private:
-  void Emit(int x, int y, Texel texel) {
-    texel.x = Wrap(x, width_);
-    texel.y = Wrap(y, height_);
-    char& covered = covered_[static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(width_) +
-                             static_cast<std::size_t>(texel.x)];
-    if (covered) return;
+  // Neighbours both hold a texel that lies on their edge: no overlap.
+  static constexpr float kWellInside = 0.02f;
+
+  // True for the first to come.
+  bool Claim(int x, int y) {
+    char& covered =
+        covered_[static_cast<std::size_t>(Wrap(y, height_)) * static_cast<std::size_t>(width_) +
+                 static_cast<std::size_t>(Wrap(x, width_))];
+    if (covered) return false;
     covered = 1;
-    out_.push_back(texel);
+    return true;
   }
 
   int width_;
   int height_;
   std::vector<char>& covered_;
   std::vector<Texel>& out_;
+  std::int64_t overlaps_ = 0;
 };
 
 // One ring of growth: an uncovered texel takes the mean of its covered neighbours.
@@ -114,14 +131,15 @@ void DilateOnce(std::vector<T>* pixels, int width, int height, int channels,
 
 }  // namespace
 
-std::vector<Texel> RasterizeUv(const Mesh& mesh, int width, int height) {
+std::vector<Texel> RasterizeUv(const Mesh& mesh, int width, int height, std::int64_t* overlaps) {
   std::vector<Texel> texels;
   std::vector<char> covered(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
   TriangleFill fill(width, height, &covered, &texels);
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    fill.Fill(mesh.vertices[mesh.indices[i]], mesh.vertices[mesh.indices[i + 1]],
-              mesh.vertices[mesh.indices[i + 2]]);
+    fill.Fill(static_cast<std::uint32_t>(i / 3), mesh.vertices[mesh.indices[i]],
+              mesh.vertices[mesh.indices[i + 1]], mesh.vertices[mesh.indices[i + 2]]);
   }
+  if (overlaps != nullptr) *overlaps = fill.overlaps();
   std::sort(texels.begin(), texels.end(),
             [](const Texel& a, const Texel& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
   return texels;
