@@ -9,6 +9,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include "character/asset_path.h"
+#include "wrinkle/finite.h"
 
 namespace furrow::character {
 namespace {
@@ -22,6 +23,7 @@ std::string_view FormatOf(std::span<const std::uint8_t> bytes) {
   };
   if (starts_with({0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a})) return "png";
   if (starts_with({0xff, 0xd8, 0xff})) return "jpeg";
+  if (starts_with({0x76, 0x2f, 0x31, 0x01})) return "openexr";
   return {};
 }
 
@@ -46,12 +48,72 @@ std::string OneLine(std::string text) {
   return text;
 }
 
+struct Pixels {
+  OIIO::TypeDesc type;
+  void* data = nullptr;
+};
+
+// Room for `values` of a file's type, in the list that keeps all of their precision.
+Pixels Allocate(const OIIO::TypeDesc& format, std::size_t values, Picture* picture) {
+  if (format.is_floating_point()) {
+    picture->pixels_float.resize(values);
+    return {OIIO::TypeDesc::FLOAT, picture->pixels_float.data()};
+  }
+  if (format.size() > 1) {
+    picture->pixels16.resize(values);
+    return {OIIO::TypeDesc::UINT16, picture->pixels16.data()};
+  }
+  picture->pixels.resize(values);
+  return {OIIO::TypeDesc::UINT8, picture->pixels.data()};
+}
+
+// What a picture holds, and how much of it.
+std::pair<OIIO::TypeDesc, const void*> Held(const Picture& picture, std::size_t* values) {
+  if (!picture.pixels_float.empty()) {
+    *values = picture.pixels_float.size();
+    return {OIIO::TypeDesc::FLOAT, picture.pixels_float.data()};
+  }
+  if (!picture.pixels16.empty()) {
+    *values = picture.pixels16.size();
+    return {OIIO::TypeDesc::UINT16, picture.pixels16.data()};
+  }
+  *values = picture.pixels.size();
+  return {OIIO::TypeDesc::UINT8, picture.pixels.data()};
+}
+
+// `file` names the format by its ending; `stored` is the type in the file.
+Result<std::string> Encode(const Picture& picture, const std::string& file,
+                           const OIIO::TypeDesc& stored) {
+  std::size_t values = 0;
+  const auto [type, pixels] = Held(picture, &values);
+  const bool fits = picture.width > 0 && picture.height > 0 && picture.channels >= 1 &&
+                    picture.channels <= 4 &&
+                    values == static_cast<std::size_t>(picture.width) * picture.height *
+                                  static_cast<std::size_t>(picture.channels);
+  if (!fits) {
+    return Status(StatusCode::kInvalidArgument,
+                  "the pixels of picture '" + picture.name + "' do not fit its size");
+  }
+  OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, stored);
+  spec["oiio:UnassociatedAlpha"] = 1;
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  const auto output = OIIO::ImageOutput::create(file, &memory);
+  if (output == nullptr || !output->open(file, spec) || !output->write_image(type, pixels) ||
+      !output->close()) {
+    return Status(StatusCode::kInternal,
+                  "cannot encode picture '" + picture.name +
+                      "': " + OneLine(output == nullptr ? OIIO::geterror() : output->geterror()));
+  }
+  return std::string(bytes.begin(), bytes.end());
+}
+
 }  // namespace
 
 Result<Picture> DecodePicture(std::string name, std::span<const std::uint8_t> bytes) {
   const std::string_view format = FormatOf(bytes);
   if (format.empty()) {
-    return Status(StatusCode::kUnsupported, "the picture is neither PNG nor JPEG");
+    return Status(StatusCode::kUnsupported, "the picture is none of PNG, JPEG and OpenEXR");
   }
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
   OIIO::Filesystem::IOProxy* proxy = &memory;
@@ -73,18 +135,12 @@ Result<Picture> DecodePicture(std::string name, std::span<const std::uint8_t> by
   picture.height = spec.height;
   picture.channels = spec.nchannels;
   const auto values = static_cast<std::size_t>(spec.width) * spec.height * spec.nchannels;
-  const bool wide = spec.format.size() > 1;
-  void* pixels = nullptr;
-  if (wide) {
-    picture.pixels16.resize(values);
-    pixels = picture.pixels16.data();
-  } else {
-    picture.pixels.resize(values);
-    pixels = picture.pixels.data();
-  }
-  const OIIO::TypeDesc type = wide ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
-  if (!input->read_image(0, 0, 0, spec.nchannels, type, pixels)) {
+  const Pixels pixels = Allocate(spec.format, values, &picture);
+  if (!input->read_image(0, 0, 0, spec.nchannels, pixels.type, pixels.data)) {
     return Status(StatusCode::kParse, "the picture is damaged: " + OneLine(input->geterror()));
+  }
+  if (!wrinkle::AllFinite(picture.pixels_float)) {
+    return Status(StatusCode::kNonFinite, "the picture holds texels that are no numbers");
   }
   return picture;
 }
@@ -100,31 +156,16 @@ Result<Picture> LoadPicture(std::string name, const std::filesystem::path& path)
 }
 
 Result<std::string> EncodePng(const Picture& picture) {
-  const bool wide = !picture.pixels16.empty();
-  const std::size_t values = wide ? picture.pixels16.size() : picture.pixels.size();
-  const bool fits = picture.width > 0 && picture.height > 0 && picture.channels >= 1 &&
-                    picture.channels <= 4 &&
-                    values == static_cast<std::size_t>(picture.width) * picture.height *
-                                  static_cast<std::size_t>(picture.channels);
-  if (!fits) {
-    return Status(StatusCode::kInvalidArgument,
-                  "the pixels of picture '" + picture.name + "' do not fit its size");
+  if (!picture.pixels_float.empty()) {
+    return Status(StatusCode::kUnsupported,
+                  "picture '" + picture.name + "' holds floats, which a PNG cannot");
   }
-  const OIIO::TypeDesc type = wide ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
-  OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, type);
-  spec["oiio:UnassociatedAlpha"] = 1;
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  const auto output = OIIO::ImageOutput::create("picture.png", &memory);
-  const void* pixels = wide ? static_cast<const void*>(picture.pixels16.data())
-                            : static_cast<const void*>(picture.pixels.data());
-  if (output == nullptr || !output->open("picture.png", spec) ||
-      !output->write_image(type, pixels) || !output->close()) {
-    return Status(StatusCode::kInternal,
-                  "cannot encode picture '" + picture.name +
-                      "': " + OneLine(output == nullptr ? OIIO::geterror() : output->geterror()));
-  }
-  return std::string(bytes.begin(), bytes.end());
+  return Encode(picture, "picture.png",
+                picture.pixels16.empty() ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16);
+}
+
+Result<std::string> EncodeExr(const Picture& picture) {
+  return Encode(picture, "picture.exr", OIIO::TypeDesc::HALF);
 }
 
 }  // namespace furrow::character

@@ -74,6 +74,7 @@ class References {
   Status CheckMap(const wrinkle::WrinkleMap& map, const std::string& at) {
     const std::pair<const std::string*, const char*> files[] = {{&map.normal, ".normal"},
                                                                 {&map.derivative, ".derivative"},
+                                                                {&map.height, ".height"},
                                                                 {&map.colour, ".colour"},
                                                                 {&map.cavity, ".cavity"}};
     for (const auto& [file, field] : files) {

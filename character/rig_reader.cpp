@@ -164,13 +164,18 @@ void ReadFilter(const schema::Filter* from, wrinkle::Filter* to) {
   to->decay_seconds = from->decay_seconds();
 }
 
-void ReadMaps(const TableList<schema::WrinkleMap>* list, std::vector<wrinkle::WrinkleMap>* maps) {
-  if (list == nullptr) return;
-  for (const schema::WrinkleMap* from : *list) {
-    maps->push_back({from->name()->str(), Text(from->normal()), Text(from->derivative()),
-                     Text(from->colour()), Text(from->cavity()), from->amplitude(),
-                     Text(from->opposes())});
-  }
+Status ReadMap(const schema::WrinkleMap& from, const std::string& at, wrinkle::WrinkleMap* to) {
+  to->name = from.name()->str();
+  to->normal = Text(from.normal());
+  to->derivative = Text(from.derivative());
+  to->derivative_scale = from.derivative_scale();
+  to->height = Text(from.height());
+  to->height_mm = from.height_mm();
+  to->colour = Text(from.colour());
+  to->cavity = Text(from.cavity());
+  to->amplitude = from.amplitude();
+  to->opposes = Text(from.opposes());
+  return Enum(from.surface(), &to->surface, at + ".surface");
 }
 
 }  // namespace
@@ -198,7 +203,11 @@ Result<wrinkle::Rig> ReadRigTables(const schema::Rig& tables, const std::filesys
                      return ReadRegion(region, where, &rig.regions.emplace_back());
                    });
   if (!status.ok()) return status;
-  ReadMaps(tables.wrinkle_maps(), &rig.wrinkle_maps);
+  status = ForEach(tables.wrinkle_maps(), "wrinkle_maps",
+                   [&](const schema::WrinkleMap& map, const std::string& where) {
+                     return ReadMap(map, where, &rig.wrinkle_maps.emplace_back());
+                   });
+  if (!status.ok()) return status;
   ReadFilter(tables.filter(), &rig.filter);
   status = ReadExports(tables.export_(), &rig.exports);
   if (!status.ok()) return status;

@@ -224,10 +224,14 @@ std::string ToJson(const wrinkle::WrinkleMap& map) {
       .Text("name", map.name)
       .Text("normal", map.normal)
       .Text("derivative", map.derivative)
+      .Float("derivative_scale", map.derivative_scale, 1.0f)
+      .Text("height", map.height)
+      .Float("height_mm", map.height_mm, 1.0f)
       .Text("colour", map.colour)
       .Text("cavity", map.cavity)
       .Float("amplitude", map.amplitude, 1.0f)
       .Text("opposes", map.opposes)
+      .Choice("surface", map.surface, {"any", "skin", "cloth"})
       .str();
 }
 

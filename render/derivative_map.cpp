@@ -37,6 +37,7 @@ float Texel(const character::Picture& picture, int x, int y, int channel) {
   if (channel >= picture.channels) return channel == 3 ? 1.0f : 0.0f;
   const std::size_t index =
       (static_cast<std::size_t>(y) * picture.width + x) * picture.channels + channel;
+  if (!picture.pixels_float.empty()) return picture.pixels_float[index];
   if (!picture.pixels16.empty()) return picture.pixels16[index] / 65535.0f;
   return picture.pixels[index] / 255.0f;
 }
@@ -50,9 +51,13 @@ DerivativeMap DerivativesFromNormalMap(const character::Picture& picture) {
   });
 }
 
-DerivativeMap DerivativesFromDerivativeMap(const character::Picture& picture) {
+DerivativeMap DerivativesFromDerivativeMap(const character::Picture& picture, float scale) {
+  const bool floats = !picture.pixels_float.empty();
+  const float gain = floats ? 1.0f : 2.0f * scale;
+  const float offset = floats ? 0.0f : -scale;
   return MapTexels(picture, [&](int x, int y) {
-    return glm::vec2(2.0f * Texel(picture, x, y, 0) - 1.0f, 2.0f * Texel(picture, x, y, 1) - 1.0f);
+    const glm::vec2 stored(Texel(picture, x, y, 0), Texel(picture, x, y, 1));
+    return glm::clamp(gain * stored + offset, -kMaxDerivative, kMaxDerivative);
   });
 }
 
@@ -86,7 +91,7 @@ std::vector<std::uint8_t> ToRgba8(const character::Picture& picture) {
       for (int channel = 0; channel < 4; ++channel) {
         int source = channel;
         if (grey) source = channel < 3 ? 0 : (picture.channels == 2 ? 1 : 3);
-        const float value = Texel(picture, x, y, source);
+        const float value = std::clamp(Texel(picture, x, y, source), 0.0f, 1.0f);
         rgba.push_back(static_cast<std::uint8_t>(value * 255.0f + 0.5f));
       }
     }

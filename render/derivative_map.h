@@ -22,15 +22,16 @@ struct DerivativeMap {
 // maps are taken as they are, since only the ratio counts; slopes are clamped to kMaxDerivative.
 [[nodiscard]] DerivativeMap DerivativesFromNormalMap(const character::Picture& picture);
 
-// From a derivative map: the first two channels, 2 value - 1, in (-1, 1); the rig's amplitude
-// scales.
-[[nodiscard]] DerivativeMap DerivativesFromDerivativeMap(const character::Picture& picture);
+// From a derivative map: the first two channels, as wrinkle/rig.h says: (2 value - 1) * `scale`,
+// and as they are in a picture of floats; clamped to kMaxDerivative.
+[[nodiscard]] DerivativeMap DerivativesFromDerivativeMap(const character::Picture& picture,
+                                                         float scale = 1.0f);
 
 // Bilinear, texel centres at halves, edges clamped: to give maps of one array one size.
 [[nodiscard]] DerivativeMap Resample(const DerivativeMap& map, int width, int height);
 
-// The value of one channel in [0, 1], whatever the depth. A missing channel is 0, a missing
-// alpha 1.
+// The value of one channel in [0, 1], whatever the depth; a float as it is. A missing channel is 0,
+// a missing alpha 1.
 [[nodiscard]] float Texel(const character::Picture& picture, int x, int y, int channel);
 
 // Any picture as 8-bit RGBA: grey is spread, a missing alpha is opaque.

@@ -101,7 +101,7 @@ Status CheckPicture(const Picture& picture) {
       static_cast<std::size_t>(picture.width) * picture.height * picture.channels;
   const std::string where = "picture '" + picture.name + "'";
   if (picture.width < 1 || picture.height < 1 || picture.channels < 1 ||
-      std::max(picture.pixels.size(), picture.pixels16.size()) != samples) {
+      picture.pixels.size() + picture.pixels16.size() + picture.pixels_float.size() != samples) {
     return {StatusCode::kInvalidArgument, "its pixels do not fit its size", where};
   }
   if (std::max(picture.width, picture.height) > limit) {
@@ -313,7 +313,7 @@ Status GpuCharacter::AddWrinkleMaps(const Character& character) {
     layout_.map_layers.push_back(index < 0 ? -1 : static_cast<int>(maps.size()));
     if (index < 0) continue;  // Character::missing_rig_pictures: no relief
     const Picture& picture = character.pictures[static_cast<std::size_t>(index)];
-    maps.push_back(derivative ? DerivativesFromDerivativeMap(picture)
+    maps.push_back(derivative ? DerivativesFromDerivativeMap(picture, map.derivative_scale)
                               : DerivativesFromNormalMap(picture));
     width = std::max(width, picture.width);
     height = std::max(height, picture.height);

@@ -139,14 +139,24 @@ struct Region {
 };
 
 struct WrinkleMap {
-  std::string name;        // "stretch", "squash", "folds", ...
-  std::string normal;      // tangent-space normal map; or
-  std::string derivative;  // partial-derivative map (n.xy / n.z)
-  std::string colour;      // optional
-  std::string cavity;      // optional
-  float amplitude = 1.0f;  // scales the derivatives
-  std::string opposes;     // the map that must not meet this one over a shared border, if any
+  // What a map is drawn on. Eyes and hair never wrinkle.
+  enum class Surface { kAny, kSkin, kCloth };
+
+  std::string name;               // "stretch", "squash", "folds", ...
+  std::string normal;             // tangent-space normal map; or
+  std::string derivative;         // partial-derivative map (n.xy / n.z), green up
+  float derivative_scale = 1.0f;  // what an integer texel of 1 stands for; see below
+  std::string height;             // optional: for displacement, over the rest surface
+  float height_mm = 1.0f;         // what an integer texel of 1 stands for, millimetres
+  std::string colour;             // optional
+  std::string cavity;             // optional
+  float amplitude = 1.0f;         // scales derivatives and heights
+  std::string opposes;  // the map that must not meet this one over a shared border, if any
+  Surface surface = Surface::kAny;
 };
+// A derivative or height in a picture of integers is signed about the middle: a texel t in [0, 1]
+// is (2 t - 1) * scale. A picture of floats (EXR) holds the derivative or the millimetres as they
+// are, and the scale is not looked at.
 
 struct Filter {
   bool enabled = true;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "character/picture.h"
 
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -40,6 +42,56 @@ TEST(Picture, KeepsSixteenBits) {
   ASSERT_TRUE(again.ok()) << again.status().ToString();
   EXPECT_EQ(again->pixels16, picture.pixels16);
   EXPECT_TRUE(again->pixels.empty());
+}
+
+TEST(Picture, KeepsHalfFloats) {
+  Picture picture;
+  picture.width = 2;
+  picture.height = 2;
+  for (int channels = 1; channels <= 4; ++channels) {
+    picture.channels = channels;
+    picture.pixels_float.clear();
+    for (int i = 0; i < 4 * channels; ++i) {
+      picture.pixels_float.push_back(-3.5f + 0.0009765625f * static_cast<float>(i * i));
+    }
+    picture.pixels_float[0] = 1000.0f;
+    const auto exr = EncodeExr(picture);
+    ASSERT_TRUE(exr.ok()) << exr.status().ToString();
+    const auto again = DecodePicture("p", Bytes(*exr));
+    ASSERT_TRUE(again.ok()) << again.status().ToString();
+    EXPECT_EQ(again->channels, channels);
+    ASSERT_EQ(again->pixels_float.size(), picture.pixels_float.size());
+    for (std::size_t i = 0; i < picture.pixels_float.size(); ++i) {
+      EXPECT_NEAR(again->pixels_float[i], picture.pixels_float[i],
+                  std::abs(picture.pixels_float[i]) / 2048.0f)
+          << channels;
+    }
+    EXPECT_TRUE(again->pixels.empty() && again->pixels16.empty());
+  }
+  EXPECT_EQ(EncodePng(picture).status().code(), StatusCode::kUnsupported);
+}
+
+TEST(Picture, RefusesTexelsThatAreNoNumbers) {
+  Picture picture;
+  picture.width = 1;
+  picture.height = 1;
+  picture.channels = 1;
+  picture.pixels_float = {std::numeric_limits<float>::quiet_NaN()};
+  const auto again = DecodePicture("p", Bytes(*EncodeExr(picture)));
+  EXPECT_EQ(again.status().code(), StatusCode::kNonFinite);
+}
+
+TEST(Picture, RefusesEveryTruncationOfAnExr) {
+  Picture picture;
+  picture.width = 4;
+  picture.height = 4;
+  picture.channels = 2;
+  for (int i = 0; i < 32; ++i) picture.pixels_float.push_back(static_cast<float>(i * 37 % 11));
+  const std::string exr = *EncodeExr(picture);
+  for (std::size_t length = 0; length < exr.size(); ++length) {
+    const std::string part(exr.data(), length);
+    EXPECT_FALSE(DecodePicture("p", Bytes(part)).ok()) << length;
+  }
 }
 
 TEST(Picture, RefusesEveryTruncation) {

@@ -117,6 +117,29 @@ TEST(RigFile, WritesFloatsThatReadBackEqual) {
             rig.reference_poses[0].joints[0].rotation);
 }
 
+TEST(RigFile, KeepsEveryFieldOfAMap) {
+  auto rig = *Parse(kSmallRig);
+  EXPECT_EQ(rig.wrinkle_maps[0].surface, wrinkle::WrinkleMap::Surface::kAny);
+  rig.wrinkle_maps[0] = {.name = "folds",
+                         .derivative = "d.exr",
+                         .derivative_scale = 2.5f,
+                         .height = "h.png",
+                         .height_mm = 3.25f,
+                         .colour = "c.png",
+                         .cavity = "v.png",
+                         .amplitude = 0.5f,
+                         .surface = wrinkle::WrinkleMap::Surface::kCloth};
+  const auto again = Parse(RigToJson(rig));
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  const wrinkle::WrinkleMap& map = again->wrinkle_maps[0];
+  EXPECT_EQ(map.derivative, "d.exr");
+  EXPECT_EQ(map.derivative_scale, 2.5f);
+  EXPECT_EQ(map.height, "h.png");
+  EXPECT_EQ(map.height_mm, 3.25f);
+  EXPECT_EQ(map.cavity, "v.png");
+  EXPECT_EQ(map.surface, wrinkle::WrinkleMap::Surface::kCloth);
+}
+
 // Every way to be wrong, one at a time: what is changed, and the code, line and field it must give.
 struct Wrong {
   const char* from;
@@ -191,6 +214,16 @@ INSTANTIATE_TEST_SUITE_P(
               "7: reference_poses[0].joints[0].euler_degrees[0]"},
         Wrong{"-20", "1e39", StatusCode::kNonFinite,
               "7: reference_poses[0].joints[0].euler_degrees[0]"},
+        Wrong{"\"normal\": \"folds.png\"", "\"surface\": \"hair\"", kSchema,
+              "26: wrinkle_maps[0].surface"},
+        Wrong{"\"normal\": \"folds.png\"", "\"surface\": 3", kInvalid,
+              "26: wrinkle_maps[0].surface"},
+        Wrong{"\"normal\": \"folds.png\"", "\"height\": \"../h.exr\"", kInvalid,
+              "26: wrinkle_maps[0].height"},
+        Wrong{"\"normal\": \"folds.png\"", "\"height_mm\": 0", kInvalid,
+              "26: wrinkle_maps[0].height_mm"},
+        Wrong{"\"normal\": \"folds.png\"", "\"derivative_scale\": -1", kInvalid,
+              "26: wrinkle_maps[0].derivative_scale"},
         Wrong{"\"kind\": \"skinning\"", "\"kind\": 7", kInvalid, "23: regions[1].mask.kind"}));
 
 TEST(RigFile, RefusesMoreValuesThanNnlsSolves) {

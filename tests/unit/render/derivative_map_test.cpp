@@ -47,6 +47,23 @@ TEST(DerivativeMap, OfADerivativeMapSpansMinusOneToOne) {
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(map.texels[i], expected[i], 1e-4);
 }
 
+TEST(DerivativeMap, AMapsScaleCountsForIntegersAlone) {
+  character::Picture integers;
+  integers.width = 1;
+  integers.height = 1;
+  integers.channels = 2;
+  integers.pixels16 = {65535, 16384};
+  const DerivativeMap scaled = DerivativesFromDerivativeMap(integers, 3.0f);
+  EXPECT_NEAR(scaled.texels[0], 3.0f, 1e-4f);
+  EXPECT_NEAR(scaled.texels[1], -1.5f, 1e-3f);
+  character::Picture floats = integers;
+  floats.pixels16.clear();
+  floats.pixels_float = {-2.25f, 100.0f};
+  const DerivativeMap plain = DerivativesFromDerivativeMap(floats, 3.0f);
+  EXPECT_EQ(plain.texels[0], -2.25f);
+  EXPECT_EQ(plain.texels[1], kMaxDerivative);
+}
+
 TEST(DerivativeMap, ResampleKeepsARampAndClampsAtTheEdges) {
   DerivativeMap ramp{4, 1, {0, 0, 1, 10, 2, 20, 3, 30}};
   const DerivativeMap twice = Resample(ramp, 8, 1);
