@@ -125,14 +125,27 @@ void FrameGraph::ComputeLifetimes() {
   }
 }
 
-Status FrameGraph::Execute(TransientPool* pool) {
+Status FrameGraph::Run(const Pass& pass, FrameGraphObserver* observer) const {
+  if (observer != nullptr) observer->BeforePass(pass.name);
+  Status status = pass.execute(Resources(this)).At(pass.name);
+  if (observer == nullptr || !status.ok()) return status;
+  std::vector<FrameGraphObserver::Written> written;
+  for (const int version : pass.writes) {
+    const Texture& texture = textures_[versions_[version].texture];
+    written.push_back({texture.name, texture.desc, texture.id});
+  }
+  observer->AfterPass(pass.name, written);
+  return status;
+}
+
+Status FrameGraph::Execute(TransientPool* pool, FrameGraphObserver* observer) {
   Status status;
   for (int index = 0; index < static_cast<int>(passes_.size()) && status.ok(); ++index) {
     if (!passes_[index].needed) continue;
     for (Texture& texture : textures_) {
       if (texture.first_pass == index) texture.id = pool->Acquire(texture.desc);
     }
-    status = passes_[index].execute(Resources(this)).At(passes_[index].name);
+    status = Run(passes_[index], observer);
     for (Texture& texture : textures_) {
       if (texture.last_pass == index) pool->Release(std::exchange(texture.id, 0));
     }

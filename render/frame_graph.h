@@ -35,6 +35,19 @@ class FrameGraphDevice {
   virtual void DestroyTexture(TextureId texture) = 0;
 };
 
+// What is told of every pass that runs, as it runs: for timing, and for looking at what it wrote.
+class FrameGraphObserver {
+ public:
+  struct Written {
+    std::string_view name;  // of the texture, as it was created
+    TextureDesc desc;
+    TextureId texture = 0;  // holds what the pass left there until AfterPass() returns
+  };
+  virtual ~FrameGraphObserver() = default;
+  virtual void BeforePass(std::string_view pass) = 0;
+  virtual void AfterPass(std::string_view pass, const std::vector<Written>& written) = 0;
+};
+
 // Keeps released textures for the next frame, or the next pass of the same frame, that wants one
 // alike.
 class TransientPool {
@@ -120,7 +133,7 @@ class FrameGraph {
   // kInternal: a pass reads what nobody wrote, or a version that was written over.
   [[nodiscard]] Status Compile();
   // Runs the passes that were not culled, in order; stops at the first failure. After Compile().
-  [[nodiscard]] Status Execute(TransientPool* pool);
+  [[nodiscard]] Status Execute(TransientPool* pool, FrameGraphObserver* observer = nullptr);
 
   [[nodiscard]] bool IsCulled(std::string_view pass) const;  // after Compile(); false when unknown
 
@@ -151,6 +164,7 @@ class FrameGraph {
   void Fail(int pass, int version, std::string_view why);
   void Cull();
   void ComputeLifetimes();
+  [[nodiscard]] Status Run(const Pass& pass, FrameGraphObserver* observer) const;
 
   std::vector<Texture> textures_;
   std::vector<Version> versions_;

@@ -51,9 +51,9 @@ class FrameGraphTest : public testing::Test {
           return Status();
         });
   }
-  void RunAll() {
+  void RunAll(FrameGraphObserver* observer = nullptr) {
     ASSERT_TRUE(graph_.Compile().ok());
-    ASSERT_TRUE(graph_.Execute(&pool_).ok());
+    ASSERT_TRUE(graph_.Execute(&pool_, observer).ok());
     pool_.EndFrame();
   }
 
@@ -131,6 +131,36 @@ TEST_F(FrameGraphTest, IdleTexturesAreDestroyedOnce) {
   pool_.EndFrame();
   EXPECT_EQ(device_.num_alive(), 0);
   EXPECT_EQ(device_.num_bad_destroys(), 0);
+}
+
+// Notes what it is told, and how many passes had run by then.
+class Notes final : public FrameGraphObserver {
+ public:
+  explicit Notes(const std::vector<std::string>* ran) : ran_(ran) {}
+  void BeforePass(std::string_view pass) override {
+    lines.push_back("before " + std::string(pass) + " " + std::to_string(ran_->size()));
+  }
+  void AfterPass(std::string_view pass, const std::vector<Written>& written) override {
+    lines.push_back("after " + std::string(pass) + " " + std::to_string(ran_->size()));
+    for (const Written& texture : written) {
+      lines.push_back(std::string(texture.name));
+      EXPECT_NE(texture.texture, 0u);
+      EXPECT_EQ(texture.desc, kSmall);
+    }
+  }
+  std::vector<std::string> lines;
+
+ private:
+  const std::vector<std::string>* ran_;
+};
+
+TEST_F(FrameGraphTest, AnObserverSeesEveryPassThatRunsAndWhatItWrote) {
+  (void)AddStep("culled", {});
+  AddSink(AddStep("a", {}));
+  Notes notes(&ran_);
+  RunAll(&notes);
+  EXPECT_EQ(notes.lines, (std::vector<std::string>{"before a 0", "after a 1", "a target",
+                                                   "before sink 1", "after sink 2"}));
 }
 
 TEST_F(FrameGraphTest, ReadingWhatNobodyWroteIsAnError) {
