@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/renderer.h"
 
-#include <array>
-
 #include "render/camera.h"
 #include "render/egl_context.h"
 #include "render/passes/composite_pass.h"
@@ -13,8 +11,6 @@
 namespace furrow::render {
 namespace {
 
-constexpr std::array<std::string_view, 6> kViewNames = {"final",        "normal",  "mask_dynamic",
-                                                        "mask_texture", "weights", "wireframe"};
 constexpr int kSamples = 4;  // of the scene's targets, for smooth silhouettes
 
 // Members in the order of need: what OpenGL objects live in is destroyed last.
@@ -50,7 +46,7 @@ class GlRenderer final : public Renderer {
     FrameGraph graph;
     if (Status status = BuildFrame(request, &graph); !status.ok()) return status;
     if (Status status = graph.Compile(); !status.ok()) return status;
-    const Status status = graph.Execute(&pool_);
+    const Status status = graph.Execute(&pool_, observer_);
     pool_.EndFrame();
     return status;
   }
@@ -62,6 +58,7 @@ class GlRenderer final : public Renderer {
     return image->value_or(Image());
   }
 
+  void SetObserver(FrameGraphObserver* observer) override { observer_ = observer; }
   int in_flight() const override { return read_back_.in_flight(); }
   std::string description() const override { return context_->description(); }
   Result<Camera> Preset(std::string_view name) const override {
@@ -110,21 +107,10 @@ class GlRenderer final : public Renderer {
   ScenePass scene_pass_;
   CompositePass composite_pass_;
   ReadBack read_back_;
+  FrameGraphObserver* observer_ = nullptr;
 };
 
 }  // namespace
-
-std::string_view ViewName(View view) { return kViewNames[static_cast<std::size_t>(view)]; }
-
-Result<View> ParseView(std::string_view name) {
-  std::string names;
-  for (std::size_t i = 0; i < kViewNames.size(); ++i) {
-    if (kViewNames[i] == name) return static_cast<View>(i);
-    names += (names.empty() ? "" : ", ") + std::string(kViewNames[i]);
-  }
-  return Status(StatusCode::kInvalidArgument, "no view '" + std::string(name) + "'", "view",
-                "one of " + names);
-}
 
 Result<std::unique_ptr<Renderer>> Renderer::Create(const character::Character& character,
                                                    const RendererOptions& options) {

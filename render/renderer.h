@@ -12,18 +12,13 @@
 #include <glm/vec3.hpp>
 
 #include "character/character.h"
+#include "render/settings.h"
 #include "wrinkle/solver.h"
 #include "wrinkle/status.h"
 
 namespace furrow::render {
 
-enum class View { kFinal, kNormal, kMaskDynamic, kMaskTexture, kWeights, kWireframe };
-enum class NormalBlend { kPartialDerivative, kTangentSpace };  // 2.1 / 4.5
-enum class MaskMode { kRig, kDynamic, kTexture };  // as each region says, or all of one kind
 enum class ImageFormat { kJpeg, kPng };
-
-[[nodiscard]] std::string_view ViewName(View view);           // "mask_dynamic"
-[[nodiscard]] Result<View> ParseView(std::string_view name);  // error lists the names
 
 // Where the camera stands: metres, model space of the character's rest pose, degrees.
 struct Camera {
@@ -37,17 +32,6 @@ struct Camera {
   // joint of the character went from its rest pose, turned about +Y as its root turned. -1: stands
   // still.
   int follow_joint = -1;
-};
-
-// What a picture shows. Ranges are checked by Renderer; the message names the field.
-struct Settings {
-  View view = View::kFinal;
-  NormalBlend normal_blend = NormalBlend::kPartialDerivative;
-  MaskMode mask_mode = MaskMode::kRig;
-  bool wrinkles = true;
-  float wrinkle_strength = 1.0f;                 // [0, 4]
-  glm::vec3 background{0.028f, 0.029f, 0.031f};  // linear, [0, 1]
-  float exposure = 1.0f;                         // (0, 16]
 };
 
 struct FrameRequest {
@@ -71,6 +55,8 @@ struct Image {
   std::vector<std::uint8_t> rgb;
   std::uint64_t token = 0;
 };
+
+class FrameGraphObserver;  // render/frame_graph.h
 
 struct RendererOptions {
   std::string device;  // EGL device index, "surfaceless", or empty: the first that gives GL 4.5
@@ -99,6 +85,10 @@ class Renderer {
   [[nodiscard]] virtual int in_flight() const = 0;
   // Submit and wait. Pictures still in flight are dropped.
   [[nodiscard]] Result<Image> Render(const FrameRequest& request);
+
+  // Told of every pass of the frames submitted from now on (render/pass_timer.h times them), with
+  // the renderer's context current; null: nobody. Outlives the renderer or is taken back.
+  virtual void SetObserver(FrameGraphObserver* observer) = 0;
 
   // Vendor, renderer and version of the context, for the log.
   [[nodiscard]] virtual std::string description() const = 0;

@@ -23,24 +23,6 @@ Status CheckSize(const char* field, int size) {
                             std::to_string(kMaxSize) + "]");
 }
 
-// NaN fails every comparison, so each test is for what is allowed.
-Status CheckSettings(const Settings& settings) {
-  if (!(settings.wrinkle_strength >= 0.0f && settings.wrinkle_strength <= 4.0f)) {
-    return Invalid("settings.wrinkle_strength",
-                   std::to_string(settings.wrinkle_strength) + " is outside [0, 4]");
-  }
-  if (!(settings.exposure > 0.0f && settings.exposure <= 16.0f)) {
-    return Invalid("settings.exposure", std::to_string(settings.exposure) + " is outside (0, 16]");
-  }
-  for (int i = 0; i < 3; ++i) {
-    if (!(settings.background[i] >= 0.0f && settings.background[i] <= 1.0f)) {
-      return Invalid("settings.background",
-                     std::to_string(settings.background[i]) + " is outside [0, 1]");
-    }
-  }
-  return {};
-}
-
 Status CheckCamera(const Camera& camera, int num_joints) {
   if (!IsFinite(camera.position)) return Invalid("camera.position", "is not finite");
   if (!IsFinite(camera.target)) return Invalid("camera.target", "is not finite");
