@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/mcap/reader.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "motion/mcap/compression.h"
+
+namespace furrow::motion::mcap {
+namespace {
+
+constexpr std::uint64_t kFooterBytes = kRecordHeaderBytes + 20;
+constexpr std::uint64_t kChunkHeadBytes = 64;  // all before a chunk's data, but for its name
+constexpr std::uint64_t kAttachmentHeadBytes = 64u << 10;  // names of an attachment fit
+
+}  // namespace
+
+Result<std::unique_ptr<Reader>> Reader::Open(const std::filesystem::path& path,
+                                             const ReaderLimits& limits) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) {
+    const int error = errno;
+    return Status(error == ENOENT ? StatusCode::kNotFound : StatusCode::kIo,
+                  error == ENOENT ? "no such file" : std::strerror(error), path.string());
+  }
+  std::unique_ptr<Reader> reader(new Reader(file, path, limits));
+  if (Status status = reader->Open(); !status.ok()) return status.At(path.string());
+  return reader;
+}
+
+Reader::Reader(int file, std::filesystem::path path, const ReaderLimits& limits)
+    : file_(file), path_(std::move(path)), limits_(limits) {}
+
+Reader::~Reader() { ::close(file_); }
+
+Status Reader::Open() {
+  struct stat about = {};
+  if (::fstat(file_, &about) != 0) return {StatusCode::kIo, std::strerror(errno)};
+  if (!S_ISREG(about.st_mode)) return {StatusCode::kIo, "not a regular file"};
+  file_bytes_ = static_cast<std::uint64_t>(about.st_size);
+  const auto magic = ReadAt(0, sizeof kMagic);
+  if (!magic.ok() || !std::equal(magic->begin(), magic->end(), kMagic))
+    return {StatusCode::kParse, "not an MCAP file: it does not begin with MCAP's magic bytes"};
+  const auto header = RecordAt(sizeof kMagic);
+  if (header && header->opcode == Opcode::kHeader && header->length <= limits_.record_bytes) {
+    const auto bytes = ReadAt(header->offset + kRecordHeaderBytes, header->length);
+    if (!bytes.ok()) return bytes.status();
+    ByteReader content(*bytes);
+    profile_ = content.GetText();
+    library_ = content.GetText();
+  } else {
+    return {StatusCode::kParse, "no header after the magic bytes"};
+  }
+  complete_ = ReadSummary();
+  if (complete_) return {};
+  ForgetIndex();
+  return Scan();
+}
+
+void Reader::ForgetIndex() {
+  schemas_.clear();
+  channels_.clear();
+  chunks_.clear();
+  attachments_.clear();
+  metadata_.clear();
+}
+
+Result<std::vector<std::uint8_t>> Reader::ReadAt(std::uint64_t offset, std::uint64_t size) const {
+  if (offset > file_bytes_ || size > file_bytes_ - offset)
+    return Status(StatusCode::kParse, "the file ends too early", path_.string());
+  if (size > limits_.record_bytes)
+    return Status(StatusCode::kLimit,
+                  "a record of " + std::to_string(size) + " bytes; at most " +
+                      std::to_string(limits_.record_bytes) + " are read",
+                  path_.string());
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t got =
+        ::pread(file_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) {
+      return Status(StatusCode::kIo, got == 0 ? "the file became shorter" : std::strerror(errno),
+                    path_.string());
+    }
+    done += static_cast<std::size_t>(got);
+  }
+  return bytes;
+}
+
+std::optional<Reader::Record> Reader::RecordAt(std::uint64_t offset) const {
+  const auto head = ReadAt(offset, kRecordHeaderBytes);
+  if (!head.ok()) return std::nullopt;
+  ByteReader content(*head);
+  Record record;
+  record.opcode = static_cast<Opcode>(content.Get<std::uint8_t>());
+  record.offset = offset;
+  record.length = content.Get<std::uint64_t>();
+  if (record.length > file_bytes_ - offset - kRecordHeaderBytes) return std::nullopt;
+  return record;
+}
+
+void Reader::Warn(std::uint64_t offset, std::string_view what) {
+  constexpr std::size_t kMost = 32;
+  if (warnings_.size() < kMost)
+    warnings_.push_back(path_.string() + ": byte " + std::to_string(offset) + ": " +
+                        std::string(what));
+}
+
+bool Reader::ReadSummary() {
+  constexpr std::uint64_t kTail = kFooterBytes + sizeof kMagic;
+  if (file_bytes_ < sizeof kMagic + kTail) return false;
+  const std::uint64_t footer_at = file_bytes_ - kTail;
+  const auto tail = ReadAt(footer_at, kTail);
+  if (!tail.ok() || !std::equal(tail->end() - sizeof kMagic, tail->end(), kMagic)) return false;
+  ByteReader footer(*tail);
+  if (footer.Get<std::uint8_t>() != static_cast<std::uint8_t>(Opcode::kFooter)) return false;
+  if (footer.Get<std::uint64_t>() != kFooterBytes - kRecordHeaderBytes) return false;
+  const auto start = footer.Get<std::uint64_t>();
+  (void)footer.Get<std::uint64_t>();  // where the summary's groups are listed: not needed
+  const auto crc = footer.Get<std::uint32_t>();
+  if (start < sizeof kMagic || start > footer_at) return false;
+  const auto summary = ReadAt(start, footer_at - start);
+  if (!summary.ok()) return false;
+  const std::span<const std::uint8_t> covered(tail->data(), kFooterBytes - sizeof crc);
+  if (crc != 0 && Crc32(covered, Crc32(*summary)) != crc) {
+    Warn(start, "the summary is damaged; the file was read from its start instead");
+    return false;
+  }
+  return ReadSummaryRecords(*summary);
+}
+
+bool Reader::ReadSummaryRecords(std::span<const std::uint8_t> summary) {
+  ByteReader records(summary);
+  bool has_statistics = false;
+  std::uint64_t num_messages = 0;
+  while (records.ok() && !records.at_end()) {
+    const auto opcode = static_cast<Opcode>(records.Get<std::uint8_t>());
+    ByteReader content(records.Take(records.Get<std::uint64_t>()));
+    if (!records.ok()) return false;
+    bool good = true;
+    switch (opcode) {
+      case Opcode::kSchema: good = AddSchema(content); break;
+      case Opcode::kChannel: good = AddChannel(content); break;
+      case Opcode::kStatistics:
+        has_statistics = true;
+        num_messages = content.Get<std::uint64_t>();
+        break;
+      case Opcode::kChunkIndex: good = AddChunkIndex(content); break;
+      case Opcode::kAttachmentIndex: good = AddAttachmentIndex(content); break;
+      case Opcode::kMetadataIndex: good = AddMetadataIndex(content); break;
+      default: break;
+    }
+    if (!good) return false;
+  }
+  // Messages outside chunks are in no index; without statistics nobody can know.
+  return records.ok() && has_statistics && (num_messages == 0 || !chunks_.empty());
+}
+
+bool Reader::AddSchema(ByteReader content) {
+  Schema schema;
+  schema.id = content.Get<std::uint16_t>();
+  schema.name = content.GetText();
+  schema.encoding = content.GetText();
+  const auto data = content.Take(content.Get<std::uint32_t>());
+  schema.data.assign(data.begin(), data.end());
+  if (!content.ok() || schema.id == 0) return false;
+  schemas_.emplace(schema.id, std::move(schema));
+  return true;
+}
+
+bool Reader::AddChannel(ByteReader content) {
+  Channel channel;
+  channel.id = content.Get<std::uint16_t>();
+  channel.schema_id = content.Get<std::uint16_t>();
+  channel.topic = content.GetText();
+  channel.message_encoding = content.GetText();
+  channel.metadata = content.GetMap();
+  if (!content.ok()) return false;
+  channels_.emplace(channel.id, std::move(channel));
+  return true;
+}
+
+bool Reader::AddMetadata(ByteReader content) {
+  Metadata metadata;
+  metadata.name = content.GetText();
+  metadata.values = content.GetMap();
+  if (!content.ok() || metadata_.size() >= limits_.records) return false;
+  metadata_.push_back(std::move(metadata));
+  return true;
+}
+
+bool Reader::AddChunkIndex(ByteReader content) {
+  ChunkInfo info;
+  info.start_time = content.Get<std::uint64_t>();
+  info.end_time = content.Get<std::uint64_t>();
+  info.offset = content.Get<std::uint64_t>();
+  info.length = content.Get<std::uint64_t>();
+  (void)content.Take(content.Get<std::uint32_t>());  // offsets of the message indexes
+  (void)content.Get<std::uint64_t>();                // their length
+  info.compression = content.GetText();
+  info.compressed_bytes = content.Get<std::uint64_t>();
+  info.uncompressed_bytes = content.Get<std::uint64_t>();
+  const bool fits = info.offset <= file_bytes_ && info.length <= file_bytes_ - info.offset;
+  if (!content.ok() || !fits || info.start_time > info.end_time ||
+      chunks_.size() >= limits_.records) {
+    return false;
+  }
+  chunks_.push_back(std::move(info));
+  return true;
+}
+
+bool Reader::AddAttachmentIndex(ByteReader content) {
+  AttachmentInfo info;
+  info.offset = content.Get<std::uint64_t>();
+  info.length = content.Get<std::uint64_t>();
+  info.log_time = content.Get<std::uint64_t>();
+  info.create_time = content.Get<std::uint64_t>();
+  info.size = content.Get<std::uint64_t>();
+  info.name = content.GetText();
+  info.media_type = content.GetText();
+  const bool fits = info.offset <= file_bytes_ && info.length <= file_bytes_ - info.offset;
+  if (!content.ok() || !fits || attachments_.size() >= limits_.records) return false;
+  attachments_.push_back(std::move(info));
+  return true;
+}
+
+bool Reader::AddMetadataIndex(ByteReader content) {
+  const auto record = RecordAt(content.Get<std::uint64_t>());
+  if (!content.ok() || !record || record->opcode != Opcode::kMetadata) return false;
+  const auto bytes = ReadAt(record->offset + kRecordHeaderBytes, record->length);
+  return bytes.ok() && AddMetadata(ByteReader(*bytes));
+}
+
+Status Reader::Scan() {
+  std::uint64_t offset = sizeof kMagic;
+  bool ended = false;
+  while (!ended && offset < file_bytes_) {
+    const auto record = RecordAt(offset);
+    if (!record) {
+      Warn(offset, "the file ends within a record: its writer died or its disk was full");
+      return {};
+    }
+    ended = record->opcode == Opcode::kDataEnd || record->opcode == Opcode::kFooter;
+    if (!ended) {
+      if (Status status = ScanRecord(*record); !status.ok()) return status;
+    }
+    offset += kRecordHeaderBytes + record->length;
+  }
+  Warn(offset, ended ? "the index after the data is cut off or damaged; all data was read"
+                     : "the file ends without an index: its writer died");
+  return {};
+}
+
+Status Reader::ScanRecord(const Record& record) {
+  const bool loose = record.opcode == Opcode::kMessage;
+  if (record.opcode == Opcode::kChunk || record.opcode == Opcode::kAttachment) {
+    const std::uint64_t head =
+        record.opcode == Opcode::kChunk ? kChunkHeadBytes : kAttachmentHeadBytes;
+    const auto bytes = ReadAt(record.offset + kRecordHeaderBytes, std::min(record.length, head));
+    if (!bytes.ok()) return bytes.status();
+    if (record.opcode == Opcode::kAttachment) {
+      if (!AddAttachment(*bytes, record)) Warn(record.offset, "a damaged attachment is left out");
+      return {};
+    }
+    AddScannedChunk(ByteReader(*bytes), record);
+    return {};
+  }
+  if (!loose && record.opcode != Opcode::kSchema && record.opcode != Opcode::kChannel &&
+      record.opcode != Opcode::kMetadata) {
+    return {};
+  }
+  const auto bytes = ReadAt(record.offset + kRecordHeaderBytes, record.length);
+  if (!bytes.ok()) return bytes.status();
+  bool good = true;
+  if (record.opcode == Opcode::kSchema) good = AddSchema(ByteReader(*bytes));
+  if (record.opcode == Opcode::kChannel) good = AddChannel(ByteReader(*bytes));
+  if (record.opcode == Opcode::kMetadata) good = AddMetadata(ByteReader(*bytes));
+  if (loose) good = AddLooseMessage(ByteReader(*bytes), record);
+  if (!good) Warn(record.offset, "a damaged record is left out");
+  return {};
+}
+
+// A chunk met while scanning counts when it can be unpacked, which also declares its channels.
+void Reader::AddScannedChunk(ByteReader head, const Record& record) {
+  ChunkInfo info;
+  info.start_time = head.Get<std::uint64_t>();
+  info.end_time = head.Get<std::uint64_t>();
+  info.uncompressed_bytes = head.Get<std::uint64_t>();
+  (void)head.Get<std::uint32_t>();  // LoadChunk() looks at the checksum
+  info.compression = head.GetText();
+  info.offset = record.offset;
+  info.length = record.length + kRecordHeaderBytes;
+  const auto records = LoadChunk(info);
+  if (!records.ok()) return Warn(record.offset, "a chunk is left out: " + records.status().what());
+  if (chunks_.size() < limits_.records && info.start_time <= info.end_time)
+    chunks_.push_back(std::move(info));
+}
+
+bool Reader::AddLooseMessage(ByteReader content, const Record& record) {
+  (void)content.Get<std::uint16_t>();
+  (void)content.Get<std::uint32_t>();
+  const auto time = content.Get<std::uint64_t>();
+  if (!content.ok()) return false;
+  const std::uint64_t length = record.length + kRecordHeaderBytes;
+  ChunkInfo* last = chunks_.empty() ? nullptr : &chunks_.back();
+  constexpr std::uint64_t kRunBytes = 1u << 20;
+  if (last != nullptr && last->compression == kLooseMessages &&
+      last->offset + last->length == record.offset && last->length < kRunBytes) {
+    last->start_time = std::min(last->start_time, time);
+    last->end_time = std::max(last->end_time, time);
+    last->length += length;
+    last->uncompressed_bytes = last->length;
+    return true;
+  }
+  if (chunks_.size() >= limits_.records) return false;
+  chunks_.push_back({time, time, record.offset, length, length, length, kLooseMessages});
+  return true;
+}
+
+bool Reader::AddAttachment(std::span<const std::uint8_t> head, const Record& record) {
+  ByteReader content(head);
+  AttachmentInfo info;
+  info.log_time = content.Get<std::uint64_t>();
+  info.create_time = content.Get<std::uint64_t>();
+  info.name = content.GetText();
+  info.media_type = content.GetText();
+  info.size = content.Get<std::uint64_t>();
+  info.offset = record.offset;
+  info.length = record.length + kRecordHeaderBytes;
+  if (!content.ok() || info.size > record.length || attachments_.size() >= limits_.records)
+    return false;
+  attachments_.push_back(std::move(info));
+  return true;
+}
+
+}  // namespace furrow::motion::mcap

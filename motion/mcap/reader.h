@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "motion/mcap/byte_io.h"
+#include "motion/mcap/records.h"
+#include "wrinkle/status.h"
+
+namespace furrow::motion::mcap {
+
+// ChunkInfo::compression of a run of messages that no chunk holds.
+inline constexpr const char* kLooseMessages = "-";
+
+// What a file may make a reader allocate.
+struct ReaderLimits {
+  std::uint64_t record_bytes = 256u << 20;  // of one record, and of one chunk unpacked
+  std::uint64_t loaded_bytes = 1u << 30;    // of chunks that overlap in time, together
+  std::size_t records = 1u << 20;           // chunks, attachments, schemas, channels: each
+};
+
+// Reads an MCAP file of any writer. Everything in it is hostile until checked.
+//
+// - A file without a summary (its writer died) or with a damaged one is scanned from the start:
+//   every whole chunk counts, and warnings() says what was lost.
+// - Checksums are verified where the writer stated them; a damaged chunk is left out with a
+// warning.
+class Reader {
+ public:
+  // Errors: kNotFound, kIo, kParse (not an MCAP file), kLimit.
+  [[nodiscard]] static Result<std::unique_ptr<Reader>> Open(const std::filesystem::path& path,
+                                                            const ReaderLimits& limits = {});
+  ~Reader();
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+
+  [[nodiscard]] const std::string& profile() const { return profile_; }
+  [[nodiscard]] const std::string& library() const { return library_; }
+  [[nodiscard]] const std::map<std::uint16_t, Schema>& schemas() const { return schemas_; }
+  [[nodiscard]] const std::map<std::uint16_t, Channel>& channels() const { return channels_; }
+  [[nodiscard]] const std::vector<ChunkInfo>& chunks() const { return chunks_; }
+  [[nodiscard]] const std::vector<AttachmentInfo>& attachments() const { return attachments_; }
+  [[nodiscard]] const std::vector<Metadata>& metadata() const { return metadata_; }
+  // False where the file ends without its summary.
+  [[nodiscard]] bool complete() const { return complete_; }
+  [[nodiscard]] std::uint64_t file_bytes() const { return file_bytes_; }
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+
+  struct Range {
+    std::uint64_t from = 0;  // log time, both included
+    std::uint64_t to = std::numeric_limits<std::uint64_t>::max();
+  };
+  // Shows every message of the range in the order of log times (of the file where they are equal)
+  // until `visit` returns false. Errors: kIo, kLimit.
+  [[nodiscard]] Status ForEach(const Range& range,
+                               const std::function<bool(const Message&)>& visit);
+
+  // Errors: kIo, kParse (its checksum), kLimit.
+  [[nodiscard]] Result<std::vector<std::uint8_t>> ReadAttachment(const AttachmentInfo& info) const;
+
+ private:
+  struct Record {
+    Opcode opcode = Opcode::kHeader;
+    std::uint64_t offset = 0;  // of the record
+    std::uint64_t length = 0;  // of its content
+  };
+  Reader(int file, std::filesystem::path path, const ReaderLimits& limits);
+  [[nodiscard]] Status Open();
+  [[nodiscard]] bool ReadSummary();
+  [[nodiscard]] bool ReadSummaryRecords(std::span<const std::uint8_t> summary);
+  [[nodiscard]] Status Scan();
+  [[nodiscard]] Status ScanRecord(const Record& record);
+  void ForgetIndex();
+
+  [[nodiscard]] Result<std::vector<std::uint8_t>> ReadAt(std::uint64_t offset,
+                                                         std::uint64_t size) const;
+  // The record at `offset`; none where the file ends before its end.
+  [[nodiscard]] std::optional<Record> RecordAt(std::uint64_t offset) const;
+  [[nodiscard]] bool AddSchema(ByteReader content);
+  [[nodiscard]] bool AddChannel(ByteReader content);
+  [[nodiscard]] bool AddMetadata(ByteReader content);
+  [[nodiscard]] bool AddChunkIndex(ByteReader content);
+  [[nodiscard]] bool AddAttachmentIndex(ByteReader content);
+  [[nodiscard]] bool AddMetadataIndex(ByteReader content);
+  [[nodiscard]] bool AddAttachment(std::span<const std::uint8_t> head, const Record& record);
+  void AddScannedChunk(ByteReader head, const Record& record);
+  [[nodiscard]] bool AddLooseMessage(ByteReader content, const Record& record);
+  // Unpacked records of a chunk. Schemas and channels in it are added.
+  [[nodiscard]] Result<std::vector<std::uint8_t>> LoadChunk(const ChunkInfo& info);
+  [[nodiscard]] bool AddDeclarations(std::span<const std::uint8_t> records);
+  void Warn(std::uint64_t offset, std::string_view what);
+
+  int file_ = -1;
+  std::filesystem::path path_;
+  ReaderLimits limits_;
+  std::uint64_t file_bytes_ = 0;
+  std::string profile_;
+  std::string library_;
+  std::map<std::uint16_t, Schema> schemas_;
+  std::map<std::uint16_t, Channel> channels_;
+  std::vector<ChunkInfo> chunks_;
+  std::vector<AttachmentInfo> attachments_;
+  std::vector<Metadata> metadata_;
+  std::vector<std::string> warnings_;
+  bool complete_ = false;
+};
+
+}  // namespace furrow::motion::mcap

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/mcap/writer.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "motion/mcap/compression.h"
+
+namespace furrow::motion::mcap {
+namespace {
+
+ByteWriter ToRecord(const Schema& schema) {
+  ByteWriter out;
+  out.Put(schema.id).PutText(schema.name).PutText(schema.encoding);
+  out.Put(static_cast<std::uint32_t>(schema.data.size())).PutBytes(schema.data);
+  return out;
+}
+
+ByteWriter ToRecord(const Channel& channel) {
+  ByteWriter out;
+  out.Put(channel.id).Put(channel.schema_id).PutText(channel.topic);
+  out.PutText(channel.message_encoding).PutMap(channel.metadata);
+  return out;
+}
+
+ByteWriter ToIndexRecord(const AttachmentInfo& info) {
+  ByteWriter record;
+  record.Put(info.offset).Put(info.length).Put(info.log_time).Put(info.create_time);
+  record.Put(info.size).PutText(info.name).PutText(info.media_type);
+  return record;
+}
+
+// The summary section: records grouped by kind, where each group lies, the footer and the magic.
+class SummaryBuilder {
+ public:
+  // `start`: where the section begins in the file.
+  explicit SummaryBuilder(std::uint64_t start) : start_(start) {}
+
+  // Records of one kind are to be added one after the other.
+  void Add(Opcode opcode, const ByteWriter& content) {
+    if (groups_.empty() || groups_.back().opcode != opcode)
+      groups_.push_back({opcode, out_.size(), 0});
+    out_.PutRecord(opcode, content);
+    groups_.back().length = out_.size() - groups_.back().start;
+  }
+
+  [[nodiscard]] const ByteWriter& Finish() {
+    const std::uint64_t offsets_start = start_ + out_.size();
+    for (const Group& group : groups_) {
+      ByteWriter record;
+      record.Put(static_cast<std::uint8_t>(group.opcode));
+      record.Put(start_ + group.start).Put(group.length);
+      out_.PutRecord(Opcode::kSummaryOffset, record);
+    }
+    // The footer's checksum covers the summary and the footer up to itself.
+    out_.Put(static_cast<std::uint8_t>(Opcode::kFooter)).Put(std::uint64_t{20});
+    out_.Put(start_).Put(offsets_start);
+    return out_.Put(Crc32(out_.bytes())).PutBytes(kMagic);
+  }
+
+ private:
+  struct Group {
+    Opcode opcode;
+    std::uint64_t start;  // in the section
+    std::uint64_t length;
+  };
+  std::uint64_t start_;
+  ByteWriter out_;
+  std::vector<Group> groups_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Writer>> Writer::Create(const std::filesystem::path& path,
+                                               const WriterOptions& options) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+  if (file < 0) {
+    const int error = errno;
+    return Status(StatusCode::kIo, std::strerror(error), path.string(),
+                  error == EEXIST ? "a recording never overwrites a file: move it away" : "");
+  }
+  std::unique_ptr<Writer> writer(new Writer(file, path, options));
+  Status status = writer->Append(kMagic);
+  if (status.ok()) {
+    ByteWriter header;
+    header.PutText(options.profile).PutText("furrow");
+    status = writer->AppendRecord(Opcode::kHeader, header);
+  }
+  if (!status.ok()) return status;
+  return writer;
+}
+
+Writer::Writer(int file, std::filesystem::path path, const WriterOptions& options)
+    : file_(file), path_(std::move(path)), options_(options) {}
+
+Writer::~Writer() { ::close(file_); }
+
+std::uint16_t Writer::AddSchema(std::string_view name, std::string_view encoding,
+                                std::span<const std::uint8_t> data) {
+  const auto id = static_cast<std::uint16_t>(schemas_.size() + 1);
+  schemas_.push_back({id, std::string(name), std::string(encoding), {data.begin(), data.end()}});
+  return id;
+}
+
+std::uint16_t Writer::AddChannel(std::string_view topic, std::string_view message_encoding,
+                                 std::uint16_t schema_id,
+                                 const std::map<std::string, std::string>& metadata) {
+  const auto id = static_cast<std::uint16_t>(channels_.size() + 1);
+  channels_.push_back({id, schema_id, std::string(topic), std::string(message_encoding), metadata});
+  index_.emplace_back();
+  return id;
+}
+
+Status Writer::Append(std::span<const std::uint8_t> bytes) {
+  if (!failure_.ok()) return failure_;
+  std::span<const std::uint8_t> left = bytes;
+  while (!left.empty()) {
+    const ssize_t written = ::write(file_, left.data(), left.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) {
+      const int error = written == 0 ? ENOSPC : errno;
+      failure_ = {StatusCode::kIo, std::strerror(error), path_.string(),
+                  "what was written before stays readable"};
+      // Nothing more can be done where even this fails: readers stop at the torn record.
+      if (::ftruncate(file_, static_cast<off_t>(offset_)) == 0)
+        ::lseek(file_, static_cast<off_t>(offset_), SEEK_SET);
+      return failure_;
+    }
+    left = left.subspan(static_cast<std::size_t>(written));
+  }
+  offset_ += bytes.size();
+  crc_ = Crc32(bytes, crc_);
+  return {};
+}
+
+Status Writer::AppendRecord(Opcode opcode, const ByteWriter& content) {
+  ByteWriter record;
+  record.PutRecord(opcode, content);
+  return Append(record.bytes());
+}
+
+void Writer::DeclareInChunk(const Channel& channel) {
+  if (!declared_.insert(channel.id).second) return;
+  if (channel.schema_id != 0 && declared_schemas_.insert(channel.schema_id).second)
+    chunk_.PutRecord(Opcode::kSchema, ToRecord(schemas_[channel.schema_id - 1u]));
+  chunk_.PutRecord(Opcode::kChannel, ToRecord(channel));
+}
+
+Status Writer::Write(const Message& message) {
+  if (!failure_.ok()) return failure_;
+  if (message.channel_id == 0 || message.channel_id > channels_.size())
+    return {StatusCode::kInvalidArgument,
+            "there is no channel " + std::to_string(message.channel_id)};
+  DeclareInChunk(channels_[message.channel_id - 1u]);
+  const std::uint64_t place = chunk_.size();
+  chunk_.Put(static_cast<std::uint8_t>(Opcode::kMessage));
+  chunk_.Put(static_cast<std::uint64_t>(22 + message.data.size()));
+  chunk_.Put(message.channel_id).Put(message.sequence);
+  chunk_.Put(message.log_time).Put(message.publish_time).PutBytes(message.data);
+
+  ChannelIndex& index = index_[message.channel_id - 1u];
+  const bool first = chunk_messages_++ == 0;
+  chunk_info_.start_time =
+      first ? message.log_time : std::min(chunk_info_.start_time, message.log_time);
+  chunk_info_.end_time = std::max(chunk_info_.end_time, message.log_time);
+  start_time_ = num_messages_ == 0 ? message.log_time : std::min(start_time_, message.log_time);
+  end_time_ = std::max(end_time_, message.log_time);
+  index.entries.emplace_back(message.log_time, place);
+  ++index.count;
+  ++num_messages_;
+  if (chunk_.size() >= options_.chunk_bytes) return FlushChunk();
+  return {};
+}
+
+Status Writer::FlushChunk() {
+  if (!failure_.ok()) return failure_;
+  if (chunk_messages_ == 0) return {};
+  const std::vector<std::uint8_t> packed = CompressZstd(chunk_.bytes(), options_.zstd_level);
+  ByteWriter record;
+  record.Put(chunk_info_.start_time).Put(chunk_info_.end_time);
+  record.Put(static_cast<std::uint64_t>(chunk_.size())).Put(Crc32(chunk_.bytes()));
+  record.PutText("zstd").Put(static_cast<std::uint64_t>(packed.size())).PutBytes(packed);
+
+  ChunkInfo info = chunk_info_;
+  info.compression = "zstd";
+  info.offset = offset_;
+  info.length = record.size() + kRecordHeaderBytes;
+  info.compressed_bytes = packed.size();
+  info.uncompressed_bytes = chunk_.size();
+  Status status = AppendRecord(Opcode::kChunk, record);
+  if (status.ok()) {
+    ByteWriter index = IndexChunk(info);
+    chunk_index_.push_back(std::move(index));
+    status = failure_;
+  }
+  for (ChannelIndex& channel : index_) channel.entries.clear();
+  chunk_.Clear();
+  chunk_info_ = {};
+  chunk_messages_ = 0;
+  declared_.clear();
+  declared_schemas_.clear();
+  return status;
+}
+
+// Writes the message indexes of the chunk that was just written; returns its chunk index record.
+ByteWriter Writer::IndexChunk(const ChunkInfo& chunk) {
+  const std::uint64_t begin = offset_;
+  ByteWriter offsets;
+  for (const std::uint16_t id : declared_) {
+    ByteWriter entries;
+    for (const auto& [time, place] : index_[id - 1u].entries) entries.Put(time).Put(place);
+    ByteWriter record;
+    record.Put(id).Put(static_cast<std::uint32_t>(entries.size())).PutBytes(entries.bytes());
+    offsets.Put(id).Put(offset_);
+    (void)AppendRecord(Opcode::kMessageIndex, record);  // failure_ remembers
+  }
+  ByteWriter out;
+  out.Put(chunk.start_time).Put(chunk.end_time).Put(chunk.offset).Put(chunk.length);
+  out.Put(static_cast<std::uint32_t>(offsets.size())).PutBytes(offsets.bytes());
+  out.Put(offset_ - begin).PutText(chunk.compression);
+  out.Put(chunk.compressed_bytes).Put(chunk.uncompressed_bytes);
+  return out;
+}
+
+Status Writer::Attach(std::string_view name, std::string_view media_type, std::uint64_t time,
+                      std::span<const std::uint8_t> data) {
+  ByteWriter record;
+  record.Put(time).Put(time).PutText(name).PutText(media_type);
+  record.Put(static_cast<std::uint64_t>(data.size())).PutBytes(data);
+  record.Put(Crc32(record.bytes()));
+  const std::uint64_t offset = offset_;
+  if (Status status = AppendRecord(Opcode::kAttachment, record); !status.ok()) return status;
+  attachments_.push_back({std::string(name), std::string(media_type), time, time, data.size(),
+                          offset, offset_ - offset});
+  return {};
+}
+
+Status Writer::WriteMetadata(const Metadata& metadata) {
+  ByteWriter record;
+  record.PutText(metadata.name).PutMap(metadata.values);
+  const std::uint64_t offset = offset_;
+  if (Status status = AppendRecord(Opcode::kMetadata, record); !status.ok()) return status;
+  metadata_.push_back({metadata.name, offset, offset_ - offset});
+  return {};
+}
+
+Status Writer::Close() {
+  if (closed_) return failure_;
+  closed_ = true;
+  Status before = failure_.ok() ? FlushChunk() : failure_;
+  // After a failure the file was cut back to a whole record: its summary may still fit.
+  failure_ = {};
+  Status status = WriteSummary();
+  if (status.ok() && ::fsync(file_) != 0)
+    status = {StatusCode::kIo, std::strerror(errno), path_.string()};
+  return before.ok() ? status : before;
+}
+
+ByteWriter Writer::Statistics() const {
+  ByteWriter counts;
+  for (std::size_t i = 0; i < index_.size(); ++i) counts.Put(channels_[i].id).Put(index_[i].count);
+  ByteWriter record;
+  record.Put(num_messages_).Put(static_cast<std::uint16_t>(schemas_.size()));
+  record.Put(static_cast<std::uint32_t>(channels_.size()));
+  record.Put(static_cast<std::uint32_t>(attachments_.size()));
+  record.Put(static_cast<std::uint32_t>(metadata_.size()));
+  record.Put(static_cast<std::uint32_t>(chunk_index_.size())).Put(start_time_).Put(end_time_);
+  record.Put(static_cast<std::uint32_t>(counts.size())).PutBytes(counts.bytes());
+  return record;
+}
+
+Status Writer::WriteSummary() {
+  ByteWriter end;
+  end.Put(crc_);
+  if (Status status = AppendRecord(Opcode::kDataEnd, end); !status.ok()) return status;
+
+  SummaryBuilder summary(offset_);
+  for (const Schema& schema : schemas_) summary.Add(Opcode::kSchema, ToRecord(schema));
+  for (const Channel& channel : channels_) summary.Add(Opcode::kChannel, ToRecord(channel));
+  summary.Add(Opcode::kStatistics, Statistics());
+  for (const ByteWriter& index : chunk_index_) summary.Add(Opcode::kChunkIndex, index);
+  for (const AttachmentInfo& info : attachments_)
+    summary.Add(Opcode::kAttachmentIndex, ToIndexRecord(info));
+  for (const MetadataInfo& info : metadata_) {
+    ByteWriter record;
+    record.Put(info.offset).Put(info.length).PutText(info.name);
+    summary.Add(Opcode::kMetadataIndex, record);
+  }
+  return Append(summary.Finish().bytes());
+}
+
+}  // namespace furrow::motion::mcap

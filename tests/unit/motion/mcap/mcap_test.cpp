@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "motion/mcap/compression.h"
+#include "motion/mcap/reader.h"
+#include "motion/mcap/writer.h"
+
+namespace furrow::motion::mcap {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::uint8_t> Bytes(std::string_view text) { return {text.begin(), text.end()}; }
+
+struct Seen {
+  std::string topic;
+  std::uint32_t sequence;
+  std::uint64_t log_time;
+  std::string data;
+  bool operator==(const Seen&) const = default;
+};
+
+class McapTest : public testing::Test {
+ protected:
+  McapTest() {
+    std::string name = (fs::temp_directory_path() / "furrow-mcap-XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+  }
+  ~McapTest() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] fs::path Path(const std::string& name = "take.mcap") const {
+    return folder_ / name;
+  }
+
+  // Two channels, `count` messages, an attachment and metadata.
+  void WriteTake(const fs::path& path, int count, std::uint64_t chunk_bytes, bool close = true) {
+    auto writer = Writer::Create(path, {.chunk_bytes = chunk_bytes});
+    ASSERT_TRUE(writer.ok()) << writer.status().ToString();
+    const auto schema = (*writer)->AddSchema("test.Pose", "flatbuffer", Bytes("schema bytes"));
+    const std::uint16_t channels[2] = {
+        (*writer)->AddChannel("/a/pose", "flatbuffer", schema, {{"subject", "a"}}),
+        (*writer)->AddChannel("/raw", "datagram", 0)};
+    ASSERT_TRUE((*writer)->Attach("rig.json", "application/json", 5, Bytes("{}")).ok());
+    for (int i = 0; i < count; ++i) {
+      const auto data = Bytes("message " + std::to_string(i));
+      Message message;
+      message.channel_id = channels[i % 2];
+      message.sequence = static_cast<std::uint32_t>(i);
+      message.log_time = 1000u + 10u * static_cast<std::uint64_t>(i);
+      message.publish_time = message.log_time - 3;
+      message.data = data;
+      ASSERT_TRUE((*writer)->Write(message).ok());
+    }
+    ASSERT_TRUE((*writer)->WriteMetadata({"take", {{"scene", "12"}}}).ok());
+    if (close) {
+      ASSERT_TRUE((*writer)->Close().ok());
+    }
+  }
+
+  static std::vector<Seen> ReadAll(Reader& reader, const Reader::Range& range = {}) {
+    std::vector<Seen> seen;
+    const Status status = reader.ForEach(range, [&](const Message& m) {
+      const auto channel = reader.channels().find(m.channel_id);
+      seen.push_back({channel == reader.channels().end() ? "?" : channel->second.topic,
+                      m.sequence,
+                      m.log_time,
+                      {m.data.begin(), m.data.end()}});
+      return true;
+    });
+    EXPECT_TRUE(status.ok()) << status.ToString();
+    return seen;
+  }
+
+  static std::string Slurp(const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  void Spill(const fs::path& path, const std::string& bytes) {
+    std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(McapTest, WhatIsWrittenIsReadBack) {
+  WriteTake(Path(), 100, 400);
+  auto reader = Reader::Open(Path());
+  ASSERT_TRUE(reader.ok()) << reader.status().ToString();
+  EXPECT_TRUE((*reader)->complete());
+  EXPECT_TRUE((*reader)->warnings().empty());
+  EXPECT_EQ((*reader)->profile(), "furrow");
+  EXPECT_GT((*reader)->chunks().size(), 5u);
+  EXPECT_EQ((*reader)->schemas().at(1).data, Bytes("schema bytes"));
+  EXPECT_EQ((*reader)->channels().at(1).metadata.at("subject"), "a");
+  ASSERT_EQ((*reader)->metadata().size(), 1u);
+  EXPECT_EQ((*reader)->metadata()[0].values.at("scene"), "12");
+  ASSERT_EQ((*reader)->attachments().size(), 1u);
+  const auto rig = (*reader)->ReadAttachment((*reader)->attachments()[0]);
+  ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+  EXPECT_EQ(*rig, Bytes("{}"));
+
+  const auto seen = ReadAll(**reader);
+  ASSERT_EQ(seen.size(), 100u);
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    const Seen expected{i % 2 == 0 ? "/a/pose" : "/raw", i, 1000 + 10 * i,
+                        "message " + std::to_string(i)};
+    EXPECT_EQ(seen[i], expected);
+  }
+}
+
+TEST_F(McapTest, ARangeOfTimeIsReadAlone) {
+  WriteTake(Path(), 100, 400);
+  auto reader = Reader::Open(Path());
+  ASSERT_TRUE(reader.ok());
+  const auto seen = ReadAll(**reader, {.from = 1205, .to = 1300});
+  ASSERT_EQ(seen.size(), 10u);
+  EXPECT_EQ(seen.front().sequence, 21u);
+  EXPECT_EQ(seen.back().sequence, 30u);
+}
+
+TEST_F(McapTest, CutAnywhereEveryWholeChunkComesBack) {
+  WriteTake(Path(), 18, 300);
+  const std::string whole = Slurp(Path());
+  auto reader = Reader::Open(Path());
+  ASSERT_TRUE(reader.ok());
+  const std::vector<ChunkInfo> chunks = (*reader)->chunks();
+  const auto all = ReadAll(**reader);
+  for (std::size_t size = 0; size < whole.size(); size += 5) {
+    Spill(Path("cut.mcap"), whole.substr(0, size));
+    auto cut = Reader::Open(Path("cut.mcap"));
+    if (!cut.ok()) {
+      EXPECT_LT(size, 64u) << cut.status().ToString();  // not even a header
+      continue;
+    }
+    EXPECT_FALSE((*cut)->complete());
+    EXPECT_FALSE((*cut)->warnings().empty()) << size;
+    std::size_t expected = 0;
+    for (const ChunkInfo& chunk : chunks) expected += chunk.offset + chunk.length <= size;
+    EXPECT_EQ((*cut)->chunks().size(), expected) << size;
+    const auto seen = ReadAll(**cut);
+    ASSERT_LE(seen.size(), all.size());
+    EXPECT_TRUE(std::equal(seen.begin(), seen.end(), all.begin()));
+  }
+}
+
+TEST_F(McapTest, AWriterThatDiesLeavesWhatWasFlushed) {
+  WriteTake(Path(), 40, 300, false);
+  auto reader = Reader::Open(Path());
+  ASSERT_TRUE(reader.ok());
+  EXPECT_FALSE((*reader)->complete());
+  EXPECT_GE(ReadAll(**reader).size(), 30u);
+  EXPECT_EQ((*reader)->attachments().size(), 1u);
+}
+
+// One byte after the other is changed: nothing crashes, and whatever is still shown is true.
+TEST_F(McapTest, DamageIsNeverShownAsData) {
+  WriteTake(Path(), 5, 200);
+  const std::string whole = Slurp(Path());
+  auto reader = Reader::Open(Path());
+  ASSERT_TRUE(reader.ok());
+  const auto all = ReadAll(**reader);
+  for (std::size_t i = 0; i < whole.size(); i += 3) {
+    std::string damaged = whole;
+    damaged[i] = static_cast<char>(damaged[i] ^ 0x41);
+    Spill(Path("bad.mcap"), damaged);
+    auto bad = Reader::Open(Path("bad.mcap"));
+    if (!bad.ok()) continue;
+    for (const Seen& seen : ReadAll(**bad)) {
+      const bool true_message = std::find_if(all.begin(), all.end(), [&](const Seen& s) {
+                                  return s.data == seen.data && s.log_time == seen.log_time;
+                                }) != all.end();
+      EXPECT_TRUE(true_message) << "byte " << i;
+    }
+  }
+}
+
+TEST_F(McapTest, ChunksThatOverlapAreShownInTheOrderOfTime) {
+  auto writer = Writer::Create(Path());
+  ASSERT_TRUE(writer.ok());
+  const auto channel = (*writer)->AddChannel("/x", "text", 0);
+  for (const std::uint64_t time : {50u, 10u, 30u, 0u, 20u, 60u, 5u, 5u}) {
+    Message message;
+    message.channel_id = channel;
+    message.log_time = time;
+    ASSERT_TRUE((*writer)->Write(message).ok());
+    if (time == 30 || time == 60) {
+      ASSERT_TRUE((*writer)->FlushChunk().ok());
+    }
+  }
+  ASSERT_TRUE((*writer)->Close().ok());
+  auto reader = Reader::Open(Path());
+  ASSERT_TRUE(reader.ok());
+  std::vector<std::uint64_t> times;
+  for (const Seen& seen : ReadAll(**reader)) times.push_back(seen.log_time);
+  EXPECT_EQ(times, (std::vector<std::uint64_t>{0, 5, 5, 10, 20, 30, 50, 60}));
+}
+
+TEST_F(McapTest, AFullDiskEndsTheRecordingAndTheFileIsReadable) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{20000, 20000};  // write() fails with EFBIG beyond
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    auto writer = Writer::Create(Path(), {.chunk_bytes = 2000});
+    if (!writer.ok()) ::_exit(2);
+    const auto channel = (*writer)->AddChannel("/x", "text", 0);
+    std::uint32_t seed = 1;
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+      std::vector<std::uint8_t> noise(100);
+      for (std::uint8_t& byte : noise)
+        byte = static_cast<std::uint8_t>((seed = seed * 1664525u + 1013904223u) >> 24);
+      Message message;
+      message.channel_id = channel;
+      message.sequence = i;
+      message.log_time = i + 1;
+      message.data = noise;
+      if (Status status = (*writer)->Write(message); !status.ok()) {
+        // Once failed, it stays failed; closing says so, too.
+        const bool again = (*writer)->Write(message).ok() || (*writer)->Close().ok();
+        ::_exit(status.code() == StatusCode::kIo && !again ? 0 : 3);
+      }
+    }
+    ::_exit(4);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  ASSERT_EQ(WEXITSTATUS(status), 0);
+  auto reader = Reader::Open(Path());
+  ASSERT_TRUE(reader.ok()) << reader.status().ToString();
+  const auto seen = ReadAll(**reader);
+  EXPECT_GT(seen.size(), 100u);
+  for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i].sequence, i);
+}
+
+TEST_F(McapTest, WhatIsNoMcapFileSaysSo) {
+  Spill(Path("x"), "HIERARCHY\nROOT hips\n{\n}\n");
+  EXPECT_EQ(Reader::Open(Path("x")).status().code(), StatusCode::kParse);
+  Spill(Path("empty"), "");
+  EXPECT_EQ(Reader::Open(Path("empty")).status().code(), StatusCode::kParse);
+  EXPECT_EQ(Reader::Open(Path("none")).status().code(), StatusCode::kNotFound);
+  EXPECT_EQ(Reader::Open(folder_).status().code(), StatusCode::kIo);
+}
+
+TEST_F(McapTest, ARecordingNeverOverwrites) {
+  Spill(Path(), "precious");
+  EXPECT_EQ(Writer::Create(Path()).status().code(), StatusCode::kIo);
+  EXPECT_EQ(Slurp(Path()), "precious");
+}
+
+TEST(McapCompression, UnknownMethodsAndWrongSizesAreErrors) {
+  const std::vector<std::uint8_t> bytes(1000, 7);
+  const auto packed = CompressZstd(bytes, 3);
+  EXPECT_LT(packed.size(), 100u);
+  EXPECT_EQ(*Decompress("zstd", packed, 1000), bytes);
+  EXPECT_FALSE(Decompress("zstd", packed, 999).ok());
+  EXPECT_FALSE(Decompress("zstd", packed, 1001).ok());
+  EXPECT_FALSE(Decompress("lz4", packed, 1000).ok());
+  EXPECT_EQ(Decompress("brotli", packed, 1000).status().code(), StatusCode::kUnsupported);
+}
+
+TEST(McapCompression, Crc32IsThatOfTheFormat) {
+  // The check value of CRC-32/ISO-HDLC.
+  EXPECT_EQ(Crc32(Bytes("123456789")), 0xCBF43926u);
+  EXPECT_EQ(Crc32(Bytes("6789"), Crc32(Bytes("12345"))), 0xCBF43926u);
+}
+
+}  // namespace
+}  // namespace furrow::motion::mcap
