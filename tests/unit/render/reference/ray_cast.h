@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+
+namespace furrow::render::test {
+
+// A sphere over the plane y = 0, which reaches to infinity; metres.
+struct SphereOnPlane {
+  glm::dvec3 centre{0.0};
+  double radius = 1.0;
+};
+
+// Distance along a ray (unit direction) to the first surface, infinite when there is none.
+[[nodiscard]] double RayDistance(const SphereOnPlane& scene, const glm::dvec3& origin,
+                                 const glm::dvec3& direction);
+
+// Whether the way from a point of a surface to a distant light (unit direction towards it) is free.
+[[nodiscard]] bool SeesLight(const SphereOnPlane& scene, const glm::dvec3& point,
+                             const glm::dvec3& normal, const glm::dvec3& to_light);
+
+// Share of the cosine-weighted hemisphere over a point of a surface that is open: no surface within
+// `reach` metres. By `rays` rays.
+[[nodiscard]] double Openness(const SphereOnPlane& scene, const glm::dvec3& point,
+                              const glm::dvec3& normal, double reach, int rays);
+
+}  // namespace furrow::render::test

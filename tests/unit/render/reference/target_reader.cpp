@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/unit/render/reference/target_reader.h"
+
+#include <gtest/gtest.h>
+
+#include "render/gl_objects.h"
+
+namespace furrow::render::test {
+
+void TargetReader::AfterPass(std::string_view, const std::vector<Written>& written) {
+  for (const Written& texture : written) {
+    const TextureDesc& desc = texture.desc;
+    if (desc.samples != 1) continue;
+    FloatPicture picture(desc.width, desc.height);
+    const bool depth = desc.format == PixelFormat::kDepth32F;
+    std::vector<float> depths;
+    if (depth) {
+      depths.resize(picture.texels.size());
+      glGetTextureImage(texture.texture, 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                        static_cast<GLsizei>(depths.size() * sizeof(float)), depths.data());
+      for (std::size_t i = 0; i < depths.size(); ++i) picture.texels[i] = glm::vec4(depths[i]);
+    } else {
+      glGetTextureImage(texture.texture, 0, GL_RGBA, GL_FLOAT,
+                        static_cast<GLsizei>(picture.texels.size() * sizeof(glm::vec4)),
+                        picture.texels.data());
+    }
+    targets_[std::string(texture.name)] = std::move(picture);
+  }
+}
+
+const FloatPicture& TargetReader::Target(const std::string& name) const {
+  const auto found = targets_.find(name);
+  if (found != targets_.end()) return found->second;
+  std::string names;
+  for (const auto& [known, picture] : targets_) names += " '" + known + "'";
+  ADD_FAILURE() << "no target '" << name << "', only" << names;
+  static const FloatPicture kNone(1, 1);
+  return kNone;
+}
+
+}  // namespace furrow::render::test
