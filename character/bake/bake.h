@@ -33,7 +33,7 @@ struct BakePose {
 struct BakeStroke {
   enum class Kind {
     kFold,       // one crease: a valley with a ridge on either side
-    kDirection,  // folds near the line run along it; depth 0 unless strain or `depth_mm` says more
+    kDirection,  // folds of strain near the line run along it
     kExclude,    // no folds of strain near the line
   };
   std::string name;
@@ -74,7 +74,7 @@ struct BakeRegionWavelength {
 };
 
 struct BakeOptions {
-  int size = 2048;  // of the maps, texels a side: a power of two in [64, 8192]
+  int size = 2048;  // of the maps, texels a side: [64, 4096]
   BakeMaterial skin;
   BakeMaterial cloth{.wavelength_mm = 20.0f,
                      .variation = 0.3f,
@@ -90,10 +90,12 @@ struct BakeOptions {
   int threads = 2;  // [1, 64]; the result does not depend on it
 };
 
-// What a pose folds of a region: proposed as its mask.
+// What a region's poses fold, wherever that is: proposed as its mask.
 struct BakedMask {
   std::string region;
-  std::vector<float> texels;  // width x height of the map, rows from the top, [0, 1]
+  int width = 0;  // a quarter of the map's: masks are soft
+  int height = 0;
+  std::vector<float> texels;  // rows from the top, [0, 1]
 };
 
 // One wrinkle map in the UV atlas of the surfaces it is drawn on. Planes: rows from the top.
@@ -129,13 +131,14 @@ struct BakedMaps {
 
 // Bakes every map that a pose or a stroke names.
 //
-// - A map that a pose or blend-shape driver of the rig feeds goes on skin, another on cloth, or on
-//   skin where the character wears none: as the renderer draws it.
+// - A map goes on the meshes of the surface that the rig names for it; where that is any, on skin,
+//   or on cloth where there is no skin. Meshes of one kind share one atlas. Where no material is
+//   marked as skin, all that is not cloth, eyes or hair is.
 // - `progress` (may be empty) is called on the calling thread with what is done, [0, 1]; false
 //   cancels.
 // - The same input gives the same bytes, whatever `threads` is.
 // Errors: kInvalidArgument (a map or region that the rig has not, counts or options out of range,
-// a surface without UVs or without any triangle of extent), kNonFinite, kLimit, kUnavailable
+// a surface that is not there, has no UVs or no triangle of extent), kNonFinite, kUnavailable
 // (cancelled). A pose that strains nothing is no error: its map is flat.
 [[nodiscard]] Result<BakedMaps> Bake(const Character& character, std::span<const BakePose> poses,
                                      std::span<const BakeStroke> strokes,

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/bake/bake.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "character/bake/bake_check.h"
+#include "character/bake/bake_surface.h"
+#include "character/bake/map_baker.h"
+
+namespace furrow::character::bake {
+namespace {
+
+bool Names(const BakeStroke& stroke, const std::string& map) {
+  return std::find(stroke.maps.begin(), stroke.maps.end(), map) != stroke.maps.end();
+}
+
+bool IsFed(const std::string& map, std::span<const BakePose> poses,
+           std::span<const BakeStroke> strokes) {
+  return std::any_of(poses.begin(), poses.end(), [&](const auto& p) { return p.map == map; }) ||
+         std::any_of(strokes.begin(), strokes.end(), [&](const auto& s) { return Names(s, map); });
+}
+
+}  // namespace
+
+Result<BakedMaps> Bake(const Character& character, std::span<const BakePose> poses,
+                       std::span<const BakeStroke> strokes, const BakeOptions& options,
+                       const std::function<bool(float)>& progress) {
+  if (Status status = CheckBake(character, poses, strokes, options); !status.ok()) return status;
+  std::vector<const wrinkle::WrinkleMap*> fed;
+  for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
+    if (IsFed(map.name, poses, strokes)) fed.push_back(&map);
+  }
+  const Status cancelled(StatusCode::kUnavailable, "cancelled");
+  if (progress && !progress(0.0f)) return cancelled;
+  std::unique_ptr<BakeSurface> surfaces[2];  // skin, cloth
+  BakedMaps maps;
+  for (const wrinkle::WrinkleMap* map : fed) {
+    const bool cloth = GoesOnCloth(character, *map);
+    std::unique_ptr<BakeSurface>& surface = surfaces[cloth ? 1 : 0];
+    if (surface == nullptr) {
+      Result<std::unique_ptr<BakeSurface>> made = BakeSurface::Create(character, cloth, options);
+      if (!made.ok()) return made.status();
+      surface = std::move(made).value();
+    }
+    MapBaker baker(character, *surface, options, map->name, cloth);
+    for (const BakePose& pose : poses) {
+      if (pose.map == map->name) baker.AddPose(pose);
+    }
+    for (const BakeStroke& stroke : strokes) {
+      if (Names(stroke, map->name)) baker.AddStroke(stroke);
+    }
+    const auto overall = [&](float done) {
+      const auto before = static_cast<float>(maps.maps.size());
+      return !progress || progress((before + done) / static_cast<float>(fed.size()));
+    };
+    std::unique_ptr<BakedMap> baked = baker.Bake(overall);
+    if (baked == nullptr) return cancelled;
+    maps.maps.push_back(std::move(*baked));
+  }
+  return maps;
+}
+
+Picture NormalPicture(const BakedMap& map, std::string name) {
+  Picture picture;
+  picture.name = std::move(name);
+  picture.width = map.width;
+  picture.height = map.height;
+  picture.channels = 3;
+  const std::size_t count = map.height_mm.size();
+  picture.pixels16.reserve(3 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec3 n =
+        glm::normalize(glm::vec3(map.derivative[2 * i], map.derivative[2 * i + 1], 1.0f));
+    for (int c = 0; c < 3; ++c) {
+      picture.pixels16.push_back(
+          static_cast<std::uint16_t>(std::lround((n[c] * 0.5f + 0.5f) * 65535.0f)));
+    }
+  }
+  return picture;
+}
+
+}  // namespace furrow::character::bake

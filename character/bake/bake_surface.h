@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "character/bake/bake.h"
+#include "character/bake/compression.h"
+#include "character/bake/surface.h"
+#include "character/paint/uv_raster.h"
+
+namespace furrow::character::bake {
+
+// Everything about the skin or the clothes of a character that several maps share.
+class BakeSurface {
+ public:
+  // kInvalidArgument: nothing of the kind, no UVs, no triangle of extent.
+  [[nodiscard]] static Result<std::unique_ptr<BakeSurface>> Create(const Character& character,
+                                                                   bool cloth,
+                                                                   const BakeOptions& options);
+
+  [[nodiscard]] const Surface& surface() const { return surface_; }
+  [[nodiscard]] const CompressionSolver& solver() const { return solver_; }
+  [[nodiscard]] const std::vector<paint::Texel>& texels() const { return texels_; }
+  [[nodiscard]] std::int64_t overlaps() const { return overlaps_; }
+  [[nodiscard]] float texel_metres() const { return texel_metres_; }  // side, median
+
+  // A region's mask at the welded vertices, [0, 1]; empty where it has no picture: everywhere all.
+  [[nodiscard]] std::vector<float> MaskOf(const Character& character,
+                                          const wrinkle::Region& region) const;
+
+ private:
+  BakeSurface(std::span<const Mesh* const> meshes, float smoothing, int size);
+  [[nodiscard]] float MedianTexel(int size) const;
+
+  Surface surface_;
+  CompressionSolver solver_;
+  std::int64_t overlaps_ = 0;
+  std::vector<paint::Texel> texels_;
+  float texel_metres_ = 0.0f;
+};
+
+// Whether a map goes on cloth; see Bake().
+[[nodiscard]] bool GoesOnCloth(const Character& character, const wrinkle::WrinkleMap& map);
+
+}  // namespace furrow::character::bake

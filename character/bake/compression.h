@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+
+#include "character/bake/surface.h"
+
+namespace furrow::character::bake {
+
+// Eigenvalues and the direction of the larger, in the tensor's axes.
+struct Principal2 {
+  float large = 0.0f;
+  float small = 0.0f;
+  glm::vec2 direction{1.0f, 0.0f};  // unit, up to sign
+};
+[[nodiscard]] Principal2 PrincipalOf(const Tensor2& tensor);
+
+// How a pose compresses a surface, vertex by vertex.
+//
+// Skinning strains triangles unevenly, and a fold is no finer than the strain it answers to: so the
+// stretch of the triangles (the right stretch tensor U, C = U^2) is averaged over a radius, every
+// tensor carried to the vertex over the surface, by area and a Gaussian of the distance.
+class CompressionSolver {
+ public:
+  // `surface` outlives the solver. `radius`: metres, >= 0 (0: the triangles around the vertex).
+  CompressionSolver(const Surface& surface, float radius);
+
+  struct Field {
+    // One a welded vertex, in its axes: compression 1 - stretch along principal directions, [0, 1],
+    // 0 where the surface is stretched.
+    std::vector<Tensor2> tensors;
+    float worst = 0.0f;  // of any triangle, before averaging
+  };
+  // `skin_matrices`: one a joint that a vertex names. Compression above `limit` counts as `limit`.
+  [[nodiscard]] Field Solve(std::span<const glm::mat4> skin_matrices, float limit) const;
+
+ private:
+  struct Term {
+    std::uint32_t triangle;
+    float share;  // the shares of a vertex sum to 1
+    Turn turn;
+  };
+
+  [[nodiscard]] std::vector<glm::vec3> Pose(std::span<const glm::mat4> skin_matrices) const;
+  void Gather(std::size_t vertex, float radius, SurfaceReach* reach);
+
+  const Surface& surface_;
+  std::vector<Term> terms_;
+  std::vector<std::size_t> starts_;
+};
+
+// Several poses that feed one map, as one field: about the largest compression, direction by
+// direction. Poses that press one place along different directions so leave it a second principal
+// compression, and folds that cross.
+class CompressionSum {
+ public:
+  explicit CompressionSum(std::size_t vertices) : sums_(vertices) {}
+  // `weights`: one a vertex, [0, 1].
+  void Add(std::span<const Tensor2> tensors, std::span<const float> weights);
+  [[nodiscard]] std::vector<Tensor2> Take() const;
+
+ private:
+  std::vector<Tensor2> sums_;  // of fourth powers
+};
+
+}  // namespace furrow::character::bake

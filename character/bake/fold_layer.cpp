@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/bake/fold_layer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include <glm/geometric.hpp>
+
+#include "character/bake/compression.h"
+#include "character/bake/phases.h"
+#include "wrinkle/scalar.h"
+
+namespace furrow::character::bake {
+namespace {
+
+using glm::vec2;
+using glm::vec3;
+
+KernelSet::Options KernelOptions(const FoldLayer::Options& options) {
+  return {.wavelength_scale = options.wavelength_scale,
+          .smallest = options.smallest,
+          .crossing = options.crossing,
+          .threshold = options.material.threshold,
+          .variation = options.material.variation,
+          .seed = options.seed};
+}
+
+// Half the height of a fold: the length that `share` of the compression leaves over goes up and
+// down. It sets in softly above the threshold, so folds run out instead of ending.
+KernelSet::Amplitude AmplitudeOf(const FoldLayer::Options& options, const FoldProfile& profile) {
+  return [options, &profile](float compression, float wavelength) {
+    const BakeMaterial& material = options.material;
+    const float begin = material.threshold;
+    const float onset = begin > 0.0f ? wrinkle::Smoothstep(begin, 3.0f * begin, compression) : 1.0f;
+    return options.height * onset * profile.Amplitude(material.share * compression) * wavelength /
+           (2.0f * wrinkle::kPi);
+  };
+}
+
+// A value with its derivatives along the tangent and the bitangent.
+struct Dual {
+  float value = 0.0f;
+  vec2 slope{0.0f};
+};
+Dual operator*(const Dual& a, const Dual& b) {
+  return {a.value * b.value, a.slope * b.value + b.slope * a.value};
+}
+Dual operator/(const Dual& a, const Dual& b) {
+  const float inverse = 1.0f / b.value;
+  return {a.value * inverse, (a.slope - b.slope * (a.value * inverse)) * inverse};
+}
+
+// How far the waves that meet at a place agree, as a factor of their height.
+Dual Agreement(const Dual& coherence) {
+  constexpr float kNone = 0.15f, kFull = 0.6f;
+  const float t = wrinkle::Saturate((coherence.value - kNone) / (kFull - kNone));
+  return {t * t * (3.0f - 2.0f * t), coherence.slope * (6.0f * t * (1.0f - t) / (kFull - kNone))};
+}
+
+// The waves around a place, added up.
+struct WaveSum {
+  Dual share, amplitude, x, y;
+  float frequency = 0.0f;  // mean length, times the share
+
+  void Add(const Dual& weight, float kernel_amplitude, const vec2& frequency2, float phase) {
+    const Dual cosine{std::cos(phase), frequency2 * -std::sin(phase)};
+    const Dual sine{std::sin(phase), frequency2 * std::cos(phase)};
+    Accumulate(weight, &share);
+    Accumulate({weight.value * kernel_amplitude, weight.slope * kernel_amplitude}, &amplitude);
+    Accumulate(weight * cosine, &x);
+    Accumulate(weight * sine, &y);
+    frequency += weight.value * glm::length(frequency2);
+  }
+
+  static void Accumulate(const Dual& term, Dual* sum) {
+    sum->value += term.value;
+    sum->slope += term.slope;
+  }
+};
+
+FoldSample ToFold(const WaveSum& sum, const FoldProfile& profile) {
+  FoldSample fold;
+  const float length = std::hypot(sum.x.value, sum.y.value);
+  if (!(sum.share.value > 1e-9f) || !(length > 1e-9f * sum.share.value)) return fold;
+  const float cosine = sum.x.value / length, sine = sum.y.value / length;
+  const Dual modulus{length, sum.x.slope * cosine + sum.y.slope * sine};
+  const vec2 phase_slope = (sum.y.slope * cosine - sum.x.slope * sine) / length;
+  const FoldProfile::Sample section = profile.At(cosine, sine);
+  const Dual shape{section.height, phase_slope * section.slope};
+  const Dual height = sum.amplitude / sum.share * Agreement(modulus / sum.share) * shape;
+  fold.height = height.value;
+  fold.slope = height.slope;
+  fold.cavity = CavityOf(height.value,
+                         2.0f * wrinkle::kPi * sum.share.value / std::max(sum.frequency, 1e-6f));
+  return fold;
+}
+
+}  // namespace
+
+FoldLayer::FoldLayer(const FoldField& field, const FoldProfile& profile, const Options& options)
+    : profile_(profile), kernels_(field, KernelOptions(options), AmplitudeOf(options, profile)) {
+  PhaseSolver phases(field.surface(), &kernels_);
+  phases.Align();
+  phases.VaryDepth(options.material.variation, options.seed);
+}
+
+FoldSample FoldLayer::At(const SurfacePoint& point, const vec3& tangent,
+                         const vec3& bitangent) const {
+  const auto all = kernels_.kernels();
+  const auto reaching = kernels_.Reaching(point.triangle);
+  // Waves are lines without a sign: the direction that most of them share, continuous over the
+  // surface, says which phases are to be turned round.
+  Tensor2 directions;
+  for (const std::uint32_t k : reaching) {
+    const vec3 step = point.position - all[k].place.position;
+    const float share = all[k].ShareAt(glm::dot(step, step));
+    if (share <= 0.0f) continue;
+    const vec2 f(glm::dot(all[k].frequency, tangent), glm::dot(all[k].frequency, bitangent));
+    directions = directions + share * Tensor2{f.x * f.x, f.x * f.y, f.y * f.y};
+  }
+  if (directions.xx + directions.yy <= 0.0f) return {};
+  const vec2 leading = PrincipalOf(directions).direction;
+
+  WaveSum sum;
+  for (const std::uint32_t k : reaching) {
+    const FoldKernel& kernel = all[k];
+    const vec3 step = point.position - kernel.place.position;
+    const float q = 1.0f - glm::dot(step, step) / (kernel.reach * kernel.reach);
+    if (q <= 0.0f) continue;
+    const vec2 f(glm::dot(kernel.frequency, tangent), glm::dot(kernel.frequency, bitangent));
+    const float lead = glm::dot(f, leading);
+    const float alignment = lead * lead / std::max(glm::dot(f, f), 1e-12f);
+    const vec2 step2(glm::dot(step, tangent), glm::dot(step, bitangent));
+    const Dual weight{alignment * q * q * q,
+                      step2 * (-6.0f * alignment * q * q / (kernel.reach * kernel.reach))};
+    const float turn = lead < 0.0f ? -1.0f : 1.0f;
+    const float phase = turn * (kernel.phase + glm::dot(kernel.frequency, step));
+    sum.Add(weight, kernel.amplitude, turn * f, phase);
+  }
+  return ToFold(sum, profile_);
+}
+
+}  // namespace furrow::character::bake

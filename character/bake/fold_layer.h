@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "character/bake/bake.h"
+#include "character/bake/fold_field.h"
+#include "character/bake/kernels.h"
+#include "character/bake/profile.h"
+
+namespace furrow::character::bake {
+
+// One set of folds across (or, crossing, along) the compression of a surface.
+class FoldLayer {
+ public:
+  struct Options {
+    BakeMaterial material;
+    float wavelength_scale = 1.0f;
+    float smallest = 0.0f;  // wavelength, metres
+    bool crossing = false;
+    float height = 1.0f;  // scales the height
+    std::uint32_t seed = 1;
+  };
+  // `profile` outlives the layer.
+  FoldLayer(const FoldField& field, const FoldProfile& profile, const Options& options);
+
+  // Safe from several threads. Zero where no fold reaches.
+  [[nodiscard]] FoldSample At(const SurfacePoint& point, const glm::vec3& tangent,
+                              const glm::vec3& bitangent) const;
+
+  [[nodiscard]] std::span<const FoldKernel> kernels() const { return kernels_.kernels(); }
+
+ private:
+  const FoldProfile& profile_;
+  KernelSet kernels_;
+};
+
+}  // namespace furrow::character::bake

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/bake/kernels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "character/import/noise.h"
+#include "wrinkle/scalar.h"
+
+namespace furrow::character::bake {
+namespace {
+
+using glm::vec3;
+
+constexpr float kSpacing = 0.5f;     // least distance of two kernels, wavelengths
+constexpr float kReach = 1.7f;       // of a kernel, wavelengths
+constexpr float kCandidates = 5.0f;  // places tried for a kernel that will stand
+constexpr std::size_t kMostKernels = 2'000'000;
+
+float Random(std::uint32_t seed, std::uint32_t a, std::uint32_t b) {
+  return HashLattice(static_cast<int>(seed * 7919u + 13u), static_cast<int>(a),
+                     static_cast<int>(b));
+}
+
+// The triangles where kernels stand: folds, and as far around them as kernels reach.
+std::vector<char> ActiveTriangles(const FoldField& field, const KernelSet::Options& options) {
+  const Surface& surface = field.surface();
+  std::vector<char> active(surface.triangles().size(), 0);
+  SurfaceReach reach(surface);
+  for (std::uint32_t t = 0; t < active.size(); ++t) {
+    if (field.Strongest(t, options.crossing) < 0.5f * options.threshold) continue;
+    active[t] = 1;
+    const SurfacePoint centre = surface.PointOf(t, vec3(1.0f / 3.0f));
+    const float wavelength =
+        std::max(field.Wavelength(centre) * options.wavelength_scale, options.smallest);
+    for (const std::uint32_t near : reach.Find(centre.position, {&t, 1}, kReach * wavelength)) {
+      active[near] = 1;
+    }
+  }
+  return active;
+}
+
+struct Candidate {
+  float order;
+  std::uint32_t index;  // within the triangle
+  SurfacePoint place;
+};
+
+std::vector<Candidate> Candidates(const FoldField& field, const KernelSet::Options& options) {
+  const Surface& surface = field.surface();
+  const std::vector<char> active = ActiveTriangles(field, options);
+  std::vector<Candidate> candidates;
+  for (std::uint32_t t = 0; t < active.size(); ++t) {
+    if (!active[t]) continue;
+    const SurfacePoint centre = surface.PointOf(t, vec3(1.0f / 3.0f));
+    const float wavelength =
+        std::max(field.Wavelength(centre) * options.wavelength_scale, options.smallest);
+    const float spacing = kSpacing * wavelength;
+    const float wanted = kCandidates * surface.triangles()[t].area / (spacing * spacing);
+    const auto count = static_cast<std::uint32_t>(
+        std::min(wanted + Random(options.seed, t, 0xffffu), static_cast<float>(kMostKernels)));
+    for (std::uint32_t k = 0; k < count && candidates.size() < kMostKernels; ++k) {
+      float u = Random(options.seed, t, 3 * k), v = Random(options.seed, t, 3 * k + 1);
+      if (u + v > 1.0f) {
+        u = 1.0f - u;
+        v = 1.0f - v;
+      }
+      candidates.push_back(
+          {Random(options.seed, t, 3 * k + 2), k, surface.PointOf(t, vec3(1.0f - u - v, u, v))});
+    }
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    if (a.order != b.order) return a.order < b.order;
+    return a.place.triangle != b.place.triangle ? a.place.triangle < b.place.triangle
+                                                : a.index < b.index;
+  });
+  return candidates;
+}
+
+// Kernels by their place, so that the ones near a point are found.
+class Grid {
+ public:
+  explicit Grid(float cell) : cell_(cell) {}
+
+  void Add(const vec3& p, std::uint32_t kernel) { cells_[Key(Cell(p))].push_back(kernel); }
+
+  // Whether `test` holds for any kernel in the cells around a point.
+  template <class Test>
+  bool Any(const vec3& p, const Test& test) const {
+    const glm::ivec3 cell = Cell(p);
+    for (int dz = -1; dz <= 1; ++dz) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const auto found = cells_.find(Key(cell + glm::ivec3(dx, dy, dz)));
+          if (found == cells_.end()) continue;
+          if (std::any_of(found->second.begin(), found->second.end(), test)) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] glm::ivec3 Cell(const vec3& p) const { return glm::ivec3(glm::floor(p / cell_)); }
+  static std::uint64_t Key(const glm::ivec3& c) {
+    const auto part = [](int x) { return static_cast<std::uint64_t>(x + (1 << 20)) & 0x1fffffu; };
+    return part(c.x) | part(c.y) << 21 | part(c.z) << 42;
+  }
+
+  float cell_;
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
+};
+
+}  // namespace
+
+KernelSet::KernelSet(const FoldField& field, const Options& options, const Amplitude& amplitude) {
+  Strew(field, options, amplitude);
+  Connect(field.surface());
+}
+
+void KernelSet::Strew(const FoldField& field, const Options& options, const Amplitude& amplitude) {
+  const std::vector<Candidate> candidates = Candidates(field, options);
+  std::vector<FoldDemand> demands;
+  std::vector<float> wavelengths;
+  float longest = options.smallest;
+  for (const Candidate& candidate : candidates) {
+    demands.push_back(field.At(candidate.place));
+    const float base =
+        std::max(demands.back().wavelength * options.wavelength_scale, options.smallest);
+    // Features of the variation are some folds wide.
+    const vec3 at = candidate.place.position / (5.0f * base) + static_cast<float>(options.seed);
+    const float vary = 1.0f + options.variation * (2.0f * ValueNoise(at) - 1.0f);
+    wavelengths.push_back(std::max(base * vary, options.smallest));
+    longest = std::max(longest, wavelengths.back());
+  }
+  Grid grid(std::max(kSpacing * longest, 1e-6f));
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const SurfacePoint& place = candidates[i].place;
+    const vec3 normal = field.surface().triangles()[place.triangle].axes.normal;
+    const float spacing = kSpacing * wavelengths[i];
+    // Closed lips lie upon each other: what faces away takes no room.
+    const bool taken = grid.Any(place.position, [&](std::uint32_t k) {
+      const FoldKernel& other = kernels_[k];
+      const vec3 facing = field.surface().triangles()[other.place.triangle].axes.normal;
+      return glm::distance(other.place.position, place.position) < spacing &&
+             glm::dot(facing, normal) > 0.0f;
+    });
+    if (taken) continue;
+    const FoldDemand& demand = demands[i];
+    FoldKernel kernel;
+    kernel.place = place;
+    kernel.frequency =
+        (options.crossing ? demand.along : demand.across) * (2.0f * wrinkle::kPi / wavelengths[i]);
+    kernel.amplitude =
+        amplitude(options.crossing ? demand.crossing : demand.compression, wavelengths[i]);
+    kernel.reach = kReach * wavelengths[i];
+    grid.Add(place.position, static_cast<std::uint32_t>(kernels_.size()));
+    kernels_.push_back(kernel);
+  }
+}
+
+void KernelSet::Connect(const Surface& surface) {
+  std::vector<std::vector<std::uint32_t>> lists(surface.triangles().size());
+  SurfaceReach reach(surface);
+  for (std::uint32_t k = 0; k < kernels_.size(); ++k) {
+    const FoldKernel& kernel = kernels_[k];
+    for (const std::uint32_t t :
+         reach.Find(kernel.place.position, {&kernel.place.triangle, 1}, kernel.reach)) {
+      lists[t].push_back(k);
+    }
+  }
+  starts_.assign(1, 0);
+  for (const auto& list : lists) {
+    lists_.insert(lists_.end(), list.begin(), list.end());
+    starts_.push_back(lists_.size());
+  }
+}
+
+}  // namespace furrow::character::bake

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/bake/map_baker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "character/bake/planes.h"
+#include "wrinkle/scalar.h"
+
+namespace furrow::character::bake {
+namespace {
+
+constexpr float kMetres = 0.001f;     // a millimetre
+constexpr float kTexelsAWave = 3.0f;  // finer folds cannot be shown
+constexpr int kGutter = 16;           // texels that planes grow past the UV border
+constexpr float kFoldedMillimetres = 0.01f;
+
+const wrinkle::Region* FindRegion(const wrinkle::Rig& rig, const std::string& name) {
+  const auto found =
+      std::find_if(rig.regions.begin(), rig.regions.end(),
+                   [&](const wrinkle::Region& region) { return region.name == name; });
+  return found == rig.regions.end() ? nullptr : &*found;
+}
+
+// The picture's mask scales what is drawn; here it only says where poses and strokes count, so it
+// is full well inside its soft border.
+float Inside(float mask) { return wrinkle::Smoothstep(0.02f, 0.3f, mask); }
+
+bool Matches(const std::string& region, const std::string& entry) {
+  return region == entry || region == entry + "_l" || region == entry + "_r";
+}
+
+SurfacePoint PlaceOf(const paint::Texel& texel) {
+  return {texel.triangle, texel.corners, texel.position};
+}
+
+}  // namespace
+
+MapBaker::MapBaker(const Character& character, const BakeSurface& surface,
+                   const BakeOptions& options, std::string map, bool cloth)
+    : character_(character),
+      surface_(surface),
+      options_(options),
+      material_(MaterialOf(options, cloth)),
+      map_(std::move(map)),
+      cloth_(cloth),
+      profile_(material_.sharpness),
+      sum_(surface.surface().positions().size()) {}
+
+std::vector<float> MapBaker::MaskOf(const std::string& region) const {
+  const wrinkle::Region* found = FindRegion(character_.rig, region);
+  if (found == nullptr) return {};
+  std::vector<float> mask = surface_.MaskOf(character_, *found);
+  for (float& value : mask) value = Inside(value);
+  return mask;
+}
+
+void MapBaker::AddPose(const BakePose& pose) {
+  const CompressionSolver::Field field =
+      surface_.solver().Solve(pose.skin_matrices, material_.max_compression);
+  worst_ = std::max(worst_, field.worst);
+  std::vector<float> weights = MaskOf(pose.region);
+  if (weights.empty()) weights.assign(field.tensors.size(), 1.0f);
+  for (float& weight : weights) weight *= pose.weight;
+  sum_.Add(field.tensors, weights);
+  if (pose.region.empty()) return;
+  auto region = std::find_if(regions_.begin(), regions_.end(),
+                             [&](const RegionFolds& r) { return r.region == pose.region; });
+  if (region == regions_.end()) {
+    regions_.push_back({pose.region, std::vector<float>(field.tensors.size(), 0.0f)});
+    region = regions_.end() - 1;
+  }
+  for (std::size_t v = 0; v < field.tensors.size(); ++v) {
+    region->compression[v] =
+        std::max(region->compression[v], pose.weight * PrincipalOf(field.tensors[v]).large);
+  }
+}
+
+void MapBaker::AddStroke(const BakeStroke& stroke) { strokes_.push_back(&stroke); }
+
+std::vector<float> MapBaker::Wavelengths() const {
+  const std::size_t count = surface_.surface().positions().size();
+  const float base = std::log(material_.wavelength_mm * kMetres);
+  std::vector<float> sums(count, 0.0f), shares(count, 0.0f);
+  for (const BakeRegionWavelength& entry : options_.wavelengths) {
+    for (const wrinkle::Region& region : character_.rig.regions) {
+      if (!Matches(region.name, entry.region)) continue;
+      const std::vector<float> mask = surface_.MaskOf(character_, region);
+      for (std::size_t v = 0; v < mask.size(); ++v) {
+        sums[v] += mask[v] * std::log(entry.wavelength_mm * kMetres);
+        shares[v] += mask[v];
+      }
+    }
+  }
+  for (std::size_t v = 0; v < count; ++v) {
+    const float rest = std::max(1.0f - shares[v], 0.0f);
+    sums[v] = std::exp((sums[v] + rest * base) / (shares[v] + rest));
+  }
+  return sums;
+}
+
+void MapBaker::MakeLayers(const FoldField& field) {
+  FoldLayer::Options options;
+  options.material = material_;
+  options.smallest = kTexelsAWave * surface_.texel_metres();
+  options.height = options_.depth;
+  options.seed = options_.seed;
+  layers_.push_back(std::make_unique<FoldLayer>(field, profile_, options));
+  options.crossing = true;
+  options.seed = options_.seed + 101;
+  layers_.push_back(std::make_unique<FoldLayer>(field, profile_, options));
+  if (material_.fine_lines <= 0.0f) return;
+  options.crossing = false;
+  options.wavelength_scale = 1.0f / 3.0f;
+  options.height = options_.depth * material_.fine_lines;
+  options.seed = options_.seed + 202;
+  layers_.push_back(std::make_unique<FoldLayer>(field, profile_, options));
+}
+
+FoldSample MapBaker::FoldsAt(const SurfacePoint& point, const glm::vec3& tangent,
+                             const glm::vec3& bitangent, const StrokeLayer& strokes) const {
+  FoldSample sum;
+  for (const auto& layer : layers_) {
+    const FoldSample fold = layer->At(point, tangent, bitangent);
+    sum.height += fold.height;
+    sum.slope += fold.slope;
+    sum.cavity *= fold.cavity;
+  }
+  const StrokeLayer::Drawn drawn = strokes.At(point, tangent, bitangent);
+  sum.slope = sum.slope * drawn.keep + drawn.keep_slope * sum.height + drawn.fold.slope;
+  sum.height = sum.height * drawn.keep + drawn.fold.height;
+  sum.cavity = (1.0f - drawn.keep * (1.0f - sum.cavity)) * drawn.fold.cavity;
+  return sum;
+}
+
+bool MapBaker::FillTexels(const StrokeLayer& strokes, const std::function<bool(float)>& progress,
+                          BakedMap* map) const {
+  const std::size_t count =
+      static_cast<std::size_t>(map->width) * static_cast<std::size_t>(map->height);
+  map->height_mm.assign(count, 0.0f);
+  map->derivative.assign(2 * count, 0.0f);
+  map->cavity.assign(count, 1.0f);
+  map->covered.assign(count, 0);
+  const std::vector<paint::Texel>& texels = surface_.texels();
+  const auto work = [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const paint::Texel& texel = texels[i];
+      const FoldSample fold = FoldsAt(PlaceOf(texel), texel.tangent, texel.bitangent, strokes);
+      const std::size_t at =
+          static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
+          static_cast<std::size_t>(texel.x);
+      map->height_mm[at] = fold.height / kMetres;
+      map->derivative[2 * at] = -fold.slope.x;
+      map->derivative[2 * at + 1] = -fold.slope.y;
+      map->cavity[at] = fold.cavity;
+      map->covered[at] = 1;
+    }
+  };
+  return ForRuns(texels.size(), options_.threads, work, progress);
+}
+
+void MapBaker::Measure(const std::vector<float>& compression, BakedMap* map) const {
+  BakedMap::Statistics& statistics = map->statistics;
+  statistics.worst_compression = worst_;
+  statistics.texel_mm = surface_.texel_metres() / kMetres;
+  statistics.overlapping_texels = surface_.overlaps();
+  double sum = 0.0;
+  for (const paint::Texel& texel : surface_.texels()) {
+    const std::size_t at =
+        static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
+        static_cast<std::size_t>(texel.x);
+    ++statistics.covered_texels;
+    const float height = map->height_mm[at];
+    statistics.deepest_mm = std::max(statistics.deepest_mm, -height);
+    statistics.highest_mm = std::max(statistics.highest_mm, height);
+    statistics.steepest = std::max(
+        statistics.steepest, std::hypot(map->derivative[2 * at], map->derivative[2 * at + 1]));
+    if (std::abs(height) < kFoldedMillimetres) continue;
+    ++statistics.folded_texels;
+    sum += static_cast<double>(surface_.surface().Interpolate(compression, PlaceOf(texel)));
+  }
+  if (statistics.folded_texels > 0) {
+    statistics.mean_compression =
+        static_cast<float>(sum / static_cast<double>(statistics.folded_texels));
+  }
+}
+
+BakedMask MapBaker::SuggestMask(const RegionFolds& folds) const {
+  // Full where the region's poses fold half as much as at their most.
+  const float most = *std::max_element(folds.compression.begin(), folds.compression.end());
+  const float full = std::max(0.5f * most, 2.0f * material_.threshold + 1e-4f);
+  std::vector<float> values;
+  for (const float compression : folds.compression) {
+    values.push_back(wrinkle::Smoothstep(0.5f * material_.threshold, full, compression));
+  }
+  BakedMask mask;
+  mask.region = folds.region;
+  mask.width = mask.height = std::max(options_.size / 4, 64);
+  const auto count = static_cast<std::size_t>(mask.width) * static_cast<std::size_t>(mask.height);
+  mask.texels.assign(count, 0.0f);
+  std::vector<std::uint8_t> covered(count, 0);
+  for (const paint::Texel& texel :
+       paint::RasterizeUv(surface_.surface().mesh(), mask.width, mask.height)) {
+    const std::size_t at =
+        static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(mask.width) +
+        static_cast<std::size_t>(texel.x);
+    mask.texels[at] = surface_.surface().Interpolate(values, PlaceOf(texel));
+    covered[at] = 1;
+  }
+  const FloatPlane planes[] = {{&mask.texels, 1}};
+  DilatePlanes(planes, covered, mask.width, mask.height, kGutter / 4);
+  return mask;
+}
+
+std::unique_ptr<BakedMap> MapBaker::Bake(const std::function<bool(float)>& progress) {
+  constexpr float kPrepared = 0.3f;  // of the time
+  const auto say = [&](float done) { return !progress || progress(done); };
+  std::vector<std::vector<float>> masks;
+  for (const BakeStroke* stroke : strokes_) masks.push_back(MaskOf(stroke->region));
+  const StrokeLayer strokes(surface_.surface(), strokes_, std::move(masks), options_.depth);
+  const std::vector<Tensor2> tensors = sum_.Take();
+  std::vector<float> compression;
+  for (const Tensor2& tensor : tensors) compression.push_back(PrincipalOf(tensor).large);
+  const FoldField field(surface_.surface(), strokes, tensors, Wavelengths());
+  if (!say(0.5f * kPrepared)) return nullptr;
+  MakeLayers(field);
+  if (!say(kPrepared)) return nullptr;
+
+  auto map = std::make_unique<BakedMap>();
+  map->map = map_;
+  map->cloth = cloth_;
+  map->width = map->height = options_.size;
+  const auto texels_done = [&](float done) { return say(kPrepared + (1.0f - kPrepared) * done); };
+  if (!FillTexels(strokes, texels_done, map.get())) return nullptr;
+  Measure(compression, map.get());
+  map->statistics.strokes = strokes.num_folds();
+  const FloatPlane planes[] = {{&map->height_mm, 1}, {&map->derivative, 2}, {&map->cavity, 1}};
+  DilatePlanes(planes, map->covered, map->width, map->height, kGutter);
+  for (const RegionFolds& region : regions_) map->masks.push_back(SuggestMask(region));
+  return map;
+}
+
+}  // namespace furrow::character::bake

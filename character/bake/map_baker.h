@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "character/bake/bake.h"
+#include "character/bake/bake_surface.h"
+#include "character/bake/fold_layer.h"
+#include "character/bake/profile.h"
+#include "character/bake/stroke_layer.h"
+
+namespace furrow::character::bake {
+
+// Bakes one map onto a surface: strain of its poses, strokes, folds, texels.
+class MapBaker {
+ public:
+  // All are kept by reference.
+  MapBaker(const Character& character, const BakeSurface& surface, const BakeOptions& options,
+           std::string map, bool cloth);
+
+  void AddPose(const BakePose& pose);
+  void AddStroke(const BakeStroke& stroke);
+
+  // Nothing when `progress` said stop.
+  [[nodiscard]] std::unique_ptr<BakedMap> Bake(const std::function<bool(float)>& progress);
+
+ private:
+  struct RegionFolds {
+    std::string region;
+    std::vector<float> compression;  // one a welded vertex, the strongest of its poses
+  };
+
+  [[nodiscard]] std::vector<float> MaskOf(const std::string& region) const;
+  [[nodiscard]] std::vector<float> Wavelengths() const;
+  void MakeLayers(const FoldField& field);
+  [[nodiscard]] FoldSample FoldsAt(const SurfacePoint& point, const glm::vec3& tangent,
+                                   const glm::vec3& bitangent, const StrokeLayer& strokes) const;
+  bool FillTexels(const StrokeLayer& strokes, const std::function<bool(float)>& progress,
+                  BakedMap* map) const;
+  void Measure(const std::vector<float>& compression, BakedMap* map) const;
+  [[nodiscard]] BakedMask SuggestMask(const RegionFolds& folds) const;
+
+  const Character& character_;
+  const BakeSurface& surface_;
+  const BakeOptions& options_;
+  const BakeMaterial& material_;
+  std::string map_;
+  bool cloth_;
+  FoldProfile profile_;
+  CompressionSum sum_;
+  float worst_ = 0.0f;
+  std::vector<const BakeStroke*> strokes_;
+  std::vector<RegionFolds> regions_;
+  std::vector<std::unique_ptr<FoldLayer>> layers_;
+};
+
+}  // namespace furrow::character::bake

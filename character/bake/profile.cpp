@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/bake/profile.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "wrinkle/scalar.h"
+
+namespace furrow::character::bake {
+namespace {
+
+constexpr int kPhases = 256;    // of a period, where the profile is integrated
+constexpr int kTable = 256;     // compressions whose amplitude is solved
+constexpr float kMost = 0.95f;  // compression
+
+}  // namespace
+
+FoldProfile::FoldProfile(float sharpness) {
+  const float blunt = 1.0f - sharpness;
+  const float s = 0.06f + 1.6f * blunt * blunt;
+  s2_ = s * s;
+  double sum = 0.0;
+  for (int i = 0; i < kPhases; ++i) {
+    const float phase = 2.0f * wrinkle::kPi * static_cast<float>(i) / kPhases;
+    sum += std::sqrt(0.5f * (1.0f - std::cos(phase)) + s2_);
+  }
+  mean_ = static_cast<float>(sum / kPhases);
+  scale_ = 2.0f / (std::sqrt(1.0f + s2_) - s);
+  amplitudes_.resize(kTable + 1);
+  for (int i = 1; i <= kTable; ++i) {
+    const float root = static_cast<float>(i) / kTable;
+    amplitudes_[static_cast<std::size_t>(i)] = SolveAmplitude(root * root * kMost);
+  }
+}
+
+FoldProfile::Sample FoldProfile::At(float cosine, float sine) const {
+  const float q = std::sqrt(std::max(0.5f * (1.0f - cosine), 0.0f) + s2_);
+  return {scale_ * (q - mean_), scale_ * sine / (4.0f * q)};
+}
+
+float FoldProfile::Amplitude(float compression) const {
+  const float root = std::sqrt(std::clamp(compression, 0.0f, kMost) / kMost) * kTable;
+  const auto cell = std::min(static_cast<std::size_t>(root), std::size_t{kTable - 1});
+  const float within = root - static_cast<float>(cell);
+  return amplitudes_[cell] + (amplitudes_[cell + 1] - amplitudes_[cell]) * within;
+}
+
+float FoldProfile::SolveAmplitude(float compression) const {
+  const float along = (1.0f - compression) * (1.0f - compression);
+  const auto arc = [&](float amplitude) {
+    double sum = 0.0;
+    for (int i = 0; i < kPhases; ++i) {
+      const float phase = 2.0f * wrinkle::kPi * (static_cast<float>(i) + 0.5f) / kPhases;
+      const float rise = amplitude * At(std::cos(phase), std::sin(phase)).slope;
+      sum += std::sqrt(along + rise * rise);
+    }
+    return sum / kPhases;
+  };
+  float low = 0.0f, high = 8.0f;
+  for (int i = 0; i < 40; ++i) {
+    const float middle = 0.5f * (low + high);
+    (arc(middle) < 1.0 ? low : high) = middle;
+  }
+  return 0.5f * (low + high);
+}
+
+}  // namespace furrow::character::bake
