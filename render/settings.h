@@ -61,6 +61,7 @@ struct LightSettings {
 struct ShadowSettings {
   ShadowFilter filter = ShadowFilter::kPcf;
   int resolution = 1024;          // texels a side of each light's map, [128, 4096]
+  int lamps = 3;                  // how many of the lamps cast shadows, in their order, [0, 3]
   int taps = 8;                   // of the filter, [1, 32]
   float softness_mm = 3.0f;       // pcf: radius of the filter on the surface, [0, 50]
   float lamp_mm = 60.0f;          // pcss: radius of the lamp, [0, 1000]
