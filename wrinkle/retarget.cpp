@@ -2,10 +2,13 @@
 #include "wrinkle/retarget.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <glm/mat3x3.hpp>
 #include <glm/vector_relational.hpp>
 
+#include "wrinkle/body_retarget.h"
+#include "wrinkle/body_stance.h"
 #include "wrinkle/finite.h"
 
 namespace furrow::wrinkle {
@@ -74,6 +77,62 @@ float SizeRatio(const Skeleton& source, const Skeleton& target, std::span<const 
   return source_sum > 0.0f && target_sum > 0.0f ? target_sum / source_sum : 1.0f;
 }
 
+// Each target joint's joint of the source: by role where both have that role in as many joints,
+// else, for joints without a role on either side, by name.
+std::vector<int> PairJoints(const Body& source, const Body& target) {
+  std::vector<int> match;
+  for (int joint = 0; joint < target.skeleton().num_joints(); ++joint) {
+    const JointRole role = target.RoleOf(joint);
+    if (role == JointRole::kNone) {
+      const int named = source.skeleton().Find(target.skeleton().joint_names()[joint]);
+      const bool free = named != kNoJoint && source.RoleOf(named) == JointRole::kNone;
+      match.push_back(free ? named : kNoJoint);
+      continue;
+    }
+    const std::span<const int> from = source.Chain(role);
+    const std::span<const int> to = target.Chain(role);
+    const auto place = std::find(to.begin(), to.end(), joint) - to.begin();
+    match.push_back(from.size() == to.size() ? from[place] : kNoJoint);
+  }
+  return match;
+}
+
+// Whether bones of joints with roles are as long, but for the ratio of sizes, to 1 in 100.
+bool HaveSameShape(const Body& source, const Body& target, std::span<const int> match,
+                   float scale) {
+  constexpr float kAlike = 0.01f;
+  for (int joint = 0; joint < target.skeleton().num_joints(); ++joint) {
+    const JointRole role = target.RoleOf(joint);
+    if (role == JointRole::kNone || role == JointRole::kHips) continue;
+    if (match[joint] == kNoJoint) return false;
+    const float own = glm::length(target.skeleton().rest_pose()[joint].translation);
+    const float other = glm::length(source.skeleton().rest_pose()[match[joint]].translation);
+    if (std::abs(own - scale * other) > kAlike * own) return false;
+  }
+  return true;
+}
+
+std::vector<std::string> Unmatched(const Skeleton& source, std::span<const int> match) {
+  std::vector<std::string> names;
+  for (int i = 0; i < source.num_joints(); ++i) {
+    if (std::find(match.begin(), match.end(), i) == match.end()) {
+      names.push_back(source.joint_names()[i]);
+    }
+  }
+  return names;
+}
+
+// A joint of a chain counts as matched where the target has the chain at all.
+std::vector<std::string> Unmatched(const Body& source, const Body& target,
+                                   std::span<const int> match) {
+  std::vector<std::string> names = Unmatched(source.skeleton(), match);
+  std::erase_if(names, [&](const std::string& name) {
+    const JointRole role = source.RoleOf(source.skeleton().Find(name));
+    return role != JointRole::kNone && target.First(role) != kNoJoint;
+  });
+  return names;
+}
+
 }  // namespace
 
 float SkeletonSize(const Skeleton& skeleton, const Skeleton* other) {
@@ -82,35 +141,68 @@ float SkeletonSize(const Skeleton& skeleton, const Skeleton* other) {
   return size > 0.0f ? size : SumOfTails(skeleton);
 }
 
-Retarget Retarget::Create(const Skeleton& source, const Skeleton& target,
-                          std::span<const std::pair<std::string, std::string>> aliases) {
-  const std::vector<int> match = MatchJoints(source, target, aliases);
-  Retarget retarget;
-  retarget.num_source_ = static_cast<std::size_t>(source.num_joints());
-  retarget.scale_ = SizeRatio(source, target, match);
+void Retarget::Plan(const Skeleton& source, const Skeleton& target, std::span<const int> match,
+                    std::span<const glm::quat> stance, const glm::quat& turn) {
+  num_source_ = static_cast<std::size_t>(source.num_joints());
+  const auto above = [&](int joint) {
+    const int parent = target.joint_parents()[joint];
+    return parent == kNoJoint ? glm::quat(1.0f, 0.0f, 0.0f, 0.0f) : stance[parent];
+  };
   for (int i = 0; i < target.num_joints(); ++i) {
     Joint joint;
     joint.rest = target.rest_pose()[i];
     joint.source = match[i];
     if (joint.source != kNoJoint) {
       const Transform& source_rest = source.rest_pose()[joint.source];
-      const glm::quat target_inverse = glm::conjugate(RestRotation(target, i));
-      const glm::quat parent_inverse =
-          glm::conjugate(RestRotation(target, target.joint_parents()[i]));
       joint.source_rest_inverse = glm::conjugate(glm::normalize(source_rest.rotation));
-      joint.to_target = target_inverse * RestRotation(source, joint.source);
-      joint.parent_to_target =
-          parent_inverse * RestRotation(source, source.joint_parents()[joint.source]);
+      joint.to_target = glm::conjugate(stance[i]) * turn * RestRotation(source, joint.source);
+      joint.parent_to_target = glm::conjugate(above(i)) * turn *
+                               RestRotation(source, source.joint_parents()[joint.source]);
       joint.source_rest_translation = source_rest.translation;
       joint.source_rest_scale = source_rest.scale;
     }
-    retarget.joints_.push_back(joint);
+    joints_.push_back(joint);
   }
-  for (int i = 0; i < source.num_joints(); ++i) {
-    if (std::find(match.begin(), match.end(), i) == match.end()) {
-      retarget.unmatched_.push_back(source.joint_names()[i]);
+}
+
+Retarget Retarget::Create(const Skeleton& source, const Skeleton& target,
+                          std::span<const std::pair<std::string, std::string>> aliases) {
+  const std::vector<int> match = MatchJoints(source, target, aliases);
+  Retarget retarget;
+  retarget.scale_ = SizeRatio(source, target, match);
+  retarget.Plan(source, target, match, target.rest_model_rotations(),
+                glm::quat(1.0f, 0.0f, 0.0f, 0.0f));
+  retarget.unmatched_ = Unmatched(source, match);
+  return retarget;
+}
+
+Retarget Retarget::Create(const Skeleton& source, const JointRoles& source_roles,
+                          const Skeleton& target, const JointRoles& target_roles) {
+  const auto fits = [](const JointRoles& roles, const Skeleton& skeleton) {
+    return !roles.empty() && roles.size() == static_cast<std::size_t>(skeleton.num_joints());
+  };
+  if (!fits(source_roles, source) || !fits(target_roles, target)) return Create(source, target);
+  const Body from(source, source_roles);
+  const Body to(target, target_roles);
+  const glm::quat turn = QuarterTurn(from, to);
+  const std::vector<glm::quat> stance = AlignedStance(from, to, turn);
+
+  Retarget retarget;
+  const std::vector<int> paired = PairJoints(from, to);
+  const float source_leg = LegLength(from, to);
+  const float target_leg = LegLength(to, from);
+  retarget.scale_ = source_leg > 0.0f && target_leg > 0.0f ? target_leg / source_leg
+                                                           : SizeRatio(source, target, paired);
+  const auto body = std::make_shared<const BodyRetarget>(from, to, turn, stance, retarget.scale_);
+  std::vector<int> match = paired;
+  if (!HaveSameShape(from, to, paired, retarget.scale_)) {
+    for (int i = 0; i < target.num_joints(); ++i) {
+      if (body->Carries(i)) match[i] = kNoJoint;
     }
   }
+  retarget.Plan(source, target, match, stance, turn);
+  retarget.body_ = body;
+  retarget.unmatched_ = Unmatched(from, to, paired);
   return retarget;
 }
 
@@ -140,6 +232,7 @@ JobStatus Retarget::Run(std::span<const Transform> source, std::span<Transform> 
     const Joint& joint = joints_[i];
     target[i] = joint.source == kNoJoint ? joint.rest : Carry(joint, source[joint.source]);
   }
+  if (body_ != nullptr) body_->Run(source, target);
   return JobStatus::kOk;
 }
 
