@@ -66,14 +66,29 @@ void ReadTwist(const schema::TwistDriver& from, wrinkle::TwistDriver* to) {
   for (const String* joint : *from.through()) to->through.push_back(joint->str());
 }
 
+void ReadStrain(const schema::StrainDriver& from, wrinkle::StrainDriver* to) {
+  to->joint = from.joint()->str();
+  for (const String* joint : *from.joints()) to->joints.push_back(joint->str());
+  for (const schema::PatchVertex* vertex : *from.vertices()) {
+    wrinkle::StrainDriver::Vertex& added = to->vertices.emplace_back();
+    added.position = ToVec3(*vertex->position());
+    added.joints.assign(vertex->joints()->begin(), vertex->joints()->end());
+    added.skin_weights.assign(vertex->skin_weights()->begin(), vertex->skin_weights()->end());
+  }
+  to->triangles.assign(from.triangles()->begin(), from.triangles()->end());
+  to->direction = ToVec3(*from.direction());
+  to->full_compression = from.full_compression();
+  to->size = from.size();
+}
+
 Status ReadDriver(const schema::Driver& from, const std::string& at, wrinkle::Driver* to) {
   to->name = from.name()->str();
   const int kinds = (from.pose() != nullptr) + (from.hinge() != nullptr) +
                     (from.ball() != nullptr) + (from.twist() != nullptr) +
-                    (from.blend_shape() != nullptr);
+                    (from.blend_shape() != nullptr) + (from.strain() != nullptr);
   if (kinds != 1) {
     return InvalidField(
-        "a driver has exactly one of pose, hinge, ball, twist and blend_shape, not " +
+        "a driver has exactly one of pose, hinge, ball, twist, blend_shape and strain, not " +
             std::to_string(kinds),
         at);
   }
@@ -91,6 +106,9 @@ Status ReadDriver(const schema::Driver& from, const std::string& at, wrinkle::Dr
   } else if (from.twist() != nullptr) {
     to->kind = Kind::kTwist;
     ReadTwist(*from.twist(), &to->twist);
+  } else if (from.strain() != nullptr) {
+    to->kind = Kind::kStrain;
+    ReadStrain(*from.strain(), &to->strain);
   } else {
     to->kind = Kind::kBlendShape;
     to->blend_shape = {from.blend_shape()->blend_shape()->str(), from.blend_shape()->neutral(),

@@ -71,6 +71,13 @@ std::string Bracketed(char open, const std::vector<std::string>& items, char clo
   return text + (one_line ? "" : "\n") + close;
 }
 
+template <class T, class Each>
+std::string OnOneLine(const std::vector<T>& list, Each each) {
+  std::string text = "[";
+  for (const T& entry : list) text += (text.size() == 1 ? "" : ", ") + each(entry);
+  return text + "]";
+}
+
 // The fields of one object; a field that has its default is not written.
 class Object {
  public:
@@ -176,6 +183,25 @@ std::string ToJson(const wrinkle::BlendShapeDriver& shape) {
       .str();
 }
 
+std::string ToJson(const wrinkle::StrainDriver& strain) {
+  const auto vertex = [](const wrinkle::StrainDriver::Vertex& v) {
+    return Object()
+        .Raw("position", Numbers(v.position))
+        .Raw("joints", OnOneLine(v.joints, [](int i) { return std::to_string(i); }))
+        .Raw("skin_weights", OnOneLine(v.skin_weights, Number))
+        .str();
+  };
+  return Object()
+      .Text("joint", strain.joint)
+      .Raw("direction", Numbers(strain.direction))
+      .Float("full_compression", strain.full_compression, 0.25f)
+      .Float("size", strain.size, 0.0f)
+      .Always("joints", strain.joints, Quote)
+      .Always("vertices", strain.vertices, vertex)
+      .Raw("triangles", OnOneLine(strain.triangles, [](int i) { return std::to_string(i); }))
+      .str();
+}
+
 std::string ToJson(const wrinkle::Driver& driver) {
   using Kind = wrinkle::Driver::Kind;
   Object object;
@@ -186,6 +212,7 @@ std::string ToJson(const wrinkle::Driver& driver) {
     case Kind::kBall: object.Raw("ball", ToJson(driver.ball)); break;
     case Kind::kTwist: object.Raw("twist", ToJson(driver.twist)); break;
     case Kind::kBlendShape: object.Raw("blend_shape", ToJson(driver.blend_shape)); break;
+    case Kind::kStrain: object.Raw("strain", ToJson(driver.strain)); break;
   }
   return object.str();
 }

@@ -19,6 +19,7 @@ Status BindDriver(const Driver& driver, int first_value, BindContext* context, B
     case Driver::Kind::kTwist: return data->twist_drivers.Bind(driver, first_value, context);
     case Driver::Kind::kBlendShape:
       return data->blend_shape_drivers.Bind(driver, first_value, context);
+    case Driver::Kind::kStrain: return data->strain_drivers.Bind(driver, first_value, context);
   }
   return {StatusCode::kInvalidArgument, "driver '" + driver.name + "' is of no known kind"};
 }

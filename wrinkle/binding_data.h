@@ -11,6 +11,7 @@
 #include "wrinkle/joint_chain.h"
 #include "wrinkle/pose_driver.h"
 #include "wrinkle/solver.h"
+#include "wrinkle/strain_driver.h"
 #include "wrinkle/twist_driver.h"
 #include "wrinkle/weight_table.h"
 
@@ -28,6 +29,7 @@ struct BindingData {
   BallDriverSet ball_drivers;
   TwistDriverSet twist_drivers;
   BlendShapeDriverSet blend_shape_drivers;
+  StrainDriverSet strain_drivers;
   WeightTable weights;
   InfluenceTable influences;
   std::vector<std::string> driver_value_names;

@@ -9,6 +9,7 @@ std::vector<std::string> DriverValueNames(const Driver& driver) {
     case Driver::Kind::kBall: return {"front", "back", "left", "right"};
     case Driver::Kind::kTwist: return {"twist_left", "twist_right"};
     case Driver::Kind::kBlendShape: return {"value"};
+    case Driver::Kind::kStrain: return {"along", "across", "diagonal_left", "diagonal_right"};
     case Driver::Kind::kPose: break;
   }
   std::vector<std::string> names;

@@ -96,6 +96,22 @@ std::vector<Explanation::Angle> ExplainAngles(const BindingData& data,
   return angles;
 }
 
+std::vector<Explanation::Strain> ExplainStrains(const BindingData& data,
+                                                std::span<const Transform> local) {
+  const StrainDriverSet& drivers = data.strain_drivers;
+  std::vector<Explanation::Strain> strains;
+  for (int i = 0; i < drivers.num_entries(); ++i) {
+    const PrincipalStretches stretches = drivers.Measure(i, local, data.chains).stretches;
+    glm::vec2 direction = stretches.smallest_direction;
+    if (direction.x < 0.0f || (direction.x == 0.0f && direction.y < 0.0f)) direction = -direction;
+    strains.push_back({.driver = DriverOf(data, drivers.first_value(i)),
+                       .smallest = stretches.smallest,
+                       .largest = stretches.largest,
+                       .degrees = std::atan2(direction.y, direction.x) / kDegrees});
+  }
+  return strains;
+}
+
 }  // namespace
 
 JobStatus Explain(const RigBinding& binding, const LocalPose& pose, Explanation* explanation) {
@@ -118,6 +134,7 @@ JobStatus Explain(const RigBinding& binding, const LocalPose& pose, Explanation*
   }
   result.pose_values = ExplainPoseDrivers(data, pose.joints);
   result.angles = ExplainAngles(data, pose.joints);
+  result.strains = ExplainStrains(data, pose.joints);
   *explanation = std::move(result);
   return JobStatus::kOk;
 }

@@ -52,9 +52,19 @@ struct Explanation {
     std::string what;
     float degrees = 0.0f;
   };
+  // A strain driver's patch.
+  struct Strain {
+    std::string driver;
+    float smallest = 1.0f;  // principal stretches, area mean of the patch
+    float largest = 1.0f;
+    // Of the strongest compression, from the driver's direction to the left as seen from outside,
+    // (-90, 90].
+    float degrees = 0.0f;
+  };
   std::vector<Weight> weights;         // in the order of RigBinding::weight_names()
   std::vector<PoseValue> pose_values;  // drivers with missing joints are left out, here and below
   std::vector<Angle> angles;
+  std::vector<Strain> strains;
 };
 
 // Explains `pose` on its own: no filter, no history. `explanation` is untouched on failure.

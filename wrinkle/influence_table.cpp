@@ -20,6 +20,7 @@ std::vector<std::string> ConcernedJoints(const Driver& driver) {
       names = driver.twist.through;
       names.push_back(driver.twist.joint);
       break;
+    case Driver::Kind::kStrain: names = driver.strain.joints; break;
     case Driver::Kind::kBlendShape: break;
   }
   return names;

@@ -15,7 +15,8 @@ namespace furrow::wrinkle {
 // Which driver values each joint answers for in the dynamic masks (4.2). Private to wrinkle/.
 //
 // A pose driver concerns the joints of its control points; a hinge or ball its lower joint; a twist
-// its joint and those it passes through; a blend shape none. Where several values reach one joint
+// its joint and those it passes through; a strain driver those that move its patch; a blend shape
+// none. Where several values reach one joint
 // and map, the largest counts.
 class InfluenceTable {
  public:

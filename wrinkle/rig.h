@@ -93,8 +93,30 @@ struct BlendShapeDriver {
   float full = 1.0f;
 };
 
+// How strongly a patch of the skinned surface is compressed, and whither: values "along", "across",
+// "diagonal_left" and "diagonal_right" of a direction in the surface, so that one place can fold
+// along or across. Together they are the principal compression over `full_compression` (strain.h).
+//
+// The patch is data of the rig, as points and skin weights, so that a rig needs no mesh;
+// `furrow rig patch` cuts one out of a character.
+struct StrainDriver {
+  static constexpr int kMaxInfluences = 4;
+  struct Vertex {
+    glm::vec3 position{0.0f};         // rest pose, model axes, from the origin of `joint`
+    std::vector<int> joints;          // into `joints` below, at most kMaxInfluences
+    std::vector<float> skin_weights;  // one each, > 0, sum 1
+  };
+  std::string joint;                // positions are measured from it
+  std::vector<std::string> joints;  // those that move the patch
+  std::vector<Vertex> vertices;
+  std::vector<int> triangles;             // three vertices each, counter-clockwise from outside
+  glm::vec3 direction{1.0f, 0.0f, 0.0f};  // model axes, rest pose: projected into the surface
+  float full_compression = 0.25f;         // the compression that gives 1, [0.01, 1]
+  float size = 0.0f;  // SkeletonSize() the positions were measured on; 0: bound skeleton's units
+};
+
 struct Driver {
-  enum class Kind { kPose, kHinge, kBall, kTwist, kBlendShape };
+  enum class Kind { kPose, kHinge, kBall, kTwist, kBlendShape, kStrain };
   std::string name;
   Kind kind = Kind::kPose;
   // Only the one that `kind` names is read.
@@ -103,6 +125,7 @@ struct Driver {
   BallDriver ball;
   TwistDriver twist;
   BlendShapeDriver blend_shape;
+  StrainDriver strain;
 };
 
 enum class Modulation { kLinear, kCosine, kCubic };   // 4.3, 4.4

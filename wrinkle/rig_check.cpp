@@ -15,6 +15,7 @@
 #include "wrinkle/nnls.h"
 #include "wrinkle/pose_driver.h"
 #include "wrinkle/rig_field.h"
+#include "wrinkle/strain.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -158,6 +159,65 @@ void CheckBlendShape(const BlendShapeDriver& shape, const std::string& at, Compl
                       "full and neutral are the same coefficient");
 }
 
+void CheckPatchVertex(const StrainDriver::Vertex& vertex, const std::string& at,
+                      std::size_t num_joints, Complaints* complaints) {
+  complaints->Finite(at, ".position", vertex.position);
+  complaints->Count(at, ".joints", vertex.joints.size(), StrainDriver::kMaxInfluences);
+  complaints->Require(!vertex.joints.empty(), at, ".joints", "no joint moves the vertex");
+  complaints->Require(vertex.joints.size() == vertex.skin_weights.size(), at, ".skin_weights",
+                      "a joint needs a skin weight each");
+  float sum = 0.0f;
+  for (const float skin_weight : vertex.skin_weights) {
+    complaints->Range(at, ".skin_weights", skin_weight, 0.0f, 1.0f);
+    sum += skin_weight;
+  }
+  complaints->Require(std::abs(sum - 1.0f) <= 0.01f, at, ".skin_weights",
+                      "the skin weights do not sum to 1");
+  for (const int joint : vertex.joints) {
+    complaints->Require(joint >= 0 && static_cast<std::size_t>(joint) < num_joints, at, ".joints",
+                        "there is no such joint in the driver's list");
+  }
+}
+
+// Whether some triangle has an area to be compressed; indices are known to be good.
+bool HasArea(const StrainDriver& strain) {
+  for (std::size_t i = 0; i + 2 < strain.triangles.size(); i += 3) {
+    const auto corner = [&](std::size_t k) {
+      return strain.vertices[static_cast<std::size_t>(strain.triangles[i + k])].position;
+    };
+    if (MakeRestTriangle(corner(0), corner(1), corner(2), strain.direction)) return true;
+  }
+  return false;
+}
+
+void CheckStrain(const StrainDriver& strain, const std::string& at, Complaints* complaints) {
+  complaints->Label(at, ".joint", strain.joint);
+  complaints->Count(at, ".joints", strain.joints.size(), kMaxPatchJoints);
+  complaints->Count(at, ".vertices", strain.vertices.size(), kMaxPatchVertices);
+  complaints->Count(at, ".triangles", strain.triangles.size(), 3 * kMaxPatchTriangles);
+  std::unordered_set<std::string_view> joints;
+  for (std::size_t i = 0; i < strain.joints.size(); ++i) {
+    complaints->Label(FieldAt(at + ".joints", i), "", strain.joints[i]);
+    complaints->Once(FieldAt(at + ".joints", i), "", strain.joints[i], &joints);
+  }
+  for (std::size_t i = 0; i < strain.vertices.size(); ++i) {
+    CheckPatchVertex(strain.vertices[i], FieldAt(at + ".vertices", i), strain.joints.size(),
+                     complaints);
+  }
+  complaints->Require(strain.triangles.size() % 3 == 0, at, ".triangles",
+                      "a triangle has three vertices");
+  bool in_range = true;
+  for (const int vertex : strain.triangles) {
+    in_range = in_range && vertex >= 0 && static_cast<std::size_t>(vertex) < strain.vertices.size();
+  }
+  complaints->Require(in_range, at, ".triangles", "a number is not that of a vertex");
+  complaints->Direction(at, ".direction", strain.direction);
+  complaints->Range(at, ".full_compression", strain.full_compression, 0.01f, 1.0f);
+  complaints->Range(at, ".size", strain.size, 0.0f, kMaxSize);
+  complaints->Require(!in_range || HasArea(strain), at, ".triangles",
+                      "no triangle has an area that could be compressed");
+}
+
 void CheckDriver(const Driver& driver, const std::string& at, Complaints* complaints) {
   switch (driver.kind) {
     case Driver::Kind::kPose: return CheckPose(driver.pose, at + ".pose", complaints);
@@ -166,6 +226,7 @@ void CheckDriver(const Driver& driver, const std::string& at, Complaints* compla
     case Driver::Kind::kTwist: return CheckTwist(driver.twist, at + ".twist", complaints);
     case Driver::Kind::kBlendShape:
       return CheckBlendShape(driver.blend_shape, at + ".blend_shape", complaints);
+    case Driver::Kind::kStrain: return CheckStrain(driver.strain, at + ".strain", complaints);
   }
 }
 

@@ -16,6 +16,10 @@ inline constexpr std::size_t kMaxWrinkleMaps = 16;
 inline constexpr std::size_t kMaxSources = 256;  // of one feed
 // Regions times their maps: a map may stand once in a region.
 inline constexpr std::size_t kMaxWeights = kMaxRegions * kMaxWrinkleMaps;
+// Of one strain driver: all of its patch is computed on the stack.
+inline constexpr std::size_t kMaxPatchVertices = 256;
+inline constexpr std::size_t kMaxPatchTriangles = 512;
+inline constexpr std::size_t kMaxPatchJoints = 32;
 inline constexpr float kMaxBetaDegrees = 179.0f;  // of a hinge or ball: beyond, straight is flexed
 
 // What can be said of a rig's poses, drivers, regions, maps and filter field by field: names well

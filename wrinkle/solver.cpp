@@ -30,6 +30,7 @@ JobStatus DriverJob::Run() const {
   data.ball_drivers.Evaluate(local, data.chains, driver_values);
   data.twist_drivers.Evaluate(local, driver_values);
   data.blend_shape_drivers.Evaluate(blend_shapes, driver_values);
+  data.strain_drivers.Evaluate(local, data.chains, driver_values);
   return JobStatus::kOk;
 }
 

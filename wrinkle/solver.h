@@ -59,7 +59,7 @@ class RigBinding {
 // - Drivers compare joints with one another from the local pose alone, not in model space: where
 //   the character stands and how it is turned changes no value by a single bit (but for the pose
 //   drivers of a rig without an anchor).
-// Source: thesis 4.1, 4.6 with the corrections of docs/ALGORITHM.md.
+// Source: thesis 4.1, 4.6 with the corrections of docs/ALGORITHM.md; strain drivers are ours.
 struct DriverJob {
   const RigBinding* binding = nullptr;
   std::span<const Transform> local;
@@ -149,7 +149,7 @@ class SubjectSolver {
 //
 // - `influences` is num_joints * num maps of the rig, joint-major. Does not allocate.
 // - A pose driver concerns its control points' joints, a hinge or ball its lower joint, a twist all
-//   of its joints, a blend shape none; the largest of a joint's influences on a map counts.
+//   of its joints, a strain driver those that move its patch, a blend shape none; the largest of a joint's influences on a map counts.
 // - The vertex side for the processor, and lambda: vertex_influence.h.
 struct JointInfluenceJob {
   const RigBinding* binding = nullptr;

@@ -26,6 +26,11 @@ void PrintGeometry(const Explanation& explanation, std::string_view driver_value
     if (angle.driver != DriverOf(driver_value)) continue;
     std::fprintf(out, "      %s %.1f degrees\n", angle.what.c_str(), double{angle.degrees});
   }
+  for (const auto& strain : explanation.strains) {
+    if (strain.driver != DriverOf(driver_value)) continue;
+    std::fprintf(out, "      compressed to %.3f at %.1f degrees, %.3f across\n",
+                 double{strain.smallest}, double{strain.degrees}, double{strain.largest});
+  }
 }
 
 void PrintWeight(const Explanation& explanation, const Explanation::Weight& weight,

@@ -54,6 +54,10 @@ std::set<std::string> StreamDefinitions::JointsOf(const wrinkle::Rig& rig) {
         joints.insert(driver.twist.joint);
         joints.insert(driver.twist.through.begin(), driver.twist.through.end());
         break;
+      case wrinkle::Driver::Kind::kStrain:
+        joints.insert(driver.strain.joint);
+        joints.insert(driver.strain.joints.begin(), driver.strain.joints.end());
+        break;
       case wrinkle::Driver::Kind::kBlendShape: break;
     }
   }

@@ -140,6 +140,36 @@ TEST(RigFile, KeepsEveryFieldOfAMap) {
   EXPECT_EQ(map.surface, wrinkle::WrinkleMap::Surface::kCloth);
 }
 
+TEST(RigFile, KeepsAPatchOfStrain) {
+  auto rig = *Parse(kSmallRig);
+  wrinkle::Driver& driver = rig.drivers.emplace_back();
+  driver.name = "cheek";
+  driver.kind = wrinkle::Driver::Kind::kStrain;
+  driver.strain = {.joint = "head",
+                   .joints = {"head", "brow"},
+                   .vertices = {{{0, 0, 0}, {0}, {1.0f}},
+                                {{1, 0, 0}, {0, 1}, {0.25f, 0.75f}},
+                                {{0, 1.0f / 3.0f, 0}, {1}, {1.0f}}},
+                   .triangles = {0, 1, 2},
+                   .direction = {0, 1, 0},
+                   .full_compression = 0.125f,
+                   .size = 1.7f};
+  const auto again = Parse(RigToJson(rig));
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  const wrinkle::StrainDriver& strain = again->drivers.back().strain;
+  EXPECT_EQ(again->drivers.back().kind, wrinkle::Driver::Kind::kStrain);
+  EXPECT_EQ(strain.joint, "head");
+  EXPECT_EQ(strain.joints, driver.strain.joints);
+  ASSERT_EQ(strain.vertices.size(), 3u);
+  EXPECT_EQ(strain.vertices[2].position.y, 1.0f / 3.0f);
+  EXPECT_EQ(strain.vertices[1].joints, (std::vector<int>{0, 1}));
+  EXPECT_EQ(strain.vertices[1].skin_weights, (std::vector<float>{0.25f, 0.75f}));
+  EXPECT_EQ(strain.triangles, (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(strain.direction, glm::vec3(0, 1, 0));
+  EXPECT_EQ(strain.full_compression, 0.125f);
+  EXPECT_EQ(strain.size, 1.7f);
+}
+
 // Every way to be wrong, one at a time: what is changed, and the code, line and field it must give.
 struct Wrong {
   const char* from;
@@ -224,6 +254,8 @@ INSTANTIATE_TEST_SUITE_P(
               "26: wrinkle_maps[0].height_mm"},
         Wrong{"\"normal\": \"folds.png\"", "\"derivative_scale\": -1", kInvalid,
               "26: wrinkle_maps[0].derivative_scale"},
+        Wrong{"\"axis\": [1, 0, 0]}}", "\"axis\": [1, 0, 0]}}, {\"name\": \"s\", \"strain\": {}}",
+              kSchema, "15: drivers[2].strain.joint"},
         Wrong{"\"kind\": \"skinning\"", "\"kind\": 7", kInvalid, "23: regions[1].mask.kind"}));
 
 TEST(RigFile, RefusesMoreValuesThanNnlsSolves) {

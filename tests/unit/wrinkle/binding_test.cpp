@@ -35,12 +35,13 @@ TEST(RigBinding, BindsAGoodRig) {
       ElementsAre("brow_l.stretch", "brow_l.squash", "brow_r.stretch", "brow_r.squash",
                   "cheek_l.squash", "mouth.stretch", "knee_l_inner.folds", "knee_l_outer.folds",
                   "hip_l_front.folds", "waist_left.folds", "neck_left.folds"));
-  EXPECT_THAT(
-      binding->driver_value_names(),
-      ElementsAre("brow_l.stretch", "brow_l.squash", "brow_r.stretch", "brow_r.squash",
-                  "knee_l.flexed", "knee_l.extended", "hip_l.front", "hip_l.back", "hip_l.left",
-                  "hip_l.right", "waist.front", "waist.back", "waist.left", "waist.right",
-                  "cheek_l.squash", "neck.twist_left", "neck.twist_right", "jaw.value"));
+  EXPECT_THAT(binding->driver_value_names(),
+              ElementsAre("brow_l.stretch", "brow_l.squash", "brow_r.stretch", "brow_r.squash",
+                          "knee_l.flexed", "knee_l.extended", "hip_l.front", "hip_l.back",
+                          "hip_l.left", "hip_l.right", "waist.front", "waist.back", "waist.left",
+                          "waist.right", "cheek_l.squash", "neck.twist_left", "neck.twist_right",
+                          "cheek_patch.along", "cheek_patch.across", "cheek_patch.diagonal_left",
+                          "cheek_patch.diagonal_right", "jaw.value"));
 }
 
 // One thing wrong with a good rig, and what the message must say.
@@ -222,11 +223,64 @@ const Fault kNumberFaults[] = {
      "filter.decay_seconds"},
 };
 
+StrainDriver& Patch(Rig* rig) { return DriverNamed(rig, "cheek_patch").strain; }
+
+const Fault kPatchFaults[] = {
+    {"patch_joint", [](Rig* r) { Patch(r).joint = "skull"; }, StatusCode::kNotFound,
+     "driver 'cheek_patch': joint names joint 'skull'"},
+    {"patch_joints", [](Rig* r) { Patch(r).joints[1] = "jowl"; }, StatusCode::kNotFound,
+     "driver 'cheek_patch': joints names joint 'jowl'"},
+    {"patch_joint_twice", [](Rig* r) { Patch(r).joints[1] = "head"; }, StatusCode::kInvalidArgument,
+     "drivers[7].strain.joints[1]: the name 'head' is given twice"},
+    {"patch_vertex_joint",
+     [](Rig* r) {
+       Patch(r).vertices[4].joints = {0, 2};
+     },
+     StatusCode::kInvalidArgument, "drivers[7].strain.vertices[4].joints: there is no such joint"},
+    {"patch_vertex_still",
+     [](Rig* r) {
+       Patch(r).vertices[4].joints.clear();
+       Patch(r).vertices[4].skin_weights.clear();
+     },
+     StatusCode::kInvalidArgument, "vertices[4].joints: no joint moves the vertex"},
+    {"patch_too_many_influences",
+     [](Rig* r) {
+       Patch(r).vertices[0].joints = {0, 1, 0, 1, 0};
+     },
+     StatusCode::kLimit, "vertices[0].joints"},
+    {"patch_weight_missing", [](Rig* r) { Patch(r).vertices[3].skin_weights.pop_back(); },
+     StatusCode::kInvalidArgument, "vertices[3].skin_weights: a joint needs"},
+    {"patch_weights_sum",
+     [](Rig* r) {
+       Patch(r).vertices[3].skin_weights = {0.5f, 0.6f};
+     },
+     StatusCode::kInvalidArgument, "vertices[3].skin_weights: the skin weights do not sum to 1"},
+    {"patch_position", [](Rig* r) { Patch(r).vertices[8].position.z = kNan; },
+     StatusCode::kNonFinite, "vertices[8].position"},
+    {"patch_triangle", [](Rig* r) { Patch(r).triangles.back() = 9; }, StatusCode::kInvalidArgument,
+     "strain.triangles: a number is not"},
+    {"patch_two_corners", [](Rig* r) { Patch(r).triangles.pop_back(); },
+     StatusCode::kInvalidArgument, "strain.triangles: a triangle has three"},
+    {"patch_empty", [](Rig* r) { Patch(r).triangles.clear(); }, StatusCode::kInvalidArgument,
+     "strain.triangles: no triangle has an area"},
+    {"patch_degenerate", [](Rig* r) { Patch(r).triangles = {0, 1, 2, 3, 3, 3}; },
+     StatusCode::kInvalidArgument, "strain.triangles: no triangle has an area"},
+    {"patch_too_large", [](Rig* r) { Patch(r).vertices.resize(kMaxPatchVertices + 1); },
+     StatusCode::kLimit, "strain.vertices"},
+    {"patch_direction", [](Rig* r) { Patch(r).direction = {}; }, StatusCode::kInvalidArgument,
+     "strain.direction"},
+    {"patch_full", [](Rig* r) { Patch(r).full_compression = 0.0f; }, StatusCode::kInvalidArgument,
+     "strain.full_compression"},
+    {"patch_size", [](Rig* r) { Patch(r).size = -1.0f; }, StatusCode::kInvalidArgument,
+     "strain.size"},
+};
+
 const auto kFaultName = [](const testing::TestParamInfo<Fault>& info) {
   return std::string(info.param.name);
 };
 INSTANTIATE_TEST_SUITE_P(References, RigFaults, testing::ValuesIn(kReferenceFaults), kFaultName);
 INSTANTIATE_TEST_SUITE_P(Numbers, RigFaults, testing::ValuesIn(kNumberFaults), kFaultName);
+INSTANTIATE_TEST_SUITE_P(Patches, RigFaults, testing::ValuesIn(kPatchFaults), kFaultName);
 
 TEST(RigBinding, RefusesMoreRegionsThanItCounts) {
   Rig rig = MakeRig();

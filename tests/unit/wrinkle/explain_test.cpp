@@ -87,6 +87,18 @@ TEST_F(ExplainTest, ShowsAnglesInDegrees) {
   EXPECT_NEAR(Angle("neck", "twist"), -33.0f, 1e-2f);
 }
 
+TEST_F(ExplainTest, ShowsTheStrainOfAPatch) {
+  // Its lowest row, 0.02 below the highest, comes up by 0.005: three quarters as high.
+  pose_ = RestPose(rig_.skeleton());
+  Move(rig_.skeleton(), "cheek_l", {0.0f, 0.005f, 0.0f}, &pose_);
+  ASSERT_EQ(Explain(*rig_.binding(), pose_, &explanation_), JobStatus::kOk);
+  ASSERT_EQ(explanation_.strains.size(), 1u);
+  EXPECT_EQ(explanation_.strains[0].driver, "cheek_patch");
+  EXPECT_NEAR(explanation_.strains[0].smallest, 0.75f, 1e-5f);
+  EXPECT_NEAR(explanation_.strains[0].largest, 1.0f, 1e-5f);
+  EXPECT_NEAR(explanation_.strains[0].degrees, 0.0f, 0.01f);
+}
+
 TEST_F(ExplainTest, LeavesTheExplanationAloneOnFailure) {
   pose_.joints.pop_back();
   const std::size_t before = explanation_.weights.size();

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "wrinkle/retarget.h"
+
 namespace furrow::wrinkle {
 namespace {
 
@@ -96,6 +98,30 @@ Skeleton MakeBody(unsigned frame_seed, float scale) {
   return MakeSkeleton(joints, frame_seed);
 }
 
+Driver CheekPatch() {
+  Driver driver;
+  driver.name = "cheek_patch";
+  driver.kind = Driver::Kind::kStrain;
+  StrainDriver& strain = driver.strain;
+  strain.joint = "head";
+  strain.joints = {"head", "cheek_l"};
+  strain.direction = {0.0f, 1.0f, 0.0f};
+  strain.size = SkeletonSize(MakeBody());
+  for (int y = 0; y < 3; ++y) {
+    for (int x = 0; x < 3; ++x) {
+      const glm::vec2 at(static_cast<float>(x), static_cast<float>(y));
+      StrainDriver::Vertex& vertex = strain.vertices.emplace_back();
+      vertex.position = {0.03f + 0.01f * at.x, 0.03f + 0.01f * at.y, 0.08f - 0.004f * at.x};
+      vertex.joints = {0, 1};  // the cheek moves what is low
+      vertex.skin_weights = {0.5f * at.y, 1.0f - 0.5f * at.y};
+      const int corner = y * 3 + x;
+      if (x == 2 || y == 2) continue;
+      for (const int i : {0, 1, 3, 1, 4, 3}) strain.triangles.push_back(corner + i);
+    }
+  }
+  return driver;
+}
+
 Rig MakeRig() {
   Rig rig;
   rig.name = "test";
@@ -130,6 +156,7 @@ Rig MakeRig() {
   jaw.name = "jaw";
   jaw.kind = Driver::Kind::kBlendShape;
   jaw.blend_shape = {.blend_shape = "jawOpen"};
+  rig.drivers.push_back(CheekPatch());
   rig.drivers.push_back(jaw);
 
   rig.wrinkle_maps = {

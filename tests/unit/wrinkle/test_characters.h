@@ -30,6 +30,10 @@ Skeleton MakeSkeleton(const std::vector<ModelJoint>& joints, unsigned frame_seed
 // and both legs: 1.7 units tall, facing +Z.
 Skeleton MakeBody(unsigned frame_seed = 0, float scale = 1.0f);
 
+// A strain driver over MakeBody(), direction up: 9 vertices on the left cheek, two centimetres
+// high; their lowest row is the cheek joint's alone, the highest the head's.
+Driver CheekPatch();
+
 // A rig over MakeBody() with drivers of every kind: see the source.
 Rig MakeRig();
 
