@@ -19,21 +19,41 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Takes out the pictures that could not be read (they have no pixels); materials go without them.
+void DropMissingPictures(Character* character) {
+  std::vector<Picture> kept;
+  std::vector<int> index;
+  for (Picture& picture : character->pictures) {
+    index.push_back(picture.width > 0 ? static_cast<int>(kept.size()) : -1);
+    if (picture.width > 0) kept.push_back(std::move(picture));
+  }
+  character->pictures = std::move(kept);
+  for (Material& material : character->materials) {
+    for (int* picture :
+         {&material.base_colour_texture, &material.normal_texture, &material.roughness_texture}) {
+      if (*picture >= 0) *picture = index[static_cast<std::size_t>(*picture)];
+    }
+  }
+}
+
 // The glTF's part of a character; `where` of an error is a field.
-Status ReadGltf(const tinygltf::Model& model, const fs::path& folder, Character* character) {
+Status ReadGltf(const tinygltf::Model& model, const fs::path& folder, const ReadOptions& options,
+                Character* character) {
   Result<GltfSkeleton> skeleton = ReadGltfSkeleton(model);
   if (!skeleton.ok()) return skeleton.status();
-  Result<std::vector<Mesh>> meshes = ReadGltfMeshes(model, *skeleton);
+  Result<std::vector<Mesh>> meshes = ReadGltfMeshes(model, *skeleton, options);
   if (!meshes.ok()) return meshes.status();
   Result<std::vector<Material>> materials = ReadGltfMaterials(model);
   if (!materials.ok()) return materials.status();
-  Result<std::vector<Picture>> pictures = ReadGltfPictures(model, folder);
+  Result<std::vector<Picture>> pictures = ReadGltfPictures(model, folder, options);
   if (!pictures.ok()) return pictures.status();
+  if (options.notes != nullptr) options.notes->nameless_joints = skeleton->nameless_joints;
   character->skeleton = std::move(skeleton->skeleton);
   character->inverse_bind_matrices = std::move(skeleton->inverse_bind_matrices);
   character->meshes = std::move(*meshes);
   character->materials = std::move(*materials);
   character->pictures = std::move(*pictures);
+  if (options.lenient) DropMissingPictures(character);
   return {};
 }
 
@@ -79,7 +99,8 @@ std::vector<std::string> RigPictureNames(const wrinkle::Rig& rig) {
     if (region.mask.kind == wrinkle::Mask::Kind::kTexture) add(region.mask.texture);
   }
   for (const wrinkle::WrinkleMap& map : rig.wrinkle_maps) {
-    for (const std::string* name : {&map.normal, &map.derivative, &map.colour, &map.cavity}) {
+    for (const std::string* name :
+         {&map.normal, &map.derivative, &map.height, &map.colour, &map.cavity}) {
       add(*name);
     }
   }
@@ -93,12 +114,13 @@ int Character::FindRigPicture(std::string_view picture_name) const {
   return -1;
 }
 
-Result<Character> ParseCharacter(std::string_view bytes, const fs::path& folder) {
+Result<Character> ParseCharacter(std::string_view bytes, const fs::path& folder,
+                                 const ReadOptions& options) {
   const Result<std::unique_ptr<tinygltf::Model>> model = ParseGltf(bytes, folder);
   if (!model.ok()) return model.status();
   Character character;
   character.folder = folder;
-  if (Status status = ReadGltf(**model, folder, &character); !status.ok()) return status;
+  if (Status status = ReadGltf(**model, folder, options, &character); !status.ok()) return status;
   if (!(*model)->scenes.empty()) character.name = (*model)->scenes.front().name;
   return character;
 }

@@ -13,6 +13,7 @@
 #include <glm/vec4.hpp>
 
 #include "character/picture.h"
+#include "character/source_notes.h"
 #include "wrinkle/pose_frame.h"
 #include "wrinkle/rig.h"
 #include "wrinkle/skeleton.h"
@@ -83,7 +84,8 @@ struct Character {
 // As LoadCharacter() without a rig, from bytes in memory; `where` of errors is the field alone, and
 // the character's name may be empty. `folder`: where a .gltf's own files are.
 [[nodiscard]] Result<Character> ParseCharacter(std::string_view bytes,
-                                               const std::filesystem::path& folder);
+                                               const std::filesystem::path& folder,
+                                               const ReadOptions& options = {});
 
 // Gives a character another rig, whose files are looked up in `folder` first, and loads its
 // pictures.

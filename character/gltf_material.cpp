@@ -136,7 +136,8 @@ std::string_view MaterialKindName(Kind kind) {
 }
 
 Result<std::vector<Picture>> ReadGltfPictures(const tinygltf::Model& model,
-                                              const std::filesystem::path& folder) {
+                                              const std::filesystem::path& folder,
+                                              const ReadOptions& options) {
   if (model.images.size() > kMaxPictures) {
     return Status(StatusCode::kLimit, "more than " + std::to_string(kMaxPictures) + " pictures",
                   "images");
@@ -148,6 +149,13 @@ Result<std::vector<Picture>> ReadGltfPictures(const tinygltf::Model& model,
     const std::string where = "images[" + std::to_string(i) + "]";
     const std::string name = image.name.empty() ? image.uri : image.name;
     Result<Picture> picture = ReadPicture(model, image, name, folder);
+    if (!picture.ok() && options.lenient && picture.status().code() != StatusCode::kLimit) {
+      if (options.notes != nullptr) {
+        options.notes->missing_pictures.push_back(name + ": " + picture.status().what());
+      }
+      pictures.push_back({.name = name, .pixels = {}, .pixels16 = {}});
+      continue;
+    }
     if (!picture.ok()) {
       const Status s = picture.status();
       return Status(s.code(), s.where().empty() ? s.what() : s.where() + ": " + s.what(), where,

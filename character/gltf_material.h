@@ -23,9 +23,11 @@ inline constexpr std::size_t kMaxMaterials = 1024;
 [[nodiscard]] std::string_view MaterialKindName(Material::Kind kind);  // "skin", "cloth", ...
 
 // All pictures of the file in its order, decoded: from buffer views, data URIs or (a .gltf's) files
-// found by FindAsset(). `where` of an error: "images[2]".
+// found by FindAsset(). `where` of an error: "images[2]". Read leniently, a picture that is absent or
+// damaged is noted and has no pixels; limits hold all the same.
 [[nodiscard]] Result<std::vector<Picture>> ReadGltfPictures(const tinygltf::Model& model,
-                                                            const std::filesystem::path& folder);
+                                                            const std::filesystem::path& folder,
+                                                            const ReadOptions& options = {});
 
 // Materials; the kind is the extra "furrow_kind" or a guess. Texture indices are into the pictures.
 [[nodiscard]] Result<std::vector<Material>> ReadGltfMaterials(const tinygltf::Model& model);

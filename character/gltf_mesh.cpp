@@ -14,6 +14,7 @@
 
 #include "character/gltf_accessor.h"
 #include "character/paint/tangents.h"
+#include "character/spread_influences.h"
 
 namespace furrow::character {
 namespace {
@@ -26,8 +27,14 @@ constexpr int kMaxInfluenceSets = 4;  // JOINTS_0 to JOINTS_3: 16 influences
 // One primitive on its way to a Mesh.
 class PrimitiveReader {
  public:
-  PrimitiveReader(const Model& model, const Primitive& primitive, std::string at, Mesh* mesh)
-      : model_(model), primitive_(primitive), at_(std::move(at)), mesh_(mesh) {}
+  PrimitiveReader(const Model& model, const Primitive& primitive, std::string at, bool lenient,
+                  Mesh* mesh, MeshNotes* notes)
+      : model_(model),
+        primitive_(primitive),
+        at_(std::move(at)),
+        lenient_(lenient),
+        mesh_(mesh),
+        notes_(notes) {}
 
   Status ReadGeometry() {
     if (primitive_.mode != TINYGLTF_MODE_TRIANGLES) {
@@ -40,6 +47,10 @@ class PrimitiveReader {
     if (Status s = Attribute("NORMAL", 3, false, &normal); !s.ok()) return s;
     if (Status s = Attribute("TANGENT", 4, false, &tangent); !s.ok()) return s;
     if (Status s = Attribute("TEXCOORD_0", 2, false, &uv); !s.ok()) return s;
+    notes_->has_uvs = uv.has_value();
+    notes_->has_normals = normal.has_value();
+    notes_->has_tangents = tangent.has_value();
+    notes_->morph_targets = static_cast<int>(primitive_.targets.size());
     bool normals_usable = normal.has_value();
     bool tangents_usable = tangent.has_value();
     for (std::size_t v = 0; v < mesh_->vertices.size(); ++v) {
@@ -68,6 +79,8 @@ class PrimitiveReader {
 
   // `joint_of`: index in the skin's list to joint of the skeleton.
   Status ReadInfluences(const std::vector<int>& joint_of) {
+    notes_->skinned = true;
+    std::vector<bool> unskinned(mesh_->vertices.size(), false);
     std::vector<std::pair<std::optional<GltfAccessor>, std::optional<GltfAccessor>>> sets;
     for (int set = 0; set < kMaxInfluenceSets; ++set) {
       const std::string suffix = "_" + std::to_string(set);
@@ -106,8 +119,14 @@ class PrimitiveReader {
           influences.emplace_back(weight, joint_of[joint]);
         }
       }
-      if (Status s = Keep(influences, v); !s.ok()) return s;
+      if (lenient_ && influences.empty()) {
+        unskinned[v] = true;
+        ++notes_->unskinned_vertices;
+      } else if (Status s = Keep(influences, v); !s.ok()) {
+        return s;
+      }
     }
+    if (notes_->unskinned_vertices > 0) SpreadInfluences(unskinned, joint_of.front(), mesh_);
     return {};
   }
 
@@ -196,6 +215,7 @@ class PrimitiveReader {
   Status Keep(std::vector<std::pair<float, int>>& influences, std::size_t v) {
     std::stable_sort(influences.begin(), influences.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
+    NoteSum(influences);
     influences.resize(std::min<std::size_t>(influences.size(), 4));
     float sum = 0.0f;
     for (const auto& [weight, joint] : influences) sum += weight;
@@ -214,10 +234,23 @@ class PrimitiveReader {
     return {};
   }
 
+  // What the weights of a vertex were before they are cut and normalised.
+  void NoteSum(const std::vector<std::pair<float, int>>& influences) {
+    constexpr float kTolerance = 0.01f;  // bytes that are rounded one by one miss 1 by less
+    float sum = 0.0f;
+    for (const auto& [weight, joint] : influences) sum += weight;
+    notes_->truncated_vertices += influences.size() > 4 ? 1 : 0;
+    if (std::abs(sum - 1.0f) <= kTolerance) return;
+    ++notes_->unnormalised_vertices;
+    if (std::abs(sum - 1.0f) > std::abs(notes_->worst_sum - 1.0f)) notes_->worst_sum = sum;
+  }
+
   const Model& model_;
   const Primitive& primitive_;
   std::string at_;
+  bool lenient_;
   Mesh* mesh_;
+  MeshNotes* notes_;
 };
 
 // Moves a mesh without skin to where its node stands in the rest pose.
@@ -237,8 +270,8 @@ void Place(const glm::mat4& node_model, Mesh* mesh) {
   }
 }
 
-Status ReadNode(const Model& model, const GltfSkeleton& skeleton, std::size_t n,
-                std::vector<Mesh>* meshes) {
+Status ReadNode(const Model& model, const GltfSkeleton& skeleton, std::size_t n, bool lenient,
+                std::vector<Mesh>* meshes, std::vector<MeshNotes>* notes) {
   const tinygltf::Node& node = model.nodes[n];
   const std::string at = "nodes[" + std::to_string(n) + "]";
   if (node.mesh >= static_cast<int>(model.meshes.size())) {
@@ -265,7 +298,7 @@ Status ReadNode(const Model& model, const GltfSkeleton& skeleton, std::size_t n,
     if (mesh.material >= static_cast<int>(model.materials.size())) {
       return {StatusCode::kSchema, "there is no such material", where + ".material"};
     }
-    PrimitiveReader reader(model, primitive, where, &mesh);
+    PrimitiveReader reader(model, primitive, where, lenient, &mesh, &notes->emplace_back());
     if (Status s = reader.ReadGeometry(); !s.ok()) return s;
     if (node.skin >= 0) {
       if (Status s = reader.ReadInfluences(joint_of); !s.ok()) return s;
@@ -279,14 +312,19 @@ Status ReadNode(const Model& model, const GltfSkeleton& skeleton, std::size_t n,
 
 }  // namespace
 
-Result<std::vector<Mesh>> ReadGltfMeshes(const Model& model, const GltfSkeleton& skeleton) {
+Result<std::vector<Mesh>> ReadGltfMeshes(const Model& model, const GltfSkeleton& skeleton,
+                                         const ReadOptions& options) {
   std::vector<Mesh> meshes;
+  std::vector<MeshNotes> notes;
   std::size_t vertices = 0;
   std::size_t indices = 0;
   for (std::size_t n = 0; n < model.nodes.size(); ++n) {
     if (model.nodes[n].mesh < 0) continue;
     const std::size_t before = meshes.size();
-    if (Status status = ReadNode(model, skeleton, n, &meshes); !status.ok()) return status;
+    if (Status status = ReadNode(model, skeleton, n, options.lenient, &meshes, &notes);
+        !status.ok()) {
+      return status;
+    }
     for (std::size_t m = before; m < meshes.size(); ++m) {
       vertices += meshes[m].vertices.size();
       indices += meshes[m].indices.size();
@@ -297,6 +335,7 @@ Result<std::vector<Mesh>> ReadGltfMeshes(const Model& model, const GltfSkeleton&
     }
   }
   if (meshes.empty()) return Status(StatusCode::kSchema, "no node has a mesh", "nodes");
+  if (options.notes != nullptr) options.notes->meshes = std::move(notes);
   return meshes;
 }
 

@@ -16,8 +16,9 @@ inline constexpr std::size_t kMaxIndices = 48u << 20;
 //
 // Errors name the field: "meshes[0].primitives[1].attributes.WEIGHTS_0". kSchema (missing or
 // mistyped attributes, counts that differ, indices out of range), kNonFinite, kInvalidArgument
-// (skin weights negative or all zero), kUnsupported (not triangles), kLimit.
+// (skin weights negative, or all zero unless read leniently), kUnsupported (not triangles), kLimit.
 [[nodiscard]] Result<std::vector<Mesh>> ReadGltfMeshes(const tinygltf::Model& model,
-                                                       const GltfSkeleton& skeleton);
+                                                       const GltfSkeleton& skeleton,
+                                                       const ReadOptions& options = {});
 
 }  // namespace furrow::character

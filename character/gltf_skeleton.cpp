@@ -209,6 +209,7 @@ Result<GltfSkeleton> ReadGltfSkeleton(const tinygltf::Model& model) {
     if (!chosen[node]) continue;
     joint_index[node] = static_cast<int>(joints.size());
     const std::string& name = model.nodes[node].name;
+    to.nameless_joints += name.empty() ? 1 : 0;
     joints.push_back({name.empty() ? "node_" + std::to_string(node) : name, kNoJoint, locals[node],
                       ReadTail(model.nodes[node])});
   }

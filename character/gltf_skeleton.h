@@ -21,6 +21,7 @@ struct GltfSkeleton {
   std::vector<int> joint_of_node;     // nearest joint at or above each node; 0 where there is none
   std::vector<int> exact_joint;       // the node's own joint, or kNoJoint
   std::vector<glm::mat4> node_model;  // of each node, rest pose
+  int nameless_joints = 0;            // named "node_<number>"
 };
 
 // The joints of all skins and the nodes above them (all nodes where there is no skin). A joint's

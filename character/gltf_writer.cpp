@@ -2,30 +2,23 @@
 // SaveCharacterGlb(): one .glb with everything in it. Equal characters give equal bytes: fields are
 // written in a fixed order, and no time or path goes in.
 #include <algorithm>
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <glm/gtc/type_ptr.hpp>
-#include <nlohmann/json.hpp>
 
 #include "character/asset_path.h"
 #include "character/character.h"
+#include "character/gltf_builder.h"
 #include "character/gltf_material.h"
 
 namespace furrow::character {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian");
-
-enum Target { kNoTarget = 0, kArrayBuffer = 34962, kElementBuffer = 34963 };
-enum Component { kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
+using Json = GltfBuilder::Json;
 
 Json List(const glm::vec3& v) { return {v.x, v.y, v.z}; }
 Json List(const glm::quat& q) { return {q.x, q.y, q.z, q.w}; }
@@ -36,8 +29,6 @@ class GlbWriter {
 
   Result<std::string> Run() {
     if (Status status = CheckSizes(); !status.ok()) return status;
-    root_["asset"] = {{"version", "2.0"}, {"generator", "furrow"}};
-    root_["scene"] = 0;
     AddNodes();
     AddSkin();
     for (const Mesh& mesh : character_.meshes) AddMesh(mesh);
@@ -45,10 +36,7 @@ class GlbWriter {
     for (const Picture& picture : character_.pictures) {
       if (Status status = AddPicture(picture); !status.ok()) return status;
     }
-    root_["accessors"] = std::move(accessors_);
-    root_["bufferViews"] = std::move(views_);
-    root_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
-    return Assemble();
+    return builder_.Finish();
   }
 
  private:
@@ -98,27 +86,6 @@ class GlbWriter {
     return {};
   }
 
-  // Bytes into the buffer, on a border of four; the view's index.
-  int AddView(const void* bytes, std::size_t size, Target target) {
-    binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
-    Json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", size}};
-    if (target != kNoTarget) view["target"] = static_cast<int>(target);
-    binary_.append(static_cast<const char*>(bytes), size);
-    views_.push_back(std::move(view));
-    return static_cast<int>(views_.size()) - 1;
-  }
-
-  template <class T>
-  int AddAccessor(const std::vector<T>& values, Component component, const char* type,
-                  Target target) {
-    Json accessor = {{"bufferView", AddView(values.data(), values.size() * sizeof(T), target)},
-                     {"componentType", static_cast<int>(component)},
-                     {"count", values.size()},
-                     {"type", type}};
-    accessors_.push_back(std::move(accessor));
-    return static_cast<int>(accessors_.size()) - 1;
-  }
-
   // Joints are the first nodes, in the skeleton's order; meshes follow.
   void AddNodes() {
     const wrinkle::Skeleton& skeleton = character_.skeleton;
@@ -156,7 +123,8 @@ class GlbWriter {
     for (std::size_t j = 0; j < joints; ++j) list.push_back(j);
     root_["skins"] =
         Json::array({{{"inverseBindMatrices",
-                       AddAccessor(character_.inverse_bind_matrices, kFloat, "MAT4", kNoTarget)},
+                       builder_.AddAccessor(character_.inverse_bind_matrices, GltfBuilder::kFloat,
+                                            "MAT4", GltfBuilder::kNoTarget)},
                       {"joints", std::move(list)}}});
   }
 
@@ -181,18 +149,24 @@ class GlbWriter {
       joints.push_back(used);
     }
     Json attributes;
-    const int position = AddAccessor(positions, kFloat, "VEC3", kArrayBuffer);
-    accessors_[static_cast<std::size_t>(position)]["min"] = List(low);
-    accessors_[static_cast<std::size_t>(position)]["max"] = List(high);
+    const int position =
+        builder_.AddAccessor(positions, GltfBuilder::kFloat, "VEC3", GltfBuilder::kArrayBuffer);
+    builder_.accessor(position)["min"] = List(low);
+    builder_.accessor(position)["max"] = List(high);
     attributes["POSITION"] = position;
-    attributes["NORMAL"] = AddAccessor(normals, kFloat, "VEC3", kArrayBuffer);
-    attributes["TANGENT"] = AddAccessor(tangents, kFloat, "VEC4", kArrayBuffer);
-    attributes["TEXCOORD_0"] = AddAccessor(uvs, kFloat, "VEC2", kArrayBuffer);
-    attributes["JOINTS_0"] = AddAccessor(joints, kUnsignedShort, "VEC4", kArrayBuffer);
-    attributes["WEIGHTS_0"] = AddAccessor(weights, kFloat, "VEC4", kArrayBuffer);
-    Json primitive = {
-        {"attributes", std::move(attributes)},
-        {"indices", AddAccessor(mesh.indices, kUnsignedInt, "SCALAR", kElementBuffer)}};
+    attributes["NORMAL"] =
+        builder_.AddAccessor(normals, GltfBuilder::kFloat, "VEC3", GltfBuilder::kArrayBuffer);
+    attributes["TANGENT"] =
+        builder_.AddAccessor(tangents, GltfBuilder::kFloat, "VEC4", GltfBuilder::kArrayBuffer);
+    attributes["TEXCOORD_0"] =
+        builder_.AddAccessor(uvs, GltfBuilder::kFloat, "VEC2", GltfBuilder::kArrayBuffer);
+    attributes["JOINTS_0"] = builder_.AddAccessor(joints, GltfBuilder::kUnsignedShort, "VEC4",
+                                                  GltfBuilder::kArrayBuffer);
+    attributes["WEIGHTS_0"] =
+        builder_.AddAccessor(weights, GltfBuilder::kFloat, "VEC4", GltfBuilder::kArrayBuffer);
+    Json primitive = {{"attributes", std::move(attributes)},
+                      {"indices", builder_.AddAccessor(mesh.indices, GltfBuilder::kUnsignedInt,
+                                                       "SCALAR", GltfBuilder::kElementBuffer)}};
     if (mesh.material >= 0) primitive["material"] = mesh.material;
     root_["meshes"].push_back(
         {{"name", mesh.name}, {"primitives", Json::array({std::move(primitive)})}});
@@ -224,45 +198,16 @@ class GlbWriter {
   Status AddPicture(const Picture& picture) {
     const Result<std::string> png = EncodePng(picture);
     if (!png.ok()) return png.status();
-    const int view = AddView(png->data(), png->size(), kNoTarget);
+    const int view = builder_.AddView(png->data(), png->size(), GltfBuilder::kNoTarget);
     root_["textures"].push_back({{"source", root_["textures"].size()}});
     root_["images"].push_back(
         {{"name", picture.name}, {"mimeType", "image/png"}, {"bufferView", view}});
     return {};
   }
 
-  Result<std::string> Assemble() {
-    std::string text;
-    try {
-      text = root_.dump();
-    } catch (const Json::exception&) {
-      return Status(StatusCode::kInvalidArgument, "a name is not valid UTF-8");
-    }
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
-    const std::uint64_t total = 12 + 8 + text.size() + 8 + binary_.size();
-    if (total > std::numeric_limits<std::uint32_t>::max()) {
-      return Status(StatusCode::kLimit, "a GLB holds at most 4 GiB");
-    }
-    std::string glb = "glTF";
-    AppendWord(2, &glb);
-    AppendWord(total, &glb);
-    AppendWord(text.size(), &glb);
-    glb += "JSON" + text;
-    AppendWord(binary_.size(), &glb);
-    glb += std::string("BIN\0", 4) + binary_;
-    return glb;
-  }
-
-  static void AppendWord(std::uint64_t word, std::string* bytes) {
-    for (int shift = 0; shift < 32; shift += 8) *bytes += static_cast<char>((word >> shift) & 0xff);
-  }
-
   const Character& character_;
-  Json root_;
-  Json accessors_ = Json::array();
-  Json views_ = Json::array();
-  std::string binary_;
+  GltfBuilder builder_;
+  Json& root_ = builder_.root();
 };
 
 }  // namespace

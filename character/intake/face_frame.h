@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "character/intake/joint_finder.h"
+#include "wrinkle/skeleton.h"
+
+namespace furrow::character {
+
+// Which joint of one face lies where a joint of another does.
+struct FaceMatch {
+  std::vector<int> joint;  // by joint of the model: the target's, or kNoJoint
+
+  // kNoJoint for kNoJoint, too.
+  [[nodiscard]] int Of(int model_joint) const;
+};
+
+// Matches the joints below the heads of two skeletons, which both stand up, +Y, and face +Z.
+//
+// - Places are measured from the point between the eyes in distances between them; of a joint that
+//   has other joints of the face below it, its origin counts; of a leaf, its tail or its origin,
+//   whichever is nearer.
+// - A match is the nearest of both sides, within a third of the distance between the eyes. A joint
+//   of the model whose very name the target has goes there.
+// - Eyes and jaw go by their roles. Empty where one of the two has no eyes.
+[[nodiscard]] FaceMatch MatchFaces(const wrinkle::Skeleton& model, const FoundJoints& model_joints,
+                                   const wrinkle::Skeleton& target,
+                                   const FoundJoints& target_joints);
+
+// The joints below the head other than eyes and jaw.
+[[nodiscard]] std::vector<int> FaceJoints(const wrinkle::Skeleton& skeleton,
+                                          const FoundJoints& joints);
+
+}  // namespace furrow::character

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "character/intake/import_model.h"
+#include "character/rig_file.h"
+#include "client/cli/character_command.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/inputs.h"
+
+namespace furrow::cli {
+namespace {
+
+struct ProposeArguments {
+  std::string file;
+  std::string out;
+  std::string map;
+};
+
+// Of a recording by its extension; of a model otherwise.
+Result<wrinkle::Skeleton> SkeletonOf(const std::string& file) {
+  const std::filesystem::path extension = std::filesystem::path(file).extension();
+  if (extension == ".bvh" || extension == ".mcap" || extension == ".vrma") {
+    auto clip = LoadClipArgument(file);
+    if (!clip.ok()) return clip.status();
+    return std::move(clip->skeleton);
+  }
+  auto model = character::OpenModel(file);
+  if (!model.ok()) return model.status();
+  return std::move(model->character.skeleton);
+}
+
+int Propose(const ProposeArguments& arguments) {
+  const auto skeleton = SkeletonOf(arguments.file);
+  if (!skeleton.ok()) return Fail(skeleton.status());
+  const auto proposal = ProposeFromDefault(*skeleton, arguments.map);
+  if (!proposal.ok()) return Fail(proposal.status().At(arguments.file));
+  if (Status s = character::SaveRig(proposal->rig, arguments.out); !s.ok()) return Fail(s);
+  PrintNotes(proposal->remarks);
+  std::fprintf(stderr,
+               "furrow: %s: %zu drivers, %zu regions, %zu reference poses; edit it, then "
+               "`furrow rig check`\n",
+               arguments.out.c_str(), proposal->rig.drivers.size(), proposal->rig.regions.size(),
+               proposal->rig.reference_poses.size());
+  return kDone;
+}
+
+}  // namespace
+
+Result<character::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skeleton,
+                                                  const std::string& map) {
+  const auto maps = character::SkeletonMaps::Load(map);
+  if (!maps.ok()) return maps.status();
+  const auto shipped = character::SkeletonMaps::LoadShipped();
+  if (!shipped.ok()) return shipped.status();
+  const auto model = LoadCharacterArgument({}, {});
+  if (!model.ok()) return model.status();
+  const character::FoundJoints model_joints = character::FindJoints(model->skeleton, *shipped);
+  const character::FoundJoints joints = character::FindJoints(skeleton, *maps);
+  return character::ProposeRig(model->rig, {&model->skeleton, &model_joints}, {&skeleton, &joints});
+}
+
+void PrintNotes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) std::fprintf(stderr, "furrow: note: %s\n", note.c_str());
+}
+
+void AddProposeRig(CLI::App& group, Action& action) {
+  auto arguments = std::make_shared<ProposeArguments>();
+  CLI::App* command = group.add_subcommand(
+      "propose-rig", "Writes a wrinkle rig for a model or a recording, for a person to edit");
+  command->add_option("FILE", arguments->file, "A model (glTF, FBX, ...) or a recording (BVH, ...)")
+      ->required();
+  command->add_option("--out", arguments->out, "RIG.json")->required();
+  command->add_option(
+      "--map", arguments->map,
+      "Skeleton map that tells the joints, a name or a file; default: the best fit");
+  command->callback([arguments, &action] { action = [arguments] { return Propose(*arguments); }; });
+}
+
+}  // namespace furrow::cli
