@@ -113,7 +113,7 @@ void AddTeethRow(bool upper, HeadMesh* teeth) {
       const float height =
           edge + (root - edge) * t + (upper ? -0.05f : 0.05f) * (crown - 1.0f) * -(1.0f - t);
       info.place = vec3((2.35f - inset + bulge) * std::sin(angle), height,
-                        5.6f + (2.8f - inset + bulge) * std::cos(angle));
+                        5.75f + (2.95f - inset + bulge) * std::cos(angle));
       AddVertex(
           teeth, info,
           {0.01f + 0.98f * static_cast<float>(i) / kSegments, (upper ? 0.01f : 0.51f) + 0.48f * t});
@@ -135,10 +135,10 @@ void AddTeethRow(bool upper, HeadMesh* teeth) {
 
 }  // namespace
 
-HeadMesh MakeLashes() {
+HeadMesh MakeLashes(const HeadShape& shape) {
   HeadMesh lashes;
   lashes.mesh.name = "lashes";
-  const HeadGrid grid;
+  const HeadGrid grid(shape);
   int cell = 0;
   for (const float side : {1.0f, -1.0f}) {
     AddLashRow(grid, side, true, &cell, &lashes);

@@ -44,29 +44,29 @@ float InsideHairline(const vec3& p) {
   return p.y - Interpolate(kHairline, azimuth) + ragged;
 }
 
-HeadMesh MakeHair() {
-  HeadGrid layout;
+HeadMesh MakeHair(const HeadShape& shape) {
+  const HeadGrid layout(shape);
   HeadMesh hair;
   hair.mesh.name = "hair";
-  constexpr int kC = HeadGrid::kColumns;
+  const int kC = layout.num_columns();
   const int rows = layout.num_rows();
   const vec3 middle(0.0f, 2.0f, -1.0f);
   std::vector<float> inside;
   for (int c = -kC; c <= kC; ++c) {
     for (int r = 0; r < rows; ++r) {
       // The plain grid: openings do not matter here.
-      const vec2 place(static_cast<float>(c), static_cast<float>(r));
+      const vec2 place = layout.Plain(c, r);
       HeadVertex info;
       info.part = kHairCap;
       const vec3 skin = layout.Surface(place);
       const vec3 outward =
-          glm::normalize(glm::mix(glm::normalize(skin - middle), HeadNormal(skin), 0.4f));
+          glm::normalize(glm::mix(glm::normalize(skin - middle), shape.Normal(skin), 0.4f));
       inside.push_back(InsideHairline(skin));
       info.place = skin + outward * Thickness(skin, inside.back());
       if (std::abs(c) == kC) info.place.x = 0.0f;
       Vertex vertex;
       vertex.position = HeadToModel(info.place);
-      vertex.uv = glm::mix(vec2(0.01f), vec2(0.99f), layout.Uv(place));
+      vertex.uv = glm::mix(vec2(0.01f), vec2(0.99f), HeadUv(place));
       hair.mesh.vertices.push_back(vertex);
       hair.info.push_back(info);
     }

@@ -43,6 +43,8 @@ std::uint32_t AddVertex(HeadMesh* head, const HeadVertex& info, const vec2& uv) 
 // Builds the grid's surface and what lies behind its openings.
 class SkinBuilder {
  public:
+  SkinBuilder(const HeadShape& shape, int level) : layout_(shape, level) {}
+
   HeadMesh Build() {
     AddGrid();
     AddLids(1.0f);
@@ -56,29 +58,30 @@ class SkinBuilder {
 
  private:
   std::uint32_t GridIndex(int column, int row) const {
-    return grid_[static_cast<std::size_t>(column + HeadGrid::kColumns) * layout_.num_rows() + row];
+    return grid_[static_cast<std::size_t>(column + layout_.num_columns()) * layout_.num_rows() +
+                 row];
   }
 
   HeadVertex GridVertex(int column, int row, const vec2& place) const {
     HeadVertex info;
     info.place = layout_.Surface(place);
-    const int mouth = layout_.mouth_row(0) + 1;
+    const int mouth = (layout_.mouth_row(0) + layout_.mouth_row(1)) / 2;
     const int eye = (layout_.eye_row(0) + layout_.eye_row(1)) / 2;
     info.mouth_side = static_cast<float>((row > mouth) - (row < mouth));
     info.eye_side = static_cast<float>((row > eye) - (row < eye));
-    if (std::abs(column) == HeadGrid::kColumns) info.place.x = 0.0f;  // the seam closes
+    if (std::abs(column) == layout_.num_columns()) info.place.x = 0.0f;  // the seam closes
     return info;
   }
 
   void AddGrid() {
-    constexpr int kC = HeadGrid::kColumns;
-    for (int c = -kC; c <= kC; ++c) {
+    const int last = layout_.num_columns();
+    for (int c = -last; c <= last; ++c) {
       for (int r = 0; r < layout_.num_rows(); ++r) {
         const vec2 place = layout_.Warped(c, r);
-        grid_.push_back(AddVertex(&head_, GridVertex(c, r, place), Atlas(layout_.Uv(place))));
+        grid_.push_back(AddVertex(&head_, GridVertex(c, r, place), Atlas(HeadUv(place))));
       }
     }
-    for (int c = -kC; c < kC; ++c) {
+    for (int c = -last; c < last; ++c) {
       for (int r = 0; r + 1 < layout_.num_rows(); ++r) {
         if (layout_.InOpening(c, r)) continue;
         AddQuad(&head_.mesh, GridIndex(c, r), GridIndex(c + 1, r), GridIndex(c + 1, r + 1),
@@ -126,7 +129,7 @@ class SkinBuilder {
         info.place = centre + glm::normalize(direction) * step.radius;
         const vec2 place =
             glm::mix(middle, layout_.Warped(outline[i].x, outline[i].y), step.shrink);
-        next.push_back(AddVertex(&head_, info, Atlas(layout_.Uv(place))));
+        next.push_back(AddVertex(&head_, info, Atlas(HeadUv(place))));
       }
       Bridge(ring, next);
       ring = std::move(next);
@@ -220,8 +223,8 @@ vec3 EyeCentre(float side) {
   return {side * kEyeCentre.x, kEyeCentre.y - side * 0.057f, kEyeCentre.z};
 }
 
-HeadMesh MakeHeadSkin() {
-  HeadMesh head = SkinBuilder().Build();
+HeadMesh MakeHeadSkin(const HeadShape& shape, int level) {
+  HeadMesh head = SkinBuilder(shape, level).Build();
   head.mesh.name = "head";
   return head;
 }

@@ -7,6 +7,8 @@
 #include <glm/vec3.hpp>
 
 #include "character/character.h"
+#include "character/generator/head_grid.h"
+#include "character/generator/head_shape.h"
 
 namespace furrow::character::generator {
 
@@ -29,13 +31,14 @@ struct HeadMesh {
 };
 
 // Face, neck, lids, inside of the mouth and ears: one atlas. Island of the grid above, ears below.
-[[nodiscard]] HeadMesh MakeHeadSkin();
+[[nodiscard]] HeadMesh MakeHeadSkin(const HeadShape& shape = DefaultHead(),
+                                    int level = kDefaultLevel);
 // Both balls with their corneas, side by side in one atlas, looking along +Z.
 [[nodiscard]] HeadMesh MakeEyes();
 // Short hair over the scalp, brushed up in front.
-[[nodiscard]] HeadMesh MakeHair();
+[[nodiscard]] HeadMesh MakeHair(const HeadShape& shape = DefaultHead());
 // Lashes of the four lids.
-[[nodiscard]] HeadMesh MakeLashes();
+[[nodiscard]] HeadMesh MakeLashes(const HeadShape& shape = DefaultHead());
 // Both rows of teeth.
 [[nodiscard]] HeadMesh MakeTeeth();
 

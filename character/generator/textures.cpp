@@ -53,14 +53,14 @@ vec3 Mirrored(const vec3& p) { return {std::abs(p.x), p.y, p.z}; }
 // Vermilion: between the borders of the lips (by height over the mouth's line) in front.
 float LipShare(const vec3& p) {
   const float x = std::abs(p.x);
-  const float reach = 1.0f - std::pow(std::min(x / 2.75f, 1.0f), 2.2f);
-  const float bow = 0.10f * Bump(x - 0.55f, 0.4f) - 0.05f * Bump(x, 0.25f);
-  const float top = kMouthY + (0.62f + bow) * reach + 0.02f;
-  const float bottom = kMouthY - 0.95f * std::pow(std::max(reach, 0.0f), 0.8f);
-  const float ragged = 0.03f * Noise(p * 9.0f);
-  const float edge = 0.09f;
+  const float reach = 1.0f - std::pow(std::min(x / 2.72f, 1.0f), 2.0f);
+  const float bow = 0.09f * Bump(x - 0.62f, 0.38f) - 0.07f * Bump(x, 0.22f);
+  const float top = kMouthY + 0.74f * std::pow(reach, 0.85f) + bow * reach;
+  const float bottom = kMouthY - 0.88f * std::pow(reach, 0.7f);
+  const float ragged = 0.02f * Noise(p * 9.0f);
+  const float edge = 0.07f;
   return SmoothStep(top + edge, top - edge, p.y + ragged) *
-         SmoothStep(bottom - edge, bottom + edge, p.y + ragged) * SmoothStep(2.85f, 2.5f, x) *
+         SmoothStep(bottom - edge, bottom + edge, p.y + ragged) * SmoothStep(2.8f, 2.5f, x) *
          SmoothStep(5.0f, 6.5f, p.z);
 }
 
