@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+
+#include "bench/thesis/subjects.h"
+#include "tests/unit/render/test_character.h"
+
+namespace furrow::bench {
+namespace {
+
+using character::Character;
+using character::Material;
+using character::Mesh;
+using character::Vertex;
+
+constexpr float kTwoPi = glm::two_pi<float>();
+
+// A part of the body: a tube that tapers to its ends, with a chain of joints along its middle.
+struct Tube {
+  const char* name;
+  glm::vec3 start;
+  glm::vec3 end;
+  float radius;
+  std::uint32_t columns;
+  std::uint32_t rows;
+  int joints;
+};
+
+constexpr std::array<Tube, 6> kTubes = {{
+    {"trunk", {0.0f, 0.0f, 0.0f}, {0.0f, 0.60f, 0.0f}, 0.17f, 40, 50, 30},
+    {"neck", {0.0f, 0.61f, 0.0f}, {0.0f, 0.90f, 0.0f}, 0.09f, 25, 25, 20},
+    {"leg_l", {0.10f, -0.02f, 0.0f}, {0.13f, -0.92f, 0.0f}, 0.09f, 16, 30, 25},
+    {"leg_r", {-0.10f, -0.02f, 0.0f}, {-0.13f, -0.92f, 0.0f}, 0.09f, 16, 30, 25},
+    {"arm_l", {0.18f, 0.54f, 0.0f}, {0.52f, 0.05f, 0.0f}, 0.06f, 10, 28, 25},
+    {"arm_r", {-0.18f, 0.54f, 0.0f}, {-0.52f, 0.05f, 0.0f}, 0.06f, 10, 28, 25},
+}};
+
+constexpr int NumTriangles() {
+  std::uint32_t quads = 0;
+  for (const Tube& tube : kTubes) quads += tube.columns * tube.rows;
+  return static_cast<int>(2 * quads);
+}
+static_assert(NumTriangles() == kBodyTriangles);
+
+constexpr int kNumChainJoints = 150;
+
+std::string JointName(const Tube& tube, int joint) {
+  return std::string(tube.name) + std::to_string(joint);
+}
+
+Vertex TubeVertex(const Tube& tube, int first_joint, float around, float along) {
+  const glm::vec3 axis = glm::normalize(tube.end - tube.start);
+  const glm::vec3 side = glm::normalize(glm::cross(axis, glm::vec3(0.0f, 0.0f, 1.0f)));
+  const glm::vec3 front = glm::cross(side, axis);
+  const float angle = kTwoPi * around;
+  const glm::vec3 outwards = std::cos(angle) * side + std::sin(angle) * front;
+  const float taper = std::sqrt(std::max(0.0f, 1.0f - std::pow(2.0f * along - 1.0f, 8.0f)));
+  Vertex vertex;
+  vertex.position = glm::mix(tube.start, tube.end, along) + tube.radius * taper * outwards;
+  vertex.normal = outwards;
+  vertex.tangent = glm::vec4(-std::sin(angle) * side + std::cos(angle) * front, 1.0f);
+  vertex.uv = {around, along};
+  const float place = along * static_cast<float>(tube.joints - 1);
+  const int joint = std::min(static_cast<int>(place), tube.joints - 2);
+  vertex.joints[0] = static_cast<std::uint16_t>(first_joint + joint);
+  vertex.joints[1] = static_cast<std::uint16_t>(first_joint + joint + 1);
+  vertex.skin_weights[1] = place - static_cast<float>(joint);
+  vertex.skin_weights[0] = 1.0f - vertex.skin_weights[1];
+  return vertex;
+}
+
+void AddTube(const Tube& tube, int first_joint, Mesh* mesh) {
+  const auto first = static_cast<std::uint32_t>(mesh->vertices.size());
+  for (std::uint32_t row = 0; row <= tube.rows; ++row) {
+    for (std::uint32_t column = 0; column <= tube.columns; ++column) {
+      mesh->vertices.push_back(TubeVertex(
+          tube, first_joint, static_cast<float>(column) / static_cast<float>(tube.columns),
+          static_cast<float>(row) / static_cast<float>(tube.rows)));
+    }
+  }
+  for (std::uint32_t row = 0; row < tube.rows; ++row) {
+    for (std::uint32_t column = 0; column < tube.columns; ++column) {
+      const std::uint32_t a = first + row * (tube.columns + 1) + column;
+      const std::uint32_t b = a + tube.columns + 1;
+      mesh->indices.insert(mesh->indices.end(), {a, b, a + 1, a + 1, b, b + 1});
+    }
+  }
+}
+
+// The root, then each tube's chain; skinned by position in this list.
+std::vector<wrinkle::JointDesc> Joints() {
+  std::vector<wrinkle::JointDesc> joints(1);
+  joints[0].name = "root";
+  joints[0].rest.translation = {0.0f, -0.1f, 0.0f};
+  for (const Tube& tube : kTubes) {
+    const glm::vec3 step = (tube.end - tube.start) / static_cast<float>(tube.joints - 1);
+    for (int i = 0; i < tube.joints; ++i) {
+      wrinkle::JointDesc joint;
+      joint.name = JointName(tube, i);
+      joint.parent = i == 0 ? 0 : static_cast<int>(joints.size()) - 1;
+      joint.rest.translation = i == 0 ? tube.start - joints[0].rest.translation : step;
+      joints.push_back(joint);
+    }
+  }
+  return joints;
+}
+
+// Hinges first, then balls, spread over the chains.
+void AddRig(const std::vector<wrinkle::JointDesc>& joints, int hinges, int balls,
+            Character* character) {
+  wrinkle::Rig& rig = character->rig;
+  rig.name = "thesis body";
+  const int drivers = std::min(hinges + balls, kNumChainJoints);
+  for (int i = 0; i < drivers; ++i) {
+    const auto index = static_cast<std::size_t>(1 + i * kNumChainJoints / drivers);
+    const std::string& name = joints[index].name;
+    const std::string& parent = joints[static_cast<std::size_t>(joints[index].parent)].name;
+    wrinkle::Driver driver;
+    driver.name = name;
+    wrinkle::Region region;
+    region.name = name;
+    region.mask.kind = wrinkle::Mask::Kind::kSkinning;
+    if (i < hinges) {
+      driver.kind = wrinkle::Driver::Kind::kHinge;
+      driver.hinge.parent = parent;
+      driver.hinge.joint = name;
+      region.feeds = {{"folds", {{name, "flexed", 1.0f}}}};
+    } else {
+      driver.kind = wrinkle::Driver::Kind::kBall;
+      driver.ball.parent = parent;
+      driver.ball.joint = name;
+      region.feeds = {{"folds",
+                       {{name, "front", 1.0f},
+                        {name, "back", 1.0f},
+                        {name, "left", 1.0f},
+                        {name, "right", 1.0f}}}};
+    }
+    rig.drivers.push_back(driver);
+    rig.regions.push_back(region);
+  }
+  if (drivers == 0) return;
+  wrinkle::WrinkleMap folds;
+  folds.name = "folds";
+  folds.normal = "folds.png";
+  rig.wrinkle_maps.push_back(folds);
+  character->rig_pictures.emplace_back("folds.png", 0);
+}
+
+}  // namespace
+
+Character MakeBody(int hinges, int balls) {
+  Character character;
+  character.name = "body";
+  const std::vector<wrinkle::JointDesc> joints = Joints();
+  auto skeleton = wrinkle::Skeleton::Create(joints);
+  if (!skeleton.ok()) std::abort();
+  character.skeleton = std::move(*skeleton);
+  for (const glm::mat4& rest : character.skeleton.rest_model()) {
+    character.inverse_bind_matrices.push_back(glm::inverse(rest));
+  }
+  Material cloth;
+  cloth.name = "cloth";
+  cloth.kind = Material::Kind::kCloth;
+  cloth.base_colour = {0.35f, 0.38f, 0.45f, 1.0f};
+  character.materials.push_back(cloth);
+  Mesh mesh;
+  mesh.name = "body";
+  mesh.material = 0;
+  int first_joint = 1;
+  for (const Tube& tube : kTubes) {
+    AddTube(tube, first_joint, &mesh);
+    first_joint += tube.joints;
+  }
+  character.meshes.push_back(std::move(mesh));
+  character.pictures.push_back(render::test::NormalMapOf("folds.png", 512, [](float u, float v) {
+    return 0.002f * std::cos(kTwoPi * (2.0f * u + 40.0f * v));
+  }));
+  AddRig(joints, hinges, balls, &character);
+  return character;
+}
+
+}  // namespace furrow::bench

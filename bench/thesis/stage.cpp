@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/thesis/stage.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/trigonometric.hpp>
+
+namespace furrow::bench {
+namespace {
+
+constexpr double kFrameSeconds = 1.0 / 60.0;
+constexpr float kFovDegrees = 30.0f;
+constexpr float kMargin = 1.05f;
+
+[[noreturn]] void Die(const Status& status) {
+  std::fprintf(stderr, "%s\n", status.ToString().c_str());
+  std::exit(1);
+}
+
+template <class T>
+T Expect(Result<T> result) {
+  if (!result.ok()) Die(result.status());
+  return std::move(*result);
+}
+
+std::shared_ptr<const wrinkle::RigBinding> Bind(const character::Character& character) {
+  return std::make_shared<const wrinkle::RigBinding>(
+      Expect(wrinkle::RigBinding::Create(character.rig, character.skeleton, {})));
+}
+
+render::Camera Facing(const Extent& extent, PictureSize size) {
+  const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+  const float half_height = kMargin * std::max(extent.half_height, extent.half_width / aspect);
+  render::Camera camera;
+  camera.fov_y_degrees = kFovDegrees;
+  camera.target = glm::vec3(0.0f);
+  camera.position = {0.0f, 0.0f, half_height / std::tan(glm::radians(0.5f * kFovDegrees))};
+  return camera;
+}
+
+}  // namespace
+
+void MoveFace(double seconds, const wrinkle::Skeleton& skeleton, wrinkle::LocalPose* pose) {
+  for (std::size_t joint = 1; joint < pose->joints.size(); ++joint) {
+    const double phase = 2.0 * seconds + 0.8 * static_cast<double>(joint);
+    pose->joints[joint].translation =
+        skeleton.rest_pose()[joint].translation +
+        glm::vec3(0.0f, 0.01f * static_cast<float>(std::sin(phase)), 0.0f);
+  }
+}
+
+void MoveBody(double seconds, const wrinkle::Skeleton& skeleton, wrinkle::LocalPose* pose) {
+  for (std::size_t joint = 1; joint < pose->joints.size(); ++joint) {
+    const double angle = 0.05 * std::sin(2.0 * seconds + 0.5 * static_cast<double>(joint));
+    pose->joints[joint].rotation =
+        skeleton.rest_pose()[joint].rotation *
+        glm::angleAxis(static_cast<float>(angle), glm::vec3(1.0f, 0.0f, 0.0f));
+  }
+}
+
+Stage::Stage(const character::Character& character, const Extent& extent, PictureSize size,
+             Motion motion, const std::string& device)
+    : skeleton_(character.skeleton),
+      motion_(std::move(motion)),
+      renderer_(Expect(render::Renderer::Create(character, {device}))),
+      solver_(Bind(character)),
+      model_(static_cast<std::size_t>(character.skeleton.num_joints())) {
+  pose_.SetRest(skeleton_);
+  request_.camera = Facing(extent, size);
+  request_.width = size.width;
+  request_.height = size.height;
+}
+
+void Stage::Submit(const render::Settings& settings) {
+  motion_(kFrameSeconds * frame_++, skeleton_, &pose_);
+  const wrinkle::LocalToModelJob to_model{&skeleton_, pose_.joints, model_};
+  if (to_model.Run() != wrinkle::JobStatus::kOk ||
+      solver_.Update(pose_, kFrameSeconds) != wrinkle::JobStatus::kOk) {
+    Die({StatusCode::kInternal, "the benchmark's pose cannot be solved", "stage"});
+  }
+  request_.model = model_;
+  request_.binding = &solver_.binding();
+  request_.wrinkle_weights = solver_.wrinkle_weights();
+  request_.filtered_values = solver_.filtered_values();
+  request_.settings = settings;
+  if (Status status = renderer_->Submit(request_); !status.ok()) Die(status);
+}
+
+double Stage::SecondsPerFrame(const render::Settings& settings, int frames) {
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < frames; ++i) {
+    if (renderer_->in_flight() == 2) (void)Expect(renderer_->Poll(true));
+    Submit(settings);
+  }
+  while (renderer_->in_flight() > 0) (void)Expect(renderer_->Poll(true));
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  return taken.count() / frames;
+}
+
+std::vector<render::PassTime> Stage::TimePasses(const render::Settings& settings) {
+  render::PassTimer timer;
+  renderer_->SetObserver(&timer);
+  Submit(settings);
+  (void)Expect(renderer_->Poll(true));
+  renderer_->SetObserver(nullptr);
+  return timer.Take();
+}
+
+}  // namespace furrow::bench
