@@ -87,6 +87,7 @@ Status CheckMaterial(const BakeMaterial& m, const std::string& where) {
                  {"threshold", m.threshold, 0.0f, 0.5f},
                  {"smoothing_mm", m.smoothing_mm, 0.0f, 200.0f},
                  {"sharpness", m.sharpness, 0.0f, 1.0f},
+                 {"crossing", m.crossing, 0.0f, 1.0f},
                  {"fine_lines", m.fine_lines, 0.0f, 1.0f}};
   for (const auto& range : kRanges) {
     if (!In(range.value, range.low, range.high)) {

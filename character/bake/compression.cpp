@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 namespace furrow::character::bake {
 namespace {
@@ -18,12 +20,66 @@ Tensor2 Compose(float large, float small, const glm::vec2& direction) {
           large * d.y * d.y + small * d.x * d.x};
 }
 
-// What is compressed of an averaged stretch.
+// What is compressed of an averaged stretch. A sheet that is pulled to s times its length narrows
+// to 1 / sqrt(s) of its width by itself (it keeps its volume) and folds by what is beyond that
+// only.
 Tensor2 CompressionOf(const Tensor2& stretch, float limit) {
   const Principal2 principal = PrincipalOf(stretch);  // `small` is the shorter stretch
-  const float strong = std::clamp(1.0f - principal.small, 0.0f, limit);
+  const float narrowed = principal.small * std::sqrt(std::max(principal.large, 1.0f));
+  const float strong = std::clamp(1.0f - narrowed, 0.0f, limit);
   const float weak = std::clamp(1.0f - principal.large, 0.0f, limit);
   return Compose(strong, weak, {-principal.direction.y, principal.direction.x});
+}
+
+// A turn and a shift, as a unit dual quaternion: `dual` = 1/2 translation * rotation.
+struct RigidMotion {
+  glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
+  glm::quat dual{0.0f, 0.0f, 0.0f, 0.0f};
+
+  [[nodiscard]] vec3 Apply(const vec3& p) const {
+    const glm::quat shift = 2.0f * (dual * glm::conjugate(rotation));
+    return rotation * p + vec3(shift.x, shift.y, shift.z);
+  }
+};
+
+// None where a matrix does more than turn and shift.
+std::optional<std::vector<RigidMotion>> RigidMotions(std::span<const glm::mat4> matrices) {
+  constexpr float kTolerance = 1e-3f;
+  std::vector<RigidMotion> motions;
+  for (const glm::mat4& matrix : matrices) {
+    const glm::mat3 turn(matrix);
+    const glm::mat3 square = glm::transpose(turn) * turn;
+    for (int k = 0; k < 9; ++k) {
+      const float expected = k % 4 == 0 ? 1.0f : 0.0f;
+      if (std::abs(square[k / 3][k % 3] - expected) > kTolerance) return std::nullopt;
+    }
+    if (glm::determinant(turn) < 0.0f) return std::nullopt;
+    RigidMotion motion;
+    motion.rotation = glm::normalize(glm::quat_cast(turn));
+    const vec3 shift(matrix[3]);
+    motion.dual = 0.5f * (glm::quat(0.0f, shift.x, shift.y, shift.z) * motion.rotation);
+    motions.push_back(motion);
+  }
+  return motions;
+}
+
+RigidMotion Blend(const std::vector<RigidMotion>& motions, const Vertex& vertex) {
+  const glm::quat pivot = motions[vertex.joints[0]].rotation;  // the strongest influence
+  RigidMotion sum{glm::quat(0.0f, 0.0f, 0.0f, 0.0f), glm::quat(0.0f, 0.0f, 0.0f, 0.0f)};
+  for (int k = 0; k < 4; ++k) {
+    const RigidMotion& motion = motions[vertex.joints[k]];
+    // q and -q are one turn: take the one on the pivot's side.
+    const float side = glm::dot(motion.rotation, pivot) < 0.0f ? -1.0f : 1.0f;
+    const float weight = side * vertex.skin_weights[k];
+    sum.rotation = sum.rotation + motion.rotation * weight;
+    sum.dual = sum.dual + motion.dual * weight;
+  }
+  const float length = glm::length(sum.rotation);
+  if (!(length > 1e-6f)) return motions[vertex.joints[0]];
+  sum.rotation = sum.rotation * (1.0f / length);
+  sum.dual = sum.dual * (1.0f / length);
+  sum.dual = sum.dual - sum.rotation * glm::dot(sum.rotation, sum.dual);
+  return sum;
 }
 
 float Fourth(float x) { return x * x * x * x; }
@@ -71,38 +127,58 @@ void CompressionSolver::Gather(std::size_t vertex, float radius, SurfaceReach* r
   starts_.push_back(terms_.size());
 }
 
-std::vector<vec3> CompressionSolver::Pose(std::span<const glm::mat4> skin_matrices) const {
-  std::vector<vec3> posed;
+std::vector<CompressionSolver::Posed> CompressionSolver::Pose(
+    std::span<const glm::mat4> skin_matrices) const {
+  const std::optional<std::vector<RigidMotion>> motions = RigidMotions(skin_matrices);
+  std::vector<Posed> posed;
   posed.reserve(surface_.positions().size());
   for (std::size_t v = 0; v < surface_.positions().size(); ++v) {
     const Vertex& vertex = surface_.SourceOf(v);
-    glm::vec4 sum(0.0f);
-    for (int k = 0; k < 4; ++k) {
-      if (vertex.skin_weights[k] == 0.0f) continue;
-      sum += vertex.skin_weights[k] *
-             (skin_matrices[vertex.joints[k]] * glm::vec4(surface_.positions()[v], 1.0f));
+    const vec3 rest = surface_.positions()[v];
+    if (motions) {
+      const RigidMotion motion = Blend(*motions, vertex);
+      posed.push_back({motion.Apply(rest), glm::mat3_cast(motion.rotation)});
+      continue;
     }
-    posed.emplace_back(sum);
+    glm::mat4 sum(0.0f);
+    for (int k = 0; k < 4; ++k) sum += vertex.skin_weights[k] * skin_matrices[vertex.joints[k]];
+    posed.push_back({vec3(sum * glm::vec4(rest, 1.0f)), glm::mat3(sum)});
   }
   return posed;
 }
 
+Tensor2 CompressionSolver::StretchOf(std::size_t triangle, std::span<const Posed> posed,
+                                     float limit, float* worst) const {
+  const Surface::Triangle& t = surface_.triangles()[triangle];
+  if (!t.strain) return {1.0f, 0.0f, 1.0f};
+  const Posed& a = posed[t.vertices[0]];
+  const Posed& b = posed[t.vertices[1]];
+  const Posed& c = posed[t.vertices[2]];
+  const wrinkle::DeformationGradient f =
+      wrinkle::Deform(*t.strain, a.position, b.position, c.position);
+  const PrincipalStretches stretch = wrinkle::Principal(wrinkle::RightCauchyGreen(f));
+  const glm::mat3 turn = a.turn + b.turn + c.turn;
+  const auto is_flipped = [&](const glm::vec2& direction) {
+    return glm::dot(wrinkle::ToPosedSpace(f, direction),
+                    turn * wrinkle::ToRestSpace(t.axes, direction)) < 0.0f;
+  };
+  const float large = is_flipped(stretch.largest_direction) ? -stretch.largest : stretch.largest;
+  const float small = is_flipped(stretch.smallest_direction) ? -stretch.smallest : stretch.smallest;
+  *worst = std::max(*worst, std::min(1.0f - std::min(large, small), 1.0f));
+  // Skinning gone wrong pulls some triangles to many times their length: that would drown the
+  // compression beside them in the average.
+  return Compose(std::clamp(large, 1.0f - limit, 1.0f + limit),
+                 std::clamp(small, 1.0f - limit, 1.0f + limit), stretch.largest_direction);
+}
+
 CompressionSolver::Field CompressionSolver::Solve(std::span<const glm::mat4> skin_matrices,
                                                   float limit) const {
-  const std::vector<vec3> posed = Pose(skin_matrices);
+  const std::vector<Posed> posed = Pose(skin_matrices);
   Field field;
-  std::vector<Tensor2> stretches(surface_.triangles().size(), Tensor2{1.0f, 0.0f, 1.0f});
-  for (std::size_t t = 0; t < stretches.size(); ++t) {
-    const Surface::Triangle& triangle = surface_.triangles()[t];
-    if (!triangle.strain) continue;
-    const auto& v = triangle.vertices;
-    const PrincipalStretches stretch = wrinkle::Principal(wrinkle::RightCauchyGreen(
-        wrinkle::Deform(*triangle.strain, posed[v[0]], posed[v[1]], posed[v[2]])));
-    field.worst = std::max(field.worst, std::min(1.0f - stretch.smallest, 1.0f));
-    // Skinning gone wrong pulls some triangles to many times their length: that would drown the
-    // compression beside them in the average.
-    stretches[t] = Compose(std::min(stretch.largest, 1.0f + limit),
-                           std::max(stretch.smallest, 1.0f - limit), stretch.largest_direction);
+  std::vector<Tensor2> stretches;
+  stretches.reserve(surface_.triangles().size());
+  for (std::size_t t = 0; t < surface_.triangles().size(); ++t) {
+    stretches.push_back(StretchOf(t, posed, limit, &field.worst));
   }
   field.tensors.resize(surface_.positions().size());
   for (std::size_t i = 0; i < field.tensors.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 
@@ -20,6 +21,12 @@ struct Principal2 {
 [[nodiscard]] Principal2 PrincipalOf(const Tensor2& tensor);
 
 // How a pose compresses a surface, vertex by vertex.
+//
+// - Joints' motions are blended as dual quaternions (Kavan et al. 2007), not linearly as they are
+//   drawn: linear blending flattens a bent limb, which would seem to fold it lengthwise. Where a
+//   skin matrix is not rigid, linearly after all.
+// - A stretch counts as negative where the pose turns the surface inside out, as it does inside a
+//   sharply bent knee: that is more than fully compressed, though lengths do not say so.
 //
 // Skinning strains triangles unevenly, and a fold is no finer than the strain it answers to: so the
 // stretch of the triangles (the right stretch tensor U, C = U^2) is averaged over a radius, every
@@ -45,7 +52,14 @@ class CompressionSolver {
     Turn turn;
   };
 
-  [[nodiscard]] std::vector<glm::vec3> Pose(std::span<const glm::mat4> skin_matrices) const;
+  // What the blended motion makes of a vertex: where it goes, and how its surroundings turn.
+  struct Posed {
+    glm::vec3 position{0.0f};
+    glm::mat3 turn{1.0f};
+  };
+  [[nodiscard]] std::vector<Posed> Pose(std::span<const glm::mat4> skin_matrices) const;
+  [[nodiscard]] Tensor2 StretchOf(std::size_t triangle, std::span<const Posed> posed, float limit,
+                                  float* worst) const;
   void Gather(std::size_t vertex, float radius, SurfaceReach* reach);
 
   const Surface& surface_;

@@ -44,6 +44,18 @@ std::vector<char> ActiveTriangles(const FoldField& field, const KernelSet::Optio
   return active;
 }
 
+// The direction across the folds, strayed a little from place to place: no two folds of a real skin
+// run side by side for long.
+vec3 Strayed(const FoldDemand& demand, const KernelSet::Options& options, float wavelength,
+             const vec3& position) {
+  constexpr float kStray = 0.9f;  // radians, times the variation
+  const vec3 at = position / (3.0f * wavelength) + static_cast<float>(options.seed) + 31.7f;
+  const float angle = kStray * options.variation * (2.0f * ValueNoise(at) - 1.0f);
+  const vec3& main = options.crossing ? demand.along : demand.across;
+  const vec3& side = options.crossing ? demand.across : demand.along;
+  return main * std::cos(angle) + side * std::sin(angle);
+}
+
 struct Candidate {
   float order;
   std::uint32_t index;  // within the triangle

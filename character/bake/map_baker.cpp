@@ -33,6 +33,12 @@ bool Matches(const std::string& region, const std::string& entry) {
   return region == entry || region == entry + "_l" || region == entry + "_r";
 }
 
+// Masks lie in the atlas of the surface that their region's maps are drawn on.
+bool Feeds(const wrinkle::Region& region, const std::string& map) {
+  return std::any_of(region.feeds.begin(), region.feeds.end(),
+                     [&](const wrinkle::Feed& feed) { return feed.map == map; });
+}
+
 SurfacePoint PlaceOf(const paint::Texel& texel) {
   return {texel.triangle, texel.corners, texel.position};
 }
@@ -87,7 +93,7 @@ std::vector<float> MapBaker::Wavelengths() const {
   std::vector<float> sums(count, 0.0f), shares(count, 0.0f);
   for (const BakeRegionWavelength& entry : options_.wavelengths) {
     for (const wrinkle::Region& region : character_.rig.regions) {
-      if (!Matches(region.name, entry.region)) continue;
+      if (!Matches(region.name, entry.region) || !Feeds(region, map_)) continue;
       const std::vector<float> mask = surface_.MaskOf(character_, region);
       for (std::size_t v = 0; v < mask.size(); ++v) {
         sums[v] += mask[v] * std::log(entry.wavelength_mm * kMetres);
@@ -109,9 +115,12 @@ void MapBaker::MakeLayers(const FoldField& field) {
   options.height = options_.depth;
   options.seed = options_.seed;
   layers_.push_back(std::make_unique<FoldLayer>(field, profile_, options));
-  options.crossing = true;
-  options.seed = options_.seed + 101;
-  layers_.push_back(std::make_unique<FoldLayer>(field, profile_, options));
+  if (material_.crossing > 0.0f) {
+    options.crossing = true;
+    options.height = options_.depth * material_.crossing;
+    options.seed = options_.seed + 101;
+    layers_.push_back(std::make_unique<FoldLayer>(field, profile_, options));
+  }
   if (material_.fine_lines <= 0.0f) return;
   options.crossing = false;
   options.wavelength_scale = 1.0f / 3.0f;

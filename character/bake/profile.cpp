@@ -17,15 +17,16 @@ constexpr float kMost = 0.95f;  // compression
 
 FoldProfile::FoldProfile(float sharpness) {
   const float blunt = 1.0f - sharpness;
-  const float s = 0.06f + 1.6f * blunt * blunt;
-  s2_ = s * s;
+  const float width = 0.12f + 2.0f * blunt * blunt;  // of the valley, as a sine of half the phase
+  w2_ = width * width;
   double sum = 0.0;
   for (int i = 0; i < kPhases; ++i) {
     const float phase = 2.0f * wrinkle::kPi * static_cast<float>(i) / kPhases;
-    sum += std::sqrt(0.5f * (1.0f - std::cos(phase)) + s2_);
+    const float s2 = 0.5f * (1.0f - std::cos(phase));
+    sum += s2 / (s2 + w2_);
   }
   mean_ = static_cast<float>(sum / kPhases);
-  scale_ = 2.0f / (std::sqrt(1.0f + s2_) - s);
+  scale_ = 2.0f * (1.0f + w2_);
   amplitudes_.resize(kTable + 1);
   for (int i = 1; i <= kTable; ++i) {
     const float root = static_cast<float>(i) / kTable;
@@ -34,8 +35,9 @@ FoldProfile::FoldProfile(float sharpness) {
 }
 
 FoldProfile::Sample FoldProfile::At(float cosine, float sine) const {
-  const float q = std::sqrt(std::max(0.5f * (1.0f - cosine), 0.0f) + s2_);
-  return {scale_ * (q - mean_), scale_ * sine / (4.0f * q)};
+  const float s2 = std::max(0.5f * (1.0f - cosine), 0.0f);
+  const float q = 1.0f / (s2 + w2_);
+  return {scale_ * (s2 * q - mean_), scale_ * 0.5f * sine * w2_ * q * q};
 }
 
 float FoldProfile::Amplitude(float compression) const {

@@ -8,8 +8,9 @@ namespace furrow::character::bake {
 // The section of a row of folds: a function of the phase, 2 pi from valley to valley, which is even
 // about the valley at phase 0, runs from -1 and 1 apart by 2, and has the mean 0.
 //
-//   p = (2 q - 2 mean) / (max - min),  q = sqrt(sin^2(phase / 2) + s^2)
-// A small s makes a sharp valley between round ridges (skin), a large one nearly a sine (cloth).
+//   p = 2 (q - mean) / (max - min),  q = s^2 / (s^2 + w^2),  s = sin(phase / 2)
+// A small w makes a narrow valley between broad, round ridges (skin), a large one nearly a sine
+// (cloth).
 class FoldProfile {
  public:
   // `sharpness` in [0, 1]; see BakeMaterial.
@@ -31,7 +32,7 @@ class FoldProfile {
  private:
   [[nodiscard]] float SolveAmplitude(float compression) const;
 
-  float s2_ = 1.0f;
+  float w2_ = 1.0f;
   float mean_ = 0.0f;
   float scale_ = 1.0f;
   std::vector<float> amplitudes_;  // by the root of the compression, evenly
