@@ -13,16 +13,14 @@ namespace {
 
 constexpr float kLeastAcross = 0.1f;  // as a hinge's axis: sine of the angle to the bone
 
-// Characters face +Z with +Y up, so their right is -X. A bone that lies sideways has no right or
-// left; there "right" is up.
+}  // namespace
+
 glm::vec3 SubjectsRight(const glm::vec3& bone, const glm::vec3& forward) {
   const glm::vec3 side = Direction(glm::cross(bone, forward));
   const float towards_right = -side.x;
   const float decisive = std::abs(towards_right) > kLeastAcross ? towards_right : side.y;
   return decisive < 0.0f ? -side : side;
 }
-
-}  // namespace
 
 Status BallDriverSet::Bind(const Driver& driver, int first_value, BindContext* context) {
   const BallDriver& ball = driver.ball;

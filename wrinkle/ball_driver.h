@@ -8,6 +8,11 @@
 
 namespace furrow::wrinkle {
 
+// The unit direction across `bone` and `forward` (unit, model axes) that counts as the subject's
+// right: characters face +Z with +Y up, so their right is -X. A bone that lies sideways has no
+// right or left; there "right" is up.
+[[nodiscard]] glm::vec3 SubjectsRight(const glm::vec3& bone, const glm::vec3& forward);
+
 // All ball-and-socket drivers of a binding (also pivot, saddle and condyloid joints, with other
 // limits). Private to wrinkle/; the formula is in ball.h.
 class BallDriverSet {
