@@ -116,6 +116,7 @@ void TryBinding(const Rig& rig, const RigReportOptions& options, RigReport* repo
   const auto bind = [&](bool allow_missing) {
     wrinkle::BindOptions how;
     how.allow_missing = allow_missing;
+    how.aliases = options.aliases;
     return wrinkle::RigBinding::Create(rig, *options.skeleton, options.blend_shape_names, how);
   };
   report->binding = bind(false).status();

@@ -30,6 +30,8 @@ struct RigReportOptions {
   // The skeleton to try it on, if any, and the blend shapes that come with it.
   const wrinkle::Skeleton* skeleton = nullptr;
   std::span<const std::string> blend_shape_names;
+  // See BindOptions::aliases.
+  std::span<const std::pair<std::string, std::string>> aliases;
   // Where the rig's pictures are looked up (then FURROW_ASSET_PATH); a picture inside a character
   // is known by `embedded_pictures`.
   std::filesystem::path folder;

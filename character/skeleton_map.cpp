@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "character/data_dir.h"
-#include "character/import/text_lines.h"
+#include "character/text_lines.h"
 #include "wrinkle/ascii.h"
 
 namespace furrow::character {
@@ -86,6 +86,7 @@ SkeletonRoles ApplyWithPrefix(const SkeletonMap& map, const Places& places, std:
                               std::span<const std::string> joint_names) {
   SkeletonRoles result;
   result.map = map.name;
+  result.toes_height = map.toes_height;
   result.roles.assign(joint_names.size(), JointRole::kNone);
   const auto filled = FillPlaces(map, places, prefix, joint_names);
   for (std::size_t e = 0; e < filled.size(); ++e) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,7 +29,8 @@ struct SkeletonMap {
   // occurrence). A namespace ("mixamorig:", all up to the last ':') always may.
   std::vector<std::string> prefixes;
   bool ignore_case = true;
-  std::vector<Entry> entries;  // no role twice
+  std::optional<float> toes_height;  // see Retarget::Create()
+  std::vector<Entry> entries;        // no role twice
 };
 
 // What a map finds in a skeleton.
@@ -37,6 +39,7 @@ struct SkeletonRoles {
   wrinkle::JointRoles roles;                // one a joint; empty where `map` is
   int num_roles = 0;                        // different ones found
   int num_joints = 0;                       // that have a role
+  std::optional<float> toes_height;         // the map's
   std::vector<wrinkle::JointRole> missing;  // in the map, not in the skeleton
 };
 

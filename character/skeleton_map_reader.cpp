@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "character/import/text_lines.h"
 #include "character/skeleton_map.h"
+#include "character/text_lines.h"
 
 namespace furrow::character {
 namespace {
@@ -66,8 +66,8 @@ std::vector<std::string> Alternatives(const std::string& text) {
 
 Status MapReader::CheckFields(const Json& root) const {
   if (!root.is_object()) return Error("(root)", "is not an object");
-  static const std::set<std::string> kKnown = {"version",     "name",  "title", "prefixes",
-                                               "ignore_case", "sides", "joints"};
+  static const std::set<std::string> kKnown = {"version",     "name",  "title",  "prefixes",
+                                               "ignore_case", "sides", "joints", "toes_height"};
   for (const auto& [key, value] : root.items()) {
     if (!kKnown.contains(key)) return Error(Quoted(key), "there is no such field");
   }
@@ -172,6 +172,14 @@ Status MapReader::Read(const Json& root, SkeletonMap* map) {
   if (root.contains("ignore_case")) {
     if (!root["ignore_case"].is_boolean()) return Error("ignore_case", "is neither true nor false");
     map->ignore_case = root["ignore_case"].get<bool>();
+  }
+  if (root.contains("toes_height")) {
+    const Json& height = root["toes_height"];
+    if (!height.is_number()) return Error("toes_height", "is not a number");
+    map->toes_height = height.get<float>();
+    if (!(*map->toes_height >= 0.0f && *map->toes_height <= 0.5f)) {
+      return Error("toes_height", "is not between 0 and 0.5 legs", StatusCode::kInvalidArgument);
+    }
   }
   if (Status status = ReadPrefixes(root, map); !status.ok()) return status;
   if (Status status = ReadSides(root); !status.ok()) return status;

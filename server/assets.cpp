@@ -4,15 +4,32 @@
 #include <filesystem>
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 #include "character/data_dir.h"
 #include "character/rig_file.h"
 #include "motion/pose_source.h"
 
 namespace furrow::server {
 
+namespace {
+
+// Without the maps that ship all goes by equal names; only a map that is asked for must be there.
+Result<character::SkeletonMatcher> LoadMatcher(const std::string& map) {
+  auto matcher = character::SkeletonMatcher::Create(map);
+  if (matcher.ok() || !map.empty()) return matcher;
+  spdlog::warn("joints go by equal names alone: {}", matcher.status().ToString());
+  return character::SkeletonMatcher();
+}
+
+}  // namespace
+
 Result<Assets> LoadAssets(const Config& config) {
   const wrinkle::PoseSource poses = motion::CachedPoseSource();
   Assets assets;
+  auto matcher = LoadMatcher(config.skeleton_map);
+  if (!matcher.ok()) return matcher.status().At("--skeleton-map");
+  assets.skeletons = *std::move(matcher);
   if (config.character.empty() && !config.rig.empty()) {
     auto rig = character::LoadRig(config.rig, poses);
     if (!rig.ok()) return rig.status();

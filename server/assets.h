@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "character/character.h"
+#include "character/skeleton_match.h"
 #include "server/config.h"
 #include "wrinkle/rig.h"
 #include "wrinkle/status.h"
@@ -14,10 +15,13 @@ namespace furrow::server {
 struct Assets {
   std::shared_ptr<const wrinkle::Rig> rig;
   std::shared_ptr<const character::Character> character;  // null: weights only
+  character::SkeletonMatcher skeletons;
 };
 
 // Loads what `config` names, or the default character. Errors: those of LoadCharacter() and
-// LoadRig(); kNotFound where there is no default character (says how to come by one).
+// LoadRig(), and of SkeletonMatcher::Create() where a skeleton map is asked for (without the maps
+// that ship, joints go by equal names, with a warning); kNotFound where there is no default
+// character (says how to come by one).
 [[nodiscard]] Result<Assets> LoadAssets(const Config& config);
 
 }  // namespace furrow::server

@@ -32,6 +32,8 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--config", flags->config_file, "TOML file; flags win over it");
   app->add_option("--character", config->character, "what is drawn (.glb), with its wrinkle rig");
   app->add_option("--rig", config->rig, "wrinkle rig (JSON)");
+  app->add_option("--skeleton-map", config->skeleton_map,
+                  "what streams call their joints: a map's name or file (the best that ships)");
   app->add_option("--bind", config->bind, "address to listen on (default 127.0.0.1)");
   app->add_option("--tcp", config->tcp, "TCP port: poses in, weights and pictures out (7400)");
   app->add_option("--udp", config->udp, "UDP port: poses in, weights out (7401)");

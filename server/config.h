@@ -40,6 +40,7 @@ struct Limits {
 // All that furrowd can be told, by flags or by a TOML file (furrow.example.toml shows every key).
 struct Config {
   std::filesystem::path character;  // both empty: the default character of FURROW_DATA_DIR
+  std::string skeleton_map;         // name or file; empty: the best of those that ship
   std::filesystem::path rig;        // alone: weights only; with a character: instead of its own
   std::string bind = "127.0.0.1";   // numeric, IPv4 or IPv6
   std::uint16_t tcp = 7400;         // 0: any free port; the ready line says which

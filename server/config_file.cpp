@@ -40,6 +40,17 @@ Key Path(std::string_view name, std::filesystem::path* target, std::filesystem::
           }};
 }
 
+// A name as it stands; what looks like a file is relative to `folder`.
+Key NameOrFile(std::string_view name, std::string* target, std::filesystem::path folder) {
+  return {name, [target, folder = std::move(folder)](const toml::node& node) -> std::string {
+            const auto value = node.value_exact<std::string>();
+            if (!value) return "must be a string";
+            const bool file = value->find('/') != std::string::npos || value->ends_with(".json");
+            *target = file ? (folder / *value).string() : *value;
+            return {};
+          }};
+}
+
 Key Flag(std::string_view name, bool* target) {
   return {name, [target](const toml::node& node) -> std::string {
             const auto value = node.value_exact<bool>();
@@ -149,7 +160,8 @@ Status ParseConfig(std::string_view text, std::string_view source_name, Config* 
   }
   Config read = *config;
   const std::filesystem::path folder = std::filesystem::path(source_name).parent_path();
-  const Key top[] = {Path("character", &read.character, folder), Path("rig", &read.rig, folder)};
+  const Key top[] = {Path("character", &read.character, folder), Path("rig", &read.rig, folder),
+                     NameOrFile("skeleton_map", &read.skeleton_map, folder)};
   const Key listen[] = {Text("bind", &read.bind), Port("tcp", &read.tcp), Port("udp", &read.udp)};
   const Key render[] = {Flag("enabled", &read.render), Flag("required", &read.require_render),
                         Text("device", &read.render_device)};

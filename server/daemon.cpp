@@ -119,6 +119,7 @@ void Daemon::MakeHub() {
   parts.session = RandomNumber();
   parts.rig = assets_.rig;
   parts.character = render_ != nullptr ? &assets_.character->skeleton : nullptr;
+  parts.skeletons = assets_.skeletons;
   parts.pictures = render_.get();
   parts.metrics = metrics_;
   parts.make_token = RandomNumber;

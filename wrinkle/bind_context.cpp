@@ -62,7 +62,10 @@ Status BindContext::ApplyReferencePose(const ReferencePose& pose, std::vector<Tr
 
 Result<int> BindContext::Joint(std::string_view whose, std::string_view field,
                                const std::string& name) {
-  const int joint = skeleton_.Find(name);
+  int joint = skeleton_.Find(name);
+  for (const auto& [own, theirs] : options_.aliases) {
+    if (joint == kNoJoint && own == name) joint = skeleton_.Find(theirs);
+  }
   if (joint != kNoJoint) return joint;
   if (!options_.allow_missing) {
     return Status(StatusCode::kNotFound, std::string(whose) + ": " + std::string(field) +

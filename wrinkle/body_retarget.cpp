@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrinkle/body_retarget.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -66,17 +67,37 @@ bool StandsOnFloor(const Body& body, float leg) {
 
 }  // namespace
 
-BodyRetarget::BodyRetarget(const Body& source, const Body& target, const glm::quat& turn,
-                           std::span<const glm::quat> stance, float scale)
-    : joints_(stance.size()),
+BodyRetarget::BodyRetarget(const Body& source, const Body& target, const Fit& fit)
+    : joints_(fit.stance.size()),
       source_parents_(source.skeleton().joint_parents().begin(),
                       source.skeleton().joint_parents().end()),
       target_parents_(target.skeleton().joint_parents().begin(),
                       target.skeleton().joint_parents().end()),
       source_rest_(source.skeleton().rest_model_rotations().begin(),
                    source.skeleton().rest_model_rotations().end()),
-      turn_(turn) {
-  for (std::size_t i = 0; i < stance.size(); ++i) joints_[i].stance = stance[i];
+      source_local_(source.skeleton().rest_pose().begin(), source.skeleton().rest_pose().end()),
+      turn_(fit.turn),
+      scale_(fit.scale) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].stance = fit.stance[i];
+  if (fit.same_shape) {
+    PlanPairs(source, target);
+  } else {
+    PlanTree(source, target);
+  }
+  PlanHips(source, target, fit.toes_height);
+}
+
+void BodyRetarget::PlanPairs(const Body& source, const Body& target) {
+  for (int i = 1; i < kNumJointRoles; ++i) {
+    const auto from = source.Chain(static_cast<JointRole>(i));
+    const auto to = target.Chain(static_cast<JointRole>(i));
+    for (std::size_t j = 0; j < std::min(from.size(), to.size()); ++j) {
+      joints_[At(to[j])].to = from[j];
+    }
+  }
+}
+
+void BodyRetarget::PlanTree(const Body& source, const Body& target) {
   constexpr JointRole kTorso[] = {kSpine, kChest, kUpperChest};
   constexpr JointRole kTop[] = {kNeck, kHead};
   PlanChain(source, target, kTorso);
@@ -89,7 +110,6 @@ BodyRetarget::BodyRetarget(const Body& source, const Body& target, const glm::qu
       PlanChain(source, target, {&role, 1});
     }
   }
-  PlanHips(source, target, scale);
 }
 
 // Spreads the turns of the source's chain evenly over the target's: the first joint takes part of
@@ -133,23 +153,27 @@ void BodyRetarget::PlanBone(const Body& source, const Body& target, JointRole ro
   }
 }
 
-void BodyRetarget::PlanHips(const Body& source, const Body& target, float scale) {
+void BodyRetarget::PlanHips(const Body& source, const Body& target,
+                            std::optional<float> toes_height) {
   source_hips_ = source.First(kHips);
   target_hips_ = target.First(kHips);
-  scale_ = scale;
   if (source_hips_ == kNoJoint || target_hips_ == kNoJoint) return;
   source_rest_place_ = source.RestOrigin(source_hips_);
-  target_rest_ = target.RestOrigin(target_hips_);
+  target_rest_place_ = target.RestOrigin(target_hips_);
   source_origin_ = source_rest_place_;
-  target_origin_ = target_rest_;
+  target_origin_ = target_rest_place_;
   const float source_leg = LegLength(source, target);
   const float target_leg = LegLength(target, source);
   if (source_leg <= 0.0f || target_leg <= 0.0f) return;
   rests_off_floor_ = !StandsOnFloor(source, source_leg) && StandsOnFloor(target, target_leg);
   if (!rests_off_floor_) return;
-  // The source's floor is the target's.
-  source_origin_ = glm::vec3(0.0f);
-  target_origin_ = glm::vec3(0.0f);
+  // The source's floor is the target's: where its hips are while it stands, the target's rest.
+  const glm::vec3 up = UpAxis(target);
+  const float target_height = glm::dot(target_rest_place_, up);
+  const float source_height =
+      toes_height ? source_leg * (1.0f + *toes_height) : target_height / scale_;
+  source_origin_ = glm::conjugate(turn_) * (source_height * up);
+  target_origin_ = target_height * up;
 }
 
 glm::quat BodyRetarget::Turn(int source_joint, const Rotations& rotations) const {
@@ -159,22 +183,20 @@ glm::quat BodyRetarget::Turn(int source_joint, const Rotations& rotations) const
   return turn_ * turn * glm::conjugate(turn_);
 }
 
-glm::vec3 BodyRetarget::BoneVector(const Joint& joint, const Rotations& rotations,
-                                   std::span<const Transform> pose) const {
-  glm::vec3 end = pose[At(joint.end)].translation;
-  for (int i = source_parents_[At(joint.end)]; i != joint.first; i = source_parents_[At(i)]) {
-    const Transform& local = pose[At(i)];
-    end = local.translation + local.rotation * (local.scale * end);
+// With the rest pose's lengths: senders that leave translations out are many.
+glm::vec3 BodyRetarget::BoneVector(const Joint& joint, const Rotations& rotations) const {
+  glm::vec3 bone(0.0f);
+  for (int i = joint.end; i != joint.first; i = source_parents_[At(i)]) {
+    bone += rotations[At(source_parents_[At(i)])] * source_local_[At(i)].translation;
   }
-  return turn_ * (rotations[At(joint.first)] * (pose[At(joint.first)].scale * end));
+  return turn_ * bone;
 }
 
-glm::quat BodyRetarget::TurnOf(const Joint& joint, const Rotations& rotations,
-                               std::span<const Transform> pose) const {
+glm::quat BodyRetarget::TurnOf(const Joint& joint, const Rotations& rotations) const {
   glm::quat turn = Turn(joint.to, rotations);
   if (joint.between < 1.0f) turn = glm::slerp(Turn(joint.from, rotations), turn, joint.between);
   if (joint.end != kNoJoint) {
-    const glm::vec3 bone = BoneVector(joint, rotations, pose);
+    const glm::vec3 bone = BoneVector(joint, rotations);
     if (glm::length(bone) > kLeastLength) turn = Swing(turn * joint.direction, bone) * turn;
   }
   if (joint.twist < 1.0f) {
@@ -188,7 +210,7 @@ glm::quat BodyRetarget::TurnOf(const Joint& joint, const Rotations& rotations,
 glm::vec3 BodyRetarget::HipsPlace(std::span<const Transform> pose) const {
   const glm::vec3 place(ModelOf(source_hips_, source_parents_, pose)[3]);
   // Without motion of its own, a root that rests off the floor tells no place.
-  if (rests_off_floor_ && place == source_rest_place_) return target_rest_;
+  if (rests_off_floor_ && place == source_rest_place_) return target_rest_place_;
   return target_origin_ + scale_ * (turn_ * (place - source_origin_));
 }
 
@@ -213,7 +235,7 @@ void BodyRetarget::Run(std::span<const Transform> source, std::span<Transform> t
       to[i] = glm::normalize(above * target[i].rotation);
       continue;
     }
-    to[i] = glm::normalize(TurnOf(joints_[i], from, source) * joints_[i].stance);
+    to[i] = glm::normalize(TurnOf(joints_[i], from) * joints_[i].stance);
     target[i].rotation = glm::normalize(glm::conjugate(above) * to[i]);
   }
   if (source_hips_ != kNoJoint && target_hips_ != kNoJoint) PlaceHips(source, target);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,9 +19,14 @@ namespace furrow::wrinkle {
 // the source rests (AlignedStance()), it gives the source's directions.
 class BodyRetarget {
  public:
-  // `stance`: AlignedStance(source, target, turn). `scale`: of the hips' motion.
-  BodyRetarget(const Body& source, const Body& target, const glm::quat& turn,
-               std::span<const glm::quat> stance, float scale);
+  struct Fit {
+    glm::quat turn{1.0f, 0.0f, 0.0f, 0.0f};  // QuarterTurn(source, target)
+    std::vector<glm::quat> stance;           // AlignedStance(source, target, turn)
+    float scale = 1.0f;                      // of the hips' motion
+    bool same_shape = false;                 // joint goes to joint: nothing is shared out or swung
+    std::optional<float> toes_height;        // see Retarget::Create()
+  };
+  BodyRetarget(const Body& source, const Body& target, const Fit& fit);
 
   // True where the target's joint takes its rotation from here.
   [[nodiscard]] bool Carries(int target_joint) const {
@@ -48,27 +54,28 @@ class BodyRetarget {
 
   void PlanChain(const Body& source, const Body& target, std::span<const JointRole> roles);
   void PlanBone(const Body& source, const Body& target, JointRole role);
-  void PlanHips(const Body& source, const Body& target, float scale);
+  void PlanTree(const Body& source, const Body& target);
+  void PlanPairs(const Body& source, const Body& target);
+  void PlanHips(const Body& source, const Body& target, std::optional<float> toes_height);
 
   [[nodiscard]] glm::quat Turn(int source_joint, const Rotations& rotations) const;
-  [[nodiscard]] glm::quat TurnOf(const Joint& joint, const Rotations& rotations,
-                                 std::span<const Transform> pose) const;
-  [[nodiscard]] glm::vec3 BoneVector(const Joint& joint, const Rotations& rotations,
-                                     std::span<const Transform> pose) const;
+  [[nodiscard]] glm::quat TurnOf(const Joint& joint, const Rotations& rotations) const;
+  [[nodiscard]] glm::vec3 BoneVector(const Joint& joint, const Rotations& rotations) const;
   [[nodiscard]] glm::vec3 HipsPlace(std::span<const Transform> pose) const;
   void PlaceHips(std::span<const Transform> source, std::span<Transform> target) const;
 
   std::vector<Joint> joints_;  // the target's
   std::vector<std::int16_t> source_parents_;
   std::vector<std::int16_t> target_parents_;
-  std::vector<glm::quat> source_rest_;  // model-space rotations
+  std::vector<glm::quat> source_rest_;   // model-space rotations
+  std::vector<Transform> source_local_;  // rest pose
   glm::quat turn_;
   int source_hips_ = kNoJoint;
   int target_hips_ = kNoJoint;
   float scale_ = 1.0f;
-  glm::vec3 source_origin_{0.0f};  // the source's place that is ...
-  glm::vec3 target_origin_{0.0f};  // ... this place of the target, model space
-  glm::vec3 target_rest_{0.0f};    // of the hips
+  glm::vec3 source_origin_{0.0f};      // the source's place that is ...
+  glm::vec3 target_origin_{0.0f};      // ... this place of the target, model space
+  glm::vec3 target_rest_place_{0.0f};  // of the hips
   glm::vec3 source_rest_place_{0.0f};
   bool rests_off_floor_ = false;
 };

@@ -177,15 +177,18 @@ Retarget Retarget::Create(const Skeleton& source, const Skeleton& target,
 }
 
 Retarget Retarget::Create(const Skeleton& source, const JointRoles& source_roles,
-                          const Skeleton& target, const JointRoles& target_roles) {
+                          const Skeleton& target, const JointRoles& target_roles,
+                          std::optional<float> toes_height) {
   const auto fits = [](const JointRoles& roles, const Skeleton& skeleton) {
     return !roles.empty() && roles.size() == static_cast<std::size_t>(skeleton.num_joints());
   };
   if (!fits(source_roles, source) || !fits(target_roles, target)) return Create(source, target);
   const Body from(source, source_roles);
   const Body to(target, target_roles);
-  const glm::quat turn = QuarterTurn(from, to);
-  const std::vector<glm::quat> stance = AlignedStance(from, to, turn);
+  BodyRetarget::Fit fit;
+  fit.turn = QuarterTurn(from, to);
+  fit.stance = AlignedStance(from, to, fit.turn);
+  fit.toes_height = toes_height;
 
   Retarget retarget;
   const std::vector<int> paired = PairJoints(from, to);
@@ -193,14 +196,14 @@ Retarget Retarget::Create(const Skeleton& source, const JointRoles& source_roles
   const float target_leg = LegLength(to, from);
   retarget.scale_ = source_leg > 0.0f && target_leg > 0.0f ? target_leg / source_leg
                                                            : SizeRatio(source, target, paired);
-  const auto body = std::make_shared<const BodyRetarget>(from, to, turn, stance, retarget.scale_);
+  fit.scale = retarget.scale_;
+  fit.same_shape = HaveSameShape(from, to, paired, retarget.scale_);
+  const auto body = std::make_shared<const BodyRetarget>(from, to, fit);
   std::vector<int> match = paired;
-  if (!HaveSameShape(from, to, paired, retarget.scale_)) {
-    for (int i = 0; i < target.num_joints(); ++i) {
-      if (body->Carries(i)) match[i] = kNoJoint;
-    }
+  for (int i = 0; i < target.num_joints(); ++i) {
+    if (!fit.same_shape && body->Carries(i)) match[i] = kNoJoint;
   }
-  retarget.Plan(source, target, match, stance, turn);
+  retarget.Plan(source, target, match, fit.stance, fit.turn);
   retarget.body_ = body;
   retarget.unmatched_ = Unmatched(from, to, paired);
   return retarget;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -41,8 +42,11 @@ class Retarget {
 
   // By role where a joint has one on both sides, the rest by equal names. Roles one a joint each;
   // where either list is empty or of another length, all goes by name.
+  // `toes_height`: of the source's toes' joints above the floor where feet stand flat, in leg
+  // lengths; matters where its rest pose does not stand on the floor. Unknown: as the target's.
   [[nodiscard]] static Retarget Create(const Skeleton& source, const JointRoles& source_roles,
-                                       const Skeleton& target, const JointRoles& target_roles);
+                                       const Skeleton& target, const JointRoles& target_roles,
+                                       std::optional<float> toes_height = {});
 
   // True where joints are carried by role.
   [[nodiscard]] bool by_role() const { return body_ != nullptr; }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "wrinkle/pose.h"
@@ -18,6 +19,8 @@ struct BindOptions {
   // false: a joint or blend shape that the skeleton lacks is an error. true (live streams): its
   // driver rests at 0, and it is listed in missing_joints() / missing_blend_shapes().
   bool allow_missing = false;
+  // (the rig's joint, the skeleton's): tried where the skeleton has no joint of the rig's name.
+  std::span<const std::pair<std::string, std::string>> aliases;
 };
 
 // A rig bound to one skeleton: names resolved, reference poses turned into displacements,

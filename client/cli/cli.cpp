@@ -11,6 +11,12 @@
 
 namespace furrow::cli {
 
+void AddSkeletonMap(CLI::App& command, std::string& value) {
+  command.add_option("--skeleton-map", value,
+                     "What the recording calls its joints: a map's name or file (cmu, mixamo, vrm "
+                     "...); default: the best of those that ship");
+}
+
 bool ParseSize(const std::string& text, int* width, int* height) {
   const char* const end = text.data() + text.size();
   const auto first = std::from_chars(text.data(), end, *width);

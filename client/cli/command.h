@@ -41,6 +41,9 @@ CLI::Option* AddChoice(CLI::App& app, const std::string& name, T& value,
       ->type_name(words);
 }
 
+// --skeleton-map, as LoadSkeletonMatcher() takes it.
+void AddSkeletonMap(CLI::App& command, std::string& value);
+
 // Parses "WxH" with both in [16, 4096].
 [[nodiscard]] bool ParseSize(const std::string& text, int* width, int* height);
 // A CLI11 validator for it.

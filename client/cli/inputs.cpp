@@ -35,6 +35,14 @@ Result<wrinkle::Rig> LoadRigArgument(const std::string& argument) {
   return character::LoadRig(ResolveRigPath(argument), motion::CachedPoseSource());
 }
 
+Result<character::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map) {
+  auto matcher = character::SkeletonMatcher::Create(map);
+  if (matcher.ok()) return matcher;
+  if (!map.empty()) return matcher.status().At("--skeleton-map");
+  PrintWarnings({"joints go by equal names alone: " + matcher.status().ToString()});
+  return character::SkeletonMatcher();
+}
+
 Result<character::Character> LoadCharacterArgument(const std::string& glb, const std::string& rig) {
   fs::path package = glb;
   if (glb.empty()) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "character/character.h"
+#include "character/skeleton_match.h"
 #include "motion/clip.h"
 #include "wrinkle/rig.h"
 #include "wrinkle/status.h"
@@ -25,6 +26,10 @@ void PrintWarnings(const std::vector<std::string>& warnings);
 
 // A rig by path, or by the name of one that ships ("cmu" or "cmu.json").
 [[nodiscard]] Result<wrinkle::Rig> LoadRigArgument(const std::string& argument);
+
+// The skeleton map of --skeleton-map (a name or a file; empty: the best that ships for each
+// skeleton). Where none ship and none is asked for, joints go by equal names, with a warning.
+[[nodiscard]] Result<character::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map);
 
 // A character package by path; empty: the default one. `rig`: as LoadRigArgument, empty: its own.
 [[nodiscard]] Result<character::Character> LoadCharacterArgument(const std::string& glb,

@@ -17,6 +17,7 @@ namespace {
 struct RigOptions {
   std::string rig;
   std::string file;  // explain: the recording; check: a recording whose skeleton is meant
+  std::string skeleton_map;
   int frame = 0;
   float threshold = 0.01f;
 };
@@ -32,7 +33,11 @@ int Explain(const RigOptions& options) {
                      std::to_string(clip->num_frames() - 1),
                  options.file});
   }
-  const auto binding = wrinkle::RigBinding::Create(*rig, clip->skeleton, clip->blend_shape_names);
+  const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
+  if (!matcher.ok()) return Fail(matcher.status());
+  const auto match = matcher->Match(clip->skeleton, *rig, nullptr);
+  const auto binding = wrinkle::RigBinding::Create(*rig, clip->skeleton, clip->blend_shape_names,
+                                                   {.aliases = match.aliases});
   if (!binding.ok()) return Fail(binding.status().At(options.rig));
   wrinkle::LocalPose pose;
   clip->GetPose(options.frame, &pose);
@@ -58,6 +63,13 @@ int Check(const RigOptions& options) {
     report_options.skeleton = &clip->skeleton;
     report_options.blend_shape_names = clip->blend_shape_names;
   }
+  character::SkeletonMatch match;
+  if (clip) {
+    const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
+    if (!matcher.ok()) return Fail(matcher.status());
+    match = matcher->Match(clip->skeleton, *rig, nullptr);
+    report_options.aliases = match.aliases;
+  }
   const character::RigReport report = character::ReportOnRig(*rig, report_options);
   std::fputs(character::ToText(report).c_str(), stdout);
   return report.binding.ok() ? kDone : Fail(report.binding.At(options.rig));
@@ -71,6 +83,7 @@ void AddCheck(CLI::App& group, Action& action) {
       ->required();
   command->add_option("--skeleton", options->file,
                       "A recording: is every joint and blend shape there?");
+  AddSkeletonMap(*command, options->skeleton_map);
   command->callback([options, &action] { action = [options] { return Check(*options); }; });
 }
 
@@ -81,6 +94,7 @@ void AddExplain(CLI::App& group, Action& action) {
   command->add_option("RIG", options->rig, "Wrinkle rig (JSON), or the name of one that ships")
       ->required();
   command->add_option("FILE", options->file, "The recording")->required();
+  AddSkeletonMap(*command, options->skeleton_map);
   command->add_option("--frame", options->frame, "Counted from 0")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

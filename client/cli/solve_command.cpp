@@ -17,6 +17,7 @@ namespace {
 struct SolveOptions {
   std::string file;
   std::string rig;
+  std::string skeleton_map;
   TableFormat format = TableFormat::kCsv;
   bool drivers = false;
   bool no_filter = false;
@@ -28,8 +29,12 @@ int SolveFile(const SolveOptions& options) {
   if (!clip.ok()) return Fail(clip.status());
   const auto rig = LoadRigArgument(options.rig);
   if (!rig.ok()) return Fail(rig.status());
-  auto binding = wrinkle::RigBinding::Create(*rig, clip->skeleton, clip->blend_shape_names,
-                                             {.allow_missing = options.allow_missing});
+  const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
+  if (!matcher.ok()) return Fail(matcher.status());
+  const auto match = matcher->Match(clip->skeleton, *rig, nullptr);
+  auto binding = wrinkle::RigBinding::Create(
+      *rig, clip->skeleton, clip->blend_shape_names,
+      {.allow_missing = options.allow_missing, .aliases = match.aliases});
   if (!binding.ok()) return Fail(binding.status().At(options.rig));
 
   wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(std::move(*binding)),
@@ -67,6 +72,7 @@ void AddSolve(CLI::App& app, Action& action) {
       ->add_option("--rig", options->rig,
                    "Wrinkle rig (JSON), or the name of one that ships: cmu, arkit ...")
       ->required();
+  AddSkeletonMap(*command, options->skeleton_map);
   const std::map<std::string, TableFormat> formats{{"csv", TableFormat::kCsv},
                                                    {"jsonl", TableFormat::kJsonl}};
   AddChoice(*command, "--format", options->format, formats, "csv (default) or jsonl");

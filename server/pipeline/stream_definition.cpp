@@ -34,36 +34,6 @@ bool Reads(const wrinkle::Rig& rig, const std::string& blend_shape) {
 
 }  // namespace
 
-std::set<std::string> StreamDefinitions::JointsOf(const wrinkle::Rig& rig) {
-  std::set<std::string> joints = {rig.anchor};
-  for (const wrinkle::ReferencePose& pose : rig.reference_poses) {
-    for (const wrinkle::JointDelta& joint : pose.joints) joints.insert(joint.joint);
-  }
-  for (const wrinkle::Driver& driver : rig.drivers) {
-    switch (driver.kind) {
-      case wrinkle::Driver::Kind::kPose:
-        for (const wrinkle::ControlPoint& point : driver.pose.points) joints.insert(point.joint);
-        break;
-      case wrinkle::Driver::Kind::kHinge:
-        joints.insert({driver.hinge.parent, driver.hinge.joint, driver.hinge.end});
-        break;
-      case wrinkle::Driver::Kind::kBall:
-        joints.insert({driver.ball.parent, driver.ball.joint, driver.ball.end});
-        break;
-      case wrinkle::Driver::Kind::kTwist:
-        joints.insert(driver.twist.joint);
-        joints.insert(driver.twist.through.begin(), driver.twist.through.end());
-        break;
-      case wrinkle::Driver::Kind::kStrain:
-        joints.insert(driver.strain.joint);
-        joints.insert(driver.strain.joints.begin(), driver.strain.joints.end());
-        break;
-      case wrinkle::Driver::Kind::kBlendShape: break;
-    }
-  }
-  return joints;
-}
-
 Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Get(StreamOffer offer) {
   wrinkle::Skeleton skeleton;
   if (!offer.joints.empty()) {
@@ -89,8 +59,9 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Get(StreamOff
 
 Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
     wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes) {
-  auto binding =
-      wrinkle::RigBinding::Create(*rig_, skeleton, blend_shapes, {.allow_missing = true});
+  const character::SkeletonMatch match = matcher_.Match(skeleton, *rig_, character_);
+  auto binding = wrinkle::RigBinding::Create(*rig_, skeleton, blend_shapes,
+                                             {.allow_missing = true, .aliases = match.aliases});
   if (!binding.ok()) return binding.status();
   auto definition = std::make_shared<StreamDefinition>();
   definition->joint_of_wire.resize(static_cast<std::size_t>(skeleton.num_joints()));
@@ -99,18 +70,22 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
         static_cast<std::int16_t>(joint);
   }
   if (character_ != nullptr) {
-    definition->retarget =
-        std::make_shared<const wrinkle::Retarget>(wrinkle::Retarget::Create(skeleton, *character_));
+    definition->retarget = std::make_shared<const wrinkle::Retarget>(
+        character::MakeRetarget(match, skeleton, *character_));
   }
   definition->binding = std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
   definition->skeleton = std::move(skeleton);
   definition->blend_shapes = std::move(blend_shapes);
-  Report(*definition);
+  Report(*definition, match);
   return std::shared_ptr<const StreamDefinition>(std::move(definition));
 }
 
 // Once a definition, so that a sender that offers again and again does not fill the log.
-void StreamDefinitions::Report(const StreamDefinition& stream) const {
+void StreamDefinitions::Report(const StreamDefinition& stream,
+                               const character::SkeletonMatch& match) const {
+  if (const std::string text = character::Describe(match.stream); !text.empty()) {
+    spdlog::info("{}", text);
+  }
   const auto missing_joints = stream.binding->missing_joints();
   const auto missing_shapes = stream.binding->missing_blend_shapes();
   if (!missing_joints.empty()) {
@@ -124,9 +99,14 @@ void StreamDefinitions::Report(const StreamDefinition& stream) const {
   std::vector<std::string> ignored;
   bool draws_any = false;
   bool feeds_any = missing_joints.empty() && missing_shapes.empty();
+  const auto unmatched =
+      stream.retarget ? stream.retarget->unmatched_source() : std::span<const std::string>();
   for (const std::string& name : stream.skeleton.joint_names()) {
-    const bool drawn = character_ != nullptr && character_->Find(name) != wrinkle::kNoJoint;
-    const bool read = rig_joints_.contains(name);
+    const bool drawn = stream.retarget && std::ranges::find(unmatched, name) == unmatched.end();
+    const bool read =
+        rig_joints_.contains(name) ||
+        std::ranges::find(match.aliases, name, &std::pair<std::string, std::string>::second) !=
+            match.aliases.end();
     if (!drawn && !read) ignored.push_back(name);
     draws_any |= drawn;
     feeds_any |= read;

@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "character/skeleton_match.h"
 #include "wrinkle/retarget.h"
 #include "wrinkle/rig.h"
+#include "wrinkle/rig_joints.h"
 #include "wrinkle/skeleton.h"
 #include "wrinkle/solver.h"
 #include "wrinkle/status.h"
@@ -35,15 +37,18 @@ struct StreamDefinition {
 // that restarts, or a second one like it, costs nothing.
 class StreamDefinitions {
  public:
-  // `character` (may be null: nothing is drawn) outlives this.
+  // `character` (may be null: nothing is drawn) outlives this. `matcher` tells what the joints of
+  // skeletons are that call them otherwise than the rig and the character.
   StreamDefinitions(std::shared_ptr<const wrinkle::Rig> rig, const wrinkle::Skeleton* character,
-                    std::size_t capacity)
+                    std::size_t capacity, character::SkeletonMatcher matcher = {})
       : rig_(std::move(rig)),
         character_(character),
         capacity_(capacity),
-        rig_joints_(JointsOf(*rig_)) {}
+        matcher_(std::move(matcher)),
+        rig_joints_(wrinkle::JointsOf(*rig_)) {}
 
-  // Errors: those of Skeleton::Create and RigBinding::Create. Logged, once a definition: what the
+  // Errors: those of Skeleton::Create and RigBinding::Create. Logged, once a definition: the
+  // skeleton map that knows the stream and the roles it does not find; what the
   // rig misses in the stream; joints that neither the rig nor the character knows, which are
   // ignored; a stream that moves no weight, or not the picture, at all.
   [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Get(StreamOffer offer);
@@ -53,12 +58,12 @@ class StreamDefinitions {
  private:
   [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Make(
       wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes);
-  [[nodiscard]] static std::set<std::string> JointsOf(const wrinkle::Rig& rig);
-  void Report(const StreamDefinition& stream) const;
+  void Report(const StreamDefinition& stream, const character::SkeletonMatch& match) const;
 
   std::shared_ptr<const wrinkle::Rig> rig_;
   const wrinkle::Skeleton* character_;
   std::size_t capacity_;
+  character::SkeletonMatcher matcher_;
   std::set<std::string> rig_joints_;                          // all that the rig reads
   std::list<std::shared_ptr<const StreamDefinition>> known_;  // most recently used first
 };

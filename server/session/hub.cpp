@@ -29,7 +29,8 @@ Hub::Hub(Parts parts)
       on_weights_(std::move(parts.on_weights)),
       postman_(parts.session, parts.metrics),
       definitions_(std::move(parts.rig), parts.character,
-                   static_cast<std::size_t>(parts.limits.max_skeletons)),
+                   static_cast<std::size_t>(parts.limits.max_skeletons),
+                   std::move(parts.skeletons)),
       publishers_(limits_, &definitions_, &subjects_, &postman_, metrics_),
       subscribers_(limits_, &subjects_, parts.pictures, &postman_, metrics_) {}
 

@@ -37,6 +37,7 @@ class Hub {
     Limits limits;
     std::uint64_t session = 1;  // random, not 0
     std::shared_ptr<const wrinkle::Rig> rig;
+    character::SkeletonMatcher skeletons;          // what the joints of streams are
     const wrinkle::Skeleton* character = nullptr;  // null: nothing is drawn
     PictureSource* pictures = nullptr;             // null: nothing is drawn
     Metrics* metrics = nullptr;

@@ -118,6 +118,8 @@ TEST(SkeletonMap, EveryFaultIsNamed) {
       {"Root|Pelvis", "Ro*t", StatusCode::kSchema},
       {"[\"N1\", \"N2\"]", "[]", StatusCode::kSchema},
       {"[\"N1\", \"N2\"]", "[[\"N1\"]]", StatusCode::kSchema},
+      {"\"sides\"", "\"toes_height\": true, \"sides\"", StatusCode::kSchema},
+      {"\"sides\"", "\"toes_height\": 0.6, \"sides\"", StatusCode::kInvalidArgument},
       {"\"neck\"", "neck", StatusCode::kParse},
   };
   for (const Bad& bad : kBad) {

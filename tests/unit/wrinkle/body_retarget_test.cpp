@@ -128,6 +128,18 @@ TEST(BodyRetarget, ToTheSameBodyChangesNothing) {
   EXPECT_TRUE(carrier.retarget().unmatched_source().empty());
 }
 
+TEST(BodyRetarget, ToTheSameBodyOfSeveralJointsALimbChangesNothing) {
+  std::mt19937 random(9);
+  Humanoid body = MakeHumanoid();
+  body.Split("leftUpperArm", "leftLowerArm", 0.5f);
+  body.Split("spine", "chest", 0.3f);
+  Carrier carrier(body, body, 3, 3);
+  LocalPose pose;
+  RandomPose(carrier.source(), &random, &pose);
+  carrier.Run(pose);
+  ExpectSamePose(carrier.local(), pose.joints);
+}
+
 TEST(BodyRetarget, ToTheSameBodyUnderOtherNamesChangesNothing) {
   std::mt19937 random(2);
   Humanoid renamed = MakeHumanoid();
