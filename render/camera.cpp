@@ -48,11 +48,14 @@ CameraFrame ComputeCamera(const Camera& camera, const wrinkle::Skeleton& skeleto
   const glm::mat4 view = glm::lookAt(position, target, steep ? glm::vec3(0, 0, -1) : kUp);
   const float narrow = camera.fit_shorter_side ? std::min(aspect, 1.0f) : 1.0f;
   const float half_height = std::tan(glm::radians(0.5f * camera.fov_y_degrees)) / narrow;
+  const float near_plane = 0.05f * distance;
+  const float far_plane = 20.0f * distance;
   const glm::mat4 projection =
-      glm::perspective(2.0f * std::atan(half_height), aspect, 0.05f * distance, 20.0f * distance);
+      glm::perspective(2.0f * std::atan(half_height), aspect, near_plane, far_plane);
   const float heading = steep ? 0.0f : std::atan2(-towards.x, -towards.z);
   const glm::mat3 turn(glm::rotate(glm::mat4(1.0f), heading, kUp));
-  return {projection * view, position, turn};
+  return {projection * view,  position,   view,      target,
+          1.0f / half_height, near_plane, far_plane, turn};
 }
 
 }  // namespace furrow::render

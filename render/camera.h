@@ -4,7 +4,9 @@
 #include <span>
 #include <string_view>
 
+#include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 
 #include "render/renderer.h"
 
@@ -15,9 +17,20 @@ namespace furrow::render {
 struct CameraFrame {
   glm::mat4 view_projection{1.0f};
   glm::vec3 position{0.0f};
+  glm::mat4 view{1.0f};
+  glm::vec3 target{0.0f};     // what it looks at
+  float cot_half_fov = 1.0f;  // of the picture's height: scale from slope to [-1, 1]
+  float near_plane = 0.0f;    // metres
+  float far_plane = 0.0f;
   // The camera's heading: a rotation about +Y that takes "the camera looks to -Z" to where it
   // looks. The lights turn with it, so that every preset is lit alike.
   glm::mat3 heading{1.0f};
+
+  [[nodiscard]] float focus_distance() const { return glm::distance(position, target); }
+  // Metres around the target that a picture of this shape shows, to its corners and a bit more.
+  [[nodiscard]] float StageRadius(float aspect) const {
+    return 1.15f * focus_distance() / cot_half_fov * glm::length(glm::vec2(aspect, 1.0f));
+  }
 };
 
 // `model`: the pose, num_joints long; the camera follows it as Camera::follow_joint says. `aspect`:

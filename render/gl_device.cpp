@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/gl_device.h"
 
+#include <algorithm>
+
 namespace furrow::render {
 namespace {
 
@@ -9,6 +11,9 @@ GLenum InternalFormat(PixelFormat format) {
     case PixelFormat::kRgba8: return GL_RGBA8;
     case PixelFormat::kRgba16F: return GL_RGBA16F;
     case PixelFormat::kRgba32F: return GL_RGBA32F;
+    case PixelFormat::kRgb10A2: return GL_RGB10_A2;
+    case PixelFormat::kR32F: return GL_R32F;
+    case PixelFormat::kR8: return GL_R8;
     case PixelFormat::kDepth32F: return GL_DEPTH_COMPONENT32F;
   }
   return GL_RGBA8;
@@ -32,16 +37,29 @@ TextureId GlDevice::CreateTexture(const TextureDesc& desc) {
 
 void GlDevice::DestroyTexture(TextureId texture) {
   std::erase_if(framebuffers_, [&](const auto& entry) {
-    return entry.first.first == texture || entry.first.second == texture;
+    return std::ranges::find(entry.first, texture) != entry.first.end();
   });
   textures_.erase(texture);
 }
 
-GLuint GlDevice::Framebuffer(TextureId colour, TextureId depth) {
-  gl::Framebuffer& framebuffer = framebuffers_[{colour, depth}];
+GLuint GlDevice::Framebuffer(std::span<const TextureId> colours, TextureId depth) {
+  std::vector<TextureId> key{depth};
+  key.insert(key.end(), colours.begin(), colours.end());
+  gl::Framebuffer& framebuffer = framebuffers_[std::move(key)];
   if (!framebuffer) {
     framebuffer = gl::MakeFramebuffer();
-    glNamedFramebufferTexture(framebuffer.name(), GL_COLOR_ATTACHMENT0, colour, 0);
+    std::vector<GLenum> buffers;
+    for (const TextureId colour : colours) {
+      const auto attachment = static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + buffers.size());
+      glNamedFramebufferTexture(framebuffer.name(), attachment, colour, 0);
+      buffers.push_back(attachment);
+    }
+    if (buffers.empty()) {
+      glNamedFramebufferDrawBuffer(framebuffer.name(), GL_NONE);
+    } else {
+      glNamedFramebufferDrawBuffers(framebuffer.name(), static_cast<GLsizei>(buffers.size()),
+                                    buffers.data());
+    }
     if (depth != 0) glNamedFramebufferTexture(framebuffer.name(), GL_DEPTH_ATTACHMENT, depth, 0);
   }
   return framebuffer.name();

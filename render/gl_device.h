@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <vector>
 
 #include "render/frame_graph.h"
@@ -15,12 +16,17 @@ class GlDevice final : public FrameGraphDevice {
   [[nodiscard]] TextureId CreateTexture(const TextureDesc& desc) override;
   void DestroyTexture(TextureId texture) override;
 
-  // A framebuffer with this colour and (0: none) depth texture; made once, kept while both live.
-  [[nodiscard]] GLuint Framebuffer(TextureId colour, TextureId depth);
+  // A framebuffer with these colours, drawn to in their order, and (0: none) depth texture; made
+  // once, kept while all live.
+  [[nodiscard]] GLuint Framebuffer(std::span<const TextureId> colours, TextureId depth);
+  [[nodiscard]] GLuint Framebuffer(TextureId colour, TextureId depth) {
+    return Framebuffer(std::span(&colour, 1), depth);
+  }
 
  private:
   std::map<TextureId, gl::Texture> textures_;
-  std::map<std::pair<TextureId, TextureId>, gl::Framebuffer> framebuffers_;
+  // By the textures attached, the depth's first.
+  std::map<std::vector<TextureId>, gl::Framebuffer> framebuffers_;
 };
 
 }  // namespace furrow::render

@@ -40,6 +40,12 @@ VertexArray MakeVertexArray() {
   return VertexArray(name);
 }
 
+Sampler MakeSampler() {
+  GLuint name = 0;
+  glCreateSamplers(1, &name);
+  return Sampler(name);
+}
+
 void Upload(const Buffer& buffer, const void* data, std::size_t bytes) {
   const bool empty = bytes == 0;
   glNamedBufferData(buffer.name(), static_cast<GLsizeiptr>(empty ? sizeof(kZeros) : bytes),

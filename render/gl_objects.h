@@ -49,12 +49,17 @@ struct ProgramKind {
   static void Destroy(GLuint name) { glDeleteProgram(name); }
 };
 
+struct SamplerKind {
+  static void Destroy(GLuint name) { glDeleteSamplers(1, &name); }
+};
+
 using Buffer = Object<BufferKind>;
 using Texture = Object<TextureKind>;
 using Framebuffer = Object<FramebufferKind>;
 using VertexArray = Object<VertexArrayKind>;
 using Shader = Object<ShaderKind>;
 using Program = Object<ProgramKind>;
+using Sampler = Object<SamplerKind>;
 
 [[nodiscard]] Buffer MakeBuffer();
 // Immutable contents, written once.
@@ -62,6 +67,7 @@ using Program = Object<ProgramKind>;
 [[nodiscard]] Texture MakeTexture(GLenum target);
 [[nodiscard]] Framebuffer MakeFramebuffer();
 [[nodiscard]] VertexArray MakeVertexArray();
+[[nodiscard]] Sampler MakeSampler();
 
 // New storage with new contents: a frame still in flight keeps the old one, so nothing waits. An
 // empty range becomes 16 zero bytes, since a shader's block must be backed by something.

@@ -13,6 +13,8 @@ using character::Material;
 using character::Picture;
 using character::Vertex;
 
+constexpr float kSheenOfCloth = 0.06f;
+
 // Mirrors the Material block of scene.frag.glsl (std140).
 struct MaterialBlock {
   glm::vec4 base_colour;
@@ -20,8 +22,11 @@ struct MaterialBlock {
   float specular;
   float alpha_cutoff;
   float cavity_albedo;
+  float f0;
+  float sheen;
+  float padding[2];
 };
-static_assert(sizeof(MaterialBlock) == 32);
+static_assert(sizeof(MaterialBlock) == 48);
 
 // Scales the specular lobe. Skin reflects 2.8% face on, water before the eye 2%; the eye's film is
 // smooth, so that its highlight is a small bright point.
@@ -34,6 +39,18 @@ float SpecularOf(Material::Kind kind) {
     case Material::Kind::kOther: return 0.03f;
   }
   return 0.03f;
+}
+
+// Schlick's reflectance face on, of the skin pipeline: skin's oil, the tear film, keratin.
+float F0Of(Material::Kind kind) {
+  switch (kind) {
+    case Material::Kind::kSkin: return 0.028f;
+    case Material::Kind::kEye: return 0.025f;
+    case Material::Kind::kHair: return 0.046f;
+    case Material::Kind::kCloth: return 0.02f;
+    case Material::Kind::kOther: return 0.04f;
+  }
+  return 0.04f;
 }
 
 // Base colour below which a surface counts as hollow. Eyes have black pupils and glossy ones.
@@ -186,13 +203,20 @@ Status GpuCharacter::AddMaterials(const Character& character) {
                 "material '" + source.name + "'"};
       }
     }
-    const MaterialBlock block{source.base_colour, RoughnessOf(source), SpecularOf(source.kind),
-                              source.alpha_cutoff, CavityAlbedoOf(source.kind)};
+    const MaterialBlock block{source.base_colour,
+                              RoughnessOf(source),
+                              SpecularOf(source.kind),
+                              source.alpha_cutoff,
+                              CavityAlbedoOf(source.kind),
+                              F0Of(source.kind),
+                              source.kind == Material::Kind::kCloth ? kSheenOfCloth : 0.0f,
+                              {}};
     GpuMaterial material;
     material.block = gl::MakeStaticBuffer(&block, sizeof(block));
     material.base_colour = ColourTexture(character, source.base_colour_texture, true);
     material.roughness = ColourTexture(character, source.roughness_texture, false);
     material.derivatives = DerivativeTexture(character, source.normal_texture);
+    material.kind = source.kind;
     material.group = GroupOf(character, source.kind);
     material.alpha_test = source.alpha_cutoff > 0.0f;
     material.double_sided = source.double_sided;

@@ -25,6 +25,7 @@ struct GpuMaterial {
   GLuint base_colour = 0;  // textures; 0: none
   GLuint derivatives = 0;
   GLuint roughness = 0;
+  character::Material::Kind kind = character::Material::Kind::kOther;
   WrinkleGroup group = WrinkleGroup::kNone;
   bool alpha_test = false;
   bool double_sided = false;

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/shader_library.h"
 
+#include <algorithm>
+#include <cctype>
+
+#include "render/subsurface_kernel.h"
+
 namespace furrow::render {
 namespace {
 
@@ -45,13 +50,8 @@ Status Link(const gl::Program& program, std::string_view name) {
 }  // namespace
 
 std::vector<std::string> Defines(const SceneShader& shader) {
-  return {
-      Define("VIEW_FINAL", static_cast<int>(View::kFinal)),
-      Define("VIEW_NORMAL", static_cast<int>(View::kNormal)),
-      Define("VIEW_MASK_DYNAMIC", static_cast<int>(View::kMaskDynamic)),
-      Define("VIEW_MASK_TEXTURE", static_cast<int>(View::kMaskTexture)),
-      Define("VIEW_WEIGHTS", static_cast<int>(View::kWeights)),
-      Define("VIEW_WIREFRAME", static_cast<int>(View::kWireframe)),
+  using Kind = character::Material::Kind;
+  std::vector<std::string> defines = {
       Define("VIEW", static_cast<int>(shader.view)),
       Define("NORMAL_BLEND", static_cast<int>(shader.normal_blend)),
       Define("WRINKLE_TEXTURE", shader.wrinkle_texture),
@@ -63,11 +63,30 @@ std::vector<std::string> Defines(const SceneShader& shader) {
       Define("ACTIVE_MAPS", shader.active_maps),
       Define("MASK_LAYERS", shader.mask_layers),
       Define("MAP_SLOTS", shader.map_slots),
+      Define("MATERIAL_SKIN", static_cast<int>(Kind::kSkin)),
+      Define("MATERIAL_CLOTH", static_cast<int>(Kind::kCloth)),
+      Define("MATERIAL_EYE", static_cast<int>(Kind::kEye)),
+      Define("MATERIAL_HAIR", static_cast<int>(Kind::kHair)),
+      Define("MATERIAL_OTHER", static_cast<int>(Kind::kOther)),
+      Define("MATERIAL", static_cast<int>(shader.material)),
+      Define("SHADOW_FILTER", static_cast<int>(shader.shadow_filter)),
+      Define("SHADOW_TAPS", shader.shadow_taps),
+      Define("SHADOW_LAMPS", shader.shadow_lamps),
+      Define("TRANSLUCENCY", shader.translucency),
+      Define("PREINTEGRATED", shader.preintegrated),
+      Define("SPECULAR_GEMS", shader.gems),
+      Define("CONSERVE", shader.conserve_energy),
+      "BECKMANN_SIZE float(" + std::to_string(kBeckmannTableSize) + ")",
+      "ALBEDO_SIZE float(" + std::to_string(kAlbedoTableSize) + ")",
+      "RING_SIZE float(" + std::to_string(kPreintegratedTableSize) + ")",
+      "MAX_CURVATURE " + std::to_string(kMaxCurvature),
   };
-}
-
-std::vector<std::string> Defines(const CompositeShader& shader) {
-  return {Define("SAMPLES", shader.samples), Define("TONEMAP", shader.tonemap)};
+  for (int view = 0; view < kNumViews; ++view) {
+    std::string name = "VIEW_" + std::string(ViewName(static_cast<View>(view)));
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::toupper(c); });
+    defines.push_back(Define(name, view));
+  }
+  return defines;
 }
 
 Result<gl::Program> BuildProgram(std::string_view vertex, std::string_view fragment,
@@ -86,20 +105,30 @@ Result<gl::Program> BuildProgram(std::string_view vertex, std::string_view fragm
 
 Result<GLuint> ShaderLibrary::Get(const SceneShader& shader) {
   if (const auto found = scene_.find(shader); found != scene_.end()) return found->second.name();
+  const char* fragment = shader.shading == Shading::kSkin ? "skin.frag.glsl" : "scene.frag.glsl";
   Result<gl::Program> program =
-      BuildProgram("scene.vert.glsl", "scene.frag.glsl", Defines(shader), EmbeddedShaders());
+      BuildProgram("scene.vert.glsl", fragment, Defines(shader), EmbeddedShaders());
   if (!program.ok()) return program.status();
   return scene_.emplace(shader, std::move(*program)).first->second.name();
 }
 
-Result<GLuint> ShaderLibrary::Get(const CompositeShader& shader) {
-  if (const auto found = composite_.find(shader); found != composite_.end()) {
-    return found->second.name();
-  }
-  Result<gl::Program> program = BuildProgram("fullscreen.vert.glsl", "composite.frag.glsl",
-                                             Defines(shader), EmbeddedShaders());
+Result<GLuint> ShaderLibrary::GetShadow(bool alpha_test) {
+  return GetNamed("shadow.vert.glsl", "shadow.frag.glsl", {Define("ALPHA_TEST", alpha_test)});
+}
+
+Result<GLuint> ShaderLibrary::GetFullscreen(std::string_view fragment,
+                                            const std::vector<std::string>& defines) {
+  return GetNamed("fullscreen.vert.glsl", fragment, defines);
+}
+
+Result<GLuint> ShaderLibrary::GetNamed(std::string_view vertex, std::string_view fragment,
+                                       const std::vector<std::string>& defines) {
+  std::string key(fragment);
+  for (const std::string& define : defines) key += ";" + define;
+  if (const auto found = named_.find(key); found != named_.end()) return found->second.name();
+  Result<gl::Program> program = BuildProgram(vertex, fragment, defines, EmbeddedShaders());
   if (!program.ok()) return program.status();
-  return composite_.emplace(shader, std::move(*program)).first->second.name();
+  return named_.emplace(std::move(key), std::move(*program)).first->second.name();
 }
 
 }  // namespace furrow::render

@@ -16,6 +16,7 @@ namespace furrow::render {
 // draw is settled here and not by branches: llvmpipe runs both sides of a branch.
 struct SceneShader {
   View view = View::kFinal;
+  Shading shading = Shading::kDiffuse;
   NormalBlend normal_blend = NormalBlend::kPartialDerivative;
   bool wrinkle_texture = false;  // some active map is masked by textures
   bool wrinkle_dynamic = false;  // ... by the joints' influences
@@ -26,20 +27,26 @@ struct SceneShader {
   int active_maps = 0;  // wrinkle maps at work on this surface
   int mask_layers = 1;
   int map_slots = 1;  // vec4s of dynamic masks: a quarter of the rig's maps, rounded up
+  // Of the skin pipeline alone.
+  character::Material::Kind material = character::Material::Kind::kSkin;
+  ShadowFilter shadow_filter = ShadowFilter::kOff;
+  int shadow_taps = 1;
+  int shadow_lamps = 0;
+  bool translucency = false;
+  bool preintegrated = false;
+  bool gems = false;
+  bool conserve_energy = true;
 
   friend auto operator<=>(const SceneShader&, const SceneShader&) = default;
 };
 
-struct CompositeShader {
-  int samples = 4;
-  bool tonemap = true;
-
-  friend auto operator<=>(const CompositeShader&, const CompositeShader&) = default;
-};
-
 // "NAME VALUE" lines for ExpandShader().
 [[nodiscard]] std::vector<std::string> Defines(const SceneShader& shader);
-[[nodiscard]] std::vector<std::string> Defines(const CompositeShader& shader);
+
+// Texels of the sides of the tables that shaders look things up in.
+inline constexpr int kBeckmannTableSize = 512;
+inline constexpr int kAlbedoTableSize = 32;
+inline constexpr int kPreintegratedTableSize = 48;
 
 // Programs, compiled when first asked for and kept. Needs a current context.
 //
@@ -47,11 +54,19 @@ struct CompositeShader {
 class ShaderLibrary {
  public:
   [[nodiscard]] Result<GLuint> Get(const SceneShader& shader);
-  [[nodiscard]] Result<GLuint> Get(const CompositeShader& shader);
+  // shadow.{vert,frag}.glsl.
+  [[nodiscard]] Result<GLuint> GetShadow(bool alpha_test);
+  // A fragment shader that covers the picture: "combine.frag.glsl", ...
+  [[nodiscard]] Result<GLuint> GetFullscreen(std::string_view fragment,
+                                             const std::vector<std::string>& defines);
+  [[nodiscard]] int num_programs() const { return static_cast<int>(scene_.size() + named_.size()); }
 
  private:
+  [[nodiscard]] Result<GLuint> GetNamed(std::string_view vertex, std::string_view fragment,
+                                        const std::vector<std::string>& defines);
+
   std::map<SceneShader, gl::Program> scene_;
-  std::map<CompositeShader, gl::Program> composite_;
+  std::map<std::string, gl::Program> named_;  // by file and defines
 };
 
 // Compiles and links one vertex and one fragment shader of `files`.

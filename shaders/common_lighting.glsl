@@ -9,11 +9,6 @@ struct Surface {
   float specular;   // scales the lobe; reflectance F0 is folded in
 };
 
-// Ambient light from a sky above and a ground below, without occlusion. Linear radiance.
-vec3 ambientRadiance(vec3 normal) {
-  return mix(u_ambient_ground.rgb, u_ambient_sky.rgb, normal.y * 0.5 + 0.5);
-}
-
 // Blinn-Phong, normalised so that a wider lobe is dimmer: (n + 8) / 8 over pi, pi being in the
 // lights' units; with Schlick's Fresnel, scaled so that it is 1 face on.
 float specularLobe(Surface surface, vec3 toLight, vec3 toCamera) {
@@ -23,16 +18,16 @@ float specularLobe(Surface surface, vec3 toLight, vec3 toCamera) {
   return surface.specular * fresnel * (surface.exponent + 8.0) * 0.125 * lobe;
 }
 
-// Light that leaves the surface towards the camera. Linear radiance.
-vec3 shade(Surface surface, vec3 toCamera) {
-  vec3 diffuse = ambientRadiance(surface.normal);
+// Light that leaves the surface at `position` towards the camera, nothing being in its way. Linear
+// radiance.
+vec3 shade(Surface surface, vec3 position, vec3 toCamera) {
+  vec3 diffuse = skyIrradiance(surface.normal);
   vec3 specular = vec3(0.0);
-  for (int i = 0; i < 3; ++i) {
-    vec3 toLight = u_lights[i].direction.xyz;
-    float cosine = saturate(dot(surface.normal, toLight));
-    vec3 irradiance = u_lights[i].radiance.rgb * cosine;
+  for (int i = 0; i < NUM_LIGHTS; ++i) {
+    Arrival arrival = arrivalOf(u_lights[i], position);
+    vec3 irradiance = arrival.radiance * saturate(dot(surface.normal, arrival.toLight));
     diffuse += irradiance;
-    specular += irradiance * specularLobe(surface, toLight, toCamera);
+    specular += irradiance * specularLobe(surface, arrival.toLight, toCamera);
   }
   return surface.albedo * diffuse + specular;
 }

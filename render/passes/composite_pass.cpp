@@ -4,57 +4,59 @@
 namespace furrow::render {
 namespace {
 
-enum TextureUnit : GLuint { kSceneUnit = 0 };
 enum UniformLocation : GLint { kExposure = 0, kHeight = 1 };
 
-bool ShowsLight(View view) {
-  return view == View::kFinal || view == View::kWeights || view == View::kWireframe;
+// SHOW of composite.frag.glsl.
+enum class Show { kData, kColour, kLight };
+
+Show ShowOf(View view) {
+  switch (view) {
+    case View::kNormal:
+    case View::kMaskDynamic:
+    case View::kMaskTexture:
+    case View::kShadow:
+    case View::kDepth:
+    case View::kMaterial:
+    case View::kOcclusion: return Show::kData;
+    case View::kAlbedo: return Show::kColour;
+    default: return Show::kLight;
+  }
+}
+
+std::string Define(std::string_view name, int value) {
+  return std::string(name) + " " + std::to_string(value);
 }
 
 }  // namespace
 
-CompositePass::CompositePass(ShaderLibrary* shaders, GlDevice* device)
-    : shaders_(shaders), device_(device), no_attributes_(gl::MakeVertexArray()) {}
-
-FrameGraph::Handle CompositePass::Add(FrameGraph* graph, FrameGraph::Handle scene,
-                                      const TextureDesc& scene_desc, const Settings& settings) {
+FrameGraph::Handle CompositePass::Add(FrameGraph* graph, FrameGraph::Handle shown,
+                                      const TextureDesc& desc, const Settings& settings) {
   struct Data {
-    FrameGraph::Handle scene;
+    FrameGraph::Handle shown;
     FrameGraph::Handle picture;
   };
-  const CompositeShader shader{scene_desc.samples, ShowsLight(settings.view)};
+  const std::vector<std::string> defines = {
+      Define("SAMPLES", desc.samples), Define("SHOW", static_cast<int>(ShowOf(settings.view))),
+      Define("TONE_MAP", static_cast<int>(settings.tone_map))};
   const Data data = graph->AddPass<Data>(
       "composite",
       [&](FrameGraph::Builder& builder, Data& pass) {
-        pass.scene = scene;
-        builder.Read(scene);
-        const TextureDesc desc{scene_desc.width, scene_desc.height, PixelFormat::kRgba8, 1};
-        pass.picture = builder.Write(builder.Create("picture", desc));
+        pass.shown = shown;
+        builder.Read(shown);
+        pass.picture = builder.Write(
+            builder.Create("picture", {desc.width, desc.height, PixelFormat::kRgba8, 1}));
       },
-      [this, shader, exposure = settings.exposure](const FrameGraph::Resources& resources,
-                                                   const Data& pass) {
-        const GLuint framebuffer = device_->Framebuffer(resources.Get(pass.picture), 0);
-        return Draw(shader, exposure, resources.Get(pass.scene), framebuffer,
-                    resources.Desc(pass.picture));
+      [this, defines, exposure = settings.exposure](const FrameGraph::Resources& resources,
+                                                    const Data& pass) {
+        Status status = fullscreen_->Begin("composite.frag.glsl", defines, resources,
+                                           {pass.picture}, {pass.shown});
+        if (!status.ok()) return status;
+        glUniform1f(kExposure, exposure);
+        glUniform1i(kHeight, resources.Desc(pass.picture).height);
+        fullscreen_->Draw();
+        return status;
       });
   return data.picture;
-}
-
-Status CompositePass::Draw(const CompositeShader& shader, float exposure, TextureId scene,
-                           GLuint framebuffer, const TextureDesc& target) {
-  const Result<GLuint> program = shaders_->Get(shader);
-  if (!program.ok()) return program.status();
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-  glViewport(0, 0, target.width, target.height);
-  glDisable(GL_DEPTH_TEST);
-  glDisable(GL_CULL_FACE);
-  glUseProgram(*program);
-  glUniform1f(kExposure, exposure);
-  glUniform1i(kHeight, target.height);
-  glBindTextureUnit(kSceneUnit, scene);
-  glBindVertexArray(no_attributes_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  return {};
 }
 
 }  // namespace furrow::render

@@ -1,56 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "render/camera.h"
 #include "render/frame_graph.h"
 #include "render/gl_device.h"
-#include "render/gpu_character.h"
-#include "render/shader_library.h"
-#include "render/wrinkle_table.h"
+#include "render/scene_draw.h"
 
 namespace furrow::render {
 
-// Draws the posed character: skinning, wrinkle normals, three lights. Declares a colour target
-// (linear; what it holds depends on the view, see shaders/README.md) and a depth target of its own.
+// The scene's targets by stage of the skin pipeline; see shaders/skin.frag.glsl for what each
+// holds.
+struct SkinTargets {
+  FrameGraph::Handle irradiance;
+  FrameGraph::Handle radiance;
+  FrameGraph::Handle albedo;
+  FrameGraph::Handle normal;
+  FrameGraph::Handle depth;  // metres along the camera's axis
+};
+
+// Clears and draws the scene. SceneDraw::Update() comes first, once a frame.
 class ScenePass {
  public:
   struct Targets {
     int width = 0;
     int height = 0;
-    PixelFormat format = PixelFormat::kRgba16F;
+    PixelFormat format = PixelFormat::kRgba16F;  // of the plain scene
     int samples = 4;
   };
 
-  // Everything outlives the pass.
-  ScenePass(const wrinkle::Skeleton& skeleton, std::span<const glm::mat4> inverse_bind_matrices,
-            GpuCharacter* gpu, WrinkleTables* tables, ShaderLibrary* shaders, GlDevice* device);
+  // Both outlive the pass.
+  ScenePass(SceneDraw* scene, GlDevice* device) : scene_(scene), device_(device) {}
 
-  // Uploads what the request says and adds the pass; returns the colour written. The request need
-  // not outlive the call. Errors: of WrinkleTables::Update.
-  [[nodiscard]] Result<FrameGraph::Handle> Add(FrameGraph* graph, const FrameRequest& request,
-                                               const Targets& targets);
+  // Lamps without shadows, one target: linear colour, or data, by the view (shaders/README.md).
+  [[nodiscard]] FrameGraph::Handle AddPlain(FrameGraph* graph, const Settings& settings,
+                                            const Targets& targets);
+  // The skin pipeline's scene: five targets. `shadows`: of ShadowPass; none without shadows.
+  [[nodiscard]] SkinTargets AddSkin(FrameGraph* graph, const Settings& settings,
+                                    const Targets& targets, FrameGraph::Handle shadows);
 
  private:
-  void UploadFrame(const FrameRequest& request);
-  void UploadJoints(std::span<const glm::mat4> model);
-  void UploadWrinkles();
-  [[nodiscard]] Status Draw(const Settings& settings, GLuint framebuffer,
-                            const TextureDesc& target);
-  [[nodiscard]] Status DrawMesh(const Settings& settings, std::size_t index);
-  [[nodiscard]] SceneShader ShaderFor(const GpuMaterial& material, const Settings& settings) const;
-
-  const wrinkle::Skeleton& skeleton_;
-  std::span<const glm::mat4> inverse_bind_matrices_;
-  GpuCharacter* gpu_;
-  WrinkleTables* tables_;
-  ShaderLibrary* shaders_;
+  SceneDraw* scene_;
   GlDevice* device_;
-
-  gl::Buffer frame_;
-  gl::Buffer joints_;
-  gl::Buffer wrinkle_tables_[kNumWrinkleGroups];
-  gl::Buffer influences_;
-  gl::Buffer palettes_[kNumWrinkleGroups + 1];  // by group, kNone included
 };
 
 }  // namespace furrow::render

@@ -19,13 +19,16 @@ SceneProbe::SceneProbe(const character::Character& character)
       context_(Expect(EglContext::Create(""))),
       gpu_(Expect(GpuCharacter::Create(character))),
       tables_(Expect(WrinkleTables::Create(character, gpu_->layout()))),
-      pass_(std::make_unique<ScenePass>(character_.skeleton, character_.inverse_bind_matrices,
-                                        gpu_.get(), tables_.get(), &shaders_, &device_)) {}
+      scene_(std::make_unique<SceneDraw>(character_.skeleton, character_.inverse_bind_matrices,
+                                         gpu_.get(), tables_.get(), &shaders_)),
+      pass_(std::make_unique<ScenePass>(scene_.get(), &device_)) {}
 
 std::vector<glm::vec4> SceneProbe::Draw(const FrameRequest& request) {
   FrameGraph graph;
   const ScenePass::Targets targets{request.width, request.height, PixelFormat::kRgba32F, 1};
-  const FrameGraph::Handle colour = Expect(pass_->Add(&graph, request, targets));
+  const Status updated = scene_->Update(request);
+  EXPECT_TRUE(updated.ok()) << updated.ToString();
+  const FrameGraph::Handle colour = pass_->AddPlain(&graph, request.settings, targets);
   std::vector<glm::vec4> pixels(static_cast<std::size_t>(request.width) * request.height);
   graph.AddPass<SinkData>(
       "probe",

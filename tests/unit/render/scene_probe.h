@@ -29,6 +29,7 @@ class SceneProbe {
   ShaderLibrary shaders_;
   std::unique_ptr<GpuCharacter> gpu_;
   std::unique_ptr<WrinkleTables> tables_;
+  std::unique_ptr<SceneDraw> scene_;
   std::unique_ptr<ScenePass> pass_;
 };
 

@@ -59,9 +59,50 @@ TEST_F(ShaderLibraryTest, AnyNumberOfMasksAndMapsCompiles) {
   }
 }
 
-TEST_F(ShaderLibraryTest, EveryCompositeConfigurationCompiles) {
-  for (const bool tonemap : {false, true}) {
-    const Result<GLuint> program = library_.Get(CompositeShader{4, tonemap});
+// Every switch of the skin pipeline's scene, one after the other, for every material and view.
+TEST_F(ShaderLibraryTest, EverySkinConfigurationCompiles) {
+  using Kind = character::Material::Kind;
+  for (const Kind kind : {Kind::kSkin, Kind::kCloth, Kind::kEye, Kind::kHair, Kind::kOther}) {
+    for (const View view : {View::kFinal, View::kShadow, View::kSpecular, View::kTranslucency,
+                            View::kAlbedo, View::kMaterial}) {
+      for (int bit = 0; bit < 8; ++bit) {
+        SceneShader shader;
+        shader.shading = Shading::kSkin;
+        shader.view = view;
+        shader.material = kind;
+        shader.shadow_filter = static_cast<ShadowFilter>(bit < 3 ? bit : 1);
+        shader.shadow_lamps = bit == 0 ? 0 : 3;
+        shader.shadow_taps = bit == 0 ? 1 : 8;
+        shader.translucency = bit >= 3 && kind == Kind::kSkin;
+        shader.preintegrated = bit == 4 && kind == Kind::kSkin;
+        shader.gems = bit == 5;
+        shader.conserve_energy = bit != 6;
+        shader.wrinkle_texture = shader.wrinkle_dynamic = bit == 7;
+        shader.active_maps = bit == 7 ? 2 : 0;
+        const Result<GLuint> program = library_.Get(shader);
+        ASSERT_TRUE(program.ok()) << ViewName(view) << " " << bit << "\n"
+                                  << program.status().ToString();
+      }
+    }
+  }
+}
+
+TEST_F(ShaderLibraryTest, EveryFullscreenConfigurationCompiles) {
+  const std::pair<const char*, std::vector<std::string>> shaders[] = {
+      {"composite.frag.glsl", {"SAMPLES 4", "SHOW 0", "TONE_MAP 0"}},
+      {"composite.frag.glsl", {"SAMPLES 1", "SHOW 1", "TONE_MAP 0"}},
+      {"composite.frag.glsl", {"SAMPLES 1", "SHOW 2", "TONE_MAP 0"}},
+      {"composite.frag.glsl", {"SAMPLES 4", "SHOW 2", "TONE_MAP 1"}},
+      {"resolve.frag.glsl", {"SAMPLES 2"}},
+      {"separable.frag.glsl", {}},
+      {"combine.frag.glsl", {}},
+  };
+  for (const auto& [fragment, defines] : shaders) {
+    const Result<GLuint> program = library_.GetFullscreen(fragment, defines);
+    ASSERT_TRUE(program.ok()) << program.status().ToString();
+  }
+  for (const bool alpha_test : {false, true}) {
+    const Result<GLuint> program = library_.GetShadow(alpha_test);
     ASSERT_TRUE(program.ok()) << program.status().ToString();
   }
 }

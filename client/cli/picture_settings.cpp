@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/picture_settings.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace furrow::cli {
+namespace {
+
+const render::SettingInfo& InfoOf(const std::string& name) {
+  return *std::ranges::find(render::AllSettings(), name, &render::SettingInfo::name);
+}
+
+// An option that sets one setting; its help and what it may be come from the setting itself.
+void AddShorthand(CLI::App& command, const std::string& option, const std::string& setting,
+                  PictureOptions* options) {
+  const render::SettingInfo& info = InfoOf(setting);
+  command
+      .add_option_function<std::string>(
+          option,
+          [options, setting](const std::string& value) {
+            options->shorthands.push_back(setting + "=" + value);
+          },
+          std::string(info.help) + ": " + info.allowed + " (default " + info.default_value + ")")
+      ->check(CLI::Validator(
+          [setting](std::string& value) {
+            render::Settings unused;
+            const Status status = render::SetSetting(setting, value, &unused);
+            return status.ok() ? std::string() : status.ToString();
+          },
+          ""))
+      ->type_name("");
+}
+
+}  // namespace
+
+void AddPictureOptions(CLI::App& command, PictureOptions* options) {
+  AddShorthand(command, "--view", "view", options);
+  AddShorthand(command, "--shading", "shading", options);
+  AddShorthand(command, "--lights", "lights.preset", options);
+  AddShorthand(command, "--wrinkles", "wrinkles", options);
+  AddShorthand(command, "--normal-blend", "normal_blend", options);
+  command.add_option("--settings", options->files,
+                     "TOML files of settings, as --print-settings writes them");
+  command.add_option("--set", options->set,
+                     "NAME=VALUE, any setting: subsurface.method=burley; see --print-settings");
+  command.add_flag_callback(
+      "--print-settings",
+      [] {
+        std::fputs(render::SettingsToToml(render::Settings()).c_str(), stdout);
+        throw CLI::Success();
+      },
+      "Print all settings as TOML, with their ranges and units, and end");
+}
+
+Result<render::Settings> SettingsOf(const PictureOptions& options) {
+  render::Settings settings;
+  for (const std::string& file : options.files) {
+    if (Status status = render::LoadSettings(file, &settings); !status.ok()) return status;
+  }
+  for (const auto* assignments : {&options.set, &options.shorthands}) {
+    for (const std::string& assignment : *assignments) {
+      if (Status status = render::SetSetting(assignment, &settings); !status.ok()) return status;
+    }
+  }
+  return settings;
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "render/passes/fullscreen.h"
+#include "render/passes/scene_pass.h"
+
+namespace furrow::render {
+
+// The scene's samples made one a pixel (shaders/resolve.frag.glsl). Of one sample: as they are.
+[[nodiscard]] SkinTargets AddResolvePass(FrameGraph* graph, const SkinTargets& scene,
+                                         const TextureDesc& desc, Fullscreen* fullscreen);
+
+// Scattered light times albedo, plus what did not scatter: linear radiance.
+[[nodiscard]] FrameGraph::Handle AddCombinePass(FrameGraph* graph, FrameGraph::Handle scattered,
+                                                const SkinTargets& scene, const TextureDesc& desc,
+                                                Fullscreen* fullscreen);
+
+}  // namespace furrow::render

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/scene_draw.h"
+
+namespace furrow::render {
+namespace {
+
+// Binding points of shaders/common_*.glsl and scene.frag.glsl.
+enum UniformBinding : GLuint { kFrameBlock = 0, kMaterialBlock = 1, kWrinkleTable = 2 };
+enum StorageBinding : GLuint { kJointRows = 0, kJointInfluences = 1, kMaskPalette = 2 };
+enum TextureUnit : GLuint {
+  kBaseColourUnit = 0,
+  kBaseDerivativesUnit = 1,
+  kMasksUnit = 2,
+  kWrinkleDerivativesUnit = 3,
+  kRoughnessUnit = 4,
+  kShadowCompareUnit = 5,
+  kShadowDepthUnit = 6,
+  kBeckmannUnit = 7,
+  kSpecularAlbedoUnit = 8,
+  kPreintegratedUnit = 9
+};
+constexpr GLint kLightLocation = 0;  // of shadow.vert.glsl
+
+void SetCulling(bool cull) {
+  if (cull) {
+    glEnable(GL_CULL_FACE);
+  } else {
+    glDisable(GL_CULL_FACE);
+  }
+}
+
+gl::Sampler MakeShadowSampler(bool compare) {
+  gl::Sampler sampler = gl::MakeSampler();
+  const GLint filter = compare ? GL_LINEAR : GL_NEAREST;
+  glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, filter);
+  glSamplerParameteri(sampler.name(), GL_TEXTURE_MAG_FILTER, filter);
+  glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  if (compare) {
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  }
+  return sampler;
+}
+
+// The views that the skin pipeline's scene pass itself draws differently for.
+View SkinView(View view) {
+  switch (view) {
+    case View::kShadow:
+    case View::kSpecular:
+    case View::kTranslucency:
+    case View::kAlbedo:
+    case View::kMaterial: return view;
+    default: return View::kFinal;
+  }
+}
+
+}  // namespace
+
+SceneDraw::SceneDraw(const wrinkle::Skeleton& skeleton,
+                     std::span<const glm::mat4> inverse_bind_matrices, GpuCharacter* gpu,
+                     WrinkleTables* tables, ShaderLibrary* shaders)
+    : skeleton_(skeleton),
+      inverse_bind_matrices_(inverse_bind_matrices),
+      gpu_(gpu),
+      tables_(tables),
+      shaders_(shaders),
+      shadow_compare_(MakeShadowSampler(true)),
+      shadow_depth_(MakeShadowSampler(false)) {
+  for (gl::Buffer* buffer : {&frame_, &joints_, &influences_}) *buffer = gl::MakeBuffer();
+  for (int group = 0; group < kNumWrinkleGroups; ++group) {
+    wrinkle_tables_[group] = gl::MakeBuffer();
+  }
+  for (int group = 0; group <= kNumWrinkleGroups; ++group) {
+    const auto palette = tables_->mask_palette(static_cast<WrinkleGroup>(group));
+    palettes_[group] = gl::MakeStaticBuffer(palette.data(), palette.size_bytes());
+  }
+}
+
+Status SceneDraw::Update(const FrameRequest& request) {
+  if (Status status = tables_->Update(request); !status.ok()) return status;
+  setup_ = SetUpFrame(request, skeleton_, &ambient_);
+  UploadFrame(request.settings);
+  UploadJoints(request.model);
+  UploadWrinkles();
+  return {};
+}
+
+void SceneDraw::UploadFrame(const Settings& settings) {
+  const FrameBlock block = MakeFrameBlock(setup_, settings);
+  gl::Upload(frame_, &block, sizeof(block));
+}
+
+void SceneDraw::UploadJoints(std::span<const glm::mat4> model) {
+  std::vector<glm::vec4> rows;
+  const std::size_t num_joints = inverse_bind_matrices_.size();
+  rows.reserve(num_joints * 3);
+  for (std::size_t joint = 0; joint < num_joints; ++joint) {
+    const glm::mat4 rowwise = glm::transpose(model[joint] * inverse_bind_matrices_[joint]);
+    for (int row = 0; row < 3; ++row) rows.push_back(rowwise[row]);
+  }
+  gl::Upload(joints_, rows.data(), rows.size() * sizeof(glm::vec4));
+}
+
+void SceneDraw::UploadWrinkles() {
+  for (int group = 0; group < kNumWrinkleGroups; ++group) {
+    const std::vector<std::uint8_t> block = WrinkleBlock(
+        tables_->table(static_cast<WrinkleGroup>(group)), tables_->num_maps(), gpu_->layout());
+    gl::Upload(wrinkle_tables_[group], block.data(), block.size());
+  }
+  gl::Upload(influences_, tables_->joint_influences().data(),
+             tables_->joint_influences().size_bytes());
+}
+
+void SceneDraw::BindBuffers() {
+  glBindBufferBase(GL_UNIFORM_BUFFER, kFrameBlock, frame_.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kJointRows, joints_.name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kJointInfluences, influences_.name());
+}
+
+void SceneDraw::BindMaterial(const GpuMaterial& material) {
+  glBindBufferBase(GL_UNIFORM_BUFFER, kMaterialBlock, material.block.name());
+  const int group = material.group == WrinkleGroup::kNone ? 0 : static_cast<int>(material.group);
+  glBindBufferBase(GL_UNIFORM_BUFFER, kWrinkleTable, wrinkle_tables_[group].name());
+  const GLuint palette = palettes_[static_cast<int>(material.group)].name();
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMaskPalette, palette);
+  glBindTextureUnit(kBaseColourUnit, material.base_colour);
+  glBindTextureUnit(kBaseDerivativesUnit, material.derivatives);
+  glBindTextureUnit(kRoughnessUnit, material.roughness);
+}
+
+void SceneDraw::BindTables(GLuint shadows) {
+  glBindTextureUnit(kShadowCompareUnit, shadows);
+  glBindSampler(kShadowCompareUnit, shadow_compare_.name());
+  glBindTextureUnit(kShadowDepthUnit, shadows);
+  glBindSampler(kShadowDepthUnit, shadow_depth_.name());
+  glBindTextureUnit(kBeckmannUnit, lookup_tables_.beckmann());
+  glBindTextureUnit(kSpecularAlbedoUnit, lookup_tables_.specular_albedo());
+}
+
+Status SceneDraw::DrawShadow(int light) {
+  BindBuffers();
+  for (const GpuMesh& mesh : gpu_->meshes()) {
+    const GpuMaterial& material = gpu_->material(mesh.material);
+    const Result<GLuint> program = shaders_->GetShadow(material.alpha_test);
+    if (!program.ok()) return program.status();
+    glUseProgram(*program);
+    glUniform1i(kLightLocation, light);
+    BindMaterial(material);
+    SetCulling(false);
+    glBindVertexArray(mesh.vertex_array.name());
+    glDrawElements(GL_TRIANGLES, mesh.num_indices, GL_UNSIGNED_INT, nullptr);
+  }
+  return {};
+}
+
+Status SceneDraw::DrawScene(const Settings& settings, Shading shading) {
+  BindBuffers();
+  glBindTextureUnit(kMasksUnit, gpu_->masks());
+  glBindTextureUnit(kWrinkleDerivativesUnit, gpu_->wrinkle_derivatives());
+  for (std::size_t mesh = 0; mesh < gpu_->meshes().size(); ++mesh) {
+    if (Status status = DrawMesh(settings, shading, mesh); !status.ok()) return status;
+  }
+  return {};
+}
+
+Status SceneDraw::DrawMesh(const Settings& settings, Shading shading, std::size_t index) {
+  const bool wireframe = shading == Shading::kDiffuse && settings.view == View::kWireframe;
+  const GpuMesh& mesh = wireframe ? gpu_->Unindexed(index) : gpu_->meshes()[index];
+  const GpuMaterial& material = gpu_->material(mesh.material);
+  const SceneShader shader = ShaderFor(material, settings, shading);
+  const Result<GLuint> program = shaders_->Get(shader);
+  if (!program.ok()) return program.status();
+  if (shader.preintegrated) glBindTextureUnit(kPreintegratedUnit, lookup_tables_.preintegrated());
+  glUseProgram(*program);
+  BindMaterial(material);
+  SetCulling(!material.double_sided);
+  glBindVertexArray(mesh.vertex_array.name());
+  if (wireframe) {
+    glDrawArrays(GL_TRIANGLES, 0, mesh.num_indices);
+  } else {
+    glDrawElements(GL_TRIANGLES, mesh.num_indices, GL_UNSIGNED_INT, nullptr);
+  }
+  return {};
+}
+
+SceneShader SceneDraw::ShaderFor(const GpuMaterial& material, const Settings& settings,
+                                 Shading shading) const {
+  SceneShader shader;
+  shader.view = settings.view;
+  shader.normal_blend = settings.normal_blend;
+  if (material.group != WrinkleGroup::kNone) {
+    shader.active_maps = static_cast<int>(tables_->table(material.group).maps.size());
+    shader.wrinkle_texture = tables_->table(material.group).uses_texture;
+    shader.wrinkle_dynamic = tables_->table(material.group).uses_dynamic;
+  }
+  shader.base_colour_map = material.base_colour != 0;
+  shader.base_normal_map = material.derivatives != 0;
+  shader.roughness_map = material.roughness != 0;
+  shader.alpha_test = material.alpha_test;
+  shader.mask_layers = gpu_->layout().num_mask_layers;
+  shader.map_slots = MapSlots(tables_->num_maps());
+  if (shading == Shading::kDiffuse) return shader;
+  const bool skin = material.kind == character::Material::Kind::kSkin;
+  shader.view = SkinView(settings.view);
+  shader.shading = shading;
+  shader.material = material.kind;
+  shader.shadow_filter = settings.shadow.filter;
+  shader.shadow_lamps = settings.shadow.filter == ShadowFilter::kOff ? 0 : settings.shadow.lamps;
+  shader.shadow_taps = settings.shadow.taps;
+  shader.translucency =
+      skin && settings.translucency.enabled && settings.shadow.filter != ShadowFilter::kOff;
+  shader.preintegrated = skin && settings.subsurface.method == SubsurfaceMethod::kPreintegrated;
+  shader.gems = settings.specular.mode == SpecularMode::kGems;
+  shader.conserve_energy = settings.specular.conserve_energy;
+  return shader;
+}
+
+}  // namespace furrow::render

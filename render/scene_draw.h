@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "render/frame_block.h"
+#include "render/gpu_character.h"
+#include "render/lookup_tables.h"
+#include "render/shader_library.h"
+#include "render/wrinkle_table.h"
+
+namespace furrow::render {
+
+// The posed character and the frame's lights as buffers on the GPU, and the draws that several
+// passes make of them.
+class SceneDraw {
+ public:
+  // Everything outlives it.
+  SceneDraw(const wrinkle::Skeleton& skeleton, std::span<const glm::mat4> inverse_bind_matrices,
+            GpuCharacter* gpu, WrinkleTables* tables, ShaderLibrary* shaders);
+
+  // Uploads what the request says, once a frame and before any pass draws; the request need not
+  // outlive the call. Errors: of WrinkleTables::Update.
+  [[nodiscard]] Status Update(const FrameRequest& request);
+  [[nodiscard]] const FrameSetup& setup() const { return setup_; }
+
+  // Binds what the skin pipeline's scene looks up. `shadows`: the texture of all maps, 0: none.
+  void BindTables(GLuint shadows);
+  // Every mesh as lamp `light` sees it, into the bound framebuffer's viewport: depth alone.
+  [[nodiscard]] Status DrawShadow(int light);
+  // Every mesh in colour, for the settings' view; with skin shading, into its five targets.
+  [[nodiscard]] Status DrawScene(const Settings& settings, Shading shading);
+
+ private:
+  void UploadFrame(const Settings& settings);
+  void UploadJoints(std::span<const glm::mat4> model);
+  void UploadWrinkles();
+  void BindBuffers();
+  void BindMaterial(const GpuMaterial& material);
+  [[nodiscard]] Status DrawMesh(const Settings& settings, Shading shading, std::size_t index);
+  [[nodiscard]] SceneShader ShaderFor(const GpuMaterial& material, const Settings& settings,
+                                      Shading shading) const;
+
+  const wrinkle::Skeleton& skeleton_;
+  std::span<const glm::mat4> inverse_bind_matrices_;
+  GpuCharacter* gpu_;
+  WrinkleTables* tables_;
+  ShaderLibrary* shaders_;
+  AmbientCache ambient_;
+  FrameSetup setup_;
+
+  LookupTables lookup_tables_;
+  gl::Sampler shadow_compare_;
+  gl::Sampler shadow_depth_;
+  gl::Buffer frame_;
+  gl::Buffer joints_;
+  gl::Buffer wrinkle_tables_[kNumWrinkleGroups];
+  gl::Buffer influences_;
+  gl::Buffer palettes_[kNumWrinkleGroups + 1];  // by group, kNone included
+};
+
+}  // namespace furrow::render

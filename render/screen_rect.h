@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+namespace furrow::render {
+
+// Pixels [x0, x1) x [y0, y1), rows from the bottom, as OpenGL has them.
+struct ScreenRect {
+  int x0 = 0;
+  int y0 = 0;
+  int x1 = 0;
+  int y1 = 0;
+
+  [[nodiscard]] bool empty() const { return x0 >= x1 || y0 >= y1; }
+  // Grown by `margin` pixels to every side, within a picture.
+  [[nodiscard]] ScreenRect Grown(int margin, int width, int height) const {
+    return {std::max(x0 - margin, 0), std::max(y0 - margin, 0), std::min(x1 + margin, width),
+            std::min(y1 + margin, height)};
+  }
+};
+
+}  // namespace furrow::render

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common_frame.glsl"
+#include "common_math.glsl"
+
+// Look-ups in the lamps' shadow maps, which lie side by side in one texture (render/shadow_view.h).
+//
+// SHADOW_FILTER  0: none, 1: a disc of fixed radius, 2: one that widens with the distance between
+//                what casts and what is shaded (PCSS, Fernando 2005)
+// SHADOW_TAPS    look-ups of the disc, at least 1
+
+layout(binding = 5) uniform sampler2DShadow u_shadow_compare;  // linear: four comparisons each
+layout(binding = 6) uniform sampler2D u_shadow_depth;          // nearest: metres / range
+
+// A point as a lamp sees it: xy in [0, 1] of its map, z: depth, w: metres to uv at this distance.
+vec4 shadowCoordinate(Light light, vec3 position) {
+  vec3 p = (light.shadow_view * vec4(position, 1.0)).xyz;
+  float scale = light.shadow.x / (light.shadow.w > 0.5 ? max(-p.z, 1e-6) : 1.0);
+  return vec4(p.xy * scale * 0.5 + 0.5, (-p.z - light.shadow.y) * light.shadow.z, 0.5 * scale);
+}
+
+// From a lamp's own map to where it lies in the texture of all maps. Stays half a texel inside.
+vec2 shadowTile(int light, vec2 uv) {
+  float margin = 0.5 / u_shadow_filter.w;
+  vec2 inside = clamp(uv, vec2(margin), vec2(1.0 - margin));
+  return vec2((inside.x + float(light)) / float(NUM_LIGHTS), inside.y);
+}
+
+// Interleaved gradient noise (Jimenez 2014): [0, 1), even over small squares of pixels.
+float pixelNoise(vec2 pixel) {
+  return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))));
+}
+
+// The k-th of `count` points of Vogel's spiral: spread evenly over the unit disc.
+vec2 discPoint(int k, int count, float turn) {
+  float radius = sqrt((float(k) + 0.5) / float(count));
+  float angle = float(k) * 2.39996323 + turn;
+  return radius * vec2(cos(angle), sin(angle));
+}
+
+// Mean depth of what stands before `coordinate` within `radius` (uv); 1: nothing does.
+float blockerDepth(int light, vec4 coordinate, float radius, float turn) {
+  float sum = 0.0;
+  float count = 0.0;
+  for (int k = 0; k < SHADOW_TAPS; ++k) {
+    vec2 uv = coordinate.xy + radius * discPoint(k, SHADOW_TAPS, turn);
+    float depth = textureLod(u_shadow_depth, shadowTile(light, uv), 0.0).r;
+    if (depth < coordinate.z) {
+      sum += depth;
+      count += 1.0;
+    }
+  }
+  return count > 0.0 ? sum / count : 1.0;
+}
+
+// Radius of the filter in metres on the surface.
+float shadowRadius(int light, vec4 coordinate, float turn) {
+#if SHADOW_FILTER == 2
+  float search = min(u_shadow_filter.y * coordinate.w, 0.05);
+  float blocker = blockerDepth(light, coordinate, search, turn);
+  float range = 1.0 / u_lights[light].shadow.z;
+  float toBlocker = u_lights[light].position.w > 0.5
+                        ? u_lights[light].shadow.y + blocker * range
+                        : 20.0 * u_camera_forward.w;  // the sun's distance, as far as lamps go
+  float gap = max(coordinate.z - blocker, 0.0) * range;
+  return clamp(u_shadow_filter.y * gap / max(toBlocker, 1e-3), 0.0, 0.05);
+#else
+  return u_shadow_filter.x;
+#endif
+}
+
+// Share of a lamp that a surface sees, [0, 1]. `normal`: geometric, unit; the point looked up is
+// moved along it, more where light grazes, so that a surface does not shade itself.
+float shadowOf(int light, vec3 position, vec3 normal, vec3 toLight, vec2 pixel) {
+#if SHADOW_FILTER == 0
+  return 1.0;
+#else
+  float cosine = dot(normal, toLight);
+  float grazing = sqrt(saturate(1.0 - cosine * cosine));
+  float texel = 2.0 / (u_shadow_filter.w * u_lights[light].shadow.x) *
+                (u_lights[light].shadow.w > 0.5
+                     ? u_lights[light].shadow.y + 0.5 / u_lights[light].shadow.z : 1.0);
+  float offset = u_shadow_filter.z + (texel + 0.5 * u_shadow_filter.x) * grazing;
+  vec4 coordinate = shadowCoordinate(u_lights[light], position + offset * normal);
+  float turn = 6.2831853 * pixelNoise(pixel);
+  float radius = max(shadowRadius(light, coordinate, turn) * coordinate.w, 0.75 / u_shadow_filter.w);
+  float lit = 0.0;
+  // Where the surface turns away there is nothing to look up: whole groups of pixels leave the loop.
+  int taps = cosine > 0.0 ? SHADOW_TAPS : 0;
+  for (int k = 0; k < taps; ++k) {
+    vec2 uv = coordinate.xy + radius * discPoint(k, SHADOW_TAPS, turn);
+    lit += textureLod(u_shadow_compare, vec3(shadowTile(light, uv), min(coordinate.z, 0.9999)), 0.0);
+  }
+  return lit / float(SHADOW_TAPS);
+#endif
+}
+
+// Metres that light runs inside the subject to a point `shrink` metres below its surface.
+float thicknessOf(int light, vec3 position, vec3 normal, float shrink) {
+  vec4 coordinate = shadowCoordinate(u_lights[light], position - shrink * normal);
+  float entry = textureLod(u_shadow_depth, shadowTile(light, coordinate.xy), 0.0).r;
+  return max(coordinate.z - entry, 0.0) / u_lights[light].shadow.z;
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common_wrinkles_frag.glsl"
+
+// What a fragment of the character is made of, before any light. The varyings of scene.vert.glsl.
+
+layout(location = 0) in vec3 v_position;
+layout(location = 1) in vec3 v_normal;
+layout(location = 2) in vec4 v_tangent;
+layout(location = 3) in vec2 v_uv;
+#if VIEW == VIEW_WIREFRAME
+layout(location = 4) in vec3 v_barycentric;
+#endif
+#if WRINKLE_DYNAMIC
+layout(location = 5) in vec4 v_dynamic_masks[MAP_SLOTS];
+#endif
+
+// Mirrors MaterialBlock in render/gpu_character.cpp.
+layout(std140, binding = 1) uniform Material {
+  vec4 u_base_colour;      // linear
+  float u_roughness;       // [0, 1]
+  float u_specular;
+  float u_alpha_cutoff;
+  float u_cavity_albedo;   // see cavity(); 0: none
+  float u_f0;              // reflectance face on
+  float u_sheen;           // of cloth: strength of its fuzz
+  float u_padding0;
+  float u_padding1;
+};
+
+layout(binding = 0) uniform sampler2D u_base_colour_map;        // sRGB
+layout(binding = 1) uniform sampler2D u_base_derivatives;       // RG, n.xy / n.z
+layout(binding = 4) uniform sampler2D u_roughness_map;          // green, as in glTF
+
+vec4 baseColour() {
+#if HAS_BASE_COLOUR
+  return u_base_colour * texture(u_base_colour_map, v_uv);
+#else
+  return u_base_colour;
+#endif
+}
+
+float roughness() {
+#if HAS_ROUGHNESS
+  return u_roughness * texture(u_roughness_map, v_uv).g;
+#else
+  return u_roughness;
+#endif
+}
+
+void sampleMasks(out vec4 masks[MASK_LAYERS]) {
+  for (int layer = 0; layer < MASK_LAYERS; ++layer) {
+#if WRINKLE_TEXTURE || VIEW == VIEW_MASK_TEXTURE
+    masks[layer] = texture(u_masks, vec3(v_uv, float(layer)));
+#else
+    masks[layer] = vec4(0.0);
+#endif
+  }
+}
+
+// Unit, model space.
+vec3 surfaceNormal(vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS]) {
+#if HAS_BASE_NORMAL
+  vec2 base = texture(u_base_derivatives, v_uv).rg;
+#else
+  vec2 base = vec2(0.0);
+#endif
+#if WRINKLE_TEXTURE || WRINKLE_DYNAMIC
+  vec3 n = wrinkledNormal(base, v_uv, masks, dynamicMasks);
+#else
+  vec3 n = normalFromDerivative(base);
+#endif
+  vec3 normal = tangentToModel(n, v_normal, v_tangent);
+  return gl_FrontFacing ? normal : -normal;
+}
+
+// Share of the specular light that gets in and out again, [0, 1]. No skin reflects less than 2%:
+// where the base colour is darker, it is painted hollow (mouth, nostrils), which nothing shadows.
+float cavity(vec3 albedo) {
+  return u_cavity_albedo > 0.0 ? saturate(albedo.g / u_cavity_albedo) : 1.0;
+}

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common_shadow.glsl"
+#include "common_specular.glsl"
+#include "common_diffusion.glsl"
+#include "common_surface_frag.glsl"
+
+// The scene pass of the skin pipeline: light on skin apart from all other light, and what the later
+// passes need to know of the surface.
+//
+// MATERIAL       MATERIAL_SKIN, _CLOTH, _EYE, _HAIR or _OTHER
+// TRANSLUCENCY   1: light goes through thin parts
+// CONSERVE       1: diffuse light is what the specular leaves
+// PREINTEGRATED  1: scattering by table, here and now
+// RING_SIZE, MAX_CURVATURE  texels of the table's side; its last row, per mm
+
+layout(binding = 9) uniform sampler2D u_ring_table;  // render/subsurface_kernel.h: PreintegratedTable
+
+layout(location = 0) out vec4 f_irradiance;  // rgb: light on skin times albedo^mix; a: metres
+                                             // behind the focus, FAR_AWAY where there is no skin
+layout(location = 1) out vec4 f_radiance;    // rgb: all light that does not scatter; a: the share
+                                             // of it that comes from the sky
+layout(location = 2) out vec4 f_albedo;      // rgb: albedo^(1 - mix) of skin; a: the share of
+                                             // f_irradiance that comes from the sky
+layout(location = 3) out vec4 f_normal;      // xyz: 0.5 n + 0.5, model space
+layout(location = 4) out float f_depth;      // metres along the camera's axis
+
+const float FAR_AWAY = 60000.0;
+const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
+
+struct Lit {
+  vec3 direct;    // diffuse, of lamps
+  vec3 through;   // of lamps, through the subject
+  vec3 specular;  // of lamps
+  vec3 visible;   // of the lamps, one a channel: for the view `shadow`
+};
+
+// Charlie (Estevez and Kulla 2017) with Neubelt's visibility, times pi: the fuzz of cloth.
+float sheen(vec3 normal, vec3 toLight, vec3 toCamera) {
+  const float inverse = 1.0 / 0.45;
+  vec3 h = normalizeOrZero(toLight + toCamera);
+  float cosine = saturate(dot(normal, h));
+  float sine2 = max(1.0 - cosine * cosine, 1e-4);
+  float lobe = (2.0 + inverse) * pow(sine2, 0.5 * inverse) * 0.5;
+  float nl = saturate(dot(normal, toLight));
+  float nv = saturate(dot(normal, toCamera));
+  return lobe / (4.0 * max(nl + nv - nl * nv, 1e-3));
+}
+
+Lit lightSurface(vec3 normal, vec3 geometric, vec3 toCamera, float m, float curvature) {
+  Lit lit = Lit(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+  for (int i = 0; i < NUM_LIGHTS; ++i) {
+    Arrival arrival = arrivalOf(u_lights[i], v_position);
+    float cosine = dot(normal, arrival.toLight);
+    float seen = 1.0;
+    if (i < SHADOW_LAMPS) {
+      seen = shadowOf(i, v_position, geometric, arrival.toLight, gl_FragCoord.xy);
+    }
+    lit.visible[i] = seen * saturate(sign(cosine));
+    float facing = saturate(cosine);
+    vec3 irradiance = arrival.radiance * (facing * seen);
+    float leaves = 1.0;
+#if CONSERVE
+    leaves = 1.0 - saturate(u_gloss.x *
+                            specularAlbedo(facing, m, u_gloss.z, u_f0));
+#endif
+#if PREINTEGRATED
+    vec2 place = (vec2(cosine * 0.5 + 0.5, curvature / MAX_CURVATURE) * (RING_SIZE - 1.0) + 0.5) /
+                 RING_SIZE;
+    vec3 ring = textureLod(u_ring_table, place, 0.0).rgb;
+    lit.direct += arrival.radiance * ring * (seen * leaves);
+#else
+    lit.direct += irradiance * leaves;
+#endif
+    lit.specular += irradiance * (u_gloss.x * kelemen(normal, arrival.toLight, toCamera, m,
+                                                         u_gloss.z, u_f0));
+#if MATERIAL == MATERIAL_CLOTH
+    lit.specular += irradiance * (u_sheen * sheen(normal, arrival.toLight, toCamera));
+#endif
+#if TRANSLUCENCY
+    if (i >= SHADOW_LAMPS) continue;  // no map to measure in
+    float behind = saturate(0.3 - dot(geometric, arrival.toLight));
+    float metres = thicknessOf(i, v_position, geometric, u_translucency.z);
+    lit.through += arrival.radiance * (u_translucency.x * behind) *
+                   transmittance(1000.0 * u_translucency.y * metres);
+#endif
+  }
+  return lit;
+}
+
+float luminance(vec3 colour) { return dot(colour, LUMINANCE); }
+
+float share(vec3 part, vec3 whole) {
+  return saturate(luminance(part) / max(luminance(whole), 1e-6));
+}
+
+vec3 materialColour() {
+#if MATERIAL == MATERIAL_SKIN
+  return vec3(1.0, 0.0, 0.0);
+#elif MATERIAL == MATERIAL_CLOTH
+  return vec3(0.0, 0.0, 1.0);
+#elif MATERIAL == MATERIAL_EYE
+  return vec3(1.0);
+#elif MATERIAL == MATERIAL_HAIR
+  return vec3(0.0, 1.0, 0.0);
+#else
+  return vec3(0.5);
+#endif
+}
+
+// 1 / radius of the surface, per millimetre.
+float curvatureOf(vec3 normal) {
+  return length(fwidth(normal)) / max(1000.0 * length(fwidth(v_position)), 1e-6);
+}
+
+void main() {
+  vec4 base = baseColour();
+#if ALPHA_TEST
+  if (base.a < u_alpha_cutoff) discard;
+#endif
+  vec4 masks[MASK_LAYERS];
+  sampleMasks(masks);
+#if WRINKLE_DYNAMIC
+  vec4 dynamicMasks[MAP_SLOTS] = v_dynamic_masks;
+#else
+  vec4 dynamicMasks[MAP_SLOTS];
+#endif
+  vec3 geometric = normalizeOrZero(gl_FrontFacing ? v_normal : -v_normal);
+  vec3 normal = surfaceNormal(masks, dynamicMasks);
+  vec3 fromCamera = v_position - u_camera_position.xyz;
+  vec3 toCamera = -normalize(fromCamera);
+  float metres = dot(fromCamera, u_camera_forward.xyz);
+  float rough = roughness();
+  float m = clamp(u_gloss.y * rough * rough, SMALLEST_M, 1.0);
+  float nv = saturate(dot(normal, toCamera));
+
+  Lit lit = lightSurface(normal, geometric, toCamera, m, curvatureOf(geometric));
+  float reflects = saturate(u_gloss.x * specularAlbedo(nv, m, u_gloss.z, u_f0));
+  float leaves = CONSERVE == 1 ? 1.0 - reflects : 1.0;
+  float open = cavity(base.rgb);
+  vec3 sky = skyIrradiance(normal);
+  vec3 skySpecular = skyRadiance(reflect(-toCamera, normal)) * (reflects * open);
+  vec3 specular = lit.specular * open;
+  vec3 diffuse = leaves * (lit.direct + sky) + lit.through;
+  float skyShare = share(leaves * sky, diffuse);
+
+#if MATERIAL == MATERIAL_SKIN && VIEW == VIEW_FINAL
+  vec3 albedo = max(base.rgb, vec3(1e-4));
+  f_irradiance = vec4(diffuse * pow(albedo, vec3(u_gloss.w)), metres - u_camera_forward.w);
+  f_albedo = vec4(pow(albedo, vec3(1.0 - u_gloss.w)), skyShare);
+  f_radiance = vec4(specular + skySpecular, share(skySpecular, specular + skySpecular));
+#else
+  vec3 colour = base.rgb * diffuse + specular + skySpecular;
+  f_irradiance = vec4(0.0, 0.0, 0.0, FAR_AWAY);
+  f_albedo = vec4(0.0);
+  f_radiance = vec4(colour, share(base.rgb * leaves * sky + skySpecular, colour));
+#endif
+#if VIEW == VIEW_SPECULAR
+  f_radiance = vec4(specular + skySpecular, 0.0);
+#elif VIEW == VIEW_TRANSLUCENCY
+  f_radiance = vec4(base.rgb * lit.through, 0.0);
+#elif VIEW == VIEW_SHADOW
+  f_radiance = vec4(lit.visible, 0.0);
+#elif VIEW == VIEW_ALBEDO
+  f_radiance = vec4(base.rgb, 0.0);
+#elif VIEW == VIEW_MATERIAL
+  f_radiance = vec4(materialColour(), 0.0);
+#endif
+  f_normal = vec4(normal * 0.5 + 0.5, 1.0);
+  f_depth = metres;
+}
