@@ -51,11 +51,20 @@ float Sample(const Picture& picture, const glm::vec2& uv, int channel) {
                              static_cast<std::size_t>(place(uv.x, picture.width))) *
                                 static_cast<std::size_t>(picture.channels) +
                             static_cast<std::size_t>(channel);
+  if (!picture.pixels_float.empty()) return std::clamp(picture.pixels_float[index], 0.0f, 1.0f);
   if (!picture.pixels16.empty()) return static_cast<float>(picture.pixels16[index]) / 65535.0f;
   return static_cast<float>(picture.pixels[index]) / 255.0f;
 }
 
 }  // namespace
+
+std::vector<int> MeshesOn(const Character& character, bool cloth) {
+  std::vector<int> meshes;
+  for (std::size_t i = 0; i < character.meshes.size(); ++i) {
+    if (Belongs(character, character.meshes[i], cloth)) meshes.push_back(static_cast<int>(i));
+  }
+  return meshes;
+}
 
 bool GoesOnCloth(const Character& character, const wrinkle::WrinkleMap& map) {
   switch (map.surface) {
@@ -71,8 +80,8 @@ Result<std::unique_ptr<BakeSurface>> BakeSurface::Create(const Character& charac
   const std::string kind = cloth ? "cloth" : "skin";
   std::vector<const Mesh*> meshes;
   float area = 0.0f;
-  for (const Mesh& mesh : character.meshes) {
-    if (!Belongs(character, mesh, cloth)) continue;
+  for (const int index : MeshesOn(character, cloth)) {
+    const Mesh& mesh = character.meshes[static_cast<std::size_t>(index)];
     meshes.push_back(&mesh);
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
       area += UvArea(mesh.vertices[mesh.indices[i]], mesh.vertices[mesh.indices[i + 1]],

@@ -41,6 +41,9 @@ class BakeSurface {
   float texel_metres_ = 0.0f;
 };
 
+// The meshes that make up the skin or the clothes: indices into Character::meshes.
+[[nodiscard]] std::vector<int> MeshesOn(const Character& character, bool cloth);
+
 // Whether a map goes on cloth; see Bake().
 [[nodiscard]] bool GoesOnCloth(const Character& character, const wrinkle::WrinkleMap& map);
 
