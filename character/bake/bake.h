@@ -55,8 +55,8 @@ struct BakeStroke {
 // How a material folds. Wavelengths are valley to valley on the surface at rest.
 struct BakeMaterial {
   float wavelength_mm = 5.0f;     // [0.2, 200]
-  float variation = 0.3f;         // of wavelength and depth from place to place, [0, 0.5]
-  float share = 0.5f;             // part of the compression that folds take up; the rest shortens
+  float variation = 0.4f;         // of wavelength and depth from place to place, [0, 0.5]
+  float share = 0.3f;             // part of the compression that folds take up; the rest shortens
                                   // the material itself. 1: the arc keeps its length. [0, 1]
   float max_compression = 0.45f;  // more is skinning gone wrong and counts as this, (0, 0.9]
   float threshold = 0.02f;        // compression that makes no fold yet, [0, 0.5]
@@ -64,6 +64,7 @@ struct BakeMaterial {
   float sharpness = 0.7f;   // of the valleys: 0 a sine, 1 nearly a crease between round ridges
   float crossing = 0.15f;   // height of folds that cross the first ones, where the surface is
                             // compressed both ways, as a fraction of what that would allow, [0, 1]
+  float depth = 1.0f;       // scales every height, of strain and of strokes: age. [0, 4]
   float fine_lines = 0.0f;  // height of lines of a third of the wavelength, as a fraction of
                             // what their compression would allow, [0, 1]
 };
@@ -79,8 +80,8 @@ struct BakeOptions {
   int size = 2048;  // of the maps, texels a side: [64, 4096]
   BakeMaterial skin;
   BakeMaterial cloth{.wavelength_mm = 20.0f,
-                     .variation = 0.35f,
-                     .share = 0.5f,
+                     .variation = 0.4f,
+                     .share = 0.4f,
                      .max_compression = 0.5f,
                      .threshold = 0.03f,
                      .smoothing_mm = 40.0f,
@@ -88,7 +89,7 @@ struct BakeOptions {
                      .crossing = 0.3f};
   std::vector<BakeRegionWavelength> wavelengths = {
       {"brow", 7.0f}, {"glabella", 6.0f}, {"nose", 3.2f}, {"eye", 3.0f}, {"mouth", 5.0f}};
-  float depth = 1.0f;  // scales every height, of strain and of strokes: age. [0, 4]
+  float depth = 1.0f;  // scales every height of every material, [0, 4]
   std::uint32_t seed = 1;
   int threads = 2;  // [1, 64]; the result does not depend on it
 };

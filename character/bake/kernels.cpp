@@ -165,8 +165,8 @@ void KernelSet::Strew(const FoldField& field, const Options& options, const Ampl
     const FoldDemand& demand = demands[i];
     FoldKernel kernel;
     kernel.place = place;
-    kernel.frequency =
-        (options.crossing ? demand.along : demand.across) * (2.0f * wrinkle::kPi / wavelengths[i]);
+    kernel.frequency = Strayed(demand, options, wavelengths[i], place.position) *
+                       (2.0f * wrinkle::kPi / wavelengths[i]);
     kernel.amplitude =
         amplitude(options.crossing ? demand.crossing : demand.compression, wavelengths[i]);
     kernel.reach = kReach * wavelengths[i];

@@ -112,19 +112,19 @@ void MapBaker::MakeLayers(const FoldField& field) {
   FoldLayer::Options options;
   options.material = material_;
   options.smallest = kTexelsAWave * surface_.texel_metres();
-  options.height = options_.depth;
+  options.height = Depth();
   options.seed = options_.seed;
   layers_.push_back(std::make_unique<FoldLayer>(field, profile_, options));
   if (material_.crossing > 0.0f) {
     options.crossing = true;
-    options.height = options_.depth * material_.crossing;
+    options.height = Depth() * material_.crossing;
     options.seed = options_.seed + 101;
     layers_.push_back(std::make_unique<FoldLayer>(field, profile_, options));
   }
   if (material_.fine_lines <= 0.0f) return;
   options.crossing = false;
   options.wavelength_scale = 1.0f / 3.0f;
-  options.height = options_.depth * material_.fine_lines;
+  options.height = Depth() * material_.fine_lines;
   options.seed = options_.seed + 202;
   layers_.push_back(std::make_unique<FoldLayer>(field, profile_, options));
 }
@@ -229,7 +229,7 @@ std::unique_ptr<BakedMap> MapBaker::Bake(const std::function<bool(float)>& progr
   const auto say = [&](float done) { return !progress || progress(done); };
   std::vector<std::vector<float>> masks;
   for (const BakeStroke* stroke : strokes_) masks.push_back(MaskOf(stroke->region));
-  const StrokeLayer strokes(surface_.surface(), strokes_, std::move(masks), options_.depth);
+  const StrokeLayer strokes(surface_.surface(), strokes_, std::move(masks), Depth());
   const std::vector<Tensor2> tensors = sum_.Take();
   std::vector<float> compression;
   for (const Tensor2& tensor : tensors) compression.push_back(PrincipalOf(tensor).large);

@@ -35,6 +35,7 @@ class MapBaker {
   };
 
   [[nodiscard]] std::vector<float> MaskOf(const std::string& region) const;
+  [[nodiscard]] float Depth() const { return options_.depth * material_.depth; }
   [[nodiscard]] std::vector<float> Wavelengths() const;
   void MakeLayers(const FoldField& field);
   [[nodiscard]] FoldSample FoldsAt(const SurfacePoint& point, const glm::vec3& tangent,

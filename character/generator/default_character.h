@@ -12,9 +12,9 @@ struct CharacterOptions {
   int texture_size = 1024;  // of skin, cloth and wrinkle maps; masks, eyes and hair take half
 };
 
-// The default character (CC0): a clothed body with a face on muscle joints, textures, masks and
-// wrinkle maps as embedded pictures under the names that character/rigs/default.json uses. `rig` is
-// stored in it. The same options give the same bytes on every run.
+// The default character (CC0): a clothed body with a face on muscle joints, textures and masks as
+// embedded pictures under the names that character/rigs/default.json uses; AddWrinkleMaps() bakes
+// his wrinkle maps. `rig` is stored in him. The same options give the same bytes on every run.
 [[nodiscard]] Character MakeDefaultCharacter(const wrinkle::Rig& rig,
                                              const CharacterOptions& options = {});
 

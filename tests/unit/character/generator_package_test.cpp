@@ -10,9 +10,11 @@
 #include <gtest/gtest.h>
 
 #include "character/asset_path.h"
+#include "character/bake/strokes_file.h"
 #include "character/generator/body_skeleton.h"
 #include "character/generator/default_character.h"
 #include "character/generator/recordings.h"
+#include "character/generator/wrinkle_maps.h"
 #include "character/rig_file.h"
 #include "motion/bvh.h"
 #include "wrinkle/solver.h"
@@ -25,6 +27,19 @@ wrinkle::Rig DefaultRig() {
       LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "character/rigs/default.json");
   EXPECT_TRUE(rig.ok()) << rig.status().ToString();
   return rig.ok() ? std::move(rig).value() : wrinkle::Rig();
+}
+
+// The default character with his wrinkle maps, small.
+Character WholeCharacter() {
+  const std::filesystem::path file =
+      std::filesystem::path(FURROW_SOURCE_DIR) / "character/rigs/default.strokes.json";
+  Character character = MakeDefaultCharacter(DefaultRig(), {.texture_size = 256});
+  Result<std::vector<bake::BakeStroke>> strokes = bake::LoadStrokes(file, character.rig);
+  EXPECT_TRUE(strokes.ok()) << strokes.status().ToString();
+  if (!strokes.ok()) return character;
+  const Status status = AddWrinkleMaps(strokes.value(), 256, 1.0f, &character);
+  EXPECT_TRUE(status.ok()) << status.ToString();
+  return character;
 }
 
 // Solves poses of the default skeleton against its rig, unfiltered.
@@ -206,9 +221,7 @@ TEST(GeneratorRecordings, UnknownNameIsNotFound) {
 
 class PackageTest : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    character_ = new Character(MakeDefaultCharacter(DefaultRig(), {.texture_size = 256}));
-  }
+  static void SetUpTestSuite() { character_ = new Character(WholeCharacter()); }
   static void TearDownTestSuite() { delete character_; }
   static Character* character_;
 };
@@ -242,7 +255,7 @@ TEST_F(PackageTest, MasksAreSoftAndEachRegionIsSomewhere) {
 TEST_F(PackageTest, SameBytesOnEveryRun) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "furrow_package";
   std::filesystem::create_directories(folder);
-  const Character again = MakeDefaultCharacter(DefaultRig(), {.texture_size = 256});
+  const Character again = WholeCharacter();
   ASSERT_TRUE(SaveCharacterGlb(*character_, folder / "a.glb").ok());
   ASSERT_TRUE(SaveCharacterGlb(again, folder / "b.glb").ok());
   constexpr std::size_t kMax = 64u << 20;

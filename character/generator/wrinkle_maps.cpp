@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/generator/wrinkle_maps.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "character/bake/bake_poses.h"
+
+namespace furrow::character::generator {
+namespace {
+
+Status AddNormalMap(const bake::BakedMap& baked, Character* character) {
+  const auto& maps = character->rig.wrinkle_maps;
+  const auto map = std::find_if(maps.begin(), maps.end(),
+                                [&](const auto& entry) { return entry.name == baked.map; });
+  if (map == maps.end() || map->normal.empty()) {
+    return Status(StatusCode::kNotFound, "no normal map is named for '" + baked.map + "'",
+                  character->rig.name, "give the wrinkle map a 'normal' in the rig");
+  }
+  const std::string name = map->normal;
+  character->rig_pictures.emplace_back(name, static_cast<int>(character->pictures.size()));
+  character->pictures.push_back(bake::NormalPicture(baked, name));
+  return Status();
+}
+
+}  // namespace
+
+bake::BakeOptions WrinkleMapOptions(int size, float depth) {
+  bake::BakeOptions options;
+  options.size = size;
+  options.skin.depth = depth;
+  return options;
+}
+
+Status AddWrinkleMaps(std::span<const bake::BakeStroke> strokes, int size, float depth,
+                      Character* character) {
+  Result<bake::PosesToBake> poses = bake::PosesOf(*character);
+  if (!poses.ok()) return poses.status();
+  Result<bake::BakedMaps> maps =
+      bake::Bake(*character, poses.value().poses, strokes, WrinkleMapOptions(size, depth));
+  if (!maps.ok()) return maps.status();
+  for (const bake::BakedMap& map : maps.value().maps) {
+    if (Status status = AddNormalMap(map, character); !status.ok()) return status;
+  }
+  return Status();
+}
+
+}  // namespace furrow::character::generator

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "character/bake/bake.h"
+#include "character/character.h"
+#include "wrinkle/status.h"
+
+namespace furrow::character::generator {
+
+// How the default character's skin and clothes fold; what `furrow bake` does by itself.
+[[nodiscard]] bake::BakeOptions WrinkleMapOptions(int size, float depth);
+
+// Bakes the wrinkle maps of the character's rig from the strain of its own reference poses and from
+// `strokes` (character/rigs/default.strokes.json), and adds them to the character as normal maps
+// under the names that the rig gives them. `depth` scales what is on skin (WrinkleDepth()).
+// Errors: those of bake::PosesOf() and bake::Bake(); kNotFound where a map that is baked has no
+// `normal` in the rig.
+[[nodiscard]] Status AddWrinkleMaps(std::span<const bake::BakeStroke> strokes, int size,
+                                    float depth, Character* character);
+
+}  // namespace furrow::character::generator
