@@ -5,6 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "render/pass_timer.h"
 #include "render/renderer.h"
 #include "tests/unit/render/test_character.h"
 
@@ -70,6 +71,37 @@ void BM_Pipelined(benchmark::State& state) {
   while (scene.renderer_->in_flight() > 0) (void)scene.renderer_->Poll(true).ok();
 }
 BENCHMARK(BM_Pipelined)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+// Two in flight, with skin shading: a laptop's or a cheap server's picture. Counters: milliseconds
+// of each pass of a frame drawn alone, waiting for the device in between (render/pass_timer.h).
+void BM_Skin(benchmark::State& state) {
+  Scene& scene = TheScene();
+  FrameRequest request = scene.request_;
+  request.width = 640;
+  request.height = 400;
+  request.settings.shading = Shading::kSkin;
+  request.settings.subsurface.method = static_cast<SubsurfaceMethod>(state.range(0));
+  state.SetLabel(GetSetting("subsurface.method", request.settings));
+  for (auto _ : state) {
+    if (scene.renderer_->in_flight() == 2) {
+      benchmark::DoNotOptimize(scene.renderer_->Poll(true));
+    }
+    if (!scene.renderer_->Submit(request).ok()) std::abort();
+  }
+  while (scene.renderer_->in_flight() > 0) (void)scene.renderer_->Poll(true).ok();
+  PassTimer timer;
+  scene.renderer_->SetObserver(&timer);
+  if (!scene.renderer_->Render(request).ok()) std::abort();
+  scene.renderer_->SetObserver(nullptr);
+  for (const PassTime& time : timer.Take()) state.counters[time.pass] += time.wall_ms;
+  state.counters["frames/s"] =
+      benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+BENCHMARK(BM_Skin)
+    ->ArgName("method")
+    ->DenseRange(0, 4)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 void BM_Encode(benchmark::State& state) {
   Scene& scene = TheScene();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/render/reference/target_reader.h"
 
-#include <gtest/gtest.h>
+#include <stdexcept>
 
 #include "render/gl_objects.h"
 
@@ -33,9 +33,7 @@ const FloatPicture& TargetReader::Target(const std::string& name) const {
   if (found != targets_.end()) return found->second;
   std::string names;
   for (const auto& [known, picture] : targets_) names += " '" + known + "'";
-  ADD_FAILURE() << "no target '" << name << "', only" << names;
-  static const FloatPicture kNone(1, 1);
-  return kNone;
+  throw std::out_of_range("no target '" + name + "', only" + names);
 }
 
 }  // namespace furrow::render::test

@@ -16,7 +16,8 @@ class TargetReader final : public FrameGraphObserver {
   void BeforePass(std::string_view) override {}
   void AfterPass(std::string_view pass, const std::vector<Written>& written) override;
 
-  // As the last pass that wrote the texture left it; fails the test when nobody did.
+  // As the last pass that wrote the texture left it. Throws std::out_of_range, which fails the
+  // test, when nobody did.
   [[nodiscard]] const FloatPicture& Target(const std::string& name) const;
   [[nodiscard]] bool Has(const std::string& name) const { return targets_.count(name) != 0; }
 

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/unit/render/reference/scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/trigonometric.hpp>
+
+namespace furrow::render::test {
+namespace {
+
+using character::Character;
+using character::Material;
+using character::Mesh;
+using character::Vertex;
+
+constexpr float kCardFovDegrees = 8.0f;  // nearly parallel rays: N.V is 1 but for 0.3%
+
+Character OneJoint(const std::string& name) {
+  Character character;
+  character.name = name;
+  wrinkle::JointDesc root;
+  root.name = "root";
+  Result<wrinkle::Skeleton> skeleton = wrinkle::Skeleton::Create({root});
+  if (!skeleton.ok()) std::abort();
+  character.skeleton = std::move(*skeleton);
+  character.inverse_bind_matrices.emplace_back(1.0f);
+  return character;
+}
+
+int AddMaterial(Character* character, Material::Kind kind, float albedo) {
+  Material material;
+  material.name = "material" + std::to_string(character->materials.size());
+  material.kind = kind;
+  material.base_colour = glm::vec4(glm::vec3(albedo), 1.0f);
+  character->materials.push_back(material);
+  return static_cast<int>(character->materials.size()) - 1;
+}
+
+// `corner`, `across` and `up` span it; it faces across x up.
+Mesh Quad(int material, const glm::vec3& corner, const glm::vec3& across, const glm::vec3& up) {
+  Mesh mesh;
+  mesh.name = "quad" + std::to_string(material);
+  mesh.material = material;
+  for (const auto& [u, v] : {std::pair(0.0f, 0.0f), {1.0f, 0.0f}, {1.0f, 1.0f}, {0.0f, 1.0f}}) {
+    Vertex vertex;
+    vertex.position = corner + u * across + v * up;
+    vertex.normal = glm::normalize(glm::cross(across, up));
+    vertex.tangent = glm::vec4(glm::normalize(across), 1.0f);
+    vertex.uv = {u, 1.0f - v};
+    mesh.vertices.push_back(vertex);
+  }
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  return mesh;
+}
+
+Mesh Ball(int material, const glm::vec3& centre, float radius) {
+  constexpr std::uint32_t kColumns = 192;
+  constexpr std::uint32_t kRows = 96;
+  Mesh mesh;
+  mesh.name = "ball";
+  mesh.material = material;
+  for (std::uint32_t row = 0; row <= kRows; ++row) {
+    for (std::uint32_t column = 0; column <= kColumns; ++column) {
+      const float u = static_cast<float>(column) / kColumns;
+      const float v = static_cast<float>(row) / kRows;
+      const float longitude = glm::two_pi<float>() * u;
+      const float polar = glm::pi<float>() * v;
+      Vertex vertex;
+      vertex.normal = {std::sin(polar) * std::sin(longitude), std::cos(polar),
+                       std::sin(polar) * std::cos(longitude)};
+      vertex.position = centre + radius * vertex.normal;
+      vertex.tangent = {std::cos(longitude), 0.0f, -std::sin(longitude), 1.0f};
+      vertex.uv = {u, v};
+      mesh.vertices.push_back(vertex);
+    }
+  }
+  for (std::uint32_t row = 0; row < kRows; ++row) {
+    for (std::uint32_t column = 0; column < kColumns; ++column) {
+      const std::uint32_t a = row * (kColumns + 1) + column;
+      const std::uint32_t b = a + kColumns + 1;
+      mesh.indices.insert(mesh.indices.end(), {a, b, a + 1, a + 1, b, b + 1});
+    }
+  }
+  return mesh;
+}
+
+}  // namespace
+
+Character MakeCard(float width, float height, const CardHalf& left, const CardHalf& right) {
+  Character card = OneJoint("card");
+  const glm::vec3 across(0.5f * width, 0.0f, 0.0f);
+  const glm::vec3 up(0.0f, height, 0.0f);
+  const glm::vec3 corner = -across - 0.5f * up;
+  card.meshes.push_back(Quad(AddMaterial(&card, left.kind, left.albedo), corner, across, up));
+  card.meshes.push_back(
+      Quad(AddMaterial(&card, right.kind, right.albedo), corner + across, across, up));
+  return card;
+}
+
+Character MakeSphereOnPlane(const SphereOnPlane& scene, float plane_size) {
+  Character character = OneJoint("sphere on plane");
+  const glm::vec3 across(plane_size, 0.0f, 0.0f);
+  const glm::vec3 back(0.0f, 0.0f, -plane_size);
+  const int plane = AddMaterial(&character, Material::Kind::kSkin, 1.0f);
+  character.meshes.push_back(Quad(plane, -0.5f * (across + back), across, back));
+  const int ball = AddMaterial(&character, Material::Kind::kSkin, 1.0f);
+  character.meshes.push_back(Ball(ball, glm::vec3(scene.centre), static_cast<float>(scene.radius)));
+  return character;
+}
+
+Camera CardCamera(float mm_per_pixel, int height) {
+  const float half_height = 0.5f * mm_per_pixel * 1e-3f * static_cast<float>(height);
+  Camera camera;
+  camera.fov_y_degrees = kCardFovDegrees;
+  camera.target = glm::vec3(0.0f);
+  camera.position = {0.0f, 0.0f, half_height / std::tan(glm::radians(0.5f * kCardFovDegrees))};
+  return camera;
+}
+
+Ray PixelRay(const Camera& camera, int x, int y, int width, int height) {
+  const glm::dvec3 origin(camera.position);
+  const glm::dvec3 forward = glm::normalize(glm::dvec3(camera.target) - origin);
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0, 1, 0)));
+  const glm::dvec3 up = glm::cross(right, forward);
+  const double slope = std::tan(glm::radians(0.5 * static_cast<double>(camera.fov_y_degrees)));
+  const double across = slope * (2.0 * (x + 0.5) - width) / height;
+  const double upwards = slope * (2.0 * (y + 0.5) - height) / height;
+  return {origin, glm::normalize(forward + across * right + upwards * up)};
+}
+
+std::optional<Hit> FirstHit(const SphereOnPlane& scene, double plane_size, const Ray& ray) {
+  const double distance = RayDistance(scene, ray.origin, ray.direction);
+  if (!std::isfinite(distance)) return {};
+  const glm::dvec3 point = ray.origin + distance * ray.direction;
+  const glm::dvec3 outwards = point - scene.centre;
+  if (glm::length(outwards) < 1.0001 * scene.radius)
+    return Hit{point, glm::normalize(outwards), true};
+  if (std::max(std::abs(point.x), std::abs(point.z)) > 0.5 * plane_size) return {};
+  return Hit{point, glm::dvec3(0, 1, 0), false};
+}
+
+FrameRequest SceneRequest(const Character& character, const Camera& camera, int width, int height) {
+  FrameRequest request;
+  request.model = character.skeleton.rest_model();
+  request.camera = camera;
+  request.width = width;
+  request.height = height;
+  request.settings.shading = Shading::kSkin;
+  request.settings.anti_aliasing.samples = 1;
+  return request;
+}
+
+}  // namespace furrow::render::test

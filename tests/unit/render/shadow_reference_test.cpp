@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shadows of the real renderer against rays on the CPU: a sphere on a plane.
+#include <cmath>
+#include <optional>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "render/lighting.h"
+#include "render/renderer.h"
+#include "tests/unit/render/reference/ray_cast.h"
+#include "tests/unit/render/reference/scenes.h"
+#include "tests/unit/render/reference/target_reader.h"
+
+namespace furrow::render {
+namespace {
+
+using test::FloatPicture;
+using test::SphereOnPlane;
+
+constexpr int kSize = 256;
+constexpr double kPlaneSize = 0.6;
+// A head's size, a face's distance.
+constexpr SphereOnPlane kScene{{0.0, 0.08, 0.0}, 0.08};
+// How far a shadow's edge may be off, on the surface: the filter's radius, the normal offset and
+// two texels of the map.
+constexpr double kTolerance = 0.003;
+
+Camera AboveThePlane() {
+  Camera camera;
+  camera.position = {0.0f, 0.35f, 0.60f};
+  camera.target = {0.0f, 0.05f, 0.0f};
+  camera.fov_y_degrees = 30.0f;
+  return camera;
+}
+
+// Whether the light is seen, where all points within the tolerance agree on it.
+std::optional<bool> Seen(const test::Hit& hit, const glm::dvec3& to_light) {
+  const bool seen = SeesLight(kScene, hit.point, hit.normal, to_light);
+  const glm::dvec3 side = glm::normalize(glm::cross(hit.normal, glm::dvec3(0.3, 0.1, 1.0)));
+  const glm::dvec3 other = glm::cross(hit.normal, side);
+  for (int i = 0; i < 12; ++i) {
+    const double angle = 2.0 * 3.14159265358979 * i / 12;
+    glm::dvec3 point = hit.point + kTolerance * (std::cos(angle) * side + std::sin(angle) * other);
+    glm::dvec3 normal = hit.normal;
+    if (hit.on_sphere) {
+      normal = glm::normalize(point - kScene.centre);
+      point = kScene.centre + kScene.radius * normal;
+    }
+    if (SeesLight(kScene, point, normal, to_light) != seen) return {};
+  }
+  return seen;
+}
+
+class ShadowReference : public testing::TestWithParam<LightPreset> {};
+
+TEST_P(ShadowReference, SphereOnPlane) {
+  const character::Character scene = test::MakeSphereOnPlane(kScene, kPlaneSize);
+  auto renderer = Renderer::Create(scene);
+  ASSERT_TRUE(renderer.ok()) << renderer.status().ToString();
+  const Camera camera = AboveThePlane();
+  FrameRequest request = test::SceneRequest(scene, camera, kSize, kSize);
+  request.settings.view = View::kShadow;
+  request.settings.lights.preset = GetParam();
+  request.settings.shadow.softness_mm = 0.5f;
+  request.settings.shadow.resolution = 2048;
+  test::TargetReader reader;
+  (*renderer)->SetObserver(&reader);
+  ASSERT_TRUE((*renderer)->Render(request).ok());
+  (*renderer)->SetObserver(nullptr);
+  const FloatPicture& visible = reader.Target("scene radiance");
+  const Lighting lighting = MakeLighting(request.settings.lights, {.focus = camera.target});
+  for (int light = 0; light < kNumLights; ++light) {
+    const LightSource& lamp = lighting.lights[static_cast<std::size_t>(light)];
+    if (lamp.kind != LightKind::kDirectional || lamp.radiance == glm::vec3(0.0f)) continue;
+    int lit = 0;
+    int dark = 0;
+    int wrong = 0;
+    double sum = 0.0;
+    for (int y = 0; y < kSize; ++y) {
+      for (int x = 0; x < kSize; ++x) {
+        const std::optional<test::Hit> hit =
+            FirstHit(kScene, 0.98 * kPlaneSize, test::PixelRay(camera, x, y, kSize, kSize));
+        if (!hit) continue;
+        const std::optional<bool> seen = Seen(*hit, glm::dvec3(lamp.direction));
+        if (!seen) continue;
+        ++(*seen ? lit : dark);
+        const double error = std::abs(visible.At(x, y)[light] - (*seen ? 1.0 : 0.0));
+        sum += error;
+        if (error > 0.01) ++wrong;
+      }
+    }
+    std::printf("shadow of lamp %d: %d lit, %d dark, %d wrong, mean error %.5f\n", light, lit, dark,
+                wrong, sum / (lit + dark));
+    EXPECT_GT(lit, 5000);
+    EXPECT_GT(dark, 2000);
+    // Of the pixels further than kTolerance from an edge, not one in a thousand is wrong.
+    EXPECT_LE(wrong, (lit + dark) / 1000) << "lamp " << light;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Presets, ShadowReference,
+                         testing::Values(LightPreset::kThesis, LightPreset::kStudio));
+
+}  // namespace
+}  // namespace furrow::render
