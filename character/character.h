@@ -31,6 +31,10 @@ struct Material {
   int normal_texture = -1;       // tangent space, green up (glTF)
   float roughness = 0.6f;
   int roughness_texture = -1;  // green channel
+  // Flesh that light passes through, metres (KHR_materials_volume): 0 where none is stated. With a
+  // texture, the factor of its green channel.
+  float thickness = 0.0f;
+  int thickness_texture = -1;
   bool double_sided = false;
   float alpha_cutoff = 0.0f;  // 0: opaque
 };

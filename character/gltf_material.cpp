@@ -82,6 +82,28 @@ Kind KindOf(const tinygltf::Material& material) {
   return GuessMaterialKind(material.name);
 }
 
+// KHR_materials_volume, as far as it says how thick a thing is.
+Status ReadThickness(const tinygltf::Model& model, const tinygltf::Material& from,
+                     const std::string& at, Material* to) {
+  const auto volume = from.extensions.find("KHR_materials_volume");
+  if (volume == from.extensions.end() || !volume->second.IsObject()) return {};
+  const std::string where = at + ".extensions.KHR_materials_volume";
+  const tinygltf::Value& factor = volume->second.Get("thicknessFactor");
+  if (factor.IsNumber()) {
+    const double thickness = factor.GetNumberAsDouble();
+    if (!std::isfinite(thickness) || thickness < 0.0) {
+      return {StatusCode::kNonFinite, "the thickness must be finite and not negative",
+              where + ".thicknessFactor"};
+    }
+    to->thickness = static_cast<float>(thickness);
+  }
+  const tinygltf::Value& texture = volume->second.Get("thicknessTexture");
+  if (!texture.IsObject() || !texture.Get("index").IsInt()) return {};
+  const tinygltf::Value& coord = texture.Get("texCoord");
+  return PictureOf(model, texture.Get("index").Get<int>(), coord.IsInt() ? coord.Get<int>() : 0,
+                   where + ".thicknessTexture", &to->thickness_texture);
+}
+
 Status ReadMaterial(const tinygltf::Model& model, const tinygltf::Material& from,
                     const std::string& at, Material* to) {
   const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
@@ -114,8 +136,12 @@ Status ReadMaterial(const tinygltf::Model& model, const tinygltf::Material& from
       !s.ok()) {
     return s;
   }
-  return PictureOf(model, from.normalTexture.index, from.normalTexture.texCoord,
-                   at + ".normalTexture", &to->normal_texture);
+  if (Status s = PictureOf(model, from.normalTexture.index, from.normalTexture.texCoord,
+                           at + ".normalTexture", &to->normal_texture);
+      !s.ok()) {
+    return s;
+  }
+  return ReadThickness(model, from, at, to);
 }
 
 }  // namespace

@@ -55,7 +55,8 @@ class GlbWriter {
     }
     const auto pictures = static_cast<int>(character_.pictures.size());
     for (const Material& m : character_.materials) {
-      if (std::max({m.base_colour_texture, m.normal_texture, m.roughness_texture}) >= pictures) {
+      if (std::max({m.base_colour_texture, m.normal_texture, m.roughness_texture,
+                    m.thickness_texture}) >= pictures) {
         return {StatusCode::kInvalidArgument, "material '" + m.name + "' names no picture",
                 "materials"};
       }
@@ -190,9 +191,17 @@ class GlbWriter {
         material["alphaCutoff"] = m.alpha_cutoff;
       }
       if (m.double_sided) material["doubleSided"] = true;
+      if (m.thickness > 0.0f) AddThickness(m, &material);
       material["extras"] = {{"furrow_kind", MaterialKindName(m.kind)}};
       root_["materials"].push_back(std::move(material));
     }
+  }
+
+  void AddThickness(const Material& m, Json* material) {
+    Json volume = {{"thicknessFactor", m.thickness}};
+    if (m.thickness_texture >= 0) volume["thicknessTexture"] = {{"index", m.thickness_texture}};
+    (*material)["extensions"]["KHR_materials_volume"] = std::move(volume);
+    root_["extensionsUsed"] = {"KHR_materials_volume"};
   }
 
   Status AddPicture(const Picture& picture) {

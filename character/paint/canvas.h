@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <vector>
+
+#include <glm/vec4.hpp>
 
 #include "character/character.h"
+#include "character/paint/uv_raster.h"
 
 // A picture of 8 bits a channel, as painters fill it.
 namespace furrow::character::paint {
@@ -32,6 +36,22 @@ namespace furrow::character::paint {
   const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(picture->width);
   return &picture->pixels[(row + static_cast<std::size_t>(x)) *
                           static_cast<std::size_t>(picture->channels)];
+}
+
+// A square picture, filled texel by texel by `colour(texel)` (a glm::vec4, [0, 1]) and grown by a
+// few texels over the borders of its islands.
+template <typename Colour>
+[[nodiscard]] Picture Fill(const char* name, const std::vector<Texel>& texels, int size,
+                           int channels, const Colour& colour) {
+  constexpr int kDilation = 6;
+  Picture picture = BlankPicture(name, size, size, channels);
+  for (const Texel& texel : texels) {
+    const glm::vec4 value = colour(texel);
+    std::uint8_t* out = TexelAt(&picture, texel.x, texel.y);
+    for (int c = 0; c < channels; ++c) out[c] = ToByte(value[c]);
+  }
+  Dilate(&picture, texels, kDilation);
+  return picture;
 }
 
 }  // namespace furrow::character::paint
