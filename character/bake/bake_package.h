@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "character/bake/bake.h"
+
+namespace furrow::character::bake {
+
+// A finished bake as files that lie in one folder: pictures, and a rig that names them.
+struct BakedFiles {
+  struct File {
+    std::string name;  // within the folder, "squash_derivative.png"
+    std::string bytes;
+  };
+  std::vector<File> files;
+  wrinkle::Rig rig;  // the character's own, with the baked maps in it
+};
+
+struct PackageOptions {
+  bool exr = false;    // derivatives and heights as half floats, not as 16-bit PNG
+  bool masks = false;  // the rig's regions take the suggested masks instead of their own
+};
+
+// A map `squash` becomes squash_derivative, squash_height and squash_cavity; the masks that its
+// poses suggest, four regions a picture, masks_skin_0, masks_cloth_0 and so on (red, green, blue
+// and alpha in the order of the rig's regions). Baked maps lose their normal map and an amplitude
+// that was made for it. Pictures of files that the rig goes on naming are copied from
+// `character.folder`; those inside the character stay there. Errors: EncodePng()'s and
+// EncodeExr()'s, and ReadFile()'s.
+[[nodiscard]] Result<BakedFiles> PackageMaps(const Character& character, const BakedMaps& maps,
+                                             const PackageOptions& options);
+
+// The next round number at which all of `values` fit a picture of integers, at least `least`.
+[[nodiscard]] float RoundScale(const std::vector<float>& values, float least);
+
+}  // namespace furrow::character::bake
