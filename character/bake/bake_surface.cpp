@@ -43,7 +43,7 @@ float UvArea(const Vertex& a, const Vertex& b, const Vertex& c) {
 float Sample(const Picture& picture, const glm::vec2& uv, int channel) {
   if (channel >= picture.channels) return 0.0f;
   const auto place = [](float t, int size) {
-    const float wrapped = t - std::floor(t);
+    const float wrapped = t >= 0.0f && t <= 1.0f ? t : t - std::floor(t);
     return std::min(static_cast<int>(wrapped * static_cast<float>(size)), size - 1);
   };
   const std::size_t index = (static_cast<std::size_t>(place(uv.y, picture.height)) *

@@ -101,6 +101,7 @@ bool ForRuns(std::size_t count, int threads,
     if (progress && !progress(done)) stopped = true;
   }
   others.clear();  // joins
+  if (!stopped && progress && !progress(1.0f)) stopped = true;
   return !stopped;
 }
 
