@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include <glm/common.hpp>
@@ -15,7 +16,7 @@
 namespace furrow::character {
 namespace {
 
-using paint::FoldStroke;
+using bake::BakeStroke;
 using paint::Texel;
 
 // Sizes in millimetres of a face of usual size.
@@ -30,10 +31,19 @@ struct FoldSize {
 // folds read as stripes.
 class FoldDrawing {
  public:
-  explicit FoldDrawing(const FaceLandmarks& face) : face_(face) {}
+  FoldDrawing(const FaceLandmarks& face, const char* map) : face_(face), map_(map) {}
+
+  // What the following strokes are called, and whose pull they answer to.
+  void Begin(const char* name, const char* muscle) {
+    name_ = name;
+    muscle_ = muscle;
+  }
 
   void Add(std::vector<glm::vec3> points, FoldSize size) {
-    FoldStroke stroke;
+    BakeStroke stroke;
+    stroke.name = name_;
+    stroke.muscle = muscle_;
+    stroke.maps = {map_};
     const int serial = static_cast<int>(strokes_.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       const int n = static_cast<int>(i);
@@ -42,10 +52,22 @@ class FoldDrawing {
     }
     stroke.points = std::move(points);
     const float vary = 0.8f + 0.4f * HashLattice(serial, 7, 3);
-    stroke.width = face_.Millimetres(size.width);
-    stroke.depth = face_.Millimetres(size.depth) * vary;
+    stroke.width_mm = size.width * face_.scale;
+    stroke.depth_mm = size.depth * face_.scale * vary;
     stroke.ridge = size.ridge;
     stroke.taper = size.taper;
+    strokes_.push_back(std::move(stroke));
+  }
+
+  // Keeps folds of strain away, `reach` millimetres to either side.
+  void Exclude(std::vector<glm::vec3> points, float reach) {
+    BakeStroke stroke;
+    stroke.name = name_;
+    stroke.kind = BakeStroke::Kind::kExclude;
+    stroke.muscle = muscle_;
+    stroke.maps = {map_};
+    stroke.points = std::move(points);
+    stroke.width_mm = reach * face_.scale;
     strokes_.push_back(std::move(stroke));
   }
 
@@ -54,41 +76,53 @@ class FoldDrawing {
     return landmark + face_.Millimetres(1.0f) * glm::vec3(side == 0 ? out : -out, up, 0.0f);
   }
 
-  [[nodiscard]] std::vector<FoldStroke> Take() { return std::move(strokes_); }
+  [[nodiscard]] std::vector<BakeStroke> Take() { return std::move(strokes_); }
 
  private:
   const FaceLandmarks& face_;
-  std::vector<FoldStroke> strokes_;
+  const char* map_;
+  const char* name_ = "";
+  const char* muscle_ = "";
+  std::vector<BakeStroke> strokes_;
 };
 
-// Four furrows from temple to temple: two that cross the middle, two that are broken there, so that
-// no two are alike.
+// Furrows from temple to temple, none like the next: the lowest crosses the middle and sags there,
+// the second is broken and overlaps itself, the upper ones belong to one side each and fade.
 void Forehead(const FaceLandmarks& face, FoldDrawing* drawing) {
+  drawing->Begin("forehead furrow", "frontalis");
   const FaceLandmarks::Side& left = face.sides[0];
   const FaceLandmarks::Side& right = face.sides[1];
-  for (const float up : {13.0f, 31.5f}) {
-    drawing->Add({drawing->From(right.brow_middle, 1, 15.0f, up - 1.5f),
-                  drawing->From(right.brow_middle, 1, 0.0f, up + 1.5f),
-                  drawing->From(right.brow_inner, 1, 2.0f, up),
-                  drawing->From(left.brow_inner, 0, 2.0f, up - 0.5f),
-                  drawing->From(left.brow_middle, 0, 0.0f, up + 1.0f),
-                  drawing->From(left.brow_middle, 0, 16.0f, up - 2.0f)},
-                 {4.2f, 1.3f, 0.35f, 0.5f});
-  }
-  for (const float up : {22.5f, 40.0f}) {
-    const bool top = up > 30.0f;
-    for (int s = 0; s < 2; ++s) {
-      const FaceLandmarks::Side& side = face.sides[s];
-      drawing->Add({drawing->From(side.brow_inner, s, -19.0f, up - 1.5f),
-                    drawing->From(side.brow_inner, s, 4.0f, up),
-                    drawing->From(side.brow_middle, s, 0.0f, up + 1.5f),
-                    drawing->From(side.brow_middle, s, top ? 8.0f : 15.0f, up - 1.0f)},
-                   {top ? 3.6f : 4.2f, top ? 0.8f : 1.25f, 0.35f, 0.5f});
-    }
-  }
+  drawing->Add({drawing->From(right.brow_middle, 1, 17.0f, 9.0f),
+                drawing->From(right.brow_middle, 1, 3.0f, 15.0f),
+                drawing->From(right.brow_inner, 1, 3.0f, 13.5f),
+                drawing->From(left.brow_inner, 0, -2.0f, 10.5f),
+                drawing->From(left.brow_inner, 0, 9.0f, 13.0f),
+                drawing->From(left.brow_middle, 0, 4.0f, 14.0f),
+                drawing->From(left.brow_middle, 0, 14.0f, 8.0f)},
+               {4.4f, 1.25f, 0.35f, 0.55f});
+  drawing->Add({drawing->From(right.brow_middle, 1, 12.0f, 22.0f),
+                drawing->From(right.brow_middle, 1, -4.0f, 25.5f),
+                drawing->From(right.brow_inner, 1, -1.0f, 22.0f),
+                drawing->From(left.brow_inner, 0, -10.0f, 19.0f)},
+               {4.6f, 1.15f, 0.35f, 0.7f});
+  drawing->Add({drawing->From(left.brow_inner, 0, -13.0f, 25.0f),
+                drawing->From(left.brow_inner, 0, 5.0f, 22.5f),
+                drawing->From(left.brow_middle, 0, 2.0f, 25.0f),
+                drawing->From(left.brow_middle, 0, 18.0f, 19.5f)},
+               {4.2f, 1.3f, 0.35f, 0.6f});
+  drawing->Add({drawing->From(right.brow_middle, 1, 5.0f, 35.0f),
+                drawing->From(right.brow_inner, 1, 6.0f, 33.0f),
+                drawing->From(left.brow_inner, 0, -6.0f, 30.5f),
+                drawing->From(left.brow_inner, 0, 8.0f, 34.0f)},
+               {4.8f, 0.8f, 0.35f, 0.9f});
+  drawing->Add({drawing->From(left.brow_inner, 0, 8.0f, 44.0f),
+                drawing->From(left.brow_middle, 0, -3.0f, 42.5f),
+                drawing->From(left.brow_middle, 0, 9.0f, 38.0f)},
+               {4.0f, 0.5f, 0.35f, 1.0f});
 }
 
 void Glabella(const FaceLandmarks& face, FoldDrawing* drawing) {
+  drawing->Begin("glabella", "corrugator supercilii, procerus");
   for (int s = 0; s < 2; ++s) {
     const glm::vec3& brow = face.sides[s].brow_inner;
     // One line is longer than the other: no face is a mirror.
@@ -109,6 +143,7 @@ void Glabella(const FaceLandmarks& face, FoldDrawing* drawing) {
 }
 
 void BunnyLines(const FaceLandmarks& face, FoldDrawing* drawing) {
+  drawing->Begin("bunny line", "nasalis");
   for (int s = 0; s < 2; ++s) {
     // {start, fall, length}: they slant down and outward, none like the next.
     constexpr std::array<std::array<float, 3>, 3> kLines{
@@ -124,6 +159,7 @@ void BunnyLines(const FaceLandmarks& face, FoldDrawing* drawing) {
 
 // A fan from the outer corner of the eye, and lines that follow the lower lid.
 void EyeFolds(const FaceLandmarks& face, FoldDrawing* drawing) {
+  drawing->Begin("crow's foot", "orbicularis oculi");
   // {out, up, depth}: the middle ones are long and deep.
   constexpr std::array<std::array<float, 3>, 5> kFan{{{7.0f, 10.0f, 0.35f},
                                                       {14.0f, 4.0f, 0.65f},
@@ -149,6 +185,7 @@ void EyeFolds(const FaceLandmarks& face, FoldDrawing* drawing) {
 }
 
 void Nasolabial(const FaceLandmarks& face, FoldDrawing* drawing) {
+  drawing->Begin("nasolabial fold", "levator labii, zygomaticus");
   for (int s = 0; s < 2; ++s) {
     const FaceLandmarks::Side& side = face.sides[s];
     drawing->Add(
@@ -166,6 +203,7 @@ void Nasolabial(const FaceLandmarks& face, FoldDrawing* drawing) {
 }
 
 void Marionette(const FaceLandmarks& face, FoldDrawing* drawing) {
+  drawing->Begin("marionette line", "depressor anguli oris");
   for (int s = 0; s < 2; ++s) {
     const FaceLandmarks::Side& side = face.sides[s];
     drawing->Add({drawing->From(side.mouth_corner, s, 4.0f, 1.0f),
@@ -179,6 +217,7 @@ void Marionette(const FaceLandmarks& face, FoldDrawing* drawing) {
 }
 
 void Chin(const FaceLandmarks& face, FoldDrawing* drawing) {
+  drawing->Begin("chin", "mentalis");
   const glm::vec3& under = face.lower_lip_bottom;
   drawing->Add({drawing->From(under, 0, -14.0f, -4.0f), drawing->From(under, 0, 0.0f, -1.5f),
                 drawing->From(under, 0, 14.0f, -4.0f)},
@@ -191,6 +230,18 @@ void Chin(const FaceLandmarks& face, FoldDrawing* drawing) {
     drawing->Add(
         {drawing->From(under, 0, out - 1.6f, up), drawing->From(under, 0, out + 1.6f, up + turn)},
         {3.2f, 0.3f});
+  }
+}
+
+// A cheek that is pushed up bulges and does not fold, wherever its joints press it.
+void Cheeks(const FaceLandmarks& face, FoldDrawing* drawing) {
+  drawing->Begin("smooth cheek", "malar fat");
+  for (int s = 0; s < 2; ++s) {
+    const FaceLandmarks::Side& side = face.sides[s];
+    drawing->Exclude({drawing->From(side.cheek, s, -14.0f, -2.0f), side.cheek,
+                      drawing->From(side.mouth_corner, s, 30.0f, 0.0f),
+                      drawing->From(side.chin_side, s, 22.0f, 2.0f)},
+                     22.0f);
   }
 }
 
@@ -211,46 +262,31 @@ glm::vec3 OntoSurface(const std::vector<const Texel*>& surface, const glm::vec3&
 
 }  // namespace
 
-std::vector<FoldStroke> StretchFolds(const FaceLandmarks& face) {
-  FoldDrawing drawing(face);
-  Forehead(face, &drawing);
-  Marionette(face, &drawing);
-  Chin(face, &drawing);
-  return drawing.Take();
-}
+std::vector<BakeStroke> FaceStrokes(const FaceLandmarks& face, const std::vector<Texel>& texels) {
+  FoldDrawing stretch(face, "stretch");
+  Forehead(face, &stretch);
+  Marionette(face, &stretch);
+  Chin(face, &stretch);
+  Cheeks(face, &stretch);
+  FoldDrawing squash(face, "squash");
+  Glabella(face, &squash);
+  BunnyLines(face, &squash);
+  EyeFolds(face, &squash);
+  Nasolabial(face, &squash);
+  Cheeks(face, &squash);
+  std::vector<BakeStroke> strokes = stretch.Take();
+  for (BakeStroke& stroke : squash.Take()) strokes.push_back(std::move(stroke));
 
-std::vector<FoldStroke> SquashFolds(const FaceLandmarks& face) {
-  FoldDrawing drawing(face);
-  Glabella(face, &drawing);
-  BunnyLines(face, &drawing);
-  EyeFolds(face, &drawing);
-  Nasolabial(face, &drawing);
-  return drawing.Take();
-}
-
-Picture PaintFolds(const char* name, const std::vector<Texel>& texels,
-                   std::vector<FoldStroke> strokes, int size) {
   // A texel in three is fine enough to stand for the surface, which must face forward: the inside
   // of the mouth is nearer to some landmarks than the cheek is.
   std::vector<const Texel*> surface;
   for (std::size_t i = 0; i < texels.size(); i += 3) {
     if (texels[i].normal.z > -0.2f) surface.push_back(&texels[i]);
   }
-  constexpr int kPieces = 5;
-  for (FoldStroke& stroke : strokes) {
+  for (BakeStroke& stroke : strokes) {
     for (glm::vec3& point : stroke.points) point = OntoSurface(surface, point);
-    stroke.points = paint::Smooth(stroke.points, kPieces);
-    for (glm::vec3& point : stroke.points) point = OntoSurface(surface, point);
-    stroke.facing = glm::vec3(0.0f, 0.0f, 1.0f);
   }
-  // Temples face sideways: there, folds are let round the corner.
-  for (FoldStroke& stroke : strokes) {
-    if (std::abs(stroke.points.back().x) > std::abs(stroke.points.back().z))
-      stroke.facing = glm::vec3(0.0f);
-  }
-  Picture picture = paint::EncodeNormals(texels, paint::StrokeSlopes(texels, strokes), size, size);
-  picture.name = name;
-  return picture;
+  return strokes;
 }
 
 }  // namespace furrow::character

@@ -2,24 +2,28 @@
 #include "character/import/makehuman.h"
 
 #include <algorithm>
+#include <bit>
 #include <optional>
 #include <system_error>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
+#include "character/bake/bake.h"
+#include "character/bake/bake_poses.h"
 #include "character/data_dir.h"
 #include "character/import/body_parts.h"
 #include "character/import/face_folds.h"
 #include "character/import/face_landmarks.h"
+#include "character/import/hair.h"
 #include "character/import/mhclo.h"
 #include "character/import/mhskel.h"
 #include "character/import/obj.h"
 #include "character/import/prop_paint.h"
 #include "character/import/skin_paint.h"
-#include "character/import/text_lines.h"
 #include "character/paint/uv_raster.h"
 #include "character/rig_file.h"
+#include "character/text_lines.h"
 #include "wrinkle/solver.h"
 
 namespace furrow::character {
@@ -42,7 +46,7 @@ class MakeHumanImport {
     using Step = Status (MakeHumanImport::*)();
     for (const Step step : {&MakeHumanImport::ReadBase, &MakeHumanImport::ReadGarment,
                             &MakeHumanImport::ReadRig, &MakeHumanImport::BuildBody,
-                            &MakeHumanImport::BuildGarment, &MakeHumanImport::CollectRigPictures}) {
+                            &MakeHumanImport::BuildGarment, &MakeHumanImport::BakeMaps}) {
       if (Status status = (this->*step)(); !status.ok()) return status;
     }
     FinishReport();
@@ -181,10 +185,10 @@ class MakeHumanImport {
     FaceMasks masks = PaintFaceMasks(texels, face_, size);
     AddPicture(std::move(masks.first));
     AddPicture(std::move(masks.second));
-    AddPicture(PaintFolds("face_stretch", texels, StretchFolds(face_), size));
-    AddPicture(PaintFolds("face_squash", texels, SquashFolds(face_), size));
+    strokes_ = FaceStrokes(face_, texels);
     BuildEyes();
     BuildMouth();
+    BuildHairAndLashes();
     return {};
   }
 
@@ -203,9 +207,28 @@ class MakeHumanImport {
     }
   }
 
+  void BuildHairAndLashes() {
+    Material hair{.name = "hair", .kind = Material::Kind::kHair, .roughness = 0.45f};
+    hair.double_sided = true;
+    hair.base_colour_texture = AddPicture(PaintHair(std::max(options_.texture_size / 2, 64)));
+    const Mesh& skin = character_.meshes.front();
+    AddPart(BuildHair(skin, face_, AddMaterial(hair)));
+    Material lashes{.name = "lashes", .kind = Material::Kind::kHair, .roughness = 0.6f};
+    lashes.double_sided = true;
+    lashes.alpha_cutoff = 0.5f;
+    lashes.base_colour_texture = AddPicture(PaintLashes(std::max(options_.texture_size / 2, 64)));
+    const int material = AddMaterial(lashes);
+    for (int s = 0; s < 2; ++s) {
+      const std::string group = s == 0 ? "helper-l-eyelashes-" : "helper-r-eyelashes-";
+      for (const char* lid : {"1", "2"}) {
+        AddPart(BuildLashes(base_, group + lid, face_.sides[s].eye, material));
+      }
+    }
+  }
+
   void BuildMouth() {
     const int teeth = AddMaterial({.name = "teeth",
-                                   .base_colour = glm::vec4(0.62f, 0.57f, 0.47f, 1.0f),
+                                   .base_colour = glm::vec4(0.56f, 0.49f, 0.38f, 1.0f),
                                    .roughness = 0.25f,
                                    .double_sided = true});
     const int tongue = AddMaterial(
@@ -248,7 +271,6 @@ class MakeHumanImport {
     cloth.double_sided = true;  // cuffs and collars show their inside
     cloth.base_colour_texture = AddPicture(PaintCloth(texels, Waist(), size));
     cloth.normal_texture = AddPicture(PaintWeaveNormals(texels, size));
-    AddPicture(PaintClothFolds(texels, size));
     mesh.material = AddMaterial(cloth);
     AddPart(std::move(mesh));
     report_.unweighted_vertices += skin.unweighted;
@@ -263,28 +285,50 @@ class MakeHumanImport {
     return character_.skeleton.rest_model()[static_cast<std::size_t>(joint)][3].y;
   }
 
-  // The rig's pictures are the ones painted here; a bare body has no folds of cloth to show.
-  Status CollectRigPictures() {
-    const auto add = [this](const std::string& name) {
-      if (name.empty()) return;
-      for (std::size_t i = 0; i < character_.pictures.size(); ++i) {
-        if (character_.pictures[i].name == name) {
-          character_.rig_pictures.emplace_back(name, static_cast<int>(i));
-          return;
+  // Wrinkle maps: strokes where the face's folds are known, strain elsewhere and on the cloth.
+  Status BakeMaps() {
+    for (const wrinkle::Region& region : character_.rig.regions) UsePicture(region.mask.texture);
+    // A rig of another's making may do without the face's maps.
+    std::erase_if(strokes_, [this](const bake::BakeStroke& stroke) {
+      const auto& maps = character_.rig.wrinkle_maps;
+      return std::none_of(maps.begin(), maps.end(), [&](const wrinkle::WrinkleMap& map) {
+        return map.name == stroke.maps.front();
+      });
+    });
+    const Result<bake::PosesToBake> poses = bake::PosesOf(character_);
+    if (!poses.ok()) return poses.status();
+    bake::BakeOptions options;
+    options.size = static_cast<int>(std::bit_floor(static_cast<unsigned>(options_.texture_size)));
+    // Joints that only turn squeeze the cheeks more than muscles do: little of it is believed.
+    options.skin.share = 0.2f;
+    options.skin.max_compression = 0.3f;
+    options.skin.threshold = 0.08f;
+    const Result<bake::BakedMaps> baked =
+        bake::Bake(character_, poses->poses, strokes_, options, options_.progress);
+    if (!baked.ok()) return baked.status();
+    for (wrinkle::WrinkleMap& map : character_.rig.wrinkle_maps) {
+      for (const bake::BakedMap& from : baked->maps) {
+        if (from.map == map.name && !map.normal.empty()) {
+          AddPicture(bake::NormalPicture(from, map.normal));
         }
       }
-      report_.warnings.push_back("the rig names the picture '" + name +
-                                 "', which this import does not paint");
-    };
-    std::vector<std::string> names;
-    for (const wrinkle::Region& region : character_.rig.regions)
-      names.push_back(region.mask.texture);
-    for (const wrinkle::WrinkleMap& map : character_.rig.wrinkle_maps)
-      names.insert(names.end(), {map.normal, map.derivative, map.colour, map.cavity});
-    std::sort(names.begin(), names.end());
-    names.erase(std::unique(names.begin(), names.end()), names.end());
-    for (const std::string& name : names) add(name);
+      for (const std::string* name : {&map.normal, &map.derivative, &map.colour, &map.cavity}) {
+        UsePicture(*name);
+      }
+    }
     return {};
+  }
+
+  // A picture that the rig names is one of those made here.
+  void UsePicture(const std::string& name) {
+    if (name.empty() || character_.FindRigPicture(name) >= 0) return;
+    for (std::size_t i = 0; i < character_.pictures.size(); ++i) {
+      if (character_.pictures[i].name != name) continue;
+      character_.rig_pictures.emplace_back(name, static_cast<int>(i));
+      return;
+    }
+    report_.warnings.push_back("the rig names the picture '" + name +
+                               "', which this import does not make");
   }
 
   void FinishReport() {
@@ -325,6 +369,7 @@ class MakeHumanImport {
   std::optional<Mhclo> garment_;
   ObjMesh garment_obj_;
   FaceLandmarks face_;
+  std::vector<bake::BakeStroke> strokes_;
   Character character_;
   ImportReport report_;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,8 @@ struct ImportOptions {
   std::filesystem::path rig;
   // Reads the frames of <folder>/poseunits that the rig names (motion::CachedPoseSource).
   wrinkle::PoseSource poses;
-  int texture_size = 1024;  // texels, square; [64, 4096]
+  int texture_size = 1024;  // texels, square; [64, 4096]; wrinkle maps: the power of two below
+  std::function<bool(float)> progress;  // of the bake, as bake::Bake() takes it; may be empty
 };
 
 // What came in, for people: printed by `furrow character import`.
@@ -38,7 +40,8 @@ struct ImportReport {
 //
 // - Decimetres become metres; the lowest point of the body stands on y = 0.
 // - Joints keep MakeHuman's names, with axes parallel to the model's in the rest pose.
-// - Colours, pores, masks and wrinkle maps are painted (skin_paint.h, face_folds.h, prop_paint.h).
+// - Colours, pores and masks are painted (skin_paint.h, prop_paint.h); wrinkle maps are baked from
+//   the rig's poses and the folds of the face (face_folds.h).
 // - The rig is bound to the skeleton once, so that a rig
 //   and a folder that do not fit are found here.
 //

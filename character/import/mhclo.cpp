@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "character/import/text_lines.h"
+#include "character/text_lines.h"
 
 namespace furrow::character {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "character/import/text_lines.h"
+#include "character/text_lines.h"
 
 namespace furrow::character {
 namespace {

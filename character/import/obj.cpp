@@ -6,7 +6,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "character/import/text_lines.h"
+#include "character/text_lines.h"
 
 namespace furrow::character {
 namespace {

@@ -10,7 +10,6 @@
 
 #include "character/import/noise.h"
 #include "character/paint/canvas.h"
-#include "character/paint/strokes.h"
 
 namespace furrow::character {
 namespace {
@@ -64,18 +63,6 @@ float Weave(const glm::vec3& p) {
          0.25f * std::sin(kThread * (p.x + p.z - p.y));
 }
 
-// Ridges where two stretched noises cross their middle: long across the body, short along it.
-float FoldHeight(const glm::vec3& p) {
-  const float sway = 0.02f * ValueNoise(p / 0.11f);
-  const auto sheet = [&p](float slant, float shift) {
-    const float along = p.y + slant * (std::abs(p.x) + p.z) + shift;
-    return ValueNoise(glm::vec3(p.x / 0.055f, along / 0.017f, p.z / 0.055f));
-  };
-  const float a = 1.0f - std::abs(2.0f * sheet(0.35f, sway) - 1.0f);
-  const float b = 1.0f - std::abs(2.0f * sheet(-0.3f, 3.1f - sway) - 1.0f);
-  return 0.004f * (0.62f * a * a + 0.38f * b * b);
-}
-
 template <class Height>
 glm::vec2 Slope(const Texel& texel, float step, const Height& height) {
   const auto along = [&](const glm::vec3& axis) {
@@ -123,15 +110,6 @@ Picture PaintWeaveNormals(const std::vector<Texel>& texels, int size) {
     Put(&picture, texel.x, texel.y, glm::normalize(glm::vec3(slope, 1.0f)) * 0.5f + 0.5f);
   }
   paint::Dilate(&picture, texels, kDilation);
-  return picture;
-}
-
-Picture PaintClothFolds(const std::vector<Texel>& texels, int size) {
-  std::vector<glm::vec2> slopes;
-  slopes.reserve(texels.size());
-  for (const Texel& texel : texels) slopes.push_back(Slope(texel, 0.0012f, FoldHeight));
-  Picture picture = paint::EncodeNormals(texels, slopes, size, size);
-  picture.name = "cloth_folds";
   return picture;
 }
 

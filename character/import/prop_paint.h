@@ -19,8 +19,4 @@ inline constexpr float kEyePictureAngle = 1.75f;  // radians
 // Tangent-space normal map of the weave, 8 bits, green up.
 [[nodiscard]] Picture PaintWeaveNormals(const std::vector<paint::Texel>& texels, int size);
 
-// Tangent-space normal map `folds`: creases of uneven length and spacing that run across the limbs
-// and slant into one another. 16 bits, green up.
-[[nodiscard]] Picture PaintClothFolds(const std::vector<paint::Texel>& texels, int size);
-
 }  // namespace furrow::character

@@ -28,7 +28,7 @@ constexpr glm::vec3 kLips{0.67f, 0.40f, 0.38f};
 constexpr glm::vec3 kLids{0.70f, 0.51f, 0.45f};
 constexpr glm::vec3 kMouth{0.25f, 0.09f, 0.085f};
 constexpr glm::vec3 kBrow{0.23f, 0.165f, 0.13f};
-constexpr glm::vec3 kStubble{0.47f, 0.39f, 0.35f};
+constexpr glm::vec3 kStubble{0.17f, 0.12f, 0.095f};
 
 // How much of the face's front a point belongs to: keeps features off the inside of the mouth,
 // whose surface lies close behind the lips.
@@ -97,12 +97,11 @@ float Brow(const glm::vec3& p, const FaceLandmarks& face) {
 float MouthInside(const glm::vec3& p, const FaceLandmarks& face) {
   glm::vec3 middle = glm::mix(face.upper_lip, face.lower_lip, 0.5f);
   middle.z -= face.Millimetres(36.0f);
-  return FadeOut(glm::distance(p, middle), face.Millimetres(24.0f), face.Millimetres(31.0f));
+  return FadeOut(glm::distance(p, middle), face.Millimetres(32.0f), face.Millimetres(31.0f));
 }
 
-// Hairline: high over the brows, falling to the temples.
-float Scalp(const glm::vec3& p, const FaceLandmarks& face) {
-  const float aside = p.x / face.Millimetres(62.0f);
+float ScalpOf(const glm::vec3& p, const FaceLandmarks& face) {
+  const float aside = std::min(std::abs(p.x) / face.Millimetres(62.0f), 1.5f);
   const float hairline = glm::mix(face.sides[0].brow_middle.y, face.crown.y, 0.62f) -
                          face.Millimetres(26.0f) * aside * aside;
   const float back = face.sides[0].temple.z - face.Millimetres(8.0f);
@@ -140,7 +139,7 @@ glm::vec3 SkinColour(const Texel& texel, const FaceLandmarks& face) {
   colour = glm::mix(colour, kLips, Lips(p, face) * front);
   colour = glm::mix(colour, kMouth, MouthInside(p, face));
   const float grain = ValueNoise(p / face.Millimetres(0.9f));
-  colour = glm::mix(colour, kStubble, Scalp(p, face) * (0.65f + 0.3f * grain));
+  colour = glm::mix(colour, kStubble, ScalpAmount(p, face) * (0.75f + 0.25f * grain));
   colour = glm::mix(colour, kBrow, Brow(p, face) * front * (0.62f + 0.38f * grain));
   return colour * (1.0f + 0.05f * blotches + 0.05f * speckle);
 }
@@ -180,6 +179,16 @@ std::array<float, 8> RegionFields(const glm::vec3& p, const FaceLandmarks& face)
 }
 
 }  // namespace
+
+float ScalpAmount(const glm::vec3& p, const FaceLandmarks& face) {
+  // Ears lie behind the temples, below the brows.
+  const FaceLandmarks::Side& side = face.sides[p.x > 0.0f ? 0 : 1];
+  const glm::vec3 ear(1.1f * side.temple.x, side.eye.y - face.Millimetres(20.0f),
+                      side.eye.z - face.Millimetres(86.0f));
+  const float off_ear =
+      1.0f - FadeOut(glm::distance(p, ear), face.Millimetres(24.0f), face.Millimetres(40.0f));
+  return ScalpOf(p, face) * off_ear;
+}
 
 Picture PaintSkinColour(const std::vector<Texel>& texels, const FaceLandmarks& face, int size) {
   Picture picture = paint::BlankPicture("skin_colour", size, size, 3);

@@ -9,6 +9,10 @@
 
 namespace furrow::character {
 
+// How much hair grows at a point of the head, [0, 1]: the hairline is high over the brows and falls
+// to the temples; ears stand free.
+[[nodiscard]] float ScalpAmount(const glm::vec3& p, const FaceLandmarks& face);
+
 // MakeHuman's pictures are not read: the skin is painted here, by position, from the landmarks.
 
 // 8-bit sRGB: skin with its regional hues (cheeks, nose and ears redder, chin and forehead

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "character/import/text_lines.h"
+#include "character/text_lines.h"
 
 namespace furrow::character {
 namespace {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "client/cli/character_command.h"
 #include "client/cli/exit_code.h"
 #include "client/cli/inputs.h"
+#include "client/cli/progress.h"
 #include "motion/pose_source.h"
 
 namespace furrow::cli {
@@ -28,6 +30,11 @@ int ImportFolder(const ImportArguments& arguments) {
   character::ImportOptions options = arguments.makehuman;
   options.rig = arguments.rig.empty() ? std::filesystem::path() : ResolveRigPath(arguments.rig);
   options.poses = motion::CachedPoseSource();
+  Progress progress("importing", 100);
+  options.progress = [&](float done) {
+    progress.Set(std::lround(100.0f * done));
+    return true;
+  };
   character::ImportReport report;
   const auto character = character::ImportMakeHuman(arguments.in, options, &report);
   if (!character.ok()) return Fail(character.status());

@@ -16,8 +16,8 @@
 
 #include "character/import/mhskel.h"
 #include "character/import/obj.h"
-#include "character/import/text_lines.h"
 #include "character/rig_file.h"
+#include "character/text_lines.h"
 #include "motion/clip.h"
 #include "motion/pose_source.h"
 #include "wrinkle/solver.h"

@@ -31,14 +31,36 @@ TEST(ImportMakeHuman, MakesACharacterOfTheToyFolder) {
   EXPECT_EQ(report.hidden_faces, 2 * 24);  // three rows of vertices are two of faces
   // The cap's and the ball's vertices have weights; joints' and eyes' helpers have none.
   EXPECT_EQ(report.unweighted_vertices, 2 * report.joints + 16);
-  ASSERT_EQ(character->meshes.size(), 4u);
+  ASSERT_EQ(character->meshes.size(), 5u);
   EXPECT_EQ(character->meshes[0].name, "skin");
   EXPECT_EQ(character->meshes[0].indices.size(), 3u * 2 * 24 * 14);
-  EXPECT_EQ(character->meshes[3].name, "clothes");
-  EXPECT_EQ(character->materials[static_cast<std::size_t>(character->meshes[3].material)].kind,
+  EXPECT_EQ(character->meshes[3].name, "hair");
+  EXPECT_EQ(character->meshes[4].name, "clothes");
+  EXPECT_EQ(character->materials[static_cast<std::size_t>(character->meshes[4].material)].kind,
             Material::Kind::kCloth);
   EXPECT_GE(character->FindRigPicture("face_masks_a"), 0);
   EXPECT_GE(character->FindRigPicture("face_squash"), 0);
+}
+
+// Locks lie close over the scalp, follow the head, and are the same in every import.
+TEST(ImportMakeHuman, HairGrowsFromTheScalp) {
+  const ToyFolder folder;
+  const Result<Character> first = ImportMakeHuman(folder.path(), ToyOptions(folder));
+  const Result<Character> second = ImportMakeHuman(folder.path(), ToyOptions(folder));
+  ASSERT_TRUE(first.ok() && second.ok());
+  const Mesh& hair = first->meshes[3];
+  ASSERT_GT(hair.vertices.size(), 100u);
+  ASSERT_EQ(hair.vertices.size(), second->meshes[3].vertices.size());
+  for (std::size_t v = 0; v < hair.vertices.size(); ++v) {
+    const Vertex& vertex = hair.vertices[v];
+    EXPECT_EQ(vertex.position, second->meshes[3].vertices[v].position);
+    EXPECT_EQ(vertex.joints[0], first->skeleton.Find("head"));
+    float nearest = 1.0f;
+    for (const Vertex& skin : first->meshes[0].vertices) {
+      nearest = std::min(nearest, glm::distance(skin.position, vertex.position));
+    }
+    EXPECT_LT(nearest, 0.05f);
+  }
 }
 
 TEST(ImportMakeHuman, VerticesAreMetresUnitAndFaceOutwards) {
@@ -112,7 +134,7 @@ TEST(ImportMakeHuman, WithoutClothesTheBodyIsBareAndSaidSo) {
   const Result<Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder), &report);
   ASSERT_TRUE(character.ok()) << character.status().ToString();
   EXPECT_EQ(report.hidden_faces, 0);
-  EXPECT_EQ(character->meshes.size(), 3u);
+  EXPECT_EQ(character->meshes.size(), 4u);
   EXPECT_NE(report.warnings.front().find("no clothes"), std::string::npos);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/import/text_lines.h"
+#include "character/text_lines.h"
 
 #include <charconv>
 #include <system_error>
