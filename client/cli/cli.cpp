@@ -54,6 +54,7 @@ int ParseAndRun(int argc, const char* const* argv) {
   AddRig(app, action);
   AddConvert(app, action);
   AddCharacter(app, action);
+  AddBake(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
