@@ -2,7 +2,6 @@
 #include "bench/thesis/stage.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -91,15 +90,15 @@ void Stage::Submit(const render::Settings& settings) {
   if (Status status = renderer_->Submit(request_); !status.ok()) Die(status);
 }
 
-double Stage::SecondsPerFrame(const render::Settings& settings, int frames) {
-  const auto start = std::chrono::steady_clock::now();
-  for (int i = 0; i < frames; ++i) {
-    if (renderer_->in_flight() == 2) (void)Expect(renderer_->Poll(true));
-    Submit(settings);
-  }
-  while (renderer_->in_flight() > 0) (void)Expect(renderer_->Poll(true));
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  return taken.count() / frames;
+Sample Stage::SecondsPerFrame(const render::Settings& settings, int frames) {
+  const auto draw = [&] {
+    for (int i = 0; i < frames; ++i) {
+      if (renderer_->in_flight() == 2) (void)Expect(renderer_->Poll(true));
+      Submit(settings);
+    }
+    while (renderer_->in_flight() > 0) (void)Expect(renderer_->Poll(true));
+  };
+  return Measure(draw, frames);
 }
 
 std::vector<render::PassTime> Stage::TimePasses(const render::Settings& settings) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "bench/report/interleave.h"
 #include "bench/thesis/subjects.h"
 #include "render/pass_timer.h"
 #include "render/renderer.h"
@@ -36,7 +37,7 @@ class Stage {
 
   // Seconds a frame, pose to pixels, over `frames` frames of 1/60 s each: solve, draw and read
   // back, two frames in flight as in the daemon.
-  [[nodiscard]] double SecondsPerFrame(const render::Settings& settings, int frames);
+  [[nodiscard]] Sample SecondsPerFrame(const render::Settings& settings, int frames);
   // Times of the passes of one frame, drawn alone.
   [[nodiscard]] std::vector<render::PassTime> TimePasses(const render::Settings& settings);
 

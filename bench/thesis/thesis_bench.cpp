@@ -25,9 +25,9 @@ struct Options {
 
 // What one row measured.
 struct Outcome {
-  std::vector<double> seconds;           // a frame, one a repetition
+  std::vector<Sample> samples;           // seconds a frame, one a repetition
   std::vector<render::PassTime> passes;  // medians
-  [[nodiscard]] double fps() const { return 1.0 / Median(seconds); }
+  [[nodiscard]] double fps() const { return 1.0 / MedianWall(samples); }
 };
 
 std::vector<render::PassTime> MedianPasses(const Row& row, const Experiment& experiment,
@@ -68,18 +68,27 @@ std::vector<Outcome> Measure(const Experiment& experiment, const Options& option
 
 std::string Percent(double share) { return Fixed(100.0 * share, 2) + "%"; }
 
+// The baseline's processor time as a share of a row's: what `of its baseline` would be on a machine
+// that does nothing else, where the processor is the renderer.
+double CpuShare(const std::vector<Outcome>& outcomes, const Experiment& experiment,
+                std::size_t row) {
+  const std::size_t baseline = experiment.rows[row].baseline;
+  return MedianCpu(outcomes[baseline].samples) / MedianCpu(outcomes[row].samples);
+}
+
 Table RowTable(const Experiment& experiment, const std::vector<Outcome>& outcomes) {
   Table table{experiment.title,
-              {"run", "ms a frame", "frames/s", "of its baseline", "thesis: frames/s",
-               "thesis: of its baseline"},
+              {"run", "ms a frame", "frames/s", "of its baseline", "CPU ms a frame",
+               "of its baseline, by CPU", "thesis: frames/s", "thesis: of its baseline"},
               {}};
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const Row& row = experiment.rows[i];
-    table.rows.push_back({row.name, Fixed(1e3 * Median(outcomes[i].seconds), 2),
-                          Fixed(outcomes[i].fps(), 2),
-                          Percent(outcomes[i].fps() / outcomes[row.baseline].fps()),
-                          row.thesis_fps > 0.0 ? Fixed(row.thesis_fps, 0) : "",
-                          row.thesis_share > 0.0 ? Percent(row.thesis_share) : ""});
+    table.rows.push_back(
+        {row.name, Fixed(1e3 * MedianWall(outcomes[i].samples), 2), Fixed(outcomes[i].fps(), 2),
+         Percent(outcomes[i].fps() / outcomes[row.baseline].fps()),
+         Fixed(1e3 * MedianCpu(outcomes[i].samples), 2), Percent(CpuShare(outcomes, experiment, i)),
+         row.thesis_fps > 0.0 ? Fixed(row.thesis_fps, 0) : "",
+         row.thesis_share > 0.0 ? Percent(row.thesis_share) : ""});
   }
   return table;
 }
@@ -101,16 +110,25 @@ nlohmann::json ToJson(const Experiment& experiment, const std::vector<Outcome>& 
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const Row& row = experiment.rows[i];
+    nlohmann::json wall = nlohmann::json::array();
+    nlohmann::json cpu = nlohmann::json::array();
+    for (const Sample& sample : outcomes[i].samples) {
+      wall.push_back(sample.wall);
+      cpu.push_back(sample.cpu);
+    }
     nlohmann::json passes = nlohmann::json::array();
     for (const render::PassTime& pass : outcomes[i].passes) {
       passes.push_back({{"pass", pass.pass}, {"gpu_ms", pass.gpu_ms}, {"wall_ms", pass.wall_ms}});
     }
     rows.push_back({{"run", row.name},
-                    {"seconds_per_frame", outcomes[i].seconds},
-                    {"median_ms", 1e3 * Median(outcomes[i].seconds)},
+                    {"seconds_per_frame", wall},
+                    {"cpu_seconds_per_frame", cpu},
+                    {"median_ms", 1e3 * MedianWall(outcomes[i].samples)},
+                    {"median_cpu_ms", 1e3 * MedianCpu(outcomes[i].samples)},
                     {"frames_per_second", outcomes[i].fps()},
                     {"baseline", experiment.rows[row.baseline].name},
                     {"of_baseline", outcomes[i].fps() / outcomes[row.baseline].fps()},
+                    {"of_baseline_by_cpu", CpuShare(outcomes, experiment, i)},
                     {"thesis_frames_per_second", row.thesis_fps},
                     {"thesis_of_baseline", row.thesis_share},
                     {"passes", passes}});
