@@ -13,11 +13,12 @@ namespace {
 
 constexpr std::size_t kMaxCopiedBytes = 256u << 20;
 
-Picture Sized(const BakedMap& map, std::string name, int channels) {
+template <class Planes>
+Picture Sized(const Planes& planes, std::string name, int channels) {
   Picture picture;
   picture.name = std::move(name);
-  picture.width = map.width;
-  picture.height = map.height;
+  picture.width = planes.width;
+  picture.height = planes.height;
   picture.channels = channels;
   return picture;
 }
@@ -62,12 +63,13 @@ class Packager {
 
   // Skin and cloth have an atlas each, so regions are gathered by kind.
   Status AddMasks(const BakedMaps& maps, bool cloth) {
-    std::map<std::string, std::vector<float>> masks;
-    const BakedMap* any = nullptr;
+    std::map<std::string, BakedMask> masks;
     for (const BakedMap& baked : maps.maps) {
       if (baked.cloth != cloth) continue;
-      any = &baked;
-      for (const BakedMask& mask : baked.masks) Unite(mask.texels, &masks[mask.region]);
+      for (const BakedMask& mask : baked.masks) {
+        const auto [there, is_new] = masks.emplace(mask.region, mask);
+        if (!is_new) Unite(mask.texels, &there->second.texels);
+      }
     }
     std::vector<wrinkle::Region*> group;
     int pictures = 0;
@@ -77,7 +79,8 @@ class Packager {
       if (group.size() < 4 && !(last && !group.empty())) continue;
       const std::string name =
           std::string(cloth ? "masks_cloth_" : "masks_skin_") + std::to_string(pictures++) + ".png";
-      if (Status s = AddMaskPicture(Sized(*any, name, 4), group, masks); !s.ok()) return s;
+      const BakedMask& first = masks.at(group.front()->name);
+      if (Status s = AddMaskPicture(Sized(first, name, 4), group, masks); !s.ok()) return s;
       group.clear();
     }
     return {};
@@ -141,16 +144,15 @@ class Packager {
   }
 
   static void Unite(const std::vector<float>& mask, std::vector<float>* all) {
-    if (all->empty()) all->assign(mask.size(), 0.0f);
     for (std::size_t i = 0; i < mask.size(); ++i) (*all)[i] = std::max((*all)[i], mask[i]);
   }
 
   Status AddMaskPicture(Picture picture, const std::vector<wrinkle::Region*>& regions,
-                        const std::map<std::string, std::vector<float>>& masks) {
+                        const std::map<std::string, BakedMask>& masks) {
     const std::size_t texels = static_cast<std::size_t>(picture.width) * picture.height;
     picture.pixels.assign(4 * texels, 0);
     for (std::size_t channel = 0; channel < regions.size(); ++channel) {
-      const std::vector<float>& mask = masks.at(regions[channel]->name);
+      const std::vector<float>& mask = masks.at(regions[channel]->name).texels;
       for (std::size_t i = 0; i < texels; ++i) {
         picture.pixels[4 * i + channel] = Unsigned8(mask[i]);
       }

@@ -93,7 +93,14 @@ glm::vec3 Hue(std::size_t index) {
 Picture Masks(const BakedMap& map) {
   return Preview(map, "report/" + map.map + "_masks.png", [&](std::size_t i) {
     glm::vec3 sum(0.05f);
-    for (std::size_t m = 0; m < map.masks.size(); ++m) sum += map.masks[m].texels[i] * Hue(m);
+    const std::size_t x = i % static_cast<std::size_t>(map.width);
+    const std::size_t y = i / static_cast<std::size_t>(map.width);
+    for (std::size_t m = 0; m < map.masks.size(); ++m) {
+      const BakedMask& mask = map.masks[m];
+      const std::size_t column = x * static_cast<std::size_t>(mask.width) / map.width;
+      const std::size_t row = y * static_cast<std::size_t>(mask.height) / map.height;
+      sum += mask.texels[row * static_cast<std::size_t>(mask.width) + column] * Hue(m);
+    }
     return sum;
   });
 }
