@@ -1,0 +1,306 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""furrow bake: maps, a rig that names them and a report, or one clear error and nothing at all."""
+import json
+import pathlib
+import signal
+import struct
+import tempfile
+import time
+import unittest
+import zlib
+
+from furrow_testing import SHARE, furrow, needs_shared, finish, spawn
+
+DONE, FAILED, USAGE, BAD_INPUT = range(4)
+CELLS = 12
+SIDE = 0.12  # metres
+
+
+def sheet(uv=lambda s, t: (s, t), weights=lambda t: (1 - t, t), extra_triangles=()):
+    """A square of skin, root at its foot and tip at its head: vertices and triangles by name."""
+    lines = [(x / CELLS, y / CELLS) for y in range(CELLS + 1) for x in range(CELLS + 1)]
+    at = lambda x, y: y * (CELLS + 1) + x
+    triangles = []
+    for y in range(CELLS):
+        for x in range(CELLS):
+            triangles += [(at(x, y), at(x + 1, y), at(x, y + 1)),
+                          (at(x + 1, y), at(x + 1, y + 1), at(x, y + 1))]
+    return {"POSITION": ("VEC3", 5126, "3f", [(SIDE * s, SIDE * t, 0.0) for s, t in lines]),
+            "NORMAL": ("VEC3", 5126, "3f", [(0.0, 0.0, 1.0)] * len(lines)),
+            "TEXCOORD_0": ("VEC2", 5126, "2f", [uv(s, 1 - t) for s, t in lines]),
+            "JOINTS_0": ("VEC4", 5123, "4H", [(0, 1, 0, 0)] * len(lines)),
+            "WEIGHTS_0": ("VEC4", 5126, "4f", [(*weights(t), 0.0, 0.0) for _, t in lines]),
+            "indices": ("SCALAR", 5125, "3I", triangles + list(extra_triangles))}
+
+
+def glb(mesh, lie=0):
+    """The sheet as a .glb whose root stands still and whose tip is SIDE above it."""
+    binary, views, accessors, places = b"", [], [], {}
+    inverse_bind = [(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -y, 0, 1) for y in (0.0, SIDE)]
+    arrays = dict(mesh, matrices=("MAT4", 5126, "16f", inverse_bind))
+    for name, (kind, component, layout, rows) in arrays.items():
+        data = b"".join(struct.pack("<" + layout, *row) for row in rows)
+        count = len(rows) * (3 if name == "indices" else 1)
+        places[name] = len(accessors)
+        accessor = {"bufferView": len(views), "componentType": component, "count": count, "type": kind}
+        if name == "POSITION":
+            accessor |= {"min": [min(r[i] for r in rows) for i in range(3)],
+                         "max": [max(r[i] for r in rows) for i in range(3)]}
+        accessors.append(accessor)
+        views.append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(data) + lie})
+        binary += data
+    attributes = {name: place for name, place in places.items() if name.isupper()}
+    text = json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 2]}],
+        "nodes": [{"name": "root", "children": [1]}, {"name": "tip", "translation": [0, SIDE, 0]},
+                  {"name": "sheet", "mesh": 0, "skin": 0}],
+        "skins": [{"joints": [0, 1], "inverseBindMatrices": places["matrices"]}],
+        "materials": [{"name": "skin"}],
+        "meshes": [{"name": "sheet", "primitives": [
+            {"attributes": attributes, "indices": places["indices"], "material": 0}]}],
+        "buffers": [{"byteLength": len(binary)}], "bufferViews": views, "accessors": accessors}).encode()
+    text += b" " * (-len(text) % 4)
+    binary += b"\0" * (-len(binary) % 4)
+    body = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(binary), 0x004E4942) + binary
+    return struct.pack("<III", 0x46546C67, 2, 12 + len(body)) + body
+
+
+def png(width, height, rows=b""):
+    """A PNG of RGBA8; with no rows, a header that promises more than it holds."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)) +
+            chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+WHITE = png(2, 2, b"\0" + b"\xff" * 8 + b"\0" + b"\xff" * 8)
+
+
+def rig(down=-0.3 * SIDE, joint="tip", map_name="squash"):
+    """Squashes the sheet by `down` metres."""
+    return {"name": "sheet",
+            "reference_poses": [{"name": "pressed", "joints": [{"joint": joint, "translation": [0, down, 0]}]}],
+            "drivers": [{"name": "press", "pose": {"points": [{"joint": joint, "kind": "origin"}],
+                                                   "values": [{"name": "squash", "reference_pose": "pressed"}]}}],
+            "regions": [{"name": "all", "mask": {"texture": "mask.png"},
+                         "feeds": [{"map": map_name, "sources": [{"from": "press.squash"}]}]}],
+            "wrinkle_maps": [{"name": map_name, "surface": "skin"}]}
+
+
+class BakeCase(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        self.out = self.root / "out"
+
+    def package(self, mesh=None, rig_json=None, lie=0, mask=WHITE):
+        """A character with its rig and mask beside it."""
+        path = self.root / "sheet.glb"
+        path.write_bytes(glb(mesh or sheet(), lie))
+        (self.root / "sheet.rig.json").write_text(json.dumps(rig_json or rig()))
+        (self.root / "mask.png").write_bytes(mask)
+        return path
+
+    def bake(self, *args, size=64, check=DONE):
+        return furrow("bake", *args, "--out", self.out, "--size", size, check=check)
+
+    def refuse(self, code, *args, says):
+        """One message that says each of `says`, and nothing where the output would be."""
+        before = sorted(p.name for p in self.root.iterdir())
+        message = self.bake(*args, check=code).stderr.decode()
+        for text in says:
+            self.assertIn(text, message)
+        self.assertLessEqual(message.count("\n"), 2, message)
+        self.assertEqual(sorted(p.name for p in self.root.iterdir()), before)
+        return message
+
+
+class BadInputTest(BakeCase):
+    def test_no_uvs(self):
+        mesh = sheet()
+        del mesh["TEXCOORD_0"]
+        self.refuse(BAD_INPUT, self.package(mesh), says=["sheet.glb: mesh 'sheet'", "no UVs", "unwrap"])
+
+    def test_overlapping_uvs(self):
+        mirrored = sheet(uv=lambda s, t: (min(s, 1 - s), t))
+        self.refuse(BAD_INPUT, self.package(mirrored),
+                    says=["sheet.glb: mesh 'sheet'", "UVs overlap on", "triangles"])
+
+    def test_vertices_without_skin(self):
+        loose = sheet(weights=lambda t: (0.0, 0.0) if t > 0.9 else (1 - t, t))
+        self.refuse(BAD_INPUT, self.package(loose), says=["sheet.glb", "skin weights", "sum to 0"])
+
+    def test_pose_equal_to_rest(self):
+        self.refuse(BAD_INPUT, self.package(rig_json=rig(down=0.0)),
+                    says=["sheet.rig.json: regions[0].feeds[0].sources[0]", "'pressed' is the rest pose"])
+
+    def test_unknown_joint(self):
+        self.refuse(BAD_INPUT, self.package(rig_json=rig(joint="top")), says=["sheet.rig.json", "'top'"])
+
+    def test_no_rig(self):
+        package = self.package()
+        package.with_suffix(".rig.json").unlink()
+        self.refuse(BAD_INPUT, package, says=["no wrinkle rig", "--rig"])
+
+    def test_unknown_map(self):
+        self.refuse(BAD_INPUT, self.package(), "--map", "folds", says=["no wrinkle map 'folds'", "squash"])
+
+    def test_map_on_a_surface_that_is_not_there(self):
+        cloth = rig()
+        cloth["wrinkle_maps"][0]["surface"] = "cloth"
+        self.refuse(BAD_INPUT, self.package(rig_json=cloth), says=["goes on cloth", "no mesh is cloth"])
+
+    def test_sizes_out_of_range(self):
+        package = self.package()
+        for size in (0, 63, 4097, 1 << 20, 1 << 40, -1):
+            self.assertEqual(furrow("bake", package, "--out", self.out, "--size", size).returncode, USAGE)
+        self.assertFalse(self.out.exists())
+
+    def test_huge_texture(self):
+        self.refuse(BAD_INPUT, self.package(mask=png(32767, 32767)), says=["mask.png", "32767 x 32767"])
+
+    def test_gltf_that_lies_about_its_buffers(self):
+        self.refuse(BAD_INPUT, self.package(lie=1 << 20), says=["sheet.glb"])
+
+    def test_no_such_file(self):
+        self.refuse(BAD_INPUT, self.root / "nobody.glb", says=["nobody.glb"])
+
+    def test_strokes(self):
+        strokes = self.root / "s.json"
+        good = '{"strokes": [\n{"name": "a", "maps": ["squash"],\n"points": [[0, 0, 0], [0.1, 0, 0]]}]}'
+        for old, new, says in (("squash", "folds", ["s.json:2: strokes[0].maps[0]", "'folds'"]),
+                               ("points", "pionts", ["s.json:3: strokes[0].pionts", "unknown field"]),
+                               ("[0.1, 0, 0]", "[100000, 0, 0]", ["s.json:3: strokes[0].points[1]", "metres"]),
+                               ("}]}", "}]", ["s.json"])):
+            strokes.write_text(good.replace(old, new))
+            self.refuse(BAD_INPUT, self.package(), "--strokes", strokes, says=says)
+
+    def test_folder_that_cannot_be_written(self):
+        package = self.package()
+        self.out.write_text("in the way")
+        self.refuse(FAILED, package, says=[str(self.out), "no folder"])
+        result = furrow("bake", package, "--out", "/proc/furrow/out", check=FAILED)
+        self.assertIn("/proc/furrow", result.stderr.decode())
+
+    def test_interrupt_leaves_nothing(self):
+        package = self.package()
+        process = spawn("bake", package, "--out", self.out, "--size", 4096)
+        for _ in range(600):  # until it has begun: its temporary folder is there
+            if any(p.name.startswith(".out.") for p in self.root.iterdir()) or process.poll() is not None:
+                break
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        code, _, message = finish(process)
+        self.assertEqual(code, FAILED, message)
+        self.assertIn("nothing was written", message)
+        self.assertEqual(sorted(p.name for p in self.root.iterdir()), ["mask.png", "sheet.glb", "sheet.rig.json"])
+
+
+class SheetTest(BakeCase):
+    def test_writes_maps_a_rig_and_a_report(self):
+        message = self.bake(self.package()).stderr.decode()
+        self.assertIn("squash on skin", message)
+        names = sorted(str(p.relative_to(self.out)) for p in self.out.rglob("*") if p.is_file())
+        self.assertEqual(names, ["mask.png", "masks_skin_0.png", "report.html", "report/squash_height.png",
+                                 "report/squash_lit.png", "report/squash_masks.png", "sheet.rig.json",
+                                 "squash_cavity.png", "squash_derivative.png", "squash_height.png"])
+        baked = json.loads((self.out / "sheet.rig.json").read_text())
+        entry = baked["wrinkle_maps"][0]
+        self.assertEqual(entry["derivative"], "squash_derivative.png")
+        self.assertEqual(entry["height"], "squash_height.png")
+        self.assertEqual(entry["cavity"], "squash_cavity.png")
+        self.assertGreater(entry["derivative_scale"], 0.0)
+        self.assertGreater(entry["height_mm"], 0.0)
+        furrow("rig", "check", self.out / "sheet.rig.json", check=DONE)
+        report = (self.out / "report.html").read_text()
+        for text in ("squash", "compression", "report/squash_lit.png"):
+            self.assertIn(text, report)
+
+    def test_threads_do_not_change_a_byte(self):
+        package = self.package()
+        seen = []
+        for threads in (1, 3):
+            self.bake(package, "--threads", threads)
+            seen.append([(self.out / f).read_bytes() for f in ("squash_derivative.png", "squash_height.png")])
+        self.assertEqual(*seen)
+
+    def test_depth_scales_and_zero_is_flat(self):
+        package = self.package()
+        heights = []
+        for depth in ("1", "0.5", "0"):
+            self.bake(package, "--depth", depth, "--format", "exr")
+            report = (self.out / "report.html").read_text()
+            heights.append(float(report.split("<td>valleys</td><td>")[1].split()[0]))
+        self.assertGreater(heights[0], 0.05)
+        self.assertAlmostEqual(heights[1], heights[0] / 2, delta=0.02)
+        self.assertEqual(heights[2], 0.0)
+
+    def test_exr_holds_floats(self):
+        self.bake(self.package(), "--format", "exr")
+        entry = json.loads((self.out / "sheet.rig.json").read_text())["wrinkle_maps"][0]
+        self.assertEqual(entry["derivative"], "squash_derivative.exr")
+        self.assertEqual((self.out / "squash_derivative.exr").read_bytes()[:4], b"\x76\x2f\x31\x01")
+        self.bake(self.package(), "--rig", self.out / "sheet.rig.json")  # and can be read again
+
+    def test_suggested_masks_go_into_the_rig_when_asked(self):
+        package = self.package()
+        self.bake(package)
+        mask = lambda: json.loads((self.out / "sheet.rig.json").read_text())["regions"][0]["mask"]["texture"]
+        self.assertEqual(mask(), "mask.png")
+        self.bake(package, "--masks")
+        self.assertEqual(mask(), "masks_skin_0.png")
+
+    def test_other_files_of_the_folder_stay(self):
+        self.out.mkdir()
+        (self.out / "notes.txt").write_text("mine")
+        self.bake(self.package())
+        self.assertEqual((self.out / "notes.txt").read_text(), "mine")
+        self.assertTrue((self.out / "report" / "squash_lit.png").exists())
+        self.assertEqual([p.name for p in self.root.iterdir() if p.name.startswith(".")], [])
+
+    def test_triangles_without_area_are_counted_and_left_out(self):
+        package = self.package(sheet(extra_triangles=[(0, 1, 2), (5, 5, 5)]))
+        self.assertIn("2 triangles of the skin have no area", self.bake(package).stderr.decode())
+
+    def test_a_stroke_folds_what_no_pose_does(self):
+        still = rig(down=0.1 * SIDE)  # a stretch: no fold of its own
+        strokes = self.root / "s.json"
+        strokes.write_text(json.dumps({"strokes": [
+            {"name": "a", "maps": ["squash"], "depth_mm": 1, "width_mm": 4,
+             "points": [[0.02, 0.06, 0], [0.1, 0.06, 0]]}]}))
+        flat = self.bake(self.package(rig_json=still)).stderr.decode()
+        self.assertIn("0% folded", flat)
+        folded = self.bake(self.package(rig_json=still), "--strokes", strokes).stderr.decode()
+        self.assertNotIn(" 0% folded", folded)
+
+
+class CharactersTest(BakeCase):
+    def picture(self, character, *args):
+        """The middle of `furrow render --pose squash`, decoded by nobody: its bytes."""
+        shots = self.root / "shots"
+        furrow("render", "--character", character, "--pose", "squash", "--out", shots, "--size", "96x96", *args,
+               check=DONE)
+        return (shots / "000000.png").read_bytes()
+
+    def test_default_character(self):
+        character = SHARE / "default.glb"
+        message = self.bake(character, size=256).stderr.decode()
+        for name in ("stretch on skin", "squash on skin", "folds on cloth"):
+            self.assertIn(name, message)
+        baked = self.out / "default.rig.json"
+        self.assertNotEqual(self.picture(character, "--rig", baked),
+                            self.picture(character, "--rig", baked, "--wrinkles", "off"))
+
+    def test_makehuman(self):
+        folder = needs_shared("makehuman")
+        character = self.root / "makehuman.glb"
+        furrow("character", "import", folder, "--out", character, check=DONE)
+        message = self.bake(character, size=256).stderr.decode()
+        self.assertIn("squash on skin", message)
+        self.assertTrue((self.out / "makehuman.rig.json").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
