@@ -87,6 +87,12 @@ BodyRetarget::BodyRetarget(const Body& source, const Body& target, const Fit& fi
   PlanHips(source, target, fit.toes_height);
 }
 
+bool BodyRetarget::Reads(int source_joint) const {
+  return std::ranges::any_of(joints_, [source_joint](const Joint& joint) {
+    return joint.to == source_joint || (joint.to != kNoJoint && joint.from == source_joint);
+  });
+}
+
 void BodyRetarget::PlanPairs(const Body& source, const Body& target) {
   for (int i = 1; i < kNumJointRoles; ++i) {
     const auto from = source.Chain(static_cast<JointRole>(i));

@@ -33,6 +33,9 @@ class BodyRetarget {
     return joints_[static_cast<std::size_t>(target_joint)].to != kNoJoint;
   }
 
+  // True where a rotation is made from the turn of the source's joint.
+  [[nodiscard]] bool Reads(int source_joint) const;
+
   // `target` holds a local pose; the rotations of what is carried and the hips' translation are
   // replaced. Sizes as Retarget::Run() has checked them. Does not allocate.
   void Run(std::span<const Transform> source, std::span<Transform> target) const;

@@ -122,13 +122,16 @@ std::vector<std::string> Unmatched(const Skeleton& source, std::span<const int> 
   return names;
 }
 
-// A joint of a chain counts as matched where the target has the chain at all.
-std::vector<std::string> Unmatched(const Body& source, const Body& target,
-                                   std::span<const int> match) {
+// Turns are measured in model space: whatever stands above a joint that is read has its say.
+std::vector<std::string> Unmatched(const Body& source, std::span<const int> match,
+                                   const BodyRetarget& carried) {
   std::vector<std::string> names = Unmatched(source.skeleton(), match);
   std::erase_if(names, [&](const std::string& name) {
-    const JointRole role = source.RoleOf(source.skeleton().Find(name));
-    return role != JointRole::kNone && target.First(role) != kNoJoint;
+    const int joint = source.skeleton().Find(name);
+    for (int below = joint; below < source.skeleton().num_joints(); ++below) {
+      if (carried.Reads(below) && source.skeleton().IsAncestor(joint, below)) return true;
+    }
+    return false;
   });
   return names;
 }
@@ -205,7 +208,7 @@ Retarget Retarget::Create(const Skeleton& source, const JointRoles& source_roles
   }
   retarget.Plan(source, target, match, fit.stance, fit.turn);
   retarget.body_ = body;
-  retarget.unmatched_ = Unmatched(from, to, paired);
+  retarget.unmatched_ = Unmatched(from, paired, *body);
   return retarget;
 }
 

@@ -50,6 +50,7 @@ class Retarget {
 
   // True where joints are carried by role.
   [[nodiscard]] bool by_role() const { return body_ != nullptr; }
+  // Joints of the source that change nothing.
   [[nodiscard]] std::span<const std::string> unmatched_source() const { return unmatched_; }
 
   // `source` num_joints of the source, `target` of the target. Does not allocate.

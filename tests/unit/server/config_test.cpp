@@ -49,6 +49,8 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
                                   "a.glb",
                                   "--rig",
                                   "b.json",
+                                  "--skeleton-map",
+                                  "mixamo",
                                   "--bind",
                                   "::1",
                                   "--tcp",
@@ -76,6 +78,7 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
   const Config& config = *line.config;
   EXPECT_EQ(config.character, "a.glb");
   EXPECT_EQ(config.rig, "b.json");
+  EXPECT_EQ(config.skeleton_map, "mixamo");
   EXPECT_EQ(config.bind, "::1");
   EXPECT_EQ(config.tcp, 1);
   EXPECT_EQ(config.udp, 2);
@@ -149,7 +152,7 @@ TEST(CommandLine, AMissingFileIsBadInput) {
 TEST(ParseConfig, ReadsEveryTable) {
   Config config;
   const Status status = ParseText(
-      "character = 'face.glb'\nrig = '/abs/rig.json'\n"
+      "character = 'face.glb'\nrig = '/abs/rig.json'\nskeleton_map = 'cmu'\n"
       "[listen]\nbind = '0.0.0.0'\ntcp = 0\nudp = 1\n"
       "[render]\nenabled = true\nrequired = true\ndevice = '1'\n"
       "[mocap]\nvmc = 39539\nlivelink_face = 11111\n"
@@ -160,6 +163,7 @@ TEST(ParseConfig, ReadsEveryTable) {
   ASSERT_TRUE(status.ok()) << status.ToString();
   EXPECT_EQ(config.character, "face.glb");
   EXPECT_EQ(config.rig, "/abs/rig.json");
+  EXPECT_EQ(config.skeleton_map, "cmu");
   EXPECT_TRUE(config.require_render);
   EXPECT_EQ(config.osc_out->host, "::1");
   EXPECT_EQ(config.limits.max_subjects, 5);
@@ -181,6 +185,8 @@ TEST(ParseConfig, RelativeFilesAreRelativeToTheConfig) {
   Config config;
   ASSERT_TRUE(ParseConfig("rig = 'rig.json'", "/etc/furrow/furrow.toml", &config).ok());
   EXPECT_EQ(config.rig, "/etc/furrow/rig.json");
+  ASSERT_TRUE(ParseConfig("skeleton_map = 'my.json'", "/etc/furrow/furrow.toml", &config).ok());
+  EXPECT_EQ(config.skeleton_map, "/etc/furrow/my.json");
 }
 
 TEST(ParseConfig, AnErrorLeavesTheConfigAsItWas) {

@@ -256,6 +256,7 @@ TEST(BodyRetarget, ChainsOfUnlikeCountsShareTheBendAndEndAlike) {
     Turn(carrier.source(), "spine", bend, &pose);
     Turn(carrier.source(), "head", bend, &pose);
     carrier.Run(pose);
+    EXPECT_TRUE(carrier.retarget().unmatched_source().empty());
     const auto degrees = [&](const char* joint) {
       return glm::degrees(glm::angle(carrier.Rotation(joint)));
     };

@@ -206,6 +206,62 @@ TEST(StreamDefinitions, JointsThatNobodyReadsAreNamedWithAndWithoutPictures) {
   }
 }
 
+wrinkle::Skeleton LegsCalled(const std::vector<std::string>& names) {
+  const int parents[] = {-1, 0, 1, 2, 0, 4, 5};
+  const glm::vec3 offsets[] = {{0, 1, 0},         {0.1f, -0.1f, 0}, {0, -0.4f, 0}, {0, -0.4f, 0},
+                               {-0.1f, -0.1f, 0}, {0, -0.4f, 0},    {0, -0.4f, 0}};
+  std::vector<wrinkle::JointDesc> joints;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    wrinkle::JointDesc joint;
+    joint.name = names[i];
+    joint.parent = parents[i];
+    joint.rest.translation = offsets[i];
+    joints.push_back(joint);
+  }
+  return wrinkle::Skeleton::Create(std::move(joints)).value();
+}
+
+// The rig and the character say upper_leg_l, the stream mixamorig:LeftUpLeg.
+TEST(StreamDefinitions, AForeignStreamFeedsTheRigAndMovesTheCharacter) {
+  setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/character", 1);
+  const auto matcher = character::SkeletonMatcher::Create("");
+  unsetenv("FURROW_DATA_DIR");
+  ASSERT_TRUE(matcher.ok()) << matcher.status().ToString();
+  auto rig = std::make_shared<wrinkle::Rig>(*KneeRig());
+  wrinkle::Driver right = rig->drivers[0];
+  rig->drivers[0].hinge = {.parent = "upper_leg_l", .joint = "lower_leg_l", .end = "foot_l"};
+  right.name = "right";
+  right.hinge = {.parent = "upper_leg_r", .joint = "lower_leg_r", .end = "foot_r"};
+  rig->drivers.push_back(right);
+  const wrinkle::Skeleton character = LegsCalled(
+      {"hips", "upper_leg_l", "lower_leg_l", "foot_l", "upper_leg_r", "lower_leg_r", "foot_r"});
+  const wrinkle::Skeleton stream = LegsCalled(
+      {"mixamorig:Hips", "mixamorig:LeftUpLeg", "mixamorig:LeftLeg", "mixamorig:LeftFoot",
+       "mixamorig:RightUpLeg", "mixamorig:RightLeg", "mixamorig:RightFoot"});
+  StreamOffer offer;
+  for (int i = 0; i < stream.num_joints(); ++i) {
+    offer.joints.push_back(
+        {stream.joint_names()[i], stream.joint_parents()[i], stream.rest_pose()[i], {}});
+  }
+  StreamDefinitions definitions(rig, &character, 4, *matcher);
+  LogCapture log;
+  const auto definition = definitions.Get(offer);
+  ASSERT_TRUE(definition.ok()) << definition.status().ToString();
+  EXPECT_THAT(log.text(), HasSubstr(": 7 roles; not there: spine"));
+  EXPECT_THAT(log.text(), Not(HasSubstr("ignored")));
+  EXPECT_TRUE((*definition)->binding->missing_joints().empty());
+  EXPECT_TRUE((*definition)->retarget->by_role());
+
+  SubjectPipeline subject(*definition);
+  subject.mutable_pose()->joints[2].rotation = glm::angleAxis(1.5f, glm::vec3(1, 0, 0));
+  ASSERT_EQ(subject.Solve(1, 1000), wrinkle::JobStatus::kOk);
+  const auto snapshot = subject.TakeSnapshot(0);
+  EXPECT_GT(snapshot->wrinkle_weights[0], 0.1f);
+  std::vector<wrinkle::Transform> drawn(7);
+  ASSERT_EQ(snapshot->retarget->Run(snapshot->joints, drawn), wrinkle::JobStatus::kOk);
+  EXPECT_NEAR(glm::angle(drawn[2].rotation), 1.5f, 1e-4f);
+}
+
 TEST(SubjectPipeline, FollowsTheBend) {
   SubjectPipeline subject(Define());
   float last = -1.0f;
