@@ -2,7 +2,6 @@
 #include "character/intake/face_frame.h"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 
 #include <glm/geometric.hpp>
@@ -14,7 +13,7 @@ using wrinkle::JointRole;
 using wrinkle::kNoJoint;
 using wrinkle::Skeleton;
 
-constexpr float kFar = 1.0f / 3.0f;  // of the distance between the eyes
+constexpr float kFar = 0.4f;  // of the distance between the eyes
 
 struct FaceFrame {
   glm::vec3 middle;
@@ -32,36 +31,32 @@ std::optional<FaceFrame> FrameOf(const Skeleton& skeleton, const FoundJoints& jo
   return FaceFrame{0.5f * (left + right), unit};
 }
 
-// The two places that a joint may stand for, in the frame of its face.
-struct Places {
-  glm::vec3 origin;
-  glm::vec3 tail;
+// A place that a joint may stand for, in the frame of its face.
+struct Place {
+  glm::vec3 at;
+  int joint;
+  bool is_tail;
 };
 
-Places PlacesOf(const Skeleton& skeleton, const FaceFrame& frame, int joint) {
+void AddPlaces(const Skeleton& skeleton, const FaceFrame& frame, int joint,
+               std::vector<Place>* places) {
   const auto index = static_cast<std::size_t>(joint);
   const glm::mat4& model = skeleton.rest_model()[index];
+  places->push_back({(glm::vec3(model[3]) - frame.middle) / frame.unit, joint, false});
   const auto parents = skeleton.joint_parents();
-  const bool leaf = std::find(parents.begin(), parents.end(), joint) == parents.end();
-  const glm::vec3 origin(model[3]);
+  if (std::find(parents.begin(), parents.end(), joint) != parents.end()) return;
   const glm::vec3 tail(model * glm::vec4(skeleton.tails()[index], 1.0f));
-  return {(origin - frame.middle) / frame.unit,
-          ((leaf ? tail : origin) - frame.middle) / frame.unit};
+  places->push_back({(tail - frame.middle) / frame.unit, joint, true});
 }
 
-float Distance(const Places& a, const Places& b) {
-  return std::min({glm::distance(a.origin, b.origin), glm::distance(a.origin, b.tail),
-                   glm::distance(a.tail, b.origin), glm::distance(a.tail, b.tail)});
-}
-
-int Nearest(const Places& place, const std::vector<Places>& among) {
-  int nearest = kNoJoint;
+const Place* Nearest(const glm::vec3& at, const std::vector<Place>& among) {
+  const Place* nearest = nullptr;
   float least = kFar;
-  for (std::size_t i = 0; i < among.size(); ++i) {
-    const float distance = Distance(place, among[i]);
+  for (const Place& place : among) {
+    const float distance = glm::distance(at, place.at);
     if (distance >= least) continue;
     least = distance;
-    nearest = static_cast<int>(i);
+    nearest = &place;
   }
   return nearest;
 }
@@ -84,10 +79,12 @@ std::vector<int> FaceJoints(const Skeleton& skeleton, const FoundJoints& joints)
   return face;
 }
 
-FaceMatch MatchFaces(const Skeleton& model, const FoundJoints& model_joints, const Skeleton& target,
+FaceMatch MatchFaces(const Skeleton& model, const FoundJoints& model_joints,
+                     std::span<const glm::vec3> model_points, const Skeleton& target,
                      const FoundJoints& target_joints) {
   FaceMatch match;
   match.joint.assign(static_cast<std::size_t>(model.num_joints()), kNoJoint);
+  match.by_tail.assign(match.joint.size(), false);
   const std::optional<FaceFrame> model_frame = FrameOf(model, model_joints);
   const std::optional<FaceFrame> target_frame = FrameOf(target, target_joints);
   if (!model_frame || !target_frame) return match;
@@ -96,22 +93,23 @@ FaceMatch MatchFaces(const Skeleton& model, const FoundJoints& model_joints, con
     const int from = model_joints.First(role);
     if (from != kNoJoint) match.joint[static_cast<std::size_t>(from)] = target_joints.First(role);
   }
-  const std::vector<int> model_face = FaceJoints(model, model_joints);
-  const std::vector<int> target_face = FaceJoints(target, target_joints);
-  std::vector<Places> model_places, target_places;
-  for (const int j : model_face) model_places.push_back(PlacesOf(model, *model_frame, j));
-  for (const int j : target_face) target_places.push_back(PlacesOf(target, *target_frame, j));
-  for (std::size_t i = 0; i < model_face.size(); ++i) {
-    int& to = match.joint[static_cast<std::size_t>(model_face[i])];
-    const int same = target.Find(model.joint_names()[static_cast<std::size_t>(model_face[i])]);
-    if (same != kNoJoint) {
-      to = same;
-      continue;
-    }
-    const int nearest = Nearest(model_places[i], target_places);
-    if (nearest == kNoJoint) continue;
-    const int back = Nearest(target_places[static_cast<std::size_t>(nearest)], model_places);
-    if (back == static_cast<int>(i)) to = target_face[static_cast<std::size_t>(nearest)];
+  std::vector<Place> model_places, target_places;
+  for (const int j : FaceJoints(model, model_joints)) {
+    const glm::vec3& point = model_points[static_cast<std::size_t>(j)];
+    model_places.push_back({(point - model_frame->middle) / model_frame->unit, j, false});
+  }
+  for (const int j : FaceJoints(target, target_joints)) {
+    AddPlaces(target, *target_frame, j, &target_places);
+  }
+  for (const Place& place : model_places) {
+    const auto from = static_cast<std::size_t>(place.joint);
+    match.joint[from] = target.Find(model.joint_names()[from]);
+    if (match.joint[from] != kNoJoint) continue;
+    const Place* nearest = Nearest(place.at, target_places);
+    const Place* back = nearest == nullptr ? nullptr : Nearest(nearest->at, model_places);
+    if (back != &place) continue;
+    match.joint[from] = nearest->joint;
+    match.by_tail[from] = nearest->is_tail;
   }
   return match;
 }

@@ -129,7 +129,7 @@ class HierarchyReader {
     while (children_[way.back()].size() == 1 && way.size() < 4) {
       way.push_back(children_[way.back()].front());
     }
-    if (way.size() > 1 && children_[way.back()].empty()) way.pop_back();  // the crown's end
+    if (way.size() > 2 && children_[way.back()].empty()) way.pop_back();  // the crown's end
     roles_[way.back()] = JointRole::kHead;
     for (std::size_t i = 0; i + 1 < way.size(); ++i) roles_[way[i]] = JointRole::kNeck;
   }

@@ -35,7 +35,8 @@ class Proposer {
       : from_(from),
         model_(model),
         target_(target),
-        face_(MatchFaces(*model.skeleton, *model.joints, *target.skeleton, *target.joints)) {}
+        face_(MatchFaces(*model.skeleton, *model.joints, PointsOf(from, *model.skeleton),
+                         *target.skeleton, *target.joints)) {}
 
   Result<RigProposal> Run() {
     Rig& rig = proposal_.rig;
@@ -59,6 +60,23 @@ class Proposer {
   }
 
  private:
+  // Where each joint counts: at its control point, at its origin where no driver looks at it.
+  static std::vector<glm::vec3> PointsOf(const Rig& rig, const wrinkle::Skeleton& skeleton) {
+    std::vector<glm::vec3> points;
+    for (const glm::mat4& model : skeleton.rest_model()) points.emplace_back(model[3]);
+    for (const Driver& driver : rig.drivers) {
+      if (driver.kind != Driver::Kind::kPose) continue;
+      for (const wrinkle::ControlPoint& point : driver.pose.points) {
+        const int joint = skeleton.Find(point.joint);
+        if (joint == kNoJoint || point.kind != wrinkle::ControlPoint::Kind::kTail) continue;
+        const auto index = static_cast<std::size_t>(joint);
+        points[index] =
+            glm::vec3(skeleton.rest_model()[index] * glm::vec4(skeleton.tails()[index], 1.0f));
+      }
+    }
+    return points;
+  }
+
   // The target's joint for a joint of the model: by role, in a chain by its end. `above`: it is
   // the upper end of a bone whose lower end is another joint, so of a chain the last one.
   [[nodiscard]] int ByRole(const std::string& name, bool above) const {
@@ -91,7 +109,7 @@ class Proposer {
       case Driver::Kind::kHinge: driver = CarryHinge(from); break;
       case Driver::Kind::kBall: driver = CarryBall(from); break;
       case Driver::Kind::kTwist: driver = CarryTwist(from); break;
-      case Driver::Kind::kBlendShape:  // of a tracker, not of a skeleton
+      case Driver::Kind::kBlendShape:      // of a tracker, not of a skeleton
       case Driver::Kind::kStrain: return;  // of one mesh
     }
     if (driver) {
@@ -177,9 +195,15 @@ class Proposer {
 
   std::optional<Driver> CarryPose(Driver driver) {
     for (wrinkle::ControlPoint& point : driver.pose.points) {
-      const int joint = face_.Of(model_.skeleton->Find(point.joint));
+      const int from = model_.skeleton->Find(point.joint);
+      const int joint = face_.Of(from);
       if (joint == kNoJoint) return std::nullopt;
+      const bool same = NameOf(target_, joint) == point.joint;
       point.joint = NameOf(target_, joint);
+      if (same) continue;
+      point.kind = face_.by_tail[static_cast<std::size_t>(from)]
+                       ? wrinkle::ControlPoint::Kind::kTail
+                       : wrinkle::ControlPoint::Kind::kOrigin;
     }
     for (const auto& value : driver.pose.values) poses_.insert(value.reference_pose);
     return driver;
@@ -195,6 +219,9 @@ class Proposer {
         const int joint = face_.Of(model_.skeleton->Find(delta.joint));
         if (joint == kNoJoint) continue;
         delta.joint = NameOf(target_, joint);
+        // Origin and tail of one joint may stand for two of the model's: the first one counts.
+        const auto is_same = [&](const auto& known) { return known.joint == delta.joint; };
+        if (std::any_of(pose.joints.begin(), pose.joints.end(), is_same)) continue;
         pose.joints.push_back(std::move(delta));
       }
       proposal_.rig.reference_poses.push_back(std::move(pose));

@@ -30,7 +30,7 @@ struct RigProposal {
 //   in the target's rest pose; angles are `model`'s.
 // - Face: control points go to the joint that lies where the model's does, measured in distances
 //   between the eyes from the point between them; reference poses with them. A driver that finds no
-//   joint within a third of that distance is left out.
+//   joint within two fifths of that distance is left out.
 // - Regions keep those feeds whose drivers are there; masks become skin weights (kind `skinning`),
 //   since painted masks belong to one mesh. Wrinkle maps lose their pictures: `furrow bake` makes
 //   them.
