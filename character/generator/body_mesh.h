@@ -1,16 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "character/character.h"
-#include "wrinkle/skeleton.h"
+#include "character/generator/body_shape.h"
+#include "character/generator/unwrap.h"
 
 namespace furrow::character::generator {
 
-// Shirt and trousers in one atlas, skinned.
-[[nodiscard]] Mesh MakeClothes(const wrinkle::Skeleton& skeleton);
-// A pair of shoes, skinned.
-[[nodiscard]] Mesh MakeShoes(const wrinkle::Skeleton& skeleton);
+// Shirt and trousers in one atlas, skinned, in rest.
+struct Clothes {
+  Mesh mesh;
+  std::vector<PanelPlace> panels;  // where the atlas has them, by ClothPanel
+  std::vector<int> vertex_panels;  // one a vertex
+};
+[[nodiscard]] Clothes MakeClothes(const BodyShape& shape);
+
+// A pair of shoes and the belt, skinned.
+[[nodiscard]] Mesh MakeLeather(const BodyShape& shape);
+
 // Appends both hands, skinned, to the head's skin: they lie in the free middle of its lowest band.
-void AddHands(const wrinkle::Skeleton& skeleton, Mesh* skin);
+void AddHands(const BodyShape& shape, Mesh* skin);
 
 }  // namespace furrow::character::generator

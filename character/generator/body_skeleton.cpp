@@ -36,6 +36,40 @@ const Entry kBody[] = {
     {"toes*", "foot*", {0.105f, 0.022f, 0.115f}},
 };
 
+// Fingers of a hand that is stretched out, palm down, a little bent; the last place is the tip.
+struct Finger {
+  const char* joints[3];
+  vec3 places[4];
+};
+
+const Finger kHand[] = {
+    {{"thumb_metacarpal*", "thumb_proximal*", "thumb_distal*"},
+     {{0.727f, 1.416f, 0.008f},
+      {0.759f, 1.404f, 0.038f},
+      {0.785f, 1.399f, 0.056f},
+      {0.810f, 1.397f, 0.070f}}},
+    {{"index_proximal*", "index_intermediate*", "index_distal*"},
+     {{0.793f, 1.4265f, 0.011f},
+      {0.836f, 1.4225f, 0.0135f},
+      {0.860f, 1.4165f, 0.0148f},
+      {0.880f, 1.4090f, 0.0158f}}},
+    {{"middle_proximal*", "middle_intermediate*", "middle_distal*"},
+     {{0.797f, 1.4285f, -0.011f},
+      {0.844f, 1.4240f, -0.0112f},
+      {0.871f, 1.4170f, -0.0113f},
+      {0.892f, 1.4085f, -0.0113f}}},
+    {{"ring_proximal*", "ring_intermediate*", "ring_distal*"},
+     {{0.790f, 1.4265f, -0.032f},
+      {0.833f, 1.4220f, -0.0345f},
+      {0.858f, 1.4150f, -0.0360f},
+      {0.878f, 1.4070f, -0.0370f}}},
+    {{"little_proximal*", "little_intermediate*", "little_distal*"},
+     {{0.781f, 1.4225f, -0.0515f},
+      {0.8145f, 1.4180f, -0.0580f},
+      {0.8335f, 1.4120f, -0.0620f},
+      {0.8505f, 1.4050f, -0.0655f}}},
+};
+
 const Entry kFace[] = {
     {"jaw", "head", {0, -3.6f, 0.6f}},
     {"frontalis_inner*", "head", {1.6f, 2.3f, 9.0f}},
@@ -77,7 +111,14 @@ void Append(const Entry& entry, bool face, std::vector<JointPlace>* places) {
 // Ends of leaves, relative to the joint, metres.
 std::optional<vec3> Tail(const std::string& name) {
   const float side = name.ends_with("_r") ? -1.0f : 1.0f;
-  if (name.starts_with("hand_")) return vec3(side * 0.18f, 0, 0);
+  if (name.starts_with("hand_")) return vec3(side * 0.09f, 0, 0);
+  for (const Finger& finger : kHand) {
+    const std::string last = finger.joints[2];
+    if (name.starts_with(last.substr(0, last.size() - 1))) {
+      const vec3 tip = finger.places[3] - finger.places[2];
+      return vec3(side * tip.x, tip.y, tip.z);
+    }
+  }
   if (name.starts_with("toes_")) return vec3(0, 0, 0.08f);
   if (name.starts_with("eye_") || name.starts_with("orbicularis_oculi_upper")) {
     return vec3(0, 0, 0.0135f);
@@ -90,6 +131,12 @@ std::optional<vec3> Tail(const std::string& name) {
 std::vector<JointPlace> JointPlaces() {
   std::vector<JointPlace> places;
   for (const Entry& entry : kBody) Append(entry, false, &places);
+  for (const Finger& finger : kHand) {
+    for (int i = 0; i < 3; ++i) {
+      const char* parent = i > 0 ? finger.joints[i - 1] : "hand*";
+      Append({finger.joints[i], parent, finger.places[i]}, false, &places);
+    }
+  }
   for (const Entry& entry : kFace) Append(entry, true, &places);
   return places;
 }

@@ -23,14 +23,15 @@ namespace {
 Mesh MakeSkin(const wrinkle::Skeleton& skeleton) {
   HeadMesh head = MakeHeadSkin();
   SkinHead(skeleton, &head);
-  AddHands(skeleton, &head.mesh);
+  AddHands(BodyShape({}, skeleton, DefaultHead()), &head.mesh);
   FinishSurface(&head.mesh);
   return std::move(head.mesh);
 }
 
 std::vector<Mesh> AllMeshes() {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
-  std::vector<Mesh> meshes = {MakeSkin(skeleton), MakeClothes(skeleton), MakeShoes(skeleton)};
+  const BodyShape body({}, skeleton, DefaultHead());
+  std::vector<Mesh> meshes = {MakeSkin(skeleton), MakeClothes(body).mesh, MakeLeather(body)};
   for (HeadMesh part : {MakeEyes(), MakeHair(), MakeLashes(), MakeTeeth()}) {
     SkinHead(skeleton, &part);
     meshes.push_back(std::move(part.mesh));
