@@ -19,4 +19,8 @@ namespace furrow::render {
 [[nodiscard]] std::vector<glm::vec4> PixelKernel(const SkinProfile& profile, int taps,
                                                  float pixels_per_mm);
 
+// A Gaussian of `sigma` pixels in the same layout: seven taps, a standard deviation apart, with the
+// variance that is asked for. One tap where it is below a third of a pixel.
+[[nodiscard]] std::vector<glm::vec4> PixelGaussian(float sigma);
+
 }  // namespace furrow::render

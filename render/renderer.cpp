@@ -1,24 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/renderer.h"
 
+#include <algorithm>
+
 #include "render/camera.h"
 #include "render/egl_context.h"
-#include "render/passes/composite_pass.h"
+#include "render/passes/finish_pass.h"
 #include "render/passes/read_back_pass.h"
-#include "render/passes/resolve_pass.h"
-#include "render/passes/scene_pass.h"
-#include "render/passes/shadow_pass.h"
-#include "render/passes/subsurface_pass.h"
+#include "render/pipeline.h"
+#include "render/read_back.h"
 #include "render/request_check.h"
 
 namespace furrow::render {
 namespace {
 
-// The views that show what the skin pipeline makes, whatever the settings' shading.
-bool NeedsSkinPipeline(const Settings& settings) {
-  return settings.view >= View::kShadow ||
-         (settings.view == View::kFinal && settings.shading == Shading::kSkin);
-}
+constexpr int kTilesAcross = 6;  // a tile of the strip is so many times smaller than the picture
 
 // Members in the order of need: what OpenGL objects live in is destroyed last.
 class GlRenderer final : public Renderer {
@@ -86,59 +82,21 @@ class GlRenderer final : public Renderer {
         gpu_(std::move(gpu)),
         tables_(std::move(tables)),
         scene_(skeleton_, inverse_bind_matrices_, gpu_.get(), tables_.get(), &shaders_),
-        fullscreen_(&shaders_, &device_),
-        shadow_pass_(&scene_, &device_),
-        scene_pass_(&scene_, &device_),
-        subsurface_pass_(&fullscreen_),
-        composite_pass_(&fullscreen_) {}
+        pipeline_(character, &scene_, &shaders_, &device_) {}
 
-  // The pipeline, in its order.
   Status BuildFrame(const FrameRequest& request, FrameGraph* graph) {
     if (Status status = scene_.Update(request); !status.ok()) return status;
-    const Settings& settings = request.settings;
-    TextureDesc desc{request.width, request.height, PixelFormat::kRgba16F,
-                     settings.anti_aliasing.samples};
-    FrameGraph::Handle shown;
-    if (NeedsSkinPipeline(settings)) {
-      shown = AddSkinPipeline(graph, settings, desc);
-      desc.samples = 1;
-    } else {
-      shown = scene_pass_.AddPlain(graph, settings,
-                                   {desc.width, desc.height, desc.format, desc.samples});
+    FrameGraph::Handle picture =
+        pipeline_.Add(graph, request, request.settings.view, {request.width, request.height});
+    std::vector<FrameGraph::Handle> tiles;
+    for (const View view : request.settings.strip.views) {
+      tiles.push_back(pipeline_.Add(
+          graph, request, view,
+          {std::max(request.width / kTilesAcross, 1), std::max(request.height / kTilesAcross, 1)}));
     }
-    const FrameGraph::Handle picture = composite_pass_.Add(graph, shown, desc, settings);
+    picture = AddStripPass(graph, picture, tiles, &device_);
     AddReadBackPass(graph, picture, request.token, &device_, &read_back_);
     return {};
-  }
-
-  FrameGraph::Handle AddSkinPipeline(FrameGraph* graph, const Settings& settings,
-                                     const TextureDesc& desc) {
-    FrameGraph::Handle shadows;
-    if (settings.shadow.filter != ShadowFilter::kOff && settings.shadow.lamps > 0) {
-      shadows = shadow_pass_.Add(graph, settings.shadow.resolution, settings.shadow.lamps);
-    }
-    const SkinTargets scene = scene_pass_.AddSkin(
-        graph, settings, {desc.width, desc.height, desc.format, desc.samples}, shadows);
-    const SkinTargets surface = AddResolvePass(graph, scene, desc, &fullscreen_);
-    const CameraFrame& camera = scene_.setup().camera;
-    const SkinGeometry geometry{.width = desc.width,
-                                .height = desc.height,
-                                .focus_distance = camera.focus_distance(),
-                                .pixels_per_mm = 0.0005f * static_cast<float>(desc.height) *
-                                                 camera.cot_half_fov / camera.focus_distance(),
-                                .bounds = {0, 0, desc.width, desc.height}};
-    const FrameGraph::Handle scattered =
-        subsurface_pass_.Add(graph, surface.irradiance, settings.subsurface, geometry);
-    switch (settings.view) {
-      case View::kIrradiance: return surface.irradiance;
-      case View::kScattered: return scattered;
-      case View::kShadow:
-      case View::kSpecular:
-      case View::kTranslucency:
-      case View::kAlbedo:
-      case View::kMaterial: return surface.radiance;
-      default: return AddCombinePass(graph, scattered, surface, desc, &fullscreen_);
-    }
   }
 
   const wrinkle::Skeleton skeleton_;
@@ -151,11 +109,7 @@ class GlRenderer final : public Renderer {
   std::unique_ptr<GpuCharacter> gpu_;
   std::unique_ptr<WrinkleTables> tables_;
   SceneDraw scene_;
-  Fullscreen fullscreen_;
-  ShadowPass shadow_pass_;
-  ScenePass scene_pass_;
-  SubsurfacePass subsurface_pass_;
-  CompositePass composite_pass_;
+  Pipeline pipeline_;
   ReadBack read_back_;
   FrameGraphObserver* observer_ = nullptr;
 };

@@ -13,9 +13,10 @@ class CompositePass {
  public:
   explicit CompositePass(Fullscreen* fullscreen) : fullscreen_(fullscreen) {}
 
-  // `shown`: linear, of `desc`. Returns the picture.
+  // `shown`: linear, of `desc`. `bloom`: of AddBloomPass(), or none. Returns the picture.
   [[nodiscard]] FrameGraph::Handle Add(FrameGraph* graph, FrameGraph::Handle shown,
-                                       const TextureDesc& desc, const Settings& settings);
+                                       const TextureDesc& desc, const Settings& settings,
+                                       FrameGraph::Handle bloom);
 
  private:
   Fullscreen* fullscreen_;

@@ -1,70 +1,186 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/passes/subsurface_pass.h"
 
+#include <array>
+
 #include "render/pixel_kernel.h"
+#include "render/subsurface_kernel.h"
 
 namespace furrow::render {
 namespace {
+
+using Handle = FrameGraph::Handle;
 
 constexpr float kFarAway = 60000.0f;  // FAR_AWAY of the shaders
 constexpr float kNarrowest = 0.01f;   // of SubsurfaceSettings::width, that is worth a pass
 
 // Locations in separable.frag.glsl.
 enum Location : GLint { kAxis = 0, kNumTaps = 1, kGeometry = 2, kStrength = 3, kKernel = 4 };
+// In burley.frag.glsl.
+enum BurleyLocation : GLint {
+  kBurleyNumTaps = 0,
+  kBurleyGeometry = 1,
+  kBurleyOffset = 2,
+  kBurleyWeight = 66
+};
+constexpr GLint kSumStrength = 0;  // in gaussian_sum.frag.glsl
+
+// 32 bits: a software driver rounds halves towards zero, which adds up over the passes.
+TextureDesc LightDesc(const SkinGeometry& geometry) {
+  return {geometry.width, geometry.height, PixelFormat::kRgba32F, 1};
+}
 
 }  // namespace
 
-FrameGraph::Handle SubsurfacePass::Add(FrameGraph* graph, FrameGraph::Handle irradiance,
-                                       const SubsurfaceSettings& settings,
-                                       const SkinGeometry& geometry) {
-  if (settings.strength <= 0.0f || settings.width < kNarrowest) return irradiance;
+Handle SubsurfacePass::Add(FrameGraph* graph, Handle irradiance, const SubsurfaceSettings& settings,
+                           const SkinGeometry& geometry) {
+  const bool nothing_scatters =
+      settings.strength <= 0.0f || settings.width < kNarrowest || geometry.bounds.empty();
+  if (nothing_scatters) return irradiance;
   switch (settings.method) {
     case SubsurfaceMethod::kOff:
-    case SubsurfaceMethod::kPreintegrated: return irradiance;
-    default: return AddSeparable(graph, irradiance, settings, geometry);
+    case SubsurfaceMethod::kPreintegrated: break;
+    case SubsurfaceMethod::kGaussians: return AddGaussians(graph, irradiance, settings, geometry);
+    case SubsurfaceMethod::kSeparable: return AddSeparable(graph, irradiance, settings, geometry);
+    case SubsurfaceMethod::kBurley: return AddBurley(graph, irradiance, settings, geometry);
   }
+  return irradiance;
 }
 
-FrameGraph::Handle SubsurfacePass::AddSeparable(FrameGraph* graph, FrameGraph::Handle irradiance,
-                                                const SubsurfaceSettings& settings,
-                                                const SkinGeometry& geometry) {
+Handle SubsurfacePass::AddAxis(FrameGraph* graph, const AxisPass& what, Handle in,
+                               Handle unscattered, const std::vector<glm::vec4>& kernel,
+                               const SubsurfaceSettings& settings, const SkinGeometry& geometry) {
   struct Data {
-    FrameGraph::Handle in;
-    FrameGraph::Handle unscattered;
-    FrameGraph::Handle out;
+    Handle in;
+    Handle unscattered;
+    Handle out;
   };
+  return graph
+      ->AddPass<Data>(
+          what.name,
+          [&](FrameGraph::Builder& builder, Data& pass) {
+            pass = {in, unscattered, {}};
+            builder.Read(in);
+            builder.Read(unscattered);
+            pass.out = builder.Write(builder.Create(what.target, LightDesc(geometry)));
+          },
+          [this, what, kernel, settings, geometry](const FrameGraph::Resources& resources,
+                                                   const Data& pass) {
+            Status status = fullscreen_->Begin("separable.frag.glsl", {}, resources, {pass.out},
+                                               {pass.in, pass.unscattered});
+            if (!status.ok()) return status;
+            glUniform2i(kAxis, what.axis == 0 ? 1 : 0, what.axis);
+            glUniform1i(kNumTaps, static_cast<GLint>(kernel.size()) - 1);
+            glUniform3f(kGeometry, geometry.focus_distance, 1000.0f / settings.depth_range_mm,
+                        settings.gradient);
+            glUniform1f(kStrength, what.strength);
+            glUniform4fv(kKernel, static_cast<GLsizei>(kernel.size()), &kernel[0].x);
+            fullscreen_->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
+            fullscreen_->Draw(geometry.bounds);
+            return status;
+          })
+      .out;
+}
+
+Handle SubsurfacePass::AddSeparable(FrameGraph* graph, Handle irradiance,
+                                    const SubsurfaceSettings& settings,
+                                    const SkinGeometry& geometry) {
   const std::vector<glm::vec4> kernel =
       PixelKernel(HumanSkin(), settings.taps, settings.width * geometry.pixels_per_mm);
-  FrameGraph::Handle light = irradiance;
-  for (int axis = 0; axis < 2; ++axis) {
-    const Data data = graph->AddPass<Data>(
-        axis == 0 ? "scatter x" : "scatter y",
-        [&](FrameGraph::Builder& builder, Data& pass) {
-          pass.in = light;
-          pass.unscattered = irradiance;
-          builder.Read(pass.in);
-          builder.Read(pass.unscattered);
-          const TextureDesc desc{geometry.width, geometry.height, PixelFormat::kRgba16F, 1};
-          pass.out = builder.Write(builder.Create(axis == 0 ? "scattered x" : "scattered", desc));
-        },
-        [this, axis, kernel, settings, geometry](const FrameGraph::Resources& resources,
-                                                 const Data& pass) {
-          Status status = fullscreen_->Begin("separable.frag.glsl", {}, resources, {pass.out},
-                                             {pass.in, pass.unscattered});
-          if (!status.ok()) return status;
-          glUniform2i(kAxis, axis == 0 ? 1 : 0, axis);
-          glUniform1i(kNumTaps, static_cast<GLint>(kernel.size()) - 1);
-          glUniform3f(kGeometry, geometry.focus_distance, 1000.0f / settings.depth_range_mm,
-                      settings.gradient);
-          glUniform1f(kStrength, axis == 0 ? 1.0f : settings.strength);
-          glUniform4fv(kKernel, static_cast<GLsizei>(kernel.size()), &kernel[0].x);
-          fullscreen_->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
-          fullscreen_->Draw(geometry.bounds);
-          return status;
-        });
-    light = data.out;
+  const Handle across = AddAxis(graph, {"scatter x", "scattered x", 0}, irradiance, irradiance,
+                                kernel, settings, geometry);
+  return AddAxis(graph, {"scatter y", "scattered", 1, settings.strength}, across, irradiance,
+                 kernel, settings, geometry);
+}
+
+Handle SubsurfacePass::AddGaussians(FrameGraph* graph, Handle irradiance,
+                                    const SubsurfaceSettings& settings,
+                                    const SkinGeometry& geometry) {
+  static constexpr std::array<std::array<const char*, 2>, kNumSkinGaussians> kNames = {
+      {{"gaussian 1 x", "gaussian 1 y"},
+       {"gaussian 2 x", "gaussian 2 y"},
+       {"gaussian 3 x", "gaussian 3 y"},
+       {"gaussian 4 x", "gaussian 4 y"},
+       {"gaussian 5 x", "gaussian 5 y"},
+       {"gaussian 6 x", "gaussian 6 y"}}};
+  const std::array<float, kNumSkinGaussians> sigmas = CascadedSigmas(HumanSkin());
+  std::array<Handle, kNumSkinGaussians> blurs;
+  Handle light = irradiance;
+  for (std::size_t i = 0; i < blurs.size(); ++i) {
+    const std::vector<glm::vec4> kernel =
+        PixelGaussian(sigmas[i] * settings.width * geometry.pixels_per_mm);
+    if (kernel.size() > 1) {
+      const Handle across =
+          AddAxis(graph, {kNames[i][0], kNames[i][0], 0}, light, light, kernel, settings, geometry);
+      light = AddAxis(graph, {kNames[i][1], kNames[i][1], 1}, across, across, kernel, settings,
+                      geometry);
+    }
+    blurs[i] = light;
   }
-  return light;
+  struct Data {
+    Handle unscattered;
+    std::array<Handle, kNumSkinGaussians> blurs;
+    Handle out;
+  };
+  return graph
+      ->AddPass<Data>(
+          "gaussian sum",
+          [&](FrameGraph::Builder& builder, Data& pass) {
+            pass = {irradiance, blurs, {}};
+            builder.Read(irradiance);
+            for (const Handle blur : blurs) builder.Read(blur);
+            pass.out = builder.Write(builder.Create("scattered", LightDesc(geometry)));
+          },
+          [this, settings, geometry](const FrameGraph::Resources& resources, const Data& pass) {
+            const auto& b = pass.blurs;
+            Status status =
+                fullscreen_->Begin("gaussian_sum.frag.glsl", {}, resources, {pass.out},
+                                   {pass.unscattered, b[0], b[1], b[2], b[3], b[4], b[5]});
+            if (!status.ok()) return status;
+            glUniform1f(kSumStrength, settings.strength);
+            fullscreen_->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
+            fullscreen_->Draw(geometry.bounds);
+            return status;
+          })
+      .out;
+}
+
+Handle SubsurfacePass::AddBurley(FrameGraph* graph, Handle irradiance,
+                                 const SubsurfaceSettings& settings, const SkinGeometry& geometry) {
+  static const glm::vec3 distances = FitBurley(HumanSkin());
+  struct Data {
+    Handle in;
+    Handle out;
+  };
+  return graph
+      ->AddPass<Data>(
+          "burley",
+          [&](FrameGraph::Builder& builder, Data& pass) {
+            pass = {irradiance, {}};
+            builder.Read(irradiance);
+            pass.out = builder.Write(builder.Create("scattered", LightDesc(geometry)));
+          },
+          [this, settings, geometry](const FrameGraph::Resources& resources, const Data& pass) {
+            Status status =
+                fullscreen_->Begin("burley.frag.glsl", {}, resources, {pass.out}, {pass.in});
+            if (!status.ok()) return status;
+            std::vector<glm::vec2> offsets;
+            std::vector<glm::vec3> weights;
+            for (const DiscTap& tap : BurleyDisc(distances, settings.samples)) {
+              offsets.push_back(tap.offset);
+              weights.push_back(tap.weight);
+            }
+            const auto count = static_cast<GLsizei>(offsets.size());
+            glUniform1i(kBurleyNumTaps, count);
+            glUniform4f(kBurleyGeometry, geometry.focus_distance, 1000.0f / settings.depth_range_mm,
+                        settings.width * geometry.pixels_per_mm, settings.strength);
+            glUniform2fv(kBurleyOffset, count, &offsets[0].x);
+            glUniform3fv(kBurleyWeight, count, &weights[0].x);
+            fullscreen_->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
+            fullscreen_->Draw(geometry.bounds);
+            return status;
+          })
+      .out;
 }
 
 }  // namespace furrow::render

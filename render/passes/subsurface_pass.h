@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <glm/vec4.hpp>
+
 #include "render/passes/fullscreen.h"
 #include "render/settings.h"
 
@@ -17,6 +19,10 @@ struct SkinGeometry {
 
 // Lets the light on skin scatter. `irradiance`: rgb: light, a: metres behind the focus, 60000 where
 // there is no skin. Returns light in the same layout; `irradiance` itself where nothing scatters.
+//
+// - gaussians: the thesis' six blurs, one after the other, each along x and y, and their sum.
+// - separable: one kernel along x and y. burley: one disc of taps.
+// - preintegrated has happened in the scene pass.
 class SubsurfacePass {
  public:
   explicit SubsurfacePass(Fullscreen* fullscreen) : fullscreen_(fullscreen) {}
@@ -26,9 +32,27 @@ class SubsurfacePass {
                                        const SkinGeometry& geometry);
 
  private:
+  // What a pass along one axis is: its kernel is of the layout of PixelKernel().
+  struct AxisPass {
+    const char* name;
+    const char* target;
+    int axis = 0;
+    float strength = 1.0f;
+  };
+  [[nodiscard]] FrameGraph::Handle AddAxis(FrameGraph* graph, const AxisPass& what,
+                                           FrameGraph::Handle in, FrameGraph::Handle unscattered,
+                                           const std::vector<glm::vec4>& kernel,
+                                           const SubsurfaceSettings& settings,
+                                           const SkinGeometry& geometry);
   [[nodiscard]] FrameGraph::Handle AddSeparable(FrameGraph* graph, FrameGraph::Handle irradiance,
                                                 const SubsurfaceSettings& settings,
                                                 const SkinGeometry& geometry);
+  [[nodiscard]] FrameGraph::Handle AddGaussians(FrameGraph* graph, FrameGraph::Handle irradiance,
+                                                const SubsurfaceSettings& settings,
+                                                const SkinGeometry& geometry);
+  [[nodiscard]] FrameGraph::Handle AddBurley(FrameGraph* graph, FrameGraph::Handle irradiance,
+                                             const SubsurfaceSettings& settings,
+                                             const SkinGeometry& geometry);
 
   Fullscreen* fullscreen_;
 };

@@ -89,13 +89,28 @@ TEST_F(ShaderLibraryTest, EverySkinConfigurationCompiles) {
 
 TEST_F(ShaderLibraryTest, EveryFullscreenConfigurationCompiles) {
   const std::pair<const char*, std::vector<std::string>> shaders[] = {
-      {"composite.frag.glsl", {"SAMPLES 4", "SHOW 0", "TONE_MAP 0"}},
-      {"composite.frag.glsl", {"SAMPLES 1", "SHOW 1", "TONE_MAP 0"}},
-      {"composite.frag.glsl", {"SAMPLES 1", "SHOW 2", "TONE_MAP 0"}},
-      {"composite.frag.glsl", {"SAMPLES 4", "SHOW 2", "TONE_MAP 1"}},
+      {"composite.frag.glsl", {"SAMPLES 4", "SHOW 0", "TONE_MAP 0", "BLOOM 0"}},
+      {"composite.frag.glsl", {"SAMPLES 1", "SHOW 1", "TONE_MAP 0", "BLOOM 0"}},
+      {"composite.frag.glsl", {"SAMPLES 1", "SHOW 2", "TONE_MAP 0", "BLOOM 1"}},
+      {"composite.frag.glsl", {"SAMPLES 4", "SHOW 2", "TONE_MAP 1", "BLOOM 0"}},
       {"resolve.frag.glsl", {"SAMPLES 2"}},
       {"separable.frag.glsl", {}},
       {"combine.frag.glsl", {}},
+      {"gaussian_sum.frag.glsl", {}},
+      {"burley.frag.glsl", {}},
+      {"gtao.frag.glsl", {"SCALE 1", "SAMPLES 4"}},
+      {"gtao.frag.glsl", {"SCALE 2", "SAMPLES 64"}},
+      {"ssao.frag.glsl", {"SCALE 2", "SAMPLES 12"}},
+      {"occlusion_blur.frag.glsl", {"SCALE 1"}},
+      {"occlusion_blur.frag.glsl", {"SCALE 2"}},
+      {"occlude.frag.glsl", {"SCALE 1"}},
+      {"occlude.frag.glsl", {"SCALE 2"}},
+      {"bloom.frag.glsl", {"BRIGHT 0"}},
+      {"bloom.frag.glsl", {"BRIGHT 1"}},
+      {"show.frag.glsl", {"SHOWN 0"}},
+      {"show.frag.glsl", {"SHOWN 1"}},
+      {"show.frag.glsl", {"SHOWN 2"}},
+      {"fxaa.frag.glsl", {}},
   };
   for (const auto& [fragment, defines] : shaders) {
     const Result<GLuint> program = library_.GetFullscreen(fragment, defines);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/joint_bounds.h"
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace furrow::render {
+
+JointBounds::JointBounds(const character::Character& character,
+                         const std::function<bool(const character::Material&)>& accept) {
+  std::map<int, Box> boxes;
+  for (const character::Mesh& mesh : character.meshes) {
+    if (!accept(character.materials[static_cast<std::size_t>(mesh.material)])) continue;
+    for (const character::Vertex& vertex : mesh.vertices) {
+      for (int i = 0; i < 4; ++i) {
+        if (!(vertex.skin_weights[i] > 0.0f)) continue;
+        const int joint = vertex.joints[i];
+        const glm::vec3 place(character.inverse_bind_matrices[static_cast<std::size_t>(joint)] *
+                              glm::vec4(vertex.position, 1.0f));
+        const auto [found, is_new] = boxes.try_emplace(joint, Box{joint, place, place});
+        if (is_new) continue;
+        found->second.low = glm::min(found->second.low, place);
+        found->second.high = glm::max(found->second.high, place);
+      }
+    }
+  }
+  for (const auto& [joint, box] : boxes) boxes_.push_back(box);
+}
+
+ScreenRect JointBounds::Project(std::span<const glm::mat4> model, const glm::mat4& view_projection,
+                                int width, int height) const {
+  glm::vec2 low(std::numeric_limits<float>::max());
+  glm::vec2 high(std::numeric_limits<float>::lowest());
+  for (const Box& box : boxes_) {
+    const glm::mat4 to_clip = view_projection * model[static_cast<std::size_t>(box.joint)];
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::vec3 place((corner & 1) != 0 ? box.high.x : box.low.x,
+                            (corner & 2) != 0 ? box.high.y : box.low.y,
+                            (corner & 4) != 0 ? box.high.z : box.low.z);
+      const glm::vec4 clip = to_clip * glm::vec4(place, 1.0f);
+      if (!(clip.w > 1e-6f)) return {0, 0, width, height};
+      const glm::vec2 screen = glm::vec2(clip) / clip.w;
+      low = glm::min(low, screen);
+      high = glm::max(high, screen);
+    }
+  }
+  const glm::vec2 size(width, height);
+  const glm::vec2 first = glm::clamp(glm::floor((low * 0.5f + 0.5f) * size), glm::vec2(0), size);
+  const glm::vec2 last = glm::clamp(glm::ceil((high * 0.5f + 0.5f) * size), glm::vec2(0), size);
+  return {static_cast<int>(first.x), static_cast<int>(first.y), static_cast<int>(last.x),
+          static_cast<int>(last.y)};
+}
+
+}  // namespace furrow::render

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "character/character.h"
+#include "render/screen_rect.h"
+
+namespace furrow::render {
+
+// Where on the screen a posed character can be, without skinning a vertex: a box a joint around all
+// vertices that it moves. A skinned vertex is a mean of places in its joints' boxes, so what holds
+// all boxes holds the surface.
+class JointBounds {
+ public:
+  // Of the meshes whose material `accept` takes.
+  JointBounds(const character::Character& character,
+              const std::function<bool(const character::Material&)>& accept);
+
+  // The pixels of a picture that the boxes may cover; the whole picture where one reaches behind
+  // the camera. `model`: a pose of the character's skeleton.
+  [[nodiscard]] ScreenRect Project(std::span<const glm::mat4> model,
+                                   const glm::mat4& view_projection, int width, int height) const;
+
+ private:
+  struct Box {
+    int joint = 0;
+    glm::vec3 low{0.0f};  // in the joint's space
+    glm::vec3 high{0.0f};
+  };
+  std::vector<Box> boxes_;
+};
+
+}  // namespace furrow::render

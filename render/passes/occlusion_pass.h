@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/mat3x3.hpp>
+
+#include "render/passes/fullscreen.h"
+#include "render/passes/scene_pass.h"
+#include "render/settings.h"
+
+namespace furrow::render {
+
+// What ambient occlusion knows of the camera.
+struct OcclusionGeometry {
+  int width = 0;  // pixels
+  int height = 0;
+  glm::mat3 view_rotation{1.0f};  // model space to the camera's
+  float pixels_per_slope = 1.0f;  // H/2 cot(fov/2)
+  ScreenRect bounds;              // all surfaces lie within
+};
+
+// Ambient occlusion: how much of the sky each pixel sees, and what that leaves of its light.
+class OcclusionPass {
+ public:
+  explicit OcclusionPass(Fullscreen* fullscreen) : fullscreen_(fullscreen) {}
+
+  struct Output {
+    SkinTargets surface;      // irradiance and radiance with the sky's light taken from them
+    FrameGraph::Handle open;  // [0, 1] in red; none where the method is off
+    int scale = 1;            // pixels of the scene to one of `open`, along each axis
+  };
+  [[nodiscard]] Output Add(FrameGraph* graph, const SkinTargets& surface,
+                           const OcclusionSettings& settings, const OcclusionGeometry& geometry);
+
+ private:
+  [[nodiscard]] FrameGraph::Handle AddSearch(FrameGraph* graph, const SkinTargets& surface,
+                                             const OcclusionSettings& settings,
+                                             const OcclusionGeometry& geometry);
+  [[nodiscard]] FrameGraph::Handle AddBlur(FrameGraph* graph, FrameGraph::Handle open,
+                                           FrameGraph::Handle depth,
+                                           const OcclusionSettings& settings,
+                                           const OcclusionGeometry& geometry);
+
+  Fullscreen* fullscreen_;
+};
+
+}  // namespace furrow::render

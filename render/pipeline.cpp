@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/pipeline.h"
+
+#include "render/passes/finish_pass.h"
+#include "render/passes/resolve_pass.h"
+
+namespace furrow::render {
+namespace {
+
+using Handle = FrameGraph::Handle;
+
+bool NeedsSkinPipeline(const Settings& settings) {
+  return settings.view >= View::kShadow ||
+         (settings.view == View::kFinal && settings.shading == Shading::kSkin);
+}
+
+float PixelsPerSlope(const CameraFrame& camera, int height) {
+  return 0.5f * static_cast<float>(height) * camera.cot_half_fov;
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const character::Character& character, SceneDraw* scene, ShaderLibrary* shaders,
+                   GlDevice* device)
+    : scene_(scene),
+      skin_bounds_(character,
+                   [](const character::Material& material) {
+                     return material.kind == character::Material::Kind::kSkin;
+                   }),
+      bounds_(character, [](const character::Material&) { return true; }),
+      fullscreen_(shaders, device),
+      shadow_pass_(scene, device),
+      scene_pass_(scene, device),
+      occlusion_pass_(&fullscreen_),
+      subsurface_pass_(&fullscreen_),
+      composite_pass_(&fullscreen_) {}
+
+Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, const Size& size) {
+  Settings settings = request.settings;
+  settings.view = view;
+  TextureDesc desc{size.width, size.height, PixelFormat::kRgba16F, settings.anti_aliasing.samples};
+  Handle shown;
+  Handle bloom;
+  if (NeedsSkinPipeline(settings)) {
+    shown = AddSkin(graph, request, settings, desc);
+    desc.samples = 1;
+    if (view == View::kFinal || view == View::kBloom) {
+      bloom = AddBloomPass(graph, shown, desc, settings, &fullscreen_);
+    }
+    if (view == View::kBloom && bloom.version >= 0) {
+      shown = AddShowPass(graph, bloom, {.scale = kBloomScale}, desc, &fullscreen_);
+      bloom = {};
+    }
+  } else {
+    shown =
+        scene_pass_.AddPlain(graph, settings, {desc.width, desc.height, desc.format, desc.samples});
+  }
+  const Handle picture = composite_pass_.Add(graph, shown, desc, settings, bloom);
+  if (!settings.anti_aliasing.fxaa) return picture;
+  return AddFxaaPass(graph, picture, desc, &fullscreen_);
+}
+
+Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const Settings& settings,
+                         const TextureDesc& desc) {
+  Handle shadows;
+  if (settings.shadow.filter != ShadowFilter::kOff && settings.shadow.lamps > 0) {
+    shadows = shadow_pass_.Add(graph, settings.shadow.resolution, settings.shadow.lamps);
+  }
+  const SkinTargets scene = scene_pass_.AddSkin(
+      graph, settings, {desc.width, desc.height, desc.format, desc.samples}, shadows);
+  const SkinTargets surface = AddResolvePass(graph, scene, desc, &fullscreen_);
+  const CameraFrame& camera = scene_->setup().camera;
+  const auto project = [&](const JointBounds& bounds) {
+    return bounds.Project(request.model, camera.view_projection, desc.width, desc.height)
+        .Grown(1, desc.width, desc.height);
+  };
+  const OcclusionGeometry view{desc.width, desc.height, glm::mat3(camera.view),
+                               PixelsPerSlope(camera, desc.height), project(bounds_)};
+  const OcclusionPass::Output output =
+      occlusion_pass_.Add(graph, surface, settings.occlusion, view);
+  const SkinGeometry skin{
+      .width = desc.width,
+      .height = desc.height,
+      .focus_distance = camera.focus_distance(),
+      .pixels_per_mm = 0.001f * PixelsPerSlope(camera, desc.height) / camera.focus_distance(),
+      .bounds = project(skin_bounds_)};
+  const Handle scattered =
+      subsurface_pass_.Add(graph, output.surface.irradiance, settings.subsurface, skin);
+  switch (settings.view) {
+    case View::kScattered: return scattered;
+    case View::kFinal:
+    case View::kBloom: return AddCombinePass(graph, scattered, output.surface, desc, &fullscreen_);
+    case View::kIrradiance: return output.surface.irradiance;
+    case View::kDepth:
+    case View::kOcclusion: return AddShown(graph, output, surface.depth, settings.view, desc);
+    default: return surface.radiance;  // the scene pass drew what the view shows
+  }
+}
+
+Handle Pipeline::AddShown(FrameGraph* graph, const OcclusionPass::Output& output, Handle depth,
+                          View view, const TextureDesc& desc) {
+  const CameraFrame& camera = scene_->setup().camera;
+  ShowTarget show;
+  Handle target = depth;
+  if (view == View::kDepth) {
+    const float radius = camera.StageRadius(1.0f);
+    show = {.kind = ShowTarget::Kind::kMetres,
+            .near_metres = camera.focus_distance() - radius,
+            .far_metres = camera.focus_distance() + radius};
+  } else if (output.open.version >= 0) {
+    target = output.open;
+    show = {.kind = ShowTarget::Kind::kRed, .scale = static_cast<float>(output.scale)};
+  } else {
+    show.kind = ShowTarget::Kind::kWhite;
+  }
+  return AddShowPass(graph, target, show, desc, &fullscreen_);
+}
+
+}  // namespace furrow::render

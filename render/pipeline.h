@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "render/joint_bounds.h"
+#include "render/passes/composite_pass.h"
+#include "render/passes/occlusion_pass.h"
+#include "render/passes/scene_pass.h"
+#include "render/passes/shadow_pass.h"
+#include "render/passes/subsurface_pass.h"
+
+namespace furrow::render {
+
+// The order of the passes, from the posed character to a finished picture of one view.
+//
+//   plain:  scene -> composite
+//   skin:   shadows -> scene (five targets) -> resolve -> occlusion, blur, occlude -> scatter ->
+//           combine -> bloom -> composite -> fxaa
+//
+// What a view does not need, the frame graph leaves out.
+class Pipeline {
+ public:
+  // `character` is not kept; the others outlive the pipeline.
+  Pipeline(const character::Character& character, SceneDraw* scene, ShaderLibrary* shaders,
+           GlDevice* device);
+
+  struct Size {
+    int width = 0;
+    int height = 0;
+  };
+  // After SceneDraw::Update() with the same request. Returns a picture of `view`, 8 bits, rows from
+  // the top.
+  [[nodiscard]] FrameGraph::Handle Add(FrameGraph* graph, const FrameRequest& request, View view,
+                                       const Size& size);
+
+ private:
+  [[nodiscard]] FrameGraph::Handle AddSkin(FrameGraph* graph, const FrameRequest& request,
+                                           const Settings& settings, const TextureDesc& desc);
+  [[nodiscard]] FrameGraph::Handle AddShown(FrameGraph* graph, const OcclusionPass::Output& output,
+                                            FrameGraph::Handle depth, View view,
+                                            const TextureDesc& desc);
+
+  SceneDraw* scene_;
+  JointBounds skin_bounds_;
+  JointBounds bounds_;
+  Fullscreen fullscreen_;
+  ShadowPass shadow_pass_;
+  ScenePass scene_pass_;
+  OcclusionPass occlusion_pass_;
+  SubsurfacePass subsurface_pass_;
+  CompositePass composite_pass_;
+};
+
+}  // namespace furrow::render

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common_occlusion.glsl"
+
+// Ground-truth ambient occlusion (Jimenez, Wu, Pesce and Jarabo 2016): in slices through the view
+// direction, the horizons to both sides are searched for, and the cosine-weighted sky between them
+// integrated. Normals come from the scene, wrinkles and all.
+
+const int SLICES = SAMPLES >= 24 ? 3 : 2;
+const int STEPS = max(SAMPLES / (2 * SLICES), 1);
+
+// acos to 0.001 rad for x in [-1, 1] (Lagarde 2014).
+float fastAcos(float x) {
+  float a = abs(x);
+  float y = (-0.156583 * a + 1.5707963) * sqrt(1.0 - a);
+  return x >= 0.0 ? y : PI - y;
+}
+
+// Cosine of the horizon on one side: `direction` in pixels, the furthest step `reach` pixels away.
+float horizon(vec2 pixel, vec3 centre, vec3 toEye, vec2 direction, float reach, float jitter,
+              float lowest, int steps) {
+  float highest = lowest;
+  for (int i = 0; i < steps; ++i) {
+    float t = (float(i) + jitter) / float(STEPS);
+    vec2 at = pixel + direction * max(reach * t * t, float(i) + 1.0);
+    vec3 to = viewPosition(floor(at) + 0.5, depthAt(at)) - centre;
+    float distance2 = max(dot(to, to), 1e-12);
+    float cosine = dot(to, toEye) * inversesqrt(distance2);
+    // Surfaces fade out towards the radius. What stands in front is taken to be a radius thick, so
+    // that it counts from where its hidden part is nearest.
+    float front = max(dot(to, toEye), 0.0);
+    float excess = max(front - u_reach.x, 0.0);
+    float nearest2 = distance2 - front * front + excess * excess;
+    float fade = saturate(1.5 - 1.5 * nearest2 / (u_reach.x * u_reach.x));
+    highest = max(highest, mix(lowest, cosine, fade));
+  }
+  return highest;
+}
+
+// Cosine-weighted sky from the normal's angle n to the horizon's h, both from the view direction.
+float openArc(float h, float n) { return 0.25 * (-cos(2.0 * h - n) + cos(n) + 2.0 * h * sin(n)); }
+
+void main() {
+  ivec2 pixel = scenePixel();
+  float metres = depthAt(vec2(pixel));
+  vec2 place = vec2(pixel) + 0.5;
+  vec3 centre = viewPosition(place, metres);
+  vec3 toEye = -normalize(centre);
+  vec3 normal = viewNormal(pixel);
+  float reach = clamp(u_reach.x * u_lens.x / metres, 2.0, 160.0);
+  float noise = tileNoise();
+  // Groups of pixels that see no surface leave the loops.
+  int steps = metres < NO_SURFACE ? STEPS : 0;
+  float sum = 0.0;
+  for (int slice = 0; slice < SLICES; ++slice) {
+    float angle = PI * (float(slice) + noise) / float(SLICES);
+    vec2 direction = vec2(cos(angle), sin(angle));
+    vec3 along = vec3(direction, 0.0);
+    vec3 axis = normalizeOrZero(cross(along, toEye));       // of the slice's plane
+    vec3 tangent = cross(toEye, axis);                      // in it, to the side of `direction`
+    vec3 projected = normal - axis * dot(normal, axis);
+    float weight = length(projected);
+    float cosN = saturate(dot(projected, toEye) / max(weight, 1e-6));
+    float n = sign(dot(projected, tangent)) * fastAcos(cosN);
+    float jitter = fract(noise * 7.0 + 0.37 * float(slice)) * 0.999 + 0.001;
+    // The lowest that a horizon can be is the surface itself.
+    float right = horizon(place, centre, toEye, direction, reach, jitter, cos(n + 0.5 * PI), steps);
+    float left = horizon(place, centre, toEye, -direction, reach, jitter, cos(n - 0.5 * PI), steps);
+    float hRight = n + min(fastAcos(right) - n, 0.5 * PI);
+    float hLeft = n + max(-fastAcos(left) - n, -0.5 * PI);
+    sum += weight * (openArc(hRight, n) + openArc(hLeft, n));
+  }
+  float open = saturate(sum / float(SLICES));
+  f_open = metres < NO_SURFACE ? saturate(1.0 - u_reach.y * (1.0 - open)) : 1.0;
+}

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Averages the noise of 4 x 4 pixels out, without mixing surfaces that lie apart in depth.
+//
+// SCALE  1 or 2: pixels of the scene to one of the target, along each axis
+
+layout(binding = 0) uniform sampler2D u_open;
+layout(binding = 1) uniform sampler2D u_depth;
+layout(location = 0) uniform float u_range;  // metres of depth that still mix
+
+layout(location = 0) out float f_open;
+
+float depthAt(ivec2 pixel) {
+  return texelFetch(u_depth, min(pixel * SCALE, textureSize(u_depth, 0) - 1), 0).r;
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  ivec2 last = textureSize(u_open, 0) - 1;
+  float centre = depthAt(pixel);
+  float sum = 0.0;
+  float weight = 0.0;
+  for (int y = -2; y < 2; ++y) {
+    for (int x = -2; x < 2; ++x) {
+      ivec2 at = clamp(pixel + ivec2(x, y), ivec2(0), last);
+      float w = max(1.0 - abs(depthAt(at) - centre) / u_range, 0.0);
+      sum += w * texelFetch(u_open, at, 0).r;
+      weight += w;
+    }
+  }
+  f_open = weight > 0.0 ? sum / weight : texelFetch(u_open, pixel, 0).r;
+}
