@@ -61,14 +61,18 @@ TEST(DiffusionReference, ConstantLightStaysAndNothingCrossesTheMask) {
 // A sphere above a plane hides (n . d) (r / |d|)^2 of a point's cosine-weighted sky.
 TEST(RayCastReference, OpennessUnderASphereIsTheClosedForm) {
   const SphereOnPlane scene{{0.0, 0.12, 0.0}, 0.1};
+  const auto within = [](double reach) {
+    return [reach](double distance) { return distance <= reach ? 1.0 : 0.0; };
+  };
   for (const double x : {0.0, 0.1, 0.3}) {
     const double distance2 = x * x + 0.12 * 0.12;
     const double hidden = 0.12 / std::sqrt(distance2) * 0.01 / distance2;
-    EXPECT_NEAR(Openness(scene, {x, 0.0, 0.0}, {0, 1, 0}, 10.0, 20000), 1.0 - hidden, 5e-3) << x;
+    EXPECT_NEAR(Openness(scene, {x, 0.0, 0.0}, {0, 1, 0}, within(10.0), 20000), 1.0 - hidden, 5e-3)
+        << x;
   }
   // Beyond reach, nothing hides; and the plane hides half of what the sphere's side sees.
-  EXPECT_EQ(Openness(scene, {0.0, 0.0, 0.0}, {0, 1, 0}, 0.019, 1000), 1.0);
-  EXPECT_NEAR(Openness(scene, {0.1, 0.12, 0.0}, {1, 0, 0}, 1e9, 20000), 0.5, 5e-3);
+  EXPECT_EQ(Openness(scene, {0.0, 0.0, 0.0}, {0, 1, 0}, within(0.019), 1000), 1.0);
+  EXPECT_NEAR(Openness(scene, {0.1, 0.12, 0.0}, {1, 0, 0}, within(1e9), 20000), 0.5, 5e-3);
 }
 
 TEST(RayCastReference, TheShadowFallsAwayFromTheLight) {

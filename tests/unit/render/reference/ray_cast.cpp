@@ -45,12 +45,12 @@ bool SeesLight(const SphereOnPlane& scene, const glm::dvec3& point, const glm::d
 }
 
 double Openness(const SphereOnPlane& scene, const glm::dvec3& point, const glm::dvec3& normal,
-                double reach, int rays) {
+                const std::function<double(double)>& hides, int rays) {
   const glm::dvec3 side = std::abs(normal.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
   const glm::dvec3 tangent = glm::normalize(glm::cross(side, normal));
   const glm::dvec3 bitangent = glm::cross(normal, tangent);
   const double golden_angle = glm::pi<double>() * (3.0 - std::sqrt(5.0));
-  int open = 0;
+  double open = 0.0;
   for (int i = 0; i < rays; ++i) {
     // Points spread evenly over the unit disc, lifted to the hemisphere: cosine-weighted (Malley).
     const double share = (i + 0.5) / rays;
@@ -58,9 +58,10 @@ double Openness(const SphereOnPlane& scene, const glm::dvec3& point, const glm::
     const glm::dvec3 direction = radius * std::cos(golden_angle * i) * tangent +
                                  radius * std::sin(golden_angle * i) * bitangent +
                                  std::sqrt(1.0 - share) * normal;
-    if (RayDistance(scene, point + kLift * normal, direction) > reach) ++open;
+    const double distance = RayDistance(scene, point + kLift * normal, direction);
+    open += std::isfinite(distance) ? 1.0 - hides(distance) : 1.0;
   }
-  return static_cast<double>(open) / rays;
+  return open / rays;
 }
 
 }  // namespace furrow::render::test

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+
 #include <glm/vec3.hpp>
 
 namespace furrow::render::test {
@@ -19,9 +21,10 @@ struct SphereOnPlane {
 [[nodiscard]] bool SeesLight(const SphereOnPlane& scene, const glm::dvec3& point,
                              const glm::dvec3& normal, const glm::dvec3& to_light);
 
-// Share of the cosine-weighted hemisphere over a point of a surface that is open: no surface within
-// `reach` metres. By `rays` rays.
+// Share of the cosine-weighted hemisphere over a point of a surface that is open, by `rays` rays.
+// `hides`: how much of a ray a surface takes at a distance in metres, [0, 1].
 [[nodiscard]] double Openness(const SphereOnPlane& scene, const glm::dvec3& point,
-                              const glm::dvec3& normal, double reach, int rays);
+                              const glm::dvec3& normal, const std::function<double(double)>& hides,
+                              int rays);
 
 }  // namespace furrow::render::test
