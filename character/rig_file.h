@@ -35,6 +35,8 @@ namespace furrow::character {
 
 // The rig as JSON that ParseRig() reads back equal; reference poses are written inline.
 [[nodiscard]] std::string RigToJson(const wrinkle::Rig& rig);
+// One entry of `drivers`, to be pasted into a rig.
+[[nodiscard]] std::string DriverToJson(const wrinkle::Driver& driver);
 // RigToJson() into a file, atomically.
 [[nodiscard]] Status SaveRig(const wrinkle::Rig& rig, const std::filesystem::path& path);
 

@@ -294,6 +294,8 @@ std::string ToJson(const std::vector<wrinkle::Export>& group) {
 
 }  // namespace
 
+std::string DriverToJson(const wrinkle::Driver& driver) { return ToJson(driver) + "\n"; }
+
 std::string RigToJson(const Rig& rig) {
   const auto each = [](const auto& entry) { return ToJson(entry); };
   Object object;

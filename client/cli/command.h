@@ -18,6 +18,7 @@ using Action = std::function<int()>;
 void AddSolve(CLI::App& app, Action& action);
 void AddRender(CLI::App& app, Action& action);
 void AddRig(CLI::App& app, Action& action);
+void AddRigPatch(CLI::App& rig_group, Action& action);  // `furrow rig patch`
 void AddConvert(CLI::App& app, Action& action);
 void AddCharacter(CLI::App& app, Action& action);
 void AddBake(CLI::App& app, Action& action);

@@ -107,10 +107,12 @@ void AddExplain(CLI::App& group, Action& action) {
 }  // namespace
 
 void AddRig(CLI::App& app, Action& action) {
-  CLI::App* group = app.add_subcommand("rig", "Wrinkle rigs: check one, explain its weights");
+  CLI::App* group =
+      app.add_subcommand("rig", "Wrinkle rigs: check one, explain its weights, cut a patch for it");
   group->require_subcommand(1);
   AddCheck(*group, action);
   AddExplain(*group, action);
+  AddRigPatch(*group, action);
 }
 
 }  // namespace furrow::cli

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/rig_patch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include <glm/geometric.hpp>
+
+#include "wrinkle/retarget.h"
+#include "wrinkle/rig_check.h"
+
+namespace furrow::character {
+namespace {
+
+constexpr float kLeastSkinWeight = 1e-3f;
+
+// Digits that say something: a hundredth of a millimetre, a ten-thousandth of a skin weight.
+float Rounded(float value, float steps) { return std::round(value * steps) / steps; }
+
+bool Wrinkles(const Character& character, const Mesh& mesh) {
+  if (mesh.material < 0) return true;
+  const Material::Kind kind = character.materials[static_cast<std::size_t>(mesh.material)].kind;
+  return kind != Material::Kind::kEye && kind != Material::Kind::kHair;
+}
+
+struct Piece {
+  const Mesh* mesh = nullptr;
+  std::size_t first = 0;  // into its indices
+  float distance = 0.0f;  // of the middle from the centre
+};
+
+// Vertices of UV seams stand at one place: they count as one.
+using Place = std::tuple<float, float, float>;
+Place PlaceOf(const glm::vec3& p) { return {p.x, p.y, p.z}; }
+
+class PatchCutter {
+ public:
+  PatchCutter(const Character& character, const PatchOptions& options)
+      : character_(character), options_(options) {}
+
+  Result<wrinkle::Driver> Run() {
+    if (Status s = FindCentre(); !s.ok()) return s;
+    CollectPieces();
+    KeepConnected();
+    wrinkle::Driver driver;
+    driver.name = options_.name;
+    driver.kind = wrinkle::Driver::Kind::kStrain;
+    strain_ = &driver.strain;
+    strain_->direction = options_.direction;
+    strain_->full_compression = options_.full_compression;
+    strain_->size = wrinkle::SkeletonSize(character_.skeleton);
+    for (const Piece& piece : pieces_) AddPiece(piece);
+    if (strain_->joints.size() < 2) {
+      return Status(
+          StatusCode::kInvalidArgument,
+          "the surface there follows " +
+              (strain_->joints.empty() ? std::string("no joint")
+                                       : "joint '" + strain_->joints.front() + "' alone") +
+              ": no pose can compress it",
+          character_.name, "choose a place that several joints move");
+    }
+    MeasureFromBase();
+    wrinkle::Rig rig;
+    rig.drivers = {driver};
+    if (Status s = wrinkle::CheckRigFields(rig); !s.ok()) return s;
+    return driver;
+  }
+
+ private:
+  bool IsMeant(const Mesh& mesh) const {
+    return options_.mesh.empty() ? Wrinkles(character_, mesh) : mesh.name == options_.mesh;
+  }
+
+  // The vertex that is nearest to the point that was asked for.
+  Status FindCentre() {
+    float nearest = std::numeric_limits<float>::max();
+    bool any = false;
+    for (const Mesh& mesh : character_.meshes) {
+      if (!IsMeant(mesh)) continue;
+      any = true;
+      for (const Vertex& vertex : mesh.vertices) {
+        const float distance = glm::distance(vertex.position, options_.centre);
+        if (distance >= nearest) continue;
+        nearest = distance;
+        centre_ = vertex.position;
+      }
+    }
+    if (!any) {
+      return {StatusCode::kNotFound,
+              options_.mesh.empty() ? "the character has no skin and no cloth"
+                                    : "there is no mesh '" + options_.mesh + "'",
+              character_.name};
+    }
+    if (nearest <= std::max(options_.radius, 0.02f)) return {};
+    char text[96];
+    std::snprintf(text, sizeof(text), "no surface is there; the nearest is at %.4f,%.4f,%.4f",
+                  static_cast<double>(centre_.x), static_cast<double>(centre_.y),
+                  static_cast<double>(centre_.z));
+    return {StatusCode::kNotFound, text, character_.name, "lengths are metres, at rest"};
+  }
+
+  void CollectPieces() {
+    for (const Mesh& mesh : character_.meshes) {
+      if (!IsMeant(mesh)) continue;
+      for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        glm::vec3 middle(0.0f);
+        for (std::size_t k = 0; k < 3; ++k) middle += At(mesh, i + k).position / 3.0f;
+        const float distance = glm::distance(middle, centre_);
+        if (distance <= options_.radius) pieces_.push_back({&mesh, i, distance});
+      }
+    }
+    std::stable_sort(pieces_.begin(), pieces_.end(),
+                     [](const Piece& a, const Piece& b) { return a.distance < b.distance; });
+  }
+
+  static const Vertex& At(const Mesh& mesh, std::size_t index) {
+    return mesh.vertices[mesh.indices[index]];
+  }
+
+  // Grows from the nearest triangle over shared corners, nearest first, within a driver's limits.
+  void KeepConnected() {
+    std::vector<Piece> kept;
+    std::set<Place> places;
+    std::vector<bool> taken(pieces_.size());
+    for (bool grew = true; grew && kept.size() < wrinkle::kMaxPatchTriangles;) {
+      grew = false;
+      for (std::size_t i = 0; i < pieces_.size(); ++i) {
+        if (taken[i] || kept.size() >= wrinkle::kMaxPatchTriangles) continue;
+        std::set<Place> fresh;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Place place = PlaceOf(At(*pieces_[i].mesh, pieces_[i].first + k).position);
+          if (!places.contains(place)) fresh.insert(place);
+        }
+        if (!kept.empty() && fresh.size() == 3) continue;  // not connected yet
+        if (places.size() + fresh.size() > wrinkle::kMaxPatchVertices) continue;
+        taken[i] = true;
+        grew = true;
+        kept.push_back(pieces_[i]);
+        places.insert(fresh.begin(), fresh.end());
+      }
+    }
+    pieces_ = std::move(kept);
+  }
+
+  void AddPiece(const Piece& piece) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vertex& vertex = At(*piece.mesh, piece.first + k);
+      const auto [there, is_new] =
+          index_.emplace(PlaceOf(vertex.position), static_cast<int>(strain_->vertices.size()));
+      if (is_new) AddVertex(vertex);
+      strain_->triangles.push_back(there->second);
+    }
+  }
+
+  void AddVertex(const Vertex& from) {
+    wrinkle::StrainDriver::Vertex& to = strain_->vertices.emplace_back();
+    to.position = from.position;
+    float sum = 0.0f;
+    for (int i = 0; i < 4; ++i) {
+      if (from.skin_weights[i] < kLeastSkinWeight) continue;
+      to.joints.push_back(JointIndex(from.joints[i]));
+      to.skin_weights.push_back(from.skin_weights[i]);
+      pull_[from.joints[i]] += from.skin_weights[i];
+      sum += from.skin_weights[i];
+    }
+    for (float& skin_weight : to.skin_weights) skin_weight = Rounded(skin_weight / sum, 1e4f);
+  }
+
+  int JointIndex(int joint) {
+    const std::string& name = character_.skeleton.joint_names()[static_cast<std::size_t>(joint)];
+    auto& names = strain_->joints;
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return static_cast<int>(found - names.begin());
+    names.push_back(name);
+    return static_cast<int>(names.size()) - 1;
+  }
+
+  // The rig's anchor where it carries the patch, else what moves the patch most.
+  int Base() const {
+    const int anchor = character_.skeleton.Find(character_.rig.anchor);
+    const bool carries = anchor != wrinkle::kNoJoint &&
+                         std::all_of(pull_.begin(), pull_.end(), [&](const auto& pull) {
+                           return character_.skeleton.IsAncestor(anchor, pull.first);
+                         });
+    if (carries) return anchor;
+    return std::max_element(pull_.begin(), pull_.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->first;
+  }
+
+  void MeasureFromBase() {
+    const int base = Base();
+    strain_->joint = character_.skeleton.joint_names()[static_cast<std::size_t>(base)];
+    const glm::vec3 origin = character_.skeleton.rest_model()[static_cast<std::size_t>(base)][3];
+    for (wrinkle::StrainDriver::Vertex& vertex : strain_->vertices) {
+      for (int axis = 0; axis < 3; ++axis) {
+        vertex.position[axis] = Rounded(vertex.position[axis] - origin[axis], 1e5f);
+      }
+    }
+  }
+
+  const Character& character_;
+  const PatchOptions& options_;
+  glm::vec3 centre_{0.0f};
+  std::vector<Piece> pieces_;
+  wrinkle::StrainDriver* strain_ = nullptr;
+  std::map<Place, int> index_;
+  std::map<int, float> pull_;  // joint -> sum of its skin weights
+};
+
+float MaskAt(const Picture& picture, const glm::vec2& uv, int channel) {
+  if (channel >= picture.channels) return 0.0f;
+  const auto texel = [](float t, int size) {
+    return std::min(static_cast<int>((t - std::floor(t)) * static_cast<float>(size)), size - 1);
+  };
+  const std::size_t i = (static_cast<std::size_t>(texel(uv.y, picture.height)) * picture.width +
+                         static_cast<std::size_t>(texel(uv.x, picture.width))) *
+                            static_cast<std::size_t>(picture.channels) +
+                        static_cast<std::size_t>(channel);
+  if (!picture.pixels_float.empty()) return picture.pixels_float[i];
+  if (!picture.pixels16.empty()) return static_cast<float>(picture.pixels16[i]) / 65535.0f;
+  return static_cast<float>(picture.pixels[i]) / 255.0f;
+}
+
+// What a region's maps are drawn on; kOther stands for anything.
+Material::Kind SurfaceOf(const wrinkle::Rig& rig, const wrinkle::Region& region) {
+  using Surface = wrinkle::WrinkleMap::Surface;
+  for (const wrinkle::Feed& feed : region.feeds) {
+    for (const wrinkle::WrinkleMap& map : rig.wrinkle_maps) {
+      if (map.name != feed.map || map.surface == Surface::kAny) continue;
+      return map.surface == Surface::kCloth ? Material::Kind::kCloth : Material::Kind::kSkin;
+    }
+  }
+  return Material::Kind::kOther;
+}
+
+bool IsKind(const Character& character, const Mesh& mesh, Material::Kind kind) {
+  return kind == Material::Kind::kOther || mesh.material < 0 ||
+         character.materials[static_cast<std::size_t>(mesh.material)].kind == kind;
+}
+
+}  // namespace
+
+Result<wrinkle::Driver> CutPatch(const Character& character, const PatchOptions& options) {
+  return PatchCutter(character, options).Run();
+}
+
+Result<glm::vec3> PlaceOfJoint(const Character& character, const std::string& joint) {
+  const int index = character.skeleton.Find(joint);
+  if (index == wrinkle::kNoJoint) {
+    return Status(StatusCode::kNotFound, "there is no joint '" + joint + "'", character.name);
+  }
+  return glm::vec3(character.skeleton.rest_model()[static_cast<std::size_t>(index)][3]);
+}
+
+Result<glm::vec3> PlaceOfRegion(const Character& character, const std::string& region) {
+  for (const wrinkle::Region& candidate : character.rig.regions) {
+    if (candidate.name != region) continue;
+    const Material::Kind kind = SurfaceOf(character.rig, candidate);
+    const int picture = character.FindRigPicture(candidate.mask.texture);
+    if (picture < 0) {
+      return Status(StatusCode::kNotFound, "region '" + region + "' has no mask picture",
+                    character.name, "say where with --around or --joint");
+    }
+    glm::vec3 sum(0.0f);
+    float weight = 0.0f;
+    for (const Mesh& mesh : character.meshes) {
+      if (!Wrinkles(character, mesh) || !IsKind(character, mesh, kind)) continue;
+      for (const Vertex& vertex : mesh.vertices) {
+        const float mask = MaskAt(character.pictures[static_cast<std::size_t>(picture)], vertex.uv,
+                                  candidate.mask.channel);
+        sum += mask * vertex.position;
+        weight += mask;
+      }
+    }
+    if (weight > 0.0f) return sum / weight;
+    return Status(StatusCode::kNotFound, "the mask of region '" + region + "' covers nothing",
+                  character.name);
+  }
+  return Status(StatusCode::kNotFound, "the rig has no region '" + region + "'", character.name);
+}
+
+}  // namespace furrow::character
