@@ -12,10 +12,13 @@
 #include "character/asset_path.h"
 #include "character/bake/strokes_file.h"
 #include "character/generator/body_mesh.h"
+#include "character/generator/body_shape.h"
 #include "character/generator/body_skeleton.h"
+#include "character/generator/cloth_texture.h"
 #include "character/generator/head_mesh.h"
 #include "character/generator/mesh_tools.h"
 #include "character/generator/recordings.h"
+#include "character/generator/skin_paint.h"
 #include "character/generator/skinning.h"
 #include "character/generator/textures.h"
 #include "character/generator/wrinkle_maps.h"
@@ -26,24 +29,24 @@
 namespace furrow::character::generator {
 namespace {
 
-int AddPicture(Character *character, Picture picture) {
+int AddPicture(Character* character, Picture picture) {
   character->pictures.push_back(std::move(picture));
   return static_cast<int>(character->pictures.size()) - 1;
 }
 
-void AddRigPicture(Character *character, const char *name, Picture picture) {
+void AddRigPicture(Character* character, const char* name, Picture picture) {
   picture.name = name;
   const int index = AddPicture(character, std::move(picture));
   character->rig_pictures.emplace_back(name, index);
 }
 
-void AddMesh(Character *character, Mesh mesh, Material material) {
+void AddMesh(Character* character, Mesh mesh, Material material) {
   mesh.material = static_cast<int>(character->materials.size());
   character->materials.push_back(std::move(material));
   character->meshes.push_back(std::move(mesh));
 }
 
-Material MakeMaterial(const char *name, Material::Kind kind, float roughness) {
+Material MakeMaterial(const char* name, Material::Kind kind, float roughness) {
   Material material;
   material.name = name;
   material.kind = kind;
@@ -51,151 +54,144 @@ Material MakeMaterial(const char *name, Material::Kind kind, float roughness) {
   return material;
 }
 
-Mesh SkinnedPart(const wrinkle::Skeleton &skeleton, HeadMesh part) {
+Mesh SkinnedPart(const wrinkle::Skeleton& skeleton, HeadMesh part) {
   SkinHead(skeleton, &part);
   return std::move(part.mesh);
 }
 
-void AddSkin(const CharacterOptions &options, Character *character) {
-  Mesh skin = SkinnedPart(character->skeleton, MakeHeadSkin());
-  AddHands(character->skeleton, &skin);
+void AddSkin(const CharacterOptions& options, const HeadShape& shape, const BodyShape& body,
+             Character* character) {
+  Mesh skin = SkinnedPart(character->skeleton, MakeHeadSkin(shape, options.level));
+  AddHands(body, &skin);
   FinishSurface(&skin);
   const int size = options.texture_size;
-  Material material = MakeMaterial("skin", Material::Kind::kSkin, 0.5f);
-  material.base_colour_texture =
-      AddPicture(character, PaintSkinColour(skin, size));
-  material.normal_texture = AddPicture(character, PaintSkinNormals(skin, size));
+  Material material = MakeMaterial("skin", Material::Kind::kSkin, 1.0f);
+  material.base_colour_texture = AddPicture(character, PaintSkinColour(skin, shape, size));
+  material.normal_texture = AddPicture(character, PaintSkinNormals(skin, shape, size));
+  material.roughness_texture = AddPicture(character, PaintSkinRoughness(skin, size / 2));
+  material.thickness = kFullThickness;
+  material.thickness_texture = AddPicture(character, PaintSkinThickness(skin, shape, size / 4));
   AddRigPicture(character, "face_masks_a", PaintMasksA(skin, size / 2));
   AddRigPicture(character, "face_masks_b", PaintMasksB(skin, size / 2));
   AddMesh(character, std::move(skin), std::move(material));
 }
 
-void AddHeadParts(const CharacterOptions &options, Character *character) {
+void AddHeadParts(const CharacterOptions& options, const HeadShape& shape, Character* character) {
   Material eyes = MakeMaterial("eyes", Material::Kind::kEye, 0.12f);
-  eyes.base_colour_texture =
-      AddPicture(character, PaintEyes(options.texture_size / 2));
-  AddMesh(character, SkinnedPart(character->skeleton, MakeEyes()),
-          std::move(eyes));
+  eyes.base_colour_texture = AddPicture(character, PaintEyes(options.texture_size / 2));
+  AddMesh(character, SkinnedPart(character->skeleton, MakeEyes()), std::move(eyes));
 
-  Mesh hair = SkinnedPart(character->skeleton, MakeHair());
+  Mesh hair = SkinnedPart(character->skeleton, MakeHair(shape));
   Material strands = MakeMaterial("hair", Material::Kind::kHair, 0.55f);
+  strands.double_sided = true;
   strands.base_colour_texture =
-      AddPicture(character, PaintHairColour(hair, options.texture_size / 2));
+      AddPicture(character, PaintHairColour(hair, options.face, options.texture_size));
   AddMesh(character, std::move(hair), std::move(strands));
 
   Material lashes = MakeMaterial("lashes", Material::Kind::kHair, 0.7f);
   lashes.base_colour = glm::vec4(0.012f, 0.008f, 0.006f, 1.0f);
   lashes.double_sided = true;
-  AddMesh(character, SkinnedPart(character->skeleton, MakeLashes()),
-          std::move(lashes));
+  AddMesh(character, SkinnedPart(character->skeleton, MakeLashes(shape)), std::move(lashes));
 
   Material teeth = MakeMaterial("teeth", Material::Kind::kOther, 0.3f);
-  teeth.base_colour = glm::vec4(0.58f, 0.53f, 0.44f, 1.0f);
-  AddMesh(character, SkinnedPart(character->skeleton, MakeTeeth()),
-          std::move(teeth));
+  Mesh rows = SkinnedPart(character->skeleton, MakeTeeth());
+  teeth.base_colour_texture =
+      AddPicture(character, PaintTeeth(rows, options.face, options.texture_size / 2));
+  AddMesh(character, std::move(rows), std::move(teeth));
 }
 
-void AddClothes(const CharacterOptions &options, Character *character) {
-  Mesh clothes = MakeClothes(character->skeleton);
+void AddClothes(const CharacterOptions& options, const BodyShape& shape, Character* character) {
+  Clothes clothes = MakeClothes(shape);
   Material cloth = MakeMaterial("cloth", Material::Kind::kCloth, 0.85f);
   const int size = options.texture_size;
   cloth.base_colour_texture =
-      AddPicture(character, PaintClothColour(clothes, size));
-  AddMesh(character, std::move(clothes), std::move(cloth));
+      AddPicture(character, PaintClothColour(clothes, options.body, 2 * size));
+  cloth.normal_texture = AddPicture(character, PaintClothNormals(clothes, 2 * size));
+  cloth.roughness_texture = AddPicture(character, PaintClothRoughness(clothes, size));
+  for (Picture& mask : PaintClothMasks(clothes, size / 2)) {
+    const std::string name = mask.name;
+    AddRigPicture(character, name.c_str(), std::move(mask));
+  }
+  AddMesh(character, std::move(clothes.mesh), std::move(cloth));
 
-  Material leather = MakeMaterial("shoes", Material::Kind::kOther, 0.45f);
+  Material leather = MakeMaterial("leather", Material::Kind::kOther, 0.45f);
   leather.base_colour = glm::vec4(0.035f, 0.022f, 0.015f, 1.0f);
-  AddMesh(character, MakeShoes(character->skeleton), std::move(leather));
+  AddMesh(character, MakeLeather(shape), std::move(leather));
 }
 
-Status CopyRigs(const std::filesystem::path &rigs,
-                const std::filesystem::path &share) {
+Status CopyRigs(const std::filesystem::path& rigs, const std::filesystem::path& share) {
   constexpr std::size_t kMaxRig = 16u << 20;
   std::vector<std::filesystem::path> files;
-  for (const auto &entry : std::filesystem::directory_iterator(rigs)) {
-    if (entry.path().extension() == ".json")
-      files.push_back(entry.path());
+  for (const auto& entry : std::filesystem::directory_iterator(rigs)) {
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
-  for (const std::filesystem::path &file : files) {
+  for (const std::filesystem::path& file : files) {
     Result<std::string> text = ReadFile(file, kMaxRig);
-    if (!text.ok())
-      return text.status();
-    const auto write = [&](const std::filesystem::path &to) {
+    if (!text.ok()) return text.status();
+    const auto write = [&](const std::filesystem::path& to) {
       return WriteFileAtomically(to, text.value());
     };
-    if (Status status = write(share / "rigs" / file.filename()); !status.ok())
-      return status;
-    if (file.stem() != "default")
-      continue;
-    if (Status status = write(share / "default.rig.json"); !status.ok())
-      return status;
+    if (Status status = write(share / "rigs" / file.filename()); !status.ok()) return status;
+    if (file.stem() != "default") continue;
+    if (Status status = write(share / "default.rig.json"); !status.ok()) return status;
   }
   return Status();
 }
 
-Status WriteRecordings(const wrinkle::Rig &rig,
-                       const wrinkle::Skeleton &skeleton,
-                       const std::filesystem::path &folder) {
-  for (const std::string &name : RecordingNames()) {
+Status WriteRecordings(const wrinkle::Rig& rig, const wrinkle::Skeleton& skeleton,
+                       const std::filesystem::path& folder) {
+  for (const std::string& name : RecordingNames()) {
     Result<Recording> recording = MakeRecording(name, rig, skeleton);
-    if (!recording.ok())
-      return recording.status();
+    if (!recording.ok()) return recording.status();
     const std::string text = RecordingToBvh(recording.value(), skeleton);
-    if (Status status = WriteFileAtomically(folder / (name + ".bvh"), text);
-        !status.ok()) {
+    if (Status status = WriteFileAtomically(folder / (name + ".bvh"), text); !status.ok()) {
       return status;
     }
   }
   return Status();
 }
 
-} // namespace
+}  // namespace
 
-Character MakeDefaultCharacter(const wrinkle::Rig &rig,
-                               const CharacterOptions &options) {
+Character MakeDefaultCharacter(const wrinkle::Rig& rig, const CharacterOptions& options) {
   Character character;
   character.name = "default";
   character.skeleton = MakeSkeleton();
   character.rig = rig;
-  for (const glm::mat4 &model : character.skeleton.rest_model()) {
+  for (const glm::mat4& model : character.skeleton.rest_model()) {
     character.inverse_bind_matrices.push_back(
         glm::translate(glm::mat4(1.0f), -glm::vec3(model[3])));
   }
-  AddSkin(options, &character);
-  AddHeadParts(options, &character);
-  AddClothes(options, &character);
+  const HeadShape shape(options.face);
+  const BodyShape body(options.body, character.skeleton, shape);
+  AddSkin(options, shape, body, &character);
+  AddHeadParts(options, shape, &character);
+  AddClothes(options, body, &character);
   return character;
 }
 
-Status WriteShare(const std::filesystem::path &rigs,
-                  const std::filesystem::path &share) {
+Status WriteShare(const std::filesystem::path& rigs, const std::filesystem::path& share) {
   std::error_code error;
   std::filesystem::create_directories(share / "rigs", error);
   std::filesystem::create_directories(share / "recordings", error);
-  if (error)
-    return Status(StatusCode::kIo, "cannot make the folder: " + error.message(),
-                  share);
+  if (error) return Status(StatusCode::kIo, "cannot make the folder: " + error.message(), share);
   Result<wrinkle::Rig> rig = LoadRig(rigs / "default.json");
-  if (!rig.ok())
-    return rig.status();
+  if (!rig.ok()) return rig.status();
   Result<std::vector<bake::BakeStroke>> strokes =
       bake::LoadStrokes(rigs / "default.strokes.json", rig.value());
-  if (!strokes.ok())
-    return strokes.status();
+  if (!strokes.ok()) return strokes.status();
   const CharacterOptions options;
   Character character = MakeDefaultCharacter(rig.value(), options);
   if (Status status = AddWrinkleMaps(strokes.value(), options.texture_size,
-                                     1.0f, &character);
+                                     WrinkleDepth(options.face), &character);
       !status.ok()) {
     return status;
   }
-  if (Status status = SaveCharacterGlb(character, share / "default.glb");
-      !status.ok())
+  if (Status status = SaveCharacterGlb(character, share / "default.glb"); !status.ok())
     return status;
-  if (Status status = CopyRigs(rigs, share); !status.ok())
-    return status;
+  if (Status status = CopyRigs(rigs, share); !status.ok()) return status;
   return WriteRecordings(rig.value(), character.skeleton, share / "recordings");
 }
 
-} // namespace furrow::character::generator
+}  // namespace furrow::character::generator

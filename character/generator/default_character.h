@@ -4,11 +4,17 @@
 #include <filesystem>
 
 #include "character/character.h"
+#include "character/generator/body_shape.h"
+#include "character/generator/face_parameters.h"
+#include "character/generator/head_grid.h"
 #include "wrinkle/status.h"
 
 namespace furrow::character::generator {
 
 struct CharacterOptions {
+  FaceParameters face;
+  BodyParameters body;
+  int level = kDefaultLevel;  // of detail of the head's mesh, 0 to 2
   int texture_size = 1024;  // of skin, cloth and wrinkle maps; masks, eyes and hair take half
 };
 

@@ -89,7 +89,7 @@ constexpr Body kBodies[] = {
     AddLimb("upper lip to the corner", {1.07f, -6.31f, 9.61f}, {2.77f, -6.77f, 8.28f}, 0.40f, 0.28f,
             0.31f),
     CutLimb("philtrum", {0.00f, -5.09f, 9.74f}, {0.00f, -6.00f, 9.86f}, 0.11f, 0.21f, 0.29f),
-    CutLimb("under the lip", {0.00f, -8.55f, 9.92f}, {1.42f, -8.36f, 9.44f}, 0.32f, 0.17f, 0.69f),
+    CutLimb("under the lip", {0.00f, -8.55f, 9.92f}, {1.42f, -8.36f, 9.44f}, 0.24f, 0.12f, 0.69f),
     AddLimb("lower lip", {0.00f, -7.57f, 9.62f}, {0.89f, -7.44f, 9.35f}, 0.49f, 0.45f, 0.46f),
     AddLimb("lower lip to the corner", {1.09f, -7.53f, 9.07f}, {2.71f, -7.11f, 8.18f}, 0.51f, 0.29f,
             0.37f),

@@ -102,13 +102,13 @@ float UpperLid(const HeadVertex& v, float side) {
   return SmoothStep(1.3f, 0.62f, d.y) * std::sqrt(across);
 }
 
-// How much of the corner's muscle the lower lip feels: little in the middle, where it swings with
-// the jaw, all at the corner. An open mouth is then an arc, not a box.
-float CornerHold(const HeadVertex& v) {
-  if (v.mouth_side >= 0.0f) return 1.0f;
-  const float x = std::min(std::abs(v.place.x) / kMouthCornerX, 1.0f);
-  const float arc = 1.0f - std::sqrt(1.0f - x * x);
-  return glm::mix(arc, 1.0f, SmoothStep(kMouthY - 0.8f, kMouthY - 2.2f, v.place.y));
+// How far a vertex belongs to the rims of the mouth, whose weights follow the lips' own curve.
+float LipZone(const HeadVertex& v) {
+  if (v.mouth_side == 0.0f && std::abs(v.place.x) < 0.9f * kMouthCornerX) return 0.0f;
+  const float d = std::abs(v.place.y - kMouthY) / (v.mouth_side > 0.0f ? 1.15f : 1.25f);
+  const float x = std::abs(v.place.x) / kMouthCornerX;
+  return SmoothStep(1.0f, 0.35f, d) * SmoothStep(1.35f, 1.0f, x) *
+         SmoothStep(4.0f, 6.0f, v.place.z);
 }
 
 struct NamedField {
@@ -127,7 +127,6 @@ std::vector<NamedField> MuscleFields(const HeadVertex& v) {
     for (const float side : {1.0f, -1.0f}) {
       if (star == std::string::npos && side < 0.0f) continue;
       float field = Field(muscle, v.place, side);
-      if (name.starts_with("risorius")) field *= CornerHold(v);
       if (field <= 0.0f) continue;
       const char* end = side > 0.0f ? "_l" : "_r";
       fields.push_back({star == std::string::npos ? name : name.substr(0, star) + end, field});
@@ -136,7 +135,21 @@ std::vector<NamedField> MuscleFields(const HeadVertex& v) {
   return fields;
 }
 
-// Face and neck: lids first, then muscles, then chest, neck and jaw of what is left.
+// The rims of the lips: the middle hangs on orbicularis oris, the corner on risorius, and between
+// them one gives way to the other along a parabola, so that a smile is an arc and not a box.
+void WeighLips(const wrinkle::Skeleton& skeleton, const HeadVertex& v, float share,
+               Weights* weights) {
+  const float x = v.place.x / kMouthCornerX;
+  const float corner = std::pow(std::min(std::abs(x), 1.0f), 2.1f);
+  const float left = SmoothStep(-0.35f, 0.35f, x);
+  const std::string oris =
+      v.mouth_side < 0.0f ? "orbicularis_oris_lower" : "orbicularis_oris_upper";
+  weights->Add(skeleton, oris + "_l", share * (1.0f - corner) * left);
+  weights->Add(skeleton, oris + "_r", share * (1.0f - corner) * (1.0f - left));
+  weights->Add(skeleton, x > 0.0f ? "risorius_l" : "risorius_r", share * corner);
+}
+
+// Face and neck: lids first, then lips and muscles, then chest, neck and jaw of what is left.
 void WeighSkin(const wrinkle::Skeleton& skeleton, const HeadVertex& v, Weights* weights) {
   float rest = 1.0f;
   const auto take = [&](const std::string& joint, float share) {
@@ -147,6 +160,9 @@ void WeighSkin(const wrinkle::Skeleton& skeleton, const HeadVertex& v, Weights* 
   take(left ? "orbicularis_oculi_upper_l" : "orbicularis_oculi_upper_r",
        UpperLid(v, left ? 1.0f : -1.0f));
   const float hold = v.part == kMouthInside ? SmoothStep(5.5f, 8.5f, v.place.z) : 1.0f;
+  const float lips = hold * LipZone(v);
+  WeighLips(skeleton, v, rest * lips, weights);
+  rest *= 1.0f - lips;
   const std::vector<NamedField> fields = MuscleFields(v);
   float sum = 0.0f;
   for (const NamedField& field : fields) sum += hold * field.weight;
@@ -171,89 +187,12 @@ void SkinHeadVertex(const wrinkle::Skeleton& skeleton, const HeadVertex& v, Vert
   weights.Store(vertex);
 }
 
-// Blends along a limb: `stops` are (place of a border, half its width) between successive joints.
-struct Border {
-  float at;
-  float half_width;
-};
-
-void Chain(const wrinkle::Skeleton& skeleton, std::span<const std::string> joints,
-           std::span<const Border> borders, float place, float share, Weights* weights) {
-  float rest = share;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    const float beyond = i < borders.size()
-                             ? SmoothStep(borders[i].at - borders[i].half_width,
-                                          borders[i].at + borders[i].half_width, place)
-                             : 0.0f;
-    weights->Add(skeleton, joints[i], rest * (1.0f - beyond));
-    rest *= beyond;
-  }
-}
-
-void SkinTorso(const wrinkle::Skeleton& skeleton, const vec3& p, const std::string& side,
-               Weights* weights) {
-  const std::string joints[] = {"hips", "spine", "chest", "neck"};
-  const Border borders[] = {{1.04f, 0.09f}, {1.2f, 0.10f}, {1.50f, 0.03f}};
-  const float shoulder =
-      0.75f * SmoothStep(0.06f, 0.19f, std::abs(p.x)) * SmoothStep(1.26f, 1.42f, p.y);
-  const float arm = 0.45f * SmoothStep(0.14f, 0.20f, std::abs(p.x)) * SmoothStep(1.24f, 1.36f, p.y);
-  // The hem rides on a thigh that swings forward.
-  const float leg = 0.4f * SmoothStep(0.02f, 0.12f, std::abs(p.x)) * SmoothStep(1.00f, 0.87f, p.y);
-  weights->Add(skeleton, "upper_arm" + side, arm);
-  weights->Add(skeleton, "shoulder" + side, (1.0f - arm) * shoulder);
-  weights->Add(skeleton, "upper_leg" + side, leg);
-  Chain(skeleton, joints, borders, p.y, (1.0f - arm) * (1.0f - shoulder) * (1.0f - leg), weights);
-}
-
-void SkinBodyVertex(const wrinkle::Skeleton& skeleton, BodyPart part, Vertex* vertex) {
-  Weights weights(skeleton);
-  const vec3 p = vertex->position;
-  const std::string side = p.x >= 0.0f ? "_l" : "_r";
-  switch (part) {
-    case BodyPart::kTorso: SkinTorso(skeleton, p, side, &weights); break;
-    case BodyPart::kArm:
-    case BodyPart::kHand: {
-      const std::string joints[] = {"shoulder" + side, "upper_arm" + side, "lower_arm" + side,
-                                    "hand" + side};
-      const Border borders[] = {{0.165f, 0.06f}, {0.455f, 0.055f}, {0.70f, 0.02f}};
-      Chain(skeleton, joints, borders, std::abs(p.x), 1.0f, &weights);
-      break;
-    }
-    case BodyPart::kPelvis: {
-      const float leg =
-          0.5f * SmoothStep(0.02f, 0.12f, std::abs(p.x)) * SmoothStep(0.98f, 0.84f, p.y);
-      weights.Add(skeleton, "upper_leg" + side, leg);
-      const std::string joints[] = {"hips", "spine"};
-      const Border borders[] = {{1.04f, 0.09f}};
-      Chain(skeleton, joints, borders, p.y, 1.0f - leg, &weights);
-      break;
-    }
-    case BodyPart::kLeg: {
-      const std::string joints[] = {"hips", "upper_leg" + side, "lower_leg" + side, "foot" + side};
-      const Border borders[] = {{-0.90f, 0.08f}, {-0.495f, 0.07f}, {-0.075f, 0.02f}};
-      Chain(skeleton, joints, borders, -p.y, 1.0f, &weights);
-      break;
-    }
-    case BodyPart::kShoe: {
-      const std::string joints[] = {"foot" + side, "toes" + side};
-      const Border borders[] = {{0.115f, 0.025f}};
-      Chain(skeleton, joints, borders, p.z, 1.0f, &weights);
-      break;
-    }
-  }
-  weights.Store(vertex);
-}
-
 }  // namespace
 
 void SkinHead(const wrinkle::Skeleton& skeleton, HeadMesh* head) {
   for (std::size_t i = 0; i < head->info.size(); ++i) {
     SkinHeadVertex(skeleton, head->info[i], &head->mesh.vertices[i]);
   }
-}
-
-void SkinBody(const wrinkle::Skeleton& skeleton, BodyPart part, std::span<Vertex> vertices) {
-  for (Vertex& vertex : vertices) SkinBodyVertex(skeleton, part, &vertex);
 }
 
 }  // namespace furrow::character::generator

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
-
 #include "character/character.h"
 #include "character/generator/head_mesh.h"
 #include "wrinkle/skeleton.h"
@@ -12,11 +10,5 @@ namespace furrow::character::generator {
 // Skin weights of the head: the skull and the jaw, the neck below, and over them a soft field about
 // every muscle; lips and lids are told apart by `info`. At most four a vertex, summing to 1.
 void SkinHead(const wrinkle::Skeleton& skeleton, HeadMesh* head);
-
-// What a part of the body hangs on.
-enum class BodyPart { kTorso, kPelvis, kArm, kLeg, kHand, kShoe };
-
-// Skin weights of body vertices [first, end) by where they lie along the limbs.
-void SkinBody(const wrinkle::Skeleton& skeleton, BodyPart part, std::span<Vertex> vertices);
 
 }  // namespace furrow::character::generator

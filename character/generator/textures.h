@@ -2,20 +2,19 @@
 #pragma once
 
 #include "character/character.h"
+#include "character/generator/face_parameters.h"
 
 namespace furrow::character::generator {
 
 // Everything here is painted in model space on the surface that a texel shows, so no seam of the
 // unwrapping can be seen. Colours are sRGB.
 
-// Skin, lips, brows, stubble, the shadow of the hair; the inside of the mouth.
-[[nodiscard]] Picture PaintSkinColour(const Mesh& skin, int size);
-// Pores, finer on nose and cheeks, and the fine creases of the lips: a tangent-space normal map.
-[[nodiscard]] Picture PaintSkinNormals(const Mesh& skin, int size);
 // Iris, pupil, limbus and veined white, both eyes side by side (2 size x size).
 [[nodiscard]] Picture PaintEyes(int size);
 // Strands of hair along the growth.
-[[nodiscard]] Picture PaintHairColour(const Mesh& hair, int size);
+[[nodiscard]] Picture PaintHairColour(const Mesh& hair, const FaceParameters& face, int size);
+// Enamel and gums.
+[[nodiscard]] Picture PaintTeeth(const Mesh& teeth, const FaceParameters& face, int size);
 // Shirt and trousers: weave, seams, belt.
 [[nodiscard]] Picture PaintClothColour(const Mesh& clothes, int size);
 
