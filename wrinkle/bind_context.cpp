@@ -80,7 +80,11 @@ Result<int> BindContext::BlendShape(std::string_view whose, const std::string& n
   for (std::size_t i = 0; i < blend_shape_names_.size(); ++i) {
     if (EqualsIgnoreCase(blend_shape_names_[i], name)) return static_cast<int>(i);
   }
-  if (!options_.allow_missing) {
+  // A rig that reads joints, too, is not let down by a stream that has joints alone.
+  const bool reads_joints =
+      std::any_of(rig_.drivers.begin(), rig_.drivers.end(),
+                  [](const Driver& driver) { return driver.kind != Driver::Kind::kBlendShape; });
+  if (!options_.allow_missing && !(blend_shape_names_.empty() && reads_joints)) {
     return Status(StatusCode::kNotFound,
                   std::string(whose) + ": blend shape '" + name + "' is not among the stream's");
   }

@@ -27,7 +27,8 @@ class BindContext {
   // `whose` is "driver 'x'", `field` its field.
   [[nodiscard]] Result<int> Joint(std::string_view whose, std::string_view field,
                                   const std::string& name);
-  // Index of the blend shape, matched without case; -1 where it is missing and may be.
+  // Index of the blend shape, matched without case; -1 where it is missing and may be. It may where
+  // a rig reads joints, too, and the stream has no blend shapes at all.
   [[nodiscard]] Result<int> BlendShape(std::string_view whose, const std::string& name);
   // A driver that makes no sense on this skeleton (a bone without length): an error, or where
   // things may be missing a warning and Ok, and the driver rests at 0.

@@ -96,6 +96,7 @@ void RenderThread::Draw(RenderJob job) {
   const Snapshot& snapshot = *job.snapshot;
   const wrinkle::LocalToModelJob to_model{skeleton_, pose_, model_};
   if (snapshot.retarget->Run(snapshot.joints, pose_) != wrinkle::JobStatus::kOk ||
+      snapshot.blend_shape_pose->Run(snapshot.blend_shapes, pose_) != wrinkle::JobStatus::kOk ||
       to_model.Run() != wrinkle::JobStatus::kOk) {
     metrics_->Add(Counter::kPicturesFailed);
     return;

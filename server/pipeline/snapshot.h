@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "wrinkle/blend_shape_pose.h"
 #include "wrinkle/retarget.h"
 #include "wrinkle/solver.h"
 
@@ -18,7 +19,9 @@ struct Snapshot {
   std::int64_t age_us = 0;           // > 0 while weights hold and decay without a pose
   std::shared_ptr<const wrinkle::RigBinding> binding;
   std::shared_ptr<const wrinkle::Retarget> retarget;  // stream's skeleton -> character's
+  std::shared_ptr<const wrinkle::BlendShapePose> blend_shape_pose;
   std::vector<wrinkle::Transform> joints;             // local, of the stream's skeleton
+  std::vector<float> blend_shapes;                    // in the stream's order
   std::vector<float> wrinkle_weights;
   std::vector<float> filtered_values;
 };

@@ -72,6 +72,8 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
   if (character_ != nullptr) {
     definition->retarget = std::make_shared<const wrinkle::Retarget>(
         character::MakeRetarget(match, skeleton, *character_));
+    definition->blend_shape_pose = std::make_shared<const wrinkle::BlendShapePose>(
+        wrinkle::BlendShapePose::Create(*rig_, *character_, blend_shapes));
   }
   definition->binding = std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
   definition->skeleton = std::move(skeleton);
@@ -92,7 +94,8 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
     spdlog::warn("the stream lacks joints of the rig, their drivers rest: {}",
                  Join(missing_joints));
   }
-  if (!missing_shapes.empty()) {
+  // A stream of joints alone is not short of what trackers send.
+  if (!missing_shapes.empty() && !stream.blend_shapes.empty()) {
     spdlog::warn("the stream lacks blend shapes of the rig, their drivers rest: {}",
                  Join(missing_shapes));
   }
@@ -119,6 +122,7 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
   if (!feeds_any) {
     spdlog::warn("the rig reads nothing of the stream: all weights rest; is it the right --rig?");
   }
+  draws_any |= stream.blend_shape_pose != nullptr && !stream.blend_shape_pose->empty();
   if (character_ != nullptr && !draws_any) {
     spdlog::warn(
         "no joint of the stream is one of the character's: pictures show its rest pose; is it the "

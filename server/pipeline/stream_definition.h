@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "character/skeleton_match.h"
+#include "wrinkle/blend_shape_pose.h"
 #include "wrinkle/retarget.h"
 #include "wrinkle/rig.h"
 #include "wrinkle/rig_joints.h"
@@ -30,7 +31,9 @@ struct StreamDefinition {
   std::vector<std::string> blend_shapes;
   std::vector<std::int16_t> joint_of_wire;  // wire index -> index in `skeleton`
   std::shared_ptr<const wrinkle::RigBinding> binding;
-  std::shared_ptr<const wrinkle::Retarget> retarget;  // null where nothing is drawn
+  // What moves the character; null where nothing is drawn.
+  std::shared_ptr<const wrinkle::Retarget> retarget;
+  std::shared_ptr<const wrinkle::BlendShapePose> blend_shape_pose;
 };
 
 // Makes stream definitions and keeps the newest `capacity` of them by skeleton and names: a sender

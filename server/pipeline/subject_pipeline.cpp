@@ -46,7 +46,9 @@ std::shared_ptr<const Snapshot> SubjectPipeline::TakeSnapshot(std::int64_t age_u
   snapshot->age_us = age_us;
   snapshot->binding = stream_->binding;
   snapshot->retarget = stream_->retarget;
+  snapshot->blend_shape_pose = stream_->blend_shape_pose;
   snapshot->joints = pose_.joints;
+  snapshot->blend_shapes = pose_.blend_shapes;
   snapshot->wrinkle_weights.assign(weights.begin(), weights.end());
   snapshot->filtered_values.assign(filtered.begin(), filtered.end());
   return snapshot;
