@@ -164,7 +164,7 @@ class Checker {
       Find(Severity::kError, "uv-missing", where, "all UVs lie in one place",
            "unwrap it without overlaps");
     } else if (uvs.unmapped_triangles > 0) {
-      Find(Severity::kWarning, "uv-overlap", where,
+      Find(Severity::kWarning, "uv-flat", where,
            Count(uvs.unmapped_triangles, "triangle has", "triangles have") + " no area in the UVs",
            "unwrap them, too");
     }
@@ -185,7 +185,7 @@ class Checker {
 
   void CheckPictures() {
     for (const std::string& missing : notes_.missing_pictures) {
-      Find(Severity::kWarning, "picture-missing", {}, "the picture '" + missing + "'",
+      Find(Severity::kWarning, "picture-missing", {}, "the picture " + missing,
            "put it beside the file as PNG or JPEG, or embed it");
     }
   }

@@ -43,11 +43,12 @@ struct CharacterReport {
 //
 // `rig_given`: Character::rig is meant to go with it; where none is, that is a note, not an error.
 //
-// Codes: no-skin, uv-missing, uv-overlap, uv-outside, unskinned-vertices, degenerate-triangles
-// (errors but for the overlaps, which are none before a bake, and uv-outside); weights-sum,
-// normals-missing, picture-missing, units, up-axis, joint-names, no-roles, rig-binding (an error),
-// rig, rig-picture (warnings); weights-truncated, tangents-missing, blend-shapes, roles-missing,
-// no-face-joints, no-rig (notes).
+// Codes
+//   errors    no-skin, uv-missing, unskinned-vertices, degenerate-triangles, rig-binding
+//   warnings  uv-overlap (a bake refuses it), uv-flat, weights-sum, normals-missing,
+//             picture-missing, units, up-axis, joint-names, no-roles, rig, rig-picture
+//   notes     uv-outside, weights-truncated, tangents-missing, blend-shapes, roles-missing,
+//             no-face-joints, no-rig
 [[nodiscard]] CharacterReport CheckCharacter(const Character& character, const SourceNotes& notes,
                                              const SkeletonMaps& maps, bool rig_given);
 

@@ -1,0 +1,188 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Characters from outside: imported, checked, given a rig - and refused, each with one clear error."""
+import json
+import pathlib
+import struct
+import tempfile
+import unittest
+import zlib
+
+from furrow_testing import SHARE, Table, furrow, needs_shared
+
+
+def read_glb(path):
+    data = path.read_bytes()
+    length = struct.unpack_from("<I", data, 12)[0]
+    return json.loads(data[20:20 + length]), data[20 + length + 8:]
+
+
+def write_glb(path, root, binary):
+    text = json.dumps(root).encode()
+    text += b" " * (-len(text) % 4)
+    binary += b"\0" * (-len(binary) % 4)
+    chunks = struct.pack("<I", len(text)) + b"JSON" + text + struct.pack("<I", len(binary)) + b"BIN\0" + binary
+    path.write_bytes(b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks)
+
+
+class CharacterTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.root = pathlib.Path(cls.folder.name)
+        cls.default = SHARE / "default.glb"
+
+    def changed(self, change, name="changed.glb"):
+        """The default character with `change(root, binary)` made to it."""
+        root, binary = read_glb(self.default)
+        binary = bytearray(binary)
+        change(root, binary)
+        path = self.root / name
+        write_glb(path, root, bytes(binary))
+        return path
+
+    def refused(self, path, *says):
+        """Import exits 3 with one line that says what, where, and leaves nothing behind."""
+        out = self.root / "out" / "refused.glb"
+        out.parent.mkdir(exist_ok=True)
+        result = furrow("character", "import", path, "--out", out, check=3)
+        lines = [x for x in result.stderr.decode().splitlines() if not x.startswith(
+            ("furrow: note:", "furrow: warning:"))]
+        self.assertEqual(len(lines), 1, lines)
+        for words in (path.name, *says):
+            self.assertIn(words, lines[0])
+        self.assertEqual(list(out.parent.iterdir()), [])
+
+    def test_default_character_is_usable_and_strictly_so_for_scripts(self):
+        report = json.loads(furrow("character", "check", self.default, "--json", check=0).stdout)
+        self.assertEqual(report["skeleton_map"], "default")
+        self.assertEqual(report["axes"], "up +Y, facing +Z")
+        self.assertFalse([f for f in report["findings"] if f["severity"] == "error"])
+        self.assertIn("0 errors", furrow("character", "check", self.default, check=0).stdout.decode())
+
+    def test_strict_makes_warnings_count(self):
+        def forget_names(root, _):
+            for node in root["nodes"][:3]:
+                del node["name"]
+        path = self.changed(forget_names)
+        self.assertIn(b"[joint-names]", furrow("character", "check", path, check=0).stdout)
+        furrow("character", "check", path, "--strict", check=3)
+
+    def test_imported_default_keeps_its_shape_and_gets_a_rig(self):
+        out = self.root / "again.glb"
+        furrow("character", "import", self.default, "--out", out, check=0)
+        before, after = read_glb(self.default)[0], read_glb(out)[0]
+        names = lambda root: {n["name"] for n in root["nodes"] if not n["name"].startswith("mesh:")}
+        self.assertEqual(names(before), names(after))
+        furrow("rig", "check", out.with_suffix(".rig.json"), check=0)
+
+    def test_proposed_rig_for_cmu_gives_the_weights_of_the_shipped_one(self):
+        recording = needs_shared("cmu", "01_01.bvh")
+        rig = self.root / "proposed.json"
+        furrow("character", "propose-rig", recording, "--out", rig, check=0)
+        furrow("rig", "check", rig, "--skeleton", recording, check=0)
+        solve = lambda r: Table(furrow("solve", recording, "--rig", r, "--drivers", "--no-filter",
+                                       check=0).stdout.decode())
+        proposed, shipped = solve(rig), solve("cmu")
+        for limb in ("knee_l", "knee_r", "elbow_l", "elbow_r"):
+            a, b = proposed.column(f"{limb}.flexed"), shipped.column(f"{limb}.flexed")
+            self.assertGreater(max(b.values()), 0.2)
+            self.assertLess(max(abs(a[f] - b[f]) for f in b), 0.01, limb)
+
+    def test_files_that_are_not_what_they_say(self):
+        text = self.root / "text.fbx"
+        text.write_text("this is no FBX\n" * 100)
+        self.refused(text, "fbx")
+        cut = self.root / "cut.glb"
+        cut.write_bytes(self.default.read_bytes()[:5000])
+        self.refused(cut, "header.length")
+        page = self.root / "page.dae"
+        page.write_text("<html>")
+        self.refused(page, "dae")
+        other = self.root / "readme.txt"
+        other.write_text("hello")
+        self.refused(other, "'.txt'")
+
+    def test_gltf_that_lies_about_its_buffers(self):
+        def position(root):
+            return root["meshes"][0]["primitives"][0]["attributes"]["POSITION"]
+
+        def longer_buffer(root, _):
+            root["buffers"][0]["byteLength"] *= 2
+
+        def view_past_the_end(root, _):
+            root["bufferViews"][3]["byteLength"] = 1 << 30
+
+        def huge_count(root, _):
+            root["accessors"][position(root)]["count"] = 1 << 31
+
+        def wide_stride(root, _):
+            root["bufferViews"][root["accessors"][position(root)]["bufferView"]]["byteStride"] = 252
+
+        def sparse(root, _):
+            root["accessors"][position(root)]["sparse"] = {
+                "count": 1 << 30, "indices": {"bufferView": 0, "componentType": 5125},
+                "values": {"bufferView": 0}}
+
+        for change, words in ((longer_buffer, "json"), (view_past_the_end, "bufferViews[3].byteLength"),
+                              (huge_count, "POSITION"), (wide_stride, "POSITION"), (sparse, "POSITION")):
+            with self.subTest(change.__name__):
+                self.refused(self.changed(change), words)
+
+    def test_meshes_that_cannot_wrinkle(self):
+        def no_uvs(root, _):
+            for mesh in root["meshes"]:
+                del mesh["primitives"][0]["attributes"]["TEXCOORD_0"]
+
+        def unskinned(root, binary):
+            accessor = root["accessors"][root["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"]]
+            at = root["bufferViews"][accessor["bufferView"]]["byteOffset"]
+            binary[at:at + 16] = bytes(16)
+
+        def flat(root, binary):
+            accessor = root["accessors"][root["meshes"][0]["primitives"][0]["indices"]]
+            at = root["bufferViews"][accessor["bufferView"]]["byteOffset"]
+            binary[at:at + 4] = binary[at + 4:at + 8]
+
+        def no_skin(root, _):
+            for node in root["nodes"]:
+                node.pop("skin", None)
+
+        for change, words in ((no_uvs, "no UVs"), (unskinned, "1 vertex follows no joint"),
+                              (flat, "no area"), (no_skin, "skinned")):
+            with self.subTest(change.__name__):
+                path = self.changed(change)
+                self.refused(path, words)
+                furrow("character", "check", path, check=3)
+        for change in (unskinned, flat):
+            with self.subTest(change.__name__ + " repaired"):
+                furrow("character", "import", self.changed(change), "--repair", "--out",
+                       self.root / "repaired.glb", check=0)
+
+    def test_pictures_too_large_are_refused_before_they_are_decoded(self):
+        def huge(root, binary):
+            view = root["bufferViews"][root["images"][0]["bufferView"]]
+            at = view["byteOffset"] + 16  # width and height of a PNG's header
+            binary[at:at + 8] = struct.pack(">II", 60000, 60000)
+            binary[at + 13:at + 17] = struct.pack(">I", zlib.crc32(bytes(binary[at - 4:at + 13])))
+        self.refused(self.changed(huge), "images[0]")
+
+    def test_model_that_lies_on_its_back_in_centimetres_stands_up_in_metres(self):
+        def lay(root, _):
+            root["nodes"].append({"name": "armature", "children": root["scenes"][0]["nodes"],
+                                  "rotation": [0.70710678, 0, 0, 0.70710678], "scale": [100, 100, 100]})
+            root["scenes"][0]["nodes"] = [len(root["nodes"]) - 1]
+        path = self.changed(lay)
+        report = json.loads(furrow("character", "check", path, "--json", check=0).stdout)
+        codes = {f["code"] for f in report["findings"]}
+        self.assertLessEqual({"up-axis", "units"}, codes)
+        out = self.root / "stands.glb"
+        furrow("character", "import", path, "--out", out, check=0)
+        report = json.loads(furrow("character", "check", out, "--json", check=0).stdout)
+        self.assertEqual(report["axes"], "up +Y, facing +Z")
+        self.assertTrue(1.5 < report["height"] < 2.0, report["height"])
+
+
+if __name__ == "__main__":
+    unittest.main()
