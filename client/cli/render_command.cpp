@@ -11,10 +11,13 @@
 #include "client/cli/exit_code.h"
 #include "client/cli/file_output.h"
 #include "client/cli/inputs.h"
+#include "client/cli/picture_settings.h"
 #include "client/cli/pose_clip.h"
 #include "client/cli/progress.h"
 #include "motion/clip.h"
+#include "render/pass_timer.h"
 #include "render/renderer.h"
+#include "wrinkle/blend_shape_pose.h"
 #include "wrinkle/retarget.h"
 #include "wrinkle/solver.h"
 
@@ -29,15 +32,15 @@ struct RenderOptions {
   std::string out;
   std::string character;
   std::string rig;
+  std::string skeleton_map;
   std::string frames;
   std::string size = "640x640";
-  std::string view = "final";
   std::string camera = "face";
   std::string format = "png";
   std::string device;
-  bool wrinkles = true;
-  bool tangent_space = false;
+  PictureOptions picture;
   bool allow_missing = false;
+  bool timings = false;
   int quality = 90;
 };
 
@@ -62,11 +65,6 @@ std::string CheckRange(std::string& text) {
   return "'" + text + "' is not A:B, both included and counted from 0, nor a single A";
 }
 
-std::string CheckView(std::string& text) {
-  const auto view = render::ParseView(text);
-  return view.ok() ? std::string() : view.status().ToString();
-}
-
 // The recording, its solver and the character it is drawn on.
 class Performance {
  public:
@@ -83,6 +81,7 @@ class Performance {
   motion::Clip clip_;
   character::Character character_;
   wrinkle::Retarget retarget_;
+  wrinkle::BlendShapePose blend_shape_pose_;
   std::unique_ptr<wrinkle::SubjectSolver> solver_;
   wrinkle::LocalPose pose_;
   std::vector<wrinkle::Transform> local_;
@@ -99,13 +98,19 @@ Result<std::unique_ptr<Performance>> Performance::Create(const RenderOptions& op
   if (!clip.ok()) return clip.status();
   self->clip_ = std::move(*clip);
 
-  auto binding = wrinkle::RigBinding::Create(self->character_.rig, self->clip_.skeleton,
-                                             self->clip_.blend_shape_names,
-                                             {.allow_missing = options.allow_missing});
+  const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
+  if (!matcher.ok()) return matcher.status();
+  const auto match =
+      matcher->Match(self->clip_.skeleton, self->character_.rig, &self->character_.skeleton);
+  auto binding = wrinkle::RigBinding::Create(
+      self->character_.rig, self->clip_.skeleton, self->clip_.blend_shape_names,
+      {.allow_missing = options.allow_missing, .aliases = match.aliases});
   if (!binding.ok()) return binding.status();
   self->solver_ = std::make_unique<wrinkle::SubjectSolver>(
       std::make_shared<const wrinkle::RigBinding>(std::move(*binding)));
-  self->retarget_ = wrinkle::Retarget::Create(self->clip_.skeleton, self->character_.skeleton);
+  self->retarget_ = character::MakeRetarget(match, self->clip_.skeleton, self->character_.skeleton);
+  self->blend_shape_pose_ = wrinkle::BlendShapePose::Create(
+      self->character_.rig, self->character_.skeleton, self->clip_.blend_shape_names);
   const int joints = self->character_.skeleton.num_joints();
   self->local_.resize(joints);
   self->model_.resize(joints);
@@ -117,6 +122,8 @@ Status Performance::Advance(int frame) {
   const double dt = frame == 0 ? 0.0 : clip_.times[frame] - clip_.times[frame - 1];
   const bool solved = solver_->Update(pose_, dt) == wrinkle::JobStatus::kOk &&
                       retarget_.Run(pose_.joints, local_) == wrinkle::JobStatus::kOk &&
+                      blend_shape_pose_.Run(pose_.blend_shapes, local_) ==
+                          wrinkle::JobStatus::kOk &&
                       wrinkle::LocalToModelJob{&character_.skeleton, local_, model_}.Run() ==
                           wrinkle::JobStatus::kOk;
   if (!solved)
@@ -170,9 +177,28 @@ class PictureSink {
   const RenderOptions& options_;
 };
 
+// A table of the passes in their order: medians over the frames, and their sum.
+void PrintTimings(const std::vector<render::PassTime>& times) {
+  std::vector<std::string> order;
+  std::map<std::string, std::vector<double>> wall_ms;
+  for (const render::PassTime& time : times) {
+    if (wall_ms[time.pass].empty()) order.push_back(time.pass);
+    wall_ms[time.pass].push_back(time.wall_ms);
+  }
+  double sum = 0.0;
+  for (const std::string& pass : order) {
+    std::vector<double>& of_pass = wall_ms[pass];
+    const auto middle = of_pass.begin() + static_cast<std::ptrdiff_t>(of_pass.size() / 2);
+    std::nth_element(of_pass.begin(), middle, of_pass.end());
+    std::printf("%-16s %8.2f ms\n", pass.c_str(), *middle);
+    sum += *middle;
+  }
+  std::printf("%-16s %8.2f ms\n", "frame", sum);
+}
+
 int RenderFile(const RenderOptions& options) {
-  const auto view = render::ParseView(options.view);
-  if (!view.ok()) return Fail(view.status());
+  const auto settings = SettingsOf(options.picture);
+  if (!settings.ok()) return Fail(settings.status());
   auto performance = Performance::Create(options);
   if (!performance.ok()) return Fail(performance.status());
   int first = 0;
@@ -192,6 +218,8 @@ int RenderFile(const RenderOptions& options) {
   fs::create_directories(options.out, error);
   if (error) return Fail({StatusCode::kIo, error.message(), options.out});
 
+  render::PassTimer timer;
+  if (options.timings) (*renderer)->SetObserver(&timer);
   PictureSink sink(**renderer, options);
   Progress progress("rendering", last + 1);
   for (int frame = 0; frame <= last; ++frame) {
@@ -200,15 +228,14 @@ int RenderFile(const RenderOptions& options) {
     progress.Set(frame + 1);
     if (frame < first) continue;
     render::FrameRequest request = (*performance)->Request();
-    request.settings.view = *view;
-    request.settings.wrinkles = options.wrinkles;
-    if (options.tangent_space) request.settings.normal_blend = render::NormalBlend::kTangentSpace;
+    request.settings = *settings;
     request.camera = *camera;
     (void)ParseSize(options.size, &request.width, &request.height);  // checked while parsing
     request.token = static_cast<std::uint64_t>(frame);
     if (Status status = sink.Submit(request); !status.ok()) return Fail(status);
   }
   if (Status status = sink.Finish(); !status.ok()) return Fail(status);
+  if (options.timings) PrintTimings(timer.Take());
   return kDone;
 }
 
@@ -230,15 +257,11 @@ void AddRender(CLI::App& app, Action& action) {
   command->add_option("--character", options->character,
                       "Character package (.glb); default: the one that ships");
   command->add_option("--rig", options->rig, "Wrinkle rig; default: the package's own");
+  AddSkeletonMap(*command, options->skeleton_map);
   command->add_option("--frames", options->frames, "A:B, both included, from 0; default: all")
       ->check(CLI::Validator(CheckRange, ""));
   command->add_option("--size", options->size, "WxH in pixels, 16 to 4096")
       ->check(SizeValidator())
-      ->capture_default_str();
-  command
-      ->add_option("--view", options->view,
-                   "final, normal, mask_dynamic, mask_texture, weights, wireframe")
-      ->check(CLI::Validator(CheckView, ""))
       ->capture_default_str();
   command
       ->add_option("--camera", options->camera, "face, three_quarter, profile, eyes, mouth, body")
@@ -249,11 +272,9 @@ void AddRender(CLI::App& app, Action& action) {
   command->add_option("--quality", options->quality, "JPEG quality")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  const std::map<std::string, bool> switches{{"on", true}, {"off", false}};
-  AddChoice(*command, "--wrinkles", options->wrinkles, switches, "on (default) or off");
-  const std::map<std::string, bool> blends{{"partial_derivative", false}, {"tangent_space", true}};
-  AddChoice(*command, "--normal-blend", options->tangent_space, blends,
-            "partial_derivative (default) or tangent_space");
+  AddPictureOptions(*command, &options->picture);
+  command->add_flag("--timings", options->timings,
+                    "Print what each pass of a frame takes (medians); pictures take longer with it");
   command->add_option("--device", options->device,
                       "EGL device index or 'surfaceless'; default: the first that works");
   command->add_flag("--allow-missing", options->allow_missing,
