@@ -19,7 +19,7 @@ struct Recording {
 
 inline constexpr int kFramesPerSecond = 30;
 
-// "happiness", "anger", "sadness", "disgust", "performance", "walk".
+// "happiness", "anger", "sadness", "disgust", "performance", "conversation", "walk", "squat".
 [[nodiscard]] std::vector<std::string> RecordingNames();
 
 // Plays a recording's script: weights over time of the rig's reference poses (FACS' action units),
