@@ -3,14 +3,17 @@
 """furrow bake: maps, a rig that names them and a report, or one clear error and nothing at all."""
 import json
 import pathlib
+import re
+import shlex
 import signal
 import struct
+import subprocess
 import tempfile
 import time
 import unittest
 import zlib
 
-from furrow_testing import SHARE, furrow, needs_shared, finish, spawn
+from furrow_testing import BIN, GUARD, SHARE, SOURCE, finish, furrow, needs_shared, solve, spawn
 
 DONE, FAILED, USAGE, BAD_INPUT = range(4)
 CELLS = 12
@@ -86,6 +89,14 @@ def rig(down=-0.3 * SIDE, joint="tip", map_name="squash"):
             "regions": [{"name": "all", "mask": {"texture": "mask.png"},
                          "feeds": [{"map": map_name, "sources": [{"from": "press.squash"}]}]}],
             "wrinkle_maps": [{"name": map_name, "surface": "skin"}]}
+
+
+def commands(document):
+    """The lines of a document's shell blocks that begin with furrow, as lists of words."""
+    text = (SOURCE / document).read_text()
+    for language, block in re.findall(r"^```(\w*)\n(.*?)^```", text, re.M | re.S):
+        if language == "sh":
+            yield from (shlex.split(line) for line in block.splitlines() if line.startswith("furrow "))
 
 
 class BakeCase(unittest.TestCase):
@@ -278,7 +289,7 @@ class SheetTest(BakeCase):
 
 class CharactersTest(BakeCase):
     def picture(self, character, *args):
-        """The middle of `furrow render --pose squash`, decoded by nobody: its bytes."""
+        """The bytes of `furrow render --pose squash`."""
         shots = self.root / "shots"
         furrow("render", "--character", character, "--pose", "squash", "--out", shots, "--size", "96x96", *args,
                check=DONE)
@@ -292,6 +303,45 @@ class CharactersTest(BakeCase):
         baked = self.out / "default.rig.json"
         self.assertNotEqual(self.picture(character, "--rig", baked),
                             self.picture(character, "--rig", baked, "--wrinkles", "off"))
+
+    def test_commands_of_the_manual(self):
+        for name in ("default.glb", "default.rig.json"):
+            (self.root / name.replace("default", "face")).symlink_to(SHARE / name)
+            (self.root / name).symlink_to(SHARE / name)
+        seen = 0
+        for words in (*commands("docs/BAKE.md"), *commands("docs/RIG.md")):
+            small = ["--size", "128"] if words[1] == "bake" else []
+            result = subprocess.run([BIN / words[0], *words[1:], *small], cwd=self.root, capture_output=True,
+                                    timeout=GUARD)
+            self.assertEqual(result.returncode, DONE, (words, result.stderr.decode()))
+            seen += 1
+        self.assertEqual(seen, 3)
+
+    def test_patch_becomes_a_driver(self):
+        patch = furrow("rig", "patch", SHARE / "default.glb", "--name", "cheek", "--joint", "zygomaticus_l",
+                       "--radius", "8", check=DONE)
+        rig_json = json.loads(re.sub(r"^\s*//.*$", "", (SHARE / "default.rig.json").read_text(), flags=re.M))
+        rig_json["drivers"].append(json.loads(patch.stdout))
+        rig_json["regions"][0]["feeds"][0]["sources"].append({"from": "cheek.along"})
+        pasted = self.root / "pasted.rig.json"
+        pasted.write_text(json.dumps(rig_json))
+        recording = SHARE / "recordings" / "performance.bvh"
+        table = solve(recording, "--rig", pasted, "--drivers")
+        along = table.column("cheek.along")
+        self.assertLess(along[0], 0.05)
+        self.assertGreater(max(along.values()), 0.1)
+        furrow("rig", "explain", pasted, recording, "--frame", "0", check=DONE)
+
+    def test_patch_says_what_is_wrong(self):
+        glb_path = SHARE / "default.glb"
+        for words, says in ((["--joint", "nobody"], "no joint 'nobody'"), (["--around", "9,9,9"], "the nearest is at"),
+                            (["--joint", "jaw", "--mesh", "tail"], "no mesh 'tail'"),
+                            (["--region", "tail"], "no region 'tail'"),
+                            (["--joint", "zygomaticus_l", "--direction", "0,0,0"], "direction")):
+            result = furrow("rig", "patch", glb_path, *words, check=BAD_INPUT)
+            self.assertIn(says, result.stderr.decode())
+        for words in ([], ["--around", "1,2"], ["--joint", "jaw", "--region", "nose"]):
+            furrow("rig", "patch", glb_path, *words, check=USAGE)
 
     def test_makehuman(self):
         folder = needs_shared("makehuman")

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "character/asset_path.h"
 #include "character/bake/strokes_file.h"
 
 namespace furrow::character::bake {
@@ -133,6 +134,19 @@ INSTANTIATE_TEST_SUITE_P(
               "13: strokes[1].wavelength_mm"},
         Wrong{"\"strokes\": [\n", "\"version\": 2, \"strokes\": [\n", StatusCode::kUnsupported,
               "2: version"}));
+
+TEST(StrokesFile, ReadsTheExampleOfItsManual) {
+  const auto manual = ReadFile(FURROW_SOURCE_DIR "/docs/BAKE.md", 1u << 20);
+  ASSERT_TRUE(manual.ok());
+  const std::string fence = "```json\n";
+  const std::size_t begin = manual->find(fence) + fence.size();
+  const std::string example = manual->substr(begin, manual->find("```", begin) - begin);
+  wrinkle::Rig rig = SmallRig();
+  for (const char* name : {"mouth_l", "mouth_r"}) rig.regions.emplace_back().name = name;
+  const auto strokes = ParseStrokes(example, "BAKE.md", rig);
+  ASSERT_TRUE(strokes.ok()) << strokes.status().ToString();
+  EXPECT_EQ(strokes->size(), 4u);
+}
 
 TEST(StrokesFile, RefusesEveryTruncation) {
   const std::string text = kStrokes;

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/rig_patch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "wrinkle/solver.h"
+
+namespace furrow::character {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr int kCells = 10;
+constexpr float kSide = 0.1f;
+
+// A square sheet of skin, 10 cells a side, moved by `low` at its foot and `high` at its head; and a
+// second sheet one millimetre in front of it that hangs on neither of its vertices.
+Character Sheets() {
+  Character character;
+  character.name = "sheets";
+  character.skeleton = *wrinkle::Skeleton::Create(
+      {{"root", -1, {}, {}}, {"low", 0, {}, {}}, {"high", 0, {{0.0f, kSide, 0.0f}}, {}}});
+  character.rig.anchor = "root";
+  character.materials = {{.name = "skin", .kind = Material::Kind::kSkin}};
+  for (const float z : {0.0f, 0.001f}) {
+    Mesh& mesh = character.meshes.emplace_back();
+    mesh.name = z == 0.0f ? "sheet" : "veil";
+    mesh.material = 0;
+    for (int y = 0; y <= kCells; ++y) {
+      for (int x = 0; x <= kCells; ++x) {
+        const glm::vec2 t = glm::vec2(x, y) / static_cast<float>(kCells);
+        Vertex& vertex = mesh.vertices.emplace_back();
+        vertex.position = glm::vec3(kSide * t, z);
+        vertex.joints[0] = 1;
+        vertex.joints[1] = 2;
+        vertex.skin_weights[0] = 1.0f - t.y;
+        vertex.skin_weights[1] = t.y;
+        if (x == kCells || y == kCells) continue;
+        const auto i = static_cast<std::uint32_t>(y * (kCells + 1) + x);
+        for (const std::uint32_t corner : {0u, 1u, 11u, 1u, 12u, 11u}) {
+          mesh.indices.push_back(i + corner);
+        }
+      }
+    }
+  }
+  return character;
+}
+
+PatchOptions Middle(float radius = 0.025f) {
+  return {.name = "p", .centre = {0.05f, 0.05f, 0.0f}, .radius = radius};
+}
+
+TEST(RigPatch, MeasuresTheStrainOfTheSurfaceItWasCutFrom) {
+  const Character sheets = Sheets();
+  const auto driver = CutPatch(sheets, Middle());
+  ASSERT_TRUE(driver.ok()) << driver.status().ToString();
+  EXPECT_EQ(driver->strain.joint, "root");
+  wrinkle::Rig rig;
+  rig.drivers = {*driver};
+  const auto binding = wrinkle::RigBinding::Create(rig, sheets.skeleton, {});
+  ASSERT_TRUE(binding.ok()) << binding.status().ToString();
+  wrinkle::LocalPose pose;
+  pose.SetRest(sheets.skeleton);
+  pose.joints[2].translation.y -= 0.1f * kSide;  // the sheet is nine tenths as high
+  std::vector<float> values(4);
+  const wrinkle::DriverJob job{.binding = &*binding, .local = pose.joints, .driver_values = values};
+  ASSERT_EQ(job.Run(), wrinkle::JobStatus::kOk);
+  EXPECT_NEAR(values[0], 0.4f, 2e-3f);  // along; 0.25 is full
+  EXPECT_NEAR(values[1] + values[2] + values[3], 0.0f, 2e-3f);
+}
+
+TEST(RigPatch, KeepsToTheSurfaceThatIsNearest) {
+  const Character sheets = Sheets();
+  const auto driver = CutPatch(sheets, Middle());
+  ASSERT_TRUE(driver.ok());
+  for (const auto& vertex : driver->strain.vertices) EXPECT_EQ(vertex.position.z, 0.0f);
+  PatchOptions veil = Middle();
+  veil.mesh = "veil";
+  const auto other = CutPatch(sheets, veil);
+  ASSERT_TRUE(other.ok());
+  for (const auto& vertex : other->strain.vertices) EXPECT_NEAR(vertex.position.z, 0.001f, 1e-6f);
+}
+
+TEST(RigPatch, GrowsWithTheRadiusToTheWholeSheet) {
+  const Character sheets = Sheets();
+  const auto small = CutPatch(sheets, Middle(0.015f));
+  const auto whole = CutPatch(sheets, Middle(1.0f));
+  ASSERT_TRUE(small.ok() && whole.ok());
+  EXPECT_GT(small->strain.triangles.size(), 3u * 3);
+  EXPECT_LT(small->strain.triangles.size(), whole->strain.triangles.size());
+  EXPECT_EQ(whole->strain.triangles.size(), 3u * 2 * kCells * kCells);
+  EXPECT_EQ(whole->strain.vertices.size(), 11u * 11);
+}
+
+TEST(RigPatch, SaysWhyThereIsNone) {
+  Character sheets = Sheets();
+  PatchOptions far = Middle();
+  far.centre = {3, 0, 0};
+  EXPECT_THAT(CutPatch(sheets, far).status().what(), HasSubstr("nearest is at 0.1000,0.0000"));
+  PatchOptions nowhere = Middle();
+  nowhere.mesh = "tail";
+  EXPECT_EQ(CutPatch(sheets, nowhere).status().code(), StatusCode::kNotFound);
+  for (Vertex& vertex : sheets.meshes[0].vertices) {
+    vertex.skin_weights[0] = 1.0f;
+    vertex.skin_weights[1] = 0.0f;
+  }
+  const Status rigid = CutPatch(sheets, Middle()).status();
+  EXPECT_EQ(rigid.code(), StatusCode::kInvalidArgument);
+  EXPECT_THAT(rigid.what(), HasSubstr("joint 'low' alone"));
+}
+
+TEST(RigPatch, FindsJointsAndRegions) {
+  Character sheets = Sheets();
+  EXPECT_EQ(*PlaceOfJoint(sheets, "high"), glm::vec3(0.0f, kSide, 0.0f));
+  EXPECT_EQ(PlaceOfJoint(sheets, "tail").status().code(), StatusCode::kNotFound);
+  // A mask of the left half: UVs run with x.
+  for (Mesh& mesh : sheets.meshes) {
+    for (Vertex& vertex : mesh.vertices) vertex.uv = {0.99f * vertex.position.x / kSide, 0.5f};
+  }
+  Picture& mask = sheets.pictures.emplace_back();
+  mask.name = "mask.png";
+  mask.width = 2;
+  mask.height = 1;
+  mask.channels = 1;
+  mask.pixels = {255, 0};
+  sheets.rig_pictures = {{"mask.png", 0}};
+  wrinkle::Region& region = sheets.rig.regions.emplace_back();
+  region.name = "left";
+  region.mask.texture = "mask.png";
+  const auto place = PlaceOfRegion(sheets, "left");
+  ASSERT_TRUE(place.ok()) << place.status().ToString();
+  EXPECT_NEAR(place->x, 0.025f, 1e-3f);
+  EXPECT_NEAR(place->y, 0.05f, 1e-3f);
+  EXPECT_EQ(PlaceOfRegion(sheets, "right").status().code(), StatusCode::kNotFound);
+  sheets.pictures[0].pixels = {0, 0};
+  EXPECT_THAT(PlaceOfRegion(sheets, "left").status().what(), HasSubstr("covers nothing"));
+}
+
+}  // namespace
+}  // namespace furrow::character
