@@ -133,8 +133,6 @@ Status CopyRigs(const std::filesystem::path& rigs, const std::filesystem::path& 
       return WriteFileAtomically(to, text.value());
     };
     if (Status status = write(share / "rigs" / file.filename()); !status.ok()) return status;
-    if (file.stem() != "default") continue;
-    if (Status status = write(share / "default.rig.json"); !status.ok()) return status;
   }
   return Status();
 }
@@ -171,27 +169,49 @@ Character MakeDefaultCharacter(const wrinkle::Rig& rig, const CharacterOptions& 
   return character;
 }
 
-Status WriteShare(const std::filesystem::path& rigs, const std::filesystem::path& share) {
-  std::error_code error;
-  std::filesystem::create_directories(share / "rigs", error);
-  std::filesystem::create_directories(share / "recordings", error);
-  if (error) return Status(StatusCode::kIo, "cannot make the folder: " + error.message(), share);
+Status WriteCharacter(const std::filesystem::path& rigs, const CharacterOptions& options,
+                      const std::filesystem::path& glb) {
   Result<wrinkle::Rig> rig = LoadRig(rigs / "default.json");
   if (!rig.ok()) return rig.status();
   Result<std::vector<bake::BakeStroke>> strokes =
       bake::LoadStrokes(rigs / "default.strokes.json", rig.value());
   if (!strokes.ok()) return strokes.status();
-  const CharacterOptions options;
   Character character = MakeDefaultCharacter(rig.value(), options);
+  character.name = glb.stem().string();
   if (Status status = AddWrinkleMaps(strokes.value(), options.texture_size,
                                      WrinkleDepth(options.face), &character);
       !status.ok()) {
     return status;
   }
-  if (Status status = SaveCharacterGlb(character, share / "default.glb"); !status.ok())
-    return status;
+  if (Status status = SaveCharacterGlb(character, glb); !status.ok()) return status;
+  constexpr std::size_t kMaxRig = 16u << 20;
+  Result<std::string> text = ReadFile(rigs / "default.json", kMaxRig);
+  if (!text.ok()) return text.status();
+  std::filesystem::path beside = glb;
+  return WriteFileAtomically(beside.replace_extension(".rig.json"), text.value());
+}
+
+Status WriteShare(const std::filesystem::path& rigs, const std::filesystem::path& share) {
+  std::error_code error;
+  std::filesystem::create_directories(share / "rigs", error);
+  std::filesystem::create_directories(share / "recordings", error);
+  if (error) return Status(StatusCode::kIo, "cannot make the folder: " + error.message(), share);
+  if (Status status = WriteCharacter(rigs, {}, share / "default.glb"); !status.ok()) return status;
+  CharacterOptions elder;
+  elder.face = {.sex = -1.0f, .age = 65.0f};
+  elder.body = {.shoulder_width = 0.92f,
+                .chest = 0.97f,
+                .waist = 1.02f,
+                .hips = 1.04f,
+                .limbs = 0.94f,
+                .bust = 0.035f,
+                .shirt = {0.55f, 0.42f, 0.44f}};
+  elder.texture_size = 512;
+  if (Status status = WriteCharacter(rigs, elder, share / "elder.glb"); !status.ok()) return status;
   if (Status status = CopyRigs(rigs, share); !status.ok()) return status;
-  return WriteRecordings(rig.value(), character.skeleton, share / "recordings");
+  Result<wrinkle::Rig> rig = LoadRig(rigs / "default.json");
+  if (!rig.ok()) return rig.status();
+  return WriteRecordings(rig.value(), MakeSkeleton(), share / "recordings");
 }
 
 }  // namespace furrow::character::generator

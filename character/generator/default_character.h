@@ -15,7 +15,7 @@ struct CharacterOptions {
   FaceParameters face;
   BodyParameters body;
   int level = kDefaultLevel;  // of detail of the head's mesh, 0 to 2
-  int texture_size = 1024;  // of skin, cloth and wrinkle maps; masks, eyes and hair take half
+  int texture_size = 1024;    // of skin, cloth and wrinkle maps; masks, eyes and hair take half
 };
 
 // The default character (CC0): a clothed body with a face on muscle joints, textures and masks as
@@ -24,7 +24,14 @@ struct CharacterOptions {
 [[nodiscard]] Character MakeDefaultCharacter(const wrinkle::Rig& rig,
                                              const CharacterOptions& options = {});
 
-// Writes the data that programs find in share/furrow: default.glb, default.rig.json, the rigs of
+// Makes a character and bakes its wrinkle maps: `glb`, and its rig beside it (NAME.rig.json, a copy
+// of default.json in `rigs`). Errors: those of reading, baking and writing.
+[[nodiscard]] Status WriteCharacter(const std::filesystem::path& rigs,
+                                    const CharacterOptions& options,
+                                    const std::filesystem::path& glb);
+
+// Writes the data that programs find in share/furrow: default.glb, elder.glb (a woman of 65) and
+// their rigs, the rigs of
 // `rigs` under rigs/, and recordings/*.bvh. Folders are made. Errors: those of reading and writing.
 [[nodiscard]] Status WriteShare(const std::filesystem::path& rigs,
                                 const std::filesystem::path& share);
