@@ -29,8 +29,8 @@ void DropMissingPictures(Character* character) {
   }
   character->pictures = std::move(kept);
   for (Material& material : character->materials) {
-    for (int* picture :
-         {&material.base_colour_texture, &material.normal_texture, &material.roughness_texture}) {
+    for (int* picture : {&material.base_colour_texture, &material.normal_texture,
+                         &material.roughness_texture, &material.thickness_texture}) {
       if (*picture >= 0) *picture = index[static_cast<std::size_t>(*picture)];
     }
   }

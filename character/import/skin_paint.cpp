@@ -97,7 +97,7 @@ float Brow(const glm::vec3& p, const FaceLandmarks& face) {
 float MouthInside(const glm::vec3& p, const FaceLandmarks& face) {
   glm::vec3 middle = glm::mix(face.upper_lip, face.lower_lip, 0.5f);
   middle.z -= face.Millimetres(36.0f);
-  return FadeOut(glm::distance(p, middle), face.Millimetres(32.0f), face.Millimetres(31.0f));
+  return FadeOut(glm::distance(p, middle), face.Millimetres(24.0f), face.Millimetres(31.0f));
 }
 
 float ScalpOf(const glm::vec3& p, const FaceLandmarks& face) {
@@ -186,7 +186,7 @@ float ScalpAmount(const glm::vec3& p, const FaceLandmarks& face) {
   const glm::vec3 ear(1.1f * side.temple.x, side.eye.y - face.Millimetres(20.0f),
                       side.eye.z - face.Millimetres(86.0f));
   const float off_ear =
-      1.0f - FadeOut(glm::distance(p, ear), face.Millimetres(24.0f), face.Millimetres(40.0f));
+      1.0f - FadeOut(glm::distance(p, ear), face.Millimetres(30.0f), face.Millimetres(38.0f));
   return ScalpOf(p, face) * off_ear;
 }
 
