@@ -15,12 +15,13 @@ ALLOWED = {
     "wrinkle": set(),
     "protocol": set(),
     "motion": {"wrinkle"},
+    "recording": {"wrinkle", "protocol", "motion"},
     "character": {"wrinkle"},
     "render": {"wrinkle", "character"},
-    "server": {"wrinkle", "protocol", "motion", "character", "render"},
+    "server": {"wrinkle", "protocol", "motion", "recording", "character", "render"},
     "client/cpp": {"protocol"},
     "client/c": {"protocol", "client/cpp"},
-    "client/cli": {"wrinkle", "protocol", "motion", "character", "render", "client/cpp"},
+    "client/cli": {"wrinkle", "protocol", "motion", "recording", "character", "render", "client/cpp"},
 }
 
 # foreign header -> where it may be included.
@@ -28,7 +29,7 @@ CONFINED = [
     (r"(epoxy|GL|EGL|GLES\d)/", {"render"}),
     (r"flatbuffers/|.*_generated\.h$", {"protocol", "character"}),
     (r"asio(\.hpp|/)", {"server", "client/cpp"}),
-    (r"glm/", {"wrinkle", "motion", "character", "render", "server", "client/cli"}),
+    (r"glm/", {"wrinkle", "motion", "recording", "character", "render", "server", "client/cli"}),
     (r"OpenImageIO/", {"character", "render"}),
     (r"turbojpeg\.h", {"render"}),
     (r"spdlog/", {"server"}),

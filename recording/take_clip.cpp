@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/take_clip.h"
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "motion/limits.h"
+
+namespace furrow::recording {
+namespace {
+
+glm::vec3 ToVec(const protocol::Vec3& v) { return {v.x, v.y, v.z}; }
+glm::quat ToUnitQuat(const protocol::Quat& q) {
+  return glm::normalize(glm::quat(q.w, q.x, q.y, q.z));
+}
+
+Result<wrinkle::Skeleton> ToSkeleton(const protocol::SkeletonOffer& offer, float scale) {
+  if (offer.joints.empty()) return wrinkle::Skeleton();
+  std::vector<wrinkle::JointDesc> joints;
+  for (const protocol::OfferedJoint& joint : offer.joints) {
+    wrinkle::JointDesc& desc = joints.emplace_back();
+    desc.name = joint.name;
+    desc.parent = joint.parent < 0 ? wrinkle::kNoJoint : joint.parent;
+    desc.rest = {.translation = scale * ToVec(joint.rest_translation),
+                 .rotation = ToUnitQuat(joint.rest_rotation),
+                 .scale = ToVec(joint.rest_scale)};
+    if (joint.has_tail) desc.tail = scale * ToVec(joint.tail);
+  }
+  return wrinkle::Skeleton::Create(std::move(joints));
+}
+
+// Calls `use(index, value)` for each value: an empty list of indices means all, in order.
+template <class Value, class Use>
+void ForEachIndexed(std::span<const std::uint16_t> indices, std::span<const Value> values,
+                    const Use& use) {
+  for (std::size_t i = 0; i < values.size(); ++i) use(indices.empty() ? i : indices[i], values[i]);
+}
+
+// Writes poses over one another, joints in the skeleton's order.
+class PoseWriter {
+ public:
+  PoseWriter(const wrinkle::Skeleton& skeleton, std::size_t num_shapes, float scale)
+      : skeleton_(skeleton),
+        scale_(scale),
+        place_(static_cast<std::size_t>(skeleton.num_joints())),
+        joints(skeleton.rest_pose().begin(), skeleton.rest_pose().end()),
+        shapes(num_shapes, 0.0f) {
+    for (std::size_t j = 0; j < place_.size(); ++j)
+      place_[static_cast<std::size_t>(skeleton.source_index()[j])] = j;
+  }
+
+  void Apply(const protocol::PoseFrame& pose) {
+    const auto rest = skeleton_.rest_pose();
+    if (!pose.partial) {
+      std::ranges::copy(rest, joints.begin());
+      std::ranges::fill(shapes, 0.0f);
+    }
+    ForEachIndexed<protocol::Quat>(pose.rotation_joints, pose.rotations,
+                                   [&](std::size_t i, const protocol::Quat& value) {
+                                     joints[place_[i]].rotation = ToUnitQuat(value);
+                                   });
+    ForEachIndexed<protocol::Vec3>(pose.translation_joints, pose.translations,
+                                   [&](std::size_t i, const protocol::Vec3& value) {
+                                     joints[place_[i]].translation =
+                                         rest[place_[i]].translation + scale_ * ToVec(value);
+                                   });
+    ForEachIndexed<protocol::Vec3>(pose.scale_joints, pose.scales,
+                                   [&](std::size_t i, const protocol::Vec3& value) {
+                                     joints[place_[i]].scale = ToVec(value);
+                                   });
+    ForEachIndexed<float>(pose.blend_shape_indices, pose.blend_shapes,
+                          [&](std::size_t i, float value) { shapes[i] = value; });
+  }
+
+ private:
+  const wrinkle::Skeleton& skeleton_;
+  float scale_;
+  std::vector<std::size_t> place_;  // of the wire's joints in the skeleton
+
+ public:
+  std::vector<wrinkle::Transform> joints;
+  std::vector<float> shapes;
+};
+
+}  // namespace
+
+Result<motion::Clip> ToClip(const TakePoses& poses, float scale) {
+  const protocol::SkeletonOffer& offer = poses.offer();
+  if (poses.size() * std::max<std::size_t>(offer.joints.size(), 1) > motion::kMaxTransforms ||
+      poses.size() * offer.blend_shape_names.size() > motion::kMaxBlendShapeValues) {
+    return Status(StatusCode::kLimit, "too many poses to hold at once as a clip");
+  }
+  auto skeleton = ToSkeleton(offer, scale);
+  if (!skeleton.ok()) return skeleton.status();
+  motion::Clip clip;
+  clip.name = offer.subject;
+  clip.skeleton = *std::move(skeleton);
+  clip.blend_shape_names = offer.blend_shape_names;
+  clip.times.assign(poses.times().begin(), poses.times().end());
+  PoseWriter writer(clip.skeleton, offer.blend_shape_names.size(), scale);
+  protocol::PoseFrame pose;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    poses.Get(i, &pose);
+    writer.Apply(pose);
+    clip.locals.insert(clip.locals.end(), writer.joints.begin(), writer.joints.end());
+    clip.blend_shapes.insert(clip.blend_shapes.end(), writer.shapes.begin(), writer.shapes.end());
+  }
+  return clip;
+}
+
+Result<motion::Clip> LoadTakeClip(const std::string& path, float scale,
+                                  motion::ClipReport* report) {
+  std::string file;
+  std::string subject;
+  SplitTakePath(path, &file, &subject);
+  auto take = TakeReader::Open(file);
+  if (!take.ok()) return take.status();
+  const auto poses = TakePoses::Load(**take, subject, report);
+  if (!poses.ok()) return poses.status();
+  auto clip = ToClip(*poses, scale);
+  if (!clip.ok()) return clip.status().At(file);
+  return clip;
+}
+
+}  // namespace furrow::recording

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/take_folder.h"
+
+#include <algorithm>
+#include <ctime>
+#include <system_error>
+#include <utility>
+
+namespace furrow::recording {
+namespace {
+
+constexpr int kMaxSameSecond = 1000;
+
+// "take-20260514T093000Z"
+std::string NameAt(std::uint64_t now_ns) {
+  const auto seconds = static_cast<std::time_t>(now_ns / 1'000'000'000);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  char text[40];
+  std::strftime(text, sizeof text, "take-%Y%m%dT%H%M%SZ", &utc);
+  return text;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<TakeFolder>> TakeFolder::Open(TakeFolderOptions options,
+                                                     std::uint64_t now_ns) {
+  std::error_code error;
+  std::filesystem::create_directories(options.folder, error);
+  if (error)
+    return Status(StatusCode::kIo, "the folder cannot be made: " + error.message(),
+                  options.folder.string());
+  std::unique_ptr<TakeFolder> folder(new TakeFolder(std::move(options)));
+  if (Status status = folder->Begin(now_ns); !status.ok()) return status;
+  return folder;
+}
+
+Status TakeFolder::Begin(std::uint64_t now_ns) {
+  const std::string name = NameAt(now_ns);
+  path_ = options_.folder / (name + ".mcap");
+  std::error_code error;
+  for (int i = 2; std::filesystem::exists(path_, error) && i < kMaxSameSecond; ++i)
+    path_ = options_.folder / (name + "-" + std::to_string(i) + ".mcap");
+  auto take = TakeWriter::Create(path_, options_.rig_json);
+  if (!take.ok()) return take.status();
+  take_ = *std::move(take);
+  begun_ns_ = now_ns;
+  ++num_files_;
+  for (const auto& [subject, state] : subjects_) {
+    for (const auto& [kind, declaration] : {std::pair(TakeKind::kSkeleton, &state.skeleton),
+                                            std::pair(TakeKind::kNames, &state.names)}) {
+      if (declaration->payload.empty()) continue;
+      TakeStamp stamp = declaration->stamp;
+      stamp.log_time_ns = now_ns;
+      Status status = take_->Write(kind, subject, stamp, declaration->payload);
+      if (!status.ok()) return status;
+    }
+  }
+  return {};
+}
+
+Status TakeFolder::Remember(Status status) {
+  if (!status.ok() && failure_.ok()) failure_ = status;
+  return status;
+}
+
+Status TakeFolder::RotateIfDue(std::uint64_t now_ns) {
+  const bool large = options_.rotate_bytes > 0 && take_->bytes_written() >= options_.rotate_bytes;
+  const bool old =
+      options_.rotate_ns > 0 && now_ns > begun_ns_ && now_ns - begun_ns_ >= options_.rotate_ns;
+  if (!large && !old && !take_->is_full()) return {};
+  if (Status status = take_->Close(); !status.ok()) return status;
+  return Begin(now_ns);
+}
+
+bool TakeFolder::IsRepeated(TakeKind kind, std::string_view subject, const TakeStamp& stamp,
+                            std::span<const std::uint8_t> payload) {
+  auto state = subjects_.find(subject);
+  if (state == subjects_.end())
+    state = subjects_.emplace(std::string(subject), SubjectState()).first;
+  Declaration& last = kind == TakeKind::kSkeleton ? state->second.skeleton : state->second.names;
+  if (last.stamp.session == stamp.session && std::ranges::equal(last.payload, payload)) return true;
+  last = {stamp, {payload.begin(), payload.end()}};
+  return false;
+}
+
+Status TakeFolder::Write(TakeKind kind, std::string_view subject, const TakeStamp& stamp,
+                         std::span<const std::uint8_t> payload) {
+  if (!failure_.ok()) return failure_;
+  // Before the declaration is remembered, or a new file would begin with it and get it again.
+  if (Status status = RotateIfDue(stamp.log_time_ns); !status.ok()) return Remember(status);
+  const bool declares = kind == TakeKind::kSkeleton || kind == TakeKind::kNames;
+  if (declares && IsRepeated(kind, subject, stamp, payload)) return {};
+  return Remember(take_->Write(kind, subject, stamp, payload));
+}
+
+Status TakeFolder::WriteDatagram(const DatagramSender& sender, std::uint64_t log_time_ns,
+                                 std::span<const std::uint8_t> bytes) {
+  if (!failure_.ok()) return failure_;
+  if (Status status = RotateIfDue(log_time_ns); !status.ok()) return Remember(status);
+  return Remember(take_->WriteDatagram(sender, log_time_ns, bytes));
+}
+
+void TakeFolder::Forget(std::string_view subject) {
+  if (const auto found = subjects_.find(subject); found != subjects_.end()) subjects_.erase(found);
+}
+
+Status TakeFolder::Flush() {
+  if (!failure_.ok()) return failure_;
+  return Remember(take_->Flush());
+}
+
+Status TakeFolder::Close() {
+  const Status status = take_->Close();
+  return failure_.ok() ? status : failure_;
+}
+
+}  // namespace furrow::recording

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/take_reader.h"
+
+#include <charconv>
+#include <utility>
+
+#include "protocol/limits.h"
+
+namespace furrow::recording {
+
+using motion::mcap::Channel;
+using motion::mcap::Message;
+using motion::mcap::Reader;
+
+protocol::MessageView TakeMessage::View() const {
+  return {{.session = stamp.session,
+           .stream = 0,
+           .sequence = stamp.sequence,
+           .capture_time_us = stamp.capture_time_us},
+          MessageKindOf(kind),
+          payload};
+}
+
+Result<std::unique_ptr<TakeReader>> TakeReader::Open(const std::filesystem::path& path) {
+  auto file = Reader::Open(path);
+  if (!file.ok()) return file.status();
+  return std::unique_ptr<TakeReader>(new TakeReader(path, *std::move(file)));
+}
+
+const TakeReader::ChannelInfo* TakeReader::InfoOf(std::uint16_t id) {
+  auto [found, is_new] = channels_.try_emplace(id);
+  if (is_new) {
+    const auto channel = file_->channels().find(id);
+    ChannelInfo info;
+    if (channel != file_->channels().end() &&
+        ParseTopic(channel->second.topic, &info.kind, &info.subject)) {
+      const Channel& about = channel->second;
+      const bool raw = info.kind == TakeKind::kDatagram;
+      if (const auto text = about.metadata.find("session"); text != about.metadata.end()) {
+        const std::string& digits = text->second;
+        (void)std::from_chars(digits.data(), digits.data() + digits.size(), info.session);
+      }
+      if (about.message_encoding == (raw ? kDatagramEncoding : kFlatBufferEncoding))
+        found->second = std::move(info);
+    }
+  }
+  return found->second ? &*found->second : nullptr;
+}
+
+Status TakeReader::ForEach(const std::function<bool(const TakeMessage&)>& visit) {
+  return file_->ForEach({}, [&](const Message& message) {
+    const ChannelInfo* info = InfoOf(message.channel_id);
+    if (info == nullptr || message.data.size() > protocol::kMaxRequestBytes) return true;
+    TakeMessage shown;
+    shown.kind = info->kind;
+    shown.subject = info->subject;
+    shown.stamp = {info->session, message.sequence, FromPublishTime(message.publish_time),
+                   message.log_time};
+    shown.payload = message.data;
+    return visit(shown);
+  });
+}
+
+}  // namespace furrow::recording

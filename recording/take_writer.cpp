@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/take_writer.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace furrow::recording {
+
+using motion::mcap::Message;
+
+Result<std::unique_ptr<TakeWriter>> TakeWriter::Create(const std::filesystem::path& path,
+                                                       std::string_view rig_json) {
+  auto file = motion::mcap::Writer::Create(path, {.profile = kTakeProfile});
+  if (!file.ok()) return file.status();
+  std::unique_ptr<TakeWriter> take(new TakeWriter(*std::move(file)));
+  if (!rig_json.empty()) {
+    const std::span bytes(reinterpret_cast<const std::uint8_t*>(rig_json.data()), rig_json.size());
+    Status status = take->file_->Attach(kRigAttachment, "application/json", 0, bytes);
+    if (!status.ok()) return status;
+  }
+  return take;
+}
+
+std::uint16_t TakeWriter::SchemaOf(TakeKind kind) {
+  if (SchemaName(kind).empty()) return 0;
+  auto [found, is_new] = schemas_.try_emplace(kind, std::uint16_t{0});
+  if (is_new)
+    found->second = file_->AddSchema(SchemaName(kind), kFlatBufferEncoding, BinarySchema(kind));
+  return found->second;
+}
+
+std::uint16_t TakeWriter::ChannelOf(TakeKind kind, std::string_view subject,
+                                    std::uint64_t session) {
+  std::get<0>(key_).assign(subject);
+  std::get<1>(key_) = session;
+  std::get<2>(key_) = kind;
+  const auto found = channels_.find(key_);
+  if (found != channels_.end()) return found->second;
+  const bool raw = kind == TakeKind::kDatagram;
+  const std::map<std::string, std::string> about{{"subject", std::string(subject)},
+                                                 {"session", std::to_string(session)}};
+  const std::uint16_t id = file_->AddChannel(
+      TopicOf(kind, subject), raw ? kDatagramEncoding : kFlatBufferEncoding, SchemaOf(kind),
+      raw ? std::map<
+                std::string,
+                std::string>{{"data",
+                              "16 bytes of IPv6 address, 2 of port (network order), the datagram"}}
+          : about);
+  channels_.emplace(key_, id);
+  return id;
+}
+
+Status TakeWriter::AttachSkeleton(std::string_view subject, std::uint64_t log_time_ns,
+                                  std::span<const std::uint8_t> payload) {
+  const auto known = skeletons_.find(subject);
+  if (known != skeletons_.end() && std::ranges::equal(known->second, payload)) return {};
+  skeletons_.insert_or_assign(std::string(subject),
+                              std::vector<std::uint8_t>(payload.begin(), payload.end()));
+  return file_->Attach(std::string(subject) + ".skeleton", "application/x-flatbuffers", log_time_ns,
+                       payload);
+}
+
+Status TakeWriter::Write(TakeKind kind, std::string_view subject, const TakeStamp& stamp,
+                         std::span<const std::uint8_t> payload) {
+  if (is_full()) return {StatusCode::kLimit, "the take has as many channels as a file holds"};
+  if (kind == TakeKind::kSkeleton) {
+    Status status = AttachSkeleton(subject, stamp.log_time_ns, payload);
+    if (!status.ok()) return status;
+  }
+  Message message;
+  message.channel_id = ChannelOf(kind, subject, stamp.session);
+  message.sequence = stamp.sequence;
+  message.log_time = stamp.log_time_ns;
+  message.publish_time = ToPublishTime(stamp.capture_time_us);
+  message.data = payload;
+  return file_->Write(message);
+}
+
+Status TakeWriter::WriteDatagram(const DatagramSender& sender, std::uint64_t log_time_ns,
+                                 std::span<const std::uint8_t> bytes) {
+  datagram_.assign(sender.begin(), sender.end());
+  datagram_.insert(datagram_.end(), bytes.begin(), bytes.end());
+  Message message;
+  message.channel_id = ChannelOf(TakeKind::kDatagram, {}, 0);
+  message.log_time = message.publish_time = log_time_ns;
+  message.data = datagram_;
+  return file_->Write(message);
+}
+
+}  // namespace furrow::recording
