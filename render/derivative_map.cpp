@@ -61,6 +61,17 @@ DerivativeMap DerivativesFromDerivativeMap(const character::Picture& picture, fl
   });
 }
 
+std::vector<float> WithMoments(const DerivativeMap& map) {
+  std::vector<float> texels;
+  texels.reserve(map.texels.size() * 2);
+  for (std::size_t i = 0; i < map.texels.size(); i += 2) {
+    const float x = map.texels[i];
+    const float y = map.texels[i + 1];
+    texels.insert(texels.end(), {x, y, x * x, y * y});
+  }
+  return texels;
+}
+
 DerivativeMap Resample(const DerivativeMap& map, int width, int height) {
   if (map.width == width && map.height == height) return map;
   DerivativeMap result{width, height, {}};

@@ -27,6 +27,10 @@ struct DerivativeMap {
 [[nodiscard]] DerivativeMap DerivativesFromDerivativeMap(const character::Picture& picture,
                                                          float scale = 1.0f);
 
+// Four floats a texel: the derivative and its squares, whose mips tell how much it varies (LEAN
+// mapping, Olano and Baker 2010).
+[[nodiscard]] std::vector<float> WithMoments(const DerivativeMap& map);
+
 // Bilinear, texel centres at halves, edges clamped: to give maps of one array one size.
 [[nodiscard]] DerivativeMap Resample(const DerivativeMap& map, int width, int height);
 

@@ -24,7 +24,8 @@ struct MaterialBlock {
   float cavity_albedo;
   float f0;
   float sheen;
-  float padding[2];
+  float thickness;
+  float padding;
 };
 static_assert(sizeof(MaterialBlock) == 48);
 
@@ -196,8 +197,8 @@ Result<std::unique_ptr<GpuCharacter>> GpuCharacter::Create(const Character& char
 Status GpuCharacter::AddMaterials(const Character& character) {
   const int num_pictures = static_cast<int>(character.pictures.size());
   for (const Material& source : character.materials) {
-    for (const int picture :
-         {source.base_colour_texture, source.normal_texture, source.roughness_texture}) {
+    for (const int picture : {source.base_colour_texture, source.normal_texture,
+                              source.roughness_texture, source.thickness_texture}) {
       if (picture >= num_pictures) {
         return {StatusCode::kInvalidArgument, "names a picture that is not there",
                 "material '" + source.name + "'"};
@@ -210,11 +211,13 @@ Status GpuCharacter::AddMaterials(const Character& character) {
                               CavityAlbedoOf(source.kind),
                               F0Of(source.kind),
                               source.kind == Material::Kind::kCloth ? kSheenOfCloth : 0.0f,
-                              {}};
+                              source.thickness,
+                              0.0f};
     GpuMaterial material;
     material.block = gl::MakeStaticBuffer(&block, sizeof(block));
     material.base_colour = ColourTexture(character, source.base_colour_texture, true);
     material.roughness = ColourTexture(character, source.roughness_texture, false);
+    material.thickness = ColourTexture(character, source.thickness_texture, false);
     material.derivatives = DerivativeTexture(character, source.normal_texture);
     material.kind = source.kind;
     material.group = GroupOf(character, source.kind);
@@ -291,10 +294,10 @@ GLuint GpuCharacter::DerivativeTexture(const Character& character, int picture) 
   const DerivativeMap map =
       DerivativesFromNormalMap(character.pictures[static_cast<std::size_t>(picture)]);
   texture = gl::MakeTexture(GL_TEXTURE_2D);
-  glTextureStorage2D(texture.name(), NumMips(map.width, map.height), GL_RG16F, map.width,
+  glTextureStorage2D(texture.name(), NumMips(map.width, map.height), GL_RGBA16F, map.width,
                      map.height);
-  glTextureSubImage2D(texture.name(), 0, 0, 0, map.width, map.height, GL_RG, GL_FLOAT,
-                      map.texels.data());
+  glTextureSubImage2D(texture.name(), 0, 0, 0, map.width, map.height, GL_RGBA, GL_FLOAT,
+                      WithMoments(map).data());
   glGenerateTextureMipmap(texture.name());
   SetFiltering(texture, GL_REPEAT);
   return texture.name();
@@ -345,14 +348,51 @@ Status GpuCharacter::AddWrinkleMaps(const Character& character) {
   if (Status status = CheckLayers(maps.size(), "wrinkle maps"); !status.ok()) return status;
   if (Status status = CheckBlock(layout_); !status.ok()) return status;
   const int layers = std::max(1, static_cast<int>(maps.size()));
-  wrinkle_derivatives_ = MakeArray(GL_RG16F, width, height, layers);
+  wrinkle_derivatives_ = MakeArray(GL_RGBA16F, width, height, layers);
   for (std::size_t layer = 0; layer < maps.size(); ++layer) {
     const DerivativeMap map = Resample(maps[layer], width, height);
     glTextureSubImage3D(wrinkle_derivatives_.name(), 0, 0, 0, static_cast<GLint>(layer), width,
-                        height, 1, GL_RG, GL_FLOAT, map.texels.data());
+                        height, 1, GL_RGBA, GL_FLOAT, WithMoments(map).data());
   }
   glGenerateTextureMipmap(wrinkle_derivatives_.name());
+  AddWrinkleLooks(character);
   return {};
+}
+
+// One layer a wrinkle map: its colour in rgb, its cavity in alpha; white where it has none.
+void GpuCharacter::AddWrinkleLooks(const Character& character) {
+  const auto find = [&](const std::string& name) {
+    const int index = name.empty() ? -1 : character.FindRigPicture(name);
+    return index < 0 ? nullptr : &character.pictures[static_cast<std::size_t>(index)];
+  };
+  bool any = false;
+  int width = 1;
+  int height = 1;
+  for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
+    for (const Picture* picture : {find(map.colour), find(map.cavity)}) {
+      if (picture == nullptr) continue;
+      any = true;
+      width = std::max(width, picture->width);
+      height = std::max(height, picture->height);
+    }
+  }
+  if (!any) return;
+  const int layers = static_cast<int>(character.rig.wrinkle_maps.size());
+  wrinkle_looks_ = MakeArray(GL_SRGB8_ALPHA8, width, height, layers);
+  for (int layer = 0; layer < layers; ++layer) {
+    const wrinkle::WrinkleMap& map = character.rig.wrinkle_maps[static_cast<std::size_t>(layer)];
+    std::vector<std::uint8_t> rgba(static_cast<std::size_t>(width) * height * 4, 255);
+    if (const Picture* colour = find(map.colour)) rgba = ResizeRgba8(*colour, width, height);
+    const Picture* cavity = find(map.cavity);
+    const std::vector<std::uint8_t> hollow =
+        cavity == nullptr ? std::vector<std::uint8_t>() : ResizeRgba8(*cavity, width, height);
+    for (std::size_t i = 0; i < rgba.size(); i += 4) {
+      rgba[i + 3] = hollow.empty() ? 255 : hollow[i];
+    }
+    glTextureSubImage3D(wrinkle_looks_.name(), 0, 0, 0, layer, width, height, 1, GL_RGBA,
+                        GL_UNSIGNED_BYTE, rgba.data());
+  }
+  glGenerateTextureMipmap(wrinkle_looks_.name());
 }
 
 }  // namespace furrow::render

@@ -25,6 +25,7 @@ struct GpuMaterial {
   GLuint base_colour = 0;  // textures; 0: none
   GLuint derivatives = 0;
   GLuint roughness = 0;
+  GLuint thickness = 0;
   character::Material::Kind kind = character::Material::Kind::kOther;
   WrinkleGroup group = WrinkleGroup::kNone;
   bool alpha_test = false;
@@ -45,6 +46,8 @@ class GpuCharacter {
   [[nodiscard]] const GpuMaterial& material(int index) const { return materials_[index]; }
   [[nodiscard]] GLuint masks() const { return masks_.name(); }
   [[nodiscard]] GLuint wrinkle_derivatives() const { return wrinkle_derivatives_.name(); }
+  // Colour and cavity of the wrinkle maps, a layer each; 0 where none has any.
+  [[nodiscard]] GLuint wrinkle_looks() const { return wrinkle_looks_.name(); }
   [[nodiscard]] const WrinkleLayout& layout() const { return layout_; }
   // A mesh with three vertices of its own to every triangle, for the view wireframe; made on first
   // use.
@@ -56,6 +59,7 @@ class GpuCharacter {
   [[nodiscard]] Status AddMeshes(const character::Character& character);
   [[nodiscard]] Status AddMasks(const character::Character& character);
   [[nodiscard]] Status AddWrinkleMaps(const character::Character& character);
+  void AddWrinkleLooks(const character::Character& character);
   GLuint ColourTexture(const character::Character& character, int picture, bool srgb);
   GLuint DerivativeTexture(const character::Character& character, int picture);
 
@@ -66,6 +70,7 @@ class GpuCharacter {
   std::map<int, gl::Texture> derivative_textures_;
   gl::Texture masks_;
   gl::Texture wrinkle_derivatives_;
+  gl::Texture wrinkle_looks_;
   WrinkleLayout layout_;
 };
 

@@ -58,7 +58,7 @@ Lighting MakeLighting(const LightSettings& settings, const Stage& stage) {
     case LightPreset::kStudio:
       lighting.lights = {place.Spot({-0.80f, 0.72f, 0.72f}, {1.22f, 1.06f, 0.90f}, 24.0f),
                          place.Point({0.90f, 0.12f, 0.60f}, {0.13f, 0.16f, 0.21f}),
-                         place.Directional({0.72f, 0.42f, -0.75f}, {0.62f, 0.70f, 0.82f})};
+                         place.Directional({0.72f, 0.42f, -0.75f}, {0.42f, 0.48f, 0.57f})};
       lighting.sky = {{0.135f, 0.140f, 0.150f}, {0.060f, 0.058f, 0.058f}, {0.032f, 0.026f, 0.022f}};
       break;
     case LightPreset::kHard:

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/scene_draw.h"
 
+#include <algorithm>
+#include <bit>
+
 namespace furrow::render {
 namespace {
 
@@ -17,7 +20,9 @@ enum TextureUnit : GLuint {
   kShadowDepthUnit = 6,
   kBeckmannUnit = 7,
   kSpecularAlbedoUnit = 8,
-  kPreintegratedUnit = 9
+  kPreintegratedUnit = 9,
+  kWrinkleLooksUnit = 10,
+  kThicknessUnit = 11
 };
 constexpr GLint kLightLocation = 0;  // of shadow.vert.glsl
 
@@ -41,6 +46,13 @@ gl::Sampler MakeShadowSampler(bool compare) {
     glSamplerParameteri(sampler.name(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   }
   return sampler;
+}
+
+// Programs are compiled for a power of two of maps, so that a face that begins to move does not
+// wait for one after the other; the rest of the list is zeros, which add nothing.
+int PaddedMaps(std::size_t num_maps, int map_slots) {
+  if (num_maps == 0) return 0;
+  return std::min(static_cast<int>(std::bit_ceil(num_maps)), 4 * map_slots);
 }
 
 // The views that the skin pipeline's scene pass itself draws differently for.
@@ -127,6 +139,7 @@ void SceneDraw::BindMaterial(const GpuMaterial& material) {
   glBindTextureUnit(kBaseColourUnit, material.base_colour);
   glBindTextureUnit(kBaseDerivativesUnit, material.derivatives);
   glBindTextureUnit(kRoughnessUnit, material.roughness);
+  glBindTextureUnit(kThicknessUnit, material.thickness);
 }
 
 void SceneDraw::BindTables(GLuint shadows) {
@@ -158,6 +171,7 @@ Status SceneDraw::DrawScene(const Settings& settings, Shading shading) {
   BindBuffers();
   glBindTextureUnit(kMasksUnit, gpu_->masks());
   glBindTextureUnit(kWrinkleDerivativesUnit, gpu_->wrinkle_derivatives());
+  glBindTextureUnit(kWrinkleLooksUnit, gpu_->wrinkle_looks());
   for (std::size_t mesh = 0; mesh < gpu_->meshes().size(); ++mesh) {
     if (Status status = DrawMesh(settings, shading, mesh); !status.ok()) return status;
   }
@@ -190,7 +204,8 @@ SceneShader SceneDraw::ShaderFor(const GpuMaterial& material, const Settings& se
   shader.view = settings.view;
   shader.normal_blend = settings.normal_blend;
   if (material.group != WrinkleGroup::kNone) {
-    shader.active_maps = static_cast<int>(tables_->table(material.group).maps.size());
+    shader.active_maps =
+        PaddedMaps(tables_->table(material.group).maps.size(), MapSlots(tables_->num_maps()));
     shader.wrinkle_texture = tables_->table(material.group).uses_texture;
     shader.wrinkle_dynamic = tables_->table(material.group).uses_dynamic;
   }
@@ -211,6 +226,9 @@ SceneShader SceneDraw::ShaderFor(const GpuMaterial& material, const Settings& se
   shader.translucency =
       skin && settings.translucency.enabled && settings.shadow.filter != ShadowFilter::kOff;
   shader.preintegrated = skin && settings.subsurface.method == SubsurfaceMethod::kPreintegrated;
+  shader.widen = settings.specular.widen;
+  shader.wrinkle_looks = gpu_->wrinkle_looks() != 0;
+  shader.thickness_map = shader.translucency && material.thickness != 0;
   shader.gems = settings.specular.mode == SpecularMode::kGems;
   shader.conserve_energy = settings.specular.conserve_energy;
   return shader;

@@ -35,6 +35,9 @@ struct SceneShader {
   bool translucency = false;
   bool preintegrated = false;
   bool gems = false;
+  bool widen = false;
+  bool wrinkle_looks = false;
+  bool thickness_map = false;
   bool conserve_energy = true;
 
   friend auto operator<=>(const SceneShader&, const SceneShader&) = default;

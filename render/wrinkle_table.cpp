@@ -50,20 +50,6 @@ int FindMap(const wrinkle::Rig& rig, std::string_view name) {
   return found == rig.wrinkle_maps.end() ? -1 : static_cast<int>(found - rig.wrinkle_maps.begin());
 }
 
-// Whether a pose or a blend shape feeds the map somewhere.
-bool IsFacial(const wrinkle::Rig& rig, std::string_view map) {
-  const auto facial = [&](const wrinkle::Feed::Source& source) {
-    return std::any_of(rig.drivers.begin(), rig.drivers.end(), [&](const wrinkle::Driver& driver) {
-      return driver.name == source.driver && (driver.kind == wrinkle::Driver::Kind::kPose ||
-                                              driver.kind == wrinkle::Driver::Kind::kBlendShape);
-    });
-  };
-  return std::any_of(rig.regions.begin(), rig.regions.end(), [&](const wrinkle::Region& region) {
-    const wrinkle::Feed* feed = FeedOf(region, map);
-    return feed != nullptr && std::any_of(feed->sources.begin(), feed->sources.end(), facial);
-  });
-}
-
 }  // namespace
 
 int WrinkleLayout::MaskLayer(std::string_view texture) const {
@@ -147,6 +133,7 @@ WrinkleTables::WrinkleTables(const character::Character& character, WrinkleLayou
 }
 
 void WrinkleTables::DescribeMaps(const character::Character& character) {
+  using Surface = wrinkle::WrinkleMap::Surface;
   const bool has_cloth = Has(character, Material::Kind::kCloth);
   for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
     const int index = static_cast<int>(maps_.size());
@@ -161,9 +148,9 @@ void WrinkleTables::DescribeMaps(const character::Character& character) {
       info.entry.lambda = static_cast<std::int32_t>(region.mask.lambda);
       info.entry.smooth_width = std::max(region.mask.smooth_width, 1e-6f);
     }
-    const bool on_skin = !has_cloth || IsFacial(character.rig, map.name);
-    info.in_group[static_cast<int>(WrinkleGroup::kSkin)] = on_skin;
-    info.in_group[static_cast<int>(WrinkleGroup::kCloth)] = !on_skin;
+    info.in_group[static_cast<int>(WrinkleGroup::kSkin)] =
+        map.surface != Surface::kCloth || !has_cloth;
+    info.in_group[static_cast<int>(WrinkleGroup::kCloth)] = map.surface != Surface::kSkin;
     maps_.push_back(info);
   }
 }

@@ -13,10 +13,9 @@
 
 namespace furrow::render {
 
-// Which surfaces a wrinkle map is drawn on. Faces are driven by poses and blend shapes, clothing by
-// the bend and twist of single joints (thesis 4.6): a map that some pose or blend shape feeds goes
-// on skin, any other on cloth, or on skin where the character wears none. Eyes and hair have no
-// wrinkles; other materials count as skin where the character marks no skin, and else have none.
+// Which surfaces a wrinkle map is drawn on: those that its rig says (WrinkleMap::surface). What is
+// meant for cloth goes on skin where the character wears none. Eyes and hair have no wrinkles;
+// other materials count as skin where the character marks no skin, and else have none.
 enum class WrinkleGroup { kSkin, kCloth, kNone };
 inline constexpr int kNumWrinkleGroups = 2;  // kNone has no table
 

@@ -23,12 +23,12 @@ layout(std140, binding = 1) uniform Material {
   float u_cavity_albedo;   // see cavity(); 0: none
   float u_f0;              // reflectance face on
   float u_sheen;           // of cloth: strength of its fuzz
-  float u_padding0;
-  float u_padding1;
+  float u_thickness;       // metres of flesh that light meets at least
+  float u_padding;
 };
 
 layout(binding = 0) uniform sampler2D u_base_colour_map;        // sRGB
-layout(binding = 1) uniform sampler2D u_base_derivatives;       // RG, n.xy / n.z
+layout(binding = 1) uniform sampler2D u_base_derivatives;       // n.xy / n.z, and their squares
 layout(binding = 4) uniform sampler2D u_roughness_map;          // green, as in glTF
 
 vec4 baseColour() {
@@ -57,17 +57,18 @@ void sampleMasks(out vec4 masks[MASK_LAYERS]) {
   }
 }
 
-// Unit, model space.
-vec3 surfaceNormal(vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS]) {
+// Unit, model space. `variance`: of the slopes within the pixel.
+vec3 surfaceNormal(vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS], out float variance) {
 #if HAS_BASE_NORMAL
-  vec2 base = texture(u_base_derivatives, v_uv).rg;
+  vec3 base = slopeOf(texture(u_base_derivatives, v_uv));
 #else
-  vec2 base = vec2(0.0);
+  vec3 base = vec3(0.0);
 #endif
+  variance = base.z;
 #if WRINKLE_TEXTURE || WRINKLE_DYNAMIC
-  vec3 n = wrinkledNormal(base, v_uv, masks, dynamicMasks);
+  vec3 n = wrinkledNormal(base.xy, v_uv, masks, dynamicMasks, variance);
 #else
-  vec3 n = normalFromDerivative(base);
+  vec3 n = normalFromDerivative(base.xy);
 #endif
   vec3 normal = tangentToModel(n, v_normal, v_tangent);
   return gl_FrontFacing ? normal : -normal;

@@ -6,7 +6,7 @@
 float lambdaOf(ActiveMap map, float skinWeight) {
   if (map.lambda == 1) return skinWeight > 0.0 ? 1.0 : 0.0;
   if (map.lambda == 2) return skinWeight;
-  return smoothstep(0.0, map.smoothWidth, skinWeight);
+  return smoothstep(0.0, max(map.smoothWidth, 1e-6), skinWeight);
 }
 
 // Thesis 4.2: clamp(sum over the vertex's joints of lambda(skin weight) * influence, 0, 1).

@@ -54,7 +54,8 @@ void main() {
   f_colour = vec4(0.0, 0.0, 0.0, 1.0);
 #endif
 #else
-  vec3 normal = surfaceNormal(masks, dynamicMasks);
+  float variance;
+  vec3 normal = surfaceNormal(masks, dynamicMasks, variance);
 #if VIEW == VIEW_NORMAL
   f_colour = vec4(normal * 0.5 + 0.5, 1.0);
 #else

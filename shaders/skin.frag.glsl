@@ -9,11 +9,18 @@
 //
 // MATERIAL       MATERIAL_SKIN, _CLOTH, _EYE, _HAIR or _OTHER
 // TRANSLUCENCY   1: light goes through thin parts
+// WIDEN          1: gloss is wider where the pixel covers many slopes
+// WRINKLE_LOOKS  1: some wrinkle map has a colour or a cavity
+// HAS_THICKNESS  1: the material has a texture of its flesh's thickness
 // CONSERVE       1: diffuse light is what the specular leaves
 // PREINTEGRATED  1: scattering by table, here and now
 // RING_SIZE, MAX_CURVATURE  texels of the table's side; its last row, per mm
 
 layout(binding = 9) uniform sampler2D u_ring_table;  // render/subsurface_kernel.h: PreintegratedTable
+
+#if HAS_THICKNESS
+layout(binding = 11) uniform sampler2D u_thickness_map;  // green, as in glTF
+#endif
 
 layout(location = 0) out vec4 f_irradiance;  // rgb: light on skin times albedo^mix; a: metres
                                              // behind the focus, FAR_AWAY where there is no skin
@@ -44,6 +51,15 @@ float sheen(vec3 normal, vec3 toLight, vec3 toCamera) {
   float nl = saturate(dot(normal, toLight));
   float nv = saturate(dot(normal, toCamera));
   return lobe / (4.0 * max(nl + nv - nl * nv, 1e-3));
+}
+
+// Metres of flesh that light meets at least, wherever it comes from.
+float thickness() {
+#if HAS_THICKNESS
+  return u_thickness * texture(u_thickness_map, v_uv).g;
+#else
+  return u_thickness;
+#endif
 }
 
 Lit lightSurface(vec3 normal, vec3 geometric, vec3 toCamera, float m, float curvature) {
@@ -79,7 +95,7 @@ Lit lightSurface(vec3 normal, vec3 geometric, vec3 toCamera, float m, float curv
 #if TRANSLUCENCY
     if (i >= SHADOW_LAMPS) continue;  // no map to measure in
     float behind = saturate(0.3 - dot(geometric, arrival.toLight));
-    float metres = thicknessOf(i, v_position, geometric, u_translucency.z);
+    float metres = max(thicknessOf(i, v_position, geometric, u_translucency.z), thickness());
     lit.through += arrival.radiance * (u_translucency.x * behind) *
                    transmittance(1000.0 * u_translucency.y * metres);
 #endif
@@ -125,21 +141,37 @@ void main() {
   vec4 dynamicMasks[MAP_SLOTS];
 #endif
   vec3 geometric = normalizeOrZero(gl_FrontFacing ? v_normal : -v_normal);
-  vec3 normal = surfaceNormal(masks, dynamicMasks);
+  float variance;
+  vec3 normal = surfaceNormal(masks, dynamicMasks, variance);
   vec3 fromCamera = v_position - u_camera_position.xyz;
   vec3 toCamera = -normalize(fromCamera);
   float metres = dot(fromCamera, u_camera_forward.xyz);
   float rough = roughness();
-  float m = clamp(u_gloss.y * rough * rough, SMALLEST_M, 1.0);
+  float m = u_gloss.y * rough * rough;
+#if WIDEN
+  m = sqrt(m * m + 2.0 * variance);  // Beckmann's m^2 is twice the variance of slopes
+#endif
+  m = clamp(m, SMALLEST_M, 1.0);
   float nv = saturate(dot(normal, toCamera));
 
   Lit lit = lightSurface(normal, geometric, toCamera, m, curvatureOf(geometric));
   float reflects = saturate(u_gloss.x * specularAlbedo(nv, m, u_gloss.z, u_f0));
   float leaves = CONSERVE == 1 ? 1.0 - reflects : 1.0;
   float open = cavity(base.rgb);
-  vec3 sky = skyIrradiance(normal);
-  vec3 skySpecular = skyRadiance(reflect(-toCamera, normal)) * (reflects * open);
-  vec3 specular = lit.specular * open;
+  float crease = 1.0;
+#if WRINKLE_LOOKS && (WRINKLE_TEXTURE || WRINKLE_DYNAMIC)
+  vec4 look = wrinkleLook(v_uv, masks, dynamicMasks, u_wrinkle_maps.xy);
+  base.rgb *= look.rgb;
+  crease = look.a;
+#endif
+  vec3 sky = skyIrradiance(normal) * crease;
+  vec3 tint = vec3(open * crease);
+#if MATERIAL == MATERIAL_HAIR
+  // Most of what hair sends back went through it: it has hair's colour, and little is white.
+  tint *= mix(vec3(0.25), 4.0 * base.rgb, 0.75);
+#endif
+  vec3 skySpecular = skyRadiance(reflect(-toCamera, normal)) * (reflects * tint);
+  vec3 specular = lit.specular * tint;
   vec3 diffuse = leaves * (lit.direct + sky) + lit.through;
   float skyShare = share(leaves * sky, diffuse);
 

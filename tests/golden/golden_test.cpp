@@ -25,7 +25,10 @@ struct Shot {
   View view;
   const char* camera;
   NormalBlend blend = NormalBlend::kPartialDerivative;
+  Shading shading = Shading::kDiffuse;
 };
+
+constexpr auto kBlend = NormalBlend::kPartialDerivative;
 
 void PrintTo(const Shot& shot, std::ostream* out) { *out << shot.name; }
 
@@ -39,6 +42,18 @@ constexpr Shot kShots[] = {
     {"mask_texture", View::kMaskTexture, "face"},
     {"weights", View::kWeights, "face"},
     {"wireframe", View::kWireframe, "face"},
+    {"skin", View::kFinal, "face", kBlend, Shading::kSkin},
+    {"skin_three_quarter", View::kFinal, "three_quarter", kBlend, Shading::kSkin},
+    {"shadow", View::kShadow, "three_quarter"},
+    {"irradiance", View::kIrradiance, "face"},
+    {"scattered", View::kScattered, "face"},
+    {"specular", View::kSpecular, "three_quarter"},
+    {"translucency", View::kTranslucency, "profile"},
+    {"albedo", View::kAlbedo, "face"},
+    {"depth", View::kDepth, "three_quarter"},
+    {"material", View::kMaterial, "face"},
+    {"occlusion", View::kOcclusion, "face"},
+    {"bloom", View::kBloom, "face"},
 };
 
 std::filesystem::path Folder() {
@@ -61,6 +76,7 @@ Result<Image> Draw(const Shot& shot) {
   request.filtered_values = subject.driver_values;
   request.settings.view = shot.view;
   request.settings.normal_blend = shot.blend;
+  request.settings.shading = shot.shading;
   request.camera = *(*renderer)->Preset(shot.camera);
   request.width = request.height = kSize;
   return (*renderer)->Render(request);

@@ -78,6 +78,7 @@ TEST_F(ShaderLibraryTest, EverySkinConfigurationCompiles) {
         shader.gems = bit == 5;
         shader.conserve_energy = bit != 6;
         shader.wrinkle_texture = shader.wrinkle_dynamic = bit == 7;
+        shader.widen = shader.wrinkle_looks = shader.thickness_map = bit == 7;
         shader.active_maps = bit == 7 ? 2 : 0;
         const Result<GLuint> program = library_.Get(shader);
         ASSERT_TRUE(program.ok()) << ViewName(view) << " " << bit << "\n"

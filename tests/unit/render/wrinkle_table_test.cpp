@@ -76,7 +76,10 @@ TEST_F(WrinkleTableTest, AHingeRaisesADynamicMap) {
   EXPECT_TRUE(Skin().maps.empty());
 }
 
-TEST_F(WrinkleTableTest, JointDrivenMapsGoOnClothWhereThereIsCloth) {
+TEST_F(WrinkleTableTest, MapsGoOnTheSurfaceThatTheRigSays) {
+  using Surface = wrinkle::WrinkleMap::Surface;
+  head_.rig.wrinkle_maps[0].surface = Surface::kSkin;
+  head_.rig.wrinkle_maps[2].surface = Surface::kCloth;
   character::Material cloth;
   cloth.kind = character::Material::Kind::kCloth;
   head_.materials.push_back(cloth);
@@ -90,6 +93,22 @@ TEST_F(WrinkleTableTest, JointDrivenMapsGoOnClothWhereThereIsCloth) {
   EXPECT_EQ(Skin().maps[0].map, 0);
   ASSERT_EQ(Cloth().maps.size(), 1u);
   EXPECT_EQ(Cloth().maps[0].map, 2);
+  // What says nothing goes on both.
+  for (wrinkle::WrinkleMap& map : head_.rig.wrinkle_maps) map.surface = Surface::kAny;
+  Make(head_);
+  ASSERT_TRUE(Update(subject).ok());
+  EXPECT_EQ(Skin().maps.size(), 2u);
+  EXPECT_EQ(Cloth().maps.size(), 2u);
+}
+
+TEST_F(WrinkleTableTest, ClothsMapsGoOnSkinWhereThereIsNoCloth) {
+  head_.rig.wrinkle_maps[2].surface = wrinkle::WrinkleMap::Surface::kCloth;
+  Make(head_);
+  test::Subject subject(head_);
+  subject.pose.joints[2].rotation = glm::angleAxis(1.2f, glm::vec3(1, 0, 0));
+  subject.Solve();
+  ASSERT_TRUE(Update(subject).ok());
+  EXPECT_EQ(Skin().maps.size(), 1u);
 }
 
 // A stream with its own skeleton and rig: what both rigs name travels, the rest is left out.
@@ -123,6 +142,9 @@ TEST_F(WrinkleTableTest, ShortSpansAreNamed) {
 }
 
 TEST_F(WrinkleTableTest, EveryTexturedRegionHasAColourOfItsOwn) {
+  for (wrinkle::WrinkleMap& map : head_.rig.wrinkle_maps) {
+    map.surface = wrinkle::WrinkleMap::Surface::kSkin;
+  }
   Make(head_);
   const auto palette = tables_->mask_palette(WrinkleGroup::kSkin);
   ASSERT_EQ(palette.size(), 4u);
