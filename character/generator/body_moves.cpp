@@ -88,7 +88,7 @@ float Eased(std::span<const Key> keys, float t) {
 void Stand(float t, FramePose* pose) {
   const float breath = std::sin(2.0f * kPi * t / 4.1f);
   pose->TurnBoth("shoulder", 0, 0, -6.0f + 0.5f * breath);
-  pose->TurnBoth("upper_arm", 0, 0, -67);
+  pose->TurnBoth("upper_arm", 0, 0, -70);
   pose->TurnBoth("lower_arm", 0, -15, 0);
   pose->TurnBoth("hand", 0, -4, 0);
   for (const float side : {1.0f, -1.0f}) pose->CloseHand(side, 0.06f);

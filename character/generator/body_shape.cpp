@@ -18,7 +18,7 @@ using glm::vec3;
 
 constexpr float kDegrees = std::numbers::pi_v<float> / 180.0f;
 constexpr float kShoulderDrop = 4.0f;  // degrees, of the modelling pose
-constexpr float kArmDrop = 57.0f;
+constexpr float kArmDrop = 42.0f;
 
 // Metres: height, half width, front, back, x, z. A shirt tucked in, with some air above the belt.
 constexpr Section kTorso[] = {

@@ -99,13 +99,13 @@ void Speak(float start, float end, int seed, std::vector<Action>* actions) {
     const float loud = 0.55f + 0.45f * Hash(seed, i, 2);
     const float kind = Hash(seed, i, 3);
     const auto mouth = [&](const char* pose, float peak) {
-      actions->push_back({pose, t, 0.10f, t + 0.6f * beat, 0.13f, peak * loud});
+      actions->push_back({pose, t, 0.12f, t + 0.6f * beat, 0.15f, peak * loud});
     };
     if (kind < 0.40f) {  // a, e: open
       mouth("jaw_open", 0.42f);
       mouth("upper_lip_raise", 0.16f);
     } else if (kind < 0.62f) {  // i, s: wide
-      mouth("lip_stretch", 0.36f);
+      mouth("lip_stretch", 0.30f);
       mouth("jaw_open", 0.16f);
     } else if (kind < 0.82f) {  // o, u, w: round
       mouth("lip_pucker", 0.50f);
