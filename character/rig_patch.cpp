@@ -22,10 +22,18 @@ constexpr float kLeastSkinWeight = 1e-3f;
 // Digits that say something: a hundredth of a millimetre, a ten-thousandth of a skin weight.
 float Rounded(float value, float steps) { return std::round(value * steps) / steps; }
 
+// Skin and cloth, and where nothing is marked as skin, all but eyes and hair: teeth never wrinkle.
 bool Wrinkles(const Character& character, const Mesh& mesh) {
-  if (mesh.material < 0) return true;
-  const Material::Kind kind = character.materials[static_cast<std::size_t>(mesh.material)].kind;
-  return kind != Material::Kind::kEye && kind != Material::Kind::kHair;
+  const auto kind_of = [&](const Mesh& of) {
+    return of.material < 0 ? Material::Kind::kOther
+                           : character.materials[static_cast<std::size_t>(of.material)].kind;
+  };
+  const Material::Kind kind = kind_of(mesh);
+  if (kind != Material::Kind::kOther) {
+    return kind == Material::Kind::kSkin || kind == Material::Kind::kCloth;
+  }
+  return std::none_of(character.meshes.begin(), character.meshes.end(),
+                      [&](const Mesh& other) { return kind_of(other) == Material::Kind::kSkin; });
 }
 
 struct Piece {
@@ -267,18 +275,24 @@ Result<glm::vec3> PlaceOfRegion(const Character& character, const std::string& r
       return Status(StatusCode::kNotFound, "region '" + region + "' has no mask picture",
                     character.name, "say where with --around or --joint");
     }
+    std::vector<glm::vec3> inside;
     glm::vec3 sum(0.0f);
-    float weight = 0.0f;
     for (const Mesh& mesh : character.meshes) {
       if (!Wrinkles(character, mesh) || !IsKind(character, mesh, kind)) continue;
       for (const Vertex& vertex : mesh.vertices) {
-        const float mask = MaskAt(character.pictures[static_cast<std::size_t>(picture)], vertex.uv,
-                                  candidate.mask.channel);
-        sum += mask * vertex.position;
-        weight += mask;
+        const Picture& mask = character.pictures[static_cast<std::size_t>(picture)];
+        if (MaskAt(mask, vertex.uv, candidate.mask.channel) < 0.5f) continue;
+        inside.push_back(vertex.position);
+        sum += vertex.position;
       }
     }
-    if (weight > 0.0f) return sum / weight;
+    // The middle of a bent surface lies beneath it, maybe nearer to another: to the surface again.
+    const glm::vec3 middle = sum / static_cast<float>(std::max<std::size_t>(inside.size(), 1));
+    const auto nearest =
+        std::min_element(inside.begin(), inside.end(), [&](const glm::vec3& a, const glm::vec3& b) {
+          return glm::distance(a, middle) < glm::distance(b, middle);
+        });
+    if (nearest != inside.end()) return *nearest;
     return Status(StatusCode::kNotFound, "the mask of region '" + region + "' covers nothing",
                   character.name);
   }

@@ -31,8 +31,8 @@ struct PatchOptions {
 [[nodiscard]] Result<wrinkle::Driver> CutPatch(const Character& character,
                                                const PatchOptions& options);
 
-// Where a joint starts (model space, rest pose), and the middle of the surface that a region's mask
-// covers. kNotFound where there is no such joint, region or mask picture.
+// Where a joint starts (model space, rest pose), and the vertex in the middle of what a region's
+// mask covers. kNotFound where there is no such joint, region or mask picture.
 [[nodiscard]] Result<glm::vec3> PlaceOfJoint(const Character& character, const std::string& joint);
 [[nodiscard]] Result<glm::vec3> PlaceOfRegion(const Character& character,
                                               const std::string& region);
