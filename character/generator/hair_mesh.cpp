@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -23,7 +24,7 @@ constexpr float kDegrees = 180.0f / std::numbers::pi_v<float>;
 constexpr int kSections = 6;        // of a lock, root to tip
 constexpr int kCells = 40;          // locks along a side of the texture
 constexpr float kCapTop = 0.72f;    // locks above this v, the cap below
-constexpr float kLockArea = 0.42f;  // square centimetres of scalp a lock grows from
+constexpr float kLockArea = 0.40f;  // square centimetres of scalp a lock grows from
 
 // Height of the hairline by azimuth, degrees from the front: forehead, temple, sideburn, ear, nape.
 constexpr Knot kHairline[] = {{0, 6.3f},    {14, 6.45f},  {26, 6.5f},  {36, 5.9f},   {44, 4.7f},
@@ -47,30 +48,30 @@ std::uint32_t Add(HeadMesh* hair, const vec3& place, const vec2& uv) {
 void AddCap(const HeadGrid& grid, HeadMesh* hair) {
   const int last = grid.num_columns();
   const int rows = grid.num_rows();
-  std::vector<float> inside;
-  const auto first = static_cast<std::uint32_t>(hair->mesh.vertices.size());
+  const auto at = [&](int c, int r) { return static_cast<std::size_t>((c + last) * rows + r); };
+  std::vector<vec3> skin(at(last, rows - 1) + 1);
   for (int c = -last; c <= last; ++c) {
-    for (int r = 0; r < rows; ++r) {
-      const vec2 place = grid.Plain(c, r);
-      vec3 skin = grid.Surface(place);
-      inside.push_back(InsideHairline(skin));
-      skin += grid.shape().Normal(skin) * (-0.15f + 0.32f * SmoothStep(0.1f, 1.4f, inside.back()));
-      if (std::abs(c) == last) skin.x = 0.0f;
-      const vec2 uv = glm::mix(vec2(0.01f), vec2(0.99f), HeadUv(place));
-      Add(hair, skin, {uv.x, kCapTop + 0.01f + (0.98f - kCapTop) * uv.y});
-    }
+    for (int r = 0; r < rows; ++r) skin[at(c, r)] = grid.Surface(grid.Plain(c, r));
   }
-  const auto index = [&](int c, int r) {
-    return static_cast<std::uint32_t>((c + last) * rows + r);
+  constexpr std::uint32_t kNone = ~0u;
+  std::vector<std::uint32_t> added(skin.size(), kNone);
+  const auto vertex = [&](int c, int r) {
+    std::uint32_t& index = added[at(c, r)];
+    if (index != kNone) return index;
+    vec3 place = skin[at(c, r)];
+    const float inside = InsideHairline(place);
+    place += grid.shape().Normal(place) * (-0.15f + 0.32f * SmoothStep(0.1f, 1.4f, inside));
+    if (std::abs(c) == last) place.x = 0.0f;
+    const vec2 uv = glm::mix(vec2(0.01f), vec2(0.99f), HeadUv(grid.Plain(c, r)));
+    return index = Add(hair, place, {uv.x, kCapTop + 0.01f + (0.98f - kCapTop) * uv.y});
   };
   for (int c = -last; c < last; ++c) {
     for (int r = 0; r + 1 < rows; ++r) {
-      const std::uint32_t quad[] = {index(c, r), index(c + 1, r), index(c + 1, r + 1),
-                                    index(c, r + 1)};
-      float best = -100.0f;
-      for (const std::uint32_t i : quad) best = std::max(best, inside[i]);
+      const float best =
+          std::max({InsideHairline(skin[at(c, r)]), InsideHairline(skin[at(c + 1, r)]),
+                    InsideHairline(skin[at(c + 1, r + 1)]), InsideHairline(skin[at(c, r + 1)])});
       if (best < 0.0f) continue;
-      AddQuad(&hair->mesh, first + quad[0], first + quad[1], first + quad[2], first + quad[3]);
+      AddQuad(&hair->mesh, vertex(c, r), vertex(c + 1, r), vertex(c + 1, r + 1), vertex(c, r + 1));
     }
   }
 }

@@ -42,15 +42,19 @@ Style ShortHair(const vec3& root) {
   return style;
 }
 
+// Swept back from the face, down to the nape.
 Style LongHair(const vec3& root) {
   const float left = SmoothStep(kPartX - 0.5f, kPartX + 0.5f, root.x);
   const float top = Top(root);
-  const vec3 from_part = glm::mix(vec3(-0.9f, 0.0f, -0.35f), vec3(0.9f, -0.1f, -0.35f), left);
+  const float front = SmoothStep(0.0f, 4.5f, root.z);
   const float side = root.x < 0.0f ? -1.0f : 1.0f;
+  const vec3 from_part = glm::mix(vec3(-0.8f, 0.0f, -0.6f), vec3(0.7f, -0.1f, -0.7f), left);
+  const vec3 back(0.25f * side, 0.1f, -1.0f);
   Style style;
-  style.comb = glm::mix(vec3(0.15f * side, -1.0f, -0.25f), from_part, top);
-  style.length = std::clamp(root.y + 8.5f + 3.0f * top, 3.0f, 19.0f);
-  style.body = 0.75f + 0.35f * top;
+  style.comb = glm::mix(vec3(0.1f * side, -0.8f, -0.6f), glm::mix(from_part, back, 0.5f * front),
+                        std::max(top, front));
+  style.length = std::clamp(root.y + 6.0f, 2.5f, 12.0f);
+  style.body = 0.75f + 0.45f * top + 0.35f * front * top;
   return style;
 }
 
@@ -77,7 +81,8 @@ HairLock GrowLock(const HeadShape& shape, const vec3& root, int number, int sect
     const float t = static_cast<float>(i) / static_cast<float>(sections);
     const vec3 normal = shape.Normal(p);
     // Gravity takes what is long.
-    const float fall = SmoothStep(0.15f, 0.7f, t) * SmoothStep(7.5f, 11.0f, length);
+    const float fall =
+        SmoothStep(0.15f, 0.7f, t) * SmoothStep(7.5f, 11.0f, length) * SmoothStep(2.0f, -1.5f, p.z);
     const vec3 comb = glm::mix(glm::normalize(glm::mix(a.comb, b.comb, woman) + stray),
                                vec3(0.0f, -1.0f, -0.05f), fall);
     vec3 along = comb - normal * glm::dot(comb, normal) * (1.0f - 0.6f * fall);

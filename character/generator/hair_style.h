@@ -17,7 +17,7 @@ struct HairLock {
 };
 
 // Grows the lock at `root`, a point of the scalp: short at the sides and combed back from the brow
-// for a man, to the jaw and parted on the left for a woman; mixtures between them. `number` varies
+// for a man, swept back to the nape for a woman; mixtures between them. `number` varies
 // it.
 [[nodiscard]] HairLock GrowLock(const HeadShape& shape, const glm::vec3& root, int number,
                                 int sections);

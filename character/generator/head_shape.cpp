@@ -49,6 +49,7 @@ constexpr Shift kAge[] = {
     {"upper lip to the corner", {0, 0, -0.1f}, {0, -0.06f, -0.05f}, {-0.08f, -0.05f}},
     {"lower lip", {0, 0, -0.1f}, {0, 0, -0.1f}, {-0.07f, -0.07f}},
     {"lower lip to the corner", {0, 0, -0.06f}, {0, -0.05f, -0.05f}, {-0.05f, -0.05f}},
+    {"between the lips", {0, 0, -0.17f}, {0, 0, -0.1f}, {}},
     {"cheek", {0.1f, -0.35f, -0.15f}, {}, {}},
     {"cheek beside the mouth", {0.1f, -0.6f, 0.1f}, {0.15f, 0.1f, 0.1f}, {}},
     {"brow", {0, -0.1f, 0}, {0, -0.25f, 0}, {}},
@@ -56,7 +57,7 @@ constexpr Shift kAge[] = {
 
 // Clay that age adds (jowls, bags under the eyes) and takes (temples, folds that stay).
 constexpr Dab kAgeDabs[] = {
-    {{3.9f, -9.2f, 5.4f}, 0.9f, 0.28f},    {{3.3f, -8.6f, 7.3f}, 0.5f, 0.16f},
+    {{3.9f, -9.2f, 5.4f}, 0.9f, 0.18f},    {{3.3f, -8.6f, 7.3f}, 0.5f, 0.16f},
     {{2.55f, -8.9f, 7.9f}, 0.45f, -0.16f}, {{2.95f, -7.9f, 8.2f}, 0.35f, -0.12f},
     {{2.4f, -4.9f, 8.9f}, 0.4f, -0.14f},   {{2.85f, -5.9f, 8.7f}, 0.4f, -0.15f},
     {{3.3f, -5.6f, 8.4f}, 0.6f, 0.12f},    {{3.4f, -1.55f, 8.3f}, 0.42f, 0.11f},
