@@ -183,8 +183,8 @@ Mesh BuildLashes(const BaseMesh& base, std::string_view group, const glm::vec3& 
 }
 
 Picture PaintHair(int size) {
-  constexpr glm::vec3 kDark{0.13f, 0.085f, 0.06f};
-  constexpr glm::vec3 kLight{0.36f, 0.25f, 0.17f};
+  constexpr glm::vec3 kDark{0.22f, 0.15f, 0.105f};
+  constexpr glm::vec3 kLight{0.52f, 0.38f, 0.26f};
   Picture picture = paint::BlankPicture("hair_colour", size, size, 3);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {

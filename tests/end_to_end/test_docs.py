@@ -30,6 +30,7 @@ class DocumentTest(unittest.TestCase):
         self.root = pathlib.Path(folder.name)
         for name in ("take.bvh", "performance.bvh"):
             (self.root / name).symlink_to(PERFORMANCE)
+        (self.root / "hero.glb").symlink_to(SHARE / "default.glb")
 
     def run_here(self, words):
         """Runs one command in a folder of its own; `>` works as in a shell."""
@@ -77,10 +78,11 @@ class DocumentTest(unittest.TestCase):
             words = [str(SHARED / "makehuman") if w == "path/to/makehuman" else w for w in words]
             words = [str(SHARED / "performances" / "emotions.bvh") if w == "performance.bvh" else w for w in words]
             if words[1] == "render":
-                words += ["--frames", "60", "--size", "64x64"]
+                words += ["--size", "64x64"] + ([] if "--frames" in words else ["--frames", "60"])
             self.run_here(words)
-            seen.append(words[1])
-        self.assertEqual(seen[:2], ["character", "render"])
+            seen.append(" ".join(words[1:3]))
+        self.assertLessEqual({"character check", "character import", "character propose-rig", "rig check"}, set(seen))
+        self.assertIn("render", {command.split()[0] for command in seen})
 
 
 if __name__ == "__main__":
