@@ -123,7 +123,7 @@ struct BakedMap {
     float deepest_mm = 0.0f;              // valley under the surface, >= 0
     float highest_mm = 0.0f;              // ridge over it, >= 0
     float steepest = 0.0f;                // length of the largest derivative
-    float texel_mm = 0.0f;                // side of a texel on the surface, median
+    float texel_mm = 0.0f;                // side of a texel on the surface, mean where it folds
     int strokes = 0;                      // fold strokes that lie on the surface
     std::int64_t overlapping_texels = 0;  // covered by more than one triangle: the first one won
   } statistics;

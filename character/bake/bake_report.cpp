@@ -135,7 +135,7 @@ std::string Statistics(const BakedMap& map, std::span<const BakePose> poses,
          Row("valleys", Number(s.deepest_mm) + " mm deep") +
          Row("ridges", Number(s.highest_mm) + " mm high") +
          Row("steepest slope", Number(s.steepest)) + Row("wavelength", wavelengths) +
-         Row("a texel", Number(s.texel_mm) + " mm, median") + "</table>\n";
+         Row("a texel", Number(s.texel_mm) + " mm where it folds") + "</table>\n";
 }
 
 std::string Figure(const std::string& file, const char* caption) {

@@ -112,28 +112,25 @@ BakeSurface::BakeSurface(std::span<const Mesh* const> meshes, float smoothing, i
     : surface_(meshes),
       solver_(surface_, smoothing),
       texels_(paint::RasterizeUv(surface_.mesh(), size, size, &overlaps_)),
-      texel_metres_(MedianTexel(size)) {}
+      texel_metres_(TexelSides(size)) {}
 
-float BakeSurface::MedianTexel(int size) const {
-  std::vector<std::pair<float, float>> sides;  // of a texel, and the area where it is so
-  float total = 0.0f;
+std::vector<float> BakeSurface::TexelSides(int size) const {
   const Mesh& mesh = surface_.mesh();
-  for (std::size_t t = 0; t < surface_.triangles().size(); ++t) {
-    const float uv =
-        UvArea(mesh.vertices[mesh.indices[3 * t]], mesh.vertices[mesh.indices[3 * t + 1]],
-               mesh.vertices[mesh.indices[3 * t + 2]]);
-    const float area = surface_.triangles()[t].area;
-    if (!(uv > 1e-12f)) continue;
-    sides.emplace_back(std::sqrt(area / uv) / static_cast<float>(size), area);
-    total += area;
+  const auto uv_area = [&](std::size_t t) {
+    return UvArea(mesh.vertices[mesh.indices[3 * t]], mesh.vertices[mesh.indices[3 * t + 1]],
+                  mesh.vertices[mesh.indices[3 * t + 2]]);
+  };
+  std::vector<float> sides;
+  sides.reserve(surface_.positions().size());
+  for (std::size_t v = 0; v < surface_.positions().size(); ++v) {
+    float area = 0.0f, uv = 0.0f;
+    for (const std::uint32_t t : surface_.Around(v)) {
+      area += surface_.triangles()[t].area;
+      uv += uv_area(t);
+    }
+    sides.push_back(uv > 1e-12f ? std::sqrt(area / uv) / static_cast<float>(size) : 0.0f);
   }
-  std::sort(sides.begin(), sides.end());
-  float passed = 0.0f;
-  for (const auto& [side, area] : sides) {
-    passed += area;
-    if (passed >= 0.5f * total) return side;
-  }
-  return 0.0f;
+  return sides;
 }
 
 std::vector<float> BakeSurface::MaskOf(const Character& character,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,9 @@ class BakeSurface {
   [[nodiscard]] const CompressionSolver& solver() const { return solver_; }
   [[nodiscard]] const std::vector<paint::Texel>& texels() const { return texels_; }
   [[nodiscard]] std::int64_t overlaps() const { return overlaps_; }
-  [[nodiscard]] float texel_metres() const { return texel_metres_; }  // side, median
+  // Side of a texel on the surface, metres, one a welded vertex: a face takes more of its picture
+  // than a back.
+  [[nodiscard]] std::span<const float> texel_metres() const { return texel_metres_; }
 
   // A region's mask at the welded vertices, [0, 1]; empty where it has no picture: everywhere all.
   [[nodiscard]] std::vector<float> MaskOf(const Character& character,
@@ -32,13 +35,13 @@ class BakeSurface {
 
  private:
   BakeSurface(std::span<const Mesh* const> meshes, float smoothing, int size);
-  [[nodiscard]] float MedianTexel(int size) const;
+  [[nodiscard]] std::vector<float> TexelSides(int size) const;
 
   Surface surface_;
   CompressionSolver solver_;
   std::int64_t overlaps_ = 0;
   std::vector<paint::Texel> texels_;
-  float texel_metres_ = 0.0f;
+  std::vector<float> texel_metres_;
 };
 
 // The meshes that make up the skin or the clothes: indices into Character::meshes.

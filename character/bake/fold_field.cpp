@@ -31,11 +31,13 @@ Tensor2 Steer(const Tensor2& tensor, const vec2& along) {
 }  // namespace
 
 FoldField::FoldField(const Surface& surface, const StrokeLayer& strokes,
-                     std::vector<Tensor2> tensors, std::vector<float> wavelengths)
+                     std::vector<Tensor2> tensors, std::vector<float> wavelengths,
+                     std::vector<float> smallest)
     : surface_(surface),
       strokes_(strokes),
       tensors_(std::move(tensors)),
-      wavelengths_(std::move(wavelengths)) {}
+      wavelengths_(std::move(wavelengths)),
+      smallest_(std::move(smallest)) {}
 
 FoldDemand FoldField::At(const SurfacePoint& point) const {
   const wrinkle::SurfaceAxes& axes = surface_.triangles()[point.triangle].axes;
@@ -49,6 +51,7 @@ FoldDemand FoldField::At(const SurfacePoint& point) const {
   demand.crossing = guidance.keep * std::max(principal.small, 0.0f);
   demand.wavelength = glm::mix(surface_.Interpolate(wavelengths_, point), guidance.wavelength,
                                guidance.wavelength_share);
+  demand.smallest = surface_.Interpolate(smallest_, point);
   return demand;
 }
 

@@ -19,7 +19,6 @@ using glm::vec3;
 
 KernelSet::Options KernelOptions(const FoldLayer::Options& options) {
   return {.wavelength_scale = options.wavelength_scale,
-          .smallest = options.smallest,
           .crossing = options.crossing,
           .threshold = options.material.threshold,
           .variation = options.material.variation,

@@ -16,7 +16,6 @@ class FoldLayer {
   struct Options {
     BakeMaterial material;
     float wavelength_scale = 1.0f;
-    float smallest = 0.0f;  // wavelength, metres
     bool crossing = false;
     float height = 1.0f;  // scales the height
     std::uint32_t seed = 1;

@@ -35,8 +35,7 @@ std::vector<char> ActiveTriangles(const FoldField& field, const KernelSet::Optio
     if (field.Strongest(t, options.crossing) < 0.5f * options.threshold) continue;
     active[t] = 1;
     const SurfacePoint centre = surface.PointOf(t, vec3(1.0f / 3.0f));
-    const float wavelength =
-        std::max(field.Wavelength(centre) * options.wavelength_scale, options.smallest);
+    const float wavelength = field.Wavelength(centre, options.wavelength_scale);
     for (const std::uint32_t near : reach.Find(centre.position, {&t, 1}, kReach * wavelength)) {
       active[near] = 1;
     }
@@ -69,8 +68,7 @@ std::vector<Candidate> Candidates(const FoldField& field, const KernelSet::Optio
   for (std::uint32_t t = 0; t < active.size(); ++t) {
     if (!active[t]) continue;
     const SurfacePoint centre = surface.PointOf(t, vec3(1.0f / 3.0f));
-    const float wavelength =
-        std::max(field.Wavelength(centre) * options.wavelength_scale, options.smallest);
+    const float wavelength = field.Wavelength(centre, options.wavelength_scale);
     const float spacing = kSpacing * wavelength;
     const float wanted = kCandidates * surface.triangles()[t].area / (spacing * spacing);
     const auto count = static_cast<std::uint32_t>(
@@ -138,15 +136,15 @@ void KernelSet::Strew(const FoldField& field, const Options& options, const Ampl
   const std::vector<Candidate> candidates = Candidates(field, options);
   std::vector<FoldDemand> demands;
   std::vector<float> wavelengths;
-  float longest = options.smallest;
+  float longest = 0.0f;
   for (const Candidate& candidate : candidates) {
     demands.push_back(field.At(candidate.place));
     const float base =
-        std::max(demands.back().wavelength * options.wavelength_scale, options.smallest);
+        std::max(demands.back().wavelength * options.wavelength_scale, demands.back().smallest);
     // Features of the variation are some folds wide.
     const vec3 at = candidate.place.position / (5.0f * base) + static_cast<float>(options.seed);
     const float vary = 1.0f + options.variation * (2.0f * ValueNoise(at) - 1.0f);
-    wavelengths.push_back(std::max(base * vary, options.smallest));
+    wavelengths.push_back(std::max(base * vary, demands.back().smallest));
     longest = std::max(longest, wavelengths.back());
   }
   Grid grid(std::max(kSpacing * longest, 1e-6f));

@@ -33,7 +33,6 @@ class KernelSet {
  public:
   struct Options {
     float wavelength_scale = 1.0f;  // of the field's
-    float smallest = 0.0f;          // wavelength, metres: what the map's texels can show
     bool crossing = false;          // folds along the field's `across`, of its weaker compression
     float threshold = 0.02f;        // places with less than half of this have no kernels nearby
     float variation = 0.0f;         // of the wavelength, from place to place

@@ -111,7 +111,6 @@ std::vector<float> MapBaker::Wavelengths() const {
 void MapBaker::MakeLayers(const FoldField& field) {
   FoldLayer::Options options;
   options.material = material_;
-  options.smallest = kTexelsAWave * surface_.texel_metres();
   options.height = Depth();
   options.seed = options_.seed;
   layers_.push_back(std::make_unique<FoldLayer>(field, profile_, options));
@@ -174,9 +173,8 @@ bool MapBaker::FillTexels(const StrokeLayer& strokes, const std::function<bool(f
 void MapBaker::Measure(const std::vector<float>& compression, BakedMap* map) const {
   BakedMap::Statistics& statistics = map->statistics;
   statistics.worst_compression = worst_;
-  statistics.texel_mm = surface_.texel_metres() / kMetres;
   statistics.overlapping_texels = surface_.overlaps();
-  double sum = 0.0;
+  double sum = 0.0, sides = 0.0;
   for (const paint::Texel& texel : surface_.texels()) {
     const std::size_t at =
         static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
@@ -189,11 +187,15 @@ void MapBaker::Measure(const std::vector<float>& compression, BakedMap* map) con
         statistics.steepest, std::hypot(map->derivative[2 * at], map->derivative[2 * at + 1]));
     if (std::abs(height) < kFoldedMillimetres) continue;
     ++statistics.folded_texels;
-    sum += static_cast<double>(surface_.surface().Interpolate(compression, PlaceOf(texel)));
+    const SurfacePoint place = PlaceOf(texel);
+    sum += static_cast<double>(surface_.surface().Interpolate(compression, place));
+    sides += static_cast<double>(surface_.surface().Interpolate(surface_.texel_metres(), place));
   }
   if (statistics.folded_texels > 0) {
     statistics.mean_compression =
         static_cast<float>(sum / static_cast<double>(statistics.folded_texels));
+    statistics.texel_mm =
+        static_cast<float>(sides / static_cast<double>(statistics.folded_texels)) / kMetres;
   }
 }
 
@@ -233,7 +235,9 @@ std::unique_ptr<BakedMap> MapBaker::Bake(const std::function<bool(float)>& progr
   const std::vector<Tensor2> tensors = sum_.Take();
   std::vector<float> compression;
   for (const Tensor2& tensor : tensors) compression.push_back(PrincipalOf(tensor).large);
-  const FoldField field(surface_.surface(), strokes, tensors, Wavelengths());
+  std::vector<float> smallest(surface_.texel_metres().begin(), surface_.texel_metres().end());
+  for (float& side : smallest) side *= kTexelsAWave;
+  const FoldField field(surface_.surface(), strokes, tensors, Wavelengths(), std::move(smallest));
   if (!say(0.5f * kPrepared)) return nullptr;
   MakeLayers(field);
   if (!say(kPrepared)) return nullptr;

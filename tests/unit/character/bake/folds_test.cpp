@@ -86,6 +86,31 @@ TEST(Folds, StandAWavelengthApart) {
   EXPECT_NEAR(crossings, 10, 1);  // 100 mm of 10 mm folds
 }
 
+TEST(Folds, AreNoFinerThanTheTexelsThere) {
+  // The right half of the sheet has a fifth of the picture: 7.8 mm a texel, and 1.95 on the left.
+  Mesh mesh = toys::Grid(40, 20, [](float u, float v) {
+    const float right = std::max(u - 0.5f, 0.0f);
+    return toys::Point{
+        {0.4f * u, 0.1f * v, 0.0f}, {1.6f * std::min(u, 0.5f) + 0.4f * right, 1.0f - v}, 0.0f};
+  });
+  BakeOptions options = toys::Exact();
+  options.size = 128;
+  options.skin.wavelength_mm = 2.0f;
+  const BakedMap map = toys::BakeFolds(toys::Wearing(std::move(mesh)),
+                                       {toys::Pose(toys::Squeeze(0.2f, 0.0f))}, options);
+  const auto valleys = [&](int from, int to) {
+    int count = 0;
+    for (int x = from; x < to; ++x) {
+      const float here = map.height_mm[toys::At(map, x, 64)];
+      count += here < 0.0f && map.height_mm[toys::At(map, x + 1, 64)] >= 0.0f ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_GE(valleys(5, 95), 15);
+  EXPECT_LE(valleys(5, 95), 30);  // three texels each
+  EXPECT_LE(valleys(106, 125), 7);
+}
+
 // The median angle between the slopes of a map and a direction of its plane, degrees.
 float MedianAngle(const BakedMap& map, float degrees) {
   const vec2 across(std::cos(glm::radians(degrees)), std::sin(glm::radians(degrees)));
