@@ -24,6 +24,7 @@
 #include "character/gltf_builder.h"
 #include "character/gltf_mesh.h"
 #include "character/intake/confined.h"
+#include "character/intake/gltf_pieces.h"
 #include "wrinkle/transform.h"
 
 namespace furrow::character {
@@ -47,25 +48,6 @@ class NoFiles : public Assimp::IOSystem {
 
 glm::mat4 ToGlm(const aiMatrix4x4& m) { return glm::transpose(glm::make_mat4(&m.a1)); }
 glm::vec3 ToGlm(const aiVector3D& v) { return {v.x, v.y, v.z}; }
-
-// Without the shear that a file may have: vertices are brought to where this puts the joints.
-wrinkle::Transform ToTransform(const glm::mat4& m) {
-  wrinkle::Transform t;
-  t.translation = glm::vec3(m[3]);
-  glm::mat3 axes(m);
-  for (int i = 0; i < 3; ++i) {
-    t.scale[i] = std::max(glm::length(axes[i]), 1e-9f);
-    axes[i] /= t.scale[i];
-  }
-  if (glm::determinant(axes) < 0.0f) {
-    t.scale.x = -t.scale.x;
-    axes[0] = -axes[0];
-  }
-  const glm::quat rotation = glm::quat_cast(axes);
-  const float length = glm::length(rotation);
-  t.rotation = length > 1e-6f ? rotation / length : glm::quat(1.0f, 0.0f, 0.0f, 0.0f);
-  return t;
-}
 
 // The last part of a path in either system's manner.
 std::string FileName(const std::string& path) {
@@ -189,7 +171,7 @@ class SceneWriter {
       const int parent = Kept(source.parent);
       if (!source.is_joint && (parent < 0 || !below[i])) continue;
       const glm::mat4 above = parent < 0 ? glm::mat4(1.0f) : sources_[parent].model;
-      const wrinkle::Transform local = ToTransform(glm::inverse(above) * source.model);
+      const wrinkle::Transform local = WithoutShear(glm::inverse(above) * source.model);
       source.model = above * wrinkle::ToMatrix(local);
       source.written = static_cast<int>(nodes_.size());
       std::string name = NameOf(source.node->mName);
@@ -207,13 +189,6 @@ class SceneWriter {
   [[nodiscard]] int Kept(int source) const {
     while (source >= 0 && sources_[source].written < 0) source = sources_[source].parent;
     return source;
-  }
-
-  static Json NodeJson(const std::string& name, const wrinkle::Transform& t) {
-    return {{"name", name},
-            {"translation", {t.translation.x, t.translation.y, t.translation.z}},
-            {"rotation", {t.rotation.x, t.rotation.y, t.rotation.z, t.rotation.w}},
-            {"scale", {t.scale.x, t.scale.y, t.scale.z}}};
   }
 
   void AddSkin() {
@@ -247,11 +222,6 @@ class SceneWriter {
             {},
             "export the character with its mesh and skeleton"};
   }
-
-  struct Influence {
-    std::size_t joint;
-    float weight;
-  };
 
   // By vertex, the strongest first.
   std::vector<std::vector<Influence>> InfluencesOf(const aiMesh& mesh) {
@@ -340,7 +310,7 @@ class SceneWriter {
     if (!uvs.empty()) {
       attributes["TEXCOORD_0"] = builder_.AddAccessor(uvs, B::kFloat, "VEC2", B::kArrayBuffer);
     }
-    if (skinned) AddInfluences(influences, &attributes);
+    if (skinned) AddInfluences(influences, &builder_, &attributes);
     Json primitive = {
         {"attributes", std::move(attributes)},
         {"indices", builder_.AddAccessor(indices, B::kUnsignedInt, "SCALAR", B::kElementBuffer)},
@@ -363,27 +333,6 @@ class SceneWriter {
       if (face.mNumIndices == 3) indices.insert(indices.end(), face.mIndices, face.mIndices + 3);
     }
     return indices;
-  }
-
-  void AddInfluences(const std::vector<std::vector<Influence>>& influences, Json* attributes) {
-    std::size_t most = 1;
-    for (const auto& list : influences) most = std::max(most, list.size());
-    for (std::size_t set = 0; 4 * set < most; ++set) {
-      std::vector<glm::u16vec4> joints(influences.size(), glm::u16vec4(0));
-      std::vector<glm::vec4> weights(influences.size(), glm::vec4(0.0f));
-      for (std::size_t v = 0; v < influences.size(); ++v) {
-        for (std::size_t i = 4 * set; i < std::min(influences[v].size(), 4 * set + 4); ++i) {
-          joints[v][static_cast<int>(i % 4)] = static_cast<std::uint16_t>(influences[v][i].joint);
-          weights[v][static_cast<int>(i % 4)] = influences[v][i].weight;
-        }
-      }
-      using B = GltfBuilder;
-      const std::string suffix = "_" + std::to_string(set);
-      (*attributes)["JOINTS" + suffix] =
-          builder_.AddAccessor(joints, B::kUnsignedShort, "VEC4", B::kArrayBuffer);
-      (*attributes)["WEIGHTS" + suffix] =
-          builder_.AddAccessor(weights, B::kFloat, "VEC4", B::kArrayBuffer);
-    }
   }
 
   void AddMaterials() {
