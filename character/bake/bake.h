@@ -88,7 +88,7 @@ struct BakeOptions {
                      .sharpness = 0.35f,
                      .crossing = 0.3f};
   std::vector<BakeRegionWavelength> wavelengths = {
-      {"brow", 7.0f}, {"glabella", 6.0f}, {"nose", 3.2f}, {"eye", 3.0f}, {"mouth", 5.0f}};
+      {"brow", 8.0f}, {"glabella", 6.5f}, {"nose", 3.5f}, {"eye", 3.5f}, {"mouth", 5.5f}};
   float depth = 1.0f;  // scales every height of every material, [0, 4]
   std::uint32_t seed = 1;
   int threads = 2;  // [1, 64]; the result does not depend on it
