@@ -140,7 +140,7 @@ std::vector<NamedField> MuscleFields(const HeadVertex& v) {
 void WeighLips(const wrinkle::Skeleton& skeleton, const HeadVertex& v, float share,
                Weights* weights) {
   const float x = v.place.x / kMouthCornerX;
-  const float corner = std::pow(std::min(std::abs(x), 1.0f), 2.1f);
+  const float corner = std::pow(std::min(std::abs(x), 1.0f), 2.6f);
   const float left = SmoothStep(-0.35f, 0.35f, x);
   const std::string oris =
       v.mouth_side < 0.0f ? "orbicularis_oris_lower" : "orbicularis_oris_upper";
