@@ -138,10 +138,14 @@ nlohmann::json ToJson(const Experiment& experiment, const std::vector<Outcome>& 
 
 // Frame rates relative to the baseline, ours beside the thesis's.
 BarChart Chart(const Experiment& experiment, const std::vector<Outcome>& outcomes) {
-  BarChart chart{experiment.title, "frame rate, % of its baseline", {"furrow", "thesis"}, {}};
+  BarChart chart{experiment.title,
+                 "frame rate, % of its baseline",
+                 {"furrow, by CPU", "furrow, by the wall", "thesis"},
+                 {}};
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const Row& row = experiment.rows[i];
-    std::vector<double> values = {100.0 * outcomes[i].fps() / outcomes[row.baseline].fps()};
+    std::vector<double> values = {100.0 * CpuShare(outcomes, experiment, i),
+                                  100.0 * outcomes[i].fps() / outcomes[row.baseline].fps()};
     if (row.thesis_share > 0.0) values.push_back(100.0 * row.thesis_share);
     chart.groups.push_back({row.name, values});
   }
