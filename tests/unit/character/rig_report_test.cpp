@@ -69,8 +69,13 @@ TEST(RigReport, SaysWhatLeadsNowhere) {
   EXPECT_THAT(report.warnings, Contains("no region uses wrinkle map 'spare'"));
   EXPECT_THAT(report.warnings, Contains(HasSubstr("d.v stays 0")));
   EXPECT_THAT(report.warnings, Contains(HasSubstr("picture 'm.png'")));
-  EXPECT_FALSE(report.binding.ok()) << "a blend shape is missing";
+  // A skeleton that comes with no blend shapes at all lets a rig that reads joints bind.
+  EXPECT_TRUE(report.binding.ok()) << report.binding.ToString();
+  EXPECT_THAT(report.warnings, Contains("no blend shape 'jawOpen' comes with the skeleton"));
   EXPECT_GT(report.skeleton_size, 0.0f);
+  const std::string others[] = {"eyeBlinkLeft"};
+  options.blend_shape_names = others;
+  EXPECT_FALSE(ReportOnRig(*rig, options).binding.ok()) << "one is missing among those that come";
 }
 
 TEST(RigReport, CmuFollowsKneesAndElbowsOfARealClip) {
