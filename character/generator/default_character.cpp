@@ -82,7 +82,7 @@ void AddHeadParts(const CharacterOptions& options, const HeadShape& shape, Chara
   AddMesh(character, SkinnedPart(character->skeleton, MakeEyes()), std::move(eyes));
 
   Mesh hair = SkinnedPart(character->skeleton, MakeHair(shape));
-  Material strands = MakeMaterial("hair", Material::Kind::kHair, 0.55f);
+  Material strands = MakeMaterial("hair", Material::Kind::kHair, 0.68f);
   strands.double_sided = true;
   strands.base_colour_texture =
       AddPicture(character, PaintHairColour(hair, options.face, options.texture_size));

@@ -36,7 +36,7 @@ Style ShortHair(const vec3& root) {
   const vec3 sides(0.12f * side, -0.75f, -0.7f);
   const float nape = SmoothStep(-1.0f, -7.0f, root.y) * SmoothStep(0.0f, -6.0f, root.z);
   Style style;
-  style.comb = glm::mix(sides, swept + vec3(0.0f, 0.25f * front, 0.0f), top);
+  style.comb = glm::mix(sides, swept + vec3(0.0f, 0.85f * front, 0.0f), top);
   style.length = glm::mix(2.9f, 5.6f, top) - 1.0f * nape;
   style.body = glm::mix(0.42f, 0.85f, top) + 0.55f * front - 0.2f * nape;
   return style;

@@ -126,7 +126,7 @@ void HeadGrid::DrawToOutlines() {
   for (int i = 0; i <= half; ++i) pin(eye[i], lower[i].x, lower[i].y);
   for (int i = 1; i < half; ++i) pin(eye[2 * half - i], upper[i].x, upper[i].y);
 
-  constexpr float kGap = 0.008f;  // lips touch: what lies above the line and below it is told apart
+  constexpr float kGap = 0.002f;  // lips touch: what lies above the line and below it is told apart
   const std::vector<glm::ivec2> mouth = MouthOutline(1);
   const int quarter = static_cast<int>(mouth.size()) / 4;  // from the left corner to the middle
   for (int i = 0; i <= quarter; ++i) {
