@@ -10,50 +10,8 @@
 #include <glm/geometric.hpp>
 
 namespace furrow::character::paint {
-namespace {
 
 using glm::vec3;
-
-constexpr std::size_t kRun = 64;  // texels (of one row, mostly) that are skipped by their bounds
-
-struct Bounds {
-  glm::vec3 low{std::numeric_limits<float>::max()};
-  glm::vec3 high{std::numeric_limits<float>::lowest()};
-
-  void Include(const glm::vec3& p) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
-  [[nodiscard]] bool Overlaps(const Bounds& other) const {
-    return glm::all(glm::lessThanEqual(low, other.high)) &&
-           glm::all(glm::greaterThanEqual(high, other.low));
-  }
-};
-
-void AddStroke(std::span<const Texel> texels, const FoldStroke& stroke, const StrokeLine& line,
-               std::span<glm::vec2> slopes) {
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    const Texel& texel = texels[i];
-    if (glm::dot(texel.normal, stroke.facing) < 0.0f) continue;
-    const StrokeLine::Nearest nearest = line.FindNearest(texel.position);
-    if (nearest.distance > kStrokeReach * stroke.width) continue;
-    const FoldShape shape = FoldShapeAt(nearest.distance / stroke.width, stroke.ridge);
-    const float slope =
-        shape.slope * stroke.depth / stroke.width * StrokeTaper(nearest.place, stroke.taper);
-    slopes[i] -= slope * glm::vec2(glm::dot(nearest.away, texel.tangent),
-                                   glm::dot(nearest.away, texel.bitangent));
-  }
-}
-
-Bounds Reach(const FoldStroke& stroke) {
-  Bounds bounds;
-  for (const glm::vec3& point : stroke.points) bounds.Include(point);
-  bounds.low -= glm::vec3(kStrokeReach * stroke.width);
-  bounds.high += glm::vec3(kStrokeReach * stroke.width);
-  return bounds;
-}
-
-}  // namespace
 
 StrokeLine::StrokeLine(std::vector<vec3> points) : points_(std::move(points)) {
   places_.assign(points_.size(), 0.0f);
@@ -106,35 +64,6 @@ FoldShape FoldShapeAt(float widths, float ridge) {
   const float r = (x - 1.0f) * 2.0f;
   const float bump = ridge * std::exp(-r * r);
   return {bump - valley, -4.0f * r * bump - valley_slope};
-}
-
-float StrokeHeight(const FoldStroke& stroke, const glm::vec3& position) {
-  if (stroke.points.size() < 2) return 0.0f;
-  const StrokeLine::Nearest nearest = StrokeLine(stroke.points).FindNearest(position);
-  if (nearest.distance > kStrokeReach * stroke.width) return 0.0f;
-  return FoldShapeAt(nearest.distance / stroke.width, stroke.ridge).height * stroke.depth *
-         StrokeTaper(nearest.place, stroke.taper);
-}
-
-std::vector<glm::vec2> StrokeSlopes(std::span<const Texel> texels,
-                                    std::span<const FoldStroke> strokes) {
-  std::vector<glm::vec2> slopes(texels.size(), glm::vec2(0.0f));
-  std::vector<Bounds> reaches;
-  std::vector<StrokeLine> lines;
-  for (const FoldStroke& stroke : strokes) {
-    reaches.push_back(Reach(stroke));
-    lines.emplace_back(stroke.points);
-  }
-  for (std::size_t start = 0; start < texels.size(); start += kRun) {
-    const auto run = texels.subspan(start, std::min(kRun, texels.size() - start));
-    Bounds bounds;
-    for (const Texel& texel : run) bounds.Include(texel.position);
-    for (std::size_t s = 0; s < strokes.size(); ++s) {
-      if (strokes[s].points.size() < 2 || !reaches[s].Overlaps(bounds)) continue;
-      AddStroke(run, strokes[s], lines[s], std::span(slopes).subspan(start, run.size()));
-    }
-  }
-  return slopes;
 }
 
 Picture EncodeNormals(const std::vector<Texel>& texels, std::span<const glm::vec2> slopes,

@@ -12,20 +12,11 @@
 
 namespace furrow::character::paint {
 
-// One fold, drawn as a line in model space: a valley with a round ridge on either side, which
-// tapers to nothing at both ends.
+// A fold drawn as a line on a surface: a valley with a round ridge on either side, which tapers to
+// nothing at both ends.
 //
 //   height = depth * (ridge * exp(-(2 (x - 1))^2) - exp(-x^2) / (1 + 14 x^2)) * taper(s)
-// with x the distance from the line in widths and s in [0, 1] the place along it.
-struct FoldStroke {
-  std::vector<glm::vec3> points;  // two or more, on or near the surface, model units (metres)
-  float width = 0.002f;           // valley to ridge, metres: half the wavelength of a set of folds
-  float depth = 0.0006f;          // of the valley, metres; negative: a bulge
-  float ridge = 0.35f;            // height of the ridges as a fraction of the depth, [0, 1]
-  float taper = 0.6f;             // fraction of the length over which the ends fade, (0, 1]
-  // Only surface whose normal lies within 90 degrees of this is touched; zero: any.
-  glm::vec3 facing{0.0f};
-};
+// with x the distance from the line in widths (valley to ridge) and s in [0, 1] the place along it.
 
 // Beyond this many widths from its line a stroke is nothing.
 inline constexpr float kStrokeReach = 2.5f;
@@ -51,24 +42,17 @@ class StrokeLine {
   float length_ = 0.0f;
 };
 
-// 0 at both ends of a line, 1 between; `taper` as FoldStroke has it.
+// 0 at both ends of a line, 1 between; `taper`: fraction of the length over which the ends fade,
+// (0, 1].
 [[nodiscard]] float StrokeTaper(float place, float taper);
 
-// A fold's height in depths and its derivative by the distance in widths.
+// A fold's height in depths and its derivative by the distance in widths. `ridge`: height of the
+// ridges as a fraction of the depth, [0, 1].
 struct FoldShape {
   float height = 0.0f;
   float slope = 0.0f;
 };
 [[nodiscard]] FoldShape FoldShapeAt(float widths, float ridge);
-
-// Height of a stroke over the rest surface at a point near it, metres.
-[[nodiscard]] float StrokeHeight(const FoldStroke& stroke, const glm::vec3& position);
-
-// Slopes of all strokes together at every texel: -dh/d(tangent), -dh/d(bitangent), which is
-// n.xy / n.z of the tangent-space normal. As long as `texels`. Sums are exact for superposed
-// heights, and no UV seam shows, since distances are measured in model space.
-[[nodiscard]] std::vector<glm::vec2> StrokeSlopes(std::span<const Texel> texels,
-                                                  std::span<const FoldStroke> strokes);
 
 // Slopes as a tangent-space normal map of width x height, 16 bits a channel, RGB = n * 0.5 + 0.5,
 // green up (glTF), dilated by 16 texels; flat elsewhere. 16 bits, since 8 cannot say 0 and show

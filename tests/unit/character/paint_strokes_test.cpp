@@ -26,14 +26,6 @@ Mesh Square() {
   return mesh;
 }
 
-FoldStroke Across() {
-  FoldStroke stroke;
-  stroke.points = {{0.02f, 0.05f, 0.0f}, {0.08f, 0.05f, 0.0f}};
-  stroke.width = 0.004f;
-  stroke.depth = 0.001f;
-  return stroke;
-}
-
 TEST(PaintTangents, FollowTheTexture) {
   const Mesh mesh = Square();
   for (const Vertex& vertex : mesh.vertices) {
@@ -52,58 +44,40 @@ TEST(PaintTangents, MirroredUvsTurnTheBitangent) {
   }
 }
 
-TEST(PaintStrokes, ValleyIsAsDeepAsStatedAndTapersToNothing) {
-  const FoldStroke stroke = Across();
-  const float bottom = StrokeHeight(stroke, {0.05f, 0.05f, 0.0f});
+TEST(PaintStrokes, FoldIsAValleyBetweenTwoRidges) {
   // The far foot of the ridge reaches the line: ridge * exp(-4) of the depth.
-  EXPECT_NEAR(bottom, stroke.depth * (stroke.ridge * std::exp(-4.0f) - 1.0f), 1e-7f);
-  EXPECT_GT(StrokeHeight(stroke, {0.05f, 0.05f + stroke.width, 0.0f}), 0.2f * stroke.depth);
-  EXPECT_EQ(StrokeHeight(stroke, {0.02f, 0.05f, 0.0f}), 0.0f);
-  EXPECT_EQ(StrokeHeight(stroke, {0.08f, 0.05f, 0.0f}), 0.0f);
-  EXPECT_EQ(StrokeHeight(stroke, {0.05f, 0.09f, 0.0f}), 0.0f);
-}
-
-// Slopes are the negative gradient of the height, which finite differences give independently.
-TEST(PaintStrokes, SlopesAreTheGradientOfTheHeight) {
-  const Mesh mesh = Square();
-  const FoldStroke stroke = Across();
-  const std::vector<Texel> texels = RasterizeUv(mesh, 128, 128);
-  const std::vector<glm::vec2> slopes = StrokeSlopes(texels, std::vector{stroke});
-  ASSERT_EQ(slopes.size(), texels.size());
-  constexpr float kStep = 2e-5f;
-  int touched = 0;
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    const glm::vec3 p = texels[i].position;
-    // Away from the ends, where the taper adds a slope along the line that is left out.
-    if (std::abs(p.x - 0.05f) > 0.008f || std::abs(p.y - 0.05f) > 0.0095f) continue;
-    const glm::vec3 up(0, kStep, 0);
-    const float dh = (StrokeHeight(stroke, p + up) - StrokeHeight(stroke, p - up)) / (2 * kStep);
-    EXPECT_NEAR(slopes[i].y, -dh, 0.01f + 0.02f * std::abs(dh));
-    EXPECT_NEAR(slopes[i].x, 0.0f, 1e-4f);
-    touched += std::abs(slopes[i].y) > 0.05f;
-  }
-  EXPECT_GT(touched, 50);
-}
-
-TEST(PaintStrokes, SuperposedStrokesAdd) {
-  const std::vector<Texel> texels = RasterizeUv(Square(), 64, 64);
-  FoldStroke other = Across();
-  for (glm::vec3& point : other.points) point.y += 0.003f;
-  const auto a = StrokeSlopes(texels, std::vector{Across()});
-  const auto b = StrokeSlopes(texels, std::vector{other});
-  const auto both = StrokeSlopes(texels, std::vector{Across(), other});
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    EXPECT_NEAR(glm::distance(both[i], a[i] + b[i]), 0.0f, 1e-6f);
+  EXPECT_NEAR(FoldShapeAt(0.0f, 0.35f).height, 0.35f * std::exp(-4.0f) - 1.0f, 1e-6f);
+  EXPECT_GT(FoldShapeAt(1.0f, 0.35f).height, 0.2f);
+  EXPECT_LT(FoldShapeAt(1.0f, 0.0f).height, 0.0f);
+  EXPECT_NEAR(FoldShapeAt(kStrokeReach, 0.35f).height, 0.0f, 1e-3f);
+  for (float x = 0.05f; x < kStrokeReach; x += 0.1f) {
+    const float numeric =
+        (FoldShapeAt(x + 1e-3f, 0.35f).height - FoldShapeAt(x - 1e-3f, 0.35f).height) / 2e-3f;
+    EXPECT_NEAR(FoldShapeAt(x, 0.35f).slope, numeric, 2e-3f) << x;
   }
 }
 
-TEST(PaintStrokes, TouchOnlyTheSideTheyFace) {
-  const std::vector<Texel> texels = RasterizeUv(Square(), 64, 64);
-  FoldStroke behind = Across();
-  behind.facing = {0, 0, -1};
-  for (const glm::vec2& slope : StrokeSlopes(texels, std::vector{behind})) {
-    EXPECT_EQ(slope, glm::vec2(0.0f));
-  }
+TEST(PaintStrokes, TaperToNothingAtBothEnds) {
+  EXPECT_EQ(StrokeTaper(0.0f, 0.6f), 0.0f);
+  EXPECT_EQ(StrokeTaper(1.0f, 0.6f), 0.0f);
+  EXPECT_EQ(StrokeTaper(0.5f, 0.6f), 1.0f);
+  EXPECT_EQ(StrokeTaper(0.3f, 0.6f), 1.0f);  // ends fade over 0.3 of the length each
+  EXPECT_NEAR(StrokeTaper(0.15f, 0.6f), 0.5f, 1e-6f);
+  EXPECT_NEAR(StrokeTaper(0.15f, 0.6f), StrokeTaper(0.85f, 0.6f), 1e-6f);
+}
+
+TEST(PaintStrokes, LineKnowsItsNearestPoint) {
+  const StrokeLine line({{0, 0, 0}, {1, 0, 0}, {1, 3, 0}});
+  EXPECT_EQ(line.length(), 4.0f);
+  const StrokeLine::Nearest side = line.FindNearest({3, 1, 0});
+  EXPECT_EQ(side.distance, 2.0f);
+  EXPECT_EQ(side.place, 0.5f);
+  EXPECT_EQ(side.away, glm::vec3(1, 0, 0));
+  EXPECT_EQ(glm::normalize(side.along), glm::vec3(0, 1, 0));
+  const StrokeLine::Nearest end = line.FindNearest({-3, -4, 0});
+  EXPECT_EQ(end.distance, 5.0f);
+  EXPECT_EQ(end.place, 0.0f);
+  EXPECT_EQ(line.FindNearest({0.5f, 0, 0}).away, glm::vec3(0.0f));
 }
 
 TEST(PaintStrokes, NormalMapSaysTheSlope) {
