@@ -51,6 +51,12 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
       ->allow_extra_args(false);
   app->add_option("--osc-out", flags->osc_out, "HOST:PORT that gets the weights as OSC (none)");
   app->add_option("--osc-prefix", config->osc_prefix, "first part of the OSC addresses (furrow)");
+  app->add_option("--record", config->record.folder,
+                  "folder to record everything to, as MCAP files (none); see docs/RECORDING.md");
+  app->add_option("--record-rotate-megabytes", config->record.rotate_megabytes,
+                  "the next file begins at this size (1024; 0: never)");
+  app->add_option("--record-rotate-seconds", config->record.rotate_seconds,
+                  "and when a file covers so much time (3600; 0: never)");
   app->add_flag("--verbose", config->verbose, "one status line a second");
   app->add_flag("--log-json", config->log_json, "log lines as JSON");
 }

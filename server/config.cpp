@@ -82,6 +82,10 @@ Status ValidateConfig(const Config& config) {
       config.osc_prefix.find_first_of(" #*,?[]{}") != std::string::npos) {
     return OutOfRange("osc.prefix '" + config.osc_prefix + "' is no part of an OSC address");
   }
+  for (const double limit : {config.record.rotate_megabytes, config.record.rotate_seconds}) {
+    if (!std::isfinite(limit) || limit < 0.0 || limit > 1e9)
+      return OutOfRange("record.rotate_megabytes and rotate_seconds must be 0 to 1e9");
+  }
   if (Status status = ValidatePorts(config); !status.ok()) return status;
   return ValidateLimits(config.limits);
 }

@@ -37,6 +37,15 @@ struct Limits {
   friend bool operator==(const Limits&, const Limits&) = default;
 };
 
+// Where everything that streams is recorded, and when the next file begins.
+struct RecordConfig {
+  std::filesystem::path folder;    // made where it is absent; empty: nothing is recorded
+  double rotate_megabytes = 1024;  // 0: never for its size
+  double rotate_seconds = 3600;    // 0: never for its age
+  bool datagrams = true;           // with them as they came
+  friend bool operator==(const RecordConfig&, const RecordConfig&) = default;
+};
+
 // All that furrowd can be told, by flags or by a TOML file (furrow.example.toml shows every key).
 struct Config {
   std::filesystem::path character;  // both empty: the default character of FURROW_DATA_DIR
@@ -53,7 +62,8 @@ struct Config {
   std::vector<std::string> mocap_allow;  // numeric addresses that may feed those; none: anybody
   std::optional<HostPort> osc_out;
   std::string osc_prefix = "furrow";  // /<prefix>/<subject>/<wrinkle weight>
-  bool verbose = false;               // one status line a second
+  RecordConfig record;
+  bool verbose = false;  // one status line a second
   bool log_json = false;
   Limits limits;
   friend bool operator==(const Config&, const Config&) = default;

@@ -168,6 +168,11 @@ Status ParseConfig(std::string_view text, std::string_view source_name, Config* 
   const Key mocap[] = {Port("vmc", &read.vmc), Port("livelink_face", &read.livelink_face),
                        Texts("allow", &read.mocap_allow)};
   const Key osc[] = {Destination("out", &read.osc_out), Text("prefix", &read.osc_prefix)};
+  RecordConfig& record_of = read.record;
+  const Key record[] = {Path("dir", &record_of.folder, folder),
+                        Number("rotate_megabytes", &record_of.rotate_megabytes),
+                        Number("rotate_seconds", &record_of.rotate_seconds),
+                        Flag("datagrams", &record_of.datagrams)};
   const Key log[] = {Flag("verbose", &read.verbose), Flag("json", &read.log_json)};
   Limits& limits_of = read.limits;
   const Key limits[] = {Count("max_connections", &limits_of.max_connections),
@@ -182,12 +187,12 @@ Status ParseConfig(std::string_view text, std::string_view source_name, Config* 
                         Number("loss_seconds", &limits_of.loss_seconds),
                         Number("drain_seconds", &limits_of.drain_seconds)};
   const std::pair<std::string_view, std::span<const Key>> tables[] = {
-      {"listen", listen}, {"render", render}, {"mocap", mocap},
-      {"osc", osc},       {"log", log},       {"limits", limits}};
+      {"listen", listen}, {"render", render}, {"mocap", mocap},  {"osc", osc},
+      {"record", record}, {"log", log},       {"limits", limits}};
 
   const Reader reader(source_name);
-  Status status =
-      reader.ReadTable(root, "", top, {"listen", "render", "mocap", "osc", "log", "limits"});
+  Status status = reader.ReadTable(root, "", top,
+                                   {"listen", "render", "mocap", "osc", "record", "log", "limits"});
   for (const auto& [name, keys] : tables) {
     const toml::table* table = root[name].as_table();
     if (status.ok() && table != nullptr) {

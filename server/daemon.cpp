@@ -23,6 +23,7 @@
 #include <asio/use_awaitable.hpp>
 #include <spdlog/spdlog.h>
 
+#include "character/rig_file.h"
 #include "protocol/mocap/livelink_face.h"
 #include "protocol/mocap/vmc.h"
 #include "server/assets.h"
@@ -32,6 +33,7 @@
 #include "server/net/tcp_server.h"
 #include "server/net/udp_server.h"
 #include "server/pipeline/render_thread.h"
+#include "server/recording/recorder.h"
 #include "server/session/hub.h"
 #include "server/status_line.h"
 
@@ -63,6 +65,7 @@ class Daemon {
         osc_(io_, metrics_) {}
 
   Status StartRendering();
+  Status StartRecording();
   Status Listen();
   void Serve();
 
@@ -83,6 +86,7 @@ class Daemon {
   asio::io_context io_{1};  // one thread runs it
   asio::signal_set signals_;
   OscOutput osc_;
+  std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<RenderThread> render_;
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<TcpServer> tcp_;
@@ -113,6 +117,25 @@ Status Daemon::StartRendering() {
   return {};
 }
 
+Status Daemon::StartRecording() {
+  const RecordConfig& record = config_.record;
+  if (record.folder.empty()) return {};
+  RecorderOptions options;
+  options.folder = {.folder = record.folder,
+                    .rotate_bytes = static_cast<std::uint64_t>(record.rotate_megabytes * 1e6),
+                    .rotate_ns = static_cast<std::uint64_t>(record.rotate_seconds * 1e9),
+                    .rig_json = character::RigToJson(*assets_.rig)};
+  options.datagrams = record.datagrams;
+  // Read once: a system clock that is set while we record does not turn the takes' time back.
+  const Time now = ReadClock();
+  options.wall_offset =
+      std::chrono::duration_cast<Time>(std::chrono::system_clock::now().time_since_epoch()) - now;
+  auto started = Recorder::Start(std::move(options), now, metrics_);
+  if (!started.ok()) return started.status().At("--record");
+  recorder_ = *std::move(started);
+  return {};
+}
+
 void Daemon::MakeHub() {
   Hub::Parts parts;
   parts.limits = config_.limits;
@@ -124,6 +147,7 @@ void Daemon::MakeHub() {
   parts.metrics = metrics_;
   parts.make_token = RandomNumber;
   if (config_.osc_out) parts.on_weights = [this](const Subject& subject) { osc_.Send(subject); };
+  parts.recording = recorder_.get();
   hub_ = std::make_unique<Hub>(std::move(parts));
 }
 
@@ -132,7 +156,7 @@ Status Daemon::Listen() {
   const auto address = asio::ip::make_address(config_.bind);
   tcp_ = std::make_unique<TcpServer>(io_, config_.limits, hub_.get(), metrics_);
   if (Status status = tcp_->Open({address, config_.tcp}); !status.ok()) return status;
-  udp_ = std::make_unique<UdpServer>(io_, config_.limits, hub_.get(), metrics_);
+  udp_ = std::make_unique<UdpServer>(io_, config_.limits, hub_.get(), metrics_, recorder_.get());
   if (Status status = udp_->Open({address, config_.udp}); !status.ok()) return status;
   if (config_.osc_out) {
     if (Status status = osc_.Open(*config_.osc_out, config_.osc_prefix); !status.ok())
@@ -273,6 +297,9 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
   }
   Daemon daemon(config, options, *std::move(assets));
   if (Status status = daemon.StartRendering(); !status.ok()) {
+    return Fail(ExitCode::kFailed, status);
+  }
+  if (Status status = daemon.StartRecording(); !status.ok()) {
     return Fail(ExitCode::kFailed, status);
   }
   if (Status status = daemon.Listen(); !status.ok()) return Fail(ExitCode::kFailed, status);

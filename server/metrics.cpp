@@ -56,6 +56,9 @@ std::string_view CounterName(Counter counter) {
     case Counter::kMocapRefused: return "furrow_mocap_refused_total";
     case Counter::kOscPacketsSent: return "furrow_osc_packets_sent_total";
     case Counter::kOscPacketsUnsendable: return "furrow_osc_packets_unsendable_total";
+    case Counter::kRecordingMessages: return "furrow_recording_messages_total";
+    case Counter::kRecordingDropped: return "furrow_recording_dropped_total";
+    case Counter::kRecordingFailures: return "furrow_recording_failures_total";
     case Counter::kCount: break;
   }
   return "";

@@ -63,6 +63,9 @@ enum class Counter {
   kMocapRefused,    // frames of a subject that is refused or one too many
   kOscPacketsSent,
   kOscPacketsUnsendable,
+  kRecordingMessages,  // written to a take
+  kRecordingDropped,   // the disk was too slow for them
+  kRecordingFailures,  // recordings that ended for an error
   kCount,
 };
 

@@ -58,8 +58,9 @@ class UdpServer::UdpPeer : public Link {
   std::uint32_t next_message_id_ = 0;
 };
 
-UdpServer::UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics)
-    : io_(io), socket_(io), limits_(limits), hub_(hub), metrics_(metrics) {}
+UdpServer::UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
+                     RecordingTap* recording)
+    : io_(io), socket_(io), limits_(limits), hub_(hub), metrics_(metrics), recording_(recording) {}
 
 UdpServer::~UdpServer() = default;
 
@@ -118,6 +119,7 @@ void UdpServer::OnDatagram(std::span<const std::uint8_t> bytes, const udp::endpo
     metrics_->Add(Counter::kDatagramsMalformed);
     return;
   }
+  if (recording_ != nullptr) recording_->OnDatagram(AddressOf(sender), bytes, now);
   UdpPeer* peer = FindOrAdd(sender, now);
   hub_->OnBytesReceived(peer->id, bytes.size(), now);
   std::span<const std::uint8_t> message;
@@ -131,7 +133,7 @@ void UdpServer::OnDatagram(std::span<const std::uint8_t> bytes, const udp::endpo
   }
 }
 
-UdpServer::UdpPeer* UdpServer::FindOrAdd(const udp::endpoint& sender, Time now) {
+UdpServer::Address UdpServer::AddressOf(const udp::endpoint& sender) {
   Address address{};
   const auto ip = sender.address().is_v4()
                       ? asio::ip::make_address_v6(asio::ip::v4_mapped, sender.address().to_v4())
@@ -139,6 +141,11 @@ UdpServer::UdpPeer* UdpServer::FindOrAdd(const udp::endpoint& sender, Time now) 
   std::ranges::copy(ip.to_bytes(), address.begin());
   address[16] = static_cast<std::uint8_t>(sender.port() >> 8);
   address[17] = static_cast<std::uint8_t>(sender.port() & 0xFF);
+  return address;
+}
+
+UdpServer::UdpPeer* UdpServer::FindOrAdd(const udp::endpoint& sender, Time now) {
+  const Address address = AddressOf(sender);
   auto found = peers_.find(address);
   if (found != peers_.end()) return found->second.get();
   if (peers_.size() >= static_cast<std::size_t>(limits_.max_udp_peers)) {

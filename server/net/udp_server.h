@@ -27,7 +27,9 @@ namespace furrow::server {
 // at most Limits::max_udp_peers are remembered.
 class UdpServer {
  public:
-  UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics);
+  // `recording` (may be null) is told of every datagram with an envelope of ours.
+  UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
+            RecordingTap* recording = nullptr);
   ~UdpServer();
   UdpServer(const UdpServer&) = delete;
   UdpServer& operator=(const UdpServer&) = delete;
@@ -54,6 +56,7 @@ class UdpServer {
   asio::awaitable<void> Read();
   void OnDatagram(std::span<const std::uint8_t> bytes, const asio::ip::udp::endpoint& sender,
                   Time now);
+  static Address AddressOf(const asio::ip::udp::endpoint& sender);
   UdpPeer* FindOrAdd(const asio::ip::udp::endpoint& sender, Time now);
 
   asio::io_context& io_;
@@ -61,6 +64,7 @@ class UdpServer {
   const Limits limits_;
   Hub* const hub_;
   Metrics* const metrics_;
+  RecordingTap* const recording_;
   UdpBatch batch_;
   protocol::Reassembler reassembler_;
   std::unordered_map<Address, std::unique_ptr<UdpPeer>, AddressHash> peers_;

@@ -22,6 +22,8 @@ class SubjectPipeline {
   // partial pose leaves out keep what they had; before the first pose they rest.
   [[nodiscard]] wrinkle::LocalPose* mutable_pose() { return &pose_; }
 
+  [[nodiscard]] const wrinkle::LocalPose& pose() const { return pose_; }
+
   // Evaluates the pose. Time passes as the capture times say; one that goes back (a recording that
   // loops, a clock that was set) starts the filter anew, as for a first pose.
   [[nodiscard]] wrinkle::JobStatus Solve(std::uint32_t sequence, std::int64_t capture_time_us);

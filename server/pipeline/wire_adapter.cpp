@@ -2,6 +2,7 @@
 #include "server/pipeline/wire_adapter.h"
 
 #include <algorithm>
+#include <numeric>
 #include <span>
 
 namespace furrow::server {
@@ -21,6 +22,15 @@ bool IndicesFit(std::span<const std::uint16_t> indices, std::size_t count) {
 // An empty list of indices beside values means all of them, in order.
 std::size_t IndexAt(std::span<const std::uint16_t> indices, std::size_t i) {
   return indices.empty() ? i : indices[i];
+}
+
+protocol::Vec3 ToWire(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+protocol::Quat ToWire(const glm::quat& q) { return {q.x, q.y, q.z, q.w}; }
+
+// 0, 1, 2 ...
+void ListAll(std::size_t count, std::vector<std::uint16_t>* indices) {
+  indices->resize(count);
+  std::iota(indices->begin(), indices->end(), std::uint16_t{0});
 }
 
 }  // namespace
@@ -78,6 +88,36 @@ void ApplyPose(const protocol::PoseFrame& frame, const StreamDefinition& stream,
   for (std::size_t i = 0; i < frame.blend_shapes.size(); ++i) {
     pose->blend_shapes[IndexAt(frame.blend_shape_indices, i)] = frame.blend_shapes[i];
   }
+}
+
+void ToWholePose(const wrinkle::LocalPose& pose, const StreamDefinition& stream,
+                 protocol::PoseFrame* frame) {
+  const std::span<const wrinkle::Transform> rest = stream.skeleton.rest_pose();
+  const std::size_t joints = stream.joint_of_wire.size();
+  frame->partial = false;
+  frame->num_joints = static_cast<std::uint16_t>(joints);
+  frame->num_blend_shapes = static_cast<std::uint16_t>(pose.blend_shapes.size());
+  ListAll(joints, &frame->rotation_joints);
+  frame->rotations.resize(joints);
+  frame->translation_joints.clear();
+  frame->translations.clear();
+  frame->scale_joints.clear();
+  frame->scales.clear();
+  for (std::size_t i = 0; i < joints; ++i) {
+    const auto joint = static_cast<std::size_t>(stream.joint_of_wire[i]);
+    const wrinkle::Transform& local = pose.joints[joint];
+    frame->rotations[i] = ToWire(local.rotation);
+    if (local.translation != rest[joint].translation) {
+      frame->translation_joints.push_back(static_cast<std::uint16_t>(i));
+      frame->translations.push_back(ToWire(local.translation - rest[joint].translation));
+    }
+    if (local.scale != rest[joint].scale) {
+      frame->scale_joints.push_back(static_cast<std::uint16_t>(i));
+      frame->scales.push_back(ToWire(local.scale));
+    }
+  }
+  ListAll(pose.blend_shapes.size(), &frame->blend_shape_indices);
+  frame->blend_shapes.assign(pose.blend_shapes.begin(), pose.blend_shapes.end());
 }
 
 }  // namespace furrow::server

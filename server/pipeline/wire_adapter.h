@@ -20,4 +20,9 @@ namespace furrow::server {
 void ApplyPose(const protocol::PoseFrame& frame, const StreamDefinition& stream,
                wrinkle::LocalPose* pose);
 
+// The other way: the whole pose, in the wire's order of joints. What is at rest is left out but for
+// rotations. The skeleton's hash is the caller's to fill in. Reuses `frame`'s memory.
+void ToWholePose(const wrinkle::LocalPose& pose, const StreamDefinition& stream,
+                 protocol::PoseFrame* frame);
+
 }  // namespace furrow::server

@@ -27,6 +27,7 @@ Hub::Hub(Parts parts)
       metrics_(parts.metrics),
       make_token_(std::move(parts.make_token)),
       on_weights_(std::move(parts.on_weights)),
+      recording_(parts.recording),
       postman_(parts.session, parts.metrics),
       definitions_(std::move(parts.rig), parts.character,
                    static_cast<std::size_t>(parts.limits.max_skeletons),
@@ -120,13 +121,12 @@ void Hub::Dispatch(Peer& peer, const protocol::MessageView& view, Time now) {
   Scratch& in = scratch_;
   switch (view.kind) {
     case MessageKind::kPose:
-      return Decoded(peer, view, in.pose,
-                     [&] { Published(publishers_.OnPose(peer, header, in.pose, now), now); });
-    case MessageKind::kSkeletonOffer:
-      return Decoded(peer, view, in.offer, [&] {
-        Subject* subject = publishers_.OnOffer(peer, header, in.offer, now);
-        if (subject != nullptr) subscribers_.OnSubjectReady(*subject);
+      return Decoded(peer, view, in.pose, [&] {
+        const auto payload = in.pose.partial ? std::span<const std::uint8_t>() : view.payload;
+        Posed(publishers_.OnPose(peer, header, in.pose, now), payload, now);
       });
+    case MessageKind::kSkeletonOffer:
+      return Decoded(peer, view, in.offer, [&] { (void)OnOffer(peer, header, in.offer, now); });
     case MessageKind::kHello:
       return Decoded(peer, view, in.hello, [&] { OnHello(peer, header, in.hello); });
     case MessageKind::kPing:
@@ -176,10 +176,27 @@ bool Hub::RefusedWhileDraining(Peer& peer, const protocol::Header& header) {
   return draining_;
 }
 
-void Hub::Published(Subject* subject, Time now) {
+// False: refused.
+bool Hub::OnOffer(Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer,
+                  Time now) {
+  Subject* subject = publishers_.OnOffer(peer, header, offer, now);
+  if (subject == nullptr) return false;
+  subscribers_.OnSubjectReady(*subject);
+  if (recording_ != nullptr) recording_->OnOffer(*subject, offer, now);
+  return true;
+}
+
+// `payload`: as RecordingTap::OnPose() takes it.
+void Hub::Posed(Subject* subject, std::span<const std::uint8_t> payload, Time now) {
   if (subject == nullptr) return;
-  subscribers_.Publish(*subject, 0, now);
-  if (on_weights_) on_weights_(*subject);
+  if (recording_ != nullptr) recording_->OnPose(*subject, payload, now);
+  Weighted(*subject, 0, now);
+}
+
+void Hub::Weighted(Subject& subject, std::int64_t age_us, Time now) {
+  subscribers_.Publish(subject, age_us, now);
+  if (on_weights_) on_weights_(subject);
+  if (recording_ != nullptr) recording_->OnWeights(subject, age_us, now);
 }
 
 void Hub::OnMocapFrame(PeerId id, const protocol::mocap::NeutralFrame& frame, Time now) {
@@ -206,7 +223,7 @@ void Hub::OnMocapFrame(PeerId id, const protocol::mocap::NeutralFrame& frame, Ti
     return;
   }
   protocol::mocap::MakePose(frame, stream->offer, scratch_.pose);
-  Published(publishers_.OnPose(*peer, header, scratch_.pose, now), now);
+  Posed(publishers_.OnPose(*peer, header, scratch_.pose, now), {}, now);
 }
 
 Hub::MocapStream* Hub::FindOrAddMocap(const Peer& peer, const std::string& subject) {
@@ -230,9 +247,7 @@ bool Hub::OfferMocap(Peer& peer, const protocol::Header& header, MocapStream& st
   stream.layout = frame.layout;
   stream.offered = now;
   stream.offer = protocol::mocap::MakeOffer(frame);
-  Subject* subject = publishers_.OnOffer(peer, header, stream.offer, now);
-  if (subject != nullptr) subscribers_.OnSubjectReady(*subject);
-  return subject != nullptr;
+  return OnOffer(peer, header, stream.offer, now);
 }
 
 void Hub::Tick(Time now) {
@@ -241,8 +256,7 @@ void Hub::Tick(Time now) {
     switch (publishers_.Age(*subject, now)) {
       case Publishers::Change::kNone: break;
       case Publishers::Change::kDecayed:
-        subscribers_.Publish(*subject, ToMicroseconds(now - subject->last_pose), now);
-        if (on_weights_) on_weights_(*subject);
+        Weighted(*subject, ToMicroseconds(now - subject->last_pose), now);
         break;
       case Publishers::Change::kGone: gone.push_back(subject.get()); break;
     }
@@ -250,6 +264,7 @@ void Hub::Tick(Time now) {
   for (Subject* subject : gone) {
     spdlog::info("subject '{}' is gone", subject->name);
     subscribers_.OnSubjectGone(*subject);
+    if (recording_ != nullptr) recording_->OnSubjectGone(*subject);
     std::erase_if(mocap_streams_,
                   [subject](const auto& entry) { return entry.first.second == subject->name; });
     subjects_.Remove(subject->id);

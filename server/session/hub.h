@@ -18,6 +18,7 @@
 #include "server/session/peer_table.h"
 #include "server/session/postman.h"
 #include "server/session/publishers.h"
+#include "server/session/recording_tap.h"
 #include "server/session/subject_registry.h"
 #include "server/session/subscribers.h"
 
@@ -44,6 +45,7 @@ class Hub {
     std::function<std::uint64_t()> make_token;  // unpredictable, not 0
     // Told of every new or decayed set of weights; for OSC out. May be empty.
     std::function<void(const Subject&)> on_weights;
+    RecordingTap* recording = nullptr;  // outlives the hub; null: nothing is recorded
   };
   explicit Hub(Parts parts);
 
@@ -96,13 +98,17 @@ class Hub {
   bool OfferMocap(Peer& peer, const protocol::Header& header, MocapStream& stream,
                   const protocol::mocap::NeutralFrame& frame, Time now);
   void ForgetRefusedMocap(Time now);
-  void Published(Subject* subject, Time now);
+  bool OnOffer(Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer,
+               Time now);
+  void Posed(Subject* subject, std::span<const std::uint8_t> payload, Time now);
+  void Weighted(Subject& subject, std::int64_t age_us, Time now);
   bool RefusedWhileDraining(Peer& peer, const protocol::Header& header);
 
   const Limits limits_;
   Metrics* const metrics_;
   const std::function<std::uint64_t()> make_token_;
   const std::function<void(const Subject&)> on_weights_;
+  RecordingTap* const recording_;
   Postman postman_;
   PeerTable peers_;
   StreamDefinitions definitions_;

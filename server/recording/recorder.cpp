@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/recording/recorder.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "protocol/envelope.h"
+#include "protocol/hash.h"
+#include "protocol/limits.h"
+#include "server/net/clock.h"
+#include "server/pipeline/wire_adapter.h"
+
+namespace furrow::server {
+namespace {
+
+using recording::TakeKind;
+
+// Together well below the second that a killed daemon may lose.
+constexpr auto kWait = std::chrono::milliseconds(200);
+constexpr Time kFlushInterval = std::chrono::milliseconds(400);
+
+}  // namespace
+
+Result<std::unique_ptr<Recorder>> Recorder::Start(RecorderOptions options, Time now,
+                                                  Metrics* metrics) {
+  const auto began = static_cast<std::uint64_t>((now + options.wall_offset).count());
+  auto folder = recording::TakeFolder::Open(options.folder, began);
+  if (!folder.ok()) return folder.status();
+  spdlog::info("recording to {}", (*folder)->path().string());
+  return std::unique_ptr<Recorder>(new Recorder(std::move(options), *std::move(folder), metrics));
+}
+
+Recorder::Recorder(RecorderOptions options, std::unique_ptr<recording::TakeFolder> folder,
+                   Metrics* metrics)
+    : options_(std::move(options)),
+      metrics_(metrics),
+      folder_(std::move(folder)),
+      queue_(options_.queue_bytes),
+      thread_([this] { Write(); }) {}
+
+Recorder::~Recorder() {
+  queue_.Stop();
+  thread_.join();
+}
+
+std::uint64_t Recorder::LogTime(Time now) const {
+  return static_cast<std::uint64_t>((now + options_.wall_offset).count());
+}
+
+void Recorder::PushEntry(const RecordingBatch::Entry& entry, std::string_view subject,
+                         std::span<const std::uint8_t> payload) {
+  if (failed_.load(std::memory_order_relaxed)) return;
+  if (!queue_.Push(entry, subject, payload)) metrics_->Add(Counter::kRecordingDropped);
+}
+
+void Recorder::Push(TakeKind kind, const Subject& subject, std::span<const std::uint8_t> payload,
+                    Time now) {
+  RecordingBatch::Entry entry;
+  entry.kind = kind;
+  entry.stamp.session = subject.owner.session;
+  entry.stamp.log_time_ns = LogTime(now);
+  if (subject.pipeline->has_pose()) {
+    entry.stamp.sequence = subject.pipeline->sequence();
+    entry.stamp.capture_time_us = subject.pipeline->capture_time_us();
+  }
+  PushEntry(entry, subject.name, payload);
+}
+
+template <class Message>
+void Recorder::PushEncoded(TakeKind kind, const Subject& subject, const Message& message,
+                           Time now) {
+  // The envelope is not recorded, but the encoder writes one.
+  encoder_.Encode({.session = subject.owner.session}, message, buffer_);
+  Push(kind, subject, std::span(buffer_).subspan(protocol::kEnvelopeBytes), now);
+}
+
+void Recorder::OnOffer(const Subject& subject, const protocol::SkeletonOffer& offer, Time now) {
+  PushEncoded(TakeKind::kSkeleton, subject, offer, now);
+  const auto names = subject.pipeline->stream().binding->weight_names();
+  // More than a message of the wire can name: only poses are recorded then, as rigs say the rest.
+  if (names.empty() || names.size() > static_cast<std::size_t>(protocol::kMaxWeights)) return;
+  names_.subject = subject.name;
+  names_.names.assign(names.begin(), names.end());
+  names_hashes_[subject.id] = protocol::NamesHash(names);
+  PushEncoded(TakeKind::kNames, subject, names_, now);
+}
+
+void Recorder::OnPose(const Subject& subject, std::span<const std::uint8_t> payload, Time now) {
+  if (!payload.empty()) return Push(TakeKind::kPose, subject, payload, now);
+  // A pose that needs none before it, so that a take can be entered anywhere.
+  ToWholePose(subject.pipeline->pose(), subject.pipeline->stream(), &pose_);
+  pose_.skeleton_hash = subject.skeleton_hash;
+  PushEncoded(TakeKind::kPose, subject, pose_, now);
+}
+
+void Recorder::OnWeights(const Subject& subject, std::int64_t age_us, Time now) {
+  const auto hash = names_hashes_.find(subject.id);
+  if (hash == names_hashes_.end()) return;
+  const auto values = subject.pipeline->wrinkle_weights();
+  weights_.names_hash = hash->second;
+  weights_.age_us = age_us;
+  weights_.values.assign(values.begin(), values.end());
+  PushEncoded(TakeKind::kWeights, subject, weights_, now);
+}
+
+void Recorder::OnSubjectGone(const Subject& subject) {
+  names_hashes_.erase(subject.id);
+  RecordingBatch::Entry entry;
+  entry.event = RecordingBatch::Event::kGone;
+  PushEntry(entry, subject.name, {});
+}
+
+void Recorder::OnDatagram(const recording::DatagramSender& sender,
+                          std::span<const std::uint8_t> bytes, Time now) {
+  if (!options_.datagrams) return;
+  RecordingBatch::Entry entry;
+  entry.event = RecordingBatch::Event::kDatagram;
+  entry.stamp.log_time_ns = LogTime(now);
+  PushEntry(entry, {reinterpret_cast<const char*>(sender.data()), sender.size()}, bytes);
+}
+
+Status Recorder::WriteBatch(const RecordingBatch& batch) {
+  Status status;
+  const int file = folder_->num_files();
+  batch.ForEach([&](const RecordingBatch::Entry& entry, std::string_view subject,
+                    std::span<const std::uint8_t> payload) {
+    switch (entry.event) {
+      case RecordingBatch::Event::kGone: folder_->Forget(subject); return true;
+      case RecordingBatch::Event::kDatagram: {
+        recording::DatagramSender sender{};
+        std::copy_n(subject.begin(), sender.size(), sender.begin());
+        status = folder_->WriteDatagram(sender, entry.stamp.log_time_ns, payload);
+        break;
+      }
+      case RecordingBatch::Event::kMessage:
+        status = folder_->Write(entry.kind, subject, entry.stamp, payload);
+        break;
+    }
+    if (status.ok()) metrics_->Add(Counter::kRecordingMessages);
+    return status.ok();
+  });
+  if (status.ok() && folder_->num_files() != file)
+    spdlog::info("recording goes on in {}", folder_->path().string());
+  return status;
+}
+
+void Recorder::ReportDropped() {
+  const std::uint64_t dropped = metrics_->Get(Counter::kRecordingDropped);
+  if (dropped == reported_dropped_) return;
+  spdlog::warn("the disk is too slow: {} messages are missing from the recording",
+               dropped - reported_dropped_);
+  reported_dropped_ = dropped;
+}
+
+void Recorder::Write() {
+  RecordingBatch batch;
+  Time flushed = ReadClock();
+  bool goes_on = true;
+  while (goes_on) {
+    goes_on = queue_.Take(&batch, kWait);
+    if (failed_) continue;  // what was pushed before the failure was seen
+    Status status = WriteBatch(batch);
+    const Time now = ReadClock();
+    if (status.ok() && now - flushed >= kFlushInterval) {
+      status = folder_->Flush();
+      flushed = now;
+      ReportDropped();
+    }
+    if (status.ok() && !goes_on) status = folder_->Close();
+    if (status.ok()) continue;
+    failed_ = true;
+    metrics_->Add(Counter::kRecordingFailures);
+    spdlog::error("the recording ends here: {}", status.ToString());
+    (void)folder_->Close();  // as far as it goes: the failure stands in the log
+  }
+  if (!failed_) spdlog::info("recorded to {}", folder_->path().string());
+}
+
+}  // namespace furrow::server

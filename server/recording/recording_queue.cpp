@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/recording/recording_queue.h"
+
+#include <utility>
+
+namespace furrow::server {
+namespace {
+
+// So much waiting wakes the writer before its time.
+constexpr std::size_t kMuchBytes = 512 * 1024;
+
+bool IsDeclaration(const RecordingBatch::Entry& entry) {
+  return entry.event == RecordingBatch::Event::kGone ||
+         (entry.event == RecordingBatch::Event::kMessage &&
+          (entry.kind == recording::TakeKind::kSkeleton ||
+           entry.kind == recording::TakeKind::kNames));
+}
+
+}  // namespace
+
+void RecordingBatch::Add(Entry entry, std::string_view subject,
+                         std::span<const std::uint8_t> payload) {
+  entry.subject_bytes = subject.size();
+  entry.payload_bytes = payload.size();
+  entries_.push_back(entry);
+  bytes_.insert(bytes_.end(), subject.begin(), subject.end());
+  bytes_.insert(bytes_.end(), payload.begin(), payload.end());
+}
+
+void RecordingBatch::Clear() {
+  entries_.clear();
+  bytes_.clear();
+}
+
+bool RecordingQueue::Push(const RecordingBatch::Entry& entry, std::string_view subject,
+                          std::span<const std::uint8_t> payload) {
+  bool much = false;
+  {
+    const std::lock_guard lock(mutex_);
+    const std::size_t after = waiting_.bytes() + subject.size() + payload.size();
+    if (stopped_ || after > (IsDeclaration(entry) ? 2 * max_bytes_ : max_bytes_)) return false;
+    much = waiting_.bytes() < kMuchBytes && after >= kMuchBytes;
+    waiting_.Add(entry, subject, payload);
+  }
+  if (much) changed_.notify_one();
+  return true;
+}
+
+bool RecordingQueue::Take(RecordingBatch* batch, std::chrono::milliseconds wait) {
+  batch->Clear();
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, wait, [this] { return stopped_ || waiting_.bytes() >= kMuchBytes; });
+  std::swap(*batch, waiting_);
+  return !stopped_;
+}
+
+void RecordingQueue::Stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+  }
+  changed_.notify_one();
+}
+
+}  // namespace furrow::server
