@@ -16,7 +16,6 @@ using glm::vec2;
 using glm::vec3;
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr int kSegments = 32;
 constexpr float kRadii[] = {0.0f,  0.18f, 0.34f, 0.46f, 0.56f, 0.65f,
                             0.73f, 0.80f, 0.87f, 0.93f, 0.98f, 1.0f};
 constexpr int kFrontRings = static_cast<int>(std::size(kRadii));
@@ -68,14 +67,14 @@ Seat SeatOf(float side) {
 }
 
 // Ring `ring` of the ear: the front side from its middle to the rim, then the back of it.
-void AddRing(float side, int ring, HeadMesh* head) {
+void AddRing(float side, int ring, int segments, HeadMesh* head) {
   const Seat seat = SeatOf(side);
   const bool behind = ring >= kFrontRings;
   const float step = static_cast<float>(ring - kFrontRings + 1);
   const float rho = behind ? 1.0f - 0.09f * step * step : kRadii[ring];
   const float reach = (behind ? 0.80f + 0.065f * step : 0.80f * rho) * 0.062f;
-  for (int k = 0; k <= kSegments; ++k) {
-    const float phi = 2.0f * kPi * static_cast<float>(k % kSegments) / kSegments;
+  for (int k = 0; k <= segments; ++k) {
+    const float phi = 2.0f * kPi * static_cast<float>(k % segments) / static_cast<float>(segments);
     const vec2 st = Outline(phi) * rho;
     const float height = behind ? Relief(1.0f, phi) - 0.34f * step : Relief(rho, phi);
     HeadVertex info;
@@ -92,14 +91,19 @@ void AddRing(float side, int ring, HeadMesh* head) {
 
 }  // namespace
 
-void AddEar(float side, HeadMesh* head) {
+void AddEar(float side, int level, HeadMesh* head) {
+  const int segments = level == kCoarsestLevel ? 14 : 32;
+  const int step = level == kCoarsestLevel ? 2 : 1;
+  const int last = kFrontRings + kBackRings - 1;
+  int rings = 0;
   const auto first = static_cast<std::uint32_t>(head->mesh.vertices.size());
-  for (int i = 0; i < kFrontRings + kBackRings; ++i) AddRing(side, i, head);
+  for (int i = 0; i < last; i += step, ++rings) AddRing(side, i, segments, head);
+  AddRing(side, last, segments, head);
   const auto index = [&](int ring, int k) {
-    return first + static_cast<std::uint32_t>(ring * (kSegments + 1) + k);
+    return first + static_cast<std::uint32_t>(ring * (segments + 1) + k);
   };
-  for (int i = 0; i + 1 < kFrontRings + kBackRings; ++i) {
-    for (int k = 0; k < kSegments; ++k) {
+  for (int i = 0; i < rings; ++i) {
+    for (int k = 0; k < segments; ++k) {
       const std::uint32_t a = index(i, k), b = index(i + 1, k), c = index(i + 1, k + 1),
                           d = index(i, k + 1);
       // Backward, up, outward: right-handed on the left side alone.

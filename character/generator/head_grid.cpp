@@ -54,7 +54,8 @@ float MouthLine(float x) {
 }  // namespace
 
 HeadGrid::HeadGrid(const HeadShape& shape, int level) : shape_(&shape) {
-  stride_ = 4 >> std::clamp(level, kCoarsestLevel, kFinestLevel);
+  level_ = std::clamp(level, kCoarsestLevel, kFinestLevel);
+  stride_ = 4 >> level_;
   num_fine_rows_ = (NumHeadRows() - 1) * kFine;
   fine_eye_rows_[0] = FindHeadRow(-0.5f) * kFine;
   fine_eye_rows_[1] = FindHeadRow(0.5f) * kFine;

@@ -24,6 +24,7 @@ class HeadGrid {
   explicit HeadGrid(const HeadShape& shape, int level = kDefaultLevel);
 
   [[nodiscard]] const HeadShape& shape() const { return *shape_; }
+  [[nodiscard]] int level() const { return level_; }
   [[nodiscard]] int num_columns() const { return kHeadColumns * kFine / stride_; }  // on a side
   [[nodiscard]] int num_rows() const { return num_fine_rows_ / stride_ + 1; }       // of vertices
   [[nodiscard]] int eye_row(int i) const { return fine_eye_rows_[i] / stride_; }  // first and last
@@ -51,6 +52,7 @@ class HeadGrid {
   void Relax(const std::vector<char>& fixed);
 
   const HeadShape* shape_;
+  int level_ = kDefaultLevel;
   int stride_ = 2;  // finest cells across a cell of this level
   int num_fine_rows_ = 0;
   int fine_eye_rows_[2] = {0, 0};

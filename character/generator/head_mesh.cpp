@@ -50,8 +50,8 @@ class SkinBuilder {
     AddLids(1.0f);
     AddLids(-1.0f);
     AddMouth();
-    AddEar(1.0f, &head_);
-    AddEar(-1.0f, &head_);
+    AddEar(1.0f, layout_.level(), &head_);
+    AddEar(-1.0f, layout_.level(), &head_);
     FinishSurface(&head_.mesh);
     return std::move(head_);
   }

@@ -21,7 +21,7 @@ TEST(HeadMesh, LevelsAreOfOneForm) {
   const HeadMesh coarse = MakeHeadSkin(DefaultHead(), 0);
   const HeadMesh middle = MakeHeadSkin(DefaultHead(), 1);
   const HeadMesh fine = MakeHeadSkin(DefaultHead(), 2);
-  EXPECT_NEAR(static_cast<double>(Triangles(coarse)), 3000.0, 1300.0);
+  EXPECT_NEAR(static_cast<double>(Triangles(coarse)), 3000.0, 400.0);
   EXPECT_GT(Triangles(middle), 2 * Triangles(coarse));
   EXPECT_GT(Triangles(fine), 2 * Triangles(middle));
   // Vertices of the coarse grid are vertices of the finer ones.
