@@ -141,6 +141,7 @@ Result<std::unique_ptr<EglContext>> EglContext::Create(std::string_view device) 
     } else {
       std::unique_ptr<EglContext> result(new EglContext(*display, *context));
       result->description_ = Describe(candidate);
+      result->is_software_ = candidate.software;
       return result;
     }
     tried += (tried.empty() ? "" : "; ") + candidate.name + ": " + failure.what();

@@ -31,6 +31,8 @@ class EglContext {
 
   // "device 0: Mesa, llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".
   [[nodiscard]] const std::string& description() const { return description_; }
+  // Whether a processor draws.
+  [[nodiscard]] bool is_software() const { return is_software_; }
 
  private:
   EglContext(void* display, void* context) : display_(display), context_(context) {}
@@ -38,6 +40,7 @@ class EglContext {
   void* display_;  // EGLDisplay
   void* context_;  // EGLContext
   std::string description_;
+  bool is_software_ = false;
 };
 
 }  // namespace furrow::render

@@ -238,6 +238,7 @@ Status GpuCharacter::AddMeshes(const Character& character) {
     mesh.vertex_array = gl::MakeVertexArray();
     mesh.num_indices = static_cast<GLsizei>(source.indices.size());
     mesh.material = source.material;
+    mesh.bounds = JointBounds(source, character.inverse_bind_matrices);
     DescribeVertices(mesh);
     glVertexArrayElementBuffer(mesh.vertex_array.name(), mesh.indices.name());
     meshes_.push_back(std::move(mesh));

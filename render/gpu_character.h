@@ -8,6 +8,7 @@
 #include "character/character.h"
 #include "render/derivative_map.h"
 #include "render/gl_objects.h"
+#include "render/joint_bounds.h"
 #include "render/wrinkle_table.h"
 
 namespace furrow::render {
@@ -16,6 +17,7 @@ struct GpuMesh {
   gl::VertexArray vertex_array;
   gl::Buffer vertices;
   gl::Buffer indices;
+  JointBounds bounds;  // of the posed mesh
   GLsizei num_indices = 0;
   int material = 0;
 };

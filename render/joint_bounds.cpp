@@ -9,20 +9,31 @@ namespace furrow::render {
 
 JointBounds::JointBounds(const character::Character& character,
                          const std::function<bool(const character::Material&)>& accept) {
-  std::map<int, Box> boxes;
   for (const character::Mesh& mesh : character.meshes) {
-    if (!accept(character.materials[static_cast<std::size_t>(mesh.material)])) continue;
-    for (const character::Vertex& vertex : mesh.vertices) {
-      for (int i = 0; i < 4; ++i) {
-        if (!(vertex.skin_weights[i] > 0.0f)) continue;
-        const int joint = vertex.joints[i];
-        const glm::vec3 place(character.inverse_bind_matrices[static_cast<std::size_t>(joint)] *
-                              glm::vec4(vertex.position, 1.0f));
-        const auto [found, is_new] = boxes.try_emplace(joint, Box{joint, place, place});
-        if (is_new) continue;
-        found->second.low = glm::min(found->second.low, place);
-        found->second.high = glm::max(found->second.high, place);
-      }
+    if (accept(character.materials[static_cast<std::size_t>(mesh.material)])) {
+      Add(mesh, character.inverse_bind_matrices);
+    }
+  }
+}
+
+JointBounds::JointBounds(const character::Mesh& mesh,
+                         std::span<const glm::mat4> inverse_bind_matrices) {
+  Add(mesh, inverse_bind_matrices);
+}
+
+void JointBounds::Add(const character::Mesh& mesh,
+                      std::span<const glm::mat4> inverse_bind_matrices) {
+  std::map<int, Box> boxes;
+  for (const character::Vertex& vertex : mesh.vertices) {
+    for (int i = 0; i < 4; ++i) {
+      if (!(vertex.skin_weights[i] > 0.0f)) continue;
+      const int joint = vertex.joints[i];
+      const glm::vec3 place(inverse_bind_matrices[static_cast<std::size_t>(joint)] *
+                            glm::vec4(vertex.position, 1.0f));
+      const auto [found, is_new] = boxes.try_emplace(joint, Box{joint, place, place});
+      if (is_new) continue;
+      found->second.low = glm::min(found->second.low, place);
+      found->second.high = glm::max(found->second.high, place);
     }
   }
   for (const auto& [joint, box] : boxes) boxes_.push_back(box);

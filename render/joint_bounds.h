@@ -18,9 +18,12 @@ namespace furrow::render {
 // all boxes holds the surface.
 class JointBounds {
  public:
+  JointBounds() = default;
   // Of the meshes whose material `accept` takes.
   JointBounds(const character::Character& character,
               const std::function<bool(const character::Material&)>& accept);
+  // Of one mesh.
+  JointBounds(const character::Mesh& mesh, std::span<const glm::mat4> inverse_bind_matrices);
 
   // The pixels of a picture that the boxes may cover; the whole picture where one reaches behind
   // the camera. `model`: a pose of the character's skeleton.
@@ -28,6 +31,8 @@ class JointBounds {
                                    const glm::mat4& view_projection, int width, int height) const;
 
  private:
+  void Add(const character::Mesh& mesh, std::span<const glm::mat4> inverse_bind_matrices);
+
   struct Box {
     int joint = 0;
     glm::vec3 low{0.0f};  // in the joint's space

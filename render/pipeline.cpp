@@ -14,6 +14,16 @@ bool NeedsSkinPipeline(const Settings& settings) {
          (settings.view == View::kFinal && settings.shading == Shading::kSkin);
 }
 
+// Data stays as it is.
+bool IsLight(View view) {
+  return view == View::kFinal || view == View::kWeights || view == View::kWireframe;
+}
+
+AntiAliasingSettings Chosen(const AntiAliasingSettings& asked, bool affordable) {
+  if (asked.samples != 0) return asked;
+  return affordable ? AntiAliasingSettings{4, asked.fxaa} : AntiAliasingSettings{1, true};
+}
+
 float PixelsPerSlope(const CameraFrame& camera, int height) {
   return 0.5f * static_cast<float>(height) * camera.cot_half_fov;
 }
@@ -21,8 +31,9 @@ float PixelsPerSlope(const CameraFrame& camera, int height) {
 }  // namespace
 
 Pipeline::Pipeline(const character::Character& character, SceneDraw* scene, ShaderLibrary* shaders,
-                   GlDevice* device)
+                   GlDevice* device, bool is_software)
     : scene_(scene),
+      is_software_(is_software),
       skin_bounds_(character,
                    [](const character::Material& material) {
                      return material.kind == character::Material::Kind::kSkin;
@@ -38,6 +49,8 @@ Pipeline::Pipeline(const character::Character& character, SceneDraw* scene, Shad
 Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, const Size& size) {
   Settings settings = request.settings;
   settings.view = view;
+  settings.anti_aliasing =
+      Chosen(settings.anti_aliasing, !is_software_ || !NeedsSkinPipeline(settings));
   TextureDesc desc{size.width, size.height, PixelFormat::kRgba16F, settings.anti_aliasing.samples};
   Handle shown;
   Handle bloom;
@@ -56,7 +69,7 @@ Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, 
         scene_pass_.AddPlain(graph, settings, {desc.width, desc.height, desc.format, desc.samples});
   }
   const Handle picture = composite_pass_.Add(graph, shown, desc, settings, bloom);
-  if (!settings.anti_aliasing.fxaa) return picture;
+  if (!settings.anti_aliasing.fxaa || !IsLight(view)) return picture;
   return AddFxaaPass(graph, picture, desc, &fullscreen_);
 }
 

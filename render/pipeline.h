@@ -20,8 +20,9 @@ namespace furrow::render {
 class Pipeline {
  public:
   // `character` is not kept; the others outlive the pipeline.
+  // `is_software`: a processor draws; see AntiAliasingSettings.
   Pipeline(const character::Character& character, SceneDraw* scene, ShaderLibrary* shaders,
-           GlDevice* device);
+           GlDevice* device, bool is_software);
 
   struct Size {
     int width = 0;
@@ -40,6 +41,7 @@ class Pipeline {
                                             const TextureDesc& desc);
 
   SceneDraw* scene_;
+  bool is_software_;
   JointBounds skin_bounds_;
   JointBounds bounds_;
   Fullscreen fullscreen_;

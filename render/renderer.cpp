@@ -82,7 +82,7 @@ class GlRenderer final : public Renderer {
         gpu_(std::move(gpu)),
         tables_(std::move(tables)),
         scene_(skeleton_, inverse_bind_matrices_, gpu_.get(), tables_.get(), &shaders_),
-        pipeline_(character, &scene_, &shaders_, &device_) {}
+        pipeline_(character, &scene_, &shaders_, &device_, context_->is_software()) {}
 
   Status BuildFrame(const FrameRequest& request, FrameGraph* graph) {
     if (Status status = scene_.Update(request); !status.ok()) return status;

@@ -92,10 +92,30 @@ SceneDraw::SceneDraw(const wrinkle::Skeleton& skeleton,
 Status SceneDraw::Update(const FrameRequest& request) {
   if (Status status = tables_->Update(request); !status.ok()) return status;
   setup_ = SetUpFrame(request, skeleton_, &ambient_);
+  FindVisible(request.model);
   UploadFrame(request.settings);
   UploadJoints(request.model);
   UploadWrinkles();
   return {};
+}
+
+void SceneDraw::FindVisible(std::span<const glm::mat4> model) {
+  constexpr int kAny = 4096;  // pixels: of a picture of any size, only its border matters
+  const auto look = [&](const glm::mat4& projection, std::vector<bool>* visible) {
+    visible->clear();
+    for (const GpuMesh& mesh : gpu_->meshes()) {
+      visible->push_back(!mesh.bounds.Project(model, projection, kAny, kAny).empty());
+    }
+  };
+  look(setup_.camera.view_projection, &seen_);
+  for (int light = 0; light < kNumLights; ++light) {
+    const bool dark = setup_.lighting.lights[light].radiance == glm::vec3(0.0f);
+    if (dark) {
+      casts_[light].assign(gpu_->meshes().size(), false);  // nobody asks for its shadow
+    } else {
+      look(FlatProjection(setup_.shadows[light]), &casts_[light]);
+    }
+  }
 }
 
 void SceneDraw::UploadFrame(const Settings& settings) {
@@ -153,7 +173,9 @@ void SceneDraw::BindTables(GLuint shadows) {
 
 Status SceneDraw::DrawShadow(int light) {
   BindBuffers();
-  for (const GpuMesh& mesh : gpu_->meshes()) {
+  for (std::size_t index = 0; index < gpu_->meshes().size(); ++index) {
+    if (!casts_[light][index]) continue;
+    const GpuMesh& mesh = gpu_->meshes()[index];
     const GpuMaterial& material = gpu_->material(mesh.material);
     const Result<GLuint> program = shaders_->GetShadow(material.alpha_test);
     if (!program.ok()) return program.status();
@@ -173,6 +195,7 @@ Status SceneDraw::DrawScene(const Settings& settings, Shading shading) {
   glBindTextureUnit(kWrinkleDerivativesUnit, gpu_->wrinkle_derivatives());
   glBindTextureUnit(kWrinkleLooksUnit, gpu_->wrinkle_looks());
   for (std::size_t mesh = 0; mesh < gpu_->meshes().size(); ++mesh) {
+    if (!seen_[mesh]) continue;
     if (Status status = DrawMesh(settings, shading, mesh); !status.ok()) return status;
   }
   return {};

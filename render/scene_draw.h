@@ -32,6 +32,8 @@ class SceneDraw {
   [[nodiscard]] Status DrawScene(const Settings& settings, Shading shading);
 
  private:
+  // Which meshes the camera and the lamps can see at all.
+  void FindVisible(std::span<const glm::mat4> model);
   void UploadFrame(const Settings& settings);
   void UploadJoints(std::span<const glm::mat4> model);
   void UploadWrinkles();
@@ -48,6 +50,8 @@ class SceneDraw {
   ShaderLibrary* shaders_;
   AmbientCache ambient_;
   FrameSetup setup_;
+  std::vector<bool> seen_;                           // a mesh each: by the camera
+  std::array<std::vector<bool>, kNumLights> casts_;  // by a lamp
 
   LookupTables lookup_tables_;
   gl::Sampler shadow_compare_;

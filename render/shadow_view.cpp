@@ -32,6 +32,18 @@ ShadowView FitOrthographic(const glm::vec3& direction, const glm::vec3& centre, 
 
 }  // namespace
 
+glm::mat4 FlatProjection(const ShadowView& view) {
+  glm::mat4 projection(0.0f);
+  projection[0].x = view.scale;
+  projection[1].y = view.scale;
+  if (view.perspective) {
+    projection[2].w = -1.0f;
+  } else {
+    projection[3].w = 1.0f;
+  }
+  return projection * view.view;
+}
+
 ShadowView FitShadow(const LightSource& light, const glm::vec3& centre, float radius,
                      int resolution) {
   if (light.kind == LightKind::kDirectional) {

@@ -19,6 +19,9 @@ struct ShadowView {
   float texel = 0.0f;  // metres, at the centre of the stage
 };
 
+// The same as one matrix to clip space, but for depth, which it leaves at 0.
+[[nodiscard]] glm::mat4 FlatProjection(const ShadowView& view);
+
 // Fits a lamp's picture of `resolution` texels a side to the sphere of the stage.
 //
 // - Directional: orthographic, moved in whole texels as the stage moves, so that edges of shadows

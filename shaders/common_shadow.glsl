@@ -30,19 +30,18 @@ float pixelNoise(vec2 pixel) {
   return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))));
 }
 
-// The k-th of `count` points of Vogel's spiral: spread evenly over the unit disc.
-vec2 discPoint(int k, int count, float turn) {
-  float radius = sqrt((float(k) + 0.5) / float(count));
-  float angle = float(k) * 2.39996323 + turn;
-  return radius * vec2(cos(angle), sin(angle));
-}
+// Vogel's spiral: points spread evenly over the unit disc. The k-th lies in `direction`, which turns
+// by the golden angle from one to the next, this far out.
+const mat2 GOLDEN_TURN = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888);
+float discRadius(int k) { return sqrt((float(k) + 0.5) * (1.0 / float(SHADOW_TAPS))); }
 
 // Mean depth of what stands before `coordinate` within `radius` (uv); 1: nothing does.
-float blockerDepth(int light, vec4 coordinate, float radius, float turn) {
+float blockerDepth(int light, vec4 coordinate, float radius, vec2 direction) {
   float sum = 0.0;
   float count = 0.0;
   for (int k = 0; k < SHADOW_TAPS; ++k) {
-    vec2 uv = coordinate.xy + radius * discPoint(k, SHADOW_TAPS, turn);
+    vec2 uv = coordinate.xy + radius * discRadius(k) * direction;
+    direction = GOLDEN_TURN * direction;
     float depth = textureLod(u_shadow_depth, shadowTile(light, uv), 0.0).r;
     if (depth < coordinate.z) {
       sum += depth;
@@ -53,10 +52,10 @@ float blockerDepth(int light, vec4 coordinate, float radius, float turn) {
 }
 
 // Radius of the filter in metres on the surface.
-float shadowRadius(int light, vec4 coordinate, float turn) {
+float shadowRadius(int light, vec4 coordinate, vec2 direction) {
 #if SHADOW_FILTER == 2
   float search = min(u_shadow_filter.y * coordinate.w, 0.05);
-  float blocker = blockerDepth(light, coordinate, search, turn);
+  float blocker = blockerDepth(light, coordinate, search, direction);
   float range = 1.0 / u_lights[light].shadow.z;
   float toBlocker = u_lights[light].position.w > 0.5
                         ? u_lights[light].shadow.y + blocker * range
@@ -82,12 +81,14 @@ float shadowOf(int light, vec3 position, vec3 normal, vec3 toLight, vec2 pixel) 
   float offset = u_shadow_filter.z + (texel + 0.5 * u_shadow_filter.x) * grazing;
   vec4 coordinate = shadowCoordinate(u_lights[light], position + offset * normal);
   float turn = 6.2831853 * pixelNoise(pixel);
-  float radius = max(shadowRadius(light, coordinate, turn) * coordinate.w, 0.75 / u_shadow_filter.w);
+  vec2 direction = vec2(cos(turn), sin(turn));
+  float radius = max(shadowRadius(light, coordinate, direction) * coordinate.w, 0.75 / u_shadow_filter.w);
   float lit = 0.0;
   // Where the surface turns away there is nothing to look up: whole groups of pixels leave the loop.
   int taps = cosine > 0.0 ? SHADOW_TAPS : 0;
   for (int k = 0; k < taps; ++k) {
-    vec2 uv = coordinate.xy + radius * discPoint(k, SHADOW_TAPS, turn);
+    vec2 uv = coordinate.xy + radius * discRadius(k) * direction;
+    direction = GOLDEN_TURN * direction;
     lit += textureLod(u_shadow_compare, vec3(shadowTile(light, uv), min(coordinate.z, 0.9999)), 0.0);
   }
   return lit / float(SHADOW_TAPS);

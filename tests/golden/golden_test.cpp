@@ -77,6 +77,7 @@ Result<Image> Draw(const Shot& shot) {
   request.settings.view = shot.view;
   request.settings.normal_blend = shot.blend;
   request.settings.shading = shot.shading;
+  request.settings.anti_aliasing.samples = 4;  // on every device
   request.camera = *(*renderer)->Preset(shot.camera);
   request.width = request.height = kSize;
   return (*renderer)->Render(request);
