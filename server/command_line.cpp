@@ -41,6 +41,9 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_flag("--require-render", config->require_render, "end (1) where GL cannot be had");
   app->add_option("--render-device", config->render_device,
                   "EGL device index or 'surfaceless' (the first that gives OpenGL 4.5)");
+  app->add_option(
+      "--render-settings", config->render_settings,
+      "TOML of the pictures' appearance, as 'furrow render --print-settings' writes it");
   app->add_option("--vmc", config->vmc, "UDP port for VMC over OSC (none; 39539 is usual)");
   app->add_option("--livelink-face", config->livelink_face,
                   "UDP port for Live Link Face (none; 11111 is usual)");

@@ -55,8 +55,9 @@ struct Config {
   std::uint16_t tcp = 7400;         // 0: any free port; the ready line says which
   std::uint16_t udp = 7401;
   bool render = true;
-  bool require_render = false;  // no GL: end instead of going on without pictures
-  std::string render_device;    // see render::RendererOptions::device
+  bool require_render = false;            // no GL: end instead of going on without pictures
+  std::string render_device;              // see render::RendererOptions::device
+  std::filesystem::path render_settings;  // TOML (render::LoadSettings); empty: the defaults
   std::optional<std::uint16_t> vmc;
   std::optional<std::uint16_t> livelink_face;
   std::vector<std::string> mocap_allow;  // numeric addresses that may feed those; none: anybody

@@ -164,7 +164,8 @@ Status ParseConfig(std::string_view text, std::string_view source_name, Config* 
                      NameOrFile("skeleton_map", &read.skeleton_map, folder)};
   const Key listen[] = {Text("bind", &read.bind), Port("tcp", &read.tcp), Port("udp", &read.udp)};
   const Key render[] = {Flag("enabled", &read.render), Flag("required", &read.require_render),
-                        Text("device", &read.render_device)};
+                        Text("device", &read.render_device),
+                        Path("settings", &read.render_settings, folder)};
   const Key mocap[] = {Port("vmc", &read.vmc), Port("livelink_face", &read.livelink_face),
                        Texts("allow", &read.mocap_allow)};
   const Key osc[] = {Destination("out", &read.osc_out), Text("prefix", &read.osc_prefix)};

@@ -98,6 +98,11 @@ class Daemon {
 
 Status Daemon::StartRendering() {
   if (!config_.render || assets_.character == nullptr) return {};
+  render::Settings settings;
+  if (!config_.render_settings.empty()) {
+    Status loaded = render::LoadSettings(config_.render_settings, &settings);
+    if (!loaded.ok()) return loaded;
+  }
   auto started = RenderThread::Start(
       &assets_.character->skeleton,
       [this] {
@@ -106,7 +111,8 @@ Status Daemon::StartRendering() {
       metrics_,
       [this](FinishedPicture picture) {
         asio::post(io_, [this, picture = std::move(picture)] { hub_->OnPicture(picture); });
-      });
+      },
+      settings);
   if (started.ok()) {
     render_ = *std::move(started);
     spdlog::info("rendering on {}", render_->description());

@@ -17,9 +17,10 @@ constexpr std::string_view kPresets[] = {"face", "three_quarter", "profile",
 
 Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleton* skeleton,
                                                           Factory make_renderer, Metrics* metrics,
-                                                          Deliver deliver) {
+                                                          Deliver deliver,
+                                                          const render::Settings& settings) {
   std::unique_ptr<RenderThread> self(
-      new RenderThread(skeleton, std::move(make_renderer), metrics, std::move(deliver)));
+      new RenderThread(skeleton, std::move(make_renderer), metrics, std::move(deliver), settings));
   std::promise<Status> started;
   std::future<Status> status = started.get_future();
   self->thread_ = std::thread(&RenderThread::Run, self.get(), std::move(started));
@@ -28,11 +29,12 @@ Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleto
 }
 
 RenderThread::RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer,
-                           Metrics* metrics, Deliver deliver)
+                           Metrics* metrics, Deliver deliver, const render::Settings& settings)
     : skeleton_(skeleton),
       make_renderer_(std::move(make_renderer)),
       metrics_(metrics),
       deliver_(std::move(deliver)),
+      settings_(settings),
       mailbox_(kMaxWaitingJobs) {}
 
 RenderThread::~RenderThread() {
@@ -106,6 +108,7 @@ void RenderThread::Draw(RenderJob job) {
   request.binding = snapshot.binding.get();
   request.wrinkle_weights = snapshot.wrinkle_weights;
   request.filtered_values = snapshot.filtered_values;
+  request.settings = settings_;
   request.settings.view = job.spec.view;
   request.camera = job.spec.camera;
   request.width = job.spec.width;

@@ -39,9 +39,10 @@ class RenderThread : public PictureSource {
   using Factory = std::function<Result<std::unique_ptr<render::Renderer>>()>;
 
   // `skeleton` is the character's and outlives the thread. Returns when the context stands. Errors:
-  // those of `make_renderer`.
+  // those of `make_renderer`. `settings`: of every picture, but for the view, which each asks for.
   [[nodiscard]] static Result<std::unique_ptr<RenderThread>> Start(
-      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, Deliver deliver);
+      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, Deliver deliver,
+      const render::Settings& settings = {});
   ~RenderThread() override;  // closes the mailbox and joins
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
@@ -52,7 +53,7 @@ class RenderThread : public PictureSource {
 
  private:
   RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics,
-               Deliver deliver);
+               Deliver deliver, const render::Settings& settings);
 
   Status CreateRenderer();
   bool Revive();
@@ -67,6 +68,7 @@ class RenderThread : public PictureSource {
   const Factory make_renderer_;
   Metrics* const metrics_;
   const Deliver deliver_;
+  const render::Settings settings_;
   RenderMailbox mailbox_;
   std::vector<std::pair<std::string, render::Camera>> presets_;  // written before Start() returns
   std::string description_;
