@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/pipeline.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "render/renderer.h"
+#include "test_character.h"
+
+namespace furrow::render {
+namespace {
+
+class PipelineTest : public testing::Test {
+ protected:
+  void Make(const std::string& blend_shape = "l_squash") {
+    renderer_ = test::Expect(Renderer::Create(head_));
+    subject_ = std::make_unique<test::Subject>(head_);
+    subject_->Set(blend_shape, 1.0f);
+    subject_->Solve();
+  }
+  Image Draw(const Settings& settings, int size, const char* camera = "face") {
+    FrameRequest request;
+    request.model = subject_->model;
+    request.binding = &subject_->binding;
+    request.wrinkle_weights = subject_->weights;
+    request.filtered_values = subject_->driver_values;
+    request.settings = settings;
+    request.camera = *renderer_->Preset(camera);
+    request.width = request.height = size;
+    return test::Expect(renderer_->Render(request));
+  }
+  static Settings Skin() {
+    Settings settings;
+    settings.shading = Shading::kSkin;
+    return settings;
+  }
+  // Mean of one channel over the picture, [0, 255].
+  static double Mean(const Image& image, int channel) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
+      sum += image.rgb[i + static_cast<std::size_t>(channel)];
+    }
+    return 3.0 * sum / static_cast<double>(image.rgb.size());
+  }
+
+  character::Character head_ = test::MakeHead();
+  std::unique_ptr<Renderer> renderer_;
+  std::unique_ptr<test::Subject> subject_;
+};
+
+// Whatever comes and goes in between, a picture depends on its own settings alone.
+TEST_F(PipelineTest, SettingsAreHot) {
+  Make();
+  const Image before = Draw(Skin(), 96);
+  for (const char* change : {"subsurface.method=gaussians",
+                             "subsurface.method=burley",
+                             "subsurface.method=preintegrated",
+                             "subsurface.method=off",
+
+                             "subsurface.width=3",
+                             "shadow.filter=pcss",
+                             "shadow.filter=off",
+                             "shadow.resolution=256",
+                             "occlusion.method=ssao",
+                             "occlusion.method=off",
+                             "occlusion.half_resolution=off",
+                             "bloom.threshold=0.2",
+                             "specular.mode=gems",
+                             "specular.second_lobe=1",
+                             "specular.conserve_energy=off",
+
+                             "lights.preset=hard",
+                             "lights.preset=thesis",
+                             "lights.turn_degrees=90",
+                             "lights.ambient=2",
+                             "anti_aliasing.samples=4",
+                             "tone_map=clip",
+                             "subsurface.mix=0"}) {
+    Settings settings = Skin();
+    const Status status = SetSetting(change, &settings);
+    ASSERT_TRUE(status.ok()) << status.ToString();
+    if (std::string_view(change) == "bloom.threshold=0.2") settings.bloom.strength = 1.0f;
+    if (std::string_view(change) == "tone_map=clip") settings.exposure = 2.0f;
+    EXPECT_NE(Draw(settings, 96).rgb, before.rgb) << change << " changes nothing";
+  }
+  EXPECT_EQ(Draw(Skin(), 96).rgb, before.rgb);
+}
+
+TEST_F(PipelineTest, ATileOfTheStripIsItsViewDrawnSmall) {
+  Make();
+  constexpr int kSize = 240;
+  constexpr int kTile = kSize / 6;
+  constexpr int kMargin = 4;
+  Settings settings = Skin();
+  settings.strip.views = {View::kAlbedo, View::kDepth};
+  const Image with_strip = Draw(settings, kSize);
+  settings.strip.views.clear();
+  int row = kMargin;
+  for (const View view : {View::kAlbedo, View::kDepth}) {
+    settings.view = view;
+    const Image alone = Draw(settings, kTile);
+    for (int y = 0; y < kTile; ++y) {
+      const auto* tile =
+          &with_strip
+               .rgb[3u * static_cast<std::size_t>((row + y) * kSize + kSize - kTile - kMargin)];
+      ASSERT_TRUE(
+          std::equal(tile, tile + 3 * kTile, &alone.rgb[3u * static_cast<std::size_t>(y * kTile)]))
+          << ViewName(view) << " row " << y;
+    }
+    row += kTile + kMargin;
+  }
+}
+
+// A wrinkle map with a colour: blood that a squashed brow holds.
+TEST_F(PipelineTest, BloodFlowColoursWhereTheMapIsAtWork) {
+  head_.rig.wrinkle_maps[1].colour = "blood";  // squash
+  head_.rig_pictures.emplace_back("blood", static_cast<int>(head_.pictures.size()));
+  head_.pictures.push_back(test::MakePicture(
+      "blood", 8, [](float, float) { return glm::vec4(1.0f, 0.2f, 0.2f, 1.0f); }));
+  Make();
+  const Image red = Draw(Skin(), 96);
+  Settings without = Skin();
+  without.wrinkle_maps.blood_flow = 0.0f;
+  const Image plain = Draw(without, 96);
+  EXPECT_NEAR(Mean(red, 0), Mean(plain, 0), 1.5);
+  EXPECT_LT(Mean(red, 1), Mean(plain, 1) - 2.0);
+  Settings still = Skin();
+  still.wrinkles = false;  // the map is not at work
+  Settings still_without = still;
+  still_without.wrinkle_maps.blood_flow = 0.0f;
+  EXPECT_EQ(Draw(still, 96).rgb, Draw(still_without, 96).rgb);
+}
+
+// A sheet lit from behind: light comes through it, and less the more flesh it has to pass.
+TEST_F(PipelineTest, LightComesThroughThinSkin) {
+  const auto flat = [](float, float) { return 0.0f; };
+  head_ = test::MakePlane(16, flat, {flat});
+  Make("r0");
+  Settings settings = Skin();
+  settings.view = View::kTranslucency;
+  settings.translucency.shrink_mm = 0.0f;
+  settings.lights.turn_degrees = 180.0f;
+  const double thin = Mean(Draw(settings, 64), 0);
+  EXPECT_GT(thin, 20.0);
+  head_.materials[0].thickness = 0.002f;
+  Make("r0");
+  const Image thick = Draw(settings, 64);
+  EXPECT_LT(Mean(thick, 0), 0.8 * thin);
+  EXPECT_GT(Mean(thick, 0), Mean(thick, 2));  // it is red
+  settings.translucency.enabled = false;
+  EXPECT_EQ(Mean(Draw(settings, 64), 0), 0.0);
+}
+
+TEST_F(PipelineTest, ACharacterWithoutSkinIsDrawn) {
+  for (character::Material& material : head_.materials) {
+    material.kind = character::Material::Kind::kCloth;
+  }
+  Make();
+  EXPECT_GT(Mean(Draw(Skin(), 64), 0), 20.0);
+}
+
+}  // namespace
+}  // namespace furrow::render
