@@ -55,6 +55,7 @@ void AddPictureOptions(CLI::App& command, PictureOptions* options) {
 
 Result<render::Settings> SettingsOf(const PictureOptions& options) {
   render::Settings settings;
+  settings.anti_aliasing.samples = 4;  // pictures that are kept may take their time on any device
   for (const std::string& file : options.files) {
     if (Status status = render::LoadSettings(file, &settings); !status.ok()) return status;
   }
