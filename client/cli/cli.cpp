@@ -53,6 +53,7 @@ int ParseAndRun(int argc, const char* const* argv) {
   AddRender(app, action);
   AddRig(app, action);
   AddConvert(app, action);
+  AddInfo(app, action);
   AddCharacter(app, action);
   AddBake(app, action);
   try {

@@ -20,6 +20,7 @@ void AddRender(CLI::App& app, Action& action);
 void AddRig(CLI::App& app, Action& action);
 void AddRigPatch(CLI::App& rig_group, Action& action);  // `furrow rig patch`
 void AddConvert(CLI::App& app, Action& action);
+void AddInfo(CLI::App& app, Action& action);
 void AddCharacter(CLI::App& app, Action& action);
 void AddBake(CLI::App& app, Action& action);
 void AddPlay(CLI::App& app, Action& action);

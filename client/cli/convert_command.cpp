@@ -6,7 +6,10 @@
 #include "client/cli/command.h"
 #include "client/cli/exit_code.h"
 #include "client/cli/inputs.h"
+#include "client/cli/take_output.h"
 #include "motion/clip.h"
+#include "motion/file_io.h"
+#include "recording/take_poses.h"
 
 namespace furrow::cli {
 namespace {
@@ -14,14 +17,36 @@ namespace {
 struct ConvertOptions {
   std::string in;
   std::string out;
+  bool weights = false;
   motion::LoadOptions load;
 };
 
+int ConvertWeights(const ConvertOptions& options) {
+  if (!recording::IsTakePath(options.in))
+    return Fail({StatusCode::kInvalidArgument, "only takes (.mcap) hold weights", options.in,
+                 "'furrow solve' computes them from any recording"});
+  std::string file;
+  std::string subject;
+  recording::SplitTakePath(options.in, &file, &subject);
+  auto take = recording::TakeReader::Open(file);
+  if (!take.ok()) return Fail(take.status());
+  motion::ClipReport report;
+  const auto csv = WeightsToCsv(**take, subject, &report);
+  PrintWarnings((*take)->file().warnings());
+  PrintWarnings(report.warnings);
+  if (!csv.ok()) return Fail(csv.status());
+  Status status = motion::WriteFileAtomically(options.out, *csv);
+  return status.ok() ? kDone : Fail(status);
+}
+
 int ConvertFile(const ConvertOptions& options) {
+  if (options.weights) return ConvertWeights(options);
   const auto clip = LoadClipArgument(options.in, options.load);
   if (!clip.ok()) return Fail(clip.status());
   motion::ClipReport report;
-  Status status = motion::SaveClip(*clip, options.out, &report);
+  Status status = recording::IsTakePath(options.out)
+                      ? SaveTake(*clip, options.out)
+                      : motion::SaveClip(*clip, options.out, &report);
   PrintWarnings(report.warnings);
   if (!status.ok()) return Fail(status);
   std::fprintf(stderr, "furrow: %s: %d joints, %zu blend shapes, %d frames, %.3f s\n",
@@ -36,9 +61,14 @@ void AddConvert(CLI::App& app, Action& action) {
   auto options = std::make_shared<ConvertOptions>();
   CLI::App* command =
       app.add_subcommand("convert", "A recording in another format, by the files' extensions");
-  command->add_option("IN", options->in, ".bvh, .glb, .gltf, .vrma or .csv (Live Link Face)")
+  command
+      ->add_option("IN", options->in,
+                   ".bvh, .glb, .gltf, .vrma, .csv (Live Link Face) or .mcap (FILE.mcap#SUBJECT)")
       ->required();
-  command->add_option("OUT", options->out, ".bvh, .glb or .csv")->required();
+  command->add_option("OUT", options->out, ".bvh, .glb, .csv or .mcap")->required();
+  command->add_flag(
+      "--weights", options->weights,
+      "Of a take: write its recorded weights as CSV (frame,time,<names>) instead of poses");
   command->add_option("--scale", options->load.scale, "Multiplies every length (BVH has no unit)")
       ->check(CLI::Range(1e-6, 1e6))
       ->capture_default_str();

@@ -6,6 +6,7 @@
 #include "character/data_dir.h"
 #include "character/rig_file.h"
 #include "motion/pose_source.h"
+#include "recording/take_clip.h"
 
 namespace furrow::cli {
 
@@ -18,7 +19,8 @@ void PrintWarnings(const std::vector<std::string>& warnings) {
 
 Result<motion::Clip> LoadClipArgument(const std::string& path, const motion::LoadOptions& options) {
   motion::ClipReport report;
-  auto clip = motion::LoadClip(path, options, &report);
+  auto clip = recording::IsTakePath(path) ? recording::LoadTakeClip(path, options.scale, &report)
+                                          : motion::LoadClip(path, options, &report);
   PrintWarnings(report.warnings);
   return clip;
 }

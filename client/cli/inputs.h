@@ -13,7 +13,8 @@
 
 namespace furrow::cli {
 
-// A recording by path; what its reader put up with is printed as warnings on standard error.
+// A recording by path (of a take with several subjects, "take.mcap#NAME"); what its reader put up
+// with is printed as warnings on standard error.
 [[nodiscard]] Result<motion::Clip> LoadClipArgument(const std::string& path,
                                                     const motion::LoadOptions& options = {});
 

@@ -4,20 +4,18 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <thread>
 
 #include "client/cli/command.h"
 #include "client/cli/endpoint.h"
 #include "client/cli/exit_code.h"
-#include "client/cli/inputs.h"
 #include "client/cli/interrupt.h"
+#include "client/cli/play_source.h"
 #include "client/cli/progress.h"
 #include "client/cli/schedule.h"
-#include "client/cli/wire_pose.h"
+#include "client/cli/spacing.h"
 #include "client/cpp/publisher.h"
-#include "motion/clip.h"
 
 namespace furrow::cli {
 namespace {
@@ -37,6 +35,7 @@ struct PlayOptions {
   bool quantise = false;
   double rate = 0.0;
   double speed = 1.0;
+  double from = 0.0;
   float scale = 1.0f;
 };
 
@@ -73,13 +72,15 @@ int WaitUntilAccepted(client::Publisher& publisher, std::uint16_t stream, const 
 // Sends the poses of an accepted stream, each at its time.
 class Player {
  public:
-  Player(client::Publisher& publisher, std::uint16_t stream, const motion::Clip& clip,
+  // Sends the frames of `source` from number `first` on.
+  Player(client::Publisher& publisher, std::uint16_t stream, const PlaySource& source, int first,
          const PlayOptions& options)
-      : publisher_(publisher), stream_(stream), clip_(clip), options_(options) {}
+      : publisher_(publisher), stream_(stream), source_(source), first_(first), options_(options) {}
 
   // To the end, or an interrupt, or what makes going on useless.
   int Run() {
-    const Schedule schedule(clip_, options_.rate);
+    const Schedule schedule(source_.times().subspan(static_cast<std::size_t>(first_)),
+                            options_.rate);
     const auto encoding =
         options_.quantise ? protocol::PoseEncoding::Small() : protocol::PoseEncoding{};
     const std::int64_t capture_start = SystemMicroseconds();
@@ -88,10 +89,11 @@ class Player {
     protocol::PoseFrame pose;
     for (std::int64_t i = 0; options_.loop || i < schedule.count(); ++i) {
       const double seconds = schedule.Seconds(i);
-      if (!WaitUntil(send_start + std::llround(seconds * 1e6 / options_.speed))) break;
-      FillPose(clip_, schedule.Frame(i), &pose);
+      const std::int64_t due = send_start + std::llround(seconds * 1e6 / options_.speed);
+      if (!WaitUntil(due)) break;
+      source_.Fill(first_ + schedule.Frame(i), &pose);
+      spacing_.Sent(due, SteadyMicroseconds());
       Note(publisher_.Send(stream_, pose, capture_start + std::llround(seconds * 1e6), encoding));
-      ++sent_;
       progress.Set(i % schedule.count() + 1);
     }
     return Report();
@@ -134,26 +136,34 @@ class Player {
     }
     if (refused_ > 0) {
       std::fprintf(stderr, "furrow: nobody listened for %" PRId64 " of %" PRId64 " poses\n",
-                   std::min(refused_, sent_), sent_);
+                   std::min(refused_, spacing_.count()), spacing_.count());
       return kNoConnection;
     }
+    std::fprintf(stderr,
+                 "furrow: %" PRId64 " poses; spacing off by %.3f ms on average, %.3f ms at most\n",
+                 spacing_.count(), spacing_.mean_ms(), spacing_.largest_ms());
     return kDone;
   }
 
   client::Publisher& publisher_;
   std::uint16_t stream_;
-  const motion::Clip& clip_;
+  const PlaySource& source_;
+  int first_;
   const PlayOptions& options_;
-  std::int64_t sent_ = 0;
+  Spacing spacing_;
   std::int64_t refused_ = 0;  // over UDP: answers that nobody listens at the port
   bool closed_ = false;
 };
 
 int PlayFile(const PlayOptions& options) {
-  const auto clip = LoadClipArgument(options.file);
-  if (!clip.ok()) return Fail(clip.status());
-  if (clip->num_frames() == 0) {
-    return Fail({StatusCode::kInvalidArgument, "the recording has no frames", options.file});
+  const auto source = PlaySource::Load(options.file);
+  if (!source.ok()) return Fail(source.status());
+  const auto times = source->times();
+  const auto first = std::lower_bound(times.begin(), times.end(), times.front() + options.from);
+  if (first == times.end()) {
+    std::fprintf(stderr, "furrow: --from %g: %s ends after %.3f s\n", options.from,
+                 options.file.c_str(), times.back() - times.front());
+    return kBadInput;
   }
   int exit_code = kDone;
   auto transport = OpenTransport(
@@ -161,14 +171,13 @@ int PlayFile(const PlayOptions& options) {
   if (!transport) return exit_code;
   CatchInterrupts();
   client::Publisher publisher(std::move(transport));
-  const std::string subject = options.subject.empty()
-                                  ? std::filesystem::path(options.file).stem().string()
-                                  : options.subject;
+  const std::string& subject = options.subject.empty() ? source->subject() : options.subject;
   const std::uint16_t stream =
-      publisher.AddSubject(OfferOf(*clip, subject, options.scale), SteadyMicroseconds());
+      publisher.AddSubject(source->Offer(subject, options.scale), SteadyMicroseconds());
   exit_code = WaitUntilAccepted(publisher, stream, options.host);
   if (exit_code != kDone || Interrupted()) return exit_code;
-  exit_code = Player(publisher, stream, *clip, options).Run();
+  exit_code =
+      Player(publisher, stream, *source, static_cast<int>(first - times.begin()), options).Run();
   publisher.Close();
   return exit_code;
 }
@@ -178,17 +187,24 @@ int PlayFile(const PlayOptions& options) {
 void AddPlay(CLI::App& app, Action& action) {
   auto options = std::make_shared<PlayOptions>();
   CLI::App* command = app.add_subcommand("play", "Sends a recording to a daemon, at its own pace");
-  command->add_option("FILE", options->file, "BVH, glTF/GLB, VRMA or Live Link Face CSV")
+  command
+      ->add_option(
+          "FILE", options->file,
+          "BVH, glTF/GLB, VRMA, Live Link Face CSV or a take (FILE.mcap, FILE.mcap#SUBJECT)")
       ->required();
   command->add_option("--to", options->host, "HOST, HOST:PORT or [IPV6]:PORT of furrowd")
       ->required();
   auto* udp = command->add_flag("--udp", options->udp, "Send datagrams (default; port 7401)");
   command->add_flag("--tcp", options->tcp, "Send over a TCP connection (port 7400)")->excludes(udp);
-  command->add_option("--subject", options->subject, "Who is captured; default: the file's name");
+  command->add_option("--subject", options->subject,
+                      "Who is captured; default: whom a take names, else the file's name");
   command->add_option("--rate", options->rate, "Poses per second of recording; default: all it has")
       ->check(CLI::Range(0.001, 100000.0));
   command->add_option("--speed", options->speed, "How many times as fast as recorded")
       ->check(CLI::Range(0.001, 1000.0))
+      ->capture_default_str();
+  command->add_option("--from", options->from, "Seconds of the recording to leave out at its start")
+      ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
   command->add_flag("--loop", options->loop,
                     "Begin again at the end, until Ctrl-C; the numbers go on");

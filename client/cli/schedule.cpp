@@ -11,29 +11,29 @@ constexpr double kFrameOfAStill = 1.0 / 30.0;  // seconds that a recording of on
 
 }  // namespace
 
-Schedule::Schedule(const motion::Clip& clip, double rate) : clip_(clip), rate_(rate) {
+Schedule::Schedule(std::span<const double> times, double rate) : times_(times), rate_(rate) {
   if (rate > 0.0) {
-    count_ = static_cast<std::int64_t>(std::floor(clip.duration() * rate + 1e-6)) + 1;
+    count_ = static_cast<std::int64_t>(std::floor(duration() * rate + 1e-6)) + 1;
     round_seconds_ = static_cast<double>(count_) / rate;
     return;
   }
-  count_ = clip.num_frames();
-  round_seconds_ = clip.duration() + (count_ > 1 ? clip.duration() / static_cast<double>(count_ - 1)
-                                                 : kFrameOfAStill);
+  count_ = static_cast<std::int64_t>(times_.size());
+  round_seconds_ =
+      duration() + (count_ > 1 ? duration() / static_cast<double>(count_ - 1) : kFrameOfAStill);
 }
 
 double Schedule::SecondsInRound(std::int64_t pose) const {
   if (rate_ > 0.0) return static_cast<double>(pose) / rate_;
-  return clip_.times[static_cast<std::size_t>(pose)] - clip_.times.front();
+  return times_[static_cast<std::size_t>(pose)] - times_.front();
 }
 
 int Schedule::Frame(std::int64_t pose) const {
   const std::int64_t in_round = pose % count_;
   if (rate_ <= 0.0) return static_cast<int>(in_round);
   // A hair late, so that a frame's own time is not missed by rounding.
-  const double time = clip_.times.front() + SecondsInRound(in_round) + 1e-9;
-  const auto after = std::upper_bound(clip_.times.begin(), clip_.times.end(), time);
-  return static_cast<int>(after - clip_.times.begin()) - 1;
+  const double time = times_.front() + SecondsInRound(in_round) + 1e-9;
+  const auto after = std::upper_bound(times_.begin(), times_.end(), time);
+  return static_cast<int>(after - times_.begin()) - 1;
 }
 
 double Schedule::Seconds(std::int64_t pose) const {

@@ -2,8 +2,7 @@
 #pragma once
 
 #include <cstdint>
-
-#include "motion/clip.h"
+#include <span>
 
 namespace furrow::cli {
 
@@ -12,8 +11,8 @@ namespace furrow::cli {
 class Schedule {
  public:
   // `rate`: poses a second of recording, each the newest frame at its time; 0: the frames as they
-  // are. `clip` must have a frame and outlive the schedule.
-  Schedule(const motion::Clip& clip, double rate);
+  // are. `times`: of the frames, seconds, increasing; at least one, and they outlive the schedule.
+  Schedule(std::span<const double> times, double rate);
 
   // Poses of one round.
   [[nodiscard]] std::int64_t count() const { return count_; }
@@ -24,7 +23,9 @@ class Schedule {
  private:
   [[nodiscard]] double SecondsInRound(std::int64_t pose) const;
 
-  const motion::Clip& clip_;
+  [[nodiscard]] double duration() const { return times_.back() - times_.front(); }
+
+  std::span<const double> times_;
   double rate_;
   std::int64_t count_;
   double round_seconds_;  // from the start of one round to the next

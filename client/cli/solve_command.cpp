@@ -66,7 +66,9 @@ void AddSolve(CLI::App& app, Action& action) {
   auto options = std::make_shared<SolveOptions>();
   CLI::App* command = app.add_subcommand(
       "solve", "The weights of a recording, no network: what the daemon would send");
-  command->add_option("FILE", options->file, "BVH, glTF/GLB, VRMA or Live Link Face CSV")
+  command
+      ->add_option("FILE", options->file,
+                   "BVH, glTF/GLB, VRMA, Live Link Face CSV or a take (.mcap)")
       ->required();
   command
       ->add_option("--rig", options->rig,

@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/schedule.h"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace furrow::cli {
 namespace {
 
-motion::Clip AtTimes(std::vector<double> times) {
-  motion::Clip clip;
-  clip.times = std::move(times);
-  return clip;
-}
-
 TEST(ScheduleTest, FramesKeepTheirOwnTimesAndTheRoundsFollow) {
-  const motion::Clip clip = AtTimes({5.0, 5.1, 5.4});
-  const Schedule schedule(clip, 0.0);
+  const std::vector<double> times({5.0, 5.1, 5.4});
+  const Schedule schedule(times, 0.0);
   ASSERT_EQ(schedule.count(), 3);
   const int frames[] = {0, 1, 2, 0, 1, 2, 0};
   // The last frame stands for the average of the others' 0.4 s.
@@ -26,10 +22,10 @@ TEST(ScheduleTest, FramesKeepTheirOwnTimesAndTheRoundsFollow) {
 }
 
 TEST(ScheduleTest, ARateLeavesOutAndRepeatsFrames) {
-  const motion::Clip clip = AtTimes({0.0, 0.1, 0.2, 0.3, 0.4});
-  const Schedule slow(clip, 5.0);
+  const std::vector<double> times({0.0, 0.1, 0.2, 0.3, 0.4});
+  const Schedule slow(times, 5.0);
   ASSERT_EQ(slow.count(), 3);
-  const Schedule fast(clip, 20.0);
+  const Schedule fast(times, 20.0);
   ASSERT_EQ(fast.count(), 9);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(slow.Frame(i), 2 * i);
   for (int i = 0; i < 9; ++i) EXPECT_EQ(fast.Frame(i), i / 2);
@@ -38,8 +34,8 @@ TEST(ScheduleTest, ARateLeavesOutAndRepeatsFrames) {
 }
 
 TEST(ScheduleTest, AStillRepeatsAtThirtyASecond) {
-  const motion::Clip clip = AtTimes({2.0});
-  const Schedule schedule(clip, 0.0);
+  const std::vector<double> times({2.0});
+  const Schedule schedule(times, 0.0);
   EXPECT_EQ(schedule.count(), 1);
   EXPECT_EQ(schedule.Frame(7), 0);
   EXPECT_NEAR(schedule.Seconds(30), 1.0, 1e-12);

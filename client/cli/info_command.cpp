@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+#include <map>
+#include <memory>
+
+#include "client/cli/command.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/inputs.h"
+#include "motion/clip.h"
+#include "recording/take_poses.h"
+#include "recording/take_summary.h"
+
+namespace furrow::cli {
+namespace {
+
+using recording::SubjectSummary;
+using recording::TakeReader;
+
+int DescribeClip(const std::string& path) {
+  const auto clip = LoadClipArgument(path);
+  if (!clip.ok()) return Fail(clip.status());
+  double longest = 0.0;
+  for (std::size_t i = 1; i < clip->times.size(); ++i)
+    longest = std::max(longest, clip->times[i] - clip->times[i - 1]);
+  const double rate =
+      clip->duration() > 0.0 ? static_cast<double>(clip->num_frames() - 1) / clip->duration() : 0.0;
+  std::printf("%s\n", path.c_str());
+  std::printf("  subject     %s\n", clip->name.c_str());
+  std::printf("  skeleton    %d joints, %zu blend shapes\n", clip->skeleton.num_joints(),
+              clip->blend_shape_names.size());
+  std::printf("  frames      %d in %.3f s, %.2f Hz, longest gap %.3f s\n", clip->num_frames(),
+              clip->duration(), rate, longest);
+  return kDone;
+}
+
+void PrintFile(const TakeReader& take) {
+  const motion::mcap::Reader& file = take.file();
+  std::map<std::string, int> compressions;
+  for (const motion::mcap::ChunkInfo& chunk : file.chunks()) {
+    if (chunk.compression != motion::mcap::kLooseMessages)
+      ++compressions[chunk.compression.empty() ? "uncompressed" : chunk.compression];
+  }
+  std::printf("  file        %" PRIu64 " bytes, written by '%s', %s\n", file.file_bytes(),
+              file.library().c_str(),
+              file.complete() ? "complete" : "cut short: read up to its last whole chunk");
+  std::printf("  chunks      %zu", file.chunks().size());
+  for (const auto& [name, count] : compressions) std::printf(", %d %s", count, name.c_str());
+  std::printf("; %s\n", file.warnings().empty() ? "all checksums are right" : "damaged, see below");
+  for (const motion::mcap::AttachmentInfo& info : file.attachments())
+    std::printf("  attachment  %s, %s, %" PRIu64 " bytes\n", info.name.c_str(),
+                info.media_type.c_str(), info.size);
+}
+
+void PrintSubject(const std::string& name, const SubjectSummary& subject) {
+  std::printf("  subject     %s: %zu joints, %zu blend shapes; skeletons: %zu, senders: %zu\n",
+              name.c_str(), subject.joints, subject.blend_shapes, subject.skeletons,
+              subject.sessions.size());
+  std::printf("    poses     %zu in %.3f s, %.2f Hz, %" PRIu64 " missing, longest gap %.3f s\n",
+              subject.poses, static_cast<double>(subject.last_ns - subject.first_ns) * 1e-9,
+              subject.rate(), subject.missing, subject.longest_gap);
+  std::printf("    weights   %zu of %zu names\n", subject.weights, subject.weight_names);
+  if (subject.unreadable > 0) std::printf("    unreadable %zu messages\n", subject.unreadable);
+}
+
+int DescribeTake(const std::string& path) {
+  std::string file;
+  std::string only;
+  recording::SplitTakePath(path, &file, &only);
+  auto take = TakeReader::Open(file);
+  if (!take.ok()) return Fail(take.status());
+  const auto summary = recording::Summarise(**take);
+  if (!summary.ok()) return Fail(summary.status());
+  std::printf("%s\n", file.c_str());
+  PrintFile(**take);
+  std::printf("  messages    %zu in %.3f s, %zu of them datagrams\n", summary->messages,
+              summary->seconds(), summary->datagrams);
+  for (const auto& [name, subject] : summary->subjects)
+    if (only.empty() || only == name) PrintSubject(name, subject);
+  PrintWarnings((*take)->file().warnings());
+  return kDone;
+}
+
+}  // namespace
+
+void AddInfo(CLI::App& app, Action& action) {
+  auto path = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand(
+      "info", "What is in a recording: subjects, rates, gaps, duration, and whether it is whole");
+  command->add_option("FILE", *path, "Any recording: .bvh, .glb, .gltf, .vrma, .csv or .mcap")
+      ->required();
+  command->callback([path, &action] {
+    action = [path] {
+      return recording::IsTakePath(*path) ? DescribeTake(*path) : DescribeClip(*path);
+    };
+  });
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/play_source.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "client/cli/inputs.h"
+#include "client/cli/wire_pose.h"
+
+namespace furrow::cli {
+
+using recording::TakePoses;
+
+Result<PlaySource> PlaySource::Load(const std::string& path) {
+  PlaySource source;
+  if (recording::IsTakePath(path)) {
+    std::string file;
+    std::string subject;
+    recording::SplitTakePath(path, &file, &subject);
+    auto take = recording::TakeReader::Open(file);
+    if (!take.ok()) return take.status();
+    motion::ClipReport report;
+    auto poses = TakePoses::Load(**take, subject, &report);
+    PrintWarnings(report.warnings);
+    if (!poses.ok()) return poses.status();
+    source.subject_ = poses->offer().subject;
+    source.poses_ = *std::move(poses);
+    return source;
+  }
+  auto clip = LoadClipArgument(path);
+  if (!clip.ok()) return clip.status();
+  if (clip->num_frames() == 0)
+    return Status(StatusCode::kInvalidArgument, "the recording has no frames", path);
+  source.subject_ = std::filesystem::path(path).stem().string();
+  source.poses_ = *std::move(clip);
+  return source;
+}
+
+std::span<const double> PlaySource::times() const {
+  if (const auto* clip = std::get_if<motion::Clip>(&poses_)) return clip->times;
+  return std::get<TakePoses>(poses_).times();
+}
+
+protocol::SkeletonOffer PlaySource::Offer(const std::string& subject, float metres_per_unit) const {
+  if (const auto* clip = std::get_if<motion::Clip>(&poses_))
+    return OfferOf(*clip, subject, metres_per_unit);
+  protocol::SkeletonOffer offer = std::get<TakePoses>(poses_).offer();
+  offer.subject = subject;
+  offer.metres_per_unit *= metres_per_unit;
+  return offer;
+}
+
+void PlaySource::Fill(int frame, protocol::PoseFrame* pose) const {
+  if (const auto* clip = std::get_if<motion::Clip>(&poses_)) {
+    FillPose(*clip, frame, pose);
+  } else {
+    std::get<TakePoses>(poses_).Get(static_cast<std::size_t>(frame), pose);
+  }
+}
+
+}  // namespace furrow::cli

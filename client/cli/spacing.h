@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+
+namespace furrow::cli {
+
+// How well the distances in time between poses were kept: the error of one is its actual distance
+// from the pose before it less the intended one.
+class Spacing {
+ public:
+  // A pose that was due at `due_us` left at `sent_us`.
+  void Sent(std::int64_t due_us, std::int64_t sent_us) {
+    const std::int64_t late = sent_us - due_us;
+    if (count_++ > 0) {
+      const std::int64_t error = std::abs(late - last_late_);
+      total_us_ += error;
+      largest_us_ = std::max(largest_us_, error);
+    }
+    last_late_ = late;
+  }
+  [[nodiscard]] std::int64_t count() const { return count_; }
+  [[nodiscard]] double mean_ms() const {
+    return count_ > 1 ? static_cast<double>(total_us_) / static_cast<double>(count_ - 1) * 1e-3
+                      : 0.0;
+  }
+  [[nodiscard]] double largest_ms() const { return static_cast<double>(largest_us_) * 1e-3; }
+
+ private:
+  std::int64_t count_ = 0;
+  std::int64_t last_late_ = 0;
+  std::int64_t total_us_ = 0;
+  std::int64_t largest_us_ = 0;
+};
+
+}  // namespace furrow::cli
