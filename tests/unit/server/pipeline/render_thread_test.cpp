@@ -49,6 +49,7 @@ class ScriptedRenderer : public render::Renderer {
     return render::Image{16, 16, std::vector<std::uint8_t>(16 * 16 * 3), 0};
   }
   int in_flight() const override { return in_flight_; }
+  void SetObserver(render::FrameGraphObserver*) override {}
   std::string description() const override { return "scripted"; }
   Result<render::Camera> Preset(std::string_view) const override { return render::Camera(); }
 
