@@ -28,6 +28,20 @@ while read -r set package; do
   [[ $state == installed ]] || missing+=("$package")
 done < "$here/packages.txt"
 
+# An independent MCAP reader, to check ours against; its tests say SKIPPED where it is absent.
+install_interop() {
+  local folder=$here/../tests/mcap_interop
+  [[ $want != build ]] && command -v npm >/dev/null || return 0
+  cmp -s "$folder/package-lock.json" "$folder/node_modules/.furrow-lock" && return 0
+  echo "install-deps: npm ci in tests/mcap_interop"
+  if (cd "$folder" && npm ci --ignore-scripts --no-audit --no-fund >/dev/null 2>&1); then
+    cp "$folder/package-lock.json" "$folder/node_modules/.furrow-lock"
+  else
+    echo "install-deps: npm ci failed; the tests that need @mcap/core will be skipped" >&2
+  fi
+}
+install_interop
+
 [[ ${#missing[@]} -eq 0 ]] && exit 0
 
 sudo=()

@@ -38,15 +38,15 @@ void ForEachIndexed(std::span<const std::uint16_t> indices, std::span<const Valu
   for (std::size_t i = 0; i < values.size(); ++i) use(indices.empty() ? i : indices[i], values[i]);
 }
 
-// Writes poses over one another, joints in the skeleton's order.
-class PoseWriter {
+// Poses written over one another, joints in the skeleton's order.
+class RunningPose {
  public:
-  PoseWriter(const wrinkle::Skeleton& skeleton, std::size_t num_shapes, float scale)
+  RunningPose(const wrinkle::Skeleton& skeleton, std::size_t num_shapes, float scale)
       : skeleton_(skeleton),
         scale_(scale),
         place_(static_cast<std::size_t>(skeleton.num_joints())),
-        joints(skeleton.rest_pose().begin(), skeleton.rest_pose().end()),
-        shapes(num_shapes, 0.0f) {
+        joints_(skeleton.rest_pose().begin(), skeleton.rest_pose().end()),
+        shapes_(num_shapes, 0.0f) {
     for (std::size_t j = 0; j < place_.size(); ++j)
       place_[static_cast<std::size_t>(skeleton.source_index()[j])] = j;
   }
@@ -54,34 +54,36 @@ class PoseWriter {
   void Apply(const protocol::PoseFrame& pose) {
     const auto rest = skeleton_.rest_pose();
     if (!pose.partial) {
-      std::ranges::copy(rest, joints.begin());
-      std::ranges::fill(shapes, 0.0f);
+      std::ranges::copy(rest, joints_.begin());
+      std::ranges::fill(shapes_, 0.0f);
     }
     ForEachIndexed<protocol::Quat>(pose.rotation_joints, pose.rotations,
                                    [&](std::size_t i, const protocol::Quat& value) {
-                                     joints[place_[i]].rotation = ToUnitQuat(value);
+                                     joints_[place_[i]].rotation = ToUnitQuat(value);
                                    });
     ForEachIndexed<protocol::Vec3>(pose.translation_joints, pose.translations,
                                    [&](std::size_t i, const protocol::Vec3& value) {
-                                     joints[place_[i]].translation =
-                                         rest[place_[i]].translation + scale_ * ToVec(value);
+                                     const std::size_t joint = place_[i];
+                                     joints_[joint].translation =
+                                         rest[joint].translation + scale_ * ToVec(value);
                                    });
     ForEachIndexed<protocol::Vec3>(pose.scale_joints, pose.scales,
                                    [&](std::size_t i, const protocol::Vec3& value) {
-                                     joints[place_[i]].scale = ToVec(value);
+                                     joints_[place_[i]].scale = ToVec(value);
                                    });
     ForEachIndexed<float>(pose.blend_shape_indices, pose.blend_shapes,
-                          [&](std::size_t i, float value) { shapes[i] = value; });
+                          [&](std::size_t i, float value) { shapes_[i] = value; });
   }
+
+  [[nodiscard]] const std::vector<wrinkle::Transform>& joints() const { return joints_; }
+  [[nodiscard]] const std::vector<float>& shapes() const { return shapes_; }
 
  private:
   const wrinkle::Skeleton& skeleton_;
   float scale_;
   std::vector<std::size_t> place_;  // of the wire's joints in the skeleton
-
- public:
-  std::vector<wrinkle::Transform> joints;
-  std::vector<float> shapes;
+  std::vector<wrinkle::Transform> joints_;
+  std::vector<float> shapes_;
 };
 
 }  // namespace
@@ -99,13 +101,14 @@ Result<motion::Clip> ToClip(const TakePoses& poses, float scale) {
   clip.skeleton = *std::move(skeleton);
   clip.blend_shape_names = offer.blend_shape_names;
   clip.times.assign(poses.times().begin(), poses.times().end());
-  PoseWriter writer(clip.skeleton, offer.blend_shape_names.size(), scale);
+  RunningPose running(clip.skeleton, offer.blend_shape_names.size(), scale);
   protocol::PoseFrame pose;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     poses.Get(i, &pose);
-    writer.Apply(pose);
-    clip.locals.insert(clip.locals.end(), writer.joints.begin(), writer.joints.end());
-    clip.blend_shapes.insert(clip.blend_shapes.end(), writer.shapes.begin(), writer.shapes.end());
+    running.Apply(pose);
+    clip.locals.insert(clip.locals.end(), running.joints().begin(), running.joints().end());
+    clip.blend_shapes.insert(clip.blend_shapes.end(), running.shapes().begin(),
+                             running.shapes().end());
   }
   return clip;
 }

@@ -40,7 +40,7 @@ Status TakeFolder::Begin(std::uint64_t now_ns) {
   path_ = options_.folder / (name + ".mcap");
   std::error_code error;
   for (int i = 2; std::filesystem::exists(path_, error) && i < kMaxSameSecond; ++i)
-    path_ = options_.folder / (name + "-" + std::to_string(i) + ".mcap");
+    path_ = options_.folder / (name + "_" + std::to_string(i) + ".mcap");
   auto take = TakeWriter::Create(path_, options_.rig_json);
   if (!take.ok()) return take.status();
   take_ = *std::move(take);

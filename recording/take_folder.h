@@ -23,7 +23,7 @@ struct TakeFolderOptions {
 
 // A recording without an end: takes in a folder, one after the other, each complete in itself.
 //
-// - Files are named by the time they begin, "take-20260514T093000Z.mcap", "-2" and so on where that
+// - Files are named by the time they begin, "take-20260514T093000Z.mcap", "_2" and so on where that
 //   is taken: nothing is ever overwritten.
 // - Every file begins with the skeletons and names of the subjects that are there.
 // - The same skeleton or names again, as senders repeat them, are written once a file and session.

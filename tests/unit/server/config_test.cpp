@@ -70,6 +70,12 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
                                   "127.0.0.1:9000",
                                   "--osc-prefix",
                                   "stage",
+                                  "--record",
+                                  "takes",
+                                  "--record-rotate-megabytes",
+                                  "10",
+                                  "--record-rotate-seconds",
+                                  "0",
                                   "--verbose",
                                   "--log-json",
                                   "--render-device",
@@ -90,6 +96,9 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
   EXPECT_EQ(config.osc_out->host, "127.0.0.1");
   EXPECT_EQ(config.osc_out->port, 9000);
   EXPECT_EQ(config.osc_prefix, "stage");
+  EXPECT_EQ(config.record.folder, "takes");
+  EXPECT_DOUBLE_EQ(config.record.rotate_megabytes, 10.0);
+  EXPECT_DOUBLE_EQ(config.record.rotate_seconds, 0.0);
   EXPECT_TRUE(config.verbose);
   EXPECT_TRUE(config.log_json);
   EXPECT_EQ(config.render_device, "surfaceless");
@@ -157,6 +166,7 @@ TEST(ParseConfig, ReadsEveryTable) {
       "[render]\nenabled = true\nrequired = true\ndevice = '1'\n"
       "[mocap]\nvmc = 39539\nlivelink_face = 11111\n"
       "[osc]\nout = '[::1]:9000'\nprefix = 'x'\n"
+      "[record]\ndir = 'takes'\nrotate_megabytes = 2\nrotate_seconds = 60\ndatagrams = false\n"
       "[log]\nverbose = true\njson = true\n"
       "[limits]\nmax_subjects = 5\nidle_seconds = 2.5\npacket_burst = 10\n",
       &config);
@@ -166,6 +176,7 @@ TEST(ParseConfig, ReadsEveryTable) {
   EXPECT_EQ(config.skeleton_map, "cmu");
   EXPECT_TRUE(config.require_render);
   EXPECT_EQ(config.osc_out->host, "::1");
+  EXPECT_EQ(config.record, (RecordConfig{"takes", 2.0, 60.0, false}));
   EXPECT_EQ(config.limits.max_subjects, 5);
   EXPECT_DOUBLE_EQ(config.limits.idle_seconds, 2.5);
   EXPECT_DOUBLE_EQ(config.limits.packet_burst, 10.0);
@@ -179,6 +190,14 @@ TEST(ParseConfig, TheExampleShowsTheDefaults) {
   const Status status = LoadConfigFile(FURROW_SOURCE_DIR "/server/furrow.example.toml", &config);
   ASSERT_TRUE(status.ok()) << status.ToString();
   EXPECT_EQ(config, Config());
+}
+
+TEST(ParseConfig, ARecordingRotatesForwardsOrNever) {
+  Config config;
+  config.record.rotate_seconds = -1.0;
+  EXPECT_EQ(ValidateConfig(config).code(), StatusCode::kInvalidArgument);
+  config.record.rotate_seconds = 0.0;
+  EXPECT_TRUE(ValidateConfig(config).ok());
 }
 
 TEST(ParseConfig, RelativeFilesAreRelativeToTheConfig) {

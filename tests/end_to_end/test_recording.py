@@ -1,0 +1,247 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What streams through a daemon is recorded, survives its death, and plays again to the same weights."""
+import pathlib
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+from furrow_testing import (BIN, GUARD, SHARE, SOURCE, Daemon, Table, furrow, solve, spawn, worst_difference)
+
+PERFORMANCE = SHARE / "recordings" / "performance.bvh"
+RIG = SHARE / "default.rig.json"
+INTEROP = SOURCE / "tests" / "mcap_interop"
+
+
+class Recording(Daemon):
+    """A daemon that records to a folder."""
+
+    def __init__(self, folder, *args):
+        super().__init__("--no-render", "--record", folder, *args)
+        self.folder = pathlib.Path(folder)
+
+    def takes(self):
+        return sorted(self.folder.glob("*.mcap"))
+
+
+class FolderTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+
+    def record(self, *play, name="takes", recording=PERFORMANCE):
+        """Plays to a recording daemon that ends as it should; its only take."""
+        with Recording(self.root / name) as daemon:
+            furrow("play", recording, "--to", daemon.udp, "--subject", "ada", *play, check=0)
+        takes = daemon.takes()
+        self.assertEqual(len(takes), 1)
+        return takes[0]
+
+    def weights(self, take):
+        out = self.root / "weights.csv"
+        furrow("convert", take, out, "--weights", check=0)
+        return Table(out.read_text())
+
+    def count(self, take, what):
+        text = furrow("info", take, check=0).stdout.decode()
+        return int(re.search(rf"{what} +(\d+)", text).group(1))
+
+
+class RecordTest(FolderTest):
+    def test_a_take_holds_every_pose_and_the_weights_that_were_sent(self):
+        take = self.record("--speed", 4)
+        solved = solve(PERFORMANCE, "--rig", RIG)
+        recorded = self.weights(take)
+        self.assertEqual(recorded.rows.keys(), solved.rows.keys())
+        worst, _ = worst_difference(recorded, solved)
+        self.assertLess(worst, 1e-3)
+        self.assertIn("complete", furrow("info", take, check=0).stdout.decode())
+
+    def test_a_replay_gives_the_recorded_weights_digit_for_digit(self):
+        first = self.record("--speed", 4, "--quantise")
+        with Recording(self.root / "again") as daemon:
+            # At another speed: time is the recording's own.
+            played = furrow("play", first, "--to", daemon.tcp, "--tcp", "--speed", 8, check=0)
+        self.assertRegex(played.stderr.decode(), r"\d+ poses; spacing off by [\d.]+ ms on average")
+        again = daemon.takes()[0]
+        self.assertEqual(self.weights(first).rows, self.weights(again).rows)
+        self.assertIn("subject     ada:", furrow("info", again, check=0).stdout.decode())
+
+    def test_a_part_is_played_and_a_loop_goes_on_counting(self):
+        take = self.record("--speed", 8)
+        total = self.count(take, "poses")
+        with Recording(self.root / "part") as daemon:
+            furrow("play", take, "--to", daemon.tcp, "--tcp", "--from", 1, "--speed", 8, check=0)
+        self.assertLess(self.count(daemon.takes()[0], "poses"), total)
+        with Recording(self.root / "loop") as daemon:
+            player = spawn("play", take, "--to", daemon.tcp, "--tcp", "--loop", "--speed", 50)
+            watcher = furrow("watch", daemon.tcp, "--subject", "ada", "--wait", "--format", "csv",
+                             "--frames", 2 * total, check=0)
+            player.send_signal(signal.SIGINT)
+            player.communicate(timeout=GUARD)
+        frames = [int(row.split(",")[0]) for row in watcher.stdout.decode().splitlines()[1:]]
+        self.assertEqual(frames, sorted(set(frames)), "numbers go on")
+        self.assertGreater(frames[-1], total)
+        result = furrow("play", take, "--to", "127.0.0.1:9", "--from", 1e6, check=3)
+        self.assertIn("ends after", result.stderr.decode())
+
+    def test_a_killed_daemon_leaves_whole_chunks_that_replay_to_equal_weights(self):
+        solved = solve(PERFORMANCE, "--rig", RIG)
+        daemon = Recording(self.root / "killed")
+        daemon.__enter__()
+        player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
+        # Until a second's worth is on the disk.
+        take = daemon.takes()[0]
+        begin = take.stat().st_size
+        deadline = time.monotonic() + GUARD
+        while take.stat().st_size < begin + 40000 and time.monotonic() < deadline:
+            time.sleep(0.05)
+        daemon.process.kill()
+        daemon.process.communicate(timeout=GUARD)
+        player.communicate(timeout=GUARD)
+        info = furrow("info", take, check=0)
+        self.assertIn("cut short", info.stdout.decode())
+        recorded = self.weights(take)
+        self.assertGreater(len(recorded.rows), 0)
+        # Of each pose its weights, but perhaps for the last.
+        self.assertIn(self.count(take, "poses") - len(recorded.rows), (0, 1))
+        self.assertEqual(sorted(recorded.rows), list(range(len(recorded.rows))), "and none between")
+        worst, frames = worst_difference(recorded, solved)
+        self.assertGreater(frames, 0)
+        self.assertLess(worst, 1e-3)
+        with Recording(self.root / "again") as second:
+            furrow("play", take, "--to", second.tcp, "--tcp", "--speed", 8, check=0)
+        again = self.weights(second.takes()[0])
+        self.assertEqual({frame: again.rows[frame] for frame in recorded.rows}, recorded.rows)
+
+    def test_rotation_loses_nothing_and_each_file_stands_alone(self):
+        solved = solve(PERFORMANCE, "--rig", RIG)
+        with Recording(self.root / "parts", "--record-rotate-seconds", 0.5) as daemon:
+            furrow("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", check=0)
+        takes = daemon.takes()
+        self.assertGreater(len(takes), 2)
+        rows = {}
+        for take in takes:
+            text = furrow("info", take, check=0).stdout.decode()
+            self.assertIn("complete", text)
+            if "weights   0 " in text:
+                continue  # what came after the last pose: decay alone
+            for frame, row in self.weights(take).rows.items():
+                self.assertNotIn(frame, rows, "no pose is in two files")
+                rows[frame] = row
+        self.assertEqual(rows.keys(), solved.rows.keys())
+
+    def test_a_full_disk_ends_the_recording_and_not_the_daemon(self):
+        def small_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+
+        folder = self.root / "full"
+        process = subprocess.Popen([BIN / "furrowd", "--tcp", "0", "--udp", "0", "--no-render", "--record", folder],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=small_files)
+        self.addCleanup(process.kill)
+        port = re.search(r"tcp=[^ ]*:(\d+)", process.stdout.readline().decode()).group(1)
+        address = f"127.0.0.1:{port}"
+        for _ in range(2):  # poses go on being served
+            furrow("play", PERFORMANCE, "--to", address, "--tcp", "--subject", "ada", "--speed", 8, check=0)
+        process.send_signal(signal.SIGTERM)
+        _, stderr = process.communicate(timeout=GUARD)
+        self.assertEqual(process.returncode, 0)
+        self.assertEqual(stderr.decode().count("the recording ends here"), 1, stderr.decode())
+        take, = folder.glob("*.mcap")
+        self.assertLessEqual(take.stat().st_size, 100_000)
+        self.assertGreater(self.count(take, "poses"), 0)
+
+    def test_a_folder_that_cannot_be_made_is_said_at_once(self):
+        (self.root / "file").write_text("")
+        result = subprocess.run([BIN / "furrowd", "--no-render", "--tcp", "0", "--udp", "0", "--record",
+                                 self.root / "file" / "takes"], capture_output=True, timeout=GUARD)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("the folder cannot be made", result.stderr.decode())
+
+
+class ConvertTest(FolderTest):
+    def test_recordings_go_through_takes_and_back(self):
+        take = self.root / "made.mcap"
+        furrow("convert", PERFORMANCE, take, check=0)
+        solved = solve(PERFORMANCE, "--rig", RIG)
+        worst, frames = worst_difference(solve(take, "--rig", RIG), solved)
+        self.assertEqual(frames, len(solved.rows))
+        self.assertLess(worst, 1e-5)
+        for extension in ("bvh", "glb"):
+            back = self.root / f"back.{extension}"
+            furrow("convert", take, back, check=0)
+            worst, frames = worst_difference(solve(back, "--rig", RIG), solved)
+            self.assertEqual(frames, len(solved.rows))
+            self.assertLess(worst, 2e-3)
+
+    def test_nothing_is_overwritten(self):
+        take = self.root / "made.mcap"
+        furrow("convert", PERFORMANCE, take, check=0)
+        before = take.read_bytes()
+        self.assertEqual(furrow("convert", PERFORMANCE, take).returncode, 1)
+        self.assertEqual(take.read_bytes(), before)
+
+    def test_one_of_several_subjects_is_named(self):
+        with Recording(self.root / "two") as daemon:
+            for name in ("ada", "bob"):
+                furrow("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", name, "--speed", 8, check=0)
+        take = daemon.takes()[0]
+        result = furrow("solve", take, "--rig", RIG, check=3)
+        self.assertIn("ada, bob", result.stderr.decode())
+        one = solve(f"{take}#bob", "--rig", RIG)
+        self.assertEqual(one.rows.keys(), solve(PERFORMANCE, "--rig", RIG).rows.keys())
+        self.assertEqual(furrow("solve", f"{take}#eve", "--rig", RIG).returncode, 3)
+
+
+def needs_interop():
+    if shutil.which("node") is None:
+        raise unittest.SkipTest("node is absent: install what deploy/packages.txt lists")
+    if not (INTEROP / "node_modules").exists():
+        raise unittest.SkipTest("npm's @mcap/core is absent: run deploy/install-deps.sh test")
+
+
+class InteropTest(FolderTest):
+    """npm's @mcap/core, written by others, agrees on every message."""
+
+    def setUp(self):
+        needs_interop()
+        super().setUp()
+
+    def theirs(self, take):
+        result = subprocess.run(["node", INTEROP / "read.mjs", take], capture_output=True, timeout=GUARD)
+        self.assertEqual(result.returncode, 0, result.stderr.decode())
+        return result.stdout.decode().splitlines()
+
+    def ours(self, take):
+        result = subprocess.run([BIN / "mcap-dump", take], capture_output=True, timeout=GUARD)
+        self.assertEqual(result.returncode, 0, result.stderr.decode())
+        return result.stdout.decode().splitlines()
+
+    def test_it_reads_our_takes(self):
+        take = self.record("--speed", 8)
+        ours, theirs = self.ours(take), self.theirs(take)
+        self.assertGreater(len(ours), 100)
+        self.assertEqual(sorted(ours), sorted(theirs))
+        self.assertTrue(any(line.startswith("attachment rig.json") for line in theirs))
+        self.assertTrue(any(line.startswith("/raw/udp ") for line in theirs))
+
+    def test_we_read_its_files(self):
+        take = self.record("--speed", 8)
+        for compression in ("none", "zstd", "lz4"):
+            with self.subTest(compression):
+                copy = self.root / f"{compression}.mcap"
+                subprocess.run(["node", INTEROP / "write.mjs", take, copy, compression], check=True, timeout=GUARD)
+                self.assertEqual(sorted(self.ours(copy)),
+                                 sorted(line for line in self.ours(take) if not line.startswith("attachment")))
+                self.assertEqual(self.weights(copy).rows, self.weights(take).rows)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/take_folder.h"
+
+#include <algorithm>
+#include <csignal>
+
+#include <sys/resource.h>
+
+#include "recording/take_summary.h"
+#include "tests/unit/recording/take_testing.h"
+
+namespace furrow::recording {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TakeFolderTest : public TakeTest {
+ protected:
+  std::unique_ptr<TakeFolder> OpenFolder(std::uint64_t rotate_bytes, std::uint64_t rotate_ns) {
+    auto folder =
+        TakeFolder::Open({folder_ / "takes", rotate_bytes, rotate_ns, "{}"}, Stamp(0).log_time_ns);
+    EXPECT_TRUE(folder.ok()) << folder.status().ToString();
+    return folder.ok() ? *std::move(folder) : nullptr;
+  }
+  [[nodiscard]] std::vector<fs::path> Takes() const {
+    std::vector<fs::path> paths;
+    for (const auto& entry : fs::directory_iterator(folder_ / "takes"))
+      paths.push_back(entry.path());
+    std::ranges::sort(paths);
+    return paths;
+  }
+  Status WritePose(TakeFolder& folder, std::uint32_t i) {
+    return folder.Write(TakeKind::kPose, "ada", Stamp(i), Payload(Pose(0.5f)));
+  }
+};
+
+TEST_F(TakeFolderTest, FilesAreNamedByTheirBeginningAndNeverOverwritten) {
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(OpenFolder(0, 0)->Close().ok());
+  const auto takes = Takes();
+  ASSERT_EQ(takes.size(), 3u);
+  EXPECT_EQ(takes[0].filename(), "take-19700101T010000Z.mcap");
+  EXPECT_EQ(takes[2].filename(), "take-19700101T010000Z_3.mcap");
+}
+
+TEST_F(TakeFolderTest, EveryFileBeginsWithTheSubjectsThatAreThere) {
+  const auto folder = OpenFolder(0, 100'000'000);
+  const auto offer = Payload(Offer("ada"));
+  ASSERT_TRUE(folder->Write(TakeKind::kSkeleton, "ada", Stamp(0), offer).ok());
+  ASSERT_TRUE(folder->Write(TakeKind::kSkeleton, "bob", Stamp(0), Payload(Offer("bob"))).ok());
+  folder->Forget("bob");
+  for (std::uint32_t i = 0; i < 30; ++i) {
+    ASSERT_TRUE(folder->Write(TakeKind::kSkeleton, "ada", Stamp(i), offer).ok()) << "repeated";
+    ASSERT_TRUE(WritePose(*folder, i).ok());
+  }
+  ASSERT_TRUE(folder->Close().ok());
+  EXPECT_EQ(folder->num_files(), 3);
+  std::size_t poses = 0;
+  for (const fs::path& path : Takes()) {
+    auto take = TakeReader::Open(path);
+    ASSERT_TRUE(take.ok());
+    EXPECT_TRUE((*take)->file().complete());
+    std::size_t skeletons = 0;
+    ASSERT_TRUE((*take)
+                    ->ForEach([&](const TakeMessage& message) {
+                      skeletons += message.kind == TakeKind::kSkeleton && message.subject == "ada";
+                      return true;
+                    })
+                    .ok());
+    EXPECT_EQ(skeletons, 1u) << path;
+    const auto summary = Summarise(**take);
+    ASSERT_TRUE(summary.ok());
+    poses += summary->subjects.at("ada").poses;
+    EXPECT_EQ(summary->subjects.contains("bob"), poses == 10) << "in the first file alone";
+  }
+  EXPECT_EQ(poses, 30u);
+}
+
+TEST_F(TakeFolderTest, SizeEndsAFileToo) {
+  const auto folder = OpenFolder(/*rotate_bytes=*/3000, 0);
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    ASSERT_TRUE(WritePose(*folder, i).ok());
+    ASSERT_TRUE(folder->Flush().ok());
+  }
+  ASSERT_TRUE(folder->Close().ok());
+  EXPECT_GT(folder->num_files(), 3);
+}
+
+TEST_F(TakeFolderTest, AFullDiskEndsItOnceAndLeavesWhatWasWritten) {
+  const auto folder = OpenFolder(0, 0);
+  ASSERT_TRUE(folder->Write(TakeKind::kSkeleton, "ada", Stamp(0), Payload(Offer("ada"))).ok());
+  ASSERT_TRUE(WritePose(*folder, 0).ok());
+  ASSERT_TRUE(folder->Flush().ok());
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  rlimit small = before;
+  small.rlim_cur = fs::file_size(folder->path()) + 1000;
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  Status status;
+  for (std::uint32_t i = 1; i < 100 && status.ok(); ++i) {
+    status = WritePose(*folder, i);
+    if (status.ok()) status = folder->Flush();
+  }
+  EXPECT_EQ(status.code(), StatusCode::kIo);
+  EXPECT_EQ(WritePose(*folder, 100).code(), StatusCode::kIo) << "and it stays so";
+  EXPECT_FALSE(folder->Close().ok());
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  auto take = TakeReader::Open(folder->path());
+  ASSERT_TRUE(take.ok()) << take.status().ToString();
+  const auto summary = Summarise(**take);
+  ASSERT_TRUE(summary.ok());
+  EXPECT_GT(summary->subjects.at("ada").poses, 0u);
+}
+
+}  // namespace
+}  // namespace furrow::recording

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/recording/recorder.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "recording/take_poses.h"
+#include "recording/take_summary.h"
+#include "tests/unit/server/session/hub_fixture.h"
+
+namespace furrow::server {
+namespace {
+
+namespace fs = std::filesystem;
+using recording::TakeKind;
+using recording::TakeMessage;
+
+// A hub that records, and what the take holds once it is closed.
+class RecorderTest : public HubTest {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "furrow-recorder-XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+    auto started = Recorder::Start(
+        {.folder = {.folder = folder_, .rig_json = "{}"}, .wall_offset = FromSeconds(5000)}, now,
+        &metrics);
+    ASSERT_TRUE(started.ok()) << started.status().ToString();
+    recorder_ = *std::move(started);
+    Hub::Parts parts;
+    parts.session = 4242;
+    parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(/*filter=*/false));
+    parts.metrics = &metrics;
+    parts.make_token = [] { return 1u; };
+    parts.recording = recorder_.get();
+    hub = std::make_unique<Hub>(std::move(parts));
+    Connect(&sender_);
+  }
+  void TearDown() override {
+    recorder_.reset();
+    fs::remove_all(folder_);
+  }
+  // Closes the recording; its only take.
+  std::unique_ptr<recording::TakeReader> Finish() {
+    recorder_.reset();
+    auto take = recording::TakeReader::Open(fs::directory_iterator(folder_)->path());
+    EXPECT_TRUE(take.ok()) << take.status().ToString();
+    return take.ok() ? *std::move(take) : nullptr;
+  }
+
+  fs::path folder_;
+  std::unique_ptr<Recorder> recorder_;
+  FakePeer sender_;
+};
+
+TEST_F(RecorderTest, APoseAndItsWeightsAreRecordedWithTheirTimes) {
+  Publish(sender_, "ada");
+  Send(sender_, Pose(0.25f, 1.0f), 1, 0, 7'000);
+  const auto take = Finish();
+  int seen = 0;
+  ASSERT_TRUE(take->ForEach([&](const TakeMessage& message) {
+                    EXPECT_EQ(message.subject, "ada");
+                    EXPECT_EQ(message.stamp.session, sender_.session);
+                    EXPECT_EQ(message.stamp.log_time_ns, 6000'000'000'000u) << "1000 s + 5000 s";
+                    ++seen;
+                    if (message.kind != TakeKind::kWeights) return true;
+                    EXPECT_EQ(message.stamp.capture_time_us, 7'000);
+                    protocol::WeightFrame weights;
+                    EXPECT_EQ(protocol::Decode(message.View(), weights),
+                              protocol::DecodeStatus::kOk);
+                    EXPECT_EQ(weights.values, (std::vector<float>{0.25f, 1.0f}));
+                    EXPECT_EQ(weights.age_us, 0);
+                    return true;
+                  })
+                  .ok());
+  EXPECT_EQ(seen, 4) << "skeleton, names, pose, weights";
+  EXPECT_EQ(Count(Counter::kRecordingMessages), 4u);
+  EXPECT_EQ(Count(Counter::kRecordingDropped), 0u);
+}
+
+TEST_F(RecorderTest, APartialPoseIsRecordedWhole) {
+  Publish(sender_, "ada");
+  Send(sender_, Pose(0.25f, 1.0f), 1, 0, 1'000);
+  auto partial = Pose(0.5f);
+  partial.partial = true;
+  partial.blend_shape_indices = {0};
+  partial.blend_shapes = {0.5f};
+  Send(sender_, partial, 1, 1, 2'000);
+  const auto poses = recording::TakePoses::Load(*Finish(), "ada", nullptr);
+  ASSERT_TRUE(poses.ok()) << poses.status().ToString();
+  ASSERT_EQ(poses->size(), 2u);
+  protocol::PoseFrame pose;
+  poses->Get(1, &pose);
+  EXPECT_FALSE(pose.partial);
+  EXPECT_EQ(pose.blend_shapes, (std::vector<float>{0.5f, 1.0f}));
+}
+
+TEST_F(RecorderTest, WhatTheDaemonDoesNotUseIsNotRecorded) {
+  Publish(sender_, "ada");
+  Send(sender_, Pose(0.25f), 1, 5, 1'000);
+  Send(sender_, Pose(0.75f), 1, 5, 1'000);  // twice
+  Send(sender_, Pose(0.75f), 1, 4, 900);    // late
+  Send(sender_, Pose(0.75f), 2, 6, 1'000);  // of a stream without an offer
+  const auto summary = recording::Summarise(*Finish());
+  ASSERT_TRUE(summary.ok());
+  EXPECT_EQ(summary->subjects.at("ada").poses, 1u);
+}
+
+TEST_F(RecorderTest, DatagramsAreRecordedAsTheyCame) {
+  recording::DatagramSender sender{};
+  sender[15] = 1;
+  sender[17] = 80;
+  const std::vector<std::uint8_t> bytes{1, 2, 3};
+  recorder_->OnDatagram(sender, bytes, now);
+  std::vector<std::uint8_t> seen;
+  ASSERT_TRUE(Finish()
+                  ->ForEach([&](const TakeMessage& message) {
+                    EXPECT_EQ(message.kind, TakeKind::kDatagram);
+                    seen.assign(message.payload.begin(), message.payload.end());
+                    return true;
+                  })
+                  .ok());
+  std::vector<std::uint8_t> expected(sender.begin(), sender.end());
+  expected.insert(expected.end(), bytes.begin(), bytes.end());
+  EXPECT_EQ(seen, expected);
+}
+
+}  // namespace
+}  // namespace furrow::server
