@@ -17,7 +17,7 @@ PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 def commands(document):
     """The command lines in the fenced blocks of a document, comments off, as lists of words."""
     text = (SOURCE / document).read_text()
-    for block in re.findall(r"^```(?:sh)?\n(.*?)^```", text, re.M | re.S):
+    for block in re.findall(r"^```\w*\n(.*?)^```", text, re.M | re.S):
         for line in block.splitlines():
             if re.match(r"furrowd?( |$)", line):
                 yield shlex.split(line, comments=True)
@@ -83,6 +83,22 @@ class DocumentTest(unittest.TestCase):
             seen.append(" ".join(words[1:3]))
         self.assertLessEqual({"character check", "character import", "character propose-rig", "rig check"}, set(seen))
         self.assertIn("render", {command.split()[0] for command in seen})
+
+    def test_recording(self):
+        furrow("convert", PERFORMANCE, self.root / "plain.mcap", check=0)
+        with Daemon("--no-render", "--record", self.root / "takes") as daemon:
+            furrow("play", self.root / "plain.mcap", "--to", daemon.udp, "--speed", 4, check=0)
+        next((self.root / "takes").glob("*.mcap")).rename(self.root / "take.mcap")
+        (self.root / "rig.json").symlink_to(SHARE / "default.rig.json")
+        seen = set()
+        with Daemon("--no-render") as daemon:
+            for words in commands("docs/RECORDING.md"):
+                if words[0] == "furrowd":
+                    with Daemon(*[self.root / w if w == "takes" else w for w in words[1:]]):
+                        continue
+                self.run_here([daemon.udp if w == "localhost" else w for w in words])
+                seen.add(words[1])
+        self.assertEqual(seen, {"info", "play", "solve", "convert"})
 
 
 if __name__ == "__main__":
