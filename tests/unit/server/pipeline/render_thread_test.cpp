@@ -100,6 +100,7 @@ class RenderThreadTest : public testing::Test {
     snapshot->sequence = number;
     snapshot->retarget =
         std::make_shared<const wrinkle::Retarget>(wrinkle::Retarget::Create(skeleton, skeleton));
+    snapshot->blend_shape_pose = std::make_shared<const wrinkle::BlendShapePose>();
     snapshot->joints.assign(skeleton.rest_pose().begin(), skeleton.rest_pose().end());
     thread->Submit({number, {.width = 16, .height = 16}, std::move(snapshot), {{number, {}}}});
   }
