@@ -43,6 +43,7 @@ Status TakeFolder::Begin(std::uint64_t now_ns) {
     path_ = options_.folder / (name + "_" + std::to_string(i) + ".mcap");
   auto take = TakeWriter::Create(path_, options_.rig_json);
   if (!take.ok()) return take.status();
+  if (take_ != nullptr) earlier_messages_ += take_->num_messages();
   take_ = *std::move(take);
   begun_ns_ = now_ns;
   ++num_files_;

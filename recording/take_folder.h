@@ -47,6 +47,10 @@ class TakeFolder {
   // The file that is being written.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] int num_files() const { return num_files_; }
+  // In all files, with what each begins with; repeated declarations are not.
+  [[nodiscard]] std::uint64_t num_messages() const {
+    return earlier_messages_ + take_->num_messages();
+  }
 
  private:
   struct Declaration {
@@ -71,6 +75,7 @@ class TakeFolder {
   std::filesystem::path path_;
   std::uint64_t begun_ns_ = 0;
   int num_files_ = 0;
+  std::uint64_t earlier_messages_ = 0;  // in the files before
   std::map<std::string, SubjectState, std::less<>> subjects_;
   Status failure_;
 };

@@ -125,6 +125,7 @@ void Recorder::OnDatagram(const recording::DatagramSender& sender,
 Status Recorder::WriteBatch(const RecordingBatch& batch) {
   Status status;
   const int file = folder_->num_files();
+  const std::uint64_t before = folder_->num_messages();
   batch.ForEach([&](const RecordingBatch::Entry& entry, std::string_view subject,
                     std::span<const std::uint8_t> payload) {
     switch (entry.event) {
@@ -139,9 +140,9 @@ Status Recorder::WriteBatch(const RecordingBatch& batch) {
         status = folder_->Write(entry.kind, subject, entry.stamp, payload);
         break;
     }
-    if (status.ok()) metrics_->Add(Counter::kRecordingMessages);
     return status.ok();
   });
+  metrics_->Add(Counter::kRecordingMessages, folder_->num_messages() - before);
   if (status.ok() && folder_->num_files() != file)
     spdlog::info("recording goes on in {}", folder_->path().string());
   return status;

@@ -56,6 +56,7 @@ class RecorderTest : public HubTest {
 
 TEST_F(RecorderTest, APoseAndItsWeightsAreRecordedWithTheirTimes) {
   Publish(sender_, "ada");
+  Publish(sender_, "ada");  // again, as senders do until they are answered
   Send(sender_, Pose(0.25f, 1.0f), 1, 0, 7'000);
   const auto take = Finish();
   int seen = 0;
