@@ -50,7 +50,8 @@ trap stop EXIT
 trap 'stop; exit 0' INT TERM
 
 say "furrowd with the default character"
-"$bin/furrowd" --tcp 0 --udp 0 >"$out/furrowd.out" 2>"$out/furrowd.log" &
+printf 'shading = "skin"\n' >"$out/look.toml"
+"$bin/furrowd" --tcp 0 --udp 0 --render-settings "$out/look.toml" >"$out/furrowd.out" 2>"$out/furrowd.log" &
 daemon=$!
 until grep -q '^furrowd ready' "$out/furrowd.out"; do
   kill -0 "$daemon" 2>/dev/null || { cat "$out/furrowd.log" >&2; exit 1; }

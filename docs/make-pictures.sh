@@ -1,32 +1,149 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Makes the pictures of the documents anew from a build: docs/make-pictures.sh [BUILD_DIR]
+#
+# FURROW_SHARED_DATA (default ../shared/data): MakeHuman's data and a recording made for its skeleton;
+# where it is not there, the pictures of the MakeHuman character stay as they are.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=${1:-build/release}
+shared=${FURROW_SHARED_DATA:-../shared/data}
 furrow=$build/bin/furrow
-recordings=$build/share/furrow/recordings
+share=$build/share/furrow
+recordings=$share/recordings
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-mkdir -p docs/pictures
+out=docs/pictures
+mkdir -p "$out"
 
-# still NAME RECORDING FRAME [OPTIONS...]
+# still NAME [OPTIONS...]: one picture, $work/NAME.png
 still() {
-  "$furrow" render "$recordings/$2.bvh" --frames "$3" --out "$work/$1" --size 480x480 "${@:4}"
+  "$furrow" render "${@:2}" --out "$work/$1" --size "${size:-320x320}" --shading skin
   mv "$work/$1"/*.png "$work/$1.png"
 }
 
-for wrinkles in off on; do
-  still "a_$wrinkles" performance 60 --wrinkles "$wrinkles" --camera face
-  still "b_$wrinkles" performance 120 --wrinkles "$wrinkles" --camera face
-  still "c_$wrinkles" performance 240 --wrinkles "$wrinkles" --camera face
-done
-oiiotool "$work"/{a,b,c}_off.png "$work"/{a,b,c}_on.png --mosaic:pad=6 3x2 --resize 900x0 \
-  --compression jpeg:82 -o docs/pictures/performance.jpg
+# sheet OUT COLUMNSxROWS WIDTH NAMES...
+sheet() {
+  local files=()
+  for name in "${@:4}"; do files+=("$work/$name.png"); done
+  oiiotool "${files[@]}" --mosaic:pad=4 "$2" --resize "$3x0" --compression jpeg:84 -o "$out/$1.jpg"
+}
 
-for view in final normal mask_texture mask_dynamic weights wireframe; do
-  still "view_$view" performance 240 --view "$view" --camera three_quarter
-done
-oiiotool "$work"/view_{final,normal,mask_texture,mask_dynamic,weights,wireframe}.png --mosaic:pad=6 3x2 \
-  --resize 900x0 --compression jpeg:82 -o docs/pictures/views.jpg
-ls -l docs/pictures
+# default_faces PREFIX CHARACTER: wrinkles off above, on below; neutral, stretch, squash, four emotions.
+default_faces() {
+  local prefix=$1 character=$share/$2.glb names=() wrinkles
+  for wrinkles in off on; do
+    local options=(--character "$character" --wrinkles "$wrinkles" --camera face)
+    for pose in neutral stretch squash; do
+      still "${prefix}_${pose}_$wrinkles" --pose "$pose" "${options[@]}"
+    done
+    still "${prefix}_happiness_$wrinkles" "$recordings/happiness.bvh" --frames 85 "${options[@]}"
+    still "${prefix}_anger_$wrinkles" "$recordings/anger.bvh" --frames 140 "${options[@]}"
+    still "${prefix}_sadness_$wrinkles" "$recordings/sadness.bvh" --frames 120 "${options[@]}"
+    still "${prefix}_disgust_$wrinkles" "$recordings/disgust.bvh" --frames 100 "${options[@]}"
+    for name in neutral stretch squash happiness anger sadness disgust; do
+      names+=("${prefix}_${name}_$wrinkles")
+    done
+  done
+  sheet "${prefix}_faces" 7x2 1680 "${names[@]}"
+}
+
+# bodies PREFIX OPTIONS...: a walk and a squat, wrinkles off and on.
+bodies() {
+  local prefix=$1 wrinkles
+  for wrinkles in off on; do
+    size=360x640 still "${prefix}_walk_$wrinkles" "$recordings/walk.bvh" --frames 100 \
+      --camera body --wrinkles "$wrinkles" "${@:2}"
+    size=360x640 still "${prefix}_squat_$wrinkles" "$recordings/squat.bvh" --frames 60 \
+      --camera body --wrinkles "$wrinkles" "${@:2}"
+  done
+  sheet "${prefix}_body" 4x1 1200 "${prefix}"_{walk,squat}_{off,on}
+}
+
+# What README shows: three moments of a performance, without and with wrinkles.
+performance() {
+  local names=() wrinkles
+  for wrinkles in off on; do
+    for frame in 60 120 240; do
+      size=480x480 still "p${frame}_$wrinkles" "$recordings/performance.bvh" --frames "$frame" \
+        --wrinkles "$wrinkles" --camera face
+      names+=("p${frame}_$wrinkles")
+    done
+  done
+  sheet performance 3x2 900 "${names[@]}"
+}
+
+views() {
+  local names=()
+  for view in final normal mask_texture mask_dynamic weights wireframe; do
+    size=480x480 still "view_$view" "$recordings/performance.bvh" --frames 240 --view "$view" \
+      --camera three_quarter
+    names+=("view_$view")
+  done
+  sheet views 3x2 900 "${names[@]}"
+}
+
+# The same pose through texture masks and through skinning weights: what each lets fold.
+masks() {
+  local names=()
+  for view in final mask_texture mask_dynamic; do
+    size=480x480 still "mask_$view" --pose squash --view "$view" --camera face
+    names+=("mask_$view")
+  done
+  sheet masks 3x1 1080 "${names[@]}"
+}
+
+# The reference poses with the maps that are blended for them: the face above, its normals below.
+reference_poses() {
+  local names=()
+  for view in final normal; do
+    for pose in neutral stretch squash; do
+      size=480x480 still "ref_${pose}_$view" --pose "$pose" --view "$view" --camera face
+      names+=("ref_${pose}_$view")
+    done
+  done
+  sheet reference_poses 3x2 1080 "${names[@]}"
+}
+
+# Clothing at hinge and ball joints, off and on: elbow and shoulder, hip and knee, close by.
+cloth_joints() {
+  local names=() wrinkles
+  for wrinkles in off on; do
+    size=1600x1600 still "squat_$wrinkles" "$recordings/squat.bvh" --frames 60 --camera body \
+      --wrinkles "$wrinkles"
+    oiiotool "$work/squat_$wrinkles.png" --crop 360x360+510+560 --fullpixels -o "$work/arm_$wrinkles.png"
+    oiiotool "$work/squat_$wrinkles.png" --crop 360x360+640+800 --fullpixels -o "$work/leg_$wrinkles.png"
+  done
+  sheet cloth_joints 4x1 1200 arm_off arm_on leg_off leg_on
+}
+
+makehuman() {
+  export FURROW_ASSET_PATH="$shared/makehuman/poseunits"
+  "$furrow" character import "$shared/makehuman" --out "$work/makehuman.glb"
+  local names=() wrinkles
+  for wrinkles in off on; do
+    # Neutral, then the heights of smile, anger, sadness, disgust and laughter.
+    for frame in 0 60 180 300 420 540; do
+      still "mh_${frame}_$wrinkles" "$shared/performances/emotions.bvh" --frames "$frame" \
+        --character "$work/makehuman.glb" --wrinkles "$wrinkles" --camera face
+      names+=("mh_${frame}_$wrinkles")
+    done
+  done
+  sheet makehuman_faces 6x2 1440 "${names[@]}"
+  bodies makehuman --character "$work/makehuman.glb" --allow-missing
+}
+
+performance
+views
+masks
+reference_poses
+cloth_joints
+default_faces default default
+default_faces elder elder
+bodies default
+if [[ -d $shared/makehuman && -f $shared/performances/emotions.bvh ]]; then
+  makehuman
+else
+  echo "make-pictures: no $shared/makehuman: its pictures stay as they are" >&2
+fi
+ls -l "$out"
