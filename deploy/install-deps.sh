@@ -40,9 +40,10 @@ install_interop() {
     echo "install-deps: npm ci failed; the tests that need @mcap/core will be skipped" >&2
   fi
 }
-install_interop
-
-[[ ${#missing[@]} -eq 0 ]] && exit 0
+if [[ ${#missing[@]} -eq 0 ]]; then
+  install_interop
+  exit 0
+fi
 
 sudo=()
 if [[ $(id -u) -ne 0 ]]; then
@@ -64,3 +65,4 @@ if ! { "${sudo[@]}" apt-get update &&
   echo "install-deps: apt-get failed; its last lines stand above" >&2
   exit 1
 fi
+install_interop
