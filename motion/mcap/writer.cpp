@@ -168,10 +168,7 @@ Status Writer::Write(const Message& message) {
   chunk_info_.start_time =
       first ? message.log_time : std::min(chunk_info_.start_time, message.log_time);
   chunk_info_.end_time = std::max(chunk_info_.end_time, message.log_time);
-  start_time_ = num_messages_ == 0 ? message.log_time : std::min(start_time_, message.log_time);
-  end_time_ = std::max(end_time_, message.log_time);
   index.entries.emplace_back(message.log_time, place);
-  ++index.count;
   ++num_messages_;
   if (chunk_.size() >= options_.chunk_bytes) return FlushChunk();
   return {};
@@ -194,20 +191,34 @@ Status Writer::FlushChunk() {
   info.uncompressed_bytes = chunk_.size();
   Status status = AppendRecord(Opcode::kChunk, record);
   if (status.ok()) {
-    ByteWriter index = IndexChunk(info);
-    chunk_index_.push_back(std::move(index));
+    CountChunk();
+    chunk_index_.push_back(IndexChunk(info));
     status = failure_;
   }
+  BeginChunk();
+  return status;
+}
+
+// What the chunk under way adds to the statistics, once it is in the file.
+void Writer::CountChunk() {
+  for (ChannelIndex& channel : index_) channel.count += channel.entries.size();
+  const bool first = written_messages_ == 0;
+  start_time_ = first ? chunk_info_.start_time : std::min(start_time_, chunk_info_.start_time);
+  end_time_ = std::max(end_time_, chunk_info_.end_time);
+  written_messages_ += chunk_messages_;
+}
+
+void Writer::BeginChunk() {
   for (ChannelIndex& channel : index_) channel.entries.clear();
   chunk_.Clear();
   chunk_info_ = {};
   chunk_messages_ = 0;
   declared_.clear();
   declared_schemas_.clear();
-  return status;
 }
 
-// Writes the message indexes of the chunk that was just written; returns its chunk index record.
+// Writes the message indexes of the chunk that was just written; returns its chunk index record,
+// which names those that are in the file.
 ByteWriter Writer::IndexChunk(const ChunkInfo& chunk) {
   const std::uint64_t begin = offset_;
   ByteWriter offsets;
@@ -216,8 +227,9 @@ ByteWriter Writer::IndexChunk(const ChunkInfo& chunk) {
     for (const auto& [time, place] : index_[id - 1u].entries) entries.Put(time).Put(place);
     ByteWriter record;
     record.Put(id).Put(static_cast<std::uint32_t>(entries.size())).PutBytes(entries.bytes());
-    offsets.Put(id).Put(offset_);
-    (void)AppendRecord(Opcode::kMessageIndex, record);  // failure_ remembers
+    const std::uint64_t offset = offset_;
+    if (!AppendRecord(Opcode::kMessageIndex, record).ok()) break;  // failure_ remembers
+    offsets.Put(id).Put(offset);
   }
   ByteWriter out;
   out.Put(chunk.start_time).Put(chunk.end_time).Put(chunk.offset).Put(chunk.length);
@@ -265,7 +277,7 @@ ByteWriter Writer::Statistics() const {
   ByteWriter counts;
   for (std::size_t i = 0; i < index_.size(); ++i) counts.Put(channels_[i].id).Put(index_[i].count);
   ByteWriter record;
-  record.Put(num_messages_).Put(static_cast<std::uint16_t>(schemas_.size()));
+  record.Put(written_messages_).Put(static_cast<std::uint16_t>(schemas_.size()));
   record.Put(static_cast<std::uint32_t>(channels_.size()));
   record.Put(static_cast<std::uint32_t>(attachments_.size()));
   record.Put(static_cast<std::uint32_t>(metadata_.size()));

@@ -57,6 +57,7 @@ class Writer {
 
   // In the file, without the chunk under way.
   [[nodiscard]] std::uint64_t bytes_written() const { return offset_; }
+  // That Write() took; those of a chunk whose writing failed are not in the file.
   [[nodiscard]] std::uint64_t num_messages() const { return num_messages_; }
 
  private:
@@ -67,13 +68,15 @@ class Writer {
   };
   struct ChannelIndex {
     std::vector<std::pair<std::uint64_t, std::uint64_t>> entries;  // log time, offset in the chunk
-    std::uint64_t count = 0;                                       // in the whole file
+    std::uint64_t count = 0;                                       // in chunks that are written
   };
 
   Writer(int file, std::filesystem::path path, const WriterOptions& options);
   [[nodiscard]] Status Append(std::span<const std::uint8_t> bytes);
   [[nodiscard]] Status AppendRecord(Opcode opcode, const ByteWriter& content);
   void DeclareInChunk(const Channel& channel);
+  void CountChunk();
+  void BeginChunk();
   [[nodiscard]] ByteWriter IndexChunk(const ChunkInfo& chunk);
   [[nodiscard]] ByteWriter Statistics() const;
   [[nodiscard]] Status WriteSummary();
@@ -94,7 +97,8 @@ class Writer {
   std::uint64_t chunk_messages_ = 0;
   std::set<std::uint16_t> declared_;  // channels of the chunk under way
   std::set<std::uint16_t> declared_schemas_;
-  std::uint64_t num_messages_ = 0;
+  std::uint64_t num_messages_ = 0;      // given to Write()
+  std::uint64_t written_messages_ = 0;  // in chunks that are written, as are the times
   std::uint64_t start_time_ = 0;
   std::uint64_t end_time_ = 0;
   std::vector<ByteWriter> chunk_index_;

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -130,13 +134,13 @@ TEST_F(McapTest, ARangeOfTimeIsReadAlone) {
 }
 
 TEST_F(McapTest, CutAnywhereEveryWholeChunkComesBack) {
-  WriteTake(Path(), 18, 300);
+  WriteTake(Path(), 8, 200);
   const std::string whole = Slurp(Path());
   auto reader = Reader::Open(Path());
   ASSERT_TRUE(reader.ok());
   const std::vector<ChunkInfo> chunks = (*reader)->chunks();
   const auto all = ReadAll(**reader);
-  for (std::size_t size = 0; size < whole.size(); size += 5) {
+  for (std::size_t size = 0; size < whole.size(); ++size) {
     Spill(Path("cut.mcap"), whole.substr(0, size));
     auto cut = Reader::Open(Path("cut.mcap"));
     if (!cut.ok()) {
@@ -163,14 +167,15 @@ TEST_F(McapTest, AWriterThatDiesLeavesWhatWasFlushed) {
   EXPECT_EQ((*reader)->attachments().size(), 1u);
 }
 
-// One byte after the other is changed: nothing crashes, and whatever is still shown is true.
+// Every byte, one after the other, is changed: nothing crashes, and whatever is still shown is
+// true.
 TEST_F(McapTest, DamageIsNeverShownAsData) {
   WriteTake(Path(), 5, 200);
   const std::string whole = Slurp(Path());
   auto reader = Reader::Open(Path());
   ASSERT_TRUE(reader.ok());
   const auto all = ReadAll(**reader);
-  for (std::size_t i = 0; i < whole.size(); i += 3) {
+  for (std::size_t i = 0; i < whole.size(); ++i) {
     std::string damaged = whole;
     damaged[i] = static_cast<char>(damaged[i] ^ 0x41);
     Spill(Path("bad.mcap"), damaged);
@@ -242,6 +247,107 @@ TEST_F(McapTest, AFullDiskEndsTheRecordingAndTheFileIsReadable) {
   const auto seen = ReadAll(**reader);
   EXPECT_GT(seen.size(), 100u);
   for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i].sequence, i);
+}
+
+// What the summary of a closed file says of its data.
+struct Summary {
+  std::uint64_t messages = 0;
+  std::uint32_t chunks = 0;
+  std::uint64_t start_time = 0;
+  std::uint64_t end_time = 0;
+  std::map<std::uint16_t, std::uint64_t> of_channel;
+  std::vector<std::pair<std::uint16_t, std::uint64_t>> message_indexes;  // channel, offset
+};
+
+Summary ReadSummary(std::span<const std::uint8_t> file) {
+  Summary summary;
+  constexpr std::size_t kTail = 20 + sizeof kMagic;
+  const auto start = ByteReader(file.last(kTail)).Get<std::uint64_t>();
+  ByteReader records(file.subspan(start, file.size() - kTail - kRecordHeaderBytes - start));
+  while (records.ok() && !records.at_end()) {
+    const auto opcode = static_cast<Opcode>(records.Get<std::uint8_t>());
+    ByteReader content(records.Take(records.Get<std::uint64_t>()));
+    if (opcode == Opcode::kStatistics) {
+      summary.messages = content.Get<std::uint64_t>();
+      (void)content.Take(2 + 4 + 4 + 4);  // schemas, channels, attachments, metadata
+      summary.chunks = content.Get<std::uint32_t>();
+      summary.start_time = content.Get<std::uint64_t>();
+      summary.end_time = content.Get<std::uint64_t>();
+      ByteReader counts(content.Take(content.Get<std::uint32_t>()));
+      while (!counts.at_end()) {
+        const auto id = counts.Get<std::uint16_t>();
+        summary.of_channel[id] = counts.Get<std::uint64_t>();
+      }
+    } else if (opcode == Opcode::kChunkIndex) {
+      (void)content.Take(4 * 8);  // times, offset and length of the chunk
+      ByteReader offsets(content.Take(content.Get<std::uint32_t>()));
+      while (!offsets.at_end()) {
+        const auto id = offsets.Get<std::uint16_t>();
+        summary.message_indexes.emplace_back(id, offsets.Get<std::uint64_t>());
+      }
+    }
+  }
+  EXPECT_TRUE(records.ok());
+  return summary;
+}
+
+// Writes to a disk of `bytes` until it is full, then closes on one with room again.
+void FillThenClose(const fs::path& path, rlim_t bytes) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    rlimit limit{};
+    ::getrlimit(RLIMIT_FSIZE, &limit);
+    const rlim_t room = std::exchange(limit.rlim_cur, bytes);
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    auto writer = Writer::Create(path, {.chunk_bytes = 300});
+    if (!writer.ok()) ::_exit(2);
+    const std::uint16_t channels[] = {(*writer)->AddChannel("/x", "text", 0),
+                                      (*writer)->AddChannel("/y", "text", 0)};
+    Status status;
+    for (std::uint32_t i = 0; status.ok() && i < 1000; ++i) {
+      Message message;
+      message.channel_id = channels[i % 3 == 0];
+      message.sequence = i;
+      message.log_time = 100 + i;
+      status = (*writer)->Write(message);
+    }
+    limit.rlim_cur = room;
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    ::_exit(status.ok() || (*writer)->Close().ok() ? 3 : 0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  ASSERT_EQ(WEXITSTATUS(status), 0);
+}
+
+// Wherever the disk ends, within a chunk or within its index: the summary tells what is there.
+TEST_F(McapTest, AfterAFullDiskTheIndexTellsWhatIsThere) {
+  for (rlim_t bytes = 900; bytes < 1900; bytes += 37) {
+    const fs::path path = Path(std::to_string(bytes));
+    ASSERT_NO_FATAL_FAILURE(FillThenClose(path, bytes));
+    auto reader = Reader::Open(path);
+    ASSERT_TRUE(reader.ok()) << reader.status().ToString();
+    EXPECT_TRUE((*reader)->complete());
+    const auto seen = ReadAll(**reader);
+    ASSERT_FALSE(seen.empty());
+    const std::string text = Slurp(path);
+    const Summary summary = ReadSummary(Bytes(text));
+    EXPECT_EQ(summary.messages, seen.size()) << bytes;
+    EXPECT_EQ(summary.chunks, (*reader)->chunks().size());
+    EXPECT_EQ(summary.start_time, seen.front().log_time);
+    EXPECT_EQ(summary.end_time, seen.back().log_time) << bytes;
+    for (const auto& [id, count] : summary.of_channel) {
+      const std::string& topic = (*reader)->channels().at(id).topic;
+      EXPECT_EQ(count, std::ranges::count(seen, topic, &Seen::topic)) << topic;
+    }
+    for (const auto& [id, offset] : summary.message_indexes) {
+      ASSERT_LT(offset + kRecordHeaderBytes + 2, text.size());
+      EXPECT_EQ(text[offset], static_cast<char>(Opcode::kMessageIndex)) << bytes;
+      EXPECT_EQ(static_cast<std::uint8_t>(text[offset + kRecordHeaderBytes]), id) << bytes;
+    }
+  }
 }
 
 TEST_F(McapTest, WhatIsNoMcapFileSaysSo) {
