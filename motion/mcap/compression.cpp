@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <lz4frame.h>
 #include <zlib.h>
@@ -16,12 +17,51 @@ Status Damaged(std::string_view method) {
   return {StatusCode::kParse, "a chunk's " + std::string(method) + " data is damaged"};
 }
 
+// What is unpacked. It grows with what comes, whatever size is stated: a small file with a large
+// number in it costs little.
+class Output {
+ public:
+  explicit Output(std::uint64_t size) : size_(size) {}
+
+  // Where the next bytes go; empty once `size` of them are there.
+  [[nodiscard]] std::span<std::uint8_t> Room() {
+    if (written_ == bytes_.size()) {
+      const std::uint64_t size = std::min(size_, std::max(kFirst, 2 * bytes_.size()));
+      bytes_.reserve(size);  // not a byte more
+      bytes_.resize(size);
+    }
+    return std::span(bytes_).subspan(written_);
+  }
+  void Wrote(std::size_t count) { written_ += count; }
+  [[nodiscard]] bool full() const { return written_ == size_; }
+  [[nodiscard]] std::vector<std::uint8_t> Take() { return std::move(bytes_); }
+
+ private:
+  static constexpr std::uint64_t kFirst = 64u << 10;
+  std::vector<std::uint8_t> bytes_;
+  std::size_t written_ = 0;
+  std::uint64_t size_;
+};
+
 Result<std::vector<std::uint8_t>> DecompressZstd(std::span<const std::uint8_t> bytes,
                                                  std::uint64_t size) {
-  std::vector<std::uint8_t> out(static_cast<std::size_t>(size));
-  const std::size_t written = ZSTD_decompress(out.data(), out.size(), bytes.data(), bytes.size());
-  if (ZSTD_isError(written) != 0 || written != out.size()) return Damaged("zstd");
-  return out;
+  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(),
+                                                                     &ZSTD_freeDCtx);
+  if (context == nullptr) return Status(StatusCode::kInternal, "no memory for zstd");
+  Output out(size);
+  ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
+  std::size_t hint = 0;  // 0: a frame has ended
+  while (in.pos < in.size || hint != 0) {
+    const std::span<std::uint8_t> room = out.Room();
+    ZSTD_outBuffer to{room.data(), room.size(), 0};
+    const std::size_t before = in.pos;
+    hint = ZSTD_decompressStream(context.get(), &to, &in);
+    const bool moves = in.pos > before || to.pos > 0;
+    if (ZSTD_isError(hint) != 0 || (!moves && hint != 0)) return Damaged("zstd");
+    out.Wrote(to.pos);
+  }
+  if (!out.full()) return Damaged("zstd");
+  return out.Take();
 }
 
 Result<std::vector<std::uint8_t>> DecompressLz4(std::span<const std::uint8_t> bytes,
@@ -31,20 +71,19 @@ Result<std::vector<std::uint8_t>> DecompressLz4(std::span<const std::uint8_t> by
     return Status(StatusCode::kInternal, "no memory for lz4");
   const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> context(
       raw, &LZ4F_freeDecompressionContext);
-  std::vector<std::uint8_t> out(static_cast<std::size_t>(size));
-  std::size_t written = 0;
+  Output out(size);
   std::size_t hint = 1;
   while (hint != 0) {
-    std::size_t room = out.size() - written;
+    const std::span<std::uint8_t> room = out.Room();
+    std::size_t written = room.size();
     std::size_t taken = bytes.size();
-    hint =
-        LZ4F_decompress(context.get(), out.data() + written, &room, bytes.data(), &taken, nullptr);
-    if (LZ4F_isError(hint) != 0 || (room == 0 && taken == 0 && hint != 0)) return Damaged("lz4");
-    written += room;
+    hint = LZ4F_decompress(context.get(), room.data(), &written, bytes.data(), &taken, nullptr);
+    if (LZ4F_isError(hint) != 0 || (written == 0 && taken == 0 && hint != 0)) return Damaged("lz4");
+    out.Wrote(written);
     bytes = bytes.subspan(taken);
   }
-  if (written != out.size()) return Damaged("lz4");
-  return out;
+  if (!out.full()) return Damaged("lz4");
+  return out.Take();
 }
 
 }  // namespace

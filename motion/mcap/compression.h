@@ -15,7 +15,8 @@ namespace furrow::motion::mcap {
                                                      int level);
 
 // `method`: "" (a copy), "zstd" or "lz4" (frames). Errors: kUnsupported (another method), kParse
-// (not such a frame, or not exactly `size` bytes in it). Never allocates more than `size`.
+// (not such a frame, or not exactly `size` bytes in it). Allocates as it unpacks, never much more
+// than there really is, and never more than `size` for what it returns.
 [[nodiscard]] Result<std::vector<std::uint8_t>> Decompress(std::string_view method,
                                                            std::span<const std::uint8_t> bytes,
                                                            std::uint64_t size);

@@ -18,6 +18,7 @@ namespace {
 constexpr std::uint64_t kFooterBytes = kRecordHeaderBytes + 20;
 constexpr std::uint64_t kChunkHeadBytes = 64;  // all before a chunk's data, but for its name
 constexpr std::uint64_t kAttachmentHeadBytes = 64u << 10;  // names of an attachment fit
+constexpr std::uint64_t kEntryBytes = 128;  // what a record or an entry of its map costs unfilled
 
 }  // namespace
 
@@ -69,6 +70,14 @@ void Reader::ForgetIndex() {
   chunks_.clear();
   attachments_.clear();
   metadata_.clear();
+  extents_.clear();
+  kept_bytes_ = 0;
+}
+
+bool Reader::Keep(std::uint64_t bytes) {
+  if (bytes > limits_.kept_bytes - kept_bytes_) return false;
+  kept_bytes_ += bytes;
+  return true;
 }
 
 Result<std::vector<std::uint8_t>> Reader::ReadAt(std::uint64_t offset, std::uint64_t size) const {
@@ -144,26 +153,48 @@ bool Reader::ReadSummaryRecords(std::span<const std::uint8_t> summary) {
     const auto opcode = static_cast<Opcode>(records.Get<std::uint8_t>());
     ByteReader content(records.Take(records.Get<std::uint64_t>()));
     if (!records.ok()) return false;
-    bool good = true;
-    switch (opcode) {
-      case Opcode::kSchema: good = AddSchema(content); break;
-      case Opcode::kChannel: good = AddChannel(content); break;
-      case Opcode::kStatistics:
-        has_statistics = true;
-        num_messages = content.Get<std::uint64_t>();
-        break;
-      case Opcode::kChunkIndex: good = AddChunkIndex(content); break;
-      case Opcode::kAttachmentIndex: good = AddAttachmentIndex(content); break;
-      case Opcode::kMetadataIndex: good = AddMetadataIndex(content); break;
-      default: break;
+    if (opcode == Opcode::kStatistics) {
+      has_statistics = true;
+      num_messages = content.Get<std::uint64_t>();
+    } else if (!AddSummaryRecord(opcode, content)) {
+      return false;
     }
-    if (!good) return false;
   }
   // Messages outside chunks are in no index; without statistics nobody can know.
-  return records.ok() && has_statistics && (num_messages == 0 || !chunks_.empty());
+  return records.ok() && has_statistics && (num_messages == 0 || !chunks_.empty()) &&
+         ExtentsAreApart();
+}
+
+bool Reader::AddSummaryRecord(Opcode opcode, ByteReader content) {
+  switch (opcode) {
+    case Opcode::kSchema: return AddSchema(content);
+    case Opcode::kChannel: return AddChannel(content);
+    case Opcode::kChunkIndex: return AddChunkIndex(content);
+    case Opcode::kAttachmentIndex: return AddAttachmentIndex(content);
+    case Opcode::kMetadataIndex: return AddMetadataIndex(content);
+    default: return true;
+  }
+}
+
+bool Reader::AddExtent(std::uint64_t offset, std::uint64_t length) {
+  if (offset > file_bytes_ || length > file_bytes_ - offset || length <= kRecordHeaderBytes)
+    return false;
+  extents_.push_back({offset, length});
+  return true;
+}
+
+// Otherwise a small file could have one record read as often as its summary says.
+bool Reader::ExtentsAreApart() {
+  std::vector<Extent> extents = std::exchange(extents_, {});
+  std::ranges::sort(extents, {}, &Extent::offset);
+  const auto overlap = [](const Extent& a, const Extent& b) {
+    return a.offset + a.length > b.offset;
+  };
+  return std::ranges::adjacent_find(extents, overlap) == extents.end();
 }
 
 bool Reader::AddSchema(ByteReader content) {
+  const std::uint64_t size = kEntryBytes + content.left();
   Schema schema;
   schema.id = content.Get<std::uint16_t>();
   schema.name = content.GetText();
@@ -171,11 +202,15 @@ bool Reader::AddSchema(ByteReader content) {
   const auto data = content.Take(content.Get<std::uint32_t>());
   schema.data.assign(data.begin(), data.end());
   if (!content.ok() || schema.id == 0) return false;
+  if (schemas_.contains(schema.id)) return true;
+  if (!Keep(size)) return false;
   schemas_.emplace(schema.id, std::move(schema));
   return true;
 }
 
 bool Reader::AddChannel(ByteReader content) {
+  const std::uint64_t size = kEntryBytes + content.left();
+  if (size > limits_.kept_bytes) return false;
   Channel channel;
   channel.id = content.Get<std::uint16_t>();
   channel.schema_id = content.Get<std::uint16_t>();
@@ -183,15 +218,18 @@ bool Reader::AddChannel(ByteReader content) {
   channel.message_encoding = content.GetText();
   channel.metadata = content.GetMap();
   if (!content.ok()) return false;
+  if (channels_.contains(channel.id)) return true;
+  if (!Keep(size + kEntryBytes * channel.metadata.size())) return false;
   channels_.emplace(channel.id, std::move(channel));
   return true;
 }
 
 bool Reader::AddMetadata(ByteReader content) {
+  if (!Keep(kEntryBytes + content.left())) return false;
   Metadata metadata;
   metadata.name = content.GetText();
   metadata.values = content.GetMap();
-  if (!content.ok() || metadata_.size() >= limits_.records) return false;
+  if (!content.ok() || !Keep(kEntryBytes * metadata.values.size())) return false;
   metadata_.push_back(std::move(metadata));
   return true;
 }
@@ -207,9 +245,8 @@ bool Reader::AddChunkIndex(ByteReader content) {
   info.compression = content.GetText();
   info.compressed_bytes = content.Get<std::uint64_t>();
   info.uncompressed_bytes = content.Get<std::uint64_t>();
-  const bool fits = info.offset <= file_bytes_ && info.length <= file_bytes_ - info.offset;
-  if (!content.ok() || !fits || info.start_time > info.end_time ||
-      chunks_.size() >= limits_.records) {
+  if (!content.ok() || info.start_time > info.end_time || chunks_.size() >= limits_.records ||
+      !AddExtent(info.offset, info.length)) {
     return false;
   }
   chunks_.push_back(std::move(info));
@@ -225,15 +262,21 @@ bool Reader::AddAttachmentIndex(ByteReader content) {
   info.size = content.Get<std::uint64_t>();
   info.name = content.GetText();
   info.media_type = content.GetText();
-  const bool fits = info.offset <= file_bytes_ && info.length <= file_bytes_ - info.offset;
-  if (!content.ok() || !fits || attachments_.size() >= limits_.records) return false;
+  if (!content.ok() || attachments_.size() >= limits_.records ||
+      !AddExtent(info.offset, info.length)) {
+    return false;
+  }
   attachments_.push_back(std::move(info));
   return true;
 }
 
 bool Reader::AddMetadataIndex(ByteReader content) {
   const auto record = RecordAt(content.Get<std::uint64_t>());
-  if (!content.ok() || !record || record->opcode != Opcode::kMetadata) return false;
+  if (!content.ok() || !record || record->opcode != Opcode::kMetadata ||
+      record->length > limits_.kept_bytes - kept_bytes_ ||
+      !AddExtent(record->offset, record->length + kRecordHeaderBytes)) {
+    return false;
+  }
   const auto bytes = ReadAt(record->offset + kRecordHeaderBytes, record->length);
   return bytes.ok() && AddMetadata(ByteReader(*bytes));
 }
@@ -269,8 +312,7 @@ Status Reader::ScanRecord(const Record& record) {
       if (!AddAttachment(*bytes, record)) Warn(record.offset, "a damaged attachment is left out");
       return {};
     }
-    AddScannedChunk(ByteReader(*bytes), record);
-    return {};
+    return AddScannedChunk(ByteReader(*bytes), record);
   }
   if (!loose && record.opcode != Opcode::kSchema && record.opcode != Opcode::kChannel &&
       record.opcode != Opcode::kMetadata) {
@@ -283,12 +325,12 @@ Status Reader::ScanRecord(const Record& record) {
   if (record.opcode == Opcode::kChannel) good = AddChannel(ByteReader(*bytes));
   if (record.opcode == Opcode::kMetadata) good = AddMetadata(ByteReader(*bytes));
   if (loose) good = AddLooseMessage(ByteReader(*bytes), record);
-  if (!good) Warn(record.offset, "a damaged record is left out");
+  if (!good) Warn(record.offset, "a record is left out: it is damaged, or one too many");
   return {};
 }
 
 // A chunk met while scanning counts when it can be unpacked, which also declares its channels.
-void Reader::AddScannedChunk(ByteReader head, const Record& record) {
+Status Reader::AddScannedChunk(ByteReader head, const Record& record) {
   ChunkInfo info;
   info.start_time = head.Get<std::uint64_t>();
   info.end_time = head.Get<std::uint64_t>();
@@ -298,9 +340,15 @@ void Reader::AddScannedChunk(ByteReader head, const Record& record) {
   info.offset = record.offset;
   info.length = record.length + kRecordHeaderBytes;
   const auto records = LoadChunk(info);
-  if (!records.ok()) return Warn(record.offset, "a chunk is left out: " + records.status().what());
-  if (chunks_.size() < limits_.records && info.start_time <= info.end_time)
+  if (records.status().code() == StatusCode::kIo) return records.status();
+  if (!records.ok()) {
+    Warn(record.offset, "a chunk is left out: " + records.status().what());
+  } else if (chunks_.size() >= limits_.records || info.start_time > info.end_time) {
+    Warn(record.offset, "a chunk is left out: its times are wrong, or it is one too many");
+  } else {
     chunks_.push_back(std::move(info));
+  }
+  return {};
 }
 
 bool Reader::AddLooseMessage(ByteReader content, const Record& record) {

@@ -24,15 +24,17 @@ inline constexpr const char* kLooseMessages = "-";
 struct ReaderLimits {
   std::uint64_t record_bytes = 256u << 20;  // of one record, and of one chunk unpacked
   std::uint64_t loaded_bytes = 1u << 30;    // of chunks that overlap in time, together
-  std::size_t records = 1u << 20;           // chunks, attachments, schemas, channels: each
+  std::uint64_t kept_bytes = 32u << 20;     // of schemas, channels and metadata, together
+  std::size_t records = 1u << 20;           // chunks and attachments: each
 };
 
 // Reads an MCAP file of any writer. Everything in it is hostile until checked.
 //
-// - A file without a summary (its writer died) or with a damaged one is scanned from the start:
-//   every whole chunk counts, and warnings() says what was lost.
+// - A file without a summary (its writer died) or with a damaged one (one that names bytes of the
+//   file twice is) is scanned from the start: every whole chunk counts, and warnings() says what
+//   was lost.
 // - Checksums are verified where the writer stated them; a damaged chunk is left out with a
-// warning.
+//   warning, and so are records beyond ReaderLimits::kept_bytes and ::records.
 class Reader {
  public:
   // Errors: kNotFound, kIo, kParse (not an MCAP file), kLimit.
@@ -59,7 +61,7 @@ class Reader {
     std::uint64_t to = std::numeric_limits<std::uint64_t>::max();
   };
   // Shows every message of the range in the order of log times (of the file where they are equal)
-  // until `visit` returns false. Errors: kIo, kLimit.
+  // until `visit` returns false. Errors: kIo, kLimit (too much overlaps in time).
   [[nodiscard]] Status ForEach(const Range& range,
                                const std::function<bool(const Message&)>& visit);
 
@@ -72,10 +74,20 @@ class Reader {
     std::uint64_t offset = 0;  // of the record
     std::uint64_t length = 0;  // of its content
   };
+  // Bytes of the file that the summary names.
+  struct Extent {
+    std::uint64_t offset = 0;
+    std::uint64_t length = 0;
+  };
+  class Run;
   Reader(int file, std::filesystem::path path, const ReaderLimits& limits);
   [[nodiscard]] Status Open();
   [[nodiscard]] bool ReadSummary();
   [[nodiscard]] bool ReadSummaryRecords(std::span<const std::uint8_t> summary);
+  [[nodiscard]] bool AddSummaryRecord(Opcode opcode, ByteReader content);
+  // Notes bytes that the summary names; false where they are outside of the file or no record.
+  [[nodiscard]] bool AddExtent(std::uint64_t offset, std::uint64_t length);
+  [[nodiscard]] bool ExtentsAreApart();
   [[nodiscard]] Status Scan();
   [[nodiscard]] Status ScanRecord(const Record& record);
   void ForgetIndex();
@@ -91,11 +103,17 @@ class Reader {
   [[nodiscard]] bool AddAttachmentIndex(ByteReader content);
   [[nodiscard]] bool AddMetadataIndex(ByteReader content);
   [[nodiscard]] bool AddAttachment(std::span<const std::uint8_t> head, const Record& record);
-  void AddScannedChunk(ByteReader head, const Record& record);
+  [[nodiscard]] Status AddScannedChunk(ByteReader head, const Record& record);
   [[nodiscard]] bool AddLooseMessage(ByteReader content, const Record& record);
+  // Counts towards ReaderLimits::kept_bytes; false where that is used up.
+  [[nodiscard]] bool Keep(std::uint64_t bytes);
   // Unpacked records of a chunk. Schemas and channels in it are added.
   [[nodiscard]] Result<std::vector<std::uint8_t>> LoadChunk(const ChunkInfo& info);
-  [[nodiscard]] bool AddDeclarations(std::span<const std::uint8_t> records);
+  [[nodiscard]] Status AddDeclarations(std::span<const std::uint8_t> records);
+  // The messages of a chunk that lie in `range`, which with `held` bytes stay under loaded_bytes;
+  // null where the chunk is left out. Errors: kIo, kLimit.
+  [[nodiscard]] Result<std::unique_ptr<Run>> LoadRun(const ChunkInfo& info, const Range& range,
+                                                     std::uint64_t held);
   void Warn(std::uint64_t offset, std::string_view what);
 
   int file_ = -1;
@@ -109,6 +127,8 @@ class Reader {
   std::vector<ChunkInfo> chunks_;
   std::vector<AttachmentInfo> attachments_;
   std::vector<Metadata> metadata_;
+  std::vector<Extent> extents_;  // while the summary is read
+  std::uint64_t kept_bytes_ = 0;
   std::vector<std::string> warnings_;
   bool complete_ = false;
 };

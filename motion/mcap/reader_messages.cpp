@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a reader does with the messages of chunks: unpacks, checks and puts them in order.
 #include <algorithm>
-#include <queue>
+#include <memory>
 #include <utility>
 
 #include "motion/mcap/compression.h"
@@ -11,20 +11,6 @@ namespace furrow::motion::mcap {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-
-// A message that waits for its turn, and what keeps its bytes.
-struct Waiting {
-  Message message;
-  std::uint64_t order = 0;  // in the file
-  std::shared_ptr<const Bytes> records;
-};
-
-struct Later {
-  bool operator()(const Waiting& a, const Waiting& b) const {
-    if (a.message.log_time != b.message.log_time) return a.message.log_time > b.message.log_time;
-    return a.order > b.order;
-  }
-};
 
 bool ParseMessage(ByteReader content, Message* message) {
   message->channel_id = content.Get<std::uint16_t>();
@@ -49,6 +35,36 @@ bool ForEachRecord(std::span<const std::uint8_t> bytes, const Use& use) {
 
 }  // namespace
 
+// The messages of a loaded chunk that are still to be shown, in the order of their times.
+class Reader::Run {
+ public:
+  Run(std::uint64_t offset, Bytes records) : offset_(offset), records_(std::move(records)) {}
+
+  [[nodiscard]] const Bytes& records() const { return records_; }
+  [[nodiscard]] std::uint64_t held_bytes() const {
+    return records_.capacity() + messages_.capacity() * sizeof(Message);
+  }
+  // Of messages that point into records().
+  void Add(const Message& message) { messages_.push_back(message); }
+  void Sort() { std::ranges::stable_sort(messages_, {}, &Message::log_time); }
+
+  [[nodiscard]] bool at_end() const { return next_ == messages_.size(); }
+  [[nodiscard]] const Message& front() const { return messages_[next_]; }
+  void Pop() { ++next_; }
+  // Whose next message comes later, then who lies further back in the file.
+  [[nodiscard]] bool IsLaterThan(const Run& other) const {
+    if (front().log_time != other.front().log_time)
+      return front().log_time > other.front().log_time;
+    return offset_ > other.offset_;
+  }
+
+ private:
+  std::uint64_t offset_;
+  Bytes records_;
+  std::vector<Message> messages_;
+  std::size_t next_ = 0;
+};
+
 Result<Bytes> Reader::LoadChunk(const ChunkInfo& info) {
   if (info.compression == kLooseMessages) return ReadAt(info.offset, info.length);
   const auto record = ReadAt(info.offset, info.length);
@@ -60,6 +76,8 @@ Result<Bytes> Reader::LoadChunk(const ChunkInfo& info) {
   (void)content.Get<std::uint64_t>();  // start and
   (void)content.Get<std::uint64_t>();  // end time
   const auto size = content.Get<std::uint64_t>();
+  if (size != info.uncompressed_bytes)
+    return Status(StatusCode::kParse, "the index states another size");
   const auto crc = content.Get<std::uint32_t>();
   const std::string compression = content.GetText();
   const auto packed = content.Take(content.Get<std::uint64_t>());
@@ -70,61 +88,86 @@ Result<Bytes> Reader::LoadChunk(const ChunkInfo& info) {
   if (!records.ok()) return records;
   if (crc != 0 && Crc32(*records) != crc)
     return Status(StatusCode::kParse, "its checksum is wrong");
-  if (!AddDeclarations(*records)) return Status(StatusCode::kParse, "its records do not add up");
+  if (Status status = AddDeclarations(*records); !status.ok()) return status;
   return records;
 }
 
-bool Reader::AddDeclarations(std::span<const std::uint8_t> records) {
-  return ForEachRecord(records, [this](Opcode opcode, const ByteReader& content) {
-    if (opcode == Opcode::kSchema) return AddSchema(content);
-    if (opcode == Opcode::kChannel) return AddChannel(content);
-    return true;
+Status Reader::AddDeclarations(std::span<const std::uint8_t> records) {
+  bool declared = true;
+  const bool whole = ForEachRecord(records, [&](Opcode opcode, const ByteReader& content) {
+    if (opcode == Opcode::kSchema) declared = AddSchema(content);
+    if (opcode == Opcode::kChannel) declared = AddChannel(content);
+    return declared;
   });
+  if (!declared)
+    return {StatusCode::kParse, "a schema or a channel in it is damaged, or one too many"};
+  if (!whole) return {StatusCode::kParse, "its records do not add up"};
+  return {};
+}
+
+Result<std::unique_ptr<Reader::Run>> Reader::LoadRun(const ChunkInfo& info, const Range& range,
+                                                     std::uint64_t held) {
+  const Status too_much(StatusCode::kLimit, "too many of its chunks overlap in time",
+                        path_.string());
+  if (held > limits_.loaded_bytes || info.uncompressed_bytes > limits_.loaded_bytes - held)
+    return too_much;
+  auto records = LoadChunk(info);
+  if (records.status().code() == StatusCode::kIo) return records.status();
+  if (!records.ok()) {
+    Warn(info.offset, "a chunk is left out: " + records.status().what());
+    return std::unique_ptr<Run>();
+  }
+  auto run = std::make_unique<Run>(info.offset, std::move(*records));
+  bool fits = true;
+  const bool whole = ForEachRecord(run->records(), [&](Opcode opcode, const ByteReader& content) {
+    Message message;
+    if (opcode != Opcode::kMessage) return true;
+    if (!ParseMessage(content, &message)) return false;
+    if (message.log_time < range.from || message.log_time > range.to) return true;
+    run->Add(message);
+    fits = run->held_bytes() <= limits_.loaded_bytes - held;
+    return fits;
+  });
+  if (!fits) return too_much;
+  if (!whole) Warn(info.offset, "messages of a chunk are left out: they do not add up");
+  run->Sort();
+  return run;
 }
 
 Status Reader::ForEach(const Range& range, const std::function<bool(const Message&)>& visit) {
-  std::vector<ChunkInfo> chunks;
+  std::vector<const ChunkInfo*> chunks;
   for (const ChunkInfo& chunk : chunks_)
-    if (chunk.end_time >= range.from && chunk.start_time <= range.to) chunks.push_back(chunk);
-  std::stable_sort(chunks.begin(), chunks.end(), [](const ChunkInfo& a, const ChunkInfo& b) {
-    return a.start_time < b.start_time;
-  });
+    if (chunk.end_time >= range.from && chunk.start_time <= range.to) chunks.push_back(&chunk);
+  std::ranges::stable_sort(chunks, {}, &ChunkInfo::start_time);
 
-  std::priority_queue<Waiting, std::vector<Waiting>, Later> waiting;
-  std::vector<std::weak_ptr<const Bytes>> loaded;
+  const auto later = [](const std::unique_ptr<Run>& a, const std::unique_ptr<Run>& b) {
+    return a->IsLaterThan(*b);
+  };
+  std::vector<std::unique_ptr<Run>> runs;  // a heap: the one with the first message at the front
+  std::uint64_t held = 0;
   std::size_t next = 0;
-  std::uint64_t order = 0;
-  while (next < chunks.size() || !waiting.empty()) {
+  while (next < chunks.size() || !runs.empty()) {
     // A chunk must be there before a message that may come after one of its own is shown.
-    while (next < chunks.size() &&
-           (waiting.empty() || chunks[next].start_time <= waiting.top().message.log_time)) {
-      std::uint64_t held = chunks[next].uncompressed_bytes;
-      std::erase_if(loaded, [](const auto& bytes) { return bytes.expired(); });
-      for (const auto& bytes : loaded) held += bytes.lock()->size();
-      if (held > limits_.loaded_bytes)
-        return {StatusCode::kLimit, "too many of its chunks overlap in time", path_.string()};
-      auto records = LoadChunk(chunks[next]);
-      if (!records.ok()) {
-        Warn(chunks[next++].offset, "a chunk is left out: " + records.status().what());
-        continue;
-      }
-      const auto bytes = std::make_shared<const Bytes>(std::move(*records));
-      loaded.push_back(bytes);
-      const bool whole = ForEachRecord(*bytes, [&](Opcode opcode, const ByteReader& content) {
-        Message message;
-        if (opcode != Opcode::kMessage) return true;
-        if (!ParseMessage(content, &message)) return false;
-        if (message.log_time >= range.from && message.log_time <= range.to)
-          waiting.push({message, order++, bytes});
-        return true;
-      });
-      if (!whole) Warn(chunks[next].offset, "messages of a chunk are left out: they do not add up");
-      ++next;
+    if (next < chunks.size() &&
+        (runs.empty() || chunks[next]->start_time <= runs.front()->front().log_time)) {
+      auto run = LoadRun(*chunks[next++], range, held);
+      if (!run.ok()) return run.status();
+      if (*run == nullptr || (*run)->at_end()) continue;
+      held += (*run)->held_bytes();
+      runs.push_back(*std::move(run));
+      std::ranges::push_heap(runs, later);
+      continue;
     }
-    if (waiting.empty()) continue;
-    const Waiting first = waiting.top();
-    waiting.pop();
-    if (!visit(first.message)) return {};
+    std::ranges::pop_heap(runs, later);
+    Run& first = *runs.back();
+    if (!visit(first.front())) return {};
+    first.Pop();
+    if (first.at_end()) {
+      held -= first.held_bytes();
+      runs.pop_back();
+    } else {
+      std::ranges::push_heap(runs, later);
+    }
   }
   return {};
 }
