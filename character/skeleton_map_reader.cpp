@@ -39,6 +39,9 @@ class MapReader {
   Status ReadRole(const std::string& key, const Json& value, SkeletonMap* map);
   Status AddEntry(const std::string& role, const Json& value, const std::string& side,
                   const std::string& field, SkeletonMap* map);
+  // One place of a chain: a name, or several with '|' between them.
+  Status AddPlace(const Json& value, const std::string& side, const std::string& field,
+                  SkeletonMap::Entry* entry) const;
 
   std::string source_;
   std::string left_;
@@ -115,6 +118,20 @@ Status MapReader::ReadSides(const Json& root) {
   return {};
 }
 
+Status MapReader::AddPlace(const Json& value, const std::string& side, const std::string& field,
+                           SkeletonMap::Entry* entry) const {
+  std::string text;
+  if (Status status = ReadText(value, field, &text); !status.ok()) return status;
+  if (text.find('*') != std::string::npos && side.empty()) {
+    return Error(field, "a '*' in a name needs one in its role, and \"sides\"");
+  }
+  std::vector<std::string> names = Alternatives(Replaced(text, side));
+  if (std::ranges::any_of(names, &std::string::empty)) return Error(field, "an empty name");
+  entry->chain.push_back(std::move(names));
+  return {};
+}
+
+// `value` is looked at where it is: copies of JSON recurse as deep as it is nested.
 Status MapReader::AddEntry(const std::string& role, const Json& value, const std::string& side,
                            const std::string& field, SkeletonMap* map) {
   SkeletonMap::Entry entry;
@@ -122,18 +139,16 @@ Status MapReader::AddEntry(const std::string& role, const Json& value, const std
   if (!parsed) return Error(field, Quoted(role) + " is no role: see docs/SKELETONS.md");
   entry.role = *parsed;
   if (!seen_.insert(entry.role).second) return Error(field, "the role comes twice");
-  const Json list = value.is_array() ? value : Json::array({value});
-  if (list.empty()) return Error(field, "names no joint");
-  if (list.size() > kMaxChain) return Error(field, "more than 16 joints", StatusCode::kLimit);
-  for (const Json& item : list) {
-    std::string text;
-    if (Status status = ReadText(item, field, &text); !status.ok()) return status;
-    if (text.find('*') != std::string::npos && side.empty()) {
-      return Error(field, "a '*' in a name needs one in its role, and \"sides\"");
+  if (!value.is_array()) {
+    if (Status status = AddPlace(value, side, field, &entry); !status.ok()) return status;
+  } else if (value.empty()) {
+    return Error(field, "names no joint");
+  } else if (value.size() > kMaxChain) {
+    return Error(field, "more than 16 joints", StatusCode::kLimit);
+  } else {
+    for (const Json& item : value) {
+      if (Status status = AddPlace(item, side, field, &entry); !status.ok()) return status;
     }
-    std::vector<std::string> names = Alternatives(Replaced(text, side));
-    if (std::ranges::any_of(names, &std::string::empty)) return Error(field, "an empty name");
-    entry.chain.push_back(std::move(names));
   }
   map->entries.push_back(std::move(entry));
   return {};
