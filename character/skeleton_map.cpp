@@ -149,7 +149,7 @@ Result<SkeletonMaps> SkeletonMaps::Load(const std::string& name_or_file) {
   if (name_or_file.empty()) return LoadShipped();
   std::error_code error;
   fs::path path = name_or_file;
-  if (!fs::exists(path, error) && name_or_file.find('/') == std::string::npos) {
+  if (!fs::is_regular_file(path, error) && name_or_file.find('/') == std::string::npos) {
     const auto shipped = FindDataFile(std::string(kFolder) + "/" + name_or_file + ".json");
     if (!shipped.ok()) return shipped.status();
     path = *shipped;

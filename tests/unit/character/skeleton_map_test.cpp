@@ -2,6 +2,7 @@
 #include "character/skeleton_map.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -144,6 +145,17 @@ TEST(SkeletonMap, EveryTruncationAndOversizeIsRefused) {
   std::string many = whole;
   many.replace(many.find("\"N1\""), 4, "\"" + std::string(256, 'x') + "\"");
   EXPECT_EQ(ParseSkeletonMap(many, "toy").status().code(), StatusCode::kLimit);
+  // So deep that a walk down to the bottom would overflow the stack, wherever a value stands.
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  for (const char* value : {"1,", "\"toy\"", "\"Toys\"", "\"toy_\"", "\"L\"", "\"Root|Pelvis\"",
+                            "[\"N1\", \"N2\"]", "\"N1\"", "\"Hand.*\""}) {
+    std::string nested = whole;
+    const std::string by = deep + (std::string_view(value).ends_with(',') ? "," : "");
+    nested.replace(nested.find(value), std::string_view(value).size(), by);
+    const Status status = ParseSkeletonMap(nested, "toy").status();
+    EXPECT_TRUE(status.code() == StatusCode::kSchema || status.code() == StatusCode::kUnsupported)
+        << value << ": " << status.ToString();
+  }
 }
 
 TEST(SkeletonMaps, OnlyACertainNumberOfRolesProvesAFamily) {
@@ -197,6 +209,15 @@ TEST(SkeletonMaps, AreLoadedByNameByFileOrAllAtOnce) {
   EXPECT_EQ(SkeletonMaps::Load("cmu").value().maps()[0].name, "cmu");
   const std::string file = std::string(FURROW_SOURCE_DIR) + "/character/skeleton_maps/vrm.json";
   EXPECT_EQ(SkeletonMaps::Load(file).value().maps()[0].name, "vrm");
+  // A folder of that name hides nothing.
+  const fs::path before = fs::current_path();
+  std::string folder = (fs::temp_directory_path() / "furrow-maps-XXXXXX").string();
+  ASSERT_NE(::mkdtemp(folder.data()), nullptr);
+  fs::create_directory(fs::path(folder) / "cmu");
+  fs::current_path(folder);
+  EXPECT_EQ(SkeletonMaps::Load("cmu").value().maps()[0].name, "cmu");
+  fs::current_path(before);
+  fs::remove_all(folder);
   EXPECT_EQ(SkeletonMaps::Load("nobody").status().code(), StatusCode::kNotFound);
   EXPECT_EQ(SkeletonMaps::Load("no/such/file.json").status().code(), StatusCode::kNotFound);
   unsetenv("FURROW_DATA_DIR");
