@@ -17,6 +17,9 @@ using enum JointRole;
 
 const glm::quat kNoTurn(1.0f, 0.0f, 0.0f, 0.0f);
 constexpr float kLeastLength = 1e-6f;
+// Hips that are nearer to their rest than this have not moved (leg lengths): what the rounding of a
+// file's text and of the joints above them adds up to.
+constexpr float kStill = 1e-5f;
 
 std::size_t At(int index) { return static_cast<std::size_t>(index); }
 
@@ -87,10 +90,17 @@ BodyRetarget::BodyRetarget(const Body& source, const Body& target, const Fit& fi
   PlanHips(source, target, fit.toes_height);
 }
 
-bool BodyRetarget::Reads(int source_joint) const {
-  return std::ranges::any_of(joints_, [source_joint](const Joint& joint) {
-    return joint.to == source_joint || (joint.to != kNoJoint && joint.from == source_joint);
-  });
+std::vector<bool> BodyRetarget::ReadJoints() const {
+  std::vector<bool> read(source_parents_.size(), false);
+  for (const Joint& joint : joints_) {
+    if (joint.to == kNoJoint) continue;
+    read[At(joint.to)] = true;
+    if (joint.from != kNoJoint) read[At(joint.from)] = true;
+  }
+  for (std::size_t i = read.size(); i-- > 0;) {
+    if (read[i] && source_parents_[i] != kNoJoint) read[At(source_parents_[i])] = true;
+  }
+  return read;
 }
 
 void BodyRetarget::PlanPairs(const Body& source, const Body& target) {
@@ -173,6 +183,7 @@ void BodyRetarget::PlanHips(const Body& source, const Body& target,
   if (source_leg <= 0.0f || target_leg <= 0.0f) return;
   rests_off_floor_ = !StandsOnFloor(source, source_leg) && StandsOnFloor(target, target_leg);
   if (!rests_off_floor_) return;
+  still_ = kStill * source_leg;
   // The source's floor is the target's: where its hips are while it stands, the target's rest.
   const glm::vec3 up = UpAxis(target);
   const float target_height = glm::dot(target_rest_place_, up);
@@ -216,7 +227,9 @@ glm::quat BodyRetarget::TurnOf(const Joint& joint, const Rotations& rotations) c
 glm::vec3 BodyRetarget::HipsPlace(std::span<const Transform> pose) const {
   const glm::vec3 place(ModelOf(source_hips_, source_parents_, pose)[3]);
   // Without motion of its own, a root that rests off the floor tells no place.
-  if (rests_off_floor_ && place == source_rest_place_) return target_rest_place_;
+  if (rests_off_floor_ && glm::distance(place, source_rest_place_) <= still_) {
+    return target_rest_place_;
+  }
   return target_origin_ + scale_ * (turn_ * (place - source_origin_));
 }
 

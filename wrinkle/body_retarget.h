@@ -33,8 +33,9 @@ class BodyRetarget {
     return joints_[static_cast<std::size_t>(target_joint)].to != kNoJoint;
   }
 
-  // True where a rotation is made from the turn of the source's joint.
-  [[nodiscard]] bool Reads(int source_joint) const;
+  // One a joint of the source: whether a rotation is made from its turn, or from that of a joint
+  // below it (turns are measured in model space: whatever stands above has its say).
+  [[nodiscard]] std::vector<bool> ReadJoints() const;
 
   // `target` holds a local pose; the rotations of what is carried and the hips' translation are
   // replaced. Sizes as Retarget::Run() has checked them. Does not allocate.
@@ -81,6 +82,7 @@ class BodyRetarget {
   glm::vec3 target_rest_place_{0.0f};  // of the hips
   glm::vec3 source_rest_place_{0.0f};
   bool rests_off_floor_ = false;
+  float still_ = 0.0f;  // hips no further from rest than this have not moved
 };
 
 }  // namespace furrow::wrinkle

@@ -112,27 +112,17 @@ bool HaveSameShape(const Body& source, const Body& target, std::span<const int> 
   return true;
 }
 
-std::vector<std::string> Unmatched(const Skeleton& source, std::span<const int> match) {
+// Names of the source's joints that no joint of the target matches and that are not `read`
+// otherwise (one a joint).
+std::vector<std::string> Unmatched(const Skeleton& source, std::span<const int> match,
+                                   std::vector<bool> read) {
+  for (const int joint : match) {
+    if (joint != kNoJoint) read[joint] = true;
+  }
   std::vector<std::string> names;
   for (int i = 0; i < source.num_joints(); ++i) {
-    if (std::find(match.begin(), match.end(), i) == match.end()) {
-      names.push_back(source.joint_names()[i]);
-    }
+    if (!read[i]) names.push_back(source.joint_names()[i]);
   }
-  return names;
-}
-
-// Turns are measured in model space: whatever stands above a joint that is read has its say.
-std::vector<std::string> Unmatched(const Body& source, std::span<const int> match,
-                                   const BodyRetarget& carried) {
-  std::vector<std::string> names = Unmatched(source.skeleton(), match);
-  std::erase_if(names, [&](const std::string& name) {
-    const int joint = source.skeleton().Find(name);
-    for (int below = joint; below < source.skeleton().num_joints(); ++below) {
-      if (carried.Reads(below) && source.skeleton().IsAncestor(joint, below)) return true;
-    }
-    return false;
-  });
   return names;
 }
 
@@ -175,7 +165,8 @@ Retarget Retarget::Create(const Skeleton& source, const Skeleton& target,
   retarget.scale_ = SizeRatio(source, target, match);
   retarget.Plan(source, target, match, target.rest_model_rotations(),
                 glm::quat(1.0f, 0.0f, 0.0f, 0.0f));
-  retarget.unmatched_ = Unmatched(source, match);
+  retarget.unmatched_ =
+      Unmatched(source, match, std::vector<bool>(source.joint_names().size(), false));
   return retarget;
 }
 
@@ -208,7 +199,7 @@ Retarget Retarget::Create(const Skeleton& source, const JointRoles& source_roles
   }
   retarget.Plan(source, target, match, fit.stance, fit.turn);
   retarget.body_ = body;
-  retarget.unmatched_ = Unmatched(from, paired, *body);
+  retarget.unmatched_ = Unmatched(source, paired, body->ReadJoints());
   return retarget;
 }
 

@@ -223,6 +223,13 @@ TEST(BodyRetarget, ASourceThatRestsAtTheOriginIsPutOnTheFloor) {
   pose.SetRest(carrier.source());
   carrier.Run(pose);  // no place at all: where the target rests
   EXPECT_LT(glm::distance(carrier.To(JointRole::kHips), glm::vec3(0.0f, 0.95f, 0.0f)), 1e-5f);
+  const glm::vec3 rest = pose.joints[0].translation;
+  pose.joints[0].translation = rest + glm::vec3(1e-4f, -1e-4f, 0.0f);  // rounding is no place
+  carrier.Run(pose);
+  EXPECT_LT(glm::distance(carrier.To(JointRole::kHips), glm::vec3(0.0f, 0.95f, 0.0f)), 1e-5f);
+  pose.joints[0].translation = rest + glm::vec3(0.0f, 0.02f, 0.0f);  // this is: under the floor
+  carrier.Run(pose);
+  EXPECT_LT(carrier.To(JointRole::kHips).y, 0.1f);
   pose.joints[0].translation = {10.0f, 18.0f, 0.0f};
   carrier.Run(pose);
   EXPECT_LT(glm::distance(carrier.To(JointRole::kHips), glm::vec3(0.5f, 0.9f, 0.0f)), 1e-4f);
