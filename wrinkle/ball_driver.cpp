@@ -9,11 +9,6 @@
 #include "wrinkle/hinge.h"
 
 namespace furrow::wrinkle {
-namespace {
-
-constexpr float kLeastAcross = 0.1f;  // as a hinge's axis: sine of the angle to the bone
-
-}  // namespace
 
 glm::vec3 SubjectsRight(const glm::vec3& bone, const glm::vec3& forward) {
   const glm::vec3 side = Direction(glm::cross(bone, forward));

@@ -11,6 +11,7 @@
 
 #include "wrinkle/ball_driver.h"
 #include "wrinkle/driver_values.h"
+#include "wrinkle/hinge.h"
 #include "wrinkle/scalar.h"
 
 namespace furrow::wrinkle {
@@ -18,6 +19,13 @@ namespace {
 
 // Bones that lie on each other this closely (cosine) tell no way to bend.
 constexpr float kAlmostStraight = 0.9998f;  // about 1 degree
+
+// What of a direction is across a bone, unit; zero where a driver refuses it: too nearly along.
+glm::vec3 Across(const glm::vec3& direction, const glm::vec3& bone) {
+  const glm::vec3 unit = Direction(direction);
+  const glm::vec3 across = unit - glm::dot(unit, bone) * bone;
+  return glm::length(across) < kLeastAcross ? glm::vec3(0.0f) : Direction(across);
+}
 
 // The joint and its two bones at rest, unit directions in model axes.
 struct Limb {
@@ -42,7 +50,7 @@ class FullPoseMaker {
     if (!hinge.axis && straight) {
       return Senseless("it states no axis, and the limb is straight at rest");
     }
-    const glm::vec3 axis = Direction(given - glm::dot(given, limb->upper) * limb->upper);
+    const glm::vec3 axis = Across(given, limb->upper);
     if (axis == glm::vec3(0.0f)) return Senseless("its axis lies along the upper bone");
     return Bent(*limb, limb->upper, glm::cross(axis, limb->upper), hinge.beta_degrees);
   }
@@ -52,8 +60,7 @@ class FullPoseMaker {
     const Result<Limb> limb = FindLimb(ball.parent, ball.joint, ball.end);
     if (!limb.ok()) return limb.status();
     const glm::vec3 straight = ball.bone == glm::vec3(0.0f) ? limb->upper : Direction(ball.bone);
-    const glm::vec3 forward = Direction(ball.forward);
-    const glm::vec3 front = Direction(forward - glm::dot(forward, straight) * straight);
+    const glm::vec3 front = Across(ball.forward, straight);
     if (straight == glm::vec3(0.0f) || front == glm::vec3(0.0f)) {
       return Senseless("forward lies along the straight direction");
     }

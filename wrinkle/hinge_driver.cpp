@@ -9,12 +9,6 @@
 #include "wrinkle/scalar.h"
 
 namespace furrow::wrinkle {
-namespace {
-
-// An axis within 6 degrees of the bone turns it about itself: no hinge.
-constexpr float kLeastAcross = 0.1f;
-
-}  // namespace
 
 Status HingeDriverSet::Bind(const Driver& driver, int first_value, BindContext* context) {
   const HingeDriver& hinge = driver.hinge;

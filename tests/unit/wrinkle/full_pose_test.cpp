@@ -100,6 +100,14 @@ TEST(FullPose, SaysWhyThereIsNone) {
   Driver hip = DriverOf(rig, "hip_l");
   hip.ball.forward = {0, 1, 0};
   EXPECT_THAT(fails(hip, "front").what(), HasSubstr("forward lies along"));
+  // Within 6 degrees of the bone the solver refuses it, too.
+  hip.ball.forward = {0, 1, 0.05f};
+  EXPECT_THAT(fails(hip, "front").what(), HasSubstr("forward lies along"));
+  knee = DriverOf(rig, "knee_l");
+  knee.hinge.axis = glm::vec3(0.05f, 1, 0);
+  EXPECT_THAT(fails(knee, "flexed").what(), HasSubstr("its axis lies along"));
+  knee.hinge.axis = glm::vec3(0.2f, 1, 0);
+  EXPECT_TRUE(FullPose(rig, knee, "flexed", body).ok());
   Driver brow = DriverOf(rig, "brow_l");
   brow.pose.values[0].reference_pose = "shock";
   EXPECT_THAT(fails(brow, "stretch").what(), HasSubstr("reference pose 'shock'"));
