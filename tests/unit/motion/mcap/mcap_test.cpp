@@ -91,7 +91,8 @@ class McapTest : public testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
   void Spill(const fs::path& path, const std::string& bytes) {
-    std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
+    fs::remove(path);  // some file systems wait for the disk where a file is cut and written again
+    std::ofstream(path, std::ios::binary) << bytes;
   }
 
   fs::path folder_;
