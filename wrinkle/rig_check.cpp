@@ -260,7 +260,7 @@ void CheckRegion(const Region& region, const std::string& at, Complaints* compla
 
 void CheckMap(const WrinkleMap& map, const std::string& at, Complaints* complaints) {
   complaints->Range(at, ".amplitude", map.amplitude, 0.0f, 100.0f);
-  complaints->Range(at, ".derivative_scale", map.derivative_scale, 1e-4f, 100.0f);
+  complaints->Range(at, ".derivative_scale", map.derivative_scale, 1e-4f, kMaxDerivativeScale);
   complaints->Range(at, ".height_mm", map.height_mm, 1e-4f, 1000.0f);
   complaints->Require(map.opposes != map.name, at, ".opposes", "a map cannot oppose itself");
 }

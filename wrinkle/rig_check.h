@@ -22,6 +22,8 @@ inline constexpr std::size_t kMaxPatchTriangles = 512;
 inline constexpr std::size_t kMaxPatchJoints = 32;
 inline constexpr float kMaxBetaDegrees = 179.0f;  // of a hinge or ball: beyond, straight is flexed
 
+inline constexpr float kMaxDerivativeScale = 100.0f;  // steeper than any surface that is drawn
+
 // What can be said of a rig's poses, drivers, regions, maps and filter field by field: names well
 // formed and unique, lists within limits and not empty where one entry is needed, every number
 // finite and in its range (stated in rig.h). RigBinding::Create() asks it of every rig.

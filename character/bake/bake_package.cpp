@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "character/asset_path.h"
+#include "character/rig_check.h"
+#include "wrinkle/rig_check.h"
 
 namespace furrow::character::bake {
 namespace {
@@ -43,42 +47,98 @@ wrinkle::WrinkleMap* FindMap(wrinkle::Rig* rig, const std::string& name) {
 // Collects the files of a bake, and makes its rig name them.
 class Packager {
  public:
-  Packager(const Character& character, const PackageOptions& options)
-      : character_(character), options_(options) {
+  Packager(const Character& character, const BakedMaps& maps, const PackageOptions& options)
+      : character_(character), maps_(maps), options_(options) {
     out_.rig = character.rig;
+  }
+
+  Result<BakedFiles> Run() {
+    if (Status s = Release(); !s.ok()) return s;
+    for (const BakedMap& map : maps_.maps) {
+      if (Status s = AddMap(map); !s.ok()) return s;
+    }
+    for (const bool cloth : {false, true}) {
+      if (Status s = AddMasks(cloth); !s.ok()) return s;
+    }
+    if (Status s = CheckRig(out_.rig); !s.ok()) return s;
+    if (Status s = CopyPictures(); !s.ok()) return s;
+    return std::move(out_);
+  }
+
+ private:
+  // Takes from the rig what this bake replaces, and so learns whose names it must not write over.
+  Status Release() {
+    std::map<std::string, std::set<bool>> surfaces;
+    for (const BakedMap& baked : maps_.maps) {
+      wrinkle::WrinkleMap* map = FindMap(&out_.rig, baked.map);
+      if (map == nullptr) return {StatusCode::kInternal, "a map was baked that the rig has not"};
+      map->normal.clear();
+      map->derivative.clear();
+      map->height.clear();
+      map->cavity.clear();
+      for (const BakedMask& mask : baked.masks) surfaces[mask.region].insert(baked.cloth);
+    }
+    for (wrinkle::Region& region : out_.rig.regions) {
+      const auto found = surfaces.find(region.name);
+      if (!options_.masks || found == surfaces.end()) continue;
+      if (found->second.size() == 1) {
+        region.mask = {};
+        masked_.insert(region.name);
+      } else {
+        out_.notes.push_back("region '" + region.name +
+                             "' folds on skin and on cloth, which have an atlas each: it keeps its "
+                             "own mask");
+      }
+    }
+    for (std::string& name : RigPictureNames(out_.rig)) taken_.insert(std::move(name));
+    for (const Picture& picture : character_.pictures) {
+      const bool file = character_.FindRigPicture(picture.name) >= 0 &&
+                        FindAsset(picture.name, character_.folder).ok();
+      if (!file) taken_.insert(picture.name);  // a name is looked up inside the character first
+    }
+    return {};
+  }
+
+  // A name that stands for nothing else: "stem.png", else "stem_2.png" and so on.
+  std::string Free(const std::string& stem, const std::string& extension) {
+    std::string name = stem + extension;
+    for (int i = 2; !taken_.insert(name).second; ++i) {
+      name = stem + "_" + std::to_string(i) + extension;
+    }
+    return name;
   }
 
   Status AddMap(const BakedMap& baked) {
     wrinkle::WrinkleMap* map = FindMap(&out_.rig, baked.map);
-    if (map == nullptr) return {StatusCode::kInternal, "a map was baked that the rig has not"};
-    map->normal.clear();
     map->amplitude = 1.0f;
     if (Status s = AddDerivative(baked, map); !s.ok()) return s;
     if (Status s = AddHeight(baked, map); !s.ok()) return s;
-    Picture cavity = Sized(baked, baked.map + "_cavity.png", 1);
+    Picture cavity = Sized(baked, Free(baked.map + "_cavity", ".png"), 1);
     for (const float open : baked.cavity) cavity.pixels.push_back(Unsigned8(open));
     map->cavity = cavity.name;
     return Add(cavity);
   }
 
   // Skin and cloth have an atlas each, so regions are gathered by kind.
-  Status AddMasks(const BakedMaps& maps, bool cloth) {
+  Status AddMasks(bool cloth) {
     std::map<std::string, BakedMask> masks;
-    for (const BakedMap& baked : maps.maps) {
+    for (const BakedMap& baked : maps_.maps) {
       if (baked.cloth != cloth) continue;
       for (const BakedMask& mask : baked.masks) {
+        if (options_.masks && !masked_.contains(mask.region)) continue;
         const auto [there, is_new] = masks.emplace(mask.region, mask);
         if (!is_new) Unite(mask.texels, &there->second.texels);
       }
     }
+    const std::string stem =
+        std::string(options_.masks ? "masks_" : "suggested_masks_") + (cloth ? "cloth_" : "skin_");
     std::vector<wrinkle::Region*> group;
     int pictures = 0;
     for (wrinkle::Region& region : out_.rig.regions) {
       if (masks.count(region.name) > 0) group.push_back(&region);
       const bool last = &region == &out_.rig.regions.back();
       if (group.size() < 4 && !(last && !group.empty())) continue;
-      const std::string name =
-          std::string(cloth ? "masks_cloth_" : "masks_skin_") + std::to_string(pictures++) + ".png";
+      const std::string name = Free(stem + std::to_string(pictures++), ".png");
       const BakedMask& first = masks.at(group.front()->name);
       if (Status s = AddMaskPicture(Sized(first, name, 4), group, masks); !s.ok()) return s;
       group.clear();
@@ -99,9 +159,6 @@ class Packager {
     return {};
   }
 
-  BakedFiles Take() { return std::move(out_); }
-
- private:
   Status Add(const Picture& picture) {
     const bool exr = !picture.pixels_float.empty();
     Result<std::string> bytes = exr ? EncodeExr(picture) : EncodePng(picture);
@@ -110,9 +167,23 @@ class Packager {
     return {};
   }
 
+  [[nodiscard]] const char* Extension() const { return options_.exr ? ".exr" : ".png"; }
+
+  static Status TooSteep(const wrinkle::WrinkleMap& map) {
+    char text[96];
+    std::snprintf(text, sizeof text, "is too steep: slopes of %.0f, where a rig holds up to %.0f",
+                  static_cast<double>(map.derivative_scale),
+                  static_cast<double>(wrinkle::kMaxDerivativeScale));
+    return {StatusCode::kInvalidArgument,
+            "map '" + map.name + "' " + text,
+            {},
+            "make its strokes wider or shallower, or give a smaller --depth"};
+  }
+
   Status AddDerivative(const BakedMap& baked, wrinkle::WrinkleMap* map) {
-    map->derivative = baked.map + "_derivative" + (options_.exr ? ".exr" : ".png");
+    map->derivative = Free(baked.map + "_derivative", Extension());
     map->derivative_scale = options_.exr ? 1.0f : RoundScale(baked.derivative, 0.25f);
+    if (map->derivative_scale > wrinkle::kMaxDerivativeScale) return TooSteep(*map);
     Picture picture = Sized(baked, map->derivative, options_.exr ? 2 : 3);
     if (options_.exr) {
       picture.pixels_float = baked.derivative;
@@ -129,7 +200,7 @@ class Packager {
   }
 
   Status AddHeight(const BakedMap& baked, wrinkle::WrinkleMap* map) {
-    map->height = baked.map + "_height" + (options_.exr ? ".exr" : ".png");
+    map->height = Free(baked.map + "_height", Extension());
     map->height_mm = options_.exr ? 1.0f : RoundScale(baked.height_mm, 0.01f);
     Picture picture = Sized(baked, map->height, 1);
     if (options_.exr) {
@@ -165,7 +236,10 @@ class Packager {
   }
 
   const Character& character_;
+  const BakedMaps& maps_;
   PackageOptions options_;
+  std::set<std::string> masked_;  // regions that take a suggested mask
+  std::set<std::string> taken_;   // names of pictures
   BakedFiles out_;
 };
 
@@ -181,15 +255,7 @@ float RoundScale(const std::vector<float>& values, float least) {
 
 Result<BakedFiles> PackageMaps(const Character& character, const BakedMaps& maps,
                                const PackageOptions& options) {
-  Packager packager(character, options);
-  for (const BakedMap& map : maps.maps) {
-    if (Status s = packager.AddMap(map); !s.ok()) return s;
-  }
-  for (const bool cloth : {false, true}) {
-    if (Status s = packager.AddMasks(maps, cloth); !s.ok()) return s;
-  }
-  if (Status s = packager.CopyPictures(); !s.ok()) return s;
-  return packager.Take();
+  return Packager(character, maps, options).Run();
 }
 
 }  // namespace furrow::character::bake

@@ -9,6 +9,7 @@
 #include <flatbuffers/flatbuffers.h>
 
 #include "character/asset_path.h"
+#include "character/bake/bake_check.h"
 #include "character/bake/strokes_generated.h"
 #include "character/bake/strokes_schema_text.h"
 #include "character/checked_json.h"
@@ -29,26 +30,6 @@ template <class Item>
 bool IsNameOf(const std::vector<Item>& items, std::string_view name) {
   return std::any_of(items.begin(), items.end(),
                      [&](const Item& item) { return item.name == name; });
-}
-
-Status CheckRange(const std::string& field, float value, float low, float high,
-                  const char* interval) {
-  if (value >= low && value <= high) return {};
-  if (!std::isfinite(value)) return {StatusCode::kNonFinite, "the number is not finite", field};
-  return InvalidField("the number is not in " + std::string(interval), field);
-}
-
-Status CheckNumbers(const BakeStroke& stroke, const std::string& at) {
-  constexpr float kAboveZero = 1e-3f;
-  Status checks[] = {CheckRange(at + ".width_mm", stroke.width_mm, kAboveZero, 200, "(0, 200]"),
-                     CheckRange(at + ".depth_mm", stroke.depth_mm, -50, 50, "[-50, 50]"),
-                     CheckRange(at + ".ridge", stroke.ridge, 0, 1, "[0, 1]"),
-                     CheckRange(at + ".taper", stroke.taper, kAboveZero, 1, "(0, 1]")};
-  for (Status& check : checks) {
-    if (!check.ok()) return check;
-  }
-  if (stroke.wavelength_mm == 0.0f) return {};
-  return CheckRange(at + ".wavelength_mm", stroke.wavelength_mm, 0.2f, 200, "[0.2, 200], or 0");
 }
 
 Status CheckNames(const BakeStroke& stroke, const wrinkle::Rig& rig, const std::string& at) {
@@ -74,9 +55,12 @@ Status ReadPoints(const flatbuffers::Vector<const schema::Vec3*>& from, const st
     const schema::Vec3& point = *from.Get(i);
     points->push_back({point.x(), point.y(), point.z()});
     for (int axis = 0; axis < 3; ++axis) {
-      const Status s = CheckRange(FieldAt(at, i), points->back()[axis], -kFarthest, kFarthest,
-                                  "[-100, 100]; points are in metres");
-      if (!s.ok()) return s;
+      const float value = points->back()[axis];
+      if (!std::isfinite(value)) {
+        return {StatusCode::kNonFinite, "the number is not finite", FieldAt(at, i)};
+      }
+      if (std::abs(value) <= kFarthest) continue;
+      return InvalidField("the number is not in [-100, 100]; points are in metres", FieldAt(at, i));
     }
   }
   return {};
@@ -99,7 +83,7 @@ Status ReadStroke(const schema::Stroke& from, const wrinkle::Rig& rig, const std
   to->taper = from.taper();
   to->wavelength_mm = from.wavelength_mm();
   if (Status s = CheckNames(*to, rig, at); !s.ok()) return s;
-  if (Status s = CheckNumbers(*to, at); !s.ok()) return s;
+  if (Status s = CheckStrokeNumbers(*to, at); !s.ok()) return s;
   return ReadPoints(*from.points(), at + ".points", &to->points);
 }
 

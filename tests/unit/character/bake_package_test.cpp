@@ -9,6 +9,11 @@ namespace {
 // One texel high, four wide: a map, and masks of five regions, half as wide.
 Character Rigged(BakedMaps* maps) {
   Character character;
+  character.rig.name = "toy";
+  wrinkle::Driver& driver = character.rig.drivers.emplace_back();
+  driver.name = "smile";
+  driver.kind = wrinkle::Driver::Kind::kBlendShape;
+  driver.blend_shape.blend_shape = "smile";
   character.rig.wrinkle_maps = {{.name = "squash", .normal = "old_normal.png", .amplitude = 1.7f},
                                 {.name = "other"}};
   BakedMap& map = maps->maps.emplace_back();
@@ -20,7 +25,10 @@ Character Rigged(BakedMaps* maps) {
   map.cavity = {1.0f, 0.25f, 1.0f, 0.5f};
   for (int i = 0; i < 5; ++i) {
     const std::string name = "r" + std::to_string(i);
-    character.rig.regions.emplace_back().name = name;
+    wrinkle::Region& region = character.rig.regions.emplace_back();
+    region.name = name;
+    region.mask.texture = "own.png";
+    region.feeds = {{"squash", {{"smile", "value", 1.0f}}}};
     map.masks.push_back({name, 2, 1, {0.2f * static_cast<float>(i), 1.0f}});
   }
   return character;
@@ -88,7 +96,51 @@ TEST(BakePackage, PacksFourRegionsAPicture) {
   EXPECT_EQ(files->rig.regions[4].mask.channel, 0);
   EXPECT_EQ(files->rig.regions[3].mask.channel, 3);
   const auto own = PackageMaps(character, maps, {});
-  EXPECT_EQ(own->rig.regions[4].mask.texture, "");
+  EXPECT_EQ(own->rig.regions[4].mask.texture, "own.png");
+  EXPECT_EQ(Decoded(*own, "suggested_masks_skin_1.png").pixels[0], 204);
+}
+
+TEST(BakePackage, WritesOverNoMaskThatARegionKeeps) {
+  BakedMaps maps;
+  Character character = Rigged(&maps);
+  // Region 4 is not baked this time: its mask is the blue of what an earlier bake wrote.
+  maps.maps[0].masks.pop_back();
+  wrinkle::Mask& mask = character.rig.regions[4].mask;
+  mask = {.kind = wrinkle::Mask::Kind::kTexture, .texture = "masks_skin_0.png", .channel = 2};
+  const auto files = PackageMaps(character, maps, {.masks = true});
+  ASSERT_TRUE(files.ok()) << files.status().ToString();
+  EXPECT_EQ(files->rig.regions[0].mask.texture, "masks_skin_0_2.png");
+  EXPECT_EQ(files->rig.regions[4].mask.texture, "masks_skin_0.png");
+  EXPECT_EQ(files->rig.regions[4].mask.channel, 2);
+  for (const BakedFiles::File& file : files->files) EXPECT_NE(file.name, "masks_skin_0.png");
+}
+
+TEST(BakePackage, ARegionOfTwoAtlasesKeepsItsMask) {
+  BakedMaps maps;
+  Character character = Rigged(&maps);
+  character.rig.regions[1].mask.texture = "mine.png";
+  BakedMap cloth = maps.maps[0];
+  cloth.map = "other";
+  cloth.cloth = true;
+  cloth.masks = {cloth.masks[1]};
+  maps.maps.push_back(cloth);
+  const auto files = PackageMaps(character, maps, {.masks = true});
+  ASSERT_TRUE(files.ok()) << files.status().ToString();
+  EXPECT_EQ(files->rig.regions[1].mask.texture, "mine.png");
+  EXPECT_EQ(files->rig.regions[2].mask.texture, "masks_skin_0.png");
+  EXPECT_EQ(files->rig.regions[2].mask.channel, 1);
+  ASSERT_EQ(files->notes.size(), 1u);
+  EXPECT_NE(files->notes[0].find("region 'r1'"), std::string::npos);
+}
+
+TEST(BakePackage, RefusesWhatARigCannotState) {
+  BakedMaps maps;
+  const Character character = Rigged(&maps);
+  maps.maps[0].derivative[0] = 700.0f;
+  const Status steep = PackageMaps(character, maps, {}).status();
+  EXPECT_EQ(steep.code(), StatusCode::kInvalidArgument);
+  EXPECT_NE(steep.what().find("map 'squash' is too steep"), std::string::npos);
+  EXPECT_TRUE(PackageMaps(character, maps, {.exr = true}).ok());
 }
 
 TEST(BakePackage, ScalesAreRoundAndLargeEnough) {

@@ -162,5 +162,17 @@ TEST(StrokesFile, NamesTheFileThatIsNotThere) {
   EXPECT_EQ(strokes.status().where(), "/nowhere/strokes.json");
 }
 
+TEST(StrokesFile, RefusesFoldsThatNoSurfaceMakes) {
+  const auto fold = [](const std::string& fields) {
+    return Parse(R"({"strokes": [{"name": "a", "maps": ["squash"], "points": [[0, 0, 0], [0, 1, 0]],
+)" + fields + "}]}");
+  };
+  const Status steep = fold(R"("width_mm": 0.5, "depth_mm": -2.1)").status();
+  EXPECT_EQ(steep.code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(steep.where(), "a.json:2: strokes[0].depth_mm");
+  EXPECT_NE(steep.what().find("stroke 'a' is deeper than four times"), std::string::npos);
+  EXPECT_TRUE(fold(R"("width_mm": 0.5, "depth_mm": -2)").ok());
+}
+
 }  // namespace
 }  // namespace furrow::character::bake
