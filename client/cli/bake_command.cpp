@@ -55,6 +55,18 @@ std::string RigName(const BakeArguments& arguments) {
   return fs::path(arguments.character).replace_extension(".rig.json").string();
 }
 
+fs::path NewRig(const BakeArguments& arguments) {
+  return fs::path(arguments.out) / (fs::path(arguments.character).stem().string() + ".rig.json");
+}
+
+// The rig that a bake starts from is the user's own: a baked one lies elsewhere.
+Status CheckOutput(const BakeArguments& arguments) {
+  std::error_code error;
+  if (!fs::equivalent(NewRig(arguments), RigName(arguments), error) || error) return {};
+  return {StatusCode::kInvalidArgument, "the new rig would replace the one it is made from",
+          NewRig(arguments).string(), "choose another folder for --out"};
+}
+
 // Strokes of maps that are not wanted are left out.
 void KeepWanted(const std::vector<std::string>& maps, std::vector<bake::BakeStroke>* strokes) {
   if (maps.empty()) return;
@@ -68,6 +80,7 @@ void KeepWanted(const std::vector<std::string>& maps, std::vector<bake::BakeStro
 
 Result<BakeJob> Prepare(const BakeArguments& arguments) {
   BakeJob job;
+  if (Status s = CheckOutput(arguments); !s.ok()) return s;
   auto character = LoadCharacterArgument(arguments.character, arguments.rig);
   if (!character.ok()) return character.status();
   job.character = std::move(*character);
@@ -107,12 +120,13 @@ Result<bake::BakedMaps> BakeWithBar(const BakeArguments& arguments, const BakeJo
   return maps.status().At(arguments.character);
 }
 
-Status WriteAll(const BakeArguments& arguments, const BakeJob& job, const bake::BakedMaps& maps,
-                double seconds, StagedFolder* folder) {
+Status WriteAll(const BakeArguments& arguments, const bake::BakedMaps& maps, double seconds,
+                BakeJob* job, StagedFolder* folder) {
   const bake::PackageOptions options{.exr = arguments.format == MapFormat::kExr,
                                      .masks = arguments.masks};
-  const auto package = bake::PackageMaps(job.character, maps, options);
-  if (!package.ok()) return package.status();
+  const auto package = bake::PackageMaps(job->character, maps, options);
+  if (!package.ok()) return package.status().At(arguments.character);
+  job->warnings.insert(job->warnings.end(), package->notes.begin(), package->notes.end());
   for (const bake::BakedFiles::File& file : package->files) {
     if (Status s = folder->Write(file.name, file.bytes); !s.ok()) return s;
   }
@@ -124,14 +138,13 @@ Status WriteAll(const BakeArguments& arguments, const BakeJob& job, const bake::
   const bake::ReportFacts facts{.character = arguments.character,
                                 .rig = RigName(arguments),
                                 .strokes = arguments.strokes,
-                                .poses = job.poses.poses,
-                                .notes = job.poses.notes,
-                                .warnings = job.warnings,
+                                .poses = job->poses.poses,
+                                .notes = job->poses.notes,
+                                .warnings = job->warnings,
                                 .options = arguments.options,
                                 .seconds = seconds};
   if (Status s = folder->Write("report.html", bake::ReportHtml(maps, facts)); !s.ok()) return s;
-  const std::string stem = fs::path(arguments.character).stem().string();
-  return folder->Write(stem + ".rig.json", character::RigToJson(package->rig));
+  return folder->Write(NewRig(arguments).filename().string(), character::RigToJson(package->rig));
 }
 
 void PrintSummary(const BakeArguments& arguments, const BakeJob& job, const bake::BakedMaps& maps,
@@ -151,15 +164,13 @@ void PrintSummary(const BakeArguments& arguments, const BakeJob& job, const bake
     std::fprintf(stderr, "furrow: %zu sources were not baked; report.html lists them\n",
                  job.poses.notes.size());
   }
-  const std::string stem = fs::path(arguments.character).stem().string();
   std::fprintf(stderr, "furrow: %s in %.1f s; look at %s/report.html, and draw it with --rig %s\n",
-               arguments.out.c_str(), seconds, arguments.out.c_str(),
-               (fs::path(arguments.out) / (stem + ".rig.json")).c_str());
+               arguments.out.c_str(), seconds, arguments.out.c_str(), NewRig(arguments).c_str());
 }
 
 int Bake(const BakeArguments& arguments) {
   CatchInterrupts();
-  const auto job = Prepare(arguments);
+  auto job = Prepare(arguments);
   if (!job.ok()) return Fail(job.status());
   auto folder = StagedFolder::Create(arguments.out);
   if (!folder.ok()) return Fail(folder.status());
@@ -167,7 +178,7 @@ int Bake(const BakeArguments& arguments) {
   const auto maps = BakeWithBar(arguments, *job);
   if (!maps.ok()) return Fail(maps.status());
   const double seconds = static_cast<double>(SteadyMicroseconds() - start) * 1e-6;
-  if (Status s = WriteAll(arguments, *job, *maps, seconds, &*folder); !s.ok()) return Fail(s);
+  if (Status s = WriteAll(arguments, *maps, seconds, &*job, &*folder); !s.ok()) return Fail(s);
   if (Interrupted()) {
     return Fail({StatusCode::kUnavailable, "interrupted; nothing was written"});
   }
@@ -198,6 +209,12 @@ void AddMaterialOptions(CLI::App& command, bake::BakeOptions& options) {
       .add_option("--cloth-wavelength", options.cloth.wavelength_mm,
                   "Valley to valley on cloth, mm")
       ->check(CLI::Range(0.2f, 200.0f))
+      ->capture_default_str();
+  command
+      .add_option("--fine-lines", options.skin.fine_lines,
+                  "Lines of a third of the wavelength on skin, as a share of their full height: "
+                  "dry and old skin")
+      ->check(CLI::Range(0.0f, 1.0f))
       ->capture_default_str();
   command.add_option("--seed", options.seed, "Another seed, other folds of the same kind")
       ->capture_default_str();

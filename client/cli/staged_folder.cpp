@@ -21,6 +21,54 @@ Status Refused(const fs::path& path, const std::string& why) {
   return {StatusCode::kIo, "cannot write: " + why, path.string()};
 }
 
+constexpr char kAside[] = ".replaced";  // in the temporary folder: removed with it
+
+// Puts files into a folder one by one; what they replace lies aside and comes back with the object,
+// unless all were put.
+class Replacement {
+ public:
+  Replacement(const fs::path& target, fs::path aside) : target_(target), aside_(std::move(aside)) {}
+  ~Replacement() {
+    std::error_code ignored;
+    for (auto done = done_.rbegin(); done != done_.rend(); ++done) {
+      if (done->is_new) {
+        fs::remove(target_ / done->name, ignored);
+      } else {
+        fs::rename(aside_ / done->name, target_ / done->name, ignored);
+      }
+    }
+  }
+  Replacement(const Replacement&) = delete;
+  Replacement& operator=(const Replacement&) = delete;
+
+  Status Put(const fs::path& from, const fs::path& name) {
+    const fs::path to = target_ / name;
+    std::error_code error;
+    fs::create_directories(to.parent_path(), error);
+    if (error) return Refused(to.parent_path(), error.message());
+    const bool is_new = !fs::exists(fs::symlink_status(to, error));
+    if (!is_new) {
+      if (fs::is_directory(to, error)) return Refused(to, "a folder is in the way");
+      fs::create_directories((aside_ / name).parent_path(), error);
+      if (!error) fs::rename(to, aside_ / name, error);
+      if (error) return Refused(to, error.message());
+    }
+    done_.push_back({name, is_new});
+    fs::rename(from, to, error);
+    return error ? Refused(to, error.message()) : Status();
+  }
+  void Keep() { done_.clear(); }
+
+ private:
+  struct Done {
+    fs::path name;
+    bool is_new;
+  };
+  const fs::path& target_;
+  fs::path aside_;
+  std::vector<Done> done_;
+};
+
 }  // namespace
 
 Result<StagedFolder> StagedFolder::Create(const fs::path& target) {
@@ -69,16 +117,15 @@ Status StagedFolder::Commit() {
     return {};
   }
   if (!fs::is_directory(target_)) return Refused(target_, error.message());
-  std::vector<fs::path> files;
+  std::vector<fs::path> names;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(staging_)) {
-    if (!entry.is_directory()) files.push_back(entry.path());
+    if (!entry.is_directory()) names.push_back(entry.path().lexically_relative(staging_));
   }
-  for (const fs::path& file : files) {
-    const fs::path to = target_ / file.lexically_relative(staging_);
-    fs::create_directories(to.parent_path(), error);
-    if (!error) fs::rename(file, to, error);
-    if (error) return Refused(to, error.message());
+  Replacement replacement(target_, staging_ / kAside);
+  for (const fs::path& name : names) {
+    if (Status s = replacement.Put(staging_ / name, name); !s.ok()) return s;
   }
+  replacement.Keep();
   return {};
 }
 

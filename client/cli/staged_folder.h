@@ -23,7 +23,8 @@ class StagedFolder {
   // `name` may hold folders: "report/squash_lit.png".
   [[nodiscard]] Status Write(const std::string& name, std::string_view bytes);
   // Moves all into `target`: in one step where it is not there yet or is empty, else file by file,
-  // over files of the same name. Other files in it stay.
+  // in place of files of the same name. Other files in it stay. An error leaves `target` as it was;
+  // only a process that is killed between two files leaves some old and some new.
   [[nodiscard]] Status Commit();
 
  private:

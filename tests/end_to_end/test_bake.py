@@ -214,9 +214,9 @@ class SheetTest(BakeCase):
         message = self.bake(self.package()).stderr.decode()
         self.assertIn("squash on skin", message)
         names = sorted(str(p.relative_to(self.out)) for p in self.out.rglob("*") if p.is_file())
-        self.assertEqual(names, ["mask.png", "masks_skin_0.png", "report.html", "report/squash_height.png",
-                                 "report/squash_lit.png", "report/squash_masks.png", "sheet.rig.json",
-                                 "squash_cavity.png", "squash_derivative.png", "squash_height.png"])
+        self.assertEqual(names, ["mask.png", "report.html", "report/squash_height.png", "report/squash_lit.png",
+                                 "report/squash_masks.png", "sheet.rig.json", "squash_cavity.png",
+                                 "squash_derivative.png", "squash_height.png", "suggested_masks_skin_0.png"])
         baked = json.loads((self.out / "sheet.rig.json").read_text())
         entry = baked["wrinkle_maps"][0]
         self.assertEqual(entry["derivative"], "squash_derivative.png")
@@ -253,7 +253,8 @@ class SheetTest(BakeCase):
         entry = json.loads((self.out / "sheet.rig.json").read_text())["wrinkle_maps"][0]
         self.assertEqual(entry["derivative"], "squash_derivative.exr")
         self.assertEqual((self.out / "squash_derivative.exr").read_bytes()[:4], b"\x76\x2f\x31\x01")
-        self.bake(self.package(), "--rig", self.out / "sheet.rig.json")  # and can be read again
+        again = ["--rig", self.out / "sheet.rig.json", "--out", self.root / "again", "--size", 64]
+        furrow("bake", self.root / "sheet.glb", *again, check=DONE)  # and can be read again
 
     def test_suggested_masks_go_into_the_rig_when_asked(self):
         package = self.package()
@@ -262,6 +263,26 @@ class SheetTest(BakeCase):
         self.assertEqual(mask(), "mask.png")
         self.bake(package, "--masks")
         self.assertEqual(mask(), "masks_skin_0.png")
+
+    def test_an_edited_mask_survives_another_bake(self):
+        package = self.package()
+        self.bake(package, "--masks")
+        edited = self.out / "masks_skin_0.png"
+        edited.write_bytes(WHITE)
+        again = self.root / "again"
+        furrow("bake", package, "--rig", self.out / "sheet.rig.json", "--out", again, "--size", 64, check=DONE)
+        self.assertEqual((again / "masks_skin_0.png").read_bytes(), WHITE)
+        baked = json.loads((again / "sheet.rig.json").read_text())
+        self.assertEqual(baked["regions"][0]["mask"]["texture"], "masks_skin_0.png")
+        self.assertTrue((again / "suggested_masks_skin_0.png").exists())
+
+    def test_the_rig_it_is_made_from_stays(self):
+        package = self.package()
+        mine = (self.root / "sheet.rig.json").read_bytes()
+        result = furrow("bake", package, "--out", self.root, "--size", 64, check=BAD_INPUT)
+        self.assertIn("would replace the one it is made from", result.stderr.decode())
+        self.assertEqual((self.root / "sheet.rig.json").read_bytes(), mine)
+        self.assertEqual(sorted(p.name for p in self.root.iterdir()), ["mask.png", "sheet.glb", "sheet.rig.json"])
 
     def test_other_files_of_the_folder_stay(self):
         self.out.mkdir()
