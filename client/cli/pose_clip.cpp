@@ -87,15 +87,15 @@ Status Unknown(const wrinkle::Rig& rig, std::string_view name) {
 
 Result<std::vector<WeightedPose>> ParsePoses(const wrinkle::Rig& rig, std::string_view text) {
   std::vector<WeightedPose> parts;
-  if (text == "neutral") return parts;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t comma = std::min(text.find(',', at), text.size());
     const auto term = ParseTerm(text.substr(at, comma - at));
     if (!term.ok()) return term.status();
+    at = comma + 1;
     const auto poses = PosesOf(rig, *term);
+    if (poses.empty() && term->name == "neutral") continue;  // adds nothing
     if (poses.empty()) return Unknown(rig, term->name);
     parts.insert(parts.end(), poses.begin(), poses.end());
-    at = comma + 1;
   }
   return parts;
 }

@@ -48,6 +48,14 @@ TEST(PoseClip, WeightsScaleAndPosesAddUp) {
   EXPECT_FLOAT_EQ(clip->locals[2].translation.y, 0.0f);
 }
 
+TEST(PoseClip, NeutralAddsNothingToOthers) {
+  for (const char* text : {"neutral,nod", "nod,neutral"}) {
+    const auto clip = PoseClip(Brows(), text);
+    ASSERT_TRUE(clip.ok()) << clip.status().ToString();
+    EXPECT_FLOAT_EQ(clip->locals[0].translation.z, 3.0f) << text;
+  }
+}
+
 TEST(PoseClip, ANameWithoutSideMeansBothAndAMapAllThatFeedsIt) {
   for (const char* text : {"lower", "squash"}) {
     const auto clip = PoseClip(Brows(), text);
