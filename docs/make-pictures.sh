@@ -130,7 +130,7 @@ makehuman() {
     done
   done
   sheet makehuman_faces 6x2 1440 "${names[@]}"
-  bodies makehuman --character "$work/makehuman.glb" --allow-missing
+  bodies makehuman --character "$work/makehuman.glb"
 }
 
 performance

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/inputs.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <span>
 
 #include "character/data_dir.h"
 #include "character/rig_file.h"
@@ -43,6 +45,19 @@ Result<character::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map) {
   if (!map.empty()) return matcher.status().At("--skeleton-map");
   PrintWarnings({"joints go by equal names alone: " + matcher.status().ToString()});
   return character::SkeletonMatcher();
+}
+
+void WarnOfMissing(const wrinkle::RigBinding& binding, const motion::Clip& clip) {
+  static constexpr std::size_t kNamed = 4;
+  const auto warn = [](std::span<const std::string> names, const std::string& what) {
+    if (names.empty()) return;
+    std::string text = "the recording lacks " + std::to_string(names.size()) + " " + what +
+                       " of the rig, their drivers rest: " + names[0];
+    for (std::size_t i = 1; i < std::min(names.size(), kNamed); ++i) text += ", " + names[i];
+    PrintWarnings({text + (names.size() > kNamed ? ", ..." : "")});
+  };
+  warn(binding.missing_joints(), "joints");
+  if (!clip.blend_shape_names.empty()) warn(binding.missing_blend_shapes(), "blend shapes");
 }
 
 Result<character::Character> LoadCharacterArgument(const std::string& glb, const std::string& rig) {

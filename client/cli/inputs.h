@@ -9,6 +9,7 @@
 #include "character/skeleton_match.h"
 #include "motion/clip.h"
 #include "wrinkle/rig.h"
+#include "wrinkle/solver.h"
 #include "wrinkle/status.h"
 
 namespace furrow::cli {
@@ -31,6 +32,10 @@ void PrintWarnings(const std::vector<std::string>& warnings);
 // The skeleton map of --skeleton-map (a name or a file; empty: the best that ships for each
 // skeleton). Where none ship and none is asked for, joints go by equal names, with a warning.
 [[nodiscard]] Result<character::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map);
+
+// One warning for all joints and one for all blend shapes of the rig that a recording lacks; how
+// many, and the first few. A recording of joints alone is not short of what trackers send.
+void WarnOfMissing(const wrinkle::RigBinding& binding, const motion::Clip& clip);
 
 // A character package by path; empty: the default one. `rig`: as LoadRigArgument, empty: its own.
 [[nodiscard]] Result<character::Character> LoadCharacterArgument(const std::string& glb,

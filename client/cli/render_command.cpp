@@ -39,7 +39,6 @@ struct RenderOptions {
   std::string format = "png";
   std::string device;
   PictureOptions picture;
-  bool allow_missing = false;
   bool timings = false;
   int quality = 90;
 };
@@ -102,15 +101,21 @@ Result<std::unique_ptr<Performance>> Performance::Create(const RenderOptions& op
   if (!matcher.ok()) return matcher.status();
   const auto match =
       matcher->Match(self->clip_.skeleton, self->character_.rig, &self->character_.skeleton);
-  auto binding = wrinkle::RigBinding::Create(
-      self->character_.rig, self->clip_.skeleton, self->clip_.blend_shape_names,
-      {.allow_missing = options.allow_missing, .aliases = match.aliases});
+  auto binding = wrinkle::RigBinding::Create(self->character_.rig, self->clip_.skeleton,
+                                             self->clip_.blend_shape_names,
+                                             {.allow_missing = true, .aliases = match.aliases});
   if (!binding.ok()) return binding.status();
+  WarnOfMissing(*binding, self->clip_);
   self->solver_ = std::make_unique<wrinkle::SubjectSolver>(
       std::make_shared<const wrinkle::RigBinding>(std::move(*binding)));
   self->retarget_ = character::MakeRetarget(match, self->clip_.skeleton, self->character_.skeleton);
   self->blend_shape_pose_ = wrinkle::BlendShapePose::Create(
       self->character_.rig, self->character_.skeleton, self->clip_.blend_shape_names);
+  if (self->clip_.blend_shape_names.empty() &&
+      self->retarget_.unmatched_source().size() == self->clip_.skeleton.joint_names().size()) {
+    return Status(StatusCode::kNotFound, "no joint of the recording is one of the character's",
+                  options.file, "name its joints with --skeleton-map, or choose a --character");
+  }
   const int joints = self->character_.skeleton.num_joints();
   self->local_.resize(joints);
   self->model_.resize(joints);
@@ -120,12 +125,12 @@ Result<std::unique_ptr<Performance>> Performance::Create(const RenderOptions& op
 Status Performance::Advance(int frame) {
   clip_.GetPose(frame, &pose_);
   const double dt = frame == 0 ? 0.0 : clip_.times[frame] - clip_.times[frame - 1];
-  const bool solved = solver_->Update(pose_, dt) == wrinkle::JobStatus::kOk &&
-                      retarget_.Run(pose_.joints, local_) == wrinkle::JobStatus::kOk &&
-                      blend_shape_pose_.Run(pose_.blend_shapes, local_) ==
-                          wrinkle::JobStatus::kOk &&
-                      wrinkle::LocalToModelJob{&character_.skeleton, local_, model_}.Run() ==
-                          wrinkle::JobStatus::kOk;
+  const bool solved =
+      solver_->Update(pose_, dt) == wrinkle::JobStatus::kOk &&
+      retarget_.Run(pose_.joints, local_) == wrinkle::JobStatus::kOk &&
+      blend_shape_pose_.Run(pose_.blend_shapes, local_) == wrinkle::JobStatus::kOk &&
+      wrinkle::LocalToModelJob{&character_.skeleton, local_, model_}.Run() ==
+          wrinkle::JobStatus::kOk;
   if (!solved)
     return {StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved"};
   return {};
@@ -273,12 +278,11 @@ void AddRender(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   AddPictureOptions(*command, &options->picture);
-  command->add_flag("--timings", options->timings,
-                    "Print what each pass of a frame takes (medians); pictures take longer with it");
+  command->add_flag(
+      "--timings", options->timings,
+      "Print what each pass of a frame takes (medians); pictures take longer with it");
   command->add_option("--device", options->device,
                       "EGL device index or 'surfaceless'; default: the first that works");
-  command->add_flag("--allow-missing", options->allow_missing,
-                    "Joints of the rig that the recording lacks rest instead of being an error");
   command->callback([options, &action] {
     if (options->file.empty() && options->pose.empty()) throw CLI::RequiredError("FILE or --pose");
     action = [options] { return RenderFile(*options); };

@@ -24,6 +24,14 @@ struct SolveOptions {
   bool allow_missing = false;
 };
 
+// What the recording lacks may rest, but only where that is asked for.
+Status BindingFailed(const Status& status, const SolveOptions& options) {
+  if (status.code() != StatusCode::kNotFound || options.allow_missing)
+    return status.At(options.rig);
+  return {status.code(), status.what(), options.rig,
+          "with --allow-missing, drivers of what the recording lacks rest at 0"};
+}
+
 int SolveFile(const SolveOptions& options) {
   const auto clip = LoadClipArgument(options.file);
   if (!clip.ok()) return Fail(clip.status());
@@ -35,7 +43,8 @@ int SolveFile(const SolveOptions& options) {
   auto binding = wrinkle::RigBinding::Create(
       *rig, clip->skeleton, clip->blend_shape_names,
       {.allow_missing = options.allow_missing, .aliases = match.aliases});
-  if (!binding.ok()) return Fail(binding.status().At(options.rig));
+  if (!binding.ok()) return Fail(BindingFailed(binding.status(), options));
+  WarnOfMissing(*binding, *clip);
 
   wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(std::move(*binding)),
                                 !options.no_filter);
