@@ -46,6 +46,45 @@ bool WriteAll(std::FILE* file, std::string_view bytes) {
   return written && flushed && closed;
 }
 
+// A file beside the one that it will be; removed with the object where it was not moved there.
+class Temporary {
+ public:
+  Temporary() = default;
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+  ~Temporary() {
+    if (!name_.empty()) unlink(name_.c_str());
+  }
+
+  Status Write(const FileToWrite& file) {
+    std::error_code error;
+    if (fs::is_directory(file.path, error)) {
+      return {StatusCode::kIo, "cannot write: a folder is in the way", file.path.string()};
+    }
+    std::string name = file.path.string() + ".XXXXXX";
+    const int descriptor = mkstemp(name.data());
+    if (descriptor < 0) return SystemError("cannot create a file there", file.path);
+    name_ = std::move(name);
+    // mkstemp() is private to its owner; give the file the mode of any other.
+    const mode_t mask = umask(0);
+    umask(mask);
+    const bool mode_set = fchmod(descriptor, 0666 & ~mask) == 0;
+    std::FILE* stream = fdopen(descriptor, "wb");
+    if (stream == nullptr) close(descriptor);
+    const bool ok = stream != nullptr && WriteAll(stream, file.bytes) && mode_set;
+    return ok ? Status() : SystemError("cannot write", file.path);
+  }
+
+  Status MoveTo(const fs::path& path) {
+    if (std::rename(name_.c_str(), path.c_str()) != 0) return SystemError("cannot write", path);
+    name_.clear();
+    return {};
+  }
+
+ private:
+  std::string name_;
+};
+
 }  // namespace
 
 Status CheckAssetName(std::string_view name) {
@@ -113,21 +152,19 @@ Result<std::string> ReadFile(const fs::path& path, std::size_t max_bytes) {
 }
 
 Status WriteFileAtomically(const fs::path& path, std::string_view bytes) {
-  std::string temporary = path.string() + ".XXXXXX";
-  const int descriptor = mkstemp(temporary.data());
-  if (descriptor < 0) return SystemError("cannot create a file there", path);
-  // mkstemp() is private to its owner; give the file the mode of any other.
-  const mode_t mask = umask(0);
-  umask(mask);
-  const bool mode_set = fchmod(descriptor, 0666 & ~mask) == 0;
-  std::FILE* file = fdopen(descriptor, "wb");
-  if (file == nullptr) close(descriptor);
-  const bool ok = mode_set && file != nullptr && WriteAll(file, bytes) &&
-                  std::rename(temporary.c_str(), path.c_str()) == 0;
-  if (ok) return {};
-  Status status = SystemError("cannot write", path);
-  unlink(temporary.c_str());
-  return status;
+  const FileToWrite file{path, bytes};
+  return WriteFilesAtomically({&file, 1});
+}
+
+Status WriteFilesAtomically(std::span<const FileToWrite> files) {
+  std::vector<Temporary> written(files.size());
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (Status s = written[i].Write(files[i]); !s.ok()) return s;
+  }
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (Status s = written[i].MoveTo(files[i].path); !s.ok()) return s;
+  }
+  return {};
 }
 
 }  // namespace furrow::character

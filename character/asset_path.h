@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -28,5 +29,13 @@ namespace furrow::character {
 // Writes a temporary file beside `path`, then renames it: readers see the old file or the whole new
 // one, never a part. On failure (kIo) nothing is left behind.
 [[nodiscard]] Status WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes);
+
+// Files that belong together: none is seen before all are on the disk, so that one that cannot be
+// written leaves all as they were.
+struct FileToWrite {
+  std::filesystem::path path;
+  std::string_view bytes;
+};
+[[nodiscard]] Status WriteFilesAtomically(std::span<const FileToWrite> files);
 
 }  // namespace furrow::character

@@ -99,8 +99,10 @@ struct Character {
 // Every picture that a rig names, masks first, each once.
 [[nodiscard]] std::vector<std::string> RigPictureNames(const wrinkle::Rig& rig);
 
-// Writes skeleton, skin, meshes and textures as one .glb (atomically: a temporary file, then a
-// rename).
+// Skeleton, skin, meshes and textures as the bytes of one .glb.
+[[nodiscard]] Result<std::string> CharacterGlb(const Character& character);
+
+// Writes them (atomically: a temporary file, then a rename).
 [[nodiscard]] Status SaveCharacterGlb(const Character& character, const std::filesystem::path& glb);
 
 }  // namespace furrow::character

@@ -221,8 +221,10 @@ class GlbWriter {
 
 }  // namespace
 
+Result<std::string> CharacterGlb(const Character& character) { return GlbWriter(character).Run(); }
+
 Status SaveCharacterGlb(const Character& character, const std::filesystem::path& glb) {
-  Result<std::string> bytes = GlbWriter(character).Run();
+  Result<std::string> bytes = CharacterGlb(character);
   if (!bytes.ok()) {
     const Status s = bytes.status();
     return {s.code(), s.what(), glb.string() + (s.where().empty() ? "" : ": " + s.where()),

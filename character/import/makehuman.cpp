@@ -9,6 +9,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "character/asset_path.h"
 #include "character/bake/bake.h"
 #include "character/bake/bake_poses.h"
 #include "character/data_dir.h"
@@ -22,6 +23,7 @@
 #include "character/import/prop_paint.h"
 #include "character/import/skin_paint.h"
 #include "character/paint/uv_raster.h"
+#include "character/rig_check.h"
 #include "character/rig_file.h"
 #include "character/text_lines.h"
 #include "wrinkle/solver.h"
@@ -382,10 +384,20 @@ Result<Character> ImportMakeHuman(const fs::path& folder, const ImportOptions& o
 }
 
 Status WritePackage(const Character& character, const fs::path& glb) {
-  if (Status status = SaveCharacterGlb(character, glb); !status.ok()) return status;
   fs::path rig = glb;
   rig.replace_extension(".rig.json");
-  return SaveRig(character.rig, rig);
+  if (const Status s = CheckRig(character.rig); !s.ok()) {
+    return {s.code(), s.what(), rig.string() + ": " + s.where(), s.todo()};
+  }
+  const Result<std::string> bytes = CharacterGlb(character);
+  if (!bytes.ok()) {
+    const Status s = bytes.status();
+    return {s.code(), s.what(), glb.string() + (s.where().empty() ? "" : ": " + s.where()),
+            s.todo()};
+  }
+  const std::string json = RigToJson(character.rig);
+  const FileToWrite files[] = {{glb, *bytes}, {rig, json}};
+  return WriteFilesAtomically(files);
 }
 
 }  // namespace furrow::character

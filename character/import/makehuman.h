@@ -52,7 +52,7 @@ struct ImportReport {
                                                 ImportReport* report = nullptr);
 
 // Writes the character as `glb` and its rig as "<stem>.rig.json" beside it, reference poses inline
-// and pictures embedded: the two files are the whole package.
+// and pictures embedded: the two files are the whole package. An error leaves neither.
 [[nodiscard]] Status WritePackage(const Character& character, const std::filesystem::path& glb);
 
 }  // namespace furrow::character

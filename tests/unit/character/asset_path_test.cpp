@@ -76,6 +76,10 @@ TEST_F(AssetPath, WritesAllOrNothing) {
   EXPECT_EQ(status.where(), (root_ / "no/such/folder/f").string());
   // A folder of that name: the rename fails, and the temporary file goes.
   EXPECT_EQ(WriteFileAtomically(root_ / "beside", "x").code(), StatusCode::kIo);
+  // One that fails leaves the others of its package as they were.
+  const FileToWrite files[] = {{root_ / "f", "newer"}, {root_ / "beside", "x"}};
+  EXPECT_EQ(WriteFilesAtomically(files).code(), StatusCode::kIo);
+  EXPECT_EQ(*ReadFile(root_ / "f", 10), "new");
   int entries = 0;
   for ([[maybe_unused]] const auto& entry : fs::directory_iterator(root_)) ++entries;
   EXPECT_EQ(entries, 4);  // three folders and f

@@ -212,6 +212,22 @@ TEST(ImportMakeHuman, TextureSizeIsChecked) {
   }
 }
 
+TEST(ImportMakeHuman, APackageIsWrittenWholeOrNotAtAll) {
+  const ToyFolder folder;
+  Result<Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
+  ASSERT_TRUE(character.ok());
+  const std::filesystem::path glb = folder.path() / "whole.glb";
+  std::filesystem::create_directory(folder.path() / "whole.rig.json");
+  EXPECT_EQ(WritePackage(*character, glb).code(), StatusCode::kIo);
+  EXPECT_FALSE(std::filesystem::exists(glb));
+  std::filesystem::remove(folder.path() / "whole.rig.json");
+  character->rig.wrinkle_maps[0].derivative_scale = 700.0f;
+  const Status refused = WritePackage(*character, glb);
+  EXPECT_EQ(refused.code(), StatusCode::kInvalidArgument);
+  EXPECT_NE(refused.where().find("whole.rig.json: wrinkle_maps[0]"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(glb));
+}
+
 TEST(ImportMakeHuman, PackageReadsBackWithTheSameRig) {
   const ToyFolder folder;
   const Result<Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
