@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "wrinkle/status.h"
 
 namespace furrow::character {
@@ -24,6 +26,10 @@ struct Picture {
   std::vector<std::uint16_t> pixels16;  // the same, when 16 bits
   std::vector<float> pixels_float;      // the same, from an EXR: finite, of any range
 };
+
+// One channel of the texel at a UV (v down), [0, 1]; 0 where the picture has no such channel. UVs
+// within [0, 1] mean the picture itself, 1 its last texel; others repeat it.
+[[nodiscard]] float ChannelAt(const Picture& picture, const glm::vec2& uv, int channel);
 
 inline constexpr int kMaxPictureSide = 16384;
 inline constexpr std::int64_t kMaxPicturePixels = 64ll << 20;  // decoded: at most 512 MiB

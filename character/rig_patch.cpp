@@ -7,10 +7,11 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <tuple>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
+#include "character/weld.h"
 #include "wrinkle/retarget.h"
 #include "wrinkle/rig_check.h"
 
@@ -42,9 +43,8 @@ struct Piece {
   float distance = 0.0f;  // of the middle from the centre
 };
 
-// Vertices of UV seams stand at one place: they count as one.
-using Place = std::tuple<float, float, float>;
-Place PlaceOf(const glm::vec3& p) { return {p.x, p.y, p.z}; }
+// A point of the surface: vertices of UV seams are one, those of two meshes never.
+using Point = std::pair<const Mesh*, std::uint32_t>;
 
 class PatchCutter {
  public:
@@ -53,7 +53,7 @@ class PatchCutter {
 
   Result<wrinkle::Driver> Run() {
     if (Status s = FindCentre(); !s.ok()) return s;
-    CollectPieces();
+    if (Status s = CollectPieces(); !s.ok()) return s;
     KeepConnected();
     wrinkle::Driver driver;
     driver.name = options_.name;
@@ -64,13 +64,10 @@ class PatchCutter {
     strain_->size = wrinkle::SkeletonSize(character_.skeleton);
     for (const Piece& piece : pieces_) AddPiece(piece);
     if (strain_->joints.size() < 2) {
-      return Status(
-          StatusCode::kInvalidArgument,
-          "the surface there follows " +
-              (strain_->joints.empty() ? std::string("no joint")
-                                       : "joint '" + strain_->joints.front() + "' alone") +
-              ": no pose can compress it",
-          character_.name, "choose a place that several joints move");
+      return Status(StatusCode::kInvalidArgument,
+                    "the surface there follows joint '" + strain_->joints.front() +
+                        "' alone: no pose can compress it",
+                    character_.name, "choose a place that several joints move");
     }
     MeasureFromBase();
     wrinkle::Rig rig;
@@ -112,44 +109,58 @@ class PatchCutter {
     return {StatusCode::kNotFound, text, character_.name, "lengths are metres, at rest"};
   }
 
-  void CollectPieces() {
+  Status CollectPieces() {
+    float nearest = std::numeric_limits<float>::max();
     for (const Mesh& mesh : character_.meshes) {
       if (!IsMeant(mesh)) continue;
       for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         glm::vec3 middle(0.0f);
         for (std::size_t k = 0; k < 3; ++k) middle += At(mesh, i + k).position / 3.0f;
         const float distance = glm::distance(middle, centre_);
+        nearest = std::min(nearest, distance);
         if (distance <= options_.radius) pieces_.push_back({&mesh, i, distance});
       }
     }
     std::stable_sort(pieces_.begin(), pieces_.end(),
                      [](const Piece& a, const Piece& b) { return a.distance < b.distance; });
+    if (!pieces_.empty()) return {};
+    char text[128];
+    std::snprintf(text, sizeof text,
+                  "no triangle's middle lies within %.1f mm; the nearest lies at %.1f mm",
+                  static_cast<double>(1e3f * options_.radius), static_cast<double>(1e3f * nearest));
+    return {StatusCode::kNotFound, text, character_.name, "choose a larger radius"};
   }
 
   static const Vertex& At(const Mesh& mesh, std::size_t index) {
     return mesh.vertices[mesh.indices[index]];
   }
 
+  Point PointAt(const Piece& piece, std::size_t corner) {
+    const auto [there, is_new] = welded_.try_emplace(piece.mesh);
+    if (is_new) there->second = WeldVertices(*piece.mesh);
+    return {piece.mesh, there->second[piece.mesh->indices[piece.first + corner]]};
+  }
+
   // Grows from the nearest triangle over shared corners, nearest first, within a driver's limits.
   void KeepConnected() {
     std::vector<Piece> kept;
-    std::set<Place> places;
+    std::set<Point> points;
     std::vector<bool> taken(pieces_.size());
     for (bool grew = true; grew && kept.size() < wrinkle::kMaxPatchTriangles;) {
       grew = false;
       for (std::size_t i = 0; i < pieces_.size(); ++i) {
         if (taken[i] || kept.size() >= wrinkle::kMaxPatchTriangles) continue;
-        std::set<Place> fresh;
+        std::set<Point> fresh;
         for (std::size_t k = 0; k < 3; ++k) {
-          const Place place = PlaceOf(At(*pieces_[i].mesh, pieces_[i].first + k).position);
-          if (!places.contains(place)) fresh.insert(place);
+          const Point point = PointAt(pieces_[i], k);
+          if (!points.contains(point)) fresh.insert(point);
         }
         if (!kept.empty() && fresh.size() == 3) continue;  // not connected yet
-        if (places.size() + fresh.size() > wrinkle::kMaxPatchVertices) continue;
+        if (points.size() + fresh.size() > wrinkle::kMaxPatchVertices) continue;
         taken[i] = true;
         grew = true;
         kept.push_back(pieces_[i]);
-        places.insert(fresh.begin(), fresh.end());
+        points.insert(fresh.begin(), fresh.end());
       }
     }
     pieces_ = std::move(kept);
@@ -157,10 +168,9 @@ class PatchCutter {
 
   void AddPiece(const Piece& piece) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vertex& vertex = At(*piece.mesh, piece.first + k);
       const auto [there, is_new] =
-          index_.emplace(PlaceOf(vertex.position), static_cast<int>(strain_->vertices.size()));
-      if (is_new) AddVertex(vertex);
+          index_.emplace(PointAt(piece, k), static_cast<int>(strain_->vertices.size()));
+      if (is_new) AddVertex(At(*piece.mesh, piece.first + k));
       strain_->triangles.push_back(there->second);
     }
   }
@@ -217,23 +227,10 @@ class PatchCutter {
   glm::vec3 centre_{0.0f};
   std::vector<Piece> pieces_;
   wrinkle::StrainDriver* strain_ = nullptr;
-  std::map<Place, int> index_;
+  std::map<const Mesh*, std::vector<std::uint32_t>> welded_;
+  std::map<Point, int> index_;
   std::map<int, float> pull_;  // joint -> sum of its skin weights
 };
-
-float MaskAt(const Picture& picture, const glm::vec2& uv, int channel) {
-  if (channel >= picture.channels) return 0.0f;
-  const auto texel = [](float t, int size) {
-    return std::min(static_cast<int>((t - std::floor(t)) * static_cast<float>(size)), size - 1);
-  };
-  const std::size_t i = (static_cast<std::size_t>(texel(uv.y, picture.height)) * picture.width +
-                         static_cast<std::size_t>(texel(uv.x, picture.width))) *
-                            static_cast<std::size_t>(picture.channels) +
-                        static_cast<std::size_t>(channel);
-  if (!picture.pixels_float.empty()) return picture.pixels_float[i];
-  if (!picture.pixels16.empty()) return static_cast<float>(picture.pixels16[i]) / 65535.0f;
-  return static_cast<float>(picture.pixels[i]) / 255.0f;
-}
 
 // What a region's maps are drawn on; kOther stands for anything.
 Material::Kind SurfaceOf(const wrinkle::Rig& rig, const wrinkle::Region& region) {
@@ -281,7 +278,7 @@ Result<glm::vec3> PlaceOfRegion(const Character& character, const std::string& r
       if (!Wrinkles(character, mesh) || !IsKind(character, mesh, kind)) continue;
       for (const Vertex& vertex : mesh.vertices) {
         const Picture& mask = character.pictures[static_cast<std::size_t>(picture)];
-        if (MaskAt(mask, vertex.uv, candidate.mask.channel) < 0.5f) continue;
+        if (ChannelAt(mask, vertex.uv, candidate.mask.channel) < 0.5f) continue;
         inside.push_back(vertex.position);
         sum += vertex.position;
       }

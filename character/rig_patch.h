@@ -20,12 +20,13 @@ struct PatchOptions {
 // A strain driver (wrinkle/rig.h) over the triangles around a point, ready to be pasted into a rig.
 //
 // - Where there are more triangles than a driver may have (rig_check.h), those nearest the centre
-// are
-//   taken. Only triangles that hang together with the nearest one belong: not the other lip.
+//   are taken. Only triangles that hang together with the nearest one (weld.h) belong: not the
+//   other lip, though it may lie upon this one.
 // - Positions are measured from the rig's anchor where it moves the patch or is above what does,
 // else
 //   from the joint that moves the patch most. Skin weights below 0.001 are dropped.
-// Errors: kNotFound (no such mesh; no surface within the radius, which names the nearest),
+// Errors: kNotFound (no such mesh; no surface or no triangle within the radius, which names the
+// nearest),
 // kInvalidArgument (a driver that CheckRigFields() refuses, a patch that one joint alone moves: it
 // cannot be compressed).
 [[nodiscard]] Result<wrinkle::Driver> CutPatch(const Character& character,

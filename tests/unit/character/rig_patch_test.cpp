@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "character/rig_patch.h"
 
+#include <utility>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -82,6 +84,45 @@ TEST(RigPatch, KeepsToTheSurfaceThatIsNearest) {
   for (const auto& vertex : other->strain.vertices) EXPECT_NEAR(vertex.position.z, 0.001f, 1e-6f);
 }
 
+TEST(RigPatch, TwoSheetsInOnePlaceStayTwo) {
+  Character sheets = Sheets();
+  for (Vertex& vertex : sheets.meshes[1].vertices) vertex.position.z = 0.0f;
+  const auto whole = CutPatch(sheets, Middle(1.0f));
+  ASSERT_TRUE(whole.ok()) << whole.status().ToString();
+  EXPECT_EQ(whole->strain.triangles.size(), 3u * 2 * kCells * kCells);
+  // One mesh whose halves lie upon each other and move apart, as closed lips do.
+  Mesh lips = sheets.meshes[0];
+  const auto half = static_cast<std::uint32_t>(lips.vertices.size());
+  for (Vertex vertex : sheets.meshes[1].vertices) {
+    std::swap(vertex.skin_weights[0], vertex.skin_weights[2]);
+    vertex.joints[2] = 0;
+    lips.vertices.push_back(vertex);
+  }
+  for (const std::uint32_t index : sheets.meshes[1].indices) lips.indices.push_back(half + index);
+  sheets.meshes = {lips};
+  // The head's row is moved by `high` alone on both: nothing else may join them.
+  for (std::size_t i = half - kCells - 1; i < half; ++i) {
+    sheets.meshes[0].vertices[i].skin_weights[1] = 0.9f;
+    sheets.meshes[0].vertices[i].skin_weights[0] = 0.1f;
+  }
+  const auto lip = CutPatch(sheets, Middle(1.0f));
+  ASSERT_TRUE(lip.ok()) << lip.status().ToString();
+  EXPECT_EQ(lip->strain.triangles.size(), 3u * 2 * kCells * kCells);
+  EXPECT_EQ(lip->strain.vertices.size(), 11u * 11);
+}
+
+TEST(RigPatch, UvSeamsAreNoBorder) {
+  Character sheets = Sheets();
+  Mesh& sheet = sheets.meshes[0];
+  for (std::uint32_t& index : sheet.indices) {  // every corner a vertex of its own
+    sheet.vertices.push_back(Vertex(sheet.vertices[index]));
+    index = static_cast<std::uint32_t>(sheet.vertices.size()) - 1;
+  }
+  const auto whole = CutPatch(sheets, Middle(1.0f));
+  ASSERT_TRUE(whole.ok()) << whole.status().ToString();
+  EXPECT_EQ(whole->strain.vertices.size(), 11u * 11);
+}
+
 TEST(RigPatch, GrowsWithTheRadiusToTheWholeSheet) {
   const Character sheets = Sheets();
   const auto small = CutPatch(sheets, Middle(0.015f));
@@ -98,6 +139,9 @@ TEST(RigPatch, SaysWhyThereIsNone) {
   PatchOptions far = Middle();
   far.centre = {3, 0, 0};
   EXPECT_THAT(CutPatch(sheets, far).status().what(), HasSubstr("nearest is at 0.1000,0.0000"));
+  const Status small = CutPatch(sheets, Middle(0.001f)).status();
+  EXPECT_EQ(small.code(), StatusCode::kNotFound);
+  EXPECT_THAT(small.what(), HasSubstr("within 1.0 mm; the nearest lies at 4.7 mm"));
   PatchOptions nowhere = Middle();
   nowhere.mesh = "tail";
   EXPECT_EQ(CutPatch(sheets, nowhere).status().code(), StatusCode::kNotFound);
