@@ -39,23 +39,6 @@ float UvArea(const Vertex& a, const Vertex& b, const Vertex& c) {
   return 0.5f * std::abs(p.x * q.y - p.y * q.x);
 }
 
-// One channel of a picture at a UV, nearest texel, wrapped as the sampler does.
-float Sample(const Picture& picture, const glm::vec2& uv, int channel) {
-  if (channel >= picture.channels) return 0.0f;
-  const auto place = [](float t, int size) {
-    const float wrapped = t >= 0.0f && t <= 1.0f ? t : t - std::floor(t);
-    return std::min(static_cast<int>(wrapped * static_cast<float>(size)), size - 1);
-  };
-  const std::size_t index = (static_cast<std::size_t>(place(uv.y, picture.height)) *
-                                 static_cast<std::size_t>(picture.width) +
-                             static_cast<std::size_t>(place(uv.x, picture.width))) *
-                                static_cast<std::size_t>(picture.channels) +
-                            static_cast<std::size_t>(channel);
-  if (!picture.pixels_float.empty()) return std::clamp(picture.pixels_float[index], 0.0f, 1.0f);
-  if (!picture.pixels16.empty()) return static_cast<float>(picture.pixels16[index]) / 65535.0f;
-  return static_cast<float>(picture.pixels[index]) / 255.0f;
-}
-
 }  // namespace
 
 std::vector<int> MeshesOn(const Character& character, bool cloth) {
@@ -142,7 +125,7 @@ std::vector<float> BakeSurface::MaskOf(const Character& character,
   std::vector<float> mask;
   mask.reserve(surface_.positions().size());
   for (std::size_t v = 0; v < surface_.positions().size(); ++v) {
-    mask.push_back(Sample(picture, surface_.SourceOf(v).uv, region.mask.channel));
+    mask.push_back(ChannelAt(picture, surface_.SourceOf(v).uv, region.mask.channel));
   }
   return mask;
 }

@@ -3,56 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <map>
-#include <unordered_map>
 #include <utility>
 
 #include <glm/geometric.hpp>
+
+#include "character/weld.h"
 
 namespace furrow::character::bake {
 namespace {
 
 using glm::vec3;
 using wrinkle::SurfaceAxes;
-
-// Vertices of a seam come from one vertex of the artist's: their positions are the same bits.
-struct PlaceKey {
-  std::uint32_t bits[3];
-  bool operator==(const PlaceKey&) const = default;
-};
-
-struct PlaceHash {
-  std::size_t operator()(const PlaceKey& key) const {
-    std::uint64_t hash = 1469598103934665603ull;
-    for (const std::uint32_t word : key.bits) hash = (hash ^ word) * 1099511628211ull;
-    return static_cast<std::size_t>(hash ^ (hash >> 29));
-  }
-};
-
-PlaceKey KeyOf(const vec3& position) {
-  const vec3 p = position + vec3(0.0f);  // -0 becomes 0
-  PlaceKey key;
-  std::memcpy(key.bits, &p.x, sizeof key.bits);
-  return key;
-}
-
-float WeightOf(const Vertex& vertex, std::uint16_t joint) {
-  float sum = 0.0f;
-  for (int k = 0; k < 4; ++k) sum += vertex.joints[k] == joint ? vertex.skin_weights[k] : 0.0f;
-  return sum;
-}
-
-// Whether every joint moves both alike.
-bool MoveAlike(const Vertex& a, const Vertex& b) {
-  constexpr float kTolerance = 2e-3f;  // skin weights quantised to bytes differ by half a step
-  for (int k = 0; k < 4; ++k) {
-    if (std::abs(WeightOf(a, a.joints[k]) - WeightOf(b, a.joints[k])) > kTolerance) return false;
-    if (std::abs(WeightOf(a, b.joints[k]) - WeightOf(b, b.joints[k])) > kTolerance) return false;
-  }
-  return true;
-}
 
 vec3 NearestOnEdge(const vec3& p, const vec3& a, const vec3& b) {
   const vec3 along = b - a;
@@ -121,22 +84,16 @@ Surface::Surface(std::span<const Mesh* const> meshes) {
 
 void Surface::Append(const Mesh& mesh) {
   const auto base = static_cast<std::uint32_t>(mesh_.vertices.size());
-  std::unordered_map<PlaceKey, std::vector<std::uint32_t>, PlaceHash> at;  // welded vertices
+  const std::vector<std::uint32_t> first = WeldVertices(mesh);
   std::vector<std::uint32_t> welded(mesh.vertices.size());
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const Vertex& vertex = mesh.vertices[i];
-    std::vector<std::uint32_t>& here = at[KeyOf(vertex.position)];
-    const auto same = std::find_if(here.begin(), here.end(), [&](std::uint32_t other) {
-      return MoveAlike(vertex, mesh.vertices[source_[other] - base]);
-    });
-    if (same != here.end()) {
-      welded[i] = *same;
+  for (std::uint32_t i = 0; i < first.size(); ++i) {
+    if (first[i] != i) {
+      welded[i] = welded[first[i]];
       continue;
     }
     welded[i] = static_cast<std::uint32_t>(positions_.size());
-    here.push_back(welded[i]);
-    positions_.push_back(vertex.position);
-    source_.push_back(base + static_cast<std::uint32_t>(i));
+    positions_.push_back(mesh.vertices[i].position);
+    source_.push_back(base + i);
   }
   mesh_.vertices.insert(mesh_.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
