@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -53,33 +52,11 @@ Tensor2 Carry(const Tensor2& tensor, const Turn& turn) {
           s * s * tensor.xx + 2.0f * c * s * tensor.xy + c * c * tensor.yy};
 }
 
-// Ericson, Real-Time Collision Detection, 5.1.5.
-vec3 NearestInTriangle(const vec3& p, const vec3& a, const vec3& b, const vec3& c) {
-  const vec3 ab = b - a, ac = c - a, ap = p - a;
-  const float d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
-  if (d1 <= 0.0f && d2 <= 0.0f) return a;
-  const vec3 bp = p - b;
-  const float d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
-  if (d3 >= 0.0f && d4 <= d3) return b;
-  const float vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0f && d1 >= 0.0f && d3 <= 0.0f) return a + ab * (d1 / (d1 - d3));
-  const vec3 cp = p - c;
-  const float d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-  if (d6 >= 0.0f && d5 <= d6) return c;
-  const float vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0f && d2 >= 0.0f && d6 <= 0.0f) return a + ac * (d2 / (d2 - d6));
-  const float va = d3 * d6 - d5 * d4;
-  if (va <= 0.0f && d4 - d3 >= 0.0f && d5 - d6 >= 0.0f) {
-    return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-  }
-  const float scale = 1.0f / (va + vb + vc);
-  return a + ab * (vb * scale) + ac * (vc * scale);
-}
-
 Surface::Surface(std::span<const Mesh* const> meshes) {
   for (const Mesh* mesh : meshes) Append(*mesh);
   Connect();
   MakeAxes();
+  MakeTree();
 }
 
 void Surface::Append(const Mesh& mesh) {
@@ -142,16 +119,24 @@ void Surface::MakeAxes() {
     triangle.axes = triangle.strain ? triangle.strain->axes
                                     : AxesAcross(usable ? area / triangle.area : vec3(0, 0, 1));
     for (const std::uint32_t vertex : triangle.vertices) normals[vertex] += area;
-    const vec3 centre = (a + b + c) / 3.0f;
-    const float radius =
-        std::max({glm::distance(a, centre), glm::distance(b, centre), glm::distance(c, centre)});
-    bounds_.emplace_back(centre, radius);
   }
   axes_.reserve(positions_.size());
   for (const vec3& normal : normals) {
     const float length = glm::length(normal);
     axes_.push_back(AxesAcross(length > 1e-20f ? normal / length : vec3(0, 0, 1)));
   }
+}
+
+// Only triangles that have an extent; where none has, all.
+void Surface::MakeTree() {
+  std::vector<TriangleTree::Corners> corners;
+  std::vector<std::uint32_t> whole, all;
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    corners.push_back(Corners(t));
+    all.push_back(t);
+    if (triangles_[t].strain) whole.push_back(t);
+  }
+  tree_.emplace(corners, whole.empty() ? std::move(all) : std::move(whole));
 }
 
 std::array<vec3, 3> Surface::Corners(std::uint32_t triangle) const {
@@ -165,18 +150,8 @@ SurfacePoint Surface::PointOf(std::uint32_t triangle, const vec3& corners) const
 }
 
 SurfacePoint Surface::Nearest(const vec3& p) const {
-  SurfacePoint best;
-  float distance = std::numeric_limits<float>::max();
-  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-    if (glm::distance(p, vec3(bounds_[t])) - bounds_[t].w >= distance) continue;
-    const auto [a, b, c] = Corners(t);
-    const vec3 point = NearestInTriangle(p, a, b, c);
-    const float d = glm::distance(p, point);
-    if (d >= distance) continue;
-    distance = d;
-    best.triangle = t;
-    best.position = point;
-  }
+  const TriangleTree::Nearest nearest = tree_->Find(p);
+  SurfacePoint best{nearest.triangle, vec3(0.0f), nearest.position};
   const auto [a, b, c] = Corners(best.triangle);
   const vec3 normal = glm::cross(b - a, c - a);
   const float square = std::max(glm::dot(normal, normal), 1e-30f);

@@ -9,6 +9,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "character/bake/triangle_tree.h"
 #include "character/character.h"
 #include "wrinkle/strain.h"
 
@@ -41,10 +42,6 @@ struct Turn {
 
 // Axes across a unit normal, wherever they point.
 [[nodiscard]] wrinkle::SurfaceAxes AxesAcross(const glm::vec3& normal);
-
-// The point of a triangle that is nearest to `p`.
-[[nodiscard]] glm::vec3 NearestInTriangle(const glm::vec3& p, const glm::vec3& a,
-                                          const glm::vec3& b, const glm::vec3& c);
 
 // A place on a surface: everything that varies over it is read there from the triangle's corners.
 struct SurfacePoint {
@@ -98,7 +95,8 @@ class Surface {
                                     const SurfacePoint& point) const;
   [[nodiscard]] std::array<glm::vec3, 3> Corners(std::uint32_t triangle) const;
 
-  // The nearest point of the surface, which must have a triangle.
+  // The nearest point of the surface, which must have a triangle; of those without extent none,
+  // where there are others.
   [[nodiscard]] SurfacePoint Nearest(const glm::vec3& p) const;
   // A point of a triangle by its barycentric coordinates.
   [[nodiscard]] SurfacePoint PointOf(std::uint32_t triangle, const glm::vec3& corners) const;
@@ -107,6 +105,7 @@ class Surface {
   void Append(const Mesh& mesh);
   void Connect();
   void MakeAxes();
+  void MakeTree();
 
   Mesh mesh_;
   std::vector<Triangle> triangles_;
@@ -115,7 +114,7 @@ class Surface {
   std::vector<std::uint32_t> source_;
   std::vector<std::uint32_t> fans_;
   std::vector<std::size_t> fan_starts_;
-  std::vector<glm::vec4> bounds_;  // of the triangles: centre and radius
+  std::optional<TriangleTree> tree_;
 };
 
 // Finds what lies within a distance of a point *over the surface*, so that nothing leaks from one
