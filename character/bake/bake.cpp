@@ -11,9 +11,12 @@
 #include "character/bake/bake_check.h"
 #include "character/bake/bake_surface.h"
 #include "character/bake/map_baker.h"
+#include "character/bake/pace.h"
 
 namespace furrow::character::bake {
 namespace {
+
+constexpr float kSurface = 0.15f;  // of the time of a map, until its strain is known
 
 bool Names(const BakeStroke& stroke, const std::string& map) {
   return std::find(stroke.maps.begin(), stroke.maps.end(), map) != stroke.maps.end();
@@ -35,32 +38,35 @@ Result<BakedMaps> Bake(const Character& character, std::span<const BakePose> pos
   for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
     if (IsFed(map.name, poses, strokes)) fed.push_back(&map);
   }
-  const Status cancelled(StatusCode::kUnavailable, "cancelled");
-  if (progress && !progress(0.0f)) return cancelled;
+  Pace pace(progress);
+  if (!pace.Tell(0.0f)) return Pace::Cancelled();
   std::unique_ptr<BakeSurface> surfaces[2];  // skin, cloth
   BakedMaps maps;
   for (const wrinkle::WrinkleMap* map : fed) {
+    const float share = 1.0f / static_cast<float>(fed.size());
+    const float from = share * static_cast<float>(maps.maps.size());
+    const bool last = map == fed.back();
+    pace.Enter(from, from + kSurface * share);
     const bool cloth = GoesOnCloth(character, *map);
     std::unique_ptr<BakeSurface>& surface = surfaces[cloth ? 1 : 0];
     if (surface == nullptr) {
-      Result<std::unique_ptr<BakeSurface>> made = BakeSurface::Create(character, cloth, options);
+      Result<std::unique_ptr<BakeSurface>> made =
+          BakeSurface::Create(character, cloth, options, &pace);
       if (!made.ok()) return made.status();
       surface = std::move(made).value();
     }
     MapBaker baker(character, *surface, options, map->name, cloth);
     for (const BakePose& pose : poses) {
-      if (pose.map == map->name) baker.AddPose(pose);
+      if (pose.map != map->name) continue;
+      baker.AddPose(pose);
+      if (!pace.Tell(1.0f)) return Pace::Cancelled();
     }
     for (const BakeStroke& stroke : strokes) {
       if (Names(stroke, map->name)) baker.AddStroke(stroke);
     }
-    const auto overall = [&](float done) {
-      const auto before = static_cast<float>(maps.maps.size());
-      return !progress || progress((before + done) / static_cast<float>(fed.size()));
-    };
-    std::unique_ptr<BakedMap> baked = baker.Bake(overall);
-    if (baked == nullptr) return cancelled;
-    maps.maps.push_back(std::move(*baked));
+    auto baked = baker.Bake(from + kSurface * share, last ? 1.0f : from + share, &pace);
+    if (!baked.ok()) return baked.status();
+    maps.maps.push_back(std::move(**baked));
   }
   return maps;
 }

@@ -66,7 +66,7 @@ struct BakeMaterial {
                             // compressed both ways, as a fraction of what that would allow, [0, 1]
   float depth = 1.0f;       // scales every height, of strain and of strokes: age. [0, 4]
   float fine_lines = 0.0f;  // height of lines of a third of the wavelength, as a fraction of
-                            // what their compression would allow, [0, 1]
+                            // what their compression would allow, [0, 1]: dry and old skin
 };
 
 // Replaces the wavelength where a region's mask is (skin is thinner round the eyes than at the
@@ -93,6 +93,9 @@ struct BakeOptions {
   std::uint32_t seed = 1;
   int threads = 2;  // [1, 64]; the result does not depend on it
 };
+
+// No fold is finer than these texels: a wave wants that many to be seen.
+inline constexpr float kTexelsAWave = 3.0f;
 
 // What a region's poses fold, wherever that is: proposed as its mask.
 struct BakedMask {
@@ -124,8 +127,13 @@ struct BakedMap {
     float highest_mm = 0.0f;              // ridge over it, >= 0
     float steepest = 0.0f;                // length of the largest derivative
     float texel_mm = 0.0f;                // side of a texel on the surface, mean where it folds
-    int strokes = 0;                      // fold strokes that lie on the surface
+    int strokes = 0;                      // fold strokes that cover a texel
     std::int64_t overlapping_texels = 0;  // covered by more than one triangle: the first one won
+    float finest_mm = 0.0f;               // wavelengths asked for where it folds
+    float coarsest_mm = 0.0f;
+    std::int64_t widened_texels = 0;  // folded, where finer folds were asked for than texels show
+    float widened_from_mm = 0.0f;     // the worst of them
+    float widened_to_mm = 0.0f;
   } statistics;
 };
 
@@ -138,12 +146,13 @@ struct BakedMaps {
 // - A map goes on the meshes of the surface that the rig names for it; where that is any, on skin,
 //   or on cloth where there is no skin. Meshes of one kind share one atlas. Where no material is
 //   marked as skin, all that is not cloth, eyes or hair is.
-// - `progress` (may be empty) is called on the calling thread with what is done, [0, 1]; false
-//   cancels.
+// - `progress` (may be empty) is called on the calling thread with what is done, [0, 1], all the
+//   while; false cancels.
 // - The same input gives the same bytes, whatever `threads` is.
 // Errors: kInvalidArgument (a map or region that the rig has not, counts or options out of range,
-// a surface that is not there, has no UVs or no triangle of extent), kNonFinite, kUnavailable
-// (cancelled). A pose that strains nothing is no error: its map is flat.
+// a surface that is not there, has no UVs or no triangle of extent, a stroke far off its surface),
+// kNonFinite, kLimit (folds or strokes too fine for a surface so large), kUnavailable (cancelled).
+// A pose that strains nothing is no error: its map is flat.
 [[nodiscard]] Result<BakedMaps> Bake(const Character& character, std::span<const BakePose> poses,
                                      std::span<const BakeStroke> strokes,
                                      const BakeOptions& options,

@@ -13,6 +13,7 @@ namespace furrow::character::bake {
 namespace {
 
 constexpr int kLargestPreview = 1024;
+constexpr float kFewWidened = 0.05f;  // of the folded texels: not worth a word
 
 std::string Number(double value, int digits = 2) {
   char text[48];
@@ -116,15 +117,11 @@ std::string Row(const std::string& what, const std::string& value) {
   return "<tr><td>" + what + "</td><td>" + value + "</td></tr>\n";
 }
 
-std::string Statistics(const BakedMap& map, std::span<const BakePose> poses,
-                       const BakeOptions& options) {
+std::string Statistics(const BakedMap& map, std::span<const BakePose> poses) {
   const BakedMap::Statistics& s = map.statistics;
   const auto feeds = [&](const BakePose& pose) { return pose.map == map.map; };
-  std::string wavelengths = Number(MaterialOf(options, map.cloth).wavelength_mm, 1) + " mm";
-  for (const BakeRegionWavelength& entry : options.wavelengths) {
-    if (map.cloth) break;
-    wavelengths += ", " + Escaped(entry.region) + " " + Number(entry.wavelength_mm, 1);
-  }
+  const std::string wavelengths =
+      Number(s.finest_mm, 1) + " to " + Number(s.coarsest_mm, 1) + " mm";
   return "<table>\n" + Row("surface", map.cloth ? "cloth" : "skin") +
          Row("poses", std::to_string(std::count_if(poses.begin(), poses.end(), feeds))) +
          Row("strokes", std::to_string(s.strokes)) +
@@ -135,7 +132,10 @@ std::string Statistics(const BakedMap& map, std::span<const BakePose> poses,
          Row("valleys", Number(s.deepest_mm) + " mm deep") +
          Row("ridges", Number(s.highest_mm) + " mm high") +
          Row("steepest slope", Number(s.steepest)) + Row("wavelength", wavelengths) +
-         Row("a texel", Number(s.texel_mm) + " mm where it folds") + "</table>\n";
+         Row("a texel", Number(s.texel_mm) + " mm where it folds") +
+         Row("claimed twice", Number(100.0 * Share(s.overlapping_texels, s.covered_texels), 2) +
+                                  "% of the texels, by triangles that overlap in the atlas") +
+         "</table>\n";
 }
 
 std::string Figure(const std::string& file, const char* caption) {
@@ -167,13 +167,9 @@ void DoubtMap(const BakedMap& map, const BakeOptions& options, std::vector<std::
     say("meets a compression of " + Number(s.worst_compression) + ", which was taken for " +
         Number(material.max_compression) + ": look at the skinning there");
   }
-  float finest = material.wavelength_mm;
-  for (const BakeRegionWavelength& entry : options.wavelengths) {
-    if (!map.cloth) finest = std::min(finest, entry.wavelength_mm);
-  }
-  if (finest < 4.0f * s.texel_mm) {
-    say("has folds of " + Number(finest, 1) + " mm on texels of " + Number(s.texel_mm) +
-        " mm: raise --size, or they blur");
+  if (Share(s.widened_texels, s.folded_texels) > kFewWidened) {
+    say("has folds that were widened from " + Number(s.widened_from_mm, 1) + " to " +
+        Number(s.widened_to_mm, 1) + " mm, " + Number(kTexelsAWave, 0) + " texels: raise --size");
   }
 }
 
@@ -207,7 +203,7 @@ std::string ReportHtml(const BakedMaps& maps, const ReportFacts& facts) {
           List("Not baked", facts.notes);
   for (const BakedMap& map : maps.maps) {
     const std::string stem = "report/" + map.map;
-    html += "<h2>" + Escaped(map.map) + "</h2>\n" + Statistics(map, facts.poses, facts.options) +
+    html += "<h2>" + Escaped(map.map) + "</h2>\n" + Statistics(map, facts.poses) +
             Figure(stem + "_lit.png", "relief, lit from the upper left") +
             Figure(stem + "_height.png", "height: blue valleys, red ridges") +
             Figure(stem + "_masks.png", "suggested masks");

@@ -59,7 +59,7 @@ bool GoesOnCloth(const Character& character, const wrinkle::WrinkleMap& map) {
 }
 
 Result<std::unique_ptr<BakeSurface>> BakeSurface::Create(const Character& character, bool cloth,
-                                                         const BakeOptions& options) {
+                                                         const BakeOptions& options, Pace* pace) {
   const std::string kind = cloth ? "cloth" : "skin";
   std::vector<const Mesh*> meshes;
   float area = 0.0f;
@@ -80,7 +80,8 @@ Result<std::unique_ptr<BakeSurface>> BakeSurface::Create(const Character& charac
                   "unwrap the mesh: wrinkle maps lie in its UV atlas");
   }
   const float smoothing = MaterialOf(options, cloth).smoothing_mm * kMetres;
-  auto made = std::unique_ptr<BakeSurface>(new BakeSurface(meshes, smoothing, options.size));
+  auto made = std::unique_ptr<BakeSurface>(new BakeSurface(meshes, smoothing, options.size, pace));
+  if (pace->stopped()) return Pace::Cancelled();
   const auto triangles = made->surface_.triangles();
   const bool extent = std::any_of(triangles.begin(), triangles.end(),
                                   [](const auto& t) { return t.strain.has_value(); });
@@ -91,9 +92,9 @@ Result<std::unique_ptr<BakeSurface>> BakeSurface::Create(const Character& charac
   return made;
 }
 
-BakeSurface::BakeSurface(std::span<const Mesh* const> meshes, float smoothing, int size)
+BakeSurface::BakeSurface(std::span<const Mesh* const> meshes, float smoothing, int size, Pace* pace)
     : surface_(meshes),
-      solver_(surface_, smoothing),
+      solver_(surface_, smoothing, pace),
       texels_(paint::RasterizeUv(surface_.mesh(), size, size, &overlaps_)),
       texel_metres_(TexelSides(size)) {}
 

@@ -8,6 +8,7 @@
 
 #include "character/bake/bake.h"
 #include "character/bake/compression.h"
+#include "character/bake/pace.h"
 #include "character/bake/surface.h"
 #include "character/paint/uv_raster.h"
 
@@ -16,10 +17,11 @@ namespace furrow::character::bake {
 // Everything about the skin or the clothes of a character that several maps share.
 class BakeSurface {
  public:
-  // kInvalidArgument: nothing of the kind, no UVs, no triangle of extent.
+  // kInvalidArgument: nothing of the kind, no UVs, no triangle of extent. kUnavailable: stopped.
   [[nodiscard]] static Result<std::unique_ptr<BakeSurface>> Create(const Character& character,
                                                                    bool cloth,
-                                                                   const BakeOptions& options);
+                                                                   const BakeOptions& options,
+                                                                   Pace* pace);
 
   [[nodiscard]] const Surface& surface() const { return surface_; }
   [[nodiscard]] const CompressionSolver& solver() const { return solver_; }
@@ -34,7 +36,7 @@ class BakeSurface {
                                           const wrinkle::Region& region) const;
 
  private:
-  BakeSurface(std::span<const Mesh* const> meshes, float smoothing, int size);
+  BakeSurface(std::span<const Mesh* const> meshes, float smoothing, int size, Pace* pace);
   [[nodiscard]] std::vector<float> TexelSides(int size) const;
 
   Surface surface_;

@@ -82,6 +82,8 @@ RigidMotion Blend(const std::vector<RigidMotion>& motions, const Vertex& vertex)
   return sum;
 }
 
+constexpr std::size_t kMostTerms = 64;  // of one vertex
+
 float Fourth(float x) { return x * x * x * x; }
 
 }  // namespace
@@ -100,14 +102,40 @@ Principal2 PrincipalOf(const Tensor2& tensor) {
   return principal;
 }
 
-CompressionSolver::CompressionSolver(const Surface& surface, float radius) : surface_(surface) {
+CompressionSolver::CompressionSolver(const Surface& surface, float radius, Pace* pace)
+    : surface_(surface) {
   SurfaceReach reach(surface);
+  std::vector<Term> terms;
   starts_.push_back(0);
-  for (std::size_t v = 0; v < surface.positions().size(); ++v) Gather(v, radius, &reach);
+  for (std::size_t v = 0; v < surface.positions().size(); ++v) {
+    if (!pace->Step(v, surface.positions().size())) return;
+    Gather(v, radius, &reach, &terms);
+    if (terms.size() > kMostTerms) Thin(&terms);
+    terms_.insert(terms_.end(), terms.begin(), terms.end());
+    starts_.push_back(terms_.size());
+  }
 }
 
-void CompressionSolver::Gather(std::size_t vertex, float radius, SurfaceReach* reach) {
-  const std::size_t first = terms_.size();
+// Keeps kMostTerms at most, each as often as its share is of the whole. Neighbours in a mesh's list
+// are mostly neighbours on the surface: picks at even steps along the list lie evenly over it.
+void CompressionSolver::Thin(std::vector<Term>* terms) {
+  constexpr float kPick = 1.0f / static_cast<float>(kMostTerms);
+  std::sort(terms->begin(), terms->end(),
+            [](const Term& a, const Term& b) { return a.triangle < b.triangle; });
+  std::vector<Term> kept;
+  float passed = 0.0f, next = 0.5f * kPick;
+  for (Term& term : *terms) {
+    passed += term.share;
+    term.share = 0.0f;
+    for (; next < passed && next < 1.0f; next += kPick) term.share += kPick;
+    if (term.share > 0.0f) kept.push_back(term);
+  }
+  terms->swap(kept);
+}
+
+void CompressionSolver::Gather(std::size_t vertex, float radius, SurfaceReach* reach,
+                               std::vector<Term>* terms) {
+  terms->clear();
   const vec3 here = surface_.positions()[vertex];
   const auto around = surface_.Around(vertex);
   const auto found = radius > 0.0f ? reach->Find(here, around, radius) : around;
@@ -120,11 +148,10 @@ void CompressionSolver::Gather(std::size_t vertex, float radius, SurfaceReach* r
     // The radius is two standard deviations; the triangles around a vertex always count.
     const float fall = radius > 0.0f ? std::exp(-2.0f * d * d / (radius * radius)) + 1e-4f : 1.0f;
     const float share = triangle.area * fall;
-    terms_.push_back({t, share, Transport(triangle.axes, surface_.axes()[vertex])});
+    terms->push_back({t, share, Transport(triangle.axes, surface_.axes()[vertex])});
     sum += share;
   }
-  for (std::size_t i = first; i < terms_.size(); ++i) terms_[i].share /= std::max(sum, 1e-30f);
-  starts_.push_back(terms_.size());
+  for (Term& term : *terms) term.share /= std::max(sum, 1e-30f);
 }
 
 std::vector<CompressionSolver::Posed> CompressionSolver::Pose(

@@ -8,6 +8,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 
+#include "character/bake/pace.h"
 #include "character/bake/surface.h"
 
 namespace furrow::character::bake {
@@ -30,11 +31,14 @@ struct Principal2 {
 //
 // Skinning strains triangles unevenly, and a fold is no finer than the strain it answers to: so the
 // stretch of the triangles (the right stretch tensor U, C = U^2) is averaged over a radius, every
-// tensor carried to the vertex over the surface, by area and a Gaussian of the distance.
+// tensor carried to the vertex over the surface, by area and a Gaussian of the distance. On a mesh
+// so fine that many triangles lie within the radius, some stand for all: memory grows with the
+// vertices alone.
 class CompressionSolver {
  public:
   // `surface` outlives the solver. `radius`: metres, >= 0 (0: the triangles around the vertex).
-  CompressionSolver(const Surface& surface, float radius);
+  // Unfinished where `pace` was stopped.
+  CompressionSolver(const Surface& surface, float radius, Pace* pace);
 
   struct Field {
     // One a welded vertex, in its axes: compression 1 - stretch along principal directions, [0, 1],
@@ -44,6 +48,9 @@ class CompressionSolver {
   };
   // `skin_matrices`: one a joint that a vertex names. Compression above `limit` counts as `limit`.
   [[nodiscard]] Field Solve(std::span<const glm::mat4> skin_matrices, float limit) const;
+
+  // Triangles that an average is made of, all vertices together.
+  [[nodiscard]] std::size_t num_terms() const { return terms_.size(); }
 
  private:
   struct Term {
@@ -60,7 +67,8 @@ class CompressionSolver {
   [[nodiscard]] std::vector<Posed> Pose(std::span<const glm::mat4> skin_matrices) const;
   [[nodiscard]] Tensor2 StretchOf(std::size_t triangle, std::span<const Posed> posed, float limit,
                                   float* worst) const;
-  void Gather(std::size_t vertex, float radius, SurfaceReach* reach);
+  static void Thin(std::vector<Term>* terms);
+  void Gather(std::size_t vertex, float radius, SurfaceReach* reach, std::vector<Term>* terms);
 
   const Surface& surface_;
   std::vector<Term> terms_;

@@ -97,11 +97,17 @@ FoldSample ToFold(const WaveSum& sum, const FoldProfile& profile) {
 
 }  // namespace
 
-FoldLayer::FoldLayer(const FoldField& field, const FoldProfile& profile, const Options& options)
-    : profile_(profile), kernels_(field, KernelOptions(options), AmplitudeOf(options, profile)) {
-  PhaseSolver phases(field.surface(), &kernels_);
-  phases.Align();
+Result<std::unique_ptr<FoldLayer>> FoldLayer::Create(const FoldField& field,
+                                                     const FoldProfile& profile,
+                                                     const Options& options, Pace* pace) {
+  Result<KernelSet> kernels =
+      KernelSet::Create(field, KernelOptions(options), AmplitudeOf(options, profile), pace);
+  if (!kernels.ok()) return kernels.status();
+  PhaseSolver phases(field.surface(), &*kernels);
+  phases.Align(pace);
+  if (pace->stopped()) return Pace::Cancelled();
   phases.VaryDepth(options.material.variation, options.seed);
+  return std::unique_ptr<FoldLayer>(new FoldLayer(profile, std::move(*kernels)));
 }
 
 FoldSample FoldLayer::At(const SurfacePoint& point, const vec3& tangent,

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+#include <span>
+#include <utility>
+
 #include <glm/vec3.hpp>
 
 #include "character/bake/bake.h"
 #include "character/bake/fold_field.h"
 #include "character/bake/kernels.h"
+#include "character/bake/pace.h"
 #include "character/bake/profile.h"
 
 namespace furrow::character::bake {
@@ -20,8 +25,11 @@ class FoldLayer {
     float height = 1.0f;  // scales the height
     std::uint32_t seed = 1;
   };
-  // `profile` outlives the layer.
-  FoldLayer(const FoldField& field, const FoldProfile& profile, const Options& options);
+  // `profile` outlives the layer. Errors: KernelSet::Create()'s.
+  [[nodiscard]] static Result<std::unique_ptr<FoldLayer>> Create(const FoldField& field,
+                                                                 const FoldProfile& profile,
+                                                                 const Options& options,
+                                                                 Pace* pace);
 
   // Safe from several threads. Zero where no fold reaches.
   [[nodiscard]] FoldSample At(const SurfacePoint& point, const glm::vec3& tangent,
@@ -30,6 +38,9 @@ class FoldLayer {
   [[nodiscard]] std::span<const FoldKernel> kernels() const { return kernels_.kernels(); }
 
  private:
+  FoldLayer(const FoldProfile& profile, KernelSet kernels)
+      : profile_(profile), kernels_(std::move(kernels)) {}
+
   const FoldProfile& profile_;
   KernelSet kernels_;
 };

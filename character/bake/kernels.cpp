@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string>
 #include <unordered_map>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -19,7 +22,7 @@ using glm::vec3;
 constexpr float kSpacing = 0.5f;     // least distance of two kernels, wavelengths
 constexpr float kReach = 1.7f;       // of a kernel, wavelengths
 constexpr float kCandidates = 5.0f;  // places tried for a kernel that will stand
-constexpr std::size_t kMostKernels = 2'000'000;
+constexpr double kMostCandidates = 6e6;
 
 float Random(std::uint32_t seed, std::uint32_t a, std::uint32_t b) {
   return HashLattice(static_cast<int>(seed * 7919u + 13u), static_cast<int>(a),
@@ -27,11 +30,12 @@ float Random(std::uint32_t seed, std::uint32_t a, std::uint32_t b) {
 }
 
 // The triangles where kernels stand: folds, and as far around them as kernels reach.
-std::vector<char> ActiveTriangles(const FoldField& field, const KernelSet::Options& options) {
+std::vector<char> ActiveTriangles(const FoldField& field, const KernelSet::Options& options,
+                                  Pace* pace) {
   const Surface& surface = field.surface();
   std::vector<char> active(surface.triangles().size(), 0);
   SurfaceReach reach(surface);
-  for (std::uint32_t t = 0; t < active.size(); ++t) {
+  for (std::uint32_t t = 0; t < active.size() && pace->Step(t, active.size()); ++t) {
     if (field.Strongest(t, options.crossing) < 0.5f * options.threshold) continue;
     active[t] = 1;
     const SurfacePoint centre = surface.PointOf(t, vec3(1.0f / 3.0f));
@@ -55,25 +59,59 @@ vec3 Strayed(const FoldDemand& demand, const KernelSet::Options& options, float 
   return main * std::cos(angle) + side * std::sin(angle);
 }
 
+// Metres, varied from place to place.
+float WavelengthAt(const FoldDemand& demand, const SurfacePoint& place,
+                   const KernelSet::Options& options) {
+  const float base = std::max(demand.wavelength * options.wavelength_scale, demand.smallest);
+  // Features of the variation are some folds wide.
+  const vec3 at = place.position / (5.0f * base) + static_cast<float>(options.seed);
+  const float vary = 1.0f + options.variation * (2.0f * ValueNoise(at) - 1.0f);
+  return std::max(base * vary, demand.smallest);
+}
+
 struct Candidate {
   float order;
   std::uint32_t index;  // within the triangle
   SurfacePoint place;
 };
 
-std::vector<Candidate> Candidates(const FoldField& field, const KernelSet::Options& options) {
+// How many candidates each triangle wants; a fraction is the chance of one more.
+std::vector<float> CandidatesWanted(const FoldField& field, const KernelSet::Options& options,
+                                    Pace* pace) {
   const Surface& surface = field.surface();
-  const std::vector<char> active = ActiveTriangles(field, options);
-  std::vector<Candidate> candidates;
+  const std::vector<char> active = ActiveTriangles(field, options, pace);
+  std::vector<float> wanted(active.size(), 0.0f);
   for (std::uint32_t t = 0; t < active.size(); ++t) {
     if (!active[t]) continue;
     const SurfacePoint centre = surface.PointOf(t, vec3(1.0f / 3.0f));
-    const float wavelength = field.Wavelength(centre, options.wavelength_scale);
-    const float spacing = kSpacing * wavelength;
-    const float wanted = kCandidates * surface.triangles()[t].area / (spacing * spacing);
-    const auto count = static_cast<std::uint32_t>(
-        std::min(wanted + Random(options.seed, t, 0xffffu), static_cast<float>(kMostKernels)));
-    for (std::uint32_t k = 0; k < count && candidates.size() < kMostKernels; ++k) {
+    const float spacing = kSpacing * field.Wavelength(centre, options.wavelength_scale);
+    wanted[t] = kCandidates * surface.triangles()[t].area / (spacing * spacing);
+  }
+  return wanted;
+}
+
+Status CheckCount(const std::vector<float>& wanted) {
+  double sum = 0.0;
+  for (const float count : wanted) sum += static_cast<double>(count);
+  if (sum <= kMostCandidates) return {};
+  char text[128];
+  std::snprintf(text, sizeof(text),
+                "folds so fine on a surface so large want %.1f million waves, "
+                "%.1f million are the most",
+                1e-6 * sum / static_cast<double>(kCandidates),
+                1e-6 * kMostCandidates / static_cast<double>(kCandidates));
+  return {
+      StatusCode::kLimit, text, "options",
+      "take a longer wavelength (--skin-wavelength, --cloth-wavelength) or fewer texels (--size)"};
+}
+
+std::vector<Candidate> Candidates(const Surface& surface, const std::vector<float>& wanted,
+                                  const KernelSet::Options& options) {
+  std::vector<Candidate> candidates;
+  for (std::uint32_t t = 0; t < wanted.size(); ++t) {
+    if (wanted[t] <= 0.0f) continue;
+    const auto count = static_cast<std::uint32_t>(wanted[t] + Random(options.seed, t, 0xffffu));
+    for (std::uint32_t k = 0; k < count; ++k) {
       float u = Random(options.seed, t, 3 * k), v = Random(options.seed, t, 3 * k + 1);
       if (u + v > 1.0f) {
         u = 1.0f - u;
@@ -127,28 +165,31 @@ class Grid {
 
 }  // namespace
 
-KernelSet::KernelSet(const FoldField& field, const Options& options, const Amplitude& amplitude) {
-  Strew(field, options, amplitude);
-  Connect(field.surface());
+Result<KernelSet> KernelSet::Create(const FoldField& field, const Options& options,
+                                    const Amplitude& amplitude, Pace* pace) {
+  KernelSet set;
+  if (Status s = set.Strew(field, options, amplitude, pace); !s.ok()) return s;
+  set.Connect(field.surface(), pace);
+  if (pace->stopped()) return Pace::Cancelled();
+  return set;
 }
 
-void KernelSet::Strew(const FoldField& field, const Options& options, const Amplitude& amplitude) {
-  const std::vector<Candidate> candidates = Candidates(field, options);
-  std::vector<FoldDemand> demands;
+Status KernelSet::Strew(const FoldField& field, const Options& options, const Amplitude& amplitude,
+                        Pace* pace) {
+  const std::vector<float> wanted = CandidatesWanted(field, options, pace);
+  if (pace->stopped()) return Pace::Cancelled();
+  if (Status s = CheckCount(wanted); !s.ok()) return s;
+  const std::vector<Candidate> candidates = Candidates(field.surface(), wanted, options);
   std::vector<float> wavelengths;
   float longest = 0.0f;
   for (const Candidate& candidate : candidates) {
-    demands.push_back(field.At(candidate.place));
-    const float base =
-        std::max(demands.back().wavelength * options.wavelength_scale, demands.back().smallest);
-    // Features of the variation are some folds wide.
-    const vec3 at = candidate.place.position / (5.0f * base) + static_cast<float>(options.seed);
-    const float vary = 1.0f + options.variation * (2.0f * ValueNoise(at) - 1.0f);
-    wavelengths.push_back(std::max(base * vary, demands.back().smallest));
+    if (!pace->Step(wavelengths.size(), candidates.size())) return Pace::Cancelled();
+    wavelengths.push_back(WavelengthAt(field.At(candidate.place), candidate.place, options));
     longest = std::max(longest, wavelengths.back());
   }
   Grid grid(std::max(kSpacing * longest, 1e-6f));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (!pace->Step(i, candidates.size())) return Pace::Cancelled();
     const SurfacePoint& place = candidates[i].place;
     const vec3 normal = field.surface().triangles()[place.triangle].axes.normal;
     const float spacing = kSpacing * wavelengths[i];
@@ -160,7 +201,7 @@ void KernelSet::Strew(const FoldField& field, const Options& options, const Ampl
              glm::dot(facing, normal) > 0.0f;
     });
     if (taken) continue;
-    const FoldDemand& demand = demands[i];
+    const FoldDemand demand = field.At(place);
     FoldKernel kernel;
     kernel.place = place;
     kernel.frequency = Strayed(demand, options, wavelengths[i], place.position) *
@@ -171,12 +212,13 @@ void KernelSet::Strew(const FoldField& field, const Options& options, const Ampl
     grid.Add(place.position, static_cast<std::uint32_t>(kernels_.size()));
     kernels_.push_back(kernel);
   }
+  return {};
 }
 
-void KernelSet::Connect(const Surface& surface) {
+void KernelSet::Connect(const Surface& surface, Pace* pace) {
   std::vector<std::vector<std::uint32_t>> lists(surface.triangles().size());
   SurfaceReach reach(surface);
-  for (std::uint32_t k = 0; k < kernels_.size(); ++k) {
+  for (std::uint32_t k = 0; k < kernels_.size() && pace->Step(k, kernels_.size()); ++k) {
     const FoldKernel& kernel = kernels_[k];
     for (const std::uint32_t t :
          reach.Find(kernel.place.position, {&kernel.place.triangle, 1}, kernel.reach)) {

@@ -9,7 +9,9 @@
 #include <glm/vec3.hpp>
 
 #include "character/bake/fold_field.h"
+#include "character/bake/pace.h"
 #include "character/bake/surface.h"
+#include "wrinkle/status.h"
 
 namespace furrow::character::bake {
 
@@ -42,8 +44,10 @@ class KernelSet {
   using Amplitude = std::function<float(float compression, float wavelength)>;
 
   // Kernels about half a wavelength apart, evenly strewn, wherever folds are or could fade into;
-  // their phases are 0.
-  KernelSet(const FoldField& field, const Options& options, const Amplitude& amplitude);
+  // their phases are 0. kLimit: folds so fine on a surface so large that there would be millions.
+  // kUnavailable: stopped.
+  [[nodiscard]] static Result<KernelSet> Create(const FoldField& field, const Options& options,
+                                                const Amplitude& amplitude, Pace* pace);
 
   [[nodiscard]] std::vector<FoldKernel>& kernels() { return kernels_; }
   [[nodiscard]] std::span<const FoldKernel> kernels() const { return kernels_; }
@@ -52,8 +56,10 @@ class KernelSet {
   }
 
  private:
-  void Strew(const FoldField& field, const Options& options, const Amplitude& amplitude);
-  void Connect(const Surface& surface);
+  KernelSet() = default;
+  Status Strew(const FoldField& field, const Options& options, const Amplitude& amplitude,
+               Pace* pace);
+  void Connect(const Surface& surface, Pace* pace);
 
   std::vector<FoldKernel> kernels_;
   std::vector<std::uint32_t> lists_;

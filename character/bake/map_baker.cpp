@@ -13,9 +13,9 @@
 namespace furrow::character::bake {
 namespace {
 
-constexpr float kMetres = 0.001f;     // a millimetre
-constexpr float kTexelsAWave = 3.0f;  // finer folds cannot be shown
-constexpr int kGutter = 16;           // texels that planes grow past the UV border
+constexpr float kMetres = 0.001f;          // a millimetre
+constexpr float kFineLines = 1.0f / 3.0f;  // their wavelength, of the folds'
+constexpr int kGutter = 16;                // texels that planes grow past the UV border
 constexpr float kFoldedMillimetres = 0.01f;
 
 const wrinkle::Region* FindRegion(const wrinkle::Rig& rig, const std::string& name) {
@@ -108,24 +108,38 @@ std::vector<float> MapBaker::Wavelengths() const {
   return sums;
 }
 
-void MapBaker::MakeLayers(const FoldField& field) {
+std::vector<float> MapBaker::Smallest() const {
+  std::vector<float> smallest(surface_.texel_metres().begin(), surface_.texel_metres().end());
+  for (float& side : smallest) side *= kTexelsAWave;
+  return smallest;
+}
+
+Status MapBaker::MakeLayers(const FoldField& field, Pace* pace) {
+  std::vector<FoldLayer::Options> wanted;
   FoldLayer::Options options;
   options.material = material_;
   options.height = Depth();
   options.seed = options_.seed;
-  layers_.push_back(std::make_unique<FoldLayer>(field, profile_, options));
+  wanted.push_back(options);
   if (material_.crossing > 0.0f) {
     options.crossing = true;
     options.height = Depth() * material_.crossing;
     options.seed = options_.seed + 101;
-    layers_.push_back(std::make_unique<FoldLayer>(field, profile_, options));
+    wanted.push_back(options);
   }
-  if (material_.fine_lines <= 0.0f) return;
-  options.crossing = false;
-  options.wavelength_scale = 1.0f / 3.0f;
-  options.height = Depth() * material_.fine_lines;
-  options.seed = options_.seed + 202;
-  layers_.push_back(std::make_unique<FoldLayer>(field, profile_, options));
+  if (material_.fine_lines > 0.0f) {
+    options.crossing = false;
+    options.wavelength_scale = kFineLines;
+    options.height = Depth() * material_.fine_lines;
+    options.seed = options_.seed + 202;
+    wanted.push_back(options);
+  }
+  for (const FoldLayer::Options& layer : wanted) {
+    auto made = FoldLayer::Create(field, profile_, layer, pace);
+    if (!made.ok()) return made.status();
+    layers_.push_back(std::move(*made));
+  }
+  return {};
 }
 
 FoldSample MapBaker::FoldsAt(const SurfacePoint& point, const glm::vec3& tangent,
@@ -144,8 +158,7 @@ FoldSample MapBaker::FoldsAt(const SurfacePoint& point, const glm::vec3& tangent
   return sum;
 }
 
-bool MapBaker::FillTexels(const StrokeLayer& strokes, const std::function<bool(float)>& progress,
-                          BakedMap* map) const {
+bool MapBaker::FillTexels(const StrokeLayer& strokes, Pace* pace, BakedMap* map) const {
   const std::size_t count =
       static_cast<std::size_t>(map->width) * static_cast<std::size_t>(map->height);
   map->height_mm.assign(count, 0.0f);
@@ -167,19 +180,23 @@ bool MapBaker::FillTexels(const StrokeLayer& strokes, const std::function<bool(f
       map->covered[at] = 1;
     }
   };
-  return ForRuns(texels.size(), options_.threads, work, progress);
+  return ForRuns(texels.size(), options_.threads, work,
+                 [&](float done) { return pace->Tell(done); });
 }
 
-void MapBaker::Measure(const std::vector<float>& compression, BakedMap* map) const {
+void MapBaker::Measure(const std::vector<float>& compression, const StrokeLayer& strokes,
+                       BakedMap* map) const {
   BakedMap::Statistics& statistics = map->statistics;
   statistics.worst_compression = worst_;
   statistics.overlapping_texels = surface_.overlaps();
   double sum = 0.0, sides = 0.0;
+  std::vector<char> seen(strokes.num_strokes(), 0);
   for (const paint::Texel& texel : surface_.texels()) {
     const std::size_t at =
         static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
         static_cast<std::size_t>(texel.x);
     ++statistics.covered_texels;
+    strokes.MarkFolds(PlaceOf(texel), &seen);
     const float height = map->height_mm[at];
     statistics.deepest_mm = std::max(statistics.deepest_mm, -height);
     statistics.highest_mm = std::max(statistics.highest_mm, height);
@@ -191,11 +208,38 @@ void MapBaker::Measure(const std::vector<float>& compression, BakedMap* map) con
     sum += static_cast<double>(surface_.surface().Interpolate(compression, place));
     sides += static_cast<double>(surface_.surface().Interpolate(surface_.texel_metres(), place));
   }
+  statistics.strokes = static_cast<int>(std::count(seen.begin(), seen.end(), 1));
   if (statistics.folded_texels > 0) {
     statistics.mean_compression =
         static_cast<float>(sum / static_cast<double>(statistics.folded_texels));
     statistics.texel_mm =
         static_cast<float>(sides / static_cast<double>(statistics.folded_texels)) / kMetres;
+  }
+}
+
+// Over what strain folds: the wavelengths asked for, and how far texels widen them.
+void MapBaker::MeasureWavelengths(BakedMap* map) const {
+  BakedMap::Statistics& statistics = map->statistics;
+  const std::vector<float> asked = Wavelengths(), smallest = Smallest();
+  const float scale = material_.fine_lines > 0.0f ? kFineLines : 1.0f;
+  float widened = 1.0f;
+  for (const paint::Texel& texel : surface_.texels()) {
+    const std::size_t at =
+        static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
+        static_cast<std::size_t>(texel.x);
+    if (std::abs(map->height_mm[at]) < kFoldedMillimetres) continue;
+    const SurfacePoint place = PlaceOf(texel);
+    const float wavelength = scale * surface_.surface().Interpolate(asked, place) / kMetres;
+    const float least = surface_.surface().Interpolate(smallest, place) / kMetres;
+    if (statistics.finest_mm == 0.0f) statistics.finest_mm = wavelength;
+    statistics.finest_mm = std::min(statistics.finest_mm, wavelength);
+    statistics.coarsest_mm = std::max(statistics.coarsest_mm, wavelength / scale);
+    if (!(least > wavelength)) continue;
+    ++statistics.widened_texels;
+    if (least <= widened * wavelength) continue;
+    widened = least / wavelength;
+    statistics.widened_from_mm = wavelength;
+    statistics.widened_to_mm = least;
   }
 }
 
@@ -226,30 +270,30 @@ BakedMask MapBaker::SuggestMask(const RegionFolds& folds) const {
   return mask;
 }
 
-std::unique_ptr<BakedMap> MapBaker::Bake(const std::function<bool(float)>& progress) {
-  constexpr float kPrepared = 0.3f;  // of the time
-  const auto say = [&](float done) { return !progress || progress(done); };
+Result<std::unique_ptr<BakedMap>> MapBaker::Bake(float from, float to, Pace* pace) {
+  constexpr float kStrokes = 0.1f, kFolds = 0.35f;  // of the time, when they are done
+  const auto at = [&](float share) { return from + (to - from) * share; };
+  pace->Enter(from, at(kStrokes));
   std::vector<std::vector<float>> masks;
   for (const BakeStroke* stroke : strokes_) masks.push_back(MaskOf(stroke->region));
-  const StrokeLayer strokes(surface_.surface(), strokes_, std::move(masks), Depth());
+  const auto strokes =
+      StrokeLayer::Create(surface_.surface(), strokes_, std::move(masks), Depth(), pace);
+  if (!strokes.ok()) return strokes.status();
   const std::vector<Tensor2> tensors = sum_.Take();
   std::vector<float> compression;
   for (const Tensor2& tensor : tensors) compression.push_back(PrincipalOf(tensor).large);
-  std::vector<float> smallest(surface_.texel_metres().begin(), surface_.texel_metres().end());
-  for (float& side : smallest) side *= kTexelsAWave;
-  const FoldField field(surface_.surface(), strokes, tensors, Wavelengths(), std::move(smallest));
-  if (!say(0.5f * kPrepared)) return nullptr;
-  MakeLayers(field);
-  if (!say(kPrepared)) return nullptr;
+  const FoldField field(surface_.surface(), **strokes, tensors, Wavelengths(), Smallest());
+  pace->Enter(at(kStrokes), at(kFolds));
+  if (Status s = MakeLayers(field, pace); !s.ok()) return s;
 
   auto map = std::make_unique<BakedMap>();
   map->map = map_;
   map->cloth = cloth_;
   map->width = map->height = options_.size;
-  const auto texels_done = [&](float done) { return say(kPrepared + (1.0f - kPrepared) * done); };
-  if (!FillTexels(strokes, texels_done, map.get())) return nullptr;
-  Measure(compression, map.get());
-  map->statistics.strokes = strokes.num_folds();
+  pace->Enter(at(kFolds), to);
+  if (!FillTexels(**strokes, pace, map.get())) return Pace::Cancelled();
+  Measure(compression, **strokes, map.get());
+  MeasureWavelengths(map.get());
   const FloatPlane planes[] = {{&map->height_mm, 1}, {&map->derivative, 2}, {&map->cavity, 1}};
   DilatePlanes(planes, map->covered, map->width, map->height, kGutter);
   for (const RegionFolds& region : regions_) map->masks.push_back(SuggestMask(region));

@@ -10,6 +10,7 @@
 #include "character/bake/bake.h"
 #include "character/bake/bake_surface.h"
 #include "character/bake/fold_layer.h"
+#include "character/bake/pace.h"
 #include "character/bake/profile.h"
 #include "character/bake/stroke_layer.h"
 
@@ -25,8 +26,8 @@ class MapBaker {
   void AddPose(const BakePose& pose);
   void AddStroke(const BakeStroke& stroke);
 
-  // Nothing when `progress` said stop.
-  [[nodiscard]] std::unique_ptr<BakedMap> Bake(const std::function<bool(float)>& progress);
+  // From `from` to `to` of the whole. Errors: StrokeLayer's, KernelSet's.
+  [[nodiscard]] Result<std::unique_ptr<BakedMap>> Bake(float from, float to, Pace* pace);
 
  private:
   struct RegionFolds {
@@ -37,12 +38,15 @@ class MapBaker {
   [[nodiscard]] std::vector<float> MaskOf(const std::string& region) const;
   [[nodiscard]] float Depth() const { return options_.depth * material_.depth; }
   [[nodiscard]] std::vector<float> Wavelengths() const;
-  void MakeLayers(const FoldField& field);
+  // Metres; what the map's texels can show, one a welded vertex.
+  [[nodiscard]] std::vector<float> Smallest() const;
+  Status MakeLayers(const FoldField& field, Pace* pace);
   [[nodiscard]] FoldSample FoldsAt(const SurfacePoint& point, const glm::vec3& tangent,
                                    const glm::vec3& bitangent, const StrokeLayer& strokes) const;
-  bool FillTexels(const StrokeLayer& strokes, const std::function<bool(float)>& progress,
-                  BakedMap* map) const;
-  void Measure(const std::vector<float>& compression, BakedMap* map) const;
+  bool FillTexels(const StrokeLayer& strokes, Pace* pace, BakedMap* map) const;
+  void Measure(const std::vector<float>& compression, const StrokeLayer& strokes,
+               BakedMap* map) const;
+  void MeasureWavelengths(BakedMap* map) const;
   [[nodiscard]] BakedMask SuggestMask(const RegionFolds& folds) const;
 
   const Character& character_;

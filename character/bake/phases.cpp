@@ -92,11 +92,12 @@ void PhaseSolver::Grow() {
   }
 }
 
-void PhaseSolver::Align() {
+void PhaseSolver::Align(Pace* pace) {
   Grow();
   std::vector<FoldKernel>& kernels = set_.kernels();
   const std::vector<char> all(kernels.size(), 1);
   for (int pass = 0; pass < kRelaxations; ++pass) {
+    if (!pace->Tell(static_cast<float>(pass) / static_cast<float>(kRelaxations))) return;
     for (std::size_t i = 0; i < kernels.size(); ++i) {
       float phase = 0.0f;
       if (Foretell(i, all, &phase)) kernels[i].phase = phase;
@@ -116,11 +117,10 @@ void PhaseSolver::VaryDepth(float variation, std::uint32_t seed) {
     std::vector<float> smooth(noise.size());
     for (std::size_t i = 0; i < noise.size(); ++i) {
       float sum = noise[i], total = 1.0f;
-      const float length = glm::length(kernels[i].frequency);
       for (const Neighbour& neighbour : Of(i)) {
         const vec3 step = kernels[i].place.position - kernels[neighbour.kernel].place.position;
-        // In radians across the fold: a seventh of a wavelength and the share is gone.
-        const float across = glm::dot(step, kernels[i].frequency) / length * length;
+        // In radians across the fold: a third of a wavelength off and the share is gone.
+        const float across = glm::dot(step, kernels[i].frequency);
         const float share = std::exp(-1.2f * across * across);
         sum += share * noise[neighbour.kernel];
         total += share;

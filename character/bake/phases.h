@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "character/bake/kernels.h"
+#include "character/bake/pace.h"
 
 namespace furrow::character::bake {
 
@@ -19,7 +20,8 @@ class PhaseSolver {
  public:
   PhaseSolver(const Surface& surface, KernelSet* set);
 
-  void Align();
+  // Unfinished where `pace` was stopped.
+  void Align(Pace* pace);
 
   // Makes folds of uneven depth and length: amplitudes are scaled by noise that is long along folds
   // and narrow across them, within 1 - 2 * `variation` and 1 + 2 * `variation`.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -15,6 +16,8 @@ using glm::vec3;
 
 constexpr float kSteerWidths = 4.0f;  // within which folds of strain run along a drawn one
 constexpr float kMetres = 0.001f;     // a millimetre
+constexpr float kFarthest = 0.02f;    // metres off the surface
+constexpr std::size_t kMostPoints = 200'000;
 
 // 1 on the line, 0 at `reach` and beyond, smooth at both.
 struct Falloff {
@@ -28,16 +31,20 @@ Falloff FalloffAt(float distance, float reach) {
   return {q * q, -4.0f * x * q / reach};
 }
 
+// Metres between points on the line.
+float PieceOf(const BakeStroke& stroke) { return std::max(stroke.width_mm * kMetres, 0.001f); }
+
+std::string NameOf(const BakeStroke& stroke) { return "stroke '" + stroke.name + "'"; }
+
 // Points on the line close enough to each other that straight pieces between them stay near the
 // surface once the points are carried to it.
 std::vector<vec3> Densify(const BakeStroke& stroke) {
   std::vector<vec3> line = stroke.points;
   if (stroke.smooth) line = paint::Smooth(stroke.points, 8);
-  const float longest = std::max(stroke.width_mm * kMetres, 0.001f);
   std::vector<vec3> dense;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
     const float length = glm::distance(line[i], line[i + 1]);
-    const int pieces = std::clamp(static_cast<int>(std::ceil(length / longest)), 1, 64);
+    const int pieces = std::clamp(static_cast<int>(std::ceil(length / PieceOf(stroke))), 1, 64);
     for (int k = 0; k < pieces; ++k) {
       dense.push_back(
           glm::mix(line[i], line[i + 1], static_cast<float>(k) / static_cast<float>(pieces)));
@@ -59,38 +66,68 @@ float CavityOf(float height, float wavelength) {
   return 1.0f / std::sqrt(1.0f + rise * rise);
 }
 
-StrokeLayer::StrokeLayer(const Surface& surface, std::vector<const BakeStroke*> strokes,
-                         std::vector<std::vector<float>> masks, float depth)
-    : surface_(surface), depth_(depth) {
+Result<std::unique_ptr<StrokeLayer>> StrokeLayer::Create(
+    const Surface& surface, const std::vector<const BakeStroke*>& strokes,
+    std::vector<std::vector<float>> masks, float depth, Pace* pace) {
+  std::unique_ptr<StrokeLayer> layer(new StrokeLayer(surface, depth));
   SurfaceReach reach(surface);
   std::vector<std::vector<std::uint32_t>> lists(surface.triangles().size());
   for (std::size_t i = 0; i < strokes.size(); ++i) {
-    Lay(surface, *strokes[i], std::move(masks[i]), &reach, &lists);
+    if (!pace->Tell(static_cast<float>(i) / static_cast<float>(strokes.size()))) break;
+    const Status s = layer->Lay(*strokes[i], std::move(masks[i]), &reach, &lists, pace);
+    if (!s.ok()) return s;
   }
-  starts_.push_back(0);
+  if (pace->stopped()) return Pace::Cancelled();
+  layer->starts_.push_back(0);
   for (const auto& list : lists) {
-    lists_.insert(lists_.end(), list.begin(), list.end());
-    starts_.push_back(lists_.size());
+    layer->lists_.insert(layer->lists_.end(), list.begin(), list.end());
+    layer->starts_.push_back(layer->lists_.size());
   }
+  return layer;
 }
 
-void StrokeLayer::Lay(const Surface& surface, const BakeStroke& stroke, std::vector<float> mask,
-                      SurfaceReach* reach, std::vector<std::vector<std::uint32_t>>* lists) {
+Status StrokeLayer::Lay(const BakeStroke& stroke, std::vector<float> mask, SurfaceReach* reach,
+                        std::vector<std::vector<std::uint32_t>>* lists, Pace* pace) {
   std::vector<vec3> points = Densify(stroke);
+  num_points_ += points.size();
+  if (num_points_ > kMostPoints) {
+    return {StatusCode::kLimit,
+            "the strokes of one map are cut into more than " + std::to_string(kMostPoints) +
+                " pieces, each as long as its stroke is wide",
+            NameOf(stroke), "make strokes wider or shorter"};
+  }
   const auto index = static_cast<std::uint32_t>(laid_.size());
   const float radius = ReachOf(stroke);
-  for (vec3& point : points) {
-    const SurfacePoint place = surface.Nearest(point);
-    point = place.position;
+  float farthest = 0.0f;
+  for (std::size_t i = 0; i < points.size() && pace->Ask(i); ++i) {
+    const SurfacePoint place = surface_.Nearest(points[i]);
+    farthest = std::max(farthest, glm::distance(points[i], place.position));
+    points[i] = place.position;
     // Half a piece more, so that what is near the middle of a piece is found from its ends.
-    const float piece = std::max(stroke.width_mm * kMetres, 0.001f);
-    for (const std::uint32_t t : reach->Find(point, {&place.triangle, 1}, radius + 0.5f * piece)) {
+    const float reached = radius + 0.5f * PieceOf(stroke);
+    for (const std::uint32_t t : reach->Find(place.position, {&place.triangle, 1}, reached)) {
       std::vector<std::uint32_t>& list = (*lists)[t];
       if (list.empty() || list.back() != index) list.push_back(index);
     }
   }
-  num_folds_ += stroke.kind == BakeStroke::Kind::kFold ? 1 : 0;
+  if (farthest > std::max(kFarthest, kSteerWidths * stroke.width_mm * kMetres)) {
+    return {StatusCode::kInvalidArgument,
+            "the stroke lies " + std::to_string(std::lround(farthest / kMetres)) +
+                " mm off the surface",
+            NameOf(stroke), "points are metres in model space, on this character at rest"};
+  }
   laid_.push_back({&stroke, paint::StrokeLine(std::move(points)), std::move(mask), radius});
+  return {};
+}
+
+void StrokeLayer::MarkFolds(const SurfacePoint& point, std::vector<char>* seen) const {
+  for (const std::uint32_t index : Near(point.triangle)) {
+    const Laid& laid = laid_[index];
+    if ((*seen)[index] || laid.stroke->kind != BakeStroke::Kind::kFold) continue;
+    const float reach = paint::kStrokeReach * laid.stroke->width_mm * kMetres;
+    const bool there = laid.line.FindNearest(point.position).distance < reach;
+    (*seen)[index] = there && MaskAt(laid, point) > 0.0f;
+  }
 }
 
 float StrokeLayer::MaskAt(const Laid& laid, const SurfacePoint& point) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "character/bake/bake.h"
+#include "character/bake/pace.h"
 #include "character/bake/surface.h"
 #include "character/paint/strokes.h"
 
@@ -31,8 +33,11 @@ class StrokeLayer {
  public:
   // `surface` and `strokes` outlive the layer. `masks`: one a stroke, how much of it counts at each
   // welded vertex; an empty one: everywhere all of it. `depth` scales heights.
-  StrokeLayer(const Surface& surface, std::vector<const BakeStroke*> strokes,
-              std::vector<std::vector<float>> masks, float depth);
+  // kInvalidArgument: a stroke that lies further off the surface than 20 mm and four widths.
+  // kLimit: strokes too long for their widths. kUnavailable: stopped.
+  [[nodiscard]] static Result<std::unique_ptr<StrokeLayer>> Create(
+      const Surface& surface, const std::vector<const BakeStroke*>& strokes,
+      std::vector<std::vector<float>> masks, float depth, Pace* pace);
 
   // What strokes leave of the folds of strain at a place.
   struct Guidance {
@@ -52,7 +57,9 @@ class StrokeLayer {
   [[nodiscard]] Drawn At(const SurfacePoint& point, const glm::vec3& tangent,
                          const glm::vec3& bitangent) const;
 
-  [[nodiscard]] int num_folds() const { return num_folds_; }
+  // Notes the fold strokes that are something at a place: `seen` has one entry a stroke.
+  void MarkFolds(const SurfacePoint& point, std::vector<char>* seen) const;
+  [[nodiscard]] std::size_t num_strokes() const { return laid_.size(); }
 
  private:
   struct Laid {
@@ -62,8 +69,9 @@ class StrokeLayer {
     float reach;  // metres from the line
   };
 
-  void Lay(const Surface& surface, const BakeStroke& stroke, std::vector<float> mask,
-           SurfaceReach* reach, std::vector<std::vector<std::uint32_t>>* lists);
+  StrokeLayer(const Surface& surface, float depth) : surface_(surface), depth_(depth) {}
+  Status Lay(const BakeStroke& stroke, std::vector<float> mask, SurfaceReach* reach,
+             std::vector<std::vector<std::uint32_t>>* lists, Pace* pace);
   [[nodiscard]] std::span<const std::uint32_t> Near(std::uint32_t triangle) const {
     return std::span(lists_).subspan(starts_[triangle], starts_[triangle + 1] - starts_[triangle]);
   }
@@ -71,7 +79,7 @@ class StrokeLayer {
 
   const Surface& surface_;
   float depth_;
-  int num_folds_ = 0;
+  std::size_t num_points_ = 0;
   std::vector<Laid> laid_;
   std::vector<std::uint32_t> lists_;  // strokes near each triangle
   std::vector<std::size_t> starts_;

@@ -4,6 +4,7 @@
 // seams, and nowhere else.
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -294,6 +295,57 @@ TEST(Folds, DoNotLeakFromOneLipToTheOther) {
   }
   EXPECT_GT(first, 0.5f);
   EXPECT_EQ(second, 0.0f);
+}
+
+TEST(Folds, TooFineForASheetSoLargeAreRefusedAndNotDropped) {
+  const Character sheet = toys::Wearing(toys::Sheet(2.0f, 2.0f, 10, 10));
+  BakeOptions options = toys::Exact();
+  options.size = 2048;
+  options.skin.wavelength_mm = 1.0f;
+  const std::vector<BakePose> poses = {toys::Pose(toys::Squeeze(0.2f, 0.0f))};
+  const Status refused = Bake(sheet, poses, {}, options).status();
+  EXPECT_EQ(refused.code(), StatusCode::kLimit);
+  EXPECT_NE(refused.ToString().find("--skin-wavelength"), std::string::npos);
+  EXPECT_NE(refused.ToString().find("--size"), std::string::npos);
+}
+
+// Valleys along the middle row.
+int Valleys(const BakedMap& map) {
+  int valleys = 0;
+  for (int x = 0; x + 1 < map.width; ++x) {
+    valleys += map.derivative[2 * toys::At(map, x, map.height / 2)] > 0.0f &&
+               map.derivative[2 * toys::At(map, x + 1, map.height / 2)] <= 0.0f;
+  }
+  return valleys;
+}
+
+TEST(Folds, HaveFineLinesAThirdApartWhereTheSkinHasThem) {
+  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  BakeOptions options = toys::Exact();
+  options.size = 512;
+  const std::vector<BakePose> poses = {toys::Pose(toys::Squeeze(0.2f, 0.0f))};
+  const BakedMap plain = toys::BakeFolds(sheet, poses, options);
+  options.skin.fine_lines = 1.0f;
+  const BakedMap lined = toys::BakeFolds(sheet, poses, options);
+  EXPECT_NEAR(Valleys(plain), 10, 1);
+  EXPECT_GT(Valleys(lined), 17);
+  EXPECT_NEAR(plain.statistics.finest_mm, 10.0f, 1e-3f);
+  EXPECT_NEAR(lined.statistics.finest_mm, 10.0f / 3.0f, 1e-3f);
+  EXPECT_NEAR(lined.statistics.coarsest_mm, 10.0f, 1e-3f);
+}
+
+TEST(Folds, SayWhatWasWidenedForTheTexels) {
+  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  BakeOptions options = toys::Exact();  // texels of 0.39 mm
+  // Of a region that this rig lacks: nobody's business.
+  options.wavelengths = {{"nose", 0.5f}};
+  const std::vector<BakePose> poses = {toys::Pose(toys::Squeeze(0.2f, 0.0f))};
+  EXPECT_EQ(toys::BakeFolds(sheet, poses, options).statistics.widened_texels, 0);
+  options.skin.wavelength_mm = 1.0f;
+  const BakedMap::Statistics fine = toys::BakeFolds(sheet, poses, options).statistics;
+  EXPECT_EQ(fine.widened_texels, fine.folded_texels);
+  EXPECT_NEAR(fine.widened_from_mm, 1.0f, 1e-3f);
+  EXPECT_NEAR(fine.widened_to_mm, kTexelsAWave * 100.0f / 256.0f, 0.01f);
 }
 
 }  // namespace

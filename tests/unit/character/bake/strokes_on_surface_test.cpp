@@ -115,5 +115,56 @@ TEST(Strokes, ReachNoFurtherThanOverTheSurface) {
   EXPECT_EQ(lower, 0.0f);
 }
 
+// A fan often leaves triangles of two equal corners behind; they are no place for a stroke.
+TEST(Strokes, DoNotFallForTrianglesWithoutExtent) {
+  const BakeStroke stroke = Across(BakeStroke::Kind::kFold);
+  const BakedMap whole = toys::BakeFolds(Sheet(), {}, toys::Exact(), {stroke});
+  const std::uint32_t a = 0, b = 220;  // far corner, and right beside the line
+  const std::uint32_t kCorners[][3] = {{a, a, b}, {a, b, a}, {b, a, a}, {b, b, b}};
+  for (const auto& corners : kCorners) {
+    for (const std::size_t place : {0u, 300u, 1200u}) {
+      Character character = Sheet();
+      std::vector<std::uint32_t>& indices = character.meshes[0].indices;
+      indices.insert(indices.begin() + static_cast<std::ptrdiff_t>(place), corners, corners + 3);
+      const BakedMap map = toys::BakeFolds(character, {}, toys::Exact(), {stroke});
+      EXPECT_TRUE(map.height_mm == whole.height_mm) << corners[0] << " at " << place;
+    }
+  }
+}
+
+TEST(Strokes, FarFromTheSurfaceAreRefusedByName) {
+  BakeStroke stroke = Across(BakeStroke::Kind::kFold);
+  for (glm::vec3& point : stroke.points) point.z = 0.019f;
+  EXPECT_TRUE(Bake(Sheet(), {}, {&stroke, 1}, toys::Exact()).ok());
+  stroke.points[1].z = 0.06f;
+  const Status refused = Bake(Sheet(), {}, {&stroke, 1}, toys::Exact()).status();
+  EXPECT_EQ(refused.code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(refused.where(), "stroke 'line'");
+  stroke.width_mm = 20.0f;  // a broad one may lie four widths off
+  EXPECT_TRUE(Bake(Sheet(), {}, {&stroke, 1}, toys::Exact()).ok());
+}
+
+TEST(Strokes, CountOnlyWhereTheyCoverTexels) {
+  Character sheet = Sheet();
+  for (Vertex& vertex : sheet.meshes[0].vertices) vertex.uv.x *= 2.0f;  // half lies off the picture
+  BakeStroke off = Across(BakeStroke::Kind::kFold);
+  for (glm::vec3& point : off.points) point.x = 0.08f;
+  BakeStroke on = off;
+  for (glm::vec3& point : on.points) point.x = 0.02f;
+  EXPECT_EQ(toys::BakeFolds(sheet, {}, toys::Exact(), {on}).statistics.strokes, 1);
+  EXPECT_EQ(toys::BakeFolds(sheet, {}, toys::Exact(), {on, off}).statistics.strokes, 1);
+}
+
+TEST(Strokes, OfTooManyPiecesAreALimit) {
+  BakeStroke stroke = Across(BakeStroke::Kind::kFold);
+  stroke.width_mm = 0.1f;
+  stroke.depth_mm = 0.1f;
+  stroke.points.clear();
+  for (int i = 0; i < 1024; ++i) stroke.points.push_back({i % 2 == 0 ? 0.0f : 0.1f, 0.05f, 0.0f});
+  stroke.smooth = false;
+  const std::vector<BakeStroke> strokes(4, stroke);  // 65,000 pieces each
+  EXPECT_EQ(Bake(Sheet(), {}, strokes, toys::Exact()).status().code(), StatusCode::kLimit);
+}
+
 }  // namespace
 }  // namespace furrow::character::bake
