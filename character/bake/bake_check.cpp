@@ -66,14 +66,7 @@ Status CheckStroke(const wrinkle::Rig& rig, const BakeStroke& stroke, const std:
       return Status(StatusCode::kNonFinite, "a point is not finite", where);
     }
   }
-  if (!In(stroke.width_mm, 1e-3f, 200.0f)) return Refuse("width_mm must lie in (0, 200]", where);
-  if (!In(stroke.depth_mm, -50.0f, 50.0f)) return Refuse("depth_mm must lie in [-50, 50]", where);
-  if (!In(stroke.ridge, 0.0f, 1.0f)) return Refuse("ridge must lie in [0, 1]", where);
-  if (!In(stroke.taper, 1e-3f, 1.0f)) return Refuse("taper must lie in (0, 1]", where);
-  if (!In(stroke.wavelength_mm, 0.0f, 200.0f)) {
-    return Refuse("wavelength_mm must lie in [0, 200]", where);
-  }
-  return Status();
+  return CheckStrokeNumbers(stroke, where);
 }
 
 Status CheckMaterial(const BakeMaterial& m, const std::string& where) {
@@ -116,6 +109,34 @@ Status CheckOptions(const BakeOptions& options) {
 }
 
 }  // namespace
+
+Status CheckStrokeNumbers(const BakeStroke& stroke, const std::string& at) {
+  constexpr float kAboveZero = 1e-3f;
+  constexpr float kDeepest = 4.0f;  // of a fold, in widths: 85 degrees steep
+  const float wavelength = stroke.wavelength_mm == 0.0f ? 1.0f : stroke.wavelength_mm;
+  const struct {
+    const char* field;
+    float value, low, high;
+    const char* interval;
+  } kRanges[] = {{".width_mm", stroke.width_mm, kAboveZero, 200.0f, "(0, 200]"},
+                 {".depth_mm", stroke.depth_mm, -50.0f, 50.0f, "[-50, 50]"},
+                 {".ridge", stroke.ridge, 0.0f, 1.0f, "[0, 1]"},
+                 {".taper", stroke.taper, kAboveZero, 1.0f, "(0, 1]"},
+                 {".wavelength_mm", wavelength, 0.2f, 200.0f, "[0.2, 200], or 0"}};
+  for (const auto& range : kRanges) {
+    if (In(range.value, range.low, range.high)) continue;
+    if (!std::isfinite(range.value)) {
+      return {StatusCode::kNonFinite, "the number is not finite", at + range.field};
+    }
+    return Refuse("the number is not in " + std::string(range.interval), at + range.field);
+  }
+  const bool is_fold = stroke.kind == BakeStroke::Kind::kFold;
+  if (is_fold && std::abs(stroke.depth_mm) > kDeepest * stroke.width_mm) {
+    return Refuse("stroke '" + stroke.name + "' is deeper than four times its width",
+                  at + ".depth_mm");
+  }
+  return {};
+}
 
 Status CheckBake(const Character& character, std::span<const BakePose> poses,
                  std::span<const BakeStroke> strokes, const BakeOptions& options) {

@@ -57,6 +57,7 @@ TEST(Bake, RefusesWhatIsOutOfRange) {
       [](Request* r) { r->strokes = {Line()}, r->strokes[0].ridge = 1.1f; },
       [](Request* r) { r->strokes = {Line()}, r->strokes[0].taper = 0.0f; },
       [](Request* r) { r->strokes = {Line()}, r->strokes[0].wavelength_mm = -1.0f; },
+      [](Request* r) { r->strokes = {Line()}, r->strokes[0].wavelength_mm = 0.1f; },
       [](Request* r) { r->options.size = 63; },
       [](Request* r) { r->options.size = 4097; },
       [](Request* r) { r->options.threads = 0; },
