@@ -11,6 +11,8 @@
 namespace furrow::character::generator {
 namespace {
 
+constexpr float kFineLines = 0.8f;  // of a skin that folds twice as deep as a young man's
+
 Status AddNormalMap(const bake::BakedMap& baked, Character* character) {
   const auto& maps = character->rig.wrinkle_maps;
   const auto map = std::find_if(maps.begin(), maps.end(),
@@ -31,6 +33,7 @@ bake::BakeOptions WrinkleMapOptions(int size, float depth) {
   bake::BakeOptions options;
   options.size = size;
   options.skin.depth = depth;
+  options.skin.fine_lines = std::clamp(kFineLines * (depth - 1.0f), 0.0f, 1.0f);
   return options;
 }
 

@@ -9,7 +9,8 @@
 
 namespace furrow::character::generator {
 
-// How the default character's skin and clothes fold; what `furrow bake` does by itself.
+// How the default character's skin and clothes fold; what `furrow bake` does by itself. Skin that
+// folds deeper than at 30 (`depth` above 1) has fine lines too.
 [[nodiscard]] bake::BakeOptions WrinkleMapOptions(int size, float depth);
 
 // Bakes the wrinkle maps of the character's rig from the strain of its own reference poses and from
