@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What folds_test.cpp asks of toys, asked of the default character's own surface and poses.
+#include "character/generator/default_character.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "character/bake/bake_poses.h"
+#include "character/bake/bake_surface.h"
+#include "character/rig_file.h"
+#include "tests/unit/character/bake/toys.h"
+
+namespace furrow::character::bake {
+namespace {
+
+using glm::vec2;
+using glm::vec3;
+
+constexpr int kSize = 512;
+
+BakeOptions Exact() {
+  BakeOptions options = toys::Exact();
+  options.size = kSize;
+  options.threads = 2;
+  options.skin.wavelength_mm = 9.0f;
+  options.skin.threshold = 0.02f;
+  options.skin.crossing = 0.0f;
+  options.wavelengths.clear();
+  return options;
+}
+
+// One map on skin of one pose, taken wherever it strains.
+class DefaultCharacterFolds : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const auto rig =
+        LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "character/rigs/default.json");
+    ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+    character_ = new Character(generator::MakeDefaultCharacter(*rig, {.texture_size = 128}));
+    auto poses = PosesOf(*character_, {});
+    ASSERT_TRUE(poses.ok()) << poses.status().ToString();
+    const auto pose = std::find_if(poses->poses.begin(), poses->poses.end(), [](const BakePose& p) {
+      return p.map == "squash" && p.region == "mouth_l";
+    });
+    ASSERT_NE(pose, poses->poses.end());
+    pose->region.clear();
+    Pace pace({});
+    auto surface = BakeSurface::Create(*character_, false, Exact(), &pace);
+    ASSERT_TRUE(surface.ok()) << surface.status().ToString();
+    surface_ = surface->release();
+    strain_ = new std::vector<Tensor2>(
+        surface_->solver().Solve(pose->skin_matrices, Exact().skin.max_compression).tensors);
+    map_ = new BakedMap(toys::BakeFolds(*character_, {*pose}, Exact()));
+  }
+  static void TearDownTestSuite() {
+    delete map_;
+    delete strain_;
+    delete surface_;
+    delete character_;
+  }
+
+  // Where folds have set in fully.
+  struct Place {
+    float compression;
+    vec3 across;  // unit
+    vec3 slope;   // of the height, in the surface
+  };
+  static std::vector<Place> FoldedPlaces() {
+    std::vector<Place> places;
+    for (const paint::Texel& t : surface_->texels()) {
+      const SurfacePoint point{t.triangle, t.corners, t.position};
+      const Principal2 strain = PrincipalOf(surface_->surface().Interpolate(*strain_, point));
+      if (strain.large < 0.1f) continue;
+      const wrinkle::SurfaceAxes& axes = surface_->surface().triangles()[t.triangle].axes;
+      const std::size_t i = toys::At(*map_, t.x, t.y);
+      places.push_back(
+          {strain.large, axes.x * strain.direction.x + axes.y * strain.direction.y,
+           -map_->derivative[2 * i] * t.tangent - map_->derivative[2 * i + 1] * t.bitangent});
+    }
+    return places;
+  }
+
+  // The height at a UV, between its four texels.
+  static float HeightAt(const vec2& uv) {
+    const vec2 at = uv * static_cast<float>(kSize) - 0.5f;
+    const vec2 low = glm::floor(at), part = at - low;
+    const auto texel = [&](int dx, int dy) {
+      const int x = std::clamp(static_cast<int>(low.x) + dx, 0, kSize - 1);
+      const int y = std::clamp(static_cast<int>(low.y) + dy, 0, kSize - 1);
+      return map_->height_mm[toys::At(*map_, x, y)];
+    };
+    return glm::mix(glm::mix(texel(0, 0), texel(1, 0), part.x),
+                    glm::mix(texel(0, 1), texel(1, 1), part.x), part.y);
+  }
+
+  static Character* character_;
+  static BakeSurface* surface_;
+  static std::vector<Tensor2>* strain_;
+  static BakedMap* map_;
+};
+Character* DefaultCharacterFolds::character_ = nullptr;
+BakeSurface* DefaultCharacterFolds::surface_ = nullptr;
+std::vector<Tensor2>* DefaultCharacterFolds::strain_ = nullptr;
+BakedMap* DefaultCharacterFolds::map_ = nullptr;
+
+TEST_F(DefaultCharacterFolds, KeepTheLengthAcrossThem) {
+  double arc = 0.0;
+  const std::vector<Place> places = FoldedPlaces();
+  for (const Place& place : places) {
+    arc += static_cast<double>(
+        std::hypot(1.0f - place.compression, glm::dot(place.slope, place.across)));
+  }
+  ASSERT_GT(places.size(), 500u);
+  // On a curved face waves cannot agree everywhere: where they part, folds are lower. Toys hold 2%.
+  EXPECT_NEAR(arc / static_cast<double>(places.size()), 1.0, 0.1);
+}
+
+TEST_F(DefaultCharacterFolds, RunAcrossTheCompression) {
+  std::vector<float> angles;
+  for (const Place& place : FoldedPlaces()) {
+    const float length = glm::length(place.slope);
+    if (length < 0.05f) continue;
+    const float cosine = std::min(std::abs(glm::dot(place.slope, place.across)) / length, 1.0f);
+    angles.push_back(glm::degrees(std::acos(cosine)));
+  }
+  ASSERT_GT(angles.size(), 500u);
+  std::nth_element(angles.begin(), angles.begin() + angles.size() / 2, angles.end());
+  EXPECT_LT(angles[angles.size() / 2], 10.0f);
+}
+
+float Largest(std::vector<float> jumps, double share) {
+  const auto place =
+      jumps.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(jumps.size() - 1));
+  std::nth_element(jumps.begin(), place, jumps.end());
+  return *place;
+}
+
+TEST_F(DefaultCharacterFolds, DoNotJumpOverUvSeams) {
+  const Mesh& mesh = surface_->surface().mesh();
+  const auto triangles = surface_->surface().triangles();
+  std::vector<float> seam, interior;
+  const auto corner = [&](std::uint32_t t, std::uint32_t welded) {
+    const auto& v = triangles[t].vertices;
+    const auto k = static_cast<std::size_t>(std::find(v.begin(), v.end(), welded) - v.begin());
+    return mesh.vertices[mesh.indices[3 * t + k]].uv;
+  };
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t n = triangles[t].neighbours[k];
+      if (n == kNoTriangle || n < t) continue;
+      const std::uint32_t a = triangles[t].vertices[k], b = triangles[t].vertices[(k + 1) % 3];
+      const bool is_seam = corner(t, a) != corner(n, a) || corner(t, b) != corner(n, b);
+      for (const float at : {0.1f, 0.3f, 0.5f, 0.7f, 0.9f}) {
+        const vec2 here = glm::mix(corner(t, a), corner(t, b), at);
+        const float height = HeightAt(here);
+        if (std::abs(height) < 0.002f) continue;
+        // Inside: to the next texel.
+        const vec2 there = is_seam ? glm::mix(corner(n, a), corner(n, b), at)
+                                   : here + vec2(1.0f / static_cast<float>(kSize), 0.0f);
+        (is_seam ? seam : interior).push_back(std::abs(height - HeightAt(there)));
+      }
+    }
+  }
+  ASSERT_GT(seam.size(), 20u);
+  ASSERT_GT(interior.size(), 200u);
+  EXPECT_LE(Largest(seam, 0.95), 2.0f * Largest(interior, 0.95));
+}
+
+}  // namespace
+}  // namespace furrow::character::bake
