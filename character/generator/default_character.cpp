@@ -22,6 +22,7 @@
 #include "character/generator/skinning.h"
 #include "character/generator/textures.h"
 #include "character/generator/wrinkle_maps.h"
+#include "character/paint/hair_strands.h"
 #include "character/paint/strokes.h"
 #include "character/paint/uv_raster.h"
 #include "character/rig_file.h"
@@ -84,8 +85,10 @@ void AddHeadParts(const CharacterOptions& options, const HeadShape& shape, Chara
   Mesh hair = SkinnedPart(character->skeleton, MakeHair(shape));
   Material strands = MakeMaterial("hair", Material::Kind::kHair, 0.68f);
   strands.double_sided = true;
-  strands.base_colour_texture =
-      AddPicture(character, PaintHairColour(hair, options.face, options.texture_size));
+  strands.alpha_cutoff = paint::kStrandCutoff;
+  HairPictures pictures = PaintHair(hair, options.face, options.texture_size);
+  strands.base_colour_texture = AddPicture(character, std::move(pictures.colour));
+  strands.normal_texture = AddPicture(character, std::move(pictures.normals));
   AddMesh(character, std::move(hair), std::move(strands));
 
   Material lashes = MakeMaterial("lashes", Material::Kind::kHair, 0.7f);

@@ -12,6 +12,7 @@
 #include "character/generator/head_mesh.h"
 #include "character/generator/head_shape.h"
 #include "character/generator/mesh_tools.h"
+#include "character/paint/hair_strands.h"
 #include "character/paint/tangents.h"
 
 namespace furrow::character::generator {
@@ -21,10 +22,10 @@ using glm::vec2;
 using glm::vec3;
 
 constexpr float kDegrees = 180.0f / std::numbers::pi_v<float>;
-constexpr int kSections = 6;        // of a lock, root to tip
-constexpr int kCells = 40;          // locks along a side of the texture
-constexpr float kCapTop = 0.72f;    // locks above this v, the cap below
-constexpr float kLockArea = 0.40f;  // square centimetres of scalp a lock grows from
+constexpr int kSections = 7;                     // of a lock, root to tip
+constexpr int kMaxLocks = 1800;                  // what the triangles are spent on
+constexpr float kCapTop = paint::kStrandBottom;  // strands above this v, the cap below
+constexpr float kLockArea = 0.52f;               // square centimetres of scalp a lock grows from
 
 // Height of the hairline by azimuth, degrees from the front: forehead, temple, sideburn, ear, nape.
 constexpr Knot kHairline[] = {{0, 6.3f},    {14, 6.45f},  {26, 6.5f},  {36, 5.9f},   {44, 4.7f},
@@ -60,10 +61,13 @@ void AddCap(const HeadGrid& grid, HeadMesh* hair) {
     if (index != kNone) return index;
     vec3 place = skin[at(c, r)];
     const float inside = InsideHairline(place);
-    place += grid.shape().Normal(place) * (-0.15f + 0.32f * SmoothStep(0.1f, 1.4f, inside));
+    place += grid.shape().Normal(place) * (-0.12f + 0.24f * SmoothStep(-0.3f, 1.2f, inside));
     if (std::abs(c) == last) place.x = 0.0f;
+    const vec3 normal = grid.shape().Normal(place);
     const vec2 uv = glm::mix(vec2(0.01f), vec2(0.99f), HeadUv(grid.Plain(c, r)));
-    return index = Add(hair, place, {uv.x, kCapTop + 0.01f + (0.98f - kCapTop) * uv.y});
+    index = Add(hair, place, {uv.x, kCapTop + 0.01f + (0.98f - kCapTop) * uv.y});
+    hair->mesh.vertices[index].normal = normal;
+    return index;
   };
   for (int c = -last; c < last; ++c) {
     for (int r = 0; r + 1 < rows; ++r) {
@@ -76,45 +80,37 @@ void AddCap(const HeadGrid& grid, HeadMesh* hair) {
   }
 }
 
-// One lock: a ribbon, raised along its middle, that follows the path and ends in a point.
-void AddLock(const HeadShape& shape, const HairLock& lock, int number, HeadMesh* hair) {
-  const vec2 cell(static_cast<float>(number % kCells) / kCells,
-                  kCapTop * static_cast<float>(number / kCells) / kCells);
-  const vec2 size(0.92f / kCells, 0.92f * kCapTop / kCells);
+// One lock: a card that follows the path. Its normals fan out, so that it is lit as if it were
+// round; beyond that locks are lit as the hair's whole mass is: each by itself would look like a
+// scale.
+void AddLock(const HairLock& lock, int tile, HeadMesh* hair) {
+  constexpr float kFan = 0.3f;
   const auto first = static_cast<std::uint32_t>(hair->mesh.vertices.size());
   const int count = static_cast<int>(lock.path.size());
   for (int i = 0; i < count; ++i) {
     const float t = static_cast<float>(i) / static_cast<float>(count - 1);
     const vec3 along =
         glm::normalize(lock.path[std::min(i + 1, count - 1)] - lock.path[std::max(i - 1, 0)]);
-    const vec3 normal = shape.Normal(lock.path[i]);
-    const vec3 across = glm::normalize(glm::cross(normal, along));
-    const vec3 up = glm::normalize(glm::cross(along, across));
-    // Full within a fifth of its length, then to a point.
-    const float width =
-        lock.width * (0.55f + 0.45f * SmoothStep(0.0f, 0.2f, t)) * (1.0f - 0.94f * t * t * t);
-    for (const float s : {-1.0f, 0.0f, 1.0f}) {
-      const vec3 place = lock.path[i] + across * (s * width) - up * (0.35f * width * s * s);
-      Add(hair, place, cell + size * vec2(0.5f + 0.5f * s, t));
+    const vec3 across = glm::normalize(glm::cross(lock.out[i], along));
+    const float width = lock.width * (0.8f + 0.2f * SmoothStep(0.0f, 0.2f, t)) * (1.0f - 0.35f * t);
+    for (const float s : {-1.0f, 1.0f}) {
+      const std::uint32_t added =
+          Add(hair, lock.path[i] + across * (s * width), paint::StrandUv(tile, s, t));
+      hair->mesh.vertices[added].normal = glm::normalize(lock.out[i] + kFan * s * across);
     }
   }
   for (int i = 0; i + 1 < count; ++i) {
-    for (std::uint32_t s = 0; s < 2; ++s) {
-      const std::uint32_t a = first + 3 * static_cast<std::uint32_t>(i) + s;
-      AddQuad(&hair->mesh, a, a + 3, a + 4, a + 1);
-    }
+    const std::uint32_t a = first + 2 * static_cast<std::uint32_t>(i);
+    AddQuad(&hair->mesh, a, a + 2, a + 3, a + 1);
   }
 }
 
-// Locks are lit as the hair's whole mass is: each by itself would look like a scale.
-void SmoothShading(const HeadShape& shape, HeadMesh* hair) {
-  for (std::size_t i = 0; i < hair->info.size(); ++i) {
-    vec3& normal = hair->mesh.vertices[i].normal;
-    const vec3 mass = shape.Normal(hair->info[i].place);
-    if (glm::dot(normal, mass) < 0.0f) normal = -normal;
-    normal = glm::normalize(glm::mix(normal, mass, 0.55f));
-  }
-  paint::ComputeTangents(hair->mesh.vertices, hair->mesh.indices);
+// Full in the mass, a few strands where the hair begins.
+int ChooseTile(float inside, int number) {
+  const bool sparse = Hash(number, 10, 9) < SmoothStep(0.7f, -0.1f, inside);
+  const float choice = Hash(number, 11, 9);
+  return sparse ? paint::kFullTiles + static_cast<int>(choice * paint::kSparseTiles)
+                : static_cast<int>(choice * paint::kFullTiles);
 }
 
 // The area of a cell of the grid, square centimetres.
@@ -146,18 +142,23 @@ HeadMesh MakeHair(const HeadShape& shape) {
       const float inside = InsideHairline(middle);
       if (inside < -0.25f) continue;
       // Denser where the hairline shows.
-      due += CellArea(grid, c, r) / (kLockArea * (inside < 0.9f ? 0.55f : 1.0f));
-      for (; due >= 1.0f && number < kCells * kCells; due -= 1.0f, ++number) {
+      due += CellArea(grid, c, r) / (kLockArea * (inside < 0.9f ? 0.5f : 1.0f));
+      for (; due >= 1.0f && number < kMaxLocks; due -= 1.0f, ++number) {
         const vec2 jitter(Hash(number, 1, 7), Hash(number, 2, 7));
         const vec3 root =
             grid.Surface(glm::mix(grid.Plain(c, r), grid.Plain(c + 1, r + 1), jitter));
-        if (InsideHairline(root) < -0.1f) continue;
-        AddLock(shape, GrowLock(shape, root, number, kSections), number, &hair);
+        const float depth = InsideHairline(root);
+        if (depth < -0.2f) continue;
+        const HairLock lock = GrowLock(shape, root, number, kSections);
+        if (!lock.path.empty()) AddLock(lock, ChooseTile(depth, number), &hair);
       }
     }
   }
-  FinishSurface(&hair.mesh);
-  SmoothShading(shape, &hair);
+  int wound = 0;
+  for (const HairLock& lock : WindKnot(shape, kSections)) {
+    AddLock(lock, wound++ % paint::kFullTiles, &hair);
+  }
+  paint::ComputeTangents(hair.mesh.vertices, hair.mesh.indices);
   return hair;
 }
 

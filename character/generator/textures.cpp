@@ -18,6 +18,7 @@
 #include "character/generator/mesh_tools.h"
 #include "character/generator/skin_paint.h"
 #include "character/paint/canvas.h"
+#include "character/paint/hair_strands.h"
 #include "character/paint/uv_raster.h"
 
 namespace furrow::character::generator {
@@ -27,6 +28,17 @@ using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 using paint::Texel;
+
+// The part of the hair below its strands: they share their texels, the cap's are its own.
+Mesh CapOf(const Mesh& hair) {
+  Mesh cap = hair;
+  cap.indices.clear();
+  for (std::size_t i = 0; i + 2 < hair.indices.size(); i += 3) {
+    if (hair.vertices[hair.indices[i]].uv.y < paint::kStrandBottom) continue;
+    cap.indices.insert(cap.indices.end(), &hair.indices[i], &hair.indices[i] + 3);
+  }
+  return cap;
+}
 
 }  // namespace
 
@@ -60,24 +72,25 @@ Picture PaintEyes(int size) {
   return picture;
 }
 
-Picture PaintHairColour(const Mesh& hair, const FaceParameters& face, int size) {
-  const float grey = GreyShare(face);
-  return paint::Fill("hair_colour", paint::RasterizeUv(hair, size, size), size, 3,
-                     [grey](const Texel& texel) -> vec4 {
-                       const vec3 p = ModelToHead(texel.position);
-                       // Strands run along a lock's v, which is down the picture.
-                       const float x = static_cast<float>(texel.x);
-                       const float y = static_cast<float>(texel.y);
-                       const float strand = 0.65f * Noise({x * 0.55f, y * 0.03f, 2.0f}) +
-                                            0.35f * Noise({x * 0.23f, y * 0.02f, 7.0f});
-                       const float lock = FractalNoise(p * 0.8f);
-                       vec3 colour = vec3(0.20f, 0.135f, 0.09f) * (1.0f + 0.12f * lock);
-                       const float silver = grey * (0.8f + 0.5f * strand + 0.3f * lock);
-                       colour = glm::mix(colour, vec3(0.62f, 0.61f, 0.59f),
-                                         std::clamp(silver, 0.0f, 1.0f));
-                       colour *= 1.0f + 0.42f * strand;
-                       return {glm::clamp(colour, 0.0f, 1.0f), 1.0f};
-                     });
+HairPictures PaintHair(const Mesh& hair, const FaceParameters& face, int size) {
+  paint::StrandLook look;
+  look.grey_share = GreyShare(face);
+  const vec3 shade = 0.75f * glm::mix(look.colour, look.grey, look.grey_share);
+  HairPictures pictures;
+  pictures.colour =
+      paint::Fill("hair_colour", paint::RasterizeUv(CapOf(hair), size, size), size, 4,
+                  [&shade](const Texel& texel) -> vec4 {
+                    const vec3 p = ModelToHead(texel.position);
+                    const float grain = Noise(p * 9.0f) + 0.5f * Noise(p * 19.0f);
+                    const float inside = InsideHairline(p) + 0.7f * grain;
+                    return {shade * (1.0f + 0.15f * grain), SmoothStep(0.2f, 1.3f, inside)};
+                  });
+  pictures.normals = paint::BlankPicture("hair_normal", size, size, 3);
+  for (std::size_t i = 0; i < pictures.normals.pixels.size(); ++i) {
+    pictures.normals.pixels[i] = i % 3 == 2 ? 255 : 128;
+  }
+  paint::PaintStrands(look, &pictures.colour, &pictures.normals);
+  return pictures;
 }
 
 Picture PaintTeeth(const Mesh& teeth, const FaceParameters& face, int size) {
@@ -166,7 +179,8 @@ Picture PaintMasksB(const Mesh& skin, int size) {
     const float mouth =
         Soft(q, {{{1.8f, -7.0f, 8.5f}, {4.4f, 4.2f, 6.0f}},
                  {{1.5f, -10.0f, 8.0f}, {3.6f, 2.6f, 5.0f}},
-                 {{2.5f, -4.4f, 8.5f}, {2.0f, 2.6f, 5.0f}}});  // up along the nasolabial fold
+                 {{2.5f, -4.4f, 8.5f}, {2.0f, 2.6f, 5.0f}},     // up along the nasolabial fold
+                 {{2.8f, -14.8f, 2.4f}, {3.4f, 4.0f, 4.5f}}});  // the neck bands
     return vec4(eye * LeftShare(p.x), eye * (1.0f - LeftShare(p.x)), mouth * LeftShare(p.x),
                 mouth * (1.0f - LeftShare(p.x)));
   });

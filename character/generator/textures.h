@@ -11,8 +11,13 @@ namespace furrow::character::generator {
 
 // Iris, pupil, limbus and veined white, both eyes side by side (2 size x size).
 [[nodiscard]] Picture PaintEyes(int size);
-// Strands of hair along the growth.
-[[nodiscard]] Picture PaintHairColour(const Mesh& hair, const FaceParameters& face, int size);
+// Strands with holes between them (paint::kStrandCutoff), the cap below them, and the slopes of the
+// strands.
+struct HairPictures {
+  Picture colour;
+  Picture normals;
+};
+[[nodiscard]] HairPictures PaintHair(const Mesh& hair, const FaceParameters& face, int size);
 // Enamel and gums.
 [[nodiscard]] Picture PaintTeeth(const Mesh& teeth, const FaceParameters& face, int size);
 // Shirt and trousers: weave, seams, belt.

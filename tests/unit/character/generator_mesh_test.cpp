@@ -16,6 +16,7 @@
 #include "character/generator/head_shape.h"
 #include "character/generator/mesh_tools.h"
 #include "character/generator/skinning.h"
+#include "character/paint/hair_strands.h"
 
 namespace furrow::character::generator {
 namespace {
@@ -107,6 +108,23 @@ int CountOverlap(const Mesh& mesh, int size) {
   return overlap;
 }
 
+// Locks of hair share the tiles of strands; what lies below them has texels of its own. No triangle
+// is of both.
+Mesh CapOf(const Mesh& hair) {
+  Mesh cap = hair;
+  cap.indices.clear();
+  for (std::size_t i = 0; i < hair.indices.size(); i += 3) {
+    int below = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      below += hair.vertices[hair.indices[i + k]].uv.y >= paint::kStrandBottom;
+    }
+    EXPECT_EQ(below % 3, 0);
+    if (below > 0) cap.indices.insert(cap.indices.end(), &hair.indices[i], &hair.indices[i] + 3);
+  }
+  EXPECT_FALSE(cap.indices.empty());
+  return cap;
+}
+
 TEST(GeneratorMesh, UvsLieInTheUnitSquareAndDoNotOverlap) {
   for (const Mesh& mesh : AllMeshes()) {
     SCOPED_TRACE(mesh.name);
@@ -116,7 +134,7 @@ TEST(GeneratorMesh, UvsLieInTheUnitSquareAndDoNotOverlap) {
       ASSERT_GE(vertex.uv.y, 0.0f);
       ASSERT_LE(vertex.uv.y, 1.0f);
     }
-    EXPECT_EQ(CountOverlap(mesh, 1024), 0);
+    EXPECT_EQ(CountOverlap(mesh.name == "hair" ? CapOf(mesh) : mesh, 1024), 0);
   }
 }
 

@@ -127,7 +127,7 @@ TEST(HeadMesh, HairCoversTheScalpAndLeavesTheFace) {
     }
     EXPECT_EQ(in_face, 0) << sex;
     EXPECT_LT(lowest, -5.0f) << sex;
-    EXPECT_LT(Triangles(hair), 60000u);
+    EXPECT_LT(Triangles(hair), 40000u);
   }
 }
 
