@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "character/bake/compression.h"
 #include "character/paint/uv_raster.h"
 #include "tests/unit/character/bake/toys.h"
 
@@ -307,6 +308,19 @@ TEST(Folds, TooFineForASheetSoLargeAreRefusedAndNotDropped) {
   EXPECT_EQ(refused.code(), StatusCode::kLimit);
   EXPECT_NE(refused.ToString().find("--skin-wavelength"), std::string::npos);
   EXPECT_NE(refused.ToString().find("--size"), std::string::npos);
+}
+
+TEST(CompressionSolver, KeepsItsMemoryOnFineMeshes) {
+  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 60, 60));
+  const Mesh* meshes[] = {&sheet.meshes[0]};
+  const Surface surface(meshes);
+  Pace pace({});
+  const CompressionSolver solver(surface, 0.02f, &pace);  // some 900 triangles round a vertex
+  EXPECT_LE(solver.num_terms(), 64 * surface.positions().size());
+  const glm::mat4 squeeze[] = {toys::Squeeze(0.2f, 0.0f), toys::Squeeze(0.2f, 0.0f)};
+  for (const Tensor2& tensor : solver.Solve(squeeze, 0.5f).tensors) {
+    EXPECT_NEAR(tensor.xx + tensor.yy, 0.2f, 1e-3f);
+  }
 }
 
 // Valleys along the middle row.
