@@ -106,8 +106,8 @@ class LockBuilder {
         Vertex vertex = influences;
         const auto s = static_cast<float>(side);
         vertex.position =
-            path[i] + across * (s * half) + normals[i] * (side == 0 ? 0.35f * half : 0.0f);
-        vertex.normal = glm::normalize(normals[i] + 0.7f * s * across);
+            path[i] + across * (s * half) + normals[i] * (side == 0 ? 0.2f * half : 0.0f);
+        vertex.normal = glm::normalize(normals[i] + 0.35f * s * across);
         vertex.uv = {shade * (1.0f - kStreak) + kStreak * (0.5f + 0.5f * s), 1.0f - t};
         hair_->vertices.push_back(vertex);
       }
@@ -115,7 +115,7 @@ class LockBuilder {
     for (std::uint32_t i = 0; i < kSections; ++i) {
       for (std::uint32_t side = 0; side < 2; ++side) {
         const std::uint32_t a = first + 3 * i + side;
-        hair_->indices.insert(hair_->indices.end(), {a, a + 1, a + 4, a, a + 4, a + 3});
+        hair_->indices.insert(hair_->indices.end(), {a, a + 4, a + 1, a, a + 3, a + 4});
       }
     }
   }
@@ -183,8 +183,8 @@ Mesh BuildLashes(const BaseMesh& base, std::string_view group, const glm::vec3& 
 }
 
 Picture PaintHair(int size) {
-  constexpr glm::vec3 kDark{0.22f, 0.15f, 0.105f};
-  constexpr glm::vec3 kLight{0.52f, 0.38f, 0.26f};
+  constexpr glm::vec3 kDark{0.15f, 0.105f, 0.075f};
+  constexpr glm::vec3 kLight{0.36f, 0.26f, 0.185f};
   Picture picture = paint::BlankPicture("hair_colour", size, size, 3);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {

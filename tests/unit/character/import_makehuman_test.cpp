@@ -61,6 +61,14 @@ TEST(ImportMakeHuman, HairGrowsFromTheScalp) {
     }
     EXPECT_LT(nearest, 0.05f);
   }
+  // A lock that is wound the other way round is lit from inside the head.
+  for (std::size_t i = 0; i < hair.indices.size(); i += 3) {
+    const Vertex& a = hair.vertices[hair.indices[i]];
+    const Vertex& b = hair.vertices[hair.indices[i + 1]];
+    const Vertex& c = hair.vertices[hair.indices[i + 2]];
+    const glm::vec3 outward = glm::cross(b.position - a.position, c.position - a.position);
+    EXPECT_GE(glm::dot(outward, a.normal + b.normal + c.normal), 0.0f) << i;
+  }
 }
 
 TEST(ImportMakeHuman, VerticesAreMetresUnitAndFaceOutwards) {
