@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
@@ -35,6 +36,35 @@ KernelSet::Amplitude AmplitudeOf(const FoldLayer::Options& options, const FoldPr
     return options.height * onset * profile.Amplitude(material.share * compression) * wavelength /
            (2.0f * wrinkle::kPi);
   };
+}
+
+// A place where folds have set in fully: how far it is compressed, and how steep they are there.
+struct Slope {
+  float compression = 0.0f;  // that folds take up
+  float across = 0.0f;       // of the height, by the surface at rest, in its direction
+  float weight = 0.0f;
+};
+
+// Length of the arc over that of the surface at rest, mean over `slopes`, of folds `factor` as
+// high.
+double MeanArc(const std::vector<Slope>& slopes, float factor) {
+  double arc = 0.0, weight = 0.0;
+  for (const Slope& slope : slopes) {
+    arc +=
+        static_cast<double>(slope.weight) * std::hypot(1.0 - static_cast<double>(slope.compression),
+                                                       static_cast<double>(factor * slope.across));
+    weight += static_cast<double>(slope.weight);
+  }
+  return weight > 0.0 ? arc / weight : 1.0;
+}
+
+// Points of a triangle, spread evenly and the same on every run (Roberts' R2 sequence).
+vec3 CornersOf(int i) {
+  const auto n = static_cast<float>(i);
+  vec2 u(0.5f + 0.7548776662f * n, 0.5f + 0.5698402910f * n);
+  u -= glm::floor(u);
+  if (u.x + u.y > 1.0f) u = 1.0f - u;
+  return {1.0f - u.x - u.y, u.x, u.y};
 }
 
 // A value with its derivatives along the tangent and the bitangent.
@@ -78,7 +108,7 @@ struct WaveSum {
   }
 };
 
-FoldSample ToFold(const WaveSum& sum, const FoldProfile& profile) {
+FoldSample ToFold(const WaveSum& sum, const FoldProfile& profile, float scale) {
   FoldSample fold;
   const float length = std::hypot(sum.x.value, sum.y.value);
   if (!(sum.share.value > 1e-9f) || !(length > 1e-9f * sum.share.value)) return fold;
@@ -87,7 +117,8 @@ FoldSample ToFold(const WaveSum& sum, const FoldProfile& profile) {
   const vec2 phase_slope = (sum.y.slope * cosine - sum.x.slope * sine) / length;
   const FoldProfile::Sample section = profile.At(cosine, sine);
   const Dual shape{section.height, phase_slope * section.slope};
-  const Dual height = sum.amplitude / sum.share * Agreement(modulus / sum.share) * shape;
+  const Dual height =
+      sum.amplitude / sum.share * Agreement(modulus / sum.share) * shape * Dual{scale, vec2(0.0f)};
   fold.height = height.value;
   fold.slope = height.slope;
   fold.cavity = CavityOf(height.value,
@@ -107,7 +138,44 @@ Result<std::unique_ptr<FoldLayer>> FoldLayer::Create(const FoldField& field,
   phases.Align(pace);
   if (pace->stopped()) return Pace::Cancelled();
   phases.VaryDepth(options.material.variation, options.seed);
-  return std::unique_ptr<FoldLayer>(new FoldLayer(profile, std::move(*kernels)));
+  std::unique_ptr<FoldLayer> layer(new FoldLayer(profile, std::move(*kernels)));
+  if (!options.crossing && options.wavelength_scale == 1.0f)
+    layer->height_ = layer->MissingHeight(field, options);
+  return layer;
+}
+
+// Where waves from two sides do not agree, folds are lower than the profile asks. Their neighbours
+// make up for it, so that the surface as a whole keeps its length.
+float FoldLayer::MissingHeight(const FoldField& field, const Options& options) const {
+  constexpr float kMost = 1.6f;
+  constexpr int kMostPoints = 48;  // a triangle
+  const Surface& surface = field.surface();
+  const auto triangles = surface.triangles();
+  if (options.height <= 0.0f) return 1.0f;
+  std::vector<Slope> slopes;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    if (!triangles[t].strain || field.Strongest(t, false) < 3.0f * options.material.threshold) {
+      continue;
+    }
+    const float wavelength = field.Wavelength(surface.PointOf(t, vec3(1.0f / 3.0f)), 1.0f);
+    const float wanted = 16.0f * triangles[t].area / (wavelength * wavelength);
+    const int count = std::clamp(static_cast<int>(std::ceil(wanted)), 1, kMostPoints);
+    for (int i = 0; i < count; ++i) {
+      const SurfacePoint point = surface.PointOf(t, CornersOf(i));
+      const FoldDemand demand = field.At(point);
+      if (demand.compression < 3.0f * options.material.threshold) continue;
+      const FoldSample fold = At(point, demand.across, demand.along);
+      slopes.push_back({options.material.share * demand.compression, fold.slope.x / options.height,
+                        triangles[t].area / static_cast<float>(count)});
+    }
+  }
+  if (slopes.empty() || MeanArc(slopes, 1.0f) >= 1.0) return 1.0f;
+  float low = 1.0f, high = kMost;
+  for (int step = 0; step < 20; ++step) {
+    const float middle = 0.5f * (low + high);
+    (MeanArc(slopes, middle) < 1.0 ? low : high) = middle;
+  }
+  return low;
 }
 
 FoldSample FoldLayer::At(const SurfacePoint& point, const vec3& tangent,
@@ -143,7 +211,7 @@ FoldSample FoldLayer::At(const SurfacePoint& point, const vec3& tangent,
     const float phase = turn * (kernel.phase + glm::dot(kernel.frequency, step));
     sum.Add(weight, kernel.amplitude, turn * f, phase);
   }
-  return ToFold(sum, profile_);
+  return ToFold(sum, profile_, height_);
 }
 
 }  // namespace furrow::character::bake

@@ -40,9 +40,12 @@ class FoldLayer {
  private:
   FoldLayer(const FoldProfile& profile, KernelSet kernels)
       : profile_(profile), kernels_(std::move(kernels)) {}
+  // The height that all folds together are short of what keeps the arc's length, as a factor.
+  [[nodiscard]] float MissingHeight(const FoldField& field, const Options& options) const;
 
   const FoldProfile& profile_;
   KernelSet kernels_;
+  float height_ = 1.0f;  // scales every fold
 };
 
 }  // namespace furrow::character::bake
