@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -58,11 +59,15 @@ double MeanArc(const std::vector<Slope>& slopes, float factor) {
   return weight > 0.0 ? arc / weight : 1.0;
 }
 
-// Points of a triangle, spread evenly and the same on every run (Roberts' R2 sequence).
-vec3 CornersOf(int i) {
-  const auto n = static_cast<float>(i);
-  vec2 u(0.5f + 0.7548776662f * n, 0.5f + 0.5698402910f * n);
-  u -= glm::floor(u);
+// The n-th of an endless row of points of triangles, spread evenly and the same on every run
+// (Roberts' R2 sequence). Triangles go on where the one before ended: a grid of them, each looked
+// at in the same places, would see a row of folds at the same phases again and again.
+vec3 CornersOf(std::uint64_t n) {
+  const auto place = [n](double step) {
+    const double at = 0.5 + step * static_cast<double>(n);
+    return static_cast<float>(at - std::floor(at));
+  };
+  vec2 u(place(0.7548776662466927), place(0.5698402909980532));
   if (u.x + u.y > 1.0f) u = 1.0f - u;
   return {1.0f - u.x - u.y, u.x, u.y};
 }
@@ -153,17 +158,20 @@ float FoldLayer::MissingHeight(const FoldField& field, const Options& options) c
   const auto triangles = surface.triangles();
   if (options.height <= 0.0f) return 1.0f;
   std::vector<Slope> slopes;
+  std::uint64_t points = 0;
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     if (!triangles[t].strain || field.Strongest(t, false) < 3.0f * options.material.threshold) {
       continue;
     }
     const float wavelength = field.Wavelength(surface.PointOf(t, vec3(1.0f / 3.0f)), 1.0f);
-    const float wanted = 16.0f * triangles[t].area / (wavelength * wavelength);
+    const float wanted = 32.0f * triangles[t].area / (wavelength * wavelength);
     const int count = std::clamp(static_cast<int>(std::ceil(wanted)), 1, kMostPoints);
     for (int i = 0; i < count; ++i) {
-      const SurfacePoint point = surface.PointOf(t, CornersOf(i));
+      const SurfacePoint point = surface.PointOf(t, CornersOf(points++));
       const FoldDemand demand = field.At(point);
       if (demand.compression < 3.0f * options.material.threshold) continue;
+      // Where a stroke was drawn, its own folds show.
+      if (field.strokes().At(point, demand.across, demand.along).keep < 1.0f) continue;
       const FoldSample fold = At(point, demand.across, demand.along);
       slopes.push_back({options.material.share * demand.compression, fold.slope.x / options.height,
                         triangles[t].area / static_cast<float>(count)});
