@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "character/paint/tangents.h"
+#include "wrinkle/strain.h"
 
 namespace furrow::character::generator {
 namespace {
@@ -19,7 +20,7 @@ void AddTriangle(Mesh* mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c) 
   const glm::vec3& pa = mesh->vertices[a].position;
   const glm::vec3& pb = mesh->vertices[b].position;
   const glm::vec3& pc = mesh->vertices[c].position;
-  if (glm::length(glm::cross(pb - pa, pc - pa)) < 1e-10f) return;
+  if (!wrinkle::MakeRestTriangle(pa, pb, pc, {})) return;  // no area
   mesh->indices.insert(mesh->indices.end(), {a, b, c});
 }
 
