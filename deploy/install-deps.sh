@@ -20,12 +20,15 @@ if ! command -v dpkg-query >/dev/null; then
   exit 1
 fi
 
+# Also what another package stands for: NodeSource's nodejs brings npm and conflicts with Debian's.
+provided=$(dpkg-query -W -f='${db:Status-Status}, ${Provides}\n' | sed -n 's/^installed, //p' |
+           tr ',' '\n' | awk '{ print $1 }')
 missing=()
 while read -r set package; do
   [[ $set == '#'* || -z $set ]] && continue
   [[ " $sets " == *" $set "* ]] || continue
   state=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
-  [[ $state == installed ]] || missing+=("$package")
+  [[ $state == installed ]] || grep -qxF -- "$package" <<<"$provided" || missing+=("$package")
 done < "$here/packages.txt"
 
 # An independent MCAP reader, to check ours against; its tests say SKIPPED where it is absent.
