@@ -69,6 +69,7 @@ std::unique_ptr<Transport> Open(TransportKind kind, std::uint16_t port,
 TEST(TcpTransportTest, FramesCrossInBothDirectionsHoweverTheyAreCut) {
   Socket listener(SOCK_STREAM);
   auto transport = Open(TransportKind::kTcp, listener.port());
+  ASSERT_NE(transport, nullptr);
   const int peer = ::accept(listener.fd(), nullptr, nullptr);
   const auto message = BigMessage();
   ASSERT_EQ(transport->Send(message), IoStatus::kOk);
@@ -96,6 +97,7 @@ TEST(TcpTransportTest, FramesCrossInBothDirectionsHoweverTheyAreCut) {
 TEST(TcpTransportTest, LengthThatCannotBeIsMalformed) {
   Socket listener(SOCK_STREAM);
   auto transport = Open(TransportKind::kTcp, listener.port());
+  ASSERT_NE(transport, nullptr);
   const int peer = ::accept(listener.fd(), nullptr, nullptr);
   const std::uint8_t huge[] = {0xff, 0xff, 0xff, 0xff};
   ASSERT_EQ(::send(peer, huge, sizeof huge, 0), 4);
@@ -109,6 +111,7 @@ TEST(TcpTransportTest, LengthThatCannotBeIsMalformed) {
 TEST(TcpTransportTest, AnEndThatTakesNothingDoesNotBlockForEver) {
   Socket listener(SOCK_STREAM);
   auto transport = Open(TransportKind::kTcp, listener.port(), milliseconds(50));
+  ASSERT_NE(transport, nullptr);
   const std::vector<std::uint8_t> message(protocol::kMaxRequestBytes);
   IoStatus status = IoStatus::kOk;
   for (int i = 0; i < 10'000 && status == IoStatus::kOk; ++i) status = transport->Send(message);
@@ -128,6 +131,7 @@ TEST(TcpTransportTest, NobodyThereIsAnErrorThatNamesTheAddress) {
 TEST(UdpTransportTest, LargeMessagesCrossInFragments) {
   Socket peer(SOCK_DGRAM);
   auto transport = Open(TransportKind::kUdp, peer.port());
+  ASSERT_NE(transport, nullptr);
   const auto message = BigMessage();
   ASSERT_GT(protocol::NumDatagrams(message.size()), 2u);
   ASSERT_EQ(transport->Send(message), IoStatus::kOk);
@@ -158,6 +162,7 @@ TEST(UdpTransportTest, NobodyThereShowsWhenReceiving) {
   std::uint16_t port = 0;
   { port = Socket(SOCK_DGRAM).port(); }
   auto transport = Open(TransportKind::kUdp, port);
+  ASSERT_NE(transport, nullptr);
   std::vector<std::uint8_t> bytes;
   protocol::Encoder().Encode({.session = 3}, protocol::Ping{}, bytes);
   (void)transport->Send(bytes);
@@ -168,6 +173,7 @@ TEST(UdpTransportTest, NobodyThereShowsWhenReceiving) {
 TEST(TransportTest, MessagesBeyondTheLimitAreRefused) {
   Socket peer(SOCK_DGRAM);
   auto transport = Open(TransportKind::kUdp, peer.port());
+  ASSERT_NE(transport, nullptr);
   EXPECT_EQ(transport->Send(std::vector<std::uint8_t>(1 << 20)), IoStatus::kTooLarge);
 }
 
