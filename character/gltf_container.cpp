@@ -13,47 +13,15 @@
 #include <tiny_gltf.h>
 
 #include "character/asset_path.h"
+#include "third_party/tinygltf/glb.h"
 
 namespace furrow::character {
 namespace {
 
 using nlohmann::json;
 
-constexpr int kMaxJsonDepth = 64;
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
-constexpr std::uint32_t kBinaryChunk = 0x004E4942;
-
-// Little-endian, as the container says; the host's order does not matter.
-std::uint32_t Word(std::string_view bytes, std::size_t at) {
-  std::uint32_t word = 0;
-  for (int i = 3; i >= 0; --i) word = (word << 8) | static_cast<unsigned char>(bytes[at + i]);
-  return word;
-}
-
 Status Broken(std::string what, std::string where) {
   return {StatusCode::kParse, std::move(what), std::move(where)};
-}
-
-// Parsers that call themselves must not be led deep.
-Status CheckDepth(std::string_view text) {
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      in_string = c != '"';
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > kMaxJsonDepth) {
-        return {StatusCode::kLimit, "the JSON is nested deeper than 64", "json"};
-      }
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
-  return {};
 }
 
 // An unsigned integer of a JSON object: false when it is there and is something else.
@@ -116,7 +84,9 @@ Status CheckRequiredExtensions(const json& root) {
 }
 
 Status CheckJson(std::string_view text) {
-  if (Status status = CheckDepth(text); !status.ok()) return status;
+  if (gltf::IsNestedTooDeep(text)) {
+    return {StatusCode::kLimit, "the JSON is nested deeper than 64", "json"};
+  }
   const json root = json::parse(text.begin(), text.end(), nullptr, false);
   if (root.is_discarded()) return Broken("the text is not JSON", "json");
   if (!root.is_object()) return {StatusCode::kSchema, "a JSON object is due", "json"};
@@ -176,39 +146,39 @@ std::string FirstLine(const std::string& text) { return text.substr(0, text.find
 
 }  // namespace
 
-Result<GlbParts> SplitGlb(std::string_view bytes) {
-  if (bytes.size() < 20) return Broken("too short for a GLB's header and first chunk", "header");
-  if (!bytes.starts_with("glTF"))
-    return Broken("not a GLB: it does not begin with 'glTF'", "header");
-  if (Word(bytes, 4) != 2) {
-    return Status(StatusCode::kUnsupported,
-                  "GLB of version " + std::to_string(Word(bytes, 4)) + ", 2 is read",
-                  "header.version");
-  }
-  if (Word(bytes, 8) != bytes.size()) {
-    return Broken("the header says " + std::to_string(Word(bytes, 8)) + " bytes, the file has " +
+Result<gltf::Glb> SplitGlb(std::string_view bytes) {
+  gltf::Glb glb;
+  const gltf::GlbStatus status = gltf::ReadGlb(bytes, glb);
+  const auto chunk = [&](std::size_t index) { return "chunks[" + std::to_string(index) + "]"; };
+  const auto broken_length = [&] {
+    return Broken("the header says " + std::to_string(glb.stated_bytes) + " bytes, the file has " +
                       std::to_string(bytes.size()),
                   "header.length");
+  };
+  switch (status) {
+    case gltf::GlbStatus::kOk: break;
+    case gltf::GlbStatus::kTooShort:
+      return Broken("too short for a GLB's header and first chunk", "header");
+    case gltf::GlbStatus::kBadMagic:
+      return Broken("not a GLB: it does not begin with 'glTF'", "header");
+    case gltf::GlbStatus::kBadVersion:
+      return Status(StatusCode::kUnsupported,
+                    "GLB of version " + std::to_string(glb.version) + ", 2 is read",
+                    "header.version");
+    case gltf::GlbStatus::kBadLength: return broken_length();
+    case gltf::GlbStatus::kBadChunkLength:
+      return Broken("the chunk's length does not fit the file", chunk(glb.num_chunks) + ".length");
+    case gltf::GlbStatus::kBadFirstChunk:
+      return Broken("the first chunk is not JSON", chunk(glb.num_chunks) + ".type");
   }
-  GlbParts parts;
-  std::size_t at = 12;
-  for (int chunk = 0; at < bytes.size(); ++chunk) {
-    const std::string where = "chunks[" + std::to_string(chunk) + "]";
-    if (bytes.size() - at < 8) return Broken("the chunk's header is cut off", where);
-    const std::size_t length = Word(bytes, at);
-    const std::uint32_t type = Word(bytes, at + 4);
-    at += 8;
-    if (length > bytes.size() - at || length % 4 != 0) {
-      return Broken("the chunk's length does not fit the file", where + ".length");
-    }
-    if (chunk == 0 && type != kJsonChunk) {
-      return Broken("the first chunk is not JSON", where + ".type");
-    }
-    if (chunk == 0) parts.json = bytes.substr(at, length);
-    if (chunk == 1 && type == kBinaryChunk) parts.binary = bytes.substr(at, length);
-    at += length;
+  // tinygltf takes the file's word for these.
+  if (glb.stated_bytes != bytes.size()) return broken_length();
+  if (glb.unread_bytes != 0) return Broken("the chunk's header is cut off", chunk(glb.num_chunks));
+  if (glb.json.size() % 4 != 0 || glb.binary.size() % 4 != 0) {
+    return Broken("the chunk's length is no multiple of 4",
+                  chunk(glb.json.size() % 4 != 0 ? 0 : 1) + ".length");
   }
-  return parts;
+  return glb;
 }
 
 Result<std::unique_ptr<tinygltf::Model>> ParseGltf(std::string_view bytes,
@@ -218,7 +188,7 @@ Result<std::unique_ptr<tinygltf::Model>> ParseGltf(std::string_view bytes,
   const bool binary = first == std::string_view::npos || bytes[first] != '{';
   std::string_view text = bytes;
   if (binary) {
-    const Result<GlbParts> parts = SplitGlb(bytes);
+    const Result<gltf::Glb> parts = SplitGlb(bytes);
     if (!parts.ok()) return parts.status();
     text = parts->json;
   }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string_view>
 
+#include "third_party/tinygltf/glb.h"
 #include "wrinkle/status.h"
 
 namespace tinygltf {
@@ -15,15 +16,9 @@ namespace furrow::character {
 
 inline constexpr std::size_t kMaxGltfBytes = 1u << 30;
 
-// A .glb's two parts, as views into it. `binary` is empty when there is none.
-struct GlbParts {
-  std::string_view json;
-  std::string_view binary;
-};
-
 // Splits a .glb after checking header and chunk lengths against the bytes there are.
 // Errors: kParse, with `where` the field ("header.length", "chunks[1].length").
-[[nodiscard]] Result<GlbParts> SplitGlb(std::string_view bytes);
+[[nodiscard]] Result<gltf::Glb> SplitGlb(std::string_view bytes);
 
 // A .glb or .gltf as tinygltf's model: containers, nesting and every buffer view checked first,
 // since tinygltf trusts them. Buffers beside a .gltf are read through FindAsset(); pictures stay

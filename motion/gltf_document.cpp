@@ -78,7 +78,7 @@ Status GltfDocument::Error(StatusCode code, const std::string& field, std::strin
 
 Result<GltfDocument> GltfDocument::Open(std::string_view bytes, std::string_view source_name,
                                         const std::filesystem::path& folder) {
-  const Result<GltfChunks> chunks = SplitGlb(bytes, source_name);
+  const Result<gltf::Glb> chunks = SplitGlb(bytes, source_name);
   if (!chunks.ok()) return chunks.status();
   Result<ReducedGltf> reduced = ReduceGltf(*chunks, source_name, folder);
   if (!reduced.ok()) return reduced.status();

@@ -12,51 +12,20 @@
 
 #include "motion/file_io.h"
 #include "motion/limits.h"
+#include "third_party/tinygltf/glb.h"
 
 namespace furrow::motion {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::uint32_t kGlbMagic = 0x46546C67;     // "glTF"
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A;    // "JSON"
-constexpr std::uint32_t kBinaryChunk = 0x004E4942;  // "BIN"
-constexpr std::size_t kGlbHeaderBytes = 12;
-constexpr std::size_t kChunkHeaderBytes = 8;
 constexpr std::size_t kMaxJsonBytes = 64u << 20;
-constexpr int kMaxJsonDepth = 64;
 constexpr std::size_t kMaxBuffers = 256;
 constexpr std::size_t kMaxNameBytes = 255;
 
-// Little-endian, as the container says; the host's order does not matter.
-std::uint32_t ReadU32(std::string_view bytes, std::size_t at) {
-  const auto* b = reinterpret_cast<const unsigned char*>(bytes.data()) + at;
-  return b[0] | std::uint32_t{b[1]} << 8 | std::uint32_t{b[2]} << 16 | std::uint32_t{b[3]} << 24;
-}
-
-// Libraries copy JSON values recursively: depth is bounded before any of them sees the text.
-bool IsTooDeep(std::string_view json) {
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const char c = json[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      in_string = c != '"';
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > kMaxJsonDepth) return true;
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
-  return false;
-}
-
 class Reducer {
  public:
-  Reducer(const GltfChunks& chunks, std::string_view source_name,
+  Reducer(const gltf::Glb& chunks, std::string_view source_name,
           const std::filesystem::path& folder)
       : chunks_(chunks), source_name_(source_name), folder_(folder) {}
 
@@ -78,7 +47,7 @@ class Reducer {
     if (chunks_.json.size() > kMaxJsonBytes) {
       return Error(StatusCode::kLimit, "JSON", "larger than 64 MiB");
     }
-    if (IsTooDeep(chunks_.json)) {
+    if (gltf::IsNestedTooDeep(chunks_.json)) {
       return Error(StatusCode::kLimit, "JSON", "nested deeper than 64 levels");
     }
     json_ = Json::parse(chunks_.json.begin(), chunks_.json.end(), nullptr, false);
@@ -216,7 +185,7 @@ class Reducer {
     result_.json = reduced.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
 
-  const GltfChunks& chunks_;
+  const gltf::Glb& chunks_;
   const std::string source_name_;
   const std::filesystem::path& folder_;
   Json json_;
@@ -225,51 +194,43 @@ class Reducer {
 
 }  // namespace
 
-Result<GltfChunks> SplitGlb(std::string_view bytes, std::string_view source_name) {
+Result<gltf::Glb> SplitGlb(std::string_view bytes, std::string_view source_name) {
   const auto error = [&](StatusCode code, std::string what, std::string todo = {}) {
     return Status(code, std::move(what), std::string(source_name), std::move(todo));
   };
   if (bytes.empty()) return error(StatusCode::kParse, "the file is empty");
   if (bytes.size() > kMaxFileBytes) return error(StatusCode::kLimit, "the file is too large");
-  GltfChunks chunks;
-  if (bytes.size() < 4 || ReadU32(bytes, 0) != kGlbMagic) {
+  gltf::Glb glb;
+  if (!bytes.starts_with("glTF")) {
     const std::size_t first = bytes.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
     if (first == std::string_view::npos || bytes[first] != '{') {
       return error(StatusCode::kParse, "is neither a binary glTF nor a JSON text");
     }
-    chunks.json = bytes;
-    return chunks;
+    glb.json = bytes;
+    return glb;
   }
   constexpr const char* kCut = "the file seems to be cut off";
-  if (bytes.size() < kGlbHeaderBytes + kChunkHeaderBytes) {
-    return error(StatusCode::kParse, "the GLB header is incomplete", kCut);
+  switch (gltf::ReadGlb(bytes, glb)) {
+    case gltf::GlbStatus::kOk:
+    case gltf::GlbStatus::kBadMagic: break;
+    case gltf::GlbStatus::kTooShort:
+      return error(StatusCode::kParse, "the GLB header is incomplete", kCut);
+    case gltf::GlbStatus::kBadVersion:
+      return error(StatusCode::kUnsupported, "is not version 2 of GLB");
+    case gltf::GlbStatus::kBadLength:
+      return error(StatusCode::kParse,
+                   "the GLB header states " + std::to_string(glb.stated_bytes) +
+                       " bytes, there are " + std::to_string(bytes.size()),
+                   kCut);
+    case gltf::GlbStatus::kBadChunkLength:
+      return error(StatusCode::kParse, "a GLB chunk is longer than the file");
+    case gltf::GlbStatus::kBadFirstChunk:
+      return error(StatusCode::kParse, "the first GLB chunk is not JSON");
   }
-  if (ReadU32(bytes, 4) != 2) return error(StatusCode::kUnsupported, "is not version 2 of GLB");
-  const std::size_t length = ReadU32(bytes, 8);
-  if (length > bytes.size() || length < kGlbHeaderBytes + kChunkHeaderBytes) {
-    return error(StatusCode::kParse,
-                 "the GLB header states " + std::to_string(length) + " bytes, there are " +
-                     std::to_string(bytes.size()),
-                 kCut);
-  }
-  for (std::size_t at = kGlbHeaderBytes; length - at >= kChunkHeaderBytes;) {
-    const std::size_t size = ReadU32(bytes, at);
-    const std::uint32_t type = ReadU32(bytes, at + 4);
-    at += kChunkHeaderBytes;
-    if (size > length - at) return error(StatusCode::kParse, "a GLB chunk is longer than the file");
-    if (chunks.json.data() == nullptr) {
-      if (type != kJsonChunk) return error(StatusCode::kParse, "the first GLB chunk is not JSON");
-      chunks.json = bytes.substr(at, size);
-    } else if (type == kBinaryChunk && !chunks.has_binary) {
-      chunks.binary = bytes.substr(at, size);
-      chunks.has_binary = true;
-    }
-    at += size;
-  }
-  return chunks;
+  return glb;
 }
 
-Result<ReducedGltf> ReduceGltf(const GltfChunks& chunks, std::string_view source_name,
+Result<ReducedGltf> ReduceGltf(const gltf::Glb& chunks, std::string_view source_name,
                                const std::filesystem::path& folder) {
   return Reducer(chunks, source_name, folder).Run();
 }

@@ -6,21 +6,15 @@
 #include <string_view>
 #include <vector>
 
+#include "third_party/tinygltf/glb.h"
 #include "wrinkle/status.h"
 
 // The way from a file's bytes to a JSON text that a glTF library may see; private to motion/.
 namespace furrow::motion {
 
-// The parts of a GLB, or a .gltf's text as `json` alone. Views into the bytes given.
-struct GltfChunks {
-  std::string_view json;
-  std::string_view binary;
-  bool has_binary = false;
-};
-
-// Checks the GLB header and the chunk sizes against the
-// bytes that are there. Errors: kParse, kLimit.
-[[nodiscard]] Result<GltfChunks> SplitGlb(std::string_view bytes, std::string_view source_name);
+// The parts of a GLB, or a .gltf's text as `json` alone; header and chunk sizes are checked against
+// the bytes that are there. Errors: kParse, kLimit.
+[[nodiscard]] Result<gltf::Glb> SplitGlb(std::string_view bytes, std::string_view source_name);
 
 // What an animation reader needs of a glTF JSON.
 struct ReducedGltf {
@@ -34,7 +28,7 @@ struct ReducedGltf {
 //
 // Errors: kParse, kSchema, kLimit, kUnsupported (an extension that changes buffers or accessors is
 // required), kNotFound and kIo (a buffer's file).
-[[nodiscard]] Result<ReducedGltf> ReduceGltf(const GltfChunks& chunks, std::string_view source_name,
+[[nodiscard]] Result<ReducedGltf> ReduceGltf(const gltf::Glb& chunks, std::string_view source_name,
                                              const std::filesystem::path& folder);
 
 }  // namespace furrow::motion

@@ -82,7 +82,7 @@ std::string Words(std::initializer_list<std::size_t> words) {
 // The square's file with its JSON, and its buffer, changed.
 std::string Changed(const std::function<void(json&, std::string&)>& change) {
   const std::string glb = GlbOf(Square());
-  const GlbParts parts = *SplitGlb(glb);
+  const gltf::Glb parts = *SplitGlb(glb);
   json root = json::parse(parts.json);
   std::string binary(parts.binary);
   change(root, binary);

@@ -44,8 +44,11 @@ TEST(HairStrands, AreDenseInTheMiddleAndThinOutAtTheTips) {
     const float middle = Coverage(&painted, tile, 0.4f, 0.6f);
     EXPECT_LT(Coverage(&painted, tile, 0.92f, 1.0f), 0.5f * middle);
     EXPECT_LT(Coverage(&painted, tile, 0.0f, 0.05f), middle);
-    if (tile < kFullTiles) EXPECT_GT(middle, 0.6f);
-    if (tile >= kFullTiles) EXPECT_LT(middle, 0.6f);
+    if (tile < kFullTiles) {
+      EXPECT_GT(middle, 0.6f);
+    } else {
+      EXPECT_LT(middle, 0.6f);
+    }
     EXPECT_GT(middle, 0.05f);
   }
 }
