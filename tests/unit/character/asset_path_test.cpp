@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/temporary_folder.h"
+
 namespace furrow::character {
 namespace {
 
@@ -15,20 +17,14 @@ namespace fs = std::filesystem;
 class AssetPath : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    root_ = fs::temp_directory_path() / (std::string("furrow_asset_") + test->name());
-    fs::remove_all(root_);
     for (const char* folder : {"beside", "first", "second"}) fs::create_directories(root_ / folder);
     setenv("FURROW_ASSET_PATH",
            ((root_ / "first").string() + "::" + (root_ / "second").string()).c_str(), 1);
   }
-  void TearDown() override {
-    unsetenv("FURROW_ASSET_PATH");
-    fs::remove_all(root_);
-  }
+  void TearDown() override { unsetenv("FURROW_ASSET_PATH"); }
   void Touch(const fs::path& name) { ASSERT_TRUE(WriteFileAtomically(root_ / name, "x").ok()); }
 
-  fs::path root_;
+  TemporaryFolder root_;
 };
 
 TEST_F(AssetPath, LooksBesideThenAlongThePath) {
@@ -64,7 +60,7 @@ TEST_F(AssetPath, ReadsWithinALimit) {
   EXPECT_EQ(*ReadFile(root_ / "f", 5), "12345");
   EXPECT_EQ(ReadFile(root_ / "f", 4).status().code(), StatusCode::kLimit);
   EXPECT_EQ(ReadFile(root_ / "g", 4).status().code(), StatusCode::kNotFound);
-  EXPECT_EQ(ReadFile(root_, 4).status().code(), StatusCode::kIo);
+  EXPECT_EQ(ReadFile(root_.path(), 4).status().code(), StatusCode::kIo);
 }
 
 TEST_F(AssetPath, WritesAllOrNothing) {
@@ -81,7 +77,7 @@ TEST_F(AssetPath, WritesAllOrNothing) {
   EXPECT_EQ(WriteFilesAtomically(files).code(), StatusCode::kIo);
   EXPECT_EQ(*ReadFile(root_ / "f", 10), "new");
   int entries = 0;
-  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(root_)) ++entries;
+  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(root_.path())) ++entries;
   EXPECT_EQ(entries, 4);  // three folders and f
 }
 

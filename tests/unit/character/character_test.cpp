@@ -12,6 +12,7 @@
 
 #include "character/asset_path.h"
 #include "character/gltf_container.h"
+#include "tests/temporary_folder.h"
 
 namespace furrow::character {
 namespace {
@@ -64,11 +65,9 @@ Character Square() {
 }
 
 std::string GlbOf(const Character& character) {
-  const fs::path path = fs::temp_directory_path() / "furrow_character_test.glb";
-  EXPECT_TRUE(SaveCharacterGlb(character, path).ok());
-  std::string bytes = *ReadFile(path, 1u << 20);
-  fs::remove(path);
-  return bytes;
+  const TemporaryFolder folder;
+  EXPECT_TRUE(SaveCharacterGlb(character, folder / "test.glb").ok());
+  return *ReadFile(folder / "test.glb", 1u << 20);
 }
 
 std::string Words(std::initializer_list<std::size_t> words) {
@@ -139,7 +138,8 @@ TEST(Character, WritesEqualBytesForEqualCharacters) {
 }
 
 TEST(Character, WillNotWriteWhatItCouldNotRead) {
-  const fs::path path = fs::temp_directory_path() / "furrow_character_broken.glb";
+  const TemporaryFolder folder;
+  const fs::path path = folder / "broken.glb";
   Character broken = Square();
   broken.meshes[0].indices[0] = 4;
   const Status status = SaveCharacterGlb(broken, path);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "import_toy_folder.h"
 
-#include <atomic>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -10,7 +9,6 @@
 #include <vector>
 
 #include <glm/vec3.hpp>
-#include <unistd.h>
 
 namespace furrow::character {
 namespace {
@@ -118,9 +116,6 @@ constexpr char kRig[] = R"({
 }  // namespace
 
 ToyFolder::ToyFolder() {
-  static std::atomic<int> serial{0};
-  path_ = std::filesystem::temp_directory_path() /
-          ("furrow_toy_" + std::to_string(getpid()) + "_" + std::to_string(serial++));
   const std::vector<ToyJoint> joints = ToyJoints();
   std::ostringstream obj, bones, points;
   AddBall(&obj);
@@ -154,21 +149,16 @@ ToyFolder::ToyFolder() {
   Write("toy.rig.json", kRig);
 }
 
-ToyFolder::~ToyFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
 void ToyFolder::Write(const std::string& file, const std::string& text) const {
-  std::filesystem::create_directories((path_ / file).parent_path());
-  std::ofstream(path_ / file, std::ios::binary) << text;
+  std::filesystem::create_directories((folder_ / file).parent_path());
+  std::ofstream(folder_ / file, std::ios::binary) << text;
 }
 
 std::string ToyFolder::Read(const std::string& file) const {
-  std::ifstream in(path_ / file, std::ios::binary);
+  std::ifstream in(folder_ / file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-void ToyFolder::Remove(const std::string& file) const { std::filesystem::remove(path_ / file); }
+void ToyFolder::Remove(const std::string& file) const { std::filesystem::remove(folder_ / file); }
 
 }  // namespace furrow::character

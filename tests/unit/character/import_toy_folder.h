@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/temporary_folder.h"
+
 namespace furrow::character {
 
 // A folder in MakeHuman's layout with a head of 24 x 16 quads, a helper cube for each eye, the face
@@ -12,19 +14,16 @@ namespace furrow::character {
 class ToyFolder {
  public:
   ToyFolder();
-  ~ToyFolder();
-  ToyFolder(const ToyFolder&) = delete;
-  ToyFolder& operator=(const ToyFolder&) = delete;
 
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  [[nodiscard]] std::filesystem::path rig() const { return path_ / "toy.rig.json"; }
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
+  [[nodiscard]] std::filesystem::path rig() const { return folder_ / "toy.rig.json"; }
   // Relative to the folder.
   void Write(const std::string& file, const std::string& text) const;
   [[nodiscard]] std::string Read(const std::string& file) const;
   void Remove(const std::string& file) const;
 
  private:
-  std::filesystem::path path_;
+  TemporaryFolder folder_;
 };
 
 }  // namespace furrow::character

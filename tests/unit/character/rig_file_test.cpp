@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "character/rig_json_index.h"
+#include "tests/temporary_folder.h"
 
 namespace furrow::character {
 namespace {
@@ -351,17 +352,18 @@ TEST(RigFile, NamesTheFileThatIsNotThere) {
 }
 
 TEST(RigFile, SavesAndLoads) {
-  const auto path = std::filesystem::temp_directory_path() / "furrow_rig_file_test.json";
+  const TemporaryFolder folder;
+  const auto path = folder / "test.rig.json";
   const auto rig = *Parse(kSmallRig);
   ASSERT_TRUE(SaveRig(rig, path).ok());
   const auto again = LoadRig(path);
-  std::filesystem::remove(path);
   ASSERT_TRUE(again.ok()) << again.status().ToString();
   EXPECT_EQ(RigToJson(*again), RigToJson(rig));
   auto broken = rig;
   broken.regions[0].feeds[0].map = "creases";
-  EXPECT_EQ(SaveRig(broken, path).where(), path.string() + ": regions[0].feeds[0].map");
-  EXPECT_FALSE(std::filesystem::exists(path));
+  const auto nowhere = folder / "broken.rig.json";
+  EXPECT_EQ(SaveRig(broken, nowhere).where(), nowhere.string() + ": regions[0].feeds[0].map");
+  EXPECT_FALSE(std::filesystem::exists(nowhere));
 }
 
 TEST(RigFile, ReadsTheExampleOfItsManual) {

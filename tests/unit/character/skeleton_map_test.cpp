@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "character/data_dir.h"
+#include "tests/temporary_folder.h"
 
 namespace furrow::character {
 namespace {
@@ -211,13 +212,11 @@ TEST(SkeletonMaps, AreLoadedByNameByFileOrAllAtOnce) {
   EXPECT_EQ(SkeletonMaps::Load(file).value().maps()[0].name, "vrm");
   // A folder of that name hides nothing.
   const fs::path before = fs::current_path();
-  std::string folder = (fs::temp_directory_path() / "furrow-maps-XXXXXX").string();
-  ASSERT_NE(::mkdtemp(folder.data()), nullptr);
-  fs::create_directory(fs::path(folder) / "cmu");
-  fs::current_path(folder);
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "cmu");
+  fs::current_path(folder.path());
   EXPECT_EQ(SkeletonMaps::Load("cmu").value().maps()[0].name, "cmu");
   fs::current_path(before);
-  fs::remove_all(folder);
   EXPECT_EQ(SkeletonMaps::Load("nobody").status().code(), StatusCode::kNotFound);
   EXPECT_EQ(SkeletonMaps::Load("no/such/file.json").status().code(), StatusCode::kNotFound);
   unsetenv("FURROW_DATA_DIR");

@@ -9,7 +9,8 @@
 
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
-#include <unistd.h>
+
+#include "tests/temporary_folder.h"
 
 namespace furrow::motion {
 namespace {
@@ -70,14 +71,13 @@ std::string Bvh(const char* offset, const char* positions) {
 }
 
 TEST(UpAxis, LoadClipStandsBvhUpAndLetsAnUnmovedRootRest) {
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("furrow_up_axis_" + std::to_string(getpid()) + ".bvh");
+  const TemporaryFolder folder;
+  const auto path = folder / "clip.bvh";
   const auto load = [&path](const std::string& text, UpAxis up) {
     std::ofstream(path) << text;
     LoadOptions options;
     options.up_axis = up;
     Result<Clip> clip = LoadClip(path, options);
-    std::filesystem::remove(path);
     EXPECT_TRUE(clip.ok()) << clip.status().ToString();
     return clip.ok() ? std::move(*clip) : Clip();
   };

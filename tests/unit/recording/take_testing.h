@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -14,18 +13,13 @@
 #include "protocol/hash.h"
 #include "recording/take_reader.h"
 #include "recording/take_writer.h"
+#include "tests/temporary_folder.h"
 
 namespace furrow::recording {
 
 // A folder of its own, and messages as a daemon would record them: two joints, one blend shape.
 class TakeTest : public testing::Test {
  protected:
-  TakeTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "furrow-take-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
-  }
-  ~TakeTest() override { std::filesystem::remove_all(folder_); }
-
   template <class Message>
   std::vector<std::uint8_t> Payload(const Message& message) {
     encoder_.Encode({.session = 1}, message, bytes_);
@@ -78,7 +72,7 @@ class TakeTest : public testing::Test {
     return take.ok() ? *std::move(take) : nullptr;
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
   protocol::Encoder encoder_;
   std::vector<std::uint8_t> bytes_;
 };

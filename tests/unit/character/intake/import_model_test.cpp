@@ -12,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/temporary_folder.h"
 #include "tests/unit/character/intake/toy_body.h"
 #include "wrinkle/pose_frame.h"
 
@@ -22,20 +23,12 @@ namespace fs = std::filesystem;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-class Folder {
+class Folder : public TemporaryFolder {
  public:
-  Folder() : path_(fs::temp_directory_path() / "furrow_import_model_test") {
-    fs::remove_all(path_);
-    fs::create_directories(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
   fs::path Write(const std::string& name, std::string_view bytes) const {
-    std::ofstream(path_ / name, std::ios::binary) << bytes;
-    return path_ / name;
+    std::ofstream(path() / name, std::ios::binary) << bytes;
+    return path() / name;
   }
-
- private:
-  fs::path path_;
 };
 
 SkeletonMaps Maps() {
@@ -115,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, ForeignFormat,
                          ::testing::Values(std::pair("fbxa", "ascii.fbx"),
                                            std::pair("collada", "body.DAE"),
                                            std::pair("glb2", "other.glb")),
-                         [](const auto& info) { return std::string(info.param.first); });
+                         [](const auto& format) { return std::string(format.param.first); });
 
 TEST(ImportModel, AGlbByAnyNameIsReadAsOne) {
   const Folder folder;

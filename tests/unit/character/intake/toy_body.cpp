@@ -13,6 +13,7 @@
 
 #include "character/asset_path.h"
 #include "character/paint/tangents.h"
+#include "tests/temporary_folder.h"
 
 namespace furrow::character {
 namespace {
@@ -114,11 +115,9 @@ Character ToyBody() {
 }
 
 std::string GlbOf(const Character& character) {
-  const auto path = std::filesystem::temp_directory_path() / "furrow_intake_test.glb";
-  EXPECT_TRUE(SaveCharacterGlb(character, path).ok());
-  std::string bytes = *ReadFile(path, 64u << 20);
-  std::filesystem::remove(path);
-  return bytes;
+  const TemporaryFolder folder;
+  EXPECT_TRUE(SaveCharacterGlb(character, folder / "toy.glb").ok());
+  return *ReadFile(folder / "toy.glb", 64u << 20);
 }
 
 std::string ConvertByAssimp(std::string_view glb, const std::string& format) {

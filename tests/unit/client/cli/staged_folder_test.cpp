@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/staged_folder.h"
 
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
+
+#include "tests/temporary_folder.h"
 
 namespace furrow::cli {
 namespace {
@@ -15,13 +16,6 @@ namespace fs = std::filesystem;
 
 class StagedFolderTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string folder = (fs::temp_directory_path() / "staged.XXXXXX").string();
-    ASSERT_NE(mkdtemp(folder.data()), nullptr);
-    root_ = folder;
-  }
-  void TearDown() override { fs::remove_all(root_); }
-
   static void Put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
   static std::string Text(const fs::path& path) {
     std::ostringstream text;
@@ -29,10 +23,10 @@ class StagedFolderTest : public testing::Test {
     return text.str();
   }
   [[nodiscard]] std::size_t Entries() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(root_), {}));
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(root_.path()), {}));
   }
 
-  fs::path root_;
+  TemporaryFolder root_;
 };
 
 TEST_F(StagedFolderTest, ShowsNothingBeforeItIsCommitted) {

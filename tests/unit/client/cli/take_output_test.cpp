@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/take_output.h"
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "protocol/envelope.h"
 #include "recording/take_clip.h"
 #include "recording/take_writer.h"
+#include "tests/temporary_folder.h"
 
 namespace furrow::cli {
 namespace {
@@ -22,12 +22,6 @@ using recording::TakeKind;
 
 class TakeOutputTest : public testing::Test {
  protected:
-  TakeOutputTest() {
-    std::string name = (fs::temp_directory_path() / "furrow-output-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
-  }
-  ~TakeOutputTest() override { fs::remove_all(folder_); }
-
   static motion::Clip MakeClip() {
     motion::Clip clip;
     clip.name = "ada";
@@ -51,7 +45,7 @@ class TakeOutputTest : public testing::Test {
         take.Write(kind, subject, stamp, std::span(bytes).subspan(protocol::kEnvelopeBytes)).ok());
   }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
   protocol::Encoder encoder_;
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files as other writers make them, and as nobody should: put together record by record.
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -14,6 +13,7 @@
 
 #include "motion/mcap/compression.h"
 #include "motion/mcap/reader.h"
+#include "tests/temporary_folder.h"
 
 namespace furrow::motion::mcap {
 namespace {
@@ -160,12 +160,6 @@ class HandMade {
 
 class McapHandMadeTest : public testing::Test {
  protected:
-  McapHandMadeTest() {
-    std::string name = (fs::temp_directory_path() / "furrow-mcap-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
-  }
-  ~McapHandMadeTest() override { fs::remove_all(folder_); }
-
   [[nodiscard]] fs::path Path() const { return folder_ / "made.mcap"; }
   [[nodiscard]] static std::unique_ptr<Reader> Open(const fs::path& path,
                                                     const ReaderLimits& limits = {}) {
@@ -183,7 +177,7 @@ class McapHandMadeTest : public testing::Test {
     return seen;
   }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 using Texts = std::vector<std::string>;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -19,6 +18,7 @@
 #include "motion/mcap/compression.h"
 #include "motion/mcap/reader.h"
 #include "motion/mcap/writer.h"
+#include "tests/temporary_folder.h"
 
 namespace furrow::motion::mcap {
 namespace {
@@ -37,12 +37,6 @@ struct Seen {
 
 class McapTest : public testing::Test {
  protected:
-  McapTest() {
-    std::string name = (fs::temp_directory_path() / "furrow-mcap-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
-  }
-  ~McapTest() override { fs::remove_all(folder_); }
-
   [[nodiscard]] fs::path Path(const std::string& name = "take.mcap") const {
     return folder_ / name;
   }
@@ -95,7 +89,7 @@ class McapTest : public testing::Test {
     std::ofstream(path, std::ios::binary) << bytes;
   }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(McapTest, WhatIsWrittenIsReadBack) {
@@ -357,7 +351,7 @@ TEST_F(McapTest, WhatIsNoMcapFileSaysSo) {
   Spill(Path("empty"), "");
   EXPECT_EQ(Reader::Open(Path("empty")).status().code(), StatusCode::kParse);
   EXPECT_EQ(Reader::Open(Path("none")).status().code(), StatusCode::kNotFound);
-  EXPECT_EQ(Reader::Open(folder_).status().code(), StatusCode::kIo);
+  EXPECT_EQ(Reader::Open(folder_.path()).status().code(), StatusCode::kIo);
 }
 
 TEST_F(McapTest, ARecordingNeverOverwrites) {

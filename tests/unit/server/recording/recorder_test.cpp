@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/recording/recorder.h"
 
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
 
 #include "recording/take_poses.h"
 #include "recording/take_summary.h"
+#include "tests/temporary_folder.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
 namespace furrow::server {
@@ -21,11 +21,9 @@ using recording::TakeMessage;
 class RecorderTest : public HubTest {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "furrow-recorder-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
     auto started = Recorder::Start(
-        {.folder = {.folder = folder_, .rig_json = "{}"}, .wall_offset = FromSeconds(5000)}, now,
-        &metrics);
+        {.folder = {.folder = folder_.path(), .rig_json = "{}"}, .wall_offset = FromSeconds(5000)},
+        now, &metrics);
     ASSERT_TRUE(started.ok()) << started.status().ToString();
     recorder_ = *std::move(started);
     Hub::Parts parts;
@@ -37,19 +35,16 @@ class RecorderTest : public HubTest {
     hub = std::make_unique<Hub>(std::move(parts));
     Connect(&sender_);
   }
-  void TearDown() override {
-    recorder_.reset();
-    fs::remove_all(folder_);
-  }
+  void TearDown() override { recorder_.reset(); }
   // Closes the recording; its only take.
   std::unique_ptr<recording::TakeReader> Finish() {
     recorder_.reset();
-    auto take = recording::TakeReader::Open(fs::directory_iterator(folder_)->path());
+    auto take = recording::TakeReader::Open(fs::directory_iterator(folder_.path())->path());
     EXPECT_TRUE(take.ok()) << take.status().ToString();
     return take.ok() ? *std::move(take) : nullptr;
   }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
   std::unique_ptr<Recorder> recorder_;
   FakePeer sender_;
 };
