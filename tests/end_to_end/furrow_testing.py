@@ -5,6 +5,7 @@ import io
 import os
 import pathlib
 import re
+import shlex
 import signal
 import subprocess
 import unittest
@@ -22,6 +23,15 @@ def needs_shared(*parts):
     if not path.exists():
         raise unittest.SkipTest(f"{path} is absent")
     return path
+
+
+def commands(document):
+    """The command lines in the fenced blocks of a document, comments off, as lists of words."""
+    text = (SOURCE / document).read_text()
+    for block in re.findall(r"^```\w*\n(.*?)^```", text, re.M | re.S):
+        for line in block.splitlines():
+            if re.match(r"furrowd?( |$)", line):
+                yield shlex.split(line, comments=True)
 
 
 def furrow(*args, env=None, check=None, stdin=None):

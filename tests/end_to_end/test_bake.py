@@ -4,7 +4,6 @@
 import json
 import pathlib
 import re
-import shlex
 import signal
 import struct
 import subprocess
@@ -13,7 +12,7 @@ import time
 import unittest
 import zlib
 
-from furrow_testing import BIN, GUARD, SHARE, SOURCE, finish, furrow, needs_shared, solve, spawn
+from furrow_testing import BIN, GUARD, SHARE, commands, finish, furrow, needs_shared, solve, spawn
 
 DONE, FAILED, USAGE, BAD_INPUT = range(4)
 CELLS = 12
@@ -89,14 +88,6 @@ def rig(down=-0.3 * SIDE, joint="tip", map_name="squash"):
             "regions": [{"name": "all", "mask": {"texture": "mask.png"},
                          "feeds": [{"map": map_name, "sources": [{"from": "press.squash"}]}]}],
             "wrinkle_maps": [{"name": map_name, "surface": "skin"}]}
-
-
-def commands(document):
-    """The lines of a document's shell blocks that begin with furrow, as lists of words."""
-    text = (SOURCE / document).read_text()
-    for language, block in re.findall(r"^```(\w*)\n(.*?)^```", text, re.M | re.S):
-        if language == "sh":
-            yield from (shlex.split(line) for line in block.splitlines() if line.startswith("furrow "))
 
 
 class BakeCase(unittest.TestCase):

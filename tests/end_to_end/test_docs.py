@@ -3,24 +3,13 @@
 """Every command line that the documents show runs: fenced lines that begin with furrow or furrowd."""
 import os
 import pathlib
-import re
-import shlex
 import subprocess
 import tempfile
 import unittest
 
-from furrow_testing import BIN, GUARD, SHARE, SHARED, SOURCE, Daemon, finish, furrow, spawn
+from furrow_testing import BIN, GUARD, SHARE, SHARED, Daemon, commands, finish, furrow, spawn
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
-
-
-def commands(document):
-    """The command lines in the fenced blocks of a document, comments off, as lists of words."""
-    text = (SOURCE / document).read_text()
-    for block in re.findall(r"^```\w*\n(.*?)^```", text, re.M | re.S):
-        for line in block.splitlines():
-            if re.match(r"furrowd?( |$)", line):
-                yield shlex.split(line, comments=True)
 
 
 class DocumentTest(unittest.TestCase):
