@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/report/interleave.h"
 
-#include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <utility>
+
+#include "report/statistics.h"
 
 namespace furrow::bench {
 namespace {
@@ -17,7 +19,7 @@ double CpuSeconds() {
 double MedianOf(const std::vector<Sample>& samples, double Sample::*member) {
   std::vector<double> values;
   for (const Sample& sample : samples) values.push_back(sample.*member);
-  return Median(values);
+  return report::Median(std::move(values));
 }
 
 }  // namespace
@@ -42,12 +44,6 @@ std::vector<std::vector<Sample>> Interleave(std::span<const Sampler> samplers, i
     }
   }
   return samples;
-}
-
-double Median(std::vector<double> samples) {
-  std::sort(samples.begin(), samples.end());
-  const std::size_t middle = samples.size() / 2;
-  return samples.size() % 2 == 1 ? samples[middle] : 0.5 * (samples[middle - 1] + samples[middle]);
 }
 
 }  // namespace furrow::bench

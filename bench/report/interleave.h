@@ -28,7 +28,4 @@ using Sampler = std::function<Sample()>;
 [[nodiscard]] double MedianWall(const std::vector<Sample>& samples);
 [[nodiscard]] double MedianCpu(const std::vector<Sample>& samples);
 
-// Of at least one sample; of an even number, the mean of the middle two.
-[[nodiscard]] double Median(std::vector<double> samples);
-
 }  // namespace furrow::bench

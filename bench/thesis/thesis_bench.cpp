@@ -9,12 +9,18 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/report/interleave.h"
-#include "bench/report/svg_chart.h"
-#include "bench/report/table.h"
 #include "bench/thesis/experiments.h"
+#include "report/bar_chart.h"
+#include "report/statistics.h"
+#include "report/table.h"
 
 namespace furrow::bench {
 namespace {
+
+using report::BarChart;
+using report::Fixed;
+using report::Median;
+using report::Table;
 
 struct Options {
   ExperimentOptions experiment;

@@ -14,6 +14,7 @@ import tempfile
 ALLOWED = {
     "wrinkle": set(),
     "protocol": set(),
+    "report": set(),
     "motion": {"wrinkle"},
     "recording": {"wrinkle", "protocol", "motion"},
     "character": {"wrinkle"},
@@ -21,7 +22,9 @@ ALLOWED = {
     "server": {"wrinkle", "protocol", "motion", "recording", "character", "render"},
     "client/cpp": {"protocol"},
     "client/c": {"protocol", "client/cpp"},
-    "client/cli": {"wrinkle", "protocol", "motion", "recording", "character", "render", "client/cpp"},
+    "client/load": {"wrinkle", "protocol", "report", "client/cpp"},
+    "client/cli": {"wrinkle", "protocol", "report", "motion", "recording", "character", "render", "client/cpp",
+                   "client/load"},
 }
 
 # foreign header -> where it may be included.
@@ -29,7 +32,7 @@ CONFINED = [
     (r"(epoxy|GL|EGL|GLES\d)/", {"render"}),
     (r"flatbuffers/|.*_generated\.h$", {"protocol", "character"}),
     (r"asio(\.hpp|/)", {"server", "client/cpp"}),
-    (r"glm/", {"wrinkle", "motion", "recording", "character", "render", "server", "client/cli"}),
+    (r"glm/", {"wrinkle", "motion", "recording", "character", "render", "server", "client/load", "client/cli"}),
     (r"OpenImageIO/", {"character", "render"}),
     (r"turbojpeg\.h", {"render"}),
     (r"spdlog/", {"server"}),

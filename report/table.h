@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace furrow::bench {
+namespace furrow::report {
 
 // Rows of text, as wide as its header.
 struct Table {
@@ -19,4 +19,4 @@ struct Table {
 // "%.*f".
 [[nodiscard]] std::string Fixed(double value, int digits);
 
-}  // namespace furrow::bench
+}  // namespace furrow::report

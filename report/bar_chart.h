@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace furrow::bench {
+namespace furrow::report {
 
 // Groups of horizontal bars, one bar a series in each group; lengths from 0.
 struct BarChart {
@@ -21,4 +21,4 @@ struct BarChart {
 // A standalone SVG picture.
 [[nodiscard]] std::string ToSvg(const BarChart& chart);
 
-}  // namespace furrow::bench
+}  // namespace furrow::report

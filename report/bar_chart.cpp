@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/report/svg_chart.h"
+#include "report/bar_chart.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "bench/report/table.h"
+#include "report/svg.h"
+#include "report/table.h"
 
-namespace furrow::bench {
+namespace furrow::report {
 namespace {
+
+using svg::Colour;
+using svg::Rect;
+using svg::Text;
 
 constexpr double kLabelWidth = 300.0;
 constexpr double kPlotWidth = 420.0;
@@ -15,36 +19,6 @@ constexpr double kRightMargin = 90.0;
 constexpr double kTop = 62.0;
 constexpr double kBar = 16.0;
 constexpr double kGap = 12.0;
-constexpr const char* kColours[] = {"#2f6f9f", "#c8793a", "#5d8a4a", "#8a5a9a"};
-
-std::string Escape(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '&') {
-      escaped += "&amp;";
-    } else if (c == '<') {
-      escaped += "&lt;";
-    } else {
-      escaped += c;
-    }
-  }
-  return escaped;
-}
-
-std::string Text(double x, double y, const std::string& anchor, const std::string& text) {
-  return "<text x=\"" + Fixed(x, 1) + "\" y=\"" + Fixed(y, 1) + "\" text-anchor=\"" + anchor +
-         "\">" + Escape(text) + "</text>\n";
-}
-
-std::string Rect(double x, double y, double width, double height, const char* colour) {
-  return "<rect x=\"" + Fixed(x, 1) + "\" y=\"" + Fixed(y, 1) + "\" width=\"" + Fixed(width, 1) +
-         "\" height=\"" + Fixed(height, 1) + "\" fill=\"" + colour + "\"/>\n";
-}
-
-const char* Colour(std::size_t series) { return kColours[series % std::size(kColours)]; }
-
-// Three figures, whatever the size.
-std::string Short(double value) { return Fixed(value, value < 1.0 ? 3 : (value < 100.0 ? 1 : 0)); }
 
 std::string Legend(const BarChart& chart) {
   std::string svg;
@@ -73,15 +47,13 @@ std::string ToSvg(const BarChart& chart) {
     for (std::size_t i = 0; i < group.values.size(); ++i) {
       const double width = std::max(group.values[i] * scale, 0.5);
       body += Rect(kLabelWidth, y, width, kBar - 2.0, Colour(i)) +
-              Text(kLabelWidth + width + 6.0, y + 11.0, "start", Short(group.values[i]));
+              Text(kLabelWidth + width + 6.0, y + 11.0, "start", svg::Short(group.values[i]));
       y += kBar;
     }
     y += kGap;
   }
   const double width = kLabelWidth + kPlotWidth + kRightMargin;
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + Fixed(width, 0) + "\" height=\"" +
-         Fixed(y, 0) + "\" font-family=\"sans-serif\" font-size=\"12\">\n" +
-         "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n" + body + "</svg>\n";
+  return svg::Document(width, y, body);
 }
 
-}  // namespace furrow::bench
+}  // namespace furrow::report

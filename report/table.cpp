@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/report/table.h"
+#include "report/table.h"
 
 #include <algorithm>
 #include <cstdio>
 
-namespace furrow::bench {
+namespace furrow::report {
 namespace {
 
 std::string Line(const std::vector<std::string>& cells, const std::vector<std::size_t>& widths) {
@@ -40,4 +40,4 @@ std::string Fixed(double value, int digits) {
   return text;
 }
 
-}  // namespace furrow::bench
+}  // namespace furrow::report

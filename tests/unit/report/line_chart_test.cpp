@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/line_chart.h"
+
+#include <gtest/gtest.h>
+
+#include "report/statistics.h"
+
+namespace furrow::report {
+namespace {
+
+std::size_t Count(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+    ++count;
+  return count;
+}
+
+LineChart Chart() {
+  return {.title = "latency < 1 s",
+          .x = {.label = "rate"},
+          .y = {.label = "ms"},
+          .series = {{"p50", {{0.0, 0.0}, {10.0, 5.0}}}, {"p99", {{0.0, 1.0}, {10.0, 10.0}}}}};
+}
+
+TEST(LineChart, EndsOfTheDataLieInTheCornersOfThePlot) {
+  const std::string svg = ToSvg({Chart()});
+  EXPECT_EQ(Count(svg, "<polyline"), 2u);
+  EXPECT_NE(svg.find("points=\"80.0,270.0 730.0,163.0 \""), std::string::npos) << svg;
+  EXPECT_NE(svg.find("730.0,56.0 \""), std::string::npos) << svg;
+  EXPECT_NE(svg.find("latency &lt; 1 s (ms)"), std::string::npos);
+}
+
+TEST(LineChart, ALogarithmicAxisHasTenfoldStepsAndNoZero) {
+  LineChart chart = Chart();
+  chart.series = {{"p50", {{0.0, 1.0}, {1.0, 2.0}, {10.0, 3.0}, {100.0, 4.0}}}};
+  chart.x.logarithmic = true;
+  const std::string svg = ToSvg({chart});
+  EXPECT_NE(svg.find("points=\"80.0,163.0 405.0,109.5 730.0,56.0 \""), std::string::npos) << svg;
+}
+
+TEST(LineChart, ChartsStandBelowEachOther) {
+  const std::string one = ToSvg({Chart()});
+  const std::string two = ToSvg({Chart(), Chart()});
+  EXPECT_NE(one.find("height=\"320\""), std::string::npos);
+  EXPECT_NE(two.find("height=\"640\""), std::string::npos);
+  EXPECT_EQ(Count(two, "<polyline"), 4u);
+}
+
+TEST(LineChart, WithoutPointsThereAreAxesAlone) {
+  LineChart chart = Chart();
+  chart.series = {{"p50", {}}};
+  EXPECT_EQ(Count(ToSvg({chart}), "nan"), 0u);
+}
+
+TEST(Median, IsTheMiddleOrTheMeanOfTheMiddleTwo) {
+  EXPECT_EQ(Median({3.0, 1.0, 2.0}), 2.0);
+  EXPECT_EQ(Median({4.0, 1.0, 2.0, 3.0}), 2.5);
+}
+
+}  // namespace
+}  // namespace furrow::report
