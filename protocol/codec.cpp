@@ -18,7 +18,7 @@ struct KindInfo {
   std::string_view name;
 };
 
-constexpr std::array<KindInfo, 15> kKinds = {{
+constexpr std::array<KindInfo, 19> kKinds = {{
     {MessageKind::kHello, "FHEL", "hello"},
     {MessageKind::kWelcome, "FWEL", "welcome"},
     {MessageKind::kPing, "FPIN", "ping"},
@@ -34,6 +34,10 @@ constexpr std::array<KindInfo, 15> kKinds = {{
     {MessageKind::kSubscribeReply, "FSUR", "subscribe_reply"},
     {MessageKind::kWeights, "FWGT", "weights"},
     {MessageKind::kImage, "FIMG", "image"},
+    {MessageKind::kUpdatePictures, "FUPP", "update_pictures"},
+    {MessageKind::kFrameAck, "FACK", "frame_ack"},
+    {MessageKind::kSubscribePoses, "FSPO", "subscribe_poses"},
+    {MessageKind::kDropped, "FDRP", "dropped"},
 }};
 
 constexpr std::array<std::string_view, kNumDecodeStatuses> kStatusNames = {
@@ -177,6 +181,11 @@ DecodeStatus CheckRotation(const Quat& q) {
     return DecodeStatus::kNonFinite;
   }
   return std::fabs(std::sqrt(squared) - 1.0f) <= 1e-3f ? DecodeStatus::kOk : DecodeStatus::kNotUnit;
+}
+
+DecodeStatus CheckRate(float rate_hz) {
+  FURROW_CHECK_DECODE(CheckNumber(rate_hz));
+  return rate_hz >= 0.0f && rate_hz <= kMaxRateHz ? DecodeStatus::kOk : DecodeStatus::kBadValue;
 }
 
 DecodeStatus ReadMask(const flatbuffers::Vector<std::uint8_t>* mask, std::size_t n,

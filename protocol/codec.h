@@ -30,6 +30,10 @@ enum class MessageKind : std::uint8_t {
   kSubscribeReply,     // "FSUR"
   kWeights,            // "FWGT"
   kImage,              // "FIMG"
+  kUpdatePictures,     // "FUPP"
+  kFrameAck,           // "FACK"
+  kSubscribePoses,     // "FSPO"
+  kDropped,            // "FDRP"
 };
 
 // Why bytes were refused. For counters; the order is the order of the checks, cheapest first.
@@ -89,6 +93,10 @@ struct MessageView {
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, SubscribeReply& message);
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, WeightFrame& message);
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, ImageFrame& message);
+[[nodiscard]] DecodeStatus Decode(const MessageView& view, UpdatePictures& message);
+[[nodiscard]] DecodeStatus Decode(const MessageView& view, FrameAck& message);
+[[nodiscard]] DecodeStatus Decode(const MessageView& view, SubscribePoses& message);
+[[nodiscard]] DecodeStatus Decode(const MessageView& view, Dropped& message);
 
 // How a pose is written.
 struct PoseEncoding {
@@ -132,6 +140,10 @@ class Encoder {
   void Encode(const Header& header, const SubscribeReply& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const WeightFrame& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const ImageFrame& message, std::vector<std::uint8_t>& out);
+  void Encode(const Header& header, const UpdatePictures& message, std::vector<std::uint8_t>& out);
+  void Encode(const Header& header, const FrameAck& message, std::vector<std::uint8_t>& out);
+  void Encode(const Header& header, const SubscribePoses& message, std::vector<std::uint8_t>& out);
+  void Encode(const Header& header, const Dropped& message, std::vector<std::uint8_t>& out);
 
   struct State;  // defined where FlatBuffers is known
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weights and Image: STANDARD.md section 9.
+// Weights and Dropped: STANDARD.md section 9.
 #include <algorithm>
 #include <cmath>
 
 #include "protocol/codec_internal.h"
 #include "protocol/quantise.h"
-#include "protocol/schema/image_generated.h"
 #include "protocol/schema/weights_generated.h"
 
 namespace furrow::protocol {
@@ -67,34 +66,6 @@ void Encoder::Encode(const Header& header, const WeightFrame& message,
   }
   Finish(builder, wire::CreateWeights(builder, message.names_hash, message.age_us, values, packed),
          header, MessageKind::kWeights, out);
-}
-
-DecodeStatus Decode(const MessageView& view, ImageFrame& message) {
-  const wire::Image* root = nullptr;
-  FURROW_CHECK_DECODE(Verify(view, MessageKind::kImage, root));
-  if (SizeOf(root->bytes()) == 0) return DecodeStatus::kMissingField;
-  if (root->format() > wire::ImageFormat::MAX || root->age_us() < 0) {
-    return DecodeStatus::kBadValue;
-  }
-  const auto is_size = [](int pixels) { return pixels > 0 && pixels <= kMaxImageSize; };
-  if (!is_size(root->width()) || !is_size(root->height())) return DecodeStatus::kBadValue;
-  message.width = root->width();
-  message.height = root->height();
-  message.format = static_cast<ImageFormat>(root->format());
-  message.age_us = root->age_us();
-  message.bytes.assign(root->bytes()->begin(), root->bytes()->end());
-  return DecodeStatus::kOk;
-}
-
-void Encoder::Encode(const Header& header, const ImageFrame& message,
-                     std::vector<std::uint8_t>& out) {
-  Builder& builder = state_->builder;
-  builder.Clear();
-  const auto bytes = builder.CreateVector(message.bytes);
-  Finish(builder,
-         wire::CreateImage(builder, message.width, message.height,
-                           static_cast<wire::ImageFormat>(message.format), message.age_us, bytes),
-         header, MessageKind::kImage, out);
 }
 
 }  // namespace furrow::protocol

@@ -75,6 +75,8 @@ enum class Presence : std::uint8_t { kMayBeEmpty, kRequired };
 [[nodiscard]] DecodeStatus CheckNumber(float value);
 [[nodiscard]] DecodeStatus CheckVector(const Vec3& value);
 [[nodiscard]] DecodeStatus CheckRotation(const Quat& value);
+// Frames a second: [0, kMaxRateHz].
+[[nodiscard]] DecodeStatus CheckRate(float rate_hz);
 
 // Expands a mask of n bits (absent: all, unless there are no values) to ascending indices.
 [[nodiscard]] DecodeStatus ReadMask(const flatbuffers::Vector<std::uint8_t>* mask, std::size_t n,

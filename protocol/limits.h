@@ -21,6 +21,8 @@ inline constexpr int kMaxWeights = 2048;       // names of one subscription
 inline constexpr int kMaxNameBytes = 255;      // joint, blend shape, subject, weight, view, camera
 inline constexpr int kMaxProgramBytes = 64;    // Hello's client, Welcome's server
 inline constexpr int kMaxPatternBytes = 4096;  // comma list of globs
+inline constexpr int kMaxPictureSettings = 128;
+inline constexpr int kNumPictureTiers = 3;
 inline constexpr int kMaxTextBytes = 1024;     // messages for people
 inline constexpr int kMaxImageSize = 4096;     // pixels a side
 inline constexpr int kMinImageSize = 16;
@@ -29,6 +31,9 @@ inline constexpr float kMaxMagnitude = 1e6f;  // of any coordinate, scale or coe
 
 // A Hello has at least this many bytes, a Welcome at most: the answer never exceeds the question.
 inline constexpr std::size_t kHelloBytes = 256;
+
+// Of frames that a subscriber to every one of them has not taken yet, over a connection.
+inline constexpr std::size_t kMaxWaitingFrameBytes = 8 * 1024 * 1024;
 
 inline constexpr int kMaxVerifierDepth = 8;  // FlatBuffers nesting
 inline constexpr int kMaxVerifierTables = 256;

@@ -173,6 +173,18 @@ struct SubscribeWeights {
   float max_rate_hz = 0.0f;   // 0: every pose
   WeightFormat format = WeightFormat::kF32;
   WeightSource source = WeightSource::kWrinkleWeights;
+  bool every = false;  // TCP: as for poses
+};
+
+// Answered by SubscribeReply and the SkeletonOffer that says what the poses mean; both come again,
+// before the first pose that they concern, when another sender or another skeleton takes over.
+struct SubscribePoses {
+  std::string subject;  // as for weights
+  bool wait = false;
+  float max_rate_hz = 0.0f;
+  // TCP: what is late waits in line instead of giving way to what is newer. Beyond 8 MiB a
+  // connection the newest are left out, which Dropped tells.
+  bool every = false;
 };
 
 enum class ImageFormat : std::uint8_t {
@@ -199,6 +211,23 @@ struct SubscribePictures {
   std::string camera_preset;   // empty: the server's default, unless has_camera
   bool has_camera = false;     // true: `camera` counts and camera_preset must be empty
   Camera camera;
+  // Flow control: at most two pictures are under way until FrameAck comes (STANDARD.md section 9).
+  bool acknowledged = false;
+  std::vector<std::string> settings;  // "name=value", over the server's own
+  // The explicit camera goes with the subject, and its angle counts across the picture's shorter
+  // side: as presets' do.
+  bool camera_follows = false;
+};
+
+// header.stream names a subscription of pictures; all of its view is replaced. Answered where it is
+// refused alone. subject, wait and acknowledged are not read.
+struct UpdatePictures {
+  SubscribePictures pictures;
+};
+
+// header.stream names the subscription: this picture and all before it were shown.
+struct FrameAck {
+  std::uint32_t number = 0;  // ImageFrame::number, from 1
 };
 
 // header.stream names the subscription.
@@ -211,6 +240,13 @@ struct SubscribeReply {
   std::string subject;             // who was chosen; empty while waiting for one
   std::uint64_t names_hash = 0;    // NamesHash(names); 0 while unknown, and for pictures
   std::vector<std::string> names;  // of the values of a WeightFrame, in their order
+  // Poses: the session of who publishes, so that a restart is told from a leap; else 0.
+  std::uint64_t publisher_session = 0;
+};
+
+// header.stream: a subscription to every frame. At most once a second, while it grows.
+struct Dropped {
+  std::uint64_t frames = 0;  // that were left out since the subscription began
 };
 
 // header.stream: the subscription; header.sequence and capture_time_us: the pose's.
@@ -221,13 +257,19 @@ struct WeightFrame {
   std::vector<float> values;  // decoded to [0, 1] whatever the format
 };
 
-// TCP alone. header as in WeightFrame.
+// TCP and WebSocket. header as in WeightFrame.
 struct ImageFrame {
   std::uint16_t width = 0;
   std::uint16_t height = 0;
   ImageFormat format = ImageFormat::kJpeg;
   std::int64_t age_us = 0;
   std::vector<std::uint8_t> bytes;  // the encoded file
+  std::uint32_t number = 0;         // counts from 1 where acknowledged, else 0
+  std::uint8_t tier = 0;            // 0 best, below kNumPictureTiers
+  bool still = false;               // the refined picture of a pose at rest
+  std::uint32_t dropped = 0;        // poses not shown for want of acknowledgements, so far
+  std::int64_t received_us = 0;     // when the server got the pose, on Pong's clock
+  std::uint32_t view_request = 0;   // sequence of the request whose view this is
 };
 
 }  // namespace furrow::protocol

@@ -87,7 +87,8 @@ Fields FieldsOf(const SubscribeWeights& m) {
           {"pattern", Json(m.pattern)},
           {"max_rate_hz", Json(m.max_rate_hz)},
           {"format", Json(static_cast<int>(m.format))},
-          {"source", Json(static_cast<int>(m.source))}};
+          {"source", Json(static_cast<int>(m.source))},
+          {"every", Json(m.every)}};
 }
 Fields FieldsOf(const SubscribePictures& m) {
   Fields fields = {{"subject", Json(m.subject)},
@@ -104,13 +105,30 @@ Fields FieldsOf(const SubscribePictures& m) {
     fields.emplace_back("target", Json(m.camera.target));
     fields.emplace_back("vertical_fov_degrees", Json(m.camera.vertical_fov_degrees));
   }
+  fields.emplace_back("acknowledged", Json(m.acknowledged));
+  fields.emplace_back("settings", Json(m.settings));
+  fields.emplace_back("camera_follows", Json(m.camera_follows));
   return fields;
+}
+Fields FieldsOf(const UpdatePictures& m) { return FieldsOf(m.pictures); }
+Fields FieldsOf(const FrameAck& m) {
+  return {{"number", Json(static_cast<std::int64_t>(m.number))}};
+}
+Fields FieldsOf(const SubscribePoses& m) {
+  return {{"subject", Json(m.subject)},
+          {"wait", Json(m.wait)},
+          {"max_rate_hz", Json(m.max_rate_hz)},
+          {"every", Json(m.every)}};
+}
+Fields FieldsOf(const Dropped& m) {
+  return {{"frames", Json(static_cast<std::int64_t>(m.frames))}};
 }
 Fields FieldsOf(const Unsubscribe&) { return {}; }
 Fields FieldsOf(const SubscribeReply& m) {
   return {{"subject", Json(m.subject)},
           {"names_hash", JsonHex(m.names_hash)},
-          {"names", Json(m.names)}};
+          {"names", Json(m.names)},
+          {"publisher_session", JsonHex(m.publisher_session)}};
 }
 Fields FieldsOf(const WeightFrame& m) {
   return {{"names_hash", JsonHex(m.names_hash)},
@@ -123,7 +141,13 @@ Fields FieldsOf(const ImageFrame& m) {
           {"height", Json(int{m.height})},
           {"format", Json(static_cast<int>(m.format))},
           {"age_us", Json(m.age_us)},
-          {"bytes", Json(m.bytes)}};
+          {"bytes", Json(m.bytes)},
+          {"number", Json(static_cast<std::int64_t>(m.number))},
+          {"tier", Json(int{m.tier})},
+          {"still", Json(m.still)},
+          {"dropped", Json(static_cast<std::int64_t>(m.dropped))},
+          {"received_us", Json(m.received_us)},
+          {"view_request", Json(static_cast<std::int64_t>(m.view_request))}};
 }
 
 std::string Text(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
@@ -241,6 +265,15 @@ SubscribePictures PicturesWithCamera() {
   return pictures;
 }
 
+SubscribePictures ViewersPictures() {
+  SubscribePictures pictures = PicturesWithCamera();
+  pictures.format = ImageFormat::kJpeg;
+  pictures.acknowledged = true;
+  pictures.settings = {"shading=skin", "wrinkles=off"};
+  pictures.camera_follows = true;
+  return pictures;
+}
+
 void AddMeeting(Files& files) {
   Add(files, "hello", Hello{"example/1.0", 0});
   Add(files, "hello_token", Hello{"example/1.0", 0xfedcba9876543210ULL});
@@ -269,19 +302,41 @@ void AddSubscribing(Files& files) {
   Add(files, "subscribe_weights", SubscribeWeights{});
   Add(files, "subscribe_weights_all",
       SubscribeWeights{"anna", true, "brow_*, knee_?.folds", 30.0f, WeightFormat::kU8,
-                       WeightSource::kDriverValues});
+                       WeightSource::kDriverValues, true});
   Add(files, "subscribe_pictures", SubscribePictures{});
   Add(files, "subscribe_pictures_camera", PicturesWithCamera());
+  Add(files, "subscribe_poses", SubscribePoses{});
+  Add(files, "subscribe_poses_every", SubscribePoses{"anna", true, 30.0f, true});
   Add(files, "unsubscribe", Unsubscribe{});
   Add(files, "subscribe_reply", SubscribeReply{"anna", 0, {"brow_l.stretch", "brow_l.squash"}});
   Add(files, "subscribe_reply_waiting", SubscribeReply{});
+  Add(files, "subscribe_reply_poses", SubscribeReply{"anna", 0, {}, 0xfedcba9876543210ULL});
   const std::vector<std::string> names = {"brow_l.stretch", "brow_l.squash", "nose.squash"};
   WeightFrame frame{NamesHash(names), 0, WeightFormat::kF32, {0.0f, 0.3f, 1.0f}};
   Add(files, "weights", frame);
   frame.format = WeightFormat::kU8;
   frame.age_us = 250'000;
   Add(files, "weights_u8", frame);
+  Add(files, "dropped", Dropped{1234});
   Add(files, "image", ImageFrame{640, 480, ImageFormat::kJpeg, 0, {0xFF, 0xD8, 0xFF, 0xD9}});
+}
+
+void AddViewing(Files& files) {
+  Add(files, "subscribe_pictures_viewer", ViewersPictures());
+  Add(files, "update_pictures", UpdatePictures{ViewersPictures()});
+  Add(files, "frame_ack", FrameAck{12});
+  Add(files, "image_viewer",
+      ImageFrame{640,
+                 480,
+                 ImageFormat::kJpeg,
+                 0,
+                 {0xFF, 0xD8, 0xFF, 0xD9},
+                 12,
+                 2,
+                 true,
+                 7,
+                 1'700'000'000'123'999,
+                 5});
 }
 
 // A message in fragments, last first, each datagram after its length as on TCP.
@@ -384,6 +439,7 @@ int Run(std::span<char* const> arguments) {
   AddMeeting(files);
   AddPublishing(files);
   AddSubscribing(files);
+  AddViewing(files);
   AddFragments(files);
   AddRefused(files);
   return check ? Check(arguments[2], files) : Write(arguments[1], files);

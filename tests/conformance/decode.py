@@ -86,13 +86,14 @@ class Table:
         require(len(text.encode()) <= limit, "text too long")
         return text
 
-    def texts(self, slot):
+    def texts(self, slot, unique=True):
         start = self.target(slot)
         if start is None:
             return []
         places = [start + 4 + 4 * i for i in range(self.number("<I", start))]
         names = [self.text_at(place + self.number("<I", place)) for place in places]
-        require(len(set(names)) == len(names) and "" not in names, "names empty or twice")
+        if unique:
+            require(len(set(names)) == len(names) and "" not in names, "names empty or twice")
         return names
 
     def struct(self, slot, layout):
@@ -271,7 +272,12 @@ def rate(value):
 def subscribe_weights(t):
     return {"subject": t.text(0), "wait": t.flag(1), "pattern": t.text(2, "*", 4096),
             "max_rate_hz": rate(t.scalar(3, "f")), "format": one_of(t.scalar(4, "B"), 2),
-            "source": one_of(t.scalar(5, "B"), 2)}
+            "source": one_of(t.scalar(5, "B"), 2), "every": t.flag(6)}
+
+
+def subscribe_poses(t):
+    return {"subject": t.text(0), "wait": t.flag(1), "max_rate_hz": rate(t.scalar(2, "f")),
+            "every": t.flag(3)}
 
 
 def subscribe_pictures(t):
@@ -288,7 +294,21 @@ def subscribe_pictures(t):
         require(1 < camera[6] < 170, "a field of view")
         require(camera[0:3] != camera[3:6], "an eye at its target")
         message.update(eye=camera[0:3], target=camera[3:6], vertical_fov_degrees=camera[6])
+    settings = t.texts(11, unique=False)
+    require(len(settings) <= 128 and "" not in settings, "too many settings, or an empty one")
+    message.update(acknowledged=t.flag(10), settings=settings, camera_follows=t.flag(12))
     return message
+
+
+def update_pictures(t):
+    place = t.target(0)
+    require(place is not None, "no pictures")
+    return subscribe_pictures(Table(t.data, place))
+
+
+def frame_ack(t):
+    require(t.scalar(0, "I") > 0, "picture 0")
+    return {"number": t.scalar(0, "I")}
 
 
 def unsubscribe(_):
@@ -299,7 +319,8 @@ def subscribe_reply(t):
     names = t.texts(2)
     expected = fnv1a(b"".join(n.encode() + b"\0" for n in names)) if names else 0
     require(t.scalar(1, "Q") == expected, "another hash of the names")
-    return {"subject": t.text(0), "names_hash": hexadecimal(expected), "names": names}
+    return {"subject": t.text(0), "names_hash": hexadecimal(expected), "names": names,
+            "publisher_session": hexadecimal(t.scalar(3, "Q"))}
 
 
 def age(value):
@@ -316,19 +337,26 @@ def weights(t):
             "format": 0 if packed is None else 1, "values": values}
 
 
+def dropped(t):
+    return {"frames": t.scalar(0, "Q")}
+
+
 def image(t):
     data = t.vector(4, "B")
     require(data, "no bytes")
     width, height = t.scalar(0, "H"), t.scalar(1, "H")
     require(1 <= width <= 4096 and 1 <= height <= 4096, "a size")
     return {"width": width, "height": height, "format": one_of(t.scalar(2, "B"), 2),
-            "age_us": age(t.scalar(3, "q")), "bytes": data}
+            "age_us": age(t.scalar(3, "q")), "bytes": data, "number": t.scalar(5, "I"),
+            "tier": one_of(t.scalar(6, "B"), 3), "still": t.flag(7), "dropped": t.scalar(8, "I"),
+            "received_us": t.scalar(9, "q"), "view_request": t.scalar(10, "I")}
 
 
 KINDS = {b"FHEL": hello, b"FWEL": welcome, b"FPIN": ping, b"FPON": pong, b"FBYE": goodbye,
          b"FERR": error, b"FSKO": skeleton_offer, b"FSKR": skeleton_reply, b"FPOS": pose,
          b"FSUW": subscribe_weights, b"FSUP": subscribe_pictures, b"FUNS": unsubscribe,
-         b"FSUR": subscribe_reply, b"FWGT": weights, b"FIMG": image}
+         b"FSUR": subscribe_reply, b"FWGT": weights, b"FIMG": image, b"FUPP": update_pictures, b"FACK": frame_ack,
+         b"FSPO": subscribe_poses, b"FDRP": dropped}
 
 
 # --- Sections 1 to 3 -----------------------------------------------------------------------------------

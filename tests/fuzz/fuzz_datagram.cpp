@@ -51,6 +51,10 @@ void DecodeAny(std::span<const std::uint8_t> bytes) {
     case MessageKind::kSubscribeReply: return RoundTrip<p::SubscribeReply>(view);
     case MessageKind::kWeights: return RoundTrip<p::WeightFrame>(view);
     case MessageKind::kImage: return RoundTrip<p::ImageFrame>(view);
+    case MessageKind::kSubscribePoses: return RoundTrip<p::SubscribePoses>(view);
+    case MessageKind::kDropped: return RoundTrip<p::Dropped>(view);
+    case MessageKind::kUpdatePictures: return RoundTrip<p::UpdatePictures>(view);
+    case MessageKind::kFrameAck: return RoundTrip<p::FrameAck>(view);
     case MessageKind::kUnknown: return;
   }
 }

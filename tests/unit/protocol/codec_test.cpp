@@ -37,6 +37,10 @@ DecodeStatus DecodeAny(std::span<const std::uint8_t> bytes) {
     case MessageKind::kSubscribeReply: return decode(SubscribeReply{});
     case MessageKind::kWeights: return decode(WeightFrame{});
     case MessageKind::kImage: return decode(ImageFrame{});
+    case MessageKind::kSubscribePoses: return decode(SubscribePoses{});
+    case MessageKind::kDropped: return decode(Dropped{});
+    case MessageKind::kUpdatePictures: return decode(UpdatePictures{});
+    case MessageKind::kFrameAck: return decode(FrameAck{});
     case MessageKind::kUnknown: break;
   }
   return DecodeStatus::kUnknownKind;
@@ -45,6 +49,7 @@ DecodeStatus DecodeAny(std::span<const std::uint8_t> bytes) {
 std::vector<test::Bytes> OneOfEach() {
   SubscribePictures pictures;
   pictures.has_camera = true;
+  pictures.settings = {"shading=skin", "wrinkles=off"};
   return {Encoded(Hello{"a/1", 5}),
           Encoded(Welcome{"b/2", 6}),
           Encoded(Ping{1}),
@@ -58,6 +63,10 @@ std::vector<test::Bytes> OneOfEach() {
           Encoded(SubscribeWeights{"s", true, "a,b", 5, WeightFormat::kU8,
                                    WeightSource::kDriverValues}),
           Encoded(pictures),
+          Encoded(SubscribePoses{"s", true, 5, true}),
+          Encoded(Dropped{7}),
+          Encoded(UpdatePictures{pictures}),
+          Encoded(FrameAck{3}),
           Encoded(Unsubscribe{}),
           Encoded(SubscribeReply{"s", 0, {"a.b", "c.d"}}),
           Encoded(WeightFrame{3, 4, WeightFormat::kF32, {0.25f, 1.0f}}),
@@ -74,7 +83,7 @@ TEST(Codec, EveryKindIsRecognised) {
     EXPECT_EQ(DecodeAny(bytes), DecodeStatus::kOk) << MessageKindName(view.kind);
     kinds.insert(view.kind);
   }
-  EXPECT_EQ(kinds.size(), 15u);
+  EXPECT_EQ(kinds.size(), 19u);
 }
 
 TEST(Codec, NoTruncationIsAccepted) {
