@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weights and Dropped: STANDARD.md section 9.
+// Weights: STANDARD.md section 9.
 #include <algorithm>
 #include <cmath>
 

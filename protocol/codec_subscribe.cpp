@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SubscribeWeights, SubscribePoses, Unsubscribe, SubscribeReply: STANDARD.md
+// SubscribeWeights, Unsubscribe, SubscribeReply: STANDARD.md
 // section 8.
 #include "protocol/codec_internal.h"
 #include "protocol/hash.h"
