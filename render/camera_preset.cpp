@@ -15,6 +15,12 @@ using character::Character;
 using character::Material;
 
 constexpr float kFovY = 24.0f;  // degrees: about 85 mm on a full frame, a portrait's lens
+// Degrees from the front towards the subject's left.
+constexpr float kThreeQuarter = 38.0f;
+constexpr float kFromTheLeft = 90.0f;
+constexpr std::array<std::string_view, 9> kNames = {
+    "face", "three_quarter",      "profile",   "eyes",     "mouth",
+    "body", "body_three_quarter", "body_side", "body_back"};
 
 struct Bounds {
   glm::vec3 low{std::numeric_limits<float>::max()};
@@ -138,32 +144,52 @@ std::optional<glm::vec3> EyePoint(const Character& character) {
   return MeanTail(character, std::array<std::string_view, 1>{"eye"});
 }
 
-Camera BodyPreset(const Character& character) {
+// The whole body from `azimuth`. Its height decides how near: a picture that is narrower than high
+// shows people who stand and walk, and cuts off the hands of arms stretched out sideways.
+Camera BodyPreset(const Character& character, float azimuth) {
   Bounds all = BoundsOf(
       character, [](auto) { return true; }, [](int) { return true; });
   if (all.empty()) all.Add(glm::vec3(0.0f));
-  const float height = 1.08f * std::max({all.size().x, all.size().y, 1e-3f});
+  const glm::vec3 size = all.size();
+  const float height = 1.04f * std::max({size.x, size.y, 1e-3f});
   const int root = character.skeleton.num_joints() > 0 ? 0 : wrinkle::kNoJoint;
-  return Frame(all.centre(), height, 0.5f * all.size().z, 0.0f, root);
+  Camera camera = Frame(all.centre(), height, 0.5f * size.z, azimuth, root);
+  camera.fit_shorter_side = false;
+  return camera;
 }
 
 }  // namespace
+
+std::span<const std::string_view> CameraPresetNames() { return kNames; }
 
 std::vector<std::pair<std::string, Camera>> CameraPresets(const Character& character) {
   const int joint = FindHead(character);
   const Bounds head = HeadBounds(character, joint);
   const std::array<std::string_view, 3> mouth{"oris", "mouth", "lip"};
-  return {{"face", HeadPreset(head, joint, 0.0f)},
-          {"three_quarter", HeadPreset(head, joint, 38.0f)},
-          {"profile", HeadPreset(head, joint, 90.0f)},
-          {"eyes", DetailPreset(head, joint, EyePoint(character), 0.55f, 0.42f)},
-          {"mouth", DetailPreset(head, joint, MeanTail(character, mouth), 0.22f, 0.42f)},
-          {"body", BodyPreset(character)}};
+  const std::array<Camera, kNames.size()> cameras = {
+      HeadPreset(head, joint, 0.0f),
+      HeadPreset(head, joint, kThreeQuarter),
+      HeadPreset(head, joint, kFromTheLeft),
+      DetailPreset(head, joint, EyePoint(character), 0.55f, 0.42f),
+      DetailPreset(head, joint, MeanTail(character, mouth), 0.22f, 0.42f),
+      BodyPreset(character, 0.0f),
+      BodyPreset(character, kThreeQuarter),
+      BodyPreset(character, kFromTheLeft),
+      BodyPreset(character, 180.0f)};
+  std::vector<std::pair<std::string, Camera>> presets;
+  for (std::size_t i = 0; i < kNames.size(); ++i) presets.emplace_back(kNames[i], cameras[i]);
+  return presets;
 }
 
 Status UnknownPreset(std::string_view name) {
   return {StatusCode::kInvalidArgument, "no camera preset '" + std::string(name) + "'", "camera",
-          "one of face, three_quarter, profile, eyes, mouth, body"};
+          "one of " + ListCameraPresets()};
+}
+
+std::string ListCameraPresets() {
+  std::string list;
+  for (const std::string_view name : kNames) list += (list.empty() ? "" : ", ") + std::string(name);
+  return list;
 }
 
 }  // namespace furrow::render

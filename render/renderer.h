@@ -93,10 +93,15 @@ class Renderer {
   // Vendor, renderer and version of the context, for the log.
   [[nodiscard]] virtual std::string description() const = 0;
 
-  // A camera preset for this character: face, three_quarter, profile, eyes, mouth, body; the error
-  // lists them. Works for any character: from its bounds and its anchor joint.
+  // A camera preset for this character, one of CameraPresetNames(); the error lists them. Works for
+  // any character: from its bounds and its anchor joint.
   [[nodiscard]] virtual Result<Camera> Preset(std::string_view name) const = 0;
 };
+
+// face, three_quarter, profile (from the subject's left), eyes, mouth; body, body_three_quarter,
+// body_side (from the subject's left) and body_back.
+[[nodiscard]] std::span<const std::string_view> CameraPresetNames();
+[[nodiscard]] std::string ListCameraPresets();  // "face, three_quarter, ...": for help texts
 
 // `quality` in [1, 100], for JPEG alone (TurboJPEG, 4:2:0 below 90, 4:4:4 from there).
 [[nodiscard]] Result<std::vector<std::uint8_t>> EncodeImage(const Image& image, ImageFormat format,

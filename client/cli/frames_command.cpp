@@ -10,6 +10,7 @@
 #include "client/cli/exit_code.h"
 #include "client/cli/file_output.h"
 #include "client/cli/listen.h"
+#include "render/renderer.h"
 
 namespace furrow::cli {
 namespace {
@@ -102,8 +103,7 @@ void AddFrames(CLI::App& app, Action& action) {
       ->add_option("--view", options->request.view,
                    "final, normal, mask_dynamic, mask_texture, weights, wireframe")
       ->capture_default_str();
-  command->add_option("--camera", options->request.camera_preset,
-                      "face, three_quarter, profile, eyes, mouth, body");
+  command->add_option("--camera", options->request.camera_preset, render::ListCameraPresets());
   command->callback([options, &action] { action = [options] { return Frames(*options); }; });
 }
 

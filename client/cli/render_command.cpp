@@ -268,8 +268,7 @@ void AddRender(CLI::App& app, Action& action) {
   command->add_option("--size", options->size, "WxH in pixels, 16 to 4096")
       ->check(SizeValidator())
       ->capture_default_str();
-  command
-      ->add_option("--camera", options->camera, "face, three_quarter, profile, eyes, mouth, body")
+  command->add_option("--camera", options->camera, render::ListCameraPresets())
       ->capture_default_str();
   command->add_option("--format", options->format, "png or jpeg")
       ->check(CLI::IsMember({"png", "jpeg"}))

@@ -10,8 +10,6 @@ namespace {
 
 constexpr std::size_t kMaxWaitingJobs = 256;
 constexpr int kMaxReadBacks = 2;  // render::Renderer's own limit
-constexpr std::string_view kPresets[] = {"face", "three_quarter", "profile",
-                                         "eyes", "mouth",         "body"};
 
 }  // namespace
 
@@ -71,7 +69,7 @@ void RenderThread::Run(std::promise<Status> started) {
   const Status status = CreateRenderer();
   if (status.ok()) {
     description_ = renderer_->description();
-    for (const std::string_view name : kPresets) {
+    for (const std::string_view name : render::CameraPresetNames()) {
       if (auto camera = renderer_->Preset(name); camera.ok()) presets_.emplace_back(name, *camera);
     }
     pose_.resize(skeleton_->num_joints());

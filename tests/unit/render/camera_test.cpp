@@ -54,6 +54,36 @@ TEST(CameraPreset, StandsWhereItsNameSays) {
   EXPECT_NEAR(direction("profile").x, 1.0f, 1e-5);
   EXPECT_NEAR(direction("three_quarter").x, std::sin(glm::radians(38.0f)), 1e-5);
   EXPECT_GT(Preset(head, "eyes").target.y, Preset(head, "mouth").target.y + 0.03f);
+  EXPECT_NEAR(direction("body").z, 1.0f, 1e-5);
+  EXPECT_NEAR(direction("body_three_quarter").x, std::sin(glm::radians(38.0f)), 1e-5);
+  EXPECT_NEAR(direction("body_side").x, 1.0f, 1e-5);
+  EXPECT_NEAR(direction("body_back").z, -1.0f, 1e-5);
+}
+
+TEST(CameraPreset, TheNamesAreThoseThatThereAre) {
+  const auto presets = CameraPresets(test::MakeHead());
+  ASSERT_EQ(presets.size(), CameraPresetNames().size());
+  for (std::size_t i = 0; i < presets.size(); ++i) {
+    EXPECT_EQ(presets[i].first, CameraPresetNames()[i]);
+  }
+}
+
+// Whatever the picture's shape: the whole height is seen, with next to no air above and below.
+TEST(CameraPreset, BodyPresetsFillThePicturesHeight) {
+  const character::Character head = test::MakeHead();
+  for (const char* name : {"body", "body_three_quarter", "body_side", "body_back"}) {
+    for (const float aspect : {0.6f, 1.0f, 1.8f}) {
+      const CameraFrame frame =
+          ComputeCamera(Preset(head, name), head.skeleton, head.skeleton.rest_model(), aspect);
+      float extent = 0.0f;
+      for (const character::Vertex& vertex : head.meshes[0].vertices) {
+        const glm::vec4 clip = frame.view_projection * glm::vec4(vertex.position, 1.0f);
+        extent = std::max(extent, std::abs(clip.y / clip.w));
+      }
+      EXPECT_LT(extent, 1.0f) << name << aspect;
+      EXPECT_GT(extent, 0.7f) << name << aspect;
+    }
+  }
 }
 
 // A body below the head must not pull the face camera down; with joints that do not skin, either.
