@@ -161,8 +161,11 @@ EglContext::~EglContext() {
 Status EglContext::MakeCurrent() {
   if (eglGetCurrentContext() != context_ &&
       !eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
-    return {StatusCode::kUnavailable, EglError("eglMakeCurrent"), "EGL",
-            "the context was lost or belongs to another thread: create the renderer anew"};
+    Status lost(StatusCode::kUnavailable, EglError("eglMakeCurrent"), "EGL",
+                "the context was lost or belongs to another thread: create the renderer anew");
+    // Another renderer's context must not stay current: the names of this one mean its objects.
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    return lost;
   }
   if (glGetGraphicsResetStatus() != GL_NO_ERROR) {
     return {StatusCode::kUnavailable, "the OpenGL context was lost to a device reset", description_,

@@ -26,7 +26,8 @@ class EglContext {
   EglContext& operator=(const EglContext&) = delete;
 
   // Binds the context to this thread, if it is not. kUnavailable when the context was lost (a reset
-  // of the device, a driver's restart): nothing in it can be saved; make a new one.
+  // of the device, a driver's restart): nothing in it can be saved; make a new one. Where it cannot
+  // be bound, no context is current afterwards.
   [[nodiscard]] Status MakeCurrent();
 
   // "device 0: Mesa, llvmpipe (LLVM 15.0.6, 256 bits), 4.5 (Core Profile) Mesa 22.3.6".

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/gl_objects.h"
 
+#include <epoxy/egl.h>
+
 namespace furrow::render::gl {
 namespace {
 
 constexpr float kZeros[4] = {0.0f, 0.0f, 0.0f, 0.0f};
 
 }  // namespace
+
+bool HasContext() { return eglGetCurrentContext() != EGL_NO_CONTEXT; }
 
 Buffer MakeBuffer() {
   GLuint name = 0;

@@ -9,7 +9,11 @@
 // OpenGL names that delete themselves. Private to render/: no public header includes this one.
 namespace furrow::render::gl {
 
-// Owns one name. Destroy with its context current.
+// Whether an OpenGL context is current on this thread.
+[[nodiscard]] bool HasContext();
+
+// Owns one name. Destroy with its context current; without any, nothing is deleted: a context that
+// is gone took its names along.
 template <class Kind>
 class Object {
  public:
@@ -21,7 +25,7 @@ class Object {
     return *this;
   }
   ~Object() {
-    if (name_ != 0) Kind::Destroy(name_);
+    if (name_ != 0 && HasContext()) Kind::Destroy(name_);
   }
   [[nodiscard]] GLuint name() const { return name_; }
   explicit operator bool() const { return name_ != 0; }

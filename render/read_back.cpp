@@ -22,7 +22,7 @@ std::vector<std::uint8_t> DropAlpha(const std::uint8_t* rgba, std::size_t num_pi
 
 ReadBack::~ReadBack() {
   for (const Slot& slot : slots_) {
-    if (slot.fence != nullptr) glDeleteSync(slot.fence);
+    if (slot.fence != nullptr && gl::HasContext()) glDeleteSync(slot.fence);
   }
 }
 

@@ -33,8 +33,8 @@ class GlRenderer final : public Renderer {
   }
 
   ~GlRenderer() override {
-    // The objects below are deleted in their own context, whichever was current. If it was lost,
-    // the driver ignores the calls.
+    // The objects below are deleted in their own context, whichever was current. If it is gone,
+    // none is current now, and they went with it.
     (void)context_->MakeCurrent().ok();
   }
 

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lost_context.h"
 #include "test_character.h"
 
 namespace furrow::render {
@@ -207,6 +208,33 @@ TEST_F(RendererTest, TwoRenderersOfOneThreadDoNotDisturbEachOther) {
     ASSERT_TRUE((*other)->Submit(Request(subject_, View::kNormal)).ok());
     EXPECT_EQ(Render(Request(subject_)).rgb, before.rgb);
   }
+  EXPECT_EQ(Render(Request(subject_)).rgb, before.rgb);
+}
+
+TEST_F(RendererTest, ALostContextIsSaidSoAndAnotherRendererDrawsTheSame) {
+  const FrameRequest request = Request(subject_);
+  const Image before = Render(request);
+  ASSERT_TRUE(renderer_->Submit(request).ok());
+  test::DestroyCurrentContext();
+  for (const Status& status : {renderer_->Submit(request), renderer_->Poll(true).status()}) {
+    EXPECT_EQ(status.code(), StatusCode::kUnavailable) << status.ToString();
+    EXPECT_NE(status.ToString().find("create the renderer anew"), std::string::npos);
+  }
+  renderer_.reset();
+  auto anew = Renderer::Create(head_);
+  ASSERT_TRUE(anew.ok()) << anew.status().ToString();
+  renderer_ = std::move(*anew);
+  EXPECT_EQ(Render(request).rgb, before.rgb);
+}
+
+// The lost renderer's names are other objects in the context of the one that goes on.
+TEST_F(RendererTest, ARendererWithoutItsContextTakesNothingFromAnother) {
+  auto lost = Renderer::Create(head_);
+  ASSERT_TRUE(lost.ok());
+  ASSERT_TRUE((*lost)->Render(Request(subject_)).ok());
+  test::DestroyCurrentContext();
+  const Image before = Render(Request(subject_));
+  (*lost).reset();
   EXPECT_EQ(Render(Request(subject_)).rgb, before.rgb);
 }
 
