@@ -16,6 +16,7 @@ pkg_check_modules(ASSIMP REQUIRED IMPORTED_TARGET assimp)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)
 pkg_check_modules(ZLIB REQUIRED IMPORTED_TARGET zlib)
+pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
 
 find_program(FURROW_FLATC flatc REQUIRED)
@@ -30,6 +31,14 @@ find_path(FURROW_ASIO_INCLUDE asio.hpp REQUIRED)
 target_include_directories(furrow_asio SYSTEM INTERFACE "${FURROW_ASIO_INCLUDE}")
 target_compile_definitions(furrow_asio INTERFACE ASIO_STANDALONE ASIO_NO_DEPRECATED)
 target_link_libraries(furrow_asio INTERFACE Threads::Threads)
+
+# Beast and the Asio that it brings, headers alone (libboost1.81-dev: Debian's default, 1.74, clashes
+# with the standalone Asio).
+add_library(furrow_beast INTERFACE)
+find_path(FURROW_BOOST_INCLUDE boost/beast.hpp REQUIRED)
+target_include_directories(furrow_beast SYSTEM INTERFACE "${FURROW_BOOST_INCLUDE}")
+target_link_libraries(furrow_beast INTERFACE Threads::Threads)
+find_package(prometheus-cpp REQUIRED)
 
 add_library(furrow_cli11 INTERFACE)
 find_path(FURROW_CLI11_INCLUDE CLI/CLI.hpp REQUIRED)

@@ -7,9 +7,6 @@
 namespace furrow::wrinkle {
 namespace {
 
-constexpr float kLeastProjection = 1e-6f;
-constexpr float kThesisThreshold = 0.75f;
-
 float SquareOfPositive(float x) {
   const float positive = std::max(x, 0.0f);
   return positive * positive;

@@ -5,6 +5,9 @@
 
 namespace furrow::wrinkle {
 
+inline constexpr float kLeastProjection = 1e-6f;  // shorter ones have no direction
+inline constexpr float kThesisThreshold = 0.75f;
+
 // Shares of a ball joint's bend by direction, each in [0, 1]; left and right are the subject's.
 struct BallShares {
   float front = 0.0f;

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "wrinkle/ball.h"
+#include "wrinkle/driver_values.h"
 #include "wrinkle/hinge.h"
 
 namespace furrow::wrinkle {
@@ -74,6 +75,7 @@ BallDriverSet::Bending BallDriverSet::Measure(int entry, std::span<const Transfo
 void BallDriverSet::Evaluate(std::span<const Transform> local, const JointChains& chains,
                              std::span<float> driver_values) const {
   for (const Entry& entry : entries_) {
+    if (!Reaches(driver_values, entry.first_value)) break;
     const Bending bending = MeasureEntry(entry, local, chains);
     const float bend = Bend(bending.cosine, entry.bend_scale);
     const BallShares shares = SplitBend(entry.mode, bend, bending.forward, bending.right);

@@ -24,16 +24,6 @@ class BallDriverSet {
     float right = 0.0f;
   };
 
-  [[nodiscard]] Status Bind(const Driver& driver, int first_value, BindContext* context);
-  void Evaluate(std::span<const Transform> local, const JointChains& chains,
-                std::span<float> driver_values) const;
-
-  [[nodiscard]] int num_entries() const { return static_cast<int>(entries_.size()); }
-  [[nodiscard]] int first_value(int entry) const { return entries_[entry].first_value; }
-  [[nodiscard]] Bending Measure(int entry, std::span<const Transform> local,
-                                const JointChains& chains) const;
-
- private:
   struct Entry {
     int first_value = 0;
     BonePair bones;
@@ -43,6 +33,18 @@ class BallDriverSet {
     float bend_scale = 0.0f;
     BallMode mode = BallMode::kSmooth;
   };
+
+  [[nodiscard]] Status Bind(const Driver& driver, int first_value, BindContext* context);
+  void Evaluate(std::span<const Transform> local, const JointChains& chains,
+                std::span<float> driver_values) const;
+
+  [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
+  [[nodiscard]] int num_entries() const { return static_cast<int>(entries_.size()); }
+  [[nodiscard]] int first_value(int entry) const { return entries_[entry].first_value; }
+  [[nodiscard]] Bending Measure(int entry, std::span<const Transform> local,
+                                const JointChains& chains) const;
+
+ private:
   [[nodiscard]] static Bending MeasureEntry(const Entry& entry, std::span<const Transform> local,
                                             const JointChains& chains);
   std::vector<Entry> entries_;

@@ -108,7 +108,7 @@ const std::vector<Transform>* BindContext::ReferenceLocals(std::string_view name
 
 glm::vec3 Direction(const glm::vec3& v) {
   const float length = glm::length(v);
-  return length > 1e-12f ? v / length : glm::vec3(0.0f);
+  return length > kLeastLength ? v / length : glm::vec3(0.0f);
 }
 
 glm::vec3 ToJointAxes(const Skeleton& skeleton, int joint, const glm::vec3& direction) {

@@ -65,6 +65,8 @@ class BindContext {
   std::vector<std::string> warnings_;
 };
 
+inline constexpr float kLeastLength = 1e-12f;  // shorter vectors have no direction
+
 // `v` as a unit vector; zero where it has no length.
 [[nodiscard]] glm::vec3 Direction(const glm::vec3& v);
 

@@ -39,6 +39,7 @@ Result<RigBinding> RigBinding::Create(const Rig& rig, const Skeleton& skeleton,
   std::unordered_map<std::string, int> value_index;
   for (const Driver& driver : rig.drivers) {
     const int first_value = static_cast<int>(data->driver_value_names.size());
+    data->first_values.push_back(first_value);
     if (Status status = BindDriver(driver, first_value, &context, data.get()); !status.ok()) {
       return status;
     }
@@ -48,6 +49,7 @@ Result<RigBinding> RigBinding::Create(const Rig& rig, const Skeleton& skeleton,
       data->driver_value_names.push_back(std::move(name));
     }
   }
+  data->first_values.push_back(static_cast<int>(data->driver_value_names.size()));
   if (Status status = data->weights.Bind(rig, value_index); !status.ok()) return status;
   data->influences.Bind(rig, skeleton, value_index);
   data->missing_joints = std::move(context.missing_joints());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,11 @@ struct BindingData {
   WeightTable weights;
   InfluenceTable influences;
   std::vector<std::string> driver_value_names;
+  std::vector<int> first_values;  // of the rig's drivers, and one past the last
+  // How many values the first `num_drivers` of the rig's drivers have.
+  [[nodiscard]] std::size_t NumValues(std::size_t num_drivers) const {
+    return static_cast<std::size_t>(first_values[std::min(num_drivers, first_values.size() - 1)]);
+  }
   std::vector<std::string> missing_joints;
   std::vector<std::string> missing_blend_shapes;
   std::vector<std::string> warnings;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrinkle/blend_shape_driver.h"
 
+#include "wrinkle/driver_values.h"
 #include "wrinkle/scalar.h"
 
 namespace furrow::wrinkle {
@@ -24,6 +25,7 @@ Status BlendShapeDriverSet::Bind(const Driver& driver, int first_value, BindCont
 void BlendShapeDriverSet::Evaluate(std::span<const float> blend_shapes,
                                    std::span<float> driver_values) const {
   for (const Entry& entry : entries_) {
+    if (!Reaches(driver_values, entry.first_value)) break;
     const std::size_t index = static_cast<std::size_t>(entry.blend_shape);
     const float coefficient = index < blend_shapes.size() ? blend_shapes[index] : 0.0f;
     driver_values[entry.first_value] = BlendShapeValue(coefficient, entry.neutral, entry.full);

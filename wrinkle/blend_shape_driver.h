@@ -15,17 +15,19 @@ namespace furrow::wrinkle {
 // All blend-shape drivers of a binding. Private to wrinkle/.
 class BlendShapeDriverSet {
  public:
-  [[nodiscard]] Status Bind(const Driver& driver, int first_value, BindContext* context);
-  // Coefficients past the end of `blend_shapes` count as 0.
-  void Evaluate(std::span<const float> blend_shapes, std::span<float> driver_values) const;
-
- private:
   struct Entry {
     int first_value = 0;
     int blend_shape = 0;
     float neutral = 0.0f;
     float full = 1.0f;
   };
+
+  [[nodiscard]] Status Bind(const Driver& driver, int first_value, BindContext* context);
+  // Coefficients past the end of `blend_shapes` count as 0.
+  void Evaluate(std::span<const float> blend_shapes, std::span<float> driver_values) const;
+  [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
+
+ private:
   std::vector<Entry> entries_;
 };
 

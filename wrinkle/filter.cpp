@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wrinkle/filter_move.h"
 #include "wrinkle/finite.h"
 #include "wrinkle/one_euro.h"
 #include "wrinkle/scalar.h"
@@ -10,8 +11,7 @@
 namespace furrow::wrinkle {
 namespace {
 
-constexpr float kNeutral = 1e-5f;    // a decaying value below this has arrived
-constexpr double kLeastStep = 1e-6;  // seconds; closer inputs count as simultaneous
+constexpr float kNeutral = 1e-5f;  // a decaying value below this has arrived
 
 float LimitSlew(float previous, float wanted, float slew_per_second, double dt) {
   if (slew_per_second <= 0.0f) return wanted;
@@ -94,12 +94,16 @@ JobStatus FilterJob::Run() const {
   if (const JobStatus status = Validate(); status != JobStatus::kOk) return status;
   if (input.empty()) {
     if (context->started) HoldAndDecay(*this);
-  } else if (!context->started || !filter->enabled) {
-    Start(*this);
-  } else if (dt >= kLeastStep) {
-    Follow(*this);
+  } else {
+    switch (MoveOn(*filter, *context, dt)) {
+      case FilterMove::kStart: Start(*this); break;
+      case FilterMove::kFollow: Follow(*this); break;
+      case FilterMove::kStay: break;
+    }
   }
-  std::copy(context->value.begin(), context->value.end(), output.begin());
+  if (output.data() != context->value.data()) {
+    std::copy(context->value.begin(), context->value.end(), output.begin());
+  }
   return JobStatus::kOk;
 }
 

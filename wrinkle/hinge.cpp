@@ -10,9 +10,7 @@
 namespace furrow::wrinkle {
 namespace {
 
-constexpr float kLeastRange = 1e-6f;    // of 1 + cos(beta)
-constexpr float kLeastSine = 1e-6f;     // bones closer to parallel than this have no plane
-constexpr float kFullAlongAxis = 0.5f;  // cosine to the hinge axis from which a bend counts whole
+constexpr float kLeastRange = 1e-6f;  // of 1 + cos(beta)
 
 }  // namespace
 

@@ -8,6 +8,8 @@ namespace furrow::wrinkle {
 // A hinge's axis or a ball's forward within 6 degrees of the bone is refused: it turns the bone
 // about itself. Sine of that angle.
 inline constexpr float kLeastAcross = 0.1f;
+inline constexpr float kLeastSine = 1e-6f;     // bones closer to parallel have no plane
+inline constexpr float kFullAlongAxis = 0.5f;  // cosine to the axis from which a bend counts whole
 
 // 1 / (1 + cos(beta)) of thesis 4.6, `beta_degrees` being the angle between the bones when fully
 // flexed. 0 at beta = 180, where straight and fully flexed are one and no bend can be told.

@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "wrinkle/driver_values.h"
 #include "wrinkle/hinge.h"
 #include "wrinkle/scalar.h"
 
@@ -39,6 +40,7 @@ Status HingeDriverSet::Bind(const Driver& driver, int first_value, BindContext* 
 void HingeDriverSet::Evaluate(std::span<const Transform> local, const JointChains& chains,
                               std::span<float> driver_values) const {
   for (const Entry& entry : entries_) {
+    if (!Reaches(driver_values, entry.first_value)) break;
     const glm::vec3 upper = entry.bones.Upper(local, chains);
     const glm::vec3 lower = entry.bones.Lower(local, chains);
     float flexed = 0.0f;

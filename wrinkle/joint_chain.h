@@ -20,6 +20,19 @@ class JointChains {
   // Returns its index.
   int Add(const Skeleton& skeleton, int joint, const glm::vec3& offset, int base);
 
+  // What a point is carried along: joints up to the one shared with the base, then down to it.
+  struct Chain {
+    glm::vec3 offset{0.0f};
+    std::span<const std::int16_t> up;
+    std::span<const std::int16_t> down;
+  };
+  [[nodiscard]] Chain chain(int point) const {
+    const Point& p = points_[point];
+    const std::span<const std::int16_t> joints(joints_);
+    return {p.offset, joints.subspan(p.first, p.num_up),
+            joints.subspan(p.first + p.num_up, p.num_down)};
+  }
+
   // Where point `point` is, in its base's space. `local` is the skeleton's pose.
   [[nodiscard]] glm::vec3 Evaluate(std::span<const Transform> local, int point) const;
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "wrinkle/driver_values.h"
 #include "wrinkle/nnls.h"
 #include "wrinkle/pose_projection.h"
 #include "wrinkle/scalar.h"
@@ -93,6 +94,10 @@ Status PoseDriverSet::BindValue(const Driver& driver, const PoseDriver::Value& v
   const double square = Dot(d, d);
   const bool moves = std::sqrt(square) > double{kLeastDisplacement * context->size()};
   squared_displacements_.push_back(moves ? static_cast<float>(square) : 0.0f);
+  for (const glm::vec3& point : d) {
+    projections_.push_back(moves ? glm::dvec3(point) / double{squared_displacements_.back()}
+                                 : glm::dvec3(0.0));
+  }
   if (!moves) {
     context->Warn(Whose(driver) + ": reference pose '" + value.reference_pose +
                   "' does not move its control points, so value '" + value.name + "' stays 0");
@@ -193,14 +198,19 @@ float PoseDriverSet::Value(int entry, int value, const Fit& fit) const {
 
 void PoseDriverSet::Evaluate(std::span<const Transform> local, const JointChains& chains,
                              std::span<float> driver_values) const {
+  for (int i = 0; i < num_entries() && Reaches(driver_values, first_value(i)); ++i) {
+    EvaluateEntry(i, local, chains, driver_values);
+  }
+}
+
+void PoseDriverSet::EvaluateEntry(int entry, std::span<const Transform> local,
+                                  const JointChains& chains, std::span<float> driver_values) const {
   std::array<glm::vec3, kMaxControlPoints> moved;
   std::array<Fit, kMaxPoseValues> fits;
-  for (int i = 0; i < num_entries(); ++i) {
-    const int num_points = Measure(i, local, chains, moved);
-    Solve(i, StackedPoints(moved).first(static_cast<std::size_t>(num_points)), fits);
-    for (int k = 0; k < num_values(i); ++k) {
-      driver_values[first_value(i) + k] = Value(i, k, fits[k]);
-    }
+  const int num_points = Measure(entry, local, chains, moved);
+  Solve(entry, StackedPoints(moved).first(static_cast<std::size_t>(num_points)), fits);
+  for (int k = 0; k < num_values(entry); ++k) {
+    driver_values[first_value(entry) + k] = Value(entry, k, fits[k]);
   }
 }
 

@@ -21,10 +21,25 @@ class PoseDriverSet {
     float squared_perpendicular = 0.0f;  // what the fit leaves over
   };
 
+  struct Entry {
+    int first_value = 0;
+    int num_values = 0;
+    std::uint32_t first_point = 0;  // into points_ and rest_
+    std::uint32_t num_points = 0;
+    std::uint32_t first_displacement = 0;  // into displacements_: num_values x num_points
+    std::uint32_t first_square = 0;        // into squared_displacements_: num_values
+    std::uint32_t first_gram = 0;          // into gram_: num_values^2, nnls alone
+    PoseSolve solve = PoseSolve::kProjection;
+    float falloff = 0.0f;
+  };
+
   // Adds `driver`, whose values begin at `first_value` of the binding's.
   [[nodiscard]] Status Bind(const Driver& driver, int first_value, BindContext* context);
+  // Entries whose values lie beyond the end of `driver_values` are left out.
   void Evaluate(std::span<const Transform> local, const JointChains& chains,
                 std::span<float> driver_values) const;
+  void EvaluateEntry(int entry, std::span<const Transform> local, const JointChains& chains,
+                     std::span<float> driver_values) const;
 
   // For `furrow rig explain`: entry by entry, the same numbers that Evaluate() goes through.
   [[nodiscard]] int num_entries() const { return static_cast<int>(entries_.size()); }
@@ -40,18 +55,22 @@ class PoseDriverSet {
   [[nodiscard]] float Value(int entry, int value, const Fit& fit) const;
   [[nodiscard]] std::span<const glm::vec3> Displacement(int entry, int value) const;
 
+  // For the batch: an entry's constants, point by point.
+  [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
+  [[nodiscard]] int point(const Entry& entry, std::uint32_t i) const {
+    return points_[entry.first_point + i];
+  }
+  [[nodiscard]] const glm::vec3& rest(const Entry& entry, std::uint32_t i) const {
+    return rest_[entry.first_point + i];
+  }
+  // d / dot(d, d) of a value, one vector a point: its dot product with how far the points have
+  // moved is the projection. Zero where the reference pose does not move them.
+  [[nodiscard]] const glm::dvec3* projection(const Entry& entry, int value) const {
+    return &projections_[entry.first_displacement +
+                         entry.num_points * static_cast<std::uint32_t>(value)];
+  }
+
  private:
-  struct Entry {
-    int first_value = 0;
-    int num_values = 0;
-    std::uint32_t first_point = 0;  // into points_ and rest_
-    std::uint32_t num_points = 0;
-    std::uint32_t first_displacement = 0;  // into displacements_: num_values x num_points
-    std::uint32_t first_square = 0;        // into squared_displacements_: num_values
-    std::uint32_t first_gram = 0;          // into gram_: num_values^2, nnls alone
-    PoseSolve solve = PoseSolve::kProjection;
-    float falloff = 0.0f;
-  };
   [[nodiscard]] Status BindPoints(const Driver& driver, BindContext* context, bool* usable);
   [[nodiscard]] Status BindValue(const Driver& driver, const PoseDriver::Value& value,
                                  const Entry& entry, BindContext* context);
@@ -66,6 +85,7 @@ class PoseDriverSet {
   std::vector<int> points_;                   // into the binding's JointChains
   std::vector<glm::vec3> rest_;               // B_0, anchor space
   std::vector<glm::vec3> displacements_;      // d = B_k - B_0, anchor space
+  std::vector<glm::dvec3> projections_;       // d / dot(d, d)
   std::vector<float> squared_displacements_;  // dot(d, d), or 0 below the epsilon
   std::vector<double> gram_;                  // of the displacements as unit vectors
 };

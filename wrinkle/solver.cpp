@@ -25,12 +25,13 @@ JobStatus DriverJob::Run() const {
   if (const JobStatus status = Validate(); status != JobStatus::kOk) return status;
   const BindingData& data = binding->data();
   std::fill(driver_values.begin(), driver_values.end(), 0.0f);  // drivers with missing joints
-  data.pose_drivers.Evaluate(local, data.chains, driver_values);
-  data.hinge_drivers.Evaluate(local, data.chains, driver_values);
-  data.ball_drivers.Evaluate(local, data.chains, driver_values);
-  data.twist_drivers.Evaluate(local, driver_values);
-  data.blend_shape_drivers.Evaluate(blend_shapes, driver_values);
-  data.strain_drivers.Evaluate(local, data.chains, driver_values);
+  const std::span<float> values = driver_values.first(data.NumValues(num_drivers));
+  data.pose_drivers.Evaluate(local, data.chains, values);
+  data.hinge_drivers.Evaluate(local, data.chains, values);
+  data.ball_drivers.Evaluate(local, data.chains, values);
+  data.twist_drivers.Evaluate(local, values);
+  data.blend_shape_drivers.Evaluate(blend_shapes, values);
+  data.strain_drivers.Evaluate(local, data.chains, values);
   return JobStatus::kOk;
 }
 
@@ -74,7 +75,6 @@ SubjectSolver::SubjectSolver(std::shared_ptr<const RigBinding> binding, bool fil
   const std::size_t num_values = binding_->driver_value_names().size();
   filter_context_.Resize(static_cast<int>(num_values));
   raw_values_.assign(num_values, 0.0f);
-  filtered_values_.assign(num_values, 0.0f);
   weights_.assign(binding_->weight_names().size(), 0.0f);
 }
 
@@ -83,7 +83,8 @@ JobStatus SubjectSolver::Update(const LocalPose& pose, double dt) {
   const DriverJob drivers{.binding = binding_.get(),
                           .local = pose.joints,
                           .blend_shapes = pose.blend_shapes,
-                          .driver_values = raw_values_};
+                          .driver_values = raw_values_,
+                          .num_drivers = num_drivers_};
   if (const JobStatus status = drivers.Run(); status != JobStatus::kOk) return status;
   return Finish(dt, raw_values_);
 }
@@ -91,21 +92,17 @@ JobStatus SubjectSolver::Update(const LocalPose& pose, double dt) {
 JobStatus SubjectSolver::Decay(double dt) { return Finish(dt, {}); }
 
 JobStatus SubjectSolver::Finish(double dt, std::span<const float> input) {
-  const FilterJob filter{.filter = &filter_,
-                         .context = &filter_context_,
-                         .dt = dt,
-                         .input = input,
-                         .output = filtered_values_};
+  const FilterJob filter{
+      .filter = &filter_, .context = &filter_context_, .dt = dt, .input = input, .output = filter_context_.value};
   if (const JobStatus status = filter.Run(); status != JobStatus::kOk) return status;
   const WrinkleWeightsJob weights{
-      .binding = binding_.get(), .driver_values = filtered_values_, .wrinkle_weights = weights_};
+      .binding = binding_.get(), .driver_values = filtered_values(), .wrinkle_weights = weights_};
   return weights.Run();
 }
 
 void SubjectSolver::Reset() {
   filter_context_.Reset();
   std::fill(raw_values_.begin(), raw_values_.end(), 0.0f);
-  std::fill(filtered_values_.begin(), filtered_values_.end(), 0.0f);
   std::fill(weights_.begin(), weights_.end(), 0.0f);
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -55,10 +57,14 @@ class RigBinding {
   std::unique_ptr<BindingData> data_;
 };
 
+inline constexpr std::size_t kAllDrivers = std::numeric_limits<std::size_t>::max();
+
 // Pose to driver values, unfiltered: `<driver>.<value>` in [0, 1].
 //
 // - `local` num_joints of the binding's skeleton; `blend_shapes` as bound (may be shorter: 0).
 // - `driver_values` at least driver_value_names().size() long. Does not allocate.
+// - `num_drivers`: a level of detail. Of the rig's drivers only so many, in the rig's order, are
+//   evaluated; the values of the others are 0, as where a driver's joints are missing.
 // - Drivers compare joints with one another from the local pose alone, not in model space: where
 //   the character stands and how it is turned changes no value by a single bit (but for the pose
 //   drivers of a rig without an anchor).
@@ -68,6 +74,7 @@ struct DriverJob {
   std::span<const Transform> local;
   std::span<const float> blend_shapes;
   std::span<float> driver_values;
+  std::size_t num_drivers = kAllDrivers;
 
   [[nodiscard]] JobStatus Validate() const;
   [[nodiscard]] JobStatus Run() const;
@@ -102,7 +109,7 @@ struct FilterContext {
 //   changes nothing.
 // - `input` empty: nothing arrived; the output holds for Filter::hold_seconds, then decays to 0.
 // - Filter::enabled false: input passes as it is; hold and decay stay.
-// - `output` as long as the context. Outputs stay in [0, 1].
+// - `output` as long as the context; may be its `value`. Outputs stay in [0, 1].
 // - Does not allocate. Formulas: one_euro.h.
 struct FilterJob {
   const Filter* filter = nullptr;
@@ -129,21 +136,27 @@ class SubjectSolver {
   [[nodiscard]] JobStatus Decay(double dt);
   void Reset();
 
+  // A level of detail: from the next Update() on only the first `count` of the rig's drivers count
+  // (DriverJob::num_drivers); the others' values fade through the filter.
+  void set_num_drivers(std::size_t count) { num_drivers_ = count; }
+  [[nodiscard]] std::size_t num_drivers() const { return num_drivers_; }
+
   [[nodiscard]] std::span<const float> wrinkle_weights() const { return weights_; }
   // Driver values before the filter, and after it.
   [[nodiscard]] std::span<const float> driver_values() const { return raw_values_; }
-  [[nodiscard]] std::span<const float> filtered_values() const { return filtered_values_; }
+  [[nodiscard]] std::span<const float> filtered_values() const { return filter_context_.value; }
   [[nodiscard]] const RigBinding& binding() const { return *binding_; }
 
  private:
+  friend class BatchSolver;  // advances many subjects at once
   [[nodiscard]] JobStatus Finish(double dt, std::span<const float> input);
 
   std::shared_ptr<const RigBinding> binding_;
   Filter filter_;
   FilterContext filter_context_;
   std::vector<float> raw_values_;
-  std::vector<float> filtered_values_;
   std::vector<float> weights_;
+  std::size_t num_drivers_ = kAllDrivers;
 };
 
 // The dynamic mask's per-joint part (4.2): for regions with a skinning mask, how strongly each
@@ -152,7 +165,8 @@ class SubjectSolver {
 //
 // - `influences` is num_joints * num maps of the rig, joint-major. Does not allocate.
 // - A pose driver concerns its control points' joints, a hinge or ball its lower joint, a twist all
-//   of its joints, a strain driver those that move its patch, a blend shape none; the largest of a joint's influences on a map counts.
+//   of its joints, a strain driver those that move its patch, a blend shape none; the largest of a
+//   joint's influences on a map counts.
 // - The vertex side for the processor, and lambda: vertex_influence.h.
 struct JointInfluenceJob {
   const RigBinding* binding = nullptr;

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat4x3.hpp>
 
+#include "wrinkle/driver_values.h"
 #include "wrinkle/retarget.h"
 #include "wrinkle/rig_check.h"
 #include "wrinkle/scalar.h"
@@ -180,7 +181,7 @@ StrainDriverSet::Measured StrainDriverSet::Measure(int entry, std::span<const Tr
 
 void StrainDriverSet::Evaluate(std::span<const Transform> local, const JointChains& chains,
                                std::span<float> driver_values) const {
-  for (int i = 0; i < num_entries(); ++i) {
+  for (int i = 0; i < num_entries() && Reaches(driver_values, first_value(i)); ++i) {
     const CompressionShares shares = Measure(i, local, chains).shares;
     if (!(shares.compression > 0.0f)) continue;
     // A compression beyond the full one keeps its direction: the shares then sum to 1.

@@ -6,10 +6,9 @@
 namespace furrow::wrinkle {
 
 float TwistAngle(const glm::quat& rotation, const glm::vec3& axis) {
-  constexpr float kLeastSquare = 1e-10f;
   float sine = rotation.x * axis.x + rotation.y * axis.y + rotation.z * axis.z;
   float cosine = rotation.w;
-  if (!(sine * sine + cosine * cosine > kLeastSquare)) return 0.0f;
+  if (!(sine * sine + cosine * cosine > kLeastTwistSquare)) return 0.0f;
   if (cosine < 0.0f) {
     sine = -sine;
     cosine = -cosine;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrinkle/twist_driver.h"
 
+#include "wrinkle/driver_values.h"
 #include "wrinkle/scalar.h"
 #include "wrinkle/twist.h"
 
@@ -52,7 +53,7 @@ float TwistDriverSet::Angle(int entry, std::span<const Transform> local) const {
 
 void TwistDriverSet::Evaluate(std::span<const Transform> local,
                               std::span<float> driver_values) const {
-  for (int i = 0; i < num_entries(); ++i) {
+  for (int i = 0; i < num_entries() && Reaches(driver_values, first_value(i)); ++i) {
     const float share = Angle(i, local) * entries_[i].inverse_full;
     driver_values[first_value(i)] = Saturate(share);
     driver_values[first_value(i) + 1] = Saturate(-share);

@@ -36,6 +36,9 @@ class WeightTable {
   // Weights of neighbouring regions on maps that oppose this one's.
   [[nodiscard]] std::span<const std::uint16_t> opponents(int weight) const;
 
+  [[nodiscard]] Combine combine(int weight) const { return entries_[weight].combine; }
+  [[nodiscard]] Modulation modulation(int weight) const { return entries_[weight].modulation; }
+
   [[nodiscard]] float Combined(int weight, std::span<const float> driver_values) const;
   [[nodiscard]] float Modulated(int weight, std::span<const float> driver_values) const;
   // What remains of a weight beside all its opponents, as a factor; `modulated` holds all weights.

@@ -10,6 +10,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "wrinkle/batch_solver.h"
 #include "wrinkle/pose.h"
 #include "wrinkle/solver.h"
 
@@ -109,6 +110,28 @@ void Solve(benchmark::State& state, PoseSolve solve) {
   SetCounters(state, num_subjects, skeleton.num_joints());
 }
 
+void SolveBatch(benchmark::State& state, PoseSolve solve) {
+  const int num_poses = static_cast<int>(state.range(0));
+  const int num_subjects = static_cast<int>(state.range(1));
+  const Skeleton skeleton = Face();
+  const auto binding = std::make_shared<const RigBinding>(
+      std::move(RigBinding::Create(FaceRig(num_poses, solve), skeleton, {})).value());
+  const std::vector<LocalPose> poses = Poses(skeleton, num_subjects);
+  std::vector<SubjectSolver> solvers(poses.size(), SubjectSolver(binding));
+  std::vector<BatchUpdate> updates;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    updates.push_back({.solver = &solvers[i], .pose = &poses[i], .dt = 1.0 / 60.0});
+  }
+  BatchSolver batch;
+  for (auto _ : state) {
+    batch.Run(updates);
+    if (updates.back().status != JobStatus::kOk) state.SkipWithError("batch");
+  }
+  SetCounters(state, num_subjects, skeleton.num_joints());
+}
+
+void BM_BatchProjection(benchmark::State& state) { SolveBatch(state, PoseSolve::kProjection); }
+void BM_BatchNnls(benchmark::State& state) { SolveBatch(state, PoseSolve::kNnls); }
 void BM_SolveProjection(benchmark::State& state) { Solve(state, PoseSolve::kProjection); }
 void BM_SolveNnls(benchmark::State& state) { Solve(state, PoseSolve::kNnls); }
 
@@ -143,7 +166,9 @@ void BM_LocalToModel(benchmark::State& state) {
 const std::vector<std::int64_t> kSubjects = {1, 100, 10000};
 
 BENCHMARK(BM_SolveProjection)->ArgNames({"poses", "subjects"})->ArgsProduct({{2, 8}, kSubjects});
+BENCHMARK(BM_BatchProjection)->ArgNames({"poses", "subjects"})->ArgsProduct({{2, 8}, kSubjects});
 BENCHMARK(BM_SolveNnls)->ArgNames({"poses", "subjects"})->ArgsProduct({{2, 8}, kSubjects});
+BENCHMARK(BM_BatchNnls)->ArgNames({"poses", "subjects"})->ArgsProduct({{2, 8}, kSubjects});
 BENCHMARK(BM_CopyPoses)->ArgName("subjects")->Arg(1)->Arg(100)->Arg(10000);
 BENCHMARK(BM_LocalToModel)->ArgName("subjects")->Arg(1)->Arg(100)->Arg(10000);
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "wrinkle/binding_data.h"
+
+namespace furrow::wrinkle {
+
+inline constexpr std::size_t kMaxBatchLanes = 8;
+
+// Subjects of one binding that are evaluated side by side, one a lane. Lanes past `count` repeat
+// subject 0. Private to wrinkle/.
+struct BatchGroup {
+  template <class T>
+  using Each = std::array<T, kMaxBatchLanes>;
+
+  const BindingData* binding = nullptr;
+  std::size_t num_values = 0;  // those of the drivers to evaluate; the binding's others are 0
+  std::size_t count = 0;
+  Each<const Transform*> poses{};  // num_joints each, checked
+  Each<const float*> joints{};     // the same, as numbers
+  Each<std::span<const float>> blend_shapes{};
+  Each<const Filter*> filters{};
+  Each<FilterContext*> contexts{};
+  Each<double> dt{};
+  Each<float*> raw_values{};  // out
+  Each<float*> weights{};     // out
+};
+
+// How many floats SolveGroup() needs for itself, aligned to kBatchAlignment bytes.
+inline constexpr std::size_t kBatchAlignment = 64;
+[[nodiscard]] std::size_t BatchScratchSize(const BindingData& binding);
+
+// Lanes of the best instructions that this processor has: the size of a full group.
+[[nodiscard]] std::size_t BatchLanes();
+
+// As AllFinite() of finite.h, faster.
+[[nodiscard]] bool BatchAllFinite(std::span<const float> values);
+
+// The subject's nnls and strain drivers, which are not evaluated side by side, into raw_values.
+void EvaluateOneByOne(const BatchGroup& group, std::size_t subject);
+
+// Driver values, filter and wrinkle weights of the group's subjects, into their outputs.
+void SolveGroup(const BatchGroup& group, float* scratch);
+
+}  // namespace furrow::wrinkle

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "wrinkle/pose.h"
+#include "wrinkle/solver.h"
+
+namespace furrow::wrinkle {
+
+// One subject's part of a batch: what SubjectSolver::Update() takes and returns.
+struct BatchUpdate {
+  SubjectSolver* solver = nullptr;
+  const LocalPose* pose = nullptr;    // of the solver's binding
+  double dt = 0.0;                    // seconds of capture time since the subject's last pose
+  JobStatus status = JobStatus::kOk;  // out
+};
+
+// SubjectSolver::Update() for many subjects at once: those that share a binding are evaluated side
+// by side, one a SIMD lane, by the best instructions that this processor has (Highway).
+//
+// - Any subjects in any order: the state stays in each SubjectSolver, so that a batch is whatever
+//   arrived together, and Update(), Decay() and batches may take turns. A batch of one is faster
+//   than Update(), too; it is fastest where 8 or more subjects share a binding.
+// - A subject may stand in a batch more than once; its updates happen in order.
+// - Statuses are Update()'s, and kNullPointer; an update that fails changes nothing and disturbs no
+//   other. Values and weights equal Update()'s to 1e-6.
+// - Strain and nnls drivers are evaluated subject by subject.
+// - Not for two threads at once. Allocates where a binding or a mixture of bindings is larger than
+//   any before, never else.
+class BatchSolver {
+ public:
+  void Run(std::span<BatchUpdate> updates);
+
+ private:
+  class Grouping;
+  void RunFirstKind();
+  float* Scratch(std::size_t size);
+
+  std::vector<float> scratch_;         // a group's values and weights, lane by lane
+  std::vector<BatchUpdate*> waiting_;  // those not yet evaluated
+};
+
+}  // namespace furrow::wrinkle
