@@ -49,6 +49,8 @@ int ParseAndRun(int argc, const char* const* argv) {
   AddPlay(app, action);
   AddWatch(app, action);
   AddFrames(app, action);
+  AddLoad(app, action);
+  AddChaos(app, action);
   AddSolve(app, action);
   AddRender(app, action);
   AddRig(app, action);

@@ -26,6 +26,8 @@ void AddBake(CLI::App& app, Action& action);
 void AddPlay(CLI::App& app, Action& action);
 void AddWatch(CLI::App& app, Action& action);
 void AddFrames(CLI::App& app, Action& action);
+void AddLoad(CLI::App& app, Action& action);
+void AddChaos(CLI::App& app, Action& action);
 
 // An option that takes one of some words, whatever their case; help shows "csv|jsonl|table".
 template <class T>

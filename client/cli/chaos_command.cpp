@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <cstdio>
+#include <memory>
+
+#include "client/cli/chaos_flags.h"
+#include "client/cli/command.h"
+#include "client/cli/endpoint.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/interrupt.h"
+#include "client/load/chaos_proxy.h"
+
+namespace furrow::cli {
+namespace {
+
+struct ChaosCommand {
+  std::string to;
+  load::ChaosProxyOptions proxy;
+  std::uint16_t to_tcp = 0;
+  ChaosFlags flags;
+};
+
+int RunChaos(const ChaosCommand& command) {
+  load::ChaosProxyOptions options = command.proxy;
+  if (Status status = ReadChaosFlags(command.flags, &options.up, &options.down); !status.ok()) {
+    std::fprintf(stderr, "furrow: %s\n", status.ToString().c_str());
+    return kUsage;
+  }
+  Endpoint endpoint;
+  if (!ParseEndpoint(command.to, client::TransportKind::kUdp, &endpoint)) {
+    std::fprintf(stderr, "furrow: --to: '%s' is not HOST, HOST:PORT or [IPV6]:PORT\n",
+                 command.to.c_str());
+    return kUsage;
+  }
+  options.to_host = endpoint.host;
+  options.to_udp = endpoint.port;
+  options.to_tcp = command.to_tcp;
+  const auto proxy = load::ChaosProxy::Open(options);
+  if (!proxy.ok()) {
+    const int code = Fail(proxy.status());
+    return proxy.status().code() == StatusCode::kUnavailable ? kNoConnection : code;
+  }
+  CatchInterrupts();
+  std::printf("furrow chaos ready udp=%s:%u", options.listen_host.c_str(), (*proxy)->udp_port());
+  if (options.to_tcp != 0)
+    std::printf(" tcp=%s:%u", options.listen_host.c_str(), (*proxy)->tcp_port());
+  std::printf("\n");
+  std::fflush(stdout);
+  (*proxy)->Run([] { return !Interrupted(); });
+  std::printf("%s\n%s\n", Describe("up", (*proxy)->up_counts()).c_str(),
+              Describe("down", (*proxy)->down_counts()).c_str());
+  return kDone;
+}
+
+}  // namespace
+
+void AddChaos(CLI::App& app, Action& action) {
+  auto options = std::make_shared<ChaosCommand>();
+  CLI::App* command = app.add_subcommand(
+      "chaos", "Stands between clients and a daemon and mistreats what passes, from a seed");
+  command
+      ->add_option(
+          "--listen", options->proxy.listen_port,
+          "UDP port for clients; 0: any free one, the line 'furrow chaos ready' says which")
+      ->required();
+  command->add_option("--bind", options->proxy.listen_host, "Numeric address to listen on")
+      ->capture_default_str();
+  command->add_option("--to", options->to, "HOST, HOST:PORT or [IPV6]:PORT of furrowd's UDP")
+      ->required();
+  command->add_option(
+      "--to-tcp", options->to_tcp,
+      "furrowd's TCP port; a port for clients is opened for it, too (any free one). "
+      "Of all below, TCP knows jitter and black holes");
+  AddChaosFlags(*command, options->flags);
+  command->callback([options, &action] { action = [options] { return RunChaos(*options); }; });
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "client/load/chaos_link.h"
+#include "wrinkle/status.h"
+
+namespace furrow::cli {
+
+// Which way packets are mistreated.
+enum class ChaosWay { kUp, kDown, kBoth };
+
+// What `load` and `chaos` can be told to do to packets.
+struct ChaosFlags {
+  load::ChaosOptions options;
+  std::vector<std::string> black_holes;  // as ParseBlackHole()
+  ChaosWay way = ChaosWay::kBoth;
+};
+
+void AddChaosFlags(CLI::App& command, ChaosFlags& flags);
+
+// The options of either way, black holes parsed. Errors: ParseBlackHole()'s.
+[[nodiscard]] Status ReadChaosFlags(const ChaosFlags& flags, load::ChaosOptions* up,
+                                    load::ChaosOptions* down);
+
+// "up: 1000 packets, lost 3, ..." of what was done.
+[[nodiscard]] std::string Describe(const std::string& way, const load::ChaosCounts& counts);
+
+}  // namespace furrow::cli

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "client/load/performance.h"
+#include "motion/clip.h"
+#include "wrinkle/status.h"
+
+namespace furrow::cli {
+
+// What a load test sends, and by which rig it is checked.
+struct LoadInput {
+  std::string file;
+  std::string rig;  // as LoadRigArgument(); empty: the default character's
+  std::string skeleton_map;
+  bool quantise = false;
+  float scale = 1.0f;
+};
+
+// Errors: those of the recording, the rig and the skeleton map; kInvalidArgument for a recording
+// without frames.
+[[nodiscard]] Result<load::Performance> LoadPerformance(const LoadInput& input);
+
+// Makes a clip's values those that its quantised poses have on the wire, so that both ends solve
+// the same numbers.
+void QuantiseClip(motion::Clip* clip);
+
+}  // namespace furrow::cli

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/load/report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "report/line_chart.h"
+#include "report/table.h"
+
+namespace furrow::load {
+namespace {
+
+using furrow::report::Axis;
+using furrow::report::Fixed;
+using furrow::report::LineChart;
+using furrow::report::Table;
+
+std::string Count(std::uint64_t value) { return std::to_string(value); }
+
+std::string Mebibytes(std::uint64_t bytes) {
+  return Fixed(static_cast<double>(bytes) / (1 << 20), 1) + " MiB";
+}
+
+// What makes the figures say less than they seem to.
+std::string Remarks(const RunResult& result, const RunOptions& options) {
+  std::string text;
+  const auto remark = [&text](const std::string& sentence) { text += sentence + "\n"; };
+  if (result.interrupted) remark("Interrupted: this is the run so far.");
+  if (!result.complaint.empty()) remark("Said meanwhile: " + result.complaint + ".");
+  if (!result.checked_names && options.check_weights)
+    remark("Weights were not checked: the daemon's are named otherwise than those of --rig.");
+  if (result.overrun > 0) {
+    remark(Count(result.overrun) +
+           " datagrams were lost in this program's own buffers: it is too slow for this rate.");
+  }
+  const double behind_us = static_cast<double>(result.send_delay_ns.Percentile(99.0)) * 1e-3;
+  if (behind_us > 0.25 * result.p(99.0)) {
+    remark("This program sent poses up to " + Fixed(behind_us, 0) +
+           " us late (p99), which counts as latency: it, or the machine, is busy.");
+  }
+  return text;
+}
+
+LineChart ByPercentile(const RunResult& result) {
+  LineChart chart{.title = "Latency by percentile",
+                  .x = {.label = "percentile", .logarithmic = true, .ticks = {}},
+                  .y = {.label = "ms", .logarithmic = false, .ticks = {}},
+                  .series = {{"pose due to weights here", {}}}};
+  for (const double nines : {50.0, 90.0, 99.0, 99.9, 99.99})
+    chart.x.ticks.emplace_back(100.0 / (100.0 - nines), furrow::report::Fixed(nines, 2) + "%");
+  const auto count = static_cast<double>(std::max<std::uint64_t>(result.latency_ns.count(), 1));
+  for (double inverse = 1.0; inverse <= std::min(count, 1e4); inverse *= 1.1) {
+    chart.series[0].points.emplace_back(inverse, result.p(100.0 - 100.0 / inverse) * 1e-3);
+  }
+  return chart;
+}
+
+LineChart OverTime(const RunResult& result) {
+  LineChart chart{.title = "Latency over time",
+                  .x = {.label = "seconds since the start", .logarithmic = false, .ticks = {}},
+                  .y = {.label = "ms", .logarithmic = false, .ticks = {}},
+                  .series = {{"p50", {}}, {"p99", {}}, {"max", {}}}};
+  for (std::size_t i = 0; i < result.windows.size(); ++i) {
+    const Histogram& window = result.windows[i];
+    if (window.count() == 0) continue;
+    const double at = result.seconds * (static_cast<double>(i) + 0.5) /
+                      static_cast<double>(result.windows.size());
+    const double values[] = {static_cast<double>(window.Percentile(50.0)),
+                             static_cast<double>(window.Percentile(99.0)),
+                             static_cast<double>(window.max())};
+    for (std::size_t s = 0; s < 3; ++s) chart.series[s].points.emplace_back(at, values[s] * 1e-6);
+  }
+  return chart;
+}
+
+std::vector<LineChart> ByRate(std::vector<RateStep> steps) {
+  std::ranges::sort(steps, {}, &RateStep::rate);
+  const Axis rate{.label = "poses a second", .logarithmic = false, .ticks = {}};
+  LineChart latency{.title = "Latency by rate",
+                    .x = rate,
+                    .y = {.label = "ms", .logarithmic = true, .ticks = {}},
+                    .series = {{"p50", {}}, {"p99", {}}}};
+  LineChart loss{.title = "Loss by rate",
+                 .x = rate,
+                 .y = {.label = "% of the weights", .logarithmic = false, .ticks = {}},
+                 .series = {{"lost", {}}}};
+  for (const RateStep& step : steps) {
+    latency.series[0].points.emplace_back(step.rate, step.p50_us * 1e-3);
+    latency.series[1].points.emplace_back(step.rate, step.p99_us * 1e-3);
+    loss.series[0].points.emplace_back(step.rate, 100.0 * step.lost_share);
+  }
+  return {latency, loss};
+}
+
+}  // namespace
+
+std::string LiveLine(double seconds, const Tally& tally, const Histogram& latency_ns) {
+  const auto milliseconds = [&](double percentile) {
+    return Fixed(static_cast<double>(latency_ns.Percentile(percentile)) * 1e-6, 3);
+  };
+  return Fixed(seconds, 0) + " s: sent " + Count(tally.sent) + ", received " +
+         Count(tally.received) + ", under way or lost " + Count(tally.lost()) + ", late " +
+         Count(tally.late) + "; p50 " + milliseconds(50.0) + " ms, p99 " + milliseconds(99.0) +
+         " ms";
+}
+
+std::string ToText(const RunResult& result, const RunOptions& options) {
+  const Tally& tally = result.tally;
+  Table poses{"Poses and weights",
+              {"offered", "sent", "received", "lost", "late", "wrong", "reordered", "twice",
+               "never sent", "undecodable"},
+              {{Count(tally.offered), Count(tally.sent), Count(tally.received), Count(tally.lost()),
+                Count(tally.late), Count(tally.wrong), Count(tally.reordered),
+                Count(tally.duplicates), Count(tally.never_sent), Count(result.malformed)}}};
+  Table latency{"Latency, ms, from when a pose was due to when its weights were here",
+                {"p50", "p90", "p99", "p99.9", "max", "late to send, p99"},
+                {{}}};
+  for (const double percentile : {50.0, 90.0, 99.0, 99.9, 100.0})
+    latency.rows[0].push_back(Fixed(result.p(percentile) * 1e-3, 3));
+  latency.rows[0].push_back(
+      Fixed(static_cast<double>(result.send_delay_ns.Percentile(99.0)) * 1e-6, 3));
+  std::string text = ToMarkdown(poses) + "\n" + ToMarkdown(latency) + "\n";
+  if (result.usage && result.cpu_seconds) {
+    const Table usage{
+        "The daemon",
+        {"CPU, % of a core", "us a pose", "memory", "at most"},
+        {{Fixed(100.0 * *result.cpu_seconds / std::max(result.seconds, 1e-3), 1),
+          Fixed(result.cpu_us_per_pose().value_or(0.0), 2), Mebibytes(result.usage->resident_bytes),
+          Mebibytes(result.usage->peak_resident_bytes)}}};
+    text += ToMarkdown(usage) + "\n";
+  }
+  text += "Weights checked against the solver: " + Count(tally.checked) + ", to " +
+          Fixed(options.tolerance, 6) + "; largest difference " +
+          Fixed(tally.largest_difference, 7) + "; not to be checked: " + Count(tally.unchecked) +
+          ".\n";
+  if (tally.wrong > 0) {
+    text += "Of the wrong, " + Count(tally.swapped) +
+            " are another pose's or subject's (swapped), " + Count(tally.wrong - tally.swapped) +
+            " nobody's (falsified).\n";
+  }
+  return text + Remarks(result, options);
+}
+
+nlohmann::json ToJson(const RunResult& result) {
+  const Tally& tally = result.tally;
+  nlohmann::json json = {
+      {"seconds", result.seconds},
+      {"poses_per_second", result.planned_rate},
+      {"offered", tally.offered},
+      {"sent", tally.sent},
+      {"expected", tally.expected},
+      {"received", tally.received},
+      {"lost", tally.lost()},
+      {"late", tally.late},
+      {"wrong", tally.wrong},
+      {"swapped", tally.swapped},
+      {"falsified", tally.wrong - tally.swapped},
+      {"reordered", tally.reordered},
+      {"duplicates", tally.duplicates},
+      {"never_sent", tally.never_sent},
+      {"malformed", result.malformed},
+      {"checked", tally.checked},
+      {"unchecked", tally.unchecked},
+      {"largest_difference", tally.largest_difference},
+      {"overrun", result.overrun},
+      {"churn_returns", result.churn_returns},
+      {"interrupted", result.interrupted},
+      {"complaint", result.complaint},
+      {"latency_us",
+       {{"p50", result.p(50.0)},
+        {"p90", result.p(90.0)},
+        {"p99", result.p(99.0)},
+        {"p99.9", result.p(99.9)},
+        {"max", result.p(100.0)}}},
+      {"send_delay_p99_us", static_cast<double>(result.send_delay_ns.Percentile(99.0)) * 1e-3}};
+  if (result.cpu_seconds) {
+    json["cpu_seconds"] = *result.cpu_seconds;
+    json["cpu_us_per_pose"] = result.cpu_us_per_pose().value_or(0.0);
+  }
+  if (result.usage) {
+    json["resident_bytes"] = result.usage->resident_bytes;
+    json["peak_resident_bytes"] = result.usage->peak_resident_bytes;
+  }
+  return json;
+}
+
+std::string Plot(const RunResult& result, const std::vector<RateStep>& steps) {
+  std::vector<LineChart> charts = {ByPercentile(result), OverTime(result)};
+  if (!steps.empty()) {
+    for (LineChart& chart : ByRate(steps)) charts.push_back(std::move(chart));
+  }
+  return furrow::report::ToSvg(charts);
+}
+
+}  // namespace furrow::load

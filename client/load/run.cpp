@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/load/run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "client/load/clock.h"
+#include "client/load/poller.h"
+#include "client/load/senders.h"
+#include "client/load/watchers.h"
+#include "protocol/envelope.h"
+#include "protocol/fragment.h"
+
+namespace furrow::load {
+namespace {
+
+using client::IoStatus;
+using client::TransportKind;
+
+// A server allows one peer so many messages a second (furrowd: 20,000): stay well below.
+constexpr double kMessagesPerSocket = 8000.0;
+constexpr int kPosesAtOnce = 32;  // then it is looked for what came, also when behind
+constexpr std::int64_t kLongestWaitNs = 20'000'000;
+constexpr std::int64_t kSecondNs = 1'000'000'000;
+constexpr std::uint64_t kWatcherToken = std::uint64_t{1} << 32;
+
+OpenSocket Opener(const Target& target, Path path) {
+  return [target, path](int i) -> Result<std::unique_ptr<Socket>> {
+    const bool tcp = path == Path::kTcp || (path == Path::kBoth && i % 2 == 1);
+    std::string error;
+    auto socket = Socket::Open(tcp ? TransportKind::kTcp : TransportKind::kUdp, target.host,
+                               tcp ? target.tcp : target.udp, &error);
+    if (!socket) return Status(StatusCode::kUnavailable, error);
+    return socket;
+  };
+}
+
+int NumSockets(const Performance& performance, const Plan& plan, Path path) {
+  const double datagrams =
+      static_cast<double>(protocol::NumDatagrams(performance.messages.front().size()));
+  const double wanted = std::ceil(plan.poses_per_second() * datagrams / kMessagesPerSocket);
+  const int least = path == Path::kBoth ? 2 : 1;
+  return std::clamp(static_cast<int>(wanted), std::min(least, plan.num_subjects()),
+                    plan.num_subjects());
+}
+
+// One run that is under way.
+class Runner {
+ public:
+  Runner(const Performance& performance, const Target& target, const RunOptions& options,
+         const RunHooks& hooks)
+      : performance_(performance),
+        target_(target),
+        options_(options),
+        hooks_(hooks),
+        plan_(performance.times, options.plan) {}
+
+  Status Prepare();
+  RunResult Go();
+
+ private:
+  Status OpenSockets();
+  void SendDue(std::int64_t now_ns);
+  void ReadReady(std::int64_t timeout_ns);
+  IoStatus ReadWatcher(std::size_t socket);
+  void ReadEchoes(std::size_t socket);
+  void EverySecond(std::int64_t now_ns);
+  [[nodiscard]] bool Over(std::int64_t now_ns);
+  [[nodiscard]] std::int64_t DueNs(std::size_t slot) const {
+    return start_ns_ + plan_.slots()[slot].due_us * 1000;
+  }
+  void End(std::string why) {
+    result_.complaint = std::move(why);
+    ended_ = true;
+  }
+  RunResult Report();
+
+  const Performance& performance_;
+  const Target& target_;
+  const RunOptions& options_;
+  const RunHooks& hooks_;
+  Plan plan_;
+  std::optional<Expected> expected_;
+  std::optional<Checker> checker_;
+  std::optional<Senders> senders_;
+  std::optional<Watchers> watchers_;
+  std::optional<Burdens> burdens_;
+  Poller poller_;
+  RunResult result_;
+  std::int64_t start_ns_ = 0;
+  std::int64_t capture_start_us_ = 0;
+  std::int64_t last_arrival_ns_ = 0;
+  std::int64_t next_second_ns_ = 0;
+  std::size_t next_slot_ = 0;
+  std::uint64_t refused_ = 0;
+  bool ended_ = false;
+};
+
+Status Runner::Prepare() {
+  if (options_.check_weights && performance_.binding && !target_.echo) {
+    expected_.emplace(performance_, plan_, [this](double share) {
+      hooks_.solving(share);
+      return hooks_.go_on();
+    });
+  }
+  checker_.emplace(plan_, expected_ ? &*expected_ : nullptr,
+                   CheckOptions{.watchers = target_.echo ? 1 : options_.watchers,
+                                .tolerance = options_.tolerance,
+                                .late_us = options_.late_us,
+                                .seconds = options_.plan.seconds});
+  if (Status status = OpenSockets(); !status.ok()) return status;
+  for (std::size_t i = 0; i < senders_->num_sockets(); ++i)
+    poller_.Add(senders_->socket(i).descriptor(), i);
+  for (std::size_t i = 0; watchers_ && i < watchers_->num_sockets(); ++i)
+    poller_.Add(watchers_->socket(i).descriptor(), kWatcherToken + i);
+  return {};
+}
+
+Status Runner::OpenSockets() {
+  const OpenSocket open = Opener(target_, options_.path);
+  auto senders = Senders::Open(open, NumSockets(performance_, plan_, options_.path), performance_);
+  if (!senders.ok()) return senders.status();
+  senders_.emplace(*std::move(senders));
+  if (target_.echo) return {};
+  if (Status status = senders_->Offer(plan_.num_subjects(), hooks_.go_on); !status.ok())
+    return status;
+  const auto names =
+      performance_.binding ? performance_.binding->weight_names() : std::span<const std::string>();
+  auto watchers = Watchers::Open(open, options_.watchers, plan_.num_subjects(), names);
+  if (!watchers.ok()) return watchers.status();
+  watchers_.emplace(*std::move(watchers));
+  if (Status status = watchers_->Subscribe(hooks_.go_on); !status.ok()) return status;
+  auto burdens = Burdens::Open(Opener(target_, Path::kTcp), options_.burdens, plan_.num_subjects());
+  if (!burdens.ok()) return burdens.status();
+  burdens_.emplace(*std::move(burdens));
+  return {};
+}
+
+RunResult Runner::Go() {
+  const auto before = target_.pid ? ReadUsage(*target_.pid) : std::nullopt;
+  start_ns_ = SteadyNanoseconds() + kLongestWaitNs;
+  last_arrival_ns_ = start_ns_;
+  next_second_ns_ = start_ns_ + kSecondNs;
+  capture_start_us_ = start_ns_ / 1000;
+  for (std::int64_t now = start_ns_; !Over(now); now = SteadyNanoseconds()) {
+    SendDue(now);
+    now = SteadyNanoseconds();
+    const bool all_sent = next_slot_ == plan_.slots().size();
+    const std::int64_t wait = all_sent ? kLongestWaitNs : DueNs(next_slot_) - now;
+    ReadReady(std::min(wait, kLongestWaitNs));
+    EverySecond(now);
+  }
+  result_.seconds =
+      static_cast<double>(std::min<std::int64_t>(SteadyNanoseconds() - start_ns_,
+                                                 std::llround(options_.plan.seconds * 1e9))) *
+      1e-9;
+  result_.usage = target_.pid ? ReadUsage(*target_.pid) : std::nullopt;
+  if (before && result_.usage)
+    result_.cpu_seconds = result_.usage->cpu_seconds - before->cpu_seconds;
+  return Report();
+}
+
+bool Runner::Over(std::int64_t now_ns) {
+  if (ended_) return true;
+  if (!hooks_.go_on()) {
+    result_.interrupted = true;
+    return true;
+  }
+  if (next_slot_ < plan_.slots().size()) return false;
+  const auto patience = std::llround(options_.drain_seconds * 1e9);
+  return checker_->complete() ||
+         now_ns - std::max(last_arrival_ns_, DueNs(next_slot_ - 1)) > patience;
+}
+
+void Runner::SendDue(std::int64_t now_ns) {
+  for (int i = 0; i < kPosesAtOnce && next_slot_ < plan_.slots().size(); ++i) {
+    if (DueNs(next_slot_) > now_ns) return;
+    const Plan::Slot& slot = plan_.slots()[next_slot_];
+    const int phase = plan_.phase_of(slot.subject);
+    const IoStatus status = senders_->Send(slot.subject, slot.pose, plan_.Frame(phase, slot.pose),
+                                           capture_start_us_ + plan_.CaptureUs(phase, slot.pose));
+    now_ns = SteadyNanoseconds();
+    result_.send_delay_ns.Record(now_ns - DueNs(next_slot_));
+    checker_->OnSent(slot.subject, slot.pose, status == IoStatus::kOk);
+    refused_ += status == IoStatus::kNoConnection ? 1 : 0;
+    if (status == IoStatus::kClosed) return End("the daemon closed the connection");
+    ++next_slot_;
+  }
+}
+
+void Runner::ReadReady(std::int64_t timeout_ns) {
+  for (const epoll_event& event : poller_.Wait(timeout_ns)) {
+    const std::uint64_t token = event.data.u64;
+    IoStatus status = IoStatus::kOk;
+    if (token >= kWatcherToken) {
+      status = ReadWatcher(token - kWatcherToken);
+    } else if (target_.echo) {
+      ReadEchoes(token);
+    } else {
+      status = senders_->Read(token);
+    }
+    refused_ += status == IoStatus::kNoConnection ? 1 : 0;
+    if (status == IoStatus::kClosed) End("the daemon closed the connection");
+  }
+}
+
+IoStatus Runner::ReadWatcher(std::size_t socket) {
+  return watchers_->Read(socket, [this](const Watchers::Arrival& arrival) {
+    last_arrival_ns_ = SteadyNanoseconds();
+    checker_->OnWeights(arrival.watcher, arrival.subject, arrival.sequence, arrival.values,
+                        arrival.readable, (last_arrival_ns_ - start_ns_) / 1000);
+  });
+}
+
+void Runner::ReadEchoes(std::size_t socket) {
+  std::span<const std::uint8_t> message;
+  while (senders_->socket(socket).Receive(message, std::chrono::milliseconds(0)) == IoStatus::kOk) {
+    protocol::Envelope envelope;
+    if (protocol::ReadEnvelope(message, envelope) != protocol::EnvelopeStatus::kOk) continue;
+    last_arrival_ns_ = SteadyNanoseconds();
+    checker_->OnWeights(0, senders_->subject(socket, envelope.header.stream),
+                        envelope.header.sequence, {}, false, (last_arrival_ns_ - start_ns_) / 1000);
+  }
+}
+
+void Runner::EverySecond(std::int64_t now_ns) {
+  if (burdens_) burdens_->Tick(now_ns / 1000);
+  if (now_ns < next_second_ns_) return;
+  next_second_ns_ += kSecondNs;
+  // Leases lapse where nothing is asked for; reading maintains them.
+  for (std::size_t i = 0; watchers_ && i < watchers_->num_sockets(); ++i) (void)ReadWatcher(i);
+  hooks_.second(static_cast<double>(now_ns - start_ns_) * 1e-9, checker_->tally(),
+                checker_->latency_ns());
+}
+
+RunResult Runner::Report() {
+  if (expected_) checker_->Settle(performance_);
+  result_.tally = checker_->tally();
+  result_.latency_ns = checker_->latency_ns();
+  result_.windows.assign(checker_->windows().begin(), checker_->windows().end());
+  result_.planned_rate = plan_.poses_per_second();
+  for (std::size_t i = 0; i < senders_->num_sockets(); ++i)
+    result_.overrun += senders_->socket(i).overrun();
+  if (watchers_) {
+    for (std::size_t i = 0; i < watchers_->num_sockets(); ++i)
+      result_.overrun += watchers_->socket(i).overrun();
+    result_.malformed = watchers_->malformed();
+    result_.checked_names = expected_ && watchers_->names_match();
+    if (result_.complaint.empty()) result_.complaint = watchers_->complaint();
+  }
+  if (burdens_) result_.churn_returns = burdens_->returns();
+  if (refused_ > 0 && result_.complaint.empty())
+    result_.complaint = "nobody listened at the port for some of the time";
+  if (!target_.echo) senders_->Close();
+  return std::move(result_);
+}
+
+}  // namespace
+
+std::optional<double> RunResult::cpu_us_per_pose() const {
+  if (!cpu_seconds || tally.sent == 0) return std::nullopt;
+  return *cpu_seconds * 1e6 / static_cast<double>(tally.sent);
+}
+
+Result<RunResult> Run(const Performance& performance, const Target& target,
+                      const RunOptions& options, const RunHooks& hooks) {
+  Runner runner(performance, target, options, hooks);
+  if (Status status = runner.Prepare(); !status.ok()) return status;
+  return runner.Go();
+}
+
+}  // namespace furrow::load

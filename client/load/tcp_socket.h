@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "client/load/socket.h"
+#include "protocol/limits.h"
+#include "protocol/tcp_framing.h"
+
+namespace furrow::load {
+
+// A connected TCP socket. Send() waits for the other end, but not longer than five seconds.
+class TcpSocket : public Socket {
+ public:
+  explicit TcpSocket(Descriptor descriptor);
+
+  [[nodiscard]] client::IoStatus Send(std::span<const std::uint8_t> message) override;
+  [[nodiscard]] client::IoStatus Receive(std::span<const std::uint8_t>& message,
+                                         std::chrono::milliseconds timeout) override;
+  [[nodiscard]] int descriptor() const override { return descriptor_.get(); }
+
+ private:
+  [[nodiscard]] client::IoStatus Fill(std::chrono::milliseconds timeout);
+
+  Descriptor descriptor_;
+  std::vector<std::uint8_t> outgoing_;
+  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(64 * 1024);
+  std::span<const std::uint8_t> unread_;
+  bool drained_ = false;  // the last read was not full: nothing is left until the next wait
+  protocol::FrameReader frames_{protocol::kMaxReplyBytes};
+};
+
+}  // namespace furrow::load
