@@ -30,7 +30,7 @@ static_assert(kJointFloats == 10 && offsetof(Transform, rotation) == 12 &&
 
 HWY_INLINE Float3 LoadTranslation(const float* const* poses, int joint) {
   const Columns columns = LoadColumns(poses, static_cast<std::size_t>(joint) * kJointFloats);
-  return {columns.column[0], columns.column[1], columns.column[2]};
+  return {columns.c0, columns.c1, columns.c2};
 }
 
 HWY_INLINE JointLanes LoadJoint(const float* const* poses, int joint) {
@@ -38,18 +38,31 @@ HWY_INLINE JointLanes LoadJoint(const float* const* poses, int joint) {
   const Columns begin = LoadColumns(poses, first);
   const Columns middle = LoadColumns(poses, first + 4);
   const Columns end = LoadColumns(poses, first + 6);  // so that nothing past the joint is read
-  return {{begin.column[0], begin.column[1], begin.column[2]},
-          {begin.column[3], middle.column[0], middle.column[1], middle.column[2]},
-          {middle.column[3], end.column[2], end.column[3]}};
+  return {{begin.c0, begin.c1, begin.c2},
+          {begin.c3, middle.c0, middle.c1, middle.c2},
+          {middle.c3, end.c2, end.c3}};
 }
 
 HWY_INLINE FloatQuat LoadRotation(const float* const* poses, int joint) {
   const Columns columns = LoadColumns(poses, static_cast<std::size_t>(joint) * kJointFloats + 3);
-  return {columns.column[0], columns.column[1], columns.column[2], columns.column[3]};
+  return {columns.c0, columns.c1, columns.c2, columns.c3};
 }
 
-// JointChains::Evaluate().
-HWY_INLINE Float3 EvaluatePoint(const JointChains::Chain& chain, const float* const* poses) {
+// The poses of a group. `check` turns NaN in a lane where a number that was read is not finite (or
+// where finite ones overflowed): whatever is made of such a number times 0 is no longer 0.
+struct PoseLanes {
+  const float* const* poses;
+  Float check;
+
+  HWY_INLINE void Check(const Float3& v) {
+    const Float zero = hn::Zero(Floats());
+    check = hn::MulAdd(v.z, zero, hn::MulAdd(v.y, zero, hn::MulAdd(v.x, zero, check)));
+  }
+};
+
+// JointChains::Evaluate(). What it reads of a pose: read_numbers.h.
+HWY_INLINE Float3 EvaluatePoint(const JointChains::Chain& chain, PoseLanes* lanes) {
+  const float* const* const poses = lanes->poses;
   std::span<const std::int16_t> up = chain.up;
   Float3 position = Splat(chain.offset);
   if (!up.empty() && chain.offset == glm::vec3(0.0f)) {  // a joint's origin: nothing to turn
@@ -62,8 +75,12 @@ HWY_INLINE Float3 EvaluatePoint(const JointChains::Chain& chain, const float* co
   }
   for (const std::int16_t index : chain.down) {
     const JointLanes joint = LoadJoint(poses, index);
-    position = Rotate(Conjugate(joint.rotation), position - joint.translation) / joint.scale;
+    // Checked before the division, which makes a finite number of an infinite scale.
+    const Float3 turned = Rotate(Conjugate(joint.rotation), position - joint.translation);
+    lanes->Check(joint.scale);
+    position = turned / joint.scale;
   }
+  lanes->Check(position);
   return position;
 }
 
@@ -87,9 +104,9 @@ struct BoneLanes {
   LaneDirection upper, lower;
 };
 HWY_INLINE BoneLanes EvaluateBones(const BonePair& bones, const JointChains& chains,
-                                   const float* const* poses) {
-  const Float3 joint = EvaluatePoint(chains.chain(bones.joint_point), poses);
-  const Float3 end = EvaluatePoint(chains.chain(bones.end_point), poses);
+                                   PoseLanes* lanes) {
+  const Float3 joint = EvaluatePoint(chains.chain(bones.joint_point), lanes);
+  const Float3 end = EvaluatePoint(chains.chain(bones.end_point), lanes);
   return {Direction(joint), Direction(end - joint)};
 }
 
@@ -98,8 +115,8 @@ HWY_INLINE Float LaneBend(Float cosine, float bend_scale) {
 }
 
 inline void EvaluateHinge(const HingeDriverSet::Entry& entry, const JointChains& chains,
-                          const float* const* poses, float* values) {
-  const BoneLanes bones = EvaluateBones(entry.bones, chains, poses);
+                          PoseLanes* lanes, float* values) {
+  const BoneLanes bones = EvaluateBones(entry.bones, chains, lanes);
   const Float3& upper = bones.upper.unit;
   const Float3& lower = bones.lower.unit;
   Float flexed = LaneBend(Dot(upper, lower), entry.bend_scale);
@@ -142,17 +159,15 @@ inline void StoreShares(BallMode mode, Float bend, Float forward, Float right, f
 }
 
 inline void EvaluateBall(const BallDriverSet::Entry& entry, const JointChains& chains,
-                         const float* const* poses, float* values) {
-  BoneLanes bones = EvaluateBones(entry.bones, chains, poses);
-  if (entry.straight != glm::vec3(0.0f)) {
-    bones.upper = {Splat(entry.straight), hn::MaskFromVec(hn::Set(Floats(), -1.0f))};
-  }
-  const Float3& straight = bones.upper.unit;
+                         PoseLanes* lanes, float* values) {
+  const BoneLanes bones = EvaluateBones(entry.bones, chains, lanes);
+  const bool fixed = entry.straight != glm::vec3(0.0f);
+  const Float3 straight = fixed ? Splat(entry.straight) : bones.upper.unit;
   const Float3& lower = bones.lower.unit;
   const Float cosine = Dot(straight, lower);
   const Float3 across = lower - cosine * straight;
-  const auto has_bones = hn::And(bones.upper.has_length, bones.lower.has_length);
-  const Float bend = hn::IfThenElseZero(has_bones, LaneBend(cosine, entry.bend_scale));
+  Float bend = hn::IfThenElseZero(bones.lower.has_length, LaneBend(cosine, entry.bend_scale));
+  if (!fixed) bend = hn::IfThenElseZero(bones.upper.has_length, bend);
   StoreShares(entry.mode, bend, Dot(across, Splat(entry.forward)), Dot(across, Splat(entry.right)),
               values);
 }
@@ -177,13 +192,14 @@ HWY_INLINE Float LaneTwist(const FloatQuat& q, const Float3& axis) {
 }
 
 inline void EvaluateTwist(const TwistDriverSet::Entry& entry,
-                          std::span<const TwistDriverSet::TwistJoint> joints,
-                          const float* const* poses, float* values) {
+                          std::span<const TwistDriverSet::TwistJoint> joints, PoseLanes* lanes,
+                          float* values) {
   Float sum = hn::Zero(Floats());
   for (const TwistDriverSet::TwistJoint& joint : joints) {
     const glm::quat& r = joint.rest_inverse;
     const FloatQuat rest_inverse{Splat(r.x), Splat(r.y), Splat(r.z), Splat(r.w)};
-    const FloatQuat away = Multiply(rest_inverse, LoadRotation(poses, joint.joint));
+    const FloatQuat away = Multiply(rest_inverse, LoadRotation(lanes->poses, joint.joint));
+    lanes->Check({away.x, away.y, away.z});
     sum = hn::Add(sum, LaneTwist(away, Splat(joint.axis)));
   }
   const Float share = hn::Mul(sum, Splat(entry.inverse_full));

@@ -18,28 +18,26 @@
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
-// `columns` as a list for each subject, as StoreColumns() does, where fewer than four are left.
-inline void StoreLastColumns(const Columns& columns, float* const* subjects, std::size_t offset,
+// Four columns to a list for each subject, as StoreColumns() does, of which `count` are wanted.
+inline void StoreSomeColumns(const Columns& columns, float* const* subjects, std::size_t offset,
                              std::size_t count) {
-  HWY_ALIGN float numbers[4][kLanes];
-  for (std::size_t r = 0; r < 4; ++r) StoreLanes(columns.column[r], numbers[r]);
+  if (count >= 4) return StoreColumns(columns, subjects, offset);
+  HWY_ALIGN float numbers[4 * kLanes];
+  StoreLanes(columns.c0, numbers);
+  StoreLanes(columns.c1, numbers + kLanes);
+  StoreLanes(columns.c2, numbers + 2 * kLanes);
   for (std::size_t subject = 0; subject < kLanes; ++subject) {
-    for (std::size_t r = 0; r < count; ++r) subjects[subject][offset + r] = numbers[r][subject];
+    for (std::size_t i = 0; i < count; ++i) {
+      subjects[subject][offset + i] = numbers[i * kLanes + subject];
+    }
   }
 }
 
-inline Columns LoadRows(const float* rows, std::size_t first, std::size_t count) {
-  Columns columns;
-  for (std::size_t r = 0; r < 4; ++r) {
-    columns.column[r] = r < count ? LoadLanes(rows + (first + r) * kLanes) : hn::Zero(Floats());
-  }
-  return columns;
-}
-
-// The values of all drivers but nnls and strain, in rows.
-void EvaluateRows(const BatchGroup& group, float* rows) {
+// The values of all drivers but nnls and strain, in rows. Returns a bit for each lane to look at:
+// see EvaluateGroup().
+unsigned EvaluateRows(const BatchGroup& group, float* rows) {
   const BindingData& data = *group.binding;
-  const float* const* poses = group.joints.data();
+  PoseLanes lanes{group.joints.data(), hn::Zero(Floats())};
   const auto reaches = [&](int first_value) {
     return static_cast<std::size_t>(first_value) < group.num_values;
   };
@@ -50,35 +48,40 @@ void EvaluateRows(const BatchGroup& group, float* rows) {
   const auto pose_entries = data.pose_drivers.entries();
   for (std::size_t i = 0; i < pose_entries.size() && reaches(pose_entries[i].first_value); ++i) {
     if (pose_entries[i].solve == PoseSolve::kNnls) continue;
-    EvaluatePose(data.pose_drivers, static_cast<int>(i), data.chains, poses,
-                 row(pose_entries[i].first_value));
+    EvaluatePose(data.pose_drivers, i, data.chains, &lanes, row(pose_entries[i].first_value));
   }
   for (const HingeDriverSet::Entry& entry : data.hinge_drivers.entries()) {
     if (!reaches(entry.first_value)) break;
-    EvaluateHinge(entry, data.chains, poses, row(entry.first_value));
+    EvaluateHinge(entry, data.chains, &lanes, row(entry.first_value));
   }
   for (const BallDriverSet::Entry& entry : data.ball_drivers.entries()) {
     if (!reaches(entry.first_value)) break;
-    EvaluateBall(entry, data.chains, poses, row(entry.first_value));
+    EvaluateBall(entry, data.chains, &lanes, row(entry.first_value));
   }
   for (const TwistDriverSet::Entry& entry : data.twist_drivers.entries()) {
     if (!reaches(entry.first_value)) break;
-    EvaluateTwist(entry, data.twist_drivers.joints(entry), poses, row(entry.first_value));
+    EvaluateTwist(entry, data.twist_drivers.joints(entry), &lanes, row(entry.first_value));
   }
   for (const BlendShapeDriverSet::Entry& entry : data.blend_shape_drivers.entries()) {
     if (!reaches(entry.first_value)) break;
     EvaluateBlendShape(entry, group.blend_shapes.data(), row(entry.first_value));
   }
+  HWY_ALIGN float check[kLanes];
+  StoreLanes(lanes.check, check);
+  unsigned suspect = 0;
+  for (std::size_t lane = 0; lane < group.count; ++lane) {
+    if (!(check[lane] == 0.0f)) suspect |= 1u << lane;
+  }
+  return suspect;
 }
 
-// Rows to each subject's own list.
+// Rows to each subject's own list. The scratch ends in room for whole columns.
 void StoreValues(const BatchGroup& group, std::size_t count, const float* rows) {
-  std::size_t i = 0;
-  for (; i + 4 <= count; i += 4) {
-    StoreColumns(LoadRows(rows, i, 4), group.raw_values.data(), i);
-  }
-  if (i < count) {
-    StoreLastColumns(LoadRows(rows, i, count - i), group.raw_values.data(), i, count - i);
+  for (std::size_t i = 0; i < count; i += 4) {
+    const float* const row = rows + i * kLanes;
+    const Columns columns{LoadLanes(row), LoadLanes(row + kLanes), LoadLanes(row + 2 * kLanes),
+                          LoadLanes(row + 3 * kLanes)};
+    StoreSomeColumns(columns, group.raw_values.data(), i, count - i);
   }
 }
 
@@ -89,7 +92,11 @@ void LoadFiltered(const BatchGroup& group, std::size_t count, float* rows) {
   std::size_t i = 0;
   for (; i + 4 <= count; i += 4) {
     const Columns columns = LoadColumns(values, i);
-    for (std::size_t r = 0; r < 4; ++r) StoreLanes(columns.column[r], rows + (i + r) * kLanes);
+    float* const row = rows + i * kLanes;
+    StoreLanes(columns.c0, row);
+    StoreLanes(columns.c1, row + kLanes);
+    StoreLanes(columns.c2, row + 2 * kLanes);
+    StoreLanes(columns.c3, row + 3 * kLanes);
   }
   for (; i < count; ++i) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) rows[i * kLanes + lane] = values[lane][i];
@@ -103,24 +110,17 @@ void EvaluateWeights(const BatchGroup& group, const float* values, float* modula
   for (std::size_t i = 0; i < count; ++i) {
     StoreLanes(ModulatedWeight(table, static_cast<int>(i), values), modulated + i * kLanes);
   }
+  const auto congruent = [&](std::size_t i) HWY_ATTR {
+    return i < count ? CongruentWeight(table, i, modulated) : hn::Zero(Floats());
+  };
   for (std::size_t i = 0; i < count; i += 4) {
-    const std::size_t now = std::min<std::size_t>(4, count - i);
-    Columns columns;
-    for (std::size_t r = 0; r < 4; ++r) {
-      columns.column[r] = r < now ? CongruentWeight(table, i + r, modulated) : hn::Zero(Floats());
-    }
-    if (now == 4) {
-      StoreColumns(columns, group.weights.data(), i);
-    } else {
-      StoreLastColumns(columns, group.weights.data(), i, now);
-    }
+    const Columns columns{congruent(i), congruent(i + 1), congruent(i + 2), congruent(i + 3)};
+    StoreSomeColumns(columns, group.weights.data(), i, count - i);
   }
 }
 
-void SolveGroupLanes(const BatchGroup& group, float* scratch) {
-  const BindingData& data = *group.binding;
-  const auto count = static_cast<std::size_t>(data.first_values.back());
-  EvaluateRows(group, scratch);
+void FinishRows(const BatchGroup& group, float* scratch) {
+  const auto count = static_cast<std::size_t>(group.binding->first_values.back());
   StoreValues(group, count, scratch);
   for (std::size_t i = 0; i < group.count; ++i) {
     EvaluateOneByOne(group, i);
@@ -133,14 +133,14 @@ void SolveGroupLanes(const BatchGroup& group, float* scratch) {
 bool AllFiniteLanes(std::span<const float> values) {
   const Floats d;
   const Float zero = hn::Zero(d);
-  Float sums[4] = {zero, zero, zero, zero};
+  Float even = zero;
+  Float odd = zero;
   std::size_t i = 0;
-  for (; i + 4 * kLanes <= values.size(); i += 4 * kLanes) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      sums[k] = hn::MulAdd(hn::LoadU(d, values.data() + i + k * kLanes), zero, sums[k]);
-    }
+  for (; i + 2 * kLanes <= values.size(); i += 2 * kLanes) {
+    even = hn::MulAdd(hn::LoadU(d, values.data() + i), zero, even);
+    odd = hn::MulAdd(hn::LoadU(d, values.data() + i + kLanes), zero, odd);
   }
-  const Float sum = hn::Add(hn::Add(sums[0], sums[1]), hn::Add(sums[2], sums[3]));
+  const Float sum = hn::Add(even, odd);
   return hn::AllTrue(d, hn::Eq(sum, zero)) && AllFinite(values.subspan(i));
 }
 
@@ -152,7 +152,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace furrow::wrinkle {
 
-HWY_EXPORT(SolveGroupLanes);
+HWY_EXPORT(EvaluateRows);
+HWY_EXPORT(FinishRows);
 HWY_EXPORT(AllFiniteLanes);
 HWY_EXPORT(NumLanes);
 
@@ -160,27 +161,29 @@ std::size_t BatchLanes() { return HWY_DYNAMIC_DISPATCH(NumLanes)(); }
 
 std::size_t BatchScratchSize(const BindingData& binding) {
   const auto num_values = static_cast<std::size_t>(binding.first_values.back());
-  return (num_values + binding.weights.names().size()) * kMaxBatchLanes;
+  return (num_values + binding.weights.names().size() + 4) * kMaxBatchLanes;
 }
 
 bool BatchAllFinite(std::span<const float> values) {
   return HWY_DYNAMIC_DISPATCH(AllFiniteLanes)(values);
 }
 
-void SolveGroup(const BatchGroup& group, float* scratch) {
-  HWY_DYNAMIC_DISPATCH(SolveGroupLanes)(group, scratch);
+unsigned EvaluateGroup(const BatchGroup& group, float* scratch) {
+  return HWY_DYNAMIC_DISPATCH(EvaluateRows)(group, scratch);
 }
 
-// For drivers whose formulas branch: nnls and strain.
+void FinishGroup(const BatchGroup& group, float* scratch) {
+  HWY_DYNAMIC_DISPATCH(FinishRows)(group, scratch);
+}
+
 void EvaluateOneByOne(const BatchGroup& group, std::size_t subject) {
   const BindingData& data = *group.binding;
   const auto num_joints = static_cast<std::size_t>(data.skeleton.num_joints());
   const std::span<const Transform> local(group.poses[subject], num_joints);
   const std::span<float> values(group.raw_values[subject], group.num_values);
-  const auto entries = data.pose_drivers.entries();
-  for (std::size_t i = 0; i < entries.size() && Reaches(values, entries[i].first_value); ++i) {
-    if (entries[i].solve != PoseSolve::kNnls) continue;
-    data.pose_drivers.EvaluateEntry(static_cast<int>(i), local, data.chains, values);
+  for (const int entry : data.pose_drivers.nnls_entries()) {
+    if (!Reaches(values, data.pose_drivers.first_value(entry))) break;
+    data.pose_drivers.EvaluateEntry(entry, local, data.chains, values);
   }
   data.strain_drivers.Evaluate(local, data.chains, values);
 }

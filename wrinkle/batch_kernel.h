@@ -9,7 +9,7 @@
 
 namespace furrow::wrinkle {
 
-inline constexpr std::size_t kMaxBatchLanes = 8;
+inline constexpr std::size_t kMaxBatchLanes = 16;
 
 // Subjects of one binding that are evaluated side by side, one a lane. Lanes past `count` repeat
 // subject 0. Private to wrinkle/.
@@ -20,7 +20,7 @@ struct BatchGroup {
   const BindingData* binding = nullptr;
   std::size_t num_values = 0;  // those of the drivers to evaluate; the binding's others are 0
   std::size_t count = 0;
-  Each<const Transform*> poses{};  // num_joints each, checked
+  Each<const Transform*> poses{};  // num_joints each
   Each<const float*> joints{};     // the same, as numbers
   Each<std::span<const float>> blend_shapes{};
   Each<const Filter*> filters{};
@@ -30,7 +30,7 @@ struct BatchGroup {
   Each<float*> weights{};     // out
 };
 
-// How many floats SolveGroup() needs for itself, aligned to kBatchAlignment bytes.
+// How many floats a group needs for itself, aligned to kBatchAlignment bytes.
 inline constexpr std::size_t kBatchAlignment = 64;
 [[nodiscard]] std::size_t BatchScratchSize(const BindingData& binding);
 
@@ -43,7 +43,13 @@ inline constexpr std::size_t kBatchAlignment = 64;
 // The subject's nnls and strain drivers, which are not evaluated side by side, into raw_values.
 void EvaluateOneByOne(const BatchGroup& group, std::size_t subject);
 
-// Driver values, filter and wrinkle weights of the group's subjects, into their outputs.
-void SolveGroup(const BatchGroup& group, float* scratch);
+// The values of the group's drivers, into `scratch`. Nothing else changes.
+//
+// Returns a bit for each lane whose pose may hold a number that is not finite among those that the
+// drivers read (NumbersRead()); finite numbers that overflow set it, too.
+[[nodiscard]] unsigned EvaluateGroup(const BatchGroup& group, float* scratch);
+
+// Filter and wrinkle weights of what EvaluateGroup() left, into the subjects' outputs.
+void FinishGroup(const BatchGroup& group, float* scratch);
 
 }  // namespace furrow::wrinkle

@@ -96,9 +96,9 @@ HWY_INLINE Float Smoothstep(float from, float to, Float x) {
   return hn::Mul(hn::Mul(t, t), hn::NegMulAdd(Splat(2.0f), t, Splat(3.0f)));
 }
 
-// Four numbers of each subject, one vector each.
+// Four numbers of each subject, one vector each. No array: compilers keep those in memory.
 struct Columns {
-  Float column[4];
+  Float c0, c1, c2, c3;
 };
 
 #if HWY_TARGET == HWY_SCALAR
@@ -110,13 +110,16 @@ HWY_INLINE Doubles ToDoubles(Float v) {
 HWY_INLINE Float ToFloats(const Doubles& v) { return hn::DemoteTo(Floats(), v.low); }
 
 HWY_INLINE Columns LoadColumns(const float* const* subjects, std::size_t offset) {
-  Columns columns;
-  for (std::size_t i = 0; i < 4; ++i) columns.column[i] = Splat(subjects[0][offset + i]);
-  return columns;
+  const float* const from = subjects[0] + offset;
+  return {Splat(from[0]), Splat(from[1]), Splat(from[2]), Splat(from[3])};
 }
 
 HWY_INLINE void StoreColumns(const Columns& columns, float* const* subjects, std::size_t offset) {
-  for (std::size_t i = 0; i < 4; ++i) subjects[0][offset + i] = hn::GetLane(columns.column[i]);
+  float* const to = subjects[0] + offset;
+  to[0] = hn::GetLane(columns.c0);
+  to[1] = hn::GetLane(columns.c1);
+  to[2] = hn::GetLane(columns.c2);
+  to[3] = hn::GetLane(columns.c3);
 }
 
 #else
@@ -135,14 +138,14 @@ HWY_INLINE Float ToFloats(const Doubles& v) {
 
 // Four vectors to their transpose within each block of four lanes. What was loaded by LoadRow()
 // becomes columns, and back again.
-HWY_INLINE Columns Transpose(const Float (&in)[4]) {
+HWY_INLINE Columns Transpose(const Columns& in) {
   const Floats d;
-  const Float low02 = hn::InterleaveLower(d, in[0], in[2]);
-  const Float high02 = hn::InterleaveUpper(d, in[0], in[2]);
-  const Float low13 = hn::InterleaveLower(d, in[1], in[3]);
-  const Float high13 = hn::InterleaveUpper(d, in[1], in[3]);
-  return {{hn::InterleaveLower(d, low02, low13), hn::InterleaveUpper(d, low02, low13),
-           hn::InterleaveLower(d, high02, high13), hn::InterleaveUpper(d, high02, high13)}};
+  const Float low02 = hn::InterleaveLower(d, in.c0, in.c2);
+  const Float high02 = hn::InterleaveUpper(d, in.c0, in.c2);
+  const Float low13 = hn::InterleaveLower(d, in.c1, in.c3);
+  const Float high13 = hn::InterleaveUpper(d, in.c1, in.c3);
+  return {hn::InterleaveLower(d, low02, low13), hn::InterleaveUpper(d, low02, low13),
+          hn::InterleaveLower(d, high02, high13), hn::InterleaveUpper(d, high02, high13)};
 }
 
 // A row of kN lanes: of subject `first` and every fourth after it, four numbers at `offset` in each
@@ -171,16 +174,18 @@ HWY_INLINE void StoreRow(hn::Vec<hn::FixedTag<float, kN>> row, float* const* sub
   }
 }
 
-// Numbers `offset` to `offset` + 3 of every subject, one vector each.
+// Numbers `offset` to `offset` + 3 of every subject.
 HWY_INLINE Columns LoadColumns(const float* const* subjects, std::size_t offset) {
-  Float rows[4];
-  for (std::size_t r = 0; r < 4; ++r) rows[r] = LoadRow<kLanes>(subjects, r, offset);
-  return Transpose(rows);
+  return Transpose({LoadRow<kLanes>(subjects, 0, offset), LoadRow<kLanes>(subjects, 1, offset),
+                    LoadRow<kLanes>(subjects, 2, offset), LoadRow<kLanes>(subjects, 3, offset)});
 }
 
 HWY_INLINE void StoreColumns(const Columns& columns, float* const* subjects, std::size_t offset) {
-  const Columns rows = Transpose(columns.column);
-  for (std::size_t r = 0; r < 4; ++r) StoreRow<kLanes>(rows.column[r], subjects, r, offset);
+  const Columns rows = Transpose(columns);
+  StoreRow<kLanes>(rows.c0, subjects, 0, offset);
+  StoreRow<kLanes>(rows.c1, subjects, 1, offset);
+  StoreRow<kLanes>(rows.c2, subjects, 2, offset);
+  StoreRow<kLanes>(rows.c3, subjects, 3, offset);
 }
 
 #endif  // HWY_SCALAR

@@ -30,9 +30,9 @@ HWY_INLINE Double MulAddDot(const glm::dvec3& d, Double x, Double y, Double z, D
 }
 
 // ProjectionAlong().
-HWY_INLINE Float Along(const Moved* moved, const glm::dvec3* projection, std::uint32_t num_points) {
+HWY_INLINE Float Along(const Moved* moved, const glm::dvec3* projection, std::size_t num_points) {
   Doubles sum = {hn::Zero(HalfDoubles()), hn::Zero(HalfDoubles())};
-  for (std::uint32_t i = 0; i < num_points; ++i) {
+  for (std::size_t i = 0; i < num_points; ++i) {
     const Moved& m = moved[i];
     sum.low = MulAddDot(projection[i], m.x.low, m.y.low, m.z.low, sum.low);
     sum.high = MulAddDot(projection[i], m.x.high, m.y.high, m.z.high, sum.high);
@@ -41,8 +41,8 @@ HWY_INLINE Float Along(const Moved* moved, const glm::dvec3* projection, std::ui
 }
 
 // Falloff() of SquaredDistance().
-HWY_INLINE Float LaneFalloff(const Moved* moved, std::span<const glm::vec3> displacement,
-                             Float along, float squared_displacement, float falloff) {
+inline Float LaneFalloff(const Moved* moved, std::span<const glm::vec3> displacement, Float along,
+                         float squared_displacement, float falloff) {
   Float sum = hn::Zero(Floats());
   for (std::size_t i = 0; i < displacement.size(); ++i) {
     const Moved& m = moved[i];
@@ -54,25 +54,44 @@ HWY_INLINE Float LaneFalloff(const Moved* moved, std::span<const glm::vec3> disp
   return Exponential(hn::Div(hn::Neg(sum), Splat(width)));
 }
 
-inline void EvaluatePose(const PoseDriverSet& drivers, int index, const JointChains& chains,
-                         const float* const* poses, float* values) {
-  const PoseDriverSet::Entry& entry = drivers.entries()[static_cast<std::size_t>(index)];
-  Moved moved[kMaxControlPoints];
-  for (std::uint32_t i = 0; i < entry.num_points; ++i) {
-    const Float3 position = EvaluatePoint(chains.chain(drivers.point(entry, i)), poses);
-    moved[i] = ToDoubles(position - Splat(drivers.rest(entry, i)));
-  }
-  for (int k = 0; k < entry.num_values; ++k) {
-    const Float along = Along(moved, drivers.projection(entry, k), entry.num_points);
+HWY_INLINE Moved Measure(const PoseDriverSet::Measured& point, const JointChains& chains,
+                         PoseLanes* lanes) {
+  const Float3 position = EvaluatePoint(chains.chain(point.point), lanes);
+  return ToDoubles(position - Splat(point.rest));
+}
+
+// Any number of points. `moved` has room for them.
+HWY_INLINE void StorePoseValues(const PoseDriverSet& drivers, std::size_t index, const Moved* moved,
+                                std::size_t num_points, float* values) {
+  const PoseDriverSet::Entry& entry = drivers.entries()[index];
+  const glm::dvec3* projection = drivers.projections(entry);
+  for (int k = 0; k < entry.num_values; ++k, projection += num_points) {
+    const Float along = Along(moved, projection, num_points);
     Float value = Saturate(along);
-    const float square = drivers.SquaredDisplacement(index, k);
-    if (entry.falloff > 0.0f && square > 0.0f) {
-      const auto displacement = drivers.Displacement(index, k);
-      const Float share = LaneFalloff(moved, displacement, along, square, entry.falloff);
+    if (entry.falloff > 0.0f) {
+      const int driver = static_cast<int>(index);
+      const float square = drivers.SquaredDisplacement(driver, k);
+      const auto displacement = drivers.Displacement(driver, k);
+      // Where the pose does not move the points, `along` is 0 and the width does not count.
+      const Float share =
+          LaneFalloff(moved, displacement, along, square > 0.0f ? square : 1.0f, entry.falloff);
       value = Saturate(hn::Mul(value, share));
     }
     StoreLanes(value, values + static_cast<std::size_t>(k) * kLanes);
   }
+}
+
+inline void EvaluatePose(const PoseDriverSet& drivers, std::size_t index, const JointChains& chains,
+                         PoseLanes* lanes, float* values) {
+  const auto points = drivers.points(drivers.entries()[index]);
+  if (points.size() == 1) {  // the most of them: it then stays in registers
+    const Moved moved = Measure(points[0], chains, lanes);
+    StorePoseValues(drivers, index, &moved, 1, values);
+    return;
+  }
+  Moved moved[kMaxControlPoints];
+  for (std::size_t i = 0; i < points.size(); ++i) moved[i] = Measure(points[i], chains, lanes);
+  StorePoseValues(drivers, index, moved, points.size(), values);
 }
 
 }  // namespace furrow::wrinkle::HWY_NAMESPACE

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "wrinkle/batch_kernel.h"
 
@@ -12,30 +13,28 @@ namespace {
 
 const float* Numbers(std::span<const Transform> joints) { return &joints.data()->translation.x; }
 
-JobStatus Check(const BatchUpdate& update, const BindingData& data) {
-  if (!std::isfinite(update.dt) || update.dt < 0.0) return JobStatus::kBadTime;
+std::span<const float> AllNumbers(const LocalPose& pose, const BindingData& data) {
   const auto num_joints = static_cast<std::size_t>(data.skeleton.num_joints());
-  if (update.pose->joints.size() < num_joints) return JobStatus::kSizeMismatch;
-  const std::size_t num_floats = num_joints * (sizeof(Transform) / sizeof(float));
-  const bool finite =
-      (num_floats == 0 || BatchAllFinite({Numbers(update.pose->joints), num_floats})) &&
-      BatchAllFinite(update.pose->blend_shapes);
-  return finite ? JobStatus::kOk : JobStatus::kNonFinite;
+  if (num_joints == 0) return {};
+  return {Numbers(pose.joints), num_joints * (sizeof(Transform) / sizeof(float))};
 }
 
 }  // namespace
 
-// Adds checked updates lane by lane and solves whenever the lanes are full.
+// Adds updates lane by lane and solves whenever the lanes are full.
 class BatchSolver::Grouping {
  public:
   Grouping(const BindingData& binding, std::size_t num_drivers, float* scratch)
       : num_lanes_(BatchLanes()), scratch_(scratch) {
     group_.binding = &binding;
     group_.num_values = binding.NumValues(num_drivers);
+    reads_all_ = group_.num_values == binding.NumValues(kAllDrivers);
   }
 
-  void Add(const BatchUpdate& update) {
-    FilterContext* const context = &update.solver->filter_context_;
+  void Add(BatchUpdate* update) {
+    update->status = Check(*update);
+    if (update->status != JobStatus::kOk) return;
+    FilterContext* const context = &update->solver->filter_context_;
     const auto lanes_end = group_.contexts.begin() + static_cast<std::ptrdiff_t>(group_.count);
     // A subject's second pose builds on its first.
     if (std::find(group_.contexts.begin(), lanes_end, context) != lanes_end) Solve();
@@ -44,37 +43,68 @@ class BatchSolver::Grouping {
   }
 
   void Solve() {
-    if (group_.count == 0) return;
-    for (std::size_t lane = group_.count; lane < num_lanes_; ++lane) Repeat(lane);
-    SolveGroup(group_, scratch_);
-    group_.count = 0;
+    while (group_.count > 0) {
+      for (std::size_t lane = group_.count; lane < num_lanes_; ++lane) Put(lane, updates_[0]);
+      const unsigned suspect = EvaluateGroup(group_, scratch_);
+      if (suspect != 0 && RemoveNonFinite(suspect)) continue;
+      FinishGroup(group_, scratch_);
+      group_.count = 0;
+    }
   }
 
  private:
-  void Put(std::size_t lane, const BatchUpdate& update) {
-    SubjectSolver& solver = *update.solver;
-    group_.poses[lane] = update.pose->joints.data();
-    group_.joints[lane] = Numbers(update.pose->joints);
-    group_.blend_shapes[lane] = update.pose->blend_shapes;
+  // All but the numbers that EvaluateGroup() looks at.
+  [[nodiscard]] JobStatus Check(const BatchUpdate& update) const {
+    const BindingData& data = *group_.binding;
+    const auto num_joints = static_cast<std::size_t>(data.skeleton.num_joints());
+    if (!std::isfinite(update.dt) || update.dt < 0.0) return JobStatus::kBadTime;
+    if (update.pose->joints.size() < num_joints) return JobStatus::kSizeMismatch;
+    const std::span<const float> numbers = AllNumbers(*update.pose, data);
+    bool finite = BatchAllFinite(update.pose->blend_shapes);
+    if (reads_all_) {
+      for (const NumberRange& range : data.unread) {
+        finite = finite && BatchAllFinite(numbers.subspan(range.first, range.count));
+      }
+    } else {
+      finite = finite && BatchAllFinite(numbers);
+    }
+    return finite ? JobStatus::kOk : JobStatus::kNonFinite;
+  }
+
+  void Put(std::size_t lane, BatchUpdate* update) {
+    SubjectSolver& solver = *update->solver;
+    updates_[lane] = update;
+    group_.poses[lane] = update->pose->joints.data();
+    group_.joints[lane] = Numbers(update->pose->joints);
+    group_.blend_shapes[lane] = update->pose->blend_shapes;
     group_.filters[lane] = &solver.filter_;
     group_.contexts[lane] = &solver.filter_context_;
-    group_.dt[lane] = update.dt;
+    group_.dt[lane] = update->dt;
     group_.raw_values[lane] = solver.raw_values_.data();
     group_.weights[lane] = solver.weights_.data();
   }
 
-  // Lane 0 once more: the same numbers go to the same place.
-  void Repeat(std::size_t lane) {
-    group_.joints[lane] = group_.joints[0];
-    group_.blend_shapes[lane] = group_.blend_shapes[0];
-    group_.contexts[lane] = group_.contexts[0];
-    group_.raw_values[lane] = group_.raw_values[0];
-    group_.weights[lane] = group_.weights[0];
+  // Takes out, of the lanes whose bits are set, those that are not finite. False: none.
+  bool RemoveNonFinite(unsigned suspect) {
+    std::size_t num_left = 0;
+    for (std::size_t lane = 0; lane < group_.count; ++lane) {
+      BatchUpdate* const update = updates_[lane];
+      const bool bad = (suspect >> lane & 1u) != 0 &&
+                       !BatchAllFinite(AllNumbers(*update->pose, *group_.binding));
+      if (bad) {
+        update->status = JobStatus::kNonFinite;
+      } else {
+        Put(num_left++, update);
+      }
+    }
+    return std::exchange(group_.count, num_left) != num_left;
   }
 
   const std::size_t num_lanes_;
   float* const scratch_;
   BatchGroup group_;
+  BatchGroup::Each<BatchUpdate*> updates_{};
+  bool reads_all_ = true;
 };
 
 void BatchSolver::Run(std::span<BatchUpdate> updates) {
@@ -100,8 +130,7 @@ void BatchSolver::RunFirstKind() {
       waiting_[num_left++] = update;
       continue;
     }
-    update->status = Check(*update, data);
-    if (update->status == JobStatus::kOk) grouping.Add(*update);
+    grouping.Add(update);
   }
   grouping.Solve();
   waiting_.resize(num_left);

@@ -12,6 +12,7 @@
 #include "wrinkle/influence_table.h"
 #include "wrinkle/joint_chain.h"
 #include "wrinkle/pose_driver.h"
+#include "wrinkle/read_numbers.h"
 #include "wrinkle/solver.h"
 #include "wrinkle/strain_driver.h"
 #include "wrinkle/twist_driver.h"
@@ -40,6 +41,7 @@ struct BindingData {
   [[nodiscard]] std::size_t NumValues(std::size_t num_drivers) const {
     return static_cast<std::size_t>(first_values[std::min(num_drivers, first_values.size() - 1)]);
   }
+  std::vector<NumberRange> unread;  // what a batch must look at besides (read_numbers.h)
   std::vector<std::string> missing_joints;
   std::vector<std::string> missing_blend_shapes;
   std::vector<std::string> warnings;

@@ -48,7 +48,10 @@ Status PoseDriverSet::Bind(const Driver& driver, int first_value, BindContext* c
   for (const PoseDriver::Value& value : driver.pose.values) {
     if (Status status = BindValue(driver, value, entry, context); !status.ok()) return status;
   }
-  if (entry.solve == PoseSolve::kNnls) BindGram(&entry);
+  if (entry.solve == PoseSolve::kNnls) {
+    BindGram(&entry);
+    nnls_entries_.push_back(num_entries());
+  }
   entries_.push_back(entry);
   return {};
 }
@@ -72,8 +75,7 @@ Status PoseDriverSet::BindPoints(const Driver& driver, BindContext* context, boo
     const glm::vec3 offset =
         LocalOffset(driver.pose.points[i], skeleton, joints[i], context->size());
     const int point = context->chains().Add(skeleton, joints[i], offset, context->anchor());
-    points_.push_back(point);
-    rest_.push_back(context->chains().Evaluate(skeleton.rest_pose(), point));
+    points_.push_back({point, context->chains().Evaluate(skeleton.rest_pose(), point)});
   }
   return {};
 }
@@ -88,7 +90,7 @@ Status PoseDriverSet::BindValue(const Driver& driver, const PoseDriver::Value& v
   }
   const std::size_t first = displacements_.size();
   for (std::uint32_t i = entry.first_point; i < entry.first_point + entry.num_points; ++i) {
-    displacements_.push_back(context->chains().Evaluate(*locals, points_[i]) - rest_[i]);
+    displacements_.push_back(context->chains().Evaluate(*locals, points_[i].point) - points_[i].rest);
   }
   const StackedPoints d = StackedPoints(displacements_).subspan(first);
   const double square = Dot(d, d);
@@ -137,8 +139,8 @@ int PoseDriverSet::Measure(int entry, std::span<const Transform> local, const Jo
                            std::span<glm::vec3> moved) const {
   const Entry& e = entries_[entry];
   for (std::uint32_t i = 0; i < e.num_points; ++i) {
-    const std::uint32_t point = e.first_point + i;
-    moved[i] = chains.Evaluate(local, points_[point]) - rest_[point];
+    const Measured& point = points_[e.first_point + i];
+    moved[i] = chains.Evaluate(local, point.point) - point.rest;
   }
   return static_cast<int>(e.num_points);
 }

@@ -24,13 +24,18 @@ class PoseDriverSet {
   struct Entry {
     int first_value = 0;
     int num_values = 0;
-    std::uint32_t first_point = 0;  // into points_ and rest_
+    std::uint32_t first_point = 0;  // into points_
     std::uint32_t num_points = 0;
     std::uint32_t first_displacement = 0;  // into displacements_: num_values x num_points
     std::uint32_t first_square = 0;        // into squared_displacements_: num_values
     std::uint32_t first_gram = 0;          // into gram_: num_values^2, nnls alone
     PoseSolve solve = PoseSolve::kProjection;
     float falloff = 0.0f;
+  };
+
+  struct Measured {
+    int point = 0;         // into the binding's JointChains
+    glm::vec3 rest{0.0f};  // B_0, anchor space
   };
 
   // Adds `driver`, whose values begin at `first_value` of the binding's.
@@ -55,20 +60,18 @@ class PoseDriverSet {
   [[nodiscard]] float Value(int entry, int value, const Fit& fit) const;
   [[nodiscard]] std::span<const glm::vec3> Displacement(int entry, int value) const;
 
-  // For the batch: an entry's constants, point by point.
+  // For the batch.
   [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
-  [[nodiscard]] int point(const Entry& entry, std::uint32_t i) const {
-    return points_[entry.first_point + i];
+  [[nodiscard]] std::span<const Measured> points(const Entry& entry) const {
+    return std::span(points_).subspan(entry.first_point, entry.num_points);
   }
-  [[nodiscard]] const glm::vec3& rest(const Entry& entry, std::uint32_t i) const {
-    return rest_[entry.first_point + i];
-  }
-  // d / dot(d, d) of a value, one vector a point: its dot product with how far the points have
+  // d / dot(d, d), value by value, one vector a point: its dot product with how far the points have
   // moved is the projection. Zero where the reference pose does not move them.
-  [[nodiscard]] const glm::dvec3* projection(const Entry& entry, int value) const {
-    return &projections_[entry.first_displacement +
-                         entry.num_points * static_cast<std::uint32_t>(value)];
+  [[nodiscard]] const glm::dvec3* projections(const Entry& entry) const {
+    return projections_.data() + entry.first_displacement;
   }
+  // Entries that solve nnls.
+  [[nodiscard]] std::span<const int> nnls_entries() const { return nnls_entries_; }
 
  private:
   [[nodiscard]] Status BindPoints(const Driver& driver, BindContext* context, bool* usable);
@@ -82,8 +85,8 @@ class PoseDriverSet {
   [[nodiscard]] std::span<const glm::vec3> Displacement(const Entry& entry, int value) const;
 
   std::vector<Entry> entries_;
-  std::vector<int> points_;                   // into the binding's JointChains
-  std::vector<glm::vec3> rest_;               // B_0, anchor space
+  std::vector<int> nnls_entries_;
+  std::vector<Measured> points_;
   std::vector<glm::vec3> displacements_;      // d = B_k - B_0, anchor space
   std::vector<glm::dvec3> projections_;       // d / dot(d, d)
   std::vector<float> squared_displacements_;  // dot(d, d), or 0 below the epsilon

@@ -143,16 +143,6 @@ void WeightTable::BindOpponents(const Rig& rig) {
   }
 }
 
-std::span<const WeightSource> WeightTable::sources(int weight) const {
-  const Entry& entry = entries_[weight];
-  return std::span(sources_).subspan(entry.first_source, entry.num_sources);
-}
-
-std::span<const std::uint16_t> WeightTable::opponents(int weight) const {
-  const Entry& entry = entries_[weight];
-  return std::span(opponents_).subspan(entry.first_opponent, entry.num_opponents);
-}
-
 float WeightTable::Combined(int weight, std::span<const float> driver_values) const {
   return CombineSources(entries_[weight].combine, sources(weight), driver_values);
 }

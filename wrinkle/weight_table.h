@@ -32,9 +32,15 @@ class WeightTable {
                             const std::unordered_map<std::string, int>& value_index);
 
   [[nodiscard]] std::span<const std::string> names() const { return names_; }
-  [[nodiscard]] std::span<const WeightSource> sources(int weight) const;
+  [[nodiscard]] std::span<const WeightSource> sources(int weight) const {
+    const Entry& entry = entries_[weight];
+    return std::span(sources_).subspan(entry.first_source, entry.num_sources);
+  }
   // Weights of neighbouring regions on maps that oppose this one's.
-  [[nodiscard]] std::span<const std::uint16_t> opponents(int weight) const;
+  [[nodiscard]] std::span<const std::uint16_t> opponents(int weight) const {
+    const Entry& entry = entries_[weight];
+    return std::span(opponents_).subspan(entry.first_opponent, entry.num_opponents);
+  }
 
   [[nodiscard]] Combine combine(int weight) const { return entries_[weight].combine; }
   [[nodiscard]] Modulation modulation(int weight) const { return entries_[weight].modulation; }
