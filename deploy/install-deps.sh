@@ -31,20 +31,26 @@ while read -r set package; do
   [[ $state == installed ]] || grep -qxF -- "$package" <<<"$provided" || missing+=("$package")
 done < "$here/packages.txt"
 
-# An independent MCAP reader, to check ours against; its tests say SKIPPED where it is absent.
-install_interop() {
-  local folder=$here/../tests/mcap_interop
-  [[ $want != build ]] && command -v npm >/dev/null || return 0
+# npm_ci FOLDER WHAT: the packages of FOLDER's lock file, unless they are there. WHAT is lost without them.
+npm_ci() {
+  local folder=$here/../$1
+  command -v npm >/dev/null || return 0
   cmp -s "$folder/package-lock.json" "$folder/node_modules/.furrow-lock" && return 0
-  echo "install-deps: npm ci in tests/mcap_interop"
+  echo "install-deps: npm ci in $1"
   if (cd "$folder" && npm ci --ignore-scripts --no-audit --no-fund >/dev/null 2>&1); then
     cp "$folder/package-lock.json" "$folder/node_modules/.furrow-lock"
   else
-    echo "install-deps: npm ci failed; the tests that need @mcap/core will be skipped" >&2
+    echo "install-deps: npm ci failed in $1; $2" >&2
   fi
 }
+install_npm_packages() {
+  npm_ci web 'the preview page will be left out'
+  [[ $want != build ]] || return 0
+  npm_ci tests/mcap_interop 'the tests that need @mcap/core will be skipped'
+  npm_ci tests/browser 'the tests in a browser will be skipped'
+}
 if [[ ${#missing[@]} -eq 0 ]]; then
-  install_interop
+  install_npm_packages
   exit 0
 fi
 
@@ -68,4 +74,4 @@ if ! { "${sudo[@]}" apt-get update &&
   echo "install-deps: apt-get failed; its last lines stand above" >&2
   exit 1
 fi
-install_interop
+install_npm_packages

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// The daemon's JSON (docs/HTTP-API.md), typed. What it refuses is thrown as an ApiError.
+import type { CameraPreset } from './view/camera';
+
+export interface SettingInfo {
+  name: string;
+  group: string;
+  unit: string;
+  help: string;
+  kind: 'choice' | 'list' | 'bool' | 'int' | 'number' | 'colour';
+  choices?: string[];
+  min: number | null;
+  max: number | null;
+  default: string;
+  value: string;
+}
+
+export interface SubjectInfo {
+  name: string;
+  state: 'waiting' | 'live' | 'lost' | 'ended';
+  source: string;
+  joints: number;
+  blend_shapes: number;
+  sequence: number;
+  rate_hz: number;
+  poses: number;
+  lost: number;
+  late: number;
+  jitter_ms: number;
+  age_ms: number;
+}
+
+export interface DaemonStatus {
+  version: string;
+  session: string;
+  uptime_s: number;
+  render: boolean;
+  renderer: string;
+  viewers: number;
+  subjects: number;
+  pictures_rendered: number;
+  pictures_encoded: number;
+  pictures_dropped: number;
+  playback: boolean;
+  draining: boolean;
+}
+
+export interface RigInfo {
+  name: string;
+  regions: { name: string; neighbours: string[]; weights: { name: string; map: string }[] }[];
+  reference_poses: string[];
+  captures: Capture[];
+  changed: boolean;
+}
+
+export interface Capture {
+  pose: string;
+}
+
+export interface CaptureResult {
+  pose: string;
+  preview: boolean;
+  added: boolean;
+  weights: { name: string; before: number; after: number }[];
+  captures: Capture[];
+}
+
+export interface Explanation {
+  subject: string;
+  sequence: number;
+  weight: string;
+  live: number;
+  result: number;
+  combined: number;
+  modulated: number;
+  contributions: Contribution[];
+  conflicts: { weight: string; other: number; factor: number }[];
+}
+
+export interface Contribution {
+  value: string;
+  kind: string;
+  reference_pose?: string | null;
+  driver_value: number;
+  gain: number;
+  product: number;
+  pose: { along: number; perpendicular: number; falloff: number } | null;
+  angles: { what: string; degrees: number }[] | null;
+  strain: { smallest: number; largest: number; degrees: number } | null;
+}
+
+export interface Playback {
+  file: string;
+  subject: string;
+  frames: number;
+  seconds: number;
+  rate_hz: number;
+  position_s: number;
+  frame: number;
+  playing: boolean;
+  loop: boolean;
+  speed: number;
+}
+
+/** What the daemon says is wrong with a request. `status` 0: it did not answer. */
+export class ApiError extends Error {
+  constructor(
+    readonly status: number,
+    readonly field: string,
+    message: string,
+    readonly hint = '',
+  ) {
+    super(message);
+  }
+
+  /** One sentence for people. */
+  words(): string {
+    const where = this.field !== '' ? `${this.field}: ` : '';
+    return `${where}${this.message}${this.hint !== '' ? ` (${this.hint})` : ''}`;
+  }
+}
+
+async function errorOf(response: Response): Promise<ApiError> {
+  try {
+    const { error } = await response.json();
+    return new ApiError(response.status, error.field, error.message, error.hint);
+  } catch {
+    return new ApiError(response.status, '', `The daemon answered ${response.status}`);
+  }
+}
+
+async function call<T>(path: string, method = 'GET', body?: unknown): Promise<T> {
+  let response: Response;
+  try {
+    response = await fetch(path, {
+      method,
+      cache: 'no-store',
+      ...(body === undefined
+        ? {}
+        : { headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(body) }),
+    });
+  } catch {
+    throw new ApiError(0, '', 'The daemon does not answer');
+  }
+  if (!response.ok) throw await errorOf(response);
+  return (await response.json()) as T;
+}
+
+function query(values: Record<string, string>): string {
+  return new URLSearchParams(values).toString();
+}
+
+export const api = {
+  status: () => call<DaemonStatus>('api/status'),
+  subjects: async () => (await call<{ subjects: SubjectInfo[] }>('api/subjects')).subjects,
+  settings: async () => (await call<{ settings: SettingInfo[] }>('api/settings')).settings,
+  patchSettings: async (values: Record<string, string>) =>
+    (await call<{ settings: SettingInfo[] }>('api/settings', 'PATCH', values)).settings,
+  cameras: async () => (await call<{ cameras: CameraPreset[] }>('api/cameras')).cameras,
+  rig: (subject: string) => call<RigInfo>(`api/rig?${query({ subject })}`),
+  explain: (subject: string, weight: string) =>
+    call<Explanation>(`api/explain?${query({ subject, weight })}`),
+  capture: (subject: string, pose: string, preview: boolean) =>
+    call<CaptureResult>('api/capture', 'POST', { subject, pose, preview }),
+  undoCapture: () => call<{ captures: Capture[] }>('api/capture/undo', 'POST', {}),
+  playback: () => call<Playback>('api/playback'),
+  patchPlayback: (values: Partial<Pick<Playback, 'playing' | 'loop' | 'speed' | 'position_s'>>) =>
+    call<Playback>('api/playback', 'PATCH', values),
+  /** Where the rig in use is downloaded from. */
+  rigFile: 'api/rig.json',
+};
+
+/** The sentence to show for whatever was thrown. */
+export function wordsOf(error: unknown): string {
+  if (error instanceof ApiError) return error.words();
+  return error instanceof Error ? error.message : String(error);
+}

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts the page together, and keeps it supplied with what the daemon says of itself.
+import { api, type DaemonStatus, type SubjectInfo, wordsOf } from './api';
+import { CapturePanel } from './panels/capture';
+import { assess } from './panels/condition';
+import { CurvesPanel } from './panels/curves';
+import { ExplainPanel } from './panels/explain';
+import { FaceMap } from './panels/face_map';
+import { Header } from './panels/header';
+import { SettingsMenu } from './panels/menu';
+import { SessionPanel } from './panels/session';
+import { SettingsText } from './panels/settings_text';
+import { DebugStrip } from './panels/strip';
+import { Timeline } from './panels/timeline';
+import { ViewBar } from './panels/view_bar';
+import { AppState } from './state/app_state';
+import { WeightHistory } from './state/weight_history';
+import { h } from './ui/dom';
+import { type Command, helpDialog, installKeys } from './ui/keys';
+import { Tabs } from './ui/tabs';
+import { Toasts } from './ui/toast';
+import { CameraInput } from './view/camera_input';
+import { Viewer } from './view/viewer';
+import { Connection } from './wire/connection';
+import { WeightStream } from './wire/weight_stream';
+
+const POLL_MS = 1000;
+
+export class App {
+  private readonly state = new AppState(location.hash);
+  private readonly toasts = new Toasts();
+  private readonly connection: Connection;
+  private readonly history = new WeightHistory();
+  private readonly weights: WeightStream;
+  private readonly viewer: Viewer;
+  private readonly curves: CurvesPanel;
+  private readonly faceMap: FaceMap;
+  private readonly explain: ExplainPanel;
+  private readonly capture: CapturePanel;
+  private readonly session: SessionPanel;
+  private readonly header: Header;
+  private readonly viewBar: ViewBar;
+  private readonly menu: SettingsMenu;
+  private readonly timeline: Timeline;
+  private readonly tabs: Tabs;
+  private readonly help: HTMLDialogElement;
+  private readonly root = h('div', { class: 'app' });
+  private subjects: SubjectInfo[] = [];
+  private status: DaemonStatus | null = null;
+  private daemonSession = '';
+  private everConnected = false;
+  private began = false;
+
+  constructor(parent: HTMLElement) {
+    const { state, toasts } = this;
+    const subject = (): string => this.weights.subject.value || state.subject.value;
+    this.connection = new Connection(new URL('ws', document.baseURI.replace(/^http/, 'ws').replace(/#.*$/, '')).href);
+    this.curves = new CurvesPanel(state, this.history);
+    this.explain = new ExplainPanel(subject, () => this.faceMap.setChosen(''));
+    this.faceMap = new FaceMap(this.history, (region, weights) => this.why(region, weights));
+    this.weights = new WeightStream(this.connection, state.subject.value, this.history, () => this.onWeights());
+    this.viewer = new Viewer(this.connection, state, (text) => toasts.say(text, 'error'));
+    this.capture = new CapturePanel(subject, toasts, () => void this.readRig());
+    this.session = new SessionPanel((name) => state.subject.set(name));
+    const text = new SettingsText(state, toasts);
+    this.menu = new SettingsMenu(state, toasts, () => text.open());
+    this.timeline = new Timeline(toasts);
+    this.viewBar = new ViewBar(state);
+    const commands = this.commands();
+    this.help = helpDialog(commands);
+    this.header = new Header(state, {
+      help: () => this.help.showModal(), panel: () => this.togglePanel(), dock: () => this.toggleDock(),
+    });
+    this.tabs = new Tabs([
+      { id: 'look', label: 'Look', content: this.menu.element },
+      { id: 'wrinkles', label: 'Wrinkles', content: h('div', {}, this.faceMap.element, this.explain.element) },
+      { id: 'capture', label: 'Capture', content: this.capture.element },
+      { id: 'session', label: 'Session', content: this.session.element },
+    ], (id) => this.began && state.panel.set(id));
+    this.lay(parent, text.element);
+    installKeys(commands);
+    this.wire();
+    void this.poll();
+  }
+
+  private lay(parent: HTMLElement, dialog: HTMLElement): void {
+    this.root.append(
+      this.header.element,
+      new DebugStrip(this.connection, this.state).element,
+      h('main', { 'aria-label': 'Picture' }, this.viewer.stage.element, this.viewBar.element),
+      h('footer', { class: 'dock', 'aria-label': 'Curves and recording' }, this.curves.element, this.timeline.element),
+      h('aside', { class: 'side', 'aria-label': 'Panels' }, this.tabs.list, this.tabs.panels),
+      dialog, this.help, this.toasts.element);
+    parent.replaceChildren(this.root);
+    if (this.state.panel.value !== '') this.tabs.choose(this.state.panel.value);
+    this.state.panel.bind((panel) => this.root.classList.toggle('no-panel', panel === ''));
+  }
+
+  private wire(): void {
+    const { state } = this;
+    new CameraInput(this.viewer.stage.surface, {
+      camera: () => state.camera.value, move: (camera) => state.camera.set(camera),
+    });
+    state.subject.watch((subject) => this.weights.choose(subject));
+    this.weights.subject.watch(() => void this.readRig());
+    this.connection.state.watch((link) => {
+      if (link === 'open') {
+        this.everConnected = true;
+        void this.readDaemon();
+      }
+      this.showCondition();
+    });
+    this.viewer.notDrawn.watch(() => this.showCondition());
+    window.addEventListener('hashchange', () => location.reload()); // somebody pasted another address
+  }
+
+  private commands(): Command[] {
+    const { state } = this;
+    const command = (key: string, words: string, run: () => void, release?: () => void): Command =>
+      ({ key, words, run, ...(release ? { release } : {}) });
+    return [
+      ...Array.from({ length: 9 }, (_, i) => command(String(i + 1), i === 0 ? 'framings: 1 to 9, in their order' : '', () => this.viewBar.choose(i))),
+      command('0', 'first framing', () => this.viewBar.reset()),
+      command('space', 'play or pause the recording', () => this.timeline.toggle()),
+      command('c', 'hold: before the last change', () => state.comparing.set(true), () => state.comparing.set(false)),
+      command('x', 'wipe: wrinkles, shading, none', () => this.viewBar.nextWipe()),
+      command('escape', 'back from a debug view', () => state.settings.set('view', 'final', performance.now())),
+      command('/', 'search the settings', () => this.openMenu()),
+      command('ctrl+z', 'undo a setting', () => state.settings.undo()),
+      command('ctrl+y', 'redo', () => state.settings.redo()),
+      command('p', 'side panel', () => this.togglePanel()),
+      command('g', 'curves', () => this.toggleDock()),
+      command('?', 'this list', () => this.help.showModal()),
+    ];
+  }
+
+  private openMenu(): void {
+    this.tabs.choose('look');
+    this.menu.focusSearch();
+  }
+
+  private togglePanel(): void {
+    this.state.panel.set(this.state.panel.value === '' ? this.tabs.current : '');
+  }
+
+  private toggleDock(): void {
+    this.root.classList.toggle('no-curves');
+  }
+
+  private why(region: string, weights: string[]): void {
+    this.faceMap.setChosen(region);
+    this.explain.show(region, weights);
+  }
+
+  private onWeights(): void {
+    this.curves.onFrame();
+    this.faceMap.onFrame();
+  }
+
+  /** What the daemon has: on the first connection, and again when it was restarted. */
+  private async readDaemon(): Promise<void> {
+    try {
+      const [settings, cameras] = await Promise.all([api.settings(), api.cameras().catch(() => [])]);
+      this.state.settings.setInfos(settings);
+      if (this.began) {
+        this.state.setPresets(cameras);
+      } else {
+        const unknown = this.state.begin(cameras);
+        this.began = true;
+        if (unknown.length > 0) this.toasts.say(`The address names what this daemon does not have: ${unknown.join(', ')}`, 'error');
+      }
+    } catch (error) {
+      this.toasts.say(wordsOf(error), 'error');
+    }
+    await this.readRig();
+  }
+
+  private async readRig(): Promise<void> {
+    try {
+      await this.faceMap.load(this.weights.subject.value);
+      await this.capture.load();
+    } catch {
+      // No subject yet, or the daemon went away: read again when the subject is known.
+    }
+  }
+
+  private async poll(): Promise<void> {
+    const nowS = performance.now() / 1000;
+    if (!document.hidden && this.connection.state.value === 'open') {
+      try {
+        [this.subjects, this.status] = await Promise.all([api.subjects(), api.status()]);
+        this.showDaemon();
+      } catch {
+        // The connection's state says what is wrong.
+      }
+    }
+    const shown = this.subjects.find(({ name }) => name === this.weights.subject.value);
+    this.viewer.observeRate(shown?.rate_hz ?? 0, nowS);
+    this.header.showStats(this.viewer.stats, nowS);
+    this.showCondition();
+    setTimeout(() => void this.poll(), POLL_MS);
+  }
+
+  private showDaemon(): void {
+    const status = this.status!;
+    this.session.show(this.subjects, status, this.weights.subject.value);
+    this.header.showSubjects(this.subjects.map(({ name }) => name));
+    if (this.daemonSession !== '' && status.session !== this.daemonSession) {
+      this.toasts.say('The daemon was restarted; the page goes on as it was');
+    }
+    this.daemonSession = status.session;
+  }
+
+  private showCondition(): void {
+    this.header.showCondition(assess({
+      link: this.connection.state.value,
+      everConnected: this.everConnected,
+      notDrawn: this.viewer.notDrawn.value,
+      renders: this.status?.render ?? true,
+      subjects: this.subjects,
+      wanted: this.state.subject.value,
+      hasPicture: this.viewer.stats.shown > 0,
+    }));
+  }
+}

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Live curves of wrinkle weights over the last seconds.
+import uPlot from 'uplot';
+import 'uplot/dist/uPlot.min.css';
+import type { AppState } from '../state/app_state';
+import type { WeightHistory } from '../state/weight_history';
+import { button, download, h } from '../ui/dom';
+
+const SHOWN_S = 10;
+const AUTOMATIC = 5;
+const REDRAW_MS = 50;
+/** How long an automatic choice stands, so that curves do not come and go. */
+const CHOICE_S = 4;
+/** Told apart on a dark ground, also by the colour-blind (Okabe and Ito, lightened). */
+const COLOURS = ['#f0b43c', '#62bdf0', '#3fcf9e', '#f3ec6c', '#7aa5ff', '#ff8a5c', '#e09fcb', '#e6e6e6'];
+
+export class CurvesPanel {
+  readonly element: HTMLElement;
+  private readonly plotHolder = h('div', { class: 'plot', role: 'img', 'aria-label': 'Wrinkle weights of the last ten seconds' });
+  private readonly chips = h('div', { class: 'chips', role: 'group', 'aria-label': 'Curves shown' });
+  private readonly picker = h('details', { class: 'picker' });
+  private readonly freeze: HTMLButtonElement;
+  private plot: uPlot | null = null;
+  private shown: string[] = [];
+  private chosenAtS = -Infinity;
+  private frozen = false;
+  private drawnMs = 0;
+  private pickerNames = '';
+
+  constructor(private readonly state: AppState, private readonly history: WeightHistory) {
+    this.freeze = button('Freeze', () => this.toggleFrozen(), { 'aria-pressed': 'false' });
+    this.picker.append(h('summary', {}, 'Choose'));
+    this.picker.addEventListener('toggle', () => this.fillPicker());
+    this.element = h('section', { class: 'curves', 'aria-label': 'Weight curves' },
+      h('div', { class: 'row' }, h('h2', {}, 'Weights'), this.chips, h('span', { class: 'space' }), this.picker, this.freeze,
+        button('CSV', () => this.save(), { title: 'Download what is kept (20 s) as furrow watch writes it' })),
+      this.plotHolder);
+    state.curves.watch(() => {
+      this.choose();
+      this.redraw();
+    });
+    new ResizeObserver(() => this.plot?.setSize(this.size())).observe(this.plotHolder);
+  }
+
+  /** A frame came. */
+  onFrame(): void {
+    const nowMs = performance.now();
+    if (this.frozen || nowMs - this.drawnMs < REDRAW_MS || !this.element.isConnected) return;
+    this.drawnMs = nowMs;
+    if (nowMs / 1000 - this.chosenAtS > CHOICE_S || this.shown.length === 0) this.choose();
+    this.redraw();
+  }
+
+  private choose(): void {
+    this.chosenAtS = performance.now() / 1000;
+    const picked = this.state.curves.value.filter((name) => this.history.indexOf(name) >= 0);
+    const next = picked.length > 0 ? picked.slice(0, COLOURS.length) : this.history.mostActive(AUTOMATIC);
+    if (next.join() === this.shown.join() && this.plot !== null) return;
+    this.shown = next;
+    this.build();
+  }
+
+  private size(): { width: number; height: number } {
+    return { width: Math.max(120, this.plotHolder.clientWidth), height: Math.max(60, this.plotHolder.clientHeight) };
+  }
+
+  private build(): void {
+    this.plot?.destroy();
+    const axis = { stroke: '#a9afb8', grid: { stroke: '#2c3036', width: 1 }, ticks: { stroke: '#2c3036' }, font: '11px system-ui' };
+    this.plot = new uPlot({
+      ...this.size(),
+      legend: { show: false },
+      cursor: { y: false },
+      padding: [6, 8, 0, 0],
+      scales: { x: { time: false, range: [-SHOWN_S, 0] }, y: { range: [0, 1] } },
+      axes: [{ ...axis, values: (_, ticks) => ticks.map((t) => `${t} s`), size: 24 }, { ...axis, size: 34, splits: [0, 0.25, 0.5, 0.75, 1] }],
+      series: [{}, ...this.shown.map((name, i) => ({ label: name, stroke: COLOURS[i]!, width: 1.6, points: { show: false } }))],
+    }, [[], ...this.shown.map(() => [])], this.plotHolder);
+    this.chips.replaceChildren(...this.shown.map((name, i) =>
+      h('span', { class: 'chip', style: `--colour:${COLOURS[i]!}`, 'data-name': name }, name, h('output', {}, '–'))));
+  }
+
+  private redraw(): void {
+    if (this.plot === null) return;
+    const newest = this.history.latest?.atS ?? 0;
+    const frames = this.history.frames.filter((frame) => newest - frame.atS <= SHOWN_S);
+    const columns = this.shown.map((name) => this.history.indexOf(name));
+    this.plot.setData([
+      frames.map((frame) => frame.atS - newest),
+      ...columns.map((column) => frames.map((frame) => frame.values[column] ?? null)),
+    ]);
+    this.chips.querySelectorAll('output').forEach((output, i) => {
+      output.textContent = this.history.value(this.shown[i]!).toFixed(2);
+    });
+  }
+
+  private fillPicker(): void {
+    if (!this.picker.open || this.pickerNames === this.history.names.join()) return;
+    this.pickerNames = this.history.names.join();
+    const boxes = this.history.names.map((name) => {
+      const box = h('input', { type: 'checkbox', checked: this.state.curves.value.includes(name) });
+      box.addEventListener('change', () => this.pick(name, box.checked));
+      return h('label', { class: 'check' }, box, name);
+    });
+    const automatic = button('The most active', () => {
+      this.picker.querySelectorAll('input').forEach((box) => (box.checked = false));
+      this.state.curves.set([]);
+    });
+    this.picker.replaceChildren(this.picker.firstElementChild!, h('div', { class: 'picker-list' }, automatic, ...boxes));
+  }
+
+  private pick(name: string, on: boolean): void {
+    const rest = this.state.curves.value.filter((other) => other !== name);
+    this.state.curves.set(on ? [...rest, name] : rest);
+  }
+
+  private toggleFrozen(): void {
+    this.frozen = !this.frozen;
+    this.freeze.setAttribute('aria-pressed', String(this.frozen));
+  }
+
+  private save(): void {
+    download('weights.csv', 'text/csv', this.history.toCsv());
+  }
+}

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why a region wrinkles: which drivers and poses make its weights, read again while it is shown.
+import { api, type Contribution, type Explanation, wordsOf } from '../api';
+import { button, h, readable } from '../ui/dom';
+
+const AGAIN_MS = 400;
+
+const fixed = (x: number): string => x.toFixed(2);
+
+/** One sentence on how a driver came to its value. */
+export function contributionWords(item: Contribution): string {
+  const parts: string[] = [];
+  if (item.pose !== null) {
+    const goal = item.reference_pose ? `the pose “${item.reference_pose}”` : 'its reference pose';
+    parts.push(`went ${Math.round(item.pose.along * 100)} % of the way to ${goal}`);
+    if (item.pose.falloff < 0.995) parts.push(`cut to ${Math.round(item.pose.falloff * 100)} % for straying off it`);
+  }
+  for (const { what, degrees } of item.angles ?? []) parts.push(`${what} ${degrees.toFixed(1)}°`);
+  if (item.strain !== null) {
+    parts.push(`skin at ${Math.round(item.strain.smallest * 100)} % to ${Math.round(item.strain.largest * 100)} % of its length`);
+  }
+  return parts.length > 0 ? parts.join(', ') : `the coefficient itself`;
+}
+
+/** What happened after the drivers were combined, in words; empty: nothing. */
+export function afterwardsWords(explanation: Explanation): string[] {
+  const words: string[] = [];
+  if (Math.abs(explanation.modulated - explanation.combined) > 0.005) {
+    words.push(`Modulation makes ${fixed(explanation.combined)} into ${fixed(explanation.modulated)}.`);
+  }
+  for (const { weight, other, factor } of explanation.conflicts) {
+    if (factor < 0.995) words.push(`${weight} at ${fixed(other)} contradicts it: times ${fixed(factor)}.`);
+  }
+  if (Math.abs(explanation.live - explanation.result) > 0.02) {
+    words.push(`The filter is still on its way: ${fixed(explanation.live)} live, ${fixed(explanation.result)} for this pose alone.`);
+  }
+  return words;
+}
+
+export class ExplainPanel {
+  readonly element = h('section', { class: 'explain', 'aria-label': 'Why', hidden: true });
+  private readonly title = h('h3', {});
+  private readonly body = h('div', { class: 'explain-body' });
+  private weights: string[] = [];
+  private timer: ReturnType<typeof setTimeout> | null = null;
+
+  constructor(private readonly subject: () => string, private readonly onClose: () => void) {
+    this.element.append(
+      h('div', { class: 'row' }, this.title, h('span', { class: 'space' }), button('Close', () => this.close())), this.body);
+  }
+
+  show(region: string, weights: string[]): void {
+    this.weights = weights;
+    this.title.textContent = `Why: ${readable(region)}`;
+    this.element.hidden = false;
+    this.body.replaceChildren(h('p', { class: 'empty' }, 'Asking the daemon…'));
+    if (this.timer !== null) clearTimeout(this.timer);
+    void this.ask();
+  }
+
+  close(): void {
+    this.element.hidden = true;
+    this.weights = [];
+    this.onClose();
+  }
+
+  private async ask(): Promise<void> {
+    this.timer = null;
+    const asked = this.weights;
+    if (asked.length === 0) return;
+    try {
+      if (this.element.closest('[role=tabpanel][hidden]') === null && !document.hidden) {
+        const answers = await Promise.all(asked.map((weight) => api.explain(this.subject(), weight)));
+        if (asked !== this.weights) return;
+        this.body.replaceChildren(...answers.map(explanationElement));
+      }
+    } catch (error) {
+      if (asked !== this.weights) return;
+      this.body.replaceChildren(h('p', { class: 'error' }, wordsOf(error)));
+    }
+    this.timer = setTimeout(() => void this.ask(), AGAIN_MS);
+  }
+}
+
+function explanationElement(explanation: Explanation): HTMLElement {
+  const rows = explanation.contributions.map((item) => {
+    const bar = h('span', { class: 'bar squash', style: `--value:${Math.min(1, Math.abs(item.product)).toFixed(3)}` });
+    return h('tr', {},
+      h('th', { scope: 'row' }, item.value, h('small', {}, contributionWords(item))),
+      h('td', { class: 'number' }, item.gain === 1 ? fixed(item.driver_value) : `${fixed(item.driver_value)} × ${fixed(item.gain)}`),
+      h('td', { class: 'number' }, h('span', { class: 'track' }, bar), fixed(item.product)));
+  });
+  return h('article', { 'data-weight': explanation.weight },
+    h('h4', {}, explanation.weight, h('output', {}, fixed(explanation.live))),
+    h('table', {}, h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Driver'), h('th', { scope: 'col' }, 'Value'), h('th', { scope: 'col' }, 'Share'))),
+      h('tbody', {}, ...rows)),
+    ...afterwardsWords(explanation).map((words) => h('p', { class: 'note' }, words)));
+}

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the face wrinkles: the facial regions as a map, coloured by weight, and every region of the
+// rig as a list with bars. Either leads to why.
+import { api, type RigInfo } from '../api';
+import type { WeightHistory } from '../state/weight_history';
+import { h, readable, svg } from '../ui/dom';
+
+const SVG_VIEW = '0 0 200 236';
+/**
+ * Outlines of the regions that a face rig has by contract. The subject's left is at the right, as when one faces
+ * them; the other side is the mirror image.
+ */
+const HALF: Record<string, string> = {
+  brow_l: 'M111 78 C122 66 146 62 166 78 C172 62 168 42 156 30 C142 20 124 17 111 17 Z',
+  eye_l: 'M114 92 C124 82 150 80 172 88 C176 100 172 116 160 121 C144 126 122 122 114 110 Z',
+  mouth_l: 'M102 150 C112 140 122 128 136 128 C150 134 156 150 150 172 C142 196 124 214 102 217 L102 186 C114 186 124 182 130 176 C122 168 112 165 102 166 Z',
+};
+const MIDDLE: Record<string, string> = {
+  glabella: 'M92 84 C90 70 90 58 93 44 L107 44 C110 58 110 70 108 84 Z',
+  nose: 'M93 90 L107 90 C108 108 116 124 118 134 C112 146 88 146 82 134 C84 124 92 108 93 90 Z',
+};
+const OUTLINE = 'M100 6 C146 6 178 40 178 96 C178 156 146 228 100 228 C54 228 22 156 22 96 C22 40 54 6 100 6 Z';
+
+interface RegionView {
+  name: string;
+  weights: { name: string; map: string }[];
+  bars: Map<string, HTMLElement>;
+  shape: SVGElement | null;
+  button: HTMLButtonElement;
+}
+
+/** Warm where skin is pressed together, cool where it is drawn out, by the larger of the two. */
+export function colourOf(pressed: number, drawn: number): string {
+  const strength = Math.max(pressed, drawn);
+  const hue = pressed >= drawn ? 28 : 205;
+  return `hsl(${hue} ${Math.round(20 + 65 * strength)}% ${Math.round(22 + 38 * strength)}%)`;
+}
+
+export class FaceMap {
+  readonly element: HTMLElement;
+  private readonly map = svg('svg', { viewBox: SVG_VIEW, class: 'face-map', 'aria-hidden': 'true' });
+  private readonly list = h('ul', { class: 'regions', 'aria-label': 'Regions' });
+  private regions: RegionView[] = [];
+  private drawnMs = 0;
+  private rigOf = '';
+
+  constructor(private readonly history: WeightHistory, private readonly onChoose: (region: string, weights: string[]) => void) {
+    this.element = h('div', { class: 'wrinkles' },
+      h('figure', { class: 'map' }, this.map,
+        h('figcaption', {}, h('span', { class: 'key pressed' }, 'pressed (squash, folds)'), h('span', { class: 'key drawn' }, 'drawn (stretch)'))),
+      this.list);
+  }
+
+  /** Reads the rig again where the subject is another. */
+  async load(subject: string): Promise<void> {
+    const rig = await api.rig(subject);
+    const shape = JSON.stringify(rig.regions);
+    if (shape === this.rigOf) return;
+    this.rigOf = shape;
+    this.build(rig);
+  }
+
+  private build(rig: RigInfo): void {
+    this.map.replaceChildren(svg('path', { d: OUTLINE, class: 'outline' }));
+    this.regions = rig.regions.map((region) => {
+      const choose = (): void => this.onChoose(region.name, region.weights.map(({ name }) => name));
+      const bars = new Map(region.weights.map(({ name, map }) => [name, h('span', { class: `bar ${map}` })]));
+      const button = h('button', { type: 'button', class: 'region', 'data-region': region.name, onclick: choose },
+        h('span', { class: 'name' }, readable(region.name)),
+        ...region.weights.map(({ name, map }) =>
+          h('span', { class: 'weight' }, h('span', { class: 'map-name' }, map), h('span', { class: 'track' }, bars.get(name)!))));
+      return { name: region.name, weights: region.weights, bars, shape: this.addShape(region.name, choose), button };
+    });
+    this.list.replaceChildren(...this.regions.map(({ button }) => h('li', {}, button)));
+  }
+
+  private addShape(name: string, choose: () => void): SVGElement | null {
+    const mirrored = name.replace(/_r$/, '_l');
+    const d = MIDDLE[name] ?? HALF[name] ?? HALF[mirrored];
+    if (d === undefined) return null;
+    const transform = name.endsWith('_r') ? 'translate(200 0) scale(-1 1)' : undefined;
+    const shape = svg('path', { d, transform, class: 'region-shape', 'data-region': name, onclick: choose },
+      svg('title', {}, readable(name)));
+    this.map.append(shape);
+    return shape;
+  }
+
+  onFrame(): void {
+    const nowMs = performance.now();
+    if (nowMs - this.drawnMs < 50 || this.element.closest('[hidden]') !== null) return;
+    this.drawnMs = nowMs;
+    for (const { weights, bars, shape } of this.regions) {
+      let pressed = 0;
+      let drawn = 0;
+      for (const { name, map } of weights) {
+        const value = this.history.value(name);
+        bars.get(name)!.style.setProperty('--value', value.toFixed(3));
+        if (map === 'stretch') drawn = Math.max(drawn, value);
+        else pressed = Math.max(pressed, value);
+      }
+      shape?.setAttribute('fill', colourOf(pressed, drawn));
+    }
+  }
+
+  setChosen(region: string): void {
+    for (const { name, button, shape } of this.regions) {
+      button.setAttribute('aria-pressed', String(name === region));
+      shape?.classList.toggle('chosen', name === region);
+    }
+  }
+}

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// One setting as a row of the menu: which control it gets, and how its text becomes the control's
+// value and back. Made from what the daemon says of the setting; nothing is known of any by name.
+import type { BindingApi, BindingParams, FolderApi } from '@tweakpane/core';
+import type { SettingInfo } from '../api';
+import { isOn } from '../state/settings';
+import { button, readable } from '../ui/dom';
+
+type Rgb = { r: number; g: number; b: number };
+
+const toSrgb = (x: number): number => (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
+const toLinear = (x: number): number => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+
+/** The control's value of a setting's text. Colours: linear on the wire, sRGB in the picker. */
+export function toControl(info: SettingInfo, text: string): string | number | boolean | Rgb {
+  switch (info.kind) {
+    case 'bool':
+      return isOn(text);
+    case 'int':
+    case 'number':
+      return Number(text);
+    case 'colour': {
+      const [r = 0, g = 0, b = 0] = text.split(',').map((part) => toSrgb(Number(part)));
+      return { r, g, b };
+    }
+    default:
+      return text;
+  }
+}
+
+export function fromControl(info: SettingInfo, value: unknown): string {
+  switch (info.kind) {
+    case 'bool':
+      return value === true ? 'on' : 'off';
+    case 'number':
+      return String(Number((value as number).toPrecision(6)));
+    case 'colour': {
+      const { r, g, b } = value as Rgb;
+      return [r, g, b].map((x) => String(Number(toLinear(x).toFixed(5)))).join(',');
+    }
+    default:
+      return String(value);
+  }
+}
+
+/** "softness (mm)" of "shadow.softness_mm". */
+export function labelOf(info: SettingInfo): string {
+  let name = info.name.slice(info.name.indexOf('.') + 1);
+  if (info.unit !== '' && name.endsWith(`_${info.unit}`)) name = name.slice(0, -info.unit.length - 1);
+  return info.unit === '' ? readable(name) : `${readable(name)} (${info.unit})`;
+}
+
+function bindingParams(info: SettingInfo): BindingParams {
+  const params: Record<string, unknown> = { label: labelOf(info) };
+  if (info.kind === 'choice') {
+    params.options = Object.fromEntries((info.choices ?? []).map((word) => [readable(word), word]));
+  } else if (info.kind === 'colour') {
+    params.color = { type: 'float' };
+  } else if (info.kind === 'int' || info.kind === 'number') {
+    const { min, max } = info;
+    if (min !== null) params.min = min;
+    if (max !== null) params.max = max;
+    if (info.choices !== undefined && info.choices.length > 0) {
+      params.options = Object.fromEntries(info.choices.map((word) => [word, Number(word)]));
+    } else if (info.kind === 'int') {
+      params.step = 1;
+    } else if (min !== null && max !== null) {
+      params.step = 10 ** Math.floor(Math.log10((max - min) / 100));
+    }
+  }
+  return params as BindingParams;
+}
+
+export interface RowEvents {
+  onChange(text: string): void;
+  onReset(): void;
+  /** The pointer or the focus is on it. */
+  onLooked(): void;
+}
+
+export class SettingRow {
+  private readonly holder: { value: ReturnType<typeof toControl> };
+  private readonly binding: BindingApi;
+  private readonly resetButton: HTMLButtonElement;
+  private refreshing = false;
+
+  constructor(folder: FolderApi, readonly info: SettingInfo, text: string, events: RowEvents) {
+    this.holder = { value: toControl(info, text) };
+    this.binding = folder.addBinding(this.holder, 'value', bindingParams(info));
+    this.binding.on('change', (event: { value: unknown }) => {
+      if (!this.refreshing) events.onChange(fromControl(info, event.value));
+    });
+    const label = labelOf(info);
+    const element = this.element;
+    element.dataset.setting = info.name;
+    element.title = info.help;
+    for (const input of element.querySelectorAll('input, select')) {
+      input.setAttribute('aria-label', `${readable(info.group)}: ${label}`);
+      input.setAttribute('aria-description', info.help);
+    }
+    // Tweakpane's colour swatch is a button without a name.
+    for (const swatch of element.querySelectorAll('button')) swatch.setAttribute('aria-label', `${label}: picker`);
+    this.resetButton = button('↺', events.onReset, {
+      class: 'reset', title: 'Back to the daemon’s value', 'aria-label': `Reset ${label}`, hidden: true,
+    });
+    element.append(this.resetButton);
+    for (const look of ['pointerenter', 'focusin'] as const) element.addEventListener(look, events.onLooked);
+  }
+
+  get element(): HTMLElement {
+    return this.binding.element;
+  }
+
+  refresh(text: string, changed: boolean): void {
+    this.refreshing = true;
+    this.holder.value = toControl(this.info, text);
+    this.binding.refresh();
+    this.refreshing = false;
+    this.resetButton.hidden = !changed;
+    this.element.classList.toggle('changed', changed);
+  }
+
+  /** True where it is shown. */
+  filter(query: string): boolean {
+    const { name, group, help, unit, choices } = this.info;
+    const haystack = [name, readable(group), help, unit, labelOf(this.info), ...(choices ?? [])].join(' ').toLowerCase();
+    const matches = query.toLowerCase().split(/\s+/).every((word) => haystack.includes(word));
+    this.binding.hidden = !matches;
+    return matches;
+  }
+}

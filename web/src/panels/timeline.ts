@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// The recording that the daemon plays: play, pause, scrub, loop, speed. Hidden where it plays none.
+import { api, ApiError, type Playback, wordsOf } from '../api';
+import { button, h, select } from '../ui/dom';
+import type { Toasts } from '../ui/toast';
+
+const POLL_MS = 500;
+const SCRUB_MS = 60;
+const SPEEDS = ['0.1', '0.25', '0.5', '1', '2', '4'];
+
+export function clockText(seconds: number): string {
+  const minutes = Math.floor(seconds / 60);
+  return `${minutes}:${(seconds - 60 * minutes).toFixed(1).padStart(4, '0')}`;
+}
+
+/** Where the recording stands `elapsedS` after it was asked, in [0, seconds]. */
+export function positionAfter(playback: Playback, elapsedS: number): number {
+  if (!playback.playing) return playback.position_s;
+  const position = playback.position_s + elapsedS * playback.speed;
+  if (position <= playback.seconds) return position;
+  return playback.loop && playback.seconds > 0 ? position % playback.seconds : playback.seconds;
+}
+
+export class Timeline {
+  readonly element: HTMLElement;
+  private readonly play: HTMLButtonElement;
+  private readonly scrub = h('input', { type: 'range', min: 0, max: 1, step: 0.001, value: 0, 'aria-label': 'Position in the recording' });
+  private readonly time = h('output', { class: 'time' });
+  private readonly loop = h('input', { type: 'checkbox' });
+  private readonly speed: HTMLSelectElement;
+  private readonly name = h('span', { class: 'file' });
+  private state: Playback | null = null;
+  private askedMs = 0;
+  private scrubbing = false;
+  private lastScrubMs = 0;
+
+  constructor(private readonly toasts: Toasts) {
+    this.play = button('Play', () => this.toggle(), { class: 'play', title: 'Play or pause (space)' });
+    this.speed = select('Speed', SPEEDS.map((s) => [s, `${s}×`] as const), (value) => void this.patch({ speed: Number(value) }));
+    this.speed.value = '1';
+    this.loop.addEventListener('change', () => void this.patch({ loop: this.loop.checked }));
+    this.scrub.addEventListener('input', () => this.onScrub());
+    this.scrub.addEventListener('change', () => {
+      this.scrubbing = false;
+      void this.patch({ position_s: Number(this.scrub.value) });
+    });
+    this.element = h('section', { class: 'timeline', 'aria-label': 'Recording', hidden: true },
+      this.play, this.scrub, this.time, h('label', { class: 'check' }, this.loop, 'Loop'), this.speed, this.name);
+    void this.poll();
+    this.tick();
+  }
+
+  toggle(): void {
+    if (this.state !== null) void this.patch({ playing: !this.state.playing });
+  }
+
+  private async poll(): Promise<void> {
+    try {
+      if (!document.hidden) this.take(await api.playback());
+    } catch (error) {
+      // Played nothing, or not there: the connection's own state says the rest.
+      if (error instanceof ApiError && (error.status === 409 || error.status === 404)) this.take(null);
+    }
+    setTimeout(() => void this.poll(), this.state === null ? 4 * POLL_MS : POLL_MS);
+  }
+
+  private take(playback: Playback | null): void {
+    this.state = playback;
+    this.askedMs = performance.now();
+    this.element.hidden = playback === null;
+    if (playback === null) return;
+    this.play.textContent = playback.playing ? 'Pause' : 'Play';
+    this.scrub.max = String(playback.seconds);
+    this.loop.checked = playback.loop;
+    this.name.textContent = playback.file;
+    if (document.activeElement !== this.speed) this.speed.value = String(playback.speed);
+    this.showPosition();
+  }
+
+  private tick(): void {
+    if (this.state?.playing === true) this.showPosition();
+    requestAnimationFrame(() => this.tick());
+  }
+
+  private showPosition(): void {
+    const playback = this.state!;
+    const at = this.scrubbing ? Number(this.scrub.value) : positionAfter(playback, (performance.now() - this.askedMs) / 1000);
+    if (!this.scrubbing) this.scrub.value = String(at);
+    const text = `${clockText(at)} / ${clockText(playback.seconds)}`;
+    if (this.time.textContent === text) return;
+    this.time.textContent = text;
+    this.scrub.setAttribute('aria-valuetext', text);
+  }
+
+  private onScrub(): void {
+    this.scrubbing = true;
+    this.showPosition();
+    if (performance.now() - this.lastScrubMs < SCRUB_MS) return;
+    this.lastScrubMs = performance.now();
+    void this.patch({ position_s: Number(this.scrub.value) });
+  }
+
+  private async patch(values: Parameters<typeof api.patchPlayback>[0]): Promise<void> {
+    try {
+      this.take(await api.patchPlayback(values));
+    } catch (error) {
+      this.toasts.say(wordsOf(error), 'error');
+    }
+  }
+}

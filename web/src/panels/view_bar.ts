@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Below the picture: framing, comparison, sharpness.
+import type { Wipe } from '../state/address';
+import type { AppState } from '../state/app_state';
+import { button, h, readable, select } from '../ui/dom';
+import type { Sharpness } from '../view/resolution';
+
+const WIPES: readonly (readonly [Wipe, string])[] = [
+  ['none', 'No wipe'], ['wrinkles', 'Wipe: wrinkles off | on'], ['shading', 'Wipe: diffuse | skin'],
+];
+const SHARPNESS: readonly (readonly [Sharpness, string])[] = [
+  ['auto', 'Sharpness: auto'], ['sharp', 'Sharpness: always'], ['fast', 'Sharpness: low'],
+];
+
+export class ViewBar {
+  readonly element: HTMLElement;
+  private readonly framings = h('div', { class: 'framings', role: 'group', 'aria-label': 'Framing' });
+  private readonly wipe: HTMLSelectElement;
+
+  constructor(private readonly state: AppState) {
+    this.wipe = select('Split the picture', WIPES, (value) => state.wipe.set(value as Wipe));
+    const sharpness = select('Sharpness', SHARPNESS, (value) => state.sharpness.set(value as Sharpness));
+    this.element = h('div', { class: 'view-bar', role: 'toolbar', 'aria-label': 'View' },
+      this.framings, button('Reset', () => this.reset(), { title: 'Back to the first framing (key 0)' }),
+      h('span', { class: 'space' }), this.wipe, sharpness);
+    state.presets.bind(() => this.fill());
+    state.camera.watch(() => this.mark());
+    state.wipe.bind((wipe) => (this.wipe.value = wipe));
+  }
+
+  reset(): void {
+    const first = this.state.presets.value[0];
+    if (first !== undefined) this.state.choosePreset(first.name);
+  }
+
+  /** The n-th preset, from 0. */
+  choose(index: number): void {
+    const preset = this.state.presets.value[index];
+    if (preset !== undefined) this.state.choosePreset(preset.name);
+  }
+
+  nextWipe(): void {
+    const at = WIPES.findIndex(([wipe]) => wipe === this.state.wipe.value);
+    this.state.wipe.set(WIPES[(at + 1) % WIPES.length]![0]);
+  }
+
+  private fill(): void {
+    this.framings.replaceChildren(...this.state.presets.value.map(({ name }, i) =>
+      button(readable(name), () => this.state.choosePreset(name), { 'data-preset': name, title: i < 9 ? `Key ${i + 1}` : '' })));
+    this.mark();
+  }
+
+  private mark(): void {
+    const chosen = this.state.presetName();
+    for (const item of this.framings.querySelectorAll<HTMLElement>('button')) {
+      item.setAttribute('aria-pressed', String(item.dataset.preset === chosen));
+    }
+  }
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page's state in its address, behind the '#', so that a reload or a link shows the same again:
+// settings under their own names, the rest under short ones.
+import type { Camera, Vec3 } from '../view/camera';
+
+export type Wipe = 'none' | 'wrinkles' | 'shading';
+
+export interface PageState {
+  subject: string;
+  /** A preset's name, or where the camera was moved to; null: the first preset. */
+  camera: string | Camera | null;
+  settings: Map<string, string>;
+  wipe: Wipe;
+  /** Views of the debug strip, from the top. */
+  strip: string[];
+  /** Chosen curves; empty: the most active. */
+  curves: string[];
+  /** The open tab of the side panel; empty: it is closed. */
+  panel: string;
+}
+
+const RESERVED = ['subject', 'camera', 'wipe', 'debug', 'curves', 'panel'] as const;
+
+function writeCamera(camera: Camera): string {
+  const numbers = [...camera.eye, ...camera.target, camera.fovDegrees];
+  return [...numbers.map((x) => Number(x.toFixed(4))), camera.follows ? 1 : 0].join(',');
+}
+
+function readCamera(text: string): string | Camera | null {
+  if (text === '') return null;
+  const numbers = text.split(',').map(Number);
+  if (numbers.length === 1) return text;
+  if (numbers.length !== 8 || !numbers.every(Number.isFinite)) return null;
+  const fovDegrees = numbers[6]!;
+  if (fovDegrees <= 1 || fovDegrees >= 150) return null;
+  return {
+    eye: numbers.slice(0, 3) as unknown as Vec3,
+    target: numbers.slice(3, 6) as unknown as Vec3,
+    fovDegrees,
+    follows: numbers[7] === 1,
+  };
+}
+
+const words = (text: string | null): string[] => (text ? text.split(',').filter(Boolean) : []);
+
+/** "#..." of an address; what cannot be understood is left out. */
+export function readAddress(hash: string): PageState {
+  const parameters = new URLSearchParams(hash.replace(/^#/, ''));
+  const wipe = parameters.get('wipe');
+  const state: PageState = {
+    subject: parameters.get('subject') ?? '',
+    camera: readCamera(parameters.get('camera') ?? ''),
+    settings: new Map(),
+    wipe: wipe === 'wrinkles' || wipe === 'shading' ? wipe : 'none',
+    strip: words(parameters.get('debug')),
+    curves: words(parameters.get('curves')),
+    panel: parameters.get('panel') ?? 'look',
+  };
+  for (const [name, value] of parameters) {
+    if (!(RESERVED as readonly string[]).includes(name)) state.settings.set(name, value);
+  }
+  return state;
+}
+
+/** With the '#'; readable, since it is meant to be sent to colleagues. */
+export function writeAddress(state: PageState): string {
+  const pairs: [string, string][] = [];
+  if (state.subject !== '') pairs.push(['subject', state.subject]);
+  if (state.camera !== null) {
+    const text = typeof state.camera === 'string' ? state.camera : writeCamera(state.camera);
+    pairs.push(['camera', text]);
+  }
+  if (state.wipe !== 'none') pairs.push(['wipe', state.wipe]);
+  if (state.strip.length > 0) pairs.push(['debug', state.strip.join(',')]);
+  if (state.curves.length > 0) pairs.push(['curves', state.curves.join(',')]);
+  if (state.panel !== 'look') pairs.push(['panel', state.panel]);
+  pairs.push(...state.settings);
+  const encode = (text: string): string => encodeURIComponent(text).replaceAll('%2C', ',');
+  return pairs.length === 0 ? '' : `#${pairs.map(([k, v]) => `${encode(k)}=${encode(v)}`).join('&')}`;
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the page shows, in one place; the address follows it.
+import { Signal } from '../ui/signal';
+import { type Camera, type CameraPreset, fromPreset, sameCamera } from '../view/camera';
+import type { Sharpness } from '../view/resolution';
+import { type PageState, readAddress, type Wipe, writeAddress } from './address';
+import { SettingsModel } from './settings';
+
+const ADDRESS_DELAY_MS = 250;
+
+export class AppState {
+  readonly settings = new SettingsModel();
+  readonly subject: Signal<string>;
+  readonly presets = new Signal<readonly CameraPreset[]>([]);
+  readonly camera = new Signal<Camera | null>(null);
+  readonly wipe: Signal<Wipe>;
+  readonly strip: Signal<readonly string[]>;
+  /** Empty: the most active. */
+  readonly curves: Signal<readonly string[]>;
+  /** The side panel's tab; empty: closed. */
+  readonly panel: Signal<string>;
+  readonly sharpness = new Signal<Sharpness>('auto');
+  /** While held: the picture as it was before the last change. */
+  readonly comparing = new Signal(false);
+  private readonly wishes: PageState;
+  private timer: ReturnType<typeof setTimeout> | null = null;
+
+  constructor(hash: string) {
+    this.wishes = readAddress(hash);
+    this.subject = new Signal(this.wishes.subject);
+    this.wipe = new Signal(this.wishes.wipe);
+    this.strip = new Signal<readonly string[]>(this.wishes.strip);
+    this.curves = new Signal<readonly string[]>(this.wishes.curves);
+    this.panel = new Signal(this.wishes.panel);
+  }
+
+  /** Once the daemon said what there is. Returns what the address asks for and nobody knows. */
+  begin(presets: readonly CameraPreset[]): string[] {
+    const unknown = this.settings.replace(this.wishes.settings);
+    this.setPresets(presets);
+    for (const signal of [this.subject, this.wipe, this.strip, this.curves, this.panel, this.camera, this.settings.changed]) {
+      (signal as Signal<unknown>).watch(() => this.writeSoon());
+    }
+    return unknown;
+  }
+
+  /** Also after a restart with another character: a preset that was chosen is chosen again. */
+  setPresets(presets: readonly CameraPreset[]): void {
+    const chosen = this.presetName();
+    this.presets.set(presets);
+    const wished = chosen ?? this.wishes.camera;
+    if (typeof wished === 'string') this.choosePreset(wished);
+    else if (this.camera.value === null && wished !== null) this.camera.set(wished);
+    if (this.camera.value === null && presets[0] !== undefined) this.camera.set(fromPreset(presets[0]));
+  }
+
+  choosePreset(name: string): void {
+    const preset = this.presets.value.find((candidate) => candidate.name === name);
+    if (preset !== undefined) this.camera.set(fromPreset(preset));
+  }
+
+  /** The preset that the camera stands at, or null. */
+  presetName(): string | null {
+    const camera = this.camera.value;
+    if (camera === null) return null;
+    return this.presets.value.find((preset) => sameCamera(fromPreset(preset), camera))?.name ?? null;
+  }
+
+  page(): PageState {
+    const preset = this.presetName();
+    const isFirst = preset !== null && preset === this.presets.value[0]?.name;
+    return {
+      subject: this.subject.value,
+      camera: isFirst ? null : (preset ?? this.camera.value),
+      settings: new Map(this.settings.overrides),
+      wipe: this.wipe.value,
+      strip: [...this.strip.value],
+      curves: [...this.curves.value],
+      panel: this.panel.value,
+    };
+  }
+
+  private writeSoon(): void {
+    if (this.timer !== null) return;
+    this.timer = setTimeout(() => {
+      this.timer = null;
+      const hash = writeAddress(this.page());
+      history.replaceState(null, '', hash === '' ? location.pathname + location.search : hash);
+    }, ADDRESS_DELAY_MS);
+  }
+}

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// How this page's picture is drawn: the daemon's own settings, and what this page has instead.
+import type { SettingInfo } from '../api';
+import { Signal } from '../ui/signal';
+
+/** Values as the daemon takes them: text by name. */
+export type Values = ReadonlyMap<string, string>;
+
+/** Changes of one setting that follow each other so fast are one step of undo. */
+const ONE_STEP_MS = 800;
+const MAX_STEPS = 200;
+
+/** Whether two texts say the same of a setting: "1" and "1.0", "on" and "true". */
+export function sameValue(info: SettingInfo, a: string, b: string): boolean {
+  if (a === b) return true;
+  if (info.kind === 'bool') return isOn(a) === isOn(b);
+  if (info.kind !== 'int' && info.kind !== 'number' && info.kind !== 'colour') return false;
+  const [left, right] = [a, b].map((text) => text.split(',').map(Number));
+  return left!.length === right!.length &&
+    left!.every((x, i) => Math.abs(x - right![i]!) <= 1e-6 * Math.max(1, Math.abs(x)));
+}
+
+export function isOn(text: string): boolean {
+  return text === 'on' || text === 'true';
+}
+
+export class SettingsModel {
+  /** Told of every change: values, infos, what can be undone. */
+  readonly changed = new Signal(0);
+  private infos_: SettingInfo[] = [];
+  private byName = new Map<string, SettingInfo>();
+  private own: Values = new Map();
+  private undoSteps: Values[] = [];
+  private redoSteps: Values[] = [];
+  private lastChange = { name: '', atMs: -Infinity };
+
+  get infos(): readonly SettingInfo[] {
+    return this.infos_;
+  }
+  info(name: string): SettingInfo | undefined {
+    return this.byName.get(name);
+  }
+  /** What this page has that differs from the daemon. */
+  get overrides(): Values {
+    return this.own;
+  }
+  get canUndo(): boolean {
+    return this.undoSteps.length > 0;
+  }
+  get canRedo(): boolean {
+    return this.redoSteps.length > 0;
+  }
+
+  /** The overrides before the last step: what "compare" shows. */
+  get previous(): Values {
+    return this.undoSteps.at(-1) ?? this.own;
+  }
+
+  value(name: string): string {
+    return this.own.get(name) ?? this.byName.get(name)?.value ?? '';
+  }
+
+  /** The daemon's settings, also after a reconnection or a PATCH. Steps of undo stay. */
+  setInfos(infos: SettingInfo[]): void {
+    this.infos_ = infos;
+    this.byName = new Map(infos.map((info) => [info.name, info]));
+    this.own = this.normalised(this.own);
+    this.tell();
+  }
+
+  set(name: string, value: string, nowMs: number): void {
+    if (this.value(name) === value) return;
+    const sameStep = name === this.lastChange.name && nowMs - this.lastChange.atMs < ONE_STEP_MS;
+    this.lastChange = { name, atMs: nowMs };
+    this.change(new Map(this.own).set(name, value), sameStep);
+  }
+
+  /** Back to what the daemon has. */
+  reset(name: string): void {
+    const next = new Map(this.own);
+    if (next.delete(name)) this.change(next, false);
+  }
+
+  /** All overrides at once, as one step. Unknown names are left out and returned. */
+  replace(values: Values): string[] {
+    const known = new Map<string, string>();
+    const unknown: string[] = [];
+    for (const [name, value] of values) {
+      if (this.byName.has(name)) known.set(name, value);
+      else unknown.push(name);
+    }
+    this.change(known, false);
+    return unknown;
+  }
+
+  undo(): void {
+    this.step(this.undoSteps, this.redoSteps);
+  }
+  redo(): void {
+    this.step(this.redoSteps, this.undoSteps);
+  }
+
+  /** The daemon refused what is set now: back to `accepted`, leaving no trace in undo. */
+  reject(accepted: Values): void {
+    if (this.undoSteps.length > 0) this.undoSteps.pop();
+    this.own = this.normalised(accepted);
+    this.tell();
+  }
+
+  private step(from: Values[], to: Values[]): void {
+    const next = from.pop();
+    if (next === undefined) return;
+    to.push(this.own);
+    this.own = this.normalised(next);
+    this.lastChange = { name: '', atMs: -Infinity };
+    this.tell();
+  }
+
+  private change(next: Values, sameStep: boolean): void {
+    if (!sameStep) {
+      this.undoSteps.push(this.own);
+      if (this.undoSteps.length > MAX_STEPS) this.undoSteps.shift();
+    }
+    this.redoSteps = [];
+    this.own = this.normalised(next);
+    this.tell();
+  }
+
+  private normalised(values: Values): Values {
+    if (this.byName.size === 0) return values;
+    return new Map(
+      [...values].filter(([name, value]) => {
+        const info = this.byName.get(name);
+        return info !== undefined && !sameValue(info, info.value, value);
+      }),
+    );
+  }
+
+  private tell(): void {
+    this.changed.set(this.changed.value + 1);
+  }
+}
+
+/** "name=value" for the wire; the view travels in a field of its own. */
+export function assignments(values: Values): string[] {
+  return [...values].filter(([name]) => name !== 'view').map(([name, v]) => `${name}=${v}`);
+}

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// The wrinkle weights of the last seconds, for curves, the face map and the download.
+
+export interface WeightFrame {
+  sequence: number;
+  /** Seconds on the page's clock, when they came. */
+  atS: number;
+  values: Float32Array;
+}
+
+export class WeightHistory {
+  names: readonly string[] = [];
+  private frames_: WeightFrame[] = [];
+  private index = new Map<string, number>();
+
+  /** Frames older than `seconds` are forgotten. */
+  constructor(readonly seconds = 20) {}
+
+  get frames(): readonly WeightFrame[] {
+    return this.frames_;
+  }
+  get latest(): WeightFrame | undefined {
+    return this.frames_.at(-1);
+  }
+
+  /** Another subject, or another rig: what was kept means nothing any more. */
+  setNames(names: readonly string[]): void {
+    if (names.length === this.names.length && names.every((n, i) => n === this.names[i])) return;
+    this.names = names;
+    this.index = new Map(names.map((name, i) => [name, i]));
+    this.frames_ = [];
+  }
+
+  clear(): void {
+    this.frames_ = [];
+  }
+
+  add(frame: WeightFrame): void {
+    if (frame.values.length !== this.names.length) return;
+    this.frames_.push(frame);
+    const oldest = frame.atS - this.seconds;
+    let stale = 0;
+    while (this.frames_[stale]!.atS < oldest) ++stale;
+    if (stale > 0) this.frames_.splice(0, stale);
+  }
+
+  indexOf(name: string): number {
+    return this.index.get(name) ?? -1;
+  }
+
+  /** 0 where there is none. */
+  value(name: string): number {
+    const i = this.indexOf(name);
+    return i < 0 ? 0 : (this.latest?.values[i] ?? 0);
+  }
+
+  /** The `count` names that moved most in what is kept, in the daemon's order. */
+  mostActive(count: number): string[] {
+    const ranges = this.names.map((name, i) => {
+      let low = Infinity;
+      let high = -Infinity;
+      for (const { values } of this.frames_) {
+        low = Math.min(low, values[i]!);
+        high = Math.max(high, values[i]!);
+      }
+      return { name, i, range: high - low };
+    });
+    ranges.sort((a, b) => b.range - a.range || a.i - b.i);
+    return ranges.slice(0, count).sort((a, b) => a.i - b.i).map(({ name }) => name);
+  }
+
+  /** As `furrow watch --format csv` writes them; time in seconds since the first row. */
+  toCsv(): string {
+    const first = this.frames_[0]?.atS ?? 0;
+    const rows = this.frames_.map(({ sequence, atS, values }) =>
+      [sequence, (atS - first).toFixed(6), ...Array.from(values, (v) => v.toFixed(6))].join(','));
+    return `${['frame,time', ...this.names].join(',')}\n${rows.map((row) => `${row}\n`).join('')}`;
+  }
+}

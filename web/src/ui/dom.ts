@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Elements in one expression. Text is always set as text, never parsed as HTML.
+
+type Attributes = Record<string, string | number | boolean | EventListener | undefined>;
+type Child = Node | string | null;
+
+function fill(element: Element, attributes: Attributes, children: Child[]): void {
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === undefined || value === false) continue;
+    if (typeof value === 'function') element.addEventListener(name.slice(2), value);
+    else element.setAttribute(name, value === true ? '' : String(value));
+  }
+  element.append(...children.filter((child) => child !== null));
+}
+
+/** `onclick` and the like take a listener; false and undefined leave an attribute out. */
+export function h<K extends keyof HTMLElementTagNameMap>(
+  tag: K, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
+  const element = document.createElement(tag);
+  fill(element, attributes, children);
+  return element;
+}
+
+export function svg<K extends keyof SVGElementTagNameMap>(
+  tag: K, attributes: Attributes = {}, ...children: Child[]): SVGElementTagNameMap[K] {
+  const element = document.createElementNS('http://www.w3.org/2000/svg', tag);
+  fill(element, attributes, children);
+  return element;
+}
+
+export function button(label: string, onClick: () => void, attributes: Attributes = {}): HTMLButtonElement {
+  return h('button', { type: 'button', onclick: onClick, ...attributes }, label);
+}
+
+/** A select with its label for screen readers. */
+export function select(label: string, options: readonly (readonly [string, string])[],
+                       onChange: (value: string) => void): HTMLSelectElement {
+  const element = h('select', { 'aria-label': label });
+  setOptions(element, options);
+  element.addEventListener('change', () => onChange(element.value));
+  return element;
+}
+
+/** Leaves an open list alone where nothing changed. */
+export function setOptions(element: HTMLSelectElement, options: readonly (readonly [string, string])[]): void {
+  const now = Array.from(element.options, (option) => [option.value, option.text]);
+  if (JSON.stringify(now) === JSON.stringify(options)) return;
+  const chosen = element.value;
+  element.replaceChildren(...options.map(([value, text]) => h('option', { value }, text)));
+  if (options.some(([value]) => value === chosen)) element.value = chosen;
+}
+
+/** Keys typed here mean text or a control's own handling, not a command of the page. */
+export function takesKeys(target: EventTarget | null): boolean {
+  return target instanceof Element &&
+    target.closest('input, select, textarea, button, [role=tab], [role=slider], dialog, a') !== null;
+}
+
+export function download(name: string, type: string, text: string): void {
+  const url = URL.createObjectURL(new Blob([text], { type }));
+  h('a', { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10_000);
+}
+
+/** "mask_dynamic" for people. */
+export function readable(name: string): string {
+  const spaced = name.replaceAll('_', ' ');
+  return spaced.charAt(0).toUpperCase() + spaced.slice(1);
+}

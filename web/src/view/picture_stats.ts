@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// How late and how lossy the picture is.
+
+export interface PictureFacts {
+  sequence: number;
+  ageUs: number;
+  still: boolean;
+  tier: number;
+  dropped: number;
+  receivedUs: number;
+}
+
+const WINDOW_S = 2;
+
+export class PictureStats {
+  private times: number[] = [];
+  private latencies: number[] = [];
+  private lastSequence = -1;
+  private lastDropped = 0;
+  /** Pictures so far. A pose at rest gets none: few a second is no fault. */
+  shown = 0;
+  dropped = 0;
+  tier = 0;
+  still = false;
+
+  /** `nowUs` and `offsetUs`: our clock, and what makes it the daemon's (null: not known yet). */
+  add(picture: PictureFacts, nowUs: number, offsetUs: number | null): void {
+    const nowS = nowUs / 1e6;
+    ++this.shown;
+    this.times.push(nowS);
+    this.prune(nowS);
+    this.tier = picture.tier;
+    this.still = picture.still;
+    // Counts since the subscription: a smaller number is a new one.
+    this.dropped += picture.dropped >= this.lastDropped ? picture.dropped - this.lastDropped : picture.dropped;
+    this.lastDropped = picture.dropped;
+    const isFresh = picture.ageUs === 0 && !picture.still && picture.sequence !== this.lastSequence;
+    this.lastSequence = picture.sequence;
+    if (!isFresh || offsetUs === null || picture.receivedUs === 0) return;
+    this.latencies.push(Math.max(0, (nowUs + offsetUs - picture.receivedUs) / 1000));
+    if (this.latencies.length > 60) this.latencies.shift();
+  }
+
+  rateHz(nowS: number): number {
+    this.prune(nowS);
+    return this.times.length / WINDOW_S;
+  }
+
+  /** Median, from the pose's arrival at the daemon to the screen; null: no moving pictures yet. */
+  latencyMs(): number | null {
+    if (this.latencies.length === 0) return null;
+    const sorted = [...this.latencies].sort((a, b) => a - b);
+    return sorted[Math.floor(sorted.length / 2)]!;
+  }
+
+  private prune(nowS: number): void {
+    while (this.times.length > 0 && this.times[0]! < nowS - WINDOW_S) this.times.shift();
+  }
+}

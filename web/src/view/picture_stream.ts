@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// One subscription of pictures: asked for, changed, decoded, acknowledged.
+import { Signal } from '../ui/signal';
+import type { Connection, Subscriber, Subscription } from '../wire/connection';
+import type { Envelope } from '../wire/envelope';
+import { frameAck, type PictureMessage, type PictureRequest, readPicture, type ReplyMessage,
+  subscribePictures, unsubscribe, updatePictures } from '../wire/messages';
+
+/** A decoded picture; whoever gets it closes the bitmap. */
+export interface Picture extends Omit<PictureMessage, 'bytes'> {
+  bitmap: ImageBitmap;
+  sequence: number;
+  numBytes: number;
+}
+
+export interface PictureEvents {
+  onPicture(picture: Picture): void;
+  /** The daemon will not draw this; `error` is its sentence. */
+  onRefused(code: number, error: string): void;
+}
+
+/** A view changes at most so often: a drag makes a hundred changes a second. */
+const UPDATE_MS = 33;
+
+export class PictureStream implements Subscriber {
+  /** The last change asked for has not been seen yet. */
+  readonly pending = new Signal(true);
+  private subscription: Subscription | null = null;
+  private answered = false;
+  private newestShown = 0;
+  private wanted = 0;
+  private timer: ReturnType<typeof setTimeout> | null = null;
+  private lastUpdateMs = -Infinity;
+
+  constructor(
+    private readonly connection: Connection,
+    private wantedView: PictureRequest,
+    private readonly events: PictureEvents,
+  ) {}
+
+  start(): void {
+    this.subscription ??= this.connection.subscribe(this);
+  }
+
+  stop(): void {
+    if (this.timer !== null) clearTimeout(this.timer);
+    this.timer = null;
+    this.subscription?.close(unsubscribe());
+    this.subscription = null;
+    this.answered = false;
+  }
+
+  get view(): PictureRequest {
+    return this.wantedView;
+  }
+
+  /** What to show from now on. Another subject is another subscription. */
+  update(view: PictureRequest): void {
+    const former = this.wantedView;
+    if (JSON.stringify(former) === JSON.stringify(view)) return;
+    this.wantedView = view;
+    this.pending.set(true);
+    if (this.subscription === null) return;
+    if (former.subject !== view.subject) {
+      this.stop();
+      this.start();
+      return;
+    }
+    if (this.timer !== null) return;
+    const wait = Math.max(0, this.lastUpdateMs + UPDATE_MS - performance.now());
+    this.timer = setTimeout(() => this.sendUpdate(), wait);
+  }
+
+  /** Asks from the beginning, as after a refusal. */
+  restart(view: PictureRequest): void {
+    this.wantedView = view;
+    this.stop();
+    this.start();
+  }
+
+  private sendUpdate(): void {
+    this.timer = null;
+    this.lastUpdateMs = performance.now();
+    // Not answered yet: the answer sends what is wanted then.
+    if (!this.answered) return;
+    this.wanted = this.subscription?.send(updatePictures(this.wantedView)) ?? this.wanted;
+  }
+
+  request(): Uint8Array {
+    this.answered = false;
+    this.newestShown = 0;
+    this.asked = this.wantedView;
+    return subscribePictures(this.wantedView);
+  }
+  private asked: PictureRequest | null = null;
+
+  onReply(_reply: ReplyMessage, requestSequence: number): void {
+    if (this.answered) return;
+    this.answered = true;
+    this.wanted = requestSequence;
+    if (this.asked !== this.wantedView) this.sendUpdate();
+  }
+
+  onRefused(code: number, message: string, sequence: number): void {
+    if (sequence === this.wanted) this.pending.set(false);
+    this.events.onRefused(code, message);
+  }
+
+  onGone(): void {}
+
+  onMessage(message: Envelope): void {
+    if (message.identifier !== 'FIMG') return;
+    void this.decode(message.sequence, readPicture(message.payload));
+  }
+
+  private async decode(sequence: number, picture: PictureMessage): Promise<void> {
+    const { bytes, ...rest } = picture;
+    let bitmap: ImageBitmap | null = null;
+    try {
+      bitmap = await createImageBitmap(new Blob([bytes], { type: picture.mimeType }));
+    } catch {
+      // A picture that cannot be decoded is acknowledged all the same: the next one may be whole.
+    }
+    this.subscription?.send(frameAck(picture.number));
+    if (bitmap === null) return;
+    if (this.subscription === null || picture.number <= this.newestShown) {
+      bitmap.close(); // overtaken while it was decoded
+      return;
+    }
+    this.newestShown = picture.number;
+    const behind = (this.wanted - picture.viewRequest) | 0;
+    if (this.answered && behind <= 0 && this.timer === null) this.pending.set(false);
+    this.events.onPicture({ ...rest, bitmap, sequence, numBytes: bytes.length });
+  }
+}

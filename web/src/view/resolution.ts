@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many pixels the daemon is asked for. Sharp is the screen's own density; where the daemon cannot
+// draw that fast enough, "auto" asks for fewer while the picture moves and for all of them at rest.
+
+export type Sharpness = 'auto' | 'sharp' | 'fast';
+
+const STEPS = [1, 0.75, 0.5, 0.35] as const;
+const TOO_SLOW_HZ = 14;
+const FAST_HZ = 27;
+/** A picture that was made larger and soon proved too large again shows that this was a mistake. */
+const SOON_S = 10;
+const MAX_PATIENCE_S = 64;
+
+/** Chooses one of STEPS by the rate at which pictures of a moving pose come. */
+export class AdaptiveScale {
+  private step = 0;
+  private fastSinceS: number | null = null;
+  private raisedAtS = -Infinity;
+  private patienceS = 4;
+
+  get scale(): number {
+    return STEPS[this.step]!;
+  }
+
+  /** Once a second: pictures and poses a second. True: the scale changed. */
+  observe(picturesHz: number, posesHz: number, nowS: number): boolean {
+    if (picturesHz < Math.min(TOO_SLOW_HZ, 0.8 * posesHz)) return this.lower(nowS);
+    if (picturesHz < Math.min(FAST_HZ, 0.9 * posesHz) || this.step === 0) {
+      this.fastSinceS = null;
+      return false;
+    }
+    this.fastSinceS ??= nowS;
+    if (nowS - this.fastSinceS < this.patienceS) return false;
+    --this.step;
+    this.raisedAtS = nowS;
+    this.fastSinceS = null;
+    return true;
+  }
+
+  private lower(nowS: number): boolean {
+    this.fastSinceS = null;
+    if (this.step === STEPS.length - 1) return false;
+    if (nowS - this.raisedAtS < SOON_S) this.patienceS = Math.min(MAX_PATIENCE_S, this.patienceS * 2);
+    ++this.step;
+    return true;
+  }
+}
+
+/** Pixels to ask for: the stage's CSS size times the density, of even sides, in [16, 4096]. */
+export function pictureSize(cssWidth: number, cssHeight: number, density: number, scale: number):
+    { width: number; height: number } {
+  const factor = Math.min(density * scale, 4096 / Math.max(cssWidth, cssHeight, 1));
+  const side = (css: number): number => Math.max(16, Math.round((css * factor) / 2) * 2);
+  return { width: side(cssWidth), height: side(cssHeight) };
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// The picture on the screen: one, or two beside a divider that can be dragged.
+import { h } from '../ui/dom';
+import type { Picture } from './picture_stream';
+
+export type Side = 'right' | 'left';
+
+const HELP = 'Live picture. Drag or arrow keys turn the camera, w a s d walk, plus and minus zoom; ' +
+  'question mark lists all keys.';
+
+export class Stage {
+  readonly canvas = h('canvas', { class: 'picture', 'aria-hidden': 'true' });
+  private readonly divider = h('div', { class: 'divider' });
+  private readonly labels = { left: h('span', { class: 'wipe-label left' }), right: h('span', { class: 'wipe-label right' }) };
+  private readonly slider = h('input', {
+    type: 'range', min: 0, max: 1000, value: 500, class: 'wipe-slider', 'aria-label': 'Position of the divider',
+  });
+  private readonly wipe = h('div', { class: 'wipe', hidden: true }, this.divider, this.labels.left, this.labels.right, this.slider);
+  /** Takes the camera's keys and pointers. */
+  readonly surface = h('div', { class: 'surface', tabindex: 0, role: 'application', 'aria-label': HELP }, this.canvas);
+  readonly element = h('div', { class: 'stage' }, this.surface, this.wipe);
+  private readonly bitmaps: Record<Side, ImageBitmap | null> = { left: null, right: null };
+  private split = false;
+  private drawScheduled = false;
+
+  constructor() {
+    this.slider.addEventListener('input', () => this.place());
+    new ResizeObserver(() => this.schedule()).observe(this.surface);
+    this.place();
+  }
+
+  /** The bitmap is the stage's from now on. */
+  show(side: Side, picture: Picture): void {
+    this.bitmaps[side]?.close();
+    this.bitmaps[side] = picture.bitmap;
+    this.schedule();
+  }
+
+  /** Null: one picture over the whole of it. */
+  setWipe(labels: { left: string; right: string } | null): void {
+    this.split = labels !== null;
+    this.wipe.hidden = !this.split;
+    if (labels !== null) {
+      this.labels.left.textContent = labels.left;
+      this.labels.right.textContent = labels.right;
+    } else {
+      this.bitmaps.left?.close();
+      this.bitmaps.left = null;
+    }
+    this.schedule();
+  }
+
+  setDimmed(dimmed: boolean): void {
+    this.element.classList.toggle('dimmed', dimmed);
+  }
+
+  private place(): void {
+    const share = Number(this.slider.value) / 1000;
+    this.wipe.style.setProperty('--split', String(share));
+    this.slider.setAttribute('aria-valuetext', `${Math.round(share * 100)} %`);
+    this.schedule();
+  }
+
+  private schedule(): void {
+    if (this.drawScheduled) return;
+    this.drawScheduled = true;
+    requestAnimationFrame(() => {
+      this.drawScheduled = false;
+      this.draw();
+    });
+  }
+
+  private draw(): void {
+    const { clientWidth, clientHeight } = this.surface;
+    const width = Math.max(1, Math.round(clientWidth * devicePixelRatio));
+    const height = Math.max(1, Math.round(clientHeight * devicePixelRatio));
+    if (this.canvas.width !== width || this.canvas.height !== height) {
+      this.canvas.width = width;
+      this.canvas.height = height;
+    }
+    const context = this.canvas.getContext('2d', { alpha: false })!;
+    context.imageSmoothingQuality = 'high';
+    const { left, right } = this.bitmaps;
+    if (right !== null) cover(context, right);
+    if (!this.split || left === null) return;
+    context.save();
+    context.beginPath();
+    context.rect(0, 0, (width * Number(this.slider.value)) / 1000, height);
+    context.clip();
+    cover(context, left);
+    context.restore();
+  }
+}
+
+/** Fills the canvas; of a picture of another shape (the window was just resized) the middle. */
+function cover(context: CanvasRenderingContext2D, bitmap: ImageBitmap): void {
+  const { width, height } = context.canvas;
+  const scale = Math.max(width / bitmap.width, height / bitmap.height);
+  const w = bitmap.width * scale;
+  const h2 = bitmap.height * scale;
+  context.drawImage(bitmap, (width - w) / 2, (height - h2) / 2, w, h2);
+}

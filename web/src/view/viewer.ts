@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keeps the picture what the page's state says: asks for it, again where something changes, and for
+// a second one where two are compared.
+import type { Wipe } from '../state/address';
+import type { AppState } from '../state/app_state';
+import { assignments, type Values } from '../state/settings';
+import { Signal } from '../ui/signal';
+import { nowUs } from '../wire/clock';
+import type { Connection } from '../wire/connection';
+import type { PictureRequest } from '../wire/messages';
+import { type Picture, PictureStream } from './picture_stream';
+import { PictureStats } from './picture_stats';
+import { AdaptiveScale, pictureSize } from './resolution';
+import { type Side, Stage } from './stage';
+
+interface WipeSides {
+  setting: string;
+  left: string;
+  right: string;
+  labels: { left: string; right: string };
+}
+
+const WIPES: Record<Exclude<Wipe, 'none'>, WipeSides> = {
+  wrinkles: { setting: 'wrinkles', left: 'off', right: 'on', labels: { left: 'Wrinkles off', right: 'Wrinkles on' } },
+  shading: { setting: 'shading', left: 'diffuse', right: 'skin', labels: { left: 'Diffuse', right: 'Skin' } },
+};
+
+/** Codes of STANDARD.md section 10. */
+const NOT_RENDERING = 8;
+const BAD_PICTURE = 9;
+
+export class Viewer {
+  readonly stage = new Stage();
+  readonly stats = new PictureStats();
+  /** The daemon's sentence where it draws nothing at all. */
+  readonly notDrawn = new Signal('');
+  private readonly scale = new AdaptiveScale();
+  private main: PictureStream | null = null;
+  private other: PictureStream | null = null;
+  private accepted: Values = new Map();
+
+  constructor(
+    private readonly connection: Connection,
+    private readonly state: AppState,
+    private readonly say: (text: string) => void,
+  ) {
+    const { settings, camera, subject, wipe, comparing, sharpness } = state;
+    for (const signal of [settings.changed, camera, subject, wipe, comparing, sharpness]) {
+      (signal as Signal<unknown>).watch(() => this.refresh());
+    }
+    new ResizeObserver(() => this.refresh()).observe(this.stage.surface);
+    connection.state.watch(() => this.onLink());
+  }
+
+  /** Once a second: whether the daemon keeps up with `posesHz`. */
+  observeRate(posesHz: number, nowS: number): void {
+    if (this.state.sharpness.value !== 'auto' || this.stats.still || posesHz < 1) return;
+    if (this.scale.observe(this.stats.rateHz(nowS), posesHz, nowS)) this.refresh();
+  }
+
+  private onLink(): void {
+    this.stage.setDimmed(this.connection.state.value === 'lost');
+    if (this.connection.state.value === 'open') this.notDrawn.set('');
+  }
+
+  private wantedValues(): Values {
+    const { settings, comparing } = this.state;
+    return comparing.value ? settings.previous : settings.overrides;
+  }
+
+  private pixelScale(): number {
+    switch (this.state.sharpness.value) {
+      case 'sharp':
+        return 1;
+      case 'fast':
+        return 0.5 / Math.max(1, devicePixelRatio);
+      default:
+        return this.stats.still ? 1 : this.scale.scale;
+    }
+  }
+
+  private requestFor(values: Values, side: Side): PictureRequest | null {
+    const camera = this.state.camera.value;
+    const { clientWidth, clientHeight } = this.stage.surface;
+    if (camera === null || clientWidth === 0) return null;
+    const wipe = this.state.wipe.value;
+    const sided = new Map(values);
+    if (wipe !== 'none') sided.set(WIPES[wipe].setting, WIPES[wipe][side]);
+    return {
+      subject: this.state.subject.value,
+      ...pictureSize(clientWidth, clientHeight, devicePixelRatio, this.pixelScale()),
+      maxRateHz: 60,
+      view: sided.get('view') ?? this.state.settings.info('view')?.value ?? 'final',
+      camera,
+      settings: assignments(sided),
+    };
+  }
+
+  private refresh(): void {
+    const values = this.wantedValues();
+    const request = this.requestFor(values, 'right');
+    if (request === null) return;
+    if (this.main === null) {
+      this.main = this.open(request, 'right');
+      this.main.pending.bind((busy) => this.stage.element.setAttribute('aria-busy', String(busy)));
+    } else {
+      this.main.update(request);
+    }
+    this.refreshOther(values);
+  }
+
+  private refreshOther(values: Values): void {
+    const wipe = this.state.wipe.value;
+    const request = wipe === 'none' ? null : this.requestFor(values, 'left');
+    this.stage.setWipe(wipe === 'none' ? null : WIPES[wipe].labels);
+    if (request === null) {
+      this.other?.stop();
+      this.other = null;
+    } else if (this.other === null) {
+      this.other = this.open(request, 'left');
+    } else {
+      this.other.update(request);
+    }
+  }
+
+  private open(request: PictureRequest, side: Side): PictureStream {
+    const stream = new PictureStream(this.connection, request, {
+      onPicture: (picture) => this.onPicture(side, picture),
+      onRefused: (code, message) => this.onRefused(code, message),
+    });
+    stream.start();
+    return stream;
+  }
+
+  private onPicture(side: Side, picture: Picture): void {
+    this.stage.show(side, picture);
+    if (side === 'left') return;
+    const wasStill = this.stats.still;
+    this.stats.add(picture, nowUs(), this.connection.clock.offsetUs());
+    this.notDrawn.set('');
+    if (!this.main!.pending.value) this.accepted = this.state.settings.overrides;
+    if (wasStill !== this.stats.still && this.scale.scale < 1) this.refresh();
+  }
+
+  private onRefused(code: number, message: string): void {
+    if (code === NOT_RENDERING) {
+      this.notDrawn.set(message);
+      return;
+    }
+    this.say(message);
+    const { settings } = this.state;
+    const isNews = assignments(settings.overrides).join() !== assignments(this.accepted).join();
+    if (code !== BAD_PICTURE || !isNews) return; // nothing to take back: asking again is in vain
+    settings.reject(this.accepted);
+    // A subscription that was refused is none: ask from the beginning.
+    this.main?.restart(this.main.view);
+    this.other?.restart(this.other.view);
+  }
+}

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subscription of one subject's wrinkle weights.
+import type { WeightHistory } from '../state/weight_history';
+import { Signal } from '../ui/signal';
+import type { Connection, Subscriber, Subscription } from './connection';
+import type { Envelope } from './envelope';
+import { readWeights, type ReplyMessage, subscribeWeights, unsubscribe } from './messages';
+
+const MAX_RATE_HZ = 120;
+
+export class WeightStream implements Subscriber {
+  /** Who is watched; empty while nobody is there. */
+  readonly subject = new Signal('');
+  readonly error = new Signal('');
+  private subscription: Subscription;
+  private namesHash = 0n;
+
+  constructor(
+    private readonly connection: Connection,
+    private wanted: string,
+    readonly history: WeightHistory,
+    private readonly onFrame: () => void,
+  ) {
+    this.subscription = connection.subscribe(this);
+  }
+
+  /** Empty: whoever has been there longest. */
+  choose(subject: string): void {
+    if (subject === this.wanted) return;
+    this.wanted = subject;
+    this.subscription.close(unsubscribe());
+    this.history.clear();
+    this.subscription = this.connection.subscribe(this);
+  }
+
+  request(): Uint8Array {
+    return subscribeWeights(this.wanted, MAX_RATE_HZ);
+  }
+
+  onReply(reply: ReplyMessage): void {
+    this.error.set('');
+    if (reply.subject !== this.subject.value) this.history.clear();
+    this.namesHash = reply.namesHash;
+    this.history.setNames(reply.names);
+    this.subject.set(reply.subject);
+  }
+
+  onMessage(message: Envelope): void {
+    if (message.identifier !== 'FWGT') return;
+    const weights = readWeights(message.payload);
+    if (weights.namesHash !== this.namesHash) return; // the reply with the new names is on its way
+    this.history.add({
+      sequence: message.sequence,
+      atS: performance.now() / 1000,
+      values: weights.values,
+    });
+    this.onFrame();
+  }
+
+  onGone(): void {
+    this.subject.set('');
+  }
+
+  onRefused(_code: number, message: string): void {
+    this.error.set(message);
+  }
+}

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { WeightHistory } from '../src/state/weight_history';
+import { PictureStats } from '../src/view/picture_stats';
+import { AdaptiveScale, pictureSize } from '../src/view/resolution';
+
+function history(): WeightHistory {
+  const weights = new WeightHistory(10);
+  weights.setNames(['a', 'b', 'c']);
+  return weights;
+}
+
+test('weights older than what is kept are forgotten', () => {
+  const weights = history();
+  for (let i = 0; i <= 30; ++i) weights.add({ sequence: i, atS: i, values: new Float32Array([i / 100, 0, 0]) });
+  assert.equal(weights.frames.length, 11);
+  assert.equal(weights.frames[0]!.sequence, 20);
+  assert(Math.abs(weights.value('a') - 0.3) < 1e-6);
+  assert.equal(weights.value('nobody'), 0);
+});
+
+test('the most active are those that moved, in the daemon’s order', () => {
+  const weights = history();
+  weights.add({ sequence: 0, atS: 0, values: new Float32Array([0.9, 0, 0.2]) });
+  weights.add({ sequence: 1, atS: 1, values: new Float32Array([0.9, 0.4, 0.9]) });
+  assert.deepEqual(weights.mostActive(2), ['b', 'c']);
+});
+
+test('other names begin anew; frames of another length are not taken', () => {
+  const weights = history();
+  weights.add({ sequence: 0, atS: 0, values: new Float32Array([1, 1]) });
+  assert.equal(weights.frames.length, 0);
+  weights.add({ sequence: 0, atS: 0, values: new Float32Array([1, 1, 1]) });
+  weights.setNames(['a', 'b', 'c']);
+  assert.equal(weights.frames.length, 1);
+  weights.setNames(['a', 'b', 'd']);
+  assert.equal(weights.frames.length, 0);
+});
+
+test('the CSV is that of furrow watch', () => {
+  const weights = history();
+  weights.add({ sequence: 41, atS: 5, values: new Float32Array([0, 0.5, 1]) });
+  weights.add({ sequence: 42, atS: 5.25, values: new Float32Array([0, 0.25, 1]) });
+  assert.equal(weights.toCsv(), 'frame,time,a,b,c\n41,0.000000,0.000000,0.500000,1.000000\n42,0.250000,0.000000,0.250000,1.000000\n');
+});
+
+const FACTS = { sequence: 1, ageUs: 0, still: false, tier: 0, dropped: 0, receivedUs: 990_000 };
+
+test('latency is the median of fresh pictures on the daemon’s clock', () => {
+  const stats = new PictureStats();
+  assert.equal(stats.latencyMs(), null);
+  stats.add(FACTS, 500_000, 500_000); // 10 ms
+  stats.add({ ...FACTS, sequence: 2 }, 530_000, 500_000); // 40 ms
+  stats.add({ ...FACTS, sequence: 3 }, 510_000, 500_000); // 20 ms
+  assert.equal(stats.latencyMs(), 20);
+  stats.add({ ...FACTS, sequence: 3 }, 900_000, 500_000); // the camera moved: the same pose again
+  stats.add({ ...FACTS, sequence: 4, still: true }, 900_000, 500_000);
+  stats.add({ ...FACTS, sequence: 5, ageUs: 400_000 }, 900_000, 500_000);
+  assert.equal(stats.latencyMs(), 20);
+});
+
+test('rate and drops', () => {
+  const stats = new PictureStats();
+  for (let i = 0; i < 40; ++i) stats.add({ ...FACTS, sequence: i, dropped: i >> 2 }, i * 50_000, null);
+  assert.equal(stats.rateHz(1.95), 20);
+  assert.equal(stats.dropped, 9);
+  stats.add({ ...FACTS, sequence: 40, dropped: 2 }, 2e6, null); // a new subscription counts from 0
+  assert.equal(stats.dropped, 11);
+  assert.equal(stats.rateHz(100), 0);
+  assert.equal(stats.shown, 41);
+});
+
+test('fewer pixels where pictures come too slowly, more again after a while', () => {
+  const scale = new AdaptiveScale();
+  assert(scale.observe(5, 60, 0));
+  assert(scale.observe(5, 60, 1));
+  assert.equal(scale.scale, 0.5);
+  assert(!scale.observe(20, 60, 2)); // neither slow nor fast
+  for (let s = 3; s < 7; ++s) assert(!scale.observe(50, 60, s));
+  assert(scale.observe(50, 60, 7));
+  assert.equal(scale.scale, 0.75);
+});
+
+test('a slow publisher is not the renderer’s fault', () => {
+  const scale = new AdaptiveScale();
+  assert(!scale.observe(9.5, 10, 0));
+  assert.equal(scale.scale, 1);
+});
+
+test('a try that failed is tried less often', () => {
+  const scale = new AdaptiveScale();
+  scale.observe(5, 60, 0);
+  let raised = 0;
+  for (let s = 1; raised === 0; ++s) if (scale.observe(50, 60, s)) raised = s;
+  scale.observe(5, 60, raised + 1); // it was too much
+  let again = 0;
+  for (let s = raised + 2; again === 0; ++s) if (scale.observe(50, 60, s)) again = s;
+  assert(again - raised - 2 >= 2 * (raised - 1));
+});
+
+test('pictures have the screen’s pixels, within the wire’s limits', () => {
+  assert.deepEqual(pictureSize(800, 600, 2, 1), { width: 1600, height: 1200 });
+  assert.deepEqual(pictureSize(801, 601, 1, 0.5), { width: 400, height: 300 });
+  assert.deepEqual(pictureSize(4000, 2000, 2, 1), { width: 4096, height: 2048 });
+  assert.deepEqual(pictureSize(2, 2, 1, 1), { width: 16, height: 16 });
+});

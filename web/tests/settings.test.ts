@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { fromControl, labelOf, toControl } from '../src/panels/setting_binding';
+import { PresetShelf, shippedPresets } from '../src/state/presets';
+import { assignments, sameValue, SettingsModel } from '../src/state/settings';
+import { someSettings } from './some_settings';
+
+function model(): SettingsModel {
+  const settings = new SettingsModel();
+  settings.setInfos(someSettings());
+  return settings;
+}
+
+test('what equals the daemon is no override', () => {
+  const settings = model();
+  settings.set('shadow.softness_mm', '5', 0);
+  assert.deepEqual([...settings.overrides], [['shadow.softness_mm', '5']]);
+  settings.set('shadow.softness_mm', '3.0', 5000);
+  assert.deepEqual([...settings.overrides], []);
+  assert.equal(settings.value('shadow.softness_mm'), '3');
+});
+
+test('a drag is one step of undo, a later change another', () => {
+  const settings = model();
+  for (let i = 0; i < 10; ++i) settings.set('shadow.taps', String(10 + i), 50 * i);
+  settings.set('wrinkles', 'off', 500);
+  settings.set('shadow.taps', '30', 600);
+  settings.undo();
+  assert.deepEqual(Object.fromEntries(settings.overrides), { 'shadow.taps': '19', wrinkles: 'off' });
+  settings.undo();
+  settings.undo();
+  assert.equal(settings.overrides.size, 0);
+  assert.equal(settings.canUndo, false);
+  settings.redo();
+  assert.deepEqual(Object.fromEntries(settings.overrides), { 'shadow.taps': '19' });
+});
+
+test('a change after undo forgets what could be redone', () => {
+  const settings = model();
+  settings.set('wrinkles', 'off', 0);
+  settings.undo();
+  settings.set('view', 'normal', 5000);
+  assert.equal(settings.canRedo, false);
+});
+
+test('compare shows what stood before the last step', () => {
+  const settings = model();
+  assert.deepEqual([...settings.previous], []);
+  settings.set('wrinkles', 'off', 0);
+  settings.set('view', 'normal', 5000);
+  assert.deepEqual([...settings.previous], [['wrinkles', 'off']]);
+});
+
+test('a refusal leaves no trace', () => {
+  const settings = model();
+  settings.set('wrinkles', 'off', 0);
+  const accepted = settings.overrides;
+  settings.set('shadow.softness_mm', '99', 5000);
+  settings.reject(accepted);
+  assert.deepEqual([...settings.overrides], [['wrinkles', 'off']]);
+  settings.undo();
+  assert.equal(settings.overrides.size, 0);
+});
+
+test('unknown names are returned and not sent', () => {
+  const settings = model();
+  assert.deepEqual(settings.replace(new Map([['wrinkles', 'off'], ['no.such', '1']])), ['no.such']);
+  assert.deepEqual(assignments(settings.overrides), ['wrinkles=off']);
+});
+
+test('the view travels apart from the settings', () => {
+  const settings = model();
+  settings.set('view', 'normal', 0);
+  assert.deepEqual(assignments(settings.overrides), []);
+});
+
+test('overrides from the address survive until the daemon is known', () => {
+  const settings = new SettingsModel();
+  settings.setInfos([]);
+  settings.set('wrinkles', 'off', 0);
+  settings.setInfos(someSettings());
+  assert.deepEqual([...settings.overrides], [['wrinkles', 'off']]);
+});
+
+test('values are compared by what they mean', () => {
+  const [, wrinkles, background, softness] = someSettings();
+  assert(sameValue(wrinkles!, 'on', 'true'));
+  assert(!sameValue(wrinkles!, 'on', 'off'));
+  assert(sameValue(softness!, '1', '1.0'));
+  assert(!sameValue(softness!, '1', '1.001'));
+  assert(sameValue(background!, '0.1,0.2,0.3', '0.10, 0.2, 0.3'));
+});
+
+test('controls take and give what the daemon says', () => {
+  for (const info of someSettings()) {
+    const back = fromControl(info, toControl(info, info.value));
+    assert(sameValue(info, back, info.value), `${info.name}: ${back}`);
+  }
+  const [, , background] = someSettings();
+  // sRGB of linear 0.2140 is one half (IEC 61966-2-1).
+  const half = toControl(background!, '0.21404,0,1') as { r: number; g: number; b: number };
+  assert(Math.abs(half.r - 0.5) < 1e-4 && half.g === 0 && Math.abs(half.b - 1) < 1e-9);
+});
+
+test('a label says its unit once', () => {
+  assert.equal(labelOf(someSettings()[3]!), 'Softness (mm)');
+  assert.equal(labelOf(someSettings()[4]!), 'Taps');
+});
+
+test('own presets are kept, those that ship are not overwritten', () => {
+  const kept = new Map<string, string>();
+  const store = { getItem: (key: string) => kept.get(key) ?? null, setItem: (key: string, v: string) => void kept.set(key, v) };
+  const shelf = new PresetShelf(store);
+  assert.equal(shelf.save(shippedPresets()[0]!.name, new Map()), false);
+  assert.equal(shelf.save('', new Map()), false);
+  assert(shelf.save('mine', new Map([['wrinkles', 'off']])));
+  const again = new PresetShelf(store).all().find(({ name }) => name === 'mine')!;
+  assert.deepEqual([...again.values], [['wrinkles', 'off']]);
+  shelf.delete('mine');
+  assert.equal(new PresetShelf(store).all().length, shippedPresets().length);
+  kept.set('furrow.presets', 'no JSON');
+  assert.equal(new PresetShelf(store).all().length, shippedPresets().length);
+});

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { Builder, ByteBuffer } from 'flatbuffers';
+import { Image } from '@wire/image';
+import { SubscribePictures } from '@wire/subscribe-pictures';
+import { UpdatePictures } from '@wire/update-pictures';
+import { Weights } from '@wire/weights';
+import { ServerClock } from '../src/wire/clock';
+import { retryDelayMs } from '../src/wire/connection';
+import { readMessage, writeMessage } from '../src/wire/envelope';
+import { frameAck, type PictureRequest, readPicture, readWeights, subscribePictures, updatePictures } from '../src/wire/messages';
+
+const REQUEST: PictureRequest = {
+  subject: 'demo', width: 1280, height: 720, maxRateHz: 60, view: 'normal', settings: ['shading=skin', 'wrinkles=off'],
+  camera: { eye: [0.5, 1.5, 1], target: [0, 1.5, 0], fovDegrees: 24, follows: true },
+};
+
+test('the envelope is what STANDARD.md section 2 says', () => {
+  const bytes = writeMessage({ stream: 0x0102, session: 0x1122334455667788n, sequence: 7 }, frameAck(3));
+  const head = [0x46, 0x52, 0x52, 0x57, 1, 0, 2, 1, 0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11, 7, 0, 0, 0];
+  assert.deepEqual([...bytes.subarray(0, 20)], head);
+  const view = new DataView(bytes.buffer);
+  assert.equal(view.getUint32(20, true), bytes.length - 32);
+  const message = readMessage(bytes.buffer)!;
+  assert.equal(message.identifier, 'FACK');
+  assert.equal(message.stream, 0x0102);
+  assert.equal(message.sequence, 7);
+});
+
+test('what is no message is null', () => {
+  const good = writeMessage({ stream: 0, session: 1n, sequence: 0 }, frameAck(1));
+  for (let length = 0; length < good.length; ++length) {
+    assert.equal(readMessage(good.slice(0, length).buffer), null, `of ${length} bytes`);
+  }
+  for (const at of [0, 4, 20]) {
+    const bad = good.slice();
+    bad[at]! ^= 0xff;
+    assert.equal(readMessage(bad.buffer), null, `byte ${at}`);
+  }
+});
+
+test('a request for pictures says all that it should', () => {
+  const wanted = SubscribePictures.getRootAsSubscribePictures(new ByteBuffer(subscribePictures(REQUEST)));
+  assert.equal(wanted.subject(), 'demo');
+  assert.equal(wanted.wait(), true);
+  assert.equal(wanted.acknowledged(), true);
+  assert.equal(wanted.cameraFollows(), true);
+  assert.deepEqual([wanted.width(), wanted.height(), wanted.maxRateHz(), wanted.view()], [1280, 720, 60, 'normal']);
+  assert.deepEqual([0, 1].map((i) => wanted.settings(i)), REQUEST.settings);
+  const camera = wanted.camera()!;
+  assert.deepEqual([camera.eye()!.x(), camera.eye()!.y(), camera.target()!.y(), camera.verticalFovDegrees()], [0.5, 1.5, 1.5, 24]);
+  const update = UpdatePictures.getRootAsUpdatePictures(new ByteBuffer(updatePictures(REQUEST)));
+  assert.equal(update.pictures()!.settings(1), 'wrinkles=off');
+});
+
+test('a picture is copied out of its message', () => {
+  const builder = new Builder(64);
+  const bytes = Image.createBytesVector(builder, [9, 8, 7]);
+  Image.startImage(builder);
+  Image.addWidth(builder, 640);
+  Image.addBytes(builder, bytes);
+  Image.addNumber(builder, 12);
+  Image.addStill(builder, true);
+  Image.addReceivedUs(builder, 5_000_000_000n);
+  Image.finishImageBuffer(builder, Image.endImage(builder));
+  const payload = builder.asUint8Array();
+  const picture = readPicture(payload);
+  payload.fill(0);
+  assert.deepEqual([...picture.bytes], [9, 8, 7]);
+  assert.deepEqual([picture.width, picture.number, picture.still, picture.receivedUs], [640, 12, true, 5e9]);
+});
+
+test('weights are read wherever they lie', () => {
+  const builder = new Builder(64);
+  const values = Weights.createValuesVector(builder, [0.25, 1]);
+  Weights.finishWeightsBuffer(builder, Weights.createWeights(builder, 77n, 5n, values, 0));
+  const payload = builder.asUint8Array();
+  for (let shift = 0; shift < 4; ++shift) {
+    const moved = new Uint8Array(payload.length + shift);
+    moved.set(payload, shift);
+    const read = readWeights(moved.subarray(shift));
+    assert.deepEqual([...read.values], [0.25, 1]);
+    assert.equal(read.namesHash, 77n);
+  }
+});
+
+test('the clock believes the shortest round trip of late', () => {
+  const clock = new ServerClock(3);
+  assert.equal(clock.offsetUs(), null);
+  clock.add(1000, 1200, 51_100); // offset 50,000 in 200
+  clock.add(2000, 6000, 59_000); // slow: 55,000 in 4,000
+  assert.equal(clock.offsetUs(), 50_000);
+  assert.equal(clock.roundTripUs(), 200);
+  clock.add(7000, 6000, 0); // answered before it was asked
+  clock.add(8000, 8400, 68_200); // offset 60,000 in 400
+  clock.add(9000, 9400, 69_200);
+  assert.equal(clock.offsetUs(), 60_000); // the first is forgotten: clocks drift
+});
+
+test('retries are prompt, then patient', () => {
+  const delays = Array.from({ length: 12 }, (_, i) => retryDelayMs(i));
+  assert(delays[0]! <= 100 && delays.at(-1) === 4000);
+  assert(delays.every((delay, i) => i === 0 || delay >= delays[i - 1]!));
+});

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { ApiError, type Explanation, type Playback } from '../src/api';
+import { assess, type Situation } from '../src/panels/condition';
+import { afterwardsWords, contributionWords } from '../src/panels/explain';
+import { colourOf } from '../src/panels/face_map';
+import { clockText, positionAfter } from '../src/panels/timeline';
+
+const GOOD: Situation = {
+  link: 'open', everConnected: true, notDrawn: '', renders: true, wanted: '', hasPicture: true,
+  subjects: [{ name: 'demo', state: 'live', age_ms: 8 }],
+};
+
+test('each trouble has its own words', () => {
+  const cases: [Partial<Situation>, 'ok' | 'wait' | 'bad', RegExp][] = [
+    [{}, 'ok', /Live: demo/],
+    [{ link: 'lost' }, 'bad', /Connection lost/],
+    [{ link: 'lost', everConnected: false }, 'bad', /No daemon answers/],
+    [{ link: 'draining' }, 'bad', /shutting down/],
+    [{ link: 'connecting' }, 'wait', /Connecting/],
+    [{ subjects: [] }, 'wait', /Nobody streams/],
+    [{ wanted: 'other' }, 'wait', /“other” is not here/],
+    [{ renders: false }, 'bad', /draws no pictures/],
+    [{ notDrawn: 'no EGL device' }, 'bad', /draws no pictures/],
+    [{ subjects: [{ name: 'demo', state: 'waiting', age_ms: 0 }] }, 'wait', /no pose yet/],
+    [{ subjects: [{ name: 'demo', state: 'lost', age_ms: 4200 }] }, 'bad', /silent for 4 s/],
+    [{ subjects: [{ name: 'demo', state: 'ended', age_ms: 0 }] }, 'wait', /Nobody streams/],
+    [{ hasPicture: false }, 'wait', /first picture/],
+  ];
+  for (const [part, level, text] of cases) {
+    const condition = assess({ ...GOOD, ...part });
+    assert.equal(condition.level, level, condition.text);
+    assert.match(condition.text, text);
+  }
+  assert.equal(assess({ ...GOOD, notDrawn: 'no EGL device' }).advice, 'no EGL device');
+});
+
+test('an API error names field and remedy', () => {
+  assert.equal(new ApiError(400, 'subsurface.width', '12 is not allowed: [0, 8]').words(), 'subsurface.width: 12 is not allowed: [0, 8]');
+  assert.equal(new ApiError(409, '', 'nothing to undo', 'capture first').words(), 'nothing to undo (capture first)');
+});
+
+const CONTRIBUTION = { value: 'brow_inner_l.squash', kind: 'pose', reference_pose: 'squash', driver_value: 0.44, gain: 1, product: 0.44, pose: null, angles: null, strain: null };
+const EXPLANATION: Explanation = { subject: 'demo', sequence: 1, weight: 'brow_l.squash', live: 0.4, result: 0.4, combined: 0.4, modulated: 0.4, contributions: [], conflicts: [] };
+
+test('why, in words', () => {
+  assert.match(contributionWords({ ...CONTRIBUTION, pose: { along: 0.44, perpendicular: 0, falloff: 1 } }), /^went 44 % of the way to the pose “squash”$/);
+  assert.match(contributionWords({ ...CONTRIBUTION, pose: { along: 0.44, perpendicular: 0.1, falloff: 0.5 } }), /cut to 50 %/);
+  assert.equal(contributionWords({ ...CONTRIBUTION, angles: [{ what: 'flexion', degrees: 12.34 }] }), 'flexion 12.3°');
+  assert.match(contributionWords({ ...CONTRIBUTION, strain: { smallest: 0.8, largest: 1.05, degrees: 0 } }), /80 % to 105 %/);
+  assert.equal(contributionWords(CONTRIBUTION), 'the coefficient itself');
+});
+
+test('what does not matter is not said', () => {
+  assert.deepEqual(afterwardsWords(EXPLANATION), []);
+  const all = afterwardsWords({ ...EXPLANATION, modulated: 0.3, live: 0.1, conflicts: [{ weight: 'brow_l.stretch', other: 0.5, factor: 0.7 }] });
+  assert.equal(all.length, 3);
+});
+
+const PLAYBACK: Playback = { file: 'a.bvh', subject: 'a', frames: 600, seconds: 10, rate_hz: 60, position_s: 9, frame: 540, playing: true, loop: true, speed: 2 };
+
+test('the timeline runs on between answers', () => {
+  assert.equal(positionAfter(PLAYBACK, 0.25), 9.5);
+  assert.equal(positionAfter(PLAYBACK, 1), 1); // around the end
+  assert.equal(positionAfter({ ...PLAYBACK, loop: false }, 1), 10);
+  assert.equal(positionAfter({ ...PLAYBACK, playing: false }, 1), 9);
+  assert.equal(clockText(75.04), '1:15.0');
+  assert.equal(clockText(3.2), '0:03.2');
+});
+
+test('the face map is warm where pressed, cool where drawn, grey at rest', () => {
+  assert.equal(colourOf(1, 0.2), 'hsl(28 85% 60%)');
+  assert.equal(colourOf(0.2, 1), 'hsl(205 85% 60%)');
+  assert.equal(colourOf(0, 0), 'hsl(28 20% 22%)');
+});

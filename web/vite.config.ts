@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Run by CMake (CMakeLists.txt), which says where the generated wire code is and where the page goes.
+import { fileURLToPath } from 'node:url';
+import { defineConfig } from 'vite';
+
+function setting(name: string): string {
+  const value = process.env[name];
+  if (value === undefined) throw new Error(`${name} is not set: build with CMake (target furrow_web)`);
+  return value;
+}
+
+export default defineConfig({
+  base: './', // the page may stand behind a proxy, below a path
+  cacheDir: `${setting('FURROW_WEB_BUILD')}/vite-cache`,
+  resolve: {
+    alias: {
+      '@wire': `${setting('FURROW_WEB_BUILD')}/wire/furrow/protocol/wire`,
+      flatbuffers: fileURLToPath(new URL('./node_modules/flatbuffers/mjs/flatbuffers.js', import.meta.url)),
+    },
+  },
+  build: {
+    outDir: setting('FURROW_WEB_OUT'),
+    emptyOutDir: true,
+    modulePreload: { polyfill: false },
+    target: 'es2022',
+    assetsInlineLimit: 0,
+  },
+});
