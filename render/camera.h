@@ -27,6 +27,10 @@ struct CameraFrame {
   glm::mat3 heading{1.0f};
 
   [[nodiscard]] float focus_distance() const { return glm::distance(position, target); }
+  // Pixels, in a picture of this height, of what is as tall as it is far away.
+  [[nodiscard]] float PixelsPerSlope(int height) const {
+    return 0.5f * static_cast<float>(height) * cot_half_fov;
+  }
   // Metres around the target that a picture of this shape shows, to its corners and a bit more.
   [[nodiscard]] float StageRadius(float aspect) const {
     return 1.15f * focus_distance() / cot_half_fov * glm::length(glm::vec2(aspect, 1.0f));

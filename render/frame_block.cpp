@@ -36,6 +36,7 @@ FrameSetup SetUpFrame(const FrameRequest& request, const wrinkle::Skeleton& skel
   const float aspect = static_cast<float>(request.width) / static_cast<float>(request.height);
   FrameSetup setup;
   setup.camera = ComputeCamera(request.camera, skeleton, request.model, aspect);
+  setup.pixels_per_slope = setup.camera.PixelsPerSlope(request.height);
   const float radius = setup.camera.StageRadius(aspect);
   setup.lighting =
       MakeLighting(request.settings.lights, {setup.camera.heading, setup.camera.target, radius});
@@ -73,6 +74,9 @@ FrameBlock MakeFrameBlock(const FrameSetup& setup, const Settings& settings) {
                         settings.translucency.scale, settings.translucency.shrink_mm * kMetresPerMm,
                         settings.subsurface.strength};
   block.wrinkle_maps = {settings.wrinkle_maps.blood_flow, settings.wrinkle_maps.cavity, 0.0f, 0.0f};
+  block.displacement = {settings.displacement.strength * kMetresPerMm, setup.pixels_per_slope,
+                        settings.displacement.edge_pixels,
+                        static_cast<float>(settings.displacement.max_level)};
   return block;
 }
 

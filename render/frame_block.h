@@ -36,6 +36,8 @@ struct FrameBlock {
   glm::vec4 specular;       // rho_s, scale of m, second lobe's share; w: albedo mix
   glm::vec4 translucency;   // strength, scale, shrink (metres); w: subsurface strength
   glm::vec4 wrinkle_maps;   // blood flow, cavity
+  glm::vec4 displacement;  // metres a millimetre of height, FrameSetup::pixels_per_slope, pixels of
+                           // an edge, most levels
 };
 
 // What a request's camera and settings make of the scene.
@@ -44,6 +46,7 @@ struct FrameSetup {
   Lighting lighting;
   SphericalHarmonics ambient;  // AmbientPolynomial() of the sky
   std::array<ShadowView, kNumLights> shadows;
+  float pixels_per_slope = 1.0f;  // height in the picture of what is as tall as it is far away
 };
 
 // The sky's polynomial, worked out when the sky changes.

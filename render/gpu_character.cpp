@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstddef>
 
 namespace furrow::render {
 namespace {
@@ -71,25 +70,6 @@ void SetFiltering(const gl::Texture& texture, GLenum wrap) {
   glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_S, static_cast<GLint>(wrap));
   glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_T, static_cast<GLint>(wrap));
-}
-
-void DescribeVertices(const GpuMesh& mesh) {
-  const GLuint array = mesh.vertex_array.name();
-  glVertexArrayVertexBuffer(array, 0, mesh.vertices.name(), 0, sizeof(Vertex));
-  const auto attribute = [&](GLuint location, GLint size, std::size_t offset) {
-    glEnableVertexArrayAttrib(array, location);
-    glVertexArrayAttribFormat(array, location, size, GL_FLOAT, GL_FALSE,
-                              static_cast<GLuint>(offset));
-    glVertexArrayAttribBinding(array, location, 0);
-  };
-  attribute(0, 3, offsetof(Vertex, position));
-  attribute(1, 3, offsetof(Vertex, normal));
-  attribute(2, 4, offsetof(Vertex, tangent));
-  attribute(3, 2, offsetof(Vertex, uv));
-  attribute(5, 4, offsetof(Vertex, skin_weights));
-  glEnableVertexArrayAttrib(array, 4);
-  glVertexArrayAttribIFormat(array, 4, 4, GL_UNSIGNED_SHORT, offsetof(Vertex, joints));
-  glVertexArrayAttribBinding(array, 4, 0);
 }
 
 Status CheckMesh(const character::Mesh& mesh, const Character& character) {
@@ -231,45 +211,19 @@ Status GpuCharacter::AddMaterials(const Character& character) {
 Status GpuCharacter::AddMeshes(const Character& character) {
   for (const character::Mesh& source : character.meshes) {
     if (Status status = CheckMesh(source, character); !status.ok()) return status;
-    GpuMesh mesh;
-    mesh.vertices =
-        gl::MakeStaticBuffer(source.vertices.data(), source.vertices.size() * sizeof(Vertex));
-    mesh.indices = gl::MakeStaticBuffer(source.indices.data(), source.indices.size() * 4);
-    mesh.vertex_array = gl::MakeVertexArray();
-    mesh.num_indices = static_cast<GLsizei>(source.indices.size());
-    mesh.material = source.material;
-    mesh.bounds = JointBounds(source, character.inverse_bind_matrices);
-    DescribeVertices(mesh);
-    glVertexArrayElementBuffer(mesh.vertex_array.name(), mesh.indices.name());
-    meshes_.push_back(std::move(mesh));
+    meshes_.push_back(MakeGpuMesh(source, character.inverse_bind_matrices));
   }
   return {};
 }
 
-const GpuMesh& GpuCharacter::Unindexed(std::size_t index) {
-  const auto found = unindexed_.find(index);
-  if (found != unindexed_.end()) return found->second;
-  const GpuMesh& source = meshes_[index];
-  const auto num_indices = static_cast<std::size_t>(source.num_indices);
-  std::vector<std::uint32_t> indices(num_indices);
-  glGetNamedBufferSubData(source.indices.name(), 0, static_cast<GLsizeiptr>(num_indices * 4),
-                          indices.data());
-  GLint bytes = 0;
-  glGetNamedBufferParameteriv(source.vertices.name(), GL_BUFFER_SIZE, &bytes);
-  std::vector<Vertex> vertices(static_cast<std::size_t>(bytes) / sizeof(Vertex));
-  glGetNamedBufferSubData(source.vertices.name(), 0,
-                          static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
-                          vertices.data());
-  std::vector<Vertex> expanded;
-  expanded.reserve(num_indices);
-  for (const std::uint32_t vertex : indices) expanded.push_back(vertices[vertex]);
-  GpuMesh mesh;
-  mesh.vertices = gl::MakeStaticBuffer(expanded.data(), num_indices * sizeof(Vertex));
-  mesh.vertex_array = gl::MakeVertexArray();
-  mesh.num_indices = source.num_indices;
-  mesh.material = source.material;
-  DescribeVertices(mesh);
-  return unindexed_.emplace(index, std::move(mesh)).first->second;
+const GpuMesh& GpuCharacter::Unindexed(std::size_t mesh) {
+  if (!unindexed_.contains(mesh)) unindexed_.emplace(mesh, MakeUnindexed(meshes_[mesh]));
+  return unindexed_.at(mesh);
+}
+
+const GpuPatches& GpuCharacter::Patches(std::size_t mesh) {
+  if (!patches_.contains(mesh)) patches_.emplace(mesh, MakePatches(meshes_[mesh]));
+  return patches_.at(mesh);
 }
 
 GLuint GpuCharacter::ColourTexture(const Character& character, int picture, bool srgb) {
@@ -357,6 +311,8 @@ Status GpuCharacter::AddWrinkleMaps(const Character& character) {
   }
   glGenerateTextureMipmap(wrinkle_derivatives_.name());
   AddWrinkleLooks(character);
+  heights_ = MakeWrinkleHeights(character);
+  layout_.height_layers = heights_.layers;
   return {};
 }
 

@@ -8,19 +8,11 @@
 #include "character/character.h"
 #include "render/derivative_map.h"
 #include "render/gl_objects.h"
-#include "render/joint_bounds.h"
+#include "render/gpu_mesh.h"
+#include "render/wrinkle_heights.h"
 #include "render/wrinkle_table.h"
 
 namespace furrow::render {
-
-struct GpuMesh {
-  gl::VertexArray vertex_array;
-  gl::Buffer vertices;
-  gl::Buffer indices;
-  JointBounds bounds;  // of the posed mesh
-  GLsizei num_indices = 0;
-  int material = 0;
-};
 
 struct GpuMaterial {
   gl::Buffer block;        // the Material block of scene.frag.glsl
@@ -51,9 +43,11 @@ class GpuCharacter {
   // Colour and cavity of the wrinkle maps, a layer each; 0 where none has any.
   [[nodiscard]] GLuint wrinkle_looks() const { return wrinkle_looks_.name(); }
   [[nodiscard]] const WrinkleLayout& layout() const { return layout_; }
-  // A mesh with three vertices of its own to every triangle, for the view wireframe; made on first
-  // use.
+  // Heights of the wrinkle maps (WrinkleLayout::height_layers).
+  [[nodiscard]] const WrinkleHeights& heights() const { return heights_; }
+  // Variants of a mesh, made on first use.
   [[nodiscard]] const GpuMesh& Unindexed(std::size_t mesh);
+  [[nodiscard]] const GpuPatches& Patches(std::size_t mesh);
 
  private:
   GpuCharacter() = default;
@@ -67,12 +61,14 @@ class GpuCharacter {
 
   std::vector<GpuMesh> meshes_;
   std::map<std::size_t, GpuMesh> unindexed_;
+  std::map<std::size_t, GpuPatches> patches_;
   std::vector<GpuMaterial> materials_;
   std::map<std::pair<int, bool>, gl::Texture> colour_textures_;  // (picture, is it sRGB)
   std::map<int, gl::Texture> derivative_textures_;
   gl::Texture masks_;
   gl::Texture wrinkle_derivatives_;
   gl::Texture wrinkle_looks_;
+  WrinkleHeights heights_;
   WrinkleLayout layout_;
 };
 

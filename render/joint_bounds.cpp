@@ -40,15 +40,17 @@ void JointBounds::Add(const character::Mesh& mesh,
 }
 
 ScreenRect JointBounds::Project(std::span<const glm::mat4> model, const glm::mat4& view_projection,
-                                int width, int height) const {
+                                int width, int height, float reach) const {
   glm::vec2 low(std::numeric_limits<float>::max());
   glm::vec2 high(std::numeric_limits<float>::lowest());
   for (const Box& box : boxes_) {
     const glm::mat4 to_clip = view_projection * model[static_cast<std::size_t>(box.joint)];
     for (int corner = 0; corner < 8; ++corner) {
-      const glm::vec3 place((corner & 1) != 0 ? box.high.x : box.low.x,
-                            (corner & 2) != 0 ? box.high.y : box.low.y,
-                            (corner & 4) != 0 ? box.high.z : box.low.z);
+      const glm::vec3 low_corner = box.low - reach;
+      const glm::vec3 high_corner = box.high + reach;
+      const glm::vec3 place((corner & 1) != 0 ? high_corner.x : low_corner.x,
+                            (corner & 2) != 0 ? high_corner.y : low_corner.y,
+                            (corner & 4) != 0 ? high_corner.z : low_corner.z);
       const glm::vec4 clip = to_clip * glm::vec4(place, 1.0f);
       if (!(clip.w > 1e-6f)) return {0, 0, width, height};
       const glm::vec2 screen = glm::vec2(clip) / clip.w;

@@ -26,9 +26,11 @@ class JointBounds {
   JointBounds(const character::Mesh& mesh, std::span<const glm::mat4> inverse_bind_matrices);
 
   // The pixels of a picture that the boxes may cover; the whole picture where one reaches behind
-  // the camera. `model`: a pose of the character's skeleton.
+  // the camera. `model`: a pose of the character's skeleton. `reach`: metres that the surface may
+  // stand off what was skinned, in any direction.
   [[nodiscard]] ScreenRect Project(std::span<const glm::mat4> model,
-                                   const glm::mat4& view_projection, int width, int height) const;
+                                   const glm::mat4& view_projection, int width, int height,
+                                   float reach = 0.0f) const;
 
  private:
   void Add(const character::Mesh& mesh, std::span<const glm::mat4> inverse_bind_matrices);

@@ -24,10 +24,6 @@ AntiAliasingSettings Chosen(const AntiAliasingSettings& asked, bool affordable) 
   return affordable ? AntiAliasingSettings{4, asked.fxaa} : AntiAliasingSettings{1, true};
 }
 
-float PixelsPerSlope(const CameraFrame& camera, int height) {
-  return 0.5f * static_cast<float>(height) * camera.cot_half_fov;
-}
-
 }  // namespace
 
 Pipeline::Pipeline(const character::Character& character, SceneDraw* scene, ShaderLibrary* shaders,
@@ -77,26 +73,28 @@ Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const S
                          const TextureDesc& desc) {
   Handle shadows;
   if (settings.shadow.filter != ShadowFilter::kOff && settings.shadow.lamps > 0) {
-    shadows = shadow_pass_.Add(graph, settings.shadow.resolution, settings.shadow.lamps);
+    shadows = shadow_pass_.Add(graph, settings);
   }
   const SkinTargets scene = scene_pass_.AddSkin(
       graph, settings, {desc.width, desc.height, desc.format, desc.samples}, shadows);
   const SkinTargets surface = AddResolvePass(graph, scene, desc, &fullscreen_);
   const CameraFrame& camera = scene_->setup().camera;
+  const float slope = camera.PixelsPerSlope(desc.height);
   const auto project = [&](const JointBounds& bounds) {
-    return bounds.Project(request.model, camera.view_projection, desc.width, desc.height)
+    return bounds
+        .Project(request.model, camera.view_projection, desc.width, desc.height,
+                 scene_->displacement_reach())
         .Grown(1, desc.width, desc.height);
   };
-  const OcclusionGeometry view{desc.width, desc.height, glm::mat3(camera.view),
-                               PixelsPerSlope(camera, desc.height), project(bounds_)};
+  const OcclusionGeometry view{desc.width, desc.height, glm::mat3(camera.view), slope,
+                               project(bounds_)};
   const OcclusionPass::Output output =
       occlusion_pass_.Add(graph, surface, settings.occlusion, view);
-  const SkinGeometry skin{
-      .width = desc.width,
-      .height = desc.height,
-      .focus_distance = camera.focus_distance(),
-      .pixels_per_mm = 0.001f * PixelsPerSlope(camera, desc.height) / camera.focus_distance(),
-      .bounds = project(skin_bounds_)};
+  const SkinGeometry skin{.width = desc.width,
+                          .height = desc.height,
+                          .focus_distance = camera.focus_distance(),
+                          .pixels_per_mm = 0.001f * slope / camera.focus_distance(),
+                          .bounds = project(skin_bounds_)};
   const Handle scattered =
       subsurface_pass_.Add(graph, output.surface.irradiance, settings.subsurface, skin);
   switch (settings.view) {

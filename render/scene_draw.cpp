@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "render/displacement_patches.h"
+
 namespace furrow::render {
 namespace {
 
@@ -22,9 +24,11 @@ enum TextureUnit : GLuint {
   kSpecularAlbedoUnit = 8,
   kPreintegratedUnit = 9,
   kWrinkleLooksUnit = 10,
-  kThicknessUnit = 11
+  kThicknessUnit = 11,
+  kWrinkleHeightsUnit = 12
 };
-constexpr GLint kLightLocation = 0;  // of shadow.vert.glsl
+constexpr GLint kLightLocation = 0;        // of shadow.vert.glsl and displace.tese.glsl
+constexpr GLint kHeightTexelLocation = 1;  // of displace.tese.glsl
 
 void SetCulling(bool cull) {
   if (cull) {
@@ -92,6 +96,11 @@ SceneDraw::SceneDraw(const wrinkle::Skeleton& skeleton,
 Status SceneDraw::Update(const FrameRequest& request) {
   if (Status status = tables_->Update(request); !status.ok()) return status;
   setup_ = SetUpFrame(request, skeleton_, &ambient_);
+  const Settings& settings = request.settings;
+  displacement_reach_ = settings.displacement.enabled
+                            ? 0.001f * settings.displacement.strength * settings.wrinkle_strength *
+                                  gpu_->heights().most_mm
+                            : 0.0f;
   FindVisible(request.model);
   UploadFrame(request.settings);
   UploadJoints(request.model);
@@ -104,7 +113,8 @@ void SceneDraw::FindVisible(std::span<const glm::mat4> model) {
   const auto look = [&](const glm::mat4& projection, std::vector<bool>* visible) {
     visible->clear();
     for (const GpuMesh& mesh : gpu_->meshes()) {
-      visible->push_back(!mesh.bounds.Project(model, projection, kAny, kAny).empty());
+      visible->push_back(
+          !mesh.bounds.Project(model, projection, kAny, kAny, displacement_reach_).empty());
     }
   };
   look(setup_.camera.view_projection, &seen_);
@@ -150,6 +160,11 @@ void SceneDraw::BindBuffers() {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kJointInfluences, influences_.name());
 }
 
+void SceneDraw::BindMasks() {
+  glBindTextureUnit(kMasksUnit, gpu_->masks());
+  glBindTextureUnit(kWrinkleHeightsUnit, gpu_->heights().texture.name());
+}
+
 void SceneDraw::BindMaterial(const GpuMaterial& material) {
   glBindBufferBase(GL_UNIFORM_BUFFER, kMaterialBlock, material.block.name());
   const int group = material.group == WrinkleGroup::kNone ? 0 : static_cast<int>(material.group);
@@ -171,27 +186,53 @@ void SceneDraw::BindTables(GLuint shadows) {
   glBindTextureUnit(kSpecularAlbedoUnit, lookup_tables_.specular_albedo());
 }
 
-Status SceneDraw::DrawShadow(int light) {
+bool SceneDraw::IsDisplaced(const GpuMaterial& material, const Settings& settings) const {
+  return settings.displacement.enabled && settings.displacement.strength > 0.0f &&
+         material.group != WrinkleGroup::kNone && tables_->table(material.group).has_heights;
+}
+
+void SceneDraw::DrawTriangles(const SceneShader& shader, std::size_t index) {
+  if (!shader.displaced) {
+    const GpuMesh& mesh = gpu_->meshes()[index];
+    glBindVertexArray(mesh.vertex_array.name());
+    glDrawElements(GL_TRIANGLES, mesh.num_indices, GL_UNSIGNED_INT, nullptr);
+    return;
+  }
+  const GpuPatches& patches = gpu_->Patches(index);
+  glUniform1f(kHeightTexelLocation,
+              patches.metres_per_uv / static_cast<float>(gpu_->heights().side));
+  glPatchParameteri(GL_PATCH_VERTICES, DisplacementPatches::kCorners);
+  glBindVertexArray(patches.vertex_array.name());
+  glDrawElements(GL_PATCHES, patches.num_indices, GL_UNSIGNED_INT, nullptr);
+}
+
+Status SceneDraw::DrawShadow(const Settings& settings, int light) {
   BindBuffers();
+  BindMasks();
   for (std::size_t index = 0; index < gpu_->meshes().size(); ++index) {
     if (!casts_[light][index]) continue;
     const GpuMesh& mesh = gpu_->meshes()[index];
     const GpuMaterial& material = gpu_->material(mesh.material);
-    const Result<GLuint> program = shaders_->GetShadow(material.alpha_test);
+    SceneShader shader;
+    if (IsDisplaced(material, settings)) {
+      shader = SurfaceShader(material);
+      shader.displaced = shader.shadow = true;
+    }
+    const Result<GLuint> program =
+        shader.displaced ? shaders_->Get(shader) : shaders_->GetShadow(material.alpha_test);
     if (!program.ok()) return program.status();
     glUseProgram(*program);
     glUniform1i(kLightLocation, light);
     BindMaterial(material);
     SetCulling(false);
-    glBindVertexArray(mesh.vertex_array.name());
-    glDrawElements(GL_TRIANGLES, mesh.num_indices, GL_UNSIGNED_INT, nullptr);
+    DrawTriangles(shader, index);
   }
   return {};
 }
 
 Status SceneDraw::DrawScene(const Settings& settings, Shading shading) {
   BindBuffers();
-  glBindTextureUnit(kMasksUnit, gpu_->masks());
+  BindMasks();
   glBindTextureUnit(kWrinkleDerivativesUnit, gpu_->wrinkle_derivatives());
   glBindTextureUnit(kWrinkleLooksUnit, gpu_->wrinkle_looks());
   for (std::size_t mesh = 0; mesh < gpu_->meshes().size(); ++mesh) {
@@ -203,7 +244,7 @@ Status SceneDraw::DrawScene(const Settings& settings, Shading shading) {
 
 Status SceneDraw::DrawMesh(const Settings& settings, Shading shading, std::size_t index) {
   const bool wireframe = shading == Shading::kDiffuse && settings.view == View::kWireframe;
-  const GpuMesh& mesh = wireframe ? gpu_->Unindexed(index) : gpu_->meshes()[index];
+  const GpuMesh& mesh = gpu_->meshes()[index];
   const GpuMaterial& material = gpu_->material(mesh.material);
   const SceneShader shader = ShaderFor(material, settings, shading);
   const Result<GLuint> program = shaders_->Get(shader);
@@ -212,20 +253,17 @@ Status SceneDraw::DrawMesh(const Settings& settings, Shading shading, std::size_
   glUseProgram(*program);
   BindMaterial(material);
   SetCulling(!material.double_sided);
-  glBindVertexArray(mesh.vertex_array.name());
   if (wireframe) {
+    glBindVertexArray(gpu_->Unindexed(index).vertex_array.name());
     glDrawArrays(GL_TRIANGLES, 0, mesh.num_indices);
   } else {
-    glDrawElements(GL_TRIANGLES, mesh.num_indices, GL_UNSIGNED_INT, nullptr);
+    DrawTriangles(shader, index);
   }
   return {};
 }
 
-SceneShader SceneDraw::ShaderFor(const GpuMaterial& material, const Settings& settings,
-                                 Shading shading) const {
+SceneShader SceneDraw::SurfaceShader(const GpuMaterial& material) const {
   SceneShader shader;
-  shader.view = settings.view;
-  shader.normal_blend = settings.normal_blend;
   if (material.group != WrinkleGroup::kNone) {
     shader.active_maps =
         PaddedMaps(tables_->table(material.group).maps.size(), MapSlots(tables_->num_maps()));
@@ -238,6 +276,15 @@ SceneShader SceneDraw::ShaderFor(const GpuMaterial& material, const Settings& se
   shader.alpha_test = material.alpha_test;
   shader.mask_layers = gpu_->layout().num_mask_layers;
   shader.map_slots = MapSlots(tables_->num_maps());
+  return shader;
+}
+
+SceneShader SceneDraw::ShaderFor(const GpuMaterial& material, const Settings& settings,
+                                 Shading shading) const {
+  SceneShader shader = SurfaceShader(material);
+  shader.view = settings.view;
+  shader.normal_blend = settings.normal_blend;
+  shader.displaced = IsDisplaced(material, settings) && settings.view != View::kWireframe;
   if (shading == Shading::kDiffuse) return shader;
   const bool skin = material.kind == character::Material::Kind::kSkin;
   shader.view = SkinView(settings.view);

@@ -23,11 +23,13 @@ class SceneDraw {
   // outlive the call. Errors: of WrinkleTables::Update.
   [[nodiscard]] Status Update(const FrameRequest& request);
   [[nodiscard]] const FrameSetup& setup() const { return setup_; }
+  // Metres that the surface may stand off its bounds in this frame.
+  [[nodiscard]] float displacement_reach() const { return displacement_reach_; }
 
   // Binds what the skin pipeline's scene looks up. `shadows`: the texture of all maps, 0: none.
   void BindTables(GLuint shadows);
   // Every mesh as lamp `light` sees it, into the bound framebuffer's viewport: depth alone.
-  [[nodiscard]] Status DrawShadow(int light);
+  [[nodiscard]] Status DrawShadow(const Settings& settings, int light);
   // Every mesh in colour, for the settings' view; with skin shading, into its five targets.
   [[nodiscard]] Status DrawScene(const Settings& settings, Shading shading);
 
@@ -38,8 +40,13 @@ class SceneDraw {
   void UploadJoints(std::span<const glm::mat4> model);
   void UploadWrinkles();
   void BindBuffers();
+  void BindMasks();
   void BindMaterial(const GpuMaterial& material);
+  void DrawTriangles(const SceneShader& shader, std::size_t index);
   [[nodiscard]] Status DrawMesh(const Settings& settings, Shading shading, std::size_t index);
+  [[nodiscard]] bool IsDisplaced(const GpuMaterial& material, const Settings& settings) const;
+  // What a program must know of the material and its wrinkles, whatever is made of them.
+  [[nodiscard]] SceneShader SurfaceShader(const GpuMaterial& material) const;
   [[nodiscard]] SceneShader ShaderFor(const GpuMaterial& material, const Settings& settings,
                                       Shading shading) const;
 
@@ -50,6 +57,7 @@ class SceneDraw {
   ShaderLibrary* shaders_;
   AmbientCache ambient_;
   FrameSetup setup_;
+  float displacement_reach_ = 0.0f;
   std::vector<bool> seen_;                           // a mesh each: by the camera
   std::array<std::vector<bool>, kNumLights> casts_;  // by a lamp
 

@@ -133,6 +133,14 @@ std::vector<SettingEntry> SkinEntries() {
        NumberField{FURROW_MEMBER(wrinkle_maps.blood_flow), 0.0f, 4.0f}},
       {"wrinkle_maps.cavity", "", "Strength of the maps' cavity",
        NumberField{FURROW_MEMBER(wrinkle_maps.cavity), 0.0f, 4.0f}},
+      {"displacement.enabled", "", "The maps' heights move the surface: outlines fold too",
+       SwitchField{FURROW_MEMBER(displacement.enabled)}},
+      {"displacement.strength", "", "Scales the heights",
+       NumberField{FURROW_MEMBER(displacement.strength), 0.0f, 4.0f}},
+      {"displacement.edge_pixels", "pixels", "Triangles are divided until edges are so long",
+       NumberField{FURROW_MEMBER(displacement.edge_pixels), 1.0f, 64.0f}},
+      {"displacement.max_level", "", "Most parts that an edge is divided into",
+       CountField{FURROW_MEMBER(displacement.max_level), 1, 64}},
   };
 }
 

@@ -80,6 +80,34 @@ struct Allowed {
   }
 };
 
+// What a page needs to know of a field beside the text of Allowed.
+struct Describer {
+  SettingInfo& info;
+  void operator()(const NumberField& field) const { SetRange(field.low, field.high); }
+  void operator()(const CountField& field) const {
+    info.kind = SettingInfo::Kind::kCount;
+    SetRange(static_cast<float>(field.low), static_cast<float>(field.high));
+    for (const int value : field.only) info.choices.push_back(std::to_string(value));
+  }
+  void operator()(const SwitchField&) const { info.kind = SettingInfo::Kind::kSwitch; }
+  void operator()(const ColourField&) const {
+    info.kind = SettingInfo::Kind::kColour;
+    SetRange(0.0f, 1.0f);
+  }
+  void operator()(const WordField& field) const {
+    info.kind = SettingInfo::Kind::kWord;
+    info.choices.assign(field.words.begin(), field.words.end());
+  }
+  void operator()(const ViewsField&) const {
+    info.kind = SettingInfo::Kind::kViews;
+    info.choices.assign(ViewNames().begin(), ViewNames().end());
+  }
+  void SetRange(float low, float high) const {
+    info.low = low;
+    info.high = high;
+  }
+};
+
 struct Getter {
   Settings& settings;
   std::string operator()(const NumberField& field) const { return Text(field.of(settings)); }
@@ -207,6 +235,7 @@ const std::vector<SettingInfo>& AllSettings() {
     for (const SettingEntry& entry : SettingTable()) {
       infos.push_back({entry.name, entry.unit, entry.help, std::visit(Allowed{}, entry.field),
                        GetSetting(entry.name, defaults)});
+      std::visit(Describer{infos.back()}, entry.field);
     }
     return infos;
   }();

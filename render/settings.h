@@ -108,6 +108,15 @@ struct WrinkleSettings {
   float cavity = 1.0f;      // ... and of their cavity, [0, 4]
 };
 
+// The surface itself moves by the height maps of the rig's wrinkle maps, so that outlines and
+// shadows fold too. Maps without heights, and the view wireframe, stay as they are.
+struct DisplacementSettings {
+  bool enabled = false;
+  float strength = 1.0f;     // scales the heights, [0, 4]; shading goes with 1
+  float edge_pixels = 4.0f;  // triangles are divided until edges are so long, [1, 64]
+  int max_level = 16;        // ... or divided into so many, [1, 64]
+};
+
 struct BloomSettings {
   float strength = 0.05f;  // [0, 1]; 0: off
   float threshold = 1.0f;  // linear, after exposure, [0, 16]
@@ -143,6 +152,7 @@ struct Settings {
   TranslucencySettings translucency;
   SpecularSettings specular;
   WrinkleSettings wrinkle_maps;
+  DisplacementSettings displacement;
   BloomSettings bloom;
   AntiAliasingSettings anti_aliasing;
   StripSettings strip;
@@ -150,11 +160,16 @@ struct Settings {
 
 // What can be said of one setting by name: for help texts and pages.
 struct SettingInfo {
+  enum class Kind { kNumber, kCount, kSwitch, kColour, kWord, kViews };
   std::string_view name;  // "subsurface.method"
   std::string_view unit;  // "mm"; empty: a plain number or none
   std::string_view help;
   std::string allowed;        // "off, gaussians, separable, burley, preintegrated", "[0, 8]"
   std::string default_value;  // as SetSetting() takes it
+  Kind kind = Kind::kNumber;
+  float low = 0.0f;  // numbers and counts
+  float high = 0.0f;
+  std::vector<std::string> choices;  // words, views, and counts of which few are allowed
 };
 // Every setting, in the order of the structure.
 [[nodiscard]] const std::vector<SettingInfo>& AllSettings();

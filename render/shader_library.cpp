@@ -79,6 +79,8 @@ std::vector<std::string> Defines(const SceneShader& shader) {
       Define("WIDEN", shader.widen),
       Define("WRINKLE_LOOKS", shader.wrinkle_looks),
       Define("HAS_THICKNESS", shader.thickness_map),
+      Define("DISPLACED", shader.displaced),
+      Define("SHADOW", shader.shadow),
       "BECKMANN_SIZE float(" + std::to_string(kBeckmannTableSize) + ")",
       "ALBEDO_SIZE float(" + std::to_string(kAlbedoTableSize) + ")",
       "RING_SIZE float(" + std::to_string(kPreintegratedTableSize) + ")",
@@ -92,25 +94,34 @@ std::vector<std::string> Defines(const SceneShader& shader) {
   return defines;
 }
 
-Result<gl::Program> BuildProgram(std::string_view vertex, std::string_view fragment,
-                                 std::span<const std::string> defines,
+Result<gl::Program> BuildProgram(const ProgramFiles& program, std::span<const std::string> defines,
                                  std::span<const ShaderFile> files) {
-  const Result<gl::Shader> vertex_shader = Compile(GL_VERTEX_SHADER, vertex, defines, files);
-  if (!vertex_shader.ok()) return vertex_shader.status();
-  const Result<gl::Shader> fragment_shader = Compile(GL_FRAGMENT_SHADER, fragment, defines, files);
-  if (!fragment_shader.ok()) return fragment_shader.status();
-  gl::Program program(glCreateProgram());
-  glAttachShader(program.name(), vertex_shader->name());
-  glAttachShader(program.name(), fragment_shader->name());
-  if (Status status = Link(program, fragment); !status.ok()) return status;
-  return program;
+  const std::pair<GLenum, std::string_view> stages[] = {
+      {GL_VERTEX_SHADER, program.vertex},
+      {GL_TESS_CONTROL_SHADER, program.tess_control},
+      {GL_TESS_EVALUATION_SHADER, program.tess_evaluation},
+      {GL_FRAGMENT_SHADER, program.fragment}};
+  gl::Program built(glCreateProgram());
+  for (const auto& [stage, name] : stages) {
+    if (name.empty()) continue;
+    const Result<gl::Shader> shader = Compile(stage, name, defines, files);
+    if (!shader.ok()) return shader.status();
+    glAttachShader(built.name(), shader->name());  // keeps it as long as the program
+  }
+  if (Status status = Link(built, program.fragment); !status.ok()) return status;
+  return built;
 }
 
 Result<GLuint> ShaderLibrary::Get(const SceneShader& shader) {
   if (const auto found = scene_.find(shader); found != scene_.end()) return found->second.name();
-  const char* fragment = shader.shading == Shading::kSkin ? "skin.frag.glsl" : "scene.frag.glsl";
-  Result<gl::Program> program =
-      BuildProgram("scene.vert.glsl", fragment, Defines(shader), EmbeddedShaders());
+  ProgramFiles files{"scene.vert.glsl",
+                     shader.shading == Shading::kSkin ? "skin.frag.glsl" : "scene.frag.glsl"};
+  if (shader.shadow) files.fragment = "shadow.frag.glsl";
+  if (shader.displaced) {
+    files.tess_control = "displace.tesc.glsl";
+    files.tess_evaluation = "displace.tese.glsl";
+  }
+  Result<gl::Program> program = BuildProgram(files, Defines(shader), EmbeddedShaders());
   if (!program.ok()) return program.status();
   return scene_.emplace(shader, std::move(*program)).first->second.name();
 }
@@ -129,7 +140,7 @@ Result<GLuint> ShaderLibrary::GetNamed(std::string_view vertex, std::string_view
   std::string key(fragment);
   for (const std::string& define : defines) key += ";" + define;
   if (const auto found = named_.find(key); found != named_.end()) return found->second.name();
-  Result<gl::Program> program = BuildProgram(vertex, fragment, defines, EmbeddedShaders());
+  Result<gl::Program> program = BuildProgram({vertex, fragment}, defines, EmbeddedShaders());
   if (!program.ok()) return program.status();
   return named_.emplace(std::move(key), std::move(*program)).first->second.name();
 }

@@ -39,6 +39,8 @@ struct SceneShader {
   bool wrinkle_looks = false;
   bool thickness_map = false;
   bool conserve_energy = true;
+  bool displaced = false;  // tessellated, moved by heights
+  bool shadow = false;     // displaced, as a lamp sees it: depth alone
 
   friend auto operator<=>(const SceneShader&, const SceneShader&) = default;
 };
@@ -72,8 +74,15 @@ class ShaderLibrary {
   std::map<std::string, gl::Program> named_;  // by file and defines
 };
 
-// Compiles and links one vertex and one fragment shader of `files`.
-[[nodiscard]] Result<gl::Program> BuildProgram(std::string_view vertex, std::string_view fragment,
+// Names of files, by stage. Without tessellation, both of its are empty.
+struct ProgramFiles {
+  std::string_view vertex;
+  std::string_view fragment;
+  std::string_view tess_control = {};
+  std::string_view tess_evaluation = {};
+};
+// Compiles and links shaders of `files`.
+[[nodiscard]] Result<gl::Program> BuildProgram(const ProgramFiles& program,
                                                std::span<const std::string> defines,
                                                std::span<const ShaderFile> files);
 

@@ -142,6 +142,9 @@ void WrinkleTables::DescribeMaps(const character::Character& character) {
     const int layer = layout_.map_layers[static_cast<std::size_t>(index)];
     info.entry.layer = std::max(layer, 0);
     info.entry.map = index;
+    if (!layout_.height_layers.empty()) {
+      info.entry.height_layer = layout_.height_layers[static_cast<std::size_t>(index)];
+    }
     info.entry.amplitude = layer < 0 ? 0.0f : map.amplitude;  // no texture: no relief
     for (const wrinkle::Region& region : character.rig.regions) {
       if (FeedOf(region, map.name) == nullptr) continue;
@@ -250,6 +253,7 @@ void WrinkleTables::FillTable(int group, MaskMode mode, float strength) {
     entry.amplitude *= strength;
     table.maps.push_back(entry);
     table.mask_weights.insert(table.mask_weights.end(), row.begin(), row.end());
+    table.has_heights = table.has_heights || entry.height_layer >= 0;
     table.uses_texture = table.uses_texture || textured;
     table.uses_dynamic = table.uses_dynamic || map_is_dynamic_[map];
   }

@@ -28,7 +28,8 @@ struct ActiveMap {
   float amplitude = 1.0f;
   std::int32_t lambda = 0;
   float smooth_width = 0.25f;
-  float padding[3] = {};
+  std::int32_t height_layer = -1;  // -1: the map has no heights
+  float padding[2] = {};
 };
 static_assert(sizeof(ActiveMap) == 48);
 
@@ -38,6 +39,7 @@ struct WrinkleTable {
   std::vector<glm::vec4> mask_weights;  // maps x mask layers
   bool uses_texture = false;
   bool uses_dynamic = false;
+  bool has_heights = false;  // of some map
 };
 
 // Where the character's textures put the masks and maps of its rig.
@@ -47,8 +49,9 @@ struct WrinkleLayout {
     int layer = 0;
   };
   std::vector<MaskTexture> masks;
-  std::vector<int> map_layers;  // a map of the rig -> layer of the derivative array, -1: none
-  int num_mask_layers = 1;      // of the array; 1 where there is no mask at all
+  std::vector<int> map_layers;     // a map of the rig -> layer of the derivative array, -1: none
+  std::vector<int> height_layers;  // ... of the array of heights; empty: no map has any
+  int num_mask_layers = 1;         // of the array; 1 where there is no mask at all
 
   [[nodiscard]] int MaskLayer(std::string_view texture) const;  // -1: no such
 };

@@ -29,6 +29,8 @@ layout(std140, binding = 0) uniform Frame {
                              // w: share of the albedo before scattering
   vec4 u_translucency;       // x: strength, y: scale, z: shrink (metres), w: subsurface strength
   vec4 u_wrinkle_maps;       // x: blood flow, y: cavity
+  vec4 u_displacement;       // x: metres a millimetre of height, y: pixels of what is as tall as far,
+                             // z: pixels of an edge, w: most levels
 };
 
 // What of a lamp arrives at a point that faces it, without shadow: irradiance over pi.

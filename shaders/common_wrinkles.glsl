@@ -15,6 +15,7 @@ struct ActiveMap {
   float amplitude;      // scales the derivatives
   int lambda;           // 0 smooth, 1 binary, 2 linear
   float smoothWidth;    // w0 of the smooth lambda
+  int heightLayer;      // in u_wrinkle_heights; -1: none
 };
 
 layout(std140, binding = 2) uniform WrinkleTable {

@@ -10,6 +10,9 @@ layout(location = 2) in vec4 a_tangent;
 layout(location = 3) in vec2 a_uv;
 layout(location = 4) in uvec4 a_joints;
 layout(location = 5) in vec4 a_skin_weights;
+#if DISPLACED
+layout(location = 6) in float a_share;  // of the heights: 0 on the mesh's border
+#endif
 
 layout(location = 0) out vec3 v_position;
 layout(location = 1) out vec3 v_normal;
@@ -17,6 +20,9 @@ layout(location = 2) out vec4 v_tangent;
 layout(location = 3) out vec2 v_uv;
 #if VIEW == VIEW_WIREFRAME
 layout(location = 4) out vec3 v_barycentric;
+#endif
+#if DISPLACED
+layout(location = 4) out float v_share;
 #endif
 #if WRINKLE_DYNAMIC
 layout(location = 5) out vec4 v_dynamic_masks[MAP_SLOTS];
@@ -39,5 +45,9 @@ void main() {
     v_dynamic_masks[i >> 2][i & 3] = dynamicMask(u_active_maps[i], a_joints, a_skin_weights);
   }
 #endif
+#if DISPLACED
+  v_share = a_share;
+#else
   gl_Position = u_view_projection * vec4(v_position, 1.0);
+#endif
 }

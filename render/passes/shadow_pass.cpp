@@ -3,7 +3,8 @@
 
 namespace furrow::render {
 
-FrameGraph::Handle ShadowPass::Add(FrameGraph* graph, int resolution, int lamps) {
+FrameGraph::Handle ShadowPass::Add(FrameGraph* graph, const Settings& settings) {
+  const int resolution = settings.shadow.resolution;
   struct Data {
     FrameGraph::Handle depth;
   };
@@ -13,7 +14,7 @@ FrameGraph::Handle ShadowPass::Add(FrameGraph* graph, int resolution, int lamps)
         const TextureDesc desc{resolution * kNumLights, resolution, PixelFormat::kDepth32F, 1};
         pass.depth = builder.Write(builder.Create("shadow maps", desc));
       },
-      [this, resolution, lamps](const FrameGraph::Resources& resources, const Data& pass) {
+      [this, resolution, settings](const FrameGraph::Resources& resources, const Data& pass) {
         const GLuint framebuffer = device_->Framebuffer({}, resources.Get(pass.depth));
         const float nothing = 1.0f;
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
@@ -23,9 +24,9 @@ FrameGraph::Handle ShadowPass::Add(FrameGraph* graph, int resolution, int lamps)
         glDepthFunc(GL_LESS);
         glEnable(GL_DEPTH_CLAMP);  // what stands nearer to the lamp than the stage casts as well
         Status status;
-        for (int light = 0; light < lamps && status.ok(); ++light) {
+        for (int light = 0; light < settings.shadow.lamps && status.ok(); ++light) {
           glViewport(light * resolution, 0, resolution, resolution);
-          status = scene_->DrawShadow(light);
+          status = scene_->DrawShadow(settings, light);
         }
         glDisable(GL_DEPTH_CLAMP);
         return status;

@@ -12,8 +12,8 @@ class ShadowPass {
  public:
   ShadowPass(SceneDraw* scene, GlDevice* device) : scene_(scene), device_(device) {}
 
-  // Draws the first `lamps` of them; the others stay empty: nothing casts there.
-  [[nodiscard]] FrameGraph::Handle Add(FrameGraph* graph, int resolution, int lamps);
+  // Draws those of the first ShadowSettings::lamps; the others stay empty: nothing casts there.
+  [[nodiscard]] FrameGraph::Handle Add(FrameGraph* graph, const Settings& settings);
 
  private:
   SceneDraw* scene_;

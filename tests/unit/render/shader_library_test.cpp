@@ -88,6 +88,23 @@ TEST_F(ShaderLibraryTest, EverySkinConfigurationCompiles) {
   }
 }
 
+TEST_F(ShaderLibraryTest, EveryDisplacedConfigurationCompiles) {
+  for (int bits = 0; bits < 32; ++bits) {
+    SceneShader shader;
+    shader.displaced = true;
+    shader.wrinkle_texture = (bits & 1) != 0;
+    shader.wrinkle_dynamic = (bits & 2) != 0;
+    shader.shadow = (bits & 4) != 0;
+    shader.alpha_test = (bits & 8) != 0;
+    shader.shading = (bits & 16) != 0 ? Shading::kSkin : Shading::kDiffuse;
+    shader.active_maps = 4;
+    shader.mask_layers = 3;
+    shader.map_slots = 4;
+    const Result<GLuint> program = library_.Get(shader);
+    ASSERT_TRUE(program.ok()) << bits << "\n" << program.status().ToString();
+  }
+}
+
 TEST_F(ShaderLibraryTest, EveryFullscreenConfigurationCompiles) {
   const std::pair<const char*, std::vector<std::string>> shaders[] = {
       {"composite.frag.glsl", {"SAMPLES 4", "SHOW 0", "TONE_MAP 0", "BLOOM 0"}},
@@ -131,7 +148,7 @@ TEST_F(ShaderLibraryTest, AnErrorCarriesTheDriversLogAndTheFilesName) {
   constexpr ShaderFile kFiles[] = {{"good.glsl", "void main() { gl_Position = vec4(0.0); }\n"},
                                    {"part.glsl", "float broken() { return undeclared; }\n"},
                                    {"bad.glsl", "#include \"part.glsl\"\nvoid main() {}\n"}};
-  const Status status = BuildProgram("good.glsl", "bad.glsl", {}, kFiles).status();
+  const Status status = BuildProgram({"good.glsl", "bad.glsl"}, {}, kFiles).status();
   EXPECT_EQ(status.code(), StatusCode::kInternal);
   EXPECT_EQ(status.where(), "bad.glsl");
   EXPECT_NE(status.what().find("part.glsl"), std::string::npos) << status.what();

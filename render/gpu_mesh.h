@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include <glm/mat4x4.hpp>
+
+#include "character/character.h"
+#include "render/gl_objects.h"
+#include "render/joint_bounds.h"
+
+namespace furrow::render {
+
+// A mesh on the GPU, as shaders/scene.vert.glsl reads it.
+struct GpuMesh {
+  gl::VertexArray vertex_array;
+  gl::Buffer vertices;
+  gl::Buffer indices;
+  JointBounds bounds;  // of the posed mesh
+  GLsizei num_indices = 0;
+  int material = 0;
+};
+
+// The same surface as patches of DisplacementPatches::kCorners vertices, for tessellation.
+struct GpuPatches {
+  gl::VertexArray vertex_array;
+  gl::Buffer indices;
+  gl::Buffer shares;
+  GLsizei num_indices = 0;
+  float metres_per_uv = 1.0f;  // of the rest pose: root of surface over surface in the atlas
+};
+
+// Needs a current context, as all of these. `mesh` is checked.
+[[nodiscard]] GpuMesh MakeGpuMesh(const character::Mesh& mesh,
+                                  std::span<const glm::mat4> inverse_bind_matrices);
+// With three vertices of its own to every triangle, for the view wireframe.
+[[nodiscard]] GpuMesh MakeUnindexed(const GpuMesh& mesh);
+// Shares the vertices of `mesh`, which outlives it.
+[[nodiscard]] GpuPatches MakePatches(const GpuMesh& mesh);
+
+}  // namespace furrow::render

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common_wrinkles.glsl"
+
+layout(binding = 2) uniform sampler2DArray u_masks;                // RGBA, one region a channel
+
+// What the masks make of one active map here: the sum of the texture-masked regions' weight * mask,
+// plus the dynamic mask. Not below 0; above 1 only where masks overlap.
+float wrinkleCoefficient(int slot, vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS]) {
+  float sum = 0.0;
+#if WRINKLE_TEXTURE
+  for (int layer = 0; layer < MASK_LAYERS; ++layer) {
+    sum += dot(u_mask_weights[slot * MASK_LAYERS + layer], masks[layer]);
+  }
+#endif
+#if WRINKLE_DYNAMIC
+  sum += dynamicMasks[slot >> 2][slot & 3];
+#endif
+  return sum;
+}
