@@ -100,6 +100,14 @@ DecodeStatus OpenMessage(std::span<const std::uint8_t> bytes, MessageView& view,
   return DecodeStatus::kUnknownKind;
 }
 
+void WriteMessage(const Header& header, std::span<const std::uint8_t> payload,
+                  std::vector<std::uint8_t>& out) {
+  out.resize(kEnvelopeBytes + payload.size());
+  const Envelope envelope{header, 0, static_cast<std::uint32_t>(payload.size())};
+  WriteEnvelope(envelope, std::span<std::uint8_t, kEnvelopeBytes>(out.data(), kEnvelopeBytes));
+  std::copy(payload.begin(), payload.end(), out.begin() + kEnvelopeBytes);
+}
+
 Encoder::Encoder() : state_(std::make_unique<State>()) {}
 Encoder::~Encoder() = default;
 Encoder::Encoder(Encoder&&) noexcept = default;

@@ -98,6 +98,10 @@ struct MessageView {
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, SubscribePoses& message);
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, Dropped& message);
 
+// An envelope before a payload that is encoded already: what Encode() would have made of it.
+void WriteMessage(const Header& header, std::span<const std::uint8_t> payload,
+                  std::vector<std::uint8_t>& out);
+
 // How a pose is written.
 struct PoseEncoding {
   bool quantise_rotations = false;     // 6 bytes a joint, off by at most 1.5e-4 rad (quantise.h)

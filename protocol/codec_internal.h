@@ -51,10 +51,7 @@ template <class Root>
 void Finish(Builder& builder, flatbuffers::Offset<Root> root, const Header& header,
             MessageKind kind, std::vector<std::uint8_t>& out) {
   builder.Finish(root, Identifier(kind));
-  out.resize(kEnvelopeBytes + builder.GetSize());
-  Envelope envelope{header, 0, builder.GetSize()};
-  WriteEnvelope(envelope, std::span<std::uint8_t, kEnvelopeBytes>(out.data(), kEnvelopeBytes));
-  std::copy_n(builder.GetBufferPointer(), builder.GetSize(), out.data() + kEnvelopeBytes);
+  WriteMessage(header, {builder.GetBufferPointer(), builder.GetSize()}, out);
 }
 
 enum class Presence : std::uint8_t { kMayBeEmpty, kRequired };

@@ -109,6 +109,7 @@ struct OfferedJoint {
   Vec3 rest_scale{1.0f, 1.0f, 1.0f};
   bool has_tail = false;
   Vec3 tail;  // local end of a joint, where the source states one (BVH's End Site)
+  friend bool operator==(const OfferedJoint&, const OfferedJoint&) = default;
 };
 
 // What a stream's poses mean. Sent before the first pose, and again until a SkeletonReply comes.
@@ -118,6 +119,7 @@ struct SkeletonOffer {
   float metres_per_unit = 1.0f;                // of all translations
   std::vector<OfferedJoint> joints;            // parents first; may be empty if there are shapes
   std::vector<std::string> blend_shape_names;  // unique
+  friend bool operator==(const SkeletonOffer&, const SkeletonOffer&) = default;
 };
 
 enum class SkeletonStatus : std::uint8_t {

@@ -39,6 +39,8 @@ std::string_view CounterName(Counter counter) {
     case Counter::kWeightsSent: return "furrow_weights_sent_total";
     case Counter::kFramesSkippedRate: return "furrow_frames_skipped_rate_total";
     case Counter::kWeightsDroppedSlow: return "furrow_weights_dropped_slow_total";
+    case Counter::kPosesRelayed: return "furrow_poses_relayed_total";
+    case Counter::kPosesDroppedSlow: return "furrow_poses_dropped_slow_total";
     case Counter::kPicturesRendered: return "furrow_pictures_rendered_total";
     case Counter::kPicturesEncoded: return "furrow_pictures_encoded_total";
     case Counter::kPicturesSent: return "furrow_pictures_sent_total";

@@ -46,6 +46,8 @@ enum class Counter {
   kWeightsSent,
   kFramesSkippedRate,   // weights or pictures not due yet at the subscriber's rate
   kWeightsDroppedSlow,  // replaced in a full outbox by a newer one
+  kPosesRelayed,
+  kPosesDroppedSlow,  // left out or replaced in a full outbox
   kPicturesRendered,
   kPicturesEncoded,
   kPicturesSent,

@@ -17,7 +17,7 @@ UdpBatch::UdpBatch() : buffer_(kSize * kBufferBytes) {
 }
 
 std::size_t UdpBatch::Receive(int socket) {
-  for (mmsghdr& header : headers_) {
+  for (mmsghdr& header : std::span(headers_).first(used_)) {
     header.msg_hdr.msg_namelen = sizeof(sockaddr_storage);
     header.msg_hdr.msg_controllen = sizeof(Control);
   }
@@ -26,6 +26,7 @@ std::size_t UdpBatch::Receive(int socket) {
     received = recvmmsg(socket, headers_.data(), kSize, MSG_DONTWAIT, nullptr);
   } while (received < 0 && errno == EINTR);
   // Any other error is of an earlier send (ICMP) and has been taken by asking: the socket lives.
+  used_ = received > 0 ? static_cast<std::size_t>(received) : 0;
   if (received <= 0) return 0;
   ReadDropped(&headers_[static_cast<std::size_t>(received) - 1].msg_hdr);
   return static_cast<std::size_t>(received);

@@ -49,6 +49,7 @@ class UdpBatch {
   std::array<iovec, kSize> slices_{};
   std::array<sockaddr_storage, kSize> senders_{};
   std::array<Control, kSize> controls_{};
+  std::size_t used_ = kSize;  // headers that the last call filled, to be set up again
   std::uint32_t dropped_ever_ = 0;  // as the system counts
   std::uint64_t dropped_ = 0;
 };

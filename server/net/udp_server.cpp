@@ -26,7 +26,8 @@ constexpr int kEvictionCandidates = 16;
 
 }  // namespace
 
-// One UDP address. Sends at once, without blocking: a full socket buffer drops, as UDP may.
+// One UDP address. Sends without blocking, at once or with the batch that is being worked on: a
+// full socket buffer drops, as UDP may.
 class UdpServer::UdpPeer : public Link {
  public:
   UdpPeer(UdpServer* server, udp::endpoint endpoint) : server_(server), endpoint_(endpoint) {}
@@ -44,13 +45,12 @@ class UdpServer::UdpPeer : public Link {
   void Send(std::span<const std::uint8_t> message) {
     const std::size_t count = protocol::NumDatagrams(message.size());
     const std::uint32_t message_id = count > 1 ? next_message_id_++ : 0;
-    std::array<std::uint8_t, protocol::kMaxDatagramBytes> datagram;
+    UdpSender& sender = server_->sender_;
     for (std::size_t index = 0; index < count; ++index) {
-      const std::size_t size = protocol::WriteDatagram(message, message_id, index, datagram);
-      asio::error_code error;
-      server_->socket_.send_to(asio::buffer(datagram.data(), size), endpoint_, 0, error);
-      server_->metrics_->Add(error ? Counter::kDatagramsUnsendable : Counter::kDatagramsSent);
+      const auto datagram = sender.Prepare();
+      sender.Commit(id, endpoint_, protocol::WriteDatagram(message, message_id, index, datagram));
     }
+    if (!server_->gathering_) server_->SendAll();
   }
 
   UdpServer* server_;
@@ -76,6 +76,7 @@ Status UdpServer::Open(const udp::endpoint& endpoint) {
                   "", "end what uses the port, or choose another with --udp");
   }
   UdpBatch::CountDropped(socket_.native_handle());
+  sender_.Open(socket_.native_handle());
   // As much as the system allows; less only means earlier drops.
   socket_.set_option(asio::socket_base::receive_buffer_size(kReceiveBufferBytes), error);
   return {};
@@ -91,6 +92,7 @@ void UdpServer::Start() { asio::co_spawn(io_, Read(), asio::detached); }
 void UdpServer::Close() {
   asio::error_code error;
   socket_.close(error);
+  sender_.Close();
 }
 
 asio::awaitable<void> UdpServer::Read() {
@@ -98,17 +100,28 @@ asio::awaitable<void> UdpServer::Read() {
     const auto [error] = co_await socket_.async_wait(
         udp::socket::wait_read, asio::experimental::as_tuple(asio::use_awaitable));
     if (error) co_return;
-    for (int turn = 0; turn < kBatchesPerTurn; ++turn) {
+    bool is_drained = false;
+    for (int turn = 0; turn < kBatchesPerTurn && !is_drained; ++turn) {
       const std::size_t count = batch_.Receive(socket_.native_handle());
       const Time now = ReadClock();
       metrics_->Add(Counter::kDatagramsReceived, count);
       metrics_->Add(Counter::kDatagramsOverrun, batch_.TakeDropped());
+      gathering_ = true;
       for (std::size_t i = 0; i < count; ++i) OnDatagram(batch_.bytes(i), batch_.sender(i), now);
-      if (count < UdpBatch::kSize) break;
+      gathering_ = false;
+      SendAll();
+      is_drained = count < UdpBatch::kSize;
     }
     // Let timers and TCP have their turn, however fast datagrams come.
-    co_await asio::post(io_, asio::use_awaitable);
+    if (!is_drained) co_await asio::post(io_, asio::use_awaitable);
   }
+}
+
+void UdpServer::SendAll() {
+  sender_.Flush();
+  const UdpSender::Counts counts = sender_.TakeCounts();
+  metrics_->Add(Counter::kDatagramsSent, counts.sent);
+  metrics_->Add(Counter::kDatagramsUnsendable, counts.lost);
 }
 
 void UdpServer::OnDatagram(std::span<const std::uint8_t> bytes, const udp::endpoint& sender,

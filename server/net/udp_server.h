@@ -16,12 +16,14 @@
 #include "server/config.h"
 #include "server/metrics.h"
 #include "server/net/udp_batch.h"
+#include "server/net/udp_sender.h"
 #include "server/session/hub.h"
 #include "wrinkle/status.h"
 
 namespace furrow::server {
 
-// The UDP side of the wire: datagrams in by batches, fragments put together, peers by address.
+// The UDP side of the wire: datagrams in and out by batches, fragments put together, peers by
+// address.
 //
 // Garbage costs one look at an envelope: an address becomes a peer only with a well-formed one, and
 // at most Limits::max_udp_peers are remembered.
@@ -54,6 +56,7 @@ class UdpServer {
   };
 
   asio::awaitable<void> Read();
+  void SendAll();
   void OnDatagram(std::span<const std::uint8_t> bytes, const asio::ip::udp::endpoint& sender,
                   Time now);
   static Address AddressOf(const asio::ip::udp::endpoint& sender);
@@ -66,6 +69,8 @@ class UdpServer {
   Metrics* const metrics_;
   RecordingTap* const recording_;
   UdpBatch batch_;
+  UdpSender sender_;
+  bool gathering_ = false;  // a batch is being worked on: what goes out leaves with its end
   protocol::Reassembler reassembler_;
   std::unordered_map<Address, std::unique_ptr<UdpPeer>, AddressHash> peers_;
 };

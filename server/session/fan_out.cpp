@@ -12,22 +12,28 @@ namespace furrow::server {
 namespace {
 
 // How many frames of a subscription may wait for a slow peer.
-constexpr std::size_t kWeightsKept = 4;
+constexpr std::size_t kFramesKept = 4;
 constexpr std::size_t kPicturesKept = 1;
 // What a message of kMaxReplyBytes has room for beside its envelope and table.
 constexpr std::size_t kMaxPictureBytes = protocol::kMaxReplyBytes - 1024;
 
+std::size_t KeptOf(const Subscription& subscription) {
+  return subscription.every ? kKeepAll : kFramesKept;
+}
+
 }  // namespace
 
-void Subscribers::Publish(Subject& subject, std::int64_t age_us, Time now) {
+void Subscribers::Publish(Subject& subject, std::span<const std::uint8_t> pose, std::int64_t age_us,
+                          Time now) {
   const auto watching = by_subject_.find(subject.id);
   if (watching == by_subject_.end()) return;
   for (Subscription* subscription : watching->second) {
+    if (age_us > 0 && std::holds_alternative<PosesWish>(subscription->wish)) continue;
     subscription->owed = !subscription->gate.Pass(now);
     if (subscription->owed) {
       metrics_->Add(Counter::kFramesSkippedRate);
     } else {
-      Deliver(*subscription, age_us, &jobs_);
+      Deliver(*subscription, pose, age_us, &jobs_);
     }
   }
   SubmitJobs(&jobs_);
@@ -35,18 +41,22 @@ void Subscribers::Publish(Subject& subject, std::int64_t age_us, Time now) {
 
 void Subscribers::PublishOwed(Time now) {
   for (auto& [uid, subscription] : subscriptions_) {
+    TellDropped(*subscription, now);
     if (!subscription->owed || !subscription->gate.Pass(now)) continue;
     subscription->owed = false;
     const Subject& subject = *subscription->subject;
     if (!subject.pipeline->has_pose()) continue;  // offered anew meanwhile
-    Deliver(*subscription, subject.lost ? ToMicroseconds(now - subject.last_pose) : 0, &jobs_);
+    Deliver(*subscription, {}, subject.lost ? ToMicroseconds(now - subject.last_pose) : 0, &jobs_);
     SubmitJobs(&jobs_);
   }
 }
 
-void Subscribers::Deliver(Subscription& subscription, std::int64_t age_us, Jobs* jobs) {
+void Subscribers::Deliver(Subscription& subscription, std::span<const std::uint8_t> pose,
+                          std::int64_t age_us, Jobs* jobs) {
   if (const auto* wish = std::get_if<WeightsWish>(&subscription.wish)) {
     SendWeights(subscription, *wish, age_us);
+  } else if (std::holds_alternative<PosesWish>(subscription.wish)) {
+    SendPose(subscription, pose);
   } else {
     AddToJobs(subscription, std::get<PicturesWish>(subscription.wish), age_us, jobs);
   }
@@ -64,11 +74,12 @@ void Subscribers::SendWeights(Subscription& subscription, const WeightsWish& wis
   frame_.values.resize(wish.indices.size());
   std::ranges::transform(wish.indices, frame_.values.begin(),
                          [values](std::uint32_t index) { return values[index]; });
-  postman_->Frame(*subscription.peer, subscription.uid,
-                  {.stream = subscription.id,
-                   .sequence = pipeline.sequence(),
-                   .capture_time_us = pipeline.capture_time_us()},
-                  frame_, Counter::kWeightsSent, Counter::kWeightsDroppedSlow, kWeightsKept);
+  subscription.dropped += postman_->Frame(*subscription.peer, subscription.uid,
+                                          {.stream = subscription.id,
+                                           .sequence = pipeline.sequence(),
+                                           .capture_time_us = pipeline.capture_time_us()},
+                                          frame_, Counter::kWeightsSent,
+                                          Counter::kWeightsDroppedSlow, KeptOf(subscription));
 }
 
 // Subscriptions of one subject that show the same share one job, and with it one picture.

@@ -148,6 +148,11 @@ void Hub::Dispatch(Peer& peer, const protocol::MessageView& view, Time now) {
         if (RefusedWhileDraining(peer, header)) return;
         subscribers_.Subscribe(peer, header, in.subscribe_pictures);
       });
+    case MessageKind::kSubscribePoses:
+      return Decoded(peer, view, in.subscribe_poses, [&] {
+        if (RefusedWhileDraining(peer, header)) return;
+        subscribers_.Subscribe(peer, header, in.subscribe_poses);
+      });
     case MessageKind::kUnsubscribe:
       return Decoded(peer, view, in.unsubscribe,
                      [&] { subscribers_.Unsubscribe(peer, header.stream); });
@@ -190,11 +195,12 @@ bool Hub::OnOffer(Peer& peer, const protocol::Header& header, const protocol::Sk
 void Hub::Posed(Subject* subject, std::span<const std::uint8_t> payload, Time now) {
   if (subject == nullptr) return;
   if (recording_ != nullptr) recording_->OnPose(*subject, payload, now);
-  Weighted(*subject, 0, now);
+  Weighted(*subject, payload, 0, now);
 }
 
-void Hub::Weighted(Subject& subject, std::int64_t age_us, Time now) {
-  subscribers_.Publish(subject, age_us, now);
+void Hub::Weighted(Subject& subject, std::span<const std::uint8_t> pose, std::int64_t age_us,
+                   Time now) {
+  subscribers_.Publish(subject, pose, age_us, now);
   if (on_weights_) on_weights_(subject);
   if (recording_ != nullptr) recording_->OnWeights(subject, age_us, now);
 }
@@ -256,7 +262,7 @@ void Hub::Tick(Time now) {
     switch (publishers_.Age(*subject, now)) {
       case Publishers::Change::kNone: break;
       case Publishers::Change::kDecayed:
-        Weighted(*subject, ToMicroseconds(now - subject->last_pose), now);
+        Weighted(*subject, {}, ToMicroseconds(now - subject->last_pose), now);
         break;
       case Publishers::Change::kGone: gone.push_back(subject.get()); break;
     }

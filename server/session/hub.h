@@ -101,7 +101,8 @@ class Hub {
   bool OnOffer(Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer,
                Time now);
   void Posed(Subject* subject, std::span<const std::uint8_t> payload, Time now);
-  void Weighted(Subject& subject, std::int64_t age_us, Time now);
+  void Weighted(Subject& subject, std::span<const std::uint8_t> pose, std::int64_t age_us,
+                Time now);
   bool RefusedWhileDraining(Peer& peer, const protocol::Header& header);
 
   const Limits limits_;
@@ -129,6 +130,7 @@ class Hub {
     protocol::PoseFrame pose;
     protocol::SubscribeWeights subscribe_weights;
     protocol::SubscribePictures subscribe_pictures;
+    protocol::SubscribePoses subscribe_poses;
     protocol::Unsubscribe unsubscribe;
   } scratch_;
 };

@@ -2,20 +2,64 @@
 #include "server/session/outbox.h"
 
 #include <algorithm>
-#include <utility>
+#include <iterator>
+
+#include "server/session/peer.h"
 
 namespace furrow::server {
+namespace {
+
+// Pictures do not come back at the same size: their memory is not kept.
+constexpr std::size_t kMaxSpareBytes = 16 * 1024;
+constexpr std::size_t kMaxSpare = 64;
+
+}  // namespace
+
+void Outbox::Append(Queue& queue, std::uint64_t key, bool is_reply,
+                    std::span<const std::uint8_t> bytes) {
+  if (spare_.empty()) spare_.emplace_back();
+  Waiting& item = spare_.front();
+  item.key = key;
+  item.is_reply = is_reply;
+  item.bytes.assign(bytes.begin(), bytes.end());
+  queue.splice(queue.end(), spare_, spare_.begin());
+}
+
+Outbox::Queue::iterator Outbox::Recycle(Queue& queue, Queue::iterator item) {
+  if (spare_.size() >= kMaxSpare || item->bytes.capacity() > kMaxSpareBytes) {
+    return queue.erase(item);
+  }
+  const auto next = std::next(item);
+  spare_.splice(spare_.begin(), queue, item);
+  return next;
+}
+
+void Outbox::Uncount(const Waiting& item) {
+  if (item.is_reply) {
+    --num_replies_;
+    reply_bytes_ -= item.bytes.size();
+  } else {
+    line_frame_bytes_ -= item.bytes.size();
+  }
+}
 
 bool Outbox::PushReply(std::span<const std::uint8_t> bytes) {
-  if (replies_.size() >= max_replies_) return false;
-  if (!replies_.empty() && reply_bytes_ + bytes.size() > max_reply_bytes_) return false;
+  if (num_replies_ >= max_replies_) return false;
+  if (num_replies_ > 0 && reply_bytes_ + bytes.size() > max_reply_bytes_) return false;
+  ++num_replies_;
   reply_bytes_ += bytes.size();
-  replies_.emplace_back(bytes.begin(), bytes.end());
+  Append(line_, 0, true, bytes);
   return true;
 }
 
 int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep) {
-  const auto is_same = [key](const Frame& frame) { return frame.key == key; };
+  if (keep == kKeepAll) {
+    if (line_frame_bytes_ + bytes.size() > protocol::kMaxWaitingFrameBytes) return 1;
+    line_frame_bytes_ += bytes.size();
+    Append(line_, key, false, bytes);
+    return 0;
+  }
+  const auto is_same = [key](const Waiting& frame) { return frame.key == key; };
   const auto of_key = static_cast<std::size_t>(std::ranges::count_if(frames_, is_same));
   int dropped = 0;
   if (of_key > 0 && of_key >= keep) {
@@ -24,31 +68,37 @@ int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, st
       oldest->bytes.assign(bytes.begin(), bytes.end());  // keeps its place in the line
       return 1;
     }
-    frames_.erase(oldest);
+    Recycle(frames_, oldest);
     dropped = 1;
   } else if (frames_.size() >= max_frames_) {
-    frames_.pop_front();
+    Recycle(frames_, frames_.begin());
     dropped = 1;
   }
-  frames_.push_back({key, {bytes.begin(), bytes.end()}});
+  Append(frames_, key, false, bytes);
   return dropped;
 }
 
 bool Outbox::Pop(std::vector<std::uint8_t>* out) {
-  if (!replies_.empty()) {
-    out->swap(replies_.front());
-    replies_.pop_front();
-    reply_bytes_ -= out->size();
-    return true;
-  }
-  if (frames_.empty()) return false;
-  out->swap(frames_.front().bytes);
-  frames_.pop_front();
+  if (empty()) return false;
+  Queue& queue = line_.empty() ? frames_ : line_;
+  if (&queue == &line_) Uncount(line_.front());
+  out->swap(queue.front().bytes);
+  Recycle(queue, queue.begin());
   return true;
 }
 
 void Outbox::DropFrames(std::uint64_t key) {
-  std::erase_if(frames_, [key](const Frame& frame) { return frame.key == key; });
+  for (auto item = frames_.begin(); item != frames_.end();) {
+    item = item->key == key ? Recycle(frames_, item) : std::next(item);
+  }
+  for (auto item = line_.begin(); item != line_.end();) {
+    if (item->is_reply || item->key != key) {
+      ++item;
+      continue;
+    }
+    Uncount(*item);
+    item = Recycle(line_, item);
+  }
 }
 
 }  // namespace furrow::server

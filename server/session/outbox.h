@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
+#include <list>
 #include <span>
 #include <vector>
+
+#include "protocol/limits.h"
 
 namespace furrow::server {
 
@@ -17,6 +19,9 @@ namespace furrow::server {
 //   key goes and the newest wins. 1 for pictures; a few for weights, so that poses that came in one
 //   burst are not lost to a peer that keeps up.
 // - Frames of different keys together are at most `max_frames`; then the longest waiting one goes.
+// - A frame with kKeepAll stands in line with the replies, so that nothing overtakes anything. Of
+//   those at most kMaxWaitingFrameBytes wait; what comes then is left out.
+// - The memory of what was sent serves what comes next: nothing is allocated in the long run.
 class Outbox {
  public:
   Outbox(std::size_t max_replies, std::size_t max_frames,
@@ -25,30 +30,41 @@ class Outbox {
 
   // False: full, close the peer.
   [[nodiscard]] bool PushReply(std::span<const std::uint8_t> bytes);
-  // The number of frames that were dropped for it: 0 or 1.
+  // The number of frames that were dropped, of this key or another or the new one: 0 or 1.
   int PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep = 1);
 
-  // Swaps the next bytes into `out`: replies first, in order; then the longest waiting frame.
-  // False: nothing waits.
+  // Swaps the next bytes into `out`: the line of replies first, in order; then the longest waiting
+  // frame. False: nothing waits.
   bool Pop(std::vector<std::uint8_t>* out);
 
   // A subscription ended: what still waits of it is of no use.
   void DropFrames(std::uint64_t key);
 
-  [[nodiscard]] bool empty() const { return replies_.empty() && frames_.empty(); }
+  [[nodiscard]] bool empty() const { return line_.empty() && frames_.empty(); }
   [[nodiscard]] std::size_t num_frames() const { return frames_.size(); }
 
  private:
-  struct Frame {
+  struct Waiting {
     std::uint64_t key = 0;
+    bool is_reply = false;
     std::vector<std::uint8_t> bytes;
   };
+  using Queue = std::list<Waiting>;
+
+  void Append(Queue& queue, std::uint64_t key, bool is_reply, std::span<const std::uint8_t> bytes);
+  // Out of `queue`, its memory for the next one.
+  Queue::iterator Recycle(Queue& queue, Queue::iterator item);
+  void Uncount(const Waiting& item);
+
   std::size_t max_replies_;
   std::size_t max_frames_;
   std::size_t max_reply_bytes_;
-  std::size_t reply_bytes_ = 0;  // that wait
-  std::deque<std::vector<std::uint8_t>> replies_;
-  std::deque<Frame> frames_;
+  std::size_t num_replies_ = 0;  // that wait
+  std::size_t reply_bytes_ = 0;
+  std::size_t line_frame_bytes_ = 0;  // of frames that stand in line
+  Queue line_;                        // replies, and frames that are all kept
+  Queue frames_;
+  Queue spare_;
 };
 
 }  // namespace furrow::server

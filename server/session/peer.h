@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -16,6 +17,10 @@ namespace furrow::server {
 
 using PeerId = std::uint64_t;  // never used twice in a run; 0 is nobody
 
+// As SendFrame()'s `keep`: frames wait in line with the answers, and where there is no more room
+// the new one is left out. For those who want every frame.
+inline constexpr std::size_t kKeepAll = std::numeric_limits<std::size_t>::max();
+
 enum class Transport { kTcp, kUdp, kMocap };
 
 // How bytes get to a peer. The net side implements it; tests do with a few lines.
@@ -24,8 +29,8 @@ class Link {
   virtual ~Link() = default;
   // Answers: in order, never replaced by anything newer.
   virtual void SendReply(std::span<const std::uint8_t> message) = 0;
-  // Weights and pictures: where the peer is slow, the newest `keep` of a key win. Returns how many
-  // older frames were dropped.
+  // Weights, poses and pictures: where the peer is slow, the newest `keep` of a key win. Returns
+  // how many frames were dropped.
   virtual int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
                         std::size_t keep) = 0;
   // The frames of a key are no longer wanted.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,13 +24,26 @@ class Postman {
     if (!Encode(peer, header, message)) return;
     peer.link->SendReply(buffer_);
   }
-  // Counts what the frame pushes out as `dropped`; `keep` as in Link::SendFrame().
+  // Counts what the frame pushes out as `dropped` and returns it; `keep` as in Link::SendFrame().
   template <class Message>
-  void Frame(Peer& peer, std::uint64_t key, protocol::Header header, const Message& message,
-             Counter sent, Counter dropped, std::size_t keep) {
-    if (!Encode(peer, header, message)) return;
-    metrics_->Add(sent);
-    metrics_->Add(dropped, static_cast<std::uint64_t>(peer.link->SendFrame(key, buffer_, keep)));
+  std::uint64_t Frame(Peer& peer, std::uint64_t key, protocol::Header header,
+                      const Message& message, Counter sent, Counter dropped, std::size_t keep) {
+    if (!Encode(peer, header, message)) return 0;
+    return Post(peer, key, sent, dropped, keep);
+  }
+  // The same for a payload that is encoded already.
+  std::uint64_t Forward(Peer& peer, std::uint64_t key, protocol::Header header,
+                        std::span<const std::uint8_t> payload, Counter sent, Counter dropped,
+                        std::size_t keep) {
+    header.session = session_;
+    protocol::WriteMessage(header, payload, buffer_);
+    return MaySend(peer) ? Post(peer, key, sent, dropped, keep) : 0;
+  }
+  // How long the message would be.
+  template <class Message>
+  [[nodiscard]] std::size_t SizeOf(const Message& message) {
+    encoder_.Encode({.session = session_}, message, buffer_);
+    return buffer_.size();
   }
   // An error about the request that `request` heads.
   void Error(Peer& peer, const protocol::Header& request, protocol::ErrorCode code,
@@ -56,6 +70,16 @@ class Postman {
   bool Encode(Peer& peer, protocol::Header& header, const Message& message) {
     header.session = session_;
     encoder_.Encode(header, message, buffer_);
+    return MaySend(peer);
+  }
+  std::uint64_t Post(Peer& peer, std::uint64_t key, Counter sent, Counter dropped,
+                     std::size_t keep) {
+    metrics_->Add(sent);
+    const auto count = static_cast<std::uint64_t>(peer.link->SendFrame(key, buffer_, keep));
+    metrics_->Add(dropped, count);
+    return count;
+  }
+  bool MaySend(Peer& peer) {
     if (peer.transport != Transport::kUdp || peer.credit.Spend(buffer_.size())) return true;
     metrics_->Add(Counter::kDatagramsUnproven);
     return false;

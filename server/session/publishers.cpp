@@ -76,9 +76,22 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
   subjects_->SetOwner(*subject, key);
   peer.publishes = true;
   subject->skeleton_hash = offer.skeleton_hash;
+  subject->offer = Share(offer);
   subject->last_pose = subject->last_update = now;
   subject->ended = subject->lost = false;
   return subject;
+}
+
+std::shared_ptr<const protocol::SkeletonOffer> Publishers::Share(
+    const protocol::SkeletonOffer& offer) {
+  protocol::SkeletonOffer nameless = offer;
+  nameless.subject.clear();
+  std::erase_if(offers_, [](const auto& known) { return known.second.expired(); });
+  const auto known = offers_[offer.skeleton_hash].lock();
+  if (known != nullptr && *known == nameless) return known;
+  auto shared = std::make_shared<const protocol::SkeletonOffer>(std::move(nameless));
+  offers_[offer.skeleton_hash] = shared;
+  return shared;
 }
 
 void Publishers::Reject(Peer& peer, const protocol::Header& header, std::uint64_t hash,

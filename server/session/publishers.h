@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <string>
 
 #include "protocol/codec.h"
@@ -43,12 +45,15 @@ class Publishers {
               Time now);
   void AnswerStray(Peer& peer, const protocol::Header& header, std::uint64_t hash, Time now);
   bool IsNew(Subject& subject, const protocol::Header& header);
+  std::shared_ptr<const protocol::SkeletonOffer> Share(const protocol::SkeletonOffer& offer);
 
   const Limits limits_;
   StreamDefinitions* const definitions_;
   SubjectRegistry* const subjects_;
   Postman* const postman_;
   Metrics* const metrics_;
+  // By hash, as long as a subject has them.
+  std::map<std::uint64_t, std::weak_ptr<const protocol::SkeletonOffer>> offers_;
   TokenBucket log_bucket_{2.0, 20.0};  // whoever repeats a bad offer fills no disk
 };
 

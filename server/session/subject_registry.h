@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "protocol/messages.h"
 #include "protocol/sequence.h"
 #include "server/pipeline/subject_pipeline.h"
 #include "server/session/peer.h"
@@ -34,6 +35,8 @@ struct Subject {
   std::string name;
   StreamKey owner;
   std::uint64_t skeleton_hash = 0;  // of the owner's offer
+  // The owner's offer without its subject's name: shared by all who offer the same.
+  std::shared_ptr<const protocol::SkeletonOffer> offer;
   protocol::SequenceWindow window;
   std::unique_ptr<SubjectPipeline> pipeline;
   Time last_pose{0};    // arrival

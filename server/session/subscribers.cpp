@@ -53,6 +53,7 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
                                    .source = request.source,
                                    .indices = {},
                                    .names_hash = 0};
+  subscription->every = request.every && peer.transport != Transport::kUdp;
   Add(peer, header, std::move(subscription));
 }
 
@@ -119,7 +120,12 @@ bool Subscribers::MayAdd(Peer& peer, const protocol::Header& header) {
                     "say Hello with the token of Welcome first");
     return false;
   }
-  if (const Subscription* known = FindRepeated(peer, header); known != nullptr) {
+  if (Subscription* known = FindRepeated(peer, header); known != nullptr) {
+    if (auto* wish = std::get_if<PosesWish>(&known->wish);
+        wish != nullptr && known->subject != nullptr) {
+      BindPoses(*known, *wish, *known->subject);
+      return false;
+    }
     std::vector<std::string> names;
     if (const auto* wish = std::get_if<WeightsWish>(&known->wish);
         wish != nullptr && known->subject != nullptr) {
@@ -192,6 +198,9 @@ std::uint16_t Subscribers::NewId(Peer& peer) {
 void Subscribers::Reply(const Subscription& subscription, std::vector<std::string> names) {
   protocol::SubscribeReply reply;
   if (subscription.subject != nullptr) reply.subject = subscription.subject->name;
+  if (const auto* poses = std::get_if<PosesWish>(&subscription.wish)) {
+    reply.publisher_session = poses->publisher;
+  }
   reply.names_hash = protocol::NamesHash(names);
   reply.names = std::move(names);
   postman_->Reply(*subscription.peer, {.stream = subscription.id, .sequence = subscription.request},
@@ -199,6 +208,9 @@ void Subscribers::Reply(const Subscription& subscription, std::vector<std::strin
 }
 
 bool Subscribers::Bind(Subscription& subscription, Subject& subject) {
+  if (auto* wish = std::get_if<PosesWish>(&subscription.wish); wish != nullptr) {
+    return BindPoses(subscription, *wish, subject);
+  }
   std::vector<std::string> names;
   if (auto* wish = std::get_if<WeightsWish>(&subscription.wish); wish != nullptr) {
     names = wish->Bind(*subject.pipeline->stream().binding);
@@ -212,13 +224,17 @@ bool Subscribers::Bind(Subscription& subscription, Subject& subject) {
       return false;
     }
   }
+  Attach(subscription, subject);
+  Reply(subscription, std::move(names));
+  return true;
+}
+
+void Subscribers::Attach(Subscription& subscription, Subject& subject) {
   if (subscription.subject != &subject) {
     subscription.subject = &subject;
     by_subject_[subject.id].push_back(&subscription);
   }
   subscription.owed = subject.pipeline->has_pose();  // the newest pose there is, at the next tick
-  Reply(subscription, std::move(names));
-  return true;
 }
 
 void Subscribers::Refuse(Subscription& subscription, ErrorCode code, std::string why) {
@@ -272,6 +288,12 @@ void Subscribers::OnSubjectReady(Subject& subject) {
     if (waits) to_bind.push_back(subscription.get());
   }
   for (Subscription* subscription : by_subject_[subject.id]) {
+    if (const auto* poses = std::get_if<PosesWish>(&subscription->wish)) {
+      const bool is_told = poses->publisher == subject.owner.session &&
+                           poses->skeleton_hash == subject.skeleton_hash;
+      if (!is_told) to_bind.push_back(subscription);
+      continue;
+    }
     auto* wish = std::get_if<WeightsWish>(&subscription->wish);
     if (wish == nullptr) continue;
     const std::uint64_t before = wish->names_hash;
@@ -290,6 +312,7 @@ void Subscribers::OnSubjectGone(Subject& subject) {
                     protocol::Goodbye{protocol::GoodbyeReason::kSubjectGone});
     subscription->subject = nullptr;
     subscription->owed = false;
+    if (auto* poses = std::get_if<PosesWish>(&subscription->wish)) *poses = {};
     if (!subscription->wait) Erase(*subscription);
   }
 }

@@ -32,6 +32,8 @@ class Subscribers {
                  const protocol::SubscribeWeights& request);
   void Subscribe(Peer& peer, const protocol::Header& header,
                  const protocol::SubscribePictures& request);
+  void Subscribe(Peer& peer, const protocol::Header& header,
+                 const protocol::SubscribePoses& request);
   // False: the peer has no such subscription.
   bool Unsubscribe(Peer& peer, std::uint16_t id);
 
@@ -44,8 +46,9 @@ class Subscribers {
   // A subject is about to be removed.
   void OnSubjectGone(Subject& subject);
 
-  // Sends the subject's weights, and asks for its pictures, wherever they are due.
-  void Publish(Subject& subject, std::int64_t age_us, Time now);
+  // Sends the subject's weights and pose, and asks for its pictures, wherever they are due. `pose`:
+  // the payload that it came as; empty where it does not say the whole pose, or none came.
+  void Publish(Subject& subject, std::span<const std::uint8_t> pose, std::int64_t age_us, Time now);
   // Sends what a rate held back, so that a pose after which none comes is still seen.
   void PublishOwed(Time now);
   // Hands a finished picture to those it was drawn for, as far as they are still there.
@@ -66,7 +69,13 @@ class Subscribers {
   void Erase(Subscription& subscription);
   std::uint16_t NewId(Peer& peer);
 
-  void Deliver(Subscription& subscription, std::int64_t age_us, Jobs* jobs);
+  bool BindPoses(Subscription& subscription, PosesWish& wish, Subject& subject);
+  void Attach(Subscription& subscription, Subject& subject);
+
+  void Deliver(Subscription& subscription, std::span<const std::uint8_t> pose, std::int64_t age_us,
+               Jobs* jobs);
+  void SendPose(Subscription& subscription, std::span<const std::uint8_t> pose);
+  void TellDropped(Subscription& subscription, Time now);
   void SendWeights(Subscription& subscription, const WeightsWish& wish, std::int64_t age_us);
   void AddToJobs(const Subscription& subscription, const PicturesWish& wish, std::int64_t age_us,
                  Jobs* jobs);
@@ -83,6 +92,8 @@ class Subscribers {
   std::uint64_t next_uid_ = 1;
   protocol::WeightFrame frame_;  // reused
   protocol::ImageFrame image_;
+  protocol::PoseFrame pose_;
+  protocol::SkeletonOffer offer_;
   bool has_named_large_picture_ = false;  // in the log
   Jobs jobs_;
 };

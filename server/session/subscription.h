@@ -35,6 +35,13 @@ struct PicturesWish {
   Encoding encoding;
 };
 
+// Skeleton and poses as they were used.
+struct PosesWish {
+  // Who and what the peer was told last; 0: nobody.
+  std::uint64_t publisher = 0;
+  std::uint64_t skeleton_hash = 0;
+};
+
 // What one peer asked for, and when it is next due.
 struct Subscription {
   std::uint64_t uid = 0;      // never used twice in a run
@@ -47,7 +54,11 @@ struct Subscription {
   Subject* subject = nullptr;  // null: waiting
   RateGate gate;
   bool owed = false;  // the newest pose was left out for its rate, and nothing newer has come
-  std::variant<WeightsWish, PicturesWish> wish;
+  std::variant<WeightsWish, PicturesWish, PosesWish> wish;
+  bool every = false;         // TCP: nothing gives way to newer frames
+  std::uint64_t dropped = 0;  // of every: frames left out, and how many the peer was told of
+  std::uint64_t told_dropped = 0;
+  Time told{0};
 };
 
 }  // namespace furrow::server

@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/session/peer.h"
+
 namespace furrow::server {
 namespace {
 
@@ -79,6 +81,31 @@ TEST(Outbox, AnEndedSubscriptionLeavesNothingBehind) {
   outbox.PushFrame(2, Bytes{2});
   outbox.DropFrames(1);
   EXPECT_THAT(PopAll(&outbox), ElementsAre(2));
+}
+
+TEST(Outbox, FramesThatAreAllKeptStandInLineWithTheReplies) {
+  Outbox outbox(4, 4);
+  outbox.PushFrame(1, Bytes{10});
+  outbox.PushFrame(2, Bytes{20}, kKeepAll);
+  ASSERT_TRUE(outbox.PushReply(Bytes{1}));
+  for (std::uint8_t i = 21; i < 30; ++i) EXPECT_EQ(outbox.PushFrame(2, Bytes{i}, kKeepAll), 0);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(20, 1, 21, 22, 23, 24, 25, 26, 27, 28, 29, 10));
+}
+
+TEST(Outbox, ALineThatIsFullTakesNoNewFrameUntilItMoves) {
+  Outbox outbox(4, 4);
+  const Bytes half(protocol::kMaxWaitingFrameBytes / 2, 1);
+  EXPECT_EQ(outbox.PushFrame(1, half, kKeepAll), 0);
+  EXPECT_EQ(outbox.PushFrame(1, half, kKeepAll), 0);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{2}, kKeepAll), 1);
+  EXPECT_TRUE(outbox.PushReply(Bytes{3})) << "replies have room of their own";
+  Bytes bytes;
+  ASSERT_TRUE(outbox.Pop(&bytes));
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{4}, kKeepAll), 0);
+  outbox.DropFrames(1);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(3)) << "the reply is not a frame";
+  EXPECT_EQ(outbox.PushFrame(1, half, kKeepAll), 0);
+  EXPECT_EQ(outbox.PushFrame(1, half, kKeepAll), 0) << "what was dropped makes room";
 }
 
 }  // namespace

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// From datagram to weight packet through real sockets, server and hub.
+#include <vector>
+
+#include <asio/io_context.hpp>
+#include <gtest/gtest.h>
+
+#include "protocol/hash.h"
+#include "server/net/udp_server.h"
+#include "tests/unit/protocol/drill.h"
+#include "tests/unit/server/session/hub_fixture.h"
+
+namespace furrow::server {
+namespace {
+
+using asio::ip::udp;
+
+// Subjects of joints and blend shapes, solved with the filter, published and watched over UDP.
+class UdpPathTest : public HubTest {
+ protected:
+  static constexpr int kJoints = 12;  // so that an offer fits a datagram
+  static constexpr int kSubjects = 8;
+
+  void SetUp() override {
+    MakeWith(MakeRig(/*filter=*/true));
+    server = std::make_unique<UdpServer>(io, Limits(), hub.get(), &metrics);
+    ASSERT_TRUE(server->Open({asio::ip::address_v4::loopback(), 0}).ok());
+    server->Start();
+    socket.connect({asio::ip::address_v4::loopback(), server->port()});
+    socket.set_option(asio::socket_base::receive_buffer_size(1 << 20));
+    socket.non_blocking(true);
+  }
+  void TearDown() override {
+    server->Close();
+    io.run();
+  }
+
+  template <class Message, class... Options>
+  void Say(const Message& message, protocol::Header header, const Options&... options) {
+    header.session = 77;
+    encoder.Encode(header, message, bytes, options...);
+    socket.send(asio::buffer(bytes));
+    io.restart();
+    io.poll();
+  }
+  // Takes what has come; how many weights there are in it.
+  int TakeWeights() {
+    int count = 0;
+    for (;;) {
+      asio::error_code error;
+      const std::size_t size = socket.receive(asio::buffer(received), 0, error);
+      if (error) return count;
+      protocol::MessageView view;
+      EXPECT_EQ(protocol::OpenMessage({received.data(), size}, view), protocol::DecodeStatus::kOk);
+      if (view.kind == protocol::MessageKind::kWelcome) {
+        EXPECT_EQ(protocol::Decode(view, welcome), protocol::DecodeStatus::kOk);
+      }
+      if (view.kind != protocol::MessageKind::kWeights) continue;
+      EXPECT_EQ(protocol::Decode(view, weights), protocol::DecodeStatus::kOk);
+      ++count;
+    }
+  }
+  static protocol::SkeletonOffer OfferOf(int subject) {
+    protocol::SkeletonOffer offer = Offer("subject " + std::to_string(subject));
+    for (int i = 0; i < kJoints; ++i) {
+      protocol::OfferedJoint joint;
+      joint.name = "joint" + std::to_string(i);
+      joint.parent = static_cast<std::int16_t>(i - 1);
+      offer.joints.push_back(joint);
+    }
+    offer.skeleton_hash = protocol::SkeletonHash(offer);
+    return offer;
+  }
+  void Meet() {
+    Say(protocol::Hello{"test", 0}, {});
+    TakeWeights();
+    Say(protocol::Hello{"test", welcome.token}, {});
+    for (int i = 0; i < kSubjects; ++i) {
+      const auto stream = static_cast<std::uint16_t>(i);
+      Say(OfferOf(i), {.stream = stream});
+      protocol::SubscribeWeights request;
+      request.subject = "subject " + std::to_string(i);
+      Say(request, {.sequence = 100u + stream});
+    }
+    pose = Pose(0.5f, 0.25f);
+    pose.skeleton_hash = OfferOf(0).skeleton_hash;
+    pose.num_joints = kJoints;
+    pose.rotations.resize(kJoints);
+  }
+  // One pose of every subject; the number of weights that came of them.
+  int Round(std::uint32_t number) {
+    for (int i = 0; i < kSubjects; ++i) {
+      pose.blend_shapes[0] = static_cast<float>(number % 10) * 0.1f;
+      const auto& encoding = number % 2 == 0 ? floats : small;
+      Say(pose,
+          {.stream = static_cast<std::uint16_t>(i),
+           .sequence = number,
+           .capture_time_us = 16'667 * static_cast<std::int64_t>(number)},
+          encoding);
+    }
+    return TakeWeights();
+  }
+
+  asio::io_context io{1};
+  std::unique_ptr<UdpServer> server;
+  udp::socket socket{io, udp::v4()};
+  std::vector<std::uint8_t> bytes;
+  std::vector<std::uint8_t> received = std::vector<std::uint8_t>(65536);
+  protocol::Welcome welcome;
+  protocol::WeightFrame weights;
+  protocol::PoseFrame pose;
+  const protocol::PoseEncoding floats;
+  const protocol::PoseEncoding small = protocol::PoseEncoding::Small();
+};
+
+TEST_F(UdpPathTest, NothingIsAllocatedAPoseInTheLongRun) {
+  Meet();
+  std::uint32_t number = 0;
+  while (number < 20) Round(number++);
+  const std::uint64_t before = protocol::test::AllocationCount();
+  int got = 0;
+  for (; number < 70; ++number) got += Round(number);
+  EXPECT_EQ(protocol::test::AllocationCount(), before);
+  EXPECT_EQ(got, 50 * kSubjects);
+  EXPECT_EQ(Count(Counter::kDatagramsUnsendable), 0u);
+}
+
+}  // namespace
+}  // namespace furrow::server
