@@ -40,6 +40,7 @@ export class App {
   private readonly session: SessionPanel;
   private readonly header: Header;
   private readonly viewBar: ViewBar;
+  private readonly strip: DebugStrip;
   private readonly menu: SettingsMenu;
   private readonly timeline: Timeline;
   private readonly tabs: Tabs;
@@ -65,7 +66,8 @@ export class App {
     const text = new SettingsText(state, toasts);
     this.menu = new SettingsMenu(state, toasts, () => text.open());
     this.timeline = new Timeline(toasts);
-    this.viewBar = new ViewBar(state);
+    this.strip = new DebugStrip(this.connection, state);
+    this.viewBar = new ViewBar(state, this.strip.adder);
     const commands = this.commands();
     this.help = helpDialog(commands);
     this.header = new Header(state, {
@@ -73,7 +75,7 @@ export class App {
     });
     this.tabs = new Tabs([
       { id: 'look', label: 'Look', content: this.menu.element },
-      { id: 'wrinkles', label: 'Wrinkles', content: h('div', {}, this.faceMap.element, this.explain.element) },
+      { id: 'wrinkles', label: 'Wrinkles', content: h('div', { class: 'wrinkles' }, this.faceMap.map, this.explain.element, this.faceMap.list) },
       { id: 'capture', label: 'Capture', content: this.capture.element },
       { id: 'session', label: 'Session', content: this.session.element },
     ], (id) => this.began && state.panel.set(id));
@@ -86,7 +88,7 @@ export class App {
   private lay(parent: HTMLElement, dialog: HTMLElement): void {
     this.root.append(
       this.header.element,
-      new DebugStrip(this.connection, this.state).element,
+      this.strip.element,
       h('main', { 'aria-label': 'Picture' }, this.viewer.stage.element, this.viewBar.element),
       h('footer', { class: 'dock', 'aria-label': 'Curves and recording' }, this.curves.element, this.timeline.element),
       h('aside', { class: 'side', 'aria-label': 'Panels' }, this.tabs.list, this.tabs.panels),

@@ -94,13 +94,14 @@ test('values are compared by what they mean', () => {
 
 test('controls take and give what the daemon says', () => {
   for (const info of someSettings()) {
+    if (info.kind === 'colour') continue;
     const back = fromControl(info, toControl(info, info.value));
     assert(sameValue(info, back, info.value), `${info.name}: ${back}`);
   }
   const [, , background] = someSettings();
-  // sRGB of linear 0.2140 is one half (IEC 61966-2-1).
-  const half = toControl(background!, '0.21404,0,1') as { r: number; g: number; b: number };
-  assert(Math.abs(half.r - 0.5) < 1e-4 && half.g === 0 && Math.abs(half.b - 1) < 1e-9);
+  // Byte 128 of sRGB is linear 0.2159 (IEC 61966-2-1).
+  assert.equal(toControl(background!, '0.2159,0,1'), '#8000ff');
+  assert.equal(fromControl(background!, '#8000ff'), '0.21586,0,1');
 });
 
 test('a label says its unit once', () => {

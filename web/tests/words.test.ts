@@ -72,5 +72,5 @@ test('the timeline runs on between answers', () => {
 test('the face map is warm where pressed, cool where drawn, grey at rest', () => {
   assert.equal(colourOf(1, 0.2), 'hsl(28 85% 60%)');
   assert.equal(colourOf(0.2, 1), 'hsl(205 85% 60%)');
-  assert.equal(colourOf(0, 0), 'hsl(28 20% 22%)');
+  assert.equal(colourOf(0, 0), 'hsl(28 0% 22%)');
 });

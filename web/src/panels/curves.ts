@@ -32,7 +32,7 @@ export class CurvesPanel {
     this.picker.append(h('summary', {}, 'Choose'));
     this.picker.addEventListener('toggle', () => this.fillPicker());
     this.element = h('section', { class: 'curves', 'aria-label': 'Weight curves' },
-      h('div', { class: 'row' }, h('h2', {}, 'Weights'), this.chips, h('span', { class: 'space' }), this.picker, this.freeze,
+      h('div', { class: 'row bar-row' }, h('h2', {}, 'Weights'), this.chips, this.picker, this.freeze,
         button('CSV', () => this.save(), { title: 'Download what is kept (20 s) as furrow watch writes it' })),
       this.plotHolder);
     state.curves.watch(() => {
@@ -73,7 +73,7 @@ export class CurvesPanel {
       cursor: { y: false },
       padding: [6, 8, 0, 0],
       scales: { x: { time: false, range: [-SHOWN_S, 0] }, y: { range: [0, 1] } },
-      axes: [{ ...axis, values: (_, ticks) => ticks.map((t) => `${t} s`), size: 24 }, { ...axis, size: 34, splits: [0, 0.25, 0.5, 0.75, 1] }],
+      axes: [{ ...axis, values: (_, ticks) => ticks.map((t) => `${t} s`), size: 24 }, { ...axis, size: 42, splits: [0, 0.25, 0.5, 0.75, 1] }],
       series: [{}, ...this.shown.map((name, i) => ({ label: name, stroke: COLOURS[i]!, width: 1.6, points: { show: false } }))],
     }, [[], ...this.shown.map(() => [])], this.plotHolder);
     this.chips.replaceChildren(...this.shown.map((name, i) =>

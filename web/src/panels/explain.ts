@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why a region wrinkles: which drivers and poses make its weights, read again while it is shown.
 import { api, type Contribution, type Explanation, wordsOf } from '../api';
-import { button, h, readable } from '../ui/dom';
+import { button, h, regionWords } from '../ui/dom';
 
 const AGAIN_MS = 400;
 
@@ -51,9 +51,10 @@ export class ExplainPanel {
 
   show(region: string, weights: string[]): void {
     this.weights = weights;
-    this.title.textContent = `Why: ${readable(region)}`;
+    this.title.textContent = `Why: ${regionWords(region)}`;
     this.element.hidden = false;
     this.body.replaceChildren(h('p', { class: 'empty' }, 'Asking the daemon…'));
+    this.element.scrollIntoView({ block: 'nearest' });
     if (this.timer !== null) clearTimeout(this.timer);
     void this.ask();
   }

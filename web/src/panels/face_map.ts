@@ -3,7 +3,7 @@
 // rig as a list with bars. Either leads to why.
 import { api, type RigInfo } from '../api';
 import type { WeightHistory } from '../state/weight_history';
-import { h, readable, svg } from '../ui/dom';
+import { h, regionWords, svg } from '../ui/dom';
 
 const SVG_VIEW = '0 0 200 236';
 /**
@@ -33,22 +33,20 @@ interface RegionView {
 export function colourOf(pressed: number, drawn: number): string {
   const strength = Math.max(pressed, drawn);
   const hue = pressed >= drawn ? 28 : 205;
-  return `hsl(${hue} ${Math.round(20 + 65 * strength)}% ${Math.round(22 + 38 * strength)}%)`;
+  return `hsl(${hue} ${Math.round(85 * strength)}% ${Math.round(22 + 38 * strength)}%)`;
 }
 
 export class FaceMap {
-  readonly element: HTMLElement;
-  private readonly map = svg('svg', { viewBox: SVG_VIEW, class: 'face-map', 'aria-hidden': 'true' });
-  private readonly list = h('ul', { class: 'regions', 'aria-label': 'Regions' });
+  readonly map: HTMLElement;
+  private readonly picture = svg('svg', { viewBox: SVG_VIEW, class: 'face-map', 'aria-hidden': 'true' });
+  readonly list = h('ul', { class: 'regions', 'aria-label': 'Regions' });
   private regions: RegionView[] = [];
   private drawnMs = 0;
   private rigOf = '';
 
   constructor(private readonly history: WeightHistory, private readonly onChoose: (region: string, weights: string[]) => void) {
-    this.element = h('div', { class: 'wrinkles' },
-      h('figure', { class: 'map' }, this.map,
-        h('figcaption', {}, h('span', { class: 'key pressed' }, 'pressed (squash, folds)'), h('span', { class: 'key drawn' }, 'drawn (stretch)'))),
-      this.list);
+    this.map = h('figure', { class: 'map' }, this.picture,
+      h('figcaption', {}, h('span', { class: 'key pressed' }, 'pressed (squash, folds)'), h('span', { class: 'key drawn' }, 'drawn (stretch)')));
   }
 
   /** Reads the rig again where the subject is another. */
@@ -61,12 +59,12 @@ export class FaceMap {
   }
 
   private build(rig: RigInfo): void {
-    this.map.replaceChildren(svg('path', { d: OUTLINE, class: 'outline' }));
+    this.picture.replaceChildren(svg('path', { d: OUTLINE, class: 'outline' }));
     this.regions = rig.regions.map((region) => {
       const choose = (): void => this.onChoose(region.name, region.weights.map(({ name }) => name));
       const bars = new Map(region.weights.map(({ name, map }) => [name, h('span', { class: `bar ${map}` })]));
       const button = h('button', { type: 'button', class: 'region', 'data-region': region.name, onclick: choose },
-        h('span', { class: 'name' }, readable(region.name)),
+        h('span', { class: 'name' }, regionWords(region.name)),
         ...region.weights.map(({ name, map }) =>
           h('span', { class: 'weight' }, h('span', { class: 'map-name' }, map), h('span', { class: 'track' }, bars.get(name)!))));
       return { name: region.name, weights: region.weights, bars, shape: this.addShape(region.name, choose), button };
@@ -80,14 +78,14 @@ export class FaceMap {
     if (d === undefined) return null;
     const transform = name.endsWith('_r') ? 'translate(200 0) scale(-1 1)' : undefined;
     const shape = svg('path', { d, transform, class: 'region-shape', 'data-region': name, onclick: choose },
-      svg('title', {}, readable(name)));
-    this.map.append(shape);
+      svg('title', {}, regionWords(name)));
+    this.picture.append(shape);
     return shape;
   }
 
   onFrame(): void {
     const nowMs = performance.now();
-    if (nowMs - this.drawnMs < 50 || this.element.closest('[hidden]') !== null) return;
+    if (nowMs - this.drawnMs < 50 || this.map.closest('[hidden]') !== null) return;
     this.drawnMs = nowMs;
     for (const { weights, bars, shape } of this.regions) {
       let pressed = 0;

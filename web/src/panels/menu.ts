@@ -21,7 +21,7 @@ export class SettingsMenu {
   private readonly search = h('input', {
     type: 'search', placeholder: 'Search settings', 'aria-label': 'Search settings', id: 'settings-search',
   });
-  private readonly help = h('p', { class: 'help-line', 'aria-live': 'off' });
+  private readonly help = h('p', { class: 'help-line' }, 'Point at a setting to read what it does.');
   private readonly nothing = h('p', { class: 'empty', hidden: true }, 'No setting matches.');
   private readonly undo: HTMLButtonElement;
   private readonly redo: HTMLButtonElement;

@@ -7,7 +7,7 @@ const HEADINGS: readonly (readonly [string, string])[] = [
   ['Subject', 'And where it comes from'],
   ['State', ''],
   ['Hz', 'Poses in the last second'],
-  ['Lost', 'Gaps in the sequence numbers'],
+  ['Lost', 'Share of the poses that are missing in the sequence numbers'],
   ['Jitter', 'Of arrival against capture, ms'],
 ];
 
@@ -46,7 +46,7 @@ export class SessionPanel {
         h('small', {}, subject.source)),
       h('td', {}, h('span', { class: `state ${subject.state}` }, subject.state)),
       h('td', { class: 'number' }, subject.rate_hz.toFixed(0)),
-      h('td', { class: 'number', title: `${subject.late} late` }, share > 0 ? `${subject.lost} (${(100 * share).toFixed(1)} %)` : '0'),
+      h('td', { class: 'number', title: `${subject.lost} lost, ${subject.late} late` }, share > 0 ? `${(100 * share).toFixed(1)} %` : '0'),
       h('td', { class: 'number' }, subject.jitter_ms.toFixed(1)));
   }
 }

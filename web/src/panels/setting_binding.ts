@@ -6,23 +6,21 @@ import type { SettingInfo } from '../api';
 import { isOn } from '../state/settings';
 import { button, readable } from '../ui/dom';
 
-type Rgb = { r: number; g: number; b: number };
-
 const toSrgb = (x: number): number => (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
 const toLinear = (x: number): number => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
 
+const hexByte = (x: number): string => Math.round(255 * Math.min(1, Math.max(0, x))).toString(16).padStart(2, '0');
+
 /** The control's value of a setting's text. Colours: linear on the wire, sRGB in the picker. */
-export function toControl(info: SettingInfo, text: string): string | number | boolean | Rgb {
+export function toControl(info: SettingInfo, text: string): string | number | boolean {
   switch (info.kind) {
     case 'bool':
       return isOn(text);
     case 'int':
     case 'number':
       return Number(text);
-    case 'colour': {
-      const [r = 0, g = 0, b = 0] = text.split(',').map((part) => toSrgb(Number(part)));
-      return { r, g, b };
-    }
+    case 'colour':
+      return `#${text.split(',').map((part) => hexByte(toSrgb(Number(part)))).join('')}`;
     default:
       return text;
   }
@@ -35,8 +33,8 @@ export function fromControl(info: SettingInfo, value: unknown): string {
     case 'number':
       return String(Number((value as number).toPrecision(6)));
     case 'colour': {
-      const { r, g, b } = value as Rgb;
-      return [r, g, b].map((x) => String(Number(toLinear(x).toFixed(5)))).join(',');
+      const bytes = /^#(..)(..)(..)/.exec(value as string)!.slice(1).map((hex) => parseInt(hex, 16));
+      return bytes.map((byte) => String(Number(toLinear(byte / 255).toFixed(5)))).join(',');
     }
     default:
       return String(value);
@@ -54,8 +52,6 @@ function bindingParams(info: SettingInfo): BindingParams {
   const params: Record<string, unknown> = { label: labelOf(info) };
   if (info.kind === 'choice') {
     params.options = Object.fromEntries((info.choices ?? []).map((word) => [readable(word), word]));
-  } else if (info.kind === 'colour') {
-    params.color = { type: 'float' };
   } else if (info.kind === 'int' || info.kind === 'number') {
     const { min, max } = info;
     if (min !== null) params.min = min;

@@ -43,12 +43,12 @@ class Thumbnail {
 
 export class DebugStrip {
   readonly element = h('aside', { class: 'strip', 'aria-label': 'Debug views' });
-  private readonly adder: HTMLSelectElement;
+  /** For the bar below the picture. */
+  readonly adder: HTMLSelectElement;
   private readonly thumbnails = new Map<string, Thumbnail>();
 
   constructor(private readonly connection: Connection, private readonly state: AppState) {
     this.adder = select('Add a debug view', [], (view) => this.add(view));
-    this.element.append(this.adder);
     const { strip, settings, camera, subject } = state;
     for (const signal of [strip, settings.changed, camera, subject]) {
       (signal as Signal<unknown>).watch(() => this.refresh());
@@ -98,7 +98,7 @@ export class DebugStrip {
     const free = choices.filter((view) => !wanted.includes(view));
     setOptions(this.adder, [['', '+ Debug view'], ...free.map((view) => [view, readable(view)] as const)]);
     this.adder.disabled = wanted.length >= MAX_THUMBNAILS || choices.length === 0;
-    this.element.classList.toggle('has-views', wanted.length > 0);
+    this.element.hidden = wanted.length === 0;
   }
 
   private refreshOne(view: string): void {

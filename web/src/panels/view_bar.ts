@@ -6,10 +6,10 @@ import { button, h, readable, select } from '../ui/dom';
 import type { Sharpness } from '../view/resolution';
 
 const WIPES: readonly (readonly [Wipe, string])[] = [
-  ['none', 'No wipe'], ['wrinkles', 'Wipe: wrinkles off | on'], ['shading', 'Wipe: diffuse | skin'],
+  ['none', 'No wipe'], ['wrinkles', 'Wipe wrinkles'], ['shading', 'Wipe shading'],
 ];
 const SHARPNESS: readonly (readonly [Sharpness, string])[] = [
-  ['auto', 'Sharpness: auto'], ['sharp', 'Sharpness: always'], ['fast', 'Sharpness: low'],
+  ['auto', 'Auto detail'], ['sharp', 'Full detail'], ['fast', 'Fast, coarse'],
 ];
 
 export class ViewBar {
@@ -17,12 +17,12 @@ export class ViewBar {
   private readonly framings = h('div', { class: 'framings', role: 'group', 'aria-label': 'Framing' });
   private readonly wipe: HTMLSelectElement;
 
-  constructor(private readonly state: AppState) {
+  constructor(private readonly state: AppState, debugViews: HTMLElement) {
     this.wipe = select('Split the picture', WIPES, (value) => state.wipe.set(value as Wipe));
     const sharpness = select('Sharpness', SHARPNESS, (value) => state.sharpness.set(value as Sharpness));
     this.element = h('div', { class: 'view-bar', role: 'toolbar', 'aria-label': 'View' },
       this.framings, button('Reset', () => this.reset(), { title: 'Back to the first framing (key 0)' }),
-      h('span', { class: 'space' }), this.wipe, sharpness);
+      h('span', { class: 'space' }), debugViews, this.wipe, sharpness);
     state.presets.bind(() => this.fill());
     state.camera.watch(() => this.mark());
     state.wipe.bind((wipe) => (this.wipe.value = wipe));

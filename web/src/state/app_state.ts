@@ -36,7 +36,7 @@ export class AppState {
 
   /** Once the daemon said what there is. Returns what the address asks for and nobody knows. */
   begin(presets: readonly CameraPreset[]): string[] {
-    const unknown = this.settings.replace(this.wishes.settings);
+    const unknown = this.settings.begin(this.wishes.settings);
     this.setPresets(presets);
     for (const signal of [this.subject, this.wipe, this.strip, this.curves, this.panel, this.camera, this.settings.changed]) {
       (signal as Signal<unknown>).watch(() => this.writeSoon());

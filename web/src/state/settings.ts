@@ -81,6 +81,14 @@ export class SettingsModel {
     if (next.delete(name)) this.change(next, false);
   }
 
+  /** As replace(), but nothing that could be undone: where the page begins. */
+  begin(values: Values): string[] {
+    const unknown = this.replace(values);
+    this.undoSteps = [];
+    this.tell();
+    return unknown;
+  }
+
   /** All overrides at once, as one step. Unknown names are left out and returned. */
   replace(values: Values): string[] {
     const known = new Map<string, string>();

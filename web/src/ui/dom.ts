@@ -62,6 +62,11 @@ export function download(name: string, type: string, text: string): void {
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
+/** "knee_l_inner" for people: "Knee left inner", the subject's left. */
+export function regionWords(name: string): string {
+  return readable(name.replace(/_l(?=_|$)/, '_left').replace(/_r(?=_|$)/, '_right'));
+}
+
 /** "mask_dynamic" for people. */
 export function readable(name: string): string {
   const spaced = name.replaceAll('_', ' ');
