@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <charconv>
 #include <cstdio>
 #include <memory>
 
@@ -22,10 +21,7 @@ struct ChaosCommand {
 
 int RunChaos(const ChaosCommand& command) {
   load::ChaosProxyOptions options = command.proxy;
-  if (Status status = ReadChaosFlags(command.flags, &options.up, &options.down); !status.ok()) {
-    std::fprintf(stderr, "furrow: %s\n", status.ToString().c_str());
-    return kUsage;
-  }
+  ReadChaosFlags(command.flags, &options.up, &options.down);
   Endpoint endpoint;
   if (!ParseEndpoint(command.to, client::TransportKind::kUdp, &endpoint)) {
     std::fprintf(stderr, "furrow: --to: '%s' is not HOST, HOST:PORT or [IPV6]:PORT\n",
@@ -38,7 +34,11 @@ int RunChaos(const ChaosCommand& command) {
   const auto proxy = load::ChaosProxy::Open(options);
   if (!proxy.ok()) {
     const int code = Fail(proxy.status());
-    return proxy.status().code() == StatusCode::kUnavailable ? kNoConnection : code;
+    switch (proxy.status().code()) {
+      case StatusCode::kUnavailable: return kNoConnection;
+      case StatusCode::kInvalidArgument: return kUsage;
+      default: return code;
+    }
   }
   CatchInterrupts();
   std::printf("furrow chaos ready udp=%s:%u", options.listen_host.c_str(), (*proxy)->udp_port());

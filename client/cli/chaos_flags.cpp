@@ -35,22 +35,24 @@ void AddChaosFlags(CLI::App& command, ChaosFlags& flags) {
           "START:LENGTH[:EVERY], seconds since the first packet in which nothing passes (TCP "
           "stands still); may be given several times")
       ->expected(1)
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            const auto hole = load::ParseBlackHole(text);
+            return hole.ok() ? std::string() : hole.status().ToString();
+          },
+          ""))
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   const std::map<std::string, ChaosWay> ways{
       {"up", ChaosWay::kUp}, {"down", ChaosWay::kDown}, {"both", ChaosWay::kBoth}};
   AddChoice(command, "--way", flags.way, ways, "up: to the daemon; down: from it; both (default)");
 }
 
-Status ReadChaosFlags(const ChaosFlags& flags, load::ChaosOptions* up, load::ChaosOptions* down) {
+void ReadChaosFlags(const ChaosFlags& flags, load::ChaosOptions* up, load::ChaosOptions* down) {
   load::ChaosOptions options = flags.options;
-  for (const std::string& text : flags.black_holes) {
-    const auto hole = load::ParseBlackHole(text);
-    if (!hole.ok()) return hole.status().At("--black-hole");
-    options.black_holes.push_back(*hole);
-  }
+  for (const std::string& text : flags.black_holes)
+    options.black_holes.push_back(*load::ParseBlackHole(text));
   *up = flags.way == ChaosWay::kDown ? load::ChaosOptions{} : options;
   *down = flags.way == ChaosWay::kUp ? load::ChaosOptions{} : options;
-  return {};
 }
 
 std::string Describe(const std::string& way, const load::ChaosCounts& counts) {

@@ -7,7 +7,6 @@
 #include <CLI/CLI.hpp>
 
 #include "client/load/chaos_link.h"
-#include "wrinkle/status.h"
 
 namespace furrow::cli {
 
@@ -17,15 +16,14 @@ enum class ChaosWay { kUp, kDown, kBoth };
 // What `load` and `chaos` can be told to do to packets.
 struct ChaosFlags {
   load::ChaosOptions options;
-  std::vector<std::string> black_holes;  // as ParseBlackHole()
+  std::vector<std::string> black_holes;  // as ParseBlackHole(), checked when parsed
   ChaosWay way = ChaosWay::kBoth;
 };
 
 void AddChaosFlags(CLI::App& command, ChaosFlags& flags);
 
-// The options of either way, black holes parsed. Errors: ParseBlackHole()'s.
-[[nodiscard]] Status ReadChaosFlags(const ChaosFlags& flags, load::ChaosOptions* up,
-                                    load::ChaosOptions* down);
+// The options of either way, black holes parsed.
+void ReadChaosFlags(const ChaosFlags& flags, load::ChaosOptions* up, load::ChaosOptions* down);
 
 // "up: 1000 packets, lost 3, ..." of what was done.
 [[nodiscard]] std::string Describe(const std::string& way, const load::ChaosCounts& counts);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <atomic>
 #include <cstdio>
-#include <fstream>
 #include <memory>
+#include <sstream>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -88,8 +88,7 @@ class OwnChaos {
                                     .to_tcp = target->tcp,
                                     .up = {},
                                     .down = {}};
-    if (Status status = ReadChaosFlags(flags, &options.up, &options.down); !status.ok())
-      return status;
+    ReadChaosFlags(flags, &options.up, &options.down);
     if (!options.up.any() && !options.down.any()) return {};
     auto proxy = load::ChaosProxy::Open(options);
     if (!proxy.ok()) return proxy.status();
@@ -300,6 +299,14 @@ void AddHow(CLI::App& command, LoadCommand& options) {
       ->capture_default_str();
   command.add_option("--searches", options.comparison.searches, "Searches of each, for --find-max")
       ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command.add_option("--probe", options.comparison.probe_seconds, "Seconds of one run of a search")
+      ->check(CLI::Range(0.05, 60.0))
+      ->capture_default_str();
+  command
+      .add_option("--limit", options.comparison.search_limit,
+                  "Poses a second beyond which --find-max does not search")
+      ->check(CLI::Range(1.0, 1e7))
       ->capture_default_str();
   command.add_flag("--strict", options.strict,
                    "Exit with 1 where anything was lost, late, wrong or not checked");

@@ -7,10 +7,10 @@
 
 #include "character/data_dir.h"
 #include "client/cli/inputs.h"
-#include "recording/wire_pose.h"
 #include "protocol/codec.h"
 #include "protocol/hash.h"
 #include "protocol/quantise.h"
+#include "recording/wire_pose.h"
 
 namespace furrow::cli {
 namespace {

@@ -1,0 +1,196 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""`furrow load` measures and checks, and tells planted faults as what they are; `furrow chaos` plants them."""
+import json
+import pathlib
+import re
+import signal
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+from furrow_testing import SHARE, Daemon, finish, furrow, spawn
+
+PERFORMANCE = SHARE / "recordings" / "performance.bvh"
+# Nothing here depends on how fast this machine is: only minutes are late.
+PATIENT = ["--late", "60000", "--drain", "5"]
+
+
+class Chaos:
+    """A `furrow chaos` before a daemon for the length of a with-block; `planted` is what it says that it did."""
+
+    def __init__(self, daemon, *args):
+        self.args = ["chaos", "--listen", "0", "--to", daemon.udp, "--to-tcp", str(daemon.ports["tcp"]), *args]
+
+    def __enter__(self):
+        self.process = spawn(*self.args)
+        ready = self.process.stdout.readline().decode()
+        assert ready.startswith("furrow chaos ready"), (ready, self.process.stderr.read().decode())
+        self.ports = {name: int(port) for name, port in re.findall(r"(\w+)=[^ ]*?:(\d+)", ready)}
+        self.udp = f"127.0.0.1:{self.ports['udp']}"
+        self.tcp = f"127.0.0.1:{self.ports['tcp']}"
+        return self
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGTERM)
+        code, out, err = finish(self.process)
+        assert code == 0, err
+        self.planted = {}
+        for line in out.decode().splitlines():
+            way, what = line.split(": ", 1)
+            self.planted[way] = {name: int(count) for name, count in re.findall(r"(\w+) (\d+)", what)}
+
+
+class LoadTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def load(self, host, *args, patience=PATIENT):
+        """Runs `furrow load`: its figures as JSON, and what it printed."""
+        figures = self.folder / "figures.json"
+        result = furrow("load", host, PERFORMANCE, *patience, "--json", figures, *args, check=0)
+        return json.loads(figures.read_text())["run"], result.stdout.decode()
+
+    def test_a_right_daemon_is_found_right_over_every_path(self):
+        with Daemon("--no-render") as daemon:
+            for path, host, other in (("--udp", daemon.udp, "tcp"), ("--tcp", daemon.tcp, "udp"),
+                                      ("--both", daemon.udp, "tcp")):
+                run, text = self.load(host, "--subjects", "6", "--rate", "50", "--duration", "1", path,
+                                      "--subscribers", "2", "--other-port", daemon.ports[other], "--strict")
+                self.assertEqual(run["offered"], 300, path)
+                self.assertEqual(run["expected"], 600, path)
+                self.assertEqual(run["received"], 600, path)
+                self.assertEqual(run["checked"], 600, path)
+                self.assertEqual(run["wrong"] + run["lost"] + run["late"], 0, text)
+                self.assertGreater(run["cpu_seconds"], 0, path)
+                self.assertGreater(run["resident_bytes"], 1 << 20, path)
+                self.assertLess(run["largest_difference"], 1e-5)
+                self.assertIn("| offered | sent | received | lost | late | wrong", text)
+
+    def test_quantised_poses_are_checked_as_sharply(self):
+        with Daemon("--no-render") as daemon:
+            run, _ = self.load(daemon.udp, "--subjects", "4", "--rate", "50", "--duration", "1", "--quantise",
+                               "--strict")
+            self.assertEqual(run["checked"], 200)
+            self.assertLess(run["largest_difference"], 1e-4)
+
+    def test_a_lost_a_late_a_falsified_and_two_swapped_in_ten_thousand(self):
+        # With this seed each befalls the weights once among their first 9,800 datagrams.
+        one = "0.0001"
+        with Daemon("--no-render") as daemon:
+            chaos = Chaos(daemon, "--seed", "86", "--way", "down", "--loss", one, "--falsify", one, "--swap", one,
+                          "--delay", one, "--delay-by", "10000")
+            with chaos:
+                run, text = self.load(chaos.udp, "--subjects", "20", "--rate", "60", "--duration", "9",
+                                      "--quantise", patience=["--late", "5000", "--drain", "12"])
+        self.assertEqual(run["offered"], 10800)
+        planted = chaos.planted["down"]
+        for fault in ("lost", "delayed", "falsified", "swapped"):
+            self.assertGreater(planted[fault], 0, planted)
+        self.assertEqual(run["late"], planted["delayed"], text)
+        self.assertEqual(run["falsified"], planted["falsified"], text)
+        self.assertEqual(run["swapped"], planted["swapped"], text)
+        # A machine that is too slow loses more; never less.
+        self.assertGreaterEqual(run["lost"], planted["lost"], text)
+        if run["lost"] > planted["lost"]:
+            print(f"this machine lost {run['lost'] - planted['lost']} more")
+
+    def test_falsified_poses_on_the_way_in_are_wrong_weights(self):
+        with Daemon("--no-render") as daemon, Chaos(daemon, "--way", "up", "--falsify", "0.05") as chaos:
+            run, text = self.load(chaos.udp, "--subjects", "5", "--rate", "50", "--duration", "1", "--quantise")
+        self.assertGreater(run["falsified"], 0, text)
+
+    def test_own_chaos_loses_and_no_weight_is_called_wrong_for_it(self):
+        with Daemon("--no-render") as daemon:
+            run, text = self.load(daemon.udp, "--subjects", "10", "--rate", "50", "--duration", "2", "--quantise",
+                                  "--seed", "5", "--loss", "0.05", "--reorder", "0.05", "--duplicate", "0.05",
+                                  "--jitter", "3", "--other-port", daemon.ports["tcp"])
+        self.assertGreater(run["lost"], 0, text)
+        self.assertGreater(run["duplicates"], 0, text)
+        self.assertEqual(run["wrong"], 0, text)
+        self.assertIn("Planted, up:", text)
+
+    def test_stalled_slow_and_churning_subscribers_cost_nobody_a_weight(self):
+        with Daemon("--no-render") as daemon:
+            run, text = self.load(daemon.udp, "--subjects", "5", "--rate", "50", "--duration", "2", "--stalled", "5",
+                                  "--slow", "3", "--churn", "3", "--other-port", daemon.ports["tcp"], "--strict")
+        self.assertEqual(run["received"], 500, text)
+        self.assertGreater(run["churn_returns"], 0)
+
+    def test_tcp_stands_still_in_a_black_hole_and_loses_nothing(self):
+        with Daemon("--no-render") as daemon, Chaos(daemon, "--black-hole", "0.5:0.3") as chaos:
+            run, text = self.load(chaos.tcp, "--tcp", "--subjects", "2", "--rate", "50", "--duration", "1.5")
+        # Behind the hole poses come at once, and a TCP subscriber may lose old frames then.
+        self.assertEqual(run["wrong"], 0, text)
+        self.assertGreater(run["received"], 0, text)
+
+    def test_a_daemon_with_another_rig_is_not_called_right(self):
+        with Daemon("--no-render", "--rig", SHARE / "rigs" / "arkit.json") as daemon:
+            run, text = self.load(daemon.udp, "--subjects", "2", "--rate", "50", "--duration", "0.5")
+            self.assertEqual(run["checked"], 0)
+            self.assertIn("not checked", text)
+            furrow("load", daemon.udp, PERFORMANCE, *PATIENT, "--duration", "0.2", "--strict", check=1)
+
+    def test_histogram_and_plot_are_written(self):
+        hgrm, svg = self.folder / "out.hgrm", self.folder / "out.svg"
+        with Daemon("--no-render") as daemon:
+            run, _ = self.load(daemon.udp, "--subjects", "3", "--rate", "50", "--duration", "1", "--hgrm", hgrm,
+                               "--plot", svg)
+        rows = [line.split() for line in hgrm.read_text().splitlines()[2:] if not line.startswith("#")]
+        self.assertEqual(int(rows[-1][2]), run["received"])
+        self.assertAlmostEqual(float(rows[-1][0]) * 1000, run["latency_us"]["max"], delta=1.0)
+        titles = "".join(xml.etree.ElementTree.parse(svg).getroot().itertext())
+        self.assertIn("Latency by percentile", titles)
+        self.assertIn("Latency over time", titles)
+
+    def test_the_highest_rate_and_the_baseline_stand_beside_a_control(self):
+        svg = self.folder / "out.svg"
+        figures = self.folder / "figures.json"
+        with Daemon("--no-render") as daemon:
+            result = furrow("load", daemon.udp, PERFORMANCE, *PATIENT, "--find-max", "--baseline", "--subjects", "8",
+                            "--rounds", "2", "--searches", "1", "--probe", "0.2", "--limit", "4000", "--duration",
+                            "0.3", "--quantise", "--json", figures, "--plot", svg, check=0)
+        comparison = json.loads(figures.read_text())["comparison"]
+        named = {figure["name"]: figure for figure in comparison["figures"]}
+        self.assertEqual(set(named), {"p50", "p90", "CPU a pose", "highest rate"})
+        for figure in named.values():
+            self.assertGreater(figure["ratio"]["median"], 0, figure)
+            self.assertLessEqual(figure["control"]["low"], figure["control"]["high"], figure)
+        self.assertIn("raw against raw", result.stdout.decode())
+        self.assertIn("Highest rate that loses nothing", result.stdout.decode())
+        self.assertIn("Loss by rate", "".join(xml.etree.ElementTree.parse(svg).getroot().itertext()))
+
+    def test_ctrl_c_prints_the_run_so_far(self):
+        with Daemon("--no-render") as daemon:
+            process = spawn("load", daemon.udp, PERFORMANCE, "--duration", "3600")
+            self.addCleanup(process.kill)
+            furrow("watch", daemon.tcp, "--subject", "load-000000", "--wait", "--frames", "2", check=0)
+            process.send_signal(signal.SIGINT)
+            code, out, err = finish(process)
+        self.assertEqual(code, 0, err)
+        self.assertIn("so far", out.decode())
+        self.assertRegex(out.decode(), r"\| [1-9]\d* +\| [1-9]\d* ")
+
+    def test_what_cannot_be_done_is_said(self):
+        with Daemon("--no-render") as daemon:
+            port = daemon.ports["udp"]
+        # Nobody is there any more.
+        for command, code, words in (
+                (("load", f"127.0.0.1:{port}", PERFORMANCE), 4, "nobody answers"),
+                (("load", "no-such-host.invalid", PERFORMANCE), 4, "no connection"),
+                (("load", "localhost", "/nonexistent.bvh"), 3, "/nonexistent.bvh"),
+                (("load", "[::1", PERFORMANCE), 2, "HOST"),
+                (("load", "localhost", PERFORMANCE, "--loss", "2"), 2, "--loss"),
+                (("load", "localhost", PERFORMANCE, "--black-hole", "1"), 2, "START:LENGTH"),
+                (("chaos", "--listen", "0", "--to", "localhost", "--black-hole", "x"), 2, "START:LENGTH"),
+                (("chaos", "--listen", "0", "--bind", "somewhere", "--to", "localhost"), 2, "numeric"),
+                (("chaos", "--listen", "0", "--to", "no-such-host.invalid"), 4, "no connection")):
+            result = furrow(*command)
+            self.assertEqual(result.returncode, code, (command, result.stderr.decode()))
+            self.assertIn(words, result.stderr.decode(), command)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/load/chaos_link.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "client/load/chaos_tamper.h"
+#include "protocol/codec.h"
+
+namespace furrow::load {
+namespace {
+
+using Packet = std::vector<std::uint8_t>;
+
+Packet Numbered(int number) {
+  return {static_cast<std::uint8_t>(number), static_cast<std::uint8_t>(number >> 8)};
+}
+int Number(const Packet& packet) { return packet[0] + 256 * packet[1]; }
+
+Packet Weights(std::uint32_t sequence, std::vector<float> values) {
+  Packet packet;
+  protocol::Encoder().Encode({.session = 5, .stream = 1, .sequence = sequence},
+                             protocol::WeightFrame{.names_hash = 9, .values = std::move(values)},
+                             packet);
+  return packet;
+}
+
+std::vector<float> ValuesOf(const Packet& packet, std::uint32_t* sequence) {
+  protocol::MessageView view;
+  protocol::WeightFrame frame;
+  EXPECT_EQ(protocol::OpenMessage(packet, view), protocol::DecodeStatus::kOk);
+  EXPECT_EQ(protocol::Decode(view, frame), protocol::DecodeStatus::kOk);
+  *sequence = view.header.sequence;
+  return frame.values;
+}
+
+// What comes out of `count` packets, one a millisecond, and all that is left a minute later.
+std::vector<int> Pass(ChaosLink& link, int count) {
+  std::vector<int> out;
+  Packet packet;
+  for (int i = 0; i < count; ++i) {
+    link.Push(Numbered(i), i * 1000);
+    while (link.Pop(i * 1000, &packet)) out.push_back(Number(packet));
+  }
+  while (link.Pop(count * 1000 + 60'000'000, &packet)) out.push_back(Number(packet));
+  EXPECT_EQ(link.next_us(), -1);
+  return out;
+}
+
+TEST(ChaosLink, WithoutChaosAllPassAtOnceAndInOrder) {
+  ChaosLink link({}, 0, 0);
+  const auto out = Pass(link, 100);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(out[static_cast<std::size_t>(i)], i);
+}
+
+TEST(ChaosLink, TheSameSeedDoesTheSameAndAnotherDoesNot) {
+  const ChaosOptions options{
+      .seed = 3, .loss = 0.1, .reorder = 0.1, .duplicate = 0.1, .jitter_ms = 5.0};
+  const auto run = [](ChaosOptions with, std::uint64_t seed, std::uint64_t number) {
+    with.seed = seed;
+    ChaosLink link(with, number, 0);
+    return Pass(link, 500);
+  };
+  EXPECT_EQ(run(options, 3, 0), run(options, 3, 0));
+  EXPECT_NE(run(options, 3, 0), run(options, 4, 0));
+  EXPECT_NE(run(options, 3, 0), run(options, 3, 1));
+}
+
+TEST(ChaosLink, LosesItsShare) {
+  ChaosLink link({.loss = 0.2}, 0, 0);
+  const auto out = Pass(link, 10000);
+  // Four standard deviations of a binomial.
+  EXPECT_NEAR(static_cast<double>(link.counts().lost), 2000.0, 4.0 * std::sqrt(1600.0));
+  EXPECT_EQ(out.size() + link.counts().lost, 10000u);
+}
+
+TEST(ChaosLink, AReorderedPacketGoesAfterItsNext) {
+  ChaosLink link({.reorder = 0.05}, 0, 0);
+  const auto out = Pass(link, 2000);
+  ASSERT_EQ(out.size(), 2000u);
+  std::uint64_t descents = 0;
+  for (std::size_t i = 1; i < out.size(); ++i) {
+    if (out[i] > out[i - 1]) continue;
+    EXPECT_EQ(out[i] + 1, out[i - 1]);
+    ++descents;
+  }
+  EXPECT_GT(descents, 50u);
+  EXPECT_EQ(descents, link.counts().reordered);
+}
+
+TEST(ChaosLink, ALonelyReorderedPacketDoesNotWaitForEver) {
+  ChaosLink link({.reorder = 1.0}, 0, 0);
+  link.Push(Numbered(7), 0);
+  Packet packet;
+  EXPECT_FALSE(link.Pop(ChaosLink::kLongestHoldUs - 1, &packet));
+  ASSERT_TRUE(link.Pop(ChaosLink::kLongestHoldUs, &packet));
+  EXPECT_EQ(Number(packet), 7);
+  EXPECT_EQ(link.counts().reordered, 0u);
+}
+
+TEST(ChaosLink, DelayHoldsBackWhatItHits) {
+  ChaosLink link({.delay = 1.0, .delay_ms = 20.0}, 0, 0);
+  link.Push(Numbered(1), 1000);
+  Packet packet;
+  EXPECT_EQ(link.next_us(), 21000);
+  EXPECT_FALSE(link.Pop(20999, &packet));
+  EXPECT_TRUE(link.Pop(21000, &packet));
+  EXPECT_EQ(link.counts().delayed, 1u);
+}
+
+TEST(ChaosLink, DuplicatesComeTwice) {
+  ChaosLink link({.duplicate = 1.0}, 0, 0);
+  EXPECT_EQ(Pass(link, 3), (std::vector<int>{0, 0, 1, 1, 2, 2}));
+}
+
+TEST(ChaosLink, ABlackHoleSwallowsItsTimeAgainAndAgain) {
+  ChaosLink link({.black_holes = {{.start = 0.0095, .length = 0.005, .every = 0.020}}}, 0, 0);
+  const auto out = Pass(link, 40);
+  std::vector<int> expected;
+  for (int i = 0; i < 40; ++i) {
+    const bool swallowed = i >= 10 && (i - 10) % 20 < 5;
+    if (!swallowed) expected.push_back(i);
+  }
+  EXPECT_EQ(out, expected);
+  EXPECT_EQ(link.counts().swallowed, 10u);
+}
+
+TEST(ChaosLink, FalsifiesOneWeightAndLeavesTheMessageValid) {
+  ChaosLink link({.falsify = 1.0}, 0, 0);
+  link.Push(Weights(4, {0.1f, 0.2f, 0.9f}), 0);
+  Packet packet;
+  ASSERT_TRUE(link.Pop(0, &packet));
+  std::uint32_t sequence = 0;
+  const auto values = ValuesOf(packet, &sequence);
+  EXPECT_EQ(sequence, 4u);
+  ASSERT_EQ(values.size(), 3u);
+  int changed = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float was = std::vector<float>{0.1f, 0.2f, 0.9f}[i];
+    if (values[i] != was) ++changed;
+    EXPECT_TRUE(values[i] >= 0.0f && values[i] <= 1.0f);
+  }
+  EXPECT_EQ(changed, 1);
+}
+
+TEST(ChaosLink, SwapsContentsButNotEnvelopes) {
+  ChaosLink link({.swap = 1.0}, 0, 0);
+  link.Push(Weights(1, {0.1f}), 0);
+  Packet packet;
+  EXPECT_FALSE(link.Pop(0, &packet));
+  link.Push(Numbered(9), 1);  // no message: passes
+  ASSERT_TRUE(link.Pop(1, &packet));
+  EXPECT_EQ(Number(packet), 9);
+  link.Push(Weights(2, {0.2f}), 2);
+  std::uint32_t sequence = 0;
+  ASSERT_TRUE(link.Pop(2, &packet));
+  EXPECT_EQ(ValuesOf(packet, &sequence), (std::vector<float>{0.2f}));
+  EXPECT_EQ(sequence, 1u);
+  ASSERT_TRUE(link.Pop(2, &packet));
+  EXPECT_EQ(ValuesOf(packet, &sequence), (std::vector<float>{0.1f}));
+  EXPECT_EQ(sequence, 2u);
+  EXPECT_EQ(link.counts().swapped, 2u);
+}
+
+TEST(ChaosTamper, APoseTurnsAJointAndStaysAPose) {
+  protocol::PoseFrame pose{.skeleton_hash = 1, .num_joints = 2, .rotation_joints = {0, 1}};
+  pose.rotations = {{0, 0, 0, 1}, {0, 0, 0, 1}};
+  Packet packet;
+  protocol::Encoder().Encode({.session = 5}, pose, packet);
+  ASSERT_TRUE(Falsify(&packet, 0.99));
+  protocol::MessageView view;
+  protocol::PoseFrame decoded;
+  ASSERT_EQ(protocol::OpenMessage(packet, view), protocol::DecodeStatus::kOk);
+  ASSERT_EQ(protocol::Decode(view, decoded), protocol::DecodeStatus::kOk);
+  EXPECT_NEAR(decoded.rotations[0].w, 1.0f, 1e-4f);
+  EXPECT_NEAR(decoded.rotations[1].w, 0.5f, 1e-4f);
+  EXPECT_NEAR(std::abs(decoded.rotations[1].x), 0.8660254f, 1e-4f);
+}
+
+TEST(ChaosTamper, NothingElseIsTouched) {
+  Packet hello;
+  protocol::Encoder().Encode({.session = 5}, protocol::Hello{.client = "x"}, hello);
+  const Packet before = hello;
+  EXPECT_FALSE(Falsify(&hello, 0.5));
+  Packet weights = Weights(1, {0.5f});
+  EXPECT_FALSE(SwapContents(&hello, &weights));
+  EXPECT_EQ(hello, before);
+  for (std::size_t size = 0; size < weights.size(); ++size) {
+    Packet cut(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(size));
+    EXPECT_FALSE(Falsify(&cut, 0.5));
+  }
+}
+
+TEST(BlackHole, IsParsedOrRefused) {
+  const auto once = ParseBlackHole("1.5:2");
+  ASSERT_TRUE(once.ok());
+  EXPECT_EQ(once->start, 1.5);
+  EXPECT_EQ(once->length, 2.0);
+  EXPECT_EQ(once->every, 0.0);
+  ASSERT_TRUE(ParseBlackHole("0:1:3").ok());
+  EXPECT_EQ(ParseBlackHole("0:1:3")->every, 3.0);
+  for (const char* bad : {"", "1", "1:", "1:0", "-1:2", "1:2:", "1:2:1", "1:2x", "a:b", "nan:1"})
+    EXPECT_FALSE(ParseBlackHole(bad).ok()) << bad;
+}
+
+}  // namespace
+}  // namespace furrow::load
