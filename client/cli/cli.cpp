@@ -49,6 +49,7 @@ int ParseAndRun(int argc, const char* const* argv) {
   AddPlay(app, action);
   AddWatch(app, action);
   AddFrames(app, action);
+  AddRecord(app, action);
   AddLoad(app, action);
   AddChaos(app, action);
   AddSolve(app, action);

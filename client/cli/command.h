@@ -24,6 +24,7 @@ void AddInfo(CLI::App& app, Action& action);
 void AddCharacter(CLI::App& app, Action& action);
 void AddBake(CLI::App& app, Action& action);
 void AddPlay(CLI::App& app, Action& action);
+void AddRecord(CLI::App& app, Action& action);
 void AddWatch(CLI::App& app, Action& action);
 void AddFrames(CLI::App& app, Action& action);
 void AddLoad(CLI::App& app, Action& action);
