@@ -9,7 +9,7 @@
 namespace furrow::recording {
 namespace {
 
-constexpr int kMaxSameSecond = 1000;
+constexpr int kMaxSameName = 100000;
 
 // "take-20260514T093000Z"
 std::string NameAt(std::uint64_t now_ns) {
@@ -26,7 +26,7 @@ std::string NameAt(std::uint64_t now_ns) {
 Result<std::unique_ptr<TakeFolder>> TakeFolder::Open(TakeFolderOptions options,
                                                      std::uint64_t now_ns) {
   std::error_code error;
-  std::filesystem::create_directories(options.folder, error);
+  if (!options.folder.empty()) std::filesystem::create_directories(options.folder, error);
   if (error)
     return Status(StatusCode::kIo, "the folder cannot be made: " + error.message(),
                   options.folder.string());
@@ -35,12 +35,21 @@ Result<std::unique_ptr<TakeFolder>> TakeFolder::Open(TakeFolderOptions options,
   return folder;
 }
 
-Status TakeFolder::Begin(std::uint64_t now_ns) {
-  const std::string name = NameAt(now_ns);
-  path_ = options_.folder / (name + ".mcap");
+// The first name that is free; that of the first file, where it was asked for, whether free or not.
+std::filesystem::path TakeFolder::NextPath(std::uint64_t now_ns) const {
+  const bool is_named = !options_.name.empty();
+  const std::string stem = is_named ? options_.name.stem().string() : NameAt(now_ns);
+  const std::string extension = is_named ? options_.name.extension().string() : ".mcap";
+  std::filesystem::path path = options_.folder / (stem + extension);
+  if (is_named && num_files_ == 0) return path;
   std::error_code error;
-  for (int i = 2; std::filesystem::exists(path_, error) && i < kMaxSameSecond; ++i)
-    path_ = options_.folder / (name + "_" + std::to_string(i) + ".mcap");
+  for (int i = 2; std::filesystem::exists(path, error) && i < kMaxSameName; ++i)
+    path = options_.folder / (stem + "_" + std::to_string(i) + extension);
+  return path;
+}
+
+Status TakeFolder::Begin(std::uint64_t now_ns) {
+  path_ = NextPath(now_ns);
   auto take = TakeWriter::Create(path_, options_.rig_json);
   if (!take.ok()) return take.status();
   if (take_ != nullptr) earlier_messages_ += take_->num_messages();

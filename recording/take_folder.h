@@ -15,7 +15,8 @@
 namespace furrow::recording {
 
 struct TakeFolderOptions {
-  std::filesystem::path folder;    // made where it is absent
+  std::filesystem::path folder;    // made where it is absent; empty: the current one
+  std::filesystem::path name;      // of the first file; empty: by the time it begins
   std::uint64_t rotate_bytes = 0;  // a file ends when it has grown to this; 0: never
   std::uint64_t rotate_ns = 0;     // and when it covers so much time; 0: never
   std::string rig_json;            // attached to every file; may be empty
@@ -24,13 +25,13 @@ struct TakeFolderOptions {
 // A recording without an end: takes in a folder, one after the other, each complete in itself.
 //
 // - Files are named by the time they begin, "take-20260514T093000Z.mcap", "_2" and so on where that
-//   is taken: nothing is ever overwritten.
+//   is taken; or "name.mcap", "name_2.mcap" and so on. Nothing is ever overwritten.
 // - Every file begins with the skeletons and names of the subjects that are there.
 // - The same skeleton or names again, as senders repeat them, are written once a file and session.
 // - After an error (a full disk) all further calls return it, and the file stays readable.
 class TakeFolder {
  public:
-  // Errors: kIo.
+  // Errors: kIo (also where the named file exists).
   [[nodiscard]] static Result<std::unique_ptr<TakeFolder>> Open(TakeFolderOptions options,
                                                                 std::uint64_t now_ns);
 
@@ -64,6 +65,7 @@ class TakeFolder {
 
   explicit TakeFolder(TakeFolderOptions options) : options_(std::move(options)) {}
   [[nodiscard]] Status Begin(std::uint64_t now_ns);
+  [[nodiscard]] std::filesystem::path NextPath(std::uint64_t now_ns) const;
   [[nodiscard]] Status RotateIfDue(std::uint64_t now_ns);
   [[nodiscard]] Status Remember(Status status);
   // True where this is what the subject's last declaration said.

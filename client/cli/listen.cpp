@@ -29,13 +29,14 @@ int OnGoodbye(protocol::GoodbyeReason reason) {
 }  // namespace
 
 int Listen(client::Subscriber& subscriber,
-           const std::function<bool(const client::Event&)>& on_event) {
+           const std::function<bool(const client::Event&)>& on_event, const ListenEnd& end) {
   constexpr std::int64_t kSilence = 5'000'000;
   using Kind = client::Event::Kind;
   CatchInterrupts();
   const std::int64_t start = SteadyMicroseconds();
   bool heard = false;
-  while (!Interrupted()) {
+  int goodbyes = 0;
+  while (!Interrupted() && (!end.goes_on || end.goes_on())) {
     const std::int64_t now = SteadyMicroseconds();
     const client::Event event = subscriber.Next(now, std::chrono::milliseconds(100));
     switch (event.kind) {
@@ -53,10 +54,17 @@ int Listen(client::Subscriber& subscriber,
       case Kind::kError:
         std::fprintf(stderr, "furrow: the daemon says: %s\n", subscriber.error().message.c_str());
         return kFailed;
-      case Kind::kGoodbye: return OnGoodbye(subscriber.goodbye().reason);
+      case Kind::kGoodbye: {
+        const protocol::GoodbyeReason reason = subscriber.goodbye().reason;
+        if (reason == protocol::GoodbyeReason::kSubjectGone && ++goodbyes != end.goodbyes) continue;
+        return OnGoodbye(reason);
+      }
       case Kind::kReply:
       case Kind::kWeights:
       case Kind::kPicture:
+      case Kind::kSkeleton:
+      case Kind::kPose:
+      case Kind::kDropped:
         heard = true;
         if (!on_event(event)) return kDone;
         break;

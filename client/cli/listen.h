@@ -34,12 +34,19 @@ void AddListenOptions(CLI::App& command, ListenOptions& options, Request& reques
       ->check(CLI::PositiveNumber);
 }
 
-// What `watch` and `frames` share: waits for events, prints what ends the wait, and tells which
-// exit code it comes to. `on_event` gets replies, weights and pictures; false ends it well.
+// When Listen() ends well of itself.
+struct ListenEnd {
+  int goodbyes = 1;  // so many subscriptions whose subject has left; 0: they may return
+  // Asked between events, at least ten times a second; false ends it. May be empty.
+  std::function<bool()> goes_on;
+};
+
+// What `watch`, `frames` and `record` share: waits for events, prints what ends the wait, and tells
+// which exit code it comes to. `on_event` gets what was subscribed to; false ends it well.
 //
 // Ends also on SIGINT and SIGTERM, at a goodbye, on an error of the daemon, and with kNoConnection
 // when nothing at all is heard for five seconds after the start.
 int Listen(client::Subscriber& subscriber,
-           const std::function<bool(const client::Event&)>& on_event);
+           const std::function<bool(const client::Event&)>& on_event, const ListenEnd& end = {});
 
 }  // namespace furrow::cli

@@ -52,6 +52,10 @@ std::uint32_t Subscriber::Subscribe(const protocol::SubscribePictures& request) 
   return Ask(request);
 }
 
+std::uint32_t Subscriber::Subscribe(const protocol::SubscribePoses& request) {
+  return Ask(request);
+}
+
 void Subscriber::Unsubscribe(std::uint16_t subscription) {
   encoder_.Encode({.session = session_, .stream = subscription, .sequence = next_request_++},
                   protocol::Unsubscribe{}, bytes_);
@@ -137,12 +141,27 @@ bool Subscriber::Handle(std::span<const std::uint8_t> message, Event& event) {
   }
   NoticeRestart(view.header.session);
   event.header = view.header;
+  payload_ = view.payload;
   DecodeStatus status = DecodeStatus::kOk;
   switch (view.kind) {
     case MessageKind::kWeights:
       status = protocol::Decode(view, weights_);
       event.kind = Event::Kind::kWeights;
-      if (status == DecodeStatus::kOk) OnWeights(view.header.stream);
+      if (status == DecodeStatus::kOk) OnFrame(view.header.stream, weights_.names_hash);
+      break;
+    case MessageKind::kSkeletonOffer:
+      status = protocol::Decode(view, skeleton_);
+      event.kind = Event::Kind::kSkeleton;
+      if (status == DecodeStatus::kOk) OnSkeleton(view.header.stream);
+      break;
+    case MessageKind::kPose:
+      status = protocol::Decode(view, pose_);
+      event.kind = Event::Kind::kPose;
+      if (status == DecodeStatus::kOk) OnFrame(view.header.stream, pose_.skeleton_hash);
+      break;
+    case MessageKind::kDropped:
+      status = protocol::Decode(view, dropped_);
+      event.kind = Event::Kind::kDropped;
       break;
     case MessageKind::kImage:
       status = protocol::Decode(view, picture_);
@@ -195,10 +214,15 @@ void Subscriber::OnReply(const protocol::Header& header) {
   found->names_hash = reply_.names_hash;
 }
 
-// Weights of names that never came: their reply was lost.
-void Subscriber::OnWeights(std::uint16_t subscription) {
+void Subscriber::OnSkeleton(std::uint16_t subscription) {
   const auto found = std::ranges::find(requests_, subscription, &Request::subscription);
-  if (found != requests_.end() && found->names_hash != weights_.names_hash) found->waiting = true;
+  if (found != requests_.end()) found->names_hash = skeleton_.skeleton_hash;
+}
+
+// Weights of names, or poses of a skeleton, that never came: the reply was lost.
+void Subscriber::OnFrame(std::uint16_t subscription, std::uint64_t hash) {
+  const auto found = std::ranges::find(requests_, subscription, &Request::subscription);
+  if (found != requests_.end() && found->names_hash != hash) found->waiting = true;
 }
 
 // False: dealt with here, nothing for the caller.

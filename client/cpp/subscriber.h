@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct Event {
     kReply,         // reply(): a subscription began, or its names changed
     kWeights,       // weights()
     kPicture,       // picture()
+    kSkeleton,      // skeleton(): what the poses that follow mean
+    kPose,          // pose(), and payload() as it was published
+    kDropped,       // dropped(): of a subscription to every frame
     kError,         // error(): request `header.sequence`, or subscription `header.stream`, failed
     kGoodbye,       // goodbye()
     kClosed,        // TCP: the daemon closed the connection, or answers nothing for 15 s
@@ -28,7 +32,7 @@ struct Event {
   protocol::Header header;  // stream: the subscription; sequence and capture time: the pose's
 };
 
-// Receives weights and pictures from a daemon: over TCP both, over UDP weights alone.
+// Receives weights, poses and pictures from a daemon; pictures over TCP alone.
 //
 //   Subscriber subscriber(std::move(transport), "my engine 1.0");
 //   subscriber.Subscribe(protocol::SubscribeWeights{.subject = "ada"});
@@ -44,6 +48,7 @@ class Subscriber {
   // Ask, and get the request's number, which the answer repeats in header.sequence.
   std::uint32_t Subscribe(const protocol::SubscribeWeights& request);
   std::uint32_t Subscribe(const protocol::SubscribePictures& request);
+  std::uint32_t Subscribe(const protocol::SubscribePoses& request);
   void Unsubscribe(std::uint16_t subscription);
 
   [[nodiscard]] Event Next(std::int64_t now_us, std::chrono::milliseconds wait);
@@ -51,8 +56,14 @@ class Subscriber {
   [[nodiscard]] const protocol::SubscribeReply& reply() const { return reply_; }
   [[nodiscard]] const protocol::WeightFrame& weights() const { return weights_; }
   [[nodiscard]] const protocol::ImageFrame& picture() const { return picture_; }
+  [[nodiscard]] const protocol::SkeletonOffer& skeleton() const { return skeleton_; }
+  [[nodiscard]] const protocol::PoseFrame& pose() const { return pose_; }
+  [[nodiscard]] const protocol::Dropped& dropped() const { return dropped_; }
   [[nodiscard]] const protocol::ErrorMessage& error() const { return error_; }
   [[nodiscard]] const protocol::Goodbye& goodbye() const { return goodbye_; }
+
+  // The FlatBuffers buffer of the message that the last event names; valid until the next call.
+  [[nodiscard]] std::span<const std::uint8_t> payload() const { return payload_; }
 
   // Messages that could not be decoded, and so were dropped.
   [[nodiscard]] std::uint64_t malformed() const { return malformed_; }
@@ -64,7 +75,7 @@ class Subscriber {
     bool wait = false;
     bool waiting = true;  // for an answer
     std::uint16_t subscription = 0;
-    std::uint64_t names_hash = 0;
+    std::uint64_t names_hash = 0;  // or the skeleton's
     std::vector<std::uint8_t> bytes;
   };
 
@@ -79,7 +90,8 @@ class Subscriber {
   bool Handle(std::span<const std::uint8_t> message, Event& event);
   bool HandleWelcome(const protocol::MessageView& view);
   void OnReply(const protocol::Header& header);
-  void OnWeights(std::uint16_t subscription);
+  void OnSkeleton(std::uint16_t subscription);
+  void OnFrame(std::uint16_t subscription, std::uint64_t hash);
   [[nodiscard]] bool OnError(const protocol::Header& header);
   void OnGoodbye(std::uint16_t subscription);
 
@@ -101,6 +113,10 @@ class Subscriber {
   protocol::SubscribeReply reply_;
   protocol::WeightFrame weights_;
   protocol::ImageFrame picture_;
+  protocol::SkeletonOffer skeleton_;
+  protocol::PoseFrame pose_;
+  protocol::Dropped dropped_;
+  std::span<const std::uint8_t> payload_;
   protocol::ErrorMessage error_;
   protocol::Goodbye goodbye_;
 };

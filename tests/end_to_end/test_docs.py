@@ -85,9 +85,27 @@ class DocumentTest(unittest.TestCase):
                 if words[0] == "furrowd":
                     with Daemon(*[self.root / w if w == "takes" else w for w in words[1:]]):
                         continue
-                self.run_here([daemon.udp if w == "localhost" else w for w in words])
+                if words[1] == "record":
+                    self.record_here(words, daemon)
+                else:
+                    self.run_here([daemon.udp if w == "localhost" else w for w in words])
                 seen.add(words[1])
-        self.assertEqual(seen, {"info", "play", "solve", "convert"})
+        self.assertEqual(seen, {"record", "info", "play", "solve", "convert"})
+
+    def record_here(self, words, daemon):
+        """A recording of everybody whom it names, ended after half a second."""
+        names = [words[i + 1] for i, word in enumerate(words) if word == "--subject"]
+        stage = [spawn("play", PERFORMANCE, "--to", daemon.udp, "--loop", "--subject", name) for name in names]
+        for player, name in zip(stage, names):
+            self.addCleanup(player.kill)
+            furrow("watch", daemon.tcp, "--subject", name, "--wait", "--frames", "1", check=0)
+        place = {"localhost": daemon.tcp, "take.mcap": f"recorded-{len(list(self.root.glob('recorded-*')))}.mcap",
+                 "60": "0.5"}
+        words = [place.get(word, word) for word in words]
+        self.run_here(words if "--duration" in words else [*words, "--duration", "0.5"])
+        for player in stage:
+            player.terminate()
+            finish(player)
 
 
 if __name__ == "__main__":

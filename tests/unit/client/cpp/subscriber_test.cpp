@@ -71,6 +71,52 @@ TEST_F(SubscriberTest, LostUdpRequestsAreSentAgainAndTheLeaseIsKept) {
   EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kPing});
 }
 
+TEST_F(SubscriberTest, PosesComeWithTheirSkeletonAndAsTheyWerePublished) {
+  Subscriber subscriber = Make(TransportKind::kUdp);
+  far_->Answer({.session = 5}, protocol::Welcome{.server = "furrowd", .token = 0});
+  (void)subscriber.Next(0, milliseconds(0));
+  const std::uint32_t request = subscriber.Subscribe(protocol::SubscribePoses{.subject = "ada"});
+  (void)far_->TakeKinds();
+  protocol::SkeletonOffer offer;
+  offer.subject = "ada";
+  offer.blend_shape_names = {"jaw"};
+  protocol::PoseFrame pose;
+  pose.skeleton_hash = protocol::SkeletonHash(offer);
+  pose.num_blend_shapes = 1;
+  pose.blend_shapes = {0.5f};
+
+  // The skeleton was lost: its poses are handed out, and it is asked for again.
+  far_->Answer({.session = 5, .stream = 3, .sequence = request},
+               protocol::SubscribeReply{.subject = "ada", .publisher_session = 9});
+  far_->Answer({.session = 5, .stream = 3, .sequence = 40}, pose);
+  EXPECT_EQ(subscriber.Next(10, milliseconds(0)).kind, Kind::kReply);
+  EXPECT_EQ(subscriber.reply().publisher_session, 9u);
+  const Event event = subscriber.Next(20, milliseconds(0));
+  EXPECT_EQ(event.kind, Kind::kPose);
+  EXPECT_EQ(event.header.sequence, 40u);
+  EXPECT_EQ(subscriber.pose().blend_shapes, pose.blend_shapes);
+  std::vector<std::uint8_t> sent;
+  protocol::Encoder().Encode({.session = 1}, pose, sent);
+  EXPECT_TRUE(std::ranges::equal(subscriber.payload(),
+                                 std::span(sent).subspan(protocol::kEnvelopeBytes)));
+  (void)subscriber.Next(250'000, milliseconds(0));
+  EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSubscribePoses});
+
+  far_->Answer({.session = 5, .stream = 3, .sequence = request},
+               protocol::SubscribeReply{.subject = "ada", .publisher_session = 9});
+  far_->Answer({.session = 5, .stream = 3, .sequence = request}, offer);
+  far_->Answer({.session = 5, .stream = 3, .sequence = 41}, pose);
+  far_->Answer({.session = 5, .stream = 3, .sequence = request}, protocol::Dropped{7});
+  EXPECT_EQ(subscriber.Next(260'000, milliseconds(0)).kind, Kind::kReply);
+  EXPECT_EQ(subscriber.Next(260'001, milliseconds(0)).kind, Kind::kSkeleton);
+  EXPECT_EQ(subscriber.skeleton().blend_shape_names, offer.blend_shape_names);
+  EXPECT_EQ(subscriber.Next(260'002, milliseconds(0)).kind, Kind::kPose);
+  EXPECT_EQ(subscriber.Next(260'003, milliseconds(0)).kind, Kind::kDropped);
+  EXPECT_EQ(subscriber.dropped().frames, 7u);
+  (void)subscriber.Next(600'000, milliseconds(0));
+  EXPECT_TRUE(far_->sent.empty()) << "nothing is missing";
+}
+
 TEST_F(SubscriberTest, NamesThatWereLostAreAskedForAgain) {
   Subscriber subscriber = Make(TransportKind::kUdp);
   far_->Answer({.session = 5}, protocol::Welcome{.server = "furrowd", .token = 0});
