@@ -300,6 +300,9 @@ void Subscribers::OnSubjectReady(Subject& subject) {
     wish->Bind(*subject.pipeline->stream().binding);
     if (wish->names_hash != before) to_bind.push_back(subscription);
   }
+  // In the order in which they were asked for, and so are their frames: a recorder that asks for
+  // poses before weights has each pose before what was made of it.
+  std::ranges::sort(to_bind, {}, &Subscription::uid);
   for (Subscription* subscription : to_bind) Bind(*subscription, subject);
 }
 

@@ -139,6 +139,23 @@ TEST_F(HubPoses, WaitingIsAnsweredWhenTheSubjectComes) {
   EXPECT_TRUE(viewer.Take<protocol::SkeletonOffer>().has_value());
 }
 
+TEST_F(HubPoses, WhoAsksForPosesBeforeWeightsGetsThemInThatOrder) {
+  for (std::uint32_t request = 0; request < 40; ++request) {
+    Send(viewer, protocol::SubscribePoses{.subject = "ann", .wait = true}, 0, 2 * request);
+    Send(viewer, protocol::SubscribeWeights{.subject = "ann", .wait = true}, 0, 2 * request + 1);
+  }
+  Publish(sender, "ann");
+  viewer.inbox.clear();
+  Send(sender, Pose(0.5f), 1, 0);
+  ASSERT_EQ(viewer.inbox.size(), 64u) << "as many as a peer may have";
+  for (std::size_t i = 0; i < viewer.inbox.size(); ++i) {
+    protocol::MessageView view;
+    ASSERT_EQ(protocol::OpenMessage(viewer.inbox[i], view), protocol::DecodeStatus::kOk);
+    EXPECT_EQ(view.kind,
+              i % 2 == 0 ? protocol::MessageKind::kPose : protocol::MessageKind::kWeights);
+  }
+}
+
 TEST_F(HubPoses, ARepeatedRequestIsAnsweredWithTheSkeletonAgain) {
   Publish(sender, "ann");
   const std::uint16_t id = Follow({.subject = "ann"});
