@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "client/cli/inputs.h"
-#include "client/cli/wire_pose.h"
+#include "recording/wire_pose.h"
 
 namespace furrow::cli {
 
@@ -43,7 +43,7 @@ std::span<const double> PlaySource::times() const {
 
 protocol::SkeletonOffer PlaySource::Offer(const std::string& subject, float metres_per_unit) const {
   if (const auto* clip = std::get_if<motion::Clip>(&poses_))
-    return OfferOf(*clip, subject, metres_per_unit);
+    return recording::OfferOf(*clip, subject, metres_per_unit);
   protocol::SkeletonOffer offer = std::get<TakePoses>(poses_).offer();
   offer.subject = subject;
   offer.metres_per_unit *= metres_per_unit;
@@ -52,7 +52,7 @@ protocol::SkeletonOffer PlaySource::Offer(const std::string& subject, float metr
 
 void PlaySource::Fill(int frame, protocol::PoseFrame* pose) const {
   if (const auto* clip = std::get_if<motion::Clip>(&poses_)) {
-    FillPose(*clip, frame, pose);
+    recording::FillPose(*clip, frame, pose);
   } else {
     std::get<TakePoses>(poses_).Get(static_cast<std::size_t>(frame), pose);
   }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "client/cli/progress.h"
-#include "client/cli/wire_pose.h"
+#include "recording/wire_pose.h"
 #include "protocol/codec.h"
 #include "protocol/hash.h"
 #include "recording/take_writer.h"
@@ -103,7 +103,7 @@ Status SaveTake(const motion::Clip& clip, const std::filesystem::path& path) {
   const std::string subject = clip.name.empty() ? path.stem().string() : clip.name;
   protocol::Encoder encoder;
   std::vector<std::uint8_t> bytes;
-  protocol::SkeletonOffer offer = OfferOf(clip, subject, 1.0f);
+  protocol::SkeletonOffer offer = recording::OfferOf(clip, subject, 1.0f);
   const auto skeleton = Encoded(encoder, offer, &bytes);
   if (!skeleton.ok()) return skeleton.status().At(path.string() + ": skeleton");
   auto take = recording::TakeWriter::Create(path, {});
@@ -113,7 +113,7 @@ Status SaveTake(const motion::Clip& clip, const std::filesystem::path& path) {
   protocol::PoseFrame pose;
   pose.skeleton_hash = protocol::SkeletonHash(offer);
   for (int frame = 0; frame < clip.num_frames() && status.ok(); ++frame) {
-    FillPose(clip, frame, &pose);
+    recording::FillPose(clip, frame, &pose);
     const auto payload = Encoded(encoder, pose, &bytes);
     if (!payload.ok()) {
       status = payload.status().At(path.string() + ": frame " + std::to_string(frame));

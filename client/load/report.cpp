@@ -94,6 +94,27 @@ std::vector<LineChart> ByRate(std::vector<RateStep> steps) {
   return {latency, loss};
 }
 
+nlohmann::json CountsOf(const RunResult& result) {
+  const Tally& tally = result.tally;
+  return {{"offered", tally.offered},
+          {"sent", tally.sent},
+          {"expected", tally.expected},
+          {"received", tally.received},
+          {"lost", tally.lost()},
+          {"late", tally.late},
+          {"wrong", tally.wrong},
+          {"swapped", tally.swapped},
+          {"falsified", tally.wrong - tally.swapped},
+          {"reordered", tally.reordered},
+          {"duplicates", tally.duplicates},
+          {"never_sent", tally.never_sent},
+          {"malformed", result.malformed},
+          {"checked", tally.checked},
+          {"unchecked", tally.unchecked},
+          {"overrun", result.overrun},
+          {"churn_returns", result.churn_returns}};
+}
+
 }  // namespace
 
 std::string LiveLine(double seconds, const Tally& tally, const Histogram& latency_ns) {
@@ -144,37 +165,18 @@ std::string ToText(const RunResult& result, const RunOptions& options) {
 }
 
 nlohmann::json ToJson(const RunResult& result) {
-  const Tally& tally = result.tally;
-  nlohmann::json json = {
-      {"seconds", result.seconds},
-      {"poses_per_second", result.planned_rate},
-      {"offered", tally.offered},
-      {"sent", tally.sent},
-      {"expected", tally.expected},
-      {"received", tally.received},
-      {"lost", tally.lost()},
-      {"late", tally.late},
-      {"wrong", tally.wrong},
-      {"swapped", tally.swapped},
-      {"falsified", tally.wrong - tally.swapped},
-      {"reordered", tally.reordered},
-      {"duplicates", tally.duplicates},
-      {"never_sent", tally.never_sent},
-      {"malformed", result.malformed},
-      {"checked", tally.checked},
-      {"unchecked", tally.unchecked},
-      {"largest_difference", tally.largest_difference},
-      {"overrun", result.overrun},
-      {"churn_returns", result.churn_returns},
-      {"interrupted", result.interrupted},
-      {"complaint", result.complaint},
-      {"latency_us",
-       {{"p50", result.p(50.0)},
-        {"p90", result.p(90.0)},
-        {"p99", result.p(99.0)},
-        {"p99.9", result.p(99.9)},
-        {"max", result.p(100.0)}}},
-      {"send_delay_p99_us", static_cast<double>(result.send_delay_ns.Percentile(99.0)) * 1e-3}};
+  nlohmann::json json = CountsOf(result);
+  json["seconds"] = result.seconds;
+  json["poses_per_second"] = result.planned_rate;
+  json["largest_difference"] = result.tally.largest_difference;
+  json["interrupted"] = result.interrupted;
+  json["complaint"] = result.complaint;
+  json["latency_us"] = {{"p50", result.p(50.0)},
+                        {"p90", result.p(90.0)},
+                        {"p99", result.p(99.0)},
+                        {"p99.9", result.p(99.9)},
+                        {"max", result.p(100.0)}};
+  json["send_delay_p99_us"] = static_cast<double>(result.send_delay_ns.Percentile(99.0)) * 1e-3;
   if (result.cpu_seconds) {
     json["cpu_seconds"] = *result.cpu_seconds;
     json["cpu_us_per_pose"] = result.cpu_us_per_pose().value_or(0.0);

@@ -9,7 +9,7 @@ import tempfile
 import unittest
 import xml.etree.ElementTree
 
-from furrow_testing import SHARE, Daemon, finish, furrow, spawn
+from furrow_testing import SHARE, Daemon, commands, finish, furrow, spawn
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 # Nothing here depends on how fast this machine is: only minutes are late.
@@ -172,6 +172,30 @@ class LoadTest(unittest.TestCase):
         self.assertEqual(code, 0, err)
         self.assertIn("so far", out.decode())
         self.assertRegex(out.decode(), r"\| [1-9]\d* +\| [1-9]\d* ")
+
+    def test_the_documents_commands(self):
+        (self.folder / "performance.bvh").symlink_to(PERFORMANCE)
+        quick = ["--duration", "0.3", "--late", "60000"]
+        seen = set()
+        with Daemon("--no-render") as daemon:
+            ports = {"localhost": daemon.udp, "localhost:7401": daemon.udp, "7400": daemon.ports["tcp"], "7501": 0}
+            for words in commands("docs/LOAD.md"):
+                words = [ports.get(w, self.folder / w if w.startswith("out.") else w) for w in words[1:]]
+                seen.add(words[0])
+                if words[0] == "chaos":
+                    process = spawn(*words)
+                    self.assertIn("ready", process.stdout.readline().decode())
+                    process.send_signal(signal.SIGTERM)
+                    self.assertEqual(finish(process)[0], 0)
+                    continue
+                words[2] = PERFORMANCE
+                if "--duration" in words:
+                    at = words.index("--duration")
+                    del words[at:at + 2]
+                if "--find-max" in words:
+                    words += ["--rounds", "1", "--searches", "1", "--probe", "0.1", "--limit", "4000"]
+                furrow(*words, *quick, "--other-port", daemon.ports["tcp"], check=0)
+        self.assertEqual(seen, {"load", "chaos"})
 
     def test_what_cannot_be_done_is_said(self):
         with Daemon("--no-render") as daemon:

@@ -6,7 +6,7 @@
 #include "motion/clip.h"
 #include "protocol/messages.h"
 
-namespace furrow::cli {
+namespace furrow::recording {
 
 // A clip's skeleton as the wire offers it.
 [[nodiscard]] protocol::SkeletonOffer OfferOf(const motion::Clip& clip, const std::string& subject,
@@ -16,4 +16,4 @@ namespace furrow::cli {
 // those that leave their rest. Reuses `pose`'s memory.
 void FillPose(const motion::Clip& clip, int frame, protocol::PoseFrame* pose);
 
-}  // namespace furrow::cli
+}  // namespace furrow::recording

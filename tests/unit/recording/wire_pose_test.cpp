@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client/cli/wire_pose.h"
+#include "recording/wire_pose.h"
 
 #include <gtest/gtest.h>
 
 #include "protocol/codec.h"
 
-namespace furrow::cli {
+namespace furrow::recording {
 namespace {
 
 motion::Clip TwoJoints() {
@@ -64,4 +64,4 @@ TEST(WirePoseTest, ReusedPoseForgetsTheLastFrame) {
 }
 
 }  // namespace
-}  // namespace furrow::cli
+}  // namespace furrow::recording

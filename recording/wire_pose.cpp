@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client/cli/wire_pose.h"
+#include "recording/wire_pose.h"
 
 #include <numeric>
 #include <span>
 
-namespace furrow::cli {
+namespace furrow::recording {
 namespace {
 
 protocol::Vec3 Wire(const glm::vec3& v) { return {v.x, v.y, v.z}; }
@@ -67,4 +67,4 @@ void FillPose(const motion::Clip& clip, int frame, protocol::PoseFrame* pose) {
   pose->blend_shapes.assign(values.begin(), values.end());
 }
 
-}  // namespace furrow::cli
+}  // namespace furrow::recording
