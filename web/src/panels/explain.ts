@@ -85,11 +85,10 @@ export class ExplainPanel {
 
 function explanationElement(explanation: Explanation): HTMLElement {
   const rows = explanation.contributions.map((item) => {
-    const bar = h('span', { class: 'bar squash', style: `--value:${Math.min(1, Math.abs(item.product)).toFixed(3)}` });
     return h('tr', {},
       h('th', { scope: 'row' }, item.value, h('small', {}, contributionWords(item))),
       h('td', { class: 'number' }, item.gain === 1 ? fixed(item.driver_value) : `${fixed(item.driver_value)} × ${fixed(item.gain)}`),
-      h('td', { class: 'number' }, h('span', { class: 'track' }, bar), fixed(item.product)));
+      h('td', { class: 'number' }, fixed(item.product)));
   });
   return h('article', { 'data-weight': explanation.weight },
     h('h4', {}, explanation.weight, h('output', {}, fixed(explanation.live))),
