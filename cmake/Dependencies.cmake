@@ -38,7 +38,8 @@ add_library(furrow_beast INTERFACE)
 find_path(FURROW_BOOST_INCLUDE boost/beast.hpp REQUIRED)
 target_include_directories(furrow_beast SYSTEM INTERFACE "${FURROW_BOOST_INCLUDE}")
 target_link_libraries(furrow_beast INTERFACE Threads::Threads)
-find_package(prometheus-cpp REQUIRED)
+# By pkg-config: the CMake package wants the libraries of its pusher too.
+pkg_check_modules(PROMETHEUS REQUIRED IMPORTED_TARGET prometheus-cpp-core)
 
 add_library(furrow_cli11 INTERFACE)
 find_path(FURROW_CLI11_INCLUDE CLI/CLI.hpp REQUIRED)

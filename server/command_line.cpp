@@ -25,6 +25,7 @@ struct Flags {
   std::string config_file;
   std::string osc_out;
   bool no_render = false;
+  bool no_http = false;
 };
 
 // Declares every flag on `config`; parsing writes only those that were given.
@@ -37,6 +38,11 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--bind", config->bind, "address to listen on (default 127.0.0.1)");
   app->add_option("--tcp", config->tcp, "TCP port: poses in, weights and pictures out (7400)");
   app->add_option("--udp", config->udp, "UDP port: poses in, weights out (7401)");
+  app->add_option("--http", config->http.port,
+                  "port of the page (7480, or any free one where that is taken; 0: any)");
+  app->add_flag("--no-http", flags->no_http, "no page, no WebSocket, no JSON");
+  app->add_option("--play", config->play,
+                  "recording that plays inside the daemon, with a timeline on the page (none)");
   app->add_flag("--no-render", flags->no_render, "weights only, no GL");
   app->add_flag("--require-render", config->require_render, "end (1) where GL cannot be had");
   app->add_option("--render-device", config->render_device,
@@ -99,6 +105,7 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
     second.parse(Reversed(args));
   }
   if (flags.no_render) config.render = false;
+  if (flags.no_http) config.http.enabled = false;
   if (!flags.osc_out.empty()) {
     Result<HostPort> destination = ParseHostPort(flags.osc_out);
     if (!destination.ok()) {

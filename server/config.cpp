@@ -86,6 +86,13 @@ Status ValidateConfig(const Config& config) {
     if (!std::isfinite(limit) || limit < 0.0 || limit > 1e9)
       return OutOfRange("record.rotate_megabytes and rotate_seconds must be 0 to 1e9");
   }
+  if (config.http.max_connections < 1 || config.http.max_connections > 1'000'000) {
+    return OutOfRange("http.max_connections must be 1 to 1000000");
+  }
+  if (config.http.enabled && config.http.port && *config.http.port != 0 &&
+      *config.http.port == config.tcp) {
+    return OutOfRange("--http and --tcp name the same TCP port, " + std::to_string(config.tcp));
+  }
   if (Status status = ValidatePorts(config); !status.ok()) return status;
   return ValidateLimits(config.limits);
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "server/exit_code.h"
+#include "server/http/http_config.h"
 #include "wrinkle/status.h"
 
 namespace furrow::server {
@@ -64,6 +65,8 @@ struct Config {
   std::optional<HostPort> osc_out;
   std::string osc_prefix = "furrow";  // /<prefix>/<subject>/<wrinkle weight>
   RecordConfig record;
+  HttpConfig http;
+  std::filesystem::path play;  // a recording that plays inside the daemon; empty: none
   bool verbose = false;  // one status line a second
   bool log_json = false;
   Limits limits;

@@ -161,6 +161,7 @@ Status ParseConfig(std::string_view text, std::string_view source_name, Config* 
   Config read = *config;
   const std::filesystem::path folder = std::filesystem::path(source_name).parent_path();
   const Key top[] = {Path("character", &read.character, folder), Path("rig", &read.rig, folder),
+                     Path("play", &read.play, folder),
                      NameOrFile("skeleton_map", &read.skeleton_map, folder)};
   const Key listen[] = {Text("bind", &read.bind), Port("tcp", &read.tcp), Port("udp", &read.udp)};
   const Key render[] = {Flag("enabled", &read.render), Flag("required", &read.require_render),
@@ -174,6 +175,13 @@ Status ParseConfig(std::string_view text, std::string_view source_name, Config* 
                         Number("rotate_megabytes", &record_of.rotate_megabytes),
                         Number("rotate_seconds", &record_of.rotate_seconds),
                         Flag("datagrams", &record_of.datagrams)};
+  HttpConfig& http_of = read.http;
+  const Key http[] = {Flag("enabled", &http_of.enabled),
+                      Port("port", &http_of.port),
+                      Texts("allow_hosts", &http_of.allow_hosts),
+                      Texts("allow_origins", &http_of.allow_origins),
+                      Count("max_connections", &http_of.max_connections),
+                      Path("page", &http_of.page, folder)};
   const Key log[] = {Flag("verbose", &read.verbose), Flag("json", &read.log_json)};
   Limits& limits_of = read.limits;
   const Key limits[] = {Count("max_connections", &limits_of.max_connections),
@@ -188,12 +196,12 @@ Status ParseConfig(std::string_view text, std::string_view source_name, Config* 
                         Number("loss_seconds", &limits_of.loss_seconds),
                         Number("drain_seconds", &limits_of.drain_seconds)};
   const std::pair<std::string_view, std::span<const Key>> tables[] = {
-      {"listen", listen}, {"render", render}, {"mocap", mocap},  {"osc", osc},
-      {"record", record}, {"log", log},       {"limits", limits}};
+      {"listen", listen}, {"render", render}, {"mocap", mocap}, {"osc", osc},
+      {"record", record}, {"http", http},     {"log", log},     {"limits", limits}};
 
   const Reader reader(source_name);
-  Status status = reader.ReadTable(root, "", top,
-                                   {"listen", "render", "mocap", "osc", "record", "log", "limits"});
+  Status status = reader.ReadTable(
+      root, "", top, {"listen", "render", "mocap", "osc", "record", "http", "log", "limits"});
   for (const auto& [name, keys] : tables) {
     const toml::table* table = root[name].as_table();
     if (status.ok() && table != nullptr) {

@@ -27,12 +27,15 @@
 #include "protocol/mocap/livelink_face.h"
 #include "protocol/mocap/vmc.h"
 #include "server/assets.h"
+#include "server/http/api.h"
+#include "server/http/http_server.h"
 #include "server/net/clock.h"
 #include "server/net/mocap_input.h"
 #include "server/net/osc_output.h"
 #include "server/net/tcp_server.h"
 #include "server/net/udp_server.h"
 #include "server/pipeline/render_thread.h"
+#include "server/playback/player.h"
 #include "server/recording/recorder.h"
 #include "server/session/hub.h"
 #include "server/status_line.h"
@@ -66,15 +69,18 @@ class Daemon {
 
   Status StartRendering();
   Status StartRecording();
+  Status LoadPlayer();
   Status Listen();
   void Serve();
 
  private:
   void MakeHub();
+  Status StartWeb();
   Status OpenMocap();
   void Announce() const;
   asio::awaitable<void> TickLoop();
   asio::awaitable<void> SecondLoop();
+  asio::awaitable<void> PlayLoop();
   asio::awaitable<void> Drain();
   void RequestDrain();
 
@@ -83,24 +89,28 @@ class Daemon {
   Assets assets_;
   Metrics own_metrics_;
   Metrics* const metrics_;
+  render::Settings settings_;
+  std::uint64_t session_ = 0;
   asio::io_context io_{1};  // one thread runs it
   asio::signal_set signals_;
   OscOutput osc_;
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<RenderThread> render_;
+  std::unique_ptr<Player> player_;  // a peer of the hub, which goes first
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<TcpServer> tcp_;
   std::unique_ptr<UdpServer> udp_;
   std::unique_ptr<MocapInput> vmc_;
   std::unique_ptr<MocapInput> livelink_face_;
+  std::unique_ptr<Api> api_;
+  std::unique_ptr<HttpServer> http_;
   bool draining_ = false;
 };
 
 Status Daemon::StartRendering() {
   if (!config_.render || assets_.character == nullptr) return {};
-  render::Settings settings;
   if (!config_.render_settings.empty()) {
-    Status loaded = render::LoadSettings(config_.render_settings, &settings);
+    Status loaded = render::LoadSettings(config_.render_settings, &settings_);
     if (!loaded.ok()) return loaded;
   }
   auto started = RenderThread::Start(
@@ -111,8 +121,7 @@ Status Daemon::StartRendering() {
       metrics_,
       [this](FinishedPicture picture) {
         asio::post(io_, [this, picture = std::move(picture)] { hub_->OnPicture(picture); });
-      },
-      settings);
+      });
   if (started.ok()) {
     render_ = *std::move(started);
     spdlog::info("rendering on {}", render_->description());
@@ -145,11 +154,12 @@ Status Daemon::StartRecording() {
 void Daemon::MakeHub() {
   Hub::Parts parts;
   parts.limits = config_.limits;
-  parts.session = RandomNumber();
+  parts.session = session_ = RandomNumber();
   parts.rig = assets_.rig;
   parts.character = render_ != nullptr ? &assets_.character->skeleton : nullptr;
   parts.skeletons = assets_.skeletons;
   parts.pictures = render_.get();
+  parts.settings = settings_;
   parts.metrics = metrics_;
   parts.make_token = RandomNumber;
   if (config_.osc_out) parts.on_weights = [this](const Subject& subject) { osc_.Send(subject); };
@@ -168,7 +178,44 @@ Status Daemon::Listen() {
     if (Status status = osc_.Open(*config_.osc_out, config_.osc_prefix); !status.ok())
       return status;
   }
-  return OpenMocap();
+  if (Status status = OpenMocap(); !status.ok()) return status;
+  return StartWeb();
+}
+
+Status Daemon::LoadPlayer() {
+  if (config_.play.empty()) return {};
+  auto player = Player::Load(config_.play);
+  if (!player.ok()) return player.status();
+  player_ = *std::move(player);
+  return {};
+}
+
+Status Daemon::StartWeb() {
+  if (!config_.http.enabled) return {};
+  Api::Parts parts;
+  parts.session = session_;
+  parts.started = ReadClock();
+  parts.metrics = metrics_;
+  parts.pictures = render_.get();
+  parts.wants_pictures = config_.render && assets_.character != nullptr;
+  if (render_ != nullptr) parts.renderer = render_->description();
+  parts.player = player_.get();
+  parts.connections = [this] { return http_->connections(); };
+  parts.viewers = [this] { return http_->viewers(); };
+  api_ = std::make_unique<Api>(std::move(parts));
+  auto started = HttpServer::Start(
+      {.config = config_.http,
+       .bind = config_.bind,
+       .post_to_hub =
+           [this](std::function<void(Hub&, Time)> task) {
+             asio::post(io_, [this, task = std::move(task)] { task(*hub_, ReadClock()); });
+           },
+       .answer = [this](const ApiRequest& request, Hub& hub,
+                        Time now) { return api_->Answer(request, hub, now); },
+       .metrics = metrics_});
+  if (!started.ok()) return started.status();
+  http_ = *std::move(started);
+  return {};
 }
 
 Status Daemon::OpenMocap() {
@@ -207,6 +254,10 @@ void Daemon::Announce() const {
                      std::to_string(ready.udp) + " render=" + (ready.render ? "on" : "off");
   if (ready.vmc) line += " vmc=" + host + std::to_string(*ready.vmc);
   if (ready.livelink_face) line += " livelink_face=" + host + std::to_string(*ready.livelink_face);
+  if (http_) {
+    ready.http = http_->port();
+    line += " http=" + host + std::to_string(*ready.http);
+  }
   std::printf("%s\n", line.c_str());
   std::fflush(stdout);
   if (options_.on_ready) options_.on_ready(ready);
@@ -219,6 +270,7 @@ void Daemon::Serve() {
   if (livelink_face_) livelink_face_->Start();
   asio::co_spawn(io_, TickLoop(), asio::detached);
   asio::co_spawn(io_, SecondLoop(), asio::detached);
+  if (player_) asio::co_spawn(io_, PlayLoop(), asio::detached);
   if (options_.handle_signals) {
     signals_.add(SIGTERM);
     signals_.add(SIGINT);
@@ -230,7 +282,8 @@ void Daemon::Serve() {
                                    [this] { asio::post(io_, [this] { RequestDrain(); }); });
   Announce();
   io_.run();
-  render_.reset();  // before io_, to which it posts
+  http_.reset();  // both before io_, to which they post
+  render_.reset();
 }
 
 asio::awaitable<void> Daemon::TickLoop() {
@@ -261,6 +314,16 @@ asio::awaitable<void> Daemon::SecondLoop() {
   }
 }
 
+asio::awaitable<void> Daemon::PlayLoop() {
+  asio::steady_timer timer(io_);
+  player_->Start(hub_.get(), ReadClock());
+  while (true) {
+    const Time now = ReadClock();
+    timer.expires_after(player_->Advance(now) - now);
+    co_await timer.async_wait(kToken);
+  }
+}
+
 void Daemon::RequestDrain() {
   if (std::exchange(draining_, true)) return;
   asio::co_spawn(io_, Drain(), asio::detached);
@@ -275,6 +338,7 @@ asio::awaitable<void> Daemon::Drain() {
   if (vmc_) vmc_->Close();
   if (livelink_face_) livelink_face_->Close();
   tcp_->Drain();
+  if (http_) http_->Drain();
   asio::steady_timer timer(io_);
   while (tcp_->num_sessions() > 0 && ReadClock() < deadline) {
     timer.expires_after(kDrainPoll);
@@ -307,6 +371,9 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
   }
   if (Status status = daemon.StartRecording(); !status.ok()) {
     return Fail(ExitCode::kFailed, status);
+  }
+  if (Status status = daemon.LoadPlayer(); !status.ok()) {
+    return Fail(ExitCode::kBadInput, status.At("--play"));
   }
   if (Status status = daemon.Listen(); !status.ok()) return Fail(ExitCode::kFailed, status);
   daemon.Serve();

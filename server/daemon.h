@@ -18,6 +18,7 @@ struct Ready {
   std::uint16_t udp = 0;
   std::optional<std::uint16_t> vmc;
   std::optional<std::uint16_t> livelink_face;
+  std::optional<std::uint16_t> http;
   bool render = false;
 };
 

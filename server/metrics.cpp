@@ -58,6 +58,10 @@ std::string_view CounterName(Counter counter) {
     case Counter::kMocapRefused: return "furrow_mocap_refused_total";
     case Counter::kOscPacketsSent: return "furrow_osc_packets_sent_total";
     case Counter::kOscPacketsUnsendable: return "furrow_osc_packets_unsendable_total";
+    case Counter::kHttpConnections: return "furrow_http_connections_accepted_total";
+    case Counter::kHttpRequests: return "furrow_http_requests_total";
+    case Counter::kHttpRefused: return "furrow_http_refused_total";
+    case Counter::kWebSocketsAccepted: return "furrow_web_sockets_accepted_total";
     case Counter::kRecordingMessages: return "furrow_recording_messages_total";
     case Counter::kRecordingDropped: return "furrow_recording_dropped_total";
     case Counter::kRecordingFailures: return "furrow_recording_failures_total";

@@ -65,6 +65,10 @@ enum class Counter {
   kMocapRefused,    // frames of a subject that is refused or one too many
   kOscPacketsSent,
   kOscPacketsUnsendable,
+  kHttpConnections,
+  kHttpRequests,
+  kHttpRefused,  // no HTTP, too large, or a Host or Origin that may not ask
+  kWebSocketsAccepted,
   kRecordingMessages,  // written to a take
   kRecordingDropped,   // the disk was too slow for them
   kRecordingFailures,  // recordings that ended for an error

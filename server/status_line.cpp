@@ -43,6 +43,7 @@ constexpr std::pair<Counter, std::string_view> kDrops[] = {
     {Counter::kMocapStale, "mocap frames without tracking"},
     {Counter::kMocapLockedOut, "mocap packets of locked-out senders"},
     {Counter::kMocapRefused, "frames of refused mocap subjects"},
+    {Counter::kHttpRefused, "refused web requests"},
     {Counter::kOscPacketsUnsendable, "unsendable OSC packets"},
 };
 

@@ -12,11 +12,12 @@
 
 namespace furrow::server {
 
-// A picture drawn and packed, and who waits for it.
+// A picture drawn and packed, and who waits for it. No bytes: it could not be drawn.
 struct FinishedPicture {
   std::uint32_t sequence = 0;
   std::int64_t capture_time_us = 0;
   std::int64_t age_us = 0;
+  std::int64_t received_us = 0;
   int width = 0;
   int height = 0;
   Encoding encoding;

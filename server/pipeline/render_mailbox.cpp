@@ -19,14 +19,15 @@ void MergeTickets(const std::vector<PictureTicket>& from, std::vector<PictureTic
 }  // namespace
 
 bool PictureSpec::operator==(const PictureSpec& other) const {
-  return view == other.view && width == other.width && height == other.height &&
-         camera.position == other.camera.position && camera.target == other.camera.target &&
+  return view == other.view && settings == other.settings && width == other.width &&
+         height == other.height && camera.position == other.camera.position &&
+         camera.target == other.camera.target &&
          camera.fov_y_degrees == other.camera.fov_y_degrees &&
          camera.fit_shorter_side == other.camera.fit_shorter_side &&
          camera.follow_joint == other.camera.follow_joint;
 }
 
-RenderMailbox::PutResult RenderMailbox::Put(RenderJob job) {
+RenderMailbox::PutResult RenderMailbox::Put(RenderJob&& job) {
   const std::lock_guard lock(mutex_);
   if (closed_) return PutResult::kFull;
   const auto waiting = std::find_if(jobs_.begin(), jobs_.end(), [&](const RenderJob& other) {
@@ -37,6 +38,7 @@ RenderMailbox::PutResult RenderMailbox::Put(RenderJob job) {
     *waiting = std::move(job);
     return PutResult::kReplaced;
   }
+  if (job.tickets.empty()) return PutResult::kNotWanted;
   if (jobs_.size() >= capacity_) return PutResult::kFull;
   jobs_.push_back(std::move(job));
   changed_.notify_one();

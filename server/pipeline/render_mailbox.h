@@ -21,6 +21,9 @@ struct PictureSpec {
   render::Camera camera;
   int width = 640;
   int height = 640;
+  // Of everything but the view; null: the renderer's defaults. Equal ones are one object
+  // (ViewSettings).
+  std::shared_ptr<const render::Settings> settings;
 
   [[nodiscard]] bool operator==(const PictureSpec& other) const;
 };
@@ -37,9 +40,13 @@ struct Encoding {
 struct PictureTicket {
   std::uint64_t subscription = 0;  // Subscription::uid
   Encoding encoding;
+  std::uint32_t view_request = 0;  // the request whose view it is
+  std::uint8_t tier = 0;           // what `encoding` stands for: ViewerFlow::tier()
+  bool still = false;
 };
 
-// A picture to be drawn of one subject, for everybody who waits for this very one.
+// A picture to be drawn of one subject, for everybody who waits for this very one. Without tickets:
+// a newer snapshot for a job that still waits, and nothing where there is none.
 struct RenderJob {
   std::uint64_t subject = 0;
   PictureSpec spec;
@@ -53,10 +60,11 @@ class RenderMailbox {
  public:
   explicit RenderMailbox(std::size_t capacity) : capacity_(capacity) {}
 
-  enum class PutResult { kQueued, kReplaced, kFull };
+  enum class PutResult { kQueued, kReplaced, kFull, kNotWanted };
   // kReplaced: an older snapshot of the same subject and spec was dropped; its tickets join the new
-  // job's, one a subscription.
-  PutResult Put(RenderJob job);
+  // job's, one a subscription. kNotWanted: a job without tickets found none to refresh.
+  // kFull: the job is as it was; else it is moved from.
+  PutResult Put(RenderJob&& job);
 
   // The longest waiting job. With `wait`, blocks until there is one or Close() was called.
   [[nodiscard]] std::optional<RenderJob> Take(bool wait);

@@ -15,10 +15,9 @@ constexpr int kMaxReadBacks = 2;  // render::Renderer's own limit
 
 Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleton* skeleton,
                                                           Factory make_renderer, Metrics* metrics,
-                                                          Deliver deliver,
-                                                          const render::Settings& settings) {
+                                                          Deliver deliver) {
   std::unique_ptr<RenderThread> self(
-      new RenderThread(skeleton, std::move(make_renderer), metrics, std::move(deliver), settings));
+      new RenderThread(skeleton, std::move(make_renderer), metrics, std::move(deliver)));
   std::promise<Status> started;
   std::future<Status> status = started.get_future();
   self->thread_ = std::thread(&RenderThread::Run, self.get(), std::move(started));
@@ -27,12 +26,11 @@ Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleto
 }
 
 RenderThread::RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer,
-                           Metrics* metrics, Deliver deliver, const render::Settings& settings)
+                           Metrics* metrics, Deliver deliver)
     : skeleton_(skeleton),
       make_renderer_(std::move(make_renderer)),
       metrics_(metrics),
       deliver_(std::move(deliver)),
-      settings_(settings),
       mailbox_(kMaxWaitingJobs) {}
 
 RenderThread::~RenderThread() {
@@ -42,9 +40,10 @@ RenderThread::~RenderThread() {
 
 void RenderThread::Submit(RenderJob job) {
   switch (mailbox_.Put(std::move(job))) {
-    case RenderMailbox::PutResult::kQueued: break;
+    case RenderMailbox::PutResult::kQueued:
+    case RenderMailbox::PutResult::kNotWanted: break;
     case RenderMailbox::PutResult::kReplaced: metrics_->Add(Counter::kSnapshotsReplaced); break;
-    case RenderMailbox::PutResult::kFull: metrics_->Add(Counter::kPicturesFailed); break;
+    case RenderMailbox::PutResult::kFull: Fail(std::move(job)); break;
   }
 }
 
@@ -89,30 +88,26 @@ void RenderThread::Run(std::promise<Status> started) {
 }
 
 void RenderThread::Draw(RenderJob job) {
-  if (renderer_ == nullptr && !Revive()) {
-    metrics_->Add(Counter::kPicturesFailed);
-    return;
-  }
+  if (renderer_ == nullptr && !Revive()) return Fail(std::move(job));
   const Snapshot& snapshot = *job.snapshot;
   const wrinkle::LocalToModelJob to_model{skeleton_, pose_, model_};
   if (snapshot.retarget->Run(snapshot.joints, pose_) != wrinkle::JobStatus::kOk ||
       snapshot.blend_shape_pose->Run(snapshot.blend_shapes, pose_) != wrinkle::JobStatus::kOk ||
       to_model.Run() != wrinkle::JobStatus::kOk) {
-    metrics_->Add(Counter::kPicturesFailed);
-    return;
+    return Fail(std::move(job));
   }
   render::FrameRequest request;
   request.model = model_;
   request.binding = snapshot.binding.get();
   request.wrinkle_weights = snapshot.wrinkle_weights;
   request.filtered_values = snapshot.filtered_values;
-  request.settings = settings_;
+  if (job.spec.settings != nullptr) request.settings = *job.spec.settings;
   request.settings.view = job.spec.view;
   request.camera = job.spec.camera;
   request.width = job.spec.width;
   request.height = job.spec.height;
   if (Status status = renderer_->Submit(request); !status.ok()) {
-    metrics_->Add(Counter::kPicturesFailed);
+    Fail(std::move(job));
     // What the job itself gets wrong (a size, a pose) says nothing about the context.
     if (status.code() == StatusCode::kUnavailable || status.code() == StatusCode::kInternal) {
       Rebuild(status);
@@ -136,21 +131,26 @@ void RenderThread::Collect(bool wait) {
   Finish(*image, job);
 }
 
+void RenderThread::Fail(RenderJob job) {
+  metrics_->Add(Counter::kPicturesFailed);
+  deliver_({.sequence = job.snapshot->sequence, .tickets = std::move(job.tickets)});
+}
+
 void RenderThread::Finish(const render::Image& image, const RenderJob& job) {
   std::vector<Encoding> done;
   for (const PictureTicket& first : job.tickets) {
     if (std::find(done.begin(), done.end(), first.encoding) != done.end()) continue;
     done.push_back(first.encoding);
     auto bytes = render::EncodeImage(image, first.encoding.format, first.encoding.quality);
+    metrics_->Add(bytes.ok() ? Counter::kPicturesEncoded : Counter::kPicturesFailed);
     if (!bytes.ok()) {
-      metrics_->Add(Counter::kPicturesFailed);
       spdlog::warn("a picture could not be encoded: {}", bytes.status().ToString());
-      continue;
+      bytes = std::vector<std::uint8_t>();
     }
-    metrics_->Add(Counter::kPicturesEncoded);
     FinishedPicture picture{.sequence = job.snapshot->sequence,
                             .capture_time_us = job.snapshot->capture_time_us,
                             .age_us = job.snapshot->age_us,
+                            .received_us = job.snapshot->received_us,
                             .width = image.width,
                             .height = image.height,
                             .encoding = first.encoding,
@@ -166,7 +166,7 @@ void RenderThread::Finish(const render::Image& image, const RenderJob& job) {
 void RenderThread::Rebuild(const Status& reason) {
   spdlog::error("the renderer failed and is made anew: {}", reason.ToString());
   metrics_->Add(Counter::kRendererRestarts);
-  metrics_->Add(Counter::kPicturesFailed, in_flight_.size());
+  for (RenderJob& job : in_flight_) Fail(std::move(job));
   in_flight_.clear();
   renderer_.reset();
   BackOff();

@@ -31,7 +31,8 @@ class RenderThread : public PictureSource {
  public:
   static constexpr int kMaxJobsSkipped = 255;
 
-  // Called on the render thread; must not block.
+  // Called on the render thread, for a job that finds no room on the one that submits; must not
+  // block. Every ticket of every job comes back, with bytes or without.
   using Deliver = std::function<void(FinishedPicture)>;
 
   // Makes the renderer of the character, at the start and whenever one was lost; called on the
@@ -39,10 +40,9 @@ class RenderThread : public PictureSource {
   using Factory = std::function<Result<std::unique_ptr<render::Renderer>>()>;
 
   // `skeleton` is the character's and outlives the thread. Returns when the context stands. Errors:
-  // those of `make_renderer`. `settings`: of every picture, but for the view, which each asks for.
+  // those of `make_renderer`.
   [[nodiscard]] static Result<std::unique_ptr<RenderThread>> Start(
-      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, Deliver deliver,
-      const render::Settings& settings = {});
+      const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, Deliver deliver);
   ~RenderThread() override;  // closes the mailbox and joins
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
@@ -53,7 +53,7 @@ class RenderThread : public PictureSource {
 
  private:
   RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics,
-               Deliver deliver, const render::Settings& settings);
+               Deliver deliver);
 
   Status CreateRenderer();
   bool Revive();
@@ -62,13 +62,13 @@ class RenderThread : public PictureSource {
   void Draw(RenderJob job);
   void Collect(bool wait);
   void Finish(const render::Image& image, const RenderJob& job);
+  void Fail(RenderJob job);
   void Rebuild(const Status& reason);
 
   const wrinkle::Skeleton* const skeleton_;
   const Factory make_renderer_;
   Metrics* const metrics_;
   const Deliver deliver_;
-  const render::Settings settings_;
   RenderMailbox mailbox_;
   std::vector<std::pair<std::string, render::Camera>> presets_;  // written before Start() returns
   std::string description_;

@@ -41,16 +41,32 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Get(StreamOff
     if (!created.ok()) return created.status();
     skeleton = *std::move(created);
   }
+  return FindOrMake(std::move(skeleton), std::move(offer.blend_shapes));
+}
+
+void StreamDefinitions::SetRig(std::shared_ptr<const wrinkle::Rig> rig) {
+  rig_ = std::move(rig);
+  rig_joints_ = wrinkle::JointsOf(*rig_);
+  known_.clear();
+}
+
+Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Remake(
+    const StreamDefinition& stream) {
+  return FindOrMake(stream.skeleton, stream.blend_shapes);
+}
+
+Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::FindOrMake(
+    wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes) {
   const auto is_same = [&](const std::shared_ptr<const StreamDefinition>& known) {
     return known->skeleton.hash() == skeleton.hash() && SameOrder(known->skeleton, skeleton) &&
-           known->blend_shapes == offer.blend_shapes;
+           known->blend_shapes == blend_shapes;
   };
   const auto known = std::find_if(known_.begin(), known_.end(), is_same);
   if (known != known_.end()) {
     known_.splice(known_.begin(), known_, known);
     return known_.front();
   }
-  auto made = Make(std::move(skeleton), std::move(offer.blend_shapes));
+  auto made = Make(std::move(skeleton), std::move(blend_shapes));
   if (!made.ok()) return made;
   known_.push_front(*made);
   if (known_.size() > capacity_) known_.pop_back();  // its subjects, if any, keep it alive

@@ -57,8 +57,16 @@ class StreamDefinitions {
   [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Get(StreamOffer offer);
 
   [[nodiscard]] const wrinkle::Rig& rig() const { return *rig_; }
+  [[nodiscard]] const std::shared_ptr<const wrinkle::Rig>& shared_rig() const { return rig_; }
+  // Another rig for what is made from now on.
+  void SetRig(std::shared_ptr<const wrinkle::Rig> rig);
+  // A stream that was made with another rig, with this one. Errors: as Get().
+  [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Remake(
+      const StreamDefinition& stream);
 
  private:
+  [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> FindOrMake(
+      wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes);
   [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Make(
       wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes);
   void Report(const StreamDefinition& stream, const character::SkeletonMatch& match) const;

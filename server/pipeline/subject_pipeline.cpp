@@ -19,12 +19,48 @@ wrinkle::JobStatus SubjectPipeline::Solve(std::uint32_t sequence, std::int64_t c
   } else if (has_pose_) {
     solver_.Reset();
   }
-  const wrinkle::JobStatus status = solver_.Update(pose_, dt);
+  if (neutral_pose_) MeasureFromNeutral();
+  const wrinkle::JobStatus status = solver_.Update(solved_pose(), dt);
   if (status != wrinkle::JobStatus::kOk) return status;
   sequence_ = sequence;
   capture_time_us_ = capture_time_us;
   has_pose_ = true;
   return status;
+}
+
+// Each joint's departure from the neutral pose, put upon the rest pose.
+void SubjectPipeline::MeasureFromNeutral() {
+  const auto rest = stream_->skeleton.rest_pose();
+  for (std::size_t joint = 0; joint < pose_.joints.size(); ++joint) {
+    const wrinkle::Transform& now = pose_.joints[joint];
+    const wrinkle::Transform& neutral = neutral_pose_->joints[joint];
+    wrinkle::Transform& out = corrected_.joints[joint];
+    out.rotation =
+        glm::normalize(now.rotation * glm::inverse(neutral.rotation) * rest[joint].rotation);
+    out.translation = rest[joint].translation + (now.translation - neutral.translation);
+    out.scale = now.scale;
+  }
+  for (std::size_t shape = 0; shape < pose_.blend_shapes.size(); ++shape) {
+    corrected_.blend_shapes[shape] = pose_.blend_shapes[shape] - neutral_pose_->blend_shapes[shape];
+  }
+}
+
+void SubjectPipeline::SetNeutral(std::optional<wrinkle::LocalPose> neutral) {
+  neutral_pose_ = std::move(neutral);
+  corrected_ = pose_;
+  SolveAnew();
+}
+
+void SubjectPipeline::SetStream(std::shared_ptr<const StreamDefinition> stream) {
+  stream_ = std::move(stream);
+  solver_ = wrinkle::SubjectSolver(stream_->binding);
+  SolveAnew();
+}
+
+// A pose that was solved before: it is still one that can be.
+void SubjectPipeline::SolveAnew() {
+  solver_.Reset();
+  if (has_pose_) (void)Solve(sequence_, capture_time_us_);
 }
 
 wrinkle::JobStatus SubjectPipeline::Decay(double dt) { return solver_.Decay(dt); }
@@ -37,13 +73,15 @@ bool SubjectPipeline::neutral() const {
          std::ranges::all_of(solver_.wrinkle_weights(), is_nothing);
 }
 
-std::shared_ptr<const Snapshot> SubjectPipeline::TakeSnapshot(std::int64_t age_us) const {
+std::shared_ptr<const Snapshot> SubjectPipeline::TakeSnapshot(std::int64_t age_us,
+                                                              std::int64_t received_us) const {
   const auto weights = solver_.wrinkle_weights();
   const auto filtered = solver_.filtered_values();
   auto snapshot = std::make_shared<Snapshot>();
   snapshot->sequence = sequence_;
   snapshot->capture_time_us = capture_time_us_;
   snapshot->age_us = age_us;
+  snapshot->received_us = received_us;
   snapshot->binding = stream_->binding;
   snapshot->retarget = stream_->retarget;
   snapshot->blend_shape_pose = stream_->blend_shape_pose;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "server/pipeline/snapshot.h"
@@ -23,6 +24,21 @@ class SubjectPipeline {
   [[nodiscard]] wrinkle::LocalPose* mutable_pose() { return &pose_; }
 
   [[nodiscard]] const wrinkle::LocalPose& pose() const { return pose_; }
+  // What the weights are made from: the pose, measured from the neutral where there is one.
+  [[nodiscard]] const wrinkle::LocalPose& solved_pose() const {
+    return neutral_pose_ ? corrected_ : pose_;
+  }
+
+  // The pose that counts as rest for the weights (a performer's own neutral face); none: the
+  // skeleton's. The picture shows the pose as it is. Evaluates the pose anew.
+  void SetNeutral(std::optional<wrinkle::LocalPose> neutral);
+  [[nodiscard]] const std::optional<wrinkle::LocalPose>& neutral_pose() const {
+    return neutral_pose_;
+  }
+
+  // The same stream with another rig: the pose stays, and is evaluated anew. Precondition: the
+  // skeleton and the blend shapes are those it has.
+  void SetStream(std::shared_ptr<const StreamDefinition> stream);
 
   // Evaluates the pose. Time passes as the capture times say; one that goes back (a recording that
   // loops, a clock that was set) starts the filter anew, as for a first pose.
@@ -40,12 +56,18 @@ class SubjectPipeline {
   [[nodiscard]] std::span<const float> driver_values() const { return solver_.driver_values(); }
   [[nodiscard]] const StreamDefinition& stream() const { return *stream_; }
 
-  [[nodiscard]] std::shared_ptr<const Snapshot> TakeSnapshot(std::int64_t age_us) const;
+  [[nodiscard]] std::shared_ptr<const Snapshot> TakeSnapshot(std::int64_t age_us,
+                                                             std::int64_t received_us = 0) const;
 
  private:
+  void SolveAnew();
+  void MeasureFromNeutral();
+
   std::shared_ptr<const StreamDefinition> stream_;
   wrinkle::SubjectSolver solver_;
   wrinkle::LocalPose pose_;
+  std::optional<wrinkle::LocalPose> neutral_pose_;
+  wrinkle::LocalPose corrected_;  // where there is a neutral pose
   std::uint32_t sequence_ = 0;
   std::int64_t capture_time_us_ = 0;
   bool has_pose_ = false;

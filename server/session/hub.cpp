@@ -33,7 +33,7 @@ Hub::Hub(Parts parts)
                    static_cast<std::size_t>(parts.limits.max_skeletons),
                    std::move(parts.skeletons)),
       publishers_(limits_, &definitions_, &subjects_, &postman_, metrics_),
-      subscribers_(limits_, &subjects_, parts.pictures, &postman_, metrics_) {}
+      subscribers_(limits_, &subjects_, parts.pictures, parts.settings, &postman_, metrics_) {}
 
 PeerId Hub::AddPeer(Transport transport, std::string name, Link* link, Time now) {
   const TokenBucket bucket(limits_.packets_per_second, limits_.packet_burst);
@@ -91,7 +91,7 @@ void Hub::RefuseConnection(Link* link) {
 
 void Hub::RefuseEnvelope(Peer& peer, const protocol::MessageView& view, DecodeStatus status) {
   metrics_->Add(Counter::kMessagesMalformed);
-  if (peer.transport != Transport::kTcp) return;
+  if (peer.transport == Transport::kUdp) return;
   ErrorCode code = ErrorCode::kMalformed;
   if (status == DecodeStatus::kBadVersion) code = ErrorCode::kUnsupportedVersion;
   if (status == DecodeStatus::kUnknownKind) code = ErrorCode::kUnsupported;
@@ -109,7 +109,7 @@ void Hub::Decoded(Peer& peer, const protocol::MessageView& view, Message& messag
   }
   metrics_->Add(view.kind == MessageKind::kPose ? Counter::kPosesInvalid
                                                 : Counter::kMessagesMalformed);
-  if (peer.transport == Transport::kTcp) {
+  if (peer.transport != Transport::kUdp) {
     postman_.Error(peer, view.header, ErrorCode::kMalformed,
                    std::string(MessageKindName(view.kind)) +
                        " cannot be read: " + std::string(DecodeStatusName(status)));
@@ -153,6 +153,12 @@ void Hub::Dispatch(Peer& peer, const protocol::MessageView& view, Time now) {
         if (RefusedWhileDraining(peer, header)) return;
         subscribers_.Subscribe(peer, header, in.subscribe_poses);
       });
+    case MessageKind::kUpdatePictures:
+      return Decoded(peer, view, in.update_pictures,
+                     [&] { subscribers_.Update(peer, header, in.update_pictures.pictures, now); });
+    case MessageKind::kFrameAck:
+      return Decoded(peer, view, in.frame_ack,
+                     [&] { subscribers_.Acknowledge(peer, header, in.frame_ack.number, now); });
     case MessageKind::kUnsubscribe:
       return Decoded(peer, view, in.unsubscribe,
                      [&] { subscribers_.Unsubscribe(peer, header.stream); });

@@ -5,8 +5,10 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "protocol/codec.h"
@@ -41,6 +43,7 @@ class Hub {
     character::SkeletonMatcher skeletons;          // what the joints of streams are
     const wrinkle::Skeleton* character = nullptr;  // null: nothing is drawn
     PictureSource* pictures = nullptr;             // null: nothing is drawn
+    render::Settings settings;                     // of pictures that do not say otherwise
     Metrics* metrics = nullptr;
     std::function<std::uint64_t()> make_token;  // unpredictable, not 0
     // Told of every new or decayed set of weights; for OSC out. May be empty.
@@ -76,6 +79,26 @@ class Hub {
   // Of two peers, the one to forget where there are too many: the one that subscribes to nothing
   // and publishes nothing, then the longest silent.
   [[nodiscard]] bool IsLessWorthKeeping(PeerId a, PeerId b);
+
+  // For whoever runs the session: what is there, and what may be changed while it runs.
+  [[nodiscard]] const SubjectRegistry& subjects() const { return subjects_; }
+  // Null: nobody of that name. Empty: who has been there longest.
+  [[nodiscard]] Subject* FindSubject(std::string_view name);
+  // Who sends it: a peer's name, for people.
+  [[nodiscard]] std::string_view SourceOf(const Subject& subject);
+  [[nodiscard]] const render::Settings& own_settings() const { return subscribers_.own_settings(); }
+  void SetOwnSettings(const render::Settings& settings, Time now) {
+    subscribers_.SetOwnSettings(settings, now);
+  }
+  [[nodiscard]] const wrinkle::Rig& rig() const { return definitions_.rig(); }
+  // For every subject, from now on: their poses and their subscribers stay. Errors: those of
+  // RigBinding::Create for the skeleton of a subject (`where` is its name); then all stays as it
+  // was.
+  [[nodiscard]] Status SetRig(std::shared_ptr<const wrinkle::Rig> rig, Time now);
+  // The pose that the subject's weights are measured from instead of its rest pose; none: that.
+  void SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral, Time now);
+  [[nodiscard]] bool draining() const { return draining_; }
+
   [[nodiscard]] std::size_t num_subjects() const { return subjects_.size(); }
   [[nodiscard]] std::size_t num_subscriptions() const { return subscribers_.size(); }
 
@@ -131,6 +154,8 @@ class Hub {
     protocol::SubscribeWeights subscribe_weights;
     protocol::SubscribePictures subscribe_pictures;
     protocol::SubscribePoses subscribe_poses;
+    protocol::UpdatePictures update_pictures;
+    protocol::FrameAck frame_ack;
     protocol::Unsubscribe unsubscribe;
   } scratch_;
 };

@@ -21,7 +21,7 @@ using PeerId = std::uint64_t;  // never used twice in a run; 0 is nobody
 // the new one is left out. For those who want every frame.
 inline constexpr std::size_t kKeepAll = std::numeric_limits<std::size_t>::max();
 
-enum class Transport { kTcp, kUdp, kMocap };
+enum class Transport { kTcp, kUdp, kMocap, kWeb };
 
 // How bytes get to a peer. The net side implements it; tests do with a few lines.
 class Link {

@@ -128,6 +128,7 @@ Subject* Publishers::OnPose(Peer& peer, const protocol::Header& header,
   }
   subject->last_pose = subject->last_update = now;
   subject->lost = false;
+  subject->stats.OnPose(header.sequence, header.capture_time_us, now);
   return subject;
 }
 
@@ -139,6 +140,7 @@ bool Publishers::IsNew(Subject& subject, const protocol::Header& header) {
     case protocol::SequenceStatus::kLate:
     case protocol::SequenceStatus::kOldSession: metrics_->Add(Counter::kPosesLate); break;
   }
+  subject.stats.OnLate();
   return false;
 }
 

@@ -15,6 +15,8 @@
 #include "protocol/sequence.h"
 #include "server/pipeline/subject_pipeline.h"
 #include "server/session/peer.h"
+#include "server/session/rest_detector.h"
+#include "server/session/subject_stats.h"
 #include "server/session/time.h"
 
 namespace furrow::server {
@@ -43,6 +45,8 @@ struct Subject {
   Time last_update{0};  // arrival or decay
   bool ended = false;   // its publisher said goodbye: decays, then leaves
   bool lost = false;    // no pose for too long: holds, decays
+  SubjectStats stats;
+  RestDetector rest;  // kept up while somebody watches with flow control
 };
 
 // All subjects of a daemon by name and by the stream that feeds them. In order of arrival: the

@@ -7,7 +7,6 @@
 
 #include "protocol/hash.h"
 #include "protocol/limits.h"
-#include "render/request_check.h"
 
 namespace furrow::server {
 
@@ -34,10 +33,11 @@ std::string Oversize(const std::vector<std::string>& names, Transport transport)
 }  // namespace
 
 Subscribers::Subscribers(const Limits& limits, SubjectRegistry* subjects, PictureSource* pictures,
-                         Postman* postman, Metrics* metrics)
+                         const render::Settings& settings, Postman* postman, Metrics* metrics)
     : limits_(limits),
       subjects_(subjects),
       pictures_(pictures),
+      settings_(settings),
       postman_(postman),
       metrics_(metrics) {}
 
@@ -59,9 +59,9 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
 
 void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
                             const protocol::SubscribePictures& request) {
-  if (peer.transport != Transport::kTcp) {
+  if (peer.transport == Transport::kUdp) {
     metrics_->Add(Counter::kSubscriptionsRefused);
-    postman_->Error(peer, header, ErrorCode::kNeedsTcp, "pictures go over TCP alone");
+    postman_->Error(peer, header, ErrorCode::kNeedsTcp, "pictures go over TCP or a WebSocket");
     return;
   }
   if (!MayAdd(peer, header)) return;
@@ -81,35 +81,10 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
   subscription->subject_name = request.subject;
   subscription->wait = request.wait;
   subscription->gate = RateGate(request.max_rate_hz);
+  wish->view_request = header.sequence;
+  if (request.acknowledged) wish->flow.emplace();
   subscription->wish = *std::move(wish);
   Add(peer, header, std::move(subscription));
-}
-
-Result<PicturesWish> Subscribers::MakeWish(const protocol::SubscribePictures& request) const {
-  PicturesWish wish;
-  const Result<render::View> view = render::ParseView(request.view);
-  if (!view.ok()) return view.status();
-  wish.spec.view = *view;
-  wish.spec.width = request.width;
-  wish.spec.height = request.height;
-  if (request.has_camera) {
-    const protocol::Camera& camera = request.camera;
-    wish.spec.camera.position = {camera.eye.x, camera.eye.y, camera.eye.z};
-    wish.spec.camera.target = {camera.target.x, camera.target.y, camera.target.z};
-    wish.spec.camera.fov_y_degrees = camera.vertical_fov_degrees;
-    render::FrameRequest drawn;
-    drawn.camera = wish.spec.camera;
-    if (Status status = render::CheckRequest(drawn, /*num_joints=*/0); !status.ok()) return status;
-  } else {
-    const auto preset =
-        pictures_->Preset(request.camera_preset.empty() ? "face" : request.camera_preset);
-    if (!preset.ok()) return preset.status();
-    wish.spec.camera = *preset;
-  }
-  const bool png = request.format == protocol::ImageFormat::kPng;
-  wish.encoding.format = png ? render::ImageFormat::kPng : render::ImageFormat::kJpeg;
-  wish.encoding.quality = png ? 0 : request.quality;
-  return wish;
 }
 
 // Proof of address, repetition, limits: what both kinds of request share. False: already answered.
@@ -142,6 +117,13 @@ bool Subscribers::MayAdd(Peer& peer, const protocol::Header& header) {
     return false;
   }
   return true;
+}
+
+Subscription* Subscribers::Find(const Peer& peer, std::uint16_t id) {
+  for (auto& [uid, subscription] : subscriptions_) {
+    if (subscription->peer == &peer && subscription->id == id) return subscription.get();
+  }
+  return nullptr;
 }
 
 Subscription* Subscribers::FindRepeated(const Peer& peer, const protocol::Header& header) {
@@ -254,12 +236,10 @@ void Subscribers::Erase(Subscription& subscription) {
 }
 
 bool Subscribers::Unsubscribe(Peer& peer, std::uint16_t id) {
-  for (auto& [uid, subscription] : subscriptions_) {
-    if (subscription->peer != &peer || subscription->id != id) continue;
-    Erase(*subscription);
-    return true;
-  }
-  return false;
+  Subscription* subscription = Find(peer, id);
+  if (subscription == nullptr) return false;
+  Erase(*subscription);
+  return true;
 }
 
 void Subscribers::RemovePeer(Peer& peer) {

@@ -16,6 +16,7 @@
 #include "server/session/postman.h"
 #include "server/session/subject_registry.h"
 #include "server/session/subscription.h"
+#include "server/session/view_settings.h"
 
 namespace furrow::server {
 
@@ -25,15 +26,20 @@ class Subscribers {
  public:
   // `pictures` may be null: nothing is drawn here.
   Subscribers(const Limits& limits, SubjectRegistry* subjects, PictureSource* pictures,
-              Postman* postman, Metrics* metrics);
+              const render::Settings& settings, Postman* postman, Metrics* metrics);
 
-  // Both answer with SubscribeReply or an error.
+  // All answer with SubscribeReply or an error.
   void Subscribe(Peer& peer, const protocol::Header& header,
                  const protocol::SubscribeWeights& request);
   void Subscribe(Peer& peer, const protocol::Header& header,
                  const protocol::SubscribePictures& request);
   void Subscribe(Peer& peer, const protocol::Header& header,
                  const protocol::SubscribePoses& request);
+  // Another view for the subscription that the header's stream names; an error, or no answer.
+  void Update(Peer& peer, const protocol::Header& header,
+              const protocol::SubscribePictures& request, Time now);
+  // A viewer has shown a picture.
+  void Acknowledge(Peer& peer, const protocol::Header& header, std::uint32_t number, Time now);
   // False: the peer has no such subscription.
   bool Unsubscribe(Peer& peer, std::uint16_t id);
 
@@ -54,12 +60,17 @@ class Subscribers {
   // Hands a finished picture to those it was drawn for, as far as they are still there.
   void OnPicture(const FinishedPicture& picture);
 
+  // The settings of every view that does not say otherwise; what is shown now changes with them.
+  [[nodiscard]] const render::Settings& own_settings() const { return settings_.own(); }
+  void SetOwnSettings(const render::Settings& settings, Time now);
+
   [[nodiscard]] std::size_t size() const { return subscriptions_.size(); }
 
  private:
   using Jobs = std::vector<RenderJob>;  // one a spec
 
   bool MayAdd(Peer& peer, const protocol::Header& header);
+  Subscription* Find(const Peer& peer, std::uint16_t id);
   Subscription* FindRepeated(const Peer& peer, const protocol::Header& header);
   void Add(Peer& peer, const protocol::Header& header, std::unique_ptr<Subscription> subscription);
   void Reply(const Subscription& subscription, std::vector<std::string> names);
@@ -73,18 +84,32 @@ class Subscribers {
   void Attach(Subscription& subscription, Subject& subject);
 
   void Deliver(Subscription& subscription, std::span<const std::uint8_t> pose, std::int64_t age_us,
-               Jobs* jobs);
+               Time now, Jobs* jobs);
   void SendPose(Subscription& subscription, std::span<const std::uint8_t> pose);
   void TellDropped(Subscription& subscription, Time now);
   void SendWeights(Subscription& subscription, const WeightsWish& wish, std::int64_t age_us);
-  void AddToJobs(const Subscription& subscription, const PicturesWish& wish, std::int64_t age_us,
+  void PublishOwed(Subscription& subscription, Time now);
+
+  // viewers.cpp
+  Result<PicturesWish> MakeWish(const protocol::SubscribePictures& request);
+  void Show(Subscription& subscription, Time now);
+  static bool Rests(const Subscription& subscription, const PicturesWish& wish, Time now);
+  void AddToJobs(Subscription& subscription, PicturesWish& wish, std::int64_t age_us, Time now,
                  Jobs* jobs);
+  void AskForPicture(Subscription& subscription, PicturesWish& wish, std::int64_t age_us, Time now,
+                     Jobs* jobs);
+  RenderJob& JobOf(const Subscription& subscription, const PictureSpec& spec, std::int64_t age_us,
+                   Jobs* jobs);
   void SubmitJobs(Jobs* jobs);
-  Result<PicturesWish> MakeWish(const protocol::SubscribePictures& request) const;
+  void FillImage(const FinishedPicture& picture);
+  void SendPicture(Subscription& subscription, const FinishedPicture& picture,
+                   const PictureTicket& ticket);
+  void PictureFailed(Subscription& subscription);
 
   const Limits limits_;
   SubjectRegistry* const subjects_;
   PictureSource* const pictures_;
+  ViewSettings settings_;
   Postman* const postman_;
   Metrics* const metrics_;
   std::unordered_map<std::uint64_t, std::unique_ptr<Subscription>> subscriptions_;  // by uid

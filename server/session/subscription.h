@@ -13,6 +13,7 @@
 #include "server/session/peer.h"
 #include "server/session/rate_gate.h"
 #include "server/session/subject_registry.h"
+#include "server/session/viewer_flow.h"
 
 namespace furrow::server {
 
@@ -32,7 +33,11 @@ struct WeightsWish {
 
 struct PicturesWish {
   PictureSpec spec;
-  Encoding encoding;
+  Encoding encoding;                   // with flow control and JPEG, its tier decides
+  std::vector<std::string> overrides;  // of the daemon's settings, "name=value"
+  std::uint32_t view_request = 0;      // who asked for this view: a request's sequence
+  Time changed{0};                     // when the view became this one
+  std::optional<ViewerFlow> flow;      // none: not acknowledged
 };
 
 // Skeleton and poses as they were used.

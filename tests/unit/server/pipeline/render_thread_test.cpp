@@ -58,11 +58,15 @@ class ScriptedRenderer : public render::Renderer {
   int in_flight_ = 0;
 };
 
-// Pictures as they are delivered; Take() blocks for the next.
+// Pictures as they are delivered; Take() blocks for the next that was drawn, and counts the others.
 class Pictures {
  public:
   void Put(FinishedPicture picture) {
     const std::lock_guard lock(mutex_);
+    if (picture.bytes.empty()) {
+      num_failed_tickets_ += picture.tickets.size();
+      return;
+    }
     pictures_.push_back(std::move(picture));
     changed_.notify_one();
   }
@@ -74,9 +78,15 @@ class Pictures {
     return picture;
   }
 
+  std::size_t num_failed_tickets() {
+    const std::lock_guard lock(mutex_);
+    return num_failed_tickets_;
+  }
+
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
+  std::size_t num_failed_tickets_ = 0;
   std::deque<FinishedPicture> pictures_;
 };
 
@@ -140,6 +150,7 @@ TEST_F(RenderThreadTest, WhatWasInFlightIsCountedWhenTheContextGoes) {
   EXPECT_EQ(pictures.Take().sequence, 3u);
   EXPECT_EQ(Count(Counter::kRendererRestarts), 1u);
   EXPECT_EQ(Count(Counter::kPicturesFailed), 2u);
+  EXPECT_EQ(pictures.num_failed_tickets(), 2u);  // who waits is told
 }
 
 TEST_F(RenderThreadTest, WhileItCannotBeRebuiltJobsAreDroppedCountedAndTriedLessOften) {

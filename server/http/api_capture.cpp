@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of Api that takes what the performer does now into the rig, and back out of it.
+#include <algorithm>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "character/rig_reference_pose.h"
+#include "server/http/api.h"
+
+namespace furrow::server {
+namespace {
+
+constexpr char kNeutral[] = "neutral";
+constexpr std::size_t kMaxUndo = 64;
+constexpr std::size_t kMaxPoseName = 64;
+
+using Values = std::vector<float>;
+
+Values WeightsOf(const Subject& subject) {
+  const auto weights = subject.pipeline->wrinkle_weights();
+  return {weights.begin(), weights.end()};
+}
+
+// The weights that a capture changes, before and after; their names are the same.
+Json ChangesJson(std::span<const std::string> names, const Values& before, const Values& after) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    list.push_back({{"name", names[i]}, {"before", before[i]}, {"after", after[i]}});
+  }
+  return list;
+}
+
+// The rig with the subject's pose as the reference pose of that name.
+Result<wrinkle::Rig> RigWith(const wrinkle::Rig& rig, const Subject& subject,
+                             const std::string& pose, bool* added) {
+  const SubjectPipeline& pipeline = *subject.pipeline;
+  auto captured =
+      character::ReferencePoseFromFrame(pose, {pipeline.stream().skeleton, pipeline.solved_pose()});
+  if (!captured.ok()) return captured.status();
+  wrinkle::Rig changed = rig;
+  const auto known =
+      std::ranges::find(changed.reference_poses, pose, &wrinkle::ReferencePose::name);
+  *added = known == changed.reference_poses.end();
+  if (*added) {
+    changed.reference_poses.push_back(*std::move(captured));
+  } else {
+    *known = *std::move(captured);
+  }
+  return changed;
+}
+
+bool IsPoseName(const std::string& name) {
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  };
+  return !name.empty() && name.size() <= kMaxPoseName && std::ranges::all_of(name, is_plain);
+}
+
+}  // namespace
+
+Json Api::Captures() const {
+  Json list = Json::array();
+  for (const Capture& capture : captures_) {
+    list.push_back({{"pose", capture.pose}, {"subject", capture.subject}});
+  }
+  return list;
+}
+
+ApiReply Api::PostCapture(const ApiRequest& request, Hub& hub, Time now) {
+  const Result<Json> object = ObjectOf(request);
+  if (!object.ok()) return ErrorReply(object.status());
+  const Json subject_name = object->value("subject", Json(""));
+  const Json pose = object->value("pose", Json());
+  const Json preview = object->value("preview", Json(false));
+  if (!subject_name.is_string()) return ErrorReply(400, "schema", "subject", "must be text");
+  if (!preview.is_boolean()) return ErrorReply(400, "schema", "preview", "must be true or false");
+  if (!pose.is_string() || !IsPoseName(pose.get<std::string>())) {
+    return ErrorReply(400, "schema", "pose",
+                      "must be 'neutral' or a name of letters, digits, '_' and '-'");
+  }
+  Subject* subject = hub.FindSubject(subject_name.get<std::string>());
+  if (subject == nullptr) return NoSuchSubject(hub, subject_name.get<std::string>());
+  if (!subject->pipeline->has_pose()) {
+    return ErrorReply(409, "conflict", "subject", "no pose of it has come yet");
+  }
+  if (pose == kNeutral) return CaptureNeutral(hub, *subject, preview.get<bool>(), now);
+  return CapturePose(hub, *subject, pose.get<std::string>(), preview.get<bool>(), now);
+}
+
+// The whole rig is tried out and taken back where it is a preview: what is shown is what the
+// solver gives, not a second copy of its formulas.
+ApiReply Api::CaptureNeutral(Hub& hub, Subject& subject, bool preview, Time now) {
+  SubjectPipeline& pipeline = *subject.pipeline;
+  const Values before = WeightsOf(subject);
+  const std::optional<wrinkle::LocalPose> former = pipeline.neutral_pose();
+  pipeline.SetNeutral(pipeline.pose());
+  const Values after = WeightsOf(subject);
+  pipeline.SetNeutral(former);
+  if (!preview) {
+    hub.SetNeutral(subject, pipeline.pose(), now);
+    if (captures_.size() >= kMaxUndo) captures_.erase(captures_.begin());
+    captures_.push_back({kNeutral, subject.name, former, nullptr});
+  }
+  return JsonReply(
+      {{"pose", kNeutral},
+       {"preview", preview},
+       {"added", false},
+       {"weights", ChangesJson(pipeline.stream().binding->weight_names(), before, after)},
+       {"captures", Captures()}});
+}
+
+ApiReply Api::CapturePose(Hub& hub, Subject& subject, const std::string& pose, bool preview,
+                          Time now) {
+  bool added = false;
+  Result<wrinkle::Rig> changed = RigWith(hub.rig(), subject, pose, &added);
+  if (!changed.ok()) return ErrorReply(changed.status());
+  const SubjectPipeline& pipeline = *subject.pipeline;
+  auto bound = wrinkle::RigBinding::Create(*changed, pipeline.stream().skeleton,
+                                           pipeline.stream().blend_shapes, {.allow_missing = true});
+  if (!bound.ok()) return ErrorReply(bound.status());
+  const Values before = WeightsOf(subject);
+  wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(bound)));
+  if (solver.Update(pipeline.solved_pose(), 0.0) != wrinkle::JobStatus::kOk) {
+    return ErrorReply(500, "internal", "", "the pose cannot be solved with the changed rig");
+  }
+  const Values after(solver.wrinkle_weights().begin(), solver.wrinkle_weights().end());
+  Json changes = ChangesJson(pipeline.stream().binding->weight_names(), before, after);
+  if (!preview) {
+    auto former = std::make_shared<const wrinkle::Rig>(hub.rig());
+    if (Status status = hub.SetRig(std::make_shared<const wrinkle::Rig>(*std::move(changed)), now);
+        !status.ok()) {
+      return ErrorReply(status);
+    }
+    spdlog::info("reference pose '{}' is captured from '{}'", pose, subject.name);
+    if (captures_.size() >= kMaxUndo) captures_.erase(captures_.begin());
+    captures_.push_back({pose, subject.name, std::nullopt, std::move(former)});
+  }
+  return JsonReply({{"pose", pose},
+                    {"preview", preview},
+                    {"added", added},
+                    {"weights", std::move(changes)},
+                    {"captures", Captures()}});
+}
+
+ApiReply Api::Undo(const ApiRequest&, Hub& hub, Time now) {
+  if (captures_.empty()) return ErrorReply(409, "conflict", "", "there is nothing to undo");
+  const Capture last = std::move(captures_.back());
+  captures_.pop_back();
+  if (last.rig != nullptr) {
+    if (Status status = hub.SetRig(last.rig, now); !status.ok()) return ErrorReply(status);
+  } else if (Subject* subject =
+                 hub.subjects().all().empty() ? nullptr : hub.FindSubject(last.subject);
+             subject != nullptr) {
+    const bool fits =
+        !last.neutral || last.neutral->joints.size() == subject->pipeline->pose().joints.size();
+    if (fits) hub.SetNeutral(*subject, last.neutral, now);
+  }
+  return JsonReply({{"captures", Captures()}});
+}
+
+}  // namespace furrow::server

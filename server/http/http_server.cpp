@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/http/http_server.h"
+
+#include <thread>
+#include <utility>
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <spdlog/spdlog.h>
+
+#include "character/data_dir.h"
+#include "server/http/http_session.h"
+
+namespace furrow::server {
+namespace {
+
+using net::ip::tcp;
+constexpr auto kAcceptPause = std::chrono::milliseconds(100);
+
+// Says no and hangs up, without a session.
+void Refuse(tcp::socket socket) {
+  static constexpr char kAnswer[] =
+      "HTTP/1.1 429 Too Many Requests\r\nConnection: close\r\nContent-Length: 0\r\n\r\n";
+  beast::error_code ignored;
+  socket.non_blocking(true, ignored);
+  socket.send(net::buffer(kAnswer, sizeof(kAnswer) - 1), 0, ignored);
+}
+
+Result<PageFiles> LoadPage(const HttpConfig& config) {
+  if (!config.page.empty()) return PageFiles::Load(config.page);
+  const auto index = character::FindDataFile("web/index.html");
+  if (!index.ok()) return index.status();
+  return PageFiles::Load(index->parent_path());
+}
+
+PageFiles PageOrNone(const HttpConfig& config) {
+  Result<PageFiles> page = LoadPage(config);
+  if (page.ok()) return *std::move(page);
+  spdlog::warn("there is no page to serve: {}", page.status().ToString());
+  return {};
+}
+
+}  // namespace
+
+struct HttpServer::Impl {
+  explicit Impl(Parts parts)
+      : context{.config = parts.config,
+                .guard = RequestGuard(parts.config),
+                .page = PageOrNone(parts.config),
+                .post_to_hub = std::move(parts.post_to_hub),
+                .answer = std::move(parts.answer),
+                .metrics = parts.metrics} {
+    context.post_to_web = [weak = std::weak_ptr(loop)](std::function<void()> task) {
+      if (const auto alive = weak.lock()) net::post(*alive, std::move(task));
+    };
+  }
+
+  Status Listen(const std::string& bind, std::uint16_t port);
+  net::awaitable<void> Accept();
+  net::awaitable<void> Serve(tcp::socket socket);
+
+  WebContext context;  // outlives the loop, whose connections use it
+  std::shared_ptr<net::io_context> loop = std::make_shared<net::io_context>(1);
+  tcp::acceptor acceptor{*loop};
+  std::uint16_t port = 0;
+  std::thread thread;
+};
+
+Status HttpServer::Impl::Listen(const std::string& bind, std::uint16_t wanted) {
+  const tcp::endpoint endpoint(net::ip::make_address(bind), wanted);
+  beast::error_code error;
+  acceptor.open(endpoint.protocol(), error);
+  if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+  if (!error) acceptor.bind(endpoint, error);
+  if (!error) acceptor.listen(net::socket_base::max_listen_connections, error);
+  if (error) {
+    beast::error_code ignored;
+    acceptor.close(ignored);
+    return Status(StatusCode::kIo, "cannot listen: " + error.message(),
+                  "http " + bind + " port " + std::to_string(wanted),
+                  "give another --http, or --no-http");
+  }
+  port = acceptor.local_endpoint().port();
+  return {};
+}
+
+net::awaitable<void> HttpServer::Impl::Accept() {
+  while (acceptor.is_open()) {
+    auto [error, socket] = co_await acceptor.async_accept(kWebToken);
+    if (error == net::error::operation_aborted) co_return;
+    if (error) {  // no descriptors left, above all: they may come back
+      net::steady_timer pause(*loop, kAcceptPause);
+      co_await pause.async_wait(kWebToken);
+    } else if (context.connections >= context.config.max_connections) {
+      context.metrics->Add(Counter::kConnectionsRefused);
+      Refuse(std::move(socket));
+    } else {
+      context.metrics->Add(Counter::kHttpConnections);
+      net::co_spawn(*loop, Serve(std::move(socket)), net::detached);
+    }
+  }
+}
+
+net::awaitable<void> HttpServer::Impl::Serve(tcp::socket socket) {
+  ++context.connections;
+  try {
+    co_await ServeConnection(beast::tcp_stream(std::move(socket)), &context);
+  } catch (const std::exception& error) {  // no memory: this connection's alone
+    spdlog::error("a web connection ended: {}", error.what());
+  }
+  --context.connections;
+}
+
+Result<std::unique_ptr<HttpServer>> HttpServer::Start(Parts parts) {
+  const std::string bind = parts.bind;
+  const std::optional<std::uint16_t> asked = parts.config.port;
+  auto impl = std::make_unique<Impl>(std::move(parts));
+  Status status = impl->Listen(bind, asked.value_or(HttpConfig::kDefaultPort));
+  if (!status.ok() && !asked) {
+    spdlog::warn("{}; taking any free port", status.what());
+    status = impl->Listen(bind, 0);
+  }
+  if (!status.ok()) return status;
+  net::co_spawn(*impl->loop, impl->Accept(), net::detached);
+  impl->thread = std::thread([loop = impl->loop.get()] { loop->run(); });
+  return std::unique_ptr<HttpServer>(new HttpServer(std::move(impl)));
+}
+
+HttpServer::HttpServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+HttpServer::~HttpServer() {
+  impl_->loop->stop();
+  impl_->thread.join();
+}
+
+std::uint16_t HttpServer::port() const { return impl_->port; }
+int HttpServer::connections() const { return impl_->context.connections; }
+int HttpServer::viewers() const { return impl_->context.viewers; }
+
+void HttpServer::Drain() {
+  net::post(*impl_->loop, [this] {
+    beast::error_code ignored;
+    impl_->acceptor.close(ignored);
+  });
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/http/http_session.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/span_body.hpp>
+#include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+
+#include "server/http/picture_stream.h"
+#include "server/http/web_socket.h"
+
+namespace furrow::server {
+namespace {
+
+// The page loads nothing from elsewhere, and nobody frames it. Its menu sets styles by script.
+constexpr char kContentPolicy[] =
+    "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; "
+    "connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+
+template <class Message>
+void SetHeaders(const WebRequest& request, std::string_view type, Message* message) {
+  message->set(http::field::server, "furrowd");
+  message->set(http::field::content_type, beast::string_view(type.data(), type.size()));
+  message->set("X-Content-Type-Options", "nosniff");
+  message->set("Referrer-Policy", "no-referrer");
+  message->set("Content-Security-Policy", kContentPolicy);
+  message->keep_alive(request.keep_alive());
+}
+
+std::string_view View(beast::string_view text) { return {text.data(), text.size()}; }
+
+// The hub's thread answers; where it does not within the deadline, that is what is said.
+net::awaitable<ApiReply> AskHub(WebContext* context, ApiRequest request) {
+  struct Pending {
+    net::steady_timer timer;
+    std::optional<ApiReply> reply;
+  };
+  const auto pending = std::make_shared<Pending>(
+      Pending{net::steady_timer(co_await net::this_coro::executor, kWebDeadline), std::nullopt});
+  // Weak: the hub's queue may outlive the loop that the timer is on.
+  context->post_to_hub([weak = std::weak_ptr(pending), answer = context->answer,
+                        post_to_web = context->post_to_web,
+                        request = std::move(request)](Hub& hub, Time now) {
+    post_to_web([weak, reply = answer(request, hub, now)] {
+      if (const auto waiting = weak.lock()) {
+        waiting->reply = reply;
+        waiting->timer.cancel();
+      }
+    });
+  });
+  co_await pending->timer.async_wait(kWebToken);
+  if (pending->reply) co_return *std::move(pending->reply);
+  co_return ErrorReply(503, "unavailable", "", "the daemon's loop does not answer");
+}
+
+net::awaitable<bool> WritePageFile(beast::tcp_stream& stream, const WebRequest& request,
+                                   const PageFile& file) {
+  const bool gzip = !file.gzip.empty() &&
+                    request[http::field::accept_encoding].find("gzip") != beast::string_view::npos;
+  const bool known = request[http::field::if_none_match] == file.etag;
+  const std::string& bytes = gzip ? file.gzip : file.bytes;
+  http::response<http::span_body<const char>> response(
+      known ? http::status::not_modified : http::status::ok, request.version());
+  SetHeaders(request, file.type, &response);
+  response.set(http::field::etag, file.etag);
+  response.set(http::field::vary, "Accept-Encoding");
+  response.set(http::field::cache_control,
+               file.immutable ? "public, max-age=31536000, immutable" : "no-cache");
+  if (gzip) response.set(http::field::content_encoding, "gzip");
+  if (!known) response.content_length(bytes.size());
+  if (!known && request.method() != http::verb::head) {
+    response.body() = {bytes.data(), bytes.size()};
+  }
+  http::response_serializer<http::span_body<const char>> serializer(response);
+  stream.expires_after(kWebDeadline);
+  const bool head = request.method() == http::verb::head;
+  const auto [error, size] = head ? co_await http::async_write_header(stream, serializer, kWebToken)
+                                  : co_await http::async_write(stream, serializer, kWebToken);
+  co_return !error && response.keep_alive();
+}
+
+bool IsPicture(const std::string& path) { return path == "/mjpeg" || path == "/snapshot.png"; }
+
+ApiReply NotHere(const WebRequest& request, const std::string& path) {
+  if (path == "/") {
+    return {.status = 503,
+            .type = "text/plain; charset=utf-8",
+            .body =
+                "furrowd serves, but its page was not built: build the target furrow-web.\n"
+                "/mjpeg shows pictures without it.\n"};
+  }
+  return ErrorReply(404, "not_found", "",
+                    std::string(View(request.target())) + " is not served here");
+}
+
+class HttpSession {
+ public:
+  HttpSession(beast::tcp_stream stream, WebContext* context)
+      : stream_(std::move(stream)), context_(context) {}
+
+  net::awaitable<void> Run() {
+    while (co_await ReadRequest() && co_await Answer()) {
+    }
+    if (stream_.socket().is_open()) {
+      beast::error_code error;
+      stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, error);
+    }
+  }
+
+ private:
+  net::awaitable<bool> ReadRequest() {
+    http::request_parser<http::string_body> parser;
+    parser.header_limit(kMaxWebHeaderBytes);
+    parser.body_limit(kMaxWebMessageBytes);
+    stream_.expires_after(kWebDeadline);
+    const auto [error, size] = co_await http::async_read(stream_, buffer_, parser, kWebToken);
+    if (!error) {
+      request_ = parser.release();
+      context_->metrics->Add(Counter::kHttpRequests);
+      co_return true;
+    }
+    if (error.category() == http::make_error_code(http::error::bad_method).category() &&
+        error != http::error::end_of_stream && error != http::error::partial_message) {
+      co_await RefuseBytes(error);
+    }
+    co_return false;
+  }
+
+  // Bytes that are no request we take: one answer, then the connection ends.
+  net::awaitable<void> RefuseBytes(beast::error_code error) {
+    context_->metrics->Add(Counter::kHttpRefused);
+    request_ = WebRequest(http::verb::get, "/", 11);
+    request_.keep_alive(false);
+    if (error == http::error::body_limit) {
+      (void)co_await WriteReply(
+          stream_, request_,
+          ErrorReply(413, "limit", "", "a request's body has at most 65536 bytes"));
+    } else if (error == http::error::header_limit) {
+      (void)co_await WriteReply(stream_, request_,
+                                ErrorReply(431, "limit", "", "too many header fields"));
+    } else {
+      (void)co_await WriteReply(stream_, request_, ErrorReply(400, "parse", "", "no HTTP request"));
+    }
+  }
+
+  // False: the connection ends here.
+  net::awaitable<bool> Answer() {
+    const std::string why = context_->guard.Check(View(request_[http::field::host]),
+                                                  View(request_[http::field::origin]));
+    if (!why.empty()) {
+      context_->metrics->Add(Counter::kHttpRefused);
+      co_return co_await WriteReply(stream_, request_, ErrorReply(403, "forbidden", "", why));
+    }
+    std::optional<Url> url = ParseUrl(View(request_.target()));
+    if (!url) {
+      co_return co_await WriteReply(stream_, request_,
+                                    ErrorReply(400, "parse", "", "a target that is no path"));
+    }
+    if (url->path == "/ws") {
+      if (beast::websocket::is_upgrade(request_)) {
+        co_await ServeWebSocket(std::move(stream_), context_, std::move(request_));
+        co_return false;
+      }
+      co_return co_await WriteReply(stream_, request_,
+                                    ErrorReply(400, "upgrade", "", "/ws is a WebSocket"));
+    }
+    if (IsPicture(url->path) && request_.method() == http::verb::get) {
+      co_return co_await ServePictures(&stream_, context_, request_, *url);
+    }
+    co_return co_await AnswerPlain(*std::move(url));
+  }
+
+  net::awaitable<bool> AnswerPlain(Url url) {
+    const bool reads =
+        request_.method() == http::verb::get || request_.method() == http::verb::head;
+    if (const PageFile* file = reads ? context_->page.Find(url.path) : nullptr; file != nullptr) {
+      co_return co_await WritePageFile(stream_, request_, *file);
+    }
+    const bool is_api = url.path.starts_with("/api/") || url.path == "/metrics" ||
+                        url.path == "/healthz" || url.path == "/readyz";
+    if (!is_api) {
+      co_return co_await WriteReply(stream_, request_, NotHere(request_, url.path));
+    }
+    ApiRequest request{std::string(View(request_.method_string())), std::move(url),
+                       std::string(View(request_[http::field::content_type])),
+                       std::move(request_.body())};
+    if (request.method == "HEAD") request.method = "GET";
+    co_return co_await WriteReply(stream_, request_, co_await AskHub(context_, std::move(request)));
+  }
+
+  beast::tcp_stream stream_;
+  WebContext* context_;
+  beast::flat_buffer buffer_;
+  WebRequest request_;
+};
+
+}  // namespace
+
+net::awaitable<bool> WriteReply(beast::tcp_stream& stream, const WebRequest& request,
+                                ApiReply reply) {
+  http::response<http::string_body> response(static_cast<http::status>(reply.status),
+                                             request.version());
+  SetHeaders(request, reply.type, &response);
+  response.set(http::field::cache_control, "no-store");
+  if (!reply.file_name.empty()) {
+    response.set(http::field::content_disposition,
+                 "attachment; filename=\"" + reply.file_name + "\"");
+  }
+  response.body() = std::move(reply.body);
+  response.prepare_payload();
+  http::response_serializer<http::string_body> serializer(response);
+  stream.expires_after(kWebDeadline);
+  const bool head = request.method() == http::verb::head;
+  const auto [error, size] = head ? co_await http::async_write_header(stream, serializer, kWebToken)
+                                  : co_await http::async_write(stream, serializer, kWebToken);
+  co_return !error && response.keep_alive();
+}
+
+net::awaitable<void> ServeConnection(beast::tcp_stream stream, WebContext* context) {
+  HttpSession session(std::move(stream), context);
+  co_await session.Run();
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "protocol/messages.h"
+#include "server/http/url.h"
+#include "wrinkle/status.h"
+
+namespace furrow::server {
+
+// The pictures that the query of /mjpeg or /snapshot.png asks for: subject, width, height, view,
+// camera, rate, quality; every other name is a setting's. Errors: kInvalidArgument, `where` is the
+// name; whether views, cameras and settings exist is for the hub to say.
+[[nodiscard]] Result<protocol::SubscribePictures> PicturesOf(const Url& url);
+
+}  // namespace furrow::server

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/playback/player.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "protocol/hash.h"
+#include "recording/take_clip.h"
+#include "recording/take_folder.h"
+#include "recording/wire_pose.h"
+
+namespace furrow::server {
+namespace {
+
+constexpr std::uint64_t kSession = 1;  // one publisher a peer: any number does
+constexpr std::uint16_t kStream = 1;
+constexpr Time kRepeat = FromSeconds(0.1);  // of the frame at which it stands
+
+}  // namespace
+
+Result<std::unique_ptr<Player>> Player::Load(const std::filesystem::path& path) {
+  motion::ClipReport report;
+  auto clip = recording::IsTakePath(path.string())
+                  ? recording::LoadTakeClip(path.string(), 1.0f, &report)
+                  : motion::LoadClip(path, {}, &report);
+  for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
+  if (!clip.ok()) return clip.status();
+  if (clip->num_frames() == 0) {
+    return Status(StatusCode::kInvalidArgument, "the recording has no frames", path.string());
+  }
+  clip->name = path.stem().string();
+  return std::make_unique<Player>(*std::move(clip), path.filename().string());
+}
+
+Player::Player(motion::Clip clip, std::string file)
+    : clip_(std::move(clip)), file_(std::move(file)) {}
+
+void Player::Start(Hub* hub, Time now) {
+  hub_ = hub;
+  peer_ = hub->AddPeer(Transport::kWeb, "--play " + file_, this, now);
+  protocol::SkeletonOffer offer = recording::OfferOf(clip_, clip_.name, 1.0f);
+  offer.skeleton_hash = protocol::SkeletonHash(offer);
+  pose_.skeleton_hash = offer.skeleton_hash;
+  encoder_.Encode({.session = kSession, .stream = kStream}, offer, bytes_);
+  hub_->OnMessage(peer_, bytes_, now);
+  MoveTo(0.0, now);
+}
+
+double Player::PositionAt(Time now) const {
+  return playing_ ? anchor_ + ToSeconds(now - anchor_time_) * speed_ : anchor_;
+}
+
+int Player::FrameAt(double position) const {
+  // A frame's own time, computed back and forth, is still its own.
+  constexpr double kRounding = 1e-6;
+  const auto next =
+      std::ranges::upper_bound(clip_.times, clip_.times.front() + position + kRounding);
+  return std::max(0, static_cast<int>(next - clip_.times.begin()) - 1);
+}
+
+void Player::MoveTo(double position, Time now) {
+  anchor_ = position;
+  anchor_time_ = now;
+  SendPose(FrameAt(position), now);
+}
+
+void Player::SendPose(int frame, Time now) {
+  frame_ = frame;
+  sent_ = now;
+  const std::uint64_t hash = pose_.skeleton_hash;
+  recording::FillPose(clip_, frame, &pose_);
+  pose_.skeleton_hash = hash;
+  const double seconds = clip_.times[static_cast<std::size_t>(frame)] - clip_.times.front();
+  encoder_.Encode({.session = kSession,
+                   .stream = kStream,
+                   .sequence = sequence_++,
+                   .capture_time_us = std::llround(seconds * 1e6)},
+                  pose_, bytes_);
+  hub_->OnMessage(peer_, bytes_, now);
+}
+
+Time Player::Advance(Time now) {
+  double position = PositionAt(now);
+  const double end = clip_.duration();
+  // The last frame is shown as long as the one before it was.
+  const double last = clip_.num_frames() > 1 ? end / (clip_.num_frames() - 1) : ToSeconds(kRepeat);
+  if (playing_ && loop_ && position >= end + last) {
+    MoveTo(std::fmod(position, end + last), now);
+    position = anchor_;
+  } else if (playing_ && !loop_ && position >= end) {
+    playing_ = false;
+    MoveTo(end, now);
+    position = end;
+  }
+  const int frame = FrameAt(position);
+  if (frame != frame_ || now - sent_ >= kRepeat) SendPose(frame, now);
+  if (!playing_) return sent_ + kRepeat;
+  const bool is_last = frame + 1 >= clip_.num_frames();
+  const double next =
+      is_last ? end + last : clip_.times[static_cast<std::size_t>(frame) + 1] - clip_.times.front();
+  return std::min(sent_ + kRepeat, now + FromSeconds((next - position) / speed_));
+}
+
+Status Player::Apply(const Change& change, Time now) {
+  if (change.speed && !(*change.speed >= kMinSpeed && *change.speed <= kMaxSpeed)) {
+    return Status(StatusCode::kInvalidArgument, "must be 0.05 to 8", "speed");
+  }
+  if (change.position && !std::isfinite(*change.position)) {
+    return Status(StatusCode::kInvalidArgument, "must be a number of seconds", "position_s");
+  }
+  double position = std::clamp(change.position.value_or(PositionAt(now)), 0.0, clip_.duration());
+  const bool starts = change.playing.value_or(playing_) && !playing_;
+  if (starts && !change.position && position >= clip_.duration()) position = 0.0;
+  playing_ = change.playing.value_or(playing_);
+  loop_ = change.loop.value_or(loop_);
+  speed_ = change.speed.value_or(speed_);
+  MoveTo(position, now);
+  return {};
+}
+
+Player::State Player::state(Time now) const {
+  State state;
+  state.file = file_;
+  state.subject = clip_.name;
+  state.frames = clip_.num_frames();
+  state.seconds = clip_.duration();
+  state.rate_hz = state.seconds > 0.0 ? (state.frames - 1) / state.seconds : 0.0;
+  state.position = std::clamp(PositionAt(now), 0.0, clip_.duration());
+  state.frame = frame_;
+  state.playing = playing_;
+  state.loop = loop_;
+  state.speed = speed_;
+  return state;
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What whoever runs the session changes while it runs: the rig, a subject's neutral, the settings.
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <spdlog/spdlog.h>
+
+#include "server/session/hub.h"
+
+namespace furrow::server {
+
+Subject* Hub::FindSubject(std::string_view name) {
+  return name.empty() ? subjects_.First() : subjects_.Find(name);
+}
+
+std::string_view Hub::SourceOf(const Subject& subject) {
+  const Peer* peer = peers_.Find(subject.owner.peer);
+  return peer == nullptr ? std::string_view() : std::string_view(peer->name);
+}
+
+Status Hub::SetRig(std::shared_ptr<const wrinkle::Rig> rig, Time now) {
+  const std::shared_ptr<const wrinkle::Rig> former = definitions_.shared_rig();
+  definitions_.SetRig(std::move(rig));
+  std::vector<std::shared_ptr<const StreamDefinition>> made;
+  for (const auto& subject : subjects_.all()) {
+    auto definition = definitions_.Remake(subject->pipeline->stream());
+    if (!definition.ok()) {
+      definitions_.SetRig(former);
+      return definition.status().At(subject->name);
+    }
+    made.push_back(*std::move(definition));
+  }
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    Subject& subject = *subjects_.all()[i];
+    subject.pipeline->SetStream(std::move(made[i]));
+    subscribers_.OnSubjectReady(subject);
+    if (subject.pipeline->has_pose()) Weighted(subject, {}, 0, now);
+  }
+  return {};
+}
+
+void Hub::SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral, Time now) {
+  subject.pipeline->SetNeutral(std::move(neutral));
+  if (subject.pipeline->has_pose()) Weighted(subject, {}, 0, now);
+}
+
+}  // namespace furrow::server
