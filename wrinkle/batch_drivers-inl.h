@@ -54,7 +54,7 @@ struct PoseLanes {
   const float* const* poses;
   Float check;
 
-  HWY_INLINE void Check(const Float3& v) {
+  HWY_INLINE void Check(Float3 v) {
     const Float zero = hn::Zero(Floats());
     check = hn::MulAdd(v.z, zero, hn::MulAdd(v.y, zero, hn::MulAdd(v.x, zero, check)));
   }
@@ -89,7 +89,7 @@ struct LaneDirection {
   Float3 unit;
   hn::Mask<Floats> has_length;
 };
-HWY_INLINE LaneDirection Direction(const Float3& v) {
+HWY_INLINE LaneDirection Direction(Float3 v) {
   const Float length = hn::Sqrt(Dot(v, v));
   const Float infinity = hn::Inf(Floats());
   const auto has_length = hn::And(hn::Gt(length, Splat(kLeastLength)), hn::Lt(length, infinity));
@@ -172,7 +172,7 @@ inline void EvaluateBall(const BallDriverSet::Entry& entry, const JointChains& c
               values);
 }
 
-HWY_INLINE FloatQuat Multiply(const FloatQuat& p, const FloatQuat& q) {
+HWY_INLINE FloatQuat Multiply(FloatQuat p, FloatQuat q) {
   const auto sum = [](Float a, Float b, Float c, Float e)
                        HWY_ATTR { return hn::Sub(hn::Add(hn::Add(a, b), c), e); };
   return {sum(hn::Mul(p.w, q.x), hn::Mul(p.x, q.w), hn::Mul(p.y, q.z), hn::Mul(p.z, q.y)),
@@ -183,7 +183,7 @@ HWY_INLINE FloatQuat Multiply(const FloatQuat& p, const FloatQuat& q) {
 }
 
 // TwistAngle().
-HWY_INLINE Float LaneTwist(const FloatQuat& q, const Float3& axis) {
+HWY_INLINE Float LaneTwist(FloatQuat q, Float3 axis) {
   const Float sine = Dot({q.x, q.y, q.z}, axis);
   const Float square = hn::Add(hn::Mul(sine, sine), hn::Mul(q.w, q.w));
   const auto turned = hn::Lt(q.w, hn::Zero(Floats()));

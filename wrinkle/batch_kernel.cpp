@@ -18,19 +18,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
-// Four columns to a list for each subject, as StoreColumns() does, of which `count` are wanted.
-inline void StoreSomeColumns(const Columns& columns, float* const* subjects, std::size_t offset,
-                             std::size_t count) {
-  if (count >= 4) return StoreColumns(columns, subjects, offset);
-  HWY_ALIGN float numbers[4 * kLanes];
-  StoreLanes(columns.c0, numbers);
-  StoreLanes(columns.c1, numbers + kLanes);
-  StoreLanes(columns.c2, numbers + 2 * kLanes);
-  for (std::size_t subject = 0; subject < kLanes; ++subject) {
-    for (std::size_t i = 0; i < count; ++i) {
-      subjects[subject][offset + i] = numbers[i * kLanes + subject];
-    }
-  }
+// Rows are transposed four at a time.
+inline std::size_t NumValueRows(const BindingData& data) {
+  return (static_cast<std::size_t>(data.first_values.back()) + 3) / 4 * 4;
 }
 
 // The values of all drivers but nnls and strain, in rows. Returns a bit for each lane to look at:
@@ -44,7 +34,7 @@ unsigned EvaluateRows(const BatchGroup& group, float* rows) {
   const auto row = [&](int first_value) {
     return rows + static_cast<std::size_t>(first_value) * kLanes;
   };
-  std::fill(rows, row(data.first_values.back()), 0.0f);
+  std::fill_n(rows, NumValueRows(data) * kLanes, 0.0f);
   const auto pose_entries = data.pose_drivers.entries();
   for (std::size_t i = 0; i < pose_entries.size() && reaches(pose_entries[i].first_value); ++i) {
     if (pose_entries[i].solve == PoseSolve::kNnls) continue;
@@ -75,31 +65,29 @@ unsigned EvaluateRows(const BatchGroup& group, float* rows) {
   return suspect;
 }
 
-// Rows to each subject's own list. The scratch ends in room for whole columns.
-void StoreValues(const BatchGroup& group, std::size_t count, const float* rows) {
-  for (std::size_t i = 0; i < count; i += 4) {
-    const float* const row = rows + i * kLanes;
-    const Columns columns{LoadLanes(row), LoadLanes(row + kLanes), LoadLanes(row + 2 * kLanes),
-                          LoadLanes(row + 3 * kLanes)};
-    StoreSomeColumns(columns, group.raw_values.data(), i, count - i);
+HWY_INLINE Columns LoadRows(const float* row) {
+  return {LoadLanes(row), LoadLanes(row + kLanes), LoadLanes(row + 2 * kLanes),
+          LoadLanes(row + 3 * kLanes)};
+}
+
+// Rows to each subject's own list.
+void StoreValues(const BatchGroup& group, std::size_t num_rows, const float* rows) {
+  for (std::size_t i = 0; i < num_rows; i += 4) {
+    StoreColumns(LoadRows(rows + i * kLanes), group.raw_values.data(), i);
   }
 }
 
 // Each subject's filtered values to rows.
-void LoadFiltered(const BatchGroup& group, std::size_t count, float* rows) {
+void LoadFiltered(const BatchGroup& group, std::size_t num_rows, float* rows) {
   const float* values[kLanes];
   for (std::size_t i = 0; i < kLanes; ++i) values[i] = group.contexts[i]->value.data();
-  std::size_t i = 0;
-  for (; i + 4 <= count; i += 4) {
+  for (std::size_t i = 0; i < num_rows; i += 4) {
     const Columns columns = LoadColumns(values, i);
     float* const row = rows + i * kLanes;
     StoreLanes(columns.c0, row);
     StoreLanes(columns.c1, row + kLanes);
     StoreLanes(columns.c2, row + 2 * kLanes);
     StoreLanes(columns.c3, row + 3 * kLanes);
-  }
-  for (; i < count; ++i) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) rows[i * kLanes + lane] = values[lane][i];
   }
 }
 
@@ -115,19 +103,19 @@ void EvaluateWeights(const BatchGroup& group, const float* values, float* modula
   };
   for (std::size_t i = 0; i < count; i += 4) {
     const Columns columns{congruent(i), congruent(i + 1), congruent(i + 2), congruent(i + 3)};
-    StoreSomeColumns(columns, group.weights.data(), i, count - i);
+    StoreColumns(columns, group.weights.data(), i);
   }
 }
 
 void FinishRows(const BatchGroup& group, float* scratch) {
-  const auto count = static_cast<std::size_t>(group.binding->first_values.back());
-  StoreValues(group, count, scratch);
+  const std::size_t num_rows = NumValueRows(*group.binding);
+  StoreValues(group, num_rows, scratch);
   for (std::size_t i = 0; i < group.count; ++i) {
     EvaluateOneByOne(group, i);
     FilterSubject(group, i);
   }
-  LoadFiltered(group, count, scratch);
-  EvaluateWeights(group, scratch, scratch + count * kLanes);
+  LoadFiltered(group, num_rows, scratch);
+  EvaluateWeights(group, scratch, scratch + num_rows * kLanes);
 }
 
 bool AllFiniteLanes(std::span<const float> values) {
@@ -160,8 +148,9 @@ HWY_EXPORT(NumLanes);
 std::size_t BatchLanes() { return HWY_DYNAMIC_DISPATCH(NumLanes)(); }
 
 std::size_t BatchScratchSize(const BindingData& binding) {
-  const auto num_values = static_cast<std::size_t>(binding.first_values.back());
-  return (num_values + binding.weights.names().size() + 4) * kMaxBatchLanes;
+  return (WholeVectors(static_cast<std::size_t>(binding.first_values.back())) +
+          binding.weights.names().size()) *
+         kMaxBatchLanes;
 }
 
 bool BatchAllFinite(std::span<const float> values) {

@@ -11,6 +11,11 @@ namespace furrow::wrinkle {
 
 inline constexpr std::size_t kMaxBatchLanes = 16;
 
+// `count` rounded up to what fills the widest vectors.
+[[nodiscard]] constexpr std::size_t WholeVectors(std::size_t count) {
+  return (count + kMaxBatchLanes - 1) / kMaxBatchLanes * kMaxBatchLanes;
+}
+
 // Subjects of one binding that are evaluated side by side, one a lane. Lanes past `count` repeat
 // subject 0. Private to wrinkle/.
 struct BatchGroup {
@@ -26,8 +31,8 @@ struct BatchGroup {
   Each<const Filter*> filters{};
   Each<FilterContext*> contexts{};
   Each<double> dt{};
-  Each<float*> raw_values{};  // out
-  Each<float*> weights{};     // out
+  Each<float*> raw_values{};  // out; as long as WholeVectors(), like the contexts' lists
+  Each<float*> weights{};     // out; WholeVectors()
 };
 
 // How many floats a group needs for itself, aligned to kBatchAlignment bytes.

@@ -48,33 +48,33 @@ HWY_INLINE Float3 Splat(const glm::vec3& v) { return {Splat(v.x), Splat(v.y), Sp
 HWY_INLINE Float LoadLanes(const float* from) { return hn::Load(Floats(), from); }
 HWY_INLINE void StoreLanes(Float v, float* to) { hn::Store(v, Floats(), to); }
 
-HWY_INLINE Float3 operator+(const Float3& a, const Float3& b) {
+HWY_INLINE Float3 operator+(Float3 a, Float3 b) {
   return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
 }
-HWY_INLINE Float3 operator-(const Float3& a, const Float3& b) {
+HWY_INLINE Float3 operator-(Float3 a, Float3 b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
-HWY_INLINE Float3 operator*(const Float3& a, const Float3& b) {
+HWY_INLINE Float3 operator*(Float3 a, Float3 b) {
   return {hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)};
 }
-HWY_INLINE Float3 operator/(const Float3& a, const Float3& b) {
+HWY_INLINE Float3 operator/(Float3 a, Float3 b) {
   return {hn::Div(a.x, b.x), hn::Div(a.y, b.y), hn::Div(a.z, b.z)};
 }
-HWY_INLINE Float3 operator*(Float s, const Float3& v) { return Float3{s, s, s} * v; }
+HWY_INLINE Float3 operator*(Float s, Float3 v) { return Float3{s, s, s} * v; }
 
-HWY_INLINE Float Dot(const Float3& a, const Float3& b) {
+HWY_INLINE Float Dot(Float3 a, Float3 b) {
   const Float3 p = a * b;
   return hn::Add(hn::Add(p.x, p.y), p.z);
 }
 
-HWY_INLINE Float3 Cross(const Float3& a, const Float3& b) {
+HWY_INLINE Float3 Cross(Float3 a, Float3 b) {
   return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)),
           hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
 }
 
 // The rotated vector; glm's quat * vec3.
-HWY_INLINE Float3 Rotate(const FloatQuat& q, const Float3& v) {
+HWY_INLINE Float3 Rotate(FloatQuat q, Float3 v) {
   const Float3 axis{q.x, q.y, q.z};
   const Float3 uv = Cross(axis, v);
   const Float3 uuv = Cross(axis, uv);
@@ -82,7 +82,7 @@ HWY_INLINE Float3 Rotate(const FloatQuat& q, const Float3& v) {
   return v + (sum + sum);
 }
 
-HWY_INLINE FloatQuat Conjugate(const FloatQuat& q) {
+HWY_INLINE FloatQuat Conjugate(FloatQuat q) {
   return {hn::Neg(q.x), hn::Neg(q.y), hn::Neg(q.z), q.w};
 }
 
@@ -107,14 +107,14 @@ HWY_INLINE Doubles ToDoubles(Float v) {
   return {hn::PromoteTo(HalfDoubles(), v), hn::Zero(HalfDoubles())};
 }
 
-HWY_INLINE Float ToFloats(const Doubles& v) { return hn::DemoteTo(Floats(), v.low); }
+HWY_INLINE Float ToFloats(Doubles v) { return hn::DemoteTo(Floats(), v.low); }
 
 HWY_INLINE Columns LoadColumns(const float* const* subjects, std::size_t offset) {
   const float* const from = subjects[0] + offset;
   return {Splat(from[0]), Splat(from[1]), Splat(from[2]), Splat(from[3])};
 }
 
-HWY_INLINE void StoreColumns(const Columns& columns, float* const* subjects, std::size_t offset) {
+HWY_INLINE void StoreColumns(Columns columns, float* const* subjects, std::size_t offset) {
   float* const to = subjects[0] + offset;
   to[0] = hn::GetLane(columns.c0);
   to[1] = hn::GetLane(columns.c1);
@@ -131,14 +131,14 @@ HWY_INLINE Doubles ToDoubles(Float v) {
           hn::PromoteTo(doubles, hn::UpperHalf(half, v))};
 }
 
-HWY_INLINE Float ToFloats(const Doubles& v) {
+HWY_INLINE Float ToFloats(Doubles v) {
   const hn::Half<Floats> half;
   return hn::Combine(Floats(), hn::DemoteTo(half, v.high), hn::DemoteTo(half, v.low));
 }
 
 // Four vectors to their transpose within each block of four lanes. What was loaded by LoadRow()
 // becomes columns, and back again.
-HWY_INLINE Columns Transpose(const Columns& in) {
+HWY_INLINE Columns Transpose(Columns in) {
   const Floats d;
   const Float low02 = hn::InterleaveLower(d, in.c0, in.c2);
   const Float high02 = hn::InterleaveUpper(d, in.c0, in.c2);
@@ -180,7 +180,7 @@ HWY_INLINE Columns LoadColumns(const float* const* subjects, std::size_t offset)
                     LoadRow<kLanes>(subjects, 2, offset), LoadRow<kLanes>(subjects, 3, offset)});
 }
 
-HWY_INLINE void StoreColumns(const Columns& columns, float* const* subjects, std::size_t offset) {
+HWY_INLINE void StoreColumns(Columns columns, float* const* subjects, std::size_t offset) {
   const Columns rows = Transpose(columns);
   StoreRow<kLanes>(rows.c0, subjects, 0, offset);
   StoreRow<kLanes>(rows.c1, subjects, 1, offset);

@@ -18,26 +18,38 @@ struct Moved {
   Doubles x, y, z;
 };
 
-HWY_INLINE Moved ToDoubles(const Float3& v) {
-  return {ToDoubles(v.x), ToDoubles(v.y), ToDoubles(v.z)};
+HWY_INLINE Moved Measure(const PoseDriverSet::Measured& point, const JointChains& chains,
+                         PoseLanes* lanes) {
+  const Float3 moved = EvaluatePoint(chains.chain(point.point), lanes) - Splat(point.rest);
+  return {ToDoubles(moved.x), ToDoubles(moved.y), ToDoubles(moved.z)};
 }
 
-HWY_INLINE Double MulAddDot(const glm::dvec3& d, Double x, Double y, Double z, Double sum) {
-  const HalfDoubles doubles;
-  sum = hn::MulAdd(x, hn::Set(doubles, d.x), sum);
-  sum = hn::MulAdd(y, hn::Set(doubles, d.y), sum);
-  return hn::MulAdd(z, hn::Set(doubles, d.z), sum);
+// sum + dot(moved, projection).
+HWY_INLINE Doubles AddDot(Moved moved, const glm::dvec3& projection, Doubles sum) {
+  const HalfDoubles d;
+  const Double x = hn::Set(d, projection.x);
+  const Double y = hn::Set(d, projection.y);
+  const Double z = hn::Set(d, projection.z);
+  sum.low = hn::MulAdd(moved.x.low, x, sum.low);
+  sum.high = hn::MulAdd(moved.x.high, x, sum.high);
+  sum.low = hn::MulAdd(moved.y.low, y, sum.low);
+  sum.high = hn::MulAdd(moved.y.high, y, sum.high);
+  sum.low = hn::MulAdd(moved.z.low, z, sum.low);
+  sum.high = hn::MulAdd(moved.z.high, z, sum.high);
+  return sum;
 }
 
-// ProjectionAlong().
-HWY_INLINE Float Along(const Moved* moved, const glm::dvec3* projection, std::size_t num_points) {
-  Doubles sum = {hn::Zero(HalfDoubles()), hn::Zero(HalfDoubles())};
-  for (std::size_t i = 0; i < num_points; ++i) {
-    const Moved& m = moved[i];
-    sum.low = MulAddDot(projection[i], m.x.low, m.y.low, m.z.low, sum.low);
-    sum.high = MulAddDot(projection[i], m.x.high, m.y.high, m.z.high, sum.high);
+HWY_INLINE Doubles ZeroDoubles() { return {hn::Zero(HalfDoubles()), hn::Zero(HalfDoubles())}; }
+
+// One point, no falloff: the most of them, so all stays in registers.
+inline void EvaluateOnePoint(const PoseDriverSet& drivers, const PoseDriverSet::Entry& entry,
+                             const JointChains& chains, PoseLanes* lanes, float* values) {
+  const Moved moved = Measure(drivers.points(entry)[0], chains, lanes);
+  const glm::dvec3* projection = drivers.projections(entry);
+  for (const glm::dvec3* const end = projection + entry.num_values; projection != end;
+       ++projection, values += kLanes) {
+    StoreLanes(Saturate(ToFloats(AddDot(moved, *projection, ZeroDoubles()))), values);
   }
-  return ToFloats(sum);
 }
 
 // Falloff() of SquaredDistance().
@@ -54,44 +66,38 @@ inline Float LaneFalloff(const Moved* moved, std::span<const glm::vec3> displace
   return Exponential(hn::Div(hn::Neg(sum), Splat(width)));
 }
 
-HWY_INLINE Moved Measure(const PoseDriverSet::Measured& point, const JointChains& chains,
-                         PoseLanes* lanes) {
-  const Float3 position = EvaluatePoint(chains.chain(point.point), lanes);
-  return ToDoubles(position - Splat(point.rest));
-}
-
-// Any number of points. `moved` has room for them.
-HWY_INLINE void StorePoseValues(const PoseDriverSet& drivers, std::size_t index, const Moved* moved,
-                                std::size_t num_points, float* values) {
+inline void EvaluatePoints(const PoseDriverSet& drivers, std::size_t index,
+                           const JointChains& chains, PoseLanes* lanes, float* values) {
   const PoseDriverSet::Entry& entry = drivers.entries()[index];
+  const auto points = drivers.points(entry);
+  Moved moved[kMaxControlPoints];
+  for (std::size_t i = 0; i < points.size(); ++i) moved[i] = Measure(points[i], chains, lanes);
   const glm::dvec3* projection = drivers.projections(entry);
-  for (int k = 0; k < entry.num_values; ++k, projection += num_points) {
-    const Float along = Along(moved, projection, num_points);
+  for (int k = 0; k < entry.num_values; ++k, values += kLanes) {
+    Doubles sum = ZeroDoubles();
+    for (std::size_t i = 0; i < points.size(); ++i) sum = AddDot(moved[i], *projection++, sum);
+    const Float along = ToFloats(sum);
     Float value = Saturate(along);
     if (entry.falloff > 0.0f) {
       const int driver = static_cast<int>(index);
       const float square = drivers.SquaredDisplacement(driver, k);
-      const auto displacement = drivers.Displacement(driver, k);
       // Where the pose does not move the points, `along` is 0 and the width does not count.
-      const Float share =
-          LaneFalloff(moved, displacement, along, square > 0.0f ? square : 1.0f, entry.falloff);
+      const Float share = LaneFalloff(moved, drivers.Displacement(driver, k), along,
+                                      square > 0.0f ? square : 1.0f, entry.falloff);
       value = Saturate(hn::Mul(value, share));
     }
-    StoreLanes(value, values + static_cast<std::size_t>(k) * kLanes);
+    StoreLanes(value, values);
   }
 }
 
 inline void EvaluatePose(const PoseDriverSet& drivers, std::size_t index, const JointChains& chains,
                          PoseLanes* lanes, float* values) {
-  const auto points = drivers.points(drivers.entries()[index]);
-  if (points.size() == 1) {  // the most of them: it then stays in registers
-    const Moved moved = Measure(points[0], chains, lanes);
-    StorePoseValues(drivers, index, &moved, 1, values);
-    return;
+  const PoseDriverSet::Entry& entry = drivers.entries()[index];
+  if (entry.num_points == 1 && !(entry.falloff > 0.0f)) {
+    EvaluateOnePoint(drivers, entry, chains, lanes, values);
+  } else {
+    EvaluatePoints(drivers, index, chains, lanes, values);
   }
-  Moved moved[kMaxControlPoints];
-  for (std::size_t i = 0; i < points.size(); ++i) moved[i] = Measure(points[i], chains, lanes);
-  StorePoseValues(drivers, index, moved, points.size(), values);
 }
 
 }  // namespace furrow::wrinkle::HWY_NAMESPACE

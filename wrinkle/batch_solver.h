@@ -36,6 +36,7 @@ class BatchSolver {
 
  private:
   class Grouping;
+  static void Expect(const BatchUpdate& update);
   void RunFirstKind();
   float* Scratch(std::size_t size);
 

@@ -9,7 +9,6 @@
 #endif
 
 #include <algorithm>
-#include <cstring>
 
 #include "wrinkle/batch_math-inl.h"
 #include "wrinkle/filter_move.h"
@@ -37,46 +36,40 @@ HWY_INLINE FilterLanes MakeFilterLanes(const Filter& filter, double since_input,
                                     : Splat(2.0f)};
 }
 
-// OneEuro::Step() and the slew limit on as many values as there are lanes.
-HWY_INLINE void Follow(const FilterLanes& f, const float* input, float* raw, float* value,
-                       float* derivative) {
-  const Floats d;
-  const Float in = hn::LoadU(d, input);
-  const Float before = hn::LoadU(d, value);
-  const Float old_speed = hn::LoadU(d, derivative);
-  const Float slope = hn::Mul(hn::Sub(in, hn::LoadU(d, raw)), f.inverse_since);
-  const Float speed = hn::MulAdd(f.derivative_share, hn::Sub(slope, old_speed), old_speed);
+// A filter's numbers of as many values as there are lanes.
+struct FilterState {
+  Float raw, value, derivative;
+};
+
+// OneEuro::Step() and the slew limit.
+HWY_INLINE FilterState Follow(const FilterLanes& f, FilterState old, Float input) {
+  const Float slope = hn::Mul(hn::Sub(input, old.raw), f.inverse_since);
+  const Float speed =
+      hn::MulAdd(f.derivative_share, hn::Sub(slope, old.derivative), old.derivative);
   const Float cutoff = hn::MulAdd(f.beta, hn::Abs(speed), f.min_cutoff);
   const Float c = hn::Mul(f.angle, cutoff);
   const Float share = hn::Div(c, hn::Add(c, Splat(1.0f)));
-  const Float wanted = hn::Mul(share, hn::Sub(in, before));
+  const Float wanted = hn::Mul(share, hn::Sub(input, old.value));
   const Float change = hn::Max(hn::Min(wanted, f.largest_change), hn::Neg(f.largest_change));
-  hn::StoreU(Saturate(hn::Add(before, change)), d, value);
-  hn::StoreU(speed, d, derivative);
-  hn::StoreU(in, d, raw);
+  return {input, Saturate(hn::Add(old.value, change)), speed};
 }
 
+// All values of a subject; they fill whole vectors.
 inline void FollowAll(const Filter& filter, FilterContext* context, double dt, const float* input) {
+  const Floats d;
   const FilterLanes lanes = MakeFilterLanes(filter, context->since_input, dt);
   const std::size_t count = context->value.size();
   float* const raw = context->raw.data();
   float* const value = context->value.data();
   float* const derivative = context->derivative.data();
-  std::size_t i = 0;
-  for (; i + kLanes <= count; i += kLanes) {
-    Follow(lanes, input + i, raw + i, value + i, derivative + i);
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    const FilterState old{hn::LoadU(d, raw + i), hn::LoadU(d, value + i),
+                          hn::LoadU(d, derivative + i)};
+    const FilterState now = Follow(lanes, old, hn::LoadU(d, input + i));
+    hn::StoreU(now.raw, d, raw + i);
+    hn::StoreU(now.value, d, value + i);
+    hn::StoreU(now.derivative, d, derivative + i);
   }
-  if (i == count) return;
-  float rest[4][kLanes] = {};
-  const std::size_t bytes = (count - i) * sizeof(float);
-  std::memcpy(rest[0], input + i, bytes);
-  std::memcpy(rest[1], raw + i, bytes);
-  std::memcpy(rest[2], value + i, bytes);
-  std::memcpy(rest[3], derivative + i, bytes);
-  Follow(lanes, rest[0], rest[1], rest[2], rest[3]);
-  std::memcpy(raw + i, rest[1], bytes);
-  std::memcpy(value + i, rest[2], bytes);
-  std::memcpy(derivative + i, rest[3], bytes);
 }
 
 // FilterJob for one subject of the group.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "wrinkle/batch_kernel.h"
 #include "wrinkle/binding_data.h"
 #include "wrinkle/finite.h"
 #include "wrinkle/rig_check.h"
@@ -72,10 +73,10 @@ JobStatus JointInfluenceJob::Run() const {
 SubjectSolver::SubjectSolver(std::shared_ptr<const RigBinding> binding, bool filter)
     : binding_(std::move(binding)), filter_(binding_->rig().filter) {
   filter_.enabled = filter_.enabled && filter;
-  const std::size_t num_values = binding_->driver_value_names().size();
+  const std::size_t num_values = WholeVectors(binding_->driver_value_names().size());
   filter_context_.Resize(static_cast<int>(num_values));
   raw_values_.assign(num_values, 0.0f);
-  weights_.assign(binding_->weight_names().size(), 0.0f);
+  weights_.assign(WholeVectors(binding_->weight_names().size()), 0.0f);
 }
 
 JobStatus SubjectSolver::Update(const LocalPose& pose, double dt) {
@@ -92,8 +93,11 @@ JobStatus SubjectSolver::Update(const LocalPose& pose, double dt) {
 JobStatus SubjectSolver::Decay(double dt) { return Finish(dt, {}); }
 
 JobStatus SubjectSolver::Finish(double dt, std::span<const float> input) {
-  const FilterJob filter{
-      .filter = &filter_, .context = &filter_context_, .dt = dt, .input = input, .output = filter_context_.value};
+  const FilterJob filter{.filter = &filter_,
+                         .context = &filter_context_,
+                         .dt = dt,
+                         .input = input,
+                         .output = filter_context_.value};
   if (const JobStatus status = filter.Run(); status != JobStatus::kOk) return status;
   const WrinkleWeightsJob weights{
       .binding = binding_.get(), .driver_values = filtered_values(), .wrinkle_weights = weights_};

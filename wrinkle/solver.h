@@ -141,10 +141,16 @@ class SubjectSolver {
   void set_num_drivers(std::size_t count) { num_drivers_ = count; }
   [[nodiscard]] std::size_t num_drivers() const { return num_drivers_; }
 
-  [[nodiscard]] std::span<const float> wrinkle_weights() const { return weights_; }
+  [[nodiscard]] std::span<const float> wrinkle_weights() const {
+    return std::span(weights_).first(binding_->weight_names().size());
+  }
   // Driver values before the filter, and after it.
-  [[nodiscard]] std::span<const float> driver_values() const { return raw_values_; }
-  [[nodiscard]] std::span<const float> filtered_values() const { return filter_context_.value; }
+  [[nodiscard]] std::span<const float> driver_values() const {
+    return std::span(raw_values_).first(binding_->driver_value_names().size());
+  }
+  [[nodiscard]] std::span<const float> filtered_values() const {
+    return std::span(filter_context_.value).first(binding_->driver_value_names().size());
+  }
   [[nodiscard]] const RigBinding& binding() const { return *binding_; }
 
  private:
@@ -153,6 +159,7 @@ class SubjectSolver {
 
   std::shared_ptr<const RigBinding> binding_;
   Filter filter_;
+  // As long as whole SIMD vectors, for BatchSolver; what is too much stays 0.
   FilterContext filter_context_;
   std::vector<float> raw_values_;
   std::vector<float> weights_;
