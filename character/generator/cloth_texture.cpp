@@ -25,6 +25,7 @@ using glm::vec3;
 using paint::Texel;
 
 constexpr float kPi = std::numbers::pi_v<float>;
+constexpr int kNormalBits = 8;
 
 // Where a texel lies on the cloth.
 struct ClothPlace {
@@ -242,7 +243,7 @@ Picture PaintClothNormals(const Clothes& clothes, int size) {
     slopes.emplace_back((beside({-1, 0}) - beside({1, 0})) / (2.0f * kStep),
                         (beside({0, -1}) - beside({0, 1})) / (2.0f * kStep));
   }
-  Picture picture = paint::EncodeNormals(atlas.texels(), slopes, size, size);
+  Picture picture = paint::EncodeNormals(atlas.texels(), slopes, size, size, kNormalBits);
   picture.name = "cloth_normal";
   return picture;
 }

@@ -18,6 +18,8 @@ using glm::vec2;
 using glm::vec3;
 using paint::Texel;
 
+constexpr int kNormalBits = 11;
+
 // How coarse the pores are: nose and inner cheeks most, lids least.
 float PoreShare(const vec3& q) {
   const float coarse = 0.45f + 0.9f * Spot(q, {0, -3.8f, 10.6f}, {1.7f, 1.4f, 2.0f}) +
@@ -46,10 +48,10 @@ float Height(const vec3& p, const FaceParameters& face) {  // centimetres
   const float grain = Noise(p * 13.0f) + 0.7f * Noise(p * 22.0f + 5.0f);
   const float pits = -1.6f * SmoothStep(0.45f, 0.75f, Noise(p * 17.0f + 11.0f));
   const float lips = LipShare(p);
-  const float creases = Noise({p.x * 8.0f, p.y * 1.3f, 2.0f});
+  const float creases = Noise({p.x * 13.0f, p.y * 2.2f, 2.0f});
   return (1.0f - lips) *
              (0.0022f * PoreShare(q) * (grain + pits) + 0.0030f * FineLines(q, AgeShare(face))) +
-         0.006f * lips * creases;
+         0.0028f * lips * creases;
 }
 
 // Centimetres of flesh between a point of the skin and the nearest way out behind it.
@@ -77,7 +79,7 @@ Picture PaintSkinNormals(const Mesh& skin, const HeadShape& shape, int size) {
     slopes.emplace_back((here - Height(p + texel.tangent * kStep, shape.face())) / kStep,
                         (here - Height(p + texel.bitangent * kStep, shape.face())) / kStep);
   }
-  Picture picture = paint::EncodeNormals(texels, slopes, size, size);
+  Picture picture = paint::EncodeNormals(texels, slopes, size, size, kNormalBits);
   picture.name = "skin_normal";
   return picture;
 }

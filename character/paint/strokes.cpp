@@ -67,14 +67,16 @@ FoldShape FoldShapeAt(float widths, float ridge) {
 }
 
 Picture EncodeNormals(const std::vector<Texel>& texels, std::span<const glm::vec2> slopes,
-                      int width, int height) {
+                      int width, int height, int bits) {
   constexpr int kDilation = 16;
   Picture picture;
   picture.width = width;
   picture.height = height;
   picture.channels = 3;
-  const auto encode = [](float v) {
-    return static_cast<std::uint16_t>(std::lround((v * 0.5f + 0.5f) * 65535.0f));
+  const long step = 1L << (16 - bits);
+  const auto encode = [step](float v) {
+    const long whole = std::lround((v * 0.5f + 0.5f) * 65535.0f);
+    return static_cast<std::uint16_t>(std::min((whole + step / 2) / step * step, 65535L));
   };
   picture.pixels16.resize(static_cast<std::size_t>(width) * height * 3, encode(0.0f));
   for (std::size_t i = 2; i < picture.pixels16.size(); i += 3) picture.pixels16[i] = encode(1.0f);

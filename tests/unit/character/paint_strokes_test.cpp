@@ -83,11 +83,15 @@ TEST(PaintStrokes, LineKnowsItsNearestPoint) {
 TEST(PaintStrokes, NormalMapSaysTheSlope) {
   const std::vector<Texel> texels = RasterizeUv(Square(), 8, 8);
   const std::vector<glm::vec2> slopes(texels.size(), glm::vec2(0.5f, -0.25f));
-  const Picture map = EncodeNormals(texels, slopes, 8, 8);
+  const Picture map = EncodeNormals(texels, slopes, 8, 8, 11);
   ASSERT_EQ(map.pixels16.size(), 8u * 8u * 3u);
   const auto decode = [&](int c) { return static_cast<float>(map.pixels16[c]) / 65535.0f * 2 - 1; };
   EXPECT_NEAR(decode(0) / decode(2), 0.5f, 1e-3f);
   EXPECT_NEAR(decode(1) / decode(2), -0.25f, 1e-3f);
+  for (const std::uint16_t value : map.pixels16) EXPECT_TRUE(value % 32 == 0 || value == 65535);
+  const Picture flat = EncodeNormals(texels, {}, 8, 8, 8);
+  EXPECT_EQ(flat.pixels16[0], 32768);  // no slope is said exactly
+  EXPECT_EQ(flat.pixels16[2], 65535);
 }
 
 TEST(PaintStrokes, SmoothKeepsItsControlPoints) {
