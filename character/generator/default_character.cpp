@@ -24,6 +24,7 @@
 #include "character/generator/wrinkle_maps.h"
 #include "character/paint/hair_strands.h"
 #include "character/paint/strokes.h"
+#include "character/paint/teeth.h"
 #include "character/paint/uv_raster.h"
 #include "character/rig_file.h"
 
@@ -99,7 +100,7 @@ void AddHeadParts(const CharacterOptions& options, const HeadShape& shape, Chara
   Material teeth = MakeMaterial("teeth", Material::Kind::kOther, 0.3f);
   Mesh rows = SkinnedPart(character->skeleton, MakeTeeth());
   teeth.base_colour_texture =
-      AddPicture(character, PaintTeeth(rows, options.face, options.texture_size / 2));
+      AddPicture(character, paint::PaintTeeth(AgeShare(options.face), options.texture_size / 2));
   AddMesh(character, std::move(rows), std::move(teeth));
 }
 

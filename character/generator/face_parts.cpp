@@ -10,6 +10,7 @@
 #include "character/generator/head_mesh.h"
 #include "character/generator/head_shape.h"
 #include "character/generator/mesh_tools.h"
+#include "character/paint/teeth.h"
 
 namespace furrow::character::generator {
 namespace {
@@ -91,75 +92,19 @@ void AddLashRow(const HeadGrid& grid, float side, bool upper, int* cell, HeadMes
   }
 }
 
-// Half widths of the teeth from the middle outward, centimetres: incisors, canine, premolars,
-// molars.
-constexpr float kUpperTeeth[] = {0.43f, 0.33f, 0.38f, 0.35f, 0.34f, 0.50f, 0.48f};
-constexpr float kLowerTeeth[] = {0.27f, 0.29f, 0.34f, 0.35f, 0.35f, 0.52f, 0.50f};
-
-// Which tooth stands at arc length `s` from the middle, and where on it, [-1, 1].
-struct OnTooth {
-  int tooth;
-  float across;
-};
-
-OnTooth ToothAt(float s, bool upper) {
-  float start = 0.0f;
-  for (int i = 0; i < 7; ++i) {
-    const float half = upper ? kUpperTeeth[i] : kLowerTeeth[i];
-    if (s < start + 2.0f * half || i == 6) return {i, (s - start) / half - 1.0f};
-    start += 2.0f * half;
-  }
-  return {6, 1.0f};
-}
-
-// A row of teeth on an elliptic arch, with gums, seen from the front alone.
-void AddTeethRow(bool upper, HeadMesh* teeth) {
-  constexpr int kSteps = 72;      // on either side
-  constexpr float kStep = 0.06f;  // centimetres of arc
-  // Heights from the biting edge, where the crown ends and the gum begins.
-  constexpr float kHeights[] = {0.0f, 0.06f, 0.25f, 0.55f, 0.8f, 0.92f, 1.05f, 1.5f};
-  constexpr int kRows = static_cast<int>(std::size(kHeights));
+void AddTeethRow(const paint::ToothArch& arch, HeadMesh* teeth) {
+  const paint::ToothRow row = paint::MakeToothRow(arch);
   const auto first = static_cast<std::uint32_t>(teeth->mesh.vertices.size());
-  const float edge = upper ? -7.12f : -7.2f;
-  const float half_width = upper ? 2.75f : 2.5f;
-  const float half_depth = upper ? 4.2f : 4.0f;
-  const float front = upper ? 8.95f : 8.7f;
-  for (int i = -kSteps; i <= kSteps; ++i) {
-    const float s = kStep * static_cast<float>(i);
-    // The ellipse by its angle; arc length grows faster than the angle toward the sides.
-    const float angle = std::atan2(s / half_width, 1.0f - 0.055f * s * s);
-    const auto [tooth, across] = ToothAt(std::abs(s), upper);
-    const float round = 1.0f - std::pow(std::abs(across), 5.0f);
-    const bool canine = tooth == 2;
-    for (int r = 0; r < kRows; ++r) {
-      const float h = kHeights[r];
-      const float gum = SmoothStep(0.80f, 0.95f, h + 0.12f * (1.0f - round));
-      const float crown = 0.055f * round * (1.0f - gum) - (h < 0.05f ? 0.12f : 0.0f);
-      const float out = crown + 0.05f * gum - 0.05f * SmoothStep(0.6f, 0.0f, h);
-      const float worn = (canine ? -0.05f * (1.0f - std::abs(across)) : 0.05f * (1.0f - round)) +
-                         (tooth == 1 ? 0.06f : 0.0f);
-      const float lift = (h + worn * SmoothStep(0.5f, 0.0f, h)) * (upper ? 1.0f : -1.0f);
-      HeadVertex info;
-      info.part = kTeeth;
-      info.mouth_side = upper ? 1.0f : -1.0f;
-      info.place = vec3((half_width + out) * std::sin(angle), edge + lift,
-                        front - half_depth + (half_depth + out) * std::cos(angle));
-      AddVertex(teeth, info,
-                {0.01f + 0.98f * (0.5f + 0.5f * static_cast<float>(i) / kSteps),
-                 (upper ? 0.49f - 0.48f * h / 1.5f : 0.51f + 0.48f * h / 1.5f)});
-    }
+  for (std::size_t i = 0; i < row.positions.size(); ++i) {
+    HeadVertex info;
+    info.part = kTeeth;
+    info.mouth_side = arch.upper ? 1.0f : -1.0f;
+    info.place = row.positions[i];
+    AddVertex(teeth, info, row.uvs[i]);
   }
-  const auto index = [&](int i, int r) {
-    return first + static_cast<std::uint32_t>(i * kRows + r);
-  };
-  for (int i = 0; i < 2 * kSteps; ++i) {
-    for (int r = 0; r + 1 < kRows; ++r) {
-      if (upper) {
-        AddQuad(&teeth->mesh, index(i, r), index(i + 1, r), index(i + 1, r + 1), index(i, r + 1));
-      } else {
-        AddQuad(&teeth->mesh, index(i, r + 1), index(i + 1, r + 1), index(i + 1, r), index(i, r));
-      }
-    }
+  for (std::size_t i = 0; i < row.quads.size(); i += 4) {
+    const auto corner = [&](std::size_t k) { return first + row.quads[i + k]; };
+    AddQuad(&teeth->mesh, corner(0), corner(1), corner(2), corner(3));
   }
 }
 
@@ -181,8 +126,8 @@ HeadMesh MakeLashes(const HeadShape& shape) {
 HeadMesh MakeTeeth() {
   HeadMesh teeth;
   teeth.mesh.name = "teeth";
-  AddTeethRow(true, &teeth);
-  AddTeethRow(false, &teeth);
+  AddTeethRow({true, {0.0f, -7.12f, 8.95f}, 2.75f, 4.2f}, &teeth);
+  AddTeethRow({false, {0.0f, -7.2f, 8.7f}, 2.5f, 4.0f}, &teeth);
   FinishSurface(&teeth.mesh);
   return teeth;
 }

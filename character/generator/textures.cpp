@@ -56,14 +56,14 @@ Picture PaintEyes(int size) {
       const float vein =
           SmoothStep(0.72f, 0.95f, 1.0f - std::abs(FractalNoise(vec3(uv * 26.0f, 3.0f)))) *
           SmoothStep(38.0f, 62.0f, degrees);
-      vec3 colour = glm::mix(vec3(0.80f, 0.77f, 0.74f), vec3(0.76f, 0.60f, 0.56f),
+      vec3 colour = glm::mix(vec3(0.87f, 0.85f, 0.82f), vec3(0.78f, 0.62f, 0.58f),
                              SmoothStep(45, 75, degrees));
       colour = glm::mix(colour, vec3(0.72f, 0.32f, 0.28f), 0.35f * vein);
       vec3 iris = glm::mix(vec3(0.36f, 0.24f, 0.12f), vec3(0.20f, 0.27f, 0.24f),
                            SmoothStep(13, 22, degrees));
       iris *= 1.0f + 0.35f * fibre;
       iris = glm::mix(iris, vec3(0.06f, 0.06f, 0.06f), SmoothStep(23.0f, 29.0f, degrees));
-      colour = glm::mix(iris, colour, SmoothStep(27.0f, 30.5f, degrees));
+      colour = glm::mix(iris, colour, SmoothStep(26.5f, 29.5f, degrees));
       colour = glm::mix(vec3(0.012f), colour, SmoothStep(9.5f, 11.5f, degrees));
       std::uint8_t* out = paint::TexelAt(&picture, x, y);
       for (int c = 0; c < 3; ++c) out[c] = paint::ToByte(colour[c]);
@@ -91,25 +91,6 @@ HairPictures PaintHair(const Mesh& hair, const FaceParameters& face, int size) {
   }
   paint::PaintStrands(look, &pictures.colour, &pictures.normals);
   return pictures;
-}
-
-Picture PaintTeeth(const Mesh& teeth, const FaceParameters& face, int size) {
-  const float age = AgeShare(face);
-  return paint::Fill("teeth_colour", paint::RasterizeUv(teeth, size, size), size, 3,
-                     [age, size](const Texel& texel) -> vec4 {
-                       const vec3 p = ModelToHead(texel.position);
-                       const float v = (static_cast<float>(texel.y) + 0.5f) / size;
-                       const float h = 1.5f * std::abs(v - 0.5f) / 0.48f;  // from the biting edge
-                       const vec3 enamel = glm::mix(vec3(0.86f, 0.83f, 0.77f),
-                                                    vec3(0.80f, 0.72f, 0.58f), 0.2f + 0.6f * age);
-                       vec3 colour = glm::mix(enamel * 0.97f, enamel * vec3(1, 0.95f, 0.86f),
-                                              SmoothStep(0.3f, 0.9f, h));
-                       const float gum = SmoothStep(0.86f, 0.98f, h + 0.06f * Noise(p * 4.0f));
-                       colour = glm::mix(colour, vec3(0.62f, 0.30f, 0.29f), gum);
-                       // The farther back, the darker: little light comes in between the lips.
-                       colour *= glm::mix(0.35f, 1.0f, SmoothStep(4.8f, 8.4f, p.z));
-                       return {colour, 1.0f};
-                     });
 }
 
 Picture PaintClothColour(const Mesh& clothes, int size) {

@@ -18,8 +18,6 @@ struct HairPictures {
   Picture normals;
 };
 [[nodiscard]] HairPictures PaintHair(const Mesh& hair, const FaceParameters& face, int size);
-// Enamel and gums.
-[[nodiscard]] Picture PaintTeeth(const Mesh& teeth, const FaceParameters& face, int size);
 // Shirt and trousers: weave, seams, belt.
 [[nodiscard]] Picture PaintClothColour(const Mesh& clothes, int size);
 

@@ -10,6 +10,7 @@
 
 #include "character/import/prop_paint.h"
 #include "character/paint/tangents.h"
+#include "character/paint/teeth.h"
 
 namespace furrow::character {
 namespace {
@@ -82,6 +83,30 @@ bool AllDeleted(const ObjMesh& obj, const ObjMesh::Face& face, const std::vector
   return true;
 }
 
+// The box of a group's vertices before `z`, and one of them. None: low above high.
+struct Bounds {
+  glm::vec3 low{std::numeric_limits<float>::max()};
+  glm::vec3 high{std::numeric_limits<float>::lowest()};
+  std::uint32_t vertex = 0;
+};
+
+Bounds BoundsOf(const BaseMesh& base, std::string_view group,
+                float z = std::numeric_limits<float>::lowest()) {
+  Bounds bounds;
+  for (const std::uint32_t f : FacesOf(base.obj, group)) {
+    const ObjMesh::Face& face = base.obj.faces[f];
+    for (std::size_t i = 0; i < face.num_corners; ++i) {
+      const std::uint32_t vertex = base.obj.corners[face.first_corner + i].position;
+      const glm::vec3& p = base.positions[vertex];
+      if (p.z < z) continue;
+      bounds.vertex = vertex;
+      bounds.low = glm::min(bounds.low, p);
+      bounds.high = glm::max(bounds.high, p);
+    }
+  }
+  return bounds;
+}
+
 // Unit vectors that complete `forward` to a right-handed frame: right (of the picture) and up.
 void PictureAxes(const glm::vec3& forward, glm::vec3* right, glm::vec3* up) {
   const glm::vec3 above =
@@ -130,27 +155,53 @@ Mesh BuildHelper(const BaseMesh& base, std::string_view group, int material) {
   return BuildMesh(std::string(group), material, source);
 }
 
+Mesh BuildTeeth(const BaseMesh& base, std::string_view group, bool upper, int material) {
+  Mesh mesh;
+  mesh.name = std::string(group);
+  mesh.material = material;
+  const Bounds box = BoundsOf(base, group);
+  if (box.low.x > box.high.x) return mesh;
+  constexpr float kCentimetres = 100.0f;
+  constexpr float kFront = 0.007f;  // metres behind the foremost point: incisors
+  const Bounds incisors = BoundsOf(base, group, box.high.z - kFront);
+  const glm::vec3 front(0.5f * (box.low.x + box.high.x), upper ? incisors.low.y : incisors.high.y,
+                        box.high.z);
+  const glm::vec3 size = kCentimetres * (box.high - box.low);
+  const paint::ToothArch arch{upper, kCentimetres * front, 0.5f * size.x, size.z, 0.2f * size.z};
+  const paint::ToothRow row = paint::MakeToothRow(arch);
+  const Influences& held = base.skin.vertices[box.vertex];
+  for (std::size_t i = 0; i < row.positions.size(); ++i) {
+    Vertex vertex;
+    vertex.position = row.positions[i] / kCentimetres;
+    vertex.uv = row.uvs[i];
+    for (int k = 0; k < 4; ++k) {
+      vertex.joints[k] = held.joints[k];
+      vertex.skin_weights[k] = held.weights[k];
+    }
+    mesh.vertices.push_back(vertex);
+  }
+  for (std::size_t i = 0; i < row.quads.size(); i += 4) {
+    const std::uint32_t* quad = &row.quads[i];
+    mesh.indices.insert(mesh.indices.end(), {quad[0], quad[1], quad[2], quad[0], quad[2], quad[3]});
+  }
+  paint::ComputeNormals(mesh.vertices, mesh.indices);
+  paint::ComputeTangents(mesh.vertices, mesh.indices);
+  return mesh;
+}
+
 Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint, const glm::vec3& forward,
               int material) {
   constexpr int kRings = 24;
   constexpr int kSegments = 36;
   constexpr float kCorneaAngle = 0.6f;   // radians from the axis
   constexpr float kCorneaBulge = 0.06f;  // of the radius
-  glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
-  for (const std::uint32_t f : FacesOf(base.obj, group)) {
-    const ObjMesh::Face& face = base.obj.faces[f];
-    for (std::size_t i = 0; i < face.num_corners; ++i) {
-      const glm::vec3& p = base.positions[base.obj.corners[face.first_corner + i].position];
-      low = glm::min(low, p);
-      high = glm::max(high, p);
-    }
-  }
+  const Bounds box = BoundsOf(base, group);
   Mesh mesh;
   mesh.name = std::string(group);
   mesh.material = material;
-  if (low.x > high.x) return mesh;
-  const glm::vec3 centre = 0.5f * (low + high);
-  const float radius = 0.25f * (high.x - low.x + high.y - low.y);
+  if (box.low.x > box.high.x) return mesh;
+  const glm::vec3 centre = 0.5f * (box.low + box.high);
+  const float radius = 0.25f * (box.high.x - box.low.x + box.high.y - box.low.y);
   glm::vec3 right, up;
   PictureAxes(forward, &right, &up);
   for (int ring = 0; ring <= kRings; ++ring) {

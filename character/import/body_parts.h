@@ -33,8 +33,12 @@ struct BaseMesh {
 [[nodiscard]] Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
                              const std::vector<bool>& deleted, int material, int* hidden_faces);
 
-// One group of helpers as it stands (teeth, tongue).
+// One group of helpers as it stands (the tongue).
 [[nodiscard]] Mesh BuildHelper(const BaseMesh& base, std::string_view group, int material);
+
+// A row of teeth (character/paint/teeth.h) where the group's coarse box stands, held as that is.
+[[nodiscard]] Mesh BuildTeeth(const BaseMesh& base, std::string_view group, bool upper,
+                              int material);
 
 // A smooth ball with a slight cornea in place of the group's coarse one; it follows `joint` and
 // looks along `forward` (unit). UVs as PaintEye() has them.

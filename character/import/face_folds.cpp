@@ -126,20 +126,22 @@ void Glabella(const FaceLandmarks& face, FoldDrawing* drawing) {
   for (int s = 0; s < 2; ++s) {
     const glm::vec3& brow = face.sides[s].brow_inner;
     // One line is longer than the other: no face is a mirror.
-    const float top = s == 0 ? 14.0f : 9.5f;
-    drawing->Add({drawing->From(brow, s, -4.5f, top), drawing->From(brow, s, -7.5f, 2.0f),
-                  drawing->From(brow, s, -8.0f, -8.0f)},
-                 {4.0f, 1.4f, 0.35f, 0.9f});
-    // The brow's own roll: skin pushed up over its inner end, an arc that rises from the frown.
-    drawing->Add({drawing->From(brow, s, -1.0f, 3.5f), drawing->From(brow, s, 3.5f, 8.5f),
-                  drawing->From(brow, s, 11.0f, 11.5f), drawing->From(brow, s, 21.0f, 11.0f)},
-                 {5.0f, 0.6f, 0.35f, 1.0f});
+    const float top = s == 0 ? 17.0f : 12.0f;
+    drawing->Add({drawing->From(brow, s, -6.0f, top), drawing->From(brow, s, -6.5f, 0.5f * top),
+                  drawing->From(brow, s, -8.0f, -1.0f), drawing->From(brow, s, -8.5f, -10.0f)},
+                 {4.6f, s == 0 ? 1.25f : 1.0f, 0.4f, 0.9f});
+    // The brow's own roll: skin pushed up over its inner end.
+    drawing->Add({drawing->From(brow, s, 1.5f, 5.0f), drawing->From(brow, s, 7.0f, 9.0f),
+                  drawing->From(brow, s, 16.0f, 10.0f)},
+                 {5.0f, 0.3f, 0.35f, 1.0f});
   }
   const glm::vec3 root = glm::mix(face.sides[0].brow_inner, face.sides[1].brow_inner, 0.5f);
-  for (const float down : {15.0f, 20.0f})
-    drawing->Add({drawing->From(root, 0, -8.0f, -down + 1.5f), drawing->From(root, 0, 0.0f, -down),
-                  drawing->From(root, 0, 8.0f, -down + 1.5f)},
-                 {2.6f, 1.0f});
+  drawing->Add({drawing->From(root, 0, -8.5f, -14.0f), drawing->From(root, 0, 0.5f, -16.5f),
+                drawing->From(root, 0, 7.5f, -14.5f)},
+               {3.2f, 0.85f, 0.35f, 0.95f});
+  drawing->Add({drawing->From(root, 0, -4.5f, -20.5f), drawing->From(root, 0, 1.0f, -21.5f),
+                drawing->From(root, 0, 6.0f, -20.0f)},
+               {2.6f, 0.4f, 0.35f, 1.0f});
 }
 
 void BunnyLines(const FaceLandmarks& face, FoldDrawing* drawing) {
@@ -147,12 +149,12 @@ void BunnyLines(const FaceLandmarks& face, FoldDrawing* drawing) {
   for (int s = 0; s < 2; ++s) {
     // {start, fall, length}: they slant down and outward, none like the next.
     constexpr std::array<std::array<float, 3>, 3> kLines{
-        {{5.0f, 3.0f, 8.0f}, {0.0f, 5.0f, 11.0f}, {-6.0f, 4.5f, 9.0f}}};
+        {{5.0f, 4.0f, 11.0f}, {0.0f, 6.5f, 14.0f}, {-6.0f, 6.0f, 12.0f}}};
     for (const auto& [up, fall, length] : kLines) {
       drawing->Add({drawing->From(face.nose_bridge, s, 4.0f, up),
                     drawing->From(face.nose_bridge, s, 4.0f + 0.5f * length, up - 0.35f * fall),
                     drawing->From(face.nose_bridge, s, 4.0f + length, up - fall)},
-                   {2.6f, 0.6f, 0.35f, 1.0f});
+                   {3.2f, 1.2f, 0.4f, 0.8f});
     }
   }
 }
@@ -161,26 +163,32 @@ void BunnyLines(const FaceLandmarks& face, FoldDrawing* drawing) {
 void EyeFolds(const FaceLandmarks& face, FoldDrawing* drawing) {
   drawing->Begin("crow's foot", "orbicularis oculi");
   // {out, up, depth}: the middle ones are long and deep.
-  constexpr std::array<std::array<float, 3>, 5> kFan{{{7.0f, 10.0f, 0.35f},
-                                                      {14.0f, 4.0f, 0.65f},
-                                                      {17.0f, -3.0f, 0.75f},
-                                                      {12.0f, -9.5f, 0.5f},
-                                                      {6.0f, -15.0f, 0.3f}}};
+  constexpr std::array<std::array<float, 3>, 5> kFan{{{4.5f, 9.0f, 0.28f},
+                                                      {8.5f, 4.0f, 0.45f},
+                                                      {10.0f, -3.0f, 0.50f},
+                                                      {7.0f, -9.0f, 0.38f},
+                                                      {4.0f, -14.0f, 0.22f}}};
   for (int s = 0; s < 2; ++s) {
     const FaceLandmarks::Side& side = face.sides[s];
     for (const auto& [out, up, depth] : kFan) {
       drawing->Add({drawing->From(side.eye, s, 16.5f + 0.15f * out, 0.4f * up - 1.0f),
                     drawing->From(side.eye, s, 18.0f + 0.7f * out, 0.8f * up - 1.5f),
                     drawing->From(side.eye, s, 19.0f + 1.3f * out, 1.25f * up - 2.5f)},
-                   {2.3f, depth, 0.35f, 0.9f});
+                   {2.6f, depth, 0.3f, 0.95f});
     }
-    for (int line = 0; line < 3; ++line) {
-      const float down = 1.0f + 4.0f * static_cast<float>(line);
+    for (int line = 0; line < 2; ++line) {
+      const float down = 1.0f + 4.5f * static_cast<float>(line);
       drawing->Add({drawing->From(side.lower_lid, s, -11.0f, 2.0f - down),
                     drawing->From(side.lower_lid, s, 0.0f, -1.0f - down),
                     drawing->From(side.lower_lid, s, 12.0f, 1.5f - down)},
-                   {2.7f, line == 0 ? 0.6f : 0.35f, 0.35f, 0.9f});
+                   {2.9f, line == 0 ? 0.5f : 0.28f, 0.35f, 0.95f});
     }
+    // Below them a pouch, which the lower lid's joint would crumple.
+    drawing->Exclude({drawing->From(side.lower_lid, s, -14.0f, -6.0f),
+                      drawing->From(side.lower_lid, s, 0.0f, -10.0f),
+                      drawing->From(side.lower_lid, s, 16.0f, -8.0f),
+                      drawing->From(side.lower_lid, s, 26.0f, 2.0f)},
+                     19.0f);
   }
 }
 

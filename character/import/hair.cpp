@@ -163,7 +163,8 @@ Mesh BuildHair(const Mesh& skin, const FaceLandmarks& face, int material) {
   return hair;
 }
 
-Mesh BuildLashes(const BaseMesh& base, std::string_view group, const glm::vec3& eye, int material) {
+Mesh BuildLashes(const BaseMesh& base, std::string_view group, const glm::vec3& eye, float reach,
+                 int material) {
   Mesh lashes = BuildHelper(base, group, material);
   float low = std::numeric_limits<float>::max(), high = 0.0f;
   float left = low, right = std::numeric_limits<float>::lowest();
@@ -174,9 +175,11 @@ Mesh BuildLashes(const BaseMesh& base, std::string_view group, const glm::vec3& 
     left = std::min(left, vertex.position.x);
     right = std::max(right, vertex.position.x);
   }
+  constexpr float kAcross = 0.9f;  // tips keep away from where the picture begins again
   for (Vertex& vertex : lashes.vertices) {
     const float out = (glm::distance(vertex.position, eye) - low) / std::max(high - low, 1e-6f);
-    vertex.uv = {(vertex.position.x - left) / std::max(right - left, 1e-6f), 1.0f - out};
+    vertex.uv = {(vertex.position.x - left) / std::max(right - left, 1e-6f),
+                 1.0f - kAcross * std::min(out / reach, 1.0f)};
   }
   paint::ComputeTangents(lashes.vertices, lashes.indices);
   return lashes;
@@ -210,8 +213,10 @@ Picture PaintLashes(int size) {
       const float length = 0.55f + 0.45f * HashLattice(number, 1, 5);
       const float bend = 0.3f * (HashLattice(number, 2, 5) - 0.5f) * out;
       const float aside = std::abs(u - static_cast<float>(number) - 0.5f - bend);
-      const float half = 0.36f * (1.0f - out / length);
-      const bool on = out < 0.1f || aside < half;
+      const float half = 0.42f * (1.0f - out / length);
+      // Where the lids meet, the rows of both would show as hooks.
+      const bool corner = u < 4.0f || u > kLashes - 6.0f;
+      const bool on = !corner && (out < 0.05f || aside < half);
       Put(&picture, x, y, glm::vec3(0.06f, 0.045f, 0.04f), on ? 1.0f : 0.0f);
     }
   }

@@ -22,6 +22,7 @@
 #include "character/import/obj.h"
 #include "character/import/prop_paint.h"
 #include "character/import/skin_paint.h"
+#include "character/paint/teeth.h"
 #include "character/paint/uv_raster.h"
 #include "character/rig_check.h"
 #include "character/rig_file.h"
@@ -217,32 +218,25 @@ class MakeHumanImport {
     AddPart(BuildHair(skin, face_, AddMaterial(hair)));
     Material lashes{.name = "lashes", .kind = Material::Kind::kHair, .roughness = 0.6f};
     lashes.double_sided = true;
-    lashes.alpha_cutoff = 0.5f;
+    lashes.alpha_cutoff = kLashCutoff;
     lashes.base_colour_texture = AddPicture(PaintLashes(std::max(options_.texture_size / 2, 64)));
     const int material = AddMaterial(lashes);
     for (int s = 0; s < 2; ++s) {
       const std::string group = s == 0 ? "helper-l-eyelashes-" : "helper-r-eyelashes-";
-      for (const char* lid : {"1", "2"}) {
-        AddPart(BuildLashes(base_, group + lid, face_.sides[s].eye, material));
-      }
+      AddPart(BuildLashes(base_, group + "1", face_.sides[s].eye, 0.6f, material));
+      AddPart(BuildLashes(base_, group + "2", face_.sides[s].eye, 1.0f, material));
     }
   }
 
   void BuildMouth() {
-    const int teeth = AddMaterial({.name = "teeth",
-                                   .base_colour = glm::vec4(0.56f, 0.49f, 0.38f, 1.0f),
-                                   .roughness = 0.25f,
-                                   .double_sided = true});
+    Material teeth{.name = "teeth", .roughness = 0.3f};
+    teeth.base_colour_texture =
+        AddPicture(paint::PaintTeeth(0.1f, std::max(options_.texture_size / 2, 64)));
+    const int material = AddMaterial(teeth);
+    AddPart(BuildTeeth(base_, "helper-upper-teeth", true, material));
+    AddPart(BuildTeeth(base_, "helper-lower-teeth", false, material));
     const int tongue = AddMaterial(
         {.name = "tongue", .base_colour = glm::vec4(0.20f, 0.05f, 0.05f, 1.0f), .roughness = 0.5f});
-    for (const char* group : {"helper-upper-teeth", "helper-lower-teeth"}) {
-      Mesh row = BuildHelper(base_, group, teeth);
-      // The row is a coarse closed box, whose smooth normals lean up or down; crowns stand upright.
-      for (Vertex& vertex : row.vertices) {
-        vertex.normal = glm::normalize(vertex.normal * glm::vec3(1.0f, 0.25f, 1.0f));
-      }
-      AddPart(std::move(row));
-    }
     AddPart(BuildHelper(base_, "helper-tongue", tongue));
   }
 

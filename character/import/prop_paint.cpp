@@ -36,7 +36,7 @@ constexpr float kIris = 0.509f;
 constexpr float kPupil = 0.17f;
 
 glm::vec3 EyeColour(float angle, float around) {
-  constexpr glm::vec3 kWhite{0.80f, 0.77f, 0.74f};
+  constexpr glm::vec3 kWhite{0.86f, 0.84f, 0.81f};
   constexpr glm::vec3 kVeins{0.80f, 0.62f, 0.58f};
   constexpr glm::vec3 kRim{0.10f, 0.10f, 0.12f};
   constexpr glm::vec3 kOuter{0.22f, 0.30f, 0.34f};

@@ -75,6 +75,18 @@ float Lips(const glm::vec3& p, const FaceLandmarks& face) {
   return amount;
 }
 
+// Hairs of a brow: noise drawn out along them. They stand up at the nose and lie down toward the
+// temple. `out`, `up` in millimetres from the inner end, `along` in [0, 1] from it.
+float BrowHairs(float out, float up, float along) {
+  const float rise = glm::mix(1.2f, 0.15f, glm::smoothstep(0.0f, 0.35f, along));
+  const glm::vec2 hair(std::cos(rise), std::sin(rise));
+  const float length = out * hair.x + up * hair.y;
+  const float across = up * hair.x - out * hair.y;
+  const float thick = ValueNoise({length / 5.0f, across / 0.55f, 1.5f});
+  const float fine = ValueNoise({length / 3.0f, across / 0.32f, 7.5f});
+  return glm::smoothstep(0.30f, 0.62f, 0.6f * thick + 0.4f * fine);
+}
+
 float Brow(const glm::vec3& p, const FaceLandmarks& face) {
   float amount = 0.0f;
   for (const FaceLandmarks::Side& side : face.sides) {
@@ -85,10 +97,14 @@ float Brow(const glm::vec3& p, const FaceLandmarks& face) {
     arch.y += face.Millimetres(1.0f);
     end.y = glm::mix(arch.y, end.y, 0.4f);
     const float distance = FrontDistance(p, {inner, arch, end});
-    // Thick at the nose, thin at the temple.
+    // Thick at the nose, thin at the temple, and ragged: single hairs stand out.
     const float along = std::clamp((p.x - inner.x) / (end.x - inner.x), 0.0f, 1.0f);
-    const float half = face.Millimetres(glm::mix(4.0f, 1.4f, along));
-    amount = std::max(amount, FadeOut(distance, 0.4f * half, 1.4f * half));
+    const float millimetre = face.Millimetres(1.0f);
+    const float hairs =
+        BrowHairs(std::abs(p.x - inner.x) / millimetre, (p.y - inner.y) / millimetre, along);
+    const float half = millimetre * glm::mix(4.2f, 1.3f, along) * (0.6f + 0.75f * hairs);
+    const float inside = FadeOut(distance, 0.35f * half, 1.25f * half);
+    amount = std::max(amount, inside * (0.35f + 0.65f * hairs));
   }
   return amount;
 }
@@ -97,7 +113,7 @@ float Brow(const glm::vec3& p, const FaceLandmarks& face) {
 float MouthInside(const glm::vec3& p, const FaceLandmarks& face) {
   glm::vec3 middle = glm::mix(face.upper_lip, face.lower_lip, 0.5f);
   middle.z -= face.Millimetres(36.0f);
-  return FadeOut(glm::distance(p, middle), face.Millimetres(24.0f), face.Millimetres(31.0f));
+  return FadeOut(glm::distance(p, middle), face.Millimetres(27.0f), face.Millimetres(34.0f));
 }
 
 float ScalpOf(const glm::vec3& p, const FaceLandmarks& face) {
@@ -140,7 +156,7 @@ glm::vec3 SkinColour(const Texel& texel, const FaceLandmarks& face) {
   colour = glm::mix(colour, kMouth, MouthInside(p, face));
   const float grain = ValueNoise(p / face.Millimetres(0.9f));
   colour = glm::mix(colour, kStubble, ScalpAmount(p, face) * (0.75f + 0.25f * grain));
-  colour = glm::mix(colour, kBrow, Brow(p, face) * front * (0.62f + 0.38f * grain));
+  colour = glm::mix(colour, kBrow, 0.92f * Brow(p, face) * front);
   return colour * (1.0f + 0.05f * blotches + 0.05f * speckle);
 }
 
