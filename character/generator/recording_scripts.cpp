@@ -8,30 +8,27 @@ namespace {
 
 Script Happiness() {
   Script s{"happiness"};
-  s.actions = {{"lip_corner_pull", 1.2f, 0.55f, 7.2f, 1.1f, 1.0f},
-               {"cheek_raise", 1.4f, 0.55f, 7.0f, 0.9f, 0.95f},
-               {"lid_tighten", 1.5f, 0.5f, 6.9f, 0.8f, 0.35f},
-               {"upper_lip_raise", 1.6f, 0.5f, 6.6f, 0.8f, 0.3f},
-               {"jaw_open", 3.0f, 0.4f, 5.6f, 0.9f, 0.32f},
-               {"brow_raise_outer", 2.9f, 0.4f, 4.2f, 0.6f, 0.3f}};
-  s.head = {{1.5f, 0.7f, 7.0f, 1.2f, -4.0f, 2.0f, -5.0f},
+  s.actions = {{"lip_corner_pull", 1.1f, 0.6f, 7.2f, 1.1f, 1.0f},
+               {"cheek_raise", 1.3f, 0.6f, 7.0f, 0.9f, 0.9f},
+               {"lid_raise", 1.4f, 0.5f, 6.9f, 0.8f, 0.2f},
+               {"upper_lip_raise", 1.4f, 0.6f, 6.6f, 0.8f, 0.4f},
+               {"jaw_open", 1.5f, 0.7f, 6.2f, 1.0f, 0.26f},
+               {"brow_raise_outer", 1.9f, 0.5f, 4.6f, 0.8f, 0.35f}};
+  s.head = {{1.3f, 0.7f, 7.0f, 1.2f, -4.0f, 2.0f, -5.0f},
             {3.1f, 0.3f, 3.5f, 0.5f, 4.0f, 0.0f, 0.0f}};
-  s.blinks = {0.6f, 2.6f, 6.2f, 8.6f};
+  s.blinks = {0.6f, 3.9f, 6.2f, 8.6f};
   return s;
 }
 
 Script Anger() {
   Script s{"anger"};
-  s.actions = {{"brow_lower", 1.1f, 0.4f, 7.6f, 0.9f, 1.0f},
-               {"lid_raise", 1.3f, 0.35f, 7.2f, 0.6f, 0.75f},
-               {"lid_tighten", 2.2f, 0.4f, 7.0f, 0.6f, 0.8f},
-               {"lip_press", 1.4f, 0.45f, 7.3f, 0.8f, 1.0f},
-               {"chin_raise", 1.6f, 0.5f, 6.8f, 0.8f, 0.45f},
-               {"nose_wrinkle", 3.6f, 0.4f, 5.6f, 0.8f, 0.25f},
-               {"lip_corner_down", 1.6f, 0.5f, 7.2f, 0.9f, 0.3f},
-               {"look_up", 1.5f, 0.5f, 7.2f, 0.8f, 0.28f}};  // from under the brows
+  s.actions = {
+      {"brow_lower", 1.1f, 0.4f, 7.6f, 0.9f, 1.0f},   {"lid_raise", 1.3f, 0.35f, 7.2f, 0.6f, 0.45f},
+      {"lid_tighten", 2.2f, 0.4f, 7.0f, 0.6f, 0.35f}, {"lip_press", 1.4f, 0.45f, 7.3f, 0.8f, 1.0f},
+      {"lip_stretch", 1.5f, 0.5f, 7.1f, 0.8f, 0.15f}, {"jawForward", 1.6f, 0.5f, 7.2f, 0.9f, 0.3f},
+      {"look_up", 1.5f, 0.5f, 7.2f, 0.8f, 0.6f}};  // from under the brows
   s.head = {{1.3f, 0.6f, 7.2f, 1.0f, 8.0f, 0.0f, 0.0f},
-            {3.4f, 0.25f, 5.6f, 0.8f, 2.0f, 0.0f, 2.0f}};
+            {3.4f, 0.25f, 5.6f, 0.8f, 1.0f, 0.0f, 2.0f}};
   s.blinks = {0.5f, 6.3f, 8.8f};  // anger stares
   return s;
 }
@@ -42,9 +39,9 @@ Script Sadness() {
                {"brow_lower", 1.4f, 0.6f, 7.4f, 1.2f, 0.25f},
                {"lip_corner_down", 1.4f, 0.6f, 7.6f, 1.3f, 1.0f},
                {"chin_raise", 2.2f, 0.6f, 7.0f, 1.1f, 0.8f},
-               {"blink", 2.0f, 0.8f, 7.2f, 1.0f, 0.22f},  // heavy lids
-               {"look_down", 2.6f, 0.7f, 6.8f, 0.9f, 0.45f}};
-  s.head = {{1.8f, 1.2f, 7.2f, 1.4f, 9.0f, -3.0f, 6.0f}};
+               {"blink", 2.0f, 0.8f, 7.2f, 1.0f, 0.16f},  // heavy lids
+               {"look_down", 2.6f, 0.7f, 6.8f, 0.9f, 0.4f}};
+  s.head = {{1.8f, 1.2f, 7.2f, 1.4f, 8.0f, -3.0f, 6.0f}};
   s.blinks = {0.7f, 3.2f, 6.4f, 8.9f};
   return s;
 }
@@ -52,15 +49,17 @@ Script Sadness() {
 Script Disgust() {
   Script s{"disgust"};
   s.actions = {{"nose_wrinkle", 1.1f, 0.4f, 6.9f, 1.0f, 1.0f},
-               {"upper_lip_raise", 1.2f, 0.45f, 6.8f, 1.0f, 1.0f},
-               {"brow_lower", 1.25f, 0.45f, 6.6f, 0.9f, 0.55f},
-               {"lid_tighten", 1.4f, 0.5f, 6.6f, 0.9f, 0.7f},
-               {"cheek_raise", 1.4f, 0.5f, 6.6f, 0.9f, 0.35f},
-               {"lip_corner_down", 1.7f, 0.5f, 6.8f, 1.0f, 0.65f},
-               {"chin_raise", 2.0f, 0.5f, 6.2f, 0.9f, 0.5f},
-               {"look_left", 2.4f, 0.5f, 6.4f, 0.5f, 0.25f}};  // back at what it turns from
-  s.head = {{1.3f, 0.5f, 6.7f, 1.0f, -5.0f, -11.0f, -4.0f}};
-  s.blinks = {0.5f, 3.6f, 8.2f};
+               // One side more than the other.
+               {"upper_lip_raise_l", 1.2f, 0.45f, 6.8f, 1.0f, 1.0f},
+               {"upper_lip_raise_r", 1.2f, 0.45f, 6.8f, 1.0f, 0.6f},
+               {"brow_lower", 1.25f, 0.45f, 6.6f, 0.9f, 0.35f},
+               {"lid_tighten", 1.4f, 0.5f, 6.6f, 0.9f, 0.75f},
+               {"cheek_raise", 1.4f, 0.5f, 6.6f, 0.9f, 0.5f},
+               {"lip_corner_down", 1.7f, 0.5f, 6.8f, 1.0f, 0.5f},
+               {"chin_raise", 2.0f, 0.5f, 6.2f, 0.9f, 0.6f},
+               {"look_left", 2.4f, 0.5f, 6.4f, 0.5f, 0.3f}};  // back at what it turns from
+  s.head = {{1.3f, 0.5f, 6.7f, 1.0f, -6.0f, -12.0f, -5.0f}};
+  s.blinks = {0.5f, 4.2f, 8.2f};
   return s;
 }
 
