@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "character/generator/ear_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -16,8 +17,8 @@ using glm::vec2;
 using glm::vec3;
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kRadii[] = {0.0f,  0.18f, 0.34f, 0.46f, 0.56f, 0.65f,
-                            0.73f, 0.80f, 0.87f, 0.93f, 0.98f, 1.0f};
+constexpr float kRadii[] = {0.0f,  0.16f, 0.28f, 0.38f, 0.46f, 0.53f, 0.59f, 0.65f,
+                            0.71f, 0.77f, 0.82f, 0.87f, 0.92f, 0.96f, 0.99f, 1.0f};
 constexpr int kFrontRings = static_cast<int>(std::size(kRadii));
 constexpr int kBackRings = 3;
 
@@ -30,22 +31,34 @@ vec2 Outline(float phi) {
   return {s * width + 0.12f * t - 0.35f * lobe, t * 3.15f};
 }
 
-// Height over the ear's plane, centimetres.
+// Height over the ear's plane, centimetres. Places in the unit disc: x back, y up.
 float Relief(float rho, float phi) {
-  const float s = std::cos(phi);
-  const float t = std::sin(phi);
-  const float rim = SmoothStep(-0.75f, -0.25f, t) * (1.0f - SmoothStep(0.6f, 0.95f, -s));
-  const float lobe = SmoothStep(0.45f, 0.9f, -t);
-  const float helix = 0.40f * Bump(rho - 0.91f, 0.08f) * rim;
-  const float anti = 0.36f * Bump(rho - 0.6f, 0.12f) * SmoothStep(-0.35f, 0.3f, s) * (1.0f - lobe);
-  const vec2 p = vec2(rho * s, rho * t);
-  const float concha =
-      -0.5f * Bump(glm::length((p - vec2(-0.18f, -0.12f)) / vec2(0.85f, 0.75f)), 0.42f);
-  const float tragus = 0.42f * Bump(glm::length(p - vec2(-0.78f, -0.16f)), 0.2f);
-  const float swell = 0.25f * lobe * (1.0f - rho * rho);
-  const float root =
-      -0.6f * SmoothStep(0.72f, 1.0f, -rho * s);  // the front edge sinks into the head
-  return helix + anti + concha + tragus + swell + root - 0.12f * SmoothStep(0.95f, 1.0f, rho);
+  const vec2 p = rho * vec2(std::cos(phi), std::sin(phi));
+  const auto ridge = [&p](const vec2& a, const vec2& b, float width) {
+    const float t = std::clamp(glm::dot(p - a, b - a) / glm::dot(b - a, b - a), 0.0f, 1.0f);
+    return Bump(glm::distance(p, a + t * (b - a)), width);
+  };
+  const float back = SmoothStep(-0.55f, 0.1f, p.x);
+  const float lobe = SmoothStep(-0.35f, -0.85f, p.y);
+  const float above = 1.0f - lobe;
+  // The rim rolls over from the root in front, round the top, down to the lobe; a groove inside it.
+  const float rim =
+      above * (1.0f - 0.85f * SmoothStep(0.55f, 0.9f, -p.x) * SmoothStep(0.5f, 0, p.y));
+  const float helix = (0.42f * Bump(rho - 0.89f, 0.095f) - 0.14f * Bump(rho - 0.72f, 0.09f)) * rim;
+  const float crus = 0.26f * ridge({-0.85f, 0.12f}, {-0.28f, 0.02f}, 0.09f);
+  // The inner ridge: an arc that forks above.
+  const float arc =
+      Bump(glm::length((p - vec2(-0.16f, -0.14f)) / vec2(0.80f, 0.62f)) - 1.0f, 0.13f);
+  const float anti = 0.40f * arc * back * SmoothStep(0.40f, 0.15f, p.y) * above;
+  const float forks = 0.30f * std::max(ridge({0.45f, 0.22f}, {0.20f, 0.66f}, 0.10f),
+                                       ridge({0.40f, 0.24f}, {-0.32f, 0.50f}, 0.09f));
+  const float bowl =
+      -0.62f * SmoothStep(1.0f, 0.45f, glm::length((p - vec2(-0.2f, -0.14f)) / vec2(0.56f, 0.5f)));
+  const float tragus = 0.55f * Bump(glm::length(p - vec2(-0.74f, -0.20f)), 0.22f);
+  const float swell = 0.22f * lobe * (1.0f - rho * rho);
+  const float root = -0.6f * SmoothStep(0.72f, 1.0f, -p.x);  // the front sinks into the head
+  return helix + crus + std::max(anti, forks) + bowl + tragus + swell + root -
+         0.14f * SmoothStep(0.95f, 1.0f, rho);
 }
 
 // Where the ear sits: its middle and its plane's axes, leaning back, standing off the head.
@@ -92,7 +105,7 @@ void AddRing(float side, int ring, int segments, HeadMesh* head) {
 }  // namespace
 
 void AddEar(float side, int level, HeadMesh* head) {
-  const int segments = level == kCoarsestLevel ? 14 : 32;
+  const int segments = level == kCoarsestLevel ? 14 : 40;
   const int step = level == kCoarsestLevel ? 2 : 1;
   const int last = kFrontRings + kBackRings - 1;
   int rings = 0;

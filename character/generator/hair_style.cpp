@@ -64,8 +64,8 @@ Style LongHair(const HeadShape& shape, const vec3& root) {
   const float left = kSkullRadius * std::acos(std::clamp(cosine, -1.0f, 1.0f)) - 1.2f;
   Style style;
   style.comb = to - from * cosine;
-  style.length = std::min(6.5f, left);
-  style.body = (0.42f + 0.40f * Top(root)) * SmoothStep(-1.0f, 4.0f, left);
+  style.length = std::min(9.0f, left);
+  style.body = (0.26f + 0.24f * Top(root)) * SmoothStep(-1.0f, 4.0f, left);
   style.width = 0.52f;
   return style;
 }
@@ -94,7 +94,7 @@ HairLock GrowLock(const HeadShape& shape, const vec3& root, int number, int sect
       0.12f * (vec3(Hash(number, 5, 9), Hash(number, 6, 9), Hash(number, 7, 9)) - 0.5f);
   HairLock lock;
   lock.width = style.width * (0.8f + 0.4f * Hash(number, 8, 9)) * (0.6f + 0.4f * edge);
-  const float tip = glm::mix(0.5f, 0.8f, WomanShare(shape));
+  const float tip = glm::mix(0.5f, 0.35f, WomanShare(shape));
   vec3 p = root - shape.Normal(root) * 0.05f;
   for (int i = 0; i <= sections; ++i) {
     const float t = static_cast<float>(i) / static_cast<float>(sections);

@@ -22,7 +22,7 @@ float LidHeight(float s, bool upper) {
   const float tilt = -0.10f + 0.20f * s;
   const float pi = std::numbers::pi_v<float>;
   if (upper)
-    return tilt + 0.55f * std::pow(std::max(std::sin(pi * std::pow(s, 0.86f)), 0.0f), 0.75f);
+    return tilt + 0.61f * std::pow(std::max(std::sin(pi * std::pow(s, 0.86f)), 0.0f), 0.75f);
   return tilt - 0.53f * std::pow(std::max(std::sin(pi * std::pow(s, 1.12f)), 0.0f), 0.85f);
 }
 

@@ -168,7 +168,7 @@ Picture PaintSkinColour(const Mesh& skin, const HeadShape& shape, int size) {
         if (OnHand(texel)) return HandColour(texel);
         const float deep = InsideMouth(ModelToHead(texel.position), shape);
         if (deep <= 0.0f) return HeadColour(texel, shape.face());
-        return {glm::mix(vec3(0.45f, 0.19f, 0.18f), vec3(0.07f, 0.02f, 0.02f), deep), 1.0f};
+        return {glm::mix(vec3(0.50f, 0.22f, 0.20f), vec3(0.17f, 0.05f, 0.045f), deep), 1.0f};
       });
 }
 
