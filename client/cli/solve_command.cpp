@@ -19,6 +19,7 @@ struct SolveOptions {
   std::string rig;
   std::string skeleton_map;
   TableFormat format = TableFormat::kCsv;
+  int level = 0;  // drivers; 0: all
   bool drivers = false;
   bool no_filter = false;
   bool allow_missing = false;
@@ -48,6 +49,7 @@ int SolveFile(const SolveOptions& options) {
 
   wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(std::move(*binding)),
                                 !options.no_filter);
+  if (options.level > 0) solver.set_num_drivers(static_cast<std::size_t>(options.level));
   const auto writer = WeightWriter::Create(options.format);
   writer->Names(options.drivers ? solver.binding().driver_value_names()
                                 : solver.binding().weight_names());
@@ -89,6 +91,10 @@ void AddSolve(CLI::App& app, Action& action) {
   AddChoice(*command, "--format", options->format, formats, "csv (default) or jsonl");
   command->add_flag("--drivers", options->drivers,
                     "Print driver values before modulation and filter");
+  command
+      ->add_option("--level", options->level,
+                   "Level of detail: only the first N of the rig's drivers (default: all)")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--no-filter", options->no_filter, "Leave the filter out");
   command->add_flag(
       "--allow-missing", options->allow_missing,
