@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/load/budget.h"
+
+#include <cmath>
+#include <vector>
+
+#include "client/cli/load_input.h"
+#include "protocol/codec.h"
+#include "report/table.h"
+
+namespace furrow::bench {
+namespace {
+
+using report::Fixed;
+
+constexpr double kRate = 60.0;
+constexpr double kMany = 10000.0;
+constexpr double kUdpBytes = 28.0;  // of IPv4 and UDP before each datagram
+
+// Bytes on the wire of one pose, and of its weights for one subscriber.
+struct WireBytes {
+  double pose = 0.0;
+  double weights = 0.0;
+};
+
+WireBytes Measure(const Setting& setting) {
+  const auto performance =
+      Take(cli::LoadPerformance({.file = setting.recording, .rig = setting.rig, .quantise = true}));
+  protocol::WeightFrame frame;
+  frame.values.resize(performance.binding->weight_names().size(), 0.5f);
+  std::vector<std::uint8_t> weights;
+  protocol::Encoder().Encode({.session = 1}, frame, weights);
+  return {static_cast<double>(performance.messages.front().size()) + kUdpBytes,
+          static_cast<double>(weights.size()) + kUdpBytes};
+}
+
+bool Held(const load::RunResult& run) {
+  return run.tally.lost() == 0 && run.tally.wrong == 0 && run.p(99.0) < 1e6 / kRate;
+}
+
+std::string Gigabits(double bytes_per_second) {
+  return Fixed(bytes_per_second * 8e-9, 2) + " Gbit/s";
+}
+
+}  // namespace
+
+std::string BudgetMarkdown(const Curve& subjects, const Setting& setting) {
+  const Curve::Point* few = nullptr;
+  const Curve::Point* many = nullptr;
+  for (const Curve::Point& point : subjects.points) {
+    if (!Held(point.run) || !point.run.usage || !point.run.cpu_seconds) continue;
+    if (few == nullptr) few = &point;
+    many = &point;
+  }
+  if (few == many) return "No two numbers of subjects were held: there is nothing to reckon.\n";
+  const auto core_share = [](const Curve::Point& point) {
+    return *point.run.cpu_seconds / point.run.seconds;
+  };
+  const auto resident = [](const Curve::Point& point) {
+    return static_cast<double>(point.run.usage->resident_bytes);
+  };
+  const double more = many->x - few->x;
+  const double cores = (core_share(*many) - core_share(*few)) / more;
+  const double memory = (resident(*many) - resident(*few)) / more;
+  const WireBytes wire = Measure(setting);
+  const report::Table table{
+      "What a performer at 60 Hz costs, and 10,000 of them",
+      {"", "one", "10,000"},
+      {{"largest number held by one core, p99 < 16.7 ms", Fixed(many->x, 0), ""},
+       {"processor", Fixed(1e6 * cores / kRate, 1) + " us a pose",
+        Fixed(std::ceil(kMany * cores), 0) + " cores kept busy"},
+       {"memory", Fixed(memory / 1024.0, 1) + " KiB",
+        Fixed(kMany * memory / (1 << 30), 2) + " GiB"},
+       {"poses in, packed", Fixed(wire.pose, 0) + " bytes", Gigabits(kMany * kRate * wire.pose)},
+       {"weights out, one subscriber", Fixed(wire.weights, 0) + " bytes",
+        Gigabits(kMany * kRate * wire.weights)}}};
+  return report::ToMarkdown(table);
+}
+
+}  // namespace furrow::bench

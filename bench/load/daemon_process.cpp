@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/load/daemon_process.h"
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <utility>
+
+#include <sched.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace furrow::bench {
+namespace {
+
+// The first core, or all but it. On a machine of one core there is nothing to choose.
+void Pin(bool first) {
+  cpu_set_t allowed;
+  if (sched_getaffinity(0, sizeof(allowed), &allowed) != 0) return;
+  int begin = 0;
+  while (begin < CPU_SETSIZE && !CPU_ISSET(begin, &allowed)) ++begin;
+  if (first) {
+    CPU_ZERO(&allowed);
+    CPU_SET(begin, &allowed);
+  } else if (CPU_COUNT(&allowed) > 1) {
+    CPU_CLR(begin, &allowed);
+  }
+  sched_setaffinity(0, sizeof(allowed), &allowed);
+}
+
+// "... udp=127.0.0.1:7401 ..." to 7401; 0 where it is not there.
+std::uint16_t PortOf(const std::string& line, const std::string& name) {
+  const std::size_t at = line.find(" " + name + "=");
+  const std::size_t colon = at == std::string::npos ? at : line.find(':', at);
+  if (colon == std::string::npos) return 0;
+  return static_cast<std::uint16_t>(std::strtoul(line.c_str() + colon + 1, nullptr, 10));
+}
+
+std::string ReadLine(int descriptor) {
+  std::string line;
+  for (char c = 0; read(descriptor, &c, 1) == 1 && c != '\n';) line += c;
+  return line;
+}
+
+}  // namespace
+
+Result<DaemonProcess> DaemonProcess::Start(const std::filesystem::path& program,
+                                           const std::filesystem::path& rig,
+                                           const std::filesystem::path& folder) {
+  const std::filesystem::path config = folder / "load.toml";
+  std::ofstream(config) << "[limits]\nmax_subjects = 20000\n";
+  std::array<int, 2> pipe_ends{};
+  if (pipe(pipe_ends.data()) != 0) return Status(StatusCode::kIo, "no pipe");
+  static const cpu_set_t kAll = [] {
+    cpu_set_t all;
+    sched_getaffinity(0, sizeof(all), &all);
+    Pin(false);
+    return all;
+  }();
+  const int pid = fork();
+  if (pid < 0) return Status(StatusCode::kIo, "no process");
+  if (pid == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    sched_setaffinity(0, sizeof(kAll), &kAll);
+    Pin(true);
+    dup2(pipe_ends[1], STDOUT_FILENO);
+    if (std::freopen((folder / "furrowd.log").c_str(), "a", stderr) == nullptr) _exit(126);
+    execl(program.c_str(), program.c_str(), "--no-render", "--no-http", "--tcp", "0", "--udp", "0",
+          "--config", config.c_str(), "--rig", rig.c_str(), nullptr);
+    _exit(127);
+  }
+  close(pipe_ends[1]);
+  const std::string ready = ReadLine(pipe_ends[0]);
+  close(pipe_ends[0]);
+  DaemonProcess daemon(
+      {.host = "127.0.0.1", .udp = PortOf(ready, "udp"), .tcp = PortOf(ready, "tcp"), .pid = pid});
+  if (daemon.target().udp == 0) {
+    return Status(StatusCode::kUnavailable, "did not start", program.string(),
+                  "see " + (folder / "furrowd.log").string());
+  }
+  return daemon;
+}
+
+DaemonProcess::DaemonProcess(DaemonProcess&& other) noexcept
+    : target_(std::exchange(other.target_, {})) {}
+
+DaemonProcess::~DaemonProcess() {
+  if (!target_.pid) return;
+  kill(*target_.pid, SIGKILL);
+  waitpid(*target_.pid, nullptr, 0);
+}
+
+}  // namespace furrow::bench

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/load/figures.h"
+
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "client/cli/load_input.h"
+#include "client/load/comparison.h"
+#include "client/load/echo.h"
+#include "report/table.h"
+
+namespace furrow::bench {
+namespace {
+
+using report::Fixed;
+
+constexpr int kSubjects = 256;
+
+std::string Between(const load::Spread& spread) {
+  return Fixed(spread.median, 2) + " (" + Fixed(spread.low, 2) + " to " + Fixed(spread.high, 2) +
+         ")";
+}
+
+// Whether a figure's ratio keeps its limit: at most it, or at least it.
+Aim RatioAim(const load::Figure& figure, const std::string& what, double limit, bool at_most) {
+  const double ratio = figure.ratio.median;
+  return {what,
+          "raw echo " + Fixed(figure.raw, 1) + " " + figure.unit,
+          Between(figure.ratio) + "x",
+          Between(figure.control) + "x",
+          (at_most ? "<= " : ">= ") + Fixed(limit, 2) + "x",
+          at_most ? ratio <= limit : ratio >= limit};
+}
+
+// The daemon beside two echoes.
+class Duel {
+ public:
+  explicit Duel(const Setting& setting)
+      : performance_(Take(cli::LoadPerformance(
+            {.file = setting.recording, .rig = setting.rig, .quantise = true}))),
+        daemon_(Take(DaemonProcess::Start(setting.daemon, setting.rig, setting.folder))),
+        raw_(Take(load::EchoServer::Start(daemon_.target().pid))),
+        control_(Take(load::EchoServer::Start(daemon_.target().pid))) {
+    options_.rounds = setting.rounds;
+    options_.run = At60Hz(kSubjects, setting.seconds);
+  }
+
+  // At so many poses a second.
+  load::Comparison At(double rate) {
+    options_.find_max = false;
+    options_.run.plan.rate = rate / kSubjects;
+    return Run();
+  }
+  load::Comparison Highest() {
+    options_.find_max = true;
+    options_.rounds = 0;
+    return Run();
+  }
+
+ private:
+  static load::Target Echo(const load::EchoServer& server) {
+    return {.host = "127.0.0.1", .udp = server.port(), .echo = true, .pid = server.pid()};
+  }
+  load::Comparison Run() {
+    const load::Contestants contestants{
+        .server = daemon_.target(), .raw = Echo(raw_), .control = Echo(control_)};
+    return Take(load::Compare(
+        performance_, contestants, options_,
+        {.go_on = [] { return true; },
+         .progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); }}));
+  }
+
+  load::Performance performance_;
+  DaemonProcess daemon_;
+  load::EchoServer raw_;
+  load::EchoServer control_;
+  load::ComparisonOptions options_;
+};
+
+void AddRatios(const load::Comparison& comparison, const std::string& name, const std::string& what,
+               double limit, bool at_most, std::vector<Aim>* aims) {
+  for (const load::Figure& figure : comparison.figures) {
+    if (figure.name == name) aims->push_back(RatioAim(figure, what, limit, at_most));
+  }
+}
+
+Aim ThousandSubjects(const Setting& setting) {
+  const auto run =
+      Take(RunFresh(setting, setting.recording, setting.rig, At60Hz(1000, setting.seconds)));
+  const double p99_ms = run.p(99.0) * 1e-3;
+  return {"1,000 subjects at 60 Hz on one core",
+          "",
+          std::to_string(run.tally.lost()) + " lost, " + std::to_string(run.tally.wrong) +
+              " wrong, p99 " + Fixed(p99_ms, 2) + " ms",
+          "",
+          "0 lost, p99 < 16.7 ms",
+          run.tally.lost() == 0 && run.tally.wrong == 0 && p99_ms < 1000.0 / 60.0};
+}
+
+// The memory of 1,000 subjects that hardly move, beside that of one.
+Aim IdleMemory(const Setting& setting) {
+  load::RunOptions options = At60Hz(1, 1.0);
+  options.plan.rate = 2.0;
+  const auto resident = [&](int subjects) {
+    options.plan.subjects = subjects;
+    const auto run = Take(RunFresh(setting, setting.recording, setting.rig, options));
+    return run.usage ? static_cast<double>(run.usage->resident_bytes) / (1 << 20) : 0.0;
+  };
+  const double one = resident(1);
+  const double many = resident(1000);
+  return {"memory with 1,000 subjects",
+          "one subject " + Fixed(one, 1) + " MiB",
+          Fixed(many, 1) + " MiB, " + Fixed((many - one) * 1024.0 / 999.0, 1) + " KiB a subject",
+          "",
+          "<= 64 MiB",
+          many <= 64.0};
+}
+
+// Runs with and without 40 subscribers that never read, in turn.
+std::vector<Aim> Stalled(const Setting& setting) {
+  std::vector<double> p50;
+  std::vector<double> p90;
+  for (int round = 0; round < setting.rounds; ++round) {
+    std::fprintf(stderr, "stalled subscribers, round %d\n", round + 1);
+    load::RunOptions options = At60Hz(64, setting.seconds);
+    const auto without = Take(RunFresh(setting, setting.recording, setting.rig, options));
+    options.burdens.stalled = 40;
+    const auto with = Take(RunFresh(setting, setting.recording, setting.rig, options));
+    p50.push_back(with.p(50.0) / without.p(50.0));
+    p90.push_back(with.p(90.0) / without.p(90.0));
+  }
+  const auto aim = [](const std::string& what, const std::vector<double>& ratios, double limit) {
+    const load::Spread spread = load::SpreadOf(ratios);
+    return Aim{what,
+               "none stalled",
+               Between(spread) + "x",
+               "",
+               "<= " + Fixed(limit, 2) + "x",
+               spread.median <= limit};
+  };
+  return {aim("40 stalled subscribers, p50", p50, 1.05),
+          aim("40 stalled subscribers, p90", p90, 1.10)};
+}
+
+}  // namespace
+
+std::vector<Aim> MeasureAims(const Setting& setting) {
+  std::vector<Aim> aims;
+  {
+    Duel duel(setting);
+    const load::Comparison gentle = duel.At(10000.0);
+    AddRatios(gentle, "p50", "round trip at 10,000 poses/s, p50", 1.25, true, &aims);
+    AddRatios(gentle, "p90", "round trip at 10,000 poses/s, p90", 1.30, true, &aims);
+    AddRatios(duel.At(50000.0), "CPU a pose", "processor time a pose at 50,000 poses/s", 2.0, true,
+              &aims);
+    AddRatios(duel.Highest(), "highest rate", "highest rate without loss", 0.5, false, &aims);
+  }
+  aims.push_back(ThousandSubjects(setting));
+  for (Aim& aim : Stalled(setting)) aims.push_back(std::move(aim));
+  aims.push_back(IdleMemory(setting));
+  return aims;
+}
+
+std::string ToMarkdown(const std::vector<Aim>& aims) {
+  report::Table table{
+      "What was aimed at, and what was reached",
+      {"figure", "against", "reached (middle half)", "raw against raw", "aim", "met"},
+      {}};
+  for (const Aim& aim : aims) {
+    table.rows.push_back(
+        {aim.what, aim.baseline, aim.reached, aim.control, aim.aim, aim.met ? "yes" : "no"});
+  }
+  return report::ToMarkdown(table);
+}
+
+nlohmann::json ToJson(const std::vector<Aim>& aims) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const Aim& aim : aims) {
+    json.push_back({{"figure", aim.what},
+                    {"against", aim.baseline},
+                    {"reached", aim.reached},
+                    {"control", aim.control},
+                    {"aim", aim.aim},
+                    {"met", aim.met}});
+  }
+  return json;
+}
+
+}  // namespace furrow::bench

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/load/setting.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "client/cli/load_input.h"
+
+namespace furrow::bench {
+
+load::RunHooks Silently() {
+  return {.go_on = [] { return true; },
+          .solving = [](double) {},
+          .second = [](double, const load::Tally&, const load::Histogram&) {}};
+}
+
+Result<load::RunResult> RunFresh(const Setting& setting, const std::filesystem::path& recording,
+                                 const std::filesystem::path& rig,
+                                 const load::RunOptions& options) {
+  const auto performance = cli::LoadPerformance({.file = recording, .rig = rig, .quantise = true});
+  if (!performance.ok()) return performance.status();
+  const auto daemon = DaemonProcess::Start(setting.daemon, rig, setting.folder);
+  if (!daemon.ok()) return daemon.status();
+  return load::Run(*performance, daemon->target(), options, Silently());
+}
+
+load::RunOptions At60Hz(int subjects, double seconds) {
+  load::RunOptions options;
+  options.plan = {.subjects = subjects, .phases = 16, .rate = 60.0, .seconds = seconds};
+  return options;
+}
+
+void Give(const Status& status) {
+  std::fprintf(stderr, "bench_load: %s\n", status.ToString().c_str());
+  std::exit(1);
+}
+
+}  // namespace furrow::bench

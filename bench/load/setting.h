@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "bench/load/daemon_process.h"
+#include "client/load/run.h"
+
+namespace furrow::bench {
+
+// What all experiments are told.
+struct Setting {
+  std::filesystem::path daemon;     // furrowd
+  std::filesystem::path recording;  // BVH
+  std::filesystem::path rig;
+  std::filesystem::path folder;  // for what is made meanwhile
+  double seconds = 3.0;          // of one run
+  int rounds = 11;               // of paired runs
+};
+
+// Hooks of a run that nobody watches.
+[[nodiscard]] load::RunHooks Silently();
+
+// A new daemon with this rig, one run of this recording, packed. Errors: the daemon's and Run()'s.
+[[nodiscard]] Result<load::RunResult> RunFresh(const Setting& setting,
+                                               const std::filesystem::path& recording,
+                                               const std::filesystem::path& rig,
+                                               const load::RunOptions& options);
+
+// So many subjects at 60 Hz.
+[[nodiscard]] load::RunOptions At60Hz(int subjects, double seconds);
+
+// Prints why and ends: a benchmark has nothing to clean up but processes that end with it.
+[[noreturn]] void Give(const Status& status);
+
+// The value, or the end.
+template <class T>
+[[nodiscard]] T Take(Result<T> result) {
+  if (!result.ok()) Give(result.status());
+  return *std::move(result);
+}
+
+}  // namespace furrow::bench
