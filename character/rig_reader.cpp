@@ -139,6 +139,11 @@ Status ReadRegion(const schema::Region& from, const std::string& at, wrinkle::Re
   to->mask.texture = Text(mask.texture());
   to->mask.smooth_width = mask.smooth_width();
   to->mask.channel = static_cast<int>(mask.channel());
+  to->mask.ball = Text(mask.ball());
+  to->mask.spread_degrees = mask.spread_degrees();
+  to->mask.above = mask.above();
+  to->mask.below = mask.below();
+  to->mask.radius = mask.radius();
   if (Status s = Enum(mask.kind(), &to->mask.kind, at + ".mask.kind"); !s.ok()) return s;
   if (Status s = Enum(mask.lambda(), &to->mask.lambda, at + ".mask.lambda"); !s.ok()) return s;
   if (Status s = Enum(from.combine(), &to->combine, at + ".combine"); !s.ok()) return s;

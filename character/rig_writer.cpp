@@ -220,10 +220,16 @@ std::string ToJson(const wrinkle::Driver& driver) {
 std::string ToJson(const wrinkle::Mask& mask) {
   constexpr std::array kChannels = {"r", "g", "b", "a"};
   Object object;
-  object.Choice("kind", mask.kind, {"texture", "skinning"}).Text("texture", mask.texture);
+  object.Choice("kind", mask.kind, {"texture", "skinning", "sliding"})
+      .Text("texture", mask.texture);
   if (mask.channel != 0) object.Raw("channel", Quote(kChannels.at(mask.channel)));
   return object.Choice("lambda", mask.lambda, {"smooth", "binary", "linear"})
       .Float("smooth_width", mask.smooth_width, 0.25f)
+      .Text("ball", mask.ball)
+      .Float("spread_degrees", mask.spread_degrees, 100.0f)
+      .Float("above", mask.above, 0.15f)
+      .Float("below", mask.below, 0.4f)
+      .Float("radius", mask.radius, 0.5f)
       .str();
 }
 

@@ -11,7 +11,12 @@ namespace {
 
 // Binding points of shaders/common_*.glsl and scene.frag.glsl.
 enum UniformBinding : GLuint { kFrameBlock = 0, kMaterialBlock = 1, kWrinkleTable = 2 };
-enum StorageBinding : GLuint { kJointRows = 0, kJointInfluences = 1, kMaskPalette = 2 };
+enum StorageBinding : GLuint {
+  kJointRows = 0,
+  kJointInfluences = 1,
+  kMaskPalette = 2,
+  kDynamicMasks = 3
+};
 enum TextureUnit : GLuint {
   kBaseColourUnit = 0,
   kBaseDerivativesUnit = 1,
@@ -86,6 +91,7 @@ SceneDraw::SceneDraw(const wrinkle::Skeleton& skeleton,
   for (gl::Buffer* buffer : {&frame_, &joints_, &influences_}) *buffer = gl::MakeBuffer();
   for (int group = 0; group < kNumWrinkleGroups; ++group) {
     wrinkle_tables_[group] = gl::MakeBuffer();
+    dynamic_masks_[group] = gl::MakeBuffer();
   }
   for (int group = 0; group <= kNumWrinkleGroups; ++group) {
     const auto palette = tables_->mask_palette(static_cast<WrinkleGroup>(group));
@@ -145,13 +151,15 @@ void SceneDraw::UploadJoints(std::span<const glm::mat4> model) {
 }
 
 void SceneDraw::UploadWrinkles() {
+  const DynamicMasks& dynamic = tables_->dynamic_masks();
   for (int group = 0; group < kNumWrinkleGroups; ++group) {
-    const std::vector<std::uint8_t> block = WrinkleBlock(
-        tables_->table(static_cast<WrinkleGroup>(group)), tables_->num_maps(), gpu_->layout());
+    const WrinkleTable& table = tables_->table(static_cast<WrinkleGroup>(group));
+    const auto block = WrinkleBlock(table, tables_->num_maps(), gpu_->layout());
     gl::Upload(wrinkle_tables_[group], block.data(), block.size());
+    const auto masks = DynamicMasksBlock(table.dynamic_masks, dynamic.num_columns());
+    gl::Upload(dynamic_masks_[group], masks.data(), masks.size());
   }
-  gl::Upload(influences_, tables_->joint_influences().data(),
-             tables_->joint_influences().size_bytes());
+  gl::Upload(influences_, dynamic.influences().data(), dynamic.influences().size_bytes());
 }
 
 void SceneDraw::BindBuffers() {
@@ -169,6 +177,7 @@ void SceneDraw::BindMaterial(const GpuMaterial& material) {
   glBindBufferBase(GL_UNIFORM_BUFFER, kMaterialBlock, material.block.name());
   const int group = material.group == WrinkleGroup::kNone ? 0 : static_cast<int>(material.group);
   glBindBufferBase(GL_UNIFORM_BUFFER, kWrinkleTable, wrinkle_tables_[group].name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kDynamicMasks, dynamic_masks_[group].name());
   const GLuint palette = palettes_[static_cast<int>(material.group)].name();
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMaskPalette, palette);
   glBindTextureUnit(kBaseColourUnit, material.base_colour);

@@ -67,6 +67,7 @@ class SceneDraw {
   gl::Buffer frame_;
   gl::Buffer joints_;
   gl::Buffer wrinkle_tables_[kNumWrinkleGroups];
+  gl::Buffer dynamic_masks_[kNumWrinkleGroups];
   gl::Buffer influences_;
   gl::Buffer palettes_[kNumWrinkleGroups + 1];  // by group, kNone included
 };

@@ -34,14 +34,11 @@ glm::vec4 Hue(float turn) {
 }
 
 wrinkle::Rig WithSkinningMasks(wrinkle::Rig rig) {
-  for (wrinkle::Region& region : rig.regions) region.mask.kind = wrinkle::Mask::Kind::kSkinning;
+  using Kind = wrinkle::Mask::Kind;
+  for (wrinkle::Region& region : rig.regions) {
+    if (region.mask.kind == Kind::kTexture) region.mask.kind = Kind::kSkinning;
+  }
   return rig;
-}
-
-const wrinkle::Feed* FeedOf(const wrinkle::Region& region, std::string_view map) {
-  const auto found = std::find_if(region.feeds.begin(), region.feeds.end(),
-                                  [&](const wrinkle::Feed& feed) { return feed.map == map; });
-  return found == region.feeds.end() ? nullptr : &*found;
 }
 
 int FindMap(const wrinkle::Rig& rig, std::string_view name) {
@@ -60,17 +57,15 @@ int WrinkleLayout::MaskLayer(std::string_view texture) const {
 
 std::size_t WrinkleBlockSize(int num_maps, int num_mask_layers) {
   const std::size_t maps = 4 * static_cast<std::size_t>(MapSlots(num_maps));
-  return 16 + maps * (sizeof(ActiveMap) + sizeof(glm::vec4) * num_mask_layers);
+  return maps * (sizeof(ActiveMap) + sizeof(glm::vec4) * num_mask_layers);
 }
 
 std::vector<std::uint8_t> WrinkleBlock(const WrinkleTable& table, int num_maps,
                                        const WrinkleLayout& layout) {
   std::vector<std::uint8_t> block(WrinkleBlockSize(num_maps, layout.num_mask_layers));
-  const std::int32_t map_count = num_maps;
-  std::memcpy(block.data(), &map_count, sizeof(map_count));
   if (table.maps.empty()) return block;
-  const std::size_t weights = 16 + 4 * MapSlots(num_maps) * sizeof(ActiveMap);
-  std::memcpy(&block[16], table.maps.data(), table.maps.size() * sizeof(ActiveMap));
+  const std::size_t weights = 4 * MapSlots(num_maps) * sizeof(ActiveMap);
+  std::memcpy(block.data(), table.maps.data(), table.maps.size() * sizeof(ActiveMap));
   std::memcpy(&block[weights], table.mask_weights.data(),
               table.mask_weights.size() * sizeof(glm::vec4));
   return block;
@@ -128,8 +123,6 @@ WrinkleTables::WrinkleTables(const character::Character& character, WrinkleLayou
   DescribePalettes(character.rig);
   weights_.resize(binding_.weight_names().size());
   values_.resize(binding_.driver_value_names().size());
-  influences_.resize(static_cast<std::size_t>(character.skeleton.num_joints()) * maps_.size());
-  map_is_dynamic_.resize(maps_.size());
 }
 
 void WrinkleTables::DescribeMaps(const character::Character& character) {
@@ -146,11 +139,6 @@ void WrinkleTables::DescribeMaps(const character::Character& character) {
       info.entry.height_layer = layout_.height_layers[static_cast<std::size_t>(index)];
     }
     info.entry.amplitude = layer < 0 ? 0.0f : map.amplitude;  // no texture: no relief
-    for (const wrinkle::Region& region : character.rig.regions) {
-      if (FeedOf(region, map.name) == nullptr) continue;
-      info.entry.lambda = static_cast<std::int32_t>(region.mask.lambda);
-      info.entry.smooth_width = std::max(region.mask.smooth_width, 1e-6f);
-    }
     info.in_group[static_cast<int>(WrinkleGroup::kSkin)] =
         map.surface != Surface::kCloth || !has_cloth;
     info.in_group[static_cast<int>(WrinkleGroup::kCloth)] = map.surface != Surface::kSkin;
@@ -212,26 +200,11 @@ Status WrinkleTables::Update(const FrameRequest& request) {
   }
   const MaskMode mode =
       settings.view == View::kMaskDynamic ? MaskMode::kDynamic : settings.mask_mode;
-  UpdateInfluences(mode);
+  dynamic_.Update(mode, values_, weights_);
   for (int group = 0; group < kNumWrinkleGroups; ++group) {
     FillTable(group, mode, settings.wrinkle_strength);
   }
   return {};
-}
-
-void WrinkleTables::UpdateInfluences(MaskMode mode) {
-  std::fill(influences_.begin(), influences_.end(), 0.0f);
-  std::fill(map_is_dynamic_.begin(), map_is_dynamic_.end(), false);
-  if (mode == MaskMode::kTexture || maps_.empty()) return;
-  const wrinkle::RigBinding& binding = mode == MaskMode::kDynamic ? skinning_ : binding_;
-  const wrinkle::JointInfluenceJob job{&binding, values_, influences_};
-  if (job.Run() != wrinkle::JobStatus::kOk) {
-    std::fill(influences_.begin(), influences_.end(), 0.0f);  // non-finite values: no wrinkles
-    return;
-  }
-  for (std::size_t i = 0; i < influences_.size(); ++i) {
-    if (influences_[i] > 0.0f) map_is_dynamic_[i % maps_.size()] = true;
-  }
 }
 
 void WrinkleTables::FillTable(int group, MaskMode mode, float strength) {
@@ -248,14 +221,16 @@ void WrinkleTables::FillTable(int group, MaskMode mode, float strength) {
       row[static_cast<std::size_t>(slot.mask_layer)][slot.channel] += weights_[i];
       textured = true;
     }
-    if (!textured && !map_is_dynamic_[map]) continue;
+    const bool is_dynamic = dynamic_.Append(
+        static_cast<int>(map), static_cast<int>(table.maps.size()), &table.dynamic_masks);
+    if (!textured && !is_dynamic) continue;
     ActiveMap entry = maps_[map].entry;
     entry.amplitude *= strength;
     table.maps.push_back(entry);
     table.mask_weights.insert(table.mask_weights.end(), row.begin(), row.end());
     table.has_heights = table.has_heights || entry.height_layer >= 0;
     table.uses_texture = table.uses_texture || textured;
-    table.uses_dynamic = table.uses_dynamic || map_is_dynamic_[map];
+    table.uses_dynamic = table.uses_dynamic || is_dynamic;
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include <glm/vec4.hpp>
 
+#include "render/dynamic_masks.h"
 #include "render/renderer.h"
 
 namespace furrow::render {
@@ -20,23 +21,21 @@ enum class WrinkleGroup { kSkin, kCloth, kNone };
 inline constexpr int kNumWrinkleGroups = 2;  // kNone has no table
 
 // One wrinkle map that this frame needs. Mirrors ActiveMap of shaders/common_wrinkles.glsl
-// (std430).
+// (std140).
 struct ActiveMap {
   glm::vec4 colour{1.0f};
   std::int32_t layer = 0;
   std::int32_t map = 0;
   float amplitude = 1.0f;
-  std::int32_t lambda = 0;
-  float smooth_width = 0.25f;
   std::int32_t height_layer = -1;  // -1: the map has no heights
-  float padding[2] = {};
 };
-static_assert(sizeof(ActiveMap) == 48);
+static_assert(sizeof(ActiveMap) == 32);
 
 // The active list of one group of surfaces, as the shaders read it.
 struct WrinkleTable {
   std::vector<ActiveMap> maps;
   std::vector<glm::vec4> mask_weights;  // maps x mask layers
+  std::vector<DynamicMaskBlock> dynamic_masks;
   bool uses_texture = false;
   bool uses_dynamic = false;
   bool has_heights = false;  // of some map
@@ -85,8 +84,7 @@ class WrinkleTables {
     return tables_[static_cast<int>(group)];
   }
   [[nodiscard]] int num_maps() const { return static_cast<int>(maps_.size()); }
-  // num_joints of the character x num_maps(), joint-major; all 0 where no mask is dynamic.
-  [[nodiscard]] std::span<const float> joint_influences() const { return influences_; }
+  [[nodiscard]] const DynamicMasks& dynamic_masks() const { return dynamic_; }
   // Mask layers x 4 channels: each region's colour for the view mask_texture; black for channels of
   // regions that are not drawn on the group's surfaces. kNone: all black.
   [[nodiscard]] std::span<const glm::vec4> mask_palette(WrinkleGroup group) const {
@@ -117,12 +115,12 @@ class WrinkleTables {
   void DescribeMaps(const character::Character& character);
   void DescribeRegions(const wrinkle::Rig& rig);
   void DescribePalettes(const wrinkle::Rig& rig);
-  void UpdateInfluences(MaskMode mode);
   void FillTable(int group, MaskMode mode, float strength);
 
   WrinkleLayout layout_;
   wrinkle::RigBinding binding_;   // the character's rig on its own skeleton
-  wrinkle::RigBinding skinning_;  // the same with every mask by skinning: MaskMode::kDynamic
+  wrinkle::RigBinding skinning_;  // the same without painted masks: MaskMode::kDynamic
+  DynamicMasks dynamic_{&binding_, &skinning_};
   std::vector<MapInfo> maps_;
   std::vector<WeightSlot> slots_;
   std::vector<glm::vec4> palettes_[kNumWrinkleGroups + 1];
@@ -130,8 +128,6 @@ class WrinkleTables {
   NameMap value_map_;
   std::vector<float> weights_;  // of binding_
   std::vector<float> values_;   // driver values of binding_
-  std::vector<float> influences_;
-  std::vector<bool> map_is_dynamic_;
   WrinkleTable tables_[kNumWrinkleGroups];
 };
 

@@ -1,20 +1,73 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common_math.glsl"
 #include "common_wrinkles.glsl"
+
+// The masks that are found vertex by vertex. Mirrors DynamicMaskBlock of render/wrinkle_table.h.
+struct DynamicMask {
+  int slot;           // active map that it raises
+  int column;         // of u_joint_influences; -1: it slides
+  int lambda;         // 0 smooth, 1 binary, 2 linear
+  float smoothWidth;  // w0 of the smooth lambda
+  // Of a mask that slides about a ball joint; lengths are in those of the bone below it.
+  vec4 origin;        // xyz: rest pose; w: the wrinkle weight
+  vec4 towards;       // xyz: where the joint bends to; w: cosine from which on the mask is 0
+  vec4 bone;          // xyz: unit; w: 1 / metres
+  vec4 extent;        // above, below, radius
+};
+
+// num_joints x u_mask_columns, joint-major, in [0, 1] (wrinkle::JointInfluenceJob).
+layout(std430, binding = 1) readonly buffer JointInfluences { float u_joint_influences[]; };
+// Those at work alone: joints at rest cost nothing.
+layout(std430, binding = 3) readonly buffer DynamicMasks {
+  int u_mask_count;
+  int u_mask_columns;
+  DynamicMask u_dynamic_masks[];
+};
 
 // How much of a joint's influence a vertex takes, by its skin weight in [0, 1]. Thesis 4.2; the
 // smooth form has no seam where a skin weight fades out.
-float lambdaOf(ActiveMap map, float skinWeight) {
-  if (map.lambda == 1) return skinWeight > 0.0 ? 1.0 : 0.0;
-  if (map.lambda == 2) return skinWeight;
-  return smoothstep(0.0, max(map.smoothWidth, 1e-6), skinWeight);
+float lambdaOf(DynamicMask mask, float skinWeight) {
+  if (mask.lambda == 1) return skinWeight > 0.0 ? 1.0 : 0.0;
+  if (mask.lambda == 2) return skinWeight;
+  return smoothstep(0.0, max(mask.smoothWidth, 1e-6), skinWeight);
 }
 
 // Thesis 4.2: clamp(sum over the vertex's joints of lambda(skin weight) * influence, 0, 1).
-float dynamicMask(ActiveMap map, uvec4 joints, vec4 skinWeights) {
+float skinnedMask(DynamicMask mask, uvec4 joints, vec4 skinWeights) {
   float sum = 0.0;
   for (int i = 0; i < 4; ++i) {
-    float influence = u_joint_influences[joints[i] * uint(u_map_count) + uint(map.map)];
-    sum += lambdaOf(map, skinWeights[i]) * influence;
+    float influence = u_joint_influences[joints[i] * uint(u_mask_columns) + uint(mask.column)];
+    sum += lambdaOf(mask, skinWeights[i]) * influence;
   }
   return clamp(sum, 0.0, 1.0);
+}
+
+// Mirrors wrinkle::SlidingMaskAt(), times the wrinkle weight. `position`: rest pose.
+float slidingMask(DynamicMask mask, vec3 position) {
+  const float SOFT = 0.4;  // share of its length and radius over which it fades out
+  vec3 offset = (position - mask.origin.xyz) * mask.bone.w;
+  float along = dot(offset, mask.bone.xyz);
+  vec3 across = offset - along * mask.bone.xyz;
+  float away = length(across);
+  float cosine = away > 1e-6 ? dot(across, mask.towards.xyz) / away : 0.0;
+  float above = mask.extent.x;
+  float below = mask.extent.y;
+  float radius = mask.extent.z;
+  float soft = SOFT * (above + below);
+  return mask.origin.w * smoothstep(mask.towards.w, 1.0, cosine) *
+         smoothstep(-above, soft - above, along) *
+         (1.0 - smoothstep(below - soft, below, along)) *
+         (1.0 - smoothstep((1.0 - SOFT) * radius, radius, away));
+}
+
+// The masks of all active maps at a vertex, each in [0, 1]; `position`: rest pose.
+void dynamicMasksAt(vec3 position, uvec4 joints, vec4 skinWeights, out vec4 masks[MAP_SLOTS]) {
+  for (int slot = 0; slot < MAP_SLOTS; ++slot) masks[slot] = vec4(0.0);
+  for (int i = 0; i < u_mask_count; ++i) {
+    DynamicMask mask = u_dynamic_masks[i];
+    float value = mask.column < 0 ? slidingMask(mask, position)
+                                  : skinnedMask(mask, joints, skinWeights);
+    masks[mask.slot >> 2][mask.slot & 3] += value;
+  }
+  for (int slot = 0; slot < MAP_SLOTS; ++slot) masks[slot] = min(masks[slot], vec4(1.0));
 }

@@ -40,10 +40,7 @@ void main() {
   v_barycentric[gl_VertexID % 3] = 1.0;
 #endif
 #if WRINKLE_DYNAMIC
-  for (int slot = 0; slot < MAP_SLOTS; ++slot) v_dynamic_masks[slot] = vec4(0.0);
-  for (int i = 0; i < ACTIVE_MAPS; ++i) {
-    v_dynamic_masks[i >> 2][i & 3] = dynamicMask(u_active_maps[i], a_joints, a_skin_weights);
-  }
+  dynamicMasksAt(a_position, a_joints, a_skin_weights, v_dynamic_masks);
 #endif
 #if DISPLACED
   v_share = a_share;

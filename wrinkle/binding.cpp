@@ -65,6 +65,7 @@ RigBinding& RigBinding::operator=(RigBinding&&) noexcept = default;
 RigBinding::~RigBinding() = default;
 
 std::span<const std::string> RigBinding::weight_names() const { return data_->weights.names(); }
+std::span<const DynamicMask> RigBinding::dynamic_masks() const { return data_->influences.masks(); }
 std::span<const std::string> RigBinding::driver_value_names() const {
   return data_->driver_value_names;
 }

@@ -2,6 +2,7 @@
 #include "wrinkle/influence_table.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "wrinkle/modulation.h"
 
@@ -35,27 +36,42 @@ std::size_t IndexByName(const std::vector<Item>& items, const std::string& name)
 
 }  // namespace
 
+std::size_t InfluenceTable::MaskOf(int map, const Mask& mask) {
+  const bool smooth = mask.lambda == LambdaMode::kSmooth;
+  const DynamicMask wanted{map, mask.lambda,
+                           smooth ? mask.smooth_width : DynamicMask().smooth_width};
+  const auto found = std::find(masks_.begin(), masks_.end(), wanted);
+  const auto index = static_cast<std::size_t>(found - masks_.begin());
+  if (found == masks_.end()) masks_.push_back(wanted);
+  return index;
+}
+
 void InfluenceTable::Bind(const Rig& rig, const Skeleton& skeleton,
                           const std::unordered_map<std::string, int>& value_index) {
-  const std::size_t num_maps = rig.wrinkle_maps.size();
+  std::vector<std::pair<int, std::size_t>> places;  // of each entry: joint, mask
   for (const Region& region : rig.regions) {
     if (region.mask.kind != Mask::Kind::kSkinning) continue;
     for (const Feed& feed : region.feeds) {
       const std::size_t map = IndexByName(rig.wrinkle_maps, feed.map);
-      if (map == num_maps) continue;
+      if (map == rig.wrinkle_maps.size()) continue;
+      const std::size_t mask = MaskOf(static_cast<int>(map), region.mask);
       for (const Feed::Source& source : feed.sources) {
         const Driver& driver = rig.drivers[IndexByName(rig.drivers, source.driver)];
         for (const std::string& name : ConcernedJoints(driver)) {
           const int joint = skeleton.Find(name);
           if (joint == kNoJoint) continue;
-          entries_.push_back({.place = static_cast<std::uint32_t>(
-                                  static_cast<std::size_t>(joint) * num_maps + map),
-                              .driver_value = value_index.at(source.driver + "." + source.value),
+          places.emplace_back(joint, mask);
+          entries_.push_back({.driver_value = value_index.at(source.driver + "." + source.value),
                               .gain = source.gain,
                               .modulation = region.modulation});
         }
       }
     }
+  }
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const auto& [joint, mask] = places[i];
+    entries_[i].place =
+        static_cast<std::uint32_t>(static_cast<std::size_t>(joint) * masks_.size() + mask);
   }
 }
 

@@ -144,12 +144,20 @@ struct Feed {
 };
 
 struct Mask {
-  enum class Kind { kTexture, kSkinning };
+  // Painted; the vertices that the driving joints move; about a ball joint, on the side to which it
+  // bends (sliding_mask.h).
+  enum class Kind { kTexture, kSkinning, kSliding };
   Kind kind = Kind::kTexture;
   std::string texture;  // file, or empty for one embedded in the character by this name
   int channel = 0;      // 0..3 = r, g, b, a
   LambdaMode lambda = LambdaMode::kSmooth;
   float smooth_width = 0.25f;  // w0 of smoothstep(0, w0, skin_weight)
+  // Of kSliding. Lengths are in those of the bone below the joint.
+  std::string ball;               // the ball driver that it slides with
+  float spread_degrees = 100.0f;  // (0, 180]: how far to either side of the bend it reaches
+  float above = 0.15f;            // [0, 10]: how far beyond the joint, towards the parent ...
+  float below = 0.4f;             // ... and along the bone; together > 0
+  float radius = 0.5f;            // (0, 10]: from the bone's axis
 };
 
 struct Region {

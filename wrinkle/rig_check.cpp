@@ -247,6 +247,12 @@ void CheckRegion(const Region& region, const std::string& at, Complaints* compla
   complaints->Require(region.mask.channel >= 0 && region.mask.channel <= 3, at, ".mask.channel",
                       "there is no such channel");
   complaints->Range(at, ".mask.smooth_width", region.mask.smooth_width, 1e-4f, 1.0f);
+  complaints->Range(at, ".mask.spread_degrees", region.mask.spread_degrees, 1.0f, 180.0f);
+  complaints->Range(at, ".mask.above", region.mask.above, 0.0f, 10.0f);
+  complaints->Range(at, ".mask.below", region.mask.below, 0.0f, 10.0f);
+  complaints->Range(at, ".mask.radius", region.mask.radius, 1e-3f, 10.0f);
+  complaints->Require(region.mask.above + region.mask.below > 0.0f, at, ".mask.below",
+                      "the mask has no length: above and below are 0");
   complaints->Count(at, ".neighbours", region.neighbours.size(), kMaxRegions);
   complaints->Count(at, ".feeds", region.feeds.size(), kMaxWrinkleMaps);
   std::unordered_set<std::string_view> maps;
@@ -291,6 +297,19 @@ void CheckList(const std::string& list, const std::vector<Item>& items, std::siz
   }
 }
 
+// A mask slides with a ball joint's driver.
+void CheckSlides(const Rig& rig, Complaints* complaints) {
+  for (std::size_t i = 0; i < rig.regions.size(); ++i) {
+    const Mask& mask = rig.regions[i].mask;
+    if (mask.kind != Mask::Kind::kSliding) continue;
+    const bool is_ball = std::any_of(rig.drivers.begin(), rig.drivers.end(), [&](const Driver& d) {
+      return d.name == mask.ball && d.kind == Driver::Kind::kBall;
+    });
+    complaints->Require(is_ball, FieldAt("regions", i), ".mask.ball",
+                        "a sliding mask names a ball driver of the rig");
+  }
+}
+
 }  // namespace
 
 Status CheckLabel(std::string_view label, const std::string& where) {
@@ -320,6 +339,7 @@ Status CheckRigFields(const Rig& rig) {
   CheckList("wrinkle_maps", rig.wrinkle_maps, kMaxWrinkleMaps, &Complaints::Name, CheckMap,
             &complaints);
   CheckList("regions", rig.regions, kMaxRegions, &Complaints::Name, CheckRegion, &complaints);
+  CheckSlides(rig, &complaints);
   CheckFilter(rig.filter, &complaints);
   return complaints.Take();
 }

@@ -57,8 +57,8 @@ JobStatus WrinkleWeightsJob::Run() const {
 
 JobStatus JointInfluenceJob::Validate() const {
   if (binding == nullptr) return JobStatus::kNullPointer;
-  const std::size_t needed = static_cast<std::size_t>(binding->skeleton().num_joints()) *
-                             binding->rig().wrinkle_maps.size();
+  const std::size_t needed =
+      static_cast<std::size_t>(binding->skeleton().num_joints()) * binding->dynamic_masks().size();
   if (driver_values.size() < binding->driver_value_names().size()) return JobStatus::kSizeMismatch;
   if (influences.size() < needed) return JobStatus::kSizeMismatch;
   return AllFinite(driver_values) ? JobStatus::kOk : JobStatus::kNonFinite;

@@ -25,6 +25,16 @@ struct BindOptions {
   std::span<const std::pair<std::string, std::string>> aliases;
 };
 
+// The skinning masks of one wrinkle map that fade alike with the skin weight: a column of
+// JointInfluenceJob.
+struct DynamicMask {
+  int map = 0;  // of Rig::wrinkle_maps
+  LambdaMode lambda = LambdaMode::kSmooth;
+  float smooth_width = 0.25f;
+
+  friend bool operator==(const DynamicMask&, const DynamicMask&) = default;
+};
+
 // A rig bound to one skeleton: names resolved, reference poses turned into displacements,
 // immutable, shared by all subjects of that skeleton.
 class RigBinding {
@@ -42,6 +52,8 @@ class RigBinding {
   [[nodiscard]] std::span<const std::string> weight_names() const;
   // "<driver>.<value>", in the order of the rig's drivers.
   [[nodiscard]] std::span<const std::string> driver_value_names() const;
+  // One a wrinkle map and lambda that skinning masks ask for, in the order of the rig's regions.
+  [[nodiscard]] std::span<const DynamicMask> dynamic_masks() const;
   [[nodiscard]] std::span<const std::string> missing_joints() const;
   [[nodiscard]] std::span<const std::string> missing_blend_shapes() const;
   // What binds but cannot do what was meant: a reference pose that moves none of its driver's
@@ -166,11 +178,11 @@ class SubjectSolver {
   std::size_t num_drivers_ = kAllDrivers;
 };
 
-// The dynamic mask's per-joint part (4.2): for regions with a skinning mask, how strongly each
+// The dynamic masks' per-joint part (4.2): for regions with a skinning mask, how strongly each
 // joint calls for each of a region's maps, already modulated. The vertex side is clamp(sum over its
 // influences of lambda(skin_weight) * influence, 0, 1); see shaders/.
 //
-// - `influences` is num_joints * num maps of the rig, joint-major. Does not allocate.
+// - `influences` is num_joints * dynamic_masks().size(), joint-major. Does not allocate.
 // - A pose driver concerns its control points' joints, a hinge or ball its lower joint, a twist all
 //   of its joints, a strain driver those that move its patch, a blend shape none; the largest of a
 //   joint's influences on a map counts.

@@ -15,12 +15,12 @@ float Lambda(LambdaMode mode, float skin_weight, float smooth_width) {
 }
 
 float VertexInfluence(std::span<const std::uint16_t> joints, std::span<const float> skin_weights,
-                      std::span<const float> influences, int num_maps, int map, LambdaMode mode,
+                      std::span<const float> influences, int num_masks, int mask, LambdaMode mode,
                       float smooth_width) {
   float sum = 0.0f;
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    const std::size_t at =
-        std::size_t{joints[i]} * static_cast<std::size_t>(num_maps) + static_cast<std::size_t>(map);
+    const std::size_t at = std::size_t{joints[i]} * static_cast<std::size_t>(num_masks) +
+                           static_cast<std::size_t>(mask);
     sum += Lambda(mode, skin_weights[i], smooth_width) * influences[at];
   }
   return Saturate(sum);

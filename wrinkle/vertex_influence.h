@@ -19,11 +19,11 @@ namespace furrow::wrinkle {
 // Thesis 4.2 at one vertex: clamp(sum of lambda(skin_weight) * influence, 0, 1) over its joints.
 //
 // The reference for the shader that draws dynamic masks. `influences` as
-// JointInfluenceJob leaves them (num_joints x num_maps, joint-major);
+// JointInfluenceJob leaves them (num_joints x num_masks, joint-major); `mask` is a column;
 // `joints` and `skin_weights` are the vertex's, equally long.
 [[nodiscard]] float VertexInfluence(std::span<const std::uint16_t> joints,
                                     std::span<const float> skin_weights,
-                                    std::span<const float> influences, int num_maps, int map,
+                                    std::span<const float> influences, int num_masks, int mask,
                                     LambdaMode mode, float smooth_width);
 
 }  // namespace furrow::wrinkle

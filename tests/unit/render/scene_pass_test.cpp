@@ -221,6 +221,7 @@ TEST_P(DynamicMask, EqualsTheReferenceOnTheCpu) {
   request.camera = FaceOf(head);
   const std::vector<glm::vec4> pixels = probe.Draw(request);
   const ActiveMap map = probe.tables().table(WrinkleGroup::kSkin).maps.at(0);
+  const DynamicMaskBlock mask = probe.tables().table(WrinkleGroup::kSkin).dynamic_masks.at(0);
   const CameraFrame camera = ComputeCamera(request.camera, head.skeleton, subject.model, 1.0f);
   const std::vector<character::Vertex>& vertices = head.meshes[0].vertices;
   int compared = 0;
@@ -233,8 +234,8 @@ TEST_P(DynamicMask, EqualsTheReferenceOnTheCpu) {
     const int x = static_cast<int>((clip.x / clip.w * 0.5f + 0.5f) * kSize);
     const int y = static_cast<int>((clip.y / clip.w * 0.5f + 0.5f) * kSize);
     const float expected = wrinkle::VertexInfluence(
-        vertices[i].joints, vertices[i].skin_weights, probe.tables().joint_influences(),
-        probe.tables().num_maps(), map.map, GetParam(), 0.25f);
+        vertices[i].joints, vertices[i].skin_weights, probe.tables().dynamic_masks().influences(),
+        probe.tables().dynamic_masks().num_columns(), mask.column, GetParam(), 0.25f);
     const float drawn = pixels[static_cast<std::size_t>(y * kSize + x)].b / map.colour.b;
     // Triangles smaller than a pixel may miss its centre; their neighbours' masks are near.
     EXPECT_NEAR(drawn, expected, GetParam() == wrinkle::LambdaMode::kBinary ? 0.71f : 0.25f);

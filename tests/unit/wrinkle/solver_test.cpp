@@ -182,7 +182,7 @@ TEST(WrinkleWeightsJob, ValidatesOneInputAtATime) {
 TEST(JointInfluenceJob, ValidatesOneInputAtATime) {
   BoundRig rig(MakeRig(), MakeBody());
   std::vector<float> influences(static_cast<std::size_t>(rig.skeleton().num_joints()) *
-                                rig.binding()->rig().wrinkle_maps.size());
+                                rig.binding()->dynamic_masks().size());
   const JointInfluenceJob job{
       .binding = rig.binding().get(), .driver_values = rig.values(), .influences = influences};
   EXPECT_EQ(job.Validate(), JobStatus::kOk);

@@ -120,22 +120,50 @@ TEST(JointInfluence, ReachesTheJointsOfSkinningRegions) {
   Move(rig.skeleton(), "cheek_l", {0.0f, 0.02f, 0.005f}, &pose);
   Turn(rig.skeleton(), "neck", AngleAxis(45.0f, {0, 1, 0}), &pose);
   rig.Solve(pose);
-  const std::size_t num_maps = rig.binding()->rig().wrinkle_maps.size();
-  std::vector<float> influences(rig.skeleton().num_joints() * num_maps, -1.0f);
+  const auto masks = rig.binding()->dynamic_masks();
+  ASSERT_EQ(masks.size(), 2u);  // of squash and of folds; stretch has no skinning region
+  EXPECT_EQ(masks[0].map, 1);
+  EXPECT_EQ(masks[1].map, 2);
+  std::vector<float> influences(rig.skeleton().num_joints() * masks.size(), -1.0f);
   const JointInfluenceJob job{
       .binding = rig.binding().get(), .driver_values = rig.values(), .influences = influences};
   ASSERT_EQ(job.Run(), JobStatus::kOk);
-  const auto at = [&](const char* joint, std::size_t map) {
-    return influences[static_cast<std::size_t>(rig.skeleton().Find(joint)) * num_maps + map];
+  const auto at = [&](const char* joint, std::size_t mask) {
+    return influences[static_cast<std::size_t>(rig.skeleton().Find(joint)) * masks.size() + mask];
   };
-  EXPECT_NEAR(at("cheek_l", 1), 1.0f, 1e-5f);
-  EXPECT_NEAR(at("shin_l", 2), rig.Weight("knee_l_inner.folds"), 1e-6f);
-  EXPECT_NEAR(at("neck", 2), 0.5f, 1e-4f);  // cosine of half way
-  EXPECT_NEAR(at("neck_upper", 2), 0.5f, 1e-4f);
-  EXPECT_EQ(at("cheek_l", 0), 0.0f);
+  EXPECT_NEAR(at("cheek_l", 0), 1.0f, 1e-5f);
+  EXPECT_NEAR(at("shin_l", 1), rig.Weight("knee_l_inner.folds"), 1e-6f);
+  EXPECT_NEAR(at("neck", 1), 0.5f, 1e-4f);  // cosine of half way
+  EXPECT_NEAR(at("neck_upper", 1), 0.5f, 1e-4f);
   EXPECT_EQ(at("brow_l", 0), 0.0f);  // a texture region's
   EXPECT_EQ(std::count_if(influences.begin(), influences.end(), [](float f) { return f != 0.0f; }),
             4);
+}
+
+// A region's lambda is its own, also where another one folds the same map.
+TEST(JointInfluence, HasAColumnForEveryMapAndLambda) {
+  Rig rig = MakeRig();
+  const auto region = [&](const char* name) {
+    return std::find_if(rig.regions.begin(), rig.regions.end(),
+                        [&](const Region& candidate) { return candidate.name == name; });
+  };
+  region("neck_left")->mask.lambda = LambdaMode::kLinear;
+  region("neck_left")->mask.smooth_width = 0.7f;  // says nothing about a linear one
+  BoundRig bound(rig, MakeBody());
+  const auto masks = bound.binding()->dynamic_masks();
+  ASSERT_EQ(masks.size(), 3u);
+  EXPECT_EQ(masks[1], (DynamicMask{2, LambdaMode::kSmooth, 0.25f}));
+  EXPECT_EQ(masks[2], (DynamicMask{2, LambdaMode::kLinear, 0.25f}));
+  LocalPose pose = RestPose(bound.skeleton());
+  Turn(bound.skeleton(), "neck", AngleAxis(45.0f, {0, 1, 0}), &pose);
+  bound.Solve(pose);
+  std::vector<float> influences(bound.skeleton().num_joints() * masks.size());
+  const JointInfluenceJob job{
+      .binding = bound.binding().get(), .driver_values = bound.values(), .influences = influences};
+  ASSERT_EQ(job.Run(), JobStatus::kOk);
+  const std::size_t neck = static_cast<std::size_t>(bound.skeleton().Find("neck")) * masks.size();
+  EXPECT_EQ(influences[neck + 1], 0.0f);
+  EXPECT_NEAR(influences[neck + 2], 0.5f, 1e-4f);
 }
 
 }  // namespace
