@@ -71,6 +71,16 @@ test('rate and drops', () => {
   assert.equal(stats.shown, 41);
 });
 
+test('a change at rest is no movement, several in a row are', () => {
+  const stats = new PictureStats();
+  const see = (still: boolean): boolean => {
+    stats.add({ ...FACTS, still }, 0, null);
+    return stats.resting;
+  };
+  assert.deepEqual([false, true, false, false, true, false, false, false, true].map(see),
+    [false, true, true, true, true, true, true, false, true]);
+});
+
 test('fewer pixels where pictures come too slowly, more again after a while', () => {
   const scale = new AdaptiveScale();
   assert(scale.observe(5, 60, 0));

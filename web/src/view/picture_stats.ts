@@ -11,6 +11,8 @@ export interface PictureFacts {
 }
 
 const WINDOW_S = 2;
+/** So many pictures in a row that are no stills, and the pose or the camera moves. */
+const MOVES = 3;
 
 export class PictureStats {
   private times: number[] = [];
@@ -22,6 +24,15 @@ export class PictureStats {
   dropped = 0;
   tier = 0;
   still = false;
+  private sinceStill = Infinity;
+
+  /**
+   * Nothing moves. A single change at rest is a picture and then its still: that alone is no movement, or else asking
+   * for another size at rest would end the rest.
+   */
+  get resting(): boolean {
+    return this.sinceStill < MOVES;
+  }
 
   /** `nowUs` and `offsetUs`: our clock, and what makes it the daemon's (null: not known yet). */
   add(picture: PictureFacts, nowUs: number, offsetUs: number | null): void {
@@ -31,6 +42,7 @@ export class PictureStats {
     this.prune(nowS);
     this.tier = picture.tier;
     this.still = picture.still;
+    this.sinceStill = picture.still ? 0 : this.sinceStill + 1;
     // Counts since the subscription: a smaller number is a new one.
     this.dropped += picture.dropped >= this.lastDropped ? picture.dropped - this.lastDropped : picture.dropped;
     this.lastDropped = picture.dropped;

@@ -54,7 +54,7 @@ export class Viewer {
 
   /** Once a second: whether the daemon keeps up with `posesHz`. */
   observeRate(posesHz: number, nowS: number): void {
-    if (this.state.sharpness.value !== 'auto' || this.stats.still || posesHz < 1) return;
+    if (this.state.sharpness.value !== 'auto' || this.stats.resting || posesHz < 1) return;
     if (this.scale.observe(this.stats.rateHz(nowS), posesHz, nowS)) this.refresh();
   }
 
@@ -75,7 +75,7 @@ export class Viewer {
       case 'fast':
         return 0.5 / Math.max(1, devicePixelRatio);
       default:
-        return this.stats.still ? 1 : this.scale.scale;
+        return this.stats.resting ? 1 : this.scale.scale;
     }
   }
 
@@ -135,11 +135,11 @@ export class Viewer {
   private onPicture(side: Side, picture: Picture): void {
     this.stage.show(side, picture);
     if (side === 'left') return;
-    const wasStill = this.stats.still;
+    const wasResting = this.stats.resting;
     this.stats.add(picture, nowUs(), this.connection.clock.offsetUs());
     this.notDrawn.set('');
     if (!this.main!.pending.value) this.accepted = this.state.settings.overrides;
-    if (wasStill !== this.stats.still && this.scale.scale < 1) this.refresh();
+    if (wasResting !== this.stats.resting && this.scale.scale < 1) this.refresh();
   }
 
   private onRefused(code: number, message: string): void {
