@@ -33,6 +33,7 @@ CONFINED = [
     (r"flatbuffers/|.*_generated\.h$", {"protocol", "character"}),
     (r"asio(\.hpp|/)", {"server", "client/cpp"}),
     (r"glm/", {"wrinkle", "motion", "recording", "character", "render", "server", "client/load", "client/cli"}),
+    (r"hwy/", {"wrinkle"}),
     (r"OpenImageIO/", {"character", "render"}),
     (r"turbojpeg\.h", {"render"}),
     (r"spdlog/", {"server"}),
