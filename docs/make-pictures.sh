@@ -18,7 +18,7 @@ mkdir -p "$out"
 
 # still NAME [OPTIONS...]: one picture, $work/NAME.png
 still() {
-  "$furrow" render "${@:2}" --out "$work/$1" --size "${size:-320x320}" --shading skin
+  "$furrow" render "${@:2}" --out "$work/$1" --size "${size:-320x320}" --shading "${shading:-skin}"
   mv "$work/$1"/*.png "$work/$1.png"
 }
 
@@ -117,6 +117,64 @@ cloth_joints() {
   sheet cloth_joints 4x1 1200 arm_off arm_on leg_off leg_on
 }
 
+# Pictures of docs/RENDERING.md: one setting against another.
+shading() {
+  for way in diffuse skin; do
+    shading=$way size=640x640 still "shading_$way" --pose neutral --camera three_quarter
+  done
+  sheet shading 2x1 1080 shading_diffuse shading_skin
+}
+
+wrinkles() {
+  for way in off on; do
+    size=640x640 still "wrinkles_$way" "$recordings/anger.bvh" --frames 140 --wrinkles "$way" \
+      --character "$share/elder.glb" --camera face
+  done
+  sheet wrinkles 2x1 1080 wrinkles_off wrinkles_on
+}
+
+subsurface() {
+  local names=()
+  for method in off gaussians separable burley preintegrated; do
+    size=640x640 still "subsurface_$method" --pose neutral --camera mouth --lights hard \
+      --set "subsurface.method=$method"
+    names+=("subsurface_$method")
+  done
+  sheet subsurface 5x1 1600 "${names[@]}"
+}
+
+# The outline of a forehead whose brows are raised, close by.
+displacement() {
+  "$furrow" bake "$share/elder.glb" --map stretch --size 1024 --out "$work/elder-maps"
+  local names=()
+  for way in off on; do
+    size=1200x1200 still "profile_$way" --pose stretch --camera profile \
+      --character "$share/elder.glb" --rig "$work/elder-maps/elder.rig.json" \
+      --set "displacement.enabled=$way"
+    oiiotool "$work/profile_$way.png" --cut 260x320+170+300 -o "$work/forehead_$way.png"
+    names+=("forehead_$way")
+  done
+  sheet displacement 2x1 1080 "${names[@]}"
+}
+
+# A leg that swings forwards, half aside, and aside; baked and drawn with the rig's four painted
+# directions above, with a mask that slides below.
+sliding_masks() {
+  local names=() rig pose
+  for rig in fixed sliding; do
+    python3 docs/sliding_rig.py "$rig" "$share/default.rig.json" "$work/$rig.rig.json"
+    "$furrow" bake "$share/default.glb" --rig "$work/$rig.rig.json" --map folds --size 1024 \
+      --out "$work/$rig-maps"
+    for pose in forwards between aside; do
+      size=1000x1000 still "${rig}_$pose" --pose "leg_$pose" --camera body \
+        --rig "$work/$rig-maps/$rig.rig.json"
+      oiiotool "$work/${rig}_$pose.png" --cut "300x300+440+360" -o "$work/hip_${rig}_$pose.png"
+      names+=("hip_${rig}_$pose")
+    done
+  done
+  sheet sliding_masks 3x2 1080 "${names[@]}"
+}
+
 makehuman() {
   export FURROW_ASSET_PATH="$shared/makehuman/poseunits"
   "$furrow" character import "$shared/makehuman" --out "$work/makehuman.glb"
@@ -138,6 +196,11 @@ views
 masks
 reference_poses
 cloth_joints
+shading
+wrinkles
+subsurface
+displacement
+sliding_masks
 default_faces default default
 default_faces elder elder
 bodies default

@@ -45,6 +45,11 @@ Settings WithOcclusion(Settings settings, OcclusionMethod method) {
   return settings;
 }
 
+Settings Displaced(Settings settings) {
+  settings.displacement.enabled = true;
+  return settings;
+}
+
 // The skin pipeline without scattering and bloom: wrinkles, specular light and depth passes.
 Settings DepthPasses(int lamps) {
   Settings settings = Skin(SubsurfaceMethod::kOff);
@@ -135,7 +140,8 @@ Experiment MakeMethods(const ExperimentOptions& options) {
       {"preintegrated", 0, Skin(SubsurfaceMethod::kPreintegrated), 0},
       {"off", 0, Skin(SubsurfaceMethod::kOff), 0},
       {"separable, 17 taps + SSAO", 0, WithOcclusion(separable(17), OcclusionMethod::kSsao), 0},
-      {"separable, 17 taps + GTAO", 0, WithOcclusion(separable(17), OcclusionMethod::kGtao), 0}};
+      {"separable, 17 taps + GTAO", 0, WithOcclusion(separable(17), OcclusionMethod::kGtao), 0},
+      {"separable, 17 taps + displacement", 0, Displaced(separable(17)), 0}};
   return experiment;
 }
 

@@ -38,7 +38,7 @@ struct Experiment {
 [[nodiscard]] Experiment MakeTable52(const ExperimentOptions& options);
 // 1, 10 and 100 heads, diffuse and with skin shading.
 [[nodiscard]] Experiment MakeFigure51(const ExperimentOptions& options);
-// One head with skin shading: every subsurface and occlusion method.
+// One head with skin shading: every subsurface and occlusion method, and displacement.
 [[nodiscard]] Experiment MakeMethods(const ExperimentOptions& options);
 
 }  // namespace furrow::bench

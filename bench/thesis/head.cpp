@@ -121,6 +121,8 @@ void AddRig(Character* character) {
     wrinkle::WrinkleMap wrinkle_map;
     wrinkle_map.name = map;
     wrinkle_map.normal = std::string(map) + ".png";
+    wrinkle_map.height = std::string(map) + "_height.png";
+    wrinkle_map.height_mm = map == std::string("stretch") ? 1.2f : 1.8f;
     rig.wrinkle_maps.push_back(wrinkle_map);
   }
   for (int index = 0; index < kRegions; ++index) {
@@ -164,6 +166,14 @@ void AddPictures(Character* character) {
     return
         [=](float u, float v) { return height * std::cos(kTwoPi * (u_cycles * u + v_cycles * v)); };
   };
+  // The same waves in millimetres: the head measures about 0.6 m round.
+  const auto heights = [&](const char* name, float u_cycles, float v_cycles, float height) {
+    return MakePicture(name, kMapSize, [=](float u, float v) {
+      return glm::vec4(0.5f + 0.5f * waves(u_cycles, v_cycles, height)(u, v) / height);
+    });
+  };
+  add_for_rig(heights("stretch_height.png", 40, 4, 0.002f));
+  add_for_rig(heights("squash_height.png", 3, 36, 0.003f));
   add_for_rig(NormalMapOf("stretch.png", kMapSize, waves(40, 4, 0.002f)));
   add_for_rig(NormalMapOf("squash.png", kMapSize, waves(3, 36, 0.003f)));
   Material& skin = character->materials.front();

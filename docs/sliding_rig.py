@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Gives the default rig poses of a leg that swings round and, on demand, hips whose masks slide.
+
+sliding_rig.py fixed|sliding RIG OUT: for docs/make-pictures.sh.
+"""
+import json
+import re
+import sys
+
+POSES = {"leg_forwards": [-65, 0, 0], "leg_between": [-46, 0, 46], "leg_aside": [0, 0, 60]}
+
+
+def hip(side):
+    """A hip's region with a mask that slides, in place of a front and a back one."""
+    return {
+        "name": f"hip_{side}",
+        "combine": "sum",
+        "mask": {"kind": "sliding", "ball": f"hip_{side}"},
+        "feeds": [{
+            "map": "folds",
+            "sources": [{"from": f"hip_{side}.{way}", "gain": 3}
+                        for way in ("front", "back", "left", "right")],
+        }],
+    }
+
+
+def main(kind, source, out):
+    with open(source, encoding="utf-8") as file:
+        rig = json.loads(re.sub(r"(?m)^\s*//.*$", "", file.read()))
+    for name, degrees in POSES.items():
+        rig["reference_poses"].append(
+            {"name": name, "joints": [{"joint": "upper_leg_l", "euler_degrees": degrees}]})
+    if kind == "sliding":
+        rig["regions"] = [r for r in rig["regions"] if not r["name"].startswith("hip_")]
+        rig["regions"] += [hip("l"), hip("r")]
+    with open(out, "w", encoding="utf-8") as file:
+        json.dump(rig, file, indent=1)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
