@@ -39,7 +39,10 @@ void Replay::Use(Branch& branch, std::uint32_t pose) {
 // The last branch is the one in which all poses were used; it is followed through any gap.
 void Replay::Missing(std::uint32_t pose) {
   const std::size_t before = branches_.size();
-  if (2 * before > kMaxBranches) return Use(branches_.back(), pose);
+  if (2 * before > kMaxBranches) {
+    overflowed_ = true;
+    return Use(branches_.back(), pose);
+  }
   for (std::size_t i = 0; i < before; ++i) {
     branches_.push_back(branches_[i]);
     Use(branches_.back(), pose);
@@ -65,7 +68,9 @@ float Replay::Observe(std::uint32_t pose, std::span<const float> values) {
     distances.push_back(Distance(branch.solver.wrinkle_weights(), values));
     nearest = std::min(nearest, distances.back());
   }
+  if (nearest > tolerance_ && overflowed_) unsettled_until_us_ = now + kForgottenUs;
   if (nearest <= tolerance_) {
+    overflowed_ = false;
     std::size_t i = 0;
     std::erase_if(branches_, [&](const Branch&) { return distances[i++] > tolerance_; });
   }

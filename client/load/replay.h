@@ -28,7 +28,8 @@ class Replay {
   // They came and were those of the expected table.
   void Agreed(std::uint32_t pose);
   // They came and were others: how far they are from the nearest that is possible. Nothing where
-  // that cannot be said: after a gap in which the server held and decayed by its own clock.
+  // that cannot be said: after a gap in which the server held and decayed by its own clock, or one
+  // with more possibilities than were followed up, none of which fits.
   [[nodiscard]] std::optional<float> Disputed(std::uint32_t pose, std::span<const float> values);
 
  private:
@@ -50,6 +51,7 @@ class Replay {
   std::vector<Branch> branches_;
   std::int64_t last_seen_us_ = 0;
   std::int64_t unsettled_until_us_ = -1;
+  bool overflowed_ = false;  // not all possibilities are in `branches_`
   wrinkle::LocalPose pose_;
 };
 

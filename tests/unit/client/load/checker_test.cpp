@@ -141,6 +141,18 @@ TEST_F(CheckerTest, AWrongOneIsFoundAmongLostOnes) {
   EXPECT_EQ(tally.wrong, 1u);
 }
 
+// Half of a second's poses lost at random: too many histories to follow, but none is a fault.
+TEST_F(CheckerTest, HeavyLossOnBothWaysIsNotCalledWrong) {
+  const Tally& tally = Run([&](std::size_t i, const auto& slot) {
+    const std::size_t dice = (i * 2654435761u >> 7) % 100;
+    if (dice < 45) return;
+    const auto values = server_.Use(slot);
+    if (dice < 70) Arrive(slot, values);
+  });
+  EXPECT_GT(tally.lost(), 1000u);
+  EXPECT_EQ(tally.wrong, 0u);
+}
+
 // After half a second without poses a server holds and decays by its own clock.
 TEST_F(CheckerTest, AfterALongGapTheSolverDoesNotPretendToKnow) {
   const Tally& tally = Run([&](std::size_t, const auto& slot) {
