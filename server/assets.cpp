@@ -48,6 +48,10 @@ Result<Assets> LoadAssets(const Config& config) {
   }
   auto loaded = character::LoadCharacter(glb, config.rig, poses);
   if (!loaded.ok()) return loaded.status();
+  if (!config.render) {  // its mesh and pictures are a hundred times what weights need
+    assets.rig = std::make_shared<const wrinkle::Rig>(std::move(loaded->rig));
+    return assets;
+  }
   auto shared = std::make_shared<const character::Character>(*std::move(loaded));
   assets.rig = std::shared_ptr<const wrinkle::Rig>(shared, &shared->rig);
   assets.character = std::move(shared);

@@ -26,6 +26,7 @@ void Subscribers::Publish(Subject& subject, std::span<const std::uint8_t> pose, 
                           Time now) {
   const auto watching = by_subject_.find(subject.id);
   if (watching == by_subject_.end()) return;
+  encoded_wish_.reset();
   bool has_looked = false;
   for (Subscription* subscription : watching->second) {
     if (age_us > 0 && std::holds_alternative<PosesWish>(subscription->wish)) continue;
@@ -64,6 +65,7 @@ void Subscribers::PublishOwed(Subscription& subscription, Time now) {
   subscription.owed = false;
   const Subject& subject = *subscription.subject;
   if (!subject.pipeline->has_pose()) return;  // offered anew meanwhile
+  encoded_wish_.reset();
   const std::int64_t age_us = subject.lost ? ToMicroseconds(now - subject.last_pose) : 0;
   Deliver(subscription, {}, age_us, now, &jobs_);
   SubmitJobs(&jobs_);
@@ -83,6 +85,22 @@ void Subscribers::Deliver(Subscription& subscription, std::span<const std::uint8
 void Subscribers::SendWeights(Subscription& subscription, const WeightsWish& wish,
                               std::int64_t age_us) {
   const SubjectPipeline& pipeline = *subscription.subject->pipeline;
+  EncodeWeights(pipeline, wish, age_us);
+  subscription.dropped +=
+      postman_->Forward(*subscription.peer, subscription.uid,
+                        {.stream = subscription.id,
+                         .sequence = pipeline.sequence(),
+                         .capture_time_us = pipeline.capture_time_us()},
+                        std::span(encoded_).subspan(protocol::kEnvelopeBytes),
+                        Counter::kWeightsSent, Counter::kWeightsDroppedSlow, KeptOf(subscription));
+}
+
+// Once for all subscriptions of a subject that ask for the same.
+void Subscribers::EncodeWeights(const SubjectPipeline& pipeline, const WeightsWish& wish,
+                                std::int64_t age_us) {
+  const EncodedWish is_due{wish.names_hash, wish.format, wish.source};
+  if (encoded_wish_ == is_due) return;
+  encoded_wish_ = is_due;
   const std::span<const float> values = wish.source == protocol::WeightSource::kDriverValues
                                             ? pipeline.driver_values()
                                             : pipeline.wrinkle_weights();
@@ -92,12 +110,7 @@ void Subscribers::SendWeights(Subscription& subscription, const WeightsWish& wis
   frame_.values.resize(wish.indices.size());
   std::ranges::transform(wish.indices, frame_.values.begin(),
                          [values](std::uint32_t index) { return values[index]; });
-  subscription.dropped += postman_->Frame(*subscription.peer, subscription.uid,
-                                          {.stream = subscription.id,
-                                           .sequence = pipeline.sequence(),
-                                           .capture_time_us = pipeline.capture_time_us()},
-                                          frame_, Counter::kWeightsSent,
-                                          Counter::kWeightsDroppedSlow, KeptOf(subscription));
+  postman_->Encode(frame_, encoded_);
 }
 
 }  // namespace furrow::server

@@ -60,28 +60,37 @@ int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, st
     return 0;
   }
   const auto is_same = [key](const Waiting& frame) { return frame.key == key; };
-  const auto of_key = static_cast<std::size_t>(std::ranges::count_if(frames_, is_same));
   int dropped = 0;
-  if (of_key > 0 && of_key >= keep) {
+  if (const auto found = of_key_.find(key); found != of_key_.end() && found->second >= keep) {
     const auto oldest = std::ranges::find_if(frames_, is_same);
     if (keep == 1) {
       oldest->bytes.assign(bytes.begin(), bytes.end());  // keeps its place in the line
       return 1;
     }
-    Recycle(frames_, oldest);
+    DropFrame(oldest);
     dropped = 1;
   } else if (frames_.size() >= max_frames_) {
-    Recycle(frames_, frames_.begin());
+    DropFrame(frames_.begin());
     dropped = 1;
   }
+  ++of_key_[key];
   Append(frames_, key, false, bytes);
   return dropped;
+}
+
+void Outbox::DropFrame(Queue::iterator frame) {
+  --of_key_[frame->key];
+  Recycle(frames_, frame);
 }
 
 bool Outbox::Pop(std::vector<std::uint8_t>* out) {
   if (empty()) return false;
   Queue& queue = line_.empty() ? frames_ : line_;
-  if (&queue == &line_) Uncount(line_.front());
+  if (&queue == &line_) {
+    Uncount(line_.front());
+  } else {
+    --of_key_[frames_.front().key];
+  }
   out->swap(queue.front().bytes);
   Recycle(queue, queue.begin());
   return true;
@@ -91,6 +100,7 @@ void Outbox::DropFrames(std::uint64_t key) {
   for (auto item = frames_.begin(); item != frames_.end();) {
     item = item->key == key ? Recycle(frames_, item) : std::next(item);
   }
+  of_key_.erase(key);
   for (auto item = line_.begin(); item != line_.end();) {
     if (item->is_reply || item->key != key) {
       ++item;

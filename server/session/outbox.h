@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <list>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "protocol/limits.h"
@@ -55,6 +56,7 @@ class Outbox {
   // Out of `queue`, its memory for the next one.
   Queue::iterator Recycle(Queue& queue, Queue::iterator item);
   void Uncount(const Waiting& item);
+  void DropFrame(Queue::iterator frame);
 
   std::size_t max_replies_;
   std::size_t max_frames_;
@@ -64,6 +66,7 @@ class Outbox {
   std::size_t line_frame_bytes_ = 0;  // of frames that stand in line
   Queue line_;                        // replies, and frames that are all kept
   Queue frames_;
+  std::unordered_map<std::uint64_t, std::size_t> of_key_;  // in frames_
   Queue spare_;
 };
 

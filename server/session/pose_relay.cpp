@@ -31,8 +31,9 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
 bool Subscribers::BindPoses(Subscription& subscription, PosesWish& wish, Subject& subject) {
   offer_ = *subject.offer;
   offer_.subject = subject.name;
+  postman_->Encode(offer_, encoded_offer_);
   if (subscription.peer->transport == Transport::kUdp &&
-      postman_->SizeOf(offer_) > protocol::kMaxUdpMessageBytes) {
+      encoded_offer_.size() > protocol::kMaxUdpMessageBytes) {
     Refuse(subscription, protocol::ErrorCode::kLimit,
            "the skeleton of '" + subject.name + "' is more than UDP carries: ask over TCP");
     return false;

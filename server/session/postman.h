@@ -39,11 +39,10 @@ class Postman {
     protocol::WriteMessage(header, payload, buffer_);
     return MaySend(peer) ? Post(peer, key, sent, dropped, keep) : 0;
   }
-  // How long the message would be.
+  // A message of ours for nobody in particular yet.
   template <class Message>
-  [[nodiscard]] std::size_t SizeOf(const Message& message) {
-    encoder_.Encode({.session = session_}, message, buffer_);
-    return buffer_.size();
+  void Encode(const Message& message, std::vector<std::uint8_t>& out) {
+    encoder_.Encode({.session = session_}, message, out);
   }
   // An error about the request that `request` heads.
   void Error(Peer& peer, const protocol::Header& request, protocol::ErrorCode code,

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "protocol/messages.h"
@@ -27,6 +28,14 @@ struct StreamKey {
   std::uint64_t session = 0;
   std::uint16_t stream = 0;
   friend auto operator<=>(const StreamKey&, const StreamKey&) = default;
+};
+
+// The session is random; streams of one session are apart.
+struct StreamKeyHash {
+  std::size_t operator()(const StreamKey& key) const {
+    constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15;
+    return (key.session ^ (key.peer * kOdd)) + key.stream * (kOdd >> 7 | 1);
+  }
 };
 
 using SubjectId = std::uint64_t;  // never used twice in a run; 0 is nobody
@@ -82,7 +91,7 @@ class SubjectRegistry {
   void Retire(const StreamKey& key, SubjectId subject);
 
   std::vector<std::unique_ptr<Subject>> subjects_;
-  std::map<StreamKey, Subject*> by_stream_;
+  std::unordered_map<StreamKey, Subject*, StreamKeyHash> by_stream_;
   std::map<std::string, Subject*, std::less<>> by_name_;
   std::map<StreamKey, SubjectId> retired_;
   std::deque<StreamKey> retired_order_;  // oldest first; may name what has been forgotten since

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -88,6 +90,7 @@ class Subscribers {
   void SendPose(Subscription& subscription, std::span<const std::uint8_t> pose);
   void TellDropped(Subscription& subscription, Time now);
   void SendWeights(Subscription& subscription, const WeightsWish& wish, std::int64_t age_us);
+  void EncodeWeights(const SubjectPipeline& pipeline, const WeightsWish& wish, std::int64_t age_us);
   void PublishOwed(Subscription& subscription, Time now);
 
   // viewers.cpp
@@ -115,10 +118,20 @@ class Subscribers {
   std::unordered_map<std::uint64_t, std::unique_ptr<Subscription>> subscriptions_;  // by uid
   std::unordered_map<SubjectId, std::vector<Subscription*>> by_subject_;
   std::uint64_t next_uid_ = 1;
+  // What `encoded_` holds of the subject that is being published.
+  struct EncodedWish {
+    std::uint64_t names_hash = 0;
+    protocol::WeightFormat format = protocol::WeightFormat::kF32;
+    protocol::WeightSource source = protocol::WeightSource::kWrinkleWeights;
+    friend bool operator==(const EncodedWish&, const EncodedWish&) = default;
+  };
+  std::optional<EncodedWish> encoded_wish_;
+  std::vector<std::uint8_t> encoded_;
   protocol::WeightFrame frame_;  // reused
   protocol::ImageFrame image_;
   protocol::PoseFrame pose_;
   protocol::SkeletonOffer offer_;
+  std::vector<std::uint8_t> encoded_offer_;
   bool has_named_large_picture_ = false;  // in the log
   Jobs jobs_;
 };
