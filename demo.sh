@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # From nothing to a face that wrinkles: installs what is missing, builds, starts furrowd with the default
 # character, plays a performance to it over UDP, prints the weights as they arrive, and leaves demo-out/:
-# weights.csv, pictures/, contact-sheet.jpg. Stays up until Ctrl-C.
+# weights.csv, pictures/, contact-sheet.jpg. Then the performance goes on, and the page's address stands
+# last; it stays up until Ctrl-C.
 #
 # usage: ./demo.sh [--once]
 #   --once   end after the performance (also without a terminal)
@@ -14,7 +15,7 @@ once=no
 while [[ $# -gt 0 ]]; do
   case "$1" in
     --once) once=yes; shift ;;
-    -h|--help) sed -n '3,8s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h|--help) sed -n '3,9s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "demo.sh: unknown option '$1' (--help lists them)" >&2; exit 2 ;;
   esac
 done
@@ -60,6 +61,7 @@ done
 cat "$out/furrowd.out"
 tcp=$(sed -n 's/.* tcp=[^ ]*:\([0-9]*\).*/\1/p' "$out/furrowd.out")
 udp=$(sed -n 's/.* udp=[^ ]*:\([0-9]*\).*/\1/p' "$out/furrowd.out")
+http=$(sed -n 's/.* http=[^ ]*:\([0-9]*\).*/\1/p' "$out/furrowd.out")
 
 say "a performance over UDP: weights as they arrive (all of them in demo-out/weights.csv)"
 "$bin/furrow" watch "localhost:$tcp" --subject demo --wait --format csv >"$out/weights.csv" &
@@ -86,7 +88,10 @@ oiiotool "${chosen[@]}" --mosaic:pad=4 4x3 --resize 1280x0 -o "$out/contact-shee
 echo "demo-out/: weights.csv ($rows rows), pictures/ ($pictures), contact-sheet.jpg"
 if [[ $once == yes ]]; then exit 0; fi
 
-say "furrowd stays up (Ctrl-C ends it); in another terminal:"
-echo "  build/release/bin/furrow watch localhost:$tcp"
-echo "  build/release/bin/furrow play $performance --to localhost:$udp --udp --loop"
+say "the performance goes on; watch and direct it in a browser (Ctrl-C ends everything):"
+"$bin/furrow" play "$performance" --to "localhost:$udp" --udp --subject demo --loop &
+watchers+=($!)
+echo "  weights in a terminal:  build/release/bin/furrow watch localhost:$tcp"
+echo
+echo "  http://localhost:$http/"
 wait "$daemon"

@@ -149,13 +149,13 @@ net::awaitable<bool> ServeMjpeg(beast::tcp_stream* stream, PictureStream* pictur
           "Connection: close\r\nContent-Type: multipart/x-mixed-replace; boundary=") +
       kBoundary + "\r\n\r\n";
   bool has_begun = false;
+  pictures->WatchForEnd();
   while (true) {
     PictureStream::Next next = co_await pictures->Wait(std::nullopt);
     if (next.refusal && !has_begun) {
       co_return co_await WriteReply(*stream, request, *std::move(next.refusal));
     }
     if (!next.has_image) co_return false;
-    if (!has_begun) pictures->WatchForEnd();
     const std::string part = (has_begun ? "" : head) + PartHead(pictures->image().bytes.size());
     has_begun = true;
     if (!co_await WriteAll(stream, part, pictures->image().bytes, "\r\n")) co_return false;

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// A WebSocket's messages as they reach the hub: the input is cut into messages (u16 length, bytes),
+// each of which a viewer sends. The hub must take whatever passes for one.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "server/http/web_message.h"
+#include "server/session/hub.h"
+
+namespace furrow::server {
+namespace {
+
+class Sink : public Link {
+ public:
+  void SendReply(std::span<const std::uint8_t>) override {}
+  int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t) override { return 0; }
+  void DropFrames(std::uint64_t) override {}
+};
+
+class Pictures : public PictureSource {
+ public:
+  void Submit(RenderJob job) override { last = std::move(job); }
+  Result<render::Camera> Preset(std::string_view) const override { return render::Camera(); }
+  RenderJob last;
+};
+
+void Feed(std::span<const std::uint8_t> bytes) {
+  Metrics metrics;
+  Pictures pictures;
+  Sink link;
+  Hub::Parts parts;
+  parts.rig = std::make_shared<const wrinkle::Rig>();
+  parts.pictures = &pictures;
+  parts.metrics = &metrics;
+  parts.make_token = [] { return 1; };
+  Hub hub(std::move(parts));
+  Time now = FromSeconds(1);
+  const PeerId peer = hub.AddPeer(Transport::kWeb, "fuzz", &link, now);
+  while (bytes.size() >= 2) {
+    const std::size_t size =
+        std::min<std::size_t>(bytes.size() - 2, bytes[0] | std::size_t{bytes[1]} << 8);
+    const auto message = bytes.subspan(2, size);
+    bytes = bytes.subspan(2 + size);
+    if (IsWebMessage(message)) hub.OnMessage(peer, message, now);
+    now += FromSeconds(0.02);
+    hub.Tick(now);
+    hub.OnPicture({.bytes = {1}, .tickets = std::move(pictures.last.tickets)});
+    pictures.last = {};
+  }
+}
+
+}  // namespace
+}  // namespace furrow::server
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  furrow::server::Feed({data, size});
+  return 0;
+}
