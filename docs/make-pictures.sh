@@ -167,8 +167,8 @@ sliding_masks() {
       --out "$work/$rig-maps"
     for pose in forwards between aside; do
       size=1000x1000 still "${rig}_$pose" --pose "leg_$pose" --camera body \
-        --rig "$work/$rig-maps/$rig.rig.json"
-      oiiotool "$work/${rig}_$pose.png" --cut "300x300+440+360" -o "$work/hip_${rig}_$pose.png"
+        --rig "$work/$rig-maps/default.rig.json"
+      oiiotool "$work/${rig}_$pose.png" --cut 360x360+420+330 -o "$work/hip_${rig}_$pose.png"
       names+=("hip_${rig}_$pose")
     done
   done
