@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common_math.glsl"
+#include "common_scatter.glsl"
+#include "common_texel.glsl"
 
 // Burley's normalised diffusion by one disc of taps (render/subsurface_kernel.h: BurleyDisc), turned
 // by a different angle at every pixel.
 
-const float FAR_AWAY = 60000.0;
 const int MAX_TAPS = 64;
 
 layout(binding = 0) uniform sampler2D u_irradiance;  // a: metres behind the focus
@@ -16,14 +17,10 @@ layout(location = 66) uniform vec3 u_weight[MAX_TAPS];
 
 layout(location = 0) out vec4 f_irradiance;
 
-vec4 lightAt(ivec2 pixel) {
-  return texelFetch(u_irradiance, clamp(pixel, ivec2(0), textureSize(u_irradiance, 0) - 1), 0);
-}
-
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   vec4 centre = texelFetch(u_irradiance, pixel, 0);
-  bool skin = centre.a < 0.5 * FAR_AWAY;
+  bool skin = isSkin(centre);
   float scale = u_geometry.z * u_geometry.x / (u_geometry.x + centre.a);
   // From the picture's middle, so that its format changes nothing.
   vec2 place = vec2(pixel - textureSize(u_irradiance, 0) / 2);
@@ -36,7 +33,7 @@ void main() {
   int taps = skin ? u_num_taps : 0;
   for (int i = 1; i < taps; ++i) {
     ivec2 offset = ivec2(floor(scale * (turn * u_offset[i]) + 0.5));
-    vec4 light = lightAt(pixel + offset);
+    vec4 light = texelInside(u_irradiance, pixel + offset);
     float apart = (light.a - centre.a) * u_geometry.y;
     vec3 w = u_weight[i] * max(1.0 - apart * apart, 0.0);
     sum += w * light.rgb;

@@ -57,6 +57,21 @@ void sampleMasks(out vec4 masks[MASK_LAYERS]) {
   }
 }
 
+// What every fragment begins with: its base colour, and all masks; ends where its texture is cut out.
+vec4 beginSurface(out vec4 masks[MASK_LAYERS], out vec4 dynamicMasks[MAP_SLOTS]) {
+  vec4 base = baseColour();
+#if ALPHA_TEST
+  if (base.a < u_alpha_cutoff) discard;
+#endif
+  sampleMasks(masks);
+#if WRINKLE_DYNAMIC
+  dynamicMasks = v_dynamic_masks;
+#else
+  for (int slot = 0; slot < MAP_SLOTS; ++slot) dynamicMasks[slot] = vec4(0.0);
+#endif
+  return base;
+}
+
 // Unit, model space. `variance`: of the slopes within the pixel.
 vec3 surfaceNormal(vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS], out float variance) {
 #if HAS_BASE_NORMAL

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common_scatter.glsl"
 
 // The scene's samples made one a pixel, so that edges stay smooth and nothing of skin mixes with
 // what is not: light on skin is the mean of the samples on skin alone, and its albedo, the mean of
@@ -18,8 +19,6 @@ layout(location = 2) out vec4 f_albedo;
 layout(location = 3) out vec4 f_normal;
 layout(location = 4) out float f_depth;
 
-const float FAR_AWAY = 60000.0;
-
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   vec4 irradiance = vec4(0.0);
@@ -34,7 +33,7 @@ void main() {
     vec4 colour = texelFetch(u_albedo, pixel, i);
     radiance += texelFetch(u_radiance, pixel, i);
     albedo += colour;
-    if (light.a < 0.5 * FAR_AWAY) {
+    if (isSkin(light)) {
       irradiance += light;
       skin += 1.0;
     }

@@ -33,17 +33,9 @@ float edge() {
 #endif
 
 void main() {
-  vec4 base = baseColour();
-#if ALPHA_TEST
-  if (base.a < u_alpha_cutoff) discard;
-#endif
   vec4 masks[MASK_LAYERS];
-  sampleMasks(masks);
-#if WRINKLE_DYNAMIC
-  vec4 dynamicMasks[MAP_SLOTS] = v_dynamic_masks;
-#else
   vec4 dynamicMasks[MAP_SLOTS];
-#endif
+  vec4 base = beginSurface(masks, dynamicMasks);
 
 #if VIEW == VIEW_MASK_TEXTURE
   f_colour = vec4(maskColour(masks), 1.0);
@@ -68,7 +60,7 @@ void main() {
 #if VIEW == VIEW_WEIGHTS && (WRINKLE_TEXTURE || WRINKLE_DYNAMIC)
   vec3 colour = wrinkleColour(masks, dynamicMasks);
   float strength = saturate(max(colour.r, max(colour.g, colour.b)));
-  float grey = dot(radiance, vec3(0.2126, 0.7152, 0.0722));
+  float grey = luminance(radiance);
   radiance = mix(radiance, colour * (0.25 + 1.5 * grey), strength);
 #elif VIEW == VIEW_WIREFRAME
   radiance = mix(radiance * 0.35, vec3(0.75, 0.85, 1.0), edge());

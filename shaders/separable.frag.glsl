@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common_math.glsl"
+#include "common_scatter.glsl"
+#include "common_texel.glsl"
 
 // One of the two passes of the separable kernel (after Jimenez 2015): along x, then along y.
 //
-// - Offsets and weights come from render/diffusion_kernel.h: exact integrals of the profile over
+// - Offsets and weights come from render/pixel_kernel.h: exact integrals of the profile over
 //   what lies nearest to each tap, for pixels at the distance of the focus; offsets are scaled to
 //   the pixel's own distance. Pixels are square, so both axes take the same steps.
 // - A tap on no skin, or further away in depth than light travels, is left out, and the others
 //   make up for it: nothing leaks, and even light stays even.
-
-const float FAR_AWAY = 60000.0;
 
 layout(binding = 0) uniform sampler2D u_irradiance;  // a: metres behind the focus
 layout(binding = 1) uniform sampler2D u_unscattered;
@@ -23,19 +23,14 @@ layout(location = 4) uniform vec4 u_kernel[33];       // rgb: weight, w: offset 
 
 layout(location = 0) out vec4 f_irradiance;
 
-// The picture goes on beyond its border as it ends there.
-vec4 lightAt(ivec2 pixel) {
-  return texelFetch(u_irradiance, clamp(pixel, ivec2(0), textureSize(u_irradiance, 0) - 1), 0);
-}
-
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   vec4 centre = texelFetch(u_irradiance, pixel, 0);
-  bool skin = centre.a < 0.5 * FAR_AWAY;
+  bool skin = isSkin(centre);
   float metres = u_geometry.x + centre.a;
   // Depth per pixel along the axis, from the side that has less of an edge.
-  float before = lightAt(pixel - u_axis).a;
-  float after = lightAt(pixel + u_axis).a;
+  float before = texelInside(u_irradiance, pixel - u_axis).a;
+  float after = texelInside(u_irradiance, pixel + u_axis).a;
   float slope = min(abs(centre.a - before), abs(after - centre.a));
   // 4.7: s = alpha / (d + beta |grad d|), the gradient over a kernel's reach of pixels.
   float reach = u_kernel[u_num_taps].w;
@@ -48,7 +43,7 @@ void main() {
     vec4 tap = u_kernel[i];
     ivec2 offset = u_axis * int(tap.w * scale + 0.5);
     for (int side = 0; side < 2; ++side) {
-      vec4 light = lightAt(side == 0 ? pixel + offset : pixel - offset);
+      vec4 light = texelInside(u_irradiance, side == 0 ? pixel + offset : pixel - offset);
       float apart = (light.a - centre.a) * u_geometry.y;
       vec3 w = tap.rgb * max(1.0 - apart * apart, 0.0);
       sum += w * light.rgb;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common_scatter.glsl"
 #include "common_shadow.glsl"
 #include "common_specular.glsl"
 #include "common_diffusion.glsl"
@@ -30,9 +31,6 @@ layout(location = 2) out vec4 f_albedo;      // rgb: albedo^(1 - mix) of skin; a
                                              // f_irradiance that comes from the sky
 layout(location = 3) out vec4 f_normal;      // xyz: 0.5 n + 0.5, model space
 layout(location = 4) out float f_depth;      // metres along the camera's axis
-
-const float FAR_AWAY = 60000.0;
-const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 
 struct Lit {
   vec3 direct;    // diffuse, of lamps
@@ -103,8 +101,6 @@ Lit lightSurface(vec3 normal, vec3 geometric, vec3 toCamera, float m, float curv
   return lit;
 }
 
-float luminance(vec3 colour) { return dot(colour, LUMINANCE); }
-
 float share(vec3 part, vec3 whole) {
   return saturate(luminance(part) / max(luminance(whole), 1e-6));
 }
@@ -129,17 +125,9 @@ float curvatureOf(vec3 normal) {
 }
 
 void main() {
-  vec4 base = baseColour();
-#if ALPHA_TEST
-  if (base.a < u_alpha_cutoff) discard;
-#endif
   vec4 masks[MASK_LAYERS];
-  sampleMasks(masks);
-#if WRINKLE_DYNAMIC
-  vec4 dynamicMasks[MAP_SLOTS] = v_dynamic_masks;
-#else
   vec4 dynamicMasks[MAP_SLOTS];
-#endif
+  vec4 base = beginSurface(masks, dynamicMasks);
   vec3 geometric = normalizeOrZero(gl_FrontFacing ? v_normal : -v_normal);
   float variance;
   vec3 normal = surfaceNormal(masks, dynamicMasks, variance);

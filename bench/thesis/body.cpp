@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
 #include "bench/thesis/subjects.h"
+#include "tests/unit/render/character_parts.h"
 #include "tests/unit/render/test_character.h"
 
 namespace furrow::bench {
@@ -75,21 +75,8 @@ Vertex TubeVertex(const Tube& tube, int first_joint, float around, float along) 
 }
 
 void AddTube(const Tube& tube, int first_joint, Mesh* mesh) {
-  const auto first = static_cast<std::uint32_t>(mesh->vertices.size());
-  for (std::uint32_t row = 0; row <= tube.rows; ++row) {
-    for (std::uint32_t column = 0; column <= tube.columns; ++column) {
-      mesh->vertices.push_back(TubeVertex(
-          tube, first_joint, static_cast<float>(column) / static_cast<float>(tube.columns),
-          static_cast<float>(row) / static_cast<float>(tube.rows)));
-    }
-  }
-  for (std::uint32_t row = 0; row < tube.rows; ++row) {
-    for (std::uint32_t column = 0; column < tube.columns; ++column) {
-      const std::uint32_t a = first + row * (tube.columns + 1) + column;
-      const std::uint32_t b = a + tube.columns + 1;
-      mesh->indices.insert(mesh->indices.end(), {a, b, a + 1, a + 1, b, b + 1});
-    }
-  }
+  const auto vertex = [&](float u, float v) { return TubeVertex(tube, first_joint, u, v); };
+  render::test::AddGrid(tube.columns, tube.rows, vertex, mesh);
 }
 
 // The root, then each tube's chain; skinned by position in this list.
@@ -157,12 +144,7 @@ Character MakeBody(int hinges, int balls) {
   Character character;
   character.name = "body";
   const std::vector<wrinkle::JointDesc> joints = Joints();
-  auto skeleton = wrinkle::Skeleton::Create(joints);
-  if (!skeleton.ok()) std::abort();
-  character.skeleton = std::move(*skeleton);
-  for (const glm::mat4& rest : character.skeleton.rest_model()) {
-    character.inverse_bind_matrices.push_back(glm::inverse(rest));
-  }
+  render::test::SetSkeleton(joints, &character);
   Material cloth;
   cloth.name = "cloth";
   cloth.kind = Material::Kind::kCloth;

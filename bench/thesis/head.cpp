@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
 #include "bench/thesis/subjects.h"
+#include "tests/unit/render/character_parts.h"
 #include "tests/unit/render/test_character.h"
 
 namespace furrow::bench {
@@ -70,20 +70,8 @@ Vertex HeadVertex(float u, float v, const glm::vec3& offset) {
 }
 
 void AddHead(const glm::vec3& offset, Mesh* mesh) {
-  const auto first = static_cast<std::uint32_t>(mesh->vertices.size());
-  for (std::uint32_t row = 0; row <= kRows; ++row) {
-    for (std::uint32_t column = 0; column <= kColumns; ++column) {
-      mesh->vertices.push_back(HeadVertex(static_cast<float>(column) / kColumns,
-                                          static_cast<float>(row) / kRows, offset));
-    }
-  }
-  for (std::uint32_t row = 0; row < kRows; ++row) {
-    for (std::uint32_t column = 0; column < kColumns; ++column) {
-      const std::uint32_t a = first + row * (kColumns + 1) + column;
-      const std::uint32_t b = a + kColumns + 1;
-      mesh->indices.insert(mesh->indices.end(), {a, b, a + 1, a + 1, b, b + 1});
-    }
-  }
+  const auto vertex = [&](float u, float v) { return HeadVertex(u, v, offset); };
+  render::test::AddGrid(kColumns, kRows, vertex, mesh);
 }
 
 struct Grid {
@@ -209,12 +197,7 @@ Character MakeHeads(int heads) {
     joint.rest.translation = OnHead(centre.x, centre.y);
     joints.push_back(joint);
   }
-  auto skeleton = wrinkle::Skeleton::Create(joints);
-  if (!skeleton.ok()) std::abort();
-  character.skeleton = std::move(*skeleton);
-  for (const glm::mat4& rest : character.skeleton.rest_model()) {
-    character.inverse_bind_matrices.push_back(glm::inverse(rest));
-  }
+  render::test::SetSkeleton(joints, &character);
   Material skin;
   skin.name = "skin";
   skin.kind = Material::Kind::kSkin;

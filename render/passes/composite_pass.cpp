@@ -32,36 +32,24 @@ std::string Define(std::string_view name, int value) {
 FrameGraph::Handle CompositePass::Add(FrameGraph* graph, FrameGraph::Handle shown,
                                       const TextureDesc& desc, const Settings& settings,
                                       FrameGraph::Handle bloom) {
-  struct Data {
-    FrameGraph::Handle shown;
-    FrameGraph::Handle bloom;
-    FrameGraph::Handle picture;
-  };
   const bool blooms = bloom.version >= 0;
-  const std::vector<std::string> defines = {
-      Define("SAMPLES", desc.samples), Define("SHOW", static_cast<int>(ShowOf(settings.view))),
-      Define("TONE_MAP", static_cast<int>(settings.tone_map)), Define("BLOOM", blooms)};
-  const Data data = graph->AddPass<Data>(
-      "composite",
-      [&](FrameGraph::Builder& builder, Data& pass) {
-        pass = {shown, bloom, {}};
-        builder.Read(shown);
-        if (blooms) builder.Read(bloom);
-        pass.picture = builder.Write(
-            builder.Create("picture", {desc.width, desc.height, PixelFormat::kRgba8, 1}));
-      },
-      [this, defines, exposure = settings.exposure, bloom_strength = settings.bloom.strength,
-       blooms](const FrameGraph::Resources& resources, const Data& pass) {
-        Status status = fullscreen_->Begin("composite.frag.glsl", defines, resources,
-                                           {pass.picture}, {pass.shown, pass.bloom});
-        if (!status.ok()) return status;
+  return fullscreen_->AddSimplePass(
+      graph,
+      {.name = "composite",
+       .fragment = "composite.frag.glsl",
+       .defines = {Define("SAMPLES", desc.samples),
+                   Define("SHOW", static_cast<int>(ShowOf(settings.view))),
+                   Define("TONE_MAP", static_cast<int>(settings.tone_map)),
+                   Define("BLOOM", blooms)},
+       .reads = {shown, bloom},
+       .writes = {{"picture", {desc.width, desc.height, PixelFormat::kRgba8, 1}}}},
+      [this, exposure = settings.exposure, strength = settings.bloom.strength, blooms,
+       height = desc.height] {
         glUniform1f(kExposure, exposure);
-        glUniform1i(kHeight, resources.Desc(pass.picture).height);
-        if (blooms) glUniform1f(kBloom, bloom_strength);
+        glUniform1i(kHeight, height);
+        if (blooms) glUniform1f(kBloom, strength);
         fullscreen_->Draw();
-        return status;
       });
-  return data.picture;
 }
 
 }  // namespace furrow::render

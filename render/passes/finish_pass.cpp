@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <glm/vec4.hpp>
+
 namespace furrow::render {
 namespace {
 
@@ -16,70 +18,57 @@ TextureDesc BloomDesc(const TextureDesc& desc) {
           PixelFormat::kRgba16F, 1};
 }
 
-struct InOut {
-  Handle in;
-  Handle out;
-};
-
-// A pass that reads one texture and writes one; `set_uniforms` runs before it draws.
-template <class SetUniforms>
-Handle AddSimplePass(FrameGraph* graph, const char* name, const char* target, Handle in,
-                     const TextureDesc& desc, const char* fragment,
-                     const std::vector<std::string>& defines, Fullscreen* fullscreen,
-                     SetUniforms set_uniforms) {
-  return graph
-      ->AddPass<InOut>(
-          name,
-          [&](FrameGraph::Builder& builder, InOut& pass) {
-            pass.in = in;
-            builder.Read(in);
-            pass.out = builder.Write(builder.Create(target, desc));
-          },
-          [=](const FrameGraph::Resources& resources, const InOut& pass) {
-            Status status = fullscreen->Begin(fragment, defines, resources, {pass.out}, {pass.in});
-            if (!status.ok()) return status;
-            set_uniforms();
-            fullscreen->Draw();
-            return status;
-          })
-      .out;
-}
-
 }  // namespace
 
 Handle AddBloomPass(FrameGraph* graph, Handle colour, const TextureDesc& desc,
                     const Settings& settings, Fullscreen* fullscreen) {
   if (settings.bloom.strength <= 0.0f) return {};
   const TextureDesc small = BloomDesc(desc);
-  Handle light = AddSimplePass(
-      graph, "bloom bright", "bloom bright", colour, small, "bloom.frag.glsl", {"BRIGHT 1"},
-      fullscreen, [threshold = settings.bloom.threshold, exposure = settings.exposure] {
-        glUniform4f(kLook, threshold, exposure, 0.0f, 0.0f);
-      });
+  const auto add = [&](const char* name, const char* target, Handle in, bool bright,
+                       const glm::vec4& look) {
+    return fullscreen->AddSimplePass(graph,
+                                     {.name = name,
+                                      .fragment = "bloom.frag.glsl",
+                                      .defines = {bright ? "BRIGHT 1" : "BRIGHT 0"},
+                                      .reads = {in},
+                                      .writes = {{target, small}}},
+                                     [fullscreen, look] {
+                                       glUniform4fv(kLook, 1, &look.x);
+                                       fullscreen->Draw();
+                                     });
+  };
+  const Handle bright = add("bloom bright", "bloom bright", colour, true,
+                            {settings.bloom.threshold, settings.exposure, 0.0f, 0.0f});
   const float sigma = std::max(settings.bloom.radius * static_cast<float>(small.height), 0.3f);
-  for (int axis = 0; axis < 2; ++axis) {
-    light = AddSimplePass(graph, axis == 0 ? "bloom x" : "bloom y", axis == 0 ? "bloom x" : "bloom",
-                          light, small, "bloom.frag.glsl", {"BRIGHT 0"}, fullscreen, [axis, sigma] {
-                            glUniform4f(kLook, axis == 0 ? 1.0f : 0.0f, axis == 0 ? 0.0f : 1.0f,
-                                        sigma, 0.0f);
-                          });
-  }
-  return light;
+  const Handle across = add("bloom x", "bloom x", bright, false, {1.0f, 0.0f, sigma, 0.0f});
+  return add("bloom y", "bloom", across, false, {0.0f, 1.0f, sigma, 0.0f});
 }
 
 Handle AddShowPass(FrameGraph* graph, Handle target, const ShowTarget& show,
                    const TextureDesc& desc, Fullscreen* fullscreen) {
-  return AddSimplePass(
-      graph, "show", "shown", target, {desc.width, desc.height, PixelFormat::kRgba16F, 1},
-      "show.frag.glsl", {"SHOWN " + std::to_string(static_cast<int>(show.kind))}, fullscreen,
-      [show] { glUniform4f(kLook, show.scale, show.near_metres, show.far_metres, 0.0f); });
+  return fullscreen->AddSimplePass(
+      graph,
+      {.name = "show",
+       .fragment = "show.frag.glsl",
+       .defines = {"SHOWN " + std::to_string(static_cast<int>(show.kind))},
+       .reads = {target},
+       .writes = {{"shown", {desc.width, desc.height, PixelFormat::kRgba16F, 1}}}},
+      [fullscreen, show] {
+        glUniform4f(kLook, show.scale, show.near_metres, show.far_metres, 0.0f);
+        fullscreen->Draw();
+      });
 }
 
 Handle AddFxaaPass(FrameGraph* graph, Handle picture, const TextureDesc& desc,
                    Fullscreen* fullscreen) {
-  return AddSimplePass(graph, "fxaa", "smooth picture", picture,
-                       {desc.width, desc.height, PixelFormat::kRgba8, 1}, "fxaa.frag.glsl", {},
-                       fullscreen, [] {});
+  return fullscreen->AddSimplePass(
+      graph,
+      {.name = "fxaa",
+       .fragment = "fxaa.frag.glsl",
+       .defines = {},
+       .reads = {picture},
+       .writes = {{"smooth picture", {desc.width, desc.height, PixelFormat::kRgba8, 1}}}},
+      [fullscreen] { fullscreen->Draw(); });
 }
 
 Handle AddStripPass(FrameGraph* graph, Handle picture, const std::vector<Handle>& tiles,

@@ -39,6 +39,8 @@ class OcclusionPass {
                                            FrameGraph::Handle depth,
                                            const OcclusionSettings& settings,
                                            const OcclusionGeometry& geometry);
+  // Of a pass that runs: where the character can be; all is open elsewhere.
+  void DrawBounds(const OcclusionSettings& settings, const OcclusionGeometry& geometry);
 
   Fullscreen* fullscreen_;
 };

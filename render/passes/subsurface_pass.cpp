@@ -50,36 +50,22 @@ Handle SubsurfacePass::Add(FrameGraph* graph, Handle irradiance, const Subsurfac
 Handle SubsurfacePass::AddAxis(FrameGraph* graph, const AxisPass& what, Handle in,
                                Handle unscattered, const std::vector<glm::vec4>& kernel,
                                const SubsurfaceSettings& settings, const SkinGeometry& geometry) {
-  struct Data {
-    Handle in;
-    Handle unscattered;
-    Handle out;
-  };
-  return graph
-      ->AddPass<Data>(
-          what.name,
-          [&](FrameGraph::Builder& builder, Data& pass) {
-            pass = {in, unscattered, {}};
-            builder.Read(in);
-            builder.Read(unscattered);
-            pass.out = builder.Write(builder.Create(what.target, LightDesc(geometry)));
-          },
-          [this, what, kernel, settings, geometry](const FrameGraph::Resources& resources,
-                                                   const Data& pass) {
-            Status status = fullscreen_->Begin("separable.frag.glsl", {}, resources, {pass.out},
-                                               {pass.in, pass.unscattered});
-            if (!status.ok()) return status;
-            glUniform2i(kAxis, what.axis == 0 ? 1 : 0, what.axis);
-            glUniform1i(kNumTaps, static_cast<GLint>(kernel.size()) - 1);
-            glUniform3f(kGeometry, geometry.focus_distance, 1000.0f / settings.depth_range_mm,
-                        settings.gradient);
-            glUniform1f(kStrength, what.strength);
-            glUniform4fv(kKernel, static_cast<GLsizei>(kernel.size()), &kernel[0].x);
-            fullscreen_->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
-            fullscreen_->Draw(geometry.bounds);
-            return status;
-          })
-      .out;
+  return fullscreen_->AddSimplePass(
+      graph,
+      {.name = what.name,
+       .fragment = "separable.frag.glsl",
+       .defines = {},
+       .reads = {in, unscattered},
+       .writes = {{what.target, LightDesc(geometry)}}},
+      [this, what, kernel, settings, geometry] {
+        glUniform2i(kAxis, what.axis == 0 ? 1 : 0, what.axis);
+        glUniform1i(kNumTaps, static_cast<GLint>(kernel.size()) - 1);
+        glUniform3f(kGeometry, geometry.focus_distance, 1000.0f / settings.depth_range_mm,
+                    settings.gradient);
+        glUniform1f(kStrength, what.strength);
+        glUniform4fv(kKernel, static_cast<GLsizei>(kernel.size()), &kernel[0].x);
+        DrawSkin(geometry);
+      });
 }
 
 Handle SubsurfacePass::AddSeparable(FrameGraph* graph, Handle irradiance,
@@ -117,70 +103,49 @@ Handle SubsurfacePass::AddGaussians(FrameGraph* graph, Handle irradiance,
     }
     blurs[i] = light;
   }
-  struct Data {
-    Handle unscattered;
-    std::array<Handle, kNumSkinGaussians> blurs;
-    Handle out;
-  };
-  return graph
-      ->AddPass<Data>(
-          "gaussian sum",
-          [&](FrameGraph::Builder& builder, Data& pass) {
-            pass = {irradiance, blurs, {}};
-            builder.Read(irradiance);
-            for (const Handle blur : blurs) builder.Read(blur);
-            pass.out = builder.Write(builder.Create("scattered", LightDesc(geometry)));
-          },
-          [this, settings, geometry](const FrameGraph::Resources& resources, const Data& pass) {
-            const auto& b = pass.blurs;
-            Status status =
-                fullscreen_->Begin("gaussian_sum.frag.glsl", {}, resources, {pass.out},
-                                   {pass.unscattered, b[0], b[1], b[2], b[3], b[4], b[5]});
-            if (!status.ok()) return status;
-            glUniform1f(kSumStrength, settings.strength);
-            fullscreen_->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
-            fullscreen_->Draw(geometry.bounds);
-            return status;
-          })
-      .out;
+  return fullscreen_->AddSimplePass(
+      graph,
+      {.name = "gaussian sum",
+       .fragment = "gaussian_sum.frag.glsl",
+       .defines = {},
+       .reads = {irradiance, blurs[0], blurs[1], blurs[2], blurs[3], blurs[4], blurs[5]},
+       .writes = {{"scattered", LightDesc(geometry)}}},
+      [this, settings, geometry] {
+        glUniform1f(kSumStrength, settings.strength);
+        DrawSkin(geometry);
+      });
 }
 
 Handle SubsurfacePass::AddBurley(FrameGraph* graph, Handle irradiance,
                                  const SubsurfaceSettings& settings, const SkinGeometry& geometry) {
   static const glm::vec3 distances = FitBurley(HumanSkin());
-  struct Data {
-    Handle in;
-    Handle out;
-  };
-  return graph
-      ->AddPass<Data>(
-          "burley",
-          [&](FrameGraph::Builder& builder, Data& pass) {
-            pass = {irradiance, {}};
-            builder.Read(irradiance);
-            pass.out = builder.Write(builder.Create("scattered", LightDesc(geometry)));
-          },
-          [this, settings, geometry](const FrameGraph::Resources& resources, const Data& pass) {
-            Status status =
-                fullscreen_->Begin("burley.frag.glsl", {}, resources, {pass.out}, {pass.in});
-            if (!status.ok()) return status;
-            std::vector<glm::vec2> offsets;
-            std::vector<glm::vec3> weights;
-            for (const DiscTap& tap : BurleyDisc(distances, settings.samples)) {
-              offsets.push_back(tap.offset);
-              weights.push_back(tap.weight);
-            }
-            const auto count = static_cast<GLsizei>(offsets.size());
-            glUniform1i(kBurleyNumTaps, count);
-            glUniform4f(kBurleyGeometry, geometry.focus_distance, 1000.0f / settings.depth_range_mm,
-                        settings.width * geometry.pixels_per_mm, settings.strength);
-            glUniform2fv(kBurleyOffset, count, &offsets[0].x);
-            glUniform3fv(kBurleyWeight, count, &weights[0].x);
-            fullscreen_->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
-            fullscreen_->Draw(geometry.bounds);
-            return status;
-          })
-      .out;
+  return fullscreen_->AddSimplePass(
+      graph,
+      {.name = "burley",
+       .fragment = "burley.frag.glsl",
+       .defines = {},
+       .reads = {irradiance},
+       .writes = {{"scattered", LightDesc(geometry)}}},
+      [this, settings, geometry] {
+        std::vector<glm::vec2> offsets;
+        std::vector<glm::vec3> weights;
+        for (const DiscTap& tap : BurleyDisc(distances, settings.samples)) {
+          offsets.push_back(tap.offset);
+          weights.push_back(tap.weight);
+        }
+        const auto count = static_cast<GLsizei>(offsets.size());
+        glUniform1i(kBurleyNumTaps, count);
+        glUniform4f(kBurleyGeometry, geometry.focus_distance, 1000.0f / settings.depth_range_mm,
+                    settings.width * geometry.pixels_per_mm, settings.strength);
+        glUniform2fv(kBurleyOffset, count, &offsets[0].x);
+        glUniform3fv(kBurleyWeight, count, &weights[0].x);
+        DrawSkin(geometry);
+      });
+}
+
+void SubsurfacePass::DrawSkin(const SkinGeometry& geometry) {
+  fullscreen_->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
+  fullscreen_->Draw(geometry.bounds);
 }
 
 }  // namespace furrow::render

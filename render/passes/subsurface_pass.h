@@ -53,6 +53,7 @@ class SubsurfacePass {
   [[nodiscard]] FrameGraph::Handle AddBurley(FrameGraph* graph, FrameGraph::Handle irradiance,
                                              const SubsurfaceSettings& settings,
                                              const SkinGeometry& geometry);
+  void DrawSkin(const SkinGeometry& geometry);  // of a pass that runs; no skin elsewhere
 
   Fullscreen* fullscreen_;
 };

@@ -9,6 +9,7 @@
 #include "render/renderer.h"
 #include "tests/unit/render/reference/ray_cast.h"
 #include "tests/unit/render/reference/scenes.h"
+#include "tests/unit/render/test_character.h"
 
 namespace furrow::render {
 namespace {
@@ -92,8 +93,7 @@ class OcclusionReference : public testing::TestWithParam<Case> {};
 TEST_P(OcclusionReference, SphereOnPlane) {
   const SphereOnPlane& sphere = GetParam().scene;
   const character::Character scene = test::MakeSphereOnPlane(sphere, kPlaneSize);
-  auto renderer = Renderer::Create(scene);
-  ASSERT_TRUE(renderer.ok()) << renderer.status().ToString();
+  const std::unique_ptr<Renderer> renderer = test::Expect(Renderer::Create(scene));
   FrameRequest request = test::SceneRequest(scene, AboveThePlane(), kSize, kSize);
   request.settings.view = View::kOcclusion;
   request.settings.occlusion.method = GetParam().method;
@@ -101,7 +101,7 @@ TEST_P(OcclusionReference, SphereOnPlane) {
   request.settings.occlusion.samples = 32;
   for (const float radius_mm : {40.0f, 80.0f}) {
     request.settings.occlusion.radius_mm = radius_mm;
-    const Result<Image> image = (*renderer)->Render(request);
+    const Result<Image> image = renderer->Render(request);
     ASSERT_TRUE(image.ok()) << image.status().ToString();
     const OcclusionError error = ErrorOf(*image, sphere, 1e-3 * radius_mm);
     std::printf("%s, radius %.0f mm: mean error %.4f, worst %.3f, in the open %.4f (%d pixels)\n",
@@ -117,16 +117,15 @@ TEST_P(OcclusionReference, SphereOnPlane) {
 // Twice the pixels show the same: the radius is in millimetres.
 TEST_P(OcclusionReference, TheResolutionChangesNothing) {
   const character::Character scene = test::MakeSphereOnPlane(GetParam().scene, kPlaneSize);
-  auto renderer = Renderer::Create(scene);
-  ASSERT_TRUE(renderer.ok()) << renderer.status().ToString();
+  const std::unique_ptr<Renderer> renderer = test::Expect(Renderer::Create(scene));
   FrameRequest request = test::SceneRequest(scene, AboveThePlane(), kSize, kSize);
   request.settings.view = View::kOcclusion;
   request.settings.occlusion.method = GetParam().method;
   request.settings.occlusion.radius_mm = 50.0f;
   request.settings.occlusion.samples = 32;
-  const Result<Image> small = (*renderer)->Render(request);
+  const Result<Image> small = renderer->Render(request);
   request.width = request.height = 2 * kSize;
-  const Result<Image> large = (*renderer)->Render(request);
+  const Result<Image> large = renderer->Render(request);
   ASSERT_TRUE(small.ok() && large.ok());
   double sums[2] = {0.0, 0.0};
   for (const std::uint8_t value : small->rgb) sums[0] += value / 255.0;

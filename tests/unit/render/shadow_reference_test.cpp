@@ -56,19 +56,13 @@ class ShadowReference : public testing::TestWithParam<LightPreset> {};
 
 TEST_P(ShadowReference, SphereOnPlane) {
   const character::Character scene = test::MakeSphereOnPlane(kScene, kPlaneSize);
-  auto renderer = Renderer::Create(scene);
-  ASSERT_TRUE(renderer.ok()) << renderer.status().ToString();
   const Camera camera = AboveThePlane();
   FrameRequest request = test::SceneRequest(scene, camera, kSize, kSize);
   request.settings.view = View::kShadow;
   request.settings.lights.preset = GetParam();
   request.settings.shadow.softness_mm = 0.5f;
   request.settings.shadow.resolution = 2048;
-  test::TargetReader reader;
-  (*renderer)->SetObserver(&reader);
-  ASSERT_TRUE((*renderer)->Render(request).ok());
-  (*renderer)->SetObserver(nullptr);
-  const FloatPicture& visible = reader.Target("scene radiance");
+  const FloatPicture visible = test::DrawTarget(scene, request, "scene radiance");
   const Lighting lighting = MakeLighting(request.settings.lights, {.focus = camera.target});
   for (int light = 0; light < kNumLights; ++light) {
     const LightSource& lamp = lighting.lights[static_cast<std::size_t>(light)];

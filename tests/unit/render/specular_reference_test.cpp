@@ -55,8 +55,6 @@ TEST_P(SpecularReference, Sphere) {
   character::Character ball = test::MakeSphereOnPlane(kScene, 1e-4f);
   ball.meshes.erase(ball.meshes.begin());
   for (character::Material& material : ball.materials) material.roughness = GetParam().roughness;
-  auto renderer = Renderer::Create(ball);
-  ASSERT_TRUE(renderer.ok()) << renderer.status().ToString();
   Camera camera;
   camera.position = {0.0f, 0.0f, 0.5f};
   camera.target = {0.0f, 0.0f, 0.0f};
@@ -71,10 +69,7 @@ TEST_P(SpecularReference, Sphere) {
   settings.specular.mode = GetParam().mode;
   settings.specular.second_lobe = static_cast<float>(kSecondLobe);
   settings.specular.widen = false;
-  test::TargetReader reader;
-  (*renderer)->SetObserver(&reader);
-  ASSERT_TRUE((*renderer)->Render(request).ok());
-  (*renderer)->SetObserver(nullptr);
+  const FloatPicture drawn = test::DrawTarget(ball, request, "scene radiance");
   const Lighting lighting = MakeLighting(settings.lights, {});
   const double m = static_cast<double>(GetParam().roughness) * GetParam().roughness;
   FloatPicture exact(kSize, kSize);
@@ -89,7 +84,7 @@ TEST_P(SpecularReference, Sphere) {
       brightest = std::max(brightest, light.g);
     }
   }
-  const test::PictureError error = Compare(reader.Target("scene radiance"), exact, 0);
+  const test::PictureError error = Compare(drawn, exact, 0);
   std::printf("specular, m %.3f: brightest %.4f, RMSE %.5f, worst %.5f (%zu pixels)\n", m,
               brightest, error.rmse.g, error.worst.g, error.texels);
   EXPECT_GT(error.texels, 8000u);

@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
+#include "character_parts.h"
+
 namespace furrow::render::test {
 namespace {
 
@@ -23,12 +25,6 @@ wrinkle::JointDesc Joint(const std::string& name, int parent, const glm::vec3& t
   joint.parent = parent;
   joint.rest.translation = translation;
   return joint;
-}
-
-void Finish(Character* character) {
-  for (const glm::mat4& rest : character->skeleton.rest_model()) {
-    character->inverse_bind_matrices.push_back(glm::inverse(rest));
-  }
 }
 
 int AddPicture(Character* character, character::Picture picture) {
@@ -95,24 +91,10 @@ Vertex EggVertex(float u, float v) {
 }
 
 Mesh MakeEgg() {
-  constexpr std::uint32_t kColumns = 48;
-  constexpr std::uint32_t kRows = 32;
   Mesh mesh;
   mesh.name = "egg";
   mesh.material = 0;
-  for (std::uint32_t row = 0; row <= kRows; ++row) {
-    for (std::uint32_t column = 0; column <= kColumns; ++column) {
-      mesh.vertices.push_back(
-          EggVertex(static_cast<float>(column) / kColumns, static_cast<float>(row) / kRows));
-    }
-  }
-  for (std::uint32_t row = 0; row < kRows; ++row) {
-    for (std::uint32_t column = 0; column < kColumns; ++column) {
-      const std::uint32_t a = row * (kColumns + 1) + column;
-      const std::uint32_t b = a + kColumns + 1;
-      mesh.indices.insert(mesh.indices.end(), {a, b, a + 1, a + 1, b, b + 1});
-    }
-  }
+  AddGrid(48, 32, EggVertex, &mesh);
   return mesh;
 }
 
@@ -193,10 +175,9 @@ character::Picture NormalMapOf(const std::string& name, int size,
 Character MakeHead() {
   Character character;
   character.name = "egg";
-  character.skeleton = Expect(wrinkle::Skeleton::Create({Joint("root", -1, {0.0f, 1.4f, 0.0f}),
-                                                         Joint("head", 0, {0.0f, 0.2f, 0.0f}),
-                                                         Joint("brow", 1, {0.0f, 0.04f, 0.05f})}));
-  Finish(&character);
+  SetSkeleton({Joint("root", -1, {0.0f, 1.4f, 0.0f}), Joint("head", 0, {0.0f, 0.2f, 0.0f}),
+               Joint("brow", 1, {0.0f, 0.04f, 0.05f})},
+              &character);
   Material skin;
   skin.name = "skin";
   skin.kind = Material::Kind::kSkin;
@@ -212,8 +193,8 @@ Character MakePlane(int map_size, const std::function<float(float, float)>& base
                     const std::vector<std::function<float(float, float)>>& wrinkles) {
   Character character;
   character.name = "plane";
-  character.skeleton = Expect(wrinkle::Skeleton::Create({Joint("root", -1, glm::vec3(0.0f))}));
-  Finish(&character);
+  const wrinkle::JointDesc root = Joint("root", -1, glm::vec3(0.0f));
+  SetSkeleton({root}, &character);
   Mesh mesh;
   mesh.material = 0;
   for (const auto& [x, y] : {std::pair(-1.0f, -1.0f), {1.0f, -1.0f}, {1.0f, 1.0f}, {-1.0f, 1.0f}}) {

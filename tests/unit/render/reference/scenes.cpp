@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/trigonometric.hpp>
+
+#include "tests/unit/render/character_parts.h"
 
 namespace furrow::render::test {
 namespace {
@@ -24,10 +25,7 @@ Character OneJoint(const std::string& name) {
   character.name = name;
   wrinkle::JointDesc root;
   root.name = "root";
-  Result<wrinkle::Skeleton> skeleton = wrinkle::Skeleton::Create({root});
-  if (!skeleton.ok()) std::abort();
-  character.skeleton = std::move(*skeleton);
-  character.inverse_bind_matrices.emplace_back(1.0f);
+  SetSkeleton({root}, &character);
   return character;
 }
 
@@ -58,33 +56,21 @@ Mesh Quad(int material, const glm::vec3& corner, const glm::vec3& across, const 
 }
 
 Mesh Ball(int material, const glm::vec3& centre, float radius) {
-  constexpr std::uint32_t kColumns = 192;
-  constexpr std::uint32_t kRows = 96;
   Mesh mesh;
   mesh.name = "ball";
   mesh.material = material;
-  for (std::uint32_t row = 0; row <= kRows; ++row) {
-    for (std::uint32_t column = 0; column <= kColumns; ++column) {
-      const float u = static_cast<float>(column) / kColumns;
-      const float v = static_cast<float>(row) / kRows;
-      const float longitude = glm::two_pi<float>() * u;
-      const float polar = glm::pi<float>() * v;
-      Vertex vertex;
-      vertex.normal = {std::sin(polar) * std::sin(longitude), std::cos(polar),
-                       std::sin(polar) * std::cos(longitude)};
-      vertex.position = centre + radius * vertex.normal;
-      vertex.tangent = {std::cos(longitude), 0.0f, -std::sin(longitude), 1.0f};
-      vertex.uv = {u, v};
-      mesh.vertices.push_back(vertex);
-    }
-  }
-  for (std::uint32_t row = 0; row < kRows; ++row) {
-    for (std::uint32_t column = 0; column < kColumns; ++column) {
-      const std::uint32_t a = row * (kColumns + 1) + column;
-      const std::uint32_t b = a + kColumns + 1;
-      mesh.indices.insert(mesh.indices.end(), {a, b, a + 1, a + 1, b, b + 1});
-    }
-  }
+  const auto vertex_at = [&](float u, float v) {
+    const float longitude = glm::two_pi<float>() * u;
+    const float polar = glm::pi<float>() * v;
+    Vertex vertex;
+    vertex.normal = {std::sin(polar) * std::sin(longitude), std::cos(polar),
+                     std::sin(polar) * std::cos(longitude)};
+    vertex.position = centre + radius * vertex.normal;
+    vertex.tangent = {std::cos(longitude), 0.0f, -std::sin(longitude), 1.0f};
+    vertex.uv = {u, v};
+    return vertex;
+  };
+  AddGrid(192, 96, vertex_at, &mesh);
   return mesh;
 }
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "render/gl_objects.h"
+#include "tests/unit/render/test_character.h"
 
 namespace furrow::render::test {
 
@@ -34,6 +35,16 @@ const FloatPicture& TargetReader::Target(const std::string& name) const {
   std::string names;
   for (const auto& [known, picture] : targets_) names += " '" + known + "'";
   throw std::out_of_range("no target '" + name + "', only" + names);
+}
+
+FloatPicture DrawTarget(const character::Character& character, const FrameRequest& request,
+                        const std::string& target) {
+  const std::unique_ptr<Renderer> renderer = Expect(Renderer::Create(character));
+  TargetReader reader;
+  renderer->SetObserver(&reader);
+  (void)Expect(renderer->Render(request));
+  renderer->SetObserver(nullptr);
+  return reader.Target(target);
 }
 
 }  // namespace furrow::render::test

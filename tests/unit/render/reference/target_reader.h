@@ -5,6 +5,7 @@
 #include <string>
 
 #include "render/frame_graph.h"
+#include "render/renderer.h"
 #include "tests/unit/render/reference/float_picture.h"
 
 namespace furrow::render::test {
@@ -24,5 +25,9 @@ class TargetReader final : public FrameGraphObserver {
  private:
   std::map<std::string, FloatPicture> targets_;
 };
+
+// What one frame of a character leaves in one target. Aborts where there is no OpenGL.
+[[nodiscard]] FloatPicture DrawTarget(const character::Character& character,
+                                      const FrameRequest& request, const std::string& target);
 
 }  // namespace furrow::render::test
