@@ -53,6 +53,18 @@ float F0Of(Material::Kind kind) {
   return 0.04f;
 }
 
+// Counted from outside: hair over cloth over skin over what the head holds.
+int LayerOf(Material::Kind kind) {
+  switch (kind) {
+    case Material::Kind::kHair: return 0;
+    case Material::Kind::kCloth: return 1;
+    case Material::Kind::kSkin: return 2;
+    case Material::Kind::kEye:
+    case Material::Kind::kOther: return 3;
+  }
+  return 3;
+}
+
 // Base colour below which a surface counts as hollow. Eyes have black pupils and glossy ones.
 float CavityAlbedoOf(Material::Kind kind) { return kind == Material::Kind::kSkin ? 0.02f : 0.0f; }
 
@@ -208,10 +220,18 @@ Status GpuCharacter::AddMaterials(const Character& character) {
   return {};
 }
 
+// What lies over other surfaces comes first, so that what it covers is not shaded.
 Status GpuCharacter::AddMeshes(const Character& character) {
+  std::vector<const character::Mesh*> order;
   for (const character::Mesh& source : character.meshes) {
     if (Status status = CheckMesh(source, character); !status.ok()) return status;
-    meshes_.push_back(MakeGpuMesh(source, character.inverse_bind_matrices));
+    order.push_back(&source);
+  }
+  std::ranges::stable_sort(order, {}, [&](const character::Mesh* mesh) {
+    return LayerOf(character.materials[static_cast<std::size_t>(mesh->material)].kind);
+  });
+  for (const character::Mesh* source : order) {
+    meshes_.push_back(MakeGpuMesh(*source, character.inverse_bind_matrices));
   }
   return {};
 }

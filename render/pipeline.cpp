@@ -42,7 +42,8 @@ Pipeline::Pipeline(const character::Character& character, SceneDraw* scene, Shad
       subsurface_pass_(&fullscreen_),
       composite_pass_(&fullscreen_) {}
 
-Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, const Size& size) {
+Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, const Size& size,
+                     Handle* shadows) {
   Settings settings = request.settings;
   settings.view = view;
   settings.anti_aliasing =
@@ -51,7 +52,7 @@ Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, 
   Handle shown;
   Handle bloom;
   if (NeedsSkinPipeline(settings)) {
-    shown = AddSkin(graph, request, settings, desc);
+    shown = AddSkin(graph, request, settings, desc, shadows);
     desc.samples = 1;
     if (view == View::kFinal || view == View::kBloom) {
       bloom = AddBloomPass(graph, shown, desc, settings, &fullscreen_);
@@ -70,13 +71,12 @@ Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, 
 }
 
 Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const Settings& settings,
-                         const TextureDesc& desc) {
-  Handle shadows;
+                         const TextureDesc& desc, Handle* shadows) {
   if (settings.shadow.filter != ShadowFilter::kOff && settings.shadow.lamps > 0) {
-    shadows = shadow_pass_.Add(graph, settings);
+    if (shadows->version < 0) *shadows = shadow_pass_.Add(graph, settings);
   }
   const SkinTargets scene = scene_pass_.AddSkin(
-      graph, settings, {desc.width, desc.height, desc.format, desc.samples}, shadows);
+      graph, settings, {desc.width, desc.height, desc.format, desc.samples}, *shadows);
   const SkinTargets surface = AddResolvePass(graph, scene, desc, &fullscreen_);
   const CameraFrame& camera = scene_->setup().camera;
   const float slope = camera.PixelsPerSlope(desc.height);
@@ -86,8 +86,8 @@ Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const S
                  scene_->displacement_reach())
         .Grown(1, desc.width, desc.height);
   };
-  const OcclusionGeometry view{desc.width, desc.height, glm::mat3(camera.view), slope,
-                               project(bounds_)};
+  const OcclusionGeometry view{desc.width, desc.height,      glm::mat3(camera.view),
+                               slope,      project(bounds_), SkinBackground(settings)};
   const OcclusionPass::Output output =
       occlusion_pass_.Add(graph, surface, settings.occlusion, view);
   const SkinGeometry skin{.width = desc.width,
@@ -100,7 +100,9 @@ Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const S
   switch (settings.view) {
     case View::kScattered: return scattered;
     case View::kFinal:
-    case View::kBloom: return AddCombinePass(graph, scattered, output.surface, desc, &fullscreen_);
+    case View::kBloom:
+      return AddCombinePass(graph, scattered, output.surface, desc, view.bounds, view.background,
+                            &fullscreen_);
     case View::kIrradiance: return output.surface.irradiance;
     case View::kDepth:
     case View::kOcclusion: return AddShown(graph, output, surface.depth, settings.view, desc);

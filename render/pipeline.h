@@ -29,13 +29,15 @@ class Pipeline {
     int height = 0;
   };
   // After SceneDraw::Update() with the same request. Returns a picture of `view`, 8 bits, rows from
-  // the top.
+  // the top. All views of one graph share its shadow maps.
+  // `shadows`: none before the first view of a graph; the others take the maps that it has drawn.
   [[nodiscard]] FrameGraph::Handle Add(FrameGraph* graph, const FrameRequest& request, View view,
-                                       const Size& size);
+                                       const Size& size, FrameGraph::Handle* shadows);
 
  private:
   [[nodiscard]] FrameGraph::Handle AddSkin(FrameGraph* graph, const FrameRequest& request,
-                                           const Settings& settings, const TextureDesc& desc);
+                                           const Settings& settings, const TextureDesc& desc,
+                                           FrameGraph::Handle* shadows);
   [[nodiscard]] FrameGraph::Handle AddShown(FrameGraph* graph, const OcclusionPass::Output& output,
                                             FrameGraph::Handle depth, View view,
                                             const TextureDesc& desc);

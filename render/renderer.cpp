@@ -86,13 +86,15 @@ class GlRenderer final : public Renderer {
 
   Status BuildFrame(const FrameRequest& request, FrameGraph* graph) {
     if (Status status = scene_.Update(request); !status.ok()) return status;
-    FrameGraph::Handle picture =
-        pipeline_.Add(graph, request, request.settings.view, {request.width, request.height});
+    FrameGraph::Handle shadows;
+    FrameGraph::Handle picture = pipeline_.Add(graph, request, request.settings.view,
+                                               {request.width, request.height}, &shadows);
     std::vector<FrameGraph::Handle> tiles;
     for (const View view : request.settings.strip.views) {
       tiles.push_back(pipeline_.Add(
           graph, request, view,
-          {std::max(request.width / kTilesAcross, 1), std::max(request.height / kTilesAcross, 1)}));
+          {std::max(request.width / kTilesAcross, 1), std::max(request.height / kTilesAcross, 1)},
+          &shadows));
     }
     picture = AddStripPass(graph, picture, tiles, &device_);
     AddReadBackPass(graph, picture, request.token, &device_, &read_back_);

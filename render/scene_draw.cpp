@@ -57,6 +57,14 @@ gl::Sampler MakeShadowSampler(bool compare) {
   return sampler;
 }
 
+// For the holes of a base colour in a shadow: one texel says enough of them.
+gl::Sampler MakeCutOutSampler() {
+  gl::Sampler sampler = gl::MakeSampler();
+  glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+  glSamplerParameteri(sampler.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  return sampler;
+}
+
 // Programs are compiled for a power of two of maps, so that a face that begins to move does not
 // wait for one after the other; the rest of the list is zeros, which add nothing.
 int PaddedMaps(std::size_t num_maps, int map_slots) {
@@ -87,7 +95,8 @@ SceneDraw::SceneDraw(const wrinkle::Skeleton& skeleton,
       tables_(tables),
       shaders_(shaders),
       shadow_compare_(MakeShadowSampler(true)),
-      shadow_depth_(MakeShadowSampler(false)) {
+      shadow_depth_(MakeShadowSampler(false)),
+      cut_out_(MakeCutOutSampler()) {
   for (gl::Buffer* buffer : {&frame_, &joints_, &influences_}) *buffer = gl::MakeBuffer();
   for (int group = 0; group < kNumWrinkleGroups; ++group) {
     wrinkle_tables_[group] = gl::MakeBuffer();
@@ -218,6 +227,7 @@ void SceneDraw::DrawTriangles(const SceneShader& shader, std::size_t index) {
 Status SceneDraw::DrawShadow(const Settings& settings, int light) {
   BindBuffers();
   BindMasks();
+  glBindSampler(kBaseColourUnit, cut_out_.name());
   for (std::size_t index = 0; index < gpu_->meshes().size(); ++index) {
     if (!casts_[light][index]) continue;
     const GpuMesh& mesh = gpu_->meshes()[index];
@@ -236,6 +246,7 @@ Status SceneDraw::DrawShadow(const Settings& settings, int light) {
     SetCulling(false);
     DrawTriangles(shader, index);
   }
+  glBindSampler(kBaseColourUnit, 0);
   return {};
 }
 
@@ -283,6 +294,7 @@ SceneShader SceneDraw::SurfaceShader(const GpuMaterial& material) const {
   shader.base_normal_map = material.derivatives != 0;
   shader.roughness_map = material.roughness != 0;
   shader.alpha_test = material.alpha_test;
+  shader.mask_bits = tables_->mask_bits(material.group);
   shader.mask_layers = gpu_->layout().num_mask_layers;
   shader.map_slots = MapSlots(tables_->num_maps());
   return shader;
@@ -308,6 +320,7 @@ SceneShader SceneDraw::ShaderFor(const GpuMaterial& material, const Settings& se
   shader.widen = settings.specular.widen;
   shader.wrinkle_looks = gpu_->wrinkle_looks() != 0;
   shader.thickness_map = shader.translucency && material.thickness != 0;
+  shader.beckmann_table = settings.specular.table;
   shader.gems = settings.specular.mode == SpecularMode::kGems;
   shader.conserve_energy = settings.specular.conserve_energy;
   return shader;

@@ -64,6 +64,7 @@ class SceneDraw {
   LookupTables lookup_tables_;
   gl::Sampler shadow_compare_;
   gl::Sampler shadow_depth_;
+  gl::Sampler cut_out_;
   gl::Buffer frame_;
   gl::Buffer joints_;
   gl::Buffer wrinkle_tables_[kNumWrinkleGroups];

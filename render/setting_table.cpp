@@ -129,6 +129,8 @@ std::vector<SettingEntry> SkinEntries() {
        SwitchField{FURROW_MEMBER(specular.conserve_energy)}},
       {"specular.widen", "", "m grows where a pixel covers many slopes of the normal maps",
        SwitchField{FURROW_MEMBER(specular.widen)}},
+      {"specular.table", "", "Beckmann's term is looked up (GPU Gems 3), not worked out",
+       SwitchField{FURROW_MEMBER(specular.table)}},
       {"wrinkle_maps.blood_flow", "", "Strength of the maps' colour",
        NumberField{FURROW_MEMBER(wrinkle_maps.blood_flow), 0.0f, 4.0f}},
       {"wrinkle_maps.cavity", "", "Strength of the maps' cavity",

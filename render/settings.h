@@ -101,6 +101,7 @@ struct SpecularSettings {
   float second_lobe = 0.3f;     // share of the lobe with m / 2, [0, 1]
   bool conserve_energy = true;  // diffuse gets what the specular leaves (rho_dt)
   bool widen = true;            // m grows by the second moments of the normal maps
+  bool table = false;           // Beckmann's term is looked up and not worked out (GPU Gems 3)
 };
 
 struct WrinkleSettings {

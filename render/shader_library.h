@@ -2,6 +2,7 @@
 #pragma once
 
 #include <compare>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -26,7 +27,8 @@ struct SceneShader {
   bool alpha_test = false;
   int active_maps = 0;  // wrinkle maps at work on this surface
   int mask_layers = 1;
-  int map_slots = 1;  // vec4s of dynamic masks: a quarter of the rig's maps, rounded up
+  std::uint32_t mask_bits = ~0u;  // the layers that hold masks of this surface's regions
+  int map_slots = 1;              // vec4s of dynamic masks: a quarter of the rig's maps, rounded up
   // Of the skin pipeline alone.
   character::Material::Kind material = character::Material::Kind::kSkin;
   ShadowFilter shadow_filter = ShadowFilter::kOff;
@@ -35,6 +37,7 @@ struct SceneShader {
   bool translucency = false;
   bool preintegrated = false;
   bool gems = false;
+  bool beckmann_table = false;
   bool widen = false;
   bool wrinkle_looks = false;
   bool thickness_map = false;

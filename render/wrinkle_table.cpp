@@ -172,6 +172,7 @@ void WrinkleTables::DescribePalettes(const wrinkle::Rig& rig) {
       for (int group = 0; group < kNumWrinkleGroups && map >= 0 && place >= 0; ++group) {
         if (maps_[static_cast<std::size_t>(map)].in_group[group]) {
           palettes_[group][static_cast<std::size_t>(place)] = colour;
+          mask_bits_[group] |= 1u << std::min(place / 4, 31);
         }
       }
     }

@@ -90,6 +90,10 @@ class WrinkleTables {
   [[nodiscard]] std::span<const glm::vec4> mask_palette(WrinkleGroup group) const {
     return palettes_[static_cast<int>(group)];
   }
+  // A bit a mask layer: 1 where it holds a region that is drawn on the group's surfaces.
+  [[nodiscard]] std::uint32_t mask_bits(WrinkleGroup group) const {
+    return mask_bits_[static_cast<int>(group)];
+  }
 
  private:
   struct MapInfo {
@@ -124,6 +128,7 @@ class WrinkleTables {
   std::vector<MapInfo> maps_;
   std::vector<WeightSlot> slots_;
   std::vector<glm::vec4> palettes_[kNumWrinkleGroups + 1];
+  std::uint32_t mask_bits_[kNumWrinkleGroups + 1] = {};
   NameMap weight_map_;
   NameMap value_map_;
   std::vector<float> weights_;  // of binding_

@@ -4,10 +4,13 @@
 // Kelemen and Szirmay-Kalos' specular term (2001) as GPU Gems 3, chapter 14, made it for skin.
 //
 // BECKMANN_SIZE, ALBEDO_SIZE  texels of the tables' sides
+// BECKMANN_TABLE  1: PH is looked up; 0: it is worked out, where look-ups cost more than arithmetic
 // SPECULAR_GEMS  1: as printed, without the 1/pi that makes it a distribution
 // Both tables are render/beckmann.h's; their texels' centres lie on the ends of both ranges.
 
+#if BECKMANN_TABLE
 layout(binding = 7) uniform sampler2D u_beckmann_table;  // 0.5 PH^0.1; x: N.H, y: m
+#endif
 layout(binding = 8) uniform sampler2D u_albedo_table;    // f0 r + (1 - f0) g; x: cosine, y: m
 
 const float SMALLEST_M = 0.03125;  // below it the Beckmann table is full
@@ -16,11 +19,18 @@ vec2 tablePlace(float cosine, float m, float size) {
   return (vec2(cosine, m) * (size - 1.0) + 0.5) / size;
 }
 
+// PH = exp(-tan^2 / m^2) / (m^2 cos^4).
 float beckmann(float cosine, float m) {
+#if BECKMANN_TABLE
   float t = textureLod(u_beckmann_table, tablePlace(cosine, m, BECKMANN_SIZE), 0.0).r;
   float t2 = 4.0 * t * t;
   float t4 = t2 * t2;
   return t4 * t4 * t2;
+#else
+  float cos2 = max(cosine * cosine, 1e-4);  // 0/0 there; the limit is 0
+  float m2 = m * m;
+  return exp((cos2 - 1.0) / (cos2 * m2)) / (m2 * cos2 * cos2);
+#endif
 }
 
 float schlick(float cosine, float f0) { return f0 + (1.0 - f0) * pow5(1.0 - cosine); }

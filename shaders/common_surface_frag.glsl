@@ -49,10 +49,9 @@ float roughness() {
 
 void sampleMasks(out vec4 masks[MASK_LAYERS]) {
   for (int layer = 0; layer < MASK_LAYERS; ++layer) {
-#if WRINKLE_TEXTURE || VIEW == VIEW_MASK_TEXTURE
-    masks[layer] = texture(u_masks, vec3(v_uv, float(layer)));
-#else
     masks[layer] = vec4(0.0);
+#if WRINKLE_TEXTURE || VIEW == VIEW_MASK_TEXTURE
+    if ((MASK_BITS >> min(layer, 31) & 1) != 0) masks[layer] = texture(u_masks, vec3(v_uv, float(layer)));
 #endif
   }
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common_texel.glsl"
 
 // Fast approximate anti-aliasing (Lottes 2009, the short form): where luma jumps, the picture is
 // averaged along the edge.
@@ -14,25 +15,33 @@ vec3 at(vec2 pixel) {
   return textureLod(u_picture, clamp(pixel, vec2(0.5), size - 0.5) / size, 0.0).rgb;
 }
 
-void main() {
+// The picture along the edge that the four corners' lumas show.
+vec3 smoothed(float nw, float ne, float sw, float se, float low, float high) {
   vec2 pixel = gl_FragCoord.xy;
-  vec3 centre = at(pixel);
-  float m = luma(centre);
-  float nw = luma(at(pixel + vec2(-1.0, -1.0)));
-  float ne = luma(at(pixel + vec2(1.0, -1.0)));
-  float sw = luma(at(pixel + vec2(-1.0, 1.0)));
-  float se = luma(at(pixel + vec2(1.0, 1.0)));
-  float low = min(m, min(min(nw, ne), min(sw, se)));
-  float high = max(m, max(max(nw, ne), max(sw, se)));
-  if (high - low < max(0.03, 0.1 * high)) {
-    f_colour = vec4(centre, 1.0);
-    return;
-  }
   vec2 along = vec2((sw + se) - (nw + ne), (nw + sw) - (ne + se));
   float damp = max((nw + ne + sw + se) * 0.03125, 1.0 / 128.0);
   along = clamp(along / (min(abs(along.x), abs(along.y)) + damp), vec2(-8.0), vec2(8.0));
   vec3 narrow = 0.5 * (at(pixel - along / 6.0) + at(pixel + along / 6.0));
   vec3 wide = 0.5 * narrow + 0.25 * (at(pixel - 0.5 * along) + at(pixel + 0.5 * along));
   float l = luma(wide);
-  f_colour = vec4(l < low || l > high ? narrow : wide, 1.0);
+  return l < low || l > high ? narrow : wide;
+}
+
+float lumaBeside(ivec2 offset) {
+  return luma(texelInside(u_picture, ivec2(gl_FragCoord.xy) + offset).rgb);
+}
+
+void main() {
+  vec3 centre = texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0).rgb;
+  float m = luma(centre);
+  float nw = lumaBeside(ivec2(-1, -1));
+  float ne = lumaBeside(ivec2(1, -1));
+  float sw = lumaBeside(ivec2(-1, 1));
+  float se = lumaBeside(ivec2(1, 1));
+  float low = min(m, min(min(nw, ne), min(sw, se)));
+  float high = max(m, max(max(nw, ne), max(sw, se)));
+  f_colour = vec4(centre, 1.0);
+  // A loop and no branch: groups of pixels without an edge leave it at once.
+  int edges = high - low < max(0.03, 0.1 * high) ? 0 : 1;
+  for (int i = 0; i < edges; ++i) f_colour.rgb = smoothed(nw, ne, sw, se, low, high);
 }

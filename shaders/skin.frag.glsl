@@ -39,6 +39,15 @@ struct Lit {
   vec3 visible;   // of the lamps, one a channel: for the view `shadow`
 };
 
+struct Facet {
+  vec3 normal;      // unit; of the shading, with wrinkles
+  vec3 geometric;   // unit
+  vec3 toCamera;    // unit
+  float m;          // Beckmann's
+  float curvature;  // 1 / mm
+  float thickness;  // metres of flesh that light meets at least
+};
+
 // Charlie (Estevez and Kulla 2017) with Neubelt's visibility, times pi: the fuzz of cloth.
 float sheen(vec3 normal, vec3 toLight, vec3 toCamera) {
   const float inverse = 1.0 / 0.45;
@@ -60,44 +69,53 @@ float thickness() {
 #endif
 }
 
-Lit lightSurface(vec3 normal, vec3 geometric, vec3 toCamera, float m, float curvature) {
-  Lit lit = Lit(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-  for (int i = 0; i < NUM_LIGHTS; ++i) {
-    Arrival arrival = arrivalOf(u_lights[i], v_position);
-    float cosine = dot(normal, arrival.toLight);
-    float seen = 1.0;
-    if (i < SHADOW_LAMPS) {
-      seen = shadowOf(i, v_position, geometric, arrival.toLight, gl_FragCoord.xy);
-    }
-    lit.visible[i] = seen * saturate(sign(cosine));
-    float facing = saturate(cosine);
-    vec3 irradiance = arrival.radiance * (facing * seen);
-    float leaves = 1.0;
+// What lamp `i` adds.
+void addLamp(int i, Facet facet, inout Lit lit) {
+  Arrival arrival = arrivalOf(u_lights[i], v_position);
+  float cosine = dot(facet.normal, arrival.toLight);
+  float seen = 1.0;
+  if (i < SHADOW_LAMPS) {
+    seen = shadowOf(i, v_position, facet.geometric, arrival.toLight, gl_FragCoord.xy);
+  }
+  lit.visible[i] = seen * saturate(sign(cosine));
+  float facing = saturate(cosine);
+  vec3 irradiance = arrival.radiance * (facing * seen);
+  float leaves = 1.0;
 #if CONSERVE
-    leaves = 1.0 - saturate(u_gloss.x *
-                            specularAlbedo(facing, m, u_gloss.z, u_f0));
+  leaves = 1.0 - saturate(u_gloss.x * specularAlbedo(facing, facet.m, u_gloss.z, u_f0));
 #endif
 #if PREINTEGRATED
-    vec2 place = (vec2(cosine * 0.5 + 0.5, curvature / MAX_CURVATURE) * (RING_SIZE - 1.0) + 0.5) /
-                 RING_SIZE;
-    vec3 ring = textureLod(u_ring_table, place, 0.0).rgb;
-    lit.direct += arrival.radiance * ring * (seen * leaves);
+  vec2 cell = vec2(cosine * 0.5 + 0.5, facet.curvature / MAX_CURVATURE);
+  vec2 place = (cell * (RING_SIZE - 1.0) + 0.5) / RING_SIZE;
+  vec3 ring = textureLod(u_ring_table, place, 0.0).rgb;
+  lit.direct += arrival.radiance * ring * (seen * leaves);
 #else
-    lit.direct += irradiance * leaves;
+  lit.direct += irradiance * leaves;
 #endif
-    lit.specular += irradiance * (u_gloss.x * kelemen(normal, arrival.toLight, toCamera, m,
-                                                         u_gloss.z, u_f0));
+  lit.specular += irradiance * (u_gloss.x * kelemen(facet.normal, arrival.toLight, facet.toCamera,
+                                                    facet.m, u_gloss.z, u_f0));
 #if MATERIAL == MATERIAL_CLOTH
-    lit.specular += irradiance * (u_sheen * sheen(normal, arrival.toLight, toCamera));
+  lit.specular += irradiance * (u_sheen * sheen(facet.normal, arrival.toLight, facet.toCamera));
 #endif
 #if TRANSLUCENCY
-    if (i >= SHADOW_LAMPS) continue;  // no map to measure in
-    float behind = saturate(0.3 - dot(geometric, arrival.toLight));
-    float metres = max(thicknessOf(i, v_position, geometric, u_translucency.z), thickness());
+  if (i >= SHADOW_LAMPS) return;  // no map to measure in
+  float behind = saturate(0.3 - dot(facet.geometric, arrival.toLight));
+  int sides = behind > 0.0 ? 1 : 0;  // a loop: groups of pixels that face the lamp leave it
+  for (int side = 0; side < sides; ++side) {
+    float metres = thicknessOf(i, v_position, facet.geometric, u_translucency.z);
     lit.through += arrival.radiance * (u_translucency.x * behind) *
-                   transmittance(1000.0 * u_translucency.y * metres);
-#endif
+                   transmittance(1000.0 * u_translucency.y * max(metres, facet.thickness));
   }
+#endif
+}
+
+// Lamp by lamp and not in a loop: a loop around loops is not unrolled, and what is looked up by its
+// counter is looked up for every pixel by itself.
+Lit lightSurface(Facet facet) {
+  Lit lit = Lit(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+  addLamp(0, facet, lit);
+  addLamp(1, facet, lit);
+  addLamp(2, facet, lit);
   return lit;
 }
 
@@ -142,7 +160,8 @@ void main() {
   m = clamp(m, SMALLEST_M, 1.0);
   float nv = saturate(dot(normal, toCamera));
 
-  Lit lit = lightSurface(normal, geometric, toCamera, m, curvatureOf(geometric));
+  Lit lit = lightSurface(
+      Facet(normal, geometric, toCamera, m, curvatureOf(geometric), thickness()));
   float reflects = saturate(u_gloss.x * specularAlbedo(nv, m, u_gloss.z, u_f0));
   float leaves = CONSERVE == 1 ? 1.0 - reflects : 1.0;
   float open = cavity(base.rgb);
@@ -165,8 +184,9 @@ void main() {
 
 #if MATERIAL == MATERIAL_SKIN && VIEW == VIEW_FINAL
   vec3 albedo = max(base.rgb, vec3(1e-4));
-  f_irradiance = vec4(diffuse * pow(albedo, vec3(u_gloss.w)), metres - u_camera_forward.w);
-  f_albedo = vec4(pow(albedo, vec3(1.0 - u_gloss.w)), skyShare);
+  vec3 before = pow(albedo, vec3(u_gloss.w));
+  f_irradiance = vec4(diffuse * before, metres - u_camera_forward.w);
+  f_albedo = vec4(albedo / before, skyShare);
   f_radiance = vec4(specular + skySpecular, share(skySpecular, specular + skySpecular));
 #else
   vec3 colour = base.rgb * diffuse + specular + skySpecular;

@@ -90,9 +90,12 @@ OcclusionPass::Output OcclusionPass::Add(FrameGraph* graph, const SkinTargets& s
        .defines = {Define("SCALE", ScaleOf(settings))},
        .reads = {surface.irradiance, surface.radiance, surface.albedo, open, surface.depth},
        .writes = {{"occluded irradiance", desc}, {"occluded radiance", desc}}},
-      [this, settings] {
+      [this, settings, geometry] {
         glUniform1f(kRange, RangeOf(settings));
-        fullscreen_->Draw();
+        const glm::vec3& back = geometry.background;
+        fullscreen_->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
+        fullscreen_->Clear(1, back.r, back.g, back.b, 0.0f);
+        fullscreen_->Draw(geometry.bounds);
       });
   SkinTargets occluded = surface;
   occluded.irradiance = lit[0];

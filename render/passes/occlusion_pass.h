@@ -16,6 +16,7 @@ struct OcclusionGeometry {
   glm::mat3 view_rotation{1.0f};  // model space to the camera's
   float pixels_per_slope = 1.0f;  // H/2 cot(fov/2)
   ScreenRect bounds;              // all surfaces lie within
+  glm::vec3 background{0.0f};     // light beyond them
 };
 
 // Ambient occlusion: how much of the sky each pixel sees, and what that leaves of its light.

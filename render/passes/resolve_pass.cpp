@@ -24,6 +24,7 @@ SkinTargets AddResolvePass(FrameGraph* graph, const SkinTargets& scene, const Te
 
 FrameGraph::Handle AddCombinePass(FrameGraph* graph, FrameGraph::Handle scattered,
                                   const SkinTargets& scene, const TextureDesc& desc,
+                                  const ScreenRect& bounds, const glm::vec3& background,
                                   Fullscreen* fullscreen) {
   return fullscreen->AddSimplePass(
       graph,
@@ -32,7 +33,10 @@ FrameGraph::Handle AddCombinePass(FrameGraph* graph, FrameGraph::Handle scattere
        .defines = {},
        .reads = {scattered, scene.radiance, scene.albedo},
        .writes = {{"combined", {desc.width, desc.height, PixelFormat::kRgba16F, 1}}}},
-      [fullscreen] { fullscreen->Draw(); });
+      [fullscreen, bounds, background] {
+        fullscreen->Clear(0, background.r, background.g, background.b, 1.0f);
+        fullscreen->Draw(bounds);
+      });
 }
 
 }  // namespace furrow::render

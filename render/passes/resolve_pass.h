@@ -10,9 +10,12 @@ namespace furrow::render {
 [[nodiscard]] SkinTargets AddResolvePass(FrameGraph* graph, const SkinTargets& scene,
                                          const TextureDesc& desc, Fullscreen* fullscreen);
 
-// Scattered light times albedo, plus what did not scatter: linear radiance.
+// Scattered light times albedo, plus what did not scatter: linear radiance. All surfaces lie within
+// `bounds`; beyond is `background`.
 [[nodiscard]] FrameGraph::Handle AddCombinePass(FrameGraph* graph, FrameGraph::Handle scattered,
                                                 const SkinTargets& scene, const TextureDesc& desc,
+                                                const ScreenRect& bounds,
+                                                const glm::vec3& background,
                                                 Fullscreen* fullscreen);
 
 }  // namespace furrow::render

@@ -6,17 +6,11 @@
 namespace furrow::render {
 namespace {
 
-constexpr float kFarAway = 60000.0f;  // FAR_AWAY of the shaders: no skin
-constexpr float kNoSurface = 1e6f;    // metres: depth of the background
+constexpr float kNoSurface = 1e6f;  // metres: depth of the background
 
 // The views that show data, not light: no background but black.
 bool IsData(View view) {
   return view == View::kNormal || view == View::kMaskDynamic || view == View::kMaskTexture;
-}
-
-bool HasBackground(View view) {
-  return view == View::kFinal || view == View::kWeights || view == View::kWireframe ||
-         view == View::kBloom;
 }
 
 void BeginScene(GLuint framebuffer, int width, int height) {
@@ -35,6 +29,11 @@ void Clear(GLuint framebuffer, GLint buffer, const std::array<float, 4>& value) 
 }
 
 }  // namespace
+
+glm::vec3 SkinBackground(const Settings& settings) {
+  const bool whole = settings.view == View::kFinal || settings.view == View::kBloom;
+  return whole ? settings.background : glm::vec3(0.0f);
+}
 
 FrameGraph::Handle ScenePass::AddPlain(FrameGraph* graph, const Settings& settings,
                                        const Targets& targets) {
@@ -94,7 +93,7 @@ SkinTargets ScenePass::AddSkin(FrameGraph* graph, const Settings& settings, cons
         const GLuint framebuffer = device_->Framebuffer(colours, resources.Get(pass.z));
         const TextureDesc& desc = resources.Desc(out.irradiance);
         BeginScene(framebuffer, desc.width, desc.height);
-        const glm::vec3 back = HasBackground(settings.view) ? settings.background : glm::vec3(0.0f);
+        const glm::vec3 back = SkinBackground(settings);
         Clear(framebuffer, 0, {0.0f, 0.0f, 0.0f, kFarAway});
         Clear(framebuffer, 1, {back.r, back.g, back.b, 0.0f});
         Clear(framebuffer, 2, {0.0f, 0.0f, 0.0f, 0.0f});

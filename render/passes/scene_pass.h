@@ -17,6 +17,11 @@ struct SkinTargets {
   FrameGraph::Handle depth;  // metres along the camera's axis
 };
 
+inline constexpr float kFarAway = 60000.0f;  // FAR_AWAY of the shaders: no skin
+
+// Light where the skin pipeline sees no surface; black in views of single parts of the light.
+[[nodiscard]] glm::vec3 SkinBackground(const Settings& settings);
+
 // Clears and draws the scene. SceneDraw::Update() comes first, once a frame.
 class ScenePass {
  public:

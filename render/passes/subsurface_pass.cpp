@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "render/passes/scene_pass.h"
 #include "render/pixel_kernel.h"
 #include "render/subsurface_kernel.h"
 
@@ -11,8 +12,7 @@ namespace {
 
 using Handle = FrameGraph::Handle;
 
-constexpr float kFarAway = 60000.0f;  // FAR_AWAY of the shaders
-constexpr float kNarrowest = 0.01f;   // of SubsurfaceSettings::width, that is worth a pass
+constexpr float kNarrowest = 0.01f;  // of SubsurfaceSettings::width, that is worth a pass
 
 // Locations in separable.frag.glsl.
 enum Location : GLint { kAxis = 0, kNumTaps = 1, kGeometry = 2, kStrength = 3, kKernel = 4 };

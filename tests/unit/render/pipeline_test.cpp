@@ -2,6 +2,7 @@
 #include "render/pipeline.h"
 
 #include <algorithm>
+#include <map>
 
 #include <gtest/gtest.h>
 
@@ -109,6 +110,48 @@ TEST_F(PipelineTest, ATileOfTheStripIsItsViewDrawnSmall) {
           << ViewName(view) << " row " << y;
     }
     row += kTile + kMargin;
+  }
+}
+
+// Counts what runs.
+class PassCounter final : public FrameGraphObserver {
+ public:
+  void BeforePass(std::string_view pass) override { ++runs_[std::string(pass)]; }
+  void AfterPass(std::string_view, const std::vector<Written>&) override {}
+  [[nodiscard]] int runs(const std::string& pass) { return runs_[pass]; }
+
+ private:
+  std::map<std::string, int> runs_;
+};
+
+TEST_F(PipelineTest, AllViewsOfAFrameShareItsShadowMaps) {
+  Make();
+  Settings settings = Skin();
+  settings.strip.views = {View::kShadow, View::kFinal};
+  PassCounter counter;
+  renderer_->SetObserver(&counter);
+  (void)Draw(settings, 240);
+  renderer_->SetObserver(nullptr);
+  EXPECT_EQ(counter.runs("scene"), 3);
+  EXPECT_EQ(counter.runs("shadows"), 1);
+}
+
+// Beyond the surfaces a picture is its background, whatever the passes between leave out.
+TEST_F(PipelineTest, TheBackgroundIsEven) {
+  Make();
+  Settings settings = Skin();
+  settings.background = {0.2f, 0.05f, 0.4f};
+  settings.bloom.strength = 0.0f;
+  const Image image = Draw(settings, 96);
+  const auto pixel = [&](int x, int y) {
+    const auto at = static_cast<std::size_t>(3 * (y * 96 + x));
+    return std::vector<std::uint8_t>(&image.rgb[at], &image.rgb[at] + 3);
+  };
+  const std::vector<std::uint8_t> corner = pixel(0, 0);
+  EXPECT_GT(corner[2], corner[0]);
+  EXPECT_GT(corner[0], corner[1]);
+  for (const auto& [x, y] : {std::pair(95, 0), {0, 95}, {95, 95}, {48, 0}, {0, 48}, {3, 20}}) {
+    EXPECT_EQ(pixel(x, y), corner) << x << ", " << y;
   }
 }
 

@@ -75,7 +75,8 @@ TEST_F(ShaderLibraryTest, EverySkinConfigurationCompiles) {
         shader.shadow_taps = bit == 0 ? 1 : 8;
         shader.translucency = bit >= 3 && kind == Kind::kSkin;
         shader.preintegrated = bit == 4 && kind == Kind::kSkin;
-        shader.gems = bit == 5;
+        shader.gems = shader.beckmann_table = bit == 5;
+        shader.mask_bits = bit == 7 ? 1u : ~0u;
         shader.conserve_energy = bit != 6;
         shader.wrinkle_texture = shader.wrinkle_dynamic = bit == 7;
         shader.widen = shader.wrinkle_looks = shader.thickness_map = bit == 7;

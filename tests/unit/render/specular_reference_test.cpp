@@ -46,7 +46,8 @@ glm::dvec3 Reflected(const Lighting& lighting, const glm::dvec3& normal,
 struct Case {
   SpecularMode mode;
   SpecularNorm norm;
-  float roughness;  // m is its square
+  float roughness;     // m is its square
+  bool table = false;  // Beckmann's term is looked up
 };
 
 class SpecularReference : public testing::TestWithParam<Case> {};
@@ -69,6 +70,7 @@ TEST_P(SpecularReference, Sphere) {
   settings.specular.mode = GetParam().mode;
   settings.specular.second_lobe = static_cast<float>(kSecondLobe);
   settings.specular.widen = false;
+  settings.specular.table = GetParam().table;
   const FloatPicture drawn = test::DrawTarget(ball, request, "scene radiance");
   const Lighting lighting = MakeLighting(settings.lights, {});
   const double m = static_cast<double>(GetParam().roughness) * GetParam().roughness;
@@ -96,6 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
     Modes, SpecularReference,
     testing::Values(Case{SpecularMode::kPhysical, SpecularNorm::kPhysical, 0.45f},
                     Case{SpecularMode::kPhysical, SpecularNorm::kPhysical, 0.6f},
+                    Case{SpecularMode::kPhysical, SpecularNorm::kPhysical, 0.6f, true},
                     Case{SpecularMode::kGems, SpecularNorm::kGems, 0.55f}));
 
 }  // namespace

@@ -151,8 +151,10 @@ TEST_F(WrinkleTableTest, EveryTexturedRegionHasAColourOfItsOwn) {
   ASSERT_EQ(palette.size(), 4u);
   EXPECT_NE(palette[0], palette[1]);
   EXPECT_EQ(palette[2], glm::vec4(0.0f));
+  EXPECT_EQ(tables_->mask_bits(WrinkleGroup::kSkin), 1u);
   for (const WrinkleGroup group : {WrinkleGroup::kCloth, WrinkleGroup::kNone}) {
     for (const glm::vec4& colour : tables_->mask_palette(group)) EXPECT_EQ(colour, glm::vec4(0.0f));
+    EXPECT_EQ(tables_->mask_bits(group), 0u);  // and its layer is looked up on skin alone
   }
 }
 
