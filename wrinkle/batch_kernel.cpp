@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The group solver, compiled once for each instruction set and chosen at run time: Highway includes
-// this file again and again. SSSE3 is left out (every processor with it but a few has SSE4 or
-// AVX2), and so are vectors without a fixed size (SVE, RVV), which no struct can hold.
+// this file again and again. SSSE3 is left out (processors that have it but not
+// SSE4 are rare), and so are vectors without a fixed size (SVE, RVV), which no struct can hold.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "wrinkle/batch_kernel.cpp"
@@ -23,46 +23,52 @@ inline std::size_t NumValueRows(const BindingData& data) {
   return (static_cast<std::size_t>(data.first_values.back()) + 3) / 4 * 4;
 }
 
-// The values of all drivers but nnls and strain, in rows. Returns a bit for each lane to look at:
-// see EvaluateGroup().
-unsigned EvaluateRows(const BatchGroup& group, float* rows) {
-  const BindingData& data = *group.binding;
-  PoseLanes lanes{group.joints.data(), hn::Zero(Floats())};
-  const auto reaches = [&](int first_value) {
-    return static_cast<std::size_t>(first_value) < group.num_values;
-  };
-  const auto row = [&](int first_value) {
-    return rows + static_cast<std::size_t>(first_value) * kLanes;
-  };
-  std::fill_n(rows, NumValueRows(data) * kLanes, 0.0f);
-  const auto pose_entries = data.pose_drivers.entries();
-  for (std::size_t i = 0; i < pose_entries.size() && reaches(pose_entries[i].first_value); ++i) {
-    if (pose_entries[i].solve == PoseSolve::kNnls) continue;
-    EvaluatePose(data.pose_drivers, i, data.chains, &lanes, row(pose_entries[i].first_value));
+// Evaluates those entries, in the rig's order, that the group's level of detail reaches.
+template <class Entry, class Evaluate>
+HWY_INLINE void EvaluateEach(std::span<const Entry> entries, const BatchGroup& group, float* rows,
+                             Evaluate evaluate) {
+  for (const Entry& entry : entries) {
+    const auto first_value = static_cast<std::size_t>(entry.first_value);
+    if (first_value >= group.num_values) return;
+    evaluate(entry, rows + first_value * kLanes);
   }
-  for (const HingeDriverSet::Entry& entry : data.hinge_drivers.entries()) {
-    if (!reaches(entry.first_value)) break;
-    EvaluateHinge(entry, data.chains, &lanes, row(entry.first_value));
-  }
-  for (const BallDriverSet::Entry& entry : data.ball_drivers.entries()) {
-    if (!reaches(entry.first_value)) break;
-    EvaluateBall(entry, data.chains, &lanes, row(entry.first_value));
-  }
-  for (const TwistDriverSet::Entry& entry : data.twist_drivers.entries()) {
-    if (!reaches(entry.first_value)) break;
-    EvaluateTwist(entry, data.twist_drivers.joints(entry), &lanes, row(entry.first_value));
-  }
-  for (const BlendShapeDriverSet::Entry& entry : data.blend_shape_drivers.entries()) {
-    if (!reaches(entry.first_value)) break;
-    EvaluateBlendShape(entry, group.blend_shapes.data(), row(entry.first_value));
-  }
-  HWY_ALIGN float check[kLanes];
-  StoreLanes(lanes.check, check);
+}
+
+unsigned SuspectLanes(Float check, std::size_t count) {
+  HWY_ALIGN float numbers[kLanes];
+  StoreLanes(check, numbers);
   unsigned suspect = 0;
-  for (std::size_t lane = 0; lane < group.count; ++lane) {
-    if (!(check[lane] == 0.0f)) suspect |= 1u << lane;
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    if (!(numbers[lane] == 0.0f)) suspect |= 1u << lane;
   }
   return suspect;
+}
+
+// The values of all drivers but nnls and strain, in rows. Returns what EvaluateGroup() does.
+unsigned EvaluateRows(const BatchGroup& group, float* rows) {
+  const BindingData& data = *group.binding;
+  const JointChains& chains = data.chains;
+  PoseLanes lanes{group.joints.data(), hn::Zero(Floats())};
+  std::fill_n(rows, NumValueRows(data) * kLanes, 0.0f);
+  EvaluateEach(data.pose_drivers.entries(), group, rows,
+               [&](const PoseDriverSet::Entry& entry, float* values) HWY_ATTR {
+                 if (entry.solve == PoseSolve::kNnls) return;
+                 EvaluatePose(data.pose_drivers, entry, chains, &lanes, values);
+               });
+  EvaluateEach(data.hinge_drivers.entries(), group, rows,
+               [&](const HingeDriverSet::Entry& entry, float* values)
+                   HWY_ATTR { EvaluateHinge(entry, chains, &lanes, values); });
+  EvaluateEach(data.ball_drivers.entries(), group, rows,
+               [&](const BallDriverSet::Entry& entry, float* values)
+                   HWY_ATTR { EvaluateBall(entry, chains, &lanes, values); });
+  EvaluateEach(data.twist_drivers.entries(), group, rows,
+               [&](const TwistDriverSet::Entry& entry, float* values) HWY_ATTR {
+                 EvaluateTwist(entry, data.twist_drivers.joints(entry), &lanes, values);
+               });
+  EvaluateEach(data.blend_shape_drivers.entries(), group, rows,
+               [&](const BlendShapeDriverSet::Entry& entry, float* values)
+                   HWY_ATTR { EvaluateBlendShape(entry, group.blend_shapes.data(), values); });
+  return SuspectLanes(lanes.check, group.count);
 }
 
 HWY_INLINE Columns LoadRows(const float* row) {

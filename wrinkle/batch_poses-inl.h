@@ -66,9 +66,8 @@ inline Float LaneFalloff(const Moved* moved, std::span<const glm::vec3> displace
   return Exponential(hn::Div(hn::Neg(sum), Splat(width)));
 }
 
-inline void EvaluatePoints(const PoseDriverSet& drivers, std::size_t index,
+inline void EvaluatePoints(const PoseDriverSet& drivers, const PoseDriverSet::Entry& entry,
                            const JointChains& chains, PoseLanes* lanes, float* values) {
-  const PoseDriverSet::Entry& entry = drivers.entries()[index];
   const auto points = drivers.points(entry);
   Moved moved[kMaxControlPoints];
   for (std::size_t i = 0; i < points.size(); ++i) moved[i] = Measure(points[i], chains, lanes);
@@ -79,7 +78,7 @@ inline void EvaluatePoints(const PoseDriverSet& drivers, std::size_t index,
     const Float along = ToFloats(sum);
     Float value = Saturate(along);
     if (entry.falloff > 0.0f) {
-      const int driver = static_cast<int>(index);
+      const int driver = static_cast<int>(&entry - drivers.entries().data());
       const float square = drivers.SquaredDisplacement(driver, k);
       // Where the pose does not move the points, `along` is 0 and the width does not count.
       const Float share = LaneFalloff(moved, drivers.Displacement(driver, k), along,
@@ -90,13 +89,12 @@ inline void EvaluatePoints(const PoseDriverSet& drivers, std::size_t index,
   }
 }
 
-inline void EvaluatePose(const PoseDriverSet& drivers, std::size_t index, const JointChains& chains,
-                         PoseLanes* lanes, float* values) {
-  const PoseDriverSet::Entry& entry = drivers.entries()[index];
+inline void EvaluatePose(const PoseDriverSet& drivers, const PoseDriverSet::Entry& entry,
+                         const JointChains& chains, PoseLanes* lanes, float* values) {
   if (entry.num_points == 1 && !(entry.falloff > 0.0f)) {
     EvaluateOnePoint(drivers, entry, chains, lanes, values);
   } else {
-    EvaluatePoints(drivers, index, chains, lanes, values);
+    EvaluatePoints(drivers, entry, chains, lanes, values);
   }
 }
 

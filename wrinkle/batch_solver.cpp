@@ -14,7 +14,9 @@ namespace {
 // Fewer subjects are at home in the processor's caches.
 constexpr std::size_t kPrefetchFrom = 256;
 
-const float* Numbers(std::span<const Transform> joints) { return &joints.data()->translation.x; }
+const float* Numbers(std::span<const Transform> joints) {
+  return joints.empty() ? nullptr : &joints.front().translation.x;
+}
 
 std::span<const float> AllNumbers(const LocalPose& pose, const BindingData& data) {
   const auto num_joints = static_cast<std::size_t>(data.skeleton.num_joints());

@@ -23,10 +23,11 @@ struct BatchUpdate {
 //
 // - Any subjects in any order: the state stays in each SubjectSolver, so that a batch is whatever
 //   arrived together, and Update(), Decay() and batches may take turns. A batch of one is faster
-//   than Update(), too; it is fastest where 8 or more subjects share a binding.
+//   than Update(), too; it is fastest where 16 or more share a binding.
 // - A subject may stand in a batch more than once; its updates happen in order.
 // - Statuses are Update()'s, and kNullPointer; an update that fails changes nothing and disturbs no
-//   other. Values and weights equal Update()'s to 1e-6.
+//   other. Values equal Update()'s to 1e-6, and weights too where gains are at most 1; what comes
+//   out for a subject does not depend on who else is in the batch.
 // - Strain and nnls drivers are evaluated subject by subject.
 // - Not for two threads at once. Allocates where a binding or a mixture of bindings is larger than
 //   any before, never else.
