@@ -32,6 +32,8 @@ CONFINED = [
     (r"(epoxy|GL|EGL|GLES\d)/", {"render"}),
     (r"flatbuffers/|.*_generated\.h$", {"protocol", "character"}),
     (r"asio(\.hpp|/)", {"server", "client/cpp"}),
+    (r"boost/", {"server/http"}),
+    (r"prometheus/", {"server/http"}),
     (r"glm/", {"wrinkle", "motion", "recording", "character", "render", "server", "client/load", "client/cli"}),
     (r"hwy/", {"wrinkle"}),
     (r"OpenImageIO/", {"character", "render"}),
