@@ -50,6 +50,7 @@ server::Config WeightsConfig(const std::string& rig) {
   config.rig = std::filesystem::path(FURROW_SOURCE_DIR) / "character" / "rigs" / rig;
   config.tcp = 0;
   config.udp = 0;
+  config.http.port = 0;
   config.render = false;
   return config;
 }

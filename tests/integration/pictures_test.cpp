@@ -49,6 +49,7 @@ class Pictures : public testing::Test {
     server::Config config;
     config.character = glb;
     config.tcp = config.udp = 0;
+    config.http.port = 0;
     // However slowly pictures are drawn here, only poses ask for them, never a subject's decay.
     config.limits.loss_seconds = config.limits.idle_seconds = 3600;
     auto loaded = character::LoadCharacter(glb, {}, motion::CachedPoseSource());

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/playback/player.h"
+
+#include <cmath>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/server/session/hub_fixture.h"
+
+namespace furrow::server {
+namespace {
+
+// A recording of eleven frames, ten a second, whose brow rises from 0 to 1.
+motion::Clip RisingBrow() {
+  motion::Clip clip;
+  clip.name = "take";
+  clip.blend_shape_names = {"brow", "nose"};
+  for (int frame = 0; frame <= 10; ++frame) {
+    clip.times.push_back(5.0 + 0.1 * frame);  // its first frame need not be at 0
+    clip.blend_shapes.insert(clip.blend_shapes.end(), {0.1f * static_cast<float>(frame), 0.0f});
+  }
+  return clip;
+}
+
+class PlayerTest : public HubTest {
+ protected:
+  void SetUp() override {
+    HubTest::SetUp();
+    player = std::make_unique<Player>(RisingBrow(), "take.csv");
+    player->Start(hub.get(), now);
+  }
+  // Calls it whenever it wants to be called, for so long.
+  void PlayFor(double seconds) {
+    const Time end = now + FromSeconds(seconds);
+    for (Time due = player->Advance(now); due <= end; due = player->Advance(now)) {
+      ASSERT_GT(due, now);
+      now = due;
+    }
+    now = end;
+    player->Advance(now);
+  }
+  Subject& subject() { return *hub->FindSubject("take"); }
+  float brow() { return subject().pipeline->wrinkle_weights()[0]; }
+
+  std::unique_ptr<Player> player;
+};
+
+TEST_F(PlayerTest, EveryFrameIsSentAtItsTime) {
+  EXPECT_EQ(subject().pipeline->sequence(), 0u);
+  EXPECT_EQ(subject().pipeline->capture_time_us(), 0);
+  PlayFor(0.5);
+  EXPECT_NEAR(brow(), 0.5f, 1e-5f);
+  EXPECT_EQ(subject().pipeline->capture_time_us(), 500'000);
+  EXPECT_EQ(player->state(now).frame, 5);
+  EXPECT_NEAR(player->state(now).position, 0.5, 1e-9);
+  EXPECT_NEAR(player->state(now).rate_hz, 10.0, 1e-9);
+  EXPECT_EQ(Count(Counter::kPosesInvalid), 0u);
+}
+
+TEST_F(PlayerTest, ALoopBeginsAnewAndWithoutOneItStandsAtTheEnd) {
+  PlayFor(1.25);  // the last frame is shown for a tenth, too
+  EXPECT_NEAR(brow(), 0.1f, 1e-5f);
+  ASSERT_TRUE(player->Apply({.loop = false}, now).ok());
+  PlayFor(3.0);
+  EXPECT_FALSE(player->state(now).playing);
+  EXPECT_NEAR(brow(), 1.0f, 1e-5f);
+  ASSERT_TRUE(player->Apply({.playing = true}, now).ok());  // from its start
+  EXPECT_NEAR(brow(), 0.0f, 1e-5f);
+}
+
+TEST_F(PlayerTest, WhilePausedTheFrameStandsAndTheSubjectIsNotLost) {
+  PlayFor(0.3);
+  ASSERT_TRUE(player->Apply({.playing = false}, now).ok());
+  for (int i = 0; i < 500; ++i) {
+    PlayFor(0.01);
+    hub->Tick(now);
+  }
+  EXPECT_FALSE(subject().lost);
+  EXPECT_NEAR(brow(), 0.3f, 1e-5f);
+  EXPECT_EQ(subject().pipeline->capture_time_us(), 300'000);
+}
+
+TEST_F(PlayerTest, ItMovesAtOnceAndRunsAtAnotherSpeed) {
+  ASSERT_TRUE(player->Apply({.playing = false, .position = 0.82}, now).ok());
+  EXPECT_NEAR(brow(), 0.8f, 1e-5f);
+  ASSERT_TRUE(player->Apply({.playing = true, .speed = 0.5, .position = 0.0}, now).ok());
+  PlayFor(0.8);
+  EXPECT_NEAR(brow(), 0.4f, 1e-5f);
+  ASSERT_TRUE(player->Apply({.position = 99.0}, now).ok());
+  EXPECT_NEAR(player->state(now).position, 1.0, 1e-9);
+}
+
+TEST_F(PlayerTest, AWrongChangeNamesItsFieldAndChangesNothing) {
+  for (const double speed : {0.0, -1.0, 9.0, std::nan("")}) {
+    const Status status = player->Apply({.playing = false, .speed = speed}, now);
+    EXPECT_EQ(status.where(), "speed");
+    EXPECT_TRUE(player->state(now).playing);
+  }
+  EXPECT_EQ(player->Apply({.position = std::nan("")}, now).where(), "position_s");
+}
+
+}  // namespace
+}  // namespace furrow::server
