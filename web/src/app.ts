@@ -205,6 +205,7 @@ export class App {
 
   private showDaemon(): void {
     const status = this.status!;
+    this.timeline.setAvailable(status.playback);
     this.session.show(this.subjects, status, this.weights.subject.value);
     this.header.showSubjects(this.subjects.map(({ name }) => name));
     if (this.daemonSession !== '' && status.session !== this.daemonSession) {

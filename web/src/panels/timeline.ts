@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The recording that the daemon plays: play, pause, scrub, loop, speed. Hidden where it plays none.
-import { api, ApiError, type Playback, wordsOf } from '../api';
+import { api, type Playback, wordsOf } from '../api';
 import { button, h, select } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
 
@@ -30,6 +30,7 @@ export class Timeline {
   private readonly speed: HTMLSelectElement;
   private readonly name = h('span', { class: 'file' });
   private state: Playback | null = null;
+  private available = false;
   private askedMs = 0;
   private scrubbing = false;
   private lastScrubMs = 0;
@@ -46,7 +47,6 @@ export class Timeline {
     });
     this.element = h('section', { class: 'timeline', 'aria-label': 'Recording', hidden: true },
       this.play, this.scrub, this.time, h('label', { class: 'check' }, this.loop, 'Loop'), this.speed, this.name);
-    void this.poll();
     this.tick();
   }
 
@@ -54,14 +54,22 @@ export class Timeline {
     if (this.state !== null) void this.patch({ playing: !this.state.playing });
   }
 
+  /** Whether the daemon plays a recording (its status says so). */
+  setAvailable(available: boolean): void {
+    if (available === this.available) return;
+    this.available = available;
+    if (available) void this.poll();
+    else this.take(null);
+  }
+
   private async poll(): Promise<void> {
+    if (!this.available) return;
     try {
       if (!document.hidden) this.take(await api.playback());
-    } catch (error) {
-      // Played nothing, or not there: the connection's own state says the rest.
-      if (error instanceof ApiError && (error.status === 409 || error.status === 404)) this.take(null);
+    } catch {
+      // Not there at the moment: the connection's own state says so.
     }
-    setTimeout(() => void this.poll(), this.state === null ? 4 * POLL_MS : POLL_MS);
+    setTimeout(() => void this.poll(), POLL_MS);
   }
 
   private take(playback: Playback | null): void {

@@ -19,6 +19,10 @@ export interface PictureEvents {
   onRefused(code: number, error: string): void;
 }
 
+function sameView(a: PictureRequest | null, b: PictureRequest): boolean {
+  return JSON.stringify(a) === JSON.stringify(b);
+}
+
 /** A view changes at most so often: a drag makes a hundred changes a second. */
 const UPDATE_MS = 33;
 
@@ -31,6 +35,8 @@ export class PictureStream implements Subscriber {
   private wanted = 0;
   private timer: ReturnType<typeof setTimeout> | null = null;
   private lastUpdateMs = -Infinity;
+  /** What the daemon was told last. */
+  private asked: PictureRequest | null = null;
 
   constructor(
     private readonly connection: Connection,
@@ -57,7 +63,7 @@ export class PictureStream implements Subscriber {
   /** What to show from now on. Another subject is another subscription. */
   update(view: PictureRequest): void {
     const former = this.wantedView;
-    if (JSON.stringify(former) === JSON.stringify(view)) return;
+    if (sameView(former, view)) return;
     this.wantedView = view;
     this.pending.set(true);
     if (this.subscription === null) return;
@@ -83,6 +89,11 @@ export class PictureStream implements Subscriber {
     this.lastUpdateMs = performance.now();
     // Not answered yet: the answer sends what is wanted then.
     if (!this.answered) return;
+    if (sameView(this.asked, this.wantedView)) {
+      this.pending.set(false); // there and back again: nothing new will come of it
+      return;
+    }
+    this.asked = this.wantedView;
     this.wanted = this.subscription?.send(updatePictures(this.wantedView)) ?? this.wanted;
   }
 
@@ -92,13 +103,12 @@ export class PictureStream implements Subscriber {
     this.asked = this.wantedView;
     return subscribePictures(this.wantedView);
   }
-  private asked: PictureRequest | null = null;
 
   onReply(_reply: ReplyMessage, requestSequence: number): void {
     if (this.answered) return;
     this.answered = true;
     this.wanted = requestSequence;
-    if (this.asked !== this.wantedView) this.sendUpdate();
+    if (!sameView(this.asked, this.wantedView)) this.sendUpdate();
   }
 
   onRefused(code: number, message: string, sequence: number): void {

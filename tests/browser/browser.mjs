@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// A page in Debian's chromium: opened, watched for errors, looked at.
+import { mkdirSync } from 'node:fs';
+import { join } from 'node:path';
+import { chromium } from 'playwright-core';
+import { PNG } from 'pngjs';
+
+const ARTEFACTS = process.env.FURROW_ARTEFACTS;
+const PATIENCE_MS = 60_000;
+
+export function launch() {
+  mkdirSync(ARTEFACTS, { recursive: true });
+  return chromium.launch({
+    executablePath: '/usr/bin/chromium',
+    headless: true,
+    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+      '--disable-component-update', '--disable-sync'],
+  });
+}
+
+/** A page of its own, with nothing shared; `errors` collects what its console complains of. */
+export async function openPage(browser, address, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1000, height: 640 }, acceptDownloads: true, ...options });
+  const page = await context.newPage();
+  page.setDefaultTimeout(PATIENCE_MS);
+  page.errors = [];
+  page.on('console', (message) => message.type() === 'error' && page.errors.push(message.text()));
+  page.on('pageerror', (error) => page.errors.push(String(error)));
+  await page.goto(address);
+  return page;
+}
+
+/** The daemon's answer to the last change is on the screen. */
+export async function shown(page) {
+  await page.waitForSelector('.stage[aria-busy=false]');
+}
+
+/** The picture of a pose at rest, refined, with the last change in it. */
+export async function still(page) {
+  await shown(page);
+  await page.waitForFunction(() => document.querySelector('[data-number=tier]').textContent === 'still');
+  await shown(page);
+}
+
+/** The pixels of the picture alone, without what lies over it. */
+export async function pixels(page) {
+  const url = await page.evaluate(() => new Promise((resolve) => {
+    requestAnimationFrame(() => requestAnimationFrame(() => resolve(document.querySelector('canvas.picture').toDataURL('image/png'))));
+  }));
+  return PNG.sync.read(Buffer.from(url.split(',')[1], 'base64'));
+}
+
+/** Mean absolute difference of two pictures, 0 to 255; of other sizes: wholly different. */
+export function difference(a, b) {
+  if (a.width !== b.width || a.height !== b.height) return 255;
+  let sum = 0;
+  for (let i = 0; i < a.data.length; ++i) sum += Math.abs(a.data[i] - b.data[i]);
+  return sum / (a.data.length * 0.75); // alpha is the same everywhere
+}
+
+/** Share of pixels that differ visibly. */
+export function changedShare(a, b) {
+  if (a.width !== b.width || a.height !== b.height) return 1;
+  let changed = 0;
+  for (let i = 0; i < a.data.length; i += 4) {
+    if (Math.max(...[0, 1, 2].map((c) => Math.abs(a.data[i + c] - b.data[i + c]))) > 6) ++changed;
+  }
+  return changed / (a.data.length / 4);
+}
+
+/** Asked again until it holds. */
+export async function eventually(what, holds, patienceMs = PATIENCE_MS) {
+  const end = Date.now() + patienceMs;
+  while (!(await holds())) {
+    if (Date.now() > end) throw new Error(`not in ${patienceMs / 1000} s: ${what}`);
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+}
+
+export function keep(page, name) {
+  return page.screenshot({ path: join(ARTEFACTS, `${name}.png`) });
+}

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The programs under test: furrowd on ports of its own, and furrow beside it.
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
+import { join } from 'node:path';
+
+const BIN = process.env.FURROW_BIN;
+export const SHARE = process.env.FURROW_SHARE;
+export const recording = (name) => join(SHARE, 'recordings', `${name}.bvh`);
+
+/** A furrowd that serves; `ports` of a former one to come back at the same place. */
+export class Daemon {
+  static async start(options = [], ports = { tcp: 0, udp: 0, http: 0 }) {
+    const listen = Object.entries(ports).flatMap(([name, port]) => [`--${name}`, String(port)]);
+    const child = spawn(join(BIN, 'furrowd'), [...listen, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });
+    const daemon = new Daemon(child);
+    child.stderr.on('data', (text) => (daemon.log += text));
+    const ready = await new Promise((resolve, reject) => {
+      let out = '';
+      child.stdout.on('data', (text) => {
+        out += text;
+        const line = /^furrowd ready .*$/m.exec(out);
+        if (line !== null) resolve(line[0]);
+      });
+      child.on('exit', (code) => reject(new Error(`furrowd ended with ${code}:\n${daemon.log}`)));
+    });
+    for (const name of ['tcp', 'udp', 'http']) {
+      const port = new RegExp(`${name}=\\S*?:(\\d+)`).exec(ready)?.[1];
+      if (port === undefined) throw new Error(`no ${name} port in: ${ready}`);
+      daemon.ports[name] = Number(port);
+    }
+    return daemon;
+  }
+
+  constructor(child) {
+    this.child = child;
+    this.log = '';
+    this.ports = {};
+  }
+
+  get address() {
+    return `http://127.0.0.1:${this.ports.http}/`;
+  }
+
+  async get(path) {
+    return (await fetch(this.address + path)).json();
+  }
+
+  async patch(path, body) {
+    const response = await fetch(this.address + path, {
+      method: 'PATCH', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(body),
+    });
+    if (!response.ok) throw new Error(`${path}: ${response.status} ${await response.text()}`);
+    return response.json();
+  }
+
+  /** The recording of --play stands still at this second. */
+  async hold(seconds) {
+    await this.patch('api/playback', { playing: false, position_s: seconds });
+  }
+
+  async stop(signal = 'SIGTERM') {
+    if (this.child.exitCode !== null || this.child.signalCode !== null) return;
+    this.child.removeAllListeners('exit');
+    const ended = once(this.child, 'exit');
+    this.child.kill(signal);
+    await ended;
+  }
+}
+
+/** `furrow ARGS...`: the process; stop it with kill(). */
+export function furrow(...args) {
+  return spawn(join(BIN, 'furrow'), args, { stdio: ['ignore', 'pipe', 'inherit'] });
+}
+
+/** What `furrow ARGS...` prints, when it ends well. */
+export async function furrowOutput(...args) {
+  const child = furrow(...args);
+  let out = '';
+  child.stdout.on('data', (text) => (out += text));
+  const [code] = await once(child, 'exit');
+  if (code !== 0) throw new Error(`furrow ${args.join(' ')}: exit code ${code}`);
+  return out;
+}

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page as whoever runs a session meets it: it loads, shows the performer, and follows hands and keys.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { after, before, test } from 'node:test';
+import { changedShare, difference, eventually, keep, launch, openPage, pixels, shown, still } from './browser.mjs';
+import { Daemon, recording } from './daemon.mjs';
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+const SMILE_S = 2.0;
+let daemon;
+let browser;
+
+before(async () => {
+  daemon = await Daemon.start(['--play', recording('performance')]);
+  browser = await launch();
+});
+after(async () => {
+  await browser?.close();
+  await daemon?.stop();
+});
+
+async function closePage(page) {
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+}
+
+test('pictures come, and change as the pose does', async () => {
+  const page = await openPage(browser, daemon.address);
+  await shown(page);
+  const first = await pixels(page);
+  await eventually('another picture', async () => changedShare(first, await pixels(page)) > 0.005);
+  await page.waitForSelector('.condition.ok');
+  await keep(page, 'live-1000x640');
+  await closePage(page);
+});
+
+test('a pose at rest gives one and the same picture', async () => {
+  await daemon.hold(SMILE_S);
+  const page = await openPage(browser, daemon.address);
+  await still(page);
+  assert.equal(difference(await pixels(page), await pixels(page)), 0);
+  await closePage(page);
+});
+
+test('a drag turns the camera, reset brings it back', async () => {
+  await daemon.hold(SMILE_S);
+  const page = await openPage(browser, daemon.address);
+  await still(page);
+  const front = await pixels(page);
+  const box = await page.locator('.surface').boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2 + 80, box.y + box.height / 2, { steps: 4 });
+  await page.mouse.up();
+  await still(page);
+  assert(changedShare(front, await pixels(page)) > 0.05);
+  await page.getByRole('button', { name: 'Reset', exact: true }).first().click();
+  await still(page);
+  assert(difference(front, await pixels(page)) < 1);
+  await closePage(page);
+});
+
+test('keys walk, orbit and zoom; wheel and framings too', async () => {
+  await daemon.hold(SMILE_S);
+  const page = await openPage(browser, daemon.address);
+  await still(page);
+  await page.focus('.surface');
+  let former = await pixels(page);
+  for (const [what, act] of [
+    ['arrow', () => page.keyboard.press('ArrowLeft')],
+    ['walk', () => page.keyboard.press('w', { delay: 300 })],
+    ['zoom', () => page.keyboard.press('+')],
+    ['wheel', () => page.mouse.wheel(0, 240)],
+    ['framing by key', () => page.keyboard.press('3')],
+    ['framing by button', () => page.click('[data-preset=eyes]')],
+  ]) {
+    if (what === 'wheel') await page.locator('.surface').hover();
+    await act();
+    await still(page);
+    const now = await pixels(page);
+    assert(changedShare(former, now) > 0.01, what);
+    former = now;
+  }
+  assert.equal(await page.getAttribute('[data-preset=eyes]', 'aria-pressed'), 'true');
+  await closePage(page);
+});
+
+test('what is set survives a reload', async () => {
+  await daemon.hold(SMILE_S);
+  const page = await openPage(browser, `${daemon.address}#camera=mouth&wrinkles=off&wrinkle_strength=2&panel=session`);
+  await still(page);
+  const former = await pixels(page);
+  await page.click('[data-preset=profile]');
+  await still(page);
+  await eventually('the address', () => page.url().includes('camera=profile'));
+  const profile = await pixels(page);
+  assert(changedShare(former, profile) > 0.05);
+  await page.reload();
+  await still(page);
+  assert(difference(profile, await pixels(page)) < 1);
+  assert.match(page.url(), /wrinkles=off/);
+  assert.equal(await page.getAttribute('#tab-session', 'aria-selected'), 'true');
+  await closePage(page);
+});
+
+test('the wipe shows both sides', async () => {
+  await daemon.hold(SMILE_S);
+  const page = await openPage(browser, `${daemon.address}#camera=face&wrinkle_strength=3`);
+  await still(page);
+  const on = await pixels(page);
+  await page.selectOption('select[aria-label="Split the picture"]', 'wrinkles');
+  await page.waitForSelector('.wipe-label.left');
+  let half;
+  await eventually('the left side without wrinkles', async () => changedShare(on, (half = await pixels(page))) > 0.002);
+  await keep(page, 'wipe-wrinkles');
+  // Right of the divider nothing changed.
+  const right = (image) => ({ width: 1, height: 1, data: image.data.filter((_, i) => (i / 4) % image.width > image.width * 0.52) });
+  assert(difference(right(on), right(half)) < 1.5);
+  await closePage(page);
+});
+
+test('debug views are live thumbnails that enlarge', async () => {
+  await daemon.hold(SMILE_S);
+  const page = await openPage(browser, daemon.address);
+  await still(page);
+  await page.selectOption('select[aria-label="Add a debug view"]', 'normal');
+  const thumbnail = page.locator('figure[data-view=normal] button.thumb');
+  await thumbnail.waitFor();
+  const colours = () => page.evaluate(() => {
+    const canvas = document.querySelector('figure[data-view=normal] canvas');
+    return new Set(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data).size;
+  });
+  await eventually('a picture in the thumbnail', async () => (await colours()) > 40);
+  await still(page);
+  const final = await pixels(page);
+  await thumbnail.click();
+  await still(page);
+  assert(changedShare(final, await pixels(page)) > 0.2);
+  assert.equal(await thumbnail.getAttribute('aria-pressed'), 'true');
+  await keep(page, 'debug-view');
+  await page.focus('.surface');
+  await page.keyboard.press('Escape');
+  await still(page);
+  assert(changedShare(final, await pixels(page)) < 0.05);
+  await closePage(page);
+});
+
+test('the timeline plays, pauses, scrubs and loops', async () => {
+  await daemon.hold(0);
+  const page = await openPage(browser, daemon.address);
+  await still(page);
+  await page.locator('.timeline').waitFor();
+  const former = await pixels(page);
+  await page.locator('input[aria-label="Position in the recording"]').fill('2');
+  await eventually('the daemon follows', async () => Math.abs((await daemon.get('api/playback')).position_s - 2) < 0.1);
+  await still(page);
+  assert(changedShare(former, await pixels(page)) > 0.005);
+  await page.getByRole('button', { name: 'Play', exact: true }).click();
+  await eventually('it plays', async () => (await daemon.get('api/playback')).playing);
+  await page.selectOption('select[aria-label=Speed]', '0.5');
+  await eventually('the speed', async () => (await daemon.get('api/playback')).speed === 0.5);
+  const { loop } = await daemon.get('api/playback');
+  await page.locator('.timeline input[type=checkbox]').click();
+  await eventually('the loop', async () => (await daemon.get('api/playback')).loop === !loop);
+  await daemon.patch('api/playback', { loop: true, speed: 1 });
+  await closePage(page);
+});
+
+for (const [name, options] of [
+  ['1280x720', { viewport: { width: 1280, height: 720 } }],
+  ['tablet-upright', { viewport: { width: 820, height: 1180 }, hasTouch: true }],
+  ['tablet-across', { viewport: { width: 1180, height: 820 }, deviceScaleFactor: 2, hasTouch: true }],
+]) {
+  test(`axe finds no serious fault: ${name}`, async () => {
+    await daemon.hold(SMILE_S);
+    const page = await openPage(browser, `${daemon.address}#shading=skin`, options);
+    await still(page);
+    await page.evaluate(AXE);
+    for (const tab of ['look', 'wrinkles', 'capture', 'session']) {
+      await page.click(`#tab-${tab}`);
+      if (tab === 'wrinkles') await page.locator('.region').first().click();
+      if (tab === 'wrinkles') await page.locator('.explain article').first().waitFor();
+      const { violations } = await page.evaluate(() => globalThis.axe.run());
+      const serious = violations.filter(({ impact }) => impact === 'serious' || impact === 'critical');
+      assert.deepEqual(serious.map(({ id, nodes }) => `${id}: ${nodes[0].html}`), [], tab);
+      await keep(page, `${name}-${tab}`);
+    }
+    const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    assert(overflow <= 0, `${overflow} pixels too wide`);
+    await closePage(page);
+  });
+}

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// The menu: every group takes effect on the picture; undo, compare, presets, text; what is refused says so.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { changedShare, difference, eventually, keep, launch, openPage, pixels, still } from './browser.mjs';
+import { Daemon, recording } from './daemon.mjs';
+
+let daemon;
+let browser;
+
+before(async () => {
+  daemon = await Daemon.start(['--play', recording('performance')]);
+  await daemon.hold(2);
+  browser = await launch();
+});
+after(async () => {
+  await browser?.close();
+  await daemon?.stop();
+});
+
+async function search(page, text) {
+  await page.fill('#settings-search', text);
+}
+
+const row = (page, name) => page.locator(`[data-setting="${name}"]`);
+
+/** Another value than the one it has, by the control that the menu gives it. */
+async function change(page, setting) {
+  await search(page, setting.name);
+  const target = row(page, setting.name);
+  if (setting.kind === 'list') {
+    await target.locator('button').first().click();
+    await target.locator('label input').nth(1).click({ force: true });
+  } else if (setting.kind === 'bool') {
+    await target.locator('label').first().click();
+  } else if (await target.locator('select').count() > 0) {
+    const select = target.locator('select');
+    const count = await select.locator('option').count();
+    const at = await select.evaluate((element) => element.selectedIndex);
+    await select.selectOption({ index: (at + count - 1) % count });
+  } else if (setting.kind === 'colour') {
+    await target.locator('input[type=text]').first().fill('#802020');
+    await page.keyboard.press('Enter');
+  } else {
+    const input = target.locator('input[type=text]').last();
+    await input.fill(String(Number(setting.value) === setting.max ? setting.min : setting.max));
+    await page.keyboard.press('Enter');
+  }
+}
+
+test('every setting of the daemon is in the menu', async () => {
+  const page = await openPage(browser, daemon.address);
+  await page.locator('[data-setting]').first().waitFor({ state: 'attached' });
+  const { settings } = await daemon.get('api/settings');
+  assert(settings.length > 30);
+  const inMenu = await page.locator('[data-setting]').evaluateAll((rows) => rows.map((r) => r.dataset.setting));
+  assert.deepEqual(inMenu.sort(), settings.map(({ name }) => name).sort());
+  await search(page, 'softness');
+  assert.equal(await page.locator('[data-setting]:visible').count(), 1);
+  await search(page, 'no such thing');
+  await page.getByText('No setting matches.').waitFor();
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
+test('each group takes effect on the picture', async () => {
+  const { settings } = await daemon.get('api/settings');
+  const groups = [...new Set(settings.map(({ group }) => group))];
+  const page = await openPage(browser, `${daemon.address}#shading=skin&wrinkle_strength=2&translucency.strength=4&lights.turn_degrees=150`,
+  );
+  await page.selectOption('select[aria-label=Sharpness]', 'fast');
+  await page.keyboard.press('Escape');
+  await still(page);
+  const base = await pixels(page);
+  for (const group of groups) {
+    let took = 0;
+    for (const setting of settings.filter((candidate) => candidate.group === group)) {
+      await change(page, setting);
+      await still(page);
+      took = changedShare(base, await pixels(page));
+      await page.getByRole('button', { name: 'Undo' }).first().click();
+      await still(page);
+      if (took > 0.0005) break;
+    }
+    assert(took > 0.0005, `nothing in "${group}" changes the picture`);
+  }
+  await search(page, '');
+  assert(difference(base, await pixels(page)) < 1);
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
+test('compare shows the picture before the change while it is held', async () => {
+  const page = await openPage(browser, `${daemon.address}#wrinkle_strength=3`);
+  await still(page);
+  const base = await pixels(page);
+  await change(page, { name: 'wrinkles', kind: 'bool' });
+  await still(page);
+  const without = await pixels(page);
+  assert(changedShare(base, without) > 0.002);
+  await page.getByRole('button', { name: 'Compare' }).hover();
+  await page.mouse.down();
+  await still(page);
+  assert(difference(base, await pixels(page)) < 1);
+  await page.mouse.up();
+  await still(page);
+  assert(difference(without, await pixels(page)) < 1);
+  await page.context().close();
+});
+
+test('presets are one step of undo, and name settings that exist', async () => {
+  const page = await openPage(browser, daemon.address);
+  await still(page);
+  const presets = page.locator('select[aria-label=Preset]');
+  for (const name of await presets.locator('option').evaluateAll((all) => all.map((o) => o.value).filter(Boolean))) {
+    await presets.selectOption(name);
+  }
+  assert.equal(await page.locator('.toast').count(), 0);
+  await presets.selectOption('Skin, portrait');
+  await eventually('skin', () => page.url().includes('shading=skin'));
+  await page.keyboard.press('Control+z');
+  await eventually('the preset before', () => page.url().includes('tone_map=clip'));
+  await page.context().close();
+});
+
+test('what the daemon refuses is said, and taken back', async () => {
+  const page = await openPage(browser, `${daemon.address}#subsurface.width=99`);
+  await page.locator('.toast.error', { hasText: 'subsurface.width' }).waitFor();
+  await still(page); // and there is a picture all the same
+  await page.getByRole('button', { name: 'As text…' }).click();
+  const text = page.locator('dialog textarea');
+  await text.fill('[subsurface]\nwidth = 99\n');
+  await page.getByRole('button', { name: 'Set for everybody' }).click();
+  await page.locator('dialog .error', { hasText: 'subsurface.width' }).waitFor();
+  await keep(page, 'refused');
+  await text.fill('[subsurface\nwidth = 1');
+  await page.getByRole('button', { name: 'Set for everybody' }).click();
+  await page.locator('dialog .error', { hasText: 'Line 1' }).waitFor();
+  const { settings } = await daemon.get('api/settings');
+  const width = settings.find(({ name }) => name === 'subsurface.width');
+  assert.equal(width.value, width.default);
+  await page.context().close();
+});
+
+test('a setting for everybody reaches other pages', async () => {
+  const one = await openPage(browser, daemon.address);
+  const other = await openPage(browser, daemon.address);
+  await still(other);
+  const former = await pixels(other);
+  await one.getByRole('button', { name: 'As text…' }).click();
+  await one.fill('dialog textarea', 'exposure = 3.0\n');
+  await one.getByRole('button', { name: 'Set for everybody' }).click();
+  await eventually('a brighter picture', async () => difference(former, await pixels(other)) > 10);
+  await daemon.patch('api/settings', { exposure: 1 });
+  await one.context().close();
+  await other.context().close();
+});

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Curves, face map, why, and capture, against what the daemon tells others.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { once } from 'node:events';
+import { after, before, test } from 'node:test';
+import { eventually, keep, launch, openPage, still } from './browser.mjs';
+import { Daemon, furrow, furrowOutput, recording } from './daemon.mjs';
+
+const FROWN_S = 4.5;
+let daemon;
+let browser;
+
+before(async () => {
+  daemon = await Daemon.start(['--play', recording('performance')]);
+  browser = await launch();
+});
+after(async () => {
+  await browser?.close();
+  await daemon?.stop();
+});
+
+/** Rows of a CSV by their first column; the header's names with them. */
+function table(csv) {
+  const [header, ...lines] = csv.trim().split('\n').map((line) => line.split(','));
+  return { names: header.slice(2), rows: new Map(lines.map(([frame, , ...values]) => [frame, values.map(Number)])) };
+}
+
+test('curves are what furrow watch prints', async () => {
+  await daemon.patch('api/playback', { playing: true, position_s: 0 });
+  const page = await openPage(browser, daemon.address);
+  await page.locator('.chip').first().waitFor();
+  const watched = table(await furrowOutput('watch', `localhost:${daemon.ports.tcp}`, '--format', 'csv', '--frames', '120'));
+  const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'CSV' }).click()]);
+  const shown = table(readFileSync(await file.path(), 'utf8'));
+  assert.deepEqual(shown.names, watched.names);
+  let common = 0;
+  let moved = 0;
+  for (const [frame, values] of watched.rows) {
+    const seen = shown.rows.get(frame);
+    if (seen === undefined) continue;
+    ++common;
+    values.forEach((value, i) => {
+      assert(Math.abs(value - seen[i]) < 1e-2, `${watched.names[i]} of pose ${frame}: ${value}, but ${seen[i]} on the page`);
+      if (value > 0.1) ++moved;
+    });
+  }
+  assert(common > 60 && moved > 0, `${common} poses in common, ${moved} weights above 0.1`);
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
+test('chosen curves stay chosen', async () => {
+  const page = await openPage(browser, `${daemon.address}#curves=brow_l.squash,nose.squash`);
+  await page.locator('.chip[data-name="nose.squash"]').waitFor();
+  assert.equal(await page.locator('.chip').count(), 2);
+  await page.locator('.picker summary').click();
+  await page.locator('.picker label', { hasText: /^glabella\.squash$/ }).click();
+  await page.locator('.chip[data-name="glabella.squash"]').waitFor();
+  assert.match(page.url(), /curves=brow_l\.squash,nose\.squash/);
+  await page.context().close();
+});
+
+test('the face map leads to the drivers and poses behind a region', async () => {
+  await daemon.hold(FROWN_S);
+  const page = await openPage(browser, `${daemon.address}#panel=wrinkles`, { viewport: { width: 1280, height: 720 } });
+  await page.locator('.region-shape[data-region=brow_l]').waitFor();
+  assert.equal(await page.locator('.region-shape').count(), 8);
+  await page.locator('.region-shape[data-region=brow_l]').click();
+  const article = page.locator('.explain article[data-weight="brow_l.squash"]');
+  await article.waitFor();
+  const expected = await daemon.get('api/explain?weight=brow_l.squash');
+  const drivers = await article.locator('tbody th').evaluateAll((cells) => cells.map((cell) => cell.firstChild.textContent));
+  assert.deepEqual(drivers, expected.contributions.map(({ value }) => value));
+  assert.equal(await article.locator('h4 output').textContent(), expected.live.toFixed(2));
+  const rig = await daemon.get('api/rig');
+  assert.equal(await page.locator('.regions .region').count(), rig.regions.length);
+  const fill = await page.getAttribute('.region-shape[data-region=brow_l]', 'fill');
+  assert.match(fill, /^hsl\(/);
+  await keep(page, 'why');
+  await page.context().close();
+});
+
+test('capture: preview changes nothing, capture does, undo takes it back', async () => {
+  await daemon.hold(FROWN_S);
+  const page = await openPage(browser, `${daemon.address}#panel=capture`);
+  await still(page);
+  const file = () => fetch(`${daemon.address}api/rig.json`).then((response) => response.text());
+  const before = await file();
+  await page.selectOption('select[aria-label="What the pose becomes"]', 'squash');
+  await page.getByRole('button', { name: 'Preview' }).click();
+  await page.getByText('Preview: this pose would give').waitFor();
+  assert.equal(await file(), before);
+  assert(await page.locator('.capture-result tbody tr').count() > 0);
+  await keep(page, 'capture');
+  await page.getByRole('button', { name: 'Capture', exact: true }).last().click();
+  await page.getByText('This pose now gives').waitFor();
+  const captured = await file();
+  assert.notEqual(captured, before);
+  const [saved] = await Promise.all([page.waitForEvent('download'), page.getByText('Download changed rig').click()]);
+  assert.equal(readFileSync(await saved.path(), 'utf8'), captured);
+  await page.locator('.capture').getByRole('button', { name: 'Undo' }).click();
+  await eventually('the rig as it was', async () => (await file()) === before);
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
+test('a second subject can be chosen, and is named in the list', async () => {
+  const publisher = furrow('play', recording('anger'), '--to', `localhost:${daemon.ports.udp}`, '--udp', '--subject', 'guest', '--loop');
+  try {
+    const page = await openPage(browser, `${daemon.address}#panel=session`);
+    await page.locator('.subjects button', { hasText: 'guest' }).click();
+    await page.locator('.condition', { hasText: 'Live: guest' }).waitFor();
+    assert.match(page.url(), /subject=guest/);
+    assert.deepEqual(page.errors, []);
+    await page.context().close();
+  } finally {
+    publisher.kill();
+    await once(publisher, 'exit');
+  }
+});
