@@ -52,7 +52,8 @@ void Subscribers::PublishOwed(Time now) {
     if (subscription->subject == nullptr) continue;
     if (const PicturesWish* wish = FlowOf(*subscription); wish != nullptr) {
       // At rest each viewer gets one refined picture, though no pose calls for it.
-      subscription->owed |= !wish->flow->has_still() && Rests(*subscription, *wish, now);
+      subscription->owed |= !wish->flow->HasStill(ShownSince(*subscription, *wish)) &&
+                            Rests(*subscription, *wish, now);
     }
     if (subscription->owed) PublishOwed(*subscription, now);
   }

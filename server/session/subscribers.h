@@ -96,6 +96,8 @@ class Subscribers {
   // viewers.cpp
   Result<PicturesWish> MakeWish(const protocol::SubscribePictures& request);
   void Show(Subscription& subscription, Time now);
+  // Since when pose and view are what they are.
+  static Time ShownSince(const Subscription& subscription, const PicturesWish& wish);
   static bool Rests(const Subscription& subscription, const PicturesWish& wish, Time now);
   void AddToJobs(Subscription& subscription, PicturesWish& wish, std::int64_t age_us, Time now,
                  Jobs* jobs);

@@ -32,7 +32,8 @@ class ViewerFlow {
   // A pose this viewer was due: once for each, before it is asked for. Decides the tier.
   void CountDue(Time now);
 
-  [[nodiscard]] bool has_still() const { return has_still_; }
+  // The still of what has been shown `since`; one asked for before, say of another view, is none.
+  [[nodiscard]] bool HasStill(Time since) const { return has_still_ && asked_at_ >= since; }
   [[nodiscard]] int tier() const { return tier_; }
   [[nodiscard]] std::uint32_t under_way() const { return sent_ - acknowledged_; }
   // Poses that were due while two pictures were under way.

@@ -122,8 +122,12 @@ void Subscribers::Show(Subscription& subscription, Time now) {
   }
 }
 
+Time Subscribers::ShownSince(const Subscription& subscription, const PicturesWish& wish) {
+  return std::max(subscription.subject->rest.moved_at(), wish.changed);
+}
+
 bool Subscribers::Rests(const Subscription& subscription, const PicturesWish& wish, Time now) {
-  return now - std::max(subscription.subject->rest.moved_at(), wish.changed) >= kRestsAfter;
+  return now - ShownSince(subscription, wish) >= kRestsAfter;
 }
 
 // A pose that a viewer with flow control is due, or one that it is still owed.
@@ -132,7 +136,8 @@ void Subscribers::AskForPicture(Subscription& subscription, PicturesWish& wish, 
   ViewerFlow& flow = *wish.flow;
   const bool rests = Rests(subscription, wish, now);
   subscription.owed = false;
-  if (rests && flow.has_still()) return;  // nothing to be seen that was not shown
+  if (rests && flow.HasStill(ShownSince(subscription, wish)))
+    return;  // nothing to be seen that was not shown
   if (!flow.MayAsk(now)) {
     subscription.owed = true;
     // One that waits to be drawn is drawn as of now.

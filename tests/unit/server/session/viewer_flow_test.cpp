@@ -49,12 +49,22 @@ TEST(ViewerFlow, WhatWasNeverSentCannotBeAcknowledged) {
   EXPECT_EQ(flow.under_way(), 1u);
 }
 
+TEST(ViewerFlow, AStillAskedForBeforeTheViewChangedIsNone) {
+  ViewerFlow flow;
+  const Time asked = FromSeconds(5);
+  flow.Ask(true, asked);
+  EXPECT_TRUE(flow.HasStill(asked));
+  const Time changed = asked + Time(1);  // while the still is being drawn
+  flow.Send();
+  EXPECT_FALSE(flow.HasStill(changed));
+}
+
 TEST(ViewerFlow, AFailedPictureIsTriedAgainAfterAWhile) {
   ViewerFlow flow;
   const Time now = FromSeconds(5);
   flow.Ask(true, now);
   flow.Fail();
-  EXPECT_FALSE(flow.has_still());
+  EXPECT_FALSE(flow.HasStill(FromSeconds(0)));
   EXPECT_EQ(flow.under_way(), 0u);
   EXPECT_FALSE(flow.MayAsk(now + ViewerFlow::kRetry - Time(1)));
   EXPECT_TRUE(flow.MayAsk(now + ViewerFlow::kRetry));
