@@ -5,6 +5,8 @@
 #include <chrono>
 #include <utility>
 
+#include <sys/socket.h>
+
 namespace furrow::load {
 
 using client::Event;
@@ -25,7 +27,7 @@ Result<Burdens> Burdens::Open(OpenSocket open, const BurdenOptions& options, int
                                          {Kind::kChurn, options.churn}};
   for (const auto& [kind, count] : wanted) {
     for (int i = 0; i < count; ++i) {
-      Burden burden{.kind = kind, .due_us = 0, .socket = nullptr, .subscriber = nullptr};
+      Burden burden{.kind = kind, .due_us = 0, .subscriber = nullptr};
       if (Status status = all.Begin(burden); !status.ok()) return status;
       all.burdens_.push_back(std::move(burden));
     }
@@ -36,7 +38,11 @@ Result<Burdens> Burdens::Open(OpenSocket open, const BurdenOptions& options, int
 Status Burdens::Begin(Burden& burden) {
   auto socket = open_(0);
   if (!socket.ok()) return socket.status();
-  burden.socket = socket->get();
+  if (burden.kind != Kind::kChurn) {
+    // Else the system would read megabytes for who does not, and the server notice much later.
+    const int bytes = 4096;
+    setsockopt((*socket)->descriptor(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof(bytes));
+  }
   burden.subscriber =
       std::make_unique<client::Subscriber>(*std::move(socket), "furrow load, misbehaving");
   for (int i = 0; i < subjects_; ++i) {

@@ -40,7 +40,6 @@ class Burdens {
   struct Burden {
     Kind kind = Kind::kStalled;
     std::int64_t due_us = 0;
-    Socket* socket = nullptr;  // the subscriber's
     std::unique_ptr<client::Subscriber> subscriber;
   };
 
