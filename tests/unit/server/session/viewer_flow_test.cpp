@@ -55,7 +55,7 @@ TEST(ViewerFlow, AStillAskedForBeforeTheViewChangedIsNone) {
   flow.Ask(true, asked);
   EXPECT_TRUE(flow.HasStill(asked));
   const Time changed = asked + Time(1);  // while the still is being drawn
-  flow.Send();
+  EXPECT_EQ(flow.Send(), 1u);
   EXPECT_FALSE(flow.HasStill(changed));
 }
 
