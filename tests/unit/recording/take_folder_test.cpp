@@ -17,8 +17,11 @@ namespace fs = std::filesystem;
 class TakeFolderTest : public TakeTest {
  protected:
   std::unique_ptr<TakeFolder> OpenFolder(std::uint64_t rotate_bytes, std::uint64_t rotate_ns) {
-    auto folder =
-        TakeFolder::Open({folder_ / "takes", rotate_bytes, rotate_ns, "{}"}, Stamp(0).log_time_ns);
+    auto folder = TakeFolder::Open({.folder = folder_ / "takes",
+                                    .rotate_bytes = rotate_bytes,
+                                    .rotate_ns = rotate_ns,
+                                    .rig_json = "{}"},
+                                   Stamp(0).log_time_ns);
     EXPECT_TRUE(folder.ok()) << folder.status().ToString();
     return folder.ok() ? *std::move(folder) : nullptr;
   }
