@@ -22,7 +22,7 @@ const char kProgram[] = FURROW_BINARY_DIR "/bin/furrowd";
 const char kRig[] = FURROW_SOURCE_DIR "/character/rigs/arkit.json";
 
 std::vector<std::string> Command(std::vector<std::string> more = {}) {
-  std::vector<std::string> command = {kProgram, "--rig", kRig, "--no-render"};
+  std::vector<std::string> command = {kProgram, "--rig", kRig, "--no-render", "--http", "0"};
   command.insert(command.end(), more.begin(), more.end());
   return command;
 }
@@ -31,7 +31,7 @@ std::vector<std::string> Command(std::vector<std::string> more = {}) {
 std::pair<int, int> Ports(const std::string& line) {
   std::smatch match;
   const std::regex ready(
-      R"(furrowd ready tcp=127\.0\.0\.1:(\d+) udp=127\.0\.0\.1:(\d+) render=off)");
+      R"(furrowd ready tcp=127\.0\.0\.1:(\d+) udp=127\.0\.0\.1:(\d+) render=off http=127\.0\.0\.1:\d+)");
   if (!std::regex_match(line, match, ready)) return {0, 0};
   return {std::stoi(match[1]), std::stoi(match[2])};
 }
