@@ -120,7 +120,7 @@ Result<std::unique_ptr<HttpServer>> HttpServer::Start(Parts parts) {
   auto impl = std::make_unique<Impl>(std::move(parts));
   Status status = impl->Listen(bind, asked.value_or(HttpConfig::kDefaultPort));
   if (!status.ok() && !asked) {
-    spdlog::warn("{}; taking any free port", status.what());
+    spdlog::warn("{}: {}; taking any free port", status.where(), status.what());
     status = impl->Listen(bind, 0);
   }
   if (!status.ok()) return status;
