@@ -38,14 +38,32 @@ void SetHeaders(const WebRequest& request, std::string_view type, Message* messa
 
 std::string_view View(beast::string_view text) { return {text.data(), text.size()}; }
 
+// With its body, unless only its head was asked for. False: the connection ends here.
+template <class Response>
+net::awaitable<bool> Write(beast::tcp_stream& stream, const WebRequest& request,
+                           Response& response) {
+  http::response_serializer<typename Response::body_type> serializer(response);
+  stream.expires_after(kWebDeadline);
+  beast::error_code failure;
+  if (request.method() == http::verb::head) {
+    const auto [error, size] = co_await http::async_write_header(stream, serializer, kWebToken);
+    failure = error;
+  } else {
+    const auto [error, size] = co_await http::async_write(stream, serializer, kWebToken);
+    failure = error;
+  }
+  co_return !failure && response.keep_alive();
+}
+
 // The hub's thread answers; where it does not within the deadline, that is what is said.
 net::awaitable<ApiReply> AskHub(WebContext* context, ApiRequest request) {
   struct Pending {
     net::steady_timer timer;
     std::optional<ApiReply> reply;
   };
-  const auto pending = std::make_shared<Pending>(
-      Pending{net::steady_timer(co_await net::this_coro::executor, kWebDeadline), std::nullopt});
+  const auto executor = co_await net::this_coro::executor;
+  const auto pending =
+      std::make_shared<Pending>(Pending{net::steady_timer(executor, kWebDeadline), std::nullopt});
   // Weak: the hub's queue may outlive the loop that the timer is on.
   context->post_to_hub([weak = std::weak_ptr(pending), answer = context->answer,
                         post_to_web = context->post_to_web,
@@ -80,12 +98,7 @@ net::awaitable<bool> WritePageFile(beast::tcp_stream& stream, const WebRequest& 
   if (!known && request.method() != http::verb::head) {
     response.body() = {bytes.data(), bytes.size()};
   }
-  http::response_serializer<http::span_body<const char>> serializer(response);
-  stream.expires_after(kWebDeadline);
-  const bool head = request.method() == http::verb::head;
-  const auto [error, size] = head ? co_await http::async_write_header(stream, serializer, kWebToken)
-                                  : co_await http::async_write(stream, serializer, kWebToken);
-  co_return !error && response.keep_alive();
+  co_return co_await Write(stream, request, response);
 }
 
 bool IsPicture(const std::string& path) { return path == "/mjpeg" || path == "/snapshot.png"; }
@@ -108,7 +121,10 @@ class HttpSession {
       : stream_(std::move(stream)), context_(context) {}
 
   net::awaitable<void> Run() {
-    while (co_await ReadRequest() && co_await Answer()) {
+    bool goes_on = true;
+    while (goes_on) {  // in two steps: GCC 12 awaits both sides of an &&, whatever the left one is
+      goes_on = co_await ReadRequest();
+      if (goes_on) goes_on = co_await Answer();
     }
     if (stream_.socket().is_open()) {
       beast::error_code error;
@@ -194,7 +210,8 @@ class HttpSession {
                        std::string(View(request_[http::field::content_type])),
                        std::move(request_.body())};
     if (request.method == "HEAD") request.method = "GET";
-    co_return co_await WriteReply(stream_, request_, co_await AskHub(context_, std::move(request)));
+    ApiReply reply = co_await AskHub(context_, std::move(request));
+    co_return co_await WriteReply(stream_, request_, std::move(reply));
   }
 
   beast::tcp_stream stream_;
@@ -217,12 +234,7 @@ net::awaitable<bool> WriteReply(beast::tcp_stream& stream, const WebRequest& req
   }
   response.body() = std::move(reply.body);
   response.prepare_payload();
-  http::response_serializer<http::string_body> serializer(response);
-  stream.expires_after(kWebDeadline);
-  const bool head = request.method() == http::verb::head;
-  const auto [error, size] = head ? co_await http::async_write_header(stream, serializer, kWebToken)
-                                  : co_await http::async_write(stream, serializer, kWebToken);
-  co_return !error && response.keep_alive();
+  co_return co_await Write(stream, request, response);
 }
 
 net::awaitable<void> ServeConnection(beast::tcp_stream stream, WebContext* context) {

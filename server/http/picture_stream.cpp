@@ -173,8 +173,8 @@ net::awaitable<bool> ServeSnapshot(beast::tcp_stream* stream, PictureStream* pic
         next.refusal.value_or(ErrorReply(404, "not_found", "subject", "the subject has left")));
   }
   const std::vector<std::uint8_t>& bytes = pictures->image().bytes;
-  co_return co_await WriteReply(
-      *stream, request, {.type = "image/png", .body = std::string(bytes.begin(), bytes.end())});
+  ApiReply picture{.type = "image/png", .body = std::string(bytes.begin(), bytes.end())};
+  co_return co_await WriteReply(*stream, request, std::move(picture));
 }
 
 }  // namespace
@@ -190,8 +190,12 @@ net::awaitable<bool> ServePictures(beast::tcp_stream* stream, WebContext* contex
   stream->expires_never();
   auto pictures = std::make_shared<PictureStream>(stream, context);
   pictures->Open(*wanted);
-  const bool goes_on = once ? co_await ServeSnapshot(stream, pictures.get(), request)
-                            : co_await ServeMjpeg(stream, pictures.get(), request);
+  bool goes_on = false;
+  if (once) {
+    goes_on = co_await ServeSnapshot(stream, pictures.get(), request);
+  } else {
+    goes_on = co_await ServeMjpeg(stream, pictures.get(), request);
+  }
   pictures->Close();
   co_return goes_on;
 }

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// The web side over real sockets: who is answered what, and who is cut off (docs/HTTP-API.md).
+#include <optional>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon_fixture.h"
+#include "web_client.h"
+
+namespace furrow::testing_net {
+namespace {
+
+using Json = nlohmann::json;
+using server::Counter;
+
+class Http : public testing::Test {
+ protected:
+  void SetUp() override { Start(WeightsConfig("arkit.json")); }
+  void Start(const server::Config& config) {
+    daemon.emplace(config);
+    ASSERT_TRUE(daemon->serves());
+    ASSERT_TRUE(daemon->ready().http.has_value());
+  }
+  std::uint16_t port() const { return *daemon->ready().http; }
+  WebClient::Answer Get(std::string_view target) { return WebClient(port()).Ask("GET", target); }
+  // A face called "ann" that has sent one pose, far from neutral.
+  void PublishAnn() {
+    const motion::Clip clip = ArkitClip(kFrame + 1);
+    const protocol::SkeletonOffer offer = OfferOf(clip, "ann");
+    sender.emplace(daemon->ready().tcp);
+    Offer(*sender, offer);
+    sender->Send(PoseOf(clip, kFrame, offer), 1, 0, 1000);
+    sender->Send(protocol::Ping{1});
+    ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());  // the pose has been seen
+  }
+
+  static constexpr int kFrame = 89;
+  std::optional<DaemonThread> daemon;
+  std::optional<TcpClient> sender;
+};
+
+TEST_F(Http, RoutesAnswerAndAConnectionServesMany) {
+  WebClient client(port());
+  EXPECT_EQ(client.Ask("GET", "/healthz").body, "{\"ok\":true}");
+  EXPECT_EQ(client.Ask("GET", "/readyz").status, 200);
+  const auto head = client.Ask("HEAD", "/api/status");
+  EXPECT_EQ(head.status, 200);
+  EXPECT_NE(head.head.find("nosniff"), std::string::npos);
+  EXPECT_EQ(client.Ask("GET", "/api/nothing").status, 404);
+  EXPECT_EQ(client.Ask("DELETE", "/api/settings").status, 405);
+  EXPECT_EQ(client.Ask("GET", "/../../etc/passwd").status, 404);
+  EXPECT_EQ(client.Ask("GET", "/%2e%2e/%2e%2e/etc/passwd").status, 404);
+  const auto metrics = client.Ask("GET", "/metrics");
+  EXPECT_NE(metrics.body.find("\nfurrow_poses_received_total 0"), std::string::npos);
+  EXPECT_NE(metrics.body.find("# TYPE furrow_subjects gauge"), std::string::npos);
+  EXPECT_EQ(Json::parse(client.Ask("GET", "/api/status").body)["render"], false);
+}
+
+TEST_F(Http, ARequestIsAnsweredOnce) {
+  WebClient client(port());
+  EXPECT_EQ(client.Ask("GET", "/healthz").status, 200);
+  client.EndSending();
+  EXPECT_EQ(client.AskRaw("").status, 0);  // the end of the connection, and no second answer
+  EXPECT_EQ(daemon->Count(Counter::kHttpRequests), 1u);
+}
+
+TEST_F(Http, StrangersAreRefused) {
+  WebClient client(port());
+  const auto ask = [&](std::string_view headers) {
+    return client.Ask("GET", "/api/status", {}, headers).status;
+  };
+  EXPECT_EQ(ask("Host: evil.example\r\n"), 403);
+  EXPECT_EQ(ask("Host: localhost\r\nOrigin: http://evil.example\r\n"), 403);
+  EXPECT_EQ(ask("Host: localhost\r\nOrigin: http://localhost\r\n"), 200);
+  EXPECT_EQ(WebClient(port()).Upgrade("Host: localhost\r\nOrigin: http://evil.example\r\n").status,
+            403);
+  EXPECT_EQ(daemon->Count(Counter::kHttpRefused), 3u);
+}
+
+TEST_F(Http, WhatIsNoRequestOrTooLargeEndsItsConnectionAlone) {
+  WebClient other(port());
+  EXPECT_EQ(other.Ask("GET", "/healthz").status, 200);
+  EXPECT_EQ(WebClient(port()).AskRaw("\x16\x03\x01 what is this\r\n\r\n").status, 400);
+  const std::string many(9000, 'x');
+  EXPECT_EQ(WebClient(port()).Ask("GET", "/", {}, "Host: localhost\r\nX: " + many + "\r\n").status,
+            431);
+  EXPECT_EQ(WebClient(port())
+                .AskRaw("PATCH /api/settings HTTP/1.1\r\nHost: localhost\r\n"
+                        "Content-Length: 65537\r\n\r\n")
+                .status,
+            413);
+  EXPECT_EQ(other.Ask("GET", "/healthz").status, 200);
+}
+
+TEST_F(Http, SettingsChangeAllOrNothingAndErrorsNameTheField) {
+  WebClient client(port());
+  const auto value_of = [](const std::string& body, const std::string& name) {
+    const Json answer = Json::parse(body);
+    for (const Json& setting : answer["settings"]) {
+      if (setting["name"] == name) return setting["value"].get<std::string>();
+    }
+    return std::string();
+  };
+  const auto patched =
+      client.Ask("PATCH", "/api/settings", R"({"shading":"skin","wrinkles":false,"exposure":1.5})");
+  EXPECT_EQ(patched.status, 200);
+  EXPECT_EQ(value_of(patched.body, "shading"), "skin");
+  EXPECT_EQ(value_of(patched.body, "wrinkles"), "off");
+  EXPECT_EQ(value_of(patched.body, "exposure"), "1.5");
+  const std::pair<const char*, const char*> wrong[] = {
+      {R"({"exposure":2,"subsurface.width":99})", "subsurface.width"},
+      {R"({"no.such":1})", "no.such"},
+      {R"({"shading":[]})", "shading"},
+      {"[]", "body"},
+      {"{", "body"}};
+  for (const auto& [body, field] : wrong) {
+    const auto answer = client.Ask("PATCH", "/api/settings", body);
+    EXPECT_EQ(answer.status, 400) << body;
+    EXPECT_EQ(Json::parse(answer.body)["error"]["field"], field) << body;
+  }
+  EXPECT_EQ(value_of(client.Ask("GET", "/api/settings").body, "exposure"), "1.5");
+}
+
+TEST_F(Http, SubjectsAndTheirWeightsAreExplained) {
+  EXPECT_EQ(Get("/api/explain?weight=x").status, 404);
+  PublishAnn();
+  const Json subject = Json::parse(Get("/api/subjects").body)["subjects"][0];
+  EXPECT_EQ(subject["name"], "ann");
+  EXPECT_EQ(subject["state"], "live");
+  EXPECT_EQ(subject["blend_shapes"], 52);
+  EXPECT_EQ(subject["poses"], 1);
+  const Json rig = Json::parse(Get("/api/rig").body);
+  const std::string weight = rig["regions"][0]["weights"][0]["name"];
+  const Json why = Json::parse(Get("/api/explain?subject=ann&weight=" + weight).body);
+  EXPECT_EQ(why["weight"], weight);
+  EXPECT_GT(why["live"], 0.01);
+  // Of the first pose the filter changes nothing; only the sums are formed in another order.
+  EXPECT_NEAR(why["result"].get<double>(), why["live"].get<double>(), 1e-6);
+  EXPECT_FALSE(why["contributions"].empty());
+  const auto unknown = Get("/api/explain?subject=ann&weight=nothing.at.all");
+  EXPECT_EQ(unknown.status, 404);
+  EXPECT_EQ(Json::parse(unknown.body)["error"]["field"], "weight");
+}
+
+TEST_F(Http, ANeutralIsCapturedPreviewedAndTakenBack) {
+  PublishAnn();
+  WebClient client(port());
+  EXPECT_EQ(client.Ask("POST", "/api/capture/undo", "{}").status, 409);
+  EXPECT_EQ(client.Ask("POST", "/api/capture", R"({"pose":"a b"})").status, 400);
+  const auto largest = [&](const std::string& field, const std::string& body) {
+    float most = 0.0f;
+    const Json answer = Json::parse(client.Ask("POST", "/api/capture", body).body);
+    for (const Json& weight : answer["weights"]) most = std::max(most, weight[field].get<float>());
+    return most;
+  };
+  const std::string preview = R"({"subject":"ann","pose":"neutral","preview":true})";
+  const float before = largest("before", preview);
+  EXPECT_GT(before, 0.0f);
+  EXPECT_EQ(largest("after", preview), 0.0f);
+  EXPECT_EQ(largest("before", preview), before);  // a preview changes nothing
+  EXPECT_EQ(largest("after", R"({"pose":"neutral"})"), 0.0f);
+  EXPECT_EQ(largest("before", preview), 0.0f);
+  EXPECT_EQ(client.Ask("POST", "/api/capture/undo", "{}").status, 200);
+  EXPECT_EQ(largest("before", preview), before);
+}
+
+TEST_F(Http, WithoutPicturesThatIsWhatIsSaid) {
+  EXPECT_EQ(Get("/snapshot.png").status, 503);
+  EXPECT_EQ(Get("/mjpeg").status, 503);
+  EXPECT_EQ(Get("/api/cameras").status, 503);
+  EXPECT_EQ(Get("/mjpeg?width=1").status, 400);
+  EXPECT_EQ(Get("/api/playback").status, 409);
+}
+
+TEST_F(Http, AWebSocketIsAPeerOfTheHub) {
+  PublishAnn();
+  WebClient client(port());
+  const auto upgraded = client.Upgrade();
+  ASSERT_EQ(upgraded.status, 101);
+  EXPECT_NE(upgraded.head.find("Sec-WebSocket-Protocol: furrow.1"), std::string::npos);
+  client.Send(protocol::Ping{42});
+  EXPECT_EQ(client.Take<protocol::Pong>()->time_us, 42);
+  client.Send(protocol::SubscribeWeights{.subject = "ann"}, 0, 5);
+  protocol::Header header;
+  const auto reply = client.Take<protocol::SubscribeReply>(&header);
+  ASSERT_TRUE(reply.has_value());
+  EXPECT_EQ(header.sequence, 5u);
+  const auto weights = client.Take<protocol::WeightFrame>();
+  ASSERT_TRUE(weights.has_value());
+  EXPECT_EQ(weights->values.size(), reply->names.size());
+  client.Send(protocol::SubscribePictures{.subject = "ann"}, 0, 6);
+  EXPECT_EQ(client.Take<protocol::ErrorMessage>()->code, protocol::ErrorCode::kNotRendering);
+}
+
+TEST_F(Http, AWebSocketThatBreaksTheRulesIsClosedAndNoOther) {
+  WebClient good(port());
+  ASSERT_EQ(good.Upgrade().status, 101);
+  const auto close_code = [&](int opcode, const std::vector<std::uint8_t>& payload) {
+    WebClient client(port());
+    EXPECT_EQ(client.Upgrade().status, 101);
+    client.SendFrame(opcode, payload);
+    const auto frame = client.Next();
+    return frame && frame->opcode == WebClient::kClose ? frame->close_code() : -1;
+  };
+  EXPECT_EQ(close_code(WebClient::kText, {'h', 'i'}), 1003);
+  EXPECT_EQ(close_code(WebClient::kBinary, {1, 2, 3}), 1002);
+  EXPECT_EQ(close_code(WebClient::kBinary, std::vector<std::uint8_t>(65537)), 1009);
+  good.Send(protocol::Ping{7});
+  EXPECT_EQ(good.Take<protocol::Pong>()->time_us, 7);
+}
+
+TEST_F(Http, ConnectionsAreLimited) {
+  daemon.reset();
+  server::Config config = WeightsConfig("arkit.json");
+  config.http.max_connections = 2;
+  Start(config);
+  WebClient first(port());
+  WebClient second(port());
+  EXPECT_EQ(first.Ask("GET", "/healthz").status, 200);
+  EXPECT_EQ(second.Ask("GET", "/healthz").status, 200);
+  EXPECT_EQ(WebClient(port()).AskRaw("").status, 429);
+  EXPECT_EQ(first.Ask("GET", "/healthz").status, 200);
+}
+
+}  // namespace
+}  // namespace furrow::testing_net

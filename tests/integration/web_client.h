@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "protocol/codec.h"
+
+namespace furrow::testing_net {
+
+// A blocking socket that speaks as little HTTP and WebSocket as the tests need, and whatever wrong
+// bytes they want. The long timeout is a guard against hanging, never a measure.
+class WebClient {
+ public:
+  explicit WebClient(std::uint16_t port);
+  ~WebClient();
+  WebClient(const WebClient&) = delete;
+  WebClient& operator=(const WebClient&) = delete;
+
+  struct Answer {
+    int status = 0;  // 0: the connection ended without one
+    std::string head;
+    std::string body;
+  };
+  // `headers`: whole lines, each with its end.
+  Answer Ask(std::string_view method, std::string_view target, std::string_view body = {},
+             std::string_view headers = "Host: localhost\r\n");
+  Answer AskRaw(std::string_view bytes);
+  // Nothing more will be asked; answers still come.
+  void EndSending();
+
+  // The handshake of /ws. Its answer has no body.
+  Answer Upgrade(std::string_view headers = "Host: localhost\r\n");
+  static constexpr int kText = 1;
+  static constexpr int kBinary = 2;
+  static constexpr int kClose = 8;
+  void SendFrame(int opcode, std::span<const std::uint8_t> payload);
+  template <class Message>
+  void Send(const Message& message, std::uint16_t stream = 0, std::uint32_t sequence = 0) {
+    std::vector<std::uint8_t> bytes;
+    encoder_.Encode({.session = 77, .stream = stream, .sequence = sequence}, message, bytes);
+    SendFrame(kBinary, bytes);
+  }
+  struct Frame {
+    int opcode = 0;
+    std::vector<std::uint8_t> payload;
+    [[nodiscard]] int close_code() const {
+      return payload.size() < 2 ? 0 : payload[0] << 8 | payload[1];
+    }
+  };
+  std::optional<Frame> Next();
+  // The next message, if it is one of this kind.
+  template <class Message>
+  std::optional<Message> Take(protocol::Header* header = nullptr) {
+    const std::optional<Frame> frame = Next();
+    protocol::MessageView view;
+    Message message;
+    if (!frame ||
+        protocol::OpenMessage(frame->payload, view, protocol::kMaxReplyBytes) !=
+            protocol::DecodeStatus::kOk ||
+        protocol::Decode(view, message) != protocol::DecodeStatus::kOk) {
+      return std::nullopt;
+    }
+    if (header != nullptr) *header = view.header;
+    return message;
+  }
+  // Bytes up to and with `end`; empty where the connection ends before.
+  std::string ReadUntil(std::string_view end);
+
+ private:
+  void Write(std::string_view bytes);
+  bool Fill();
+  Answer ReadAnswer(bool has_body);
+  std::string Take(std::size_t count);
+
+  int socket_ = -1;
+  std::string in_;
+  protocol::Encoder encoder_;
+};
+
+}  // namespace furrow::testing_net
