@@ -51,6 +51,7 @@ trap stop EXIT
 trap 'stop; exit 0' INT TERM
 
 say "furrowd with the default character"
+: >"$out/furrowd.out"
 printf 'shading = "skin"\n' >"$out/look.toml"
 "$bin/furrowd" --tcp 0 --udp 0 --render-settings "$out/look.toml" >"$out/furrowd.out" 2>"$out/furrowd.log" &
 daemon=$!
