@@ -25,7 +25,7 @@ interface RegionView {
   name: string;
   weights: { name: string; map: string }[];
   bars: Map<string, HTMLElement>;
-  shape: SVGElement | null;
+  shape: SVGPathElement | null;
   button: HTMLButtonElement;
 }
 
@@ -72,7 +72,7 @@ export class FaceMap {
     this.list.replaceChildren(...this.regions.map(({ button }) => h('li', {}, button)));
   }
 
-  private addShape(name: string, choose: () => void): SVGElement | null {
+  private addShape(name: string, choose: () => void): SVGPathElement | null {
     const mirrored = name.replace(/_r$/, '_l');
     const d = MIDDLE[name] ?? HALF[name] ?? HALF[mirrored];
     if (d === undefined) return null;
@@ -96,7 +96,7 @@ export class FaceMap {
         if (map === 'stretch') drawn = Math.max(drawn, value);
         else pressed = Math.max(pressed, value);
       }
-      shape?.setAttribute('fill', colourOf(pressed, drawn));
+      if (shape !== null) shape.style.fill = colourOf(pressed, drawn);
     }
   }
 
