@@ -46,7 +46,7 @@ export class App {
   private readonly tabs: Tabs;
   private readonly help: HTMLDialogElement;
   private readonly root = h('div', { class: 'app' });
-  private subjects: SubjectInfo[] = [];
+  private subjects: SubjectInfo[] | null = null;
   private status: DaemonStatus | null = null;
   private daemonSession = '';
   private everConnected = false;
@@ -108,6 +108,7 @@ export class App {
     this.connection.state.watch((link) => {
       if (link === 'open') {
         this.everConnected = true;
+        void this.askDaemon().then(() => this.showCondition());
         void this.readDaemon();
       }
       this.showCondition();
@@ -122,7 +123,7 @@ export class App {
       ({ key, words, run, ...(release ? { release } : {}) });
     return [
       ...Array.from({ length: 9 }, (_, i) => command(String(i + 1), i === 0 ? 'framings: 1 to 9, in their order' : '', () => this.viewBar.choose(i))),
-      command('0', 'first framing', () => this.viewBar.reset()),
+      command('0', 'first framing', () => this.viewBar.choose(0)),
       command('space', 'play or pause the recording', () => this.timeline.toggle()),
       command('c', 'hold: before the last change', () => state.comparing.set(true), () => state.comparing.set(false)),
       command('x', 'wipe: wrinkles, shading, none', () => this.viewBar.nextWipe()),
@@ -188,26 +189,30 @@ export class App {
 
   private async poll(): Promise<void> {
     const nowS = performance.now() / 1000;
-    if (!document.hidden && this.connection.state.value === 'open') {
-      try {
-        [this.subjects, this.status] = await Promise.all([api.subjects(), api.status()]);
-        this.showDaemon();
-      } catch {
-        // The connection's state says what is wrong.
-      }
-    }
-    const shown = this.subjects.find(({ name }) => name === this.weights.subject.value);
+    if (!document.hidden) await this.askDaemon();
+    const shown = this.subjects?.find(({ name }) => name === this.weights.subject.value);
     this.viewer.observeRate(shown?.rate_hz ?? 0, nowS);
     this.header.showStats(this.viewer.stats, nowS);
     this.showCondition();
     setTimeout(() => void this.poll(), POLL_MS);
   }
 
+  private async askDaemon(): Promise<void> {
+    if (this.connection.state.value !== 'open') return;
+    try {
+      [this.subjects, this.status] = await Promise.all([api.subjects(), api.status()]);
+      this.showDaemon();
+    } catch {
+      // The connection's state says what is wrong.
+    }
+  }
+
   private showDaemon(): void {
     const status = this.status!;
     this.timeline.setAvailable(status.playback);
-    this.session.show(this.subjects, status, this.weights.subject.value);
-    this.header.showSubjects(this.subjects.map(({ name }) => name));
+    const subjects = this.subjects!;
+    this.session.show(subjects, status, this.weights.subject.value);
+    this.header.showSubjects(subjects.map(({ name }) => name));
     if (this.daemonSession !== '' && status.session !== this.daemonSession) {
       this.toasts.say('The daemon was restarted; the page goes on as it was');
     }

@@ -19,6 +19,7 @@ test('each trouble has its own words', () => {
     [{ link: 'lost', everConnected: false }, 'bad', /No daemon answers/],
     [{ link: 'draining' }, 'bad', /shutting down/],
     [{ link: 'connecting' }, 'wait', /Connecting/],
+    [{ subjects: null }, 'wait', /Connecting/],
     [{ subjects: [] }, 'wait', /Nobody streams/],
     [{ wanted: 'other' }, 'wait', /“other” is not here/],
     [{ renders: false }, 'bad', /draws no pictures/],

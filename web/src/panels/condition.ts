@@ -9,7 +9,8 @@ export interface Situation {
   /** The daemon's sentence where it draws nothing; empty: it does. */
   notDrawn: string;
   renders: boolean;
-  subjects: readonly Pick<SubjectInfo, 'name' | 'state' | 'age_ms'>[];
+  /** Null: the daemon was not asked yet. */
+  subjects: readonly Pick<SubjectInfo, 'name' | 'state' | 'age_ms'>[] | null;
   /** Empty: whoever has been there longest. */
   wanted: string;
   /** A picture came since the page was opened. */
@@ -33,7 +34,7 @@ export function assess(situation: Situation): Condition {
       ? condition('bad', 'Connection lost: trying again', 'Is furrowd still running?')
       : condition('bad', 'No daemon answers at this address', 'Start furrowd; this page keeps trying.');
   }
-  if (link === 'connecting') return condition('wait', 'Connecting');
+  if (link === 'connecting' || subjects === null) return condition('wait', 'Connecting');
   const subject = wanted === '' ? subjects.find((s) => s.state !== 'ended') : subjects.find((s) => s.name === wanted);
   if (subject === undefined || subject.state === 'ended') {
     return wanted === ''

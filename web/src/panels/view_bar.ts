@@ -12,6 +12,11 @@ const SHARPNESS: readonly (readonly [Sharpness, string])[] = [
   ['auto', 'Auto detail'], ['sharp', 'Full detail'], ['fast', 'Fast, coarse'],
 ];
 
+/** As in a title, but in as little room: all framings stand in one row. */
+function shortName(name: string): string {
+  return readable(name.replace('three_quarter', '¾'));
+}
+
 export class ViewBar {
   readonly element: HTMLElement;
   private readonly framings = h('div', { class: 'framings', role: 'group', 'aria-label': 'Framing' });
@@ -21,16 +26,10 @@ export class ViewBar {
     this.wipe = select('Split the picture', WIPES, (value) => state.wipe.set(value as Wipe));
     const sharpness = select('Sharpness', SHARPNESS, (value) => state.sharpness.set(value as Sharpness));
     this.element = h('div', { class: 'view-bar', role: 'toolbar', 'aria-label': 'View' },
-      this.framings, button('Reset', () => this.reset(), { title: 'Back to the first framing (key 0)' }),
-      h('span', { class: 'space' }), debugViews, this.wipe, sharpness);
+      this.framings, h('span', { class: 'space' }), debugViews, this.wipe, sharpness);
     state.presets.bind(() => this.fill());
     state.camera.watch(() => this.mark());
     state.wipe.bind((wipe) => (this.wipe.value = wipe));
-  }
-
-  reset(): void {
-    const first = this.state.presets.value[0];
-    if (first !== undefined) this.state.choosePreset(first.name);
   }
 
   /** The n-th preset, from 0. */
@@ -46,7 +45,9 @@ export class ViewBar {
 
   private fill(): void {
     this.framings.replaceChildren(...this.state.presets.value.map(({ name }, i) =>
-      button(readable(name), () => this.state.choosePreset(name), { 'data-preset': name, title: i < 9 ? `Key ${i + 1}` : '' })));
+      button(shortName(name), () => this.state.choosePreset(name), {
+        'data-preset': name, title: i < 9 ? `${readable(name)} (key ${i + 1})` : readable(name),
+      })));
     this.mark();
   }
 
