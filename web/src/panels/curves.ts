@@ -32,7 +32,7 @@ export class CurvesPanel {
     this.picker.append(h('summary', {}, 'Choose'));
     this.picker.addEventListener('toggle', () => this.fillPicker());
     this.element = h('section', { class: 'curves', 'aria-label': 'Weight curves' },
-      h('div', { class: 'row bar-row' }, h('h2', {}, 'Weights'), this.chips, this.picker, this.freeze,
+      h('div', { class: 'row bar-row' }, this.chips, this.picker, this.freeze,
         button('CSV', () => this.save(), { title: 'Download what is kept (20 s) as furrow watch writes it' })),
       this.plotHolder);
     state.curves.watch(() => {
