@@ -44,7 +44,7 @@ test('a pose at rest gives one and the same picture', async () => {
   await closePage(page);
 });
 
-test('a drag turns the camera, reset brings it back', async () => {
+test('a drag turns the camera, a framing brings it back', async () => {
   await daemon.hold(SMILE_S);
   const page = await openPage(browser, daemon.address);
   await still(page);
@@ -56,7 +56,7 @@ test('a drag turns the camera, reset brings it back', async () => {
   await page.mouse.up();
   await still(page);
   assert(changedShare(front, await pixels(page)) > 0.05);
-  await page.getByRole('button', { name: 'Reset', exact: true }).first().click();
+  await page.click('[data-preset=face]');
   await still(page);
   assert(difference(front, await pixels(page)) < 1);
   await closePage(page);
@@ -155,8 +155,7 @@ test('the timeline plays, pauses, scrubs and loops', async () => {
   const former = await pixels(page);
   await page.locator('input[aria-label="Position in the recording"]').fill('2');
   await eventually('the daemon follows', async () => Math.abs((await daemon.get('api/playback')).position_s - 2) < 0.1);
-  await still(page);
-  assert(changedShare(former, await pixels(page)) > 0.005);
+  await eventually('its picture', async () => changedShare(former, await pixels(page)) > 0.005);
   await page.getByRole('button', { name: 'Play', exact: true }).click();
   await eventually('it plays', async () => (await daemon.get('api/playback')).playing);
   await page.selectOption('select[aria-label=Speed]', '0.5');
