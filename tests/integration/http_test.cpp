@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The web side over real sockets: who is answered what, and who is cut off (docs/HTTP-API.md).
+#include <fstream>
 #include <optional>
 #include <string>
 
@@ -7,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon_fixture.h"
+#include "tests/temporary_folder.h"
 #include "web_client.h"
 
 namespace furrow::testing_net {
@@ -14,6 +16,31 @@ namespace {
 
 using Json = nlohmann::json;
 using server::Counter;
+
+// Two joints, four frames, a quarter of a second each.
+constexpr char kNod[] = R"(HIERARCHY
+ROOT hips
+{
+  OFFSET 0 0 0
+  CHANNELS 3 Zrotation Xrotation Yrotation
+  JOINT head
+  {
+    OFFSET 0 10 0
+    CHANNELS 3 Zrotation Xrotation Yrotation
+    End Site
+    {
+      OFFSET 0 2 0
+    }
+  }
+}
+MOTION
+Frames: 4
+Frame Time: 0.25
+0 0 0 0 0 0
+0 0 0 0 10 0
+0 0 0 0 20 0
+0 0 0 0 30 0
+)";
 
 class Http : public testing::Test {
  protected:
@@ -172,6 +199,37 @@ TEST_F(Http, WithoutPicturesThatIsWhatIsSaid) {
   EXPECT_EQ(Get("/api/cameras").status, 503);
   EXPECT_EQ(Get("/mjpeg?width=1").status, 400);
   EXPECT_EQ(Get("/api/playback").status, 409);
+}
+
+TEST_F(Http, APlayedRecordingHasATimeline) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "nod.bvh") << kNod;
+  daemon.reset();
+  server::Config config = WeightsConfig("arkit.json");
+  config.play = folder / "nod.bvh";
+  Start(config);
+  WebClient client(port());
+  const auto patch = [&](const std::string& body) {
+    return Json::parse(client.Ask("PATCH", "/api/playback", body).body);
+  };
+  const Json paused = patch(R"({"playing":false,"position_s":0.5,"loop":false,"speed":2})");
+  EXPECT_EQ(paused["file"], "nod.bvh");
+  EXPECT_EQ(paused["subject"], "nod");
+  EXPECT_EQ(paused["frames"], 4);
+  EXPECT_NEAR(paused["seconds"].get<double>(), 0.75, 1e-9);
+  EXPECT_EQ(paused["frame"], 2);
+  EXPECT_EQ(paused["playing"], false);
+  EXPECT_EQ(paused["loop"], false);
+  EXPECT_EQ(paused["speed"], 2.0);
+  EXPECT_EQ(patch(R"({"position_s":1,"speed":9})")["error"]["field"], "speed");
+  EXPECT_EQ(patch(R"({"position_s":"1"})")["error"]["field"], "position_s");
+  EXPECT_EQ(patch(R"({"colour":1})")["error"]["field"], "colour");
+  EXPECT_EQ(Json::parse(Get("/api/playback").body), paused);  // all or nothing
+  EXPECT_EQ(patch(R"({"position_s":99})")["frame"], 3);
+  EXPECT_EQ(patch(R"({"position_s":-1})")["frame"], 0);
+  const Json subject = Json::parse(Get("/api/subjects").body)["subjects"][0];
+  EXPECT_EQ(subject["name"], "nod");
+  EXPECT_EQ(subject["state"], "live");
 }
 
 TEST_F(Http, AWebSocketIsAPeerOfTheHub) {

@@ -2,15 +2,11 @@
 // Pictures over TCP: drawn from the poses that crossed the socket. Needs an OpenGL 4.5 (llvmpipe
 // does).
 #include <cstdint>
-#include <filesystem>
 #include <optional>
-#include <string>
 
 #include <gtest/gtest.h>
 
-#include "character/character.h"
-#include "daemon_fixture.h"
-#include "motion/pose_source.h"
+#include "pictures_fixture.h"
 
 namespace furrow::testing_net {
 namespace {
@@ -18,60 +14,13 @@ namespace {
 using protocol::ErrorCode;
 using server::Counter;
 
-// A clip of the default character itself: its head nods on, frame by frame. (Cameras follow where a
-// subject goes and turns, so a turn of the whole body would not show.)
-motion::Clip NoddingClip(const character::Character& character, int num_frames) {
-  motion::Clip clip;
-  clip.skeleton = character.skeleton;
-  const auto rest = character.skeleton.rest_pose();
-  const int head = character.skeleton.Find("head");
-  EXPECT_NE(head, wrinkle::kNoJoint);
-  for (int frame = 0; frame < num_frames; ++frame) {
-    clip.times.push_back(frame / 30.0);
-    for (int j = 0; j < character.skeleton.num_joints(); ++j) {
-      clip.locals.push_back(rest[j]);
-      if (j == head) {
-        clip.locals.back().rotation =
-            glm::angleAxis(0.05f * static_cast<float>(frame), glm::vec3(1, 0, 0)) *
-            clip.locals.back().rotation;
-      }
-    }
-  }
-  return clip;
-}
-
-class Pictures : public testing::Test {
+class Pictures : public PicturesTest {
  protected:
   void SetUp() override {
-    const std::filesystem::path glb =
-        std::filesystem::path(FURROW_BINARY_DIR) / "share" / "furrow" / "default.glb";
-    if (!std::filesystem::exists(glb)) GTEST_SKIP() << "no " << glb << ": build furrow_share";
-    server::Config config;
-    config.character = glb;
-    config.tcp = config.udp = 0;
-    config.http.port = 0;
-    // However slowly pictures are drawn here, only poses ask for them, never a subject's decay.
-    config.limits.loss_seconds = config.limits.idle_seconds = 3600;
-    auto loaded = character::LoadCharacter(glb, {}, motion::CachedPoseSource());
-    ASSERT_TRUE(loaded.ok()) << loaded.status().ToString();
-    clip = NoddingClip(*loaded, 20);
-    daemon.emplace(config);
-    ASSERT_TRUE(daemon->serves());
-    if (!daemon->ready().render) GTEST_SKIP() << "no OpenGL 4.5 here";
-    sender.emplace(daemon->ready().tcp);
-    viewer.emplace(daemon->ready().tcp);
-    offer = OfferOf(clip, "ann");
-    Offer(*sender, offer);
-  }
-  void SendPose(int frame) {
-    sender->Send(PoseOf(clip, frame, offer), 1, static_cast<std::uint32_t>(frame),
-                 1000 * static_cast<std::int64_t>(frame));
+    PicturesTest::SetUp();
+    if (sender) viewer.emplace(daemon->ready().tcp);
   }
 
-  motion::Clip clip;
-  protocol::SkeletonOffer offer;
-  std::optional<DaemonThread> daemon;
-  std::optional<TcpClient> sender;
   std::optional<TcpClient> viewer;
 };
 

@@ -56,26 +56,39 @@ class WebClient {
   // The next message, if it is one of this kind.
   template <class Message>
   std::optional<Message> Take(protocol::Header* header = nullptr) {
-    const std::optional<Frame> frame = Next();
-    protocol::MessageView view;
     Message message;
-    if (!frame ||
-        protocol::OpenMessage(frame->payload, view, protocol::kMaxReplyBytes) !=
-            protocol::DecodeStatus::kOk ||
-        protocol::Decode(view, message) != protocol::DecodeStatus::kOk) {
-      return std::nullopt;
-    }
-    if (header != nullptr) *header = view.header;
+    const std::optional<Frame> frame = Next();
+    if (!frame || !DecodeFrame(*frame, &message, header)) return std::nullopt;
     return message;
+  }
+  // The next message of this kind; what comes before it is let go.
+  template <class Message>
+  std::optional<Message> Await(protocol::Header* header = nullptr) {
+    Message message;
+    while (const std::optional<Frame> frame = Next()) {
+      if (DecodeFrame(*frame, &message, header)) return message;
+    }
+    return std::nullopt;
   }
   // Bytes up to and with `end`; empty where the connection ends before.
   std::string ReadUntil(std::string_view end);
+  std::string Take(std::size_t count);
 
  private:
+  template <class Message>
+  static bool DecodeFrame(const Frame& frame, Message* message, protocol::Header* header) {
+    protocol::MessageView view;
+    if (protocol::OpenMessage(frame.payload, view, protocol::kMaxReplyBytes) !=
+            protocol::DecodeStatus::kOk ||
+        protocol::Decode(view, *message) != protocol::DecodeStatus::kOk) {
+      return false;
+    }
+    if (header != nullptr) *header = view.header;
+    return true;
+  }
   void Write(std::string_view bytes);
   bool Fill();
   Answer ReadAnswer(bool has_body);
-  std::string Take(std::size_t count);
 
   int socket_ = -1;
   std::string in_;

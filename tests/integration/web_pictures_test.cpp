@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures over the web side: with flow control over a WebSocket, and plain ones for <img>.
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "pictures_fixture.h"
+#include "web_client.h"
+
+namespace furrow::testing_net {
+namespace {
+
+class WebPictures : public PicturesTest {
+ protected:
+  static protocol::SubscribePictures Wish() {
+    return {.subject = "ann",
+            .width = 64,
+            .height = 64,
+            .acknowledged = true,
+            .settings = {"shading=diffuse"}};
+  }
+  std::uint16_t port() const { return *daemon->ready().http; }
+  // A viewer of Wish(); its subscription's number.
+  std::uint16_t View(WebClient& viewer) {
+    EXPECT_EQ(viewer.Upgrade().status, 101);
+    viewer.Send(Wish(), 0, 1);
+    protocol::Header header;
+    EXPECT_TRUE(viewer.Take<protocol::SubscribeReply>(&header).has_value());
+    return header.stream;
+  }
+  // The refined picture of a pose at rest, with all before it acknowledged.
+  std::optional<protocol::ImageFrame> AwaitStill(WebClient& viewer, std::uint16_t stream) {
+    auto image = viewer.Await<protocol::ImageFrame>();
+    while (image && !image->still) {
+      viewer.Send(protocol::FrameAck{image->number}, stream);
+      image = viewer.Await<protocol::ImageFrame>();
+    }
+    if (image) viewer.Send(protocol::FrameAck{image->number}, stream);
+    return image;
+  }
+  // The length of the next part of a multipart stream, whose bytes come next.
+  static std::size_t PartLength(WebClient& client) {
+    client.ReadUntil("--furrow-picture\r\nContent-Type: image/jpeg\r\nContent-Length: ");
+    const std::string length = client.ReadUntil("\r\n\r\n");
+    std::size_t value = 0;
+    std::from_chars(length.data(), length.data() + length.size(), value);
+    return value;
+  }
+};
+
+TEST_F(WebPictures, TwoAreUnderWayAndWhoStalledGetsTheNewest) {
+  WebClient viewer(port());
+  const std::uint16_t stream = View(viewer);
+  SendPose(0);
+  auto image = viewer.Await<protocol::ImageFrame>();
+  ASSERT_TRUE(image.has_value());
+  EXPECT_EQ(image->number, 1u);
+  EXPECT_EQ(image->view_request, 1u);
+  SendPose(1);
+  image = viewer.Await<protocol::ImageFrame>();  // of this pose, or the still of the one before
+  ASSERT_TRUE(image.has_value());
+  EXPECT_EQ(image->number, 2u);
+  for (int frame = 2; frame < 10; ++frame) SendPose(frame);
+  sender->Send(protocol::Ping{1});
+  ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());
+  viewer.Send(protocol::Ping{2});
+  ASSERT_TRUE(viewer.Take<protocol::Pong>().has_value()) << "a third picture is under way";
+  viewer.Send(protocol::FrameAck{2}, stream);
+  protocol::Header header;
+  image = viewer.Take<protocol::ImageFrame>(&header);
+  ASSERT_TRUE(image.has_value());
+  EXPECT_EQ(image->number, 3u);
+  EXPECT_EQ(header.sequence, 9u);
+  EXPECT_GE(image->dropped, 8u);
+  EXPECT_GT(image->received_us, 0);
+}
+
+TEST_F(WebPictures, APoseAtRestGetsOneStillAndThenNone) {
+  WebClient viewer(port());
+  const std::uint16_t stream = View(viewer);
+  SendPose(3);
+  ASSERT_TRUE(AwaitStill(viewer, stream).has_value());
+  sender->Send(PoseOf(clip, 3, offer), 1, 4, 4000);  // a pose anew, in which nothing has moved
+  sender->Send(protocol::Ping{1});
+  ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());
+  viewer.Send(protocol::Ping{2});
+  EXPECT_TRUE(viewer.Take<protocol::Pong>().has_value());
+}
+
+TEST_F(WebPictures, AChangedViewIsShownWithoutAPoseAndAWrongOneChangesNothing) {
+  WebClient viewer(port());
+  const std::uint16_t stream = View(viewer);
+  SendPose(0);
+  ASSERT_TRUE(AwaitStill(viewer, stream).has_value());
+  protocol::UpdatePictures update{Wish()};
+  update.pictures.width = 96;
+  viewer.Send(update, stream, 9);
+  auto image = viewer.Await<protocol::ImageFrame>();
+  ASSERT_TRUE(image.has_value());
+  EXPECT_EQ(image->view_request, 9u);
+  EXPECT_EQ(image->width, 96);
+  update.pictures.width = 32;
+  update.pictures.settings = {"subsurface.width=99"};
+  viewer.Send(update, stream, 10);
+  protocol::Header header;
+  const auto error = viewer.Await<protocol::ErrorMessage>(&header);
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(header.sequence, 10u);
+  EXPECT_NE(error->message.find("subsurface.width"), std::string::npos) << error->message;
+  viewer.Send(protocol::FrameAck{image->number}, stream);
+  SendPose(1);
+  image = viewer.Await<protocol::ImageFrame>();
+  ASSERT_TRUE(image.has_value());
+  EXPECT_EQ(image->view_request, 9u);
+  EXPECT_EQ(image->width, 96);
+}
+
+TEST_F(WebPictures, TheDaemonsOwnSettingsAreShownToWhoHasNoneOfTheirOwn) {
+  WebClient viewer(port());
+  const std::uint16_t stream = View(viewer);
+  SendPose(0);
+  const auto before = AwaitStill(viewer, stream);
+  ASSERT_TRUE(before.has_value());
+  EXPECT_EQ(WebClient(port()).Ask("PATCH", "/api/settings", R"({"exposure":2})").status, 200);
+  const auto after = AwaitStill(viewer, stream);
+  ASSERT_TRUE(after.has_value());
+  EXPECT_NE(before->bytes, after->bytes);
+}
+
+TEST_F(WebPictures, MjpegGoesOnFromPoseToPose) {
+  SendPose(0);
+  WebClient client(port());
+  const auto answer = client.Ask("GET", "/mjpeg?subject=ann&width=64&height=64&shading=diffuse");
+  ASSERT_EQ(answer.status, 200);
+  EXPECT_NE(answer.head.find("multipart/x-mixed-replace; boundary=furrow-picture"),
+            std::string::npos);
+  std::string before;
+  for (int frame = 10; frame < 12; ++frame) {
+    const std::string picture = client.Take(PartLength(client));
+    EXPECT_EQ(picture.substr(0, 2), "\xFF\xD8");
+    EXPECT_NE(picture, before);
+    before = picture;
+    SendPose(frame);
+  }
+}
+
+TEST_F(WebPictures, ASnapshotIsDrawnOfThePoseThereIs) {
+  SendPose(5);
+  sender->Send(protocol::Ping{1});
+  ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());
+  WebClient client(port());
+  const auto picture =
+      client.Ask("GET", "/snapshot.png?subject=ann&width=64&height=32&shading=diffuse");
+  ASSERT_EQ(picture.status, 200) << picture.body;
+  ASSERT_GT(picture.body.size(), 24u);
+  EXPECT_EQ(picture.body.substr(0, 4), "\x89PNG");
+  EXPECT_EQ(picture.body[19], 64);
+  EXPECT_EQ(picture.body[23], 32);
+  EXPECT_EQ(client.Ask("GET", "/snapshot.png?subject=nobody").status, 404);
+  EXPECT_EQ(client.Ask("GET", "/snapshot.png?width=1").status, 400);
+  const auto wrong = client.Ask("GET", "/snapshot.png?shading=nonsense");
+  EXPECT_EQ(wrong.status, 400);
+  EXPECT_NE(wrong.body.find("shading"), std::string::npos);
+  const auto cameras = nlohmann::json::parse(client.Ask("GET", "/api/cameras").body);
+  EXPECT_EQ(cameras["cameras"][0]["name"], "face");
+}
+
+}  // namespace
+}  // namespace furrow::testing_net
