@@ -56,7 +56,10 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
         if (std::optional<Next> next = Take(message); next) co_return *std::move(next);
       }
       if (deadline && std::chrono::steady_clock::now() >= *deadline) {
-        co_return Next{false, ErrorReply(503, "unavailable", "subject", "no pose came to draw")};
+        co_return Next{false, ErrorReply(503, "unavailable", "subject",
+                                         "no picture within 10 s: no pose came, or what draws is "
+                                         "still being made ready",
+                                         "ask again")};
       }
       if (gone_) co_return Next{};
       wake_.expires_at(deadline.value_or(net::steady_timer::time_point::max()));
