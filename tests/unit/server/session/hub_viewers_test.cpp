@@ -16,7 +16,10 @@ class HubViewers : public HubPeersTest {
     const auto reply = peer.Take<protocol::SubscribeReply>();
     return reply ? reply->header.stream : 0;
   }
-  void Pose1(float brow) { Send(sender, Pose(brow), 1, sequence++, 1'000'000 + sequence * 16'667); }
+  void Pose1(float brow) {
+    const std::uint32_t number = sequence++;
+    Send(sender, Pose(brow), 1, number, 1'000'000 + number * 16'667);
+  }
   // Draws every job that waits; each ticket's subscription gets its picture.
   void DrawAll() {
     const std::vector<RenderJob> jobs = std::move(pictures.jobs);

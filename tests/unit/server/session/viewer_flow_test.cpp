@@ -76,7 +76,9 @@ void Stream(ViewerFlow& flow, double seconds, bool acknowledges, Time* now) {
     flow.CountDue(*now);
     if (!flow.MayAsk(*now)) continue;
     const std::uint32_t number = Show(flow, *now);
-    if (acknowledges) EXPECT_TRUE(flow.Acknowledge(number));
+    if (acknowledges) {
+      EXPECT_TRUE(flow.Acknowledge(number));
+    }
   }
 }
 
