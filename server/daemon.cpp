@@ -340,7 +340,10 @@ asio::awaitable<void> Daemon::Drain() {
   tcp_->Drain();
   if (http_) http_->Drain();
   asio::steady_timer timer(io_);
-  while (tcp_->num_sessions() > 0 && ReadClock() < deadline) {
+  const auto is_awaited = [this] {
+    return tcp_->num_sessions() > 0 || (http_ && http_->viewers() > 0);
+  };
+  while (is_awaited() && ReadClock() < deadline) {
     timer.expires_after(kDrainPoll);
     co_await timer.async_wait(kToken);
   }

@@ -13,6 +13,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket/stream.hpp>
 
+#include "protocol/codec.h"
 #include "server/http/web_message.h"
 #include "server/http/web_peer.h"
 
@@ -109,6 +110,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   }
 
   net::awaitable<void> CloseWith(websocket::close_code code) {
+    if (std::exchange(closing_, true)) co_return;
     WatchWrite();
     co_await socket_.async_close(code, kWebToken);
   }
@@ -124,11 +126,23 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
         const auto [error, size] = co_await socket_.async_write(net::buffer(out), kWebToken);
         write_watch_.cancel();
         if (error) Abort();
+        if (EndsConversation(out)) {
+          co_await CloseWith(websocket::close_code::going_away);
+          co_return;
+        }
       } else {
         wake_.expires_at(net::steady_timer::time_point::max());
         co_await wake_.async_wait(kWebToken);
       }
     }
+  }
+
+  // The hub's goodbye to the peer as a whole, not to one subscription: the daemon drains.
+  static bool EndsConversation(const std::vector<std::uint8_t>& message) {
+    protocol::MessageView view;
+    return protocol::OpenMessage(message, view, protocol::kMaxReplyBytes) ==
+               protocol::DecodeStatus::kOk &&
+           view.kind == protocol::MessageKind::kGoodbye && view.header.stream == 0;
   }
 
   // A client that does not take what it asked for is cut off.
@@ -157,6 +171,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   std::string name_;
   std::shared_ptr<WebPeer> peer_;
   bool closed_ = false;
+  bool closing_ = false;  // the close frame is on its way
 };
 
 }  // namespace

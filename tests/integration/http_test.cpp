@@ -3,6 +3,7 @@
 #include <fstream>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -267,6 +268,23 @@ TEST_F(Http, AWebSocketThatBreaksTheRulesIsClosedAndNoOther) {
   EXPECT_EQ(close_code(WebClient::kBinary, std::vector<std::uint8_t>(65537)), 1009);
   good.Send(protocol::Ping{7});
   EXPECT_EQ(good.Take<protocol::Pong>()->time_us, 7);
+}
+
+TEST_F(Http, AWebSocketHearsOfTheEnd) {
+  std::jthread stop;  // joined after the client has gone
+  WebClient client(port());
+  ASSERT_EQ(client.Upgrade().status, 101);
+  client.Send(protocol::Ping{1});
+  ASSERT_TRUE(client.Take<protocol::Pong>().has_value());
+  stop = std::jthread([this] { EXPECT_EQ(daemon->Stop(), server::ExitCode::kOk); });
+  const auto goodbye = client.Take<protocol::Goodbye>();
+  ASSERT_TRUE(goodbye.has_value());
+  EXPECT_EQ(goodbye->reason, protocol::GoodbyeReason::kDraining);
+  const auto close = client.Next();
+  ASSERT_TRUE(close.has_value());
+  EXPECT_EQ(close->opcode, WebClient::kClose);
+  EXPECT_EQ(close->close_code(), 1001);
+  client.SendFrame(WebClient::kClose, close->payload);
 }
 
 TEST_F(Http, ConnectionsAreLimited) {
