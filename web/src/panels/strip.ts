@@ -96,7 +96,7 @@ export class DebugStrip {
     }
     for (const view of wanted) this.refreshOne(view);
     const free = choices.filter((view) => !wanted.includes(view));
-    setOptions(this.adder, [['', 'Debug view…'], ...free.map((view) => [view, readable(view)] as const)]);
+    setOptions(this.adder, [['', 'Debug view'], ...free.map((view) => [view, readable(view)] as const)]);
     this.adder.disabled = wanted.length >= MAX_THUMBNAILS || choices.length === 0;
     this.element.hidden = wanted.length === 0;
   }

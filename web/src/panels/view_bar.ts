@@ -26,7 +26,7 @@ export class ViewBar {
     this.wipe = select('Split the picture', WIPES, (value) => state.wipe.set(value as Wipe));
     const sharpness = select('Sharpness', SHARPNESS, (value) => state.sharpness.set(value as Sharpness));
     this.element = h('div', { class: 'view-bar', role: 'toolbar', 'aria-label': 'View' },
-      this.framings, h('span', { class: 'space' }), debugViews, this.wipe, sharpness);
+      this.framings, h('span', { class: 'space' }), h('div', { class: 'choices' }, debugViews, this.wipe, sharpness));
     state.presets.bind(() => this.fill());
     state.camera.watch(() => this.mark());
     state.wipe.bind((wipe) => (this.wipe.value = wipe));
