@@ -26,7 +26,8 @@ still() {
 sheet() {
   local files=()
   for name in "${@:4}"; do files+=("$work/$name.png"); done
-  oiiotool "${files[@]}" --mosaic:pad=4 "$2" --resize "$3x0" --compression jpeg:84 -o "$out/$1.jpg"
+  oiiotool "${files[@]}" --mosaic:pad=4 "$2" --resize "$3x0" --eraseattrib ".*" --compression jpeg:84 \
+    --nosoftwareattrib -o "$out/$1.jpg"
 }
 
 # default_faces PREFIX CHARACTER: wrinkles off above, on below; neutral, stretch, squash, four emotions.

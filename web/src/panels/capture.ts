@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The live pose becomes the rig's neutral or one of its reference poses.
+// The live pose becomes the performer's neutral or one of the rig's reference poses.
 import { api, type Capture, type CaptureResult, wordsOf } from '../api';
 import { button, h, select, setOptions } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
@@ -24,7 +24,7 @@ export class CapturePanel {
     this.undo = button('Undo', () => void this.takeBack(), { disabled: true });
     this.save = h('a', { href: api.rigFile, download: 'rig.json', class: 'button' }, 'Download rig');
     this.element = h('div', { class: 'capture' },
-      h('p', {}, 'Let the performer hold a face, then take it into the wrinkle rig: as the neutral that all poses are measured from, or as a pose that drivers aim at.'),
+      h('p', {}, 'Let the performer hold a face, then take it: as this performer\'s neutral, which all poses are measured from, or into the wrinkle rig as a pose that drivers aim at.'),
       h('div', { class: 'row' }, this.pose, this.newName),
       h('div', { class: 'row' },
         button('Preview', () => void this.take(true), { title: 'What the weights would become; nothing changes' }),
