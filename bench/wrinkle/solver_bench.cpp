@@ -93,41 +93,46 @@ void SetCounters(benchmark::State& state, int subjects, int joints) {
                           static_cast<std::int64_t>(sizeof(Transform)));
 }
 
-void Solve(benchmark::State& state, PoseSolve solve) {
-  const int num_poses = static_cast<int>(state.range(0));
-  const int num_subjects = static_cast<int>(state.range(1));
-  const Skeleton skeleton = Face();
-  const auto binding = std::make_shared<const RigBinding>(
-      std::move(RigBinding::Create(FaceRig(num_poses, solve), skeleton, {})).value());
-  const std::vector<LocalPose> poses = Poses(skeleton, num_subjects);
-  std::vector<SubjectSolver> solvers(poses.size(), SubjectSolver(binding));
-  for (auto _ : state) {
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      if (solvers[i].Update(poses[i], 1.0 / 60.0) != JobStatus::kOk) state.SkipWithError("solver");
-    }
-    benchmark::DoNotOptimize(solvers.front().wrinkle_weights().data());
+// As many as range(1) says, of one binding with range(0) reference poses.
+struct Subjects {
+  Subjects(const benchmark::State& state, PoseSolve solve)
+      : poses(Poses(skeleton, static_cast<int>(state.range(1)))) {
+    const Rig rig = FaceRig(static_cast<int>(state.range(0)), solve);
+    const auto binding = std::make_shared<const RigBinding>(
+        std::move(RigBinding::Create(rig, skeleton, {})).value());
+    solvers.assign(poses.size(), SubjectSolver(binding));
   }
-  SetCounters(state, num_subjects, skeleton.num_joints());
+
+  const Skeleton skeleton = Face();
+  const std::vector<LocalPose> poses;
+  std::vector<SubjectSolver> solvers;
+};
+
+void Solve(benchmark::State& state, PoseSolve solve) {
+  Subjects subjects(state, solve);
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < subjects.poses.size(); ++i) {
+      if (subjects.solvers[i].Update(subjects.poses[i], 1.0 / 60.0) != JobStatus::kOk)
+        state.SkipWithError("solver");
+    }
+    benchmark::DoNotOptimize(subjects.solvers.front().wrinkle_weights().data());
+  }
+  SetCounters(state, static_cast<int>(subjects.poses.size()), subjects.skeleton.num_joints());
 }
 
 void SolveBatch(benchmark::State& state, PoseSolve solve) {
-  const int num_poses = static_cast<int>(state.range(0));
-  const int num_subjects = static_cast<int>(state.range(1));
-  const Skeleton skeleton = Face();
-  const auto binding = std::make_shared<const RigBinding>(
-      std::move(RigBinding::Create(FaceRig(num_poses, solve), skeleton, {})).value());
-  const std::vector<LocalPose> poses = Poses(skeleton, num_subjects);
-  std::vector<SubjectSolver> solvers(poses.size(), SubjectSolver(binding));
+  Subjects subjects(state, solve);
   std::vector<BatchUpdate> updates;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    updates.push_back({.solver = &solvers[i], .pose = &poses[i], .dt = 1.0 / 60.0});
+  for (std::size_t i = 0; i < subjects.poses.size(); ++i) {
+    updates.push_back(
+        {.solver = &subjects.solvers[i], .pose = &subjects.poses[i], .dt = 1.0 / 60.0});
   }
   BatchSolver batch;
   for (auto _ : state) {
     batch.Run(updates);
     if (updates.back().status != JobStatus::kOk) state.SkipWithError("batch");
   }
-  SetCounters(state, num_subjects, skeleton.num_joints());
+  SetCounters(state, static_cast<int>(subjects.poses.size()), subjects.skeleton.num_joints());
 }
 
 void BM_BatchProjection(benchmark::State& state) { SolveBatch(state, PoseSolve::kProjection); }
