@@ -102,6 +102,10 @@ void AddHeadParts(const CharacterOptions& options, const HeadShape& shape, Chara
   teeth.base_colour_texture =
       AddPicture(character, paint::PaintTeeth(AgeShare(options.face), options.texture_size / 2));
   AddMesh(character, std::move(rows), std::move(teeth));
+
+  Material tongue = MakeMaterial("tongue", Material::Kind::kOther, 0.4f);
+  tongue.base_colour = glm::vec4(0.36f, 0.085f, 0.08f, 1.0f);
+  AddMesh(character, SkinnedPart(character->skeleton, MakeTongue()), std::move(tongue));
 }
 
 void AddClothes(const CharacterOptions& options, const BodyShape& shape, Character* character) {

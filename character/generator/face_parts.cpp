@@ -123,10 +123,43 @@ HeadMesh MakeLashes(const HeadShape& shape) {
   return lashes;
 }
 
+HeadMesh MakeTongue() {
+  constexpr int kTurns = 24, kRings = 10;
+  constexpr vec3 kCentre(0.0f, -8.0f, 5.4f), kRadii(1.95f, 0.85f, 2.95f);
+  HeadMesh tongue;
+  tongue.mesh.name = "tongue";
+  for (int ring = 0; ring <= kRings; ++ring) {  // from the tip backward
+    const float back = kPi * static_cast<float>(ring) / kRings;
+    for (int turn = 0; turn <= kTurns; ++turn) {
+      const float around = 2.0f * kPi * static_cast<float>(turn % kTurns) / kTurns;
+      const vec3 out(std::sin(back) * std::cos(around), std::sin(back) * std::sin(around),
+                     std::cos(back));
+      HeadVertex info;
+      info.part = kTeeth;
+      info.mouth_side = -1.0f;  // the jaw carries it
+      info.place = kCentre + kRadii * out;
+      // The furrow along its middle.
+      if (out.y > 0.0f) info.place.y -= 0.16f * out.y * Bump(info.place.x, 0.35f);
+      AddVertex(&tongue, info, vec2(turn, ring) / vec2(kTurns, kRings));
+    }
+  }
+  const auto at = [](int ring, int turn) {
+    return static_cast<std::uint32_t>(ring * (kTurns + 1) + turn);
+  };
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (int turn = 0; turn < kTurns; ++turn) {
+      AddQuad(&tongue.mesh, at(ring, turn), at(ring + 1, turn), at(ring + 1, turn + 1),
+              at(ring, turn + 1));
+    }
+  }
+  FinishSurface(&tongue.mesh);
+  return tongue;
+}
+
 HeadMesh MakeTeeth() {
   HeadMesh teeth;
   teeth.mesh.name = "teeth";
-  AddTeethRow({true, {0.0f, -7.12f, 8.95f}, 2.75f, 4.2f}, &teeth);
+  AddTeethRow({true, {0.0f, -7.12f, 9.12f}, 2.8f, 4.3f}, &teeth);
   AddTeethRow({false, {0.0f, -7.2f, 8.7f}, 2.5f, 4.0f}, &teeth);
   FinishSurface(&teeth.mesh);
   return teeth;

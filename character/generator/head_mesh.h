@@ -41,6 +41,8 @@ struct HeadMesh {
 [[nodiscard]] HeadMesh MakeLashes(const HeadShape& shape = DefaultHead());
 // Both rows of teeth.
 [[nodiscard]] HeadMesh MakeTeeth();
+// Lies between the lower teeth, and goes with the jaw.
+[[nodiscard]] HeadMesh MakeTongue();
 
 // The centre of an eyeball, head space; `side` +1 is the subject's left.
 [[nodiscard]] glm::vec3 EyeCentre(float side);

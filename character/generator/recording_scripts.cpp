@@ -12,7 +12,7 @@ Script Happiness() {
                {"cheek_raise", 1.3f, 0.6f, 7.0f, 0.9f, 0.9f},
                {"lid_raise", 1.4f, 0.5f, 6.9f, 0.8f, 0.2f},
                {"upper_lip_raise", 1.4f, 0.6f, 6.6f, 0.8f, 0.4f},
-               {"jaw_open", 1.5f, 0.7f, 6.2f, 1.0f, 0.26f},
+               {"jaw_open", 1.5f, 0.7f, 6.2f, 1.0f, 0.20f},
                {"brow_raise_outer", 1.9f, 0.5f, 4.6f, 0.8f, 0.35f}};
   s.head = {{1.3f, 0.7f, 7.0f, 1.2f, -4.0f, 2.0f, -5.0f},
             {3.1f, 0.3f, 3.5f, 0.5f, 4.0f, 0.0f, 0.0f}};

@@ -65,7 +65,7 @@ vec3 PlaceOf(const ToothArch& arch, float s, float h) {
 // Enamel, gums and the dark between teeth, at a place along the arch.
 vec3 ToothColour(float s, float h, bool upper, float age) {
   const vec3 enamel =
-      glm::mix(vec3(0.86f, 0.83f, 0.77f), vec3(0.80f, 0.72f, 0.58f), 0.2f + 0.6f * age);
+      glm::mix(vec3(0.92f, 0.90f, 0.86f), vec3(0.80f, 0.72f, 0.58f), 0.12f + 0.6f * age);
   vec3 colour =
       glm::mix(enamel * 0.97f, enamel * vec3(1.0f, 0.95f, 0.86f), glm::smoothstep(0.3f, 0.9f, h));
   const float across = std::abs(ToothAt(std::abs(s), upper).across);
@@ -73,7 +73,7 @@ vec3 ToothColour(float s, float h, bool upper, float age) {
   const float scallop = 0.10f * across * across - 0.08f * age;  // gums dip between the teeth
   colour = glm::mix(colour, vec3(0.62f, 0.30f, 0.29f), glm::smoothstep(0.86f, 0.96f, h + scallop));
   // The farther back, the darker: little light comes in between the lips.
-  return colour * glm::mix(1.0f, 0.35f, glm::smoothstep(1.3f, 4.2f, std::abs(s)));
+  return colour * glm::mix(1.0f, 0.45f, glm::smoothstep(1.8f, 4.2f, std::abs(s)));
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ std::vector<Mesh> AllMeshes() {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   const BodyShape body({}, skeleton, DefaultHead());
   std::vector<Mesh> meshes = {MakeSkin(skeleton), MakeClothes(body).mesh, MakeLeather(body)};
-  for (HeadMesh part : {MakeEyes(), MakeHair(), MakeLashes(), MakeTeeth()}) {
+  for (HeadMesh part : {MakeEyes(), MakeHair(), MakeLashes(), MakeTeeth(), MakeTongue()}) {
     SkinHead(skeleton, &part);
     meshes.push_back(std::move(part.mesh));
   }
@@ -56,6 +56,25 @@ TEST(GeneratorMesh, HasNoDegenerateTrianglesAndUnitFrames) {
       ASSERT_NEAR(glm::dot(vertex.normal, glm::vec3(vertex.tangent)), 0.0f, 1e-3f);
       ASSERT_EQ(std::abs(vertex.tangent.w), 1.0f);
     }
+  }
+}
+
+TEST(GeneratorMesh, TheTongueLiesBehindTheLowerTeethAndGoesWithTheJaw) {
+  const wrinkle::Skeleton skeleton = MakeSkeleton();
+  HeadMesh tongue = MakeTongue();
+  SkinHead(skeleton, &tongue);
+  std::vector<glm::vec3> lower_teeth;
+  for (const HeadVertex& tooth : MakeTeeth().info) {
+    if (tooth.mouth_side < 0.0f) lower_teeth.push_back(tooth.place);
+  }
+  for (const glm::vec3& tooth : lower_teeth) {
+    for (const HeadVertex& v : tongue.info) {  // nowhere farther out than a tooth beside it
+      if (std::abs(v.place.x - tooth.x) < 0.2f) ASSERT_LT(v.place.z, tooth.z);
+    }
+  }
+  for (const Vertex& vertex : tongue.mesh.vertices) {
+    ASSERT_EQ(vertex.joints[0], skeleton.Find("jaw"));
+    ASSERT_FLOAT_EQ(vertex.skin_weights[0], 1.0f);
   }
 }
 
