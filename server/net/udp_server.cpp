@@ -112,6 +112,7 @@ asio::awaitable<void> UdpServer::Read() {
       SendAll();
       is_drained = count < UdpBatch::kSize;
     }
+      hub_->PublishGathered();
     // Let timers and TCP have their turn, however fast datagrams come.
     if (!is_drained) co_await asio::post(io_, asio::use_awaitable);
   }
@@ -137,7 +138,8 @@ void UdpServer::OnDatagram(std::span<const std::uint8_t> bytes, const udp::endpo
   hub_->OnBytesReceived(peer->id, bytes.size(), now);
   std::span<const std::uint8_t> message;
   switch (reassembler_.Push(peer->id, bytes, ToMicroseconds(now), message)) {
-    case protocol::FragmentStatus::kWhole:
+    // The batch keeps its datagrams, the reassembler what it put together only for now.
+    case protocol::FragmentStatus::kWhole: hub_->GatherMessage(peer->id, message, now); break;
     case protocol::FragmentStatus::kComplete: hub_->OnMessage(peer->id, message, now); break;
     case protocol::FragmentStatus::kPending:
     case protocol::FragmentStatus::kDuplicate: break;

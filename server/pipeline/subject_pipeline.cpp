@@ -15,6 +15,16 @@ SubjectPipeline::SubjectPipeline(std::shared_ptr<const StreamDefinition> stream)
 }
 
 wrinkle::JobStatus SubjectPipeline::Solve(std::uint32_t sequence, std::int64_t capture_time_us) {
+  // As a batch of one: twice as fast as by itself, and the very numbers of any larger batch. What
+  // it keeps is scratch, of no subject, so a thread has one.
+  thread_local wrinkle::BatchSolver batch;
+  wrinkle::BatchUpdate update = Prepare(sequence, capture_time_us);
+  batch.Run({&update, 1});
+  return Finish(update.status);
+}
+
+wrinkle::BatchUpdate SubjectPipeline::Prepare(std::uint32_t sequence,
+                                              std::int64_t capture_time_us) {
   double dt = 0.0;
   if (has_pose_ && capture_time_us >= capture_time_us_) {
     dt = static_cast<double>(capture_time_us - capture_time_us_) * 1e-6;
@@ -22,16 +32,19 @@ wrinkle::JobStatus SubjectPipeline::Solve(std::uint32_t sequence, std::int64_t c
     solver_.Reset();
   }
   if (neutral_pose_) MeasureFromNeutral();
-  // As a batch of one: twice as fast as by itself, and the very numbers of any larger batch. What
-  // it keeps is scratch, of no subject, so a thread has one.
-  thread_local wrinkle::BatchSolver batch;
-  wrinkle::BatchUpdate update{.solver = &solver_, .pose = &solved_pose(), .dt = dt};
-  batch.Run({&update, 1});
-  if (update.status != wrinkle::JobStatus::kOk) return update.status;
-  sequence_ = sequence;
-  capture_time_us_ = capture_time_us;
+  next_sequence_ = sequence;
+  next_capture_time_us_ = capture_time_us;
+  waits_ = true;
+  return {.solver = &solver_, .pose = &solved_pose(), .dt = dt};
+}
+
+wrinkle::JobStatus SubjectPipeline::Finish(wrinkle::JobStatus status) {
+  waits_ = false;
+  if (status != wrinkle::JobStatus::kOk) return status;
+  sequence_ = next_sequence_;
+  capture_time_us_ = next_capture_time_us_;
   has_pose_ = true;
-  return wrinkle::JobStatus::kOk;
+  return status;
 }
 
 // Each joint's departure from the neutral pose, put upon the rest pose.

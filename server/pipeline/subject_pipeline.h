@@ -8,6 +8,7 @@
 
 #include "server/pipeline/snapshot.h"
 #include "server/pipeline/stream_definition.h"
+#include "wrinkle/batch_solver.h"
 #include "wrinkle/pose.h"
 #include "wrinkle/solver.h"
 
@@ -44,6 +45,13 @@ class SubjectPipeline {
   // loops, a clock that was set) starts the filter anew, as for a first pose.
   [[nodiscard]] wrinkle::JobStatus Solve(std::uint32_t sequence, std::int64_t capture_time_us);
 
+  // Solve() in two halves, so that many subjects are evaluated as one batch in between. Until
+  // Finish() the pose must stay, and nothing else here be called but accessors.
+  [[nodiscard]] wrinkle::BatchUpdate Prepare(std::uint32_t sequence, std::int64_t capture_time_us);
+  wrinkle::JobStatus Finish(wrinkle::JobStatus status);
+  // Between the two.
+  [[nodiscard]] bool waits() const { return waits_; }
+
   // Nothing arrived for `dt` more seconds: hold, then decay to neutral. The pose stays as it was.
   [[nodiscard]] wrinkle::JobStatus Decay(double dt);
   // True once every weight has decayed to neutral.
@@ -71,6 +79,10 @@ class SubjectPipeline {
   std::uint32_t sequence_ = 0;
   std::int64_t capture_time_us_ = 0;
   bool has_pose_ = false;
+  // What Finish() makes of a pose that waits for its evaluation.
+  std::uint32_t next_sequence_ = 0;
+  std::int64_t next_capture_time_us_ = 0;
+  bool waits_ = false;
 };
 
 }  // namespace furrow::server

@@ -43,6 +43,7 @@ PeerId Hub::AddPeer(Transport transport, std::string name, Link* link, Time now)
 void Hub::RemovePeer(PeerId id) {
   Peer* peer = peers_.Find(id);
   if (peer == nullptr) return;
+  PublishGathered();
   subscribers_.RemovePeer(*peer);
   subjects_.ForgetPeer(id);
   peers_.Remove(id);
@@ -56,6 +57,11 @@ void Hub::OnBytesReceived(PeerId id, std::size_t bytes, Time now) {
 }
 
 void Hub::OnMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now) {
+  GatherMessage(id, bytes, now);
+  PublishGathered();
+}
+
+void Hub::GatherMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now) {
   Peer* peer = peers_.Find(id);
   if (peer == nullptr) return;
   metrics_->Add(Counter::kMessagesReceived);
@@ -66,6 +72,8 @@ void Hub::OnMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now) {
   peer->last_heard = now;
   protocol::MessageView view;
   const DecodeStatus status = protocol::OpenMessage(bytes, view);
+  // Whatever else it asks for or changes, the poses before it come first.
+  if (status != DecodeStatus::kOk || view.kind != MessageKind::kPose) PublishGathered();
   if (status == DecodeStatus::kOk) {
     Dispatch(*peer, view, now);
   } else {
@@ -110,6 +118,7 @@ void Hub::Decoded(Peer& peer, const protocol::MessageView& view, Message& messag
   metrics_->Add(view.kind == MessageKind::kPose ? Counter::kPosesInvalid
                                                 : Counter::kMessagesMalformed);
   if (peer.transport != Transport::kUdp) {
+    PublishGathered();
     postman_.Error(peer, view.header, ErrorCode::kMalformed,
                    std::string(MessageKindName(view.kind)) +
                        " cannot be read: " + std::string(DecodeStatusName(status)));
@@ -123,7 +132,7 @@ void Hub::Dispatch(Peer& peer, const protocol::MessageView& view, Time now) {
     case MessageKind::kPose:
       return Decoded(peer, view, in.pose, [&] {
         const auto payload = in.pose.partial ? std::span<const std::uint8_t>() : view.payload;
-        Posed(publishers_.OnPose(peer, header, in.pose, now), payload, now);
+        OnPose(peer, header, in.pose, payload, now);
       });
     case MessageKind::kSkeletonOffer:
       return Decoded(peer, view, in.offer, [&] { (void)OnOffer(peer, header, in.offer, now); });
@@ -198,10 +207,26 @@ bool Hub::OnOffer(Peer& peer, const protocol::Header& header, const protocol::Sk
 }
 
 // `payload`: as RecordingTap::OnPose() takes it.
-void Hub::Posed(Subject* subject, std::span<const std::uint8_t> payload, Time now) {
-  if (subject == nullptr) return;
-  if (recording_ != nullptr) recording_->OnPose(*subject, payload, now);
-  Weighted(*subject, payload, 0, now);
+void Hub::OnPose(Peer& peer, const protocol::Header& header, const protocol::PoseFrame& pose,
+                 std::span<const std::uint8_t> payload, Time now) {
+  Subject* subject = publishers_.Find(peer, header, pose);
+  // An answer comes after the poses before it, and a subject's next pose builds on its last.
+  const bool may_wait = subject != nullptr && !subject->pipeline->waits() && !gathered_.full();
+  if (!may_wait) PublishGathered();
+  if (subject == nullptr) {
+    publishers_.OnStray(peer, header, pose.skeleton_hash, now);
+  } else if (publishers_.Take(*subject, header, pose)) {
+    gathered_.Add({.subject = subject, .header = header, .payload = payload, .now = now});
+  }
+}
+
+void Hub::PublishGathered() {
+  if (gathered_.empty()) return;
+  for (const GatheredPose& pose : gathered_.Solve()) {
+    if (!publishers_.OnSolved(pose)) continue;
+    if (recording_ != nullptr) recording_->OnPose(*pose.subject, pose.payload, pose.now);
+    Weighted(*pose.subject, pose.payload, 0, pose.now);
+  }
 }
 
 void Hub::Weighted(Subject& subject, std::span<const std::uint8_t> pose, std::int64_t age_us,
@@ -235,7 +260,8 @@ void Hub::OnMocapFrame(PeerId id, const protocol::mocap::NeutralFrame& frame, Ti
     return;
   }
   protocol::mocap::MakePose(frame, stream->offer, scratch_.pose);
-  Posed(publishers_.OnPose(*peer, header, scratch_.pose, now), {}, now);
+  OnPose(*peer, header, scratch_.pose, {}, now);
+  PublishGathered();
 }
 
 Hub::MocapStream* Hub::FindOrAddMocap(const Peer& peer, const std::string& subject) {

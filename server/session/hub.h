@@ -18,6 +18,7 @@
 #include "server/pipeline/picture_source.h"
 #include "server/pipeline/stream_definition.h"
 #include "server/session/peer_table.h"
+#include "server/session/pose_batch.h"
 #include "server/session/postman.h"
 #include "server/session/publishers.h"
 #include "server/session/recording_tap.h"
@@ -59,6 +60,12 @@ class Hub {
   // A whole message (a TCP frame, a datagram, a reassembled one). Whatever is wrong with it is
   // counted and, where the transport allows, answered.
   void OnMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now);
+  // The same for one of many that came together: a pose may wait for the others, to be evaluated
+  // with them, until PublishGathered(), and so long `bytes` must stay. All that goes out, and its
+  // order, is what OnMessage() makes of them one by one.
+  void GatherMessage(PeerId id, std::span<const std::uint8_t> bytes, Time now);
+  // Evaluates the poses that wait, and publishes them in the order in which they came.
+  void PublishGathered();
   // UDP: bytes that came from the peer, fragments too; what it may be sent unproven.
   void OnBytesReceived(PeerId id, std::size_t bytes, Time now);
   // TCP: bytes that are no frame; the connection ends after the answer.
@@ -123,7 +130,8 @@ class Hub {
   void ForgetRefusedMocap(Time now);
   bool OnOffer(Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer,
                Time now);
-  void Posed(Subject* subject, std::span<const std::uint8_t> payload, Time now);
+  void OnPose(Peer& peer, const protocol::Header& header, const protocol::PoseFrame& pose,
+              std::span<const std::uint8_t> payload, Time now);
   void Weighted(Subject& subject, std::span<const std::uint8_t> pose, std::int64_t age_us,
                 Time now);
   bool RefusedWhileDraining(Peer& peer, const protocol::Header& header);
@@ -139,6 +147,7 @@ class Hub {
   SubjectRegistry subjects_;
   Publishers publishers_;
   Subscribers subscribers_;
+  PoseBatch gathered_;
   std::map<std::pair<PeerId, std::string>, MocapStream> mocap_streams_;
   std::uint16_t next_mocap_stream_ = 0;
   bool draining_ = false;

@@ -103,33 +103,39 @@ void Publishers::Reject(Peer& peer, const protocol::Header& header, std::uint64_
                                           Postman::Clip(std::move(why))});
 }
 
-Subject* Publishers::OnPose(Peer& peer, const protocol::Header& header,
-                            const protocol::PoseFrame& pose, Time now) {
+Subject* Publishers::Find(const Peer& peer, const protocol::Header& header,
+                          const protocol::PoseFrame& pose) {
   metrics_->Add(Counter::kPosesReceived);
   Subject* subject = subjects_->Find(StreamKey{peer.id, header.session, header.stream});
-  if (subject == nullptr || subject->skeleton_hash != pose.skeleton_hash) {
-    AnswerStray(peer, header, pose.skeleton_hash, now);
-    return nullptr;
-  }
-  if (subject->ended) {  // overtaken by its own goodbye
+  return subject != nullptr && subject->skeleton_hash == pose.skeleton_hash ? subject : nullptr;
+}
+
+bool Publishers::Take(Subject& subject, const protocol::Header& header,
+                      const protocol::PoseFrame& pose) {
+  if (subject.ended) {  // overtaken by its own goodbye
     metrics_->Add(Counter::kPosesLate);
-    return nullptr;
+    return false;
   }
-  SubjectPipeline& pipeline = *subject->pipeline;
+  SubjectPipeline& pipeline = *subject.pipeline;
   if (!PoseFits(pose, pipeline.stream())) {
     metrics_->Add(Counter::kPosesInvalid);
-    return nullptr;
+    return false;
   }
-  if (!IsNew(*subject, header)) return nullptr;
+  if (!IsNew(subject, header)) return false;
   ApplyPose(pose, pipeline.stream(), pipeline.mutable_pose());
-  if (pipeline.Solve(header.sequence, header.capture_time_us) != wrinkle::JobStatus::kOk) {
+  return true;
+}
+
+bool Publishers::OnSolved(const GatheredPose& pose) {
+  if (pose.status != wrinkle::JobStatus::kOk) {
     metrics_->Add(Counter::kPosesInvalid);
-    return nullptr;
+    return false;
   }
-  subject->last_pose = subject->last_update = now;
-  subject->lost = false;
-  subject->stats.OnPose(header.sequence, header.capture_time_us, now);
-  return subject;
+  Subject& subject = *pose.subject;
+  subject.last_pose = subject.last_update = pose.now;
+  subject.lost = false;
+  subject.stats.OnPose(pose.header.sequence, pose.header.capture_time_us, pose.now);
+  return true;
 }
 
 bool Publishers::IsNew(Subject& subject, const protocol::Header& header) {
@@ -144,10 +150,7 @@ bool Publishers::IsNew(Subject& subject, const protocol::Header& header) {
   return false;
 }
 
-// Poses that no offer explains: the sender is asked for its skeleton, or, where another has taken
-// its subject over, told so; each stream at most once an interval.
-void Publishers::AnswerStray(Peer& peer, const protocol::Header& header, std::uint64_t hash,
-                             Time now) {
+void Publishers::OnStray(Peer& peer, const protocol::Header& header, std::uint64_t hash, Time now) {
   const bool retired = subjects_->IsRetired({peer.id, header.session, header.stream});
   metrics_->Add(retired ? Counter::kPosesRetiredSession : Counter::kPosesUnknownStream);
   if (!peer.strays.Take(header.session, header.stream, now)) return;

@@ -12,6 +12,7 @@
 #include "server/metrics.h"
 #include "server/pipeline/stream_definition.h"
 #include "server/session/peer.h"
+#include "server/session/pose_batch.h"
 #include "server/session/postman.h"
 #include "server/session/subject_registry.h"
 
@@ -28,9 +29,18 @@ class Publishers {
   // Answers the offer. The subject that it starts or changes; null where nothing changed.
   Subject* OnOffer(Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer,
                    Time now);
-  // The subject whose weights are new; null where the pose was dropped (and counted).
-  Subject* OnPose(Peer& peer, const protocol::Header& header, const protocol::PoseFrame& pose,
-                  Time now);
+  // A pose in three steps, so that many are evaluated together before the last.
+  // First: the subject that it is of; null where no offer explains it, see OnStray().
+  [[nodiscard]] Subject* Find(const Peer& peer, const protocol::Header& header,
+                              const protocol::PoseFrame& pose);
+  // Then: fills the subject's pose. False where it is too late or does not fit: dropped, counted.
+  [[nodiscard]] bool Take(Subject& subject, const protocol::Header& header,
+                          const protocol::PoseFrame& pose);
+  // Last, after its evaluation. True: the subject's weights are new. False: dropped, counted.
+  [[nodiscard]] bool OnSolved(const GatheredPose& pose);
+  // Poses that no offer explains: the sender is asked for its skeleton, or, where another has taken
+  // its subject over, told so; each stream at most once an interval.
+  void OnStray(Peer& peer, const protocol::Header& header, std::uint64_t skeleton_hash, Time now);
   // The subject that the stream feeds, if any, decays and then leaves.
   void OnGoodbye(const Peer& peer, const protocol::Header& header, Time now);
 
@@ -43,7 +53,6 @@ class Publishers {
   Subject* Accept(Peer& peer, const StreamKey& key, const protocol::SkeletonOffer& offer, Time now);
   void Reject(Peer& peer, const protocol::Header& header, std::uint64_t hash, std::string why,
               Time now);
-  void AnswerStray(Peer& peer, const protocol::Header& header, std::uint64_t hash, Time now);
   bool IsNew(Subject& subject, const protocol::Header& header);
   std::shared_ptr<const protocol::SkeletonOffer> Share(const protocol::SkeletonOffer& offer);
 
