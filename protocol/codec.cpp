@@ -48,9 +48,6 @@ constexpr std::array<std::string_view, kNumDecodeStatuses> kStatusNames = {
 // Exclusive, either way: any two capture times may be subtracted.
 constexpr std::int64_t kCaptureTimeBound = std::int64_t{1} << 62;
 
-// Root offset and file identifier.
-constexpr std::size_t kMinPayloadBytes = 8;
-
 DecodeStatus FromEnvelope(EnvelopeStatus status) {
   switch (status) {
     case EnvelopeStatus::kOk: return DecodeStatus::kOk;
@@ -81,7 +78,7 @@ DecodeStatus OpenMessage(std::span<const std::uint8_t> bytes, MessageView& view,
                          std::size_t max_bytes) {
   Envelope envelope;
   FURROW_CHECK_DECODE(FromEnvelope(ReadEnvelope(bytes, envelope)));
-  if ((envelope.flags & kFlagFragment) != 0) return DecodeStatus::kBadFlags;
+  if (envelope.flags != 0) return DecodeStatus::kBadFlags;
   const std::int64_t time = envelope.header.capture_time_us;
   if (time <= -kCaptureTimeBound || time >= kCaptureTimeBound) return DecodeStatus::kBadValue;
   view.header = envelope.header;

@@ -42,7 +42,7 @@ enum class DecodeStatus : std::uint8_t {
   kTooShort,
   kBadMagic,
   kBadVersion,
-  kBadFlags,  // undefined flags, or a fragment where a whole message is due
+  kBadFlags,  // undefined flags, or a fragment or bundle where a whole message is due
   kBadSession,
   kBadLength,    // payload size and byte count differ, or exceed the limit of the transport
   kUnknownKind,  // no such file identifier (a newer peer: ignore it)

@@ -19,6 +19,7 @@ DecodeStatus Decode(const MessageView& view, Hello& message) {
   const wire::Hello* root = nullptr;
   FURROW_CHECK_DECODE(Verify(view, MessageKind::kHello, root));
   message.token = root->token();
+  message.bundles = root->bundles();
   return ReadText(root->client(), kMaxProgramBytes, message.client);
 }
 
@@ -32,8 +33,8 @@ void Encoder::Encode(const Header& header, const Hello& message, std::vector<std
     const auto client = WriteText(builder, message.client);
     state_->mask.assign(padding, 0);
     const auto zeros = padding > 0 ? builder.CreateVector(state_->mask) : 0;
-    Finish(builder, wire::CreateHello(builder, client, message.token, zeros), header,
-           MessageKind::kHello, out);
+    Finish(builder, wire::CreateHello(builder, client, message.token, zeros, message.bundles),
+           header, MessageKind::kHello, out);
     padding += kHelloBytes - std::min(kHelloBytes, out.size());
   } while (out.size() < kHelloBytes);
 }

@@ -12,7 +12,9 @@ EnvelopeStatus ReadEnvelope(std::span<const std::uint8_t> bytes, Envelope& envel
   const std::uint8_t* at = bytes.data();
   if (!std::equal(kMagic.begin(), kMagic.end(), at)) return EnvelopeStatus::kBadMagic;
   if (at[4] != kVersion) return EnvelopeStatus::kBadVersion;
-  if ((at[5] & ~kFlagFragment) != 0) return EnvelopeStatus::kBadFlags;
+  if (at[5] != 0 && at[5] != kFlagFragment && at[5] != kFlagFollowed) {
+    return EnvelopeStatus::kBadFlags;
+  }
   envelope.flags = at[5];
   envelope.header.stream = LoadLittle<std::uint16_t>(at + 6);
   envelope.header.session = LoadLittle<std::uint64_t>(at + 8);

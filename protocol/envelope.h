@@ -15,15 +15,18 @@ namespace furrow::protocol {
 //   20 u32 payload size | 24 i64 capture time in microseconds | 32 payload
 inline constexpr std::array<std::uint8_t, 4> kMagic = {'F', 'R', 'R', 'W'};
 inline constexpr std::uint8_t kVersion = 1;
-inline constexpr std::uint8_t kFlagFragment = 1;
+inline constexpr std::uint8_t kFlagFragment = 1;  // fragment.h
+inline constexpr std::uint8_t kFlagFollowed = 2;  // another message in the datagram: bundle.h
 inline constexpr std::size_t kEnvelopeBytes = 32;
+// A FlatBuffers buffer has at least its root's offset and its file identifier.
+inline constexpr std::size_t kMinPayloadBytes = 8;
 
 enum class EnvelopeStatus : std::uint8_t {
   kOk = 0,
   kTooShort,  // fewer bytes than an envelope
   kBadMagic,
   kBadVersion,  // a version that this build does not speak
-  kBadFlags,    // a bit that version 1 does not define
+  kBadFlags,    // a bit that version 1 does not define, or a fragment that is followed
   kBadSession,  // session 0
 };
 

@@ -48,6 +48,7 @@ struct Header {
 struct Hello {
   std::string client;  // program and version, for logs
   std::uint64_t token = 0;
+  bool bundles = false;  // UDP: takes several messages in a datagram (bundle.h)
 };
 
 struct Welcome {

@@ -31,7 +31,9 @@ Subscriber::Subscriber(std::unique_ptr<Transport> transport, std::string name)
 }
 
 void Subscriber::SendHello() {
-  encoder_.Encode({.session = session_}, protocol::Hello{.client = name_, .token = token_}, bytes_);
+  const protocol::Hello hello{
+      .client = name_, .token = token_, .bundles = transport_->takes_bundles()};
+  encoder_.Encode({.session = session_}, hello, bytes_);
   (void)transport_->Send(bytes_);
 }
 

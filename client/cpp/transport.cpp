@@ -12,6 +12,7 @@
 #include <asio/ip/udp.hpp>
 #include <asio/write.hpp>
 
+#include "protocol/bundle.h"
 #include "protocol/fragment.h"
 #include "protocol/limits.h"
 #include "protocol/tcp_framing.h"
@@ -195,13 +196,14 @@ class UdpTransport : public Transport {
     const auto deadline = Clock::now() + timeout;
     (void)reassembler_.Expire(Microseconds(Clock::now()));
     for (int piece = 0; piece < kMostPieces; ++piece) {
+      if (unbundler_.Next(message)) return IoStatus::kOk;
       if (std::exchange(refused_, false)) return IoStatus::kNoConnection;
       pump_.Start(socket_, buffer_);
       if (!pump_.Wait(context_, deadline)) return IoStatus::kTimeout;
       if (pump_.error()) return IoStatus::kNoConnection;
-      const auto datagram = std::span<const std::uint8_t>(buffer_).first(pump_.bytes());
+      const auto datagram = std::span(buffer_).first(pump_.bytes());
       switch (reassembler_.Push(0, datagram, Microseconds(Clock::now()), message)) {
-        case protocol::FragmentStatus::kWhole:
+        case protocol::FragmentStatus::kWhole: (void)unbundler_.Open(datagram); break;
         case protocol::FragmentStatus::kComplete: return IoStatus::kOk;
         default: break;  // a piece, or nothing of ours: wait on
       }
@@ -209,12 +211,15 @@ class UdpTransport : public Transport {
     return IoStatus::kTimeout;
   }
 
+  [[nodiscard]] bool takes_bundles() const override { return true; }
+
  private:
   asio::io_context context_{1};
   udp::socket socket_{context_};
   ReadPump pump_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(64 * 1024);
   std::array<std::uint8_t, protocol::kMaxDatagramBytes> datagram_{};
+  protocol::Unbundler unbundler_;  // of buffer_
   protocol::Reassembler reassembler_;
   std::uint32_t next_message_id_ = 0;
   bool refused_ = false;

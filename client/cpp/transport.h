@@ -21,7 +21,7 @@ enum class IoStatus {
 };
 
 // One connected socket that carries whole messages of the Furrow protocol (protocol/STANDARD.md):
-// length-prefixed over TCP, one a datagram or in fragments over UDP.
+// length-prefixed over TCP; over UDP one a datagram or in fragments, and received in bundles, too.
 //
 // Not thread-safe: one thread a transport. Waits never beyond the times given, except that the
 // system's resolver takes its own time over a name.
@@ -44,6 +44,9 @@ class Transport {
   // the transport and is valid until the next call.
   [[nodiscard]] virtual IoStatus Receive(std::span<const std::uint8_t>& message,
                                          std::chrono::milliseconds timeout) = 0;
+
+  // Whether Receive() takes bundles apart (protocol/bundle.h), so that the daemon may send some.
+  [[nodiscard]] virtual bool takes_bundles() const { return false; }
 
   [[nodiscard]] TransportKind kind() const { return kind_; }
 

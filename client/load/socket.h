@@ -39,6 +39,8 @@ class Socket : public client::Transport {
 
   // Readable when Receive() with no timeout has something; level-triggered.
   [[nodiscard]] virtual int descriptor() const = 0;
+  // Whether Receive() has something that the descriptor does not show any more.
+  [[nodiscard]] virtual bool holds() const = 0;
   // Datagrams that came and found no room here: not the server's fault.
   [[nodiscard]] virtual std::uint64_t overrun() const { return 0; }
 

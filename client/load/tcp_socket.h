@@ -19,6 +19,7 @@ class TcpSocket : public Socket {
   [[nodiscard]] client::IoStatus Receive(std::span<const std::uint8_t>& message,
                                          std::chrono::milliseconds timeout) override;
   [[nodiscard]] int descriptor() const override { return descriptor_.get(); }
+  [[nodiscard]] bool holds() const override { return !unread_.empty(); }
 
  private:
   [[nodiscard]] client::IoStatus Fill(std::chrono::milliseconds timeout);

@@ -55,7 +55,7 @@ IoStatus UdpSocket::SendDatagram(std::span<const std::uint8_t> datagram) {
 
 IoStatus UdpSocket::Receive(std::span<const std::uint8_t>& message,
                             std::chrono::milliseconds timeout) {
-  for (;;) {
+  while (!unbundler_.Next(message)) {
     if (taken_ == filled_) {
       if (std::exchange(drained_, false)) return IoStatus::kTimeout;
       if (timeout.count() > 0) WaitFor(descriptor_.get(), POLLIN, std::exchange(timeout, {}));
@@ -63,14 +63,14 @@ IoStatus UdpSocket::Receive(std::span<const std::uint8_t>& message,
       if (status != IoStatus::kOk) return status;
     }
     const std::size_t i = taken_++;
-    const std::span<const std::uint8_t> datagram(buffer_.data() + i * kBufferBytes,
-                                                 headers_[i].msg_len);
+    const std::span datagram(buffer_.data() + i * kBufferBytes, headers_[i].msg_len);
     switch (reassembler_.Push(0, datagram, SteadyNanoseconds() / 1000, message)) {
-      case protocol::FragmentStatus::kWhole:
+      case protocol::FragmentStatus::kWhole: (void)unbundler_.Open(datagram); break;
       case protocol::FragmentStatus::kComplete: return IoStatus::kOk;
       default: break;  // a piece, or nothing of ours
     }
   }
+  return IoStatus::kOk;
 }
 
 IoStatus UdpSocket::Fill() {

@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 
 #include "client/load/socket.h"
+#include "protocol/bundle.h"
 #include "protocol/fragment.h"
 #include "protocol/limits.h"
 
@@ -21,7 +22,9 @@ class UdpSocket : public Socket {
   [[nodiscard]] client::IoStatus Send(std::span<const std::uint8_t> message) override;
   [[nodiscard]] client::IoStatus Receive(std::span<const std::uint8_t>& message,
                                          std::chrono::milliseconds timeout) override;
+  [[nodiscard]] bool takes_bundles() const override { return true; }
   [[nodiscard]] int descriptor() const override { return descriptor_.get(); }
+  [[nodiscard]] bool holds() const override { return taken_ < filled_ || unbundler_.has_more(); }
   [[nodiscard]] std::uint64_t overrun() const override { return overrun_; }
 
  private:
@@ -48,6 +51,7 @@ class UdpSocket : public Socket {
   std::uint32_t overrun_ever_ = 0;
   std::uint64_t overrun_ = 0;
   std::array<std::uint8_t, protocol::kMaxDatagramBytes> datagram_{};
+  protocol::Unbundler unbundler_;  // of the datagram taken last
   protocol::Reassembler reassembler_;
   std::uint32_t next_message_id_ = 0;
 };

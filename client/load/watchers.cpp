@@ -99,7 +99,7 @@ IoStatus Watchers::Read(std::size_t i, const std::function<void(const Arrival&)>
   constexpr int kAtOnce = 256;  // a flood on one socket must not keep the others waiting
   Link& link = links_[i];
   const std::int64_t now_us = NowUs();
-  for (int n = 0; n < kAtOnce; ++n) {
+  for (int n = 0; n < kAtOnce || link.socket->holds(); ++n) {
     const Event event = link.subscriber->Next(now_us, milliseconds(0));
     switch (event.kind) {
       case Event::Kind::kTimeout: return IoStatus::kOk;

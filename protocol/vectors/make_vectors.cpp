@@ -12,11 +12,13 @@
 #include <map>
 #include <span>
 
+#include "protocol/bundle.h"
 #include "protocol/bytes.h"
 #include "protocol/codec.h"
 #include "protocol/fragment.h"
 #include "protocol/hash.h"
 #include "protocol/tcp_framing.h"
+#include "protocol/vectors/fields.h"
 #include "protocol/vectors/json.h"
 
 namespace furrow::protocol::vectors {
@@ -26,129 +28,6 @@ using Bytes = std::vector<std::uint8_t>;
 using Files = std::map<std::string, std::string>;  // name, content
 
 constexpr Header kHeader{0x0123456789abcdefULL, 3, 41, 1'700'000'000'123'456};
-
-Fields FieldsOf(const Hello& m) {
-  return {{"client", Json(m.client)}, {"token", JsonHex(m.token)}};
-}
-Fields FieldsOf(const Welcome& m) {
-  return {{"server", Json(m.server)}, {"token", JsonHex(m.token)}};
-}
-Fields FieldsOf(const Ping& m) { return {{"time_us", Json(m.time_us)}}; }
-Fields FieldsOf(const Pong& m) {
-  return {{"time_us", Json(m.time_us)}, {"server_time_us", Json(m.server_time_us)}};
-}
-Fields FieldsOf(const Goodbye& m) { return {{"reason", Json(static_cast<int>(m.reason))}}; }
-Fields FieldsOf(const ErrorMessage& m) {
-  return {{"code", Json(static_cast<int>(m.code))}, {"message", Json(m.message)}};
-}
-
-std::string JointJson(const OfferedJoint& joint) {
-  Fields fields = {{"name", Json(joint.name)},
-                   {"parent", Json(static_cast<int>(joint.parent))},
-                   {"rest_translation", Json(joint.rest_translation)},
-                   {"rest_rotation", Json(joint.rest_rotation)},
-                   {"rest_scale", Json(joint.rest_scale)}};
-  if (joint.has_tail) fields.emplace_back("tail", Json(joint.tail));
-  return Json(fields, "    ");
-}
-
-Fields FieldsOf(const SkeletonOffer& m) {
-  std::string joints = "[";
-  for (const OfferedJoint& joint : m.joints)
-    joints += (joints.size() > 1 ? ", " : "") + JointJson(joint);
-  return {{"subject", Json(m.subject)},
-          {"skeleton_hash", JsonHex(m.skeleton_hash)},
-          {"metres_per_unit", Json(m.metres_per_unit)},
-          {"joints", joints + "]"},
-          {"blend_shape_names", Json(m.blend_shape_names)}};
-}
-Fields FieldsOf(const SkeletonReply& m) {
-  return {{"skeleton_hash", JsonHex(m.skeleton_hash)},
-          {"status", Json(static_cast<int>(m.status))},
-          {"message", Json(m.message)}};
-}
-Fields FieldsOf(const PoseFrame& m) {
-  return {{"skeleton_hash", JsonHex(m.skeleton_hash)},
-          {"partial", Json(m.partial)},
-          {"num_joints", Json(int{m.num_joints})},
-          {"num_blend_shapes", Json(int{m.num_blend_shapes})},
-          {"rotation_joints", Json(m.rotation_joints)},
-          {"rotations", Json(m.rotations)},
-          {"translation_joints", Json(m.translation_joints)},
-          {"translations", Json(m.translations)},
-          {"scale_joints", Json(m.scale_joints)},
-          {"scales", Json(m.scales)},
-          {"blend_shape_indices", Json(m.blend_shape_indices)},
-          {"blend_shapes", Json(m.blend_shapes)}};
-}
-Fields FieldsOf(const SubscribeWeights& m) {
-  return {{"subject", Json(m.subject)},
-          {"wait", Json(m.wait)},
-          {"pattern", Json(m.pattern)},
-          {"max_rate_hz", Json(m.max_rate_hz)},
-          {"format", Json(static_cast<int>(m.format))},
-          {"source", Json(static_cast<int>(m.source))},
-          {"every", Json(m.every)}};
-}
-Fields FieldsOf(const SubscribePictures& m) {
-  Fields fields = {{"subject", Json(m.subject)},
-                   {"wait", Json(m.wait)},
-                   {"width", Json(int{m.width})},
-                   {"height", Json(int{m.height})},
-                   {"max_rate_hz", Json(m.max_rate_hz)},
-                   {"format", Json(static_cast<int>(m.format))},
-                   {"quality", Json(int{m.quality})},
-                   {"view", Json(m.view)},
-                   {"camera_preset", Json(m.camera_preset)}};
-  if (m.has_camera) {
-    fields.emplace_back("eye", Json(m.camera.eye));
-    fields.emplace_back("target", Json(m.camera.target));
-    fields.emplace_back("vertical_fov_degrees", Json(m.camera.vertical_fov_degrees));
-  }
-  fields.emplace_back("acknowledged", Json(m.acknowledged));
-  fields.emplace_back("settings", Json(m.settings));
-  fields.emplace_back("camera_follows", Json(m.camera_follows));
-  return fields;
-}
-Fields FieldsOf(const UpdatePictures& m) { return FieldsOf(m.pictures); }
-Fields FieldsOf(const FrameAck& m) {
-  return {{"number", Json(static_cast<std::int64_t>(m.number))}};
-}
-Fields FieldsOf(const SubscribePoses& m) {
-  return {{"subject", Json(m.subject)},
-          {"wait", Json(m.wait)},
-          {"max_rate_hz", Json(m.max_rate_hz)},
-          {"every", Json(m.every)}};
-}
-Fields FieldsOf(const Dropped& m) {
-  return {{"frames", Json(static_cast<std::int64_t>(m.frames))}};
-}
-Fields FieldsOf(const Unsubscribe&) { return {}; }
-Fields FieldsOf(const SubscribeReply& m) {
-  return {{"subject", Json(m.subject)},
-          {"names_hash", JsonHex(m.names_hash)},
-          {"names", Json(m.names)},
-          {"publisher_session", JsonHex(m.publisher_session)}};
-}
-Fields FieldsOf(const WeightFrame& m) {
-  return {{"names_hash", JsonHex(m.names_hash)},
-          {"age_us", Json(m.age_us)},
-          {"format", Json(static_cast<int>(m.format))},
-          {"values", Json(m.values)}};
-}
-Fields FieldsOf(const ImageFrame& m) {
-  return {{"width", Json(int{m.width})},
-          {"height", Json(int{m.height})},
-          {"format", Json(static_cast<int>(m.format))},
-          {"age_us", Json(m.age_us)},
-          {"bytes", Json(m.bytes)},
-          {"number", Json(static_cast<std::int64_t>(m.number))},
-          {"tier", Json(int{m.tier})},
-          {"still", Json(m.still)},
-          {"dropped", Json(static_cast<std::int64_t>(m.dropped))},
-          {"received_us", Json(m.received_us)},
-          {"view_request", Json(static_cast<std::int64_t>(m.view_request))}};
-}
 
 std::string Text(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
 
@@ -277,6 +156,7 @@ SubscribePictures ViewersPictures() {
 void AddMeeting(Files& files) {
   Add(files, "hello", Hello{"example/1.0", 0});
   Add(files, "hello_token", Hello{"example/1.0", 0xfedcba9876543210ULL});
+  Add(files, "hello_bundles", Hello{"example/1.0", 0xfedcba9876543210ULL, true});
   Add(files, "welcome", Welcome{"furrowd/0.1.0", 0xfedcba9876543210ULL});
   Add(files, "ping", Ping{-5});
   Add(files, "pong", Pong{-5, 1'234'567'890'123});
@@ -358,13 +238,53 @@ void AddFragments(Files& files) {
   files["fragments.json"] = json;
 }
 
+void Refuse(Files& files, const std::string& name, const Bytes& bytes, const std::string& why) {
+  files["refuse_" + name + ".bin"] = Text(bytes);
+  files["refuse_" + name + ".json"] =
+      Json(Fields{{"container", Json(std::string_view("refuse"))}, {"why", Json(why)}}) + "\n";
+}
+
+// Messages that share a datagram, and bundles that must be refused. The JSON is a list of what its
+// messages would be by themselves.
+void AddBundles(Files& files) {
+  Files alone;
+  const std::vector<std::string> names = {"brow_l.stretch", "brow_l.squash", "nose.squash"};
+  const WeightFrame frame{NamesHash(names), 0, WeightFormat::kF32, {0.0f, 0.25f, 1.0f}};
+  const std::vector<Bytes> messages = {Add(alone, "0", frame), Add(alone, "1", Pong{-5, 7}),
+                                       Add(alone, "2", frame)};
+  Bytes bundle;
+  if (!WriteBundle(messages, bundle)) std::exit(1);
+  files["bundle.bin"] = Text(bundle);
+  std::string list;
+  for (const char* name : {"0.json", "1.json", "2.json"}) {
+    list += (list.empty() ? "" : ",\n") + alone[name].substr(0, alone[name].size() - 1);
+  }
+  files["bundle.json"] = "{\n\"container\": \"bundle\",\n\"messages\": [\n" + list + "\n]\n}\n";
+  const auto refuse = [&](const std::string& name, const Bytes& bytes, const std::string& why) {
+    Refuse(files, "bundle_" + name, bytes, why);
+  };
+  Bytes bad = bundle;
+  bad.push_back(0);
+  refuse("trailing", bad, "a byte after its last message");
+  bad = bundle;
+  bad.resize(messages[0].size() + messages[1].size());
+  refuse("cut", bad, "a message that should be followed and is not");
+  bad = bundle;
+  bad[messages[0].size() + 5] = kFlagFragment;
+  refuse("fragment", bad, "a fragment inside");
+  bad = bundle;
+  bad[messages[0].size() + 8] ^= 1;
+  refuse("session", bad, "messages of two sessions");
+  bad = bundle;
+  bad[20] = 0xF0;
+  refuse("length", bad, "a first message that ends inside the third");
+}
+
 // Each differs from a good message in one place and must be refused.
 void AddRefused(Files& files) {
   const Bytes pose = Add(files, "pose", SmallPose());
   const auto add = [&files](const std::string& name, const Bytes& bytes, const std::string& why) {
-    files["refuse_" + name + ".bin"] = Text(bytes);
-    files["refuse_" + name + ".json"] =
-        Json(Fields{{"container", Json(std::string_view("refuse"))}, {"why", Json(why)}}) + "\n";
+    Refuse(files, name, bytes, why);
   };
   Bytes bytes = pose;
   bytes[0] = 'X';
@@ -373,7 +293,7 @@ void AddRefused(Files& files) {
   bytes[4] = 2;
   add("version", bytes, "another version");
   bytes = pose;
-  bytes[5] = 2;
+  bytes[5] = 4;
   add("flags", bytes, "a flag that version 1 does not define");
   bytes = pose;
   std::fill(bytes.begin() + 8, bytes.begin() + 16, std::uint8_t{0});
@@ -441,6 +361,7 @@ int Run(std::span<char* const> arguments) {
   AddSubscribing(files);
   AddViewing(files);
   AddFragments(files);
+  AddBundles(files);
   AddRefused(files);
   return check ? Check(arguments[2], files) : Write(arguments[1], files);
 }

@@ -173,7 +173,8 @@ def one_of(value, count):
 
 
 def hello(t):
-    return {"client": t.text(0, limit=64), "token": hexadecimal(t.scalar(1, "Q"))}
+    return {"client": t.text(0, limit=64), "token": hexadecimal(t.scalar(1, "Q")),
+            "bundles": t.flag(3)}
 
 
 def welcome(t):
@@ -367,7 +368,7 @@ def envelope(data):
     magic, version, flags, stream, session, sequence, size, time = ENVELOPE.unpack_from(data)
     require(magic == b"FRRW", "another magic")
     require(version == 1, "another version")
-    require(flags & ~1 == 0, "undefined flags")
+    require(flags in (0, 1, 2), "undefined flags, or a fragment that is followed")
     require(session != 0, "session 0")
     require(abs(time) < 2**62, "a capture time that cannot be")
     return flags, size, {"session": hexadecimal(session), "stream": stream, "sequence": sequence,
@@ -376,7 +377,7 @@ def envelope(data):
 
 def decode(data):
     flags, size, result = envelope(data)
-    require(flags == 0, "a fragment where a message is due")
+    require(flags == 0, "a fragment or a bundle where a message is due")
     payload = data[ENVELOPE.size:]
     require(len(payload) == size and size >= 8, "payload size and bytes differ")
     kind = KINDS.get(payload[4:8])
@@ -413,6 +414,27 @@ def reassemble(datagrams):
     return bytes(head) + b"".join(slices[i] for i in sorted(slices))
 
 
+def unbundle(datagram):
+    """Section 3: the messages of a datagram, each as it would have come alone."""
+    require(len(datagram) <= MAX_DATAGRAM, "a datagram above 1,200 bytes")
+    messages, followed, session = [], True, datagram[8:16]
+    while followed:
+        flags, size, _ = envelope(datagram)
+        followed = flags == 2
+        require(flags != 1, "a fragment inside")
+        require(datagram[8:16] == session, "messages of different sessions")
+        require(8 <= size <= len(datagram) - 32, "a payload that is none or leaves its datagram")
+        require(followed or size == len(datagram) - 32, "bytes after the last message")
+        messages.append(datagram[:5] + b"\0" + datagram[6:32 + size])
+        datagram = datagram[32 + size:]
+    return messages
+
+
+def decode_datagram(data):
+    """A list of messages if it is a bundle, else the message."""
+    return list(map(decode, unbundle(data))) if data[5:6] == b"\2" else decode(data)
+
+
 # --- Comparison ------------------------------------------------------------------------------------------
 
 
@@ -432,11 +454,15 @@ def check_one(path):
     container = expected.pop("container")
     data = path.read_bytes()
     try:
-        decoded = decode(reassemble(frames(data)) if container == "datagrams" else data)
+        decoded = decode(reassemble(frames(data))) if container == "datagrams" else decode_datagram(data)
     except Refused as refusal:
         return None if container == "refuse" else f"refused: {refusal}"
     if container == "refuse":
         return f"accepted, but it has {expected['why']}"
+    if container == "bundle":
+        expected = expected["messages"]
+        for message in expected:
+            message.pop("container")
     return None if equal(expected, decoded) else f"decoded as {json.dumps(decoded)}"
 
 

@@ -14,6 +14,9 @@ TEST(CodecMeeting, ContentComesBack) {
   ASSERT_EQ(OpenAndDecode(Encoded(Hello{"prog/1.0", 77}), hello), DecodeStatus::kOk);
   EXPECT_EQ(hello.client, "prog/1.0");
   EXPECT_EQ(hello.token, 77u);
+  EXPECT_FALSE(hello.bundles);
+  ASSERT_EQ(OpenAndDecode(Encoded(Hello{"", 0, true}), hello), DecodeStatus::kOk);
+  EXPECT_TRUE(hello.bundles);
   Welcome welcome;
   ASSERT_EQ(OpenAndDecode(Encoded(Welcome{"furrowd/9", 78}), welcome), DecodeStatus::kOk);
   EXPECT_EQ(welcome.server, "furrowd/9");
@@ -36,10 +39,10 @@ TEST(CodecMeeting, AWelcomeNeverExceedsTheHelloItAnswers) {
   const std::string longest(kMaxProgramBytes, 'x');
   for (const std::string& name : {std::string(), std::string("a"), longest}) {
     EXPECT_GE(Encoded(Hello{name, 0}).size(), kHelloBytes);
-    EXPECT_GE(Encoded(Hello{name, ~0ULL}).size(), kHelloBytes);
+    EXPECT_GE(Encoded(Hello{name, ~0ULL, true}).size(), kHelloBytes);
   }
   EXPECT_LE(Encoded(Welcome{longest, ~0ULL}).size(), kHelloBytes);
-  EXPECT_LE(Encoded(Hello{longest, ~0ULL}).size(), kMaxDatagramBytes);
+  EXPECT_LE(Encoded(Hello{longest, ~0ULL, true}).size(), kMaxDatagramBytes);
 }
 
 TEST(CodecMeeting, RefusesUnknownValuesAndBadText) {

@@ -39,9 +39,11 @@ TEST(Envelope, RefusesOneFaultAtATime) {
   for (std::size_t at = 0; at < 4; ++at) EXPECT_EQ(read_with(at, 0), EnvelopeStatus::kBadMagic);
   EXPECT_EQ(read_with(4, 0), EnvelopeStatus::kBadVersion);
   EXPECT_EQ(read_with(4, 2), EnvelopeStatus::kBadVersion);
-  EXPECT_EQ(read_with(5, 2), EnvelopeStatus::kBadFlags);
+  EXPECT_EQ(read_with(5, 4), EnvelopeStatus::kBadFlags);
   EXPECT_EQ(read_with(5, 0x81), EnvelopeStatus::kBadFlags);
+  EXPECT_EQ(read_with(5, kFlagFragment | kFlagFollowed), EnvelopeStatus::kBadFlags);
   EXPECT_EQ(read_with(5, kFlagFragment), EnvelopeStatus::kOk);
+  EXPECT_EQ(read_with(5, kFlagFollowed), EnvelopeStatus::kOk);
   auto bytes = Good();
   std::fill(bytes.begin() + 8, bytes.begin() + 16, std::uint8_t{0});
   EXPECT_EQ(ReadEnvelope(bytes, envelope), EnvelopeStatus::kBadSession);
