@@ -24,7 +24,7 @@ float Heading(const glm::mat4& rotation) {
 glm::mat4 FollowTransform(const Camera& camera, const wrinkle::Skeleton& skeleton,
                           std::span<const glm::mat4> model) {
   const int joint = camera.follow_joint;
-  if (joint < 0 || joint >= skeleton.num_joints()) return glm::mat4(1.0f);
+  if (joint >= skeleton.num_joints()) return glm::mat4(1.0f);
   int root = joint;
   while (skeleton.joint_parents()[root] != wrinkle::kNoJoint) root = skeleton.joint_parents()[root];
   const float turn = Heading(model[root] * glm::inverse(skeleton.rest_model()[root]));
@@ -37,8 +37,11 @@ glm::mat4 FollowTransform(const Camera& camera, const wrinkle::Skeleton& skeleto
 }  // namespace
 
 CameraFrame ComputeCamera(const Camera& camera, const wrinkle::Skeleton& skeleton,
-                          std::span<const glm::mat4> model, float aspect) {
-  const glm::mat4 follow = FollowTransform(camera, skeleton, model);
+                          std::span<const glm::mat4> model, float aspect,
+                          const glm::mat4& placement) {
+  const glm::mat4 follow = camera.follow_joint < 0
+                               ? glm::mat4(1.0f)
+                               : placement * FollowTransform(camera, skeleton, model);
   const glm::vec3 position(follow * glm::vec4(camera.position, 1.0f));
   const glm::vec3 target(follow * glm::vec4(camera.target, 1.0f));
   const glm::vec3 towards = target - position;

@@ -37,10 +37,12 @@ struct CameraFrame {
   }
 };
 
-// `model`: the pose, num_joints long; the camera follows it as Camera::follow_joint says. `aspect`:
-// width / height. Near and far planes are set from the distance to the target.
+// `model`: the pose, num_joints long; the camera follows it as Camera::follow_joint says, to where
+// the subject stands (`placement`). `aspect`: width / height. Near and far planes are set from the
+// distance to the target.
 [[nodiscard]] CameraFrame ComputeCamera(const Camera& camera, const wrinkle::Skeleton& skeleton,
-                                        std::span<const glm::mat4> model, float aspect);
+                                        std::span<const glm::mat4> model, float aspect,
+                                        const glm::mat4& placement = glm::mat4(1.0f));
 
 // Renderer::Preset(), all of them: (name, camera).
 [[nodiscard]] std::vector<std::pair<std::string, Camera>> CameraPresets(

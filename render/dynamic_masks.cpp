@@ -20,7 +20,7 @@ int IndexByName(const std::vector<Item>& items, const std::string& name) {
 
 std::vector<std::uint8_t> DynamicMasksBlock(std::span<const DynamicMaskBlock> masks,
                                             int num_columns) {
-  const std::int32_t head[4] = {static_cast<std::int32_t>(masks.size()), num_columns, 0, 0};
+  const std::int32_t head[4] = {num_columns, 0, 0, 0};
   std::vector<std::uint8_t> block(sizeof(head) + std::max(masks.size_bytes(),  //
                                                           sizeof(DynamicMaskBlock)));
   std::memcpy(block.data(), head, sizeof(head));
@@ -85,7 +85,7 @@ DynamicMaskBlock DynamicMasks::BlockOf(const Slide& slide) const {
   return block;
 }
 
-bool DynamicMasks::Append(int map, int slot, std::vector<DynamicMaskBlock>* masks) const {
+void DynamicMasks::Append(int map, std::vector<DynamicMaskBlock>* masks) const {
   const std::size_t before = masks->size();
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     if (columns_[i].map != map || !column_works_[i]) continue;
@@ -100,8 +100,7 @@ bool DynamicMasks::Append(int map, int slot, std::vector<DynamicMaskBlock>* mask
     const DynamicMaskBlock block = BlockOf(slide);
     if (glm::vec3(block.towards) != glm::vec3(0.0f)) masks->push_back(block);
   }
-  for (std::size_t i = before; i < masks->size(); ++i) (*masks)[i].slot = slot;
-  return masks->size() > before;
+  for (std::size_t i = before; i < masks->size(); ++i) (*masks)[i].slot = map;
 }
 
 }  // namespace furrow::render

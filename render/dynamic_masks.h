@@ -32,8 +32,8 @@ static_assert(sizeof(DynamicMaskBlock) == 80);
 [[nodiscard]] std::vector<std::uint8_t> DynamicMasksBlock(std::span<const DynamicMaskBlock> masks,
                                                           int num_columns);
 
-// The masks of a rig that are found vertex by vertex: by skin weights, and those that slide about
-// ball joints.
+// One subject's masks of a rig that are found vertex by vertex: by skin weights, and those that
+// slide about ball joints.
 class DynamicMasks {
  public:
   // `painted`: the character's rig on its own skeleton; `skinning`: the same with skinning masks in
@@ -43,8 +43,8 @@ class DynamicMasks {
   // `values`, `weights`: of the painted binding (both bindings have the same names).
   void Update(MaskMode mode, std::span<const float> values, std::span<const float> weights);
 
-  // The masks at work on a wrinkle map, for the active map `slot`; whether there is any.
-  bool Append(int map, int slot, std::vector<DynamicMaskBlock>* masks) const;
+  // The masks at work on a wrinkle map of the rig; their slot is the map.
+  void Append(int map, std::vector<DynamicMaskBlock>* masks) const;
   // num_joints x num_columns(), joint-major.
   [[nodiscard]] std::span<const float> influences() const { return influences_; }
   [[nodiscard]] int num_columns() const { return static_cast<int>(columns_.size()); }

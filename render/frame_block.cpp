@@ -35,7 +35,7 @@ FrameSetup SetUpFrame(const FrameRequest& request, const wrinkle::Skeleton& skel
                       AmbientCache* cache) {
   const float aspect = static_cast<float>(request.width) / static_cast<float>(request.height);
   FrameSetup setup;
-  setup.camera = ComputeCamera(request.camera, skeleton, request.model, aspect);
+  setup.camera = ComputeCamera(request.camera, skeleton, request.model, aspect, request.placement);
   setup.pixels_per_slope = setup.camera.PixelsPerSlope(request.height);
   const float radius = setup.camera.StageRadius(aspect);
   setup.lighting =

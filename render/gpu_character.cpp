@@ -153,21 +153,24 @@ Status CheckLayers(std::size_t layers, const char* what) {
           "wrinkle rig"};
 }
 
-// The active list must fit a uniform block, and the dynamic masks the varyings.
+// The active list must fit a uniform block, and the dynamic masks what a vertex brings and hands
+// on.
 Status CheckBlock(const WrinkleLayout& layout) {
   const int num_maps = static_cast<int>(layout.map_layers.size());
   GLint block_limit = 0;
   GLint varying_limit = 0;
+  GLint attribute_limit = 0;
   glGetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &block_limit);
   glGetIntegerv(GL_MAX_VARYING_VECTORS, &varying_limit);
-  constexpr int kOtherVaryings = 5;  // of scene.vert.glsl
+  glGetIntegerv(GL_MAX_VERTEX_ATTRIBS, &attribute_limit);
+  constexpr int kOthers = 6;  // of scene.vert.glsl
   if (WrinkleBlockSize(num_maps, layout.num_mask_layers) <= static_cast<std::size_t>(block_limit) &&
-      MapSlots(num_maps) + kOtherVaryings <= varying_limit) {
+      MapSlots(num_maps) + kOthers <= std::min(varying_limit, attribute_limit)) {
     return {};
   }
   return {StatusCode::kLimit,
           std::to_string(num_maps) + " wrinkle maps and " + std::to_string(layout.num_mask_layers) +
-              " mask textures are more than the driver's uniform blocks and varyings hold",
+              " mask textures are more than the driver's uniform blocks and vertices hold",
           "wrinkle rig"};
 }
 

@@ -30,7 +30,7 @@ void DescribeVertices(GLuint array, const gl::Buffer& vertices) {
 }
 
 void DescribeShares(GLuint array, const gl::Buffer& shares) {
-  constexpr GLuint kShare = 6;  // a_share of scene.vert.glsl
+  constexpr GLuint kShare = 6;  // a_share of pose.vert.glsl
   glVertexArrayVertexBuffer(array, 1, shares.name(), 0, sizeof(float));
   glEnableVertexArrayAttrib(array, kShare);
   glVertexArrayAttribFormat(array, kShare, 1, GL_FLOAT, GL_FALSE, 0);
@@ -59,6 +59,7 @@ GpuMesh MakeGpuMesh(const character::Mesh& mesh, std::span<const glm::mat4> inve
   gpu.vertices = gl::MakeStaticBuffer(mesh.vertices.data(), mesh.vertices.size() * sizeof(Vertex));
   gpu.indices = gl::MakeStaticBuffer(mesh.indices.data(), mesh.indices.size() * 4);
   gpu.vertex_array = gl::MakeVertexArray();
+  gpu.num_vertices = static_cast<GLsizei>(mesh.vertices.size());
   gpu.num_indices = static_cast<GLsizei>(mesh.indices.size());
   gpu.material = mesh.material;
   gpu.bounds = JointBounds(mesh, inverse_bind_matrices);
@@ -75,7 +76,7 @@ GpuMesh MakeUnindexed(const GpuMesh& mesh) {
   GpuMesh gpu;
   gpu.vertices = gl::MakeStaticBuffer(expanded.data(), expanded.size() * sizeof(Vertex));
   gpu.vertex_array = gl::MakeVertexArray();
-  gpu.num_indices = mesh.num_indices;
+  gpu.num_vertices = gpu.num_indices = mesh.num_indices;
   gpu.material = mesh.material;
   DescribeVertices(gpu.vertex_array.name(), gpu.vertices);
   return gpu;

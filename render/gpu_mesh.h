@@ -11,12 +11,13 @@
 
 namespace furrow::render {
 
-// A mesh on the GPU, as shaders/scene.vert.glsl reads it.
+// A mesh on the GPU in its rest pose, as shaders/pose.vert.glsl reads it.
 struct GpuMesh {
   gl::VertexArray vertex_array;
   gl::Buffer vertices;
   gl::Buffer indices;
   JointBounds bounds;  // of the posed mesh
+  GLsizei num_vertices = 0;
   GLsizei num_indices = 0;
   int material = 0;
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "character/character.h"
@@ -25,9 +26,23 @@ class JointBounds {
   // Of one mesh.
   JointBounds(const character::Mesh& mesh, std::span<const glm::mat4> inverse_bind_matrices);
 
+  // What the boxes are to one who looks at them.
+  struct Extent {
+    glm::vec2 low{0.0f};  // of the picture, which is [-1, 1]
+    glm::vec2 high{0.0f};
+    float nearest = 0.0f;  // clip space's w of the nearest corner; 0: some of it lies behind
+
+    [[nodiscard]] bool is_seen() const {
+      return nearest <= 0.0f || (low.x < 1.0f && high.x > -1.0f && low.y < 1.0f && high.y > -1.0f);
+    }
+  };
+  // `model`: a pose of the character's skeleton. `reach`: metres that the surface may stand off
+  // what was skinned, in any direction.
+  [[nodiscard]] Extent Look(std::span<const glm::mat4> model, const glm::mat4& view_projection,
+                            float reach = 0.0f) const;
+
   // The pixels of a picture that the boxes may cover; the whole picture where one reaches behind
-  // the camera. `model`: a pose of the character's skeleton. `reach`: metres that the surface may
-  // stand off what was skinned, in any direction.
+  // the camera; none where there are no boxes.
   [[nodiscard]] ScreenRect Project(std::span<const glm::mat4> model,
                                    const glm::mat4& view_projection, int width, int height,
                                    float reach = 0.0f) const;

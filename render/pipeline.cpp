@@ -81,10 +81,13 @@ Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const S
   const CameraFrame& camera = scene_->setup().camera;
   const float slope = camera.PixelsPerSlope(desc.height);
   const auto project = [&](const JointBounds& bounds) {
-    return bounds
-        .Project(request.model, camera.view_projection, desc.width, desc.height,
-                 scene_->displacement_reach())
-        .Grown(1, desc.width, desc.height);
+    ScreenRect rect;
+    for (const NamedSubject& named : SubjectsOf(request)) {
+      const PosedSubject& subject = *named.subject;
+      rect = rect.With(bounds.Project(subject.model, camera.view_projection * subject.placement,
+                                      desc.width, desc.height, scene_->displacement_reach()));
+    }
+    return rect.Grown(1, desc.width, desc.height);
   };
   const OcclusionGeometry view{desc.width, desc.height,      glm::mat3(camera.view),
                                slope,      project(bounds_), SkinBackground(settings)};

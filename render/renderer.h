@@ -34,13 +34,26 @@ struct Camera {
   int follow_joint = -1;
 };
 
-struct FrameRequest {
-  // In the character's skeleton, model space; num_joints long.
+inline constexpr int kMaxSubjects = 256;  // of one picture
+
+// One who is drawn: the character in a pose, with wrinkles of its own.
+struct PosedSubject {
+  // In the character's skeleton, model space; num_joints long. What blend shapes move is moved
+  // already (wrinkle::BlendShapePose).
   std::span<const glm::mat4> model;
   // The binding whose values these are (its rig names the regions), weights, and filtered values.
   const wrinkle::RigBinding* binding = nullptr;  // null: no wrinkles
   std::span<const float> wrinkle_weights;
   std::span<const float> filtered_values;
+  // Takes model space to where the subject stands in the picture: rotation, uniform scale,
+  // translation in metres.
+  glm::mat4 placement{1.0f};
+};
+
+// The subject that it is itself, whom the camera follows, and `others` beside it: kMaxSubjects in
+// all. However many they are, each mesh is one draw call in every pass.
+struct FrameRequest : PosedSubject {
+  std::span<const PosedSubject> others;
   Settings settings;
   Camera camera;
   int width = 640;  // [16, 4096]
@@ -62,8 +75,8 @@ struct RendererOptions {
   std::string device;  // EGL device index, "surfaceless", or empty: the first that gives GL 4.5
 };
 
-// Draws one character headless. Owns its EGL context: one thread, the one that created it.
-// Keeps nothing of the character given to Create().
+// Draws one character, once or many times in a picture, headless. Owns its EGL context: one thread,
+// the one that created it. Keeps nothing of the character given to Create().
 //
 // Two ways to a picture: Render() waits; Submit() then Poll() keeps up to two read-backs in flight.
 class Renderer {
@@ -77,7 +90,8 @@ class Renderer {
   virtual ~Renderer() = default;
 
   // Draws; what the request points at may go when it returns. Errors: kInvalidArgument and
-  // kNonFinite (`where` is the field), kUnavailable (two in flight, or the context was lost: create
+  // kNonFinite (`where` is the field, "others[3].model"), kLimit (more subjects than kMaxSubjects,
+  // or than memory is set aside for), kUnavailable (two in flight, or the context was lost: create
   // anew), kInternal (a shader).
   [[nodiscard]] virtual Status Submit(const FrameRequest& request) = 0;
   // The oldest picture that is ready; `wait`: blocks for it. An image of width 0: none yet.

@@ -4,7 +4,10 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
+
+#include "render/subjects.h"
 
 namespace furrow::render {
 namespace {
@@ -40,16 +43,61 @@ Status CheckCamera(const Camera& camera, int num_joints) {
   return {};
 }
 
-Status CheckModel(std::span<const glm::mat4> model, int num_joints) {
+// `field`: of the subject, "" or "others[3].".
+Status CheckModel(const std::string& field, std::span<const glm::mat4> model, int num_joints) {
   if (model.size() < static_cast<std::size_t>(num_joints)) {
-    return Invalid("model", std::to_string(model.size()) + " matrices for " +
-                                std::to_string(num_joints) + " joints");
+    return {
+        StatusCode::kInvalidArgument,
+        std::to_string(model.size()) + " matrices for " + std::to_string(num_joints) + " joints",
+        field + "model"};
   }
   for (int joint = 0; joint < num_joints; ++joint) {
     for (int column = 0; column < 4; ++column) {
       if (IsFinite(glm::vec3(model[joint][column]))) continue;
-      return {StatusCode::kNonFinite, "the matrix of joint " + std::to_string(joint), "model"};
+      return {StatusCode::kNonFinite, "the matrix of joint " + std::to_string(joint),
+              field + "model"};
     }
+  }
+  return {};
+}
+
+// Directions are turned by the matrix itself, and triangles keep their sides.
+bool IsRigidButForScale(const glm::mat4& placement) {
+  const glm::mat3 turn(placement);
+  const float scale2 = glm::dot(turn[0], turn[0]);
+  if (!(scale2 > 1e-12f) || !(glm::determinant(turn) > 0.0f)) return false;
+  const glm::mat3 product = glm::transpose(turn) * turn;
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row) {
+      const float expected = column == row ? scale2 : 0.0f;
+      if (std::abs(product[column][row] - expected) > 1e-3f * scale2) return false;
+    }
+  }
+  const glm::vec4 last(placement[0].w, placement[1].w, placement[2].w, placement[3].w);
+  return last == glm::vec4(0.0f, 0.0f, 0.0f, 1.0f);
+}
+
+Status CheckPlacement(const std::string& field, const glm::mat4& placement) {
+  for (int column = 0; column < 4; ++column) {
+    if (IsFinite(glm::vec3(placement[column]))) continue;
+    return {StatusCode::kNonFinite, "is not finite", field + "placement"};
+  }
+  if (IsRigidButForScale(placement)) return {};
+  return {StatusCode::kInvalidArgument, "is more than rotation, uniform scale and translation",
+          field + "placement"};
+}
+
+Status CheckSubjects(const FrameRequest& request, int num_joints) {
+  const std::size_t count = 1 + request.others.size();
+  if (count > static_cast<std::size_t>(kMaxSubjects)) {
+    return {
+        StatusCode::kLimit,
+        std::to_string(count) + " subjects; a picture has at most " + std::to_string(kMaxSubjects),
+        "others"};
+  }
+  for (const auto& [subject, field] : SubjectsOf(request)) {
+    if (Status status = CheckModel(field, subject->model, num_joints); !status.ok()) return status;
+    if (Status status = CheckPlacement(field, subject->placement); !status.ok()) return status;
   }
   return {};
 }
@@ -61,7 +109,7 @@ Status CheckRequest(const FrameRequest& request, int num_joints) {
   if (Status status = CheckSize("height", request.height); !status.ok()) return status;
   if (Status status = CheckSettings(request.settings); !status.ok()) return status;
   if (Status status = CheckCamera(request.camera, num_joints); !status.ok()) return status;
-  return CheckModel(request.model, num_joints);
+  return CheckSubjects(request, num_joints);
 }
 
 }  // namespace furrow::render

@@ -9,7 +9,7 @@ inline constexpr int kMinSize = 16;  // pixels
 inline constexpr int kMaxSize = 4096;
 
 // Whether a request can be drawn for a character of `num_joints`. kInvalidArgument (`where` is the
-// field, "settings.exposure") or kNonFinite.
+// field: "settings.exposure", "others[3].model"), kNonFinite or kLimit (more than kMaxSubjects).
 [[nodiscard]] Status CheckRequest(const FrameRequest& request, int num_joints);
 
 }  // namespace furrow::render

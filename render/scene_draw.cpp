@@ -9,14 +9,8 @@
 namespace furrow::render {
 namespace {
 
-// Binding points of shaders/common_*.glsl and scene.frag.glsl.
-enum UniformBinding : GLuint { kFrameBlock = 0, kMaterialBlock = 1, kWrinkleTable = 2 };
-enum StorageBinding : GLuint {
-  kJointRows = 0,
-  kJointInfluences = 1,
-  kMaskPalette = 2,
-  kDynamicMasks = 3
-};
+// Binding points of shaders/common_*.glsl and skin.frag.glsl; see also scene_buffers.cpp.
+constexpr GLuint kMaterialBlock = 1;
 enum TextureUnit : GLuint {
   kBaseColourUnit = 0,
   kBaseDerivativesUnit = 1,
@@ -94,19 +88,11 @@ SceneDraw::SceneDraw(const wrinkle::Skeleton& skeleton,
       gpu_(gpu),
       tables_(tables),
       shaders_(shaders),
+      buffers_(inverse_bind_matrices, tables),
+      posed_(gpu, shaders),
       shadow_compare_(MakeShadowSampler(true)),
       shadow_depth_(MakeShadowSampler(false)),
-      cut_out_(MakeCutOutSampler()) {
-  for (gl::Buffer* buffer : {&frame_, &joints_, &influences_}) *buffer = gl::MakeBuffer();
-  for (int group = 0; group < kNumWrinkleGroups; ++group) {
-    wrinkle_tables_[group] = gl::MakeBuffer();
-    dynamic_masks_[group] = gl::MakeBuffer();
-  }
-  for (int group = 0; group <= kNumWrinkleGroups; ++group) {
-    const auto palette = tables_->mask_palette(static_cast<WrinkleGroup>(group));
-    palettes_[group] = gl::MakeStaticBuffer(palette.data(), palette.size_bytes());
-  }
-}
+      cut_out_(MakeCutOutSampler()) {}
 
 Status SceneDraw::Update(const FrameRequest& request) {
   if (Status status = tables_->Update(request); !status.ok()) return status;
@@ -116,65 +102,23 @@ Status SceneDraw::Update(const FrameRequest& request) {
                             ? 0.001f * settings.displacement.strength * settings.wrinkle_strength *
                                   gpu_->heights().most_mm
                             : 0.0f;
-  FindVisible(request.model);
-  UploadFrame(request.settings);
-  UploadJoints(request.model);
-  UploadWrinkles();
+  const std::vector<NamedSubject> subjects = SubjectsOf(request);
+  is_crowd_ = subjects.size() > 1;
+  FindVisible(subjects);
+  buffers_.Upload(MakeFrameBlock(setup_, settings), subjects, gpu_->layout());
+  posed_.BeginFrame();
   return {};
 }
 
-void SceneDraw::FindVisible(std::span<const glm::mat4> model) {
-  constexpr int kAny = 4096;  // pixels: of a picture of any size, only its border matters
-  const auto look = [&](const glm::mat4& projection, std::vector<bool>* visible) {
-    visible->clear();
-    for (const GpuMesh& mesh : gpu_->meshes()) {
-      visible->push_back(
-          !mesh.bounds.Project(model, projection, kAny, kAny, displacement_reach_).empty());
-    }
-  };
-  look(setup_.camera.view_projection, &seen_);
+void SceneDraw::FindVisible(std::span<const NamedSubject> subjects) {
+  std::array<DrawList::View, DrawList::kNumViews> views;
+  views[DrawList::kCamera].projection = setup_.camera.view_projection;
   for (int light = 0; light < kNumLights; ++light) {
-    const bool dark = setup_.lighting.lights[light].radiance == glm::vec3(0.0f);
-    if (dark) {
-      casts_[light].assign(gpu_->meshes().size(), false);  // nobody asks for its shadow
-    } else {
-      look(FlatProjection(setup_.shadows[light]), &casts_[light]);
-    }
+    views[light].projection = FlatProjection(setup_.shadows[light]);
+    // Nobody asks for a dark lamp's shadow.
+    views[light].is_asked = setup_.lighting.lights[light].radiance != glm::vec3(0.0f);
   }
-}
-
-void SceneDraw::UploadFrame(const Settings& settings) {
-  const FrameBlock block = MakeFrameBlock(setup_, settings);
-  gl::Upload(frame_, &block, sizeof(block));
-}
-
-void SceneDraw::UploadJoints(std::span<const glm::mat4> model) {
-  std::vector<glm::vec4> rows;
-  const std::size_t num_joints = inverse_bind_matrices_.size();
-  rows.reserve(num_joints * 3);
-  for (std::size_t joint = 0; joint < num_joints; ++joint) {
-    const glm::mat4 rowwise = glm::transpose(model[joint] * inverse_bind_matrices_[joint]);
-    for (int row = 0; row < 3; ++row) rows.push_back(rowwise[row]);
-  }
-  gl::Upload(joints_, rows.data(), rows.size() * sizeof(glm::vec4));
-}
-
-void SceneDraw::UploadWrinkles() {
-  const DynamicMasks& dynamic = tables_->dynamic_masks();
-  for (int group = 0; group < kNumWrinkleGroups; ++group) {
-    const WrinkleTable& table = tables_->table(static_cast<WrinkleGroup>(group));
-    const auto block = WrinkleBlock(table, tables_->num_maps(), gpu_->layout());
-    gl::Upload(wrinkle_tables_[group], block.data(), block.size());
-    const auto masks = DynamicMasksBlock(table.dynamic_masks, dynamic.num_columns());
-    gl::Upload(dynamic_masks_[group], masks.data(), masks.size());
-  }
-  gl::Upload(influences_, dynamic.influences().data(), dynamic.influences().size_bytes());
-}
-
-void SceneDraw::BindBuffers() {
-  glBindBufferBase(GL_UNIFORM_BUFFER, kFrameBlock, frame_.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kJointRows, joints_.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kJointInfluences, influences_.name());
+  draw_list_.Build(gpu_->meshes(), subjects, views, displacement_reach_);
 }
 
 void SceneDraw::BindMasks() {
@@ -184,11 +128,7 @@ void SceneDraw::BindMasks() {
 
 void SceneDraw::BindMaterial(const GpuMaterial& material) {
   glBindBufferBase(GL_UNIFORM_BUFFER, kMaterialBlock, material.block.name());
-  const int group = material.group == WrinkleGroup::kNone ? 0 : static_cast<int>(material.group);
-  glBindBufferBase(GL_UNIFORM_BUFFER, kWrinkleTable, wrinkle_tables_[group].name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kDynamicMasks, dynamic_masks_[group].name());
-  const GLuint palette = palettes_[static_cast<int>(material.group)].name();
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMaskPalette, palette);
+  buffers_.BindWrinkles(material.group);
   glBindTextureUnit(kBaseColourUnit, material.base_colour);
   glBindTextureUnit(kBaseDerivativesUnit, material.derivatives);
   glBindTextureUnit(kRoughnessUnit, material.roughness);
@@ -209,54 +149,88 @@ bool SceneDraw::IsDisplaced(const GpuMaterial& material, const Settings& setting
          material.group != WrinkleGroup::kNone && tables_->table(material.group).has_heights;
 }
 
-void SceneDraw::DrawTriangles(const SceneShader& shader, std::size_t index) {
-  if (!shader.displaced) {
-    const GpuMesh& mesh = gpu_->meshes()[index];
-    glBindVertexArray(mesh.vertex_array.name());
-    glDrawElements(GL_TRIANGLES, mesh.num_indices, GL_UNSIGNED_INT, nullptr);
+Result<PosedMeshes::Vertices> SceneDraw::Pose(std::size_t index, PosedMeshes::Form form) {
+  const GpuMaterial& material = gpu_->material(gpu_->meshes()[index].material);
+  PoseShader shader;
+  shader.num_joints = static_cast<int>(inverse_bind_matrices_.size());
+  shader.displaced = form == PosedMeshes::Form::kPatches;
+  shader.dynamic =
+      material.group != WrinkleGroup::kNone && tables_->table(material.group).uses_dynamic;
+  shader.map_slots = MapSlots(tables_->num_maps());
+  return posed_.Get(index, form, shader, draw_list_.subjects(index));
+}
+
+void SceneDraw::DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t index,
+                             PosedMeshes::Form form, int view) {
+  const auto seen = draw_list_.seen(view, index);
+  const auto num_draws = static_cast<GLsizei>(seen.size());
+  std::vector<GLint> first(seen.size());  // vertex of each subject
+  std::ranges::transform(seen, first.begin(), [&](std::uint32_t subject) {
+    return static_cast<GLint>(subject) * posed.per_subject;
+  });
+  const GpuMesh& mesh = gpu_->meshes()[index];
+  glBindVertexArray(posed.vertex_array);
+  if (form == PosedMeshes::Form::kUnindexed) {
+    const std::vector<GLsizei> counts(seen.size(), mesh.num_indices);
+    glMultiDrawArrays(GL_TRIANGLES, first.data(), counts.data(), num_draws);
     return;
   }
-  const GpuPatches& patches = gpu_->Patches(index);
-  glUniform1f(kHeightTexelLocation,
-              patches.metres_per_uv / static_cast<float>(gpu_->heights().side));
-  glPatchParameteri(GL_PATCH_VERTICES, DisplacementPatches::kCorners);
-  glBindVertexArray(patches.vertex_array.name());
-  glDrawElements(GL_PATCHES, patches.num_indices, GL_UNSIGNED_INT, nullptr);
+  const std::vector<const void*> offsets(seen.size(), nullptr);
+  GLenum kind = GL_TRIANGLES;
+  GLsizei num_indices = mesh.num_indices;
+  if (form == PosedMeshes::Form::kPatches) {
+    const GpuPatches& patches = gpu_->Patches(index);
+    glUniform1f(kHeightTexelLocation,
+                patches.metres_per_uv / static_cast<float>(gpu_->heights().side));
+    glPatchParameteri(GL_PATCH_VERTICES, DisplacementPatches::kCorners);
+    kind = GL_PATCHES;
+    num_indices = patches.num_indices;
+  }
+  const std::vector<GLsizei> counts(seen.size(), num_indices);
+  glMultiDrawElementsBaseVertex(kind, counts.data(), GL_UNSIGNED_INT, offsets.data(), num_draws,
+                                first.data());
 }
 
 Status SceneDraw::DrawShadow(const Settings& settings, int light) {
-  BindBuffers();
+  buffers_.Bind();
   BindMasks();
   glBindSampler(kBaseColourUnit, cut_out_.name());
-  for (std::size_t index = 0; index < gpu_->meshes().size(); ++index) {
-    if (!casts_[light][index]) continue;
-    const GpuMesh& mesh = gpu_->meshes()[index];
-    const GpuMaterial& material = gpu_->material(mesh.material);
-    SceneShader shader;
-    if (IsDisplaced(material, settings)) {
-      shader = SurfaceShader(material);
-      shader.displaced = shader.shadow = true;
-    }
-    const Result<GLuint> program =
-        shader.displaced ? shaders_->Get(shader) : shaders_->GetShadow(material.alpha_test);
-    if (!program.ok()) return program.status();
-    glUseProgram(*program);
-    glUniform1i(kLightLocation, light);
-    BindMaterial(material);
-    SetCulling(false);
-    DrawTriangles(shader, index);
+  SetCulling(false);
+  Status status;
+  for (std::size_t index = 0; index < gpu_->meshes().size() && status.ok(); ++index) {
+    if (!draw_list_.seen(light, index).empty()) status = DrawCaster(settings, light, index);
   }
   glBindSampler(kBaseColourUnit, 0);
+  return status;
+}
+
+Status SceneDraw::DrawCaster(const Settings& settings, int light, std::size_t index) {
+  const GpuMaterial& material = gpu_->material(gpu_->meshes()[index].material);
+  SceneShader shader;
+  if (IsDisplaced(material, settings)) {
+    shader = SurfaceShader(material);
+    shader.displaced = shader.shadow = true;
+  }
+  const Result<GLuint> program =
+      shader.displaced ? shaders_->Get(shader) : shaders_->GetShadow(material.alpha_test);
+  if (!program.ok()) return program.status();
+  const auto form = shader.displaced ? PosedMeshes::Form::kPatches : PosedMeshes::Form::kIndexed;
+  BindMaterial(material);
+  const Result<PosedMeshes::Vertices> posed = Pose(index, form);
+  if (!posed.ok()) return posed.status();
+  glUseProgram(*program);
+  glUniform1i(kLightLocation, light);
+  DrawSubjects(*posed, index, form, light);
   return {};
 }
 
 Status SceneDraw::DrawScene(const Settings& settings, Shading shading) {
-  BindBuffers();
+  buffers_.Bind();
   BindMasks();
   glBindTextureUnit(kWrinkleDerivativesUnit, gpu_->wrinkle_derivatives());
   glBindTextureUnit(kWrinkleLooksUnit, gpu_->wrinkle_looks());
   for (std::size_t mesh = 0; mesh < gpu_->meshes().size(); ++mesh) {
-    if (!seen_[mesh]) continue;
+    if (draw_list_.seen(DrawList::kCamera, mesh).empty()) continue;
     if (Status status = DrawMesh(settings, shading, mesh); !status.ok()) return status;
   }
   return {};
@@ -264,21 +238,19 @@ Status SceneDraw::DrawScene(const Settings& settings, Shading shading) {
 
 Status SceneDraw::DrawMesh(const Settings& settings, Shading shading, std::size_t index) {
   const bool wireframe = shading == Shading::kDiffuse && settings.view == View::kWireframe;
-  const GpuMesh& mesh = gpu_->meshes()[index];
-  const GpuMaterial& material = gpu_->material(mesh.material);
+  const GpuMaterial& material = gpu_->material(gpu_->meshes()[index].material);
   const SceneShader shader = ShaderFor(material, settings, shading);
   const Result<GLuint> program = shaders_->Get(shader);
   if (!program.ok()) return program.status();
+  auto form = wireframe ? PosedMeshes::Form::kUnindexed : PosedMeshes::Form::kIndexed;
+  if (shader.displaced) form = PosedMeshes::Form::kPatches;
+  BindMaterial(material);
+  const Result<PosedMeshes::Vertices> posed = Pose(index, form);
+  if (!posed.ok()) return posed.status();
   if (shader.preintegrated) glBindTextureUnit(kPreintegratedUnit, lookup_tables_.preintegrated());
   glUseProgram(*program);
-  BindMaterial(material);
   SetCulling(!material.double_sided);
-  if (wireframe) {
-    glBindVertexArray(gpu_->Unindexed(index).vertex_array.name());
-    glDrawArrays(GL_TRIANGLES, 0, mesh.num_indices);
-  } else {
-    DrawTriangles(shader, index);
-  }
+  DrawSubjects(*posed, index, form, DrawList::kCamera);
   return {};
 }
 
@@ -297,6 +269,7 @@ SceneShader SceneDraw::SurfaceShader(const GpuMaterial& material) const {
   shader.mask_bits = tables_->mask_bits(material.group);
   shader.mask_layers = gpu_->layout().num_mask_layers;
   shader.map_slots = MapSlots(tables_->num_maps());
+  shader.crowd = is_crowd_;
   return shader;
 }
 

@@ -3,16 +3,19 @@
 
 #include <span>
 
+#include "render/draw_list.h"
 #include "render/frame_block.h"
 #include "render/gpu_character.h"
 #include "render/lookup_tables.h"
+#include "render/posed_meshes.h"
+#include "render/scene_buffers.h"
 #include "render/shader_library.h"
 #include "render/wrinkle_table.h"
 
 namespace furrow::render {
 
-// The posed character and the frame's lights as buffers on the GPU, and the draws that several
-// passes make of them.
+// The posed subjects and the frame's lights on the GPU, and the draws that several passes make of
+// them. A mesh is one draw call, however many subjects there are.
 class SceneDraw {
  public:
   // Everything outlives it.
@@ -34,15 +37,15 @@ class SceneDraw {
   [[nodiscard]] Status DrawScene(const Settings& settings, Shading shading);
 
  private:
-  // Which meshes the camera and the lamps can see at all.
-  void FindVisible(std::span<const glm::mat4> model);
-  void UploadFrame(const Settings& settings);
-  void UploadJoints(std::span<const glm::mat4> model);
-  void UploadWrinkles();
-  void BindBuffers();
+  void FindVisible(std::span<const NamedSubject> subjects);
   void BindMasks();
   void BindMaterial(const GpuMaterial& material);
-  void DrawTriangles(const SceneShader& shader, std::size_t index);
+  // The material is bound.
+  [[nodiscard]] Result<PosedMeshes::Vertices> Pose(std::size_t index, PosedMeshes::Form form);
+  // Everybody of whom the view sees the mesh, in one call.
+  void DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t index, PosedMeshes::Form form,
+                    int view);
+  [[nodiscard]] Status DrawCaster(const Settings& settings, int light, std::size_t index);
   [[nodiscard]] Status DrawMesh(const Settings& settings, Shading shading, std::size_t index);
   [[nodiscard]] bool IsDisplaced(const GpuMaterial& material, const Settings& settings) const;
   // What a program must know of the material and its wrinkles, whatever is made of them.
@@ -58,19 +61,15 @@ class SceneDraw {
   AmbientCache ambient_;
   FrameSetup setup_;
   float displacement_reach_ = 0.0f;
-  std::vector<bool> seen_;                           // a mesh each: by the camera
-  std::array<std::vector<bool>, kNumLights> casts_;  // by a lamp
+  bool is_crowd_ = false;
+  DrawList draw_list_;
+  SceneBuffers buffers_;
+  PosedMeshes posed_;
 
   LookupTables lookup_tables_;
   gl::Sampler shadow_compare_;
   gl::Sampler shadow_depth_;
   gl::Sampler cut_out_;
-  gl::Buffer frame_;
-  gl::Buffer joints_;
-  gl::Buffer wrinkle_tables_[kNumWrinkleGroups];
-  gl::Buffer dynamic_masks_[kNumWrinkleGroups];
-  gl::Buffer influences_;
-  gl::Buffer palettes_[kNumWrinkleGroups + 1];  // by group, kNone included
 };
 
 }  // namespace furrow::render

@@ -83,6 +83,7 @@ std::vector<std::string> Defines(const SceneShader& shader) {
       Define("HAS_THICKNESS", shader.thickness_map),
       Define("DISPLACED", shader.displaced),
       Define("SHADOW", shader.shadow),
+      Define("CROWD", shader.crowd),
       "BECKMANN_SIZE float(" + std::to_string(kBeckmannTableSize) + ")",
       "ALBEDO_SIZE float(" + std::to_string(kAlbedoTableSize) + ")",
       "RING_SIZE float(" + std::to_string(kPreintegratedTableSize) + ")",
@@ -94,6 +95,11 @@ std::vector<std::string> Defines(const SceneShader& shader) {
     defines.push_back(Define(name, view));
   }
   return defines;
+}
+
+std::vector<std::string> Defines(const PoseShader& shader) {
+  return {Define("NUM_JOINTS", shader.num_joints), Define("WRINKLE_DYNAMIC", shader.dynamic),
+          Define("DISPLACED", shader.displaced), Define("MAP_SLOTS", shader.map_slots)};
 }
 
 Result<gl::Program> BuildProgram(const ProgramFiles& program, std::span<const std::string> defines,
@@ -110,7 +116,8 @@ Result<gl::Program> BuildProgram(const ProgramFiles& program, std::span<const st
     if (!shader.ok()) return shader.status();
     glAttachShader(built.name(), shader->name());  // keeps it as long as the program
   }
-  if (Status status = Link(built, program.fragment); !status.ok()) return status;
+  const std::string_view name = program.fragment.empty() ? program.vertex : program.fragment;
+  if (Status status = Link(built, name); !status.ok()) return status;
   return built;
 }
 
@@ -126,6 +133,14 @@ Result<GLuint> ShaderLibrary::Get(const SceneShader& shader) {
   Result<gl::Program> program = BuildProgram(files, Defines(shader), EmbeddedShaders());
   if (!program.ok()) return program.status();
   return scene_.emplace(shader, std::move(*program)).first->second.name();
+}
+
+Result<GLuint> ShaderLibrary::Get(const PoseShader& shader) {
+  if (const auto found = pose_.find(shader); found != pose_.end()) return found->second.name();
+  Result<gl::Program> program =
+      BuildProgram({"pose.vert.glsl"}, Defines(shader), EmbeddedShaders());
+  if (!program.ok()) return program.status();
+  return pose_.emplace(shader, std::move(*program)).first->second.name();
 }
 
 Result<GLuint> ShaderLibrary::GetShadow(bool alpha_test) {

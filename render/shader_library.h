@@ -13,6 +13,16 @@
 
 namespace furrow::render {
 
+// What a program of pose.vert.glsl is compiled for.
+struct PoseShader {
+  int num_joints = 0;      // of the character's skeleton
+  bool dynamic = false;    // with the dynamic masks of each vertex
+  bool displaced = false;  // ... and its share of the heights
+  int map_slots = 1;       // as of SceneShader
+
+  friend auto operator<=>(const PoseShader&, const PoseShader&) = default;
+};
+
 // What a program of scene.{vert,frag}.glsl is compiled for. Everything that is the same for a whole
 // draw is settled here and not by branches: llvmpipe runs both sides of a branch.
 struct SceneShader {
@@ -44,12 +54,14 @@ struct SceneShader {
   bool conserve_energy = true;
   bool displaced = false;  // tessellated, moved by heights
   bool shadow = false;     // displaced, as a lamp sees it: depth alone
+  bool crowd = false;      // several subjects, each with wrinkle weights of its own
 
   friend auto operator<=>(const SceneShader&, const SceneShader&) = default;
 };
 
 // "NAME VALUE" lines for ExpandShader().
 [[nodiscard]] std::vector<std::string> Defines(const SceneShader& shader);
+[[nodiscard]] std::vector<std::string> Defines(const PoseShader& shader);
 
 // Texels of the sides of the tables that shaders look things up in.
 inline constexpr int kBeckmannTableSize = 512;
@@ -62,25 +74,31 @@ inline constexpr int kPreintegratedTableSize = 48;
 class ShaderLibrary {
  public:
   [[nodiscard]] Result<GLuint> Get(const SceneShader& shader);
+  // A vertex stage alone, for transform feedback.
+  [[nodiscard]] Result<GLuint> Get(const PoseShader& shader);
   // shadow.{vert,frag}.glsl.
   [[nodiscard]] Result<GLuint> GetShadow(bool alpha_test);
   // A fragment shader that covers the picture: "combine.frag.glsl", ...
   [[nodiscard]] Result<GLuint> GetFullscreen(std::string_view fragment,
                                              const std::vector<std::string>& defines);
-  [[nodiscard]] int num_programs() const { return static_cast<int>(scene_.size() + named_.size()); }
+  [[nodiscard]] int num_programs() const {
+    return static_cast<int>(scene_.size() + pose_.size() + named_.size());
+  }
 
  private:
   [[nodiscard]] Result<GLuint> GetNamed(std::string_view vertex, std::string_view fragment,
                                         const std::vector<std::string>& defines);
 
   std::map<SceneShader, gl::Program> scene_;
+  std::map<PoseShader, gl::Program> pose_;
   std::map<std::string, gl::Program> named_;  // by file and defines
 };
 
-// Names of files, by stage. Without tessellation, both of its are empty.
+// Names of files, by stage. Without tessellation, both of its are empty; without a picture, so is
+// the fragment's.
 struct ProgramFiles {
   std::string_view vertex;
-  std::string_view fragment;
+  std::string_view fragment = {};
   std::string_view tess_control = {};
   std::string_view tess_evaluation = {};
 };

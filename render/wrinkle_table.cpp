@@ -65,10 +65,23 @@ std::vector<std::uint8_t> WrinkleBlock(const WrinkleTable& table, int num_maps,
   std::vector<std::uint8_t> block(WrinkleBlockSize(num_maps, layout.num_mask_layers));
   if (table.maps.empty()) return block;
   const std::size_t weights = 4 * MapSlots(num_maps) * sizeof(ActiveMap);
+  const std::size_t row = table.maps.size() * static_cast<std::size_t>(layout.num_mask_layers);
   std::memcpy(block.data(), table.maps.data(), table.maps.size() * sizeof(ActiveMap));
-  std::memcpy(&block[weights], table.mask_weights.data(),
-              table.mask_weights.size() * sizeof(glm::vec4));
+  std::memcpy(&block[weights], table.mask_weights.data(), row * sizeof(glm::vec4));
   return block;
+}
+
+std::vector<glm::vec4> SubjectWeights(const WrinkleTable& table, int num_maps,
+                                      const WrinkleLayout& layout) {
+  const auto layers = static_cast<std::size_t>(layout.num_mask_layers);
+  const std::size_t row = table.maps.size() * layers;
+  const std::size_t padded = 4 * static_cast<std::size_t>(MapSlots(num_maps)) * layers;
+  const std::size_t subjects = table.first_masks.size() - 1;
+  std::vector<glm::vec4> weights(subjects * padded, glm::vec4(0.0f));
+  for (std::size_t subject = 0; subject < subjects; ++subject) {
+    std::copy_n(&table.mask_weights[subject * row], row, &weights[subject * padded]);
+  }
+  return weights;
 }
 
 WrinkleGroup GroupOf(const character::Character& character, Material::Kind kind) {
@@ -179,60 +192,114 @@ void WrinkleTables::DescribePalettes(const wrinkle::Rig& rig) {
   }
 }
 
+Status WrinkleTables::CarryValues(const NamedSubject& named) {
+  const PosedSubject& subject = *named.subject;
+  const auto weight_names = subject.binding->weight_names();
+  const auto value_names = subject.binding->driver_value_names();
+  if (subject.wrinkle_weights.size() < weight_names.size()) {
+    return {StatusCode::kInvalidArgument, "fewer values than the binding has weights",
+            named.field + "wrinkle_weights"};
+  }
+  if (subject.filtered_values.size() < value_names.size()) {
+    return {StatusCode::kInvalidArgument, "fewer values than the binding has driver values",
+            named.field + "filtered_values"};
+  }
+  weight_map_.Match(weight_names, binding_.weight_names());
+  value_map_.Match(value_names, binding_.driver_value_names());
+  weight_map_.Carry(subject.wrinkle_weights, weights_);
+  value_map_.Carry(subject.filtered_values, values_);
+  return {};
+}
+
 Status WrinkleTables::Update(const FrameRequest& request) {
   const Settings& settings = request.settings;
-  std::fill(weights_.begin(), weights_.end(), 0.0f);
-  std::fill(values_.begin(), values_.end(), 0.0f);
-  if (request.binding != nullptr && settings.wrinkles) {
-    const auto weight_names = request.binding->weight_names();
-    const auto value_names = request.binding->driver_value_names();
-    if (request.wrinkle_weights.size() < weight_names.size()) {
-      return {StatusCode::kInvalidArgument, "fewer values than the binding has weights",
-              "wrinkle_weights"};
-    }
-    if (request.filtered_values.size() < value_names.size()) {
-      return {StatusCode::kInvalidArgument, "fewer values than the binding has driver values",
-              "filtered_values"};
-    }
-    weight_map_.Match(weight_names, binding_.weight_names());
-    value_map_.Match(value_names, binding_.driver_value_names());
-    weight_map_.Carry(request.wrinkle_weights, weights_);
-    value_map_.Carry(request.filtered_values, values_);
-  }
   const MaskMode mode =
       settings.view == View::kMaskDynamic ? MaskMode::kDynamic : settings.mask_mode;
-  dynamic_.Update(mode, values_, weights_);
+  subjects_.clear();
+  influences_.clear();
+  for (const NamedSubject& named : SubjectsOf(request)) {
+    std::fill(weights_.begin(), weights_.end(), 0.0f);
+    std::fill(values_.begin(), values_.end(), 0.0f);
+    if (named.subject->binding != nullptr && settings.wrinkles) {
+      if (Status status = CarryValues(named); !status.ok()) return status;
+    }
+    AddSubject(mode);
+  }
   for (int group = 0; group < kNumWrinkleGroups; ++group) {
-    FillTable(group, mode, settings.wrinkle_strength);
+    FillTable(group, settings.wrinkle_strength);
   }
   return {};
 }
 
-void WrinkleTables::FillTable(int group, MaskMode mode, float strength) {
+void WrinkleTables::AddSubject(MaskMode mode) {
+  SubjectWrinkles& subject = subjects_.emplace_back();
+  const auto layers = static_cast<std::size_t>(layout_.num_mask_layers);
+  subject.rows.assign(maps_.size() * layers, glm::vec4(0.0f));
+  subject.textured.assign(maps_.size(), false);
+  for (std::size_t i = 0; i < slots_.size() && mode != MaskMode::kDynamic; ++i) {
+    const WeightSlot& slot = slots_[i];
+    if (slot.map < 0 || slot.mask_layer < 0 || !(weights_[i] > 0.0f)) continue;
+    const auto map = static_cast<std::size_t>(slot.map);
+    subject.rows[map * layers + static_cast<std::size_t>(slot.mask_layer)][slot.channel] +=
+        weights_[i];
+    subject.textured[map] = true;
+  }
+  dynamic_.Update(mode, values_, weights_);
+  for (int map = 0; map < num_maps(); ++map) dynamic_.Append(map, &subject.masks);
+  influences_.insert(influences_.end(), dynamic_.influences().begin(), dynamic_.influences().end());
+}
+
+bool WrinkleTables::IsTextured(std::size_t map) const {
+  return std::ranges::any_of(
+      subjects_, [&](const SubjectWrinkles& subject) { return bool(subject.textured[map]); });
+}
+
+bool WrinkleTables::IsDynamic(std::size_t map) const {
+  const auto raises = [&](const DynamicMaskBlock& mask) {
+    return mask.slot == static_cast<int>(map);
+  };
+  return std::ranges::any_of(subjects_, [&](const SubjectWrinkles& subject) {
+    return std::ranges::any_of(subject.masks, raises);
+  });
+}
+
+// `slots`: where each map of the rig is in the list; -1: nobody needs it.
+void WrinkleTables::ListMaps(int group, float strength, std::vector<int>* slots) {
   WrinkleTable& table = tables_[group];
-  table = {};
+  slots->assign(maps_.size(), -1);
   for (std::size_t map = 0; map < maps_.size(); ++map) {
     if (!maps_[map].in_group[group]) continue;
-    std::vector<glm::vec4> row(static_cast<std::size_t>(layout_.num_mask_layers), glm::vec4(0.0f));
-    bool textured = false;
-    for (std::size_t i = 0; i < slots_.size() && mode != MaskMode::kDynamic; ++i) {
-      const WeightSlot& slot = slots_[i];
-      if (slot.map != static_cast<int>(map) || slot.mask_layer < 0 || !(weights_[i] > 0.0f))
-        continue;
-      row[static_cast<std::size_t>(slot.mask_layer)][slot.channel] += weights_[i];
-      textured = true;
-    }
-    const bool is_dynamic = dynamic_.Append(
-        static_cast<int>(map), static_cast<int>(table.maps.size()), &table.dynamic_masks);
-    if (!textured && !is_dynamic) continue;
+    const bool textured = IsTextured(map);
+    const bool dynamic = IsDynamic(map);
+    if (!textured && !dynamic) continue;
+    (*slots)[map] = static_cast<int>(table.maps.size());
     ActiveMap entry = maps_[map].entry;
     entry.amplitude *= strength;
     table.maps.push_back(entry);
-    table.mask_weights.insert(table.mask_weights.end(), row.begin(), row.end());
     table.has_heights = table.has_heights || entry.height_layer >= 0;
     table.uses_texture = table.uses_texture || textured;
-    table.uses_dynamic = table.uses_dynamic || is_dynamic;
+    table.uses_dynamic = table.uses_dynamic || dynamic;
   }
+}
+
+void WrinkleTables::FillTable(int group, float strength) {
+  WrinkleTable& table = tables_[group];
+  table = {};
+  std::vector<int> slots;
+  ListMaps(group, strength, &slots);
+  const auto layers = static_cast<std::ptrdiff_t>(layout_.num_mask_layers);
+  for (const SubjectWrinkles& subject : subjects_) {
+    table.first_masks.push_back(static_cast<std::uint32_t>(table.dynamic_masks.size()));
+    for (const ActiveMap& entry : table.maps) {
+      const auto row = subject.rows.begin() + entry.map * layers;
+      table.mask_weights.insert(table.mask_weights.end(), row, row + layers);
+    }
+    for (DynamicMaskBlock mask : subject.masks) {
+      mask.slot = slots[static_cast<std::size_t>(mask.slot)];
+      if (mask.slot >= 0) table.dynamic_masks.push_back(mask);
+    }
+  }
+  table.first_masks.push_back(static_cast<std::uint32_t>(table.dynamic_masks.size()));
 }
 
 }  // namespace furrow::render

@@ -11,6 +11,7 @@
 
 #include "render/dynamic_masks.h"
 #include "render/renderer.h"
+#include "render/subjects.h"
 
 namespace furrow::render {
 
@@ -31,11 +32,13 @@ struct ActiveMap {
 };
 static_assert(sizeof(ActiveMap) == 32);
 
-// The active list of one group of surfaces, as the shaders read it.
+// The active list of one group of surfaces, as the shaders read it: the maps that some subject of
+// the frame needs.
 struct WrinkleTable {
   std::vector<ActiveMap> maps;
-  std::vector<glm::vec4> mask_weights;  // maps x mask layers
-  std::vector<DynamicMaskBlock> dynamic_masks;
+  std::vector<glm::vec4> mask_weights;          // subjects x maps x mask layers
+  std::vector<DynamicMaskBlock> dynamic_masks;  // subject after subject
+  std::vector<std::uint32_t> first_masks;       // where each subject's begin, and the end
   bool uses_texture = false;
   bool uses_dynamic = false;
   bool has_heights = false;  // of some map
@@ -57,15 +60,20 @@ struct WrinkleLayout {
 
 // vec4s that carry the dynamic masks of `num_maps` maps: MAP_SLOTS of the shaders.
 [[nodiscard]] constexpr int MapSlots(int num_maps) { return num_maps < 1 ? 1 : (num_maps + 3) / 4; }
-// The WrinkleTable block of shaders/common_wrinkles.glsl, byte for byte (std140), and its size.
+// The WrinkleTable block of shaders/common_wrinkles.glsl, byte for byte (std140), and its size. Its
+// mask weights are those of the first subject.
 [[nodiscard]] std::size_t WrinkleBlockSize(int num_maps, int num_mask_layers);
 [[nodiscard]] std::vector<std::uint8_t> WrinkleBlock(const WrinkleTable& table, int num_maps,
                                                      const WrinkleLayout& layout);
+// u_subject_weights of shaders/common_masks.glsl: all subjects' mask weights, a row as long as the
+// block's each.
+[[nodiscard]] std::vector<glm::vec4> SubjectWeights(const WrinkleTable& table, int num_maps,
+                                                    const WrinkleLayout& layout);
 
 [[nodiscard]] WrinkleGroup GroupOf(const character::Character& character,
                                    character::Material::Kind kind);
 
-// Turns a request's wrinkle weights and driver values into what the shaders read.
+// Turns the wrinkle weights and driver values of a request's subjects into what the shaders read.
 //
 // Values go by name from the request's binding to the character's own rig, bound to its own
 // skeleton: a stream may have other joints than the character, and its rig other drivers besides
@@ -76,15 +84,16 @@ class WrinkleTables {
   [[nodiscard]] static Result<std::unique_ptr<WrinkleTables>> Create(
       const character::Character& character, WrinkleLayout layout);
 
-  // kInvalidArgument: a span of the request is shorter than its binding's names; the message says
-  // which.
+  // kInvalidArgument: a span of a subject is shorter than its binding's names; `where` says which.
   [[nodiscard]] Status Update(const FrameRequest& request);
 
   [[nodiscard]] const WrinkleTable& table(WrinkleGroup group) const {
     return tables_[static_cast<int>(group)];
   }
   [[nodiscard]] int num_maps() const { return static_cast<int>(maps_.size()); }
-  [[nodiscard]] const DynamicMasks& dynamic_masks() const { return dynamic_; }
+  // subjects x joints x mask_columns(): how much each joint raises each column of dynamic masks.
+  [[nodiscard]] std::span<const float> influences() const { return influences_; }
+  [[nodiscard]] int mask_columns() const { return dynamic_.num_columns(); }
   // Mask layers x 4 channels: each region's colour for the view mask_texture; black for channels of
   // regions that are not drawn on the group's surfaces. kNone: all black.
   [[nodiscard]] std::span<const glm::vec4> mask_palette(WrinkleGroup group) const {
@@ -106,6 +115,12 @@ class WrinkleTables {
     int mask_layer = -1;  // -1: the region has no texture mask
     int channel = 0;
   };
+  // What one subject needs, of all groups of surfaces.
+  struct SubjectWrinkles {
+    std::vector<glm::vec4> rows;          // maps x mask layers
+    std::vector<bool> textured;           // a map each: some weight of its row is above 0
+    std::vector<DynamicMaskBlock> masks;  // whose slot is a map
+  };
   // Where the values of one list of names are in another; -1: not there.
   struct NameMap {
     std::vector<std::string> source;
@@ -119,7 +134,12 @@ class WrinkleTables {
   void DescribeMaps(const character::Character& character);
   void DescribeRegions(const wrinkle::Rig& rig);
   void DescribePalettes(const wrinkle::Rig& rig);
-  void FillTable(int group, MaskMode mode, float strength);
+  [[nodiscard]] Status CarryValues(const NamedSubject& named);
+  void AddSubject(MaskMode mode);
+  [[nodiscard]] bool IsTextured(std::size_t map) const;
+  [[nodiscard]] bool IsDynamic(std::size_t map) const;
+  void ListMaps(int group, float strength, std::vector<int>* slots);
+  void FillTable(int group, float strength);
 
   WrinkleLayout layout_;
   wrinkle::RigBinding binding_;   // the character's rig on its own skeleton
@@ -131,8 +151,10 @@ class WrinkleTables {
   std::uint32_t mask_bits_[kNumWrinkleGroups + 1] = {};
   NameMap weight_map_;
   NameMap value_map_;
-  std::vector<float> weights_;  // of binding_
+  std::vector<float> weights_;  // of binding_, of the subject that is being added
   std::vector<float> values_;   // driver values of binding_
+  std::vector<SubjectWrinkles> subjects_;
+  std::vector<float> influences_;
   WrinkleTable tables_[kNumWrinkleGroups];
 };
 

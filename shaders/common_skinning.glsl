@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Rows of the joints' skinning matrices (model * inverse_bind), three a joint: an affine 3x4 each.
+// NUM_JOINTS  of the character's skeleton
+
+// Rows of the joints' skinning matrices (placement * model * inverse_bind), three a joint: an affine
+// 3x4 each; subject after subject.
 layout(std430, binding = 0) readonly buffer Joints { vec4 u_joint_rows[]; };
 
 struct SkinMatrix {
@@ -10,10 +13,10 @@ struct SkinMatrix {
 };
 
 // Linear blend of up to four joints. `skinWeights` sum to 1.
-SkinMatrix blendJoints(uvec4 joints, vec4 skinWeights) {
+SkinMatrix blendJoints(uint subject, uvec4 joints, vec4 skinWeights) {
   SkinMatrix m = SkinMatrix(vec4(0.0), vec4(0.0), vec4(0.0));
   for (int i = 0; i < 4; ++i) {
-    uint row = 3u * joints[i];
+    uint row = 3u * (subject * uint(NUM_JOINTS) + joints[i]);
     m.row0 += skinWeights[i] * u_joint_rows[row];
     m.row1 += skinWeights[i] * u_joint_rows[row + 1u];
     m.row2 += skinWeights[i] * u_joint_rows[row + 2u];

@@ -10,8 +10,11 @@ layout(location = 3) in vec2 v_uv;
 #if VIEW == VIEW_WIREFRAME
 layout(location = 4) in vec3 v_barycentric;
 #endif
+#if CROWD
+layout(location = 5) flat in uint v_subject;
+#endif
 #if WRINKLE_DYNAMIC
-layout(location = 5) in vec4 v_dynamic_masks[MAP_SLOTS];
+layout(location = 6) in vec4 v_dynamic_masks[MAP_SLOTS];
 #endif
 
 // Mirrors MaterialBlock in render/gpu_character.cpp.
@@ -61,6 +64,9 @@ vec4 beginSurface(out vec4 masks[MASK_LAYERS], out vec4 dynamicMasks[MAP_SLOTS])
   vec4 base = baseColour();
 #if ALPHA_TEST
   if (base.a < u_alpha_cutoff) discard;
+#endif
+#if CROWD
+  currentSubject = v_subject;
 #endif
   sampleMasks(masks);
 #if WRINKLE_DYNAMIC

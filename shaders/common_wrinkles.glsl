@@ -6,6 +6,7 @@
 // ACTIVE_MAPS  length of the list for this surface: a constant, so that loops unroll and llvmpipe
 //              reads the list once for all lanes, which a list in a storage buffer cannot
 // MASK_LAYERS  RGBA mask textures of the character, at least 1
+// CROWD        1: several subjects are drawn, each with mask weights of its own
 // MAP_SLOTS    vec4s that carry the dynamic masks of the rig's maps, at least 1
 
 struct ActiveMap {
@@ -19,5 +20,6 @@ struct ActiveMap {
 layout(std140, binding = 2) uniform WrinkleTable {
   ActiveMap u_active_maps[4 * MAP_SLOTS];
   // One row an active map, one vec4 a mask layer: the wrinkle weight of the region in each channel.
+  // Of a frame's one subject.
   vec4 u_mask_weights[4 * MAP_SLOTS * MASK_LAYERS];
 };

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common_math.glsl"
-#include "common_wrinkles.glsl"
 
-// The masks that are found vertex by vertex. Mirrors DynamicMaskBlock of render/wrinkle_table.h.
+// The masks that are found vertex by vertex. Mirrors DynamicMaskBlock of render/dynamic_masks.h.
+//
+// NUM_JOINTS  of the character's skeleton
+// MAP_SLOTS   vec4s that carry the dynamic masks of the rig's maps
 struct DynamicMask {
   int slot;           // active map that it raises
   int column;         // of u_joint_influences; -1: it slides
@@ -15,14 +17,15 @@ struct DynamicMask {
   vec4 extent;        // above, below, radius
 };
 
-// num_joints x u_mask_columns, joint-major, in [0, 1] (wrinkle::JointInfluenceJob).
+// Subjects x joints x u_mask_columns, in [0, 1] (wrinkle::JointInfluenceJob).
 layout(std430, binding = 1) readonly buffer JointInfluences { float u_joint_influences[]; };
-// Those at work alone: joints at rest cost nothing.
+// Those at work alone, subject after subject: joints at rest cost nothing.
 layout(std430, binding = 3) readonly buffer DynamicMasks {
-  int u_mask_count;
   int u_mask_columns;
   DynamicMask u_dynamic_masks[];
 };
+// Where each subject's begin, and the end.
+layout(std430, binding = 4) readonly buffer FirstMasks { uint u_first_masks[]; };
 
 // How much of a joint's influence a vertex takes, by its skin weight in [0, 1]. Thesis 4.2; the
 // smooth form has no seam where a skin weight fades out.
@@ -33,10 +36,11 @@ float lambdaOf(DynamicMask mask, float skinWeight) {
 }
 
 // Thesis 4.2: clamp(sum over the vertex's joints of lambda(skin weight) * influence, 0, 1).
-float skinnedMask(DynamicMask mask, uvec4 joints, vec4 skinWeights) {
+float skinnedMask(DynamicMask mask, uint subject, uvec4 joints, vec4 skinWeights) {
   float sum = 0.0;
   for (int i = 0; i < 4; ++i) {
-    float influence = u_joint_influences[joints[i] * uint(u_mask_columns) + uint(mask.column)];
+    uint row = subject * uint(NUM_JOINTS) + joints[i];
+    float influence = u_joint_influences[row * uint(u_mask_columns) + uint(mask.column)];
     sum += lambdaOf(mask, skinWeights[i]) * influence;
   }
   return clamp(sum, 0.0, 1.0);
@@ -61,12 +65,13 @@ float slidingMask(DynamicMask mask, vec3 position) {
 }
 
 // The masks of all active maps at a vertex, each in [0, 1]; `position`: rest pose.
-void dynamicMasksAt(vec3 position, uvec4 joints, vec4 skinWeights, out vec4 masks[MAP_SLOTS]) {
+void dynamicMasksAt(vec3 position, uint subject, uvec4 joints, vec4 skinWeights,
+                    out vec4 masks[MAP_SLOTS]) {
   for (int slot = 0; slot < MAP_SLOTS; ++slot) masks[slot] = vec4(0.0);
-  for (int i = 0; i < u_mask_count; ++i) {
+  for (uint i = u_first_masks[subject]; i < u_first_masks[subject + 1u]; ++i) {
     DynamicMask mask = u_dynamic_masks[i];
     float value = mask.column < 0 ? slidingMask(mask, position)
-                                  : skinnedMask(mask, joints, skinWeights);
+                                  : skinnedMask(mask, subject, joints, skinWeights);
     masks[mask.slot >> 2][mask.slot & 3] += value;
   }
   for (int slot = 0; slot < MAP_SLOTS; ++slot) masks[slot] = min(masks[slot], vec4(1.0));

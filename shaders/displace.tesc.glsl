@@ -14,8 +14,11 @@ layout(location = 1) in vec3 v_normal[];
 layout(location = 2) in vec4 v_tangent[];
 layout(location = 3) in vec2 v_uv[];
 layout(location = 4) in float v_share[];
+#if CROWD
+layout(location = 5) in uint v_subject[];
+#endif
 #if WRINKLE_DYNAMIC
-layout(location = 5) in vec4 v_dynamic_masks[][MAP_SLOTS];
+layout(location = 6) in vec4 v_dynamic_masks[][MAP_SLOTS];
 #endif
 
 layout(location = 0) out vec3 c_position[];
@@ -27,8 +30,11 @@ layout(location = 5) out Place c_start[];   // the edge from this corner to the 
 layout(location = 8) out Place c_end[];
 layout(location = 11) out Place c_corner[];  // this corner's owner's
 layout(location = 14) out float c_level[];   // of the edge from this corner to the next
+#if CROWD
+layout(location = 15) out uint c_subject[];
+#endif
 #if WRINKLE_DYNAMIC
-layout(location = 15) out vec4 c_dynamic_masks[][MAP_SLOTS];
+layout(location = 16) out vec4 c_dynamic_masks[][MAP_SLOTS];
 #endif
 
 Place placeOf(int vertex) { return Place(v_position[vertex], v_normal[vertex], v_uv[vertex]); }
@@ -57,6 +63,9 @@ void main() {
   c_tangent[gl_InvocationID] = v_tangent[corner];
   c_uv[gl_InvocationID] = v_uv[corner];
   c_share[gl_InvocationID] = v_share[corner];
+#if CROWD
+  currentSubject = c_subject[gl_InvocationID] = v_subject[corner];
+#endif
   Place start = placeOf(3 + 2 * corner);
   Place end = placeOf(4 + 2 * corner);
   c_start[gl_InvocationID] = start;

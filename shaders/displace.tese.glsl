@@ -21,8 +21,11 @@ layout(location = 4) in float c_share[];
 layout(location = 5) in Place c_start[];
 layout(location = 8) in Place c_end[];
 layout(location = 11) in Place c_corner[];
+#if CROWD
+layout(location = 15) in uint c_subject[];
+#endif
 #if WRINKLE_DYNAMIC
-layout(location = 15) in vec4 c_dynamic_masks[][MAP_SLOTS];
+layout(location = 16) in vec4 c_dynamic_masks[][MAP_SLOTS];
 #endif
 
 #if SHADOW
@@ -31,8 +34,11 @@ layout(location = 0) uniform int u_light;
 layout(location = 0) out vec3 v_position;
 layout(location = 1) out vec3 v_normal;
 layout(location = 2) out vec4 v_tangent;
+#if CROWD
+layout(location = 5) flat out uint v_subject;
+#endif
 #if WRINKLE_DYNAMIC
-layout(location = 5) out vec4 v_dynamic_masks[MAP_SLOTS];
+layout(location = 6) out vec4 v_dynamic_masks[MAP_SLOTS];
 #endif
 #endif
 layout(location = 3) out vec2 v_uv;
@@ -77,6 +83,9 @@ float lodAt(vec3 position) {
 
 void main() {
   vec3 at = gl_TessCoord;
+#if CROWD
+  currentSubject = c_subject[0];
+#endif
   Place place = placeHere(at);
   precise float share = at.x * c_share[0] + at.y * c_share[1] + at.z * c_share[2];
   vec4 dynamicMasks[MAP_SLOTS];
@@ -99,6 +108,9 @@ void main() {
   v_position = moved;
   v_normal = at.x * c_normal[0] + at.y * c_normal[1] + at.z * c_normal[2];
   v_tangent = at.x * c_tangent[0] + at.y * c_tangent[1] + at.z * c_tangent[2];
+#if CROWD
+  v_subject = c_subject[0];
+#endif
 #if WRINKLE_DYNAMIC
   v_dynamic_masks = dynamicMasks;
 #endif

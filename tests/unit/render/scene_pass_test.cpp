@@ -234,8 +234,8 @@ TEST_P(DynamicMask, EqualsTheReferenceOnTheCpu) {
     const int x = static_cast<int>((clip.x / clip.w * 0.5f + 0.5f) * kSize);
     const int y = static_cast<int>((clip.y / clip.w * 0.5f + 0.5f) * kSize);
     const float expected = wrinkle::VertexInfluence(
-        vertices[i].joints, vertices[i].skin_weights, probe.tables().dynamic_masks().influences(),
-        probe.tables().dynamic_masks().num_columns(), mask.column, GetParam(), 0.25f);
+        vertices[i].joints, vertices[i].skin_weights, probe.tables().influences(),
+        probe.tables().mask_columns(), mask.column, GetParam(), 0.25f);
     const float drawn = pixels[static_cast<std::size_t>(y * kSize + x)].b / map.colour.b;
     // Triangles smaller than a pixel may miss its centre; their neighbours' masks are near.
     EXPECT_NEAR(drawn, expected, GetParam() == wrinkle::LambdaMode::kBinary ? 0.71f : 0.25f);

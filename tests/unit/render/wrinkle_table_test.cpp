@@ -69,8 +69,8 @@ TEST_F(WrinkleTableTest, AHingeRaisesADynamicMap) {
   ASSERT_EQ(Skin().maps.size(), 1u);
   EXPECT_EQ(Skin().maps[0].map, 2);
   EXPECT_TRUE(Skin().uses_dynamic);
-  ASSERT_EQ(tables_->dynamic_masks().num_columns(), 1);
-  const float brow = tables_->dynamic_masks().influences()[2];
+  ASSERT_EQ(tables_->mask_columns(), 1);
+  const float brow = tables_->influences()[2];
   EXPECT_GT(brow, 0.1f);
   settings_.mask_mode = MaskMode::kTexture;
   ASSERT_TRUE(Update(subject).ok());

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "render/frame_block.h"
+#include "render/gl_objects.h"
+#include "render/subjects.h"
+#include "render/wrinkle_table.h"
+
+namespace furrow::render {
+
+// What the scene's shaders know of a frame, as buffers: camera and lamps, the subjects' joints, and
+// their wrinkles by group of surfaces.
+class SceneBuffers {
+ public:
+  // Both outlive it.
+  SceneBuffers(std::span<const glm::mat4> inverse_bind_matrices, const WrinkleTables* tables);
+
+  void Upload(const FrameBlock& frame, std::span<const NamedSubject> subjects,
+              const WrinkleLayout& layout);
+  // What is the same for all surfaces.
+  void Bind() const;
+  void BindWrinkles(WrinkleGroup group) const;
+
+ private:
+  struct GroupBuffers {
+    gl::Buffer table;
+    gl::Buffer dynamic_masks;
+    gl::Buffer first_masks;
+    gl::Buffer subject_weights;
+    gl::Texture subject_weights_view;
+  };
+  void UploadJoints(std::span<const NamedSubject> subjects);
+  void UploadWrinkles(const WrinkleLayout& layout);
+
+  std::span<const glm::mat4> inverse_bind_matrices_;
+  const WrinkleTables* tables_;
+  gl::Buffer frame_;
+  gl::Buffer joints_;
+  gl::Buffer influences_;
+  GroupBuffers groups_[kNumWrinkleGroups];
+  gl::Buffer palettes_[kNumWrinkleGroups + 1];  // by group, kNone included
+};
+
+}  // namespace furrow::render
