@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -57,55 +59,105 @@ Result<std::set<std::string, std::less<>>> SubjectsOf(TakeReader& take) {
 
 }  // namespace
 
-bool TakePoses::Add(const TakeMessage& message) {
-  const TakeStamp& stamp = message.stamp;
-  if (!times_.empty()) {
-    std::int64_t step = stamp.capture_time_us - last_.capture_time_us;
-    if (stamp.session != last_.session || step <= 0) {
-      step = static_cast<std::int64_t>((stamp.log_time_ns - last_.log_time_ns) / 1000);
-    }
-    elapsed_us_ += std::max<std::int64_t>(step, 1);
-  }
-  last_ = stamp;
+// Microseconds from the last pose to one of `stamp`, at least 1.
+std::int64_t TakePoses::StepTo(const TakeStamp& stamp) const {
+  constexpr std::int64_t kLeap = 60'000'000;
+  constexpr std::int64_t kFastest = 1000;               // `furrow play --speed` at most
+  constexpr std::int64_t kLongest = 1'000'000'000'000;  // 11 days: sums stay numbers
+  // Log times are in order; capture times are as the sender says.
+  const auto arrived = static_cast<std::int64_t>((stamp.log_time_ns - last_.log_time_ns) / 1000);
+  std::int64_t step = 0;
+  const bool is_broken =
+      __builtin_sub_overflow(stamp.capture_time_us, last_.capture_time_us, &step) ||
+      stamp.session != last_.session || step <= 0 || (step > kLeap && step / kFastest > arrived);
+  return std::clamp<std::int64_t>(is_broken ? arrived : step, 1, kLongest);
+}
+
+void TakePoses::Add(const TakeMessage& message) {
+  if (!times_.empty()) elapsed_us_ += StepTo(message.stamp);
+  last_ = message.stamp;
   times_.push_back(static_cast<double>(elapsed_us_) * 1e-6);
   bytes_.insert(bytes_.end(), message.payload.begin(), message.payload.end());
   ends_.push_back(bytes_.size());
-  return bytes_.size() <= kMaxPoseBytes && times_.size() <= motion::kMaxFrames;
 }
 
-Result<TakePoses> TakePoses::Load(TakeReader& take, std::string_view subject,
-                                  motion::ClipReport* report) {
+// Sorts the messages of a take into the poses of its subjects.
+class TakePoses::Loader {
+ public:
+  // False: too many to hold.
+  bool Take(const TakeMessage& message) {
+    if (message.kind != TakeKind::kSkeleton && message.kind != TakeKind::kPose) return true;
+    auto found = tracks_.find(message.subject);
+    if (found == tracks_.end())
+      found = tracks_.emplace(std::string(message.subject), Track()).first;
+    Track& track = found->second;
+    if (message.kind == TakeKind::kPose) return TakePose(message, &track);
+    if (track.has_offer) return true;
+    track.has_offer = protocol::Decode(message.View(), track.poses.offer_) == DecodeStatus::kOk;
+    track.unreadable += track.has_offer ? 0 : 1;
+    return true;
+  }
+
+  // Those that have poses, in the order of their first ones.
+  std::vector<TakePoses> Finish(const TakeReader& take, motion::ClipReport* report) {
+    std::vector<Track*> order;
+    for (auto& [name, track] : tracks_) {
+      Warn(report, take, track.unreadable,
+           "messages of '" + name + "' cannot be read and are left out");
+      Warn(report, take, track.foreign,
+           "poses of '" + name + "' are of another skeleton than its first and are left out");
+      if (track.poses.size() > 0) order.push_back(&track);
+    }
+    std::ranges::stable_sort(order, {}, &Track::first_ns);
+    std::vector<TakePoses> all;
+    for (Track* track : order) {
+      track->poses.start_ = static_cast<double>(track->first_ns - order.front()->first_ns) * 1e-9;
+      all.push_back(std::move(track->poses));
+    }
+    return all;
+  }
+
+ private:
+  struct Track {
+    TakePoses poses;
+    std::uint64_t first_ns = 0;
+    bool has_offer = false;
+    std::size_t unreadable = 0;
+    std::size_t foreign = 0;
+  };
+
+  bool TakePose(const TakeMessage& message, Track* track) {
+    const protocol::SkeletonOffer& offer = track->poses.offer_;
+    if (protocol::Decode(message.View(), pose_) != DecodeStatus::kOk) {
+      ++track->unreadable;
+    } else if (!track->has_offer || pose_.skeleton_hash != offer.skeleton_hash ||
+               pose_.num_joints != offer.joints.size() ||
+               pose_.num_blend_shapes != offer.blend_shape_names.size()) {
+      ++track->foreign;
+    } else {
+      if (track->poses.size() == 0) track->first_ns = message.stamp.log_time_ns;
+      track->poses.Add(message);
+      num_bytes_ += message.payload.size();
+      return num_bytes_ <= kMaxPoseBytes && track->poses.size() <= motion::kMaxFrames;
+    }
+    return true;
+  }
+
+  std::map<std::string, Track, std::less<>> tracks_;
+  std::size_t num_bytes_ = 0;
+  protocol::PoseFrame pose_;  // reused
+};
+
+Result<std::vector<TakePoses>> TakePoses::LoadAll(TakeReader& take, std::string_view subject,
+                                                  motion::ClipReport* report) {
   const auto names = SubjectsOf(take);
   if (!names.ok()) return names.status();
   if (names->empty() || (!subject.empty() && !names->contains(subject)))
     return NoPoses(take, subject, *names);
-  if (subject.empty() && names->size() > 1) {
-    return Status(StatusCode::kInvalidArgument, "the take has several subjects: " + Join(*names),
-                  take.path().string(),
-                  "name one: " + take.path().filename().string() + "#" + *names->begin());
-  }
-  const std::string name(subject.empty() ? *names->begin() : subject);
-  TakePoses poses;
-  bool has_offer = false;
+  Loader loader;
   bool fits = true;
-  std::size_t unreadable = 0;
-  std::size_t foreign = 0;
   Status status = take.ForEach([&](const TakeMessage& message) {
-    if (message.subject != name) return true;
-    if (message.kind == TakeKind::kSkeleton && !has_offer) {
-      has_offer = protocol::Decode(message.View(), poses.offer_) == DecodeStatus::kOk;
-      if (!has_offer) ++unreadable;
-    } else if (message.kind == TakeKind::kPose) {
-      if (protocol::Decode(message.View(), poses.checked_) != DecodeStatus::kOk) {
-        ++unreadable;
-      } else if (!has_offer || poses.checked_.skeleton_hash != poses.offer_.skeleton_hash ||
-                 poses.checked_.num_joints != poses.offer_.joints.size() ||
-                 poses.checked_.num_blend_shapes != poses.offer_.blend_shape_names.size()) {
-        ++foreign;
-      } else {
-        fits = poses.Add(message);
-      }
-    }
+    if (subject.empty() || message.subject == subject) fits = loader.Take(message);
     return fits;
   });
   if (!status.ok()) return status;
@@ -113,13 +165,25 @@ Result<TakePoses> TakePoses::Load(TakeReader& take, std::string_view subject,
     return Status(StatusCode::kLimit, "too many poses to hold at once", take.path().string(),
                   "record with --rotate-seconds for shorter files");
   }
-  Warn(report, take, unreadable, "messages of '" + name + "' cannot be read and are left out");
-  Warn(report, take, foreign,
-       "poses of '" + name + "' are of another skeleton than its first and are left out");
+  std::vector<TakePoses> all = loader.Finish(take, report);
   for (const std::string& text : take.file().warnings())
     if (report != nullptr) report->warnings.push_back(text);
-  if (poses.size() == 0) return NoPoses(take, name, *names);
-  return poses;
+  if (all.empty()) return NoPoses(take, subject, *names);
+  return all;
+}
+
+Result<TakePoses> TakePoses::Load(TakeReader& take, std::string_view subject,
+                                  motion::ClipReport* report) {
+  const auto names = SubjectsOf(take);
+  if (!names.ok()) return names.status();
+  if (subject.empty() && names->size() > 1) {
+    return Status(StatusCode::kInvalidArgument, "the take has several subjects: " + Join(*names),
+                  take.path().string(),
+                  "name one: " + take.path().filename().string() + "#" + *names->begin());
+  }
+  auto all = LoadAll(take, subject, report);
+  if (!all.ok()) return all.status();
+  return std::move(all->front());
 }
 
 void TakePoses::Get(std::size_t index, protocol::PoseFrame* pose) const {

@@ -25,23 +25,34 @@ class TakePoses {
   // named and there are several; the message names them), kLimit, the reader's.
   [[nodiscard]] static Result<TakePoses> Load(TakeReader& take, std::string_view subject,
                                               motion::ClipReport* report);
+  // `subject` empty: all there are, in the order of their first poses; at least one. Errors: as
+  // Load()'s, but for several subjects.
+  [[nodiscard]] static Result<std::vector<TakePoses>> LoadAll(TakeReader& take,
+                                                              std::string_view subject,
+                                                              motion::ClipReport* report);
 
   [[nodiscard]] const protocol::SkeletonOffer& offer() const { return offer_; }
+  // When its first pose arrived: seconds since the first one of all that were loaded with it.
+  [[nodiscard]] double start() const { return start_; }
   [[nodiscard]] std::size_t size() const { return times_.size(); }
   // Seconds since the first pose, increasing: the differences of the capture times. Where those go
-  // back or a sender was restarted, the differences of the times of arrival.
+  // back, leap (a clock that was set) or a sender was restarted, the differences of the times of
+  // arrival.
   [[nodiscard]] std::span<const double> times() const { return times_; }
   // Decodes pose `index` < size(); it was checked when it was loaded.
   void Get(std::size_t index, protocol::PoseFrame* pose) const;
 
  private:
-  [[nodiscard]] bool Add(const TakeMessage& message);
+  class Loader;
+
+  void Add(const TakeMessage& message);
+  [[nodiscard]] std::int64_t StepTo(const TakeStamp& stamp) const;
 
   protocol::SkeletonOffer offer_;
+  double start_ = 0.0;
   std::vector<double> times_;
   std::vector<std::size_t> ends_;  // of each pose's payload in `bytes_`
   std::vector<std::uint8_t> bytes_;
-  protocol::PoseFrame checked_;  // reused
   TakeStamp last_;
   std::int64_t elapsed_us_ = 0;
 };

@@ -2,6 +2,7 @@
 #include "recording/take_poses.h"
 
 #include <fstream>
+#include <limits>
 
 #include "recording/take_clip.h"
 #include "tests/unit/recording/take_testing.h"
@@ -74,6 +75,45 @@ TEST_F(TakePosesTest, OneOfSeveralSubjectsMustBeNamed) {
   const auto bob = TakePoses::Load(*take, "bob", nullptr);
   ASSERT_TRUE(bob.ok());
   EXPECT_EQ(bob->size(), 3u);
+}
+
+TEST_F(TakePosesTest, ASessionKeepsWhenEachSubjectCame) {
+  const auto writer = Create("take.mcap");
+  WriteSubject(*writer, "zoe", 2);
+  TakeStamp late = Stamp(0, /*session=*/8);
+  late.log_time_ns += 2'500'000'000;
+  ASSERT_TRUE(writer->Write(TakeKind::kSkeleton, "ada", late, Payload(Offer("ada"))).ok());
+  ASSERT_TRUE(writer->Write(TakeKind::kPose, "ada", late, Payload(Pose(0.0f))).ok());
+  ASSERT_TRUE(writer->Close().ok());
+  const auto all = TakePoses::LoadAll(*Open("take.mcap"), "", nullptr);
+  ASSERT_TRUE(all.ok()) << all.status().ToString();
+  ASSERT_EQ(all->size(), 2u);
+  EXPECT_EQ((*all)[0].offer().subject, "zoe");
+  EXPECT_EQ((*all)[0].start(), 0.0);
+  EXPECT_EQ((*all)[1].offer().subject, "ada");
+  EXPECT_NEAR((*all)[1].start(), 2.5, 1e-9);
+  const auto one = TakePoses::LoadAll(*Open("take.mcap"), "ada", nullptr);
+  ASSERT_TRUE(one.ok());
+  ASSERT_EQ(one->size(), 1u);
+  EXPECT_EQ(one->front().start(), 0.0);
+}
+
+TEST_F(TakePosesTest, AClockThatLeapsCountsByArrival) {
+  constexpr std::int64_t kHour = 3'600'000'000;
+  const std::int64_t clocks[] = {0, kHour, std::numeric_limits<std::int64_t>::min(),
+                                 std::numeric_limits<std::int64_t>::max(), kHour};
+  const auto writer = Create("take.mcap");
+  WriteSubject(*writer, "ada", 1);
+  for (int i = 1; i < 5; ++i) {
+    TakeStamp stamp = Stamp(0);
+    stamp.capture_time_us = clocks[i];
+    stamp.log_time_ns += static_cast<std::uint64_t>(i) * 20'000'000;
+    ASSERT_TRUE(writer->Write(TakeKind::kPose, "ada", stamp, Payload(Pose(1.0f))).ok());
+  }
+  ASSERT_TRUE(writer->Close().ok());
+  const auto poses = TakePoses::Load(*Open("take.mcap"), "ada", nullptr);
+  ASSERT_TRUE(poses.ok());
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(poses->times()[i], 0.02 * double(i), 1e-9);
 }
 
 TEST_F(TakePosesTest, AClipHoldsPosesPartialOnesToo) {
