@@ -19,6 +19,7 @@ std::string_view CounterName(Counter counter) {
     case Counter::kConnectionsMalformed: return "furrow_connections_malformed_total";
     case Counter::kConnectionsOverrun: return "furrow_connections_overrun_total";
     case Counter::kConnectionsIdle: return "furrow_connections_idle_total";
+    case Counter::kMessagesBundled: return "furrow_messages_bundled_total";
     case Counter::kMessagesReceived: return "furrow_messages_received_total";
     case Counter::kMessagesThrottled: return "furrow_messages_throttled_total";
     case Counter::kMessagesMalformed: return "furrow_messages_malformed_total";

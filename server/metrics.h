@@ -26,6 +26,7 @@ enum class Counter {
   kConnectionsMalformed,  // closed for a frame of impossible length
   kConnectionsOverrun,    // closed because they do not read their replies
   kConnectionsIdle,       // closed by the watchdog
+  kMessagesBundled,       // that left in a datagram with others
   kMessagesReceived,
   kMessagesThrottled,  // over a peer's token bucket; not looked at
   kMessagesMalformed,  // an envelope, but not what it says

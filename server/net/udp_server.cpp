@@ -26,8 +26,8 @@ constexpr int kEvictionCandidates = 16;
 
 }  // namespace
 
-// One UDP address. Sends without blocking, at once or with the batch that is being worked on: a
-// full socket buffer drops, as UDP may.
+// One UDP address. Sends without blocking, at once or with the batch that is being worked on, then
+// in bundles to who takes them: a full socket buffer drops, as UDP may.
 class UdpServer::UdpPeer : public Link {
  public:
   UdpPeer(UdpServer* server, udp::endpoint endpoint) : server_(server), endpoint_(endpoint) {}
@@ -37,6 +37,7 @@ class UdpServer::UdpPeer : public Link {
     Send(message);
     return 0;
   }
+  void TakesBundles(bool takes) override { takes_bundles_ = takes; }
   void DropFrames(std::uint64_t) override {}  // nothing ever waits
 
   PeerId id = 0;
@@ -45,10 +46,12 @@ class UdpServer::UdpPeer : public Link {
   void Send(std::span<const std::uint8_t> message) {
     const std::size_t count = protocol::NumDatagrams(message.size());
     const std::uint32_t message_id = count > 1 ? next_message_id_++ : 0;
+    const Packing packing = takes_bundles_ && count == 1 ? Packing::kShared : Packing::kAlone;
     UdpSender& sender = server_->sender_;
     for (std::size_t index = 0; index < count; ++index) {
       const auto datagram = sender.Prepare();
-      sender.Commit(id, endpoint_, protocol::WriteDatagram(message, message_id, index, datagram));
+      sender.Commit(id, endpoint_, protocol::WriteDatagram(message, message_id, index, datagram),
+                    packing);
     }
     if (!server_->gathering_) server_->SendAll();
   }
@@ -56,6 +59,7 @@ class UdpServer::UdpPeer : public Link {
   UdpServer* server_;
   udp::endpoint endpoint_;
   std::uint32_t next_message_id_ = 0;
+  bool takes_bundles_ = false;
 };
 
 UdpServer::UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
@@ -108,11 +112,11 @@ asio::awaitable<void> UdpServer::Read() {
       metrics_->Add(Counter::kDatagramsOverrun, batch_.TakeDropped());
       gathering_ = true;
       for (std::size_t i = 0; i < count; ++i) OnDatagram(batch_.bytes(i), batch_.sender(i), now);
+      hub_->PublishGathered();
       gathering_ = false;
       SendAll();
       is_drained = count < UdpBatch::kSize;
     }
-      hub_->PublishGathered();
     // Let timers and TCP have their turn, however fast datagrams come.
     if (!is_drained) co_await asio::post(io_, asio::use_awaitable);
   }
@@ -123,6 +127,7 @@ void UdpServer::SendAll() {
   const UdpSender::Counts counts = sender_.TakeCounts();
   metrics_->Add(Counter::kDatagramsSent, counts.sent);
   metrics_->Add(Counter::kDatagramsUnsendable, counts.lost);
+  metrics_->Add(Counter::kMessagesBundled, counts.bundled);
 }
 
 void UdpServer::OnDatagram(std::span<const std::uint8_t> bytes, const udp::endpoint& sender,

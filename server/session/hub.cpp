@@ -179,10 +179,12 @@ void Hub::Dispatch(Peer& peer, const protocol::MessageView& view, Time now) {
 
 void Hub::OnHello(Peer& peer, const protocol::Header& header, const protocol::Hello& hello) {
   protocol::Welcome welcome{kServerName, 0};
-  if (peer.transport == Transport::kUdp && !peer.credit.proven()) {
-    if (hello.token != 0 && hello.token == peer.token) {
-      peer.credit.Prove();
-    } else {
+  if (peer.transport == Transport::kUdp) {
+    const bool proves = hello.token != 0 && hello.token == peer.token;
+    if (proves) peer.credit.Prove();
+    // Nobody else can make a peer be sent what it may not understand.
+    if (proves || !hello.bundles) peer.link->TakesBundles(hello.bundles);
+    if (!peer.credit.proven()) {
       if (peer.token == 0) peer.token = make_token_();
       welcome.token = peer.token;
     }

@@ -33,6 +33,8 @@ class Link {
   // how many frames were dropped.
   virtual int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
                         std::size_t keep) = 0;
+  // Whether the peer takes several messages in a datagram; for links that have such.
+  virtual void TakesBundles(bool /*takes*/) {}
   // The frames of a key are no longer wanted.
   virtual void DropFrames(std::uint64_t key) = 0;
 };
