@@ -59,14 +59,18 @@ Settings DepthPasses(int lamps) {
 }
 
 std::unique_ptr<Stage> HeadStage(int heads, const ExperimentOptions& options) {
-  return std::make_unique<Stage>(MakeHeads(heads), HeadsExtent(heads), options.size, MoveFace,
-                                 options.device);
+  return std::make_unique<Stage>(MakeHead(), HeadPlacements(heads), HeadsExtent(heads),
+                                 options.size, MoveFace, options.device);
 }
 
-std::unique_ptr<Stage> BodyStage(int hinges, int balls, const ExperimentOptions& options) {
-  return std::make_unique<Stage>(MakeBody(hinges, balls), kBodyExtent, options.size, MoveBody,
-                                 options.device);
+std::unique_ptr<Stage> BodyStage(int hinges, int balls, const Motion& motion,
+                                 const ExperimentOptions& options) {
+  return std::make_unique<Stage>(MakeBody(hinges, balls), std::vector{glm::mat4(1.0f)}, kBodyExtent,
+                                 options.size, motion, options.device);
 }
+
+// Nothing moves, so that no driver has a value.
+void Rest(double, const wrinkle::Skeleton&, wrinkle::LocalPose*) {}
 
 // Shares of the thesis, from its frame rates; a row of 0 has none.
 void SetShares(Experiment* experiment) {
@@ -98,12 +102,16 @@ Experiment MakeTable51(const ExperimentOptions& options) {
 Experiment MakeTable52(const ExperimentOptions& options) {
   Experiment experiment{"table-5.2", "Table 5.2: a body of 8,290 triangles", {}, {}};
   for (const auto& [hinges, balls] : {std::pair(0, 0), {2, 1}, {100, 50}}) {
-    experiment.stages.push_back(BodyStage(hinges, balls, options));
+    experiment.stages.push_back(BodyStage(hinges, balls, MoveBody, options));
+    experiment.stages.push_back(BodyStage(hinges, balls, Rest, options));
   }
   const Settings settings = Wrinkled(MaskMode::kRig);
   experiment.rows = {{"no wrinkle joints", 0, settings, 0, 3777.0},
-                     {"2 hinges + 1 ball", 1, settings, 0, 3771.0},
-                     {"100 hinges + 50 balls", 2, settings, 0, 3702.0}};
+                     {"2 hinges + 1 ball", 2, settings, 0, 3771.0},
+                     {"100 hinges + 50 balls", 4, settings, 0, 3702.0},
+                     {"no wrinkle joints, at rest", 1, settings, 3},
+                     {"2 hinges + 1 ball, at rest", 3, settings, 3},
+                     {"100 hinges + 50 balls, at rest", 5, settings, 3}};
   SetShares(&experiment);
   return experiment;
 }

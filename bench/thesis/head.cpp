@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "bench/thesis/subjects.h"
 #include "tests/unit/render/character_parts.h"
@@ -44,10 +45,10 @@ float RegionMask(int region, float u, float v) {
   return std::clamp(1.0f - distance * distance, 0.0f, 1.0f);
 }
 
-Vertex HeadVertex(float u, float v, const glm::vec3& offset) {
+Vertex HeadVertex(float u, float v) {
   Vertex vertex;
   const glm::vec3 point = OnHead(u, v);
-  vertex.position = point + offset;
+  vertex.position = point;
   vertex.normal = glm::normalize(point / (kRadii * kRadii));
   const float longitude = kTwoPi * (u - 0.5f);
   vertex.tangent = {std::cos(longitude), 0.0f, -std::sin(longitude), 1.0f};
@@ -67,11 +68,6 @@ Vertex HeadVertex(float u, float v, const glm::vec3& offset) {
   vertex.skin_weights[1] = strongest[0] / sum;
   vertex.skin_weights[2] = strongest[1] / sum;
   return vertex;
-}
-
-void AddHead(const glm::vec3& offset, Mesh* mesh) {
-  const auto vertex = [&](float u, float v) { return HeadVertex(u, v, offset); };
-  render::test::AddGrid(kColumns, kRows, vertex, mesh);
 }
 
 struct Grid {
@@ -184,9 +180,22 @@ Extent HeadsExtent(int heads) {
           0.5f * kPitchY * static_cast<float>(grid.rows)};
 }
 
-Character MakeHeads(int heads) {
+std::vector<glm::mat4> HeadPlacements(int heads) {
+  const Grid grid = GridOf(heads);
+  std::vector<glm::mat4> placements;
+  for (int i = 0; i < heads; ++i) {
+    const float x =
+        static_cast<float>(i % grid.columns) - 0.5f * static_cast<float>(grid.columns - 1);
+    const float y = static_cast<float>(i / grid.columns) - 0.5f * static_cast<float>(grid.rows - 1);
+    placements.push_back(
+        glm::translate(glm::mat4(1.0f), glm::vec3(kPitchX * x, -kPitchY * y, 0.0f)));
+  }
+  return placements;
+}
+
+Character MakeHead() {
   Character character;
-  character.name = "heads";
+  character.name = "head";
   std::vector<wrinkle::JointDesc> joints(1);
   joints[0].name = "head";
   for (int region = 0; region < kRegions; ++region) {
@@ -203,15 +212,9 @@ Character MakeHeads(int heads) {
   skin.kind = Material::Kind::kSkin;
   character.materials.push_back(skin);
   Mesh mesh;
-  mesh.name = "heads";
+  mesh.name = "head";
   mesh.material = 0;
-  const Grid grid = GridOf(heads);
-  for (int i = 0; i < heads; ++i) {
-    const float x =
-        static_cast<float>(i % grid.columns) - 0.5f * static_cast<float>(grid.columns - 1);
-    const float y = static_cast<float>(i / grid.columns) - 0.5f * static_cast<float>(grid.rows - 1);
-    AddHead({kPitchX * x, -kPitchY * y, 0.0f}, &mesh);
-  }
+  render::test::AddGrid(kColumns, kRows, HeadVertex, &mesh);
   character.meshes.push_back(std::move(mesh));
   AddRig(&character);
   AddPictures(&character);

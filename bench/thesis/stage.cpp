@@ -13,6 +13,7 @@ namespace furrow::bench {
 namespace {
 
 constexpr double kFrameSeconds = 1.0 / 60.0;
+constexpr double kSecondsAhead = 0.37;  // of a subject to the next
 constexpr float kFovDegrees = 30.0f;
 constexpr float kMargin = 1.05f;
 
@@ -62,30 +63,44 @@ void MoveBody(double seconds, const wrinkle::Skeleton& skeleton, wrinkle::LocalP
   }
 }
 
-Stage::Stage(const character::Character& character, const Extent& extent, PictureSize size,
-             Motion motion, const std::string& device)
+Stage::Stage(const character::Character& character, const std::vector<glm::mat4>& placements,
+             const Extent& extent, PictureSize size, Motion motion, const std::string& device)
     : skeleton_(character.skeleton),
       motion_(std::move(motion)),
-      renderer_(Expect(render::Renderer::Create(character, {device}))),
-      solver_(Bind(character)),
-      model_(static_cast<std::size_t>(character.skeleton.num_joints())) {
-  pose_.SetRest(skeleton_);
+      renderer_(Expect(render::Renderer::Create(character, {device}))) {
+  const auto binding = Bind(character);
+  for (const glm::mat4& placement : placements) {
+    Subject& subject = subjects_.emplace_back(
+        Subject{wrinkle::SubjectSolver(binding),
+                {},
+                std::vector<glm::mat4>(static_cast<std::size_t>(skeleton_.num_joints())),
+                placement});
+    subject.pose.SetRest(skeleton_);
+  }
   request_.camera = Facing(extent, size);
   request_.width = size.width;
   request_.height = size.height;
 }
 
-void Stage::Submit(const render::Settings& settings) {
-  motion_(kFrameSeconds * frame_++, skeleton_, &pose_);
-  const wrinkle::LocalToModelJob to_model{&skeleton_, pose_.joints, model_};
+render::PosedSubject Stage::Advance(std::size_t index) {
+  Subject& subject = subjects_[index];
+  motion_(kFrameSeconds * frame_ + kSecondsAhead * static_cast<double>(index), skeleton_,
+          &subject.pose);
+  const wrinkle::LocalToModelJob to_model{&skeleton_, subject.pose.joints, subject.model};
   if (to_model.Run() != wrinkle::JobStatus::kOk ||
-      solver_.Update(pose_, kFrameSeconds) != wrinkle::JobStatus::kOk) {
+      subject.solver.Update(subject.pose, kFrameSeconds) != wrinkle::JobStatus::kOk) {
     Die({StatusCode::kInternal, "the benchmark's pose cannot be solved", "stage"});
   }
-  request_.model = model_;
-  request_.binding = &solver_.binding();
-  request_.wrinkle_weights = solver_.wrinkle_weights();
-  request_.filtered_values = solver_.filtered_values();
+  return {subject.model, &subject.solver.binding(), subject.solver.wrinkle_weights(),
+          subject.solver.filtered_values(), subject.placement};
+}
+
+void Stage::Submit(const render::Settings& settings) {
+  static_cast<render::PosedSubject&>(request_) = Advance(0);
+  others_.clear();
+  for (std::size_t i = 1; i < subjects_.size(); ++i) others_.push_back(Advance(i));
+  ++frame_;
+  request_.others = others_;
   request_.settings = settings;
   if (Status status = renderer_->Submit(request_); !status.ok()) Die(status);
 }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bench/report/interleave.h"
 #include "bench/thesis/subjects.h"
@@ -27,13 +28,14 @@ struct PictureSize {
   int height = 800;
 };
 
-// One moving character in front of a camera that it just fills.
+// A moving character, once or many times, in front of a camera that it just fills. Every subject
+// has its own solver and is ahead of the one before, so that no two make the same face.
 class Stage {
  public:
-  // Aborts with the error on stderr where there is no OpenGL: a benchmark has nothing to fall back
-  // on.
-  Stage(const character::Character& character, const Extent& extent, PictureSize size,
-        Motion motion, const std::string& device);
+  // `placements`: one a subject, at least one. Aborts with the error on stderr where there is no
+  // OpenGL: a benchmark has nothing to fall back on.
+  Stage(const character::Character& character, const std::vector<glm::mat4>& placements,
+        const Extent& extent, PictureSize size, Motion motion, const std::string& device);
 
   // Seconds a frame, pose to pixels, over `frames` frames of 1/60 s each: solve, draw and read
   // back, two frames in flight as in the daemon.
@@ -44,14 +46,21 @@ class Stage {
   [[nodiscard]] std::string device() const { return renderer_->description(); }
 
  private:
+  struct Subject {
+    wrinkle::SubjectSolver solver;
+    wrinkle::LocalPose pose;
+    std::vector<glm::mat4> model;
+    glm::mat4 placement;
+  };
+  // Moves a subject to the frame's time; what to draw points into it.
+  [[nodiscard]] render::PosedSubject Advance(std::size_t subject);
   void Submit(const render::Settings& settings);
 
   wrinkle::Skeleton skeleton_;
   Motion motion_;
   std::unique_ptr<render::Renderer> renderer_;
-  wrinkle::SubjectSolver solver_;
-  wrinkle::LocalPose pose_;
-  std::vector<glm::mat4> model_;
+  std::vector<Subject> subjects_;
+  std::vector<render::PosedSubject> others_;
   render::FrameRequest request_;
   int frame_ = 0;
 };
