@@ -60,14 +60,15 @@ ApiReply Api::Answer(const ApiRequest& request, Hub& hub, Time now) {
       Route{"GET", "/readyz", &Api::Ready},
       Route{"GET", "/metrics", &Api::MetricsText},
   };
-  bool is_path = false;
+  std::string methods;
   for (const Route& route : kRoutes) {
     if (route.path != request.url.path) continue;
     if (route.method == request.method) return (this->*route.answer)(request, hub, now);
-    is_path = true;
+    methods += (methods.empty() ? "" : ", ") + std::string(route.method);
+    if (route.method == "GET") methods += ", HEAD";
   }
-  if (!is_path) return ErrorReply(404, "not_found", "", request.url.path + " is not served here");
-  return ErrorReply(405, "method", "", request.method + " means nothing to " + request.url.path);
+  if (!methods.empty()) return MethodReply(request.method, request.url.path, std::move(methods));
+  return ErrorReply(404, "not_found", "", request.url.path + " is not served here");
 }
 
 ApiReply JsonReply(const Json& json) {
@@ -104,7 +105,7 @@ ApiReply Api::Subjects(const ApiRequest&, Hub& hub, Time now) {
                     {"poses", stats.poses()},
                     {"lost", stats.lost()},
                     {"late", stats.late()},
-                    {"jitter_ms", stats.jitter_seconds() * 1e3},
+                    {"jitter_ms", stats.jitter_seconds(now) * 1e3},
                     {"age_ms", ToSeconds(now - subject->last_pose) * 1e3},
                     {"neutral", pipeline.neutral_pose().has_value()}});
   }

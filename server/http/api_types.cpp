@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/api_types.h"
 
+#include <utility>
+
 #include <nlohmann/json.hpp>
 
 namespace furrow::server {
@@ -38,6 +40,14 @@ ApiReply ErrorReply(int status, std::string_view code, std::string_view field,
 ApiReply ErrorReply(const Status& status) {
   const CodeInfo info = InfoOf(status.code());
   return ErrorReply(info.status, info.name, status.where(), status.what(), status.todo());
+}
+
+ApiReply MethodReply(std::string_view method, std::string_view path, std::string allow) {
+  ApiReply reply =
+      ErrorReply(405, "method", "", std::string(method) + " means nothing to " + std::string(path),
+                 "use " + allow);
+  reply.allow = std::move(allow);
+  return reply;
 }
 
 }  // namespace furrow::server

@@ -13,7 +13,6 @@ namespace furrow::server {
 struct ApiRequest {
   std::string method;  // "GET", "PATCH"
   Url url;
-  std::string content_type;
   std::string body;
 };
 
@@ -22,6 +21,7 @@ struct ApiReply {
   std::string type = "application/json";
   std::string body;
   std::string file_name;  // offered for saving; empty: shown
+  std::string allow;      // of 405: "GET, PATCH"
 };
 
 // {"error": {...}} of docs/HTTP-API.md. The overload takes HTTP's status from the code and the
@@ -29,5 +29,8 @@ struct ApiReply {
 [[nodiscard]] ApiReply ErrorReply(int status, std::string_view code, std::string_view field,
                                   std::string_view message, std::string_view hint = {});
 [[nodiscard]] ApiReply ErrorReply(const Status& status);
+// 405. `allow`: what `path` is asked with instead, "GET, HEAD".
+[[nodiscard]] ApiReply MethodReply(std::string_view method, std::string_view path,
+                                   std::string allow);
 
 }  // namespace furrow::server

@@ -103,6 +103,10 @@ net::awaitable<bool> WritePageFile(beast::tcp_stream& stream, const WebRequest& 
 
 bool IsPicture(const std::string& path) { return path == "/mjpeg" || path == "/snapshot.png"; }
 
+bool Reads(const WebRequest& request) {
+  return request.method() == http::verb::get || request.method() == http::verb::head;
+}
+
 ApiReply NotHere(const WebRequest& request, const std::string& path) {
   if (path == "/") {
     return {.status = 503,
@@ -189,17 +193,20 @@ class HttpSession {
       co_return co_await WriteReply(stream_, request_,
                                     ErrorReply(400, "upgrade", "", "/ws is a WebSocket"));
     }
-    if (IsPicture(url->path) && request_.method() == http::verb::get) {
+    if (IsPicture(url->path) && Reads(request_)) {
       co_return co_await ServePictures(&stream_, context_, request_, *url);
     }
     co_return co_await AnswerPlain(*std::move(url));
   }
 
   net::awaitable<bool> AnswerPlain(Url url) {
-    const bool reads =
-        request_.method() == http::verb::get || request_.method() == http::verb::head;
-    if (const PageFile* file = reads ? context_->page.Find(url.path) : nullptr; file != nullptr) {
+    const PageFile* file = context_->page.Find(url.path);
+    if (file != nullptr && Reads(request_)) {
       co_return co_await WritePageFile(stream_, request_, *file);
+    }
+    if (file != nullptr || IsPicture(url.path)) {
+      ApiReply reply = MethodReply(View(request_.method_string()), url.path, "GET, HEAD");
+      co_return co_await WriteReply(stream_, request_, std::move(reply));
     }
     const bool is_api = url.path.starts_with("/api/") || url.path == "/metrics" ||
                         url.path == "/healthz" || url.path == "/readyz";
@@ -207,7 +214,6 @@ class HttpSession {
       co_return co_await WriteReply(stream_, request_, NotHere(request_, url.path));
     }
     ApiRequest request{std::string(View(request_.method_string())), std::move(url),
-                       std::string(View(request_[http::field::content_type])),
                        std::move(request_.body())};
     if (request.method == "HEAD") request.method = "GET";
     ApiReply reply = co_await AskHub(context_, std::move(request));
@@ -232,8 +238,11 @@ net::awaitable<bool> WriteReply(beast::tcp_stream& stream, const WebRequest& req
     response.set(http::field::content_disposition,
                  "attachment; filename=\"" + reply.file_name + "\"");
   }
+  if (!reply.allow.empty()) response.set(http::field::allow, reply.allow);
+  // The length of what was not made for a HEAD is left out.
+  const bool is_unmade = request.method() == http::verb::head && reply.body.empty();
   response.body() = std::move(reply.body);
-  response.prepare_payload();
+  if (!is_unmade) response.prepare_payload();
   co_return co_await Write(stream, request, response);
 }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/picture_query.h"
 
+#include <algorithm>
 #include <charconv>
 #include <string>
 
 #include "protocol/limits.h"
+#include "render/renderer.h"
 
 namespace furrow::server {
 namespace {
@@ -22,6 +24,28 @@ Status Read(const std::string& name, const std::string& text, Number low, Number
   }
   *target = static_cast<Target>(value);
   return {};
+}
+
+Status NotAllowed(const std::string& name, const Status& why) {
+  return {StatusCode::kInvalidArgument, why.what(), name, why.todo()};
+}
+
+// That what is named is there: a view, a camera, or a setting with such a value.
+Status CheckName(const std::string& name, const std::string& value) {
+  if (name == "subject") return {};
+  if (name == "view") {
+    const Result<render::View> view = render::ParseView(value);
+    return view.ok() ? Status() : NotAllowed(name, view.status());
+  }
+  if (name == "camera") {
+    const auto names = render::CameraPresetNames();
+    if (value.empty() || std::ranges::find(names, value) != names.end()) return {};
+    return {StatusCode::kInvalidArgument, "no camera '" + value + "'", name,
+            "one of: " + render::ListCameraPresets()};
+  }
+  render::Settings settings;
+  const Status status = render::SetSetting(name, value, &settings);
+  return status.ok() ? Status() : NotAllowed(name, status);
 }
 
 Status Set(const std::string& name, const std::string& value, protocol::SubscribePictures* out) {
@@ -44,7 +68,7 @@ Status Set(const std::string& name, const std::string& value, protocol::Subscrib
   } else {
     out->settings.push_back(name + "=" + value);
   }
-  return {};
+  return CheckName(name, value);
 }
 
 }  // namespace

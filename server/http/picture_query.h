@@ -9,7 +9,7 @@ namespace furrow::server {
 
 // The pictures that the query of /mjpeg or /snapshot.png asks for: subject, width, height, view,
 // camera, rate, quality; every other name is a setting's. Errors: kInvalidArgument, `where` is the
-// name; whether views, cameras and settings exist is for the hub to say.
+// name. Whom it names is for the hub to find.
 [[nodiscard]] Result<protocol::SubscribePictures> PicturesOf(const Url& url);
 
 }  // namespace furrow::server

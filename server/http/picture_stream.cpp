@@ -20,6 +20,8 @@ namespace furrow::server {
 namespace {
 
 constexpr char kBoundary[] = "furrow-picture";
+constexpr char kMjpegType[] = "multipart/x-mixed-replace; boundary=furrow-picture";
+constexpr char kSnapshotType[] = "image/png";
 // Small, so that what a slow client has not read yet is no more than a picture or two.
 constexpr int kSendBufferBytes = 128 * 1024;
 constexpr std::uint64_t kSession = 1;  // one conversation a peer: any number does
@@ -36,13 +38,10 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
     auto wake = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) self->wake_.cancel();
     };
-    peer_ = std::make_shared<WebPeer>(
-        context_->post_to_hub, "web pictures",
-        [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
-    peer_->Open();
+    peer_.emplace(context_->post_to_hub, "web pictures",
+                  [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
     Send(0, pictures);
   }
-  void Close() { peer_->Close(); }
 
   // The next picture; an answer that says why there is none; neither: the client has gone.
   struct Next {
@@ -119,7 +118,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
   beast::tcp_stream* stream_;
   net::steady_timer wake_;
   WebContext* context_;
-  std::shared_ptr<WebPeer> peer_;
+  std::optional<WebPeer> peer_;  // from Open() on
   protocol::Encoder encoder_;
   std::uint32_t requests_ = 0;
   std::uint16_t subscription_ = 0;
@@ -146,11 +145,10 @@ net::awaitable<bool> ServeMjpeg(beast::tcp_stream* stream, PictureStream* pictur
                                 const WebRequest& request) {
   beast::error_code ignored;
   stream->socket().set_option(net::socket_base::send_buffer_size(kSendBufferBytes), ignored);
-  const std::string head =
-      std::string(
-          "HTTP/1.1 200 OK\r\nServer: furrowd\r\nCache-Control: no-store\r\n"
-          "Connection: close\r\nContent-Type: multipart/x-mixed-replace; boundary=") +
-      kBoundary + "\r\n\r\n";
+  const std::string head = std::string(
+                               "HTTP/1.1 200 OK\r\nServer: furrowd\r\nCache-Control: no-store\r\n"
+                               "Connection: close\r\nContent-Type: ") +
+                           kMjpegType + "\r\n\r\n";
   bool has_begun = false;
   pictures->WatchForEnd();
   while (true) {
@@ -176,7 +174,7 @@ net::awaitable<bool> ServeSnapshot(beast::tcp_stream* stream, PictureStream* pic
         next.refusal.value_or(ErrorReply(404, "not_found", "subject", "the subject has left")));
   }
   const std::vector<std::uint8_t>& bytes = pictures->image().bytes;
-  ApiReply picture{.type = "image/png", .body = std::string(bytes.begin(), bytes.end())};
+  ApiReply picture{.type = kSnapshotType, .body = std::string(bytes.begin(), bytes.end())};
   co_return co_await WriteReply(*stream, request, std::move(picture));
 }
 
@@ -187,20 +185,18 @@ net::awaitable<bool> ServePictures(beast::tcp_stream* stream, WebContext* contex
   Result<protocol::SubscribePictures> wanted = PicturesOf(url);
   if (!wanted.ok()) co_return co_await WriteReply(*stream, request, ErrorReply(wanted.status()));
   const bool once = url.path == "/snapshot.png";
+  if (request.method() == http::verb::head) {  // right as it is; nothing is drawn for it
+    ApiReply reply{.type = once ? kSnapshotType : kMjpegType};
+    co_return co_await WriteReply(*stream, request, std::move(reply));
+  }
   wanted->acknowledged = !once;
   wanted->wait = !once;
   if (once) wanted->format = protocol::ImageFormat::kPng;
   stream->expires_never();
   auto pictures = std::make_shared<PictureStream>(stream, context);
   pictures->Open(*wanted);
-  bool goes_on = false;
-  if (once) {
-    goes_on = co_await ServeSnapshot(stream, pictures.get(), request);
-  } else {
-    goes_on = co_await ServeMjpeg(stream, pictures.get(), request);
-  }
-  pictures->Close();
-  co_return goes_on;
+  if (once) co_return co_await ServeSnapshot(stream, pictures.get(), request);
+  co_return co_await ServeMjpeg(stream, pictures.get(), request);
 }
 
 }  // namespace furrow::server

@@ -1,47 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/web_peer.h"
 
+#include <atomic>
+#include <mutex>
+#include <span>
 #include <utility>
 
 #include "server/session/hub.h"
+#include "server/session/outbox.h"
 
 namespace furrow::server {
 
-void WebPeer::Open() {
-  post_to_hub_([self = shared_from_this()](Hub& hub, Time now) {
-    self->id_ = hub.AddPeer(Transport::kWeb, self->name_, self.get(), now);
-  });
-}
+// What both threads hold of a peer: Link is for the hub's.
+class WebPeer::Connection : public Link {
+ public:
+  explicit Connection(std::function<void()> wake) : wake_(std::move(wake)) {}
 
-void WebPeer::Close() {
-  post_to_hub_([self = shared_from_this()](Hub& hub, Time) { hub.RemovePeer(self->id_); });
-}
+  void SendReply(std::span<const std::uint8_t> message) override;
+  int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
+                std::size_t keep) override;
+  void DropFrames(std::uint64_t key) override;
+  bool Pop(std::vector<std::uint8_t>* out);
 
-bool WebPeer::Send(std::vector<std::uint8_t> message) {
-  if (waiting_.fetch_add(1, std::memory_order_relaxed) >= kMaxWaiting) return false;
-  post_to_hub_([self = shared_from_this(), message = std::move(message)](Hub& hub, Time now) {
-    self->waiting_.fetch_sub(1, std::memory_order_relaxed);
-    hub.OnMessage(self->id_, message, now);
-  });
-  return true;
-}
+  PeerId id = 0;  // the hub's thread
+  std::atomic<int> waiting = 0;
+  std::atomic<bool> overrun = false;
 
-bool WebPeer::Pop(std::vector<std::uint8_t>* out) {
-  const std::lock_guard lock(mutex_);
-  return outbox_.Pop(out);
-}
+ private:
+  static constexpr std::size_t kMaxReplies = 256;
+  static constexpr std::size_t kMaxFrames = 64;
 
-void WebPeer::SendReply(std::span<const std::uint8_t> message) {
+  const std::function<void()> wake_;
+  std::mutex mutex_;
+  Outbox outbox_{kMaxReplies, kMaxFrames};
+};
+
+void WebPeer::Connection::SendReply(std::span<const std::uint8_t> message) {
   bool is_first = false;
   {
     const std::lock_guard lock(mutex_);
     is_first = outbox_.empty();
-    if (!outbox_.PushReply(message)) overrun_ = true;
+    if (!outbox_.PushReply(message)) overrun = true;
   }
-  if (is_first || overrun_) wake_();
+  if (is_first || overrun) wake_();
 }
 
-int WebPeer::SendFrame(std::uint64_t key, std::span<const std::uint8_t> message, std::size_t keep) {
+int WebPeer::Connection::SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
+                                   std::size_t keep) {
   int dropped = 0;
   bool is_first = false;
   {
@@ -53,9 +58,39 @@ int WebPeer::SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
   return dropped;
 }
 
-void WebPeer::DropFrames(std::uint64_t key) {
+void WebPeer::Connection::DropFrames(std::uint64_t key) {
   const std::lock_guard lock(mutex_);
   outbox_.DropFrames(key);
 }
+
+bool WebPeer::Connection::Pop(std::vector<std::uint8_t>* out) {
+  const std::lock_guard lock(mutex_);
+  return outbox_.Pop(out);
+}
+
+WebPeer::WebPeer(PostToHub post_to_hub, std::string name, std::function<void()> wake)
+    : post_to_hub_(std::move(post_to_hub)),
+      connection_(std::make_shared<Connection>(std::move(wake))) {
+  post_to_hub_([connection = connection_, name = std::move(name)](Hub& hub, Time now) {
+    connection->id = hub.AddPeer(Transport::kWeb, name, connection.get(), now);
+  });
+}
+
+WebPeer::~WebPeer() {
+  post_to_hub_([connection = connection_](Hub& hub, Time) { hub.RemovePeer(connection->id); });
+}
+
+bool WebPeer::Send(std::vector<std::uint8_t> message) {
+  if (connection_->waiting.fetch_add(1, std::memory_order_relaxed) >= kMaxWaiting) return false;
+  post_to_hub_([connection = connection_, message = std::move(message)](Hub& hub, Time now) {
+    connection->waiting.fetch_sub(1, std::memory_order_relaxed);
+    hub.OnMessage(connection->id, message, now);
+  });
+  return true;
+}
+
+bool WebPeer::Pop(std::vector<std::uint8_t>* out) { return connection_->Pop(out); }
+
+bool WebPeer::overrun() const { return connection_->overrun; }
 
 }  // namespace furrow::server

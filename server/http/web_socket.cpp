@@ -2,13 +2,14 @@
 #include "server/http/web_socket.h"
 
 #include <cstdint>
+#include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket/stream.hpp>
@@ -41,21 +42,26 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     auto wake = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) self->wake_.cancel();
     };
-    peer_ = std::make_shared<WebPeer>(
-        context_->post_to_hub, name_,
-        [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
-    peer_->Open();
+    const Ending ending{this};  // by an exception, too
+    peer_.emplace(context_->post_to_hub, name_,
+                  [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
     net::co_spawn(
         socket_.get_executor(), [self = shared_from_this()] { return self->Write(); },
-        net::detached);
+        [self = shared_from_this()](const std::exception_ptr& failed) {
+          if (failed) self->Abort();
+        });
     co_await Read();
-    Abort();
-    peer_->Close();
-    wake_.cancel();
-    write_watch_.cancel();
   }
 
  private:
+  struct Ending {
+    WebSocketSession* session;
+    ~Ending() {
+      session->Abort();
+      session->peer_.reset();
+    }
+  };
+
   net::awaitable<bool> Accept(const WebRequest& request) {
     beast::error_code ignored;
     auto& tcp = beast::get_lowest_layer(socket_);
@@ -162,6 +168,8 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     closed_ = true;
     beast::error_code ignored;
     beast::get_lowest_layer(socket_).socket().close(ignored);
+    wake_.cancel();
+    write_watch_.cancel();
   }
 
   websocket::stream<beast::tcp_stream> socket_;
@@ -169,7 +177,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   net::steady_timer write_watch_;
   WebContext* context_;
   std::string name_;
-  std::shared_ptr<WebPeer> peer_;
+  std::optional<WebPeer> peer_;  // while it lasts
   bool closed_ = false;
   bool closing_ = false;  // the close frame is on its way
 };

@@ -32,6 +32,9 @@ class PictureSource {
   virtual ~PictureSource() = default;
   // From any thread; never blocks on drawing. The newest job of a subject and spec wins.
   virtual void Submit(RenderJob job) = 0;
+  // Takes back a still that waits to be drawn for this subscription. False: there is none, or it is
+  // being drawn.
+  virtual bool WithdrawStill(std::uint64_t subscription) = 0;
   // A camera preset of the character; the error lists them.
   [[nodiscard]] virtual Result<render::Camera> Preset(std::string_view name) const = 0;
 };

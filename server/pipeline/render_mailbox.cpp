@@ -7,12 +7,15 @@
 namespace furrow::server {
 namespace {
 
-void MergeTickets(const std::vector<PictureTicket>& from, std::vector<PictureTicket>* into) {
-  for (const PictureTicket& ticket : from) {
-    const auto is_same = [&](const PictureTicket& other) {
-      return other.subscription == ticket.subscription;
-    };
-    if (std::none_of(into->begin(), into->end(), is_same)) into->push_back(ticket);
+constexpr int kStillQuality = 92;  // from 90 on without subsampling
+
+void MergeTickets(const RenderJob& from, RenderJob* into) {
+  const bool rests = from.moved_at == into->moved_at;
+  for (PictureTicket ticket : from.tickets) {
+    ticket.still &= rests;
+    const auto same =
+        std::ranges::find(into->tickets, ticket.subscription, &PictureTicket::subscription);
+    if (same == into->tickets.end()) into->tickets.push_back(ticket);
   }
 }
 
@@ -27,6 +30,16 @@ bool PictureSpec::operator==(const PictureSpec& other) const {
          camera.follow_joint == other.camera.follow_joint;
 }
 
+Encoding EncodingOf(const PictureTicket& ticket) {
+  Encoding encoding = ticket.encoding;
+  if (ticket.still && encoding.format == render::ImageFormat::kJpeg) {
+    encoding.quality = kStillQuality;
+  }
+  return encoding;
+}
+
+bool RenderJob::IsStill() const { return std::ranges::any_of(tickets, &PictureTicket::still); }
+
 RenderMailbox::PutResult RenderMailbox::Put(RenderJob&& job) {
   const std::lock_guard lock(mutex_);
   if (closed_) return PutResult::kFull;
@@ -34,7 +47,7 @@ RenderMailbox::PutResult RenderMailbox::Put(RenderJob&& job) {
     return other.subject == job.subject && other.spec == job.spec;
   });
   if (waiting != jobs_.end()) {
-    MergeTickets(waiting->tickets, &job.tickets);
+    MergeTickets(*waiting, &job);
     *waiting = std::move(job);
     return PutResult::kReplaced;
   }
@@ -49,9 +62,25 @@ std::optional<RenderJob> RenderMailbox::Take(bool wait) {
   std::unique_lock lock(mutex_);
   if (wait) changed_.wait(lock, [this] { return closed_ || !jobs_.empty(); });
   if (closed_ || jobs_.empty()) return std::nullopt;
-  RenderJob job = std::move(jobs_.front());
-  jobs_.pop_front();
+  auto next = std::ranges::find_if_not(jobs_, &RenderJob::IsStill);
+  if (next == jobs_.end() || passed_over_ >= kMaxPassedOver) next = jobs_.begin();
+  passed_over_ = next == jobs_.begin() ? 0 : passed_over_ + 1;
+  RenderJob job = std::move(*next);
+  jobs_.erase(next);
   return job;
+}
+
+bool RenderMailbox::WithdrawStill(std::uint64_t subscription) {
+  const std::lock_guard lock(mutex_);
+  const auto is_it = [subscription](const PictureTicket& ticket) {
+    return ticket.still && ticket.subscription == subscription;
+  };
+  for (auto job = jobs_.begin(); job != jobs_.end(); ++job) {
+    if (std::erase_if(job->tickets, is_it) == 0) continue;
+    if (job->tickets.empty()) jobs_.erase(job);
+    return true;
+  }
+  return false;
 }
 
 void RenderMailbox::Close() {

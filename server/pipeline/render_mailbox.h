@@ -12,6 +12,7 @@
 
 #include "render/renderer.h"
 #include "server/pipeline/snapshot.h"
+#include "server/session/time.h"
 
 namespace furrow::server {
 
@@ -39,11 +40,14 @@ struct Encoding {
 // Who gets a picture, and packed how.
 struct PictureTicket {
   std::uint64_t subscription = 0;  // Subscription::uid
-  Encoding encoding;
+  Encoding encoding;               // of a subject that moves
   std::uint32_t view_request = 0;  // the request whose view it is
   std::uint8_t tier = 0;           // what `encoding` stands for: ViewerFlow::tier()
-  bool still = false;
+  bool still = false;              // the refined picture of a pose at rest
 };
+
+// How a ticket's picture is packed: a still as JPEG of quality 92, without subsampling.
+[[nodiscard]] Encoding EncodingOf(const PictureTicket& ticket);
 
 // A picture to be drawn of one subject, for everybody who waits for this very one. Without tickets:
 // a newer snapshot for a job that still waits, and nothing where there is none.
@@ -52,6 +56,10 @@ struct RenderJob {
   PictureSpec spec;
   std::shared_ptr<const Snapshot> snapshot;
   std::vector<PictureTicket> tickets;
+  Time moved_at{0};  // when the subject last moved, where somebody watches with flow control
+
+  // Drawn with more care: it is a still for one of those who wait, at least.
+  [[nodiscard]] bool IsStill() const;
 };
 
 // The way from the network threads to the render thread: at most one job a (subject, spec) waits,
@@ -60,14 +68,20 @@ class RenderMailbox {
  public:
   explicit RenderMailbox(std::size_t capacity) : capacity_(capacity) {}
 
+  static constexpr int kMaxPassedOver = 8;
+
   enum class PutResult { kQueued, kReplaced, kFull, kNotWanted };
   // kReplaced: an older snapshot of the same subject and spec was dropped; its tickets join the new
-  // job's, one a subscription. kNotWanted: a job without tickets found none to refresh.
-  // kFull: the job is as it was; else it is moved from.
+  // job's, one a subscription, and are stills no more where the subject moved. kNotWanted: a job
+  // without tickets found none to refresh. kFull: the job is as it was; else it is moved from.
   PutResult Put(RenderJob&& job);
 
-  // The longest waiting job. With `wait`, blocks until there is one or Close() was called.
+  // The longest waiting job, those that move before stills (unless kMaxPassedOver of them went
+  // before the oldest job already). With `wait`, blocks until there is one or Close() was called.
   [[nodiscard]] std::optional<RenderJob> Take(bool wait);
+
+  // Takes back a still that waits. False: none does, or it is being drawn.
+  bool WithdrawStill(std::uint64_t subscription);
 
   // Take() no longer blocks, and what waits is dropped.
   void Close();
@@ -78,6 +92,7 @@ class RenderMailbox {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<RenderJob> jobs_;
+  int passed_over_ = 0;  // jobs taken since the oldest was at the front
   bool closed_ = false;
 };
 

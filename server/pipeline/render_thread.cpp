@@ -103,6 +103,9 @@ void RenderThread::Draw(RenderJob job) {
   request.filtered_values = snapshot.filtered_values;
   if (job.spec.settings != nullptr) request.settings = *job.spec.settings;
   request.settings.view = job.spec.view;
+  if (int& samples = request.settings.anti_aliasing.samples; samples == 0 && job.IsStill()) {
+    samples = kStillSamples;
+  }
   request.camera = job.spec.camera;
   request.width = job.spec.width;
   request.height = job.spec.height;
@@ -139,9 +142,10 @@ void RenderThread::Fail(RenderJob job) {
 void RenderThread::Finish(const render::Image& image, const RenderJob& job) {
   std::vector<Encoding> done;
   for (const PictureTicket& first : job.tickets) {
-    if (std::find(done.begin(), done.end(), first.encoding) != done.end()) continue;
-    done.push_back(first.encoding);
-    auto bytes = render::EncodeImage(image, first.encoding.format, first.encoding.quality);
+    const Encoding encoding = EncodingOf(first);
+    if (std::ranges::find(done, encoding) != done.end()) continue;
+    done.push_back(encoding);
+    auto bytes = render::EncodeImage(image, encoding.format, encoding.quality);
     metrics_->Add(bytes.ok() ? Counter::kPicturesEncoded : Counter::kPicturesFailed);
     if (!bytes.ok()) {
       spdlog::warn("a picture could not be encoded: {}", bytes.status().ToString());
@@ -153,11 +157,11 @@ void RenderThread::Finish(const render::Image& image, const RenderJob& job) {
                             .received_us = job.snapshot->received_us,
                             .width = image.width,
                             .height = image.height,
-                            .encoding = first.encoding,
+                            .encoding = encoding,
                             .bytes = *std::move(bytes),
                             .tickets = {}};
     for (const PictureTicket& ticket : job.tickets) {
-      if (ticket.encoding == first.encoding) picture.tickets.push_back(ticket);
+      if (EncodingOf(ticket) == encoding) picture.tickets.push_back(ticket);
     }
     deliver_(std::move(picture));
   }

@@ -22,7 +22,9 @@
 namespace furrow::server {
 
 // The thread that owns the EGL context: takes jobs from the mailbox, draws with two read-backs in
-// flight, encodes once an encoding, hands pictures to `deliver`.
+// flight, encodes once an encoding, hands pictures to `deliver`. Stills are drawn with
+// kStillSamples a pixel where the settings leave it to the device: hair and lashes that speckle at
+// one sample, and may while they move, do not where the eye has time to look.
 //
 // It sleeps while nobody watches. A context that is lost is rebuilt for the next job; while that
 // fails, jobs are dropped and counted, and twice as many each time before it is tried again (to
@@ -30,6 +32,7 @@ namespace furrow::server {
 class RenderThread : public PictureSource {
  public:
   static constexpr int kMaxJobsSkipped = 255;
+  static constexpr int kStillSamples = 4;
 
   // Called on the render thread, for a job that finds no room on the one that submits; must not
   // block. Every ticket of every job comes back, with bytes or without.
@@ -48,6 +51,9 @@ class RenderThread : public PictureSource {
   RenderThread& operator=(const RenderThread&) = delete;
 
   void Submit(RenderJob job) override;
+  bool WithdrawStill(std::uint64_t subscription) override {
+    return mailbox_.WithdrawStill(subscription);
+  }
   [[nodiscard]] Result<render::Camera> Preset(std::string_view name) const override;
   [[nodiscard]] const std::string& description() const { return description_; }
 

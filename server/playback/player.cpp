@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::uint64_t kSession = 1;  // one publisher a peer: any number does
 constexpr std::uint16_t kStream = 1;
+constexpr std::int64_t kFirstCapture = 1;   // microseconds; 0 would be none on the wire
 constexpr Time kRepeat = FromSeconds(0.1);  // of the frame at which it stands
 
 }  // namespace
@@ -77,7 +78,7 @@ void Player::SendPose(int frame, Time now) {
   encoder_.Encode({.session = kSession,
                    .stream = kStream,
                    .sequence = sequence_++,
-                   .capture_time_us = std::llround(seconds * 1e6)},
+                   .capture_time_us = kFirstCapture + std::llround(seconds * 1e6)},
                   pose_, bytes_);
   hub_->OnMessage(peer_, bytes_, now);
 }

@@ -96,6 +96,7 @@ class Subscribers {
   // viewers.cpp
   Result<PicturesWish> MakeWish(const protocol::SubscribePictures& request);
   void Show(Subscription& subscription, Time now);
+  void ShowChanged(Subscription& subscription, PicturesWish& wish, Time now);
   // Since when pose and view are what they are.
   static Time ShownSince(const Subscription& subscription, const PicturesWish& wish);
   static bool Rests(const Subscription& subscription, const PicturesWish& wish, Time now);

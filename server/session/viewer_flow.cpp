@@ -30,9 +30,13 @@ std::uint32_t ViewerFlow::Send() {
 }
 
 void ViewerFlow::Fail() {
+  Withdraw();
+  failed_ = true;
+}
+
+void ViewerFlow::Withdraw() {
   asking_ = false;
   has_still_ = false;
-  failed_ = true;
 }
 
 bool ViewerFlow::Acknowledge(std::uint32_t number) {

@@ -26,6 +26,8 @@ class ViewerFlow {
   [[nodiscard]] std::uint32_t Send();
   // ... or will not come.
   void Fail();
+  // ... or is no longer asked for, and was not begun.
+  void Withdraw();
   // The viewer has shown this one and all before. False: it was never sent.
   bool Acknowledge(std::uint32_t number);
 

@@ -22,7 +22,6 @@ constexpr std::size_t kMaxPictureBytes = protocol::kMaxReplyBytes - 1024;
 
 constexpr Time kRestsAfter = FromSeconds(0.1);
 constexpr int kTierQualities[ViewerFlow::kNumTiers] = {85, 65, 45};
-constexpr int kStillQuality = 92;  // from 90 on without subsampling
 
 Result<render::Camera> CameraOf(const protocol::SubscribePictures& request,
                                 const PictureSource& pictures) {
@@ -82,10 +81,9 @@ void Subscribers::Update(Peer& peer, const protocol::Header& header,
   }
   changed->flow = std::move(wish->flow);
   changed->view_request = header.sequence;
-  changed->changed = now;
   *wish = *std::move(changed);
   subscription->gate = RateGate(request.max_rate_hz);
-  Show(*subscription, now);
+  ShowChanged(*subscription, *wish, now);
 }
 
 void Subscribers::SetOwnSettings(const render::Settings& settings, Time now) {
@@ -96,8 +94,7 @@ void Subscribers::SetOwnSettings(const render::Settings& settings, Time now) {
     // What is valid over one set of settings is over every other.
     if (Result<SharedSettings> own = settings_.Get(wish->overrides); own.ok()) {
       wish->spec.settings = *std::move(own);
-      wish->changed = now;
-      Show(*subscription, now);
+      ShowChanged(*subscription, *wish, now);
     }
   }
 }
@@ -120,6 +117,15 @@ void Subscribers::Show(Subscription& subscription, Time now) {
   if (subscription.owed && subscription.subject->pipeline->has_pose()) {
     PublishOwed(subscription, now);
   }
+}
+
+// The view is another from now on: a still of the former one is not waited for.
+void Subscribers::ShowChanged(Subscription& subscription, PicturesWish& wish, Time now) {
+  wish.changed = now;
+  if (wish.flow && wish.flow->asking() && pictures_->WithdrawStill(subscription.uid)) {
+    wish.flow->Withdraw();
+  }
+  Show(subscription, now);
 }
 
 Time Subscribers::ShownSince(const Subscription& subscription, const PicturesWish& wish) {
@@ -148,10 +154,10 @@ void Subscribers::AskForPicture(Subscription& subscription, PicturesWish& wish, 
   PictureTicket ticket{.subscription = subscription.uid,
                        .encoding = wish.encoding,
                        .view_request = wish.view_request,
-                       .tier = static_cast<std::uint8_t>(rests ? 0 : flow.tier()),
+                       .tier = static_cast<std::uint8_t>(flow.tier()),
                        .still = rests};
   if (wish.encoding.format == render::ImageFormat::kJpeg) {
-    ticket.encoding.quality = rests ? kStillQuality : kTierQualities[flow.tier()];
+    ticket.encoding.quality = kTierQualities[flow.tier()];
   }
   JobOf(subscription, wish.spec, age_us, jobs).tickets.push_back(ticket);
 }
@@ -174,7 +180,7 @@ RenderJob& Subscribers::JobOf(const Subscription& subscription, const PictureSpe
   std::shared_ptr<const Snapshot> snapshot =
       jobs->empty() ? subject.pipeline->TakeSnapshot(age_us, ToMicroseconds(subject.last_pose))
                     : jobs->front().snapshot;
-  jobs->push_back({subject.id, spec, std::move(snapshot), {}});
+  jobs->push_back({subject.id, spec, std::move(snapshot), {}, subject.rest.moved_at()});
   return jobs->back();
 }
 
@@ -227,7 +233,7 @@ void Subscribers::SendPicture(Subscription& subscription, const FinishedPicture&
                               const PictureTicket& ticket) {
   auto& wish = std::get<PicturesWish>(subscription.wish);
   image_.view_request = ticket.view_request;
-  image_.tier = ticket.tier;
+  image_.tier = ticket.still ? 0 : ticket.tier;
   image_.still = ticket.still;
   image_.number = wish.flow ? wish.flow->Send() : 0;
   image_.dropped = wish.flow ? wish.flow->dropped() : 0;

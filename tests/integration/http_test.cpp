@@ -77,13 +77,46 @@ TEST_F(Http, RoutesAnswerAndAConnectionServesMany) {
   EXPECT_EQ(head.status, 200);
   EXPECT_NE(head.head.find("nosniff"), std::string::npos);
   EXPECT_EQ(client.Ask("GET", "/api/nothing").status, 404);
-  EXPECT_EQ(client.Ask("DELETE", "/api/settings").status, 405);
+  EXPECT_EQ(client.Ask("HEAD", "/api/nothing").status, 404);
   EXPECT_EQ(client.Ask("GET", "/../../etc/passwd").status, 404);
   EXPECT_EQ(client.Ask("GET", "/%2e%2e/%2e%2e/etc/passwd").status, 404);
   const auto metrics = client.Ask("GET", "/metrics");
   EXPECT_NE(metrics.body.find("\nfurrow_poses_received_total 0"), std::string::npos);
   EXPECT_NE(metrics.body.find("# TYPE furrow_subjects gauge"), std::string::npos);
   EXPECT_EQ(Json::parse(client.Ask("GET", "/api/status").body)["render"], false);
+}
+
+TEST_F(Http, AWrongMethodIsToldTheRightOnes) {
+  WebClient client(port());
+  const auto allowed = [&](std::string_view method, std::string_view path) {
+    const auto answer = client.Ask(method, path);
+    EXPECT_EQ(answer.status, 405) << method << " " << path;
+    const std::size_t at = answer.head.find("Allow: ");
+    if (at == std::string::npos) return std::string();
+    return answer.head.substr(at + 7, answer.head.find('\r', at) - at - 7);
+  };
+  EXPECT_EQ(allowed("DELETE", "/api/settings"), "GET, HEAD, PATCH");
+  EXPECT_EQ(allowed("GET", "/api/capture"), "POST");
+  EXPECT_EQ(allowed("HEAD", "/api/capture/undo"), "POST");
+  EXPECT_EQ(allowed("PUT", "/healthz"), "GET, HEAD");
+  EXPECT_EQ(allowed("POST", "/mjpeg"), "GET, HEAD");
+  EXPECT_EQ(allowed("PATCH", "/snapshot.png?width=32"), "GET, HEAD");
+  EXPECT_EQ(allowed("BREW", "/api/subjects"), "GET, HEAD");
+  EXPECT_EQ(client.Ask("POST", "/nothing").status, 404);
+  EXPECT_EQ(client.Ask("GET", "/healthz").status, 200);  // on the same connection
+}
+
+TEST_F(Http, TheHeadOfPicturesIsThatOfTheirAnswerAndNothingIsDrawnForIt) {
+  WebClient client(port());
+  const auto stream = client.Ask("HEAD", "/mjpeg?width=64");
+  EXPECT_EQ(stream.status, 200);
+  EXPECT_NE(stream.head.find("Content-Type: multipart/x-mixed-replace"), std::string::npos);
+  const auto picture = client.Ask("HEAD", "/snapshot.png");
+  EXPECT_EQ(picture.status, 200);
+  EXPECT_NE(picture.head.find("Content-Type: image/png"), std::string::npos);
+  EXPECT_EQ(picture.head.find("Content-Length"), std::string::npos);
+  EXPECT_EQ(client.Ask("HEAD", "/snapshot.png?width=1").status, 400);
+  EXPECT_EQ(daemon->Count(Counter::kSubscriptionsRefused), 0u);
 }
 
 TEST_F(Http, ARequestIsAnsweredOnce) {
@@ -198,7 +231,12 @@ TEST_F(Http, WithoutPicturesThatIsWhatIsSaid) {
   EXPECT_EQ(Get("/snapshot.png").status, 503);
   EXPECT_EQ(Get("/mjpeg").status, 503);
   EXPECT_EQ(Get("/api/cameras").status, 503);
-  EXPECT_EQ(Get("/mjpeg?width=1").status, 400);
+  for (const auto& [query, field] : {std::pair("width=1", "width"), std::pair("view=x", "view"),
+                                     std::pair("camera=x", "camera"), std::pair("fog=1", "fog")}) {
+    const auto answer = Get(std::string("/mjpeg?") + query);
+    EXPECT_EQ(answer.status, 400) << query;
+    EXPECT_EQ(Json::parse(answer.body)["error"]["field"], field);
+  }
   EXPECT_EQ(Get("/api/playback").status, 409);
 }
 

@@ -76,5 +76,19 @@ TEST(PictureQuery, NumbersOutOfRangeNameTheirField) {
   EXPECT_FALSE(PicturesOf(*ParseUrl("/mjpeg?quality=0")).ok());
 }
 
+TEST(PictureQuery, WhatIsNotThereNamesItsField) {
+  for (const auto& [query, field] :
+       {std::pair("view=sideways", "view"), std::pair("camera=behind", "camera"),
+        std::pair("shading=oil", "shading"), std::pair("subsurface.width=99", "subsurface.width"),
+        std::pair("colour=red", "colour")}) {
+    const auto pictures = PicturesOf(*ParseUrl(std::string("/mjpeg?width=32&") + query));
+    ASSERT_FALSE(pictures.ok()) << query;
+    EXPECT_EQ(pictures.status().code(), StatusCode::kInvalidArgument) << query;
+    EXPECT_EQ(pictures.status().where(), field);
+    EXPECT_NE(pictures.status().what(), "") << query;
+  }
+  EXPECT_TRUE(PicturesOf(*ParseUrl("/mjpeg?camera=&view=normal&subject=anybody")).ok());
+}
+
 }  // namespace
 }  // namespace furrow::server

@@ -45,6 +45,71 @@ TEST(RenderMailbox, OtherSubjectsAndOtherSpecsWaitForThemselves) {
   EXPECT_EQ(mailbox.Take(false)->spec.width, 128);
 }
 
+RenderJob Still(std::uint64_t subject, std::uint32_t sequence, std::uint64_t subscription) {
+  RenderJob job = Job(subject, sequence, subscription);
+  job.tickets.front().still = true;
+  return job;
+}
+
+TEST(RenderMailbox, AStillIsPackedBetterThanItsTier) {
+  PictureTicket ticket{.encoding = {render::ImageFormat::kJpeg, 45}, .tier = 2};
+  EXPECT_EQ(EncodingOf(ticket).quality, 45);
+  ticket.still = true;
+  EXPECT_GE(EncodingOf(ticket).quality, 90);
+  ticket.encoding = {render::ImageFormat::kPng, 0};
+  EXPECT_EQ(EncodingOf(ticket), ticket.encoding);
+}
+
+TEST(RenderMailbox, AStillIsNoneOnceTheSubjectMoves) {
+  RenderMailbox mailbox(8);
+  mailbox.Put(Still(1, 1, 100));
+  RenderJob same = Job(1, 2, 101);
+  mailbox.Put(std::move(same));
+  auto job = mailbox.Take(false);
+  ASSERT_TRUE(job.has_value());
+  EXPECT_TRUE(job->IsStill());  // at rest, for somebody else beside it
+  mailbox.Put(Still(1, 3, 100));
+  RenderJob moved = Job(1, 4, 0);
+  moved.tickets.clear();  // a newer snapshot for whoever waits
+  moved.moved_at = FromSeconds(1);
+  EXPECT_EQ(mailbox.Put(std::move(moved)), RenderMailbox::PutResult::kReplaced);
+  job = mailbox.Take(false);
+  ASSERT_TRUE(job.has_value());
+  EXPECT_EQ(job->snapshot->sequence, 4u);
+  ASSERT_EQ(job->tickets.size(), 1u);
+  EXPECT_FALSE(job->IsStill());
+}
+
+TEST(RenderMailbox, WhatMovesGoesBeforeStillsButNotForEver) {
+  RenderMailbox mailbox(64);
+  mailbox.Put(Still(1, 0, 1));
+  std::uint32_t passed = 0;
+  for (std::uint32_t i = 1; i <= 20; ++i) {
+    mailbox.Put(Job(2, i, 2));
+    const auto job = mailbox.Take(false);
+    ASSERT_TRUE(job.has_value());
+    if (job->IsStill()) break;
+    EXPECT_EQ(job->snapshot->sequence, i);
+    ++passed;
+  }
+  EXPECT_EQ(passed, static_cast<std::uint32_t>(RenderMailbox::kMaxPassedOver));
+}
+
+TEST(RenderMailbox, AStillThatWaitsIsTakenBack) {
+  RenderMailbox mailbox(8);
+  mailbox.Put(Still(1, 1, 100));
+  mailbox.Put(Still(1, 1, 101));
+  mailbox.Put(Job(2, 1, 102));
+  EXPECT_TRUE(mailbox.WithdrawStill(100));
+  EXPECT_FALSE(mailbox.WithdrawStill(100));
+  EXPECT_FALSE(mailbox.WithdrawStill(102));  // what moves stays
+  EXPECT_EQ(mailbox.Take(false)->subject, 2u);
+  EXPECT_EQ(mailbox.Take(false)->tickets.size(), 1u);
+  mailbox.Put(Still(1, 1, 100));
+  EXPECT_TRUE(mailbox.WithdrawStill(100));
+  EXPECT_FALSE(mailbox.Take(false).has_value());  // and nothing of it
+}
+
 TEST(RenderMailbox, IsBounded) {
   RenderMailbox mailbox(2);
   EXPECT_EQ(mailbox.Put(Job(1, 1, 1)), RenderMailbox::PutResult::kQueued);

@@ -23,6 +23,7 @@ struct Script {
   std::deque<Status> submit;
   std::deque<Status> poll;
   std::latch* hold_first_submit = nullptr;
+  std::deque<int> samples;  // of the requests that were drawn
   int num_created = 0;
 
   static Status Next(std::deque<Status>* of) {
@@ -36,10 +37,11 @@ struct Script {
 class ScriptedRenderer : public render::Renderer {
  public:
   explicit ScriptedRenderer(Script* script) : script_(script) {}
-  Status Submit(const render::FrameRequest&) override {
+  Status Submit(const render::FrameRequest& request) override {
     if (auto* latch = std::exchange(script_->hold_first_submit, nullptr)) latch->wait();
     Status status = Script::Next(&script_->submit);
     if (status.ok()) ++in_flight_;
+    if (status.ok()) script_->samples.push_back(request.settings.anti_aliasing.samples);
     return status;
   }
   Result<render::Image> Poll(bool) override {
@@ -105,14 +107,17 @@ class RenderThreadTest : public testing::Test {
     return std::unique_ptr<render::Renderer>(std::make_unique<ScriptedRenderer>(&script));
   }
   // A job of a subject of its own, so that none replaces another; its pose has that number too.
-  void Submit(std::uint32_t number) {
+  void Submit(std::uint32_t number) { Submit(number, {.subscription = number}, {}); }
+  void Submit(std::uint32_t number, const PictureTicket& ticket, const render::Settings& settings) {
     auto snapshot = std::make_shared<Snapshot>();
     snapshot->sequence = number;
     snapshot->retarget =
         std::make_shared<const wrinkle::Retarget>(wrinkle::Retarget::Create(skeleton, skeleton));
     snapshot->blend_shape_pose = std::make_shared<const wrinkle::BlendShapePose>();
     snapshot->joints.assign(skeleton.rest_pose().begin(), skeleton.rest_pose().end());
-    thread->Submit({number, {.width = 16, .height = 16}, std::move(snapshot), {{number, {}}}});
+    PictureSpec spec{
+        .width = 16, .height = 16, .settings = std::make_shared<const render::Settings>(settings)};
+    thread->Submit({number, std::move(spec), std::move(snapshot), {ticket}});
   }
   std::uint64_t Count(Counter counter) const { return metrics.Get(counter); }
 
@@ -179,6 +184,20 @@ TEST_F(RenderThreadTest, AJobThatCannotBeDrawnCostsOnlyItself) {
   EXPECT_EQ(script.num_created, 1);
   EXPECT_EQ(Count(Counter::kRendererRestarts), 0u);
   EXPECT_EQ(Count(Counter::kPicturesFailed), 1u);
+}
+
+TEST_F(RenderThreadTest, StillsHaveSamplesWhereTheSettingsLeaveThemToTheDevice) {
+  Start();
+  render::Settings fixed;
+  fixed.anti_aliasing.samples = 2;
+  Submit(1, {.subscription = 1}, {});
+  EXPECT_EQ(pictures.Take().encoding.quality, 85);
+  Submit(2, {.subscription = 2, .still = true}, {});
+  EXPECT_GE(pictures.Take().encoding.quality, 90);
+  Submit(3, {.subscription = 3, .still = true}, fixed);
+  (void)pictures.Take();
+  thread.reset();
+  EXPECT_EQ(script.samples, (std::deque<int>{0, RenderThread::kStillSamples, 2}));
 }
 
 TEST_F(RenderThreadTest, WithoutARendererItDoesNotStart) {

@@ -48,10 +48,10 @@ class PlayerTest : public HubTest {
 
 TEST_F(PlayerTest, EveryFrameIsSentAtItsTime) {
   EXPECT_EQ(subject().pipeline->sequence(), 0u);
-  EXPECT_EQ(subject().pipeline->capture_time_us(), 0);
+  EXPECT_EQ(subject().pipeline->capture_time_us(), 1);  // 0 would be none
   PlayFor(0.5);
   EXPECT_NEAR(brow(), 0.5f, 1e-5f);
-  EXPECT_EQ(subject().pipeline->capture_time_us(), 500'000);
+  EXPECT_EQ(subject().pipeline->capture_time_us(), 500'001);
   EXPECT_EQ(player->state(now).frame, 5);
   EXPECT_NEAR(player->state(now).position, 0.5, 1e-9);
   EXPECT_NEAR(player->state(now).rate_hz, 10.0, 1e-9);
@@ -78,7 +78,7 @@ TEST_F(PlayerTest, WhilePausedTheFrameStandsAndTheSubjectIsNotLost) {
   }
   EXPECT_FALSE(subject().lost);
   EXPECT_NEAR(brow(), 0.3f, 1e-5f);
-  EXPECT_EQ(subject().pipeline->capture_time_us(), 300'000);
+  EXPECT_EQ(subject().pipeline->capture_time_us(), 300'001);
 }
 
 TEST_F(PlayerTest, ItMovesAtOnceAndRunsAtAnotherSpeed) {

@@ -70,7 +70,13 @@ class FakePictures : public PictureSource {
     if (name == "face" || name == "body") return render::Camera();
     return Status(StatusCode::kNotFound, "no camera '" + std::string(name) + "'");
   }
+  bool WithdrawStill(std::uint64_t subscription) override {
+    withdrawn.push_back(subscription);
+    return withdraws;
+  }
   std::vector<RenderJob> jobs;
+  std::vector<std::uint64_t> withdrawn;
+  bool withdraws = false;  // what it answers
 };
 
 // A hub on a rig of two blend shapes and an unsigned hinge, filters off unless a test turns them

@@ -113,7 +113,7 @@ TEST_F(HubViewers, APoseAtRestIsSentOnceMoreRefinedAndThenNoMore) {
     for (const RenderJob& job : pictures.jobs) {
       for (const PictureTicket& ticket : job.tickets) {
         if (!ticket.still) continue;
-        EXPECT_GE(ticket.encoding.quality, 90);
+        EXPECT_GE(EncodingOf(ticket).quality, 90);
         still_after = ToSeconds(now - rest);
       }
     }
@@ -158,6 +158,32 @@ TEST_F(HubViewers, AnUpdateChangesTheViewAtOnceAndAWrongOneNothing) {
   EXPECT_NE(error->message.message.find("subsurface.width"), std::string::npos);
   Send(viewer, update, 99, 23);
   ExpectError(viewer, ErrorCode::kBadPicture);
+}
+
+TEST_F(HubViewers, AnotherViewDoesNotWaitForTheStillOfTheFormerOne) {
+  Publish(sender, "ann");
+  const std::uint16_t stream = View(viewer);
+  Pose1(0.5f);
+  DrawAll();
+  Send(viewer, protocol::FrameAck{1}, stream);
+  Advance(0.2);
+  hub->Tick(now);
+  ASSERT_EQ(Tickets(), 1u);
+  ASSERT_TRUE(pictures.jobs.back().IsStill());
+  pictures.withdraws = true;  // it still waits
+  protocol::UpdatePictures update;
+  update.pictures.width = 320;
+  Send(viewer, update, stream, 21);
+  EXPECT_EQ(pictures.withdrawn.size(), 1u);
+  ASSERT_EQ(pictures.jobs.back().spec.width, 320);
+  EXPECT_FALSE(pictures.jobs.back().IsStill());
+  EXPECT_EQ(pictures.jobs.back().tickets.size(), 1u);
+  pictures.jobs.erase(pictures.jobs.begin());
+  DrawAll();
+  Advance(0.2);
+  hub->Tick(now);
+  ASSERT_EQ(Tickets(), 1u);
+  EXPECT_TRUE(pictures.jobs.back().IsStill());  // of the new view
 }
 
 TEST_F(HubViewers, TheDaemonsOwnSettingsReachEveryViewThatDoesNotSayOtherwise) {

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Connections of the web side that end by an exception of the daemon's own: the hub hears of the
+// end.
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "server/http/http_server.h"
+#include "server/session/hub.h"
+#include "web_client.h"
+
+namespace furrow::testing_net {
+namespace {
+
+using server::Hub;
+using server::Time;
+
+// The hub's loop, turned by the test: tasks wait here, and the door to it may fail.
+class Door {
+ public:
+  using Task = std::function<void(Hub&, Time)>;
+
+  void Post(Task task) {
+    const std::lock_guard lock(mutex_);
+    if (fails_after_ >= 0 && fails_after_-- == 0) throw std::bad_alloc();
+    tasks_.push_back(std::move(task));
+    changed_.notify_one();
+  }
+  // The post after so many fails.
+  void FailAfter(int count) {
+    const std::lock_guard lock(mutex_);
+    fails_after_ = count;
+  }
+  void RunNext(Hub& hub) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return !tasks_.empty(); });
+    const Task task = std::move(tasks_.front());
+    tasks_.pop_front();
+    lock.unlock();
+    task(hub, server::FromSeconds(1));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Task> tasks_;
+  int fails_after_ = -1;
+};
+
+class WebFailure : public testing::Test {
+ protected:
+  void SetUp() override {
+    Hub::Parts parts;
+    parts.rig = std::make_shared<const wrinkle::Rig>();
+    parts.metrics = &metrics;
+    parts.make_token = [] { return 1; };
+    hub = std::make_unique<Hub>(std::move(parts));
+    auto started = server::HttpServer::Start(
+        {.config = {.port = 0},
+         .bind = "127.0.0.1",
+         .post_to_hub = [this](Door::Task task) { door.Post(std::move(task)); },
+         .answer = {},
+         .metrics = &metrics});
+    ASSERT_TRUE(started.ok()) << started.status().ToString();
+    http = *std::move(started);
+  }
+
+  server::Metrics metrics;
+  Door door;
+  std::unique_ptr<Hub> hub;  // outlives its links
+  std::unique_ptr<server::HttpServer> http;
+};
+
+TEST_F(WebFailure, AWebSocketThatEndsByAnExceptionLeavesNothingInTheHub) {
+  WebClient client(http->port());
+  ASSERT_EQ(client.Upgrade().status, 101);
+  door.RunNext(*hub);  // the peer
+  client.Send(protocol::SubscribeWeights{.subject = "ann", .wait = true}, 0, 1);
+  door.RunNext(*hub);
+  ASSERT_EQ(hub->num_subscriptions(), 1u);
+  door.FailAfter(0);
+  client.Send(protocol::Ping{1});
+  while (client.Next()) {  // to the end of the connection
+  }
+  door.RunNext(*hub);
+  EXPECT_EQ(hub->num_subscriptions(), 0u);
+  hub->Drain();  // tells every link
+}
+
+TEST_F(WebFailure, SoDoesAStreamOfPictures) {
+  WebClient client(http->port());
+  door.FailAfter(1);  // the peer comes, what it asks for does not
+  EXPECT_EQ(client.Ask("GET", "/mjpeg").status, 0);
+  door.RunNext(*hub);
+  door.RunNext(*hub);  // it goes
+  hub->Drain();
+  EXPECT_EQ(WebClient(http->port()).Ask("HEAD", "/mjpeg").status, 200);  // others are served
+}
+
+}  // namespace
+}  // namespace furrow::testing_net
