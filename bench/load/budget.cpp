@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "client/cli/load_input.h"
+#include "client/load/verdict.h"
 #include "protocol/codec.h"
 #include "report/table.h"
 
@@ -34,10 +35,6 @@ WireBytes Measure(const Setting& setting) {
           static_cast<double>(weights.size()) + kUdpBytes};
 }
 
-bool Held(const load::RunResult& run) {
-  return run.tally.lost() == 0 && run.tally.wrong == 0 && run.p(99.0) < 1e6 / kRate;
-}
-
 std::string Gigabits(double bytes_per_second) {
   return Fixed(bytes_per_second * 8e-9, 2) + " Gbit/s";
 }
@@ -48,7 +45,7 @@ std::string BudgetMarkdown(const Curve& subjects, const Setting& setting) {
   const Curve::Point* few = nullptr;
   const Curve::Point* many = nullptr;
   for (const Curve::Point& point : subjects.points) {
-    if (!Held(point.run) || !point.run.usage || !point.run.cpu_seconds) continue;
+    if (!load::Held(point.run, 1e6 / kRate) || !point.run.usage || !point.run.cpu_seconds) continue;
     if (few == nullptr) few = &point;
     many = &point;
   }

@@ -21,6 +21,7 @@
 #include "client/load/echo.h"
 #include "client/load/report.h"
 #include "client/load/run.h"
+#include "client/load/verdict.h"
 
 namespace furrow::cli {
 namespace {
@@ -144,12 +145,6 @@ int Print(const std::string& text) {
   return status.ok() ? kDone : StandardOutputFailed();
 }
 
-bool IsClean(const load::RunResult& result) {
-  const load::Tally& tally = result.tally;
-  return tally.lost() == 0 && tally.late == 0 && tally.wrong == 0 && tally.never_sent == 0 &&
-         result.malformed == 0 && result.checked_names;
-}
-
 Result<load::RunResult> RunOnce(const LoadCommand& command, const load::Performance& performance,
                                 const Target& target) {
   Progress progress("solving", 1000);
@@ -221,7 +216,8 @@ int RunLoad(LoadCommand command) {
   json["run"] = load::ToJson(*result);
   if (const int code = Print(text); code != kDone) return code;
   if (const int code = WriteOutputs(command, *result, steps, json); code != kDone) return code;
-  return command.strict && !IsClean(*result) ? kFailed : kDone;
+  if (result->ended_early) return kNoConnection;
+  return command.strict && !load::Clean(*result) ? kFailed : kDone;
 }
 
 void AddWhat(CLI::App& command, LoadCommand& options) {
@@ -308,8 +304,9 @@ void AddHow(CLI::App& command, LoadCommand& options) {
                   "Poses a second beyond which --find-max does not search")
       ->check(CLI::Range(1.0, 1e7))
       ->capture_default_str();
-  command.add_flag("--strict", options.strict,
-                   "Exit with 1 where anything was lost, late, wrong or not checked");
+  command.add_flag(
+      "--strict", options.strict,
+      "Exit with 1 where anything was lost, late, wrong, not checked, not sent, or cut short");
   command.add_option("--json", options.json, "Write all figures to this file");
   command.add_option("--hgrm", options.hgrm,
                      "Write the latencies (ms) in HdrHistogram's text format");

@@ -96,8 +96,8 @@ void ChaosLink::Send(std::vector<std::uint8_t> packet, std::int64_t now_us, std:
   if (to_swap_ != waiting_.end() && SwapContents(&to_swap_->second, &packet)) {
     counts_.swapped += 2;
     Release(&to_swap_, due_us);
-  } else if (to_swap_ == waiting_.end() && IsTamperable(packet) &&
-             Hits(Dice::kSwap, options_.swap)) {
+  } else if (to_swap_ == waiting_.end() && Hits(Dice::kSwap, options_.swap) &&
+             IsTamperable(packet)) {
     to_swap_ = waiting_.emplace(now_us + kLongestHoldUs, std::move(packet));
     return;
   }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/load/chaos_tamper.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <utility>
 
+#include "protocol/bundle.h"
 #include "protocol/codec.h"
 
 namespace furrow::load {
@@ -10,9 +13,28 @@ namespace {
 
 using protocol::DecodeStatus;
 using protocol::MessageKind;
+using Bytes = std::vector<std::uint8_t>;
 
-bool OpenTamperable(std::span<const std::uint8_t> datagram, protocol::MessageView* view) {
-  return protocol::OpenMessage(datagram, *view) == DecodeStatus::kOk &&
+// Its message, or those of a bundle.
+std::vector<Bytes> TakeApart(std::span<const std::uint8_t> datagram) {
+  Bytes copy(datagram.begin(), datagram.end());
+  protocol::Unbundler unbundler;
+  (void)unbundler.Open(copy);
+  std::vector<Bytes> messages;
+  std::span<const std::uint8_t> message;
+  while (unbundler.Next(message)) messages.emplace_back(message.begin(), message.end());
+  return messages;
+}
+
+bool PutTogether(std::span<const Bytes> messages, Bytes* datagram) {
+  Bytes bytes;
+  if (!protocol::WriteBundle(messages, bytes)) return false;
+  *datagram = std::move(bytes);
+  return true;
+}
+
+bool OpenTamperable(std::span<const std::uint8_t> message, protocol::MessageView* view) {
+  return protocol::OpenMessage(message, *view) == DecodeStatus::kOk &&
          (view->kind == MessageKind::kPose || view->kind == MessageKind::kWeights);
 }
 
@@ -43,40 +65,63 @@ bool FalsifyPose(const protocol::MessageView& view, double share, std::vector<st
   return true;
 }
 
-}  // namespace
-
-bool IsTamperable(std::span<const std::uint8_t> datagram) {
+bool FalsifyMessage(Bytes* message, double share) {
   protocol::MessageView view;
-  return OpenTamperable(datagram, &view);
-}
-
-bool Falsify(std::vector<std::uint8_t>* datagram, double share) {
-  protocol::MessageView view;
-  if (!OpenTamperable(*datagram, &view)) return false;
-  std::vector<std::uint8_t> changed;
+  if (!OpenTamperable(*message, &view)) return false;
+  Bytes changed;
   const bool done = view.kind == MessageKind::kPose ? FalsifyPose(view, share, &changed)
                                                     : FalsifyWeights(view, share, &changed);
-  if (done) *datagram = std::move(changed);
+  if (done) *message = std::move(changed);
   return done;
 }
 
-bool SwapContents(std::vector<std::uint8_t>* a, std::vector<std::uint8_t>* b) {
+bool SwapMessages(Bytes* a, Bytes* b) {
   protocol::MessageView first;
   protocol::MessageView second;
   if (!OpenTamperable(*a, &first) || !OpenTamperable(*b, &second) || first.kind != second.kind)
     return false;
-  const auto join = [](const protocol::Header& header, std::span<const std::uint8_t> payload) {
-    std::vector<std::uint8_t> message(protocol::kEnvelopeBytes);
-    message.insert(message.end(), payload.begin(), payload.end());
-    protocol::WriteEnvelope(
-        {.header = header, .payload_bytes = static_cast<std::uint32_t>(payload.size())},
-        std::span<std::uint8_t>(message).first<protocol::kEnvelopeBytes>());
-    return message;
-  };
-  std::vector<std::uint8_t> changed = join(first.header, second.payload);
-  *b = join(second.header, first.payload);
+  Bytes changed;
+  protocol::WriteMessage(first.header, second.payload, changed);
+  Bytes other;
+  protocol::WriteMessage(second.header, first.payload, other);
   *a = std::move(changed);
+  *b = std::move(other);
   return true;
+}
+
+}  // namespace
+
+bool IsTamperable(std::span<const std::uint8_t> datagram) {
+  return std::ranges::any_of(TakeApart(datagram), [](const Bytes& message) {
+    protocol::MessageView view;
+    return OpenTamperable(message, &view);
+  });
+}
+
+bool Falsify(Bytes* datagram, double share) {
+  std::vector<Bytes> messages = TakeApart(*datagram);
+  const std::size_t first = Choose(messages.size(), share);
+  const double rest = share * static_cast<double>(messages.size()) - static_cast<double>(first);
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    if (FalsifyMessage(&messages[(first + i) % messages.size()], rest))
+      return PutTogether(messages, datagram);
+  }
+  return false;
+}
+
+bool SwapContents(Bytes* a, Bytes* b) {
+  std::vector<Bytes> of_a = TakeApart(*a);
+  std::vector<Bytes> of_b = TakeApart(*b);
+  for (Bytes& first : of_a) {
+    for (Bytes& second : of_b) {
+      if (!SwapMessages(&first, &second)) continue;
+      Bytes changed;
+      if (!PutTogether(of_a, &changed) || !PutTogether(of_b, b)) return false;
+      *a = std::move(changed);
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace furrow::load

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "client/load/verdict.h"
 #include "report/statistics.h"
 #include "report/table.h"
 
@@ -25,12 +26,6 @@ struct Series {
   Histogram pooled_ns;
   std::vector<double> highest;
 };
-
-bool Held(const RunResult& result, double p99_limit_us) {
-  const Tally& tally = result.tally;
-  return tally.sent == tally.offered && tally.lost() == 0 && tally.wrong == 0 &&
-         tally.never_sent == 0 && result.p(99.0) < p99_limit_us;
-}
 
 std::vector<double> Ratios(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> ratios;

@@ -28,7 +28,16 @@ std::string Remarks(const RunResult& result, const RunOptions& options) {
   std::string text;
   const auto remark = [&text](const std::string& sentence) { text += sentence + "\n"; };
   if (result.interrupted) remark("Interrupted: this is the run so far.");
-  if (!result.complaint.empty()) remark("Said meanwhile: " + result.complaint + ".");
+  if (result.ended_early) {
+    remark("Ended before its time: " + result.complaint + ".");
+  } else if (!result.complaint.empty()) {
+    remark("Said meanwhile: " + result.complaint + ".");
+  }
+  if (result.tally.sent < result.tally.offered) {
+    remark(Count(result.tally.offered - result.tally.sent) +
+           " poses were due but did not leave: the system took no more datagrams. They are not "
+           "among the lost.");
+  }
   if (!result.checked_names && options.check_weights)
     remark("Weights were not checked: the daemon's are named otherwise than those of --rig.");
   if (result.overrun > 0) {
@@ -170,6 +179,7 @@ nlohmann::json ToJson(const RunResult& result) {
   json["poses_per_second"] = result.planned_rate;
   json["largest_difference"] = result.tally.largest_difference;
   json["interrupted"] = result.interrupted;
+  json["ended_early"] = result.ended_early;
   json["complaint"] = result.complaint;
   json["latency_us"] = {{"p50", result.p(50.0)},
                         {"p90", result.p(90.0)},

@@ -72,7 +72,7 @@ class Runner {
   }
   void End(std::string why) {
     result_.complaint = std::move(why);
-    ended_ = true;
+    result_.ended_early = true;
   }
   RunResult Report();
 
@@ -93,8 +93,7 @@ class Runner {
   std::int64_t last_arrival_ns_ = 0;
   std::int64_t next_second_ns_ = 0;
   std::size_t next_slot_ = 0;
-  std::uint64_t refused_ = 0;
-  bool ended_ = false;
+  std::int64_t refused_ns_ = 0;  // when the last datagram was; 0: none
 };
 
 Status Runner::Prepare() {
@@ -162,7 +161,7 @@ RunResult Runner::Go() {
 }
 
 bool Runner::Over(std::int64_t now_ns) {
-  if (ended_) return true;
+  if (result_.ended_early) return true;
   if (!hooks_.go_on()) {
     result_.interrupted = true;
     return true;
@@ -183,7 +182,7 @@ void Runner::SendDue(std::int64_t now_ns) {
     now_ns = SteadyNanoseconds();
     result_.send_delay_ns.Record(now_ns - DueNs(next_slot_));
     checker_->OnSent(slot.subject, slot.pose, status == IoStatus::kOk);
-    refused_ += status == IoStatus::kNoConnection ? 1 : 0;
+    if (status == IoStatus::kNoConnection) refused_ns_ = now_ns;
     if (status == IoStatus::kClosed) return End("the daemon closed the connection");
     ++next_slot_;
   }
@@ -200,7 +199,7 @@ void Runner::ReadReady(std::int64_t timeout_ns) {
     } else {
       status = senders_->Read(token);
     }
-    refused_ += status == IoStatus::kNoConnection ? 1 : 0;
+    if (status == IoStatus::kNoConnection) refused_ns_ = SteadyNanoseconds();
     if (status == IoStatus::kClosed) End("the daemon closed the connection");
   }
 }
@@ -250,8 +249,12 @@ RunResult Runner::Report() {
     if (result_.complaint.empty()) result_.complaint = watchers_->complaint();
   }
   if (burdens_) result_.churn_returns = burdens_->returns();
-  if (refused_ > 0 && result_.complaint.empty())
+  // Datagrams know no end: who refuses them and was not heard again is gone.
+  if (refused_ns_ > last_arrival_ns_) {
+    End("nobody listens at the port any more");
+  } else if (refused_ns_ > 0 && result_.complaint.empty()) {
     result_.complaint = "nobody listened at the port for some of the time";
+  }
   if (!target_.echo) senders_->Close();
   return std::move(result_);
 }

@@ -61,7 +61,8 @@ struct RunResult {
   std::uint64_t churn_returns = 0;
   bool checked_names = false;  // the daemon's weights are named as the solver's
   std::string complaint;       // what the daemon said, or what ended the run before its time
-  bool interrupted = false;
+  bool interrupted = false;    // by the caller
+  bool ended_early = false;    // the daemon went away before the end; `complaint` says how
 
   [[nodiscard]] double p(double percentile) const {
     return static_cast<double>(latency_ns.Percentile(percentile)) * 1e-3;  // microseconds

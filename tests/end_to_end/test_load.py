@@ -173,6 +173,31 @@ class LoadTest(unittest.TestCase):
         self.assertIn("so far", out.decode())
         self.assertRegex(out.decode(), r"\| [1-9]\d* +\| [1-9]\d* ")
 
+    def test_strict_is_not_content_with_what_is_lost_or_late(self):
+        short = [PERFORMANCE, "--subjects", "2", "--rate", "50", "--duration", "1", "--quantise", "--strict"]
+        with Daemon("--no-render") as daemon:
+            other = ["--other-port", daemon.ports["tcp"]]
+            furrow("load", daemon.udp, *short, *other, "--late", "60000", "--drain", "0.5", "--loss", "0.2", check=1)
+            furrow("load", daemon.udp, *short, *other, "--late", "0.001", "--drain", "5", check=1)
+            furrow("load", daemon.udp, *short, *other, *PATIENT, check=0)
+
+    def test_a_daemon_that_goes_away_is_no_success(self):
+        for path in ("--udp", "--tcp"):
+            figures = self.folder / "figures.json"
+            with Daemon("--no-render") as daemon:
+                host, other = (daemon.udp, "tcp") if path == "--udp" else (daemon.tcp, "udp")
+                process = spawn("load", host, PERFORMANCE, path, "--other-port", str(daemon.ports[other]), "--duration",
+                                "30" if path == "--tcp" else "3", "--drain", "0.2", "--json", figures)
+                self.addCleanup(process.kill)
+                furrow("watch", daemon.tcp, "--subject", "load-000000", "--wait", "--frames", "2", check=0)
+            code, out, err = finish(process)
+            self.assertEqual(code, 4, (path, err))
+            self.assertIn("Ended before its time", out.decode(), path)
+            run = json.loads(figures.read_text())["run"]
+            self.assertTrue(run["ended_early"])
+            self.assertFalse(run["interrupted"])
+            self.assertGreater(run["received"], 0, path)
+
     def test_the_documents_commands(self):
         (self.folder / "performance.bvh").symlink_to(PERFORMANCE)
         quick = ["--duration", "0.3", "--late", "60000"]
