@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a UDP socket hands on: reassembly, then any message decoded as the kind it claims to be.
-// What is accepted is encoded and decoded again: it must be accepted again.
+// What a UDP socket hands on: reassembly, bundles taken apart, then any message decoded as the kind
+// it claims to be. What is accepted is encoded and decoded again: it must be accepted again. A
+// bundle that is accepted is what its messages make again, and one that is refused stays whole.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <span>
 #include <vector>
 
+#include "protocol/bundle.h"
 #include "protocol/codec.h"
 #include "protocol/fragment.h"
 
@@ -59,11 +61,31 @@ void DecodeAny(std::span<const std::uint8_t> bytes) {
   }
 }
 
+// `datagram`: in a block of its own size, so that a sanitizer sees what is read beyond it.
+void TakeApart(std::vector<std::uint8_t> datagram) {
+  namespace p = furrow::protocol;
+  const std::vector<std::uint8_t> before = datagram;
+  p::Unbundler unbundler;
+  const p::BundleStatus status = unbundler.Open(datagram);
+  std::vector<std::vector<std::uint8_t>> messages;
+  std::span<const std::uint8_t> message;
+  while (unbundler.Next(message)) {
+    messages.emplace_back(message.begin(), message.end());
+    DecodeAny(message);
+  }
+  if (status != p::BundleStatus::kOk || messages.size() < 2) {
+    if (before != (messages.empty() ? std::vector<std::uint8_t>() : messages.front())) std::abort();
+    return;
+  }
+  std::vector<std::uint8_t> again;
+  if (!p::WriteBundle(messages, again) || again != before) std::abort();
+}
+
 }  // namespace
 
 // The input is cut into datagrams by a length in two bytes before each.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  DecodeAny({data, size});
+  TakeApart({data, data + size});
   furrow::protocol::Reassembler reassembler;
   std::span<const std::uint8_t> rest(data, size);
   std::int64_t now_us = 0;
@@ -73,6 +95,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using furrow::protocol::FragmentStatus;
     const FragmentStatus status = reassembler.Push(1, rest.subspan(2, length), now_us, message);
     if (status == FragmentStatus::kComplete) DecodeAny(message);
+    if (status == FragmentStatus::kWhole) TakeApart({message.begin(), message.end()});
     rest = rest.subspan(2 + length);
     (void)reassembler.Expire(now_us += 100'000);
   }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "client/load/chaos_tamper.h"
+#include "protocol/bundle.h"
 #include "protocol/codec.h"
 
 namespace furrow::load {
@@ -190,6 +191,65 @@ TEST(ChaosTamper, NothingElseIsTouched) {
     Packet cut(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(size));
     EXPECT_FALSE(Falsify(&cut, 0.5));
   }
+}
+
+// The values of each message of a bundle.
+std::vector<std::vector<float>> ValuesOfBundle(Packet bundle) {
+  protocol::Unbundler unbundler;
+  EXPECT_EQ(unbundler.Open(bundle), protocol::BundleStatus::kOk);
+  std::vector<std::vector<float>> values;
+  std::span<const std::uint8_t> message;
+  std::uint32_t sequence = 0;
+  while (unbundler.Next(message))
+    values.push_back(ValuesOf(Packet(message.begin(), message.end()), &sequence));
+  return values;
+}
+
+TEST(ChaosTamper, OfABundleOneMessageIsFalsified) {
+  const std::vector<Packet> messages = {Weights(1, {0.1f, 0.2f}), Weights(2, {0.3f, 0.4f})};
+  for (const double share : {0.0, 0.3, 0.6, 0.99}) {
+    Packet bundle;
+    ASSERT_TRUE(protocol::WriteBundle(messages, bundle));
+    ASSERT_TRUE(Falsify(&bundle, share));
+    std::vector<std::vector<float>> expected = {{0.1f, 0.2f}, {0.3f, 0.4f}};
+    const auto place = static_cast<std::size_t>(share * 4.0);
+    expected[place / 2][place % 2] += 0.5f;
+    EXPECT_EQ(ValuesOfBundle(bundle), expected);
+  }
+}
+
+TEST(ChaosTamper, BundlesSwapOneMessageWhereBothStillFit) {
+  Packet ping;
+  protocol::Encoder().Encode({.session = 5}, protocol::Ping{}, ping);
+  Packet a;
+  Packet b = Weights(3, {0.9f});
+  ASSERT_TRUE(protocol::WriteBundle(std::vector<Packet>{ping, Weights(1, {0.1f})}, a));
+  ASSERT_TRUE(IsTamperable(a));
+  ASSERT_TRUE(SwapContents(&a, &b));
+  std::uint32_t sequence = 0;
+  EXPECT_EQ(ValuesOf(b, &sequence), std::vector<float>{0.1f});
+  EXPECT_EQ(sequence, 3u);
+  protocol::Unbundler unbundler;
+  (void)unbundler.Open(a);
+  std::span<const std::uint8_t> message;
+  ASSERT_TRUE(unbundler.Next(message));
+  EXPECT_EQ(Packet(message.begin(), message.end()), ping);
+  ASSERT_TRUE(unbundler.Next(message));
+  EXPECT_EQ(ValuesOf(Packet(message.begin(), message.end()), &sequence), std::vector<float>{0.9f});
+  EXPECT_EQ(sequence, 1u);
+
+  // A full one has no room for another's larger content.
+  Packet full;
+  std::vector<Packet> messages;
+  while (protocol::WriteBundle(messages, full) || messages.empty())
+    messages.push_back(Weights(1, std::vector<float>(20)));
+  messages.pop_back();
+  ASSERT_TRUE(protocol::WriteBundle(messages, full));
+  Packet large = Weights(2, std::vector<float>(250));
+  const Packet before = full;
+  EXPECT_FALSE(SwapContents(&full, &large));
+  EXPECT_FALSE(SwapContents(&large, &full));
+  EXPECT_EQ(full, before);
 }
 
 TEST(BlackHole, IsParsedOrRefused) {
