@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <chrono>
-#include <cinttypes>
-#include <cmath>
 #include <cstdio>
 #include <memory>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "client/cli/command.h"
 #include "client/cli/endpoint.h"
 #include "client/cli/exit_code.h"
 #include "client/cli/interrupt.h"
 #include "client/cli/play_source.h"
-#include "client/cli/progress.h"
-#include "client/cli/schedule.h"
-#include "client/cli/spacing.h"
+#include "client/cli/session_player.h"
 #include "client/cpp/publisher.h"
 
 namespace furrow::cli {
@@ -22,7 +20,6 @@ namespace {
 
 using client::IoStatus;
 using client::TransportKind;
-using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
 struct PlayOptions {
@@ -69,100 +66,31 @@ int WaitUntilAccepted(client::Publisher& publisher, std::uint16_t stream, const 
   return kNoConnection;
 }
 
-// Sends the poses of an accepted stream, each at its time.
-class Player {
- public:
-  // Sends the frames of `source` from number `first` on.
-  Player(client::Publisher& publisher, std::uint16_t stream, const PlaySource& source, int first,
-         const PlayOptions& options)
-      : publisher_(publisher), stream_(stream), source_(source), first_(first), options_(options) {}
+// The subjects of the recording, under the name they are to have.
+Result<std::vector<PlaySource>> LoadSources(const PlayOptions& options) {
+  auto sources = PlaySource::Load(options.file);
+  if (!sources.ok() || options.subject.empty() || sources->size() == 1) return sources;
+  std::string names;
+  for (const PlaySource& source : *sources) names += (names.empty() ? "" : ", ") + source.subject();
+  return Status(StatusCode::kInvalidArgument, "the take has several subjects: " + names,
+                options.file,
+                "to play one under another name: " + options.file + "#" +
+                    sources->front().subject() + " --subject " + options.subject);
+}
 
-  // To the end, or an interrupt, or what makes going on useless.
-  int Run() {
-    const Schedule schedule(source_.times().subspan(static_cast<std::size_t>(first_)),
-                            options_.rate);
-    const auto encoding =
-        options_.quantise ? protocol::PoseEncoding::Small() : protocol::PoseEncoding{};
-    const std::int64_t capture_start = SystemMicroseconds();
-    const std::int64_t send_start = SteadyMicroseconds();
-    Progress progress("playing", schedule.count());
-    protocol::PoseFrame pose;
-    for (std::int64_t i = 0; options_.loop || i < schedule.count(); ++i) {
-      const double seconds = schedule.Seconds(i);
-      const std::int64_t due = send_start + std::llround(seconds * 1e6 / options_.speed);
-      if (!WaitUntil(due)) break;
-      source_.Fill(first_ + schedule.Frame(i), &pose);
-      spacing_.Sent(due, SteadyMicroseconds());
-      Note(publisher_.Send(stream_, pose, capture_start + std::llround(seconds * 1e6), encoding));
-      progress.Set(i % schedule.count() + 1);
-    }
-    return Report();
-  }
-
- private:
-  // Reads answers meanwhile: a daemon that was restarted asks for the skeleton again. False when
-  // there is no use in going on.
-  bool WaitUntil(std::int64_t due_us) {
-    constexpr std::int64_t kLongestWait = 100'000;  // until the next look at interrupts
-    Note(publisher_.Poll(SteadyMicroseconds(), milliseconds(0)));
-    for (;;) {
-      if (closed_ || Interrupted() || !publisher_.rejection(stream_).empty()) return false;
-      const std::int64_t now = SteadyMicroseconds();
-      if (now >= due_us) return true;
-      const microseconds wait(std::min(due_us - now, kLongestWait));
-      const auto whole = std::chrono::duration_cast<milliseconds>(wait);
-      const IoStatus status = whole.count() > 0 ? publisher_.Poll(now, whole) : IoStatus::kTimeout;
-      Note(status);
-      // A refusal comes at once, and a rest of less than a millisecond cannot be polled.
-      if (whole.count() == 0 || status == IoStatus::kNoConnection) {
-        std::this_thread::sleep_for(wait);
-      }
-    }
-  }
-
-  void Note(IoStatus status) {
-    closed_ = closed_ || IsOver(status);
-    if (status == IoStatus::kNoConnection) ++refused_;
-  }
-
-  int Report() const {
-    if (closed_) {
-      std::fprintf(stderr, "furrow: the daemon closed the connection\n");
-      return kNoConnection;
-    }
-    if (const std::string& why = publisher_.rejection(stream_); !why.empty()) {
-      std::fprintf(stderr, "furrow: the daemon takes no more poses: %s\n", why.c_str());
-      return kFailed;
-    }
-    if (refused_ > 0) {
-      std::fprintf(stderr, "furrow: nobody listened for %" PRId64 " of %" PRId64 " poses\n",
-                   std::min(refused_, spacing_.count()), spacing_.count());
-      return kNoConnection;
-    }
-    std::fprintf(stderr,
-                 "furrow: %" PRId64 " poses; spacing off by %.3f ms on average, %.3f ms at most\n",
-                 spacing_.count(), spacing_.mean_ms(), spacing_.largest_ms());
-    return kDone;
-  }
-
-  client::Publisher& publisher_;
-  std::uint16_t stream_;
-  const PlaySource& source_;
-  int first_;
-  const PlayOptions& options_;
-  Spacing spacing_;
-  std::int64_t refused_ = 0;  // over UDP: answers that nobody listens at the port
-  bool closed_ = false;
-};
+SessionSchedule MakeSchedule(const std::vector<PlaySource>& sources, const PlayOptions& options) {
+  std::vector<SessionSchedule::Track> tracks;
+  for (const PlaySource& source : sources) tracks.push_back({source.times(), source.start()});
+  return SessionSchedule(tracks, options.rate, options.from);
+}
 
 int PlayFile(const PlayOptions& options) {
-  const auto source = PlaySource::Load(options.file);
-  if (!source.ok()) return Fail(source.status());
-  const auto times = source->times();
-  const auto first = std::lower_bound(times.begin(), times.end(), times.front() + options.from);
-  if (first == times.end()) {
+  const auto sources = LoadSources(options);
+  if (!sources.ok()) return Fail(sources.status());
+  SessionSchedule schedule = MakeSchedule(*sources, options);
+  if (schedule.count() == 0) {
     std::fprintf(stderr, "furrow: --from %g: %s ends after %.3f s\n", options.from,
-                 options.file.c_str(), times.back() - times.front());
+                 options.file.c_str(), schedule.duration());
     return kBadInput;
   }
   int exit_code = kDone;
@@ -171,13 +99,21 @@ int PlayFile(const PlayOptions& options) {
   if (!transport) return exit_code;
   CatchInterrupts();
   client::Publisher publisher(std::move(transport));
-  const std::string& subject = options.subject.empty() ? source->subject() : options.subject;
-  const std::uint16_t stream =
-      publisher.AddSubject(source->Offer(subject, options.scale), SteadyMicroseconds());
-  exit_code = WaitUntilAccepted(publisher, stream, options.host);
-  if (exit_code != kDone || Interrupted()) return exit_code;
-  exit_code =
-      Player(publisher, stream, *source, static_cast<int>(first - times.begin()), options).Run();
+  std::vector<SessionPlayer::Track> tracks;
+  for (const PlaySource& source : *sources) {
+    const std::string& subject = options.subject.empty() ? source.subject() : options.subject;
+    const std::uint16_t stream =
+        publisher.AddSubject(source.Offer(subject, options.scale), SteadyMicroseconds());
+    exit_code = WaitUntilAccepted(publisher, stream, options.host);
+    if (exit_code != kDone || Interrupted()) return exit_code;
+    tracks.push_back({stream, &source});
+  }
+  SessionPlayer player(
+      publisher, std::move(tracks), std::move(schedule),
+      {.speed = options.speed,
+       .loop = options.loop,
+       .encoding = options.quantise ? protocol::PoseEncoding::Small() : protocol::PoseEncoding{}});
+  exit_code = player.Run();
   publisher.Close();
   return exit_code;
 }
@@ -188,9 +124,9 @@ void AddPlay(CLI::App& app, Action& action) {
   auto options = std::make_shared<PlayOptions>();
   CLI::App* command = app.add_subcommand("play", "Sends a recording to a daemon, at its own pace");
   command
-      ->add_option(
-          "FILE", options->file,
-          "BVH, glTF/GLB, VRMA, Live Link Face CSV or a take (FILE.mcap, FILE.mcap#SUBJECT)")
+      ->add_option("FILE", options->file,
+                   "BVH, glTF/GLB, VRMA, Live Link Face CSV or a take (FILE.mcap: everybody in it; "
+                   "FILE.mcap#SUBJECT)")
       ->required();
   command->add_option("--to", options->host, "HOST, HOST:PORT or [IPV6]:PORT of furrowd")
       ->required();

@@ -11,8 +11,8 @@ namespace furrow::cli {
 
 using recording::TakePoses;
 
-Result<PlaySource> PlaySource::Load(const std::string& path) {
-  PlaySource source;
+Result<std::vector<PlaySource>> PlaySource::Load(const std::string& path) {
+  std::vector<PlaySource> sources;
   if (recording::IsTakePath(path)) {
     std::string file;
     std::string subject;
@@ -20,20 +20,29 @@ Result<PlaySource> PlaySource::Load(const std::string& path) {
     auto take = recording::TakeReader::Open(file);
     if (!take.ok()) return take.status();
     motion::ClipReport report;
-    auto poses = TakePoses::Load(**take, subject, &report);
+    auto all = TakePoses::LoadAll(**take, subject, &report);
     PrintWarnings(report.warnings);
-    if (!poses.ok()) return poses.status();
-    source.subject_ = poses->offer().subject;
-    source.poses_ = *std::move(poses);
-    return source;
+    if (!all.ok()) return all.status();
+    for (TakePoses& poses : *all) {
+      PlaySource& source = sources.emplace_back();
+      source.subject_ = poses.offer().subject;
+      source.poses_ = std::move(poses);
+    }
+    return sources;
   }
   auto clip = LoadClipArgument(path);
   if (!clip.ok()) return clip.status();
   if (clip->num_frames() == 0)
     return Status(StatusCode::kInvalidArgument, "the recording has no frames", path);
+  PlaySource& source = sources.emplace_back();
   source.subject_ = std::filesystem::path(path).stem().string();
   source.poses_ = *std::move(clip);
-  return source;
+  return sources;
+}
+
+double PlaySource::start() const {
+  const auto* poses = std::get_if<TakePoses>(&poses_);
+  return poses != nullptr ? poses->start() : 0.0;
 }
 
 std::span<const double> PlaySource::times() const {

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "motion/clip.h"
 #include "protocol/messages.h"
@@ -12,15 +13,19 @@
 
 namespace furrow::cli {
 
-// What is played: the frames of a clip, or a take's poses exactly as they were received.
+// One subject of what is played: the frames of a clip, or a take's poses exactly as they were
+// received.
 class PlaySource {
  public:
-  // Errors: LoadClipArgument()'s and TakePoses::Load()'s; kInvalidArgument for a recording without
+  // All the subjects of a recording, or the one that `file` names ("take.mcap#ada"). Errors:
+  // LoadClipArgument()'s and TakePoses::LoadAll()'s; kInvalidArgument for a recording without
   // frames. Warnings are printed.
-  [[nodiscard]] static Result<PlaySource> Load(const std::string& file);
+  [[nodiscard]] static Result<std::vector<PlaySource>> Load(const std::string& file);
 
   // Of the frames: seconds, increasing.
   [[nodiscard]] std::span<const double> times() const;
+  // When the first frame is due: seconds after that of the first subject.
+  [[nodiscard]] double start() const;
   // Who was captured, as far as the recording says; else the file's name.
   [[nodiscard]] const std::string& subject() const { return subject_; }
   // `metres_per_unit` counts on top of what a take says of its unit.

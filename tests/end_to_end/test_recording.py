@@ -14,6 +14,7 @@ import unittest
 from furrow_testing import (BIN, GUARD, SHARE, SOURCE, Daemon, Table, furrow, solve, spawn, worst_difference)
 
 PERFORMANCE = SHARE / "recordings" / "performance.bvh"
+HAPPINESS = SHARE / "recordings" / "happiness.bvh"
 RIG = SHARE / "default.rig.json"
 INTEROP = SOURCE / "tests" / "mcap_interop"
 
@@ -72,6 +73,27 @@ class RecordTest(FolderTest):
         again = daemon.takes()[0]
         self.assertEqual(self.weights(first).rows, self.weights(again).rows)
         self.assertIn("subject     ada:", furrow("info", again, check=0).stdout.decode())
+
+    def test_a_session_of_several_replays_as_one(self):
+        both = {}
+        with Recording(self.root / "first") as daemon:
+            ada = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--speed", 2)
+            # Somebody else comes when ada is under way.
+            furrow("watch", daemon.tcp, "--subject", "ada", "--wait", "--frames", 30, check=0)
+            furrow("play", HAPPINESS, "--to", daemon.udp, "--subject", "bob", "--speed", 4, check=0)
+            ada.communicate(timeout=GUARD)
+        first = daemon.takes()[0]
+        with Recording(self.root / "again") as daemon:
+            played = furrow("play", first, "--to", daemon.tcp, "--tcp", "--speed", 4, check=0)
+        self.assertIn("of 2 subjects", played.stderr.decode())
+        again = daemon.takes()[0]
+        for name in ("ada", "bob"):
+            both[name] = self.weights(f"{first}#{name}")
+            self.assertGreater(len(both[name].rows), 100)
+            self.assertEqual(both[name].rows, self.weights(f"{again}#{name}").rows)
+        self.assertNotEqual(both["ada"].rows, both["bob"].rows)
+        renamed = furrow("play", first, "--to", daemon.tcp, "--subject", "eve", check=3)
+        self.assertIn("ada, bob", renamed.stderr.decode())
 
     def test_a_part_is_played_and_a_loop_goes_on_counting(self):
         take = self.record("--speed", 8)

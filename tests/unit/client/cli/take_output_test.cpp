@@ -76,8 +76,10 @@ TEST_F(TakeOutputTest, WhatTheWireCannotCarryLeavesNoFile) {
 TEST_F(TakeOutputTest, ATakeIsPlayedUnderTheNameItHolds) {
   const std::string path = (folder_ / "clip.mcap").string();
   ASSERT_TRUE(SaveTake(MakeClip(), path).ok());
-  const auto source = PlaySource::Load(path);
-  ASSERT_TRUE(source.ok());
+  const auto sources = PlaySource::Load(path);
+  ASSERT_TRUE(sources.ok());
+  ASSERT_EQ(sources->size(), 1u);
+  const PlaySource* source = &sources->front();
   EXPECT_EQ(source->subject(), "ada");
   EXPECT_EQ(source->times().size(), 3u);
   EXPECT_EQ(source->Offer("bob", 0.01f).subject, "bob");
