@@ -43,26 +43,27 @@ PackedQuat PackQuat(const Quat& rotation) {
           static_cast<std::uint16_t>(bits >> 32)};
 }
 
+// The hot path's most frequent call: no list that is filled by index, no loop.
 bool UnpackQuat(const PackedQuat& packed, Quat& rotation) {
   rotation = Quat{};
   const std::uint64_t bits = packed[0] | static_cast<std::uint64_t>(packed[1]) << 16 |
                              static_cast<std::uint64_t>(packed[2]) << 32;
-  if (bits >> 47 != 0) return false;
-  const auto largest = static_cast<std::size_t>(bits >> 45 & 3);
-  std::array<float, 4> q{};
-  float sum = 0.0f;
-  int shift = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (i == largest) continue;
-    const std::uint64_t code = bits >> shift & 0x7FFF;
-    shift += 15;
-    if (code > kQuatSteps) return false;
-    q[i] = UnpackComponent(code);
-    sum += q[i] * q[i];
-  }
+  const std::uint64_t first = bits & 0x7FFF;
+  const std::uint64_t second = bits >> 15 & 0x7FFF;
+  const std::uint64_t third = bits >> 30 & 0x7FFF;
+  if (bits >> 47 != 0 || std::max({first, second, third}) > kQuatSteps) return false;
+  const float a = UnpackComponent(first);
+  const float b = UnpackComponent(second);
+  const float c = UnpackComponent(third);
+  const float sum = a * a + b * b + c * c;
   if (sum > 1.0f) return false;
-  q[largest] = std::sqrt(1.0f - sum);
-  rotation = {q[0], q[1], q[2], q[3]};
+  const float largest = std::sqrt(1.0f - sum);
+  switch (bits >> 45) {
+    case 0: rotation = {largest, a, b, c}; break;
+    case 1: rotation = {a, largest, b, c}; break;
+    case 2: rotation = {a, b, largest, c}; break;
+    default: rotation = {a, b, c, largest}; break;
+  }
   return true;
 }
 
