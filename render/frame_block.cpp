@@ -41,9 +41,11 @@ FrameSetup SetUpFrame(const FrameRequest& request, const wrinkle::Skeleton& skel
   setup.lighting =
       MakeLighting(request.settings.lights, {setup.camera.heading, setup.camera.target, radius});
   setup.ambient = cache->Get(setup.lighting.sky);
+  setup.shadow_resolution = ShadowResolution(
+      request.settings.shadow, radius, setup.camera.focus_distance() / setup.pixels_per_slope);
   for (int i = 0; i < kNumLights; ++i) {
-    setup.shadows[i] = FitShadow(setup.lighting.lights[i], setup.camera.target, radius,
-                                 request.settings.shadow.resolution);
+    setup.shadows[i] =
+        FitShadow(setup.lighting.lights[i], setup.camera.target, radius, setup.shadow_resolution);
   }
   return setup;
 }
@@ -64,10 +66,9 @@ FrameBlock MakeFrameBlock(const FrameSetup& setup, const Settings& settings) {
   block.sky_zenith = glm::vec4(setup.lighting.sky.zenith, 0.0f);
   block.sky_horizon = glm::vec4(setup.lighting.sky.horizon, 0.0f);
   block.sky_ground = glm::vec4(setup.lighting.sky.ground, 0.0f);
-  block.shadow_filter = {settings.shadow.softness_mm * kMetresPerMm,
-                         settings.shadow.lamp_mm * kMetresPerMm,
-                         settings.shadow.normal_offset_mm * kMetresPerMm,
-                         static_cast<float>(settings.shadow.resolution)};
+  block.shadow_filter = {
+      settings.shadow.softness_mm * kMetresPerMm, settings.shadow.lamp_mm * kMetresPerMm,
+      settings.shadow.normal_offset_mm * kMetresPerMm, static_cast<float>(setup.shadow_resolution)};
   block.specular = {settings.specular.strength, settings.specular.roughness,
                     settings.specular.second_lobe, settings.subsurface.mix};
   block.translucency = {settings.translucency.enabled ? settings.translucency.strength : 0.0f,

@@ -14,7 +14,7 @@
 // filament's FrameGraph). Knows nothing of OpenGL: textures come from a FrameGraphDevice.
 namespace furrow::render {
 
-enum class PixelFormat { kRgba8, kRgba16F, kRgba32F, kRgb10A2, kR32F, kR8, kDepth32F };
+enum class PixelFormat { kRgba8, kRgba16F, kRgba32F, kR32F, kR8, kDepth32F };
 
 struct TextureDesc {
   int width = 0;  // pixels

@@ -11,7 +11,6 @@ GLenum InternalFormat(PixelFormat format) {
     case PixelFormat::kRgba8: return GL_RGBA8;
     case PixelFormat::kRgba16F: return GL_RGBA16F;
     case PixelFormat::kRgba32F: return GL_RGBA32F;
-    case PixelFormat::kRgb10A2: return GL_RGB10_A2;
     case PixelFormat::kR32F: return GL_R32F;
     case PixelFormat::kR8: return GL_R8;
     case PixelFormat::kDepth32F: return GL_DEPTH_COMPONENT32F;

@@ -12,8 +12,6 @@ using character::Material;
 using character::Picture;
 using character::Vertex;
 
-constexpr float kSheenOfCloth = 0.06f;
-
 // Mirrors the Material block of scene.frag.glsl (std140).
 struct MaterialBlock {
   glm::vec4 base_colour;
@@ -21,10 +19,8 @@ struct MaterialBlock {
   float specular;
   float alpha_cutoff;
   float cavity_albedo;
-  float f0;
-  float sheen;
   float thickness;
-  float padding;
+  float padding[3];
 };
 static_assert(sizeof(MaterialBlock) == 48);
 
@@ -39,18 +35,6 @@ float SpecularOf(Material::Kind kind) {
     case Material::Kind::kOther: return 0.03f;
   }
   return 0.03f;
-}
-
-// Schlick's reflectance face on, of the skin pipeline: skin's oil, the tear film, keratin.
-float F0Of(Material::Kind kind) {
-  switch (kind) {
-    case Material::Kind::kSkin: return 0.028f;
-    case Material::Kind::kEye: return 0.025f;
-    case Material::Kind::kHair: return 0.046f;
-    case Material::Kind::kCloth: return 0.02f;
-    case Material::Kind::kOther: return 0.04f;
-  }
-  return 0.04f;
 }
 
 // Counted from outside: hair over cloth over skin over what the head holds.
@@ -204,10 +188,8 @@ Status GpuCharacter::AddMaterials(const Character& character) {
                               SpecularOf(source.kind),
                               source.alpha_cutoff,
                               CavityAlbedoOf(source.kind),
-                              F0Of(source.kind),
-                              source.kind == Material::Kind::kCloth ? kSheenOfCloth : 0.0f,
                               source.thickness,
-                              0.0f};
+                              {}};
     GpuMaterial material;
     material.block = gl::MakeStaticBuffer(&block, sizeof(block));
     material.base_colour = ColourTexture(character, source.base_colour_texture, true);

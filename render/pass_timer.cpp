@@ -24,6 +24,7 @@ std::int64_t Timestamp() {
 void PassTimer::BeforePass(std::string_view) {
   glFinish();
   gpu_start_ = Timestamp();
+  cpu_start_ = std::clock();
   wall_start_ = std::chrono::steady_clock::now();
 }
 
@@ -32,8 +33,9 @@ void PassTimer::AfterPass(std::string_view pass, const std::vector<Written>&) {
   glFinish();
   const std::chrono::duration<double, std::milli> wall =
       std::chrono::steady_clock::now() - wall_start_;
+  const double cpu_ms = 1e3 * static_cast<double>(std::clock() - cpu_start_) / CLOCKS_PER_SEC;
   times_.push_back(
-      {std::string(pass), static_cast<double>(gpu_end - gpu_start_) * 1e-6, wall.count()});
+      {std::string(pass), static_cast<double>(gpu_end - gpu_start_) * 1e-6, wall.count(), cpu_ms});
 }
 
 std::vector<PassTime> PassTimer::Take() { return std::exchange(times_, {}); }

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ struct PassTime {
   std::string pass;
   double gpu_ms = 0.0;   // between two timestamps of the device's own clock
   double wall_ms = 0.0;  // of this thread, from before the pass until the device had finished it
+  double cpu_ms = 0.0;   // of all threads of the process in that time: the work where a processor
+                         // draws, which others that use it do not change
 };
 
 // Times the passes of frames: Renderer::SetObserver(). It waits for the device before and after
@@ -38,6 +41,7 @@ class PassTimer final : public FrameGraphObserver {
   std::vector<PassTime> times_;
   std::int64_t gpu_start_ = 0;  // ns
   std::chrono::steady_clock::time_point wall_start_;
+  std::clock_t cpu_start_ = 0;
 };
 
 }  // namespace furrow::render

@@ -2,6 +2,7 @@
 #include "render/pipeline.h"
 
 #include "render/passes/finish_pass.h"
+#include "render/passes/light_pass.h"
 #include "render/passes/resolve_pass.h"
 
 namespace furrow::render {
@@ -12,6 +13,12 @@ using Handle = FrameGraph::Handle;
 bool NeedsSkinPipeline(const Settings& settings) {
   return settings.view >= View::kShadow ||
          (settings.view == View::kFinal && settings.shading == Shading::kSkin);
+}
+
+// Views of one part of the light alone show it before occlusion.
+bool IsPartOfLight(View view) {
+  return view == View::kShadow || view == View::kSpecular || view == View::kTranslucency ||
+         view == View::kAlbedo || view == View::kMaterial;
 }
 
 // Data stays as it is.
@@ -75,9 +82,6 @@ Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const S
   if (settings.shadow.filter != ShadowFilter::kOff && settings.shadow.lamps > 0) {
     if (shadows->version < 0) *shadows = shadow_pass_.Add(graph, settings);
   }
-  const SkinTargets scene = scene_pass_.AddSkin(
-      graph, settings, {desc.width, desc.height, desc.format, desc.samples}, *shadows);
-  const SkinTargets surface = AddResolvePass(graph, scene, desc, &fullscreen_);
   const CameraFrame& camera = scene_->setup().camera;
   const float slope = camera.PixelsPerSlope(desc.height);
   const auto project = [&](const JointBounds& bounds) {
@@ -91,41 +95,62 @@ Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const S
   };
   const OcclusionGeometry view{desc.width, desc.height,      glm::mat3(camera.view),
                                slope,      project(bounds_), SkinBackground(settings)};
-  const OcclusionPass::Output output =
-      occlusion_pass_.Add(graph, surface, settings.occlusion, view);
+  const Surface surface = AddSurface(graph, settings, desc, *shadows, view);
   const SkinGeometry skin{.width = desc.width,
                           .height = desc.height,
                           .focus_distance = camera.focus_distance(),
                           .pixels_per_mm = 0.001f * slope / camera.focus_distance(),
-                          .bounds = project(skin_bounds_)};
+                          .bounds = project(skin_bounds_),
+                          .surface_z = surface.lit.z};
   const Handle scattered =
-      subsurface_pass_.Add(graph, output.surface.irradiance, settings.subsurface, skin);
+      subsurface_pass_.Add(graph, surface.lit.irradiance, settings.subsurface, skin);
   switch (settings.view) {
     case View::kScattered: return scattered;
     case View::kFinal:
     case View::kBloom:
-      return AddCombinePass(graph, scattered, output.surface, desc, view.bounds, view.background,
+      return AddCombinePass(graph, scattered, surface.lit, desc, view.bounds, view.background,
                             &fullscreen_);
-    case View::kIrradiance: return output.surface.irradiance;
+    case View::kIrradiance: return surface.lit.irradiance;
     case View::kDepth:
-    case View::kOcclusion: return AddShown(graph, output, surface.depth, settings.view, desc);
-    default: return surface.radiance;  // the scene pass drew what the view shows
+    case View::kOcclusion: return AddShown(graph, surface, settings.view, desc);
+    default: return surface.unoccluded;  // light alone drew what the view shows
   }
 }
 
-Handle Pipeline::AddShown(FrameGraph* graph, const OcclusionPass::Output& output, Handle depth,
-                          View view, const TextureDesc& desc) {
+Pipeline::Surface Pipeline::AddSurface(FrameGraph* graph, const Settings& settings,
+                                       const TextureDesc& desc, Handle shadows,
+                                       const OcclusionGeometry& view) {
+  if (desc.samples == 1) {
+    const FacetTargets facets = scene_pass_.AddFacets(graph, settings, desc.width, desc.height);
+    const OcclusionPass::Openness open =
+        occlusion_pass_.Add(graph, facets.depth, facets.normal, settings.occlusion, view);
+    const SkinTargets lit = AddLightPass(
+        graph, facets, shadows, IsPartOfLight(settings.view) ? OcclusionPass::Openness{} : open,
+        settings, view, scene_, &fullscreen_);
+    return {lit, lit.radiance, open};
+  }
+  const SkinTargets scene = scene_pass_.AddSkin(
+      graph, settings, {desc.width, desc.height, desc.format, desc.samples}, shadows);
+  const SkinTargets lit = AddResolvePass(graph, scene, desc, &fullscreen_);
+  const OcclusionPass::Openness open =
+      occlusion_pass_.Add(graph, lit.depth, lit.normal, settings.occlusion, view);
+  return {occlusion_pass_.AddOcclude(graph, lit, open, settings.occlusion, view), lit.radiance,
+          open};
+}
+
+Handle Pipeline::AddShown(FrameGraph* graph, const Surface& surface, View view,
+                          const TextureDesc& desc) {
   const CameraFrame& camera = scene_->setup().camera;
   ShowTarget show;
-  Handle target = depth;
+  Handle target = surface.lit.depth;
   if (view == View::kDepth) {
     const float radius = camera.StageRadius(1.0f);
     show = {.kind = ShowTarget::Kind::kMetres,
             .near_metres = camera.focus_distance() - radius,
             .far_metres = camera.focus_distance() + radius};
-  } else if (output.open.version >= 0) {
-    target = output.open;
-    show = {.kind = ShowTarget::Kind::kRed, .scale = static_cast<float>(output.scale)};
+  } else if (surface.open.target.version >= 0) {
+    target = surface.open.target;
+    show = {.kind = ShowTarget::Kind::kRed, .scale = static_cast<float>(surface.open.scale)};
   } else {
     show.kind = ShowTarget::Kind::kWhite;
   }

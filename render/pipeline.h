@@ -15,6 +15,8 @@ namespace furrow::render {
 //   plain:  scene -> composite
 //   skin:   shadows -> scene (five targets) -> resolve -> occlusion, blur, occlude -> scatter ->
 //           combine -> bloom -> composite -> fxaa
+//   skin, one sample a pixel: shadows -> scene (facets) -> occlusion, blur -> light -> scatter ->
+//   ...
 //
 // What a view does not need, the frame graph leaves out.
 class Pipeline {
@@ -38,8 +40,16 @@ class Pipeline {
   [[nodiscard]] FrameGraph::Handle AddSkin(FrameGraph* graph, const FrameRequest& request,
                                            const Settings& settings, const TextureDesc& desc,
                                            FrameGraph::Handle* shadows);
-  [[nodiscard]] FrameGraph::Handle AddShown(FrameGraph* graph, const OcclusionPass::Output& output,
-                                            FrameGraph::Handle depth, View view,
+  // What is known of the surfaces once light fell on them.
+  struct Surface {
+    SkinTargets lit;
+    FrameGraph::Handle unoccluded;  // radiance
+    OcclusionPass::Openness open;
+  };
+  [[nodiscard]] Surface AddSurface(FrameGraph* graph, const Settings& settings,
+                                   const TextureDesc& desc, FrameGraph::Handle shadows,
+                                   const OcclusionGeometry& view);
+  [[nodiscard]] FrameGraph::Handle AddShown(FrameGraph* graph, const Surface& surface, View view,
                                             const TextureDesc& desc);
 
   SceneDraw* scene_;

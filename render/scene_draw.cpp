@@ -17,8 +17,6 @@ enum TextureUnit : GLuint {
   kMasksUnit = 2,
   kWrinkleDerivativesUnit = 3,
   kRoughnessUnit = 4,
-  kShadowCompareUnit = 5,
-  kShadowDepthUnit = 6,
   kBeckmannUnit = 7,
   kSpecularAlbedoUnit = 8,
   kPreintegratedUnit = 9,
@@ -76,6 +74,23 @@ View SkinView(View view) {
     case View::kMaterial: return view;
     default: return View::kFinal;
   }
+}
+
+bool CanShineThrough(const Settings& settings) {
+  return settings.translucency.enabled && settings.shadow.filter != ShadowFilter::kOff;
+}
+
+// What a program must know of the settings that lights a surface; `skin`: it may be skin.
+void AddLight(const Settings& settings, bool skin, SceneShader* shader) {
+  shader->view = SkinView(settings.view);
+  shader->shadow_filter = settings.shadow.filter;
+  shader->shadow_lamps = settings.shadow.filter == ShadowFilter::kOff ? 0 : settings.shadow.lamps;
+  shader->shadow_taps = settings.shadow.taps;
+  shader->translucency = skin && CanShineThrough(settings);
+  shader->preintegrated = skin && settings.subsurface.method == SubsurfaceMethod::kPreintegrated;
+  shader->beckmann_table = settings.specular.table;
+  shader->gems = settings.specular.mode == SpecularMode::kGems;
+  shader->conserve_energy = settings.specular.conserve_energy;
 }
 
 }  // namespace
@@ -136,10 +151,21 @@ void SceneDraw::BindMaterial(const GpuMaterial& material) {
 }
 
 void SceneDraw::BindTables(GLuint shadows) {
-  glBindTextureUnit(kShadowCompareUnit, shadows);
-  glBindSampler(kShadowCompareUnit, shadow_compare_.name());
-  glBindTextureUnit(kShadowDepthUnit, shadows);
-  glBindSampler(kShadowDepthUnit, shadow_depth_.name());
+  for (const GLuint unit : kShadowUnits) glBindTextureUnit(unit, shadows);
+  BindLookUps();
+}
+
+void SceneDraw::BindLights(const Settings& settings) {
+  buffers_.Bind();
+  BindLookUps();
+  if (settings.subsurface.method == SubsurfaceMethod::kPreintegrated) {
+    glBindTextureUnit(kPreintegratedUnit, lookup_tables_.preintegrated());
+  }
+}
+
+void SceneDraw::BindLookUps() {
+  glBindSampler(kShadowUnits[0], shadow_compare_.name());
+  glBindSampler(kShadowUnits[1], shadow_depth_.name());
   glBindTextureUnit(kBeckmannUnit, lookup_tables_.beckmann());
   glBindTextureUnit(kSpecularAlbedoUnit, lookup_tables_.specular_albedo());
 }
@@ -195,7 +221,6 @@ Status SceneDraw::DrawShadow(const Settings& settings, int light) {
   buffers_.Bind();
   BindMasks();
   glBindSampler(kBaseColourUnit, cut_out_.name());
-  SetCulling(false);
   Status status;
   for (std::size_t index = 0; index < gpu_->meshes().size() && status.ok(); ++index) {
     if (!draw_list_.seen(light, index).empty()) status = DrawCaster(settings, light, index);
@@ -218,28 +243,29 @@ Status SceneDraw::DrawCaster(const Settings& settings, int light, std::size_t in
   BindMaterial(material);
   const Result<PosedMeshes::Vertices> posed = Pose(index, form);
   if (!posed.ok()) return posed.status();
+  SetCulling(!material.double_sided);
   glUseProgram(*program);
   glUniform1i(kLightLocation, light);
   DrawSubjects(*posed, index, form, light);
   return {};
 }
 
-Status SceneDraw::DrawScene(const Settings& settings, Shading shading) {
+Status SceneDraw::DrawScene(const Settings& settings, SceneKind kind) {
   buffers_.Bind();
   BindMasks();
   glBindTextureUnit(kWrinkleDerivativesUnit, gpu_->wrinkle_derivatives());
   glBindTextureUnit(kWrinkleLooksUnit, gpu_->wrinkle_looks());
   for (std::size_t mesh = 0; mesh < gpu_->meshes().size(); ++mesh) {
     if (draw_list_.seen(DrawList::kCamera, mesh).empty()) continue;
-    if (Status status = DrawMesh(settings, shading, mesh); !status.ok()) return status;
+    if (Status status = DrawMesh(settings, kind, mesh); !status.ok()) return status;
   }
   return {};
 }
 
-Status SceneDraw::DrawMesh(const Settings& settings, Shading shading, std::size_t index) {
-  const bool wireframe = shading == Shading::kDiffuse && settings.view == View::kWireframe;
+Status SceneDraw::DrawMesh(const Settings& settings, SceneKind kind, std::size_t index) {
+  const bool wireframe = kind == SceneKind::kPlain && settings.view == View::kWireframe;
   const GpuMaterial& material = gpu_->material(gpu_->meshes()[index].material);
-  const SceneShader shader = ShaderFor(material, settings, shading);
+  const SceneShader shader = ShaderFor(material, settings, kind);
   const Result<GLuint> program = shaders_->Get(shader);
   if (!program.ok()) return program.status();
   auto form = wireframe ? PosedMeshes::Form::kUnindexed : PosedMeshes::Form::kIndexed;
@@ -274,28 +300,32 @@ SceneShader SceneDraw::SurfaceShader(const GpuMaterial& material) const {
 }
 
 SceneShader SceneDraw::ShaderFor(const GpuMaterial& material, const Settings& settings,
-                                 Shading shading) const {
+                                 SceneKind kind) const {
   SceneShader shader = SurfaceShader(material);
   shader.view = settings.view;
   shader.normal_blend = settings.normal_blend;
   shader.displaced = IsDisplaced(material, settings) && settings.view != View::kWireframe;
-  if (shading == Shading::kDiffuse) return shader;
+  if (kind == SceneKind::kPlain) return shader;
   const bool skin = material.kind == character::Material::Kind::kSkin;
-  shader.view = SkinView(settings.view);
-  shader.shading = shading;
+  shader.shading = Shading::kSkin;
   shader.material = material.kind;
-  shader.shadow_filter = settings.shadow.filter;
-  shader.shadow_lamps = settings.shadow.filter == ShadowFilter::kOff ? 0 : settings.shadow.lamps;
-  shader.shadow_taps = settings.shadow.taps;
-  shader.translucency =
-      skin && settings.translucency.enabled && settings.shadow.filter != ShadowFilter::kOff;
-  shader.preintegrated = skin && settings.subsurface.method == SubsurfaceMethod::kPreintegrated;
   shader.widen = settings.specular.widen;
   shader.wrinkle_looks = gpu_->wrinkle_looks() != 0;
-  shader.thickness_map = shader.translucency && material.thickness != 0;
-  shader.beckmann_table = settings.specular.table;
-  shader.gems = settings.specular.mode == SpecularMode::kGems;
-  shader.conserve_energy = settings.specular.conserve_energy;
+  shader.thickness_map = skin && CanShineThrough(settings) && material.thickness != 0;
+  shader.unlit = kind == SceneKind::kFacets;
+  if (shader.unlit) {
+    shader.view = View::kFinal;
+  } else {
+    AddLight(settings, skin, &shader);
+  }
+  return shader;
+}
+
+SceneShader SceneDraw::LightShader(const Settings& settings) {
+  SceneShader shader;
+  shader.shading = Shading::kSkin;
+  shader.any_material = true;
+  AddLight(settings, true, &shader);
   return shader;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "render/draw_list.h"
@@ -13,6 +14,10 @@
 #include "render/wrinkle_table.h"
 
 namespace furrow::render {
+
+// What the scene is drawn as: plain light in one target; lit by the skin pipeline; or the facets
+// that it lights later (shaders/scene.frag.glsl, skin.frag.glsl, surface.frag.glsl).
+enum class SceneKind { kPlain, kSkin, kFacets };
 
 // The posed subjects and the frame's lights on the GPU, and the draws that several passes make of
 // them. A mesh is one draw call, however many subjects there are.
@@ -29,12 +34,18 @@ class SceneDraw {
   // Metres that the surface may stand off its bounds in this frame.
   [[nodiscard]] float displacement_reach() const { return displacement_reach_; }
 
-  // Binds what the skin pipeline's scene looks up. `shadows`: the texture of all maps, 0: none.
+  // Binds what light is looked up in. `shadows`: the texture of all maps, 0: none.
   void BindTables(GLuint shadows);
+  // The same and the frame's lights, for a pass that draws no mesh but lights its facets. The
+  // shadow maps are bound as that pass reads them, to kShadowUnits.
+  void BindLights(const Settings& settings);
+  static constexpr std::array<GLuint, 2> kShadowUnits = {5, 6};
+  // What light.frag.glsl is compiled for.
+  [[nodiscard]] static SceneShader LightShader(const Settings& settings);
   // Every mesh as lamp `light` sees it, into the bound framebuffer's viewport: depth alone.
   [[nodiscard]] Status DrawShadow(const Settings& settings, int light);
-  // Every mesh in colour, for the settings' view; with skin shading, into its five targets.
-  [[nodiscard]] Status DrawScene(const Settings& settings, Shading shading);
+  // Every mesh in colour, for the settings' view, or its facets: into one target or five.
+  [[nodiscard]] Status DrawScene(const Settings& settings, SceneKind kind);
 
  private:
   void FindVisible(std::span<const NamedSubject> subjects);
@@ -46,12 +57,13 @@ class SceneDraw {
   void DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t index, PosedMeshes::Form form,
                     int view);
   [[nodiscard]] Status DrawCaster(const Settings& settings, int light, std::size_t index);
-  [[nodiscard]] Status DrawMesh(const Settings& settings, Shading shading, std::size_t index);
+  void BindLookUps();
+  [[nodiscard]] Status DrawMesh(const Settings& settings, SceneKind kind, std::size_t index);
   [[nodiscard]] bool IsDisplaced(const GpuMaterial& material, const Settings& settings) const;
   // What a program must know of the material and its wrinkles, whatever is made of them.
   [[nodiscard]] SceneShader SurfaceShader(const GpuMaterial& material) const;
   [[nodiscard]] SceneShader ShaderFor(const GpuMaterial& material, const Settings& settings,
-                                      Shading shading) const;
+                                      SceneKind kind) const;
 
   const wrinkle::Skeleton& skeleton_;
   std::span<const glm::mat4> inverse_bind_matrices_;

@@ -69,6 +69,8 @@ std::vector<SettingEntry> LightEntries() {
        Word<ShadowFilter>(kShadowWords, FURROW_MEMBER(shadow.filter))},
       {"shadow.resolution", "texels", "Side of each lamp's shadow map",
        CountField{FURROW_MEMBER(shadow.resolution), 128, 4096}},
+      {"shadow.fit", "", "Smaller maps where neither picture nor filter can show more texels",
+       SwitchField{FURROW_MEMBER(shadow.fit)}},
       {"shadow.lamps", "", "How many of the lamps cast shadows, in their order",
        CountField{FURROW_MEMBER(shadow.lamps), 0, 3}},
       {"shadow.taps", "", "Look-ups of the filter", CountField{FURROW_MEMBER(shadow.taps), 1, 32}},

@@ -61,6 +61,7 @@ struct LightSettings {
 struct ShadowSettings {
   ShadowFilter filter = ShadowFilter::kPcf;
   int resolution = 1024;          // texels a side of each light's map, [128, 4096]
+  bool fit = true;                // ... at most: as many as the picture and the filter can show
   int lamps = 3;                  // how many of the lamps cast shadows, in their order, [0, 3]
   int taps = 8;                   // of the filter, [1, 32]
   float softness_mm = 3.0f;       // pcf: radius of the filter on the surface, [0, 50]

@@ -70,6 +70,7 @@ std::vector<std::string> Defines(const SceneShader& shader) {
       Define("MATERIAL_HAIR", static_cast<int>(Kind::kHair)),
       Define("MATERIAL_OTHER", static_cast<int>(Kind::kOther)),
       Define("MATERIAL", static_cast<int>(shader.material)),
+      Define("MATERIALS", shader.any_material),
       Define("SHADOW_FILTER", static_cast<int>(shader.shadow_filter)),
       Define("SHADOW_TAPS", shader.shadow_taps),
       Define("SHADOW_LAMPS", shader.shadow_lamps),
@@ -123,8 +124,9 @@ Result<gl::Program> BuildProgram(const ProgramFiles& program, std::span<const st
 
 Result<GLuint> ShaderLibrary::Get(const SceneShader& shader) {
   if (const auto found = scene_.find(shader); found != scene_.end()) return found->second.name();
-  ProgramFiles files{"scene.vert.glsl",
-                     shader.shading == Shading::kSkin ? "skin.frag.glsl" : "scene.frag.glsl"};
+  ProgramFiles files{"scene.vert.glsl", "scene.frag.glsl"};
+  if (shader.shading == Shading::kSkin) files.fragment = "skin.frag.glsl";
+  if (shader.unlit) files.fragment = "surface.frag.glsl";
   if (shader.shadow) files.fragment = "shadow.frag.glsl";
   if (shader.displaced) {
     files.tess_control = "displace.tesc.glsl";

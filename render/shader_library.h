@@ -52,6 +52,9 @@ struct SceneShader {
   bool wrinkle_looks = false;
   bool thickness_map = false;
   bool conserve_energy = true;
+  bool any_material = false;  // `material` says nothing: each pixel does
+  // Only what light needs to know of the surface; light.frag.glsl comes later.
+  bool unlit = false;
   bool displaced = false;  // tessellated, moved by heights
   bool shadow = false;     // displaced, as a lamp sees it: depth alone
   bool crowd = false;      // several subjects, each with wrinkle weights of its own

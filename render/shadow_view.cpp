@@ -9,6 +9,7 @@
 namespace furrow::render {
 namespace {
 
+constexpr int kResolutionStep = 128;
 constexpr float kWidest = 1.0f;  // tangent of half a perspective picture's angle, at most
 
 glm::vec3 UpFor(const glm::vec3& direction) {
@@ -42,6 +43,14 @@ glm::mat4 FlatProjection(const ShadowView& view) {
     projection[3].w = 1.0f;
   }
   return projection * view.view;
+}
+
+int ShadowResolution(const ShadowSettings& settings, float radius, float pixel_metres) {
+  if (!settings.fit) return settings.resolution;
+  const float filter = settings.filter == ShadowFilter::kPcf ? 0.001f * settings.softness_mm : 0.0f;
+  const float texel = std::max(pixel_metres, 0.5f * filter);
+  const float steps = std::ceil(2.0f * radius / (texel * kResolutionStep));
+  return std::min(settings.resolution, static_cast<int>(steps) * kResolutionStep);
 }
 
 ShadowView FitShadow(const LightSource& light, const glm::vec3& centre, float radius,

@@ -22,6 +22,13 @@ struct ShadowView {
 // The same as one matrix to clip space, but for depth, which it leaves at 0.
 [[nodiscard]] glm::mat4 FlatProjection(const ShadowView& view);
 
+// Texels a side of the maps of a stage of `radius` metres, in a picture whose pixels are
+// `pixel_metres` wide at the focus: settings.resolution, or with settings.fit fewer, where a texel
+// can be as large as a pixel, or as half the radius of the fixed filter that blurs it anyway. In
+// steps of 128, so that a camera that moves seldom changes it.
+[[nodiscard]] int ShadowResolution(const ShadowSettings& settings, float radius,
+                                   float pixel_metres);
+
 // Fits a lamp's picture of `resolution` texels a side to the sphere of the stage.
 //
 // - Directional: orthographic, moved in whole texels as the stage moves, so that edges of shadows

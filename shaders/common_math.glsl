@@ -15,6 +15,3 @@ float pow5(float x) {
   return x2 * x2 * x;
 }
 
-// Rounded to the nearest number that a target of 16-bit floats holds; `x` at least 0. A device may
-// cut instead (llvmpipe does), and light that goes through several passes would lose a step in each.
-vec3 roundToHalf(vec3 x) { return uintBitsToFloat((floatBitsToUint(x) + 0x1000u) & 0xffffe000u); }

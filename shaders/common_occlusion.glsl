@@ -9,12 +9,10 @@
 // SAMPLES  look-ups a pixel, at least 4
 
 layout(binding = 0) uniform sampler2D u_depth;   // metres along the camera's axis
-layout(binding = 1) uniform sampler2D u_normal;  // 0.5 n + 0.5, model space
+layout(binding = 1) uniform sampler2D u_normal;  // unit, model space
 layout(location = 4) uniform vec2 u_reach;       // x: radius (metres), y: strength
 
 layout(location = 0) out float f_open;           // 1: nothing stands before the sky
-
-const float NO_SURFACE = 1e5;  // metres; further away is background
 
 ivec2 scenePixel() {
   ivec2 last = textureSize(u_depth, 0) - 1;
@@ -26,7 +24,7 @@ float depthAt(vec2 pixel) {
 }
 
 vec3 viewNormal(ivec2 pixel) {
-  return normalizeOrZero(u_view_rotation * (texelFetch(u_normal, pixel, 0).xyz * 2.0 - 1.0));
+  return normalizeOrZero(u_view_rotation * (texelFetch(u_normal, pixel, 0).xyz));
 }
 
 // A number in [0, 1) for each of 4 x 4 pixels, all different: what the blur averages out.

@@ -33,6 +33,7 @@ float pixelNoise(vec2 pixel) {
 // Vogel's spiral: points spread evenly over the unit disc. The k-th lies in `direction`, which turns
 // by the golden angle from one to the next, this far out.
 const mat2 GOLDEN_TURN = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888);
+const int RIM_TAPS = 4;
 float discRadius(int k) { return sqrt((float(k) + 0.5) * (1.0 / float(SHADOW_TAPS))); }
 
 // Mean depth of what stands before `coordinate` within `radius` (uv); 1: nothing does.
@@ -86,12 +87,16 @@ float shadowOf(int light, vec3 position, vec3 normal, vec3 toLight, vec2 pixel) 
   float lit = 0.0;
   // Where the surface turns away there is nothing to look up: whole groups of pixels leave the loop.
   int taps = cosine > 0.0 ? SHADOW_TAPS : 0;
-  for (int k = 0; k < taps; ++k) {
-    vec2 uv = coordinate.xy + radius * discRadius(k) * direction;
+  int looked = 0;
+  for (; looked < taps; ++looked) {
+    vec2 uv = coordinate.xy + radius * discRadius(SHADOW_TAPS - 1 - looked) * direction;
     direction = GOLDEN_TURN * direction;
     lit += textureLod(u_shadow_compare, vec3(shadowTile(light, uv), min(coordinate.z, 0.9999)), 0.0);
+    // The first lie around the disc; where they agree, so do those within.
+    bool agree = looked == RIM_TAPS - 1 && (lit <= 0.0 || lit >= float(RIM_TAPS));
+    taps = agree ? RIM_TAPS : taps;
   }
-  return lit / float(SHADOW_TAPS);
+  return lit / float(max(looked, 1));
 #endif
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common_facet.glsl"
 #include "common_math.glsl"
 
 // Kelemen and Szirmay-Kalos' specular term (2001) as GPU Gems 3, chapter 14, made it for skin.
@@ -12,8 +13,6 @@
 layout(binding = 7) uniform sampler2D u_beckmann_table;  // 0.5 PH^0.1; x: N.H, y: m
 #endif
 layout(binding = 8) uniform sampler2D u_albedo_table;    // f0 r + (1 - f0) g; x: cosine, y: m
-
-const float SMALLEST_M = 0.03125;  // below it the Beckmann table is full
 
 vec2 tablePlace(float cosine, float m, float size) {
   return (vec2(cosine, m) * (size - 1.0) + 0.5) / size;

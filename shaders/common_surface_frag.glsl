@@ -24,10 +24,7 @@ layout(std140, binding = 1) uniform Material {
   float u_specular;
   float u_alpha_cutoff;
   float u_cavity_albedo;   // see cavity(); 0: none
-  float u_f0;              // reflectance face on
-  float u_sheen;           // of cloth: strength of its fuzz
   float u_thickness;       // metres of flesh that light meets at least
-  float u_padding;
 };
 
 layout(binding = 0) uniform sampler2D u_base_colour_map;        // sRGB

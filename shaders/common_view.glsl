@@ -6,6 +6,8 @@ layout(location = 0) uniform mat3 u_view_rotation;  // model space to the camera
 layout(location = 3) uniform vec4 u_lens;           // x: pixels per unit slope, y: width / 2,
                                                     // z: height / 2 (pixels)
 
+const float NO_SURFACE = 1e5;  // metres; further away is background
+
 vec3 viewPosition(vec2 pixel, float metres) {
   return metres * vec3((pixel - u_lens.yz) / u_lens.x, -1.0);
 }

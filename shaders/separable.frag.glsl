@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common_math.glsl"
 #include "common_scatter.glsl"
 #include "common_texel.glsl"
 
@@ -53,5 +52,5 @@ void main() {
   vec3 scattered = sum / weight;
   vec3 unscattered = texelFetch(u_unscattered, pixel, 0).rgb;
   vec3 light = skin ? mix(unscattered, scattered, u_strength) : vec3(0.0);
-  f_irradiance = vec4(roundToHalf(light), centre.a);
+  f_irradiance = vec4(light, centre.a);
 }

@@ -2,15 +2,25 @@
 #include "render/passes/fullscreen.h"
 
 namespace furrow::render {
+namespace {
+
+// The triangle over the picture lies at the far plane: it is behind whatever was drawn, and its
+// fragments pass only there.
+void SetDepthTest(bool on_surface) {
+  if (!on_surface) return glDisable(GL_DEPTH_TEST);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_FALSE);
+}
+
+}  // namespace
 
 std::vector<FrameGraph::Handle> Fullscreen::AddPass(FrameGraph* graph, const FullscreenPass& pass,
                                                     std::function<void()> draw) {
-  struct Data {
-    std::vector<FrameGraph::Handle> reads;
-    std::vector<FrameGraph::Handle> writes;
-  };
-  const auto set_up = [&](FrameGraph::Builder& builder, Data& data) {
+  const auto set_up = [&](FrameGraph::Builder& builder, Handles& data) {
     data.reads = pass.reads;
+    data.surface_z = pass.surface_z;
+    if (data.surface_z.version >= 0) builder.Read(data.surface_z);
     for (const FrameGraph::Handle read : pass.reads) {
       if (read.version >= 0) builder.Read(read);
     }
@@ -20,31 +30,30 @@ std::vector<FrameGraph::Handle> Fullscreen::AddPass(FrameGraph* graph, const Ful
   };
   const auto execute = [this, fragment = std::string(pass.fragment), defines = pass.defines,
                         draw = std::move(draw)](const FrameGraph::Resources& resources,
-                                                const Data& data) {
-    Status status = Begin(fragment, defines, resources, data.writes, data.reads);
+                                                const Handles& data) {
+    Status status = Begin(fragment, defines, resources, data);
     if (status.ok()) draw();
     return status;
   };
-  return graph->AddPass<Data>(pass.name, set_up, execute).writes;
+  return graph->AddPass<Handles>(pass.name, set_up, execute).writes;
 }
 
 Status Fullscreen::Begin(std::string_view fragment, const std::vector<std::string>& defines,
-                         const FrameGraph::Resources& resources,
-                         const std::vector<FrameGraph::Handle>& targets,
-                         const std::vector<FrameGraph::Handle>& textures) {
+                         const FrameGraph::Resources& resources, const Handles& handles) {
   const Result<GLuint> program = shaders_->GetFullscreen(fragment, defines);
   if (!program.ok()) return program.status();
   std::vector<TextureId> colours;
-  for (const FrameGraph::Handle target : targets) colours.push_back(resources.Get(target));
-  framebuffer_ = device_->Framebuffer(colours, 0);
+  for (const FrameGraph::Handle target : handles.writes) colours.push_back(resources.Get(target));
+  const bool on_surface = handles.surface_z.version >= 0;
+  framebuffer_ = device_->Framebuffer(colours, on_surface ? resources.Get(handles.surface_z) : 0);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_);
-  const TextureDesc& desc = resources.Desc(targets.front());
+  const TextureDesc& desc = resources.Desc(handles.writes.front());
   glViewport(0, 0, desc.width, desc.height);
-  glDisable(GL_DEPTH_TEST);
+  SetDepthTest(on_surface);
   glDisable(GL_CULL_FACE);
   glUseProgram(*program);
   GLuint unit = 0;
-  for (const FrameGraph::Handle texture : textures) {
+  for (const FrameGraph::Handle texture : handles.reads) {
     glBindSampler(unit, 0);
     glBindTextureUnit(unit++, texture.version < 0 ? 0 : resources.Get(texture));
   }

@@ -24,6 +24,8 @@ struct FullscreenPass {
   std::vector<std::string> defines;
   std::vector<FrameGraph::Handle> reads;  // bound to units from 0; those without a version are none
   std::vector<Target> writes;             // made anew, of one size
+  // Depth of the scene, of the targets' size: draws only where there is a surface. None: everywhere.
+  FrameGraph::Handle surface_z = {};
 };
 
 // What every pass over the whole picture does.
@@ -51,10 +53,13 @@ class Fullscreen {
   void Clear(int target, float r, float g, float b, float a);
 
  private:
+  struct Handles {
+    std::vector<FrameGraph::Handle> reads;
+    std::vector<FrameGraph::Handle> writes;
+    FrameGraph::Handle surface_z;
+  };
   [[nodiscard]] Status Begin(std::string_view fragment, const std::vector<std::string>& defines,
-                             const FrameGraph::Resources& resources,
-                             const std::vector<FrameGraph::Handle>& targets,
-                             const std::vector<FrameGraph::Handle>& textures);
+                             const FrameGraph::Resources& resources, const Handles& handles);
 
   ShaderLibrary* shaders_;
   GlDevice* device_;

@@ -27,13 +27,10 @@ std::string Define(const char* name, int value) {
   return std::string(name) + " " + std::to_string(value);
 }
 
-float RangeOf(const OcclusionSettings& settings) {
-  return 0.001f * settings.radius_mm * kRangeOfRadius;
-}
-
 }  // namespace
 
-FrameGraph::Handle OcclusionPass::AddSearch(FrameGraph* graph, const SkinTargets& surface,
+FrameGraph::Handle OcclusionPass::AddSearch(FrameGraph* graph, FrameGraph::Handle depth,
+                                            FrameGraph::Handle normal,
                                             const OcclusionSettings& settings,
                                             const OcclusionGeometry& geometry) {
   const bool gtao = settings.method == OcclusionMethod::kGtao;
@@ -43,7 +40,7 @@ FrameGraph::Handle OcclusionPass::AddSearch(FrameGraph* graph, const SkinTargets
       {.name = "occlusion",
        .fragment = gtao ? "gtao.frag.glsl" : "ssao.frag.glsl",
        .defines = {Define("SCALE", scale), Define("SAMPLES", settings.samples)},
-       .reads = {surface.depth, surface.normal},
+       .reads = {depth, normal},
        .writes = {{"occlusion noisy", TargetOf(settings, geometry)}}},
       [this, settings, geometry] {
         glUniformMatrix3fv(kViewRotation, 1, GL_FALSE, &geometry.view_rotation[0].x);
@@ -76,19 +73,26 @@ void OcclusionPass::DrawBounds(const OcclusionSettings& settings,
   fullscreen_->Draw(Scaled(geometry.bounds, ScaleOf(settings)));
 }
 
-OcclusionPass::Output OcclusionPass::Add(FrameGraph* graph, const SkinTargets& surface,
-                                         const OcclusionSettings& settings,
-                                         const OcclusionGeometry& geometry) {
-  if (settings.method == OcclusionMethod::kOff || settings.strength <= 0.0f) return {surface, {}};
-  const FrameGraph::Handle noisy = AddSearch(graph, surface, settings, geometry);
-  const FrameGraph::Handle open = AddBlur(graph, noisy, surface.depth, settings, geometry);
+OcclusionPass::Openness OcclusionPass::Add(FrameGraph* graph, FrameGraph::Handle depth,
+                                           FrameGraph::Handle normal,
+                                           const OcclusionSettings& settings,
+                                           const OcclusionGeometry& geometry) {
+  if (settings.method == OcclusionMethod::kOff || settings.strength <= 0.0f) return {};
+  const FrameGraph::Handle noisy = AddSearch(graph, depth, normal, settings, geometry);
+  return {AddBlur(graph, noisy, depth, settings, geometry), ScaleOf(settings)};
+}
+
+SkinTargets OcclusionPass::AddOcclude(FrameGraph* graph, const SkinTargets& lit,
+                                      const Openness& open, const OcclusionSettings& settings,
+                                      const OcclusionGeometry& geometry) {
+  if (open.target.version < 0) return lit;
   const TextureDesc desc{geometry.width, geometry.height, PixelFormat::kRgba16F, 1};
-  const std::vector<FrameGraph::Handle> lit = fullscreen_->AddPass(
+  const std::vector<FrameGraph::Handle> left = fullscreen_->AddPass(
       graph,
       {.name = "occlude",
        .fragment = "occlude.frag.glsl",
-       .defines = {Define("SCALE", ScaleOf(settings))},
-       .reads = {surface.irradiance, surface.radiance, surface.albedo, open, surface.depth},
+       .defines = {Define("SCALE", open.scale)},
+       .reads = {lit.irradiance, lit.radiance, lit.albedo, open.target, lit.depth},
        .writes = {{"occluded irradiance", desc}, {"occluded radiance", desc}}},
       [this, settings, geometry] {
         glUniform1f(kRange, RangeOf(settings));
@@ -97,10 +101,14 @@ OcclusionPass::Output OcclusionPass::Add(FrameGraph* graph, const SkinTargets& s
         fullscreen_->Clear(1, back.r, back.g, back.b, 0.0f);
         fullscreen_->Draw(geometry.bounds);
       });
-  SkinTargets occluded = surface;
-  occluded.irradiance = lit[0];
-  occluded.radiance = lit[1];
-  return {occluded, open, ScaleOf(settings)};
+  SkinTargets occluded = lit;
+  occluded.irradiance = left[0];
+  occluded.radiance = left[1];
+  return occluded;
+}
+
+float OcclusionPass::RangeOf(const OcclusionSettings& settings) {
+  return 0.001f * settings.radius_mm * kRangeOfRadius;
 }
 
 }  // namespace furrow::render

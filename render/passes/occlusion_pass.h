@@ -24,16 +24,23 @@ class OcclusionPass {
  public:
   explicit OcclusionPass(Fullscreen* fullscreen) : fullscreen_(fullscreen) {}
 
-  struct Output {
-    SkinTargets surface;      // irradiance and radiance with the sky's light taken from them
-    FrameGraph::Handle open;  // [0, 1] in red; none where the method is off
-    int scale = 1;            // pixels of the scene to one of `open`, along each axis
+  struct Openness {
+    FrameGraph::Handle target;  // [0, 1] in red; none where the method is off
+    int scale = 1;              // pixels of the scene to one of the target's, along each axis
   };
-  [[nodiscard]] Output Add(FrameGraph* graph, const SkinTargets& surface,
-                           const OcclusionSettings& settings, const OcclusionGeometry& geometry);
+  // Of surfaces given by their depth (metres along the camera's axis) and normals.
+  [[nodiscard]] Openness Add(FrameGraph* graph, FrameGraph::Handle depth, FrameGraph::Handle normal,
+                             const OcclusionSettings& settings, const OcclusionGeometry& geometry);
+  // Takes from irradiance and radiance that are lit already the light of the sky, by its share.
+  [[nodiscard]] SkinTargets AddOcclude(FrameGraph* graph, const SkinTargets& lit,
+                                       const Openness& open, const OcclusionSettings& settings,
+                                       const OcclusionGeometry& geometry);
+  // Metres of depth within which surfaces lend each other their openness.
+  [[nodiscard]] static float RangeOf(const OcclusionSettings& settings);
 
  private:
-  [[nodiscard]] FrameGraph::Handle AddSearch(FrameGraph* graph, const SkinTargets& surface,
+  [[nodiscard]] FrameGraph::Handle AddSearch(FrameGraph* graph, FrameGraph::Handle depth,
+                                             FrameGraph::Handle normal,
                                              const OcclusionSettings& settings,
                                              const OcclusionGeometry& geometry);
   [[nodiscard]] FrameGraph::Handle AddBlur(FrameGraph* graph, FrameGraph::Handle open,

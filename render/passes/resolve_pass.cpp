@@ -17,9 +17,9 @@ SkinTargets AddResolvePass(FrameGraph* graph, const SkinTargets& scene, const Te
        .reads = {scene.irradiance, scene.radiance, scene.albedo, scene.normal, scene.depth},
        .writes = {target("irradiance", PixelFormat::kRgba16F),
                   target("radiance", PixelFormat::kRgba16F), target("albedo", PixelFormat::kRgba8),
-                  target("normal", PixelFormat::kRgb10A2), target("depth", PixelFormat::kR32F)}},
+                  target("normal", PixelFormat::kRgba16F), target("depth", PixelFormat::kR32F)}},
       [fullscreen] { fullscreen->Draw(); });
-  return {out[0], out[1], out[2], out[3], out[4]};
+  return {out[0], out[1], out[2], out[3], out[4], {}};
 }
 
 FrameGraph::Handle AddCombinePass(FrameGraph* graph, FrameGraph::Handle scattered,
@@ -32,7 +32,8 @@ FrameGraph::Handle AddCombinePass(FrameGraph* graph, FrameGraph::Handle scattere
        .fragment = "combine.frag.glsl",
        .defines = {},
        .reads = {scattered, scene.radiance, scene.albedo},
-       .writes = {{"combined", {desc.width, desc.height, PixelFormat::kRgba16F, 1}}}},
+       .writes = {{"combined", {desc.width, desc.height, PixelFormat::kRgba16F, 1}}},
+       .surface_z = scene.z},
       [fullscreen, bounds, background] {
         fullscreen->Clear(0, background.r, background.g, background.b, 1.0f);
         fullscreen->Draw(bounds);

@@ -56,7 +56,7 @@ FrameGraph::Handle ScenePass::AddPlain(FrameGraph* graph, const Settings& settin
         BeginScene(framebuffer, desc.width, desc.height);
         const glm::vec3 back = IsData(settings.view) ? glm::vec3(0.0f) : settings.background;
         Clear(framebuffer, 0, {back.r, back.g, back.b, 1.0f});
-        return scene_->DrawScene(settings, Shading::kDiffuse);
+        return scene_->DrawScene(settings, SceneKind::kPlain);
       });
   return data.colour;
 }
@@ -79,7 +79,7 @@ SkinTargets ScenePass::AddSkin(FrameGraph* graph, const Settings& settings, cons
         pass.out = {target("scene irradiance", PixelFormat::kRgba16F),
                     target("scene radiance", PixelFormat::kRgba16F),
                     target("scene albedo", PixelFormat::kRgba8),
-                    target("scene normal", PixelFormat::kRgb10A2),
+                    target("scene normal", PixelFormat::kRgba16F),
                     target("scene depth", PixelFormat::kR32F)};
         pass.z = target("scene z", PixelFormat::kDepth32F);
         pass.shadows = shadows;
@@ -97,12 +97,39 @@ SkinTargets ScenePass::AddSkin(FrameGraph* graph, const Settings& settings, cons
         Clear(framebuffer, 0, {0.0f, 0.0f, 0.0f, kFarAway});
         Clear(framebuffer, 1, {back.r, back.g, back.b, 0.0f});
         Clear(framebuffer, 2, {0.0f, 0.0f, 0.0f, 0.0f});
-        Clear(framebuffer, 3, {0.5f, 0.5f, 0.5f, 0.0f});
+        Clear(framebuffer, 3, {0.0f, 0.0f, 0.0f, 0.0f});
         Clear(framebuffer, 4, {kNoSurface, 0.0f, 0.0f, 0.0f});
         scene_->BindTables(has_shadows ? resources.Get(pass.shadows) : 0);
-        return scene_->DrawScene(settings, Shading::kSkin);
+        return scene_->DrawScene(settings, SceneKind::kSkin);
       });
   return data.out;
+}
+
+FacetTargets ScenePass::AddFacets(FrameGraph* graph, const Settings& settings, int width,
+                                  int height) {
+  return graph->AddPass<FacetTargets>(
+      "scene",
+      [&](FrameGraph::Builder& builder, FacetTargets& out) {
+        const auto target = [&](std::string_view name, PixelFormat format) {
+          return builder.Write(builder.Create(name, {width, height, format, 1}));
+        };
+        out = {target("scene colour", PixelFormat::kRgba8),
+                    target("scene normal", PixelFormat::kRgba16F),
+                    target("scene geometric", PixelFormat::kRgba8),
+                    target("scene matter", PixelFormat::kRgba8),
+                    target("scene depth", PixelFormat::kR32F),
+                    target("scene z", PixelFormat::kDepth32F)};
+      },
+      [this, settings](const FrameGraph::Resources& resources, const FacetTargets& out) {
+        const std::array<TextureId, 5> colours = {
+            resources.Get(out.colour), resources.Get(out.normal), resources.Get(out.geometric),
+            resources.Get(out.matter), resources.Get(out.depth)};
+        const GLuint framebuffer = device_->Framebuffer(colours, resources.Get(out.z));
+        const TextureDesc& desc = resources.Desc(out.depth);
+        BeginScene(framebuffer, desc.width, desc.height);
+        Clear(framebuffer, 4, {kNoSurface, 0.0f, 0.0f, 0.0f});  // nobody reads the others there
+        return scene_->DrawScene(settings, SceneKind::kFacets);
+      });
 }
 
 }  // namespace furrow::render

@@ -15,6 +15,18 @@ struct SkinTargets {
   FrameGraph::Handle albedo;
   FrameGraph::Handle normal;
   FrameGraph::Handle depth;  // metres along the camera's axis
+  FrameGraph::Handle z;      // the depth buffer, for FullscreenPass::surface_z; none of several
+                             // samples
+};
+
+// The same before there is light; see shaders/common_stored_facet.glsl.
+struct FacetTargets {
+  FrameGraph::Handle colour;
+  FrameGraph::Handle normal;
+  FrameGraph::Handle geometric;
+  FrameGraph::Handle matter;
+  FrameGraph::Handle depth;  // metres along the camera's axis
+  FrameGraph::Handle z;
 };
 
 inline constexpr float kFarAway = 60000.0f;  // FAR_AWAY of the shaders: no skin
@@ -41,6 +53,9 @@ class ScenePass {
   // The skin pipeline's scene: five targets. `shadows`: of ShadowPass; none without shadows.
   [[nodiscard]] SkinTargets AddSkin(FrameGraph* graph, const Settings& settings,
                                     const Targets& targets, FrameGraph::Handle shadows);
+  // The skin pipeline's scene without light, one sample a pixel: five targets.
+  [[nodiscard]] FacetTargets AddFacets(FrameGraph* graph, const Settings& settings, int width,
+                                       int height);
 
  private:
   SceneDraw* scene_;

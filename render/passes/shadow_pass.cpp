@@ -4,7 +4,7 @@
 namespace furrow::render {
 
 FrameGraph::Handle ShadowPass::Add(FrameGraph* graph, const Settings& settings) {
-  const int resolution = settings.shadow.resolution;
+  const int resolution = scene_->setup().shadow_resolution;
   struct Data {
     FrameGraph::Handle depth;
   };

@@ -56,7 +56,8 @@ Handle SubsurfacePass::AddAxis(FrameGraph* graph, const AxisPass& what, Handle i
        .fragment = "separable.frag.glsl",
        .defines = {},
        .reads = {in, unscattered},
-       .writes = {{what.target, LightDesc(geometry)}}},
+       .writes = {{what.target, LightDesc(geometry)}},
+       .surface_z = geometry.surface_z},
       [this, what, kernel, settings, geometry] {
         glUniform2i(kAxis, what.axis == 0 ? 1 : 0, what.axis);
         glUniform1i(kNumTaps, static_cast<GLint>(kernel.size()) - 1);
@@ -109,7 +110,8 @@ Handle SubsurfacePass::AddGaussians(FrameGraph* graph, Handle irradiance,
        .fragment = "gaussian_sum.frag.glsl",
        .defines = {},
        .reads = {irradiance, blurs[0], blurs[1], blurs[2], blurs[3], blurs[4], blurs[5]},
-       .writes = {{"scattered", LightDesc(geometry)}}},
+       .writes = {{"scattered", LightDesc(geometry)}},
+       .surface_z = geometry.surface_z},
       [this, settings, geometry] {
         glUniform1f(kSumStrength, settings.strength);
         DrawSkin(geometry);
@@ -125,7 +127,8 @@ Handle SubsurfacePass::AddBurley(FrameGraph* graph, Handle irradiance,
        .fragment = "burley.frag.glsl",
        .defines = {},
        .reads = {irradiance},
-       .writes = {{"scattered", LightDesc(geometry)}}},
+       .writes = {{"scattered", LightDesc(geometry)}},
+       .surface_z = geometry.surface_z},
       [this, settings, geometry] {
         std::vector<glm::vec2> offsets;
         std::vector<glm::vec3> weights;

@@ -15,6 +15,7 @@ struct SkinGeometry {
   float focus_distance = 1.0f;  // metres; depths in the irradiance's alpha count from it
   float pixels_per_mm = 1.0f;   // there
   ScreenRect bounds;            // all skin lies within
+  FrameGraph::Handle surface_z;  // of FullscreenPass
 };
 
 // Lets the light on skin scatter. `irradiance`: rgb: light, a: metres behind the focus, 60000 where

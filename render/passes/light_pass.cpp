@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/passes/light_pass.h"
+
+namespace furrow::render {
+namespace {
+
+// Locations in common_view.glsl and light.frag.glsl.
+enum Location : GLint { kViewRotation = 0, kLens = 3, kRange = 4 };
+constexpr std::size_t kOpenUnit = 10;
+
+std::string Define(const char* name, int value) {
+  return std::string(name) + " " + std::to_string(value);
+}
+
+}  // namespace
+
+SkinTargets AddLightPass(FrameGraph* graph, const FacetTargets& facets, FrameGraph::Handle shadows,
+                         const OcclusionPass::Openness& open, const Settings& settings,
+                         const OcclusionGeometry& geometry, SceneDraw* scene,
+                         Fullscreen* fullscreen) {
+  std::vector<std::string> defines = Defines(SceneDraw::LightShader(settings));
+  defines.push_back(Define("OCCLUSION", open.target.version >= 0));
+  defines.push_back(Define("SCALE", open.scale));
+  std::vector<FrameGraph::Handle> reads = {facets.colour, facets.normal, facets.geometric,
+                                           facets.matter, facets.depth};
+  reads.resize(kOpenUnit + 1);
+  for (const GLuint unit : SceneDraw::kShadowUnits) reads[unit] = shadows;
+  reads[kOpenUnit] = open.target;
+  const auto target = [&](std::string_view name, PixelFormat format) {
+    return FullscreenPass::Target{name, {geometry.width, geometry.height, format, 1}};
+  };
+  const std::vector<FrameGraph::Handle> lit = fullscreen->AddPass(
+      graph,
+      {.name = "light",
+       .fragment = "light.frag.glsl",
+       .defines = defines,
+       .reads = reads,
+       .writes = {target("scene irradiance", PixelFormat::kRgba16F),
+                  target("scene radiance", PixelFormat::kRgba16F),
+                  target("scene albedo", PixelFormat::kRgba8)},
+       .surface_z = facets.z},
+      [settings, geometry, scene, fullscreen] {
+        const glm::vec3& back = geometry.background;
+        scene->BindLights(settings);
+        glUniformMatrix3fv(kViewRotation, 1, GL_FALSE, &geometry.view_rotation[0].x);
+        glUniform4f(kLens, geometry.pixels_per_slope, 0.5f * static_cast<float>(geometry.width),
+                    0.5f * static_cast<float>(geometry.height), 0.0f);
+        glUniform1f(kRange, OcclusionPass::RangeOf(settings.occlusion));
+        fullscreen->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
+        fullscreen->Clear(1, back.r, back.g, back.b, 0.0f);
+        fullscreen->Draw(geometry.bounds);
+      });
+  return {lit[0], lit[1], lit[2], facets.normal, facets.depth, facets.z};
+}
+
+}  // namespace furrow::render
