@@ -23,6 +23,7 @@ class Sink : public Link {
 class Pictures : public PictureSource {
  public:
   void Submit(RenderJob job) override { last = std::move(job); }
+  bool WithdrawStill(std::uint64_t) override { return true; }
   Result<render::Camera> Preset(std::string_view) const override { return render::Camera(); }
   RenderJob last;
 };
