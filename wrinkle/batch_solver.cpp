@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "wrinkle/batch_kernel.h"
+#include "wrinkle/scalar.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -163,6 +164,31 @@ void BatchSolver::RunFirstKind() {
   }
   grouping.Solve();
   waiting_.resize(num_left);
+}
+
+JobStatus BatchSolver::SetLevel(SubjectSolver* solver, const LocalPose& pose,
+                                std::size_t num_drivers) {
+  const BindingData& data = solver->binding().data();
+  const std::size_t first = data.NumValues(solver->num_drivers_);
+  const std::size_t last = data.NumValues(num_drivers);
+  solver->num_drivers_ = num_drivers;
+  FilterContext& filter = solver->filter_context_;
+  if (last <= first || !filter.started || filter.since_input > 0.0) return JobStatus::kOk;
+  std::vector<float> values(data.driver_value_names.size());
+  const DriverJob drivers{.binding = &solver->binding(),
+                          .local = pose.joints,
+                          .blend_shapes = pose.blend_shapes,
+                          .driver_values = values,
+                          .num_drivers = num_drivers};
+  if (const JobStatus status = drivers.Run(); status != JobStatus::kOk) return status;
+  for (std::size_t i = first; i < last; ++i) {
+    solver->raw_values_[i] = filter.value[i] = filter.raw[i] = Saturate(values[i]);
+    filter.derivative[i] = 0.0f;
+  }
+  return WrinkleWeightsJob{.binding = &solver->binding(),
+                           .driver_values = solver->filtered_values(),
+                           .wrinkle_weights = solver->weights_}
+      .Run();
 }
 
 float* BatchSolver::Scratch(std::size_t size) {

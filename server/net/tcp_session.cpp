@@ -24,6 +24,8 @@ namespace {
 constexpr auto kToken = asio::experimental::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReadBytes = 64 * 1024;
 constexpr std::size_t kMaxReplies = 1024;
+// A write this old is of a peer that does not read: a message goes out in microseconds.
+constexpr Time kStuckAfter = std::chrono::milliseconds(100);
 constexpr auto kWatchInterval = std::chrono::milliseconds(500);
 
 std::string NameOf(const asio::ip::tcp::socket& socket) {
@@ -169,6 +171,8 @@ int TcpSession::SendFrame(std::uint64_t key, std::span<const std::uint8_t> messa
   if (!writing_) wake_.cancel();
   return dropped;
 }
+
+bool TcpSession::IsStuck(Time now) const { return writing_ && now - write_started_ > kStuckAfter; }
 
 void TcpSession::DropFrames(std::uint64_t key) { outbox_.DropFrames(key); }
 

@@ -82,6 +82,12 @@ void SubjectPipeline::SolveAnew() {
   if (has_pose_) (void)Solve(sequence_, capture_time_us_);
 }
 
+void SubjectPipeline::SetLevel(std::size_t num_drivers) {
+  if (num_drivers == level()) return;
+  // A pose that was solved before: it is still one that can be.
+  (void)wrinkle::BatchSolver::SetLevel(&solver_, solved_pose(), num_drivers);
+}
+
 wrinkle::JobStatus SubjectPipeline::Decay(double dt) { return solver_.Decay(dt); }
 
 bool SubjectPipeline::neutral() const {

@@ -52,6 +52,11 @@ class SubjectPipeline {
   // Between the two.
   [[nodiscard]] bool waits() const { return waits_; }
 
+  // From the next pose on only so many of the rig's drivers count, in its order: those that
+  // somebody looks at. Drivers that join begin at the pose that is there.
+  void SetLevel(std::size_t num_drivers);
+  [[nodiscard]] std::size_t level() const { return solver_.num_drivers(); }
+
   // Nothing arrived for `dt` more seconds: hold, then decay to neutral. The pose stays as it was.
   [[nodiscard]] wrinkle::JobStatus Decay(double dt);
   // True once every weight has decayed to neutral.

@@ -36,6 +36,10 @@ void Subscribers::Publish(Subject& subject, std::span<const std::uint8_t> pose, 
       }
       wish->flow->CountDue(now);
     }
+    if (HoldBack(*subscription)) {
+      subscription->owed = true;
+      continue;
+    }
     subscription->owed = !subscription->gate.Pass(now);
     if (subscription->owed) {
       metrics_->Add(Counter::kFramesSkippedRate);
@@ -59,7 +63,23 @@ void Subscribers::PublishOwed(Time now) {
   }
 }
 
+// For a peer that takes nothing, nothing is encoded or kept: what waits is dropped once, and when
+// it takes something again the newest pose comes first. Pictures have a flow control of their own.
+bool Subscribers::HoldBack(Subscription& subscription) {
+  const bool can_wait =
+      !subscription.every && !std::holds_alternative<PicturesWish>(subscription.wish);
+  if (!subscription.peer->stuck || !can_wait) return subscription.held_back = false;
+  if (!subscription.held_back) subscription.peer->link->DropFrames(subscription.uid);
+  ++subscription.dropped;
+  metrics_->Add(std::holds_alternative<PosesWish>(subscription.wish)
+                    ? Counter::kPosesDroppedSlow
+                    : Counter::kWeightsDroppedSlow);
+  return subscription.held_back = true;
+}
+
 void Subscribers::PublishOwed(Subscription& subscription, Time now) {
+  if (subscription.held_back && subscription.peer->stuck) return;
+  subscription.held_back = false;
   PicturesWish* viewer = FlowOf(subscription);
   if (viewer != nullptr && !viewer->flow->MayAsk(now)) return;
   if (!subscription.gate.Pass(now)) return;

@@ -33,7 +33,8 @@ Hub::Hub(Parts parts)
                    static_cast<std::size_t>(parts.limits.max_skeletons),
                    std::move(parts.skeletons)),
       publishers_(limits_, &definitions_, &subjects_, &postman_, metrics_),
-      subscribers_(limits_, &subjects_, parts.pictures, parts.settings, &postman_, metrics_) {}
+      subscribers_(limits_, &subjects_, parts.pictures, parts.settings,
+                   recording_ != nullptr || on_weights_ != nullptr, &postman_, metrics_) {}
 
 PeerId Hub::AddPeer(Transport transport, std::string name, Link* link, Time now) {
   const TokenBucket bucket(limits_.packets_per_second, limits_.packet_burst);
@@ -310,6 +311,7 @@ void Hub::Tick(Time now) {
     subjects_.Remove(subject->id);
   }
   ForgetRefusedMocap(now);
+  peers_.ForEach([now](Peer& peer) { peer.stuck = peer.link->IsStuck(now); });
   subscribers_.PublishOwed(now);
   peers_.ForEach([&](Peer& peer) {
     if (peer.transport != Transport::kUdp || now - peer.last_heard < kUdpLease) return;

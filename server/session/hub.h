@@ -89,7 +89,8 @@ class Hub {
 
   // For whoever runs the session: what is there, and what may be changed while it runs.
   [[nodiscard]] const SubjectRegistry& subjects() const { return subjects_; }
-  // Null: nobody of that name. Empty: who has been there longest.
+  // Null: nobody of that name. Empty: who has been there longest. Who is looked up is evaluated in
+  // full from then on, whoever subscribes to what.
   [[nodiscard]] Subject* FindSubject(std::string_view name);
   // Who sends it: a peer's name, for people.
   [[nodiscard]] std::string_view SourceOf(const Subject& subject);

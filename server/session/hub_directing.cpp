@@ -11,7 +11,11 @@
 namespace furrow::server {
 
 Subject* Hub::FindSubject(std::string_view name) {
-  return name.empty() ? subjects_.First() : subjects_.Find(name);
+  Subject* subject = name.empty() ? subjects_.First() : subjects_.Find(name);
+  if (subject == nullptr) return nullptr;
+  subject->in_full = true;
+  subject->pipeline->SetLevel(wrinkle::kAllDrivers);
+  return subject;
 }
 
 std::string_view Hub::SourceOf(const Subject& subject) {

@@ -37,6 +37,8 @@ class Link {
   virtual void TakesBundles(bool /*takes*/) {}
   // The frames of a key are no longer wanted.
   virtual void DropFrames(std::uint64_t key) = 0;
+  // The peer has not taken a byte for a while: what it is sent would only push out what waits.
+  [[nodiscard]] virtual bool IsStuck(Time /*now*/) const { return false; }
 };
 
 // Somebody at the other end of a connection or a UDP address.
@@ -51,6 +53,7 @@ struct Peer {
   Time last_heard{0};
   StrayLimiter strays;  // poses without an offer
   int num_subscriptions = 0;
+  bool stuck = false;                   // its link was, at the last tick
   bool publishes = false;               // had an offer accepted
   std::uint16_t last_subscription = 0;  // the id given out last
 };

@@ -50,10 +50,11 @@ struct Subject {
   std::shared_ptr<const protocol::SkeletonOffer> offer;
   protocol::SequenceWindow window;
   std::unique_ptr<SubjectPipeline> pipeline;
-  Time last_pose{0};    // arrival
-  Time last_update{0};  // arrival or decay
-  bool ended = false;   // its publisher said goodbye: decays, then leaves
-  bool lost = false;    // no pose for too long: holds, decays
+  Time last_pose{0};     // arrival
+  Time last_update{0};   // arrival or decay
+  bool ended = false;    // its publisher said goodbye: decays, then leaves
+  bool lost = false;     // no pose for too long: holds, decays
+  bool in_full = false;  // all of its weights are wanted, whoever subscribes to what
   SubjectStats stats;
   RestDetector rest;  // kept up while somebody watches with flow control
 };

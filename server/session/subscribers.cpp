@@ -33,11 +33,13 @@ std::string Oversize(const std::vector<std::string>& names, Transport transport)
 }  // namespace
 
 Subscribers::Subscribers(const Limits& limits, SubjectRegistry* subjects, PictureSource* pictures,
-                         const render::Settings& settings, Postman* postman, Metrics* metrics)
+                         const render::Settings& settings, bool all_drivers, Postman* postman,
+                         Metrics* metrics)
     : limits_(limits),
       subjects_(subjects),
       pictures_(pictures),
       settings_(settings),
+      all_drivers_(all_drivers),
       postman_(postman),
       metrics_(metrics) {}
 
@@ -216,7 +218,21 @@ void Subscribers::Attach(Subscription& subscription, Subject& subject) {
     subscription.subject = &subject;
     by_subject_[subject.id].push_back(&subscription);
   }
+  UpdateLevel(subject);
   subscription.owed = subject.pipeline->has_pose();  // the newest pose there is, at the next tick
+}
+
+// The drivers that are needed, and no more, from the rig's first on.
+void Subscribers::UpdateLevel(Subject& subject) {
+  std::size_t needed = all_drivers_ || subject.in_full ? wrinkle::kAllDrivers : 0;
+  for (const Subscription* subscription : by_subject_[subject.id]) {
+    if (const auto* wish = std::get_if<WeightsWish>(&subscription->wish)) {
+      needed = std::max(needed, wish->num_drivers);
+    } else if (std::holds_alternative<PicturesWish>(subscription->wish)) {
+      needed = wrinkle::kAllDrivers;
+    }
+  }
+  subject.pipeline->SetLevel(needed);
 }
 
 void Subscribers::Refuse(Subscription& subscription, ErrorCode code, std::string why) {
@@ -229,6 +245,7 @@ void Subscribers::Refuse(Subscription& subscription, ErrorCode code, std::string
 void Subscribers::Erase(Subscription& subscription) {
   if (subscription.subject != nullptr) {
     std::erase(by_subject_[subscription.subject->id], &subscription);
+    UpdateLevel(*subscription.subject);
   }
   subscription.peer->link->DropFrames(subscription.uid);
   --subscription.peer->num_subscriptions;
@@ -284,6 +301,7 @@ void Subscribers::OnSubjectReady(Subject& subject) {
   // poses before weights has each pose before what was made of it.
   std::ranges::sort(to_bind, {}, &Subscription::uid);
   for (Subscription* subscription : to_bind) Bind(*subscription, subject);
+  UpdateLevel(subject);
 }
 
 void Subscribers::OnSubjectGone(Subject& subject) {

@@ -26,9 +26,11 @@ namespace furrow::server {
 // (STANDARD.md sections 8 and 9).
 class Subscribers {
  public:
-  // `pictures` may be null: nothing is drawn here.
+  // `pictures` may be null: nothing is drawn here. `all_drivers`: all weights are used, whoever
+  // subscribes; else of each subject only the drivers are evaluated that its subscriptions need.
   Subscribers(const Limits& limits, SubjectRegistry* subjects, PictureSource* pictures,
-              const render::Settings& settings, Postman* postman, Metrics* metrics);
+              const render::Settings& settings, bool all_drivers, Postman* postman,
+              Metrics* metrics);
 
   // All answer with SubscribeReply or an error.
   void Subscribe(Peer& peer, const protocol::Header& header,
@@ -84,9 +86,12 @@ class Subscribers {
 
   bool BindPoses(Subscription& subscription, PosesWish& wish, Subject& subject);
   void Attach(Subscription& subscription, Subject& subject);
+  void UpdateLevel(Subject& subject);
 
   void Deliver(Subscription& subscription, std::span<const std::uint8_t> pose, std::int64_t age_us,
                Time now, Jobs* jobs);
+  // Whether the peer is stuck; the newest pose is then owed.
+  bool HoldBack(Subscription& subscription);
   void SendPose(Subscription& subscription, std::span<const std::uint8_t> pose);
   void TellDropped(Subscription& subscription, Time now);
   void SendWeights(Subscription& subscription, const WeightsWish& wish, std::int64_t age_us);
@@ -116,6 +121,7 @@ class Subscribers {
   SubjectRegistry* const subjects_;
   PictureSource* const pictures_;
   ViewSettings settings_;
+  const bool all_drivers_;
   Postman* const postman_;
   Metrics* const metrics_;
   std::unordered_map<std::uint64_t, std::unique_ptr<Subscription>> subscriptions_;  // by uid

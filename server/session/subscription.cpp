@@ -3,6 +3,7 @@
 
 #include "protocol/hash.h"
 #include "protocol/pattern.h"
+#include "wrinkle/driver_level.h"
 
 namespace furrow::server {
 
@@ -21,6 +22,9 @@ std::vector<std::string> WeightsWish::Bind(const wrinkle::RigBinding& binding) {
     chosen.push_back(all[i]);
   }
   names_hash = protocol::NamesHash(chosen);
+  num_drivers = source == protocol::WeightSource::kDriverValues
+                    ? wrinkle::DriversOfValues(binding, indices)
+                    : wrinkle::DriversOfWeights(binding, indices);
   return chosen;
 }
 

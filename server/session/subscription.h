@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -24,6 +25,7 @@ struct WeightsWish {
   protocol::WeightSource source = protocol::WeightSource::kWrinkleWeights;
   std::vector<std::uint32_t> indices;  // of the bound subject's names that match
   std::uint64_t names_hash = 0;
+  std::size_t num_drivers = 0;  // of the rig, in its order, that they come from
 
   // All names this wish picks from.
   [[nodiscard]] std::span<const std::string> Names(const wrinkle::RigBinding& binding) const;
@@ -58,7 +60,9 @@ struct Subscription {
   bool wait = false;
   Subject* subject = nullptr;  // null: waiting
   RateGate gate;
-  bool owed = false;  // the newest pose was left out for its rate, and nothing newer has come
+  // The newest pose was left out, for its rate or a stuck peer, and nothing newer has come.
+  bool owed = false;
+  bool held_back = false;  // the peer is stuck, and nothing of this waits for it
   std::variant<WeightsWish, PicturesWish, PosesWish> wish;
   bool every = false;         // TCP: nothing gives way to newer frames
   std::uint64_t dropped = 0;  // of every: frames left out, and how many the peer was told of

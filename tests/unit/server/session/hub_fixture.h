@@ -26,6 +26,7 @@ class FakePeer : public Link {
     return 0;
   }
   void DropFrames(std::uint64_t key) override { dropped_keys.push_back(key); }
+  bool IsStuck(Time) const override { return stuck; }
 
   template <class Message>
   struct Got {
@@ -53,6 +54,7 @@ class FakePeer : public Link {
   std::deque<std::vector<std::uint8_t>> inbox;
   std::vector<std::uint64_t> dropped_keys;
   std::uint64_t bytes_received = 0;
+  bool stuck = false;
   PeerId id = 0;
   std::uint64_t session = 77;
 
