@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <turbojpeg.h>
 
+#include "character/picture_codec.h"
 #include "render/renderer.h"
 
 namespace furrow::render {
@@ -28,21 +27,16 @@ Result<std::vector<std::uint8_t>> EncodeJpeg(const Image& image, int quality) {
 }
 
 Result<std::vector<std::uint8_t>> EncodePng(const Image& image) {
-  std::vector<std::uint8_t> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  const auto output = OIIO::ImageOutput::create("picture.png");
-  const auto failure = [&] {
-    return Status(StatusCode::kInternal, output ? output->geterror() : OIIO::geterror(), "PNG");
-  };
-  if (!output || !output->set_ioproxy(&memory)) return failure();
-  OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  spec.attribute("png:compressionLevel",
-                 4);  // half the time of the default for a few percent of size
-  if (!output->open("picture.png", spec)) return failure();
-  if (!output->write_image(OIIO::TypeDesc::UINT8, image.rgb.data())) return failure();
-  if (!output->close()) return failure();
-  return bytes;
+  character::Picture picture;
+  picture.name = "PNG";
+  picture.width = image.width;
+  picture.height = image.height;
+  picture.channels = 3;
+  picture.pixels = image.rgb;
+  // Half the time of the library's own compression for a few percent of size.
+  const auto bytes = character::EncodePicture(picture, {.srgb = true, .compression = 4});
+  if (!bytes.ok()) return bytes.status();
+  return std::vector<std::uint8_t>(bytes->begin(), bytes->end());
 }
 
 }  // namespace

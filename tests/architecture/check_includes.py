@@ -36,7 +36,7 @@ CONFINED = [
     (r"prometheus/", {"server/http"}),
     (r"glm/", {"wrinkle", "motion", "recording", "character", "render", "server", "client/load", "client/cli"}),
     (r"hwy/", {"wrinkle"}),
-    (r"OpenImageIO/", {"character", "render"}),
+    (r"OpenImageIO/", {"character/oiio"}),
     (r"turbojpeg\.h", {"render"}),
     (r"spdlog/", {"server"}),
     (r"CLI/", {"server", "client/cli", "character/generator"}),

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/picture_codec.h"
+
+#include <filesystem>
+#include <system_error>
+
+#include <dlfcn.h>
+
+namespace furrow::character {
+namespace {
+
+std::filesystem::path ModulePath() {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return program.parent_path().parent_path() / "lib" / "furrow" / "furrow-pictures.so";
+}
+
+// Stays until the program ends, as those libraries want it.
+Result<const PictureCodec*> LoadModule() {
+  const std::filesystem::path path = ModulePath();
+  void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* make = module == nullptr ? nullptr : dlsym(module, "FurrowPictureCodec");
+  if (make == nullptr) {
+    const char* why = dlerror();
+    return Status(StatusCode::kUnavailable,
+                  std::string("pictures cannot be read or written: ") + (why ? why : "no codec"),
+                  path.string(), "build the target furrow_pictures, or install it with furrow");
+  }
+  return reinterpret_cast<const PictureCodec* (*)()>(make)();
+}
+
+}  // namespace
+
+Result<const PictureCodec*> GetPictureCodec() {
+  static const Result<const PictureCodec*> codec = LoadModule();
+  return codec;
+}
+
+}  // namespace furrow::character
