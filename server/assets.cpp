@@ -14,6 +14,24 @@ namespace furrow::server {
 
 namespace {
 
+namespace fs = std::filesystem;
+
+// The rig that goes with a character: the one asked for, or the one beside it, as LoadCharacter()
+// has it; empty where there is none or no character.
+fs::path RigOf(const fs::path& character, const fs::path& rig) {
+  std::error_code error;
+  if (!fs::exists(character, error)) return {};
+  if (!rig.empty()) return rig;
+  fs::path beside = character.parent_path() / (character.stem().string() + ".rig.json");
+  return fs::exists(beside, error) ? beside : fs::path();
+}
+
+Status LoadRigAlone(const fs::path& path, const wrinkle::PoseSource& poses, Assets* assets) {
+  auto rig = character::LoadRig(path, poses);
+  if (rig.ok()) assets->rig = std::make_shared<const wrinkle::Rig>(*std::move(rig));
+  return rig.status();
+}
+
 // Without the maps that ship all goes by equal names; only a map that is asked for must be there.
 Result<character::SkeletonMatcher> LoadMatcher(const std::string& map) {
   auto matcher = character::SkeletonMatcher::Create(map);
@@ -31,12 +49,10 @@ Result<Assets> LoadAssets(const Config& config) {
   if (!matcher.ok()) return matcher.status().At("--skeleton-map");
   assets.skeletons = *std::move(matcher);
   if (config.character.empty() && !config.rig.empty()) {
-    auto rig = character::LoadRig(config.rig, poses);
-    if (!rig.ok()) return rig.status();
-    assets.rig = std::make_shared<const wrinkle::Rig>(*std::move(rig));
+    if (Status status = LoadRigAlone(config.rig, poses, &assets); !status.ok()) return status;
     return assets;
   }
-  std::filesystem::path glb = config.character;
+  fs::path glb = config.character;
   if (glb.empty()) {
     auto shipped = character::FindDataFile("default.glb");
     if (!shipped.ok()) {
@@ -46,9 +62,14 @@ Result<Assets> LoadAssets(const Config& config) {
     }
     glb = *std::move(shipped);
   }
+  const fs::path rig = RigOf(glb, config.rig);
+  if (!config.render && !rig.empty()) {  // mesh and pictures are a hundred times what weights need
+    if (Status status = LoadRigAlone(rig, poses, &assets); !status.ok()) return status;
+    return assets;
+  }
   auto loaded = character::LoadCharacter(glb, config.rig, poses);
   if (!loaded.ok()) return loaded.status();
-  if (!config.render) {  // its mesh and pictures are a hundred times what weights need
+  if (!config.render) {
     assets.rig = std::make_shared<const wrinkle::Rig>(std::move(loaded->rig));
     return assets;
   }

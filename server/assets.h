@@ -18,7 +18,8 @@ struct Assets {
   character::SkeletonMatcher skeletons;
 };
 
-// Loads what `config` names, or the default character. Errors: those of LoadCharacter() and
+// Loads what `config` names, or the default character; where nothing is drawn its rig alone, as far
+// as it has one. Errors: those of LoadCharacter() and
 // LoadRig(), and of SkeletonMatcher::Create() where a skeleton map is asked for (without the maps
 // that ship, joints go by equal names, with a warning); kNotFound where there is no default
 // character (says how to come by one).
