@@ -152,6 +152,7 @@ void StrainDriverSet::Skin(const Entry& entry, std::span<const Transform> local,
     const Vertex& vertex = vertices_[entry.first_vertex + i];
     glm::vec3 position(0.0f);
     for (const Influence& influence : vertex.influences) {
+      if (influence.skin_weight == 0.0f) continue;  // most hang on two or three
       const glm::mat4x3& frame = frames[influence.joint];
       position += influence.skin_weight * (frame * glm::vec4(vertex.place, 1.0f));
     }
