@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// What it costs to send weights to 64 subscribers: sendto beside the daemon's packed path. Both
+// write each subscriber's envelope before the same payload and send it to the same addresses; what
+// came is read between the batches, which is not measured.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <asio/io_context.hpp>
+#include <asio/ip/udp.hpp>
+
+#include "bench/report/aims.h"
+#include "bench/report/interleave.h"
+#include "client/load/spread.h"
+#include "protocol/bundle.h"
+#include "protocol/codec.h"
+#include "report/table.h"
+#include "server/net/udp_sender.h"
+
+namespace furrow::bench {
+namespace {
+
+using asio::ip::udp;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::size_t kSubscribers = 64;
+constexpr double kAim = 0.45;
+
+struct Subscriber {
+  explicit Subscriber(asio::io_context& io)
+      : socket(io, udp::endpoint(asio::ip::address_v4::loopback(), 0)),
+        to(socket.local_endpoint()) {
+    socket.set_option(asio::socket_base::receive_buffer_size(4 << 20));
+    socket.non_blocking(true);
+  }
+  udp::socket socket;
+  udp::endpoint to;
+};
+
+// The way that weights take from the hub to the sockets, with so many subjects in a batch.
+class FanOut {
+ public:
+  FanOut(int subjects, int weights) : subjects_(subjects) {
+    for (std::size_t i = 0; i < kSubscribers; ++i) subscribers_.push_back(Subscriber(io_));
+    protocol::WeightFrame frame;
+    frame.names_hash = 7;
+    for (int i = 0; i < weights; ++i) frame.values.push_back(static_cast<float>(i % 8) / 8.0f);
+    Bytes message;
+    protocol::Encoder().Encode({.session = 1}, frame, message);
+    payload_.assign(message.begin() + protocol::kEnvelopeBytes, message.end());
+    socket_.non_blocking(true);
+    sender_.Open(socket_.native_handle());
+  }
+
+  [[nodiscard]] std::size_t message_bytes() const {
+    return protocol::kEnvelopeBytes + payload_.size();
+  }
+
+  void SendPlain() {
+    ForEach([this](std::size_t, const udp::endpoint& to) {
+      asio::error_code full;  // shows in what comes
+      socket_.send_to(asio::buffer(message_), to, 0, full);
+    });
+  }
+  void SendPacked(server::Packing packing) {
+    ForEach([this, packing](std::size_t key, const udp::endpoint& to) {
+      std::ranges::copy(message_, sender_.Prepare().begin());
+      sender_.Commit(key, to, message_.size(), packing);
+    });
+    sender_.Flush();
+  }
+
+  // Reads what came; false where it is not all that was sent.
+  [[nodiscard]] bool Drain() {
+    std::size_t messages = 0;
+    for (Subscriber& subscriber : subscribers_) {
+      for (;;) {
+        asio::error_code error;
+        const std::size_t size = subscriber.socket.receive(asio::buffer(received_), 0, error);
+        if (error) break;
+        ++datagrams_;
+        protocol::Unbundler unbundler;
+        (void)unbundler.Open(std::span(received_).first(size));
+        std::span<const std::uint8_t> message;
+        while (unbundler.Next(message)) messages += message.size() == message_bytes() ? 1 : 0;
+      }
+    }
+    return messages == kSubscribers * static_cast<std::size_t>(subjects_);
+  }
+  // That came since the last call.
+  [[nodiscard]] std::size_t TakeDatagrams() { return std::exchange(datagrams_, 0); }
+
+ private:
+  // As the hub goes about it: subject after subject, each to everybody.
+  template <class Use>
+  void ForEach(const Use& use) {
+    ++sequence_;
+    for (int subject = 0; subject < subjects_; ++subject) {
+      for (std::size_t i = 0; i < subscribers_.size(); ++i) {
+        const auto stream = static_cast<std::uint16_t>(subject + 1);
+        protocol::WriteMessage({.session = 1, .stream = stream, .sequence = sequence_}, payload_,
+                               message_);
+        use(i, subscribers_[i].to);
+      }
+    }
+  }
+
+  int subjects_;
+  asio::io_context io_;
+  std::vector<Subscriber> subscribers_;
+  udp::socket socket_{io_, udp::endpoint(asio::ip::address_v4::loopback(), 0)};
+  server::UdpSender sender_;
+  Bytes payload_;
+  Bytes message_;
+  Bytes received_ = Bytes(2048);
+  std::uint32_t sequence_ = 0;
+  std::size_t datagrams_ = 0;
+};
+
+// Seconds a weight set, over so many batches; the program ends where one is lost.
+Sample SampleOf(FanOut& fan_out, int subjects, int batches, const std::function<void()>& send) {
+  Sample sum;
+  for (int i = 0; i < batches; ++i) {
+    const Sample one = Measure(send, subjects * static_cast<int>(kSubscribers) * batches);
+    sum.wall += one.wall;
+    sum.cpu += one.cpu;
+    if (!fan_out.Drain()) {
+      std::fprintf(stderr, "error: weights were lost; give sockets more room: net.core.rmem_max\n");
+      std::exit(1);
+    }
+  }
+  return sum;
+}
+
+load::Spread Ratio(const std::vector<Sample>& samples, const std::vector<Sample>& plain) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < samples.size(); ++i) ratios.push_back(samples[i].cpu / plain[i].cpu);
+  return load::SpreadOf(std::move(ratios));
+}
+
+std::string Text(const load::Spread& ratio) {
+  return Between(ratio.median, ratio.low, ratio.high, 2) + "x";
+}
+
+// One row: so many subjects whose weights leave together.
+std::vector<std::string> Row(int subjects, int weights, int repetitions) {
+  constexpr int kSetsASample = 16384;
+  const int batches = std::max(1, kSetsASample / (subjects * static_cast<int>(kSubscribers)));
+  FanOut fan_out(subjects, weights);
+  const auto sampler = [&](const std::function<void()>& send) {
+    return
+        [&fan_out, subjects, batches, send] { return SampleOf(fan_out, subjects, batches, send); };
+  };
+  const std::vector<Sampler> samplers = {
+      sampler([&] { fan_out.SendPlain(); }),
+      sampler([&] { fan_out.SendPlain(); }),
+      sampler([&] { fan_out.SendPacked(server::Packing::kAlone); }),
+      sampler([&] { fan_out.SendPacked(server::Packing::kShared); }),
+  };
+  const auto samples = Interleave(samplers, repetitions);
+  (void)fan_out.TakeDatagrams();
+  fan_out.SendPacked(server::Packing::kShared);
+  (void)fan_out.Drain();
+  const double sets = static_cast<double>(kSubscribers) * subjects;
+  const double datagrams = static_cast<double>(fan_out.TakeDatagrams());
+  const load::Spread packed = Ratio(samples[3], samples[0]);
+  return {std::to_string(subjects),
+          std::to_string(fan_out.message_bytes()),
+          report::Fixed(MedianCpu(samples[0]) * 1e9, 0),
+          Text(Ratio(samples[1], samples[0])),
+          Text(Ratio(samples[2], samples[0])),
+          Text(packed),
+          report::Fixed(sets / datagrams, 1),
+          packed.median <= kAim ? "yes" : "no"};
+}
+
+int Run(const std::vector<int>& subjects, const std::vector<int>& weights, int repetitions) {
+  report::Table table{"A weight set to one of 64 subscribers",
+                      {"subjects in a batch", "bytes", "sendto, ns of CPU", "sendto again",
+                       "system cuts", "bundles", "sets a datagram", "<= 0.45x"},
+                      {}};
+  for (const int count : weights) {
+    for (const int each : subjects) table.rows.push_back(Row(each, count, repetitions));
+  }
+  std::printf("%s\n", report::ToMarkdown(table).c_str());
+  return 0;
+}
+
+}  // namespace
+}  // namespace furrow::bench
+
+int main(int argc, char** argv) {
+  std::vector<int> subjects = {1, 2, 4, 16, 64};
+  std::vector<int> weights = {37, 81};
+  int repetitions = 21;
+  CLI::App app{"What it costs to send weights to 64 subscribers: sendto beside the packed path"};
+  app.add_option("--subjects", subjects, "whose weights leave together")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--weights", weights, "of a subject: 37 has the default rig, 81 make 400 bytes")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 250))
+      ->capture_default_str();
+  app.add_option("--repetitions", repetitions, "of each way, in turn")
+      ->check(CLI::Range(3, 10000))
+      ->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  return furrow::bench::Run(subjects, weights, repetitions);
+}
