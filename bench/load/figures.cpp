@@ -3,9 +3,8 @@
 
 #include <cstdio>
 
-#include <nlohmann/json.hpp>
-
 #include "client/cli/load_input.h"
+#include "client/load/clock.h"
 #include "client/load/comparison.h"
 #include "client/load/echo.h"
 #include "client/load/verdict.h"
@@ -19,8 +18,7 @@ using report::Fixed;
 constexpr int kSubjects = 256;
 
 std::string Between(const load::Spread& spread) {
-  return Fixed(spread.median, 2) + " (" + Fixed(spread.low, 2) + " to " + Fixed(spread.high, 2) +
-         ")";
+  return bench::Between(spread.median, spread.low, spread.high, 2);
 }
 
 // Whether a figure's ratio keeps its limit: at most it, or at least it.
@@ -66,10 +64,16 @@ class Duel {
   load::Comparison Run() {
     const load::Contestants contestants{
         .server = daemon_.target(), .raw = Echo(raw_), .control = Echo(control_)};
-    return Take(load::Compare(
-        performance_, contestants, options_,
+    load::Comparison comparison = load::Compare(
+        [this](const load::Target& target, const load::RunOptions& options) {
+          return load::Run(performance_, target, options, Silently());
+        },
+        contestants, options_,
         {.go_on = [] { return true; },
-         .progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); }}));
+         .progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); },
+         .seconds = [] { return 1e-9 * static_cast<double>(load::SteadyNanoseconds()); }});
+    if (!comparison.failure.ok()) Give(comparison.failure);
+    return comparison;
   }
 
   load::Performance performance_;
@@ -161,31 +165,6 @@ std::vector<Aim> MeasureAims(const Setting& setting) {
   for (Aim& aim : Stalled(setting)) aims.push_back(std::move(aim));
   aims.push_back(IdleMemory(setting));
   return aims;
-}
-
-std::string ToMarkdown(const std::vector<Aim>& aims) {
-  report::Table table{
-      "What was aimed at, and what was reached",
-      {"figure", "against", "reached (middle half)", "raw against raw", "aim", "met"},
-      {}};
-  for (const Aim& aim : aims) {
-    table.rows.push_back(
-        {aim.what, aim.baseline, aim.reached, aim.control, aim.aim, aim.met ? "yes" : "no"});
-  }
-  return report::ToMarkdown(table);
-}
-
-nlohmann::json ToJson(const std::vector<Aim>& aims) {
-  nlohmann::json json = nlohmann::json::array();
-  for (const Aim& aim : aims) {
-    json.push_back({{"figure", aim.what},
-                    {"against", aim.baseline},
-                    {"reached", aim.reached},
-                    {"control", aim.control},
-                    {"aim", aim.aim},
-                    {"met", aim.met}});
-  }
-  return json;
 }
 
 }  // namespace furrow::bench

@@ -49,7 +49,7 @@ int Run(Options options) {
   };
   if (wanted("aims")) {
     const auto aims = MeasureAims(setting);
-    Say(ToMarkdown(aims), &markdown);
+    Say(ToMarkdown(aims, "raw against raw"), &markdown);
     json["aims"] = ToJson(aims);
   }
   const std::pair<const char*, Curve (*)(const Setting&)> curves[] = {

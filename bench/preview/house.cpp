@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/preview/house.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+#include "protocol/hash.h"
+#include "server/net/clock.h"
+
+namespace furrow::bench {
+namespace {
+
+using server::Time;
+
+constexpr char kSubject[] = "performer";
+constexpr Time kTick = server::FromSeconds(0.01);  // as furrowd's
+
+template <class T>
+T Take(Result<T> result) {
+  if (result.ok()) return *std::move(result);
+  std::fprintf(stderr, "bench_preview: %s\n", result.status().ToString().c_str());
+  std::exit(1);
+}
+
+// One blend shape that makes one wrinkle weight: a subject that costs nothing.
+wrinkle::Rig SmallRig() {
+  wrinkle::Rig rig;
+  rig.name = "preview";
+  rig.wrinkle_maps.push_back({.name = "squash"});
+  wrinkle::Driver driver;
+  driver.name = "brow";
+  driver.kind = wrinkle::Driver::Kind::kBlendShape;
+  driver.blend_shape.blend_shape = "brow";
+  rig.drivers.push_back(driver);
+  wrinkle::Region region;
+  region.name = "brow";
+  region.feeds.push_back({"squash", {{"brow", "value", 1.0f}}});
+  rig.regions.push_back(region);
+  return rig;
+}
+
+}  // namespace
+
+// Has its picture ready as soon as it is asked, and notes when.
+class House::ReadyRenderer : public render::Renderer {
+ public:
+  explicit ReadyRenderer(House* house) : house_(house) {}
+  Status Submit(const render::FrameRequest&) override {
+    ++in_flight_;
+    return {};
+  }
+  Result<render::Image> Poll(bool) override {
+    const auto encoded = static_cast<int>(house_->Count(server::Counter::kPicturesEncoded));
+    house_->most_encodes_ = std::max(house_->most_encodes_.load(), encoded - encoded_);
+    encoded_ = encoded;
+    --in_flight_;
+    render::Image image = house_->picture_;
+    house_->ready_at_ = server::ReadClock();
+    return image;
+  }
+  int in_flight() const override { return in_flight_; }
+  void SetObserver(render::FrameGraphObserver*) override {}
+  std::string description() const override { return "a picture"; }
+  Result<render::Camera> Preset(std::string_view) const override { return render::Camera(); }
+
+ private:
+  House* house_;
+  int in_flight_ = 0;
+  int encoded_ = 0;
+};
+
+House::House(render::Image picture)
+    : picture_(std::move(picture)),
+      skeleton_(
+          wrinkle::Skeleton::Create({{.name = "head", .parent = wrinkle::kNoJoint}}).value()) {
+  render_ = Take(server::RenderThread::Start(
+      &skeleton_,
+      [this]() -> Result<std::unique_ptr<render::Renderer>> {
+        return std::unique_ptr<render::Renderer>(std::make_unique<ReadyRenderer>(this));
+      },
+      &metrics_,
+      [this](server::FinishedPicture finished) {
+        Post([shared = std::make_shared<server::FinishedPicture>(std::move(finished))](
+                 server::Hub& hub, Time) { hub.OnPicture(*shared); });
+      }));
+  server::Hub::Parts parts;
+  parts.rig = std::make_shared<const wrinkle::Rig>(SmallRig());
+  parts.character = &skeleton_;
+  parts.pictures = render_.get();
+  parts.metrics = &metrics_;
+  parts.make_token = [] { return 1; };
+  hub_ = std::make_unique<server::Hub>(std::move(parts));
+  http_ =
+      Take(server::HttpServer::Start({.config = {.port = 0, .max_connections = 1024},
+                                      .bind = "127.0.0.1",
+                                      .post_to_hub = [this](Task task) { Post(std::move(task)); },
+                                      .answer = {},
+                                      .metrics = &metrics_}));
+  loop_ = std::thread([this] { Run(); });
+}
+
+House::~House() {
+  Post([this](server::Hub&, Time) { stopping_ = true; });
+  loop_.join();
+  http_.reset();
+  hub_.reset();
+}
+
+void House::Post(Task task) {
+  const std::lock_guard lock(mutex_);
+  tasks_.push_back(std::move(task));
+  changed_.notify_one();
+}
+
+void House::Run() {
+  Offer();
+  Time next_tick = server::ReadClock();
+  Time next_pose = next_tick;
+  std::deque<Task> running;
+  while (!stopping_) {
+    {
+      std::unique_lock lock(mutex_);
+      const Time next = std::min(next_tick, next_pose);
+      changed_.wait_for(lock, next - server::ReadClock(), [this] { return !tasks_.empty(); });
+      running.swap(tasks_);
+    }
+    for (const Task& task : running) task(*hub_, server::ReadClock());
+    running.clear();
+    const Time now = server::ReadClock();
+    if (now >= next_pose) {
+      if (streaming_) SendPose(now);
+      next_pose = std::max(next_pose + server::FromSeconds(1.0 / kRate), now);
+    }
+    if (now < next_tick) continue;
+    hub_->Tick(now);
+    next_tick = now + kTick;
+  }
+}
+
+template <class Message>
+void House::Send(const Message& message, Time now) {
+  std::vector<std::uint8_t> bytes;
+  encoder_.Encode({.session = 1,
+                   .stream = 1,
+                   .sequence = poses_,
+                   .capture_time_us = server::ToMicroseconds(now)},
+                  message, bytes);
+  hub_->OnMessage(publisher_, bytes, now);
+}
+
+void House::Offer() {
+  const Time now = server::ReadClock();
+  publisher_ = hub_->AddPeer(server::Transport::kWeb, "publisher", &publisher_link_, now);
+  protocol::SkeletonOffer offer;
+  offer.subject = kSubject;
+  offer.blend_shape_names = {"brow"};
+  skeleton_hash_ = offer.skeleton_hash = protocol::SkeletonHash(offer);
+  Send(offer, now);
+}
+
+void House::SendPose(Time now) {
+  protocol::PoseFrame pose;
+  pose.skeleton_hash = skeleton_hash_;
+  pose.num_blend_shapes = 1;
+  pose.blend_shape_indices = {0};
+  pose.blend_shapes = {0.5f + 0.5f * std::sin(0.1f * static_cast<float>(++poses_))};
+  Send(pose, now);
+}
+
+void House::MoveOnce() {
+  Post([this](server::Hub&, Time now) { SendPose(now); });
+}
+
+void House::Stream(bool on) { streaming_ = on; }
+
+}  // namespace furrow::bench

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "render/renderer.h"
+#include "server/http/http_server.h"
+#include "server/pipeline/render_thread.h"
+#include "server/session/hub.h"
+
+namespace furrow::bench {
+
+// A daemon's preview, of its own parts: hub, render thread, web side, each on its thread as in
+// furrowd. What is drawn is given and ready at once, so that all that is measured is what happens
+// to a picture after it was drawn.
+class House {
+ public:
+  static constexpr double kRate = 60.0;  // poses a second
+
+  // `picture`: what every frame shows, at its size. Ends the program where a socket cannot be had.
+  explicit House(render::Image picture);
+  ~House();
+  House(const House&) = delete;
+  House& operator=(const House&) = delete;
+
+  [[nodiscard]] std::uint16_t port() const { return http_->port(); }
+  [[nodiscard]] std::uint64_t Count(server::Counter counter) const { return metrics_.Get(counter); }
+  // When the last picture was ready to be packed.
+  [[nodiscard]] server::Time ready_at() const { return ready_at_.load(); }
+  // The most pictures packed of one drawn, since the last call.
+  [[nodiscard]] int TakeMostEncodes() { return most_encodes_.exchange(0); }
+
+  // The subject moves: once, or at kRate from now on and no more.
+  void MoveOnce();
+  void Stream(bool on);
+
+ private:
+  class ReadyRenderer;
+  using Task = std::function<void(server::Hub&, server::Time)>;
+
+  void Post(Task task);
+  void Run();
+  void Offer();
+  void SendPose(server::Time now);
+  template <class Message>
+  void Send(const Message& message, server::Time now);
+
+  render::Image picture_;
+  wrinkle::Skeleton skeleton_;
+  server::Metrics metrics_;
+  std::atomic<server::Time> ready_at_{server::Time{0}};
+  std::atomic<int> most_encodes_ = 0;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Task> tasks_;
+  bool stopping_ = false;
+
+  struct Silent : server::Link {  // the publisher's: it does not listen
+    void SendReply(std::span<const std::uint8_t>) override {}
+    int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t) override { return 0; }
+    void DropFrames(std::uint64_t) override {}
+  } publisher_link_;
+  server::PeerId publisher_ = 0;
+  std::uint64_t skeleton_hash_ = 0;
+  std::uint32_t poses_ = 0;
+  std::atomic<bool> streaming_ = false;
+  protocol::Encoder encoder_;
+
+  std::unique_ptr<server::RenderThread> render_;
+  std::unique_ptr<server::Hub> hub_;
+  std::unique_ptr<server::HttpServer> http_;
+  std::thread loop_;
+};
+
+}  // namespace furrow::bench

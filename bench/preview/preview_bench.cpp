@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// What becomes of a picture once it is drawn: the figures of the preview in docs/PERFORMANCE.md, by
+// one command.
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "bench/preview/figures.h"
+#include "character/character.h"
+#include "character/data_dir.h"
+#include "motion/pose_source.h"
+#include "wrinkle/pose.h"
+
+namespace furrow::bench {
+namespace {
+
+struct Options {
+  PreviewSetting setting;
+  std::filesystem::path out = "bench-out";
+  int width = 1280;
+  int height = 720;
+};
+
+// The default character at rest, in skin: as hard to pack as what a session looks at.
+Result<render::Image> DrawPicture(int width, int height) {
+  const auto path = character::FindDataFile("default.glb");
+  if (!path.ok()) return path.status();
+  const auto character = character::LoadCharacter(*path, {}, motion::CachedPoseSource());
+  if (!character.ok()) return character.status();
+  const auto renderer = render::Renderer::Create(*character);
+  if (!renderer.ok()) return renderer.status();
+  const wrinkle::Skeleton& skeleton = character->skeleton;
+  std::vector<glm::mat4> model(static_cast<std::size_t>(skeleton.num_joints()));
+  const wrinkle::LocalToModelJob to_model{&skeleton, skeleton.rest_pose(), model};
+  if (to_model.Run() != wrinkle::JobStatus::kOk) return Status(StatusCode::kInternal, "no pose");
+  render::FrameRequest request;
+  request.model = model;
+  request.settings.shading = render::Shading::kSkin;
+  request.camera = *(*renderer)->Preset("face");
+  request.width = width;
+  request.height = height;
+  return (*renderer)->Render(request);
+}
+
+bool Write(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  if (file << text) return true;
+  std::fprintf(stderr, "bench_preview: cannot write %s\n", path.c_str());
+  return false;
+}
+
+int Run(Options options) {
+  spdlog::set_level(spdlog::level::err);  // the performer has a brow and no joints
+  auto picture = DrawPicture(options.width, options.height);
+  if (!picture.ok()) {
+    std::fprintf(stderr, "bench_preview: %s\n", picture.status().ToString().c_str());
+    return 1;
+  }
+  options.setting.picture = *std::move(picture);
+  const auto aims = MeasurePreview(options.setting);
+  const std::string markdown = ToMarkdown(aims, "");
+  std::printf("%s\n", markdown.c_str());
+  std::filesystem::create_directories(options.out);
+  const bool written = Write(options.out / "preview.md", markdown) &&
+                       Write(options.out / "preview.json", ToJson(aims).dump(2) + "\n");
+  return written ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace furrow::bench
+
+int main(int argc, char** argv) {
+  furrow::bench::Options options;
+  CLI::App app{"What becomes of a drawn picture: to its viewers, and while they stall"};
+  app.add_option("--out", options.out, "folder for preview.md and preview.json")
+      ->capture_default_str();
+  app.add_option("--rounds", options.setting.rounds, "pictures of the first figure")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  app.add_option("--stall", options.setting.stall_seconds, "seconds")
+      ->check(CLI::Range(0.5, 25.0))
+      ->capture_default_str();
+  app.add_option("--viewers", options.setting.viewers, "of all figures but the first")
+      ->check(CLI::Range(1, 200))
+      ->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  return furrow::bench::Run(options);
+}

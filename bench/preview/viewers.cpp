@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/preview/viewers.h"
+
+#include <utility>
+
+#include "server/net/clock.h"
+
+namespace furrow::bench {
+
+Viewer::Viewer(std::uint16_t port, int width, int height, bool acknowledged, int quality)
+    : client_(port) {
+  (void)client_.Upgrade();
+  client_.Send(protocol::SubscribePictures{.width = static_cast<std::uint16_t>(width),
+                                           .height = static_cast<std::uint16_t>(height),
+                                           .quality = static_cast<std::uint8_t>(quality),
+                                           .acknowledged = acknowledged},
+               0, 1);
+  protocol::Header header;
+  (void)client_.Await<protocol::SubscribeReply>(&header);
+  stream_ = header.stream;
+}
+
+std::optional<Received> Viewer::Next() {
+  std::optional<protocol::ImageFrame> image = client_.Await<protocol::ImageFrame>();
+  if (!image) return std::nullopt;
+  const server::Time now = server::ReadClock();
+  const std::size_t num_bytes = image->bytes.size();
+  image->bytes = {};
+  return Received{*std::move(image), num_bytes, now};
+}
+
+void Viewer::Acknowledge(std::uint32_t number) {
+  client_.Send(protocol::FrameAck{number}, stream_);
+}
+
+std::vector<Received> Viewer::Watch(double seconds) {
+  std::vector<Received> seen;
+  const server::Time end = server::ReadClock() + server::FromSeconds(seconds);
+  while (server::ReadClock() < end) {
+    std::optional<Received> picture = Next();
+    if (!picture) break;
+    Acknowledge(picture->image.number);
+    seen.push_back(*std::move(picture));
+  }
+  return seen;
+}
+
+double Viewer::RoundTrip() {
+  const server::Time sent = server::ReadClock();
+  client_.Send(protocol::Ping{1});
+  (void)client_.Await<protocol::Pong>();
+  return server::ToSeconds(server::ReadClock() - sent);
+}
+
+// Answers overtake pictures that wait, so it is asked until an answer had none before it.
+int Viewer::CountUnderWay() {
+  int count = 0;
+  for (int answers_in_a_row = 0; answers_in_a_row < 3;) {
+    client_.Send(protocol::Ping{1});
+    ++answers_in_a_row;
+    while (const auto frame = client_.Next()) {
+      protocol::MessageView view;
+      if (protocol::OpenMessage(frame->payload, view, protocol::kMaxReplyBytes) !=
+              protocol::DecodeStatus::kOk ||
+          view.kind == protocol::MessageKind::kPong) {
+        break;
+      }
+      if (view.kind != protocol::MessageKind::kImage) continue;
+      ++count;
+      answers_in_a_row = 0;
+    }
+  }
+  return count;
+}
+
+}  // namespace furrow::bench

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/report/aims.h"
+
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "report/table.h"
+
+namespace furrow::bench {
+
+std::string Between(double median, double low, double high, int digits) {
+  return report::Fixed(median, digits) + " (" + report::Fixed(low, digits) + " to " +
+         report::Fixed(high, digits) + ")";
+}
+
+std::string ToMarkdown(const std::vector<Aim>& aims, const std::string& control) {
+  report::Table table{"What was aimed at, and what was reached",
+                      {"figure", "against", "reached (middle half)"},
+                      {}};
+  if (!control.empty()) table.header.push_back(control);
+  table.header.insert(table.header.end(), {"aim", "met"});
+  for (const Aim& aim : aims) {
+    std::vector<std::string> row{aim.what, aim.baseline, aim.reached};
+    if (!control.empty()) row.push_back(aim.control);
+    row.insert(row.end(), {aim.aim, aim.met ? "yes" : "no"});
+    table.rows.push_back(std::move(row));
+  }
+  return report::ToMarkdown(table);
+}
+
+nlohmann::json ToJson(const std::vector<Aim>& aims) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const Aim& aim : aims) {
+    json.push_back({{"figure", aim.what},
+                    {"against", aim.baseline},
+                    {"reached", aim.reached},
+                    {"control", aim.control},
+                    {"aim", aim.aim},
+                    {"met", aim.met}});
+  }
+  return json;
+}
+
+}  // namespace furrow::bench
