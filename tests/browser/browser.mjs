@@ -77,6 +77,22 @@ export async function eventually(what, holds, patienceMs = PATIENCE_MS) {
   }
 }
 
+/** Fingers put down at `from`, moved to `to` in steps, and lifted; a point a finger. */
+export async function swipe(page, from, to) {
+  const steps = 6;
+  const session = await page.context().newCDPSession(page);
+  const touch = (type, points) => session.send('Input.dispatchTouchEvent', {
+    type, touchPoints: points.map(([x, y], id) => ({ x, y, id })),
+  });
+  await touch('touchStart', from);
+  for (let step = 1; step <= steps; ++step) {
+    const at = (a, b) => a + ((b - a) * step) / steps;
+    await touch('touchMove', from.map(([x, y], finger) => [at(x, to[finger][0]), at(y, to[finger][1])]));
+  }
+  await touch('touchEnd', []);
+  await session.detach();
+}
+
 export function keep(page, name) {
   return page.screenshot({ path: join(ARTEFACTS, `${name}.png`) });
 }

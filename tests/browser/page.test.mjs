@@ -3,23 +3,12 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { after, before, test } from 'node:test';
-import { changedShare, difference, eventually, keep, launch, openPage, pixels, shown, still } from './browser.mjs';
-import { Daemon, recording } from './daemon.mjs';
+import { test } from 'node:test';
+import { changedShare, difference, eventually, keep, openPage, pixels, shown, still, swipe } from './browser.mjs';
+import { browser, daemon } from './played.mjs';
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const SMILE_S = 2.0;
-let daemon;
-let browser;
-
-before(async () => {
-  daemon = await Daemon.start(['--play', recording('performance')]);
-  browser = await launch();
-});
-after(async () => {
-  await browser?.close();
-  await daemon?.stop();
-});
 
 async function closePage(page) {
   assert.deepEqual(page.errors, []);
@@ -59,6 +48,46 @@ test('a drag turns the camera, a framing brings it back', async () => {
   await page.click('[data-preset=face]');
   await still(page);
   assert(difference(front, await pixels(page)) < 1);
+  await closePage(page);
+});
+
+test('fingers turn, move and zoom the picture, and tap what there is', async () => {
+  await daemon.hold(SMILE_S);
+  const page = await openPage(browser, daemon.address, { hasTouch: true, viewport: { width: 1180, height: 820 } });
+  await still(page);
+  const box = await page.locator('.surface').boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  let former = await pixels(page);
+  for (const [what, from, to] of [
+    ['one finger turns', [[x, y]], [[x + 90, y]]],
+    ['two fingers move', [[x - 60, y], [x + 60, y]], [[x - 60, y + 80], [x + 60, y + 80]]],
+    ['two fingers zoom', [[x - 40, y], [x + 40, y]], [[x - 120, y], [x + 120, y]]],
+  ]) {
+    await swipe(page, from, to);
+    await still(page);
+    const now = await pixels(page);
+    assert(changedShare(former, now) > 0.02, what);
+    former = now;
+  }
+  await page.tap('[data-preset=eyes]');
+  await still(page);
+  assert(changedShare(former, await pixels(page)) > 0.05);
+  await page.tap('#tab-session');
+  await page.locator('.subjects button').first().waitFor();
+  assert.equal(await page.evaluate(() => document.scrollingElement.scrollTop), 0); // fingers move the camera alone
+  await closePage(page);
+});
+
+test('the first paint takes at most 300 kB', async () => {
+  const page = await openPage(browser, daemon.address);
+  await shown(page);
+  const loaded = await page.evaluate(() => [
+    ...performance.getEntriesByType('navigation'), ...performance.getEntriesByType('resource'),
+  ].map(({ name, encodedBodySize, transferSize }) => ({ name, bytes: Math.max(encodedBodySize, transferSize) })));
+  const total = loaded.reduce((sum, { bytes }) => sum + bytes, 0);
+  assert(loaded.length >= 3 && total > 10_000, 'nothing was loaded?');
+  assert(total <= 300_000, `${total} bytes: ${JSON.stringify(loaded)}`);
+  assert.deepEqual(loaded.filter(({ name }) => !name.startsWith(daemon.address)), []);
   await closePage(page);
 });
 

@@ -1,22 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The menu: every group takes effect on the picture; undo, compare, presets, text; what is refused says so.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
-import { changedShare, difference, eventually, keep, launch, openPage, pixels, still } from './browser.mjs';
-import { Daemon, recording } from './daemon.mjs';
+import { before, test } from 'node:test';
+import { changedShare, difference, eventually, keep, openPage, pixels, still } from './browser.mjs';
+import { browser, daemon } from './played.mjs';
 
-let daemon;
-let browser;
-
-before(async () => {
-  daemon = await Daemon.start(['--play', recording('performance')]);
-  await daemon.hold(2);
-  browser = await launch();
-});
-after(async () => {
-  await browser?.close();
-  await daemon?.stop();
-});
+before(() => daemon.hold(2));
 
 async function search(page, text) {
   await page.fill('#settings-search', text);

@@ -3,25 +3,15 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { once } from 'node:events';
-import { after, before, test } from 'node:test';
-import { eventually, keep, launch, openPage, still } from './browser.mjs';
-import { Daemon, furrow, furrowOutput, recording } from './daemon.mjs';
+import { test } from 'node:test';
+import { eventually, keep, openPage, still } from './browser.mjs';
+import { furrow, furrowOutput, recording } from './daemon.mjs';
+import { browser, daemon } from './played.mjs';
 
 /** Brows down. */
 const FROWN_S = 6.5;
 /** On their way there: a frown that the rig's pose is not yet. */
 const HALF_FROWN_S = 9;
-let daemon;
-let browser;
-
-before(async () => {
-  daemon = await Daemon.start(['--play', recording('performance')]);
-  browser = await launch();
-});
-after(async () => {
-  await browser?.close();
-  await daemon?.stop();
-});
 
 /** Rows of a CSV by their first column; the header's names with them. */
 function table(csv) {
