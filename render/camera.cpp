@@ -19,12 +19,12 @@ float Heading(const glm::mat4& rotation) {
   return 2.0f * std::atan2(q.y, q.w);
 }
 
-// How the studio moves with the subject: to where the followed joint went, turned as the root
-// turned.
+}  // namespace
+
 glm::mat4 FollowTransform(const Camera& camera, const wrinkle::Skeleton& skeleton,
                           std::span<const glm::mat4> model) {
   const int joint = camera.follow_joint;
-  if (joint >= skeleton.num_joints()) return glm::mat4(1.0f);
+  if (joint < 0 || joint >= skeleton.num_joints()) return glm::mat4(1.0f);
   int root = joint;
   while (skeleton.joint_parents()[root] != wrinkle::kNoJoint) root = skeleton.joint_parents()[root];
   const float turn = Heading(model[root] * glm::inverse(skeleton.rest_model()[root]));
@@ -33,8 +33,6 @@ glm::mat4 FollowTransform(const Camera& camera, const wrinkle::Skeleton& skeleto
   return glm::translate(glm::mat4(1.0f), to) * glm::rotate(glm::mat4(1.0f), turn, kUp) *
          glm::translate(glm::mat4(1.0f), -from);
 }
-
-}  // namespace
 
 CameraFrame ComputeCamera(const Camera& camera, const wrinkle::Skeleton& skeleton,
                           std::span<const glm::mat4> model, float aspect,

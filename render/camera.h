@@ -37,6 +37,11 @@ struct CameraFrame {
   }
 };
 
+// How the studio moves with a subject: from the rest pose to where `model` has the followed joint,
+// turned about +Y as its root turned. Nowhere where the camera follows none.
+[[nodiscard]] glm::mat4 FollowTransform(const Camera& camera, const wrinkle::Skeleton& skeleton,
+                                        std::span<const glm::mat4> model);
+
 // `model`: the pose, num_joints long; the camera follows it as Camera::follow_joint says, to where
 // the subject stands (`placement`). `aspect`: width / height. Near and far planes are set from the
 // distance to the target.

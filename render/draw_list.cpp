@@ -2,25 +2,57 @@
 #include "render/draw_list.h"
 
 #include <algorithm>
+#include <functional>
+#include <limits>
+
+#include <glm/geometric.hpp>
 
 namespace furrow::render {
+namespace {
 
-void DrawList::Build(std::span<const GpuMesh> meshes, std::span<const NamedSubject> subjects,
-                     const std::array<View, kNumViews>& views, float reach) {
-  meshes_.assign(meshes.size(), {});
-  for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh) {
+// How a mesh of one subject looks.
+struct Look {
+  std::array<bool, DrawList::kNumViews> is_seen{};
+  float pixels = 0.0f;  // of a metre of the mesh where it is nearest
+};
+
+Look LookAt(const JointBounds& bounds, const PosedSubject& subject,
+            std::span<const DrawList::View> views, float reach) {
+  Look look;
+  float of_lamps = 0.0f;
+  for (std::size_t view = 0; view < views.size(); ++view) {
+    if (!views[view].is_asked) continue;
+    const auto extent =
+        bounds.Look(subject.model, views[view].projection * subject.placement, reach);
+    if (!extent.is_seen()) continue;
+    look.is_seen[view] = true;
+    const float pixels = extent.nearest > 0.0f ? views[view].pixels / extent.nearest
+                                               : std::numeric_limits<float>::infinity();
+    float& most = view == DrawList::kCamera ? look.pixels : of_lamps;
+    most = std::max(most, pixels);
+  }
+  if (!look.is_seen[DrawList::kCamera]) look.pixels = of_lamps;
+  look.pixels *= glm::length(glm::vec3(subject.placement[0]));
+  return look;
+}
+
+}  // namespace
+
+void DrawList::Build(GpuCharacter* gpu, std::span<const NamedSubject> subjects,
+                     const std::array<View, kNumViews>& views, const Tolerance& tolerance) {
+  meshes_.assign(gpu->meshes().size(), {});
+  for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) {
     Mesh& list = meshes_[mesh];
     for (std::size_t subject = 0; subject < subjects.size(); ++subject) {
-      const PosedSubject& who = *subjects[subject].subject;
-      bool is_seen = false;
+      const Look look =
+          LookAt(gpu->meshes()[mesh].bounds, *subjects[subject].subject, views, tolerance.reach);
+      if (std::ranges::none_of(look.is_seen, std::identity())) continue;
       for (std::size_t view = 0; view < views.size(); ++view) {
-        if (!views[view].is_asked) continue;
-        const glm::mat4 projection = views[view].projection * who.placement;
-        if (!meshes[mesh].bounds.Look(who.model, projection, reach).is_seen()) continue;
+        if (!look.is_seen[view]) continue;
         list.seen[view].push_back(static_cast<std::uint32_t>(list.subjects.size()));
-        is_seen = true;
       }
-      if (is_seen) list.subjects.push_back(static_cast<std::uint32_t>(subject));
+      list.subjects.push_back(static_cast<std::uint32_t>(subject));
+      list.levels.push_back(gpu->Level(mesh, tolerance.error_pixels / look.pixels));
     }
   }
 }

@@ -8,7 +8,7 @@
 
 #include <glm/mat4x4.hpp>
 
-#include "render/gpu_mesh.h"
+#include "render/gpu_character.h"
 #include "render/lighting.h"
 #include "render/subjects.h"
 
@@ -21,17 +21,24 @@ class DrawList {
   static constexpr int kNumViews = kNumLights + 1;
   struct View {
     glm::mat4 projection{1.0f};  // to clip space
+    float pixels = 0.0f;         // of a metre where clip space's w is 1
     bool is_asked = true;        // a dark lamp's shadows are not
   };
+  struct Tolerance {
+    float reach = 0.0f;         // metres that surfaces may stand off their bounds
+    float error_pixels = 0.0f;  // that a simplified mesh may be off by
+  };
 
-  // `reach`: metres that surfaces may stand off their bounds.
-  void Build(std::span<const GpuMesh> meshes, std::span<const NamedSubject> subjects,
-             const std::array<View, kNumViews>& views, float reach);
+  void Build(GpuCharacter* gpu, std::span<const NamedSubject> subjects,
+             const std::array<View, kNumViews>& views, const Tolerance& tolerance);
 
   // The subjects of whom some view sees the mesh, in ascending order.
   [[nodiscard]] std::span<const std::uint32_t> subjects(std::size_t mesh) const {
     return meshes_[mesh].subjects;
   }
+  // Of GpuMesh::levels, one each of subjects(): the same for all views, so that no surface throws
+  // the shadow of another on itself. By the camera, or by the lamps where the camera sees nothing.
+  [[nodiscard]] std::span<const int> levels(std::size_t mesh) const { return meshes_[mesh].levels; }
   // Those whom a view sees, as positions in subjects().
   [[nodiscard]] std::span<const std::uint32_t> seen(int view, std::size_t mesh) const {
     return meshes_[mesh].seen[static_cast<std::size_t>(view)];
@@ -40,6 +47,7 @@ class DrawList {
  private:
   struct Mesh {
     std::vector<std::uint32_t> subjects;
+    std::vector<int> levels;
     std::array<std::vector<std::uint32_t>, kNumViews> seen;
   };
   std::vector<Mesh> meshes_;

@@ -221,6 +221,16 @@ Status GpuCharacter::AddMeshes(const Character& character) {
   return {};
 }
 
+int GpuCharacter::Level(std::size_t index, float metres) {
+  constexpr float kLeastShare = 0.05f;  // of an edge: nothing collapses for less
+  GpuMesh& mesh = meshes_[index];
+  if (!(metres > kLeastShare * mesh.mean_edge)) return 0;
+  if (mesh.levels.empty()) AddLevels(&mesh);
+  int level = static_cast<int>(mesh.levels.size()) - 1;
+  while (level > 0 && mesh.levels[static_cast<std::size_t>(level)].error > metres) --level;
+  return level;
+}
+
 const GpuMesh& GpuCharacter::Unindexed(std::size_t mesh) {
   if (!unindexed_.contains(mesh)) unindexed_.emplace(mesh, MakeUnindexed(meshes_[mesh]));
   return unindexed_.at(mesh);

@@ -45,6 +45,9 @@ class GpuCharacter {
   [[nodiscard]] const WrinkleLayout& layout() const { return layout_; }
   // Heights of the wrinkle maps (WrinkleLayout::height_layers).
   [[nodiscard]] const WrinkleHeights& heights() const { return heights_; }
+  // The coarsest of a mesh's levels that is off by `metres` at most. Levels are made when one is
+  // first asked for that could be any coarser than the mesh.
+  [[nodiscard]] int Level(std::size_t mesh, float metres);
   // Variants of a mesh, made on first use.
   [[nodiscard]] const GpuMesh& Unindexed(std::size_t mesh);
   [[nodiscard]] const GpuPatches& Patches(std::size_t mesh);

@@ -4,7 +4,10 @@
 #include <cstddef>
 #include <vector>
 
+#include <glm/geometric.hpp>
+
 #include "render/displacement_patches.h"
+#include "render/mesh_levels.h"
 
 namespace furrow::render {
 namespace {
@@ -37,6 +40,16 @@ void DescribeShares(GLuint array, const gl::Buffer& shares) {
   glVertexArrayAttribBinding(array, kShare, 1);
 }
 
+float MeanEdge(const character::Mesh& mesh) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < mesh.indices.size(); ++i) {
+    sum += glm::distance(mesh.vertices[mesh.indices[i]].position,
+                         mesh.vertices[mesh.indices[i % 3 == 2 ? i - 2 : i + 1]].position);
+  }
+  return mesh.indices.empty() ? 0.0f
+                              : static_cast<float>(sum / static_cast<double>(mesh.indices.size()));
+}
+
 // What was uploaded: the variants are made when first asked for, and nobody keeps the mesh.
 character::Mesh ReadMesh(const GpuMesh& mesh) {
   character::Mesh read;
@@ -62,10 +75,22 @@ GpuMesh MakeGpuMesh(const character::Mesh& mesh, std::span<const glm::mat4> inve
   gpu.num_vertices = static_cast<GLsizei>(mesh.vertices.size());
   gpu.num_indices = static_cast<GLsizei>(mesh.indices.size());
   gpu.material = mesh.material;
+  gpu.mean_edge = MeanEdge(mesh);
   gpu.bounds = JointBounds(mesh, inverse_bind_matrices);
   DescribeVertices(gpu.vertex_array.name(), gpu.vertices);
   glVertexArrayElementBuffer(gpu.vertex_array.name(), gpu.indices.name());
   return gpu;
+}
+
+void AddLevels(GpuMesh* mesh) {
+  std::vector<std::uint32_t> indices;
+  for (const MeshLevel& level : MakeMeshLevels(ReadMesh(*mesh))) {
+    mesh->levels.push_back({static_cast<GLsizei>(indices.size()),
+                            static_cast<GLsizei>(level.indices.size()), level.error});
+    indices.insert(indices.end(), level.indices.begin(), level.indices.end());
+  }
+  mesh->indices = gl::MakeStaticBuffer(indices.data(), indices.size() * 4);
+  glVertexArrayElementBuffer(mesh->vertex_array.name(), mesh->indices.name());
 }
 
 GpuMesh MakeUnindexed(const GpuMesh& mesh) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include <glm/mat4x4.hpp>
 
@@ -20,6 +21,15 @@ struct GpuMesh {
   GLsizei num_vertices = 0;
   GLsizei num_indices = 0;
   int material = 0;
+  float mean_edge = 0.0f;  // metres, of the rest pose
+
+  // A range of `indices`: the whole mesh, then with ever fewer triangles (render/mesh_levels.h).
+  struct Level {
+    GLsizei first = 0;
+    GLsizei count = 0;
+    float error = 0.0f;  // metres
+  };
+  std::vector<Level> levels;  // empty: not made yet, there is the whole mesh alone
 };
 
 // The same surface as patches of DisplacementPatches::kCorners vertices, for tessellation.
@@ -34,6 +44,8 @@ struct GpuPatches {
 // Needs a current context, as all of these. `mesh` is checked.
 [[nodiscard]] GpuMesh MakeGpuMesh(const character::Mesh& mesh,
                                   std::span<const glm::mat4> inverse_bind_matrices);
+// Gives a mesh its levels.
+void AddLevels(GpuMesh* mesh);
 // With three vertices of its own to every triangle, for the view wireframe.
 [[nodiscard]] GpuMesh MakeUnindexed(const GpuMesh& mesh);
 // Shares the vertices of `mesh`, which outlives it.

@@ -119,21 +119,25 @@ Status SceneDraw::Update(const FrameRequest& request) {
                             : 0.0f;
   const std::vector<NamedSubject> subjects = SubjectsOf(request);
   is_crowd_ = subjects.size() > 1;
-  FindVisible(subjects);
+  FindVisible(subjects, settings);
   buffers_.Upload(MakeFrameBlock(setup_, settings), subjects, gpu_->layout());
   posed_.BeginFrame();
   return {};
 }
 
-void SceneDraw::FindVisible(std::span<const NamedSubject> subjects) {
+void SceneDraw::FindVisible(std::span<const NamedSubject> subjects, const Settings& settings) {
   std::array<DrawList::View, DrawList::kNumViews> views;
   views[DrawList::kCamera].projection = setup_.camera.view_projection;
+  views[DrawList::kCamera].pixels = setup_.pixels_per_slope;
   for (int light = 0; light < kNumLights; ++light) {
     views[light].projection = FlatProjection(setup_.shadows[light]);
+    views[light].pixels =
+        0.5f * static_cast<float>(setup_.shadow_resolution) * setup_.shadows[light].scale;
     // Nobody asks for a dark lamp's shadow.
     views[light].is_asked = setup_.lighting.lights[light].radiance != glm::vec3(0.0f);
   }
-  draw_list_.Build(gpu_->meshes(), subjects, views, displacement_reach_);
+  const float error_pixels = is_crowd_ ? settings.detail.error_pixels : 0.0f;
+  draw_list_.Build(gpu_, subjects, views, {displacement_reach_, error_pixels});
 }
 
 void SceneDraw::BindMasks() {
@@ -194,27 +198,35 @@ void SceneDraw::DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t ind
   std::ranges::transform(seen, first.begin(), [&](std::uint32_t subject) {
     return static_cast<GLint>(subject) * posed.per_subject;
   });
-  const GpuMesh& mesh = gpu_->meshes()[index];
   glBindVertexArray(posed.vertex_array);
   if (form == PosedMeshes::Form::kUnindexed) {
-    const std::vector<GLsizei> counts(seen.size(), mesh.num_indices);
+    const std::vector<GLsizei> counts(seen.size(), gpu_->meshes()[index].num_indices);
     glMultiDrawArrays(GL_TRIANGLES, first.data(), counts.data(), num_draws);
     return;
   }
-  const std::vector<const void*> offsets(seen.size(), nullptr);
-  GLenum kind = GL_TRIANGLES;
-  GLsizei num_indices = mesh.num_indices;
-  if (form == PosedMeshes::Form::kPatches) {
-    const GpuPatches& patches = gpu_->Patches(index);
-    glUniform1f(kHeightTexelLocation,
-                patches.metres_per_uv / static_cast<float>(gpu_->heights().side));
-    glPatchParameteri(GL_PATCH_VERTICES, DisplacementPatches::kCorners);
-    kind = GL_PATCHES;
-    num_indices = patches.num_indices;
+  std::vector<GLsizei> counts;
+  std::vector<const void*> offsets;
+  for (const std::uint32_t subject : seen) {
+    const GpuMesh::Level level = LevelOf(index, form, draw_list_.levels(index)[subject]);
+    counts.push_back(level.count);
+    offsets.push_back(reinterpret_cast<const void*>(std::uintptr_t{4} * level.first));
   }
-  const std::vector<GLsizei> counts(seen.size(), num_indices);
+  if (form == PosedMeshes::Form::kPatches) {
+    glUniform1f(kHeightTexelLocation,
+                gpu_->Patches(index).metres_per_uv / static_cast<float>(gpu_->heights().side));
+    glPatchParameteri(GL_PATCH_VERTICES, DisplacementPatches::kCorners);
+  }
+  const GLenum kind = form == PosedMeshes::Form::kPatches ? GL_PATCHES : GL_TRIANGLES;
   glMultiDrawElementsBaseVertex(kind, counts.data(), GL_UNSIGNED_INT, offsets.data(), num_draws,
                                 first.data());
+}
+
+// Patches are as fine as the screen asks for anyway.
+GpuMesh::Level SceneDraw::LevelOf(std::size_t index, PosedMeshes::Form form, int level) {
+  if (form == PosedMeshes::Form::kPatches) return {0, gpu_->Patches(index).num_indices, 0.0f};
+  const GpuMesh& mesh = gpu_->meshes()[index];
+  if (mesh.levels.empty()) return {0, mesh.num_indices, 0.0f};
+  return mesh.levels[static_cast<std::size_t>(level)];
 }
 
 Status SceneDraw::DrawShadow(const Settings& settings, int light) {

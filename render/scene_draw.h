@@ -48,11 +48,12 @@ class SceneDraw {
   [[nodiscard]] Status DrawScene(const Settings& settings, SceneKind kind);
 
  private:
-  void FindVisible(std::span<const NamedSubject> subjects);
+  void FindVisible(std::span<const NamedSubject> subjects, const Settings& settings);
   void BindMasks();
   void BindMaterial(const GpuMaterial& material);
   // The material is bound.
   [[nodiscard]] Result<PosedMeshes::Vertices> Pose(std::size_t index, PosedMeshes::Form form);
+  [[nodiscard]] GpuMesh::Level LevelOf(std::size_t index, PosedMeshes::Form form, int level);
   // Everybody of whom the view sees the mesh, in one call.
   void DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t index, PosedMeshes::Form form,
                     int view);

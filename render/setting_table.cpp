@@ -145,6 +145,9 @@ std::vector<SettingEntry> SkinEntries() {
        NumberField{FURROW_MEMBER(displacement.edge_pixels), 1.0f, 64.0f}},
       {"displacement.max_level", "", "Most parts that an edge is divided into",
        CountField{FURROW_MEMBER(displacement.max_level), 1, 64}},
+      {"detail.error_pixels", "pixels",
+       "Of several subjects, who is small has fewer triangles, off by so much; 0: never",
+       NumberField{FURROW_MEMBER(detail.error_pixels), 0.0f, 8.0f}},
   };
 }
 

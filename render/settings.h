@@ -119,6 +119,12 @@ struct DisplacementSettings {
   int max_level = 16;        // ... or divided into so many, [1, 64]
 };
 
+struct DetailSettings {
+  // Of several subjects, who is small in the picture is drawn with fewer triangles, whose surface
+  // is off by so many pixels (RMS): [0, 8]. 0: all triangles, always. A single one always has all.
+  float error_pixels = 0.5f;
+};
+
 struct BloomSettings {
   float strength = 0.05f;  // [0, 1]; 0: off
   float threshold = 1.0f;  // linear, after exposure, [0, 16]
@@ -155,6 +161,7 @@ struct Settings {
   SpecularSettings specular;
   WrinkleSettings wrinkle_maps;
   DisplacementSettings displacement;
+  DetailSettings detail;
   BloomSettings bloom;
   AntiAliasingSettings anti_aliasing;
   StripSettings strip;

@@ -57,5 +57,41 @@ TEST_F(RequestCheck, NamesTheFieldThatIsWrong) {
       "model", [](FrameRequest&) {}, StatusCode::kNonFinite);
 }
 
+TEST_F(RequestCheck, NamesTheSubjectThatIsWrong) {
+  PosedSubject good;
+  good.model = model_;
+  std::vector<PosedSubject> others(2, good);
+  const auto expect = [&](const std::string& field,
+                          StatusCode code = StatusCode::kInvalidArgument) {
+    ExpectRefused(
+        field, [&](FrameRequest& r) { r.others = others; }, code);
+    others[1] = good;
+  };
+  others[1].model = good.model.first(1);
+  expect("others[1].model");
+  others[1].placement[3].x = kNan;
+  expect("others[1].placement", StatusCode::kNonFinite);
+  others[1].placement[0].x = 2.0f;  // wider, not larger
+  expect("others[1].placement");
+  others[1].placement[0].x = -1.0f;  // a mirror
+  expect("others[1].placement");
+  others[1].placement = glm::mat4(0.0f);
+  expect("others[1].placement");
+  ExpectRefused("placement", [](FrameRequest& r) { r.placement[0].y = 1.0f; });
+}
+
+TEST_F(RequestCheck, TakesSoManySubjectsAndNoMore) {
+  FrameRequest request;
+  request.model = model_;
+  std::vector<PosedSubject> others(kMaxSubjects, request);
+  request.others = std::span(others).first(kMaxSubjects - 1);
+  EXPECT_TRUE(CheckRequest(request, 2).ok());
+  request.others = others;
+  const Status status = CheckRequest(request, 2);
+  EXPECT_EQ(status.code(), StatusCode::kLimit);
+  EXPECT_EQ(status.where(), "others");
+  EXPECT_NE(status.what().find(std::to_string(kMaxSubjects)), std::string::npos);
+}
+
 }  // namespace
 }  // namespace furrow::render

@@ -90,9 +90,10 @@ TEST_F(ShaderLibraryTest, EverySkinConfigurationCompiles) {
 }
 
 TEST_F(ShaderLibraryTest, EveryDisplacedConfigurationCompiles) {
-  for (int bits = 0; bits < 32; ++bits) {
+  for (int bits = 0; bits < 64; ++bits) {
     SceneShader shader;
     shader.displaced = true;
+    shader.crowd = (bits & 32) != 0;
     shader.wrinkle_texture = (bits & 1) != 0;
     shader.wrinkle_dynamic = (bits & 2) != 0;
     shader.shadow = (bits & 4) != 0;
@@ -103,6 +104,34 @@ TEST_F(ShaderLibraryTest, EveryDisplacedConfigurationCompiles) {
     shader.map_slots = 4;
     const Result<GLuint> program = library_.Get(shader);
     ASSERT_TRUE(program.ok()) << bits << "\n" << program.status().ToString();
+  }
+}
+
+TEST_F(ShaderLibraryTest, EveryCrowdsConfigurationCompiles) {
+  for (int bits = 0; bits < 16; ++bits) {
+    SceneShader shader;
+    shader.crowd = true;
+    shader.wrinkle_texture = (bits & 1) != 0;
+    shader.wrinkle_dynamic = (bits & 2) != 0;
+    shader.view = (bits & 4) != 0 ? View::kWeights : View::kFinal;
+    shader.shading = (bits & 8) != 0 ? Shading::kSkin : Shading::kDiffuse;
+    shader.active_maps = 2;
+    shader.mask_layers = 2;
+    const Result<GLuint> program = library_.Get(shader);
+    ASSERT_TRUE(program.ok()) << bits << "\n" << program.status().ToString();
+  }
+}
+
+TEST_F(ShaderLibraryTest, EveryPoseConfigurationCompiles) {
+  for (int bits = 0; bits < 4; ++bits) {
+    for (const int map_slots : {1, 10}) {
+      const PoseShader shader{.num_joints = 163,
+                              .dynamic = (bits & 1) != 0,
+                              .displaced = (bits & 2) != 0,
+                              .map_slots = map_slots};
+      const Result<GLuint> program = library_.Get(shader);
+      ASSERT_TRUE(program.ok()) << bits << "\n" << program.status().ToString();
+    }
   }
 }
 

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "character/character.h"
+
+namespace furrow::render {
+
+// A mesh with fewer triangles, for who is small in the picture.
+struct MeshLevel {
+  std::vector<std::uint32_t> indices;  // into the mesh's own vertices
+  float error = 0.0f;                  // metres that the surface in its rest pose is off by (RMS)
+};
+
+// The mesh itself, then each level with half the triangles of the one before, as long as that can
+// be had.
+//
+// Edges are collapsed onto one of their ends, the cheapest first by the quadric error metric
+// (Garland and Heckbert 1997), so vertices keep their UV, normal, skin weights and masks. What lies
+// on a border, a UV seam or an edge of the shading stays, and no triangle turns over.
+[[nodiscard]] std::vector<MeshLevel> MakeMeshLevels(const character::Mesh& mesh);
+
+}  // namespace furrow::render

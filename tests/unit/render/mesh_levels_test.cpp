@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/mesh_levels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "test_character.h"
+
+namespace furrow::render {
+namespace {
+
+glm::vec3 Corner(const character::Mesh& mesh, const MeshLevel& level, std::size_t i) {
+  return mesh.vertices[level.indices[i]].position;
+}
+
+TEST(MeshLevels, HalveTheTrianglesAndSayHowFarTheyAreOff) {
+  const character::Mesh mesh = test::MakeHead().meshes[0];
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh);
+  ASSERT_GE(levels.size(), 3u);
+  EXPECT_EQ(levels[0].indices, mesh.indices);
+  EXPECT_EQ(levels[0].error, 0.0f);
+  for (std::size_t i = 1; i < levels.size(); ++i) {
+    EXPECT_LT(levels[i].indices.size(), levels[i - 1].indices.size() * 4 / 5);
+    EXPECT_EQ(levels[i].indices.size() % 3, 0u);
+    EXPECT_GE(levels[i].error, levels[i - 1].error);
+    EXPECT_LT(levels[i].error, 0.02f);
+  }
+  EXPECT_GT(levels[1].error, 0.0f);
+}
+
+// Every corner of every triangle still faces outwards of an egg, and its middle is near its shell.
+TEST(MeshLevels, StayNearTheSurfaceAndTurnNoTriangleOver) {
+  const character::Mesh mesh = test::MakeHead().meshes[0];
+  const glm::vec3 centre(0.0f, 1.6f, 0.0f);
+  for (const MeshLevel& level : MakeMeshLevels(mesh)) {
+    double squares = 0.0;
+    for (std::size_t i = 0; i < level.indices.size(); i += 3) {
+      const glm::vec3 a = Corner(mesh, level, i);
+      const glm::vec3 b = Corner(mesh, level, i + 1);
+      const glm::vec3 c = Corner(mesh, level, i + 2);
+      const glm::vec3 cross = glm::cross(b - a, c - a);
+      const glm::vec3 middle = (a + b + c) / 3.0f;
+      EXPECT_GE(glm::dot(cross, middle - centre), -1e-9f);  // a pole's have no surface
+      // How far the flat triangle lies below its corners, seen from the middle of the egg.
+      const float shell =
+          (glm::length(a - centre) + glm::length(b - centre) + glm::length(c - centre)) / 3.0f;
+      squares += std::pow(shell - glm::length(middle - centre), 2.0);
+    }
+    const double off = std::sqrt(squares / (static_cast<double>(level.indices.size()) / 3.0));
+    EXPECT_LT(off, 0.001 + 3.0 * level.error);
+  }
+}
+
+// The seam's two columns of vertices, and a plane's border, are all still there.
+TEST(MeshLevels, KeepSeamsAndBorders) {
+  const character::Mesh mesh = test::MakeHead().meshes[0];
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh);
+  const std::set<std::uint32_t> left(levels.back().indices.begin(), levels.back().indices.end());
+  int on_seam = 0;
+  for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
+    const float u = mesh.vertices[i].uv.x;
+    if (u > 1e-4f && u < 1.0f - 1e-4f) continue;
+    EXPECT_TRUE(left.contains(i)) << i;
+    ++on_seam;
+  }
+  EXPECT_GT(on_seam, 10);
+}
+
+TEST(MeshLevels, OfNothingAndOfLittleAreTheMeshAlone) {
+  EXPECT_EQ(MakeMeshLevels({}).size(), 1u);
+  const character::Mesh plane = test::MakePlane(4, [](float, float) { return 0.0f; }, {}).meshes[0];
+  EXPECT_EQ(MakeMeshLevels(plane).size(), 1u);
+}
+
+}  // namespace
+}  // namespace furrow::render
