@@ -18,7 +18,7 @@ struct KindInfo {
   std::string_view name;
 };
 
-constexpr std::array<KindInfo, 19> kKinds = {{
+constexpr std::array<KindInfo, 21> kKinds = {{
     {MessageKind::kHello, "FHEL", "hello"},
     {MessageKind::kWelcome, "FWEL", "welcome"},
     {MessageKind::kPing, "FPIN", "ping"},
@@ -38,6 +38,8 @@ constexpr std::array<KindInfo, 19> kKinds = {{
     {MessageKind::kFrameAck, "FACK", "frame_ack"},
     {MessageKind::kSubscribePoses, "FSPO", "subscribe_poses"},
     {MessageKind::kDropped, "FDRP", "dropped"},
+    {MessageKind::kListSubjects, "FLSU", "list_subjects"},
+    {MessageKind::kSubjects, "FSBJ", "subjects"},
 }};
 
 constexpr std::array<std::string_view, kNumDecodeStatuses> kStatusNames = {

@@ -34,6 +34,8 @@ enum class MessageKind : std::uint8_t {
   kFrameAck,           // "FACK"
   kSubscribePoses,     // "FSPO"
   kDropped,            // "FDRP"
+  kListSubjects,       // "FLSU"
+  kSubjects,           // "FSBJ"
 };
 
 // Why bytes were refused. For counters; the order is the order of the checks, cheapest first.
@@ -97,6 +99,8 @@ struct MessageView {
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, FrameAck& message);
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, SubscribePoses& message);
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, Dropped& message);
+[[nodiscard]] DecodeStatus Decode(const MessageView& view, ListSubjects& message);
+[[nodiscard]] DecodeStatus Decode(const MessageView& view, Subjects& message);
 
 // An envelope before a payload that is encoded already: what Encode() would have made of it.
 void WriteMessage(const Header& header, std::span<const std::uint8_t> payload,
@@ -148,6 +152,8 @@ class Encoder {
   void Encode(const Header& header, const FrameAck& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const SubscribePoses& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const Dropped& message, std::vector<std::uint8_t>& out);
+  void Encode(const Header& header, const ListSubjects& message, std::vector<std::uint8_t>& out);
+  void Encode(const Header& header, const Subjects& message, std::vector<std::uint8_t>& out);
 
   struct State;  // defined where FlatBuffers is known
 

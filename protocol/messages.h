@@ -247,6 +247,17 @@ struct SubscribeReply {
   std::uint64_t publisher_session = 0;
 };
 
+// Who is there? Over TCP.
+struct ListSubjects {
+  bool follow = false;  // answered again whenever it changes
+};
+
+// header.sequence: the request's.
+struct Subjects {
+  std::vector<std::string> names;  // in order of arrival; at most kMaxListedSubjects
+  std::uint32_t total = 0;         // how many there are, beyond those named
+};
+
 // header.stream: a subscription to every frame. At most once a second, while it grows.
 struct Dropped {
   std::uint64_t frames = 0;  // that were left out since the subscription began

@@ -106,6 +106,10 @@ inline Fields FieldsOf(const SubscribePoses& m) {
 inline Fields FieldsOf(const Dropped& m) {
   return {{"frames", Json(static_cast<std::int64_t>(m.frames))}};
 }
+inline Fields FieldsOf(const ListSubjects& m) { return {{"follow", Json(m.follow)}}; }
+inline Fields FieldsOf(const Subjects& m) {
+  return {{"names", Json(m.names)}, {"total", Json(static_cast<std::int64_t>(m.total))}};
+}
 inline Fields FieldsOf(const Unsubscribe&) { return {}; }
 inline Fields FieldsOf(const SubscribeReply& m) {
   return {{"subject", Json(m.subject)},

@@ -198,6 +198,8 @@ void AddSubscribing(Files& files) {
   frame.age_us = 250'000;
   Add(files, "weights_u8", frame);
   Add(files, "dropped", Dropped{1234});
+  Add(files, "list_subjects", ListSubjects{true});
+  Add(files, "subjects", Subjects{{"anna", "bob"}, 2});
   Add(files, "image", ImageFrame{640, 480, ImageFormat::kJpeg, 0, {0xFF, 0xD8, 0xFF, 0xD9}});
 }
 

@@ -55,6 +55,8 @@ void DecodeAny(std::span<const std::uint8_t> bytes) {
     case MessageKind::kImage: return RoundTrip<p::ImageFrame>(view);
     case MessageKind::kSubscribePoses: return RoundTrip<p::SubscribePoses>(view);
     case MessageKind::kDropped: return RoundTrip<p::Dropped>(view);
+    case MessageKind::kListSubjects: return RoundTrip<p::ListSubjects>(view);
+    case MessageKind::kSubjects: return RoundTrip<p::Subjects>(view);
     case MessageKind::kUpdatePictures: return RoundTrip<p::UpdatePictures>(view);
     case MessageKind::kFrameAck: return RoundTrip<p::FrameAck>(view);
     case MessageKind::kUnknown: return;

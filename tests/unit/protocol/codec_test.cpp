@@ -39,6 +39,8 @@ DecodeStatus DecodeAny(std::span<const std::uint8_t> bytes) {
     case MessageKind::kImage: return decode(ImageFrame{});
     case MessageKind::kSubscribePoses: return decode(SubscribePoses{});
     case MessageKind::kDropped: return decode(Dropped{});
+    case MessageKind::kListSubjects: return decode(ListSubjects{});
+    case MessageKind::kSubjects: return decode(Subjects{});
     case MessageKind::kUpdatePictures: return decode(UpdatePictures{});
     case MessageKind::kFrameAck: return decode(FrameAck{});
     case MessageKind::kUnknown: break;
@@ -65,6 +67,8 @@ std::vector<test::Bytes> OneOfEach() {
           Encoded(pictures),
           Encoded(SubscribePoses{"s", true, 5, true}),
           Encoded(Dropped{7}),
+          Encoded(ListSubjects{true}),
+          Encoded(Subjects{{"a", "b"}, 2}),
           Encoded(UpdatePictures{pictures}),
           Encoded(FrameAck{3}),
           Encoded(Unsubscribe{}),
@@ -83,7 +87,7 @@ TEST(Codec, EveryKindIsRecognised) {
     EXPECT_EQ(DecodeAny(bytes), DecodeStatus::kOk) << MessageKindName(view.kind);
     kinds.insert(view.kind);
   }
-  EXPECT_EQ(kinds.size(), 19u);
+  EXPECT_EQ(kinds.size(), 21u);
 }
 
 TEST(Codec, NoTruncationIsAccepted) {
