@@ -294,7 +294,7 @@ asio::awaitable<void> Daemon::TickLoop() {
     timer.expires_at(due);
     co_await timer.async_wait(kToken);
     const Time now = ReadClock();
-    hub_->Tick(now);
+    udp_->Together([this, now] { hub_->Tick(now); });
     if (vmc_) vmc_->Tick(now);
     if (livelink_face_) livelink_face_->Tick(now);
   }

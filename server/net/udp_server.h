@@ -42,6 +42,15 @@ class UdpServer {
   void Start();
   void Close();
 
+  // What `work` sends to peers leaves together, when it ends.
+  template <class Work>
+  void Together(Work work) {
+    gathering_ = true;
+    work();
+    gathering_ = false;
+    SendAll();
+  }
+
   // Forgets idle peers and unfinished messages. Call it about once a second.
   void Expire(Time now);
 
@@ -70,7 +79,7 @@ class UdpServer {
   RecordingTap* const recording_;
   UdpBatch batch_;
   UdpSender sender_;
-  bool gathering_ = false;  // a batch is being worked on: what goes out leaves with its end
+  bool gathering_ = false;  // what goes out waits for the end of the batch that is worked on
   protocol::Reassembler reassembler_;
   std::unordered_map<Address, std::unique_ptr<UdpPeer>, AddressHash> peers_;
 };

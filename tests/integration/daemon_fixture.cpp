@@ -5,8 +5,11 @@
 #include <filesystem>
 #include <utility>
 
+#include "character/rig_file.h"
+#include "motion/pose_source.h"
 #include "protocol/hash.h"
 #include "protocol/mocap/livelink_face.h"
+#include "wrinkle/solver.h"
 
 namespace furrow::testing_net {
 
@@ -118,6 +121,25 @@ motion::Clip ArkitClip(int num_frames) {
     }
   }
   return clip;
+}
+
+std::vector<std::vector<float>> Solve(const motion::Clip& clip, const std::string& rig_name) {
+  const auto path = std::filesystem::path(FURROW_SOURCE_DIR) / "character" / "rigs" / rig_name;
+  auto rig = character::LoadRig(path, motion::CachedPoseSource());
+  EXPECT_TRUE(rig.ok()) << rig.status().ToString();
+  auto binding = wrinkle::RigBinding::Create(*rig, clip.skeleton, clip.blend_shape_names,
+                                             {.allow_missing = true});
+  EXPECT_TRUE(binding.ok()) << binding.status().ToString();
+  wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(binding)));
+  std::vector<std::vector<float>> weights;
+  wrinkle::LocalPose pose;
+  for (int frame = 0; frame < clip.num_frames(); ++frame) {
+    clip.GetPose(frame, &pose);
+    const double dt = frame == 0 ? 0.0 : clip.times[frame] - clip.times[frame - 1];
+    EXPECT_EQ(solver.Update(pose, dt), wrinkle::JobStatus::kOk);
+    weights.emplace_back(solver.wrinkle_weights().begin(), solver.wrinkle_weights().end());
+  }
+  return weights;
 }
 
 void Offer(RawClient& client, const protocol::SkeletonOffer& offer, std::uint16_t stream) {

@@ -52,6 +52,10 @@ class DaemonThread {
 // A face of the 52 shapes of arkit.json, moving smoothly; no joints.
 [[nodiscard]] motion::Clip ArkitClip(int num_frames);
 
+// The weights of every frame, straight from the algorithm.
+[[nodiscard]] std::vector<std::vector<float>> Solve(const motion::Clip& clip,
+                                                    const std::string& rig_name);
+
 // Offers until it is accepted.
 void Offer(RawClient& client, const protocol::SkeletonOffer& offer, std::uint16_t stream = 1);
 // Subscribes; the reply, or none when an error came.

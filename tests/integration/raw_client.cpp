@@ -119,20 +119,27 @@ bool UdpClient::Fill() {
   std::array<std::uint8_t, 2048> buffer;
   const long size = ReadSome(buffer);
   if (size <= 0) return false;
+  ++datagrams_;
+  const auto datagram = std::span(buffer).first(static_cast<std::size_t>(size));
   std::span<const std::uint8_t> message;
-  const auto status =
-      reassembler_.Push(1, {buffer.data(), static_cast<std::size_t>(size)}, 0, message);
-  if (status == protocol::FragmentStatus::kWhole || status == protocol::FragmentStatus::kComplete) {
+  const auto status = reassembler_.Push(1, datagram, 0, message);
+  if (status == protocol::FragmentStatus::kWhole && bundles_) {
+    protocol::Unbundler unbundler;
+    if (unbundler.Open(datagram) != protocol::BundleStatus::kOk) return false;
+    while (unbundler.Next(message)) ready_.emplace_back(message.begin(), message.end());
+  } else if (status == protocol::FragmentStatus::kWhole ||
+             status == protocol::FragmentStatus::kComplete) {
     ready_.emplace_back(message.begin(), message.end());
   }
   return true;
 }
 
-bool UdpClient::Prove() {
-  Send(protocol::Hello{"test", 0}, 0, 1);
+bool UdpClient::Prove(bool bundles) {
+  bundles_ = bundles;
+  Send(protocol::Hello{"test", 0, bundles}, 0, 1);
   const auto welcome = Await<protocol::Welcome>();
   if (!welcome) return false;
-  Send(protocol::Hello{"test", welcome->token}, 0, 2);
+  Send(protocol::Hello{"test", welcome->token, bundles}, 0, 2);
   const auto proven = Await<protocol::Welcome>();
   return proven && proven->token == 0;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "protocol/bundle.h"
 #include "protocol/codec.h"
 #include "protocol/fragment.h"
 #include "protocol/tcp_framing.h"
@@ -90,13 +91,18 @@ class UdpClient : public RawClient {
  public:
   // `from`: another address of the loopback than 127.0.0.1.
   explicit UdpClient(std::uint16_t port, const char* from = "127.0.0.1");
-  // Hello, Welcome, Hello: false when the daemon did not play along.
-  bool Prove();
+  // Hello, Welcome, Hello: false when the daemon did not play along. `bundles`: and takes them;
+  // else one that came would be no message.
+  bool Prove(bool bundles = false);
+  // That came so far.
+  [[nodiscard]] std::uint64_t datagrams() const { return datagrams_; }
 
  private:
   void SendBytes(std::span<const std::uint8_t> message) override;
   bool Fill() override;
   protocol::Reassembler reassembler_;
+  bool bundles_ = false;
+  std::uint64_t datagrams_ = 0;
   std::uint32_t message_id_ = 0;
 };
 

@@ -9,33 +9,10 @@
 
 #include <gtest/gtest.h>
 
-#include "character/rig_file.h"
 #include "daemon_fixture.h"
-#include "motion/pose_source.h"
-#include "wrinkle/solver.h"
 
 namespace furrow::testing_net {
 namespace {
-
-// The weights of every frame, straight from the algorithm.
-std::vector<std::vector<float>> Solve(const motion::Clip& clip, const std::string& rig_name) {
-  const auto path = std::filesystem::path(FURROW_SOURCE_DIR) / "character" / "rigs" / rig_name;
-  auto rig = character::LoadRig(path, motion::CachedPoseSource());
-  EXPECT_TRUE(rig.ok()) << rig.status().ToString();
-  auto binding = wrinkle::RigBinding::Create(*rig, clip.skeleton, clip.blend_shape_names,
-                                             {.allow_missing = true});
-  EXPECT_TRUE(binding.ok()) << binding.status().ToString();
-  wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(binding)));
-  std::vector<std::vector<float>> weights;
-  wrinkle::LocalPose pose;
-  for (int frame = 0; frame < clip.num_frames(); ++frame) {
-    clip.GetPose(frame, &pose);
-    const double dt = frame == 0 ? 0.0 : clip.times[frame] - clip.times[frame - 1];
-    EXPECT_EQ(solver.Update(pose, dt), wrinkle::JobStatus::kOk);
-    weights.emplace_back(solver.wrinkle_weights().begin(), solver.wrinkle_weights().end());
-  }
-  return weights;
-}
 
 std::int64_t Microseconds(double seconds) { return std::llround(seconds * 1e6); }
 

@@ -16,6 +16,7 @@ struct FarEnd {
   std::deque<std::vector<std::uint8_t>> to_receive;
   IoStatus when_empty = IoStatus::kTimeout;
   IoStatus when_sent = IoStatus::kOk;
+  bool takes_bundles = false;  // this end
 
   template <class Message>
   void Answer(const protocol::Header& header, const Message& message) {
@@ -53,6 +54,8 @@ class FakeTransport : public Transport {
     message = current_;
     return IoStatus::kOk;
   }
+
+  [[nodiscard]] bool takes_bundles() const override { return far_->takes_bundles; }
 
  private:
   std::shared_ptr<FarEnd> far_;

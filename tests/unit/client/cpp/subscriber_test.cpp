@@ -51,6 +51,24 @@ TEST_F(SubscriberTest, OverUdpTheAddressIsProvenFirst) {
   EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSubscribeWeights});
 }
 
+TEST_F(SubscriberTest, BundlesAreAskedForWhereTheTransportTakesThemApart) {
+  for (const bool takes : {false, true}) {
+    far_->takes_bundles = takes;
+    Subscriber subscriber = Make(TransportKind::kUdp);
+    far_->Answer({.session = 5}, protocol::Welcome{.server = "furrowd", .token = 99});
+    (void)subscriber.Next(0, milliseconds(0));
+    ASSERT_EQ(far_->sent.size(), 2u);
+    for (const auto& bytes : far_->sent) {
+      protocol::MessageView view;
+      protocol::Hello hello;
+      ASSERT_EQ(protocol::OpenMessage(bytes, view), protocol::DecodeStatus::kOk);
+      ASSERT_EQ(protocol::Decode(view, hello), protocol::DecodeStatus::kOk);
+      EXPECT_EQ(hello.bundles, takes);
+    }
+    far_->sent.clear();
+  }
+}
+
 TEST_F(SubscriberTest, LostUdpRequestsAreSentAgainAndTheLeaseIsKept) {
   Subscriber subscriber = Make(TransportKind::kUdp);
   far_->Answer({.session = 5}, protocol::Welcome{.server = "furrowd", .token = 0});
@@ -97,8 +115,8 @@ TEST_F(SubscriberTest, PosesComeWithTheirSkeletonAndAsTheyWerePublished) {
   EXPECT_EQ(subscriber.pose().blend_shapes, pose.blend_shapes);
   std::vector<std::uint8_t> sent;
   protocol::Encoder().Encode({.session = 1}, pose, sent);
-  EXPECT_TRUE(std::ranges::equal(subscriber.payload(),
-                                 std::span(sent).subspan(protocol::kEnvelopeBytes)));
+  EXPECT_TRUE(
+      std::ranges::equal(subscriber.payload(), std::span(sent).subspan(protocol::kEnvelopeBytes)));
   (void)subscriber.Next(250'000, milliseconds(0));
   EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSubscribePoses});
 

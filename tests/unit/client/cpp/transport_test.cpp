@@ -9,6 +9,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "protocol/bundle.h"
 #include "protocol/codec.h"
 #include "protocol/fragment.h"
 #include "protocol/tcp_framing.h"
@@ -156,6 +157,37 @@ TEST(UdpTransportTest, LargeMessagesCrossInFragments) {
   std::span<const std::uint8_t> received;
   ASSERT_EQ(transport->Receive(received, kGuard), IoStatus::kOk);
   EXPECT_TRUE(std::equal(received.begin(), received.end(), message.begin(), message.end()));
+}
+
+TEST(UdpTransportTest, BundlesAreTakenApartAndMalformedOnesGivenOutAsTheyCame) {
+  Socket peer(SOCK_DGRAM);
+  auto transport = Open(TransportKind::kUdp, peer.port());
+  ASSERT_NE(transport, nullptr);
+  EXPECT_TRUE(transport->takes_bundles());
+  std::vector<std::vector<std::uint8_t>> messages(3);
+  for (std::uint32_t i = 0; i < 3; ++i)
+    protocol::Encoder().Encode({.session = 3, .sequence = i}, protocol::Ping{i}, messages[i]);
+  ASSERT_EQ(transport->Send(messages[0]), IoStatus::kOk);
+  sockaddr_in to{};
+  socklen_t size = sizeof to;
+  std::vector<std::uint8_t> bundle(2000);
+  ASSERT_GT(::recvfrom(peer.fd(), bundle.data(), bundle.size(), 0, reinterpret_cast<sockaddr*>(&to),
+                       &size),
+            0);
+  ASSERT_TRUE(protocol::WriteBundle(messages, bundle));
+  std::vector<std::uint8_t> cut(bundle.begin(), bundle.end() - 1);
+  for (const auto& datagram : {bundle, cut, messages[1]}) {
+    ::sendto(peer.fd(), datagram.data(), datagram.size(), 0, reinterpret_cast<sockaddr*>(&to),
+             sizeof to);
+  }
+  std::vector<std::vector<std::uint8_t>> got;
+  std::span<const std::uint8_t> received;
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_EQ(transport->Receive(received, kGuard), IoStatus::kOk);
+    got.emplace_back(received.begin(), received.end());
+  }
+  EXPECT_EQ(got, (std::vector{messages[0], messages[1], messages[2], cut, messages[1]}));
+  EXPECT_EQ(transport->Receive(received, milliseconds(0)), IoStatus::kTimeout);
 }
 
 TEST(UdpTransportTest, NobodyThereShowsWhenReceiving) {

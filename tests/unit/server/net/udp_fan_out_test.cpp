@@ -9,6 +9,7 @@
 
 #include "client/cpp/subscriber.h"
 #include "protocol/bundle.h"
+#include "server/net/clock.h"
 #include "server/net/udp_server.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
@@ -69,6 +70,7 @@ struct Watcher {
   std::unique_ptr<client::Subscriber> subscriber;
   std::vector<int> subjects;  // by subscription
   std::vector<int> rounds;    // weights so far, by subject
+  int decayed = 0;            // weights of no new pose
   int others = 0;             // what came and was no weights
 };
 
@@ -100,6 +102,15 @@ class UdpFanOutTest : public HubTest {
     header.session = 77;
     encoder.Encode(header, message, bytes);
     publisher.send_to(asio::buffer(bytes), {asio::ip::address_v4::loopback(), server->port()});
+  }
+  // A pose of every subject, all of which the server finds at once.
+  void Play(int round) {
+    for (int i = 0; i < kSubjects; ++i) {
+      Say(Pose(BrowOf(i, round)), {.stream = static_cast<std::uint16_t>(i),
+                                   .sequence = static_cast<std::uint32_t>(round),
+                                   .capture_time_us = 16'667 * round});
+    }
+    Work();
   }
   // Meets the daemon and subscribes to everything.
   Watcher Join(bool takes_bundles) {
@@ -133,6 +144,10 @@ class UdpFanOutTest : public HubTest {
         continue;
       }
       ASSERT_GE(subject, 0);
+      if (watcher.subscriber->weights().age_us > 0) {
+        ++watcher.decayed;
+        continue;
+      }
       const auto round = static_cast<int>(event.header.sequence);
       EXPECT_EQ(round, watcher.rounds[static_cast<std::size_t>(subject)]++) << "lost or reordered";
       EXPECT_FLOAT_EQ(watcher.subscriber->weights().values[0], BrowOf(subject, round));
@@ -152,12 +167,7 @@ TEST_F(UdpFanOutTest, EveryWeightArrivesRightInFewerDatagramsAndNoBundleWhereNon
   for (Watcher& watcher : watchers) watcher.wire->datagrams = 0;
   const std::uint64_t sent_before = Count(Counter::kDatagramsSent);
   for (int round = 0; round < kRounds; ++round) {
-    for (int i = 0; i < kSubjects; ++i) {
-      Say(Pose(BrowOf(i, round)), {.stream = static_cast<std::uint16_t>(i),
-                                   .sequence = static_cast<std::uint32_t>(round),
-                                   .capture_time_us = 16'667 * round});
-    }
-    Work();
+    Play(round);
     for (Watcher& watcher : watchers) Read(watcher);
   }
   std::uint64_t datagrams = 0;
@@ -176,6 +186,19 @@ TEST_F(UdpFanOutTest, EveryWeightArrivesRightInFewerDatagramsAndNoBundleWhereNon
   EXPECT_EQ(Count(Counter::kDatagramsUnsendable), 0u);
   EXPECT_GE(Count(Counter::kMessagesBundled),
             std::uint64_t{(kSubscribers - 1) * kSubjects * kRounds});
+}
+
+TEST_F(UdpFanOutTest, WhatATickSendsSharesDatagramsToo) {
+  Watcher watcher = Join(/*takes_bundles=*/true);
+  Play(0);
+  Play(1);  // of which nobody is neutral
+  Read(watcher);
+  watcher.wire->datagrams = 0;
+  server->Together([this] { hub->Tick(ReadClock() + FromSeconds(1.5)); });
+  Read(watcher);
+  EXPECT_EQ(watcher.rounds, std::vector<int>(kSubjects, 2));
+  EXPECT_EQ(watcher.decayed, kSubjects);
+  EXPECT_LE(watcher.wire->datagrams, kSubjects / 6);
 }
 
 }  // namespace
