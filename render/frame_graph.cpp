@@ -52,7 +52,8 @@ FrameGraph::Handle FrameGraph::Builder::Create(std::string_view name, const Text
 void FrameGraph::Builder::Read(Handle handle) {
   if (handle.version < 0) return graph_->Fail(pass_, handle.version, "reads");
   const Version& version = graph_->versions_[handle.version];
-  if (version.writer < 0) return graph_->Fail(pass_, handle.version, "reads, before any write,");
+  if (version.writer < 0 && !graph_->textures_[version.texture].imported)
+    return graph_->Fail(pass_, handle.version, "reads, before any write,");
   if (graph_->textures_[version.texture].newest != handle.version) {
     return graph_->Fail(pass_, handle.version, "reads an overwritten version of");
   }
@@ -76,6 +77,18 @@ FrameGraph::Handle FrameGraph::Builder::Write(Handle handle) {
 }
 
 void FrameGraph::Builder::SideEffect() { graph_->passes_[pass_].side_effect = true; }
+
+FrameGraph::Handle FrameGraph::Import(std::string_view name, const TextureDesc& desc,
+                                      TextureId texture) {
+  const int version = static_cast<int>(versions_.size());
+  versions_.push_back({static_cast<int>(textures_.size()), -1, -1});
+  textures_.push_back({.name = std::string(name),
+                       .desc = desc,
+                       .newest = version,
+                       .id = texture,
+                       .imported = true});
+  return {version};
+}
 
 int FrameGraph::BeginPass(std::string_view name) {
   passes_.emplace_back().name = name;
@@ -104,11 +117,11 @@ void FrameGraph::Cull() {
   for (Pass& pass : passes_) pass.needed = pass.side_effect;
   for (auto pass = passes_.rbegin(); pass != passes_.rend(); ++pass) {
     if (!pass->needed) continue;
-    for (const int version : pass->reads) passes_[versions_[version].writer].needed = true;
-    for (const int version : pass->writes) {
-      const int previous = versions_[version].previous;
-      if (versions_[previous].writer >= 0) passes_[versions_[previous].writer].needed = true;
-    }
+    const auto need = [&](int version) {
+      if (versions_[version].writer >= 0) passes_[versions_[version].writer].needed = true;
+    };
+    for (const int version : pass->reads) need(version);
+    for (const int version : pass->writes) need(versions_[version].previous);
   }
 }
 
@@ -143,15 +156,17 @@ Status FrameGraph::Execute(TransientPool* pool, FrameGraphObserver* observer) {
   for (int index = 0; index < static_cast<int>(passes_.size()) && status.ok(); ++index) {
     if (!passes_[index].needed) continue;
     for (Texture& texture : textures_) {
+      if (texture.imported) continue;
       if (texture.first_pass == index) texture.id = pool->Acquire(texture.desc);
     }
     status = Run(passes_[index], observer);
     for (Texture& texture : textures_) {
+      if (texture.imported) continue;
       if (texture.last_pass == index) pool->Release(std::exchange(texture.id, 0));
     }
   }
   for (Texture& texture : textures_) {
-    if (texture.id != 0) pool->Release(std::exchange(texture.id, 0));
+    if (texture.id != 0 && !texture.imported) pool->Release(std::exchange(texture.id, 0));
   }
   return status;
 }

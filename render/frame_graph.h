@@ -115,6 +115,9 @@ class FrameGraph {
     int pass_;
   };
 
+  // A texture that outlives the frame, with what it holds: passes may read it, or write over it.
+  [[nodiscard]] Handle Import(std::string_view name, const TextureDesc& desc, TextureId texture);
+
   // `setup(Builder&, Data&)` declares, now; `execute(const Resources&, const Data&)` draws, later,
   // and returns a Status. Data is what one tells the other: its handles. Returns it, for the next
   // pass.
@@ -145,10 +148,11 @@ class FrameGraph {
     int first_pass = -1;  // among those not culled
     int last_pass = -1;
     TextureId id = 0;
+    bool imported = false;
   };
   struct Version {
     int texture = -1;
-    int writer = -1;    // pass; -1: created, not yet written
+    int writer = -1;    // pass; -1: created, not yet written; or imported
     int previous = -1;  // version that it was written over
   };
   struct Pass {

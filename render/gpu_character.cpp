@@ -37,12 +37,13 @@ float SpecularOf(Material::Kind kind) {
   return 0.03f;
 }
 
-// Counted from outside: hair over cloth over skin over what the head holds.
+// What hides most is drawn first: cloth over skin over what the head holds. Hair comes after the
+// skin that it lies on: it has many layers, and those at the back of the head are hidden by then.
 int LayerOf(Material::Kind kind) {
   switch (kind) {
-    case Material::Kind::kHair: return 0;
-    case Material::Kind::kCloth: return 1;
-    case Material::Kind::kSkin: return 2;
+    case Material::Kind::kCloth: return 0;
+    case Material::Kind::kSkin: return 1;
+    case Material::Kind::kHair: return 2;
     case Material::Kind::kEye:
     case Material::Kind::kOther: return 3;
   }

@@ -80,7 +80,7 @@ Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, 
 Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const Settings& settings,
                          const TextureDesc& desc, Handle* shadows) {
   if (settings.shadow.filter != ShadowFilter::kOff && settings.shadow.lamps > 0) {
-    if (shadows->version < 0) *shadows = shadow_pass_.Add(graph, settings);
+    if (shadows->version < 0) *shadows = shadow_pass_.Add(graph, request);
   }
   const CameraFrame& camera = scene_->setup().camera;
   const float slope = camera.PixelsPerSlope(desc.height);

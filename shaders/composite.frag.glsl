@@ -20,7 +20,7 @@ layout(binding = 1) uniform sampler2D u_bloom;     // linear, exposed, smaller t
 layout(location = 2) uniform float u_bloom_strength;
 #endif
 
-layout(location = 0) out vec4 f_colour;            // display-referred
+layout(location = 0) out vec4 f_colour;            // rgb: display-referred, a: its luma
 
 vec3 displayColour(vec3 colour, vec2 place) {
 #if SHOW == 2
@@ -49,5 +49,6 @@ void main() {
 #else
   vec2 place = (vec2(pixel) + 0.5) / vec2(textureSize(u_shown, 0));
 #endif
-  f_colour = vec4(displayColour(sum / float(SAMPLES), place), 1.0);
+  vec3 colour = displayColour(sum / float(SAMPLES), place);
+  f_colour = vec4(colour, dot(colour, vec3(0.299, 0.587, 0.114)));
 }

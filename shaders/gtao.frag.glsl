@@ -6,6 +6,8 @@
 // integrated. Normals come from the scene, wrinkles and all.
 
 const int SLICES = SAMPLES >= 24 ? 3 : 2;
+// From one slice to the next: by a right angle, or by 60 degrees.
+const mat2 SLICE_TURN = SLICES == 2 ? mat2(0.0, 1.0, -1.0, 0.0) : mat2(0.5, 0.8660254, -0.8660254, 0.5);
 const int STEPS = max(SAMPLES / (2 * SLICES), 1);
 
 // acos to 0.001 rad for x in [-1, 1] (Lagarde 2014).
@@ -36,8 +38,16 @@ float horizon(vec2 pixel, vec3 centre, vec3 toEye, vec2 direction, float reach, 
   return highest;
 }
 
-// Cosine-weighted sky from the normal's angle n to the horizon's h, both from the view direction.
-float openArc(float h, float n) { return 0.25 * (-cos(2.0 * h - n) + cos(n) + 2.0 * h * sin(n)); }
+// Cosine-weighted sky between the normal and a horizon at the angle h, both counted from the view
+// direction: openArc(h, n) = (-cos(2 h - n) + cos n + 2 h sin n) / 4. `side`: the sign of h;
+// `cosH`: of the horizon; `n`: cosine and sine of the normal's angle.
+float openArc(float cosH, float side, vec2 n) {
+  float h = side * fastAcos(cosH);
+  float sinH = side * sqrt(max(1.0 - cosH * cosH, 0.0));
+  float cos2h = 2.0 * cosH * cosH - 1.0;
+  float sin2h = 2.0 * sinH * cosH;
+  return 0.25 * (n.x - cos2h * n.x - sin2h * n.y + 2.0 * h * n.y);
+}
 
 void main() {
   ivec2 pixel = scenePixel();
@@ -51,23 +61,22 @@ void main() {
   // Groups of pixels that see no surface leave the loops.
   int steps = metres < NO_SURFACE ? STEPS : 0;
   float sum = 0.0;
+  float angle = PI * noise / float(SLICES);
+  vec2 direction = vec2(cos(angle), sin(angle));
   for (int slice = 0; slice < SLICES; ++slice) {
-    float angle = PI * (float(slice) + noise) / float(SLICES);
-    vec2 direction = vec2(cos(angle), sin(angle));
     vec3 along = vec3(direction, 0.0);
     vec3 axis = normalizeOrZero(cross(along, toEye));       // of the slice's plane
     vec3 tangent = cross(toEye, axis);                      // in it, to the side of `direction`
     vec3 projected = normal - axis * dot(normal, axis);
     float weight = length(projected);
     float cosN = saturate(dot(projected, toEye) / max(weight, 1e-6));
-    float n = sign(dot(projected, tangent)) * fastAcos(cosN);
+    float sinN = sign(dot(projected, tangent)) * sqrt(1.0 - cosN * cosN);
     float jitter = fract(noise * 7.0 + 0.37 * float(slice)) * 0.999 + 0.001;
-    // The lowest that a horizon can be is the surface itself.
-    float right = horizon(place, centre, toEye, direction, reach, jitter, cos(n + 0.5 * PI), steps);
-    float left = horizon(place, centre, toEye, -direction, reach, jitter, cos(n - 0.5 * PI), steps);
-    float hRight = n + min(fastAcos(right) - n, 0.5 * PI);
-    float hLeft = n + max(-fastAcos(left) - n, -0.5 * PI);
-    sum += weight * (openArc(hRight, n) + openArc(hLeft, n));
+    // The lowest that a horizon can be is the surface itself, a right angle from the normal.
+    float right = horizon(place, centre, toEye, direction, reach, jitter, -sinN, steps);
+    float left = horizon(place, centre, toEye, -direction, reach, jitter, sinN, steps);
+    sum += weight * (openArc(right, 1.0, vec2(cosN, sinN)) + openArc(left, -1.0, vec2(cosN, sinN)));
+    direction = SLICE_TURN * direction;
   }
   float open = saturate(sum / float(SLICES));
   f_open = metres < NO_SURFACE ? saturate(1.0 - u_reach.y * (1.0 - open)) : 1.0;

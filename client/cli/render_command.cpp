@@ -182,23 +182,37 @@ class PictureSink {
   const RenderOptions& options_;
 };
 
-// A table of the passes in their order: medians over the frames, and their sum.
+double TakeMedian(std::vector<double>* values) {
+  const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
+  std::nth_element(values->begin(), middle, values->end());
+  return *middle;
+}
+
+// A table of the passes in their order: medians over the frames, and their sums.
 void PrintTimings(const std::vector<render::PassTime>& times) {
+  struct Samples {
+    std::vector<double> wall_ms;
+    std::vector<double> cpu_ms;
+  };
   std::vector<std::string> order;
-  std::map<std::string, std::vector<double>> wall_ms;
+  std::map<std::string, Samples> of_pass;
   for (const render::PassTime& time : times) {
-    if (wall_ms[time.pass].empty()) order.push_back(time.pass);
-    wall_ms[time.pass].push_back(time.wall_ms);
+    Samples& samples = of_pass[time.pass];
+    if (samples.wall_ms.empty()) order.push_back(time.pass);
+    samples.wall_ms.push_back(time.wall_ms);
+    samples.cpu_ms.push_back(time.cpu_ms);
   }
-  double sum = 0.0;
+  std::printf("%-16s %11s %11s\n", "", "wall", "processor");
+  double wall = 0.0;
+  double cpu = 0.0;
   for (const std::string& pass : order) {
-    std::vector<double>& of_pass = wall_ms[pass];
-    const auto middle = of_pass.begin() + static_cast<std::ptrdiff_t>(of_pass.size() / 2);
-    std::nth_element(of_pass.begin(), middle, of_pass.end());
-    std::printf("%-16s %8.2f ms\n", pass.c_str(), *middle);
-    sum += *middle;
+    const double pass_wall = TakeMedian(&of_pass[pass].wall_ms);
+    const double pass_cpu = TakeMedian(&of_pass[pass].cpu_ms);
+    std::printf("%-16s %8.2f ms %8.2f ms\n", pass.c_str(), pass_wall, pass_cpu);
+    wall += pass_wall;
+    cpu += pass_cpu;
   }
-  std::printf("%-16s %8.2f ms\n", "frame", sum);
+  std::printf("%-16s %8.2f ms %8.2f ms\n", "frame", wall, cpu);
 }
 
 int RenderFile(const RenderOptions& options) {

@@ -26,6 +26,7 @@ struct Shot {
   const char* camera;
   NormalBlend blend = NormalBlend::kPartialDerivative;
   Shading shading = Shading::kDiffuse;
+  int samples = 4;  // on every device
 };
 
 constexpr auto kBlend = NormalBlend::kPartialDerivative;
@@ -44,6 +45,7 @@ constexpr Shot kShots[] = {
     {"wireframe", View::kWireframe, "face"},
     {"skin", View::kFinal, "face", kBlend, Shading::kSkin},
     {"skin_three_quarter", View::kFinal, "three_quarter", kBlend, Shading::kSkin},
+    {"skin_one_sample", View::kFinal, "three_quarter", kBlend, Shading::kSkin, 1},
     {"shadow", View::kShadow, "three_quarter"},
     {"irradiance", View::kIrradiance, "face"},
     {"scattered", View::kScattered, "face"},
@@ -77,7 +79,7 @@ Result<Image> Draw(const Shot& shot) {
   request.settings.view = shot.view;
   request.settings.normal_blend = shot.blend;
   request.settings.shading = shot.shading;
-  request.settings.anti_aliasing.samples = 4;  // on every device
+  request.settings.anti_aliasing.samples = shot.samples;
   request.camera = *(*renderer)->Preset(shot.camera);
   request.width = request.height = kSize;
   return (*renderer)->Render(request);

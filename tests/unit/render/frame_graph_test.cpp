@@ -98,6 +98,36 @@ TEST_F(FrameGraphTest, KeepsThePassThatIsDrawnOver) {
   EXPECT_EQ(device_.num_created(), 1);
 }
 
+TEST_F(FrameGraphTest, AnImportedTextureIsReadAsItIs) {
+  const TextureId mine = device_.CreateTexture(kSmall);
+  const FrameGraph::Handle imported = graph_.Import("mine", kSmall, mine);
+  AddSink(AddStep("reads", imported));
+  RunAll();
+  EXPECT_EQ(ran_, (std::vector<std::string>{"reads", "sink"}));
+  EXPECT_NE(ids_[0], mine);
+  for (int frame = 0; frame < 2 * TransientPool::kKeepFrames; ++frame) pool_.EndFrame();
+  EXPECT_EQ(device_.num_alive(), 1);  // it is not the pool's
+}
+
+TEST_F(FrameGraphTest, APassWritesOverAnImportedTexture) {
+  const TextureId mine = device_.CreateTexture(kSmall);
+  const FrameGraph::Handle imported = graph_.Import("mine", kSmall, mine);
+  FrameGraph::Handle over;
+  graph_.AddPass<PassData>(
+      "over",
+      [&](FrameGraph::Builder& builder, PassData& data) {
+        over = data.out = builder.Write(imported);
+      },
+      [&, this](const FrameGraph::Resources& resources, const PassData& data) {
+        ran_.push_back("over");
+        EXPECT_EQ(resources.Get(data.out), mine);
+        return Status();
+      });
+  AddSink(over);
+  RunAll();
+  EXPECT_EQ(ran_, (std::vector<std::string>{"over", "sink"}));
+}
+
 TEST_F(FrameGraphTest, TexturesWhoseLivesDoNotMeetShareMemory) {
   AddSink(AddStep("c", AddStep("b", AddStep("a", {}))));
   RunAll();

@@ -26,10 +26,13 @@ TEST(PassTimer, TimesThePassesOfItsFramesInTheirOrder) {
   EXPECT_EQ(times[0].pass, "scene");
   EXPECT_EQ(times[1].pass, "composite");
   EXPECT_EQ(times[2].pass, "read back");
+  double cpu_ms = 0.0;
   for (const PassTime& time : times) {
     EXPECT_GT(time.wall_ms, 0.0) << time.pass;
     EXPECT_GE(time.gpu_ms, 0.0) << time.pass;
+    cpu_ms += time.cpu_ms;
   }
+  EXPECT_GT(cpu_ms, 0.0);
   EXPECT_TRUE(timer.Take().empty());
   (*renderer)->SetObserver(nullptr);
   ASSERT_TRUE((*renderer)->Render(request).ok());

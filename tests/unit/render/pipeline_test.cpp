@@ -62,7 +62,8 @@ TEST_F(PipelineTest, SettingsAreHot) {
                              "subsurface.width=3",
                              "shadow.filter=pcss",
                              "shadow.filter=off",
-                             "shadow.resolution=256",
+                             "shadow.resolution=128",
+                             "shadow.fit=off",
                              "occlusion.method=ssao",
                              "occlusion.method=off",
                              "occlusion.half_resolution=off",
@@ -134,6 +135,38 @@ TEST_F(PipelineTest, AllViewsOfAFrameShareItsShadowMaps) {
   renderer_->SetObserver(nullptr);
   EXPECT_EQ(counter.runs("scene"), 3);
   EXPECT_EQ(counter.runs("shadows"), 1);
+}
+
+// Shadow maps are drawn when somebody or a lamp moves, and else kept: what is drawn with kept ones
+// is the same to the last bit.
+TEST_F(PipelineTest, ShadowMapsAreKeptWhileNothingMoves) {
+  Make();
+  PassCounter counter;
+  renderer_->SetObserver(&counter);
+  const Image first = Draw(Skin(), 96);
+  Settings settings = Skin();
+  settings.specular.roughness = 2.0f;
+  (void)Draw(settings, 96);
+  EXPECT_EQ(Draw(Skin(), 96).rgb, first.rgb);
+  EXPECT_EQ(counter.runs("shadows"), 1);
+  subject_->pose.joints[2].rotation = glm::angleAxis(0.5f, glm::vec3(0.0f, 1.0f, 0.0f));
+  subject_->Solve();
+  const Image moved = Draw(Skin(), 96);
+  EXPECT_EQ(counter.runs("shadows"), 2);
+  settings = Skin();
+  settings.lights.turn_degrees = 30.0f;
+  (void)Draw(settings, 96);
+  EXPECT_EQ(counter.runs("shadows"), 3);
+  settings.shadow.lamps = 1;
+  (void)Draw(settings, 96);
+  EXPECT_EQ(counter.runs("shadows"), 4);
+  settings.shadow.resolution = 128;
+  (void)Draw(settings, 96);
+  EXPECT_EQ(counter.runs("shadows"), 5);
+  renderer_->SetObserver(nullptr);
+  // A renderer that kept nothing draws what this one drew.
+  renderer_ = test::Expect(Renderer::Create(head_));
+  EXPECT_EQ(Draw(Skin(), 96).rgb, moved.rgb);
 }
 
 // Beyond the surfaces a picture is its background, whatever the passes between leave out.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "render/egl_context.h"
+#include "render/scene_draw.h"
 
 namespace furrow::render {
 namespace {
@@ -85,6 +86,37 @@ TEST_F(ShaderLibraryTest, EverySkinConfigurationCompiles) {
         ASSERT_TRUE(program.ok()) << ViewName(view) << " " << bit << "\n"
                                   << program.status().ToString();
       }
+    }
+  }
+}
+
+// Facets of every material, and the light that falls on them.
+TEST_F(ShaderLibraryTest, EveryFacetConfigurationCompiles) {
+  using Kind = character::Material::Kind;
+  for (int bits = 0; bits < 16; ++bits) {
+    SceneShader shader;
+    shader.shading = Shading::kSkin;
+    shader.unlit = true;
+    shader.material = bits % 2 == 0 ? Kind::kSkin : Kind::kCloth;
+    shader.widen = (bits & 2) != 0;
+    shader.wrinkle_looks = shader.wrinkle_texture = (bits & 4) != 0;
+    shader.thickness_map = (bits & 8) != 0;
+    shader.active_maps = shader.wrinkle_texture ? 2 : 0;
+    const Result<GLuint> program = library_.Get(shader);
+    ASSERT_TRUE(program.ok()) << bits << "\n" << program.status().ToString();
+  }
+  for (const char* setting :
+       {"view=final", "view=shadow", "view=specular", "view=translucency", "view=albedo",
+        "view=material", "shadow.filter=off", "shadow.filter=pcss", "shadow.taps=1",
+        "translucency.enabled=off", "subsurface.method=preintegrated", "specular.table=on",
+        "specular.mode=gems", "specular.conserve_energy=off"}) {
+    Settings settings;
+    ASSERT_TRUE(SetSetting(setting, &settings).ok());
+    for (const char* occlusion : {"OCCLUSION 0", "OCCLUSION 1"}) {
+      std::vector<std::string> defines = Defines(SceneDraw::LightShader(settings));
+      defines.insert(defines.end(), {occlusion, "SCALE 2"});
+      const Result<GLuint> program = library_.GetFullscreen("light.frag.glsl", defines);
+      ASSERT_TRUE(program.ok()) << setting << "\n" << program.status().ToString();
     }
   }
 }

@@ -52,44 +52,88 @@ std::optional<bool> Seen(const test::Hit& hit, const glm::dvec3& to_light) {
   return seen;
 }
 
-class ShadowReference : public testing::TestWithParam<LightPreset> {};
+// A lamp's shadows against rays, where all points within the tolerance agree.
+struct Comparison {
+  int light = 0;
+  int lit = 0;
+  int dark = 0;
+  int wrong = 0;
+  double mean_error = 0.0;
+};
 
-TEST_P(ShadowReference, SphereOnPlane) {
+Comparison Compare(const FloatPicture& visible, const Camera& camera, int light,
+                   const glm::dvec3& to_light) {
+  Comparison found{.light = light};
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const std::optional<test::Hit> hit =
+          FirstHit(kScene, 0.98 * kPlaneSize, test::PixelRay(camera, x, y, kSize, kSize));
+      if (!hit) continue;
+      const std::optional<bool> seen = Seen(*hit, to_light);
+      if (!seen) continue;
+      ++(*seen ? found.lit : found.dark);
+      const double error = std::abs(visible.At(x, y)[light] - (*seen ? 1.0 : 0.0));
+      found.mean_error += error;
+      if (error > 0.01) ++found.wrong;
+    }
+  }
+  found.mean_error /= found.lit + found.dark;
+  return found;
+}
+
+// The lamps of a preset that have a direction alone.
+std::vector<Comparison> CompareLamps(LightPreset preset, const ShadowSettings& shadow) {
   const character::Character scene = test::MakeSphereOnPlane(kScene, kPlaneSize);
   const Camera camera = AboveThePlane();
   FrameRequest request = test::SceneRequest(scene, camera, kSize, kSize);
   request.settings.view = View::kShadow;
-  request.settings.lights.preset = GetParam();
-  request.settings.shadow.softness_mm = 0.5f;
-  request.settings.shadow.resolution = 2048;
+  request.settings.lights.preset = preset;
+  request.settings.shadow = shadow;
   const FloatPicture visible = test::DrawTarget(scene, request, "scene radiance");
   const Lighting lighting = MakeLighting(request.settings.lights, {.focus = camera.target});
+  std::vector<Comparison> all;
   for (int light = 0; light < kNumLights; ++light) {
     const LightSource& lamp = lighting.lights[static_cast<std::size_t>(light)];
     if (lamp.kind != LightKind::kDirectional || lamp.radiance == glm::vec3(0.0f)) continue;
-    int lit = 0;
-    int dark = 0;
-    int wrong = 0;
-    double sum = 0.0;
-    for (int y = 0; y < kSize; ++y) {
-      for (int x = 0; x < kSize; ++x) {
-        const std::optional<test::Hit> hit =
-            FirstHit(kScene, 0.98 * kPlaneSize, test::PixelRay(camera, x, y, kSize, kSize));
-        if (!hit) continue;
-        const std::optional<bool> seen = Seen(*hit, glm::dvec3(lamp.direction));
-        if (!seen) continue;
-        ++(*seen ? lit : dark);
-        const double error = std::abs(visible.At(x, y)[light] - (*seen ? 1.0 : 0.0));
-        sum += error;
-        if (error > 0.01) ++wrong;
-      }
-    }
-    std::printf("shadow of lamp %d: %d lit, %d dark, %d wrong, mean error %.5f\n", light, lit, dark,
-                wrong, sum / (lit + dark));
-    EXPECT_GT(lit, 5000);
-    EXPECT_GT(dark, 2000);
+    all.push_back(Compare(visible, camera, light, glm::dvec3(lamp.direction)));
+    const Comparison& last = all.back();
+    std::printf("shadow of lamp %d: %d lit, %d dark, %d wrong, mean error %.5f\n", light, last.lit,
+                last.dark, last.wrong, last.mean_error);
+  }
+  return all;
+}
+
+class ShadowReference : public testing::TestWithParam<LightPreset> {};
+
+TEST_P(ShadowReference, SphereOnPlane) {
+  ShadowSettings shadow;
+  shadow.softness_mm = 0.5f;
+  shadow.resolution = 2048;
+  shadow.fit = false;
+  for (const Comparison& found : CompareLamps(GetParam(), shadow)) {
+    EXPECT_GT(found.lit, 5000);
+    EXPECT_GT(found.dark, 2000);
     // Of the pixels further than kTolerance from an edge, not one in a thousand is wrong.
-    EXPECT_LE(wrong, (lit + dark) / 1000) << "lamp " << light;
+    EXPECT_LE(found.wrong, (found.lit + found.dark) / 1000) << "lamp " << found.light;
+  }
+}
+
+// Maps of no more texels than this picture can show are no worse than large ones: no surface shades
+// itself, no shadow comes loose, sharp or soft.
+TEST_P(ShadowReference, FittedMapsAreNoWorse) {
+  for (const float softness_mm : {0.5f, 3.0f}) {
+    ShadowSettings shadow;
+    shadow.softness_mm = softness_mm;
+    shadow.fit = false;
+    const std::vector<Comparison> large = CompareLamps(GetParam(), shadow);
+    shadow.fit = true;
+    const std::vector<Comparison> fitted = CompareLamps(GetParam(), shadow);
+    for (std::size_t i = 0; i < large.size(); ++i) {
+      // What a texel of a pixel's size may move of a sharp edge beyond the tolerance.
+      const int edge = (fitted[i].lit + fitted[i].dark) / 500;
+      EXPECT_LE(fitted[i].wrong, large[i].wrong + edge) << "lamp " << large[i].light;
+      EXPECT_LE(fitted[i].mean_error, large[i].mean_error + 5e-4) << "lamp " << large[i].light;
+    }
   }
 }
 

@@ -70,6 +70,30 @@ TEST(ShadowView, DirectionalMapsMoveInWholeTexels) {
   }
 }
 
+// As many texels as the picture or the filter can show, and never more than were asked for.
+TEST(ShadowResolution, FitsThePictureAndTheFilter) {
+  ShadowSettings settings;
+  settings.softness_mm = 0.0f;
+  for (const float radius : {0.1f, 0.35f, 2.0f}) {
+    for (const float pixel : {0.0002f, 0.0008f, 0.004f}) {
+      const int texels = ShadowResolution(settings, radius, pixel);
+      EXPECT_EQ(texels % 128, 0);
+      EXPECT_TRUE(texels == settings.resolution ||
+                  2.0f * radius / static_cast<float>(texels) <= pixel)
+          << radius << " " << pixel;
+    }
+  }
+  settings.softness_mm = 3.0f;
+  EXPECT_EQ(ShadowResolution(settings, 0.35f, 0.0008f), 512);  // 1.5 mm a texel, not 0.8
+  settings.filter = ShadowFilter::kPcss;                       // whose edges may be sharp
+  EXPECT_EQ(ShadowResolution(settings, 0.35f, 0.0008f), 896);
+  settings.resolution = 200;
+  EXPECT_EQ(ShadowResolution(settings, 0.35f, 0.0008f), 200);
+  settings.fit = false;
+  settings.resolution = 1024;
+  EXPECT_EQ(ShadowResolution(settings, 0.35f, 0.0008f), 1024);
+}
+
 TEST(ShadowView, ALampInsideTheStageStillHasAPicture) {
   LightSource light = LightOf(LightKind::kPoint);
   light.position = kCentre + 0.1f * light.direction;
