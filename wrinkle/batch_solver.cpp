@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "wrinkle/batch_kernel.h"
-#include "wrinkle/scalar.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -169,26 +168,25 @@ void BatchSolver::RunFirstKind() {
 JobStatus BatchSolver::SetLevel(SubjectSolver* solver, const LocalPose& pose,
                                 std::size_t num_drivers) {
   const BindingData& data = solver->binding().data();
-  const std::size_t first = data.NumValues(solver->num_drivers_);
-  const std::size_t last = data.NumValues(num_drivers);
+  const auto first = static_cast<std::ptrdiff_t>(data.NumValues(solver->num_drivers_));
+  const auto last = static_cast<std::ptrdiff_t>(data.NumValues(num_drivers));
   solver->num_drivers_ = num_drivers;
   FilterContext& filter = solver->filter_context_;
   if (last <= first || !filter.started || filter.since_input > 0.0) return JobStatus::kOk;
-  std::vector<float> values(data.driver_value_names.size());
-  const DriverJob drivers{.binding = &solver->binding(),
-                          .local = pose.joints,
-                          .blend_shapes = pose.blend_shapes,
-                          .driver_values = values,
-                          .num_drivers = num_drivers};
-  if (const JobStatus status = drivers.Run(); status != JobStatus::kOk) return status;
-  for (std::size_t i = first; i < last; ++i) {
-    solver->raw_values_[i] = filter.value[i] = filter.raw[i] = Saturate(values[i]);
-    filter.derivative[i] = 0.0f;
-  }
-  return WrinkleWeightsJob{.binding = &solver->binding(),
-                           .driver_values = solver->filtered_values(),
-                           .wrinkle_weights = solver->weights_}
-      .Run();
+  SubjectSolver newcomer(solver->binding_);  // whose first pose this is: it passes unchanged
+  newcomer.num_drivers_ = num_drivers;
+  BatchUpdate update{.solver = &newcomer, .pose = &pose};
+  Run({&update, 1});
+  if (update.status != JobStatus::kOk) return update.status;
+  const auto join = [first, last](const std::vector<float>& from, std::vector<float>* to) {
+    std::copy(from.begin() + first, from.begin() + last, to->begin() + first);
+  };
+  join(newcomer.filter_context_.value, &filter.value);
+  join(newcomer.filter_context_.raw, &filter.raw);
+  join(newcomer.filter_context_.derivative, &filter.derivative);
+  update.solver = solver;  // no time has passed: new weights of the values as they are
+  Run({&update, 1});
+  return update.status;
 }
 
 float* BatchSolver::Scratch(std::size_t size) {

@@ -37,9 +37,9 @@ class BatchSolver {
 
   // A level of detail while the subject lives (SubjectSolver::set_num_drivers()): drivers that join
   // do not fade in, but begin where `pose`, the one of the last update, puts them; all else stays.
-  // Of a subject that gets no poses they rest until it does. Statuses: DriverJob's. Allocates.
-  [[nodiscard]] static JobStatus SetLevel(SubjectSolver* solver, const LocalPose& pose,
-                                          std::size_t num_drivers);
+  // Of a subject that gets no poses they rest until it does. Statuses: Update()'s. Allocates.
+  [[nodiscard]] JobStatus SetLevel(SubjectSolver* solver, const LocalPose& pose,
+                                   std::size_t num_drivers);
 
  private:
   class Grouping;

@@ -7,6 +7,15 @@
 #include "wrinkle/batch_solver.h"
 
 namespace furrow::server {
+namespace {
+
+// What it keeps is scratch, of no subject, so a thread has one.
+wrinkle::BatchSolver& Batch() {
+  thread_local wrinkle::BatchSolver batch;
+  return batch;
+}
+
+}  // namespace
 
 SubjectPipeline::SubjectPipeline(std::shared_ptr<const StreamDefinition> stream)
     : stream_(std::move(stream)), solver_(stream_->binding) {
@@ -15,11 +24,9 @@ SubjectPipeline::SubjectPipeline(std::shared_ptr<const StreamDefinition> stream)
 }
 
 wrinkle::JobStatus SubjectPipeline::Solve(std::uint32_t sequence, std::int64_t capture_time_us) {
-  // As a batch of one: twice as fast as by itself, and the very numbers of any larger batch. What
-  // it keeps is scratch, of no subject, so a thread has one.
-  thread_local wrinkle::BatchSolver batch;
+  // As a batch of one: twice as fast as by itself, and the very numbers of any larger batch.
   wrinkle::BatchUpdate update = Prepare(sequence, capture_time_us);
-  batch.Run({&update, 1});
+  Batch().Run({&update, 1});
   return Finish(update.status);
 }
 
@@ -85,7 +92,7 @@ void SubjectPipeline::SolveAnew() {
 void SubjectPipeline::SetLevel(std::size_t num_drivers) {
   if (num_drivers == level()) return;
   // A pose that was solved before: it is still one that can be.
-  (void)wrinkle::BatchSolver::SetLevel(&solver_, solved_pose(), num_drivers);
+  (void)Batch().SetLevel(&solver_, solved_pose(), num_drivers);
 }
 
 wrinkle::JobStatus SubjectPipeline::Decay(double dt) { return solver_.Decay(dt); }
