@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/tcp_session.h"
 
-#include <array>
 #include <chrono>
 #include <string>
 #include <utility>
@@ -13,6 +12,8 @@
 #include <asio/post.hpp>
 #include <asio/use_awaitable.hpp>
 #include <asio/write.hpp>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 
 #include "protocol/limits.h"
 #include "protocol/tcp_framing.h"
@@ -23,8 +24,14 @@ namespace {
 
 constexpr auto kToken = asio::experimental::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReadBytes = 64 * 1024;
+// What goes out by one call of the system, small messages together.
+constexpr std::size_t kWriteBytes = 16 * 1024;
+// How much the system keeps that the network has not taken. Left to itself it keeps megabytes:
+// whoever reads slowly would get seconds of what is long past, and each message for who does not
+// read at all would still be a call.
+constexpr int kUnsentBytes = 32 * 1024;
 constexpr std::size_t kMaxReplies = 1024;
-// A write this old is of a peer that does not read: a message goes out in microseconds.
+// A write this old is of a peer that does not read, or hardly: it takes microseconds.
 constexpr Time kStuckAfter = std::chrono::milliseconds(100);
 constexpr auto kWatchInterval = std::chrono::milliseconds(500);
 
@@ -54,6 +61,9 @@ TcpSession::TcpSession(asio::ip::tcp::socket socket, const Limits& limits, Hub* 
 void TcpSession::Start() {
   asio::error_code error;
   socket_.set_option(asio::ip::tcp::no_delay(true), error);
+  // Where it cannot be had, all works but for the freshness of what slow readers get.
+  setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes,
+             sizeof(kUnsentBytes));
   peer_ = hub_->AddPeer(Transport::kTcp, NameOf(socket_), this, ReadClock());
   const auto self = shared_from_this();
   const auto executor = socket_.get_executor();
@@ -92,12 +102,10 @@ bool TcpSession::OnBytes(std::span<const std::uint8_t> bytes, Time now) {
 
 asio::awaitable<void> TcpSession::Write() {
   while (state_ == State::kOpen || state_ == State::kFlushing) {
-    if (outbox_.Pop(&out_)) {
+    if (TakeOut()) {
       writing_ = true;
       write_started_ = ReadClock();
-      const auto prefix = protocol::FramePrefix(out_.size());
-      const std::array<asio::const_buffer, 2> parts = {asio::buffer(prefix), asio::buffer(out_)};
-      const auto [error, size] = co_await asio::async_write(socket_, parts, kToken);
+      const auto [error, size] = co_await asio::async_write(socket_, asio::buffer(out_), kToken);
       writing_ = false;
       if (error) Close();
     } else if (state_ == State::kFlushing) {
@@ -113,6 +121,18 @@ asio::awaitable<void> TcpSession::Write() {
       co_await wake_.async_wait(kToken);
     }
   }
+}
+
+// What waits, as far as it goes out together. False: nothing.
+bool TcpSession::TakeOut() {
+  out_.clear();
+  while (out_.size() < kWriteBytes && outbox_.Pop(&message_)) {
+    const auto prefix = protocol::FramePrefix(message_.size());
+    out_.insert(out_.end(), prefix.begin(), prefix.end());
+    out_.insert(out_.end(), message_.begin(), message_.end());
+    if (message_.capacity() > kWriteBytes) message_ = {};  // a picture is not kept twice
+  }
+  return !out_.empty();
 }
 
 asio::awaitable<void> TcpSession::Watch() {

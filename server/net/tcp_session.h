@@ -45,6 +45,7 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
 
   asio::awaitable<void> Read();
   asio::awaitable<void> Write();
+  bool TakeOut();
   asio::awaitable<void> Watch();
   bool OnBytes(std::span<const std::uint8_t> bytes, Time now);
   bool IsOverdue(Time now);
@@ -59,7 +60,8 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
   Outbox outbox_;
   protocol::FrameReader frames_;
   std::vector<std::uint8_t> in_;
-  std::vector<std::uint8_t> out_;
+  std::vector<std::uint8_t> message_;
+  std::vector<std::uint8_t> out_;  // frames that are being written
   PeerId peer_ = 0;
   State state_ = State::kOpen;
   bool linger_ = false;
