@@ -11,6 +11,8 @@
 #include "protocol/hash.h"
 #include "protocol/quantise.h"
 #include "recording/wire_pose.h"
+#include "wrinkle/ascii.h"
+#include "wrinkle/rig_joints.h"
 
 namespace furrow::cli {
 namespace {
@@ -42,6 +44,21 @@ void QuantiseFrame(std::span<wrinkle::Transform> locals, std::span<const wrinkle
   }
 }
 
+// Whether the recording has nothing that the rig reads, by its own name or by an alias.
+bool NothingMatches(const wrinkle::Rig& rig, const motion::Clip& clip,
+                    const character::SkeletonMatch& match) {
+  const auto joints = wrinkle::JointsOf(rig);
+  const auto has_joint = [&](const std::string& name) { return joints.contains(name); };
+  const auto has_blend_shape = [&](const wrinkle::Driver& driver) {
+    return driver.kind == wrinkle::Driver::Kind::kBlendShape &&
+           std::ranges::any_of(clip.blend_shape_names, [&](const std::string& name) {
+             return wrinkle::EqualsIgnoreCase(name, driver.blend_shape.blend_shape);
+           });
+  };
+  return match.aliases.empty() && std::ranges::none_of(clip.skeleton.joint_names(), has_joint) &&
+         std::ranges::none_of(rig.drivers, has_blend_shape);
+}
+
 Result<std::shared_ptr<const wrinkle::RigBinding>> BindRig(const LoadInput& input,
                                                            const motion::Clip& clip) {
   std::string rig_name = input.rig;
@@ -58,6 +75,13 @@ Result<std::shared_ptr<const wrinkle::RigBinding>> BindRig(const LoadInput& inpu
   auto binding = wrinkle::RigBinding::Create(*rig, clip.skeleton, clip.blend_shape_names,
                                              {.allow_missing = true, .aliases = match.aliases});
   if (!binding.ok()) return binding.status().At(rig_name);
+  if (NothingMatches(*rig, clip, match)) {
+    return Status(StatusCode::kNotFound, "no joint and no blend shape of the rig is in it",
+                  input.file,
+                  "weights that all rest prove nothing: choose a --rig for this "
+                  "recording, or name its joints with --skeleton-map");
+  }
+  WarnOfMissing(*binding, clip);
   return std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
 }
 

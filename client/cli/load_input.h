@@ -18,8 +18,9 @@ struct LoadInput {
   float scale = 1.0f;
 };
 
-// Errors: those of the recording, the rig and the skeleton map; kInvalidArgument for a recording
-// without frames.
+// What the recording lacks of the rig is warned of on standard error. Errors: those of the
+// recording, the rig and the skeleton map; kInvalidArgument for a recording without frames;
+// kNotFound for one that has nothing that the rig reads.
 [[nodiscard]] Result<load::Performance> LoadPerformance(const LoadInput& input);
 
 // Makes a clip's values those that its quantised poses have on the wire, so that both ends solve
