@@ -72,7 +72,10 @@ double Histogram::StandardDeviation() const {
 
 std::int64_t Histogram::Percentile(double percentile) const {
   if (count_ == 0) return 0;
-  const double wanted = std::ceil(percentile / 100.0 * static_cast<double>(count_));
+  // 99.9 % of 1,000 is 999.0000000000001 in binary: what is a whole number stays it.
+  constexpr double kRounding = 1e-12;
+  const double exact = percentile / 100.0 * static_cast<double>(count_);
+  const double wanted = std::ceil(exact * (1.0 - kRounding));
   const auto rank = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(wanted), 1, count_);
   std::uint64_t seen = 0;
   for (std::size_t i = 0; i < cells_.size(); ++i) {

@@ -11,12 +11,12 @@
 namespace furrow::load {
 namespace {
 
-// What sorting says: the value of that rank.
+// What sorting says: the value of that rank. `percentile` in whole hundredths.
 std::int64_t Sorted(std::vector<std::int64_t> values, double percentile) {
   std::ranges::sort(values);
-  const auto rank = static_cast<std::size_t>(
-      std::max(1.0, std::ceil(percentile / 100.0 * static_cast<double>(values.size()))));
-  return values[rank - 1];
+  const auto hundredths = static_cast<std::size_t>(std::llround(percentile * 100.0));
+  const std::size_t rank = (hundredths * values.size() + 9'999) / 10'000;
+  return values[std::max<std::size_t>(rank, 1) - 1];
 }
 
 TEST(Histogram, PercentilesAreThoseOfSortingToOnePartInAThousand) {
@@ -47,6 +47,19 @@ TEST(Histogram, SmallValuesAreExact) {
   }
   for (double percentile = 0.0; percentile <= 100.0; percentile += 0.5)
     EXPECT_EQ(histogram.Percentile(percentile), Sorted(values, percentile)) << percentile;
+}
+
+// In binary 99.9 % of 1,000 is a little more than 999.
+TEST(Histogram, AWholeRankIsNotRoundedUp) {
+  Histogram histogram;
+  for (std::int64_t i = 1; i <= 1000; ++i) histogram.Record(i);
+  EXPECT_EQ(histogram.Percentile(99.9), 999);
+  EXPECT_EQ(histogram.Percentile(99.0), 990);
+  EXPECT_EQ(histogram.Percentile(99.91), 1000);
+  EXPECT_EQ(histogram.Percentile(100.0), 1000);
+  for (std::int64_t i = 1001; i <= 10000; ++i) histogram.Record(i);
+  EXPECT_EQ(histogram.Percentile(99.9), 9990 | 7);  // to the upper end of its cell
+  EXPECT_EQ(histogram.Percentile(0.01), 1);
 }
 
 TEST(Histogram, CellsFollowEachOtherWithoutGapOrOverlap) {
