@@ -11,6 +11,7 @@ namespace furrow::bench {
 load::RunHooks Silently() {
   return {.go_on = [] { return true; },
           .solving = [](double) {},
+          .settling = [](double) {},
           .second = [](double, const load::Tally&, const load::Histogram&) {}};
 }
 

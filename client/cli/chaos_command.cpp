@@ -8,6 +8,7 @@
 #include "client/cli/exit_code.h"
 #include "client/cli/interrupt.h"
 #include "client/load/chaos_proxy.h"
+#include "client/load/descriptor_limit.h"
 
 namespace furrow::cli {
 namespace {
@@ -41,14 +42,16 @@ int RunChaos(const ChaosCommand& command) {
     }
   }
   CatchInterrupts();
+  load::RaiseDescriptorLimit();
   std::printf("furrow chaos ready udp=%s:%u", options.listen_host.c_str(), (*proxy)->udp_port());
   if (options.to_tcp != 0)
     std::printf(" tcp=%s:%u", options.listen_host.c_str(), (*proxy)->tcp_port());
   std::printf("\n");
   std::fflush(stdout);
   (*proxy)->Run([] { return !Interrupted(); });
-  std::printf("%s\n%s\n", Describe("up", (*proxy)->up_counts()).c_str(),
-              Describe("down", (*proxy)->down_counts()).c_str());
+  std::printf("%s\n%s\n",
+              Describe("up", (*proxy)->up_counts(), (*proxy)->up_stream_counts()).c_str(),
+              Describe("down", (*proxy)->down_counts(), (*proxy)->down_stream_counts()).c_str());
   return kDone;
 }
 

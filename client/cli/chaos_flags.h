@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "client/load/chaos_link.h"
+#include "client/load/chaos_stream.h"
 
 namespace furrow::cli {
 
@@ -25,7 +26,9 @@ void AddChaosFlags(CLI::App& command, ChaosFlags& flags);
 // The options of either way, black holes parsed.
 void ReadChaosFlags(const ChaosFlags& flags, load::ChaosOptions* up, load::ChaosOptions* down);
 
-// "up: 1000 packets, lost 3, ..." of what was done.
-[[nodiscard]] std::string Describe(const std::string& way, const load::ChaosCounts& counts);
+// "up: 1000 datagrams, lost 3, ..." of what was done, and where there were TCP connections a second
+// line "up over TCP: 2 connections, 5000 bytes, ...". Ends without a line break.
+[[nodiscard]] std::string Describe(const std::string& way, const load::ChaosCounts& counts,
+                                   const load::ChaosStreamCounts& stream_counts);
 
 }  // namespace furrow::cli

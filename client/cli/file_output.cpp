@@ -19,6 +19,16 @@ Status WriteFile(const std::filesystem::path& path, std::span<const std::uint8_t
   return {};
 }
 
+Status CheckWritable(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const bool is_there = std::filesystem::exists(path, ignored);
+  errno = 0;
+  const bool opened = std::ofstream(path, std::ios::binary | std::ios::app).is_open();
+  if (!opened) return {StatusCode::kIo, std::strerror(errno), path.string(), "cannot be written"};
+  if (!is_there) std::filesystem::remove(path, ignored);
+  return {};
+}
+
 Status WriteStandardOutput(std::span<const std::uint8_t> bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size() &&
       std::fflush(stdout) == 0) {

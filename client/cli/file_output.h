@@ -13,6 +13,10 @@ namespace furrow::cli {
 [[nodiscard]] Status WriteFile(const std::filesystem::path& path,
                                std::span<const std::uint8_t> bytes);
 
+// Whether WriteFile() may be expected to succeed: asked before work that takes long. What is there
+// stays as it is; kIo names the file and says why not.
+[[nodiscard]] Status CheckWritable(const std::filesystem::path& path);
+
 // Writes to standard output and flushes; kIo says why it could not.
 [[nodiscard]] Status WriteStandardOutput(std::span<const std::uint8_t> bytes);
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include <poll.h>
 #include <sys/socket.h>
 
 namespace furrow::load {
@@ -15,8 +16,14 @@ using std::chrono::milliseconds;
 namespace {
 
 constexpr int kSubjectsEach = 64;  // furrowd's limit of subscriptions for one peer
-constexpr std::int64_t kSlowIntervalUs = 1'000'000;
+constexpr std::int64_t kSlowIntervalUs = 1'000'000;  // also of looking who was cut off
 constexpr std::int64_t kChurnIntervalUs = 500'000;
+
+// Whether the other end has closed, also behind bytes that were not read.
+bool IsCut(int descriptor) {
+  pollfd wanted{descriptor, POLLRDHUP, 0};
+  return poll(&wanted, 1, 0) > 0;
+}
 
 }  // namespace
 
@@ -43,6 +50,7 @@ Status Burdens::Begin(Burden& burden) {
     const int bytes = 4096;
     setsockopt((*socket)->descriptor(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof(bytes));
   }
+  burden.descriptor = (*socket)->descriptor();
   burden.subscriber =
       std::make_unique<client::Subscriber>(*std::move(socket), "furrow load, misbehaving");
   for (int i = 0; i < subjects_; ++i) {
@@ -54,23 +62,35 @@ Status Burdens::Begin(Burden& burden) {
 
 void Burdens::Tick(std::int64_t now_us) {
   for (Burden& burden : burdens_) {
-    if (burden.kind == Kind::kStalled || now_us < burden.due_us) continue;
-    if (burden.kind == Kind::kChurn) {
-      Churn(burden, now_us);
+    if (now_us < burden.due_us) continue;
+    const bool churns = burden.kind == Kind::kChurn;
+    burden.due_us = now_us + (churns ? kChurnIntervalUs : kSlowIntervalUs);
+    if (churns) {
+      Churn(burden);
     } else {
-      burden.due_us = now_us + kSlowIntervalUs;
-      if (burden.subscriber) (void)burden.subscriber->Next(now_us, milliseconds(0));
+      Weigh(burden, now_us);
     }
   }
 }
 
 // Half a second with a connection, half a second without.
-void Burdens::Churn(Burden& burden, std::int64_t now_us) {
-  burden.due_us = now_us + kChurnIntervalUs;
+void Burdens::Churn(Burden& burden) {
   if (burden.subscriber) {
     burden.subscriber.reset();
   } else if (Begin(burden).ok()) {  // a daemon that refuses now may not later
     ++returns_;
+  }
+}
+
+void Burdens::Weigh(Burden& burden, std::int64_t now_us) {
+  if (burden.subscriber && IsCut(burden.descriptor)) {
+    burden.subscriber.reset();
+    ++cut_;
+  }
+  if (!burden.subscriber) {
+    (void)Begin(burden);  // once more a second later where that fails
+  } else if (burden.kind == Kind::kSlow) {
+    (void)burden.subscriber->Next(now_us, milliseconds(0));
   }
 }
 

@@ -22,7 +22,8 @@ struct BurdenOptions {
 };
 
 // Subscribers that are not measured but make it hard for the server. Each asks for up to 64
-// subjects. None of them is waited for.
+// subjects. None of them is waited for, but for the connecting of those that come back: a round
+// trip. Those that the server cuts off are opened again.
 class Burdens {
  public:
   // Errors: those of `open`.
@@ -34,23 +35,29 @@ class Burdens {
 
   // How often a churning subscriber came back.
   [[nodiscard]] std::uint64_t returns() const { return returns_; }
+  // How often the server was seen to cut off a slow or stalled one: it may have done so more often,
+  // since its last word does not reach who reads nothing.
+  [[nodiscard]] std::uint64_t cut() const { return cut_; }
 
  private:
   enum class Kind { kSlow, kStalled, kChurn };
   struct Burden {
     Kind kind = Kind::kStalled;
     std::int64_t due_us = 0;
+    int descriptor = -1;  // the subscriber's
     std::unique_ptr<client::Subscriber> subscriber;
   };
 
   Burdens(OpenSocket open, int subjects) : open_(std::move(open)), subjects_(subjects) {}
   [[nodiscard]] Status Begin(Burden& burden);
-  void Churn(Burden& burden, std::int64_t now_us);
+  void Churn(Burden& burden);
+  void Weigh(Burden& burden, std::int64_t now_us);
 
   OpenSocket open_;
   int subjects_;
   std::vector<Burden> burdens_;
   std::uint64_t returns_ = 0;
+  std::uint64_t cut_ = 0;
 };
 
 }  // namespace furrow::load

@@ -17,11 +17,10 @@ namespace {
 
 constexpr std::size_t kMaxFlows = 1024;
 constexpr std::int64_t kLongestWaitNs = 100'000'000;
-constexpr std::int64_t kStreamWaitNs = 1'000'000;  // TCP connections are looked at so often
 constexpr std::int64_t kMicrosecond = 1000;
 
-// Which descriptor is ready.
-enum Token : std::uint64_t { kClients = 0, kListener = 1, kFlow = 2 };
+// Which descriptor is ready: of a flow, its address, which is beyond these.
+enum Token : std::uint64_t { kClients = 0, kListener = 1, kStream = 2, kFlow = 3 };
 
 std::int64_t NowUs() { return SteadyNanoseconds() / kMicrosecond; }
 
@@ -115,10 +114,25 @@ void ChaosProxy::Run(const std::function<bool()>& go_on) {
     }
     const std::int64_t now_us = NowUs();
     ForwardDue(now_us);
-    std::erase_if(streams_, [now_us](ChaosStream& stream) { return !stream.Pump(now_us); });
+    PumpStreams(now_us);
     while (flows_.size() > kMaxFlows) ForgetOldest();
   }
   while (!flows_.empty()) ForgetOldest();
+  for (const ChaosStream& stream : streams_) ForgetStream(stream);
+  streams_.clear();
+}
+
+void ChaosProxy::PumpStreams(std::int64_t now_us) {
+  std::erase_if(streams_, [&](ChaosStream& stream) {
+    const bool ended = !stream.Pump(now_us);
+    if (ended) ForgetStream(stream);
+    return ended;
+  });
+}
+
+void ChaosProxy::ForgetStream(const ChaosStream& stream) {
+  up_stream_counts_.Add(stream.up_counts());
+  down_stream_counts_.Add(stream.down_counts());
 }
 
 void ChaosProxy::ForgetOldest() {
@@ -128,12 +142,15 @@ void ChaosProxy::ForgetOldest() {
 }
 
 std::int64_t ChaosProxy::WaitNs(std::int64_t now_us) const {
-  std::int64_t wait_ns = streams_.empty() ? kLongestWaitNs : kStreamWaitNs;
+  std::int64_t wait_ns = kLongestWaitNs;
+  const auto not_beyond = [&](std::int64_t due_us) {
+    if (due_us >= 0) wait_ns = std::min(wait_ns, (due_us - now_us) * kMicrosecond);
+  };
   for (const auto& flow : flows_) {
-    for (const std::int64_t due_us : {flow->up.next_us(), flow->down.next_us()}) {
-      if (due_us >= 0) wait_ns = std::min(wait_ns, (due_us - now_us) * kMicrosecond);
-    }
+    not_beyond(flow->up.next_us());
+    not_beyond(flow->down.next_us());
   }
+  for (const ChaosStream& stream : streams_) not_beyond(stream.next_us(now_us));
   return wait_ns;
 }
 
@@ -204,6 +221,9 @@ void ChaosProxy::Accept() {
   setsockopt(server.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
   streams_.emplace_back(std::move(client), std::move(server), options_.up, options_.down,
                         next_number_++, start_us_);
+  // Of what is held back nobody reads for a while, so only what is new may wake us.
+  poller_.Add(streams_.back().client(), kStream, Poller::When::kEdge);
+  poller_.Add(streams_.back().server(), kStream, Poller::When::kEdge);
 }
 
 }  // namespace furrow::load

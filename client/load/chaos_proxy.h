@@ -47,6 +47,9 @@ class ChaosProxy {
   // Of all links, by direction, once Run() has ended.
   [[nodiscard]] const ChaosCounts& up_counts() const { return up_counts_; }
   [[nodiscard]] const ChaosCounts& down_counts() const { return down_counts_; }
+  // The same of all TCP connections.
+  [[nodiscard]] const ChaosStreamCounts& up_stream_counts() const { return up_stream_counts_; }
+  [[nodiscard]] const ChaosStreamCounts& down_stream_counts() const { return down_stream_counts_; }
 
  private:
   struct Flow;  // the datagrams of one client
@@ -60,6 +63,8 @@ class ChaosProxy {
   void ForwardDue(std::int64_t now_us);
   void ForgetOldest();
   void Accept();
+  void PumpStreams(std::int64_t now_us);
+  void ForgetStream(const ChaosStream& stream);
   [[nodiscard]] std::int64_t WaitNs(std::int64_t now_us) const;
 
   ChaosProxyOptions options_;
@@ -76,6 +81,8 @@ class ChaosProxy {
   std::vector<std::uint8_t> packet_;
   ChaosCounts up_counts_;
   ChaosCounts down_counts_;
+  ChaosStreamCounts up_stream_counts_;
+  ChaosStreamCounts down_stream_counts_;
 };
 
 }  // namespace furrow::load

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,13 +24,16 @@ struct Tally {
   std::uint64_t never_sent = 0;  // of poses that were not sent: a wrong sequence
   std::uint64_t checked = 0;     // weights compared with the solver's
   std::uint64_t unchecked = 0;   // received, but the solver cannot know (a long gap, another rig)
+  std::uint64_t unfollowed = 0;  // of the unchecked: differed, but were too many to be replayed
   // Of the checked, those beyond the tolerance. Of them, those equal to another pose's or
-  // subject's; the rest equals none.
+  // subject's, and those beyond the first 10,000, which are not looked for; the rest equals none.
   std::uint64_t wrong = 0;
   std::uint64_t swapped = 0;
+  std::uint64_t unclassified = 0;
   float largest_difference = 0.0f;  // of the checked that are not wrong
 
   [[nodiscard]] std::uint64_t lost() const { return expected - received; }
+  [[nodiscard]] std::uint64_t falsified() const { return wrong - swapped - unclassified; }
 };
 
 struct CheckOptions {
@@ -57,8 +61,10 @@ class Checker {
                  std::span<const float> values, bool readable, std::int64_t now_us);
 
   // Replays the solver for what differed. Call it once, in the end. `performance` is that of the
-  // expected table.
-  void Settle(const Performance& performance);
+  // expected table. `progress` is told the share done, several times a second, and ends the work by
+  // false: what is left is unchecked then, and false is returned.
+  [[nodiscard]] bool Settle(const Performance& performance,
+                            const std::function<bool(double share)>& progress);
 
   [[nodiscard]] const Tally& tally() const { return tally_; }
   [[nodiscard]] const Histogram& latency_ns() const { return latency_; }
@@ -67,17 +73,19 @@ class Checker {
   [[nodiscard]] bool complete() const { return tally_.received == tally_.expected; }
 
  private:
-  friend class Replay;
   struct Dispute {
     std::uint32_t pose = 0;
     std::size_t row = 0;  // in dispute_values_
   };
   // One subject as one watcher sees it.
   struct Track {
+    std::uint32_t subject = 0;
     std::vector<bool> seen;
     std::int64_t newest = -1;
     std::vector<Dispute> disputes;
+    std::vector<std::uint32_t> unfollowed;  // poses that differed
   };
+  class Settlement;  // of one track
 
   void Compare(Track& track, std::uint32_t subject, std::uint32_t pose,
                std::span<const float> values);

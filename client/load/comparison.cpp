@@ -2,11 +2,10 @@
 #include "client/load/comparison.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
 
-#include <nlohmann/json.hpp>
-
+#include "client/load/rate_search.h"
 #include "client/load/verdict.h"
 #include "report/statistics.h"
 #include "report/table.h"
@@ -17,223 +16,202 @@ namespace {
 using furrow::report::Fixed;
 using furrow::report::Median;
 
-// What one contestant measured, one value a run.
-struct Series {
-  const Target* target = nullptr;
-  std::vector<double> p50_us;
-  std::vector<double> p90_us;
-  std::vector<double> cpu_us;
-  Histogram pooled_ns;
-  std::vector<double> highest;
-};
+constexpr double kSearchShare = 0.6;  // of the time, where rounds follow
 
-std::vector<double> Ratios(const std::vector<double>& a, const std::vector<double>& b) {
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    if (b[i] > 0.0) ratios.push_back(a[i] / b[i]);
+// What one contestant measured: one value a round, one a search.
+struct Series {
+  using Values = std::vector<std::optional<double>>;
+
+  const Target* target = nullptr;
+  Values p50_us;
+  Values p90_us;
+  Values cpu_us;
+  Values highest;
+  // The lowest rates that were given up: while this program fell behind, and while it did not.
+  std::optional<double> generator_behind_at;
+  std::optional<double> own_limit_at;
+
+  void GiveUp(double rate, bool generator_behind) {
+    std::optional<double>& lowest = generator_behind ? generator_behind_at : own_limit_at;
+    lowest = std::min(lowest.value_or(rate), rate);
   }
-  return ratios;
-}
+  // Nothing where the target itself gave up as early.
+  [[nodiscard]] std::optional<double> LimitOfGenerator() const {
+    if (own_limit_at && generator_behind_at && *own_limit_at <= *generator_behind_at) return {};
+    return generator_behind_at;
+  }
+};
 
 // The runs and searches of all contestants, in turn.
 class Contest {
  public:
-  Contest(const Performance& performance, const Contestants& contestants,
-          const ComparisonOptions& options, const ComparisonHooks& hooks)
-      : performance_(performance), options_(options), hooks_(hooks) {
+  Contest(const RunTarget& run, const Contestants& contestants, const ComparisonOptions& options,
+          const ComparisonHooks& hooks)
+      : run_(run), options_(options), hooks_(hooks), begin_(hooks.seconds()) {
     series_.push_back({.target = &contestants.server});
     if (contestants.raw) series_.push_back({.target = &*contestants.raw});
     if (contestants.control) series_.push_back({.target = &*contestants.control});
-    run_hooks_ = {.go_on = hooks.go_on,
-                  .solving = [](double) {},
-                  .second = [](double, const Tally&, const Histogram&) {}};
   }
 
-  Status Rounds();
-  Status Searches();
-  [[nodiscard]] Comparison Report() const;
+  void Searches();
+  void Rounds();
+  [[nodiscard]] Comparison Report();
 
  private:
-  Status Search();
-  Status Probe(Series& series, RateSearch* search);
-  void AddFigure(const std::string& name, const std::string& unit,
-                 std::vector<double> Series::*values, std::vector<Figure>* figures) const;
+  // Whether another run may begin; `share` of the time limit is for what it belongs to.
+  [[nodiscard]] bool MayGoOn(double share);
+  void Say(const std::string& what) const;
+  // Nothing where it was interrupted or failed twice.
+  [[nodiscard]] std::optional<RunResult> Attempt(const Target& target, const RunOptions& options);
+  void Search(double share);
+  void Probe(Series& series, RateSearch* search);
+  void EndSearch(const std::vector<RateSearch>& searches, bool done);
+  void AddFigure(const std::string& name, const std::string& unit, Series::Values Series::*values);
 
-  const Performance& performance_;
+  const RunTarget& run_;
   const ComparisonOptions& options_;
   const ComparisonHooks& hooks_;
-  RunHooks run_hooks_;
+  double begin_;
   std::vector<Series> series_;
-  std::vector<RateStep> steps_;
+  Comparison comparison_;
 };
 
+bool Contest::MayGoOn(double share) {
+  if (!hooks_.go_on() || !comparison_.failure.ok()) return false;
+  const bool in_time = hooks_.seconds() - begin_ < share * options_.time_limit_seconds;
+  comparison_.out_of_time = comparison_.out_of_time || !in_time;
+  return in_time;
+}
+
+void Contest::Say(const std::string& what) const {
+  const double left = options_.time_limit_seconds - (hooks_.seconds() - begin_);
+  if (!std::isfinite(left)) return hooks_.progress(what);
+  const auto seconds = static_cast<int>(std::max(left, 0.0));
+  const std::string rest = std::to_string(seconds % 60);
+  hooks_.progress(what + ", at most " + std::to_string(seconds / 60) + ":" +
+                  (rest.size() < 2 ? "0" : "") + rest + " left");
+}
+
+std::optional<RunResult> Contest::Attempt(const Target& target, const RunOptions& options) {
+  auto result = run_(target, options);
+  if (!result.ok() && hooks_.go_on()) result = run_(target, options);
+  if (!result.ok()) {
+    comparison_.failure = result.status();
+    return std::nullopt;
+  }
+  if (result->interrupted) return std::nullopt;
+  return *std::move(result);
+}
+
 // Another one begins each round, so that none always follows the same.
-Status Contest::Rounds() {
-  for (int round = 0; round < options_.rounds && hooks_.go_on(); ++round) {
-    hooks_.progress("round " + std::to_string(round + 1) + " of " +
-                    std::to_string(options_.rounds));
-    for (std::size_t i = 0; i < series_.size() && hooks_.go_on(); ++i) {
+void Contest::Rounds() {
+  for (int round = 0; round < options_.rounds && MayGoOn(1.0); ++round) {
+    Say("round " + std::to_string(round + 1) + " of " + std::to_string(options_.rounds));
+    for (std::size_t i = 0; i < series_.size() && MayGoOn(1.0); ++i) {
       Series& series = series_[(i + static_cast<std::size_t>(round)) % series_.size()];
-      const auto result = Run(performance_, *series.target, options_.run, run_hooks_);
-      if (!result.ok()) return result.status();
-      if (result->interrupted) return {};
-      series.p50_us.push_back(result->p(50.0));
-      series.p90_us.push_back(result->p(90.0));
-      series.cpu_us.push_back(result->cpu_us_per_pose().value_or(0.0));
-      series.pooled_ns.Add(result->latency_ns);
+      const auto result = Attempt(*series.target, options_.run);
+      if (!result) return;
+      if (result->ended_early) {
+        comparison_.failure = {StatusCode::kUnavailable, result->complaint};
+        return;
+      }
+      series.p50_us.emplace_back(result->p(50.0));
+      series.p90_us.emplace_back(result->p(90.0));
+      series.cpu_us.push_back(result->cpu_us_per_pose());
     }
   }
-  return {};
 }
 
-Status Contest::Searches() {
-  for (int search = 0; search < options_.searches && hooks_.go_on(); ++search) {
-    if (Status status = Search(); !status.ok()) return status;
-  }
-  return {};
+void Contest::Searches() {
+  const double share = series_.size() > 1 && options_.rounds > 0 ? kSearchShare : 1.0;
+  for (int search = 0; search < options_.searches && MayGoOn(share); ++search) Search(share);
 }
 
-Status Contest::Search() {
+void Contest::Search(double share) {
   constexpr double kPrecision = 1.05;
   constexpr int kTries = 2;
   std::vector<RateSearch> searches(
-      series_.size(), RateSearch(options_.search_start, options_.search_limit, kPrecision, kTries));
+      series_.size(), RateSearch(std::min(options_.search_start, options_.search_limit),
+                                 options_.search_limit, kPrecision, kTries));
   const auto done = [](const RateSearch& search) { return search.done(); };
-  while (!std::ranges::all_of(searches, done) && hooks_.go_on()) {
-    for (std::size_t i = 0; i < series_.size() && hooks_.go_on(); ++i) {
-      if (searches[i].done()) continue;
-      if (Status status = Probe(series_[i], &searches[i]); !status.ok()) return status;
+  while (!std::ranges::all_of(searches, done) && MayGoOn(share)) {
+    for (std::size_t i = 0; i < series_.size() && MayGoOn(share); ++i) {
+      if (!searches[i].done()) Probe(series_[i], &searches[i]);
     }
   }
-  if (!hooks_.go_on()) return {};
-  for (std::size_t i = 0; i < series_.size(); ++i) series_[i].highest.push_back(searches[i].best());
-  return {};
+  EndSearch(searches, std::ranges::all_of(searches, done));
 }
 
-Status Contest::Probe(Series& series, RateSearch* search) {
+// One that was cut short counts where there is no other: what it found was held.
+void Contest::EndSearch(const std::vector<RateSearch>& searches, bool done) {
+  if (!done && !(comparison_.out_of_time && series_[0].highest.empty())) return;
+  comparison_.unfinished = !done;
+  for (std::size_t i = 0; i < series_.size(); ++i)
+    series_[i].highest.emplace_back(searches[i].best());
+  comparison_.at_limit = comparison_.at_limit || searches[0].best() >= options_.search_limit;
+}
+
+void Contest::Probe(Series& series, RateSearch* search) {
   RunOptions run = options_.run;
   run.plan.rate = search->rate() / run.plan.subjects;
   run.plan.seconds = options_.probe_seconds;
   run.drain_seconds = 0.3;
-  hooks_.progress(std::string(series.target->echo ? "raw echo" : "daemon") + " at " +
-                  Fixed(search->rate(), 0) + " poses a second");
-  const auto result = Run(performance_, *series.target, run, run_hooks_);
-  if (!result.ok()) return result.status();
-  if (result->interrupted) return {};
+  Say(std::string(series.target->echo ? "raw echo" : "daemon") + " at " + Fixed(search->rate(), 0) +
+      " poses a second");
+  const auto result = Attempt(*series.target, run);
+  if (!result) return;
   const bool held = Held(*result, options_.p99_limit_us);
+  const bool behind = !held && GeneratorFellBehind(*result, options_.p99_limit_us);
+  const double rate = search->rate();
   search->Tried(held);
-  if (!series.target->echo) {
-    const Tally& tally = result->tally;
-    steps_.push_back({.rate = result->planned_rate,
-                      .p50_us = result->p(50.0),
-                      .p99_us = result->p(99.0),
-                      .lost_share = static_cast<double>(tally.lost()) /
-                                    static_cast<double>(std::max<std::uint64_t>(tally.expected, 1)),
-                      .held = held});
-  }
-  return {};
+  if (!held && search->rate() != rate) series.GiveUp(rate, behind);
+  if (series.target->echo) return;
+  const Tally& tally = result->tally;
+  comparison_.steps.push_back(
+      {.rate = result->planned_rate,
+       .p50_us = result->p(50.0),
+       .p99_us = result->p(99.0),
+       .lost_share = static_cast<double>(tally.lost()) /
+                     static_cast<double>(std::max<std::uint64_t>(tally.expected, 1)),
+       .held = held,
+       .generator_behind = behind});
 }
 
 void Contest::AddFigure(const std::string& name, const std::string& unit,
-                        std::vector<double> Series::*values, std::vector<Figure>* figures) const {
-  if (series_.size() < 3 || (series_[2].*values).empty()) return;
+                        Series::Values Series::*values) {
+  if (series_.size() < 3) return;
   const std::vector<double> ratios = Ratios(series_[0].*values, series_[1].*values);
   const std::vector<double> control = Ratios(series_[2].*values, series_[1].*values);
   if (ratios.empty() || control.empty()) return;
-  figures->push_back({name, unit, Median(series_[0].*values), Median(series_[1].*values),
-                      SpreadOf(ratios), SpreadOf(control)});
+  comparison_.figures.push_back({name, unit, Median(Measured(series_[0].*values)),
+                                 Median(Measured(series_[1].*values)), SpreadOf(ratios),
+                                 SpreadOf(control)});
 }
 
-Comparison Contest::Report() const {
-  Comparison comparison;
-  comparison.interrupted = !hooks_.go_on();
-  comparison.steps = steps_;
-  comparison.highest_rates = series_[0].highest;
-  AddFigure("p50", "us", &Series::p50_us, &comparison.figures);
-  AddFigure("p90", "us", &Series::p90_us, &comparison.figures);
-  AddFigure("CPU a pose", "us", &Series::cpu_us, &comparison.figures);
-  AddFigure("highest rate", "poses/s", &Series::highest, &comparison.figures);
-  return comparison;
+Comparison Contest::Report() {
+  const Series& server = series_[0];
+  comparison_.interrupted = !hooks_.go_on();
+  comparison_.rounds = static_cast<int>(server.p50_us.size());
+  comparison_.highest_rates = Measured(server.highest);
+  comparison_.no_cpu = !server.cpu_us.empty() && Measured(server.cpu_us).empty();
+  comparison_.not_loopback = series_.size() > 1 && !server.target->loopback;
+  comparison_.generator_behind_at = server.LimitOfGenerator();
+  if (series_.size() > 1) comparison_.raw_generator_behind_at = series_[1].LimitOfGenerator();
+  AddFigure("p50", "us", &Series::p50_us);
+  AddFigure("p90", "us", &Series::p90_us);
+  AddFigure("CPU a pose", "us", &Series::cpu_us);
+  AddFigure("highest rate", "poses/s", &Series::highest);
+  return std::move(comparison_);
 }
 
 }  // namespace
 
-Spread SpreadOf(std::vector<double> values) {
-  std::ranges::sort(values);
-  const auto at = [&](double share) {
-    const double place = share * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    return values[below] + (place - std::floor(place)) * (values[above] - values[below]);
-  };
-  return {at(0.5), at(0.25), at(0.75)};
-}
-
-Result<Comparison> Compare(const Performance& performance, const Contestants& contestants,
-                           const ComparisonOptions& options, const ComparisonHooks& hooks) {
-  Contest contest(performance, contestants, options, hooks);
-  if (options.find_max) {
-    if (Status status = contest.Searches(); !status.ok()) return status;
-  }
-  if (contestants.raw) {
-    if (Status status = contest.Rounds(); !status.ok()) return status;
-  }
+Comparison Compare(const RunTarget& run, const Contestants& contestants,
+                   const ComparisonOptions& options, const ComparisonHooks& hooks) {
+  Contest contest(run, contestants, options, hooks);
+  if (options.find_max) contest.Searches();
+  if (contestants.raw) contest.Rounds();
   return contest.Report();
-}
-
-std::string ToText(const Comparison& comparison) {
-  std::string text;
-  if (!comparison.figures.empty()) {
-    report::Table table{"Beside a raw UDP echo, runs in turn",
-                        {"figure", "daemon", "raw echo", "ratio", "middle half of the ratios",
-                         "raw against raw", "its middle half"},
-                        {}};
-    for (const Figure& figure : comparison.figures) {
-      const auto between = [](const Spread& spread) {
-        return Fixed(spread.low, 2) + " to " + Fixed(spread.high, 2);
-      };
-      table.rows.push_back({figure.name + ", " + figure.unit, Fixed(figure.server, 1),
-                            Fixed(figure.raw, 1), Fixed(figure.ratio.median, 2),
-                            between(figure.ratio), Fixed(figure.control.median, 2),
-                            between(figure.control)});
-    }
-    text += ToMarkdown(table);
-  }
-  if (!comparison.highest_rates.empty()) {
-    const Spread spread = SpreadOf(comparison.highest_rates);
-    text += "\nHighest rate that loses nothing and holds p99: " + Fixed(spread.median, 0) +
-            " poses a second (" + std::to_string(comparison.highest_rates.size()) + " searches, " +
-            Fixed(spread.low, 0) + " to " + Fixed(spread.high, 0) + ").\n";
-  }
-  if (comparison.interrupted) text += "Interrupted: these are the figures so far.\n";
-  return text;
-}
-
-nlohmann::json ToJson(const Comparison& comparison) {
-  const auto spread = [](const Spread& value) {
-    return nlohmann::json{{"median", value.median}, {"low", value.low}, {"high", value.high}};
-  };
-  nlohmann::json figures = nlohmann::json::array();
-  for (const Figure& figure : comparison.figures) {
-    figures.push_back({{"name", figure.name},
-                       {"unit", figure.unit},
-                       {"daemon", figure.server},
-                       {"raw", figure.raw},
-                       {"ratio", spread(figure.ratio)},
-                       {"control", spread(figure.control)}});
-  }
-  nlohmann::json steps = nlohmann::json::array();
-  for (const RateStep& step : comparison.steps) {
-    steps.push_back({{"rate", step.rate},
-                     {"p50_us", step.p50_us},
-                     {"p99_us", step.p99_us},
-                     {"lost_share", step.lost_share},
-                     {"held", step.held}});
-  }
-  return {{"figures", figures},
-          {"highest_rates", comparison.highest_rates},
-          {"steps", steps},
-          {"interrupted", comparison.interrupted}};
 }
 
 }  // namespace furrow::load

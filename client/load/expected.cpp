@@ -8,16 +8,13 @@
 namespace furrow::load {
 namespace {
 
-// After so long the filter has forgotten how it began.
-constexpr std::int64_t kSettledUs = 5'000'000;
-
 std::size_t RowsKept(const Plan& plan) {
   std::uint32_t longest = 0;
   for (int i = 0; i < plan.num_subjects(); ++i)
     longest = std::max(longest, plan.count(static_cast<std::uint32_t>(i)));
   const auto frames = static_cast<std::uint32_t>(plan.num_frames());
   const std::int64_t round_us = std::max<std::int64_t>(plan.CaptureUs(0, frames), 1);
-  const auto rounds = static_cast<std::size_t>(kSettledUs / round_us) + 2;
+  const auto rounds = static_cast<std::size_t>(kFilterMemoryUs / round_us) + 2;
   return std::min<std::size_t>(longest, rounds * frames);
 }
 
@@ -28,6 +25,14 @@ float Distance(std::span<const float> a, std::span<const float> b) {
   float largest = 0.0f;
   for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
   return largest;
+}
+
+bool IsNear(std::span<const float> a, std::span<const float> b, float tolerance) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!(std::abs(a[i] - b[i]) <= tolerance)) return false;
+  }
+  return true;
 }
 
 Expected::Expected(const Performance& performance, const Plan& plan,
@@ -67,7 +72,7 @@ std::optional<Expected::Place> Expected::Find(std::span<const float> values,
   for (std::size_t phase = 0; phase < phases; ++phase) {
     for (std::uint32_t row = 0; row < rows_; ++row) {
       const Place place{static_cast<int>(phase), row};
-      if (Distance(Row(place.phase, row), values) <= tolerance) return place;
+      if (IsNear(Row(place.phase, row), values, tolerance)) return place;
     }
   }
   return std::nullopt;

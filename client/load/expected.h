@@ -15,6 +15,11 @@ namespace furrow::load {
 
 // The largest difference of two rows of values; infinity where they are not of one length.
 [[nodiscard]] float Distance(std::span<const float> a, std::span<const float> b);
+// Whether it is at most `tolerance`; says no at the first value that is beyond.
+[[nodiscard]] bool IsNear(std::span<const float> a, std::span<const float> b, float tolerance);
+
+// After so long without a gap a filter has forgotten how it began, unless it is a very slow one.
+inline constexpr std::int64_t kFilterMemoryUs = 5'000'000;
 
 // The weights that a server sends which uses every pose of a plan: solved before the run, so that
 // checking costs a comparison while it lasts.

@@ -3,12 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 namespace furrow::load {
 namespace {
 
 // A recording of one frame rests: it is sent as often as most cameras would.
 constexpr double kRestInterval = 1.0 / 60.0;
+
+bool IsLater(const Plan::Slot& a, const Plan::Slot& b) {
+  return std::tie(a.due_us, a.subject) > std::tie(b.due_us, b.subject);
+}
 
 }  // namespace
 
@@ -28,12 +34,24 @@ Plan::Plan(std::span<const double> times, const PlanOptions& options)
   const std::int64_t end = std::llround(options.seconds * 1e6);
   for (int subject = 0; subject < options.subjects; ++subject) {
     offset_us_.push_back(std::llround(interval * 1e6 * subject / options.subjects));
-    const auto number = static_cast<std::uint32_t>(subject);
-    std::uint32_t pose = 0;
-    for (; DueUs(number, pose) < end; ++pose) slots_.push_back({DueUs(number, pose), number, pose});
-    counts_.push_back(pose);
+    counts_.push_back(CountBefore(static_cast<std::uint32_t>(subject), end));
+    num_slots_ += counts_.back();
   }
-  std::ranges::stable_sort(slots_, {}, &Slot::due_us);
+}
+
+// Poses of a subject are due one after the other, so the first one that is too late is searched.
+std::uint32_t Plan::CountBefore(std::uint32_t subject, std::int64_t end_us) const {
+  std::uint32_t low = 0;
+  std::uint32_t high = std::numeric_limits<std::uint32_t>::max();  // as far as sequences count
+  while (low < high) {
+    const std::uint32_t middle = low + (high - low) / 2;
+    if (DueUs(subject, middle) < end_us) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
 }
 
 int Plan::FirstFrame(int phase) const {
@@ -56,6 +74,22 @@ std::int64_t Plan::DueUs(std::uint32_t subject, std::uint32_t pose) const {
   return offset_us_[subject] + CaptureUs(phase_of(subject), pose);
 }
 
-double Plan::poses_per_second() const { return static_cast<double>(slots_.size()) / seconds_; }
+double Plan::poses_per_second() const { return static_cast<double>(num_slots_) / seconds_; }
+
+PlanSlots::PlanSlots(const Plan& plan) : plan_(&plan) {
+  for (int i = 0; i < plan.num_subjects(); ++i) {
+    const auto subject = static_cast<std::uint32_t>(i);
+    if (plan.count(subject) > 0) heap_.push_back({plan.DueUs(subject, 0), subject, 0});
+  }
+  std::ranges::make_heap(heap_, IsLater);
+}
+
+void PlanSlots::Pop() {
+  std::ranges::pop_heap(heap_, IsLater);
+  Plan::Slot& slot = heap_.back();
+  if (++slot.pose >= plan_->count(slot.subject)) return heap_.pop_back();
+  slot.due_us = plan_->DueUs(slot.subject, slot.pose);
+  std::ranges::push_heap(heap_, IsLater);
+}
 
 }  // namespace furrow::load

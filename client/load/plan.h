@@ -32,8 +32,8 @@ class Plan {
   // `times`: of the recording's frames, seconds, increasing; at least one.
   Plan(std::span<const double> times, const PlanOptions& options);
 
-  // All poses, in the order they are due.
-  [[nodiscard]] std::span<const Slot> slots() const { return slots_; }
+  // Poses of all subjects.
+  [[nodiscard]] std::uint64_t num_slots() const { return num_slots_; }
   [[nodiscard]] int num_subjects() const { return static_cast<int>(counts_.size()); }
   // Poses of one subject.
   [[nodiscard]] std::uint32_t count(std::uint32_t subject) const { return counts_[subject]; }
@@ -53,6 +53,7 @@ class Plan {
 
  private:
   [[nodiscard]] int FirstFrame(int phase) const;
+  [[nodiscard]] std::uint32_t CountBefore(std::uint32_t subject, std::int64_t end_us) const;
 
   int phases_;
   double seconds_;
@@ -60,7 +61,26 @@ class Plan {
   std::int64_t round_us_;
   std::vector<std::int64_t> offset_us_;  // of each subject
   std::vector<std::uint32_t> counts_;
-  std::vector<Slot> slots_;
+  std::uint64_t num_slots_ = 0;
+};
+
+// The slots of a plan, one after the other as they are due; of one time, in the order of the
+// subjects. Memory: one slot a subject, however long the plan.
+//
+//   for (PlanSlots slots(plan); !slots.done(); slots.Pop()) Send(slots.next());
+class PlanSlots {
+ public:
+  // `plan` outlives it.
+  explicit PlanSlots(const Plan& plan);
+
+  [[nodiscard]] bool done() const { return heap_.empty(); }
+  // Precondition of both: not done().
+  [[nodiscard]] const Plan::Slot& next() const { return heap_.front(); }
+  void Pop();
+
+ private:
+  const Plan* plan_;
+  std::vector<Plan::Slot> heap_;  // the next one of each subject
 };
 
 }  // namespace furrow::load

@@ -19,12 +19,13 @@ constexpr float kSame = 1e-6f;
 }  // namespace
 
 Replay::Replay(const Performance& performance, const Plan& plan, std::uint32_t subject,
-               const Expected& expected, float tolerance)
+               const Expected& expected, float tolerance, std::uint32_t first)
     : performance_(performance),
       plan_(plan),
       expected_(expected),
       phase_(plan.phase_of(subject)),
-      tolerance_(tolerance) {
+      tolerance_(tolerance),
+      last_seen_us_(plan.CaptureUs(phase_, first)) {
   branches_.push_back({wrinkle::SubjectSolver(performance.binding), -1});
 }
 
@@ -49,7 +50,7 @@ void Replay::Missing(std::uint32_t pose) {
   }
 }
 
-void Replay::Agreed(std::uint32_t pose) { Observe(pose, expected_.Row(phase_, pose)); }
+float Replay::Agreed(std::uint32_t pose) { return Observe(pose, expected_.Row(phase_, pose)); }
 
 std::optional<float> Replay::Disputed(std::uint32_t pose, std::span<const float> values) {
   const float difference = Observe(pose, values);

@@ -20,13 +20,14 @@ namespace furrow::load {
 // Poses are given in order, each once, by one of three calls.
 class Replay {
  public:
+  // `first`: the pose it begins with, as if the filter had known none before.
   Replay(const Performance& performance, const Plan& plan, std::uint32_t subject,
-         const Expected& expected, float tolerance);
+         const Expected& expected, float tolerance, std::uint32_t first = 0);
 
   // No weights came of this pose.
   void Missing(std::uint32_t pose);
-  // They came and were those of the expected table.
-  void Agreed(std::uint32_t pose);
+  // They came and were those of the expected table: how far that is from the nearest possible.
+  float Agreed(std::uint32_t pose);
   // They came and were others: how far they are from the nearest that is possible. Nothing where
   // that cannot be said: after a gap in which the server held and decayed by its own clock, or one
   // with more possibilities than were followed up, none of which fits.

@@ -40,9 +40,19 @@ std::string Remarks(const RunResult& result, const RunOptions& options) {
   }
   if (!result.checked_names && options.check_weights)
     remark("Weights were not checked: the daemon's are named otherwise than those of --rig.");
+  if (result.tally.unfollowed > 0) {
+    remark(
+        Count(result.tally.unfollowed) +
+        " weights differed from the solver's but were too many to be followed up: they are among "
+        "those not to be checked.");
+  }
   if (result.overrun > 0) {
     remark(Count(result.overrun) +
            " datagrams were lost in this program's own buffers: it is too slow for this rate.");
+  }
+  if (result.burdens_cut > 0) {
+    remark("The daemon cut off slow or stalled subscribers " + Count(result.burdens_cut) +
+           " times; they came back.");
   }
   const double behind_us = static_cast<double>(result.send_delay_ns.Percentile(99.0)) * 1e-3;
   if (behind_us > 0.25 * result.p(99.0)) {
@@ -74,7 +84,7 @@ LineChart OverTime(const RunResult& result) {
   for (std::size_t i = 0; i < result.windows.size(); ++i) {
     const Histogram& window = result.windows[i];
     if (window.count() == 0) continue;
-    const double at = result.seconds * (static_cast<double>(i) + 0.5) /
+    const double at = result.planned_seconds * (static_cast<double>(i) + 0.5) /
                       static_cast<double>(result.windows.size());
     const double values[] = {static_cast<double>(window.Percentile(50.0)),
                              static_cast<double>(window.Percentile(99.0)),
@@ -113,15 +123,18 @@ nlohmann::json CountsOf(const RunResult& result) {
           {"late", tally.late},
           {"wrong", tally.wrong},
           {"swapped", tally.swapped},
-          {"falsified", tally.wrong - tally.swapped},
+          {"falsified", tally.falsified()},
+          {"unclassified", tally.unclassified},
           {"reordered", tally.reordered},
           {"duplicates", tally.duplicates},
           {"never_sent", tally.never_sent},
           {"malformed", result.malformed},
           {"checked", tally.checked},
           {"unchecked", tally.unchecked},
+          {"unfollowed", tally.unfollowed},
           {"overrun", result.overrun},
-          {"churn_returns", result.churn_returns}};
+          {"churn_returns", result.churn_returns},
+          {"burdens_cut", result.burdens_cut}};
 }
 
 }  // namespace
@@ -166,9 +179,11 @@ std::string ToText(const RunResult& result, const RunOptions& options) {
           Fixed(tally.largest_difference, 7) + "; not to be checked: " + Count(tally.unchecked) +
           ".\n";
   if (tally.wrong > 0) {
-    text += "Of the wrong, " + Count(tally.swapped) +
-            " are another pose's or subject's (swapped), " + Count(tally.wrong - tally.swapped) +
-            " nobody's (falsified).\n";
+    text +=
+        "Of the wrong, " + Count(tally.swapped) + " are another pose's or subject's (swapped), " +
+        Count(tally.falsified()) + " nobody's (falsified)" +
+        (tally.unclassified > 0 ? ", " + Count(tally.unclassified) + " were not looked for" : "") +
+        ".\n";
   }
   return text + Remarks(result, options);
 }
@@ -199,7 +214,8 @@ nlohmann::json ToJson(const RunResult& result) {
 }
 
 std::string Plot(const RunResult& result, const std::vector<RateStep>& steps) {
-  std::vector<LineChart> charts = {ByPercentile(result), OverTime(result)};
+  std::vector<LineChart> charts;
+  if (result.latency_ns.count() > 0) charts = {ByPercentile(result), OverTime(result)};
   if (!steps.empty()) {
     for (LineChart& chart : ByRate(steps)) charts.push_back(std::move(chart));
   }

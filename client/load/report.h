@@ -18,6 +18,7 @@ struct RateStep {
   double p99_us = 0.0;
   double lost_share = 0.0;
   bool held = false;
+  bool generator_behind = false;  // not held, and this program was too slow itself
 };
 
 // One line about a run that is under way.
@@ -29,8 +30,8 @@ struct RateStep {
 
 [[nodiscard]] nlohmann::json ToJson(const RunResult& result);
 
-// Latency by percentile, latency over time, and where there are steps, latency and loss by rate:
-// an SVG picture.
+// Latency by percentile and over time where something came back, and where there are steps, latency
+// and loss by rate: an SVG picture.
 [[nodiscard]] std::string Plot(const RunResult& result, const std::vector<RateStep>& steps);
 
 }  // namespace furrow::load

@@ -36,6 +36,17 @@ OpenSocket Opener(const Target& target, Path path) {
   };
 }
 
+// The name is resolved for the first socket alone: later ones open in the midst of a run.
+OpenSocket ResolvedOpener(Target target, Path path) {
+  return [target = std::move(target), path](int i) mutable -> Result<std::unique_ptr<Socket>> {
+    auto socket = Opener(target, path)(i);
+    if (!socket.ok()) return socket.status();
+    if (const std::string host = PeerHost((*socket)->descriptor()); !host.empty())
+      target.host = host;
+    return socket;
+  };
+}
+
 int NumSockets(const Performance& performance, const Plan& plan, Path path) {
   const double datagrams =
       static_cast<double>(protocol::NumDatagrams(performance.messages.front().size()));
@@ -43,6 +54,15 @@ int NumSockets(const Performance& performance, const Plan& plan, Path path) {
   const int least = path == Path::kBoth ? 2 : 1;
   return std::clamp(static_cast<int>(wanted), std::min(least, plan.num_subjects()),
                     plan.num_subjects());
+}
+
+// Says where nobody answered, and what that may be for.
+Status Located(const Status& status, const Target& target, Path path) {
+  if (status.code() != StatusCode::kUnavailable || !status.where().empty()) return status;
+  const std::uint16_t port = path == Path::kTcp ? target.tcp : target.udp;
+  const std::string address = target.host + ":" + std::to_string(port);
+  const bool is_named = status.what().find(address) != std::string::npos;
+  return {status.code(), status.what(), is_named ? "" : address, "is furrowd running there?"};
 }
 
 // One run that is under way.
@@ -54,7 +74,8 @@ class Runner {
         target_(target),
         options_(options),
         hooks_(hooks),
-        plan_(performance.times, options.plan) {}
+        plan_(performance.times, options.plan),
+        slots_(plan_) {}
 
   Status Prepare();
   RunResult Go();
@@ -67,13 +88,12 @@ class Runner {
   void ReadEchoes(std::size_t socket);
   void EverySecond(std::int64_t now_ns);
   [[nodiscard]] bool Over(std::int64_t now_ns);
-  [[nodiscard]] std::int64_t DueNs(std::size_t slot) const {
-    return start_ns_ + plan_.slots()[slot].due_us * 1000;
-  }
+  [[nodiscard]] std::int64_t NextDueNs() const { return start_ns_ + slots_.next().due_us * 1000; }
   void End(std::string why) {
     result_.complaint = std::move(why);
     result_.ended_early = true;
   }
+  void Settle();
   RunResult Report();
 
   const Performance& performance_;
@@ -81,6 +101,7 @@ class Runner {
   const RunOptions& options_;
   const RunHooks& hooks_;
   Plan plan_;
+  PlanSlots slots_;
   std::optional<Expected> expected_;
   std::optional<Checker> checker_;
   std::optional<Senders> senders_;
@@ -92,8 +113,8 @@ class Runner {
   std::int64_t capture_start_us_ = 0;
   std::int64_t last_arrival_ns_ = 0;
   std::int64_t next_second_ns_ = 0;
-  std::size_t next_slot_ = 0;
-  std::int64_t refused_ns_ = 0;  // when the last datagram was; 0: none
+  std::int64_t last_due_ns_ = 0;  // of those that were sent
+  std::int64_t refused_ns_ = 0;   // when the last datagram was; 0: none
 };
 
 Status Runner::Prepare() {
@@ -130,7 +151,8 @@ Status Runner::OpenSockets() {
   if (!watchers.ok()) return watchers.status();
   watchers_.emplace(*std::move(watchers));
   if (Status status = watchers_->Subscribe(hooks_.go_on); !status.ok()) return status;
-  auto burdens = Burdens::Open(Opener(target_, Path::kTcp), options_.burdens, plan_.num_subjects());
+  auto burdens =
+      Burdens::Open(ResolvedOpener(target_, Path::kTcp), options_.burdens, plan_.num_subjects());
   if (!burdens.ok()) return burdens.status();
   burdens_.emplace(*std::move(burdens));
   return {};
@@ -145,8 +167,7 @@ RunResult Runner::Go() {
   for (std::int64_t now = start_ns_; !Over(now); now = SteadyNanoseconds()) {
     SendDue(now);
     now = SteadyNanoseconds();
-    const bool all_sent = next_slot_ == plan_.slots().size();
-    const std::int64_t wait = all_sent ? kLongestWaitNs : DueNs(next_slot_) - now;
+    const std::int64_t wait = slots_.done() ? kLongestWaitNs : NextDueNs() - now;
     ReadReady(std::min(wait, kLongestWaitNs));
     EverySecond(now);
   }
@@ -166,25 +187,24 @@ bool Runner::Over(std::int64_t now_ns) {
     result_.interrupted = true;
     return true;
   }
-  if (next_slot_ < plan_.slots().size()) return false;
+  if (!slots_.done()) return false;
   const auto patience = std::llround(options_.drain_seconds * 1e9);
-  return checker_->complete() ||
-         now_ns - std::max(last_arrival_ns_, DueNs(next_slot_ - 1)) > patience;
+  return checker_->complete() || now_ns - std::max(last_arrival_ns_, last_due_ns_) > patience;
 }
 
 void Runner::SendDue(std::int64_t now_ns) {
-  for (int i = 0; i < kPosesAtOnce && next_slot_ < plan_.slots().size(); ++i) {
-    if (DueNs(next_slot_) > now_ns) return;
-    const Plan::Slot& slot = plan_.slots()[next_slot_];
+  for (int i = 0; i < kPosesAtOnce && !slots_.done() && NextDueNs() <= now_ns; ++i) {
+    const Plan::Slot slot = slots_.next();
+    last_due_ns_ = NextDueNs();
     const int phase = plan_.phase_of(slot.subject);
     const IoStatus status = senders_->Send(slot.subject, slot.pose, plan_.Frame(phase, slot.pose),
                                            capture_start_us_ + plan_.CaptureUs(phase, slot.pose));
     now_ns = SteadyNanoseconds();
-    result_.send_delay_ns.Record(now_ns - DueNs(next_slot_));
+    result_.send_delay_ns.Record(now_ns - last_due_ns_);
     checker_->OnSent(slot.subject, slot.pose, status == IoStatus::kOk);
     if (status == IoStatus::kNoConnection) refused_ns_ = now_ns;
     if (status == IoStatus::kClosed) return End("the daemon closed the connection");
-    ++next_slot_;
+    slots_.Pop();
   }
 }
 
@@ -213,8 +233,11 @@ IoStatus Runner::ReadWatcher(std::size_t socket) {
 }
 
 void Runner::ReadEchoes(std::size_t socket) {
+  constexpr int kAtOnce = 256;  // a flood on one socket must not keep the others waiting
+  Socket& from = senders_->socket(socket);
   std::span<const std::uint8_t> message;
-  while (senders_->socket(socket).Receive(message, std::chrono::milliseconds(0)) == IoStatus::kOk) {
+  for (int i = 0; i < kAtOnce || from.holds(); ++i) {
+    if (from.Receive(message, std::chrono::milliseconds(0)) != IoStatus::kOk) return;
     protocol::Envelope envelope;
     if (protocol::ReadEnvelope(message, envelope) != protocol::EnvelopeStatus::kOk) continue;
     last_arrival_ns_ = SteadyNanoseconds();
@@ -233,12 +256,23 @@ void Runner::EverySecond(std::int64_t now_ns) {
                 checker_->latency_ns());
 }
 
+// Whoever asked for the end is not kept waiting for what was disputed.
+void Runner::Settle() {
+  const std::int64_t patience_ns = SteadyNanoseconds() + 2 * kSecondNs;
+  const bool settled = checker_->Settle(performance_, [&](double share) {
+    hooks_.settling(share);
+    return hooks_.go_on() || SteadyNanoseconds() < patience_ns;
+  });
+  result_.interrupted = result_.interrupted || !settled;
+}
+
 RunResult Runner::Report() {
-  if (expected_) checker_->Settle(performance_);
+  if (expected_) Settle();
   result_.tally = checker_->tally();
   result_.latency_ns = checker_->latency_ns();
   result_.windows.assign(checker_->windows().begin(), checker_->windows().end());
   result_.planned_rate = plan_.poses_per_second();
+  result_.planned_seconds = options_.plan.seconds;
   for (std::size_t i = 0; i < senders_->num_sockets(); ++i)
     result_.overrun += senders_->socket(i).overrun();
   if (watchers_) {
@@ -248,7 +282,10 @@ RunResult Runner::Report() {
     result_.checked_names = expected_ && watchers_->names_match();
     if (result_.complaint.empty()) result_.complaint = watchers_->complaint();
   }
-  if (burdens_) result_.churn_returns = burdens_->returns();
+  if (burdens_) {
+    result_.churn_returns = burdens_->returns();
+    result_.burdens_cut = burdens_->cut();
+  }
   // Datagrams know no end: who refuses them and was not heard again is gone.
   if (refused_ns_ > last_arrival_ns_) {
     End("nobody listens at the port any more");
@@ -269,7 +306,7 @@ std::optional<double> RunResult::cpu_us_per_pose() const {
 Result<RunResult> Run(const Performance& performance, const Target& target,
                       const RunOptions& options, const RunHooks& hooks) {
   Runner runner(performance, target, options, hooks);
-  if (Status status = runner.Prepare(); !status.ok()) return status;
+  if (Status status = runner.Prepare(); !status.ok()) return Located(status, target, options.path);
   return runner.Go();
 }
 

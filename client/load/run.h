@@ -26,6 +26,7 @@ struct Target {
   std::uint16_t udp = 0;
   std::uint16_t tcp = 0;
   bool echo = false;       // sends every datagram back: poses themselves are what returns
+  bool loopback = true;    // by this machine's loopback address
   std::optional<int> pid;  // of its process, where it is on this machine
 };
 
@@ -42,8 +43,9 @@ struct RunOptions {
 
 // What the caller hears while a run lasts.
 struct RunHooks {
-  std::function<bool()> go_on;                // false: stop, and report so far
-  std::function<void(double share)> solving;  // before the start
+  std::function<bool()> go_on;                 // false: stop, and report so far
+  std::function<void(double share)> solving;   // before the start
+  std::function<void(double share)> settling;  // after the end, where weights were disputed
   std::function<void(double seconds, const Tally&, const Histogram& latency_ns)> second;
 };
 
@@ -53,16 +55,18 @@ struct RunResult {
   std::vector<Histogram> windows;
   Histogram send_delay_ns;            // by how much this program itself was late to send
   double seconds = 0.0;               // from the first pose due to the last, or to the interrupt
+  double planned_seconds = 0.0;       // of which `windows` are equal parts
   double planned_rate = 0.0;          // poses a second
   std::optional<double> cpu_seconds;  // of the target's process, from start to end
   std::optional<ProcessUsage> usage;  // in the end
   std::uint64_t overrun = 0;          // datagrams lost in this program's own full buffers
   std::uint64_t malformed = 0;        // messages that could not be decoded
   std::uint64_t churn_returns = 0;
-  bool checked_names = false;  // the daemon's weights are named as the solver's
-  std::string complaint;       // what the daemon said, or what ended the run before its time
-  bool interrupted = false;    // by the caller
-  bool ended_early = false;    // the daemon went away before the end; `complaint` says how
+  std::uint64_t burdens_cut = 0;  // as Burdens::cut()
+  bool checked_names = false;     // the daemon's weights are named as the solver's
+  std::string complaint;          // what the daemon said, or what ended the run before its time
+  bool interrupted = false;       // by the caller
+  bool ended_early = false;       // the daemon went away before the end; `complaint` says how
 
   [[nodiscard]] double p(double percentile) const {
     return static_cast<double>(latency_ns.Percentile(percentile)) * 1e-3;  // microseconds
@@ -72,8 +76,10 @@ struct RunResult {
 };
 
 // One run from a fixed schedule: offers the subjects, subscribes, sends each pose when it is due,
-// takes what comes, waits for the rest, judges it. One thread; nothing is waited for that could
-// delay the next pose.
+// takes what comes, waits for the rest, judges it. One thread. Over UDP nothing is waited for that
+// could delay the next pose. Over TCP a daemon that takes no more bytes holds up all poses, for at
+// most five seconds: they are late to send then, which is counted. So does the connecting of a
+// churning subscriber, for a round trip.
 //
 // Errors: kUnavailable (nobody answers), kInvalidArgument (the daemon refuses, and says why).
 [[nodiscard]] Result<RunResult> Run(const Performance& performance, const Target& target,

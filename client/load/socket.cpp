@@ -90,6 +90,18 @@ Descriptor OpenDescriptor(TransportKind kind, const std::string& host, std::uint
   return descriptor;
 }
 
+std::string PeerHost(int descriptor) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof(address);
+  auto* const plain = reinterpret_cast<sockaddr*>(&address);
+  char host[NI_MAXHOST] = "";
+  if (getpeername(descriptor, plain, &size) != 0 ||
+      getnameinfo(plain, size, host, sizeof(host), nullptr, 0, NI_NUMERICHOST) != 0) {
+    return {};
+  }
+  return host;
+}
+
 std::unique_ptr<Socket> Socket::Open(TransportKind kind, const std::string& host,
                                      std::uint16_t port, std::string* error) {
   Descriptor descriptor = OpenDescriptor(kind, host, port, error);

@@ -27,6 +27,9 @@ class Descriptor {
 [[nodiscard]] Descriptor OpenDescriptor(client::TransportKind kind, const std::string& host,
                                         std::uint16_t port, std::string* error);
 
+// The numeric address that a connected socket goes to; empty where it is not.
+[[nodiscard]] std::string PeerHost(int descriptor);
+
 // A transport of the load tester: as client::Transport's own, but made for many messages a second
 // on one thread. It never waits when it is not asked to, has a descriptor to wait for many at once,
 // takes datagrams in batches and counts those that its own full buffer lost.

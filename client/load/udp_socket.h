@@ -32,7 +32,7 @@ class UdpSocket : public Socket {
   static constexpr std::size_t kBufferBytes = 2048;  // beyond any datagram of the protocol
 
   [[nodiscard]] client::IoStatus SendDatagram(std::span<const std::uint8_t> datagram);
-  // Takes what is there. False: nothing.
+  // Takes what is there, a batch at most. kTimeout: nothing is; kNoConnection: refused.
   [[nodiscard]] client::IoStatus Fill();
   void ReadOverrun(msghdr* header);
 

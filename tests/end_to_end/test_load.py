@@ -36,7 +36,8 @@ class Chaos:
         code, out, err = finish(self.process)
         assert code == 0, err
         self.planted = {}
-        for line in out.decode().splitlines():
+        self.said = out.decode()
+        for line in self.said.splitlines():
             way, what = line.split(": ", 1)
             self.planted[way] = {name: int(count) for name, count in re.findall(r"(\w+) (\d+)", what)}
 
@@ -77,10 +78,11 @@ class LoadTest(unittest.TestCase):
             self.assertLess(run["largest_difference"], 1e-4)
 
     def test_a_lost_a_late_a_falsified_and_two_swapped_in_ten_thousand(self):
-        # With this seed each befalls the weights once among their first 9,800 datagrams.
+        # With this seed each befalls the weights once, among their first 1,502 datagrams: on a busy machine there are
+        # fewer than weights, since those that are ready together share one.
         one = "0.0001"
         with Daemon("--no-render") as daemon:
-            chaos = Chaos(daemon, "--seed", "86", "--way", "down", "--loss", one, "--falsify", one, "--swap", one,
+            chaos = Chaos(daemon, "--seed", "10491", "--way", "down", "--loss", one, "--falsify", one, "--swap", one,
                           "--delay", one, "--delay-by", "10000")
             with chaos:
                 run, text = self.load(chaos.udp, "--subjects", "20", "--rate", "60", "--duration", "9",
@@ -89,7 +91,8 @@ class LoadTest(unittest.TestCase):
         planted = chaos.planted["down"]
         for fault in ("lost", "delayed", "falsified", "swapped"):
             self.assertGreater(planted[fault], 0, planted)
-        self.assertEqual(run["late"], planted["delayed"], text)
+        self.assertGreaterEqual(run["late"], planted["delayed"], text)
+        self.assertLessEqual(run["late"], 20 * planted["delayed"], text)
         self.assertEqual(run["falsified"], planted["falsified"], text)
         self.assertEqual(run["swapped"], planted["swapped"], text)
         # A machine that is too slow loses more; never less.
@@ -125,6 +128,8 @@ class LoadTest(unittest.TestCase):
         # Behind the hole poses come at once, and a TCP subscriber may lose old frames then.
         self.assertEqual(run["wrong"], 0, text)
         self.assertGreater(run["received"], 0, text)
+        self.assertRegex(chaos.said, r"up over TCP: [1-9]\d* connections, [1-9]\d* bytes, .*still for [1-9]\d* ms")
+        self.assertRegex(chaos.said, r"down over TCP: [1-9]\d* connections, [1-9]\d* bytes, .*still for [1-9]\d* ms")
 
     def test_a_daemon_with_another_rig_is_not_called_right(self):
         with Daemon("--no-render", "--rig", SHARE / "rigs" / "arkit.json") as daemon:
@@ -181,6 +186,52 @@ class LoadTest(unittest.TestCase):
             furrow("load", daemon.udp, *short, *other, "--late", "0.001", "--drain", "5", check=1)
             furrow("load", daemon.udp, *short, *other, *PATIENT, check=0)
 
+    def test_what_a_recording_lacks_of_the_rig_is_said(self):
+        def moving(joint):
+            path = self.folder / f"{joint}.bvh"
+            path.write_text(f"HIERARCHY\nROOT {joint}\n{{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n"
+                            "{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.02\n0 0 0\n0 9 0\n")
+            return path
+        with Daemon("--no-render") as daemon:
+            result = furrow("load", daemon.udp, moving("head"), "--duration", "0.2", *PATIENT, check=0)
+            self.assertIn("warning: the recording lacks", result.stderr.decode())
+            result = furrow("load", daemon.udp, moving("strange"), "--duration", "0.2", *PATIENT, check=3)
+            self.assertIn("--skeleton-map", result.stderr.decode())
+
+    def test_nothing_is_measured_that_could_not_be_written(self):
+        missing = self.folder / "missing" / "out"
+        kept = self.folder / "kept.json"
+        kept.write_text("kept")
+        for flag in ("--json", "--hgrm", "--plot"):
+            others = [] if flag == "--json" else ["--json", kept]
+            result = furrow("load", "localhost:1", PERFORMANCE, *others, flag, missing, check=1)
+            self.assertIn(str(missing), result.stderr.decode())
+        self.assertEqual(kept.read_text(), "kept")
+
+    def test_a_comparison_that_is_ended_is_written_all_the_same(self):
+        figures, hgrm, svg = (self.folder / name for name in ("figures.json", "out.hgrm", "out.svg"))
+        for how, code in ((signal.SIGINT, 0), (None, 4)):
+            with Daemon("--no-render") as daemon:
+                process = spawn("load", daemon.udp, PERFORMANCE, *PATIENT, "--find-max", "--subjects", "2", "--probe",
+                                "0.1", "--searches", "100", "--limit", "1000", "--json", figures, "--hgrm", hgrm,
+                                "--plot", svg)
+                self.addCleanup(process.kill)
+                furrow("watch", daemon.tcp, "--subject", "load-000000", "--wait", "--frames", "150", check=0)
+                if how:
+                    process.send_signal(how)
+                    ended, out, err = finish(process)
+            if how is None:
+                ended, out, err = finish(process)
+            self.assertEqual(ended, code, err)
+            written = json.loads(figures.read_text())
+            self.assertNotIn("run", written)
+            self.assertEqual(written["comparison"]["interrupted"], how is not None)
+            self.assertEqual(written["comparison"]["failure"] != "", how is None)
+            self.assertGreater(len(written["comparison"]["steps"]), 0)
+            self.assertIn("so far" if how else "nobody answers", out.decode())
+            self.assertIn("Loss by rate", "".join(xml.etree.ElementTree.parse(svg).getroot().itertext()))
+            self.assertIn("Total count", hgrm.read_text())
+
     def test_a_daemon_that_goes_away_is_no_success(self):
         for path in ("--udp", "--tcp"):
             figures = self.folder / "figures.json"
@@ -227,11 +278,13 @@ class LoadTest(unittest.TestCase):
             port = daemon.ports["udp"]
         # Nobody is there any more.
         for command, code, words in (
-                (("load", f"127.0.0.1:{port}", PERFORMANCE), 4, "nobody answers"),
+                (("load", f"127.0.0.1:{port}", PERFORMANCE), 4, f"127.0.0.1:{port}: nobody answers (is furrowd"),
                 (("load", "no-such-host.invalid", PERFORMANCE), 4, "no connection"),
                 (("load", "localhost", "/nonexistent.bvh"), 3, "/nonexistent.bvh"),
                 (("load", "[::1", PERFORMANCE), 2, "HOST"),
                 (("load", "localhost", PERFORMANCE, "--loss", "2"), 2, "--loss"),
+                (("load", "localhost", PERFORMANCE, "--find-max", "--loss", "0.1"), 2, "in peace"),
+                (("load", "localhost", PERFORMANCE, "--baseline", "--jitter", "3"), 2, "in peace"),
                 (("load", "localhost", PERFORMANCE, "--black-hole", "1"), 2, "START:LENGTH"),
                 (("chaos", "--listen", "0", "--to", "localhost", "--black-hole", "x"), 2, "START:LENGTH"),
                 (("chaos", "--listen", "0", "--bind", "somewhere", "--to", "localhost"), 2, "numeric"),

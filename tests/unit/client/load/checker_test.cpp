@@ -60,11 +60,11 @@ class CheckerTest : public testing::Test {
   template <class OnWay>
   const Tally& Run(const OnWay& on_way) {
     std::size_t i = 0;
-    for (const Plan::Slot& slot : plan_.slots()) {
+    for (const Plan::Slot& slot : SlotsOf(plan_)) {
       checker_.OnSent(slot.subject, slot.pose, true);
       on_way(i++, slot);
     }
-    checker_.Settle(performance_);
+    EXPECT_TRUE(checker_.Settle(performance_, [](double) { return true; }));
     return checker_.tally();
   }
 };
@@ -190,13 +190,90 @@ TEST_F(CheckerTest, LateTwiceOutOfOrderAndNeverSent) {
 }
 
 TEST_F(CheckerTest, WhatDidNotLeaveIsNotExpected) {
-  const Plan::Slot& slot = plan_.slots()[0];
+  const Plan::Slot slot = SlotsOf(plan_)[0];
   checker_.OnSent(slot.subject, slot.pose, false);
   EXPECT_EQ(checker_.tally().expected, 0u);
   EXPECT_EQ(checker_.tally().offered, 1u);
   Arrive(slot, server_.Use(slot));
   EXPECT_EQ(checker_.tally().never_sent, 1u);
 }
+
+TEST_F(CheckerTest, ASubjectThatNobodyHasIsNeverSent) {
+  checker_.OnWeights(0, 5, 0, {}, false, 100);
+  checker_.OnWeights(0, 65535, 0, {}, false, 100);
+  EXPECT_EQ(checker_.tally().never_sent, 2u);
+}
+
+TEST_F(CheckerTest, ARowOfAnotherLengthIsWrong) {
+  checker_.OnSent(0, 0, true);
+  checker_.OnWeights(0, 0, 0, std::vector<float>{0.5f}, true, 100);
+  EXPECT_EQ(checker_.tally().wrong, 1u);
+}
+
+TEST_F(CheckerTest, WhoeverEndsTheSettlingIsToldWhatWasNotChecked) {
+  for (const Plan::Slot& slot : SlotsOf(plan_)) {
+    checker_.OnSent(slot.subject, slot.pose, true);
+    if (slot.pose % 10 != 3) Arrive(slot, {0.2f, 0.3f, 0.4f});
+  }
+  int asked = 0;
+  double share = 0.0;
+  EXPECT_FALSE(checker_.Settle(performance_, [&](double done) {
+    EXPECT_GE(done, share);
+    share = done;
+    return ++asked <= 100;
+  }));
+  const Tally& tally = checker_.tally();
+  EXPECT_EQ(asked, 101);
+  EXPECT_EQ(tally.unchecked + tally.checked, 1800u);
+  EXPECT_GE(tally.unchecked, 1700u);
+}
+
+// A server that is all wrong is wrong to the last weight, but not looked for to the last.
+TEST(Checker, OnlySoManyWrongOnesAreLookedForInTheWholeTable) {
+  const Performance performance = MakePerformance();
+  const Plan plan(performance.times, {.subjects = 5, .phases = 4, .rate = 50.0, .seconds = 50.0});
+  const Expected expected(performance, plan, [](double) { return true; });
+  Checker checker(plan, &expected, {.late_us = 1000, .seconds = 50.0});
+  for (const Plan::Slot& slot : SlotsOf(plan)) {
+    checker.OnSent(slot.subject, slot.pose, true);
+    checker.OnWeights(0, slot.subject, slot.pose, std::vector<float>{2.0f, 2.0f, 2.0f}, true,
+                      slot.due_us + kLatencyUs);
+  }
+  EXPECT_TRUE(checker.Settle(performance, [](double) { return true; }));
+  EXPECT_EQ(checker.tally().wrong, 12500u);
+  EXPECT_EQ(checker.tally().unclassified, 2500u);
+  EXPECT_EQ(checker.tally().falsified(), 10000u);
+}
+
+// Some minutes with one lost pose on the way in, near the end.
+class LateLoss : public testing::TestWithParam<float> {};  // cut-off of a filter, Hz
+
+TEST_P(LateLoss, IsReplayedFromAWhileBeforeWhereTheFilterForgets) {
+  Performance performance = MakePerformance({.min_cutoff_hz = GetParam(), .beta = 0.0f});
+  const Plan plan(performance.times, {.subjects = 1, .phases = 1, .rate = 0.0, .seconds = 120.0});
+  const Expected expected(performance, plan, [](double) { return true; });
+  Checker checker(plan, &expected, {.late_us = 1000, .seconds = 120.0});
+  Server server(performance, plan);
+  for (const Plan::Slot& slot : SlotsOf(plan)) {
+    checker.OnSent(slot.subject, slot.pose, true);
+    if (slot.pose == 5500) continue;
+    checker.OnWeights(0, 0, slot.pose, server.Use(slot), true, slot.due_us + kLatencyUs);
+  }
+  int solved = 0;
+  performance.pose = [&solved, pose = performance.pose](int frame, wrinkle::LocalPose* out) {
+    ++solved;
+    pose(frame, out);
+  };
+  EXPECT_TRUE(checker.Settle(performance, [](double) { return true; }));
+  EXPECT_EQ(checker.tally().lost(), 1u);
+  EXPECT_EQ(checker.tally().wrong, 0u);
+  EXPECT_EQ(checker.tally().checked, plan.num_slots() - 1);
+  const bool forgets = GetParam() >= 1.0f;
+  EXPECT_EQ(solved < 1000, forgets) << solved;
+}
+
+// The default, and one whose memory is longer than what a late replay goes back.
+INSTANTIATE_TEST_SUITE_P(Filters, LateLoss, testing::Values(4.0f, 0.05f));
 
 TEST_F(CheckerTest, OtherNamesAreNotChecked) {
   checker_.OnSent(0, 0, true);
@@ -210,7 +287,7 @@ TEST(Expected, RepeatsOnceTheFilterHasSettled) {
   const Plan plan(performance.times, {.subjects = 1, .phases = 1, .rate = 0.0, .seconds = 60.0});
   const Expected expected(performance, plan, [](double) { return true; });
   Server server(performance, plan);
-  for (const Plan::Slot& slot : plan.slots())
+  for (const Plan::Slot& slot : SlotsOf(plan))
     EXPECT_LE(Distance(expected.Row(0, slot.pose), server.Use(slot)), 1e-6f) << slot.pose;
 }
 

@@ -5,16 +5,26 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "client/load/performance.h"
+#include "client/load/plan.h"
 
 namespace furrow::load {
 
+// All slots of a plan, as they are due.
+inline std::vector<Plan::Slot> SlotsOf(const Plan& plan) {
+  std::vector<Plan::Slot> all;
+  for (PlanSlots slots(plan); !slots.done(); slots.Pop()) all.push_back(slots.next());
+  return all;
+}
+
 // A face of three blend shapes that move at their own pace, filtered: 40 frames at 50 Hz.
-inline Performance MakePerformance() {
+inline Performance MakePerformance(const wrinkle::Filter& filter = {}) {
   wrinkle::Rig rig;
+  rig.filter = filter;
   rig.wrinkle_maps.push_back({.name = "squash"});
   Performance performance;
   for (const char* name : {"a", "b", "c"}) {

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "client/load/comparison.h"
 #include "tests/temporary_folder.h"
 
 namespace furrow::load {
@@ -66,15 +65,6 @@ TEST(ReadUsage, KnowsThisVeryProcess) {
   ASSERT_TRUE(usage);
   EXPECT_GT(usage->resident_bytes, 100'000u);
   EXPECT_GE(usage->peak_resident_bytes, usage->resident_bytes);
-}
-
-TEST(SpreadOf, IsTheMiddleAndTheMiddleHalf) {
-  const Spread spread = SpreadOf({5.0, 1.0, 4.0, 2.0, 3.0});
-  EXPECT_EQ(spread.median, 3.0);
-  EXPECT_EQ(spread.low, 2.0);
-  EXPECT_EQ(spread.high, 4.0);
-  EXPECT_EQ(SpreadOf({7.0}).high, 7.0);
-  EXPECT_EQ(SpreadOf({1.0, 2.0}).median, 1.5);
 }
 
 }  // namespace
