@@ -144,6 +144,12 @@ subsurface() {
   sheet subsurface 5x1 1600 "${names[@]}"
 }
 
+# Ten people on one recording, each at another moment of it.
+crowd() {
+  size=1280x640 still crowd "$recordings/performance.bvh" --subjects 10 --frames 60 --camera face
+  sheet crowd 1x1 1080 crowd
+}
+
 # The outline of a forehead whose brows are raised, close by.
 displacement() {
   "$furrow" bake "$share/elder.glb" --map stretch --size 1024 --out "$work/elder-maps"
@@ -200,6 +206,7 @@ cloth_joints
 shading
 wrinkles
 subsurface
+crowd
 displacement
 sliding_masks
 default_faces default default

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "client/cli/command.h"
+#include "client/cli/crowd.h"
 #include "client/cli/exit_code.h"
 #include "client/cli/file_output.h"
 #include "client/cli/inputs.h"
@@ -17,9 +18,6 @@
 #include "motion/clip.h"
 #include "render/pass_timer.h"
 #include "render/renderer.h"
-#include "wrinkle/blend_shape_pose.h"
-#include "wrinkle/retarget.h"
-#include "wrinkle/solver.h"
 
 namespace furrow::cli {
 namespace {
@@ -27,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RenderOptions {
-  std::string file;
+  std::vector<std::string> files;
   std::string pose;
   std::string out;
   std::string character;
@@ -39,6 +37,7 @@ struct RenderOptions {
   std::string format = "png";
   std::string device;
   PictureOptions picture;
+  CrowdOptions crowd;
   bool timings = false;
   int quality = 90;
 };
@@ -64,85 +63,22 @@ std::string CheckRange(std::string& text) {
   return "'" + text + "' is not A:B, both included and counted from 0, nor a single A";
 }
 
-// The recording, its solver and the character it is drawn on.
-class Performance {
- public:
-  static Result<std::unique_ptr<Performance>> Create(const RenderOptions& options);
+using Clips = std::vector<std::shared_ptr<const motion::Clip>>;
 
-  [[nodiscard]] int num_frames() const { return clip_.num_frames(); }
-  [[nodiscard]] const character::Character& character() const { return character_; }
-  // Solves frame `frame`, which must follow the one before: the filter remembers.
-  Status Advance(int frame);
-  // What to draw of the last frame solved; spans point into this object.
-  [[nodiscard]] render::FrameRequest Request() const;
-
- private:
-  motion::Clip clip_;
-  character::Character character_;
-  wrinkle::Retarget retarget_;
-  wrinkle::BlendShapePose blend_shape_pose_;
-  std::unique_ptr<wrinkle::SubjectSolver> solver_;
-  wrinkle::LocalPose pose_;
-  std::vector<wrinkle::Transform> local_;
-  std::vector<glm::mat4> model_;
-};
-
-Result<std::unique_ptr<Performance>> Performance::Create(const RenderOptions& options) {
-  auto self = std::make_unique<Performance>();
-  auto character = LoadCharacterArgument(options.character, options.rig);
-  if (!character.ok()) return character.status();
-  self->character_ = std::move(*character);
-  auto clip = options.pose.empty() ? LoadClipArgument(options.file)
-                                   : PoseClip(self->character_, options.pose);
-  if (!clip.ok()) return clip.status();
-  self->clip_ = std::move(*clip);
-
-  const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
-  if (!matcher.ok()) return matcher.status();
-  const auto match =
-      matcher->Match(self->clip_.skeleton, self->character_.rig, &self->character_.skeleton);
-  auto binding = wrinkle::RigBinding::Create(self->character_.rig, self->clip_.skeleton,
-                                             self->clip_.blend_shape_names,
-                                             {.allow_missing = true, .aliases = match.aliases});
-  if (!binding.ok()) return binding.status();
-  WarnOfMissing(*binding, self->clip_);
-  self->solver_ = std::make_unique<wrinkle::SubjectSolver>(
-      std::make_shared<const wrinkle::RigBinding>(std::move(*binding)));
-  self->retarget_ = character::MakeRetarget(match, self->clip_.skeleton, self->character_.skeleton);
-  self->blend_shape_pose_ = wrinkle::BlendShapePose::Create(
-      self->character_.rig, self->character_.skeleton, self->clip_.blend_shape_names);
-  if (self->clip_.blend_shape_names.empty() &&
-      self->retarget_.unmatched_source().size() == self->clip_.skeleton.joint_names().size()) {
-    return Status(StatusCode::kNotFound, "no joint of the recording is one of the character's",
-                  options.file, "name its joints with --skeleton-map, or choose a --character");
+// One a file; a pose is a recording of one frame.
+Result<Clips> LoadClips(const RenderOptions& options, const character::Character& character) {
+  Clips clips;
+  const auto add = [&](Result<motion::Clip> clip) {
+    if (clip.ok()) clips.push_back(std::make_shared<const motion::Clip>(std::move(*clip)));
+    return clip.status();
+  };
+  if (!options.pose.empty()) {
+    if (Status status = add(PoseClip(character, options.pose)); !status.ok()) return status;
   }
-  const int joints = self->character_.skeleton.num_joints();
-  self->local_.resize(joints);
-  self->model_.resize(joints);
-  return self;
-}
-
-Status Performance::Advance(int frame) {
-  clip_.GetPose(frame, &pose_);
-  const double dt = frame == 0 ? 0.0 : clip_.times[frame] - clip_.times[frame - 1];
-  const bool solved =
-      solver_->Update(pose_, dt) == wrinkle::JobStatus::kOk &&
-      retarget_.Run(pose_.joints, local_) == wrinkle::JobStatus::kOk &&
-      blend_shape_pose_.Run(pose_.blend_shapes, local_) == wrinkle::JobStatus::kOk &&
-      wrinkle::LocalToModelJob{&character_.skeleton, local_, model_}.Run() ==
-          wrinkle::JobStatus::kOk;
-  if (!solved)
-    return {StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved"};
-  return {};
-}
-
-render::FrameRequest Performance::Request() const {
-  render::FrameRequest request;
-  request.model = model_;
-  request.binding = &solver_->binding();
-  request.wrinkle_weights = solver_->wrinkle_weights();
-  request.filtered_values = solver_->filtered_values();
-  return request;
+  for (const std::string& file : options.files) {
+    if (Status status = add(LoadClipArgument(file)); !status.ok()) return status;
+  }
+  return clips;
 }
 
 // Writes pictures as they come back from the renderer: two stay in flight while the next is solved.
@@ -215,47 +151,91 @@ void PrintTimings(const std::vector<render::PassTime>& times) {
   std::printf("%-16s %8.2f ms %8.2f ms\n", "frame", wall, cpu);
 }
 
-int RenderFile(const RenderOptions& options) {
+Result<std::unique_ptr<Crowd>> MakeCrowd(const RenderOptions& options,
+                                         const character::Character& character) {
+  const auto clips = LoadClips(options, character);
+  if (!clips.ok()) return clips.status();
+  const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
+  if (!matcher.ok()) return matcher.status();
+  const std::vector<std::string> names =
+      options.files.empty() ? std::vector<std::string>{""} : options.files;
+  return Crowd::Create(character, *clips, names, *matcher, options.crowd);
+}
+
+// The frames to draw of those that there are.
+Result<std::pair<int, int>> FramesOf(const RenderOptions& options, int num_frames) {
+  int first = 0;
+  int last = num_frames - 1;
+  if (!options.frames.empty()) (void)ParseRange(options.frames, &first, &last);  // checked before
+  if (last < num_frames && last >= 0) return std::pair(first, last);
+  return Status(StatusCode::kInvalidArgument,
+                "there is no frame " + std::to_string(std::max(last, 0)) + ": the recording has " +
+                    std::to_string(num_frames) + ", counted from 0",
+                options.files.empty() ? "" : options.files.front());
+}
+
+Status DrawFrames(const RenderOptions& options, const render::Settings& settings,
+                  const std::pair<int, int>& frames, Crowd& crowd, render::Renderer& renderer) {
+  PictureSink sink(renderer, options);
+  Progress progress("rendering", frames.second + 1);
+  for (int frame = 0; frame <= frames.second; ++frame) {
+    if (Status status = crowd.Advance(frame); !status.ok()) return status;
+    progress.Set(frame + 1);
+    if (frame < frames.first) continue;
+    render::FrameRequest request = crowd.Request();
+    request.settings = settings;
+    (void)ParseSize(options.size, &request.width, &request.height);  // checked while parsing
+    request.token = static_cast<std::uint64_t>(frame);
+    if (Status status = sink.Submit(request); !status.ok()) return status;
+  }
+  return sink.Finish();
+}
+
+int RenderFiles(const RenderOptions& options) {
   const auto settings = SettingsOf(options.picture);
   if (!settings.ok()) return Fail(settings.status());
-  auto performance = Performance::Create(options);
-  if (!performance.ok()) return Fail(performance.status());
-  int first = 0;
-  int last = (*performance)->num_frames() - 1;
-  if (!options.frames.empty()) (void)ParseRange(options.frames, &first, &last);  // checked before
-  if (last >= (*performance)->num_frames() || last < 0) {
-    return Fail({StatusCode::kInvalidArgument,
-                 "there is no frame " + std::to_string(std::max(last, 0)) + ": the recording has " +
-                     std::to_string((*performance)->num_frames()) + ", counted from 0",
-                 options.file});
-  }
-  auto renderer = render::Renderer::Create((*performance)->character(), {.device = options.device});
+  const auto character = LoadCharacterArgument(options.character, options.rig);
+  if (!character.ok()) return Fail(character.status());
+  auto crowd = MakeCrowd(options, *character);
+  if (!crowd.ok()) return Fail(crowd.status());
+  const auto frames = FramesOf(options, (*crowd)->num_frames());
+  if (!frames.ok()) return Fail(frames.status());
+  auto renderer = render::Renderer::Create(*character, {.device = options.device});
   if (!renderer.ok()) return Fail(renderer.status());
   const auto camera = (*renderer)->Preset(options.camera);
   if (!camera.ok()) return Fail(camera.status());
+  int width = 0;
+  int height = 0;
+  (void)ParseSize(options.size, &width, &height);  // checked while parsing
+  (*crowd)->FrameBy(*camera, static_cast<float>(width) / static_cast<float>(height));
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) return Fail({StatusCode::kIo, error.message(), options.out});
 
   render::PassTimer timer;
   if (options.timings) (*renderer)->SetObserver(&timer);
-  PictureSink sink(**renderer, options);
-  Progress progress("rendering", last + 1);
-  for (int frame = 0; frame <= last; ++frame) {
-    if (Status status = (*performance)->Advance(frame); !status.ok())
-      return Fail(status.At(options.file));
-    progress.Set(frame + 1);
-    if (frame < first) continue;
-    render::FrameRequest request = (*performance)->Request();
-    request.settings = *settings;
-    request.camera = *camera;
-    (void)ParseSize(options.size, &request.width, &request.height);  // checked while parsing
-    request.token = static_cast<std::uint64_t>(frame);
-    if (Status status = sink.Submit(request); !status.ok()) return Fail(status);
+  if (Status status = DrawFrames(options, *settings, *frames, **crowd, **renderer); !status.ok()) {
+    return Fail(status);
   }
-  if (Status status = sink.Finish(); !status.ok()) return Fail(status);
   if (options.timings) PrintTimings(timer.Take());
   return kDone;
+}
+
+void AddCrowdOptions(CLI::App& command, CrowdOptions* options) {
+  command
+      .add_option("--subjects", options->subjects,
+                  "How many people to picture together; recordings are handed out in turn. "
+                  "Default: one a FILE")
+      ->check(CLI::Range(1, render::kMaxSubjects));
+  command
+      .add_option("--spacing", options->spacing,
+                  "Metres from one to the next; default: by what the camera shows of one")
+      ->check(CLI::Range(0.05, 100.0));
+  command
+      .add_option("--offset-frames", options->offset_frames,
+                  "Each plays so many frames ahead of the one before; default: those who share a "
+                  "recording are spread evenly over it")
+      ->check(CLI::Range(0, 1'000'000));
 }
 
 }  // namespace
@@ -265,7 +245,9 @@ void AddRender(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "render", "Pictures of a recording or a pose, no network: DIR/000123.png for frame 123");
   CLI::Option* file =
-      command->add_option("FILE", options->file, "BVH, glTF/GLB, VRMA or Live Link Face CSV");
+      command->add_option("FILE", options->files,
+                          "BVH, glTF/GLB, VRMA or Live Link Face CSV; several: one person each, "
+                          "pictured together");
   CLI::Option* pose = command->add_option(
       "--pose", options->pose,
       "Instead of FILE, one picture of the rig's reference poses: NAME[=WEIGHT],... or neutral; a "
@@ -290,6 +272,7 @@ void AddRender(CLI::App& app, Action& action) {
   command->add_option("--quality", options->quality, "JPEG quality")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
+  AddCrowdOptions(*command, &options->crowd);
   AddPictureOptions(*command, &options->picture);
   command->add_flag(
       "--timings", options->timings,
@@ -297,8 +280,8 @@ void AddRender(CLI::App& app, Action& action) {
   command->add_option("--device", options->device,
                       "EGL device index or 'surfaceless'; default: the first that works");
   command->callback([options, &action] {
-    if (options->file.empty() && options->pose.empty()) throw CLI::RequiredError("FILE or --pose");
-    action = [options] { return RenderFile(*options); };
+    if (options->files.empty() && options->pose.empty()) throw CLI::RequiredError("FILE or --pose");
+    action = [options] { return RenderFiles(*options); };
   });
 }
 

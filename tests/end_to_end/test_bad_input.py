@@ -126,6 +126,8 @@ class BadFileTest(unittest.TestCase):
         for args in ((), ("solve",), ("dance",), ("render", "x.bvh", "--out", "y", "--size", "9x9"),
                      ("render", "x.bvh", "--out", "y", "--frames", "5:"),
                      ("render", "x.bvh", "--out", "y", "--view", "inside"),
+                     ("render", "x.bvh", "--out", "y", "--subjects", "257"),
+                     ("render", "x.bvh", "--out", "y", "--spacing", "0"),
                      ("play", self.file("ok.bvh", BVH), "--to", "localhost:0x7"), ("watch", "localhost:99999")):
             self.assertEqual(furrow(*args).returncode, USAGE, args)
         self.refuse(BAD_INPUT, "render", self.file("ok.bvh", BVH), "--out", self.root / "out", "--rig",

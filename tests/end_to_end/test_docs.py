@@ -92,9 +92,27 @@ class DocumentTest(unittest.TestCase):
                 seen.add(words[1])
         self.assertEqual(seen, {"record", "info", "play", "solve", "convert"})
 
+    def test_rendering(self):
+        """A small picture of what each command would draw for a whole recording."""
+        for name in ("anger.bvh", "happiness.bvh", "sadness.bvh"):
+            (self.root / name).symlink_to(SHARE / "recordings" / name)
+        several = 0
+        for words in commands("docs/RENDERING.md"):
+            if "face.glb" in words:
+                continue  # baked first: docs/BAKE.md
+            if "--print-settings" not in words:
+                at = words.index("--size") if "--size" in words else len(words)
+                words[at:at + 2] = ["--size", "64x64"]
+                words += ["--frames", "60"]
+                several += "--subjects" in words or "sadness.bvh" in words
+            self.run_here(words)
+            if "frames" in words:
+                self.assertTrue((self.root / "frames" / "000060.png").is_file())
+        self.assertEqual(several, 2)
+
     def record_here(self, words, daemon):
-        """A recording of everybody whom it names, ended after half a second."""
-        names = [words[i + 1] for i, word in enumerate(words) if word == "--subject"]
+        """A recording of whom it names, or of somebody, ended after half a second."""
+        names = [words[i + 1] for i, word in enumerate(words) if word == "--subject"] or ["zoe"]
         stage = [spawn("play", PERFORMANCE, "--to", daemon.udp, "--loop", "--subject", name) for name in names]
         for player, name in zip(stage, names):
             self.addCleanup(player.kill)
