@@ -21,6 +21,14 @@ const char* GoodbyeText(protocol::GoodbyeReason reason) {
   return "the subscription ended";
 }
 
+int NobodyThere(client::Event::Kind kind) {
+  std::fprintf(stderr, "furrow: %s\n",
+               kind == client::Event::Kind::kNoConnection
+                   ? "nobody listens at that port (is furrowd running there?)"
+                   : "nobody answers (is furrowd running there?)");
+  return kNoConnection;
+}
+
 int OnGoodbye(protocol::GoodbyeReason reason) {
   std::fprintf(stderr, "furrow: %s\n", GoodbyeText(reason));
   return reason == protocol::GoodbyeReason::kTimedOut ? kNoConnection : kDone;
@@ -36,41 +44,34 @@ int Listen(client::Subscriber& subscriber,
   const std::int64_t start = SteadyMicroseconds();
   bool heard = false;
   int goodbyes = 0;
+  int exit_code = kDone;
   while (!Interrupted() && (!end.goes_on || end.goes_on())) {
     const std::int64_t now = SteadyMicroseconds();
     const client::Event event = subscriber.Next(now, std::chrono::milliseconds(100));
     switch (event.kind) {
       case Kind::kTimeout:
-        if (heard || now - start < kSilence) continue;
-        std::fprintf(stderr, "furrow: nobody answers (is furrowd running there?)\n");
-        return kNoConnection;
       case Kind::kNoConnection:
-        if (!heard && now - start < kSilence) continue;
-        std::fprintf(stderr, "furrow: nobody listens at that port\n");
-        return kNoConnection;
+        if (heard ? event.kind == Kind::kTimeout : now - start < kSilence) continue;
+        return NobodyThere(event.kind);
       case Kind::kClosed:
         std::fprintf(stderr, "furrow: the daemon closed the connection\n");
         return kNoConnection;
       case Kind::kError:
         std::fprintf(stderr, "furrow: the daemon says: %s\n", subscriber.error().message.c_str());
-        return kFailed;
+        exit_code = kFailed;
+        if (end.outlives_errors && end.outlives_errors()) continue;
+        return exit_code;
       case Kind::kGoodbye: {
         const protocol::GoodbyeReason reason = subscriber.goodbye().reason;
         if (reason == protocol::GoodbyeReason::kSubjectGone && ++goodbyes != end.goodbyes) continue;
         return OnGoodbye(reason);
       }
-      case Kind::kReply:
-      case Kind::kWeights:
-      case Kind::kPicture:
-      case Kind::kSkeleton:
-      case Kind::kPose:
-      case Kind::kDropped:
+      default:
         heard = true;
-        if (!on_event(event)) return kDone;
-        break;
+        if (!on_event(event)) return exit_code;
     }
   }
-  return kDone;
+  return exit_code;
 }
 
 }  // namespace furrow::cli

@@ -37,6 +37,9 @@ void AddListenOptions(CLI::App& command, ListenOptions& options, Request& reques
 // When Listen() ends well of itself.
 struct ListenEnd {
   int goodbyes = 1;  // so many subscriptions whose subject has left; 0: they may return
+  // True: an error of the daemon is printed and the rest goes on; the exit code tells of it at the
+  // end. Empty: never.
+  std::function<bool()> outlives_errors;
   // Asked between events, at least ten times a second; false ends it. May be empty.
   std::function<bool()> goes_on;
 };

@@ -18,6 +18,7 @@
 #include "client/cli/listen.h"
 #include "client/cli/progress.h"
 #include "client/cli/take_listener.h"
+#include "recording/take_poses.h"
 
 namespace furrow::cli {
 namespace {
@@ -78,8 +79,9 @@ Result<recording::TakeFolderOptions> FolderOptions(const RecordOptions& options)
 
 void PrintSummary(const TakeListener& take) {
   if (take.folder() == nullptr) return;
-  std::fprintf(stderr, "furrow: %" PRIu64 " poses and %" PRIu64 " weights in %s", take.num_poses(),
-               take.num_weights(), take.folder()->path().c_str());
+  std::fprintf(stderr, "furrow: %" PRIu64 " poses and %" PRIu64 " weights of %s in %s",
+               take.num_poses(), take.num_weights(), take.SubjectNames().c_str(),
+               take.folder()->path().c_str());
   if (take.folder()->num_files() > 1) {
     std::fprintf(stderr, " and %d files before it", take.folder()->num_files() - 1);
   }
@@ -90,20 +92,34 @@ void PrintSummary(const TakeListener& take) {
       take.num_dropped());
 }
 
+// Whether there is something left to record of everybody: false once the last one has left.
+bool HasMore(const TakeListener& take, const RecordOptions& options, Status* status) {
+  if (!options.subjects.empty() || options.wait || take.num_present().value_or(1) > 0) return true;
+  if (take.folder() == nullptr) {
+    *status = Status(StatusCode::kUnavailable, "nobody is there to be recorded", options.host,
+                     "start a publisher first, or wait for one: --wait");
+  }
+  return false;
+}
+
 // What listening comes to; the take is complete afterwards, whatever happened.
 int ListenInto(TakeListener& take, client::Subscriber& subscriber, const RecordOptions& options) {
   const std::int64_t start = SteadyMicroseconds();
   const auto duration = static_cast<std::int64_t>(options.duration * 1e6);
+  const bool everybody = options.subjects.empty();
   RecordingLine line(start, duration);
   Status status;
-  const ListenEnd end{
-      .goodbyes = options.wait ? 0 : 2 * std::max(1, static_cast<int>(options.subjects.size())),
-      .goes_on = [&] {
-        const std::int64_t now = SteadyMicroseconds();
-        line.Show(take, now);
-        status = take.Flush(now);
-        return status.ok() && (duration == 0 || now - start < duration);
-      }};
+  ListenEnd end;
+  end.goodbyes = options.wait || everybody ? 0 : 2 * static_cast<int>(options.subjects.size());
+  // One that cannot be had does not end the recording of the others.
+  end.outlives_errors = [&] { return everybody && take.num_present(); };
+  end.goes_on = [&] {
+    const std::int64_t now = SteadyMicroseconds();
+    line.Show(take, now);
+    status = take.Flush(now);
+    return status.ok() && (duration == 0 || now - start < duration) &&
+           HasMore(take, options, &status);
+  };
   const int exit_code = Listen(
       subscriber,
       [&](const client::Event& event) {
@@ -117,6 +133,10 @@ int ListenInto(TakeListener& take, client::Subscriber& subscriber, const RecordO
 }
 
 int Record(const RecordOptions& options) {
+  if (!recording::IsTakePath(options.out.string())) {
+    std::fprintf(stderr, "furrow: --out %s: a take is called FILE.mcap\n", options.out.c_str());
+    return kUsage;
+  }
   std::error_code error;
   if (std::filesystem::exists(options.out, error)) {
     return Fail({StatusCode::kIo, "the file is there already", options.out.string(),
@@ -130,7 +150,7 @@ int Record(const RecordOptions& options) {
   client::Subscriber subscriber(std::move(transport), "furrow record " FURROW_VERSION);
   TakeListener take(*std::move(folder), SystemMicroseconds() - SteadyMicroseconds());
   for (const std::string& subject : options.subjects) take.Ask(subscriber, subject, options.wait);
-  if (options.subjects.empty()) take.Ask(subscriber, {}, options.wait);
+  if (options.subjects.empty()) take.AskForAll(subscriber);
   exit_code = ListenInto(take, subscriber, options);
   PrintSummary(take);
   return exit_code;
@@ -147,20 +167,20 @@ void AddRecord(CLI::App& app, Action& action) {
   command->add_option("--out", options->out, "FILE.mcap; never overwritten")->required();
   command
       ->add_option("--subject", options->subjects,
-                   "Who; may be given several times; default: the one that has been there longest")
+                   "Who; may be given several times; default: everybody, also who comes later")
       ->allow_extra_args(false);
   command->add_flag("--wait", options->wait,
-                    "Wait for the subjects where they are not there yet, and when they leave");
+                    "Wait where nobody is there yet, and go on when all have left");
   command->add_option("--duration", options->duration, "Seconds; default: until Ctrl-C")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(0.001, 1e9));
   command
       ->add_option("--rotate-megabytes", options->rotate_megabytes,
                    "The next file, FILE_2.mcap, begins at this size; default: never")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(0.001, 1e9));
   command
       ->add_option("--rotate-seconds", options->rotate_seconds,
                    "And when a file covers so much time; default: never")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(0.001, 1e9));
   command->add_option("--rig", options->rig,
                       "The daemon's wrinkle rig, to go with the take as an attachment");
   command->callback([options, &action] { action = [options] { return Record(*options); }; });

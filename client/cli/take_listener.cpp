@@ -15,12 +15,17 @@ constexpr std::int64_t kFlushMicroseconds = 400'000;
 }  // namespace
 
 void TakeListener::Ask(client::Subscriber& subscriber, const std::string& subject, bool wait) {
+  if (!asked_.insert(subject).second) return;
   Source& source = sources_.emplace_back();
   // Poses first: then each is in the file before its weights.
   source.requests.push_back(subscriber.Subscribe(
       protocol::SubscribePoses{.subject = subject, .wait = wait, .every = true}));
   source.requests.push_back(subscriber.Subscribe(
       protocol::SubscribeWeights{.subject = subject, .wait = wait, .every = true}));
+}
+
+void TakeListener::AskForAll(client::Subscriber& subscriber) {
+  (void)subscriber.ListSubjects(/*follow=*/true);
 }
 
 Status TakeListener::Begin(std::int64_t now_us) {
@@ -33,8 +38,14 @@ Status TakeListener::Begin(std::int64_t now_us) {
   return {};
 }
 
-Status TakeListener::OnEvent(const Event& event, const client::Subscriber& subscriber,
+Status TakeListener::OnEvent(const Event& event, client::Subscriber& subscriber,
                              std::int64_t now_us) {
+  if (event.kind == Event::Kind::kSubjects) {
+    num_present_ = subscriber.subjects().total;
+    // Each may leave and return; who is here now may have left before the daemon reads this.
+    for (const std::string& name : subscriber.subjects().names) Ask(subscriber, name, true);
+    return {};
+  }
   if (event.kind == Event::Kind::kReply) return OnReply(event, subscriber, now_us);
   if (event.kind == Event::Kind::kDropped) {
     dropped_[event.header.stream] = subscriber.dropped().frames;
@@ -94,6 +105,14 @@ Status TakeListener::Flush(std::int64_t now_us) {
 }
 
 Status TakeListener::Close() { return folder_ != nullptr ? folder_->Close() : Status(); }
+
+std::string TakeListener::SubjectNames() const {
+  std::string names;
+  for (const Source& source : sources_) {
+    if (!source.subject.empty()) names += (names.empty() ? "" : ", ") + source.subject;
+  }
+  return names;
+}
 
 std::uint64_t TakeListener::num_dropped() const {
   std::uint64_t sum = 0;

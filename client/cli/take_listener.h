@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,11 +26,13 @@ class TakeListener {
   TakeListener(recording::TakeFolderOptions options, std::int64_t wall_offset_us)
       : options_(std::move(options)), wall_offset_us_(wall_offset_us) {}
 
-  // Subscribes to poses and weights of `subject`; empty: whoever has been there longest.
+  // Subscribes to poses and weights of `subject`.
   void Ask(client::Subscriber& subscriber, const std::string& subject, bool wait);
+  // To those of everybody, whoever is there and whoever comes.
+  void AskForAll(client::Subscriber& subscriber);
 
   // Errors: TakeFolder's.
-  [[nodiscard]] Status OnEvent(const client::Event& event, const client::Subscriber& subscriber,
+  [[nodiscard]] Status OnEvent(const client::Event& event, client::Subscriber& subscriber,
                                std::int64_t now_us);
   // Hands what waits to the operating system when it is time. Call it oftener than twice a second.
   [[nodiscard]] Status Flush(std::int64_t now_us);
@@ -39,6 +43,10 @@ class TakeListener {
   [[nodiscard]] std::uint64_t num_weights() const { return num_weights_; }
   // Frames that the daemon left out because we, or the network, were too slow.
   [[nodiscard]] std::uint64_t num_dropped() const;
+  // After AskForAll(): how many subjects the daemon has now; none before it has said so.
+  [[nodiscard]] std::optional<std::uint32_t> num_present() const { return num_present_; }
+  // Those it has recorded something of: "ada, bob".
+  [[nodiscard]] std::string SubjectNames() const;
   [[nodiscard]] const recording::TakeFolder* folder() const { return folder_.get(); }
 
  private:
@@ -59,6 +67,8 @@ class TakeListener {
   std::int64_t wall_offset_us_;
   std::unique_ptr<recording::TakeFolder> folder_;
   std::vector<Source> sources_;
+  std::set<std::string> asked_;
+  std::optional<std::uint32_t> num_present_;
   std::map<std::uint16_t, std::size_t> source_of_;  // by subscription
   std::map<std::uint16_t, std::uint64_t> dropped_;  // by subscription
   std::int64_t flushed_us_ = 0;

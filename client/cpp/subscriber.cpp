@@ -66,6 +66,14 @@ void Subscriber::Unsubscribe(std::uint16_t subscription) {
                 [=](const Request& request) { return request.subscription == subscription; });
 }
 
+std::uint32_t Subscriber::ListSubjects(bool follow) {
+  const std::uint32_t number = next_request_++;
+  encoder_.Encode({.session = session_, .sequence = number}, protocol::ListSubjects{follow},
+                  bytes_);
+  (void)transport_->Send(bytes_);
+  return number;
+}
+
 void Subscriber::SendWaiting() {
   for (const Request& request : requests_) {
     if (request.waiting) (void)transport_->Send(request.bytes);
@@ -164,6 +172,10 @@ bool Subscriber::Handle(std::span<const std::uint8_t> message, Event& event) {
     case MessageKind::kDropped:
       status = protocol::Decode(view, dropped_);
       event.kind = Event::Kind::kDropped;
+      break;
+    case MessageKind::kSubjects:
+      status = protocol::Decode(view, subjects_);
+      event.kind = Event::Kind::kSubjects;
       break;
     case MessageKind::kImage:
       status = protocol::Decode(view, picture_);

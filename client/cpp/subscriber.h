@@ -23,6 +23,7 @@ struct Event {
     kSkeleton,      // skeleton(): what the poses that follow mean
     kPose,          // pose(), and payload() as it was published
     kDropped,       // dropped(): of a subscription to every frame
+    kSubjects,      // subjects(): who is there
     kError,         // error(): request `header.sequence`, or subscription `header.stream`, failed
     kGoodbye,       // goodbye()
     kClosed,        // TCP: the daemon closed the connection, or answers nothing for 15 s
@@ -50,6 +51,9 @@ class Subscriber {
   std::uint32_t Subscribe(const protocol::SubscribePictures& request);
   std::uint32_t Subscribe(const protocol::SubscribePoses& request);
   void Unsubscribe(std::uint16_t subscription);
+  // Asks who is there; `follow`: again whenever somebody comes or goes. Over TCP (over UDP the
+  // daemon answers with an error).
+  std::uint32_t ListSubjects(bool follow);
 
   [[nodiscard]] Event Next(std::int64_t now_us, std::chrono::milliseconds wait);
 
@@ -59,6 +63,7 @@ class Subscriber {
   [[nodiscard]] const protocol::SkeletonOffer& skeleton() const { return skeleton_; }
   [[nodiscard]] const protocol::PoseFrame& pose() const { return pose_; }
   [[nodiscard]] const protocol::Dropped& dropped() const { return dropped_; }
+  [[nodiscard]] const protocol::Subjects& subjects() const { return subjects_; }
   [[nodiscard]] const protocol::ErrorMessage& error() const { return error_; }
   [[nodiscard]] const protocol::Goodbye& goodbye() const { return goodbye_; }
 
@@ -116,6 +121,7 @@ class Subscriber {
   protocol::SkeletonOffer skeleton_;
   protocol::PoseFrame pose_;
   protocol::Dropped dropped_;
+  protocol::Subjects subjects_;
   std::span<const std::uint8_t> payload_;
   protocol::ErrorMessage error_;
   protocol::Goodbye goodbye_;

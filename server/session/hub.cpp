@@ -172,6 +172,9 @@ void Hub::Dispatch(Peer& peer, const protocol::MessageView& view, Time now) {
     case MessageKind::kUnsubscribe:
       return Decoded(peer, view, in.unsubscribe,
                      [&] { subscribers_.Unsubscribe(peer, header.stream); });
+    case MessageKind::kListSubjects:
+      return Decoded(peer, view, in.list_subjects,
+                     [&] { OnListSubjects(peer, header, in.list_subjects); });
     default:
       postman_.Error(peer, header, ErrorCode::kUnsupported,
                      std::string(MessageKindName(view.kind)) + " is what a daemon sends");
@@ -191,6 +194,27 @@ void Hub::OnHello(Peer& peer, const protocol::Header& header, const protocol::He
     }
   }
   postman_.Reply(peer, Postman::Answering(header), welcome);
+}
+
+void Hub::OnListSubjects(Peer& peer, const protocol::Header& header,
+                         const protocol::ListSubjects& request) {
+  if (peer.transport == Transport::kUdp) {
+    return postman_.Error(peer, header, ErrorCode::kNeedsTcp, "subjects are listed over TCP");
+  }
+  peer.follows_list.reset();
+  if (request.follow) peer.follows_list = header;
+  SendList(peer, header);
+}
+
+void Hub::SendList(Peer& peer, const protocol::Header& request) {
+  protocol::Subjects list;
+  list.total = static_cast<std::uint32_t>(subjects_.size());
+  for (const auto& subject : subjects_.all()) {
+    if (list.names.size() == protocol::kMaxListedSubjects) break;
+    list.names.push_back(subject->name);
+  }
+  peer.listed = subjects_.version();
+  postman_.Reply(peer, {.sequence = request.sequence}, list);
 }
 
 // A stream that ends here, or a subscription: streams are looked for first.
@@ -314,6 +338,7 @@ void Hub::Tick(Time now) {
   peers_.ForEach([now](Peer& peer) { peer.stuck = peer.link->IsStuck(now); });
   subscribers_.PublishOwed(now);
   peers_.ForEach([&](Peer& peer) {
+    if (peer.follows_list && peer.listed != subjects_.version()) SendList(peer, *peer.follows_list);
     if (peer.transport != Transport::kUdp || now - peer.last_heard < kUdpLease) return;
     if (peer.num_subscriptions > 0) {
       subscribers_.RemovePeer(peer, protocol::GoodbyeReason::kTimedOut);

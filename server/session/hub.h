@@ -135,6 +135,9 @@ class Hub {
               std::span<const std::uint8_t> payload, Time now);
   void Weighted(Subject& subject, std::span<const std::uint8_t> pose, std::int64_t age_us,
                 Time now);
+  void OnListSubjects(Peer& peer, const protocol::Header& header,
+                      const protocol::ListSubjects& request);
+  void SendList(Peer& peer, const protocol::Header& request);
   bool RefusedWhileDraining(Peer& peer, const protocol::Header& header);
 
   const Limits limits_;
@@ -167,6 +170,7 @@ class Hub {
     protocol::UpdatePictures update_pictures;
     protocol::FrameAck frame_ack;
     protocol::Unsubscribe unsubscribe;
+    protocol::ListSubjects list_subjects;
   } scratch_;
 };
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -53,9 +54,11 @@ struct Peer {
   Time last_heard{0};
   StrayLimiter strays;  // poses without an offer
   int num_subscriptions = 0;
-  bool stuck = false;                   // its link was, at the last tick
-  bool publishes = false;               // had an offer accepted
-  std::uint16_t last_subscription = 0;  // the id given out last
+  bool stuck = false;                            // its link was, at the last tick
+  bool publishes = false;                        // had an offer accepted
+  std::uint16_t last_subscription = 0;           // the id given out last
+  std::optional<protocol::Header> follows_list;  // the request to be told who comes and goes
+  std::uint64_t listed = 0;                      // the registry's version that it was told last
 };
 
 }  // namespace furrow::server

@@ -29,6 +29,7 @@ Subject* SubjectRegistry::Find(SubjectId id) {
 Subject* SubjectRegistry::First() { return subjects_.empty() ? nullptr : subjects_.front().get(); }
 
 Subject& SubjectRegistry::Add(std::string name, Time now) {
+  ++version_;
   auto subject = std::make_unique<Subject>();
   subject->id = next_id_++;
   subject->name = std::move(name);
@@ -66,6 +67,7 @@ void SubjectRegistry::Release(Subject& subject) {
 }
 
 void SubjectRegistry::Remove(SubjectId id) {
+  ++version_;
   std::erase_if(retired_, [id](const auto& entry) { return entry.second == id; });
   std::erase_if(by_stream_, [id](const auto& entry) { return entry.second->id == id; });
   std::erase_if(by_name_, [id](const auto& entry) { return entry.second->id == id; });

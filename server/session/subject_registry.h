@@ -85,6 +85,8 @@ class SubjectRegistry {
   void ForgetPeer(PeerId peer);
 
   [[nodiscard]] std::size_t size() const { return subjects_.size(); }
+  // Another number whenever somebody has come or gone; never 0.
+  [[nodiscard]] std::uint64_t version() const { return version_; }
   [[nodiscard]] const std::vector<std::unique_ptr<Subject>>& all() const { return subjects_; }
   [[nodiscard]] std::string Names() const;  // "a, b, c", for messages
 
@@ -97,6 +99,7 @@ class SubjectRegistry {
   std::map<StreamKey, SubjectId> retired_;
   std::deque<StreamKey> retired_order_;  // oldest first; may name what has been forgotten since
   SubjectId next_id_ = 1;
+  std::uint64_t version_ = 1;
 };
 
 }  // namespace furrow::server

@@ -285,6 +285,30 @@ class ListeningTest(FolderTest):
                 poses[name] += int(count)
         self.assertEqual(set(poses.values()), {len(solve(PERFORMANCE, "--rig", RIG).rows)})
 
+    def test_without_names_it_records_everybody_who_comes_until_all_have_left(self):
+        take = self.root / "everybody.mcap"
+        with Daemon("--no-render") as daemon:
+            ada = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
+            furrow("watch", daemon.tcp, "--subject", "ada", "--wait", "--frames", 1, check=0)
+            recorder = self.listen(daemon, take)
+            furrow("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "bob", "--speed", 4, check=0)
+            self.assertIsNone(recorder.poll(), "ada is still there")
+            ada.send_signal(signal.SIGINT)
+            ada.communicate(timeout=GUARD)
+            recorder.wait(timeout=GUARD)
+            self.assertEqual(recorder.returncode, 0)
+            self.assertIn("of ada, bob in", recorder.stderr.read().decode())
+            nobody = furrow("record", daemon.tcp, "--out", self.root / "none.mcap", check=1)
+            self.assertIn("nobody is there", nobody.stderr.decode())
+            self.assertFalse((self.root / "none.mcap").exists())
+        text = furrow("info", take, check=0).stdout.decode()
+        poses = {name: int(count) for name, _, count in re.findall(r"subject +(\w+):(.*\n)*? +poses +(\d+)", text)}
+        self.assertEqual(poses.keys(), {"ada", "bob"})
+        self.assertGreater(min(poses.values()), 0)
+        # Who comes meanwhile is asked for as soon as the daemon says so: from then on all is there.
+        frames = sorted(self.weights(f"{take}#bob").rows)
+        self.assertEqual(frames, list(range(frames[0], len(solve(PERFORMANCE, "--rig", RIG).rows))))
+
     def test_what_cannot_be_is_said_at_once(self):
         there = self.root / "there.mcap"
         there.write_text("mine")
@@ -292,6 +316,8 @@ class ListeningTest(FolderTest):
         self.assertIn("there already", result.stderr.decode())
         self.assertEqual(there.read_text(), "mine")
         furrow("record", "127.0.0.1:9", "--out", self.root / "none.mcap", check=4)
+        result = furrow("record", "127.0.0.1:9", "--out", self.root / "take", check=2)
+        self.assertIn("FILE.mcap", result.stderr.decode())
         with Daemon("--no-render") as daemon:
             result = furrow("record", daemon.tcp, "--out", self.root / "none.mcap", "--subject", "eve", check=1)
         self.assertIn("no subject 'eve'", result.stderr.decode())
