@@ -44,6 +44,7 @@ class Api {
   struct Capture {
     std::string pose;                           // "neutral", or the reference pose's name
     std::string subject;                        // whose neutral it was
+    std::uint64_t skeleton_hash = 0;            // its skeleton then
     std::optional<wrinkle::LocalPose> neutral;  // before
     std::shared_ptr<const wrinkle::Rig> rig;    // before; null: a neutral was captured
   };

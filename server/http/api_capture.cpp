@@ -102,7 +102,7 @@ ApiReply Api::CaptureNeutral(Hub& hub, Subject& subject, bool preview, Time now)
   if (!preview) {
     hub.SetNeutral(subject, pipeline.pose(), now);
     if (captures_.size() >= kMaxUndo) captures_.erase(captures_.begin());
-    captures_.push_back({kNeutral, subject.name, former, nullptr});
+    captures_.push_back({kNeutral, subject.name, subject.skeleton_hash, former, nullptr});
   }
   return JsonReply(
       {{"pose", kNeutral},
@@ -136,7 +136,8 @@ ApiReply Api::CapturePose(Hub& hub, Subject& subject, const std::string& pose, b
     }
     spdlog::info("reference pose '{}' is captured from '{}'", pose, subject.name);
     if (captures_.size() >= kMaxUndo) captures_.erase(captures_.begin());
-    captures_.push_back({pose, subject.name, std::nullopt, std::move(former)});
+    captures_.push_back(
+        {pose, subject.name, subject.skeleton_hash, std::nullopt, std::move(former)});
   }
   return JsonReply({{"pose", pose},
                     {"preview", preview},
@@ -151,12 +152,9 @@ ApiReply Api::Undo(const ApiRequest&, Hub& hub, Time now) {
   captures_.pop_back();
   if (last.rig != nullptr) {
     if (Status status = hub.SetRig(last.rig, now); !status.ok()) return ErrorReply(status);
-  } else if (Subject* subject =
-                 hub.subjects().all().empty() ? nullptr : hub.FindSubject(last.subject);
-             subject != nullptr) {
-    const bool fits =
-        !last.neutral || last.neutral->joints.size() == subject->pipeline->pose().joints.size();
-    if (fits) hub.SetNeutral(*subject, last.neutral, now);
+  } else if (Subject* subject = hub.FindSubject(last.subject);
+             subject != nullptr && subject->skeleton_hash == last.skeleton_hash) {
+    hub.SetNeutral(*subject, last.neutral, now);
   }
   return JsonReply({{"captures", Captures()}});
 }

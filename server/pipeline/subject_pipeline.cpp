@@ -71,10 +71,15 @@ void SubjectPipeline::MeasureFromNeutral() {
   }
 }
 
-void SubjectPipeline::SetNeutral(std::optional<wrinkle::LocalPose> neutral) {
+bool SubjectPipeline::SetNeutral(std::optional<wrinkle::LocalPose> neutral) {
+  if (neutral && (neutral->joints.size() != pose_.joints.size() ||
+                  neutral->blend_shapes.size() != pose_.blend_shapes.size())) {
+    return false;
+  }
   neutral_pose_ = std::move(neutral);
   corrected_ = pose_;
   SolveAnew();
+  return true;
 }
 
 void SubjectPipeline::SetStream(std::shared_ptr<const StreamDefinition> stream) {

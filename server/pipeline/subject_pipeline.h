@@ -31,8 +31,9 @@ class SubjectPipeline {
   }
 
   // The pose that counts as rest for the weights (a performer's own neutral face); none: the
-  // skeleton's. The picture shows the pose as it is. Evaluates the pose anew.
-  void SetNeutral(std::optional<wrinkle::LocalPose> neutral);
+  // skeleton's. The picture shows the pose as it is. Evaluates the pose anew. False: it has not as
+  // many joints and blend shapes as the stream; nothing has changed.
+  bool SetNeutral(std::optional<wrinkle::LocalPose> neutral);
   [[nodiscard]] const std::optional<wrinkle::LocalPose>& neutral_pose() const {
     return neutral_pose_;
   }

@@ -45,8 +45,8 @@ Status Hub::SetRig(std::shared_ptr<const wrinkle::Rig> rig, Time now) {
 }
 
 void Hub::SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral, Time now) {
-  subject.pipeline->SetNeutral(std::move(neutral));
-  if (subject.pipeline->has_pose()) Weighted(subject, {}, 0, now);
+  const bool fits = subject.pipeline->SetNeutral(std::move(neutral));
+  if (fits && subject.pipeline->has_pose()) Weighted(subject, {}, 0, now);
 }
 
 }  // namespace furrow::server
