@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of Api that takes what the performer does now into the rig, and back out of it.
 #include <algorithm>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -21,6 +23,19 @@ using Values = std::vector<float>;
 Values WeightsOf(const Subject& subject) {
   const auto weights = subject.pipeline->wrinkle_weights();
   return {weights.begin(), weights.end()};
+}
+
+// The weights that the pose would have, solved apart: what is shown is what the solver gives, not a
+// second copy of its formulas, and the subject and its filter are left alone. None: they cannot be
+// solved.
+std::optional<Values> TryOut(std::shared_ptr<const StreamDefinition> stream,
+                             const wrinkle::LocalPose& pose,
+                             const std::optional<wrinkle::LocalPose>& neutral) {
+  SubjectPipeline trial(std::move(stream));
+  *trial.mutable_pose() = pose;
+  if (!trial.SetNeutral(neutral) || trial.Solve(0, 0) != wrinkle::JobStatus::kOk) return {};
+  const auto weights = trial.wrinkle_weights();
+  return Values(weights.begin(), weights.end());
 }
 
 // The weights that a capture changes, before and after; their names are the same.
@@ -90,25 +105,24 @@ ApiReply Api::PostCapture(const ApiRequest& request, Hub& hub, Time now) {
   return CapturePose(hub, *subject, pose.get<std::string>(), preview.get<bool>(), now);
 }
 
-// The whole rig is tried out and taken back where it is a preview: what is shown is what the
-// solver gives, not a second copy of its formulas.
 ApiReply Api::CaptureNeutral(Hub& hub, Subject& subject, bool preview, Time now) {
-  SubjectPipeline& pipeline = *subject.pipeline;
+  const SubjectPipeline& pipeline = *subject.pipeline;
   const Values before = WeightsOf(subject);
-  const std::optional<wrinkle::LocalPose> former = pipeline.neutral_pose();
-  pipeline.SetNeutral(pipeline.pose());
-  const Values after = WeightsOf(subject);
-  pipeline.SetNeutral(former);
+  const std::optional<Values> after =
+      TryOut(pipeline.shared_stream(), pipeline.pose(), pipeline.pose());
+  if (!after) return ErrorReply(500, "internal", "", "the pose cannot be solved from itself");
   if (!preview) {
+    std::optional<wrinkle::LocalPose> former = pipeline.neutral_pose();
     hub.SetNeutral(subject, pipeline.pose(), now);
     if (captures_.size() >= kMaxUndo) captures_.erase(captures_.begin());
-    captures_.push_back({kNeutral, subject.name, subject.skeleton_hash, former, nullptr});
+    captures_.push_back(
+        {kNeutral, subject.name, subject.skeleton_hash, std::move(former), nullptr});
   }
   return JsonReply(
       {{"pose", kNeutral},
        {"preview", preview},
        {"added", false},
-       {"weights", ChangesJson(pipeline.stream().binding->weight_names(), before, after)},
+       {"weights", ChangesJson(pipeline.stream().binding->weight_names(), before, *after)},
        {"captures", Captures()}});
 }
 
@@ -122,12 +136,13 @@ ApiReply Api::CapturePose(Hub& hub, Subject& subject, const std::string& pose, b
                                            pipeline.stream().blend_shapes, {.allow_missing = true});
   if (!bound.ok()) return ErrorReply(bound.status());
   const Values before = WeightsOf(subject);
-  wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(bound)));
-  if (solver.Update(pipeline.solved_pose(), 0.0) != wrinkle::JobStatus::kOk) {
+  auto stream = std::make_shared<StreamDefinition>(pipeline.stream());
+  stream->binding = std::make_shared<const wrinkle::RigBinding>(*std::move(bound));
+  const auto after = TryOut(std::move(stream), pipeline.pose(), pipeline.neutral_pose());
+  if (!after) {
     return ErrorReply(500, "internal", "", "the pose cannot be solved with the changed rig");
   }
-  const Values after(solver.wrinkle_weights().begin(), solver.wrinkle_weights().end());
-  Json changes = ChangesJson(pipeline.stream().binding->weight_names(), before, after);
+  Json changes = ChangesJson(pipeline.stream().binding->weight_names(), before, *after);
   if (!preview) {
     auto former = std::make_shared<const wrinkle::Rig>(hub.rig());
     if (Status status = hub.SetRig(std::make_shared<const wrinkle::Rig>(*std::move(changed)), now);

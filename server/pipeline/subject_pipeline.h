@@ -69,6 +69,7 @@ class SubjectPipeline {
   [[nodiscard]] std::span<const float> wrinkle_weights() const { return solver_.wrinkle_weights(); }
   [[nodiscard]] std::span<const float> driver_values() const { return solver_.driver_values(); }
   [[nodiscard]] const StreamDefinition& stream() const { return *stream_; }
+  [[nodiscard]] std::shared_ptr<const StreamDefinition> shared_stream() const { return stream_; }
 
   [[nodiscard]] std::shared_ptr<const Snapshot> TakeSnapshot(std::int64_t age_us,
                                                              std::int64_t received_us = 0) const;

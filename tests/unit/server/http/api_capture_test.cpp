@@ -68,5 +68,24 @@ TEST_F(ApiCaptureTest, ANeutralOfAnotherSkeletonIsNotTakenBack) {
   EXPECT_FALSE(pipeline().neutral_pose().has_value());
 }
 
+TEST_F(ApiCaptureTest, ANeutralThatIsPreviewedLeavesTheSubjectAlone) {
+  Make({}, /*filter=*/true);
+  Connect(&sender);
+  Connect(&viewer);
+  Publish(sender, "ann");
+  ASSERT_NE(Watch(viewer, {.subject = "ann"}), 0);  // so that its weights are evaluated
+  SendPose(0.0f);
+  SendPose(1.0f);  // the filter is still on its way there
+  const float live = brow();
+  ASSERT_LT(live, 0.99f);
+  const Json weight = Capture("neutral", /*preview=*/true)["weights"][0];
+  EXPECT_EQ(weight["name"], "brow.squash");
+  EXPECT_FLOAT_EQ(weight["before"].get<float>(), live);
+  EXPECT_EQ(weight["after"].get<float>(), 0.0f);
+  EXPECT_EQ(brow(), live);
+  SendPose(1.0f);
+  EXPECT_LT(brow(), 0.99f) << "its filter began anew";
+}
+
 }  // namespace
 }  // namespace furrow::server
