@@ -47,6 +47,15 @@ Json ChangesJson(std::span<const std::string> names, const Values& before, const
   return list;
 }
 
+// A stream that calls its joints otherwise than the rig: the rig's names are the ones to store.
+void NameJointsAsTheRig(const StreamDefinition& stream, wrinkle::ReferencePose* pose) {
+  for (wrinkle::JointDelta& delta : pose->joints) {
+    const auto alias = std::ranges::find(stream.aliases, delta.joint,
+                                         &std::pair<std::string, std::string>::second);
+    if (alias != stream.aliases.end()) delta.joint = alias->first;
+  }
+}
+
 // The rig with the subject's pose as the reference pose of that name.
 Result<wrinkle::Rig> RigWith(const wrinkle::Rig& rig, const Subject& subject,
                              const std::string& pose, bool* added) {
@@ -54,6 +63,7 @@ Result<wrinkle::Rig> RigWith(const wrinkle::Rig& rig, const Subject& subject,
   auto captured =
       character::ReferencePoseFromFrame(pose, {pipeline.stream().skeleton, pipeline.solved_pose()});
   if (!captured.ok()) return captured.status();
+  NameJointsAsTheRig(pipeline.stream(), &*captured);
   wrinkle::Rig changed = rig;
   const auto known =
       std::ranges::find(changed.reference_poses, pose, &wrinkle::ReferencePose::name);
@@ -132,8 +142,9 @@ ApiReply Api::CapturePose(Hub& hub, Subject& subject, const std::string& pose, b
   Result<wrinkle::Rig> changed = RigWith(hub.rig(), subject, pose, &added);
   if (!changed.ok()) return ErrorReply(changed.status());
   const SubjectPipeline& pipeline = *subject.pipeline;
-  auto bound = wrinkle::RigBinding::Create(*changed, pipeline.stream().skeleton,
-                                           pipeline.stream().blend_shapes, {.allow_missing = true});
+  auto bound = wrinkle::RigBinding::Create(
+      *changed, pipeline.stream().skeleton, pipeline.stream().blend_shapes,
+      {.allow_missing = true, .aliases = pipeline.stream().aliases});
   if (!bound.ok()) return ErrorReply(bound.status());
   const Values before = WeightsOf(subject);
   auto stream = std::make_shared<StreamDefinition>(pipeline.stream());

@@ -75,7 +75,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::FindOrMake(
 
 Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
     wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes) {
-  const character::SkeletonMatch match = matcher_.Match(skeleton, *rig_, character_);
+  character::SkeletonMatch match = matcher_.Match(skeleton, *rig_, character_);
   auto binding = wrinkle::RigBinding::Create(*rig_, skeleton, blend_shapes,
                                              {.allow_missing = true, .aliases = match.aliases});
   if (!binding.ok()) return binding.status();
@@ -95,6 +95,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
   definition->skeleton = std::move(skeleton);
   definition->blend_shapes = std::move(blend_shapes);
   Report(*definition, match);
+  definition->aliases = std::move(match.aliases);
   return std::shared_ptr<const StreamDefinition>(std::move(definition));
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "character/skeleton_match.h"
@@ -30,6 +31,8 @@ struct StreamDefinition {
   wrinkle::Skeleton skeleton;
   std::vector<std::string> blend_shapes;
   std::vector<std::int16_t> joint_of_wire;  // wire index -> index in `skeleton`
+  // (The rig's joint, the stream's), where a skeleton map knows them by other names.
+  std::vector<std::pair<std::string, std::string>> aliases;
   std::shared_ptr<const wrinkle::RigBinding> binding;
   // What moves the character; null where nothing is drawn.
   std::shared_ptr<const wrinkle::Retarget> retarget;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Captures: what they change, what a preview does not, and what can be taken back.
+#include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -85,6 +88,80 @@ TEST_F(ApiCaptureTest, ANeutralThatIsPreviewedLeavesTheSubjectAlone) {
   EXPECT_EQ(brow(), live);
   SendPose(1.0f);
   EXPECT_LT(brow(), 0.99f) << "its filter began anew";
+}
+
+// A hinge that calls its joints as the rig of a game engine does, and a stream that calls them as
+// Mixamo does.
+class ApiForeignCaptureTest : public HubTest {
+ protected:
+  void SetUp() override {
+    setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/character", 1);
+    auto matcher = character::SkeletonMatcher::Create("");
+    unsetenv("FURROW_DATA_DIR");
+    ASSERT_TRUE(matcher.ok()) << matcher.status().ToString();
+    wrinkle::Rig rig = MakeRig(/*filter=*/false);
+    for (const char* side : {"l", "r"}) {
+      wrinkle::Driver& driver = rig.drivers.emplace_back();
+      driver.name = std::string("knee_") + side;
+      driver.kind = wrinkle::Driver::Kind::kHinge;
+      driver.hinge = {.parent = std::string("upper_leg_") + side,
+                      .joint = std::string("lower_leg_") + side,
+                      .end = std::string("foot_") + side};
+    }
+    rig.regions[0].feeds[0].sources = {{"knee_l", "flexed", 1.0f}};
+    Hub::Parts parts;
+    parts.rig = std::make_shared<const wrinkle::Rig>(std::move(rig));
+    parts.skeletons = *std::move(matcher);
+    parts.metrics = &metrics;
+    hub = std::make_unique<Hub>(std::move(parts));
+    Connect(&sender);
+  }
+  static protocol::SkeletonOffer Legs() {
+    protocol::SkeletonOffer offer;
+    offer.subject = "ann";
+    const std::pair<const char*, int> joints[] = {
+        {"Hips", -1},      {"LeftUpLeg", 0}, {"LeftLeg", 1},  {"LeftFoot", 2},
+        {"RightUpLeg", 0}, {"RightLeg", 4},  {"RightFoot", 5}};
+    for (const auto& [name, parent] : joints) {
+      protocol::OfferedJoint& joint = offer.joints.emplace_back();
+      joint.name = std::string("mixamorig:") + name;
+      joint.parent = static_cast<std::int16_t>(parent);
+      joint.rest_translation = {parent == 0 ? (name[0] == 'L' ? 0.1f : -0.1f) : 0.0f,
+                                parent < 0 ? 1.0f : -0.4f, 0.0f};
+    }
+    offer.skeleton_hash = protocol::SkeletonHash(offer);
+    return offer;
+  }
+
+  FakePeer sender;
+};
+
+TEST_F(ApiForeignCaptureTest, APoseIsStoredUnderTheJointsOfTheRig) {
+  const protocol::SkeletonOffer offer = Legs();
+  Send(sender, offer, 1);
+  protocol::PoseFrame pose;
+  pose.skeleton_hash = offer.skeleton_hash;
+  pose.num_joints = static_cast<std::uint16_t>(offer.joints.size());
+  pose.rotation_joints = {2};
+  pose.rotations = {{std::sin(0.6f), 0.0f, 0.0f, std::cos(0.6f)}};
+  Send(sender, pose, 1, 1);
+  Subject& subject = *hub->FindSubject("ann");
+  const float bent = subject.pipeline->wrinkle_weights()[0];
+  ASSERT_GT(bent, 0.1f);
+
+  Api api{{}};
+  const ApiReply reply = api.Answer({.method = "POST",
+                                     .url = {.path = "/api/capture", .values = {}},
+                                     .body = R"({"pose":"crouch"})"},
+                                    *hub, now);
+  ASSERT_EQ(reply.status, 200) << reply.body;
+  const Json weight = Json::parse(reply.body)["weights"][0];
+  EXPECT_FLOAT_EQ(weight["before"].get<float>(), bent);
+  EXPECT_FLOAT_EQ(weight["after"].get<float>(), bent) << "a pose that no driver reads";
+  ASSERT_EQ(hub->rig().reference_poses.size(), 1u);
+  const auto& joints = hub->rig().reference_poses[0].joints;
+  ASSERT_EQ(joints.size(), 1u);
+  EXPECT_EQ(joints[0].joint, "lower_leg_l");
 }
 
 }  // namespace
