@@ -174,14 +174,14 @@ ApiReply Api::CapturePose(Hub& hub, Subject& subject, const std::string& pose, b
 
 ApiReply Api::Undo(const ApiRequest&, Hub& hub, Time now) {
   if (captures_.empty()) return ErrorReply(409, "conflict", "", "there is nothing to undo");
-  const Capture last = std::move(captures_.back());
-  captures_.pop_back();
+  const Capture& last = captures_.back();
   if (last.rig != nullptr) {
     if (Status status = hub.SetRig(last.rig, now); !status.ok()) return ErrorReply(status);
   } else if (Subject* subject = hub.FindSubject(last.subject);
              subject != nullptr && subject->skeleton_hash == last.skeleton_hash) {
     hub.SetNeutral(*subject, last.neutral, now);
   }
+  captures_.pop_back();
   return JsonReply({{"captures", Captures()}});
 }
 
