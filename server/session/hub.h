@@ -103,7 +103,8 @@ class Hub {
   // RigBinding::Create for the skeleton of a subject (`where` is its name); then all stays as it
   // was.
   [[nodiscard]] Status SetRig(std::shared_ptr<const wrinkle::Rig> rig, Time now);
-  // The pose that the subject's weights are measured from instead of its rest pose; none: that.
+  // The pose that the subject's weights are measured from instead of its rest pose; none: that. One
+  // that does not fit its stream changes nothing.
   void SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral, Time now);
   [[nodiscard]] bool draining() const { return draining_; }
 
@@ -135,6 +136,7 @@ class Hub {
               std::span<const std::uint8_t> payload, Time now);
   void Weighted(Subject& subject, std::span<const std::uint8_t> pose, std::int64_t age_us,
                 Time now);
+  void Reweighted(Subject& subject, Time now);
   void OnListSubjects(Peer& peer, const protocol::Header& header,
                       const protocol::ListSubjects& request);
   void SendList(Peer& peer, const protocol::Header& request);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What whoever runs the session changes while it runs: the rig, a subject's neutral, the settings.
+#include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -39,14 +40,19 @@ Status Hub::SetRig(std::shared_ptr<const wrinkle::Rig> rig, Time now) {
     Subject& subject = *subjects_.all()[i];
     subject.pipeline->SetStream(std::move(made[i]));
     subscribers_.OnSubjectReady(subject);
-    if (subject.pipeline->has_pose()) Weighted(subject, {}, 0, now);
+    Reweighted(subject, now);
   }
   return {};
 }
 
 void Hub::SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral, Time now) {
-  const bool fits = subject.pipeline->SetNeutral(std::move(neutral));
-  if (fits && subject.pipeline->has_pose()) Weighted(subject, {}, 0, now);
+  if (subject.pipeline->SetNeutral(std::move(neutral))) Reweighted(subject, now);
+}
+
+// Other weights of the pose that was there: never of age 0, as only a new pose is.
+void Hub::Reweighted(Subject& subject, Time now) {
+  if (!subject.pipeline->has_pose()) return;
+  Weighted(subject, {}, std::max<std::int64_t>(1, ToMicroseconds(now - subject.last_pose)), now);
 }
 
 }  // namespace furrow::server

@@ -234,6 +234,25 @@ TEST_F(HubPoses, ASkeletonThatUdpCannotCarryIsRefusedThere) {
   EXPECT_EQ(hub->num_subscriptions(), 0u);
 }
 
+// Their order is (sequence, age): what comes without a pose comes after it.
+TEST_F(HubPoses, OtherWeightsOfTheSamePoseAreNoNewPose) {
+  Publish(sender, "ann");
+  Follow({.subject = "ann"});
+  FakePeer weights;
+  Connect(&weights);
+  Watch(weights, {.subject = "ann"});
+  Send(sender, Pose(0.5f), 1, 1);
+  ASSERT_TRUE(viewer.Take<protocol::PoseFrame>().has_value());
+  ASSERT_TRUE(weights.Take<protocol::WeightFrame>().has_value());
+  Subject& subject = *hub->FindSubject("ann");
+  hub->SetNeutral(subject, subject.pipeline->pose(), now);
+  EXPECT_EQ(weights.Take<protocol::WeightFrame>()->message.age_us, 1);
+  Advance(0.25);
+  ASSERT_TRUE(hub->SetRig(std::make_shared<const wrinkle::Rig>(hub->rig()), now).ok());
+  EXPECT_EQ(weights.Take<protocol::WeightFrame>()->message.age_us, 250'000);
+  EXPECT_TRUE(viewer.inbox.empty());
+}
+
 TEST_F(HubPoses, AnEndedSubjectEndsItsSubscription) {
   Publish(sender, "ann");
   Follow({.subject = "ann"});
