@@ -47,8 +47,12 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
       Reject(peer, header, offer.skeleton_hash, definition.status().ToString(), now);
       return nullptr;
     }
+    const bool same_skeleton = subject != nullptr && subject->skeleton_hash == offer.skeleton_hash;
     subject = Accept(peer, key, offer, now);
-    subject->pipeline = std::make_unique<SubjectPipeline>(*std::move(definition));
+    auto former =
+        std::exchange(subject->pipeline, std::make_unique<SubjectPipeline>(*std::move(definition)));
+    // It is the performer's, not the sender's.
+    if (same_skeleton) subject->pipeline->SetNeutral(former->neutral_pose());
   }
   postman_->Reply(
       peer, Postman::Answering(header),

@@ -71,6 +71,23 @@ TEST_F(HubPublish, EveryStreamOfAPeerIsAskedForItsOwnSkeleton) {
   EXPECT_TRUE(sender.inbox.empty());
 }
 
+TEST_F(HubPublish, ANeutralStaysWhereThePerformerIsSentAnewWithTheSameSkeleton) {
+  Publish(sender, "ann");
+  ASSERT_NE(Watch(viewer, {.subject = "ann"}), 0);  // so that its weights are evaluated
+  Send(sender, Pose(0.25f), 1, 1);
+  Subject& subject = *hub->FindSubject("ann");
+  hub->SetNeutral(subject, subject.pipeline->pose(), now);
+  ++sender.session;
+  Publish(sender, "ann");
+  Send(sender, Pose(0.75f), 1, 1);
+  EXPECT_NEAR(subject.pipeline->wrinkle_weights()[0], 0.5f, 1e-6f);
+
+  protocol::SkeletonOffer other = Offer("ann");
+  other.blend_shape_names.push_back("jaw");
+  Send(sender, other, 1);
+  EXPECT_FALSE(subject.pipeline->neutral_pose().has_value());
+}
+
 TEST_F(HubPublish, ASubjectThatRestartsWithoutEndTakesBoundedMemory) {
   Publish(sender, "ann");
   const std::uint64_t first = sender.session;
