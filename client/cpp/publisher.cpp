@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "protocol/hash.h"
-#include "protocol/limits.h"
+#include "protocol/offer_check.h"
 
 namespace furrow::client {
 
@@ -16,31 +16,6 @@ std::uint64_t NewSession() {
   return session;
 }
 
-namespace {
-
-// Why the wire cannot carry an offer; empty when it can.
-std::string Unsendable(std::span<const std::uint8_t> offer) {
-  using protocol::DecodeStatus;
-  protocol::MessageView view;
-  protocol::SkeletonOffer decoded;
-  DecodeStatus status = protocol::OpenMessage(offer, view);
-  if (status == DecodeStatus::kOk) status = protocol::Decode(view, decoded);
-  switch (status) {
-    case DecodeStatus::kOk: return {};
-    case DecodeStatus::kBadText:
-      return "a name of a joint or blend shape, or the subject's, is empty, there twice, not UTF-8 "
-             "or has control characters";
-    case DecodeStatus::kLimit:
-    case DecodeStatus::kBadLength:
-      return "it has more than " + std::to_string(protocol::kMaxJoints) + " joints or " +
-             std::to_string(protocol::kMaxBlendShapes) + " blend shapes, or a name above " +
-             std::to_string(protocol::kMaxNameBytes) + " bytes";
-    default: return "it cannot be put on the wire (" + std::string(DecodeStatusName(status)) + ")";
-  }
-}
-
-}  // namespace
-
 Publisher::Publisher(std::unique_ptr<Transport> transport)
     : transport_(std::move(transport)), session_(NewSession()) {}
 
@@ -50,7 +25,7 @@ std::uint16_t Publisher::AddSubject(const protocol::SkeletonOffer& offer, std::i
   stream.skeleton_hash = protocol::SkeletonHash(offer);
   encoder_.Encode({.session = session_, .stream = number}, offer, stream.offer);
   // A daemon does not answer malformed datagrams: who offers nonsense would wait in vain.
-  stream.rejection = Unsendable(stream.offer);
+  stream.rejection = protocol::WhyUnsendable(stream.offer);
   if (stream.rejection.empty()) SendOffer(stream, now_us);
   return number;
 }

@@ -8,6 +8,8 @@
 #include <spdlog/spdlog.h>
 
 #include "protocol/hash.h"
+#include "protocol/limits.h"
+#include "protocol/offer_check.h"
 #include "recording/take_clip.h"
 #include "recording/take_folder.h"
 #include "recording/wire_pose.h"
@@ -19,6 +21,7 @@ constexpr std::uint64_t kSession = 1;  // one publisher a peer: any number does
 constexpr std::uint16_t kStream = 1;
 constexpr std::int64_t kFirstCapture = 1;   // microseconds; 0 would be none on the wire
 constexpr Time kRepeat = FromSeconds(0.1);  // of the frame at which it stands
+constexpr Time kOfferAgain = FromSeconds(1.0);
 
 }  // namespace
 
@@ -33,21 +36,49 @@ Result<std::unique_ptr<Player>> Player::Load(const std::filesystem::path& path) 
     return Status(StatusCode::kInvalidArgument, "the recording has no frames", path.string());
   }
   clip->name = path.stem().string();
-  return std::make_unique<Player>(*std::move(clip), path.filename().string());
+  auto player = std::make_unique<Player>(*std::move(clip), path.filename().string());
+  if (std::string why = protocol::WhyUnsendable(player->offer_); !why.empty()) {
+    return Status(StatusCode::kInvalidArgument, "the skeleton cannot be offered: " + why,
+                  path.string());
+  }
+  return player;
 }
 
 Player::Player(motion::Clip clip, std::string file)
-    : clip_(std::move(clip)), file_(std::move(file)) {}
+    : clip_(std::move(clip)), file_(std::move(file)) {
+  protocol::SkeletonOffer offer = recording::OfferOf(clip_, clip_.name, 1.0f);
+  offer.skeleton_hash = protocol::SkeletonHash(offer);
+  pose_.skeleton_hash = offer.skeleton_hash;
+  encoder_.Encode({.session = kSession, .stream = kStream}, offer, offer_);
+}
 
 void Player::Start(Hub* hub, Time now) {
   hub_ = hub;
   peer_ = hub->AddPeer(Transport::kWeb, "--play " + file_, this, now);
-  protocol::SkeletonOffer offer = recording::OfferOf(clip_, clip_.name, 1.0f);
-  offer.skeleton_hash = protocol::SkeletonHash(offer);
-  pose_.skeleton_hash = offer.skeleton_hash;
-  encoder_.Encode({.session = kSession, .stream = kStream}, offer, bytes_);
-  hub_->OnMessage(peer_, bytes_, now);
+  Offer(now);
   MoveTo(0.0, now);
+}
+
+void Player::Offer(Time now) {
+  offered_ = now;
+  needed_ = false;
+  hub_->OnMessage(peer_, offer_, now);
+}
+
+void Player::SendReply(std::span<const std::uint8_t> message) {
+  protocol::MessageView view;
+  protocol::SkeletonReply reply;
+  if (protocol::OpenMessage(message, view, protocol::kMaxReplyBytes) !=
+          protocol::DecodeStatus::kOk ||
+      protocol::Decode(view, reply) != protocol::DecodeStatus::kOk) {
+    return;  // goodbyes
+  }
+  needed_ |= reply.status == protocol::SkeletonStatus::kNeeded;
+  if (reply.status == protocol::SkeletonStatus::kAccepted) refused_ = false;
+  if (reply.status != protocol::SkeletonStatus::kRejected) return;
+  if (!std::exchange(refused_, true)) {
+    spdlog::warn("'{}' plays unseen: {}", clip_.name, reply.message);
+  }
 }
 
 double Player::PositionAt(Time now) const {
@@ -84,6 +115,7 @@ void Player::SendPose(int frame, Time now) {
 }
 
 Time Player::Advance(Time now) {
+  if (needed_ && now - offered_ >= kOfferAgain) Offer(now);
   double position = PositionAt(now);
   const double end = clip_.duration();
   // The last frame is shown as long as the one before it was.
@@ -102,7 +134,9 @@ Time Player::Advance(Time now) {
   const bool is_last = frame + 1 >= clip_.num_frames();
   const double next =
       is_last ? end + last : clip_.times[static_cast<std::size_t>(frame) + 1] - clip_.times.front();
-  return std::min(sent_ + kRepeat, now + FromSeconds((next - position) / speed_));
+  // Never now: what is left may round to nothing.
+  const Time left = std::max(Time{1}, FromSeconds((next - position) / speed_));
+  return std::min(sent_ + kRepeat, now + left);
 }
 
 Status Player::Apply(const Change& change, Time now) {

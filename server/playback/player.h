@@ -18,7 +18,9 @@ namespace furrow::server {
 //
 // Capture times are the recording's own, so that its weights are those of `furrow solve` while it
 // plays on from its start, whatever the speed; where it goes back, the filter begins anew. While it
-// is paused the frame is sent again now and then, so that the subject is not taken for lost.
+// is paused the frame is sent again now and then, so that the subject is not taken for lost. Where
+// another sender takes the subject over, the recording goes on unseen, which is said once in the
+// log, and has its subject back when that one has gone.
 class Player : public Link {
  public:
   struct State {
@@ -43,7 +45,8 @@ class Player : public Link {
   static constexpr double kMinSpeed = 0.05;
   static constexpr double kMaxSpeed = 8.0;
 
-  // The subject is called as the file is. Errors: the readers'; kInvalidArgument: no frames.
+  // The subject is called as the file is. Errors: the readers'; kInvalidArgument: no frames, or
+  // what the wire cannot carry, such as more blend shapes or names that are not UTF-8.
   [[nodiscard]] static Result<std::unique_ptr<Player>> Load(const std::filesystem::path& path);
   explicit Player(motion::Clip clip, std::string file);
 
@@ -55,8 +58,8 @@ class Player : public Link {
   [[nodiscard]] Status Apply(const Change& change, Time now);
   [[nodiscard]] State state(Time now) const;
 
-  // Link: answers to a publisher, which this one has no use for.
-  void SendReply(std::span<const std::uint8_t>) override {}
+  // Link: the answers to a publisher.
+  void SendReply(std::span<const std::uint8_t> message) override;
   int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t) override { return 0; }
   void DropFrames(std::uint64_t) override {}
 
@@ -64,6 +67,7 @@ class Player : public Link {
   [[nodiscard]] double PositionAt(Time now) const;
   [[nodiscard]] int FrameAt(double position) const;
   void MoveTo(double position, Time now);
+  void Offer(Time now);
   void SendPose(int frame, Time now);
 
   const motion::Clip clip_;
@@ -77,6 +81,10 @@ class Player : public Link {
   Time anchor_time_{0};
   int frame_ = -1;
   Time sent_{0};
+  std::vector<std::uint8_t> offer_;  // encoded
+  Time offered_{0};
+  bool needed_ = false;   // the daemon has asked for the offer again
+  bool refused_ = false;  // what it said last, and the log was told
   std::uint32_t sequence_ = 0;
   protocol::Encoder encoder_;
   protocol::PoseFrame pose_;

@@ -2,7 +2,10 @@
 #include "server/playback/player.h"
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -89,6 +92,46 @@ TEST_F(PlayerTest, ItMovesAtOnceAndRunsAtAnotherSpeed) {
   EXPECT_NEAR(brow(), 0.4f, 1e-5f);
   ASSERT_TRUE(player->Apply({.position = 99.0}, now).ok());
   EXPECT_NEAR(player->state(now).position, 1.0, 1e-9);
+}
+
+TEST_F(PlayerTest, ASubjectThatWasForgottenIsOfferedAgain) {
+  PlayFor(2.0);
+  Advance(60.0);  // as where the machine slept
+  hub->Tick(now);
+  ASSERT_EQ(hub->num_subjects(), 0u);
+  PlayFor(0.5);
+  ASSERT_EQ(hub->num_subjects(), 1u);
+  PlayFor(0.2);
+  EXPECT_NEAR(brow(), 0.1f * static_cast<float>(player->state(now).frame), 1e-5f);
+}
+
+TEST_F(PlayerTest, ASubjectThatAnotherTookIsPlayedAgainWhenThatOneHasGone) {
+  FakePeer other;
+  Connect(&other);
+  Publish(other, "take");
+  const StreamKey taken = subject().owner;
+  PlayFor(3.0);
+  EXPECT_EQ(subject().owner, taken) << "it does not fight for it";
+  Send(other, protocol::Goodbye{}, 1);
+  hub->Tick(now);
+  PlayFor(2.0);
+  ASSERT_EQ(hub->num_subjects(), 1u);
+  EXPECT_NE(subject().owner, taken);
+}
+
+TEST_F(PlayerTest, WhatTheWireCannotCarryIsSaidWhenItIsLoaded) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "furrow_player_latin1.bvh";
+  std::ofstream(path, std::ios::binary)
+      << "HIERARCHY\nROOT H\xFC"
+         "fte\n{\nOFFSET 0 1 0\nCHANNELS 3 Zrotation Xrotation "
+         "Yrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 1\nFrame Time: "
+         "0.1\n0 0 0\n";
+  const auto loaded = Player::Load(path);
+  std::filesystem::remove(path);
+  ASSERT_FALSE(loaded.ok());
+  EXPECT_EQ(loaded.status().code(), StatusCode::kInvalidArgument);
+  EXPECT_NE(loaded.status().what().find("not UTF-8"), std::string::npos)
+      << loaded.status().ToString();
 }
 
 TEST_F(PlayerTest, AWrongChangeNamesItsFieldAndChangesNothing) {
