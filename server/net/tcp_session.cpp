@@ -158,6 +158,7 @@ void TcpSession::CloseAfterFlush(bool linger) {
   state_ = State::kFlushing;
   linger_ = linger;
   closing_since_ = ReadClock();
+  outbox_.DropAllBehindTheLine();
   hub_->RemovePeer(peer_);
   wake_.cancel();
 }
@@ -194,6 +195,9 @@ int TcpSession::SendFrame(std::uint64_t key, std::span<const std::uint8_t> messa
 
 bool TcpSession::IsStuck(Time now) const { return writing_ && now - write_started_ > kStuckAfter; }
 
-void TcpSession::DropFrames(std::uint64_t key) { outbox_.DropFrames(key); }
+// Of a peer that leaves, its subscriptions end; what was promised it still goes out.
+void TcpSession::DropFrames(std::uint64_t key) {
+  if (state_ == State::kOpen) outbox_.DropFrames(key);
+}
 
 }  // namespace furrow::server

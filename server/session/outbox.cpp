@@ -96,6 +96,10 @@ bool Outbox::Pop(std::vector<std::uint8_t>* out) {
   return true;
 }
 
+void Outbox::DropAllBehindTheLine() {
+  while (!frames_.empty()) DropFrame(frames_.begin());
+}
+
 void Outbox::DropFrames(std::uint64_t key) {
   for (auto item = frames_.begin(); item != frames_.end();) {
     item = item->key == key ? Recycle(frames_, item) : std::next(item);

@@ -40,6 +40,8 @@ class Outbox {
 
   // A subscription ended: what still waits of it is of no use.
   void DropFrames(std::uint64_t key);
+  // The peer is leaving: nothing goes out behind the line, its goodbye.
+  void DropAllBehindTheLine();
 
   [[nodiscard]] bool empty() const { return line_.empty() && frames_.empty(); }
   [[nodiscard]] std::size_t num_frames() const { return frames_.size(); }

@@ -224,6 +224,35 @@ TEST(Robustness, ARigThatIsNotThereIsBadInput) {
   EXPECT_EQ(daemon.Stop(), server::ExitCode::kBadInput);
 }
 
+// More than the sockets hold: it waits in the daemon when the draining begins.
+TEST(Robustness, WhoAsksForEveryFrameHasThemAllBeforeTheGoodbye) {
+  constexpr int kFrames = 20'000;
+  server::Config config = WeightsConfig("arkit.json");
+  config.limits.packet_burst = 2 * kFrames;
+  DaemonThread daemon(config);
+  TcpClient publisher(daemon.ready().tcp);
+  const motion::Clip clip = ArkitClip(50);
+  const protocol::SkeletonOffer offer = OfferOf(clip, "ann");
+  Offer(publisher, offer);
+  TcpClient viewer(daemon.ready().tcp);
+  const int small = 4096;
+  ASSERT_EQ(setsockopt(viewer.socket(), SOL_SOCKET, SO_RCVBUF, &small, sizeof small), 0);
+  ASSERT_TRUE(Watch(viewer, {.subject = "ann", .every = true}).has_value());
+  for (int i = 0; i < kFrames; ++i) {
+    publisher.Send(PoseOf(clip, i % 50, offer), 1, static_cast<std::uint32_t>(i), 1 + i * 10'000);
+  }
+  publisher.Send(protocol::Ping{1});
+  ASSERT_TRUE(publisher.Await<protocol::Pong>().has_value());  // all of them were worked on
+  ASSERT_EQ(daemon.Count(server::Counter::kWeightsDroppedSlow), 0u);
+
+  std::jthread stop([&] { EXPECT_EQ(daemon.Stop(), server::ExitCode::kOk); });
+  ASSERT_TRUE(publisher.Await<protocol::Goodbye>().has_value());
+  int frames = 0;
+  while (viewer.Await<protocol::WeightFrame>().has_value()) ++frames;
+  EXPECT_EQ(frames, kFrames);
+  EXPECT_EQ(viewer.skipped.size(), 1u);  // the goodbye
+}
+
 TEST(Robustness, DrainingSaysGoodbyeAndCloses) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());

@@ -92,6 +92,17 @@ TEST(Outbox, FramesThatAreAllKeptStandInLineWithTheReplies) {
   EXPECT_THAT(PopAll(&outbox), ElementsAre(20, 1, 21, 22, 23, 24, 25, 26, 27, 28, 29, 10));
 }
 
+TEST(Outbox, WhoLeavesGetsTheLineAndNothingBehindIt) {
+  Outbox outbox(4, 4);
+  outbox.PushFrame(1, Bytes{10});
+  outbox.PushFrame(2, Bytes{20}, kKeepAll);
+  ASSERT_TRUE(outbox.PushReply(Bytes{1}));
+  outbox.DropAllBehindTheLine();
+  EXPECT_EQ(outbox.num_frames(), 0u);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(20, 1));
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{11}), 0) << "the key has room again";
+}
+
 TEST(Outbox, ALineThatIsFullTakesNoNewFrameUntilItMoves) {
   Outbox outbox(4, 4);
   const Bytes half(protocol::kMaxWaitingFrameBytes / 2, 1);
