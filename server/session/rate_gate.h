@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+
 #include "server/session/time.h"
 
 namespace furrow::server {
 
 // Lets at most `max_rate` events a second pass, evenly spaced, without drift: a 60 Hz stream gated
-// to 30 Hz passes every second frame even where arrival jitters. 0: everything passes.
+// to 30 Hz passes every second frame even where arrival jitters. 0: everything passes. The slowest
+// rate is one an hour.
 class RateGate {
  public:
   explicit RateGate(double max_rate = 0.0)
-      : period_(max_rate > 0.0 ? FromSeconds(1.0 / max_rate) : Time{0}) {}
+      : period_(max_rate > 0.0 ? FromSeconds(std::min(1.0 / max_rate, kMaxPeriod)) : Time{0}) {}
 
   [[nodiscard]] bool Pass(Time now) {
     if (period_ == Time{0}) return true;
@@ -24,6 +27,8 @@ class RateGate {
   }
 
  private:
+  static constexpr double kMaxPeriod = 3600.0;  // seconds: what a Time surely holds
+
   Time period_;
   Time due_{0};
   bool started_ = false;

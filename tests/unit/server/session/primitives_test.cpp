@@ -72,6 +72,13 @@ TEST(RateGate, APauseEarnsNoBurst) {
   EXPECT_TRUE(gate.Pass(FromSeconds(60.1)));
 }
 
+TEST(RateGate, TheTiniestRateStillPassesNowAndThen) {
+  RateGate gate(1e-30);
+  EXPECT_TRUE(gate.Pass(FromSeconds(10)));
+  EXPECT_FALSE(gate.Pass(FromSeconds(1000)));
+  EXPECT_TRUE(gate.Pass(FromSeconds(10 + 3600)));
+}
+
 TEST(SendCredit, UnprovenGetsAtMostWhatItSent) {
   SendCredit credit;
   credit.Received(100);
