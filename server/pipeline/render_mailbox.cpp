@@ -19,6 +19,10 @@ void MergeTickets(const RenderJob& from, RenderJob* into) {
   }
 }
 
+bool IsSamePicture(const RenderJob& a, const RenderJob& b) {
+  return a.subject == b.subject && a.spec == b.spec;
+}
+
 }  // namespace
 
 bool PictureSpec::operator==(const PictureSpec& other) const {
@@ -40,11 +44,25 @@ Encoding EncodingOf(const PictureTicket& ticket) {
 
 bool RenderJob::IsStill() const { return std::ranges::any_of(tickets, &PictureTicket::still); }
 
+// Whoever changes its view faster than it is drawn takes no place but its own.
+void RenderMailbox::DropOlderTickets(const RenderJob& job) {
+  if (job.tickets.empty()) return;
+  const auto asks_anew = [&job](const PictureTicket& ticket) {
+    return std::ranges::find(job.tickets, ticket.subscription, &PictureTicket::subscription) !=
+           job.tickets.end();
+  };
+  std::erase_if(jobs_, [&](RenderJob& other) {
+    if (IsSamePicture(other, job)) return false;
+    return std::erase_if(other.tickets, asks_anew) > 0 && other.tickets.empty();
+  });
+}
+
 RenderMailbox::PutResult RenderMailbox::Put(RenderJob&& job) {
   const std::lock_guard lock(mutex_);
   if (closed_) return PutResult::kFull;
+  DropOlderTickets(job);
   const auto waiting = std::find_if(jobs_.begin(), jobs_.end(), [&](const RenderJob& other) {
-    return other.subject == job.subject && other.spec == job.spec;
+    return IsSamePicture(other, job);
   });
   if (waiting != jobs_.end()) {
     MergeTickets(*waiting, &job);

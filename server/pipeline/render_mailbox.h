@@ -63,7 +63,8 @@ struct RenderJob {
 };
 
 // The way from the network threads to the render thread: at most one job a (subject, spec) waits,
-// the newest snapshot wins, and no put ever blocks on drawing. Bounded by `capacity` keys.
+// the newest snapshot wins, and no put ever blocks on drawing. Bounded by `capacity` keys; a
+// subscription has one ticket, of the spec that it asked for last.
 class RenderMailbox {
  public:
   explicit RenderMailbox(std::size_t capacity) : capacity_(capacity) {}
@@ -74,6 +75,8 @@ class RenderMailbox {
   // kReplaced: an older snapshot of the same subject and spec was dropped; its tickets join the new
   // job's, one a subscription, and are stills no more where the subject moved. kNotWanted: a job
   // without tickets found none to refresh. kFull: the job is as it was; else it is moved from.
+  // Tickets of the job's subscriptions that wait for another picture go, and with the last of its
+  // tickets a job.
   PutResult Put(RenderJob&& job);
 
   // The longest waiting job, those that move before stills (unless kMaxPassedOver of them went
@@ -88,6 +91,8 @@ class RenderMailbox {
   [[nodiscard]] bool closed() const;
 
  private:
+  void DropOlderTickets(const RenderJob& job);
+
   const std::size_t capacity_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

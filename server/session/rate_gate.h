@@ -12,8 +12,14 @@ namespace furrow::server {
 // rate is one an hour.
 class RateGate {
  public:
-  explicit RateGate(double max_rate = 0.0)
-      : period_(max_rate > 0.0 ? FromSeconds(std::min(1.0 / max_rate, kMaxPeriod)) : Time{0}) {}
+  explicit RateGate(double max_rate = 0.0) : period_(PeriodOf(max_rate)) {}
+
+  // Another rate from the event on that passed last: asking again and again lets nothing more pass.
+  void SetRate(double max_rate) {
+    const Time period = PeriodOf(max_rate);
+    due_ += period - period_;
+    period_ = period;
+  }
 
   [[nodiscard]] bool Pass(Time now) {
     if (period_ == Time{0}) return true;
@@ -27,7 +33,10 @@ class RateGate {
   }
 
  private:
-  static constexpr double kMaxPeriod = 3600.0;  // seconds: what a Time surely holds
+  static Time PeriodOf(double max_rate) {
+    constexpr double kMaxPeriod = 3600.0;  // seconds: what a Time surely holds
+    return max_rate > 0.0 ? FromSeconds(std::min(1.0 / max_rate, kMaxPeriod)) : Time{0};
+  }
 
   Time period_;
   Time due_{0};

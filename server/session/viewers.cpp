@@ -82,7 +82,7 @@ void Subscribers::Update(Peer& peer, const protocol::Header& header,
   changed->flow = std::move(wish->flow);
   changed->view_request = header.sequence;
   *wish = *std::move(changed);
-  subscription->gate = RateGate(request.max_rate_hz);
+  subscription->gate.SetRate(request.max_rate_hz);
   ShowChanged(*subscription, *wish, now);
 }
 

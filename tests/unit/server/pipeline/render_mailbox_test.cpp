@@ -45,6 +45,22 @@ TEST(RenderMailbox, OtherSubjectsAndOtherSpecsWaitForThemselves) {
   EXPECT_EQ(mailbox.Take(false)->spec.width, 128);
 }
 
+TEST(RenderMailbox, WhoChangesItsViewAgainAndAgainTakesOnePlace) {
+  RenderMailbox mailbox(4);
+  mailbox.Put(Job(1, 1, 200, 1000));
+  mailbox.Put(Job(1, 2, 201, 1001));
+  for (int width = 1; width <= 100; ++width) {
+    EXPECT_EQ(mailbox.Put(Job(1, 3, 100, width)), RenderMailbox::PutResult::kQueued);
+  }
+  RenderJob shared = Job(1, 4, 100, 1000);
+  EXPECT_EQ(mailbox.Put(std::move(shared)), RenderMailbox::PutResult::kReplaced);
+  const auto first = mailbox.Take(false);
+  ASSERT_EQ(first->tickets.size(), 2u);
+  EXPECT_EQ(first->spec.width, 1000);
+  EXPECT_EQ(mailbox.Take(false)->spec.width, 1001);
+  EXPECT_FALSE(mailbox.Take(false).has_value());
+}
+
 RenderJob Still(std::uint64_t subject, std::uint32_t sequence, std::uint64_t subscription) {
   RenderJob job = Job(subject, sequence, subscription);
   job.tickets.front().still = true;
@@ -113,9 +129,9 @@ TEST(RenderMailbox, AStillThatWaitsIsTakenBack) {
 TEST(RenderMailbox, IsBounded) {
   RenderMailbox mailbox(2);
   EXPECT_EQ(mailbox.Put(Job(1, 1, 1)), RenderMailbox::PutResult::kQueued);
-  EXPECT_EQ(mailbox.Put(Job(2, 1, 1)), RenderMailbox::PutResult::kQueued);
-  EXPECT_EQ(mailbox.Put(Job(3, 1, 1)), RenderMailbox::PutResult::kFull);
-  EXPECT_EQ(mailbox.Put(Job(2, 2, 1)), RenderMailbox::PutResult::kReplaced);
+  EXPECT_EQ(mailbox.Put(Job(2, 1, 2)), RenderMailbox::PutResult::kQueued);
+  EXPECT_EQ(mailbox.Put(Job(3, 1, 3)), RenderMailbox::PutResult::kFull);
+  EXPECT_EQ(mailbox.Put(Job(2, 2, 2)), RenderMailbox::PutResult::kReplaced);
 }
 
 TEST(RenderMailbox, ClosingWakesWhoWaits) {

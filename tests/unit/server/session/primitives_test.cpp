@@ -72,6 +72,18 @@ TEST(RateGate, APauseEarnsNoBurst) {
   EXPECT_TRUE(gate.Pass(FromSeconds(60.1)));
 }
 
+TEST(RateGate, AnotherRateCountsFromWhatPassedLast) {
+  RateGate gate(10.0);
+  EXPECT_TRUE(gate.Pass(FromSeconds(1)));
+  for (int i = 0; i < 5; ++i) {
+    gate.SetRate(i % 2 == 0 ? 20.0 : 10.0);
+    EXPECT_FALSE(gate.Pass(FromSeconds(1.01)));
+  }
+  EXPECT_TRUE(gate.Pass(FromSeconds(1.05)));
+  gate.SetRate(0.0);
+  EXPECT_TRUE(gate.Pass(FromSeconds(1.05)));
+}
+
 TEST(RateGate, TheTiniestRateStillPassesNowAndThen) {
   RateGate gate(1e-30);
   EXPECT_TRUE(gate.Pass(FromSeconds(10)));
