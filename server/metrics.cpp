@@ -33,6 +33,7 @@ std::string_view CounterName(Counter counter) {
     case Counter::kSkeletonsOffered: return "furrow_skeletons_offered_total";
     case Counter::kSkeletonsRejected: return "furrow_skeletons_rejected_total";
     case Counter::kSkeletonsRequested: return "furrow_skeletons_requested_total";
+    case Counter::kSkeletonsThrottled: return "furrow_skeletons_throttled_total";
     case Counter::kSubjectsRestarted: return "furrow_subjects_restarted_total";
     case Counter::kSubjectsLost: return "furrow_subjects_lost_total";
     case Counter::kSubscriptionsAccepted: return "furrow_subscriptions_accepted_total";

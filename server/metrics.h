@@ -40,6 +40,7 @@ enum class Counter {
   kSkeletonsOffered,
   kSkeletonsRejected,
   kSkeletonsRequested,  // 'needed' answers to poses without an offer
+  kSkeletonsThrottled,  // new ones that came too fast; not looked at, to be offered again
   kSubjectsRestarted,   // a new session took over a subject
   kSubjectsLost,        // a publisher vanished; its subject decays to neutral
   kSubscriptionsAccepted,

@@ -30,6 +30,7 @@ constexpr std::pair<Counter, std::string_view> kDrops[] = {
     {Counter::kMessagesThrottled, "throttled messages"},
     {Counter::kMessagesRefused, "refused messages"},
     {Counter::kSkeletonsRejected, "rejected skeletons"},
+    {Counter::kSkeletonsThrottled, "skeletons offered too fast"},
     {Counter::kPosesInvalid, "invalid poses"},
     {Counter::kPosesLate, "late poses"},
     {Counter::kPosesDuplicate, "repeated poses"},

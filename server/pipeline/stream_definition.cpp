@@ -34,14 +34,15 @@ bool Reads(const wrinkle::Rig& rig, const std::string& blend_shape) {
 
 }  // namespace
 
-Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Get(StreamOffer offer) {
+Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Get(
+    StreamOffer offer, const std::function<bool()>& may_make) {
   wrinkle::Skeleton skeleton;
   if (!offer.joints.empty()) {
     auto created = wrinkle::Skeleton::Create(std::move(offer.joints));
     if (!created.ok()) return created.status();
     skeleton = *std::move(created);
   }
-  return FindOrMake(std::move(skeleton), std::move(offer.blend_shapes));
+  return FindOrMake(std::move(skeleton), std::move(offer.blend_shapes), may_make);
 }
 
 void StreamDefinitions::SetRig(std::shared_ptr<const wrinkle::Rig> rig) {
@@ -52,11 +53,12 @@ void StreamDefinitions::SetRig(std::shared_ptr<const wrinkle::Rig> rig) {
 
 Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Remake(
     const StreamDefinition& stream) {
-  return FindOrMake(stream.skeleton, stream.blend_shapes);
+  return FindOrMake(stream.skeleton, stream.blend_shapes, [] { return true; });
 }
 
 Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::FindOrMake(
-    wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes) {
+    wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes,
+    const std::function<bool()>& may_make) {
   const auto is_same = [&](const std::shared_ptr<const StreamDefinition>& known) {
     return known->skeleton.hash() == skeleton.hash() && SameOrder(known->skeleton, skeleton) &&
            known->blend_shapes == blend_shapes;
@@ -66,6 +68,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::FindOrMake(
     known_.splice(known_.begin(), known_, known);
     return known_.front();
   }
+  if (!may_make()) return std::shared_ptr<const StreamDefinition>();
   auto made = Make(std::move(skeleton), std::move(blend_shapes));
   if (!made.ok()) return made;
   known_.push_front(*made);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <memory>
 #include <set>
@@ -57,7 +58,10 @@ class StreamDefinitions {
   // skeleton map that knows the stream and the roles it does not find; what the
   // rig misses in the stream; joints that neither the rig nor the character knows, which are
   // ignored; a stream that moves no weight, or not the picture, at all.
-  [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Get(StreamOffer offer);
+  // `may_make` is asked before one is made that is not there yet; where it refuses, the answer is
+  // null.
+  [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Get(
+      StreamOffer offer, const std::function<bool()>& may_make = [] { return true; });
 
   [[nodiscard]] const wrinkle::Rig& rig() const { return *rig_; }
   [[nodiscard]] const std::shared_ptr<const wrinkle::Rig>& shared_rig() const { return rig_; }
@@ -69,7 +73,8 @@ class StreamDefinitions {
 
  private:
   [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> FindOrMake(
-      wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes);
+      wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes,
+      const std::function<bool()>& may_make);
   [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Make(
       wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes);
   void Report(const StreamDefinition& stream, const character::SkeletonMatch& match) const;

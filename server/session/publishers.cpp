@@ -42,17 +42,17 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
              now);
       return nullptr;
     }
-    auto definition = definitions_->Get(ToStreamOffer(offer));
+    auto definition =
+        definitions_->Get(ToStreamOffer(offer), [&] { return new_skeletons_.Take(now); });
     if (!definition.ok()) {
       Reject(peer, header, offer.skeleton_hash, definition.status().ToString(), now);
       return nullptr;
     }
-    const bool same_skeleton = subject != nullptr && subject->skeleton_hash == offer.skeleton_hash;
-    subject = Accept(peer, key, offer, now);
-    auto former =
-        std::exchange(subject->pipeline, std::make_unique<SubjectPipeline>(*std::move(definition)));
-    // It is the performer's, not the sender's.
-    if (same_skeleton) subject->pipeline->SetNeutral(former->neutral_pose());
+    if (*definition == nullptr) {
+      metrics_->Add(Counter::kSkeletonsThrottled);
+      return nullptr;
+    }
+    subject = Accept(peer, key, offer, *std::move(definition), now);
   }
   postman_->Reply(
       peer, Postman::Answering(header),
@@ -61,7 +61,7 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
 }
 
 Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::SkeletonOffer& offer,
-                            Time now) {
+                            std::shared_ptr<const StreamDefinition> stream, Time now) {
   // A stream has one subject: another name on it ends the former.
   if (Subject* former = subjects_->Find(key); former != nullptr && former->name != offer.subject) {
     former->ended = true;
@@ -78,6 +78,12 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
   }
   if (subject->owner != key) subject->window = {};
   subjects_->SetOwner(*subject, key);
+  const bool has_neutral =
+      subject->pipeline != nullptr && subject->skeleton_hash == offer.skeleton_hash;
+  const auto former =
+      std::exchange(subject->pipeline, std::make_unique<SubjectPipeline>(std::move(stream)));
+  // It is the performer's, not the sender's.
+  if (has_neutral) subject->pipeline->SetNeutral(former->neutral_pose());
   peer.publishes = true;
   subject->skeleton_hash = offer.skeleton_hash;
   subject->offer = Share(offer);

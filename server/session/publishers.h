@@ -26,7 +26,12 @@ class Publishers {
   Publishers(const Limits& limits, StreamDefinitions* definitions, SubjectRegistry* subjects,
              Postman* postman, Metrics* metrics);
 
-  // Answers the offer. The subject that it starts or changes; null where nothing changed.
+  // Skeletons that nobody offered before, of all senders together: to bind one takes milliseconds.
+  static constexpr double kNewSkeletonsPerSecond = 20.0;
+  static constexpr double kNewSkeletonsBurst = 256.0;
+
+  // Answers the offer, but where new skeletons come too fast: senders offer again. The subject that
+  // it starts or changes; null where nothing changed.
   Subject* OnOffer(Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer,
                    Time now);
   // A pose in three steps, so that many are evaluated together before the last.
@@ -50,7 +55,8 @@ class Publishers {
   Change Age(Subject& subject, Time now);
 
  private:
-  Subject* Accept(Peer& peer, const StreamKey& key, const protocol::SkeletonOffer& offer, Time now);
+  Subject* Accept(Peer& peer, const StreamKey& key, const protocol::SkeletonOffer& offer,
+                  std::shared_ptr<const StreamDefinition> stream, Time now);
   void Reject(Peer& peer, const protocol::Header& header, std::uint64_t hash, std::string why,
               Time now);
   bool IsNew(Subject& subject, const protocol::Header& header);
@@ -63,6 +69,7 @@ class Publishers {
   Metrics* const metrics_;
   // By hash, as long as a subject has them.
   std::map<std::uint64_t, std::weak_ptr<const protocol::SkeletonOffer>> offers_;
+  TokenBucket new_skeletons_{kNewSkeletonsPerSecond, kNewSkeletonsBurst};
   TokenBucket log_bucket_{2.0, 20.0};  // whoever repeats a bad offer fills no disk
 };
 

@@ -71,6 +71,24 @@ TEST_F(HubPublish, EveryStreamOfAPeerIsAskedForItsOwnSkeleton) {
   EXPECT_TRUE(sender.inbox.empty());
 }
 
+TEST_F(HubPublish, NewSkeletonsThatComeTooFastAreOfferedAgain) {
+  protocol::SkeletonOffer offer = Offer("ann");
+  const auto offer_another = [&](int number) {
+    offer.blend_shape_names = {"brow", "shape" + std::to_string(number)};
+    Send(sender, offer, 1);
+    return !sender.inbox.empty() &&
+           sender.Take<protocol::SkeletonReply>()->message.status == SkeletonStatus::kAccepted;
+  };
+  int accepted = 0;
+  while (accepted < 1000 && offer_another(accepted)) ++accepted;
+  EXPECT_EQ(accepted, static_cast<int>(Publishers::kNewSkeletonsBurst));
+  EXPECT_EQ(Count(Counter::kSkeletonsThrottled), 1u);
+  EXPECT_TRUE(offer_another(accepted - 1)) << "one that is known";
+  Advance(1.1 / Publishers::kNewSkeletonsPerSecond);
+  EXPECT_TRUE(offer_another(accepted));
+  EXPECT_FALSE(offer_another(accepted + 1));
+}
+
 TEST_F(HubPublish, ANeutralStaysWhereThePerformerIsSentAnewWithTheSameSkeleton) {
   Publish(sender, "ann");
   ASSERT_NE(Watch(viewer, {.subject = "ann"}), 0);  // so that its weights are evaluated
