@@ -46,7 +46,7 @@ void Hub::RemovePeer(PeerId id) {
   if (peer == nullptr) return;
   PublishGathered();
   subscribers_.RemovePeer(*peer);
-  subjects_.ForgetPeer(id);
+  if (peer->publishes) subjects_.ForgetPeer(id);
   peers_.Remove(id);
 }
 
