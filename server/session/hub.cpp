@@ -334,6 +334,7 @@ void Hub::Tick(Time now) {
                   [subject](const auto& entry) { return entry.first.second == subject->name; });
     subjects_.Remove(subject->id);
   }
+  if (!gone.empty()) subscribers_.BindWaiting();
   ForgetRefusedMocap(now);
   peers_.ForEach([now](Peer& peer) { peer.stuck = peer.link->IsStuck(now); });
   subscribers_.PublishOwed(now);

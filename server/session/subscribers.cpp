@@ -320,4 +320,16 @@ void Subscribers::OnSubjectGone(Subject& subject) {
   }
 }
 
+void Subscribers::BindWaiting() {
+  Subject* first = subjects_->First();
+  if (first == nullptr) return;
+  std::vector<Subscription*> waiting;
+  for (auto& [uid, subscription] : subscriptions_) {
+    const bool for_anybody = subscription->subject == nullptr && subscription->subject_name.empty();
+    if (for_anybody) waiting.push_back(subscription.get());
+  }
+  std::ranges::sort(waiting, {}, &Subscription::uid);
+  for (Subscription* subscription : waiting) Bind(*subscription, *first);
+}
+
 }  // namespace furrow::server

@@ -55,6 +55,8 @@ class Subscribers {
   void OnSubjectReady(Subject& subject);
   // A subject is about to be removed.
   void OnSubjectGone(Subject& subject);
+  // ... and was: who waits for anybody is bound to who has been there longest now, if anybody is.
+  void BindWaiting();
 
   // Sends the subject's weights and pose, and asks for its pictures, wherever they are due. `pose`:
   // the payload that it came as; empty where it does not say the whole pose, or none came.

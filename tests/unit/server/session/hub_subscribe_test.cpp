@@ -93,6 +93,21 @@ TEST_F(HubSubscribe, WaitingBindsWhenTheSubjectComesAndAgainWhenItReturns) {
   EXPECT_EQ(reply->header.stream, id);
 }
 
+TEST_F(HubSubscribe, WhoWaitsForAnybodyGoesOverToWhoeverIsStillThere) {
+  Publish(sender, "ann", 1);
+  Publish(sender, "ben", 2);
+  const std::uint16_t id = Watch(viewer, {.wait = true});
+  Send(sender, protocol::Goodbye{}, 1);
+  hub->Tick(now);
+  EXPECT_TRUE(viewer.Take<protocol::Goodbye>().has_value());
+  const auto reply = viewer.Take<protocol::SubscribeReply>();
+  ASSERT_TRUE(reply.has_value());
+  EXPECT_EQ(reply->header.stream, id);
+  EXPECT_EQ(reply->message.subject, "ben");
+  Send(sender, Pose(0.5f), 2);
+  EXPECT_TRUE(viewer.Take<protocol::WeightFrame>().has_value());
+}
+
 TEST_F(HubSubscribe, NoNameMeansWhoHasBeenThereLongest) {
   Publish(sender, "zoe", 1);
   Publish(sender, "ann", 2);
