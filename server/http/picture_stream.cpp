@@ -35,6 +35,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
   ~PictureStream() { --context_->viewers; }
 
   void Open(const protocol::SubscribePictures& pictures) {
+    waits_ = pictures.wait;
     auto wake = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) self->wake_.cancel();
     };
@@ -98,7 +99,11 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
       const bool good = protocol::Decode(view, image_) == protocol::DecodeStatus::kOk;
       return good ? std::optional(Next{true, std::nullopt}) : std::nullopt;
     }
-    if (view.kind == protocol::MessageKind::kGoodbye) return Next{};
+    if (view.kind == protocol::MessageKind::kGoodbye) {
+      // Of the subject alone: it may come back.
+      const bool goes_on = waits_ && view.header.stream != 0;
+      return goes_on ? std::nullopt : std::optional(Next{});
+    }
     protocol::ErrorMessage error;
     if (protocol::Decode(view, error) != protocol::DecodeStatus::kOk) return std::nullopt;
     return Next{false, Refusal(error)};
@@ -122,6 +127,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
   protocol::Encoder encoder_;
   std::uint32_t requests_ = 0;
   std::uint16_t subscription_ = 0;
+  bool waits_ = false;  // for a subject that is not there
   protocol::ImageFrame image_;
   bool gone_ = false;
 };

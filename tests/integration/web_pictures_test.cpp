@@ -148,6 +148,22 @@ TEST_F(WebPictures, MjpegGoesOnFromPoseToPose) {
   }
 }
 
+TEST_F(WebPictures, MjpegWaitsForASubjectThatHasLeft) {
+  SendPose(0);
+  WebClient client(port());
+  ASSERT_EQ(client.Ask("GET", "/mjpeg?width=64&height=64&shading=diffuse").status, 200);
+  EXPECT_FALSE(client.Take(PartLength(client)).empty());
+  TcpClient watcher(daemon->ready().tcp);
+  ASSERT_TRUE(Watch(watcher, {.subject = "ann"}).has_value());
+  sender->Send(protocol::Goodbye{}, 1);
+  ASSERT_TRUE(watcher.Await<protocol::Goodbye>().has_value());  // it has decayed, and is gone
+  Offer(*sender, offer);
+  for (int frame = 10; frame < 16; ++frame) {  // more than were under way when it left
+    SendPose(frame);
+    ASSERT_FALSE(client.Take(PartLength(client)).empty()) << frame;
+  }
+}
+
 TEST_F(WebPictures, ASnapshotIsDrawnOfThePoseThereIs) {
   SendPose(5);
   sender->Send(protocol::Ping{1});
