@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <functional>
 #include <initializer_list>
-#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -73,9 +71,7 @@ Key Port(std::string_view name, Target* target) {
 Key Count(std::string_view name, int* target) {
   return {name, [target](const toml::node& node) -> std::string {
             const auto value = node.value_exact<std::int64_t>();
-            if (!value || std::abs(*value) > std::numeric_limits<int>::max()) {
-              return "must be a whole number";
-            }
+            if (!value || !std::in_range<int>(*value)) return "must be a whole number";
             *target = static_cast<int>(*value);
             return {};
           }};

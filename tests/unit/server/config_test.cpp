@@ -225,6 +225,8 @@ TEST(ParseConfig, AnErrorLeavesTheConfigAsItWas) {
         Case{"[log]\njson = 'yes'", StatusCode::kSchema, ":2", "log.json"},
         Case{"[osc]\nout = 'x'", StatusCode::kSchema, ":2", "osc.out"},
         Case{"[limits]\nmax_subjects = 1.5", StatusCode::kSchema, ":2", "limits.max_subjects"},
+        Case{"[limits]\nmax_subjects = -9223372036854775808", StatusCode::kSchema, ":2",
+             "limits.max_subjects"},
         Case{"[limits]\nidle_seconds = 'x'", StatusCode::kSchema, ":2", "limits.idle_seconds"}}) {
     Config config;
     config.tcp = 4711;
