@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <glm/common.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/gtx/component_wise.hpp>
 
 namespace furrow::server {
@@ -15,7 +16,9 @@ constexpr float kTranslation = 2e-4f;  // of a length, and of a unit
 constexpr float kValue = 0.5f / 255.0f;
 
 bool IsNear(const wrinkle::Transform& a, const wrinkle::Transform& b) {
-  const glm::quat turn = a.rotation - b.rotation;
+  // q and -q are one rotation.
+  const bool opposite = glm::dot(a.rotation, b.rotation) < 0.0f;
+  const glm::quat turn = a.rotation - (opposite ? -b.rotation : b.rotation);
   const float rotation = std::max(std::max(std::fabs(turn.x), std::fabs(turn.y)),
                                   std::max(std::fabs(turn.z), std::fabs(turn.w)));
   const glm::vec3 moved = glm::abs(a.translation - b.translation);
