@@ -54,10 +54,14 @@ void SubjectRegistry::SetOwner(Subject& subject, const StreamKey& key) {
 // One peer may restart a subject under a new session as often as it likes: what that leaves behind
 // is bounded.
 void SubjectRegistry::Retire(const StreamKey& key, SubjectId subject) {
-  retired_[key] = subject;
-  retired_order_.push_back(key);
+  retired_[key] = {subject, ++num_retired_};
+  retired_order_.emplace_back(key, num_retired_);
   if (retired_order_.size() <= kMaxRetired) return;
-  retired_.erase(retired_order_.front());
+  const auto& [oldest, number] = retired_order_.front();
+  if (const auto known = retired_.find(oldest);
+      known != retired_.end() && known->second.number == number) {
+    retired_.erase(known);
+  }
   retired_order_.pop_front();
 }
 
@@ -68,7 +72,7 @@ void SubjectRegistry::Release(Subject& subject) {
 
 void SubjectRegistry::Remove(SubjectId id) {
   ++version_;
-  std::erase_if(retired_, [id](const auto& entry) { return entry.second == id; });
+  std::erase_if(retired_, [id](const auto& entry) { return entry.second.subject == id; });
   std::erase_if(by_stream_, [id](const auto& entry) { return entry.second->id == id; });
   std::erase_if(by_name_, [id](const auto& entry) { return entry.second->id == id; });
   std::erase_if(subjects_, [id](const auto& subject) { return subject->id == id; });

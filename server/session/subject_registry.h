@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "protocol/messages.h"
@@ -96,8 +97,14 @@ class SubjectRegistry {
   std::vector<std::unique_ptr<Subject>> subjects_;
   std::unordered_map<StreamKey, Subject*, StreamKeyHash> by_stream_;
   std::map<std::string, Subject*, std::less<>> by_name_;
-  std::map<StreamKey, SubjectId> retired_;
-  std::deque<StreamKey> retired_order_;  // oldest first; may name what has been forgotten since
+  struct Retired {
+    SubjectId subject = 0;
+    std::uint64_t number = 0;  // of the retirements, from 1
+  };
+  std::map<StreamKey, Retired> retired_;
+  // By number, oldest first; may name what has been forgotten or retired anew since.
+  std::deque<std::pair<StreamKey, std::uint64_t>> retired_order_;
+  std::uint64_t num_retired_ = 0;
   SubjectId next_id_ = 1;
   std::uint64_t version_ = 1;
 };
