@@ -48,6 +48,10 @@ Result<Assets> LoadAssets(const Config& config) {
   auto matcher = LoadMatcher(config.skeleton_map);
   if (!matcher.ok()) return matcher.status().At("--skeleton-map");
   assets.skeletons = *std::move(matcher);
+  if (!config.render_settings.empty()) {
+    Status loaded = render::LoadSettings(config.render_settings, &assets.settings);
+    if (!loaded.ok()) return loaded.At("--render-settings");
+  }
   if (config.character.empty() && !config.rig.empty()) {
     if (Status status = LoadRigAlone(config.rig, poses, &assets); !status.ok()) return status;
     return assets;

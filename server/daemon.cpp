@@ -89,7 +89,6 @@ class Daemon {
   Assets assets_;
   Metrics own_metrics_;
   Metrics* const metrics_;
-  render::Settings settings_;
   std::uint64_t session_ = 0;
   asio::io_context io_{1};  // one thread runs it
   asio::signal_set signals_;
@@ -109,10 +108,6 @@ class Daemon {
 
 Status Daemon::StartRendering() {
   if (!config_.render || assets_.character == nullptr) return {};
-  if (!config_.render_settings.empty()) {
-    Status loaded = render::LoadSettings(config_.render_settings, &settings_);
-    if (!loaded.ok()) return loaded;
-  }
   auto started = RenderThread::Start(
       &assets_.character->skeleton,
       [this] {
@@ -159,7 +154,7 @@ void Daemon::MakeHub() {
   parts.character = render_ != nullptr ? &assets_.character->skeleton : nullptr;
   parts.skeletons = assets_.skeletons;
   parts.pictures = render_.get();
-  parts.settings = settings_;
+  parts.settings = assets_.settings;
   parts.metrics = metrics_;
   parts.make_token = RandomNumber;
   if (config_.osc_out) parts.on_weights = [this](const Subject& subject) { osc_.Send(subject); };

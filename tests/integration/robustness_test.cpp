@@ -224,6 +224,14 @@ TEST(Robustness, ARigThatIsNotThereIsBadInput) {
   EXPECT_EQ(daemon.Stop(), server::ExitCode::kBadInput);
 }
 
+TEST(Robustness, SettingsThatAreNotThereAreBadInput) {
+  server::Config config = WeightsConfig("arkit.json");
+  config.render_settings = "nowhere.toml";
+  DaemonThread daemon(config);
+  EXPECT_FALSE(daemon.serves());
+  EXPECT_EQ(daemon.Stop(), server::ExitCode::kBadInput);
+}
+
 // More than the sockets hold: it waits in the daemon when the draining begins.
 TEST(Robustness, WhoAsksForEveryFrameHasThemAllBeforeTheGoodbye) {
   constexpr int kFrames = 20'000;
