@@ -44,6 +44,17 @@ std::string_view ModulationName(wrinkle::Modulation modulation) {
   return "";
 }
 
+Json MaskJson(const wrinkle::Mask& mask) {
+  switch (mask.kind) {
+    case wrinkle::Mask::Kind::kSkinning: return {{"kind", "skinning"}};
+    case wrinkle::Mask::Kind::kSliding: return {{"kind", "sliding"}, {"ball", mask.ball}};
+    case wrinkle::Mask::Kind::kTexture: break;
+  }
+  const auto channel = static_cast<std::size_t>(std::clamp(mask.channel, 0, 3));
+  return {
+      {"kind", "texture"}, {"texture", mask.texture}, {"channel", std::string(1, "rgba"[channel])}};
+}
+
 Json RegionJson(const wrinkle::Region& region) {
   Json weights = Json::array();
   for (const wrinkle::Feed& feed : region.feeds) {
@@ -55,15 +66,8 @@ Json RegionJson(const wrinkle::Region& region) {
                        {"map", feed.map},
                        {"sources", std::move(sources)}});
   }
-  Json mask = {{"kind", "skinning"}};
-  if (region.mask.kind == wrinkle::Mask::Kind::kTexture) {
-    const auto channel = static_cast<std::size_t>(std::clamp(region.mask.channel, 0, 3));
-    mask = {{"kind", "texture"},
-            {"texture", region.mask.texture},
-            {"channel", std::string(1, "rgba"[channel])}};
-  }
   return {{"name", region.name},
-          {"mask", std::move(mask)},
+          {"mask", MaskJson(region.mask)},
           {"combine", CombineName(region.combine)},
           {"modulation", ModulationName(region.modulation)},
           {"neighbours", region.neighbours},
