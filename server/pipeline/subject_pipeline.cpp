@@ -88,7 +88,7 @@ void SubjectPipeline::SetStream(std::shared_ptr<const StreamDefinition> stream) 
   SolveAnew();
 }
 
-// A pose that was solved before: it is still one that can be.
+// A pose that was refused is refused again.
 void SubjectPipeline::SolveAnew() {
   solver_.Reset();
   if (has_pose_) (void)Solve(sequence_, capture_time_us_);
@@ -96,7 +96,7 @@ void SubjectPipeline::SolveAnew() {
 
 void SubjectPipeline::SetLevel(std::size_t num_drivers) {
   if (num_drivers == level()) return;
-  // A pose that was solved before: it is still one that can be.
+  // A pose that was refused is refused again.
   (void)Batch().SetLevel(&solver_, solved_pose(), num_drivers);
 }
 

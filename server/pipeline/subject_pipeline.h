@@ -21,7 +21,8 @@ class SubjectPipeline {
   explicit SubjectPipeline(std::shared_ptr<const StreamDefinition> stream);
 
   // The pose to fill before Solve(): joints in the skeleton's order. Joints and blend shapes that a
-  // partial pose leaves out keep what they had; before the first pose they rest.
+  // partial pose leaves out keep what they had; before the first pose they rest. What Solve()
+  // refuses stays here all the same, until a pose that is not partial comes.
   [[nodiscard]] wrinkle::LocalPose* mutable_pose() { return &pose_; }
 
   [[nodiscard]] const wrinkle::LocalPose& pose() const { return pose_; }
