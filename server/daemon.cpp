@@ -24,13 +24,11 @@
 #include <spdlog/spdlog.h>
 
 #include "character/rig_file.h"
-#include "protocol/mocap/livelink_face.h"
-#include "protocol/mocap/vmc.h"
 #include "server/assets.h"
 #include "server/http/api.h"
 #include "server/http/http_server.h"
 #include "server/net/clock.h"
-#include "server/net/mocap_input.h"
+#include "server/net/mocap_inputs.h"
 #include "server/net/osc_output.h"
 #include "server/net/tcp_server.h"
 #include "server/net/udp_server.h"
@@ -76,7 +74,6 @@ class Daemon {
  private:
   void MakeHub();
   Status StartWeb();
-  Status OpenMocap();
   void Announce() const;
   asio::awaitable<void> TickLoop();
   asio::awaitable<void> SecondLoop();
@@ -99,8 +96,7 @@ class Daemon {
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<TcpServer> tcp_;
   std::unique_ptr<UdpServer> udp_;
-  std::unique_ptr<MocapInput> vmc_;
-  std::unique_ptr<MocapInput> livelink_face_;
+  MocapInputs mocap_;
   std::unique_ptr<Api> api_;
   std::unique_ptr<HttpServer> http_;
   bool draining_ = false;
@@ -173,7 +169,7 @@ Status Daemon::Listen() {
     if (Status status = osc_.Open(*config_.osc_out, config_.osc_prefix); !status.ok())
       return status;
   }
-  if (Status status = OpenMocap(); !status.ok()) return status;
+  if (Status status = mocap_.Open(config_, io_, hub_.get(), metrics_); !status.ok()) return status;
   return StartWeb();
 }
 
@@ -213,35 +209,13 @@ Status Daemon::StartWeb() {
   return {};
 }
 
-Status Daemon::OpenMocap() {
-  using protocol::mocap::MakeLiveLinkFaceAdapter;
-  const auto address = asio::ip::make_address(config_.bind);
-  std::vector<asio::ip::address> allowed;
-  for (const std::string& text : config_.mocap_allow) {
-    allowed.push_back(asio::ip::make_address(text));
-  }
-  if (config_.vmc) {
-    vmc_ = std::make_unique<MocapInput>(io_, "--vmc", protocol::mocap::MakeVmcAdapter(),
-                                        SenderGate(allowed, SenderGate::Holds::kOne), hub_.get(),
-                                        metrics_);
-    if (Status status = vmc_->Open({address, *config_.vmc}); !status.ok()) return status;
-  }
-  if (config_.livelink_face) {
-    livelink_face_ = std::make_unique<MocapInput>(
-        io_, "--livelink-face", MakeLiveLinkFaceAdapter(),
-        SenderGate(allowed, SenderGate::Holds::kEveryAllowed), hub_.get(), metrics_);
-    return livelink_face_->Open({address, *config_.livelink_face});
-  }
-  return {};
-}
-
 void Daemon::Announce() const {
   Ready ready;
   ready.tcp = tcp_->port();
   ready.udp = udp_->port();
   ready.render = render_ != nullptr;
-  if (vmc_) ready.vmc = vmc_->port();
-  if (livelink_face_) ready.livelink_face = livelink_face_->port();
+  ready.vmc = mocap_.vmc_port();
+  ready.livelink_face = mocap_.livelink_face_port();
   // IPv6 addresses in brackets, as in a URL.
   const std::string host =
       (config_.bind.find(':') == std::string::npos ? config_.bind : "[" + config_.bind + "]") + ":";
@@ -261,8 +235,7 @@ void Daemon::Announce() const {
 void Daemon::Serve() {
   tcp_->Start();
   udp_->Start();
-  if (vmc_) vmc_->Start();
-  if (livelink_face_) livelink_face_->Start();
+  mocap_.Start();
   asio::co_spawn(io_, TickLoop(), asio::detached);
   asio::co_spawn(io_, SecondLoop(), asio::detached);
   if (player_) asio::co_spawn(io_, PlayLoop(), asio::detached);
@@ -290,8 +263,7 @@ asio::awaitable<void> Daemon::TickLoop() {
     co_await timer.async_wait(kToken);
     const Time now = ReadClock();
     udp_->Together([this, now] { hub_->Tick(now); });
-    if (vmc_) vmc_->Tick(now);
-    if (livelink_face_) livelink_face_->Tick(now);
+    mocap_.Tick(now);
   }
 }
 
@@ -330,8 +302,7 @@ asio::awaitable<void> Daemon::Drain() {
   const Time deadline = ReadClock() + FromSeconds(config_.limits.drain_seconds);
   hub_->Drain();
   udp_->Close();
-  if (vmc_) vmc_->Close();
-  if (livelink_face_) livelink_face_->Close();
+  mocap_.Close();
   tcp_->Drain();
   if (http_) http_->Drain();
   asio::steady_timer timer(io_);

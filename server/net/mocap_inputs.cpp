@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/net/mocap_inputs.h"
+
+#include <string>
+#include <vector>
+
+#include "protocol/mocap/livelink_face.h"
+#include "protocol/mocap/vmc.h"
+
+namespace furrow::server {
+
+Status MocapInputs::Open(const Config& config, asio::io_context& io, Hub* hub, Metrics* metrics) {
+  const auto address = asio::ip::make_address(config.bind);
+  std::vector<asio::ip::address> allowed;
+  for (const std::string& text : config.mocap_allow) {
+    allowed.push_back(asio::ip::make_address(text));
+  }
+  if (config.vmc) {
+    vmc_ = std::make_unique<MocapInput>(io, "--vmc", protocol::mocap::MakeVmcAdapter(),
+                                        SenderGate(allowed, SenderGate::Holds::kOne), hub, metrics);
+    if (Status status = vmc_->Open({address, *config.vmc}); !status.ok()) return status;
+  }
+  if (config.livelink_face) {
+    livelink_face_ = std::make_unique<MocapInput>(
+        io, "--livelink-face", protocol::mocap::MakeLiveLinkFaceAdapter(),
+        SenderGate(allowed, SenderGate::Holds::kEveryAllowed), hub, metrics);
+    return livelink_face_->Open({address, *config.livelink_face});
+  }
+  return {};
+}
+
+void MocapInputs::Start() {
+  if (vmc_) vmc_->Start();
+  if (livelink_face_) livelink_face_->Start();
+}
+
+void MocapInputs::Tick(Time now) {
+  if (vmc_) vmc_->Tick(now);
+  if (livelink_face_) livelink_face_->Tick(now);
+}
+
+void MocapInputs::Close() {
+  if (vmc_) vmc_->Close();
+  if (livelink_face_) livelink_face_->Close();
+}
+
+}  // namespace furrow::server
