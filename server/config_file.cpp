@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <functional>
-#include <initializer_list>
+#include <iterator>
+#include <span>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include <toml++/toml.h>
 
@@ -112,30 +115,47 @@ Key Texts(std::string_view name, std::vector<std::string>* target) {
           }};
 }
 
+// A table's name, empty for the top of the file, and what may stand in it.
+using NamedKeys = std::pair<std::string_view, std::vector<Key>>;
+using Tables = std::vector<NamedKeys>;
+
 class Reader {
  public:
   Reader(std::string_view source_name) : source_name_(source_name) {}
 
+  // The top of the file, which is the first of `tables`, and the tables in it.
+  Status ReadFile(const toml::table& root, std::span<const NamedKeys> tables) const {
+    Status status = ReadTable(root, "", tables.front().second, tables.subspan(1));
+    for (const auto& [name, keys] : tables.subspan(1)) {
+      const toml::table* table = root[name].as_table();
+      if (status.ok() && table != nullptr) {
+        status = ReadTable(*table, std::string(name) + ".", keys, {});
+      }
+    }
+    return status;
+  }
+
+ private:
+  // `subtables`: names that are no keys here but tables of their own.
   Status ReadTable(const toml::table& table, std::string_view prefix, std::span<const Key> keys,
-                   std::initializer_list<std::string_view> subtables = {}) const {
+                   std::span<const NamedKeys> subtables) const {
     for (const auto& [key, node] : table) {
       const std::string name = std::string(prefix) + std::string(key.str());
-      const auto is_named = [&](const Key& known) { return known.name == key.str(); };
-      const auto known = std::find_if(keys.begin(), keys.end(), is_named);
+      const auto known = std::ranges::find(keys, key.str(), &Key::name);
+      const auto subtable = std::ranges::find(subtables, key.str(), &NamedKeys::first);
       if (known != keys.end()) {
         if (std::string fault = known->assign(node); !fault.empty()) {
           return Error(StatusCode::kSchema, node, name + " " + fault);
         }
-      } else if (std::find(subtables.begin(), subtables.end(), key.str()) != subtables.end()) {
-        if (!node.is_table()) return Error(StatusCode::kSchema, node, name + " must be a table");
-      } else {
+      } else if (subtable == subtables.end()) {
         return Error(StatusCode::kSchema, node, "unknown key " + name);
+      } else if (!node.is_table()) {
+        return Error(StatusCode::kSchema, node, name + " must be a table");
       }
     }
     return {};
   }
 
- private:
   Status Error(StatusCode code, const toml::node& node, std::string what) const {
     return Status(code, std::move(what),
                   std::string(source_name_) + ":" + std::to_string(node.source().begin.line));
@@ -143,6 +163,52 @@ class Reader {
 
   std::string_view source_name_;
 };
+
+Tables InputTables(Config* config, const std::filesystem::path& folder) {
+  return {{"",
+           {Path("character", &config->character, folder), Path("rig", &config->rig, folder),
+            Path("play", &config->play, folder),
+            NameOrFile("skeleton_map", &config->skeleton_map, folder)}},
+          {"listen",
+           {Text("bind", &config->bind), Port("tcp", &config->tcp), Port("udp", &config->udp)}},
+          {"mocap",
+           {Port("vmc", &config->vmc), Port("livelink_face", &config->livelink_face),
+            Texts("allow", &config->mocap_allow)}}};
+}
+
+Tables OutputTables(Config* config, const std::filesystem::path& folder) {
+  RecordConfig& record = config->record;
+  HttpConfig& http = config->http;
+  return {
+      {"render",
+       {Flag("enabled", &config->render), Flag("required", &config->require_render),
+        Text("device", &config->render_device),
+        Path("settings", &config->render_settings, folder)}},
+      {"osc", {Destination("out", &config->osc_out), Text("prefix", &config->osc_prefix)}},
+      {"record",
+       {Path("dir", &record.folder, folder), Number("rotate_megabytes", &record.rotate_megabytes),
+        Number("rotate_seconds", &record.rotate_seconds), Flag("datagrams", &record.datagrams)}},
+      {"http",
+       {Flag("enabled", &http.enabled), Port("port", &http.port),
+        Texts("allow_hosts", &http.allow_hosts), Texts("allow_origins", &http.allow_origins),
+        Count("max_connections", &http.max_connections), Path("page", &http.page, folder)}},
+      {"log", {Flag("verbose", &config->verbose), Flag("json", &config->log_json)}}};
+}
+
+Tables LimitTables(Limits* limits) {
+  return {{"limits",
+           {Count("max_connections", &limits->max_connections),
+            Count("max_udp_peers", &limits->max_udp_peers),
+            Count("max_subjects", &limits->max_subjects),
+            Count("max_skeletons", &limits->max_skeletons),
+            Count("max_subscriptions", &limits->max_subscriptions),
+            Number("packets_per_second", &limits->packets_per_second),
+            Number("packet_burst", &limits->packet_burst),
+            Count("outbox_messages", &limits->outbox_messages),
+            Number("idle_seconds", &limits->idle_seconds),
+            Number("loss_seconds", &limits->loss_seconds),
+            Number("drain_seconds", &limits->drain_seconds)}}};
+}
 
 }  // namespace
 
@@ -156,54 +222,11 @@ Status ParseConfig(std::string_view text, std::string_view source_name, Config* 
   }
   Config read = *config;
   const std::filesystem::path folder = std::filesystem::path(source_name).parent_path();
-  const Key top[] = {Path("character", &read.character, folder), Path("rig", &read.rig, folder),
-                     Path("play", &read.play, folder),
-                     NameOrFile("skeleton_map", &read.skeleton_map, folder)};
-  const Key listen[] = {Text("bind", &read.bind), Port("tcp", &read.tcp), Port("udp", &read.udp)};
-  const Key render[] = {Flag("enabled", &read.render), Flag("required", &read.require_render),
-                        Text("device", &read.render_device),
-                        Path("settings", &read.render_settings, folder)};
-  const Key mocap[] = {Port("vmc", &read.vmc), Port("livelink_face", &read.livelink_face),
-                       Texts("allow", &read.mocap_allow)};
-  const Key osc[] = {Destination("out", &read.osc_out), Text("prefix", &read.osc_prefix)};
-  RecordConfig& record_of = read.record;
-  const Key record[] = {Path("dir", &record_of.folder, folder),
-                        Number("rotate_megabytes", &record_of.rotate_megabytes),
-                        Number("rotate_seconds", &record_of.rotate_seconds),
-                        Flag("datagrams", &record_of.datagrams)};
-  HttpConfig& http_of = read.http;
-  const Key http[] = {Flag("enabled", &http_of.enabled),
-                      Port("port", &http_of.port),
-                      Texts("allow_hosts", &http_of.allow_hosts),
-                      Texts("allow_origins", &http_of.allow_origins),
-                      Count("max_connections", &http_of.max_connections),
-                      Path("page", &http_of.page, folder)};
-  const Key log[] = {Flag("verbose", &read.verbose), Flag("json", &read.log_json)};
-  Limits& limits_of = read.limits;
-  const Key limits[] = {Count("max_connections", &limits_of.max_connections),
-                        Count("max_udp_peers", &limits_of.max_udp_peers),
-                        Count("max_subjects", &limits_of.max_subjects),
-                        Count("max_skeletons", &limits_of.max_skeletons),
-                        Count("max_subscriptions", &limits_of.max_subscriptions),
-                        Number("packets_per_second", &limits_of.packets_per_second),
-                        Number("packet_burst", &limits_of.packet_burst),
-                        Count("outbox_messages", &limits_of.outbox_messages),
-                        Number("idle_seconds", &limits_of.idle_seconds),
-                        Number("loss_seconds", &limits_of.loss_seconds),
-                        Number("drain_seconds", &limits_of.drain_seconds)};
-  const std::pair<std::string_view, std::span<const Key>> tables[] = {
-      {"listen", listen}, {"render", render}, {"mocap", mocap}, {"osc", osc},
-      {"record", record}, {"http", http},     {"log", log},     {"limits", limits}};
-
+  Tables tables = InputTables(&read, folder);
+  std::ranges::move(OutputTables(&read, folder), std::back_inserter(tables));
+  std::ranges::move(LimitTables(&read.limits), std::back_inserter(tables));
   const Reader reader(source_name);
-  Status status = reader.ReadTable(
-      root, "", top, {"listen", "render", "mocap", "osc", "record", "http", "log", "limits"});
-  for (const auto& [name, keys] : tables) {
-    const toml::table* table = root[name].as_table();
-    if (status.ok() && table != nullptr) {
-      status = reader.ReadTable(*table, std::string(name) + ".", keys);
-    }
-  }
+  Status status = reader.ReadFile(root, tables);
   if (status.ok()) *config = std::move(read);
   return status;
 }
