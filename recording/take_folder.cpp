@@ -66,6 +66,7 @@ Status TakeFolder::Begin(std::uint64_t now_ns) {
       if (!status.ok()) return status;
     }
   }
+  begun_bytes_ = take_->bytes_written();
   return {};
 }
 
@@ -75,7 +76,8 @@ Status TakeFolder::Remember(Status status) {
 }
 
 Status TakeFolder::RotateIfDue(std::uint64_t now_ns) {
-  const bool large = options_.rotate_bytes > 0 && take_->bytes_written() >= options_.rotate_bytes;
+  const bool large =
+      options_.rotate_bytes > 0 && take_->bytes_written() - begun_bytes_ >= options_.rotate_bytes;
   const bool old =
       options_.rotate_ns > 0 && now_ns > begun_ns_ && now_ns - begun_ns_ >= options_.rotate_ns;
   if (!large && !old && !take_->is_full()) return {};

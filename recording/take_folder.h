@@ -76,6 +76,7 @@ class TakeFolder {
   std::unique_ptr<TakeWriter> take_;
   std::filesystem::path path_;
   std::uint64_t begun_ns_ = 0;
+  std::uint64_t begun_bytes_ = 0;  // what the file begins with does not count toward its end
   int num_files_ = 0;
   std::uint64_t earlier_messages_ = 0;  // in the files before
   std::map<std::string, SubjectState, std::less<>> subjects_;

@@ -72,6 +72,13 @@ int DescribeTake(const std::string& path) {
   if (!take.ok()) return Fail(take.status());
   const auto summary = recording::Summarise(**take);
   if (!summary.ok()) return Fail(summary.status());
+  if (!only.empty() && !summary->subjects.contains(only)) {
+    std::string names;
+    for (const auto& [name, subject] : summary->subjects)
+      names += (names.empty() ? "" : ", ") + name;
+    return Fail({StatusCode::kNotFound, "there is nobody called '" + only + "' in it", file,
+                 "there is: " + (names.empty() ? "nobody" : names)});
+  }
   std::printf("%s\n", file.c_str());
   PrintFile(**take);
   std::printf("  messages    %zu in %.3f s, %zu of them datagrams\n", summary->messages,

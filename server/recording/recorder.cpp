@@ -177,6 +177,7 @@ void Recorder::Write() {
     spdlog::error("the recording ends here: {}", status.ToString());
     (void)folder_->Close();  // as far as it goes: the failure stands in the log
   }
+  ReportDropped();
   if (!failed_) spdlog::info("recorded to {}", folder_->path().string());
 }
 

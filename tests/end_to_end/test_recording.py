@@ -92,6 +92,8 @@ class RecordTest(FolderTest):
             self.assertGreater(len(both[name].rows), 100)
             self.assertEqual(both[name].rows, self.weights(f"{again}#{name}").rows)
         self.assertNotEqual(both["ada"].rows, both["bob"].rows)
+        nobody = furrow("info", f"{first}#eve", check=3)
+        self.assertIn("there is: ada, bob", nobody.stderr.decode())
         renamed = furrow("play", first, "--to", daemon.tcp, "--subject", "eve", check=3)
         self.assertIn("ada, bob", renamed.stderr.decode())
 

@@ -45,6 +45,18 @@ TEST_F(TakeFolderTest, FilesAreNamedByTheirBeginningAndNeverOverwritten) {
   EXPECT_EQ(takes[2].filename(), "take-19700101T010000Z_3.mcap");
 }
 
+TEST_F(TakeFolderTest, DeclarationsLargerThanAFileDoNotMakeAFileOfEveryMessage) {
+  const auto folder = OpenFolder(/*rotate_bytes=*/40'000, 0);
+  for (int i = 0; i < 400; ++i) {
+    const std::string name = "subject with a long name, number " + std::to_string(i);
+    ASSERT_TRUE(folder->Write(TakeKind::kSkeleton, name, Stamp(0), Payload(Offer(name))).ok());
+  }
+  const int before = folder->num_files();
+  for (std::uint32_t i = 0; i < 100; ++i) ASSERT_TRUE(WritePose(*folder, i).ok());
+  EXPECT_LE(folder->num_files() - before, 1);
+  EXPECT_TRUE(folder->Close().ok());
+}
+
 TEST_F(TakeFolderTest, EveryFileBeginsWithTheSubjectsThatAreThere) {
   const auto folder = OpenFolder(0, 100'000'000);
   const auto offer = Payload(Offer("ada"));
