@@ -34,9 +34,9 @@ class ReadPump {
  public:
   template <class Socket>
   void Start(Socket& socket, std::span<std::uint8_t> buffer) {
-    if (pending_) return;
+    // Sending runs the context too: what it has read meanwhile is still to be taken.
+    if (pending_ || done_) return;
     pending_ = true;
-    done_ = false;
     const auto on_read = [this](const asio::error_code& error, std::size_t bytes) {
       pending_ = false;
       done_ = true;

@@ -95,6 +95,26 @@ TEST(TcpTransportTest, FramesCrossInBothDirectionsHoweverTheyAreCut) {
   EXPECT_EQ(transport->Receive(received, kGuard), IoStatus::kClosed);
 }
 
+TEST(TcpTransportTest, WhatComesWhileSendingIsNotLost) {
+  Socket listener(SOCK_STREAM);
+  auto transport = Open(TransportKind::kTcp, listener.port());
+  ASSERT_NE(transport, nullptr);
+  const int peer = ::accept(listener.fd(), nullptr, nullptr);
+  const auto message = BigMessage();
+  ASSERT_EQ(transport->Send(message), IoStatus::kOk);
+  std::vector<std::uint8_t> wire(message.size() + protocol::kFramePrefixBytes);
+  ASSERT_EQ(::recv(peer, wire.data(), wire.size(), MSG_WAITALL), static_cast<ssize_t>(wire.size()));
+  std::span<const std::uint8_t> received;
+  for (int round = 0; round < 3; ++round) {
+    EXPECT_EQ(transport->Receive(received, milliseconds(0)), IoStatus::kTimeout);
+    ASSERT_EQ(::send(peer, wire.data(), wire.size(), 0), static_cast<ssize_t>(wire.size()));
+    for (int i = 0; i < 3; ++i) ASSERT_EQ(transport->Send(message), IoStatus::kOk);
+    ASSERT_EQ(transport->Receive(received, kGuard), IoStatus::kOk);
+    EXPECT_TRUE(std::equal(received.begin(), received.end(), message.begin(), message.end()));
+  }
+  ::close(peer);
+}
+
 TEST(TcpTransportTest, LengthThatCannotBeIsMalformed) {
   Socket listener(SOCK_STREAM);
   auto transport = Open(TransportKind::kTcp, listener.port());
