@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/preview/viewers.h"
 
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
 #include <utility>
 
 #include "server/net/clock.h"
@@ -20,29 +23,24 @@ Viewer::Viewer(std::uint16_t port, int width, int height, bool acknowledged, int
   stream_ = header.stream;
 }
 
-std::optional<Received> Viewer::Next() {
+Received Viewer::Next() {
   std::optional<protocol::ImageFrame> image = client_.Await<protocol::ImageFrame>();
-  if (!image) return std::nullopt;
+  if (!image) {
+    std::fprintf(stderr, "bench_preview: a viewer was cut off\n");
+    std::exit(1);
+  }
   const server::Time now = server::ReadClock();
-  const std::size_t num_bytes = image->bytes.size();
-  image->bytes = {};
-  return Received{*std::move(image), num_bytes, now};
+  std::vector<std::uint8_t>().swap(image->bytes);
+  return Received{*std::move(image), now};
 }
 
 void Viewer::Acknowledge(std::uint32_t number) {
   client_.Send(protocol::FrameAck{number}, stream_);
 }
 
-std::vector<Received> Viewer::Watch(double seconds) {
-  std::vector<Received> seen;
+void Viewer::Watch(double seconds) {
   const server::Time end = server::ReadClock() + server::FromSeconds(seconds);
-  while (server::ReadClock() < end) {
-    std::optional<Received> picture = Next();
-    if (!picture) break;
-    Acknowledge(picture->image.number);
-    seen.push_back(*std::move(picture));
-  }
-  return seen;
+  while (server::ReadClock() < end) Acknowledge(Next().image.number);
 }
 
 double Viewer::RoundTrip() {
@@ -53,8 +51,8 @@ double Viewer::RoundTrip() {
 }
 
 // Answers overtake pictures that wait, so it is asked until an answer had none before it.
-int Viewer::CountUnderWay() {
-  int count = 0;
+std::vector<std::size_t> Viewer::TakeUnderWay() {
+  std::vector<std::size_t> pictures;
   for (int answers_in_a_row = 0; answers_in_a_row < 3;) {
     client_.Send(protocol::Ping{1});
     ++answers_in_a_row;
@@ -66,11 +64,11 @@ int Viewer::CountUnderWay() {
         break;
       }
       if (view.kind != protocol::MessageKind::kImage) continue;
-      ++count;
+      pictures.push_back(frame->payload.size());
       answers_in_a_row = 0;
     }
   }
-  return count;
+  return pictures;
 }
 
 }  // namespace furrow::bench

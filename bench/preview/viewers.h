@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "server/session/time.h"
@@ -14,7 +13,6 @@ namespace furrow::bench {
 // A picture as it came.
 struct Received {
   protocol::ImageFrame image;  // without its bytes
-  std::size_t num_bytes = 0;
   server::Time at{0};
   // Since its pose came to the daemon, whose clock is ours here.
   [[nodiscard]] double age_seconds() const {
@@ -28,15 +26,17 @@ class Viewer {
  public:
   Viewer(std::uint16_t port, int width, int height, bool acknowledged, int quality = 85);
 
-  // The next picture; what else comes before it is let go. None: the connection ended.
-  [[nodiscard]] std::optional<Received> Next();
+  // The next picture; what else comes before it is let go. Ends the program where the connection
+  // ends: there is nothing to measure.
+  Received Next();
   void Acknowledge(std::uint32_t number);
-  // What was shown in so long, each acknowledged when it had come.
-  std::vector<Received> Watch(double seconds);
+  // Shows pictures for so long, each acknowledged when it has come.
+  void Watch(double seconds);
   // Seconds from a ping to its answer, pictures aside.
   [[nodiscard]] double RoundTrip();
-  // Takes what is under way and acknowledges none of it: how many pictures. The subject rests.
-  [[nodiscard]] int CountUnderWay();
+  // Takes what is under way and acknowledges none of it: the bytes of each picture. The subject
+  // rests.
+  [[nodiscard]] std::vector<std::size_t> TakeUnderWay();
 
  private:
   testing_net::WebClient client_;

@@ -158,7 +158,7 @@ void RenderThread::Finish(const render::Image& image, const RenderJob& job) {
                             .width = image.width,
                             .height = image.height,
                             .encoding = encoding,
-                            .bytes = *std::move(bytes),
+                            .bytes = {bytes->begin(), bytes->end()},  // without room to spare
                             .tickets = {}};
     for (const PictureTicket& ticket : job.tickets) {
       if (EncodingOf(ticket) == encoding) picture.tickets.push_back(ticket);
