@@ -126,6 +126,15 @@ void Hub::Decoded(Peer& peer, const protocol::MessageView& view, Message& messag
   }
 }
 
+template <class Request>
+void Hub::OnSubscribe(Peer& peer, const protocol::MessageView& view, Request& request) {
+  Decoded(peer, view, request, [&] {
+    if (RefusedWhileDraining(peer, view.header)) return;
+    subscribers_.Subscribe(peer, view.header, request);
+  });
+}
+
+// What publishers say, and what everybody may; the rest is of subscribers.
 void Hub::Dispatch(Peer& peer, const protocol::MessageView& view, Time now) {
   const protocol::Header& header = view.header;
   Scratch& in = scratch_;
@@ -148,21 +157,17 @@ void Hub::Dispatch(Peer& peer, const protocol::MessageView& view, Time now) {
       return Decoded(peer, view, in.pong, [] {});  // heard: that is all it is for
     case MessageKind::kGoodbye:
       return Decoded(peer, view, in.goodbye, [&] { publishers_.OnGoodbye(peer, header, now); });
-    case MessageKind::kSubscribeWeights:
-      return Decoded(peer, view, in.subscribe_weights, [&] {
-        if (RefusedWhileDraining(peer, header)) return;
-        subscribers_.Subscribe(peer, header, in.subscribe_weights);
-      });
-    case MessageKind::kSubscribePictures:
-      return Decoded(peer, view, in.subscribe_pictures, [&] {
-        if (RefusedWhileDraining(peer, header)) return;
-        subscribers_.Subscribe(peer, header, in.subscribe_pictures);
-      });
-    case MessageKind::kSubscribePoses:
-      return Decoded(peer, view, in.subscribe_poses, [&] {
-        if (RefusedWhileDraining(peer, header)) return;
-        subscribers_.Subscribe(peer, header, in.subscribe_poses);
-      });
+    default: DispatchSubscriber(peer, view, now);
+  }
+}
+
+void Hub::DispatchSubscriber(Peer& peer, const protocol::MessageView& view, Time now) {
+  const protocol::Header& header = view.header;
+  Scratch& in = scratch_;
+  switch (view.kind) {
+    case MessageKind::kSubscribeWeights: return OnSubscribe(peer, view, in.subscribe_weights);
+    case MessageKind::kSubscribePictures: return OnSubscribe(peer, view, in.subscribe_pictures);
+    case MessageKind::kSubscribePoses: return OnSubscribe(peer, view, in.subscribe_poses);
     case MessageKind::kUpdatePictures:
       return Decoded(peer, view, in.update_pictures,
                      [&] { subscribers_.Update(peer, header, in.update_pictures.pictures, now); });

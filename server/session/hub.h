@@ -122,6 +122,9 @@ class Hub {
   };
 
   void Dispatch(Peer& peer, const protocol::MessageView& view, Time now);
+  void DispatchSubscriber(Peer& peer, const protocol::MessageView& view, Time now);
+  template <class Request>
+  void OnSubscribe(Peer& peer, const protocol::MessageView& view, Request& request);
   template <class Message, class Handler>
   void Decoded(Peer& peer, const protocol::MessageView& view, Message& message, Handler handler);
   void RefuseEnvelope(Peer& peer, const protocol::MessageView& view, protocol::DecodeStatus status);
