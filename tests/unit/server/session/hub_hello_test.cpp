@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "hub_fixture.h"
+#include "protocol/bundle.h"
 
 namespace furrow::server {
 namespace {
@@ -53,6 +54,17 @@ TEST_F(HubHello, AForgedHelloCanEndBundlesAndNotBeginThem) {
   EXPECT_EQ(udp.takes_bundles, true);
   Hello(0, false);  // another client at that address, perhaps, which knows none
   EXPECT_EQ(udp.takes_bundles, false);
+}
+
+TEST_F(HubHello, ABundleOfAClientsIsMalformedAndEarnsNothing) {
+  std::vector<std::vector<std::uint8_t>> pings(2);
+  for (auto& ping : pings) encoder.Encode({.session = 77}, protocol::Ping{}, ping);
+  std::vector<std::uint8_t> bundle;
+  ASSERT_TRUE(protocol::WriteBundle(pings, bundle));
+  hub->OnBytesReceived(udp.id, bundle.size(), now);
+  hub->OnMessage(udp.id, bundle, now);
+  EXPECT_EQ(Count(Counter::kMessagesMalformed), 1u);
+  EXPECT_TRUE(udp.inbox.empty());
 }
 
 TEST_F(HubHello, OverTcpItMeansNothing) {
