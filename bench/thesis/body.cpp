@@ -32,12 +32,12 @@ struct Tube {
 };
 
 constexpr std::array<Tube, 6> kTubes = {{
-    {"trunk", {0.0f, 0.0f, 0.0f}, {0.0f, 0.60f, 0.0f}, 0.17f, 40, 50, 30},
-    {"neck", {0.0f, 0.61f, 0.0f}, {0.0f, 0.90f, 0.0f}, 0.09f, 25, 25, 20},
-    {"leg_l", {0.10f, -0.02f, 0.0f}, {0.13f, -0.92f, 0.0f}, 0.09f, 16, 30, 25},
-    {"leg_r", {-0.10f, -0.02f, 0.0f}, {-0.13f, -0.92f, 0.0f}, 0.09f, 16, 30, 25},
-    {"arm_l", {0.18f, 0.54f, 0.0f}, {0.52f, 0.05f, 0.0f}, 0.06f, 10, 28, 25},
-    {"arm_r", {-0.18f, 0.54f, 0.0f}, {-0.52f, 0.05f, 0.0f}, 0.06f, 10, 28, 25},
+    {"trunk", {0.0f, 0.0f, 0.0f}, {0.0f, 0.60f, 0.0f}, 0.17f, 40, 50, 31},
+    {"neck", {0.0f, 0.61f, 0.0f}, {0.0f, 0.90f, 0.0f}, 0.09f, 25, 25, 21},
+    {"leg_l", {0.10f, -0.02f, 0.0f}, {0.13f, -0.92f, 0.0f}, 0.09f, 16, 30, 26},
+    {"leg_r", {-0.10f, -0.02f, 0.0f}, {-0.13f, -0.92f, 0.0f}, 0.09f, 16, 30, 26},
+    {"arm_l", {0.18f, 0.54f, 0.0f}, {0.52f, 0.05f, 0.0f}, 0.06f, 10, 28, 26},
+    {"arm_r", {-0.18f, 0.54f, 0.0f}, {-0.52f, 0.05f, 0.0f}, 0.06f, 10, 28, 26},
 }};
 
 constexpr int NumTriangles() {
@@ -47,7 +47,7 @@ constexpr int NumTriangles() {
 }
 static_assert(NumTriangles() == kBodyTriangles);
 
-constexpr int kNumChainJoints = 150;
+constexpr int kNumBendingJoints = 150;  // all but the first of each chain
 
 std::string JointName(const Tube& tube, int joint) {
   return std::string(tube.name) + std::to_string(joint);
@@ -97,14 +97,25 @@ std::vector<wrinkle::JointDesc> Joints() {
   return joints;
 }
 
+// The joints that bend: those whose parent lies in their own chain, so that they are straight at
+// rest.
+std::vector<std::size_t> BendingJoints(const std::vector<wrinkle::JointDesc>& joints) {
+  std::vector<std::size_t> bending;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i].parent > 0) bending.push_back(i);
+  }
+  return bending;
+}
+
 // Hinges first, then balls, spread over the chains.
 void AddRig(const std::vector<wrinkle::JointDesc>& joints, int hinges, int balls,
             Character* character) {
   wrinkle::Rig& rig = character->rig;
   rig.name = "thesis body";
-  const int drivers = std::min(hinges + balls, kNumChainJoints);
+  const int drivers = std::min(hinges + balls, kNumBendingJoints);
+  const std::vector<std::size_t> bending = BendingJoints(joints);
   for (int i = 0; i < drivers; ++i) {
-    const auto index = static_cast<std::size_t>(1 + i * kNumChainJoints / drivers);
+    const std::size_t index = bending[static_cast<std::size_t>(i * kNumBendingJoints / drivers)];
     const std::string& name = joints[index].name;
     const std::string& parent = joints[static_cast<std::size_t>(joints[index].parent)].name;
     wrinkle::Driver driver;

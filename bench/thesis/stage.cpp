@@ -56,7 +56,7 @@ void MoveFace(double seconds, const wrinkle::Skeleton& skeleton, wrinkle::LocalP
 
 void MoveBody(double seconds, const wrinkle::Skeleton& skeleton, wrinkle::LocalPose* pose) {
   for (std::size_t joint = 1; joint < pose->joints.size(); ++joint) {
-    const double angle = 0.05 * std::sin(2.0 * seconds + 0.5 * static_cast<double>(joint));
+    const double angle = 0.6 * std::sin(2.0 * seconds + 0.5 * static_cast<double>(joint));
     pose->joints[joint].rotation =
         skeleton.rest_pose()[joint].rotation *
         glm::angleAxis(static_cast<float>(angle), glm::vec3(1.0f, 0.0f, 0.0f));

@@ -20,7 +20,7 @@ using Motion = std::function<void(double seconds, const wrinkle::Skeleton&, wrin
 // Facial joints that swing between the poses stretch and squash, each at its own phase, so that
 // both maps are at work in every frame.
 void MoveFace(double seconds, const wrinkle::Skeleton& skeleton, wrinkle::LocalPose* pose);
-// Every joint of the body sways by a few degrees.
+// Every joint of the body sways by up to 34 degrees.
 void MoveBody(double seconds, const wrinkle::Skeleton& skeleton, wrinkle::LocalPose* pose);
 
 struct PictureSize {

@@ -28,7 +28,7 @@ struct Extent {
 [[nodiscard]] std::vector<glm::mat4> HeadPlacements(int heads);
 [[nodiscard]] Extent HeadsExtent(int heads);
 
-// A clothed body of kBodyTriangles: a trunk, two arms, two legs and a head, 150 joints in chains,
+// A clothed body of kBodyTriangles: a trunk, two arms, two legs and a head, 156 joints in chains,
 // whatever the rig, which has `hinges` hinge drivers and `balls` ball drivers (150 in all at most),
 // each with a region masked by skinning, all feeding the map folds. Without drivers: no map.
 [[nodiscard]] character::Character MakeBody(int hinges, int balls);
