@@ -342,6 +342,26 @@ def dropped(t):
     return {"frames": t.scalar(0, "Q")}
 
 
+def list_subjects(t):
+    return {"follow": t.flag(0)}
+
+
+def subjects(t):
+    names, total = t.texts(0), t.scalar(1, "I")
+    require(len(names) <= total, "more names than there are subjects")
+    return {"names": names, "total": total}
+
+
+def list_subjects(t):
+    return {"follow": t.flag(0)}
+
+
+def subjects(t):
+    names, total = t.texts(0), t.scalar(1, "I")
+    require(len(names) <= total and len(set(names)) == len(names), "more names than there are, or one twice")
+    return {"names": names, "total": total}
+
+
 def image(t):
     data = t.vector(4, "B")
     require(data, "no bytes")
@@ -357,7 +377,7 @@ KINDS = {b"FHEL": hello, b"FWEL": welcome, b"FPIN": ping, b"FPON": pong, b"FBYE"
          b"FERR": error, b"FSKO": skeleton_offer, b"FSKR": skeleton_reply, b"FPOS": pose,
          b"FSUW": subscribe_weights, b"FSUP": subscribe_pictures, b"FUNS": unsubscribe,
          b"FSUR": subscribe_reply, b"FWGT": weights, b"FIMG": image, b"FUPP": update_pictures, b"FACK": frame_ack,
-         b"FSPO": subscribe_poses, b"FDRP": dropped}
+         b"FSPO": subscribe_poses, b"FDRP": dropped, b"FLSU": list_subjects, b"FSBJ": subjects}
 
 
 # --- Sections 1 to 3 -----------------------------------------------------------------------------------
