@@ -10,6 +10,9 @@
 namespace furrow::render {
 namespace {
 
+// A joint at rest is seldom at rest to the last bit; a thousandth of a fold is not seen.
+constexpr float kLeastSeen = 1e-3f;
+
 template <class Item>
 int IndexByName(const std::vector<Item>& items, const std::string& name) {
   const auto found = std::ranges::find(items, name, &Item::name);
@@ -69,7 +72,7 @@ void DynamicMasks::Update(MaskMode mode, std::span<const float> values,
     return;
   }
   for (std::size_t i = 0; i < influences_.size(); ++i) {
-    if (influences_[i] > 0.0f) column_works_[i % columns_.size()] = true;
+    if (influences_[i] > kLeastSeen) column_works_[i % columns_.size()] = true;
   }
 }
 
