@@ -77,6 +77,45 @@ TEST_F(WrinkleTableTest, AHingeRaisesADynamicMap) {
   EXPECT_TRUE(Skin().maps.empty());
 }
 
+TEST_F(WrinkleTableTest, AJointThatAllButRestsNeedsNoMap) {
+  Make(head_);
+  test::Subject subject(head_);
+  subject.pose.joints[2].rotation = glm::angleAxis(0.02f, glm::vec3(1, 0, 0));
+  subject.Solve();
+  ASSERT_TRUE(Update(subject).ok());
+  EXPECT_GT(tables_->influences()[2], 0.0f);
+  EXPECT_TRUE(Skin().maps.empty());
+}
+
+// What one of several needs is listed for all, each with its own weights and masks.
+TEST_F(WrinkleTableTest, ACrowdsListIsWhatAnyOfItNeeds) {
+  Make(head_);
+  test::Subject squashed(head_);
+  squashed.Set("r_squash", 0.5f);
+  squashed.Solve();
+  test::Subject bent(head_);
+  bent.pose.joints[2].rotation = glm::angleAxis(1.2f, glm::vec3(1, 0, 0));
+  bent.Solve();
+  FrameRequest request;
+  request.binding = &squashed.binding;
+  request.wrinkle_weights = squashed.weights;
+  request.filtered_values = squashed.driver_values;
+  PosedSubject other;
+  other.binding = &bent.binding;
+  other.wrinkle_weights = bent.weights;
+  other.filtered_values = bent.driver_values;
+  request.others = std::span(&other, 1);
+  ASSERT_TRUE(tables_->Update(request).ok());
+  ASSERT_EQ(Skin().maps.size(), 2u);
+  EXPECT_EQ(Skin().maps[0].map, 1);
+  EXPECT_EQ(Skin().maps[1].map, 2);
+  EXPECT_EQ(Skin().mask_weights[0], glm::vec4(0.0f, 0.5f, 0.0f, 0.0f));
+  EXPECT_EQ(Skin().mask_weights[2], glm::vec4(0.0f));
+  EXPECT_EQ(Skin().first_masks, (std::vector<std::uint32_t>{0, 0, 1}));
+  EXPECT_EQ(Skin().dynamic_masks[0].slot, 1);
+  EXPECT_EQ(tables_->influences().size(), 2 * head_.skeleton.joint_names().size());
+}
+
 TEST_F(WrinkleTableTest, MapsGoOnTheSurfaceThatTheRigSays) {
   using Surface = wrinkle::WrinkleMap::Surface;
   head_.rig.wrinkle_maps[0].surface = Surface::kSkin;
