@@ -348,16 +348,6 @@ def list_subjects(t):
 
 def subjects(t):
     names, total = t.texts(0), t.scalar(1, "I")
-    require(len(names) <= total, "more names than there are subjects")
-    return {"names": names, "total": total}
-
-
-def list_subjects(t):
-    return {"follow": t.flag(0)}
-
-
-def subjects(t):
-    names, total = t.texts(0), t.scalar(1, "I")
     require(len(names) <= total and len(set(names)) == len(names), "more names than there are, or one twice")
     return {"names": names, "total": total}
 
