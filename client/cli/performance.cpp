@@ -10,7 +10,6 @@ Result<std::unique_ptr<Performance>> Performance::Create(const character::Charac
                                                          const character::SkeletonMatcher& matcher,
                                                          const std::string& file) {
   auto self = std::make_unique<Performance>();
-  self->character_ = &character;
   self->clip_ = std::move(clip);
   const motion::Clip& take = *self->clip_;
   const auto match = matcher.Match(take.skeleton, character.rig, &character.skeleton);
@@ -28,28 +27,23 @@ Result<std::unique_ptr<Performance>> Performance::Create(const character::Charac
     return Status(StatusCode::kNotFound, "no joint of the recording is one of the character's",
                   file, "name its joints with --skeleton-map, or choose a --character");
   }
-  const int joints = character.skeleton.num_joints();
-  self->local_.resize(joints);
-  self->model_.resize(joints);
+  self->drawn_.emplace(&character.skeleton);
   return self;
 }
 
 Status Performance::Advance(int frame) {
   clip_->GetPose(frame, &pose_);
   const double dt = frame == 0 ? 0.0 : clip_->times[frame] - clip_->times[frame - 1];
-  const bool solved =
-      solver_->Update(pose_, dt) == wrinkle::JobStatus::kOk &&
-      retarget_.Run(pose_.joints, local_) == wrinkle::JobStatus::kOk &&
-      blend_shape_pose_.Run(pose_.blend_shapes, local_) == wrinkle::JobStatus::kOk &&
-      wrinkle::LocalToModelJob{&character_->skeleton, local_, model_}.Run() ==
-          wrinkle::JobStatus::kOk;
+  const bool solved = solver_->Update(pose_, dt) == wrinkle::JobStatus::kOk &&
+                      drawn_->Run(retarget_, blend_shape_pose_, pose_.joints, pose_.blend_shapes) ==
+                          wrinkle::JobStatus::kOk;
   if (!solved)
     return {StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved"};
   return {};
 }
 
 render::PosedSubject Performance::subject() const {
-  return {.model = model_,
+  return {.model = drawn_->model(),
           .binding = &solver_->binding(),
           .wrinkle_weights = solver_->wrinkle_weights(),
           .filtered_values = solver_->filtered_values()};

@@ -2,14 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "character/skeleton_match.h"
 #include "motion/clip.h"
 #include "render/renderer.h"
-#include "wrinkle/blend_shape_pose.h"
-#include "wrinkle/retarget.h"
+#include "wrinkle/character_pose.h"
 #include "wrinkle/solver.h"
 
 namespace furrow::cli {
@@ -32,13 +31,11 @@ class Performance {
 
  private:
   std::shared_ptr<const motion::Clip> clip_;
-  const character::Character* character_ = nullptr;
   wrinkle::Retarget retarget_;
   wrinkle::BlendShapePose blend_shape_pose_;
   std::unique_ptr<wrinkle::SubjectSolver> solver_;
   wrinkle::LocalPose pose_;
-  std::vector<wrinkle::Transform> local_;
-  std::vector<glm::mat4> model_;
+  std::optional<wrinkle::CharacterPose> drawn_;
 };
 
 }  // namespace furrow::cli

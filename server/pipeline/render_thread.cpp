@@ -27,11 +27,11 @@ Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleto
 
 RenderThread::RenderThread(const wrinkle::Skeleton* skeleton, Factory make_renderer,
                            Metrics* metrics, Deliver deliver)
-    : skeleton_(skeleton),
-      make_renderer_(std::move(make_renderer)),
+    : make_renderer_(std::move(make_renderer)),
       metrics_(metrics),
       deliver_(std::move(deliver)),
-      mailbox_(kMaxWaitingJobs) {}
+      mailbox_(kMaxWaitingJobs),
+      drawn_(skeleton) {}
 
 RenderThread::~RenderThread() {
   mailbox_.Close();
@@ -71,8 +71,6 @@ void RenderThread::Run(std::promise<Status> started) {
     for (const std::string_view name : render::CameraPresetNames()) {
       if (auto camera = renderer_->Preset(name); camera.ok()) presets_.emplace_back(name, *camera);
     }
-    pose_.resize(skeleton_->num_joints());
-    model_.resize(skeleton_->num_joints());
   }
   started.set_value(status);
   if (!status.ok()) return;
@@ -90,14 +88,12 @@ void RenderThread::Run(std::promise<Status> started) {
 void RenderThread::Draw(RenderJob job) {
   if (renderer_ == nullptr && !Revive()) return Fail(std::move(job));
   const Snapshot& snapshot = *job.snapshot;
-  const wrinkle::LocalToModelJob to_model{skeleton_, pose_, model_};
-  if (snapshot.retarget->Run(snapshot.joints, pose_) != wrinkle::JobStatus::kOk ||
-      snapshot.blend_shape_pose->Run(snapshot.blend_shapes, pose_) != wrinkle::JobStatus::kOk ||
-      to_model.Run() != wrinkle::JobStatus::kOk) {
+  if (drawn_.Run(*snapshot.retarget, *snapshot.blend_shape_pose, snapshot.joints,
+                 snapshot.blend_shapes) != wrinkle::JobStatus::kOk) {
     return Fail(std::move(job));
   }
   render::FrameRequest request;
-  request.model = model_;
+  request.model = drawn_.model();
   request.binding = snapshot.binding.get();
   request.wrinkle_weights = snapshot.wrinkle_weights;
   request.filtered_values = snapshot.filtered_values;

@@ -16,7 +16,8 @@
 #include "server/metrics.h"
 #include "server/pipeline/picture_source.h"
 #include "server/pipeline/render_mailbox.h"
-#include "wrinkle/pose.h"
+#include "wrinkle/character_pose.h"
+#include "wrinkle/skeleton.h"
 #include "wrinkle/status.h"
 
 namespace furrow::server {
@@ -71,7 +72,6 @@ class RenderThread : public PictureSource {
   void Fail(RenderJob job);
   void Rebuild(const Status& reason);
 
-  const wrinkle::Skeleton* const skeleton_;
   const Factory make_renderer_;
   Metrics* const metrics_;
   const Deliver deliver_;
@@ -84,8 +84,7 @@ class RenderThread : public PictureSource {
   int jobs_to_skip_ = 0;                        // before it is made again
   int next_skip_ = 0;                           // grows until a picture comes out
   std::deque<RenderJob> in_flight_;             // as the renderer's read-backs, oldest first
-  std::vector<wrinkle::Transform> pose_;
-  std::vector<glm::mat4> model_;
+  wrinkle::CharacterPose drawn_;
 
   std::thread thread_;
 };
