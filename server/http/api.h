@@ -69,6 +69,8 @@ class Api {
 
   ApiReply CaptureNeutral(Hub& hub, Subject& subject, bool preview, Time now);
   ApiReply CapturePose(Hub& hub, Subject& subject, const std::string& pose, bool preview, Time now);
+  // The oldest is forgotten where there are too many to undo.
+  void Remember(Capture capture);
   [[nodiscard]] Json Captures() const;
 
   Parts parts_;

@@ -94,6 +94,11 @@ Json Api::Captures() const {
   return list;
 }
 
+void Api::Remember(Capture capture) {
+  if (captures_.size() >= kMaxUndo) captures_.erase(captures_.begin());
+  captures_.push_back(std::move(capture));
+}
+
 ApiReply Api::PostCapture(const ApiRequest& request, Hub& hub, Time now) {
   const Result<Json> object = ObjectOf(request);
   if (!object.ok()) return ErrorReply(object.status());
@@ -124,9 +129,7 @@ ApiReply Api::CaptureNeutral(Hub& hub, Subject& subject, bool preview, Time now)
   if (!preview) {
     std::optional<wrinkle::LocalPose> former = pipeline.neutral_pose();
     hub.SetNeutral(subject, pipeline.pose(), now);
-    if (captures_.size() >= kMaxUndo) captures_.erase(captures_.begin());
-    captures_.push_back(
-        {kNeutral, subject.name, subject.skeleton_hash, std::move(former), nullptr});
+    Remember({kNeutral, subject.name, subject.skeleton_hash, std::move(former), nullptr});
   }
   return JsonReply(
       {{"pose", kNeutral},
@@ -161,9 +164,7 @@ ApiReply Api::CapturePose(Hub& hub, Subject& subject, const std::string& pose, b
       return ErrorReply(status);
     }
     spdlog::info("reference pose '{}' is captured from '{}'", pose, subject.name);
-    if (captures_.size() >= kMaxUndo) captures_.erase(captures_.begin());
-    captures_.push_back(
-        {pose, subject.name, subject.skeleton_hash, std::nullopt, std::move(former)});
+    Remember({pose, subject.name, subject.skeleton_hash, std::nullopt, std::move(former)});
   }
   return JsonReply({{"pose", pose},
                     {"preview", preview},
