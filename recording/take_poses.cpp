@@ -148,12 +148,11 @@ class TakePoses::Loader {
   protocol::PoseFrame pose_;  // reused
 };
 
-Result<std::vector<TakePoses>> TakePoses::LoadAll(TakeReader& take, std::string_view subject,
-                                                  motion::ClipReport* report) {
-  const auto names = SubjectsOf(take);
-  if (!names.ok()) return names.status();
-  if (names->empty() || (!subject.empty() && !names->contains(subject)))
-    return NoPoses(take, subject, *names);
+Result<std::vector<TakePoses>> TakePoses::LoadOf(const Names& names, TakeReader& take,
+                                                 std::string_view subject,
+                                                 motion::ClipReport* report) {
+  if (names.empty() || (!subject.empty() && !names.contains(subject)))
+    return NoPoses(take, subject, names);
   Loader loader;
   bool fits = true;
   Status status = take.ForEach([&](const TakeMessage& message) {
@@ -168,8 +167,14 @@ Result<std::vector<TakePoses>> TakePoses::LoadAll(TakeReader& take, std::string_
   std::vector<TakePoses> all = loader.Finish(take, report);
   for (const std::string& text : take.file().warnings())
     if (report != nullptr) report->warnings.push_back(text);
-  if (all.empty()) return NoPoses(take, subject, *names);
+  if (all.empty()) return NoPoses(take, subject, names);
   return all;
+}
+
+Result<std::vector<TakePoses>> TakePoses::LoadAll(TakeReader& take, std::string_view subject,
+                                                  motion::ClipReport* report) {
+  const auto names = SubjectsOf(take);
+  return names.ok() ? LoadOf(*names, take, subject, report) : names.status();
 }
 
 Result<TakePoses> TakePoses::Load(TakeReader& take, std::string_view subject,
@@ -181,7 +186,7 @@ Result<TakePoses> TakePoses::Load(TakeReader& take, std::string_view subject,
                   take.path().string(),
                   "name one: " + take.path().filename().string() + "#" + *names->begin());
   }
-  auto all = LoadAll(take, subject, report);
+  auto all = LoadOf(*names, take, subject, report);
   if (!all.ok()) return all.status();
   return std::move(all->front());
 }

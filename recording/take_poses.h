@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,7 +46,12 @@ class TakePoses {
 
  private:
   class Loader;
+  using Names = std::set<std::string, std::less<>>;
 
+  // `names`: everybody who has poses in the take.
+  [[nodiscard]] static Result<std::vector<TakePoses>> LoadOf(const Names& names, TakeReader& take,
+                                                             std::string_view subject,
+                                                             motion::ClipReport* report);
   void Add(const TakeMessage& message);
   [[nodiscard]] std::int64_t StepTo(const TakeStamp& stamp) const;
 
