@@ -46,7 +46,7 @@ struct FrameSetup {
   Lighting lighting;
   SphericalHarmonics ambient;  // AmbientPolynomial() of the sky
   std::array<ShadowView, kNumLights> shadows;
-  int shadow_resolution = 0;  // texels a side of each map
+  int shadow_resolution = 0;      // texels a side of each map
   float pixels_per_slope = 1.0f;  // height in the picture of what is as tall as it is far away
 };
 

@@ -24,7 +24,8 @@ struct FullscreenPass {
   std::vector<std::string> defines;
   std::vector<FrameGraph::Handle> reads;  // bound to units from 0; those without a version are none
   std::vector<Target> writes;             // made anew, of one size
-  // Depth of the scene, of the targets' size: draws only where there is a surface. None: everywhere.
+  // Depth of the scene, of the targets' size: draws only where there is a surface. None:
+  // everywhere.
   FrameGraph::Handle surface_z = {};
 };
 

@@ -114,11 +114,11 @@ FacetTargets ScenePass::AddFacets(FrameGraph* graph, const Settings& settings, i
           return builder.Write(builder.Create(name, {width, height, format, 1}));
         };
         out = {target("scene colour", PixelFormat::kRgba8),
-                    target("scene normal", PixelFormat::kRgba16F),
-                    target("scene geometric", PixelFormat::kRgba8),
-                    target("scene matter", PixelFormat::kRgba8),
-                    target("scene depth", PixelFormat::kR32F),
-                    target("scene z", PixelFormat::kDepth32F)};
+               target("scene normal", PixelFormat::kRgba16F),
+               target("scene geometric", PixelFormat::kRgba8),
+               target("scene matter", PixelFormat::kRgba8),
+               target("scene depth", PixelFormat::kR32F),
+               target("scene z", PixelFormat::kDepth32F)};
       },
       [this, settings](const FrameGraph::Resources& resources, const FacetTargets& out) {
         const std::array<TextureId, 5> colours = {

@@ -12,9 +12,9 @@ namespace furrow::render {
 struct SkinGeometry {
   int width = 0;  // pixels
   int height = 0;
-  float focus_distance = 1.0f;  // metres; depths in the irradiance's alpha count from it
-  float pixels_per_mm = 1.0f;   // there
-  ScreenRect bounds;            // all skin lies within
+  float focus_distance = 1.0f;   // metres; depths in the irradiance's alpha count from it
+  float pixels_per_mm = 1.0f;    // there
+  ScreenRect bounds;             // all skin lies within
   FrameGraph::Handle surface_z;  // of FullscreenPass
 };
 
