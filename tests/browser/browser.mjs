@@ -37,9 +37,7 @@ export async function shown(page) {
 
 /** The picture of a pose at rest, refined, with the last change in it. */
 export async function still(page) {
-  await shown(page);
-  await page.waitForFunction(() => document.querySelector('[data-number=tier]').textContent === 'still');
-  await shown(page);
+  await page.waitForSelector('.stage[aria-busy=false][data-still=true]');
 }
 
 /** The pixels of the picture alone, without what lies over it. */

@@ -73,9 +73,9 @@ test('each group takes effect on the picture', async (context) => {
   // The detail of crowds is for pictures of several subjects, which the page does not show.
   const groups = new Set(settings.map(({ group }) => group));
   assert(groups.delete('detail'));
-  // A view in which every group has a part: light from behind, and bright enough to spread.
+  // A view in which every group has a part: light from behind, bright enough to spread, on folds that stand out.
   const page = await openPage(browser, `${daemon.address}#shading=skin&wrinkle_strength=2&translucency.strength=4` +
-    '&lights.turn_degrees=180&bloom.strength=0.5&bloom.threshold=0.3');
+    '&lights.turn_degrees=180&bloom.strength=0.5&bloom.threshold=0.3&displacement.enabled=on&displacement.strength=4');
   await page.selectOption('select[aria-label=Sharpness]', 'fast');
   await page.keyboard.press('Escape');
   await still(page);

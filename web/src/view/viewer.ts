@@ -135,6 +135,7 @@ export class Viewer {
   private onPicture(side: Side, picture: Picture): void {
     this.stage.show(side, picture);
     if (side === 'left') return;
+    this.stage.element.dataset.still = String(picture.still);
     const wasResting = this.stats.resting;
     this.stats.add(picture, nowUs(), this.connection.clock.offsetUs());
     this.notDrawn.set('');
