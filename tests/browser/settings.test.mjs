@@ -55,12 +55,13 @@ test('every setting of the daemon is in the menu', async () => {
   await page.context().close();
 });
 
-/** The default rig, its maps with a colour and a cavity, which those that ship have not. */
+/** The default rig, its maps with a colour, a cavity and a height, which those that ship have not. */
 function rigWithLooks() {
   const rig = readFileSync(join(SHARE, 'default.rig.json'), 'utf8');
   const file = join(process.env.FURROW_ARTEFACTS, 'looks.rig.json');
   writeFileSync(file, rig.replaceAll(/"normal": "(face_stretch|face_squash)"/g,
-    '"normal": "$1", "cavity": "face_masks_a", "colour": "face_masks_b"'));
+    '"normal": "$1", "cavity": "face_masks_a", "colour": "face_masks_b", ' +
+    '"height": "face_masks_a", "height_mm": 2'));
   return file;
 }
 
@@ -75,7 +76,7 @@ test('each group takes effect on the picture', async (context) => {
   assert(groups.delete('detail'));
   // A view in which every group has a part: light from behind, bright enough to spread, on folds that stand out.
   const page = await openPage(browser, `${daemon.address}#shading=skin&wrinkle_strength=2&translucency.strength=4` +
-    '&lights.turn_degrees=180&bloom.strength=0.5&bloom.threshold=0.3&displacement.enabled=on&displacement.strength=4');
+    '&lights.turn_degrees=180&bloom.strength=0.5&bloom.threshold=0.3&displacement.enabled=on&displacement.strength=3');
   await page.selectOption('select[aria-label=Sharpness]', 'fast');
   await page.keyboard.press('Escape');
   await still(page);
