@@ -117,9 +117,10 @@ std::optional<Reader::Record> Reader::RecordAt(std::uint64_t offset) const {
 
 void Reader::Warn(std::uint64_t offset, std::string_view what) {
   constexpr std::size_t kMost = 32;
-  if (warnings_.size() < kMost)
-    warnings_.push_back(path_.string() + ": byte " + std::to_string(offset) + ": " +
-                        std::string(what));
+  std::string text = path_.string() + ": byte " + std::to_string(offset) + ": " + std::string(what);
+  // Whoever reads a damaged file twice hears of the damage once.
+  if (warnings_.size() < kMost && std::ranges::find(warnings_, text) == warnings_.end())
+    warnings_.push_back(std::move(text));
 }
 
 bool Reader::ReadSummary() {

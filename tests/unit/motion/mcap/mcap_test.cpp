@@ -185,6 +185,23 @@ TEST_F(McapTest, DamageIsNeverShownAsData) {
   }
 }
 
+TEST_F(McapTest, DamageIsToldOnceHoweverOftenTheFileIsRead) {
+  WriteTake(Path(), 100, 400);
+  auto whole = Reader::Open(Path());
+  ASSERT_TRUE(whole.ok());
+  std::string damaged = Slurp(Path());
+  const ChunkInfo& second = (*whole)->chunks().at(1);
+  damaged[second.offset + second.length - 20] ^= 0x41;
+  Spill(Path("bad.mcap"), damaged);
+  auto bad = Reader::Open(Path("bad.mcap"));
+  ASSERT_TRUE(bad.ok());
+  ASSERT_TRUE((*bad)->complete());
+  const auto once = ReadAll(**bad);
+  ASSERT_EQ((*bad)->warnings().size(), 1u);
+  EXPECT_EQ(ReadAll(**bad).size(), once.size());
+  EXPECT_EQ((*bad)->warnings().size(), 1u);
+}
+
 TEST_F(McapTest, ChunksThatOverlapAreShownInTheOrderOfTime) {
   auto writer = Writer::Create(Path());
   ASSERT_TRUE(writer.ok());
