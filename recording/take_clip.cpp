@@ -113,13 +113,14 @@ Result<motion::Clip> ToClip(const TakePoses& poses, float scale) {
   return clip;
 }
 
-Result<motion::Clip> LoadTakeClip(const std::string& path, float scale,
-                                  motion::ClipReport* report) {
+Result<motion::Clip> LoadTakeClip(const std::string& path, float scale, motion::ClipReport* report,
+                                  ReadProgress progress) {
   std::string file;
   std::string subject;
   SplitTakePath(path, &file, &subject);
   auto take = TakeReader::Open(file);
   if (!take.ok()) return take.status();
+  (*take)->set_progress(std::move(progress));
   const auto poses = TakePoses::Load(**take, subject, report);
   if (!poses.ok()) return poses.status();
   auto clip = ToClip(*poses, scale);

@@ -14,9 +14,10 @@ namespace furrow::recording {
 // before them. Errors: Skeleton::Create()'s, kLimit.
 [[nodiscard]] Result<motion::Clip> ToClip(const TakePoses& poses, float scale = 1.0f);
 
-// Loads one subject of a take as a clip: "take.mcap" or "take.mcap#NAME" (SplitTakePath()). Errors:
-// TakePoses::Load()'s and ToClip()'s.
+// Loads one subject of a take as a clip: "take.mcap" or "take.mcap#NAME" (SplitTakePath()).
+// `progress` is told how far reading it is. Errors: TakePoses::Load()'s and ToClip()'s.
 [[nodiscard]] Result<motion::Clip> LoadTakeClip(const std::string& path, float scale = 1.0f,
-                                                motion::ClipReport* report = nullptr);
+                                                motion::ClipReport* report = nullptr,
+                                                ReadProgress progress = nullptr);
 
 }  // namespace furrow::recording

@@ -9,6 +9,8 @@
 #include <subscribe_reply_bfbs.h>
 #include <weights_bfbs.h>
 
+#include "protocol/limits.h"
+
 namespace furrow::recording {
 namespace {
 
@@ -60,6 +62,11 @@ bool ParseTopic(std::string_view topic, TakeKind* kind, std::string* subject) {
 std::string_view SchemaName(TakeKind kind) { return RowOf(kind).schema; }
 std::span<const std::uint8_t> BinarySchema(TakeKind kind) { return RowOf(kind).binary; }
 MessageKind MessageKindOf(TakeKind kind) { return RowOf(kind).message; }
+
+std::size_t MaxPayloadBytes(TakeKind kind) {
+  const bool is_reply = kind == TakeKind::kNames || kind == TakeKind::kWeights;
+  return is_reply ? protocol::kMaxReplyBytes : protocol::kMaxRequestBytes;
+}
 
 std::uint64_t ToPublishTime(std::int64_t capture_time_us) {
   constexpr std::int64_t kFurthest = std::numeric_limits<std::int64_t>::max() / 1000;

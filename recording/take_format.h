@@ -53,6 +53,9 @@ inline constexpr char kRigAttachment[] = "rig.json";
 // Which wire message a kind's payload is; kUnknown for datagrams.
 [[nodiscard]] protocol::MessageKind MessageKindOf(TakeKind kind);
 
+// How long the wire's messages of a kind are at most: those of publishers, and the server's.
+[[nodiscard]] std::size_t MaxPayloadBytes(TakeKind kind);
+
 // The wire's microseconds as MCAP's nanoseconds and back: two's complement, so that clocks with any
 // epoch survive; a clock further than 292 years from its epoch is held at that.
 [[nodiscard]] std::uint64_t ToPublishTime(std::int64_t capture_time_us);

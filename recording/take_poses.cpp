@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <set>
 #include <utility>
@@ -19,7 +18,9 @@ using protocol::DecodeStatus;
 constexpr std::size_t kMaxPoseBytes = std::size_t{2} << 30;
 constexpr char kExtension[] = ".mcap";
 
-std::string Join(const std::set<std::string, std::less<>>& names) {
+using Names = std::set<std::string, std::less<>>;
+
+std::string Join(const Names& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
@@ -30,31 +31,21 @@ bool EndsInMcap(std::string_view text) {
          wrinkle::EqualsIgnoreCase(text.substr(text.size() - 5), kExtension);
 }
 
-Status NoPoses(const TakeReader& take, std::string_view subject,
-               const std::set<std::string, std::less<>>& names) {
+Status NoPoses(const TakeReader& take, std::string_view subject, const Names& names) {
+  const std::string file = take.path().string();
+  if (names.contains(subject) || (subject.empty() && !names.empty()))
+    return {StatusCode::kNotFound, "none of its poses can be read", file};
   const std::string here = names.empty() ? "nobody" : Join(names);
   return {StatusCode::kNotFound,
           subject.empty() ? "the take has no poses"
                           : "there are no poses of '" + std::string(subject) + "', but of " + here,
-          take.path().string()};
+          file};
 }
 
 void Warn(motion::ClipReport* report, const TakeReader& take, std::size_t count,
           const std::string& what) {
   if (report == nullptr || count == 0) return;
   report->warnings.push_back(take.path().string() + ": " + std::to_string(count) + " " + what);
-}
-
-// Everybody who has poses.
-Result<std::set<std::string, std::less<>>> SubjectsOf(TakeReader& take) {
-  std::set<std::string, std::less<>> names;
-  Status status = take.ForEach([&](const TakeMessage& message) {
-    if (message.kind == TakeKind::kPose && !names.contains(message.subject))
-      names.emplace(message.subject);
-    return true;
-  });
-  if (!status.ok()) return status;
-  return names;
 }
 
 }  // namespace
@@ -81,12 +72,18 @@ void TakePoses::Add(const TakeMessage& message) {
   ends_.push_back(bytes_.size());
 }
 
-// Sorts the messages of a take into the poses of its subjects.
+// Sorts the messages of a take into the poses of its subjects: of one, of the only one there is
+// (`subject` empty), or of all.
 class TakePoses::Loader {
  public:
+  Loader(std::string_view subject, bool only_one) : subject_(subject), only_one_(only_one) {}
+
   // False: too many to hold.
   bool Take(const TakeMessage& message) {
     if (message.kind != TakeKind::kSkeleton && message.kind != TakeKind::kPose) return true;
+    if (message.kind == TakeKind::kPose && !names_.contains(message.subject))
+      names_.emplace(message.subject);
+    if (is_ambiguous() || (!subject_.empty() && message.subject != subject_)) return true;
     auto found = tracks_.find(message.subject);
     if (found == tracks_.end())
       found = tracks_.emplace(std::string(message.subject), Track()).first;
@@ -96,6 +93,13 @@ class TakePoses::Loader {
     track.has_offer = protocol::Decode(message.View(), track.poses.offer_) == DecodeStatus::kOk;
     track.unreadable += track.has_offer ? 0 : 1;
     return true;
+  }
+
+  // Everybody who has poses.
+  [[nodiscard]] const Names& names() const { return names_; }
+  // There are several, of whom none was named: nobody's poses are of use.
+  [[nodiscard]] bool is_ambiguous() const {
+    return only_one_ && subject_.empty() && names_.size() > 1;
   }
 
   // Those that have poses, in the order of their first ones.
@@ -143,26 +147,32 @@ class TakePoses::Loader {
     return true;
   }
 
+  std::string_view subject_;
+  bool only_one_;
+  Names names_;
   std::map<std::string, Track, std::less<>> tracks_;
   std::size_t num_bytes_ = 0;
   protocol::PoseFrame pose_;  // reused
 };
 
-Result<std::vector<TakePoses>> TakePoses::LoadOf(const Names& names, TakeReader& take,
-                                                 std::string_view subject,
-                                                 motion::ClipReport* report) {
-  if (names.empty() || (!subject.empty() && !names.contains(subject)))
-    return NoPoses(take, subject, names);
-  Loader loader;
+Result<std::vector<TakePoses>> TakePoses::LoadOf(TakeReader& take, std::string_view subject,
+                                                 bool only_one, motion::ClipReport* report) {
+  Loader loader(subject, only_one);
   bool fits = true;
   Status status = take.ForEach([&](const TakeMessage& message) {
-    if (subject.empty() || message.subject == subject) fits = loader.Take(message);
+    fits = loader.Take(message);
     return fits;
   });
   if (!status.ok()) return status;
   if (!fits) {
     return Status(StatusCode::kLimit, "too many poses to hold at once", take.path().string(),
                   "record with --rotate-seconds for shorter files");
+  }
+  const Names& names = loader.names();
+  if (loader.is_ambiguous()) {
+    return Status(StatusCode::kInvalidArgument, "the take has several subjects: " + Join(names),
+                  take.path().string(),
+                  "name one: " + take.path().filename().string() + "#" + *names.begin());
   }
   std::vector<TakePoses> all = loader.Finish(take, report);
   for (const std::string& text : take.file().warnings())
@@ -173,20 +183,12 @@ Result<std::vector<TakePoses>> TakePoses::LoadOf(const Names& names, TakeReader&
 
 Result<std::vector<TakePoses>> TakePoses::LoadAll(TakeReader& take, std::string_view subject,
                                                   motion::ClipReport* report) {
-  const auto names = SubjectsOf(take);
-  return names.ok() ? LoadOf(*names, take, subject, report) : names.status();
+  return LoadOf(take, subject, /*only_one=*/false, report);
 }
 
 Result<TakePoses> TakePoses::Load(TakeReader& take, std::string_view subject,
                                   motion::ClipReport* report) {
-  const auto names = SubjectsOf(take);
-  if (!names.ok()) return names.status();
-  if (subject.empty() && names->size() > 1) {
-    return Status(StatusCode::kInvalidArgument, "the take has several subjects: " + Join(*names),
-                  take.path().string(),
-                  "name one: " + take.path().filename().string() + "#" + *names->begin());
-  }
-  auto all = LoadOf(*names, take, subject, report);
+  auto all = LoadOf(take, subject, /*only_one=*/true, report);
   if (!all.ok()) return all.status();
   return std::move(all->front());
 }

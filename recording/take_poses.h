@@ -3,8 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,11 +44,10 @@ class TakePoses {
 
  private:
   class Loader;
-  using Names = std::set<std::string, std::less<>>;
-
-  // `names`: everybody who has poses in the take.
-  [[nodiscard]] static Result<std::vector<TakePoses>> LoadOf(const Names& names, TakeReader& take,
+  // `only_one`: as Load(), else as LoadAll().
+  [[nodiscard]] static Result<std::vector<TakePoses>> LoadOf(TakeReader& take,
                                                              std::string_view subject,
+                                                             bool only_one,
                                                              motion::ClipReport* report);
   void Add(const TakeMessage& message);
   [[nodiscard]] std::int64_t StepTo(const TakeStamp& stamp) const;

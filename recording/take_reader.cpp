@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recording/take_reader.h"
 
+#include <algorithm>
 #include <charconv>
 #include <utility>
-
-#include "protocol/limits.h"
 
 namespace furrow::recording {
 
@@ -48,15 +47,28 @@ const TakeReader::ChannelInfo* TakeReader::InfoOf(std::uint16_t id) {
 }
 
 Status TakeReader::ForEach(const std::function<bool(const TakeMessage&)>& visit) {
+  std::uint64_t num_bytes = 1;
+  for (const motion::mcap::ChunkInfo& chunk : file_->chunks())
+    num_bytes += chunk.uncompressed_bytes;
+  Status status = ShowAll(visit, num_bytes);
+  if (progress_) progress_(num_bytes, num_bytes);
+  return status;
+}
+
+Status TakeReader::ShowAll(const std::function<bool(const TakeMessage&)>& visit,
+                           std::uint64_t num_bytes) {
+  std::uint64_t done = 0;
   return file_->ForEach({}, [&](const Message& message) {
+    done += message.data.size();
+    if (progress_) progress_(std::min(done, num_bytes - 1), num_bytes);
     const ChannelInfo* info = InfoOf(message.channel_id);
-    if (info == nullptr || message.data.size() > protocol::kMaxRequestBytes) return true;
+    if (info == nullptr) return true;
     TakeMessage shown;
     shown.kind = info->kind;
     shown.subject = info->subject;
     shown.stamp = {info->session, message.sequence, FromPublishTime(message.publish_time),
                    message.log_time};
-    shown.payload = message.data;
+    if (message.data.size() <= MaxPayloadBytes(info->kind)) shown.payload = message.data;
     return visit(shown);
   });
 }

@@ -62,6 +62,18 @@ TEST_F(TakePosesTest, WhatIsNotAPoseOfTheSkeletonIsLeftOutAndTold) {
   EXPECT_EQ(report.warnings.size(), 2u);
 }
 
+TEST_F(TakePosesTest, ASubjectWhosePosesAreAllUnreadableIsNotCalledAbsent) {
+  const auto writer = Create("take.mcap");
+  ASSERT_TRUE(writer->Write(TakeKind::kSkeleton, "ada", Stamp(0), Payload(Offer("ada"))).ok());
+  ASSERT_TRUE(writer->Write(TakeKind::kPose, "ada", Stamp(1), std::vector<std::uint8_t>(9)).ok());
+  ASSERT_TRUE(writer->Close().ok());
+  for (const char* subject : {"", "ada"}) {
+    const auto poses = TakePoses::Load(*Open("take.mcap"), subject, nullptr);
+    EXPECT_EQ(poses.status().code(), StatusCode::kNotFound);
+    EXPECT_EQ(poses.status().what(), "none of its poses can be read");
+  }
+}
+
 TEST_F(TakePosesTest, OneOfSeveralSubjectsMustBeNamed) {
   const auto writer = Create("take.mcap");
   WriteSubject(*writer, "ada", 2);
