@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The messages of protocol/STANDARD.md, sections 4 to 11: each table as a dictionary, or Refused."""
+import math
+import struct
+
+from flat_table import Table, require
+
+# --- Section 5: masks, packed numbers; checks of section 11 --------------------------------------------
+
+
+def masked(mask, n, values):
+    """Indices of the values."""
+    if mask is None:
+        require(len(values) in (0, n), "values for some, and no mask")
+        return list(range(len(values)))
+    require(len(mask) == (n + 7) // 8, "a mask of another length")
+    indices = [i for i in range(8 * len(mask)) if mask[i // 8] >> (i % 8) & 1]
+    require(all(i < n for i in indices), "mask bits beyond the last")
+    require(len(indices) == len(values), "as many bits as values")
+    return indices
+
+
+def finite(values):
+    for value in values:
+        require(math.isfinite(value) and abs(value) <= 1e6, "a number that is not finite or too large")
+    return list(values)
+
+
+def rotation(q):
+    finite(q)
+    require(abs(math.sqrt(sum(c * c for c in q)) - 1) <= 1e-3, "a rotation not of unit length")
+    return list(q)
+
+
+def unpack_rotation(words):
+    bits = words[0] | words[1] << 16 | words[2] << 32
+    require(bits >> 47 == 0, "bit 47 of a packed rotation")
+    codes = [bits >> shift & 0x7FFF for shift in (0, 15, 30)]
+    require(all(code <= 32766 for code in codes), "32767 in a packed rotation")
+    three = [(code / 32766 * 2 - 1) / math.sqrt(2) for code in codes]
+    rest = 1 - sum(c * c for c in three)
+    require(rest >= -1e-6, "a packed rotation longer than 1")
+    three.insert(bits >> 45 & 3, math.sqrt(max(rest, 0)))
+    return three
+
+
+def unpack_offset(value, scale):
+    require(value != -32768, "-32768 in packed numbers")
+    return scale * value
+
+
+def either(plain, packed):
+    require(plain is None or packed is None, "both forms of one thing")
+    return plain or packed or []
+
+
+def fnv1a(data):
+    value = 0xCBF29CE484222325
+    for byte in data:
+        value = (value ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
+    return value
+
+
+def hexadecimal(value):
+    return f"0x{value:016x}"
+
+
+def one_of(value, count):
+    require(value < count, "an unknown enumeration value")
+    return value
+
+
+# --- Messages, by file identifier ----------------------------------------------------------------------
+
+
+def hello(t):
+    return {"client": t.text(0, limit=64), "token": hexadecimal(t.scalar(1, "Q")),
+            "bundles": t.flag(3)}
+
+
+def welcome(t):
+    return {"server": t.text(0, limit=64), "token": hexadecimal(t.scalar(1, "Q"))}
+
+
+def ping(t):
+    return {"time_us": t.scalar(0, "q")}
+
+
+def pong(t):
+    return {"time_us": t.scalar(0, "q"), "server_time_us": t.scalar(1, "q")}
+
+
+def goodbye(t):
+    return {"reason": one_of(t.scalar(0, "B"), 4)}
+
+
+def error(t):
+    code = t.scalar(0, "H")
+    require(1 <= code <= 13, "an unknown error code")
+    return {"code": code, "message": t.text(1, limit=1024)}
+
+
+def skeleton_offer(t):
+    subject = t.text(0)
+    require(subject != "", "no subject")
+    names, shapes = t.texts(3), t.texts(10)
+    count = len(names)
+    require(count + len(shapes) > 0, "neither joints nor blend shapes")
+    require(count <= 1024 and len(shapes) <= 512, "too many")
+    parents = t.vector(4, "h") or []
+    translations = t.vector(5, "3f") or []
+    rotations = t.vector(6, "4f") or []
+    scales = t.vector(7, "3f")
+    scales = [[1.0, 1.0, 1.0]] * count if scales is None else scales
+    require(all(len(v) == count for v in (parents, translations, rotations, scales)), "lengths differ")
+    tails = t.vector(9, "3f") or []
+    tail_of = dict(zip(masked(t.vector(8, "B"), count, tails), tails))
+    unit = t.scalar(2, "f", 1.0)
+    require(finite([unit])[0] > 0, "metres_per_unit")
+    joints, data = [], struct.pack("<H", count)
+    for i in range(count):
+        require(-1 <= parents[i] < i, "a parent that is not an earlier joint")
+        joint = {"name": names[i], "parent": parents[i],
+                 "rest_translation": finite(translations[i]),
+                 "rest_rotation": rotation(rotations[i]), "rest_scale": finite(scales[i])}
+        data += names[i].encode() + b"\0" + struct.pack(
+            "<h10f", parents[i], *translations[i], *rotations[i], *scales[i])
+        data += struct.pack("<H", i in tail_of)
+        if i in tail_of:
+            joint["tail"] = finite(tail_of[i])
+            data += struct.pack("<3f", *tail_of[i])
+        joints.append(joint)
+    data += struct.pack("<fH", unit, len(shapes)) + b"".join(s.encode() + b"\0" for s in shapes)
+    require(fnv1a(data) == t.scalar(1, "Q"), "another hash")
+    return {"subject": subject, "skeleton_hash": hexadecimal(t.scalar(1, "Q")),
+            "metres_per_unit": unit, "joints": joints, "blend_shape_names": shapes}
+
+
+def skeleton_reply(t):
+    return {"skeleton_hash": hexadecimal(t.scalar(0, "Q")), "status": one_of(t.scalar(1, "B"), 3),
+            "message": t.text(2, limit=1024)}
+
+
+def pose(t):
+    joints, shapes = t.scalar(1, "H"), t.scalar(2, "H")
+    require(joints <= 1024 and shapes <= 512, "too many")
+    plain, packed = t.vector(5, "4f"), t.vector(6, "3H")
+    either(plain, packed)
+    rotations = [unpack_rotation(w) for w in packed] if packed else [rotation(q) for q in plain or []]
+    plain, packed = t.vector(8, "3f"), t.vector(9, "3h")
+    either(plain, packed)
+    reach = finite([t.scalar(10, "f")])[0]
+    require(reach >= 0, "a range below 0")
+    translations = [[unpack_offset(c, reach / 32767) for c in v] for v in packed] if packed else [
+        finite(v) for v in plain or []]
+    scales = [finite(v) for v in t.vector(12, "3f") or []]
+    plain, packed = t.vector(14, "f"), t.vector(15, "h")
+    either(plain, packed)
+    values = [unpack_offset(v, 1 / 16384) for v in packed] if packed else finite(plain or [])
+    return {"skeleton_hash": hexadecimal(t.scalar(0, "Q")), "partial": t.flag(3),
+            "num_joints": joints, "num_blend_shapes": shapes,
+            "rotation_joints": masked(t.vector(4, "B"), joints, rotations), "rotations": rotations,
+            "translation_joints": masked(t.vector(7, "B"), joints, translations),
+            "translations": translations,
+            "scale_joints": masked(t.vector(11, "B"), joints, scales), "scales": scales,
+            "blend_shape_indices": masked(t.vector(13, "B"), shapes, values), "blend_shapes": values}
+
+
+def rate(value):
+    require(0 <= finite([value])[0] <= 1000, "a rate out of range")
+    return value
+
+
+def subscribe_weights(t):
+    return {"subject": t.text(0), "wait": t.flag(1), "pattern": t.text(2, "*", 4096),
+            "max_rate_hz": rate(t.scalar(3, "f")), "format": one_of(t.scalar(4, "B"), 2),
+            "source": one_of(t.scalar(5, "B"), 2), "every": t.flag(6)}
+
+
+def subscribe_poses(t):
+    return {"subject": t.text(0), "wait": t.flag(1), "max_rate_hz": rate(t.scalar(2, "f")),
+            "every": t.flag(3)}
+
+
+def subscribe_pictures(t):
+    message = {"subject": t.text(0), "wait": t.flag(1), "width": t.scalar(2, "H", 640),
+               "height": t.scalar(3, "H", 480), "max_rate_hz": rate(t.scalar(4, "f")),
+               "format": one_of(t.scalar(5, "B"), 2), "quality": t.scalar(6, "B", 80),
+               "view": t.text(7, "final"), "camera_preset": t.text(8)}
+    require(16 <= message["width"] <= 4096 and 16 <= message["height"] <= 4096, "a size")
+    require(1 <= message["quality"] <= 100, "a quality")
+    camera = t.struct(9, "7f")
+    if camera is not None:
+        require(message["camera_preset"] == "", "a camera and a preset")
+        finite(camera)
+        require(1 < camera[6] < 170, "a field of view")
+        require(camera[0:3] != camera[3:6], "an eye at its target")
+        message.update(eye=camera[0:3], target=camera[3:6], vertical_fov_degrees=camera[6])
+    settings = t.texts(11, unique=False)
+    require(len(settings) <= 128 and "" not in settings, "too many settings, or an empty one")
+    message.update(acknowledged=t.flag(10), settings=settings, camera_follows=t.flag(12))
+    return message
+
+
+def update_pictures(t):
+    place = t.target(0)
+    require(place is not None, "no pictures")
+    return subscribe_pictures(Table(t.data, place))
+
+
+def frame_ack(t):
+    require(t.scalar(0, "I") > 0, "picture 0")
+    return {"number": t.scalar(0, "I")}
+
+
+def unsubscribe(_):
+    return {}
+
+
+def subscribe_reply(t):
+    names = t.texts(2)
+    expected = fnv1a(b"".join(n.encode() + b"\0" for n in names)) if names else 0
+    require(t.scalar(1, "Q") == expected, "another hash of the names")
+    return {"subject": t.text(0), "names_hash": hexadecimal(expected), "names": names,
+            "publisher_session": hexadecimal(t.scalar(3, "Q"))}
+
+
+def age(value):
+    require(value >= 0, "an age below 0")
+    return value
+
+
+def weights(t):
+    plain, packed = t.vector(2, "f"), t.vector(3, "B")
+    either(plain, packed)
+    values = [v / 255 for v in packed] if packed is not None else finite(plain or [])
+    require(all(0 <= v <= 1 for v in values), "a weight out of range")
+    return {"names_hash": hexadecimal(t.scalar(0, "Q")), "age_us": age(t.scalar(1, "q")),
+            "format": 0 if packed is None else 1, "values": values}
+
+
+def dropped(t):
+    return {"frames": t.scalar(0, "Q")}
+
+
+def list_subjects(t):
+    return {"follow": t.flag(0)}
+
+
+def subjects(t):
+    names, total = t.texts(0), t.scalar(1, "I")
+    require(len(names) <= total and len(set(names)) == len(names), "more names than there are, or one twice")
+    return {"names": names, "total": total}
+
+
+def image(t):
+    data = t.vector(4, "B")
+    require(data, "no bytes")
+    width, height = t.scalar(0, "H"), t.scalar(1, "H")
+    require(1 <= width <= 4096 and 1 <= height <= 4096, "a size")
+    return {"width": width, "height": height, "format": one_of(t.scalar(2, "B"), 2),
+            "age_us": age(t.scalar(3, "q")), "bytes": data, "number": t.scalar(5, "I"),
+            "tier": one_of(t.scalar(6, "B"), 3), "still": t.flag(7), "dropped": t.scalar(8, "I"),
+            "received_us": t.scalar(9, "q"), "view_request": t.scalar(10, "I")}
+
+
+KINDS = {b"FHEL": hello, b"FWEL": welcome, b"FPIN": ping, b"FPON": pong, b"FBYE": goodbye,
+         b"FERR": error, b"FSKO": skeleton_offer, b"FSKR": skeleton_reply, b"FPOS": pose,
+         b"FSUW": subscribe_weights, b"FSUP": subscribe_pictures, b"FUNS": unsubscribe,
+         b"FSUR": subscribe_reply, b"FWGT": weights, b"FIMG": image, b"FUPP": update_pictures, b"FACK": frame_ack,
+         b"FSPO": subscribe_poses, b"FDRP": dropped, b"FLSU": list_subjects, b"FSBJ": subjects}
