@@ -81,17 +81,34 @@ enum class Counter {
 [[nodiscard]] std::string_view CounterName(Counter counter);
 
 // The counters of one daemon. Any thread may add and read; reading sees each counter by itself.
+// Each thread adds in a place of its own, as far as there are places, and reading sums them: what
+// is counted at every pose would else travel between the processors at every pose.
 class Metrics {
  public:
   void Add(Counter counter, std::uint64_t count = 1) {
-    values_[static_cast<std::size_t>(counter)].fetch_add(count, std::memory_order_relaxed);
+    places_[PlaceOfThread()].values[static_cast<std::size_t>(counter)].fetch_add(
+        count, std::memory_order_relaxed);
   }
   [[nodiscard]] std::uint64_t Get(Counter counter) const {
-    return values_[static_cast<std::size_t>(counter)].load(std::memory_order_relaxed);
+    std::uint64_t sum = 0;
+    for (const Place& place : places_) {
+      sum += place.values[static_cast<std::size_t>(counter)].load(std::memory_order_relaxed);
+    }
+    return sum;
   }
 
  private:
-  std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(Counter::kCount)> values_{};
+  static constexpr std::size_t kPlaces = 16;
+  struct alignas(64) Place {
+    std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(Counter::kCount)> values{};
+  };
+  static std::size_t PlaceOfThread() {
+    static std::atomic<std::size_t> next = 0;
+    thread_local const std::size_t place = next.fetch_add(1, std::memory_order_relaxed) % kPlaces;
+    return place;
+  }
+
+  std::array<Place, kPlaces> places_;
 };
 
 }  // namespace furrow::server

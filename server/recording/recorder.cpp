@@ -22,6 +22,19 @@ using recording::TakeKind;
 constexpr auto kWait = std::chrono::milliseconds(200);
 constexpr Time kFlushInterval = std::chrono::milliseconds(400);
 
+// What a network thread encodes with, reused.
+struct Scratch {
+  protocol::Encoder encoder;
+  std::vector<std::uint8_t> buffer;
+  protocol::PoseFrame pose;
+  protocol::WeightFrame weights;
+};
+
+Scratch& ScratchOfThread() {
+  thread_local Scratch scratch;
+  return scratch;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Recorder>> Recorder::Start(RecorderOptions options, Time now,
@@ -73,8 +86,9 @@ template <class Message>
 void Recorder::PushEncoded(TakeKind kind, const Subject& subject, const Message& message,
                            Time now) {
   // The envelope is not recorded, but the encoder writes one.
-  encoder_.Encode({.session = subject.owner.session}, message, buffer_);
-  Push(kind, subject, std::span(buffer_).subspan(protocol::kEnvelopeBytes), now);
+  Scratch& scratch = ScratchOfThread();
+  scratch.encoder.Encode({.session = subject.owner.session}, message, scratch.buffer);
+  Push(kind, subject, std::span(scratch.buffer).subspan(protocol::kEnvelopeBytes), now);
 }
 
 void Recorder::OnOffer(const Subject& subject, const protocol::SkeletonOffer& offer, Time now) {
@@ -82,28 +96,31 @@ void Recorder::OnOffer(const Subject& subject, const protocol::SkeletonOffer& of
   const auto names = subject.pipeline->stream().binding->weight_names();
   // More than a message of the wire can name: only poses are recorded then, as rigs say the rest.
   if (names.empty() || names.size() > static_cast<std::size_t>(protocol::kMaxWeights)) return;
-  names_.subject = subject.name;
-  names_.names.assign(names.begin(), names.end());
+  protocol::SubscribeReply declared;
+  declared.subject = subject.name;
+  declared.names.assign(names.begin(), names.end());
   names_hashes_[subject.id] = protocol::NamesHash(names);
-  PushEncoded(TakeKind::kNames, subject, names_, now);
+  PushEncoded(TakeKind::kNames, subject, declared, now);
 }
 
 void Recorder::OnPose(const Subject& subject, std::span<const std::uint8_t> payload, Time now) {
   if (!payload.empty()) return Push(TakeKind::kPose, subject, payload, now);
   // A pose that needs none before it, so that a take can be entered anywhere.
-  ToWholePose(subject.pipeline->pose(), subject.pipeline->stream(), &pose_);
-  pose_.skeleton_hash = subject.skeleton_hash;
-  PushEncoded(TakeKind::kPose, subject, pose_, now);
+  protocol::PoseFrame& pose = ScratchOfThread().pose;
+  ToWholePose(subject.pipeline->pose(), subject.pipeline->stream(), &pose);
+  pose.skeleton_hash = subject.skeleton_hash;
+  PushEncoded(TakeKind::kPose, subject, pose, now);
 }
 
 void Recorder::OnWeights(const Subject& subject, std::int64_t age_us, Time now) {
   const auto hash = names_hashes_.find(subject.id);
   if (hash == names_hashes_.end()) return;
   const auto values = subject.pipeline->wrinkle_weights();
-  weights_.names_hash = hash->second;
-  weights_.age_us = age_us;
-  weights_.values.assign(values.begin(), values.end());
-  PushEncoded(TakeKind::kWeights, subject, weights_, now);
+  protocol::WeightFrame& weights = ScratchOfThread().weights;
+  weights.names_hash = hash->second;
+  weights.age_us = age_us;
+  weights.values.assign(values.begin(), values.end());
+  PushEncoded(TakeKind::kWeights, subject, weights, now);
 }
 
 void Recorder::OnSubjectGone(const Subject& subject) {

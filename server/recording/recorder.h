@@ -25,7 +25,7 @@ struct RecorderOptions {
   std::size_t queue_bytes = std::size_t{64} << 20;  // that may wait for the disk
 };
 
-// Records what the tap tells, on a thread of its own: the network thread only copies bytes.
+// Records what the tap tells, on a thread of its own: the network threads only copy bytes.
 //
 // - What happened is on the way to the disk within a second, as a whole chunk: a killed daemon
 //   loses no more.
@@ -71,13 +71,8 @@ class Recorder : public RecordingTap {
   std::atomic<bool> failed_ = false;
   std::uint64_t reported_dropped_ = 0;
 
-  // The network thread's, reused.
-  protocol::Encoder encoder_;
-  std::vector<std::uint8_t> buffer_;
-  protocol::PoseFrame pose_;
-  protocol::WeightFrame weights_;
-  protocol::SubscribeReply names_;
-  std::map<SubjectId, std::uint64_t> names_hashes_;  // of those whose weights are recorded
+  // Of those whose weights are recorded; changes only while one thread is alone in the hub.
+  std::map<SubjectId, std::uint64_t> names_hashes_;
 
   std::thread thread_;
 };

@@ -54,7 +54,7 @@ class RecordingBatch {
   std::vector<std::uint8_t> bytes_;
 };
 
-// Between the network thread and the one that writes to disk: bounded by bytes, and whoever pushes
+// Between the network threads and the one that writes to disk: bounded by bytes, and whoever pushes
 // never waits for the disk. Does not allocate once both batches have grown.
 class RecordingQueue {
  public:

@@ -11,8 +11,9 @@
 
 namespace furrow::server {
 
-// Where what happens is told to whoever records it. Called on the network thread: must neither
-// block nor allocate in the long run. Nothing is told that the daemon did not use.
+// Where what happens is told to whoever records it. Called on the network threads, of different
+// subjects at once, but for offers and departures, which come from one that is alone in the hub:
+// must neither block nor allocate in the long run. Nothing is told that the daemon did not use.
 class RecordingTap {
  public:
   virtual ~RecordingTap() = default;
