@@ -38,6 +38,9 @@ void Declare(CLI::App* app, Config* config, Flags* flags) {
   app->add_option("--bind", config->bind, "address to listen on (default 127.0.0.1)");
   app->add_option("--tcp", config->tcp, "TCP port: poses in, weights and pictures out (7400)");
   app->add_option("--udp", config->udp, "UDP port: poses in, weights out (7401)");
+  app->add_option("--threads", config->threads,
+                  "threads that take in UDP, each its share of the senders (1)")
+      ->type_name("N");
   app->add_option("--http", config->http.port,
                   "port of the page (7480, or any free one where that is taken; 0: any)");
   app->add_flag("--no-http", flags->no_http, "no page, no WebSocket, no JSON");

@@ -75,6 +75,9 @@ Status ValidateConfig(const Config& config) {
                     "", "give numeric ones: 192.168.0.20, ::1");
     }
   }
+  if (config.threads < 1 || config.threads > kMaxThreads) {
+    return OutOfRange("--threads must be 1 to " + std::to_string(kMaxThreads));
+  }
   if (config.require_render && !config.render) {
     return OutOfRange("--require-render and --no-render exclude each other");
   }

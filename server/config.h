@@ -47,6 +47,8 @@ struct RecordConfig {
   friend bool operator==(const RecordConfig&, const RecordConfig&) = default;
 };
 
+inline constexpr int kMaxThreads = 64;
+
 // All that furrowd can be told, by flags or by a TOML file (furrow.example.toml shows every key).
 struct Config {
   std::filesystem::path character;  // both empty: the default character of FURROW_DATA_DIR
@@ -55,6 +57,7 @@ struct Config {
   std::string bind = "127.0.0.1";   // numeric, IPv4 or IPv6
   std::uint16_t tcp = 7400;         // 0: any free port; the ready line says which
   std::uint16_t udp = 7401;
+  int threads = 1;  // that take in datagrams, [1, kMaxThreads]; see docs/CAPACITY.md
   bool render = true;
   bool require_render = false;            // no GL: end instead of going on without pictures
   std::string render_device;              // see render::RendererOptions::device
@@ -67,7 +70,7 @@ struct Config {
   RecordConfig record;
   HttpConfig http;
   std::filesystem::path play;  // a recording that plays inside the daemon; empty: none
-  bool verbose = false;  // one status line a second
+  bool verbose = false;        // one status line a second
   bool log_json = false;
   Limits limits;
   friend bool operator==(const Config&, const Config&) = default;

@@ -170,7 +170,8 @@ Tables InputTables(Config* config, const std::filesystem::path& folder) {
             Path("play", &config->play, folder),
             NameOrFile("skeleton_map", &config->skeleton_map, folder)}},
           {"listen",
-           {Text("bind", &config->bind), Port("tcp", &config->tcp), Port("udp", &config->udp)}},
+           {Text("bind", &config->bind), Port("tcp", &config->tcp), Port("udp", &config->udp),
+            Count("threads", &config->threads)}},
           {"mocap",
            {Port("vmc", &config->vmc), Port("livelink_face", &config->livelink_face),
             Texts("allow", &config->mocap_allow)}}};

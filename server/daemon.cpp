@@ -31,7 +31,7 @@
 #include "server/net/mocap_inputs.h"
 #include "server/net/osc_output.h"
 #include "server/net/tcp_server.h"
-#include "server/net/udp_server.h"
+#include "server/net/udp_port.h"
 #include "server/pipeline/render_thread.h"
 #include "server/playback/player.h"
 #include "server/recording/recorder.h"
@@ -62,8 +62,7 @@ class Daemon {
         options_(options),
         assets_(std::move(assets)),
         metrics_(options.metrics != nullptr ? options.metrics : &own_metrics_),
-        signals_(io_),
-        osc_(io_, metrics_) {}
+        signals_(io_) {}
 
   Status StartRendering();
   Status StartRecording();
@@ -87,15 +86,15 @@ class Daemon {
   Metrics own_metrics_;
   Metrics* const metrics_;
   std::uint64_t session_ = 0;
-  asio::io_context io_{1};  // one thread runs it
+  asio::io_context io_{1};  // one thread runs it; in the hub, it is in lane 0
   asio::signal_set signals_;
-  OscOutput osc_;
+  std::vector<std::unique_ptr<OscOutput>> osc_;  // by lane; none: nobody asked for it
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<RenderThread> render_;
   std::unique_ptr<Player> player_;  // a peer of the hub, which goes first
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<TcpServer> tcp_;
-  std::unique_ptr<UdpServer> udp_;
+  std::unique_ptr<UdpPort> udp_;
   MocapInputs mocap_;
   std::unique_ptr<Api> api_;
   std::unique_ptr<HttpServer> http_;
@@ -153,8 +152,13 @@ void Daemon::MakeHub() {
   parts.settings = assets_.settings;
   parts.metrics = metrics_;
   parts.make_token = RandomNumber;
-  if (config_.osc_out) parts.on_weights = [this](const Subject& subject) { osc_.Send(subject); };
+  if (config_.osc_out) {
+    parts.on_weights = [this](const Subject& subject, int lane) {
+      osc_[static_cast<std::size_t>(lane)]->Send(subject);
+    };
+  }
   parts.recording = recorder_.get();
+  parts.lanes = config_.threads;
   hub_ = std::make_unique<Hub>(std::move(parts));
 }
 
@@ -163,11 +167,13 @@ Status Daemon::Listen() {
   const auto address = asio::ip::make_address(config_.bind);
   tcp_ = std::make_unique<TcpServer>(io_, config_.limits, hub_.get(), metrics_);
   if (Status status = tcp_->Open({address, config_.tcp}); !status.ok()) return status;
-  udp_ = std::make_unique<UdpServer>(io_, config_.limits, hub_.get(), metrics_, recorder_.get());
+  udp_ = std::make_unique<UdpPort>(io_, config_.threads, config_.limits, hub_.get(), metrics_,
+                                   recorder_.get());
   if (Status status = udp_->Open({address, config_.udp}); !status.ok()) return status;
-  if (config_.osc_out) {
-    if (Status status = osc_.Open(*config_.osc_out, config_.osc_prefix); !status.ok())
-      return status;
+  for (int lane = 0; config_.osc_out && lane < config_.threads; ++lane) {
+    osc_.push_back(std::make_unique<OscOutput>(io_, metrics_));
+    const Status status = osc_.back()->Open(*config_.osc_out, config_.osc_prefix);
+    if (!status.ok()) return status;
   }
   if (Status status = mocap_.Open(config_, io_, hub_.get(), metrics_); !status.ok()) return status;
   return StartWeb();
@@ -201,8 +207,11 @@ Status Daemon::StartWeb() {
            [this](std::function<void(Hub&, Time)> task) {
              asio::post(io_, [this, task = std::move(task)] { task(*hub_, ReadClock()); });
            },
-       .answer = [this](const ApiRequest& request, Hub& hub,
-                        Time now) { return api_->Answer(request, hub, now); },
+       .answer =
+           [this](const ApiRequest& request, Hub& hub, Time now) {
+             const Hub::Alone alone(hub, 0);
+             return api_->Answer(request, hub, now);
+           },
        .metrics = metrics_});
   if (!started.ok()) return started.status();
   http_ = *std::move(started);
@@ -262,7 +271,7 @@ asio::awaitable<void> Daemon::TickLoop() {
     timer.expires_at(due);
     co_await timer.async_wait(kToken);
     const Time now = ReadClock();
-    udp_->Together([this, now] { hub_->Tick(now); });
+    hub_->Tick(now);
     mocap_.Tick(now);
   }
 }
@@ -274,8 +283,8 @@ asio::awaitable<void> Daemon::SecondLoop() {
     timer.expires_after(kSecond);
     co_await timer.async_wait(kToken);
     const Time now = ReadClock();
-    udp_->Expire(now);
     if (config_.verbose) {
+      const Hub::Alone alone(*hub_, 0);
       spdlog::info("{}", status_line.Next(hub_->num_subjects(), hub_->num_subscriptions(), now));
     }
   }

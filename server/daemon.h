@@ -32,8 +32,8 @@ struct RunOptions {
 // The daemon, whole: loads, listens, prints 'furrowd ready ...' on stdout, serves until it is asked
 // to stop, drains, returns how it ended. Errors are logged before it returns.
 //
-// The calling thread becomes the network thread; the render thread is its own. Several daemons may
-// run in one process.
+// The calling thread becomes the first network thread, Config::threads - 1 more take in datagrams;
+// the render thread is its own. Several daemons may run in one process.
 [[nodiscard]] ExitCode Run(const Config& config, const RunOptions& options = {});
 
 }  // namespace furrow::server

@@ -64,7 +64,9 @@ class House {
 
   struct Silent : server::Link {  // the publisher's: it does not listen
     void SendReply(std::span<const std::uint8_t>) override {}
-    int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t) override { return 0; }
+    int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t, int) override {
+      return 0;
+    }
     void DropFrames(std::uint64_t) override {}
   } publisher_link_;
   server::PeerId publisher_ = 0;

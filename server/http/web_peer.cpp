@@ -17,8 +17,8 @@ class WebPeer::Connection : public Link {
   explicit Connection(std::function<void()> wake) : wake_(std::move(wake)) {}
 
   void SendReply(std::span<const std::uint8_t> message) override;
-  int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
-                std::size_t keep) override;
+  int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message, std::size_t keep,
+                int lane) override;
   void DropFrames(std::uint64_t key) override;
   bool Pop(std::vector<std::uint8_t>* out);
 
@@ -46,7 +46,7 @@ void WebPeer::Connection::SendReply(std::span<const std::uint8_t> message) {
 }
 
 int WebPeer::Connection::SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
-                                   std::size_t keep) {
+                                   std::size_t keep, int /*lane*/) {
   int dropped = 0;
   bool is_first = false;
   {

@@ -37,7 +37,9 @@ class LastWord : public Link {
     socket_->send(asio::buffer(frame), 0, error);
     socket_->shutdown(tcp::socket::shutdown_send, error);
   }
-  int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t) override { return 0; }
+  int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t, int) override {
+    return 0;
+  }
   void DropFrames(std::uint64_t) override {}
 
  private:

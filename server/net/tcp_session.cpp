@@ -64,6 +64,7 @@ void TcpSession::Start() {
   // Where it cannot be had, all works but for the freshness of what slow readers get.
   setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes,
              sizeof(kUnsentBytes));
+  thread_ = std::this_thread::get_id();
   peer_ = hub_->AddPeer(Transport::kTcp, NameOf(socket_), this, ReadClock());
   const auto self = shared_from_this();
   const auto executor = socket_.get_executor();
@@ -103,10 +104,10 @@ bool TcpSession::OnBytes(std::span<const std::uint8_t> bytes, Time now) {
 asio::awaitable<void> TcpSession::Write() {
   while (state_ == State::kOpen || state_ == State::kFlushing) {
     if (TakeOut()) {
-      writing_ = true;
       write_started_ = ReadClock();
+      SetWriting(true);
       const auto [error, size] = co_await asio::async_write(socket_, asio::buffer(out_), kToken);
-      writing_ = false;
+      SetWriting(false);
       if (error) Close();
     } else if (state_ == State::kFlushing) {
       if (!linger_) {
@@ -126,6 +127,7 @@ asio::awaitable<void> TcpSession::Write() {
 // What waits, as far as it goes out together. False: nothing.
 bool TcpSession::TakeOut() {
   out_.clear();
+  const std::lock_guard lock(mutex_);
   while (out_.size() < kWriteBytes && outbox_.Pop(&message_)) {
     const auto prefix = protocol::FramePrefix(message_.size());
     out_.insert(out_.end(), prefix.begin(), prefix.end());
@@ -158,7 +160,10 @@ void TcpSession::CloseAfterFlush(bool linger) {
   state_ = State::kFlushing;
   linger_ = linger;
   closing_since_ = ReadClock();
-  outbox_.DropAllBehindTheLine();
+  {
+    const std::lock_guard lock(mutex_);
+    outbox_.DropAllBehindTheLine();
+  }
   hub_->RemovePeer(peer_);
   wake_.cancel();
 }
@@ -176,9 +181,12 @@ void TcpSession::Close() {
 
 void TcpSession::SendReply(std::span<const std::uint8_t> message) {
   if (state_ != State::kOpen) return;
-  if (outbox_.PushReply(message)) {
-    if (!writing_) wake_.cancel();
-    return;
+  {
+    const std::lock_guard lock(mutex_);
+    if (outbox_.PushReply(message)) {
+      if (!writing_) Wake();
+      return;
+    }
   }
   metrics_->Add(Counter::kConnectionsOverrun);
   // Not here: the hub is at work with this very peer.
@@ -186,18 +194,39 @@ void TcpSession::SendReply(std::span<const std::uint8_t> message) {
 }
 
 int TcpSession::SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
-                          std::size_t keep) {
+                          std::size_t keep, int /*lane*/) {
   if (state_ != State::kOpen) return 0;
+  const std::lock_guard lock(mutex_);
   const int dropped = outbox_.PushFrame(key, message, keep);
-  if (!writing_) wake_.cancel();
+  if (!writing_) Wake();
   return dropped;
+}
+
+void TcpSession::SetWriting(bool writing) {
+  const std::lock_guard lock(mutex_);
+  writing_ = writing;
+}
+
+// Tells the writer that something waits. Another thread does so once, however much it pushes until
+// the writer's has its turn.
+void TcpSession::Wake() {
+  if (std::this_thread::get_id() == thread_) {
+    wake_.cancel();
+  } else if (!woken_.exchange(true)) {
+    asio::post(socket_.get_executor(), [self = shared_from_this()] {
+      self->woken_ = false;
+      self->wake_.cancel();
+    });
+  }
 }
 
 bool TcpSession::IsStuck(Time now) const { return writing_ && now - write_started_ > kStuckAfter; }
 
 // Of a peer that leaves, its subscriptions end; what was promised it still goes out.
 void TcpSession::DropFrames(std::uint64_t key) {
-  if (state_ == State::kOpen) outbox_.DropFrames(key);
+  if (state_ != State::kOpen) return;
+  const std::lock_guard lock(mutex_);
+  outbox_.DropFrames(key);
 }
 
 }  // namespace furrow::server

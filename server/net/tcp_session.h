@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <span>
+#include <thread>
 #include <vector>
 
 #include <asio/awaitable.hpp>
@@ -35,8 +38,8 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
   void Close();
 
   void SendReply(std::span<const std::uint8_t> message) override;
-  int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
-                std::size_t keep) override;
+  int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message, std::size_t keep,
+                int lane) override;
   void DropFrames(std::uint64_t key) override;
   [[nodiscard]] bool IsStuck(Time now) const override;
 
@@ -46,6 +49,8 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
   asio::awaitable<void> Read();
   asio::awaitable<void> Write();
   bool TakeOut();
+  void SetWriting(bool writing);
+  void Wake();
   asio::awaitable<void> Watch();
   bool OnBytes(std::span<const std::uint8_t> bytes, Time now);
   bool IsOverdue(Time now);
@@ -57,15 +62,18 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
   std::function<void(const std::shared_ptr<TcpSession>&)> on_closed_;
   asio::steady_timer wake_;  // the writer's: cancelled when there is something to do
   asio::steady_timer watch_;
+  std::mutex mutex_;  // of what other threads that publish reach: what waits, and who writes it
   Outbox outbox_;
   protocol::FrameReader frames_;
   std::vector<std::uint8_t> in_;
   std::vector<std::uint8_t> message_;
   std::vector<std::uint8_t> out_;  // frames that are being written
   PeerId peer_ = 0;
-  State state_ = State::kOpen;
+  std::atomic<State> state_ = State::kOpen;
   bool linger_ = false;
   bool writing_ = false;
+  std::atomic<bool> woken_ = false;  // by another thread, which has posted so
+  std::thread::id thread_;           // that all runs on but Link
   Time write_started_{0};
   Time closing_since_{0};
 };

@@ -2,6 +2,8 @@
 #include "server/net/udp_server.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cerrno>
 #include <string>
 
 #include <asio/co_spawn.hpp>
@@ -9,6 +11,7 @@
 #include <asio/experimental/as_tuple.hpp>
 #include <asio/post.hpp>
 #include <asio/use_awaitable.hpp>
+#include <sys/socket.h>
 
 #include "protocol/envelope.h"
 #include "server/net/clock.h"
@@ -24,17 +27,26 @@ constexpr int kReceiveBufferBytes = 4 * 1024 * 1024;
 constexpr int kBatchesPerTurn = 8;
 constexpr int kEvictionCandidates = 16;
 
+asio::error_code AllowSharing(int socket) {
+  const int yes = 1;
+  if (setsockopt(socket, SOL_SOCKET, SO_REUSEPORT, &yes, sizeof(yes)) == 0) return {};
+  return {errno, asio::error::get_system_category()};
+}
+
 }  // namespace
 
-// One UDP address. Sends without blocking, at once or with the batch that is being worked on, then
-// in bundles to who takes them: a full socket buffer drops, as UDP may.
+// One UDP address. What goes to it leaves with all else of the turn, in bundles to who takes them,
+// and does not block: a full socket buffer drops, as UDP may.
 class UdpServer::UdpPeer : public Link {
  public:
   UdpPeer(UdpServer* server, udp::endpoint endpoint) : server_(server), endpoint_(endpoint) {}
 
-  void SendReply(std::span<const std::uint8_t> message) override { Send(message); }
-  int SendFrame(std::uint64_t, std::span<const std::uint8_t> message, std::size_t) override {
-    Send(message);
+  void SendReply(std::span<const std::uint8_t> message) override {
+    Send(message, server_->sender_);
+  }
+  int SendFrame(std::uint64_t, std::span<const std::uint8_t> message, std::size_t,
+                int lane) override {
+    Send(message, server_->by_lane_[static_cast<std::size_t>(lane)]->sender_);
     return 0;
   }
   void TakesBundles(bool takes) override { takes_bundles_ = takes; }
@@ -43,34 +55,42 @@ class UdpServer::UdpPeer : public Link {
   PeerId id = 0;
 
  private:
-  void Send(std::span<const std::uint8_t> message) {
+  void Send(std::span<const std::uint8_t> message, UdpSender& sender) {
     const std::size_t count = protocol::NumDatagrams(message.size());
     const std::uint32_t message_id = count > 1 ? next_message_id_++ : 0;
     const Packing packing = takes_bundles_ && count == 1 ? Packing::kShared : Packing::kAlone;
-    UdpSender& sender = server_->sender_;
     for (std::size_t index = 0; index < count; ++index) {
       const auto datagram = sender.Prepare();
       sender.Commit(id, endpoint_, protocol::WriteDatagram(message, message_id, index, datagram),
                     packing);
     }
-    if (!server_->gathering_) server_->SendAll();
   }
 
   UdpServer* server_;
   udp::endpoint endpoint_;
-  std::uint32_t next_message_id_ = 0;
+  std::atomic<std::uint32_t> next_message_id_ = 0;  // several lanes may send
   bool takes_bundles_ = false;
 };
 
 UdpServer::UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
-                     RecordingTap* recording)
-    : io_(io), socket_(io), limits_(limits), hub_(hub), metrics_(metrics), recording_(recording) {}
+                     RecordingTap* recording, int lane)
+    : io_(io),
+      socket_(io),
+      limits_(limits),
+      hub_(hub),
+      metrics_(metrics),
+      recording_(recording),
+      lane_(lane),
+      by_lane_(static_cast<std::size_t>(lane) + 1, this) {
+  hub_->SetOutlet(lane_, this);
+}
 
-UdpServer::~UdpServer() = default;
+UdpServer::~UdpServer() { hub_->SetOutlet(lane_, nullptr); }
 
-Status UdpServer::Open(const udp::endpoint& endpoint) {
+Status UdpServer::Open(const udp::endpoint& endpoint, Port port) {
   asio::error_code error;
   socket_.open(endpoint.protocol(), error);
+  if (!error && port == Port::kShared) error = AllowSharing(socket_.native_handle());
   if (!error) socket_.bind(endpoint, error);
   if (!error) socket_.non_blocking(true, error);
   if (error) {
@@ -84,6 +104,13 @@ Status UdpServer::Open(const udp::endpoint& endpoint) {
   // As much as the system allows; less only means earlier drops.
   socket_.set_option(asio::socket_base::receive_buffer_size(kReceiveBufferBytes), error);
   return {};
+}
+
+Status UdpServer::Share() {
+  const asio::error_code error = AllowSharing(socket_.native_handle());
+  if (!error) return {};
+  return Status(StatusCode::kUnavailable, "cannot share the UDP port: " + error.message(), "",
+                "start with --threads 1");
 }
 
 std::uint16_t UdpServer::port() const {
@@ -110,11 +137,8 @@ asio::awaitable<void> UdpServer::Read() {
       const Time now = ReadClock();
       metrics_->Add(Counter::kDatagramsReceived, count);
       metrics_->Add(Counter::kDatagramsOverrun, batch_.TakeDropped());
-      gathering_ = true;
+      const Hub::Turn turn_of_batch(*hub_, lane_);
       for (std::size_t i = 0; i < count; ++i) OnDatagram(batch_.bytes(i), batch_.sender(i), now);
-      hub_->PublishGathered();
-      gathering_ = false;
-      SendAll();
       is_drained = count < UdpBatch::kSize;
     }
     // Let timers and TCP have their turn, however fast datagrams come.
@@ -122,7 +146,7 @@ asio::awaitable<void> UdpServer::Read() {
   }
 }
 
-void UdpServer::SendAll() {
+void UdpServer::Flush() {
   sender_.Flush();
   const UdpSender::Counts counts = sender_.TakeCounts();
   metrics_->Add(Counter::kDatagramsSent, counts.sent);
@@ -183,11 +207,12 @@ UdpServer::UdpPeer* UdpServer::FindOrAdd(const udp::endpoint& sender, Time now) 
   auto peer = std::make_unique<UdpPeer>(this, sender);
   const std::string name =
       "udp " + sender.address().to_string() + " port " + std::to_string(sender.port());
-  peer->id = hub_->AddPeer(Transport::kUdp, name, peer.get(), now);
+  peer->id = hub_->AddPeer(Transport::kUdp, name, peer.get(), now, lane_);
   return peers_.emplace(address, std::move(peer)).first->second.get();
 }
 
 void UdpServer::Expire(Time now) {
+  const Hub::Turn turn(*hub_, lane_);
   metrics_->Add(Counter::kFragmentsExpired, reassembler_.Expire(ToMicroseconds(now)));
   std::erase_if(peers_, [&](const auto& entry) {
     const PeerId id = entry.second->id;

@@ -60,7 +60,9 @@ class Player : public Link {
 
   // Link: the answers to a publisher.
   void SendReply(std::span<const std::uint8_t> message) override;
-  int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t) override { return 0; }
+  int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t, int) override {
+    return 0;
+  }
   void DropFrames(std::uint64_t) override {}
 
  private:

@@ -23,10 +23,10 @@ PicturesWish* FlowOf(Subscription& subscription) {
 }  // namespace
 
 void Subscribers::Publish(Subject& subject, std::span<const std::uint8_t> pose, std::int64_t age_us,
-                          Time now) {
+                          Time now, Desk* desk) {
   const auto watching = by_subject_.find(subject.id);
   if (watching == by_subject_.end()) return;
-  encoded_wish_.reset();
+  desk->encoded_wish.reset();
   bool has_looked = false;
   for (Subscription* subscription : watching->second) {
     if (age_us > 0 && std::holds_alternative<PosesWish>(subscription->wish)) continue;
@@ -44,10 +44,10 @@ void Subscribers::Publish(Subject& subject, std::span<const std::uint8_t> pose, 
     if (subscription->owed) {
       metrics_->Add(Counter::kFramesSkippedRate);
     } else {
-      Deliver(*subscription, pose, age_us, now, &jobs_);
+      Deliver(*subscription, pose, age_us, now, desk);
     }
   }
-  SubmitJobs(&jobs_);
+  SubmitJobs(&desk->jobs);
 }
 
 void Subscribers::PublishOwed(Time now) {
@@ -86,52 +86,53 @@ void Subscribers::PublishOwed(Subscription& subscription, Time now) {
   subscription.owed = false;
   const Subject& subject = *subscription.subject;
   if (!subject.pipeline->has_pose()) return;  // offered anew meanwhile
-  encoded_wish_.reset();
+  desk_->encoded_wish.reset();
   const std::int64_t age_us = subject.lost ? ToMicroseconds(now - subject.last_pose) : 0;
-  Deliver(subscription, {}, age_us, now, &jobs_);
-  SubmitJobs(&jobs_);
+  Deliver(subscription, {}, age_us, now, desk_);
+  SubmitJobs(&desk_->jobs);
 }
 
 void Subscribers::Deliver(Subscription& subscription, std::span<const std::uint8_t> pose,
-                          std::int64_t age_us, Time now, Jobs* jobs) {
+                          std::int64_t age_us, Time now, Desk* desk) {
   if (const auto* wish = std::get_if<WeightsWish>(&subscription.wish)) {
-    SendWeights(subscription, *wish, age_us);
+    SendWeights(subscription, *wish, age_us, desk);
   } else if (std::holds_alternative<PosesWish>(subscription.wish)) {
-    SendPose(subscription, pose);
+    SendPose(subscription, pose, desk);
   } else {
-    AddToJobs(subscription, std::get<PicturesWish>(subscription.wish), age_us, now, jobs);
+    AddToJobs(subscription, std::get<PicturesWish>(subscription.wish), age_us, now, &desk->jobs);
   }
 }
 
 void Subscribers::SendWeights(Subscription& subscription, const WeightsWish& wish,
-                              std::int64_t age_us) {
+                              std::int64_t age_us, Desk* desk) {
   const SubjectPipeline& pipeline = *subscription.subject->pipeline;
-  EncodeWeights(pipeline, wish, age_us);
-  subscription.dropped +=
-      postman_->Forward(*subscription.peer, subscription.uid,
-                        {.stream = subscription.id,
-                         .sequence = pipeline.sequence(),
-                         .capture_time_us = pipeline.capture_time_us()},
-                        std::span(encoded_).subspan(protocol::kEnvelopeBytes),
-                        Counter::kWeightsSent, Counter::kWeightsDroppedSlow, KeptOf(subscription));
+  EncodeWeights(pipeline, wish, age_us, desk);
+  subscription.dropped += desk->postman.Forward(
+      *subscription.peer, subscription.uid,
+      {.stream = subscription.id,
+       .sequence = pipeline.sequence(),
+       .capture_time_us = pipeline.capture_time_us()},
+      std::span(desk->encoded).subspan(protocol::kEnvelopeBytes), Counter::kWeightsSent,
+      Counter::kWeightsDroppedSlow, KeptOf(subscription));
 }
 
 // Once for all subscriptions of a subject that ask for the same.
 void Subscribers::EncodeWeights(const SubjectPipeline& pipeline, const WeightsWish& wish,
-                                std::int64_t age_us) {
-  const EncodedWish is_due{wish.names_hash, wish.format, wish.source};
-  if (encoded_wish_ == is_due) return;
-  encoded_wish_ = is_due;
+                                std::int64_t age_us, Desk* desk) {
+  const Desk::EncodedWish is_due{wish.names_hash, wish.format, wish.source};
+  if (desk->encoded_wish == is_due) return;
+  desk->encoded_wish = is_due;
   const std::span<const float> values = wish.source == protocol::WeightSource::kDriverValues
                                             ? pipeline.driver_values()
                                             : pipeline.wrinkle_weights();
-  frame_.names_hash = wish.names_hash;
-  frame_.age_us = age_us;
-  frame_.format = wish.format;
-  frame_.values.resize(wish.indices.size());
-  std::ranges::transform(wish.indices, frame_.values.begin(),
+  protocol::WeightFrame& weights = desk->weights;
+  weights.names_hash = wish.names_hash;
+  weights.age_us = age_us;
+  weights.format = wish.format;
+  weights.values.resize(wish.indices.size());
+  std::ranges::transform(wish.indices, weights.values.begin(),
                          [values](std::uint32_t index) { return values[index]; });
-  postman_->Encode(frame_, encoded_);
+  desk->postman.Encode(weights, desk->encoded);
 }
 
 }  // namespace furrow::server

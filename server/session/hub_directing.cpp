@@ -20,7 +20,7 @@ Subject* Hub::FindSubject(std::string_view name) {
 }
 
 std::string_view Hub::SourceOf(const Subject& subject) {
-  const Peer* peer = peers_.Find(subject.owner.peer);
+  const Peer* peer = LaneOf(subject.owner.peer).peers.Find(subject.owner.peer);
   return peer == nullptr ? std::string_view() : std::string_view(peer->name);
 }
 
@@ -52,7 +52,8 @@ void Hub::SetNeutral(Subject& subject, std::optional<wrinkle::LocalPose> neutral
 // Other weights of the pose that was there: never of age 0, as only a new pose is.
 void Hub::Reweighted(Subject& subject, Time now) {
   if (!subject.pipeline->has_pose()) return;
-  Weighted(subject, {}, std::max<std::int64_t>(1, ToMicroseconds(now - subject.last_pose)), now);
+  Weighted(*lanes_.front(), subject, {},
+           std::max<std::int64_t>(1, ToMicroseconds(now - subject.last_pose)), now);
 }
 
 }  // namespace furrow::server

@@ -25,15 +25,18 @@ inline constexpr std::size_t kKeepAll = std::numeric_limits<std::size_t>::max();
 enum class Transport { kTcp, kUdp, kMocap, kWeb };
 
 // How bytes get to a peer. The net side implements it; tests do with a few lines.
+//
+// Called by a thread that is alone in the hub; frames also by one that publishes in its own lane,
+// while others do in theirs.
 class Link {
  public:
   virtual ~Link() = default;
   // Answers: in order, never replaced by anything newer.
   virtual void SendReply(std::span<const std::uint8_t> message) = 0;
   // Weights, poses and pictures: where the peer is slow, the newest `keep` of a key win. Returns
-  // how many frames were dropped.
-  virtual int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
-                        std::size_t keep) = 0;
+  // how many frames were dropped. `lane`: of the thread that calls.
+  virtual int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message, std::size_t keep,
+                        int lane) = 0;
   // Whether the peer takes several messages in a datagram; for links that have such.
   virtual void TakesBundles(bool /*takes*/) {}
   // The frames of a key are no longer wanted.

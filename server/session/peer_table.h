@@ -12,12 +12,19 @@
 
 namespace furrow::server {
 
-// The peers of one network thread. A Peer's address is stable until Remove().
+// The peers of one network thread. A Peer's address is stable until Remove(). Of several tables,
+// each gives out every so manieth id, so that an id tells its table.
 class PeerTable {
  public:
+  explicit PeerTable(int table = 0, int tables = 1)
+      : step_(static_cast<PeerId>(tables)), next_id_(step_ + static_cast<PeerId>(table)) {}
+
+  // Which of `tables` tables gave it out.
+  [[nodiscard]] static std::size_t TableOf(PeerId id, std::size_t tables) { return id % tables; }
+
   Peer& Add(Transport transport, std::string name, Link* link, TokenBucket bucket, Time now) {
     auto peer = std::make_unique<Peer>();
-    peer->id = next_id_++;
+    peer->id = std::exchange(next_id_, next_id_ + step_);
     peer->transport = transport;
     peer->name = std::move(name);
     peer->link = link;
@@ -41,7 +48,8 @@ class PeerTable {
 
  private:
   std::unordered_map<PeerId, std::unique_ptr<Peer>> peers_;
-  PeerId next_id_ = 1;
+  const PeerId step_;
+  PeerId next_id_;
 };
 
 }  // namespace furrow::server

@@ -46,7 +46,8 @@ bool Subscribers::BindPoses(Subscription& subscription, PosesWish& wish, Subject
   return true;
 }
 
-void Subscribers::SendPose(Subscription& subscription, std::span<const std::uint8_t> pose) {
+void Subscribers::SendPose(Subscription& subscription, std::span<const std::uint8_t> pose,
+                           Desk* desk) {
   const Subject& subject = *subscription.subject;
   const SubjectPipeline& pipeline = *subject.pipeline;
   const protocol::Header header{.stream = subscription.id,
@@ -56,14 +57,15 @@ void Subscribers::SendPose(Subscription& subscription, std::span<const std::uint
   Peer& peer = *subscription.peer;
   if (!pose.empty()) {
     subscription.dropped +=
-        postman_->Forward(peer, subscription.uid, header, pose, Counter::kPosesRelayed,
-                          Counter::kPosesDroppedSlow, keep);
+        desk->postman.Forward(peer, subscription.uid, header, pose, Counter::kPosesRelayed,
+                              Counter::kPosesDroppedSlow, keep);
     return;
   }
-  ToWholePose(pipeline.pose(), pipeline.stream(), &pose_);
-  pose_.skeleton_hash = subject.skeleton_hash;
-  subscription.dropped += postman_->Frame(peer, subscription.uid, header, pose_,
-                                          Counter::kPosesRelayed, Counter::kPosesDroppedSlow, keep);
+  ToWholePose(pipeline.pose(), pipeline.stream(), &desk->pose);
+  desk->pose.skeleton_hash = subject.skeleton_hash;
+  subscription.dropped +=
+      desk->postman.Frame(peer, subscription.uid, header, desk->pose, Counter::kPosesRelayed,
+                          Counter::kPosesDroppedSlow, keep);
 }
 
 // Whoever wants every frame hears what it does not get, but not so often that it would get less.

@@ -14,10 +14,11 @@
 namespace furrow::server {
 
 // Writes messages to peers: one encoder, one buffer, the daemon's session number. What an unproven
-// UDP address has no credit for is dropped and counted.
+// UDP address has no credit for is dropped and counted. Frames leave by the sockets of `lane`.
 class Postman {
  public:
-  Postman(std::uint64_t session, Metrics* metrics) : session_(session), metrics_(metrics) {}
+  Postman(std::uint64_t session, Metrics* metrics, int lane = 0)
+      : session_(session), metrics_(metrics), lane_(lane) {}
 
   template <class Message>
   void Reply(Peer& peer, protocol::Header header, const Message& message) {
@@ -74,7 +75,7 @@ class Postman {
   std::uint64_t Post(Peer& peer, std::uint64_t key, Counter sent, Counter dropped,
                      std::size_t keep) {
     metrics_->Add(sent);
-    const auto count = static_cast<std::uint64_t>(peer.link->SendFrame(key, buffer_, keep));
+    const auto count = static_cast<std::uint64_t>(peer.link->SendFrame(key, buffer_, keep, lane_));
     metrics_->Add(dropped, count);
     return count;
   }
@@ -86,6 +87,7 @@ class Postman {
 
   std::uint64_t session_;
   Metrics* metrics_;
+  int lane_;
   protocol::Encoder encoder_;
   std::vector<std::uint8_t> buffer_;
 };

@@ -160,7 +160,8 @@ bool Publishers::IsNew(Subject& subject, const protocol::Header& header) {
   return false;
 }
 
-void Publishers::OnStray(Peer& peer, const protocol::Header& header, std::uint64_t hash, Time now) {
+void Publishers::OnStray(Peer& peer, const protocol::Header& header, std::uint64_t hash,
+                         Postman& postman, Time now) {
   const bool retired = subjects_->IsRetired({peer.id, header.session, header.stream});
   metrics_->Add(retired ? Counter::kPosesRetiredSession : Counter::kPosesUnknownStream);
   if (!peer.strays.Take(header.session, header.stream, now)) return;
@@ -171,7 +172,7 @@ void Publishers::OnStray(Peer& peer, const protocol::Header& header, std::uint64
   } else {
     metrics_->Add(Counter::kSkeletonsRequested);
   }
-  postman_->Reply(peer, Postman::Answering(header), reply);
+  postman.Reply(peer, Postman::Answering(header), reply);
 }
 
 void Publishers::OnGoodbye(const Peer& peer, const protocol::Header& header, Time now) {

@@ -45,7 +45,8 @@ class Publishers {
   [[nodiscard]] bool OnSolved(const GatheredPose& pose);
   // Poses that no offer explains: the sender is asked for its skeleton, or, where another has taken
   // its subject over, told so; each stream at most once an interval.
-  void OnStray(Peer& peer, const protocol::Header& header, std::uint64_t skeleton_hash, Time now);
+  void OnStray(Peer& peer, const protocol::Header& header, std::uint64_t skeleton_hash,
+               Postman& postman, Time now);
   // The subject that the stream feeds, if any, decays and then leaves.
   void OnGoodbye(const Peer& peer, const protocol::Header& header, Time now);
 

@@ -33,14 +33,15 @@ std::string Oversize(const std::vector<std::string>& names, Transport transport)
 }  // namespace
 
 Subscribers::Subscribers(const Limits& limits, SubjectRegistry* subjects, PictureSource* pictures,
-                         const render::Settings& settings, bool all_drivers, Postman* postman,
+                         const render::Settings& settings, bool all_drivers, Desk* desk,
                          Metrics* metrics)
     : limits_(limits),
       subjects_(subjects),
       pictures_(pictures),
       settings_(settings),
       all_drivers_(all_drivers),
-      postman_(postman),
+      desk_(desk),
+      postman_(&desk->postman),
       metrics_(metrics) {}
 
 void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,

@@ -14,8 +14,8 @@
 #include "server/config.h"
 #include "server/metrics.h"
 #include "server/pipeline/picture_source.h"
+#include "server/session/desk.h"
 #include "server/session/peer.h"
-#include "server/session/postman.h"
 #include "server/session/subject_registry.h"
 #include "server/session/subscription.h"
 #include "server/session/view_settings.h"
@@ -29,8 +29,7 @@ class Subscribers {
   // `pictures` may be null: nothing is drawn here. `all_drivers`: all weights are used, whoever
   // subscribes; else of each subject only the drivers are evaluated that its subscriptions need.
   Subscribers(const Limits& limits, SubjectRegistry* subjects, PictureSource* pictures,
-              const render::Settings& settings, bool all_drivers, Postman* postman,
-              Metrics* metrics);
+              const render::Settings& settings, bool all_drivers, Desk* desk, Metrics* metrics);
 
   // All answer with SubscribeReply or an error.
   void Subscribe(Peer& peer, const protocol::Header& header,
@@ -60,7 +59,9 @@ class Subscribers {
 
   // Sends the subject's weights and pose, and asks for its pictures, wherever they are due. `pose`:
   // the payload that it came as; empty where it does not say the whole pose, or none came.
-  void Publish(Subject& subject, std::span<const std::uint8_t> pose, std::int64_t age_us, Time now);
+  // Of different subjects on several threads at once, each at its own desk.
+  void Publish(Subject& subject, std::span<const std::uint8_t> pose, std::int64_t age_us, Time now,
+               Desk* desk);
   // Sends what a rate held back, so that a pose after which none comes is still seen.
   void PublishOwed(Time now);
   // Hands a finished picture to those it was drawn for, as far as they are still there.
@@ -73,7 +74,7 @@ class Subscribers {
   [[nodiscard]] std::size_t size() const { return subscriptions_.size(); }
 
  private:
-  using Jobs = std::vector<RenderJob>;  // one a spec
+  using Jobs = Desk::Jobs;
 
   bool MayAdd(Peer& peer, const protocol::Header& header);
   Subscription* Find(const Peer& peer, std::uint16_t id);
@@ -91,13 +92,15 @@ class Subscribers {
   void UpdateLevel(Subject& subject);
 
   void Deliver(Subscription& subscription, std::span<const std::uint8_t> pose, std::int64_t age_us,
-               Time now, Jobs* jobs);
+               Time now, Desk* desk);
   // Whether the peer is stuck; the newest pose is then owed.
   bool HoldBack(Subscription& subscription);
-  void SendPose(Subscription& subscription, std::span<const std::uint8_t> pose);
+  void SendPose(Subscription& subscription, std::span<const std::uint8_t> pose, Desk* desk);
   void TellDropped(Subscription& subscription, Time now);
-  void SendWeights(Subscription& subscription, const WeightsWish& wish, std::int64_t age_us);
-  void EncodeWeights(const SubjectPipeline& pipeline, const WeightsWish& wish, std::int64_t age_us);
+  void SendWeights(Subscription& subscription, const WeightsWish& wish, std::int64_t age_us,
+                   Desk* desk);
+  static void EncodeWeights(const SubjectPipeline& pipeline, const WeightsWish& wish,
+                            std::int64_t age_us, Desk* desk);
   void PublishOwed(Subscription& subscription, Time now);
 
   // viewers.cpp
@@ -124,27 +127,16 @@ class Subscribers {
   PictureSource* const pictures_;
   ViewSettings settings_;
   const bool all_drivers_;
+  Desk* const desk_;  // of whoever is alone in the hub
   Postman* const postman_;
   Metrics* const metrics_;
   std::unordered_map<std::uint64_t, std::unique_ptr<Subscription>> subscriptions_;  // by uid
   std::unordered_map<SubjectId, std::vector<Subscription*>> by_subject_;
   std::uint64_t next_uid_ = 1;
-  // What `encoded_` holds of the subject that is being published.
-  struct EncodedWish {
-    std::uint64_t names_hash = 0;
-    protocol::WeightFormat format = protocol::WeightFormat::kF32;
-    protocol::WeightSource source = protocol::WeightSource::kWrinkleWeights;
-    friend bool operator==(const EncodedWish&, const EncodedWish&) = default;
-  };
-  std::optional<EncodedWish> encoded_wish_;
-  std::vector<std::uint8_t> encoded_;
-  protocol::WeightFrame frame_;  // reused
-  protocol::ImageFrame image_;
-  protocol::PoseFrame pose_;
+  protocol::ImageFrame image_;  // reused
   protocol::SkeletonOffer offer_;
   std::vector<std::uint8_t> encoded_offer_;
   bool has_named_large_picture_ = false;  // in the log
-  Jobs jobs_;
 };
 
 }  // namespace furrow::server

@@ -16,7 +16,9 @@ namespace {
 class Sink : public Link {
  public:
   void SendReply(std::span<const std::uint8_t>) override {}
-  int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t) override { return 0; }
+  int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t, int) override {
+    return 0;
+  }
   void DropFrames(std::uint64_t) override {}
 };
 

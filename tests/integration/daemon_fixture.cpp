@@ -2,6 +2,7 @@
 #include "daemon_fixture.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <utility>
 
@@ -14,6 +15,8 @@
 namespace furrow::testing_net {
 
 DaemonThread::DaemonThread(server::Config config) : config_(std::move(config)) {
+  const char* const threads = std::getenv("FURROW_TEST_THREADS");
+  if (threads != nullptr && config_.threads == 1) config_.threads = std::atoi(threads);
   std::promise<std::optional<server::Ready>> ready;
   std::future<std::optional<server::Ready>> is_ready = ready.get_future();
   std::promise<server::ExitCode> exit_code;

@@ -20,6 +20,7 @@
 namespace furrow::testing_net {
 
 // A daemon in a thread of this process, on ports that the system picked; drained when it goes.
+// Where the test does not say, FURROW_TEST_THREADS does how many network threads it has.
 class DaemonThread {
  public:
   explicit DaemonThread(server::Config config);

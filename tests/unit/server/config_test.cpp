@@ -121,6 +121,8 @@ TEST(CommandLine, WrongUsageIsTwo) {
                                              {"--osc-out", "nowhere"},
                                              {"--mocap-allow", "stage-pc"},
                                              {"--vmc", "7401"},
+                                             {"--threads", "0"},
+                                             {"--threads", "65"},
                                              {"--require-render", "--no-render"}}) {
     const CommandLine line = Parse(args);
     EXPECT_FALSE(line.config.has_value()) << args[0];
@@ -162,7 +164,7 @@ TEST(ParseConfig, ReadsEveryTable) {
   Config config;
   const Status status = ParseText(
       "character = 'face.glb'\nrig = '/abs/rig.json'\nskeleton_map = 'cmu'\n"
-      "[listen]\nbind = '0.0.0.0'\ntcp = 0\nudp = 1\n"
+      "[listen]\nbind = '0.0.0.0'\ntcp = 0\nudp = 1\nthreads = 3\n"
       "[render]\nenabled = true\nrequired = true\ndevice = '1'\n"
       "[mocap]\nvmc = 39539\nlivelink_face = 11111\n"
       "[osc]\nout = '[::1]:9000'\nprefix = 'x'\n"
@@ -172,6 +174,7 @@ TEST(ParseConfig, ReadsEveryTable) {
       &config);
   ASSERT_TRUE(status.ok()) << status.ToString();
   EXPECT_EQ(config.character, "face.glb");
+  EXPECT_EQ(config.threads, 3);
   EXPECT_EQ(config.rig, "/abs/rig.json");
   EXPECT_EQ(config.skeleton_map, "cmu");
   EXPECT_TRUE(config.require_render);

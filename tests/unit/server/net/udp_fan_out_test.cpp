@@ -194,7 +194,7 @@ TEST_F(UdpFanOutTest, WhatATickSendsSharesDatagramsToo) {
   Play(1);  // of which nobody is neutral
   Read(watcher);
   watcher.wire->datagrams = 0;
-  server->Together([this] { hub->Tick(ReadClock() + FromSeconds(1.5)); });
+  hub->Tick(ReadClock() + FromSeconds(1.5));
   Read(watcher);
   EXPECT_EQ(watcher.rounds, std::vector<int>(kSubjects, 2));
   EXPECT_EQ(watcher.decayed, kSubjects);

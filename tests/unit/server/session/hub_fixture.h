@@ -21,7 +21,7 @@ namespace furrow::server {
 class FakePeer : public Link {
  public:
   void SendReply(std::span<const std::uint8_t> message) override { Receive(message); }
-  int SendFrame(std::uint64_t, std::span<const std::uint8_t> message, std::size_t) override {
+  int SendFrame(std::uint64_t, std::span<const std::uint8_t> message, std::size_t, int) override {
     Receive(message);
     return 0;
   }

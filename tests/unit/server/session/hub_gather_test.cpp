@@ -49,7 +49,7 @@ struct World {
     parts.rig = std::make_shared<const wrinkle::Rig>(std::move(rig));
     parts.metrics = &metrics;
     parts.make_token = [] { return std::uint64_t{900}; };
-    parts.on_weights = [this](const Subject& subject) { heard.push_back(subject.name); };
+    parts.on_weights = [this](const Subject& subject, int) { heard.push_back(subject.name); };
     parts.recording = &tap;
     hub = std::make_unique<Hub>(std::move(parts));
     peers[0].id = hub->AddPeer(Transport::kUdp, "udp", &peers[0], Time{0});
@@ -167,12 +167,14 @@ TEST_F(HubGather, WhatIsEvaluatedTogetherGoesOutAsOneByOne) {
   for (std::size_t at = 0; at < script.size();) {
     const std::size_t end = std::min(script.size(), at + 1 + Random(200));
     Advance(0.01);
-    for (; at < end; ++at) {
-      const auto& [peer, bytes] = script[at];
-      one.hub->OnMessage(one.peers[peer].id, bytes, now);
-      many.hub->GatherMessage(many.peers[peer].id, bytes, now);
+    {
+      const Hub::Turn turn(*many.hub, 0);
+      for (; at < end; ++at) {
+        const auto& [peer, bytes] = script[at];
+        one.hub->OnMessage(one.peers[peer].id, bytes, now);
+        many.hub->GatherMessage(many.peers[peer].id, bytes, now);
+      }
     }
-    many.hub->PublishGathered();
     one.hub->Tick(now);
     many.hub->Tick(now);
   }
@@ -191,6 +193,7 @@ TEST_F(HubGather, APeerThatGoesGetsWhatWaits) {
   }
   world.peers[1].inbox.clear();
   const Piece pose = Make(0, Pose(0.5f), {.stream = 1});
+  const Hub::Turn turn(*world.hub, 0);
   world.hub->GatherMessage(world.peers[0].id, pose.bytes, now);
   EXPECT_TRUE(world.peers[1].inbox.empty());
   world.hub->RemovePeer(world.peers[1].id);

@@ -86,7 +86,7 @@ TEST_F(HubTest, WhereAllWeightsAreUsedAllIsEvaluated) {
   parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(false));
   parts.metrics = &metrics;
   parts.make_token = [] { return std::uint64_t{1}; };
-  parts.on_weights = [](const Subject&) {};
+  parts.on_weights = [](const Subject&, int) {};
   hub = std::make_unique<Hub>(std::move(parts));
   FakePeer sender;
   Connect(&sender);

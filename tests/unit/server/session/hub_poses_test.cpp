@@ -15,10 +15,10 @@ using testing::FloatEq;
 // Takes a frame of those who want every one only while there is room.
 class SlowPeer : public FakePeer {
  public:
-  int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
-                std::size_t keep) override {
+  int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message, std::size_t keep,
+                int lane) override {
     kept.push_back(keep);
-    return room-- > 0 ? FakePeer::SendFrame(key, message, keep) : 1;
+    return room-- > 0 ? FakePeer::SendFrame(key, message, keep, lane) : 1;
   }
   int room = 1'000'000;
   std::vector<std::size_t> kept;

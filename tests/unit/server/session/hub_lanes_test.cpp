@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// A hub that several threads share, each in its lane.
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "hub_fixture.h"
+
+namespace furrow::server {
+namespace {
+
+constexpr int kLanes = 3;
+
+// Of several threads at once: what came of each subscription, in order.
+class SharedPeer : public Link {
+ public:
+  void SendReply(std::span<const std::uint8_t>) override {}
+  int SendFrame(std::uint64_t, std::span<const std::uint8_t> message, std::size_t,
+                int lane) override {
+    protocol::MessageView view;
+    EXPECT_EQ(protocol::OpenMessage(message, view), protocol::DecodeStatus::kOk);
+    const std::lock_guard lock(mutex_);
+    sequences[view.header.stream].push_back(view.header.sequence);
+    ++by_lane[lane];
+    return 0;
+  }
+  void DropFrames(std::uint64_t) override {}
+
+  std::map<std::uint16_t, std::vector<std::uint32_t>> sequences;
+  std::map<int, int> by_lane;
+
+ private:
+  std::mutex mutex_;
+};
+
+class CountingOutlet : public Outlet {
+ public:
+  void Flush() override { ++flushes; }
+  int flushes = 0;
+};
+
+class HubLanes : public HubTest {
+ protected:
+  void SetUp() override {
+    Hub::Parts parts;
+    parts.session = 4242;
+    parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(/*filter=*/false));
+    parts.metrics = &metrics;
+    parts.make_token = [this] { return ++last_token; };
+    parts.lanes = kLanes;
+    parts.limits.packets_per_second = 1e9;
+    parts.limits.packet_burst = 1e9;
+    hub = std::make_unique<Hub>(std::move(parts));
+  }
+  void ConnectIn(int lane, FakePeer* peer, Transport transport = Transport::kTcp) {
+    peer->id = hub->AddPeer(transport, "fake", peer, now, lane);
+  }
+};
+
+TEST_F(HubLanes, PeersOfAllLanesHaveIdsOfTheirOwn) {
+  FakePeer peers[2 * kLanes];
+  std::map<PeerId, int> seen;
+  for (int i = 0; i < 2 * kLanes; ++i) {
+    ConnectIn(i % kLanes, &peers[i]);
+    EXPECT_NE(peers[i].id, 0u);
+    EXPECT_EQ(PeerTable::TableOf(peers[i].id, kLanes), static_cast<std::size_t>(i % kLanes));
+    EXPECT_EQ(++seen[peers[i].id], 1);
+  }
+}
+
+TEST_F(HubLanes, WhoWatchesInOneLaneGetsWhatIsPublishedInAnother) {
+  FakePeer sender;
+  FakePeer viewer;
+  ConnectIn(2, &sender);
+  ConnectIn(1, &viewer);
+  Publish(sender, "ada");
+  EXPECT_NE(Watch(viewer, {.subject = "ada"}), 0);
+  Send(sender, Pose(0.5f, 0.25f), 1, 1);
+  const auto weights = viewer.Take<protocol::WeightFrame>();
+  ASSERT_TRUE(weights.has_value());
+  EXPECT_EQ(weights->message.values, (std::vector<float>{0.5f, 0.25f}));
+}
+
+TEST_F(HubLanes, AnotherLanesSenderTakesASubjectOver) {
+  FakePeer first;
+  FakePeer second;
+  FakePeer viewer;
+  ConnectIn(0, &first);
+  ConnectIn(1, &second);
+  ConnectIn(2, &viewer);
+  second.session = 78;
+  Publish(first, "ada");
+  EXPECT_NE(Watch(viewer, {.subject = "ada"}), 0);
+  Send(first, Pose(0.5f), 1, 1);
+  ASSERT_TRUE(viewer.Take<protocol::WeightFrame>().has_value());
+  Publish(second, "ada");
+  Send(second, Pose(0.75f), 1, 1);
+  const auto weights = viewer.Take<protocol::WeightFrame>();
+  ASSERT_TRUE(weights.has_value());
+  EXPECT_EQ(weights->message.values[0], 0.75f);
+  Send(first, Pose(0.25f), 1, 2);
+  const auto reply = first.Take<protocol::SkeletonReply>();
+  ASSERT_TRUE(reply.has_value());
+  EXPECT_EQ(reply->message.status, protocol::SkeletonStatus::kRejected);
+  EXPECT_TRUE(viewer.inbox.empty());
+  EXPECT_EQ(hub->num_subjects(), 1u);
+}
+
+TEST_F(HubLanes, ASenderThatGoesIsForgottenWhateverItsLane) {
+  FakePeer sender;
+  ConnectIn(2, &sender);
+  Publish(sender, "ada");
+  EXPECT_EQ(hub->SourceOf(*hub->FindSubject("ada")), "fake");
+  hub->RemovePeer(sender.id);
+  EXPECT_EQ(hub->SourceOf(*hub->FindSubject("ada")), "");
+}
+
+TEST_F(HubLanes, GoodbyesGoToAllLanes) {
+  FakePeer peers[kLanes];
+  for (int lane = 0; lane < kLanes; ++lane) ConnectIn(lane, &peers[lane]);
+  hub->Drain();
+  for (FakePeer& peer : peers) EXPECT_TRUE(peer.Take<protocol::Goodbye>().has_value());
+}
+
+TEST_F(HubLanes, AllIsSentBeforeATurnIsLeftAndBeforeOthersGoOn) {
+  CountingOutlet outlets[kLanes];
+  for (int lane = 0; lane < kLanes; ++lane) hub->SetOutlet(lane, &outlets[lane]);
+  {
+    const Hub::Turn turn(*hub, 1);
+    const Hub::Turn inner(*hub, 1);
+    EXPECT_EQ(outlets[1].flushes, 0);
+  }
+  EXPECT_EQ(outlets[1].flushes, 1);
+  EXPECT_EQ(outlets[0].flushes, 0);
+  {
+    const Hub::Turn turn(*hub, 1);
+    const Hub::Alone alone(*hub, 1);
+    EXPECT_EQ(outlets[1].flushes, 2) << "before another lane may publish the same subject";
+    const Hub::Alone inner(*hub, 1);
+  }
+  EXPECT_EQ(outlets[0].flushes, 1) << "answers to peers of other lanes";
+  for (int lane = 0; lane < kLanes; ++lane) hub->SetOutlet(lane, nullptr);
+}
+
+TEST_F(HubLanes, PosesOfAllLanesAtOnceWhileTheSessionChanges) {
+  constexpr int kSubjects = 4;  // of a lane
+  constexpr std::uint32_t kPoses = 300;
+  SharedPeer watcher;
+  const PeerId watcher_id = hub->AddPeer(Transport::kTcp, "watcher", &watcher, now, 0);
+  std::map<int, std::unique_ptr<FakePeer>> senders;  // by lane; this thread's is lane 0
+  for (int lane = 1; lane < kLanes; ++lane) {
+    senders[lane] = std::make_unique<FakePeer>();
+    ConnectIn(lane, senders[lane].get());
+    for (std::uint16_t i = 0; i < kSubjects; ++i) {
+      const std::string name = std::to_string(lane) + "/" + std::to_string(i);
+      Publish(*senders[lane], name, i);
+      std::vector<std::uint8_t> bytes;
+      encoder.Encode({99, 0, static_cast<std::uint32_t>(lane * kSubjects + i), 0},
+                     protocol::SubscribeWeights{.subject = name}, bytes);
+      hub->OnMessage(watcher_id, bytes, now);
+    }
+  }
+  std::vector<std::jthread> threads;
+  for (int lane = 1; lane < kLanes; ++lane) {
+    threads.emplace_back([&, lane, id = senders[lane]->id] {
+      protocol::Encoder own;
+      std::vector<std::uint8_t> batch[kSubjects];
+      for (std::uint32_t pose = 0; pose < kPoses; ++pose) {
+        const Hub::Turn turn(*hub, lane);
+        for (std::uint16_t i = 0; i < kSubjects; ++i) {
+          own.Encode({77, i, pose, 1 + pose}, Pose(0.5f), batch[i]);
+          hub->GatherMessage(id, batch[i], now);
+        }
+      }
+    });
+  }
+  for (int i = 0; i < 100; ++i) {
+    hub->Tick(now);
+    FakePeer passer_by;
+    ConnectIn(0, &passer_by);
+    EXPECT_NE(Watch(passer_by, {.subject = "nobody", .wait = true}), 0);
+    hub->RemovePeer(passer_by.id);
+  }
+  threads.clear();
+  constexpr int kAll = (kLanes - 1) * kSubjects;
+  EXPECT_EQ(Count(Counter::kPosesReceived), std::uint64_t{kAll * kPoses});
+  EXPECT_EQ(watcher.sequences.size(), std::size_t{kAll});
+  for (const auto& [subscription, sequences] : watcher.sequences) {
+    EXPECT_TRUE(std::ranges::is_sorted(sequences)) << subscription;
+    EXPECT_GE(sequences.size(), kPoses) << subscription;
+    EXPECT_EQ(sequences.back(), kPoses - 1) << subscription;
+  }
+  for (int lane = 1; lane < kLanes; ++lane) EXPECT_GT(watcher.by_lane[lane], 0) << lane;
+}
+
+}  // namespace
+}  // namespace furrow::server
