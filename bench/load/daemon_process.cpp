@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/load/daemon_process.h"
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdio>
@@ -16,18 +17,26 @@
 namespace furrow::bench {
 namespace {
 
-// The first core, or all but it. On a machine of one core there is nothing to choose.
-void Pin(bool first) {
+// So many cores from the first on, but never the last.
+void PinToFirst(int cores) {
   cpu_set_t allowed;
   if (sched_getaffinity(0, sizeof(allowed), &allowed) != 0) return;
-  int begin = 0;
-  while (begin < CPU_SETSIZE && !CPU_ISSET(begin, &allowed)) ++begin;
-  if (first) {
-    CPU_ZERO(&allowed);
-    CPU_SET(begin, &allowed);
-  } else if (CPU_COUNT(&allowed) > 1) {
-    CPU_CLR(begin, &allowed);
+  const int wanted = std::max(1, std::min(cores, CPU_COUNT(&allowed) - 1));
+  cpu_set_t chosen;
+  CPU_ZERO(&chosen);
+  for (int core = 0; core < CPU_SETSIZE && CPU_COUNT(&chosen) < wanted; ++core) {
+    if (CPU_ISSET(core, &allowed)) CPU_SET(core, &chosen);
   }
+  sched_setaffinity(0, sizeof(chosen), &chosen);
+}
+
+// All but the first core. On a machine of one core there is nothing to choose.
+void PinToOthers() {
+  cpu_set_t allowed;
+  if (sched_getaffinity(0, sizeof(allowed), &allowed) != 0 || CPU_COUNT(&allowed) < 2) return;
+  int first = 0;
+  while (!CPU_ISSET(first, &allowed)) ++first;
+  CPU_CLR(first, &allowed);
   sched_setaffinity(0, sizeof(allowed), &allowed);
 }
 
@@ -49,15 +58,16 @@ std::string ReadLine(int descriptor) {
 
 Result<DaemonProcess> DaemonProcess::Start(const std::filesystem::path& program,
                                            const std::filesystem::path& rig,
-                                           const std::filesystem::path& folder) {
+                                           const std::filesystem::path& folder, int threads) {
   const std::filesystem::path config = folder / "load.toml";
-  std::ofstream(config) << "[limits]\nmax_subjects = 20000\n";
+  std::ofstream(config) << "[listen]\nthreads = " << threads
+                        << "\n[limits]\nmax_subjects = 20000\n";
   std::array<int, 2> pipe_ends{};
   if (pipe(pipe_ends.data()) != 0) return Status(StatusCode::kIo, "no pipe");
   static const cpu_set_t kAll = [] {
     cpu_set_t all;
     sched_getaffinity(0, sizeof(all), &all);
-    Pin(false);
+    PinToOthers();
     return all;
   }();
   const int pid = fork();
@@ -65,7 +75,7 @@ Result<DaemonProcess> DaemonProcess::Start(const std::filesystem::path& program,
   if (pid == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     sched_setaffinity(0, sizeof(kAll), &kAll);
-    Pin(true);
+    PinToFirst(threads);
     dup2(pipe_ends[1], STDOUT_FILENO);
     if (std::freopen((folder / "furrowd.log").c_str(), "a", stderr) == nullptr) _exit(126);
     execl(program.c_str(), program.c_str(), "--no-render", "--no-http", "--tcp", "0", "--udp", "0",

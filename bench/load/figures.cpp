@@ -38,7 +38,8 @@ class Duel {
   explicit Duel(const Setting& setting)
       : performance_(Take(cli::LoadPerformance(
             {.file = setting.recording, .rig = setting.rig, .quantise = true}))),
-        daemon_(Take(DaemonProcess::Start(setting.daemon, setting.rig, setting.folder))),
+        daemon_(Take(
+            DaemonProcess::Start(setting.daemon, setting.rig, setting.folder, setting.threads))),
         raw_(Take(load::EchoServer::Start(daemon_.target().pid))),
         control_(Take(load::EchoServer::Start(daemon_.target().pid))) {
     options_.rounds = setting.rounds;
@@ -164,6 +165,21 @@ std::vector<Aim> MeasureAims(const Setting& setting) {
   aims.push_back(ThousandSubjects(setting));
   for (Aim& aim : Stalled(setting)) aims.push_back(std::move(aim));
   aims.push_back(IdleMemory(setting));
+  return aims;
+}
+
+std::vector<Aim> MeasureThreads(const Setting& setting) {
+  std::vector<Aim> aims;
+  Setting with = setting;
+  for (const int threads : {1, 2, 4}) {
+    with.threads = threads;
+    const std::string suffix =
+        ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+    Duel duel(with);
+    AddRatios(duel.At(50000.0), "CPU a pose", "processor time a pose" + suffix, 2.0, true, &aims);
+    AddRatios(duel.Highest(), "highest rate", "highest rate without loss" + suffix, 0.5, false,
+              &aims);
+  }
   return aims;
 }
 

@@ -52,6 +52,11 @@ int Run(Options options) {
     Say(ToMarkdown(aims, "raw against raw"), &markdown);
     json["aims"] = ToJson(aims);
   }
+  if (wanted("threads")) {
+    const auto threads = MeasureThreads(setting);
+    Say(ToMarkdown(threads, "raw against raw", "Threads of the daemon"), &markdown);
+    json["threads"] = ToJson(threads);
+  }
   const std::pair<const char*, Curve (*)(const Setting&)> curves[] = {
       {"subjects", GrowSubjects},
       {"subscribers", GrowSubscribers},
@@ -81,7 +86,8 @@ int main(int argc, char** argv) {
       "What a furrowd on one core can take, beside raw UDP echoes, and how its cost grows"};
   app.add_option("--out", options.out, "folder for load.md, load.json and the curves (SVG)")
       ->capture_default_str();
-  app.add_option("--only", options.only, "one of aims, subjects, subscribers, joints, regions");
+  app.add_option("--only", options.only,
+                 "one of aims, threads, subjects, subscribers, joints, regions");
   app.add_option("--daemon", options.setting.daemon, "furrowd; default: beside this program");
   app.add_option("--recording", options.setting.recording, "BVH; default: performance.bvh");
   app.add_option("--rig", options.setting.rig, "wrinkle rig; default: the default character's");

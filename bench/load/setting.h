@@ -18,6 +18,7 @@ struct Setting {
   std::filesystem::path folder;  // for what is made meanwhile
   double seconds = 3.0;          // of one run
   int rounds = 11;               // of paired runs
+  int threads = 1;               // of the daemon, as far as there are cores beside this program's
 };
 
 // Hooks of a run that nobody watches.

@@ -14,10 +14,9 @@ std::string Between(double median, double low, double high, int digits) {
          report::Fixed(high, digits) + ")";
 }
 
-std::string ToMarkdown(const std::vector<Aim>& aims, const std::string& control) {
-  report::Table table{"What was aimed at, and what was reached",
-                      {"figure", "against", "reached (middle half)"},
-                      {}};
+std::string ToMarkdown(const std::vector<Aim>& aims, const std::string& control,
+                       const std::string& title) {
+  report::Table table{title, {"figure", "against", "reached (middle half)"}, {}};
   if (!control.empty()) table.header.push_back(control);
   table.header.insert(table.header.end(), {"aim", "met"});
   for (const Aim& aim : aims) {

@@ -22,7 +22,9 @@ struct Aim {
 [[nodiscard]] std::string Between(double median, double low, double high, int digits);
 
 // `control`: the heading of that column; empty: there is none.
-[[nodiscard]] std::string ToMarkdown(const std::vector<Aim>& aims, const std::string& control);
+[[nodiscard]] std::string ToMarkdown(
+    const std::vector<Aim>& aims, const std::string& control,
+    const std::string& title = "What was aimed at, and what was reached");
 [[nodiscard]] nlohmann::json ToJson(const std::vector<Aim>& aims);
 
 }  // namespace furrow::bench
