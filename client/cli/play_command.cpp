@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -13,14 +11,14 @@
 #include "client/cli/interrupt.h"
 #include "client/cli/play_source.h"
 #include "client/cli/session_player.h"
+#include "client/cpp/acceptance.h"
 #include "client/cpp/publisher.h"
 
 namespace furrow::cli {
 namespace {
 
-using client::IoStatus;
 using client::TransportKind;
-using std::chrono::milliseconds;
+using Kind = client::Acceptance::Kind;
 
 struct PlayOptions {
   std::string file;
@@ -36,33 +34,22 @@ struct PlayOptions {
   float scale = 1.0f;
 };
 
-bool IsOver(IoStatus status) {
-  return status == IoStatus::kClosed || status == IoStatus::kMalformed;
-}
-
-// Offers the skeleton and waits for the answer; prints why when there is none.
-int WaitUntilAccepted(client::Publisher& publisher, std::uint16_t stream, const std::string& host) {
-  const std::int64_t deadline = SteadyMicroseconds() + 5'000'000;
-  IoStatus last = IoStatus::kTimeout;
-  while (SteadyMicroseconds() < deadline && !Interrupted()) {
-    const IoStatus status = publisher.Poll(SteadyMicroseconds(), milliseconds(50));
-    if (publisher.accepted(stream)) return kDone;
-    if (!publisher.rejection(stream).empty()) {
-      std::fprintf(stderr, "furrow: this skeleton is refused: %s\n",
-                   publisher.rejection(stream).c_str());
+// What to exit with where a skeleton is not accepted; prints why.
+int NotAccepted(const client::Acceptance& answer, const std::string& host) {
+  switch (answer.kind) {
+    case Kind::kAccepted:
+    case Kind::kGivenUp: return kDone;
+    case Kind::kRefused:
+      std::fprintf(stderr, "furrow: this skeleton is refused: %s\n", answer.reason.c_str());
       return kBadInput;
-    }
-    if (status != IoStatus::kTimeout) last = status;
-    if (IsOver(status)) break;
-    if (status == IoStatus::kNoConnection) std::this_thread::sleep_for(milliseconds(50));
-  }
-  if (Interrupted()) return kDone;
-  if (!publisher.last_error().empty()) {
-    std::fprintf(stderr, "furrow: the daemon says: %s\n", publisher.last_error().c_str());
-    return kFailed;
+    case Kind::kError:
+      std::fprintf(stderr, "furrow: the daemon says: %s\n", answer.reason.c_str());
+      return kFailed;
+    case Kind::kNobody:
+    case Kind::kNoConnection: break;
   }
   std::fprintf(stderr, "furrow: nobody answers at %s%s (is furrowd running there?)\n", host.c_str(),
-               last == IoStatus::kNoConnection ? ": connection refused" : "");
+               answer.kind == Kind::kNoConnection ? ": connection refused" : "");
   return kNoConnection;
 }
 
@@ -104,8 +91,9 @@ int PlayFile(const PlayOptions& options) {
     const std::string& subject = options.subject.empty() ? source.subject() : options.subject;
     const std::uint16_t stream =
         publisher.AddSubject(source.Offer(subject, options.scale), SteadyMicroseconds());
-    exit_code = WaitUntilAccepted(publisher, stream, options.host);
-    if (exit_code != kDone || Interrupted()) return exit_code;
+    const client::Acceptance answer = client::WaitUntilAccepted(
+        publisher, stream, SteadyMicroseconds, [] { return !Interrupted(); });
+    if (answer.kind != Kind::kAccepted) return NotAccepted(answer, options.host);
     tracks.push_back({stream, &source});
   }
   SessionPlayer player(

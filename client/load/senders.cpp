@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <thread>
 #include <utility>
 
+#include "client/cpp/acceptance.h"
 #include "client/load/clock.h"
 #include "protocol/envelope.h"
 
@@ -20,6 +20,26 @@ std::string SubjectName(std::uint32_t subject) {
   std::snprintf(name, sizeof(name), "load-%06u", subject);
   return name;
 }
+
+namespace {
+
+std::int64_t SteadyMicroseconds() { return SteadyNanoseconds() / 1000; }
+
+Status ToStatus(const client::Acceptance& answer) {
+  using Kind = client::Acceptance::Kind;
+  switch (answer.kind) {
+    case Kind::kAccepted:
+    case Kind::kGivenUp: return {};
+    case Kind::kRefused:
+      return {StatusCode::kInvalidArgument, "the daemon refuses: " + answer.reason};
+    case Kind::kError: return {StatusCode::kInvalidArgument, "the daemon says: " + answer.reason};
+    case Kind::kNobody:
+    case Kind::kNoConnection: break;
+  }
+  return {StatusCode::kUnavailable, "nobody answers"};
+}
+
+}  // namespace
 
 Result<Senders> Senders::Open(const OpenSocket& open, int sockets, const Performance& performance) {
   Senders senders(performance);
@@ -39,32 +59,13 @@ Status Senders::Offer(int count, const std::function<bool()>& go_on) {
     const auto number = static_cast<std::uint32_t>(subject);
     offer.subject = SubjectName(number);
     Sender& sender = senders_[number % senders_.size()];
-    const std::uint16_t stream = sender.publisher->AddSubject(offer, SteadyNanoseconds() / 1000);
-    if (Status status = WaitUntilAccepted(sender, stream, go_on); !status.ok()) return status;
+    const std::uint16_t stream = sender.publisher->AddSubject(offer, SteadyMicroseconds());
+    // One after the other: a thousand skeletons at once would not fit the server's socket.
+    const client::Acceptance answer =
+        client::WaitUntilAccepted(*sender.publisher, stream, SteadyMicroseconds, go_on);
+    if (Status status = ToStatus(answer); !status.ok()) return status;
   }
   return {};
-}
-
-// One after the other: a thousand skeletons at once would not fit the server's socket.
-Status Senders::WaitUntilAccepted(Sender& sender, std::uint16_t stream,
-                                  const std::function<bool()>& go_on) {
-  const std::int64_t deadline = SteadyNanoseconds() + 5'000'000'000;
-  client::Publisher& publisher = *sender.publisher;
-  IoStatus status = IoStatus::kOk;
-  while (SteadyNanoseconds() < deadline && go_on()) {
-    status = publisher.Poll(SteadyNanoseconds() / 1000, milliseconds(20));
-    if (publisher.accepted(stream)) return {};
-    if (!publisher.rejection(stream).empty()) {
-      return {StatusCode::kInvalidArgument, "the daemon refuses: " + publisher.rejection(stream)};
-    }
-    if (status == IoStatus::kClosed || status == IoStatus::kMalformed) break;
-    // A refusal comes at once and again: the daemon may be just starting.
-    if (status == IoStatus::kNoConnection) std::this_thread::sleep_for(milliseconds(20));
-  }
-  if (!go_on()) return {};
-  if (!publisher.last_error().empty())
-    return {StatusCode::kInvalidArgument, "the daemon says: " + publisher.last_error()};
-  return {StatusCode::kUnavailable, "nobody answers"};
 }
 
 IoStatus Senders::Send(std::uint32_t subject, std::uint32_t pose, int frame,
@@ -83,7 +84,7 @@ IoStatus Senders::Send(std::uint32_t subject, std::uint32_t pose, int frame,
 }
 
 IoStatus Senders::Read(std::size_t i) {
-  return senders_[i].publisher->Poll(SteadyNanoseconds() / 1000, milliseconds(0));
+  return senders_[i].publisher->Poll(SteadyMicroseconds(), milliseconds(0));
 }
 
 void Senders::Close() {

@@ -59,8 +59,6 @@ class Senders {
 
   explicit Senders(const Performance& performance)
       : performance_(&performance), messages_(performance.messages) {}
-  [[nodiscard]] Status WaitUntilAccepted(Sender& sender, std::uint16_t stream,
-                                         const std::function<bool()>& go_on);
 
   const Performance* performance_;
   std::vector<std::vector<std::uint8_t>> messages_;  // their envelopes are written over

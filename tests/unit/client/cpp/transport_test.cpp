@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cpp/transport.h"
 
+#include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -67,81 +69,91 @@ std::unique_ptr<Transport> Open(TransportKind kind, std::uint16_t port,
   return transport;
 }
 
-TEST(TcpTransportTest, FramesCrossInBothDirectionsHoweverTheyAreCut) {
-  Socket listener(SOCK_STREAM);
-  auto transport = Open(TransportKind::kTcp, listener.port());
-  ASSERT_NE(transport, nullptr);
-  const int peer = ::accept(listener.fd(), nullptr, nullptr);
+// A transport over TCP, and the other end of its connection.
+class TcpTransportTest : public testing::Test {
+ protected:
+  void SetUp() override { Connect(kGuard); }
+  ~TcpTransportTest() override { HangUp(); }
+
+  void Connect(milliseconds timeout) {
+    HangUp();
+    transport_ = Open(TransportKind::kTcp, listener_.port(), timeout);
+    ASSERT_NE(transport_, nullptr);
+    peer_ = ::accept(listener_.fd(), nullptr, nullptr);
+    ASSERT_GE(peer_, 0);
+  }
+  void HangUp() {
+    if (peer_ >= 0) ::close(std::exchange(peer_, -1));
+  }
+  // What the transport sends for a message, framed.
+  [[nodiscard]] std::vector<std::uint8_t> SendAndTake(std::span<const std::uint8_t> message) {
+    EXPECT_EQ(transport_->Send(message), IoStatus::kOk);
+    std::vector<std::uint8_t> wire(message.size() + protocol::kFramePrefixBytes);
+    EXPECT_EQ(::recv(peer_, wire.data(), wire.size(), MSG_WAITALL),
+              static_cast<ssize_t>(wire.size()));
+    return wire;
+  }
+  void SendBack(std::span<const std::uint8_t> bytes) {
+    ASSERT_EQ(::send(peer_, bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
+  }
+  void ExpectMessage(std::span<const std::uint8_t> message) {
+    std::span<const std::uint8_t> received;
+    ASSERT_EQ(transport_->Receive(received, kGuard), IoStatus::kOk);
+    EXPECT_TRUE(std::ranges::equal(received, message));
+  }
+  [[nodiscard]] IoStatus ReceiveNothing(milliseconds timeout) {
+    std::span<const std::uint8_t> received;
+    return transport_->Receive(received, timeout);
+  }
+
+  Socket listener_{SOCK_STREAM};
+  std::unique_ptr<Transport> transport_;
+  int peer_ = -1;
+};
+
+TEST_F(TcpTransportTest, FramesCrossInBothDirectionsHoweverTheyAreCut) {
   const auto message = BigMessage();
-  ASSERT_EQ(transport->Send(message), IoStatus::kOk);
-  std::vector<std::uint8_t> wire(message.size() + protocol::kFramePrefixBytes);
-  ASSERT_EQ(::recv(peer, wire.data(), wire.size(), MSG_WAITALL), static_cast<ssize_t>(wire.size()));
-  EXPECT_TRUE(
-      std::equal(message.begin(), message.end(), wire.begin() + protocol::kFramePrefixBytes));
+  const auto wire = SendAndTake(message);
+  EXPECT_TRUE(std::ranges::equal(message, std::span(wire).subspan(protocol::kFramePrefixBytes)));
 
   // Sent back in two pieces, with a second frame behind: two messages, nothing between them.
-  std::span<const std::uint8_t> received;
-  const auto first = static_cast<ssize_t>(wire.size() / 3);
-  ASSERT_EQ(::send(peer, wire.data(), first, 0), first);
-  EXPECT_EQ(transport->Receive(received, milliseconds(1)), IoStatus::kTimeout);
-  ASSERT_EQ(::send(peer, wire.data() + first, wire.size() - first, 0),
-            static_cast<ssize_t>(wire.size()) - first);
-  ASSERT_EQ(::send(peer, wire.data(), wire.size(), 0), static_cast<ssize_t>(wire.size()));
-  for (int i = 0; i < 2; ++i) {
-    ASSERT_EQ(transport->Receive(received, kGuard), IoStatus::kOk);
-    EXPECT_TRUE(std::equal(received.begin(), received.end(), message.begin(), message.end()));
-  }
-  ::close(peer);
-  EXPECT_EQ(transport->Receive(received, kGuard), IoStatus::kClosed);
+  SendBack(std::span(wire).first(wire.size() / 3));
+  EXPECT_EQ(ReceiveNothing(milliseconds(1)), IoStatus::kTimeout);
+  SendBack(std::span(wire).subspan(wire.size() / 3));
+  SendBack(wire);
+  for (int i = 0; i < 2; ++i) ExpectMessage(message);
+  HangUp();
+  EXPECT_EQ(ReceiveNothing(kGuard), IoStatus::kClosed);
 }
 
-TEST(TcpTransportTest, WhatComesWhileSendingIsNotLost) {
-  Socket listener(SOCK_STREAM);
-  auto transport = Open(TransportKind::kTcp, listener.port());
-  ASSERT_NE(transport, nullptr);
-  const int peer = ::accept(listener.fd(), nullptr, nullptr);
+TEST_F(TcpTransportTest, WhatComesWhileSendingIsNotLost) {
   const auto message = BigMessage();
-  ASSERT_EQ(transport->Send(message), IoStatus::kOk);
-  std::vector<std::uint8_t> wire(message.size() + protocol::kFramePrefixBytes);
-  ASSERT_EQ(::recv(peer, wire.data(), wire.size(), MSG_WAITALL), static_cast<ssize_t>(wire.size()));
-  std::span<const std::uint8_t> received;
+  const auto wire = SendAndTake(message);
   for (int round = 0; round < 3; ++round) {
-    EXPECT_EQ(transport->Receive(received, milliseconds(0)), IoStatus::kTimeout);
-    ASSERT_EQ(::send(peer, wire.data(), wire.size(), 0), static_cast<ssize_t>(wire.size()));
-    for (int i = 0; i < 3; ++i) ASSERT_EQ(transport->Send(message), IoStatus::kOk);
-    ASSERT_EQ(transport->Receive(received, kGuard), IoStatus::kOk);
-    EXPECT_TRUE(std::equal(received.begin(), received.end(), message.begin(), message.end()));
+    EXPECT_EQ(ReceiveNothing(milliseconds(0)), IoStatus::kTimeout);
+    SendBack(wire);
+    for (int i = 0; i < 3; ++i) ASSERT_EQ(transport_->Send(message), IoStatus::kOk);
+    ExpectMessage(message);
   }
-  ::close(peer);
 }
 
-TEST(TcpTransportTest, LengthThatCannotBeIsMalformed) {
-  Socket listener(SOCK_STREAM);
-  auto transport = Open(TransportKind::kTcp, listener.port());
-  ASSERT_NE(transport, nullptr);
-  const int peer = ::accept(listener.fd(), nullptr, nullptr);
-  const std::uint8_t huge[] = {0xff, 0xff, 0xff, 0xff};
-  ASSERT_EQ(::send(peer, huge, sizeof huge, 0), 4);
-  std::span<const std::uint8_t> received;
-  EXPECT_EQ(transport->Receive(received, kGuard), IoStatus::kMalformed);
-  EXPECT_EQ(transport->Receive(received, kGuard), IoStatus::kClosed);
-  EXPECT_EQ(transport->Send(BigMessage()), IoStatus::kClosed);
-  ::close(peer);
+TEST_F(TcpTransportTest, LengthThatCannotBeIsMalformed) {
+  SendBack(std::vector<std::uint8_t>(4, 0xff));
+  EXPECT_EQ(ReceiveNothing(kGuard), IoStatus::kMalformed);
+  EXPECT_EQ(ReceiveNothing(kGuard), IoStatus::kClosed);
+  EXPECT_EQ(transport_->Send(BigMessage()), IoStatus::kClosed);
 }
 
-TEST(TcpTransportTest, AnEndThatTakesNothingDoesNotBlockForEver) {
-  Socket listener(SOCK_STREAM);
-  auto transport = Open(TransportKind::kTcp, listener.port(), milliseconds(50));
-  ASSERT_NE(transport, nullptr);
+TEST_F(TcpTransportTest, AnEndThatTakesNothingDoesNotBlockForEver) {
+  Connect(milliseconds(50));
   const std::vector<std::uint8_t> message(protocol::kMaxRequestBytes);
   IoStatus status = IoStatus::kOk;
-  for (int i = 0; i < 10'000 && status == IoStatus::kOk; ++i) status = transport->Send(message);
+  for (int i = 0; i < 10'000 && status == IoStatus::kOk; ++i) status = transport_->Send(message);
   EXPECT_EQ(status, IoStatus::kClosed);
-  std::span<const std::uint8_t> received;
-  EXPECT_EQ(transport->Receive(received, kGuard), IoStatus::kClosed);
+  EXPECT_EQ(ReceiveNothing(kGuard), IoStatus::kClosed);
 }
 
-TEST(TcpTransportTest, NobodyThereIsAnErrorThatNamesTheAddress) {
+TEST(TcpAddressTest, NobodyThereIsAnErrorThatNamesTheAddress) {
   std::uint16_t port = 0;
   { port = Socket(SOCK_STREAM).port(); }
   std::string error;
