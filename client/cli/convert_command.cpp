@@ -25,10 +25,8 @@ int ConvertWeights(const ConvertOptions& options) {
   if (!recording::IsTakePath(options.in))
     return Fail({StatusCode::kInvalidArgument, "only takes (.mcap) hold weights", options.in,
                  "'furrow solve' computes them from any recording"});
-  std::string file;
   std::string subject;
-  recording::SplitTakePath(options.in, &file, &subject);
-  auto take = recording::TakeReader::Open(file);
+  const auto take = OpenTakeArgument(options.in, &subject);
   if (!take.ok()) return Fail(take.status());
   motion::ClipReport report;
   const auto csv = WeightsToCsv(**take, subject, &report);

@@ -65,11 +65,10 @@ void PrintSubject(const std::string& name, const SubjectSummary& subject) {
 }
 
 int DescribeTake(const std::string& path) {
-  std::string file;
   std::string only;
-  recording::SplitTakePath(path, &file, &only);
-  auto take = TakeReader::Open(file);
+  const auto take = OpenTakeArgument(path, &only);
   if (!take.ok()) return Fail(take.status());
+  const std::string file = (*take)->path().string();
   const auto summary = recording::Summarise(**take);
   if (!summary.ok()) return Fail(summary.status());
   if (!only.empty() && !summary->subjects.contains(only)) {

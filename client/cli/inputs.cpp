@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <span>
 
 #include "character/data_dir.h"
 #include "character/rig_file.h"
+#include "client/cli/progress.h"
 #include "motion/pose_source.h"
 #include "recording/take_clip.h"
 
@@ -19,10 +21,29 @@ void PrintWarnings(const std::vector<std::string>& warnings) {
     std::fprintf(stderr, "furrow: warning: %s\n", text.c_str());
 }
 
+recording::ReadProgress ReadingBar() {
+  return
+      [bar = std::make_shared<std::optional<Progress>>()](std::uint64_t done, std::uint64_t total) {
+        if (done >= total) return bar->reset();
+        if (!*bar) bar->emplace("reading", static_cast<std::int64_t>(total));
+        (*bar)->Set(static_cast<std::int64_t>(done));
+      };
+}
+
+Result<std::unique_ptr<recording::TakeReader>> OpenTakeArgument(const std::string& path,
+                                                                std::string* subject) {
+  std::string file;
+  recording::SplitTakePath(path, &file, subject);
+  auto take = recording::TakeReader::Open(file);
+  if (take.ok()) (*take)->set_progress(ReadingBar());
+  return take;
+}
+
 Result<motion::Clip> LoadClipArgument(const std::string& path, const motion::LoadOptions& options) {
   motion::ClipReport report;
-  auto clip = recording::IsTakePath(path) ? recording::LoadTakeClip(path, options.scale, &report)
-                                          : motion::LoadClip(path, options, &report);
+  auto clip = recording::IsTakePath(path)
+                  ? recording::LoadTakeClip(path, options.scale, &report, ReadingBar())
+                  : motion::LoadClip(path, options, &report);
   PrintWarnings(report.warnings);
   return clip;
 }

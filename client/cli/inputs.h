@@ -2,12 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "character/character.h"
 #include "character/skeleton_match.h"
 #include "motion/clip.h"
+#include "recording/take_reader.h"
 #include "wrinkle/rig.h"
 #include "wrinkle/solver.h"
 #include "wrinkle/status.h"
@@ -18,6 +20,14 @@ namespace furrow::cli {
 // with is printed as warnings on standard error.
 [[nodiscard]] Result<motion::Clip> LoadClipArgument(const std::string& path,
                                                     const motion::LoadOptions& options = {});
+
+// A bar for reading a take, wiped at the end of each reading.
+[[nodiscard]] recording::ReadProgress ReadingBar();
+
+// A take by path, "take.mcap" or "take.mcap#NAME" (else `subject` is empty), that shows how far
+// reading it is.
+[[nodiscard]] Result<std::unique_ptr<recording::TakeReader>> OpenTakeArgument(
+    const std::string& path, std::string* subject);
 
 // Prints "furrow: warning: <text>" for each.
 void PrintWarnings(const std::vector<std::string>& warnings);

@@ -14,10 +14,8 @@ using recording::TakePoses;
 Result<std::vector<PlaySource>> PlaySource::Load(const std::string& path) {
   std::vector<PlaySource> sources;
   if (recording::IsTakePath(path)) {
-    std::string file;
     std::string subject;
-    recording::SplitTakePath(path, &file, &subject);
-    auto take = recording::TakeReader::Open(file);
+    const auto take = OpenTakeArgument(path, &subject);
     if (!take.ok()) return take.status();
     motion::ClipReport report;
     auto all = TakePoses::LoadAll(**take, subject, &report);

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "client/cli/progress.h"
-#include "recording/wire_pose.h"
 #include "protocol/codec.h"
 #include "protocol/hash.h"
 #include "recording/take_writer.h"
+#include "recording/wire_pose.h"
 
 namespace furrow::cli {
 namespace {
