@@ -157,11 +157,11 @@ bool TcpSession::IsOverdue(Time now) {
 
 void TcpSession::CloseAfterFlush(bool linger) {
   if (state_ != State::kOpen) return;
-  state_ = State::kFlushing;
   linger_ = linger;
   closing_since_ = ReadClock();
   {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(mutex_);  // so that no frame comes in behind it
+    state_ = State::kFlushing;
     outbox_.DropAllBehindTheLine();
   }
   hub_->RemovePeer(peer_);
@@ -195,8 +195,8 @@ void TcpSession::SendReply(std::span<const std::uint8_t> message) {
 
 int TcpSession::SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
                           std::size_t keep, int /*lane*/) {
-  if (state_ != State::kOpen) return 0;
   const std::lock_guard lock(mutex_);
+  if (state_ != State::kOpen) return 0;
   const int dropped = outbox_.PushFrame(key, message, keep);
   if (!writing_) Wake();
   return dropped;

@@ -53,6 +53,9 @@ Status UdpPort::Open(const asio::ip::udp::endpoint& endpoint) {
         servers_[lane]->Open({endpoint.address(), port()}, UdpServer::Port::kShared);
     if (!status.ok()) return status;
   }
+  // Who is spread over more sockets than there were when it sent this may be of another lane: it
+  // would be two peers, one of which takes the other's subject over.
+  for (const auto& server : servers_) server->DropWaiting();
   return {};
 }
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <exception>
 #include <string>
 
 #include <asio/co_spawn.hpp>
-#include <asio/detached.hpp>
 #include <asio/experimental/as_tuple.hpp>
 #include <asio/post.hpp>
 #include <asio/use_awaitable.hpp>
@@ -46,7 +46,8 @@ class UdpServer::UdpPeer : public Link {
   }
   int SendFrame(std::uint64_t, std::span<const std::uint8_t> message, std::size_t,
                 int lane) override {
-    Send(message, server_->by_lane_[static_cast<std::size_t>(lane)]->sender_);
+    UdpServer& by = lane == kAlone ? *server_ : *server_->by_lane_[static_cast<std::size_t>(lane)];
+    Send(message, by.sender_);
     return 0;
   }
   void TakesBundles(bool takes) override { takes_bundles_ = takes; }
@@ -118,7 +119,17 @@ std::uint16_t UdpServer::port() const {
   return socket_.local_endpoint(error).port();
 }
 
-void UdpServer::Start() { asio::co_spawn(io_, Read(), asio::detached); }
+// No lane may fall silent while the rest of the daemon goes on.
+void UdpServer::Start() {
+  asio::co_spawn(io_, Read(), [](const std::exception_ptr& failed) {
+    if (failed) std::rethrow_exception(failed);
+  });
+}
+
+void UdpServer::DropWaiting() {
+  while (batch_.Receive(socket_.native_handle()) == UdpBatch::kSize) {
+  }
+}
 
 void UdpServer::Close() {
   asio::error_code error;

@@ -50,6 +50,9 @@ class UdpServer : public Outlet {
   // the peer's datagrams come to. Before Start().
   void Join(std::vector<UdpServer*> by_lane) { by_lane_ = std::move(by_lane); }
   [[nodiscard]] std::uint16_t port() const;
+  // What came since Open() is lost. Before Start().
+  void DropWaiting();
+  // What nobody can go on from is thrown by the loop.
   void Start();
   void Close();
 

@@ -34,14 +34,14 @@ Hub::Hub(Parts parts)
       recording_(parts.recording),
       gates_(parts.lanes),
       lanes_(MakeLanes(parts)),
-      postman_(lanes_.front()->desk.postman),
+      desk_(parts.session, metrics_, Link::kAlone),
+      postman_(desk_.postman),
       definitions_(std::move(parts.rig), parts.character,
                    static_cast<std::size_t>(parts.limits.max_skeletons),
                    std::move(parts.skeletons)),
       publishers_(limits_, &definitions_, &subjects_, &postman_, metrics_),
       subscribers_(limits_, &subjects_, parts.pictures, parts.settings,
-                   recording_ != nullptr || on_weights_ != nullptr, &lanes_.front()->desk,
-                   metrics_) {}
+                   recording_ != nullptr || on_weights_ != nullptr, &desk_, metrics_) {}
 
 Hub::Turn::Turn(Hub& hub, int lane) : hub_(hub), lane_(hub.LaneAt(lane)) {
   if (lane_.turns++ == 0 && lane_.alone == 0) hub_.gates_.Enter(lane_.index);
@@ -173,14 +173,17 @@ void Hub::PublishGathered(Lane& lane) {
 
 void Hub::Weighted(Lane& lane, Subject& subject, std::span<const std::uint8_t> pose,
                    std::int64_t age_us, Time now) {
-  subscribers_.Publish(subject, pose, age_us, now, &lane.desk);
+  // Behind its Goodbye nobody gets anything.
+  if (!draining_) {
+    subscribers_.Publish(subject, pose, age_us, now, lane.alone > 0 ? &desk_ : &lane.desk);
+  }
   if (on_weights_) on_weights_(subject, lane.index);
   if (recording_ != nullptr) recording_->OnWeights(subject, age_us, now);
 }
 
 void Hub::OnPicture(const FinishedPicture& picture) {
   const Alone alone(*this, 0);
-  subscribers_.OnPicture(picture);
+  if (!draining_) subscribers_.OnPicture(picture);
 }
 
 // And ages who is there.
@@ -211,7 +214,7 @@ void Hub::Tick(Time now) {
   RemoveGone(now);
   ForgetRefusedMocap(now);
   ForEachPeer([now](Peer& peer) { peer.stuck = peer.link->IsStuck(now); });
-  subscribers_.PublishOwed(now);
+  if (!draining_) subscribers_.PublishOwed(now);
   ForEachPeer([&](Peer& peer) {
     if (peer.follows_list && peer.listed != subjects_.version()) SendList(peer, *peer.follows_list);
     if (peer.transport != Transport::kUdp || now - peer.last_heard < kUdpLease) return;

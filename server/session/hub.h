@@ -201,7 +201,8 @@ class Hub {
   RecordingTap* const recording_;
   LaneGates gates_;
   const std::vector<std::unique_ptr<Lane>> lanes_;
-  Postman& postman_;  // of lane 0: whoever is alone sends by it
+  Desk desk_;  // of whoever is alone
+  Postman& postman_;
   StreamDefinitions definitions_;
   SubjectRegistry subjects_;
   Publishers publishers_;

@@ -30,9 +30,9 @@ void Hub::RefuseConnection(Link* link) {
   const Turn turn(*this, 0);
   Peer nobody;
   nobody.link = link;
-  postman_.Error(nobody, {}, ErrorCode::kLimit,
-                 "at most " + std::to_string(limits_.max_connections) +
-                     " connections, see limits.max_connections");
+  LaneAt(0).desk.postman.Error(nobody, {}, ErrorCode::kLimit,
+                               "at most " + std::to_string(limits_.max_connections) +
+                                   " connections, see limits.max_connections");
 }
 
 void Hub::RefuseEnvelope(Lane& lane, Peer& peer, const protocol::MessageView& view,

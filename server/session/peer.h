@@ -34,7 +34,9 @@ class Link {
   // Answers: in order, never replaced by anything newer.
   virtual void SendReply(std::span<const std::uint8_t> message) = 0;
   // Weights, poses and pictures: where the peer is slow, the newest `keep` of a key win. Returns
-  // how many frames were dropped. `lane`: of the thread that calls.
+  // how many frames were dropped. `lane`: of the thread that calls; kAlone: it is alone in the hub,
+  // and frames go the way of the answers, so that none overtakes the one that explains it.
+  static constexpr int kAlone = -1;
   virtual int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message, std::size_t keep,
                         int lane) = 0;
   // Whether the peer takes several messages in a datagram; for links that have such.

@@ -14,7 +14,7 @@
 namespace furrow::server {
 
 // Writes messages to peers: one encoder, one buffer, the daemon's session number. What an unproven
-// UDP address has no credit for is dropped and counted. Frames leave by the sockets of `lane`.
+// UDP address has no credit for is dropped and counted. `lane`: as Link::SendFrame() takes it.
 class Postman {
  public:
   Postman(std::uint64_t session, Metrics* metrics, int lane = 0)

@@ -4,12 +4,17 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <cstdint>
 #include <deque>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -90,14 +95,56 @@ TEST_F(UdpPortTest, SendersAreSpreadAndEachStaysInItsLane) {
   EXPECT_EQ(Count(Counter::kPosesReceived), std::uint64_t{kSenders * kPoses});
 }
 
-TEST_F(UdpPortTest, ThePortIsNotSharedWithAStranger) {
+Hub::Parts TwoLanes(Metrics* metrics) {
   Hub::Parts parts;
   parts.session = 1;
-  parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(/*filter=*/false));
-  parts.metrics = &metrics;
+  parts.rig = std::make_shared<const wrinkle::Rig>();
+  parts.metrics = metrics;
   parts.make_token = [] { return 1u; };
   parts.lanes = 2;
-  Hub other(std::move(parts));
+  return parts;
+}
+
+TEST(UdpPortFailure, WhatALaneDoesNotSurviveEndsTheCallersLoop) {
+  Metrics metrics;
+  Hub::Parts parts = TwoLanes(&metrics);
+  parts.make_token = []() -> std::uint64_t { throw std::runtime_error("no more numbers"); };
+  Hub hub(std::move(parts));
+  asio::io_context io{1};
+  UdpPort port(io, 2, Limits(), &hub, &metrics, nullptr);
+  ASSERT_TRUE(port.Open({asio::ip::address_v4::loopback(), 0}).ok());
+  port.Start();
+  udp::socket sender(io, udp::v4());
+  std::vector<std::uint8_t> hello;
+  protocol::Encoder().Encode({77, 0, 1, 0}, protocol::Hello{}, hello);
+  sender.send_to(asio::buffer(hello), {asio::ip::address_v4::loopback(), port.port()});
+  EXPECT_THROW(io.run_for(std::chrono::seconds(20)), std::runtime_error);
+}
+
+TEST(UdpPortFailure, WhatCameBeforeAllSocketsWereThereIsDropped) {
+  Metrics metrics;
+  Hub hub(TwoLanes(&metrics));
+  asio::io_context io{1};
+  UdpServer server(io, Limits(), &hub, &metrics);
+  ASSERT_TRUE(server.Open({asio::ip::address_v4::loopback(), 0}).ok());
+  udp::socket sender(io, udp::v4());
+  sender.connect({asio::ip::address_v4::loopback(), server.port()});
+  std::vector<std::uint8_t> hello;
+  const auto send = [&](std::uint32_t sequence) {
+    protocol::Encoder().Encode({77, 0, sequence, 0}, protocol::Hello{}, hello);
+    sender.send(asio::buffer(hello));
+  };
+  send(1);
+  server.DropWaiting();
+  send(2);
+  server.Start();
+  while (metrics.Get(Counter::kDatagramsSent) == 0) io.run_one_for(std::chrono::seconds(1));
+  EXPECT_EQ(metrics.Get(Counter::kDatagramsReceived), 1u);
+  server.Close();
+}
+
+TEST_F(UdpPortTest, ThePortIsNotSharedWithAStranger) {
+  Hub other(TwoLanes(&metrics));
   asio::io_context io;
   UdpPort second(io, 2, Limits(), &other, &metrics, nullptr);
   const Status status = second.Open({asio::ip::address_v4::loopback(), port_->port()});

@@ -148,6 +148,71 @@ TEST_F(HubLanes, AllIsSentBeforeATurnIsLeftAndBeforeOthersGoOn) {
   for (int lane = 0; lane < kLanes; ++lane) hub->SetOutlet(lane, nullptr);
 }
 
+// A socket a lane: what waits in it leaves when the lane is flushed.
+class Wire {
+ public:
+  class End : public Link {
+   public:
+    End(Wire* wire, int lane) : wire_(wire), lane_(static_cast<std::size_t>(lane)) {}
+    void SendReply(std::span<const std::uint8_t> message) override { Add(lane_, message); }
+    int SendFrame(std::uint64_t, std::span<const std::uint8_t> message, std::size_t,
+                  int lane) override {
+      Add(lane == kAlone ? lane_ : static_cast<std::size_t>(lane), message);
+      return 0;
+    }
+    void DropFrames(std::uint64_t) override {}
+
+   private:
+    void Add(std::size_t lane, std::span<const std::uint8_t> message) {
+      protocol::MessageView view;
+      EXPECT_EQ(protocol::OpenMessage(message, view, protocol::kMaxReplyBytes),
+                protocol::DecodeStatus::kOk);
+      wire_->sockets[lane].waiting.push_back(view.kind);
+    }
+    Wire* wire_;
+    std::size_t lane_;
+  };
+  struct Socket : Outlet {
+    void Flush() override {
+      wire->left.insert(wire->left.end(), waiting.begin(), waiting.end());
+      waiting.clear();
+    }
+    Wire* wire = nullptr;
+    std::vector<protocol::MessageKind> waiting;
+  };
+
+  Wire() {
+    for (Socket& socket : sockets) socket.wire = this;
+  }
+  Socket sockets[kLanes];
+  std::vector<protocol::MessageKind> left;
+};
+
+TEST_F(HubLanes, WeightsNeverOvertakeTheNamesThatTheyMean) {
+  FakePeer sender;
+  ConnectIn(0, &sender);
+  Publish(sender, "ada");
+  Send(sender, Pose(0.5f), 1, 1);
+  Wire wire;
+  for (int lane = 0; lane < kLanes; ++lane) hub->SetOutlet(lane, &wire.sockets[lane]);
+  Wire::End viewer(&wire, 2);
+  const PeerId id = hub->AddPeer(Transport::kTcp, "viewer", &viewer, now, 2);
+  std::vector<std::uint8_t> bytes;
+  encoder.Encode({99, 0, 1, 0}, protocol::SubscribeWeights{.subject = "ada"}, bytes);
+  hub->OnMessage(id, bytes, now);
+  hub->Tick(now);
+  wire.left.clear();
+  wrinkle::Rig rig = MakeRig(/*filter=*/false);
+  rig.regions.front().name = "forehead";
+  {
+    const Hub::Alone alone(*hub, 0);
+    ASSERT_TRUE(hub->SetRig(std::make_shared<const wrinkle::Rig>(std::move(rig)), now).ok());
+  }
+  using protocol::MessageKind;
+  EXPECT_EQ(wire.left, (std::vector{MessageKind::kSubscribeReply, MessageKind::kWeights}));
+  for (int lane = 0; lane < kLanes; ++lane) hub->SetOutlet(lane, nullptr);
+}
+
 TEST_F(HubLanes, PosesOfAllLanesAtOnceWhileTheSessionChanges) {
   constexpr int kSubjects = 4;  // of a lane
   constexpr std::uint32_t kPoses = 300;

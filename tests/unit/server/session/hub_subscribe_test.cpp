@@ -319,5 +319,19 @@ TEST_F(HubSubscribe, DrainingTellsEverybodyAndTakesNobodyNew) {
   ExpectError(viewer, ErrorCode::kDraining);
 }
 
+TEST_F(HubSubscribe, NothingComesBehindAGoodbye) {
+  Publish(sender, "ann");
+  EXPECT_NE(Watch(viewer, {.subject = "ann", .max_rate_hz = 10.0}), 0);
+  Send(sender, Pose(0.5f), 1, 0);
+  ASSERT_TRUE(viewer.Take<protocol::WeightFrame>().has_value());
+  Send(sender, Pose(0.25f), 1, 1);  // owed
+  hub->Drain();
+  EXPECT_TRUE(viewer.Take<protocol::Goodbye>().has_value());
+  Advance(1.0);
+  hub->Tick(now);
+  Send(sender, Pose(0.75f), 1, 2);
+  EXPECT_TRUE(viewer.inbox.empty());
+}
+
 }  // namespace
 }  // namespace furrow::server
