@@ -111,7 +111,7 @@ ApiReply Api::PostCapture(const ApiRequest& request, Hub& hub, Time now) {
     return ErrorReply(400, "schema", "pose",
                       "must be 'neutral' or a name of letters, digits, '_' and '-'");
   }
-  Subject* subject = hub.FindSubject(subject_name.get<std::string>());
+  Subject* subject = hub.EvaluateInFull(subject_name.get<std::string>());
   if (subject == nullptr) return NoSuchSubject(hub, subject_name.get<std::string>());
   if (!subject->pipeline->has_pose()) {
     return ErrorReply(409, "conflict", "subject", "no pose of it has come yet");
@@ -178,7 +178,7 @@ ApiReply Api::Undo(const ApiRequest&, Hub& hub, Time now) {
   const Capture& last = captures_.back();
   if (last.rig != nullptr) {
     if (Status status = hub.SetRig(last.rig, now); !status.ok()) return ErrorReply(status);
-  } else if (Subject* subject = hub.FindSubject(last.subject);
+  } else if (Subject* subject = hub.EvaluateInFull(last.subject);
              subject != nullptr && subject->skeleton_hash == last.skeleton_hash) {
     hub.SetNeutral(*subject, last.neutral, now);
   }

@@ -187,7 +187,7 @@ ApiReply Api::RigFile(const ApiRequest&, Hub& hub, Time) {
 
 ApiReply Api::Explain(const ApiRequest& request, Hub& hub, Time) {
   const std::string_view name = request.url.Value("subject");
-  const Subject* subject = hub.FindSubject(name);
+  const Subject* subject = hub.EvaluateInFull(name);
   if (subject == nullptr) return NoSuchSubject(hub, name);
   const SubjectPipeline& pipeline = *subject->pipeline;
   const wrinkle::RigBinding& binding = *pipeline.stream().binding;

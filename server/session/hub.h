@@ -124,9 +124,9 @@ class Hub {
   // For whoever runs the session: what is there, and what may be changed while it runs. All by a
   // thread that is Alone, and stays so while it uses what it was given.
   [[nodiscard]] const SubjectRegistry& subjects() const { return subjects_; }
-  // Null: nobody of that name. Empty: who has been there longest. Who is looked up is evaluated in
-  // full from then on, whoever subscribes to what.
-  [[nodiscard]] Subject* FindSubject(std::string_view name);
+  // Looks somebody up by name (empty: who has been there longest; null: nobody), of whom all is
+  // evaluated from then on, whoever subscribes to what.
+  [[nodiscard]] Subject* EvaluateInFull(std::string_view name);
   // Who sends it: a peer's name, for people.
   [[nodiscard]] std::string_view SourceOf(const Subject& subject);
   [[nodiscard]] const render::Settings& own_settings() const { return subscribers_.own_settings(); }

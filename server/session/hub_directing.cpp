@@ -11,7 +11,7 @@
 
 namespace furrow::server {
 
-Subject* Hub::FindSubject(std::string_view name) {
+Subject* Hub::EvaluateInFull(std::string_view name) {
   Subject* subject = name.empty() ? subjects_.First() : subjects_.Find(name);
   if (subject == nullptr) return nullptr;
   subject->in_full = true;

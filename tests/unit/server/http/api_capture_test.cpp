@@ -44,7 +44,7 @@ class ApiCaptureTest : public HubPeersTest {
     Send(sender, offer, 1);
     ASSERT_TRUE(sender.Take<protocol::SkeletonReply>().has_value());
   }
-  SubjectPipeline& pipeline() { return *hub->FindSubject("ann")->pipeline; }
+  SubjectPipeline& pipeline() { return *hub->EvaluateInFull("ann")->pipeline; }
   float brow() { return pipeline().wrinkle_weights()[0]; }
 
   Api api{{}};
@@ -145,7 +145,7 @@ TEST_F(ApiForeignCaptureTest, APoseIsStoredUnderTheJointsOfTheRig) {
   pose.rotation_joints = {2};
   pose.rotations = {{std::sin(0.6f), 0.0f, 0.0f, std::cos(0.6f)}};
   Send(sender, pose, 1, 1);
-  Subject& subject = *hub->FindSubject("ann");
+  Subject& subject = *hub->EvaluateInFull("ann");
   const float bent = subject.pipeline->wrinkle_weights()[0];
   ASSERT_GT(bent, 0.1f);
 

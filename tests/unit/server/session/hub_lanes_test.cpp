@@ -116,9 +116,9 @@ TEST_F(HubLanes, ASenderThatGoesIsForgottenWhateverItsLane) {
   FakePeer sender;
   ConnectIn(2, &sender);
   Publish(sender, "ada");
-  EXPECT_EQ(hub->SourceOf(*hub->FindSubject("ada")), "fake");
+  EXPECT_EQ(hub->SourceOf(*hub->EvaluateInFull("ada")), "fake");
   hub->RemovePeer(sender.id);
-  EXPECT_EQ(hub->SourceOf(*hub->FindSubject("ada")), "");
+  EXPECT_EQ(hub->SourceOf(*hub->EvaluateInFull("ada")), "");
 }
 
 TEST_F(HubLanes, GoodbyesGoToAllLanes) {

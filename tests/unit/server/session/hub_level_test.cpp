@@ -17,7 +17,7 @@ class HubLevel : public HubPeersTest {
     HubPeersTest::SetUp();
     Publish(sender, "ann");
   }
-  // Not by FindSubject(), which is a look.
+  // Not by EvaluateInFull(), which asks for all of it.
   std::size_t Level() const { return hub->subjects().all().front()->pipeline->level(); }
 };
 
@@ -66,7 +66,7 @@ TEST_F(HubLevel, PicturesAndWhoeverAsksForTheSubjectNeedAll) {
   EXPECT_EQ(Level(), kAllDrivers);
   hub->RemovePeer(viewer.id);
   EXPECT_EQ(Level(), 0u);
-  ASSERT_NE(hub->FindSubject("ann"), nullptr);
+  ASSERT_NE(hub->EvaluateInFull("ann"), nullptr);
   EXPECT_EQ(Level(), kAllDrivers);
 }
 

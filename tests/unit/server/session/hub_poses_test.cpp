@@ -244,7 +244,7 @@ TEST_F(HubPoses, OtherWeightsOfTheSamePoseAreNoNewPose) {
   Send(sender, Pose(0.5f), 1, 1);
   ASSERT_TRUE(viewer.Take<protocol::PoseFrame>().has_value());
   ASSERT_TRUE(weights.Take<protocol::WeightFrame>().has_value());
-  Subject& subject = *hub->FindSubject("ann");
+  Subject& subject = *hub->EvaluateInFull("ann");
   hub->SetNeutral(subject, subject.pipeline->pose(), now);
   EXPECT_EQ(weights.Take<protocol::WeightFrame>()->message.age_us, 1);
   Advance(0.25);

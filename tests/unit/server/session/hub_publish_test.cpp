@@ -93,7 +93,7 @@ TEST_F(HubPublish, ANeutralStaysWhereThePerformerIsSentAnewWithTheSameSkeleton) 
   Publish(sender, "ann");
   ASSERT_NE(Watch(viewer, {.subject = "ann"}), 0);  // so that its weights are evaluated
   Send(sender, Pose(0.25f), 1, 1);
-  Subject& subject = *hub->FindSubject("ann");
+  Subject& subject = *hub->EvaluateInFull("ann");
   hub->SetNeutral(subject, subject.pipeline->pose(), now);
   ++sender.session;
   Publish(sender, "ann");

@@ -236,7 +236,7 @@ TEST_F(HubViewers, AcknowledgingWhatWasNeverSentIsAnError) {
 TEST_F(HubViewers, ANeutralAndAnotherRigChangeTheWeightsOfTheLivePose) {
   Publish(sender, "ann");
   Pose1(0.5f);
-  Subject& subject = *hub->FindSubject("ann");
+  Subject& subject = *hub->EvaluateInFull("ann");
   EXPECT_NEAR(subject.pipeline->wrinkle_weights()[0], 0.5f, 1e-6f);
   hub->SetNeutral(subject, subject.pipeline->pose(), now);
   EXPECT_NEAR(subject.pipeline->wrinkle_weights()[0], 0.0f, 1e-6f);
