@@ -76,7 +76,15 @@ ApiReply JsonReply(const Json& json) {
 }
 
 Result<Json> ObjectOf(const ApiRequest& request) {
-  Json json = Json::parse(request.body, nullptr, /*allow_exceptions=*/false);
+  // Nothing that is asked for has a depth of its own, and what is copied is copied recursively.
+  constexpr int kMaxDepth = 8;
+  bool is_deep = false;
+  const auto is_wanted = [&](int depth, Json::parse_event_t, const Json&) {
+    is_deep = is_deep || depth > kMaxDepth;
+    return !is_deep;
+  };
+  Json json = Json::parse(request.body, is_wanted, /*allow_exceptions=*/false);
+  if (is_deep) return Status(StatusCode::kSchema, "the body is nested too deeply", "body");
   if (json.is_discarded()) return Status(StatusCode::kParse, "the body is no JSON", "body");
   if (!json.is_object()) return Status(StatusCode::kSchema, "the body is no JSON object", "body");
   return json;

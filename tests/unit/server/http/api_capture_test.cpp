@@ -71,6 +71,16 @@ TEST_F(ApiCaptureTest, ANeutralOfAnotherSkeletonIsNotTakenBack) {
   EXPECT_FALSE(pipeline().neutral_pose().has_value());
 }
 
+TEST_F(ApiCaptureTest, ABodyThatIsNestedWithoutEndIsRefused) {
+  constexpr std::size_t kDepth = 30'000;  // fits a request; each level copied is a call within one
+  const std::string body =
+      R"({"subject":)" + std::string(kDepth, '[') + std::string(kDepth, ']') + "}";
+  const ApiReply reply = api.Answer(
+      {.method = "POST", .url = {.path = "/api/capture", .values = {}}, .body = body}, *hub, now);
+  EXPECT_EQ(reply.status, 400);
+  EXPECT_EQ(Json::parse(reply.body)["error"]["field"], "body");
+}
+
 TEST_F(ApiCaptureTest, ANeutralThatIsPreviewedLeavesTheSubjectAlone) {
   Make({}, /*filter=*/true);
   Connect(&sender);
