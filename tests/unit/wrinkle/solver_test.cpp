@@ -160,23 +160,33 @@ TEST(DriverJob, ValidatesOneInputAtATime) {
   EXPECT_EQ(job().Run(), JobStatus::kNonFinite);
 }
 
-TEST(WrinkleWeightsJob, ValidatesOneInputAtATime) {
-  BoundRig rig(MakeRig(), MakeBody());
-  const WrinkleWeightsJob job{.binding = rig.binding().get(),
-                              .driver_values = rig.values(),
-                              .wrinkle_weights = rig.weights()};
+// Of a job on the rig's values that writes `output`.
+template <class Job>
+void ExpectItValidatesOneInputAtATime(BoundRig& rig, const Job& job,
+                                      std::span<float> Job::*output) {
   EXPECT_EQ(job.Validate(), JobStatus::kOk);
-  WrinkleWeightsJob broken = job;
+  Job broken = job;
   broken.binding = nullptr;
   EXPECT_EQ(broken.Validate(), JobStatus::kNullPointer);
   broken = job;
   broken.driver_values = broken.driver_values.first(broken.driver_values.size() - 1);
   EXPECT_EQ(broken.Validate(), JobStatus::kSizeMismatch);
   broken = job;
-  broken.wrinkle_weights = broken.wrinkle_weights.first(broken.wrinkle_weights.size() - 1);
+  broken.*output = (broken.*output).first((broken.*output).size() - 1);
   EXPECT_EQ(broken.Validate(), JobStatus::kSizeMismatch);
-  rig.values()[3] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(job.Run(), JobStatus::kNonFinite);
+  for (const float value :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    rig.values()[3] = value;
+    EXPECT_EQ(job.Run(), JobStatus::kNonFinite);
+  }
+}
+
+TEST(WrinkleWeightsJob, ValidatesOneInputAtATime) {
+  BoundRig rig(MakeRig(), MakeBody());
+  const WrinkleWeightsJob job{.binding = rig.binding().get(),
+                              .driver_values = rig.values(),
+                              .wrinkle_weights = rig.weights()};
+  ExpectItValidatesOneInputAtATime(rig, job, &WrinkleWeightsJob::wrinkle_weights);
 }
 
 TEST(JointInfluenceJob, ValidatesOneInputAtATime) {
@@ -185,18 +195,7 @@ TEST(JointInfluenceJob, ValidatesOneInputAtATime) {
                                 rig.binding()->dynamic_masks().size());
   const JointInfluenceJob job{
       .binding = rig.binding().get(), .driver_values = rig.values(), .influences = influences};
-  EXPECT_EQ(job.Validate(), JobStatus::kOk);
-  JointInfluenceJob broken = job;
-  broken.binding = nullptr;
-  EXPECT_EQ(broken.Validate(), JobStatus::kNullPointer);
-  broken = job;
-  broken.driver_values = broken.driver_values.first(broken.driver_values.size() - 1);
-  EXPECT_EQ(broken.Validate(), JobStatus::kSizeMismatch);
-  broken = job;
-  broken.influences = broken.influences.first(broken.influences.size() - 1);
-  EXPECT_EQ(broken.Validate(), JobStatus::kSizeMismatch);
-  rig.values()[3] = std::numeric_limits<float>::infinity();
-  EXPECT_EQ(job.Run(), JobStatus::kNonFinite);
+  ExpectItValidatesOneInputAtATime(rig, job, &JointInfluenceJob::influences);
 }
 
 TEST(SubjectSolver, WithoutFilterEqualsTheJobs) {
