@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <ctime>
 #include <span>
@@ -19,6 +20,8 @@ class Poller {
   // on the set, as exact but two system calls. A poller finds that out by itself.
   enum class Calls { kOne, kTwo };
 
+  static constexpr std::size_t kMost = 64;
+
   explicit Poller(Calls calls = Calls::kOne);
 
   // `token` comes back when the descriptor is readable or closed: as long as it is (kLevel), or
@@ -27,8 +30,8 @@ class Poller {
   void Add(int descriptor, std::uint64_t token, When when = When::kLevel);
   void Remove(int descriptor);
 
-  // Waits at most `timeout_ns` (0: only looks). The events are valid until the next call; an
-  // interrupting signal gives none.
+  // Waits at most `timeout_ns` (0: only looks). At most kMost events, the others next time; valid
+  // until the next call. An interrupting signal gives none.
   [[nodiscard]] std::span<const epoll_event> Wait(std::int64_t timeout_ns);
 
  private:
@@ -36,7 +39,7 @@ class Poller {
 
   Descriptor epoll_;
   Calls calls_;
-  std::array<epoll_event, 64> events_{};
+  std::array<epoll_event, kMost> events_{};
 };
 
 }  // namespace furrow::load

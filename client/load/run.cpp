@@ -21,6 +21,7 @@ using client::TransportKind;
 // A server allows one peer so many messages a second (furrowd: 20,000): stay well below.
 constexpr double kMessagesPerSocket = 8000.0;
 constexpr int kPosesAtOnce = 32;  // then it is looked for what came, also when behind
+constexpr int kLooksAtOnce = 16;  // then whether the run is over, whatever else comes
 constexpr std::int64_t kLongestWaitNs = 20'000'000;
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::uint64_t kWatcherToken = std::uint64_t{1} << 32;
@@ -83,12 +84,18 @@ class Runner {
  private:
   Status OpenSockets();
   void SendDue(std::int64_t now_ns);
-  void ReadReady(std::int64_t timeout_ns);
+  void Listen(Socket& socket, std::uint64_t token);
+  bool ReadReady(Poller* poller, std::int64_t timeout_ns);
   IoStatus ReadWatcher(std::size_t socket);
   void ReadEchoes(std::size_t socket);
   void EverySecond(std::int64_t now_ns);
   [[nodiscard]] bool Over(std::int64_t now_ns);
   [[nodiscard]] std::int64_t NextDueNs() const { return start_ns_ + slots_.next().due_us * 1000; }
+  // Until the next pose is due or it is to be looked whether the run is over.
+  [[nodiscard]] std::int64_t TimeLeft() const {
+    if (slots_.done()) return kLongestWaitNs;
+    return std::min(NextDueNs() - SteadyNanoseconds(), kLongestWaitNs);
+  }
   void End(std::string why) {
     result_.complaint = std::move(why);
     result_.ended_early = true;
@@ -107,7 +114,10 @@ class Runner {
   std::optional<Senders> senders_;
   std::optional<Watchers> watchers_;
   std::optional<Burdens> burdens_;
-  Poller poller_;
+  // Datagrams count as having come when the system says, so they wait until a pose was sent and
+  // delay none; what comes over TCP counts when it is read, so it wakes us.
+  Poller datagrams_;
+  Poller streams_;
   RunResult result_;
   std::int64_t start_ns_ = 0;
   std::int64_t capture_start_us_ = 0;
@@ -130,11 +140,15 @@ Status Runner::Prepare() {
                                 .late_us = options_.late_us,
                                 .seconds = options_.plan.seconds});
   if (Status status = OpenSockets(); !status.ok()) return status;
-  for (std::size_t i = 0; i < senders_->num_sockets(); ++i)
-    poller_.Add(senders_->socket(i).descriptor(), i);
+  for (std::size_t i = 0; i < senders_->num_sockets(); ++i) Listen(senders_->socket(i), i);
   for (std::size_t i = 0; watchers_ && i < watchers_->num_sockets(); ++i)
-    poller_.Add(watchers_->socket(i).descriptor(), kWatcherToken + i);
+    Listen(watchers_->socket(i), kWatcherToken + i);
   return {};
+}
+
+void Runner::Listen(Socket& socket, std::uint64_t token) {
+  Poller& poller = socket.kind() == TransportKind::kUdp ? datagrams_ : streams_;
+  poller.Add(socket.descriptor(), token);
 }
 
 Status Runner::OpenSockets() {
@@ -166,9 +180,9 @@ RunResult Runner::Go() {
   capture_start_us_ = start_ns_ / 1000;
   for (std::int64_t now = start_ns_; !Over(now); now = SteadyNanoseconds()) {
     SendDue(now);
-    now = SteadyNanoseconds();
-    const std::int64_t wait = slots_.done() ? kLongestWaitNs : NextDueNs() - now;
-    ReadReady(std::min(wait, kLongestWaitNs));
+    for (int i = 0; i < kLooksAtOnce && ReadReady(&datagrams_, 0) && TimeLeft() > 0; ++i) {
+    }
+    (void)ReadReady(&streams_, TimeLeft());
     EverySecond(now);
   }
   result_.seconds =
@@ -208,8 +222,10 @@ void Runner::SendDue(std::int64_t now_ns) {
   }
 }
 
-void Runner::ReadReady(std::int64_t timeout_ns) {
-  for (const epoll_event& event : poller_.Wait(timeout_ns)) {
+// True: there may be more.
+bool Runner::ReadReady(Poller* poller, std::int64_t timeout_ns) {
+  const auto events = poller->Wait(timeout_ns);
+  for (const epoll_event& event : events) {
     const std::uint64_t token = event.data.u64;
     IoStatus status = IoStatus::kOk;
     if (token >= kWatcherToken) {
@@ -222,11 +238,12 @@ void Runner::ReadReady(std::int64_t timeout_ns) {
     if (status == IoStatus::kNoConnection) refused_ns_ = SteadyNanoseconds();
     if (status == IoStatus::kClosed) End("the daemon closed the connection");
   }
+  return events.size() == Poller::kMost;
 }
 
 IoStatus Runner::ReadWatcher(std::size_t socket) {
   return watchers_->Read(socket, [this](const Watchers::Arrival& arrival) {
-    last_arrival_ns_ = SteadyNanoseconds();
+    last_arrival_ns_ = arrival.arrived_ns;
     checker_->OnWeights(arrival.watcher, arrival.subject, arrival.sequence, arrival.values,
                         arrival.readable, (last_arrival_ns_ - start_ns_) / 1000);
   });
@@ -240,7 +257,7 @@ void Runner::ReadEchoes(std::size_t socket) {
     if (from.Receive(message, std::chrono::milliseconds(0)) != IoStatus::kOk) return;
     protocol::Envelope envelope;
     if (protocol::ReadEnvelope(message, envelope) != protocol::EnvelopeStatus::kOk) continue;
-    last_arrival_ns_ = SteadyNanoseconds();
+    last_arrival_ns_ = from.arrived_ns();
     checker_->OnWeights(0, senders_->subject(socket, envelope.header.stream),
                         envelope.header.sequence, {}, false, (last_arrival_ns_ - start_ns_) / 1000);
   }

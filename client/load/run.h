@@ -51,7 +51,7 @@ struct RunHooks {
 
 struct RunResult {
   Tally tally;
-  Histogram latency_ns;  // from when a pose was due to when its weights were here
+  Histogram latency_ns;  // from when a pose was due to when its weights came, Socket::arrived_ns()
   std::vector<Histogram> windows;
   Histogram send_delay_ns;            // by how much this program itself was late to send
   double seconds = 0.0;               // from the first pose due to the last, or to the interrupt

@@ -44,6 +44,9 @@ class Socket : public client::Transport {
   [[nodiscard]] virtual int descriptor() const = 0;
   // Whether Receive() has something that the descriptor does not show any more.
   [[nodiscard]] virtual bool holds() const = 0;
+  // When what Receive() gave last came in here, on the clock of SteadyNanoseconds(): over UDP as
+  // the system stamped it, so however late it was read; over TCP when it was read.
+  [[nodiscard]] virtual std::int64_t arrived_ns() const = 0;
   // Datagrams that came and found no room here: not the server's fault.
   [[nodiscard]] virtual std::uint64_t overrun() const { return 0; }
 

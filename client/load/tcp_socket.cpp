@@ -9,6 +9,8 @@
 #include <poll.h>
 #include <sys/socket.h>
 
+#include "client/load/clock.h"
+
 namespace furrow::load {
 
 using client::IoStatus;
@@ -66,6 +68,7 @@ IoStatus TcpSocket::Fill(std::chrono::milliseconds timeout) {
   const ssize_t received = recv(descriptor_.get(), buffer_.data(), buffer_.size(), 0);
   if (received < 0 && (errno == EAGAIN || errno == EINTR)) return IoStatus::kTimeout;
   if (received <= 0) return IoStatus::kClosed;
+  read_ns_ = SteadyNanoseconds();
   const auto bytes = static_cast<std::size_t>(received);
   unread_ = std::span<const std::uint8_t>(buffer_).first(bytes);
   drained_ = bytes < buffer_.size();

@@ -20,6 +20,7 @@ class TcpSocket : public Socket {
                                          std::chrono::milliseconds timeout) override;
   [[nodiscard]] int descriptor() const override { return descriptor_.get(); }
   [[nodiscard]] bool holds() const override { return !unread_.empty(); }
+  [[nodiscard]] std::int64_t arrived_ns() const override { return read_ns_; }
 
  private:
   [[nodiscard]] client::IoStatus Fill(std::chrono::milliseconds timeout);
@@ -28,7 +29,8 @@ class TcpSocket : public Socket {
   std::vector<std::uint8_t> outgoing_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(64 * 1024);
   std::span<const std::uint8_t> unread_;
-  bool drained_ = false;  // the last read was not full: nothing is left until the next wait
+  std::int64_t read_ns_ = 0;  // when that was
+  bool drained_ = false;      // the last read was not full: nothing is left until the next wait
   protocol::FrameReader frames_{protocol::kMaxReplyBytes};
 };
 

@@ -23,6 +23,7 @@ UdpSocket::UdpSocket(Descriptor descriptor)
   setsockopt(descriptor_.get(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof(bytes));
   const int on = 1;
   setsockopt(descriptor_.get(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof(on));
+  ArrivalClock::Enable(descriptor_.get());
   for (std::size_t i = 0; i < kBatch; ++i) {
     slices_[i] = {buffer_.data() + i * kBufferBytes, kBufferBytes};
     headers_[i].msg_hdr.msg_iov = &slices_[i];
@@ -63,6 +64,7 @@ IoStatus UdpSocket::Receive(std::span<const std::uint8_t>& message,
       if (status != IoStatus::kOk) return status;
     }
     const std::size_t i = taken_++;
+    arrived_ns_ = clock_.Arrival(&headers_[i].msg_hdr);
     const std::span datagram(buffer_.data() + i * kBufferBytes, headers_[i].msg_len);
     switch (reassembler_.Push(0, datagram, SteadyNanoseconds() / 1000, message)) {
       case protocol::FragmentStatus::kWhole: (void)unbundler_.Open(datagram); break;
@@ -81,6 +83,7 @@ IoStatus UdpSocket::Fill() {
   if (received <= 0) {
     return received < 0 && errno == ECONNREFUSED ? IoStatus::kNoConnection : IoStatus::kTimeout;
   }
+  clock_.Read();
   filled_ = static_cast<std::size_t>(received);
   drained_ = filled_ < kBatch;
   ReadOverrun(&headers_[filled_ - 1].msg_hdr);

@@ -3,10 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <ctime>
 #include <vector>
 
 #include <sys/socket.h>
 
+#include "client/load/arrival_clock.h"
 #include "client/load/socket.h"
 #include "protocol/bundle.h"
 #include "protocol/fragment.h"
@@ -25,6 +27,7 @@ class UdpSocket : public Socket {
   [[nodiscard]] bool takes_bundles() const override { return true; }
   [[nodiscard]] int descriptor() const override { return descriptor_.get(); }
   [[nodiscard]] bool holds() const override { return taken_ < filled_ || unbundler_.has_more(); }
+  [[nodiscard]] std::int64_t arrived_ns() const override { return arrived_ns_; }
   [[nodiscard]] std::uint64_t overrun() const override { return overrun_; }
 
  private:
@@ -37,7 +40,8 @@ class UdpSocket : public Socket {
   void ReadOverrun(msghdr* header);
 
   struct Control {
-    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(std::uint32_t))> bytes;
+    alignas(cmsghdr)
+        std::array<char, CMSG_SPACE(sizeof(std::uint32_t)) + CMSG_SPACE(sizeof(timespec))> bytes;
   };
 
   Descriptor descriptor_;
@@ -47,6 +51,8 @@ class UdpSocket : public Socket {
   std::array<Control, kBatch> controls_{};
   std::size_t filled_ = 0;  // of the batch
   std::size_t taken_ = 0;
+  ArrivalClock clock_;  // of the batch
+  std::int64_t arrived_ns_ = 0;
   bool drained_ = false;  // the last batch was not full: nothing is left until the next wait
   std::uint32_t overrun_ever_ = 0;
   std::uint64_t overrun_ = 0;

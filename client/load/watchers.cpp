@@ -91,8 +91,12 @@ void Watchers::OnWeights(Link& link, const protocol::Header& header,
   const protocol::WeightFrame& frame = link.subscriber->weights();
   // Frames of no pose (age) are what the daemon makes up where a subject falls silent.
   if (subject == link.subscriptions.end() || frame.age_us > 0) return;
-  use({link.watcher, subject->second, header.sequence, frame.values,
-       frame.names_hash == names_hash_});
+  use({.watcher = link.watcher,
+       .subject = subject->second,
+       .sequence = header.sequence,
+       .arrived_ns = link.socket->arrived_ns(),
+       .values = frame.values,
+       .readable = frame.names_hash == names_hash_});
 }
 
 IoStatus Watchers::Read(std::size_t i, const std::function<void(const Arrival&)>& use) {

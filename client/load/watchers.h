@@ -25,6 +25,7 @@ class Watchers {
     int watcher = 0;
     std::uint32_t subject = 0;
     std::uint32_t sequence = 0;
+    std::int64_t arrived_ns = 0;  // as Socket::arrived_ns()
     std::span<const float> values;
     bool readable = false;
   };

@@ -9,6 +9,7 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
+#include "client/load/clock.h"
 #include "protocol/codec.h"
 
 namespace furrow::load {
@@ -73,6 +74,22 @@ TEST_F(UdpSocketTest, TakesBundlesApartAndSaysWhatItStillHolds) {
   EXPECT_TRUE(near_->holds()) << "a datagram of the same batch";
   for (const Bytes& each : messages) EXPECT_EQ(Take(), each);
   EXPECT_FALSE(near_->holds());
+}
+
+// The tester sends and reads on one thread: what it does meanwhile is no part of what it measures.
+TEST_F(UdpSocketTest, SaysWhenADatagramCameAndNotWhenItWasRead) {
+  Bytes message;
+  protocol::Encoder().Encode({.session = 3, .sequence = 1}, protocol::Ping{1}, message);
+  const std::int64_t before = SteadyNanoseconds();
+  FromFar(message);
+  FromFar(message);
+  EXPECT_EQ(Take(), message);
+  const std::int64_t first = near_->arrived_ns();
+  EXPECT_TRUE(near_->holds()) << "both were read at once";
+  EXPECT_EQ(Take(), message);
+  EXPECT_GE(first, before);
+  EXPECT_GT(near_->arrived_ns(), first);
+  EXPECT_LE(near_->arrived_ns(), SteadyNanoseconds());
 }
 
 }  // namespace
