@@ -25,24 +25,30 @@ DecodeStatus CountValues(const Vector<Plain>* plain, const Vector<Packed>* packe
   return DecodeStatus::kOk;
 }
 
+DecodeStatus ReadPackedRotations(const Vector<const wire::PackedQuat*>& packed,
+                                 std::span<Quat> rotations) {
+  for (std::size_t i = 0; i < rotations.size(); ++i) {
+    const wire::PackedQuat& quat = *packed.Get(static_cast<uoffset_t>(i));
+    if (!UnpackQuat({quat.low(), quat.middle(), quat.high()}, rotations[i])) {
+      return DecodeStatus::kBadValue;
+    }
+  }
+  return DecodeStatus::kOk;
+}
+
 DecodeStatus ReadRotations(const wire::Pose& root, PoseFrame& pose) {
   std::size_t count = 0;
   FURROW_CHECK_DECODE(CountValues(root.rotations(), root.packed_rotations(), count));
   FURROW_CHECK_DECODE(
       internal::ReadMask(root.rotation_mask(), pose.num_joints, count, pose.rotation_joints));
   pose.rotations.resize(count);
+  if (root.packed_rotations() != nullptr) {
+    return ReadPackedRotations(*root.packed_rotations(), pose.rotations);
+  }
   for (std::size_t i = 0; i < count; ++i) {
-    const auto at = static_cast<uoffset_t>(i);
-    if (root.packed_rotations() != nullptr) {
-      const wire::PackedQuat& packed = *root.packed_rotations()->Get(at);
-      if (!UnpackQuat({packed.low(), packed.middle(), packed.high()}, pose.rotations[i])) {
-        return DecodeStatus::kBadValue;
-      }
-    } else {
-      const wire::Quat& q = *root.rotations()->Get(at);
-      pose.rotations[i] = {q.x(), q.y(), q.z(), q.w()};
-      FURROW_CHECK_DECODE(internal::CheckRotation(pose.rotations[i]));
-    }
+    const wire::Quat& q = *root.rotations()->Get(static_cast<uoffset_t>(i));
+    pose.rotations[i] = {q.x(), q.y(), q.z(), q.w()};
+    FURROW_CHECK_DECODE(internal::CheckRotation(pose.rotations[i]));
   }
   return DecodeStatus::kOk;
 }

@@ -17,8 +17,10 @@ std::uint64_t PackComponent(float value) {
   return static_cast<std::uint64_t>(std::clamp(scaled, 0.0f, static_cast<float>(kQuatSteps)));
 }
 
+// By how many steps it is off the middle, which is exact and takes no division.
 float UnpackComponent(std::uint64_t code) {
-  return (static_cast<float>(code) * (2.0f / kQuatSteps) - 1.0f) / kSqrt2;
+  constexpr float kStep = 2.0f / (static_cast<float>(kQuatSteps) * kSqrt2);
+  return static_cast<float>(static_cast<int>(code) - kQuatSteps / 2) * kStep;
 }
 
 }  // namespace
