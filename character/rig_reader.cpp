@@ -195,6 +195,7 @@ Status ReadMap(const schema::WrinkleMap& from, const std::string& at, wrinkle::W
   to->height = Text(from.height());
   to->height_mm = from.height_mm();
   to->colour = Text(from.colour());
+  to->colour_scale = from.colour_scale();
   to->cavity = Text(from.cavity());
   to->amplitude = from.amplitude();
   to->opposes = Text(from.opposes());

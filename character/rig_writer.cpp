@@ -261,6 +261,7 @@ std::string ToJson(const wrinkle::WrinkleMap& map) {
       .Text("height", map.height)
       .Float("height_mm", map.height_mm, 1.0f)
       .Text("colour", map.colour)
+      .Float("colour_scale", map.colour_scale, 1.0f)
       .Text("cavity", map.cavity)
       .Float("amplitude", map.amplitude, 1.0f)
       .Text("opposes", map.opposes)

@@ -152,16 +152,26 @@ crowd() {
 
 # The outline of a forehead whose brows are raised, close by.
 displacement() {
-  "$furrow" bake "$share/elder.glb" --map stretch --size 1024 --out "$work/elder-maps"
   local names=()
   for way in off on; do
     size=1200x1200 still "profile_$way" --pose stretch --camera profile \
-      --character "$share/elder.glb" --rig "$work/elder-maps/elder.rig.json" \
-      --set "displacement.enabled=$way"
+      --character "$share/elder.glb" --set "displacement.enabled=$way"
     oiiotool "$work/profile_$way.png" --cut 260x320+170+300 -o "$work/forehead_$way.png"
     names+=("forehead_$way")
   done
   sheet displacement 2x1 1080 "${names[@]}"
+}
+
+# Blood that comes and goes: none, as it is, twice as much; a smile above, a frown below.
+blood_flow() {
+  local strength
+  for strength in 0 1 2; do
+    size=560x560 still "smile_$strength" "$recordings/happiness.bvh" --frames 85 --camera face \
+      --set "wrinkle_maps.blood_flow=$strength"
+    size=560x560 still "frown_$strength" "$recordings/anger.bvh" --frames 140 --camera face \
+      --character "$share/elder.glb" --set "wrinkle_maps.blood_flow=$strength"
+  done
+  sheet blood_flow 3x2 1080 smile_{0,1,2} frown_{0,1,2}
 }
 
 # A leg that swings forwards, half aside, and aside; baked and drawn with the rig's four painted
@@ -208,6 +218,7 @@ wrinkles
 subsurface
 crowd
 displacement
+blood_flow
 sliding_masks
 default_faces default default
 default_faces elder elder

@@ -144,7 +144,9 @@ void WrinkleTables::DescribeMaps(const character::Character& character) {
   for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
     const int index = static_cast<int>(maps_.size());
     MapInfo info;
-    info.entry.colour = MapColour(map.name, index);
+    const bool coloured = !map.colour.empty() && character.FindRigPicture(map.colour) >= 0;
+    info.entry.colour =
+        glm::vec4(glm::vec3(MapColour(map.name, index)), coloured ? map.colour_scale : 1.0f);
     const int layer = layout_.map_layers[static_cast<std::size_t>(index)];
     info.entry.layer = std::max(layer, 0);
     info.entry.map = index;

@@ -24,7 +24,7 @@ inline constexpr int kNumWrinkleGroups = 2;  // kNone has no table
 // One wrinkle map that this frame needs. Mirrors ActiveMap of shaders/common_wrinkles.glsl
 // (std140).
 struct ActiveMap {
-  glm::vec4 colour{1.0f};
+  glm::vec4 colour{1.0f};  // rgb: of the views; a: WrinkleMap::colour_scale
   std::int32_t layer = 0;
   std::int32_t map = 0;
   float amplitude = 1.0f;

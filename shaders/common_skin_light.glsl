@@ -116,7 +116,7 @@ struct Leaving {
   vec4 irradiance;  // rgb: light on skin times albedo^mix; a: metres behind the focus, FAR_AWAY
                     // where there is no skin
   vec3 radiance;    // all light that does not scatter
-  vec3 albedo;      // albedo^(1 - mix) of skin
+  vec3 albedo;      // albedo^(1 - mix) of skin; of the rest, where no light scatters, its colour
 };
 
 // `metres`: along the camera's axis.
@@ -131,7 +131,7 @@ Leaving leavingLight(Facet facet, Lit lit, float metres) {
   leaving.irradiance = skin ? vec4(diffuse * before, metres - u_camera_forward.w)
                          : vec4(0.0, 0.0, 0.0, FAR_AWAY);
   leaving.radiance = specular + (skin ? vec3(0.0) : facet.colour * diffuse);
-  leaving.albedo = skin ? albedo / before : vec3(0.0);
+  leaving.albedo = skin ? albedo / before : facet.colour;
 #else
   leaving = Leaving(vec4(0.0, 0.0, 0.0, FAR_AWAY), vec3(0.0), vec3(0.0));
 #if VIEW == VIEW_SPECULAR

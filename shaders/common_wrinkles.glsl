@@ -10,7 +10,8 @@
 // MAP_SLOTS    vec4s that carry the dynamic masks of the rig's maps, at least 1
 
 struct ActiveMap {
-  vec4 colour;          // rgb: linear, for the views `weights` and `mask_dynamic`
+  vec4 colour;          // rgb: linear, for the views `weights` and `mask_dynamic`; a: what a full
+                        // texel of u_wrinkle_looks' colour stands for
   int layer;            // in u_wrinkle_derivatives
   int map;              // in u_wrinkle_looks
   float amplitude;      // scales the derivatives and heights

@@ -65,6 +65,7 @@ vec4 wrinkleLook(vec2 uv, vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS],
   vec4 look = vec4(1.0);
   for (int i = 0; i < ACTIVE_MAPS; ++i) {
     vec4 texel = texture(u_wrinkle_looks, vec3(uv, float(u_active_maps[i].map)));
+    texel.rgb *= u_active_maps[i].colour.a;
     float w = wrinkleCoefficient(i, masks, dynamicMasks);
     look *= max(mix(vec4(1.0), texel, w * strength.xxxy), vec4(0.0));
   }

@@ -37,7 +37,7 @@ void main() {
   Lit lit = lightFacet(facet);
 #if OCCLUSION
   float open = openAt(u_open, u_depth, pixel, metres, u_range);
-  lit.sky *= facet.kind == MATERIAL_SKIN ? openForDiffuse(open) : vec3(open);
+  lit.sky *= facet.kind == MATERIAL_SKIN ? openForDiffuse(open) : withBounces(open, facet.colour);
   lit.skySpecular *= open;
 #endif
   Leaving leaving = leavingLight(facet, lit, metres);

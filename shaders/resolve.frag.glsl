@@ -2,8 +2,8 @@
 #include "common_scatter.glsl"
 
 // The scene's samples made one a pixel, so that edges stay smooth and nothing of skin mixes with
-// what is not: light on skin is the mean of the samples on skin alone, and its albedo, the mean of
-// all, says how much of the pixel they are.
+// what is not: light on skin is the mean of the samples on skin alone, and its albedo, the sum of
+// theirs over all, says how much of the pixel they are. Where no skin is, the albedo is the rest's.
 //
 // SAMPLES  of the scene's targets, at least 2
 
@@ -24,6 +24,7 @@ void main() {
   vec4 irradiance = vec4(0.0);
   vec4 radiance = vec4(0.0);
   vec4 albedo = vec4(0.0);
+  vec3 rest = vec3(0.0);
   vec4 normal = vec4(0.0);
   float skyShare = 0.0;
   float skin = 0.0;
@@ -32,10 +33,12 @@ void main() {
     vec4 light = texelFetch(u_irradiance, pixel, i);
     vec4 colour = texelFetch(u_albedo, pixel, i);
     radiance += texelFetch(u_radiance, pixel, i);
-    albedo += colour;
     if (isSkin(light)) {
       irradiance += light;
+      albedo += colour;
       skin += 1.0;
+    } else {
+      rest += colour.rgb;
     }
     // The nearest sample stands for the pixel: a mean would lie on no surface.
     float metres = texelFetch(u_depth, pixel, i).r;
@@ -46,7 +49,8 @@ void main() {
   }
   f_irradiance = skin > 0.0 ? irradiance / skin : vec4(0.0, 0.0, 0.0, FAR_AWAY);
   f_radiance = radiance / float(SAMPLES);
-  f_albedo = vec4(albedo.rgb / float(SAMPLES), skin > 0.0 ? albedo.a / skin : 0.0);
+  f_albedo = skin > 0.0 ? vec4(albedo.rgb / float(SAMPLES), albedo.a / skin)
+                        : vec4(rest / float(SAMPLES), 0.0);
   f_normal = normal;
   f_depth = depth;
 }

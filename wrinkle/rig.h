@@ -179,8 +179,9 @@ struct WrinkleMap {
   float derivative_scale = 1.0f;  // what an integer texel of 1 stands for; see below
   std::string height;             // optional: for displacement, over the rest surface
   float height_mm = 1.0f;         // what an integer texel of 1 stands for, millimetres
-  std::string colour;             // optional
-  std::string cavity;             // optional
+  std::string colour;             // optional: sRGB, multiplies the surface's base colour
+  float colour_scale = 1.0f;      // the factor that a full texel stands for, linear
+  std::string cavity;             // optional: scales gloss and the light of the sky
   float amplitude = 1.0f;         // scales derivatives and heights
   std::string opposes;  // the map that must not meet this one over a shared border, if any
   Surface surface = Surface::kAny;

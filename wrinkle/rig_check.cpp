@@ -268,6 +268,7 @@ void CheckMap(const WrinkleMap& map, const std::string& at, Complaints* complain
   complaints->Range(at, ".amplitude", map.amplitude, 0.0f, 100.0f);
   complaints->Range(at, ".derivative_scale", map.derivative_scale, 1e-4f, kMaxDerivativeScale);
   complaints->Range(at, ".height_mm", map.height_mm, 1e-4f, 1000.0f);
+  complaints->Range(at, ".colour_scale", map.colour_scale, 0.1f, 10.0f);
   complaints->Require(map.opposes != map.name, at, ".opposes", "a map cannot oppose itself");
 }
 

@@ -2,11 +2,8 @@
 #include "character/bake/bake.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
-
-#include <glm/geometric.hpp>
 
 #include "character/bake/bake_check.h"
 #include "character/bake/bake_surface.h"
@@ -69,25 +66,6 @@ Result<BakedMaps> Bake(const Character& character, std::span<const BakePose> pos
     maps.maps.push_back(std::move(**baked));
   }
   return maps;
-}
-
-Picture NormalPicture(const BakedMap& map, std::string name) {
-  Picture picture;
-  picture.name = std::move(name);
-  picture.width = map.width;
-  picture.height = map.height;
-  picture.channels = 3;
-  const std::size_t count = map.height_mm.size();
-  picture.pixels16.reserve(3 * count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::vec3 n =
-        glm::normalize(glm::vec3(map.derivative[2 * i], map.derivative[2 * i + 1], 1.0f));
-    for (int c = 0; c < 3; ++c) {
-      picture.pixels16.push_back(
-          static_cast<std::uint16_t>(std::lround((n[c] * 0.5f + 0.5f) * 65535.0f)));
-    }
-  }
-  return picture;
 }
 
 }  // namespace furrow::character::bake

@@ -115,6 +115,7 @@ struct BakedMap {
   std::vector<float> derivative;  // two a texel: n.xy / n.z = -dh/d(tangent), -dh/d(bitangent),
                                   // bitangent up the picture (glTF's green): what the renderer adds
   std::vector<float> cavity;      // [0, 1]: how open a valley is to the sky; 1 where it is flat
+  std::vector<float> blood;       // for the area, of what is there at rest: see blood.h
   std::vector<std::uint8_t> covered;  // 1 where a triangle is; elsewhere the planes are dilated
   std::vector<BakedMask> masks;       // of the regions whose poses feed the map
 
@@ -162,8 +163,5 @@ struct BakedMaps {
 [[nodiscard]] inline const BakeMaterial& MaterialOf(const BakeOptions& options, bool cloth) {
   return cloth ? options.cloth : options.skin;
 }
-
-// A map as the renderer reads it: tangent-space normals, RGB = n * 0.5 + 0.5, 16 bits, green up.
-[[nodiscard]] Picture NormalPicture(const BakedMap& map, std::string name);
 
 }  // namespace furrow::character::bake

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "character/asset_path.h"
+#include "character/bake/bake_pictures.h"
+#include "character/bake/blood.h"
 #include "character/rig_check.h"
 #include "wrinkle/rig_check.h"
 
@@ -25,12 +27,6 @@ Picture Sized(const Planes& planes, std::string name, int channels) {
   picture.height = planes.height;
   picture.channels = channels;
   return picture;
-}
-
-// See wrinkle::WrinkleMap: a texel t stands for (2 t - 1) * scale.
-std::uint16_t Signed16(float value, float scale) {
-  const float t = 0.5f + 0.5f * std::clamp(value / scale, -1.0f, 1.0f);
-  return static_cast<std::uint16_t>(std::lround(65535.0f * t));
 }
 
 std::uint8_t Unsigned8(float value) {
@@ -76,6 +72,7 @@ class Packager {
       map->derivative.clear();
       map->height.clear();
       map->cavity.clear();
+      if (!baked.cloth) map->colour.clear();
       for (const BakedMask& mask : baked.masks) surfaces[mask.region].insert(baked.cloth);
     }
     for (wrinkle::Region& region : out_.rig.regions) {
@@ -113,10 +110,12 @@ class Packager {
     map->amplitude = 1.0f;
     if (Status s = AddDerivative(baked, map); !s.ok()) return s;
     if (Status s = AddHeight(baked, map); !s.ok()) return s;
-    Picture cavity = Sized(baked, Free(baked.map + "_cavity", ".png"), 1);
-    for (const float open : baked.cavity) cavity.pixels.push_back(Unsigned8(open));
-    map->cavity = cavity.name;
-    return Add(cavity);
+    map->cavity = Free(baked.map + "_cavity", ".png");
+    if (Status s = Add(CavityPicture(baked, map->cavity)); !s.ok()) return s;
+    if (baked.cloth) return {};  // no blood is in it
+    map->colour = Free(baked.map + "_colour", ".png");
+    map->colour_scale = kBloodTintScale;
+    return Add(ColourPicture(baked, map->colour_scale, map->colour));
   }
 
   // Skin and cloth have an atlas each, so regions are gathered by kind.
@@ -184,33 +183,18 @@ class Packager {
     map->derivative = Free(baked.map + "_derivative", Extension());
     map->derivative_scale = options_.exr ? 1.0f : RoundScale(baked.derivative, 0.25f);
     if (map->derivative_scale > wrinkle::kMaxDerivativeScale) return TooSteep(*map);
-    Picture picture = Sized(baked, map->derivative, options_.exr ? 2 : 3);
-    if (options_.exr) {
-      picture.pixels_float = baked.derivative;
-      return Add(picture);
-    }
-    picture.pixels16.reserve(baked.derivative.size() / 2 * 3);
-    for (std::size_t i = 0; i + 1 < baked.derivative.size(); i += 2) {
-      picture.pixels16.push_back(Signed16(baked.derivative[i], map->derivative_scale));
-      picture.pixels16.push_back(Signed16(baked.derivative[i + 1], map->derivative_scale));
-      picture.pixels16.push_back(
-          0);  // a PNG has no two channels that every reader takes for red, green
-    }
+    if (!options_.exr) return Add(DerivativePicture(baked, map->derivative_scale, map->derivative));
+    Picture picture = Sized(baked, map->derivative, 2);
+    picture.pixels_float = baked.derivative;
     return Add(picture);
   }
 
   Status AddHeight(const BakedMap& baked, wrinkle::WrinkleMap* map) {
     map->height = Free(baked.map + "_height", Extension());
     map->height_mm = options_.exr ? 1.0f : RoundScale(baked.height_mm, 0.01f);
+    if (!options_.exr) return Add(HeightPicture(baked, map->height_mm, map->height));
     Picture picture = Sized(baked, map->height, 1);
-    if (options_.exr) {
-      picture.pixels_float = baked.height_mm;
-      return Add(picture);
-    }
-    picture.pixels16.reserve(baked.height_mm.size());
-    for (const float mm : baked.height_mm) {
-      picture.pixels16.push_back(Signed16(mm, map->height_mm));
-    }
+    picture.pixels_float = baked.height_mm;
     return Add(picture);
   }
 

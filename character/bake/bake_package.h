@@ -25,7 +25,8 @@ struct PackageOptions {
   bool masks = false;  // the rig's regions take the suggested masks instead of their own
 };
 
-// A map `squash` becomes squash_derivative, squash_height and squash_cavity; the masks that its
+// A map `squash` becomes squash_derivative, squash_height, squash_cavity and, on skin,
+// squash_colour; the masks that its
 // poses suggest, four regions a picture, suggested_masks_skin_0, suggested_masks_cloth_0 and so on
 // (red, green, blue and alpha in the order of the rig's regions).
 //

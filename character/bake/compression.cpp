@@ -208,6 +208,7 @@ CompressionSolver::Field CompressionSolver::Solve(std::span<const glm::mat4> ski
     stretches.push_back(StretchOf(t, posed, limit, &field.worst));
   }
   field.tensors.resize(surface_.positions().size());
+  field.growth.resize(surface_.positions().size(), 1.0f);
   for (std::size_t i = 0; i < field.tensors.size(); ++i) {
     if (starts_[i] == starts_[i + 1]) continue;
     Tensor2 mean;
@@ -215,6 +216,7 @@ CompressionSolver::Field CompressionSolver::Solve(std::span<const glm::mat4> ski
       mean = mean + terms_[k].share * Carry(stretches[terms_[k].triangle], terms_[k].turn);
     }
     field.tensors[i] = CompressionOf(mean, limit);
+    field.growth[i] = std::max(mean.xx * mean.yy - mean.xy * mean.xy, 0.0f);
   }
   return field;
 }

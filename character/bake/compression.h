@@ -44,7 +44,8 @@ class CompressionSolver {
     // One a welded vertex, in its axes: compression 1 - stretch along principal directions, [0, 1],
     // 0 where the surface is stretched.
     std::vector<Tensor2> tensors;
-    float worst = 0.0f;  // of any triangle, before averaging
+    std::vector<float> growth;  // likewise: area over that at rest, [0, (1 + limit)^2]
+    float worst = 0.0f;         // of any triangle, before averaging
   };
   // `skin_matrices`: one a joint that a vertex names. Compression above `limit` counts as `limit`.
   [[nodiscard]] Field Solve(std::span<const glm::mat4> skin_matrices, float limit) const;

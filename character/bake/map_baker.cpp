@@ -54,7 +54,8 @@ MapBaker::MapBaker(const Character& character, const BakeSurface& surface,
       map_(std::move(map)),
       cloth_(cloth),
       profile_(material_.sharpness),
-      sum_(surface.surface().positions().size()) {}
+      sum_(surface.surface().positions().size()),
+      blood_(surface.surface().positions().size()) {}
 
 std::vector<float> MapBaker::MaskOf(const std::string& region) const {
   const wrinkle::Region* found = FindRegion(character_.rig, region);
@@ -72,6 +73,7 @@ void MapBaker::AddPose(const BakePose& pose) {
   if (weights.empty()) weights.assign(field.tensors.size(), 1.0f);
   for (float& weight : weights) weight *= pose.weight;
   sum_.Add(field.tensors, weights);
+  blood_.Add(field.growth, weights);
   if (pose.region.empty()) return;
   auto region = std::find_if(regions_.begin(), regions_.end(),
                              [&](const RegionFolds& r) { return r.region == pose.region; });
@@ -184,6 +186,18 @@ bool MapBaker::FillTexels(const StrokeLayer& strokes, Pace* pace, BakedMap* map)
                  [&](float done) { return pace->Tell(done); });
 }
 
+void MapBaker::FillBlood(BakedMap* map) const {
+  const std::vector<float> blood = blood_.Take();
+  map->blood.assign(map->cavity.size(), 1.0f);
+  for (const paint::Texel& texel : surface_.texels()) {
+    const std::size_t at =
+        static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
+        static_cast<std::size_t>(texel.x);
+    map->blood[at] =
+        BloodInFurrow(surface_.surface().Interpolate(blood, PlaceOf(texel)), map->cavity[at]);
+  }
+}
+
 void MapBaker::Measure(const std::vector<float>& compression, const StrokeLayer& strokes,
                        BakedMap* map) const {
   BakedMap::Statistics& statistics = map->statistics;
@@ -292,9 +306,11 @@ Result<std::unique_ptr<BakedMap>> MapBaker::Bake(float from, float to, Pace* pac
   map->width = map->height = options_.size;
   pace->Enter(at(kFolds), to);
   if (!FillTexels(**strokes, pace, map.get())) return Pace::Cancelled();
+  FillBlood(map.get());
   Measure(compression, **strokes, map.get());
   MeasureWavelengths(map.get());
-  const FloatPlane planes[] = {{&map->height_mm, 1}, {&map->derivative, 2}, {&map->cavity, 1}};
+  const FloatPlane planes[] = {
+      {&map->height_mm, 1}, {&map->derivative, 2}, {&map->cavity, 1}, {&map->blood, 1}};
   DilatePlanes(planes, map->covered, map->width, map->height, kGutter);
   for (const RegionFolds& region : regions_) map->masks.push_back(SuggestMask(region));
   return map;

@@ -9,6 +9,7 @@
 
 #include "character/bake/bake.h"
 #include "character/bake/bake_surface.h"
+#include "character/bake/blood.h"
 #include "character/bake/fold_layer.h"
 #include "character/bake/pace.h"
 #include "character/bake/profile.h"
@@ -44,6 +45,7 @@ class MapBaker {
   [[nodiscard]] FoldSample FoldsAt(const SurfacePoint& point, const glm::vec3& tangent,
                                    const glm::vec3& bitangent, const StrokeLayer& strokes) const;
   bool FillTexels(const StrokeLayer& strokes, Pace* pace, BakedMap* map) const;
+  void FillBlood(BakedMap* map) const;
   void Measure(const std::vector<float>& compression, const StrokeLayer& strokes,
                BakedMap* map) const;
   void MeasureWavelengths(BakedMap* map) const;
@@ -57,6 +59,7 @@ class MapBaker {
   bool cloth_;
   FoldProfile profile_;
   CompressionSum sum_;
+  BloodSum blood_;
   float worst_ = 0.0f;
   std::vector<const BakeStroke*> strokes_;
   std::vector<RegionFolds> regions_;

@@ -25,6 +25,7 @@ constexpr float kDegrees = 180.0f / std::numbers::pi_v<float>;
 constexpr int kSections = 7;                     // of a lock, root to tip
 constexpr int kMaxLocks = 1800;                  // what the triangles are spent on
 constexpr float kCapTop = paint::kStrandBottom;  // strands above this v, the cap below
+constexpr float kCapBehind = 0.6f;               // the hairline, which is made of strands
 constexpr float kLockArea = 0.52f;               // square centimetres of scalp a lock grows from
 
 // Height of the hairline by azimuth, degrees from the front: forehead, temple, sideburn, ear, nape.
@@ -61,7 +62,8 @@ void AddCap(const HeadGrid& grid, HeadMesh* hair) {
     if (index != kNone) return index;
     vec3 place = skin[at(c, r)];
     const float inside = InsideHairline(place);
-    place += grid.shape().Normal(place) * (-0.12f + 0.24f * SmoothStep(-0.3f, 1.2f, inside));
+    place += grid.shape().Normal(place) *
+             (-0.12f + 0.24f * SmoothStep(-0.3f, 1.2f, inside - kCapBehind));
     if (std::abs(c) == last) place.x = 0.0f;
     const vec3 normal = grid.shape().Normal(place);
     const vec2 uv = glm::mix(vec2(0.01f), vec2(0.99f), HeadUv(grid.Plain(c, r)));
@@ -74,7 +76,7 @@ void AddCap(const HeadGrid& grid, HeadMesh* hair) {
       const float best =
           std::max({InsideHairline(skin[at(c, r)]), InsideHairline(skin[at(c + 1, r)]),
                     InsideHairline(skin[at(c + 1, r + 1)]), InsideHairline(skin[at(c, r + 1)])});
-      if (best < 0.0f) continue;
+      if (best < kCapBehind) continue;
       AddQuad(&hair->mesh, vertex(c, r), vertex(c + 1, r), vertex(c + 1, r + 1), vertex(c, r + 1));
     }
   }

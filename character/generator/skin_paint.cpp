@@ -108,6 +108,21 @@ vec3 LidRims(vec3 colour, const vec3& p) {
   return glm::mix(colour, vec3(0.76f, 0.42f, 0.38f), 0.6f * caruncle);
 }
 
+// Hair that grows out of the skin, root by root: its edge is made of hairs, combed up over the
+// forehead and back at the temples. The cap and the locks begin behind it.
+vec3 Roots(const vec3& colour, const vec3& p, const vec3& hair) {
+  const float inside = InsideHairline(p);
+  if (inside < -1.2f || std::abs(p.x) > 8.1f) return colour;
+  const float temple = SmoothStep(4.2f, 6.0f, std::abs(p.x));
+  const float across = glm::mix(p.x + 0.35f * p.y, 0.9f * p.y + 0.4f * p.z, temple);
+  const float along = glm::mix(p.y, p.z, temple);
+  const float hairs = 0.45f * Noise({11.0f * across, 1.2f * along, 2.0f}) +
+                      0.30f * Noise({24.0f * across, 2.0f * along, 7.0f});
+  const float share =
+      SmoothStep(-0.45f, 0.75f, inside + hairs) * SmoothStep(8.1f, 7.3f, std::abs(p.x));
+  return glm::mix(colour, hair * (1.0f + 0.45f * hairs), 0.8f * share);
+}
+
 glm::vec4 HeadColour(const Texel& texel, const FaceParameters& face) {
   const vec3 p = ModelToHead(texel.position);
   vec3 colour = BareSkin(p, texel.normal, face);
@@ -116,10 +131,7 @@ glm::vec4 HeadColour(const Texel& texel, const FaceParameters& face) {
   const vec3 dark =
       glm::mix(vec3(0.15f, 0.10f, 0.07f), vec3(0.48f, 0.46f, 0.44f), 0.75f * GreyShare(face));
   colour = glm::mix(colour, dark, 0.88f * BrowShare(p, face));
-  const float q = std::abs(p.x);
-  const float scalp = SmoothStep(-0.9f, 0.6f, InsideHairline(p)) * SmoothStep(8.1f, 7.3f, q);
-  colour = glm::mix(colour, dark * 1.5f, 0.6f * scalp);
-  return {colour, 1.0f};
+  return {Roots(colour, p, 1.3f * dark), 1.0f};
 }
 
 // The face's landmarks mean nothing on hands.

@@ -83,7 +83,7 @@ HairPictures PaintHair(const Mesh& hair, const FaceParameters& face, int size) {
                     const vec3 p = ModelToHead(texel.position);
                     const float grain = Noise(p * 9.0f) + 0.5f * Noise(p * 19.0f);
                     const float inside = InsideHairline(p) + 0.7f * grain;
-                    return {shade * (1.0f + 0.15f * grain), SmoothStep(0.2f, 1.3f, inside)};
+                    return {shade * (1.0f + 0.15f * grain), SmoothStep(0.8f, 1.9f, inside)};
                   });
   pictures.normals = paint::BlankPicture("hair_normal", size, size, 3);
   for (std::size_t i = 0; i < pictures.normals.pixels.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "character/bake/bake_pictures.h"
 #include "character/bake/bake_poses.h"
 
 namespace furrow::character::generator {
@@ -13,7 +14,7 @@ namespace {
 
 constexpr float kFineLines = 0.8f;  // of a skin that folds twice as deep as a young man's
 
-Status AddNormalMap(const bake::BakedMap& baked, Character* character) {
+Status AddPictures(const bake::BakedMap& baked, Character* character) {
   const auto& maps = character->rig.wrinkle_maps;
   const auto map = std::find_if(maps.begin(), maps.end(),
                                 [&](const auto& entry) { return entry.name == baked.map; });
@@ -21,9 +22,13 @@ Status AddNormalMap(const bake::BakedMap& baked, Character* character) {
     return Status(StatusCode::kNotFound, "no normal map is named for '" + baked.map + "'",
                   character->rig.name, "give the wrinkle map a 'normal' in the rig");
   }
-  const std::string name = map->normal;
-  character->rig_pictures.emplace_back(name, static_cast<int>(character->pictures.size()));
-  character->pictures.push_back(bake::NormalPicture(baked, name));
+  Result<std::vector<Picture>> pictures = bake::PicturesOf(baked, *map);
+  if (!pictures.ok()) return pictures.status();
+  for (Picture& picture : pictures.value()) {
+    character->rig_pictures.emplace_back(picture.name,
+                                         static_cast<int>(character->pictures.size()));
+    character->pictures.push_back(std::move(picture));
+  }
   return Status();
 }
 
@@ -45,7 +50,7 @@ Status AddWrinkleMaps(std::span<const bake::BakeStroke> strokes, int size, float
       bake::Bake(*character, poses.value().poses, strokes, WrinkleMapOptions(size, depth));
   if (!maps.ok()) return maps.status();
   for (const bake::BakedMap& map : maps.value().maps) {
-    if (Status status = AddNormalMap(map, character); !status.ok()) return status;
+    if (Status status = AddPictures(map, character); !status.ok()) return status;
   }
   return Status();
 }

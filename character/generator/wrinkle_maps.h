@@ -14,10 +14,10 @@ namespace furrow::character::generator {
 [[nodiscard]] bake::BakeOptions WrinkleMapOptions(int size, float depth);
 
 // Bakes the wrinkle maps of the character's rig from the strain of its own reference poses and from
-// `strokes` (character/rigs/default.strokes.json), and adds them to the character as normal maps
-// under the names that the rig gives them. `depth` scales what is on skin (WrinkleDepth()).
-// Errors: those of bake::PosesOf() and bake::Bake(); kNotFound where a map that is baked has no
-// `normal` in the rig.
+// `strokes` (character/rigs/default.strokes.json), and adds to the character the normals, heights,
+// cavities and colours that its rig names. `depth` scales what is on skin (WrinkleDepth()).
+// Errors: those of bake::PosesOf(), bake::Bake() and bake::PicturesOf(); kNotFound where a map that
+// is baked has no `normal` in the rig.
 [[nodiscard]] Status AddWrinkleMaps(std::span<const bake::BakeStroke> strokes, int size,
                                     float depth, Character* character);
 

@@ -11,6 +11,7 @@
 
 #include "character/asset_path.h"
 #include "character/bake/bake.h"
+#include "character/bake/bake_pictures.h"
 #include "character/bake/bake_poses.h"
 #include "character/data_dir.h"
 #include "character/import/body_parts.h"
@@ -304,11 +305,13 @@ class MakeHumanImport {
     if (!baked.ok()) return baked.status();
     for (wrinkle::WrinkleMap& map : character_.rig.wrinkle_maps) {
       for (const bake::BakedMap& from : baked->maps) {
-        if (from.map == map.name && !map.normal.empty()) {
-          AddPicture(bake::NormalPicture(from, map.normal));
-        }
+        if (from.map != map.name) continue;
+        Result<std::vector<Picture>> pictures = bake::PicturesOf(from, map);
+        if (!pictures.ok()) return pictures.status();
+        for (Picture& picture : *pictures) AddPicture(std::move(picture));
       }
-      for (const std::string* name : {&map.normal, &map.derivative, &map.colour, &map.cavity}) {
+      for (const std::string* name :
+           {&map.normal, &map.derivative, &map.height, &map.colour, &map.cavity}) {
         UsePicture(*name);
       }
     }

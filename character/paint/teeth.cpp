@@ -65,7 +65,7 @@ vec3 PlaceOf(const ToothArch& arch, float s, float h) {
 // Enamel, gums and the dark between teeth, at a place along the arch.
 vec3 ToothColour(float s, float h, bool upper, float age) {
   const vec3 enamel =
-      glm::mix(vec3(0.92f, 0.90f, 0.86f), vec3(0.80f, 0.72f, 0.58f), 0.12f + 0.6f * age);
+      glm::mix(vec3(0.94f, 0.90f, 0.82f), vec3(0.84f, 0.74f, 0.57f), 0.15f + 0.6f * age);
   vec3 colour =
       glm::mix(enamel * 0.97f, enamel * vec3(1.0f, 0.95f, 0.86f), glm::smoothstep(0.3f, 0.9f, h));
   const float across = std::abs(ToothAt(std::abs(s), upper).across);

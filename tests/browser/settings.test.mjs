@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The menu: every group takes effect on the picture; undo, compare, presets, text; what is refused says so.
+// The menu: every group takes effect on the picture; undo, compare, presets, text; what is refused
+// says so.
 import assert from 'node:assert/strict';
-import { readFileSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
-import { before, test } from 'node:test';
-import { changedShare, difference, eventually, keep, openPage, pixels, still } from './browser.mjs';
-import { Daemon, recording, SHARE } from './daemon.mjs';
-import { browser, daemon } from './played.mjs';
+import {before, test} from 'node:test';
+
+import {changedShare, difference, eventually, keep, openPage, pixels, still} from './browser.mjs';
+import {browser, daemon} from './played.mjs';
 
 before(() => daemon.hold(2));
 
@@ -29,7 +28,7 @@ async function change(page, setting) {
     const select = target.locator('select');
     const count = await select.locator('option').count();
     const at = await select.evaluate((element) => element.selectedIndex);
-    await select.selectOption({ index: (at + count - 1) % count });
+    await select.selectOption({index: (at + count - 1) % count});
   } else if (setting.kind === 'colour') {
     await target.locator('input[type=text]').first().fill('#802020');
     await page.keyboard.press('Enter');
@@ -42,11 +41,12 @@ async function change(page, setting) {
 
 test('every setting of the daemon is in the menu', async () => {
   const page = await openPage(browser, daemon.address);
-  await page.locator('[data-setting]').first().waitFor({ state: 'attached' });
-  const { settings } = await daemon.get('api/settings');
+  await page.locator('[data-setting]').first().waitFor({state: 'attached'});
+  const {settings} = await daemon.get('api/settings');
   assert(settings.length > 30);
-  const inMenu = await page.locator('[data-setting]').evaluateAll((rows) => rows.map((r) => r.dataset.setting));
-  assert.deepEqual(inMenu.sort(), settings.map(({ name }) => name).sort());
+  const inMenu = await page.locator('[data-setting]')
+                     .evaluateAll((rows) => rows.map((r) => r.dataset.setting));
+  assert.deepEqual(inMenu.sort(), settings.map(({name}) => name).sort());
   await search(page, 'softness');
   assert.equal(await page.locator('[data-setting]:visible').count(), 1);
   await search(page, 'no such thing');
@@ -55,28 +55,17 @@ test('every setting of the daemon is in the menu', async () => {
   await page.context().close();
 });
 
-/** The default rig, its maps with a colour, a cavity and a height, which those that ship have not. */
-function rigWithLooks() {
-  const rig = readFileSync(join(SHARE, 'default.rig.json'), 'utf8');
-  const file = join(process.env.FURROW_ARTEFACTS, 'looks.rig.json');
-  writeFileSync(file, rig.replaceAll(/"normal": "(face_stretch|face_squash)"/g,
-    '"normal": "$1", "cavity": "face_masks_a", "colour": "face_masks_b", ' +
-    '"height": "face_masks_a", "height_mm": 2'));
-  return file;
-}
-
-test('each group takes effect on the picture', async (context) => {
-  const daemon = await Daemon.start(
-    ['--play', recording('performance'), '--character', join(SHARE, 'default.glb'), '--rig', rigWithLooks()]);
-  context.after(() => daemon.stop());
-  await daemon.hold(2);
-  const { settings } = await daemon.get('api/settings');
+test('each group takes effect on the picture', async () => {
+  const {settings} = await daemon.get('api/settings');
   // The detail of crowds is for pictures of several subjects, which the page does not show.
-  const groups = new Set(settings.map(({ group }) => group));
+  const groups = new Set(settings.map(({group}) => group));
   assert(groups.delete('detail'));
-  // A view in which every group has a part: light from behind, bright enough to spread, on folds that stand out.
-  const page = await openPage(browser, `${daemon.address}#shading=skin&wrinkle_strength=2&translucency.strength=4` +
-    '&lights.turn_degrees=180&bloom.strength=0.5&bloom.threshold=0.3&displacement.enabled=on&displacement.strength=3');
+  // A view in which every group has a part: light from behind, bright enough to spread, on folds
+  // that stand out.
+  const page = await openPage(
+      browser,
+      `${daemon.address}#shading=skin&wrinkle_strength=2&translucency.strength=4` +
+          '&lights.turn_degrees=180&bloom.strength=0.5&bloom.threshold=0.3&displacement.enabled=on&displacement.strength=3');
   await page.selectOption('select[aria-label=Sharpness]', 'fast');
   await page.keyboard.press('Escape');
   await still(page);
@@ -87,7 +76,7 @@ test('each group takes effect on the picture', async (context) => {
       await change(page, setting);
       await still(page);
       took = changedShare(base, await pixels(page));
-      await page.getByRole('button', { name: 'Undo' }).first().click();
+      await page.getByRole('button', {name: 'Undo'}).first().click();
       await still(page);
       if (took > 0.0005) break;
     }
@@ -103,11 +92,11 @@ test('compare shows the picture before the change while it is held', async () =>
   const page = await openPage(browser, `${daemon.address}#wrinkle_strength=3`);
   await still(page);
   const base = await pixels(page);
-  await change(page, { name: 'wrinkles', kind: 'bool' });
+  await change(page, {name: 'wrinkles', kind: 'bool'});
   await still(page);
   const without = await pixels(page);
   assert(changedShare(base, without) > 0.002);
-  await page.getByRole('button', { name: 'Compare' }).hover();
+  await page.getByRole('button', {name: 'Compare'}).hover();
   await page.mouse.down();
   await still(page);
   assert(difference(base, await pixels(page)) < 1);
@@ -121,7 +110,8 @@ test('presets are one step of undo, and name settings that exist', async () => {
   const page = await openPage(browser, daemon.address);
   await still(page);
   const presets = page.locator('select[aria-label=Preset]');
-  for (const name of await presets.locator('option').evaluateAll((all) => all.map((o) => o.value).filter(Boolean))) {
+  for (const name of await presets.locator('option').evaluateAll(
+           (all) => all.map((o) => o.value).filter(Boolean))) {
     await presets.selectOption(name);
   }
   assert.equal(await page.locator('.toast').count(), 0);
@@ -134,19 +124,19 @@ test('presets are one step of undo, and name settings that exist', async () => {
 
 test('what the daemon refuses is said, and taken back', async () => {
   const page = await openPage(browser, `${daemon.address}#subsurface.width=99`);
-  await page.locator('.toast.error', { hasText: 'subsurface.width' }).waitFor();
-  await still(page); // and there is a picture all the same
-  await page.getByRole('button', { name: 'As text…' }).click();
+  await page.locator('.toast.error', {hasText: 'subsurface.width'}).waitFor();
+  await still(page);  // and there is a picture all the same
+  await page.getByRole('button', {name: 'As text…'}).click();
   const text = page.locator('dialog textarea');
   await text.fill('[subsurface]\nwidth = 99\n');
-  await page.getByRole('button', { name: 'Set for everybody' }).click();
-  await page.locator('dialog .error', { hasText: 'subsurface.width' }).waitFor();
+  await page.getByRole('button', {name: 'Set for everybody'}).click();
+  await page.locator('dialog .error', {hasText: 'subsurface.width'}).waitFor();
   await keep(page, 'refused');
   await text.fill('[subsurface\nwidth = 1');
-  await page.getByRole('button', { name: 'Set for everybody' }).click();
-  await page.locator('dialog .error', { hasText: 'Line 1' }).waitFor();
-  const { settings } = await daemon.get('api/settings');
-  const width = settings.find(({ name }) => name === 'subsurface.width');
+  await page.getByRole('button', {name: 'Set for everybody'}).click();
+  await page.locator('dialog .error', {hasText: 'Line 1'}).waitFor();
+  const {settings} = await daemon.get('api/settings');
+  const width = settings.find(({name}) => name === 'subsurface.width');
   assert.equal(width.value, width.default);
   await page.context().close();
 });
@@ -156,11 +146,11 @@ test('a setting for everybody reaches other pages', async () => {
   const other = await openPage(browser, daemon.address);
   await still(other);
   const former = await pixels(other);
-  await one.getByRole('button', { name: 'As text…' }).click();
+  await one.getByRole('button', {name: 'As text…'}).click();
   await one.fill('dialog textarea', 'exposure = 3.0\n');
-  await one.getByRole('button', { name: 'Set for everybody' }).click();
+  await one.getByRole('button', {name: 'Set for everybody'}).click();
   await eventually('a brighter picture', async () => difference(former, await pixels(other)) > 10);
-  await daemon.patch('api/settings', { exposure: 1 });
+  await daemon.patch('api/settings', {exposure: 1});
   await one.context().close();
   await other.context().close();
 });

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "character/bake/blood.h"
+
 namespace furrow::character::bake {
 namespace {
 
@@ -23,6 +25,7 @@ Character Rigged(BakedMaps* maps) {
   map.height_mm = {0.0f, -1.23f, 0.4f, 0.01f};
   map.derivative = {0.0f, 0.0f, 1.9f, -0.7f, 0.25f, 0.125f, -3.1f, 0.5f};
   map.cavity = {1.0f, 0.25f, 1.0f, 0.5f};
+  map.blood = {1.0f, 1.3f, 0.8f, 1.0f};
   for (int i = 0; i < 5; ++i) {
     const std::string name = "r" + std::to_string(i);
     wrinkle::Region& region = character.rig.regions.emplace_back();
@@ -68,6 +71,23 @@ TEST(BakePackage, SixteenBitsAndAScaleGiveTheNumbersBack) {
                 map.height_mm / 65535.0f);
   }
   EXPECT_EQ(Decoded(*files, map.cavity).pixels[1], 64);
+  EXPECT_EQ(map.colour, "squash_colour.png");
+  EXPECT_EQ(map.colour_scale, kBloodTintScale);
+  const Picture colour = Decoded(*files, map.colour);
+  EXPECT_EQ(colour.pixels[0], 230);  // as at rest
+  EXPECT_LT(colour.pixels[3 + 1], 225);
+  EXPECT_GT(colour.pixels[6 + 1], 232);
+}
+
+TEST(BakePackage, ClothHasNoBloodAndKeepsItsColour) {
+  BakedMaps maps;
+  Character character = Rigged(&maps);
+  character.rig.wrinkle_maps[0].colour = "worn.png";
+  maps.maps[0].cloth = true;
+  const auto files = PackageMaps(character, maps, {});
+  ASSERT_TRUE(files.ok()) << files.status().ToString();
+  EXPECT_EQ(files->rig.wrinkle_maps[0].colour, "worn.png");
+  EXPECT_EQ(files->rig.wrinkle_maps[0].colour_scale, 1.0f);
 }
 
 TEST(BakePackage, ExrHoldsThemAsTheyAre) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -15,6 +16,7 @@
 #include "character/generator/default_character.h"
 #include "character/generator/recordings.h"
 #include "character/generator/wrinkle_maps.h"
+#include "character/paint/uv_raster.h"
 #include "character/rig_file.h"
 #include "motion/bvh.h"
 #include "wrinkle/solver.h"
@@ -30,14 +32,14 @@ wrinkle::Rig DefaultRig() {
 }
 
 // The default character with his wrinkle maps, small.
-Character WholeCharacter() {
+Character WholeCharacter(int maps = 256) {
   const std::filesystem::path file =
       std::filesystem::path(FURROW_SOURCE_DIR) / "character/rigs/default.strokes.json";
   Character character = MakeDefaultCharacter(DefaultRig(), {.texture_size = 256});
   Result<std::vector<bake::BakeStroke>> strokes = bake::LoadStrokes(file, character.rig);
   EXPECT_TRUE(strokes.ok()) << strokes.status().ToString();
   if (!strokes.ok()) return character;
-  const Status status = AddWrinkleMaps(strokes.value(), 256, 1.0f, &character);
+  const Status status = AddWrinkleMaps(strokes.value(), maps, 1.0f, &character);
   EXPECT_TRUE(status.ok()) << status.ToString();
   return character;
 }
@@ -235,6 +237,79 @@ TEST_F(PackageTest, HoldsEveryPictureThatTheRigNames) {
   }
   for (const wrinkle::WrinkleMap& map : c.rig.wrinkle_maps) {
     EXPECT_GE(c.FindRigPicture(map.normal), 0) << map.name;
+    EXPECT_GE(c.FindRigPicture(map.height), 0) << map.name;
+    EXPECT_GE(c.FindRigPicture(map.cavity), 0) << map.name;
+    const bool skin = map.surface == wrinkle::WrinkleMap::Surface::kSkin;
+    EXPECT_EQ(c.FindRigPicture(map.colour) >= 0, skin) << map.name;
+  }
+}
+
+// Skin pales and reddens, and keeps its colour where nothing moves it: at the back of the head.
+TEST_F(PackageTest, BloodComesAndGoes) {
+  for (const char* name : {"face_stretch_colour", "face_squash_colour"}) {
+    const Picture& colour = character_->pictures[character_->FindRigPicture(name)];
+    int least = 255, most = 0, still = 0;
+    for (std::size_t i = 0; i < colour.pixels.size(); i += 3) {
+      least = std::min<int>(least, colour.pixels[i + 1]);
+      most = std::max<int>(most, colour.pixels[i + 1]);
+      still += colour.pixels[i + 1] == 230 ? 1 : 0;
+    }
+    EXPECT_LT(least, 215) << name;
+    EXPECT_GT(most, 236) << name;
+    EXPECT_GT(still, 256 * 256 / 4) << name;
+  }
+}
+
+// A map's normals and heights where the skin is, in millimetres.
+struct Relief {
+  const Picture& normals;
+  const Picture& heights;
+  float height_mm;
+
+  [[nodiscard]] std::size_t At(const paint::Texel& t) const {
+    return static_cast<std::size_t>(t.y) * static_cast<std::size_t>(heights.width) +
+           static_cast<std::size_t>(t.x);
+  }
+  [[nodiscard]] float Height(const paint::Texel& t) const {
+    return height_mm * (2.0f * static_cast<float>(heights.pixels16[At(t)]) / 65535.0f - 1.0f);
+  }
+  // What the normal says that a step rises by.
+  [[nodiscard]] float Rise(const paint::Texel& t, const glm::vec3& step) const {
+    glm::vec3 n;
+    for (int c = 0; c < 3; ++c) n[c] = 2.0f * normals.pixels16[3 * At(t) + c] / 65535.0f - 1.0f;
+    return -(n.x * glm::dot(step, t.tangent) + n.y * glm::dot(step, t.bitangent)) / n.z;
+  }
+};
+
+// Steps from texel to texel go with the slopes on either side, one for one. The finest folds are
+// three texels wide, where the two slopes miss some of what lies between them.
+TEST(WrinkleMaps, HeightsAreThoseOfTheNormals) {
+  constexpr int kSize = 512;
+  const Character character = WholeCharacter(kSize);
+  const Mesh& skin = character.meshes[0];
+  ASSERT_EQ(character.materials[skin.material].kind, Material::Kind::kSkin);
+  const std::vector<paint::Texel> texels = paint::RasterizeUv(skin, kSize, kSize);
+  for (const int map : {0, 1}) {
+    const wrinkle::WrinkleMap& named = character.rig.wrinkle_maps[map];
+    const Relief relief{character.pictures[character.FindRigPicture(named.normal)],
+                        character.pictures[character.FindRigPicture(named.height)],
+                        named.height_mm};
+    ASSERT_EQ(relief.heights.width, kSize);
+    double steps = 0.0, slopes = 0.0, both = 0.0;
+    for (std::size_t i = 0; i + 1 < texels.size(); ++i) {
+      const paint::Texel &left = texels[i], &right = texels[i + 1];
+      const glm::vec3 step = 1000.0f * (right.position - left.position);
+      if (right.y != left.y || right.x != left.x + 1 || glm::length(step) > 1.5f) continue;
+      const double rise = relief.Height(right) - relief.Height(left);
+      const double told = 0.5 * (relief.Rise(left, step) + relief.Rise(right, step));
+      steps += rise * rise;
+      slopes += told * told;
+      both += rise * told;
+    }
+    EXPECT_GT(steps, 1.0) << named.name;
+    EXPECT_GT(both / std::sqrt(steps * slopes), 0.85) << named.name;
+    EXPECT_GT(both / slopes, 0.9) << named.name;
+    EXPECT_LT(both / slopes, 1.2) << named.name;
   }
 }
 

@@ -127,6 +127,7 @@ TEST(RigFile, KeepsEveryFieldOfAMap) {
                          .height = "h.png",
                          .height_mm = 3.25f,
                          .colour = "c.png",
+                         .colour_scale = 1.5f,
                          .cavity = "v.png",
                          .amplitude = 0.5f,
                          .surface = wrinkle::WrinkleMap::Surface::kCloth};
@@ -137,6 +138,8 @@ TEST(RigFile, KeepsEveryFieldOfAMap) {
   EXPECT_EQ(map.derivative_scale, 2.5f);
   EXPECT_EQ(map.height, "h.png");
   EXPECT_EQ(map.height_mm, 3.25f);
+  EXPECT_EQ(map.colour, "c.png");
+  EXPECT_EQ(map.colour_scale, 1.5f);
   EXPECT_EQ(map.cavity, "v.png");
   EXPECT_EQ(map.surface, wrinkle::WrinkleMap::Surface::kCloth);
 }
@@ -253,6 +256,8 @@ INSTANTIATE_TEST_SUITE_P(
               "26: wrinkle_maps[0].height"},
         Wrong{"\"normal\": \"folds.png\"", "\"height_mm\": 0", kInvalid,
               "26: wrinkle_maps[0].height_mm"},
+        Wrong{"\"normal\": \"folds.png\"", "\"colour_scale\": 11", kInvalid,
+              "26: wrinkle_maps[0].colour_scale"},
         Wrong{"\"normal\": \"folds.png\"", "\"derivative_scale\": -1", kInvalid,
               "26: wrinkle_maps[0].derivative_scale"},
         Wrong{"\"axis\": [1, 0, 0]}}", "\"axis\": [1, 0, 0]}}, {\"name\": \"s\", \"strain\": {}}",

@@ -208,6 +208,20 @@ TEST_F(PipelineTest, BloodFlowColoursWhereTheMapIsAtWork) {
   EXPECT_EQ(Draw(still, 96).rgb, Draw(still_without, 96).rgb);
 }
 
+// Squashed skin that lost its blood: lighter than at rest.
+TEST_F(PipelineTest, BloodFlowPalesByItsScale) {
+  head_.rig.wrinkle_maps[1].colour = "blood";
+  head_.rig.wrinkle_maps[1].colour_scale = 1.5f;
+  head_.rig_pictures.emplace_back("blood", static_cast<int>(head_.pictures.size()));
+  head_.pictures.push_back(
+      test::MakePicture("blood", 8, [](float, float) { return glm::vec4(1.0f); }));
+  Make();
+  Settings without = Skin();
+  without.wrinkle_maps.blood_flow = 0.0f;
+  const Image pale = Draw(Skin(), 96), plain = Draw(without, 96);
+  for (int c = 0; c < 3; ++c) EXPECT_GT(Mean(pale, c), Mean(plain, c) + 1.0);
+}
+
 // A sheet lit from behind: light comes through it, and less the more flesh it has to pass.
 TEST_F(PipelineTest, LightComesThroughThinSkin) {
   const auto flat = [](float, float) { return 0.0f; };

@@ -193,20 +193,5 @@ TEST(Bake, AgeScalesTheDepth) {
   EXPECT_NEAR(old, 1.5f * young, 1e-4f);
 }
 
-TEST(NormalPicture, HoldsTheNormalOfTheDerivative) {
-  BakedMap map;
-  map.width = 2;
-  map.height = 1;
-  map.height_mm = {0.0f, 0.0f};
-  map.derivative = {0.0f, 0.0f, 1.0f, -1.0f};
-  const Picture picture = NormalPicture(map, "n");
-  ASSERT_EQ(picture.pixels16.size(), 6u);
-  EXPECT_EQ(picture.pixels16[0], 32768);
-  EXPECT_EQ(picture.pixels16[2], 65535);
-  const auto value = [&](int i) { return picture.pixels16[3 + i] / 65535.0f * 2.0f - 1.0f; };
-  EXPECT_NEAR(value(0) / value(2), 1.0f, 1e-3f);
-  EXPECT_NEAR(value(1) / value(2), -1.0f, 1e-3f);
-}
-
 }  // namespace
 }  // namespace furrow::character::bake
