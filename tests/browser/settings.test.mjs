@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The menu: every group takes effect on the picture; undo, compare, presets, text; what is refused
-// says so.
+// The menu: every group takes effect on the picture; undo, compare, presets, text; what is refused says so.
 import assert from 'node:assert/strict';
-import {before, test} from 'node:test';
-
-import {changedShare, difference, eventually, keep, openPage, pixels, still} from './browser.mjs';
-import {browser, daemon} from './played.mjs';
+import { before, test } from 'node:test';
+import { changedShare, difference, eventually, keep, openPage, pixels, still } from './browser.mjs';
+import { browser, daemon } from './played.mjs';
 
 before(() => daemon.hold(2));
 
@@ -28,7 +26,7 @@ async function change(page, setting) {
     const select = target.locator('select');
     const count = await select.locator('option').count();
     const at = await select.evaluate((element) => element.selectedIndex);
-    await select.selectOption({index: (at + count - 1) % count});
+    await select.selectOption({ index: (at + count - 1) % count });
   } else if (setting.kind === 'colour') {
     await target.locator('input[type=text]').first().fill('#802020');
     await page.keyboard.press('Enter');
@@ -41,12 +39,11 @@ async function change(page, setting) {
 
 test('every setting of the daemon is in the menu', async () => {
   const page = await openPage(browser, daemon.address);
-  await page.locator('[data-setting]').first().waitFor({state: 'attached'});
-  const {settings} = await daemon.get('api/settings');
+  await page.locator('[data-setting]').first().waitFor({ state: 'attached' });
+  const { settings } = await daemon.get('api/settings');
   assert(settings.length > 30);
-  const inMenu = await page.locator('[data-setting]')
-                     .evaluateAll((rows) => rows.map((r) => r.dataset.setting));
-  assert.deepEqual(inMenu.sort(), settings.map(({name}) => name).sort());
+  const inMenu = await page.locator('[data-setting]').evaluateAll((rows) => rows.map((r) => r.dataset.setting));
+  assert.deepEqual(inMenu.sort(), settings.map(({ name }) => name).sort());
   await search(page, 'softness');
   assert.equal(await page.locator('[data-setting]:visible').count(), 1);
   await search(page, 'no such thing');
@@ -56,16 +53,13 @@ test('every setting of the daemon is in the menu', async () => {
 });
 
 test('each group takes effect on the picture', async () => {
-  const {settings} = await daemon.get('api/settings');
+  const { settings } = await daemon.get('api/settings');
   // The detail of crowds is for pictures of several subjects, which the page does not show.
-  const groups = new Set(settings.map(({group}) => group));
+  const groups = new Set(settings.map(({ group }) => group));
   assert(groups.delete('detail'));
-  // A view in which every group has a part: light from behind, bright enough to spread, on folds
-  // that stand out.
-  const page = await openPage(
-      browser,
-      `${daemon.address}#shading=skin&wrinkle_strength=2&translucency.strength=4` +
-          '&lights.turn_degrees=180&bloom.strength=0.5&bloom.threshold=0.3&displacement.enabled=on&displacement.strength=3');
+  // A view in which every group has a part: light from behind, bright enough to spread, on folds that stand out.
+  const page = await openPage(browser, `${daemon.address}#shading=skin&wrinkle_strength=2&translucency.strength=4` +
+    '&lights.turn_degrees=180&bloom.strength=0.5&bloom.threshold=0.3&displacement.enabled=on&displacement.strength=3');
   await page.selectOption('select[aria-label=Sharpness]', 'fast');
   await page.keyboard.press('Escape');
   await still(page);
@@ -76,7 +70,7 @@ test('each group takes effect on the picture', async () => {
       await change(page, setting);
       await still(page);
       took = changedShare(base, await pixels(page));
-      await page.getByRole('button', {name: 'Undo'}).first().click();
+      await page.getByRole('button', { name: 'Undo' }).first().click();
       await still(page);
       if (took > 0.0005) break;
     }
@@ -92,11 +86,11 @@ test('compare shows the picture before the change while it is held', async () =>
   const page = await openPage(browser, `${daemon.address}#wrinkle_strength=3`);
   await still(page);
   const base = await pixels(page);
-  await change(page, {name: 'wrinkles', kind: 'bool'});
+  await change(page, { name: 'wrinkles', kind: 'bool' });
   await still(page);
   const without = await pixels(page);
   assert(changedShare(base, without) > 0.002);
-  await page.getByRole('button', {name: 'Compare'}).hover();
+  await page.getByRole('button', { name: 'Compare' }).hover();
   await page.mouse.down();
   await still(page);
   assert(difference(base, await pixels(page)) < 1);
@@ -110,8 +104,7 @@ test('presets are one step of undo, and name settings that exist', async () => {
   const page = await openPage(browser, daemon.address);
   await still(page);
   const presets = page.locator('select[aria-label=Preset]');
-  for (const name of await presets.locator('option').evaluateAll(
-           (all) => all.map((o) => o.value).filter(Boolean))) {
+  for (const name of await presets.locator('option').evaluateAll((all) => all.map((o) => o.value).filter(Boolean))) {
     await presets.selectOption(name);
   }
   assert.equal(await page.locator('.toast').count(), 0);
@@ -124,19 +117,19 @@ test('presets are one step of undo, and name settings that exist', async () => {
 
 test('what the daemon refuses is said, and taken back', async () => {
   const page = await openPage(browser, `${daemon.address}#subsurface.width=99`);
-  await page.locator('.toast.error', {hasText: 'subsurface.width'}).waitFor();
-  await still(page);  // and there is a picture all the same
-  await page.getByRole('button', {name: 'As text…'}).click();
+  await page.locator('.toast.error', { hasText: 'subsurface.width' }).waitFor();
+  await still(page); // and there is a picture all the same
+  await page.getByRole('button', { name: 'As text…' }).click();
   const text = page.locator('dialog textarea');
   await text.fill('[subsurface]\nwidth = 99\n');
-  await page.getByRole('button', {name: 'Set for everybody'}).click();
-  await page.locator('dialog .error', {hasText: 'subsurface.width'}).waitFor();
+  await page.getByRole('button', { name: 'Set for everybody' }).click();
+  await page.locator('dialog .error', { hasText: 'subsurface.width' }).waitFor();
   await keep(page, 'refused');
   await text.fill('[subsurface\nwidth = 1');
-  await page.getByRole('button', {name: 'Set for everybody'}).click();
-  await page.locator('dialog .error', {hasText: 'Line 1'}).waitFor();
-  const {settings} = await daemon.get('api/settings');
-  const width = settings.find(({name}) => name === 'subsurface.width');
+  await page.getByRole('button', { name: 'Set for everybody' }).click();
+  await page.locator('dialog .error', { hasText: 'Line 1' }).waitFor();
+  const { settings } = await daemon.get('api/settings');
+  const width = settings.find(({ name }) => name === 'subsurface.width');
   assert.equal(width.value, width.default);
   await page.context().close();
 });
@@ -146,11 +139,11 @@ test('a setting for everybody reaches other pages', async () => {
   const other = await openPage(browser, daemon.address);
   await still(other);
   const former = await pixels(other);
-  await one.getByRole('button', {name: 'As text…'}).click();
+  await one.getByRole('button', { name: 'As text…' }).click();
   await one.fill('dialog textarea', 'exposure = 3.0\n');
-  await one.getByRole('button', {name: 'Set for everybody'}).click();
+  await one.getByRole('button', { name: 'Set for everybody' }).click();
   await eventually('a brighter picture', async () => difference(former, await pixels(other)) > 10);
-  await daemon.patch('api/settings', {exposure: 1});
+  await daemon.patch('api/settings', { exposure: 1 });
   await one.context().close();
   await other.context().close();
 });

@@ -207,12 +207,14 @@ class SheetTest(BakeCase):
         names = sorted(str(p.relative_to(self.out)) for p in self.out.rglob("*") if p.is_file())
         self.assertEqual(names, ["mask.png", "report.html", "report/squash_height.png", "report/squash_lit.png",
                                  "report/squash_masks.png", "sheet.rig.json", "squash_cavity.png",
-                                 "squash_derivative.png", "squash_height.png", "suggested_masks_skin_0.png"])
+                                 "squash_colour.png", "squash_derivative.png", "squash_height.png",
+                                 "suggested_masks_skin_0.png"])
         baked = json.loads((self.out / "sheet.rig.json").read_text())
         entry = baked["wrinkle_maps"][0]
         self.assertEqual(entry["derivative"], "squash_derivative.png")
         self.assertEqual(entry["height"], "squash_height.png")
         self.assertEqual(entry["cavity"], "squash_cavity.png")
+        self.assertEqual(entry["colour"], "squash_colour.png")
         self.assertGreater(entry["derivative_scale"], 0.0)
         self.assertGreater(entry["height_mm"], 0.0)
         furrow("rig", "check", self.out / "sheet.rig.json", check=DONE)
