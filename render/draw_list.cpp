@@ -13,8 +13,17 @@ namespace {
 // How a mesh of one subject looks.
 struct Look {
   std::array<bool, DrawList::kNumViews> is_seen{};
-  float pixels = 0.0f;  // of a metre of the mesh where it is nearest
+  float pixels = 0.0f;   // of a metre of the mesh where it is nearest
+  float covered = 0.0f;  // share of the camera's picture, at most
 };
+
+// Share of the picture that an extent covers.
+float Covered(const JointBounds::Extent& extent) {
+  if (extent.nearest <= 0.0f) return 1.0f;
+  const glm::vec2 size = glm::min(extent.high, glm::vec2(1.0f)) -  //
+                         glm::max(extent.low, glm::vec2(-1.0f));
+  return 0.25f * size.x * size.y;
+}
 
 Look LookAt(const JointBounds& bounds, const PosedSubject& subject,
             std::span<const DrawList::View> views, float reach) {
@@ -30,6 +39,7 @@ Look LookAt(const JointBounds& bounds, const PosedSubject& subject,
                                                : std::numeric_limits<float>::infinity();
     float& most = view == DrawList::kCamera ? look.pixels : of_lamps;
     most = std::max(most, pixels);
+    if (view == DrawList::kCamera) look.covered = Covered(extent);
   }
   if (!look.is_seen[DrawList::kCamera]) look.pixels = of_lamps;
   look.pixels *= glm::length(glm::vec3(subject.placement[0]));
@@ -50,6 +60,10 @@ void DrawList::Build(GpuCharacter* gpu, std::span<const NamedSubject> subjects,
       for (std::size_t view = 0; view < views.size(); ++view) {
         if (!look.is_seen[view]) continue;
         list.seen[view].push_back(static_cast<std::uint32_t>(list.subjects.size()));
+      }
+      if (look.is_seen[kCamera]) {
+        list.sight.pixels = std::max(list.sight.pixels, look.pixels);
+        list.sight.covered += look.covered;
       }
       list.subjects.push_back(static_cast<std::uint32_t>(subject));
       list.levels.push_back(gpu->Level(mesh, tolerance.error_pixels / look.pixels));

@@ -39,6 +39,12 @@ class DrawList {
   // Of GpuMesh::levels, one each of subjects(): the same for all views, so that no surface throws
   // the shadow of another on itself. By the camera, or by the lamps where the camera sees nothing.
   [[nodiscard]] std::span<const int> levels(std::size_t mesh) const { return meshes_[mesh].levels; }
+  // How large the camera sees a mesh, of all subjects.
+  struct Sight {
+    float pixels = 0.0f;   // of a metre of it where it is nearest; 0: nobody's is seen
+    float covered = 0.0f;  // of the picture, at most: [0, 1] for one subject
+  };
+  [[nodiscard]] const Sight& sight(std::size_t mesh) const { return meshes_[mesh].sight; }
   // Those whom a view sees, as positions in subjects().
   [[nodiscard]] std::span<const std::uint32_t> seen(int view, std::size_t mesh) const {
     return meshes_[mesh].seen[static_cast<std::size_t>(view)];
@@ -48,6 +54,7 @@ class DrawList {
   struct Mesh {
     std::vector<std::uint32_t> subjects;
     std::vector<int> levels;
+    Sight sight;
     std::array<std::vector<std::uint32_t>, kNumViews> seen;
   };
   std::vector<Mesh> meshes_;

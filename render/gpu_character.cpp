@@ -199,6 +199,7 @@ Status GpuCharacter::AddMaterials(const Character& character) {
     material.derivatives = DerivativeTexture(character, source.normal_texture);
     material.kind = source.kind;
     material.group = GroupOf(character, source.kind);
+    material.hollow = block.cavity_albedo / std::max(source.base_colour.g, 1e-3f);
     material.alpha_test = source.alpha_cutoff > 0.0f;
     material.double_sided = source.double_sided;
     materials_.push_back(std::move(material));
@@ -295,6 +296,7 @@ Status GpuCharacter::AddMasks(const Character& character) {
     const std::vector<std::uint8_t> rgba = ResizeRgba8(*pictures[layer], width, height);
     glTextureSubImage3D(masks_.name(), 0, 0, 0, static_cast<GLint>(layer), width, height, 1,
                         GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    AddMaskRegions(character, *pictures[layer], static_cast<int>(layer), &mask_regions_);
   }
   glGenerateTextureMipmap(masks_.name());
   glTextureParameteri(masks_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);

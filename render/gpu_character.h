@@ -9,6 +9,7 @@
 #include "render/derivative_map.h"
 #include "render/gl_objects.h"
 #include "render/gpu_mesh.h"
+#include "render/mask_regions.h"
 #include "render/wrinkle_heights.h"
 #include "render/wrinkle_table.h"
 
@@ -22,6 +23,7 @@ struct GpuMaterial {
   GLuint thickness = 0;
   character::Material::Kind kind = character::Material::Kind::kOther;
   WrinkleGroup group = WrinkleGroup::kNone;
+  float hollow = 0.0f;  // green of the base colour's texture below which cavity() counts
   bool alpha_test = false;
   bool double_sided = false;
 };
@@ -38,7 +40,10 @@ class GpuCharacter {
 
   [[nodiscard]] std::span<const GpuMesh> meshes() const { return meshes_; }
   [[nodiscard]] const GpuMaterial& material(int index) const { return materials_[index]; }
+  [[nodiscard]] int num_materials() const { return static_cast<int>(materials_.size()); }
   [[nodiscard]] GLuint masks() const { return masks_.name(); }
+  // Where the masks let wrinkles show.
+  [[nodiscard]] std::span<const MaskRegion> mask_regions() const { return mask_regions_; }
   [[nodiscard]] GLuint wrinkle_derivatives() const { return wrinkle_derivatives_.name(); }
   // Colour and cavity of the wrinkle maps, a layer each; 0 where none has any.
   [[nodiscard]] GLuint wrinkle_looks() const { return wrinkle_looks_.name(); }
@@ -69,6 +74,7 @@ class GpuCharacter {
   std::map<std::pair<int, bool>, gl::Texture> colour_textures_;  // (picture, is it sRGB)
   std::map<int, gl::Texture> derivative_textures_;
   gl::Texture masks_;
+  std::vector<MaskRegion> mask_regions_;
   gl::Texture wrinkle_derivatives_;
   gl::Texture wrinkle_looks_;
   WrinkleHeights heights_;

@@ -8,6 +8,7 @@
 
 #include "render/displacement_patches.h"
 #include "render/mesh_levels.h"
+#include "render/uv_density.h"
 
 namespace furrow::render {
 namespace {
@@ -76,6 +77,7 @@ GpuMesh MakeGpuMesh(const character::Mesh& mesh, std::span<const glm::mat4> inve
   gpu.num_indices = static_cast<GLsizei>(mesh.indices.size());
   gpu.material = mesh.material;
   gpu.mean_edge = MeanEdge(mesh);
+  gpu.uv_per_metre = LeastUvPerMetre(mesh);
   gpu.bounds = JointBounds(mesh, inverse_bind_matrices);
   DescribeVertices(gpu.vertex_array.name(), gpu.vertices);
   glVertexArrayElementBuffer(gpu.vertex_array.name(), gpu.indices.name());

@@ -81,7 +81,8 @@ class GlRenderer final : public Renderer {
         pool_(&device_),
         gpu_(std::move(gpu)),
         tables_(std::move(tables)),
-        scene_(skeleton_, inverse_bind_matrices_, gpu_.get(), tables_.get(), &shaders_),
+        scene_(skeleton_, inverse_bind_matrices_, gpu_.get(), tables_.get(), &shaders_,
+               context_->is_software()),
         pipeline_(character, &scene_, &shaders_, &device_, context_->is_software()) {}
 
   Status BuildFrame(const FrameRequest& request, FrameGraph* graph) {

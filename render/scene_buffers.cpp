@@ -24,10 +24,10 @@ SceneBuffers::SceneBuffers(std::span<const glm::mat4> inverse_bind_matrices,
     : inverse_bind_matrices_(inverse_bind_matrices), tables_(tables) {
   for (gl::Buffer* buffer : {&frame_, &joints_, &influences_}) *buffer = gl::MakeBuffer();
   for (GroupBuffers& group : groups_) {
-    for (gl::Buffer* buffer :
-         {&group.table, &group.dynamic_masks, &group.first_masks, &group.subject_weights}) {
+    for (gl::Buffer* buffer : {&group.dynamic_masks, &group.first_masks, &group.subject_weights}) {
       *buffer = gl::MakeBuffer();
     }
+    for (gl::Buffer& table : group.tables) table = gl::MakeBuffer();
     group.subject_weights_view = gl::MakeTexture(GL_TEXTURE_BUFFER);
   }
   for (int group = 0; group <= kNumWrinkleGroups; ++group) {
@@ -62,8 +62,11 @@ void SceneBuffers::UploadWrinkles(const WrinkleLayout& layout) {
   for (int index = 0; index < kNumWrinkleGroups; ++index) {
     const WrinkleTable& table = tables_->table(static_cast<WrinkleGroup>(index));
     GroupBuffers& group = groups_[index];
-    const auto block = WrinkleBlock(table, tables_->num_maps(), layout);
-    gl::Upload(group.table, block.data(), block.size());
+    for (int part = 0; part < kNumWrinkleParts; ++part) {
+      const auto block =
+          WrinkleBlock(table, static_cast<WrinklePart>(part), tables_->num_maps(), layout);
+      gl::Upload(group.tables[static_cast<std::size_t>(part)], block.data(), block.size());
+    }
     const auto masks = DynamicMasksBlock(table.dynamic_masks, tables_->mask_columns());
     gl::Upload(group.dynamic_masks, masks.data(), masks.size());
     gl::Upload(group.first_masks, table.first_masks.data(),
@@ -81,10 +84,11 @@ void SceneBuffers::Bind() const {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kJointInfluences, influences_.name());
 }
 
-void SceneBuffers::BindWrinkles(WrinkleGroup wrinkle_group) const {
+void SceneBuffers::BindWrinkles(WrinkleGroup wrinkle_group, WrinklePart part) const {
   const bool none = wrinkle_group == WrinkleGroup::kNone;
   const GroupBuffers& group = groups_[none ? 0 : static_cast<int>(wrinkle_group)];
-  glBindBufferBase(GL_UNIFORM_BUFFER, kWrinkleTable, group.table.name());
+  const gl::Buffer& table = group.tables[static_cast<std::size_t>(part)];
+  glBindBufferBase(GL_UNIFORM_BUFFER, kWrinkleTable, table.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kDynamicMasks, group.dynamic_masks.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kFirstMasks, group.first_masks.name());
   glBindTextureUnit(kSubjectWeightsUnit, group.subject_weights_view.name());

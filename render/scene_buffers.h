@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "render/frame_block.h"
@@ -21,11 +22,11 @@ class SceneBuffers {
               const WrinkleLayout& layout);
   // What is the same for all surfaces.
   void Bind() const;
-  void BindWrinkles(WrinkleGroup group) const;
+  void BindWrinkles(WrinkleGroup group, WrinklePart part = WrinklePart::kAll) const;
 
  private:
   struct GroupBuffers {
-    gl::Buffer table;
+    std::array<gl::Buffer, kNumWrinkleParts> tables;  // by WrinklePart
     gl::Buffer dynamic_masks;
     gl::Buffer first_masks;
     gl::Buffer subject_weights;

@@ -2,7 +2,6 @@
 #include "render/scene_draw.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "render/displacement_patches.h"
 
@@ -57,11 +56,11 @@ gl::Sampler MakeCutOutSampler() {
   return sampler;
 }
 
-// Programs are compiled for a power of two of maps, so that a face that begins to move does not
-// wait for one after the other; the rest of the list is zeros, which add nothing.
-int PaddedMaps(std::size_t num_maps, int map_slots) {
-  if (num_maps == 0) return 0;
-  return std::min(static_cast<int>(std::bit_ceil(num_maps)), 4 * map_slots);
+// What shows or needs every wrinkle by itself has them composed in every fragment.
+bool TakesComposed(const Settings& settings) {
+  return settings.wrinkle_maps.cache && settings.view != View::kWeights &&
+         settings.view != View::kMaskDynamic && settings.view != View::kMaskTexture &&
+         settings.normal_blend == NormalBlend::kPartialDerivative;
 }
 
 // The views that the skin pipeline's scene pass itself draws differently for.
@@ -97,13 +96,14 @@ void AddLight(const Settings& settings, bool skin, SceneShader* shader) {
 
 SceneDraw::SceneDraw(const wrinkle::Skeleton& skeleton,
                      std::span<const glm::mat4> inverse_bind_matrices, GpuCharacter* gpu,
-                     WrinkleTables* tables, ShaderLibrary* shaders)
+                     WrinkleTables* tables, ShaderLibrary* shaders, bool is_software)
     : skeleton_(skeleton),
       inverse_bind_matrices_(inverse_bind_matrices),
       gpu_(gpu),
       tables_(tables),
       shaders_(shaders),
       buffers_(inverse_bind_matrices, tables),
+      cache_(gpu, tables, is_software),
       posed_(gpu, shaders),
       shadow_compare_(MakeShadowSampler(true)),
       shadow_depth_(MakeShadowSampler(false)),
@@ -122,7 +122,18 @@ Status SceneDraw::Update(const FrameRequest& request) {
   FindVisible(subjects, settings);
   buffers_.Upload(MakeFrameBlock(setup_, settings), subjects, gpu_->layout());
   posed_.BeginFrame();
+  PlanComposing(request);
   return {};
+}
+
+void SceneDraw::PlanComposing(const FrameRequest& request) {
+  if (is_crowd_ || !request.settings.wrinkle_maps.cache) return cache_.Disable();
+  cache_.Plan(request.settings,
+              {.subject = &request,
+               .projection = setup_.camera.view_projection,
+               .pixels = setup_.pixels_per_slope,
+               .picture = static_cast<float>(request.width) * static_cast<float>(request.height),
+               .list = &draw_list_});
 }
 
 void SceneDraw::FindVisible(std::span<const NamedSubject> subjects, const Settings& settings) {
@@ -145,11 +156,25 @@ void SceneDraw::BindMasks() {
   glBindTextureUnit(kWrinkleHeightsUnit, gpu_->heights().texture.name());
 }
 
-void SceneDraw::BindMaterial(const GpuMaterial& material) {
+const ComposedMaterial::Textures* SceneDraw::ComposedOf(int material,
+                                                        const Settings& settings) const {
+  if (!TakesComposed(settings) || IsDisplaced(gpu_->material(material), settings)) return nullptr;
+  return cache_.Find(material);
+}
+
+bool SceneDraw::NeedsComposing(const Settings& settings) const {
+  return TakesComposed(settings) && cache_.is_stale();
+}
+
+void SceneDraw::BindMaterial(const GpuMaterial& material,
+                             const ComposedMaterial::Textures* composed) {
+  const bool colour = composed != nullptr && composed->colour != 0;
   glBindBufferBase(GL_UNIFORM_BUFFER, kMaterialBlock, material.block.name());
-  buffers_.BindWrinkles(material.group);
-  glBindTextureUnit(kBaseColourUnit, material.base_colour);
-  glBindTextureUnit(kBaseDerivativesUnit, material.derivatives);
+  buffers_.BindWrinkles(material.group,
+                        composed != nullptr ? WrinklePart::kDynamic : WrinklePart::kAll);
+  glBindTextureUnit(kBaseColourUnit, colour ? composed->colour : material.base_colour);
+  glBindTextureUnit(kBaseDerivativesUnit,
+                    composed != nullptr ? composed->derivatives : material.derivatives);
   glBindTextureUnit(kRoughnessUnit, material.roughness);
   glBindTextureUnit(kThicknessUnit, material.thickness);
 }
@@ -245,14 +270,14 @@ Status SceneDraw::DrawCaster(const Settings& settings, int light, std::size_t in
   const GpuMaterial& material = gpu_->material(gpu_->meshes()[index].material);
   SceneShader shader;
   if (IsDisplaced(material, settings)) {
-    shader = SurfaceShader(material);
+    shader = SurfaceShader(material, nullptr);
     shader.displaced = shader.shadow = true;
   }
   const Result<GLuint> program =
       shader.displaced ? shaders_->Get(shader) : shaders_->GetShadow(material.alpha_test);
   if (!program.ok()) return program.status();
   const auto form = shader.displaced ? PosedMeshes::Form::kPatches : PosedMeshes::Form::kIndexed;
-  BindMaterial(material);
+  BindMaterial(material, nullptr);
   const Result<PosedMeshes::Vertices> posed = Pose(index, form);
   if (!posed.ok()) return posed.status();
   SetCulling(!material.double_sided);
@@ -276,13 +301,15 @@ Status SceneDraw::DrawScene(const Settings& settings, SceneKind kind) {
 
 Status SceneDraw::DrawMesh(const Settings& settings, SceneKind kind, std::size_t index) {
   const bool wireframe = kind == SceneKind::kPlain && settings.view == View::kWireframe;
-  const GpuMaterial& material = gpu_->material(gpu_->meshes()[index].material);
-  const SceneShader shader = ShaderFor(material, settings, kind);
+  const int number = gpu_->meshes()[index].material;
+  const GpuMaterial& material = gpu_->material(number);
+  const ComposedMaterial::Textures* composed = ComposedOf(number, settings);
+  const SceneShader shader = ShaderFor(material, composed, settings, kind);
   const Result<GLuint> program = shaders_->Get(shader);
   if (!program.ok()) return program.status();
   auto form = wireframe ? PosedMeshes::Form::kUnindexed : PosedMeshes::Form::kIndexed;
   if (shader.displaced) form = PosedMeshes::Form::kPatches;
-  BindMaterial(material);
+  BindMaterial(material, composed);
   const Result<PosedMeshes::Vertices> posed = Pose(index, form);
   if (!posed.ok()) return posed.status();
   if (shader.preintegrated) glBindTextureUnit(kPreintegratedUnit, lookup_tables_.preintegrated());
@@ -292,16 +319,19 @@ Status SceneDraw::DrawMesh(const Settings& settings, SceneKind kind, std::size_t
   return {};
 }
 
-SceneShader SceneDraw::SurfaceShader(const GpuMaterial& material) const {
+SceneShader SceneDraw::SurfaceShader(const GpuMaterial& material,
+                                     const ComposedMaterial::Textures* composed) const {
   SceneShader shader;
   if (material.group != WrinkleGroup::kNone) {
-    shader.active_maps =
-        PaddedMaps(tables_->table(material.group).maps.size(), MapSlots(tables_->num_maps()));
-    shader.wrinkle_texture = tables_->table(material.group).uses_texture;
-    shader.wrinkle_dynamic = tables_->table(material.group).uses_dynamic;
+    const WrinkleTable& table = tables_->table(material.group);
+    const auto part = composed != nullptr ? WrinklePart::kDynamic : WrinklePart::kAll;
+    shader.active_maps = PaddedMaps(NumMaps(table, part), tables_->num_maps());
+    shader.wrinkle_texture = composed != nullptr ? table.paints_dynamic : table.uses_texture;
+    shader.wrinkle_dynamic = table.uses_dynamic;
   }
-  shader.base_colour_map = material.base_colour != 0;
-  shader.base_normal_map = material.derivatives != 0;
+  shader.composed_looks = composed != nullptr && composed->colour != 0;
+  shader.base_colour_map = material.base_colour != 0 || shader.composed_looks;
+  shader.base_normal_map = material.derivatives != 0 || composed != nullptr;
   shader.roughness_map = material.roughness != 0;
   shader.alpha_test = material.alpha_test;
   shader.mask_bits = tables_->mask_bits(material.group);
@@ -311,9 +341,10 @@ SceneShader SceneDraw::SurfaceShader(const GpuMaterial& material) const {
   return shader;
 }
 
-SceneShader SceneDraw::ShaderFor(const GpuMaterial& material, const Settings& settings,
-                                 SceneKind kind) const {
-  SceneShader shader = SurfaceShader(material);
+SceneShader SceneDraw::ShaderFor(const GpuMaterial& material,
+                                 const ComposedMaterial::Textures* composed,
+                                 const Settings& settings, SceneKind kind) const {
+  SceneShader shader = SurfaceShader(material, composed);
   shader.view = settings.view;
   shader.normal_blend = settings.normal_blend;
   shader.displaced = IsDisplaced(material, settings) && settings.view != View::kWireframe;

@@ -11,6 +11,7 @@
 #include "render/posed_meshes.h"
 #include "render/scene_buffers.h"
 #include "render/shader_library.h"
+#include "render/wrinkle_cache.h"
 #include "render/wrinkle_table.h"
 
 namespace furrow::render {
@@ -23,9 +24,10 @@ enum class SceneKind { kPlain, kSkin, kFacets };
 // them. A mesh is one draw call, however many subjects there are.
 class SceneDraw {
  public:
-  // Everything outlives it.
+  // Everything outlives it. `is_software`: a processor draws, for which composing wrinkles
+  // beforehand pays even while they move (WrinkleCache).
   SceneDraw(const wrinkle::Skeleton& skeleton, std::span<const glm::mat4> inverse_bind_matrices,
-            GpuCharacter* gpu, WrinkleTables* tables, ShaderLibrary* shaders);
+            GpuCharacter* gpu, WrinkleTables* tables, ShaderLibrary* shaders, bool is_software);
 
   // Uploads what the request says, once a frame and before any pass draws; the request need not
   // outlive the call. Errors: of WrinkleTables::Update.
@@ -42,15 +44,22 @@ class SceneDraw {
   static constexpr std::array<GLuint, 2> kShadowUnits = {5, 6};
   // What light.frag.glsl is compiled for.
   [[nodiscard]] static SceneShader LightShader(const Settings& settings);
+  // A scene of these settings draws with textures that Compose() has to make first.
+  [[nodiscard]] bool NeedsComposing(const Settings& settings) const;
+  void Compose() { cache_.Compose(); }
   // Every mesh as lamp `light` sees it, into the bound framebuffer's viewport: depth alone.
   [[nodiscard]] Status DrawShadow(const Settings& settings, int light);
   // Every mesh in colour, for the settings' view, or its facets: into one target or five.
   [[nodiscard]] Status DrawScene(const Settings& settings, SceneKind kind);
 
  private:
+  void PlanComposing(const FrameRequest& request);
   void FindVisible(std::span<const NamedSubject> subjects, const Settings& settings);
   void BindMasks();
-  void BindMaterial(const GpuMaterial& material);
+  // Null: its wrinkles are composed where they are drawn.
+  [[nodiscard]] const ComposedMaterial::Textures* ComposedOf(int material,
+                                                             const Settings& settings) const;
+  void BindMaterial(const GpuMaterial& material, const ComposedMaterial::Textures* composed);
   // The material is bound.
   [[nodiscard]] Result<PosedMeshes::Vertices> Pose(std::size_t index, PosedMeshes::Form form);
   [[nodiscard]] GpuMesh::Level LevelOf(std::size_t index, PosedMeshes::Form form, int level);
@@ -62,9 +71,11 @@ class SceneDraw {
   [[nodiscard]] Status DrawMesh(const Settings& settings, SceneKind kind, std::size_t index);
   [[nodiscard]] bool IsDisplaced(const GpuMaterial& material, const Settings& settings) const;
   // What a program must know of the material and its wrinkles, whatever is made of them.
-  [[nodiscard]] SceneShader SurfaceShader(const GpuMaterial& material) const;
-  [[nodiscard]] SceneShader ShaderFor(const GpuMaterial& material, const Settings& settings,
-                                      SceneKind kind) const;
+  [[nodiscard]] SceneShader SurfaceShader(const GpuMaterial& material,
+                                          const ComposedMaterial::Textures* composed) const;
+  [[nodiscard]] SceneShader ShaderFor(const GpuMaterial& material,
+                                      const ComposedMaterial::Textures* composed,
+                                      const Settings& settings, SceneKind kind) const;
 
   const wrinkle::Skeleton& skeleton_;
   std::span<const glm::mat4> inverse_bind_matrices_;
@@ -77,6 +88,7 @@ class SceneDraw {
   bool is_crowd_ = false;
   DrawList draw_list_;
   SceneBuffers buffers_;
+  WrinkleCache cache_;
   PosedMeshes posed_;
 
   LookupTables lookup_tables_;

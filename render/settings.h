@@ -108,6 +108,9 @@ struct SpecularSettings {
 struct WrinkleSettings {
   float blood_flow = 1.0f;  // strength of the maps' colour, [0, 4]
   float cavity = 1.0f;      // ... and of their cavity, [0, 4]
+  // Painted wrinkles of a single subject are composed in texture space where that is cheaper, and
+  // anew only where weights change; off: in every fragment.
+  bool cache = true;
 };
 
 // The surface itself moves by the height maps of the rig's wrinkle maps, so that outlines and

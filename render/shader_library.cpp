@@ -85,6 +85,7 @@ std::vector<std::string> Defines(const SceneShader& shader) {
       Define("DISPLACED", shader.displaced),
       Define("SHADOW", shader.shadow),
       Define("CROWD", shader.crowd),
+      Define("COMPOSED_LOOKS", shader.composed_looks),
       "BECKMANN_SIZE float(" + std::to_string(kBeckmannTableSize) + ")",
       "ALBEDO_SIZE float(" + std::to_string(kAlbedoTableSize) + ")",
       "RING_SIZE float(" + std::to_string(kPreintegratedTableSize) + ")",

@@ -57,7 +57,8 @@ struct SceneShader {
   bool unlit = false;
   bool displaced = false;  // tessellated, moved by heights
   bool shadow = false;     // displaced, as a lamp sees it: depth alone
-  bool crowd = false;      // several subjects, each with wrinkle weights of its own
+  bool composed_looks = false;  // the wrinkles' are in the base colour already
+  bool crowd = false;           // several subjects, each with wrinkle weights of its own
 
   friend auto operator<=>(const SceneShader&, const SceneShader&) = default;
 };

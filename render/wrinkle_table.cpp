@@ -2,6 +2,7 @@
 #include "render/wrinkle_table.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -60,14 +61,24 @@ std::size_t WrinkleBlockSize(int num_maps, int num_mask_layers) {
   return maps * (sizeof(ActiveMap) + sizeof(glm::vec4) * num_mask_layers);
 }
 
-std::vector<std::uint8_t> WrinkleBlock(const WrinkleTable& table, int num_maps,
+std::size_t NumMaps(const WrinkleTable& table, WrinklePart part) {
+  return part == WrinklePart::kDynamic ? table.num_dynamic : table.maps.size();
+}
+
+int PaddedMaps(std::size_t active, int num_maps) {
+  if (active == 0) return 0;
+  return std::min(static_cast<int>(std::bit_ceil(active)), 4 * MapSlots(num_maps));
+}
+
+std::vector<std::uint8_t> WrinkleBlock(const WrinkleTable& table, WrinklePart part, int num_maps,
                                        const WrinkleLayout& layout) {
   std::vector<std::uint8_t> block(WrinkleBlockSize(num_maps, layout.num_mask_layers));
-  if (table.maps.empty()) return block;
+  const std::size_t count = NumMaps(table, part);
+  if (count == 0) return block;
   const std::size_t weights = 4 * MapSlots(num_maps) * sizeof(ActiveMap);
-  const std::size_t row = table.maps.size() * static_cast<std::size_t>(layout.num_mask_layers);
-  std::memcpy(block.data(), table.maps.data(), table.maps.size() * sizeof(ActiveMap));
-  std::memcpy(&block[weights], table.mask_weights.data(), row * sizeof(glm::vec4));
+  const auto layers = static_cast<std::size_t>(layout.num_mask_layers);
+  std::memcpy(block.data(), table.maps.data(), count * sizeof(ActiveMap));
+  std::memcpy(&block[weights], table.mask_weights.data(), count * layers * sizeof(glm::vec4));
   return block;
 }
 
@@ -194,6 +205,17 @@ void WrinkleTables::DescribePalettes(const wrinkle::Rig& rig) {
   }
 }
 
+std::vector<WrinkleTables::Painted> WrinkleTables::painted(WrinkleGroup group) const {
+  std::vector<Painted> painted;
+  if (group == WrinkleGroup::kNone) return painted;
+  for (const WeightSlot& slot : slots_) {
+    if (slot.map < 0 || slot.mask_layer < 0) continue;
+    if (!maps_[static_cast<std::size_t>(slot.map)].in_group[static_cast<int>(group)]) continue;
+    painted.push_back({slot.map, 4 * slot.mask_layer + slot.channel});
+  }
+  return painted;
+}
+
 Status WrinkleTables::CarryValues(const NamedSubject& named) {
   const PosedSubject& subject = *named.subject;
   const auto weight_names = subject.binding->weight_names();
@@ -265,14 +287,13 @@ bool WrinkleTables::IsDynamic(std::size_t map) const {
   });
 }
 
-// `slots`: where each map of the rig is in the list; -1: nobody needs it.
-void WrinkleTables::ListMaps(int group, float strength, std::vector<int>* slots) {
+// Those of which vertices bring a mask, or the others. `slots`: where each map of the rig is in the
+// list; -1: nobody needs it.
+void WrinkleTables::ListMaps(int group, float strength, bool dynamic, std::vector<int>* slots) {
   WrinkleTable& table = tables_[group];
-  slots->assign(maps_.size(), -1);
   for (std::size_t map = 0; map < maps_.size(); ++map) {
-    if (!maps_[map].in_group[group]) continue;
     const bool textured = IsTextured(map);
-    const bool dynamic = IsDynamic(map);
+    if (!maps_[map].in_group[group] || IsDynamic(map) != dynamic) continue;
     if (!textured && !dynamic) continue;
     (*slots)[map] = static_cast<int>(table.maps.size());
     ActiveMap entry = maps_[map].entry;
@@ -280,15 +301,18 @@ void WrinkleTables::ListMaps(int group, float strength, std::vector<int>* slots)
     table.maps.push_back(entry);
     table.has_heights = table.has_heights || entry.height_layer >= 0;
     table.uses_texture = table.uses_texture || textured;
-    table.uses_dynamic = table.uses_dynamic || dynamic;
   }
 }
 
 void WrinkleTables::FillTable(int group, float strength) {
   WrinkleTable& table = tables_[group];
   table = {};
-  std::vector<int> slots;
-  ListMaps(group, strength, &slots);
+  std::vector<int> slots(maps_.size(), -1);
+  ListMaps(group, strength, true, &slots);
+  table.num_dynamic = table.maps.size();
+  table.uses_dynamic = table.num_dynamic > 0;
+  table.paints_dynamic = table.uses_texture;
+  ListMaps(group, strength, false, &slots);
   const auto layers = static_cast<std::ptrdiff_t>(layout_.num_mask_layers);
   for (const SubjectWrinkles& subject : subjects_) {
     table.first_masks.push_back(static_cast<std::uint32_t>(table.dynamic_masks.size()));

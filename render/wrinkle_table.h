@@ -33,15 +33,17 @@ struct ActiveMap {
 static_assert(sizeof(ActiveMap) == 32);
 
 // The active list of one group of surfaces, as the shaders read it: the maps that some subject of
-// the frame needs.
+// the frame needs, first those of which vertices bring a mask, then those with painted masks alone.
 struct WrinkleTable {
   std::vector<ActiveMap> maps;
+  std::size_t num_dynamic = 0;                  // those that come first
   std::vector<glm::vec4> mask_weights;          // subjects x maps x mask layers
   std::vector<DynamicMaskBlock> dynamic_masks;  // subject after subject
   std::vector<std::uint32_t> first_masks;       // where each subject's begin, and the end
   bool uses_texture = false;
   bool uses_dynamic = false;
-  bool has_heights = false;  // of some map
+  bool paints_dynamic = false;  // some of those that come first have painted masks as well
+  bool has_heights = false;     // of some map
 };
 
 // Where the character's textures put the masks and maps of its rig.
@@ -60,11 +62,21 @@ struct WrinkleLayout {
 
 // vec4s that carry the dynamic masks of `num_maps` maps: MAP_SLOTS of the shaders.
 [[nodiscard]] constexpr int MapSlots(int num_maps) { return num_maps < 1 ? 1 : (num_maps + 3) / 4; }
+// Of a WrinkleTable's maps: all, or those alone of which vertices bring a mask.
+enum class WrinklePart { kAll, kDynamic };
+inline constexpr int kNumWrinkleParts = 2;
+[[nodiscard]] std::size_t NumMaps(const WrinkleTable& table, WrinklePart part);
+
+// ACTIVE_MAPS of the shaders for so many of a rig's `num_maps`: a power of two, so that a face that
+// begins to move does not wait for one program after the other. The rest of the list is zeros,
+// which add nothing.
+[[nodiscard]] int PaddedMaps(std::size_t active, int num_maps);
+
 // The WrinkleTable block of shaders/common_wrinkles.glsl, byte for byte (std140), and its size. Its
 // mask weights are those of the first subject.
 [[nodiscard]] std::size_t WrinkleBlockSize(int num_maps, int num_mask_layers);
-[[nodiscard]] std::vector<std::uint8_t> WrinkleBlock(const WrinkleTable& table, int num_maps,
-                                                     const WrinkleLayout& layout);
+[[nodiscard]] std::vector<std::uint8_t> WrinkleBlock(const WrinkleTable& table, WrinklePart part,
+                                                     int num_maps, const WrinkleLayout& layout);
 // u_subject_weights of shaders/common_masks.glsl: all subjects' mask weights, a row as long as the
 // block's each.
 [[nodiscard]] std::vector<glm::vec4> SubjectWeights(const WrinkleTable& table, int num_maps,
@@ -99,6 +111,13 @@ class WrinkleTables {
   [[nodiscard]] std::span<const glm::vec4> mask_palette(WrinkleGroup group) const {
     return palettes_[static_cast<int>(group)];
   }
+  // A map of the rig that is painted on the group's surfaces, and the channel that masks it there:
+  // four a mask layer.
+  struct Painted {
+    int map = 0;
+    int channel = 0;
+  };
+  [[nodiscard]] std::vector<Painted> painted(WrinkleGroup group) const;
   // A bit a mask layer: 1 where it holds a region that is drawn on the group's surfaces.
   [[nodiscard]] std::uint32_t mask_bits(WrinkleGroup group) const {
     return mask_bits_[static_cast<int>(group)];
@@ -138,7 +157,7 @@ class WrinkleTables {
   void AddSubject(MaskMode mode);
   [[nodiscard]] bool IsTextured(std::size_t map) const;
   [[nodiscard]] bool IsDynamic(std::size_t map) const;
-  void ListMaps(int group, float strength, std::vector<int>* slots);
+  void ListMaps(int group, float strength, bool dynamic, std::vector<int>* slots);
   void FillTable(int group, float strength);
 
   WrinkleLayout layout_;

@@ -8,6 +8,7 @@
 // MATERIAL       MATERIAL_SKIN, _CLOTH, _EYE, _HAIR or _OTHER
 // WIDEN          1: gloss is wider where the pixel covers many slopes
 // WRINKLE_LOOKS  1: some wrinkle map has a colour or a cavity
+// COMPOSED_LOOKS 1: the base colour has some already, and their cavity in its alpha
 // HAS_THICKNESS  1: the material has a texture of its flesh's thickness
 
 #if HAS_THICKNESS
@@ -34,7 +35,8 @@ Facet facetHere() {
   Facet facet;
   facet.kind = MATERIAL;
   facet.position = v_position;
-  facet.colour = beginSurface(masks, dynamicMasks).rgb;
+  vec4 base = beginSurface(masks, dynamicMasks);
+  facet.colour = base.rgb;
   facet.geometric = normalizeOrZero(gl_FrontFacing ? v_normal : -v_normal);
   float variance;
   facet.normal = surfaceNormal(masks, dynamicMasks, variance);
@@ -47,11 +49,11 @@ Facet facetHere() {
   facet.curvature = curvatureOf(facet.geometric);
   facet.thickness = thickness();
   facet.open = cavity(facet.colour);
-  facet.crease = 1.0;
+  facet.crease = COMPOSED_LOOKS == 1 ? base.a : 1.0;
 #if WRINKLE_LOOKS && (WRINKLE_TEXTURE || WRINKLE_DYNAMIC)
   vec4 look = wrinkleLook(v_uv, masks, dynamicMasks, u_wrinkle_maps.xy);
   facet.colour *= look.rgb;
-  facet.crease = look.a;
+  facet.crease *= look.a;
 #endif
   return facet;
 }

@@ -35,12 +35,24 @@ glm::vec3 SkinBackground(const Settings& settings) {
   return whole ? settings.background : glm::vec3(0.0f);
 }
 
+void ScenePass::AddComposing(FrameGraph* graph, const Settings& settings) {
+  if (!scene_->NeedsComposing(settings)) return;
+  struct Data {};
+  graph->AddPass<Data>(
+      "wrinkles", [](FrameGraph::Builder& builder, Data&) { builder.SideEffect(); },
+      [this](const FrameGraph::Resources&, const Data&) {
+        scene_->Compose();
+        return Status();
+      });
+}
+
 FrameGraph::Handle ScenePass::AddPlain(FrameGraph* graph, const Settings& settings,
                                        const Targets& targets) {
   struct Data {
     FrameGraph::Handle colour;
     FrameGraph::Handle depth;
   };
+  AddComposing(graph, settings);
   const Data data = graph->AddPass<Data>(
       "scene",
       [&](FrameGraph::Builder& builder, Data& pass) {
@@ -69,6 +81,7 @@ SkinTargets ScenePass::AddSkin(FrameGraph* graph, const Settings& settings, cons
     FrameGraph::Handle shadows;
   };
   const bool has_shadows = shadows.version >= 0;
+  AddComposing(graph, settings);
   const Data data = graph->AddPass<Data>(
       "scene",
       [&](FrameGraph::Builder& builder, Data& pass) {
@@ -107,6 +120,7 @@ SkinTargets ScenePass::AddSkin(FrameGraph* graph, const Settings& settings, cons
 
 FacetTargets ScenePass::AddFacets(FrameGraph* graph, const Settings& settings, int width,
                                   int height) {
+  AddComposing(graph, settings);
   return graph->AddPass<FacetTargets>(
       "scene",
       [&](FrameGraph::Builder& builder, FacetTargets& out) {

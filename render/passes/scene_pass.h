@@ -58,6 +58,9 @@ class ScenePass {
                                        int height);
 
  private:
+  // Textures that the scene draws with, made when they are not yet; once a graph.
+  void AddComposing(FrameGraph* graph, const Settings& settings);
+
   SceneDraw* scene_;
   GlDevice* device_;
 };

@@ -69,6 +69,8 @@ class Crowd : public testing::Test {
     request_.width = kWidth;
     request_.height = kHeight;
     request_.settings.detail.error_pixels = 0.0f;
+    // Crowds compose their wrinkles in every fragment.
+    request_.settings.wrinkle_maps.cache = false;
   }
 
   Image Draw(std::span<const PosedSubject> subjects) {

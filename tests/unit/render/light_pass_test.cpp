@@ -140,7 +140,7 @@ class RestrictedPasses : public LightPassTest {
   std::unique_ptr<WrinkleTables> tables_ =
       test::Expect(WrinkleTables::Create(head_, gpu_->layout()));
   SceneDraw scene_{head_.skeleton, head_.inverse_bind_matrices, gpu_.get(), tables_.get(),
-                   &shaders_};
+                   &shaders_,      context_->is_software()};
   Fullscreen fullscreen_{&shaders_, &device_};
 };
 

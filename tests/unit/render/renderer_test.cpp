@@ -93,6 +93,7 @@ TEST(Renderer, BlackSkinIsHollowAndABlackEyeShines) {
   }
 }
 
+// A texel of what is composed beforehand may reach a pixel beyond a mask.
 TEST_F(RendererTest, WrinklesChangeOnlyMaskedPixels) {
   const Image mask = Render(Request(subject_, View::kMaskTexture));
   const Image base = Render(Request(subject_));
@@ -100,12 +101,20 @@ TEST_F(RendererTest, WrinklesChangeOnlyMaskedPixels) {
   subject_.Set("r_stretch", 1.0f);
   subject_.Solve();
   const Image wrinkled = Render(Request(subject_));
+  const auto is_masked = [&](int x, int y) {
+    for (int i = 0; i < 9; ++i) {
+      const int column = std::clamp(x + i % 3 - 1, 0, kSize - 1);
+      const int row = std::clamp(y + i / 3 - 1, 0, kSize - 1);
+      if (Pixel(mask, column, row) != glm::ivec3(0)) return true;
+    }
+    return false;
+  };
   int changed = 0;
   for (int y = 0; y < kSize; ++y) {
     for (int x = 0; x < kSize; ++x) {
       const bool same = Pixel(base, x, y) == Pixel(wrinkled, x, y);
       if (!same) ++changed;
-      if (Pixel(mask, x, y) == glm::ivec3(0)) EXPECT_TRUE(same) << x << ", " << y;
+      if (!is_masked(x, y)) EXPECT_TRUE(same) << x << ", " << y;
     }
   }
   EXPECT_GT(changed, kSize * kSize / 10);

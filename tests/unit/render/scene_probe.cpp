@@ -20,7 +20,8 @@ SceneProbe::SceneProbe(const character::Character& character)
       gpu_(Expect(GpuCharacter::Create(character))),
       tables_(Expect(WrinkleTables::Create(character, gpu_->layout()))),
       scene_(std::make_unique<SceneDraw>(character_.skeleton, character_.inverse_bind_matrices,
-                                         gpu_.get(), tables_.get(), &shaders_)),
+                                         gpu_.get(), tables_.get(), &shaders_,
+                                         context_->is_software())),
       pass_(std::make_unique<ScenePass>(scene_.get(), &device_)) {}
 
 std::vector<glm::vec4> SceneProbe::Draw(const FrameRequest& request) {

@@ -26,6 +26,13 @@ class WrinkleTableTest : public testing::Test {
     request.settings = settings_;
     return tables_->Update(request);
   }
+  // A subject whose brow is bent by so many radians.
+  test::Subject Bent(float radians) const {
+    test::Subject subject(head_);
+    subject.pose.joints[2].rotation = glm::angleAxis(radians, glm::vec3(1, 0, 0));
+    subject.Solve();
+    return subject;
+  }
   const WrinkleTable& Skin() const { return tables_->table(WrinkleGroup::kSkin); }
   const WrinkleTable& Cloth() const { return tables_->table(WrinkleGroup::kCloth); }
 
@@ -62,9 +69,7 @@ TEST_F(WrinkleTableTest, ListsTheActiveMapsWithTheRegionsWeightsByChannel) {
 
 TEST_F(WrinkleTableTest, AHingeRaisesADynamicMap) {
   Make(head_);
-  test::Subject subject(head_);
-  subject.pose.joints[2].rotation = glm::angleAxis(1.2f, glm::vec3(1, 0, 0));
-  subject.Solve();
+  const test::Subject subject = Bent(1.2f);
   ASSERT_TRUE(Update(subject).ok());
   ASSERT_EQ(Skin().maps.size(), 1u);
   EXPECT_EQ(Skin().maps[0].map, 2);
@@ -79,10 +84,7 @@ TEST_F(WrinkleTableTest, AHingeRaisesADynamicMap) {
 
 TEST_F(WrinkleTableTest, AJointThatAllButRestsNeedsNoMap) {
   Make(head_);
-  test::Subject subject(head_);
-  subject.pose.joints[2].rotation = glm::angleAxis(0.02f, glm::vec3(1, 0, 0));
-  subject.Solve();
-  ASSERT_TRUE(Update(subject).ok());
+  ASSERT_TRUE(Update(Bent(0.02f)).ok());
   EXPECT_GT(tables_->influences()[2], 0.0f);
   EXPECT_TRUE(Skin().maps.empty());
 }
@@ -93,9 +95,7 @@ TEST_F(WrinkleTableTest, ACrowdsListIsWhatAnyOfItNeeds) {
   test::Subject squashed(head_);
   squashed.Set("r_squash", 0.5f);
   squashed.Solve();
-  test::Subject bent(head_);
-  bent.pose.joints[2].rotation = glm::angleAxis(1.2f, glm::vec3(1, 0, 0));
-  bent.Solve();
+  const test::Subject bent = Bent(1.2f);
   FrameRequest request;
   request.binding = &squashed.binding;
   request.wrinkle_weights = squashed.weights;
@@ -107,12 +107,15 @@ TEST_F(WrinkleTableTest, ACrowdsListIsWhatAnyOfItNeeds) {
   request.others = std::span(&other, 1);
   ASSERT_TRUE(tables_->Update(request).ok());
   ASSERT_EQ(Skin().maps.size(), 2u);
-  EXPECT_EQ(Skin().maps[0].map, 1);
-  EXPECT_EQ(Skin().maps[1].map, 2);
-  EXPECT_EQ(Skin().mask_weights[0], glm::vec4(0.0f, 0.5f, 0.0f, 0.0f));
+  EXPECT_EQ(Skin().maps[0].map, 2);  // what vertices mask comes first
+  EXPECT_EQ(Skin().maps[1].map, 1);
+  EXPECT_EQ(Skin().num_dynamic, 1u);
+  EXPECT_FALSE(Skin().paints_dynamic);
+  EXPECT_EQ(Skin().mask_weights[0], glm::vec4(0.0f));
+  EXPECT_EQ(Skin().mask_weights[1], glm::vec4(0.0f, 0.5f, 0.0f, 0.0f));
   EXPECT_EQ(Skin().mask_weights[2], glm::vec4(0.0f));
   EXPECT_EQ(Skin().first_masks, (std::vector<std::uint32_t>{0, 0, 1}));
-  EXPECT_EQ(Skin().dynamic_masks[0].slot, 1);
+  EXPECT_EQ(Skin().dynamic_masks[0].slot, 0);
   EXPECT_EQ(tables_->influences().size(), 2 * head_.skeleton.joint_names().size());
 }
 
@@ -124,9 +127,8 @@ TEST_F(WrinkleTableTest, MapsGoOnTheSurfaceThatTheRigSays) {
   cloth.kind = character::Material::Kind::kCloth;
   head_.materials.push_back(cloth);
   Make(head_);
-  test::Subject subject(head_);
+  test::Subject subject = Bent(1.2f);
   subject.Set("l_stretch", 1.0f);
-  subject.pose.joints[2].rotation = glm::angleAxis(1.2f, glm::vec3(1, 0, 0));
   subject.Solve();
   ASSERT_TRUE(Update(subject).ok());
   ASSERT_EQ(Skin().maps.size(), 1u);
@@ -144,9 +146,7 @@ TEST_F(WrinkleTableTest, MapsGoOnTheSurfaceThatTheRigSays) {
 TEST_F(WrinkleTableTest, ClothsMapsGoOnSkinWhereThereIsNoCloth) {
   head_.rig.wrinkle_maps[2].surface = wrinkle::WrinkleMap::Surface::kCloth;
   Make(head_);
-  test::Subject subject(head_);
-  subject.pose.joints[2].rotation = glm::angleAxis(1.2f, glm::vec3(1, 0, 0));
-  subject.Solve();
+  const test::Subject subject = Bent(1.2f);
   ASSERT_TRUE(Update(subject).ok());
   EXPECT_EQ(Skin().maps.size(), 1u);
 }

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/composed_material.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+
+namespace furrow::render {
+namespace {
+
+// Seen at a slant, a pixel covers up to sixteen texels one way, and more of the coarser levels.
+constexpr std::size_t kMaxLevels = 7;
+// Of a wrinkle weight: what moves by less is not seen.
+constexpr float kLeastChange = 1.0f / 4096.0f;
+constexpr float kUnknown = -1.0f;                     // a weight, of which nothing is painted
+constexpr std::size_t kRow = 4 * ComposeTile::kSide;  // halves
+
+gl::Texture MakeLevels(glm::ivec2 size, std::size_t levels) {
+  gl::Texture texture = gl::MakeTexture(GL_TEXTURE_2D);
+  glTextureStorage2D(texture.name(), static_cast<GLsizei>(levels), GL_RGBA16F, size.x, size.y);
+  glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  return texture;
+}
+
+void Upload(GLuint texture, int level, glm::ivec2 first, glm::ivec2 size,
+            const std::vector<std::uint16_t>& halves) {
+  glTextureSubImage2D(texture, level, first.x, first.y, size.x, size.y, GL_RGBA, GL_HALF_FLOAT,
+                      halves.data());
+}
+
+// A run of tiles, row after row of all of them.
+struct RunTexels {
+  explicit RunTexels(std::size_t tiles)
+      : num_tiles(tiles), halves(4 * ComposeTile::kTexels * tiles) {}
+  void Put(const std::vector<std::uint16_t>& tile, std::size_t index) {
+    for (std::size_t y = 0; y < ComposeTile::kSide; ++y) {
+      std::copy_n(tile.begin() + static_cast<std::ptrdiff_t>(y * kRow), kRow,
+                  halves.begin() + static_cast<std::ptrdiff_t>((y * num_tiles + index) * kRow));
+    }
+  }
+  std::size_t num_tiles;
+  std::vector<std::uint16_t> halves;
+};
+
+}  // namespace
+
+ComposedMaterial::ComposedMaterial(const GpuCharacter& gpu, ComposeSelection selection,
+                                   glm::ivec2 size)
+    : gpu_(gpu), selection_(std::move(selection)), size_(size) {
+  for (glm::ivec2 level = size; levels_.size() < kMaxLevels; level /= 2) {
+    levels_.push_back({glm::max(level, glm::ivec2(1)), false, {}});
+    if (level.x <= 1 && level.y <= 1) break;
+  }
+  copies_[front_] = MakeCopy();
+  FillBare(&copies_[front_]);
+}
+
+ComposedMaterial::Copy ComposedMaterial::MakeCopy() const {
+  Copy copy;
+  copy.derivatives = MakeLevels(size_, levels_.size());
+  if (gpu_.wrinkle_looks() != 0) copy.colour = MakeLevels(size_, levels_.size());
+  copy.textures = {copy.derivatives.name(), copy.colour.name()};
+  const std::size_t maps = selection_.maps.size();
+  copy.ink = {std::vector<float>(selection_.channels.size() * maps, 0.0f),
+              std::vector<float>(maps, 1.0f), std::vector<float>(maps, 1.0f), glm::vec2(1.0f)};
+  return copy;
+}
+
+void ComposedMaterial::FillBare(Copy* copy) const {
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    const glm::ivec2 size = levels_[i].size;
+    const BareTexels bare = ReadBareTexels(gpu_, *selection_.material, size);
+    Upload(copy->textures.derivatives, static_cast<int>(i), {0, 0}, size, bare.slopes);
+    if (copy->colour)
+      Upload(copy->textures.colour, static_cast<int>(i), {0, 0}, size, bare.colours);
+  }
+}
+
+void ComposedMaterial::CopyFront(Copy* copy) const {
+  const Copy& front = copies_[front_];
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    const auto level = static_cast<GLint>(i);
+    const auto one = [&](const gl::Texture& from, const gl::Texture& to) {
+      if (!from) return;
+      glCopyImageSubData(from.name(), GL_TEXTURE_2D, level, 0, 0, 0, to.name(), GL_TEXTURE_2D,
+                         level, 0, 0, 0, levels_[i].size.x, levels_[i].size.y, 1);
+    };
+    one(front.derivatives, copy->derivatives);
+    one(front.colour, copy->colour);
+  }
+  copy->ink = front.ink;
+  copy->first_level = front.first_level;
+}
+
+bool ComposedMaterial::IsChanged(const ComposeInk& from, const ComposeInk& to,
+                                 std::size_t channel) const {
+  const std::size_t maps = selection_.maps.size();
+  for (std::size_t map = 0; map < maps; ++map) {
+    const float before = from.weights[channel * maps + map];
+    const float now = to.weights[channel * maps + map];
+    if (std::abs(now - before) > kLeastChange) return true;
+    const bool is_alike = from.amplitudes[map] == to.amplitudes[map] &&
+                          from.scales[map] == to.scales[map] && from.looks == to.looks;
+    if (!is_alike && (before > 0.0f || now > 0.0f)) return true;
+  }
+  return false;
+}
+
+std::vector<bool> ComposedMaterial::Changes(const ComposeInk& from, const Wanted& to) const {
+  std::vector<bool> changed;
+  for (std::size_t channel = 0; channel < selection_.channels.size(); ++channel) {
+    changed.push_back(to.is_seen[channel] && IsChanged(from, to.ink, channel));
+  }
+  return changed;
+}
+
+bool ComposedMaterial::IsSame(const ComposeInk& from, const Wanted& to) const {
+  const std::vector<bool> changed = Changes(from, to);
+  return std::ranges::find(changed, true) == changed.end();
+}
+
+bool ComposedMaterial::IsPainted(const Wanted& wanted) const {
+  const Copy& front = copies_[front_];
+  return front.first_level <= wanted.first_level && IsSame(front.ink, wanted);
+}
+
+const ComposedMaterial::Copy& ComposedMaterial::Back() const {
+  const Copy& back = copies_[1 - front_];
+  return back.derivatives ? back : copies_[front_];
+}
+
+void ComposedMaterial::ReadLevel(Level* level) const {
+  if (level->is_read) return;
+  level->tiles = ReadComposeTiles(gpu_, selection_, level->size);
+  level->is_read = true;
+}
+
+std::vector<const ComposeTile*> ComposedMaterial::Stale(const Level& level,
+                                                        const std::vector<bool>& changed) {
+  std::vector<const ComposeTile*> stale;
+  for (const ComposeTile& tile : level.tiles) {
+    const auto is_changed = [&](const ComposeTile::Mask& mask) { return changed[mask.channel]; };
+    if (std::ranges::any_of(tile.masks, is_changed)) stale.push_back(&tile);
+  }
+  return stale;
+}
+
+// Of a level of a copy: what is out of date where those channels changed.
+std::vector<bool> ComposedMaterial::StaleChannels(const Copy& copy, std::size_t level,
+                                                  std::vector<bool> changed) const {
+  if (static_cast<int>(level) < copy.first_level) std::fill(changed.begin(), changed.end(), true);
+  return changed;
+}
+
+std::size_t ComposedMaterial::NumStale(const Wanted& wanted) const {
+  if (IsPainted(wanted)) return 0;
+  const Copy& copy = Back();
+  const std::vector<bool> changed = Changes(copy.ink, wanted);
+  std::size_t texels = 0;
+  for (auto i = static_cast<std::size_t>(wanted.first_level); i < levels_.size(); ++i) {
+    const Level& level = levels_[i];
+    texels += level.is_read
+                  ? ComposeTile::kTexels * Stale(level, StaleChannels(copy, i, changed)).size()
+                  : static_cast<std::size_t>(level.size.x * level.size.y);
+  }
+  return texels;
+}
+
+ComposeInk ComposedMaterial::Merged(const ComposeInk& painted, const Wanted& wanted) const {
+  ComposeInk ink = wanted.ink;
+  const std::size_t maps = selection_.maps.size();
+  const bool is_alike = painted.amplitudes == ink.amplitudes && painted.scales == ink.scales &&
+                        painted.looks == ink.looks;
+  for (std::size_t i = 0; i < ink.weights.size(); ++i) {
+    const bool is_seen = wanted.is_seen[i / maps];
+    if (is_seen && IsChanged(painted, wanted.ink, i / maps)) continue;
+    const bool is_known = is_seen || is_alike || painted.weights[i] == 0.0f;
+    ink.weights[i] = is_known ? painted.weights[i] : kUnknown;
+  }
+  return ink;
+}
+
+void ComposedMaterial::Paint(const Wanted& wanted) {
+  if (IsPainted(wanted)) return;
+  Copy& back = copies_[1 - front_];
+  if (!back.derivatives) {
+    back = MakeCopy();
+    CopyFront(&back);
+  }
+  const std::vector<bool> changed = Changes(back.ink, wanted);
+  back.ink = Merged(back.ink, wanted);
+  for (auto i = static_cast<std::size_t>(wanted.first_level); i < levels_.size(); ++i) {
+    ReadLevel(&levels_[i]);
+    PaintTiles(back, i, Stale(levels_[i], StaleChannels(back, i, changed)));
+  }
+  back.first_level = wanted.first_level;
+  front_ = 1 - front_;
+}
+
+// Neighbours in a row go to the GPU at once.
+void ComposedMaterial::PaintTiles(const Copy& copy, std::size_t level,
+                                  std::span<const ComposeTile* const> tiles) const {
+  for (std::size_t first = 0; first < tiles.size();) {
+    std::size_t count = 1;
+    while (first + count < tiles.size() &&
+           tiles[first + count]->place == tiles[first]->place + glm::ivec2(count, 0)) {
+      ++count;
+    }
+    PaintRun(copy, level, tiles.subspan(first, count));
+    first += count;
+  }
+}
+
+void ComposedMaterial::PaintRun(const Copy& copy, std::size_t level,
+                                std::span<const ComposeTile* const> run) const {
+  RunTexels slopes(run.size());
+  RunTexels colours(copy.colour ? run.size() : 0);
+  std::vector<std::uint16_t> slope(4 * ComposeTile::kTexels);
+  std::vector<std::uint16_t> colour(copy.colour ? slope.size() : 0);
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    if (!ComposeJob{run[i], &copy.ink, slope, colour}.Run()) return;  // never: we made the tile
+    slopes.Put(slope, i);
+    if (copy.colour) colours.Put(colour, i);
+  }
+  const auto number = static_cast<int>(level);
+  const glm::ivec2 first = run.front()->place * ComposeTile::kSide;
+  const glm::ivec2 size =
+      glm::min(levels_[level].size - first,
+               glm::ivec2(ComposeTile::kSide * static_cast<int>(run.size()), ComposeTile::kSide));
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, ComposeTile::kSide * static_cast<int>(run.size()));
+  Upload(copy.textures.derivatives, number, first, size, slopes.halves);
+  if (copy.colour) Upload(copy.textures.colour, number, first, size, colours.halves);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+}
+
+}  // namespace furrow::render

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/wrinkle_cache.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace furrow::render {
+namespace {
+
+constexpr int kMaxSide = 2048;  // texels
+// Texels made in the time that composing the wrinkles of a pixel takes, of all the fragments there.
+constexpr float kTexelsOfAPixel = 8.0f;
+// A level of which a pixel would take no more than this is left out: the next coarser one is
+// nearer.
+constexpr float kSkippedShare = 0.25f;
+// A texture that is finer than it need be stays, by less than so many levels: a camera that moves
+// to and fro makes none.
+constexpr float kKeptLevels = 1.25f;
+
+}  // namespace
+
+WrinkleCache::WrinkleCache(const GpuCharacter* gpu, const WrinkleTables* tables, bool is_software)
+    : gpu_(gpu),
+      tables_(tables),
+      is_software_(is_software),
+      entries_(static_cast<std::size_t>(gpu->num_materials())) {}
+
+void WrinkleCache::Disable() {
+  for (Entry& entry : entries_) entry.is_used = entry.is_stale = false;
+}
+
+void WrinkleCache::Plan(const Settings& settings, const View& view) {
+  Disable();
+  for (int index = 0; index < gpu_->num_materials(); ++index) {
+    const GpuMaterial& material = gpu_->material(index);
+    if (material.group == WrinkleGroup::kNone) continue;
+    // The alpha of a base colour that is cut out is needed; there is no room for a cavity.
+    if (material.alpha_test && gpu_->wrinkle_looks() != 0) continue;
+    const WrinkleTable& table = tables_->table(material.group);
+    if (table.maps.size() == table.num_dynamic) continue;
+    PlanMaterial(index, settings, view, &entries_[static_cast<std::size_t>(index)]);
+  }
+}
+
+WrinkleCache::Sight WrinkleCache::Look(int material, const View& view) const {
+  Sight sight;
+  for (std::size_t index = 0; index < gpu_->meshes().size(); ++index) {
+    const GpuMesh& mesh = gpu_->meshes()[index];
+    if (mesh.material != material || !(mesh.uv_per_metre > 0.0f)) continue;
+    const DrawList::Sight& seen = view.list->sight(index);
+    sight.texels_per_uv = std::max(sight.texels_per_uv, seen.pixels / mesh.uv_per_metre);
+    sight.pixels += seen.covered * view.picture;
+  }
+  return sight;
+}
+
+void WrinkleCache::LookAtRegions(int material, const ComposedMaterial& composed, const View& view,
+                                 ComposedMaterial::Wanted* wanted) const {
+  const PosedSubject& subject = *view.subject;
+  const float pixels = view.pixels * glm::length(glm::vec3(subject.placement[0]));
+  const glm::mat4 projection = view.projection * subject.placement;
+  const std::vector<int>& channels = composed.selection().channels;
+  const auto side = static_cast<float>(std::max(composed.size().x, composed.size().y));
+  wanted->is_seen.assign(channels.size(), false);
+  wanted->first_level = composed.num_levels() - 1;
+  for (const MaskRegion& region : gpu_->mask_regions()) {
+    const auto channel = std::ranges::find(channels, region.channel);
+    if (region.material != material || channel == channels.end()) continue;
+    const JointBounds::Extent extent = region.bounds.Look(subject.model, projection);
+    if (!extent.is_seen()) continue;
+    wanted->is_seen[static_cast<std::size_t>(channel - channels.begin())] = true;
+    // Texels to a pixel, as powers of two, where the region is nearest and stretched most.
+    const float level =
+        extent.nearest > 0.0f
+            ? std::log2(side * std::max(region.uv_per_metre, 1e-6f) * extent.nearest / pixels)
+            : 0.0f;
+    const float first =
+        std::clamp(level + kSkippedShare, 0.0f, static_cast<float>(wanted->first_level));
+    wanted->first_level = static_cast<int>(first);
+  }
+}
+
+void WrinkleCache::PlanMaterial(int index, const Settings& settings, const View& view,
+                                Entry* entry) {
+  const Sight sight = Look(index, view);
+  if (!(sight.texels_per_uv > 0.0f) || !Prepare(gpu_->material(index), sight, entry)) return;
+  ComposedMaterial& composed = *entry->composed;
+  ComposedMaterial::Wanted wanted{InkOf(composed, settings), {}, 0};
+  LookAtRegions(index, composed, view, &wanted);
+  const bool is_painted = composed.IsPainted(wanted);
+  const bool is_held = entry->wanted.ink.weights.size() == wanted.ink.weights.size() &&
+                       composed.IsSame(entry->wanted.ink, wanted);
+  const auto texels = static_cast<float>(composed.NumStale(wanted));
+  const bool pays = is_software_ && texels <= kTexelsOfAPixel * sight.pixels;
+  entry->is_used = is_painted || is_held || pays;
+  entry->is_stale = entry->is_used && !is_painted;
+  entry->wanted = std::move(wanted);
+}
+
+bool WrinkleCache::Prepare(const GpuMaterial& material, const Sight& sight, Entry* entry) const {
+  const glm::ivec2 size = SizeFor(material, sight);
+  if (std::max(size.x, size.y) > kMaxSide) return false;
+  if (entry->composed != nullptr) {
+    const float finer =
+        std::log2(static_cast<float>(entry->composed->size().x) / static_cast<float>(size.x));
+    if (finer >= 0.0f && finer < kKeptLevels) return true;
+  }
+  *entry = {};
+  entry->composed = std::make_unique<ComposedMaterial>(*gpu_, SelectionOf(material), size);
+  return true;
+}
+
+// The finest of what goes into it, halved as often as the picture does not show the difference.
+glm::ivec2 WrinkleCache::SizeFor(const GpuMaterial& material, const Sight& sight) const {
+  const glm::ivec2 finest = glm::max(
+      glm::max(TextureSize(material.derivatives), TextureSize(gpu_->wrinkle_derivatives())),
+      gpu_->wrinkle_looks() == 0 ? glm::ivec2(0) : TextureSize(material.base_colour));
+  const float side = static_cast<float>(std::max(finest.x, finest.y));
+  const float level = std::clamp(std::log2(side / sight.texels_per_uv), 0.0f, 16.0f);
+  return glm::max(finest / (1 << static_cast<int>(level)), glm::ivec2(1));
+}
+
+ComposeSelection WrinkleCache::SelectionOf(const GpuMaterial& material) const {
+  ComposeSelection selection;
+  selection.material = &material;
+  const auto add = [](int item, std::vector<int>* list) {
+    const auto place = std::ranges::lower_bound(*list, item);
+    if (place == list->end() || *place != item) list->insert(place, item);
+  };
+  for (const WrinkleTables::Painted& painted : tables_->painted(material.group)) {
+    add(painted.map, &selection.maps);
+    add(painted.channel, &selection.channels);
+  }
+  return selection;
+}
+
+ComposeInk WrinkleCache::InkOf(const ComposedMaterial& composed, const Settings& settings) const {
+  const ComposeSelection& selection = composed.selection();
+  const WrinkleTable& table = tables_->table(selection.material->group);
+  const auto layers = static_cast<std::size_t>(gpu_->layout().num_mask_layers);
+  const std::size_t maps = selection.maps.size();
+  ComposeInk ink{std::vector<float>(selection.channels.size() * maps, 0.0f),
+                 std::vector<float>(maps, 1.0f),
+                 std::vector<float>(maps, 1.0f),
+                 {settings.wrinkle_maps.blood_flow, settings.wrinkle_maps.cavity}};
+  for (std::size_t slot = table.num_dynamic; slot < table.maps.size(); ++slot) {
+    const ActiveMap& active = table.maps[slot];
+    const auto found = std::ranges::find(selection.maps, active.map);
+    if (found == selection.maps.end()) continue;
+    const auto map = static_cast<std::size_t>(found - selection.maps.begin());
+    ink.amplitudes[map] = active.amplitude;
+    ink.scales[map] = active.colour.a;
+    for (std::size_t mask = 0; mask < selection.channels.size(); ++mask) {
+      const int channel = selection.channels[mask];
+      const glm::vec4& row =
+          table.mask_weights[slot * layers + static_cast<std::size_t>(channel / 4)];
+      ink.weights[mask * maps + map] = row[channel % 4];
+    }
+  }
+  return ink;
+}
+
+const ComposedMaterial::Textures* WrinkleCache::Find(int material) const {
+  const Entry& entry = entries_[static_cast<std::size_t>(material)];
+  return entry.is_used ? &entry.composed->textures() : nullptr;
+}
+
+bool WrinkleCache::is_stale() const { return std::ranges::any_of(entries_, &Entry::is_stale); }
+
+void WrinkleCache::Compose() {
+  for (Entry& entry : entries_) {
+    if (entry.is_stale) entry.composed->Paint(entry.wanted);
+    entry.is_stale = false;
+  }
+}
+
+}  // namespace furrow::render

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/wrinkle_cache.h"
+
+#include <algorithm>
+#include <map>
+#include <random>
+
+#include <glm/gtc/quaternion.hpp>
+#include <gtest/gtest.h>
+
+#include "render/renderer.h"
+#include "scene_probe.h"
+#include "test_character.h"
+
+// What is composed beforehand is what fragments compose.
+namespace furrow::render {
+namespace {
+
+constexpr const char* kShapes[] = {"l_stretch", "l_squash", "r_stretch", "r_squash"};
+
+// How often each pass ran.
+class PassCounter final : public FrameGraphObserver {
+ public:
+  void BeforePass(std::string_view pass) override { ++runs_[std::string(pass)]; }
+  void AfterPass(std::string_view, const std::vector<Written>&) override {}
+  [[nodiscard]] int Take(const std::string& pass) { return std::exchange(runs_[pass], 0); }
+
+ private:
+  std::map<std::string, int> runs_;
+};
+
+// The egg with a base normal map, and maps with colours and cavities.
+character::Character HeadWithLooks() {
+  character::Character head = test::MakeHead();
+  const auto add = [&](character::Picture picture) {
+    head.pictures.push_back(std::move(picture));
+    return static_cast<int>(head.pictures.size()) - 1;
+  };
+  head.materials[0].normal_texture = add(test::NormalMapOf("pores", 256, [](float u, float v) {
+    return 0.001f * std::sin(90.0f * u) * std::sin(70.0f * v);
+  }));
+  head.materials[0].base_colour_texture = add(test::MakePicture("skin", 128, [](float u, float v) {
+    return glm::vec4(0.8f, 0.6f + 0.2f * u, 0.5f + 0.3f * v, 1.0f);
+  }));
+  for (const auto& [map, name] : {std::pair(0, "pale"), {1, "red"}}) {
+    head.rig.wrinkle_maps[static_cast<std::size_t>(map)].colour = name;
+    head.rig.wrinkle_maps[static_cast<std::size_t>(map)].cavity = "cavity";
+    const float green = map == 0 ? 0.9f : 0.6f;
+    head.rig_pictures.emplace_back(name, add(test::MakePicture(name, 64, [=](float u, float) {
+                                     return glm::vec4(0.9f, green * (0.5f + 0.5f * u), green, 1.0f);
+                                   })));
+  }
+  head.rig_pictures.emplace_back("cavity", add(test::MakePicture("cavity", 32, [](float, float v) {
+                                   return glm::vec4(0.4f + 0.5f * v);
+                                 })));
+  return head;
+}
+
+FrameRequest RequestOf(const test::Subject& subject, const Camera& camera, View view, int size) {
+  FrameRequest request;
+  request.model = subject.model;
+  request.binding = &subject.binding;
+  request.wrinkle_weights = subject.weights;
+  request.filtered_values = subject.driver_values;
+  request.camera = camera;
+  request.width = request.height = size;
+  request.settings.view = view;
+  return request;
+}
+
+struct Difference {
+  double mean = 0.0;
+  double share = 0.0;  // of values that are off by more than `much`
+};
+
+template <class Value>
+Difference Compare(const std::vector<Value>& a, const std::vector<Value>& b, double much) {
+  Difference difference;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double error = std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i]));
+    difference.mean += error / static_cast<double>(a.size());
+    if (error > much) difference.share += 1.0 / static_cast<double>(a.size());
+  }
+  return difference;
+}
+
+std::vector<float> Numbers(const std::vector<glm::vec4>& pixels) {
+  std::vector<float> numbers;
+  for (const glm::vec4& pixel : pixels) numbers.insert(numbers.end(), {pixel.r, pixel.g, pixel.b});
+  return numbers;
+}
+
+class WrinkleCacheTest : public testing::Test {
+ protected:
+  // New weights: of all shapes, or as in a live face of some.
+  void Randomise(bool all) {
+    std::uniform_real_distribution<float> weight(0.0f, 1.0f);
+    for (const char* shape : kShapes) {
+      if (all || random_() % 2 == 0) subject_.Set(shape, weight(random_));
+    }
+    subject_.Solve();
+  }
+  Image Draw(bool cache, View view = View::kFinal) {
+    FrameRequest request = RequestOf(subject_, camera_, view, 160);
+    request.settings.shading = Shading::kSkin;
+    request.settings.anti_aliasing.samples = 1;
+    request.settings.bloom.strength = 0.0f;
+    request.settings.wrinkle_maps.cache = cache;
+    return test::Expect(renderer_->Render(request));
+  }
+
+  character::Character head_ = HeadWithLooks();
+  test::Subject subject_{head_};
+  std::unique_ptr<Renderer> renderer_ = test::Expect(Renderer::Create(head_));
+  Camera camera_ = test::Expect(renderer_->Preset("face"));
+  std::mt19937 random_{11};
+};
+
+// From near and from far: with the finest level, and with coarser ones.
+TEST_F(WrinkleCacheTest, NormalsAreThoseOfFragmentsForAnyWeights) {
+  test::SceneProbe probe(head_);
+  for (const int size : {512, 160, 48}) {
+    for (int round = 0; round < 6; ++round) {
+      Randomise(round == 0);
+      FrameRequest request = RequestOf(subject_, camera_, View::kNormal, size);
+      const std::vector<float> composed = Numbers(probe.Draw(request));
+      request.settings.wrinkle_maps.cache = false;
+      const Difference difference = Compare(composed, Numbers(probe.Draw(request)), 0.02);
+      EXPECT_LT(difference.mean, 5e-4) << size << " " << round;
+      EXPECT_LT(difference.share, 2e-3) << size << " " << round;
+    }
+  }
+}
+
+TEST_F(WrinkleCacheTest, LightAndColourAreThoseOfFragments) {
+  for (const View view : {View::kFinal, View::kAlbedo, View::kSpecular}) {
+    for (int round = 0; round < 4; ++round) {
+      Randomise(round == 0);
+      const Difference difference = Compare(Draw(true, view).rgb, Draw(false, view).rgb, 6.0);
+      EXPECT_LT(difference.mean, 0.25) << ViewName(view) << " " << round;
+      EXPECT_LT(difference.share, 2e-3) << ViewName(view) << " " << round;
+    }
+  }
+}
+
+// A region that moves by too little to be seen, again and again, arrives all the same.
+TEST_F(WrinkleCacheTest, ManySmallMovesAreSeen) {
+  subject_.Set("l_squash", 0.2f);
+  subject_.Solve();
+  (void)Draw(true);
+  for (int step = 1; step <= 400; ++step) {
+    subject_.Set("l_squash", 0.2f + 0.0001f * static_cast<float>(step));
+    subject_.Solve();
+    if (step % 4 == 0) (void)Draw(true, View::kAlbedo);
+  }
+  EXPECT_LT(Compare(Draw(true).rgb, Draw(false).rgb, 6.0).mean, 0.25);
+}
+
+TEST_F(WrinkleCacheTest, WhatIsHeldIsComposedOnce) {
+  PassCounter counter;
+  renderer_->SetObserver(&counter);
+  Randomise(true);
+  const Image first = Draw(true);
+  EXPECT_EQ(counter.Take("wrinkles"), 1);
+  subject_.pose.joints[1].rotation = glm::angleAxis(0.4f, glm::vec3(0, 1, 0));
+  subject_.Solve();
+  (void)Draw(true);
+  (void)Draw(true, View::kNormal);
+  EXPECT_EQ(counter.Take("wrinkles"), 0);
+  Randomise(true);
+  (void)Draw(true);
+  EXPECT_EQ(counter.Take("wrinkles"), 1);
+  (void)Draw(false);
+  EXPECT_EQ(counter.Take("wrinkles"), 0);
+  renderer_->SetObserver(nullptr);
+}
+
+// Faces that come again, in every order.
+TEST_F(WrinkleCacheTest, FacesThatComeAgainAreThemselves) {
+  constexpr float kFaces[][4] = {{0.9f, 0.0f, 0.3f, 0.0f}, {0.0f, 0.7f, 0.0f, 1.0f}, {0.4f, 0.4f}};
+  const auto set = [&](int face) {
+    for (int i = 0; i < 4; ++i) subject_.Set(kShapes[i], kFaces[face][i]);
+    subject_.Solve();
+  };
+  std::vector<Image> expected;
+  for (int face = 0; face < 3; ++face) {
+    set(face);
+    expected.push_back(Draw(false));
+  }
+  for (const int face : {0, 1, 0, 0, 1, 2, 1, 0, 2, 0}) {
+    set(face);
+    const Image& whole = expected[static_cast<std::size_t>(face)];
+    EXPECT_LT(Compare(Draw(true).rgb, whole.rgb, 6.0).mean, 0.25) << face;
+  }
+}
+
+// A face at rest has no wrinkles, whatever it had before.
+TEST_F(WrinkleCacheTest, NothingOfAFormerFaceStays) {
+  const Image rest = Draw(true);
+  Randomise(true);
+  (void)Draw(true);
+  subject_ = test::Subject(head_);
+  EXPECT_EQ(Draw(true).rgb, rest.rgb);
+  subject_.Set("r_stretch", 0.5f);
+  subject_.Solve();
+  const Image after = Draw(true);
+  renderer_ = test::Expect(Renderer::Create(head_));
+  EXPECT_EQ(Draw(true).rgb, after.rgb);
+}
+
+// Settings that change how wrinkles look, with weights that are held.
+TEST_F(WrinkleCacheTest, SettingsReachWhatIsComposed) {
+  Randomise(true);
+  (void)Draw(true);
+  for (const char* change : {"wrinkle_strength=0.3", "wrinkle_strength=2", "wrinkle_maps.cavity=3",
+                             "wrinkle_maps.blood_flow=0.2"}) {
+    FrameRequest request = RequestOf(subject_, camera_, View::kFinal, 160);
+    request.settings.shading = Shading::kSkin;
+    ASSERT_TRUE(SetSetting(change, &request.settings).ok());
+    const Image composed = test::Expect(renderer_->Render(request));
+    request.settings.wrinkle_maps.cache = false;
+    const Image whole = test::Expect(renderer_->Render(request));
+    EXPECT_LT(Compare(composed.rgb, whole.rgb, 6.0).mean, 0.25) << change;
+  }
+}
+
+// A region out of sight is painted when it comes into sight, at whatever size.
+TEST_F(WrinkleCacheTest, WhatComesIntoSightIsUpToDate) {
+  Randomise(true);
+  (void)Draw(true);
+  const Camera face = camera_;
+  Camera away = face;  // nobody is there
+  away.target = away.position + (away.position - face.target);
+  Camera near = face;
+  near.fov_y_degrees = 6.0f;
+  Camera far = face;
+  far.fov_y_degrees = 90.0f;
+  for (int round = 0; round < 6; ++round) {
+    for (const Camera& camera : {away, far, near, face}) {
+      camera_ = camera;
+      Randomise(round == 0);
+      const Image composed = Draw(true);
+      EXPECT_LT(Compare(composed.rgb, Draw(false).rgb, 6.0).mean, 0.3) << round;
+    }
+    std::swap(near, far);
+  }
+}
+
+// What needs every wrinkle by itself composes none; nor do several subjects.
+TEST_F(WrinkleCacheTest, SomeFramesComposeNothing) {
+  PassCounter counter;
+  renderer_->SetObserver(&counter);
+  Randomise(true);
+  FrameRequest request = RequestOf(subject_, camera_, View::kWeights, 96);
+  for (const char* change : {"view=weights", "view=mask_texture", "view=mask_dynamic",
+                             "normal_blend=tangent_space", "wrinkles=off", "mask_mode=dynamic"}) {
+    request.settings = {};
+    ASSERT_TRUE(SetSetting(change, &request.settings).ok());
+    (void)test::Expect(renderer_->Render(request));
+    EXPECT_EQ(counter.Take("wrinkles"), 0) << change;
+  }
+  request.settings = {};
+  const PosedSubject other = request;
+  request.others = std::span(&other, 1);
+  (void)test::Expect(renderer_->Render(request));
+  EXPECT_EQ(counter.Take("wrinkles"), 0);
+  request.others = {};
+  (void)test::Expect(renderer_->Render(request));
+  EXPECT_EQ(counter.Take("wrinkles"), 1);
+  renderer_->SetObserver(nullptr);
+}
+
+}  // namespace
+}  // namespace furrow::render
