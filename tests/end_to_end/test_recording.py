@@ -390,7 +390,7 @@ class ReadingTest(FolderTest):
         os.close(terminal)
         shown = b""
         try:
-  while part := os.read(ours, 65536):
+            while part := os.read(ours, 65536):
                 shown += part
         except OSError:  # how a terminal says that its other end is gone
             pass
