@@ -35,7 +35,7 @@ CONFINED = [
     (r"boost/", {"server/http"}),
     (r"prometheus/", {"server/http"}),
     (r"glm/", {"wrinkle", "motion", "recording", "character", "render", "server", "client/load", "client/cli"}),
-    (r"hwy/", {"wrinkle"}),
+    (r"hwy/", {"wrinkle", "render"}),
     (r"OpenImageIO/", {"character/oiio"}),
     (r"turbojpeg\.h", {"render"}),
     (r"spdlog/", {"server"}),
