@@ -1,5 +1,5 @@
-#!/ usr / bin / env python3
-#SPDX - License - Identifier : Apache - 2.0
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What streams through a daemon is recorded, survives its death, and plays again to the same weights."""
 import os
 import pathlib
@@ -69,7 +69,7 @@ class RecordTest(FolderTest):
     def test_a_replay_gives_the_recorded_weights_digit_for_digit(self):
         first = self.record("--speed", 4, "--quantise")
         with Recording(self.root / "again") as daemon:
-#At another speed : time is the recording's own.
+            # At another speed: time is the recording's own.
             played = furrow("play", first, "--to", daemon.tcp, "--tcp", "--speed", 8, check=0)
         self.assertRegex(played.stderr.decode(), r"\d+ poses; spacing off by [\d.]+ ms on average")
         again = daemon.takes()[0]
@@ -80,7 +80,7 @@ class RecordTest(FolderTest):
         both = {}
         with Recording(self.root / "first") as daemon:
             ada = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--speed", 2)
-#Somebody else comes when ada is under way.
+            # Somebody else comes when ada is under way.
             furrow("watch", daemon.tcp, "--subject", "ada", "--wait", "--frames", 30, check=0)
             furrow("play", HAPPINESS, "--to", daemon.udp, "--subject", "bob", "--speed", 4, check=0)
             ada.communicate(timeout=GUARD)
@@ -122,7 +122,7 @@ class RecordTest(FolderTest):
         daemon = Recording(self.root / "killed")
         daemon.__enter__()
         player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
-#Until a second's worth is on the disk.
+        # Until a second's worth is on the disk.
         take = daemon.takes()[0]
         begin = take.stat().st_size
         deadline = time.monotonic() + GUARD
@@ -135,7 +135,7 @@ class RecordTest(FolderTest):
         self.assertIn("cut short", info.stdout.decode())
         recorded = self.weights(take)
         self.assertGreater(len(recorded.rows), 0)
-#Of each pose its weights, but perhaps for the last.
+        # Of each pose its weights, but perhaps for the last.
         self.assertIn(self.count(take, "poses") - len(recorded.rows), (0, 1))
         self.assertEqual(sorted(recorded.rows), list(range(len(recorded.rows))), "and none between")
         worst, frames = worst_difference(recorded, solved)
@@ -144,8 +144,7 @@ class RecordTest(FolderTest):
         with Recording(self.root / "again") as second:
             furrow("play", take, "--to", second.tcp, "--tcp", "--speed", 8, check=0)
         again = self.weights(second.takes()[0])
-        self.assertEqual({
-frame: again.rows[frame] for frame in recorded.rows}, recorded.rows)
+        self.assertEqual({frame: again.rows[frame] for frame in recorded.rows}, recorded.rows)
 
     def test_rotation_loses_nothing_and_each_file_stands_alone(self):
         solved = solve(PERFORMANCE, "--rig", RIG)
@@ -222,7 +221,7 @@ class ListeningTest(FolderTest):
             recorder = self.listen(daemon, take, "--subject", "ada", "--wait", "--rig", RIG)
             furrow("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--speed", 8, "--quantise",
                    check=0)
-#The last pose is there when the subject has left, which the end of playing says.
+            # The last pose is there when the subject has left, which the end of playing says.
             words = self.end(recorder)
         solved = solve(PERFORMANCE, "--rig", RIG)
         self.assertIn(f"{len(solved.rows)} poses", words)
@@ -231,7 +230,7 @@ class ListeningTest(FolderTest):
         self.assertEqual(recorded.rows.keys(), solved.rows.keys())
         worst, _ = worst_difference(recorded, solved)
         self.assertLess(worst, 1e-3)
-#What its poses come to, and what they come to when they are played again.
+        # What its poses come to, and what they come to when they are played again.
         worst, frames = worst_difference(solve(take, "--rig", RIG), recorded)
         self.assertEqual(frames, len(solved.rows))
         self.assertLess(worst, 2e-6)
@@ -310,7 +309,7 @@ class ListeningTest(FolderTest):
         poses = {name: int(count) for name, _, count in re.findall(r"subject +(\w+):(.*\n)*? +poses +(\d+)", text)}
         self.assertEqual(poses.keys(), {"ada", "bob"})
         self.assertGreater(min(poses.values()), 0)
-#Who comes meanwhile is asked for as soon as the daemon says so : from then on all is there.
+        # Who comes meanwhile is asked for as soon as the daemon says so: from then on all is there.
         frames = sorted(self.weights(f"{take}#bob").rows)
         self.assertEqual(frames, list(range(frames[0], len(solve(PERFORMANCE, "--rig", RIG).rows))))
 
