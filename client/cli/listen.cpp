@@ -45,12 +45,16 @@ int Listen(client::Subscriber& subscriber,
   bool heard = false;
   int goodbyes = 0;
   int exit_code = kDone;
-  while (!Interrupted() && (!end.goes_on || end.goes_on())) {
+  std::int64_t ends_at = 0;  // 0: not interrupted
+  while (!end.goes_on || end.goes_on()) {
     const std::int64_t now = SteadyMicroseconds();
+    if (Interrupted() && ends_at == 0) ends_at = now + end.lingers_us;
+    if (ends_at != 0 && now >= ends_at) break;
     const client::Event event = subscriber.Next(now, std::chrono::milliseconds(100));
     switch (event.kind) {
       case Kind::kTimeout:
       case Kind::kNoConnection:
+        if (ends_at != 0) return exit_code;
         if (heard ? event.kind == Kind::kTimeout : now - start < kSilence) continue;
         return NobodyThere(event.kind);
       case Kind::kClosed:

@@ -42,6 +42,9 @@ struct ListenEnd {
   std::function<bool()> outlives_errors;
   // Asked between events, at least ten times a second; false ends it. May be empty.
   std::function<bool()> goes_on;
+  // After an interruption what is on its way is taken, until nothing comes for a tenth of a second,
+  // or for so long.
+  std::int64_t lingers_us = 0;
 };
 
 // What `watch`, `frames` and `record` share: waits for events, prints what ends the wait, and tells

@@ -113,6 +113,7 @@ int ListenInto(TakeListener& take, client::Subscriber& subscriber, const RecordO
   end.goodbyes = options.wait || everybody ? 0 : 2 * static_cast<int>(options.subjects.size());
   // One that cannot be had does not end the recording of the others.
   end.outlives_errors = [&] { return everybody && take.num_present(); };
+  end.lingers_us = 1'000'000;  // the weights of a pose that is recorded
   end.goes_on = [&] {
     const std::int64_t now = SteadyMicroseconds();
     line.Show(take, now);
