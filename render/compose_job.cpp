@@ -130,21 +130,27 @@ void KeepHollows(const ComposeTile& tile, std::size_t first, Looks* looks) {
   });
 }
 
-void StoreSlopes(const Slopes& sums, std::uint16_t* to) {
+// Where a texel of the tile goes.
+HWY_INLINE std::size_t Place(const ComposeJob& job, std::size_t texel) {
+  return 4 * (texel / ComposeTile::kSide * job.stride + texel % ComposeTile::kSide);
+}
+
+void StoreSlopes(const ComposeJob& job, std::size_t first, const Slopes& sums) {
   ForLanes([&](std::size_t i) HWY_ATTR {
     const Floats d;
     const Float x = hn::LoadU(d, &sums[0][i]);
     const Float y = hn::LoadU(d, &sums[1][i]);
     const Float variance = hn::LoadU(d, &sums[2][i]);
     hn::StoreInterleaved4(ToHalves(x), ToHalves(y), ToHalves(hn::MulAdd(x, x, variance)),
-                          ToHalves(hn::MulAdd(y, y, variance)), Words(), to + 4 * i);
+                          ToHalves(hn::MulAdd(y, y, variance)), Words(),
+                          &job.slopes[Place(job, first + i)]);
   });
 }
 
-void StoreLooks(const Looks& looks, std::uint16_t* to) {
+void StoreLooks(const ComposeJob& job, std::size_t first, const Looks& looks) {
   ForLanes([&](std::size_t i) HWY_ATTR {
     hn::StoreInterleaved4(ToHalves(&looks[0][i]), ToHalves(&looks[1][i]), ToHalves(&looks[2][i]),
-                          ToHalves(&looks[3][i]), Words(), to + 4 * i);
+                          ToHalves(&looks[3][i]), Words(), &job.colours[Place(job, first + i)]);
   });
 }
 
@@ -164,10 +170,10 @@ void ComposeBlock(const ComposeJob& job, std::size_t first) {
     AddSlopes(job, map, first, coefficients, &slopes);
     if (has_looks) MultiplyLooks(job, map, first, coefficients, &looks);
   }
-  StoreSlopes(slopes, &job.slopes[4 * first]);
+  StoreSlopes(job, first, slopes);
   if (!has_looks) return;
   KeepHollows(tile, first, &looks);
-  StoreLooks(looks, &job.colours[4 * first]);
+  StoreLooks(job, first, looks);
 }
 
 void ComposeAll(const ComposeJob& job) {
@@ -204,10 +210,11 @@ bool IsWhole(const ComposeTile& tile, std::size_t channels) {
 bool ComposeJob::Validate() const {
   if (tile == nullptr || ink == nullptr || tile->maps.empty()) return false;
   const std::size_t maps = tile->maps.size();
-  const std::size_t texels = 4 * ComposeTile::kTexels;
+  if (stride < ComposeTile::kSide) return false;
+  const std::size_t halves = 4 * (stride * (ComposeTile::kSide - 1) + ComposeTile::kSide);
   return ink->amplitudes.size() == maps && ink->scales.size() == maps &&
          ink->weights.size() % maps == 0 && IsWhole(*tile, ink->weights.size() / maps) &&
-         slopes.size() == texels && colours.size() == (tile->colour.empty() ? 0 : texels);
+         slopes.size() >= halves && colours.size() >= (tile->colour.empty() ? 0 : halves);
 }
 
 bool ComposeJob::Run() const {

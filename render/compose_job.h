@@ -55,7 +55,8 @@ struct ComposeJob {
   // RGBA of the tile's texels, half floats: a slope and its squares with the variance in them
   // (WithMoments() of render/derivative_map.h); colour, and cavity.
   std::span<std::uint16_t> slopes;
-  std::span<std::uint16_t> colours;  // empty where the tile has no colour
+  std::span<std::uint16_t> colours;         // empty where the tile has no colour
+  std::size_t stride = ComposeTile::kSide;  // texels from one row to the next, at least a tile's
 
   // False: a list is not as long as the others ask for, or a mask's channel is not among the ink's.
   [[nodiscard]] bool Validate() const;

@@ -13,8 +13,7 @@ namespace {
 constexpr std::size_t kMaxLevels = 7;
 // Of a wrinkle weight: what moves by less is not seen.
 constexpr float kLeastChange = 1.0f / 4096.0f;
-constexpr float kUnknown = -1.0f;                     // a weight, of which nothing is painted
-constexpr std::size_t kRow = 4 * ComposeTile::kSide;  // halves
+constexpr float kUnknown = -1.0f;  // a weight, of which nothing is painted
 
 gl::Texture MakeLevels(glm::ivec2 size, std::size_t levels) {
   gl::Texture texture = gl::MakeTexture(GL_TEXTURE_2D);
@@ -29,20 +28,6 @@ void Upload(GLuint texture, int level, glm::ivec2 first, glm::ivec2 size,
   glTextureSubImage2D(texture, level, first.x, first.y, size.x, size.y, GL_RGBA, GL_HALF_FLOAT,
                       halves.data());
 }
-
-// A run of tiles, row after row of all of them.
-struct RunTexels {
-  explicit RunTexels(std::size_t tiles)
-      : num_tiles(tiles), halves(4 * ComposeTile::kTexels * tiles) {}
-  void Put(const std::vector<std::uint16_t>& tile, std::size_t index) {
-    for (std::size_t y = 0; y < ComposeTile::kSide; ++y) {
-      std::copy_n(tile.begin() + static_cast<std::ptrdiff_t>(y * kRow), kRow,
-                  halves.begin() + static_cast<std::ptrdiff_t>((y * num_tiles + index) * kRow));
-    }
-  }
-  std::size_t num_tiles;
-  std::vector<std::uint16_t> halves;
-};
 
 }  // namespace
 
@@ -201,7 +186,7 @@ void ComposedMaterial::Paint(const Wanted& wanted) {
 
 // Neighbours in a row go to the GPU at once.
 void ComposedMaterial::PaintTiles(const Copy& copy, std::size_t level,
-                                  std::span<const ComposeTile* const> tiles) const {
+                                  std::span<const ComposeTile* const> tiles) {
   for (std::size_t first = 0; first < tiles.size();) {
     std::size_t count = 1;
     while (first + count < tiles.size() &&
@@ -214,24 +199,23 @@ void ComposedMaterial::PaintTiles(const Copy& copy, std::size_t level,
 }
 
 void ComposedMaterial::PaintRun(const Copy& copy, std::size_t level,
-                                std::span<const ComposeTile* const> run) const {
-  RunTexels slopes(run.size());
-  RunTexels colours(copy.colour ? run.size() : 0);
-  std::vector<std::uint16_t> slope(4 * ComposeTile::kTexels);
-  std::vector<std::uint16_t> colour(copy.colour ? slope.size() : 0);
+                                std::span<const ComposeTile* const> run) {
+  const std::size_t stride = ComposeTile::kSide * run.size();
+  slopes_.resize(4 * stride * ComposeTile::kSide);
+  colours_.resize(copy.colour ? slopes_.size() : 0);
   for (std::size_t i = 0; i < run.size(); ++i) {
-    if (!ComposeJob{run[i], &copy.ink, slope, colour}.Run()) return;  // never: we made the tile
-    slopes.Put(slope, i);
-    if (copy.colour) colours.Put(colour, i);
+    const std::size_t first = 4 * ComposeTile::kSide * i;
+    ComposeJob job{run[i], &copy.ink, std::span(slopes_).subspan(first), {}, stride};
+    if (copy.colour) job.colours = std::span(colours_).subspan(first);
+    if (!job.Run()) return;  // never: we made the tile
   }
   const auto number = static_cast<int>(level);
   const glm::ivec2 first = run.front()->place * ComposeTile::kSide;
-  const glm::ivec2 size =
-      glm::min(levels_[level].size - first,
-               glm::ivec2(ComposeTile::kSide * static_cast<int>(run.size()), ComposeTile::kSide));
-  glPixelStorei(GL_UNPACK_ROW_LENGTH, ComposeTile::kSide * static_cast<int>(run.size()));
-  Upload(copy.textures.derivatives, number, first, size, slopes.halves);
-  if (copy.colour) Upload(copy.textures.colour, number, first, size, colours.halves);
+  const glm::ivec2 size = glm::min(levels_[level].size - first,
+                                   glm::ivec2(static_cast<int>(stride), ComposeTile::kSide));
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, static_cast<GLint>(stride));
+  Upload(copy.textures.derivatives, number, first, size, slopes_);
+  if (copy.colour) Upload(copy.textures.colour, number, first, size, colours_);
   glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
 }
 

@@ -79,9 +79,8 @@ class ComposedMaterial {
   // What is painted over `painted`: only what is seen, and changed, is painted anew. Of the rest it
   // is known how it looks as long as settings stay.
   [[nodiscard]] ComposeInk Merged(const ComposeInk& painted, const Wanted& wanted) const;
-  void PaintTiles(const Copy& copy, std::size_t level,
-                  std::span<const ComposeTile* const> tiles) const;
-  void PaintRun(const Copy& copy, std::size_t level, std::span<const ComposeTile* const> run) const;
+  void PaintTiles(const Copy& copy, std::size_t level, std::span<const ComposeTile* const> tiles);
+  void PaintRun(const Copy& copy, std::size_t level, std::span<const ComposeTile* const> run);
 
   const GpuCharacter& gpu_;
   ComposeSelection selection_;
@@ -89,6 +88,8 @@ class ComposedMaterial {
   std::vector<Level> levels_;
   std::array<Copy, 2> copies_;  // the second is made when first needed
   std::size_t front_ = 0;
+  std::vector<std::uint16_t> slopes_;  // of the run that is being painted
+  std::vector<std::uint16_t> colours_;
 };
 
 }  // namespace furrow::render

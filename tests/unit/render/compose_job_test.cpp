@@ -117,6 +117,23 @@ TEST_F(ComposeJobTest, IsTheFormulaTexelByTexel) {
   ExpectTexels(colours_, [&](std::size_t texel) { return Colour(texel); });
 }
 
+// Beside other tiles, whose texels it leaves alone.
+TEST_F(ComposeJobTest, WritesRowsAsFarApartAsAsked) {
+  ASSERT_TRUE(job_.Run());
+  constexpr std::size_t kStride = 100;
+  std::vector<std::uint16_t> wide(4 * kStride * ComposeTile::kSide, 7);
+  tile_.colour.clear();
+  ComposeJob job{&tile_, &ink_, std::span(wide).subspan(4 * 3), {}, kStride};
+  ASSERT_TRUE(job.Run());
+  for (std::size_t i = 0; i < wide.size(); ++i) {
+    const std::size_t x = i / 4 % kStride - 3;
+    const std::size_t y = i / 4 / kStride;
+    const bool is_inside = i / 4 % kStride >= 3 && x < ComposeTile::kSide;
+    const std::size_t in_tile = 4 * (y * ComposeTile::kSide + x) + i % 4;
+    ASSERT_EQ(wide[i], is_inside ? slopes_[in_tile] : 7) << i;
+  }
+}
+
 TEST_F(ComposeJobTest, WithoutWeightsThereIsTheBareSurface) {
   std::fill(ink_.weights.begin(), ink_.weights.end(), 0.0f);
   tile_.colour.clear();
@@ -143,6 +160,8 @@ TEST_F(ComposeJobTest, RefusesWhatDoesNotFit) {
   EXPECT_TRUE(refused([](ComposeTile*, ComposeInk*, ComposeJob* job) { job->colours = {}; }));
   EXPECT_TRUE(refused(
       [](ComposeTile*, ComposeInk*, ComposeJob* job) { job->slopes = job->slopes.subspan(1); }));
+  EXPECT_TRUE(refused([](ComposeTile*, ComposeInk*, ComposeJob* job) { --job->stride; }));
+  EXPECT_TRUE(refused([](ComposeTile*, ComposeInk*, ComposeJob* job) { ++job->stride; }));
   EXPECT_TRUE(refused([](ComposeTile* tile, ComposeInk*, ComposeJob*) { tile->maps.clear(); }));
   EXPECT_TRUE(
       refused([](ComposeTile* tile, ComposeInk*, ComposeJob*) { tile->slopes.pop_back(); }));
