@@ -45,8 +45,11 @@ add_library(furrow_cli11 INTERFACE)
 find_path(FURROW_CLI11_INCLUDE CLI/CLI.hpp REQUIRED)
 target_include_directories(furrow_cli11 SYSTEM INTERFACE "${FURROW_CLI11_INCLUDE}")
 
-if(FURROW_BUILD_TESTS)
+# bench_preview has the web tests' client.
+if(FURROW_BUILD_TESTS OR FURROW_BUILD_BENCH)
   find_package(GTest REQUIRED)
+endif()
+if(FURROW_BUILD_TESTS)
   find_program(Python3_EXECUTABLE NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
   find_package(Python3 COMPONENTS Interpreter REQUIRED)
 endif()
