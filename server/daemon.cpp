@@ -13,8 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include <asio/co_spawn.hpp>
-#include <asio/detached.hpp>
 #include <asio/experimental/as_tuple.hpp>
 #include <asio/io_context.hpp>
 #include <asio/post.hpp>
@@ -30,6 +28,7 @@
 #include "server/net/clock.h"
 #include "server/net/mocap_inputs.h"
 #include "server/net/osc_output.h"
+#include "server/net/spawn.h"
 #include "server/net/tcp_server.h"
 #include "server/net/udp_port.h"
 #include "server/pipeline/render_thread.h"
@@ -245,9 +244,9 @@ void Daemon::Serve() {
   tcp_->Start();
   udp_->Start();
   mocap_.Start();
-  asio::co_spawn(io_, TickLoop(), asio::detached);
-  asio::co_spawn(io_, SecondLoop(), asio::detached);
-  if (player_) asio::co_spawn(io_, PlayLoop(), asio::detached);
+  SpawnVital(io_, TickLoop());
+  SpawnVital(io_, SecondLoop());
+  if (player_) SpawnVital(io_, PlayLoop());
   if (options_.handle_signals) {
     signals_.add(SIGTERM);
     signals_.add(SIGINT);
@@ -302,7 +301,7 @@ asio::awaitable<void> Daemon::PlayLoop() {
 
 void Daemon::RequestDrain() {
   if (std::exchange(draining_, true)) return;
-  asio::co_spawn(io_, Drain(), asio::detached);
+  SpawnVital(io_, Drain());
 }
 
 // Goodbye to everybody; what is queued may leave until the deadline; then the loop ends.

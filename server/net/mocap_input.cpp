@@ -3,13 +3,12 @@
 
 #include <utility>
 
-#include <asio/co_spawn.hpp>
-#include <asio/detached.hpp>
 #include <asio/experimental/as_tuple.hpp>
 #include <asio/use_awaitable.hpp>
 #include <spdlog/spdlog.h>
 
 #include "server/net/clock.h"
+#include "server/net/spawn.h"
 
 namespace furrow::server {
 
@@ -44,7 +43,7 @@ std::uint16_t MocapInput::port() const {
 
 void MocapInput::Start() {
   peer_ = hub_->AddPeer(Transport::kMocap, flag_.substr(2), &link_, ReadClock());
-  asio::co_spawn(io_, Read(), asio::detached);
+  SpawnVital(io_, Read());
 }
 
 void MocapInput::Close() {

@@ -7,14 +7,13 @@
 #include <utility>
 #include <vector>
 
-#include <asio/co_spawn.hpp>
-#include <asio/detached.hpp>
 #include <asio/experimental/as_tuple.hpp>
 #include <asio/steady_timer.hpp>
 #include <asio/use_awaitable.hpp>
 #include <spdlog/spdlog.h>
 
 #include "protocol/tcp_framing.h"
+#include "server/net/spawn.h"
 
 namespace furrow::server {
 namespace {
@@ -70,7 +69,7 @@ std::uint16_t TcpServer::port() const {
   return acceptor_.local_endpoint(error).port();
 }
 
-void TcpServer::Start() { asio::co_spawn(io_, Accept(), asio::detached); }
+void TcpServer::Start() { SpawnVital(io_, Accept()); }
 
 asio::awaitable<void> TcpServer::Accept() {
   while (acceptor_.is_open()) {

@@ -2,12 +2,12 @@
 #include "server/net/tcp_session.h"
 
 #include <chrono>
+#include <exception>
 #include <string>
 #include <utility>
 
 #include <asio/buffer.hpp>
 #include <asio/co_spawn.hpp>
-#include <asio/detached.hpp>
 #include <asio/experimental/as_tuple.hpp>
 #include <asio/post.hpp>
 #include <asio/use_awaitable.hpp>
@@ -68,12 +68,16 @@ void TcpSession::Start() {
   peer_ = hub_->AddPeer(Transport::kTcp, NameOf(socket_), this, ReadClock());
   const auto self = shared_from_this();
   const auto executor = socket_.get_executor();
+  // What a connection does not survive (no memory) is its own end, and nobody else's.
+  const auto ended = [self](const std::exception_ptr& failed) {
+    if (failed) self->Close();
+  };
   asio::co_spawn(
-      executor, [self] { return self->Read(); }, asio::detached);
+      executor, [self] { return self->Read(); }, ended);
   asio::co_spawn(
-      executor, [self] { return self->Write(); }, asio::detached);
+      executor, [self] { return self->Write(); }, ended);
   asio::co_spawn(
-      executor, [self] { return self->Watch(); }, asio::detached);
+      executor, [self] { return self->Watch(); }, ended);
 }
 
 asio::awaitable<void> TcpSession::Read() {

@@ -4,14 +4,13 @@
 #include <chrono>
 #include <exception>
 
-#include <asio/co_spawn.hpp>
-#include <asio/detached.hpp>
 #include <asio/experimental/as_tuple.hpp>
 #include <asio/post.hpp>
 #include <asio/steady_timer.hpp>
 #include <asio/use_awaitable.hpp>
 
 #include "server/net/clock.h"
+#include "server/net/spawn.h"
 
 namespace furrow::server {
 namespace {
@@ -62,7 +61,7 @@ Status UdpPort::Open(const asio::ip::udp::endpoint& endpoint) {
 void UdpPort::Start() {
   for (std::size_t lane = 0; lane < servers_.size(); ++lane) {
     servers_[lane]->Start();
-    asio::co_spawn(LoopOf(lane), ExpireLoop(lane), asio::detached);
+    SpawnVital(LoopOf(lane), ExpireLoop(lane));
   }
   for (const auto& loop : loops_) threads_.emplace_back([this, &loop = *loop] { Run(loop); });
 }

@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <exception>
 #include <string>
 
-#include <asio/co_spawn.hpp>
 #include <asio/experimental/as_tuple.hpp>
 #include <asio/post.hpp>
 #include <asio/use_awaitable.hpp>
@@ -15,6 +13,7 @@
 
 #include "protocol/envelope.h"
 #include "server/net/clock.h"
+#include "server/net/spawn.h"
 
 namespace furrow::server {
 namespace {
@@ -119,12 +118,7 @@ std::uint16_t UdpServer::port() const {
   return socket_.local_endpoint(error).port();
 }
 
-// No lane may fall silent while the rest of the daemon goes on.
-void UdpServer::Start() {
-  asio::co_spawn(io_, Read(), [](const std::exception_ptr& failed) {
-    if (failed) std::rethrow_exception(failed);
-  });
-}
+void UdpServer::Start() { SpawnVital(io_, Read()); }
 
 void UdpServer::DropWaiting() {
   while (batch_.Receive(socket_.native_handle()) == UdpBatch::kSize) {
