@@ -108,9 +108,10 @@ class HubTest : public testing::Test {
   }
 
   void Make(Limits limits, bool filter = false) { MakeWith(MakeRig(filter), limits); }
-  void MakeWith(wrinkle::Rig rig, Limits limits = {}) {
+  void MakeWith(wrinkle::Rig rig, Limits limits = {}, int lanes = 1) {
     Hub::Parts parts;
     parts.limits = limits;
+    parts.lanes = lanes;
     parts.session = 4242;
     parts.rig = std::make_shared<const wrinkle::Rig>(std::move(rig));
     parts.pictures = &pictures;

@@ -48,15 +48,10 @@ class CountingOutlet : public Outlet {
 class HubLanes : public HubTest {
  protected:
   void SetUp() override {
-    Hub::Parts parts;
-    parts.session = 4242;
-    parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(/*filter=*/false));
-    parts.metrics = &metrics;
-    parts.make_token = [this] { return ++last_token; };
-    parts.lanes = kLanes;
-    parts.limits.packets_per_second = 1e9;
-    parts.limits.packet_burst = 1e9;
-    hub = std::make_unique<Hub>(std::move(parts));
+    Limits limits;
+    limits.packets_per_second = 1e9;
+    limits.packet_burst = 1e9;
+    MakeWith(MakeRig(/*filter=*/false), limits, kLanes);
   }
   void ConnectIn(int lane, FakePeer* peer, Transport transport = Transport::kTcp) {
     peer->id = hub->AddPeer(transport, "fake", peer, now, lane);
