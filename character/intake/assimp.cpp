@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// assimp's headers stay in this file: what leaves it is glTF.
+// assimp's headers stay here and in assimp_materials: what leaves them is glTF.
 #include "character/intake/assimp.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <map>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
-#include <assimp/GltfMaterial.h>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
@@ -23,6 +20,7 @@
 
 #include "character/gltf_builder.h"
 #include "character/gltf_mesh.h"
+#include "character/intake/assimp_materials.h"
 #include "character/intake/confined.h"
 #include "character/intake/gltf_pieces.h"
 #include "wrinkle/transform.h"
@@ -34,7 +32,6 @@ using Json = GltfBuilder::Json;
 
 constexpr std::size_t kMaxForeignBytes = 512u << 20;
 constexpr std::size_t kMaxForeignNodes = 16384;
-constexpr std::size_t kMaxPicturesOf = 64;
 constexpr int kMaxSets = 4;  // of four influences
 
 // Reads nothing: the model is in memory, and no file that it names is followed.
@@ -49,12 +46,6 @@ class NoFiles : public Assimp::IOSystem {
 glm::mat4 ToGlm(const aiMatrix4x4& m) { return glm::transpose(glm::make_mat4(&m.a1)); }
 glm::vec3 ToGlm(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-// The last part of a path in either system's manner.
-std::string FileName(const std::string& path) {
-  const std::size_t slash = path.find_last_of("/\\");
-  return slash == std::string::npos ? path : path.substr(slash + 1);
-}
-
 // A scene on its way to glTF.
 class SceneWriter {
  public:
@@ -66,24 +57,16 @@ class SceneWriter {
     WriteNodes();
     AddSkin();
     if (Status status = AddMeshes(); !status.ok()) return status;
-    AddMaterials();
+    AssimpMaterials(scene_, &builder_).Run(&remarks_);
     RemarkOnRest();
     root_["nodes"] = std::move(nodes_);
-    root_["scenes"] = Json::array({{{"name", NameOf(scene_.mName)}, {"nodes", std::move(roots_)}}});
+    root_["scenes"] =
+        Json::array({{{"name", NameFrom(scene_.mName)}, {"nodes", std::move(roots_)}}});
     *remarks = std::move(remarks_);
     return builder_.Finish();
   }
 
  private:
-  // Names from outside may be in any encoding; JSON takes UTF-8 alone.
-  static std::string NameOf(const aiString& name) {
-    std::string text(name.data, std::min<std::size_t>(name.length, 255));
-    const auto printable = [](char c) { return static_cast<unsigned char>(c) - 0x20u < 0x5fu; };
-    std::replace_if(
-        text.begin(), text.end(), [&](char c) { return !printable(c); }, '_');
-    return text;
-  }
-
   template <class T>
   std::optional<T> Metadata(const char* key) const {
     T value{};
@@ -128,7 +111,7 @@ class SceneWriter {
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       const aiNode& node = *sources_[i].node;
       sources_[i].model *= ToGlm(node.mTransformation);
-      source_by_name_.emplace(NameOf(node.mName), i);
+      source_by_name_.emplace(NameFrom(node.mName), i);
       for (unsigned m = 0; m < node.mNumMeshes; ++m) instances_.emplace_back(node.mMeshes[m], i);
       for (unsigned c = 0; c < node.mNumChildren; ++c) {
         if (sources_.size() >= kMaxForeignNodes) {
@@ -145,10 +128,10 @@ class SceneWriter {
     for (unsigned m = 0; m < scene_.mNumMeshes; ++m) {
       const aiMesh& mesh = *scene_.mMeshes[m];
       for (unsigned b = 0; b < mesh.mNumBones; ++b) {
-        const std::string name = NameOf(mesh.mBones[b]->mName);
+        const std::string name = NameFrom(mesh.mBones[b]->mName);
         const auto source = source_by_name_.find(name);
         if (source == source_by_name_.end()) {
-          return {StatusCode::kSchema, "mesh '" + NameOf(mesh.mName) + "' names the joint '" +
+          return {StatusCode::kSchema, "mesh '" + NameFrom(mesh.mName) + "' names the joint '" +
                                            name + "', which the file does not have"};
         }
         sources_[source->second].is_joint = true;
@@ -174,7 +157,7 @@ class SceneWriter {
       const wrinkle::Transform local = WithoutShear(glm::inverse(above) * source.model);
       source.model = above * wrinkle::ToMatrix(local);
       source.written = static_cast<int>(nodes_.size());
-      std::string name = NameOf(source.node->mName);
+      std::string name = NameFrom(source.node->mName);
       if (!names.insert(name).second) name += "." + std::to_string(i);
       (parent < 0 ? roots_ : nodes_[sources_[parent].written]["children"]).push_back(nodes_.size());
       nodes_.push_back(NodeJson(name, local));
@@ -244,7 +227,7 @@ class SceneWriter {
   }
 
   [[nodiscard]] std::size_t JointOf(const aiBone& bone) const {
-    return joint_of_source_.at(source_by_name_.at(NameOf(bone.mName)));
+    return joint_of_source_.at(source_by_name_.at(NameFrom(bone.mName)));
   }
 
   // Mesh space to model space in the rest pose, for each joint of the mesh.
@@ -315,7 +298,7 @@ class SceneWriter {
         {"attributes", std::move(attributes)},
         {"indices", builder_.AddAccessor(indices, B::kUnsignedInt, "SCALAR", B::kElementBuffer)},
         {"material", mesh.mMaterialIndex}};
-    std::string name = NameOf(mesh.mName);
+    std::string name = NameFrom(mesh.mName);
     if (name.empty()) name = "mesh_" + std::to_string(root_["meshes"].size());
     Json holder = {{"name", "mesh:" + name}, {"mesh", root_["meshes"].size()}};
     if (skinned) holder["skin"] = 0;
@@ -335,77 +318,6 @@ class SceneWriter {
     return indices;
   }
 
-  void AddMaterials() {
-    for (unsigned m = 0; m < scene_.mNumMaterials; ++m) {
-      const aiMaterial& from = *scene_.mMaterials[m];
-      aiColor4D colour(1.0f, 1.0f, 1.0f, 1.0f);
-      if (from.Get(AI_MATKEY_BASE_COLOR, colour) != AI_SUCCESS) {
-        (void)from.Get(AI_MATKEY_COLOR_DIFFUSE, colour);
-      }
-      float roughness = 0.6f;
-      float shininess = 0.0f;
-      int two_sided = 0;
-      if (from.Get(AI_MATKEY_ROUGHNESS_FACTOR, roughness) != AI_SUCCESS &&
-          from.Get(AI_MATKEY_SHININESS, shininess) == AI_SUCCESS && shininess > 0.0f) {
-        // Blinn-Phong's exponent as a roughness with the same width of highlight.
-        roughness = std::pow(2.0f / (shininess + 2.0f), 0.25f);
-      }
-      (void)from.Get(AI_MATKEY_TWOSIDED, two_sided);
-      Json pbr = {{"baseColorFactor", {colour.r, colour.g, colour.b, 1.0f}},
-                  {"metallicFactor", 0},
-                  {"roughnessFactor", std::clamp(roughness, 0.0f, 1.0f)}};
-      if (const int texture = TextureOf(from, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE});
-          texture >= 0) {
-        pbr["baseColorTexture"] = {{"index", texture}};
-        pbr["baseColorFactor"] = {1.0f, 1.0f, 1.0f, 1.0f};  // exporters leave 0.8 grey beside it
-      }
-      Json material = {{"name", NameOf(from.GetName())}, {"pbrMetallicRoughness", std::move(pbr)}};
-      if (const int texture = TextureOf(from, {aiTextureType_NORMALS, aiTextureType_NORMAL_CAMERA});
-          texture >= 0) {
-        material["normalTexture"] = {{"index", texture}};
-      }
-      if (two_sided != 0) material["doubleSided"] = true;
-      root_["materials"].push_back(std::move(material));
-    }
-  }
-
-  // The texture of the first of `types` that the material has; -1 for none.
-  int TextureOf(const aiMaterial& material, std::initializer_list<aiTextureType> types) {
-    for (const aiTextureType type : types) {
-      aiString path;
-      if (material.GetTextureCount(type) == 0 || material.GetTexture(type, 0, &path) != AI_SUCCESS)
-        continue;
-      const auto known = texture_by_path_.find(path.C_Str());
-      if (known != texture_by_path_.end()) return known->second;
-      return texture_by_path_[path.C_Str()] = AddTexture(path);
-    }
-    return -1;
-  }
-
-  int AddTexture(const aiString& path) {
-    if (root_["textures"].size() >= kMaxPicturesOf) {
-      remarks_.push_back("more than " + std::to_string(kMaxPicturesOf) +
-                         " pictures: the rest is left out");
-      return -1;
-    }
-    const aiTexture* embedded = scene_.GetEmbeddedTexture(path.C_Str());
-    const std::string name = FileName(NameOf(path));
-    Json image = {{"name", name}};
-    if (embedded != nullptr && embedded->mHeight == 0) {
-      image["mimeType"] = "image/png";  // told by its first bytes, whatever it is
-      image["bufferView"] =
-          builder_.AddView(embedded->pcData, embedded->mWidth, GltfBuilder::kNoTarget);
-    } else if (embedded != nullptr || name.empty()) {
-      remarks_.push_back("the picture '" + name + "' is embedded as raw pixels: left out");
-      return -1;
-    } else {
-      image["uri"] = name;
-    }
-    root_["images"].push_back(std::move(image));
-    root_["textures"].push_back({{"source", root_["images"].size() - 1}});
-    return static_cast<int>(root_["textures"].size()) - 1;
-  }
-
   void RemarkOnRest() {
     if (blend_shapes_ > 0) {
       remarks_.push_back(std::to_string(blend_shapes_) +
@@ -423,7 +335,6 @@ class SceneWriter {
   std::vector<std::pair<unsigned, std::size_t>> instances_;  // mesh, source
   std::vector<std::size_t> joints_;                          // sources, in the skin's order
   std::unordered_map<std::size_t, std::size_t> joint_of_source_;
-  std::map<std::string, int> texture_by_path_;
   unsigned blend_shapes_ = 0;
   std::vector<std::string> remarks_;
 };
