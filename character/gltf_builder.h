@@ -17,7 +17,12 @@ class GltfBuilder {
  public:
   using Json = nlohmann::ordered_json;
   enum Target { kNoTarget = 0, kArrayBuffer = 34962, kElementBuffer = 34963 };
-  enum Component { kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
+  enum Component {
+    kUnsignedByte = 5121,
+    kUnsignedShort = 5123,
+    kUnsignedInt = 5125,
+    kFloat = 5126
+  };
 
   GltfBuilder();
 

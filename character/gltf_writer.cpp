@@ -161,16 +161,35 @@ class GlbWriter {
         builder_.AddAccessor(tangents, GltfBuilder::kFloat, "VEC4", GltfBuilder::kArrayBuffer);
     attributes["TEXCOORD_0"] =
         builder_.AddAccessor(uvs, GltfBuilder::kFloat, "VEC2", GltfBuilder::kArrayBuffer);
-    attributes["JOINTS_0"] = builder_.AddAccessor(joints, GltfBuilder::kUnsignedShort, "VEC4",
-                                                  GltfBuilder::kArrayBuffer);
+    attributes["JOINTS_0"] = AddJoints(joints);
     attributes["WEIGHTS_0"] =
         builder_.AddAccessor(weights, GltfBuilder::kFloat, "VEC4", GltfBuilder::kArrayBuffer);
-    Json primitive = {{"attributes", std::move(attributes)},
-                      {"indices", builder_.AddAccessor(mesh.indices, GltfBuilder::kUnsignedInt,
-                                                       "SCALAR", GltfBuilder::kElementBuffer)}};
+    Json primitive = {{"attributes", std::move(attributes)}, {"indices", AddIndices(mesh)}};
     if (mesh.material >= 0) primitive["material"] = mesh.material;
     root_["meshes"].push_back(
         {{"name", mesh.name}, {"primitives", Json::array({std::move(primitive)})}});
+  }
+
+  // Joints and indices are written in the narrowest integers that hold all of them.
+  int AddJoints(const std::vector<glm::u16vec4>& joints) {
+    if (character_.skeleton.num_joints() > std::numeric_limits<std::uint8_t>::max() + 1) {
+      return builder_.AddAccessor(joints, GltfBuilder::kUnsignedShort, "VEC4",
+                                  GltfBuilder::kArrayBuffer);
+    }
+    const std::vector<glm::u8vec4> narrow(joints.begin(), joints.end());
+    return builder_.AddAccessor(narrow, GltfBuilder::kUnsignedByte, "VEC4",
+                                GltfBuilder::kArrayBuffer);
+  }
+
+  int AddIndices(const Mesh& mesh) {
+    // The highest number of each width means that a strip begins anew.
+    if (mesh.vertices.size() > std::numeric_limits<std::uint16_t>::max()) {
+      return builder_.AddAccessor(mesh.indices, GltfBuilder::kUnsignedInt, "SCALAR",
+                                  GltfBuilder::kElementBuffer);
+    }
+    const std::vector<std::uint16_t> narrow(mesh.indices.begin(), mesh.indices.end());
+    return builder_.AddAccessor(narrow, GltfBuilder::kUnsignedShort, "SCALAR",
+                                GltfBuilder::kElementBuffer);
   }
 
   // Texture i shows picture i.

@@ -8,10 +8,12 @@
 
 #include "character/bake/bake_pictures.h"
 #include "character/bake/bake_poses.h"
+#include "character/paint/strokes.h"
 
 namespace furrow::character::generator {
 namespace {
 
+constexpr int kNormalBits = 10;     // a tenth of a degree: folds are smooth
 constexpr float kFineLines = 0.8f;  // of a skin that folds twice as deep as a young man's
 
 Status AddPictures(const bake::BakedMap& baked, Character* character) {
@@ -25,6 +27,7 @@ Status AddPictures(const bake::BakedMap& baked, Character* character) {
   Result<std::vector<Picture>> pictures = bake::PicturesOf(baked, *map);
   if (!pictures.ok()) return pictures.status();
   for (Picture& picture : pictures.value()) {
+    if (picture.name == map->normal) paint::RoundNormals(kNormalBits, &picture);
     character->rig_pictures.emplace_back(picture.name,
                                          static_cast<int>(character->pictures.size()));
     character->pictures.push_back(std::move(picture));

@@ -73,10 +73,8 @@ Picture EncodeNormals(const std::vector<Texel>& texels, std::span<const glm::vec
   picture.width = width;
   picture.height = height;
   picture.channels = 3;
-  const long step = 1L << (16 - bits);
-  const auto encode = [step](float v) {
-    const long whole = std::lround((v * 0.5f + 0.5f) * 65535.0f);
-    return static_cast<std::uint16_t>(std::min((whole + step / 2) / step * step, 65535L));
+  const auto encode = [](float v) {
+    return static_cast<std::uint16_t>(std::lround((v * 0.5f + 0.5f) * 65535.0f));
   };
   picture.pixels16.resize(static_cast<std::size_t>(width) * height * 3, encode(0.0f));
   for (std::size_t i = 2; i < picture.pixels16.size(); i += 3) picture.pixels16[i] = encode(1.0f);
@@ -85,8 +83,17 @@ Picture EncodeNormals(const std::vector<Texel>& texels, std::span<const glm::vec
     const std::size_t at = (static_cast<std::size_t>(texels[i].y) * width + texels[i].x) * 3;
     for (int c = 0; c < 3; ++c) picture.pixels16[at + c] = encode(n[c]);
   }
+  RoundNormals(bits, &picture);
   Dilate(&picture, texels, kDilation);
   return picture;
+}
+
+void RoundNormals(int bits, Picture* normals) {
+  for (std::size_t i = 0; i < normals->pixels16.size(); ++i) {
+    const long step = 1L << (i % 3 == 2 ? 18 - bits : 16 - bits);
+    const long rounded = (normals->pixels16[i] + step / 2) / step * step;
+    normals->pixels16[i] = static_cast<std::uint16_t>(std::min(rounded, 65535L));
+  }
 }
 
 std::vector<glm::vec3> Smooth(std::span<const glm::vec3> points, int per_segment) {

@@ -56,11 +56,14 @@ struct FoldShape {
 
 // Slopes as a tangent-space normal map of width x height, 16 bits a channel, RGB = n * 0.5 + 0.5,
 // green up (glTF), dilated by 16 texels; flat elsewhere. 16 bits, since 8 cannot say 0 and show
-// bands on smooth skin; rounded to the first `bits` of them, [8, 16]: the last ones of a rough
-// surface are noise that no PNG packs.
+// bands on smooth skin; of them `bits` are kept, as RoundNormals() does.
 [[nodiscard]] Picture EncodeNormals(const std::vector<Texel>& texels,
                                     std::span<const glm::vec2> slopes, int width, int height,
                                     int bits);
+
+// Rounds a 16-bit normal map to the first `bits` of x and y, [8, 16]: the last ones of a rough
+// surface are noise that no PNG packs. z has two fewer, since a slope x / z hardly feels them.
+void RoundNormals(int bits, Picture* normals);
 
 // A polyline through `points` by a Catmull-Rom spline, `per_segment` >= 1 pieces each.
 [[nodiscard]] std::vector<glm::vec3> Smooth(std::span<const glm::vec3> points, int per_segment);
