@@ -48,13 +48,13 @@ HWY_INLINE void ForLanes(Visit visit) {
   for (std::size_t i = 0; i < kBlock; i += hn::Lanes(Floats())) visit(i);
 }
 
-// The coefficients of a map in the block that begins at texel `first`. False: it is not at work
-// there.
-bool Coefficients(const ComposeJob& job, std::size_t map, std::size_t first, Numbers* sums) {
+// Adds masks times their weights on a map in the block that begins at texel `first`. False: it is
+// not at work there.
+bool AddMasks(const ComposeJob& job, const std::vector<ComposeTile::Mask>& masks, std::size_t map,
+              std::size_t first, Numbers* sums) {
   const std::size_t maps = job.tile->maps.size();
   bool is_at_work = false;
-  sums->fill(0.0f);
-  for (const ComposeTile::Mask& mask : job.tile->masks) {
+  for (const ComposeTile::Mask& mask : masks) {
     const float weight = job.ink->weights[mask.channel * maps + map];
     if (!(weight > 0.0f)) continue;
     const Float scale = hn::Set(Floats(), weight / 255.0f);
@@ -66,6 +66,20 @@ bool Coefficients(const ComposeJob& job, std::size_t map, std::size_t first, Num
     });
     is_at_work = true;
   }
+  return is_at_work;
+}
+
+// The coefficients of a map in a block. False: it is not at work there.
+bool Coefficients(const ComposeJob& job, std::size_t map, std::size_t first, Numbers* sums) {
+  sums->fill(0.0f);
+  bool is_at_work = AddMasks(job, job.tile->skinned, map, first, sums);
+  if (is_at_work) {
+    ForLanes([&](std::size_t i) HWY_ATTR {
+      float* const to = &(*sums)[i];
+      hn::StoreU(hn::Min(hn::LoadU(Floats(), to), hn::Set(Floats(), 1.0f)), Floats(), to);
+    });
+  }
+  is_at_work |= AddMasks(job, job.tile->masks, map, first, sums);
   return is_at_work;
 }
 
@@ -200,9 +214,10 @@ bool IsWhole(const ComposeTile& tile, std::size_t channels) {
   for (const ComposeTile::Map& map : tile.maps) {
     if (!HasPlanes(map.slopes, 3) || !(map.looks.empty() || HasPlanes(map.looks, 4))) return false;
   }
-  return std::ranges::all_of(tile.masks, [&](const ComposeTile::Mask& mask) {
+  const auto is_whole = [&](const ComposeTile::Mask& mask) {
     return mask.channel < channels && mask.values.size() == ComposeTile::kTexels;
-  });
+  };
+  return std::ranges::all_of(tile.masks, is_whole) && std::ranges::all_of(tile.skinned, is_whole);
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ struct ComposeTile {
     std::vector<std::uint16_t> slopes;  // n.x / n.z, n.y / n.z, variance: three planes
     std::vector<std::uint16_t> looks;   // linear red, green, blue, and cavity: four; or empty
   };
-  // What one channel of the mask textures lets through: bytes, 255 is all.
+  // What one channel lets through, of the mask textures or of the vertices' masks: bytes, 255 is
+  // all.
   struct Mask {
     std::size_t channel = 0;  // in the list that ComposeInk::weights go by
     std::vector<std::uint8_t> values;
@@ -31,7 +32,8 @@ struct ComposeTile {
   std::vector<std::uint16_t> colour;  // its linear red, green and blue; empty: maps have no looks
   float hollow = 0.0f;  // green below which the colour is a hollow's: wrinkles make none of skin
   std::vector<Map> maps;
-  std::vector<Mask> masks;  // those that let something through
+  std::vector<Mask> masks;    // those that let something through
+  std::vector<Mask> skinned;  // of vertices: together they let through all at most
 };
 
 // How strongly everything is painted.
@@ -45,7 +47,7 @@ struct ComposeInk {
 // Paints the wrinkles of a tile: what shaders/common_wrinkles_frag.glsl does in a fragment, by
 // partial derivatives, of as many texels at once as the processor has lanes.
 //
-//   w_i = sum over masks of weight * mask
+//   w_i = sum over masks of weight * mask + min(sum over skinned of weight * mask, 1)
 //   slope = base + sum a_i w_i slope_i,  variance = base + sum (a_i w_i)^2 variance_i
 //   look = product of max(1 + strength w_i (scale_i look_i - 1), 0)
 //   colour = base * look, but green >= min(base, hollow)

@@ -159,8 +159,9 @@ void AddMasks(const Texels& layer, int channel, std::size_t number, glm::ivec2 s
   }
 }
 
-std::vector<ComposeTile> ReadMasks(const GpuCharacter& gpu, const std::vector<int>& channels,
+std::vector<ComposeTile> ReadMasks(const GpuCharacter& gpu, const ComposeSelection& selection,
                                    glm::ivec2 size) {
+  const std::vector<int>& channels = selection.channels;
   const glm::ivec2 across = TilesOf(size);
   std::vector<ComposeTile> tiles(Count(across));
   for (std::size_t i = 0; i < tiles.size(); ++i) {
@@ -176,7 +177,9 @@ std::vector<ComposeTile> ReadMasks(const GpuCharacter& gpu, const std::vector<in
     }
     AddMasks(texels, channels[i] % 4, i, size, &tiles);
   }
-  std::erase_if(tiles, [](const ComposeTile& tile) { return tile.masks.empty(); });
+  if (selection.skinned != nullptr) selection.skinned->AddTo(size, channels.size(), &tiles);
+  std::erase_if(tiles,
+                [](const ComposeTile& tile) { return tile.masks.empty() && tile.skinned.empty(); });
   return tiles;
 }
 
@@ -236,7 +239,7 @@ glm::ivec2 TextureSize(GLuint texture) {
 
 std::vector<ComposeTile> ReadComposeTiles(const GpuCharacter& gpu,
                                           const ComposeSelection& selection, glm::ivec2 size) {
-  std::vector<ComposeTile> tiles = ReadMasks(gpu, selection.channels, size);
+  std::vector<ComposeTile> tiles = ReadMasks(gpu, selection, size);
   ReadSurface(gpu, *selection.material, size, &tiles);
   for (const int map : selection.maps) ReadMap(gpu, map, size, &tiles);
   return tiles;

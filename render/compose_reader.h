@@ -7,15 +7,22 @@
 
 #include "render/compose_job.h"
 #include "render/gpu_character.h"
+#include "render/skinned_masks.h"
 
 namespace furrow::render {
 
 // What is composed of a material: the wrinkle maps (of the rig) that may go on it, and the channels
-// of the masks (four a layer) that say where; both ascending.
+// of the masks (four a layer) that say where; both ascending. Channels of skinned masks count on
+// from there.
 struct ComposeSelection {
   const GpuMaterial* material = nullptr;
   std::vector<int> maps;
   std::vector<int> channels;
+  const SkinnedMasks* skinned = nullptr;  // null: none
+
+  [[nodiscard]] std::size_t num_channels() const {
+    return channels.size() + (skinned == nullptr ? 0 : skinned->channels().size());
+  }
 };
 
 // Textures of a character as a level of `size` texels sees them, from the same levels of each,

@@ -48,7 +48,7 @@ ComposedMaterial::Copy ComposedMaterial::MakeCopy() const {
   if (gpu_.wrinkle_looks() != 0) copy.colour = MakeLevels(size_, levels_.size());
   copy.textures = {copy.derivatives.name(), copy.colour.name()};
   const std::size_t maps = selection_.maps.size();
-  copy.ink = {std::vector<float>(selection_.channels.size() * maps, 0.0f),
+  copy.ink = {std::vector<float>(selection_.num_channels() * maps, 0.0f),
               std::vector<float>(maps, 1.0f), std::vector<float>(maps, 1.0f), glm::vec2(1.0f)};
   return copy;
 }
@@ -95,7 +95,7 @@ bool ComposedMaterial::IsChanged(const ComposeInk& from, const ComposeInk& to,
 
 std::vector<bool> ComposedMaterial::Changes(const ComposeInk& from, const Wanted& to) const {
   std::vector<bool> changed;
-  for (std::size_t channel = 0; channel < selection_.channels.size(); ++channel) {
+  for (std::size_t channel = 0; channel < selection_.num_channels(); ++channel) {
     changed.push_back(to.is_seen[channel] && IsChanged(from, to.ink, channel));
   }
   return changed;
@@ -127,7 +127,10 @@ std::vector<const ComposeTile*> ComposedMaterial::Stale(const Level& level,
   std::vector<const ComposeTile*> stale;
   for (const ComposeTile& tile : level.tiles) {
     const auto is_changed = [&](const ComposeTile::Mask& mask) { return changed[mask.channel]; };
-    if (std::ranges::any_of(tile.masks, is_changed)) stale.push_back(&tile);
+    if (std::ranges::any_of(tile.masks, is_changed) ||
+        std::ranges::any_of(tile.skinned, is_changed)) {
+      stale.push_back(&tile);
+    }
   }
   return stale;
 }

@@ -12,14 +12,14 @@
 
 namespace furrow::render {
 
-// A material's normal map, and where wrinkle maps have looks its base colour, with painted wrinkles
-// in them. Half floats, a few levels: the finest as large as asked for.
+// A material's normal map, and where wrinkle maps have looks its base colour, with wrinkles in
+// them. Half floats, a few levels: the finest as large as asked for.
 //
 // Painted on the processor, tile by tile where weights change, and into one of two copies in turn,
 // so that nothing waits for a frame that is still being drawn.
 class ComposedMaterial {
  public:
-  // `gpu` and the selection's material outlive it.
+  // `gpu` and what the selection points to outlive it.
   ComposedMaterial(const GpuCharacter& gpu, ComposeSelection selection, glm::ivec2 size);
 
   struct Textures {

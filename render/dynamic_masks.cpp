@@ -55,9 +55,31 @@ void DynamicMasks::FindSlides(const wrinkle::RigBinding& binding) {
   }
 }
 
+const wrinkle::RigBinding& DynamicMasks::BindingOf(MaskMode mode) const {
+  return mode == MaskMode::kDynamic ? *skinning_ : *painted_;
+}
+
+// What any value raises, values of 1 do.
+std::vector<SkinnedShare> DynamicMasks::Shares(MaskMode mode) const {
+  const wrinkle::RigBinding& binding = BindingOf(mode);
+  const auto masks = binding.dynamic_masks();
+  const std::vector<float> values(binding.driver_value_names().size(), 1.0f);
+  std::vector<float> influences(static_cast<std::size_t>(binding.skeleton().num_joints()) *
+                                masks.size());
+  const wrinkle::JointInfluenceJob job{&binding, values, influences};
+  std::vector<SkinnedShare> shares;
+  if (job.Run() != wrinkle::JobStatus::kOk) return shares;  // never: they are finite
+  for (std::size_t i = 0; i < influences.size(); ++i) {
+    if (!(influences[i] > 0.0f)) continue;
+    const std::size_t column = i % masks.size();
+    shares.push_back({static_cast<int>(i / masks.size()), static_cast<int>(column), masks[column]});
+  }
+  return shares;
+}
+
 void DynamicMasks::Update(MaskMode mode, std::span<const float> values,
                           std::span<const float> weights) {
-  const wrinkle::RigBinding& binding = mode == MaskMode::kDynamic ? *skinning_ : *painted_;
+  const wrinkle::RigBinding& binding = BindingOf(mode);
   columns_ = binding.dynamic_masks();
   values_.assign(values.begin(), values.end());
   weights_.assign(weights.begin(), weights.end());

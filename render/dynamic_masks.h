@@ -32,6 +32,13 @@ static_assert(sizeof(DynamicMaskBlock) == 80);
 [[nodiscard]] std::vector<std::uint8_t> DynamicMasksBlock(std::span<const DynamicMaskBlock> masks,
                                                           int num_columns);
 
+// A joint that may raise a column of dynamic masks.
+struct SkinnedShare {
+  int joint = 0;
+  int column = 0;
+  wrinkle::DynamicMask mask;
+};
+
 // One subject's masks of a rig that are found vertex by vertex: by skin weights, and those that
 // slide about ball joints.
 class DynamicMasks {
@@ -48,6 +55,8 @@ class DynamicMasks {
   // num_joints x num_columns(), joint-major.
   [[nodiscard]] std::span<const float> influences() const { return influences_; }
   [[nodiscard]] int num_columns() const { return static_cast<int>(columns_.size()); }
+  // All that some pose could raise.
+  [[nodiscard]] std::vector<SkinnedShare> Shares(MaskMode mode) const;
 
  private:
   // One feed of a region whose mask slides.
@@ -58,6 +67,7 @@ class DynamicMasks {
     wrinkle::BallFrame frame;
     wrinkle::Mask mask;
   };
+  [[nodiscard]] const wrinkle::RigBinding& BindingOf(MaskMode mode) const;
   void FindSlides(const wrinkle::RigBinding& binding);
   [[nodiscard]] DynamicMaskBlock BlockOf(const Slide& slide) const;
 

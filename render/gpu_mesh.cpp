@@ -51,7 +51,8 @@ float MeanEdge(const character::Mesh& mesh) {
                               : static_cast<float>(sum / static_cast<double>(mesh.indices.size()));
 }
 
-// What was uploaded: the variants are made when first asked for, and nobody keeps the mesh.
+}  // namespace
+
 character::Mesh ReadMesh(const GpuMesh& mesh) {
   character::Mesh read;
   read.indices.resize(static_cast<std::size_t>(mesh.num_indices));
@@ -65,8 +66,6 @@ character::Mesh ReadMesh(const GpuMesh& mesh) {
                           read.vertices.data());
   return read;
 }
-
-}  // namespace
 
 GpuMesh MakeGpuMesh(const character::Mesh& mesh, std::span<const glm::mat4> inverse_bind_matrices) {
   GpuMesh gpu;

@@ -47,6 +47,8 @@ struct GpuPatches {
                                   std::span<const glm::mat4> inverse_bind_matrices);
 // Gives a mesh its levels.
 void AddLevels(GpuMesh* mesh);
+// The whole mesh as it was uploaded: nobody keeps it.
+[[nodiscard]] character::Mesh ReadMesh(const GpuMesh& mesh);
 // With three vertices of its own to every triangle, for the view wireframe.
 [[nodiscard]] GpuMesh MakeUnindexed(const GpuMesh& mesh);
 // Shares the vertices of `mesh`, which outlives it.

@@ -71,10 +71,12 @@ PosedMeshes::Source PosedMeshes::SourceOf(std::size_t mesh, Form form) {
 }
 
 Result<PosedMeshes::Vertices> PosedMeshes::Get(std::size_t mesh, Form form,
-                                               const PoseShader& shader,
+                                               const PoseShader& shader, WrinklePart part,
                                                std::span<const std::uint32_t> subjects) {
   Posed& posed = posed_[{mesh, form}];
-  if (!posed.is_fresh) {
+  const auto masks = shader.dynamic ? std::optional(part) : std::nullopt;
+  if (!posed.is_fresh || posed.masks != masks) {
+    posed.masks = masks;
     const Source source = SourceOf(mesh, form);
     if (Status status = Pose(source, shader, subjects, &posed); !status.ok()) return status;
   }

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "render/gpu_character.h"
 #include "render/shader_library.h"
+#include "render/wrinkle_table.h"
 
 namespace furrow::render {
 
@@ -29,11 +31,11 @@ class PosedMeshes {
     GLsizei per_subject = 0;
   };
   // A mesh in the poses of `subjects`, of whom there is at least one. Joints and dynamic masks are
-  // bound; leaves its own program in use. `dynamic`: with the dynamic masks of each vertex; the
-  // same for all calls of a frame.
+  // bound; leaves its own program in use. PoseShader::dynamic: with the dynamic masks of each
+  // vertex, of the maps of `part`. Posed anew in a frame only where calls ask for different ones.
   // Errors: kLimit (kMaxVertices), kInternal (a shader).
   [[nodiscard]] Result<Vertices> Get(std::size_t mesh, Form form, const PoseShader& shader,
-                                     std::span<const std::uint32_t> subjects);
+                                     WrinklePart part, std::span<const std::uint32_t> subjects);
 
  private:
   struct Posed {
@@ -42,6 +44,7 @@ class PosedMeshes {
     std::size_t capacity = 0;  // of `vertices`, bytes
     gl::Buffer subjects;       // one an instance
     GLsizei per_subject = 0;
+    std::optional<WrinklePart> masks;  // that the vertices bring
     bool is_fresh = false;
   };
   struct Source {

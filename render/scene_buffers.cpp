@@ -17,6 +17,9 @@ enum StorageBinding : GLuint {
 };
 constexpr GLuint kSubjectWeightsUnit = 13;
 
+// Of the lists of dynamic masks.
+std::size_t MasksIndex(WrinklePart part) { return part == WrinklePart::kSliding ? 1 : 0; }
+
 }  // namespace
 
 SceneBuffers::SceneBuffers(std::span<const glm::mat4> inverse_bind_matrices,
@@ -24,10 +27,11 @@ SceneBuffers::SceneBuffers(std::span<const glm::mat4> inverse_bind_matrices,
     : inverse_bind_matrices_(inverse_bind_matrices), tables_(tables) {
   for (gl::Buffer* buffer : {&frame_, &joints_, &influences_}) *buffer = gl::MakeBuffer();
   for (GroupBuffers& group : groups_) {
-    for (gl::Buffer* buffer : {&group.dynamic_masks, &group.first_masks, &group.subject_weights}) {
-      *buffer = gl::MakeBuffer();
+    for (auto* buffers : {&group.dynamic_masks, &group.first_masks}) {
+      for (gl::Buffer& buffer : *buffers) buffer = gl::MakeBuffer();
     }
     for (gl::Buffer& table : group.tables) table = gl::MakeBuffer();
+    group.subject_weights = gl::MakeBuffer();
     group.subject_weights_view = gl::MakeTexture(GL_TEXTURE_BUFFER);
   }
   for (int group = 0; group <= kNumWrinkleGroups; ++group) {
@@ -67,15 +71,22 @@ void SceneBuffers::UploadWrinkles(const WrinkleLayout& layout) {
           WrinkleBlock(table, static_cast<WrinklePart>(part), tables_->num_maps(), layout);
       gl::Upload(group.tables[static_cast<std::size_t>(part)], block.data(), block.size());
     }
-    const auto masks = DynamicMasksBlock(table.dynamic_masks, tables_->mask_columns());
-    gl::Upload(group.dynamic_masks, masks.data(), masks.size());
-    gl::Upload(group.first_masks, table.first_masks.data(),
-               table.first_masks.size() * sizeof(std::uint32_t));
+    UploadMasks(table, WrinklePart::kAll, &group);
+    if (table.num_sliding > 0) UploadMasks(table, WrinklePart::kSliding, &group);
     const auto weights = SubjectWeights(table, tables_->num_maps(), layout);
     gl::Upload(group.subject_weights, weights.data(), weights.size() * sizeof(glm::vec4));
     glTextureBuffer(group.subject_weights_view.name(), GL_RGBA32F, group.subject_weights.name());
   }
   gl::Upload(influences_, tables_->influences().data(), tables_->influences().size_bytes());
+}
+
+void SceneBuffers::UploadMasks(const WrinkleTable& table, WrinklePart part, GroupBuffers* group) {
+  const std::size_t index = MasksIndex(part);
+  const PartMasks masks = MasksOf(table, part);
+  const auto block = DynamicMasksBlock(masks.masks, tables_->mask_columns());
+  gl::Upload(group->dynamic_masks[index], block.data(), block.size());
+  gl::Upload(group->first_masks[index], masks.first.data(),
+             masks.first.size() * sizeof(std::uint32_t));
 }
 
 void SceneBuffers::Bind() const {
@@ -89,8 +100,9 @@ void SceneBuffers::BindWrinkles(WrinkleGroup wrinkle_group, WrinklePart part) co
   const GroupBuffers& group = groups_[none ? 0 : static_cast<int>(wrinkle_group)];
   const gl::Buffer& table = group.tables[static_cast<std::size_t>(part)];
   glBindBufferBase(GL_UNIFORM_BUFFER, kWrinkleTable, table.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kDynamicMasks, group.dynamic_masks.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kFirstMasks, group.first_masks.name());
+  const std::size_t masks = MasksIndex(part);
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kDynamicMasks, group.dynamic_masks[masks].name());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kFirstMasks, group.first_masks[masks].name());
   glBindTextureUnit(kSubjectWeightsUnit, group.subject_weights_view.name());
   const GLuint palette = palettes_[static_cast<int>(wrinkle_group)].name();
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMaskPalette, palette);

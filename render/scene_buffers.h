@@ -27,13 +27,15 @@ class SceneBuffers {
  private:
   struct GroupBuffers {
     std::array<gl::Buffer, kNumWrinkleParts> tables;  // by WrinklePart
-    gl::Buffer dynamic_masks;
-    gl::Buffer first_masks;
+    // Of all vertices' masks, and of those of WrinklePart::kSliding.
+    std::array<gl::Buffer, 2> dynamic_masks;
+    std::array<gl::Buffer, 2> first_masks;
     gl::Buffer subject_weights;
     gl::Texture subject_weights_view;
   };
   void UploadJoints(std::span<const NamedSubject> subjects);
   void UploadWrinkles(const WrinkleLayout& layout);
+  void UploadMasks(const WrinkleTable& table, WrinklePart part, GroupBuffers* group);
 
   std::span<const glm::mat4> inverse_bind_matrices_;
   const WrinkleTables* tables_;

@@ -103,7 +103,7 @@ SceneDraw::SceneDraw(const wrinkle::Skeleton& skeleton,
       tables_(tables),
       shaders_(shaders),
       buffers_(inverse_bind_matrices, tables),
-      cache_(gpu, tables, is_software),
+      cache_(gpu, tables, inverse_bind_matrices, is_software),
       posed_(gpu, shaders),
       shadow_compare_(MakeShadowSampler(true)),
       shadow_depth_(MakeShadowSampler(false)),
@@ -156,9 +156,8 @@ void SceneDraw::BindMasks() {
   glBindTextureUnit(kWrinkleHeightsUnit, gpu_->heights().texture.name());
 }
 
-const ComposedMaterial::Textures* SceneDraw::ComposedOf(int material,
-                                                        const Settings& settings) const {
-  if (!TakesComposed(settings) || IsDisplaced(gpu_->material(material), settings)) return nullptr;
+WrinkleCache::Composed SceneDraw::ComposedOf(int material, const Settings& settings) const {
+  if (!TakesComposed(settings) || IsDisplaced(gpu_->material(material), settings)) return {};
   return cache_.Find(material);
 }
 
@@ -166,15 +165,13 @@ bool SceneDraw::NeedsComposing(const Settings& settings) const {
   return TakesComposed(settings) && cache_.is_stale();
 }
 
-void SceneDraw::BindMaterial(const GpuMaterial& material,
-                             const ComposedMaterial::Textures* composed) {
-  const bool colour = composed != nullptr && composed->colour != 0;
+void SceneDraw::BindMaterial(const GpuMaterial& material, const WrinkleCache::Composed& composed) {
+  const ComposedMaterial::Textures& textures = composed.textures;
   glBindBufferBase(GL_UNIFORM_BUFFER, kMaterialBlock, material.block.name());
-  buffers_.BindWrinkles(material.group,
-                        composed != nullptr ? WrinklePart::kDynamic : WrinklePart::kAll);
-  glBindTextureUnit(kBaseColourUnit, colour ? composed->colour : material.base_colour);
+  buffers_.BindWrinkles(material.group, composed.rest);
+  glBindTextureUnit(kBaseColourUnit, textures.colour != 0 ? textures.colour : material.base_colour);
   glBindTextureUnit(kBaseDerivativesUnit,
-                    composed != nullptr ? composed->derivatives : material.derivatives);
+                    textures.derivatives != 0 ? textures.derivatives : material.derivatives);
   glBindTextureUnit(kRoughnessUnit, material.roughness);
   glBindTextureUnit(kThicknessUnit, material.thickness);
 }
@@ -204,15 +201,16 @@ bool SceneDraw::IsDisplaced(const GpuMaterial& material, const Settings& setting
          material.group != WrinkleGroup::kNone && tables_->table(material.group).has_heights;
 }
 
-Result<PosedMeshes::Vertices> SceneDraw::Pose(std::size_t index, PosedMeshes::Form form) {
+Result<PosedMeshes::Vertices> SceneDraw::Pose(std::size_t index, PosedMeshes::Form form,
+                                              WrinklePart part) {
   const GpuMaterial& material = gpu_->material(gpu_->meshes()[index].material);
   PoseShader shader;
   shader.num_joints = static_cast<int>(inverse_bind_matrices_.size());
   shader.displaced = form == PosedMeshes::Form::kPatches;
-  shader.dynamic =
-      material.group != WrinkleGroup::kNone && tables_->table(material.group).uses_dynamic;
+  shader.dynamic = material.group != WrinkleGroup::kNone &&
+                   NeedsOf(tables_->table(material.group), part).uses_dynamic;
   shader.map_slots = MapSlots(tables_->num_maps());
-  return posed_.Get(index, form, shader, draw_list_.subjects(index));
+  return posed_.Get(index, form, shader, part, draw_list_.subjects(index));
 }
 
 void SceneDraw::DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t index,
@@ -267,18 +265,20 @@ Status SceneDraw::DrawShadow(const Settings& settings, int light) {
 }
 
 Status SceneDraw::DrawCaster(const Settings& settings, int light, std::size_t index) {
-  const GpuMaterial& material = gpu_->material(gpu_->meshes()[index].material);
+  const int number = gpu_->meshes()[index].material;
+  const GpuMaterial& material = gpu_->material(number);
   SceneShader shader;
   if (IsDisplaced(material, settings)) {
-    shader = SurfaceShader(material, nullptr);
+    shader = SurfaceShader(material, {});
     shader.displaced = shader.shadow = true;
   }
   const Result<GLuint> program =
       shader.displaced ? shaders_->Get(shader) : shaders_->GetShadow(material.alpha_test);
   if (!program.ok()) return program.status();
   const auto form = shader.displaced ? PosedMeshes::Form::kPatches : PosedMeshes::Form::kIndexed;
-  BindMaterial(material, nullptr);
-  const Result<PosedMeshes::Vertices> posed = Pose(index, form);
+  const WrinkleCache::Composed composed = ComposedOf(number, settings);  // as in the scene
+  BindMaterial(material, {{}, composed.rest});
+  const Result<PosedMeshes::Vertices> posed = Pose(index, form, composed.rest);
   if (!posed.ok()) return posed.status();
   SetCulling(!material.double_sided);
   glUseProgram(*program);
@@ -303,14 +303,14 @@ Status SceneDraw::DrawMesh(const Settings& settings, SceneKind kind, std::size_t
   const bool wireframe = kind == SceneKind::kPlain && settings.view == View::kWireframe;
   const int number = gpu_->meshes()[index].material;
   const GpuMaterial& material = gpu_->material(number);
-  const ComposedMaterial::Textures* composed = ComposedOf(number, settings);
+  const WrinkleCache::Composed composed = ComposedOf(number, settings);
   const SceneShader shader = ShaderFor(material, composed, settings, kind);
   const Result<GLuint> program = shaders_->Get(shader);
   if (!program.ok()) return program.status();
   auto form = wireframe ? PosedMeshes::Form::kUnindexed : PosedMeshes::Form::kIndexed;
   if (shader.displaced) form = PosedMeshes::Form::kPatches;
   BindMaterial(material, composed);
-  const Result<PosedMeshes::Vertices> posed = Pose(index, form);
+  const Result<PosedMeshes::Vertices> posed = Pose(index, form, composed.rest);
   if (!posed.ok()) return posed.status();
   if (shader.preintegrated) glBindTextureUnit(kPreintegratedUnit, lookup_tables_.preintegrated());
   glUseProgram(*program);
@@ -320,18 +320,17 @@ Status SceneDraw::DrawMesh(const Settings& settings, SceneKind kind, std::size_t
 }
 
 SceneShader SceneDraw::SurfaceShader(const GpuMaterial& material,
-                                     const ComposedMaterial::Textures* composed) const {
+                                     const WrinkleCache::Composed& composed) const {
   SceneShader shader;
   if (material.group != WrinkleGroup::kNone) {
-    const WrinkleTable& table = tables_->table(material.group);
-    const auto part = composed != nullptr ? WrinklePart::kDynamic : WrinklePart::kAll;
-    shader.active_maps = PaddedMaps(NumMaps(table, part), tables_->num_maps());
-    shader.wrinkle_texture = composed != nullptr ? table.paints_dynamic : table.uses_texture;
-    shader.wrinkle_dynamic = table.uses_dynamic;
+    const WrinkleNeeds needs = NeedsOf(tables_->table(material.group), composed.rest);
+    shader.active_maps = PaddedMaps(needs.num_maps, tables_->num_maps());
+    shader.wrinkle_texture = needs.uses_texture;
+    shader.wrinkle_dynamic = needs.uses_dynamic;
   }
-  shader.composed_looks = composed != nullptr && composed->colour != 0;
+  shader.composed_looks = composed.textures.colour != 0;
   shader.base_colour_map = material.base_colour != 0 || shader.composed_looks;
-  shader.base_normal_map = material.derivatives != 0 || composed != nullptr;
+  shader.base_normal_map = material.derivatives != 0 || composed.textures.derivatives != 0;
   shader.roughness_map = material.roughness != 0;
   shader.alpha_test = material.alpha_test;
   shader.mask_bits = tables_->mask_bits(material.group);
@@ -342,8 +341,8 @@ SceneShader SceneDraw::SurfaceShader(const GpuMaterial& material,
 }
 
 SceneShader SceneDraw::ShaderFor(const GpuMaterial& material,
-                                 const ComposedMaterial::Textures* composed,
-                                 const Settings& settings, SceneKind kind) const {
+                                 const WrinkleCache::Composed& composed, const Settings& settings,
+                                 SceneKind kind) const {
   SceneShader shader = SurfaceShader(material, composed);
   shader.view = settings.view;
   shader.normal_blend = settings.normal_blend;

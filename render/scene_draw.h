@@ -56,12 +56,11 @@ class SceneDraw {
   void PlanComposing(const FrameRequest& request);
   void FindVisible(std::span<const NamedSubject> subjects, const Settings& settings);
   void BindMasks();
-  // Null: its wrinkles are composed where they are drawn.
-  [[nodiscard]] const ComposedMaterial::Textures* ComposedOf(int material,
-                                                             const Settings& settings) const;
-  void BindMaterial(const GpuMaterial& material, const ComposedMaterial::Textures* composed);
-  // The material is bound.
-  [[nodiscard]] Result<PosedMeshes::Vertices> Pose(std::size_t index, PosedMeshes::Form form);
+  [[nodiscard]] WrinkleCache::Composed ComposedOf(int material, const Settings& settings) const;
+  void BindMaterial(const GpuMaterial& material, const WrinkleCache::Composed& composed);
+  // The material is bound, with the same part of its wrinkles.
+  [[nodiscard]] Result<PosedMeshes::Vertices> Pose(std::size_t index, PosedMeshes::Form form,
+                                                   WrinklePart part);
   [[nodiscard]] GpuMesh::Level LevelOf(std::size_t index, PosedMeshes::Form form, int level);
   // Everybody of whom the view sees the mesh, in one call.
   void DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t index, PosedMeshes::Form form,
@@ -72,9 +71,9 @@ class SceneDraw {
   [[nodiscard]] bool IsDisplaced(const GpuMaterial& material, const Settings& settings) const;
   // What a program must know of the material and its wrinkles, whatever is made of them.
   [[nodiscard]] SceneShader SurfaceShader(const GpuMaterial& material,
-                                          const ComposedMaterial::Textures* composed) const;
+                                          const WrinkleCache::Composed& composed) const;
   [[nodiscard]] SceneShader ShaderFor(const GpuMaterial& material,
-                                      const ComposedMaterial::Textures* composed,
+                                      const WrinkleCache::Composed& composed,
                                       const Settings& settings, SceneKind kind) const;
 
   const wrinkle::Skeleton& skeleton_;

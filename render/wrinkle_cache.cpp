@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -21,11 +22,13 @@ constexpr float kKeptLevels = 1.25f;
 
 }  // namespace
 
-WrinkleCache::WrinkleCache(const GpuCharacter* gpu, const WrinkleTables* tables, bool is_software)
+WrinkleCache::WrinkleCache(const GpuCharacter* gpu, const WrinkleTables* tables,
+                           std::span<const glm::mat4> inverse_bind_matrices, bool is_software)
     : gpu_(gpu),
       tables_(tables),
+      inverse_bind_matrices_(inverse_bind_matrices),
       is_software_(is_software),
-      entries_(static_cast<std::size_t>(gpu->num_materials())) {}
+      entries_(2 * static_cast<std::size_t>(gpu->num_materials())) {}
 
 void WrinkleCache::Disable() {
   for (Entry& entry : entries_) entry.is_used = entry.is_stale = false;
@@ -39,9 +42,31 @@ void WrinkleCache::Plan(const Settings& settings, const View& view) {
     // The alpha of a base colour that is cut out is needed; there is no room for a cavity.
     if (material.alpha_test && gpu_->wrinkle_looks() != 0) continue;
     const WrinkleTable& table = tables_->table(material.group);
-    if (table.maps.size() == table.num_dynamic) continue;
-    PlanMaterial(index, settings, view, &entries_[static_cast<std::size_t>(index)]);
+    if (table.maps.empty()) continue;
+    Entry& entry = EntryOf(index);
+    if (entry.skinned == nullptr) entry.skinned = FindSkinned(index);
+    entry.rest = entry.skinned->is_unique() ? WrinklePart::kSliding : WrinklePart::kDynamic;
+    if (NeedsOf(table, entry.rest).num_maps == table.maps.size()) continue;
+    PlanMaterial(index, settings, view, &entry);
   }
+}
+
+const WrinkleCache::Entry& WrinkleCache::EntryOf(int material) const {
+  const bool is_dynamic = tables_->mask_mode() == MaskMode::kDynamic;
+  return entries_[2 * static_cast<std::size_t>(material) + (is_dynamic ? 1 : 0)];
+}
+
+WrinkleCache::Entry& WrinkleCache::EntryOf(int material) {
+  return const_cast<Entry&>(std::as_const(*this).EntryOf(material));
+}
+
+std::unique_ptr<SkinnedMasks> WrinkleCache::FindSkinned(int material) const {
+  const std::vector<SkinnedShare> shares = tables_->skinned(gpu_->material(material).group);
+  std::vector<character::Mesh> meshes;
+  for (const GpuMesh& mesh : gpu_->meshes()) {
+    if (mesh.material == material && !shares.empty()) meshes.push_back(ReadMesh(mesh));
+  }
+  return std::make_unique<SkinnedMasks>(meshes, shares, inverse_bind_matrices_, material);
 }
 
 WrinkleCache::Sight WrinkleCache::Look(int material, const View& view) const {
@@ -58,28 +83,41 @@ WrinkleCache::Sight WrinkleCache::Look(int material, const View& view) const {
 
 void WrinkleCache::LookAtRegions(int material, const ComposedMaterial& composed, const View& view,
                                  ComposedMaterial::Wanted* wanted) const {
-  const PosedSubject& subject = *view.subject;
-  const float pixels = view.pixels * glm::length(glm::vec3(subject.placement[0]));
-  const glm::mat4 projection = view.projection * subject.placement;
-  const std::vector<int>& channels = composed.selection().channels;
-  const auto side = static_cast<float>(std::max(composed.size().x, composed.size().y));
-  wanted->is_seen.assign(channels.size(), false);
+  const ComposeSelection& selection = composed.selection();
+  const std::vector<int>& channels = selection.channels;
+  wanted->is_seen.assign(selection.num_channels(), false);
   wanted->first_level = composed.num_levels() - 1;
   for (const MaskRegion& region : gpu_->mask_regions()) {
     const auto channel = std::ranges::find(channels, region.channel);
     if (region.material != material || channel == channels.end()) continue;
-    const JointBounds::Extent extent = region.bounds.Look(subject.model, projection);
-    if (!extent.is_seen()) continue;
-    wanted->is_seen[static_cast<std::size_t>(channel - channels.begin())] = true;
-    // Texels to a pixel, as powers of two, where the region is nearest and stretched most.
-    const float level =
-        extent.nearest > 0.0f
-            ? std::log2(side * std::max(region.uv_per_metre, 1e-6f) * extent.nearest / pixels)
-            : 0.0f;
-    const float first =
-        std::clamp(level + kSkippedShare, 0.0f, static_cast<float>(wanted->first_level));
-    wanted->first_level = static_cast<int>(first);
+    LookAtRegion(region, static_cast<std::size_t>(channel - channels.begin()), composed, view,
+                 wanted);
   }
+  if (selection.skinned == nullptr) return;
+  for (const MaskRegion& region : selection.skinned->regions()) {
+    LookAtRegion(region, channels.size() + static_cast<std::size_t>(region.channel), composed, view,
+                 wanted);
+  }
+}
+
+void WrinkleCache::LookAtRegion(const MaskRegion& region, std::size_t channel,
+                                const ComposedMaterial& composed, const View& view,
+                                ComposedMaterial::Wanted* wanted) const {
+  const PosedSubject& subject = *view.subject;
+  const JointBounds::Extent extent =
+      region.bounds.Look(subject.model, view.projection * subject.placement);
+  if (!extent.is_seen()) return;
+  wanted->is_seen[channel] = true;
+  const float pixels = view.pixels * glm::length(glm::vec3(subject.placement[0]));
+  const auto side = static_cast<float>(std::max(composed.size().x, composed.size().y));
+  // Texels to a pixel, as powers of two, where the region is nearest and stretched most.
+  const float level =
+      extent.nearest > 0.0f
+          ? std::log2(side * std::max(region.uv_per_metre, 1e-6f) * extent.nearest / pixels)
+          : 0.0f;
+  const float first =
+      std::clamp(level + kSkippedShare, 0.0f, static_cast<float>(wanted->first_level));
+  wanted->first_level = static_cast<int>(first);
 }
 
 void WrinkleCache::PlanMaterial(int index, const Settings& settings, const View& view,
@@ -87,7 +125,7 @@ void WrinkleCache::PlanMaterial(int index, const Settings& settings, const View&
   const Sight sight = Look(index, view);
   if (!(sight.texels_per_uv > 0.0f) || !Prepare(gpu_->material(index), sight, entry)) return;
   ComposedMaterial& composed = *entry->composed;
-  ComposedMaterial::Wanted wanted{InkOf(composed, settings), {}, 0};
+  ComposedMaterial::Wanted wanted{InkOf(composed, entry->rest, settings), {}, 0};
   LookAtRegions(index, composed, view, &wanted);
   const bool is_painted = composed.IsPainted(wanted);
   const bool is_held = entry->wanted.ink.weights.size() == wanted.ink.weights.size() &&
@@ -107,8 +145,9 @@ bool WrinkleCache::Prepare(const GpuMaterial& material, const Sight& sight, Entr
         std::log2(static_cast<float>(entry->composed->size().x) / static_cast<float>(size.x));
     if (finer >= 0.0f && finer < kKeptLevels) return true;
   }
-  *entry = {};
-  entry->composed = std::make_unique<ComposedMaterial>(*gpu_, SelectionOf(material), size);
+  entry->wanted = {};
+  entry->composed =
+      std::make_unique<ComposedMaterial>(*gpu_, SelectionOf(material, *entry->skinned), size);
   return true;
 }
 
@@ -122,7 +161,8 @@ glm::ivec2 WrinkleCache::SizeFor(const GpuMaterial& material, const Sight& sight
   return glm::max(finest / (1 << static_cast<int>(level)), glm::ivec2(1));
 }
 
-ComposeSelection WrinkleCache::SelectionOf(const GpuMaterial& material) const {
+ComposeSelection WrinkleCache::SelectionOf(const GpuMaterial& material,
+                                           const SkinnedMasks& skinned) const {
   ComposeSelection selection;
   selection.material = &material;
   const auto add = [](int item, std::vector<int>* list) {
@@ -133,38 +173,55 @@ ComposeSelection WrinkleCache::SelectionOf(const GpuMaterial& material) const {
     add(painted.map, &selection.maps);
     add(painted.channel, &selection.channels);
   }
+  if (!skinned.is_unique()) return selection;
+  selection.skinned = &skinned;
+  for (const SkinnedShare& share : skinned.channels()) add(share.mask.map, &selection.maps);
   return selection;
 }
 
-ComposeInk WrinkleCache::InkOf(const ComposedMaterial& composed, const Settings& settings) const {
+ComposeInk WrinkleCache::InkOf(const ComposedMaterial& composed, WrinklePart rest,
+                               const Settings& settings) const {
   const ComposeSelection& selection = composed.selection();
   const WrinkleTable& table = tables_->table(selection.material->group);
-  const auto layers = static_cast<std::size_t>(gpu_->layout().num_mask_layers);
   const std::size_t maps = selection.maps.size();
-  ComposeInk ink{std::vector<float>(selection.channels.size() * maps, 0.0f),
+  ComposeInk ink{std::vector<float>(selection.num_channels() * maps, 0.0f),
                  std::vector<float>(maps, 1.0f),
                  std::vector<float>(maps, 1.0f),
                  {settings.wrinkle_maps.blood_flow, settings.wrinkle_maps.cavity}};
-  for (std::size_t slot = table.num_dynamic; slot < table.maps.size(); ++slot) {
-    const ActiveMap& active = table.maps[slot];
-    const auto found = std::ranges::find(selection.maps, active.map);
+  for (std::size_t slot = NeedsOf(table, rest).num_maps; slot < table.maps.size(); ++slot) {
+    const auto found = std::ranges::find(selection.maps, table.maps[slot].map);
     if (found == selection.maps.end()) continue;
-    const auto map = static_cast<std::size_t>(found - selection.maps.begin());
-    ink.amplitudes[map] = active.amplitude;
-    ink.scales[map] = active.colour.a;
-    for (std::size_t mask = 0; mask < selection.channels.size(); ++mask) {
-      const int channel = selection.channels[mask];
-      const glm::vec4& row =
-          table.mask_weights[slot * layers + static_cast<std::size_t>(channel / 4)];
-      ink.weights[mask * maps + map] = row[channel % 4];
-    }
+    AddMap(selection, static_cast<std::size_t>(found - selection.maps.begin()), slot, &ink);
   }
   return ink;
 }
 
-const ComposedMaterial::Textures* WrinkleCache::Find(int material) const {
-  const Entry& entry = entries_[static_cast<std::size_t>(material)];
-  return entry.is_used ? &entry.composed->textures() : nullptr;
+void WrinkleCache::AddMap(const ComposeSelection& selection, std::size_t map, std::size_t slot,
+                          ComposeInk* ink) const {
+  const WrinkleTable& table = tables_->table(selection.material->group);
+  const auto layers = static_cast<std::size_t>(gpu_->layout().num_mask_layers);
+  const std::size_t maps = selection.maps.size();
+  ink->amplitudes[map] = table.maps[slot].amplitude;
+  ink->scales[map] = table.maps[slot].colour.a;
+  std::size_t mask = 0;
+  for (const int channel : selection.channels) {
+    const glm::vec4& row =
+        table.mask_weights[slot * layers + static_cast<std::size_t>(channel / 4)];
+    ink->weights[mask++ * maps + map] = row[channel % 4];
+  }
+  if (selection.skinned == nullptr) return;
+  for (const SkinnedShare& share : selection.skinned->channels()) {
+    if (share.mask.map == selection.maps[map]) {
+      ink->weights[mask * maps + map] = tables_->influence(share.joint, share.column);
+    }
+    ++mask;
+  }
+}
+
+WrinkleCache::Composed WrinkleCache::Find(int material) const {
+  const Entry& entry = EntryOf(material);
+  if (!entry.is_used) return {};
+  return {entry.composed->textures(), entry.rest};
 }
 
 bool WrinkleCache::is_stale() const { return std::ranges::any_of(entries_, &Entry::is_stale); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -9,11 +10,12 @@
 #include "render/composed_material.h"
 #include "render/draw_list.h"
 #include "render/gpu_character.h"
+#include "render/skinned_masks.h"
 #include "render/wrinkle_table.h"
 
 namespace furrow::render {
 
-// Which materials of a frame are drawn with their painted wrinkles composed beforehand.
+// Which materials of a frame are drawn with their wrinkles composed beforehand.
 //
 // - A picture composes wrinkles in every fragment: all masks, and every map at work. On a surface
 //   of small triangles most of that is not seen. A ComposedMaterial makes a texel once, as fine as
@@ -21,14 +23,18 @@ namespace furrow::render {
 //   as if there were no wrinkles.
 // - A level of the texture is made from the same levels of masks and maps that a fragment of its
 //   size would have looked up, so that both come to the same, interpolation of products apart.
-// - Maps that vertices mask (skinning, sliding) stay in the fragment, on top.
+// - So are those that skin weights mask: how much of a joint's influence a place of the surface
+//   takes never changes (SkinnedMasks). Where places that differ in it share texels, as two sleeves
+//   with one texture do, such maps stay in the fragment, on top; so does, in any case, a map of
+//   which a mask slides: that depends on the pose.
 // - Where it would not pay, a frame goes without: more texels to make than pixels to save; weights
 //   that move on a device for which fragments are cheap; several subjects, each with a face of its
 //   own.
 class WrinkleCache {
  public:
   // All outlive it. `is_software`: a processor draws.
-  WrinkleCache(const GpuCharacter* gpu, const WrinkleTables* tables, bool is_software);
+  WrinkleCache(const GpuCharacter* gpu, const WrinkleTables* tables,
+               std::span<const glm::mat4> inverse_bind_matrices, bool is_software);
 
   // How the frame's one subject is looked at.
   struct View {
@@ -43,16 +49,23 @@ class WrinkleCache {
   // The frame composes nothing.
   void Disable();
 
-  // What takes the place of a material's own in this frame, once composed; null: nothing does.
-  [[nodiscard]] const ComposedMaterial::Textures* Find(int material) const;
+  // What takes the place of a material's own in this frame, once composed, and what is left to
+  // fragments. Without textures: nothing is composed.
+  struct Composed {
+    ComposedMaterial::Textures textures;
+    WrinklePart rest = WrinklePart::kAll;
+  };
+  [[nodiscard]] Composed Find(int material) const;
   // Something that Find() gives is not up to date.
   [[nodiscard]] bool is_stale() const;
   void Compose();
 
  private:
   struct Entry {
+    std::unique_ptr<SkinnedMasks> skinned;  // null: nobody asked yet
     std::unique_ptr<ComposedMaterial> composed;
     ComposedMaterial::Wanted wanted;  // by the last frame that was planned
+    WrinklePart rest = WrinklePart::kAll;
     bool is_used = false;
     bool is_stale = false;
   };
@@ -62,20 +75,32 @@ class WrinkleCache {
     float pixels = 0.0f;         // that it may cover
   };
   [[nodiscard]] Sight Look(int material, const View& view) const;
-  [[nodiscard]] ComposeSelection SelectionOf(const GpuMaterial& material) const;
+  // Those of the mode in which the tables were updated.
+  [[nodiscard]] Entry& EntryOf(int material);
+  [[nodiscard]] const Entry& EntryOf(int material) const;
+  [[nodiscard]] std::unique_ptr<SkinnedMasks> FindSkinned(int material) const;
+  [[nodiscard]] ComposeSelection SelectionOf(const GpuMaterial& material,
+                                             const SkinnedMasks& skinned) const;
   [[nodiscard]] glm::ivec2 SizeFor(const GpuMaterial& material, const Sight& sight) const;
-  [[nodiscard]] ComposeInk InkOf(const ComposedMaterial& composed, const Settings& settings) const;
+  [[nodiscard]] ComposeInk InkOf(const ComposedMaterial& composed, WrinklePart rest,
+                                 const Settings& settings) const;
+  // A map of the selection as the table has it in one of its slots.
+  void AddMap(const ComposeSelection& selection, std::size_t map, std::size_t slot,
+              ComposeInk* ink) const;
   // Which regions are seen, and from which level on.
   void LookAtRegions(int material, const ComposedMaterial& composed, const View& view,
                      ComposedMaterial::Wanted* wanted) const;
+  void LookAtRegion(const MaskRegion& region, std::size_t channel, const ComposedMaterial& composed,
+                    const View& view, ComposedMaterial::Wanted* wanted) const;
   // There is a texture of the right size for it; false: it would be too large.
   [[nodiscard]] bool Prepare(const GpuMaterial& material, const Sight& sight, Entry* entry) const;
   void PlanMaterial(int index, const Settings& settings, const View& view, Entry* entry);
 
   const GpuCharacter* gpu_;
   const WrinkleTables* tables_;
+  std::span<const glm::mat4> inverse_bind_matrices_;
   bool is_software_;
-  std::vector<Entry> entries_;  // by material
+  std::vector<Entry> entries_;  // by material; of each, with the rig's masks and with skinned ones
 };
 
 }  // namespace furrow::render

@@ -61,8 +61,28 @@ std::size_t WrinkleBlockSize(int num_maps, int num_mask_layers) {
   return maps * (sizeof(ActiveMap) + sizeof(glm::vec4) * num_mask_layers);
 }
 
-std::size_t NumMaps(const WrinkleTable& table, WrinklePart part) {
-  return part == WrinklePart::kDynamic ? table.num_dynamic : table.maps.size();
+WrinkleNeeds NeedsOf(const WrinkleTable& table, WrinklePart part) {
+  switch (part) {
+    case WrinklePart::kAll: break;
+    case WrinklePart::kDynamic:
+      return {table.num_dynamic, table.paints_dynamic, table.uses_dynamic};
+    case WrinklePart::kSliding:
+      return {table.num_sliding, table.paints_sliding, table.num_sliding > 0};
+  }
+  return {table.maps.size(), table.uses_texture, table.uses_dynamic};
+}
+
+PartMasks MasksOf(const WrinkleTable& table, WrinklePart part) {
+  PartMasks masks;
+  const auto num_maps = static_cast<std::int32_t>(NeedsOf(table, part).num_maps);
+  for (std::size_t subject = 0; subject + 1 < table.first_masks.size(); ++subject) {
+    masks.first.push_back(static_cast<std::uint32_t>(masks.masks.size()));
+    for (std::uint32_t i = table.first_masks[subject]; i < table.first_masks[subject + 1]; ++i) {
+      if (table.dynamic_masks[i].slot < num_maps) masks.masks.push_back(table.dynamic_masks[i]);
+    }
+  }
+  masks.first.push_back(static_cast<std::uint32_t>(masks.masks.size()));
+  return masks;
 }
 
 int PaddedMaps(std::size_t active, int num_maps) {
@@ -73,7 +93,7 @@ int PaddedMaps(std::size_t active, int num_maps) {
 std::vector<std::uint8_t> WrinkleBlock(const WrinkleTable& table, WrinklePart part, int num_maps,
                                        const WrinkleLayout& layout) {
   std::vector<std::uint8_t> block(WrinkleBlockSize(num_maps, layout.num_mask_layers));
-  const std::size_t count = NumMaps(table, part);
+  const std::size_t count = NeedsOf(table, part).num_maps;
   if (count == 0) return block;
   const std::size_t weights = 4 * MapSlots(num_maps) * sizeof(ActiveMap);
   const auto layers = static_cast<std::size_t>(layout.num_mask_layers);
@@ -216,6 +236,17 @@ std::vector<WrinkleTables::Painted> WrinkleTables::painted(WrinkleGroup group) c
   return painted;
 }
 
+std::vector<SkinnedShare> WrinkleTables::skinned(WrinkleGroup group) const {
+  std::vector<SkinnedShare> shares;
+  if (group == WrinkleGroup::kNone) return shares;
+  for (const SkinnedShare& share : dynamic_.Shares(mask_mode_)) {
+    if (maps_[static_cast<std::size_t>(share.mask.map)].in_group[static_cast<int>(group)]) {
+      shares.push_back(share);
+    }
+  }
+  return shares;
+}
+
 Status WrinkleTables::CarryValues(const NamedSubject& named) {
   const PosedSubject& subject = *named.subject;
   const auto weight_names = subject.binding->weight_names();
@@ -237,8 +268,7 @@ Status WrinkleTables::CarryValues(const NamedSubject& named) {
 
 Status WrinkleTables::Update(const FrameRequest& request) {
   const Settings& settings = request.settings;
-  const MaskMode mode =
-      settings.view == View::kMaskDynamic ? MaskMode::kDynamic : settings.mask_mode;
+  mask_mode_ = settings.view == View::kMaskDynamic ? MaskMode::kDynamic : settings.mask_mode;
   subjects_.clear();
   influences_.clear();
   for (const NamedSubject& named : SubjectsOf(request)) {
@@ -247,7 +277,7 @@ Status WrinkleTables::Update(const FrameRequest& request) {
     if (named.subject->binding != nullptr && settings.wrinkles) {
       if (Status status = CarryValues(named); !status.ok()) return status;
     }
-    AddSubject(mode);
+    AddSubject(mask_mode_);
   }
   for (int group = 0; group < kNumWrinkleGroups; ++group) {
     FillTable(group, settings.wrinkle_strength);
@@ -278,23 +308,24 @@ bool WrinkleTables::IsTextured(std::size_t map) const {
       subjects_, [&](const SubjectWrinkles& subject) { return bool(subject.textured[map]); });
 }
 
-bool WrinkleTables::IsDynamic(std::size_t map) const {
-  const auto raises = [&](const DynamicMaskBlock& mask) {
-    return mask.slot == static_cast<int>(map);
-  };
-  return std::ranges::any_of(subjects_, [&](const SubjectWrinkles& subject) {
-    return std::ranges::any_of(subject.masks, raises);
-  });
+WrinkleTables::Source WrinkleTables::SourceOf(std::size_t map) const {
+  Source source = Source::kPainted;
+  for (const SubjectWrinkles& subject : subjects_) {
+    for (const DynamicMaskBlock& mask : subject.masks) {
+      if (mask.slot != static_cast<int>(map)) continue;
+      source = std::min(source, mask.column < 0 ? Source::kSliding : Source::kSkinned);
+    }
+  }
+  return source;
 }
 
-// Those of which vertices bring a mask, or the others. `slots`: where each map of the rig is in the
-// list; -1: nobody needs it.
-void WrinkleTables::ListMaps(int group, float strength, bool dynamic, std::vector<int>* slots) {
+// `slots`: where each map of the rig is in the list; -1: nobody needs it.
+void WrinkleTables::ListMaps(int group, float strength, Source source, std::vector<int>* slots) {
   WrinkleTable& table = tables_[group];
   for (std::size_t map = 0; map < maps_.size(); ++map) {
     const bool textured = IsTextured(map);
-    if (!maps_[map].in_group[group] || IsDynamic(map) != dynamic) continue;
-    if (!textured && !dynamic) continue;
+    if (!maps_[map].in_group[group] || SourceOf(map) != source) continue;
+    if (!textured && source == Source::kPainted) continue;
     (*slots)[map] = static_cast<int>(table.maps.size());
     ActiveMap entry = maps_[map].entry;
     entry.amplitude *= strength;
@@ -308,11 +339,14 @@ void WrinkleTables::FillTable(int group, float strength) {
   WrinkleTable& table = tables_[group];
   table = {};
   std::vector<int> slots(maps_.size(), -1);
-  ListMaps(group, strength, true, &slots);
+  ListMaps(group, strength, Source::kSliding, &slots);
+  table.num_sliding = table.maps.size();
+  table.paints_sliding = table.uses_texture;
+  ListMaps(group, strength, Source::kSkinned, &slots);
   table.num_dynamic = table.maps.size();
   table.uses_dynamic = table.num_dynamic > 0;
   table.paints_dynamic = table.uses_texture;
-  ListMaps(group, strength, false, &slots);
+  ListMaps(group, strength, Source::kPainted, &slots);
   const auto layers = static_cast<std::ptrdiff_t>(layout_.num_mask_layers);
   for (const SubjectWrinkles& subject : subjects_) {
     table.first_masks.push_back(static_cast<std::uint32_t>(table.dynamic_masks.size()));

@@ -33,16 +33,19 @@ struct ActiveMap {
 static_assert(sizeof(ActiveMap) == 32);
 
 // The active list of one group of surfaces, as the shaders read it: the maps that some subject of
-// the frame needs, first those of which vertices bring a mask, then those with painted masks alone.
+// the frame needs, first those of which a mask slides, then those of which vertices bring another
+// mask, then those with painted masks alone.
 struct WrinkleTable {
   std::vector<ActiveMap> maps;
-  std::size_t num_dynamic = 0;                  // those that come first
+  std::size_t num_sliding = 0;                  // those of which a mask slides
+  std::size_t num_dynamic = 0;                  // those of which vertices bring any mask
   std::vector<glm::vec4> mask_weights;          // subjects x maps x mask layers
   std::vector<DynamicMaskBlock> dynamic_masks;  // subject after subject
   std::vector<std::uint32_t> first_masks;       // where each subject's begin, and the end
   bool uses_texture = false;
   bool uses_dynamic = false;
-  bool paints_dynamic = false;  // some of those that come first have painted masks as well
+  bool paints_sliding = false;  // some of which a mask slides have painted masks as well
+  bool paints_dynamic = false;  // ... and some of which vertices bring any mask
   bool has_heights = false;     // of some map
 };
 
@@ -62,10 +65,21 @@ struct WrinkleLayout {
 
 // vec4s that carry the dynamic masks of `num_maps` maps: MAP_SLOTS of the shaders.
 [[nodiscard]] constexpr int MapSlots(int num_maps) { return num_maps < 1 ? 1 : (num_maps + 3) / 4; }
-// Of a WrinkleTable's maps: all, or those alone of which vertices bring a mask.
-enum class WrinklePart { kAll, kDynamic };
-inline constexpr int kNumWrinkleParts = 2;
-[[nodiscard]] std::size_t NumMaps(const WrinkleTable& table, WrinklePart part);
+// Of a WrinkleTable's maps: all, or those alone of which vertices bring a mask, or a mask slides.
+enum class WrinklePart { kAll, kDynamic, kSliding };
+inline constexpr int kNumWrinkleParts = 3;
+struct WrinkleNeeds {
+  std::size_t num_maps = 0;  // the first of the table
+  bool uses_texture = false;
+  bool uses_dynamic = false;
+};
+[[nodiscard]] WrinkleNeeds NeedsOf(const WrinkleTable& table, WrinklePart part);
+// The dynamic masks of a part, and where each subject's begin, and the end.
+struct PartMasks {
+  std::vector<DynamicMaskBlock> masks;
+  std::vector<std::uint32_t> first;
+};
+[[nodiscard]] PartMasks MasksOf(const WrinkleTable& table, WrinklePart part);
 
 // ACTIVE_MAPS of the shaders for so many of a rig's `num_maps`: a power of two, so that a face that
 // begins to move does not wait for one program after the other. The rest of the list is zeros,
@@ -106,6 +120,14 @@ class WrinkleTables {
   // subjects x joints x mask_columns(): how much each joint raises each column of dynamic masks.
   [[nodiscard]] std::span<const float> influences() const { return influences_; }
   [[nodiscard]] int mask_columns() const { return dynamic_.num_columns(); }
+  // How much a joint of the first subject raises a column.
+  [[nodiscard]] float influence(int joint, int column) const {
+    return influences_[static_cast<std::size_t>(joint * mask_columns() + column)];
+  }
+  // The masks that the last Update() asked for.
+  [[nodiscard]] MaskMode mask_mode() const { return mask_mode_; }
+  // What joints may raise of dynamic masks, in any pose, on the group's surfaces; by mask_mode().
+  [[nodiscard]] std::vector<SkinnedShare> skinned(WrinkleGroup group) const;
   // Mask layers x 4 channels: each region's colour for the view mask_texture; black for channels of
   // regions that are not drawn on the group's surfaces. kNone: all black.
   [[nodiscard]] std::span<const glm::vec4> mask_palette(WrinkleGroup group) const {
@@ -155,15 +177,18 @@ class WrinkleTables {
   void DescribePalettes(const wrinkle::Rig& rig);
   [[nodiscard]] Status CarryValues(const NamedSubject& named);
   void AddSubject(MaskMode mode);
+  // What masks a map in this frame, the first of the list that does.
+  enum class Source { kSliding, kSkinned, kPainted };
   [[nodiscard]] bool IsTextured(std::size_t map) const;
-  [[nodiscard]] bool IsDynamic(std::size_t map) const;
-  void ListMaps(int group, float strength, bool dynamic, std::vector<int>* slots);
+  [[nodiscard]] Source SourceOf(std::size_t map) const;
+  void ListMaps(int group, float strength, Source source, std::vector<int>* slots);
   void FillTable(int group, float strength);
 
   WrinkleLayout layout_;
   wrinkle::RigBinding binding_;   // the character's rig on its own skeleton
   wrinkle::RigBinding skinning_;  // the same without painted masks: MaskMode::kDynamic
   DynamicMasks dynamic_{&binding_, &skinning_};
+  MaskMode mask_mode_ = MaskMode::kRig;
   std::vector<MapInfo> maps_;
   std::vector<WeightSlot> slots_;
   std::vector<glm::vec4> palettes_[kNumWrinkleGroups + 1];

@@ -35,7 +35,8 @@ float lambdaOf(DynamicMask mask, float skinWeight) {
   return smoothstep(0.0, max(mask.smoothWidth, 1e-6), skinWeight);
 }
 
-// Thesis 4.2: clamp(sum over the vertex's joints of lambda(skin weight) * influence, 0, 1).
+// Thesis 4.2: the sum over the vertex's joints of lambda(skin weight) * influence, which
+// wrinkleCoefficient() clamps to [0, 1].
 float skinnedMask(DynamicMask mask, uint subject, uvec4 joints, vec4 skinWeights) {
   float sum = 0.0;
   for (int i = 0; i < 4; ++i) {
@@ -43,7 +44,7 @@ float skinnedMask(DynamicMask mask, uint subject, uvec4 joints, vec4 skinWeights
     float influence = u_joint_influences[row * uint(u_mask_columns) + uint(mask.column)];
     sum += lambdaOf(mask, skinWeights[i]) * influence;
   }
-  return clamp(sum, 0.0, 1.0);
+  return sum;
 }
 
 // Mirrors wrinkle::SlidingMaskAt(), times the wrinkle weight. `position`: rest pose.
@@ -64,7 +65,7 @@ float slidingMask(DynamicMask mask, vec3 position) {
          (1.0 - smoothstep((1.0 - SOFT) * radius, radius, away));
 }
 
-// The masks of all active maps at a vertex, each in [0, 1]; `position`: rest pose.
+// The masks of all active maps at a vertex, not yet clamped; `position`: rest pose.
 void dynamicMasksAt(vec3 position, uint subject, uvec4 joints, vec4 skinWeights,
                     out vec4 masks[MAP_SLOTS]) {
   for (int slot = 0; slot < MAP_SLOTS; ++slot) masks[slot] = vec4(0.0);
@@ -74,5 +75,4 @@ void dynamicMasksAt(vec3 position, uint subject, uvec4 joints, vec4 skinWeights,
                                   : skinnedMask(mask, subject, joints, skinWeights);
     masks[mask.slot >> 2][mask.slot & 3] += value;
   }
-  for (int slot = 0; slot < MAP_SLOTS; ++slot) masks[slot] = min(masks[slot], vec4(1.0));
 }

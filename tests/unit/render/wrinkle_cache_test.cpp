@@ -1,120 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/wrinkle_cache.h"
 
-#include <algorithm>
-#include <map>
-#include <random>
-
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
-#include "render/renderer.h"
 #include "scene_probe.h"
-#include "test_character.h"
+#include "wrinkle_cache_scene.h"
 
-// What is composed beforehand is what fragments compose.
 namespace furrow::render {
 namespace {
 
-constexpr const char* kShapes[] = {"l_stretch", "l_squash", "r_stretch", "r_squash"};
-
-// How often each pass ran.
-class PassCounter final : public FrameGraphObserver {
- public:
-  void BeforePass(std::string_view pass) override { ++runs_[std::string(pass)]; }
-  void AfterPass(std::string_view, const std::vector<Written>&) override {}
-  [[nodiscard]] int Take(const std::string& pass) { return std::exchange(runs_[pass], 0); }
-
- private:
-  std::map<std::string, int> runs_;
-};
-
-// The egg with a base normal map, and maps with colours and cavities.
-character::Character HeadWithLooks() {
-  character::Character head = test::MakeHead();
-  const auto add = [&](character::Picture picture) {
-    head.pictures.push_back(std::move(picture));
-    return static_cast<int>(head.pictures.size()) - 1;
-  };
-  head.materials[0].normal_texture = add(test::NormalMapOf("pores", 256, [](float u, float v) {
-    return 0.001f * std::sin(90.0f * u) * std::sin(70.0f * v);
-  }));
-  head.materials[0].base_colour_texture = add(test::MakePicture("skin", 128, [](float u, float v) {
-    return glm::vec4(0.8f, 0.6f + 0.2f * u, 0.5f + 0.3f * v, 1.0f);
-  }));
-  for (const auto& [map, name] : {std::pair(0, "pale"), {1, "red"}}) {
-    head.rig.wrinkle_maps[static_cast<std::size_t>(map)].colour = name;
-    head.rig.wrinkle_maps[static_cast<std::size_t>(map)].cavity = "cavity";
-    const float green = map == 0 ? 0.9f : 0.6f;
-    head.rig_pictures.emplace_back(name, add(test::MakePicture(name, 64, [=](float u, float) {
-                                     return glm::vec4(0.9f, green * (0.5f + 0.5f * u), green, 1.0f);
-                                   })));
-  }
-  head.rig_pictures.emplace_back("cavity", add(test::MakePicture("cavity", 32, [](float, float v) {
-                                   return glm::vec4(0.4f + 0.5f * v);
-                                 })));
-  return head;
-}
-
-FrameRequest RequestOf(const test::Subject& subject, const Camera& camera, View view, int size) {
-  FrameRequest request;
-  request.model = subject.model;
-  request.binding = &subject.binding;
-  request.wrinkle_weights = subject.weights;
-  request.filtered_values = subject.driver_values;
-  request.camera = camera;
-  request.width = request.height = size;
-  request.settings.view = view;
-  return request;
-}
-
-struct Difference {
-  double mean = 0.0;
-  double share = 0.0;  // of values that are off by more than `much`
-};
-
-template <class Value>
-Difference Compare(const std::vector<Value>& a, const std::vector<Value>& b, double much) {
-  Difference difference;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double error = std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i]));
-    difference.mean += error / static_cast<double>(a.size());
-    if (error > much) difference.share += 1.0 / static_cast<double>(a.size());
-  }
-  return difference;
-}
-
-std::vector<float> Numbers(const std::vector<glm::vec4>& pixels) {
-  std::vector<float> numbers;
-  for (const glm::vec4& pixel : pixels) numbers.insert(numbers.end(), {pixel.r, pixel.g, pixel.b});
-  return numbers;
-}
-
-class WrinkleCacheTest : public testing::Test {
- protected:
-  // New weights: of all shapes, or as in a live face of some.
-  void Randomise(bool all) {
-    std::uniform_real_distribution<float> weight(0.0f, 1.0f);
-    for (const char* shape : kShapes) {
-      if (all || random_() % 2 == 0) subject_.Set(shape, weight(random_));
-    }
-    subject_.Solve();
-  }
-  Image Draw(bool cache, View view = View::kFinal) {
-    FrameRequest request = RequestOf(subject_, camera_, view, 160);
-    request.settings.shading = Shading::kSkin;
-    request.settings.anti_aliasing.samples = 1;
-    request.settings.bloom.strength = 0.0f;
-    request.settings.wrinkle_maps.cache = cache;
-    return test::Expect(renderer_->Render(request));
-  }
-
-  character::Character head_ = HeadWithLooks();
-  test::Subject subject_{head_};
-  std::unique_ptr<Renderer> renderer_ = test::Expect(Renderer::Create(head_));
-  Camera camera_ = test::Expect(renderer_->Preset("face"));
-  std::mt19937 random_{11};
-};
+using test::Compare;
+using test::Difference;
+using test::kShapes;
+using test::Numbers;
+using test::PassCounter;
+using test::RequestOf;
+using test::WrinkleCacheTest;
 
 // From near and from far: with the finest level, and with coarser ones.
 TEST_F(WrinkleCacheTest, NormalsAreThoseOfFragmentsForAnyWeights) {
