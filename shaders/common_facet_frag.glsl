@@ -37,7 +37,7 @@ Facet facetHere() {
   facet.position = v_position;
   vec4 base = beginSurface(masks, dynamicMasks);
   facet.colour = base.rgb;
-  facet.geometric = normalizeOrZero(gl_FrontFacing ? v_normal : -v_normal);
+  facet.geometric = normalizeOrZero(facesCamera() ? v_normal : -v_normal);
   float variance;
   facet.normal = surfaceNormal(masks, dynamicMasks, variance);
   float rough = roughness();

@@ -74,6 +74,10 @@ vec4 beginSurface(out vec4 masks[MASK_LAYERS], out vec4 dynamicMasks[MAP_SLOTS])
   return base;
 }
 
+// Whether v_normal is that of the side which is seen. Cards of hair have the normals of the hair's
+// mass, which has one side.
+bool facesCamera() { return MATERIAL == MATERIAL_HAIR || gl_FrontFacing; }
+
 // Unit, model space. `variance`: of the slopes within the pixel.
 vec3 surfaceNormal(vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS], out float variance) {
 #if HAS_BASE_NORMAL
@@ -88,7 +92,7 @@ vec3 surfaceNormal(vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS], out fl
   vec3 n = normalFromDerivative(base.xy);
 #endif
   vec3 normal = tangentToModel(n, v_normal, v_tangent);
-  return gl_FrontFacing ? normal : -normal;
+  return facesCamera() ? normal : -normal;
 }
 
 // Share of the specular light that gets in and out again, [0, 1]. No skin reflects less than 2%:

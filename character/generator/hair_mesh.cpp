@@ -31,7 +31,7 @@ constexpr float kLockArea = 0.52f;               // square centimetres of scalp 
 // Height of the hairline by azimuth, degrees from the front: forehead, temple, sideburn, ear, nape.
 constexpr Knot kHairline[] = {{0, 6.3f},    {14, 6.45f},  {26, 6.5f},  {36, 5.9f},   {44, 4.7f},
                               {51, 3.4f},   {58, 2.4f},   {63, 1.0f},  {68, -1.2f},  {75, -1.6f},
-                              {80, 0.7f},   {90, 1.3f},   {104, 1.2f}, {113, -0.6f}, {122, -4.0f},
+                              {80, -0.3f},  {90, 0.3f},   {104, 0.2f}, {113, -1.0f}, {122, -4.0f},
                               {135, -6.6f}, {160, -7.6f}, {180, -7.8f}};
 
 std::uint32_t Add(HeadMesh* hair, const vec3& place, const vec2& uv) {
@@ -63,7 +63,7 @@ void AddCap(const HeadGrid& grid, HeadMesh* hair) {
     vec3 place = skin[at(c, r)];
     const float inside = InsideHairline(place);
     place += grid.shape().Normal(place) *
-             (-0.12f + 0.24f * SmoothStep(-0.3f, 1.2f, inside - kCapBehind));
+             (-0.12f + 0.20f * SmoothStep(-0.3f, 1.2f, inside - kCapBehind));
     if (std::abs(c) == last) place.x = 0.0f;
     const vec3 normal = grid.shape().Normal(place);
     const vec2 uv = glm::mix(vec2(0.01f), vec2(0.99f), HeadUv(grid.Plain(c, r)));
@@ -109,7 +109,7 @@ void AddLock(const HairLock& lock, int tile, HeadMesh* hair) {
 
 // Full in the mass, a few strands where the hair begins.
 int ChooseTile(float inside, int number) {
-  const bool sparse = Hash(number, 10, 9) < SmoothStep(0.7f, -0.1f, inside);
+  const bool sparse = Hash(number, 10, 9) < SmoothStep(1.1f, 0.2f, inside);
   const float choice = Hash(number, 11, 9);
   return sparse ? paint::kFullTiles + static_cast<int>(choice * paint::kSparseTiles)
                 : static_cast<int>(choice * paint::kFullTiles);
@@ -144,7 +144,7 @@ HeadMesh MakeHair(const HeadShape& shape) {
       const float inside = InsideHairline(middle);
       if (inside < -0.25f) continue;
       // Denser where the hairline shows.
-      due += CellArea(grid, c, r) / (kLockArea * (inside < 0.9f ? 0.5f : 1.0f));
+      due += CellArea(grid, c, r) / (kLockArea * (inside < 0.9f ? 0.4f : 1.0f));
       for (; due >= 1.0f && number < kMaxLocks; due -= 1.0f, ++number) {
         const vec2 jitter(Hash(number, 1, 7), Hash(number, 2, 7));
         const vec3 root =

@@ -65,7 +65,7 @@ Style LongHair(const HeadShape& shape, const vec3& root) {
   Style style;
   style.comb = to - from * cosine;
   style.length = std::min(9.0f, left);
-  style.body = (0.26f + 0.24f * Top(root)) * SmoothStep(-1.0f, 4.0f, left);
+  style.body = (0.16f + 0.16f * Top(root)) * SmoothStep(-1.0f, 4.0f, left);
   style.width = 0.52f;
   return style;
 }
@@ -93,7 +93,7 @@ HairLock GrowLock(const HeadShape& shape, const vec3& root, int number, int sect
       0.16f * vec3(Noise(root * 0.45f), Noise(root * 0.45f + 20.0f), Noise(root * 0.45f + 40.0f)) +
       0.12f * (vec3(Hash(number, 5, 9), Hash(number, 6, 9), Hash(number, 7, 9)) - 0.5f);
   HairLock lock;
-  lock.width = style.width * (0.8f + 0.4f * Hash(number, 8, 9)) * (0.6f + 0.4f * edge);
+  lock.width = style.width * (0.8f + 0.4f * Hash(number, 8, 9)) * (0.45f + 0.55f * edge);
   const float tip = glm::mix(0.5f, 0.35f, WomanShare(shape));
   vec3 p = root - shape.Normal(root) * 0.05f;
   for (int i = 0; i <= sections; ++i) {
@@ -106,7 +106,7 @@ HairLock GrowLock(const HeadShape& shape, const vec3& root, int number, int sect
       p += glm::normalize(along) * (length / static_cast<float>(sections));
       // It rises from the scalp and lies down again.
       const float height =
-          0.04f + body * SmoothStep(0.0f, 0.4f, t) * glm::mix(1.0f, tip, SmoothStep(0.5f, 1.0f, t));
+          0.09f + body * SmoothStep(0.0f, 0.4f, t) * glm::mix(1.0f, tip, SmoothStep(0.5f, 1.0f, t));
       p += shape.Normal(p) * (height - shape.Distance(p));
     }
     lock.path.push_back(p);

@@ -102,8 +102,10 @@ vec3 LidRims(vec3 colour, const vec3& p) {
   const float wet = SmoothStep(1.36f, 1.27f, ball) * near;
   colour = glm::mix(colour, vec3(0.66f, 0.38f, 0.34f), 0.6f * wet);
   const float edge = Bump(ball - 1.41f, 0.045f) * near;
-  const float lash = edge * (eye.y > 0.0f ? 0.55f : 0.22f);
-  colour = glm::mix(colour, vec3(0.20f, 0.11f, 0.09f), lash);
+  const float upper = SmoothStep(-0.1f, 0.25f, eye.y);
+  const float shade = Bump(ball - 1.47f, 0.10f) * near * upper;  // of the lashes on the lid
+  const float lash = glm::mix(0.25f, 0.75f, upper) * edge + 0.22f * shade;
+  colour = glm::mix(colour, vec3(0.20f, 0.11f, 0.09f), std::min(lash, 0.85f));
   const float caruncle = Spot(q, {kInnerCanthusX + 0.08f, -0.1f, 8.0f}, {0.20f, 0.2f, 0.6f});
   return glm::mix(colour, vec3(0.76f, 0.42f, 0.38f), 0.6f * caruncle);
 }
@@ -112,15 +114,16 @@ vec3 LidRims(vec3 colour, const vec3& p) {
 // forehead and back at the temples. The cap and the locks begin behind it.
 vec3 Roots(const vec3& colour, const vec3& p, const vec3& hair) {
   const float inside = InsideHairline(p);
-  if (inside < -1.2f || std::abs(p.x) > 8.1f) return colour;
+  if (inside < -1.2f) return colour;
   const float temple = SmoothStep(4.2f, 6.0f, std::abs(p.x));
   const float across = glm::mix(p.x + 0.35f * p.y, 0.9f * p.y + 0.4f * p.z, temple);
   const float along = glm::mix(p.y, p.z, temple);
   const float hairs = 0.45f * Noise({11.0f * across, 1.2f * along, 2.0f}) +
                       0.30f * Noise({24.0f * across, 2.0f * along, 7.0f});
-  const float share =
-      SmoothStep(-0.45f, 0.75f, inside + hairs) * SmoothStep(8.1f, 7.3f, std::abs(p.x));
-  return glm::mix(colour, hair * (1.0f + 0.45f * hairs), 0.8f * share);
+  const float ear = SmoothStep(7.3f, 8.1f, std::abs(p.x)) * SmoothStep(2.3f, 1.7f, p.y) *
+                    SmoothStep(0.6f, 0.2f, p.z);
+  const float share = SmoothStep(-0.45f, 0.55f, inside + hairs) * (1.0f - ear);
+  return glm::mix(colour, hair * (1.0f + 0.35f * hairs), 0.96f * share);
 }
 
 glm::vec4 HeadColour(const Texel& texel, const FaceParameters& face) {
@@ -180,7 +183,7 @@ Picture PaintSkinColour(const Mesh& skin, const HeadShape& shape, int size) {
         if (OnHand(texel)) return HandColour(texel);
         const float deep = InsideMouth(ModelToHead(texel.position), shape);
         if (deep <= 0.0f) return HeadColour(texel, shape.face());
-        return {glm::mix(vec3(0.50f, 0.22f, 0.20f), vec3(0.17f, 0.05f, 0.045f), deep), 1.0f};
+        return {glm::mix(vec3(0.56f, 0.26f, 0.24f), vec3(0.30f, 0.10f, 0.09f), deep), 1.0f};
       });
 }
 

@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "character/generator/head_mesh.h"
 #include "character/generator/mesh_tools.h"
 #include "character/generator/skin_paint.h"
 #include "character/paint/canvas.h"
@@ -18,7 +19,7 @@ using glm::vec2;
 using glm::vec3;
 using paint::Texel;
 
-constexpr int kNormalBits = 11;
+constexpr int kNormalBits = 9;
 
 // How coarse the pores are: nose and inner cheeks most, lids least.
 float PoreShare(const vec3& q) {
@@ -97,6 +98,9 @@ Picture PaintSkinRoughness(const Mesh& skin, int size) {
                          rough -= 0.10f * Spot(q, {3.3f, 0.7f, 8.5f}, {1.7f, 0.7f, 1.5f});
                          rough += 0.05f * Spot(q, {5.2f, -5.0f, 5.0f}, {1.8f, 2.5f, 3.0f});
                          rough = glm::mix(rough, 0.42f, LipShare(p));
+                         rough += 0.16f * SmoothStep(7.4f, 7.9f, q.x);  // ears are dry
+                         // Between roots no skin shines.
+                         rough = glm::mix(rough, 1.0f, SmoothStep(-0.5f, 0.4f, InsideHairline(p)));
                          rough = glm::mix(rough, 0.9f, Bump(p.y - kMouthY, 0.10f) * LipShare(p));
                        }
                        return {0.0f, std::clamp(rough, 0.0f, 1.0f), 0.0f, 1.0f};
@@ -110,9 +114,11 @@ Picture PaintSkinThickness(const Mesh& skin, const HeadShape& shape, int size) {
         const vec3 p = ModelToHead(texel.position);
         float thick = 1.2f;  // fingers
         if (!OnHand(texel)) {
-          // Ears are a mesh of their own: what stands off the head is gristle of 3 to 5 mm.
+          // Ears are a mesh of their own: what stands off the head is gristle of 2 mm, the lobe
+          // fat.
           const float off = shape.Distance(p);
-          thick = off > 0.15f ? 0.35f : Thickness(shape, p, texel.normal);
+          const float ear = glm::mix(0.32f, 0.16f, SmoothStep(-4.6f, -3.2f, p.y));
+          thick = off > 0.15f ? ear : Thickness(shape, p, texel.normal);
         }
         return {0.0f, std::clamp(thick / (100.0f * kFullThickness), 0.0f, 1.0f), 0.0f, 1.0f};
       });

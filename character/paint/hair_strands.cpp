@@ -62,8 +62,8 @@ Strand MakeStrand(const StrandLook& look, int tile, int layer, int number) {
   strand.tip = glm::mix(strand.root, wisp, 0.6f) * 0.9f + 0.05f + 0.05f * (random(4) - 0.5f);
   strand.wave = 0.035f * (random(5) - 0.5f);
   strand.phase = 6.3f * random(6);
-  strand.begin = (sparse ? 0.45f : 0.34f) * random(7);  // roots of a card lie apart
-  strand.end = glm::mix(sparse ? 0.55f : 0.74f, 1.0f, random(8));
+  strand.begin = (sparse ? 0.18f : 0.22f) * random(7);  // roots of a card lie apart
+  strand.end = glm::mix(0.52f, 1.0f, random(8));
   strand.half_width = (sparse ? 0.7f : 1.0f) * glm::mix(0.010f, 0.022f, random(9));
   const float silver =
       std::clamp(look.grey_share + 0.30f * (random(10) - 0.5f) * look.grey_share, 0.0f, 1.0f);
@@ -98,7 +98,7 @@ class TilePainter {
       const float x = left_ + width_ * strand.Across(t);
       const float half = std::max(width_ * strand.HalfWidth(t), 0.35f);
       // Roots lie in the shade of what grows over them.
-      const vec3 colour = strand.colour * glm::mix(0.78f, 1.0f, glm::smoothstep(0.05f, 0.5f, t));
+      const vec3 colour = strand.colour * glm::mix(0.90f, 1.0f, glm::smoothstep(0.05f, 0.5f, t));
       const int last = static_cast<int>(std::ceil(x + half));
       for (int column = static_cast<int>(x - half); column <= last; ++column) {
         const float from = static_cast<float>(column) + 0.5f - x;
