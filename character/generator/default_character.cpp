@@ -94,6 +94,8 @@ void AddHeadParts(const CharacterOptions& options, const HeadShape& shape, Chara
 
   Material lashes = MakeMaterial("lashes", Material::Kind::kHair, 0.7f);
   lashes.base_colour = glm::vec4(0.012f, 0.008f, 0.006f, 1.0f);
+  lashes.base_colour_texture = AddPicture(character, PaintLash());
+  lashes.alpha_cutoff = paint::kStrandCutoff;
   lashes.double_sided = true;
   AddMesh(character, SkinnedPart(character->skeleton, MakeLashes(shape)), std::move(lashes));
 

@@ -46,12 +46,11 @@ vec3 Along(const std::vector<vec3>& line, float t) {
   return glm::mix(line[i], line[i + 1], at - static_cast<float>(i));
 }
 
-// One lash: a narrow strip of three joints that tapers to a point. `cell` places its UVs.
+// One lash: a strip of three joints, wider than the hair that PaintLash() leaves of it.
 void AddLash(const vec3& root, const vec3& out, const vec3& curl, const vec3& across, float length,
-             float eye_side, int cell, HeadMesh* lashes) {
+             float eye_side, HeadMesh* lashes) {
   const auto first = static_cast<std::uint32_t>(lashes->mesh.vertices.size());
-  constexpr float kHalf[] = {0.012f, 0.009f, 0.002f};
-  const vec2 corner(static_cast<float>(cell % 16) / 16.0f, static_cast<float>(cell / 16) / 16.0f);
+  constexpr float kHalf = 0.036f;
   for (int k = 0; k < 3; ++k) {
     const float t = 0.5f * static_cast<float>(k);
     const vec3 middle = root + length * (out * t + curl * (t * t));
@@ -59,8 +58,8 @@ void AddLash(const vec3& root, const vec3& out, const vec3& curl, const vec3& ac
       HeadVertex info;
       info.part = kLash;
       info.eye_side = eye_side;
-      info.place = middle + across * (s * kHalf[k]);
-      AddVertex(lashes, info, corner + vec2(0.03f + 0.02f * s, 0.005f + 0.05f * t));
+      info.place = middle + across * (s * kHalf);
+      AddVertex(lashes, info, vec2(0.5f + 0.49f * s, 0.01f + 0.98f * t));
     }
   }
   for (std::uint32_t k = 0; k < 2; ++k) {
@@ -69,7 +68,7 @@ void AddLash(const vec3& root, const vec3& out, const vec3& curl, const vec3& ac
   }
 }
 
-void AddLashRow(const HeadGrid& grid, float side, bool upper, int* cell, HeadMesh* lashes) {
+void AddLashRow(const HeadGrid& grid, float side, bool upper, HeadMesh* lashes) {
   const std::vector<vec3> edge = LidEdge(grid, side, upper);
   const vec3 centre = EyeCentre(side);
   const int count = upper ? 46 : 24;
@@ -88,7 +87,7 @@ void AddLashRow(const HeadGrid& grid, float side, bool upper, int* cell, HeadMes
                          (0.55f + 0.45f * std::sin(kPi * std::min(t + 0.12f, 1.0f))) *
                          (0.85f + 0.3f * Hash(i, 3, upper));
     const vec3 across = glm::normalize(glm::cross(out, vec3(0, 1, 0)));
-    AddLash(root, out, curl, across, length, upper ? 1.0f : -1.0f, (*cell)++, lashes);
+    AddLash(root, out, curl, across, length, upper ? 1.0f : -1.0f, lashes);
   }
 }
 
@@ -114,10 +113,9 @@ HeadMesh MakeLashes(const HeadShape& shape) {
   HeadMesh lashes;
   lashes.mesh.name = "lashes";
   const HeadGrid grid(shape);
-  int cell = 0;
   for (const float side : {1.0f, -1.0f}) {
-    AddLashRow(grid, side, true, &cell, &lashes);
-    AddLashRow(grid, side, false, &cell, &lashes);
+    AddLashRow(grid, side, true, &lashes);
+    AddLashRow(grid, side, false, &lashes);
   }
   FinishSurface(&lashes.mesh);
   return lashes;

@@ -72,6 +72,22 @@ Picture PaintEyes(int size) {
   return picture;
 }
 
+Picture PaintLash() {
+  constexpr int kWidth = 32, kHeight = 16;  // seen from the front, it is short
+  Picture picture = paint::BlankPicture("lash", kWidth, kHeight, 4);
+  for (int y = 0; y < kHeight; ++y) {
+    const float t = (static_cast<float>(y) + 0.5f) / static_cast<float>(kHeight);
+    const float half = 0.36f * (1.0f - 0.5f * std::pow(t, 1.4f));
+    for (int x = 0; x < kWidth; ++x) {
+      const float across = std::abs(2.0f * (static_cast<float>(x) + 0.5f) / kWidth - 1.0f);
+      std::uint8_t* out = paint::TexelAt(&picture, x, y);
+      for (int c = 0; c < 3; ++c) out[c] = 255;
+      out[3] = paint::ToByte(SmoothStep(half + 0.06f, half - 0.06f, across));
+    }
+  }
+  return picture;
+}
+
 HairPictures PaintHair(const Mesh& hair, const FaceParameters& face, int size) {
   paint::StrandLook look;
   look.grey_share = GreyShare(face);
@@ -91,25 +107,6 @@ HairPictures PaintHair(const Mesh& hair, const FaceParameters& face, int size) {
   }
   paint::PaintStrands(look, &pictures.colour, &pictures.normals);
   return pictures;
-}
-
-Picture PaintClothColour(const Mesh& clothes, int size) {
-  const float half =
-      0.5f * static_cast<float>(size);  // sleeves and torso lie above, trousers below
-  return paint::Fill(
-      "cloth_colour", paint::RasterizeUv(clothes, size, size), size, 3, [half](const Texel& texel) {
-        const vec3 p = texel.position * 100.0f;
-        const bool trousers = static_cast<float>(texel.y) > half;
-        // Warp and weft are a texel or two wide: a hint, not a moire.
-        const float weave = Hash(texel.x / 2, 0, trousers) + Hash(0, texel.y / 2, trousers) - 1.0f;
-        const float worn = FractalNoise(p * 0.12f);
-        vec3 colour = trousers ? vec3(0.29f, 0.30f, 0.335f) : vec3(0.34f, 0.41f, 0.47f);
-        colour *= 1.0f + 0.07f * weave + 0.06f * worn;
-        const float placket =
-            trousers ? 0.0f : Bump(std::abs(p.x) - 1.6f, 0.12f) * SmoothStep(2, 6, p.z);
-        const float hem = trousers ? Bump(p.y - 9.6f, 0.15f) : Bump(p.y - 91.5f, 0.15f);
-        return vec4(colour * (1.0f - 0.35f * std::max(placket, hem)), 1.0f);
-      });
 }
 
 namespace {

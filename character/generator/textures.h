@@ -11,6 +11,10 @@ namespace furrow::character::generator {
 
 // Iris, pupil, limbus and veined white, both eyes side by side (2 size x size).
 [[nodiscard]] Picture PaintEyes(int size);
+// How much of a lash's strip is hair, in alpha: so little that its mip levels end below
+// paint::kStrandCutoff. Where a lash is thinner than about a pixel it is gone, not a row of dots;
+// the dark edge of the lid (PaintSkinColour) stays.
+[[nodiscard]] Picture PaintLash();
 // Strands with holes between them (paint::kStrandCutoff), the cap below them, and the slopes of the
 // strands.
 struct HairPictures {
@@ -18,8 +22,6 @@ struct HairPictures {
   Picture normals;
 };
 [[nodiscard]] HairPictures PaintHair(const Mesh& hair, const FaceParameters& face, int size);
-// Shirt and trousers: weave, seams, belt.
-[[nodiscard]] Picture PaintClothColour(const Mesh& clothes, int size);
 
 // The eight facial regions in two RGBA textures: brow_l, brow_r, glabella, nose; eye_l, eye_r,
 // mouth_l, mouth_r. Soft, and nothing on ears and hands.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <gtest/gtest.h>
 
 #include "character/generator/body_mesh.h"
@@ -16,6 +17,7 @@
 #include "character/generator/head_shape.h"
 #include "character/generator/mesh_tools.h"
 #include "character/generator/skinning.h"
+#include "character/generator/textures.h"
 #include "character/paint/hair_strands.h"
 
 namespace furrow::character::generator {
@@ -153,8 +155,28 @@ TEST(GeneratorMesh, UvsLieInTheUnitSquareAndDoNotOverlap) {
       ASSERT_GE(vertex.uv.y, 0.0f);
       ASSERT_LE(vertex.uv.y, 1.0f);
     }
+    if (mesh.name == "lashes") continue;  // all show the same one
     EXPECT_EQ(CountOverlap(mesh.name == "hair" ? CapOf(mesh) : mesh, 1024), 0);
   }
+}
+
+// Far away a lash is gone: its last mip level is below the cut-off, and near by all of it is drawn.
+TEST(GeneratorMesh, LashesFadeBeforeTheyAreDots) {
+  const Picture lash = PaintLash();
+  double sum = 0.0;
+  int drawn = 0;
+  for (int y = 0; y < lash.height; ++y) {
+    int row = 0;
+    for (int x = 0; x < lash.width; ++x) {
+      const float alpha =
+          ChannelAt(lash, (glm::vec2(x, y) + 0.5f) / glm::vec2(lash.width, lash.height), 3);
+      sum += alpha;
+      row += alpha >= paint::kStrandCutoff;
+    }
+    drawn += row > 0;
+  }
+  EXPECT_LT(sum / (lash.width * lash.height), paint::kStrandCutoff);
+  EXPECT_EQ(drawn, lash.height);
 }
 
 // Every edge, by place, is used at most once in each direction: neighbours agree on what is
