@@ -65,15 +65,15 @@ vec3 PlaceOf(const ToothArch& arch, float s, float h) {
 // Enamel, gums and the dark between teeth, at a place along the arch.
 vec3 ToothColour(float s, float h, bool upper, float age) {
   const vec3 enamel =
-      glm::mix(vec3(0.94f, 0.90f, 0.82f), vec3(0.84f, 0.74f, 0.57f), 0.15f + 0.6f * age);
+      glm::mix(vec3(0.97f, 0.945f, 0.90f), vec3(0.84f, 0.74f, 0.57f), 0.06f + 0.6f * age);
   vec3 colour =
       glm::mix(enamel * 0.97f, enamel * vec3(1.0f, 0.95f, 0.86f), glm::smoothstep(0.3f, 0.9f, h));
   const float across = std::abs(ToothAt(std::abs(s), upper).across);
-  colour *= 1.0f - 0.45f * glm::smoothstep(0.82f, 1.0f, across);
+  colour *= 1.0f - 0.35f * glm::smoothstep(0.86f, 1.0f, across);
   const float scallop = 0.10f * across * across - 0.08f * age;  // gums dip between the teeth
   colour = glm::mix(colour, vec3(0.62f, 0.30f, 0.29f), glm::smoothstep(0.86f, 0.96f, h + scallop));
   // The farther back, the darker: little light comes in between the lips.
-  return colour * glm::mix(1.0f, 0.45f, glm::smoothstep(1.8f, 4.2f, std::abs(s)));
+  return colour * glm::mix(1.0f, 0.55f, glm::smoothstep(2.2f, 4.2f, std::abs(s)));
 }
 
 }  // namespace
