@@ -53,10 +53,10 @@ constexpr Section kLeg[] = {{0.920f, 0.080f, 0.100f, 0.118f, 0.090f, 0.000f},
 
 // A sleeve's radius by metres from the joint of the shoulder; the cuff gathers it.
 constexpr Knot kSleeve[] = {
-    {-0.02f, 0.0350f}, {0.01f, 0.0450f},  {0.05f, 0.0560f}, {0.09f, 0.0600f},
-    {0.14f, 0.0590f},  {0.20f, 0.0565f},  {0.25f, 0.0540f}, {0.29f, 0.0530f},
-    {0.33f, 0.0520f},  {0.38f, 0.0500f},  {0.43f, 0.0470f}, {0.455f, 0.0450f},
-    {0.466f, 0.0425f}, {0.472f, 0.0375f}, {0.50f, 0.0365f}, {0.535f, 0.0360f}};
+    {-0.02f, 0.0340f}, {0.01f, 0.0430f},  {0.05f, 0.0515f}, {0.09f, 0.0540f},
+    {0.14f, 0.0530f},  {0.20f, 0.0505f},  {0.25f, 0.0480f}, {0.29f, 0.0470f},
+    {0.33f, 0.0465f},  {0.38f, 0.0450f},  {0.43f, 0.0430f}, {0.455f, 0.0415f},
+    {0.466f, 0.0400f}, {0.472f, 0.0370f}, {0.50f, 0.0362f}, {0.535f, 0.0358f}};
 
 std::vector<Section> Fitted(std::span<const Section> sections, const auto& fit) {
   std::vector<Section> fitted(sections.begin(), sections.end());
@@ -140,7 +140,7 @@ float BodyShape::Shirt(const vec3& p) const {
   const float chest =
       RodDistance(q, {0.060f, 1.325f, 0.073f}, {0.105f, 1.335f, 0.058f}, 0.042f, 0.04f);
   const float back = SmoothMin(SmoothMin(trunk, blades, 0.05f), chest, 0.05f);
-  return SmoothMin(back, Sleeve(q), 0.05f);
+  return SmoothMin(back, Sleeve(q), 0.04f);
 }
 
 float BodyShape::TrouserLeg(const vec3& p) const { return TrunkDistance(p, leg_, 2.15f); }
