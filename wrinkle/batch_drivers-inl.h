@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drivers of several subjects side by side: the formulas of pose_projection.h, hinge.h, ball.h and
-// twist.h, lane by lane. Each writes its values to rows of kLanes floats.
+// Drivers of one subject, many of a kind side by side: the formulas of hinge.h, ball.h, twist.h
+// and of blend shapes, lane by lane. Each writes its values to rows, from `lane` on.
 #if defined(FURROW_WRINKLE_BATCH_DRIVERS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FURROW_WRINKLE_BATCH_DRIVERS_INL_H_
 #undef FURROW_WRINKLE_BATCH_DRIVERS_INL_H_
@@ -9,85 +9,19 @@
 #endif
 
 #include "wrinkle/ball.h"
-#include "wrinkle/batch_lanes-inl.h"
 #include "wrinkle/batch_math-inl.h"
+#include "wrinkle/batch_points-inl.h"
+#include "wrinkle/bind_context.h"
 #include "wrinkle/hinge.h"
 #include "wrinkle/twist.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
-struct JointLanes {
-  Float3 translation;
-  FloatQuat rotation;
-  Float3 scale;
-};
-
-constexpr std::size_t kJointFloats = sizeof(Transform) / sizeof(float);
-static_assert(kJointFloats == 10 && offsetof(Transform, rotation) == 12 &&
-              offsetof(Transform, scale) == 28 && offsetof(glm::quat, x) == 0 &&
-              offsetof(glm::quat, w) == 12);
-
-HWY_INLINE Float3 LoadTranslation(const float* const* poses, int joint) {
-  const Columns columns = LoadColumns(poses, static_cast<std::size_t>(joint) * kJointFloats);
-  return {columns.c0, columns.c1, columns.c2};
-}
-
-HWY_INLINE JointLanes LoadJoint(const float* const* poses, int joint) {
-  const std::size_t first = static_cast<std::size_t>(joint) * kJointFloats;
-  const Columns begin = LoadColumns(poses, first);
-  const Columns middle = LoadColumns(poses, first + 4);
-  const Columns end = LoadColumns(poses, first + 6);  // so that nothing past the joint is read
-  return {{begin.c0, begin.c1, begin.c2},
-          {begin.c3, middle.c0, middle.c1, middle.c2},
-          {middle.c3, end.c2, end.c3}};
-}
-
-HWY_INLINE FloatQuat LoadRotation(const float* const* poses, int joint) {
-  const Columns columns = LoadColumns(poses, static_cast<std::size_t>(joint) * kJointFloats + 3);
-  return {columns.c0, columns.c1, columns.c2, columns.c3};
-}
-
-// The poses of a group. `check` turns NaN in a lane where a number that was read is not finite (or
-// where finite ones overflowed): whatever is made of such a number times 0 is no longer 0.
-struct PoseLanes {
-  const float* const* poses;
-  Float check;
-
-  HWY_INLINE void Check(Float3 v) {
-    const Float zero = hn::Zero(Floats());
-    check = hn::MulAdd(v.z, zero, hn::MulAdd(v.y, zero, hn::MulAdd(v.x, zero, check)));
-  }
-};
-
-// JointChains::Evaluate(). What it reads of a pose: read_numbers.h.
-HWY_INLINE Float3 EvaluatePoint(const JointChains::Chain& chain, PoseLanes* lanes) {
-  const float* const* const poses = lanes->poses;
-  std::span<const std::int16_t> up = chain.up;
-  Float3 position = Splat(chain.offset);
-  if (!up.empty() && chain.offset == glm::vec3(0.0f)) {  // a joint's origin: nothing to turn
-    position = LoadTranslation(poses, up.front());
-    up = up.subspan(1);
-  }
-  for (const std::int16_t index : up) {
-    const JointLanes joint = LoadJoint(poses, index);
-    position = joint.translation + Rotate(joint.rotation, joint.scale * position);
-  }
-  for (const std::int16_t index : chain.down) {
-    const JointLanes joint = LoadJoint(poses, index);
-    // Checked before the division, which makes a finite number of an infinite scale.
-    const Float3 turned = Rotate(Conjugate(joint.rotation), position - joint.translation);
-    lanes->Check(joint.scale);
-    position = turned / joint.scale;
-  }
-  lanes->Check(position);
-  return position;
-}
-
 // A unit vector; zero, as is `has_length`, where `v` has no length.
 struct LaneDirection {
   Float3 unit;
-  hn::Mask<Floats> has_length;
+  Mask has_length;
 };
 HWY_INLINE LaneDirection Direction(Float3 v) {
   const Float length = hn::Sqrt(Dot(v, v));
@@ -103,33 +37,35 @@ HWY_INLINE LaneDirection Direction(Float3 v) {
 struct BoneLanes {
   LaneDirection upper, lower;
 };
-HWY_INLINE BoneLanes EvaluateBones(const BonePair& bones, const JointChains& chains,
-                                   PoseLanes* lanes) {
-  const Float3 joint = EvaluatePoint(chains.chain(bones.joint_point), lanes);
-  const Float3 end = EvaluatePoint(chains.chain(bones.end_point), lanes);
+template <bool kScaled>
+HWY_INLINE BoneLanes EvaluateBones(const LanePlan& plan, const BoneBlock& block,
+                                   LanePose<kScaled> pose, std::size_t lane) {
+  const Float3 joint = EvaluatePoint(plan, plan.points[block.joint_point], pose, lane);
+  const Float3 end = EvaluatePoint(plan, plan.points[block.end_point], pose, lane);
   return {Direction(joint), Direction(end - joint)};
 }
 
-HWY_INLINE Float LaneBend(Float cosine, float bend_scale) {
-  return Saturate(hn::Mul(hn::Sub(Splat(1.0f), cosine), Splat(bend_scale)));
+HWY_INLINE Float LaneBend(Float cosine, Float bend_scale) {
+  return Saturate(hn::Mul(hn::Sub(Splat(1.0f), cosine), bend_scale));
 }
 
-inline void EvaluateHinge(const HingeDriverSet::Entry& entry, const JointChains& chains,
-                          PoseLanes* lanes, float* values) {
-  const BoneLanes bones = EvaluateBones(entry.bones, chains, lanes);
+template <bool kScaled>
+void Evaluate(const LanePlan& plan, const HingeBlock& block, LanePose<kScaled> pose,
+              std::size_t lane, float* values) {
+  const BoneLanes bones = EvaluateBones(plan, block, pose, lane);
   const Float3& upper = bones.upper.unit;
   const Float3& lower = bones.lower.unit;
-  Float flexed = LaneBend(Dot(upper, lower), entry.bend_scale);
-  if (entry.axis != glm::vec3(0.0f)) {
-    const Float3 normal = Cross(upper, lower);
-    const Float sine = hn::Sqrt(Dot(normal, normal));
-    const Float along = hn::Div(Dot(normal, Splat(entry.axis)), sine);
-    const Float share = Smoothstep(0.0f, kFullAlongAxis, along);
-    flexed = hn::IfThenElse(hn::Gt(sine, Splat(kLeastSine)), hn::Mul(flexed, share), flexed);
-  }
-  flexed = hn::IfThenElseZero(hn::And(bones.upper.has_length, bones.lower.has_length), flexed);
+  const Float bend = LaneBend(Dot(upper, lower), LoadRow(block.bend_scale, lane));
+  const Float3 normal = Cross(upper, lower);
+  const Float sine = hn::Sqrt(Dot(normal, normal));
+  const Float along = hn::Div(Dot(normal, LoadRows(block.axis, lane)), sine);
+  const Float share = Smoothstep(0.0f, kFullAlongAxis, along);
+  const Mask is_signed = hn::And(LoadMask(block.has_axis, lane), hn::Gt(sine, Splat(kLeastSine)));
+  const Float turned = hn::IfThenElse(is_signed, hn::Mul(bend, share), bend);
+  const Float flexed =
+      hn::IfThenElseZero(hn::And(bones.upper.has_length, bones.lower.has_length), turned);
   StoreLanes(flexed, values);
-  StoreLanes(hn::Sub(Splat(1.0f), flexed), values + kLanes);
+  StoreLanes(hn::Sub(Splat(1.0f), flexed), values + kRowLanes);
 }
 
 // SplitBend(): front, back, left, right.
@@ -145,7 +81,7 @@ inline void StoreShares(BallMode mode, Float bend, Float forward, Float right, f
     const Float directions[4] = {cosine, hn::Neg(cosine), hn::Neg(sine), sine};
     for (std::size_t i = 0; i < 4; ++i) {
       const Float positive = hn::Max(directions[i], zero);
-      StoreLanes(hn::Mul(share, hn::Mul(positive, positive)), values + i * kLanes);
+      StoreLanes(hn::Mul(share, hn::Mul(positive, positive)), values + i * kRowLanes);
     }
     return;
   }
@@ -153,23 +89,24 @@ inline void StoreShares(BallMode mode, Float bend, Float forward, Float right, f
   const Float beside = hn::IfThenElseZero(hn::Lt(hn::Abs(cosine), threshold), share);
   const auto is_left = hn::Lt(sine, zero);
   StoreLanes(hn::IfThenElseZero(hn::Gt(cosine, threshold), share), values);
-  StoreLanes(hn::IfThenElseZero(hn::Lt(cosine, hn::Neg(threshold)), share), values + kLanes);
-  StoreLanes(hn::IfThenElseZero(is_left, beside), values + 2 * kLanes);
-  StoreLanes(hn::IfThenZeroElse(is_left, beside), values + 3 * kLanes);
+  StoreLanes(hn::IfThenElseZero(hn::Lt(cosine, hn::Neg(threshold)), share), values + kRowLanes);
+  StoreLanes(hn::IfThenElseZero(is_left, beside), values + 2 * kRowLanes);
+  StoreLanes(hn::IfThenZeroElse(is_left, beside), values + 3 * kRowLanes);
 }
 
-inline void EvaluateBall(const BallDriverSet::Entry& entry, const JointChains& chains,
-                         PoseLanes* lanes, float* values) {
-  const BoneLanes bones = EvaluateBones(entry.bones, chains, lanes);
-  const bool fixed = entry.straight != glm::vec3(0.0f);
-  const Float3 straight = fixed ? Splat(entry.straight) : bones.upper.unit;
+template <bool kScaled>
+void Evaluate(const LanePlan& plan, const BallBlock& block, LanePose<kScaled> pose,
+              std::size_t lane, float* values) {
+  const BoneLanes bones = EvaluateBones(plan, block, pose, lane);
+  const Mask fixed = LoadMask(block.has_straight, lane);
+  const Float3 straight = IfThenElse(fixed, LoadRows(block.straight, lane), bones.upper.unit);
   const Float3& lower = bones.lower.unit;
   const Float cosine = Dot(straight, lower);
   const Float3 across = lower - cosine * straight;
-  Float bend = hn::IfThenElseZero(bones.lower.has_length, LaneBend(cosine, entry.bend_scale));
-  if (!fixed) bend = hn::IfThenElseZero(bones.upper.has_length, bend);
-  StoreShares(entry.mode, bend, Dot(across, Splat(entry.forward)), Dot(across, Splat(entry.right)),
-              values);
+  const Mask counts = hn::And(bones.lower.has_length, hn::Or(fixed, bones.upper.has_length));
+  const Float bend = hn::IfThenElseZero(counts, LaneBend(cosine, LoadRow(block.bend_scale, lane)));
+  StoreShares(block.mode, bend, Dot(across, LoadRows(block.forward, lane)),
+              Dot(across, LoadRows(block.right, lane)), values);
 }
 
 HWY_INLINE FloatQuat Multiply(FloatQuat p, FloatQuat q) {
@@ -191,31 +128,32 @@ HWY_INLINE Float LaneTwist(FloatQuat q, Float3 axis) {
   return hn::IfThenElseZero(hn::Gt(square, Splat(kLeastTwistSquare)), hn::Add(angle, angle));
 }
 
-inline void EvaluateTwist(const TwistDriverSet::Entry& entry,
-                          std::span<const TwistDriverSet::TwistJoint> joints, PoseLanes* lanes,
-                          float* values) {
+template <bool kScaled>
+void Evaluate(const LanePlan& plan, const TwistBlock& block, LanePose<kScaled> pose,
+              std::size_t lane, float* values) {
   Float sum = hn::Zero(Floats());
-  for (const TwistDriverSet::TwistJoint& joint : joints) {
-    const glm::quat& r = joint.rest_inverse;
-    const FloatQuat rest_inverse{Splat(r.x), Splat(r.y), Splat(r.z), Splat(r.w)};
-    const FloatQuat away = Multiply(rest_inverse, LoadRotation(lanes->poses, joint.joint));
-    lanes->Check({away.x, away.y, away.z});
-    sum = hn::Add(sum, LaneTwist(away, Splat(joint.axis)));
+  for (std::uint32_t i = 0; i < block.num_steps; ++i) {
+    const TwistStep& step = plan.twist_steps[block.first_step + i];
+    const Float3 r = LoadRows(step.rest_inverse, lane);
+    const FloatQuat rest_inverse{r.x, r.y, r.z, LoadRow(step.rest_inverse[3], lane)};
+    const FloatQuat rotation = LoadRotation(pose.numbers, step.joint.joints.at + lane);
+    const Float angle = LaneTwist(Multiply(rest_inverse, rotation), LoadRows(step.axis, lane));
+    sum = hn::Add(sum, hn::IfThenElseZero(LoadMask(step.joint.active, lane), angle));
   }
-  const Float share = hn::Mul(sum, Splat(entry.inverse_full));
+  const Float share = hn::Mul(sum, LoadRow(block.inverse_full, lane));
   StoreLanes(Saturate(share), values);
-  StoreLanes(Saturate(hn::Neg(share)), values + kLanes);
+  StoreLanes(Saturate(hn::Neg(share)), values + kRowLanes);
 }
 
-inline void EvaluateBlendShape(const BlendShapeDriverSet::Entry& entry,
-                               const std::span<const float>* blend_shapes, float* values) {
-  const std::size_t index = static_cast<std::size_t>(entry.blend_shape);
+inline void Evaluate(const BlendShapeBlock& block, std::span<const float> blend_shapes,
+                     std::size_t lane, float* values) {
   HWY_ALIGN float coefficients[kLanes];
   for (std::size_t i = 0; i < kLanes; ++i) {
-    coefficients[i] = index < blend_shapes[i].size() ? blend_shapes[i][index] : 0.0f;
+    const auto index = static_cast<std::size_t>(block.blend_shape.at[lane + i]);
+    coefficients[i] = index < blend_shapes.size() ? blend_shapes[index] : 0.0f;
   }
-  const Float above = hn::Sub(LoadLanes(coefficients), Splat(entry.neutral));
-  StoreLanes(Saturate(hn::Div(above, Splat(entry.full - entry.neutral))), values);
+  const Float above = hn::Sub(LoadLanes(coefficients), LoadRow(block.neutral, lane));
+  StoreLanes(Saturate(hn::Div(above, LoadRow(block.range, lane))), values);
 }
 
 }  // namespace furrow::wrinkle::HWY_NAMESPACE

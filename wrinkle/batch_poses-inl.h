@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pose drivers of several subjects side by side: pose_projection.h, lane by lane.
+// Pose drivers of one subject, many side by side: pose_projection.h, lane by lane; and the points
+// of those that are solved alone.
 #if defined(FURROW_WRINKLE_BATCH_POSES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FURROW_WRINKLE_BATCH_POSES_INL_H_
 #undef FURROW_WRINKLE_BATCH_POSES_INL_H_
@@ -7,94 +8,131 @@
 #define FURROW_WRINKLE_BATCH_POSES_INL_H_
 #endif
 
-#include "wrinkle/batch_drivers-inl.h"
+#include <array>
+
+#include "wrinkle/batch_math-inl.h"
+#include "wrinkle/batch_points-inl.h"
+#include "wrinkle/pose_driver.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
-// A control point's departure from rest. In double, as what it is multiplied by: where a point
-// moves far across a small displacement, floats would leave too little of the projection.
-struct Moved {
-  Doubles x, y, z;
-};
-
-HWY_INLINE Moved Measure(const PoseDriverSet::Measured& point, const JointChains& chains,
-                         PoseLanes* lanes) {
-  const Float3 moved = EvaluatePoint(chains.chain(point.point), lanes) - Splat(point.rest);
-  return {ToDoubles(moved.x), ToDoubles(moved.y), ToDoubles(moved.z)};
+// A control point's departure from rest.
+template <bool kScaled>
+HWY_INLINE Float3 MovePoint(const LanePlan& plan, const PointRow& row, LanePose<kScaled> pose,
+                            std::size_t lane) {
+  return EvaluatePoint(plan, row, pose, lane) - LoadRows(row.rest, lane);
 }
-
-// sum + dot(moved, projection).
-HWY_INLINE Doubles AddDot(Moved moved, const glm::dvec3& projection, Doubles sum) {
-  const HalfDoubles d;
-  const Double x = hn::Set(d, projection.x);
-  const Double y = hn::Set(d, projection.y);
-  const Double z = hn::Set(d, projection.z);
-  sum.low = hn::MulAdd(moved.x.low, x, sum.low);
-  sum.high = hn::MulAdd(moved.x.high, x, sum.high);
-  sum.low = hn::MulAdd(moved.y.low, y, sum.low);
-  sum.high = hn::MulAdd(moved.y.high, y, sum.high);
-  sum.low = hn::MulAdd(moved.z.low, z, sum.low);
-  sum.high = hn::MulAdd(moved.z.high, z, sum.high);
-  return sum;
-}
-
-HWY_INLINE Doubles ZeroDoubles() { return {hn::Zero(HalfDoubles()), hn::Zero(HalfDoubles())}; }
 
 // One point, no falloff: the most of them, so all stays in registers.
-inline void EvaluateOnePoint(const PoseDriverSet& drivers, const PoseDriverSet::Entry& entry,
-                             const JointChains& chains, PoseLanes* lanes, float* values) {
-  const Moved moved = Measure(drivers.points(entry)[0], chains, lanes);
-  const glm::dvec3* projection = drivers.projections(entry);
-  for (const glm::dvec3* const end = projection + entry.num_values; projection != end;
-       ++projection, values += kLanes) {
-    StoreLanes(Saturate(ToFloats(AddDot(moved, *projection, ZeroDoubles()))), values);
+template <bool kScaled>
+void EvaluateOnePoint(const LanePlan& plan, const PoseBlock& block, LanePose<kScaled> pose,
+                      std::size_t lane, float* values) {
+  const Float3 moved = MovePoint(plan, plan.points[block.first_point], pose, lane);
+  const FloatRow* projection = plan.projections.data() + block.first_projection;
+  for (std::uint32_t k = 0; k < block.num_values; ++k, projection += 3, values += kRowLanes) {
+    StoreLanes(Saturate(Dot(moved, LoadRows(projection, lane))), values);
   }
 }
 
-// Falloff() of SquaredDistance().
-inline Float LaneFalloff(const Moved* moved, std::span<const glm::vec3> displacement, Float along,
-                         float squared_displacement, float falloff) {
+// Block by block, the next one's joints loaded before this one's values are worked out: processors
+// look ahead no further than that.
+template <bool kScaled>
+void EvaluateLeaves(const LanePlan& plan, LanePose<kScaled> pose, std::size_t num_values,
+                    float* rows) {
+  const FloatRow* const projections = plan.projections.data();
+  const LeafBlock* const end = plan.leaves.data() + plan.leaves.size();
+  const auto reached = [=](const LeafBlock* leaf) {
+    while (leaf != end && leaf->first_value >= num_values) ++leaf;
+    return leaf;
+  };
+  const LeafBlock* const first = reached(plan.leaves.data());
+  if (first == end) return;
+  for (std::size_t lane = 0; lane < kRowLanes; lane += kLanes) {
+    JointLanes next = LoadJoint(pose.numbers, first->joints.at + lane);
+    for (const LeafBlock* leaf = first; leaf != end;) {
+      const LeafBlock& now = *leaf;
+      const JointLanes joint = next;
+      leaf = reached(leaf + 1);
+      if (leaf != end) next = LoadJoint(pose.numbers, leaf->joints.at + lane);
+      const Float3 moved = Up(pose, now.joints.at + lane, joint, LoadRows(now.offset, lane)) -
+                           LoadRows(now.rest, lane);
+      const FloatRow* projection = projections + now.first_projection;
+      float* to = rows + now.first_row * kRowLanes + lane;
+      for (std::uint32_t k = 0; k < now.num_values; ++k, projection += 3, to += kRowLanes) {
+        StoreLanes(Saturate(Dot(moved, LoadRows(projection, lane))), to);
+      }
+    }
+  }
+}
+
+// Falloff() of SquaredDistance(). `rows`: the width, then each point's displacement.
+inline Float LaneFalloff(std::span<const Float3> moved, const FloatRow* rows, Float along,
+                         std::size_t lane) {
   Float sum = hn::Zero(Floats());
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    const Moved& m = moved[i];
-    const Float3 point{ToFloats(m.x), ToFloats(m.y), ToFloats(m.z)};
-    const Float3 difference = point - along * Splat(displacement[i]);
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    const Float3 difference = moved[i] - along * LoadRows(rows + 1 + 3 * i, lane);
     sum = hn::Add(sum, Dot(difference, difference));
   }
-  const float width = 2.0f * falloff * falloff * squared_displacement;
-  return Exponential(hn::Div(hn::Neg(sum), Splat(width)));
+  return Exponential(hn::Div(hn::Neg(sum), LoadRow(*rows, lane)));
 }
 
-inline void EvaluatePoints(const PoseDriverSet& drivers, const PoseDriverSet::Entry& entry,
-                           const JointChains& chains, PoseLanes* lanes, float* values) {
-  const auto points = drivers.points(entry);
-  Moved moved[kMaxControlPoints];
-  for (std::size_t i = 0; i < points.size(); ++i) moved[i] = Measure(points[i], chains, lanes);
-  const glm::dvec3* projection = drivers.projections(entry);
-  for (int k = 0; k < entry.num_values; ++k, values += kLanes) {
-    Doubles sum = ZeroDoubles();
-    for (std::size_t i = 0; i < points.size(); ++i) sum = AddDot(moved[i], *projection++, sum);
-    const Float along = ToFloats(sum);
+template <bool kScaled>
+void EvaluatePoints(const LanePlan& plan, const PoseBlock& block, LanePose<kScaled> pose,
+                    std::size_t lane, float* values) {
+  std::array<Float3, kMaxControlPoints> points;
+  const std::span<Float3> moved(points.data(), block.num_points);
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    moved[i] = MovePoint(plan, plan.points[block.first_point + i], pose, lane);
+  }
+  const FloatRow* projection = plan.projections.data() + block.first_projection;
+  const FloatRow* falloff = plan.falloffs.data() + block.first_falloff;
+  for (std::uint32_t k = 0; k < block.num_values; ++k, values += kRowLanes) {
+    Float along = hn::Zero(Floats());
+    for (const Float3& m : moved) {
+      along = hn::Add(along, Dot(m, LoadRows(projection, lane)));
+      projection += 3;
+    }
     Float value = Saturate(along);
-    if (entry.falloff > 0.0f) {
-      const int driver = static_cast<int>(&entry - drivers.entries().data());
-      const float square = drivers.SquaredDisplacement(driver, k);
-      // Where the pose does not move the points, `along` is 0 and the width does not count.
-      const Float share = LaneFalloff(moved, drivers.Displacement(driver, k), along,
-                                      square > 0.0f ? square : 1.0f, entry.falloff);
-      value = Saturate(hn::Mul(value, share));
+    if (block.has_falloff) {
+      value = Saturate(hn::Mul(value, LaneFalloff(moved, falloff, along, lane)));
+      falloff += 1 + 3 * moved.size();
     }
     StoreLanes(value, values);
   }
 }
 
-inline void EvaluatePose(const PoseDriverSet& drivers, const PoseDriverSet::Entry& entry,
-                         const JointChains& chains, PoseLanes* lanes, float* values) {
-  if (entry.num_points == 1 && !(entry.falloff > 0.0f)) {
-    EvaluateOnePoint(drivers, entry, chains, lanes, values);
+template <bool kScaled>
+void Evaluate(const LanePlan& plan, const PoseBlock& block, LanePose<kScaled> pose,
+              std::size_t lane, float* values) {
+  if (block.num_points == 1 && !block.has_falloff) {
+    EvaluateOnePoint(plan, block, pose, lane, values);
   } else {
-    EvaluatePoints(drivers, entry, chains, lanes, values);
+    EvaluatePoints(plan, block, pose, lane, values);
+  }
+}
+
+HWY_INLINE void StoreRows(Float3 v, float* rows) {
+  StoreLanes(v.x, rows);
+  StoreLanes(v.y, rows + kRowLanes);
+  StoreLanes(v.z, rows + 2 * kRowLanes);
+}
+
+// How far points have moved, into three rows.
+template <bool kScaled>
+void EvaluateMoved(const LanePlan& plan, const LonePoints& points, LanePose<kScaled> pose,
+                   std::size_t lane, float* rows) {
+  StoreRows(MovePoint(plan, plan.points[points.first_point], pose, lane), rows);
+}
+
+// What joints make of four points each, into twelve rows.
+template <bool kScaled>
+void EvaluateFrames(const LanePlan& plan, const LonePoints& frames, LanePose<kScaled> pose,
+                    std::size_t lane, float* rows) {
+  const FourPoints four = EvaluateFour(plan, &plan.points[frames.first_point], pose, lane);
+  for (const Float3& point : four.at) {
+    StoreRows(point, rows);
+    rows += 3 * kRowLanes;
   }
 }
 

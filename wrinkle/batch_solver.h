@@ -3,12 +3,14 @@
 
 #include <cstddef>
 #include <span>
-#include <vector>
 
 #include "wrinkle/pose.h"
 #include "wrinkle/solver.h"
 
 namespace furrow::wrinkle {
+
+struct SubjectJob;
+using SubjectSolve = bool(const SubjectJob& job, float* scratch);  // batch_kernel.h
 
 // One subject's part of a batch: what SubjectSolver::Update() takes and returns.
 struct BatchUpdate {
@@ -18,19 +20,19 @@ struct BatchUpdate {
   JobStatus status = JobStatus::kOk;  // out
 };
 
-// SubjectSolver::Update() for many subjects at once: those that share a binding are evaluated side
-// by side, one a SIMD lane, by the best instructions that this processor has (Highway).
+// SubjectSolver::Update() for many subjects: the drivers of each are evaluated many of a kind side
+// by side, by the best instructions that this processor has (Highway).
 //
 // - Any subjects in any order: the state stays in each SubjectSolver, so that a batch is whatever
-//   arrived together, and Update(), Decay() and batches may take turns. A batch of one is faster
-//   than Update(), too; it is fastest where 16 or more share a binding.
+//   arrived together, and Update(), Decay() and batches may take turns. A batch of one takes no
+//   longer a subject than one of many, whose poses memory brings while others are evaluated.
 // - A subject may stand in a batch more than once; its updates happen in order.
 // - Statuses are Update()'s, and kNullPointer; an update that fails changes nothing and disturbs no
 //   other. Values equal Update()'s to 1e-6, and weights too where gains are at most 1; what comes
 //   out for a subject does not depend on who else is in the batch.
-// - Strain and nnls drivers are evaluated subject by subject.
-// - Not for two threads at once. Allocates where a binding or a mixture of bindings is larger than
-//   any before, never else.
+// - Strain and nnls drivers branch too much for that: their points go side by side, the rest driver
+//   by driver.
+// - Not for two threads at once. Allocates where a binding is larger than any before, never else.
 class BatchSolver {
  public:
   void Run(std::span<BatchUpdate> updates);
@@ -42,13 +44,10 @@ class BatchSolver {
                                    std::size_t num_drivers);
 
  private:
-  class Grouping;
   static void Expect(const BatchUpdate& update);
-  void RunFirstKind();
-  float* Scratch(std::size_t size);
+  [[nodiscard]] JobStatus Solve(const BatchUpdate& update, SubjectSolve* solve);
 
-  std::vector<float> scratch_;         // a group's values and weights, lane by lane
-  std::vector<BatchUpdate*> waiting_;  // those not yet evaluated
+  RowList scratch_;  // a subject's values on their way
 };
 
 }  // namespace furrow::wrinkle

@@ -52,7 +52,8 @@ Result<RigBinding> RigBinding::Create(const Rig& rig, const Skeleton& skeleton,
   data->first_values.push_back(static_cast<int>(data->driver_value_names.size()));
   if (Status status = data->weights.Bind(rig, value_index); !status.ok()) return status;
   data->influences.Bind(rig, skeleton, value_index);
-  data->unread = UnreadNumbers(*data);
+  data->lanes = MakeLanePlan(*data);
+  data->weight_plan = MakeWeightPlan(data->weights);
   data->missing_joints = std::move(context.missing_joints());
   data->missing_blend_shapes = std::move(context.missing_blend_shapes());
   data->warnings = std::move(context.warnings());

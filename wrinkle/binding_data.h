@@ -11,11 +11,12 @@
 #include "wrinkle/hinge_driver.h"
 #include "wrinkle/influence_table.h"
 #include "wrinkle/joint_chain.h"
+#include "wrinkle/lane_plan.h"
 #include "wrinkle/pose_driver.h"
-#include "wrinkle/read_numbers.h"
 #include "wrinkle/solver.h"
 #include "wrinkle/strain_driver.h"
 #include "wrinkle/twist_driver.h"
+#include "wrinkle/weight_plan.h"
 #include "wrinkle/weight_table.h"
 
 namespace furrow::wrinkle {
@@ -41,7 +42,9 @@ struct BindingData {
   [[nodiscard]] std::size_t NumValues(std::size_t num_drivers) const {
     return static_cast<std::size_t>(first_values[std::min(num_drivers, first_values.size() - 1)]);
   }
-  std::vector<NumberRange> unread;  // what a batch must look at besides (read_numbers.h)
+  // The same drivers and weights, laid out for the batch.
+  LanePlan lanes;
+  WeightPlan weight_plan;
   std::vector<std::string> missing_joints;
   std::vector<std::string> missing_blend_shapes;
   std::vector<std::string> warnings;

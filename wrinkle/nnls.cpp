@@ -99,15 +99,26 @@ bool StepTowards(const Vector& solution, PassiveSet* set, std::span<double> x) {
   return false;
 }
 
+void Multiply(const double* inverse, std::span<const double> rhs, Vector* solution) {
+  for (std::size_t i = 0; i < rhs.size(); ++i, inverse += rhs.size()) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < rhs.size(); ++k) sum += inverse[k] * rhs[k];
+    (*solution)[i] = sum;
+  }
+}
+
+double Tolerance(std::span<const double> rhs) {
+  double largest = 0.0;
+  for (const double value : rhs) largest = std::max(largest, std::abs(value));
+  return 1e-12 * largest;
+}
+
 }  // namespace
 
 void SolveNnls(std::span<const double> gram, std::span<const double> rhs, std::span<double> x) {
   const int n = static_cast<int>(rhs.size());
   std::fill(x.begin(), x.end(), 0.0);
-  double largest = 0.0;
-  for (const double value : rhs) largest = std::max(largest, std::abs(value));
-  const double tolerance = 1e-12 * largest;
-
+  const double tolerance = Tolerance(rhs);
   PassiveSet set;
   for (int round = 0; round < 3 * n; ++round) {
     const int entering = SteepestOutside(gram, rhs, x, set, tolerance);
@@ -116,6 +127,61 @@ void SolveNnls(std::span<const double> gram, std::span<const double> rhs, std::s
     Vector solution{};
     while (set.size > 0) {
       if (!SolvePassive(gram, rhs, n, set, &solution)) return;  // x is feasible as it stands
+      if (StepTowards(solution, &set, x)) break;
+    }
+  }
+}
+
+NnlsTable::NnlsTable(std::span<const double> gram)
+    : n_(static_cast<int>(std::lround(std::sqrt(static_cast<double>(gram.size()))))),
+      gram_(gram.begin(), gram.end()) {
+  if (n_ <= kMaxTabled) Tabulate();
+}
+
+// Column by column: what solves the set for a unit vector.
+void NnlsTable::Tabulate() {
+  const auto n = static_cast<std::size_t>(n_);
+  inverses_.assign((std::size_t{1} << n) * n * n, 0.0);
+  for (unsigned bits = 1; bits < (1u << n_); ++bits) {
+    PassiveSet set;
+    for (int i = 0; i < n_; ++i) {
+      if ((bits >> i & 1u) != 0) set.Add(i);
+    }
+    for (int column = 0; column < n_; ++column) {
+      if ((bits >> column & 1u) == 0) continue;
+      Vector unit{};
+      Vector solution{};
+      unit[static_cast<std::size_t>(column)] = 1.0;
+      if (!SolvePassive(gram_, std::span(unit).first(n), n_, set, &solution)) {
+        inverses_.clear();
+        return;
+      }
+      double* const inverse = inverses_.data() + bits * n * n;
+      for (std::size_t row = 0; row < n; ++row) {
+        inverse[row * n + static_cast<std::size_t>(column)] = solution[row];
+      }
+    }
+  }
+}
+
+void NnlsTable::Solve(std::span<const double> rhs, std::span<double> x) const {
+  if (inverses_.empty()) return SolveNnls(gram_, rhs, x);
+  SolveByTable(rhs, x);
+}
+
+void NnlsTable::SolveByTable(std::span<const double> rhs, std::span<double> x) const {
+  std::fill(x.begin(), x.end(), 0.0);
+  const double tolerance = Tolerance(rhs);
+  PassiveSet set;
+  Vector solution;
+  for (int round = 0; round < 3 * n_; ++round) {
+    const int entering = SteepestOutside(gram_, rhs, x, set, tolerance);
+    if (entering < 0) return;
+    set.Add(entering);
+    while (set.size > 0) {
+      unsigned bits = 0;
+      for (int i = 0; i < set.size; ++i) bits |= 1u << set.members[i];
+      Multiply(inverses_.data() + bits * gram_.size(), rhs, &solution);
       if (StepTowards(solution, &set, x)) break;
     }
   }

@@ -90,15 +90,16 @@ Status PoseDriverSet::BindValue(const Driver& driver, const PoseDriver::Value& v
   }
   const std::size_t first = displacements_.size();
   for (std::uint32_t i = entry.first_point; i < entry.first_point + entry.num_points; ++i) {
-    displacements_.push_back(context->chains().Evaluate(*locals, points_[i].point) - points_[i].rest);
+    displacements_.push_back(context->chains().Evaluate(*locals, points_[i].point) -
+                             points_[i].rest);
   }
   const StackedPoints d = StackedPoints(displacements_).subspan(first);
   const double square = Dot(d, d);
   const bool moves = std::sqrt(square) > double{kLeastDisplacement * context->size()};
   squared_displacements_.push_back(moves ? static_cast<float>(square) : 0.0f);
+  inverse_lengths_.push_back(moves ? 1.0 / std::sqrt(double{squared_displacements_.back()}) : 0.0);
   for (const glm::vec3& point : d) {
-    projections_.push_back(moves ? glm::dvec3(point) / double{squared_displacements_.back()}
-                                 : glm::dvec3(0.0));
+    projections_.push_back(Projection(point, squared_displacements_.back()));
   }
   if (!moves) {
     context->Warn(Whose(driver) + ": reference pose '" + value.reference_pose +
@@ -108,7 +109,7 @@ Status PoseDriverSet::BindValue(const Driver& driver, const PoseDriver::Value& v
 }
 
 void PoseDriverSet::BindGram(Entry* entry) {
-  entry->first_gram = static_cast<std::uint32_t>(gram_.size());
+  std::vector<double> gram;
   for (int row = 0; row < entry->num_values; ++row) {
     for (int column = 0; column < entry->num_values; ++column) {
       const double norm = std::sqrt(double{squared_displacements_[entry->first_square + row]} *
@@ -116,9 +117,11 @@ void PoseDriverSet::BindGram(Entry* entry) {
       // Not simply 1 on the diagonal: the norm is rounded, alike in every entry.
       double cosine = row == column ? 1.0 : 0.0;
       if (norm > 0.0) cosine = Dot(Displacement(*entry, row), Displacement(*entry, column)) / norm;
-      gram_.push_back(row == column ? cosine + kRidge : cosine);
+      gram.push_back(row == column ? cosine + kRidge : cosine);
     }
   }
+  entry->nnls = static_cast<std::uint32_t>(nnls_.size());
+  nnls_.emplace_back(gram);
 }
 
 StackedPoints PoseDriverSet::Displacement(const Entry& entry, int value) const {
@@ -146,42 +149,43 @@ int PoseDriverSet::Measure(int entry, std::span<const Transform> local, const Jo
 }
 
 void PoseDriverSet::Solve(int entry, StackedPoints moved, std::span<Fit> fits) const {
-  const Entry& e = entries_[entry];
-  if (e.solve == PoseSolve::kNnls) {
-    SolveNonNegative(e, moved, fits);
-  } else {
-    SolveProjection(e, moved, fits);
-  }
+  SolveAlong(entries_[entry], moved, fits);
+  SolvePerpendicular(entries_[entry], moved, fits);
 }
 
-void PoseDriverSet::SolveProjection(const Entry& entry, StackedPoints moved,
-                                    std::span<Fit> fits) const {
+void PoseDriverSet::SolveAlong(const Entry& entry, StackedPoints moved, std::span<Fit> fits) const {
+  if (entry.solve == PoseSolve::kNnls) return SolveNonNegative(entry, moved, fits);
   for (int k = 0; k < entry.num_values; ++k) {
-    const StackedPoints d = Displacement(entry, k);
-    const float square = squared_displacements_[entry.first_square + static_cast<std::uint32_t>(k)];
-    fits[k].along = ProjectionAlong(moved, d, square);
-    fits[k].squared_perpendicular = SquaredDistance(moved, d, fits[k].along);
+    fits[k].along = ProjectionAlong(moved, projections(entry, k));
   }
 }
 
 void PoseDriverSet::SolveNonNegative(const Entry& entry, StackedPoints moved,
                                      std::span<Fit> fits) const {
   const std::size_t count = static_cast<std::size_t>(entry.num_values);
-  const float* squares = squared_displacements_.data() + entry.first_square;
-  std::array<double, kMaxNnlsValues> rhs{};
-  std::array<double, kMaxNnlsValues> lengths{};  // the unknowns: along unit displacements
+  const double* inverse_lengths = inverse_lengths_.data() + entry.first_square;
+  std::array<double, kMaxNnlsValues> rhs;
+  std::array<double, kMaxNnlsValues> lengths;  // the unknowns: along unit displacements
   for (int k = 0; k < entry.num_values; ++k) {
-    if (squares[k] > 0.0f)
-      rhs[k] = Dot(moved, Displacement(entry, k)) / std::sqrt(double{squares[k]});
+    rhs[k] = Dot(moved, Displacement(entry, k)) * inverse_lengths[k];
   }
-  SolveNnls(std::span(gram_).subspan(entry.first_gram, count * count), std::span(rhs).first(count),
-            std::span(lengths).first(count));
+  nnls_[entry.nnls].Solve(std::span(rhs).first(count), std::span(lengths).first(count));
+  for (int k = 0; k < entry.num_values; ++k) {
+    fits[k].along = static_cast<float>(lengths[k] * inverse_lengths[k]);
+  }
+}
 
+void PoseDriverSet::SolvePerpendicular(const Entry& entry, StackedPoints moved,
+                                       std::span<Fit> fits) const {
+  if (entry.solve != PoseSolve::kNnls) {
+    for (int k = 0; k < entry.num_values; ++k) {
+      fits[k].squared_perpendicular = SquaredDistance(moved, Displacement(entry, k), fits[k].along);
+    }
+    return;
+  }
   std::array<glm::vec3, kMaxControlPoints> left_over;
   std::copy(moved.begin(), moved.end(), left_over.begin());
   for (int k = 0; k < entry.num_values; ++k) {
-    fits[k].along =
-        squares[k] > 0.0f ? static_cast<float>(lengths[k] / std::sqrt(double{squares[k]})) : 0.0f;
     if (fits[k].along <= 0.0f) continue;
     const StackedPoints d = Displacement(entry, k);
     for (std::size_t i = 0; i < moved.size(); ++i) left_over[i] -= fits[k].along * d[i];
@@ -200,19 +204,21 @@ float PoseDriverSet::Value(int entry, int value, const Fit& fit) const {
 
 void PoseDriverSet::Evaluate(std::span<const Transform> local, const JointChains& chains,
                              std::span<float> driver_values) const {
+  std::array<glm::vec3, kMaxControlPoints> moved;
   for (int i = 0; i < num_entries() && Reaches(driver_values, first_value(i)); ++i) {
-    EvaluateEntry(i, local, chains, driver_values);
+    const auto num_points = static_cast<std::size_t>(Measure(i, local, chains, moved));
+    EvaluateMoved(i, StackedPoints(moved).first(num_points),
+                  driver_values.subspan(static_cast<std::size_t>(first_value(i)),
+                                        static_cast<std::size_t>(num_values(i))));
   }
 }
 
-void PoseDriverSet::EvaluateEntry(int entry, std::span<const Transform> local,
-                                  const JointChains& chains, std::span<float> driver_values) const {
-  std::array<glm::vec3, kMaxControlPoints> moved;
+void PoseDriverSet::EvaluateMoved(int entry, StackedPoints moved, std::span<float> values) const {
   std::array<Fit, kMaxPoseValues> fits;
-  const int num_points = Measure(entry, local, chains, moved);
-  Solve(entry, StackedPoints(moved).first(static_cast<std::size_t>(num_points)), fits);
-  for (int k = 0; k < num_values(entry); ++k) {
-    driver_values[first_value(entry) + k] = Value(entry, k, fits[k]);
+  SolveAlong(entries_[entry], moved, fits);
+  if (falloff(entry) > 0.0f) SolvePerpendicular(entries_[entry], moved, fits);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    values[k] = Value(entry, static_cast<int>(k), fits[k]);
   }
 }
 

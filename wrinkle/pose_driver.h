@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "wrinkle/bind_context.h"
+#include "wrinkle/nnls.h"
 
 namespace furrow::wrinkle {
 
@@ -28,7 +29,7 @@ class PoseDriverSet {
     std::uint32_t num_points = 0;
     std::uint32_t first_displacement = 0;  // into displacements_: num_values x num_points
     std::uint32_t first_square = 0;        // into squared_displacements_: num_values
-    std::uint32_t first_gram = 0;          // into gram_: num_values^2, nnls alone
+    std::uint32_t nnls = 0;                // into nnls_, where it solves that
     PoseSolve solve = PoseSolve::kProjection;
     float falloff = 0.0f;
   };
@@ -43,8 +44,8 @@ class PoseDriverSet {
   // Entries whose values lie beyond the end of `driver_values` are left out.
   void Evaluate(std::span<const Transform> local, const JointChains& chains,
                 std::span<float> driver_values) const;
-  void EvaluateEntry(int entry, std::span<const Transform> local, const JointChains& chains,
-                     std::span<float> driver_values) const;
+  // One entry's values, from its control points' departure from rest (Measure()).
+  void EvaluateMoved(int entry, std::span<const glm::vec3> moved, std::span<float> values) const;
 
   // For `furrow rig explain`: entry by entry, the same numbers that Evaluate() goes through.
   [[nodiscard]] int num_entries() const { return static_cast<int>(entries_.size()); }
@@ -65,10 +66,11 @@ class PoseDriverSet {
   [[nodiscard]] std::span<const Measured> points(const Entry& entry) const {
     return std::span(points_).subspan(entry.first_point, entry.num_points);
   }
-  // d / dot(d, d), value by value, one vector a point: its dot product with how far the points have
-  // moved is the projection. Zero where the reference pose does not move them.
-  [[nodiscard]] const glm::dvec3* projections(const Entry& entry) const {
-    return projections_.data() + entry.first_displacement;
+  // Projection() of a value's displacement, one vector a point.
+  [[nodiscard]] std::span<const glm::vec3> projections(const Entry& entry, int value) const {
+    return std::span(projections_)
+        .subspan(entry.first_displacement + entry.num_points * static_cast<std::uint32_t>(value),
+                 entry.num_points);
   }
   // Entries that solve nnls.
   [[nodiscard]] std::span<const int> nnls_entries() const { return nnls_entries_; }
@@ -78,19 +80,23 @@ class PoseDriverSet {
   [[nodiscard]] Status BindValue(const Driver& driver, const PoseDriver::Value& value,
                                  const Entry& entry, BindContext* context);
   void BindGram(Entry* entry);
-  void SolveProjection(const Entry& entry, std::span<const glm::vec3> moved,
-                       std::span<Fit> fits) const;
+  // `along` of each fit.
+  void SolveAlong(const Entry& entry, std::span<const glm::vec3> moved, std::span<Fit> fits) const;
   void SolveNonNegative(const Entry& entry, std::span<const glm::vec3> moved,
                         std::span<Fit> fits) const;
+  // What they leave over, which only a falloff asks for.
+  void SolvePerpendicular(const Entry& entry, std::span<const glm::vec3> moved,
+                          std::span<Fit> fits) const;
   [[nodiscard]] std::span<const glm::vec3> Displacement(const Entry& entry, int value) const;
 
   std::vector<Entry> entries_;
   std::vector<int> nnls_entries_;
   std::vector<Measured> points_;
   std::vector<glm::vec3> displacements_;      // d = B_k - B_0, anchor space
-  std::vector<glm::dvec3> projections_;       // d / dot(d, d)
+  std::vector<glm::vec3> projections_;        // d / dot(d, d)
   std::vector<float> squared_displacements_;  // dot(d, d), or 0 below the epsilon
-  std::vector<double> gram_;                  // of the displacements as unit vectors
+  std::vector<double> inverse_lengths_;       // 1 / |d|, or 0
+  std::vector<NnlsTable> nnls_;               // of the displacements as unit vectors
 };
 
 }  // namespace furrow::wrinkle

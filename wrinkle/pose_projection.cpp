@@ -22,9 +22,16 @@ float SquaredDistance(StackedPoints a, StackedPoints b, float scale) {
   return sum;
 }
 
-float ProjectionAlong(StackedPoints moved, StackedPoints d, float squared_displacement) {
-  if (squared_displacement <= 0.0f) return 0.0f;
-  return static_cast<float>(Dot(moved, d) / double{squared_displacement});
+glm::vec3 Projection(const glm::vec3& d, float squared_displacement) {
+  if (squared_displacement <= 0.0f) return glm::vec3(0.0f);
+  return glm::dvec3(d) / double{squared_displacement};
+}
+
+// In single precision: the points are known no better.
+float ProjectionAlong(StackedPoints moved, StackedPoints projection) {
+  float sum = 0.0f;
+  for (std::size_t i = 0; i < moved.size(); ++i) sum += glm::dot(moved[i], projection[i]);
+  return sum;
 }
 
 float Falloff(float squared_perpendicular, float squared_displacement, float falloff) {

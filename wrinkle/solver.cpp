@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "wrinkle/batch_kernel.h"
 #include "wrinkle/binding_data.h"
 #include "wrinkle/finite.h"
 #include "wrinkle/rig_check.h"
@@ -73,10 +72,10 @@ JobStatus JointInfluenceJob::Run() const {
 SubjectSolver::SubjectSolver(std::shared_ptr<const RigBinding> binding, bool filter)
     : binding_(std::move(binding)), filter_(binding_->rig().filter) {
   filter_.enabled = filter_.enabled && filter;
-  const std::size_t num_values = WholeVectors(binding_->driver_value_names().size());
+  const std::size_t num_values = NumRows(binding_->driver_value_names().size()) * kRowLanes;
   filter_context_.Resize(static_cast<int>(num_values));
   raw_values_.assign(num_values, 0.0f);
-  weights_.assign(WholeVectors(binding_->weight_names().size()), 0.0f);
+  weights_.assign(NumRows(binding_->weight_names().size()) * kRowLanes, 0.0f);
 }
 
 JobStatus SubjectSolver::Update(const LocalPose& pose, double dt) {
@@ -87,6 +86,7 @@ JobStatus SubjectSolver::Update(const LocalPose& pose, double dt) {
                           .driver_values = raw_values_,
                           .num_drivers = num_drivers_};
   if (const JobStatus status = drivers.Run(); status != JobStatus::kOk) return status;
+  is_apart_ = true;
   return Finish(dt, raw_values_);
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "wrinkle/lane_rows.h"
 #include "wrinkle/pose.h"
 #include "wrinkle/rig.h"
 
@@ -105,10 +106,10 @@ struct WrinkleWeightsJob {
 
 // What the filter remembers of one subject: owned by the caller, sized once by Resize().
 struct FilterContext {
-  std::vector<float> value;       // last output
-  std::vector<float> raw;         // last input
-  std::vector<float> derivative;  // low-passed, 1/s
-  double since_input = 0.0;       // seconds since the last real input
+  RowList value;             // last output
+  RowList raw;               // last input
+  RowList derivative;        // low-passed, 1/s
+  double since_input = 0.0;  // seconds since the last real input
   bool started = false;
 
   void Resize(int num_values);
@@ -158,7 +159,8 @@ class SubjectSolver {
   }
   // Driver values before the filter, and after it.
   [[nodiscard]] std::span<const float> driver_values() const {
-    return std::span(raw_values_).first(binding_->driver_value_names().size());
+    const RowList& values = is_apart_ ? raw_values_ : filter_context_.raw;
+    return std::span(values).first(binding_->driver_value_names().size());
   }
   [[nodiscard]] std::span<const float> filtered_values() const {
     return std::span(filter_context_.value).first(binding_->driver_value_names().size());
@@ -171,10 +173,11 @@ class SubjectSolver {
 
   std::shared_ptr<const RigBinding> binding_;
   Filter filter_;
-  // As long as whole SIMD vectors, for BatchSolver; what is too much stays 0.
+  // As long as whole rows (lane_rows.h), for BatchSolver; nobody reads what is too much.
   FilterContext filter_context_;
-  std::vector<float> raw_values_;
-  std::vector<float> weights_;
+  RowList raw_values_;
+  bool is_apart_ = false;  // raw_values_ are the last ones, else the filter's last input is
+  RowList weights_;
   std::size_t num_drivers_ = kAllDrivers;
 };
 

@@ -15,6 +15,17 @@ constexpr float kLeastSine = 0.01f;   // of the angle between a direction and th
 
 float SquareOfPositive(double x) { return x > 0.0 ? static_cast<float>(x * x) : 0.0f; }
 
+// (cos, sin) of half the angle in [-pi, pi] whose cosine and sine these are: from whichever of the
+// two is not small, so that no digits are lost.
+glm::dvec2 HalfAngle(double cosine, double sine) {
+  if (cosine >= 0.0) {
+    const double c = std::sqrt(0.5 * (1.0 + cosine));
+    return {c, 0.5 * sine / c};
+  }
+  const double s = std::copysign(std::sqrt(0.5 * (1.0 - cosine)), sine);
+  return {0.5 * sine / s, s};
+}
+
 // Along `direction` in the plane across `normal`, or else along `edge`, which lies in it.
 glm::vec3 AxisAlong(const glm::vec3& direction, const glm::vec3& normal, const glm::vec3& edge) {
   const glm::vec3 across = direction - glm::dot(direction, normal) * normal;
@@ -48,31 +59,20 @@ std::optional<RestTriangle> MakeRestTriangle(const glm::vec3& a, const glm::vec3
   return rest;
 }
 
-DeformationGradient Deform(const RestTriangle& rest, const glm::vec3& a, const glm::vec3& b,
-                           const glm::vec3& c) {
-  const glm::vec3 u = b - a;
-  const glm::vec3 v = c - a;
-  const glm::mat2& m = rest.inverse_edges;
-  return {.x = u * m[0][0] + v * m[0][1], .y = u * m[1][0] + v * m[1][1]};
-}
-
-CauchyGreen RightCauchyGreen(const DeformationGradient& f) {
-  return {.xx = glm::dot(f.x, f.x), .xy = glm::dot(f.x, f.y), .yy = glm::dot(f.y, f.y)};
-}
-
 PrincipalStretches Principal(const CauchyGreen& tensor) {
   const double mean = 0.5 * (double{tensor.xx} + double{tensor.yy});
   const double difference = 0.5 * (double{tensor.xx} - double{tensor.yy});
-  const double radius = std::hypot(difference, double{tensor.xy});
+  const double shear = tensor.xy;
+  const double radius = std::sqrt(difference * difference + shear * shear);
   if (!std::isfinite(mean + radius)) return {};
   PrincipalStretches result;
   result.largest = static_cast<float>(std::sqrt(mean + radius));
   result.smallest = static_cast<float>(std::sqrt(std::max(mean - radius, 0.0)));
   if (radius > 0.0) {
-    // 2 phi of the largest stretch is the angle of (difference, xy).
-    const double phi = 0.5 * std::atan2(double{tensor.xy}, difference);
-    result.largest_direction = {std::cos(phi), std::sin(phi)};
-    result.smallest_direction = {-std::sin(phi), std::cos(phi)};
+    // 2 phi of the largest stretch is the angle of (difference, shear).
+    const glm::dvec2 largest = HalfAngle(difference / radius, shear / radius);
+    result.largest_direction = largest;
+    result.smallest_direction = {-largest.y, largest.x};
   }
   return result;
 }

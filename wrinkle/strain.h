@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -71,10 +72,17 @@ struct PrincipalStretches {
                                                            const glm::vec3& direction);
 
 // F of the triangle posed at a, b, c. The posed triangle may be degenerate.
-[[nodiscard]] DeformationGradient Deform(const RestTriangle& rest, const glm::vec3& a,
-                                         const glm::vec3& b, const glm::vec3& c);
+[[nodiscard]] inline DeformationGradient Deform(const RestTriangle& rest, const glm::vec3& a,
+                                                const glm::vec3& b, const glm::vec3& c) {
+  const glm::vec3 u = b - a;
+  const glm::vec3 v = c - a;
+  const glm::mat2& m = rest.inverse_edges;
+  return {.x = u * m[0][0] + v * m[0][1], .y = u * m[1][0] + v * m[1][1]};
+}
 
-[[nodiscard]] CauchyGreen RightCauchyGreen(const DeformationGradient& f);
+[[nodiscard]] inline CauchyGreen RightCauchyGreen(const DeformationGradient& f) {
+  return {.xx = glm::dot(f.x, f.x), .xy = glm::dot(f.x, f.y), .yy = glm::dot(f.y, f.y)};
+}
 
 // Closed form. A tensor that is not finite gives the identity's stretches.
 [[nodiscard]] PrincipalStretches Principal(const CauchyGreen& tensor);

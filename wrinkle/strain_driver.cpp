@@ -5,7 +5,6 @@
 #include <array>
 
 #include <glm/geometric.hpp>
-#include <glm/mat4x3.hpp>
 
 #include "wrinkle/driver_values.h"
 #include "wrinkle/retarget.h"
@@ -118,8 +117,10 @@ void StrainDriverSet::BindVertices(const StrainDriver& strain, Entry* entry) {
 
 void StrainDriverSet::BindTriangles(const StrainDriver& strain, const Skeleton& skeleton, int base,
                                     const JointChains& chains, Entry* entry) {
+  std::array<Frame, kMaxPatchJoints> frames;
   std::array<glm::vec3, kMaxPatchVertices> rest;
-  Skin(*entry, skeleton.rest_pose(), chains, rest);
+  EvaluatePoints(*entry, skeleton.rest_pose(), chains, frames);
+  Skin(*entry, frames, rest);
   const glm::vec3 direction = ToJointAxes(skeleton, base, strain.direction);
   entry->first_triangle = static_cast<std::uint32_t>(triangles_.size());
   float area = 0.0f;
@@ -137,23 +138,29 @@ void StrainDriverSet::BindTriangles(const StrainDriver& strain, const Skeleton& 
   entry->inverse_area = area > 0.0f ? 1.0f / area : 0.0f;
 }
 
-void StrainDriverSet::Skin(const Entry& entry, std::span<const Transform> local,
-                           const JointChains& chains, std::span<glm::vec3> positions) const {
-  std::array<glm::mat4x3, kMaxPatchJoints> frames;
+StrainDriverSet::Frame StrainDriverSet::MakeFrame(std::span<const glm::vec3, kFramePoints> points) {
+  const glm::vec3& origin = points[0];
+  return {points[1] - origin, points[2] - origin, points[3] - origin, origin};
+}
+
+void StrainDriverSet::EvaluatePoints(const Entry& entry, std::span<const Transform> local,
+                                     const JointChains& chains, std::span<Frame> frames) const {
   const int* point = points_.data() + entry.first_point;
-  for (std::uint32_t i = 0; i < entry.num_joints; ++i, point += 4) {
-    const glm::vec3 origin = chains.Evaluate(local, point[0]);
-    for (int axis = 0; axis < 3; ++axis) {
-      frames[i][axis] = chains.Evaluate(local, point[axis + 1]) - origin;
-    }
-    frames[i][3] = origin;
+  for (std::uint32_t i = 0; i < entry.num_joints; ++i, point += kFramePoints) {
+    std::array<glm::vec3, kFramePoints> points;
+    for (std::size_t k = 0; k < kFramePoints; ++k) points[k] = chains.Evaluate(local, point[k]);
+    frames[i] = MakeFrame(points);
   }
+}
+
+void StrainDriverSet::Skin(const Entry& entry, std::span<const Frame> frames,
+                           std::span<glm::vec3> positions) const {
   for (std::uint32_t i = 0; i < entry.num_vertices; ++i) {
     const Vertex& vertex = vertices_[entry.first_vertex + i];
     glm::vec3 position(0.0f);
     for (const Influence& influence : vertex.influences) {
       if (influence.skin_weight == 0.0f) continue;  // most hang on two or three
-      const glm::mat4x3& frame = frames[influence.joint];
+      const Frame& frame = frames[influence.joint];
       position += influence.skin_weight * (frame * glm::vec4(vertex.place, 1.0f));
     }
     positions[i] = position;
@@ -162,9 +169,15 @@ void StrainDriverSet::Skin(const Entry& entry, std::span<const Transform> local,
 
 StrainDriverSet::Measured StrainDriverSet::Measure(int entry, std::span<const Transform> local,
                                                    const JointChains& chains) const {
-  const Entry& e = entries_[entry];
+  std::array<Frame, kMaxPatchJoints> frames;
+  EvaluatePoints(entries_[entry], local, chains, frames);
+  return MeasureFrames(entries_[entry], frames);
+}
+
+StrainDriverSet::Measured StrainDriverSet::MeasureFrames(const Entry& e,
+                                                         std::span<const Frame> frames) const {
   std::array<glm::vec3, kMaxPatchVertices> positions;
-  Skin(e, local, chains, positions);
+  Skin(e, frames, positions);
   CauchyGreen mean{0.0f, 0.0f, 0.0f};
   for (std::uint32_t i = e.first_triangle; i < e.first_triangle + e.num_triangles; ++i) {
     const Triangle& triangle = triangles_[i];
@@ -180,18 +193,26 @@ StrainDriverSet::Measured StrainDriverSet::Measure(int entry, std::span<const Tr
   return {.stretches = stretches, .shares = ShareCompression(stretches)};
 }
 
+void StrainDriverSet::EvaluateFrames(int entry, std::span<const Frame> frames,
+                                     std::span<float> values) const {
+  const CompressionShares shares = MeasureFrames(entries_[entry], frames).shares;
+  const bool is_compressed = shares.compression > 0.0f;
+  // A compression beyond the full one keeps its direction: the shares then sum to 1.
+  const float share = Saturate(shares.compression * entries_[entry].inverse_full);
+  const float gain = is_compressed ? share / shares.compression : 0.0f;
+  values[0] = Saturate(gain * shares.along);
+  values[1] = Saturate(gain * shares.across);
+  values[2] = Saturate(gain * shares.diagonal_left);
+  values[3] = Saturate(gain * shares.diagonal_right);
+}
+
 void StrainDriverSet::Evaluate(std::span<const Transform> local, const JointChains& chains,
                                std::span<float> driver_values) const {
+  std::array<Frame, kMaxPatchJoints> frames;
   for (int i = 0; i < num_entries() && Reaches(driver_values, first_value(i)); ++i) {
-    const CompressionShares shares = Measure(i, local, chains).shares;
-    if (!(shares.compression > 0.0f)) continue;
-    // A compression beyond the full one keeps its direction: the shares then sum to 1.
-    const float gain = Saturate(shares.compression * entries_[i].inverse_full) / shares.compression;
-    const std::span<float> out = driver_values.subspan(static_cast<std::size_t>(first_value(i)));
-    out[0] = Saturate(gain * shares.along);
-    out[1] = Saturate(gain * shares.across);
-    out[2] = Saturate(gain * shares.diagonal_left);
-    out[3] = Saturate(gain * shares.diagonal_right);
+    EvaluatePoints(entries_[i], local, chains, frames);
+    EvaluateFrames(i, frames,
+                   driver_values.subspan(static_cast<std::size_t>(first_value(i)), kNumValues));
   }
 }
 

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include <glm/mat4x3.hpp>
+
 #include "wrinkle/bind_context.h"
 #include "wrinkle/strain.h"
 
@@ -26,6 +28,20 @@ class StrainDriverSet {
   [[nodiscard]] Status Bind(const Driver& driver, int first_value, BindContext* context);
   void Evaluate(std::span<const Transform> local, const JointChains& chains,
                 std::span<float> driver_values) const;
+
+  // For the batch: the same in two steps, with points that were evaluated elsewhere.
+  static constexpr int kNumValues = 4;
+  static constexpr std::size_t kFramePoints = 4;
+  // Of the binding's JointChains, kFramePoints for each joint that moves the patch.
+  [[nodiscard]] std::span<const int> points(int entry) const {
+    const Entry& e = entries_[entry];
+    return std::span(points_).subspan(e.first_point, e.num_joints * kFramePoints);
+  }
+  // Where a joint takes any point of the patch.
+  using Frame = glm::mat4x3;
+  [[nodiscard]] static Frame MakeFrame(std::span<const glm::vec3, kFramePoints> points);
+  // `frames`: a joint each. `values`: kNumValues.
+  void EvaluateFrames(int entry, std::span<const Frame> frames, std::span<float> values) const;
 
   // For `furrow rig explain`: the same numbers that Evaluate() goes through.
   [[nodiscard]] int num_entries() const { return static_cast<int>(entries_.size()); }
@@ -63,9 +79,13 @@ class StrainDriverSet {
   void BindVertices(const StrainDriver& strain, Entry* entry);
   void BindTriangles(const StrainDriver& strain, const Skeleton& skeleton, int base,
                      const JointChains& chains, Entry* entry);
+  // As many as the entry has joints.
+  void EvaluatePoints(const Entry& entry, std::span<const Transform> local,
+                      const JointChains& chains, std::span<Frame> frames) const;
   // The patch's vertices in the base joint's space.
-  void Skin(const Entry& entry, std::span<const Transform> local, const JointChains& chains,
+  void Skin(const Entry& entry, std::span<const Frame> frames,
             std::span<glm::vec3> positions) const;
+  [[nodiscard]] Measured MeasureFrames(const Entry& entry, std::span<const Frame> frames) const;
 
   std::vector<Entry> entries_;
   std::vector<int> points_;  // into the binding's JointChains

@@ -127,6 +127,34 @@ TEST(Nnls, AgreesWithEveryActiveSetTried) {
   }
 }
 
+// What is kept of a matrix gives what the matrix gives, at and around ties too.
+TEST(NnlsTable, AgreesWithTheSolver) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  for (unsigned seed = 0; seed < 400; ++seed) {
+    const int n = 1 + static_cast<int>(seed % 6);  // tabled up to four
+    const Problem problem(n, 1 + static_cast<int>(seed % 5), seed, 1e-6);
+    const NnlsTable table(problem.gram);
+    for (int target = 0; target < 10; ++target) {
+      Row y(problem.columns[0].size());
+      for (double& value : y) value = target % 3 == 0 ? std::round(normal(random)) : normal(random);
+      const Row rhs = problem.Rhs(y);
+      Row expected(rhs.size());
+      Row x(rhs.size(), -1.0);
+      SolveNnls(problem.gram, rhs, expected);
+      table.Solve(rhs, x);
+      for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k], expected[k], 1e-7);
+    }
+  }
+}
+
+TEST(NnlsTable, SolvesWhatHasNoInverse) {
+  const NnlsTable table(Row{1.0, 1.0, 1.0, 1.0});
+  Row x(2, -1.0);
+  table.Solve(Row{1.0, 1.0}, x);
+  EXPECT_NEAR(x[0] + x[1], 1.0, 1e-9);
+}
+
 TEST(Nnls, RecoversMixturesInsideTheCone) {
   std::mt19937 random(10);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);

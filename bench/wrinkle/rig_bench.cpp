@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// What it costs to solve a performance by the rig that ships with it: drivers of every kind, in
+// poses that a body and a face take. Each subject is at another place of the recording, and every
+// update a frame further.
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "character/data_dir.h"
+#include "character/rig_file.h"
+#include "motion/clip.h"
+#include "motion/pose_source.h"
+#include "wrinkle/batch_solver.h"
+#include "wrinkle/solver.h"
+
+namespace furrow::wrinkle {
+namespace {
+
+template <class T>
+T Get(Result<T> result) {
+  if (result.ok()) return std::move(result).value();
+  std::cerr << "bench_wrinkle: " << result.status().ToString() << '\n';
+  std::exit(1);
+}
+
+// Loaded once.
+struct Performance {
+  Performance() {
+    const Rig rig = Get(character::LoadRig(Get(character::FindDataFile("rigs/default.json")),
+                                           motion::CachedPoseSource()));
+    const auto clip =
+        Get(motion::LoadClip(Get(character::FindDataFile("recordings/performance.bvh"))));
+    binding = std::make_shared<const RigBinding>(Get(
+        RigBinding::Create(rig, clip.skeleton, clip.blend_shape_names, {.allow_missing = true})));
+    frames.resize(static_cast<std::size_t>(clip.num_frames()));
+    for (int i = 0; i < clip.num_frames(); ++i) {
+      clip.GetPose(i, &frames[static_cast<std::size_t>(i)]);
+    }
+  }
+
+  std::shared_ptr<const RigBinding> binding;
+  std::vector<LocalPose> frames;
+};
+
+// As many as range(0), each its own poses.
+class Cast {
+ public:
+  explicit Cast(const benchmark::State& state) {
+    static const Performance performance;
+    performance_ = &performance;
+    solvers.assign(static_cast<std::size_t>(state.range(0)), SubjectSolver(performance.binding));
+    for (std::size_t i = 0; i < solvers.size(); ++i) places_.push_back(i * 37);
+  }
+
+  const LocalPose& NextPose(std::size_t subject) {
+    std::size_t& place = places_[subject];
+    place = (place + 1) % performance_->frames.size();
+    return performance_->frames[place];
+  }
+
+  std::vector<SubjectSolver> solvers;
+
+ private:
+  const Performance* performance_ = nullptr;
+  std::vector<std::size_t> places_;
+};
+
+void BM_SolveShippedRig(benchmark::State& state) {
+  Cast cast(state);
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < cast.solvers.size(); ++i) {
+      if (cast.solvers[i].Update(cast.NextPose(i), 1.0 / 60.0) != JobStatus::kOk) {
+        state.SkipWithError("solver");
+      }
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+
+void BM_BatchShippedRig(benchmark::State& state) {
+  Cast cast(state);
+  std::vector<BatchUpdate> updates(cast.solvers.size());
+  BatchSolver batch;
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < updates.size(); ++i) {
+      updates[i] = {.solver = &cast.solvers[i], .pose = &cast.NextPose(i), .dt = 1.0 / 60.0};
+    }
+    batch.Run(updates);
+    if (updates.back().status != JobStatus::kOk) state.SkipWithError("batch");
+  }
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+
+BENCHMARK(BM_SolveShippedRig)->ArgName("subjects")->Arg(1)->Arg(16)->Arg(100);
+BENCHMARK(BM_BatchShippedRig)->ArgName("subjects")->Arg(1)->Arg(16)->Arg(100);
+
+}  // namespace
+}  // namespace furrow::wrinkle

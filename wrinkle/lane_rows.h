@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <vector>
+
+namespace furrow::wrinkle {
+
+// Sixteen numbers that are worked on side by side: a vector of AVX-512, two of AVX2, four of SSE4
+// and NEON. Tables made of rows are the same for every set of instructions. Private to wrinkle/.
+inline constexpr std::size_t kRowLanes = 16;
+inline constexpr std::size_t kRowAlignment = 64;  // a cache line
+
+struct alignas(kRowAlignment) FloatRow {
+  float at[kRowLanes] = {};
+};
+
+struct alignas(kRowAlignment) IntRow {
+  std::int32_t at[kRowLanes] = {};
+};
+
+// How many rows `count` numbers fill.
+[[nodiscard]] constexpr std::size_t NumRows(std::size_t count) {
+  return (count + kRowLanes - 1) / kRowLanes;
+}
+
+// A list that begins where a row may, so that no vector of it lies in two cache lines.
+template <class T>
+struct RowAllocator {
+  using value_type = T;
+
+  RowAllocator() = default;
+  template <class U>
+  RowAllocator(const RowAllocator<U>&) noexcept {}  // NOLINT: allocators convert
+
+  [[nodiscard]] T* allocate(std::size_t count) {
+    return static_cast<T*>(::operator new (count * sizeof(T), std::align_val_t{kRowAlignment}));
+  }
+  void deallocate(T* memory, std::size_t) noexcept {
+    ::operator delete (memory, std::align_val_t{kRowAlignment});
+  }
+  friend bool operator==(const RowAllocator&, const RowAllocator&) { return true; }
+};
+using RowList = std::vector<float, RowAllocator<float>>;
+
+}  // namespace furrow::wrinkle
