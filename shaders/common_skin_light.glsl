@@ -59,7 +59,9 @@ void addLamp(int i, Facet facet, vec3 toCamera, inout Lit lit) {
   float cosine = dot(facet.normal, arrival.toLight);
   float seen = 1.0;
   if (i < SHADOW_LAMPS) {
-    seen = shadowOf(i, facet.position, facet.geometric, arrival.toLight, gl_FragCoord.xy);
+    // Skin scatters the noise of turned discs away; elsewhere it would be a screen of dots.
+    vec2 turned = facet.kind == MATERIAL_SKIN ? gl_FragCoord.xy : vec2(0.0);
+    seen = shadowOf(i, facet.position, facet.geometric, arrival.toLight, turned);
   }
   lit.visible[i] = seen * saturate(sign(cosine));
   float facing = saturate(cosine);
