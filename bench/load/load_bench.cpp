@@ -2,7 +2,6 @@
 // What a daemon on one core can take, and how its cost grows: the figures of docs/PERFORMANCE.md
 // and the curves of docs/CAPACITY.md, by one command.
 #include <cstdio>
-#include <fstream>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include "bench/load/budget.h"
 #include "bench/load/curves.h"
 #include "bench/load/figures.h"
+#include "bench/report/results.h"
 #include "character/data_dir.h"
 
 namespace furrow::bench {
@@ -20,11 +20,6 @@ struct Options {
   std::filesystem::path out;
   std::string only;
 };
-
-void Write(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  if (!(file << text)) Give({StatusCode::kIo, "cannot write the file", path.string()});
-}
 
 std::filesystem::path DataFile(const std::string& name) {
   return Take(character::FindDataFile(name));
@@ -66,12 +61,12 @@ int Run(Options options) {
     if (!wanted(id)) continue;
     const Curve curve = grow(setting);
     Say(ToMarkdown(curve), &markdown);
-    Write(options.out / (curve.id + ".svg"), Draw(curve));
+    WriteResult(options.out / (curve.id + ".svg"), Draw(curve));
     if (std::string(id) == "subjects") Say(BudgetMarkdown(curve, setting), &markdown);
     json["curves"].push_back(ToJson(curve));
   }
-  Write(options.out / "load.md", markdown);
-  Write(options.out / "load.json", json.dump(2) + "\n");
+  WriteResult(options.out / "load.md", markdown);
+  WriteResult(options.out / "load.json", json.dump(2) + "\n");
   return 0;
 }
 
@@ -98,6 +93,6 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  std::filesystem::create_directories(options.out);
+  furrow::bench::MakeResultFolder(options.out);
   return furrow::bench::Run(options);
 }

@@ -3,7 +3,6 @@
 // one command.
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "bench/preview/figures.h"
+#include "bench/report/results.h"
 #include "character/character.h"
 #include "character/data_dir.h"
 #include "motion/pose_source.h"
@@ -47,13 +47,6 @@ Result<render::Image> DrawPicture(int width, int height) {
   return (*renderer)->Render(request);
 }
 
-bool Write(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  if (file << text) return true;
-  std::fprintf(stderr, "bench_preview: cannot write %s\n", path.c_str());
-  return false;
-}
-
 int Run(Options options) {
   spdlog::set_level(spdlog::level::err);  // the performer has a brow and no joints
   auto picture = DrawPicture(options.width, options.height);
@@ -65,10 +58,9 @@ int Run(Options options) {
   const auto aims = MeasurePreview(options.setting);
   const std::string markdown = ToMarkdown(aims, "");
   std::printf("%s\n", markdown.c_str());
-  std::filesystem::create_directories(options.out);
-  const bool written = Write(options.out / "preview.md", markdown) &&
-                       Write(options.out / "preview.json", ToJson(aims).dump(2) + "\n");
-  return written ? 0 : 1;
+  WriteResult(options.out / "preview.md", markdown);
+  WriteResult(options.out / "preview.json", ToJson(aims).dump(2) + "\n");
+  return 0;
 }
 
 }  // namespace
@@ -89,5 +81,6 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 200))
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
+  furrow::bench::MakeResultFolder(options.out);
   return furrow::bench::Run(options);
 }

@@ -3,12 +3,12 @@
 // resolution and depth maps, every row's frame rate relative to the first beside the thesis's own.
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "bench/report/interleave.h"
+#include "bench/report/results.h"
 #include "bench/thesis/experiments.h"
 #include "report/bar_chart.h"
 #include "report/statistics.h"
@@ -158,14 +158,6 @@ BarChart Chart(const Experiment& experiment, const std::vector<Outcome>& outcome
   return chart;
 }
 
-void Write(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  if (!(file << text)) {
-    std::fprintf(stderr, "cannot write %s\n", path.c_str());
-    std::exit(1);
-  }
-}
-
 int Run(const Options& options) {
   nlohmann::json report = {{"width", options.experiment.size.width},
                            {"height", options.experiment.size.height},
@@ -185,13 +177,13 @@ int Run(const Options& options) {
     markdown += text;
     report["experiments"].push_back(ToJson(experiment, outcomes));
     if (!options.out.empty()) {
-      Write(options.out / (experiment.id + ".svg"), ToSvg(Chart(experiment, outcomes)));
+      WriteResult(options.out / (experiment.id + ".svg"), ToSvg(Chart(experiment, outcomes)));
     }
   }
   std::printf("device: %s\n", report.value("device", "none measured").c_str());
   if (!options.out.empty()) {
-    Write(options.out / "thesis.json", report.dump(2) + "\n");
-    Write(options.out / "thesis.md", markdown);
+    WriteResult(options.out / "thesis.json", report.dump(2) + "\n");
+    WriteResult(options.out / "thesis.md", markdown);
   }
   return 0;
 }
@@ -214,6 +206,6 @@ int main(int argc, char** argv) {
   app.add_option("--height", options.experiment.size.height, "pixels")->capture_default_str();
   app.add_option("--device", options.experiment.device, "EGL device, as for furrow render");
   CLI11_PARSE(app, argc, argv);
-  if (!options.out.empty()) std::filesystem::create_directories(options.out);
+  if (!options.out.empty()) furrow::bench::MakeResultFolder(options.out);
   return furrow::bench::Run(options);
 }
