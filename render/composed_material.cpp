@@ -14,6 +14,9 @@ constexpr std::size_t kMaxLevels = 7;
 // Of a wrinkle weight: what moves by less is not seen.
 constexpr float kLeastChange = 1.0f / 4096.0f;
 constexpr float kUnknown = -1.0f;  // a weight, of which nothing is painted
+// Texels a side of a level that is read at once: by it, it is known about how much of the finer
+// ones there is to paint.
+constexpr int kOutlineSide = 256;
 
 gl::Texture MakeLevels(glm::ivec2 size, std::size_t levels) {
   gl::Texture texture = gl::MakeTexture(GL_TEXTURE_2D);
@@ -40,6 +43,11 @@ ComposedMaterial::ComposedMaterial(const GpuCharacter& gpu, ComposeSelection sel
   }
   copies_[front_] = MakeCopy();
   FillBare(&copies_[front_]);
+  const auto is_outline = [](const Level& level) {
+    return std::max(level.size.x, level.size.y) <= kOutlineSide;
+  };
+  const auto outline = std::ranges::find_if(levels_, is_outline);
+  if (outline != levels_.end()) ReadLevel(&*outline);
 }
 
 ComposedMaterial::Copy ComposedMaterial::MakeCopy() const {
@@ -50,6 +58,7 @@ ComposedMaterial::Copy ComposedMaterial::MakeCopy() const {
   const std::size_t maps = selection_.maps.size();
   copy.ink = {std::vector<float>(selection_.num_channels() * maps, 0.0f),
               std::vector<float>(maps, 1.0f), std::vector<float>(maps, 1.0f), glm::vec2(1.0f)};
+  copy.first_levels.assign(selection_.num_channels(), 0);
   return copy;
 }
 
@@ -76,7 +85,7 @@ void ComposedMaterial::CopyFront(Copy* copy) const {
     one(front.colour, copy->colour);
   }
   copy->ink = front.ink;
-  copy->first_level = front.first_level;
+  copy->first_levels = front.first_levels;
 }
 
 bool ComposedMaterial::IsChanged(const ComposeInk& from, const ComposeInk& to,
@@ -108,7 +117,10 @@ bool ComposedMaterial::IsSame(const ComposeInk& from, const Wanted& to) const {
 
 bool ComposedMaterial::IsPainted(const Wanted& wanted) const {
   const Copy& front = copies_[front_];
-  return front.first_level <= wanted.first_level && IsSame(front.ink, wanted);
+  for (std::size_t i = 0; i < wanted.is_seen.size(); ++i) {
+    if (wanted.is_seen[i] && front.first_levels[i] > wanted.first_levels[i]) return false;
+  }
+  return IsSame(front.ink, wanted);
 }
 
 const ComposedMaterial::Copy& ComposedMaterial::Back() const {
@@ -135,11 +147,16 @@ std::vector<const ComposeTile*> ComposedMaterial::Stale(const Level& level,
   return stale;
 }
 
-// Of a level of a copy: what is out of date where those channels changed.
-std::vector<bool> ComposedMaterial::StaleChannels(const Copy& copy, std::size_t level,
-                                                  std::vector<bool> changed) const {
-  if (static_cast<int>(level) < copy.first_level) std::fill(changed.begin(), changed.end(), true);
-  return changed;
+std::vector<bool> ComposedMaterial::StaleChannels(const Copy& copy, const Wanted& wanted,
+                                                  const std::vector<bool>& changed,
+                                                  std::size_t level) {
+  const int number = static_cast<int>(level);
+  std::vector<bool> stale(changed.size());
+  for (std::size_t i = 0; i < stale.size(); ++i) {
+    stale[i] = wanted.is_seen[i] && wanted.first_levels[i] <= number &&
+               (changed[i] || copy.first_levels[i] > number);
+  }
+  return stale;
 }
 
 std::size_t ComposedMaterial::NumStale(const Wanted& wanted) const {
@@ -147,11 +164,13 @@ std::size_t ComposedMaterial::NumStale(const Wanted& wanted) const {
   const Copy& copy = Back();
   const std::vector<bool> changed = Changes(copy.ink, wanted);
   std::size_t texels = 0;
-  for (auto i = static_cast<std::size_t>(wanted.first_level); i < levels_.size(); ++i) {
-    const Level& level = levels_[i];
-    texels += level.is_read
-                  ? ComposeTile::kTexels * Stale(level, StaleChannels(copy, i, changed)).size()
-                  : static_cast<std::size_t>(level.size.x * level.size.y);
+  for (std::size_t i = levels_.size(); i-- > 0;) {
+    const std::vector<bool> stale = StaleChannels(copy, wanted, changed, i);
+    if (std::ranges::find(stale, true) == stale.end()) continue;
+    // Four times as many as of the next coarser one that was read; the coarsest hardly count.
+    std::size_t read = i;
+    while (read + 1 < levels_.size() && !levels_[read].is_read) ++read;
+    texels += (ComposeTile::kTexels * Stale(levels_[read], stale).size()) << (2 * (read - i));
   }
   return texels;
 }
@@ -179,11 +198,18 @@ void ComposedMaterial::Paint(const Wanted& wanted) {
   }
   const std::vector<bool> changed = Changes(back.ink, wanted);
   back.ink = Merged(back.ink, wanted);
-  for (auto i = static_cast<std::size_t>(wanted.first_level); i < levels_.size(); ++i) {
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    const std::vector<bool> stale = StaleChannels(back, wanted, changed, i);
+    if (std::ranges::find(stale, true) == stale.end()) continue;
     ReadLevel(&levels_[i]);
-    PaintTiles(back, i, Stale(levels_[i], StaleChannels(back, i, changed)));
+    PaintTiles(back, i, Stale(levels_[i], stale));
   }
-  back.first_level = wanted.first_level;
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    const int first = wanted.first_levels[i];
+    if (wanted.is_seen[i] && (changed[i] || first < back.first_levels[i])) {
+      back.first_levels[i] = first;
+    }
+  }
   front_ = 1 - front_;
 }
 

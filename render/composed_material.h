@@ -34,8 +34,9 @@ class ComposedMaterial {
   // What a picture needs of it.
   struct Wanted {
     ComposeInk ink;
-    std::vector<bool> is_seen;  // a channel of the selection each; what is not may look otherwise
-    int first_level = 0;        // the finest that is looked up in what is seen
+    // A channel of the selection each; what is not seen may look otherwise.
+    std::vector<bool> is_seen;
+    std::vector<int> first_levels;  // the finest that is looked up where the channel is seen
   };
   // Whether textures() are that already.
   [[nodiscard]] bool IsPainted(const Wanted& wanted) const;
@@ -59,8 +60,8 @@ class ComposedMaterial {
     gl::Texture derivatives;
     gl::Texture colour;
     Textures textures;
-    ComposeInk ink;       // what is in it,
-    int first_level = 0;  // from this level on
+    ComposeInk ink;                 // what is in it,
+    std::vector<int> first_levels;  // of each channel from this level on
   };
   [[nodiscard]] bool IsChanged(const ComposeInk& from, const ComposeInk& to,
                                std::size_t channel) const;
@@ -74,8 +75,10 @@ class ComposedMaterial {
   // Of a level, those that a channel of `changed` reaches.
   [[nodiscard]] static std::vector<const ComposeTile*> Stale(const Level& level,
                                                              const std::vector<bool>& changed);
-  [[nodiscard]] std::vector<bool> StaleChannels(const Copy& copy, std::size_t level,
-                                                std::vector<bool> changed) const;
+  // Of a level of a copy: the channels that are seen and out of date. `changed`: of all levels.
+  [[nodiscard]] static std::vector<bool> StaleChannels(const Copy& copy, const Wanted& wanted,
+                                                       const std::vector<bool>& changed,
+                                                       std::size_t level);
   // What is painted over `painted`: only what is seen, and changed, is painted anew. Of the rest it
   // is known how it looks as long as settings stay.
   [[nodiscard]] ComposeInk Merged(const ComposeInk& painted, const Wanted& wanted) const;

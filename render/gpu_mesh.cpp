@@ -51,6 +51,17 @@ float MeanEdge(const character::Mesh& mesh) {
                               : static_cast<float>(sum / static_cast<double>(mesh.indices.size()));
 }
 
+float Surface(const character::Mesh& mesh) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const glm::vec3& corner = mesh.vertices[mesh.indices[i]].position;
+    const glm::vec3 a = mesh.vertices[mesh.indices[i + 1]].position - corner;
+    const glm::vec3 b = mesh.vertices[mesh.indices[i + 2]].position - corner;
+    sum += 0.5 * glm::length(glm::cross(a, b));
+  }
+  return static_cast<float>(sum);
+}
+
 }  // namespace
 
 character::Mesh ReadMesh(const GpuMesh& mesh) {
@@ -76,6 +87,7 @@ GpuMesh MakeGpuMesh(const character::Mesh& mesh, std::span<const glm::mat4> inve
   gpu.num_indices = static_cast<GLsizei>(mesh.indices.size());
   gpu.material = mesh.material;
   gpu.mean_edge = MeanEdge(mesh);
+  gpu.surface = Surface(mesh);
   gpu.uv_per_metre = LeastUvPerMetre(mesh);
   gpu.bounds = JointBounds(mesh, inverse_bind_matrices);
   DescribeVertices(gpu.vertex_array.name(), gpu.vertices);

@@ -22,6 +22,7 @@ struct GpuMesh {
   GLsizei num_indices = 0;
   int material = 0;
   float mean_edge = 0.0f;     // metres, of the rest pose
+  float surface = 0.0f;       // square metres
   float uv_per_metre = 0.0f;  // ... of where the texture is stretched most, outliers left out
 
   // A range of `indices`: the whole mesh, then with ever fewer triangles (render/mesh_levels.h).

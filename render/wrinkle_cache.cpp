@@ -76,7 +76,9 @@ WrinkleCache::Sight WrinkleCache::Look(int material, const View& view) const {
     if (mesh.material != material || !(mesh.uv_per_metre > 0.0f)) continue;
     const DrawList::Sight& seen = view.list->sight(index);
     sight.texels_per_uv = std::max(sight.texels_per_uv, seen.pixels / mesh.uv_per_metre);
-    sight.pixels += seen.covered * view.picture;
+    // What is round shows a quarter of its surface.
+    const float shown = 0.25f * mesh.surface * seen.pixels * seen.pixels;
+    sight.pixels += std::min(seen.covered * view.picture, shown);
   }
   return sight;
 }
@@ -86,7 +88,7 @@ void WrinkleCache::LookAtRegions(int material, const ComposedMaterial& composed,
   const ComposeSelection& selection = composed.selection();
   const std::vector<int>& channels = selection.channels;
   wanted->is_seen.assign(selection.num_channels(), false);
-  wanted->first_level = composed.num_levels() - 1;
+  wanted->first_levels.assign(selection.num_channels(), composed.num_levels() - 1);
   for (const MaskRegion& region : gpu_->mask_regions()) {
     const auto channel = std::ranges::find(channels, region.channel);
     if (region.material != material || channel == channels.end()) continue;
@@ -115,9 +117,8 @@ void WrinkleCache::LookAtRegion(const MaskRegion& region, std::size_t channel,
       extent.nearest > 0.0f
           ? std::log2(side * std::max(region.uv_per_metre, 1e-6f) * extent.nearest / pixels)
           : 0.0f;
-  const float first =
-      std::clamp(level + kSkippedShare, 0.0f, static_cast<float>(wanted->first_level));
-  wanted->first_level = static_cast<int>(first);
+  int& first = wanted->first_levels[channel];
+  first = static_cast<int>(std::clamp(level + kSkippedShare, 0.0f, static_cast<float>(first)));
 }
 
 void WrinkleCache::PlanMaterial(int index, const Settings& settings, const View& view,
@@ -125,7 +126,7 @@ void WrinkleCache::PlanMaterial(int index, const Settings& settings, const View&
   const Sight sight = Look(index, view);
   if (!(sight.texels_per_uv > 0.0f) || !Prepare(gpu_->material(index), sight, entry)) return;
   ComposedMaterial& composed = *entry->composed;
-  ComposedMaterial::Wanted wanted{InkOf(composed, entry->rest, settings), {}, 0};
+  ComposedMaterial::Wanted wanted{InkOf(composed, entry->rest, settings), {}, {}};
   LookAtRegions(index, composed, view, &wanted);
   const bool is_painted = composed.IsPainted(wanted);
   const bool is_held = entry->wanted.ink.weights.size() == wanted.ink.weights.size() &&

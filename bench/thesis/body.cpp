@@ -49,11 +49,25 @@ static_assert(NumTriangles() == kBodyTriangles);
 
 constexpr int kNumBendingJoints = 150;  // all but the first of each chain
 
+// Of the atlas, in which every tube has a cell of its own.
+constexpr std::size_t kAtlasColumns = 3;
+constexpr std::size_t kAtlasRows = 2;
+static_assert(kAtlasColumns * kAtlasRows == kTubes.size());
+constexpr float kGutter = 0.02f;  // of a cell
+
+glm::vec2 InAtlas(std::size_t tube, float around, float along) {
+  const glm::vec2 cell(tube % kAtlasColumns, tube / kAtlasColumns);
+  const glm::vec2 within =
+      glm::mix(glm::vec2(kGutter), glm::vec2(1.0f - kGutter), glm::vec2(around, along));
+  return (cell + within) / glm::vec2(kAtlasColumns, kAtlasRows);
+}
+
 std::string JointName(const Tube& tube, int joint) {
   return std::string(tube.name) + std::to_string(joint);
 }
 
-Vertex TubeVertex(const Tube& tube, int first_joint, float around, float along) {
+Vertex TubeVertex(std::size_t index, int first_joint, float around, float along) {
+  const Tube& tube = kTubes[index];
   const glm::vec3 axis = glm::normalize(tube.end - tube.start);
   const glm::vec3 side = glm::normalize(glm::cross(axis, glm::vec3(0.0f, 0.0f, 1.0f)));
   const glm::vec3 front = glm::cross(side, axis);
@@ -64,7 +78,7 @@ Vertex TubeVertex(const Tube& tube, int first_joint, float around, float along) 
   vertex.position = glm::mix(tube.start, tube.end, along) + tube.radius * taper * outwards;
   vertex.normal = outwards;
   vertex.tangent = glm::vec4(-std::sin(angle) * side + std::cos(angle) * front, 1.0f);
-  vertex.uv = {around, along};
+  vertex.uv = InAtlas(index, around, along);
   const float place = along * static_cast<float>(tube.joints - 1);
   const int joint = std::min(static_cast<int>(place), tube.joints - 2);
   vertex.joints[0] = static_cast<std::uint16_t>(first_joint + joint);
@@ -74,9 +88,9 @@ Vertex TubeVertex(const Tube& tube, int first_joint, float around, float along) 
   return vertex;
 }
 
-void AddTube(const Tube& tube, int first_joint, Mesh* mesh) {
-  const auto vertex = [&](float u, float v) { return TubeVertex(tube, first_joint, u, v); };
-  render::test::AddGrid(tube.columns, tube.rows, vertex, mesh);
+void AddTube(std::size_t index, int first_joint, Mesh* mesh) {
+  const auto vertex = [&](float u, float v) { return TubeVertex(index, first_joint, u, v); };
+  render::test::AddGrid(kTubes[index].columns, kTubes[index].rows, vertex, mesh);
 }
 
 // The root, then each tube's chain; skinned by position in this list.
@@ -160,18 +174,22 @@ Character MakeBody(int hinges, int balls) {
   cloth.name = "cloth";
   cloth.kind = Material::Kind::kCloth;
   cloth.base_colour = {0.35f, 0.38f, 0.45f, 1.0f};
+  cloth.normal_texture = 1;
   character.materials.push_back(cloth);
   Mesh mesh;
   mesh.name = "body";
   mesh.material = 0;
   int first_joint = 1;
-  for (const Tube& tube : kTubes) {
+  for (std::size_t tube = 0; tube < kTubes.size(); ++tube) {
     AddTube(tube, first_joint, &mesh);
-    first_joint += tube.joints;
+    first_joint += kTubes[tube].joints;
   }
   character.meshes.push_back(std::move(mesh));
-  character.pictures.push_back(render::test::NormalMapOf("folds.png", 512, [](float u, float v) {
-    return 0.002f * std::cos(kTwoPi * (2.0f * u + 40.0f * v));
+  character.pictures.push_back(render::test::NormalMapOf("folds.png", 1024, [](float u, float v) {
+    return 0.002f * std::cos(kTwoPi * (6.0f * u + 80.0f * v));
+  }));
+  character.pictures.push_back(render::test::NormalMapOf("weave.png", 1024, [](float u, float v) {
+    return 0.0002f * std::cos(kTwoPi * 180.0f * u) * std::cos(kTwoPi * 180.0f * v);
   }));
   AddRig(joints, hinges, balls, &character);
   return character;
