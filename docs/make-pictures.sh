@@ -112,8 +112,8 @@ cloth_joints() {
   for wrinkles in off on; do
     size=1600x1600 still "squat_$wrinkles" "$recordings/squat.bvh" --frames 60 --camera body \
       --wrinkles "$wrinkles"
-    oiiotool "$work/squat_$wrinkles.png" --cut 420x420+470+560 -o "$work/arm_$wrinkles.png"
-    oiiotool "$work/squat_$wrinkles.png" --cut 420x420+600+800 -o "$work/leg_$wrinkles.png"
+    oiiotool "$work/squat_$wrinkles.png" --cut 420x420+450+420 -o "$work/arm_$wrinkles.png"
+    oiiotool "$work/squat_$wrinkles.png" --cut 420x420+600+620 -o "$work/leg_$wrinkles.png"
   done
   sheet cloth_joints 4x1 1200 arm_off arm_on leg_off leg_on
 }
