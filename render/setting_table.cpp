@@ -138,7 +138,7 @@ std::vector<SettingEntry> SkinEntries() {
       {"wrinkle_maps.cavity", "", "Strength of the maps' cavity",
        NumberField{FURROW_MEMBER(wrinkle_maps.cavity), 0.0f, 4.0f}},
       {"wrinkle_maps.cache", "",
-       "Painted wrinkles of a single subject are composed once, where that is cheaper",
+       "Wrinkles of a single subject are composed once, in the texture, where that is cheaper",
        SwitchField{FURROW_MEMBER(wrinkle_maps.cache)}},
       {"displacement.enabled", "", "The maps' heights move the surface: outlines fold too",
        SwitchField{FURROW_MEMBER(displacement.enabled)}},

@@ -108,7 +108,7 @@ struct SpecularSettings {
 struct WrinkleSettings {
   float blood_flow = 1.0f;  // strength of the maps' colour, [0, 4]
   float cavity = 1.0f;      // ... and of their cavity, [0, 4]
-  // Painted wrinkles of a single subject are composed in texture space where that is cheaper, and
+  // Wrinkles of a single subject are composed in texture space where that is cheaper, and
   // anew only where weights change; off: in every fragment.
   bool cache = true;
 };
