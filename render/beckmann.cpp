@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/common.hpp>
 #include <glm/gtc/constants.hpp>
 
 namespace furrow::render {
@@ -95,6 +96,23 @@ std::vector<glm::vec2> SpecularAlbedoTable(int size) {
   table.reserve(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
   ForEachTexel(size, [&](double cos, double m) { table.push_back(SpecularAlbedo(cos, m)); });
   return table;
+}
+
+std::vector<glm::vec4> TwoLobeAlbedoTable(int size) {
+  const std::vector<glm::vec2> one = SpecularAlbedoTable(size);
+  std::vector<glm::vec4> both;
+  both.reserve(one.size());
+  const float least = static_cast<float>(kMinBeckmannM) * static_cast<float>(size - 1);
+  for (int row = 0; row < size; ++row) {
+    const float half = std::max(0.5f * static_cast<float>(row), least);
+    const int below = std::min(static_cast<int>(half), size - 2);
+    for (int column = 0; column < size; ++column) {
+      const auto at = [&](int r) { return one[static_cast<std::size_t>(r * size + column)]; };
+      both.emplace_back(at(row),
+                        glm::mix(at(below), at(below + 1), half - static_cast<float>(below)));
+    }
+  }
+  return both;
 }
 
 }  // namespace furrow::render

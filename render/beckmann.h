@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 
 // The Kelemen / Szirmay-Kalos (2001) specular reflection of skin with Beckmann's distribution, and
 // the tables that shaders look it up in. `m` is Beckmann's root mean square slope. No OpenGL here.
@@ -42,5 +43,9 @@ inline constexpr float kMinBeckmannM = 1.0f / 32;  // below it the table saturat
 // SpecularAlbedo() as `size` x `size` texels with column cos and row m, laid out as
 // BeckmannTable().
 [[nodiscard]] std::vector<glm::vec2> SpecularAlbedoTable(int size);
+
+// The same for both lobes of a highlight: xy of m, zw of m / 2, but of kMinBeckmannM at the least.
+// Interpolated, zw are what xy are there.
+[[nodiscard]] std::vector<glm::vec4> TwoLobeAlbedoTable(int size);
 
 }  // namespace furrow::render

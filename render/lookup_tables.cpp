@@ -32,8 +32,8 @@ GLuint LookupTables::beckmann() {
 
 GLuint LookupTables::specular_albedo() {
   if (!specular_albedo_) {
-    static const std::vector<glm::vec2> table = SpecularAlbedoTable(kAlbedoTableSize);
-    specular_albedo_ = MakeTable(kAlbedoTableSize, GL_RG32F, GL_RG, GL_FLOAT, table.data());
+    static const std::vector<glm::vec4> table = TwoLobeAlbedoTable(kAlbedoTableSize);
+    specular_albedo_ = MakeTable(kAlbedoTableSize, GL_RGBA32F, GL_RGBA, GL_FLOAT, table.data());
   }
   return specular_albedo_.name();
 }

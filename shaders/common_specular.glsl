@@ -12,7 +12,7 @@
 #if BECKMANN_TABLE
 layout(binding = 7) uniform sampler2D u_beckmann_table;  // 0.5 PH^0.1; x: N.H, y: m
 #endif
-layout(binding = 8) uniform sampler2D u_albedo_table;    // f0 r + (1 - f0) g; x: cosine, y: m
+layout(binding = 8) uniform sampler2D u_albedo_table;    // f0 r + (1 - f0) g, b and a of m / 2; x: cosine, y: m
 
 vec2 tablePlace(float cosine, float m, float size) {
   return (vec2(cosine, m) * (size - 1.0) + 0.5) / size;
@@ -52,10 +52,8 @@ float kelemen(vec3 normal, vec3 toLight, vec3 toCamera, float m, float second, f
 
 // Share of light from `cosine` that the specular term reflects in all, rho_s left out, [0, 1].
 float specularAlbedo(float cosine, float m, float second, float f0) {
-  vec2 one = textureLod(u_albedo_table, tablePlace(cosine, m, ALBEDO_SIZE), 0.0).rg;
-  float half_m = max(0.5 * m, SMALLEST_M);
-  vec2 two = textureLod(u_albedo_table, tablePlace(cosine, half_m, ALBEDO_SIZE), 0.0).rg;
-  vec2 albedo = mix(one, two, second);
+  vec4 lobes = textureLod(u_albedo_table, tablePlace(cosine, m, ALBEDO_SIZE), 0.0);
+  vec2 albedo = mix(lobes.xy, lobes.zw, second);
   float reflected = f0 * albedo.r + (1.0 - f0) * albedo.g;
 #if SPECULAR_GEMS
   reflected *= PI;

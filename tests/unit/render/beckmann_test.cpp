@@ -141,5 +141,21 @@ TEST(Beckmann, TablesHaveTheirEndsOnTexelCentres) {
   EXPECT_EQ(albedo[4 * 1 + 2], glm::vec2(SpecularAlbedo(2.0 / 3.0, 1.0 / 3.0)));
 }
 
+TEST(Beckmann, TwoLobesAreOneTableAtTwoPlaces) {
+  constexpr int kSize = 65;  // every second row's half is a row
+  const std::vector<glm::vec2> one = SpecularAlbedoTable(kSize);
+  const std::vector<glm::vec4> both = TwoLobeAlbedoTable(kSize);
+  ASSERT_EQ(both.size(), one.size());
+  for (const int row : {0, 2, 4, 30, 64}) {
+    const int half = std::max(row / 2, 2);  // 1/32
+    for (const int column : {0, 20, 64}) {
+      const glm::vec4 texel = both[static_cast<std::size_t>(row * kSize + column)];
+      const glm::vec2 first = one[static_cast<std::size_t>(row * kSize + column)];
+      const glm::vec2 second = one[static_cast<std::size_t>(half * kSize + column)];
+      EXPECT_EQ(texel, glm::vec4(first, second)) << row << ' ' << column;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace furrow::render
