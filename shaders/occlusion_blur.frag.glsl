@@ -10,6 +10,8 @@ layout(location = 0) uniform float u_range;  // metres of depth that still mix
 
 layout(location = 0) out float f_open;
 
+const float NO_SURFACE = 1e5;  // metres; further away is background
+
 float depthAt(ivec2 pixel) {
   return texelFetch(u_depth, min(pixel * SCALE, textureSize(u_depth, 0) - 1), 0).r;
 }
@@ -20,7 +22,9 @@ void main() {
   float centre = depthAt(pixel);
   float sum = 0.0;
   float weight = 0.0;
-  for (int y = -2; y < 2; ++y) {
+  // Groups of pixels that see no surface leave the loop.
+  int end = centre < NO_SURFACE ? 2 : -2;
+  for (int y = -2; y < end; ++y) {
     for (int x = -2; x < 2; ++x) {
       ivec2 at = clamp(pixel + ivec2(x, y), ivec2(0), last);
       float w = max(1.0 - abs(depthAt(at) - centre) / u_range, 0.0);
@@ -28,5 +32,5 @@ void main() {
       weight += w;
     }
   }
-  f_open = weight > 0.0 ? sum / weight : texelFetch(u_open, pixel, 0).r;
+  f_open = weight > 0.0 ? sum / weight : 1.0;
 }
