@@ -53,6 +53,8 @@ void DrawList::Build(GpuCharacter* gpu, std::span<const NamedSubject> subjects,
   meshes_.assign(gpu->meshes().size(), {});
   for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) {
     Mesh& list = meshes_[mesh];
+    const bool is_hair = gpu->material(gpu->meshes()[mesh].material).kind ==  //
+                         character::Material::Kind::kHair;
     for (std::size_t subject = 0; subject < subjects.size(); ++subject) {
       const Look look =
           LookAt(gpu->meshes()[mesh].bounds, *subjects[subject].subject, views, tolerance.reach);
@@ -66,7 +68,11 @@ void DrawList::Build(GpuCharacter* gpu, std::span<const NamedSubject> subjects,
         list.sight.covered += look.covered;
       }
       list.subjects.push_back(static_cast<std::uint32_t>(subject));
-      list.levels.push_back(gpu->Level(mesh, tolerance.error_pixels / look.pixels));
+      const int level = gpu->Level(mesh, tolerance.error_pixels / look.pixels);
+      list.levels.push_back(level);
+      const float scale = glm::length(glm::vec3(subjects[subject].subject->placement[0]));
+      const int simple = is_hair ? gpu->Level(mesh, tolerance.hair_shadow / scale) : 0;
+      list.shadow_levels.push_back(std::max(level, simple));
     }
   }
 }

@@ -27,6 +27,7 @@ class DrawList {
   struct Tolerance {
     float reach = 0.0f;         // metres that surfaces may stand off their bounds
     float error_pixels = 0.0f;  // that a simplified mesh may be off by
+    float hair_shadow = 0.0f;   // metres, hair as a caster of shadows
   };
 
   void Build(GpuCharacter* gpu, std::span<const NamedSubject> subjects,
@@ -36,9 +37,13 @@ class DrawList {
   [[nodiscard]] std::span<const std::uint32_t> subjects(std::size_t mesh) const {
     return meshes_[mesh].subjects;
   }
-  // Of GpuMesh::levels, one each of subjects(): the same for all views, so that no surface throws
-  // the shadow of another on itself. By the camera, or by the lamps where the camera sees nothing.
-  [[nodiscard]] std::span<const int> levels(std::size_t mesh) const { return meshes_[mesh].levels; }
+  // Of GpuMesh::levels, one each of subjects(). By the camera, or by the lamps where the camera
+  // sees nothing. The same for all views, so that no surface throws the shadow of another on
+  // itself; but lamps see hair coarser, within the tolerance: it has no smooth surface that would
+  // show it.
+  [[nodiscard]] std::span<const int> levels(int view, std::size_t mesh) const {
+    return view == kCamera ? meshes_[mesh].levels : meshes_[mesh].shadow_levels;
+  }
   // How large the camera sees a mesh, of all subjects.
   struct Sight {
     float pixels = 0.0f;   // of a metre of it where it is nearest; 0: nobody's is seen
@@ -54,6 +59,7 @@ class DrawList {
   struct Mesh {
     std::vector<std::uint32_t> subjects;
     std::vector<int> levels;
+    std::vector<int> shadow_levels;
     Sight sight;
     std::array<std::vector<std::uint32_t>, kNumViews> seen;
   };

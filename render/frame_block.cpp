@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/frame_block.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace furrow::render {
 namespace {
@@ -18,6 +20,15 @@ LightBlock MakeLightBlock(const LightSource& light, const ShadowView& shadow) {
           .shadow_view = shadow.view,
           .shadow = {shadow.scale, shadow.near_plane, 1.0f / shadow.range,
                      shadow.perspective ? 1.0f : 0.0f}};
+}
+
+float HairShadowError(const Settings& settings, std::span<const ShadowView> shadows) {
+  const auto casts = [&](View view) { return NeedsSkinPipeline(view, settings); };
+  if (settings.shadow.filter == ShadowFilter::kOff) return 0.0f;
+  if (!casts(settings.view) && std::ranges::none_of(settings.strip.views, casts)) return 0.0f;
+  const float texel = std::ranges::min_element(shadows, {}, &ShadowView::texel)->texel;
+  return std::min(settings.detail.hair_shadow_texels * texel,
+                  settings.shadow.normal_offset_mm * kMetresPerMm);
 }
 
 }  // namespace
@@ -47,6 +58,7 @@ FrameSetup SetUpFrame(const FrameRequest& request, const wrinkle::Skeleton& skel
     setup.shadows[i] =
         FitShadow(setup.lighting.lights[i], setup.camera.target, radius, setup.shadow_resolution);
   }
+  setup.hair_shadow_error = HairShadowError(request.settings, setup.shadows);
   return setup;
 }
 

@@ -46,8 +46,9 @@ struct FrameSetup {
   Lighting lighting;
   SphericalHarmonics ambient;  // AmbientPolynomial() of the sky
   std::array<ShadowView, kNumLights> shadows;
-  int shadow_resolution = 0;      // texels a side of each map
-  float pixels_per_slope = 1.0f;  // height in the picture of what is as tall as it is far away
+  int shadow_resolution = 0;       // texels a side of each map
+  float hair_shadow_error = 0.0f;  // metres that hair may be off as a lamp sees it
+  float pixels_per_slope = 1.0f;   // height in the picture of what is as tall as it is far away
 };
 
 // The sky's polynomial, worked out when the sky changes.

@@ -224,7 +224,7 @@ Status GpuCharacter::AddMeshes(const Character& character) {
 }
 
 int GpuCharacter::Level(std::size_t index, float metres) {
-  constexpr float kLeastShare = 0.05f;  // of an edge: nothing collapses for less
+  constexpr float kLeastShare = 0.01f;  // of an edge: nothing collapses for less
   GpuMesh& mesh = meshes_[index];
   if (!(metres > kLeastShare * mesh.mean_edge)) return 0;
   if (mesh.levels.empty()) AddLevels(&mesh);

@@ -17,7 +17,9 @@ using Index = std::uint32_t;
 using Triangle = std::array<Index, 3>;
 
 constexpr std::size_t kFewTriangles = 64;  // less is not worth a level
+constexpr double kMostError = 0.015;       // metres; nobody is so small in a picture
 constexpr double kLeastTurn = 0.3;         // cosine between a triangle before and after
+constexpr double kStraight = 0.7;          // ... and of a border that has no corner
 
 glm::dvec3 Cross(const std::array<glm::dvec3, 3>& corners) {
   return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -71,7 +73,9 @@ class Simplifier {
     int version = 0;  // of `from`
     bool operator>(const Collapse& other) const { return error > other.error; }
   };
-  void LockBorders();
+  void LockSeams();
+  [[nodiscard]] std::size_t NumTriangles(Index a, Index b) const;
+  void HoldBorders();
   [[nodiscard]] std::vector<Index> Neighbours(Index vertex) const;
   [[nodiscard]] bool IsAllowed(Index from, Index to) const;
   void Propose(Index from);
@@ -79,9 +83,11 @@ class Simplifier {
 
   std::vector<glm::dvec3> positions_;
   std::vector<Triangle> triangles_;
+  std::vector<glm::dvec3> facing_;                // a triangle each, of the mesh itself
   std::vector<bool> is_alive_;                    // a triangle each
   std::vector<std::vector<Index>> triangles_of_;  // a vertex each; dead ones are taken out
   std::vector<bool> is_locked_;
+  std::vector<bool> is_border_;
   std::vector<int> versions_;
   std::vector<Quadric> quadrics_;
   std::priority_queue<Collapse, std::vector<Collapse>, std::greater<>> queue_;
@@ -92,6 +98,7 @@ class Simplifier {
 Simplifier::Simplifier(const character::Mesh& mesh)
     : triangles_of_(mesh.vertices.size()),
       is_locked_(mesh.vertices.size(), false),
+      is_border_(mesh.vertices.size(), false),
       versions_(mesh.vertices.size(), 0),
       quadrics_(mesh.vertices.size()) {
   for (const character::Vertex& vertex : mesh.vertices) positions_.emplace_back(vertex.position);
@@ -107,24 +114,74 @@ Simplifier::Simplifier(const character::Mesh& mesh)
       }
     }
     triangles_.push_back(triangle);
+    facing_.push_back(cross);
   }
   num_alive_ = triangles_.size();
   is_alive_.assign(num_alive_, true);
-  LockBorders();
+  LockSeams();
+  HoldBorders();
   for (Index vertex = 0; vertex < positions_.size(); ++vertex) Propose(vertex);
 }
 
-// At a seam two vertices lie in one place, so an edge of theirs has one triangle, as a border has.
-void Simplifier::LockBorders() {
-  std::map<std::pair<Index, Index>, int> uses;
-  for (const Triangle& triangle : triangles_) {
-    for (int i = 0; i < 3; ++i) {
-      ++uses[std::minmax(triangle[i], triangle[(i + 1) % 3])];
+// At a seam, of UV or of shading, several vertices lie in one place.
+void Simplifier::LockSeams() {
+  constexpr double kOnePlace = 1e-6;             // metres
+  const glm::dvec3 direction(0.57, 0.61, 0.55);  // along which meshes seldom have many in a plane
+  std::vector<std::pair<double, Index>> order;
+  for (Index vertex = 0; vertex < positions_.size(); ++vertex) {
+    order.emplace_back(glm::dot(direction, positions_[vertex]), vertex);
+  }
+  std::ranges::sort(order);
+  for (auto one = order.begin(); one != order.end(); ++one) {
+    for (auto other = one + 1; other != order.end(); ++other) {
+      if (other->first - one->first > kOnePlace) break;
+      const Index a = one->second;
+      const Index b = other->second;
+      if (glm::distance(positions_[a], positions_[b]) > kOnePlace) continue;
+      is_locked_[a] = is_locked_[b] = true;
     }
   }
-  for (const auto& [edge, count] : uses) {
-    if (count != 2) is_locked_[edge.first] = is_locked_[edge.second] = true;
+}
+
+// An edge of one triangle is a border, on which a plane stands upright, so that it keeps its line.
+// Where the line has a corner, or is not one line, it stays.
+void Simplifier::HoldBorders() {
+  std::vector<std::array<glm::dvec3, 2>> ways(positions_.size());  // of a vertex' two border edges
+  std::vector<std::size_t> num_ways(positions_.size(), 0);
+  for (const Triangle& triangle : triangles_) {
+    const glm::dvec3 cross =
+        Cross({positions_[triangle[0]], positions_[triangle[1]], positions_[triangle[2]]});
+    for (int i = 0; i < 3; ++i) {
+      const Index a = triangle[i];
+      const Index b = triangle[(i + 1) % 3];
+      const std::size_t count = NumTriangles(a, b);
+      if (count > 2) is_locked_[a] = is_locked_[b] = true;
+      if (count != 1) continue;
+      const glm::dvec3 edge = positions_[b] - positions_[a];
+      const glm::dvec3 upright = glm::cross(edge, cross);
+      const double length = glm::length(upright);
+      for (const Index end : {a, b}) {
+        is_border_[end] = true;
+        if (num_ways[end] < 2) ways[end][num_ways[end]] = edge;
+        ++num_ways[end];
+        if (!(length > 0.0)) continue;
+        quadrics_[end].AddPlane(upright / length, positions_[end], glm::dot(edge, edge));
+      }
+    }
   }
+  for (Index vertex = 0; vertex < positions_.size(); ++vertex) {
+    if (num_ways[vertex] == 0) continue;
+    const auto& [first, second] = ways[vertex];
+    const bool is_straight =
+        glm::dot(first, second) > kStraight * glm::length(first) * glm::length(second);
+    if (num_ways[vertex] != 2 || !is_straight) is_locked_[vertex] = true;
+  }
+}
+
+std::size_t Simplifier::NumTriangles(Index a, Index b) const {
+  return static_cast<std::size_t>(std::ranges::count_if(triangles_of_[a], [&](Index triangle) {
+    return std::ranges::find(triangles_[triangle], b) != triangles_[triangle].end();
+  }));
 }
 
 std::vector<Index> Simplifier::Neighbours(Index vertex) const {
@@ -139,13 +196,15 @@ std::vector<Index> Simplifier::Neighbours(Index vertex) const {
   return neighbours;
 }
 
-// The surface stays a surface (two triangles go), and none of its triangles turns over.
+// The surface stays a surface (two triangles go, or one where a border is drawn in along itself),
+// and none of its triangles turns over.
 bool Simplifier::IsAllowed(Index from, Index to) const {
   const std::vector<Index> of_from = Neighbours(from);
   const std::vector<Index> of_to = Neighbours(to);
   std::vector<Index> common;
   std::ranges::set_intersection(of_from, of_to, std::back_inserter(common));
-  if (common.size() != 2) return false;
+  if (common.size() != (is_border_[from] ? 1u : 2u)) return false;
+  if (is_border_[from] && NumTriangles(from, to) != 1) return false;
   return std::ranges::all_of(triangles_of_[from], [&](Index index) {
     const Triangle& triangle = triangles_[index];
     if (std::ranges::find(triangle, to) != triangle.end()) return true;
@@ -159,6 +218,7 @@ bool Simplifier::IsAllowed(Index from, Index to) const {
     const glm::dvec3 is = Cross(after);
     // What has no surface, as at the pole of a sphere, has no side either.
     const bool is_flat = glm::length(was) <= 1e-12;
+    if (glm::dot(facing_[index], is) < 0.0) return false;  // many small turns are one, too
     return is_flat || glm::dot(was, is) > kLeastTurn * glm::length(was) * glm::length(is);
   });
 }
@@ -204,7 +264,7 @@ void Simplifier::Apply(const Collapse& collapse) {
 }
 
 bool Simplifier::Reduce(std::size_t target) {
-  while (num_alive_ > target && !queue_.empty()) {
+  while (num_alive_ > target && !queue_.empty() && queue_.top().error < kMostError) {
     const Collapse collapse = queue_.top();
     queue_.pop();
     if (collapse.version != versions_[collapse.from] || triangles_of_[collapse.from].empty()) {
@@ -235,10 +295,10 @@ MeshLevel Simplifier::level() const {
 std::vector<MeshLevel> MakeMeshLevels(const character::Mesh& mesh) {
   std::vector<MeshLevel> levels{{mesh.indices, 0.0f}};
   Simplifier simplifier(mesh);
-  std::size_t target = simplifier.num_triangles() / 2;
+  std::size_t target = simplifier.num_triangles() * 2 / 3;
   while (target >= kFewTriangles && simplifier.Reduce(target)) {
     levels.push_back(simplifier.level());
-    target /= 2;
+    target = target * 2 / 3;
   }
   // As far as it goes, where that is something.
   const std::size_t finest = levels.back().indices.size() / 3;

@@ -8,18 +8,19 @@
 
 namespace furrow::render {
 
-// A mesh with fewer triangles, for who is small in the picture.
+// A mesh with fewer triangles, for who is small in the picture, and for shadows.
 struct MeshLevel {
   std::vector<std::uint32_t> indices;  // into the mesh's own vertices
   float error = 0.0f;                  // metres that the surface in its rest pose is off by (RMS)
 };
 
-// The mesh itself, then each level with half the triangles of the one before, as long as that can
-// be had.
+// The mesh itself, then each level with two thirds of the triangles of the one before, as long as
+// that can be had within 15 mm.
 //
 // Edges are collapsed onto one of their ends, the cheapest first by the quadric error metric
 // (Garland and Heckbert 1997), so vertices keep their UV, normal, skin weights and masks. What lies
-// on a border, a UV seam or an edge of the shading stays, and no triangle turns over.
+// on a UV seam or an edge of the shading stays, a border is drawn in along itself alone, which
+// leaves its corners where they are, and no triangle turns over.
 [[nodiscard]] std::vector<MeshLevel> MakeMeshLevels(const character::Mesh& mesh);
 
 }  // namespace furrow::render

@@ -10,11 +10,6 @@ namespace {
 
 using Handle = FrameGraph::Handle;
 
-bool NeedsSkinPipeline(const Settings& settings) {
-  return settings.view >= View::kShadow ||
-         (settings.view == View::kFinal && settings.shading == Shading::kSkin);
-}
-
 // Views of one part of the light alone show it before occlusion.
 bool IsPartOfLight(View view) {
   return view == View::kShadow || view == View::kSpecular || view == View::kTranslucency ||
@@ -54,11 +49,11 @@ Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, 
   Settings settings = request.settings;
   settings.view = view;
   settings.anti_aliasing =
-      Chosen(settings.anti_aliasing, !is_software_ || !NeedsSkinPipeline(settings));
+      Chosen(settings.anti_aliasing, !is_software_ || !NeedsSkinPipeline(view, settings));
   TextureDesc desc{size.width, size.height, PixelFormat::kRgba16F, settings.anti_aliasing.samples};
   Handle shown;
   Handle bloom;
-  if (NeedsSkinPipeline(settings)) {
+  if (NeedsSkinPipeline(view, settings)) {
     shown = AddSkin(graph, request, settings, desc, shadows);
     desc.samples = 1;
     if (view == View::kFinal || view == View::kBloom) {

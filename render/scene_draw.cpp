@@ -147,8 +147,10 @@ void SceneDraw::FindVisible(std::span<const NamedSubject> subjects, const Settin
     // Nobody asks for a dark lamp's shadow.
     views[light].is_asked = setup_.lighting.lights[light].radiance != glm::vec3(0.0f);
   }
-  const float error_pixels = is_crowd_ ? settings.detail.error_pixels : 0.0f;
-  draw_list_.Build(gpu_, subjects, views, {displacement_reach_, error_pixels});
+  draw_list_.Build(gpu_, subjects, views,
+                   {.reach = displacement_reach_,
+                    .error_pixels = is_crowd_ ? settings.detail.error_pixels : 0.0f,
+                    .hair_shadow = setup_.hair_shadow_error});
 }
 
 void SceneDraw::BindMasks() {
@@ -230,7 +232,7 @@ void SceneDraw::DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t ind
   std::vector<GLsizei> counts;
   std::vector<const void*> offsets;
   for (const std::uint32_t subject : seen) {
-    const GpuMesh::Level level = LevelOf(index, form, draw_list_.levels(index)[subject]);
+    const GpuMesh::Level level = LevelOf(index, form, draw_list_.levels(view, index)[subject]);
     counts.push_back(level.count);
     offsets.push_back(reinterpret_cast<const void*>(std::uintptr_t{4} * level.first));
   }

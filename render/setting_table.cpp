@@ -151,6 +151,9 @@ std::vector<SettingEntry> SkinEntries() {
       {"detail.error_pixels", "pixels",
        "Of several subjects, who is small has fewer triangles, off by so much; 0: never",
        NumberField{FURROW_MEMBER(detail.error_pixels), 0.0f, 8.0f}},
+      {"detail.hair_shadow_texels", "texels",
+       "How far hair may be off in shadow maps, within the normal offset; 0: as drawn",
+       NumberField{FURROW_MEMBER(detail.hair_shadow_texels), 0.0f, 4.0f}},
   };
 }
 

@@ -220,6 +220,10 @@ std::string Near(std::string_view name) {
 
 std::string_view ViewName(View view) { return ViewNames()[static_cast<std::size_t>(view)]; }
 
+bool NeedsSkinPipeline(View view, const Settings& settings) {
+  return view >= View::kShadow || (view == View::kFinal && settings.shading == Shading::kSkin);
+}
+
 Result<View> ParseView(std::string_view name) {
   const auto names = ViewNames();
   const auto found = std::ranges::find(names, name);

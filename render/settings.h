@@ -126,6 +126,9 @@ struct DetailSettings {
   // Of several subjects, who is small in the picture is drawn with fewer triangles, whose surface
   // is off by so many pixels (RMS): [0, 8]. 0: all triangles, always. A single one always has all.
   float error_pixels = 0.5f;
+  // Hair as lamps see it may be off by so many texels of the shadow maps (RMS), and never by more
+  // than ShadowSettings::normal_offset_mm, which hides it: [0, 4]. 0: as the camera sees it.
+  float hair_shadow_texels = 0.5f;
 };
 
 struct BloomSettings {
@@ -169,6 +172,10 @@ struct Settings {
   AntiAliasingSettings anti_aliasing;
   StripSettings strip;
 };
+
+// Whether a picture of `view` is drawn by the skin pipeline, with shadows, and not by the plain
+// one.
+[[nodiscard]] bool NeedsSkinPipeline(View view, const Settings& settings);
 
 // What can be said of one setting by name: for help texts and pages.
 struct SettingInfo {

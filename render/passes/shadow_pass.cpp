@@ -18,8 +18,9 @@ ShadowPass::~ShadowPass() {
 
 std::vector<float> ShadowPass::Inputs(const FrameRequest& request) const {
   const FrameSetup& setup = scene_->setup();
-  std::vector<float> values = {static_cast<float>(request.settings.shadow.lamps),
-                               request.settings.detail.error_pixels};
+  std::vector<float> values = {
+      static_cast<float>(request.settings.shadow.lamps), request.settings.detail.error_pixels,
+      request.settings.detail.hair_shadow_texels, request.settings.shadow.normal_offset_mm};
   for (std::size_t light = 0; light < setup.shadows.size(); ++light) {
     const ShadowView& view = setup.shadows[light];
     const bool dark = setup.lighting.lights[light].radiance == glm::vec3(0.0f);

@@ -207,6 +207,26 @@ TEST_F(Crowd, WhoIsSmallLooksTheSameWithFewerTriangles) {
   EXPECT_EQ(NumDifferent(alone, Draw(std::span(drawn_).first(1)), 0), 0);
 }
 
+// The edges of shadows may move by a part of a texel, and no surface shades itself.
+TEST_F(Crowd, SimplifiedHairThrowsTheSameShadows) {
+  character::Character head = head_;
+  for (character::Material& material : head.materials) {
+    material.kind = character::Material::Kind::kHair;
+  }
+  renderer_ = test::Expect(Renderer::Create(head));
+  request_.settings.view = View::kShadow;
+  request_.settings.detail.hair_shadow_texels = 0.0f;
+  const Image full = Draw(drawn_);
+  request_.settings.detail.hair_shadow_texels = 1.0f;
+  const Image simplified = Draw(drawn_);
+  EXPECT_GT(NumDifferent(full, simplified, 0), 0);
+  EXPECT_LT(NumDifferent(full, simplified, 24), kWidth * kHeight / 200);
+  request_.settings.shadow.normal_offset_mm = 0.0f;  // nothing hides any error
+  const Image exact = Draw(drawn_);
+  request_.settings.detail.hair_shadow_texels = 0.0f;
+  EXPECT_EQ(NumDifferent(exact, Draw(drawn_), 0), 0);
+}
+
 TEST_F(Crowd, TheCameraFollowsTheFirst) {
   request_.camera = *renderer_->Preset("face");
   const PosedSubject home = DrawnAs(people_[0], glm::mat4(1.0f));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include <glm/geometric.hpp>
@@ -55,8 +56,8 @@ TEST(MeshLevels, StayNearTheSurfaceAndTurnNoTriangleOver) {
   }
 }
 
-// The seam's two columns of vertices, and a plane's border, are all still there.
-TEST(MeshLevels, KeepSeamsAndBorders) {
+// The seam's two columns of vertices are all still there.
+TEST(MeshLevels, KeepSeams) {
   const character::Mesh mesh = test::MakeHead().meshes[0];
   const std::vector<MeshLevel> levels = MakeMeshLevels(mesh);
   const std::set<std::uint32_t> left(levels.back().indices.begin(), levels.back().indices.end());
@@ -68,6 +69,54 @@ TEST(MeshLevels, KeepSeamsAndBorders) {
     ++on_seam;
   }
   EXPECT_GT(on_seam, 10);
+}
+
+// Strips of `segments` quads each, bent to a quarter of a circle, side by side: as hair is.
+constexpr float kRadius = 0.25f;  // metres
+character::Mesh Strips(int count, int segments) {
+  character::Mesh mesh;
+  for (int strip = 0; strip < count; ++strip) {
+    for (int row = 0; row <= segments; ++row) {
+      const double angle = 0.5 * std::numbers::pi * row / segments;
+      for (const float side : {0.0f, 0.05f}) {
+        character::Vertex vertex;
+        vertex.position = {0.1f * static_cast<float>(strip) + side, kRadius * std::sin(angle),
+                           kRadius * std::cos(angle)};
+        mesh.vertices.push_back(vertex);
+        if (row == segments || side > 0.0f) continue;
+        const auto a = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+        mesh.indices.insert(mesh.indices.end(), {a, a + 2, a + 3, a, a + 3, a + 1});
+      }
+    }
+  }
+  return mesh;
+}
+
+// Every vertex of a strip lies on its border; its four corners stay, and so does its width.
+TEST(MeshLevels, DrawBordersInAlongThemselves) {
+  constexpr int kStrips = 40;
+  constexpr int kSegments = 12;
+  const character::Mesh mesh = Strips(kStrips, kSegments);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh);
+  ASSERT_GE(levels.size(), 4u);
+  for (const MeshLevel& level : levels) {
+    const std::set<std::uint32_t> left(level.indices.begin(), level.indices.end());
+    for (std::uint32_t strip = 0; strip < kStrips; ++strip) {
+      const std::uint32_t first = strip * 2 * (kSegments + 1);
+      for (const std::uint32_t corner : {0, 1, 2 * kSegments, 2 * kSegments + 1}) {
+        EXPECT_TRUE(left.contains(first + corner)) << strip << ' ' << corner;
+      }
+    }
+    // What lies between arc and chord of a segment is no more than the error says, by its mean.
+    double furthest = 0.0;
+    for (std::size_t i = 0; i < level.indices.size(); ++i) {
+      const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
+      const glm::vec3 middle = 0.5f * (Corner(mesh, level, i) + Corner(mesh, level, next));
+      furthest = std::max(furthest, double{kRadius} - glm::length(glm::vec2(middle.y, middle.z)));
+    }
+    EXPECT_LT(furthest, 0.001 + 4.0 * level.error);
+  }
+  EXPECT_LT(levels[2].error, 0.005f);
 }
 
 TEST(MeshLevels, OfNothingAndOfLittleAreTheMeshAlone) {
