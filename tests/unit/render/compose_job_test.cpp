@@ -29,8 +29,9 @@ class ComposeJobTest : public testing::Test {
       tile_.maps.push_back({Planes(3, 0.0f, 1.0f), Planes(4, 0.2f, 1.0f)});
     }
     tile_.maps[1].looks.clear();  // not every map has looks
-    for (const std::size_t channel : {0u, 2u, 4u}) {
-      ComposeTile::Mask& mask = tile_.masks.emplace_back();
+    for (const std::size_t channel : {0u, 2u, 4u, 1u, 3u}) {
+      auto& masks = channel % 2 == 0 ? tile_.masks : tile_.skinned;
+      ComposeTile::Mask& mask = masks.emplace_back();
       mask.channel = channel;
       for (std::size_t i = 0; i < kTexels; ++i) {
         mask.values.push_back(static_cast<std::uint8_t>(random_() % 256));
@@ -55,13 +56,16 @@ class ComposeJobTest : public testing::Test {
     }
     return halves;
   }
-  float Coefficient(std::size_t map, std::size_t texel) const {
+  float Sum(const std::vector<ComposeTile::Mask>& masks, std::size_t map, std::size_t texel) const {
     float sum = 0.0f;
-    for (const ComposeTile::Mask& mask : tile_.masks) {
+    for (const ComposeTile::Mask& mask : masks) {
       const float weight = std::max(ink_.weights[mask.channel * kMaps + map], 0.0f);
       sum += weight * static_cast<float>(mask.values[texel]) / 255.0f;
     }
     return sum;
+  }
+  float Coefficient(std::size_t map, std::size_t texel) const {
+    return Sum(tile_.masks, map, texel) + std::min(Sum(tile_.skinned, map, texel), 1.0f);
   }
   glm::vec4 Slope(std::size_t texel) const {
     glm::vec3 sum(0.0f);
@@ -175,6 +179,8 @@ TEST_F(ComposeJobTest, RefusesWhatDoesNotFit) {
       [](ComposeTile* tile, ComposeInk*, ComposeJob*) { tile->masks[0].values.pop_back(); }));
   EXPECT_TRUE(refused(
       [](ComposeTile* tile, ComposeInk*, ComposeJob*) { tile->masks[2].channel = kChannels; }));
+  EXPECT_TRUE(refused(
+      [](ComposeTile* tile, ComposeInk*, ComposeJob*) { tile->skinned[1].channel = kChannels; }));
   EXPECT_TRUE(refused([](ComposeTile*, ComposeInk* ink, ComposeJob*) { ink->weights.pop_back(); }));
   EXPECT_TRUE(
       refused([](ComposeTile*, ComposeInk* ink, ComposeJob*) { ink->amplitudes.pop_back(); }));
