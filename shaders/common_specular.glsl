@@ -12,7 +12,8 @@
 #if BECKMANN_TABLE
 layout(binding = 7) uniform sampler2D u_beckmann_table;  // 0.5 PH^0.1; x: N.H, y: m
 #endif
-layout(binding = 8) uniform sampler2D u_albedo_table;    // f0 r + (1 - f0) g, b and a of m / 2; x: cosine, y: m
+// f0 r + (1 - f0) g, b and a of m / 2; x: cosine, y: m
+layout(binding = 8) uniform sampler2D u_albedo_table;
 
 vec2 tablePlace(float cosine, float m, float size) {
   return (vec2(cosine, m) * (size - 1.0) + 0.5) / size;

@@ -18,9 +18,10 @@ namespace furrow::wrinkle {
 
 // Thesis 4.2 at one vertex: clamp(sum of lambda(skin_weight) * influence, 0, 1) over its joints.
 //
-// The reference for the shader that draws dynamic masks. `influences` as
-// JointInfluenceJob leaves them (num_joints x num_masks, joint-major); `mask` is a column;
-// `joints` and `skin_weights` are the vertex's, equally long.
+// The reference for the shaders that draw dynamic masks; they clamp in the fragment, after a
+// triangle has mixed its vertices' sums. `influences` as JointInfluenceJob leaves them (num_joints
+// x num_masks, joint-major); `mask` is a column; `joints` and `skin_weights` are the vertex's,
+// equally long.
 [[nodiscard]] float VertexInfluence(std::span<const std::uint16_t> joints,
                                     std::span<const float> skin_weights,
                                     std::span<const float> influences, int num_masks, int mask,
