@@ -39,7 +39,6 @@ struct FloatQuat {
   Float x, y, z, w;
 };
 HWY_INLINE Float Splat(float x) { return hn::Set(Floats(), x); }
-HWY_INLINE Float3 Splat(const glm::vec3& v) { return {Splat(v.x), Splat(v.y), Splat(v.z)}; }
 HWY_INLINE Float LoadLanes(const float* from) { return hn::Load(Floats(), from); }
 HWY_INLINE void StoreLanes(Float v, float* to) { hn::Store(v, Floats(), to); }
 // Lanes of rows, `lane` being where this turn begins.

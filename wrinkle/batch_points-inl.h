@@ -81,7 +81,7 @@ HWY_INLINE Float3 WhereActive(const JointStep& step, std::size_t lane, Float3 mo
 template <bool kScaled>
 HWY_INLINE Float3 EvaluatePoint(const LanePlan& plan, const PointRow& row, LanePose<kScaled> pose,
                                 std::size_t lane) {
-  const JointStep* step = &plan.steps[row.first_step];
+  const JointStep* step = plan.steps.data() + row.first_step;  // maybe none
   const JointStep* const top = step + row.num_up;
   const JointStep* const end = top + row.num_down;
   Float3 position;
@@ -112,7 +112,7 @@ FourPoints EvaluateFour(const LanePlan& plan, const PointRow* rows, LanePose<kSc
                         std::size_t lane) {
   FourPoints points;
   for (std::size_t i = 0; i < 4; ++i) points.at[i] = LoadRows(rows[i].offset, lane);
-  const JointStep* step = &plan.steps[rows->first_step];
+  const JointStep* step = plan.steps.data() + rows->first_step;
   for (int i = 0; i < rows->num_up + rows->num_down; ++i, ++step) {
     const std::int32_t* const joints = step->joints.at + lane;
     const JointLanes joint = LoadJoint(pose.numbers, joints);

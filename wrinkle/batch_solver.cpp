@@ -10,6 +10,11 @@
 namespace furrow::wrinkle {
 namespace {
 
+// From so many updates on, their poses and filters do not fit the cache together: those of the one
+// that comes so much later are fetched.
+constexpr std::size_t kPrefetchFrom = 256;
+constexpr std::size_t kPrefetchAhead = 8;
+
 template <class T>
 void Prefetch(std::span<const T> list) {
   const auto* const bytes = reinterpret_cast<const std::byte*>(list.data());
@@ -18,7 +23,9 @@ void Prefetch(std::span<const T> list) {
 
 }  // namespace
 
+// Of what will be solved soon; what cannot be is told of when it is its turn.
 void BatchSolver::Expect(const BatchUpdate& update) {
+  if (update.solver == nullptr || update.pose == nullptr) return;
   const SubjectSolver& solver = *update.solver;
   Prefetch<Transform>(update.pose->joints);
   for (const RowList* list : {&solver.filter_context_.value, &solver.filter_context_.raw,
@@ -29,9 +36,9 @@ void BatchSolver::Expect(const BatchUpdate& update) {
 
 void BatchSolver::Run(std::span<BatchUpdate> updates) {
   SubjectSolve* const solve = BestSubjectSolve();
-  const std::size_t ahead = updates.size() < 256 ? updates.size() : 8;
+  const bool is_long = updates.size() >= kPrefetchFrom;
   for (std::size_t i = 0; i < updates.size(); ++i) {
-    if (i + ahead < updates.size()) Expect(updates[i + ahead]);
+    if (is_long && i + kPrefetchAhead < updates.size()) Expect(updates[i + kPrefetchAhead]);
     updates[i].status = Solve(updates[i], solve);
   }
 }

@@ -28,8 +28,9 @@ struct BatchUpdate {
 //   longer a subject than one of many, whose poses memory brings while others are evaluated.
 // - A subject may stand in a batch more than once; its updates happen in order.
 // - Statuses are Update()'s, and kNullPointer; an update that fails changes nothing and disturbs no
-//   other. Values equal Update()'s to 1e-6, and weights too where gains are at most 1; what comes
-//   out for a subject does not depend on who else is in the batch.
+//   other. Values equal Update()'s to 1e-6, and weights too where gains are at most 1 (a twist that
+//   is full within a few degrees magnifies what arc tangents differ by: to 1e-5); what comes out
+//   for a subject does not depend on who else is in the batch.
 // - Strain and nnls drivers branch too much for that: their points go side by side, the rest driver
 //   by driver.
 // - Not for two threads at once. Allocates where a binding is larger than any before, never else.

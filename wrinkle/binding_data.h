@@ -22,8 +22,7 @@
 namespace furrow::wrinkle {
 
 // A rig compiled for one skeleton, private to wrinkle/: contiguous arrays a driver kind, immutable,
-// and nothing in it belongs to a subject. A loop over many subjects can therefore take one entry at
-// a time and keep its constants in registers.
+// and nothing in it belongs to a subject.
 struct BindingData {
   Rig rig;
   Skeleton skeleton;

@@ -95,7 +95,9 @@ Status PoseDriverSet::BindValue(const Driver& driver, const PoseDriver::Value& v
   }
   const StackedPoints d = StackedPoints(displacements_).subspan(first);
   const double square = Dot(d, d);
-  const bool moves = std::sqrt(square) > double{kLeastDisplacement * context->size()};
+  // What is too small to be squared does not move either.
+  const bool moves = std::sqrt(square) > double{kLeastDisplacement * context->size()} &&
+                     static_cast<float>(square) > 0.0f;
   squared_displacements_.push_back(moves ? static_cast<float>(square) : 0.0f);
   inverse_lengths_.push_back(moves ? 1.0 / std::sqrt(double{squared_displacements_.back()}) : 0.0);
   for (const glm::vec3& point : d) {

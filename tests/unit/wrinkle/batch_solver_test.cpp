@@ -226,10 +226,17 @@ TEST_P(BatchSolverTest, BadUpdatesFailAlone) {
     crowd.ExpectEqual();
     if (HasFailure()) FAIL() << "number " << number;
   }
-  BatchUpdate incomplete[] = {{.solver = &crowd.batched(0)}, {.pose = &crowd.pose(0)}};
-  batch.Run(incomplete);
-  EXPECT_EQ(incomplete[0].status, JobStatus::kNullPointer);
-  EXPECT_EQ(incomplete[1].status, JobStatus::kNullPointer);
+  for (const std::size_t count : {1, 150}) {  // 300: looked at ahead of their turn
+    std::vector<BatchUpdate> incomplete;
+    for (std::size_t i = 0; i < count; ++i) {
+      incomplete.push_back({.solver = &crowd.batched(0)});
+      incomplete.push_back({.pose = &crowd.pose(0)});
+    }
+    batch.Run(incomplete);
+    for (const BatchUpdate& update : incomplete) {
+      EXPECT_EQ(update.status, JobStatus::kNullPointer);
+    }
+  }
 }
 
 // Numbers that overflow on the way are no reason to refuse a pose, alone or beside others.
