@@ -227,7 +227,10 @@ int GpuCharacter::Level(std::size_t index, float metres) {
   constexpr float kLeastShare = 0.01f;  // of an edge: nothing collapses for less
   GpuMesh& mesh = meshes_[index];
   if (!(metres > kLeastShare * mesh.mean_edge)) return 0;
-  if (mesh.levels.empty()) AddLevels(&mesh);
+  if (mesh.levels.empty()) {
+    const bool is_hair = material(mesh.material).kind == Material::Kind::kHair;
+    AddLevels(&mesh, is_hair ? Borders::kDrawnIn : Borders::kStay);
+  }
   int level = static_cast<int>(mesh.levels.size()) - 1;
   while (level > 0 && mesh.levels[static_cast<std::size_t>(level)].error > metres) --level;
   return level;

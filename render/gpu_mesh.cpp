@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 
 #include "render/displacement_patches.h"
-#include "render/mesh_levels.h"
 #include "render/uv_density.h"
 
 namespace furrow::render {
@@ -95,9 +94,9 @@ GpuMesh MakeGpuMesh(const character::Mesh& mesh, std::span<const glm::mat4> inve
   return gpu;
 }
 
-void AddLevels(GpuMesh* mesh) {
+void AddLevels(GpuMesh* mesh, Borders borders) {
   std::vector<std::uint32_t> indices;
-  for (const MeshLevel& level : MakeMeshLevels(ReadMesh(*mesh))) {
+  for (const MeshLevel& level : MakeMeshLevels(ReadMesh(*mesh), borders)) {
     mesh->levels.push_back({static_cast<GLsizei>(indices.size()),
                             static_cast<GLsizei>(level.indices.size()), level.error});
     indices.insert(indices.end(), level.indices.begin(), level.indices.end());

@@ -9,6 +9,7 @@
 #include "character/character.h"
 #include "render/gl_objects.h"
 #include "render/joint_bounds.h"
+#include "render/mesh_levels.h"
 
 namespace furrow::render {
 
@@ -47,7 +48,7 @@ struct GpuPatches {
 [[nodiscard]] GpuMesh MakeGpuMesh(const character::Mesh& mesh,
                                   std::span<const glm::mat4> inverse_bind_matrices);
 // Gives a mesh its levels.
-void AddLevels(GpuMesh* mesh);
+void AddLevels(GpuMesh* mesh, Borders borders);
 // The whole mesh as it was uploaded: nobody keeps it.
 [[nodiscard]] character::Mesh ReadMesh(const GpuMesh& mesh);
 // With three vertices of its own to every triangle, for the view wireframe.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <compare>
 #include <queue>
 #include <utility>
 
@@ -16,14 +16,17 @@ namespace {
 using Index = std::uint32_t;
 using Triangle = std::array<Index, 3>;
 
-constexpr std::size_t kFewTriangles = 64;  // less is not worth a level
-constexpr double kMostError = 0.015;       // metres; nobody is so small in a picture
-constexpr double kLeastTurn = 0.3;         // cosine between a triangle before and after
-constexpr double kStraight = 0.7;          // ... and of a border that has no corner
+constexpr std::size_t kFewTriangles = 64;    // less is not worth a level
+constexpr std::size_t kMostOfAVertex = 256;  // triangles; what has more stays, and so does its fan
+constexpr double kMostError = 0.015;         // metres; nobody is so small in a picture
+constexpr double kLeastTurn = 0.3;           // cosine between a triangle before and after
+constexpr double kStraight = 0.7;            // ... and of a border that has no corner
 
 glm::dvec3 Cross(const std::array<glm::dvec3, 3>& corners) {
   return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
 }
+
+std::array<Index, 2> EdgeOf(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
 // Sum of squared distances to planes, weighted.
 class Quadric {
@@ -57,7 +60,7 @@ class Quadric {
 
 class Simplifier {
  public:
-  explicit Simplifier(const character::Mesh& mesh);
+  Simplifier(const character::Mesh& mesh, Borders borders);
 
   // Whether no more than `target` triangles are left.
   bool Reduce(std::size_t target);
@@ -74,6 +77,11 @@ class Simplifier {
     bool operator>(const Collapse& other) const { return error > other.error; }
   };
   void LockSeams();
+  [[nodiscard]] std::vector<std::array<Index, 2>> Edges() const;
+  // Has too many triangles to look at all of them again and again.
+  [[nodiscard]] bool IsHub(Index vertex) const {
+    return triangles_of_[vertex].size() > kMostOfAVertex;
+  }
   [[nodiscard]] std::size_t NumTriangles(Index a, Index b) const;
   void HoldBorders();
   [[nodiscard]] std::vector<Index> Neighbours(Index vertex) const;
@@ -81,6 +89,7 @@ class Simplifier {
   void Propose(Index from);
   void Apply(const Collapse& collapse);
 
+  Borders borders_;
   std::vector<glm::dvec3> positions_;
   std::vector<Triangle> triangles_;
   std::vector<glm::dvec3> facing_;                // a triangle each, of the mesh itself
@@ -95,8 +104,9 @@ class Simplifier {
   double error_ = 0.0;
 };
 
-Simplifier::Simplifier(const character::Mesh& mesh)
-    : triangles_of_(mesh.vertices.size()),
+Simplifier::Simplifier(const character::Mesh& mesh, Borders borders)
+    : borders_(borders),
+      triangles_of_(mesh.vertices.size()),
       is_locked_(mesh.vertices.size(), false),
       is_border_(mesh.vertices.size(), false),
       versions_(mesh.vertices.size(), 0),
@@ -127,36 +137,64 @@ Simplifier::Simplifier(const character::Mesh& mesh)
 void Simplifier::LockSeams() {
   constexpr double kOnePlace = 1e-6;             // metres
   const glm::dvec3 direction(0.57, 0.61, 0.55);  // along which meshes seldom have many in a plane
-  std::vector<std::pair<double, Index>> order;
+  // What lies in exactly one place is sorted side by side; of what is merely near, no more is
+  // looked at, however many lie in a plane.
+  constexpr std::ptrdiff_t kMostLookedAt = 32;
+  struct Along {
+    double distance = 0.0;
+    std::array<double, 3> position{};
+    Index vertex = 0;
+    auto operator<=>(const Along&) const = default;
+  };
+  std::vector<Along> order;
   for (Index vertex = 0; vertex < positions_.size(); ++vertex) {
-    order.emplace_back(glm::dot(direction, positions_[vertex]), vertex);
+    const glm::dvec3& position = positions_[vertex];
+    order.push_back({glm::dot(direction, position), {position.x, position.y, position.z}, vertex});
   }
-  std::ranges::sort(order);
+  std::ranges::sort(order, [](const Along& a, const Along& b) { return a < b; });
   for (auto one = order.begin(); one != order.end(); ++one) {
-    for (auto other = one + 1; other != order.end(); ++other) {
-      if (other->first - one->first > kOnePlace) break;
-      const Index a = one->second;
-      const Index b = other->second;
+    const auto end = one + std::min(kMostLookedAt, order.end() - one);
+    for (auto other = one + 1; other < end; ++other) {
+      if (other->distance - one->distance > kOnePlace) break;
+      const Index a = one->vertex;
+      const Index b = other->vertex;
       if (glm::distance(positions_[a], positions_[b]) > kOnePlace) continue;
       is_locked_[a] = is_locked_[b] = true;
     }
   }
 }
 
-// An edge of one triangle is a border, on which a plane stands upright, so that it keeps its line.
-// Where the line has a corner, or is not one line, it stays.
+// Every edge as often as triangles have it, in order.
+std::vector<std::array<Index, 2>> Simplifier::Edges() const {
+  std::vector<std::array<Index, 2>> edges;
+  edges.reserve(3 * triangles_.size());
+  for (const Triangle& triangle : triangles_) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      edges.push_back(EdgeOf(triangle[i], triangle[(i + 1) % 3]));
+    }
+  }
+  std::ranges::sort(edges);
+  return edges;
+}
+
+// An edge of one triangle is a border. Where it may be drawn in, a plane stands upright on it, so
+// that it keeps its line; where the line has a corner, or is not one line, it stays.
 void Simplifier::HoldBorders() {
   std::vector<std::array<glm::dvec3, 2>> ways(positions_.size());  // of a vertex' two border edges
   std::vector<std::size_t> num_ways(positions_.size(), 0);
+  const std::vector<std::array<Index, 2>> edges = Edges();
   for (const Triangle& triangle : triangles_) {
     const glm::dvec3 cross =
         Cross({positions_[triangle[0]], positions_[triangle[1]], positions_[triangle[2]]});
     for (int i = 0; i < 3; ++i) {
       const Index a = triangle[i];
       const Index b = triangle[(i + 1) % 3];
-      const std::size_t count = NumTriangles(a, b);
-      if (count > 2) is_locked_[a] = is_locked_[b] = true;
-      if (count != 1) continue;
+      const auto count = std::ranges::equal_range(edges, EdgeOf(a, b)).size();
+      const bool is_border = count == 1;
+      if (count > 2 || (is_border && borders_ == Borders::kStay)) {
+        is_locked_[a] = is_locked_[b] = true;
+      }
+      if (!is_border || borders_ == Borders::kStay) continue;
       const glm::dvec3 edge = positions_[b] - positions_[a];
       const glm::dvec3 upright = glm::cross(edge, cross);
       const double length = glm::length(upright);
@@ -199,11 +237,13 @@ std::vector<Index> Simplifier::Neighbours(Index vertex) const {
 // The surface stays a surface (two triangles go, or one where a border is drawn in along itself),
 // and none of its triangles turns over.
 bool Simplifier::IsAllowed(Index from, Index to) const {
+  if (IsHub(from) || IsHub(to)) return false;
   const std::vector<Index> of_from = Neighbours(from);
   const std::vector<Index> of_to = Neighbours(to);
   std::vector<Index> common;
   std::ranges::set_intersection(of_from, of_to, std::back_inserter(common));
   if (common.size() != (is_border_[from] ? 1u : 2u)) return false;
+  if (std::ranges::any_of(common, [&](Index vertex) { return IsHub(vertex); })) return false;
   if (is_border_[from] && NumTriangles(from, to) != 1) return false;
   return std::ranges::all_of(triangles_of_[from], [&](Index index) {
     const Triangle& triangle = triangles_[index];
@@ -224,7 +264,7 @@ bool Simplifier::IsAllowed(Index from, Index to) const {
 }
 
 void Simplifier::Propose(Index from) {
-  if (is_locked_[from] || triangles_of_[from].empty()) return;
+  if (is_locked_[from] || triangles_of_[from].empty() || IsHub(from)) return;
   std::vector<Collapse> ways;
   for (const Index to : Neighbours(from)) {
     Quadric both = quadrics_[from];
@@ -292,9 +332,9 @@ MeshLevel Simplifier::level() const {
 
 }  // namespace
 
-std::vector<MeshLevel> MakeMeshLevels(const character::Mesh& mesh) {
+std::vector<MeshLevel> MakeMeshLevels(const character::Mesh& mesh, Borders borders) {
   std::vector<MeshLevel> levels{{mesh.indices, 0.0f}};
-  Simplifier simplifier(mesh);
+  Simplifier simplifier(mesh, borders);
   std::size_t target = simplifier.num_triangles() * 2 / 3;
   while (target >= kFewTriangles && simplifier.Reduce(target)) {
     levels.push_back(simplifier.level());

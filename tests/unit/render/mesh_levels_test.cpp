@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "character_parts.h"
 #include "test_character.h"
 
 namespace furrow::render {
@@ -20,7 +21,7 @@ glm::vec3 Corner(const character::Mesh& mesh, const MeshLevel& level, std::size_
 
 TEST(MeshLevels, HalveTheTrianglesAndSayHowFarTheyAreOff) {
   const character::Mesh mesh = test::MakeHead().meshes[0];
-  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kStay);
   ASSERT_GE(levels.size(), 3u);
   EXPECT_EQ(levels[0].indices, mesh.indices);
   EXPECT_EQ(levels[0].error, 0.0f);
@@ -37,7 +38,7 @@ TEST(MeshLevels, HalveTheTrianglesAndSayHowFarTheyAreOff) {
 TEST(MeshLevels, StayNearTheSurfaceAndTurnNoTriangleOver) {
   const character::Mesh mesh = test::MakeHead().meshes[0];
   const glm::vec3 centre(0.0f, 1.6f, 0.0f);
-  for (const MeshLevel& level : MakeMeshLevels(mesh)) {
+  for (const MeshLevel& level : MakeMeshLevels(mesh, Borders::kStay)) {
     double squares = 0.0;
     for (std::size_t i = 0; i < level.indices.size(); i += 3) {
       const glm::vec3 a = Corner(mesh, level, i);
@@ -59,7 +60,7 @@ TEST(MeshLevels, StayNearTheSurfaceAndTurnNoTriangleOver) {
 // The seam's two columns of vertices are all still there.
 TEST(MeshLevels, KeepSeams) {
   const character::Mesh mesh = test::MakeHead().meshes[0];
-  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kStay);
   const std::set<std::uint32_t> left(levels.back().indices.begin(), levels.back().indices.end());
   int on_seam = 0;
   for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -97,7 +98,7 @@ TEST(MeshLevels, DrawBordersInAlongThemselves) {
   constexpr int kStrips = 40;
   constexpr int kSegments = 12;
   const character::Mesh mesh = Strips(kStrips, kSegments);
-  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kDrawnIn);
   ASSERT_GE(levels.size(), 4u);
   for (const MeshLevel& level : levels) {
     const std::set<std::uint32_t> left(level.indices.begin(), level.indices.end());
@@ -119,10 +120,52 @@ TEST(MeshLevels, DrawBordersInAlongThemselves) {
   EXPECT_LT(levels[2].error, 0.005f);
 }
 
+// As two meshes share it, which are simplified each by itself: without a crack.
+TEST(MeshLevels, KeepBordersThatMayBeShared) {
+  character::Mesh sheet;
+  test::AddGrid(
+      20, 20,
+      [](float u, float v) {
+        character::Vertex vertex;
+        vertex.position = {u, v, 0.0f};
+        return vertex;
+      },
+      &sheet);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(sheet, Borders::kStay);
+  ASSERT_GE(levels.size(), 3u);
+  const std::set<std::uint32_t> left(levels.back().indices.begin(), levels.back().indices.end());
+  for (std::uint32_t i = 0; i < sheet.vertices.size(); ++i) {
+    const glm::vec3& place = sheet.vertices[i].position;
+    const bool is_border = std::min(place.x, place.y) == 0.0f || std::max(place.x, place.y) == 1.0f;
+    EXPECT_TRUE(!is_border || left.contains(i)) << i;
+  }
+}
+
+// Neither many vertices in one place nor many triangles at one vertex take long, each of 200,000.
+TEST(MeshLevels, TakeNoLongerForWhatLiesTogether) {
+  constexpr std::uint32_t kMany = 200'000;
+  character::Mesh heap;
+  heap.vertices.resize(kMany);
+  for (std::uint32_t i = 0; i + 2 < kMany; i += 3) {
+    heap.indices.insert(heap.indices.end(), {i, i + 1, i + 2});
+  }
+  EXPECT_EQ(MakeMeshLevels(heap, Borders::kDrawnIn).size(), 1u);
+  character::Mesh fan;
+  fan.vertices.resize(kMany + 1);
+  for (std::uint32_t i = 0; i < kMany; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kMany;
+    fan.vertices[i + 1].position = {std::sin(angle), std::cos(angle), 0.0};
+    fan.indices.insert(fan.indices.end(), {0, i + 1, 1 + (i + 1) % kMany});
+  }
+  for (const Borders borders : {Borders::kStay, Borders::kDrawnIn}) {
+    EXPECT_EQ(MakeMeshLevels(fan, borders).size(), 1u);
+  }
+}
+
 TEST(MeshLevels, OfNothingAndOfLittleAreTheMeshAlone) {
-  EXPECT_EQ(MakeMeshLevels({}).size(), 1u);
+  EXPECT_EQ(MakeMeshLevels({}, Borders::kStay).size(), 1u);
   const character::Mesh plane = test::MakePlane(4, [](float, float) { return 0.0f; }, {}).meshes[0];
-  EXPECT_EQ(MakeMeshLevels(plane).size(), 1u);
+  EXPECT_EQ(MakeMeshLevels(plane, Borders::kStay).size(), 1u);
 }
 
 }  // namespace
