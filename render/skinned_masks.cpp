@@ -24,6 +24,11 @@ constexpr int kUniqueSide = 1024;
 constexpr int kMostShared = 16;
 // Of a triangle: closer to an edge, a texel may as well be its neighbour's.
 constexpr float kEdge = 1e-3f;
+// Of more, masks are not looked at: what a character brings must not hold up the picture. A face
+// has a few dozen channels, and a vertex of it a few of them.
+constexpr std::size_t kMostChannels = 1024;
+constexpr std::size_t kMostOfAVertex = 64;
+constexpr std::size_t kMostParts = std::size_t{1} << 22;
 
 // Less is no step of a byte.
 bool IsSeen(float value) { return value > 0.5f / 255.0f; }
@@ -34,40 +39,62 @@ SkinnedMasks::SkinnedMasks(std::span<const character::Mesh> meshes,
                            std::span<const SkinnedShare> shares,
                            std::span<const glm::mat4> inverse_bind_matrices, int material)
     : first_parts_{0} {
-  for (const character::Mesh& mesh : meshes) AddMesh(mesh, shares);
-  FindChannels(shares);
-  FindRegions(meshes, inverse_bind_matrices, material);
-  is_unique_ = IsAtlas(triangles_) && FindUnique();
+  const bool is_small = AddParts(meshes, shares);
+  if (is_small) FindChannels(shares);
+  is_unique_ = is_small && channels_.size() <= kMostChannels &&
+               (channels_.empty() || (IsAtlas(triangles_) && FindUnique()));
+  if (is_unique_) {
+    FindRegions(meshes, inverse_bind_matrices, material);
+  } else {
+    channels_.clear();
+    parts_ = {};
+  }
 }
 
-void SkinnedMasks::AddMesh(const character::Mesh& mesh, std::span<const SkinnedShare> shares) {
+bool SkinnedMasks::AddParts(std::span<const character::Mesh> meshes,
+                            std::span<const SkinnedShare> shares) {
+  std::vector<std::vector<std::uint32_t>> of_joint;  // the shares of each
+  for (std::uint32_t i = 0; i < shares.size(); ++i) {
+    const auto joint = static_cast<std::size_t>(shares[i].joint);
+    of_joint.resize(std::max(of_joint.size(), joint + 1));
+    of_joint[joint].push_back(i);
+  }
+  for (const character::Mesh& mesh : meshes) {
+    AddTriangles(mesh);
+    for (const character::Vertex& vertex : mesh.vertices) {
+      const std::size_t first = parts_.size();
+      for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t joint = vertex.joints[i];
+        if (joint >= of_joint.size() || !(vertex.skin_weights[i] > 0.0f)) continue;
+        for (const std::uint32_t channel : of_joint[joint]) {
+          const wrinkle::DynamicMask& mask = shares[channel].mask;
+          const float lambda =
+              wrinkle::Lambda(mask.lambda, vertex.skin_weights[i], mask.smooth_width);
+          if (lambda > 0.0f) parts_.push_back({channel, lambda});
+        }
+        if (parts_.size() > std::min(first + kMostOfAVertex, kMostParts)) return false;
+      }
+      first_parts_.push_back(static_cast<std::uint32_t>(parts_.size()));
+    }
+  }
+  return true;
+}
+
+void SkinnedMasks::AddTriangles(const character::Mesh& mesh) {
   const auto first = static_cast<std::uint32_t>(first_parts_.size() - 1);
   for (const std::uint32_t index : mesh.indices) corners_.push_back(first + index);
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const auto uv = [&](std::size_t corner) { return mesh.vertices[mesh.indices[i + corner]].uv; };
     triangles_.push_back({uv(0), uv(1), uv(2)});
   }
-  for (const character::Vertex& vertex : mesh.vertices) {
-    for (std::size_t channel = 0; channel < shares.size(); ++channel) {
-      const SkinnedShare& share = shares[channel];
-      float lambda = 0.0f;
-      for (int i = 0; i < 4; ++i) {
-        if (vertex.joints[i] != share.joint || !(vertex.skin_weights[i] > 0.0f)) continue;
-        lambda +=
-            wrinkle::Lambda(share.mask.lambda, vertex.skin_weights[i], share.mask.smooth_width);
-      }
-      if (lambda > 0.0f) parts_.push_back({channel, lambda});
-    }
-    first_parts_.push_back(static_cast<std::uint32_t>(parts_.size()));
-  }
 }
 
 void SkinnedMasks::FindChannels(std::span<const SkinnedShare> shares) {
   std::vector<bool> is_taken(shares.size(), false);
   for (const Part& part : parts_) is_taken[part.channel] = true;
-  std::vector<std::size_t> numbers(shares.size(), 0);
+  std::vector<std::uint32_t> numbers(shares.size(), 0);
   for (std::size_t i = 0; i < shares.size(); ++i) {
-    numbers[i] = channels_.size();
+    numbers[i] = static_cast<std::uint32_t>(channels_.size());
     if (is_taken[i]) channels_.push_back(shares[i]);
   }
   for (Part& part : parts_) part.channel = numbers[part.channel];
@@ -75,28 +102,27 @@ void SkinnedMasks::FindChannels(std::span<const SkinnedShare> shares) {
 
 void SkinnedMasks::FindRegions(std::span<const character::Mesh> meshes,
                                std::span<const glm::mat4> inverse_bind_matrices, int material) {
-  std::vector<character::Mesh> surfaces(channels_.size());
-  std::vector<std::size_t> last(channels_.size(), 0);  // triangle that was added, from 1
-  std::size_t triangle = 0;
+  std::vector<const character::Vertex*> vertices;
   for (const character::Mesh& mesh : meshes) {
-    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3, ++triangle) {
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        for (const Part& part : PartsOf(corners_[3 * triangle + corner])) {
-          if (last[part.channel] == triangle + 1) continue;
-          last[part.channel] = triangle + 1;
-          character::Mesh& surface = surfaces[part.channel];
-          for (std::size_t k = 0; k < 3; ++k) {
-            surface.indices.push_back(static_cast<std::uint32_t>(surface.vertices.size()));
-            surface.vertices.push_back(mesh.vertices[mesh.indices[i + k]]);
-          }
-        }
-      }
+    for (const character::Vertex& vertex : mesh.vertices) vertices.push_back(&vertex);
+  }
+  std::vector<std::vector<std::uint32_t>> reached(channels_.size());  // triangles of each channel
+  for (std::uint32_t i = 0; i < corners_.size(); ++i) {
+    for (const Part& part : PartsOf(corners_[i])) {
+      std::vector<std::uint32_t>& list = reached[part.channel];
+      if (list.empty() || list.back() != i / 3) list.push_back(i / 3);
     }
   }
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    regions_.push_back({static_cast<int>(i), material,
-                        JointBounds(surfaces[i], inverse_bind_matrices),
-                        LeastUvPerMetre(surfaces[i])});
+  for (std::size_t channel = 0; channel < reached.size(); ++channel) {
+    character::Mesh surface;
+    for (const std::uint32_t triangle : reached[channel]) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        surface.indices.push_back(static_cast<std::uint32_t>(surface.vertices.size()));
+        surface.vertices.push_back(*vertices[corners_[3 * std::size_t{triangle} + i]]);
+      }
+    }
+    regions_.push_back({static_cast<int>(channel), material,
+                        JointBounds(surface, inverse_bind_matrices), LeastUvPerMetre(surface)});
   }
 }
 
@@ -119,38 +145,45 @@ void SkinnedMasks::AddValues(const Place& place, float factor, std::vector<float
   }
 }
 
-bool SkinnedMasks::IsAlike(const Place& a, const Place& b) const {
-  std::vector<float> apart(channels_.size(), 0.0f);
-  AddValues(a, 1.0f, &apart);
-  AddValues(b, -1.0f, &apart);
+bool SkinnedMasks::IsAlike(const Place& a, const Place& b, std::vector<float>* apart) const {
+  AddValues(a, 1.0f, apart);
+  AddValues(b, -1.0f, apart);
   float sum = 0.0f;
-  for (const float value : apart) sum += std::abs(value);
+  for (const Place* place : {&a, &b}) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (const Part& part :
+           PartsOf(corners_[3 * static_cast<std::size_t>(place->triangle) + i])) {
+        sum += std::abs(std::exchange((*apart)[part.channel], 0.0f));
+      }
+    }
+  }
   return sum <= kLeastApart;
 }
 
 // All of it is one line of the texture, along which it has more than one mask.
-bool SkinnedMasks::IsFlat(std::size_t triangle) const {
+bool SkinnedMasks::IsFlat(std::size_t triangle, std::vector<float>* apart) const {
   const auto& [a, b, c] = triangles_[triangle];
   if ((b.x - a.x) * (c.y - a.y) != (b.y - a.y) * (c.x - a.x)) return false;
   const auto number = static_cast<std::int32_t>(triangle);
   const Place corner{number, 0.0f, {1.0f, 0.0f, 0.0f}};
-  return !IsAlike(corner, {number, 0.0f, {0.0f, 1.0f, 0.0f}}) ||
-         !IsAlike(corner, {number, 0.0f, {0.0f, 0.0f, 1.0f}});
+  return !IsAlike(corner, {number, 0.0f, {0.0f, 1.0f, 0.0f}}, apart) ||
+         !IsAlike(corner, {number, 0.0f, {0.0f, 0.0f, 1.0f}}, apart);
 }
 
 bool SkinnedMasks::FindUnique() const {
   const glm::ivec2 size(kUniqueSide);
   std::vector<Place> places(std::size_t{kUniqueSide} * kUniqueSide);
+  std::vector<float> apart(channels_.size(), 0.0f);
   int shared = 0;
   for (std::size_t i = 0; i < triangles_.size() && shared <= kMostShared; ++i) {
-    if (IsFlat(i)) ++shared;
+    if (IsFlat(i, &apart)) ++shared;
     ForTexels(triangles_[i], size, 0.0f, [&](const UvTexel& texel) {
       if (std::min({texel.shares.x, texel.shares.y, texel.shares.z}) < kEdge) return;
       const Place place{static_cast<std::int32_t>(i), 0.0f, texel.shares};
       Place& other = places[texel.index];
       if (other.triangle < 0) {
         other = place;
-      } else if (shared <= kMostShared && !IsAlike(other, place)) {
+      } else if (shared <= kMostShared && !IsAlike(other, place, &apart)) {
         ++shared;
       }
     });

@@ -174,6 +174,29 @@ TEST(SkinnedMasks, PlacesThatShareATexelMustHaveTheSameMasks) {
   EXPECT_TRUE(MasksOf({left, right}, {}).is_unique());           // no joint raises anything
 }
 
+// Whatever the texture looks like.
+TEST(SkinnedMasks, NoMasksAtAllAreUnique) {
+  const character::Mesh repeated = Sheet({0.0f, 0.0f}, {90.0f, 90.0f}, Across(0, 1));
+  EXPECT_TRUE(MasksOf({repeated}, {ShareOf(3, 0, wrinkle::LambdaMode::kSmooth)}).is_unique());
+  EXPECT_FALSE(MasksOf({repeated}, {ShareOf(1, 0, wrinkle::LambdaMode::kSmooth)}).is_unique());
+}
+
+TEST(SkinnedMasks, TooManyMasksOfAVertexStayInTheFragment) {
+  const character::Mesh sheet = Sheet(glm::vec2(0.1f), glm::vec2(0.9f), Across(0, 1));
+  std::vector<SkinnedShare> shares;
+  for (int column = 0; column < 16; ++column) {
+    shares.push_back(ShareOf(1, column, wrinkle::LambdaMode::kLinear));
+  }
+  EXPECT_TRUE(MasksOf({sheet}, shares).is_unique());
+  for (int column = 16; column < 80; ++column) {
+    shares.push_back(ShareOf(1, column, wrinkle::LambdaMode::kLinear));
+  }
+  const SkinnedMasks masks = MasksOf({sheet}, shares);
+  EXPECT_FALSE(masks.is_unique());
+  EXPECT_TRUE(masks.channels().empty());
+  EXPECT_TRUE(masks.regions().empty());
+}
+
 TEST(SkinnedMasks, WhatIsALineInTheTextureHasNoPlaceInIt) {
   const std::vector<SkinnedShare> shares = {ShareOf(1, 0, wrinkle::LambdaMode::kLinear)};
   EXPECT_FALSE(MasksOf({Sheet(glm::vec2(0.5f), {0.5f, 0.9f}, Across(0, 1))}, shares).is_unique());
