@@ -57,10 +57,15 @@ gl::Sampler MakeCutOutSampler() {
 }
 
 // What shows or needs every wrinkle by itself has them composed in every fragment.
-bool TakesComposed(const Settings& settings) {
-  return settings.wrinkle_maps.cache && settings.view != View::kWeights &&
-         settings.view != View::kMaskDynamic && settings.view != View::kMaskTexture &&
-         settings.normal_blend == NormalBlend::kPartialDerivative;
+bool TakesComposed(const Settings& settings, View view) {
+  return settings.wrinkle_maps.cache && view != View::kWeights && view != View::kMaskDynamic &&
+         view != View::kMaskTexture && settings.normal_blend == NormalBlend::kPartialDerivative;
+}
+
+// ... of the picture and the strip beside it.
+bool SomeViewTakesComposed(const Settings& settings) {
+  const auto takes = [&](View view) { return TakesComposed(settings, view); };
+  return takes(settings.view) || std::ranges::any_of(settings.strip.views, takes);
 }
 
 // The views that the skin pipeline's scene pass itself draws differently for.
@@ -127,7 +132,7 @@ Status SceneDraw::Update(const FrameRequest& request) {
 }
 
 void SceneDraw::PlanComposing(const FrameRequest& request) {
-  if (is_crowd_ || !request.settings.wrinkle_maps.cache) return cache_.Disable();
+  if (is_crowd_ || !SomeViewTakesComposed(request.settings)) return cache_.Disable();
   cache_.Plan(request.settings,
               {.subject = &request,
                .projection = setup_.camera.view_projection,
@@ -159,12 +164,11 @@ void SceneDraw::BindMasks() {
 }
 
 WrinkleCache::Composed SceneDraw::ComposedOf(int material, const Settings& settings) const {
-  if (!TakesComposed(settings) || IsDisplaced(gpu_->material(material), settings)) return {};
-  return cache_.Find(material);
+  return TakesComposed(settings, settings.view) ? cache_.Find(material) : WrinkleCache::Composed();
 }
 
 bool SceneDraw::NeedsComposing(const Settings& settings) const {
-  return TakesComposed(settings) && cache_.is_stale();
+  return TakesComposed(settings, settings.view) && cache_.is_stale();
 }
 
 void SceneDraw::BindMaterial(const GpuMaterial& material, const WrinkleCache::Composed& composed) {
@@ -196,11 +200,6 @@ void SceneDraw::BindLookUps() {
   glBindSampler(kShadowUnits[1], shadow_depth_.name());
   glBindTextureUnit(kBeckmannUnit, lookup_tables_.beckmann());
   glBindTextureUnit(kSpecularAlbedoUnit, lookup_tables_.specular_albedo());
-}
-
-bool SceneDraw::IsDisplaced(const GpuMaterial& material, const Settings& settings) const {
-  return settings.displacement.enabled && settings.displacement.strength > 0.0f &&
-         material.group != WrinkleGroup::kNone && tables_->table(material.group).has_heights;
 }
 
 Result<PosedMeshes::Vertices> SceneDraw::Pose(std::size_t index, PosedMeshes::Form form,
@@ -270,7 +269,7 @@ Status SceneDraw::DrawCaster(const Settings& settings, int light, std::size_t in
   const int number = gpu_->meshes()[index].material;
   const GpuMaterial& material = gpu_->material(number);
   SceneShader shader;
-  if (IsDisplaced(material, settings)) {
+  if (tables_->IsDisplaced(material.group, settings)) {
     shader = SurfaceShader(material, {});
     shader.displaced = shader.shadow = true;
   }
@@ -348,7 +347,8 @@ SceneShader SceneDraw::ShaderFor(const GpuMaterial& material,
   SceneShader shader = SurfaceShader(material, composed);
   shader.view = settings.view;
   shader.normal_blend = settings.normal_blend;
-  shader.displaced = IsDisplaced(material, settings) && settings.view != View::kWireframe;
+  shader.displaced =
+      tables_->IsDisplaced(material.group, settings) && settings.view != View::kWireframe;
   if (kind == SceneKind::kPlain) return shader;
   const bool skin = material.kind == character::Material::Kind::kSkin;
   shader.shading = Shading::kSkin;

@@ -68,7 +68,6 @@ class SceneDraw {
   [[nodiscard]] Status DrawCaster(const Settings& settings, int light, std::size_t index);
   void BindLookUps();
   [[nodiscard]] Status DrawMesh(const Settings& settings, SceneKind kind, std::size_t index);
-  [[nodiscard]] bool IsDisplaced(const GpuMaterial& material, const Settings& settings) const;
   // What a program must know of the material and its wrinkles, whatever is made of them.
   [[nodiscard]] SceneShader SurfaceShader(const GpuMaterial& material,
                                           const WrinkleCache::Composed& composed) const;

@@ -41,13 +41,16 @@ void WrinkleCache::Plan(const Settings& settings, const View& view) {
     if (material.group == WrinkleGroup::kNone) continue;
     // The alpha of a base colour that is cut out is needed; there is no room for a cavity.
     if (material.alpha_test && gpu_->wrinkle_looks() != 0) continue;
+    if (tables_->IsDisplaced(material.group, settings)) continue;
     const WrinkleTable& table = tables_->table(material.group);
     if (table.maps.empty()) continue;
+    const Sight sight = Look(index, view);
+    if (!(sight.texels_per_uv > 0.0f)) continue;
     Entry& entry = EntryOf(index);
     if (entry.skinned == nullptr) entry.skinned = FindSkinned(index);
     entry.rest = entry.skinned->is_unique() ? WrinklePart::kSliding : WrinklePart::kDynamic;
     if (NeedsOf(table, entry.rest).num_maps == table.maps.size()) continue;
-    PlanMaterial(index, settings, view, &entry);
+    PlanMaterial(index, settings, view, sight, &entry);
   }
 }
 
@@ -122,9 +125,8 @@ void WrinkleCache::LookAtRegion(const MaskRegion& region, std::size_t channel,
 }
 
 void WrinkleCache::PlanMaterial(int index, const Settings& settings, const View& view,
-                                Entry* entry) {
-  const Sight sight = Look(index, view);
-  if (!(sight.texels_per_uv > 0.0f) || !Prepare(gpu_->material(index), sight, entry)) return;
+                                const Sight& sight, Entry* entry) {
+  if (!Prepare(gpu_->material(index), sight, entry)) return;
   ComposedMaterial& composed = *entry->composed;
   ComposedMaterial::Wanted wanted{InkOf(composed, entry->rest, settings), {}, {}};
   LookAtRegions(index, composed, view, &wanted);

@@ -94,7 +94,8 @@ class WrinkleCache {
                     const View& view, ComposedMaterial::Wanted* wanted) const;
   // There is a texture of the right size for it; false: it would be too large.
   [[nodiscard]] bool Prepare(const GpuMaterial& material, const Sight& sight, Entry* entry) const;
-  void PlanMaterial(int index, const Settings& settings, const View& view, Entry* entry);
+  void PlanMaterial(int index, const Settings& settings, const View& view, const Sight& sight,
+                    Entry* entry);
 
   const GpuCharacter* gpu_;
   const WrinkleTables* tables_;

@@ -236,6 +236,11 @@ std::vector<WrinkleTables::Painted> WrinkleTables::painted(WrinkleGroup group) c
   return painted;
 }
 
+bool WrinkleTables::IsDisplaced(WrinkleGroup group, const Settings& settings) const {
+  return settings.displacement.enabled && settings.displacement.strength > 0.0f &&
+         group != WrinkleGroup::kNone && table(group).has_heights;
+}
+
 std::vector<SkinnedShare> WrinkleTables::skinned(WrinkleGroup group) const {
   std::vector<SkinnedShare> shares;
   if (group == WrinkleGroup::kNone) return shares;

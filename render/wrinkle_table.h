@@ -116,6 +116,8 @@ class WrinkleTables {
   [[nodiscard]] const WrinkleTable& table(WrinkleGroup group) const {
     return tables_[static_cast<int>(group)];
   }
+  // Some map in the table moves the group's surfaces.
+  [[nodiscard]] bool IsDisplaced(WrinkleGroup group, const Settings& settings) const;
   [[nodiscard]] int num_maps() const { return static_cast<int>(maps_.size()); }
   // subjects x joints x mask_columns(): how much each joint raises each column of dynamic masks.
   [[nodiscard]] std::span<const float> influences() const { return influences_; }

@@ -149,6 +149,23 @@ TEST_F(WrinkleCacheTest, WhatComesIntoSightIsUpToDate) {
   }
 }
 
+TEST_F(WrinkleCacheTest, DisplacedSurfacesComposeNothing) {
+  for (wrinkle::WrinkleMap& map : head_.rig.wrinkle_maps) map.height = "cavity";
+  subject_ = test::Subject(head_);
+  renderer_ = test::Expect(Renderer::Create(head_));
+  PassCounter counter;
+  renderer_->SetObserver(&counter);
+  Randomise(true);
+  FrameRequest request = RequestOf(subject_, camera_, View::kNormal, 96);
+  request.settings.displacement.enabled = true;
+  (void)test::Expect(renderer_->Render(request));
+  EXPECT_EQ(counter.Take("wrinkles"), 0);
+  request.settings.displacement.enabled = false;
+  (void)test::Expect(renderer_->Render(request));
+  EXPECT_EQ(counter.Take("wrinkles"), 1);
+  renderer_->SetObserver(nullptr);
+}
+
 // What needs every wrinkle by itself composes none; nor do several subjects.
 TEST_F(WrinkleCacheTest, SomeFramesComposeNothing) {
   PassCounter counter;
