@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "protocol/hash.h"
+#include "tests/unit/allocation_counter.h"
 #include "tests/unit/protocol/drill.h"
 #include "tests/unit/protocol/samples.h"
 
@@ -206,9 +207,9 @@ TEST(Codec, PoseAndWeightsDoNotAllocateOnceWarm) {
     }
   };
   for (int i = 0; i < 3; ++i) round();
-  const std::uint64_t before = test::AllocationCount();
+  const std::uint64_t before = furrow::test::NumAllocations();
   for (int i = 0; i < 10; ++i) round();
-  EXPECT_EQ(test::AllocationCount(), before);
+  EXPECT_EQ(furrow::test::NumAllocations(), before);
 }
 
 }  // namespace

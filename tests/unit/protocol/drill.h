@@ -36,7 +36,4 @@ void ForEveryCorruption(std::span<const std::uint8_t> good, const Parse& parse) 
   }
 }
 
-// How often operator new was called in this program (allocation_count.cpp).
-[[nodiscard]] std::uint64_t AllocationCount();
-
 }  // namespace furrow::protocol::test

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/allocation_counter.h"
 #include "tests/unit/protocol/drill.h"
 #include "tests/unit/protocol/samples.h"
 
@@ -81,9 +82,9 @@ TEST(FrameReader, AClaimedLengthTakesNoMemory) {
   const auto prefix = FramePrefix(kMaxReplyBytes);
   std::span<const std::uint8_t> bytes(prefix);
   std::span<const std::uint8_t> frame;
-  const std::uint64_t before = test::AllocationCount();
+  const std::uint64_t before = furrow::test::NumAllocations();
   EXPECT_EQ(reader.Push(bytes, frame), FrameStatus::kNeedMore);
-  EXPECT_EQ(test::AllocationCount(), before);
+  EXPECT_EQ(furrow::test::NumAllocations(), before);
 }
 
 }  // namespace

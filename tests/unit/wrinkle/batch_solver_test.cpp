@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
-#include "tests/unit/wrinkle/allocation_counter.h"
+#include "tests/unit/allocation_counter.h"
 #include "tests/unit/wrinkle/bound_rig.h"
 #include "tests/unit/wrinkle/crowd.h"
 
@@ -317,13 +317,13 @@ TEST_P(BatchSolverTest, DoesNotAllocateOnceItHasSeenASize) {
   }
   BatchSolver batch;
   batch.Run(updates);
-  const std::uint64_t before = NumAllocations();
+  const std::uint64_t before = furrow::test::NumAllocations();
   for (std::size_t count = 1; count <= updates.size(); ++count) {
     batch.Run(std::span(updates).last(count));
   }
   poses[3].joints[2].scale.x = std::numeric_limits<float>::infinity();
   batch.Run(updates);
-  EXPECT_EQ(NumAllocations(), before);
+  EXPECT_EQ(furrow::test::NumAllocations(), before);
   EXPECT_EQ(updates[3].status, JobStatus::kNonFinite);
 }
 

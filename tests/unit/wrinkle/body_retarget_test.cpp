@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/wrinkle/allocation_counter.h"
+#include "tests/unit/allocation_counter.h"
 #include "tests/unit/wrinkle/humanoid.h"
 #include "wrinkle/retarget.h"
 
@@ -27,9 +27,9 @@ class Carrier {
     from_.resize(static_cast<std::size_t>(source_.num_joints()));
     to_.resize(static_cast<std::size_t>(target_.num_joints()));
     local_.resize(to_.size());
-    const std::uint64_t allocations = NumAllocations();
+    const std::uint64_t allocations = furrow::test::NumAllocations();
     ASSERT_EQ(retarget_.Run(pose.joints, local_), JobStatus::kOk);
-    EXPECT_EQ(NumAllocations(), allocations);
+    EXPECT_EQ(furrow::test::NumAllocations(), allocations);
     ASSERT_EQ((LocalToModelJob{&source_, pose.joints, from_}).Run(), JobStatus::kOk);
     ASSERT_EQ((LocalToModelJob{&target_, local_, to_}).Run(), JobStatus::kOk);
   }

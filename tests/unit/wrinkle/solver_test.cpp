@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/wrinkle/allocation_counter.h"
+#include "tests/unit/allocation_counter.h"
 #include "tests/unit/wrinkle/bound_rig.h"
 #include "wrinkle/retarget.h"
 
@@ -264,9 +264,9 @@ TEST(SubjectSolver, ResetStartsAnew) {
 
 // The allocation counter itself counts; otherwise the next test could not fail.
 TEST(Allocation, IsCounted) {
-  const std::uint64_t before = NumAllocations();
+  const std::uint64_t before = furrow::test::NumAllocations();
   const auto number = std::make_unique<int>(1);
-  EXPECT_EQ(NumAllocations(), before + 1 + static_cast<std::uint64_t>(*number - 1));
+  EXPECT_EQ(furrow::test::NumAllocations(), before + 1 + static_cast<std::uint64_t>(*number - 1));
 }
 
 TEST(Allocation, NoneAfterSetUp) {
@@ -285,7 +285,7 @@ TEST(Allocation, NoneAfterSetUp) {
   std::vector<float> filtered(rig.values().size());
   SubjectSolver solver(rig.binding());
 
-  const std::uint64_t before = NumAllocations();
+  const std::uint64_t before = furrow::test::NumAllocations();
   bool ok = true;
   for (int frame = 0; frame < 10; ++frame) {
     const auto run = [&](const auto& job) { ok = ok && job.Run() == JobStatus::kOk; };
@@ -315,7 +315,7 @@ TEST(Allocation, NoneAfterSetUp) {
   }
   solver.Reset();
   context.Reset();
-  EXPECT_EQ(NumAllocations(), before);
+  EXPECT_EQ(furrow::test::NumAllocations(), before);
   EXPECT_TRUE(ok);
 }
 

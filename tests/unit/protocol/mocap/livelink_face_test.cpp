@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/allocation_counter.h"
 #include "tests/unit/protocol/mocap/livelink_encoder.h"
 
 namespace furrow::protocol::mocap {
@@ -165,9 +166,9 @@ TEST_F(LiveLinkFace, DoesNotAllocateOnceWarm) {
   for (int i = 0; i < 10; ++i, ++packet.frame) packets.push_back(packet.Encode());
   const FrameSink sink = [](const NeutralFrame&) {};
   adapter_->Push(packets[0], 0, sink);
-  const std::uint64_t before = test::AllocationCount();
+  const std::uint64_t before = furrow::test::NumAllocations();
   for (std::size_t i = 1; i < packets.size(); ++i) adapter_->Push(packets[i], 0, sink);
-  EXPECT_EQ(test::AllocationCount(), before);
+  EXPECT_EQ(furrow::test::NumAllocations(), before);
   EXPECT_EQ(counters().accepted, 10u);
 }
 

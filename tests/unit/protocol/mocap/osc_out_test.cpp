@@ -7,6 +7,7 @@
 
 #include "protocol/mocap/osc.h"
 #include "protocol/mocap/vmc.h"
+#include "tests/unit/allocation_counter.h"
 #include "tests/unit/protocol/drill.h"
 
 namespace furrow::protocol::mocap {
@@ -88,9 +89,9 @@ TEST(OscWeightWriter, DoesNotAllocateOnceWarm) {
   const std::vector<float> values = Values(100);
   const OscWeightWriter::Emit emit = [](std::span<const std::uint8_t>) {};
   writer.Write(0, 0, values, emit);
-  const std::uint64_t before = test::AllocationCount();
+  const std::uint64_t before = furrow::test::NumAllocations();
   for (std::uint32_t i = 1; i < 10; ++i) writer.Write(i, i, values, emit);
-  EXPECT_EQ(test::AllocationCount(), before);
+  EXPECT_EQ(furrow::test::NumAllocations(), before);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "protocol/codec.h"
 #include "protocol/mocap/osc.h"
+#include "tests/unit/allocation_counter.h"
 #include "tests/unit/protocol/mocap/hex.h"
 #include "tests/unit/protocol/samples.h"
 
@@ -336,9 +337,9 @@ TEST_F(Vmc, DoesNotAllocateOnceWarm) {
   }
   const FrameSink sink = [](const NeutralFrame&) {};
   for (std::size_t i = 0; i < 2; ++i) adapter_->Push(packets[i], 0, sink);
-  const std::uint64_t before = test::AllocationCount();
+  const std::uint64_t before = furrow::test::NumAllocations();
   for (std::size_t i = 2; i < packets.size(); ++i) adapter_->Push(packets[i], 0, sink);
-  EXPECT_EQ(test::AllocationCount(), before);
+  EXPECT_EQ(furrow::test::NumAllocations(), before);
   EXPECT_GE(counters().accepted, 11u);
 }
 

@@ -10,7 +10,7 @@
 
 #include "protocol/hash.h"
 #include "server/net/udp_server.h"
-#include "tests/unit/protocol/drill.h"
+#include "tests/unit/allocation_counter.h"
 #include "tests/unit/server/session/hub_fixture.h"
 
 namespace furrow::server {
@@ -140,10 +140,10 @@ TEST_P(UdpPathTest, NothingIsAllocatedAPoseInTheLongRun) {
   Meet();
   std::uint32_t number = 0;
   while (number < 20) Round(number++);
-  const std::uint64_t before = protocol::test::AllocationCount();
+  const std::uint64_t before = furrow::test::NumAllocations();
   int got = 0;
   for (; number < 70; ++number) got += Round(number);
-  EXPECT_EQ(protocol::test::AllocationCount(), before);
+  EXPECT_EQ(furrow::test::NumAllocations(), before);
   EXPECT_EQ(got, 50 * kSubjects);
   EXPECT_EQ(Count(Counter::kDatagramsUnsendable), 0u);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/unit/wrinkle/allocation_counter.h"
+#include "tests/unit/allocation_counter.h"
 
 #include <atomic>
 #include <cstddef>
@@ -38,8 +38,8 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 
-namespace furrow::wrinkle {
+namespace furrow::test {
 
 std::uint64_t NumAllocations() { return num_allocations.load(std::memory_order_relaxed); }
 
-}  // namespace furrow::wrinkle
+}  // namespace furrow::test

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-namespace furrow::wrinkle {
+namespace furrow::test {
 
 // How often this program has called operator new, in any form (allocation_counter.cpp replaces it).
 [[nodiscard]] std::uint64_t NumAllocations();
 
-}  // namespace furrow::wrinkle
+}  // namespace furrow::test
