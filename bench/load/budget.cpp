@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "bench/report/take.h"
 #include "client/cli/load_input.h"
 #include "client/load/verdict.h"
 #include "protocol/codec.h"

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/load/variants.h"
+#include "bench/report/take.h"
 #include "client/load/report.h"
 #include "report/line_chart.h"
 #include "report/table.h"
@@ -82,7 +83,7 @@ Curve GrowJoints(const Setting& setting) {
   for (const int joints : {51, 100, 163, 250, 400}) {
     const auto recording = setting.folder / ("joints-" + std::to_string(joints) + ".bvh");
     if (Status status = SavePaddedRecording(setting.recording, joints, recording); !status.ok())
-      Give(status);
+      FailWith(status);
     Add(curve, joints,
         Take(RunFresh(setting, recording, setting.rig, At60Hz(kCrowd, setting.seconds))));
   }
@@ -96,7 +97,7 @@ Curve GrowRegions(const Setting& setting) {
               {}};
   for (const int copies : {1, 2, 3, 4}) {
     const auto rig = setting.folder / ("regions-" + std::to_string(copies) + ".json");
-    if (Status status = SaveMultipliedRig(setting.rig, copies, rig); !status.ok()) Give(status);
+    if (Status status = SaveMultipliedRig(setting.rig, copies, rig); !status.ok()) FailWith(status);
     const auto weights = Take(CountWeights(setting.recording, rig));
     Add(curve, weights,
         Take(RunFresh(setting, setting.recording, rig, At60Hz(kCrowd, setting.seconds))));

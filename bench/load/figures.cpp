@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "bench/report/take.h"
 #include "client/cli/load_input.h"
 #include "client/load/clock.h"
 #include "client/load/comparison.h"
@@ -73,7 +74,7 @@ class Duel {
         {.go_on = [] { return true; },
          .progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); },
          .seconds = [] { return 1e-9 * static_cast<double>(load::SteadyNanoseconds()); }});
-    if (!comparison.failure.ok()) Give(comparison.failure);
+    if (!comparison.failure.ok()) FailWith(comparison.failure);
     return comparison;
   }
 

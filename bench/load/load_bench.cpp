@@ -10,6 +10,7 @@
 #include "bench/load/curves.h"
 #include "bench/load/figures.h"
 #include "bench/report/results.h"
+#include "bench/report/take.h"
 #include "character/data_dir.h"
 
 namespace furrow::bench {

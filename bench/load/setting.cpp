@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/load/setting.h"
 
-#include <cstdio>
-#include <cstdlib>
-
 #include "client/cli/load_input.h"
 
 namespace furrow::bench {
@@ -29,11 +26,6 @@ load::RunOptions At60Hz(int subjects, double seconds) {
   load::RunOptions options;
   options.plan = {.subjects = subjects, .phases = 16, .rate = 60.0, .seconds = seconds};
   return options;
-}
-
-void Give(const Status& status) {
-  std::fprintf(stderr, "bench_load: %s\n", status.ToString().c_str());
-  std::exit(1);
 }
 
 }  // namespace furrow::bench

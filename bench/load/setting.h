@@ -33,14 +33,4 @@ struct Setting {
 // So many subjects at 60 Hz.
 [[nodiscard]] load::RunOptions At60Hz(int subjects, double seconds);
 
-// Prints why and ends: a benchmark has nothing to clean up but processes that end with it.
-[[noreturn]] void Give(const Status& status);
-
-// The value, or the end.
-template <class T>
-[[nodiscard]] T Take(Result<T> result) {
-  if (!result.ok()) Give(result.status());
-  return *std::move(result);
-}
-
 }  // namespace furrow::bench

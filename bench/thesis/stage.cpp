@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include <glm/gtc/quaternion.hpp>
 #include <glm/trigonometric.hpp>
+
+#include "bench/report/take.h"
 
 namespace furrow::bench {
 namespace {
@@ -17,20 +17,9 @@ constexpr double kSecondsAhead = 0.37;  // of a subject to the next
 constexpr float kFovDegrees = 30.0f;
 constexpr float kMargin = 1.05f;
 
-[[noreturn]] void Die(const Status& status) {
-  std::fprintf(stderr, "%s\n", status.ToString().c_str());
-  std::exit(1);
-}
-
-template <class T>
-T Expect(Result<T> result) {
-  if (!result.ok()) Die(result.status());
-  return std::move(*result);
-}
-
 std::shared_ptr<const wrinkle::RigBinding> Bind(const character::Character& character) {
   return std::make_shared<const wrinkle::RigBinding>(
-      Expect(wrinkle::RigBinding::Create(character.rig, character.skeleton, {})));
+      Take(wrinkle::RigBinding::Create(character.rig, character.skeleton, {})));
 }
 
 render::Camera Facing(const Extent& extent, PictureSize size) {
@@ -67,7 +56,7 @@ Stage::Stage(const character::Character& character, const std::vector<glm::mat4>
              const Extent& extent, PictureSize size, Motion motion, const std::string& device)
     : skeleton_(character.skeleton),
       motion_(std::move(motion)),
-      renderer_(Expect(render::Renderer::Create(character, {device}))) {
+      renderer_(Take(render::Renderer::Create(character, {device}))) {
   const auto binding = Bind(character);
   for (const glm::mat4& placement : placements) {
     Subject& subject = subjects_.emplace_back(
@@ -89,7 +78,7 @@ render::PosedSubject Stage::Advance(std::size_t index) {
   const wrinkle::LocalToModelJob to_model{&skeleton_, subject.pose.joints, subject.model};
   if (to_model.Run() != wrinkle::JobStatus::kOk ||
       subject.solver.Update(subject.pose, kFrameSeconds) != wrinkle::JobStatus::kOk) {
-    Die({StatusCode::kInternal, "the benchmark's pose cannot be solved", "stage"});
+    FailWith({StatusCode::kInternal, "the benchmark's pose cannot be solved", "stage"});
   }
   return {subject.model, &subject.solver.binding(), subject.solver.wrinkle_weights(),
           subject.solver.filtered_values(), subject.placement};
@@ -102,16 +91,16 @@ void Stage::Submit(const render::Settings& settings) {
   ++frame_;
   request_.others = others_;
   request_.settings = settings;
-  if (Status status = renderer_->Submit(request_); !status.ok()) Die(status);
+  if (Status status = renderer_->Submit(request_); !status.ok()) FailWith(status);
 }
 
 Sample Stage::SecondsPerFrame(const render::Settings& settings, int frames) {
   const auto draw = [&] {
     for (int i = 0; i < frames; ++i) {
-      if (renderer_->in_flight() == 2) (void)Expect(renderer_->Poll(true));
+      if (renderer_->in_flight() == 2) (void)Take(renderer_->Poll(true));
       Submit(settings);
     }
-    while (renderer_->in_flight() > 0) (void)Expect(renderer_->Poll(true));
+    while (renderer_->in_flight() > 0) (void)Take(renderer_->Poll(true));
   };
   return Measure(draw, frames);
 }
@@ -120,7 +109,7 @@ std::vector<render::PassTime> Stage::TimePasses(const render::Settings& settings
   render::PassTimer timer;
   renderer_->SetObserver(&timer);
   Submit(settings);
-  (void)Expect(renderer_->Poll(true));
+  (void)Take(renderer_->Poll(true));
   renderer_->SetObserver(nullptr);
   return timer.Take();
 }

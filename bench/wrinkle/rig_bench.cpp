@@ -2,14 +2,13 @@
 // What it costs to solve a performance by the rig that ships with it: drivers of every kind, in
 // poses that a body and a face take. Each subject is at another place of the recording, and every
 // update a frame further.
-#include <cstdlib>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
+#include "bench/report/take.h"
 #include "character/data_dir.h"
 #include "character/rig_file.h"
 #include "motion/clip.h"
@@ -20,21 +19,16 @@
 namespace furrow::wrinkle {
 namespace {
 
-template <class T>
-T Get(Result<T> result) {
-  if (result.ok()) return std::move(result).value();
-  std::cerr << "bench_wrinkle: " << result.status().ToString() << '\n';
-  std::exit(1);
-}
+using bench::Take;
 
 // Loaded once.
 struct Performance {
   Performance() {
-    const Rig rig = Get(character::LoadRig(Get(character::FindDataFile("rigs/default.json")),
-                                           motion::CachedPoseSource()));
+    const Rig rig = Take(character::LoadRig(Take(character::FindDataFile("rigs/default.json")),
+                                            motion::CachedPoseSource()));
     const auto clip =
-        Get(motion::LoadClip(Get(character::FindDataFile("recordings/performance.bvh"))));
-    binding = std::make_shared<const RigBinding>(Get(
+        Take(motion::LoadClip(Take(character::FindDataFile("recordings/performance.bvh"))));
+    binding = std::make_shared<const RigBinding>(Take(
         RigBinding::Create(rig, clip.skeleton, clip.blend_shape_names, {.allow_missing = true})));
     frames.resize(static_cast<std::size_t>(clip.num_frames()));
     for (int i = 0; i < clip.num_frames(); ++i) {
