@@ -11,6 +11,7 @@
 #include "character/asset_path.h"
 #include "character/bake/bake_pictures.h"
 #include "character/bake/blood.h"
+#include "character/paint/canvas.h"
 #include "character/rig_check.h"
 #include "wrinkle/rig_check.h"
 
@@ -18,20 +19,6 @@ namespace furrow::character::bake {
 namespace {
 
 constexpr std::size_t kMaxCopiedBytes = 256u << 20;
-
-template <class Planes>
-Picture Sized(const Planes& planes, std::string name, int channels) {
-  Picture picture;
-  picture.name = std::move(name);
-  picture.width = planes.width;
-  picture.height = planes.height;
-  picture.channels = channels;
-  return picture;
-}
-
-std::uint8_t Unsigned8(float value) {
-  return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
-}
 
 wrinkle::WrinkleMap* FindMap(wrinkle::Rig* rig, const std::string& name) {
   for (wrinkle::WrinkleMap& map : rig->wrinkle_maps) {
@@ -139,7 +126,8 @@ class Packager {
       if (group.size() < 4 && !(last && !group.empty())) continue;
       const std::string name = Free(stem + std::to_string(pictures++), ".png");
       const BakedMask& first = masks.at(group.front()->name);
-      if (Status s = AddMaskPicture(Sized(first, name, 4), group, masks); !s.ok()) return s;
+      Picture picture = paint::BlankPicture(name.c_str(), first.width, first.height, 4);
+      if (Status s = AddMaskPicture(std::move(picture), group, masks); !s.ok()) return s;
       group.clear();
     }
     return {};
@@ -184,18 +172,14 @@ class Packager {
     map->derivative_scale = options_.exr ? 1.0f : RoundScale(baked.derivative, 0.25f);
     if (map->derivative_scale > wrinkle::kMaxDerivativeScale) return TooSteep(*map);
     if (!options_.exr) return Add(DerivativePicture(baked, map->derivative_scale, map->derivative));
-    Picture picture = Sized(baked, map->derivative, 2);
-    picture.pixels_float = baked.derivative;
-    return Add(picture);
+    return Add(FloatPicture(baked, baked.derivative, map->derivative));
   }
 
   Status AddHeight(const BakedMap& baked, wrinkle::WrinkleMap* map) {
     map->height = Free(baked.map + "_height", Extension());
     map->height_mm = options_.exr ? 1.0f : RoundScale(baked.height_mm, 0.01f);
     if (!options_.exr) return Add(HeightPicture(baked, map->height_mm, map->height));
-    Picture picture = Sized(baked, map->height, 1);
-    picture.pixels_float = baked.height_mm;
-    return Add(picture);
+    return Add(FloatPicture(baked, baked.height_mm, map->height));
   }
 
   static void Unite(const std::vector<float>& mask, std::vector<float>* all) {
@@ -205,11 +189,10 @@ class Packager {
   Status AddMaskPicture(Picture picture, const std::vector<wrinkle::Region*>& regions,
                         const std::map<std::string, BakedMask>& masks) {
     const std::size_t texels = static_cast<std::size_t>(picture.width) * picture.height;
-    picture.pixels.assign(4 * texels, 0);
     for (std::size_t channel = 0; channel < regions.size(); ++channel) {
       const std::vector<float>& mask = masks.at(regions[channel]->name).texels;
       for (std::size_t i = 0; i < texels; ++i) {
-        picture.pixels[4 * i + channel] = Unsigned8(mask[i]);
+        picture.pixels[4 * i + channel] = paint::ToByte(mask[i]);
       }
       if (!options_.masks) continue;
       regions[channel]->mask.kind = wrinkle::Mask::Kind::kTexture;

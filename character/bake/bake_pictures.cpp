@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "character/bake/blood.h"
+#include "character/paint/canvas.h"
 
 namespace furrow::character::bake {
 namespace {
@@ -31,10 +32,6 @@ std::uint16_t Unsigned16(float value) {
 
 // See wrinkle::WrinkleMap: a texel t stands for (2 t - 1) * scale.
 std::uint16_t Signed16(float value, float scale) { return Unsigned16(0.5f + 0.5f * value / scale); }
-
-std::uint8_t Unsigned8(float value) {
-  return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
-}
 
 float ToSrgb(float linear) {
   return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
@@ -102,10 +99,17 @@ Picture HeightPicture(const BakedMap& map, float height_mm, std::string name) {
   return picture;
 }
 
+Picture FloatPicture(const BakedMap& map, const std::vector<float>& plane, std::string name) {
+  const auto texels = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
+  Picture picture = Sized(map, std::move(name), static_cast<int>(plane.size() / texels));
+  picture.pixels_float = plane;
+  return picture;
+}
+
 Picture CavityPicture(const BakedMap& map, std::string name) {
   Picture picture = Sized(map, std::move(name), 1);
   picture.pixels.reserve(map.cavity.size());
-  for (const float open : map.cavity) picture.pixels.push_back(Unsigned8(open));
+  for (const float open : map.cavity) picture.pixels.push_back(paint::ToByte(open));
   return picture;
 }
 
@@ -114,7 +118,7 @@ Picture ColourPicture(const BakedMap& map, float scale, std::string name) {
   picture.pixels.reserve(3 * map.blood.size());
   for (const float blood : map.blood) {
     const glm::vec3 tint = BloodTint(blood) / scale;
-    for (int c = 0; c < 3; ++c) picture.pixels.push_back(Unsigned8(ToSrgb(tint[c])));
+    for (int c = 0; c < 3; ++c) picture.pixels.push_back(paint::ToByte(ToSrgb(tint[c])));
   }
   return picture;
 }

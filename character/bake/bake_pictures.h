@@ -18,6 +18,10 @@ namespace furrow::character::bake {
 // Millimetres over the rest surface, one channel of 16 bits: (2 t - 1) * height_mm, clamped.
 [[nodiscard]] Picture HeightPicture(const BakedMap& map, float height_mm, std::string name);
 
+// One of the map's planes as it is, in as many channels as it has numbers a texel.
+[[nodiscard]] Picture FloatPicture(const BakedMap& map, const std::vector<float>& plane,
+                                   std::string name);
+
 // How open a place is to the sky, one channel of 8 bits.
 [[nodiscard]] Picture CavityPicture(const BakedMap& map, std::string name);
 
