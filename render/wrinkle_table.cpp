@@ -284,6 +284,7 @@ Status WrinkleTables::Update(const FrameRequest& request) {
     }
     AddSubject(mask_mode_);
   }
+  FindSources();
   for (int group = 0; group < kNumWrinkleGroups; ++group) {
     FillTable(group, settings.wrinkle_strength);
   }
@@ -313,15 +314,14 @@ bool WrinkleTables::IsTextured(std::size_t map) const {
       subjects_, [&](const SubjectWrinkles& subject) { return bool(subject.textured[map]); });
 }
 
-WrinkleTables::Source WrinkleTables::SourceOf(std::size_t map) const {
-  Source source = Source::kPainted;
+void WrinkleTables::FindSources() {
+  sources_.assign(maps_.size(), Source::kPainted);
   for (const SubjectWrinkles& subject : subjects_) {
     for (const DynamicMaskBlock& mask : subject.masks) {
-      if (mask.slot != static_cast<int>(map)) continue;
+      Source& source = sources_[static_cast<std::size_t>(mask.slot)];
       source = std::min(source, mask.column < 0 ? Source::kSliding : Source::kSkinned);
     }
   }
-  return source;
 }
 
 // `slots`: where each map of the rig is in the list; -1: nobody needs it.
@@ -329,7 +329,7 @@ void WrinkleTables::ListMaps(int group, float strength, Source source, std::vect
   WrinkleTable& table = tables_[group];
   for (std::size_t map = 0; map < maps_.size(); ++map) {
     const bool textured = IsTextured(map);
-    if (!maps_[map].in_group[group] || SourceOf(map) != source) continue;
+    if (!maps_[map].in_group[group] || sources_[map] != source) continue;
     if (!textured && source == Source::kPainted) continue;
     (*slots)[map] = static_cast<int>(table.maps.size());
     ActiveMap entry = maps_[map].entry;

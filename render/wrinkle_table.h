@@ -181,8 +181,8 @@ class WrinkleTables {
   void AddSubject(MaskMode mode);
   // What masks a map in this frame, the first of the list that does.
   enum class Source { kSliding, kSkinned, kPainted };
+  void FindSources();
   [[nodiscard]] bool IsTextured(std::size_t map) const;
-  [[nodiscard]] Source SourceOf(std::size_t map) const;
   void ListMaps(int group, float strength, Source source, std::vector<int>* slots);
   void FillTable(int group, float strength);
 
@@ -192,6 +192,7 @@ class WrinkleTables {
   DynamicMasks dynamic_{&binding_, &skinning_};
   MaskMode mask_mode_ = MaskMode::kRig;
   std::vector<MapInfo> maps_;
+  std::vector<Source> sources_;  // by map, of the frame
   std::vector<WeightSlot> slots_;
   std::vector<glm::vec4> palettes_[kNumWrinkleGroups + 1];
   std::uint32_t mask_bits_[kNumWrinkleGroups + 1] = {};
