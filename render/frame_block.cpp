@@ -25,7 +25,7 @@ LightBlock MakeLightBlock(const LightSource& light, const ShadowView& shadow) {
 float HairShadowError(const Settings& settings, std::span<const ShadowView> shadows) {
   const auto casts = [&](View view) { return NeedsSkinPipeline(view, settings); };
   if (settings.shadow.filter == ShadowFilter::kOff) return 0.0f;
-  if (!casts(settings.view) && std::ranges::none_of(settings.strip.views, casts)) return 0.0f;
+  if (!AnyView(settings, casts)) return 0.0f;
   const float texel = std::ranges::min_element(shadows, {}, &ShadowView::texel)->texel;
   return std::min(settings.detail.hair_shadow_texels * texel,
                   settings.shadow.normal_offset_mm * kMetresPerMm);

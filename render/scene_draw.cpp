@@ -64,8 +64,7 @@ bool TakesComposed(const Settings& settings, View view) {
 
 // ... of the picture and the strip beside it.
 bool SomeViewTakesComposed(const Settings& settings) {
-  const auto takes = [&](View view) { return TakesComposed(settings, view); };
-  return takes(settings.view) || std::ranges::any_of(settings.strip.views, takes);
+  return AnyView(settings, [&](View view) { return TakesComposed(settings, view); });
 }
 
 // The views that the skin pipeline's scene pass itself draws differently for.

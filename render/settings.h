@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -211,6 +212,12 @@ struct SettingInfo {
 // All of them as TOML with their meaning, unit and range as comments; ParseSettings() reads it back
 // equal.
 [[nodiscard]] std::string SettingsToToml(const Settings& settings);
+
+// Whether some view that the picture shows, itself or in its strip, is one that is asked for.
+template <class Predicate>
+[[nodiscard]] bool AnyView(const Settings& settings, const Predicate& is_asked_for) {
+  return is_asked_for(settings.view) || std::ranges::any_of(settings.strip.views, is_asked_for);
+}
 
 // kInvalidArgument: `where` is "settings.<name>".
 [[nodiscard]] Status CheckSettings(const Settings& settings);
