@@ -9,8 +9,6 @@
 namespace furrow::render {
 namespace {
 
-// Seen at a slant, a pixel covers up to sixteen texels one way, and more of the coarser levels.
-constexpr std::size_t kMaxLevels = 7;
 // Of a wrinkle weight: what moves by less is not seen.
 constexpr float kLeastChange = 1.0f / 4096.0f;
 constexpr float kUnknown = -1.0f;  // a weight, of which nothing is painted
@@ -37,9 +35,9 @@ void Upload(GLuint texture, int level, glm::ivec2 first, glm::ivec2 size,
 ComposedMaterial::ComposedMaterial(const GpuCharacter& gpu, ComposeSelection selection,
                                    glm::ivec2 size)
     : gpu_(gpu), selection_(std::move(selection)), size_(size) {
-  for (glm::ivec2 level = size; levels_.size() < kMaxLevels; level /= 2) {
+  // Down to a single texel: who is far away is drawn with the same texture as who is near.
+  for (glm::ivec2 level = size; level.x > 0 || level.y > 0; level /= 2) {
     levels_.push_back({glm::max(level, glm::ivec2(1)), false, {}});
-    if (level.x <= 1 && level.y <= 1) break;
   }
   copies_[front_] = MakeCopy();
   FillBare(&copies_[front_]);
@@ -59,6 +57,7 @@ ComposedMaterial::Copy ComposedMaterial::MakeCopy() const {
   copy.ink = {std::vector<float>(selection_.num_channels() * maps, 0.0f),
               std::vector<float>(maps, 1.0f), std::vector<float>(maps, 1.0f), glm::vec2(1.0f)};
   copy.first_levels.assign(selection_.num_channels(), 0);
+  copy.inked_levels.assign(selection_.num_channels(), 0);
   return copy;
 }
 
@@ -86,6 +85,7 @@ void ComposedMaterial::CopyFront(Copy* copy) const {
   }
   copy->ink = front.ink;
   copy->first_levels = front.first_levels;
+  copy->inked_levels = front.inked_levels;
 }
 
 bool ComposedMaterial::IsChanged(const ComposeInk& from, const ComposeInk& to,
@@ -147,14 +147,20 @@ std::vector<const ComposeTile*> ComposedMaterial::Stale(const Level& level,
   return stale;
 }
 
+bool ComposedMaterial::IsStale(const Copy& copy, const Wanted& wanted, bool is_changed,
+                               std::size_t channel, int level) {
+  const int first = wanted.first_levels[channel];
+  const bool is_old = is_changed || copy.first_levels[channel] > level;
+  if (!wanted.is_seen[channel] || !is_old) return false;
+  return first <= level || (first == level + 1 && (copy.inked_levels[channel] >> level & 1u) != 0);
+}
+
 std::vector<bool> ComposedMaterial::StaleChannels(const Copy& copy, const Wanted& wanted,
                                                   const std::vector<bool>& changed,
                                                   std::size_t level) {
-  const int number = static_cast<int>(level);
   std::vector<bool> stale(changed.size());
   for (std::size_t i = 0; i < stale.size(); ++i) {
-    stale[i] = wanted.is_seen[i] && wanted.first_levels[i] <= number &&
-               (changed[i] || copy.first_levels[i] > number);
+    stale[i] = IsStale(copy, wanted, changed[i], i, static_cast<int>(level));
   }
   return stale;
 }
@@ -189,6 +195,29 @@ ComposeInk ComposedMaterial::Merged(const ComposeInk& painted, const Wanted& wan
   return ink;
 }
 
+ComposeInk ComposedMaterial::InkOfLevel(const Copy& copy, int level) const {
+  ComposeInk ink = copy.ink;
+  const std::size_t maps = selection_.maps.size();
+  for (std::size_t i = 0; i < ink.weights.size(); ++i) {
+    if (copy.first_levels[i / maps] > level) ink.weights[i] = 0.0f;
+  }
+  return ink;
+}
+
+void ComposedMaterial::PaintLevel(std::size_t level, const std::vector<bool>& stale, Copy* copy) {
+  const int number = static_cast<int>(level);
+  ReadLevel(&levels_[level]);
+  const bool is_whole = std::ranges::max(copy->first_levels) <= number;
+  PaintTiles(*copy, is_whole ? copy->ink : InkOfLevel(*copy, number), level,
+             Stale(levels_[level], stale));
+  for (std::size_t i = 0; i < stale.size(); ++i) {
+    if (!stale[i]) continue;
+    const auto bit = static_cast<std::uint16_t>(1u << level);
+    const bool is_inked = copy->first_levels[i] <= number;
+    copy->inked_levels[i] = is_inked ? copy->inked_levels[i] | bit : copy->inked_levels[i] & ~bit;
+  }
+}
+
 void ComposedMaterial::Paint(const Wanted& wanted) {
   if (IsPainted(wanted)) return;
   Copy& back = copies_[1 - front_];
@@ -197,24 +226,25 @@ void ComposedMaterial::Paint(const Wanted& wanted) {
     CopyFront(&back);
   }
   const std::vector<bool> changed = Changes(back.ink, wanted);
-  back.ink = Merged(back.ink, wanted);
+  std::vector<std::vector<bool>> stale;
   for (std::size_t i = 0; i < levels_.size(); ++i) {
-    const std::vector<bool> stale = StaleChannels(back, wanted, changed, i);
-    if (std::ranges::find(stale, true) == stale.end()) continue;
-    ReadLevel(&levels_[i]);
-    PaintTiles(back, i, Stale(levels_[i], stale));
+    stale.push_back(StaleChannels(back, wanted, changed, i));
   }
+  back.ink = Merged(back.ink, wanted);
   for (std::size_t i = 0; i < changed.size(); ++i) {
     const int first = wanted.first_levels[i];
     if (wanted.is_seen[i] && (changed[i] || first < back.first_levels[i])) {
       back.first_levels[i] = first;
     }
   }
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    if (std::ranges::find(stale[i], true) != stale[i].end()) PaintLevel(i, stale[i], &back);
+  }
   front_ = 1 - front_;
 }
 
 // Neighbours in a row go to the GPU at once.
-void ComposedMaterial::PaintTiles(const Copy& copy, std::size_t level,
+void ComposedMaterial::PaintTiles(const Copy& copy, const ComposeInk& ink, std::size_t level,
                                   std::span<const ComposeTile* const> tiles) {
   for (std::size_t first = 0; first < tiles.size();) {
     std::size_t count = 1;
@@ -222,19 +252,19 @@ void ComposedMaterial::PaintTiles(const Copy& copy, std::size_t level,
            tiles[first + count]->place == tiles[first]->place + glm::ivec2(count, 0)) {
       ++count;
     }
-    PaintRun(copy, level, tiles.subspan(first, count));
+    PaintRun(copy, ink, level, tiles.subspan(first, count));
     first += count;
   }
 }
 
-void ComposedMaterial::PaintRun(const Copy& copy, std::size_t level,
+void ComposedMaterial::PaintRun(const Copy& copy, const ComposeInk& ink, std::size_t level,
                                 std::span<const ComposeTile* const> run) {
   const std::size_t stride = ComposeTile::kSide * run.size();
   slopes_.resize(4 * stride * ComposeTile::kSide);
   colours_.resize(copy.colour ? slopes_.size() : 0);
   for (std::size_t i = 0; i < run.size(); ++i) {
     const std::size_t first = 4 * ComposeTile::kSide * i;
-    ComposeJob job{run[i], &copy.ink, std::span(slopes_).subspan(first), {}, stride};
+    ComposeJob job{run[i], &ink, std::span(slopes_).subspan(first), {}, stride};
     if (copy.colour) job.colours = std::span(colours_).subspan(first);
     if (!job.Run()) return;  // never: we made the tile
   }

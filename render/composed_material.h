@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -13,7 +14,7 @@
 namespace furrow::render {
 
 // A material's normal map, and where wrinkle maps have looks its base colour, with wrinkles in
-// them. Half floats, a few levels: the finest as large as asked for.
+// them. Half floats; the finest level is as large as asked for.
 //
 // Painted on the processor, tile by tile where weights change, and into one of two copies in turn,
 // so that nothing waits for a frame that is still being drawn.
@@ -61,7 +62,10 @@ class ComposedMaterial {
     gl::Texture colour;
     Textures textures;
     ComposeInk ink;                 // what is in it,
-    std::vector<int> first_levels;  // of each channel from this level on
+    std::vector<int> first_levels;  // of each channel from this level on.
+    // Of each channel, by bits, the levels that may hold it at all, as it is or as it was. The
+    // level before its first one does not: a pixel takes a little of that one, too.
+    std::vector<std::uint16_t> inked_levels;
   };
   [[nodiscard]] bool IsChanged(const ComposeInk& from, const ComposeInk& to,
                                std::size_t channel) const;
@@ -75,15 +79,23 @@ class ComposedMaterial {
   // Of a level, those that a channel of `changed` reaches.
   [[nodiscard]] static std::vector<const ComposeTile*> Stale(const Level& level,
                                                              const std::vector<bool>& changed);
-  // Of a level of a copy: the channels that are seen and out of date. `changed`: of all levels.
+  // Of a level of a copy: whether a channel is seen there and out of date, or was left there as it
+  // looked before. `changed`: on all levels.
+  [[nodiscard]] static bool IsStale(const Copy& copy, const Wanted& wanted, bool is_changed,
+                                    std::size_t channel, int level);
   [[nodiscard]] static std::vector<bool> StaleChannels(const Copy& copy, const Wanted& wanted,
                                                        const std::vector<bool>& changed,
                                                        std::size_t level);
   // What is painted over `painted`: only what is seen, and changed, is painted anew. Of the rest it
   // is known how it looks as long as settings stay.
   [[nodiscard]] ComposeInk Merged(const ComposeInk& painted, const Wanted& wanted) const;
-  void PaintTiles(const Copy& copy, std::size_t level, std::span<const ComposeTile* const> tiles);
-  void PaintRun(const Copy& copy, std::size_t level, std::span<const ComposeTile* const> run);
+  // The copy's, without the channels that begin on a coarser level.
+  [[nodiscard]] ComposeInk InkOfLevel(const Copy& copy, int level) const;
+  void PaintLevel(std::size_t level, const std::vector<bool>& stale, Copy* copy);
+  void PaintTiles(const Copy& copy, const ComposeInk& ink, std::size_t level,
+                  std::span<const ComposeTile* const> tiles);
+  void PaintRun(const Copy& copy, const ComposeInk& ink, std::size_t level,
+                std::span<const ComposeTile* const> run);
 
   const GpuCharacter& gpu_;
   ComposeSelection selection_;

@@ -13,12 +13,14 @@ namespace {
 constexpr int kMaxSide = 2048;  // texels
 // Texels made in the time that composing the wrinkles of a pixel takes, of all the fragments there.
 constexpr float kTexelsOfAPixel = 8.0f;
-// A level of which a pixel would take no more than this is left out: the next coarser one is
-// nearer.
+// A level of which a pixel would take no more than this is left without wrinkles: the next coarser
+// one is nearer.
 constexpr float kSkippedShare = 0.25f;
-// A texture that is finer than it need be stays, by less than so many levels: a camera that moves
-// to and fro makes none.
+// A texture that is finer than it need be, by so many levels, goes when so many pictures in a row
+// would have done with less. A camera that moves to and fro makes none, nor do two viewers of whom
+// one is near and the other far away.
 constexpr float kKeptLevels = 1.25f;
+constexpr int kKeptPictures = 250;
 
 }  // namespace
 
@@ -146,8 +148,10 @@ bool WrinkleCache::Prepare(const GpuMaterial& material, const Sight& sight, Entr
   if (entry->composed != nullptr) {
     const float finer =
         std::log2(static_cast<float>(entry->composed->size().x) / static_cast<float>(size.x));
-    if (finer >= 0.0f && finer < kKeptLevels) return true;
+    entry->num_too_fine = finer < kKeptLevels ? 0 : entry->num_too_fine + 1;
+    if (finer >= 0.0f && entry->num_too_fine < kKeptPictures) return true;
   }
+  entry->num_too_fine = 0;
   entry->wanted = {};
   entry->composed =
       std::make_unique<ComposedMaterial>(*gpu_, SelectionOf(material, *entry->skinned), size);

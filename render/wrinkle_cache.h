@@ -66,6 +66,7 @@ class WrinkleCache {
     std::unique_ptr<ComposedMaterial> composed;
     ComposedMaterial::Wanted wanted;  // by the last frame that was planned
     WrinklePart rest = WrinklePart::kAll;
+    int num_too_fine = 0;  // pictures in a row that would do with a smaller texture
     bool is_used = false;
     bool is_stale = false;
   };

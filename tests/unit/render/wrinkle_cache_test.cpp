@@ -149,6 +149,56 @@ TEST_F(WrinkleCacheTest, WhatComesIntoSightIsUpToDate) {
   }
 }
 
+// One renderer draws for viewers near and far in turn: what is composed for one is not thrown away
+// for the other. Where nobody is near any more, a smaller texture takes its place.
+TEST_F(WrinkleCacheTest, ViewersNearAndFarShareWhatIsComposed) {
+  Randomise(true);
+  Camera far = camera_;
+  far.fov_y_degrees = 90.0f;
+  const auto draw_far = [&] {
+    (void)test::Expect(renderer_->Render(RequestOf(subject_, far, View::kNormal, 24)));
+  };
+  (void)Draw(true);
+  draw_far();
+  PassCounter counter;
+  renderer_->SetObserver(&counter);
+  for (int round = 0; round < 3; ++round) {
+    (void)Draw(true);
+    draw_far();
+    EXPECT_EQ(counter.Take("wrinkles"), 0) << round;
+  }
+  for (int picture = 0; picture < 300; ++picture) draw_far();
+  EXPECT_EQ(counter.Take("wrinkles"), 1);
+  renderer_->SetObserver(nullptr);
+}
+
+// Whoever is seen from further and further away keeps nothing of how it looked from near by,
+// between two levels of the texture either.
+TEST_F(WrinkleCacheTest, NothingOfAFormerFaceShinesThroughFromFarAway) {
+  const auto set = [&](float all, float last) {
+    for (const char* shape : kShapes) subject_.Set(shape, all);
+    subject_.Set(kShapes[3], last);
+    subject_.Solve();
+  };
+  const Camera near = camera_;
+  for (float fov = near.fov_y_degrees; fov < 4.0f * near.fov_y_degrees; fov *= 1.07f) {
+    std::vector<Image> pictures;
+    for (const float before : {1.0f, 0.002f}) {
+      camera_ = near;
+      for (const float last : {0.0f, 0.001f}) {  // both copies
+        set(before, last);
+        (void)Draw(true);
+      }
+      camera_.fov_y_degrees = fov;
+      set(0.002f, 1.0f);
+      (void)Draw(true);  // what is held is composed in any case
+      pictures.push_back(Draw(true, View::kNormal));
+    }
+    const Difference difference = Compare(pictures[0].rgb, pictures[1].rgb, 2.0);
+    EXPECT_EQ(difference.share, 0.0) << fov;
+  }
+}
+
 TEST_F(WrinkleCacheTest, DisplacedSurfacesComposeNothing) {
   for (wrinkle::WrinkleMap& map : head_.rig.wrinkle_maps) map.height = "cavity";
   subject_ = test::Subject(head_);
