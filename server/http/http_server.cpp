@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/http_server.h"
 
+#include <exception>
 #include <thread>
 #include <utility>
 
@@ -61,6 +62,7 @@ struct HttpServer::Impl {
   Status Listen(const std::string& bind, std::uint16_t port);
   net::awaitable<void> Accept();
   net::awaitable<void> Serve(tcp::socket socket);
+  void Run();
 
   WebContext context;  // outlives the loop, whose connections use it
   std::shared_ptr<net::io_context> loop = std::make_shared<net::io_context>(1);
@@ -114,6 +116,17 @@ net::awaitable<void> HttpServer::Impl::Serve(tcp::socket socket) {
   --context.connections;
 }
 
+// What the web's loop does not survive ends the hub's, too: no part may fall silent while the rest
+// goes on.
+void HttpServer::Impl::Run() {
+  try {
+    loop->run();
+  } catch (...) {
+    context.post_to_hub(
+        [error = std::current_exception()](Hub&, Time) { std::rethrow_exception(error); });
+  }
+}
+
 Result<std::unique_ptr<HttpServer>> HttpServer::Start(Parts parts) {
   const std::string bind = parts.bind;
   const std::optional<std::uint16_t> asked = parts.config.port;
@@ -124,8 +137,10 @@ Result<std::unique_ptr<HttpServer>> HttpServer::Start(Parts parts) {
     status = impl->Listen(bind, 0);
   }
   if (!status.ok()) return status;
-  net::co_spawn(*impl->loop, impl->Accept(), net::detached);
-  impl->thread = std::thread([loop = impl->loop.get()] { loop->run(); });
+  net::co_spawn(*impl->loop, impl->Accept(), [](const std::exception_ptr& failed) {
+    if (failed) std::rethrow_exception(failed);
+  });
+  impl->thread = std::thread([impl = impl.get()] { impl->Run(); });
   return std::unique_ptr<HttpServer>(new HttpServer(std::move(impl)));
 }
 
