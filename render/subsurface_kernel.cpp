@@ -11,10 +11,6 @@ namespace {
 
 constexpr double kPi = glm::pi<double>();
 
-// How far out the outermost separable tap stands (mm): the more taps, the more of the profile's
-// tail is worth one. Both constants by a search for the least error of the step response.
-double SeparableReach(int taps) { return 3.0 + 0.1 * (taps - 11); }
-
 // Area-weighted mean over psi of max(0, cos(angle between the light and a point that lies at the
 // angle phi from the normal, in the direction psi)), times 2 pi.
 double RingIrradiance(double cos_theta, double sin_theta, double phi) {
@@ -44,26 +40,6 @@ glm::dvec2 SphereIntegral(double variance, double cos_theta, double radius) {
 }
 
 }  // namespace
-
-std::vector<KernelTap> SeparableKernel(const SkinProfile& profile, int taps) {
-  const int pairs = std::clamp(taps, kMinSeparableTaps, kMaxSeparableTaps) / 2;
-  const double reach = SeparableReach(2 * pairs + 1);
-  const auto offset = [&](int i) {
-    const double t = static_cast<double>(i) / pairs;
-    return reach * t * t;
-  };
-  const auto border = [&](int i) { return 0.5 * (offset(i) + offset(i + 1)); };
-  std::vector<KernelTap> kernel;
-  // By symmetry, the share of the centre's cell (-b, b) is 2 S(b) - 1.
-  kernel.push_back({0.0f, 2.0f * StepResponse(profile, border(0)) - 1.0f});
-  for (int i = 1; i <= pairs; ++i) {
-    const glm::vec3 beyond = i == pairs ? glm::vec3(1.0f) : StepResponse(profile, border(i));
-    const glm::vec3 weight = beyond - StepResponse(profile, border(i - 1));
-    kernel.push_back({static_cast<float>(-offset(i)), weight});
-    kernel.push_back({static_cast<float>(offset(i)), weight});
-  }
-  return kernel;
-}
 
 std::vector<DiscTap> BurleyDisc(const glm::vec3& d, int taps) {
   const int count = std::clamp(taps, 1, kMaxDiscTaps);

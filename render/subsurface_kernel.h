@@ -10,23 +10,6 @@
 // What the subsurface passes make of a diffusion profile: taps and tables. No OpenGL here.
 namespace furrow::render {
 
-// A tap of a one-dimensional kernel that is run along both axes.
-struct KernelTap {
-  float offset = 0.0f;     // mm
-  glm::vec3 weight{0.0f};  // sums to 1 over the taps, per channel
-};
-
-inline constexpr int kMinSeparableTaps = 5;
-inline constexpr int kMaxSeparableTaps = 41;
-
-// The separable kernel (after Jimenez et al. 2015): the centre first, then the taps in pairs, left
-// and right, outwards; denser in the middle. A tap stands for the stretch of the line profile that
-// is nearer to it than to the others, the outermost ones for all the rest; so a flat field stays
-// flat and a straight edge along an axis gets its exact response, at the taps' resolution.
-//
-// `taps`: odd, in [kMinSeparableTaps, kMaxSeparableTaps]; other values are taken to the nearest.
-[[nodiscard]] std::vector<KernelTap> SeparableKernel(const SkinProfile& profile, int taps);
-
 // A tap of a two-dimensional kernel.
 struct DiscTap {
   glm::vec2 offset{0.0f};  // mm

@@ -4,11 +4,13 @@
 
 // One of the two passes of the separable kernel (after Jimenez 2015): along x, then along y.
 //
-// - Offsets and weights come from render/pixel_kernel.h: exact integrals of the profile over
-//   what lies nearest to each tap, for pixels at the distance of the focus; offsets are scaled to
-//   the pixel's own distance. Pixels are square, so both axes take the same steps.
+// - Offsets and weights come from render/pixel_kernel.h, for pixels at the distance of the focus;
+//   offsets are scaled to the pixel's own distance. Pixels are square, so both axes take the same
+//   steps; taps stand a little aside of the axis, so that each pass smooths the other's steps.
 // - A tap on no skin, or further away in depth than light travels, is left out, and the others
 //   make up for it: nothing leaks, and even light stays even.
+
+const int MAX_TAPS = 21;  // on one side, with the pixel
 
 layout(binding = 0) uniform sampler2D u_irradiance;  // a: metres behind the focus
 layout(binding = 1) uniform sampler2D u_unscattered;
@@ -18,7 +20,8 @@ layout(location = 1) uniform int u_num_taps;          // on one side of the pixe
 layout(location = 2) uniform vec3 u_geometry;         // x: focus distance (m), y: 1 / depth range (1/m),
                                                       // z: gradient
 layout(location = 3) uniform float u_strength;        // of the whole, in the second pass; 1 before
-layout(location = 4) uniform vec4 u_kernel[33];       // rgb: weight, w: offset in pixels; [0]: the pixel
+layout(location = 4) uniform vec2 u_offset[MAX_TAPS];  // pixels; [0]: the pixel itself
+layout(location = 25) uniform vec3 u_weight[MAX_TAPS];
 
 layout(location = 0) out vec4 f_irradiance;
 
@@ -32,19 +35,18 @@ void main() {
   float after = texelInside(u_irradiance, pixel + u_axis).a;
   float slope = min(abs(centre.a - before), abs(after - centre.a));
   // 4.7: s = alpha / (d + beta |grad d|), the gradient over a kernel's reach of pixels.
-  float reach = u_kernel[u_num_taps].w;
+  float reach = dot(u_offset[u_num_taps], vec2(u_axis));
   float scale = u_geometry.x / (metres + u_geometry.z * min(slope, 0.1) * reach);
-  vec3 sum = u_kernel[0].rgb * centre.rgb;
-  vec3 weight = u_kernel[0].rgb;
+  vec3 sum = u_weight[0] * centre.rgb;
+  vec3 weight = u_weight[0];
   // Groups of pixels without skin leave the loop at once.
   int taps = skin ? u_num_taps : 0;
   for (int i = 1; i <= taps; ++i) {
-    vec4 tap = u_kernel[i];
-    ivec2 offset = u_axis * int(tap.w * scale + 0.5);
+    ivec2 offset = ivec2(floor(u_offset[i] * scale + 0.5));
     for (int side = 0; side < 2; ++side) {
       vec4 light = texelInside(u_irradiance, side == 0 ? pixel + offset : pixel - offset);
       float apart = (light.a - centre.a) * u_geometry.y;
-      vec3 w = tap.rgb * max(1.0 - apart * apart, 0.0);
+      vec3 w = u_weight[i] * max(1.0 - apart * apart, 0.0);
       sum += w * light.rgb;
       weight += w;
     }

@@ -4,7 +4,6 @@
 #include <array>
 
 #include "render/passes/scene_pass.h"
-#include "render/pixel_kernel.h"
 #include "render/subsurface_kernel.h"
 
 namespace furrow::render {
@@ -15,7 +14,14 @@ using Handle = FrameGraph::Handle;
 constexpr float kNarrowest = 0.01f;  // of SubsurfaceSettings::width, that is worth a pass
 
 // Locations in separable.frag.glsl.
-enum Location : GLint { kAxis = 0, kNumTaps = 1, kGeometry = 2, kStrength = 3, kKernel = 4 };
+enum Location : GLint {
+  kAxis = 0,
+  kNumTaps = 1,
+  kGeometry = 2,
+  kStrength = 3,
+  kOffset = 4,
+  kWeight = 25
+};
 // In burley.frag.glsl.
 enum BurleyLocation : GLint {
   kBurleyNumTaps = 0,
@@ -28,6 +34,12 @@ constexpr GLint kSumStrength = 0;  // in gaussian_sum.frag.glsl
 // 32 bits: a software driver rounds halves towards zero, which adds up over the passes.
 TextureDesc LightDesc(const SkinGeometry& geometry) {
   return {geometry.width, geometry.height, PixelFormat::kRgba32F, 1};
+}
+
+// A kernel along x, turned to run along y.
+PixelTaps AlongY(PixelTaps kernel) {
+  for (glm::vec2& offset : kernel.offsets) offset = glm::vec2(-offset.y, offset.x);
+  return kernel;
 }
 
 }  // namespace
@@ -48,7 +60,7 @@ Handle SubsurfacePass::Add(FrameGraph* graph, Handle irradiance, const Subsurfac
 }
 
 Handle SubsurfacePass::AddAxis(FrameGraph* graph, const AxisPass& what, Handle in,
-                               Handle unscattered, const std::vector<glm::vec4>& kernel,
+                               Handle unscattered, const PixelTaps& taps,
                                const SubsurfaceSettings& settings, const SkinGeometry& geometry) {
   return fullscreen_->AddSimplePass(
       graph,
@@ -58,13 +70,15 @@ Handle SubsurfacePass::AddAxis(FrameGraph* graph, const AxisPass& what, Handle i
        .reads = {in, unscattered},
        .writes = {{what.target, LightDesc(geometry)}},
        .surface_z = geometry.surface_z},
-      [this, what, kernel, settings, geometry] {
+      [this, what, kernel = what.axis == 0 ? taps : AlongY(taps), settings, geometry] {
+        const auto count = static_cast<GLsizei>(kernel.offsets.size());
         glUniform2i(kAxis, what.axis == 0 ? 1 : 0, what.axis);
-        glUniform1i(kNumTaps, static_cast<GLint>(kernel.size()) - 1);
+        glUniform1i(kNumTaps, count - 1);
         glUniform3f(kGeometry, geometry.focus_distance, 1000.0f / settings.depth_range_mm,
                     settings.gradient);
         glUniform1f(kStrength, what.strength);
-        glUniform4fv(kKernel, static_cast<GLsizei>(kernel.size()), &kernel[0].x);
+        glUniform2fv(kOffset, count, &kernel.offsets[0].x);
+        glUniform3fv(kWeight, count, &kernel.weights[0].x);
         DrawSkin(geometry);
       });
 }
@@ -72,7 +86,7 @@ Handle SubsurfacePass::AddAxis(FrameGraph* graph, const AxisPass& what, Handle i
 Handle SubsurfacePass::AddSeparable(FrameGraph* graph, Handle irradiance,
                                     const SubsurfaceSettings& settings,
                                     const SkinGeometry& geometry) {
-  const std::vector<glm::vec4> kernel =
+  const PixelTaps kernel =
       PixelKernel(HumanSkin(), settings.taps, settings.width * geometry.pixels_per_mm);
   const Handle across = AddAxis(graph, {"scatter x", "scattered x", 0}, irradiance, irradiance,
                                 kernel, settings, geometry);
@@ -94,9 +108,8 @@ Handle SubsurfacePass::AddGaussians(FrameGraph* graph, Handle irradiance,
   std::array<Handle, kNumSkinGaussians> blurs;
   Handle light = irradiance;
   for (std::size_t i = 0; i < blurs.size(); ++i) {
-    const std::vector<glm::vec4> kernel =
-        PixelGaussian(sigmas[i] * settings.width * geometry.pixels_per_mm);
-    if (kernel.size() > 1) {
+    const PixelTaps kernel = PixelGaussian(sigmas[i] * settings.width * geometry.pixels_per_mm);
+    if (kernel.offsets.size() > 1) {
       const Handle across =
           AddAxis(graph, {kNames[i][0], kNames[i][0], 0}, light, light, kernel, settings, geometry);
       light = AddAxis(graph, {kNames[i][1], kNames[i][1], 1}, across, across, kernel, settings,

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <glm/vec4.hpp>
-
 #include "render/passes/fullscreen.h"
+#include "render/pixel_kernel.h"
 #include "render/settings.h"
 
 namespace furrow::render {
@@ -33,7 +32,7 @@ class SubsurfacePass {
                                        const SkinGeometry& geometry);
 
  private:
-  // What a pass along one axis is: its kernel is of the layout of PixelKernel().
+  // What a pass along one axis is.
   struct AxisPass {
     const char* name;
     const char* target;
@@ -42,7 +41,7 @@ class SubsurfacePass {
   };
   [[nodiscard]] FrameGraph::Handle AddAxis(FrameGraph* graph, const AxisPass& what,
                                            FrameGraph::Handle in, FrameGraph::Handle unscattered,
-                                           const std::vector<glm::vec4>& kernel,
+                                           const PixelTaps& taps,
                                            const SubsurfaceSettings& settings,
                                            const SkinGeometry& geometry);
   [[nodiscard]] FrameGraph::Handle AddSeparable(FrameGraph* graph, FrameGraph::Handle irradiance,

@@ -18,67 +18,6 @@ glm::vec3 Sum(const std::vector<Tap>& taps) {
   return sum;
 }
 
-TEST(SeparableKernel, IsNormalisedSymmetricAndCentreFirst) {
-  for (const int taps : {11, 17, 25}) {
-    const std::vector<KernelTap> kernel = SeparableKernel(HumanSkin(), taps);
-    ASSERT_EQ(kernel.size(), static_cast<std::size_t>(taps));
-    EXPECT_EQ(kernel[0].offset, 0.0f);
-    for (std::size_t i = 1; i + 1 < kernel.size(); i += 2) {
-      EXPECT_EQ(kernel[i].offset, -kernel[i + 1].offset);
-      EXPECT_EQ(kernel[i].weight, kernel[i + 1].weight);
-      EXPECT_GT(kernel[i + 1].offset, i == 1 ? 0.0f : kernel[i - 1].offset);
-    }
-    for (int channel = 0; channel < 3; ++channel) {
-      EXPECT_NEAR(Sum(kernel)[channel], 1.0f, 1e-6f);
-      for (const KernelTap& tap : kernel) EXPECT_GE(tap.weight[channel], 0.0f);
-    }
-  }
-}
-
-// The published demo's kernel has a red variance of 0.755 mm^2; the profile's is 1.383.
-TEST(SeparableKernel, KeepsMostOfTheVariance) {
-  for (const auto& [taps, least] : {std::pair(11, 1.10), {17, 1.18}, {25, 1.27}}) {
-    double variance = 0.0;
-    for (const KernelTap& tap : SeparableKernel(HumanSkin(), taps)) {
-      variance += static_cast<double>(tap.weight.r * tap.offset * tap.offset);
-    }
-    EXPECT_GT(variance, least) << taps;
-    EXPECT_LT(variance, 1.45) << taps;
-  }
-}
-
-// A step edge, seen through pixels of 0.1 mm: root mean square over +-8 mm and the channels.
-double StepError(int taps) {
-  double sum = 0.0;
-  int count = 0;
-  const std::vector<KernelTap> kernel = SeparableKernel(HumanSkin(), taps);
-  for (double x = -8.0; x <= 8.0; x += 0.02, ++count) {
-    glm::vec3 response(0.0f);
-    for (const KernelTap& tap : kernel) {
-      response +=
-          tap.weight * static_cast<float>(std::clamp((x + tap.offset) / 0.1 + 0.5, 0.0, 1.0));
-    }
-    const glm::vec3 error = response - StepResponse(HumanSkin(), x);
-    sum += static_cast<double>(error.r * error.r + error.g * error.g + error.b * error.b) / 3.0;
-  }
-  return std::sqrt(sum / count);
-}
-
-TEST(SeparableKernel, MoreTapsComeNearerToAStepEdge) {
-  const double errors[3] = {StepError(11), StepError(17), StepError(25)};
-  printf("separable, step edge: RMSE %.4f, %.4f, %.4f with 11, 17, 25 taps\n", errors[0], errors[1],
-         errors[2]);
-  EXPECT_LT(errors[0], 0.010);
-  EXPECT_LT(errors[1], 0.007);
-  EXPECT_LT(errors[2], 0.004);
-}
-
-TEST(SeparableKernel, OddTapCountsAreTakenIntoRange) {
-  EXPECT_EQ(SeparableKernel(HumanSkin(), 0).size(), static_cast<std::size_t>(kMinSeparableTaps));
-  EXPECT_EQ(SeparableKernel(HumanSkin(), 12).size(), 13u);
-  EXPECT_EQ(SeparableKernel(HumanSkin(), 999).size(), static_cast<std::size_t>(kMaxSeparableTaps));
-}
-
 TEST(BurleyDisc, IsNormalisedAndWeighsRingsExactly) {
   const glm::vec3 d(0.4f, 0.15f, 0.08f);
   for (const int taps : {1, 16, 64}) {

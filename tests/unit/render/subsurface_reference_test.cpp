@@ -185,12 +185,22 @@ struct Limits {
 Limits LimitsOf(SubsurfaceMethod method) {
   switch (method) {
     case SubsurfaceMethod::kGaussians: return {0.0025, 0.006, 0.006};
-    case SubsurfaceMethod::kSeparable: return {0.012, 0.015, 0.005};
+    case SubsurfaceMethod::kSeparable: return {0.008, 0.011, 0.0046};
     case SubsurfaceMethod::kBurley: return {0.018, 0.022, 0.007};
     case SubsurfaceMethod::kPreintegrated: return {0.085, 0.1, 0.001};
     case SubsurfaceMethod::kOff: break;
   }
   return {0.085, 0.1, 0.015};
+}
+
+// However few its taps, the separable kernel is off by no more than twice as much as the six
+// Gaussians, which take more than twice its time; `errors`: of AllMethods(), in order.
+void ExpectSeparableWithinTwice(const std::vector<double>& errors) {
+  for (std::size_t i = 1; i < 4; ++i) {
+    EXPECT_LE(errors[i], 2.0 * errors[0]) << AllMethods()[i].name;
+  }
+  // More taps, less error.
+  EXPECT_TRUE(std::is_sorted(errors.begin() + 1, errors.begin() + 4));
 }
 
 TEST_F(SubsurfaceReference, ErrorsAtAStraightEdge) {
@@ -204,15 +214,15 @@ TEST_F(SubsurfaceReference, ErrorsAtAStraightEdge) {
     EXPECT_LT(error.rmse.r, LimitsOf(method.method).edge) << method.name;
     errors.push_back(WholeRmse(error));
   }
-  // The screen-space methods are worth their while; and 17 separable taps, which take less than
-  // half the time of the Gaussians, are off by no more than twice as much.
+  // The screen-space methods are worth their while.
   const double off = errors.back();
   for (std::size_t i = 0; i < 5; ++i) EXPECT_LT(errors[i], 0.25 * off) << AllMethods()[i].name;
-  EXPECT_LE(errors[2], 2.0 * errors[0]);
+  ExpectSeparableWithinTwice(errors);
 }
 
 // Both edges of the light and of the skin: a card of 20 x 16 mm, its right half lit.
 TEST_F(SubsurfaceReference, ErrorsOnACardWithEdges) {
+  std::vector<double> errors;
   for (const Method& method : AllMethods()) {
     SkinLight light = DrawCard(kBlack, kWhite, 20.0f, method);
     const glm::vec4 white = light.before.At(kWidth / 2 + 40, kHeight / 2);
@@ -223,7 +233,9 @@ TEST_F(SubsurfaceReference, ErrorsOnACardWithEdges) {
     EXPECT_GT(error.texels, 15000u);
     Print("card", method.name, error);
     EXPECT_LT(error.rmse.r, LimitsOf(method.method).card) << method.name;
+    errors.push_back(WholeRmse(error));
   }
+  ExpectSeparableWithinTwice(errors);
 }
 
 // Light on a sphere by its normal: what every lamp's response adds up to.
