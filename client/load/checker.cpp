@@ -59,6 +59,7 @@ void Checker::OnWeights(int watcher, std::uint32_t subject, std::uint32_t sequen
   const std::int64_t due_us = plan_.DueUs(subject, sequence);
   const std::int64_t latency_us = now_us - due_us;
   if (latency_us > options_.late_us) ++tally_.late;
+  if (latency_us < 0) ++tally_.early;
   latency_.Record(latency_us * 1000);
   const double share = static_cast<double>(due_us) * 1e-6 / options_.seconds;
   const auto window = static_cast<std::size_t>(share * static_cast<double>(kWindows));

@@ -19,6 +19,7 @@ struct Tally {
   std::uint64_t expected = 0;    // weights: one a pose sent and watcher of its subject
   std::uint64_t received = 0;    // of them, each once
   std::uint64_t late = 0;        // of the received, those beyond the limit
+  std::uint64_t early = 0;       // of the received, those before their pose was due: see below
   std::uint64_t duplicates = 0;  // came again
   std::uint64_t reordered = 0;   // came after a newer one of their subject
   std::uint64_t never_sent = 0;  // of poses that were not sent: a wrong sequence
@@ -46,7 +47,8 @@ struct CheckOptions {
 // Judges each weight as it comes; what differs from the table is kept for Settle(), since a server
 // that lost a pose on the way in rightly sends other weights for a while.
 //
-// Latency counts from when a pose was due, not from when it left.
+// Latency counts from when a pose was due, not from when it left. No pose leaves before it is due,
+// so weights that come `early` say that clocks disagree: the latency counts as 0.
 class Checker {
  public:
   static constexpr std::size_t kWindows = 50;

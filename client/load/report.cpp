@@ -54,6 +54,11 @@ std::string Remarks(const RunResult& result, const RunOptions& options) {
     remark("The daemon cut off slow or stalled subscribers " + Count(result.burdens_cut) +
            " times; they came back.");
   }
+  if (result.tally.early > 0) {
+    remark(Count(result.tally.early) +
+           " weights came before their poses were due, by this machine's clocks, which were set or "
+           "disagree: they count as 0 ms.");
+  }
   const double behind_us = static_cast<double>(result.send_delay_ns.Percentile(99.0)) * 1e-3;
   if (behind_us > 0.25 * result.p(99.0)) {
     remark("This program sent poses up to " + Fixed(behind_us, 0) +
@@ -121,6 +126,7 @@ nlohmann::json CountsOf(const RunResult& result) {
           {"received", tally.received},
           {"lost", tally.lost()},
           {"late", tally.late},
+          {"early", tally.early},
           {"wrong", tally.wrong},
           {"swapped", tally.swapped},
           {"falsified", tally.falsified()},

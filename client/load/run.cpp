@@ -178,16 +178,17 @@ RunResult Runner::Go() {
   last_arrival_ns_ = start_ns_;
   next_second_ns_ = start_ns_ + kSecondNs;
   capture_start_us_ = start_ns_ / 1000;
-  for (std::int64_t now = start_ns_; !Over(now); now = SteadyNanoseconds()) {
+  for (std::int64_t now = SteadyNanoseconds(); !Over(now); now = SteadyNanoseconds()) {
     SendDue(now);
     for (int i = 0; i < kLooksAtOnce && ReadReady(&datagrams_, 0) && TimeLeft() > 0; ++i) {
     }
     (void)ReadReady(&streams_, TimeLeft());
     EverySecond(now);
   }
+  // An interrupt may come before the first pose is due.
   result_.seconds =
-      static_cast<double>(std::min<std::int64_t>(SteadyNanoseconds() - start_ns_,
-                                                 std::llround(options_.plan.seconds * 1e9))) *
+      static_cast<double>(std::clamp<std::int64_t>(SteadyNanoseconds() - start_ns_, 0,
+                                                   std::llround(options_.plan.seconds * 1e9))) *
       1e-9;
   result_.usage = target_.pid ? ReadUsage(*target_.pid) : std::nullopt;
   if (before && result_.usage)

@@ -145,6 +145,8 @@ class LoadTest(unittest.TestCase):
                                "--plot", svg)
         rows = [line.split() for line in hgrm.read_text().splitlines()[2:] if not line.startswith("#")]
         self.assertEqual(int(rows[-1][2]), run["received"])
+        self.assertGreater(float(rows[0][0]), 0.0)
+        self.assertEqual(run["early"], 0)
         self.assertAlmostEqual(float(rows[-1][0]) * 1000, run["latency_us"]["max"], delta=1.0)
         titles = "".join(xml.etree.ElementTree.parse(svg).getroot().itertext())
         self.assertIn("Latency by percentile", titles)

@@ -79,6 +79,15 @@ TEST_F(CheckerTest, WhatIsRightIsRight) {
   EXPECT_NEAR(static_cast<double>(checker_.latency_ns().max()), 1e3 * kLatencyUs, 1e3);
 }
 
+TEST_F(CheckerTest, WhatComesBeforeItIsDueIsToldAndNotOnlyCountedAsZero) {
+  const Plan::Slot slot = SlotsOf(plan_)[100];
+  checker_.OnSent(slot.subject, slot.pose, true);
+  checker_.OnWeights(0, slot.subject, slot.pose, server_.Use(slot), true, slot.due_us - 1);
+  EXPECT_EQ(checker_.tally().received, 1u);
+  EXPECT_EQ(checker_.tally().early, 1u);
+  EXPECT_EQ(checker_.latency_ns().max(), 0);
+}
+
 TEST_F(CheckerTest, OneFalsifiedWeightIsWrong) {
   const Tally& tally = Run([&](std::size_t i, const auto& slot) {
     auto values = server_.Use(slot);

@@ -56,6 +56,8 @@ TEST(Report, WhatSpoilsARunIsSaid) {
   EXPECT_THAT(TextOf([](RunResult& run) { run.tally.unfollowed = 12; }),
               HasSubstr("12 weights differed from the solver's but were too many"));
   EXPECT_THAT(TextOf([](RunResult& run) { run.burdens_cut = 4; }), HasSubstr("4 times"));
+  EXPECT_THAT(TextOf([](RunResult& run) { run.tally.early = 6; }),
+              HasSubstr("6 weights came before their poses were due"));
   EXPECT_THAT(TextOf([](RunResult& run) { run.checked_names = false; }),
               HasSubstr("Weights were not checked"));
   EXPECT_THAT(TextOf([](RunResult& run) {
