@@ -100,9 +100,17 @@ float shadowOf(int light, vec3 position, vec3 normal, vec3 toLight, vec2 pixel) 
 #endif
 }
 
-// Metres that light runs inside the subject to a point `shrink` metres below its surface.
-float thicknessOf(int light, vec3 position, vec3 normal, float shrink) {
-  vec4 coordinate = shadowCoordinate(u_lights[light], position - shrink * normal);
+// Metres from where light enters the subject to `coordinate`; below 0: that lies before its surface.
+float depthBelowEntry(int light, vec4 coordinate) {
   float entry = textureLod(u_shadow_depth, shadowTile(light, coordinate.xy), 0.0).r;
-  return max(coordinate.z - entry, 0.0) / u_lights[light].shadow.z;
+  return (coordinate.z - entry) / u_lights[light].shadow.z;
+}
+
+// Metres that light runs inside the subject to a point `shrink` metres below its surface, or to the
+// surface itself where that is further: below an overhang the point may have left the subject on
+// the lamp's side, and nothing would dim what the surface cannot even see.
+float thicknessOf(int light, vec3 position, vec3 normal, float shrink) {
+  vec4 below = shadowCoordinate(u_lights[light], position - shrink * normal);
+  vec4 at = shadowCoordinate(u_lights[light], position);
+  return max(max(depthBelowEntry(light, below), depthBelowEntry(light, at)), 0.0);
 }

@@ -242,6 +242,28 @@ TEST_F(PipelineTest, LightComesThroughThinSkin) {
   EXPECT_EQ(Mean(Draw(settings, 64), 0), 0.0);
 }
 
+// A slab of 4 mm lit from behind: what lies 5 mm below its front is before its back. The slab is as
+// thick as when the look-up starts at its front.
+TEST_F(PipelineTest, LightThatEntersNearerThanTheLookUpStartsIsDimmedAllTheSame) {
+  const auto flat = [](float, float) { return 0.0f; };
+  head_ = test::MakePlane(16, flat, {flat});
+  head_.materials[0].double_sided = true;
+  Settings settings = Skin();
+  settings.view = View::kTranslucency;
+  settings.lights = {LightPreset::kThesis, 0.2f, 1.0f, 180.0f};  // parallel: depths are exact
+  Make("r0");
+  const double bare = Mean(Draw(settings, 64), 0);
+  head_.meshes.push_back(head_.meshes[0]);
+  for (character::Vertex& vertex : head_.meshes[1].vertices) vertex.position.z -= 0.004f;
+  Make("r0");
+  const double below = Mean(Draw(settings, 64), 0);
+  settings.translucency.shrink_mm = 0.0f;
+  const double at = Mean(Draw(settings, 64), 0);
+  EXPECT_GT(at, 1.0);
+  EXPECT_NEAR(below, at, 0.05 * at);
+  EXPECT_LT(below, 0.8 * bare);
+}
+
 TEST_F(PipelineTest, ACharacterWithoutSkinIsDrawn) {
   for (character::Material& material : head_.materials) {
     material.kind = character::Material::Kind::kCloth;
