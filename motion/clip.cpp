@@ -17,14 +17,15 @@
 namespace furrow::motion {
 namespace {
 
-enum class Format { kUnknown, kBvh, kGlb, kGltf, kCsv };
+enum class Format { kUnknown, kBvh, kGlb, kGltf, kVrma, kCsv };
 
 Format FormatOf(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = wrinkle::AsciiLower(c);
   if (extension == ".bvh") return Format::kBvh;
-  if (extension == ".glb" || extension == ".vrma") return Format::kGlb;
+  if (extension == ".glb") return Format::kGlb;
   if (extension == ".gltf") return Format::kGltf;
+  if (extension == ".vrma") return Format::kVrma;
   if (extension == ".csv") return Format::kCsv;
   return Format::kUnknown;
 }

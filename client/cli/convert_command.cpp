@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <memory>
+#include <string_view>
+#include <system_error>
 
 #include "client/cli/command.h"
 #include "client/cli/exit_code.h"
@@ -21,6 +26,33 @@ struct ConvertOptions {
   motion::LoadOptions load;
 };
 
+bool HasExtension(const std::string& path, std::initializer_list<std::string_view> extensions) {
+  const std::string extension =
+      CLI::detail::to_lower(std::filesystem::path(path).extension().string());
+  return std::ranges::find(extensions, extension) != extensions.end();
+}
+
+// What is read stays as it was, and so does every take: there is no second one of it.
+Status CheckOut(const ConvertOptions& options) {
+  if (options.weights && !HasExtension(options.out, {".csv"})) {
+    return {StatusCode::kInvalidArgument, "weights are written as .csv", options.out,
+            "give a name that ends so"};
+  }
+  if (!HasExtension(options.out, {".bvh", ".glb", ".csv", ".mcap"})) {
+    return {StatusCode::kUnsupported, "recordings are written as .bvh, .glb, .csv or .mcap",
+            options.out, "give a name that ends so, without a subject"};
+  }
+  std::string in;
+  std::string subject;
+  recording::SplitTakePath(options.in, &in, &subject);
+  std::error_code error;
+  if (std::filesystem::equivalent(in, options.out, error)) {
+    return {StatusCode::kInvalidArgument, "a recording is not written over itself", options.out,
+            "choose another name"};
+  }
+  return {};
+}
+
 int ConvertWeights(const ConvertOptions& options) {
   if (!recording::IsTakePath(options.in))
     return Fail({StatusCode::kInvalidArgument, "only takes (.mcap) hold weights", options.in,
@@ -38,6 +70,7 @@ int ConvertWeights(const ConvertOptions& options) {
 }
 
 int ConvertFile(const ConvertOptions& options) {
+  if (Status status = CheckOut(options); !status.ok()) return Fail(status);
   if (options.weights) return ConvertWeights(options);
   const auto clip = LoadClipArgument(options.in, options.load);
   if (!clip.ok()) return Fail(clip.status());
@@ -63,17 +96,18 @@ void AddConvert(CLI::App& app, Action& action) {
       ->add_option("IN", options->in,
                    ".bvh, .glb, .gltf, .vrma, .csv (Live Link Face) or .mcap (FILE.mcap#SUBJECT)")
       ->required();
-  command->add_option("OUT", options->out, ".bvh, .glb, .csv or .mcap")->required();
+  command->add_option("OUT", options->out, ".bvh, .glb or .csv, which is replaced, or a new .mcap")
+      ->required();
   command->add_flag(
       "--weights", options->weights,
       "Of a take: write its recorded weights as CSV (frame,time,<names>) instead of poses");
   command->add_option("--scale", options->load.scale, "Multiplies every length (BVH has no unit)")
-      ->check(CLI::Range(1e-6, 1e6))
+      ->check(Within(1e-6, 1e6))
       ->capture_default_str();
   command
       ->add_option("--sample-rate", options->load.sample_rate,
                    "Hz for formats made of curves; 0: the file's own keys")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(Within(0.0, 1000.0))
       ->capture_default_str();
   const std::map<std::string, motion::BvhPositions> positions{
       {"replace", motion::BvhPositions::kReplace}, {"add", motion::BvhPositions::kAdd}};
