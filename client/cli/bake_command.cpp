@@ -189,7 +189,7 @@ int Bake(const BakeArguments& arguments) {
 
 void AddMaterialOptions(CLI::App& command, bake::BakeOptions& options) {
   command.add_option("--depth", options.depth, "Scales every fold: the age of a face")
-      ->check(CLI::Range(0.0f, 4.0f))
+      ->check(Within(0.0, 4.0))
       ->capture_default_str();
   const auto share = [&options](float value) {
     options.skin.share = value;
@@ -199,22 +199,22 @@ void AddMaterialOptions(CLI::App& command, bake::BakeOptions& options) {
       .add_option_function<float>("--share", share,
                                   "Part of the compression that folds take up, the rest shortens "
                                   "the material; default: 0.3 on skin, 0.4 on cloth")
-      ->check(CLI::Range(0.0f, 1.0f));
+      ->check(Within(0.0, 1.0));
   command
       .add_option("--skin-wavelength", options.skin.wavelength_mm,
                   "Valley to valley on skin, mm, where no region says otherwise")
-      ->check(CLI::Range(0.2f, 200.0f))
+      ->check(Within(0.2, 200.0))
       ->capture_default_str();
   command
       .add_option("--cloth-wavelength", options.cloth.wavelength_mm,
                   "Valley to valley on cloth, mm")
-      ->check(CLI::Range(0.2f, 200.0f))
+      ->check(Within(0.2, 200.0))
       ->capture_default_str();
   command
       .add_option("--fine-lines", options.skin.fine_lines,
                   "Lines of a third of the wavelength on skin, as a share of their full height: "
                   "dry and old skin")
-      ->check(CLI::Range(0.0f, 1.0f))
+      ->check(Within(0.0, 1.0))
       ->capture_default_str();
   command.add_option("--seed", options.seed, "Another seed, other folds of the same kind")
       ->capture_default_str();

@@ -36,6 +36,17 @@ CLI::Validator SizeValidator() {
           "WxH"};
 }
 
+CLI::Validator Within(double least, double most) {
+  const std::string range = CLI::Range(least, most).get_description();
+  return {[=](std::string& text) {
+            double number = 0.0;
+            const bool is_number = CLI::detail::lexical_cast(text, number);
+            if (is_number && number >= least && number <= most) return std::string();
+            return "'" + text + "' is not of " + range;
+          },
+          range};
+}
+
 namespace {
 
 int ParseAndRun(int argc, const char* const* argv) {

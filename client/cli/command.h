@@ -47,6 +47,9 @@ CLI::Option* AddChoice(CLI::App& app, const std::string& name, T& value,
       ->type_name(words);
 }
 
+// A CLI11 validator: a number of [least, most]; CLI::Range lets NaN pass.
+[[nodiscard]] CLI::Validator Within(double least, double most);
+
 // --skeleton-map, as LoadSkeletonMatcher() takes it.
 void AddSkeletonMap(CLI::App& command, std::string& value);
 

@@ -123,12 +123,12 @@ void AddPlay(CLI::App& app, Action& action) {
   command->add_option("--subject", options->subject,
                       "Who is captured; default: whom a take names, else the file's name");
   command->add_option("--rate", options->rate, "Poses per second of recording; default: all it has")
-      ->check(CLI::Range(0.001, 100000.0));
+      ->check(Within(0.001, 100000.0));
   command->add_option("--speed", options->speed, "How many times as fast as recorded")
-      ->check(CLI::Range(0.001, 1000.0))
+      ->check(Within(0.001, 1000.0))
       ->capture_default_str();
   command->add_option("--from", options->from, "Seconds of the recording to leave out at its start")
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(Within(0.0, 1e9))
       ->capture_default_str();
   command->add_flag("--loop", options->loop,
                     "Begin again at the end, until Ctrl-C; the numbers go on");
@@ -136,7 +136,7 @@ void AddPlay(CLI::App& app, Action& action) {
                     "Send 6 bytes a rotation (off by at most 1.5e-4 rad) and a translation (off by "
                     "1/65534 of the largest in the pose), 2 a blend shape (off by 1/32768)");
   command->add_option("--scale", options->scale, "Metres per unit of the recording's lengths")
-      ->check(CLI::Range(1e-6, 1e6))
+      ->check(Within(1e-6, 1e6))
       ->capture_default_str();
   command->callback([options, &action] { action = [options] { return PlayFile(*options); }; });
 }

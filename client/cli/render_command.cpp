@@ -230,7 +230,7 @@ void AddCrowdOptions(CLI::App& command, CrowdOptions* options) {
   command
       .add_option("--spacing", options->spacing,
                   "Metres from one to the next; default: by what the camera shows of one")
-      ->check(CLI::Range(0.05, 100.0));
+      ->check(Within(0.05, 100.0));
   command
       .add_option("--offset-frames", options->offset_frames,
                   "Each plays so many frames ahead of the one before; default: those who share a "

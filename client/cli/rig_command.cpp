@@ -99,7 +99,7 @@ void AddExplain(CLI::App& group, Action& action) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--threshold", options->threshold, "Weights below are counted, not listed")
-      ->check(CLI::Range(0.0f, 1.0f))
+      ->check(Within(0.0, 1.0))
       ->capture_default_str();
   command->callback([options, &action] { action = [options] { return Explain(*options); }; });
 }

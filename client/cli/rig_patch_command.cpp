@@ -95,7 +95,7 @@ void AddRigPatch(CLI::App& rig_group, Action& action) {
   where->add_option("--region", arguments->region, "The middle of this region's mask");
   where->require_option(1);
   command->add_option("--radius", arguments->radius_mm, "Millimetres")
-      ->check(CLI::Range(0.1f, 1000.0f))
+      ->check(Within(0.1, 1000.0))
       ->capture_default_str();
   command
       ->add_option(
@@ -104,7 +104,7 @@ void AddRigPatch(CLI::App& rig_group, Action& action) {
       ->check(VectorValidator())
       ->capture_default_str();
   command->add_option("--full", arguments->patch.full_compression, "The compression that gives 1")
-      ->check(CLI::Range(0.01f, 1.0f))
+      ->check(Within(0.01, 1.0))
       ->capture_default_str();
   command->add_option("--out", arguments->out, "Default: standard output");
   command->callback([arguments, &action] { action = [arguments] { return Patch(*arguments); }; });
