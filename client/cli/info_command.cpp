@@ -47,7 +47,11 @@ void PrintFile(const TakeReader& take) {
               file.complete() ? "complete" : "cut short: read up to its last whole chunk");
   std::printf("  chunks      %zu", file.chunks().size());
   for (const auto& [name, count] : compressions) std::printf(", %d %s", count, name.c_str());
-  std::printf("; %s\n", file.warnings().empty() ? "all checksums are right" : "damaged, see below");
+  if (file.warnings().empty()) {
+    std::printf("; all checksums are right\n");
+  } else {
+    std::printf("; %s, see below\n", file.complete() ? "damaged" : "what is lost");
+  }
   for (const motion::mcap::AttachmentInfo& info : file.attachments())
     std::printf("  attachment  %s, %s, %" PRIu64 " bytes\n", info.name.c_str(),
                 info.media_type.c_str(), info.size);
@@ -60,7 +64,8 @@ void PrintSubject(const std::string& name, const SubjectSummary& subject) {
   std::printf("    poses     %zu in %.3f s, %.2f Hz, %" PRIu64 " missing, longest gap %.3f s\n",
               subject.poses, static_cast<double>(subject.last_ns - subject.first_ns) * 1e-9,
               subject.rate(), subject.missing, subject.longest_gap);
-  std::printf("    weights   %zu of %zu names\n", subject.weights, subject.weight_names);
+  std::printf("    weights   %zu frames, each of %zu names\n", subject.weights,
+              subject.weight_names);
   if (subject.unreadable > 0) std::printf("    unreadable %zu messages\n", subject.unreadable);
 }
 

@@ -77,10 +77,12 @@ Result<recording::TakeFolderOptions> FolderOptions(const RecordOptions& options)
   return folder;
 }
 
-void PrintSummary(const TakeListener& take) {
+// `failed`: not all of it could be written.
+void PrintSummary(const TakeListener& take, bool failed) {
   if (take.folder() == nullptr) return;
-  std::fprintf(stderr, "furrow: %" PRIu64 " poses and %" PRIu64 " weights of %s in %s",
+  std::fprintf(stderr, "furrow: %" PRIu64 " poses and %" PRIu64 " weights of %s %s %s",
                take.num_poses(), take.num_weights(), take.SubjectNames().c_str(),
+               failed ? "came; 'furrow info' tells how many are in" : "in",
                take.folder()->path().c_str());
   if (take.folder()->num_files() > 1) {
     std::fprintf(stderr, " and %d files before it", take.folder()->num_files() - 1);
@@ -153,7 +155,11 @@ int Record(const RecordOptions& options) {
   for (const std::string& subject : options.subjects) take.Ask(subscriber, subject, options.wait);
   if (options.subjects.empty()) take.AskForAll(subscriber);
   exit_code = ListenInto(take, subscriber, options);
-  PrintSummary(take);
+  PrintSummary(take, exit_code == kFailed);
+  if (exit_code == kDone && take.folder() == nullptr) {
+    return Fail({StatusCode::kUnavailable, "nobody came, so there is no file", options.host,
+                 "start a publisher, or wait longer: --duration"});
+  }
   return exit_code;
 }
 
@@ -173,15 +179,15 @@ void AddRecord(CLI::App& app, Action& action) {
   command->add_flag("--wait", options->wait,
                     "Wait where nobody is there yet, and go on when all have left");
   command->add_option("--duration", options->duration, "Seconds; default: until Ctrl-C")
-      ->check(CLI::Range(0.001, 1e9));
+      ->check(Within(0.001, 1e9));
   command
       ->add_option("--rotate-megabytes", options->rotate_megabytes,
                    "The next file, FILE_2.mcap, begins at this size; default: never")
-      ->check(CLI::Range(0.001, 1e9));
+      ->check(Within(0.001, 1e9));
   command
       ->add_option("--rotate-seconds", options->rotate_seconds,
                    "And when a file covers so much time; default: never")
-      ->check(CLI::Range(0.001, 1e9));
+      ->check(Within(0.001, 1e9));
   command->add_option("--rig", options->rig,
                       "The daemon's wrinkle rig, to go with the take as an attachment");
   command->callback([options, &action] { action = [options] { return Record(*options); }; });

@@ -30,6 +30,11 @@ SessionPlayer::SessionPlayer(client::Publisher& publisher, std::vector<Track> tr
       spacing_(tracks_.size()) {}
 
 int SessionPlayer::Run() {
+  Play();
+  return Report();
+}
+
+void SessionPlayer::Play() {
   const std::int64_t capture_start = SystemMicroseconds();
   const std::int64_t send_start = SteadyMicroseconds();
   Progress progress("playing", schedule_.count());
@@ -50,7 +55,6 @@ int SessionPlayer::Run() {
                          options_.encoding));
     progress.Set(sent++ % schedule_.count() + 1);
   }
-  return Report();
 }
 
 // Reads answers meanwhile: a daemon that was restarted asks for the skeletons again. False when

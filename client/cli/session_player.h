@@ -33,6 +33,7 @@ class SessionPlayer {
   [[nodiscard]] int Run();
 
  private:
+  void Play();
   bool WaitUntil(std::int64_t due_us);
   void Note(client::IoStatus status);
   [[nodiscard]] int Report() const;
