@@ -2,58 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """What streams through a daemon is recorded, survives its death, and plays again to the same weights."""
 import os
-import pathlib
 import pty
 import re
 import resource
-import shutil
 import signal
 import subprocess
-import tempfile
 import time
 import unittest
 
-from furrow_testing import (BIN, GUARD, SHARE, SOURCE, Daemon, Table, furrow, solve, spawn, worst_difference)
+from furrow_testing import BIN, GUARD, SHARE, Daemon, furrow, solve, spawn, worst_difference
+from recording_testing import PERFORMANCE, RIG, FolderTest, Recording
 
-PERFORMANCE = SHARE / "recordings" / "performance.bvh"
 HAPPINESS = SHARE / "recordings" / "happiness.bvh"
-RIG = SHARE / "default.rig.json"
-INTEROP = SOURCE / "tests" / "mcap_interop"
-
-
-class Recording(Daemon):
-    """A daemon that records to a folder."""
-
-    def __init__(self, folder, *args):
-        super().__init__("--no-render", "--record", folder, *args)
-        self.folder = pathlib.Path(folder)
-
-    def takes(self):
-        return sorted(self.folder.glob("*.mcap"))
-
-
-class FolderTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = pathlib.Path(folder.name)
-
-    def record(self, *play, name="takes", recording=PERFORMANCE):
-        """Plays to a recording daemon that ends as it should; its only take."""
-        with Recording(self.root / name) as daemon:
-            furrow("play", recording, "--to", daemon.udp, "--subject", "ada", *play, check=0)
-        takes = daemon.takes()
-        self.assertEqual(len(takes), 1)
-        return takes[0]
-
-    def weights(self, take):
-        out = self.root / "weights.csv"
-        furrow("convert", take, out, "--weights", check=0)
-        return Table(out.read_text())
-
-    def count(self, take, what):
-        text = furrow("info", take, check=0).stdout.decode()
-        return int(re.search(rf"{what} +(\d+)", text).group(1))
 
 
 class RecordTest(FolderTest):
@@ -122,17 +82,12 @@ class RecordTest(FolderTest):
         daemon = Recording(self.root / "killed")
         daemon.__enter__()
         player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
-        # Until a second's worth is on the disk.
         take = daemon.takes()[0]
-        begin = take.stat().st_size
-        deadline = time.monotonic() + GUARD
-        while take.stat().st_size < begin + 40000 and time.monotonic() < deadline:
-            time.sleep(0.05)
-        daemon.process.kill()
-        daemon.process.communicate(timeout=GUARD)
+        self.kill_in_the_middle(daemon.process, take)
         player.communicate(timeout=GUARD)
         info = furrow("info", take, check=0)
         self.assertIn("cut short", info.stdout.decode())
+        self.assertNotIn("damaged", info.stdout.decode())
         recorded = self.weights(take)
         self.assertGreater(len(recorded.rows), 0)
         # Of each pose its weights, but perhaps for the last.
@@ -195,26 +150,6 @@ class RecordTest(FolderTest):
 class ListeningTest(FolderTest):
     """`furrow record HOST`: the same, from another computer."""
 
-    def listen(self, daemon, out, *args):
-        """Starts recording and waits until the daemon has answered."""
-        recorder = spawn("record", daemon.tcp, "--out", out, *args)
-        self.addCleanup(recorder.stderr.close)
-        self.addCleanup(recorder.stdout.close)
-        self.addCleanup(recorder.kill)
-        deadline = time.monotonic() + GUARD
-        while not out.exists() and recorder.poll() is None and time.monotonic() < deadline:
-            time.sleep(0.02)
-        self.assertIsNone(recorder.poll(), "it records")
-        return recorder
-
-    def end(self, recorder):
-        """Its words, after Ctrl-C."""
-        recorder.send_signal(signal.SIGINT)
-        recorder.wait(timeout=GUARD)
-        words = recorder.stderr.read().decode()
-        self.assertEqual(recorder.returncode, 0, words)
-        return words
-
     def test_it_gets_every_pose_and_weight_and_they_replay_digit_for_digit(self):
         take = self.root / "take.mcap"
         with Daemon("--no-render") as daemon:
@@ -240,24 +175,13 @@ class ListeningTest(FolderTest):
             furrow("play", take, "--to", daemon.tcp, "--tcp", "--speed", 8, check=0)
             self.end(recorder)
         self.assertEqual(self.weights(again).rows, recorded.rows)
-        if shutil.which("node") is not None and (INTEROP / "node_modules").exists():
-            theirs = subprocess.run(["node", INTEROP / "read.mjs", take], capture_output=True, timeout=GUARD)
-            ours = subprocess.run([BIN / "mcap-dump", take], capture_output=True, timeout=GUARD)
-            self.assertEqual(sorted(theirs.stdout.splitlines()), sorted(ours.stdout.splitlines()))
-            self.assertIn(b"attachment rig.json", theirs.stdout)
-            self.assertIn(b"attachment ada.skeleton", theirs.stdout)
 
     def test_a_killed_recorder_leaves_whole_chunks(self):
         take = self.root / "killed.mcap"
         with Daemon("--no-render") as daemon:
             player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
             recorder = self.listen(daemon, take, "--subject", "ada", "--wait")
-            begin = take.stat().st_size
-            deadline = time.monotonic() + GUARD
-            while take.stat().st_size < begin + 40000 and time.monotonic() < deadline:
-                time.sleep(0.05)
-            recorder.kill()
-            recorder.wait(timeout=GUARD)
+            self.kill_in_the_middle(recorder, take)
             player.send_signal(signal.SIGINT)
             player.communicate(timeout=GUARD)
         self.assertIn("cut short", furrow("info", take, check=0).stdout.decode())
@@ -324,7 +248,9 @@ class ListeningTest(FolderTest):
         self.assertIn("FILE.mcap", result.stderr.decode())
         with Daemon("--no-render") as daemon:
             result = furrow("record", daemon.tcp, "--out", self.root / "none.mcap", "--subject", "eve", check=1)
+            nobody = furrow("record", daemon.tcp, "--out", self.root / "none.mcap", "--wait", "--duration", 0.2, check=1)
         self.assertIn("no subject 'eve'", result.stderr.decode())
+        self.assertIn("nobody came", nobody.stderr.decode())
         self.assertFalse((self.root / "none.mcap").exists(), "nothing to record leaves no file")
 
 
@@ -343,13 +269,6 @@ class ConvertTest(FolderTest):
             self.assertEqual(frames, len(solved.rows))
             self.assertLess(worst, 2e-3)
 
-    def test_nothing_is_overwritten(self):
-        take = self.root / "made.mcap"
-        furrow("convert", PERFORMANCE, take, check=0)
-        before = take.read_bytes()
-        self.assertEqual(furrow("convert", PERFORMANCE, take).returncode, 1)
-        self.assertEqual(take.read_bytes(), before)
-
     def test_one_of_several_subjects_is_named(self):
         with Recording(self.root / "two") as daemon:
             for name in ("ada", "bob"):
@@ -361,12 +280,29 @@ class ConvertTest(FolderTest):
         self.assertEqual(one.rows.keys(), solve(PERFORMANCE, "--rig", RIG).rows.keys())
         self.assertEqual(furrow("solve", f"{take}#eve", "--rig", RIG).returncode, 3)
 
-
-def needs_interop():
-    if shutil.which("node") is None:
-        raise unittest.SkipTest("node is absent: install what deploy/packages.txt lists")
-    if not (INTEROP / "node_modules").exists():
-        raise unittest.SkipTest("npm's @mcap/core is absent: run deploy/install-deps.sh test")
+    def test_nothing_is_written_over_what_is_read_or_over_a_take(self):
+        take = self.root / "take.mcap"
+        furrow("convert", PERFORMANCE, take, check=0)
+        other = self.root / "other.mcap"
+        furrow("convert", PERFORMANCE, other, check=0)
+        copy = self.root / "copy.bvh"
+        copy.write_bytes(PERFORMANCE.read_bytes())
+        link = self.root / "link.glb.bvh"
+        link.symlink_to(copy)
+        subject = re.search(r"subject +(\w+):", furrow("info", take, check=0).stdout.decode()).group(1)
+        before = {path: path.read_bytes() for path in (take, other, copy)}
+        for args, code, says in (((take, take, "--weights"), 3, "as .csv"),
+                                 ((f"{take}#{subject}", other, "--weights"), 3, "as .csv"),
+                                 ((copy, copy), 3, "over itself"),
+                                 ((copy, link), 3, "over itself"),
+                                 ((f"{take}#{subject}", take), 3, "over itself"),
+                                 ((copy, take), 1, "take.mcap"),
+                                 ((copy, self.root / "new.mcap#ada"), 3, "without a subject"),
+                                 ((copy, self.root / "new.vrma"), 3, ".glb, .csv or .mcap")):
+            with self.subTest(args):
+                self.assertIn(says, furrow("convert", *args, check=code).stderr.decode())
+        self.assertEqual({path: path.read_bytes() for path in before}, before)
+        self.assertEqual([*self.root.glob("new*")], [])
 
 
 class ReadingTest(FolderTest):
@@ -380,6 +316,12 @@ class ReadingTest(FolderTest):
                 shown = self.on_a_terminal(*command)
                 self.assertRegex(shown, r"\rreading \[#* *\] +\d+%")
                 self.assertIn("\r\x1b[K", shown, "and wiped")
+
+    def test_what_playing_came_to_stands_on_a_line_of_its_own(self):
+        with Daemon("--no-render") as daemon:
+            shown = self.on_a_terminal("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--speed", 20)
+        self.assertRegex(shown, r"\rplaying \[#+ *\] +\d+%")
+        self.assertRegex(shown, r"\x1b\[Kfurrow: \d+ poses; spacing")
 
     def on_a_terminal(self, *command):
         """What a command writes to standard error where that is a terminal."""
@@ -395,42 +337,6 @@ class ReadingTest(FolderTest):
             pass
         self.assertEqual(process.wait(timeout=GUARD), 0)
         return shown.decode()
-
-
-class InteropTest(FolderTest):
-    """npm's @mcap/core, written by others, agrees on every message."""
-
-    def setUp(self):
-        needs_interop()
-        super().setUp()
-
-    def theirs(self, take):
-        result = subprocess.run(["node", INTEROP / "read.mjs", take], capture_output=True, timeout=GUARD)
-        self.assertEqual(result.returncode, 0, result.stderr.decode())
-        return result.stdout.decode().splitlines()
-
-    def ours(self, take):
-        result = subprocess.run([BIN / "mcap-dump", take], capture_output=True, timeout=GUARD)
-        self.assertEqual(result.returncode, 0, result.stderr.decode())
-        return result.stdout.decode().splitlines()
-
-    def test_it_reads_our_takes(self):
-        take = self.record("--speed", 8)
-        ours, theirs = self.ours(take), self.theirs(take)
-        self.assertGreater(len(ours), 100)
-        self.assertEqual(sorted(ours), sorted(theirs))
-        self.assertTrue(any(line.startswith("attachment rig.json") for line in theirs))
-        self.assertTrue(any(line.startswith("/raw/udp ") for line in theirs))
-
-    def test_we_read_its_files(self):
-        take = self.record("--speed", 8)
-        for compression in ("none", "zstd", "lz4"):
-            with self.subTest(compression):
-                copy = self.root / f"{compression}.mcap"
-                subprocess.run(["node", INTEROP / "write.mjs", take, copy, compression], check=True, timeout=GUARD)
-                self.assertEqual(sorted(self.ours(copy)),
-                                 sorted(line for line in self.ours(take) if not line.startswith("attachment")))
-                self.assertEqual(self.weights(copy).rows, self.weights(take).rows)
 
 
 if __name__ == "__main__":

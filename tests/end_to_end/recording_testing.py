@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the tests of recordings share: a daemon that records, takes in a folder, the independent reader."""
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+from furrow_testing import BIN, GUARD, SHARE, SOURCE, Daemon, Table, furrow, spawn
+
+PERFORMANCE = SHARE / "recordings" / "performance.bvh"
+RIG = SHARE / "default.rig.json"
+INTEROP = SOURCE / "tests" / "mcap_interop"
+
+
+class Recording(Daemon):
+    """A daemon that records to a folder."""
+
+    def __init__(self, folder, *args):
+        super().__init__("--no-render", "--record", folder, *args)
+        self.folder = pathlib.Path(folder)
+
+    def takes(self):
+        return sorted(self.folder.glob("*.mcap"))
+
+
+def needs_interop():
+    if shutil.which("node") is None:
+        raise unittest.SkipTest("node is absent: install what deploy/packages.txt lists")
+    if not (INTEROP / "node_modules").exists():
+        raise unittest.SkipTest("npm's @mcap/core is absent: run deploy/install-deps.sh test")
+
+
+def lines_of(*command):
+    result = subprocess.run([*map(str, command)], capture_output=True, timeout=GUARD)
+    assert result.returncode == 0, result.stderr.decode()
+    return result.stdout.decode().splitlines()
+
+
+def our_messages(take):
+    """A line for each message and attachment that our reader finds."""
+    return lines_of(BIN / "mcap-dump", take)
+
+
+def their_messages(take, *options):
+    """The same of npm's @mcap/core, written by others. "--cut": of a file whose writer died."""
+    return lines_of("node", INTEROP / "read.mjs", *options, take)
+
+
+class FolderTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+
+    def record(self, *play, name="takes", recording=PERFORMANCE):
+        """Plays to a recording daemon that ends as it should; its only take."""
+        with Recording(self.root / name) as daemon:
+            furrow("play", recording, "--to", daemon.udp, "--subject", "ada", *play, check=0)
+        takes = daemon.takes()
+        self.assertEqual(len(takes), 1)
+        return takes[0]
+
+    def weights(self, take):
+        out = self.root / "weights.csv"
+        furrow("convert", take, out, "--weights", check=0)
+        return Table(out.read_text())
+
+    def count(self, take, what):
+        text = furrow("info", take, check=0).stdout.decode()
+        return int(re.search(rf"{what} +(\d+)", text).group(1))
+
+    def listen(self, daemon, out, *args):
+        """Starts recording and waits until the daemon has answered."""
+        recorder = spawn("record", daemon.tcp, "--out", out, *args)
+        self.addCleanup(recorder.stderr.close)
+        self.addCleanup(recorder.stdout.close)
+        self.addCleanup(recorder.kill)
+        deadline = time.monotonic() + GUARD
+        while not out.exists() and recorder.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.02)
+        self.assertIsNone(recorder.poll(), "it records")
+        return recorder
+
+    def end(self, recorder):
+        """Its words, after Ctrl-C."""
+        recorder.send_signal(signal.SIGINT)
+        recorder.wait(timeout=GUARD)
+        words = recorder.stderr.read().decode()
+        self.assertEqual(recorder.returncode, 0, words)
+        return words
+
+    def kill_in_the_middle(self, recorder, take):
+        """Kills who records once a second's worth is on the disk."""
+        begin = take.stat().st_size
+        deadline = time.monotonic() + GUARD
+        while take.stat().st_size < begin + 40000 and time.monotonic() < deadline:
+            time.sleep(0.05)
+        recorder.kill()
+        recorder.communicate(timeout=GUARD)

@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""npm's @mcap/core, written by others, agrees with our reader on every message."""
+import signal
+import subprocess
+import unittest
+
+from furrow_testing import GUARD, Daemon, furrow, spawn
+from recording_testing import (INTEROP, PERFORMANCE, RIG, FolderTest, Recording, needs_interop, our_messages,
+                               their_messages)
+
+
+class InteropTest(FolderTest):
+    def setUp(self):
+        needs_interop()
+        super().setUp()
+
+    def test_it_reads_our_takes(self):
+        take = self.record("--speed", 8)
+        ours, theirs = our_messages(take), their_messages(take)
+        self.assertGreater(len(ours), 100)
+        self.assertEqual(sorted(ours), sorted(theirs))
+        self.assertTrue(any(line.startswith("attachment rig.json") for line in theirs))
+        self.assertTrue(any(line.startswith("/raw/udp ") for line in theirs))
+
+    def test_it_reads_what_record_writes(self):
+        take = self.root / "take.mcap"
+        with Daemon("--no-render") as daemon:
+            recorder = self.listen(daemon, take, "--subject", "ada", "--wait", "--rig", RIG)
+            furrow("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--speed", 8, check=0)
+            self.end(recorder)
+        theirs = their_messages(take)
+        self.assertEqual(sorted(our_messages(take)), sorted(theirs))
+        for name in ("rig.json", "ada.skeleton"):
+            self.assertTrue(any(line.startswith(f"attachment {name}") for line in theirs), name)
+
+    def test_we_read_its_files(self):
+        take = self.record("--speed", 8)
+        for compression in ("none", "zstd", "lz4"):
+            with self.subTest(compression):
+                copy = self.root / f"{compression}.mcap"
+                subprocess.run(["node", INTEROP / "write.mjs", take, copy, compression], check=True, timeout=GUARD)
+                self.assertEqual(sorted(our_messages(copy)),
+                                 sorted(line for line in our_messages(take) if not line.startswith("attachment")))
+                self.assertEqual(self.weights(copy).rows, self.weights(take).rows)
+
+    def agree_on_what_is_left(self, take):
+        ours, theirs = our_messages(take), their_messages(take, "--cut")
+        self.assertGreater(sum("/weights" in line for line in ours), 10)
+        self.assertEqual(sorted(ours), sorted(theirs))
+
+    def test_it_finds_as_much_in_what_a_killed_daemon_leaves(self):
+        daemon = Recording(self.root / "killed")
+        daemon.__enter__()
+        player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
+        take = daemon.takes()[0]
+        self.kill_in_the_middle(daemon.process, take)
+        player.communicate(timeout=GUARD)
+        self.agree_on_what_is_left(take)
+
+    def test_it_finds_as_much_in_what_a_killed_recorder_leaves(self):
+        take = self.root / "killed.mcap"
+        with Daemon("--no-render") as daemon:
+            player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
+            recorder = self.listen(daemon, take, "--subject", "ada", "--wait")
+            self.kill_in_the_middle(recorder, take)
+            player.send_signal(signal.SIGINT)
+            player.communicate(timeout=GUARD)
+        self.agree_on_what_is_left(take)
+
+
+if __name__ == "__main__":
+    unittest.main()
