@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "client/load/chaos_tamper.h"
+#include "protocol/envelope.h"
 
 namespace furrow::load {
 namespace {
@@ -17,6 +18,16 @@ std::uint64_t Mix(std::uint64_t value) {
   value = (value ^ (value >> 30)) * 0xBF58476D1CE4E5B9ULL;
   value = (value ^ (value >> 27)) * 0x94D049BB133111EBULL;
   return value ^ (value >> 31);
+}
+
+// Into how many datagrams a packet that came or was put together goes. Nobody sends a larger
+// message as one, and what is no message passes as it came.
+std::size_t NumDatagrams(std::span<const std::uint8_t> packet) {
+  protocol::Envelope envelope;
+  const bool is_message =
+      protocol::ReadEnvelope(packet, envelope) == protocol::EnvelopeStatus::kOk &&
+      packet.size() == protocol::kEnvelopeBytes + envelope.payload_bytes;
+  return is_message ? protocol::NumDatagrams(packet.size()) : 1;
 }
 
 }  // namespace
@@ -73,22 +84,38 @@ std::int64_t ChaosLink::DueUs(std::int64_t now_us) {
 }
 
 void ChaosLink::Push(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
-  std::vector<std::uint8_t> packet(bytes.begin(), bytes.end());
   if (InBlackHole(options_.black_holes, static_cast<double>(now_us - start_us_) * 1e-6)) {
     ++counts_.swallowed;
   } else if (Hits(Dice::kLoss, options_.loss)) {
     ++counts_.lost;
   } else {
-    if (Hits(Dice::kFalsify, options_.falsify) && Falsify(&packet, Roll(Dice::kAmount)))
-      ++counts_.falsified;
-    const std::int64_t due_us = DueUs(now_us);
-    if (Hits(Dice::kDuplicate, options_.duplicate)) {
-      ++counts_.duplicated;
-      waiting_.emplace(due_us, packet);
-    }
-    Send(std::move(packet), now_us, due_us);
+    Take(bytes, now_us);
   }
   ++counts_.packets;
+}
+
+void ChaosLink::Take(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
+  if (!options_.tampers()) return Handle(bytes, now_us);
+  (void)gathered_.Expire(now_us);
+  std::span<const std::uint8_t> message;
+  switch (gathered_.Push(0, bytes, now_us, message)) {
+    case protocol::FragmentStatus::kPending: return;
+    case protocol::FragmentStatus::kWhole:
+    case protocol::FragmentStatus::kComplete: return Handle(message, now_us);
+    default: return Handle(bytes, now_us);  // the receiver's to judge
+  }
+}
+
+void ChaosLink::Handle(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
+  std::vector<std::uint8_t> packet(bytes.begin(), bytes.end());
+  if (Hits(Dice::kFalsify, options_.falsify) && Falsify(&packet, Roll(Dice::kAmount)))
+    ++counts_.falsified;
+  const std::int64_t due_us = DueUs(now_us);
+  if (Hits(Dice::kDuplicate, options_.duplicate)) {
+    ++counts_.duplicated;
+    waiting_.emplace(due_us, packet);
+  }
+  Send(std::move(packet), now_us, due_us);
 }
 
 // On its way, unless it has to wait for the next one.
@@ -119,12 +146,27 @@ void ChaosLink::Release(Waiting::iterator* held, std::int64_t due_us) {
 }
 
 bool ChaosLink::Pop(std::int64_t now_us, std::vector<std::uint8_t>* packet) {
+  if (num_left_ == num_datagrams_ && !TakeFirst(now_us)) return false;
+  if (num_datagrams_ == 1) {
+    packet->swap(leaving_);
+  } else {
+    packet->resize(protocol::kMaxDatagramBytes);
+    packet->resize(protocol::WriteDatagram(leaving_, message_id_, num_left_, *packet));
+  }
+  ++num_left_;
+  return true;
+}
+
+bool ChaosLink::TakeFirst(std::int64_t now_us) {
   const auto first = waiting_.begin();
   if (first == waiting_.end() || first->first > now_us) return false;
   if (first == to_swap_) to_swap_ = waiting_.end();
   if (first == to_reorder_) to_reorder_ = waiting_.end();
-  *packet = std::move(first->second);
+  leaving_ = std::move(first->second);
   waiting_.erase(first);
+  num_datagrams_ = options_.tampers() ? NumDatagrams(leaving_) : 1;
+  num_left_ = 0;
+  ++message_id_;
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "protocol/fragment.h"
 #include "wrinkle/status.h"
 
 namespace furrow::load {
@@ -39,8 +40,10 @@ struct ChaosOptions {
 
   [[nodiscard]] bool any() const {
     return loss > 0.0 || reorder > 0.0 || duplicate > 0.0 || delay > 0.0 || jitter_ms > 0.0 ||
-           falsify > 0.0 || swap > 0.0 || !black_holes.empty();
+           tampers() || !black_holes.empty();
   }
+  // Whether contents are changed.
+  [[nodiscard]] bool tampers() const { return falsify > 0.0 || swap > 0.0; }
 };
 
 // What was done to the packets of one link, or of several.
@@ -59,6 +62,10 @@ struct ChaosCounts {
 
 // A link in one direction that mistreats what passes. What happens to the i-th packet follows from
 // the seed, the link's number and i alone, so a run can be repeated.
+//
+// Where contents are changed, messages that come in fragments are put together first and leave in
+// fragments again: all but loss and black holes then befalls the message as its last fragment
+// comes, and one that lost a fragment, which nobody could read, goes no further.
 //
 // Pure: time is a parameter (microseconds on any clock that does not go back).
 class ChaosLink {
@@ -80,6 +87,7 @@ class ChaosLink {
   [[nodiscard]] bool Pop(std::int64_t now_us, std::vector<std::uint8_t>* packet);
 
   // When the next one is due; -1: none waits.
+  // Asked when Pop() has said false.
   [[nodiscard]] std::int64_t next_us() const {
     return waiting_.empty() ? -1 : waiting_.begin()->first;
   }
@@ -95,7 +103,11 @@ class ChaosLink {
     return probability > 0.0 && Roll(dice) < probability;
   }
   [[nodiscard]] std::int64_t DueUs(std::int64_t now_us);
+  // A packet that was not lost, whole or as a fragment.
+  void Take(std::span<const std::uint8_t> bytes, std::int64_t now_us);
+  void Handle(std::span<const std::uint8_t> bytes, std::int64_t now_us);
   void Send(std::vector<std::uint8_t> packet, std::int64_t now_us, std::int64_t due_us);
+  [[nodiscard]] bool TakeFirst(std::int64_t now_us);
   void Release(Waiting::iterator* held, std::int64_t due_us);
 
   ChaosOptions options_;
@@ -103,6 +115,12 @@ class ChaosLink {
   std::int64_t start_us_;
   ChaosCounts counts_;
   Waiting waiting_;
+  protocol::Reassembler gathered_;
+  // What leaves now, and in how many datagrams, of which so many have left.
+  std::vector<std::uint8_t> leaving_;
+  std::size_t num_datagrams_ = 0;
+  std::size_t num_left_ = 0;
+  std::uint32_t message_id_ = 0;
   // Those that wait for another packet; end(): none does.
   Waiting::iterator to_reorder_ = waiting_.end();
   Waiting::iterator to_swap_ = waiting_.end();

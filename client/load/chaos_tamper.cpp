@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <utility>
 
 #include "protocol/bundle.h"
@@ -26,8 +27,13 @@ std::vector<Bytes> TakeApart(std::span<const std::uint8_t> datagram) {
   return messages;
 }
 
+// A single message may be larger than a datagram.
 bool PutTogether(std::span<const Bytes> messages, Bytes* datagram) {
   Bytes bytes;
+  if (messages.size() == 1) {
+    *datagram = messages.front();
+    return true;
+  }
   if (!protocol::WriteBundle(messages, bytes)) return false;
   *datagram = std::move(bytes);
   return true;
@@ -42,26 +48,52 @@ std::size_t Choose(std::size_t count, double share) {
   return static_cast<std::size_t>(share * static_cast<double>(count));
 }
 
+// By a half, within [0, 1] where it was.
+void FalsifyValue(float* value) { *value += *value < 0.5f ? 0.5f : -0.5f; }
+
 bool FalsifyWeights(const protocol::MessageView& view, double share,
                     std::vector<std::uint8_t>* out) {
   protocol::WeightFrame frame;
   if (protocol::Decode(view, frame) != DecodeStatus::kOk || frame.values.empty()) return false;
-  float& value = frame.values[Choose(frame.values.size(), share)];
-  value += value < 0.5f ? 0.5f : -0.5f;
+  FalsifyValue(&frame.values[Choose(frame.values.size(), share)]);
   protocol::Encoder().Encode(view.header, frame, *out);
   return true;
 }
 
 // Multiplied by a turn about x of 120 degrees: (1/2 + sqrt(3)/2 i).
-bool FalsifyPose(const protocol::MessageView& view, double share, std::vector<std::uint8_t>* out) {
+void FalsifyRotation(protocol::Quat* rotation) {
   constexpr float kCosine = 0.5f;
   constexpr float kSine = 0.86602540378f;
+  const protocol::Quat q = *rotation;
+  *rotation = {kCosine * q.x + kSine * q.w, kCosine * q.y + kSine * q.z,
+               kCosine * q.z - kSine * q.y, kCosine * q.w - kSine * q.x};
+}
+
+// Written as it was, so that nothing else changes: packed where that comes nearer to its size.
+void WritePose(const protocol::MessageView& view, const protocol::PoseFrame& frame, Bytes* out) {
+  Bytes packed;
+  protocol::Encoder encoder;
+  encoder.Encode(view.header, frame, *out);
+  encoder.Encode(view.header, frame, packed, protocol::PoseEncoding::Small());
+  const auto off = [&view](const Bytes& message) {
+    return std::abs(std::ssize(message) - std::ssize(view.payload) -
+                    static_cast<std::ptrdiff_t>(protocol::kEnvelopeBytes));
+  };
+  if (off(packed) < off(*out)) *out = std::move(packed);
+}
+
+bool FalsifyPose(const protocol::MessageView& view, double share, std::vector<std::uint8_t>* out) {
   protocol::PoseFrame frame;
-  if (protocol::Decode(view, frame) != DecodeStatus::kOk || frame.rotations.empty()) return false;
-  protocol::Quat& q = frame.rotations[Choose(frame.rotations.size(), share)];
-  q = {kCosine * q.x + kSine * q.w, kCosine * q.y + kSine * q.z, kCosine * q.z - kSine * q.y,
-       kCosine * q.w - kSine * q.x};
-  protocol::Encoder().Encode(view.header, frame, *out, protocol::PoseEncoding::Small());
+  if (protocol::Decode(view, frame) != DecodeStatus::kOk) return false;
+  const std::size_t joints = frame.rotations.size();
+  if (joints + frame.blend_shapes.size() == 0) return false;
+  const std::size_t chosen = Choose(joints + frame.blend_shapes.size(), share);
+  if (chosen < joints) {
+    FalsifyRotation(&frame.rotations[chosen]);
+  } else {
+    FalsifyValue(&frame.blend_shapes[chosen - joints]);
+  }
+  WritePose(view, frame, out);
   return true;
 }
 

@@ -7,12 +7,15 @@
 
 namespace furrow::load {
 
+// Of these a `datagram` may be larger than one that is sent: a message whose fragments were put
+// together.
+
 // Whether a datagram is a whole Pose or Weights message, or a bundle with one, whose content can be
 // changed so that only the numbers tell.
 [[nodiscard]] bool IsTamperable(std::span<const std::uint8_t> datagram);
 
 // Changes one number of a pose or of weights, chosen by `share` in [0, 1); the message stays valid:
-// a weight moves by a half within [0, 1], a joint turns by a third of a circle. Of a bundle one
+// a weight or a blend shape moves by a half, a joint turns by a third of a circle. Of a bundle one
 // message. False, and nothing is changed, where it is neither or has no number.
 [[nodiscard]] bool Falsify(std::vector<std::uint8_t>* datagram, double share);
 

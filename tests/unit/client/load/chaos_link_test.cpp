@@ -8,6 +8,7 @@
 #include "client/load/chaos_tamper.h"
 #include "protocol/bundle.h"
 #include "protocol/codec.h"
+#include "protocol/fragment.h"
 
 namespace furrow::load {
 namespace {
@@ -34,6 +35,25 @@ std::vector<float> ValuesOf(const Packet& packet, std::uint32_t* sequence) {
   EXPECT_EQ(protocol::Decode(view, frame), protocol::DecodeStatus::kOk);
   *sequence = view.header.sequence;
   return frame.values;
+}
+
+// All joints at rest but one, each other with a rotation of its own.
+protocol::PoseFrame WholeBody(int joints) {
+  protocol::PoseFrame pose{.skeleton_hash = 1, .num_joints = static_cast<std::uint16_t>(joints)};
+  for (int i = 0; i < joints; ++i) {
+    pose.rotation_joints.push_back(static_cast<std::uint16_t>(i));
+    const float turn = 0.02f * static_cast<float>(i);
+    pose.rotations.push_back({0.0f, std::sin(turn), 0.0f, std::cos(turn)});
+  }
+  return pose;
+}
+
+protocol::PoseFrame PoseOf(const Packet& packet) {
+  protocol::MessageView view;
+  protocol::PoseFrame frame;
+  EXPECT_EQ(protocol::OpenMessage(packet, view), protocol::DecodeStatus::kOk);
+  EXPECT_EQ(protocol::Decode(view, frame), protocol::DecodeStatus::kOk);
+  return frame;
 }
 
 // What comes out of `count` packets, one a millisecond, and all that is left a minute later.
@@ -164,19 +184,131 @@ TEST(ChaosLink, SwapsContentsButNotEnvelopes) {
   EXPECT_EQ(link.counts().swapped, 2u);
 }
 
+// A pose of two datagrams.
+std::vector<Packet> Fragments(std::uint32_t sequence, int joints = 100) {
+  Packet message;
+  protocol::Encoder().Encode({.session = 5, .stream = 1, .sequence = sequence}, WholeBody(joints),
+                             message);
+  std::vector<Packet> fragments;
+  for (std::size_t i = 0; i < protocol::NumDatagrams(message.size()); ++i) {
+    Packet& fragment = fragments.emplace_back(protocol::kMaxDatagramBytes);
+    fragment.resize(protocol::WriteDatagram(message, 70 + sequence, i, fragment));
+  }
+  EXPECT_EQ(fragments.size(), 2u);
+  return fragments;
+}
+
+// All that leaves a link now, put together again.
+std::vector<Packet> Leave(ChaosLink& link, std::int64_t now_us) {
+  protocol::Reassembler reassembler;
+  std::vector<Packet> messages;
+  std::span<const std::uint8_t> message;
+  Packet packet;
+  while (link.Pop(now_us, &packet)) {
+    EXPECT_LE(packet.size(), protocol::kMaxDatagramBytes);
+    const auto status = reassembler.Push(0, packet, now_us, message);
+    if (status == protocol::FragmentStatus::kPending) continue;
+    EXPECT_TRUE(status == protocol::FragmentStatus::kWhole ||
+                status == protocol::FragmentStatus::kComplete);
+    messages.emplace_back(message.begin(), message.end());
+  }
+  EXPECT_EQ(reassembler.pending_messages(), 0u);
+  return messages;
+}
+
+int NumTurned(const protocol::PoseFrame& pose) {
+  const protocol::PoseFrame was = WholeBody(pose.num_joints);
+  int turned = 0;
+  for (std::size_t i = 0; i < was.rotations.size(); ++i)
+    turned += pose.rotations[i] == was.rotations[i] ? 0 : 1;
+  return turned;
+}
+
+TEST(ChaosLink, APoseInFragmentsIsFalsifiedToo) {
+  ChaosLink link({.falsify = 1.0}, 0, 0);
+  const auto fragments = Fragments(4);
+  link.Push(fragments[0], 0);
+  EXPECT_TRUE(Leave(link, 0).empty());
+  link.Push(fragments[1], 1);
+  const auto messages = Leave(link, 1);
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(NumTurned(PoseOf(messages[0])), 1);
+  EXPECT_EQ(link.counts().packets, 2u);
+  EXPECT_EQ(link.counts().falsified, 1u);
+}
+
+TEST(ChaosLink, PosesInFragmentsSwapTheirContents) {
+  ChaosLink link({.swap = 1.0}, 0, 0);
+  for (const Packet& fragment : Fragments(1, 100)) link.Push(fragment, 0);
+  EXPECT_TRUE(Leave(link, 0).empty());
+  for (const Packet& fragment : Fragments(2, 110)) link.Push(fragment, 1);
+  const auto messages = Leave(link, 1);
+  ASSERT_EQ(messages.size(), 2u);
+  EXPECT_EQ(PoseOf(messages[0]).num_joints, 110);
+  EXPECT_EQ(PoseOf(messages[1]).num_joints, 100);
+  EXPECT_EQ(link.counts().swapped, 2u);
+}
+
+TEST(ChaosLink, WhatLostAFragmentGoesNoFurtherAndKeepsNobody) {
+  ChaosLink link({.falsify = 1e-9}, 0, 0);
+  for (std::uint32_t i = 0; i < 20; ++i) link.Push(Fragments(i)[0], 0);
+  for (const Packet& fragment : Fragments(20)) link.Push(fragment, 1);
+  const auto messages = Leave(link, 60'000'000);
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(NumTurned(PoseOf(messages[0])), 0);
+}
+
+TEST(ChaosLink, FragmentsPassAsTheyComeWhereNoContentIsChanged) {
+  ChaosLink link({.duplicate = 1e-9}, 0, 0);
+  const auto fragments = Fragments(1);
+  Packet packet;
+  for (const Packet& fragment : fragments) {
+    link.Push(fragment, 0);
+    ASSERT_TRUE(link.Pop(0, &packet));
+    EXPECT_EQ(packet, fragment);
+  }
+}
+
+TEST(ChaosLink, WhatIsNoMessagePassesUncutHoweverLarge) {
+  ChaosLink link({.falsify = 1.0, .swap = 1.0}, 0, 0);
+  const Packet large(5000, 7);
+  link.Push(large, 0);
+  Packet packet;
+  ASSERT_TRUE(link.Pop(0, &packet));
+  EXPECT_EQ(packet, large);
+}
+
 TEST(ChaosTamper, APoseTurnsAJointAndStaysAPose) {
   protocol::PoseFrame pose{.skeleton_hash = 1, .num_joints = 2, .rotation_joints = {0, 1}};
   pose.rotations = {{0, 0, 0, 1}, {0, 0, 0, 1}};
   Packet packet;
   protocol::Encoder().Encode({.session = 5}, pose, packet);
   ASSERT_TRUE(Falsify(&packet, 0.99));
-  protocol::MessageView view;
-  protocol::PoseFrame decoded;
-  ASSERT_EQ(protocol::OpenMessage(packet, view), protocol::DecodeStatus::kOk);
-  ASSERT_EQ(protocol::Decode(view, decoded), protocol::DecodeStatus::kOk);
+  const protocol::PoseFrame decoded = PoseOf(packet);
   EXPECT_NEAR(decoded.rotations[0].w, 1.0f, 1e-4f);
   EXPECT_NEAR(decoded.rotations[1].w, 0.5f, 1e-4f);
   EXPECT_NEAR(std::abs(decoded.rotations[1].x), 0.8660254f, 1e-4f);
+}
+
+TEST(ChaosTamper, AFaceWithoutJointsHasABlendShapeFalsified) {
+  protocol::PoseFrame face{.skeleton_hash = 1, .num_blend_shapes = 2};
+  face.blend_shape_indices = {0, 1};
+  face.blend_shapes = {0.25f, 0.75f};
+  Packet packet;
+  protocol::Encoder().Encode({.session = 5}, face, packet);
+  ASSERT_TRUE(Falsify(&packet, 0.5));
+  EXPECT_EQ(PoseOf(packet).blend_shapes, (std::vector<float>{0.25f, 0.25f}));
+}
+
+TEST(ChaosTamper, APoseStaysAsPackedAsItWas) {
+  const protocol::PoseFrame pose = WholeBody(60);
+  for (const auto& encoding : {protocol::PoseEncoding{}, protocol::PoseEncoding::Small()}) {
+    Packet packet;
+    protocol::Encoder().Encode({.session = 5}, pose, packet, encoding);
+    const std::size_t size = packet.size();
+    ASSERT_TRUE(Falsify(&packet, 0.5));
+    EXPECT_EQ(packet.size(), size);
+  }
 }
 
 TEST(ChaosTamper, NothingElseIsTouched) {
