@@ -49,9 +49,10 @@ int RunChaos(const ChaosCommand& command) {
   std::printf("\n");
   std::fflush(stdout);
   (*proxy)->Run([] { return !Interrupted(); });
-  std::printf("%s\n%s\n",
-              Describe("up", (*proxy)->up_counts(), (*proxy)->up_stream_counts()).c_str(),
-              Describe("down", (*proxy)->down_counts(), (*proxy)->down_stream_counts()).c_str());
+  const load::ChaosOutcome up = (*proxy)->up();
+  const load::ChaosOutcome down = (*proxy)->down();
+  std::printf("%s\n%s\n%s", ToText("up", up).c_str(), ToText("down", down).c_str(),
+              NothingPlanted(up, down).c_str());
   return kDone;
 }
 

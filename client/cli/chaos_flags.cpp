@@ -55,22 +55,4 @@ void ReadChaosFlags(const ChaosFlags& flags, load::ChaosOptions* up, load::Chaos
   *down = flags.way == ChaosWay::kUp ? load::ChaosOptions{} : options;
 }
 
-std::string Describe(const std::string& way, const load::ChaosCounts& counts,
-                     const load::ChaosStreamCounts& stream_counts) {
-  std::string text = way + ": " + std::to_string(counts.packets) + " datagrams";
-  const std::pair<const char*, std::uint64_t> done[] = {
-      {"lost", counts.lost},           {"swallowed", counts.swallowed},
-      {"reordered", counts.reordered}, {"duplicated", counts.duplicated},
-      {"delayed", counts.delayed},     {"falsified", counts.falsified},
-      {"swapped", counts.swapped}};
-  for (const auto& [what, count] : done) {
-    if (count > 0) text += ", " + std::string(what) + " " + std::to_string(count);
-  }
-  if (stream_counts.connections == 0) return text;
-  return text + "\n" + way + " over TCP: " + std::to_string(stream_counts.connections) +
-         " connections, " + std::to_string(stream_counts.bytes) + " bytes, held back " +
-         std::to_string(stream_counts.held) + " times, stood still for " +
-         std::to_string(stream_counts.still_us / 1000) + " ms";
-}
-
 }  // namespace furrow::cli

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <atomic>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <sstream>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -17,8 +15,9 @@
 #include "client/cli/interrupt.h"
 #include "client/cli/load_flags.h"
 #include "client/cli/load_input.h"
+#include "client/cli/own_chaos.h"
 #include "client/cli/progress.h"
-#include "client/load/chaos_proxy.h"
+#include "client/load/chaos_report.h"
 #include "client/load/comparison_report.h"
 #include "client/load/descriptor_limit.h"
 #include "client/load/echo.h"
@@ -60,45 +59,6 @@ bool MakeTarget(const LoadFlags& flags, Target* target) {
   return true;
 }
 
-// A proxy between this program and the daemon, on a thread of its own while it lives.
-class OwnChaos {
- public:
-  // Turns `target` to the proxy where the flags ask for chaos.
-  Status Start(const ChaosFlags& flags, Target* target) {
-    load::ChaosProxyOptions options{.to_host = target->host,
-                                    .to_udp = target->udp,
-                                    .to_tcp = target->tcp,
-                                    .up = {},
-                                    .down = {}};
-    ReadChaosFlags(flags, &options.up, &options.down);
-    if (!options.up.any() && !options.down.any()) return {};
-    auto proxy = load::ChaosProxy::Open(options);
-    if (!proxy.ok()) return proxy.status();
-    proxy_ = *std::move(proxy);
-    target->host = options.listen_host;
-    target->udp = proxy_->udp_port();
-    target->tcp = proxy_->tcp_port();
-    thread_ = std::thread([this] { proxy_->Run([this] { return !ended_.load(); }); });
-    return {};
-  }
-  ~OwnChaos() { (void)End(); }
-
-  // What was done; empty without chaos.
-  std::string End() {
-    ended_.store(true);
-    if (!thread_.joinable()) return {};
-    thread_.join();
-    return "Planted, " + Describe("up", proxy_->up_counts(), proxy_->up_stream_counts()) +
-           "\nPlanted, " + Describe("down", proxy_->down_counts(), proxy_->down_stream_counts()) +
-           "\n";
-  }
-
- private:
-  std::unique_ptr<load::ChaosProxy> proxy_;
-  std::atomic<bool> ended_{false};
-  std::thread thread_;
-};
-
 // One line that is written over, on a terminal alone.
 void ShowLive(const std::string& line) {
   if (isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "\r\033[K%s", line.c_str());
@@ -115,7 +75,7 @@ Status WriteText(const std::string& path, const std::string& text) {
 struct Findings {
   std::optional<load::Comparison> comparison;
   std::optional<load::RunResult> run;
-  std::string planted;  // by chaos of our own
+  std::optional<Planted> planted;  // by chaos of our own
 
   [[nodiscard]] bool any() const { return comparison || run; }
 };
@@ -124,7 +84,10 @@ std::string ToText(const LoadFlags& flags, const Findings& findings) {
   std::string text;
   if (findings.comparison) text += load::ToText(*findings.comparison) + "\n";
   if (findings.run) text += load::ToText(*findings.run, flags.run);
-  return text + findings.planted;
+  if (!findings.planted) return text;
+  const auto& [up, down] = *findings.planted;
+  return text + load::ToText("Planted, up", up) + "\n" + load::ToText("Planted, down", down) +
+         "\n" + load::NothingPlanted(up, down);
 }
 
 Status WriteOutputs(const LoadFlags& flags, const Findings& findings) {
@@ -150,13 +113,8 @@ int Print(const std::string& text) {
 
 // Before anything is measured: what would make it useless in the end.
 int CheckFlags(const LoadFlags& flags) {
-  load::ChaosOptions up;
-  load::ChaosOptions down;
-  ReadChaosFlags(flags.chaos, &up, &down);
-  if ((flags.find_max || flags.baseline) && (up.any() || down.any())) {
-    std::fprintf(stderr,
-                 "furrow: --find-max and --baseline measure a network in peace: leave out --loss "
-                 "and the like, or load once more with them alone\n");
+  if (const std::string wrong = WrongUsage(flags); !wrong.empty()) {
+    std::fprintf(stderr, "furrow: %s\n", wrong.c_str());
     return kUsage;
   }
   for (const std::string& path : {flags.json, flags.hgrm, flags.plot}) {
@@ -168,8 +126,11 @@ int CheckFlags(const LoadFlags& flags) {
 
 Status RunOnce(const LoadFlags& flags, const load::Performance& performance, Target target,
                Findings* findings) {
+  load::ChaosOptions up;
+  load::ChaosOptions down;
+  ReadChaosFlags(flags.chaos, &up, &down);
   OwnChaos chaos;
-  if (Status status = chaos.Start(flags.chaos, &target); !status.ok()) return status;
+  if (Status status = chaos.Start(up, down, &target); !status.ok()) return status;
   Progress progress("solving", 1000);
   Progress settling("replaying", 1000);
   const load::RunHooks hooks{

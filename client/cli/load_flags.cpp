@@ -2,6 +2,8 @@
 #include "client/cli/load_flags.h"
 
 #include "client/cli/command.h"
+#include "client/load/chaos_report.h"
+#include "client/load/process_usage.h"
 
 namespace furrow::cli {
 namespace {
@@ -117,6 +119,28 @@ void AddLoadFlags(CLI::App& command, LoadFlags& flags) {
   AddWho(command, flags);
   AddHow(command, flags);
   AddChaosFlags(command, flags.chaos);
+}
+
+std::string WrongUsage(const LoadFlags& flags) {
+  load::ChaosOptions up;
+  load::ChaosOptions down;
+  ReadChaosFlags(flags.chaos, &up, &down);
+  if ((flags.find_max || flags.baseline) && (up.any() || down.any())) {
+    return "--find-max and --baseline measure a network in peace: leave out --loss and the like, "
+           "or "
+           "load once more with them alone";
+  }
+  if (const std::string faults = load::DatagramFaults(flags.chaos.options);
+      flags.tcp && !faults.empty()) {
+    return faults +
+           ": this befalls datagrams, and --tcp sends none; leave out --tcp or take --both, or "
+           "plant --jitter and --black-hole, which TCP knows, too";
+  }
+  if (flags.pid != 0 && !load::ReadUsage(flags.pid)) {
+    return "--pid " + std::to_string(flags.pid) +
+           ": there is no such process on this machine; leave it out where the daemon is elsewhere";
+  }
+  return {};
 }
 
 }  // namespace furrow::cli

@@ -39,4 +39,7 @@ struct LoadFlags {
 
 void AddLoadFlags(CLI::App& command, LoadFlags& flags);
 
+// What is wrong with options that are each right, and what to do; empty: nothing.
+[[nodiscard]] std::string WrongUsage(const LoadFlags& flags);
+
 }  // namespace furrow::cli

@@ -11,6 +11,7 @@
 #include <sys/socket.h>
 
 #include "client/load/chaos_link.h"
+#include "client/load/chaos_report.h"
 #include "client/load/chaos_stream.h"
 #include "client/load/poller.h"
 #include "client/load/socket.h"
@@ -44,12 +45,11 @@ class ChaosProxy {
   // Forwards until `go_on` says false, which is asked several times a second.
   void Run(const std::function<bool()>& go_on);
 
-  // Of all links, by direction, once Run() has ended.
-  [[nodiscard]] const ChaosCounts& up_counts() const { return up_counts_; }
-  [[nodiscard]] const ChaosCounts& down_counts() const { return down_counts_; }
-  // The same of all TCP connections.
-  [[nodiscard]] const ChaosStreamCounts& up_stream_counts() const { return up_stream_counts_; }
-  [[nodiscard]] const ChaosStreamCounts& down_stream_counts() const { return down_stream_counts_; }
+  // Of all links and TCP connections, by direction, once Run() has ended.
+  [[nodiscard]] ChaosOutcome up() const { return {options_.up, up_counts_, up_stream_counts_}; }
+  [[nodiscard]] ChaosOutcome down() const {
+    return {options_.down, down_counts_, down_stream_counts_};
+  }
 
  private:
   struct Flow;  // the datagrams of one client

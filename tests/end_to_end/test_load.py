@@ -109,6 +109,12 @@ class LoadTest(unittest.TestCase):
             self.assertGreater(chaos.planted["up"]["falsified"], 0)
             self.assertGreater(run["falsified"], 0, text)
 
+    def test_faults_that_befell_nothing_are_said(self):
+        with Daemon("--no-render") as daemon:
+            _, text = self.load(daemon.udp, "--subjects", "2", "--rate", "50", "--duration", "0.2", "--loss", "1e-9",
+                                "--black-hole", "3600:1", "--other-port", daemon.ports["tcp"])
+        self.assertIn("Nothing was planted of --loss, --black-hole", text)
+
     def test_own_chaos_loses_and_no_weight_is_called_wrong_for_it(self):
         with Daemon("--no-render") as daemon:
             run, text = self.load(daemon.udp, "--subjects", "10", "--rate", "50", "--duration", "2", "--quantise",
@@ -292,6 +298,8 @@ class LoadTest(unittest.TestCase):
                 (("load", "localhost", PERFORMANCE, "--find-max", "--loss", "0.1"), 2, "in peace"),
                 (("load", "localhost", PERFORMANCE, "--baseline", "--jitter", "3"), 2, "in peace"),
                 (("load", "localhost", PERFORMANCE, "--black-hole", "1"), 2, "START:LENGTH"),
+                (("load", "localhost", PERFORMANCE, "--tcp", "--falsify", "0.2"), 2, "leave out --tcp"),
+                (("load", "localhost", PERFORMANCE, "--pid", "2147483647"), 2, "no such process"),
                 (("chaos", "--listen", "0", "--to", "localhost", "--black-hole", "x"), 2, "START:LENGTH"),
                 (("chaos", "--listen", "0", "--bind", "somewhere", "--to", "localhost"), 2, "numeric"),
                 (("chaos", "--listen", "0", "--to", "no-such-host.invalid"), 4, "no connection")):
