@@ -86,6 +86,10 @@ EGLContext CreateCoreContext(EGLDisplay display, bool reset_notification) {
 }
 
 Result<EGLDisplay> OpenDisplay(const Candidate& candidate) {
+  // Calling what no driver provides would end the program.
+  if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base")) {
+    return Status(StatusCode::kUnavailable, "no EGL driver is installed");
+  }
   // No display attributes: the platform and the device say it all.
   const EGLDisplay display =
       eglGetPlatformDisplayEXT(candidate.platform, candidate.native, nullptr);
