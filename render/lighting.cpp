@@ -16,7 +16,9 @@ class Placer {
       : stage_(stage), intensity_(settings.intensity) {
     const glm::mat4 turn = glm::rotate(glm::mat4(1.0f), glm::radians(settings.turn_degrees),
                                        glm::vec3(0.0f, 1.0f, 0.0f));
-    frame_ = stage.heading * glm::mat3(turn);
+    const glm::mat4 tilt =
+        glm::rotate(turn, -glm::radians(settings.tilt_degrees), glm::vec3(1.0f, 0.0f, 0.0f));
+    frame_ = stage.heading * glm::mat3(tilt);
   }
 
   [[nodiscard]] glm::vec3 Direction(const glm::vec3& towards) const {
@@ -75,8 +77,11 @@ Lighting MakeLighting(const LightSettings& settings, const Stage& stage) {
       break;
   }
   for (glm::vec3* colour : {&lighting.sky.zenith, &lighting.sky.horizon, &lighting.sky.ground}) {
-    *colour *= settings.ambient;
+    *colour *= settings.ambient * settings.sky;
   }
+  const glm::vec3 filters[] = {settings.key, settings.fill, settings.rim};
+  for (std::size_t i = 0; i < lighting.lights.size(); ++i)
+    lighting.lights[i].radiance *= filters[i];
   return lighting;
 }
 

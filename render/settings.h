@@ -57,6 +57,13 @@ struct LightSettings {
   float intensity = 1.0f;     // of the lamps, [0, 8]
   float ambient = 1.0f;       // of the sky, [0, 8]
   float turn_degrees = 0.0f;  // the lamps about the subject, [-180, 180]
+  float tilt_degrees = 0.0f;  // ... and those in front of it upwards, [-90, 90]
+  // What the lamps, in their order, and the sky are filtered by: linear red, green and blue, [0,
+  // 1].
+  glm::vec3 key{1.0f};
+  glm::vec3 fill{1.0f};
+  glm::vec3 rim{1.0f};
+  glm::vec3 sky{1.0f};
 };
 
 struct ShadowSettings {
