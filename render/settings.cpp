@@ -198,7 +198,7 @@ struct Checker {
   }
 };
 
-// The settings of the same table, or whose last part is the same; else all tables.
+// The settings of the same table, or whose last part is the same; else the tables.
 std::string Near(std::string_view name) {
   const std::string_view table = name.substr(0, std::min(name.find('.'), name.size()));
   const std::string_view last = name.substr(name.rfind('.') + 1);
@@ -210,10 +210,15 @@ std::string Near(std::string_view name) {
     }
   }
   if (!near.empty()) return "there are " + near;
+  std::string_view listed;
   for (const SettingEntry& entry : SettingTable()) {
-    near += (near.empty() ? "" : ", ") + std::string(entry.name);
+    const std::size_t dot = entry.name.find('.');
+    const std::string_view one = entry.name.substr(0, dot);
+    if (one == listed) continue;
+    near += (near.empty() ? "" : ", ") + std::string(one) + (dot < entry.name.size() ? ".*" : "");
+    listed = one;
   }
-  return "one of " + near;
+  return "there are " + near + "; 'furrow render --print-settings' prints all";
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include "client/cli/file_output.h"
 #include "client/cli/listen.h"
 #include "render/renderer.h"
+#include "render/settings.h"
 
 namespace furrow::cli {
 namespace {
@@ -99,10 +101,8 @@ void AddFrames(CLI::App& app, Action& action) {
   command->add_option("--quality", options->quality, "JPEG quality")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  command
-      ->add_option("--view", options->request.view,
-                   "final, normal, mask_dynamic, mask_texture, weights, wireframe")
-      ->capture_default_str();
+  const auto& view = *std::ranges::find(render::AllSettings(), "view", &render::SettingInfo::name);
+  command->add_option("--view", options->request.view, view.allowed)->capture_default_str();
   command->add_option("--camera", options->request.camera_preset, render::ListCameraPresets());
   command->callback([options, &action] { action = [options] { return Frames(*options); }; });
 }

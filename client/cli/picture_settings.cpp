@@ -3,12 +3,23 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string>
+#include <utility>
 
 namespace furrow::cli {
 namespace {
 
 const render::SettingInfo& InfoOf(const std::string& name) {
   return *std::ranges::find(render::AllSettings(), name, &render::SettingInfo::name);
+}
+
+CLI::Validator SettingValidator(std::string prefix) {
+  return {[prefix = std::move(prefix)](std::string& value) {
+            render::Settings unused;
+            const Status status = render::SetSetting(prefix + value, &unused);
+            return status.ok() ? std::string() : status.ToString();
+          },
+          ""};
 }
 
 // An option that sets one setting; its help and what it may be come from the setting itself.
@@ -22,14 +33,15 @@ void AddShorthand(CLI::App& command, const std::string& option, const std::strin
             options->shorthands.push_back(setting + "=" + value);
           },
           std::string(info.help) + ": " + info.allowed + " (default " + info.default_value + ")")
-      ->check(CLI::Validator(
-          [setting](std::string& value) {
-            render::Settings unused;
-            const Status status = render::SetSetting(setting, value, &unused);
-            return status.ok() ? std::string() : status.ToString();
-          },
-          ""))
+      ->check(SettingValidator(setting + "="))
       ->type_name("");
+}
+
+// Pictures that are kept may take their time on any device.
+render::Settings Defaults() {
+  render::Settings settings;
+  settings.anti_aliasing.samples = 4;
+  return settings;
 }
 
 }  // namespace
@@ -42,20 +54,21 @@ void AddPictureOptions(CLI::App& command, PictureOptions* options) {
   AddShorthand(command, "--normal-blend", "normal_blend", options);
   command.add_option("--settings", options->files,
                      "TOML files of settings, as --print-settings writes them");
-  command.add_option("--set", options->set,
-                     "NAME=VALUE, any setting: subsurface.method=burley; see --print-settings");
+  command
+      .add_option("--set", options->set,
+                  "NAME=VALUE, any setting: subsurface.method=burley; see --print-settings")
+      ->check(SettingValidator(""));
   command.add_flag_callback(
       "--print-settings",
       [] {
-        std::fputs(render::SettingsToToml(render::Settings()).c_str(), stdout);
+        std::fputs(render::SettingsToToml(Defaults()).c_str(), stdout);
         throw CLI::Success();
       },
       "Print all settings as TOML, with their ranges and units, and end");
 }
 
 Result<render::Settings> SettingsOf(const PictureOptions& options) {
-  render::Settings settings;
-  settings.anti_aliasing.samples = 4;  // pictures that are kept may take their time on any device
+  render::Settings settings = Defaults();
   for (const std::string& file : options.files) {
     if (Status status = render::LoadSettings(file, &settings); !status.ok()) return status;
   }

@@ -264,7 +264,11 @@ void AddRender(CLI::App& app, Action& action) {
   command->add_option("--size", options->size, "WxH in pixels, 16 to 4096")
       ->check(SizeValidator())
       ->capture_default_str();
+  const auto names = render::CameraPresetNames();
+  const std::vector<std::string> cameras(names.begin(), names.end());
   command->add_option("--camera", options->camera, render::ListCameraPresets())
+      ->check(CLI::IsMember(cameras))
+      ->type_name("")
       ->capture_default_str();
   command->add_option("--format", options->format, "png or jpeg")
       ->check(CLI::IsMember({"png", "jpeg"}))
