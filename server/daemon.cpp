@@ -123,12 +123,7 @@ Status Daemon::StartRendering() {
 
 Status Daemon::StartRecording() {
   const RecordConfig& record = config_.record;
-  if (record.folder.empty()) {
-    if (record.rotate_megabytes > 0.0 || record.rotate_seconds > 0.0) {
-      spdlog::warn("nothing is recorded: record.rotate_* is of --record DIR");
-    }
-    return {};
-  }
+  if (record.folder.empty()) return {};
   RecorderOptions options;
   options.folder = {.folder = record.folder,
                     .rotate_bytes = static_cast<std::uint64_t>(record.rotate_megabytes * 1e6),
