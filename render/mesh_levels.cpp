@@ -189,7 +189,8 @@ void Simplifier::HoldBorders() {
     for (int i = 0; i < 3; ++i) {
       const Index a = triangle[i];
       const Index b = triangle[(i + 1) % 3];
-      const auto count = std::ranges::equal_range(edges, EdgeOf(a, b)).size();
+      const auto [first, last] = std::equal_range(edges.begin(), edges.end(), EdgeOf(a, b));
+      const auto count = last - first;
       const bool is_border = count == 1;
       if (count > 2 || (is_border && borders_ == Borders::kStay)) {
         is_locked_[a] = is_locked_[b] = true;
