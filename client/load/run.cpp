@@ -60,10 +60,17 @@ int NumSockets(const Performance& performance, const Plan& plan, Path path) {
 // Says where nobody answered, and what that may be for.
 Status Located(const Status& status, const Target& target, Path path) {
   if (status.code() != StatusCode::kUnavailable || !status.where().empty()) return status;
-  const std::uint16_t port = path == Path::kTcp ? target.tcp : target.udp;
-  const std::string address = target.host + ":" + std::to_string(port);
-  const bool is_named = status.what().find(address) != std::string::npos;
-  return {status.code(), status.what(), is_named ? "" : address, "is furrowd running there?"};
+  const auto names = [&status](const std::string& address) {
+    return status.what().find(address) != std::string::npos;
+  };
+  const std::string tcp = target.host + ":" + std::to_string(target.tcp);
+  if (path != Path::kTcp && names(tcp + " over TCP")) {
+    return {status.code(), status.what(), "",
+            "--other-port says on which port furrowd listens to TCP"};
+  }
+  const std::string udp = target.host + ":" + std::to_string(target.udp);
+  const std::string& address = path == Path::kTcp ? tcp : udp;
+  return {status.code(), status.what(), names(address) ? "" : address, "is furrowd running there?"};
 }
 
 // One run that is under way.
