@@ -71,10 +71,14 @@ void AddChaos(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("--to", options->to, "HOST, HOST:PORT or [IPV6]:PORT of furrowd's UDP")
       ->required();
-  command->add_option(
+  auto* to_tcp = command->add_option(
       "--to-tcp", options->to_tcp,
-      "furrowd's TCP port; a port for clients is opened for it, too (any free one). "
-      "Of all below, TCP knows jitter and black holes");
+      "furrowd's TCP port: opens one for clients, too. Of all below, TCP knows jitter and black "
+      "holes");
+  command
+      ->add_option("--listen-tcp", options->proxy.listen_tcp_port,
+                   "TCP port for clients; default: any free one, said like UDP's")
+      ->needs(to_tcp);
   AddChaosFlags(*command, options->flags);
   command->callback([options, &action] { action = [options] { return RunChaos(*options); }; });
 }

@@ -42,12 +42,13 @@ bool ParseAddress(const std::string& host, std::uint16_t port, sockaddr_storage*
   return true;
 }
 
-// A bound socket and its port.
-Status Bind(const ChaosProxyOptions& options, int type, Descriptor* bound, std::uint16_t* port) {
+// A socket bound to `port` (0: any free one) of `host`, and its port.
+Status Bind(const std::string& host, int type, Descriptor* bound, std::uint16_t* port) {
   sockaddr_storage address;
   socklen_t size = 0;
-  const std::string where = options.listen_host + ":" + std::to_string(options.listen_port);
-  if (!ParseAddress(options.listen_host, options.listen_port, &address, &size))
+  const std::string where =
+      host + ":" + std::to_string(*port) + (type == SOCK_STREAM ? " (TCP)" : " (UDP)");
+  if (!ParseAddress(host, *port, &address, &size))
     return {StatusCode::kInvalidArgument, "not a numeric address", where};
   Descriptor made(socket(address.ss_family, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int on = 1;
@@ -92,13 +93,16 @@ Result<std::unique_ptr<ChaosProxy>> ChaosProxy::Open(const ChaosProxyOptions& op
 }
 
 Status ChaosProxy::Listen() {
-  if (Status status = Bind(options_, SOCK_DGRAM, &udp_, &udp_port_); !status.ok()) return status;
+  const std::string& host = options_.listen_host;
+  udp_port_ = options_.listen_port;
+  if (Status status = Bind(host, SOCK_DGRAM, &udp_, &udp_port_); !status.ok()) return status;
   const int bytes = 4 << 20;
   setsockopt(udp_.get(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof(bytes));
   setsockopt(udp_.get(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof(bytes));
   poller_.Add(udp_.get(), kClients);
   if (options_.to_tcp == 0) return {};
-  if (Status status = Bind(options_, SOCK_STREAM, &tcp_, &tcp_port_); !status.ok()) return status;
+  tcp_port_ = options_.listen_tcp_port;
+  if (Status status = Bind(host, SOCK_STREAM, &tcp_, &tcp_port_); !status.ok()) return status;
   poller_.Add(tcp_.get(), kListener);
   return {};
 }

@@ -21,7 +21,8 @@ namespace furrow::load {
 
 struct ChaosProxyOptions {
   std::string listen_host = "127.0.0.1";  // numeric
-  std::uint16_t listen_port = 0;          // 0: any free one
+  std::uint16_t listen_port = 0;          // UDP's; 0: any free one
+  std::uint16_t listen_tcp_port = 0;      // 0: any free one
   std::string to_host;
   std::uint16_t to_udp = 0;
   std::uint16_t to_tcp = 0;  // 0: datagrams alone

@@ -5,6 +5,7 @@ import json
 import pathlib
 import re
 import signal
+import socket
 import tempfile
 import unittest
 import xml.etree.ElementTree
@@ -20,7 +21,8 @@ class Chaos:
     """A `furrow chaos` before a daemon for the length of a with-block; `planted` is what it says that it did."""
 
     def __init__(self, daemon, *args):
-        self.args = ["chaos", "--listen", "0", "--to", daemon.udp, "--to-tcp", str(daemon.ports["tcp"]), *args]
+        listen = [] if "--listen" in args else ["--listen", "0"]
+        self.args = ["chaos", *listen, "--to", daemon.udp, "--to-tcp", str(daemon.ports["tcp"]), *map(str, args)]
 
     def __enter__(self):
         self.process = spawn(*self.args)
@@ -284,6 +286,30 @@ class LoadTest(unittest.TestCase):
                     words += ["--rounds", "1", "--searches", "1", "--probe", "0.1", "--limit", "4000"]
                 furrow(*words, *quick, "--other-port", daemon.ports["tcp"], check=0)
         self.assertEqual(seen, {"load", "chaos"})
+
+    def test_chaos_listens_to_tcp_on_any_free_port_or_the_one_it_is_told(self):
+        with Daemon("--no-render") as daemon, socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            port = taken.getsockname()[1]
+            with Chaos(daemon, "--listen", port) as chaos:
+                self.assertEqual(chaos.ports["udp"], port)
+                self.assertNotEqual(chaos.ports["tcp"], port)
+                free = chaos.ports["tcp"]
+            with Chaos(daemon, "--listen-tcp", free) as chaos:
+                self.assertEqual(chaos.ports["tcp"], free)
+            result = furrow("chaos", "--listen", "0", "--to", daemon.udp, "--to-tcp", daemon.ports["tcp"],
+                            "--listen-tcp", port, check=1)
+            self.assertIn(f"127.0.0.1:{port} (TCP): cannot listen", result.stderr.decode())
+
+    def test_tcp_that_is_not_found_beside_udp_is_called_by_its_port(self):
+        with Daemon("--no-render") as daemon:
+            for burden in (["--stalled", "2"], ["--both", "--subjects", "2"]):
+                # Nobody listens to TCP where UDP does.
+                result = furrow("load", daemon.udp, PERFORMANCE, *burden, "--other-port", daemon.ports["udp"], check=4)
+                said = result.stderr.decode()
+                self.assertIn(f"furrow: no connection to 127.0.0.1:{daemon.ports['udp']} over TCP", said)
+                self.assertIn("--other-port", said)
 
     def test_what_cannot_be_done_is_said(self):
         with Daemon("--no-render") as daemon:
