@@ -23,11 +23,11 @@ inline constexpr int kMaxSeparableTaps = 41;
 // The separable kernel (after Jimenez et al. 2015) for pixels of 1 / `pixels_per_mm` mm.
 //
 // Along its axis, what a kernel makes of a straight edge is a staircase, a step at each tap. Taps
-// and weights are those of the staircase that comes nearest to the profile's StepResponse(), in
-// squares over all pixels and channels, which count for more the further they are from the edge: no
-// other ones on whole pixels come nearer. Across the axis a tap stands aside by a fifth of the way
-// from the one before, so that an edge meets 121 different distances with 11 taps and not 11: the
-// other axis' pass smooths the steps of this one.
+// and weights are those of the staircase that comes nearest to the profile's StepResponse(): no
+// other ones on whole pixels come nearer, in squares over all pixels and channels, each of which
+// counts for 1 + 2 x, x millimetres from the edge. Across the axis a tap stands aside by a fifth of
+// the way from the one before, so that an edge meets 121 different distances with 11 taps and not
+// 11: the other axis' pass smooths the steps of this one.
 //
 // A flat field stays flat. Where pixels are wide the kernel gets short, down to a single tap; where
 // all pixels within reach have taps it is exact, and straight. `taps`, of both sides and the pixel:
