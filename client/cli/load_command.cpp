@@ -15,6 +15,7 @@
 #include "client/cli/interrupt.h"
 #include "client/cli/load_flags.h"
 #include "client/cli/load_input.h"
+#include "client/cli/load_settings.h"
 #include "client/cli/own_chaos.h"
 #include "client/cli/progress.h"
 #include "client/load/chaos_report.h"
@@ -91,9 +92,13 @@ std::string ToText(const LoadFlags& flags, const Findings& findings) {
 }
 
 Status WriteOutputs(const LoadFlags& flags, const Findings& findings) {
-  nlohmann::json json;
+  nlohmann::json json{{"settings", SettingsOf(flags)}};
   if (findings.comparison) json["comparison"] = load::ToJson(*findings.comparison);
   if (findings.run) json["run"] = load::ToJson(*findings.run);
+  if (findings.planted) {
+    json["planted"] = {{"up", load::ToJson(findings.planted->up)},
+                       {"down", load::ToJson(findings.planted->down)}};
+  }
   const load::RunResult run = findings.run.value_or(load::RunResult{});
   std::ostringstream hgrm;
   run.latency_ns.WriteHgrm(hgrm, 1e6);

@@ -126,6 +126,17 @@ class LoadTest(unittest.TestCase):
         self.assertGreater(run["duplicates"], 0, text)
         self.assertEqual(run["wrong"], 0, text)
         self.assertIn("Planted, up:", text)
+        # The report stands alone: what was asked for, and what was done.
+        written = json.loads((self.folder / "figures.json").read_text())
+        settings, planted = written["settings"], written["planted"]
+        self.assertEqual(settings["file"], str(PERFORMANCE))
+        self.assertEqual([settings[key] for key in ("path", "subjects", "rate", "subscribers", "quantise")],
+                         ["udp", 10, 50.0, 1, True])
+        for way in ("up", "down"):
+            self.assertEqual(settings["chaos"][way]["seed"], 5)
+            self.assertEqual(settings["chaos"][way]["loss"], 0.05)
+            said = re.search(rf"Planted, {way}: (\d+) datagrams, lost (\d+)", text)
+            self.assertEqual([planted[way]["datagrams"], planted[way]["lost"]], [int(n) for n in said.groups()])
 
     def test_stalled_slow_and_churning_subscribers_cost_nobody_a_weight(self):
         with Daemon("--no-render") as daemon:
