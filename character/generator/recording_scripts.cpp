@@ -12,7 +12,7 @@ Script Happiness() {
                {"cheek_raise", 1.3f, 0.6f, 7.0f, 0.9f, 0.9f},
                {"lid_raise", 1.4f, 0.5f, 6.9f, 0.8f, 0.2f},
                {"upper_lip_raise", 1.4f, 0.6f, 6.6f, 0.8f, 0.4f},
-               {"jaw_open", 1.5f, 0.7f, 6.2f, 1.0f, 0.20f},
+               {"jaw_open", 1.5f, 0.7f, 6.2f, 1.0f, 0.11f},
                {"brow_raise_outer", 1.9f, 0.5f, 4.6f, 0.8f, 0.35f}};
   s.head = {{1.3f, 0.7f, 7.0f, 1.2f, -4.0f, 2.0f, -5.0f},
             {3.1f, 0.3f, 3.5f, 0.5f, 4.0f, 0.0f, 0.0f}};
@@ -50,12 +50,12 @@ Script Disgust() {
   Script s{"disgust"};
   s.actions = {{"nose_wrinkle", 1.1f, 0.4f, 6.9f, 1.0f, 1.0f},
                // One side more than the other.
-               {"upper_lip_raise_l", 1.2f, 0.45f, 6.8f, 1.0f, 1.0f},
-               {"upper_lip_raise_r", 1.2f, 0.45f, 6.8f, 1.0f, 0.6f},
+               {"upper_lip_raise_l", 1.2f, 0.45f, 6.8f, 1.0f, 0.85f},
+               {"upper_lip_raise_r", 1.2f, 0.45f, 6.8f, 1.0f, 0.5f},
                {"brow_lower", 1.25f, 0.45f, 6.6f, 0.9f, 0.35f},
                {"lid_tighten", 1.4f, 0.5f, 6.6f, 0.9f, 0.75f},
                {"cheek_raise", 1.4f, 0.5f, 6.6f, 0.9f, 0.5f},
-               {"lip_corner_down", 1.7f, 0.5f, 6.8f, 1.0f, 0.5f},
+               {"lip_corner_down", 1.7f, 0.5f, 6.8f, 1.0f, 0.35f},
                {"chin_raise", 2.0f, 0.5f, 6.2f, 0.9f, 0.6f},
                {"look_left", 2.4f, 0.5f, 6.4f, 0.5f, 0.3f}};  // back at what it turns from
   s.head = {{1.3f, 0.5f, 6.7f, 1.0f, -6.0f, -12.0f, -5.0f}};
