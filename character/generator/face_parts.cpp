@@ -158,7 +158,7 @@ HeadMesh MakeTeeth() {
   HeadMesh teeth;
   teeth.mesh.name = "teeth";
   AddTeethRow({true, {0.0f, -7.12f, 9.12f}, 2.8f, 4.3f}, &teeth);
-  AddTeethRow({false, {0.0f, -7.2f, 8.7f}, 2.5f, 4.0f}, &teeth);
+  AddTeethRow({false, {0.0f, -6.93f, 8.7f}, 2.5f, 4.0f}, &teeth);
   FinishSurface(&teeth.mesh);
   return teeth;
 }

@@ -183,7 +183,7 @@ Picture PaintSkinColour(const Mesh& skin, const HeadShape& shape, int size) {
         if (OnHand(texel)) return HandColour(texel);
         const float deep = InsideMouth(ModelToHead(texel.position), shape);
         if (deep <= 0.0f) return HeadColour(texel, shape.face());
-        return {glm::mix(vec3(0.56f, 0.26f, 0.24f), vec3(0.30f, 0.10f, 0.09f), deep), 1.0f};
+        return {glm::mix(vec3(0.58f, 0.28f, 0.26f), vec3(0.44f, 0.17f, 0.15f), deep), 1.0f};
       });
 }
 
