@@ -56,11 +56,30 @@ void sampleMasks(out vec4 masks[MASK_LAYERS]) {
   }
 }
 
+#if ALPHA_TEST
+// Which of the pixel's samples a cut-out leaves. Where texels are seen one by one, the cut-off's
+// line through the pixel; where a pixel covers many, as many as the texels leave on average. Layers
+// over each other take different ones.
+int samplesLeft(float alpha) {
+  if (gl_NumSamples == 1) return alpha < u_alpha_cutoff ? 0 : 1;
+  float line = clamp((alpha - u_alpha_cutoff) / max(fwidth(alpha), 1e-4) + 0.5, 0.0, 1.0);
+#if HAS_BASE_COLOUR
+  float level = textureQueryLod(u_base_colour_map, v_uv).y;
+  line = mix(line, alpha, clamp(level, 0.0, 1.0));
+#endif
+  int count = int(line * float(gl_NumSamples) + 0.5);
+  int bits = ((1 << count) - 1) << (gl_PrimitiveID % gl_NumSamples);
+  return (bits | bits >> gl_NumSamples) & ((1 << gl_NumSamples) - 1);
+}
+#endif
+
 // What every fragment begins with: its base colour, and all masks; ends where its texture is cut out.
 vec4 beginSurface(out vec4 masks[MASK_LAYERS], out vec4 dynamicMasks[MAP_SLOTS]) {
   vec4 base = baseColour();
 #if ALPHA_TEST
-  if (base.a < u_alpha_cutoff) discard;
+  int samples = samplesLeft(base.a);
+  if (samples == 0) discard;
+  if (gl_NumSamples > 1) gl_SampleMask[0] = samples;
 #endif
 #if CROWD
   currentSubject = v_subject;
