@@ -56,7 +56,8 @@ void main() {
   vec3 centre = viewPosition(place, metres);
   vec3 toEye = -normalize(centre);
   vec3 normal = viewNormal(pixel);
-  float reach = clamp(u_reach.x * u_lens.x / metres, 2.0, 160.0);
+  // Nothing is further away than the picture's corners.
+  float reach = clamp(u_reach.x * u_lens.x / metres, 2.0, length(2.0 * u_lens.yz));
   float noise = tileNoise();
   // Groups of pixels that see no surface leave the loops.
   int steps = metres < NO_SURFACE ? STEPS : 0;
