@@ -8,11 +8,13 @@
 
 #include "report/line_chart.h"
 #include "report/table.h"
+#include "report/words.h"
 
 namespace furrow::load {
 namespace {
 
 using furrow::report::Axis;
+using furrow::report::Counted;
 using furrow::report::Fixed;
 using furrow::report::LineChart;
 using furrow::report::Table;
@@ -34,30 +36,36 @@ std::string Remarks(const RunResult& result, const RunOptions& options) {
     remark("Said meanwhile: " + result.complaint + ".");
   }
   if (result.tally.sent < result.tally.offered) {
-    remark(Count(result.tally.offered - result.tally.sent) +
-           " poses were due but did not leave: the system took no more datagrams. They are not "
-           "among the lost.");
+    remark(Counted(result.tally.offered - result.tally.sent, "pose") +
+           " did not leave when due: the system took no more datagrams. None is among the lost.");
   }
   if (!result.checked_names && options.check_weights)
     remark("Weights were not checked: the daemon's are named otherwise than those of --rig.");
   if (result.tally.unfollowed > 0) {
-    remark(
-        Count(result.tally.unfollowed) +
-        " weights differed from the solver's but were too many to be followed up: they are among "
-        "those not to be checked.");
+    remark(Counted(result.tally.unfollowed, "pose") +
+           " had weights that differ from the solver's, too many to be followed up: counted as not "
+           "to be checked.");
   }
   if (result.overrun > 0) {
-    remark(Count(result.overrun) +
-           " datagrams were lost in this program's own buffers: it is too slow for this rate.");
+    remark("This program's own buffers lost " + Counted(result.overrun, "datagram") +
+           ": it is too slow for this rate.");
   }
   if (result.burdens_cut > 0) {
-    remark("The daemon cut off slow or stalled subscribers " + Count(result.burdens_cut) +
-           " times; they came back.");
+    remark("The daemon cut off slow or stalled subscribers " + Counted(result.burdens_cut, "time") +
+           "; they came back.");
+  }
+  if (options.burdens.churn > 0) {
+    remark("Churning subscribers left and came back " + Counted(result.churn_returns, "time") +
+           ".");
+  }
+  if (result.usage_unknown) {
+    remark(
+        "The daemon's processor time and memory are not known: which process it is was not found, "
+        "or is not to be asked. Name it by --pid.");
   }
   if (result.tally.early > 0) {
-    remark(Count(result.tally.early) +
-           " weights came before their poses were due, by this machine's clocks, which were set or "
-           "disagree: they count as 0 ms.");
+    remark("Before their pose was due came the weights of " + Counted(result.tally.early, "pose") +
+           ", by this machine's clocks, which were set or disagree: counted as 0 ms.");
   }
   const double behind_us = static_cast<double>(result.send_delay_ns.Percentile(99.0)) * 1e-3;
   if (behind_us > 0.25 * result.p(99.0)) {
@@ -157,12 +165,13 @@ std::string LiveLine(double seconds, const Tally& tally, const Histogram& latenc
 
 std::string ToText(const RunResult& result, const RunOptions& options) {
   const Tally& tally = result.tally;
-  Table poses{"Poses and weights",
-              {"offered", "sent", "received", "lost", "late", "wrong", "reordered", "twice",
-               "never sent", "undecodable"},
-              {{Count(tally.offered), Count(tally.sent), Count(tally.received), Count(tally.lost()),
-                Count(tally.late), Count(tally.wrong), Count(tally.reordered),
-                Count(tally.duplicates), Count(tally.never_sent), Count(result.malformed)}}};
+  Table poses{
+      "Poses and weights",
+      {"offered", "sent", "expected", "received", "lost", "late", "wrong", "reordered", "twice",
+       "never sent", "undecodable"},
+      {{Count(tally.offered), Count(tally.sent), Count(tally.expected), Count(tally.received),
+        Count(tally.lost()), Count(tally.late), Count(tally.wrong), Count(tally.reordered),
+        Count(tally.duplicates), Count(tally.never_sent), Count(result.malformed)}}};
   Table latency{"Latency, ms, from when a pose was due to when its weights were here",
                 {"p50", "p90", "p99", "p99.9", "max", "late to send, p99"},
                 {{}}};
@@ -181,7 +190,7 @@ std::string ToText(const RunResult& result, const RunOptions& options) {
     text += ToMarkdown(usage) + "\n";
   }
   text += "Weights checked against the solver: " + Count(tally.checked) + ", to " +
-          Fixed(options.tolerance, 6) + "; largest difference " +
+          Fixed(options.tolerance, 6) + "; largest difference of the right ones " +
           Fixed(tally.largest_difference, 7) + "; not to be checked: " + Count(tally.unchecked) +
           ".\n";
   if (tally.wrong > 0) {

@@ -198,6 +198,7 @@ RunResult Runner::Go() {
                                                    std::llround(options_.plan.seconds * 1e9))) *
       1e-9;
   result_.usage = target_.pid ? ReadUsage(*target_.pid) : std::nullopt;
+  result_.usage_unknown = target_.loopback && !before;
   if (before && result_.usage)
     result_.cpu_seconds = result_.usage->cpu_seconds - before->cpu_seconds;
   return Report();

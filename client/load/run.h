@@ -59,6 +59,7 @@ struct RunResult {
   double planned_rate = 0.0;          // poses a second
   std::optional<double> cpu_seconds;  // of the target's process, from start to end
   std::optional<ProcessUsage> usage;  // in the end
+  bool usage_unknown = false;         // the server is on this machine, but its process is not known
   std::uint64_t overrun = 0;          // datagrams lost in this program's own full buffers
   std::uint64_t malformed = 0;        // messages that could not be decoded
   std::uint64_t churn_returns = 0;

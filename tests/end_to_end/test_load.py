@@ -70,7 +70,7 @@ class LoadTest(unittest.TestCase):
                 self.assertGreater(run["cpu_seconds"], 0, path)
                 self.assertGreater(run["resident_bytes"], 1 << 20, path)
                 self.assertLess(run["largest_difference"], 1e-5)
-                self.assertIn("| offered | sent | received | lost | late | wrong", text)
+                self.assertIn("| offered | sent | expected | received | lost | late | wrong", text)
 
     def test_quantised_poses_are_checked_as_sharply(self):
         with Daemon("--no-render") as daemon:
@@ -144,6 +144,7 @@ class LoadTest(unittest.TestCase):
                                   "--slow", "3", "--churn", "3", "--other-port", daemon.ports["tcp"], "--strict")
         self.assertEqual(run["received"], 500, text)
         self.assertGreater(run["churn_returns"], 0)
+        self.assertRegex(text, f"left and came back {run['churn_returns']} times?[.]")
 
     def test_tcp_stands_still_in_a_black_hole_and_loses_nothing(self):
         with Daemon("--no-render") as daemon, Chaos(daemon, "--black-hole", "0.5:0.3") as chaos:

@@ -36,13 +36,13 @@ std::string TextOf(const std::function<void(RunResult&)>& change) {
 
 TEST(Report, AGoodRunIsNotRemarkedOn) {
   const std::string text = TextOf([](RunResult&) {});
-  EXPECT_THAT(text, HasSubstr("| offered | sent | received | lost"));
+  EXPECT_THAT(text, HasSubstr("| offered | sent | expected | received | lost"));
   EXPECT_TRUE(text.ends_with("not to be checked: 0.\n")) << text;
 }
 
 TEST(Report, WhatSpoilsARunIsSaid) {
   EXPECT_THAT(TextOf([](RunResult& run) { run.tally.offered = 107; }),
-              HasSubstr("7 poses were due but did not leave"));
+              HasSubstr("7 poses did not leave when due"));
   EXPECT_THAT(TextOf([](RunResult& run) {
                 run.ended_early = true;
                 run.complaint = "the daemon closed the connection";
@@ -52,18 +52,40 @@ TEST(Report, WhatSpoilsARunIsSaid) {
               HasSubstr("Said meanwhile: too many."));
   EXPECT_THAT(TextOf([](RunResult& run) { run.interrupted = true; }), HasSubstr("so far"));
   EXPECT_THAT(TextOf([](RunResult& run) { run.overrun = 3; }),
-              HasSubstr("3 datagrams were lost in this program's own buffers"));
+              HasSubstr("This program's own buffers lost 3 datagrams"));
   EXPECT_THAT(TextOf([](RunResult& run) { run.tally.unfollowed = 12; }),
-              HasSubstr("12 weights differed from the solver's but were too many"));
+              HasSubstr("12 poses had weights that differ from the solver's, too many"));
   EXPECT_THAT(TextOf([](RunResult& run) { run.burdens_cut = 4; }), HasSubstr("4 times"));
   EXPECT_THAT(TextOf([](RunResult& run) { run.tally.early = 6; }),
-              HasSubstr("6 weights came before their poses were due"));
+              HasSubstr("Before their pose was due came the weights of 6 poses"));
   EXPECT_THAT(TextOf([](RunResult& run) { run.checked_names = false; }),
               HasSubstr("Weights were not checked"));
   EXPECT_THAT(TextOf([](RunResult& run) {
                 for (int i = 0; i < 5; ++i) run.send_delay_ns.Record(900'000);
               }),
               HasSubstr("This program sent poses up to 900 us late"));
+}
+
+TEST(Report, ReceivedStandsBesideWhatSeveralSubscribersExpect) {
+  const std::string text = TextOf([](RunResult& run) {
+    run.tally.expected = 200;
+    run.tally.received = 198;
+  });
+  EXPECT_THAT(text, HasSubstr("| 100     | 100  | 200      | 198      | 2    |")) << text;
+}
+
+TEST(Report, BurdensAndAProcessThatIsNotKnownAreSaid) {
+  RunOptions options;
+  options.burdens.churn = 2;
+  RunResult result = GoodRun();
+  result.churn_returns = 1;
+  EXPECT_THAT(ToText(result, options), HasSubstr("left and came back 1 time."));
+  EXPECT_THAT(TextOf([](RunResult& run) { run.usage_unknown = true; }), HasSubstr("--pid"));
+}
+
+TEST(Report, TheLargestDifferenceIsSaidToLeaveOutTheWrong) {
+  EXPECT_THAT(TextOf([](RunResult& run) { run.tally.wrong = 1; }),
+              HasSubstr("largest difference of the right ones"));
 }
 
 TEST(Report, TheWrongAreToldApart) {
