@@ -42,6 +42,13 @@ struct Series {
   }
 };
 
+// Who is the i-th of `count` in turn `turn`: there and back, then from the next one on. Of three,
+// six turns are all orders.
+std::size_t InTurn(std::size_t i, std::size_t turn, std::size_t count) {
+  const std::size_t place = turn % 2 == 0 ? i : count - 1 - i;
+  return (place + turn / 2) % count;
+}
+
 // The runs and searches of all contestants, in turn.
 class Contest {
  public:
@@ -73,6 +80,7 @@ class Contest {
   const ComparisonHooks& hooks_;
   double begin_;
   std::vector<Series> series_;
+  std::size_t turn_ = 0;
   Comparison comparison_;
 };
 
@@ -103,20 +111,21 @@ std::optional<RunResult> Contest::Attempt(const Target& target, const RunOptions
   return *std::move(result);
 }
 
-// Another one begins each round, so that none always follows the same.
 void Contest::Rounds() {
   for (int round = 0; round < options_.rounds && MayGoOn(1.0); ++round) {
     Say("round " + std::to_string(round + 1) + " of " + std::to_string(options_.rounds));
+    const std::size_t turn = turn_++;
     for (std::size_t i = 0; i < series_.size() && MayGoOn(1.0); ++i) {
-      Series& series = series_[(i + static_cast<std::size_t>(round)) % series_.size()];
+      Series& series = series_[InTurn(i, turn, series_.size())];
       const auto result = Attempt(*series.target, options_.run);
       if (!result) return;
       if (result->ended_early) {
         comparison_.failure = {StatusCode::kUnavailable, result->complaint};
         return;
       }
-      series.p50_us.emplace_back(result->p(50.0));
-      series.p90_us.emplace_back(result->p(90.0));
+      const bool any = result->latency_ns.count() > 0;
+      series.p50_us.push_back(any ? std::optional(result->p(50.0)) : std::nullopt);
+      series.p90_us.push_back(any ? std::optional(result->p(90.0)) : std::nullopt);
       series.cpu_us.push_back(result->cpu_us_per_pose());
     }
   }
@@ -128,26 +137,31 @@ void Contest::Searches() {
 }
 
 void Contest::Search(double share) {
-  constexpr double kPrecision = 1.05;
   constexpr int kTries = 2;
   std::vector<RateSearch> searches(
       series_.size(), RateSearch(std::min(options_.search_start, options_.search_limit),
-                                 options_.search_limit, kPrecision, kTries));
+                                 options_.search_limit, kSearchPrecision, kTries));
   const auto done = [](const RateSearch& search) { return search.done(); };
   while (!std::ranges::all_of(searches, done) && MayGoOn(share)) {
+    const std::size_t turn = turn_++;
     for (std::size_t i = 0; i < series_.size() && MayGoOn(share); ++i) {
-      if (!searches[i].done()) Probe(series_[i], &searches[i]);
+      const std::size_t who = InTurn(i, turn, series_.size());
+      if (!searches[who].done()) Probe(series_[who], &searches[who]);
     }
   }
   EndSearch(searches, std::ranges::all_of(searches, done));
 }
 
-// One that was cut short counts where there is no other: what it found was held.
+// One that was cut short counts where there is no other: what the server held then it held. But
+// only what was searched to its end is compared.
 void Contest::EndSearch(const std::vector<RateSearch>& searches, bool done) {
   if (!done && !(comparison_.out_of_time && series_[0].highest.empty())) return;
-  comparison_.unfinished = !done;
-  for (std::size_t i = 0; i < series_.size(); ++i)
-    series_[i].highest.emplace_back(searches[i].best());
+  comparison_.unfinished = !searches[0].done();
+  for (std::size_t i = 0; i < series_.size(); ++i) {
+    const bool counts = i == 0 ? searches[0].done() || searches[0].best() > 0.0
+                               : searches[0].done() && searches[i].done();
+    series_[i].highest.push_back(counts ? std::optional(searches[i].best()) : std::nullopt);
+  }
   comparison_.at_limit = comparison_.at_limit || searches[0].best() >= options_.search_limit;
 }
 
@@ -180,12 +194,16 @@ void Contest::Probe(Series& series, RateSearch* search) {
 void Contest::AddFigure(const std::string& name, const std::string& unit,
                         Series::Values Series::*values) {
   if (series_.size() < 3) return;
+  const std::vector<double> server = Measured(series_[0].*values);
+  if (server.empty()) return;
   const std::vector<double> ratios = Ratios(series_[0].*values, series_[1].*values);
   const std::vector<double> control = Ratios(series_[2].*values, series_[1].*values);
-  if (ratios.empty() || control.empty()) return;
-  comparison_.figures.push_back({name, unit, Median(Measured(series_[0].*values)),
-                                 Median(Measured(series_[1].*values)), SpreadOf(ratios),
-                                 SpreadOf(control)});
+  if (ratios.empty() || control.empty()) {
+    comparison_.not_compared.push_back({name, unit, Median(server)});
+    return;
+  }
+  comparison_.figures.push_back({name, unit, Median(server), Median(Measured(series_[1].*values)),
+                                 SpreadOf(ratios), SpreadOf(control)});
 }
 
 Comparison Contest::Report() {

@@ -26,6 +26,17 @@ struct Figure {
   Spread control;
 };
 
+// One that was measured of the server, but not to its end of both echoes.
+struct LoneFigure {
+  std::string name;
+  std::string unit;
+  double server = 0.0;  // a median
+};
+
+// A search ends where the lowest rate that was not held is at most so many times the highest that
+// was: of no ratio of highest rates more is known.
+inline constexpr double kSearchPrecision = 1.05;
+
 struct ComparisonOptions {
   RunOptions run;   // at which latency and processor time are compared
   int rounds = 11;  // runs of each
@@ -49,7 +60,8 @@ struct Contestants {
 
 // What was measured, also where it ended before its time.
 struct Comparison {
-  std::vector<Figure> figures;        // only those that were measured of all three
+  std::vector<Figure> figures;  // only those that were measured of all three
+  std::vector<LoneFigure> not_compared;
   int rounds = 0;                     // runs of the server that were compared
   std::vector<double> highest_rates;  // of the server: one a search; poses a second
   std::vector<RateStep> steps;        // of the server's searches
@@ -58,7 +70,7 @@ struct Comparison {
   std::optional<double> generator_behind_at;
   std::optional<double> raw_generator_behind_at;
   bool at_limit = false;      // a search ended at the limit: the server may take more
-  bool unfinished = false;    // the only search ran out of time: the server may take more
+  bool unfinished = false;    // the server's only search ran out of time: it may take more
   bool out_of_time = false;   // not all of it was done within the time limit
   bool no_cpu = false;        // rounds were run, but the server's processor time is not known
   bool not_loopback = false;  // the server was compared with echoes that are nearer
@@ -76,8 +88,9 @@ struct ComparisonHooks {
   std::function<double()> seconds;  // of a clock that does not go back
 };
 
-// Runs all of it, the contestants in turn. A run that cannot begin is tried once more; what fails
-// again, or a server that goes away in a round, ends it.
+// Runs all of it, the contestants in turn: in all orders, so that each follows each other equally
+// often and none is always measured behind the same. A run that cannot begin is tried once more;
+// what fails again, or a server that goes away in a round, ends it.
 [[nodiscard]] Comparison Compare(const RunTarget& run, const Contestants& contestants,
                                  const ComparisonOptions& options, const ComparisonHooks& hooks);
 

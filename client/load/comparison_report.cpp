@@ -4,10 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "report/table.h"
+#include "report/words.h"
 
 namespace furrow::load {
 namespace {
 
+using furrow::report::Counted;
 using furrow::report::Fixed;
 
 std::string Between(const Spread& spread, int digits) {
@@ -16,7 +18,9 @@ std::string Between(const Spread& spread, int digits) {
 
 std::string TableOf(const Comparison& comparison) {
   report::Table table{
-      "Beside a raw UDP echo, " + std::to_string(comparison.rounds) + " rounds of runs in turn",
+      comparison.rounds == 0
+          ? "Beside a raw UDP echo"
+          : "Beside a raw UDP echo, " + Counted(comparison.rounds, "round") + " of runs in turn",
       {"figure", "daemon", "raw echo", "ratio", "middle half of the ratios", "raw against raw",
        "its middle half"},
       {}};
@@ -26,6 +30,10 @@ std::string TableOf(const Comparison& comparison) {
                           Between(figure.ratio, 2), Fixed(figure.control.median, 2),
                           Between(figure.control, 2)});
   }
+  for (const LoneFigure& figure : comparison.not_compared) {
+    table.rows.push_back(
+        {figure.name + ", " + figure.unit, Fixed(figure.server, 1), "-", "-", "-", "-", "-"});
+  }
   return ToMarkdown(table);
 }
 
@@ -33,10 +41,12 @@ std::string HighestRate(const Comparison& comparison) {
   const Spread spread = SpreadOf(comparison.highest_rates);
   const bool at_least =
       comparison.at_limit || comparison.unfinished || comparison.generator_behind_at.has_value();
-  return std::string("\nHighest rate that loses nothing and holds p99: ") +
-         (at_least ? "at least " : "") + Fixed(spread.median, 0) + " poses a second (" +
-         std::to_string(comparison.highest_rates.size()) + " searches, " + Between(spread, 0) +
-         ").\n";
+  const std::string text = std::string("\nHighest rate that loses nothing and holds p99: ") +
+                           (at_least ? "at least " : "") + Fixed(spread.median, 0) +
+                           " poses a second";
+  if (comparison.unfinished) return text + ".\n";
+  return text + " (" + Counted(comparison.highest_rates.size(), "search", "searches") + ", " +
+         Between(spread, 0) + "; each to " + Fixed(100.0 * (kSearchPrecision - 1.0), 0) + "%).\n";
 }
 
 // What makes the figures say less than they seem to.
@@ -92,7 +102,7 @@ nlohmann::json StepsOf(const Comparison& comparison) {
 
 std::string ToText(const Comparison& comparison) {
   std::string text;
-  if (!comparison.figures.empty()) text += TableOf(comparison);
+  if (!comparison.figures.empty() || !comparison.not_compared.empty()) text += TableOf(comparison);
   if (!comparison.highest_rates.empty()) text += HighestRate(comparison);
   return text + Remarks(comparison);
 }
@@ -113,9 +123,18 @@ nlohmann::json ToJson(const Comparison& comparison) {
                        {"ratio", spread(figure.ratio)},
                        {"control", spread(figure.control)}});
   }
+  for (const LoneFigure& figure : comparison.not_compared) {
+    figures.push_back({{"name", figure.name},
+                       {"unit", figure.unit},
+                       {"daemon", figure.server},
+                       {"raw", nullptr},
+                       {"ratio", nullptr},
+                       {"control", nullptr}});
+  }
   return {{"figures", figures},
           {"rounds", comparison.rounds},
           {"highest_rates", comparison.highest_rates},
+          {"search_precision", kSearchPrecision},
           {"steps", StepsOf(comparison)},
           {"generator_behind_at", rate(comparison.generator_behind_at)},
           {"raw_generator_behind_at", rate(comparison.raw_generator_behind_at)},

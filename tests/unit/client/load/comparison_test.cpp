@@ -2,6 +2,8 @@
 #include "client/load/comparison.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -80,7 +82,7 @@ TEST_F(ComparisonTest, RoundsAreOfAllInTurnAndGiveRatios) {
   const Comparison comparison = Compare();
   EXPECT_EQ(runs_.size(), 15u);
   EXPECT_EQ(runs_[0], "daemon");
-  EXPECT_EQ(runs_[3], "raw");
+  EXPECT_EQ(runs_[3], "control");
   EXPECT_EQ(comparison.rounds, 5);
   ASSERT_EQ(comparison.figures.size(), 3u);
   EXPECT_EQ(comparison.figures[0].name, "p50");
@@ -89,6 +91,60 @@ TEST_F(ComparisonTest, RoundsAreOfAllInTurnAndGiveRatios) {
   EXPECT_EQ(comparison.figures[2].name, "CPU a pose");
   EXPECT_NEAR(comparison.figures[2].ratio.median, 1.5, 1e-9);
   EXPECT_FALSE(comparison.no_cpu || comparison.out_of_time || comparison.interrupted);
+}
+
+TEST_F(ComparisonTest, EachFollowsEachOtherEquallyOften) {
+  AddEchoes();
+  options_.rounds = 6;
+  (void)Compare();
+  ASSERT_EQ(runs_.size(), 18u);
+  std::map<std::pair<std::string, std::string>, int> follows;
+  for (std::size_t i = 0; i < runs_.size(); ++i) {
+    if (i % 3 != 0) ++follows[{runs_[i - 1], runs_[i]}];
+  }
+  EXPECT_EQ(follows.size(), 6u);
+  for (const auto& [pair, count] : follows) EXPECT_EQ(count, 2) << pair.first << pair.second;
+}
+
+TEST_F(ComparisonTest, ASearchCutShortIsNotCompared) {
+  AddEchoes();
+  options_.find_max = true;
+  options_.rounds = 0;
+  options_.time_limit_seconds = 7.0;
+  const Comparison comparison = Compare();
+  EXPECT_TRUE(comparison.unfinished);
+  EXPECT_TRUE(comparison.figures.empty());
+  ASSERT_EQ(comparison.not_compared.size(), 1u);
+  EXPECT_EQ(comparison.not_compared[0].server, comparison.highest_rates[0]);
+  EXPECT_THAT(ToText(comparison),
+              testing::ContainsRegex("highest rate, poses/s [|] [0-9.]+ +[|] - "));
+  EXPECT_TRUE(ToJson(comparison)["figures"][0]["ratio"].is_null());
+  EXPECT_TRUE(ToJson(comparison)["figures"][0]["raw"].is_null());
+  EXPECT_THAT(ToText(comparison), HasSubstr("Beside a raw UDP echo\n"));
+  EXPECT_THAT(ToText(comparison), HasSubstr(" poses a second.\n"));
+}
+
+// Where nothing was tried at all, nothing is known.
+TEST_F(ComparisonTest, ASearchThatHeldNothingYetHasNoHighestRate) {
+  options_.find_max = true;
+  options_.time_limit_seconds = 0.5;
+  change_ = [](const Target&, RunResult result) {
+    --result.tally.received;
+    return Result<RunResult>(std::move(result));
+  };
+  const Comparison comparison = Compare();
+  EXPECT_TRUE(comparison.unfinished);
+  EXPECT_TRUE(comparison.highest_rates.empty());
+  EXPECT_THAT(ToText(comparison), Not(HasSubstr("Highest rate")));
+}
+
+TEST_F(ComparisonTest, ARoundThatBroughtNothingIsNoLatency) {
+  AddEchoes();
+  change_ = [this](const Target&, RunResult result) {
+    if (runs_.size() == 1) result.latency_ns = {};
+    return Result<RunResult>(std::move(result));
+  };
+  EXPECT_NEAR(Compare().figures[0].ratio.low, 1.5, 0.01);
 }
 
 TEST_F(ComparisonTest, AnUnknownProcessTimeIsNotComparedAsZero) {
@@ -119,6 +175,12 @@ TEST_F(ComparisonTest, TheHighestRateIsFound) {
   EXPECT_EQ(comparison.steps.size(), runs_.size());
   EXPECT_FALSE(comparison.generator_behind_at);
   EXPECT_THAT(ToText(comparison), Not(HasSubstr("at least")));
+}
+
+TEST_F(ComparisonTest, OneSearchIsCalledOne) {
+  options_.find_max = true;
+  options_.searches = 1;
+  EXPECT_THAT(ToText(Compare()), HasSubstr(" poses a second (1 search, "));
 }
 
 TEST_F(ComparisonTest, ALimitBelowTheStartIsNotExceededAndSaysAtLeast) {
