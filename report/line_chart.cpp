@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "report/svg.h"
+#include "report/table.h"
 
 namespace furrow::report {
 namespace {
@@ -16,6 +17,11 @@ constexpr double kRight = 730.0;
 constexpr double kTop = 56.0;
 constexpr double kBottom = 270.0;
 constexpr const char* kGrid = "#dddddd";
+
+// How many digits behind the point 1, 2 or 5 times a power of ten needs.
+int DigitsOf(double step) {
+  return std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
+}
 
 // Values to pixels along one axis.
 class Scale {
@@ -33,13 +39,13 @@ class Scale {
     return from_ + (to_ - from_) * (place - low_) / (high_ - low_);
   }
 
-  // Tenfold steps, or about five of 1, 2 or 5 times a power of ten.
+  // Tenfold steps, or about five of 1, 2 or 5 times a power of ten, which all have the same digits.
   [[nodiscard]] std::vector<std::pair<double, std::string>> Ticks() const {
     std::vector<std::pair<double, std::string>> ticks;
     if (logarithmic_) {
       for (double power = low_; power <= high_; power += 1.0) {
         const double value = std::pow(10.0, power);
-        ticks.emplace_back(value, svg::Short(value));
+        ticks.emplace_back(value, Fixed(value, DigitsOf(value)));
       }
       return ticks;
     }
@@ -51,8 +57,9 @@ class Scale {
         break;
       }
     }
-    for (double value = std::ceil(low_ / step) * step; value <= high_ + 1e-9 * step; value += step)
-      ticks.emplace_back(value, svg::Short(value));
+    const double first = std::ceil(low_ / step);
+    for (double i = first; i * step <= high_ + 1e-9 * step; i += 1.0)
+      ticks.emplace_back(i * step, Fixed(i * step, DigitsOf(step)));
     return ticks;
   }
 

@@ -38,6 +38,33 @@ TEST(LineChart, ALogarithmicAxisHasTenfoldStepsAndNoZero) {
   EXPECT_NE(svg.find("points=\"80.0,163.0 405.0,109.5 730.0,56.0 \""), std::string::npos) << svg;
 }
 
+std::vector<std::string> TickLabels(const LineChart& chart, const std::string& anchor) {
+  std::vector<std::string> labels;
+  const std::string svg = ToSvg({chart});
+  const std::string begin = "text-anchor=\"" + anchor + "\">";
+  for (std::size_t at = svg.find(begin); at != std::string::npos; at = svg.find(begin, at + 1)) {
+    const std::size_t from = at + begin.size();
+    labels.push_back(svg.substr(from, svg.find('<', from) - from));
+  }
+  return labels;
+}
+
+TEST(LineChart, TicksOfAnAxisHaveTheSameDigits) {
+  using Labels = std::vector<std::string>;
+  LineChart chart = Chart();
+  chart.series = {{"p50", {{0.0, 0.0}, {1.0, 2.5}}}};
+  EXPECT_EQ(TickLabels(chart, "end"), (Labels{"0.0", "0.5", "1.0", "1.5", "2.0", "2.5"}));
+  chart.series = {{"p50", {{0.0, 0.0}, {1.0, 0.3}}}};
+  EXPECT_EQ(TickLabels(chart, "end"),
+            (Labels{"0.00", "0.05", "0.10", "0.15", "0.20", "0.25", "0.30"}));
+  chart.series = {{"p50", {{0.0, 0.0}, {1.0, 400.0}}}};
+  EXPECT_EQ(TickLabels(chart, "end"),
+            (Labels{"0", "50", "100", "150", "200", "250", "300", "350", "400"}));
+  chart.y.logarithmic = true;
+  chart.series = {{"p50", {{0.0, 0.02}, {1.0, 70.0}}}};
+  EXPECT_EQ(TickLabels(chart, "end"), (Labels{"0.01", "0.1", "1", "10", "100"}));
+}
+
 TEST(LineChart, ChartsStandBelowEachOther) {
   const std::string one = ToSvg({Chart()});
   const std::string two = ToSvg({Chart(), Chart()});

@@ -120,6 +120,11 @@ TEST(Report, AnInterruptedRunIsDrawnInItsOwnTime) {
   EXPECT_NE(Plot(longer, {}), Plot(GoodRun(), {}));
 }
 
+TEST(Report, P99IsDrawnAboveTheMaximum) {
+  const std::string svg = Plot(GoodRun(), {});
+  EXPECT_LT(svg.find(">max<"), svg.find(">p99<"));
+}
+
 TEST(Report, WithoutARunOnlyStepsAreDrawn) {
   const std::string svg = Plot(RunResult(), {{.rate = 1000.0, .p50_us = 10.0, .p99_us = 20.0}});
   EXPECT_THAT(svg, HasSubstr("Loss by rate"));
