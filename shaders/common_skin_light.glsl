@@ -40,6 +40,9 @@ float sheen(vec3 normal, vec3 toLight, vec3 toCamera) {
   return lobe / (4.0 * max(nl + nv - nl * nv, 1e-3));
 }
 
+// Share of light from `cosine` that the fuzz reflects in all, [0, 1]: a fit to 0.02.
+float sheenAlbedo(float cosine) { return 0.78 - 0.7 * sqrt(cosine); }
+
 // Diffuse light of a lamp without its shadow, by table where that scatters.
 vec3 diffuseOf(Facet facet, Arrival arrival, float cosine) {
   vec3 facing = vec3(saturate(cosine));
@@ -70,16 +73,19 @@ void addLamp(int i, Facet facet, vec3 toCamera, inout Lit lit) {
 #if CONSERVE
   leaves = 1.0 - saturate(u_gloss.x * specularAlbedo(facing, facet.m, u_gloss.z, f0));
 #endif
-  lit.direct += diffuseOf(facet, arrival, cosine) * (seen * leaves);
-  lit.specular += irradiance * (u_gloss.x * kelemen(facet.normal, arrival.toLight, toCamera,
-                                                    facet.m, u_gloss.z, f0));
+  float through = 1.0;  // what the fuzz lets through to what is under it
 #if MATERIALS || MATERIAL == MATERIAL_CLOTH
   int fuzz = facet.kind == MATERIAL_CLOTH ? 1 : 0;
   for (int k = 0; k < fuzz; ++k) {
-    lit.specular +=
-        irradiance * (sheenOf(facet.kind) * sheen(facet.normal, arrival.toLight, toCamera));
+    float strength = sheenOf(facet.kind);
+    lit.specular += irradiance * (strength * sheen(facet.normal, arrival.toLight, toCamera));
+    through -= strength * sheenAlbedo(facing);
   }
 #endif
+  lit.direct += diffuseOf(facet, arrival, cosine) * (seen * leaves * through);
+  lit.specular += irradiance * (u_gloss.x * through *
+                                kelemen(facet.normal, arrival.toLight, toCamera, facet.m,
+                                        u_gloss.z, f0));
 #if TRANSLUCENCY
   if (i >= SHADOW_LAMPS) return;  // no map to measure in
   float behind = saturate(0.3 - dot(facet.geometric, arrival.toLight));
@@ -106,7 +112,8 @@ Lit lightFacet(Facet facet) {
   float leaves = CONSERVE == 1 ? 1.0 - reflects : 1.0;
   vec3 tint = vec3(facet.open * facet.crease);
   // Most of what hair sends back went through it: it has hair's colour, and little is white.
-  tint *= facet.kind == MATERIAL_HAIR ? mix(vec3(0.25), 4.0 * facet.colour, 0.75) : vec3(1.0);
+  vec3 strand = min(mix(vec3(0.25), 4.0 * facet.colour, 0.75), vec3(1.0));
+  tint *= facet.kind == MATERIAL_HAIR ? strand : vec3(1.0);
   lit.direct *= leaves;
   lit.sky = skyIrradiance(facet.normal) * (facet.crease * leaves);
   lit.specular *= tint;
