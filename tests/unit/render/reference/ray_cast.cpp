@@ -44,6 +44,13 @@ bool SeesLight(const SphereOnPlane& scene, const glm::dvec3& point, const glm::d
   return RayDistance(scene, point + kLift * normal, to_light) == kInfinity;
 }
 
+bool SeesPoint(const SphereOnPlane& scene, const glm::dvec3& point, const glm::dvec3& normal,
+               const glm::dvec3& lamp) {
+  const glm::dvec3 way = lamp - point;
+  if (glm::dot(normal, way) <= 0.0) return false;
+  return RayDistance(scene, point + kLift * normal, glm::normalize(way)) >= glm::length(way);
+}
+
 double Openness(const SphereOnPlane& scene, const glm::dvec3& point, const glm::dvec3& normal,
                 const std::function<double(double)>& hides, int rays) {
   const glm::dvec3 side = std::abs(normal.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);

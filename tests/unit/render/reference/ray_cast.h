@@ -21,6 +21,10 @@ struct SphereOnPlane {
 [[nodiscard]] bool SeesLight(const SphereOnPlane& scene, const glm::dvec3& point,
                              const glm::dvec3& normal, const glm::dvec3& to_light);
 
+// ... to a lamp at `lamp`; what stands behind it hides nothing.
+[[nodiscard]] bool SeesPoint(const SphereOnPlane& scene, const glm::dvec3& point,
+                             const glm::dvec3& normal, const glm::dvec3& lamp);
+
 // Share of the cosine-weighted hemisphere over a point of a surface that is open, by `rays` rays.
 // `hides`: how much of a ray a surface takes at a distance in metres, [0, 1].
 [[nodiscard]] double Openness(const SphereOnPlane& scene, const glm::dvec3& point,
