@@ -53,8 +53,8 @@ constexpr Section kLeg[] = {{0.920f, 0.080f, 0.100f, 0.118f, 0.090f, 0.000f},
 
 // A sleeve's radius by metres from the joint of the shoulder; the cuff gathers it.
 constexpr Knot kSleeve[] = {
-    {-0.02f, 0.0340f}, {0.01f, 0.0430f},  {0.05f, 0.0515f}, {0.09f, 0.0540f},
-    {0.14f, 0.0530f},  {0.20f, 0.0505f},  {0.25f, 0.0480f}, {0.29f, 0.0470f},
+    {-0.02f, 0.0310f}, {0.01f, 0.0380f},  {0.05f, 0.0455f}, {0.09f, 0.0490f},
+    {0.14f, 0.0495f},  {0.20f, 0.0485f},  {0.25f, 0.0470f}, {0.29f, 0.0465f},
     {0.33f, 0.0465f},  {0.38f, 0.0450f},  {0.43f, 0.0430f}, {0.455f, 0.0415f},
     {0.466f, 0.0400f}, {0.472f, 0.0370f}, {0.50f, 0.0362f}, {0.535f, 0.0358f}};
 
@@ -122,7 +122,7 @@ float BodyShape::Sleeve(const vec3& p) const {
   const float along = std::clamp(glm::dot(p - shoulder_, arm_), -0.02f, 0.54f);
   const vec3 middle = shoulder_ + arm_ * along;
   // Deltoid and triceps: fuller outside above, behind below.
-  const vec3 off = outward_ * (0.004f * Bump(along - 0.08f, 0.07f)) -
+  const vec3 off = outward_ * (0.002f * Bump(along - 0.08f, 0.07f)) -
                    forward_ * (0.005f * Bump(along - 0.20f, 0.10f));
   return glm::distance(p, middle + off) - Interpolate(kSleeve, along) * parameters_.limbs;
 }
@@ -132,7 +132,7 @@ float BodyShape::Shirt(const vec3& p) const {
   const float wide = parameters_.shoulder_width;
   // From the neck to the joint's cap: the shoulder's slope.
   const float slope =
-      RodDistance(q, {0.050f, 1.466f, -0.038f}, {0.155f * wide, 1.396f, -0.022f}, 0.036f, 0.037f);
+      RodDistance(q, {0.050f, 1.466f, -0.038f}, {0.155f * wide, 1.391f, -0.022f}, 0.036f, 0.035f);
   const float trunk = SmoothMin(TrunkDistance(q, torso_, 2.3f), slope, 0.05f);
   // Shoulder blades and the chest's muscles, softened by the cloth.
   const float blades =
