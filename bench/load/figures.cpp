@@ -3,10 +3,8 @@
 
 #include <cstdio>
 
+#include "bench/load/duel.h"
 #include "bench/report/take.h"
-#include "client/cli/load_input.h"
-#include "client/load/clock.h"
-#include "client/load/comparison.h"
 #include "client/load/echo.h"
 #include "client/load/verdict.h"
 #include "report/table.h"
@@ -16,11 +14,7 @@ namespace {
 
 using report::Fixed;
 
-constexpr int kSubjects = 256;
-
-std::string Between(const load::Spread& spread) {
-  return bench::Between(spread.median, spread.low, spread.high, 2);
-}
+constexpr int kSearches = 3;
 
 // Whether a figure's ratio keeps its limit: at most it, or at least it.
 Aim RatioAim(const load::Figure& figure, const std::string& what, double limit, bool at_most) {
@@ -33,63 +27,32 @@ Aim RatioAim(const load::Figure& figure, const std::string& what, double limit, 
           at_most ? ratio <= limit : ratio >= limit};
 }
 
-// The daemon beside two echoes.
-class Duel {
- public:
-  explicit Duel(const Setting& setting)
-      : performance_(Take(cli::LoadPerformance(
-            {.file = setting.recording, .rig = setting.rig, .quantise = true}))),
-        daemon_(Take(
-            DaemonProcess::Start(setting.daemon, setting.rig, setting.folder, setting.threads))),
-        raw_(Take(load::EchoServer::Start(daemon_.target().pid))),
-        control_(Take(load::EchoServer::Start(daemon_.target().pid))) {
-    options_.rounds = setting.rounds;
-    options_.run = At60Hz(kSubjects, setting.seconds);
-  }
-
-  // At so many poses a second.
-  load::Comparison At(double rate) {
-    options_.find_max = false;
-    options_.run.plan.rate = rate / kSubjects;
-    return Run();
-  }
-  load::Comparison Highest() {
-    options_.find_max = true;
-    options_.rounds = 0;
-    return Run();
-  }
-
- private:
-  static load::Target Echo(const load::EchoServer& server) {
-    return {.host = "127.0.0.1", .udp = server.port(), .echo = true, .pid = server.pid()};
-  }
-  load::Comparison Run() {
-    const load::Contestants contestants{
-        .server = daemon_.target(), .raw = Echo(raw_), .control = Echo(control_)};
-    load::Comparison comparison = load::Compare(
-        [this](const load::Target& target, const load::RunOptions& options) {
-          return load::Run(performance_, target, options, Silently());
-        },
-        contestants, options_,
-        {.go_on = [] { return true; },
-         .progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); },
-         .seconds = [] { return 1e-9 * static_cast<double>(load::SteadyNanoseconds()); }});
-    if (!comparison.failure.ok()) FailWith(comparison.failure);
-    return comparison;
-  }
-
-  load::Performance performance_;
-  DaemonProcess daemon_;
-  load::EchoServer raw_;
-  load::EchoServer control_;
-  load::ComparisonOptions options_;
-};
+load::Target Echo(const load::EchoServer& server) {
+  return {.host = "127.0.0.1", .udp = server.port(), .echo = true, .pid = server.pid()};
+}
 
 void AddRatios(const load::Comparison& comparison, const std::string& name, const std::string& what,
                double limit, bool at_most, std::vector<Aim>* aims) {
   for (const load::Figure& figure : comparison.figures) {
     if (figure.name == name) aims->push_back(RatioAim(figure, what, limit, at_most));
   }
+}
+
+// The daemon and two raw echoes.
+std::vector<Aim> BesideEchoes(const Setting& setting) {
+  const auto daemon = Take(DaemonProcess::Start(setting.daemon, setting.rig, setting.folder));
+  const auto raw = Take(load::EchoServer::Start(daemon.target().pid));
+  const auto control = Take(load::EchoServer::Start(daemon.target().pid));
+  Duel duel(setting, {.server = daemon.target(), .raw = Echo(raw), .control = Echo(control)},
+            kSearches);
+  std::vector<Aim> aims;
+  const load::Comparison gentle = duel.At(10000.0);
+  AddRatios(gentle, "p50", "round trip at 10,000 poses/s, p50", 1.25, true, &aims);
+  AddRatios(gentle, "p90", "round trip at 10,000 poses/s, p90", 1.30, true, &aims);
+  AddRatios(duel.At(50000.0), "CPU a pose", "processor time a pose at 50,000 poses/s", 2.0, true,
+            &aims);
+  AddRatios(duel.Highest(), "highest rate", "highest rate without loss", 0.5, false, &aims);
+  return aims;
 }
 
 Aim ThousandSubjects(const Setting& setting) {
@@ -153,34 +116,10 @@ std::vector<Aim> Stalled(const Setting& setting) {
 }  // namespace
 
 std::vector<Aim> MeasureAims(const Setting& setting) {
-  std::vector<Aim> aims;
-  {
-    Duel duel(setting);
-    const load::Comparison gentle = duel.At(10000.0);
-    AddRatios(gentle, "p50", "round trip at 10,000 poses/s, p50", 1.25, true, &aims);
-    AddRatios(gentle, "p90", "round trip at 10,000 poses/s, p90", 1.30, true, &aims);
-    AddRatios(duel.At(50000.0), "CPU a pose", "processor time a pose at 50,000 poses/s", 2.0, true,
-              &aims);
-    AddRatios(duel.Highest(), "highest rate", "highest rate without loss", 0.5, false, &aims);
-  }
+  std::vector<Aim> aims = BesideEchoes(setting);
   aims.push_back(ThousandSubjects(setting));
   for (Aim& aim : Stalled(setting)) aims.push_back(std::move(aim));
   aims.push_back(IdleMemory(setting));
-  return aims;
-}
-
-std::vector<Aim> MeasureThreads(const Setting& setting) {
-  std::vector<Aim> aims;
-  Setting with = setting;
-  for (const int threads : {1, 2, 4}) {
-    with.threads = threads;
-    const std::string suffix =
-        ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
-    Duel duel(with);
-    AddRatios(duel.At(50000.0), "CPU a pose", "processor time a pose" + suffix, 2.0, true, &aims);
-    AddRatios(duel.Highest(), "highest rate", "highest rate without loss" + suffix, 0.5, false,
-              &aims);
-  }
   return aims;
 }
 

@@ -13,9 +13,4 @@ namespace furrow::bench {
 // the same core, runs in turn.
 [[nodiscard]] std::vector<Aim> MeasureAims(const Setting& setting);
 
-// Processor time a pose at 50,000 a second and the highest rate without loss, by threads of the
-// daemon, beside the same echoes. On a machine of two cores the daemon has one of them however many
-// threads: there the first says what a thread more costs, and the second that it gains nothing.
-[[nodiscard]] std::vector<Aim> MeasureThreads(const Setting& setting);
-
 }  // namespace furrow::bench

@@ -2,6 +2,9 @@
 // What a daemon on one core can take, and how its cost grows: the figures of docs/PERFORMANCE.md
 // and the curves of docs/CAPACITY.md, by one command.
 #include <cstdio>
+#include <functional>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -9,9 +12,15 @@
 #include "bench/load/budget.h"
 #include "bench/load/curves.h"
 #include "bench/load/figures.h"
+#include "bench/load/threads.h"
+#include "bench/report/command_line.h"
+#include "bench/report/machine.h"
 #include "bench/report/results.h"
 #include "bench/report/take.h"
 #include "character/data_dir.h"
+#include "client/load/clock.h"
+#include "report/table.h"
+#include "report/words.h"
 
 namespace furrow::bench {
 namespace {
@@ -26,11 +35,58 @@ std::filesystem::path DataFile(const std::string& name) {
   return Take(character::FindDataFile(name));
 }
 
-// Prints a part as it is done.
-void Say(const std::string& markdown, std::string* all) {
-  std::printf("%s\n", markdown.c_str());
-  std::fflush(stdout);
-  *all += markdown + "\n";
+// One part of the measurement: its tables and figures; curves also draw themselves.
+struct Part {
+  std::string markdown;
+  nlohmann::json json;
+};
+using Measure = std::function<Part(const Setting&)>;
+
+Part Aims(const Setting& setting) {
+  const auto aims = MeasureAims(setting);
+  return {ToMarkdown(aims, "raw against raw"), ToJson(aims)};
+}
+
+Part Threads(const Setting& setting) {
+  const auto threads = MeasureThreads(setting);
+  return {ToMarkdown(threads), ToJson(threads)};
+}
+
+Part Drawn(const Curve& curve, const Setting& setting) {
+  WriteResult(setting.folder / (curve.id + ".svg"), Draw(curve));
+  return {ToMarkdown(curve), ToJson(curve)};
+}
+
+Part Subjects(const Setting& setting) {
+  const Curve curve = GrowSubjects(setting);
+  Part part = Drawn(curve, setting);
+  part.markdown += "\n" + BudgetMarkdown(curve, setting);
+  return part;
+}
+
+const std::vector<std::pair<std::string, Measure>>& Parts() {
+  static const std::vector<std::pair<std::string, Measure>> parts = {
+      {"aims", Aims},
+      {"threads", Threads},
+      {"subjects", Subjects},
+      {"subscribers", [](const Setting& s) { return Drawn(GrowSubscribers(s), s); }},
+      {"joints", [](const Setting& s) { return Drawn(GrowJoints(s), s); }},
+      {"regions", [](const Setting& s) { return Drawn(GrowRegions(s), s); }}};
+  return parts;
+}
+
+std::vector<std::string> PartNames() {
+  std::vector<std::string> names;
+  for (const auto& [name, measure] : Parts()) names.push_back(name);
+  return names;
+}
+
+std::string Heading(const Machine& machine, const Setting& setting, double minutes) {
+  return "Measured by `bench_load`: " + ToText(machine) + ", load " +
+         report::Fixed(machine.load, 1) + " before it began. Runs of " +
+         report::Fixed(setting.seconds, 1) + " s, " +
+         report::Counted(static_cast<std::uint64_t>(setting.rounds), "round") +
+         " where runs are paired; it took " + report::Fixed(minutes, 1) + " minutes.\n\n";
 }
 
 int Run(Options options) {
@@ -38,36 +94,25 @@ int Run(Options options) {
   if (setting.recording.empty()) setting.recording = DataFile("recordings/performance.bvh");
   if (setting.rig.empty()) setting.rig = DataFile("default.rig.json");
   setting.folder = options.out;
+  const Machine machine = ThisMachine();
+  const std::int64_t begin_ns = load::SteadyNanoseconds();
   std::string markdown;
-  nlohmann::json json;
-  const auto wanted = [&](const std::string& id) {
-    return options.only.empty() || options.only == id;
-  };
-  if (wanted("aims")) {
-    const auto aims = MeasureAims(setting);
-    Say(ToMarkdown(aims, "raw against raw"), &markdown);
-    json["aims"] = ToJson(aims);
+  nlohmann::json json = {{"measured", ToJson(machine)},
+                         {"seconds_of_a_run", setting.seconds},
+                         {"rounds", setting.rounds}};
+  for (const auto& [name, measure] : Parts()) {
+    if (!options.only.empty() && options.only != name) continue;
+    const Part part = measure(setting);
+    std::printf("%s\n", part.markdown.c_str());
+    std::fflush(stdout);
+    markdown += part.markdown + "\n";
+    json[name] = part.json;
   }
-  if (wanted("threads")) {
-    const auto threads = MeasureThreads(setting);
-    Say(ToMarkdown(threads, "raw against raw", "Threads of the daemon"), &markdown);
-    json["threads"] = ToJson(threads);
-  }
-  const std::pair<const char*, Curve (*)(const Setting&)> curves[] = {
-      {"subjects", GrowSubjects},
-      {"subscribers", GrowSubscribers},
-      {"joints", GrowJoints},
-      {"regions", GrowRegions}};
-  for (const auto& [id, grow] : curves) {
-    if (!wanted(id)) continue;
-    const Curve curve = grow(setting);
-    Say(ToMarkdown(curve), &markdown);
-    WriteResult(options.out / (curve.id + ".svg"), Draw(curve));
-    if (std::string(id) == "subjects") Say(BudgetMarkdown(curve, setting), &markdown);
-    json["curves"].push_back(ToJson(curve));
-  }
-  WriteResult(options.out / "load.md", markdown);
-  WriteResult(options.out / "load.json", json.dump(2) + "\n");
+  const double minutes = static_cast<double>(load::SteadyNanoseconds() - begin_ns) / 60e9;
+  json["minutes"] = minutes;
+  const std::string stem = options.only.empty() ? "load" : "load-" + options.only;
+  WriteResult(options.out / (stem + ".md"), Heading(machine, setting, minutes) + markdown);
+  WriteResult(options.out / (stem + ".json"), json.dump(2) + "\n");
   return 0;
 }
 
@@ -80,10 +125,12 @@ int main(int argc, char** argv) {
   options.out = "bench-out";
   CLI::App app{
       "What a furrowd on one core can take, beside raw UDP echoes, and how its cost grows"};
-  app.add_option("--out", options.out, "folder for load.md, load.json and the curves (SVG)")
+  app.add_option("--out", options.out,
+                 "folder for load.md, load.json and the curves (SVG); with --only it is "
+                 "load-PART.md and load-PART.json, and load.md stays as it is")
       ->capture_default_str();
-  app.add_option("--only", options.only,
-                 "one of aims, threads, subjects, subscribers, joints, regions");
+  app.add_option("--only", options.only, "this part alone; default: all, a quarter of an hour")
+      ->check(CLI::IsMember(furrow::bench::PartNames()));
   app.add_option("--daemon", options.setting.daemon, "furrowd; default: beside this program");
   app.add_option("--recording", options.setting.recording, "BVH; default: performance.bvh");
   app.add_option("--rig", options.setting.rig, "wrinkle rig; default: the default character's");
@@ -93,7 +140,7 @@ int main(int argc, char** argv) {
   app.add_option("--rounds", options.setting.rounds, "of paired runs")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  furrow::bench::ReadCommandLine(app, argc, argv);
   furrow::bench::MakeResultFolder(options.out);
   return furrow::bench::Run(options);
 }

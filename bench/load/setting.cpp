@@ -17,7 +17,7 @@ Result<load::RunResult> RunFresh(const Setting& setting, const std::filesystem::
                                  const load::RunOptions& options) {
   const auto performance = cli::LoadPerformance({.file = recording, .rig = rig, .quantise = true});
   if (!performance.ok()) return performance.status();
-  const auto daemon = DaemonProcess::Start(setting.daemon, rig, setting.folder, setting.threads);
+  const auto daemon = DaemonProcess::Start(setting.daemon, rig, setting.folder);
   if (!daemon.ok()) return daemon.status();
   return load::Run(*performance, daemon->target(), options, Silently());
 }

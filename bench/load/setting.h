@@ -16,9 +16,8 @@ struct Setting {
   std::filesystem::path recording;  // BVH
   std::filesystem::path rig;
   std::filesystem::path folder;  // for what is made meanwhile
-  double seconds = 3.0;          // of one run
+  double seconds = 2.0;          // of one run
   int rounds = 11;               // of paired runs
-  int threads = 1;               // of the daemon, as far as there are cores beside this program's
 };
 
 // Hooks of a run that nobody watches.

@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "bench/preview/figures.h"
+#include "bench/report/command_line.h"
 #include "bench/report/results.h"
 #include "character/character.h"
 #include "character/data_dir.h"
@@ -80,7 +81,7 @@ int main(int argc, char** argv) {
   app.add_option("--viewers", options.setting.viewers, "of all figures but the first")
       ->check(CLI::Range(1, 200))
       ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  furrow::bench::ReadCommandLine(app, argc, argv);
   furrow::bench::MakeResultFolder(options.out);
   return furrow::bench::Run(options);
 }

@@ -41,4 +41,21 @@ nlohmann::json ToJson(const std::vector<Aim>& aims) {
   return json;
 }
 
+Result<std::vector<Aim>> AimsFromJson(const nlohmann::json& json) {
+  std::vector<Aim> aims;
+  try {
+    for (const nlohmann::json& aim : json) {
+      aims.push_back({.what = aim.at("figure"),
+                      .baseline = aim.at("against"),
+                      .reached = aim.at("reached"),
+                      .control = aim.at("control"),
+                      .aim = aim.at("aim"),
+                      .met = aim.at("met")});
+    }
+  } catch (const nlohmann::json::exception& error) {
+    return Status(StatusCode::kInvalidArgument, std::string("not a list of aims: ") + error.what());
+  }
+  return aims;
+}
+
 }  // namespace furrow::bench

@@ -6,6 +6,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "wrinkle/status.h"
+
 namespace furrow::bench {
 
 // One line of the table of what is aimed at: a ratio or a number beside its limit.
@@ -26,5 +28,7 @@ struct Aim {
     const std::vector<Aim>& aims, const std::string& control,
     const std::string& title = "What was aimed at, and what was reached");
 [[nodiscard]] nlohmann::json ToJson(const std::vector<Aim>& aims);
+// What ToJson() made. Errors: kInvalidArgument.
+[[nodiscard]] Result<std::vector<Aim>> AimsFromJson(const nlohmann::json& json);
 
 }  // namespace furrow::bench

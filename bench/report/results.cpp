@@ -11,7 +11,8 @@ namespace furrow::bench {
 void MakeResultFolder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) FailWith({StatusCode::kIo, "cannot make the folder: " + error.message(), folder.string()});
+  if (error)
+    FailWith({StatusCode::kIo, "cannot make the folder: " + error.message(), folder.string()});
 }
 
 void WriteResult(const std::filesystem::path& path, const std::string& text) {

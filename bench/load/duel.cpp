@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/load/duel.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "bench/report/aims.h"
+#include "bench/report/take.h"
+#include "client/cli/load_input.h"
+#include "client/load/clock.h"
+
+namespace furrow::bench {
+namespace {
+
+constexpr int kSubjects = 256;
+
+}  // namespace
+
+Duel::Duel(const Setting& setting, const load::Contestants& contestants, int searches)
+    : contestants_(contestants),
+      performance_(Take(cli::LoadPerformance(
+          {.file = setting.recording, .rig = setting.rig, .quantise = true}))) {
+  options_.run = At60Hz(kSubjects, setting.seconds);
+  options_.rounds = setting.rounds;
+  options_.searches = std::min(searches, setting.rounds);
+  options_.probe_seconds = std::min(1.0, setting.seconds);
+  // What is slower is searched for downwards.
+  options_.search_start = 32000.0;
+}
+
+load::Comparison Duel::At(double rate) {
+  load::ComparisonOptions options = options_;
+  options.run.plan.rate = rate / kSubjects;
+  return Run(options);
+}
+
+load::Comparison Duel::Highest() {
+  load::ComparisonOptions options = options_;
+  options.find_max = true;
+  options.rounds = 0;
+  return Run(options);
+}
+
+load::Comparison Duel::Run(const load::ComparisonOptions& options) {
+  load::Comparison comparison = load::Compare(
+      [this](const load::Target& target, const load::RunOptions& run) {
+        return load::Run(performance_, target, run, Silently());
+      },
+      contestants_, options,
+      {.go_on = [] { return true; },
+       .progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); },
+       .seconds = [] { return 1e-9 * static_cast<double>(load::SteadyNanoseconds()); }});
+  if (!comparison.failure.ok()) FailWith(comparison.failure);
+  return comparison;
+}
+
+std::string Between(const load::Spread& ratio) {
+  return Between(ratio.median, ratio.low, ratio.high, 2);
+}
+
+}  // namespace furrow::bench
