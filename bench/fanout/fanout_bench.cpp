@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <utility>
@@ -13,9 +14,12 @@
 #include <CLI/CLI.hpp>
 #include <asio/io_context.hpp>
 #include <asio/ip/udp.hpp>
+#include <nlohmann/json.hpp>
 
 #include "bench/report/aims.h"
+#include "bench/report/command_line.h"
 #include "bench/report/interleave.h"
+#include "bench/report/results.h"
 #include "client/load/spread.h"
 #include "protocol/bundle.h"
 #include "protocol/codec.h"
@@ -147,8 +151,18 @@ std::string Text(const load::Spread& ratio) {
   return Between(ratio.median, ratio.low, ratio.high, 2) + "x";
 }
 
-// One row: so many subjects whose weights leave together.
-std::vector<std::string> Row(int subjects, int weights, int repetitions) {
+// So many subjects whose weights leave together.
+struct Outcome {
+  int subjects = 0;
+  std::size_t bytes = 0;   // of a weight set
+  double sendto_ns = 0.0;  // of processor time a set
+  load::Spread again;      // ratios to it
+  load::Spread cut;        // by the system
+  load::Spread bundled;
+  double sets_a_datagram = 0.0;  // bundled
+};
+
+Outcome MeasureOne(int subjects, int weights, int repetitions) {
   constexpr int kSetsASample = 16384;
   const int batches = std::max(1, kSetsASample / (subjects * static_cast<int>(kSubscribers)));
   FanOut fan_out(subjects, weights);
@@ -167,27 +181,64 @@ std::vector<std::string> Row(int subjects, int weights, int repetitions) {
   fan_out.SendPacked(server::Packing::kShared);
   (void)fan_out.Drain();
   const double sets = static_cast<double>(kSubscribers) * subjects;
-  const double datagrams = static_cast<double>(fan_out.TakeDatagrams());
-  const load::Spread packed = Ratio(samples[3], samples[0]);
-  return {std::to_string(subjects),
-          std::to_string(fan_out.message_bytes()),
-          report::Fixed(MedianCpu(samples[0]) * 1e9, 0),
-          Text(Ratio(samples[1], samples[0])),
-          Text(Ratio(samples[2], samples[0])),
-          Text(packed),
-          report::Fixed(sets / datagrams, 1),
-          packed.median <= kAim ? "yes" : "no"};
+  return {.subjects = subjects,
+          .bytes = fan_out.message_bytes(),
+          .sendto_ns = MedianCpu(samples[0]) * 1e9,
+          .again = Ratio(samples[1], samples[0]),
+          .cut = Ratio(samples[2], samples[0]),
+          .bundled = Ratio(samples[3], samples[0]),
+          .sets_a_datagram = sets / static_cast<double>(fan_out.TakeDatagrams())};
 }
 
-int Run(const std::vector<int>& subjects, const std::vector<int>& weights, int repetitions) {
+std::vector<std::string> Row(const Outcome& outcome) {
+  return {std::to_string(outcome.subjects),
+          std::to_string(outcome.bytes),
+          report::Fixed(outcome.sendto_ns, 0),
+          Text(outcome.again),
+          Text(outcome.cut),
+          Text(outcome.bundled),
+          report::Fixed(outcome.sets_a_datagram, 1),
+          outcome.bundled.median <= kAim ? "yes" : "no"};
+}
+
+nlohmann::json ToJson(const Outcome& outcome) {
+  const auto spread = [](const load::Spread& ratio) {
+    return nlohmann::json{{"median", ratio.median}, {"low", ratio.low}, {"high", ratio.high}};
+  };
+  return {{"subjects", outcome.subjects},
+          {"bytes", outcome.bytes},
+          {"sendto_cpu_ns", outcome.sendto_ns},
+          {"sendto_again", spread(outcome.again)},
+          {"system_cuts", spread(outcome.cut)},
+          {"bundles", spread(outcome.bundled)},
+          {"sets_a_datagram", outcome.sets_a_datagram}};
+}
+
+struct Options {
+  std::vector<int> subjects = {1, 2, 4, 16, 64};
+  std::vector<int> weights = {37, 81};
+  int repetitions = 21;
+  std::filesystem::path out;
+};
+
+int Run(const Options& options) {
   report::Table table{"A weight set to one of 64 subscribers",
                       {"subjects in a batch", "bytes", "sendto, ns of CPU", "sendto again",
                        "system cuts", "bundles", "sets a datagram", "<= 0.45x"},
                       {}};
-  for (const int count : weights) {
-    for (const int each : subjects) table.rows.push_back(Row(each, count, repetitions));
+  nlohmann::json json = nlohmann::json::array();
+  for (const int weights : options.weights) {
+    for (const int subjects : options.subjects) {
+      const Outcome outcome = MeasureOne(subjects, weights, options.repetitions);
+      table.rows.push_back(Row(outcome));
+      json.push_back(ToJson(outcome));
+    }
   }
-  std::printf("%s\n", report::ToMarkdown(table).c_str());
+  const std::string markdown = report::ToMarkdown(table) + "\n";
+  std::fputs(markdown.c_str(), stdout);
+  if (options.out.empty()) return 0;
+  WriteResult(options.out / "fanout.md", markdown);
+  WriteResult(options.out / "fanout.json", json.dump(2) + "\n");
   return 0;
 }
 
@@ -195,21 +246,22 @@ int Run(const std::vector<int>& subjects, const std::vector<int>& weights, int r
 }  // namespace furrow::bench
 
 int main(int argc, char** argv) {
-  std::vector<int> subjects = {1, 2, 4, 16, 64};
-  std::vector<int> weights = {37, 81};
-  int repetitions = 21;
+  furrow::bench::Options options;
   CLI::App app{"What it costs to send weights to 64 subscribers: sendto beside the packed path"};
-  app.add_option("--subjects", subjects, "whose weights leave together")
+  app.add_option("--subjects", options.subjects, "whose weights leave together")
       ->delimiter(',')
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--weights", weights, "of a subject: 37 has the default rig, 81 make 400 bytes")
+  app.add_option("--weights", options.weights,
+                 "of a subject: 37 has the default rig, 81 make 400 bytes")
       ->delimiter(',')
       ->check(CLI::Range(1, 250))
       ->capture_default_str();
-  app.add_option("--repetitions", repetitions, "of each way, in turn")
+  app.add_option("--repetitions", options.repetitions, "of each way, in turn")
       ->check(CLI::Range(3, 10000))
       ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
-  return furrow::bench::Run(subjects, weights, repetitions);
+  app.add_option("--out", options.out, "folder for fanout.md and fanout.json; default: neither");
+  furrow::bench::ReadCommandLine(app, argc, argv);
+  if (!options.out.empty()) furrow::bench::MakeResultFolder(options.out);
+  return furrow::bench::Run(options);
 }
