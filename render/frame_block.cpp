@@ -31,6 +31,13 @@ float HairShadowError(const Settings& settings, std::span<const ShadowView> shad
                   settings.shadow.normal_offset_mm * kMetresPerMm);
 }
 
+// Metres around the focus that shadows fall on: a picture of `radius` metres at the focus widens
+// behind it, and shows what lies as deep as a head or a trunk.
+float ShadedRadius(float radius, float distance) {
+  constexpr float kDepth = 0.15f;
+  return std::hypot(radius * (1.0f + kDepth / std::max(distance, kDepth)), kDepth);
+}
+
 }  // namespace
 
 const SphericalHarmonics& AmbientCache::Get(const GradientSky& sky) {
@@ -52,11 +59,13 @@ FrameSetup SetUpFrame(const FrameRequest& request, const wrinkle::Skeleton& skel
   setup.lighting =
       MakeLighting(request.settings.lights, {setup.camera.heading, setup.camera.target, radius});
   setup.ambient = cache->Get(setup.lighting.sky);
-  setup.shadow_resolution = ShadowResolution(
-      request.settings.shadow, radius, setup.camera.focus_distance() / setup.pixels_per_slope);
+  const float distance = setup.camera.focus_distance();
+  const float shaded = ShadedRadius(radius, distance);
+  setup.shadow_resolution =
+      ShadowResolution(request.settings.shadow, shaded, distance / setup.pixels_per_slope);
   for (int i = 0; i < kNumLights; ++i) {
     setup.shadows[i] =
-        FitShadow(setup.lighting.lights[i], setup.camera.target, radius, setup.shadow_resolution);
+        FitShadow(setup.lighting.lights[i], setup.camera.target, shaded, setup.shadow_resolution);
   }
   setup.hair_shadow_error = HairShadowError(request.settings, setup.shadows);
   return setup;

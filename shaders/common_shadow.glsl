@@ -18,6 +18,25 @@ vec4 shadowCoordinate(Light light, vec3 position) {
   return vec4(p.xy * scale * 0.5 + 0.5, (-p.z - light.shadow.y) * light.shadow.z, 0.5 * scale);
 }
 
+// How fast the plane of a surface sinks away from the lamp, in depth over uv: a look-up nearer to the
+// lamp than `position` is compared with the plane there, or the surface would shade itself (Isidoro
+// 2006, "Shadow Mapping: GPU-based Tips and Techniques"). Further away it is not: smooth normals are
+// those of no plane, and what is curved would.
+const float STEEPEST = 5.0;
+vec2 depthGradient(Light light, vec3 position, vec3 normal) {
+  vec3 n = mat3(light.shadow_view) * normal;
+  vec3 ray = vec3(0.0, 0.0, -1.0);
+  float distance = 1.0;
+  if (light.shadow.w > 0.5) {
+    vec3 p = (light.shadow_view * vec4(position, 1.0)).xyz;
+    distance = max(-p.z, 1e-6);
+    ray = p / distance;
+  }
+  vec2 slope = n.xy / max(-dot(n, ray), 1e-3);  // metres of depth a metre across
+  slope *= min(1.0, STEEPEST / max(length(slope), 1e-6));
+  return slope * (2.0 * distance * light.shadow.z / light.shadow.x);
+}
+
 // From a lamp's own map to where it lies in the texture of all maps. Stays half a texel inside.
 vec2 shadowTile(int light, vec2 uv) {
   float margin = 0.5 / u_shadow_filter.w;
@@ -37,14 +56,14 @@ const int RIM_TAPS = 4;
 float discRadius(int k) { return sqrt((float(k) + 0.5) * (1.0 / float(SHADOW_TAPS))); }
 
 // Mean depth of what stands before `coordinate` within `radius` (uv); 1: nothing does.
-float blockerDepth(int light, vec4 coordinate, float radius, vec2 direction) {
+float blockerDepth(int light, vec4 coordinate, vec2 gradient, float radius, vec2 direction) {
   float sum = 0.0;
   float count = 0.0;
   for (int k = 0; k < SHADOW_TAPS; ++k) {
-    vec2 uv = coordinate.xy + radius * discRadius(k) * direction;
+    vec2 aside = radius * discRadius(k) * direction;
     direction = GOLDEN_TURN * direction;
-    float depth = textureLod(u_shadow_depth, shadowTile(light, uv), 0.0).r;
-    if (depth < coordinate.z) {
+    float depth = textureLod(u_shadow_depth, shadowTile(light, coordinate.xy + aside), 0.0).r;
+    if (depth < coordinate.z + min(dot(gradient, aside), 0.0)) {
       sum += depth;
       count += 1.0;
     }
@@ -53,10 +72,10 @@ float blockerDepth(int light, vec4 coordinate, float radius, vec2 direction) {
 }
 
 // Radius of the filter in metres on the surface.
-float shadowRadius(int light, vec4 coordinate, vec2 direction) {
+float shadowRadius(int light, vec4 coordinate, vec2 gradient, vec2 direction) {
 #if SHADOW_FILTER == 2
   float search = min(u_shadow_filter.y * coordinate.w, 0.05);
-  float blocker = blockerDepth(light, coordinate, search, direction);
+  float blocker = blockerDepth(light, coordinate, gradient, search, direction);
   float range = 1.0 / u_lights[light].shadow.z;
   float toBlocker = u_lights[light].position.w > 0.5
                         ? u_lights[light].shadow.y + blocker * range
@@ -81,22 +100,26 @@ float shadowOf(int light, vec3 position, vec3 normal, vec3 toLight, vec2 pixel) 
                      ? u_lights[light].shadow.y + 0.5 / u_lights[light].shadow.z : 1.0);
   float offset = u_shadow_filter.z + (texel + 0.5 * u_shadow_filter.x) * grazing;
   vec4 coordinate = shadowCoordinate(u_lights[light], position + offset * normal);
+  vec2 gradient = depthGradient(u_lights[light], position, normal);
   float turn = 6.2831853 * pixelNoise(pixel);
   vec2 direction = vec2(cos(turn), sin(turn));
-  float radius = max(shadowRadius(light, coordinate, direction) * coordinate.w, 0.75 / u_shadow_filter.w);
+  float radius = max(shadowRadius(light, coordinate, gradient, direction) * coordinate.w, 0.75 / u_shadow_filter.w);
   float lit = 0.0;
+  // The map ends where the picture does at the focus; of what lies behind it, nothing is known beyond.
+  bool isKnown = all(lessThan(abs(coordinate.xy - 0.5), vec2(0.5)));
   // Where the surface turns away there is nothing to look up: whole groups of pixels leave the loop.
-  int taps = cosine > 0.0 ? SHADOW_TAPS : 0;
+  int taps = cosine > 0.0 && isKnown ? SHADOW_TAPS : 0;
   int looked = 0;
   for (; looked < taps; ++looked) {
-    vec2 uv = coordinate.xy + radius * discRadius(SHADOW_TAPS - 1 - looked) * direction;
+    vec2 aside = radius * discRadius(SHADOW_TAPS - 1 - looked) * direction;
     direction = GOLDEN_TURN * direction;
-    lit += textureLod(u_shadow_compare, vec3(shadowTile(light, uv), min(coordinate.z, 0.9999)), 0.0);
+    float depth = min(coordinate.z + min(dot(gradient, aside), 0.0), 0.9999);
+    lit += textureLod(u_shadow_compare, vec3(shadowTile(light, coordinate.xy + aside), depth), 0.0);
     // The first lie around the disc; where they agree, so do those within.
     bool agree = looked == RIM_TAPS - 1 && (lit <= 0.0 || lit >= float(RIM_TAPS));
     taps = agree ? RIM_TAPS : taps;
   }
-  return lit / float(max(looked, 1));
+  return isKnown ? lit / float(max(looked, 1)) : 1.0;
 #endif
 }
 

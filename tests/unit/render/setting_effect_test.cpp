@@ -27,6 +27,7 @@ const std::map<std::string_view, Case>& Cases() {
       {"shading", {"diffuse"}},
       {"mask_mode", {"dynamic"}},
       {"tone_map", {nullptr, {"exposure=3"}}},
+      {"shadow.filter", {"off"}},
       {"shadow.resolution", {"128"}},
       {"shadow.lamp_mm", {nullptr, {"shadow.filter=pcss"}}},
       {"subsurface.samples", {nullptr, {"subsurface.method=burley"}}},
@@ -50,8 +51,9 @@ bool IsOfCost(std::string_view name) {
          name == "translucency.shrink_mm" || name.starts_with("detail.");
 }
 
-bool IsOfThinSkin(std::string_view name) {
-  return name.starts_with("translucency.") && !IsOfCost(name);
+// Those that want something thin, or something that stands before something else.
+bool IsOfSheets(std::string_view name) {
+  return name.starts_with("translucency.") || name.starts_with("shadow.");
 }
 
 // Another value than the default one: of numbers the end of the range that is further away.
@@ -86,14 +88,18 @@ class SettingEffectTest : public test::WrinkleCacheTest {
     renderer_ = test::Expect(Renderer::Create(head_));
     Randomise(true);
   }
-  // A slab of 4 mm, which light comes through.
-  void MakeThin() {
+  // A slab of 4 mm, which light comes through, and a patch that throws a shadow on it.
+  void MakeSheets() {
     const auto flat = [](float, float) { return 0.0f; };
     head_ = test::MakePlane(16, flat, {flat});
     head_.materials[0].double_sided = true;
     head_.materials[0].thickness = 0.002f;
     head_.meshes.push_back(head_.meshes[0]);
     for (character::Vertex& vertex : head_.meshes[1].vertices) vertex.position.z -= 0.004f;
+    head_.meshes.push_back(head_.meshes[0]);
+    for (character::Vertex& vertex : head_.meshes[2].vertices) {
+      vertex.position = 0.3f * vertex.position + glm::vec3(0.0f, 0.0f, 0.1f);
+    }
     subject_ = test::Subject(head_);
     renderer_ = test::Expect(Renderer::Create(head_));
     camera_ = test::Expect(renderer_->Preset("face"));
@@ -127,11 +133,11 @@ class SettingEffectTest : public test::WrinkleCacheTest {
 
 TEST_F(SettingEffectTest, EverySettingChangesThePicture) {
   for (const SettingInfo& info : AllSettings()) {
-    if (!IsOfCost(info.name) && !IsOfThinSkin(info.name)) ExpectToMatter(info);
+    if (!IsOfCost(info.name) && !IsOfSheets(info.name)) ExpectToMatter(info);
   }
-  MakeThin();
+  MakeSheets();
   for (const SettingInfo& info : AllSettings()) {
-    if (IsOfThinSkin(info.name)) ExpectToMatter(info);
+    if (!IsOfCost(info.name) && IsOfSheets(info.name)) ExpectToMatter(info);
   }
 }
 
