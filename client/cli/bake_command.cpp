@@ -21,6 +21,7 @@
 #include "client/cli/interrupt.h"
 #include "client/cli/progress.h"
 #include "client/cli/staged_folder.h"
+#include "report/words.h"
 
 namespace furrow::cli {
 namespace {
@@ -161,8 +162,8 @@ void PrintSummary(const BakeArguments& arguments, const BakeJob& job, const bake
                  double{s.highest_mm});
   }
   if (!job.poses.notes.empty()) {
-    std::fprintf(stderr, "furrow: %zu sources were not baked; report.html lists them\n",
-                 job.poses.notes.size());
+    std::fprintf(stderr, "furrow: left out of the bake: %s; see report.html\n",
+                 report::Counted(job.poses.notes.size(), "source").c_str());
   }
   std::fprintf(stderr, "furrow: %s in %.1f s; look at %s/report.html, and draw it with --rig %s\n",
                arguments.out.c_str(), seconds, arguments.out.c_str(), NewRig(arguments).c_str());

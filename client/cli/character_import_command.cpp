@@ -13,9 +13,12 @@
 #include "client/cli/inputs.h"
 #include "client/cli/progress.h"
 #include "motion/pose_source.h"
+#include "report/words.h"
 
 namespace furrow::cli {
 namespace {
+
+using report::Counted;
 
 struct ImportArguments {
   std::string in;
@@ -43,10 +46,13 @@ int ImportFolder(const ImportArguments& arguments) {
   PrintWarnings(report.warnings);
   std::fprintf(
       stderr,
-      "furrow: %s: %d joints, %d vertices, %d triangles; %d body faces hidden under clothes, "
-      "%d vertices without weights, %d with more than four\n",
-      arguments.out.c_str(), report.joints, report.vertices, report.triangles, report.hidden_faces,
-      report.unweighted_vertices, report.truncated_vertices);
+      "furrow: %s: %s, %s, %s; %s hidden under clothes, %s without weights, %d with more than "
+      "four\n",
+      arguments.out.c_str(), Counted(report.joints, "joint").c_str(),
+      Counted(report.vertices, "vertex", "vertices").c_str(),
+      Counted(report.triangles, "triangle").c_str(),
+      Counted(report.hidden_faces, "body face").c_str(),
+      Counted(report.unweighted_vertices, "vertex", "vertices").c_str(), report.truncated_vertices);
   return kDone;
 }
 
@@ -87,10 +93,12 @@ int ImportFile(const ImportArguments& arguments) {
     vertices += mesh.vertices.size();
     triangles += mesh.indices.size() / 3;
   }
-  std::fprintf(stderr,
-               "furrow: %s: %d joints, %zu vertices, %zu triangles, %zu drivers, %zu regions\n",
-               arguments.out.c_str(), character.skeleton.num_joints(), vertices, triangles,
-               character.rig.drivers.size(), character.rig.regions.size());
+  std::fprintf(stderr, "furrow: %s: %s, %s, %s, %s, %s\n", arguments.out.c_str(),
+               Counted(character.skeleton.num_joints(), "joint").c_str(),
+               Counted(vertices, "vertex", "vertices").c_str(),
+               Counted(triangles, "triangle").c_str(),
+               Counted(character.rig.drivers.size(), "driver").c_str(),
+               Counted(character.rig.regions.size(), "region").c_str());
   return kDone;
 }
 

@@ -15,9 +15,12 @@
 #include "motion/clip.h"
 #include "motion/file_io.h"
 #include "recording/take_poses.h"
+#include "report/words.h"
 
 namespace furrow::cli {
 namespace {
+
+using report::Counted;
 
 struct ConvertOptions {
   std::string in;
@@ -80,9 +83,10 @@ int ConvertFile(const ConvertOptions& options) {
                       : motion::SaveClip(*clip, options.out, &report);
   PrintWarnings(report.warnings);
   if (!status.ok()) return Fail(status);
-  std::fprintf(stderr, "furrow: %s: %d joints, %zu blend shapes, %d frames, %.3f s\n",
-               options.out.c_str(), clip->skeleton.num_joints(), clip->blend_shape_names.size(),
-               clip->num_frames(), clip->duration());
+  std::fprintf(stderr, "furrow: %s: %s, %s, %s, %.3f s\n", options.out.c_str(),
+               Counted(clip->skeleton.num_joints(), "joint").c_str(),
+               Counted(clip->blend_shape_names.size(), "blend shape").c_str(),
+               Counted(clip->num_frames(), "frame").c_str(), clip->duration());
   return kDone;
 }
 

@@ -11,9 +11,12 @@
 #include "motion/clip.h"
 #include "recording/take_poses.h"
 #include "recording/take_summary.h"
+#include "report/words.h"
 
 namespace furrow::cli {
 namespace {
+
+using report::Counted;
 
 using recording::SubjectSummary;
 using recording::TakeReader;
@@ -28,8 +31,8 @@ int DescribeClip(const std::string& path) {
       clip->duration() > 0.0 ? static_cast<double>(clip->num_frames() - 1) / clip->duration() : 0.0;
   std::printf("%s\n", path.c_str());
   std::printf("  subject     %s\n", clip->name.c_str());
-  std::printf("  skeleton    %d joints, %zu blend shapes\n", clip->skeleton.num_joints(),
-              clip->blend_shape_names.size());
+  std::printf("  skeleton    %s, %s\n", Counted(clip->skeleton.num_joints(), "joint").c_str(),
+              Counted(clip->blend_shape_names.size(), "blend shape").c_str());
   std::printf("  frames      %d in %.3f s, %.2f Hz, longest gap %.3f s\n", clip->num_frames(),
               clip->duration(), rate, longest);
   return kDone;
@@ -58,15 +61,17 @@ void PrintFile(const TakeReader& take) {
 }
 
 void PrintSubject(const std::string& name, const SubjectSummary& subject) {
-  std::printf("  subject     %s: %zu joints, %zu blend shapes; skeletons: %zu, senders: %zu\n",
-              name.c_str(), subject.joints, subject.blend_shapes, subject.skeletons,
+  std::printf("  subject     %s: %s, %s; skeletons: %zu, senders: %zu\n", name.c_str(),
+              Counted(subject.joints, "joint").c_str(),
+              Counted(subject.blend_shapes, "blend shape").c_str(), subject.skeletons,
               subject.sessions.size());
   std::printf("    poses     %zu in %.3f s, %.2f Hz, %" PRIu64 " missing, longest gap %.3f s\n",
               subject.poses, static_cast<double>(subject.last_ns - subject.first_ns) * 1e-9,
               subject.rate(), subject.missing, subject.longest_gap);
-  std::printf("    weights   %zu frames, each of %zu names\n", subject.weights,
-              subject.weight_names);
-  if (subject.unreadable > 0) std::printf("    unreadable %zu messages\n", subject.unreadable);
+  std::printf("    weights   %s, each of %s\n", Counted(subject.weights, "frame").c_str(),
+              Counted(subject.weight_names, "name").c_str());
+  if (subject.unreadable > 0)
+    std::printf("    unreadable %s\n", Counted(subject.unreadable, "message").c_str());
 }
 
 int DescribeTake(const std::string& path) {
@@ -85,7 +90,7 @@ int DescribeTake(const std::string& path) {
   }
   std::printf("%s\n", file.c_str());
   PrintFile(**take);
-  std::printf("  messages    %zu in %.3f s, %zu of them datagrams\n", summary->messages,
+  std::printf("  messages    %zu in %.3f s; of them datagrams: %zu\n", summary->messages,
               summary->seconds(), summary->datagrams);
   for (const auto& [name, subject] : summary->subjects)
     if (only.empty() || only == name) PrintSubject(name, subject);

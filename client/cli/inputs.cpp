@@ -11,6 +11,7 @@
 #include "client/cli/progress.h"
 #include "motion/pose_source.h"
 #include "recording/take_clip.h"
+#include "report/words.h"
 
 namespace furrow::cli {
 
@@ -70,15 +71,15 @@ Result<character::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map) {
 
 void WarnOfMissing(const wrinkle::RigBinding& binding, const motion::Clip& clip) {
   static constexpr std::size_t kNamed = 4;
-  const auto warn = [](std::span<const std::string> names, const std::string& what) {
+  const auto warn = [](std::span<const std::string> names, const std::string& one) {
     if (names.empty()) return;
-    std::string text = "the recording lacks " + std::to_string(names.size()) + " " + what +
+    std::string text = "the recording lacks " + report::Counted(names.size(), one) +
                        " of the rig, their drivers rest: " + names[0];
     for (std::size_t i = 1; i < std::min(names.size(), kNamed); ++i) text += ", " + names[i];
     PrintWarnings({text + (names.size() > kNamed ? ", ..." : "")});
   };
-  warn(binding.missing_joints(), "joints");
-  if (!clip.blend_shape_names.empty()) warn(binding.missing_blend_shapes(), "blend shapes");
+  warn(binding.missing_joints(), "joint");
+  if (!clip.blend_shape_names.empty()) warn(binding.missing_blend_shapes(), "blend shape");
 }
 
 Result<character::Character> LoadCharacterArgument(const std::string& glb, const std::string& rig) {

@@ -9,9 +9,12 @@
 #include "client/cli/character_command.h"
 #include "client/cli/exit_code.h"
 #include "client/cli/inputs.h"
+#include "report/words.h"
 
 namespace furrow::cli {
 namespace {
+
+using report::Counted;
 
 struct ProposeArguments {
   std::string file;
@@ -39,11 +42,10 @@ int Propose(const ProposeArguments& arguments) {
   if (!proposal.ok()) return Fail(proposal.status().At(arguments.file));
   if (Status s = character::SaveRig(proposal->rig, arguments.out); !s.ok()) return Fail(s);
   PrintNotes(proposal->remarks);
-  std::fprintf(stderr,
-               "furrow: %s: %zu drivers, %zu regions, %zu reference poses; edit it, then "
-               "`furrow rig check`\n",
-               arguments.out.c_str(), proposal->rig.drivers.size(), proposal->rig.regions.size(),
-               proposal->rig.reference_poses.size());
+  std::fprintf(stderr, "furrow: %s: %s, %s, %s; edit it, then `furrow rig check`\n",
+               arguments.out.c_str(), Counted(proposal->rig.drivers.size(), "driver").c_str(),
+               Counted(proposal->rig.regions.size(), "region").c_str(),
+               Counted(proposal->rig.reference_poses.size(), "reference pose").c_str());
   return kDone;
 }
 

@@ -19,9 +19,12 @@
 #include "client/cli/progress.h"
 #include "client/cli/take_listener.h"
 #include "recording/take_poses.h"
+#include "report/words.h"
 
 namespace furrow::cli {
 namespace {
+
+using report::Counted;
 
 struct RecordOptions {
   std::string host;
@@ -51,9 +54,9 @@ class RecordingLine {
     if (bar_) return bar_->Set(now_us - start_us_);
     if (!terminal_ || now_us - shown_us_ < kInterval) return;
     shown_us_ = now_us;
-    std::fprintf(stderr, "\rrecording %.1f s, %" PRIu64 " poses, %" PRIu64 " left out",
-                 static_cast<double>(now_us - start_us_) * 1e-6, take.num_poses(),
-                 take.num_dropped());
+    std::fprintf(stderr, "\rrecording %.1f s, %s, %" PRIu64 " left out",
+                 static_cast<double>(now_us - start_us_) * 1e-6,
+                 Counted(take.num_poses(), "pose").c_str(), take.num_dropped());
   }
 
  private:
@@ -80,18 +83,18 @@ Result<recording::TakeFolderOptions> FolderOptions(const RecordOptions& options)
 // `failed`: not all of it could be written.
 void PrintSummary(const TakeListener& take, bool failed) {
   if (take.folder() == nullptr) return;
-  std::fprintf(stderr, "furrow: %" PRIu64 " poses and %" PRIu64 " weights of %s %s %s",
-               take.num_poses(), take.num_weights(), take.SubjectNames().c_str(),
+  std::fprintf(stderr, "furrow: %s and %s of %s %s %s", Counted(take.num_poses(), "pose").c_str(),
+               Counted(take.num_weights(), "weight").c_str(), take.SubjectNames().c_str(),
                failed ? "came; 'furrow info' tells how many are in" : "in",
                take.folder()->path().c_str());
   if (take.folder()->num_files() > 1) {
-    std::fprintf(stderr, " and %d files before it", take.folder()->num_files() - 1);
+    std::fprintf(stderr, " and %s before it",
+                 Counted(take.folder()->num_files() - 1, "file").c_str());
   }
   std::fputs("\n", stderr);
   if (take.num_dropped() == 0) return;
-  std::fprintf(
-      stderr, "furrow: %" PRIu64 " frames are missing: this computer or the network was too slow\n",
-      take.num_dropped());
+  std::fprintf(stderr, "furrow: missing: %s; this computer or the network was too slow\n",
+               Counted(take.num_dropped(), "frame").c_str());
 }
 
 // Whether there is something left to record of everybody: false once the last one has left.

@@ -14,8 +14,11 @@
 #include "client/cli/exit_code.h"
 #include "client/cli/interrupt.h"
 #include "client/cli/progress.h"
+#include "report/words.h"
 
 namespace furrow::cli {
+
+using report::Counted;
 
 using client::IoStatus;
 using std::chrono::microseconds;
@@ -96,11 +99,11 @@ int SessionPlayer::Report() const {
     exit_code = kFailed;
   }
   if (refused_ > 0) {
-    std::fprintf(stderr, "furrow: nobody listened for %" PRId64 " of %" PRId64 " poses\n",
-                 std::min(refused_, spacing.count()), spacing.count());
+    std::fprintf(stderr, "furrow: nobody listened for %" PRId64 " of %s\n",
+                 std::min(refused_, spacing.count()), Counted(spacing.count(), "pose").c_str());
     return kNoConnection;
   }
-  std::string poses = std::to_string(spacing.count()) + " poses";
+  std::string poses = Counted(spacing.count(), "pose");
   if (tracks_.size() > 1) poses += " of " + std::to_string(tracks_.size()) + " subjects";
   std::fprintf(stderr, "furrow: %s; spacing off by %.3f ms on average, %.3f ms at most\n",
                poses.c_str(), spacing.mean_ms(), spacing.largest_ms());

@@ -11,6 +11,7 @@
 #include "protocol/hash.h"
 #include "recording/take_writer.h"
 #include "recording/wire_pose.h"
+#include "report/words.h"
 
 namespace furrow::cli {
 namespace {
@@ -158,8 +159,8 @@ Result<std::string> WeightsToCsv(recording::TakeReader& take, const std::string&
                   file, "'furrow solve' computes them from its poses");
   }
   if (table.foreign() > 0) {
-    report->warnings.push_back(file + ": " + std::to_string(table.foreign()) +
-                               " weights have other names than the first and are left out");
+    report->warnings.push_back(file + ": left out: " + report::Counted(table.foreign(), "frame") +
+                               " of weights with other names than the first");
   }
   return table.csv();
 }

@@ -5,8 +5,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "report/words.h"
+
 namespace furrow::load {
 namespace {
+
+using furrow::report::Counted;
 
 // What may befall a datagram, by an option of the same probability.
 struct Fault {
@@ -43,7 +47,7 @@ bool NothingSwallowed(const ChaosOutcome& up, const ChaosOutcome& down) {
 
 std::string ToText(const std::string& way, const ChaosOutcome& outcome) {
   const ChaosCounts& counts = outcome.counts;
-  std::string text = way + ": " + std::to_string(counts.packets) + " datagrams";
+  std::string text = way + ": " + Counted(counts.packets, "datagram");
   for (const Fault& fault : kFaults) {
     if (Asked(outcome.options, fault))
       text += ", " + std::string(fault.done) + " " + std::to_string(counts.*fault.count);
@@ -52,9 +56,9 @@ std::string ToText(const std::string& way, const ChaosOutcome& outcome) {
     text += ", swallowed " + std::to_string(counts.swallowed);
   const ChaosStreamCounts& stream = outcome.stream_counts;
   if (stream.connections == 0) return text;
-  return text + "\n" + way + " over TCP: " + std::to_string(stream.connections) + " connections, " +
-         std::to_string(stream.bytes) + " bytes, held back " + std::to_string(stream.held) +
-         " times, stood still for " + std::to_string(stream.still_us / 1000) + " ms";
+  return text + "\n" + way + " over TCP: " + Counted(stream.connections, "connection") + ", " +
+         Counted(stream.bytes, "byte") + ", held back " + Counted(stream.held, "time") +
+         ", stood still for " + std::to_string(stream.still_us / 1000) + " ms";
 }
 
 std::string NothingPlanted(const ChaosOutcome& up, const ChaosOutcome& down) {
