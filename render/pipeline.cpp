@@ -53,8 +53,15 @@ Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, 
   TextureDesc desc{size.width, size.height, PixelFormat::kRgba16F, settings.anti_aliasing.samples};
   Handle shown;
   Handle bloom;
-  if (NeedsSkinPipeline(view, settings)) {
-    shown = AddSkin(graph, request, settings, desc, shadows);
+  const bool casts = settings.shadow.filter != ShadowFilter::kOff && settings.shadow.lamps > 0;
+  if (casts && NeedsSkinPipeline(view, settings) && shadows->version < 0) {
+    *shadows = shadow_pass_.Add(graph, request);
+  }
+  if (view == View::kShadowMaps && casts) {
+    desc.samples = 1;
+    shown = AddShadowMaps(graph, *shadows, desc);
+  } else if (NeedsSkinPipeline(view, settings)) {
+    shown = AddSkin(graph, request, settings, desc, *shadows);
     desc.samples = 1;
     if (view == View::kFinal || view == View::kBloom) {
       bloom = AddBloomPass(graph, shown, desc, settings, &fullscreen_);
@@ -73,10 +80,7 @@ Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, 
 }
 
 Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const Settings& settings,
-                         const TextureDesc& desc, Handle* shadows) {
-  if (settings.shadow.filter != ShadowFilter::kOff && settings.shadow.lamps > 0) {
-    if (shadows->version < 0) *shadows = shadow_pass_.Add(graph, request);
-  }
+                         const TextureDesc& desc, Handle shadows) {
   const CameraFrame& camera = scene_->setup().camera;
   const float slope = camera.PixelsPerSlope(desc.height);
   const auto project = [&](const JointBounds& bounds) {
@@ -90,7 +94,7 @@ Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const S
   };
   const OcclusionGeometry view{desc.width, desc.height,      glm::mat3(camera.view),
                                slope,      project(bounds_), SkinBackground(settings)};
-  const Surface surface = AddSurface(graph, settings, desc, *shadows, view);
+  const Surface surface = AddSurface(graph, settings, desc, shadows, view);
   const SkinGeometry skin{.width = desc.width,
                           .height = desc.height,
                           .focus_distance = camera.focus_distance(),
@@ -133,13 +137,20 @@ Pipeline::Surface Pipeline::AddSurface(FrameGraph* graph, const Settings& settin
           open};
 }
 
+Handle Pipeline::AddShadowMaps(FrameGraph* graph, Handle shadows, const TextureDesc& desc) {
+  const int texels = kNumLights * scene_->setup().shadow_resolution;
+  const float scale = static_cast<float>(desc.width) / static_cast<float>(texels);
+  return AddShowPass(graph, shadows, {.kind = ShowTarget::Kind::kMaps, .scale = scale}, desc,
+                     &fullscreen_);
+}
+
 Handle Pipeline::AddShown(FrameGraph* graph, const Surface& surface, View view,
                           const TextureDesc& desc) {
   const CameraFrame& camera = scene_->setup().camera;
   ShowTarget show;
   Handle target = surface.lit.depth;
   if (view == View::kDepth) {
-    const float radius = camera.StageRadius(1.0f);
+    const float radius = 0.5f * camera.StageRadius(1.0f);
     show = {.kind = ShowTarget::Kind::kMetres,
             .near_metres = camera.focus_distance() - radius,
             .far_metres = camera.focus_distance() + radius};

@@ -39,7 +39,7 @@ class Pipeline {
  private:
   [[nodiscard]] FrameGraph::Handle AddSkin(FrameGraph* graph, const FrameRequest& request,
                                            const Settings& settings, const TextureDesc& desc,
-                                           FrameGraph::Handle* shadows);
+                                           FrameGraph::Handle shadows);
   // What is known of the surfaces once light fell on them.
   struct Surface {
     SkinTargets lit;
@@ -49,6 +49,8 @@ class Pipeline {
   [[nodiscard]] Surface AddSurface(FrameGraph* graph, const Settings& settings,
                                    const TextureDesc& desc, FrameGraph::Handle shadows,
                                    const OcclusionGeometry& view);
+  [[nodiscard]] FrameGraph::Handle AddShadowMaps(FrameGraph* graph, FrameGraph::Handle shadows,
+                                                 const TextureDesc& desc);
   [[nodiscard]] FrameGraph::Handle AddShown(FrameGraph* graph, const Surface& surface, View view,
                                             const TextureDesc& desc);
 

@@ -12,7 +12,7 @@ using Words = std::span<const std::string_view>;
 constexpr std::array<std::string_view, kNumViews> kViewNames = {
     "final",  "normal",     "mask_dynamic", "mask_texture", "weights",      "wireframe",
     "shadow", "irradiance", "scattered",    "specular",     "translucency", "albedo",
-    "depth",  "material",   "occlusion",    "bloom"};
+    "depth",  "material",   "occlusion",    "bloom",        "shadow_maps"};
 constexpr std::array<std::string_view, 2> kShadingWords = {"diffuse", "skin"};
 constexpr std::array<std::string_view, 2> kBlendWords = {"partial_derivative", "tangent_space"};
 constexpr std::array<std::string_view, 3> kMaskWords = {"rig", "dynamic", "texture"};

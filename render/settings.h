@@ -32,12 +32,14 @@ enum class View {
   kSpecular,      // specular light alone
   kTranslucency,  // light through thin parts alone
   kAlbedo,
-  kDepth,      // linear: white at the near plane, black one focus radius behind the target
+  kDepth,      // linear: white to black over the picture's own width, the target in the middle
   kMaterial,   // skin red, cloth blue, eyes white, hair green, others grey
   kOcclusion,  // 1: open
   kBloom,
+  kShadowMaps,  // the lamps' depth maps side by side: white is near the lamp, black where nothing
+                // is
 };
-inline constexpr int kNumViews = 16;
+inline constexpr int kNumViews = 17;
 
 [[nodiscard]] std::string_view ViewName(View view);           // "mask_dynamic"
 [[nodiscard]] Result<View> ParseView(std::string_view name);  // error lists the names

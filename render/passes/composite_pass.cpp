@@ -15,6 +15,7 @@ Show ShowOf(View view) {
     case View::kMaskDynamic:
     case View::kMaskTexture:
     case View::kShadow:
+    case View::kShadowMaps:
     case View::kDepth:
     case View::kMaterial:
     case View::kOcclusion: return Show::kData;

@@ -53,8 +53,9 @@ Handle AddShowPass(FrameGraph* graph, Handle target, const ShowTarget& show,
        .defines = {"SHOWN " + std::to_string(static_cast<int>(show.kind))},
        .reads = {target},
        .writes = {{"shown", {desc.width, desc.height, PixelFormat::kRgba16F, 1}}}},
-      [fullscreen, show] {
-        glUniform4f(kLook, show.scale, show.near_metres, show.far_metres, 0.0f);
+      [fullscreen, show, height = desc.height] {
+        glUniform4f(kLook, show.scale, show.near_metres, show.far_metres,
+                    static_cast<float>(height));
         fullscreen->Draw();
       });
 }

@@ -15,7 +15,8 @@ inline constexpr int kBloomScale = 4;  // pixels of the picture to one of the bl
 
 // How a target is made visible.
 struct ShowTarget {
-  enum class Kind { kColour, kMetres, kRed, kWhite };
+  // kMaps: depths in [0, 1], all of the target in the middle of the picture.
+  enum class Kind { kColour, kMetres, kRed, kWhite, kMaps };
   Kind kind = Kind::kColour;
   float scale = 1.0f;  // pixels of the picture to one texel
   float near_metres = 0.0f;
