@@ -10,7 +10,7 @@ namespace furrow::load {
 [[nodiscard]] bool Held(const RunResult& result, double p99_limit_us);
 
 // Whether nothing at all can be said against a run: Held() but for the percentile, and nothing was
-// late, early or undecodable, and every weight was checked. What --strict asks for.
+// late or undecodable, and every weight was checked. What --strict asks for.
 [[nodiscard]] bool Clean(const RunResult& result);
 
 // Whether the sending side was the one that fell behind: poses that did not leave, datagrams lost

@@ -53,7 +53,8 @@ class LoadTest(unittest.TestCase):
     def load(self, host, *args, patience=PATIENT):
         """Runs `furrow load`: its figures as JSON, and what it printed."""
         figures = self.folder / "figures.json"
-        result = furrow("load", host, PERFORMANCE, *patience, "--json", figures, *args, check=0)
+        result = furrow("load", host, PERFORMANCE, *patience, "--json", figures, *args)
+        self.assertEqual(result.returncode, 0, (args, result.stdout.decode(), result.stderr.decode()))
         return json.loads(figures.read_text())["run"], result.stdout.decode()
 
     def test_a_right_daemon_is_found_right_over_every_path(self):

@@ -50,11 +50,15 @@ TEST(Verdict, WhatIsNotWholeIsNeitherHeldNorClean) {
   }
 }
 
+// That is said of this machine's clocks, and not of a server.
+TEST(Verdict, WhatClocksCallEarlyIsClean) {
+  EXPECT_TRUE(Clean(But([](RunResult& run) { run.tally.early = 1; })));
+}
+
 TEST(Verdict, LateUncheckedAndUndecodableAreHeldButNotClean) {
   const std::function<void(RunResult&)> faults[] = {
-      [](RunResult& run) { run.tally.late = 1; }, [](RunResult& run) { run.tally.early = 1; },
-      [](RunResult& run) { run.tally.unchecked = 1; }, [](RunResult& run) { run.malformed = 1; },
-      [](RunResult& run) { run.checked_names = false; }};
+      [](RunResult& run) { run.tally.late = 1; }, [](RunResult& run) { run.tally.unchecked = 1; },
+      [](RunResult& run) { run.malformed = 1; }, [](RunResult& run) { run.checked_names = false; }};
   int i = 0;
   for (const auto& fault : faults) {
     EXPECT_TRUE(Held(But(fault), kLimitUs)) << i;
