@@ -28,7 +28,7 @@ micro=(--benchmark_repetitions=5 --benchmark_enable_random_interleaving=true --b
 fanout=()
 load=()
 if [[ $quick == yes ]]; then
-  micro=(--benchmark_min_time=0.01)
+  micro=(--benchmark_repetitions=2 --benchmark_min_time=0.01)
   fanout=(--subjects 1,4 --repetitions 3)
   load=(--rounds 1 --seconds 0.3)
 fi

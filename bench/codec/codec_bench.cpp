@@ -69,7 +69,7 @@ void ForEach(benchmark::State& state, Ring<Bytes> messages, const Use& use) {
     benchmark::ClobberMemory();
   }
   if (!ok) state.SkipWithError("refused");
-  allocations.Report(state);
+  allocations.Refuse(state);
   state.SetBytesProcessed(state.iterations() * size);
 }
 
@@ -103,7 +103,7 @@ void Write(benchmark::State& state, Ring<Frame> frames, const Options&... option
     benchmark::DoNotOptimize(message.data());
     benchmark::ClobberMemory();
   }
-  allocations.Report(state);
+  allocations.Refuse(state);
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(message.size()));
 }
 

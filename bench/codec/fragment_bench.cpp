@@ -48,7 +48,7 @@ void BM_Fragment(benchmark::State& state) {
       benchmark::ClobberMemory();
     }
   }
-  allocations.Report(state);
+  allocations.Refuse(state);
   Report(state, message);
 }
 
@@ -67,7 +67,7 @@ void BM_Reassemble(benchmark::State& state) {
       break;
     }
   }
-  allocations.Report(state, true);
+  allocations.Report(state);
   Report(state, message);
 }
 
