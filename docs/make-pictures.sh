@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Makes the pictures of the documents anew from a build: docs/make-pictures.sh [BUILD_DIR]
+# Makes the pictures of the documents anew from a build: docs/make-pictures.sh [BUILD_DIR [NAMES...]]
+# NAMES: of the functions below, to make only what they make: docs/make-pictures.sh build/dev subsurface
 #
 # FURROW_SHARED_DATA (default ../shared/data): MakeHuman's data and a recording made for its skeleton;
 # where it is not there, the pictures of the MakeHuman character stay as they are.
@@ -135,13 +136,19 @@ wrinkles() {
 }
 
 subsurface() {
-  local names=()
+  local above=() below=()
   for method in off gaussians separable burley preintegrated; do
-    size=640x640 still "subsurface_$method" --pose neutral --camera mouth --lights hard \
+    size=1000x1000 still "whole_$method" --pose neutral --camera mouth --lights hard \
       --set "subsurface.method=$method"
-    names+=("subsurface_$method")
+    oiiotool "$work/whole_$method.png" --cut 320x320+360+40 -o "$work/subsurface_$method.png"
+    above+=("subsurface_$method")
   done
-  sheet subsurface 5x1 1600 "${names[@]}"
+  for method in off gaussians separable burley preintegrated; do
+    oiiotool "$work/subsurface_$method.png" "$work/subsurface_gaussians.png" --absdiff --mulc 6 \
+      -o "$work/difference_$method.png"
+    below+=("difference_$method")
+  done
+  sheet subsurface 5x2 1600 "${above[@]}" "${below[@]}"
 }
 
 # Ten people on one recording, each at another moment of it.
@@ -207,6 +214,11 @@ makehuman() {
   sheet makehuman_faces 6x2 1440 "${names[@]}"
   bodies makehuman --character "$work/makehuman.glb"
 }
+
+if (($# > 1)); then
+  for name in "${@:2}"; do "$name"; done
+  exit
+fi
 
 performance
 views
