@@ -2,12 +2,15 @@
 // What a daemon on one core can take, and how its cost grows: the figures of docs/PERFORMANCE.md
 // and the curves of docs/CAPACITY.md, by one command.
 #include <cstdio>
+#include <filesystem>
 #include <functional>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "bench/load/budget.h"
 #include "bench/load/curves.h"
@@ -25,15 +28,14 @@
 namespace furrow::bench {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct Options {
   Setting setting;
-  std::filesystem::path out;
   std::string only;
 };
 
-std::filesystem::path DataFile(const std::string& name) {
-  return Take(character::FindDataFile(name));
-}
+fs::path DataFile(const std::string& name) { return Take(character::FindDataFile(name)); }
 
 // One part of the measurement: its tables and figures; curves also draw themselves.
 struct Part {
@@ -53,7 +55,7 @@ Part Threads(const Setting& setting) {
 }
 
 Part Drawn(const Curve& curve, const Setting& setting) {
-  WriteResult(setting.folder / (curve.id + ".svg"), Draw(curve));
+  WriteResult(setting.out / (curve.id + ".svg"), Draw(curve));
   return {ToMarkdown(curve), ToJson(curve)};
 }
 
@@ -93,7 +95,9 @@ int Run(Options options) {
   Setting& setting = options.setting;
   if (setting.recording.empty()) setting.recording = DataFile("recordings/performance.bvh");
   if (setting.rig.empty()) setting.rig = DataFile("default.rig.json");
-  setting.folder = options.out;
+  // It stays where the program fails: messages point to the daemon's log in it.
+  setting.folder = fs::temp_directory_path() / ("bench_load-" + std::to_string(getpid()));
+  MakeResultFolder(setting.folder);
   const Machine machine = ThisMachine();
   const std::int64_t begin_ns = load::SteadyNanoseconds();
   std::string markdown;
@@ -111,8 +115,10 @@ int Run(Options options) {
   const double minutes = static_cast<double>(load::SteadyNanoseconds() - begin_ns) / 60e9;
   json["minutes"] = minutes;
   const std::string stem = options.only.empty() ? "load" : "load-" + options.only;
-  WriteResult(options.out / (stem + ".md"), Heading(machine, setting, minutes) + markdown);
-  WriteResult(options.out / (stem + ".json"), json.dump(2) + "\n");
+  WriteResult(setting.out / (stem + ".md"), Heading(machine, setting, minutes) + markdown);
+  WriteResult(setting.out / (stem + ".json"), json.dump(2) + "\n");
+  std::error_code ignored;
+  fs::remove_all(setting.folder, ignored);
   return 0;
 }
 
@@ -122,10 +128,10 @@ int Run(Options options) {
 int main(int argc, char** argv) {
   furrow::bench::Options options;
   options.setting.daemon = std::filesystem::path(argv[0]).parent_path() / "furrowd";
-  options.out = "bench-out";
+  options.setting.out = "bench-out";
   CLI::App app{
       "What a furrowd on one core can take, beside raw UDP echoes, and how its cost grows"};
-  app.add_option("--out", options.out,
+  app.add_option("--out", options.setting.out,
                  "folder for load.md, load.json and the curves (SVG); with --only it is "
                  "load-PART.md and load-PART.json, and load.md stays as it is")
       ->capture_default_str();
@@ -141,6 +147,6 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   furrow::bench::ReadCommandLine(app, argc, argv);
-  furrow::bench::MakeResultFolder(options.out);
+  furrow::bench::MakeResultFolder(options.setting.out);
   return furrow::bench::Run(options);
 }

@@ -15,7 +15,8 @@ struct Setting {
   std::filesystem::path daemon;     // furrowd
   std::filesystem::path recording;  // BVH
   std::filesystem::path rig;
-  std::filesystem::path folder;  // for what is made meanwhile
+  std::filesystem::path folder;  // for what is made meanwhile: rigs, recordings, the daemon's log
+  std::filesystem::path out;     // for results
   double seconds = 2.0;          // of one run
   int rounds = 11;               // of paired runs
 };
