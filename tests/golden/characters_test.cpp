@@ -2,9 +2,9 @@
 // The two characters that people see, each with one side of its brow raised and the other lowered,
 // sneering and half smiling, so that a side mistaken for the other shows. The default character: in
 // every view. MakeHuman's: where its data is at hand.
+#include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 

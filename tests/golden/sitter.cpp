@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sitter.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>

@@ -3,6 +3,8 @@
 // as the whole pipeline lights them.
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <string>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>

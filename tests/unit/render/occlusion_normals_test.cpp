@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Wrinkles are normals alone: ambient occlusion must see them all the same.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
