@@ -119,7 +119,7 @@ float shadowOf(int light, vec3 position, vec3 normal, vec3 toLight, vec2 pixel) 
     bool agree = looked == RIM_TAPS - 1 && (lit <= 0.0 || lit >= float(RIM_TAPS));
     taps = agree ? RIM_TAPS : taps;
   }
-  return isKnown ? lit / float(max(looked, 1)) : 1.0;
+  return isKnown || cosine <= 0.0 ? lit / float(max(looked, 1)) : 1.0;
 #endif
 }
 

@@ -43,6 +43,16 @@ float sheen(vec3 normal, vec3 toLight, vec3 toCamera) {
 // Share of light from `cosine` that the fuzz reflects in all, [0, 1]: a fit to 0.02.
 float sheenAlbedo(float cosine) { return 0.78 - 0.7 * sqrt(cosine); }
 
+// Share of a lamp's light that a surface of bumps sends on: none hides another by its normal alone,
+// and where light grazes those that face it would blaze, up to a hard edge (Estevez, Lecocq and Stein
+// 2019, "A Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem").
+float bumpShadow(Facet facet, vec3 toLight) {
+  float bump = saturate(dot(facet.geometric, facet.normal));
+  float cosine = saturate(dot(facet.geometric, toLight));
+  float steep = min(0.125 * (1.0 / max(bump * bump, 1e-4) - 1.0), 1.0);
+  return 2.0 / (1.0 + sqrt(1.0 + steep * (1.0 / max(cosine * cosine, 1e-4) - 1.0)));
+}
+
 // Diffuse light of a lamp without its shadow, by table where that scatters.
 vec3 diffuseOf(Facet facet, Arrival arrival, float cosine) {
   vec3 facing = vec3(saturate(cosine));
@@ -67,6 +77,7 @@ void addLamp(int i, Facet facet, vec3 toCamera, inout Lit lit) {
     seen = shadowOf(i, facet.position, facet.geometric, arrival.toLight, turned);
   }
   lit.visible[i] = seen * saturate(sign(cosine));
+  if (facet.kind != MATERIAL_HAIR) seen *= bumpShadow(facet, arrival.toLight);
   float facing = saturate(cosine);
   vec3 irradiance = arrival.radiance * (facing * seen);
   float leaves = 1.0;

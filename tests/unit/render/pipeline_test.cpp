@@ -2,6 +2,7 @@
 #include "render/pipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -218,6 +219,29 @@ TEST_F(PipelineTest, BloodFlowPalesByItsScale) {
   without.wrinkle_maps.blood_flow = 0.0f;
   const Image pale = Draw(Skin(), 96), plain = Draw(without, 96);
   for (int c = 0; c < 3; ++c) EXPECT_GT(Mean(pale, c), Mean(plain, c) + 1.0);
+}
+
+// Light that grazes a sheet of bumps: of those that face it most stand in the shadow of others.
+TEST_F(PipelineTest, BumpsDoNotBlazeWhereLightGrazes) {
+  const auto flat = [](float, float) { return 0.0f; };
+  const auto bumpy = [](float u, float v) {
+    return 0.04f * std::sin(60.0f * u) * std::sin(60.0f * v);
+  };
+  Settings settings = Skin();
+  settings.view = View::kIrradiance;
+  settings.subsurface.mix = 0.0f;
+  settings.lights.preset = LightPreset::kThesis;
+  settings.lights.turn_degrees = -39.0f;  // the first lamp hardly stands above the sheet
+  settings.lights.ambient = 0.0f;
+  settings.lights.fill = settings.lights.rim = glm::vec3(0.0f);
+  head_ = test::MakePlane(64, flat, {flat});
+  Make("r0");
+  const double smooth = Mean(Draw(settings, 64), 0);
+  head_ = test::MakePlane(64, bumpy, {flat});
+  Make("r0");
+  const double rough = Mean(Draw(settings, 64), 0);
+  EXPECT_GT(smooth, 1.0);
+  EXPECT_LT(rough, 1.2 * smooth);
 }
 
 // A sheet lit from behind: light comes through it, and less the more flesh it has to pass.
