@@ -10,7 +10,7 @@ namespace furrow::cli {
 void AddChaosFlags(CLI::App& command, ChaosFlags& flags) {
   load::ChaosOptions& options = flags.options;
   const auto probability = [&](const char* name, double& value, const char* help) {
-    command.add_option(name, value, help)->check(CLI::Range(0.0, 1.0))->capture_default_str();
+    command.add_option(name, value, help)->check(Within(0.0, 1.0))->capture_default_str();
   };
   command
       .add_option("--seed", options.seed,
@@ -21,10 +21,10 @@ void AddChaosFlags(CLI::App& command, ChaosFlags& flags) {
   probability("--duplicate", options.duplicate, "Share that is sent twice");
   probability("--delay", options.delay, "Share that comes --delay-by later");
   command.add_option("--delay-by", options.delay_ms, "Milliseconds")
-      ->check(CLI::Range(0.0, 3.6e6))
+      ->check(Within(0.0, 3.6e6))
       ->capture_default_str();
   command.add_option("--jitter", options.jitter_ms, "Each comes up to so many milliseconds later")
-      ->check(CLI::Range(0.0, 3.6e6))
+      ->check(Within(0.0, 3.6e6))
       ->capture_default_str();
   probability("--falsify", options.falsify,
               "Share of the poses and weights of which one number is changed");

@@ -25,9 +25,9 @@ void AddWhat(CLI::App& command, LoadFlags& options) {
   command
       .add_option("--rate", options.run.plan.rate,
                   "Poses a second of each subject; default: the recording's own spacing")
-      ->check(CLI::Range(0.01, 100000.0));
+      ->check(Within(0.01, 100000.0));
   command.add_option("--duration", options.run.plan.seconds, "Seconds of one run")
-      ->check(CLI::Range(0.01, 1e6))
+      ->check(Within(0.01, 1e6))
       ->capture_default_str();
   auto* udp = command.add_flag("--udp", options.udp, "Poses and weights as datagrams (default)");
   auto* tcp = command.add_flag("--tcp", options.tcp, "Over TCP")->excludes(udp);
@@ -39,7 +39,7 @@ void AddWhat(CLI::App& command, LoadFlags& options) {
       "furrowd's port of the transport that HOST does not name (7400 TCP, 7401 UDP)");
   command.add_flag("--quantise", options.input.quantise, "Send packed poses, as play --quantise");
   command.add_option("--scale", options.input.scale, "Metres per unit of the recording's lengths")
-      ->check(CLI::Range(1e-6, 1e6))
+      ->check(Within(1e-6, 1e6))
       ->capture_default_str();
 }
 
@@ -57,17 +57,17 @@ void AddWho(CLI::App& command, LoadFlags& options) {
                      "character's");
   AddSkeletonMap(command, options.input.skeleton_map);
   command.add_option("--tolerance", options.run.tolerance, "Of a weight, before it is wrong")
-      ->check(CLI::Range(0.0f, 1.0f))
+      ->check(Within(0.0, 1.0))
       ->capture_default_str();
   command
       .add_option("--late", options.late_ms,
                   "Milliseconds after which weights are late; --find-max keeps p99 below")
-      ->check(CLI::Range(0.001, 1e6))
+      ->check(Within(0.001, 1e6))
       ->capture_default_str();
   command
       .add_option("--drain", options.run.drain_seconds,
                   "Seconds without weights after which what is missing is lost")
-      ->check(CLI::Range(0.0, 3600.0))
+      ->check(Within(0.0, 3600.0))
       ->capture_default_str();
   command.add_option("--pid", options.pid,
                      "The daemon's process, for CPU and memory; default: who owns the port here");
@@ -81,7 +81,7 @@ void AddHow(CLI::App& command, LoadFlags& options) {
   command
       .add_option("--time-limit", options.time_limit_minutes,
                   "Minutes after which --find-max and --baseline begin nothing new")
-      ->check(CLI::Range(0.01, 1e4))
+      ->check(Within(0.01, 1e4))
       ->capture_default_str();
   command.add_option("--rounds", options.comparison.rounds, "Runs of each, for --baseline")
       ->check(CLI::Range(1, 1000))
@@ -89,18 +89,18 @@ void AddHow(CLI::App& command, LoadFlags& options) {
   command
       .add_option("--round-time", options.round_seconds,
                   "Seconds of one run of a round, at most --duration")
-      ->check(CLI::Range(0.05, 3600.0))
+      ->check(Within(0.05, 3600.0))
       ->capture_default_str();
   command.add_option("--searches", options.comparison.searches, "Searches of each, for --find-max")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   command.add_option("--probe", options.comparison.probe_seconds, "Seconds of one run of a search")
-      ->check(CLI::Range(0.05, 60.0))
+      ->check(Within(0.05, 60.0))
       ->capture_default_str();
   command
       .add_option("--limit", options.comparison.search_limit,
                   "Poses a second beyond which --find-max does not search")
-      ->check(CLI::Range(1.0, 1e7))
+      ->check(Within(1.0, 1e7))
       ->capture_default_str();
   command.add_flag(
       "--strict", options.strict,

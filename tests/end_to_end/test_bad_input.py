@@ -129,6 +129,8 @@ class BadFileTest(unittest.TestCase):
                      ("render", "x.bvh", "--out", "y", "--subjects", "257"),
                      ("play", "x.bvh", "--speed", "nan"), ("play", "x.bvh", "--from", "-nan"),
                      ("convert", "x.bvh", "y.bvh", "--scale", "nan"),
+                     ("load", "localhost", "x.bvh", "--duration", "nan"),
+                     ("load", "localhost", "x.bvh", "--loss", "nan"),
                      ("record", "localhost", "--out", "x.mcap", "--duration", "nan"),
                      ("render", "x.bvh", "--out", "y", "--spacing", "0"),
                      ("play", self.file("ok.bvh", BVH), "--to", "localhost:0x7"), ("watch", "localhost:99999")):
