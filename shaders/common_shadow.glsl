@@ -19,22 +19,17 @@ vec4 shadowCoordinate(Light light, vec3 position) {
 }
 
 // How fast the plane of a surface sinks away from the lamp, in depth over uv: a look-up nearer to the
-// lamp than `position` is compared with the plane there, or the surface would shade itself (Isidoro
+// lamp than `coordinate` is compared with the plane there, or the surface would shade itself (Isidoro
 // 2006, "Shadow Mapping: GPU-based Tips and Techniques"). Further away it is not: smooth normals are
 // those of no plane, and what is curved would.
 const float STEEPEST = 5.0;
-vec2 depthGradient(Light light, vec3 position, vec3 normal) {
+vec2 depthGradient(Light light, vec4 coordinate, vec3 normal) {
   vec3 n = mat3(light.shadow_view) * normal;
-  vec3 ray = vec3(0.0, 0.0, -1.0);
-  float distance = 1.0;
-  if (light.shadow.w > 0.5) {
-    vec3 p = (light.shadow_view * vec4(position, 1.0)).xyz;
-    distance = max(-p.z, 1e-6);
-    ray = p / distance;
-  }
-  vec2 slope = n.xy / max(-dot(n, ray), 1e-3);  // metres of depth a metre across
+  // Where the way from the lamp leads, a metre on; then metres of depth a metre across it.
+  vec2 way = light.shadow.w > 0.5 ? (coordinate.xy - 0.5) * (2.0 / light.shadow.x) : vec2(0.0);
+  vec2 slope = n.xy / max(n.z - dot(n.xy, way), 1e-3);
   slope *= min(1.0, STEEPEST / max(length(slope), 1e-6));
-  return slope * (2.0 * distance * light.shadow.z / light.shadow.x);
+  return slope * (light.shadow.z / coordinate.w);
 }
 
 // From a lamp's own map to where it lies in the texture of all maps. Stays half a texel inside.
@@ -100,7 +95,7 @@ float shadowOf(int light, vec3 position, vec3 normal, vec3 toLight, vec2 pixel) 
                      ? u_lights[light].shadow.y + 0.5 / u_lights[light].shadow.z : 1.0);
   float offset = u_shadow_filter.z + (texel + 0.5 * u_shadow_filter.x) * grazing;
   vec4 coordinate = shadowCoordinate(u_lights[light], position + offset * normal);
-  vec2 gradient = depthGradient(u_lights[light], position, normal);
+  vec2 gradient = depthGradient(u_lights[light], coordinate, normal);
   float turn = 6.2831853 * pixelNoise(pixel);
   vec2 direction = vec2(cos(turn), sin(turn));
   float radius = max(shadowRadius(light, coordinate, gradient, direction) * coordinate.w, 0.75 / u_shadow_filter.w);
