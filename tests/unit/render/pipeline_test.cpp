@@ -59,7 +59,6 @@ TEST_F(PipelineTest, SettingsAreHot) {
                              "subsurface.method=burley",
                              "subsurface.method=preintegrated",
                              "subsurface.method=off",
-
                              "subsurface.width=3",
                              "shadow.filter=pcss",
                              "shadow.filter=off",
@@ -72,7 +71,6 @@ TEST_F(PipelineTest, SettingsAreHot) {
                              "specular.mode=gems",
                              "specular.second_lobe=1",
                              "specular.conserve_energy=off",
-
                              "lights.preset=hard",
                              "lights.preset=thesis",
                              "lights.turn_degrees=90",
