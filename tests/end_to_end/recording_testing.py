@@ -103,3 +103,23 @@ class FolderTest(unittest.TestCase):
             time.sleep(0.05)
         recorder.kill()
         recorder.communicate(timeout=GUARD)
+
+    def what_a_killed_daemon_leaves(self):
+        """The take of a daemon that was killed while it recorded."""
+        daemon = Recording(self.root / "killed")
+        daemon.__enter__()
+        player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
+        take = daemon.takes()[0]
+        self.kill_in_the_middle(daemon.process, take)
+        player.communicate(timeout=GUARD)
+        return take
+
+    def what_a_killed_recorder_leaves(self):
+        """The take of a `furrow record` that was killed."""
+        take = self.root / "killed.mcap"
+        with Daemon("--no-render") as daemon:
+            player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
+            self.kill_in_the_middle(self.listen(daemon, take, "--subject", "ada", "--wait"), take)
+            player.send_signal(signal.SIGINT)
+            player.communicate(timeout=GUARD)
+        return take

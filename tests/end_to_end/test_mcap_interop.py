@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """npm's @mcap/core, written by others, agrees with our reader on every message."""
-import signal
 import subprocess
 import sys
 import unittest
 
-from furrow_testing import GUARD, Daemon, furrow, spawn
-from recording_testing import (INTEROP, PERFORMANCE, RIG, FolderTest, Recording, missing_interop, our_messages,
+from furrow_testing import GUARD, Daemon, furrow
+from recording_testing import (INTEROP, PERFORMANCE, RIG, FolderTest, missing_interop, our_messages,
                                their_messages)
 
 
@@ -47,23 +46,10 @@ class InteropTest(FolderTest):
         self.assertEqual(sorted(ours), sorted(theirs))
 
     def test_it_finds_as_much_in_what_a_killed_daemon_leaves(self):
-        daemon = Recording(self.root / "killed")
-        daemon.__enter__()
-        player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
-        take = daemon.takes()[0]
-        self.kill_in_the_middle(daemon.process, take)
-        player.communicate(timeout=GUARD)
-        self.agree_on_what_is_left(take)
+        self.agree_on_what_is_left(self.what_a_killed_daemon_leaves())
 
     def test_it_finds_as_much_in_what_a_killed_recorder_leaves(self):
-        take = self.root / "killed.mcap"
-        with Daemon("--no-render") as daemon:
-            player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
-            recorder = self.listen(daemon, take, "--subject", "ada", "--wait")
-            self.kill_in_the_middle(recorder, take)
-            player.send_signal(signal.SIGINT)
-            player.communicate(timeout=GUARD)
-        self.agree_on_what_is_left(take)
+        self.agree_on_what_is_left(self.what_a_killed_recorder_leaves())
 
 
 if __name__ == "__main__":

@@ -79,12 +79,7 @@ class RecordTest(FolderTest):
 
     def test_a_killed_daemon_leaves_whole_chunks_that_replay_to_equal_weights(self):
         solved = solve(PERFORMANCE, "--rig", RIG)
-        daemon = Recording(self.root / "killed")
-        daemon.__enter__()
-        player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
-        take = daemon.takes()[0]
-        self.kill_in_the_middle(daemon.process, take)
-        player.communicate(timeout=GUARD)
+        take = self.what_a_killed_daemon_leaves()
         info = furrow("info", take, check=0)
         self.assertIn("cut short", info.stdout.decode())
         self.assertNotIn("damaged", info.stdout.decode())
@@ -177,13 +172,7 @@ class ListeningTest(FolderTest):
         self.assertEqual(self.weights(again).rows, recorded.rows)
 
     def test_a_killed_recorder_leaves_whole_chunks(self):
-        take = self.root / "killed.mcap"
-        with Daemon("--no-render") as daemon:
-            player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
-            recorder = self.listen(daemon, take, "--subject", "ada", "--wait")
-            self.kill_in_the_middle(recorder, take)
-            player.send_signal(signal.SIGINT)
-            player.communicate(timeout=GUARD)
+        take = self.what_a_killed_recorder_leaves()
         self.assertIn("cut short", furrow("info", take, check=0).stdout.decode())
         recorded = self.weights(take)
         frames = sorted(recorded.rows)
