@@ -22,7 +22,7 @@ constexpr char kFolder[] = "skeleton_maps";
 
 std::string Folded(std::string_view name, bool ignore_case) {
   std::string folded(name);
-  if (ignore_case) std::ranges::transform(folded, folded.begin(), wrinkle::AsciiLower);
+  if (ignore_case) folded = wrinkle::AsciiLower(std::move(folded));
   return folded;
 }
 

@@ -20,8 +20,7 @@ namespace {
 enum class Format { kUnknown, kBvh, kGlb, kGltf, kVrma, kCsv };
 
 Format FormatOf(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = wrinkle::AsciiLower(c);
+  const std::string extension = wrinkle::AsciiLower(path.extension().string());
   if (extension == ".bvh") return Format::kBvh;
   if (extension == ".glb") return Format::kGlb;
   if (extension == ".gltf") return Format::kGltf;

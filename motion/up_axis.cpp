@@ -12,7 +12,7 @@ namespace furrow::motion {
 namespace {
 
 bool NamesHead(std::string name) {
-  for (char& c : name) c = wrinkle::AsciiLower(c);
+  name = wrinkle::AsciiLower(std::move(name));
   return name.find("head") != std::string::npos;
 }
 

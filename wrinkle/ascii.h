@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 
 // Letters A to Z without case, whatever the process's locale says.
@@ -9,6 +10,11 @@ namespace furrow::wrinkle {
 
 [[nodiscard]] inline constexpr char AsciiLower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+[[nodiscard]] inline std::string AsciiLower(std::string text) {
+  for (char& c : text) c = AsciiLower(c);
+  return text;
 }
 
 [[nodiscard]] inline bool EqualsIgnoreCase(std::string_view a, std::string_view b) {

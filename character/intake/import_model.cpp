@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "character/intake/import_model.h"
 
-#include <algorithm>
 #include <string_view>
 #include <utility>
 
 #include "character/asset_path.h"
 #include "character/gltf_container.h"
 #include "character/intake/assimp.h"
+#include "wrinkle/ascii.h"
 
 namespace furrow::character {
 namespace {
@@ -20,11 +20,7 @@ Status At(const Status& s, const fs::path& path) {
 }
 
 std::string Extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return extension;
+  return wrinkle::AsciiLower(path.extension().string());
 }
 
 bool IsGltf(std::string_view bytes, const std::string& extension) {

@@ -16,6 +16,7 @@
 #include "motion/file_io.h"
 #include "recording/take_poses.h"
 #include "report/words.h"
+#include "wrinkle/ascii.h"
 
 namespace furrow::cli {
 namespace {
@@ -31,7 +32,7 @@ struct ConvertOptions {
 
 bool HasExtension(const std::string& path, std::initializer_list<std::string_view> extensions) {
   const std::string extension =
-      CLI::detail::to_lower(std::filesystem::path(path).extension().string());
+      wrinkle::AsciiLower(std::filesystem::path(path).extension().string());
   return std::ranges::find(extensions, extension) != extensions.end();
 }
 
