@@ -36,8 +36,7 @@ enum class View {
   kMaterial,   // skin red, cloth blue, eyes white, hair green, others grey
   kOcclusion,  // 1: open
   kBloom,
-  kShadowMaps,  // the lamps' depth maps side by side: white is near the lamp, black where nothing
-                // is
+  kShadowMaps,  // the lamps' depth maps side by side: white is near, black where nothing is
 };
 inline constexpr int kNumViews = 17;
 
@@ -60,8 +59,7 @@ struct LightSettings {
   float ambient = 1.0f;       // of the sky, [0, 8]
   float turn_degrees = 0.0f;  // the lamps about the subject, [-180, 180]
   float tilt_degrees = 0.0f;  // ... and those in front of it upwards, [-90, 90]
-  // What the lamps, in their order, and the sky are filtered by: linear red, green and blue, [0,
-  // 1].
+  // Filters of the lamps, in their order, and of the sky: linear red, green and blue, [0, 1].
   glm::vec3 key{1.0f};
   glm::vec3 fill{1.0f};
   glm::vec3 rim{1.0f};

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
@@ -11,8 +10,8 @@
 #include "client/cli/exit_code.h"
 #include "client/cli/file_output.h"
 #include "client/cli/listen.h"
+#include "client/cli/picture_settings.h"
 #include "render/renderer.h"
-#include "render/settings.h"
 
 namespace furrow::cli {
 namespace {
@@ -101,8 +100,8 @@ void AddFrames(CLI::App& app, Action& action) {
   command->add_option("--quality", options->quality, "JPEG quality")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  const auto& view = *std::ranges::find(render::AllSettings(), "view", &render::SettingInfo::name);
-  command->add_option("--view", options->request.view, view.allowed)->capture_default_str();
+  command->add_option("--view", options->request.view, InfoOf("view").allowed)
+      ->capture_default_str();
   command->add_option("--camera", options->request.camera_preset, render::ListCameraPresets());
   command->callback([options, &action] { action = [options] { return Frames(*options); }; });
 }

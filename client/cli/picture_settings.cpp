@@ -9,10 +9,6 @@
 namespace furrow::cli {
 namespace {
 
-const render::SettingInfo& InfoOf(const std::string& name) {
-  return *std::ranges::find(render::AllSettings(), name, &render::SettingInfo::name);
-}
-
 CLI::Validator SettingValidator(std::string prefix) {
   return {[prefix = std::move(prefix)](std::string& value) {
             render::Settings unused;
@@ -45,6 +41,10 @@ render::Settings Defaults() {
 }
 
 }  // namespace
+
+const render::SettingInfo& InfoOf(const std::string& name) {
+  return *std::ranges::find(render::AllSettings(), name, &render::SettingInfo::name);
+}
 
 void AddPictureOptions(CLI::App& command, PictureOptions* options) {
   AddShorthand(command, "--view", "view", options);

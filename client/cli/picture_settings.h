@@ -17,6 +17,9 @@ struct PictureOptions {
   std::vector<std::string> shorthands;  // NAME=VALUE of --view, --shading, --lights, ...
 };
 
+// What render::AllSettings() says of one. Precondition: it has the name.
+[[nodiscard]] const render::SettingInfo& InfoOf(const std::string& name);
+
 // Adds --settings, --set, --print-settings (prints the defaults and ends) and short names for the
 // settings most used.
 void AddPictureOptions(CLI::App& command, PictureOptions* options);
