@@ -51,7 +51,7 @@ fuzz_all() {
     local seeds=()
     case "$name" in
       fuzz_datagram) seeds=(protocol/vectors) ;;
-      fuzz_rig) seeds=(character/rigs) ;;
+      fuzz_rig) seeds=(rig/rigs) ;;
       *) [[ ! -d tests/fuzz/seeds/${name#fuzz_} ]] || seeds=("tests/fuzz/seeds/${name#fuzz_}") ;;
     esac
     log=build/fuzz/$name.log

@@ -7,12 +7,14 @@
 
 #include <tiny_gltf.h>
 
-#include "character/asset_path.h"
+#include "base/asset_path.h"
+#include "base/files.h"
+#include "base/status.h"
 #include "character/gltf_container.h"
 #include "character/gltf_material.h"
 #include "character/gltf_mesh.h"
 #include "character/gltf_skeleton.h"
-#include "character/rig_file.h"
+#include "rig/rig_file.h"
 
 namespace furrow::character {
 namespace {
@@ -40,13 +42,13 @@ void DropMissingPictures(Character* character) {
 Status ReadGltf(const tinygltf::Model& model, const fs::path& folder, const ReadOptions& options,
                 Character* character) {
   Result<GltfSkeleton> skeleton = ReadGltfSkeleton(model);
-  if (!skeleton.ok()) return skeleton.status();
+  FURROW_RETURN_IF_ERROR(skeleton);
   Result<std::vector<Mesh>> meshes = ReadGltfMeshes(model, *skeleton, options);
-  if (!meshes.ok()) return meshes.status();
+  FURROW_RETURN_IF_ERROR(meshes);
   Result<std::vector<Material>> materials = ReadGltfMaterials(model);
-  if (!materials.ok()) return materials.status();
+  FURROW_RETURN_IF_ERROR(materials);
   Result<std::vector<Picture>> pictures = ReadGltfPictures(model, folder, options);
-  if (!pictures.ok()) return pictures.status();
+  FURROW_RETURN_IF_ERROR(pictures);
   if (options.notes != nullptr) options.notes->nameless_joints = skeleton->nameless_joints;
   character->skeleton = std::move(skeleton->skeleton);
   character->inverse_bind_matrices = std::move(skeleton->inverse_bind_matrices);
@@ -77,9 +79,9 @@ Status AddRigPicture(const std::string& name, Character* character) {
       character->missing_rig_pictures.push_back(name);
       return {};
     }
-    if (!path.ok()) return path.status();
+    FURROW_RETURN_IF_ERROR(path);
     Result<Picture> picture = LoadPicture(name, *path);
-    if (!picture.ok()) return picture.status();
+    FURROW_RETURN_IF_ERROR(picture);
     index = static_cast<int>(character->pictures.size());
     character->pictures.push_back(std::move(*picture));
   }
@@ -117,10 +119,10 @@ int Character::FindRigPicture(std::string_view picture_name) const {
 Result<Character> ParseCharacter(std::string_view bytes, const fs::path& folder,
                                  const ReadOptions& options) {
   const Result<std::unique_ptr<tinygltf::Model>> model = ParseGltf(bytes, folder);
-  if (!model.ok()) return model.status();
+  FURROW_RETURN_IF_ERROR(model);
   Character character;
   character.folder = folder;
-  if (Status status = ReadGltf(**model, folder, options, &character); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(ReadGltf(**model, folder, options, &character));
   if (!(*model)->scenes.empty()) character.name = (*model)->scenes.front().name;
   return character;
 }
@@ -128,7 +130,7 @@ Result<Character> ParseCharacter(std::string_view bytes, const fs::path& folder,
 Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,
                                 const wrinkle::PoseSource& poses) {
   const Result<std::string> bytes = ReadFile(glb, kMaxGltfBytes);
-  if (!bytes.ok()) return bytes.status();
+  FURROW_RETURN_IF_ERROR(bytes);
   Result<Character> character = ParseCharacter(*bytes, glb.parent_path());
   if (!character.ok()) {
     const Status s = character.status();
@@ -144,7 +146,7 @@ Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,
     if (!fs::exists(rig_path, error)) return character;  // a character that does not wrinkle
   }
   Result<wrinkle::Rig> loaded = LoadRig(rig_path, poses);
-  if (!loaded.ok()) return loaded.status();
+  FURROW_RETURN_IF_ERROR(loaded);
   if (Status status = AttachRig(std::move(*loaded), rig_path.parent_path(), &*character);
       !status.ok()) {
     return status.At(rig_path.string());
@@ -158,7 +160,7 @@ Status AttachRig(wrinkle::Rig rig, const fs::path& folder, Character* character)
   character->rig_pictures.clear();
   character->missing_rig_pictures.clear();
   for (const std::string& name : RigPictureNames(character->rig)) {
-    if (Status status = AddRigPicture(name, character); !status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(AddRigPicture(name, character));
   }
   return {};
 }

@@ -12,12 +12,12 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
+#include "base/status.h"
 #include "character/picture.h"
-#include "character/source_notes.h"
-#include "wrinkle/pose_frame.h"
-#include "wrinkle/rig.h"
-#include "wrinkle/skeleton.h"
-#include "wrinkle/status.h"
+#include "rig/source_notes.h"
+#include "wrinkle/rig/rig.h"
+#include "wrinkle/skeleton/pose_frame.h"
+#include "wrinkle/skeleton/skeleton.h"
 
 namespace furrow::character {
 

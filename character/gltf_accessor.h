@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "wrinkle/status.h"
+#include "base/status.h"
 
 namespace tinygltf {
 class Model;

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "wrinkle/status.h"
+#include "base/status.h"
 
 namespace furrow::character {
 

@@ -12,7 +12,9 @@
 #include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
 
-#include "character/asset_path.h"
+#include "base/asset_path.h"
+#include "base/files.h"
+#include "base/status.h"
 #include "third_party/tinygltf/glb.h"
 
 namespace furrow::character {
@@ -101,7 +103,7 @@ Status CheckJson(std::string_view text) {
       }
     }
   }
-  if (Status status = CheckBufferViews(root); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(CheckBufferViews(root));
   return CheckRequiredExtensions(root);
 }
 
@@ -189,10 +191,10 @@ Result<std::unique_ptr<tinygltf::Model>> ParseGltf(std::string_view bytes,
   std::string_view text = bytes;
   if (binary) {
     const Result<gltf::Glb> parts = SplitGlb(bytes);
-    if (!parts.ok()) return parts.status();
+    FURROW_RETURN_IF_ERROR(parts);
     text = parts->json;
   }
-  if (Status status = CheckJson(text); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(CheckJson(text));
 
   auto folder_copy = folder;
   tinygltf::TinyGLTF loader;

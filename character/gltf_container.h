@@ -5,8 +5,8 @@
 #include <memory>
 #include <string_view>
 
+#include "base/status.h"
 #include "third_party/tinygltf/glb.h"
-#include "wrinkle/status.h"
 
 namespace tinygltf {
 class Model;

@@ -11,7 +11,8 @@
 
 #include <tiny_gltf.h>
 
-#include "character/asset_path.h"
+#include "base/asset_path.h"
+#include "base/status.h"
 
 namespace furrow::character {
 namespace {
@@ -47,7 +48,7 @@ Result<Picture> ReadPicture(const tinygltf::Model& model, const tinygltf::Image&
   }
   if (!image.image.empty()) return DecodePicture(name, image.image);
   const Result<std::filesystem::path> path = FindAsset(image.uri, folder);
-  if (!path.ok()) return path.status();
+  FURROW_RETURN_IF_ERROR(path);
   return LoadPicture(name, *path);
 }
 
@@ -203,7 +204,7 @@ Result<std::vector<Material>> ReadGltfMaterials(const tinygltf::Model& model) {
   std::vector<Material> materials(model.materials.size());
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const std::string at = "materials[" + std::to_string(i) + "]";
-    if (Status s = ReadMaterial(model, model.materials[i], at, &materials[i]); !s.ok()) return s;
+    FURROW_RETURN_IF_ERROR(ReadMaterial(model, model.materials[i], at, &materials[i]));
   }
   return materials;
 }

@@ -12,9 +12,10 @@
 #include <glm/matrix.hpp>
 #include <tiny_gltf.h>
 
+#include "base/status.h"
 #include "character/gltf_accessor.h"
-#include "character/paint/tangents.h"
 #include "character/spread_influences.h"
+#include "character/tangents.h"
 
 namespace furrow::character {
 namespace {
@@ -41,12 +42,12 @@ class PrimitiveReader {
       return {StatusCode::kUnsupported, "only triangles are drawn", at_ + ".mode"};
     }
     std::optional<GltfAccessor> position, normal, tangent, uv;
-    if (Status s = Attribute("POSITION", 3, true, &position); !s.ok()) return s;
+    FURROW_RETURN_IF_ERROR(Attribute("POSITION", 3, true, &position));
     if (position->size() > kMaxVertices) return {StatusCode::kLimit, "too many vertices", at_};
     mesh_->vertices.resize(position->size());
-    if (Status s = Attribute("NORMAL", 3, false, &normal); !s.ok()) return s;
-    if (Status s = Attribute("TANGENT", 4, false, &tangent); !s.ok()) return s;
-    if (Status s = Attribute("TEXCOORD_0", 2, false, &uv); !s.ok()) return s;
+    FURROW_RETURN_IF_ERROR(Attribute("NORMAL", 3, false, &normal));
+    FURROW_RETURN_IF_ERROR(Attribute("TANGENT", 4, false, &tangent));
+    FURROW_RETURN_IF_ERROR(Attribute("TEXCOORD_0", 2, false, &uv));
     notes_->has_uvs = uv.has_value();
     notes_->has_normals = normal.has_value();
     notes_->has_tangents = tangent.has_value();
@@ -55,22 +56,22 @@ class PrimitiveReader {
     bool tangents_usable = tangent.has_value();
     for (std::size_t v = 0; v < mesh_->vertices.size(); ++v) {
       Vertex& vertex = mesh_->vertices[v];
-      if (Status s = Vector(*position, v, "POSITION", &vertex.position); !s.ok()) return s;
+      FURROW_RETURN_IF_ERROR(Vector(*position, v, "POSITION", &vertex.position));
       if (uv) {
-        if (Status s = Vector(*uv, v, "TEXCOORD_0", &vertex.uv); !s.ok()) return s;
+        FURROW_RETURN_IF_ERROR(Vector(*uv, v, "TEXCOORD_0", &vertex.uv));
       }
       if (normal) {
-        if (Status s = Vector(*normal, v, "NORMAL", &vertex.normal); !s.ok()) return s;
+        FURROW_RETURN_IF_ERROR(Vector(*normal, v, "NORMAL", &vertex.normal));
         normals_usable = normals_usable && MakeUnit(&vertex.normal);
       }
       if (tangent) {
-        if (Status s = Vector(*tangent, v, "TANGENT", &vertex.tangent); !s.ok()) return s;
+        FURROW_RETURN_IF_ERROR(Vector(*tangent, v, "TANGENT", &vertex.tangent));
         glm::vec3 direction(vertex.tangent);
         tangents_usable = tangents_usable && MakeUnit(&direction);
         vertex.tangent = glm::vec4(direction, vertex.tangent.w < 0.0f ? -1.0f : 1.0f);
       }
     }
-    if (Status s = ReadIndices(); !s.ok()) return s;
+    FURROW_RETURN_IF_ERROR(ReadIndices());
     if (!normals_usable) paint::ComputeNormals(mesh_->vertices, mesh_->indices);
     if (!tangents_usable || !normals_usable)
       paint::ComputeTangents(mesh_->vertices, mesh_->indices);
@@ -85,9 +86,8 @@ class PrimitiveReader {
     for (int set = 0; set < kMaxInfluenceSets; ++set) {
       const std::string suffix = "_" + std::to_string(set);
       auto& [joints, weights] = sets.emplace_back();
-      if (Status s = Attribute("JOINTS" + suffix, 4, set == 0, &joints); !s.ok()) return s;
-      if (Status s = Attribute("WEIGHTS" + suffix, 4, joints.has_value(), &weights); !s.ok())
-        return s;
+      FURROW_RETURN_IF_ERROR(Attribute("JOINTS" + suffix, 4, set == 0, &joints));
+      FURROW_RETURN_IF_ERROR(Attribute("WEIGHTS" + suffix, 4, joints.has_value(), &weights));
       if (joints && !joints->is_unsigned()) {
         return {StatusCode::kSchema, "unsigned integers are due", Field("JOINTS" + suffix)};
       }
@@ -122,9 +122,8 @@ class PrimitiveReader {
       if (lenient_ && influences.empty()) {
         unskinned[v] = true;
         ++notes_->unskinned_vertices;
-      } else if (Status s = Keep(influences, v); !s.ok()) {
-        return s;
-      }
+      } else
+        FURROW_RETURN_IF_ERROR(Keep(influences, v));
     }
     if (notes_->unskinned_vertices > 0) SpreadInfluences(unskinned, joint_of.front(), mesh_);
     return {};
@@ -162,7 +161,7 @@ class PrimitiveReader {
     }
     Result<GltfAccessor> result =
         GltfAccessor::Create(model_, found->second, components, Field(name));
-    if (!result.ok()) return result.status();
+    FURROW_RETURN_IF_ERROR(result);
     if (!mesh_->vertices.empty() && result->size() != mesh_->vertices.size()) {
       return {StatusCode::kSchema,
               std::to_string(result->size()) + " elements for " +
@@ -192,7 +191,7 @@ class PrimitiveReader {
     } else {
       const Result<GltfAccessor> indices =
           GltfAccessor::Create(model_, primitive_.indices, 1, where);
-      if (!indices.ok()) return indices.status();
+      FURROW_RETURN_IF_ERROR(indices);
       if (!indices->is_unsigned()) return {StatusCode::kSchema, "unsigned integers are due", where};
       if (indices->size() > kMaxIndices) return {StatusCode::kLimit, "too many indices", where};
       mesh_->indices.resize(indices->size());
@@ -299,9 +298,9 @@ Status ReadNode(const Model& model, const GltfSkeleton& skeleton, std::size_t n,
       return {StatusCode::kSchema, "there is no such material", where + ".material"};
     }
     PrimitiveReader reader(model, primitive, where, lenient, &mesh, &notes->emplace_back());
-    if (Status s = reader.ReadGeometry(); !s.ok()) return s;
+    FURROW_RETURN_IF_ERROR(reader.ReadGeometry());
     if (node.skin >= 0) {
-      if (Status s = reader.ReadInfluences(joint_of); !s.ok()) return s;
+      FURROW_RETURN_IF_ERROR(reader.ReadInfluences(joint_of));
     } else {
       Place(skeleton.node_model[n], &mesh);
       reader.FollowJoint(skeleton.joint_of_node[n]);

@@ -11,6 +11,7 @@
 #include <glm/matrix.hpp>
 #include <tiny_gltf.h>
 
+#include "base/status.h"
 #include "character/gltf_accessor.h"
 
 namespace furrow::character {
@@ -160,7 +161,7 @@ Status ReadInverseBind(const tinygltf::Model& model, GltfSkeleton* to) {
     if (skin.inverseBindMatrices >= 0) {
       Result<GltfAccessor> accessor =
           GltfAccessor::Create(model, skin.inverseBindMatrices, 16, where);
-      if (!accessor.ok()) return accessor.status();
+      FURROW_RETURN_IF_ERROR(accessor);
       if (accessor->size() < skin.joints.size()) {
         return {StatusCode::kSchema, "fewer matrices than joints", where};
       }
@@ -197,15 +198,15 @@ Result<GltfSkeleton> ReadGltfSkeleton(const tinygltf::Model& model) {
   std::vector<int> parents;
   std::vector<bool> chosen;
   if (model.nodes.empty()) return Status(StatusCode::kSchema, "there are no nodes", "nodes");
-  if (Status status = FindParents(model, &parents); !status.ok()) return status;
-  if (Status status = ChooseJoints(model, parents, &chosen); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(FindParents(model, &parents));
+  FURROW_RETURN_IF_ERROR(ChooseJoints(model, parents, &chosen));
 
   const std::size_t count = model.nodes.size();
   std::vector<Transform> locals(count);
   std::vector<JointDesc> joints;
   std::vector<int> joint_index(count, kNoJoint);
   for (std::size_t node = 0; node < count; ++node) {
-    if (Status s = ReadTransform(model.nodes[node], NodeAt(node), &locals[node]); !s.ok()) return s;
+    FURROW_RETURN_IF_ERROR(ReadTransform(model.nodes[node], NodeAt(node), &locals[node]));
     if (!chosen[node]) continue;
     joint_index[node] = static_cast<int>(joints.size());
     const std::string& name = model.nodes[node].name;
@@ -239,7 +240,7 @@ Result<GltfSkeleton> ReadGltfSkeleton(const tinygltf::Model& model) {
   for (const glm::mat4& rest : to.skeleton.rest_model()) {
     to.inverse_bind_matrices.push_back(glm::inverse(rest));
   }
-  if (Status status = ReadInverseBind(model, &to); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(ReadInverseBind(model, &to));
   return to;
 }
 

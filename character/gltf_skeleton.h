@@ -5,8 +5,8 @@
 
 #include <glm/mat4x4.hpp>
 
-#include "wrinkle/skeleton.h"
-#include "wrinkle/status.h"
+#include "base/status.h"
+#include "wrinkle/skeleton/skeleton.h"
 
 namespace tinygltf {
 class Model;

@@ -10,7 +10,8 @@
 
 #include <glm/gtc/type_ptr.hpp>
 
-#include "character/asset_path.h"
+#include "base/files.h"
+#include "base/status.h"
 #include "character/character.h"
 #include "character/gltf_builder.h"
 #include "character/gltf_material.h"
@@ -28,13 +29,13 @@ class GlbWriter {
   explicit GlbWriter(const Character& character) : character_(character) {}
 
   Result<std::string> Run() {
-    if (Status status = CheckSizes(); !status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(CheckSizes());
     AddNodes();
     AddSkin();
     for (const Mesh& mesh : character_.meshes) AddMesh(mesh);
     AddMaterials();
     for (const Picture& picture : character_.pictures) {
-      if (Status status = AddPicture(picture); !status.ok()) return status;
+      FURROW_RETURN_IF_ERROR(AddPicture(picture));
     }
     return builder_.Finish();
   }
@@ -51,7 +52,7 @@ class GlbWriter {
       return {StatusCode::kInvalidArgument, "the character has no mesh", "meshes"};
     }
     for (const Mesh& mesh : character_.meshes) {
-      if (Status status = CheckMesh(mesh); !status.ok()) return status;
+      FURROW_RETURN_IF_ERROR(CheckMesh(mesh));
     }
     const auto pictures = static_cast<int>(character_.pictures.size());
     for (const Material& m : character_.materials) {
@@ -225,7 +226,7 @@ class GlbWriter {
 
   Status AddPicture(const Picture& picture) {
     const Result<std::string> png = EncodePng(picture);
-    if (!png.ok()) return png.status();
+    FURROW_RETURN_IF_ERROR(png);
     const int view = builder_.AddView(png->data(), png->size(), GltfBuilder::kNoTarget);
     root_["textures"].push_back({{"source", root_["textures"].size()}});
     root_["images"].push_back(

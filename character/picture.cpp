@@ -5,9 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "character/asset_path.h"
+#include "base/files.h"
+#include "base/status.h"
 #include "character/picture_codec.h"
-#include "wrinkle/finite.h"
+#include "wrinkle/skeleton/finite.h"
 
 namespace furrow::character {
 namespace {
@@ -27,7 +28,7 @@ bool PixelsFit(const Picture& picture) {
 
 Result<Picture> DecodePicture(std::string name, std::span<const std::uint8_t> bytes) {
   const auto codec = GetPictureCodec();
-  if (!codec.ok()) return codec.status();
+  FURROW_RETURN_IF_ERROR(codec);
   Picture picture;
   std::string why;
   const StatusCode code = (*codec)->decode(bytes, &picture, &why);
@@ -45,7 +46,7 @@ Result<std::string> EncodePicture(const Picture& picture, const PictureStorage& 
                   "the pixels of picture '" + picture.name + "' do not fit its size");
   }
   const auto codec = GetPictureCodec();
-  if (!codec.ok()) return codec.status();
+  FURROW_RETURN_IF_ERROR(codec);
   std::string bytes;
   std::string why;
   const StatusCode code = (*codec)->encode(picture, storage, &bytes, &why);
@@ -55,7 +56,7 @@ Result<std::string> EncodePicture(const Picture& picture, const PictureStorage& 
 
 Result<Picture> LoadPicture(std::string name, const std::filesystem::path& path) {
   const Result<std::string> bytes = ReadFile(path, kMaxEncodedBytes);
-  if (!bytes.ok()) return bytes.status();
+  FURROW_RETURN_IF_ERROR(bytes);
   Result<Picture> picture =
       DecodePicture(std::move(name),
                     std::span(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()));

@@ -11,7 +11,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "wrinkle/status.h"
+#include "base/status.h"
 
 namespace furrow::character {
 

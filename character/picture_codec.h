@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
+#include "base/status.h"
 #include "character/picture.h"
-#include "wrinkle/status.h"
 
 namespace furrow::character {
 

@@ -11,9 +11,10 @@
 
 #include <glm/geometric.hpp>
 
+#include "base/status.h"
 #include "character/weld.h"
-#include "wrinkle/retarget.h"
-#include "wrinkle/rig_check.h"
+#include "wrinkle/rig/rig_check.h"
+#include "wrinkle/skeleton/retarget.h"
 
 namespace furrow::character {
 namespace {
@@ -52,8 +53,8 @@ class PatchCutter {
       : character_(character), options_(options) {}
 
   Result<wrinkle::Driver> Run() {
-    if (Status s = FindCentre(); !s.ok()) return s;
-    if (Status s = CollectPieces(); !s.ok()) return s;
+    FURROW_RETURN_IF_ERROR(FindCentre());
+    FURROW_RETURN_IF_ERROR(CollectPieces());
     KeepConnected();
     wrinkle::Driver driver;
     driver.name = options_.name;
@@ -72,7 +73,7 @@ class PatchCutter {
     MeasureFromBase();
     wrinkle::Rig rig;
     rig.drivers = {driver};
-    if (Status s = wrinkle::CheckRigFields(rig); !s.ok()) return s;
+    FURROW_RETURN_IF_ERROR(wrinkle::CheckRigFields(rig));
     return driver;
   }
 

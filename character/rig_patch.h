@@ -17,7 +17,8 @@ struct PatchOptions {
   float full_compression = 0.25f;
 };
 
-// A strain driver (wrinkle/rig.h) over the triangles around a point, ready to be pasted into a rig.
+// A strain driver (wrinkle/rig/rig.h) over the triangles around a point, ready to be pasted into a
+// rig.
 //
 // - Where there are more triangles than a driver may have (rig_check.h), those nearest the centre
 //   are taken. Only triangles that hang together with the nearest one (weld.h) belong: not the

@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <set>
 
-#include "character/asset_path.h"
+#include "base/asset_path.h"
+#include "base/text.h"
 #include "character/character.h"
-#include "wrinkle/driver_values.h"
-#include "wrinkle/retarget.h"
-#include "wrinkle/solver.h"
+#include "wrinkle/rig/driver_values.h"
+#include "wrinkle/skeleton/retarget.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::character {
 namespace {

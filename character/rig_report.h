@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "wrinkle/rig.h"
-#include "wrinkle/skeleton.h"
-#include "wrinkle/status.h"
+#include "base/status.h"
+#include "wrinkle/rig/rig.h"
+#include "wrinkle/skeleton/skeleton.h"
 
 namespace furrow::character {
 

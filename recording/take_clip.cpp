@@ -6,7 +6,8 @@
 #include <span>
 #include <utility>
 
-#include "motion/limits.h"
+#include "base/status.h"
+#include "motion/clip/limits.h"
 
 namespace furrow::recording {
 namespace {
@@ -95,7 +96,7 @@ Result<motion::Clip> ToClip(const TakePoses& poses, float scale) {
     return Status(StatusCode::kLimit, "too many poses to hold at once as a clip");
   }
   auto skeleton = ToSkeleton(offer, scale);
-  if (!skeleton.ok()) return skeleton.status();
+  FURROW_RETURN_IF_ERROR(skeleton);
   motion::Clip clip;
   clip.name = offer.subject;
   clip.skeleton = *std::move(skeleton);
@@ -119,10 +120,10 @@ Result<motion::Clip> LoadTakeClip(const std::string& path, float scale, motion::
   std::string subject;
   SplitTakePath(path, &file, &subject);
   auto take = TakeReader::Open(file);
-  if (!take.ok()) return take.status();
+  FURROW_RETURN_IF_ERROR(take);
   (*take)->set_progress(std::move(progress));
   const auto poses = TakePoses::Load(**take, subject, report);
-  if (!poses.ok()) return poses.status();
+  FURROW_RETURN_IF_ERROR(poses);
   auto clip = ToClip(*poses, scale);
   if (!clip.ok()) return clip.status().At(file);
   return clip;

@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "motion/clip.h"
-#include "protocol/messages.h"
+#include "base/status.h"
+#include "motion/clip/clip.h"
+#include "protocol/messages/messages.h"
 #include "recording/take_poses.h"
-#include "wrinkle/status.h"
 
 namespace furrow::recording {
 

@@ -6,6 +6,8 @@
 #include <system_error>
 #include <utility>
 
+#include "base/status.h"
+
 namespace furrow::recording {
 namespace {
 
@@ -31,7 +33,7 @@ Result<std::unique_ptr<TakeFolder>> TakeFolder::Open(TakeFolderOptions options,
     return Status(StatusCode::kIo, "the folder cannot be made: " + error.message(),
                   options.folder.string());
   std::unique_ptr<TakeFolder> folder(new TakeFolder(std::move(options)));
-  if (Status status = folder->Begin(now_ns); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(folder->Begin(now_ns));
   return folder;
 }
 
@@ -51,7 +53,7 @@ std::filesystem::path TakeFolder::NextPath(std::uint64_t now_ns) const {
 Status TakeFolder::Begin(std::uint64_t now_ns) {
   path_ = NextPath(now_ns);
   auto take = TakeWriter::Create(path_, options_.rig_json);
-  if (!take.ok()) return take.status();
+  FURROW_RETURN_IF_ERROR(take);
   if (take_ != nullptr) earlier_messages_ += take_->num_messages();
   take_ = *std::move(take);
   begun_ns_ = now_ns;
@@ -62,8 +64,7 @@ Status TakeFolder::Begin(std::uint64_t now_ns) {
       if (declaration->payload.empty()) continue;
       TakeStamp stamp = declaration->stamp;
       stamp.log_time_ns = now_ns;
-      Status status = take_->Write(kind, subject, stamp, declaration->payload);
-      if (!status.ok()) return status;
+      FURROW_RETURN_IF_ERROR(take_->Write(kind, subject, stamp, declaration->payload));
     }
   }
   begun_bytes_ = take_->bytes_written();
@@ -81,7 +82,7 @@ Status TakeFolder::RotateIfDue(std::uint64_t now_ns) {
   const bool old =
       options_.rotate_ns > 0 && now_ns > begun_ns_ && now_ns - begun_ns_ >= options_.rotate_ns;
   if (!large && !old && !take_->is_full()) return {};
-  if (Status status = take_->Close(); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(take_->Close());
   return Begin(now_ns);
 }
 

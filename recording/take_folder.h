@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/status.h"
 #include "recording/take_writer.h"
-#include "wrinkle/status.h"
 
 namespace furrow::recording {
 

@@ -9,7 +9,7 @@
 #include <subscribe_reply_bfbs.h>
 #include <weights_bfbs.h>
 
-#include "protocol/limits.h"
+#include "protocol/messages/limits.h"
 
 namespace furrow::recording {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "protocol/codec.h"
+#include "protocol/codec/codec.h"
 
 // How a take lies in an MCAP file; docs/RECORDING.md is the same for people.
 namespace furrow::recording {

@@ -7,8 +7,9 @@
 #include <set>
 #include <utility>
 
-#include "motion/limits.h"
-#include "wrinkle/ascii.h"
+#include "base/ascii.h"
+#include "base/status.h"
+#include "motion/clip/limits.h"
 
 namespace furrow::recording {
 namespace {
@@ -28,7 +29,7 @@ std::string Join(const Names& names) {
 
 bool EndsInMcap(std::string_view text) {
   return text.size() > std::string_view(kExtension).size() &&
-         wrinkle::EqualsIgnoreCase(text.substr(text.size() - 5), kExtension);
+         EqualsIgnoreCase(text.substr(text.size() - 5), kExtension);
 }
 
 Status NoPoses(const TakeReader& take, std::string_view subject, const Names& names) {
@@ -189,7 +190,7 @@ Result<std::vector<TakePoses>> TakePoses::LoadAll(TakeReader& take, std::string_
 Result<TakePoses> TakePoses::Load(TakeReader& take, std::string_view subject,
                                   motion::ClipReport* report) {
   auto all = LoadOf(take, subject, /*only_one=*/true, report);
-  if (!all.ok()) return all.status();
+  FURROW_RETURN_IF_ERROR(all);
   return std::move(all->front());
 }
 

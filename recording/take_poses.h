@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "motion/clip.h"
-#include "protocol/messages.h"
+#include "base/status.h"
+#include "motion/clip/clip.h"
+#include "protocol/messages/messages.h"
 #include "recording/take_reader.h"
-#include "wrinkle/status.h"
 
 namespace furrow::recording {
 

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <utility>
 
+#include "base/status.h"
+
 namespace furrow::recording {
 
 using motion::mcap::Channel;
@@ -22,7 +24,7 @@ protocol::MessageView TakeMessage::View() const {
 
 Result<std::unique_ptr<TakeReader>> TakeReader::Open(const std::filesystem::path& path) {
   auto file = Reader::Open(path);
-  if (!file.ok()) return file.status();
+  FURROW_RETURN_IF_ERROR(file);
   return std::unique_ptr<TakeReader>(new TakeReader(path, *std::move(file)));
 }
 

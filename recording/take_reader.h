@@ -11,10 +11,10 @@
 #include <string>
 #include <string_view>
 
+#include "base/status.h"
 #include "motion/mcap/reader.h"
-#include "protocol/codec.h"
+#include "protocol/codec/codec.h"
 #include "recording/take_format.h"
-#include "wrinkle/status.h"
 
 namespace furrow::recording {
 

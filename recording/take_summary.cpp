@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "protocol/messages.h"
+#include "protocol/messages/messages.h"
 
 namespace furrow::recording {
 namespace {

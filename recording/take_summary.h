@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
+#include "base/status.h"
 #include "recording/take_reader.h"
-#include "wrinkle/status.h"
 
 namespace furrow::recording {
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/status.h"
+
 namespace furrow::recording {
 
 using motion::mcap::Message;
@@ -11,12 +13,11 @@ using motion::mcap::Message;
 Result<std::unique_ptr<TakeWriter>> TakeWriter::Create(const std::filesystem::path& path,
                                                        std::string_view rig_json) {
   auto file = motion::mcap::Writer::Create(path, {.profile = kTakeProfile});
-  if (!file.ok()) return file.status();
+  FURROW_RETURN_IF_ERROR(file);
   std::unique_ptr<TakeWriter> take(new TakeWriter(*std::move(file)));
   if (!rig_json.empty()) {
     const std::span bytes(reinterpret_cast<const std::uint8_t*>(rig_json.data()), rig_json.size());
-    Status status = take->file_->Attach(kRigAttachment, "application/json", 0, bytes);
-    if (!status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(take->file_->Attach(kRigAttachment, "application/json", 0, bytes));
   }
   return take;
 }
@@ -64,8 +65,7 @@ Status TakeWriter::Write(TakeKind kind, std::string_view subject, const TakeStam
                          std::span<const std::uint8_t> payload) {
   if (is_full()) return {StatusCode::kLimit, "the take has as many channels as a file holds"};
   if (kind == TakeKind::kSkeleton) {
-    Status status = AttachSkeleton(subject, stamp.log_time_ns, payload);
-    if (!status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(AttachSkeleton(subject, stamp.log_time_ns, payload));
   }
   Message message;
   message.channel_id = ChannelOf(kind, subject, stamp.session);

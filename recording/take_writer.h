@@ -10,9 +10,9 @@
 #include <tuple>
 #include <vector>
 
+#include "base/status.h"
 #include "motion/mcap/writer.h"
 #include "recording/take_format.h"
-#include "wrinkle/status.h"
 
 namespace furrow::recording {
 

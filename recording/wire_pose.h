@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "motion/clip.h"
-#include "protocol/messages.h"
+#include "motion/clip/clip.h"
+#include "protocol/messages/messages.h"
 
 namespace furrow::recording {
 

@@ -8,7 +8,7 @@ foreach(file IN LISTS files)
   string(APPEND entries "    {\"${name}\", R\"glsl(${text})glsl\"},\n")
 endforeach()
 file(WRITE "${OUTPUT}" "// Generated from shaders/ by render/embed_shaders.cmake.
-#include \"render/shader_loader.h\"
+#include \"render/gl/shader_loader.h\"
 
 namespace furrow::render {
 namespace {

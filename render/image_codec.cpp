@@ -3,6 +3,7 @@
 
 #include <turbojpeg.h>
 
+#include "base/status.h"
 #include "character/picture_codec.h"
 #include "render/renderer.h"
 
@@ -35,7 +36,7 @@ Result<std::vector<std::uint8_t>> EncodePng(const Image& image) {
   picture.pixels = image.rgb;
   // Half the time of the library's own compression for a few percent of size.
   const auto bytes = character::EncodePicture(picture, {.srgb = true, .compression = 4});
-  if (!bytes.ok()) return bytes.status();
+  FURROW_RETURN_IF_ERROR(bytes);
   return std::vector<std::uint8_t>(bytes->begin(), bytes->end());
 }
 

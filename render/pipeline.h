@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "render/joint_bounds.h"
+#include "render/mesh/joint_bounds.h"
 #include "render/passes/composite_pass.h"
 #include "render/passes/occlusion_pass.h"
 #include "render/passes/scene_pass.h"

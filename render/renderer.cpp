@@ -3,13 +3,14 @@
 
 #include <algorithm>
 
-#include "render/camera.h"
-#include "render/egl_context.h"
+#include "base/status.h"
+#include "render/gl/egl_context.h"
+#include "render/gl/read_back.h"
 #include "render/passes/finish_pass.h"
 #include "render/passes/read_back_pass.h"
 #include "render/pipeline.h"
-#include "render/read_back.h"
 #include "render/request_check.h"
+#include "render/scene/camera.h"
 
 namespace furrow::render {
 namespace {
@@ -22,12 +23,12 @@ class GlRenderer final : public Renderer {
   static Result<std::unique_ptr<Renderer>> Create(const character::Character& character,
                                                   std::string_view device) {
     Result<std::unique_ptr<EglContext>> context = EglContext::Create(device);
-    if (!context.ok()) return context.status();
+    FURROW_RETURN_IF_ERROR(context);
     Result<std::unique_ptr<GpuCharacter>> gpu = GpuCharacter::Create(character);
-    if (!gpu.ok()) return gpu.status();
+    FURROW_RETURN_IF_ERROR(gpu);
     Result<std::unique_ptr<WrinkleTables>> tables =
         WrinkleTables::Create(character, (*gpu)->layout());
-    if (!tables.ok()) return tables.status();
+    FURROW_RETURN_IF_ERROR(tables);
     return std::unique_ptr<Renderer>(
         new GlRenderer(character, std::move(*context), std::move(*gpu), std::move(*tables)));
   }
@@ -39,25 +40,23 @@ class GlRenderer final : public Renderer {
   }
 
   Status Submit(const FrameRequest& request) override {
-    if (Status status = CheckRequest(request, skeleton_.num_joints()); !status.ok()) {
-      return status;
-    }
+    FURROW_RETURN_IF_ERROR(CheckRequest(request, skeleton_.num_joints()));
     if (read_back_.in_flight() == ReadBack::kCapacity) {
       return {StatusCode::kUnavailable, "two pictures are in flight", "renderer", "poll first"};
     }
-    if (Status status = context_->MakeCurrent(); !status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(context_->MakeCurrent());
     FrameGraph graph;
-    if (Status status = BuildFrame(request, &graph); !status.ok()) return status;
-    if (Status status = graph.Compile(); !status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(BuildFrame(request, &graph));
+    FURROW_RETURN_IF_ERROR(graph.Compile());
     const Status status = graph.Execute(&pool_, observer_);
     pool_.EndFrame();
     return status;
   }
 
   Result<Image> Poll(bool wait) override {
-    if (Status status = context_->MakeCurrent(); !status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(context_->MakeCurrent());
     Result<std::optional<Image>> image = read_back_.Take(wait);
-    if (!image.ok()) return image.status();
+    FURROW_RETURN_IF_ERROR(image);
     return image->value_or(Image());
   }
 
@@ -86,7 +85,7 @@ class GlRenderer final : public Renderer {
         pipeline_(character, &scene_, &shaders_, &device_, context_->is_software()) {}
 
   Status BuildFrame(const FrameRequest& request, FrameGraph* graph) {
-    if (Status status = scene_.Update(request); !status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(scene_.Update(request));
     FrameGraph::Handle shadows;
     FrameGraph::Handle picture = pipeline_.Add(graph, request, request.settings.view,
                                                {request.width, request.height}, &shadows);
@@ -129,7 +128,7 @@ Result<Image> Renderer::Render(const FrameRequest& request) {
     const Result<Image> old = Poll(true);
     if (!old.ok()) return old;
   }
-  if (Status status = Submit(request); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(Submit(request));
   return Poll(true);
 }
 

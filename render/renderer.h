@@ -11,10 +11,10 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include "base/status.h"
 #include "character/character.h"
-#include "render/settings.h"
-#include "wrinkle/solver.h"
-#include "wrinkle/status.h"
+#include "render/settings/settings.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::render {
 
@@ -69,7 +69,7 @@ struct Image {
   std::uint64_t token = 0;
 };
 
-class FrameGraphObserver;  // render/frame_graph.h
+class FrameGraphObserver;  // render/graph/frame_graph.h
 
 struct RendererOptions {
   std::string device;  // EGL device index, "surfaceless", or empty: the first that gives GL 4.5
@@ -100,8 +100,8 @@ class Renderer {
   // Submit and wait. Pictures still in flight are dropped.
   [[nodiscard]] Result<Image> Render(const FrameRequest& request);
 
-  // Told of every pass of the frames submitted from now on (render/pass_timer.h times them), with
-  // the renderer's context current; null: nobody. Outlives the renderer or is taken back.
+  // Told of every pass of the frames submitted from now on (render/gl/pass_timer.h times them),
+  // with the renderer's context current; null: nobody. Outlives the renderer or is taken back.
   virtual void SetObserver(FrameGraphObserver* observer) = 0;
 
   // Vendor, renderer and version of the context, for the log.

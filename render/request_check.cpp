@@ -7,7 +7,8 @@
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 
-#include "render/subjects.h"
+#include "base/status.h"
+#include "render/scene/subjects.h"
 
 namespace furrow::render {
 namespace {
@@ -96,8 +97,8 @@ Status CheckSubjects(const FrameRequest& request, int num_joints) {
         "others"};
   }
   for (const auto& [subject, field] : SubjectsOf(request)) {
-    if (Status status = CheckModel(field, subject->model, num_joints); !status.ok()) return status;
-    if (Status status = CheckPlacement(field, subject->placement); !status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(CheckModel(field, subject->model, num_joints));
+    FURROW_RETURN_IF_ERROR(CheckPlacement(field, subject->placement));
   }
   return {};
 }
@@ -105,10 +106,10 @@ Status CheckSubjects(const FrameRequest& request, int num_joints) {
 }  // namespace
 
 Status CheckRequest(const FrameRequest& request, int num_joints) {
-  if (Status status = CheckSize("width", request.width); !status.ok()) return status;
-  if (Status status = CheckSize("height", request.height); !status.ok()) return status;
-  if (Status status = CheckSettings(request.settings); !status.ok()) return status;
-  if (Status status = CheckCamera(request.camera, num_joints); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(CheckSize("width", request.width));
+  FURROW_RETURN_IF_ERROR(CheckSize("height", request.height));
+  FURROW_RETURN_IF_ERROR(CheckSettings(request.settings));
+  FURROW_RETURN_IF_ERROR(CheckCamera(request.camera, num_joints));
   return CheckSubjects(request, num_joints);
 }
 

@@ -6,9 +6,10 @@
 
 #include <spdlog/spdlog.h>
 
-#include "character/data_dir.h"
-#include "character/rig_file.h"
-#include "motion/pose_source.h"
+#include "base/data_dir.h"
+#include "base/status.h"
+#include "motion/clip/pose_source.h"
+#include "rig/rig_file.h"
 
 namespace furrow::server {
 
@@ -53,12 +54,12 @@ Result<Assets> LoadAssets(const Config& config) {
     if (!loaded.ok()) return loaded.At("--render-settings");
   }
   if (config.character.empty() && !config.rig.empty()) {
-    if (Status status = LoadRigAlone(config.rig, poses, &assets); !status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(LoadRigAlone(config.rig, poses, &assets));
     return assets;
   }
   fs::path glb = config.character;
   if (glb.empty()) {
-    auto shipped = character::FindDataFile("default.glb");
+    auto shipped = furrow::FindDataFile("default.glb");
     if (!shipped.ok()) {
       return Status(StatusCode::kNotFound, "there is no default character",
                     shipped.status().where(),
@@ -68,11 +69,11 @@ Result<Assets> LoadAssets(const Config& config) {
   }
   const fs::path rig = RigOf(glb, config.rig);
   if (!config.render && !rig.empty()) {  // mesh and pictures are a hundred times what weights need
-    if (Status status = LoadRigAlone(rig, poses, &assets); !status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(LoadRigAlone(rig, poses, &assets));
     return assets;
   }
   auto loaded = character::LoadCharacter(glb, config.rig, poses);
-  if (!loaded.ok()) return loaded.status();
+  FURROW_RETURN_IF_ERROR(loaded);
   if (!config.render) {
     assets.rig = std::make_shared<const wrinkle::Rig>(std::move(loaded->rig));
     return assets;

@@ -3,12 +3,12 @@
 
 #include <memory>
 
+#include "base/status.h"
 #include "character/character.h"
-#include "character/skeleton_match.h"
-#include "render/settings.h"
-#include "server/config.h"
-#include "wrinkle/rig.h"
-#include "wrinkle/status.h"
+#include "render/settings/settings.h"
+#include "rig/skeleton_match.h"
+#include "server/config/config.h"
+#include "wrinkle/rig/rig.h"
 
 namespace furrow::server {
 

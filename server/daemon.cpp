@@ -21,21 +21,22 @@
 #include <asio/use_awaitable.hpp>
 #include <spdlog/spdlog.h>
 
-#include "character/rig_file.h"
+#include "base/status.h"
+#include "rig/rig_file.h"
 #include "server/assets.h"
-#include "server/http/api.h"
+#include "server/core/status_line.h"
+#include "server/http/api/api.h"
 #include "server/http/http_server.h"
 #include "server/net/clock.h"
 #include "server/net/mocap_inputs.h"
 #include "server/net/osc_output.h"
 #include "server/net/spawn.h"
-#include "server/net/tcp_server.h"
-#include "server/net/udp_port.h"
+#include "server/net/tcp/tcp_server.h"
+#include "server/net/udp/udp_port.h"
 #include "server/pipeline/render_thread.h"
 #include "server/playback/player.h"
 #include "server/recording/recorder.h"
 #include "server/session/hub.h"
-#include "server/status_line.h"
 
 namespace furrow::server {
 namespace {
@@ -165,23 +166,22 @@ Status Daemon::Listen() {
   MakeHub();
   const auto address = asio::ip::make_address(config_.bind);
   tcp_ = std::make_unique<TcpServer>(io_, config_.limits, hub_.get(), metrics_);
-  if (Status status = tcp_->Open({address, config_.tcp}); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(tcp_->Open({address, config_.tcp}));
   udp_ = std::make_unique<UdpPort>(io_, config_.threads, config_.limits, hub_.get(), metrics_,
                                    recorder_.get());
-  if (Status status = udp_->Open({address, config_.udp}); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(udp_->Open({address, config_.udp}));
   for (int lane = 0; config_.osc_out && lane < config_.threads; ++lane) {
     osc_.push_back(std::make_unique<OscOutput>(io_, metrics_));
-    const Status status = osc_.back()->Open(*config_.osc_out, config_.osc_prefix);
-    if (!status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(osc_.back()->Open(*config_.osc_out, config_.osc_prefix));
   }
-  if (Status status = mocap_.Open(config_, io_, hub_.get(), metrics_); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(mocap_.Open(config_, io_, hub_.get(), metrics_));
   return StartWeb();
 }
 
 Status Daemon::LoadPlayer() {
   if (config_.play.empty()) return {};
   auto player = Player::Load(config_.play);
-  if (!player.ok()) return player.status();
+  FURROW_RETURN_IF_ERROR(player);
   player_ = *std::move(player);
   return {};
 }
@@ -212,7 +212,7 @@ Status Daemon::StartWeb() {
              return api_->Answer(request, hub, now);
            },
        .metrics = metrics_});
-  if (!started.ok()) return started.status();
+  FURROW_RETURN_IF_ERROR(started);
   http_ = *std::move(started);
   return {};
 }

@@ -6,9 +6,9 @@
 #include <optional>
 #include <stop_token>
 
-#include "server/config.h"
-#include "server/exit_code.h"
-#include "server/metrics.h"
+#include "server/config/config.h"
+#include "server/core/exit_code.h"
+#include "server/core/metrics.h"
 
 namespace furrow::server {
 

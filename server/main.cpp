@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "server/config.h"
+#include "server/config/config.h"
+#include "server/config/log.h"
 #include "server/daemon.h"
-#include "server/log.h"
 
 int main(int argc, char** argv) {
   using furrow::server::ExitCode;

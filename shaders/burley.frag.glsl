@@ -3,7 +3,7 @@
 #include "common_scatter.glsl"
 #include "common_texel.glsl"
 
-// Burley's normalised diffusion by one disc of taps (render/subsurface_kernel.h: BurleyDisc), turned
+// Burley's normalised diffusion by one disc of taps (render/skin/subsurface_kernel.h: BurleyDisc), turned
 // by a different angle at every pixel.
 
 const int MAX_TAPS = 64;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // How light spreads in skin: six Gaussians (d'Eon and Luebke, GPU Gems 3, chapter 14). Each channel's
-// weights sum to 1. Mirrors HumanSkin() of render/skin_profile.h.
+// weights sum to 1. Mirrors HumanSkin() of render/skin/skin_profile.h.
 
 const int NUM_GAUSSIANS = 6;
 const float GAUSSIAN_VARIANCE[NUM_GAUSSIANS] =

@@ -4,7 +4,7 @@
 #include "common_math.glsl"
 
 // A patch's corner on its way from control to evaluation. Edges and corners have owners, whose
-// place, normal and UV all patches take that meet there (render/displacement_patches.h): what is
+// place, normal and UV all patches take that meet there (render/mesh/displacement_patches.h): what is
 // computed of them in the same order is the same to the bit, so nothing gapes.
 
 struct Place {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is the same for all of a frame. Mirrors FrameBlock of render/frame_block.h.
+// What is the same for all of a frame. Mirrors FrameBlock of render/scene/frame_block.h.
 // Space: model space of the character (right-handed, Y up, metres).
 
 const int NUM_LIGHTS = 3;
@@ -19,7 +19,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 u_camera_position;    // xyz
   vec4 u_camera_forward;     // xyz: unit; w: distance of the focus
   Light u_lights[NUM_LIGHTS];
-  vec4 u_ambient[9];         // rgb: diffuse light of the sky, a polynomial (render/sky_light.h)
+  vec4 u_ambient[9];         // rgb: diffuse light of the sky, a polynomial (render/scene/sky_light.h)
   vec4 u_sky_zenith;         // rgb: radiance from above,
   vec4 u_sky_horizon;        // from all around
   vec4 u_sky_ground;         // and from below

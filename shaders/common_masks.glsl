@@ -19,7 +19,7 @@ vec4 maskWeights(int row) { return u_mask_weights[row]; }
 // What the masks make of one active map here: the sum of the texture-masked regions' weight * mask,
 // plus the dynamic mask, [0, 1]. Not below 0; above 1 only where masks overlap. `dynamicMasks`:
 // sums that vertices bring. They are clamped here, so that within a triangle they stay a sum over
-// joints, which can be composed beforehand (render/skinned_masks.h).
+// joints, which can be composed beforehand (render/compose/skinned_masks.h).
 float wrinkleCoefficient(int slot, vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS]) {
   float sum = 0.0;
 #if WRINKLE_TEXTURE

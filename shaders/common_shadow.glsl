@@ -2,7 +2,7 @@
 #include "common_frame.glsl"
 #include "common_math.glsl"
 
-// Look-ups in the lamps' shadow maps, which lie side by side in one texture (render/shadow_view.h).
+// Look-ups in the lamps' shadow maps, which lie side by side in one texture (render/scene/shadow_view.h).
 //
 // SHADOW_FILTER  0: none, 1: a disc of fixed radius, 2: one that widens with the distance between
 //                what casts and what is shaded (PCSS, Fernando 2005)

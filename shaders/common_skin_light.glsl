@@ -16,7 +16,7 @@
 // Where there are several, what is one material's alone stands in a loop that others leave at once.
 
 #if PREINTEGRATED
-layout(binding = 9) uniform sampler2D u_ring_table;  // render/subsurface_kernel.h: PreintegratedTable
+layout(binding = 9) uniform sampler2D u_ring_table;  // render/skin/subsurface_kernel.h: PreintegratedTable
 #endif
 
 struct Lit {

@@ -7,7 +7,7 @@
 // BECKMANN_SIZE, ALBEDO_SIZE  texels of the tables' sides
 // BECKMANN_TABLE  1: PH is looked up; 0: it is worked out, where look-ups cost more than arithmetic
 // SPECULAR_GEMS  1: as printed, without the 1/pi that makes it a distribution
-// Both tables are render/beckmann.h's; their texels' centres lie on the ends of both ranges.
+// Both tables are render/skin/beckmann.h's; their texels' centres lie on the ends of both ranges.
 
 #if BECKMANN_TABLE
 layout(binding = 7) uniform sampler2D u_beckmann_table;  // 0.5 PH^0.1; x: N.H, y: m

@@ -17,7 +17,7 @@ layout(location = 5) flat in uint v_subject;
 layout(location = 6) in vec4 v_dynamic_masks[MAP_SLOTS];
 #endif
 
-// Mirrors MaterialBlock in render/gpu_character.cpp.
+// Mirrors MaterialBlock in render/scene/gpu_character.cpp.
 layout(std140, binding = 1) uniform Material {
   vec4 u_base_colour;      // linear
   float u_roughness;       // [0, 1]

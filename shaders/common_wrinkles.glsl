@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The wrinkle maps that this frame needs: an active list made on the CPU, so that a map whose
 // wrinkle weights are all 0 costs nothing. Mirrors ActiveMap and WrinkleBlock() in
-// render/wrinkle_table.h.
+// render/wrinkles/wrinkle_table.h.
 //
 // ACTIVE_MAPS  length of the list for this surface: a constant, so that loops unroll and llvmpipe
 //              reads the list once for all lanes, which a list in a storage buffer cannot

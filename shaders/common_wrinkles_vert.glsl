@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common_math.glsl"
 
-// The masks that are found vertex by vertex. Mirrors DynamicMaskBlock of render/dynamic_masks.h.
+// The masks that are found vertex by vertex. Mirrors DynamicMaskBlock of render/wrinkles/dynamic_masks.h.
 //
 // NUM_JOINTS  of the character's skeleton
 // MAP_SLOTS   vec4s that carry the dynamic masks of the rig's maps

@@ -5,7 +5,7 @@
 #endif
 
 // Poses a mesh for several subjects, one an instance. Nothing is drawn: what it writes is captured,
-// for every pass that draws the mesh (render/posed_meshes.h).
+// for every pass that draws the mesh (render/scene/posed_meshes.h).
 
 // Mirrors character::Vertex. Model space, rest pose, metres.
 layout(location = 0) in vec3 a_position;

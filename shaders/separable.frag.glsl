@@ -4,7 +4,7 @@
 
 // One of the two passes of the separable kernel (after Jimenez 2015): along x, then along y.
 //
-// - Offsets and weights come from render/pixel_kernel.h, for pixels at the distance of the focus;
+// - Offsets and weights come from render/skin/pixel_kernel.h, for pixels at the distance of the focus;
 //   offsets are scaled to the pixel's own distance. Pixels are square, so both axes take the same
 //   steps; taps stand a little aside of the axis, so that each pass smooths the other's steps.
 // - A tap on no skin, or further away in depth than light travels, is left out, and the others

@@ -10,7 +10,7 @@
 
 #include "bench/codec/messages.h"
 #include "bench/codec/plain_flatbuffers.h"
-#include "protocol/codec.h"
+#include "protocol/codec/codec.h"
 #include "tests/unit/protocol/samples.h"
 
 namespace furrow::protocol::bench {

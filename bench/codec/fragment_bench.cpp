@@ -7,8 +7,8 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/codec/messages.h"
-#include "protocol/fragment.h"
-#include "protocol/limits.h"
+#include "protocol/framing/fragment.h"
+#include "protocol/messages/limits.h"
 #include "tests/unit/protocol/samples.h"
 
 namespace furrow::protocol::bench {

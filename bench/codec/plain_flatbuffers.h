@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "protocol/limits.h"
+#include "protocol/messages/limits.h"
 
 namespace furrow::protocol::bench {
 

@@ -20,11 +20,11 @@
 #include "bench/report/command_line.h"
 #include "bench/report/interleave.h"
 #include "bench/report/results.h"
-#include "client/load/spread.h"
-#include "protocol/bundle.h"
-#include "protocol/codec.h"
+#include "client/load/measure/spread.h"
+#include "protocol/codec/codec.h"
+#include "protocol/framing/bundle.h"
 #include "report/table.h"
-#include "server/net/udp_sender.h"
+#include "server/net/udp/udp_sender.h"
 
 namespace furrow::bench {
 namespace {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "bench/report/take.h"
-#include "client/cli/load_input.h"
+#include "client/cli/load/load_input.h"
 #include "client/load/verdict.h"
-#include "protocol/codec.h"
+#include "protocol/codec/codec.h"
 #include "report/table.h"
 
 namespace furrow::bench {

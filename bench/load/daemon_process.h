@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
+#include "base/status.h"
 #include "client/load/run.h"
-#include "wrinkle/status.h"
 
 namespace furrow::bench {
 

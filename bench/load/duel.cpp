@@ -6,8 +6,8 @@
 
 #include "bench/report/aims.h"
 #include "bench/report/take.h"
-#include "client/cli/load_input.h"
-#include "client/load/clock.h"
+#include "client/cli/load/load_input.h"
+#include "client/load/net/clock.h"
 
 namespace furrow::bench {
 namespace {

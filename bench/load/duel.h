@@ -2,8 +2,8 @@
 #pragma once
 
 #include "bench/load/setting.h"
-#include "client/load/comparison.h"
-#include "client/load/performance.h"
+#include "client/load/compare/comparison.h"
+#include "client/load/schedule/performance.h"
 
 namespace furrow::bench {
 

@@ -5,7 +5,7 @@
 
 #include "bench/load/duel.h"
 #include "bench/report/take.h"
-#include "client/load/echo.h"
+#include "client/load/net/echo.h"
 #include "client/load/verdict.h"
 #include "report/table.h"
 

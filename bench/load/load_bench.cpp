@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "base/data_dir.h"
 #include "bench/load/budget.h"
 #include "bench/load/curves.h"
 #include "bench/load/figures.h"
@@ -20,8 +21,7 @@
 #include "bench/report/machine.h"
 #include "bench/report/results.h"
 #include "bench/report/take.h"
-#include "character/data_dir.h"
-#include "client/load/clock.h"
+#include "client/load/net/clock.h"
 #include "report/table.h"
 #include "report/words.h"
 
@@ -35,7 +35,7 @@ struct Options {
   std::string only;
 };
 
-fs::path DataFile(const std::string& name) { return Take(character::FindDataFile(name)); }
+fs::path DataFile(const std::string& name) { return Take(furrow::FindDataFile(name)); }
 
 // One part of the measurement: its tables and figures; curves also draw themselves.
 struct Part {

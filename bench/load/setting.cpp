@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/load/setting.h"
 
-#include "client/cli/load_input.h"
+#include "base/status.h"
+#include "client/cli/load/load_input.h"
 
 namespace furrow::bench {
 
@@ -16,9 +17,9 @@ Result<load::RunResult> RunFresh(const Setting& setting, const std::filesystem::
                                  const std::filesystem::path& rig,
                                  const load::RunOptions& options) {
   const auto performance = cli::LoadPerformance({.file = recording, .rig = rig, .quantise = true});
-  if (!performance.ok()) return performance.status();
+  FURROW_RETURN_IF_ERROR(performance);
   const auto daemon = DaemonProcess::Start(setting.daemon, rig, setting.folder);
-  if (!daemon.ok()) return daemon.status();
+  FURROW_RETURN_IF_ERROR(daemon);
   return load::Run(*performance, daemon->target(), options, Silently());
 }
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "bench/load/setting.h"
-#include "client/load/comparison.h"
+#include "client/load/compare/comparison.h"
 
 namespace furrow::bench {
 

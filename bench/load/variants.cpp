@@ -7,10 +7,11 @@
 
 #include <glm/gtc/quaternion.hpp>
 
-#include "character/rig_file.h"
+#include "base/status.h"
 #include "client/cli/inputs.h"
-#include "client/cli/load_input.h"
-#include "motion/clip.h"
+#include "client/cli/load/load_input.h"
+#include "motion/clip/clip.h"
+#include "rig/rig_file.h"
 
 namespace furrow::bench {
 namespace {
@@ -40,7 +41,7 @@ std::vector<wrinkle::JointDesc> JointsOf(const wrinkle::Skeleton& skeleton) {
 Status SaveMultipliedRig(const std::filesystem::path& path, int copies,
                          const std::filesystem::path& out) {
   auto rig = cli::LoadRigArgument(path);
-  if (!rig.ok()) return rig.status();
+  FURROW_RETURN_IF_ERROR(rig);
   const auto drivers = rig->drivers;
   const auto regions = rig->regions;
   for (int copy = 2; copy <= copies; ++copy) {
@@ -57,7 +58,7 @@ Status SaveMultipliedRig(const std::filesystem::path& path, int copies,
 Status SavePaddedRecording(const std::filesystem::path& path, int num_joints,
                            const std::filesystem::path& out) {
   auto clip = motion::LoadClip(path);
-  if (!clip.ok()) return clip.status();
+  FURROW_RETURN_IF_ERROR(clip);
   auto joints = JointsOf(clip->skeleton);
   const std::size_t own = joints.size();
   while (joints.size() < static_cast<std::size_t>(num_joints)) {
@@ -67,7 +68,7 @@ Status SavePaddedRecording(const std::filesystem::path& path, int num_joints,
                       .tail = glm::vec3(0.0f, 0.1f, 0.0f)});
   }
   auto skeleton = wrinkle::Skeleton::Create(joints);
-  if (!skeleton.ok()) return skeleton.status();
+  FURROW_RETURN_IF_ERROR(skeleton);
   std::vector<wrinkle::Transform> locals;
   for (int frame = 0; frame < clip->num_frames(); ++frame) {
     const auto first = clip->locals.begin() + static_cast<std::ptrdiff_t>(own) * frame;
@@ -85,7 +86,7 @@ Status SavePaddedRecording(const std::filesystem::path& path, int num_joints,
 
 Result<int> CountWeights(const std::filesystem::path& recording, const std::filesystem::path& rig) {
   const auto performance = cli::LoadPerformance({.file = recording, .rig = rig});
-  if (!performance.ok()) return performance.status();
+  FURROW_RETURN_IF_ERROR(performance);
   return static_cast<int>(performance->binding->weight_names().size());
 }
 

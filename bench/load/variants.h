@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "wrinkle/status.h"
+#include "base/status.h"
 
 namespace furrow::bench {
 

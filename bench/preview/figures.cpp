@@ -15,7 +15,7 @@
 
 #include "bench/preview/house.h"
 #include "bench/preview/viewers.h"
-#include "client/load/comparison.h"
+#include "client/load/compare/comparison.h"
 #include "report/statistics.h"
 #include "report/table.h"
 #include "server/net/clock.h"

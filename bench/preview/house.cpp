@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "protocol/hash.h"
+#include "protocol/messages/hash.h"
 #include "server/net/clock.h"
 
 namespace furrow::bench {

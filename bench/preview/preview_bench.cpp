@@ -9,13 +9,14 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
+#include "base/data_dir.h"
+#include "base/status.h"
 #include "bench/preview/figures.h"
 #include "bench/report/command_line.h"
 #include "bench/report/results.h"
 #include "character/character.h"
-#include "character/data_dir.h"
-#include "motion/pose_source.h"
-#include "wrinkle/pose.h"
+#include "motion/clip/pose_source.h"
+#include "wrinkle/skeleton/pose.h"
 
 namespace furrow::bench {
 namespace {
@@ -29,12 +30,12 @@ struct Options {
 
 // The default character at rest, in skin: as hard to pack as what a session looks at.
 Result<render::Image> DrawPicture(int width, int height) {
-  const auto path = character::FindDataFile("default.glb");
-  if (!path.ok()) return path.status();
+  const auto path = furrow::FindDataFile("default.glb");
+  FURROW_RETURN_IF_ERROR(path);
   const auto character = character::LoadCharacter(*path, {}, motion::CachedPoseSource());
-  if (!character.ok()) return character.status();
+  FURROW_RETURN_IF_ERROR(character);
   const auto renderer = render::Renderer::Create(*character);
-  if (!renderer.ok()) return renderer.status();
+  FURROW_RETURN_IF_ERROR(renderer);
   const wrinkle::Skeleton& skeleton = character->skeleton;
   std::vector<glm::mat4> model(static_cast<std::size_t>(skeleton.num_joints()));
   const wrinkle::LocalToModelJob to_model{&skeleton, skeleton.rest_pose(), model};

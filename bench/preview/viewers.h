@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "server/session/time.h"
+#include "server/core/time.h"
 #include "web_client.h"
 
 namespace furrow::bench {

@@ -7,7 +7,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "render/pass_timer.h"
+#include "render/gl/pass_timer.h"
 #include "render/renderer.h"
 #include "tests/unit/render/test_character.h"
 
@@ -106,7 +106,7 @@ void CountPasses(Scene* scene, const FrameRequest& request, benchmark::State* st
 
 // Two in flight, with skin shading: a laptop's or a cheap server's picture, with FXAA where the
 // scene has one sample. CPU: of all threads. Counters: milliseconds of the processor that each pass
-// takes, the device waited for in between (render/pass_timer.h).
+// takes, the device waited for in between (render/gl/pass_timer.h).
 void BM_Skin(benchmark::State& state) {
   Scene& scene = TheScene();
   FrameRequest request = scene.request_;

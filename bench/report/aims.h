@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "wrinkle/status.h"
+#include "base/status.h"
 
 namespace furrow::bench {
 

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "wrinkle/status.h"
+#include "base/status.h"
 
 namespace furrow::bench {
 

@@ -8,9 +8,9 @@
 
 #include "bench/report/interleave.h"
 #include "bench/thesis/subjects.h"
-#include "render/pass_timer.h"
+#include "render/gl/pass_timer.h"
 #include "render/renderer.h"
-#include "wrinkle/solver.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::bench {
 

@@ -8,13 +8,13 @@
 
 #include <benchmark/benchmark.h>
 
+#include "base/data_dir.h"
 #include "bench/report/take.h"
-#include "character/data_dir.h"
-#include "character/rig_file.h"
-#include "motion/clip.h"
-#include "motion/pose_source.h"
-#include "wrinkle/batch_solver.h"
-#include "wrinkle/solver.h"
+#include "motion/clip/clip.h"
+#include "motion/clip/pose_source.h"
+#include "rig/rig_file.h"
+#include "wrinkle/solver/batch_solver.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -24,10 +24,10 @@ using bench::Take;
 // Loaded once.
 struct Performance {
   Performance() {
-    const Rig rig = Take(character::LoadRig(Take(character::FindDataFile("rigs/default.json")),
+    const Rig rig = Take(character::LoadRig(Take(furrow::FindDataFile("rigs/default.json")),
                                             motion::CachedPoseSource()));
     const auto clip =
-        Take(motion::LoadClip(Take(character::FindDataFile("recordings/performance.bvh"))));
+        Take(motion::LoadClip(Take(furrow::FindDataFile("recordings/performance.bvh"))));
     binding = std::make_shared<const RigBinding>(Take(
         RigBinding::Create(rig, clip.skeleton, clip.blend_shape_names, {.allow_missing = true})));
     frames.resize(static_cast<std::size_t>(clip.num_frames()));

@@ -11,9 +11,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "wrinkle/batch_solver.h"
-#include "wrinkle/pose.h"
-#include "wrinkle/solver.h"
+#include "wrinkle/skeleton/pose.h"
+#include "wrinkle/solver/batch_solver.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::wrinkle {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "client/cli/exit_code.h"
-#include "protocol/limits.h"
+#include "protocol/messages/limits.h"
 
 namespace furrow::cli {
 namespace {

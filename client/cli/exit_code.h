@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "wrinkle/status.h"
+#include "base/status.h"
 
 namespace furrow::cli {
 

@@ -2,20 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <span>
 
-#include "wrinkle/status.h"
+#include "base/status.h"
 
 namespace furrow::cli {
-
-// Writes a whole file; kIo names it.
-[[nodiscard]] Status WriteFile(const std::filesystem::path& path,
-                               std::span<const std::uint8_t> bytes);
-
-// Whether WriteFile() may be expected to succeed: asked before work that takes long. What is there
-// stays as it is; kIo names the file and says why not.
-[[nodiscard]] Status CheckWritable(const std::filesystem::path& path);
 
 // Writes to standard output and flushes; kIo says why it could not.
 [[nodiscard]] Status WriteStandardOutput(std::span<const std::uint8_t> bytes);

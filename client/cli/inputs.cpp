@@ -6,12 +6,13 @@
 #include <optional>
 #include <span>
 
-#include "character/data_dir.h"
-#include "character/rig_file.h"
+#include "base/data_dir.h"
+#include "base/status.h"
 #include "client/cli/progress.h"
-#include "motion/pose_source.h"
+#include "motion/clip/pose_source.h"
 #include "recording/take_clip.h"
 #include "report/words.h"
+#include "rig/rig_file.h"
 
 namespace furrow::cli {
 
@@ -53,7 +54,7 @@ fs::path ResolveRigPath(const std::string& argument) {
   std::error_code error;
   if (fs::exists(argument, error) || argument.find('/') != std::string::npos) return argument;
   const std::string file = argument.ends_with(".json") ? argument : argument + ".json";
-  const auto shipped = character::FindDataFile("rigs/" + file);
+  const auto shipped = furrow::FindDataFile("rigs/" + file);
   return shipped.ok() ? *shipped : fs::path(argument);
 }
 
@@ -85,8 +86,8 @@ void WarnOfMissing(const wrinkle::RigBinding& binding, const motion::Clip& clip)
 Result<character::Character> LoadCharacterArgument(const std::string& glb, const std::string& rig) {
   fs::path package = glb;
   if (glb.empty()) {
-    const auto shipped = character::FindDataFile("default.glb");
-    if (!shipped.ok()) return shipped.status();
+    const auto shipped = furrow::FindDataFile("default.glb");
+    FURROW_RETURN_IF_ERROR(shipped);
     package = *shipped;
   }
   auto character = character::LoadCharacter(package, rig.empty() ? fs::path() : ResolveRigPath(rig),

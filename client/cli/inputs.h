@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "base/status.h"
 #include "character/character.h"
-#include "character/skeleton_match.h"
-#include "motion/clip.h"
+#include "motion/clip/clip.h"
 #include "recording/take_reader.h"
-#include "wrinkle/rig.h"
-#include "wrinkle/solver.h"
-#include "wrinkle/status.h"
+#include "rig/skeleton_match.h"
+#include "wrinkle/rig/rig.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::cli {
 

@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "client/cpp/subscriber.h"
-#include "protocol/limits.h"
+#include "protocol/messages/limits.h"
 
 namespace furrow::cli {
 

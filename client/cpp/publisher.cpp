@@ -4,8 +4,8 @@
 #include <random>
 #include <utility>
 
-#include "protocol/hash.h"
-#include "protocol/offer_check.h"
+#include "protocol/codec/offer_check.h"
+#include "protocol/messages/hash.h"
 
 namespace furrow::client {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "client/cpp/publisher.h"
-#include "protocol/limits.h"
+#include "protocol/messages/limits.h"
 
 namespace furrow::client {
 namespace {

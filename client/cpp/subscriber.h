@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "client/cpp/transport.h"
-#include "protocol/codec.h"
+#include "protocol/codec/codec.h"
 
 namespace furrow::client {
 

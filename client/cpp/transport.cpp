@@ -12,10 +12,10 @@
 #include <asio/ip/udp.hpp>
 #include <asio/write.hpp>
 
-#include "protocol/bundle.h"
-#include "protocol/fragment.h"
-#include "protocol/limits.h"
-#include "protocol/tcp_framing.h"
+#include "protocol/framing/bundle.h"
+#include "protocol/framing/fragment.h"
+#include "protocol/framing/tcp_framing.h"
+#include "protocol/messages/limits.h"
 
 namespace furrow::client {
 namespace {

@@ -45,7 +45,8 @@ class Transport {
   [[nodiscard]] virtual IoStatus Receive(std::span<const std::uint8_t>& message,
                                          std::chrono::milliseconds timeout) = 0;
 
-  // Whether Receive() takes bundles apart (protocol/bundle.h), so that the daemon may send some.
+  // Whether Receive() takes bundles apart (protocol/framing/bundle.h), so that the daemon may send
+  // some.
   [[nodiscard]] virtual bool takes_bundles() const { return false; }
 
   [[nodiscard]] TransportKind kind() const { return kind_; }

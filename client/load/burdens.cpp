@@ -8,6 +8,8 @@
 #include <poll.h>
 #include <sys/socket.h>
 
+#include "base/status.h"
+
 namespace furrow::load {
 
 using client::Event;
@@ -35,7 +37,7 @@ Result<Burdens> Burdens::Open(OpenSocket open, const BurdenOptions& options, int
   for (const auto& [kind, count] : wanted) {
     for (int i = 0; i < count; ++i) {
       Burden burden{.kind = kind, .due_us = 0, .subscriber = nullptr};
-      if (Status status = all.Begin(burden); !status.ok()) return status;
+      FURROW_RETURN_IF_ERROR(all.Begin(burden));
       all.burdens_.push_back(std::move(burden));
     }
   }
@@ -44,7 +46,7 @@ Result<Burdens> Burdens::Open(OpenSocket open, const BurdenOptions& options, int
 
 Status Burdens::Begin(Burden& burden) {
   auto socket = open_(0);
-  if (!socket.ok()) return socket.status();
+  FURROW_RETURN_IF_ERROR(socket);
   if (burden.kind != Kind::kChurn) {
     // Else the system would read megabytes for who does not, and the server notice much later.
     const int bytes = 4096;

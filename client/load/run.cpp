@@ -5,12 +5,13 @@
 #include <cmath>
 #include <utility>
 
-#include "client/load/clock.h"
-#include "client/load/poller.h"
-#include "client/load/senders.h"
+#include "base/status.h"
+#include "client/load/net/clock.h"
+#include "client/load/net/poller.h"
+#include "client/load/schedule/senders.h"
 #include "client/load/watchers.h"
-#include "protocol/envelope.h"
-#include "protocol/fragment.h"
+#include "protocol/framing/envelope.h"
+#include "protocol/framing/fragment.h"
 
 namespace furrow::load {
 namespace {
@@ -41,7 +42,7 @@ OpenSocket Opener(const Target& target, Path path) {
 OpenSocket ResolvedOpener(Target target, Path path) {
   return [target = std::move(target), path](int i) mutable -> Result<std::unique_ptr<Socket>> {
     auto socket = Opener(target, path)(i);
-    if (!socket.ok()) return socket.status();
+    FURROW_RETURN_IF_ERROR(socket);
     if (const std::string host = PeerHost((*socket)->descriptor()); !host.empty())
       target.host = host;
     return socket;
@@ -146,7 +147,7 @@ Status Runner::Prepare() {
                                 .tolerance = options_.tolerance,
                                 .late_us = options_.late_us,
                                 .seconds = options_.plan.seconds});
-  if (Status status = OpenSockets(); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(OpenSockets());
   for (std::size_t i = 0; i < senders_->num_sockets(); ++i) Listen(senders_->socket(i), i);
   for (std::size_t i = 0; watchers_ && i < watchers_->num_sockets(); ++i)
     Listen(watchers_->socket(i), kWatcherToken + i);
@@ -161,20 +162,19 @@ void Runner::Listen(Socket& socket, std::uint64_t token) {
 Status Runner::OpenSockets() {
   const OpenSocket open = Opener(target_, options_.path);
   auto senders = Senders::Open(open, NumSockets(performance_, plan_, options_.path), performance_);
-  if (!senders.ok()) return senders.status();
+  FURROW_RETURN_IF_ERROR(senders);
   senders_.emplace(*std::move(senders));
   if (target_.echo) return {};
-  if (Status status = senders_->Offer(plan_.num_subjects(), hooks_.go_on); !status.ok())
-    return status;
+  FURROW_RETURN_IF_ERROR(senders_->Offer(plan_.num_subjects(), hooks_.go_on));
   const auto names =
       performance_.binding ? performance_.binding->weight_names() : std::span<const std::string>();
   auto watchers = Watchers::Open(open, options_.watchers, plan_.num_subjects(), names);
-  if (!watchers.ok()) return watchers.status();
+  FURROW_RETURN_IF_ERROR(watchers);
   watchers_.emplace(*std::move(watchers));
-  if (Status status = watchers_->Subscribe(hooks_.go_on); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(watchers_->Subscribe(hooks_.go_on));
   auto burdens =
       Burdens::Open(ResolvedOpener(target_, Path::kTcp), options_.burdens, plan_.num_subjects());
-  if (!burdens.ok()) return burdens.status();
+  FURROW_RETURN_IF_ERROR(burdens);
   burdens_.emplace(*std::move(burdens));
   return {};
 }

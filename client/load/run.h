@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "base/status.h"
 #include "client/load/burdens.h"
-#include "client/load/checker.h"
-#include "client/load/histogram.h"
-#include "client/load/performance.h"
-#include "client/load/plan.h"
-#include "client/load/process_usage.h"
-#include "wrinkle/status.h"
+#include "client/load/measure/checker.h"
+#include "client/load/measure/histogram.h"
+#include "client/load/measure/process_usage.h"
+#include "client/load/schedule/performance.h"
+#include "client/load/schedule/plan.h"
 
 namespace furrow::load {
 

@@ -5,8 +5,9 @@
 #include <chrono>
 #include <utility>
 
-#include "client/load/clock.h"
-#include "protocol/hash.h"
+#include "base/status.h"
+#include "client/load/net/clock.h"
+#include "protocol/messages/hash.h"
 
 namespace furrow::load {
 
@@ -30,7 +31,7 @@ Result<Watchers> Watchers::Open(const OpenSocket& open, int watchers, int subjec
   for (int watcher = 0; watcher < watchers; ++watcher) {
     for (int first = 0; first < subjects; first += kSubscriptionsPerPeer) {
       auto socket = open(static_cast<int>(all.links_.size()));
-      if (!socket.ok()) return socket.status();
+      FURROW_RETURN_IF_ERROR(socket);
       Link& link = all.links_.emplace_back();
       link.watcher = watcher;
       for (int i = first; i < std::min(first + kSubscriptionsPerPeer, subjects); ++i)
@@ -49,7 +50,7 @@ Status Watchers::Subscribe(const std::function<bool()>& go_on) {
           link.subscriber->Subscribe(protocol::SubscribeWeights{.subject = SubjectName(subject)});
       link.asked.emplace(request, subject);
     }
-    if (Status status = WaitForReplies(link, go_on); !status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(WaitForReplies(link, go_on));
   }
   return {};
 }

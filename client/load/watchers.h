@@ -9,10 +9,10 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/status.h"
 #include "client/cpp/subscriber.h"
-#include "client/load/senders.h"
-#include "client/load/socket.h"
-#include "wrinkle/status.h"
+#include "client/load/net/socket.h"
+#include "client/load/schedule/senders.h"
 
 namespace furrow::load {
 

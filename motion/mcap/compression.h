@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "wrinkle/status.h"
+#include "base/status.h"
 
 namespace furrow::motion::mcap {
 

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/status.h"
 #include "motion/mcap/compression.h"
 
 namespace furrow::motion::mcap {
@@ -51,7 +52,7 @@ Status Reader::Open() {
   const auto header = RecordAt(sizeof kMagic);
   if (header && header->opcode == Opcode::kHeader && header->length <= limits_.record_bytes) {
     const auto bytes = ReadAt(header->offset + kRecordHeaderBytes, header->length);
-    if (!bytes.ok()) return bytes.status();
+    FURROW_RETURN_IF_ERROR(bytes);
     ByteReader content(*bytes);
     profile_ = content.GetText();
     library_ = content.GetText();
@@ -293,7 +294,7 @@ Status Reader::Scan() {
     }
     ended = record->opcode == Opcode::kDataEnd || record->opcode == Opcode::kFooter;
     if (!ended) {
-      if (Status status = ScanRecord(*record); !status.ok()) return status;
+      FURROW_RETURN_IF_ERROR(ScanRecord(*record));
     }
     offset += kRecordHeaderBytes + record->length;
   }
@@ -308,7 +309,7 @@ Status Reader::ScanRecord(const Record& record) {
     const std::uint64_t head =
         record.opcode == Opcode::kChunk ? kChunkHeadBytes : kAttachmentHeadBytes;
     const auto bytes = ReadAt(record.offset + kRecordHeaderBytes, std::min(record.length, head));
-    if (!bytes.ok()) return bytes.status();
+    FURROW_RETURN_IF_ERROR(bytes);
     if (record.opcode == Opcode::kAttachment) {
       if (!AddAttachment(*bytes, record)) Warn(record.offset, "a damaged attachment is left out");
       return {};
@@ -320,7 +321,7 @@ Status Reader::ScanRecord(const Record& record) {
     return {};
   }
   const auto bytes = ReadAt(record.offset + kRecordHeaderBytes, record.length);
-  if (!bytes.ok()) return bytes.status();
+  FURROW_RETURN_IF_ERROR(bytes);
   bool good = true;
   if (record.opcode == Opcode::kSchema) good = AddSchema(ByteReader(*bytes));
   if (record.opcode == Opcode::kChannel) good = AddChannel(ByteReader(*bytes));

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "base/status.h"
 #include "motion/mcap/byte_io.h"
 #include "motion/mcap/records.h"
-#include "wrinkle/status.h"
 
 namespace furrow::motion::mcap {
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/status.h"
 #include "motion/mcap/compression.h"
 #include "motion/mcap/reader.h"
 
@@ -68,7 +69,7 @@ class Reader::Run {
 Result<Bytes> Reader::LoadChunk(const ChunkInfo& info) {
   if (info.compression == kLooseMessages) return ReadAt(info.offset, info.length);
   const auto record = ReadAt(info.offset, info.length);
-  if (!record.ok()) return record.status();
+  FURROW_RETURN_IF_ERROR(record);
   ByteReader content(*record);
   if (content.Get<std::uint8_t>() != static_cast<std::uint8_t>(Opcode::kChunk))
     return Status(StatusCode::kParse, "the index points at something else");
@@ -88,7 +89,7 @@ Result<Bytes> Reader::LoadChunk(const ChunkInfo& info) {
   if (!records.ok()) return records;
   if (crc != 0 && Crc32(*records) != crc)
     return Status(StatusCode::kParse, "its checksum is wrong");
-  if (Status status = AddDeclarations(*records); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(AddDeclarations(*records));
   return records;
 }
 
@@ -151,7 +152,7 @@ Status Reader::ForEach(const Range& range, const std::function<bool(const Messag
     if (next < chunks.size() &&
         (runs.empty() || chunks[next]->start_time <= runs.front()->front().log_time)) {
       auto run = LoadRun(*chunks[next++], range, held);
-      if (!run.ok()) return run.status();
+      FURROW_RETURN_IF_ERROR(run);
       if (*run == nullptr || (*run)->at_end()) continue;
       held += (*run)->held_bytes();
       runs.push_back(*std::move(run));

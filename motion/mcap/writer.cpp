@@ -9,6 +9,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "base/status.h"
 #include "motion/mcap/compression.h"
 
 namespace furrow::motion::mcap {
@@ -246,7 +247,7 @@ Status Writer::Attach(std::string_view name, std::string_view media_type, std::u
   record.Put(static_cast<std::uint64_t>(data.size())).PutBytes(data);
   record.Put(Crc32(record.bytes()));
   const std::uint64_t offset = offset_;
-  if (Status status = AppendRecord(Opcode::kAttachment, record); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(AppendRecord(Opcode::kAttachment, record));
   attachments_.push_back({std::string(name), std::string(media_type), time, time, data.size(),
                           offset, offset_ - offset});
   return {};
@@ -256,7 +257,7 @@ Status Writer::WriteMetadata(const Metadata& metadata) {
   ByteWriter record;
   record.PutText(metadata.name).PutMap(metadata.values);
   const std::uint64_t offset = offset_;
-  if (Status status = AppendRecord(Opcode::kMetadata, record); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(AppendRecord(Opcode::kMetadata, record));
   metadata_.push_back({metadata.name, offset, offset_ - offset});
   return {};
 }
@@ -289,7 +290,7 @@ ByteWriter Writer::Statistics() const {
 Status Writer::WriteSummary() {
   ByteWriter end;
   end.Put(crc_);
-  if (Status status = AppendRecord(Opcode::kDataEnd, end); !status.ok()) return status;
+  FURROW_RETURN_IF_ERROR(AppendRecord(Opcode::kDataEnd, end));
 
   SummaryBuilder summary(offset_);
   for (const Schema& schema : schemas_) summary.Add(Opcode::kSchema, ToRecord(schema));

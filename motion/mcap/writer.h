@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "base/status.h"
 #include "motion/mcap/byte_io.h"
 #include "motion/mcap/records.h"
-#include "wrinkle/status.h"
 
 namespace furrow::motion::mcap {
 

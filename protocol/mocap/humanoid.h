@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "protocol/messages.h"
+#include "protocol/messages/messages.h"
 
 namespace furrow::protocol::mocap {
 

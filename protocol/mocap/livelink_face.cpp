@@ -7,9 +7,9 @@
 #include <cmath>
 #include <vector>
 
-#include "protocol/bytes.h"
+#include "protocol/messages/bytes.h"
+#include "protocol/messages/text.h"
 #include "protocol/mocap/source_clock.h"
-#include "protocol/text.h"
 
 namespace furrow::protocol::mocap {
 namespace {

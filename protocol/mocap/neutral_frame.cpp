@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "protocol/hash.h"
+#include "protocol/messages/hash.h"
 
 namespace furrow::protocol::mocap {
 

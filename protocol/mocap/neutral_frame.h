@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "protocol/messages.h"
+#include "protocol/messages/messages.h"
 
 namespace furrow::protocol::mocap {
 

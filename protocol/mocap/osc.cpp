@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-#include "protocol/bytes.h"
+#include "protocol/messages/bytes.h"
 
 namespace furrow::protocol::mocap {
 namespace {

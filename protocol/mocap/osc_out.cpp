@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "protocol/limits.h"
+#include "protocol/messages/limits.h"
 #include "protocol/mocap/osc.h"
 
 namespace furrow::protocol::mocap {

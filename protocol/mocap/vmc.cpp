@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "protocol/hash.h"
+#include "protocol/messages/hash.h"
 #include "protocol/mocap/osc.h"
 #include "protocol/mocap/source_clock.h"
 #include "protocol/mocap/vmc_state.h"

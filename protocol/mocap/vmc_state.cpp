@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "protocol/limits.h"
+#include "protocol/messages/limits.h"
+#include "protocol/messages/text.h"
 #include "protocol/mocap/humanoid.h"
-#include "protocol/text.h"
 
 namespace furrow::protocol::mocap {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "protocol/messages.h"
+#include "protocol/messages/messages.h"
 #include "protocol/vectors/json.h"
 
 // What the JSON beside an example says of its message.

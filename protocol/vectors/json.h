@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "protocol/messages.h"
+#include "protocol/messages/messages.h"
 
 // Messages as JSON text, in the shape that tests/conformance/decode.py prints too.
 namespace furrow::protocol::vectors {

@@ -12,12 +12,12 @@
 #include <map>
 #include <span>
 
-#include "protocol/bundle.h"
-#include "protocol/bytes.h"
-#include "protocol/codec.h"
-#include "protocol/fragment.h"
-#include "protocol/hash.h"
-#include "protocol/tcp_framing.h"
+#include "protocol/codec/codec.h"
+#include "protocol/framing/bundle.h"
+#include "protocol/framing/fragment.h"
+#include "protocol/framing/tcp_framing.h"
+#include "protocol/messages/bytes.h"
+#include "protocol/messages/hash.h"
 #include "protocol/vectors/fields.h"
 #include "protocol/vectors/json.h"
 

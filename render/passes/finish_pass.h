@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/passes/fullscreen.h"
-#include "render/settings.h"
+#include "render/settings/settings.h"
 
 namespace furrow::render {
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/passes/fullscreen.h"
 
+#include "base/status.h"
+
 namespace furrow::render {
 namespace {
 
@@ -41,7 +43,7 @@ std::vector<FrameGraph::Handle> Fullscreen::AddPass(FrameGraph* graph, const Ful
 Status Fullscreen::Begin(std::string_view fragment, const std::vector<std::string>& defines,
                          const FrameGraph::Resources& resources, const Handles& handles) {
   const Result<GLuint> program = shaders_->GetFullscreen(fragment, defines);
-  if (!program.ok()) return program.status();
+  FURROW_RETURN_IF_ERROR(program);
   std::vector<TextureId> colours;
   for (const FrameGraph::Handle target : handles.writes) colours.push_back(resources.Get(target));
   const bool on_surface = handles.surface_z.version >= 0;

@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "render/frame_graph.h"
-#include "render/gl_device.h"
-#include "render/screen_rect.h"
-#include "render/shader_library.h"
+#include "render/gl/gl_device.h"
+#include "render/gl/shader_library.h"
+#include "render/graph/frame_graph.h"
+#include "render/mesh/screen_rect.h"
 
 namespace furrow::render {
 

@@ -5,7 +5,7 @@
 
 #include "render/passes/fullscreen.h"
 #include "render/passes/scene_pass.h"
-#include "render/settings.h"
+#include "render/settings/settings.h"
 
 namespace furrow::render {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "render/frame_graph.h"
-#include "render/gl_device.h"
-#include "render/read_back.h"
+#include "render/gl/gl_device.h"
+#include "render/gl/read_back.h"
+#include "render/graph/frame_graph.h"
 
 namespace furrow::render {
 

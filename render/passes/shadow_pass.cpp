@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/passes/shadow_pass.h"
 
-#include "render/subjects.h"
+#include "render/scene/subjects.h"
 
 namespace furrow::render {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "render/frame_graph.h"
-#include "render/gl_device.h"
-#include "render/scene_draw.h"
+#include "render/gl/gl_device.h"
+#include "render/graph/frame_graph.h"
+#include "render/passes/scene_draw.h"
 
 namespace furrow::render {
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "render/passes/scene_pass.h"
-#include "render/subsurface_kernel.h"
+#include "render/skin/subsurface_kernel.h"
 
 namespace furrow::render {
 namespace {

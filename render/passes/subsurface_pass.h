@@ -2,8 +2,8 @@
 #pragma once
 
 #include "render/passes/fullscreen.h"
-#include "render/pixel_kernel.h"
-#include "render/settings.h"
+#include "render/settings/settings.h"
+#include "render/skin/pixel_kernel.h"
 
 namespace furrow::render {
 

@@ -12,7 +12,8 @@
 #include <boost/asio/steady_timer.hpp>
 #include <spdlog/spdlog.h>
 
-#include "character/data_dir.h"
+#include "base/data_dir.h"
+#include "base/status.h"
 #include "server/http/http_session.h"
 
 namespace furrow::server {
@@ -32,8 +33,8 @@ void Refuse(tcp::socket socket) {
 
 Result<PageFiles> LoadPage(const HttpConfig& config) {
   if (!config.page.empty()) return PageFiles::Load(config.page);
-  const auto index = character::FindDataFile("web/index.html");
-  if (!index.ok()) return index.status();
+  const auto index = furrow::FindDataFile("web/index.html");
+  FURROW_RETURN_IF_ERROR(index);
   return PageFiles::Load(index->parent_path());
 }
 
@@ -91,11 +92,13 @@ Status HttpServer::Impl::Listen(const std::string& bind, std::uint16_t wanted) {
 
 net::awaitable<void> HttpServer::Impl::Accept() {
   while (acceptor.is_open()) {
-    auto [error, socket] = co_await acceptor.async_accept(kWebToken);
+    beast::error_code error;
+    auto socket = co_await acceptor.async_accept(Redirect(error));
     if (error == net::error::operation_aborted) co_return;
     if (error) {  // no descriptors left, above all: they may come back
       net::steady_timer pause(*loop, kAcceptPause);
-      co_await pause.async_wait(kWebToken);
+      beast::error_code ignored;
+      co_await pause.async_wait(Redirect(ignored));
     } else if (context.connections >= context.config.max_connections) {
       context.metrics->Add(Counter::kConnectionsRefused);
       Refuse(std::move(socket));

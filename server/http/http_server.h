@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "server/http/http_config.h"
-#include "server/http/web_context.h"
-#include "wrinkle/status.h"
+#include "base/status.h"
+#include "server/config/http_config.h"
+#include "server/http/request/web_context.h"
 
 namespace furrow::server {
 

@@ -15,8 +15,8 @@
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 
-#include "server/http/picture_stream.h"
-#include "server/http/web_socket.h"
+#include "server/http/pictures/picture_stream.h"
+#include "server/http/socket/web_socket.h"
 
 namespace furrow::server {
 namespace {
@@ -46,10 +46,12 @@ net::awaitable<bool> Write(beast::tcp_stream& stream, const WebRequest& request,
   stream.expires_after(kWebDeadline);
   beast::error_code failure;
   if (request.method() == http::verb::head) {
-    const auto [error, size] = co_await http::async_write_header(stream, serializer, kWebToken);
+    beast::error_code error;
+    const std::size_t size = co_await http::async_write_header(stream, serializer, Redirect(error));
     failure = error;
   } else {
-    const auto [error, size] = co_await http::async_write(stream, serializer, kWebToken);
+    beast::error_code error;
+    const std::size_t size = co_await http::async_write(stream, serializer, Redirect(error));
     failure = error;
   }
   co_return !failure && response.keep_alive();
@@ -75,7 +77,8 @@ net::awaitable<ApiReply> AskHub(WebContext* context, ApiRequest request) {
       }
     });
   });
-  co_await pending->timer.async_wait(kWebToken);
+  beast::error_code ignored;
+  co_await pending->timer.async_wait(Redirect(ignored));
   if (pending->reply) co_return *std::move(pending->reply);
   co_return ErrorReply(503, "unavailable", "", "the daemon's loop does not answer");
 }
@@ -142,7 +145,8 @@ class HttpSession {
     parser.header_limit(kMaxWebHeaderBytes);
     parser.body_limit(kMaxWebMessageBytes);
     stream_.expires_after(kWebDeadline);
-    const auto [error, size] = co_await http::async_read(stream_, buffer_, parser, kWebToken);
+    beast::error_code error;
+    const std::size_t size = co_await http::async_read(stream_, buffer_, parser, Redirect(error));
     if (!error) {
       request_ = parser.release();
       context_->metrics->Add(Counter::kHttpRequests);

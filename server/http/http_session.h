@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "server/http/beast.h"
-#include "server/http/web_context.h"
+#include "server/http/request/beast.h"
+#include "server/http/request/web_context.h"
 
 namespace furrow::server {
 

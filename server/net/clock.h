@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "server/session/time.h"
+#include "server/core/time.h"
 
 namespace furrow::server {
 

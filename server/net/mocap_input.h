@@ -11,11 +11,11 @@
 #include <asio/io_context.hpp>
 #include <asio/ip/udp.hpp>
 
+#include "base/status.h"
 #include "protocol/mocap/adapter.h"
-#include "server/metrics.h"
+#include "server/core/metrics.h"
 #include "server/net/sender_gate.h"
 #include "server/session/hub.h"
-#include "wrinkle/status.h"
 
 namespace furrow::server {
 

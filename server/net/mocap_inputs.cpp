@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/status.h"
 #include "protocol/mocap/livelink_face.h"
 #include "protocol/mocap/vmc.h"
 
@@ -18,7 +19,7 @@ Status MocapInputs::Open(const Config& config, asio::io_context& io, Hub* hub, M
   if (config.vmc) {
     vmc_ = std::make_unique<MocapInput>(io, "--vmc", protocol::mocap::MakeVmcAdapter(),
                                         SenderGate(allowed, SenderGate::Holds::kOne), hub, metrics);
-    if (Status status = vmc_->Open({address, *config.vmc}); !status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(vmc_->Open({address, *config.vmc}));
   }
   if (config.livelink_face) {
     livelink_face_ = std::make_unique<MocapInput>(

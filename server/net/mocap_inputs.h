@@ -7,11 +7,11 @@
 
 #include <asio/io_context.hpp>
 
-#include "server/config.h"
-#include "server/metrics.h"
+#include "base/status.h"
+#include "server/config/config.h"
+#include "server/core/metrics.h"
 #include "server/net/mocap_input.h"
 #include "server/session/hub.h"
-#include "wrinkle/status.h"
 
 namespace furrow::server {
 

@@ -9,11 +9,11 @@
 #include <asio/io_context.hpp>
 #include <asio/ip/udp.hpp>
 
+#include "base/status.h"
 #include "protocol/mocap/osc_out.h"
-#include "server/config.h"
-#include "server/metrics.h"
-#include "server/session/subject_registry.h"
-#include "wrinkle/status.h"
+#include "server/config/config.h"
+#include "server/core/metrics.h"
+#include "server/session/subjects/subject_registry.h"
 
 namespace furrow::server {
 

@@ -8,7 +8,7 @@
 
 #include <asio/ip/address.hpp>
 
-#include "server/session/time.h"
+#include "server/core/time.h"
 
 namespace furrow::server {
 

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "base/status.h"
 #include "render/renderer.h"
 #include "server/pipeline/render_mailbox.h"
-#include "wrinkle/status.h"
 
 namespace furrow::server {
 

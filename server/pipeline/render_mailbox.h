@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "render/renderer.h"
+#include "server/core/time.h"
 #include "server/pipeline/snapshot.h"
-#include "server/session/time.h"
 
 namespace furrow::server {
 

@@ -5,6 +5,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "base/status.h"
+
 namespace furrow::server {
 namespace {
 
@@ -21,7 +23,7 @@ Result<std::unique_ptr<RenderThread>> RenderThread::Start(const wrinkle::Skeleto
   std::promise<Status> started;
   std::future<Status> status = started.get_future();
   self->thread_ = std::thread(&RenderThread::Run, self.get(), std::move(started));
-  if (Status failed = status.get(); !failed.ok()) return failed;
+  FURROW_RETURN_IF_ERROR(status.get());
   return self;
 }
 
@@ -59,7 +61,7 @@ Result<render::Camera> RenderThread::Preset(std::string_view name) const {
 
 Status RenderThread::CreateRenderer() {
   auto renderer = make_renderer_();
-  if (!renderer.ok()) return renderer.status();
+  FURROW_RETURN_IF_ERROR(renderer);
   renderer_ = *std::move(renderer);
   return {};
 }

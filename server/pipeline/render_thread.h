@@ -12,13 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/status.h"
 #include "render/renderer.h"
-#include "server/metrics.h"
+#include "server/core/metrics.h"
 #include "server/pipeline/picture_source.h"
 #include "server/pipeline/render_mailbox.h"
-#include "wrinkle/character_pose.h"
-#include "wrinkle/skeleton.h"
-#include "wrinkle/status.h"
+#include "wrinkle/shapes/character_pose.h"
+#include "wrinkle/skeleton/skeleton.h"
 
 namespace furrow::server {
 

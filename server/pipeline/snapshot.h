@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "wrinkle/blend_shape_pose.h"
-#include "wrinkle/retarget.h"
-#include "wrinkle/solver.h"
+#include "wrinkle/shapes/blend_shape_pose.h"
+#include "wrinkle/skeleton/retarget.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::server {
 

@@ -7,7 +7,8 @@
 
 #include <spdlog/spdlog.h>
 
-#include "wrinkle/ascii.h"
+#include "base/ascii.h"
+#include "base/status.h"
 
 namespace furrow::server {
 namespace {
@@ -28,7 +29,7 @@ bool SameOrder(const wrinkle::Skeleton& a, const wrinkle::Skeleton& b) {
 bool Reads(const wrinkle::Rig& rig, const std::string& blend_shape) {
   return std::ranges::any_of(rig.drivers, [&](const wrinkle::Driver& driver) {
     return driver.kind == wrinkle::Driver::Kind::kBlendShape &&
-           wrinkle::EqualsIgnoreCase(driver.blend_shape.blend_shape, blend_shape);
+           EqualsIgnoreCase(driver.blend_shape.blend_shape, blend_shape);
   });
 }
 
@@ -39,7 +40,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Get(
   wrinkle::Skeleton skeleton;
   if (!offer.joints.empty()) {
     auto created = wrinkle::Skeleton::Create(std::move(offer.joints));
-    if (!created.ok()) return created.status();
+    FURROW_RETURN_IF_ERROR(created);
     skeleton = *std::move(created);
   }
   return FindOrMake(std::move(skeleton), std::move(offer.blend_shapes), may_make);
@@ -81,7 +82,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
   character::SkeletonMatch match = matcher_.Match(skeleton, *rig_, character_);
   auto binding = wrinkle::RigBinding::Create(*rig_, skeleton, blend_shapes,
                                              {.allow_missing = true, .aliases = match.aliases});
-  if (!binding.ok()) return binding.status();
+  FURROW_RETURN_IF_ERROR(binding);
   auto definition = std::make_shared<StreamDefinition>();
   definition->joint_of_wire.resize(static_cast<std::size_t>(skeleton.num_joints()));
   for (int joint = 0; joint < skeleton.num_joints(); ++joint) {

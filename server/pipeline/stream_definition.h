@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "character/skeleton_match.h"
-#include "wrinkle/blend_shape_pose.h"
-#include "wrinkle/retarget.h"
-#include "wrinkle/rig.h"
-#include "wrinkle/rig_joints.h"
-#include "wrinkle/skeleton.h"
-#include "wrinkle/solver.h"
-#include "wrinkle/status.h"
+#include "base/status.h"
+#include "rig/skeleton_match.h"
+#include "wrinkle/rig/rig.h"
+#include "wrinkle/rig/rig_joints.h"
+#include "wrinkle/shapes/blend_shape_pose.h"
+#include "wrinkle/skeleton/retarget.h"
+#include "wrinkle/skeleton/skeleton.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::server {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "wrinkle/batch_solver.h"
+#include "wrinkle/solver/batch_solver.h"
 
 namespace furrow::server {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "server/pipeline/snapshot.h"
 #include "server/pipeline/stream_definition.h"
-#include "wrinkle/batch_solver.h"
-#include "wrinkle/pose.h"
-#include "wrinkle/solver.h"
+#include "wrinkle/skeleton/pose.h"
+#include "wrinkle/solver/batch_solver.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::server {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "protocol/messages.h"
+#include "protocol/messages/messages.h"
 #include "server/pipeline/stream_definition.h"
-#include "wrinkle/pose.h"
+#include "wrinkle/skeleton/pose.h"
 
 namespace furrow::server {
 

@@ -7,9 +7,10 @@
 
 #include <spdlog/spdlog.h>
 
-#include "protocol/hash.h"
-#include "protocol/limits.h"
-#include "protocol/offer_check.h"
+#include "base/status.h"
+#include "protocol/codec/offer_check.h"
+#include "protocol/messages/hash.h"
+#include "protocol/messages/limits.h"
 #include "recording/take_clip.h"
 #include "recording/take_folder.h"
 #include "recording/wire_pose.h"
@@ -31,7 +32,7 @@ Result<std::unique_ptr<Player>> Player::Load(const std::filesystem::path& path) 
                   ? recording::LoadTakeClip(path.string(), 1.0f, &report)
                   : motion::LoadClip(path, {}, &report);
   for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
-  if (!clip.ok()) return clip.status();
+  FURROW_RETURN_IF_ERROR(clip);
   if (clip->num_frames() == 0) {
     return Status(StatusCode::kInvalidArgument, "the recording has no frames", path.string());
   }

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "motion/clip.h"
-#include "protocol/codec.h"
+#include "motion/clip/clip.h"
+#include "protocol/codec/codec.h"
 #include "server/session/hub.h"
 
 namespace furrow::server {

@@ -7,9 +7,10 @@
 
 #include <spdlog/spdlog.h>
 
-#include "protocol/envelope.h"
-#include "protocol/hash.h"
-#include "protocol/limits.h"
+#include "base/status.h"
+#include "protocol/framing/envelope.h"
+#include "protocol/messages/hash.h"
+#include "protocol/messages/limits.h"
 #include "server/net/clock.h"
 #include "server/pipeline/wire_adapter.h"
 
@@ -41,7 +42,7 @@ Result<std::unique_ptr<Recorder>> Recorder::Start(RecorderOptions options, Time 
                                                   Metrics* metrics) {
   const auto began = static_cast<std::uint64_t>((now + options.wall_offset).count());
   auto folder = recording::TakeFolder::Open(options.folder, began);
-  if (!folder.ok()) return folder.status();
+  FURROW_RETURN_IF_ERROR(folder);
   spdlog::info("recording to {}", (*folder)->path().string());
   return std::unique_ptr<Recorder>(new Recorder(std::move(options), *std::move(folder), metrics));
 }

@@ -9,12 +9,12 @@
 #include <thread>
 #include <vector>
 
-#include "protocol/codec.h"
+#include "base/status.h"
+#include "protocol/codec/codec.h"
 #include "recording/take_folder.h"
-#include "server/metrics.h"
+#include "server/core/metrics.h"
 #include "server/recording/recording_queue.h"
 #include "server/session/recording_tap.h"
-#include "wrinkle/status.h"
 
 namespace furrow::server {
 

@@ -5,7 +5,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "protocol/limits.h"
+#include "protocol/messages/limits.h"
 
 namespace furrow::server {
 namespace {

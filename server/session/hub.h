@@ -12,18 +12,18 @@
 #include <utility>
 #include <vector>
 
-#include "protocol/codec.h"
+#include "protocol/codec/codec.h"
 #include "protocol/mocap/neutral_frame.h"
-#include "server/config.h"
-#include "server/metrics.h"
+#include "server/config/config.h"
+#include "server/core/metrics.h"
 #include "server/pipeline/picture_source.h"
 #include "server/pipeline/stream_definition.h"
 #include "server/session/lane.h"
 #include "server/session/lane_gates.h"
-#include "server/session/publishers.h"
 #include "server/session/recording_tap.h"
-#include "server/session/subject_registry.h"
-#include "server/session/subscribers.h"
+#include "server/session/subjects/publishers.h"
+#include "server/session/subjects/subject_registry.h"
+#include "server/session/subscriptions/subscribers.h"
 
 namespace furrow::server {
 

@@ -2,7 +2,7 @@
 // The part of Hub that hands messages out, and answers what is of no subject.
 #include <string>
 
-#include "protocol/limits.h"
+#include "protocol/messages/limits.h"
 #include "server/session/hub.h"
 
 namespace furrow::server {

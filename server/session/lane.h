@@ -3,11 +3,11 @@
 
 #include <cstdint>
 
-#include "protocol/messages.h"
-#include "server/metrics.h"
-#include "server/session/desk.h"
-#include "server/session/peer_table.h"
-#include "server/session/pose_batch.h"
+#include "protocol/messages/messages.h"
+#include "server/core/metrics.h"
+#include "server/session/delivery/desk.h"
+#include "server/session/peers/peer_table.h"
+#include "server/session/subjects/pose_batch.h"
 
 namespace furrow::server {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
-#include "protocol/messages.h"
-#include "server/session/subject_registry.h"
-#include "server/session/time.h"
+#include "protocol/messages/messages.h"
+#include "server/core/time.h"
+#include "server/session/subjects/subject_registry.h"
 
 namespace furrow::server {
 

@@ -39,7 +39,7 @@ CONFINED = [
     (r"OpenImageIO/", {"character/oiio"}),
     (r"turbojpeg\.h", {"render"}),
     (r"spdlog/", {"server"}),
-    (r"CLI/", {"server", "client/cli", "character/generator"}),
+    (r"CLI/", {"server", "client/cli", "authoring/generator"}),
 ]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
@@ -85,7 +85,7 @@ def self_test():
         (root / "wrinkle").mkdir()
         (root / "client/cpp").mkdir(parents=True)
         (root / "wrinkle/a.h").write_text('#include "wrinkle/b.h"\n#include "render/renderer.h"\n')
-        (root / "client/cpp/c.cpp").write_text('#include "wrinkle/pose.h"\n#include <glm/vec3.hpp>\n')
+        (root / "client/cpp/c.cpp").write_text('#include "wrinkle/skeleton/pose.h"\n#include <glm/vec3.hpp>\n')
         faults = check(root)
         assert len(faults) == 3, faults
         assert faults[2].startswith("wrinkle/a.h:2"), faults

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "protocol/bundle.h"
-#include "protocol/codec.h"
-#include "protocol/fragment.h"
+#include "protocol/codec/codec.h"
+#include "protocol/framing/bundle.h"
+#include "protocol/framing/fragment.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "motion/gltf_animation.h"
+#include "motion/gltf/gltf_animation.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace furrow::motion;

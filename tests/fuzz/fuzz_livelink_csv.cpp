@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "motion/livelink_csv.h"
+#include "motion/livelink/livelink_csv.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace furrow::motion;

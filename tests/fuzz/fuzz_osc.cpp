@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "protocol/codec.h"
+#include "protocol/codec/codec.h"
 #include "protocol/mocap/vmc.h"
 
 namespace {

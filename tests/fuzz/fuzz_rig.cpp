@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "character/rig_file.h"
 #include "character/rig_report.h"
+#include "rig/rig_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace furrow::character;

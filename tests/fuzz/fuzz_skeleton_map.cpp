@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "character/skeleton_map.h"
+#include "rig/skeleton_map.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace furrow::character;

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "character/bake/strokes_file.h"
+#include "authoring/bake/strokes_file.h"
 
 namespace {
 

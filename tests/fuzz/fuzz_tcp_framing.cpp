@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "protocol/tcp_framing.h"
+#include "protocol/framing/tcp_framing.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <span>
 
-#include "server/http/web_message.h"
+#include "server/http/socket/web_message.h"
 #include "server/session/hub.h"
 
 namespace furrow::server {

@@ -10,11 +10,11 @@
 
 #include <gtest/gtest.h>
 
-#include "character/import/makehuman.h"
-#include "character/rig_reference_pose.h"
-#include "motion/pose_source.h"
+#include "authoring/import/makehuman/makehuman.h"
+#include "motion/clip/pose_source.h"
+#include "rig/rig_reference_pose.h"
 #include "sitter.h"
-#include "wrinkle/reference_pose.h"
+#include "wrinkle/drivers/reference_pose.h"
 
 namespace furrow::render::golden {
 namespace {

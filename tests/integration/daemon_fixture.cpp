@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <utility>
 
-#include "character/rig_file.h"
-#include "motion/pose_source.h"
-#include "protocol/hash.h"
+#include "motion/clip/pose_source.h"
+#include "protocol/messages/hash.h"
 #include "protocol/mocap/livelink_face.h"
-#include "wrinkle/solver.h"
+#include "rig/rig_file.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::testing_net {
 

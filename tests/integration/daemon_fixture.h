@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 
-#include "motion/clip.h"
-#include "protocol/messages.h"
+#include "motion/clip/clip.h"
+#include "protocol/messages/messages.h"
 #include "raw_client.h"
 #include "server/daemon.h"
 

@@ -19,7 +19,7 @@ namespace {
 using testing::HasSubstr;
 
 const char kProgram[] = FURROW_BINARY_DIR "/bin/furrowd";
-const char kRig[] = FURROW_SOURCE_DIR "/character/rigs/arkit.json";
+const char kRig[] = FURROW_SOURCE_DIR "/rig/rigs/arkit.json";
 
 std::vector<std::string> Command(std::vector<std::string> more = {}) {
   std::vector<std::string> command = {kProgram, "--rig", kRig, "--no-render", "--http", "0"};

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "protocol/codec.h"
+#include "protocol/codec/codec.h"
 
 namespace furrow::testing_net {
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "character/asset_path.h"
+#include "base/files.h"
 #include "character/gltf_container.h"
 #include "tests/temporary_folder.h"
 

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "wrinkle/solver.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::character {
 namespace {

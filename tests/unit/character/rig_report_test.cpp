@@ -9,9 +9,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "character/rig_file.h"
-#include "motion/clip.h"
-#include "wrinkle/solver.h"
+#include "motion/clip/clip.h"
+#include "rig/rig_file.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::character {
 namespace {
@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 wrinkle::Rig Shipped(const char* name) {
-  return *LoadRig(std::string(FURROW_SOURCE_DIR "/character/rigs/") + name);
+  return *LoadRig(std::string(FURROW_SOURCE_DIR "/rig/rigs/") + name);
 }
 
 TEST(RigReport, CountsAndNames) {

@@ -12,9 +12,9 @@
 
 #include <glm/gtc/quaternion.hpp>
 
-#include "motion/clip.h"
+#include "motion/clip/clip.h"
 #include "tests/temporary_folder.h"
-#include "wrinkle/pose.h"
+#include "wrinkle/skeleton/pose.h"
 
 // What several of motion's tests need.
 namespace furrow::motion {

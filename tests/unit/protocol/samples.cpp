@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "protocol/hash.h"
+#include "protocol/messages/hash.h"
 
 namespace furrow::protocol::test {
 

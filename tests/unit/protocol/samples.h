@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "protocol/codec.h"
+#include "protocol/codec/codec.h"
 
 // Messages that several tests use.
 namespace furrow::protocol::test {

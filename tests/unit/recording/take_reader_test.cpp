@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "protocol/limits.h"
+#include "protocol/messages/limits.h"
 #include "recording/take_poses.h"
 #include "recording/take_summary.h"
 #include "tests/unit/recording/take_testing.h"

@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include "protocol/codec.h"
-#include "protocol/envelope.h"
-#include "protocol/hash.h"
+#include "protocol/codec/codec.h"
+#include "protocol/framing/envelope.h"
+#include "protocol/messages/hash.h"
 #include "recording/take_reader.h"
 #include "recording/take_writer.h"
 #include "tests/temporary_folder.h"

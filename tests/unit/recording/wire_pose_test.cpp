@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "protocol/codec.h"
+#include "protocol/codec/codec.h"
 
 namespace furrow::recording {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "render/frame_graph.h"
+#include "render/graph/frame_graph.h"
 
 namespace furrow::render::test {
 

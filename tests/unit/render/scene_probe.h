@@ -6,7 +6,7 @@
 
 #include <glm/vec4.hpp>
 
-#include "render/egl_context.h"
+#include "render/gl/egl_context.h"
 #include "render/passes/scene_pass.h"
 
 namespace furrow::render::test {

@@ -10,7 +10,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "character/character.h"
-#include "wrinkle/solver.h"
+#include "wrinkle/solver/solver.h"
 
 // Small characters made by formula, so that what they should look like is known.
 namespace furrow::render::test {

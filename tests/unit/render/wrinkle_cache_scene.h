@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/frame_graph.h"
+#include "render/graph/frame_graph.h"
 #include "render/renderer.h"
 #include "test_character.h"
 

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/wrinkle/test_characters.h"
-#include "wrinkle/solver.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::wrinkle {
 

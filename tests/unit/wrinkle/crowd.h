@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "wrinkle/batch_solver.h"
+#include "wrinkle/solver/batch_solver.h"
 
 namespace furrow::wrinkle {
 

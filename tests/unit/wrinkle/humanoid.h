@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tests/unit/wrinkle/test_characters.h"
-#include "wrinkle/joint_role.h"
+#include "wrinkle/skeleton/joint_role.h"
 
 namespace furrow::wrinkle {
 

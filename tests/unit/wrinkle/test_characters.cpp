@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "wrinkle/retarget.h"
+#include "wrinkle/skeleton/retarget.h"
 
 namespace furrow::wrinkle {
 namespace {

@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include "wrinkle/pose.h"
-#include "wrinkle/rig.h"
-#include "wrinkle/skeleton.h"
+#include "wrinkle/rig/rig.h"
+#include "wrinkle/skeleton/pose.h"
+#include "wrinkle/skeleton/skeleton.h"
 
 namespace furrow::wrinkle {
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "fake_transport.h"
-#include "protocol/hash.h"
+#include "protocol/messages/hash.h"
 
 namespace furrow::client {
 namespace {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "fake_transport.h"
-#include "protocol/hash.h"
-#include "protocol/limits.h"
+#include "protocol/messages/hash.h"
+#include "protocol/messages/limits.h"
 
 namespace furrow::client {
 namespace {

@@ -11,10 +11,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "protocol/bundle.h"
-#include "protocol/codec.h"
-#include "protocol/fragment.h"
-#include "protocol/tcp_framing.h"
+#include "protocol/codec/codec.h"
+#include "protocol/framing/bundle.h"
+#include "protocol/framing/fragment.h"
+#include "protocol/framing/tcp_framing.h"
 
 namespace furrow::client {
 namespace {

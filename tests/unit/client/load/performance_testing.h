@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "client/load/performance.h"
-#include "client/load/plan.h"
+#include "client/load/schedule/performance.h"
+#include "client/load/schedule/plan.h"
 
 namespace furrow::load {
 

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "client/load/echo.h"
+#include "client/load/net/echo.h"
 #include "performance_testing.h"
-#include "protocol/codec.h"
+#include "protocol/codec/codec.h"
 
 namespace furrow::load {
 namespace {

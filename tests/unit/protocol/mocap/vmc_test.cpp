@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "protocol/codec.h"
+#include "protocol/codec/codec.h"
 #include "protocol/mocap/osc.h"
 #include "tests/unit/allocation_counter.h"
 #include "tests/unit/protocol/mocap/hex.h"

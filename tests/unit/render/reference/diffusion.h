@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "render/skin_profile.h"
+#include "render/skin/skin_profile.h"
 #include "tests/unit/render/reference/float_picture.h"
 
 namespace furrow::render::test {

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "render/gl_objects.h"
+#include "render/gl/gl_objects.h"
 #include "tests/unit/render/test_character.h"
 
 namespace furrow::render::test {

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "render/frame_graph.h"
+#include "render/graph/frame_graph.h"
 #include "render/renderer.h"
 #include "tests/unit/render/reference/float_picture.h"
 

@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/status.h"
+
 namespace furrow::server {
 namespace {
 
@@ -45,7 +47,7 @@ class ScriptedRenderer : public render::Renderer {
     return status;
   }
   Result<render::Image> Poll(bool) override {
-    if (Status status = Script::Next(&script_->poll); !status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(Script::Next(&script_->poll));
     if (in_flight_ == 0) return render::Image();
     --in_flight_;
     return render::Image{16, 16, std::vector<std::uint8_t>(16 * 16 * 3), 0};
@@ -102,7 +104,7 @@ class RenderThreadTest : public testing::Test {
     thread = *std::move(started);
   }
   Result<std::unique_ptr<render::Renderer>> Create() {
-    if (Status status = Script::Next(&script.create); !status.ok()) return status;
+    FURROW_RETURN_IF_ERROR(Script::Next(&script.create));
     ++script.num_created;
     return std::unique_ptr<render::Renderer>(std::make_unique<ScriptedRenderer>(&script));
   }

@@ -11,8 +11,8 @@
 
 #include <gtest/gtest.h>
 
-#include "protocol/codec.h"
-#include "protocol/hash.h"
+#include "protocol/codec/codec.h"
+#include "protocol/messages/hash.h"
 #include "server/session/hub.h"
 
 namespace furrow::server {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "hub_fixture.h"
-#include "protocol/bundle.h"
+#include "protocol/framing/bundle.h"
 
 namespace furrow::server {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hub_fixture.h"
-#include "wrinkle/solver.h"
+#include "wrinkle/solver/solver.h"
 
 namespace furrow::server {
 namespace {

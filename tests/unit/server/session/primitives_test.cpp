@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "server/session/rate_gate.h"
-#include "server/session/send_credit.h"
-#include "server/session/token_bucket.h"
+#include "server/core/token_bucket.h"
+#include "server/session/peers/send_credit.h"
+#include "server/session/subscriptions/rate_gate.h"
 
 namespace furrow::server {
 namespace {

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/bake/bake.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "authoring/bake/bake_check.h"
+#include "authoring/bake/layers/map_baker.h"
+#include "authoring/bake/pace.h"
+#include "authoring/bake/surface/bake_surface.h"
+#include "base/status.h"
+
+namespace furrow::character::bake {
+namespace {
+
+constexpr float kSurface = 0.15f;  // of the time of a map, until its strain is known
+
+bool Names(const BakeStroke& stroke, const std::string& map) {
+  return std::find(stroke.maps.begin(), stroke.maps.end(), map) != stroke.maps.end();
+}
+
+bool IsFed(const std::string& map, std::span<const BakePose> poses,
+           std::span<const BakeStroke> strokes) {
+  return std::any_of(poses.begin(), poses.end(), [&](const auto& p) { return p.map == map; }) ||
+         std::any_of(strokes.begin(), strokes.end(), [&](const auto& s) { return Names(s, map); });
+}
+
+}  // namespace
+
+Result<BakedMaps> Bake(const Character& character, std::span<const BakePose> poses,
+                       std::span<const BakeStroke> strokes, const BakeOptions& options,
+                       const std::function<bool(float)>& progress) {
+  FURROW_RETURN_IF_ERROR(CheckBake(character, poses, strokes, options));
+  std::vector<const wrinkle::WrinkleMap*> fed;
+  for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
+    if (IsFed(map.name, poses, strokes)) fed.push_back(&map);
+  }
+  Pace pace(progress);
+  if (!pace.Tell(0.0f)) return Pace::Cancelled();
+  std::unique_ptr<BakeSurface> surfaces[2];  // skin, cloth
+  BakedMaps maps;
+  for (const wrinkle::WrinkleMap* map : fed) {
+    const float share = 1.0f / static_cast<float>(fed.size());
+    const float from = share * static_cast<float>(maps.maps.size());
+    const bool last = map == fed.back();
+    pace.Enter(from, from + kSurface * share);
+    const bool cloth = GoesOnCloth(character, *map);
+    std::unique_ptr<BakeSurface>& surface = surfaces[cloth ? 1 : 0];
+    if (surface == nullptr) {
+      Result<std::unique_ptr<BakeSurface>> made =
+          BakeSurface::Create(character, cloth, options, &pace);
+      FURROW_RETURN_IF_ERROR(made);
+      surface = std::move(made).value();
+    }
+    MapBaker baker(character, *surface, options, map->name, cloth);
+    for (const BakePose& pose : poses) {
+      if (pose.map != map->name) continue;
+      baker.AddPose(pose);
+      if (!pace.Tell(1.0f)) return Pace::Cancelled();
+    }
+    for (const BakeStroke& stroke : strokes) {
+      if (Names(stroke, map->name)) baker.AddStroke(stroke);
+    }
+    auto baked = baker.Bake(from + kSurface * share, last ? 1.0f : from + share, &pace);
+    FURROW_RETURN_IF_ERROR(baked);
+    maps.maps.push_back(std::move(**baked));
+  }
+  return maps;
+}
+
+}  // namespace furrow::character::bake

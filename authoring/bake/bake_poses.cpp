@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/bake/bake_poses.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "base/status.h"
+#include "wrinkle/drivers/reference_pose.h"
+#include "wrinkle/rig/full_pose.h"
+#include "wrinkle/rig/rig_field.h"
+#include "wrinkle/skeleton/retarget.h"
+
+namespace furrow::character::bake {
+namespace {
+
+using wrinkle::Driver;
+using wrinkle::FieldAt;
+using wrinkle::Rig;
+using wrinkle::Transform;
+
+// Poses whose joints turn and move less than this cannot fold anything: radians, and parts of the
+// skeleton's size.
+constexpr float kLeastTurn = 1e-3f;
+constexpr float kLeastMove = 1e-5f;
+
+bool Wants(std::span<const std::string> maps, const std::string& map) {
+  return maps.empty() || std::find(maps.begin(), maps.end(), map) != maps.end();
+}
+
+const Driver* FindDriver(const Rig& rig, const std::string& name) {
+  const auto found = std::find_if(rig.drivers.begin(), rig.drivers.end(),
+                                  [&](const Driver& driver) { return driver.name == name; });
+  return found == rig.drivers.end() ? nullptr : &*found;
+}
+
+bool IsRest(std::span<const Transform> locals, const wrinkle::Skeleton& skeleton) {
+  const float least = kLeastMove * wrinkle::SkeletonSize(skeleton);
+  for (std::size_t i = 0; i < locals.size(); ++i) {
+    const Transform& rest = skeleton.rest_pose()[i];
+    const glm::quat turn = glm::conjugate(rest.rotation) * locals[i].rotation;
+    if (glm::length(glm::vec3(turn.x, turn.y, turn.z)) > 0.5f * kLeastTurn) return false;
+    if (glm::distance(locals[i].translation, rest.translation) > least) return false;
+  }
+  return true;
+}
+
+class PoseCollector {
+ public:
+  explicit PoseCollector(const Character& character) : character_(character) {}
+
+  Status Add(const wrinkle::Region& region, const wrinkle::Feed& feed,
+             const wrinkle::Feed::Source& source) {
+    const std::string value = source.driver + "." + source.value;
+    const Driver* driver = FindDriver(character_.rig, source.driver);
+    if (driver == nullptr) return {StatusCode::kNotFound, "there is no driver '" + value + "'"};
+    const auto pose = wrinkle::FullPose(character_.rig, *driver, source.value, character_.skeleton);
+    if (pose.status().code() == StatusCode::kUnsupported) {
+      Note(value + " is no pose of joints: strokes alone can give " + region.name + "." + feed.map +
+           " its folds");
+      return {};
+    }
+    FURROW_RETURN_IF_ERROR(pose);
+    std::vector<Transform> locals(character_.skeleton.rest_pose().begin(),
+                                  character_.skeleton.rest_pose().end());
+    FURROW_RETURN_IF_ERROR(wrinkle::ApplyReferencePose(*pose, character_.skeleton, locals));
+    if (IsRest(locals, character_.skeleton)) return AtRest(*driver, value, pose->name);
+    found_.poses.push_back({.map = feed.map,
+                            .region = region.name,
+                            .skin_matrices = SkinMatrices(locals),
+                            .weight = std::min(source.gain, 1.0f)});
+    return {};
+  }
+
+  PosesToBake Take() { return std::move(found_); }
+
+ private:
+  Status AtRest(const Driver& driver, const std::string& value, const std::string& pose) {
+    if (driver.kind == Driver::Kind::kPose) {
+      return {StatusCode::kInvalidArgument,
+              "reference pose '" + pose + "' is the rest pose: it cannot fold anything",
+              {},
+              "state in the rig how its joints move, or leave it out"};
+    }
+    Note(value + " is the rest pose itself: strokes alone can give it folds");
+    return {};
+  }
+
+  std::vector<glm::mat4> SkinMatrices(std::span<const Transform> locals) const {
+    std::vector<glm::mat4> matrices(locals.size());
+    for (std::size_t i = 0; i < locals.size(); ++i) {
+      matrices[i] = wrinkle::ToMatrix(locals[i]);
+      const int parent = character_.skeleton.joint_parents()[i];
+      if (parent >= 0) matrices[i] = matrices[static_cast<std::size_t>(parent)] * matrices[i];
+    }
+    for (std::size_t i = 0; i < matrices.size(); ++i) {
+      matrices[i] = matrices[i] * character_.inverse_bind_matrices[i];
+    }
+    return matrices;
+  }
+
+  void Note(const std::string& note) {
+    if (std::find(found_.notes.begin(), found_.notes.end(), note) == found_.notes.end()) {
+      found_.notes.push_back(note);
+    }
+  }
+
+  const Character& character_;
+  PosesToBake found_;
+};
+
+Status CheckMaps(const Rig& rig, std::span<const std::string> maps) {
+  std::string known;
+  for (const wrinkle::WrinkleMap& map : rig.wrinkle_maps) {
+    known += (known.empty() ? "" : ", ") + map.name;
+  }
+  for (const std::string& wanted : maps) {
+    const auto named = [&](const wrinkle::WrinkleMap& map) { return map.name == wanted; };
+    if (std::any_of(rig.wrinkle_maps.begin(), rig.wrinkle_maps.end(), named)) continue;
+    return {StatusCode::kNotFound,
+            "the rig has no wrinkle map '" + wanted + "'",
+            {},
+            "its maps are " + known};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<PosesToBake> PosesOf(const Character& character, std::span<const std::string> maps) {
+  const Rig& rig = character.rig;
+  if (rig.wrinkle_maps.empty() || rig.regions.empty()) {
+    return Status(StatusCode::kNotFound, "the character has no wrinkle rig with regions and maps",
+                  {}, "state one with --rig");
+  }
+  FURROW_RETURN_IF_ERROR(CheckMaps(rig, maps));
+  PoseCollector collector(character);
+  for (std::size_t r = 0; r < rig.regions.size(); ++r) {
+    const wrinkle::Region& region = rig.regions[r];
+    for (std::size_t f = 0; f < region.feeds.size(); ++f) {
+      const wrinkle::Feed& feed = region.feeds[f];
+      if (!Wants(maps, feed.map)) continue;
+      for (std::size_t s = 0; s < feed.sources.size(); ++s) {
+        if (!(feed.sources[s].gain > 0.0f)) continue;
+        const Status status = collector.Add(region, feed, feed.sources[s]);
+        if (!status.ok()) {
+          return status.At(FieldAt(FieldAt("regions", r) + ".feeds", f) + FieldAt(".sources", s));
+        }
+      }
+    }
+  }
+  return collector.Take();
+}
+
+}  // namespace furrow::character::bake

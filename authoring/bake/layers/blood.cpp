@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/bake/layers/blood.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+
+namespace furrow::character::bake {
+namespace {
+
+constexpr float kMostChange = 2.0f;   // of the area, either way: more is skinning gone wrong
+constexpr float kPressedOut = 0.6f;   // of the blood, where no light of the sky reaches
+constexpr float kAbsorbance = 0.36f;  // of green, of as much blood as skin holds at rest
+const glm::vec3 kBlood(0.30f, 1.0f,
+                       0.95f);  // by channel: haemoglobin's bands lie in green and blue
+
+}  // namespace
+
+void BloodSum::Add(std::span<const float> growth, std::span<const float> weights) {
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    const float area = std::clamp(growth[i], 1.0f / kMostChange, kMostChange);
+    const float change = -weights[i] * std::log(area);
+    sums_[i] += change * std::abs(change) * change * change;
+  }
+}
+
+std::vector<float> BloodSum::Take() const {
+  std::vector<float> blood;
+  blood.reserve(sums_.size());
+  for (const float sum : sums_) {
+    blood.push_back(std::exp(std::copysign(std::sqrt(std::sqrt(std::abs(sum))), sum)));
+  }
+  return blood;
+}
+
+float BloodInFurrow(float blood, float cavity) {
+  return blood * (1.0f - kPressedOut * (1.0f - cavity));
+}
+
+glm::vec3 BloodTint(float blood) {
+  return glm::min(glm::exp(kBlood * (kAbsorbance * (1.0f - blood))), glm::vec3(kBloodTintScale));
+}
+
+}  // namespace furrow::character::bake

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/bake/layers/kernels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "authoring/paint/noise.h"
+#include "base/scalar.h"
+#include "base/status.h"
+
+namespace furrow::character::bake {
+namespace {
+
+using glm::vec3;
+
+constexpr float kSpacing = 0.5f;     // least distance of two kernels, wavelengths
+constexpr float kReach = 1.7f;       // of a kernel, wavelengths
+constexpr float kCandidates = 5.0f;  // places tried for a kernel that will stand
+constexpr double kMostCandidates = 6e6;
+
+float Random(std::uint32_t seed, std::uint32_t a, std::uint32_t b) {
+  return HashLattice(static_cast<int>(seed * 7919u + 13u), static_cast<int>(a),
+                     static_cast<int>(b));
+}
+
+// The triangles where kernels stand: folds, and as far around them as kernels reach.
+std::vector<char> ActiveTriangles(const FoldField& field, const KernelSet::Options& options,
+                                  Pace* pace) {
+  const Surface& surface = field.surface();
+  std::vector<char> active(surface.triangles().size(), 0);
+  SurfaceReach reach(surface);
+  for (std::uint32_t t = 0; t < active.size() && pace->Step(t, active.size()); ++t) {
+    if (field.Strongest(t, options.crossing) < 0.5f * options.threshold) continue;
+    active[t] = 1;
+    const SurfacePoint centre = surface.PointOf(t, vec3(1.0f / 3.0f));
+    const float wavelength = field.Wavelength(centre, options.wavelength_scale);
+    for (const std::uint32_t near : reach.Find(centre.position, {&t, 1}, kReach * wavelength)) {
+      active[near] = 1;
+    }
+  }
+  return active;
+}
+
+// The direction across the folds, strayed a little from place to place: no two folds of a real skin
+// run side by side for long.
+vec3 Strayed(const FoldDemand& demand, const KernelSet::Options& options, float wavelength,
+             const vec3& position) {
+  constexpr float kStray = 0.9f;  // radians, times the variation
+  const vec3 at = position / (3.0f * wavelength) + static_cast<float>(options.seed) + 31.7f;
+  const float angle = kStray * options.variation * (2.0f * ValueNoise(at) - 1.0f);
+  const vec3& main = options.crossing ? demand.along : demand.across;
+  const vec3& side = options.crossing ? demand.across : demand.along;
+  return main * std::cos(angle) + side * std::sin(angle);
+}
+
+// Metres, varied from place to place.
+float WavelengthAt(const FoldDemand& demand, const SurfacePoint& place,
+                   const KernelSet::Options& options) {
+  const float base = std::max(demand.wavelength * options.wavelength_scale, demand.smallest);
+  // Features of the variation are some folds wide.
+  const vec3 at = place.position / (5.0f * base) + static_cast<float>(options.seed);
+  const float vary = 1.0f + options.variation * (2.0f * ValueNoise(at) - 1.0f);
+  return std::max(base * vary, demand.smallest);
+}
+
+struct Candidate {
+  float order;
+  std::uint32_t index;  // within the triangle
+  SurfacePoint place;
+};
+
+// How many candidates each triangle wants; a fraction is the chance of one more.
+std::vector<float> CandidatesWanted(const FoldField& field, const KernelSet::Options& options,
+                                    Pace* pace) {
+  const Surface& surface = field.surface();
+  const std::vector<char> active = ActiveTriangles(field, options, pace);
+  std::vector<float> wanted(active.size(), 0.0f);
+  for (std::uint32_t t = 0; t < active.size(); ++t) {
+    if (!active[t]) continue;
+    const SurfacePoint centre = surface.PointOf(t, vec3(1.0f / 3.0f));
+    const float spacing = kSpacing * field.Wavelength(centre, options.wavelength_scale);
+    wanted[t] = kCandidates * surface.triangles()[t].area / (spacing * spacing);
+  }
+  return wanted;
+}
+
+Status CheckCount(const std::vector<float>& wanted) {
+  double sum = 0.0;
+  for (const float count : wanted) sum += static_cast<double>(count);
+  if (sum <= kMostCandidates) return {};
+  char text[128];
+  std::snprintf(text, sizeof(text),
+                "folds so fine on a surface so large want %.1f million waves, "
+                "%.1f million are the most",
+                1e-6 * sum / static_cast<double>(kCandidates),
+                1e-6 * kMostCandidates / static_cast<double>(kCandidates));
+  return {
+      StatusCode::kLimit, text, "options",
+      "take a longer wavelength (--skin-wavelength, --cloth-wavelength) or fewer texels (--size)"};
+}
+
+std::vector<Candidate> Candidates(const Surface& surface, const std::vector<float>& wanted,
+                                  const KernelSet::Options& options) {
+  std::vector<Candidate> candidates;
+  for (std::uint32_t t = 0; t < wanted.size(); ++t) {
+    if (wanted[t] <= 0.0f) continue;
+    const auto count = static_cast<std::uint32_t>(wanted[t] + Random(options.seed, t, 0xffffu));
+    for (std::uint32_t k = 0; k < count; ++k) {
+      float u = Random(options.seed, t, 3 * k), v = Random(options.seed, t, 3 * k + 1);
+      if (u + v > 1.0f) {
+        u = 1.0f - u;
+        v = 1.0f - v;
+      }
+      candidates.push_back(
+          {Random(options.seed, t, 3 * k + 2), k, surface.PointOf(t, vec3(1.0f - u - v, u, v))});
+    }
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    if (a.order != b.order) return a.order < b.order;
+    return a.place.triangle != b.place.triangle ? a.place.triangle < b.place.triangle
+                                                : a.index < b.index;
+  });
+  return candidates;
+}
+
+// Kernels by their place, so that the ones near a point are found.
+class Grid {
+ public:
+  explicit Grid(float cell) : cell_(cell) {}
+
+  void Add(const vec3& p, std::uint32_t kernel) { cells_[Key(Cell(p))].push_back(kernel); }
+
+  // Whether `test` holds for any kernel in the cells around a point.
+  template <class Test>
+  bool Any(const vec3& p, const Test& test) const {
+    const glm::ivec3 cell = Cell(p);
+    for (int dz = -1; dz <= 1; ++dz) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const auto found = cells_.find(Key(cell + glm::ivec3(dx, dy, dz)));
+          if (found == cells_.end()) continue;
+          if (std::any_of(found->second.begin(), found->second.end(), test)) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] glm::ivec3 Cell(const vec3& p) const { return glm::ivec3(glm::floor(p / cell_)); }
+  static std::uint64_t Key(const glm::ivec3& c) {
+    const auto part = [](int x) { return static_cast<std::uint64_t>(x + (1 << 20)) & 0x1fffffu; };
+    return part(c.x) | part(c.y) << 21 | part(c.z) << 42;
+  }
+
+  float cell_;
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
+};
+
+}  // namespace
+
+Result<KernelSet> KernelSet::Create(const FoldField& field, const Options& options,
+                                    const Amplitude& amplitude, Pace* pace) {
+  KernelSet set;
+  FURROW_RETURN_IF_ERROR(set.Strew(field, options, amplitude, pace));
+  set.Connect(field.surface(), pace);
+  if (pace->stopped()) return Pace::Cancelled();
+  return set;
+}
+
+Status KernelSet::Strew(const FoldField& field, const Options& options, const Amplitude& amplitude,
+                        Pace* pace) {
+  const std::vector<float> wanted = CandidatesWanted(field, options, pace);
+  if (pace->stopped()) return Pace::Cancelled();
+  FURROW_RETURN_IF_ERROR(CheckCount(wanted));
+  const std::vector<Candidate> candidates = Candidates(field.surface(), wanted, options);
+  std::vector<float> wavelengths;
+  float longest = 0.0f;
+  for (const Candidate& candidate : candidates) {
+    if (!pace->Step(wavelengths.size(), candidates.size())) return Pace::Cancelled();
+    wavelengths.push_back(WavelengthAt(field.At(candidate.place), candidate.place, options));
+    longest = std::max(longest, wavelengths.back());
+  }
+  Grid grid(std::max(kSpacing * longest, 1e-6f));
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (!pace->Step(i, candidates.size())) return Pace::Cancelled();
+    const SurfacePoint& place = candidates[i].place;
+    const vec3 normal = field.surface().triangles()[place.triangle].axes.normal;
+    const float spacing = kSpacing * wavelengths[i];
+    // Closed lips lie upon each other: what faces away takes no room.
+    const bool taken = grid.Any(place.position, [&](std::uint32_t k) {
+      const FoldKernel& other = kernels_[k];
+      const vec3 facing = field.surface().triangles()[other.place.triangle].axes.normal;
+      return glm::distance(other.place.position, place.position) < spacing &&
+             glm::dot(facing, normal) > 0.0f;
+    });
+    if (taken) continue;
+    const FoldDemand demand = field.At(place);
+    FoldKernel kernel;
+    kernel.place = place;
+    kernel.frequency =
+        Strayed(demand, options, wavelengths[i], place.position) * (2.0f * kPi / wavelengths[i]);
+    kernel.amplitude =
+        amplitude(options.crossing ? demand.crossing : demand.compression, wavelengths[i]);
+    kernel.reach = kReach * wavelengths[i];
+    grid.Add(place.position, static_cast<std::uint32_t>(kernels_.size()));
+    kernels_.push_back(kernel);
+  }
+  return {};
+}
+
+void KernelSet::Connect(const Surface& surface, Pace* pace) {
+  std::vector<std::vector<std::uint32_t>> lists(surface.triangles().size());
+  SurfaceReach reach(surface);
+  for (std::uint32_t k = 0; k < kernels_.size() && pace->Step(k, kernels_.size()); ++k) {
+    const FoldKernel& kernel = kernels_[k];
+    for (const std::uint32_t t :
+         reach.Find(kernel.place.position, {&kernel.place.triangle, 1}, kernel.reach)) {
+      lists[t].push_back(k);
+    }
+  }
+  starts_.assign(1, 0);
+  for (const auto& list : lists) {
+    lists_.insert(lists_.end(), list.begin(), list.end());
+    starts_.push_back(lists_.size());
+  }
+}
+
+}  // namespace furrow::character::bake

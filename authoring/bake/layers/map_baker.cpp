@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/bake/layers/map_baker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "authoring/bake/layers/planes.h"
+#include "base/scalar.h"
+#include "base/status.h"
+
+namespace furrow::character::bake {
+namespace {
+
+constexpr float kMetres = 0.001f;          // a millimetre
+constexpr float kFineLines = 1.0f / 3.0f;  // their wavelength, of the folds'
+constexpr int kGutter = 16;                // texels that planes grow past the UV border
+constexpr float kFoldedMillimetres = 0.01f;
+
+const wrinkle::Region* FindRegion(const wrinkle::Rig& rig, const std::string& name) {
+  const auto found =
+      std::find_if(rig.regions.begin(), rig.regions.end(),
+                   [&](const wrinkle::Region& region) { return region.name == name; });
+  return found == rig.regions.end() ? nullptr : &*found;
+}
+
+// The picture's mask scales what is drawn; here it only says where poses and strokes count, so it
+// is full well inside its soft border.
+float Inside(float mask) { return Smoothstep(0.02f, 0.3f, mask); }
+
+bool Matches(const std::string& region, const std::string& entry) {
+  return region == entry || region == entry + "_l" || region == entry + "_r";
+}
+
+// Masks lie in the atlas of the surface that their region's maps are drawn on.
+bool Feeds(const wrinkle::Region& region, const std::string& map) {
+  return std::any_of(region.feeds.begin(), region.feeds.end(),
+                     [&](const wrinkle::Feed& feed) { return feed.map == map; });
+}
+
+SurfacePoint PlaceOf(const paint::Texel& texel) {
+  return {texel.triangle, texel.corners, texel.position};
+}
+
+}  // namespace
+
+MapBaker::MapBaker(const Character& character, const BakeSurface& surface,
+                   const BakeOptions& options, std::string map, bool cloth)
+    : character_(character),
+      surface_(surface),
+      options_(options),
+      material_(MaterialOf(options, cloth)),
+      map_(std::move(map)),
+      cloth_(cloth),
+      profile_(material_.sharpness),
+      sum_(surface.surface().positions().size()),
+      blood_(surface.surface().positions().size()) {}
+
+std::vector<float> MapBaker::MaskOf(const std::string& region) const {
+  const wrinkle::Region* found = FindRegion(character_.rig, region);
+  if (found == nullptr) return {};
+  std::vector<float> mask = surface_.MaskOf(character_, *found);
+  for (float& value : mask) value = Inside(value);
+  return mask;
+}
+
+void MapBaker::AddPose(const BakePose& pose) {
+  const CompressionSolver::Field field =
+      surface_.solver().Solve(pose.skin_matrices, material_.max_compression);
+  worst_ = std::max(worst_, field.worst);
+  std::vector<float> weights = MaskOf(pose.region);
+  if (weights.empty()) weights.assign(field.tensors.size(), 1.0f);
+  for (float& weight : weights) weight *= pose.weight;
+  sum_.Add(field.tensors, weights);
+  blood_.Add(field.growth, weights);
+  if (pose.region.empty()) return;
+  auto region = std::find_if(regions_.begin(), regions_.end(),
+                             [&](const RegionFolds& r) { return r.region == pose.region; });
+  if (region == regions_.end()) {
+    regions_.push_back({pose.region, std::vector<float>(field.tensors.size(), 0.0f)});
+    region = regions_.end() - 1;
+  }
+  for (std::size_t v = 0; v < field.tensors.size(); ++v) {
+    region->compression[v] =
+        std::max(region->compression[v], pose.weight * PrincipalOf(field.tensors[v]).large);
+  }
+}
+
+void MapBaker::AddStroke(const BakeStroke& stroke) { strokes_.push_back(&stroke); }
+
+std::vector<float> MapBaker::Wavelengths() const {
+  const std::size_t count = surface_.surface().positions().size();
+  const float base = std::log(material_.wavelength_mm * kMetres);
+  std::vector<float> sums(count, 0.0f), shares(count, 0.0f);
+  for (const BakeRegionWavelength& entry : options_.wavelengths) {
+    for (const wrinkle::Region& region : character_.rig.regions) {
+      if (!Matches(region.name, entry.region) || !Feeds(region, map_)) continue;
+      const std::vector<float> mask = surface_.MaskOf(character_, region);
+      for (std::size_t v = 0; v < mask.size(); ++v) {
+        sums[v] += mask[v] * std::log(entry.wavelength_mm * kMetres);
+        shares[v] += mask[v];
+      }
+    }
+  }
+  for (std::size_t v = 0; v < count; ++v) {
+    const float rest = std::max(1.0f - shares[v], 0.0f);
+    sums[v] = std::exp((sums[v] + rest * base) / (shares[v] + rest));
+  }
+  return sums;
+}
+
+std::vector<float> MapBaker::Smallest() const {
+  std::vector<float> smallest(surface_.texel_metres().begin(), surface_.texel_metres().end());
+  for (float& side : smallest) side *= kTexelsAWave;
+  return smallest;
+}
+
+Status MapBaker::MakeLayers(const FoldField& field, Pace* pace) {
+  std::vector<FoldLayer::Options> wanted;
+  FoldLayer::Options options;
+  options.material = material_;
+  options.height = Depth();
+  options.seed = options_.seed;
+  wanted.push_back(options);
+  if (material_.crossing > 0.0f) {
+    options.crossing = true;
+    options.height = Depth() * material_.crossing;
+    options.seed = options_.seed + 101;
+    wanted.push_back(options);
+  }
+  if (material_.fine_lines > 0.0f) {
+    options.crossing = false;
+    options.wavelength_scale = kFineLines;
+    options.height = Depth() * material_.fine_lines;
+    options.seed = options_.seed + 202;
+    wanted.push_back(options);
+  }
+  for (const FoldLayer::Options& layer : wanted) {
+    auto made = FoldLayer::Create(field, profile_, layer, pace);
+    FURROW_RETURN_IF_ERROR(made);
+    layers_.push_back(std::move(*made));
+  }
+  return {};
+}
+
+FoldSample MapBaker::FoldsAt(const SurfacePoint& point, const glm::vec3& tangent,
+                             const glm::vec3& bitangent, const StrokeLayer& strokes) const {
+  FoldSample sum;
+  for (const auto& layer : layers_) {
+    const FoldSample fold = layer->At(point, tangent, bitangent);
+    sum.height += fold.height;
+    sum.slope += fold.slope;
+    sum.cavity *= fold.cavity;
+  }
+  const StrokeLayer::Drawn drawn = strokes.At(point, tangent, bitangent);
+  sum.slope = sum.slope * drawn.keep + drawn.keep_slope * sum.height + drawn.fold.slope;
+  sum.height = sum.height * drawn.keep + drawn.fold.height;
+  sum.cavity = (1.0f - drawn.keep * (1.0f - sum.cavity)) * drawn.fold.cavity;
+  return sum;
+}
+
+bool MapBaker::FillTexels(const StrokeLayer& strokes, Pace* pace, BakedMap* map) const {
+  const std::size_t count =
+      static_cast<std::size_t>(map->width) * static_cast<std::size_t>(map->height);
+  map->height_mm.assign(count, 0.0f);
+  map->derivative.assign(2 * count, 0.0f);
+  map->cavity.assign(count, 1.0f);
+  map->covered.assign(count, 0);
+  const std::vector<paint::Texel>& texels = surface_.texels();
+  const auto work = [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const paint::Texel& texel = texels[i];
+      const FoldSample fold = FoldsAt(PlaceOf(texel), texel.tangent, texel.bitangent, strokes);
+      const std::size_t at =
+          static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
+          static_cast<std::size_t>(texel.x);
+      map->height_mm[at] = fold.height / kMetres;
+      map->derivative[2 * at] = -fold.slope.x;
+      map->derivative[2 * at + 1] = -fold.slope.y;
+      map->cavity[at] = fold.cavity;
+      map->covered[at] = 1;
+    }
+  };
+  return ForRuns(texels.size(), options_.threads, work,
+                 [&](float done) { return pace->Tell(done); });
+}
+
+void MapBaker::FillBlood(BakedMap* map) const {
+  const std::vector<float> blood = blood_.Take();
+  map->blood.assign(map->cavity.size(), 1.0f);
+  for (const paint::Texel& texel : surface_.texels()) {
+    const std::size_t at =
+        static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
+        static_cast<std::size_t>(texel.x);
+    map->blood[at] =
+        BloodInFurrow(surface_.surface().Interpolate(blood, PlaceOf(texel)), map->cavity[at]);
+  }
+}
+
+void MapBaker::Measure(const std::vector<float>& compression, const StrokeLayer& strokes,
+                       BakedMap* map) const {
+  BakedMap::Statistics& statistics = map->statistics;
+  statistics.worst_compression = worst_;
+  statistics.overlapping_texels = surface_.overlaps();
+  double sum = 0.0, sides = 0.0;
+  std::vector<char> seen(strokes.num_strokes(), 0);
+  for (const paint::Texel& texel : surface_.texels()) {
+    const std::size_t at =
+        static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
+        static_cast<std::size_t>(texel.x);
+    ++statistics.covered_texels;
+    strokes.MarkFolds(PlaceOf(texel), &seen);
+    const float height = map->height_mm[at];
+    statistics.deepest_mm = std::max(statistics.deepest_mm, -height);
+    statistics.highest_mm = std::max(statistics.highest_mm, height);
+    statistics.steepest = std::max(
+        statistics.steepest, std::hypot(map->derivative[2 * at], map->derivative[2 * at + 1]));
+    if (std::abs(height) < kFoldedMillimetres) continue;
+    ++statistics.folded_texels;
+    const SurfacePoint place = PlaceOf(texel);
+    sum += static_cast<double>(surface_.surface().Interpolate(compression, place));
+    sides += static_cast<double>(surface_.surface().Interpolate(surface_.texel_metres(), place));
+  }
+  statistics.strokes = static_cast<int>(std::count(seen.begin(), seen.end(), 1));
+  if (statistics.folded_texels > 0) {
+    statistics.mean_compression =
+        static_cast<float>(sum / static_cast<double>(statistics.folded_texels));
+    statistics.texel_mm =
+        static_cast<float>(sides / static_cast<double>(statistics.folded_texels)) / kMetres;
+  }
+}
+
+// Over what strain folds: the wavelengths asked for, and how far texels widen them.
+void MapBaker::MeasureWavelengths(BakedMap* map) const {
+  BakedMap::Statistics& statistics = map->statistics;
+  const std::vector<float> asked = Wavelengths(), smallest = Smallest();
+  const float scale = material_.fine_lines > 0.0f ? kFineLines : 1.0f;
+  float widened = 1.0f;
+  for (const paint::Texel& texel : surface_.texels()) {
+    const std::size_t at =
+        static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
+        static_cast<std::size_t>(texel.x);
+    if (std::abs(map->height_mm[at]) < kFoldedMillimetres) continue;
+    const SurfacePoint place = PlaceOf(texel);
+    const float wavelength = scale * surface_.surface().Interpolate(asked, place) / kMetres;
+    const float least = surface_.surface().Interpolate(smallest, place) / kMetres;
+    if (statistics.finest_mm == 0.0f) statistics.finest_mm = wavelength;
+    statistics.finest_mm = std::min(statistics.finest_mm, wavelength);
+    statistics.coarsest_mm = std::max(statistics.coarsest_mm, wavelength / scale);
+    if (!(least > wavelength)) continue;
+    ++statistics.widened_texels;
+    if (least <= widened * wavelength) continue;
+    widened = least / wavelength;
+    statistics.widened_from_mm = wavelength;
+    statistics.widened_to_mm = least;
+  }
+}
+
+BakedMask MapBaker::SuggestMask(const RegionFolds& folds) const {
+  // Full where the region's poses fold half as much as at their most.
+  const float most = *std::max_element(folds.compression.begin(), folds.compression.end());
+  const float full = std::max(0.5f * most, 2.0f * material_.threshold + 1e-4f);
+  std::vector<float> values;
+  for (const float compression : folds.compression) {
+    values.push_back(Smoothstep(0.5f * material_.threshold, full, compression));
+  }
+  BakedMask mask;
+  mask.region = folds.region;
+  mask.width = mask.height = std::max(options_.size / 4, 64);
+  const auto count = static_cast<std::size_t>(mask.width) * static_cast<std::size_t>(mask.height);
+  mask.texels.assign(count, 0.0f);
+  std::vector<std::uint8_t> covered(count, 0);
+  for (const paint::Texel& texel :
+       paint::RasterizeUv(surface_.surface().mesh(), mask.width, mask.height)) {
+    const std::size_t at =
+        static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(mask.width) +
+        static_cast<std::size_t>(texel.x);
+    mask.texels[at] = surface_.surface().Interpolate(values, PlaceOf(texel));
+    covered[at] = 1;
+  }
+  const FloatPlane planes[] = {{&mask.texels, 1}};
+  DilatePlanes(planes, covered, mask.width, mask.height, kGutter / 4);
+  return mask;
+}
+
+Result<std::unique_ptr<BakedMap>> MapBaker::Bake(float from, float to, Pace* pace) {
+  constexpr float kStrokes = 0.1f, kFolds = 0.35f;  // of the time, when they are done
+  const auto at = [&](float share) { return from + (to - from) * share; };
+  pace->Enter(from, at(kStrokes));
+  std::vector<std::vector<float>> masks;
+  for (const BakeStroke* stroke : strokes_) masks.push_back(MaskOf(stroke->region));
+  const auto strokes =
+      StrokeLayer::Create(surface_.surface(), strokes_, std::move(masks), Depth(), pace);
+  FURROW_RETURN_IF_ERROR(strokes);
+  const std::vector<Tensor2> tensors = sum_.Take();
+  std::vector<float> compression;
+  for (const Tensor2& tensor : tensors) compression.push_back(PrincipalOf(tensor).large);
+  const FoldField field(surface_.surface(), **strokes, tensors, Wavelengths(), Smallest());
+  pace->Enter(at(kStrokes), at(kFolds));
+  FURROW_RETURN_IF_ERROR(MakeLayers(field, pace));
+
+  auto map = std::make_unique<BakedMap>();
+  map->map = map_;
+  map->cloth = cloth_;
+  map->width = map->height = options_.size;
+  pace->Enter(at(kFolds), to);
+  if (!FillTexels(**strokes, pace, map.get())) return Pace::Cancelled();
+  FillBlood(map.get());
+  Measure(compression, **strokes, map.get());
+  MeasureWavelengths(map.get());
+  const FloatPlane planes[] = {
+      {&map->height_mm, 1}, {&map->derivative, 2}, {&map->cavity, 1}, {&map->blood, 1}};
+  DilatePlanes(planes, map->covered, map->width, map->height, kGutter);
+  for (const RegionFolds& region : regions_) map->masks.push_back(SuggestMask(region));
+  return map;
+}
+
+}  // namespace furrow::character::bake

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/bake/layers/profile.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/scalar.h"
+
+namespace furrow::character::bake {
+namespace {
+
+constexpr int kPhases = 256;    // of a period, where the profile is integrated
+constexpr int kTable = 256;     // compressions whose amplitude is solved
+constexpr float kMost = 0.95f;  // compression
+
+}  // namespace
+
+FoldProfile::FoldProfile(float sharpness) {
+  const float blunt = 1.0f - sharpness;
+  const float width = 0.12f + 2.0f * blunt * blunt;  // of the valley, as a sine of half the phase
+  w2_ = width * width;
+  double sum = 0.0;
+  for (int i = 0; i < kPhases; ++i) {
+    const float phase = 2.0f * kPi * static_cast<float>(i) / kPhases;
+    const float s2 = 0.5f * (1.0f - std::cos(phase));
+    sum += s2 / (s2 + w2_);
+  }
+  mean_ = static_cast<float>(sum / kPhases);
+  scale_ = 2.0f * (1.0f + w2_);
+  amplitudes_.resize(kTable + 1);
+  for (int i = 1; i <= kTable; ++i) {
+    const float root = static_cast<float>(i) / kTable;
+    amplitudes_[static_cast<std::size_t>(i)] = SolveAmplitude(root * root * kMost);
+  }
+}
+
+FoldProfile::Sample FoldProfile::At(float cosine, float sine) const {
+  const float s2 = std::max(0.5f * (1.0f - cosine), 0.0f);
+  const float q = 1.0f / (s2 + w2_);
+  return {scale_ * (s2 * q - mean_), scale_ * 0.5f * sine * w2_ * q * q};
+}
+
+float FoldProfile::Amplitude(float compression) const {
+  const float root = std::sqrt(std::clamp(compression, 0.0f, kMost) / kMost) * kTable;
+  const auto cell = std::min(static_cast<std::size_t>(root), std::size_t{kTable - 1});
+  const float within = root - static_cast<float>(cell);
+  return amplitudes_[cell] + (amplitudes_[cell + 1] - amplitudes_[cell]) * within;
+}
+
+float FoldProfile::SolveAmplitude(float compression) const {
+  const float along = (1.0f - compression) * (1.0f - compression);
+  const auto arc = [&](float amplitude) {
+    double sum = 0.0;
+    for (int i = 0; i < kPhases; ++i) {
+      const float phase = 2.0f * kPi * (static_cast<float>(i) + 0.5f) / kPhases;
+      const float rise = amplitude * At(std::cos(phase), std::sin(phase)).slope;
+      sum += std::sqrt(along + rise * rise);
+    }
+    return sum / kPhases;
+  };
+  float low = 0.0f, high = 8.0f;
+  for (int i = 0; i < 40; ++i) {
+    const float middle = 0.5f * (low + high);
+    (arc(middle) < 1.0 ? low : high) = middle;
+  }
+  return 0.5f * (low + high);
+}
+
+}  // namespace furrow::character::bake

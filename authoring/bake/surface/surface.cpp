@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/bake/surface/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "character/weld.h"
+
+namespace furrow::character::bake {
+namespace {
+
+using glm::vec3;
+using wrinkle::SurfaceAxes;
+
+vec3 NearestOnEdge(const vec3& p, const vec3& a, const vec3& b) {
+  const vec3 along = b - a;
+  const float t = glm::dot(p - a, along) / std::max(glm::dot(along, along), 1e-20f);
+  return a + along * std::clamp(t, 0.0f, 1.0f);
+}
+
+}  // namespace
+
+SurfaceAxes AxesAcross(const vec3& normal) {
+  const vec3 helper = std::abs(normal.x) < 0.8f ? vec3(1, 0, 0) : vec3(0, 1, 0);
+  SurfaceAxes axes;
+  axes.normal = normal;
+  axes.x = glm::normalize(helper - normal * glm::dot(normal, helper));
+  axes.y = glm::cross(normal, axes.x);
+  return axes;
+}
+
+Turn Transport(const SurfaceAxes& from, const SurfaceAxes& to) {
+  // A vector v across n1 turned by the shortest rotation of n1 onto n2.
+  const float along = 1.0f + glm::dot(from.normal, to.normal);
+  if (along < 1e-4f) return {};
+  const vec3 sum = from.normal + to.normal;
+  const vec3 x = from.x - sum * (glm::dot(to.normal, from.x) / along);
+  const glm::vec2 turned(glm::dot(x, to.x), glm::dot(x, to.y));
+  const float length = glm::length(turned);
+  if (!(length > 1e-6f)) return {};
+  return {turned.x / length, turned.y / length};
+}
+
+Tensor2 Carry(const Tensor2& tensor, const Turn& turn) {
+  const float c = turn.cosine, s = turn.sine;
+  return {c * c * tensor.xx - 2.0f * c * s * tensor.xy + s * s * tensor.yy,
+          c * s * (tensor.xx - tensor.yy) + (c * c - s * s) * tensor.xy,
+          s * s * tensor.xx + 2.0f * c * s * tensor.xy + c * c * tensor.yy};
+}
+
+Surface::Surface(std::span<const Mesh* const> meshes) {
+  for (const Mesh* mesh : meshes) Append(*mesh);
+  Connect();
+  MakeAxes();
+  MakeTree();
+}
+
+void Surface::Append(const Mesh& mesh) {
+  const auto base = static_cast<std::uint32_t>(mesh_.vertices.size());
+  const std::vector<std::uint32_t> first = WeldVertices(mesh);
+  std::vector<std::uint32_t> welded(mesh.vertices.size());
+  for (std::uint32_t i = 0; i < first.size(); ++i) {
+    if (first[i] != i) {
+      welded[i] = welded[first[i]];
+      continue;
+    }
+    welded[i] = static_cast<std::uint32_t>(positions_.size());
+    positions_.push_back(mesh.vertices[i].position);
+    source_.push_back(base + i);
+  }
+  mesh_.vertices.insert(mesh_.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    Triangle triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle.vertices[k] = welded[mesh.indices[i + k]];
+      mesh_.indices.push_back(base + mesh.indices[i + k]);
+    }
+    triangles_.push_back(triangle);
+  }
+}
+
+void Surface::Connect() {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::uint32_t, int>> open;
+  fan_starts_.assign(positions_.size() + 1, 0);
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangles_[t].vertices[static_cast<std::size_t>(k)];
+      const std::uint32_t b = triangles_[t].vertices[static_cast<std::size_t>((k + 1) % 3)];
+      ++fan_starts_[a + 1];
+      const auto [place, fresh] = open.try_emplace(std::minmax(a, b), t, k);
+      if (fresh) continue;
+      const auto [other, edge] = place->second;
+      triangles_[t].neighbours[static_cast<std::size_t>(k)] = other;
+      triangles_[other].neighbours[static_cast<std::size_t>(edge)] = t;
+      open.erase(place);
+    }
+  }
+  for (std::size_t i = 1; i < fan_starts_.size(); ++i) fan_starts_[i] += fan_starts_[i - 1];
+  fans_.resize(fan_starts_.back());
+  std::vector<std::size_t> next(fan_starts_.begin(), fan_starts_.end() - 1);
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    for (const std::uint32_t vertex : triangles_[t].vertices) fans_[next[vertex]++] = t;
+  }
+}
+
+void Surface::MakeAxes() {
+  std::vector<vec3> normals(positions_.size(), vec3(0.0f));
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    Triangle& triangle = triangles_[t];
+    const auto [a, b, c] = Corners(t);
+    const vec3 area = 0.5f * glm::cross(b - a, c - a);
+    triangle.area = glm::length(area);
+    triangle.strain = wrinkle::MakeRestTriangle(a, b, c, b - a);
+    const bool usable = triangle.area > 1e-20f;
+    triangle.axes = triangle.strain ? triangle.strain->axes
+                                    : AxesAcross(usable ? area / triangle.area : vec3(0, 0, 1));
+    for (const std::uint32_t vertex : triangle.vertices) normals[vertex] += area;
+  }
+  axes_.reserve(positions_.size());
+  for (const vec3& normal : normals) {
+    const float length = glm::length(normal);
+    axes_.push_back(AxesAcross(length > 1e-20f ? normal / length : vec3(0, 0, 1)));
+  }
+}
+
+// Only triangles that have an extent; where none has, all.
+void Surface::MakeTree() {
+  std::vector<TriangleTree::Corners> corners;
+  std::vector<std::uint32_t> whole, all;
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    corners.push_back(Corners(t));
+    all.push_back(t);
+    if (triangles_[t].strain) whole.push_back(t);
+  }
+  tree_.emplace(corners, whole.empty() ? std::move(all) : std::move(whole));
+}
+
+std::array<vec3, 3> Surface::Corners(std::uint32_t triangle) const {
+  const auto& v = triangles_[triangle].vertices;
+  return {positions_[v[0]], positions_[v[1]], positions_[v[2]]};
+}
+
+SurfacePoint Surface::PointOf(std::uint32_t triangle, const vec3& corners) const {
+  const auto [a, b, c] = Corners(triangle);
+  return {triangle, corners, corners.x * a + corners.y * b + corners.z * c};
+}
+
+SurfacePoint Surface::Nearest(const vec3& p) const {
+  const TriangleTree::Nearest nearest = tree_->Find(p);
+  SurfacePoint best{nearest.triangle, vec3(0.0f), nearest.position};
+  const auto [a, b, c] = Corners(best.triangle);
+  const vec3 normal = glm::cross(b - a, c - a);
+  const float square = std::max(glm::dot(normal, normal), 1e-30f);
+  best.corners.x = glm::dot(glm::cross(c - b, best.position - b), normal) / square;
+  best.corners.y = glm::dot(glm::cross(a - c, best.position - c), normal) / square;
+  best.corners.z = 1.0f - best.corners.x - best.corners.y;
+  return best;
+}
+
+Tensor2 Surface::Interpolate(std::span<const Tensor2> tensors, const SurfacePoint& point) const {
+  const Triangle& triangle = triangles_[point.triangle];
+  Tensor2 sum;
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t v = triangle.vertices[static_cast<std::size_t>(k)];
+    sum = sum + point.corners[k] * Carry(tensors[v], Transport(axes_[v], triangle.axes));
+  }
+  return sum;
+}
+
+SurfaceReach::SurfaceReach(const Surface& surface)
+    : surface_(surface), stamps_(surface.triangles().size(), 0) {}
+
+std::span<const std::uint32_t> SurfaceReach::Find(const vec3& centre,
+                                                  std::span<const std::uint32_t> seeds,
+                                                  float radius) {
+  // Ways go from edge to edge by their nearest points, a little longer than the shortest.
+  constexpr float kDetour = 1.4f;
+  ++stamp_;
+  heap_.clear();
+  found_.clear();
+  const auto later = [](const Entry& a, const Entry& b) {
+    return a.length != b.length ? a.length > b.length : a.triangle > b.triangle;
+  };
+  for (const std::uint32_t seed : seeds) heap_.push_back({0.0f, seed, centre});
+  while (!heap_.empty()) {
+    std::pop_heap(heap_.begin(), heap_.end(), later);
+    const Entry entry = heap_.back();
+    heap_.pop_back();
+    if (stamps_[entry.triangle] == stamp_) continue;
+    stamps_[entry.triangle] = stamp_;
+    found_.push_back(entry.triangle);
+    const auto corners = surface_.Corners(entry.triangle);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t next = surface_.triangles()[entry.triangle].neighbours[k];
+      if (next == kNoTriangle || stamps_[next] == stamp_) continue;
+      const vec3 a = corners[k], b = corners[(k + 1) % 3];
+      // The edge must be within reach; of its points the way takes the nearest to the centre,
+      // which keeps ways on an even surface straight.
+      const vec3 gate = NearestOnEdge(centre, a, b);
+      if (glm::distance(gate, centre) >= radius) continue;
+      const float length = entry.length + glm::distance(gate, entry.point);
+      if (length > kDetour * radius) continue;
+      heap_.push_back({length, next, gate});
+      std::push_heap(heap_.begin(), heap_.end(), later);
+    }
+  }
+  return found_;
+}
+
+}  // namespace furrow::character::bake

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/bake/surface/surface_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "authoring/bake/surface/bake_surface.h"
+#include "authoring/bake/surface/uv_check.h"
+#include "base/status.h"
+
+namespace furrow::character::bake {
+namespace {
+
+std::string MeshName(const Character& character, int mesh) {
+  return "mesh '" + character.meshes[static_cast<std::size_t>(mesh)].name + "'";
+}
+
+std::string Percent(float share) {
+  char text[16];
+  std::snprintf(text, sizeof(text), "%.1f%%", static_cast<double>(100.0f * share));
+  return text;
+}
+
+Status Refuse(std::string what, std::string where, std::string todo) {
+  return {StatusCode::kInvalidArgument, std::move(what), std::move(where), std::move(todo)};
+}
+
+Status CheckOverlap(const Character& character, const UvReport& uvs) {
+  if (!(uvs.overlapping > kTolerableUvOverlap) || !uvs.example) return {};
+  const UvReport::Overlap& at = *uvs.example;
+  char place[64];
+  std::snprintf(place, sizeof(place), "%.3f, %.3f", static_cast<double>(at.uv.x),
+                static_cast<double>(at.uv.y));
+  const bool one = at.meshes[0] == at.meshes[1];
+  return Refuse("UVs overlap on " + Percent(uvs.overlapping) + " of the atlas: triangles " +
+                    std::to_string(at.triangles[0]) + " and " + std::to_string(at.triangles[1]) +
+                    (one ? "" : " of " + MeshName(character, at.meshes[1])) + " share (" + place +
+                    ")",
+                MeshName(character, at.meshes[0]),
+                "unwrap it so that every place has texels of its own; mirrored halves do not");
+}
+
+Status CheckSkin(const Character& character, int index) {
+  const Mesh& mesh = character.meshes[static_cast<std::size_t>(index)];
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const float* w = mesh.vertices[v].skin_weights;
+    if (std::abs(w[0] + w[1] + w[2] + w[3] - 1.0f) <= 0.01f) continue;
+    return Refuse("the skin weights of vertex " + std::to_string(v) + " do not sum to 1",
+                  MeshName(character, index), "bind every vertex to a joint");
+  }
+  return {};
+}
+
+// The joint that alone moves a mesh, or -1.
+int OnlyJoint(const Mesh& mesh) {
+  int joint = -1;
+  for (const Vertex& vertex : mesh.vertices) {
+    for (int i = 0; i < 4; ++i) {
+      if (!(vertex.skin_weights[i] > 0.0f)) continue;
+      if (joint >= 0 && joint != vertex.joints[i]) return -1;
+      joint = vertex.joints[i];
+    }
+  }
+  return joint;
+}
+
+void Warn(const Character& character, const UvReport& uvs, std::span<const int> meshes,
+          const std::string& kind, std::vector<std::string>* warnings) {
+  const auto count = [&](int triangles, const std::string& what) {
+    if (triangles > 0)
+      warnings->push_back(std::to_string(triangles) + " triangles of the " + kind + what);
+  };
+  count(uvs.degenerate_triangles, " have no area and are left out");
+  count(uvs.unmapped_triangles, " have no UVs and get no folds");
+  count(uvs.outside_triangles, " have UVs outside [0, 1], which wrap round");
+  for (const int mesh : meshes) {
+    const int joint = OnlyJoint(character.meshes[static_cast<std::size_t>(mesh)]);
+    if (joint < 0) continue;
+    warnings->push_back(MeshName(character, mesh) + " follows joint '" +
+                        character.skeleton.joint_names()[static_cast<std::size_t>(joint)] +
+                        "' rigidly: no pose can fold it");
+  }
+}
+
+}  // namespace
+
+Status CheckSurfaces(const Character& character, std::span<const std::string> maps,
+                     std::vector<std::string>* warnings) {
+  if (character.inverse_bind_matrices.size() !=
+      static_cast<std::size_t>(character.skeleton.num_joints())) {
+    return Refuse("a joint needs an inverse bind matrix", character.name, "");
+  }
+  bool done[2] = {false, false};
+  for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
+    const bool wanted = maps.empty() || std::find(maps.begin(), maps.end(), map.name) != maps.end();
+    const bool cloth = GoesOnCloth(character, map);
+    if (!wanted || done[cloth ? 1 : 0]) continue;
+    done[cloth ? 1 : 0] = true;
+    const std::string kind = cloth ? "cloth" : "skin";
+    const std::vector<int> meshes = MeshesOn(character, cloth);
+    if (meshes.empty()) {
+      return Refuse("wrinkle map '" + map.name + "' goes on " + kind + ", and no mesh is " + kind,
+                    character.name,
+                    "name a material '" + kind +
+                        "', change the map's surface in the rig, or "
+                        "leave it out with --map");
+    }
+    for (const int mesh : meshes) {
+      FURROW_RETURN_IF_ERROR(CheckSkin(character, mesh));
+    }
+    const UvReport uvs = CheckUvs(character, meshes);
+    if (uvs.no_uvs()) {
+      return Refuse("the " + kind + " has no UVs", MeshName(character, meshes.front()),
+                    "unwrap it: wrinkle maps lie in its UV atlas");
+    }
+    FURROW_RETURN_IF_ERROR(CheckOverlap(character, uvs));
+    Warn(character, uvs, meshes, kind, warnings);
+  }
+  return {};
+}
+
+}  // namespace furrow::character::bake

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/generator/body/body_skinning.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "authoring/generator/mesh/mesh_tools.h"
+
+namespace furrow::character::generator {
+namespace {
+
+using glm::vec3;
+
+// Shares under way, by joint.
+class Shares {
+ public:
+  explicit Shares(const wrinkle::Skeleton& skeleton)
+      : skeleton_(skeleton), shares_(skeleton.num_joints(), 0.0f) {}
+
+  void Add(const std::string& joint, float share) { shares_[skeleton_.Find(joint)] += share; }
+  void Add(const Influences& skin, float share) {
+    for (int k = 0; k < 4; ++k) shares_[skin.joints[k]] += share * skin.weights[k];
+  }
+
+  // Blends along a limb: each border hands over from one joint to the next.
+  struct Border {
+    float at;
+    float half_width;
+  };
+  void AddChain(std::span<const std::string> joints, std::span<const Border> borders, float place,
+                float share) {
+    float rest = share;
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      float beyond = 0.0f;
+      if (i < borders.size()) {
+        const Border& b = borders[i];
+        beyond = SmoothStep(b.at - b.half_width, b.at + b.half_width, place);
+      }
+      Add(joints[i], rest * (1.0f - beyond));
+      rest *= beyond;
+    }
+  }
+
+  // The four strongest, summing to 1.
+  [[nodiscard]] Influences Take() const {
+    std::vector<int> order;
+    for (std::size_t j = 0; j < shares_.size(); ++j) {
+      if (shares_[j] > 0.0f) order.push_back(static_cast<int>(j));
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return shares_[a] > shares_[b]; });
+    order.resize(std::min<std::size_t>(order.size(), 4));
+    float sum = 0.0f;
+    for (const int j : order) sum += shares_[j];
+    Influences skin;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      skin.joints[k] = static_cast<std::uint16_t>(order[k]);
+      skin.weights[k] = shares_[order[k]] / sum;
+    }
+    return skin;
+  }
+
+ private:
+  const wrinkle::Skeleton& skeleton_;
+  std::vector<float> shares_;
+};
+
+const char* Suffix(float side) { return side >= 0.0f ? "_l" : "_r"; }
+
+}  // namespace
+
+Influences TorsoInfluences(const BodyShape& shape, const vec3& place) {
+  const std::string side = Suffix(place.x);
+  const float x = std::abs(place.x);
+  const vec3 shoulder = shape.shoulder();
+  // Across a plane that leans from the cap of the shoulder in to the armpit; only above the latter.
+  const vec3 from(x - shoulder.x, place.y - shoulder.y, 0.0f);
+  const float across = glm::dot(from, vec3(0.97f, 0.24f, 0.0f));
+  const float arm = SmoothStep(-0.055f, 0.075f, across) * SmoothStep(1.20f, 1.36f, place.y);
+  const float shoulder_share =
+      0.85f * SmoothStep(0.045f, 0.15f, x) * SmoothStep(1.27f, 1.43f, place.y);
+  Shares shares(shape.skeleton());
+  shares.Add("upper_arm" + side, arm);
+  shares.Add("shoulder" + side, (1.0f - arm) * shoulder_share);
+  const std::string joints[] = {"hips", "spine", "chest", "neck"};
+  const Shares::Border borders[] = {{1.065f, 0.075f}, {1.20f, 0.10f}, {1.495f, 0.035f}};
+  shares.AddChain(joints, borders, place.y, (1.0f - arm) * (1.0f - shoulder_share));
+  return shares.Take();
+}
+
+Influences SleeveInfluences(const BodyShape& shape, float side, const vec3& place,
+                            const Influences& hole, float from_hole) {
+  const vec3 left(place.x * side, place.y, place.z);
+  const float along = glm::dot(left - shape.shoulder(), shape.arm());
+  const float elbow =
+      glm::distance(vec3(shape.skeleton().rest_model()[shape.skeleton().Find("lower_arm_l")][3]),
+                    vec3(shape.skeleton().rest_model()[shape.skeleton().Find("upper_arm_l")][3]));
+  const float free = SmoothStep(0.0f, 0.10f, from_hole);
+  Shares shares(shape.skeleton());
+  shares.Add(hole, 1.0f - free);
+  const std::string joints[] = {std::string("upper_arm") + Suffix(side),
+                                std::string("lower_arm") + Suffix(side),
+                                std::string("hand") + Suffix(side)};
+  const Shares::Border borders[] = {{elbow, 0.055f}, {0.56f, 0.03f}};
+  shares.AddChain(joints, borders, along, free);
+  return shares.Take();
+}
+
+Influences TrouserInfluences(const BodyShape& shape, const vec3& place) {
+  const std::string side = Suffix(place.x);
+  const float x = std::abs(place.x);
+  // The groin rises to the side in front; behind, the seat goes with the thigh for a while.
+  const float front = SmoothStep(-0.06f, 0.06f, place.z);
+  const float groin = glm::mix(0.845f + 0.25f * x, 0.855f + 0.42f * x, front);
+  const float half_width = glm::mix(0.085f, 0.06f, front);
+  const float below = SmoothStep(groin + half_width, groin - half_width, place.y);
+  // Where both legs meet each has half.
+  const float apart = SmoothStep(-0.045f, 0.045f, x);
+  const float leg =
+      below * glm::mix(SmoothStep(0.0f, 0.05f, x), apart, SmoothStep(0.83f, 0.78f, place.y));
+  Shares shares(shape.skeleton());
+  const std::string upper = "upper_leg" + side;
+  const std::string pelvis[] = {"hips", "spine"};
+  const Shares::Border waist[] = {{1.085f, 0.075f}};
+  shares.AddChain(pelvis, waist, place.y, 1.0f - leg);
+  const std::string joints[] = {upper, "lower_leg" + side, "foot" + side};
+  const Shares::Border borders[] = {{-0.497f, 0.075f}, {-0.03f, 0.06f}};
+  shares.AddChain(joints, borders, -place.y, leg);
+  return shares.Take();
+}
+
+Influences ShoeInfluences(const BodyShape& shape, const vec3& place) {
+  const std::string side = Suffix(place.x);
+  Shares shares(shape.skeleton());
+  const std::string joints[] = {"foot" + side, "toes" + side};
+  const Shares::Border borders[] = {{0.110f, 0.03f}};
+  shares.AddChain(joints, borders, place.z, 1.0f);
+  return shares.Take();
+}
+
+Influences InfluenceOf(const wrinkle::Skeleton& skeleton, const std::string& joint) {
+  Shares shares(skeleton);
+  shares.Add(joint, 1.0f);
+  return shares.Take();
+}
+
+void CarryToRest(const BodyShape& shape, QuadNet* net) {
+  for (QuadNet::Point& point : net->points) {
+    glm::mat4 blended(0.0f);
+    for (int k = 0; k < 4; ++k) {
+      blended += shape.skin_matrices()[point.skin.joints[k]] * point.skin.weights[k];
+    }
+    point.place = vec3(glm::inverse(blended) * glm::vec4(point.place, 1.0f));
+  }
+}
+
+}  // namespace furrow::character::generator

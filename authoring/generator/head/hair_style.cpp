@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/generator/head/hair_style.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "authoring/generator/head/head_mesh.h"
+#include "authoring/generator/mesh/mesh_tools.h"
+
+namespace furrow::character::generator {
+namespace {
+
+using glm::vec3;
+
+constexpr float kPartX = 3.6f;  // the parting, on the subject's left
+constexpr vec3 kSkull{0.0f, 1.5f, -1.0f};
+constexpr float kSkullRadius = 9.3f;
+constexpr vec3 kKnotRadii{2.7f, 2.3f, 1.7f};
+
+// What a place of the scalp grows.
+struct Style {
+  vec3 comb;     // direction, not yet along the scalp
+  float length;  // centimetres
+  float body;    // how far the lock stands off at its highest
+  float width;   // half of it
+};
+
+float WomanShare(const HeadShape& shape) { return 0.5f - 0.5f * shape.face().sex; }
+
+// How far up the head a root is: 0 at the sides, 1 on top.
+float Top(const vec3& p) { return SmoothStep(4.2f, 8.0f, p.y); }
+
+Style ShortHair(const vec3& root) {
+  const float top = Top(root);
+  const float front = SmoothStep(1.5f, 6.5f, root.z) * top;
+  const float left = SmoothStep(kPartX - 0.5f, kPartX + 0.5f, root.x);
+  const float side = root.x < 0.0f ? -1.0f : 1.0f;
+  const vec3 swept = glm::mix(vec3(-0.55f, 0.1f, -0.9f), vec3(0.7f, -0.4f, -0.8f), left);
+  const vec3 sides(0.1f * side, -0.75f, -0.75f);
+  const float nape = SmoothStep(-1.0f, -7.0f, root.y) * SmoothStep(0.0f, -6.0f, root.z);
+  Style style;
+  style.comb = glm::mix(sides, swept + vec3(0.0f, 0.6f * front, 0.0f), top);
+  style.comb = glm::mix(style.comb, vec3(0.0f, -1.0f, -0.3f), nape);
+  style.length = glm::mix(2.8f, 5.4f, top) - 1.0f * nape;
+  style.body = glm::mix(0.30f, 0.62f, top) + 0.45f * front - 0.15f * nape;
+  style.width = glm::mix(0.36f, 0.50f, top);
+  return style;
+}
+
+vec3 KnotCentre(const HeadShape& shape) {
+  const vec3 scalp = shape.Cast({0.0f, 2.6f, -25.0f}, {0.0f, 0.0f, 1.0f}, 30.0f);
+  return scalp + vec3(0.0f, 0.0f, -0.8f);
+}
+
+// Drawn back into the knot along great circles of the skull.
+Style LongHair(const HeadShape& shape, const vec3& root) {
+  const vec3 from = glm::normalize(root - kSkull);
+  const vec3 to = glm::normalize(KnotCentre(shape) - kSkull);
+  const float cosine = glm::dot(from, to);
+  const float left = kSkullRadius * std::acos(std::clamp(cosine, -1.0f, 1.0f)) - 1.2f;
+  Style style;
+  style.comb = to - from * cosine;
+  style.length = std::min(9.0f, left);
+  style.body = (0.16f + 0.16f * Top(root)) * SmoothStep(-1.0f, 4.0f, left);
+  style.width = 0.52f;
+  return style;
+}
+
+Style StyleAt(const HeadShape& shape, const vec3& root) {
+  const float woman = WomanShare(shape);
+  const Style a = ShortHair(root);
+  const Style b = LongHair(shape, root);
+  return {glm::mix(glm::normalize(a.comb), glm::normalize(b.comb), woman),
+          glm::mix(a.length, b.length, woman), glm::mix(a.body, b.body, woman),
+          glm::mix(a.width, b.width, woman)};
+}
+
+}  // namespace
+
+HairLock GrowLock(const HeadShape& shape, const vec3& root, int number, int sections) {
+  const Style style = StyleAt(shape, root);
+  const float edge =
+      SmoothStep(-0.2f, 1.6f, InsideHairline(root));  // short and flat at the hairline
+  const float length = style.length * (0.85f + 0.3f * Hash(number, 3, 9)) * (0.6f + 0.4f * edge);
+  if (length < 0.6f) return {};
+  const float body = style.body * (0.55f + 0.55f * Hash(number, 4, 9)) * (0.3f + 0.7f * edge);
+  // Neighbours lean the same way; single locks hardly stray from them.
+  const vec3 lean =
+      0.16f * vec3(Noise(root * 0.45f), Noise(root * 0.45f + 20.0f), Noise(root * 0.45f + 40.0f)) +
+      0.12f * (vec3(Hash(number, 5, 9), Hash(number, 6, 9), Hash(number, 7, 9)) - 0.5f);
+  HairLock lock;
+  lock.width = style.width * (0.8f + 0.4f * Hash(number, 8, 9)) * (0.45f + 0.55f * edge);
+  const float tip = glm::mix(0.5f, 0.35f, WomanShare(shape));
+  vec3 p = root - shape.Normal(root) * 0.05f;
+  for (int i = 0; i <= sections; ++i) {
+    const float t = static_cast<float>(i) / static_cast<float>(sections);
+    const vec3 normal = shape.Normal(p);
+    if (i > 0) {
+      const vec3 comb = StyleAt(shape, p).comb + lean;
+      vec3 along = comb - normal * glm::dot(comb, normal);
+      if (glm::length(along) < 1e-3f) along = vec3(0, -1, 0);
+      p += glm::normalize(along) * (length / static_cast<float>(sections));
+      // It rises from the scalp and lies down again.
+      const float height =
+          0.09f + body * SmoothStep(0.0f, 0.4f, t) * glm::mix(1.0f, tip, SmoothStep(0.5f, 1.0f, t));
+      p += shape.Normal(p) * (height - shape.Distance(p));
+    }
+    lock.path.push_back(p);
+    lock.out.push_back(shape.Normal(p));
+  }
+  return lock;
+}
+
+std::vector<HairLock> WindKnot(const HeadShape& shape, int sections) {
+  constexpr int kRings = 7;
+  constexpr int kAround = 12;
+  constexpr float kArc = 1.7f;  // radians that a lock winds
+  std::vector<HairLock> locks;
+  const float size = SmoothStep(0.3f, 0.8f, WomanShare(shape));
+  if (size <= 0.0f) return locks;
+  const vec3 centre = KnotCentre(shape);
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (int i = 0; i < kAround; ++i) {
+      const int number = ring * kAround + i;
+      HairLock lock;
+      lock.width = size * (0.42f + 0.12f * Hash(number, 1, 21));
+      const float out = size * (1.0f + 0.05f * Hash(number, 2, 21));
+      const float start = (static_cast<float>(i) + Hash(number, 3, 21)) / kAround;
+      for (int s = 0; s <= sections; ++s) {
+        const float t = static_cast<float>(s) / static_cast<float>(sections);
+        const float turn = 2.0f * std::numbers::pi_v<float> * start + kArc * t;
+        // From the rim of the knot to its middle, each lock winding inward a little.
+        const float tilt = 0.22f + 0.235f * (static_cast<float>(ring) + 0.7f * (0.5f - t));
+        const vec3 d(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn),
+                     -std::cos(tilt));
+        lock.path.push_back(centre + d * kKnotRadii * out);
+        lock.out.push_back(glm::normalize(d / kKnotRadii));
+      }
+      locks.push_back(std::move(lock));
+    }
+  }
+  return locks;
+}
+
+}  // namespace furrow::character::generator

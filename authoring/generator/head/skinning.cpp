@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/generator/head/skinning.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "authoring/generator/head/head_shape.h"
+#include "authoring/generator/mesh/mesh_tools.h"
+
+namespace furrow::character::generator {
+namespace {
+
+using glm::vec3;
+
+// Weights under way: joints may be named twice, Store() sorts that out.
+class Weights {
+ public:
+  explicit Weights(const wrinkle::Skeleton& skeleton) : by_joint_(skeleton.num_joints(), 0.0f) {}
+
+  void Add(const wrinkle::Skeleton& skeleton, const std::string& joint, float weight) {
+    const int index = skeleton.Find(joint);
+    if (index >= 0 && weight > 0.0f) by_joint_[index] += weight;
+  }
+
+  // The four strongest, summing to 1.
+  void Store(Vertex* vertex) const {
+    std::vector<int> order(by_joint_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+    std::partial_sort(order.begin(), order.begin() + 4, order.end(), [&](int a, int b) {
+      return by_joint_[a] != by_joint_[b] ? by_joint_[a] > by_joint_[b] : a < b;
+    });
+    float sum = 0.0f;
+    for (int k = 0; k < 4; ++k) sum += by_joint_[order[k]];
+    for (int k = 0; k < 4; ++k) {
+      const float weight = by_joint_[order[k]] / sum;
+      vertex->joints[k] = static_cast<std::uint16_t>(weight > 0.0f ? order[k] : 0);
+      vertex->skin_weights[k] = weight;
+    }
+  }
+
+ private:
+  std::vector<float> by_joint_;
+};
+
+// The field of a muscle: full at its centre, nothing beyond its radii (head space, left side).
+struct Muscle {
+  const char* name;  // "*" stands for the side
+  vec3 centre;
+  vec3 radii;
+  float strength;
+  int lip;  // +1 upper alone, -1 lower alone, 0 both
+};
+
+const Muscle kMuscles[] = {
+    {"frontalis_inner*", {1.5f, 2.6f, 9.0f}, {2.5f, 3.0f, 3.0f}, 0.85f, 0},
+    {"frontalis_outer*", {4.5f, 2.7f, 7.2f}, {2.6f, 3.0f, 3.5f}, 0.85f, 0},
+    {"corrugator*", {0.95f, 1.6f, 9.2f}, {1.5f, 1.4f, 2.0f}, 0.7f, 0},
+    {"orbicularis_oculi_lower*", {3.3f, -1.0f, 8.2f}, {2.3f, 1.15f, 2.2f}, 0.8f, 0},
+    {"nasalis*", {1.2f, -3.4f, 9.6f}, {1.35f, 1.9f, 2.0f}, 0.75f, 0},
+    {"levator*", {1.7f, -5.4f, 9.2f}, {1.5f, 1.35f, 2.0f}, 0.75f, 1},
+    {"zygomaticus*", {4.2f, -3.3f, 7.2f}, {2.4f, 2.3f, 3.0f}, 0.85f, 0},
+    {"risorius*", {2.75f, -6.95f, 8.5f}, {1.75f, 1.75f, 2.2f}, 1.0f, 0},
+    {"orbicularis_oris_upper*", {0.9f, -6.5f, 9.8f}, {1.6f, 0.95f, 1.8f}, 0.95f, 1},
+    {"orbicularis_oris_lower*", {0.9f, -7.5f, 9.6f}, {1.6f, 1.0f, 1.8f}, 0.95f, -1},
+    {"depressor*", {2.7f, -8.5f, 8.2f}, {1.7f, 1.6f, 2.4f}, 0.7f, -1},
+    {"mentalis", {0.0f, -9.6f, 9.2f}, {2.0f, 1.3f, 2.0f}, 0.8f, -1},
+    {"platysma*", {3.2f, -13.0f, 2.4f}, {3.0f, 3.2f, 3.5f}, 0.7f, 0},
+};
+
+float Field(const Muscle& muscle, const vec3& p, float side) {
+  const vec3 centre(muscle.centre.x * side, muscle.centre.y, muscle.centre.z);
+  const float d = glm::length((p - centre) / muscle.radii);
+  const float fall = std::max(0.0f, 1.0f - d * d);
+  return muscle.strength * fall * fall * (3.0f - 2.0f * fall);
+}
+
+// Share of the neck (against the head), and of the chest below it.
+float NeckShare(const vec3& p) {
+  const float top = -4.0f - 7.5f * SmoothStep(-3.0f, 5.0f, p.z);
+  return SmoothStep(top, top - 6.0f, p.y);
+}
+
+float JawShare(const HeadVertex& v) {
+  const vec3& p = v.place;
+  // The border runs from the corner of the mouth to the joint of the jaw.
+  const float border = -3.6f - 3.35f * std::clamp((p.z - 0.6f) / 8.0f, 0.0f, 1.2f);
+  const float soft = SmoothStep(1.0f, -1.6f, p.y - border) * SmoothStep(-1.5f, 1.5f, p.z);
+  const float hard = v.mouth_side < 0.0f ? 1.0f : (v.mouth_side > 0.0f ? 0.0f : 0.5f);
+  const float lips = SmoothStep(3.3f, 2.0f, std::abs(p.x)) * SmoothStep(1.0f, 3.0f, p.z);
+  return soft + (hard - soft) * lips;
+}
+
+float UpperLid(const HeadVertex& v, float side) {
+  const vec3 d = v.place - EyeCentre(side);
+  if (v.eye_side <= 0.0f || d.z < -0.2f) return 0.0f;
+  const float across = std::max(0.0f, 1.0f - d.x * d.x / (1.62f * 1.62f));
+  return SmoothStep(1.3f, 0.62f, d.y) * std::sqrt(across);
+}
+
+// How far a vertex belongs to the rims of the mouth, whose weights follow the lips' own curve.
+float LipZone(const HeadVertex& v) {
+  if (v.mouth_side == 0.0f && std::abs(v.place.x) < 0.9f * kMouthCornerX) return 0.0f;
+  const float d = std::abs(v.place.y - kMouthY) / (v.mouth_side > 0.0f ? 1.15f : 1.25f);
+  const float x = std::abs(v.place.x) / kMouthCornerX;
+  return SmoothStep(1.0f, 0.35f, d) * SmoothStep(1.35f, 1.0f, x) *
+         SmoothStep(4.0f, 6.0f, v.place.z);
+}
+
+struct NamedField {
+  std::string joint;
+  float weight;
+};
+
+// The muscles that hold a vertex, those of the other lip and of the other lid left out.
+std::vector<NamedField> MuscleFields(const HeadVertex& v) {
+  std::vector<NamedField> fields;
+  for (const Muscle& muscle : kMuscles) {
+    const std::string name = muscle.name;
+    if (muscle.lip != 0 && static_cast<float>(muscle.lip) * v.mouth_side < 0.0f) continue;
+    if (name.starts_with("orbicularis_oculi_lower") && v.eye_side > 0.0f) continue;
+    const std::size_t star = name.find('*');
+    for (const float side : {1.0f, -1.0f}) {
+      if (star == std::string::npos && side < 0.0f) continue;
+      float field = Field(muscle, v.place, side);
+      if (field <= 0.0f) continue;
+      const char* end = side > 0.0f ? "_l" : "_r";
+      fields.push_back({star == std::string::npos ? name : name.substr(0, star) + end, field});
+    }
+  }
+  return fields;
+}
+
+// The rims of the lips: the middle hangs on orbicularis oris, the corner on risorius, and between
+// them one gives way to the other along a parabola, so that a smile is an arc and not a box.
+void WeighLips(const wrinkle::Skeleton& skeleton, const HeadVertex& v, float share,
+               Weights* weights) {
+  const float x = v.place.x / kMouthCornerX;
+  const float corner = std::pow(std::min(std::abs(x), 1.0f), 2.6f);
+  const float left = SmoothStep(-0.35f, 0.35f, x);
+  const std::string oris =
+      v.mouth_side < 0.0f ? "orbicularis_oris_lower" : "orbicularis_oris_upper";
+  weights->Add(skeleton, oris + "_l", share * (1.0f - corner) * left);
+  weights->Add(skeleton, oris + "_r", share * (1.0f - corner) * (1.0f - left));
+  weights->Add(skeleton, x > 0.0f ? "risorius_l" : "risorius_r", share * corner);
+}
+
+// Face and neck: lids first, then lips and muscles, then chest, neck and jaw of what is left.
+void WeighSkin(const wrinkle::Skeleton& skeleton, const HeadVertex& v, Weights* weights) {
+  float rest = 1.0f;
+  const auto take = [&](const std::string& joint, float share) {
+    weights->Add(skeleton, joint, rest * share);
+    rest *= 1.0f - share;
+  };
+  const bool left = v.place.x >= 0.0f;
+  take(left ? "orbicularis_oculi_upper_l" : "orbicularis_oculi_upper_r",
+       UpperLid(v, left ? 1.0f : -1.0f));
+  const float hold = v.part == kMouthInside ? SmoothStep(5.5f, 8.5f, v.place.z) : 1.0f;
+  const float lips = hold * LipZone(v);
+  WeighLips(skeleton, v, rest * lips, weights);
+  rest *= 1.0f - lips;
+  const std::vector<NamedField> fields = MuscleFields(v);
+  float sum = 0.0f;
+  for (const NamedField& field : fields) sum += hold * field.weight;
+  const float scale = rest * hold / std::max(sum, 1.0f);
+  for (const NamedField& field : fields) weights->Add(skeleton, field.joint, field.weight * scale);
+  rest *= std::max(0.0f, 1.0f - sum);
+  take("chest", SmoothStep(-15.5f, -20.0f, v.place.y));
+  take("neck", NeckShare(v.place));
+  take("jaw", JawShare(v));
+  weights->Add(skeleton, "head", rest);
+}
+
+void SkinHeadVertex(const wrinkle::Skeleton& skeleton, const HeadVertex& v, Vertex* vertex) {
+  Weights weights(skeleton);
+  switch (v.part) {
+    case kEyeball: weights.Add(skeleton, v.place.x >= 0.0f ? "eye_l" : "eye_r", 1.0f); break;
+    case kHairCap:
+    case kEar: weights.Add(skeleton, "head", 1.0f); break;
+    case kTeeth: weights.Add(skeleton, v.mouth_side < 0.0f ? "jaw" : "head", 1.0f); break;
+    default: WeighSkin(skeleton, v, &weights); break;
+  }
+  weights.Store(vertex);
+}
+
+}  // namespace
+
+void SkinHead(const wrinkle::Skeleton& skeleton, HeadMesh* head) {
+  for (std::size_t i = 0; i < head->info.size(); ++i) {
+    SkinHeadVertex(skeleton, head->info[i], &head->mesh.vertices[i]);
+  }
+}
+
+}  // namespace furrow::character::generator

@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/import/makehuman/makehuman.h"
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "authoring/bake/bake.h"
+#include "authoring/bake/bake_pictures.h"
+#include "authoring/bake/bake_poses.h"
+#include "authoring/import/makehuman/body_parts.h"
+#include "authoring/import/makehuman/face_folds.h"
+#include "authoring/import/makehuman/face_landmarks.h"
+#include "authoring/import/makehuman/hair.h"
+#include "authoring/import/makehuman/mhclo.h"
+#include "authoring/import/makehuman/mhskel.h"
+#include "authoring/import/makehuman/obj.h"
+#include "authoring/import/makehuman/prop_paint.h"
+#include "authoring/import/makehuman/skin_paint.h"
+#include "authoring/paint/teeth.h"
+#include "authoring/paint/uv_raster.h"
+#include "base/data_dir.h"
+#include "base/files.h"
+#include "base/status.h"
+#include "rig/rig_check.h"
+#include "rig/rig_file.h"
+#include "wrinkle/solver/solver.h"
+
+namespace furrow::character {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kMetresPerUnit = 0.1f;  // MakeHuman's unit is the decimetre
+
+// The one importer run: reads, fits, cuts and paints, in that order.
+class MakeHumanImport {
+ public:
+  MakeHumanImport(const fs::path& folder, const ImportOptions& options)
+      : folder_(folder), options_(options) {}
+
+  Result<Character> Run(ImportReport* report) {
+    if (options_.texture_size < 64 || options_.texture_size > 4096)
+      return Status(StatusCode::kInvalidArgument, "texture_size is not in [64, 4096]");
+    character_.name = "makehuman";
+    using Step = Status (MakeHumanImport::*)();
+    for (const Step step : {&MakeHumanImport::ReadBase, &MakeHumanImport::ReadGarment,
+                            &MakeHumanImport::ReadRig, &MakeHumanImport::BuildBody,
+                            &MakeHumanImport::BuildGarment, &MakeHumanImport::BakeMaps}) {
+      FURROW_RETURN_IF_ERROR((this->*step)());
+    }
+    FinishReport();
+    if (report != nullptr) *report = std::move(report_);
+    return std::move(character_);
+  }
+
+ private:
+  Status ReadBase() {
+    const fs::path obj_path = folder_ / "3dobjs" / "base.obj";
+    const Result<std::string> obj_text = ReadFile(obj_path, kMaxTextFileBytes);
+    FURROW_RETURN_IF_ERROR(obj_text);
+    Result<ObjMesh> obj = ParseObj(*obj_text, obj_path.string());
+    FURROW_RETURN_IF_ERROR(obj);
+    base_.obj = std::move(*obj);
+    FURROW_RETURN_IF_ERROR(PlaceBase(obj_path));
+
+    const fs::path skeleton_path = folder_ / "rigs" / "default.mhskel";
+    const Result<std::string> skeleton_text = ReadFile(skeleton_path, kMaxTextFileBytes);
+    FURROW_RETURN_IF_ERROR(skeleton_text);
+    const Result<MhSkeleton> mh_skeleton = ParseMhskel(*skeleton_text, skeleton_path.string());
+    FURROW_RETURN_IF_ERROR(mh_skeleton);
+    Result<wrinkle::Skeleton> skeleton =
+        BuildSkeleton(*mh_skeleton, base_.positions, skeleton_path.string());
+    FURROW_RETURN_IF_ERROR(skeleton);
+    character_.skeleton = std::move(*skeleton);
+    for (const glm::mat4& model : character_.skeleton.rest_model())
+      character_.inverse_bind_matrices.push_back(glm::inverse(model));
+    const Result<FaceLandmarks> face = FindFaceLandmarks(character_.skeleton);
+    if (!face.ok()) return face.status().At(skeleton_path.string());
+    face_ = *face;
+
+    const fs::path weights_path = folder_ / "rigs" / "default_weights.mhw";
+    const Result<std::string> weights_text = ReadFile(weights_path, kMaxTextFileBytes);
+    FURROW_RETURN_IF_ERROR(weights_text);
+    const Result<MhWeights> weights = ParseMhw(*weights_text, weights_path.string());
+    FURROW_RETURN_IF_ERROR(weights);
+    Result<SkinWeights> skin =
+        BindBaseMesh(*weights, character_.skeleton, base_.positions.size(), weights_path.string());
+    FURROW_RETURN_IF_ERROR(skin);
+    base_.skin = std::move(*skin);
+    return {};
+  }
+
+  // Metres, with the body's lowest point (not the helpers': a skirt may hang lower) on the ground.
+  Status PlaceBase(const fs::path& path) {
+    const std::vector<std::uint32_t> body = FacesOf(base_.obj, "body");
+    if (body.empty())
+      return Status(StatusCode::kSchema, "has no group 'body'", path.string(),
+                    "is it MakeHuman's base mesh?");
+    float ground = base_.obj.positions[base_.obj.corners[0].position].y;
+    for (const std::uint32_t f : body) {
+      const ObjMesh::Face& face = base_.obj.faces[f];
+      for (std::size_t i = 0; i < face.num_corners; ++i)
+        ground = std::min(ground,
+                          base_.obj.positions[base_.obj.corners[face.first_corner + i].position].y);
+    }
+    base_.positions = base_.obj.positions;
+    for (glm::vec3& p : base_.positions) p = (p - glm::vec3(0.0f, ground, 0.0f)) * kMetresPerUnit;
+    return {};
+  }
+
+  // The garment's folder: the one that was asked for, or the first.
+  Result<fs::path> FindGarment() {
+    const fs::path clothes = folder_ / "clothes";
+    if (!options_.clothes.empty())
+      return clothes / options_.clothes / (options_.clothes + ".mhclo");
+    std::vector<fs::path> found;
+    std::error_code error;
+    for (fs::directory_iterator it(clothes, error), end; !error && it != end; it.increment(error)) {
+      const fs::path file = it->path() / (it->path().filename().string() + ".mhclo");
+      std::error_code ignored;
+      if (fs::is_regular_file(file, ignored)) found.push_back(file);
+    }
+    if (found.empty()) return fs::path();
+    return *std::min_element(found.begin(), found.end());
+  }
+
+  Status ReadGarment() {
+    const Result<fs::path> path = FindGarment();
+    FURROW_RETURN_IF_ERROR(path);
+    if (path->empty()) {
+      report_.warnings.push_back((folder_ / "clothes").string() +
+                                 " holds no clothes: the body is bare");
+      return {};
+    }
+    const Result<std::string> text = ReadFile(*path, kMaxTextFileBytes);
+    FURROW_RETURN_IF_ERROR(text);
+    Result<Mhclo> garment = ParseMhclo(*text, path->string(), base_.positions.size());
+    FURROW_RETURN_IF_ERROR(garment);
+    const fs::path obj_path = path->parent_path() / garment->obj_file;
+    const Result<std::string> obj_text = ReadFile(obj_path, kMaxTextFileBytes);
+    FURROW_RETURN_IF_ERROR(obj_text);
+    Result<ObjMesh> obj = ParseObj(*obj_text, obj_path.string());
+    FURROW_RETURN_IF_ERROR(obj);
+    if (obj->positions.size() != garment->vertices.size())
+      return Status(StatusCode::kSchema,
+                    "fits " + std::to_string(garment->vertices.size()) + " vertices, but " +
+                        garment->obj_file + " has " + std::to_string(obj->positions.size()),
+                    path->string());
+    garment_ = std::move(*garment);
+    garment_obj_ = std::move(*obj);
+    return {};
+  }
+
+  Status ReadRig() {
+    fs::path path = options_.rig;
+    if (path.empty()) {
+      Result<fs::path> found = FindDataFile("rigs/makehuman.json");
+      FURROW_RETURN_IF_ERROR(found);
+      path = std::move(*found);
+    }
+    const Result<std::string> text = ReadFile(path, kMaxTextFileBytes);
+    FURROW_RETURN_IF_ERROR(text);
+    Result<wrinkle::Rig> rig =
+        ParseRig(*text, path.string(), folder_ / "poseunits", options_.poses);
+    FURROW_RETURN_IF_ERROR(rig);
+    const Result<wrinkle::RigBinding> binding =
+        wrinkle::RigBinding::Create(*rig, character_.skeleton, {});
+    if (!binding.ok()) return binding.status().At(path.string());
+    character_.rig = std::move(*rig);
+    return {};
+  }
+
+  Status BuildBody() {
+    const int size = options_.texture_size;
+    Material skin{.name = "skin", .kind = Material::Kind::kSkin, .roughness = 0.5f};
+    character_.meshes.push_back(BuildSkin(base_, character_.skeleton,
+                                          garment_ ? garment_->deleted : std::vector<bool>(), 0,
+                                          &report_.hidden_faces));
+    const std::vector<paint::Texel> texels =
+        paint::RasterizeUv(character_.meshes.back(), size, size);
+    skin.base_colour_texture = AddPicture(PaintSkinColour(texels, face_, size));
+    skin.normal_texture = AddPicture(PaintSkinNormals(texels, face_, size));
+    character_.materials.push_back(skin);
+    FaceMasks masks = PaintFaceMasks(texels, face_, size);
+    AddPicture(std::move(masks.first));
+    AddPicture(std::move(masks.second));
+    strokes_ = FaceStrokes(face_, texels);
+    BuildEyes();
+    BuildMouth();
+    BuildHairAndLashes();
+    return {};
+  }
+
+  void BuildEyes() {
+    Material material{.name = "eye", .kind = Material::Kind::kEye, .roughness = 0.12f};
+    material.base_colour_texture = AddPicture(PaintEye(std::max(options_.texture_size / 2, 64)));
+    const int index = AddMaterial(material);
+    constexpr const char* kGroups[2] = {"helper-l-eye", "helper-r-eye"};
+    constexpr const char* kJoints[2] = {"eye.L", "eye.R"};
+    for (std::size_t s = 0; s < 2; ++s) {
+      const FaceLandmarks::Side& side = face_.sides[s];
+      const glm::vec3 sight = side.pupil - side.eye;
+      const glm::vec3 forward =
+          glm::length(sight) > 1e-6f ? glm::normalize(sight) : glm::vec3(0.0f, 0.0f, 1.0f);
+      AddPart(BuildEye(base_, kGroups[s], character_.skeleton.Find(kJoints[s]), forward, index));
+    }
+  }
+
+  void BuildHairAndLashes() {
+    Material hair{.name = "hair", .kind = Material::Kind::kHair, .roughness = 0.45f};
+    hair.double_sided = true;
+    hair.base_colour_texture = AddPicture(PaintHair(std::max(options_.texture_size / 2, 64)));
+    const Mesh& skin = character_.meshes.front();
+    AddPart(BuildHair(skin, face_, AddMaterial(hair)));
+    Material lashes{.name = "lashes", .kind = Material::Kind::kHair, .roughness = 0.6f};
+    lashes.double_sided = true;
+    lashes.alpha_cutoff = kLashCutoff;
+    lashes.base_colour_texture = AddPicture(PaintLashes(std::max(options_.texture_size / 2, 64)));
+    const int material = AddMaterial(lashes);
+    for (int s = 0; s < 2; ++s) {
+      const std::string group = s == 0 ? "helper-l-eyelashes-" : "helper-r-eyelashes-";
+      AddPart(BuildLashes(base_, group + "1", face_.sides[s].eye, 0.6f, material));
+      AddPart(BuildLashes(base_, group + "2", face_.sides[s].eye, 1.0f, material));
+    }
+  }
+
+  void BuildMouth() {
+    Material teeth{.name = "teeth", .roughness = 0.3f};
+    teeth.base_colour_texture =
+        AddPicture(paint::PaintTeeth(0.1f, std::max(options_.texture_size / 2, 64)));
+    const int material = AddMaterial(teeth);
+    AddPart(BuildTeeth(base_, "helper-upper-teeth", true, material));
+    AddPart(BuildTeeth(base_, "helper-lower-teeth", false, material));
+    const int tongue = AddMaterial(
+        {.name = "tongue", .base_colour = glm::vec4(0.20f, 0.05f, 0.05f, 1.0f), .roughness = 0.5f});
+    AddPart(BuildHelper(base_, "helper-tongue", tongue));
+  }
+
+  Status BuildGarment() {
+    if (!garment_) return {};
+    const std::vector<glm::vec3> positions = FitGarment(*garment_, base_.positions);
+    for (const glm::vec3& p : positions) {
+      constexpr float kFar = 100.0f;  // metres
+      if (!(glm::length(p) < kFar))
+        return Status(StatusCode::kInvalidArgument,
+                      "the garment '" + garment_->name + "' lies 100 m away from the body",
+                      garment_->obj_file, "are its scales and offsets right?");
+    }
+    const SkinWeights skin = BindGarment(*garment_, base_.skin);
+    std::vector<std::uint32_t> faces(garment_obj_.faces.size());
+    for (std::uint32_t f = 0; f < faces.size(); ++f) faces[f] = f;
+    const std::vector<glm::vec3> normals = SmoothNormals(garment_obj_, positions, faces);
+    MeshSource source;
+    source.obj = &garment_obj_;
+    source.positions = positions;
+    source.normals = normals;
+    source.influences = skin.vertices;
+    source.faces = std::move(faces);
+    const int size = options_.texture_size;
+    Mesh mesh = BuildMesh("clothes", 0, source);
+    const std::vector<paint::Texel> texels = paint::RasterizeUv(mesh, size, size);
+    Material cloth{.name = "cloth", .kind = Material::Kind::kCloth, .roughness = 0.85f};
+    cloth.double_sided = true;  // cuffs and collars show their inside
+    cloth.base_colour_texture = AddPicture(PaintCloth(texels, Waist(), size));
+    cloth.normal_texture = AddPicture(PaintWeaveNormals(texels, size));
+    mesh.material = AddMaterial(cloth);
+    AddPart(std::move(mesh));
+    report_.unweighted_vertices += skin.unweighted;
+    report_.truncated_vertices += skin.truncated;
+    return {};
+  }
+
+  // Where the spine leaves the pelvis; half the body's height where there is no such joint.
+  float Waist() const {
+    const int joint = character_.skeleton.Find("spine04");
+    if (joint == wrinkle::kNoJoint) return 0.5f * face_.crown.y;
+    return character_.skeleton.rest_model()[static_cast<std::size_t>(joint)][3].y;
+  }
+
+  // Wrinkle maps: strokes where the face's folds are known, strain elsewhere and on the cloth.
+  Status BakeMaps() {
+    for (const wrinkle::Region& region : character_.rig.regions) UsePicture(region.mask.texture);
+    // A rig of another's making may do without the face's maps.
+    std::erase_if(strokes_, [this](const bake::BakeStroke& stroke) {
+      const auto& maps = character_.rig.wrinkle_maps;
+      return std::none_of(maps.begin(), maps.end(), [&](const wrinkle::WrinkleMap& map) {
+        return map.name == stroke.maps.front();
+      });
+    });
+    const Result<bake::PosesToBake> poses = bake::PosesOf(character_);
+    FURROW_RETURN_IF_ERROR(poses);
+    bake::BakeOptions options;
+    options.size = static_cast<int>(std::bit_floor(static_cast<unsigned>(options_.texture_size)));
+    // Joints that only turn squeeze the cheeks more than muscles do: little of it is believed.
+    options.skin.share = 0.2f;
+    options.skin.max_compression = 0.3f;
+    options.skin.threshold = 0.08f;
+    const Result<bake::BakedMaps> baked =
+        bake::Bake(character_, poses->poses, strokes_, options, options_.progress);
+    FURROW_RETURN_IF_ERROR(baked);
+    for (wrinkle::WrinkleMap& map : character_.rig.wrinkle_maps) {
+      for (const bake::BakedMap& from : baked->maps) {
+        if (from.map != map.name) continue;
+        Result<std::vector<Picture>> pictures = bake::PicturesOf(from, map);
+        FURROW_RETURN_IF_ERROR(pictures);
+        for (Picture& picture : *pictures) AddPicture(std::move(picture));
+      }
+      for (const std::string* name :
+           {&map.normal, &map.derivative, &map.height, &map.colour, &map.cavity}) {
+        UsePicture(*name);
+      }
+    }
+    return {};
+  }
+
+  // A picture that the rig names is one of those made here.
+  void UsePicture(const std::string& name) {
+    if (name.empty() || character_.FindRigPicture(name) >= 0) return;
+    for (std::size_t i = 0; i < character_.pictures.size(); ++i) {
+      if (character_.pictures[i].name != name) continue;
+      character_.rig_pictures.emplace_back(name, static_cast<int>(i));
+      return;
+    }
+    report_.warnings.push_back("the rig names the picture '" + name +
+                               "', which this import does not make");
+  }
+
+  void FinishReport() {
+    report_.joints = character_.skeleton.num_joints();
+    report_.unweighted_vertices += base_.skin.unweighted;
+    report_.truncated_vertices += base_.skin.truncated;
+    for (const Mesh& mesh : character_.meshes) {
+      report_.vertices += static_cast<int>(mesh.vertices.size());
+      report_.triangles += static_cast<int>(mesh.indices.size() / 3);
+    }
+    if (report_.unweighted_vertices > 0)
+      report_.warnings.push_back(std::to_string(report_.unweighted_vertices) +
+                                 " vertices have no weights and follow the root joint");
+  }
+
+  // A part that the folder lacks is left out, and said.
+  void AddPart(Mesh mesh) {
+    if (mesh.indices.empty()) {
+      report_.warnings.push_back("base.obj has no group '" + mesh.name + "': left out");
+      return;
+    }
+    character_.meshes.push_back(std::move(mesh));
+  }
+
+  int AddMaterial(Material material) {
+    character_.materials.push_back(std::move(material));
+    return static_cast<int>(character_.materials.size()) - 1;
+  }
+
+  int AddPicture(Picture picture) {
+    character_.pictures.push_back(std::move(picture));
+    return static_cast<int>(character_.pictures.size()) - 1;
+  }
+
+  fs::path folder_;
+  const ImportOptions& options_;
+  BaseMesh base_;
+  std::optional<Mhclo> garment_;
+  ObjMesh garment_obj_;
+  FaceLandmarks face_;
+  std::vector<bake::BakeStroke> strokes_;
+  Character character_;
+  ImportReport report_;
+};
+
+}  // namespace
+
+Result<Character> ImportMakeHuman(const fs::path& folder, const ImportOptions& options,
+                                  ImportReport* report) {
+  return MakeHumanImport(folder, options).Run(report);
+}
+
+Status WritePackage(const Character& character, const fs::path& glb) {
+  fs::path rig = glb;
+  rig.replace_extension(".rig.json");
+  if (const Status s = CheckRig(character.rig); !s.ok()) {
+    return {s.code(), s.what(), rig.string() + ": " + s.where(), s.todo()};
+  }
+  const Result<std::string> bytes = CharacterGlb(character);
+  if (!bytes.ok()) {
+    const Status s = bytes.status();
+    return {s.code(), s.what(), glb.string() + (s.where().empty() ? "" : ": " + s.where()),
+            s.todo()};
+  }
+  const std::string json = RigToJson(character.rig);
+  const FileToWrite files[] = {{glb, *bytes}, {rig, json}};
+  return WriteFilesAtomically(files);
+}
+
+}  // namespace furrow::character

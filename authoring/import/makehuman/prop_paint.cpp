@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/import/makehuman/prop_paint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "authoring/paint/canvas.h"
+#include "authoring/paint/noise.h"
+
+namespace furrow::character {
+namespace {
+
+using paint::Texel;
+
+constexpr int kDilation = 16;
+
+void Put(Picture* picture, int x, int y, const glm::vec3& colour) {
+  std::uint8_t* out = paint::TexelAt(picture, x, y);
+  for (int c = 0; c < 3; ++c) out[c] = paint::ToByte(colour[c]);
+}
+
+Picture Filled(const char* name, int size, const glm::vec3& fill) {
+  Picture picture = paint::BlankPicture(name, size, size, 3);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) Put(&picture, x, y, fill);
+  }
+  return picture;
+}
+
+// Angles of an adult eye of 12 mm radius with an iris 11.7 mm across.
+constexpr float kIris = 0.509f;
+constexpr float kPupil = 0.17f;
+
+glm::vec3 EyeColour(float angle, float around) {
+  constexpr glm::vec3 kWhite{0.86f, 0.84f, 0.81f};
+  constexpr glm::vec3 kVeins{0.80f, 0.62f, 0.58f};
+  constexpr glm::vec3 kRim{0.10f, 0.10f, 0.12f};
+  constexpr glm::vec3 kOuter{0.22f, 0.30f, 0.34f};
+  constexpr glm::vec3 kInner{0.42f, 0.40f, 0.28f};
+  const glm::vec3 ring(std::cos(around), std::sin(around), 0.0f);
+  const float veins = ValueNoise(glm::vec3(ring * 9.0f) + glm::vec3(0.0f, 0.0f, angle * 6.0f));
+  const float redness = glm::smoothstep(0.6f, 1.3f, angle) * (0.35f + 0.4f * veins);
+  const glm::vec3 white = glm::mix(kWhite, kVeins, redness);
+  const float fibres = ValueNoise(ring * 24.0f + glm::vec3(0.0f, 0.0f, angle * 5.0f));
+  const float out = std::clamp((angle - kPupil) / (kIris - kPupil), 0.0f, 1.0f);
+  glm::vec3 iris = glm::mix(kInner, kOuter, glm::smoothstep(0.1f, 0.6f, out));
+  iris *= 0.75f + 0.5f * fibres;
+  iris = glm::mix(iris, kRim, glm::smoothstep(0.72f, 1.0f, out));
+  glm::vec3 colour = glm::mix(iris, white, glm::smoothstep(kIris - 0.03f, kIris + 0.03f, angle));
+  return glm::mix(glm::vec3(0.015f), colour,
+                  glm::smoothstep(kPupil - 0.015f, kPupil + 0.015f, angle));
+}
+
+// One crossing thread every 1.4 mm would alias at texture sizes of a whole body: the weave is drawn
+// at 3 mm, which reads as a coarse twill.
+float Weave(const glm::vec3& p) {
+  constexpr float kThread = 2.0f * std::numbers::pi_v<float> / 0.003f;
+  return 0.5f + 0.25f * std::sin(kThread * (p.x + p.z + 0.5f * p.y)) +
+         0.25f * std::sin(kThread * (p.x + p.z - p.y));
+}
+
+template <class Height>
+glm::vec2 Slope(const Texel& texel, float step, const Height& height) {
+  const auto along = [&](const glm::vec3& axis) {
+    return (height(texel.position + axis * step) - height(texel.position - axis * step)) /
+           (2.0f * step);
+  };
+  return {-along(texel.tangent), -along(texel.bitangent)};
+}
+
+}  // namespace
+
+Picture PaintEye(int size) {
+  Picture picture = paint::BlankPicture("eye_colour", size, size, 3);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const glm::vec2 p = (glm::vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) /
+                              (0.5f * static_cast<float>(size)) -
+                          1.0f;
+      Put(&picture, x, y, EyeColour(glm::length(p) * kEyePictureAngle, std::atan2(p.y, p.x)));
+    }
+  }
+  return picture;
+}
+
+Picture PaintCloth(const std::vector<Texel>& texels, float waist, int size) {
+  constexpr glm::vec3 kShirt{0.42f, 0.46f, 0.50f};
+  constexpr glm::vec3 kTrousers{0.20f, 0.22f, 0.27f};
+  Picture picture = Filled("cloth_colour", size, kShirt);
+  for (const Texel& texel : texels) {
+    const float above = glm::smoothstep(waist - 0.004f, waist + 0.004f, texel.position.y);
+    const float worn = ValueNoise(texel.position / 0.06f) - 0.5f;
+    const glm::vec3 colour =
+        glm::mix(kTrousers, kShirt, above) * (0.92f + 0.12f * Weave(texel.position) + 0.08f * worn);
+    Put(&picture, texel.x, texel.y, colour);
+  }
+  paint::Dilate(&picture, texels, kDilation);
+  return picture;
+}
+
+Picture PaintWeaveNormals(const std::vector<Texel>& texels, int size) {
+  Picture picture = Filled("cloth_normal", size, glm::vec3(0.5f, 0.5f, 1.0f));
+  for (const Texel& texel : texels) {
+    const glm::vec2 slope =
+        Slope(texel, 0.0004f, [](const glm::vec3& p) { return 0.00012f * Weave(p); });
+    Put(&picture, texel.x, texel.y, glm::normalize(glm::vec3(slope, 1.0f)) * 0.5f + 0.5f);
+  }
+  paint::Dilate(&picture, texels, kDilation);
+  return picture;
+}
+
+}  // namespace furrow::character

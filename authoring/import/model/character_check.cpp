@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/import/model/character_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "authoring/bake/surface/uv_check.h"
+#include "authoring/import/model/face_frame.h"
+#include "character/rig_report.h"
+
+namespace furrow::character {
+namespace {
+
+using wrinkle::JointRole;
+using wrinkle::kNoJoint;
+
+std::string Count(std::size_t n, const char* one, const char* many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+std::string Number(float value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", static_cast<double>(value));
+  return text;
+}
+
+bool IsDegenerate(const Mesh& mesh, std::size_t triangle) {
+  const glm::vec3& a = mesh.vertices[mesh.indices[triangle]].position;
+  const glm::vec3& b = mesh.vertices[mesh.indices[triangle + 1]].position;
+  const glm::vec3& c = mesh.vertices[mesh.indices[triangle + 2]].position;
+  const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+  return !(glm::length(glm::cross(b - a, c - a)) > 1e-6f * longest * longest);
+}
+
+class Checker {
+ public:
+  Checker(const Character& character, const SourceNotes& notes, bool rig_given)
+      : character_(character), notes_(notes), rig_given_(rig_given) {}
+
+  CharacterReport Run(const SkeletonMaps& maps) {
+    report_.name = character_.name;
+    report_.joints = FindJoints(character_.skeleton, maps);
+    report_.space = FindCharacterSpace(character_, report_.joints);
+    report_.face_joints = FaceJoints(character_.skeleton, report_.joints).size();
+    CountAll();
+    CheckMeshes();
+    CheckAtlases();
+    CheckPictures();
+    CheckSpace();
+    CheckJoints();
+    CheckRig();
+    std::stable_sort(report_.findings.begin(), report_.findings.end(),
+                     [](const Finding& a, const Finding& b) { return a.severity < b.severity; });
+    return std::move(report_);
+  }
+
+ private:
+  void Find(Severity severity, const char* code, std::string where, std::string what,
+            std::string todo = {}) {
+    report_.findings.push_back(
+        {severity, code, std::move(where), std::move(what), std::move(todo)});
+  }
+
+  void CountAll() {
+    std::size_t vertices = 0;
+    std::size_t triangles = 0;
+    for (const Mesh& mesh : character_.meshes) {
+      vertices += mesh.vertices.size();
+      triangles += mesh.indices.size() / 3;
+    }
+    report_.counts = {{"joints", static_cast<std::size_t>(character_.skeleton.num_joints())},
+                      {"meshes", character_.meshes.size()},
+                      {"vertices", vertices},
+                      {"triangles", triangles},
+                      {"materials", character_.materials.size()},
+                      {"pictures", character_.pictures.size()},
+                      {"regions", character_.rig.regions.size()},
+                      {"wrinkle maps", character_.rig.wrinkle_maps.size()}};
+  }
+
+  void CheckMeshes() {
+    const bool skinned = std::any_of(notes_.meshes.begin(), notes_.meshes.end(),
+                                     [](const MeshNotes& mesh) { return mesh.skinned; });
+    if (!skinned) {
+      Find(Severity::kError, "no-skin", {}, "no mesh is skinned: nothing bends, nothing folds",
+           "bind the mesh to its skeleton and export both");
+    }
+    int morph_targets = 0;
+    for (std::size_t m = 0; m < notes_.meshes.size(); ++m) {
+      CheckMesh(character_.meshes[m], notes_.meshes[m]);
+      morph_targets += notes_.meshes[m].morph_targets;
+    }
+    if (morph_targets > 0) {
+      Find(Severity::kNote, "blend-shapes", {},
+           Count(morph_targets, "blend shape is", "blend shapes are") + " not carried",
+           "drive wrinkles by the tracker's coefficients with the rig 'arkit', or add face joints");
+    }
+  }
+
+  void CheckMesh(const Mesh& mesh, const MeshNotes& notes) {
+    const std::string where = "mesh '" + mesh.name + "'";
+    if (!notes.has_uvs) {
+      Find(Severity::kError, "uv-missing", where, "there are no UVs, so no map can lie on it",
+           "unwrap it without overlaps");
+    }
+    if (notes.unskinned_vertices > 0) {
+      Find(Severity::kError, "unskinned-vertices", where,
+           Count(notes.unskinned_vertices, "vertex follows", "vertices follow") + " no joint",
+           "bind every vertex, or import with --repair: they follow their neighbours then");
+    }
+    if (const std::size_t flat = CountDegenerateTriangles(mesh); flat > 0) {
+      Find(Severity::kError, "degenerate-triangles", where,
+           Count(flat, "triangle has", "triangles have") + " no area",
+           "merge doubled vertices, or import with --repair: they are left out then");
+    }
+    if (notes.unnormalised_vertices > 0) {
+      Find(Severity::kWarning, "weights-sum", where,
+           "the skin weights of " + Count(notes.unnormalised_vertices, "vertex do", "vertices do") +
+               " not sum to 1 (the worst: " + Number(notes.worst_sum) + ")",
+           "normalise the weights: they are scaled here, and bend otherwise than in the tool");
+    }
+    if (!notes.has_normals) {
+      Find(Severity::kWarning, "normals-missing", where,
+           "there are no normals: they are computed, and hard edges are lost",
+           "export with normals");
+    }
+    if (notes.truncated_vertices > 0) {
+      Find(Severity::kNote, "weights-truncated", where,
+           Count(notes.truncated_vertices, "vertex has", "vertices have") +
+               " more than four joints: the strongest four count");
+    }
+    if (!notes.has_tangents && notes.has_uvs) {
+      Find(Severity::kNote, "tangents-missing", where,
+           "there are no tangents: they are computed from the UVs");
+    }
+  }
+
+  // Meshes of one material share their pictures, and so their UVs' space.
+  void CheckAtlases() {
+    std::map<int, std::vector<int>> meshes_of;
+    for (std::size_t m = 0; m < character_.meshes.size(); ++m) {
+      if (m < notes_.meshes.size() && !notes_.meshes[m].has_uvs) continue;
+      meshes_of[character_.meshes[m].material].push_back(static_cast<int>(m));
+    }
+    for (const auto& [material, meshes] : meshes_of) {
+      const Material* known =
+          material < 0 ? nullptr : &character_.materials[static_cast<std::size_t>(material)];
+      const bool wrinkles = known != nullptr && (known->kind == Material::Kind::kSkin ||
+                                                 known->kind == Material::Kind::kCloth);
+      if (wrinkles) CheckAtlas("material '" + known->name + "'", meshes);
+    }
+  }
+
+  void CheckAtlas(const std::string& where, const std::vector<int>& meshes) {
+    const bake::UvReport uvs = bake::CheckUvs(character_, meshes);
+    if (uvs.no_uvs()) {
+      Find(Severity::kError, "uv-missing", where, "all UVs lie in one place",
+           "unwrap it without overlaps");
+    } else if (uvs.unmapped_triangles > 0) {
+      Find(Severity::kWarning, "uv-flat", where,
+           Count(uvs.unmapped_triangles, "triangle has", "triangles have") + " no area in the UVs",
+           "unwrap them, too");
+    }
+    if (uvs.overlapping > bake::kTolerableUvOverlap) {
+      const std::string place = uvs.example ? ", first at u " + Number(uvs.example->uv.x) + ", v " +
+                                                  Number(uvs.example->uv.y) + " (v down)"
+                                            : std::string();
+      Find(Severity::kWarning, "uv-overlap", where,
+           Number(100.0f * uvs.overlapping) + " % of the UVs' area is used twice" + place,
+           "give mirrored or stacked parts UVs of their own: a bake refuses them");
+    }
+    if (uvs.outside_triangles > 0) {
+      Find(Severity::kNote, "uv-outside", where,
+           Count(uvs.outside_triangles, "triangle lies", "triangles lie") +
+               " outside the unit square of the UVs and wraps round");
+    }
+  }
+
+  void CheckPictures() {
+    for (const std::string& missing : notes_.missing_pictures) {
+      Find(Severity::kWarning, "picture-missing", {}, "the picture " + missing,
+           "put it beside the file as PNG or JPEG, or embed it");
+    }
+  }
+
+  void CheckSpace() {
+    const CharacterSpace& space = report_.space;
+    if (!space.axes.empty() && space.rotation != glm::mat3(1.0f)) {
+      Find(Severity::kWarning, "up-axis", {}, "the character stands " + space.axes,
+           "+Y up, facing +Z is due: import turns it");
+    }
+    if (space.scale != 1.0f) {
+      Find(Severity::kWarning, "units", {},
+           std::string("a ") + (space.is_body ? "body " : "head ") + Number(space.height) +
+               " m high: the unit is probably " + Number(space.scale) + " m",
+           "import scales it to " + Number(space.height * space.scale) +
+               " m, or by --scale; depths of folds are in metres");
+    }
+  }
+
+  void CheckJoints() {
+    if (notes_.nameless_joints > 0) {
+      Find(Severity::kWarning, "joint-names", {},
+           Count(notes_.nameless_joints, "joint has", "joints have") + " no name",
+           "poses find their joints by name: name them before exporting");
+    }
+    if (report_.joints.num_roles == 0) {
+      Find(Severity::kWarning, "no-roles", {},
+           "neither names nor hierarchy tell which joint is an arm, a leg or the head",
+           "write a skeleton map (docs/SKELETONS.md), or a rig by hand (docs/RIG.md)");
+      return;
+    }
+    std::string missing;
+    for (const JointRole role :
+         {JointRole::kHips, JointRole::kSpine, JointRole::kNeck, JointRole::kHead,
+          JointRole::kLeftUpperArm, JointRole::kLeftLowerArm, JointRole::kLeftUpperLeg,
+          JointRole::kLeftLowerLeg}) {
+      for (const JointRole side : {role, wrinkle::MirrorOf(role)}) {
+        if (report_.joints.First(side) == kNoJoint) {
+          missing += (missing.empty() ? "" : ", ") + std::string(wrinkle::ToString(side));
+        }
+        if (side == wrinkle::MirrorOf(role)) break;
+      }
+    }
+    if (!missing.empty()) {
+      Find(Severity::kNote, "roles-missing", {}, "no joint is the " + missing,
+           "their clothing regions have nothing to drive them");
+    }
+    if (report_.face_joints == 0) {
+      Find(Severity::kNote, "no-face-joints", {}, "there are no joints of the face",
+           "facial wrinkles then need a tracker's blend shapes: rig 'arkit'");
+    }
+  }
+
+  void CheckRig() {
+    if (!rig_given_) {
+      Find(Severity::kNote, "no-rig", {}, "no wrinkle rig: no regions, no poses, no wrinkles",
+           "furrow character propose-rig writes one to start from");
+      return;
+    }
+    std::vector<std::string> embedded;
+    for (const Picture& picture : character_.pictures) embedded.push_back(picture.name);
+    RigReportOptions options;
+    options.skeleton = &character_.skeleton;
+    options.folder = character_.folder;
+    options.embedded_pictures = embedded;
+    const RigReport rig = ReportOnRig(character_.rig, options);
+    if (!rig.binding.ok()) {
+      Find(Severity::kError, "rig-binding", rig.binding.where(), rig.binding.what(),
+           rig.binding.todo());
+    }
+    for (const std::string& warning : rig.warnings) Find(Severity::kWarning, "rig", "rig", warning);
+    for (const wrinkle::WrinkleMap& map : character_.rig.wrinkle_maps) {
+      if (!map.normal.empty() || !map.derivative.empty()) continue;
+      Find(Severity::kWarning, "rig-picture", "wrinkle map '" + map.name + "'",
+           "it has no picture, so it shows nothing", "furrow bake makes it");
+    }
+  }
+
+  const Character& character_;
+  const SourceNotes& notes_;
+  const bool rig_given_;
+  CharacterReport report_;
+};
+
+}  // namespace
+
+const char* ToString(Severity severity) {
+  constexpr std::array kNames = {"error", "warning", "note"};
+  return kNames[static_cast<std::size_t>(severity)];
+}
+
+std::size_t CharacterReport::Count(Severity severity) const {
+  return static_cast<std::size_t>(
+      std::count_if(findings.begin(), findings.end(),
+                    [&](const Finding& finding) { return finding.severity == severity; }));
+}
+
+CharacterReport CheckCharacter(const Character& character, const SourceNotes& notes,
+                               const SkeletonMaps& maps, bool rig_given) {
+  return Checker(character, notes, rig_given).Run(maps);
+}
+
+std::size_t CountDegenerateTriangles(const Mesh& mesh) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) count += IsDegenerate(mesh, i);
+  return count;
+}
+
+std::size_t DropDegenerateTriangles(Mesh* mesh) {
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0; i + 2 < mesh->indices.size(); i += 3) {
+    if (IsDegenerate(*mesh, i)) continue;
+    kept.insert(kept.end(), mesh->indices.begin() + static_cast<std::ptrdiff_t>(i),
+                mesh->indices.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+  }
+  const std::size_t dropped = (mesh->indices.size() - kept.size()) / 3;
+  mesh->indices = std::move(kept);
+  return dropped;
+}
+
+}  // namespace furrow::character

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/import/model/character_space.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+
+#include "base/status.h"
+
+namespace furrow::character {
+namespace {
+
+using wrinkle::JointRole;
+using wrinkle::kNoJoint;
+
+glm::vec3 At(const wrinkle::Skeleton& skeleton, int joint) {
+  return glm::vec3(skeleton.rest_model()[static_cast<std::size_t>(joint)][3]);
+}
+
+// From the subject's right to its left, over all pairs that there are; zero for none.
+glm::vec3 Across(const wrinkle::Skeleton& skeleton, const FoundJoints& joints) {
+  glm::vec3 sum(0.0f);
+  for (const JointRole left : {JointRole::kLeftUpperLeg, JointRole::kLeftUpperArm,
+                               JointRole::kLeftShoulder, JointRole::kLeftEye}) {
+    const int l = joints.First(left);
+    const int r = joints.First(wrinkle::MirrorOf(left));
+    if (l != kNoJoint && r != kNoJoint) sum += At(skeleton, l) - At(skeleton, r);
+  }
+  return sum;
+}
+
+glm::vec3 Up(const wrinkle::Skeleton& skeleton, const FoundJoints& joints) {
+  constexpr std::array kTrunk = {JointRole::kHips,       JointRole::kSpine, JointRole::kChest,
+                                 JointRole::kUpperChest, JointRole::kNeck,  JointRole::kHead};
+  int lowest = kNoJoint;
+  int highest = kNoJoint;
+  for (const JointRole role : kTrunk) {
+    const int joint = joints.First(role);
+    if (joint == kNoJoint) continue;
+    if (lowest == kNoJoint) lowest = joint;
+    highest = joint;
+  }
+  return lowest == highest ? glm::vec3(0.0f) : At(skeleton, highest) - At(skeleton, lowest);
+}
+
+int LargestComponent(const glm::vec3& v, int except) {
+  int largest = except == 0 ? 1 : 0;
+  for (int i = 0; i < 3; ++i) {
+    if (i != except && std::abs(v[i]) > std::abs(v[largest])) largest = i;
+  }
+  return largest;
+}
+
+std::string AxisName(const glm::vec3& v) {
+  const int axis = LargestComponent(v, -1);
+  return std::string(1, v[axis] < 0.0f ? '-' : '+') + "XYZ"[axis];
+}
+
+// The unit that brings `height` nearest to that of a person, where it is out of all proportion.
+float UsualScale(float height, bool is_body) {
+  const float usual = is_body ? 1.7f : 0.3f;
+  if (height > usual / 3.5f && height < usual * 3.0f) return 1.0f;
+  constexpr std::array kUnits = {0.001f, 0.01f, 0.0254f, 0.1f, 0.3048f, 10.0f, 100.0f};
+  return *std::min_element(kUnits.begin(), kUnits.end(), [&](float a, float b) {
+    return std::abs(std::log(height * a / usual)) < std::abs(std::log(height * b / usual));
+  });
+}
+
+// Where a vertex stands in the rest pose, as a matrix on its position.
+glm::mat4 RestMatrix(const Vertex& vertex, std::span<const glm::mat4> skin_matrices) {
+  glm::mat4 blend(0.0f);
+  for (int i = 0; i < 4; ++i) {
+    if (vertex.skin_weights[i] > 0.0f) {
+      blend += skin_matrices[vertex.joints[i]] * vertex.skin_weights[i];
+    }
+  }
+  return blend;
+}
+
+std::vector<glm::mat4> RestSkinMatrices(const Character& character) {
+  std::vector<glm::mat4> matrices;
+  for (std::size_t j = 0; j < character.inverse_bind_matrices.size(); ++j) {
+    matrices.push_back(character.skeleton.rest_model()[j] * character.inverse_bind_matrices[j]);
+  }
+  return matrices;
+}
+
+glm::vec3 UnitOr(const glm::vec3& v, const glm::vec3& otherwise) {
+  const float length = glm::length(v);
+  return length > 1e-12f ? v / length : otherwise;
+}
+
+void MoveVertex(const glm::mat4& m, const glm::mat3& normals, Vertex* vertex) {
+  vertex->position = glm::vec3(m * glm::vec4(vertex->position, 1.0f));
+  vertex->normal = UnitOr(normals * vertex->normal, vertex->normal);
+  const glm::vec3 tangent(vertex->tangent);
+  vertex->tangent = glm::vec4(UnitOr(glm::mat3(m) * tangent, tangent), vertex->tangent.w);
+}
+
+// The same joints with other positions in model space, turned by `turn`, without scales.
+Result<wrinkle::Skeleton> Rebuild(const wrinkle::Skeleton& from, const glm::mat3& turn,
+                                  float scale) {
+  const auto moved = [&](const glm::vec3& p) { return turn * p * scale; };
+  const glm::quat rotation = glm::quat_cast(turn);
+  std::vector<wrinkle::JointDesc> joints;
+  for (int j = 0; j < from.num_joints(); ++j) {
+    const int parent = from.joint_parents()[j];
+    const glm::mat4& model = from.rest_model()[static_cast<std::size_t>(j)];
+    const glm::quat axes = rotation * from.rest_model_rotations()[static_cast<std::size_t>(j)];
+    wrinkle::JointDesc joint{from.joint_names()[j], parent, from.rest_pose()[j], {}};
+    joint.rest.scale = glm::vec3(1.0f);
+    const glm::vec3 position = moved(glm::vec3(model[3]));
+    if (parent < 0) {
+      joint.rest.translation = position;
+      joint.rest.rotation = axes;
+    } else {
+      const glm::quat above =
+          rotation * from.rest_model_rotations()[static_cast<std::size_t>(parent)];
+      joint.rest.translation = glm::inverse(above) * (position - moved(At(from, parent)));
+    }
+    const glm::vec3 tail = glm::vec3(model * glm::vec4(from.tails()[j], 1.0f));
+    joint.tail = glm::inverse(axes) * (moved(tail) - position);
+    joints.push_back(std::move(joint));
+  }
+  return wrinkle::Skeleton::Create(std::move(joints));
+}
+
+bool IsNearIdentity(const glm::mat4& m) {
+  const glm::mat4 identity(1.0f);
+  for (int i = 0; i < 16; ++i) {
+    if (!(std::abs(glm::value_ptr(m)[i] - glm::value_ptr(identity)[i]) < 1e-5f)) return false;
+  }
+  return true;
+}
+
+Status ReplaceSkeleton(const glm::mat3& turn, float scale, Character* character) {
+  Result<wrinkle::Skeleton> skeleton = Rebuild(character->skeleton, turn, scale);
+  FURROW_RETURN_IF_ERROR(skeleton);
+  character->skeleton = std::move(*skeleton);
+  character->inverse_bind_matrices.clear();
+  for (const glm::mat4& rest : character->skeleton.rest_model()) {
+    character->inverse_bind_matrices.push_back(glm::inverse(rest));
+  }
+  return {};
+}
+
+}  // namespace
+
+CharacterSpace FindCharacterSpace(const Character& character, const FoundJoints& joints) {
+  CharacterSpace space;
+  space.is_body = joints.First(JointRole::kLeftUpperLeg) != kNoJoint ||
+                  joints.First(JointRole::kRightUpperLeg) != kNoJoint;
+  glm::vec3 up(0.0f, 1.0f, 0.0f);
+  const glm::vec3 trunk = Up(character.skeleton, joints);
+  const glm::vec3 across = Across(character.skeleton, joints);
+  if (glm::length(trunk) > 0.0f && glm::length(across) > 0.0f) {
+    glm::vec3 left(0.0f);
+    up = glm::vec3(0.0f);
+    const int up_axis = LargestComponent(trunk, -1);
+    const int left_axis = LargestComponent(across, up_axis);
+    up[up_axis] = trunk[up_axis] < 0.0f ? -1.0f : 1.0f;
+    left[left_axis] = across[left_axis] < 0.0f ? -1.0f : 1.0f;
+    const glm::vec3 forward = glm::cross(left, up);
+    space.rotation = glm::transpose(glm::mat3(left, up, forward));
+    space.axes = "up " + AxisName(up) + ", facing " + AxisName(forward);
+  }
+  const std::vector<glm::mat4> skin = RestSkinMatrices(character);
+  float low = std::numeric_limits<float>::max();
+  float high = std::numeric_limits<float>::lowest();
+  for (const Mesh& mesh : character.meshes) {
+    for (const Vertex& vertex : mesh.vertices) {
+      const glm::vec4 position(vertex.position, 1.0f);
+      const float along = glm::dot(glm::vec3(RestMatrix(vertex, skin) * position), up);
+      low = std::min(low, along);
+      high = std::max(high, along);
+    }
+  }
+  space.height = std::max(high - low, 0.0f);
+  if (space.height > 0.0f) space.scale = UsualScale(space.height, space.is_body);
+  return space;
+}
+
+Status MoveToSpace(const glm::mat3& rotation, float scale, Character* character) {
+  const glm::mat4 move(rotation * scale);
+  for (Mesh& mesh : character->meshes) {
+    for (Vertex& vertex : mesh.vertices) MoveVertex(move, rotation, &vertex);
+  }
+  return ReplaceSkeleton(rotation, scale, character);
+}
+
+Status BringToRestPose(Character* character) {
+  const std::vector<glm::mat4> skin = RestSkinMatrices(*character);
+  const bool at_rest = std::all_of(skin.begin(), skin.end(), IsNearIdentity);
+  const auto rest = character->skeleton.rest_pose();
+  const bool scaled = std::any_of(rest.begin(), rest.end(), [](const wrinkle::Transform& t) {
+    return glm::length(t.scale - glm::vec3(1.0f)) > 1e-5f;
+  });
+  if (at_rest && !scaled) return {};
+  for (Mesh& mesh : character->meshes) {
+    bool mirrored = false;
+    for (Vertex& vertex : mesh.vertices) {
+      const glm::mat4 m = RestMatrix(vertex, skin);
+      const float determinant = glm::determinant(glm::mat3(m));
+      const bool flat = std::abs(determinant) < 1e-30f;
+      mirrored = mirrored || determinant < 0.0f;
+      MoveVertex(m, flat ? glm::mat3(m) : glm::transpose(glm::inverse(glm::mat3(m))), &vertex);
+    }
+    for (std::size_t i = 0; mirrored && i + 2 < mesh.indices.size(); i += 3) {
+      std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);  // keep the outside outside
+    }
+  }
+  return ReplaceSkeleton(glm::mat3(1.0f), 1.0f, character);
+}
+
+}  // namespace furrow::character

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/import/model/face_frame.h"
+
+#include <algorithm>
+#include <optional>
+
+#include <glm/geometric.hpp>
+
+namespace furrow::character {
+namespace {
+
+using wrinkle::JointRole;
+using wrinkle::kNoJoint;
+using wrinkle::Skeleton;
+
+constexpr float kFar = 0.4f;  // of the distance between the eyes
+
+struct FaceFrame {
+  glm::vec3 middle;
+  float unit;  // distance between the eyes
+};
+
+std::optional<FaceFrame> FrameOf(const Skeleton& skeleton, const FoundJoints& joints) {
+  const int l = joints.First(JointRole::kLeftEye);
+  const int r = joints.First(JointRole::kRightEye);
+  if (l == kNoJoint || r == kNoJoint) return std::nullopt;
+  const glm::vec3 left(skeleton.rest_model()[static_cast<std::size_t>(l)][3]);
+  const glm::vec3 right(skeleton.rest_model()[static_cast<std::size_t>(r)][3]);
+  const float unit = glm::length(left - right);
+  if (!(unit > 0.0f)) return std::nullopt;
+  return FaceFrame{0.5f * (left + right), unit};
+}
+
+// A place that a joint may stand for, in the frame of its face.
+struct Place {
+  glm::vec3 at;
+  int joint;
+  bool is_tail;
+};
+
+void AddPlaces(const Skeleton& skeleton, const FaceFrame& frame, int joint,
+               std::vector<Place>* places) {
+  const auto index = static_cast<std::size_t>(joint);
+  const glm::mat4& model = skeleton.rest_model()[index];
+  places->push_back({(glm::vec3(model[3]) - frame.middle) / frame.unit, joint, false});
+  const auto parents = skeleton.joint_parents();
+  if (std::find(parents.begin(), parents.end(), joint) != parents.end()) return;
+  const glm::vec3 tail(model * glm::vec4(skeleton.tails()[index], 1.0f));
+  places->push_back({(tail - frame.middle) / frame.unit, joint, true});
+}
+
+const Place* Nearest(const glm::vec3& at, const std::vector<Place>& among) {
+  const Place* nearest = nullptr;
+  float least = kFar;
+  for (const Place& place : among) {
+    const float distance = glm::distance(at, place.at);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = &place;
+  }
+  return nearest;
+}
+
+}  // namespace
+
+int FaceMatch::Of(int model_joint) const {
+  return model_joint < 0 || model_joint >= static_cast<int>(joint.size())
+             ? kNoJoint
+             : joint[static_cast<std::size_t>(model_joint)];
+}
+
+std::vector<int> FaceJoints(const Skeleton& skeleton, const FoundJoints& joints) {
+  std::vector<int> face;
+  const int head = joints.Last(JointRole::kHead);
+  for (int j = 0; head != kNoJoint && j < skeleton.num_joints(); ++j) {
+    const bool has_role = joints.roles[static_cast<std::size_t>(j)] != JointRole::kNone;
+    if (j != head && !has_role && skeleton.IsAncestor(head, j)) face.push_back(j);
+  }
+  return face;
+}
+
+FaceMatch MatchFaces(const Skeleton& model, const FoundJoints& model_joints,
+                     std::span<const glm::vec3> model_points, const Skeleton& target,
+                     const FoundJoints& target_joints) {
+  FaceMatch match;
+  match.joint.assign(static_cast<std::size_t>(model.num_joints()), kNoJoint);
+  match.by_tail.assign(match.joint.size(), false);
+  const std::optional<FaceFrame> model_frame = FrameOf(model, model_joints);
+  const std::optional<FaceFrame> target_frame = FrameOf(target, target_joints);
+  if (!model_frame || !target_frame) return match;
+  for (const JointRole role : {JointRole::kHead, JointRole::kJaw, JointRole::kLeftEye,
+                               JointRole::kRightEye, JointRole::kNeck}) {
+    const int from = model_joints.First(role);
+    if (from != kNoJoint) match.joint[static_cast<std::size_t>(from)] = target_joints.First(role);
+  }
+  std::vector<Place> model_places, target_places;
+  for (const int j : FaceJoints(model, model_joints)) {
+    const glm::vec3& point = model_points[static_cast<std::size_t>(j)];
+    model_places.push_back({(point - model_frame->middle) / model_frame->unit, j, false});
+  }
+  for (const int j : FaceJoints(target, target_joints)) {
+    AddPlaces(target, *target_frame, j, &target_places);
+  }
+  for (const Place& place : model_places) {
+    const auto from = static_cast<std::size_t>(place.joint);
+    match.joint[from] = target.Find(model.joint_names()[from]);
+    if (match.joint[from] != kNoJoint) continue;
+    const Place* nearest = Nearest(place.at, target_places);
+    const Place* back = nearest == nullptr ? nullptr : Nearest(nearest->at, model_places);
+    if (back != &place) continue;
+    match.joint[from] = nearest->joint;
+    match.by_tail[from] = nearest->is_tail;
+  }
+  return match;
+}
+
+}  // namespace furrow::character

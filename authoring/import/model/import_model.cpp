@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/import/model/import_model.h"
+
+#include <string_view>
+#include <utility>
+
+#include "authoring/import/model/assimp.h"
+#include "base/ascii.h"
+#include "base/files.h"
+#include "base/status.h"
+#include "character/gltf_container.h"
+
+namespace furrow::character {
+namespace {
+
+namespace fs = std::filesystem;
+
+Status At(const Status& s, const fs::path& path) {
+  return {s.code(), s.what(), path.string() + (s.where().empty() ? "" : ": " + s.where()),
+          s.todo()};
+}
+
+std::string Extension(const fs::path& path) { return AsciiLower(path.extension().string()); }
+
+bool IsGltf(std::string_view bytes, const std::string& extension) {
+  return bytes.starts_with("glTF") || extension == ".glb" || extension == ".gltf" ||
+         extension == ".vrm";
+}
+
+// What is in the bytes of a model, `where` of an error being a field.
+Status Parse(std::string_view bytes, const fs::path& path, OpenedModel* model) {
+  const ReadOptions options{.lenient = true, .notes = &model->notes};
+  const std::string extension = Extension(path);
+  std::string converted;
+  if (!IsGltf(bytes, extension)) {
+    if (!AssimpReads(extension)) {
+      return {
+          StatusCode::kUnsupported,
+          "no reader knows the extension '" + extension + "'",
+          {},
+          "glTF (.glb, .gltf, .vrm), FBX, Collada (.dae) and what else assimp reads are models"};
+    }
+    Result<ForeignModel> foreign = ReadWithAssimp(bytes, extension);
+    FURROW_RETURN_IF_ERROR(foreign);
+    model->remarks = std::move(foreign->remarks);
+    converted = std::move(foreign->glb);
+    bytes = converted;
+  }
+  Result<Character> character = ParseCharacter(bytes, path.parent_path(), options);
+  FURROW_RETURN_IF_ERROR(character);
+  model->character = std::move(*character);
+  return BringToRestPose(&model->character);
+}
+
+std::string Sentence(const Finding& finding) {
+  return (finding.where.empty() ? "" : finding.where + ": ") + finding.what +
+         (finding.todo.empty() ? "" : " (" + finding.todo + ")");
+}
+
+// Leaves out what has no area; meshes that are nothing else go, too.
+void DropDegenerates(OpenedModel* model) {
+  std::size_t dropped = 0;
+  std::vector<Mesh> kept;
+  std::vector<MeshNotes> notes;
+  for (std::size_t m = 0; m < model->character.meshes.size(); ++m) {
+    Mesh& mesh = model->character.meshes[m];
+    dropped += DropDegenerateTriangles(&mesh);
+    if (mesh.indices.empty()) continue;
+    kept.push_back(std::move(mesh));
+    notes.push_back(model->notes.meshes[m]);
+  }
+  model->character.meshes = std::move(kept);
+  model->notes.meshes = std::move(notes);
+  if (dropped > 0) {
+    model->remarks.push_back(std::to_string(dropped) + " triangles without area are left out");
+  }
+}
+
+void BindUnskinned(OpenedModel* model) {
+  int bound = 0;
+  for (MeshNotes& notes : model->notes.meshes) bound += std::exchange(notes.unskinned_vertices, 0);
+  if (bound == 0) return;
+  model->remarks.push_back(std::to_string(bound) + " unskinned vertices follow their neighbours");
+}
+
+}  // namespace
+
+Result<OpenedModel> OpenModel(const fs::path& path) {
+  const Result<std::string> bytes = ReadFile(path, kMaxGltfBytes);
+  FURROW_RETURN_IF_ERROR(bytes);
+  OpenedModel model;
+  if (Status status = Parse(*bytes, path, &model); !status.ok()) return At(status, path);
+  if (model.character.name.empty()) model.character.name = path.stem().string();
+  return model;
+}
+
+Result<ImportedModel> ImportModel(const fs::path& path, const SkeletonMaps& maps,
+                                  const ModelOptions& options) {
+  Result<OpenedModel> opened = OpenModel(path);
+  FURROW_RETURN_IF_ERROR(opened);
+  if (options.repair) {
+    DropDegenerates(&*opened);
+    BindUnskinned(&*opened);
+  }
+  const CharacterReport report = CheckCharacter(opened->character, opened->notes, maps, false);
+  ImportedModel imported;
+  imported.remarks = std::move(opened->remarks);
+  for (const Finding& finding : report.findings) {
+    const bool settled = finding.code == "up-axis" || finding.code == "units";
+    if (finding.severity == Severity::kError) {
+      return Status(StatusCode::kUnsupported, finding.what,
+                    path.string() + (finding.where.empty() ? "" : ": " + finding.where),
+                    finding.todo);
+    }
+    auto& list =
+        settled || finding.severity == Severity::kNote ? imported.remarks : imported.warnings;
+    if (finding.code != "no-rig") list.push_back(Sentence(finding));
+  }
+  const float scale = options.scale.value_or(report.space.scale);
+  if (report.space.rotation != glm::mat3(1.0f) || scale != 1.0f) {
+    if (Status s = MoveToSpace(report.space.rotation, scale, &opened->character); !s.ok()) {
+      return At(s, path);
+    }
+  }
+  imported.character = std::move(opened->character);
+  return imported;
+}
+
+}  // namespace furrow::character

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/asset_path.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <system_error>
+#include <vector>
+
+namespace furrow {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxNameBytes = 1024;
+
+std::vector<fs::path> AssetFolders(const fs::path& folder) {
+  std::vector<fs::path> folders = {folder.empty() ? fs::path(".") : folder};
+  const char* variable = std::getenv("FURROW_ASSET_PATH");
+  std::string_view rest = variable == nullptr ? "" : variable;
+  while (!rest.empty()) {
+    const std::size_t colon = std::min(rest.find(':'), rest.size());
+    if (colon > 0) folders.emplace_back(rest.substr(0, colon));
+    rest.remove_prefix(std::min(colon + 1, rest.size()));
+  }
+  return folders;
+}
+
+}  // namespace
+
+Status CheckAssetName(std::string_view name) {
+  const auto refuse = [&](const char* why) {
+    return Status(StatusCode::kInvalidArgument, "file name '" + std::string(name) + "' " + why, {},
+                  "name a file beside the rig or in a folder of FURROW_ASSET_PATH");
+  };
+  if (name.empty()) return refuse("is empty");
+  if (name.size() > kMaxNameBytes) {
+    return {StatusCode::kLimit, "a file name is longer than " + std::to_string(kMaxNameBytes)};
+  }
+  if (name.front() == '/') return refuse("is absolute");
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f) {
+      return {StatusCode::kInvalidArgument, "a file name holds a control byte"};
+    }
+    if (c == '\\' || c == ':') return refuse("holds a backslash or a colon");
+  }
+  for (const fs::path& part : fs::path(name)) {
+    if (part == "..") return refuse("holds '..'");
+  }
+  return {};
+}
+
+Result<fs::path> FindAsset(std::string_view name, const fs::path& folder) {
+  FURROW_RETURN_IF_ERROR(CheckAssetName(name));
+  std::string tried;
+  for (const fs::path& candidate : AssetFolders(folder)) {
+    const fs::path path = candidate / name;
+    std::error_code error;
+    if (fs::is_regular_file(path, error)) return path;
+    tried += (tried.empty() ? "" : ", ") + candidate.string();
+  }
+  return Status(StatusCode::kNotFound, "no file '" + std::string(name) + "' in " + tried, {},
+                "put it beside the rig or add its folder to FURROW_ASSET_PATH");
+}
+
+}  // namespace furrow

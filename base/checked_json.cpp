@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/checked_json.h"
+
+#include <charconv>
+#include <utility>
+
+#include <flatbuffers/idl.h>
+
+namespace furrow {
+namespace {
+
+// FlatBuffers says "12: 34: error: unknown field: drivrs, originally at: ..."; we say where by
+// field.
+struct ParserComplaint {
+  int line = 1;
+  int column = 0;
+  std::string what;
+};
+
+ParserComplaint Dissect(std::string_view text) {
+  ParserComplaint complaint;
+  const auto number = [&](int* value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), *value);
+    if (error != std::errc()) return;
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    while (!text.empty() && (text.front() == ':' || text.front() == ' ')) text.remove_prefix(1);
+  };
+  number(&complaint.line);
+  number(&complaint.column);
+  constexpr std::string_view kPrefix = "error: ";
+  if (text.starts_with(kPrefix)) text.remove_prefix(kPrefix.size());
+  complaint.what = text.substr(0, text.find(", originally at"));
+  return complaint;
+}
+
+Status FromParser(const std::string& error, const JsonIndex& index, const std::string& source,
+                  const JsonSchema& schema) {
+  const ParserComplaint complaint = Dissect(error);
+  constexpr std::string_view kMissing = "required field is missing: ";
+  std::string path;
+  std::string what = complaint.what;
+  if (what.starts_with(kMissing)) {
+    const std::size_t in = what.rfind(" in ");
+    const std::string field = what.substr(kMissing.size(), in - kMissing.size());
+    const bool of_root = what.substr(in) == std::string(" in ") + schema.root;
+    path = of_root ? "" : index.PathClosedBefore(complaint.line, complaint.column);
+    path += (path.empty() ? "" : ".") + field;
+    what = "the field is missing";
+  } else {
+    path = index.PathAt(complaint.line, complaint.column);
+  }
+  if (what == "wrong number of unnamed fields in table vector") {
+    what = "the list has too few or too many entries";
+    path = path.substr(0, path.rfind('['));
+  }
+  return {StatusCode::kSchema, what, source + ":" + index.Where(path),
+          std::string(schema.file) + " lists the fields"};
+}
+
+}  // namespace
+
+struct CheckedJson::Parsed {
+  Parsed(std::string_view name, JsonIndex fields, const flatbuffers::IDLOptions& options)
+      : source(name), index(std::move(fields)), parser(options) {}
+  std::string source;
+  JsonIndex index;
+  flatbuffers::Parser parser;
+};
+
+Result<CheckedJson> CheckedJson::Parse(std::string_view json, std::string_view source,
+                                       const JsonSchema& schema) {
+  Result<JsonIndex> index = JsonIndex::Create(json);
+  if (!index.ok()) {
+    const Status s = index.status();
+    return Status(s.code(), s.what(), std::string(source) + ":" + s.where(), s.todo());
+  }
+  flatbuffers::IDLOptions options;
+  options.strict_json = true;
+  auto parsed = std::make_unique<Parsed>(source, std::move(*index), options);
+  if (!parsed->parser.Parse(schema.text)) {
+    return Status(StatusCode::kInternal,
+                  std::string(schema.file) + " does not parse: " + parsed->parser.error_);
+  }
+  if (!parsed->parser.ParseJson(std::string(json).c_str())) {
+    return FromParser(parsed->parser.error_, parsed->index, parsed->source, schema);
+  }
+  return CheckedJson(std::move(parsed));
+}
+
+CheckedJson::CheckedJson(std::unique_ptr<Parsed> parsed) : parsed_(std::move(parsed)) {}
+CheckedJson::CheckedJson(CheckedJson&&) noexcept = default;
+CheckedJson& CheckedJson::operator=(CheckedJson&&) noexcept = default;
+CheckedJson::~CheckedJson() = default;
+
+const std::uint8_t* CheckedJson::buffer() const {
+  return parsed_->parser.builder_.GetBufferPointer();
+}
+
+Status CheckedJson::Located(const Status& status) const {
+  return {status.code(), status.what(),
+          parsed_->source + ":" + parsed_->index.Where(status.where()), status.todo()};
+}
+
+}  // namespace furrow

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "base/status.h"
+
+namespace furrow {
+
+// A cap for text files whose format has no limit of its own (OBJ, BVH, name maps).
+inline constexpr std::uint64_t kMaxTextFileBytes = std::uint64_t{256} << 20;
+
+// Reads a whole regular file.
+//
+// Errors, with the path as `where`: kNotFound, kIo (also for folders and devices), kLimit (larger
+// than `max_bytes`).
+[[nodiscard]] Result<std::string> ReadFile(const std::filesystem::path& path,
+                                           std::uint64_t max_bytes);
+
+// Writes a temporary file beside `path`, flushes it to disk and renames it. A reader sees the old
+// file or the new one, never a part of either, and a failure (kIo) leaves nothing behind.
+//
+// A symbolic link is followed. A device or pipe is written to directly, because a rename would
+// replace it.
+//
+// Flush::kNone leaves the flush to the operating system, for files that are cheap to make again,
+// such as the pictures of a live stream.
+enum class Flush { kDisk, kNone };
+[[nodiscard]] Status WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes,
+                                         Flush flush = Flush::kDisk);
+
+struct FileToWrite {
+  std::filesystem::path path;
+  std::string_view bytes;
+};
+
+// As WriteFileAtomically() for several files: all temporary files are complete before the first
+// rename, so a full disk replaces none of the files.
+[[nodiscard]] Status WriteFilesAtomically(std::span<const FileToWrite> files,
+                                          Flush flush = Flush::kDisk);
+
+// Checks that `path` can be written, before work that takes long. The file stays as it is. kIo
+// names the file and the reason.
+[[nodiscard]] Status CheckWritable(const std::filesystem::path& path);
+
+}  // namespace furrow

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/status.h"
+
+namespace furrow {
+
+Status::Status(StatusCode code, std::string what, std::string where, std::string todo)
+    : code_(code), what_(std::move(what)), where_(std::move(where)), todo_(std::move(todo)) {}
+
+std::string Status::ToString() const {
+  if (ok()) return "ok";
+  std::string text;
+  if (!where_.empty()) text += where_ + ": ";
+  text += what_;
+  if (!todo_.empty()) text += " (" + todo_ + ")";
+  return text;
+}
+
+Status Status::At(std::string_view where) const {
+  if (ok() || !where_.empty()) return *this;
+  return {code_, what_, std::string(where), todo_};
+}
+
+}  // namespace furrow

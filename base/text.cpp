@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/text.h"
+
+#include <algorithm>
+
+namespace furrow {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\v\f";
+
+}  // namespace
+
+std::string Quoted(std::string_view text) {
+  constexpr std::size_t kShown = 40;
+  std::string quoted = "'";
+  for (const char c : text.substr(0, kShown)) quoted += (c >= ' ' && c < 127) ? c : '?';
+  return quoted + (text.size() > kShown ? "...'" : "'");
+}
+
+std::string Where(std::string_view source, std::size_t line) {
+  return std::string(source) + ":" + std::to_string(line);
+}
+
+std::size_t LineOf(std::string_view text, std::size_t offset) {
+  const std::string_view before = text.substr(0, std::min(offset, text.size()));
+  return 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
+}
+
+void SplitWords(std::string_view line, std::vector<std::string_view>* words) {
+  words->clear();
+  line = line.substr(0, line.find('#'));
+  while (true) {
+    const std::string_view word = TakeToken(&line);
+    if (word.empty()) return;
+    words->push_back(word);
+  }
+}
+
+std::string_view TakeToken(std::string_view* line) {
+  const std::size_t begin = std::min(line->find_first_not_of(kBlanks), line->size());
+  const std::size_t end = std::min(line->find_first_of(kBlanks, begin), line->size());
+  const std::string_view token = line->substr(begin, end - begin);
+  line->remove_prefix(end);
+  return token;
+}
+
+}  // namespace furrow

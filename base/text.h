@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace furrow {
+
+// A piece of a foreign file as a message shows it: in single quotes, at most 40 bytes, with '?' for
+// every byte that is not printable ASCII.
+[[nodiscard]] std::string Quoted(std::string_view text);
+
+// Bytes seen as text; no copy is made.
+[[nodiscard]] inline std::string_view AsText(std::span<const std::uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// The position in a text file as a Status states it: "source:line", lines counted from 1.
+[[nodiscard]] std::string Where(std::string_view source, std::size_t line);
+
+// The line, from 1, that holds byte `offset` of `text`.
+[[nodiscard]] std::size_t LineOf(std::string_view text, std::size_t offset);
+
+// Splits a line into words at blanks and tabs. A '#' starts a comment.
+void SplitWords(std::string_view line, std::vector<std::string_view>* words);
+
+// Removes the first blank-separated token of `line` and returns it; empty when there is none.
+std::string_view TakeToken(std::string_view* line);
+
+}  // namespace furrow

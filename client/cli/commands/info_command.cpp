@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+#include <map>
+#include <memory>
+
+#include "client/cli/command.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/inputs.h"
+#include "motion/clip/clip.h"
+#include "recording/take_poses.h"
+#include "recording/take_summary.h"
+#include "report/words.h"
+
+namespace furrow::cli {
+namespace {
+
+using report::Counted;
+
+using recording::SubjectSummary;
+using recording::TakeReader;
+
+int DescribeClip(const std::string& path) {
+  const auto clip = LoadClipArgument(path);
+  if (!clip.ok()) return Fail(clip.status());
+  double longest = 0.0;
+  for (std::size_t i = 1; i < clip->times.size(); ++i)
+    longest = std::max(longest, clip->times[i] - clip->times[i - 1]);
+  const double rate =
+      clip->duration() > 0.0 ? static_cast<double>(clip->num_frames() - 1) / clip->duration() : 0.0;
+  std::printf("%s\n", path.c_str());
+  std::printf("  subject     %s\n", clip->name.c_str());
+  std::printf("  skeleton    %s, %s\n", Counted(clip->skeleton.num_joints(), "joint").c_str(),
+              Counted(clip->blend_shape_names.size(), "blend shape").c_str());
+  std::printf("  frames      %d in %.3f s, %.2f Hz, longest gap %.3f s\n", clip->num_frames(),
+              clip->duration(), rate, longest);
+  return kDone;
+}
+
+void PrintFile(const TakeReader& take) {
+  const motion::mcap::Reader& file = take.file();
+  std::map<std::string, int> compressions;
+  for (const motion::mcap::ChunkInfo& chunk : file.chunks()) {
+    if (chunk.compression != motion::mcap::kLooseMessages)
+      ++compressions[chunk.compression.empty() ? "uncompressed" : chunk.compression];
+  }
+  std::printf("  file        %" PRIu64 " bytes, written by '%s', %s\n", file.file_bytes(),
+              file.library().c_str(),
+              file.complete() ? "complete" : "cut short: read up to its last whole chunk");
+  std::printf("  chunks      %zu", file.chunks().size());
+  for (const auto& [name, count] : compressions) std::printf(", %d %s", count, name.c_str());
+  if (file.warnings().empty()) {
+    std::printf("; all checksums are right\n");
+  } else {
+    std::printf("; %s, see below\n", file.complete() ? "damaged" : "what is lost");
+  }
+  for (const motion::mcap::AttachmentInfo& info : file.attachments())
+    std::printf("  attachment  %s, %s, %" PRIu64 " bytes\n", info.name.c_str(),
+                info.media_type.c_str(), info.size);
+}
+
+void PrintSubject(const std::string& name, const SubjectSummary& subject) {
+  std::printf("  subject     %s: %s, %s; skeletons: %zu, senders: %zu\n", name.c_str(),
+              Counted(subject.joints, "joint").c_str(),
+              Counted(subject.blend_shapes, "blend shape").c_str(), subject.skeletons,
+              subject.sessions.size());
+  std::printf("    poses     %zu in %.3f s, %.2f Hz, %" PRIu64 " missing, longest gap %.3f s\n",
+              subject.poses, static_cast<double>(subject.last_ns - subject.first_ns) * 1e-9,
+              subject.rate(), subject.missing, subject.longest_gap);
+  std::printf("    weights   %s, each of %s\n", Counted(subject.weights, "frame").c_str(),
+              Counted(subject.weight_names, "name").c_str());
+  if (subject.unreadable > 0)
+    std::printf("    unreadable %s\n", Counted(subject.unreadable, "message").c_str());
+}
+
+int DescribeTake(const std::string& path) {
+  std::string only;
+  const auto take = OpenTakeArgument(path, &only);
+  if (!take.ok()) return Fail(take.status());
+  const std::string file = (*take)->path().string();
+  const auto summary = recording::Summarise(**take);
+  if (!summary.ok()) return Fail(summary.status());
+  if (!only.empty() && !summary->subjects.contains(only)) {
+    std::string names;
+    for (const auto& [name, subject] : summary->subjects)
+      names += (names.empty() ? "" : ", ") + name;
+    return Fail({StatusCode::kNotFound, "there is nobody called '" + only + "' in it", file,
+                 "there is: " + (names.empty() ? "nobody" : names)});
+  }
+  std::printf("%s\n", file.c_str());
+  PrintFile(**take);
+  std::printf("  messages    %zu in %.3f s; of them datagrams: %zu\n", summary->messages,
+              summary->seconds(), summary->datagrams);
+  for (const auto& [name, subject] : summary->subjects)
+    if (only.empty() || only == name) PrintSubject(name, subject);
+  PrintWarnings((*take)->file().warnings());
+  return kDone;
+}
+
+}  // namespace
+
+void AddInfo(CLI::App& app, Action& action) {
+  auto path = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand(
+      "info", "What is in a recording: subjects, rates, gaps, duration, and whether it is whole");
+  command->add_option("FILE", *path, "Any recording: .bvh, .glb, .gltf, .vrma, .csv or .mcap")
+      ->required();
+  command->callback([path, &action] {
+    action = [path] {
+      return recording::IsTakePath(*path) ? DescribeTake(*path) : DescribeClip(*path);
+    };
+  });
+}
+
+}  // namespace furrow::cli

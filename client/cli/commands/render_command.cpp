@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cinttypes>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "base/files.h"
+#include "base/status.h"
+#include "base/text.h"
+#include "client/cli/command.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/inputs.h"
+#include "client/cli/progress.h"
+#include "client/cli/render/crowd.h"
+#include "client/cli/render/picture_settings.h"
+#include "client/cli/render/pose_clip.h"
+#include "motion/clip/clip.h"
+#include "render/gl/pass_timer.h"
+#include "render/renderer.h"
+
+namespace furrow::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RenderOptions {
+  std::vector<std::string> files;
+  std::string pose;
+  std::string out;
+  std::string character;
+  std::string rig;
+  std::string skeleton_map;
+  std::string frames;
+  std::string size = "640x640";
+  std::string camera = "face";
+  std::string format = "png";
+  std::string device;
+  PictureOptions picture;
+  CrowdOptions crowd;
+  bool timings = false;
+  int quality = 90;
+};
+
+// "A:B", both included, or "A".
+bool ParseRange(const std::string& text, int* first, int* last) {
+  const char* const end = text.data() + text.size();
+  const auto a = std::from_chars(text.data(), end, *first);
+  if (a.ec != std::errc()) return false;
+  *last = *first;
+  if (a.ptr != end) {
+    if (*a.ptr != ':') return false;
+    const auto b = std::from_chars(a.ptr + 1, end, *last);
+    if (b.ec != std::errc() || b.ptr != end) return false;
+  }
+  return *first >= 0 && *first <= *last;
+}
+
+std::string CheckRange(std::string& text) {
+  int first = 0;
+  int last = 0;
+  if (ParseRange(text, &first, &last)) return {};
+  return "'" + text + "' is not A:B, both included and counted from 0, nor a single A";
+}
+
+using Clips = std::vector<std::shared_ptr<const motion::Clip>>;
+
+// One a file; a pose is a recording of one frame.
+Result<Clips> LoadClips(const RenderOptions& options, const character::Character& character) {
+  Clips clips;
+  const auto add = [&](Result<motion::Clip> clip) {
+    if (clip.ok()) clips.push_back(std::make_shared<const motion::Clip>(std::move(*clip)));
+    return clip.status();
+  };
+  if (!options.pose.empty()) {
+    FURROW_RETURN_IF_ERROR(add(PoseClip(character, options.pose)));
+  }
+  for (const std::string& file : options.files) {
+    FURROW_RETURN_IF_ERROR(add(LoadClipArgument(file)));
+  }
+  return clips;
+}
+
+// Writes pictures as they come back from the renderer: two stay in flight while the next is solved.
+class PictureSink {
+ public:
+  PictureSink(render::Renderer& renderer, const RenderOptions& options)
+      : renderer_(renderer), options_(options) {}
+
+  Status Submit(const render::FrameRequest& request) {
+    if (renderer_.in_flight() >= 2) {
+      FURROW_RETURN_IF_ERROR(WriteOldest());
+    }
+    return renderer_.Submit(request);
+  }
+
+  Status Finish() {
+    while (renderer_.in_flight() > 0) {
+      FURROW_RETURN_IF_ERROR(WriteOldest());
+    }
+    return {};
+  }
+
+ private:
+  Status WriteOldest() {
+    const auto image = renderer_.Poll(true);
+    FURROW_RETURN_IF_ERROR(image);
+    const bool jpeg = options_.format == "jpeg";
+    const auto bytes = render::EncodeImage(
+        *image, jpeg ? render::ImageFormat::kJpeg : render::ImageFormat::kPng, options_.quality);
+    FURROW_RETURN_IF_ERROR(bytes);
+    char name[32];
+    std::snprintf(name, sizeof name, "%06" PRIu64 ".%s", image->token, jpeg ? "jpg" : "png");
+    return WriteFileAtomically(fs::path(options_.out) / name, AsText(*bytes), Flush::kNone);
+  }
+
+  render::Renderer& renderer_;
+  const RenderOptions& options_;
+};
+
+double TakeMedian(std::vector<double>* values) {
+  const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
+  std::nth_element(values->begin(), middle, values->end());
+  return *middle;
+}
+
+// A table of the passes in their order: medians over the frames, and their sums.
+void PrintTimings(const std::vector<render::PassTime>& times) {
+  struct Samples {
+    std::vector<double> wall_ms;
+    std::vector<double> cpu_ms;
+  };
+  std::vector<std::string> order;
+  std::map<std::string, Samples> of_pass;
+  for (const render::PassTime& time : times) {
+    Samples& samples = of_pass[time.pass];
+    if (samples.wall_ms.empty()) order.push_back(time.pass);
+    samples.wall_ms.push_back(time.wall_ms);
+    samples.cpu_ms.push_back(time.cpu_ms);
+  }
+  std::printf("%-16s %11s %11s\n", "", "wall", "processor");
+  double wall = 0.0;
+  double cpu = 0.0;
+  for (const std::string& pass : order) {
+    const double pass_wall = TakeMedian(&of_pass[pass].wall_ms);
+    const double pass_cpu = TakeMedian(&of_pass[pass].cpu_ms);
+    std::printf("%-16s %8.2f ms %8.2f ms\n", pass.c_str(), pass_wall, pass_cpu);
+    wall += pass_wall;
+    cpu += pass_cpu;
+  }
+  std::printf("%-16s %8.2f ms %8.2f ms\n", "frame", wall, cpu);
+}
+
+Result<std::unique_ptr<Crowd>> MakeCrowd(const RenderOptions& options,
+                                         const character::Character& character) {
+  const auto clips = LoadClips(options, character);
+  FURROW_RETURN_IF_ERROR(clips);
+  const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
+  FURROW_RETURN_IF_ERROR(matcher);
+  const std::vector<std::string> names =
+      options.files.empty() ? std::vector<std::string>{""} : options.files;
+  return Crowd::Create(character, *clips, names, *matcher, options.crowd);
+}
+
+// The frames to draw of those that there are.
+Result<std::pair<int, int>> FramesOf(const RenderOptions& options, int num_frames) {
+  int first = 0;
+  int last = num_frames - 1;
+  if (!options.frames.empty()) (void)ParseRange(options.frames, &first, &last);  // checked before
+  if (last < num_frames && last >= 0) return std::pair(first, last);
+  return Status(StatusCode::kInvalidArgument,
+                "there is no frame " + std::to_string(std::max(last, 0)) + ": the recording has " +
+                    std::to_string(num_frames) + ", counted from 0",
+                options.files.empty() ? "" : options.files.front());
+}
+
+Status DrawFrames(const RenderOptions& options, const render::Settings& settings,
+                  const std::pair<int, int>& frames, Crowd& crowd, render::Renderer& renderer) {
+  PictureSink sink(renderer, options);
+  Progress progress("rendering", frames.second + 1);
+  for (int frame = 0; frame <= frames.second; ++frame) {
+    FURROW_RETURN_IF_ERROR(crowd.Advance(frame));
+    progress.Set(frame + 1);
+    if (frame < frames.first) continue;
+    render::FrameRequest request = crowd.Request();
+    request.settings = settings;
+    (void)ParseSize(options.size, &request.width, &request.height);  // checked while parsing
+    request.token = static_cast<std::uint64_t>(frame);
+    FURROW_RETURN_IF_ERROR(sink.Submit(request));
+  }
+  return sink.Finish();
+}
+
+int RenderFiles(const RenderOptions& options) {
+  const auto settings = SettingsOf(options.picture);
+  if (!settings.ok()) return Fail(settings.status());
+  const auto character = LoadCharacterArgument(options.character, options.rig);
+  if (!character.ok()) return Fail(character.status());
+  auto crowd = MakeCrowd(options, *character);
+  if (!crowd.ok()) return Fail(crowd.status());
+  const auto frames = FramesOf(options, (*crowd)->num_frames());
+  if (!frames.ok()) return Fail(frames.status());
+  auto renderer = render::Renderer::Create(*character, {.device = options.device});
+  if (!renderer.ok()) return Fail(renderer.status());
+  const auto camera = (*renderer)->Preset(options.camera);
+  if (!camera.ok()) return Fail(camera.status());
+  int width = 0;
+  int height = 0;
+  (void)ParseSize(options.size, &width, &height);  // checked while parsing
+  (*crowd)->FrameBy(*camera, static_cast<float>(width) / static_cast<float>(height));
+  std::error_code error;
+  fs::create_directories(options.out, error);
+  if (error) return Fail({StatusCode::kIo, error.message(), options.out});
+
+  render::PassTimer timer;
+  if (options.timings) (*renderer)->SetObserver(&timer);
+  if (Status status = DrawFrames(options, *settings, *frames, **crowd, **renderer); !status.ok()) {
+    return Fail(status);
+  }
+  if (options.timings) PrintTimings(timer.Take());
+  return kDone;
+}
+
+void AddCrowdOptions(CLI::App& command, CrowdOptions* options) {
+  command
+      .add_option("--subjects", options->subjects,
+                  "How many people to picture together; recordings are handed out in turn. "
+                  "Default: one a FILE")
+      ->check(CLI::Range(1, render::kMaxSubjects));
+  command
+      .add_option("--spacing", options->spacing,
+                  "Metres from one to the next; default: by what the camera shows of one")
+      ->check(Within(0.05, 100.0));
+  command
+      .add_option("--offset-frames", options->offset_frames,
+                  "Each plays so many frames ahead of the one before; default: those who share a "
+                  "recording are spread evenly over it")
+      ->check(CLI::Range(0, 1'000'000));
+}
+
+}  // namespace
+
+void AddRender(CLI::App& app, Action& action) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App* command = app.add_subcommand(
+      "render", "Pictures of a recording or a pose, no network: DIR/000123.png for frame 123");
+  CLI::Option* file =
+      command->add_option("FILE", options->files,
+                          "BVH, glTF/GLB, VRMA or Live Link Face CSV; several: one person each, "
+                          "pictured together");
+  CLI::Option* pose = command->add_option(
+      "--pose", options->pose,
+      "Instead of FILE, one picture of the rig's reference poses: NAME[=WEIGHT],... or neutral; a "
+      "wrinkle map's name stands for all poses that feed it");
+  file->excludes(pose);
+  command->add_option("--out", options->out, "Folder for the pictures; made if it is not there")
+      ->required();
+  command->add_option("--character", options->character,
+                      "Character package (.glb); default: the one that ships");
+  command->add_option("--rig", options->rig, "Wrinkle rig; default: the package's own");
+  AddSkeletonMap(*command, options->skeleton_map);
+  command->add_option("--frames", options->frames, "A:B, both included, from 0; default: all")
+      ->check(CLI::Validator(CheckRange, ""));
+  command->add_option("--size", options->size, "WxH in pixels, 16 to 4096")
+      ->check(SizeValidator())
+      ->capture_default_str();
+  const auto names = render::CameraPresetNames();
+  const std::vector<std::string> cameras(names.begin(), names.end());
+  command->add_option("--camera", options->camera, render::ListCameraPresets())
+      ->check(CLI::IsMember(cameras))
+      ->type_name("")
+      ->capture_default_str();
+  command->add_option("--format", options->format, "png or jpeg")
+      ->check(CLI::IsMember({"png", "jpeg"}))
+      ->capture_default_str();
+  command->add_option("--quality", options->quality, "JPEG quality")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  AddCrowdOptions(*command, &options->crowd);
+  AddPictureOptions(*command, &options->picture);
+  command->add_flag(
+      "--timings", options->timings,
+      "Print what each pass of a frame takes (medians); pictures take longer with it");
+  command->add_option("--device", options->device,
+                      "EGL device index or 'surfaceless'; default: the first that works");
+  command->callback([options, &action] {
+    if (options->files.empty() && options->pose.empty()) throw CLI::RequiredError("FILE or --pose");
+    action = [options] { return RenderFiles(*options); };
+  });
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "character/rig_report.h"
+#include "client/cli/command.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/inputs.h"
+#include "client/cli/render/rig_explain.h"
+#include "motion/clip/clip.h"
+#include "wrinkle/solver/solver.h"
+
+namespace furrow::cli {
+namespace {
+
+struct RigOptions {
+  std::string rig;
+  std::string file;  // explain: the recording; check: a recording whose skeleton is meant
+  std::string skeleton_map;
+  int frame = 0;
+  float threshold = 0.01f;
+};
+
+int Explain(const RigOptions& options) {
+  const auto rig = LoadRigArgument(options.rig);
+  if (!rig.ok()) return Fail(rig.status());
+  const auto clip = LoadClipArgument(options.file);
+  if (!clip.ok()) return Fail(clip.status());
+  if (options.frame >= clip->num_frames()) {
+    return Fail({StatusCode::kInvalidArgument,
+                 "there is no frame " + std::to_string(options.frame) + ", only 0 to " +
+                     std::to_string(clip->num_frames() - 1),
+                 options.file});
+  }
+  const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
+  if (!matcher.ok()) return Fail(matcher.status());
+  const auto match = matcher->Match(clip->skeleton, *rig, nullptr);
+  const auto binding = wrinkle::RigBinding::Create(*rig, clip->skeleton, clip->blend_shape_names,
+                                                   {.aliases = match.aliases});
+  if (!binding.ok()) return Fail(binding.status().At(options.rig));
+  wrinkle::LocalPose pose;
+  clip->GetPose(options.frame, &pose);
+  wrinkle::Explanation explanation;
+  if (wrinkle::Explain(*binding, pose, &explanation) != wrinkle::JobStatus::kOk) {
+    return Fail({StatusCode::kInternal, "the frame could not be explained", options.file});
+  }
+  std::printf("%s, frame %d, as it stands (no filter)\n", options.file.c_str(), options.frame);
+  PrintExplanation(explanation, options.threshold, stdout);
+  return kDone;
+}
+
+int Check(const RigOptions& options) {
+  const auto rig = LoadRigArgument(options.rig);
+  if (!rig.ok()) return Fail(rig.status());
+  character::RigReportOptions report_options;
+  report_options.folder = ResolveRigPath(options.rig).parent_path();
+  std::optional<motion::Clip> clip;
+  if (!options.file.empty()) {
+    auto loaded = LoadClipArgument(options.file);
+    if (!loaded.ok()) return Fail(loaded.status());
+    clip = std::move(*loaded);
+    report_options.skeleton = &clip->skeleton;
+    report_options.blend_shape_names = clip->blend_shape_names;
+  }
+  character::SkeletonMatch match;
+  if (clip) {
+    const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
+    if (!matcher.ok()) return Fail(matcher.status());
+    match = matcher->Match(clip->skeleton, *rig, nullptr);
+    report_options.aliases = match.aliases;
+  }
+  const character::RigReport report = character::ReportOnRig(*rig, report_options);
+  std::fputs(character::ToText(report).c_str(), stdout);
+  return report.binding.ok() ? kDone : Fail(report.binding.At(options.rig));
+}
+
+void AddCheck(CLI::App& group, Action& action) {
+  auto options = std::make_shared<RigOptions>();
+  CLI::App* command =
+      group.add_subcommand("check", "What is in a rig, and what is probably not meant");
+  command->add_option("RIG", options->rig, "Wrinkle rig (JSON), or the name of one that ships")
+      ->required();
+  command->add_option("--skeleton", options->file,
+                      "A recording: is every joint and blend shape there?");
+  AddSkeletonMap(*command, options->skeleton_map);
+  command->callback([options, &action] { action = [options] { return Check(*options); }; });
+}
+
+void AddExplain(CLI::App& group, Action& action) {
+  auto options = std::make_shared<RigOptions>();
+  CLI::App* command =
+      group.add_subcommand("explain", "Which driver and which pose made each weight of a frame");
+  command->add_option("RIG", options->rig, "Wrinkle rig (JSON), or the name of one that ships")
+      ->required();
+  command->add_option("FILE", options->file, "The recording")->required();
+  AddSkeletonMap(*command, options->skeleton_map);
+  command->add_option("--frame", options->frame, "Counted from 0")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--threshold", options->threshold, "Weights below are counted, not listed")
+      ->check(Within(0.0, 1.0))
+      ->capture_default_str();
+  command->callback([options, &action] { action = [options] { return Explain(*options); }; });
+}
+
+}  // namespace
+
+void AddRig(CLI::App& app, Action& action) {
+  CLI::App* group =
+      app.add_subcommand("rig", "Wrinkle rigs: check one, explain its weights, cut a patch for it");
+  group->require_subcommand(1);
+  AddCheck(*group, action);
+  AddExplain(*group, action);
+  AddRigPatch(*group, action);
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "base/files.h"
+#include "base/text.h"
+#include "character/rig_patch.h"
+#include "client/cli/command.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/file_output.h"
+#include "client/cli/inputs.h"
+#include "rig/rig_file.h"
+
+namespace furrow::cli {
+namespace {
+
+struct PatchArguments {
+  std::string character;
+  std::string rig;
+  std::string around;
+  std::string joint;
+  std::string region;
+  std::string direction = "0,1,0";
+  std::string out;
+  float radius_mm = 15.0f;
+  character::PatchOptions patch;
+};
+
+// "x,y,z".
+bool ParseVector(const std::string& text, glm::vec3* vector) {
+  const char* at = text.data();
+  const char* const end = text.data() + text.size();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis > 0 && (at == end || *at++ != ',')) return false;
+    const auto read = std::from_chars(at, end, (*vector)[axis]);
+    if (read.ec != std::errc()) return false;
+    at = read.ptr;
+  }
+  return at == end;
+}
+
+CLI::Validator VectorValidator() {
+  return {[](std::string& text) {
+            glm::vec3 vector;
+            return ParseVector(text, &vector) ? std::string() : "'" + text + "' is not X,Y,Z";
+          },
+          "X,Y,Z"};
+}
+
+Result<glm::vec3> Centre(const PatchArguments& arguments, const character::Character& character) {
+  if (!arguments.joint.empty()) return character::PlaceOfJoint(character, arguments.joint);
+  if (!arguments.region.empty()) return character::PlaceOfRegion(character, arguments.region);
+  glm::vec3 centre(0.0f);
+  ParseVector(arguments.around, &centre);
+  return centre;
+}
+
+int Patch(const PatchArguments& arguments) {
+  const auto character = LoadCharacterArgument(arguments.character, arguments.rig);
+  if (!character.ok()) return Fail(character.status());
+  const auto centre = Centre(arguments, *character);
+  if (!centre.ok()) return Fail(centre.status());
+  character::PatchOptions options = arguments.patch;
+  options.centre = *centre;
+  options.radius = 0.001f * arguments.radius_mm;
+  ParseVector(arguments.direction, &options.direction);
+  const auto driver = character::CutPatch(*character, options);
+  if (!driver.ok()) return Fail(driver.status());
+  const std::string json = character::DriverToJson(*driver);
+  const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(json.data()),
+                                            json.size());
+  if (!arguments.out.empty()) {
+    const Status written = WriteFileAtomically(arguments.out, AsText(bytes));
+    return written.ok() ? kDone : Fail(written);
+  }
+  return WriteStandardOutput(bytes).ok() ? kDone : StandardOutputFailed();
+}
+
+}  // namespace
+
+void AddRigPatch(CLI::App& rig_group, Action& action) {
+  auto arguments = std::make_shared<PatchArguments>();
+  CLI::App* command = rig_group.add_subcommand(
+      "patch",
+      "Cut a patch of the surface out of a character: a strain driver to paste into a rig");
+  command->add_option("CHARACTER", arguments->character, "Character package (.glb)")->required();
+  command->add_option("--rig", arguments->rig, "Its wrinkle rig; default: the one beside it");
+  command->add_option("--name", arguments->patch.name, "Of the driver")->capture_default_str();
+  command->add_option("--mesh", arguments->patch.mesh, "From this mesh alone");
+  CLI::Option_group* where = command->add_option_group("where", "Where the patch is, one of");
+  where->add_option("--around", arguments->around, "A point, metres, model space at rest")
+      ->check(VectorValidator());
+  where->add_option("--joint", arguments->joint, "Where this joint starts");
+  where->add_option("--region", arguments->region, "The middle of this region's mask");
+  where->require_option(1);
+  command->add_option("--radius", arguments->radius_mm, "Millimetres")
+      ->check(Within(0.1, 1000.0))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--direction", arguments->direction,
+          "What \"along\" means, model axes at rest; counts as far as it lies in the surface")
+      ->check(VectorValidator())
+      ->capture_default_str();
+  command->add_option("--full", arguments->patch.full_compression, "The compression that gives 1")
+      ->check(Within(0.01, 1.0))
+      ->capture_default_str();
+  command->add_option("--out", arguments->out, "Default: standard output");
+  command->callback([arguments, &action] { action = [arguments] { return Patch(*arguments); }; });
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <map>
+#include <memory>
+
+#include "client/cli/command.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/file_output.h"
+#include "client/cli/inputs.h"
+#include "client/cli/output/weight_writer.h"
+#include "client/cli/progress.h"
+#include "motion/clip/clip.h"
+#include "wrinkle/solver/solver.h"
+
+namespace furrow::cli {
+namespace {
+
+struct SolveOptions {
+  std::string file;
+  std::string rig;
+  std::string skeleton_map;
+  TableFormat format = TableFormat::kCsv;
+  int level = 0;  // drivers; 0: all
+  bool drivers = false;
+  bool no_filter = false;
+  bool allow_missing = false;
+};
+
+// What the recording lacks may rest, but only where that is asked for.
+Status BindingFailed(const Status& status, const SolveOptions& options) {
+  if (status.code() != StatusCode::kNotFound || options.allow_missing)
+    return status.At(options.rig);
+  return {status.code(), status.what(), options.rig,
+          "with --allow-missing, drivers of what the recording lacks rest at 0"};
+}
+
+int SolveFile(const SolveOptions& options) {
+  const auto clip = LoadClipArgument(options.file);
+  if (!clip.ok()) return Fail(clip.status());
+  const auto rig = LoadRigArgument(options.rig);
+  if (!rig.ok()) return Fail(rig.status());
+  const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
+  if (!matcher.ok()) return Fail(matcher.status());
+  const auto match = matcher->Match(clip->skeleton, *rig, nullptr);
+  auto binding = wrinkle::RigBinding::Create(
+      *rig, clip->skeleton, clip->blend_shape_names,
+      {.allow_missing = options.allow_missing, .aliases = match.aliases});
+  if (!binding.ok()) return Fail(BindingFailed(binding.status(), options));
+  WarnOfMissing(*binding, *clip);
+
+  wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(std::move(*binding)),
+                                !options.no_filter);
+  if (options.level > 0) solver.set_num_drivers(static_cast<std::size_t>(options.level));
+  const auto writer = WeightWriter::Create(options.format);
+  writer->Names(options.drivers ? solver.binding().driver_value_names()
+                                : solver.binding().weight_names());
+  Progress progress("solving", clip->num_frames());
+  wrinkle::LocalPose pose;
+  for (int frame = 0; frame < clip->num_frames(); ++frame) {
+    clip->GetPose(frame, &pose);
+    const double dt = frame == 0 ? 0.0 : clip->times[frame] - clip->times[frame - 1];
+    if (solver.Update(pose, dt) != wrinkle::JobStatus::kOk) {
+      return Fail({StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved",
+                   options.file, "please report this file"});
+    }
+    const auto values = options.drivers ? solver.driver_values() : solver.wrinkle_weights();
+    if (!writer->Row(frame, clip->times[frame] - clip->times[0], values)) {
+      return StandardOutputFailed();
+    }
+    progress.Set(frame + 1);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddSolve(CLI::App& app, Action& action) {
+  auto options = std::make_shared<SolveOptions>();
+  CLI::App* command = app.add_subcommand(
+      "solve", "The weights of a recording, no network: what the daemon would send");
+  command
+      ->add_option("FILE", options->file,
+                   "BVH, glTF/GLB, VRMA, Live Link Face CSV or a take (.mcap)")
+      ->required();
+  command
+      ->add_option("--rig", options->rig,
+                   "Wrinkle rig (JSON), or the name of one that ships: cmu, arkit ...")
+      ->required();
+  AddSkeletonMap(*command, options->skeleton_map);
+  const std::map<std::string, TableFormat> formats{{"csv", TableFormat::kCsv},
+                                                   {"jsonl", TableFormat::kJsonl}};
+  AddChoice(*command, "--format", options->format, formats, "csv (default) or jsonl");
+  command->add_flag("--drivers", options->drivers,
+                    "Print driver values before modulation and filter");
+  command
+      ->add_option("--level", options->level,
+                   "Level of detail: only the first N of the rig's drivers (default: all)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--no-filter", options->no_filter, "Leave the filter out");
+  command->add_flag(
+      "--allow-missing", options->allow_missing,
+      "Joints and blend shapes that the recording lacks rest at 0 instead of being an error");
+  command->callback([options, &action] { action = [options] { return SolveFile(*options); }; });
+}
+
+}  // namespace furrow::cli

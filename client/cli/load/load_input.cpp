@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/load/load_input.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "base/ascii.h"
+#include "base/data_dir.h"
+#include "base/status.h"
+#include "client/cli/inputs.h"
+#include "protocol/codec/codec.h"
+#include "protocol/messages/hash.h"
+#include "protocol/messages/quantise.h"
+#include "recording/wire_pose.h"
+#include "wrinkle/rig/rig_joints.h"
+
+namespace furrow::cli {
+namespace {
+
+// How far a frame's joints leave their rest at most, along any axis: the range that it is packed
+// with.
+float Range(std::span<const wrinkle::Transform> locals, std::span<const wrinkle::Transform> rest) {
+  float range = 0.0f;
+  for (std::size_t j = 0; j < rest.size(); ++j) {
+    const glm::vec3 offset = glm::abs(locals[j].translation - rest[j].translation);
+    range = std::max({range, offset.x, offset.y, offset.z});
+  }
+  return range;
+}
+
+void QuantiseFrame(std::span<wrinkle::Transform> locals, std::span<const wrinkle::Transform> rest) {
+  const float range = Range(locals, rest);
+  for (std::size_t j = 0; j < rest.size(); ++j) {
+    glm::quat& q = locals[j].rotation;
+    protocol::Quat unpacked;
+    (void)protocol::UnpackQuat(protocol::PackQuat({q.x, q.y, q.z, q.w}), unpacked);  // just packed
+    q = glm::normalize(glm::quat(unpacked.w, unpacked.x, unpacked.y, unpacked.z));
+    for (int axis = 0; axis < 3 && range > 0.0f; ++axis) {
+      const float offset = locals[j].translation[axis] - rest[j].translation[axis];
+      locals[j].translation[axis] =
+          rest[j].translation[axis] +
+          protocol::UnpackOffset(protocol::PackOffset(offset, range), range);
+    }
+  }
+}
+
+// Whether the recording has nothing that the rig reads, by its own name or by an alias.
+bool NothingMatches(const wrinkle::Rig& rig, const motion::Clip& clip,
+                    const character::SkeletonMatch& match) {
+  const auto joints = wrinkle::JointsOf(rig);
+  const auto has_joint = [&](const std::string& name) { return joints.contains(name); };
+  const auto has_blend_shape = [&](const wrinkle::Driver& driver) {
+    return driver.kind == wrinkle::Driver::Kind::kBlendShape &&
+           std::ranges::any_of(clip.blend_shape_names, [&](const std::string& name) {
+             return EqualsIgnoreCase(name, driver.blend_shape.blend_shape);
+           });
+  };
+  return match.aliases.empty() && std::ranges::none_of(clip.skeleton.joint_names(), has_joint) &&
+         std::ranges::none_of(rig.drivers, has_blend_shape);
+}
+
+Result<std::shared_ptr<const wrinkle::RigBinding>> BindRig(const LoadInput& input,
+                                                           const motion::Clip& clip) {
+  std::string rig_name = input.rig;
+  if (rig_name.empty()) {
+    const auto shipped = furrow::FindDataFile("default.rig.json");
+    FURROW_RETURN_IF_ERROR(shipped);
+    rig_name = shipped->string();
+  }
+  const auto rig = LoadRigArgument(rig_name);
+  FURROW_RETURN_IF_ERROR(rig);
+  const auto matcher = LoadSkeletonMatcher(input.skeleton_map);
+  FURROW_RETURN_IF_ERROR(matcher);
+  const auto match = matcher->Match(clip.skeleton, *rig, nullptr);
+  auto binding = wrinkle::RigBinding::Create(*rig, clip.skeleton, clip.blend_shape_names,
+                                             {.allow_missing = true, .aliases = match.aliases});
+  if (!binding.ok()) return binding.status().At(rig_name);
+  if (NothingMatches(*rig, clip, match)) {
+    return Status(StatusCode::kNotFound, "no joint and no blend shape of the rig is in it",
+                  input.file,
+                  "weights that all rest prove nothing: choose a --rig for this "
+                  "recording, or name its joints with --skeleton-map");
+  }
+  WarnOfMissing(*binding, clip);
+  return std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
+}
+
+}  // namespace
+
+void QuantiseClip(motion::Clip* clip) {
+  const auto rest = clip->skeleton.rest_pose();
+  for (std::size_t first = 0; first + rest.size() <= clip->locals.size() && !rest.empty();
+       first += rest.size()) {
+    QuantiseFrame(std::span(clip->locals).subspan(first, rest.size()), rest);
+  }
+  for (float& value : clip->blend_shapes)
+    value = protocol::UnpackBlendShape(protocol::PackBlendShape(value));
+}
+
+Result<load::Performance> LoadPerformance(const LoadInput& input) {
+  auto loaded = LoadClipArgument(input.file);
+  FURROW_RETURN_IF_ERROR(loaded);
+  if (loaded->num_frames() == 0)
+    return Status(StatusCode::kInvalidArgument, "the recording has no frames", input.file);
+  if (input.quantise) QuantiseClip(&*loaded);
+  const auto clip = std::make_shared<const motion::Clip>(*std::move(loaded));
+  auto binding = BindRig(input, *clip);
+  FURROW_RETURN_IF_ERROR(binding);
+
+  load::Performance performance;
+  performance.offer = recording::OfferOf(*clip, clip->name, input.scale);
+  performance.times = clip->times;
+  performance.binding = *std::move(binding);
+  performance.pose = [clip](int frame, wrinkle::LocalPose* pose) { clip->GetPose(frame, pose); };
+  const auto encoding = input.quantise ? protocol::PoseEncoding::Small() : protocol::PoseEncoding{};
+  protocol::Encoder encoder;
+  protocol::PoseFrame pose;
+  pose.skeleton_hash = protocol::SkeletonHash(performance.offer);
+  for (int frame = 0; frame < clip->num_frames(); ++frame) {
+    recording::FillPose(*clip, frame, &pose);
+    encoder.Encode({.session = 1}, pose, performance.messages.emplace_back(), encoding);
+  }
+  return performance;
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/load/load_settings.h"
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "client/chaos/report.h"
+
+namespace furrow::cli {
+namespace {
+
+nlohmann::json TextOrNull(const std::string& text) {
+  return text.empty() ? nlohmann::json() : nlohmann::json(text);
+}
+
+const char* NameOf(load::Path path) {
+  switch (path) {
+    case load::Path::kTcp: return "tcp";
+    case load::Path::kBoth: return "both";
+    case load::Path::kUdp: break;
+  }
+  return "udp";
+}
+
+nlohmann::json ChaosOf(const ChaosFlags& flags) {
+  load::ChaosOptions up;
+  load::ChaosOptions down;
+  ReadChaosFlags(flags, &up, &down);
+  return {{"up", up.any() ? load::ToJson(up) : nlohmann::json()},
+          {"down", down.any() ? load::ToJson(down) : nlohmann::json()}};
+}
+
+nlohmann::json ComparisonOf(const LoadFlags& flags) {
+  const load::ComparisonOptions& options = flags.comparison;
+  return {{"find_max", flags.find_max},
+          {"baseline", flags.baseline},
+          {"rounds", options.rounds},
+          {"round_seconds", flags.round_seconds},
+          {"searches", options.searches},
+          {"probe_seconds", options.probe_seconds},
+          {"search_limit", options.search_limit},
+          {"time_limit_minutes", flags.time_limit_minutes}};
+}
+
+}  // namespace
+
+nlohmann::json SettingsOf(const LoadFlags& flags) {
+  const load::RunOptions& run = flags.run;
+  nlohmann::json json{
+      {"version", FURROW_VERSION},
+      {"host", flags.host},
+      {"file", flags.input.file},
+      {"rig", TextOrNull(flags.input.rig)},
+      {"skeleton_map", TextOrNull(flags.input.skeleton_map)},
+      {"quantise", flags.input.quantise},
+      {"scale", flags.input.scale},
+      {"path", NameOf(run.path)},
+      {"subjects", run.plan.subjects},
+      {"rate", run.plan.rate > 0.0 ? nlohmann::json(run.plan.rate) : nlohmann::json()},
+      {"duration_seconds", run.plan.seconds},
+      {"subscribers", run.watchers},
+      {"slow", run.burdens.slow},
+      {"stalled", run.burdens.stalled},
+      {"churn", run.burdens.churn},
+      {"tolerance", run.tolerance},
+      {"late_ms", flags.late_ms},
+      {"drain_seconds", run.drain_seconds},
+      {"chaos", ChaosOf(flags.chaos)}};
+  if (flags.find_max || flags.baseline) json["comparison"] = ComparisonOf(flags);
+  return json;
+}
+
+}  // namespace furrow::cli

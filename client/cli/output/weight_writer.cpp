@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/output/weight_writer.h"
+
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+#include <numeric>
+
+#include <nlohmann/json.hpp>
+
+namespace furrow::cli {
+namespace {
+
+bool Flush() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
+
+class CsvWriter : public WeightWriter {
+ public:
+  void Names(std::span<const std::string> names) override {
+    std::fputs("frame,time", stdout);
+    for (const std::string& name : names) std::printf(",%s", name.c_str());
+    std::fputc('\n', stdout);
+  }
+
+  bool Row(std::int64_t frame, double seconds, std::span<const float> values) override {
+    std::printf("%" PRId64 ",%.6f", frame, seconds);
+    for (const float value : values) std::printf(",%.6f", static_cast<double>(value));
+    std::fputc('\n', stdout);
+    return Flush();
+  }
+};
+
+class JsonlWriter : public WeightWriter {
+ public:
+  void Names(std::span<const std::string> names) override {
+    names_.assign(names.begin(), names.end());
+  }
+
+  bool Row(std::int64_t frame, double seconds, std::span<const float> values) override {
+    nlohmann::ordered_json row{{"frame", frame}, {"time", seconds}};
+    auto& weights = row["weights"] = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < std::min(names_.size(), values.size()); ++i) {
+      weights[names_[i]] = values[i];
+    }
+    std::printf("%s\n", row.dump().c_str());
+    return Flush();
+  }
+
+ private:
+  std::vector<std::string> names_;
+};
+
+class TableWriter : public WeightWriter {
+ public:
+  void Names(std::span<const std::string> names) override {
+    names_.assign(names.begin(), names.end());
+    order_.resize(names_.size());
+  }
+
+  bool Row(std::int64_t frame, double seconds, std::span<const float> values) override {
+    constexpr std::size_t kRows = 8;
+    constexpr int kBar = 30;
+    const std::size_t count = std::min(kRows, std::min(order_.size(), values.size()));
+    std::iota(order_.begin(), order_.end(), 0);
+    std::partial_sort(
+        order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(count), order_.end(),
+        [&](int a, int b) { return values[a] > values[b] || (values[a] == values[b] && a < b); });
+    std::printf("frame %" PRId64 "  %.3f s\n", frame, seconds);
+    for (std::size_t i = 0; i < count; ++i) {
+      const float value = values[order_[i]];
+      if (value < 0.005f) break;
+      const std::string bar(static_cast<std::size_t>(value * kBar + 0.5f), '#');
+      std::printf("  %-28s %.3f %s\n", names_[order_[i]].c_str(), static_cast<double>(value),
+                  bar.c_str());
+    }
+    return Flush();
+  }
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<int> order_;
+};
+
+}  // namespace
+
+std::unique_ptr<WeightWriter> WeightWriter::Create(TableFormat format) {
+  switch (format) {
+    case TableFormat::kCsv: return std::make_unique<CsvWriter>();
+    case TableFormat::kJsonl: return std::make_unique<JsonlWriter>();
+    case TableFormat::kTable: break;
+  }
+  return std::make_unique<TableWriter>();
+}
+
+}  // namespace furrow::cli

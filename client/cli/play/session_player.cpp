@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/play/session_player.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "client/cli/endpoint.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/interrupt.h"
+#include "client/cli/progress.h"
+#include "report/words.h"
+
+namespace furrow::cli {
+
+using report::Counted;
+
+using client::IoStatus;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+SessionPlayer::SessionPlayer(client::Publisher& publisher, std::vector<Track> tracks,
+                             SessionSchedule schedule, const Options& options)
+    : publisher_(publisher),
+      tracks_(std::move(tracks)),
+      schedule_(std::move(schedule)),
+      options_(options),
+      spacing_(tracks_.size()) {}
+
+int SessionPlayer::Run() {
+  Play();
+  return Report();
+}
+
+void SessionPlayer::Play() {
+  const std::int64_t capture_start = SystemMicroseconds();
+  const std::int64_t send_start = SteadyMicroseconds();
+  Progress progress("playing", schedule_.count());
+  std::int64_t sent = 0;
+  protocol::PoseFrame pose;
+  while (const auto next = schedule_.Next()) {
+    if (next->round > 0 && !options_.loop) break;
+    const Track& track = tracks_[next->track];
+    const std::int64_t due = send_start + std::llround(next->seconds * 1e6 / options_.speed);
+    if (!WaitUntil(due)) break;
+    if (!publisher_.rejection(track.stream).empty()) {
+      schedule_.Drop(next->track);
+      continue;
+    }
+    track.source->Fill(next->frame, &pose);
+    spacing_[next->track].Sent(due, SteadyMicroseconds());
+    Note(publisher_.Send(track.stream, pose, capture_start + std::llround(next->seconds * 1e6),
+                         options_.encoding));
+    progress.Set(sent++ % schedule_.count() + 1);
+  }
+}
+
+// Reads answers meanwhile: a daemon that was restarted asks for the skeletons again. False when
+// there is no use in going on.
+bool SessionPlayer::WaitUntil(std::int64_t due_us) {
+  constexpr std::int64_t kLongestWait = 100'000;  // until the next look at interrupts
+  Note(publisher_.Poll(SteadyMicroseconds(), milliseconds(0)));
+  for (;;) {
+    if (closed_ || Interrupted()) return false;
+    const std::int64_t now = SteadyMicroseconds();
+    if (now >= due_us) return true;
+    const microseconds wait(std::min(due_us - now, kLongestWait));
+    const auto whole = std::chrono::duration_cast<milliseconds>(wait);
+    const IoStatus status = whole.count() > 0 ? publisher_.Poll(now, whole) : IoStatus::kTimeout;
+    Note(status);
+    // A refusal comes at once, and a rest of less than a millisecond cannot be polled.
+    if (whole.count() == 0 || status == IoStatus::kNoConnection) std::this_thread::sleep_for(wait);
+  }
+}
+
+void SessionPlayer::Note(IoStatus status) {
+  closed_ = closed_ || status == IoStatus::kClosed || status == IoStatus::kMalformed;
+  if (status == IoStatus::kNoConnection) ++refused_;
+}
+
+int SessionPlayer::Report() const {
+  if (closed_) {
+    std::fprintf(stderr, "furrow: the daemon closed the connection\n");
+    return kNoConnection;
+  }
+  int exit_code = kDone;
+  Spacing spacing;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    spacing.Add(spacing_[i]);
+    const std::string& why = publisher_.rejection(tracks_[i].stream);
+    if (why.empty()) continue;
+    std::fprintf(stderr, "furrow: the daemon takes no more poses of '%s': %s\n",
+                 tracks_[i].source->subject().c_str(), why.c_str());
+    exit_code = kFailed;
+  }
+  if (refused_ > 0) {
+    std::fprintf(stderr, "furrow: nobody listened for %" PRId64 " of %s\n",
+                 std::min(refused_, spacing.count()), Counted(spacing.count(), "pose").c_str());
+    return kNoConnection;
+  }
+  std::string poses = Counted(spacing.count(), "pose");
+  if (tracks_.size() > 1) poses += " of " + std::to_string(tracks_.size()) + " subjects";
+  std::fprintf(stderr, "furrow: %s; spacing off by %.3f ms on average, %.3f ms at most\n",
+               poses.c_str(), spacing.mean_ms(), spacing.largest_ms());
+  return exit_code;
+}
+
+}  // namespace furrow::cli

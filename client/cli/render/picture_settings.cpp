@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/render/picture_settings.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "base/status.h"
+
+namespace furrow::cli {
+namespace {
+
+CLI::Validator SettingValidator(std::string prefix) {
+  return {[prefix = std::move(prefix)](std::string& value) {
+            render::Settings unused;
+            const Status status = render::SetSetting(prefix + value, &unused);
+            return status.ok() ? std::string() : status.ToString();
+          },
+          ""};
+}
+
+// An option that sets one setting; its help and what it may be come from the setting itself.
+void AddShorthand(CLI::App& command, const std::string& option, const std::string& setting,
+                  PictureOptions* options) {
+  const render::SettingInfo& info = InfoOf(setting);
+  command
+      .add_option_function<std::string>(
+          option,
+          [options, setting](const std::string& value) {
+            options->shorthands.push_back(setting + "=" + value);
+          },
+          std::string(info.help) + ": " + info.allowed + " (default " + info.default_value + ")")
+      ->check(SettingValidator(setting + "="))
+      ->type_name("");
+}
+
+// Pictures that are kept may take their time on any device.
+render::Settings Defaults() {
+  render::Settings settings;
+  settings.anti_aliasing.samples = 4;
+  return settings;
+}
+
+}  // namespace
+
+const render::SettingInfo& InfoOf(const std::string& name) {
+  return *std::ranges::find(render::AllSettings(), name, &render::SettingInfo::name);
+}
+
+void AddPictureOptions(CLI::App& command, PictureOptions* options) {
+  AddShorthand(command, "--view", "view", options);
+  AddShorthand(command, "--shading", "shading", options);
+  AddShorthand(command, "--lights", "lights.preset", options);
+  AddShorthand(command, "--wrinkles", "wrinkles", options);
+  AddShorthand(command, "--normal-blend", "normal_blend", options);
+  command.add_option("--settings", options->files,
+                     "TOML files of settings, as --print-settings writes them");
+  command
+      .add_option("--set", options->set,
+                  "NAME=VALUE, any setting: subsurface.method=burley; see --print-settings")
+      ->check(SettingValidator(""));
+  command.add_flag_callback(
+      "--print-settings",
+      [] {
+        std::fputs(render::SettingsToToml(Defaults()).c_str(), stdout);
+        throw CLI::Success();
+      },
+      "Print all settings as TOML, with their ranges and units, and end");
+}
+
+Result<render::Settings> SettingsOf(const PictureOptions& options) {
+  render::Settings settings = Defaults();
+  for (const std::string& file : options.files) {
+    FURROW_RETURN_IF_ERROR(render::LoadSettings(file, &settings));
+  }
+  for (const auto* assignments : {&options.set, &options.shorthands}) {
+    for (const std::string& assignment : *assignments) {
+      FURROW_RETURN_IF_ERROR(render::SetSetting(assignment, &settings));
+    }
+  }
+  return settings;
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "client/load/compare/comparison.h"
+
+namespace furrow::load {
+
+// A table of the figures, the highest rate, and sentences about what spoils them.
+[[nodiscard]] std::string ToText(const Comparison& comparison);
+[[nodiscard]] nlohmann::json ToJson(const Comparison& comparison);
+
+}  // namespace furrow::load

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/load/compare/rate_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace furrow::load {
+
+void RateSearch::Tried(bool held) {
+  if (done_) return;
+  if (held) {
+    best_ = rate_;
+    failures_ = 0;
+    Next();
+  } else if (++failures_ >= tries_) {
+    worst_ = rate_;
+    failures_ = 0;
+    Next();
+  }
+}
+
+void RateSearch::Next() {
+  if (worst_ == 0.0) {
+    done_ = rate_ >= limit_;
+    rate_ = std::min(rate_ * 2.0, limit_);
+  } else if (best_ == 0.0) {
+    // Not even the start: down by halves, but not for ever.
+    rate_ = worst_ / 2.0;
+    done_ = rate_ < 1.0;
+  } else {
+    done_ = worst_ / best_ <= precision_;
+    rate_ = std::sqrt(best_ * worst_);
+  }
+}
+
+}  // namespace furrow::load

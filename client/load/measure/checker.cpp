@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/load/measure/checker.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "client/load/measure/replay.h"
+
+namespace furrow::load {
+namespace {
+
+// Rows beyond it are not settled but counted as unchecked: a server that is all wrong need not be
+// proved so a million times.
+constexpr std::size_t kMaxDisputedValues = std::size_t{8} << 20;
+// And so many wrong ones are looked for in the whole table.
+constexpr std::uint64_t kMaxClassified = 10'000;
+// A replay that begins late is exact where it says what the table says to this.
+constexpr float kExact = 1e-6f;
+
+}  // namespace
+
+Checker::Checker(const Plan& plan, const Expected* expected, const CheckOptions& options)
+    : plan_(plan), expected_(expected), options_(options), windows_(kWindows) {
+  const auto subjects = static_cast<std::size_t>(plan.num_subjects());
+  sent_.resize(subjects);
+  tracks_.resize(subjects * static_cast<std::size_t>(options.watchers));
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    tracks_[i].subject = static_cast<std::uint32_t>(i % subjects);
+    const std::uint32_t count = plan.count(tracks_[i].subject);
+    tracks_[i].seen.resize(count);
+    if (i < subjects) sent_[i].resize(count);
+  }
+}
+
+void Checker::OnSent(std::uint32_t subject, std::uint32_t pose, bool left) {
+  ++tally_.offered;
+  if (!left) return;
+  ++tally_.sent;
+  tally_.expected += static_cast<std::uint64_t>(options_.watchers);
+  sent_[subject][pose] = true;
+}
+
+void Checker::OnWeights(int watcher, std::uint32_t subject, std::uint32_t sequence,
+                        std::span<const float> values, bool readable, std::int64_t now_us) {
+  if (subject >= sent_.size() || sequence >= sent_[subject].size() || !sent_[subject][sequence]) {
+    ++tally_.never_sent;
+    return;
+  }
+  Track& track = tracks_[static_cast<std::size_t>(watcher) * sent_.size() + subject];
+  if (track.seen[sequence]) {
+    ++tally_.duplicates;
+    return;
+  }
+  track.seen[sequence] = true;
+  ++tally_.received;
+  if (sequence < track.newest) ++tally_.reordered;
+  track.newest = std::max<std::int64_t>(track.newest, sequence);
+  const std::int64_t due_us = plan_.DueUs(subject, sequence);
+  const std::int64_t latency_us = now_us - due_us;
+  if (latency_us > options_.late_us) ++tally_.late;
+  if (latency_us < 0) ++tally_.early;
+  latency_.Record(latency_us * 1000);
+  const double share = static_cast<double>(due_us) * 1e-6 / options_.seconds;
+  const auto window = static_cast<std::size_t>(share * static_cast<double>(kWindows));
+  windows_[std::min(window, kWindows - 1)].Record(latency_us * 1000);
+  if (readable && expected_ != nullptr) {
+    Compare(track, subject, sequence, values);
+  } else {
+    ++tally_.unchecked;
+  }
+}
+
+void Checker::Compare(Track& track, std::uint32_t subject, std::uint32_t pose,
+                      std::span<const float> values) {
+  const auto row = expected_->Row(plan_.phase_of(subject), pose);
+  const float difference = Distance(values, row);
+  if (values.size() != row.size()) {
+    ++tally_.checked;
+    ++tally_.wrong;
+  } else if (difference <= options_.tolerance) {
+    ++tally_.checked;
+    tally_.largest_difference = std::max(tally_.largest_difference, difference);
+  } else if (dispute_values_.size() + values.size() > kMaxDisputedValues) {
+    ++tally_.unchecked;
+    ++tally_.unfollowed;
+    track.unfollowed.push_back(pose);
+  } else {
+    track.disputes.push_back({pose, dispute_values_.size()});
+    dispute_values_.insert(dispute_values_.end(), values.begin(), values.end());
+  }
+}
+
+// `difference`: from the nearest that the solver could have said.
+void Checker::Judge(std::span<const float> values, float difference) {
+  ++tally_.checked;
+  if (difference <= options_.tolerance) {
+    tally_.largest_difference = std::max(tally_.largest_difference, difference);
+    return;
+  }
+  ++tally_.wrong;
+  if (tally_.wrong > kMaxClassified) {
+    ++tally_.unclassified;
+  } else if (expected_->Find(values, options_.tolerance)) {
+    ++tally_.swapped;
+  }
+}
+
+// The replay of one track, from a while before what is disputed.
+class Checker::Settlement {
+ public:
+  Settlement(const Checker& checker, const Performance& performance, const Track& track)
+      : checker_(checker),
+        performance_(performance),
+        track_(track),
+        phase_(checker.plan_.phase_of(track.subject)),
+        replay_(Begin(0)) {}
+
+  // How far these values of a disputed pose are from what is possible, as Replay::Disputed(). To be
+  // asked in the order of the poses.
+  std::optional<float> Judge(const Dispute& dispute, std::span<const float> values) {
+    while (next_ < dispute.pose) {
+      if (track_.seen[next_]) {
+        Agree(NextGap(dispute.pose));
+      } else {
+        replay_->Missing(next_++);
+      }
+    }
+    return replay_->Disputed(next_++, values);
+  }
+
+ private:
+  [[nodiscard]] Replay Begin(std::uint32_t first) const {
+    return {performance_,
+            checker_.plan_,
+            track_.subject,
+            *checker_.expected_,
+            checker_.options_.tolerance,
+            first};
+  }
+  [[nodiscard]] std::uint32_t NextGap(std::uint32_t end) const {
+    std::uint32_t pose = next_;
+    while (pose < end && track_.seen[pose]) ++pose;
+    return pose;
+  }
+  // All up to `end` came and were right. Where that is long enough for a filter to forget what was
+  // before, a new replay of the last seconds alone tells as much, if it proves to be exact.
+  void Agree(std::uint32_t end) {
+    const Plan& plan = checker_.plan_;
+    const std::int64_t from_us = plan.CaptureUs(phase_, end) - kFilterMemoryUs;
+    if (forgets_ && from_us > plan.CaptureUs(phase_, next_)) {
+      std::uint32_t pose = end;
+      while (plan.CaptureUs(phase_, pose - 1) >= from_us) --pose;
+      Replay late = Begin(pose);
+      float worst = 0.0f;  // of the last fifth
+      for (; pose < end; ++pose) {
+        const float difference = late.Agreed(pose);
+        if (plan.CaptureUs(phase_, pose) > from_us + kFilterMemoryUs / 5 * 4)
+          worst = std::max(worst, difference);
+      }
+      forgets_ = worst <= kExact;
+      if (forgets_) {
+        replay_.emplace(std::move(late));
+        next_ = end;
+      }
+    }
+    while (next_ < end) replay_->Agreed(next_++);
+  }
+
+  const Checker& checker_;
+  const Performance& performance_;
+  const Track& track_;
+  int phase_;
+  std::optional<Replay> replay_;
+  std::uint32_t next_ = 0;
+  bool forgets_ = true;
+};
+
+bool Checker::Settle(const Performance& performance,
+                     const std::function<bool(double share)>& progress) {
+  std::size_t total = 0;
+  for (const Track& track : tracks_) total += track.disputes.size();
+  std::size_t done = 0;
+  for (Track& track : tracks_) {
+    if (track.disputes.empty()) continue;
+    std::ranges::sort(track.disputes, {}, &Dispute::pose);
+    // What these said is not known any more, so they tell as little as if they had not come.
+    for (const std::uint32_t pose : track.unfollowed) track.seen[pose] = false;
+    Settlement settlement(*this, performance, track);
+    for (const Dispute& dispute : track.disputes) {
+      if (!progress(static_cast<double>(done) / static_cast<double>(total))) {
+        tally_.unchecked += total - done;
+        return false;
+      }
+      const std::span<const float> values =
+          std::span(dispute_values_)
+              .subspan(dispute.row, performance.binding->weight_names().size());
+      if (const auto difference = settlement.Judge(dispute, values)) {
+        Judge(values, *difference);
+      } else {
+        ++tally_.unchecked;
+      }
+      ++done;
+    }
+  }
+  return true;
+}
+
+}  // namespace furrow::load

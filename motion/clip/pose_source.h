@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "motion/clip/clip.h"
+#include "wrinkle/skeleton/pose_frame.h"
+
+namespace furrow::motion {
+
+// A wrinkle::PoseSource over LoadClip() that keeps the recording it read last: a rig that names
+// sixty frames of one file reads it once. A file that changed on disk (size or time) is read anew.
+//
+// - Copies share the recording. Not for several threads at once.
+// - Errors: LoadClip()'s, kInvalidArgument (no such frame; the message says how many there are),
+//   kUnsupported (a recording without joints).
+class CachedPoseSource {
+ public:
+  explicit CachedPoseSource(const LoadOptions& options = {});
+
+  [[nodiscard]] Result<wrinkle::PoseFrame> operator()(const std::filesystem::path& path,
+                                                      int frame) const;
+
+ private:
+  struct Entry;
+  LoadOptions options_;
+  std::shared_ptr<Entry> entry_;
+};
+
+}  // namespace furrow::motion

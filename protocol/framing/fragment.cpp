@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "protocol/framing/fragment.h"
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+#include <utility>
+
+#include "protocol/messages/bytes.h"
+
+namespace furrow::protocol {
+namespace {
+
+constexpr std::size_t kSliceOffset = kEnvelopeBytes + kFragmentHeaderBytes;
+
+struct Slice {
+  std::uint32_t message_id = 0;
+  std::size_t index = 0;
+  std::size_t count = 0;
+  std::span<const std::uint8_t> bytes;
+};
+
+std::size_t CountFor(std::size_t payload_bytes) {
+  return (payload_bytes + kFragmentPayloadBytes - 1) / kFragmentPayloadBytes;
+}
+
+std::size_t SliceBytes(std::size_t payload_bytes, std::size_t index) {
+  return std::min(kFragmentPayloadBytes, payload_bytes - index * kFragmentPayloadBytes);
+}
+
+// False unless every number follows from the payload size.
+bool ReadSlice(std::span<const std::uint8_t> datagram, const Envelope& envelope,
+               std::size_t max_message_bytes, Slice& slice) {
+  const std::size_t payload = envelope.payload_bytes;
+  if (datagram.size() < kSliceOffset) return false;
+  if (payload + kEnvelopeBytes <= kMaxDatagramBytes) return false;
+  if (payload > max_message_bytes - kEnvelopeBytes) return false;
+  const std::uint8_t* at = datagram.data() + kEnvelopeBytes;
+  slice.message_id = LoadLittle<std::uint32_t>(at);
+  slice.index = LoadLittle<std::uint16_t>(at + 4);
+  slice.count = LoadLittle<std::uint16_t>(at + 6);
+  if (slice.count != CountFor(payload) || slice.index >= slice.count) return false;
+  slice.bytes = datagram.subspan(kSliceOffset);
+  return slice.bytes.size() == SliceBytes(payload, slice.index);
+}
+
+}  // namespace
+
+std::size_t NumDatagrams(std::size_t message_bytes) {
+  return message_bytes <= kMaxDatagramBytes ? 1 : CountFor(message_bytes - kEnvelopeBytes);
+}
+
+std::size_t WriteDatagram(std::span<const std::uint8_t> message, std::uint32_t message_id,
+                          std::size_t index, std::span<std::uint8_t> out) {
+  const std::size_t count = NumDatagrams(message.size());
+  if (count == 1) {
+    std::memcpy(out.data(), message.data(), message.size());
+    return message.size();
+  }
+  const std::span<const std::uint8_t> payload = message.subspan(kEnvelopeBytes);
+  const std::size_t size = SliceBytes(payload.size(), index);
+  std::memcpy(out.data(), message.data(), kEnvelopeBytes);
+  out[5] |= kFlagFragment;
+  StoreLittle(message_id, &out[kEnvelopeBytes]);
+  StoreLittle(static_cast<std::uint16_t>(index), &out[kEnvelopeBytes + 4]);
+  StoreLittle(static_cast<std::uint16_t>(count), &out[kEnvelopeBytes + 6]);
+  std::memcpy(&out[kSliceOffset], payload.data() + index * kFragmentPayloadBytes, size);
+  return kSliceOffset + size;
+}
+
+Reassembler::Reassembler(const ReassemblyLimits& limits) : limits_(limits) {}
+
+FragmentStatus Reassembler::Push(std::uint64_t peer, std::span<const std::uint8_t> datagram,
+                                 std::int64_t now_us, std::span<const std::uint8_t>& message) {
+  Envelope envelope;
+  if (ReadEnvelope(datagram, envelope) != EnvelopeStatus::kOk ||
+      (envelope.flags & kFlagFragment) == 0) {
+    message = datagram;  // OpenMessage() says what is wrong with it, if anything
+    return FragmentStatus::kWhole;
+  }
+  Slice slice;
+  if (!ReadSlice(datagram, envelope, limits_.max_message_bytes, slice)) {
+    return FragmentStatus::kMalformed;
+  }
+  if (kEnvelopeBytes + envelope.payload_bytes > limits_.max_total_bytes) {
+    return FragmentStatus::kOverLimit;
+  }
+  const Key key{peer, envelope.header.session, slice.message_id};
+  const auto found = pending_.find(key);
+  Pending& pending =
+      found != pending_.end() ? found->second : Begin(key, envelope, slice.count, now_us);
+  if (pending.envelope.header != envelope.header ||
+      pending.envelope.payload_bytes != envelope.payload_bytes) {
+    return FragmentStatus::kMalformed;
+  }
+  if (pending.have[slice.index]) return FragmentStatus::kDuplicate;
+  pending.have[slice.index] = true;
+  std::memcpy(&pending.bytes[kEnvelopeBytes + slice.index * kFragmentPayloadBytes],
+              slice.bytes.data(), slice.bytes.size());
+  if (--pending.missing > 0) return FragmentStatus::kPending;
+  pending_bytes_ -= pending.bytes.size();
+  done_.swap(pending.bytes);
+  pending.bytes.clear();
+  Remove(pending_.find(key));
+  message = done_;
+  return FragmentStatus::kComplete;
+}
+
+Reassembler::Pending& Reassembler::Begin(const Key& key, const Envelope& envelope,
+                                         std::size_t count, std::int64_t now_us) {
+  const std::size_t bytes = kEnvelopeBytes + envelope.payload_bytes;
+  MakeRoom(key.peer, bytes);
+  Pending& pending = pending_[key];
+  pending.age = by_age_.insert(by_age_.end(), key);
+  pending.envelope = envelope;
+  pending.first_us = now_us;
+  pending.missing = count;
+  pending.have.resize(count);
+  pending.bytes.resize(bytes);
+  Envelope whole = envelope;
+  whole.flags = 0;
+  WriteEnvelope(whole,
+                std::span<std::uint8_t, kEnvelopeBytes>(pending.bytes.data(), kEnvelopeBytes));
+  pending_bytes_ += bytes;
+  return pending;
+}
+
+// First the peer's own oldest gives way, then anybody's. The pieces of a message come one behind
+// the other, so a flood of beginnings pushes out other beginnings; were it refused instead, a few
+// datagrams a second from many ports could keep every large message out.
+void Reassembler::MakeRoom(std::uint64_t peer, std::size_t bytes) {
+  std::size_t count = 0;
+  auto oldest = pending_.end();
+  for (auto it = pending_.lower_bound(Key{peer, 0, 0});
+       it != pending_.end() && it->first.peer == peer; ++it, ++count) {
+    if (oldest == pending_.end() || it->second.first_us < oldest->second.first_us) oldest = it;
+  }
+  if (count >= limits_.max_pending_per_peer && oldest != pending_.end()) {
+    Remove(oldest);
+    ++pushed_out_;
+  }
+  while (pending_bytes_ + bytes > limits_.max_total_bytes) {
+    Remove(pending_.find(by_age_.front()));
+    ++pushed_out_;
+  }
+}
+
+void Reassembler::Remove(PendingMap::iterator it) {
+  pending_bytes_ -= it->second.bytes.size();
+  by_age_.erase(it->second.age);
+  pending_.erase(it);
+}
+
+std::size_t Reassembler::Expire(std::int64_t now_us) {
+  std::size_t given_up = std::exchange(pushed_out_, 0);
+  while (!by_age_.empty()) {
+    const auto oldest = pending_.find(by_age_.front());
+    if (now_us - oldest->second.first_us <= limits_.max_age_us) break;
+    Remove(oldest);
+    ++given_up;
+  }
+  return given_up;
+}
+
+void Reassembler::ForgetPeer(std::uint64_t peer) {
+  auto it = pending_.lower_bound(Key{peer, 0, 0});
+  while (it != pending_.end() && it->first.peer == peer) {
+    const auto next = std::next(it);
+    Remove(it);
+    it = next;
+  }
+}
+
+}  // namespace furrow::protocol

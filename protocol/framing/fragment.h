@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "protocol/framing/envelope.h"
+
+namespace furrow::protocol {
+
+// A fragment is the message's own envelope with kFlagFragment set, then u32 message id, u16 index,
+// u16 count, then a slice of the payload. All slices but the last have kFragmentPayloadBytes, so
+// that every size and place follows from the envelope and nothing can lie (STANDARD.md section 3).
+inline constexpr std::size_t kFragmentHeaderBytes = 8;
+inline constexpr std::size_t kFragmentPayloadBytes =
+    kMaxDatagramBytes - kEnvelopeBytes - kFragmentHeaderBytes;
+
+// How many datagrams carry a message of this size (envelope included): 1 if it fits as it is.
+[[nodiscard]] std::size_t NumDatagrams(std::size_t message_bytes);
+
+// Writes datagram `index` of `message` (an Encode() result of at most kMaxUdpMessageBytes) and
+// returns its size. `message_id`: any number that differs between the fragmented messages of a
+// session; a counter. `out` needs kMaxDatagramBytes.
+std::size_t WriteDatagram(std::span<const std::uint8_t> message, std::uint32_t message_id,
+                          std::size_t index, std::span<std::uint8_t> out);
+
+struct ReassemblyLimits {
+  std::size_t max_message_bytes = kMaxUdpMessageBytes;
+  std::size_t max_pending_per_peer = 4;           // unfinished messages; the oldest gives way
+  std::size_t max_total_bytes = 8 * 1024 * 1024;  // over all peers; the oldest give way
+  std::int64_t max_age_us = 1'000'000;            // an unfinished message is forgotten after this
+};
+
+enum class FragmentStatus : std::uint8_t {
+  kWhole = 0,  // not a fragment: the datagram is the message
+  kComplete,   // the last missing piece: `message` is whole
+  kPending,    // kept
+  kDuplicate,
+  kMalformed,  // sizes that do not follow from the envelope, or differ from earlier fragments
+  kOverLimit,  // a message above max_total_bytes by itself
+};
+
+// Puts messages together again; bounded in memory, and time is a parameter.
+class Reassembler {
+ public:
+  explicit Reassembler(const ReassemblyLimits& limits = {});
+  Reassembler(const Reassembler&) = delete;
+  Reassembler& operator=(const Reassembler&) = delete;
+
+  // `peer`: the caller's number for the source address. On kWhole and kComplete `message` is a
+  // whole message for OpenMessage(), valid until the next call.
+  [[nodiscard]] FragmentStatus Push(std::uint64_t peer, std::span<const std::uint8_t> datagram,
+                                    std::int64_t now_us, std::span<const std::uint8_t>& message);
+
+  // Forgets what is too old. Returns how many messages were given up since the last call, for their
+  // age or for want of room. Call it about once a second.
+  std::size_t Expire(std::int64_t now_us);
+  void ForgetPeer(std::uint64_t peer);
+
+  [[nodiscard]] std::size_t pending_messages() const { return pending_.size(); }
+  [[nodiscard]] std::size_t pending_bytes() const { return pending_bytes_; }
+
+ private:
+  struct Key {
+    std::uint64_t peer = 0;
+    std::uint64_t session = 0;
+    std::uint32_t message_id = 0;
+    friend auto operator<=>(const Key&, const Key&) = default;
+  };
+  struct Pending {
+    std::list<Key>::iterator age;  // its place in by_age_
+    Envelope envelope;
+    std::int64_t first_us = 0;
+    std::size_t missing = 0;
+    std::vector<bool> have;
+    std::vector<std::uint8_t> bytes;  // envelope and payload
+  };
+  using PendingMap = std::map<Key, Pending>;
+
+  [[nodiscard]] Pending& Begin(const Key& key, const Envelope& envelope, std::size_t count,
+                               std::int64_t now_us);
+  void MakeRoom(std::uint64_t peer, std::size_t bytes);
+  void Remove(PendingMap::iterator it);
+
+  ReassemblyLimits limits_;
+  PendingMap pending_;
+  std::list<Key> by_age_;  // oldest first
+  std::size_t pending_bytes_ = 0;
+  std::size_t pushed_out_ = 0;  // since the last Expire()
+  std::vector<std::uint8_t> done_;
+};
+
+}  // namespace furrow::protocol

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "protocol/framing/sequence.h"
+
+#include <algorithm>
+
+namespace furrow::protocol {
+
+SequenceStatus SequenceWindow::Accept(std::uint64_t session, std::uint32_t sequence) {
+  if (!started_ || session != session_) {
+    if (std::find(old_sessions_.begin(), old_sessions_.end(), session) != old_sessions_.end()) {
+      return SequenceStatus::kOldSession;
+    }
+    Start(session, sequence);
+    return SequenceStatus::kRestart;
+  }
+  const auto ahead = static_cast<std::int32_t>(sequence - newest_);
+  if (ahead > 0) {
+    Advance(sequence);
+    return SequenceStatus::kNewest;
+  }
+  const std::uint32_t behind = newest_ - sequence;
+  if (behind >= kWindow) return SequenceStatus::kLate;
+  if (TestAndSet(sequence)) return SequenceStatus::kDuplicate;
+  // What comes after all is no longer lost; what precedes the first was never counted.
+  if (static_cast<std::int32_t>(sequence - first_) > 0 && lost_ > 0) --lost_;
+  return SequenceStatus::kLate;
+}
+
+void SequenceWindow::Start(std::uint64_t session, std::uint32_t sequence) {
+  if (started_) old_sessions_[next_old_++ % old_sessions_.size()] = session_;
+  started_ = true;
+  session_ = session;
+  newest_ = first_ = sequence;
+  seen_.fill(0);
+  (void)TestAndSet(sequence);
+}
+
+bool SequenceWindow::TestAndSet(std::uint32_t sequence) {
+  const std::uint32_t slot = sequence % kWindow;
+  std::uint64_t& word = seen_[slot / 64];
+  const std::uint64_t bit = std::uint64_t{1} << (slot % 64);
+  const bool was_set = (word & bit) != 0;
+  word |= bit;
+  return was_set;
+}
+
+void SequenceWindow::Advance(std::uint32_t sequence) {
+  const std::uint32_t skipped = sequence - newest_ - 1;
+  lost_ += skipped;
+  if (skipped + 1 >= kWindow) {
+    seen_.fill(0);
+  } else {
+    for (std::uint32_t s = newest_ + 1; s != sequence; ++s) {
+      seen_[s % kWindow / 64] &= ~(std::uint64_t{1} << (s % 64));
+    }
+    seen_[sequence % kWindow / 64] &= ~(std::uint64_t{1} << (sequence % 64));
+  }
+  newest_ = sequence;
+  (void)TestAndSet(sequence);
+}
+
+}  // namespace furrow::protocol

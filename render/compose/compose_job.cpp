@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled once for each instruction set and chosen at run time: Highway includes this file again
+// and again. Vectors without a fixed size (SVE, RVV) are left out: no type can name them.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/compose/compose_job.cpp"
+#include "render/compose/compose_job.h"
+
+#include <algorithm>
+#include <array>
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace furrow::render::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, 16>;
+using Float = hn::Vec<Floats>;
+using Halves = hn::Rebind<hwy::float16_t, Floats>;
+using Words = hn::Rebind<std::uint16_t, Floats>;
+using Bytes = hn::Rebind<std::uint8_t, Floats>;
+using Ints = hn::Rebind<std::int32_t, Floats>;
+
+constexpr std::size_t kPlane = ComposeTile::kTexels;
+constexpr std::size_t kBlock = 256;  // texels that are worked on at once, within the first cache
+static_assert(kPlane % kBlock == 0);
+using Numbers = std::array<float, kBlock>;
+
+HWY_INLINE Float LoadHalves(const std::uint16_t* from) {
+  return hn::PromoteTo(Floats(),
+                       hn::LoadU(Halves(), reinterpret_cast<const hwy::float16_t*>(from)));
+}
+
+HWY_INLINE hn::Vec<Words> ToHalves(Float v) {
+  return hn::BitCast(Words(), hn::DemoteTo(Halves(), v));
+}
+
+HWY_INLINE hn::Vec<Words> ToHalves(const float* from) {
+  return ToHalves(hn::LoadU(Floats(), from));
+}
+
+// Calls `visit` with the first of every group of lanes of a block.
+template <class Visit>
+HWY_INLINE void ForLanes(Visit visit) {
+  for (std::size_t i = 0; i < kBlock; i += hn::Lanes(Floats())) visit(i);
+}
+
+// Adds masks times their weights on a map in the block that begins at texel `first`. False: it is
+// not at work there.
+bool AddMasks(const ComposeJob& job, const std::vector<ComposeTile::Mask>& masks, std::size_t map,
+              std::size_t first, Numbers* sums) {
+  const std::size_t maps = job.tile->maps.size();
+  bool is_at_work = false;
+  for (const ComposeTile::Mask& mask : masks) {
+    const float weight = job.ink->weights[mask.channel * maps + map];
+    if (!(weight > 0.0f)) continue;
+    const Float scale = hn::Set(Floats(), weight / 255.0f);
+    ForLanes([&](std::size_t i) HWY_ATTR {
+      const auto bytes = hn::PromoteTo(Ints(), hn::LoadU(Bytes(), &mask.values[first + i]));
+      float* const to = &(*sums)[i];
+      hn::StoreU(hn::MulAdd(hn::ConvertTo(Floats(), bytes), scale, hn::LoadU(Floats(), to)),
+                 Floats(), to);
+    });
+    is_at_work = true;
+  }
+  return is_at_work;
+}
+
+// The coefficients of a map in a block. False: it is not at work there.
+bool Coefficients(const ComposeJob& job, std::size_t map, std::size_t first, Numbers* sums) {
+  sums->fill(0.0f);
+  bool is_at_work = AddMasks(job, job.tile->skinned, map, first, sums);
+  if (is_at_work) {
+    ForLanes([&](std::size_t i) HWY_ATTR {
+      float* const to = &(*sums)[i];
+      hn::StoreU(hn::Min(hn::LoadU(Floats(), to), hn::Set(Floats(), 1.0f)), Floats(), to);
+    });
+  }
+  is_at_work |= AddMasks(job, job.tile->masks, map, first, sums);
+  return is_at_work;
+}
+
+// n.x / n.z, n.y / n.z, variance.
+using Slopes = std::array<Numbers, 3>;
+// Red, green, blue and cavity.
+using Looks = std::array<Numbers, 4>;
+
+// Three planes of halves.
+template <std::size_t count>
+void LoadPlanes(const std::vector<std::uint16_t>& planes, std::size_t first,
+                std::array<Numbers, count>* numbers) {
+  ForLanes([&](std::size_t i) HWY_ATTR {
+    for (std::size_t k = 0; k < 3; ++k) {
+      hn::StoreU(LoadHalves(&planes[k * kPlane + first + i]), Floats(), &(*numbers)[k][i]);
+    }
+  });
+}
+
+void AddSlopes(const ComposeJob& job, std::size_t map, std::size_t first,
+               const Numbers& coefficients, Slopes* sums) {
+  const std::vector<std::uint16_t>& from = job.tile->maps[map].slopes;
+  const Float amplitude = hn::Set(Floats(), job.ink->amplitudes[map]);
+  ForLanes([&](std::size_t i) HWY_ATTR {
+    const Floats d;
+    const Float w = hn::Mul(hn::LoadU(d, &coefficients[i]), amplitude);
+    for (std::size_t k = 0; k < 3; ++k) {
+      float* const to = &(*sums)[k][i];
+      const Float by = k < 2 ? w : hn::Mul(w, w);
+      hn::StoreU(hn::MulAdd(by, LoadHalves(&from[k * kPlane + first + i]), hn::LoadU(d, to)), d,
+                 to);
+    }
+  });
+}
+
+void MultiplyLooks(const ComposeJob& job, std::size_t map, std::size_t first,
+                   const Numbers& coefficients, Looks* looks) {
+  const std::vector<std::uint16_t>& from = job.tile->maps[map].looks;
+  if (from.empty()) return;
+  ForLanes([&](std::size_t i) HWY_ATTR {
+    const Floats d;
+    const Float one = hn::Set(d, 1.0f);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Float strength = hn::Set(d, k < 3 ? job.ink->looks.x : job.ink->looks.y);
+      const Float scale = hn::Set(d, k < 3 ? job.ink->scales[map] : 1.0f);
+      const Float w = hn::Mul(hn::LoadU(d, &coefficients[i]), strength);
+      const Float look = hn::MulSub(LoadHalves(&from[k * kPlane + first + i]), scale, one);
+      const Float factor = hn::Max(hn::MulAdd(w, look, one), hn::Zero(d));
+      float* const to = &(*looks)[k][i];
+      hn::StoreU(hn::Mul(hn::LoadU(d, to), factor), d, to);
+    }
+  });
+}
+
+// cavity() of shaders/common_surface_frag.glsl tells hollows by their dark base colour alone.
+void KeepHollows(const ComposeTile& tile, std::size_t first, Looks* looks) {
+  const Float hollow = hn::Set(Floats(), tile.hollow);
+  ForLanes([&](std::size_t i) HWY_ATTR {
+    float* const green = &(*looks)[1][i];
+    const Float least = hn::Min(LoadHalves(&tile.colour[kPlane + first + i]), hollow);
+    hn::StoreU(hn::Max(hn::LoadU(Floats(), green), least), Floats(), green);
+  });
+}
+
+// Where a texel of the tile goes.
+HWY_INLINE std::size_t Place(const ComposeJob& job, std::size_t texel) {
+  return 4 * (texel / ComposeTile::kSide * job.stride + texel % ComposeTile::kSide);
+}
+
+void StoreSlopes(const ComposeJob& job, std::size_t first, const Slopes& sums) {
+  ForLanes([&](std::size_t i) HWY_ATTR {
+    const Floats d;
+    const Float x = hn::LoadU(d, &sums[0][i]);
+    const Float y = hn::LoadU(d, &sums[1][i]);
+    const Float variance = hn::LoadU(d, &sums[2][i]);
+    hn::StoreInterleaved4(ToHalves(x), ToHalves(y), ToHalves(hn::MulAdd(x, x, variance)),
+                          ToHalves(hn::MulAdd(y, y, variance)), Words(),
+                          &job.slopes[Place(job, first + i)]);
+  });
+}
+
+void StoreLooks(const ComposeJob& job, std::size_t first, const Looks& looks) {
+  ForLanes([&](std::size_t i) HWY_ATTR {
+    hn::StoreInterleaved4(ToHalves(&looks[0][i]), ToHalves(&looks[1][i]), ToHalves(&looks[2][i]),
+                          ToHalves(&looks[3][i]), Words(), &job.colours[Place(job, first + i)]);
+  });
+}
+
+void ComposeBlock(const ComposeJob& job, std::size_t first) {
+  const ComposeTile& tile = *job.tile;
+  const bool has_looks = !tile.colour.empty();
+  Numbers coefficients;
+  Slopes slopes;
+  Looks looks;
+  LoadPlanes(tile.slopes, first, &slopes);
+  if (has_looks) {
+    LoadPlanes(tile.colour, first, &looks);
+    looks[3].fill(1.0f);
+  }
+  for (std::size_t map = 0; map < tile.maps.size(); ++map) {
+    if (!Coefficients(job, map, first, &coefficients)) continue;
+    AddSlopes(job, map, first, coefficients, &slopes);
+    if (has_looks) MultiplyLooks(job, map, first, coefficients, &looks);
+  }
+  StoreSlopes(job, first, slopes);
+  if (!has_looks) return;
+  KeepHollows(tile, first, &looks);
+  StoreLooks(job, first, looks);
+}
+
+void ComposeAll(const ComposeJob& job) {
+  for (std::size_t first = 0; first < kPlane; first += kBlock) ComposeBlock(job, first);
+}
+
+}  // namespace furrow::render::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace furrow::render {
+namespace {
+
+HWY_EXPORT(ComposeAll);
+
+bool HasPlanes(const std::vector<std::uint16_t>& halves, std::size_t planes) {
+  return halves.size() == planes * ComposeTile::kTexels;
+}
+
+bool IsWhole(const ComposeTile& tile, std::size_t channels) {
+  if (!HasPlanes(tile.slopes, 3) || !(tile.colour.empty() || HasPlanes(tile.colour, 3))) {
+    return false;
+  }
+  for (const ComposeTile::Map& map : tile.maps) {
+    if (!HasPlanes(map.slopes, 3) || !(map.looks.empty() || HasPlanes(map.looks, 4))) return false;
+  }
+  const auto is_whole = [&](const ComposeTile::Mask& mask) {
+    return mask.channel < channels && mask.values.size() == ComposeTile::kTexels;
+  };
+  return std::ranges::all_of(tile.masks, is_whole) && std::ranges::all_of(tile.skinned, is_whole);
+}
+
+}  // namespace
+
+bool ComposeJob::Validate() const {
+  if (tile == nullptr || ink == nullptr || tile->maps.empty()) return false;
+  const std::size_t maps = tile->maps.size();
+  if (stride < ComposeTile::kSide) return false;
+  const std::size_t halves = 4 * (stride * (ComposeTile::kSide - 1) + ComposeTile::kSide);
+  return ink->amplitudes.size() == maps && ink->scales.size() == maps &&
+         ink->weights.size() % maps == 0 && IsWhole(*tile, ink->weights.size() / maps) &&
+         slopes.size() >= halves && colours.size() >= (tile->colour.empty() ? 0 : halves);
+}
+
+bool ComposeJob::Run() const {
+  if (!Validate()) return false;
+  HWY_DYNAMIC_DISPATCH(ComposeAll)(*this);
+  return true;
+}
+
+}  // namespace furrow::render
+#endif  // HWY_ONCE

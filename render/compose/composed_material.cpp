@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/compose/composed_material.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+
+namespace furrow::render {
+namespace {
+
+// Of a wrinkle weight: what moves by less is not seen.
+constexpr float kLeastChange = 1.0f / 4096.0f;
+constexpr float kUnknown = -1.0f;  // a weight, of which nothing is painted
+// Texels a side of a level that is read at once: by it, it is known about how much of the finer
+// ones there is to paint.
+constexpr int kOutlineSide = 256;
+
+gl::Texture MakeLevels(glm::ivec2 size, std::size_t levels) {
+  gl::Texture texture = gl::MakeTexture(GL_TEXTURE_2D);
+  glTextureStorage2D(texture.name(), static_cast<GLsizei>(levels), GL_RGBA16F, size.x, size.y);
+  glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  return texture;
+}
+
+void Upload(GLuint texture, int level, glm::ivec2 first, glm::ivec2 size,
+            const std::vector<std::uint16_t>& halves) {
+  glTextureSubImage2D(texture, level, first.x, first.y, size.x, size.y, GL_RGBA, GL_HALF_FLOAT,
+                      halves.data());
+}
+
+}  // namespace
+
+ComposedMaterial::ComposedMaterial(const GpuCharacter& gpu, ComposeSelection selection,
+                                   glm::ivec2 size)
+    : gpu_(gpu), selection_(std::move(selection)), size_(size) {
+  // Down to a single texel: who is far away is drawn with the same texture as who is near.
+  for (glm::ivec2 level = size; level.x > 0 || level.y > 0; level /= 2) {
+    levels_.push_back({glm::max(level, glm::ivec2(1)), false, {}});
+  }
+  copies_[front_] = MakeCopy();
+  FillBare(&copies_[front_]);
+  const auto is_outline = [](const Level& level) {
+    return std::max(level.size.x, level.size.y) <= kOutlineSide;
+  };
+  const auto outline = std::ranges::find_if(levels_, is_outline);
+  if (outline != levels_.end()) ReadLevel(&*outline);
+}
+
+ComposedMaterial::Copy ComposedMaterial::MakeCopy() const {
+  Copy copy;
+  copy.derivatives = MakeLevels(size_, levels_.size());
+  if (gpu_.wrinkle_looks() != 0) copy.colour = MakeLevels(size_, levels_.size());
+  copy.textures = {copy.derivatives.name(), copy.colour.name()};
+  const std::size_t maps = selection_.maps.size();
+  copy.ink = {std::vector<float>(selection_.num_channels() * maps, 0.0f),
+              std::vector<float>(maps, 1.0f), std::vector<float>(maps, 1.0f), glm::vec2(1.0f)};
+  copy.first_levels.assign(selection_.num_channels(), 0);
+  copy.inked_levels.assign(selection_.num_channels(), 0);
+  return copy;
+}
+
+void ComposedMaterial::FillBare(Copy* copy) const {
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    const glm::ivec2 size = levels_[i].size;
+    const BareTexels bare = ReadBareTexels(gpu_, *selection_.material, size);
+    Upload(copy->textures.derivatives, static_cast<int>(i), {0, 0}, size, bare.slopes);
+    if (copy->colour)
+      Upload(copy->textures.colour, static_cast<int>(i), {0, 0}, size, bare.colours);
+  }
+}
+
+void ComposedMaterial::CopyFront(Copy* copy) const {
+  const Copy& front = copies_[front_];
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    const auto level = static_cast<GLint>(i);
+    const auto one = [&](const gl::Texture& from, const gl::Texture& to) {
+      if (!from) return;
+      glCopyImageSubData(from.name(), GL_TEXTURE_2D, level, 0, 0, 0, to.name(), GL_TEXTURE_2D,
+                         level, 0, 0, 0, levels_[i].size.x, levels_[i].size.y, 1);
+    };
+    one(front.derivatives, copy->derivatives);
+    one(front.colour, copy->colour);
+  }
+  copy->ink = front.ink;
+  copy->first_levels = front.first_levels;
+  copy->inked_levels = front.inked_levels;
+}
+
+bool ComposedMaterial::IsChanged(const ComposeInk& from, const ComposeInk& to,
+                                 std::size_t channel) const {
+  const std::size_t maps = selection_.maps.size();
+  for (std::size_t map = 0; map < maps; ++map) {
+    const float before = from.weights[channel * maps + map];
+    const float now = to.weights[channel * maps + map];
+    if (std::abs(now - before) > kLeastChange) return true;
+    const bool is_alike = from.amplitudes[map] == to.amplitudes[map] &&
+                          from.scales[map] == to.scales[map] && from.looks == to.looks;
+    if (!is_alike && (before > 0.0f || now > 0.0f)) return true;
+  }
+  return false;
+}
+
+std::vector<bool> ComposedMaterial::Changes(const ComposeInk& from, const Wanted& to) const {
+  std::vector<bool> changed;
+  for (std::size_t channel = 0; channel < selection_.num_channels(); ++channel) {
+    changed.push_back(to.is_seen[channel] && IsChanged(from, to.ink, channel));
+  }
+  return changed;
+}
+
+bool ComposedMaterial::IsSame(const ComposeInk& from, const Wanted& to) const {
+  const std::vector<bool> changed = Changes(from, to);
+  return std::ranges::find(changed, true) == changed.end();
+}
+
+bool ComposedMaterial::IsPainted(const Wanted& wanted) const {
+  const Copy& front = copies_[front_];
+  for (std::size_t i = 0; i < wanted.is_seen.size(); ++i) {
+    if (wanted.is_seen[i] && front.first_levels[i] > wanted.first_levels[i]) return false;
+  }
+  return IsSame(front.ink, wanted);
+}
+
+const ComposedMaterial::Copy& ComposedMaterial::Back() const {
+  const Copy& back = copies_[1 - front_];
+  return back.derivatives ? back : copies_[front_];
+}
+
+void ComposedMaterial::ReadLevel(Level* level) const {
+  if (level->is_read) return;
+  level->tiles = ReadComposeTiles(gpu_, selection_, level->size);
+  level->is_read = true;
+}
+
+std::vector<const ComposeTile*> ComposedMaterial::Stale(const Level& level,
+                                                        const std::vector<bool>& changed) {
+  std::vector<const ComposeTile*> stale;
+  for (const ComposeTile& tile : level.tiles) {
+    const auto is_changed = [&](const ComposeTile::Mask& mask) { return changed[mask.channel]; };
+    if (std::ranges::any_of(tile.masks, is_changed) ||
+        std::ranges::any_of(tile.skinned, is_changed)) {
+      stale.push_back(&tile);
+    }
+  }
+  return stale;
+}
+
+bool ComposedMaterial::IsStale(const Copy& copy, const Wanted& wanted, bool is_changed,
+                               std::size_t channel, int level) {
+  const int first = wanted.first_levels[channel];
+  const bool is_old = is_changed || copy.first_levels[channel] > level;
+  if (!wanted.is_seen[channel] || !is_old) return false;
+  return first <= level || (first == level + 1 && (copy.inked_levels[channel] >> level & 1u) != 0);
+}
+
+std::vector<bool> ComposedMaterial::StaleChannels(const Copy& copy, const Wanted& wanted,
+                                                  const std::vector<bool>& changed,
+                                                  std::size_t level) {
+  std::vector<bool> stale(changed.size());
+  for (std::size_t i = 0; i < stale.size(); ++i) {
+    stale[i] = IsStale(copy, wanted, changed[i], i, static_cast<int>(level));
+  }
+  return stale;
+}
+
+std::size_t ComposedMaterial::NumStale(const Wanted& wanted) const {
+  if (IsPainted(wanted)) return 0;
+  const Copy& copy = Back();
+  const std::vector<bool> changed = Changes(copy.ink, wanted);
+  std::size_t texels = 0;
+  for (std::size_t i = levels_.size(); i-- > 0;) {
+    const std::vector<bool> stale = StaleChannels(copy, wanted, changed, i);
+    if (std::ranges::find(stale, true) == stale.end()) continue;
+    // Four times as many as of the next coarser one that was read; the coarsest hardly count.
+    std::size_t read = i;
+    while (read + 1 < levels_.size() && !levels_[read].is_read) ++read;
+    texels += (ComposeTile::kTexels * Stale(levels_[read], stale).size()) << (2 * (read - i));
+  }
+  return texels;
+}
+
+ComposeInk ComposedMaterial::Merged(const ComposeInk& painted, const Wanted& wanted) const {
+  ComposeInk ink = wanted.ink;
+  const std::size_t maps = selection_.maps.size();
+  const bool is_alike = painted.amplitudes == ink.amplitudes && painted.scales == ink.scales &&
+                        painted.looks == ink.looks;
+  for (std::size_t i = 0; i < ink.weights.size(); ++i) {
+    const bool is_seen = wanted.is_seen[i / maps];
+    if (is_seen && IsChanged(painted, wanted.ink, i / maps)) continue;
+    const bool is_known = is_seen || is_alike || painted.weights[i] == 0.0f;
+    ink.weights[i] = is_known ? painted.weights[i] : kUnknown;
+  }
+  return ink;
+}
+
+ComposeInk ComposedMaterial::InkOfLevel(const Copy& copy, int level) const {
+  ComposeInk ink = copy.ink;
+  const std::size_t maps = selection_.maps.size();
+  for (std::size_t i = 0; i < ink.weights.size(); ++i) {
+    if (copy.first_levels[i / maps] > level) ink.weights[i] = 0.0f;
+  }
+  return ink;
+}
+
+void ComposedMaterial::PaintLevel(std::size_t level, const std::vector<bool>& stale, Copy* copy) {
+  const int number = static_cast<int>(level);
+  ReadLevel(&levels_[level]);
+  const bool is_whole = std::ranges::max(copy->first_levels) <= number;
+  PaintTiles(*copy, is_whole ? copy->ink : InkOfLevel(*copy, number), level,
+             Stale(levels_[level], stale));
+  for (std::size_t i = 0; i < stale.size(); ++i) {
+    if (!stale[i]) continue;
+    const auto bit = static_cast<std::uint16_t>(1u << level);
+    const bool is_inked = copy->first_levels[i] <= number;
+    copy->inked_levels[i] = is_inked ? copy->inked_levels[i] | bit : copy->inked_levels[i] & ~bit;
+  }
+}
+
+void ComposedMaterial::Paint(const Wanted& wanted) {
+  if (IsPainted(wanted)) return;
+  Copy& back = copies_[1 - front_];
+  if (!back.derivatives) {
+    back = MakeCopy();
+    CopyFront(&back);
+  }
+  const std::vector<bool> changed = Changes(back.ink, wanted);
+  std::vector<std::vector<bool>> stale;
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    stale.push_back(StaleChannels(back, wanted, changed, i));
+  }
+  back.ink = Merged(back.ink, wanted);
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    const int first = wanted.first_levels[i];
+    if (wanted.is_seen[i] && (changed[i] || first < back.first_levels[i])) {
+      back.first_levels[i] = first;
+    }
+  }
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    if (std::ranges::find(stale[i], true) != stale[i].end()) PaintLevel(i, stale[i], &back);
+  }
+  front_ = 1 - front_;
+}
+
+// Neighbours in a row go to the GPU at once.
+void ComposedMaterial::PaintTiles(const Copy& copy, const ComposeInk& ink, std::size_t level,
+                                  std::span<const ComposeTile* const> tiles) {
+  for (std::size_t first = 0; first < tiles.size();) {
+    std::size_t count = 1;
+    while (first + count < tiles.size() &&
+           tiles[first + count]->place == tiles[first]->place + glm::ivec2(count, 0)) {
+      ++count;
+    }
+    PaintRun(copy, ink, level, tiles.subspan(first, count));
+    first += count;
+  }
+}
+
+void ComposedMaterial::PaintRun(const Copy& copy, const ComposeInk& ink, std::size_t level,
+                                std::span<const ComposeTile* const> run) {
+  const std::size_t stride = ComposeTile::kSide * run.size();
+  slopes_.resize(4 * stride * ComposeTile::kSide);
+  colours_.resize(copy.colour ? slopes_.size() : 0);
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    const std::size_t first = 4 * ComposeTile::kSide * i;
+    ComposeJob job{run[i], &ink, std::span(slopes_).subspan(first), {}, stride};
+    if (copy.colour) job.colours = std::span(colours_).subspan(first);
+    if (!job.Run()) return;  // never: we made the tile
+  }
+  const auto number = static_cast<int>(level);
+  const glm::ivec2 first = run.front()->place * ComposeTile::kSide;
+  const glm::ivec2 size = glm::min(levels_[level].size - first,
+                                   glm::ivec2(static_cast<int>(stride), ComposeTile::kSide));
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, static_cast<GLint>(stride));
+  Upload(copy.textures.derivatives, number, first, size, slopes_);
+  if (copy.colour) Upload(copy.textures.colour, number, first, size, colours_);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+}
+
+}  // namespace furrow::render

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/gl/egl_context.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <vector>
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#include "base/status.h"
+
+namespace furrow::render {
+namespace {
+
+struct Candidate {
+  std::string name;
+  EGLenum platform = EGL_NONE;
+  void* native = nullptr;  // EGLDeviceEXT for the device platform
+  bool software = false;
+};
+
+std::string EglError(std::string_view call) {
+  std::array<char, 16> code{};
+  const auto end = std::to_chars(code.data(), code.data() + code.size(), eglGetError(), 16).ptr;
+  return std::string(call) + " failed, EGL error 0x" + std::string(code.data(), end);
+}
+
+std::vector<Candidate> EnumerateDevices() {
+  std::vector<Candidate> candidates;
+  if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") ||
+      !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device")) {
+    return candidates;
+  }
+  std::array<EGLDeviceEXT, 32> devices{};
+  EGLint count = 0;
+  if (!eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count)) count = 0;
+  for (EGLint i = 0; i < count; ++i) {
+    const char* extensions = eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS);
+    const bool software =
+        extensions != nullptr &&
+        std::string_view(extensions).find("EGL_MESA_device_software") != std::string::npos;
+    candidates.push_back(
+        {"device " + std::to_string(i), EGL_PLATFORM_DEVICE_EXT, devices[i], software});
+  }
+  return candidates;
+}
+
+Result<std::vector<Candidate>> ChooseCandidates(std::string_view device) {
+  const Candidate surfaceless{"surfaceless", EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY,
+                              true};
+  if (device == "surfaceless") return std::vector<Candidate>{surfaceless};
+  std::vector<Candidate> candidates = EnumerateDevices();
+  if (device.empty()) {
+    std::stable_sort(
+        candidates.begin(), candidates.end(),
+        [](const Candidate& a, const Candidate& b) { return a.software < b.software; });
+    candidates.push_back(surfaceless);
+    return candidates;
+  }
+  std::size_t index = 0;
+  const auto parsed = std::from_chars(device.data(), device.data() + device.size(), index);
+  if (parsed.ec != std::errc() || parsed.ptr != device.data() + device.size() ||
+      index >= candidates.size()) {
+    return Status(StatusCode::kInvalidArgument,
+                  "no EGL device '" + std::string(device) + "'; there are " +
+                      std::to_string(candidates.size()),
+                  "device", "give an index from 0, \"surfaceless\", or nothing");
+  }
+  return std::vector<Candidate>{candidates[index]};
+}
+
+EGLContext CreateCoreContext(EGLDisplay display, bool reset_notification) {
+  const EGLint attributes[] = {
+      // 4.5 core: direct state access, storage buffers and clip control, with nothing deprecated.
+      EGL_CONTEXT_MAJOR_VERSION, 4,  //
+      EGL_CONTEXT_MINOR_VERSION, 5,  //
+      EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+      // After a device reset glGetGraphicsResetStatus() says so, instead of the process being
+      // killed.
+      // Left out on a second try: not every driver knows it.
+      reset_notification ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE,
+      EGL_LOSE_CONTEXT_ON_RESET,  //
+      EGL_NONE};
+  // No config (EGL_KHR_no_config_context): a config describes a surface, and there is none.
+  return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+}
+
+Result<EGLDisplay> OpenDisplay(const Candidate& candidate) {
+  // Calling what no driver provides would end the program.
+  if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base")) {
+    return Status(StatusCode::kUnavailable, "no EGL driver is installed");
+  }
+  // No display attributes: the platform and the device say it all.
+  const EGLDisplay display =
+      eglGetPlatformDisplayEXT(candidate.platform, candidate.native, nullptr);
+  if (display == EGL_NO_DISPLAY) {
+    return Status(StatusCode::kUnavailable, EglError("eglGetPlatformDisplay"));
+  }
+  if (!eglInitialize(display, nullptr, nullptr)) {
+    return Status(StatusCode::kUnavailable, EglError("eglInitialize"));
+  }
+  for (const char* extension : {"EGL_KHR_no_config_context", "EGL_KHR_surfaceless_context"}) {
+    if (!epoxy_has_egl_extension(display, extension)) {
+      return Status(StatusCode::kUnavailable, std::string("lacks ") + extension);
+    }
+  }
+  return display;
+}
+
+Result<EGLContext> OpenContext(EGLDisplay display) {
+  if (!eglBindAPI(EGL_OPENGL_API)) return Status(StatusCode::kUnavailable, EglError("eglBindAPI"));
+  EGLContext context = CreateCoreContext(display, true);
+  if (context == EGL_NO_CONTEXT) context = CreateCoreContext(display, false);
+  if (context == EGL_NO_CONTEXT) {
+    return Status(StatusCode::kUnavailable, EglError("eglCreateContext (OpenGL 4.5 core)"));
+  }
+  if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
+    const Status status(StatusCode::kUnavailable, EglError("eglMakeCurrent"));
+    eglDestroyContext(display, context);
+    return status;
+  }
+  return context;
+}
+
+std::string Describe(const Candidate& candidate) {
+  const auto text = [](GLenum name) {
+    return std::string(reinterpret_cast<const char*>(glGetString(name)));
+  };
+  return candidate.name + ": " + text(GL_VENDOR) + ", " + text(GL_RENDERER) + ", " +
+         text(GL_VERSION);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<EglContext>> EglContext::Create(std::string_view device) {
+  Result<std::vector<Candidate>> candidates = ChooseCandidates(device);
+  FURROW_RETURN_IF_ERROR(candidates);
+  std::string tried;
+  for (const Candidate& candidate : *candidates) {
+    Status failure;
+    if (const auto display = OpenDisplay(candidate); !display.ok()) {
+      failure = display.status();
+    } else if (const auto context = OpenContext(*display); !context.ok()) {
+      failure = context.status();
+    } else {
+      std::unique_ptr<EglContext> result(new EglContext(*display, *context));
+      result->description_ = Describe(candidate);
+      result->is_software_ = candidate.software;
+      return result;
+    }
+    tried += (tried.empty() ? "" : "; ") + candidate.name + ": " + failure.what();
+  }
+  return Status(StatusCode::kUnavailable, "no EGL device gives OpenGL 4.5 core; tried " + tried,
+                "EGL",
+                "install a driver (Debian: libgl1-mesa-dri, libegl1), or run without rendering");
+}
+
+EglContext::~EglContext() {
+  if (eglGetCurrentContext() == context_) {
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  }
+  eglDestroyContext(display_, context_);
+}
+
+Status EglContext::MakeCurrent() {
+  if (eglGetCurrentContext() != context_ &&
+      !eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
+    Status lost(StatusCode::kUnavailable, EglError("eglMakeCurrent"), "EGL",
+                "the context was lost or belongs to another thread: create the renderer anew");
+    // Another renderer's context must not stay current: the names of this one mean its objects.
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    return lost;
+  }
+  if (glGetGraphicsResetStatus() != GL_NO_ERROR) {
+    return {StatusCode::kUnavailable, "the OpenGL context was lost to a device reset", description_,
+            "create the renderer anew"};
+  }
+  return {};
+}
+
+}  // namespace furrow::render

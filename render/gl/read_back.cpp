@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/gl/read_back.h"
+
+namespace furrow::render {
+namespace {
+
+constexpr GLuint64 kLongestWait = 60'000'000'000;  // nanoseconds: 4096 x 4096 on a busy CPU
+
+// RGBA to RGB.
+std::vector<std::uint8_t> DropAlpha(const std::uint8_t* rgba, std::size_t num_pixels) {
+  std::vector<std::uint8_t> rgb(num_pixels * 3);
+  std::uint8_t* out = rgb.data();
+  for (std::size_t i = 0; i < num_pixels; ++i) {
+    out[3 * i] = rgba[4 * i];
+    out[3 * i + 1] = rgba[4 * i + 1];
+    out[3 * i + 2] = rgba[4 * i + 2];
+  }
+  return rgb;
+}
+
+}  // namespace
+
+ReadBack::~ReadBack() {
+  for (const Slot& slot : slots_) {
+    if (slot.fence != nullptr && gl::HasContext()) glDeleteSync(slot.fence);
+  }
+}
+
+void ReadBack::Start(GLuint framebuffer, int width, int height, std::uint64_t token) {
+  Slot& slot = slots_[static_cast<std::size_t>((oldest_ + count_) % kCapacity)];
+  const std::size_t bytes = static_cast<std::size_t>(width) * height * 4;
+  if (slot.capacity < bytes) {
+    slot.pixels = gl::MakeBuffer();
+    glNamedBufferStorage(slot.pixels.name(), static_cast<GLsizeiptr>(bytes), nullptr,
+                         GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
+    slot.capacity = bytes;
+  }
+  slot.width = width;
+  slot.height = height;
+  slot.token = token;
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.pixels.name());
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  slot.fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  glFlush();
+  ++count_;
+}
+
+Result<std::optional<Image>> ReadBack::Take(bool wait) {
+  if (count_ == 0) return std::optional<Image>();
+  Slot& slot = slots_[static_cast<std::size_t>(oldest_)];
+  const GLenum state = glClientWaitSync(slot.fence, 0, wait ? kLongestWait : 0);
+  if (state == GL_TIMEOUT_EXPIRED && !wait) return std::optional<Image>();
+  glDeleteSync(slot.fence);
+  slot.fence = nullptr;
+  oldest_ = (oldest_ + 1) % kCapacity;
+  --count_;
+  const std::size_t num_pixels = static_cast<std::size_t>(slot.width) * slot.height;
+  const void* pixels = nullptr;
+  if (state == GL_ALREADY_SIGNALED || state == GL_CONDITION_SATISFIED) {
+    pixels = glMapNamedBufferRange(slot.pixels.name(), 0, static_cast<GLsizeiptr>(num_pixels * 4),
+                                   GL_MAP_READ_BIT);
+  }
+  if (pixels == nullptr) {
+    return Status(StatusCode::kUnavailable, "the picture did not come back from the GPU",
+                  "read-back", "create the renderer anew");
+  }
+  Image image{slot.width, slot.height, {}, slot.token};
+  image.rgb = DropAlpha(static_cast<const std::uint8_t*>(pixels), num_pixels);
+  glUnmapNamedBuffer(slot.pixels.name());
+  return std::optional<Image>(std::move(image));
+}
+
+}  // namespace furrow::render

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "render/gl/gl_objects.h"
+#include "render/renderer.h"
+
+namespace furrow::render {
+
+// Pictures on their way from the GPU: a ring of pixel buffers, each with a fence, so that drawing
+// the next frame need not wait for the last one's pixels. First in, first out.
+class ReadBack {
+ public:
+  static constexpr int kCapacity = 2;
+
+  ReadBack() = default;
+  ~ReadBack();
+  ReadBack(const ReadBack&) = delete;
+  ReadBack& operator=(const ReadBack&) = delete;
+
+  [[nodiscard]] int in_flight() const { return count_; }
+
+  // Starts to copy the 8-bit RGBA colour of `framebuffer`. Precondition: in_flight() < kCapacity.
+  void Start(GLuint framebuffer, int width, int height, std::uint64_t token);
+
+  // The oldest picture when its copy is complete; `wait`: until it is. Rows in the order that they
+  // were drawn from the bottom up. kUnavailable: the driver gave up waiting (a lost context).
+  [[nodiscard]] Result<std::optional<Image>> Take(bool wait);
+
+ private:
+  struct Slot {
+    gl::Buffer pixels;
+    std::size_t capacity = 0;  // bytes
+    GLsync fence = nullptr;
+    int width = 0;
+    int height = 0;
+    std::uint64_t token = 0;
+  };
+  std::array<Slot, kCapacity> slots_;
+  int oldest_ = 0;
+  int count_ = 0;
+};
+
+}  // namespace furrow::render

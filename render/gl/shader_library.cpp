@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/gl/shader_library.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "base/status.h"
+#include "render/skin/subsurface_kernel.h"
+
+namespace furrow::render {
+namespace {
+
+std::string Define(std::string_view name, int value) {
+  return std::string(name) + " " + std::to_string(value);
+}
+
+Result<gl::Shader> Compile(GLenum stage, std::string_view name,
+                           std::span<const std::string> defines,
+                           std::span<const ShaderFile> files) {
+  const Result<ShaderSource> source = ExpandShader(name, defines, files);
+  FURROW_RETURN_IF_ERROR(source);
+  gl::Shader shader(glCreateShader(stage));
+  const char* text = source->text.c_str();
+  glShaderSource(shader.name(), 1, &text, nullptr);
+  glCompileShader(shader.name());
+  GLint compiled = GL_FALSE;
+  glGetShaderiv(shader.name(), GL_COMPILE_STATUS, &compiled);
+  if (compiled == GL_TRUE) return shader;
+  GLint length = 0;
+  glGetShaderiv(shader.name(), GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(length), '\0');
+  glGetShaderInfoLog(shader.name(), length, &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  return Status(StatusCode::kInternal, "does not compile:\n" + NameSources(log, source->files),
+                std::string(name));
+}
+
+Status Link(const gl::Program& program, std::string_view name) {
+  glLinkProgram(program.name());
+  GLint linked = GL_FALSE;
+  glGetProgramiv(program.name(), GL_LINK_STATUS, &linked);
+  if (linked == GL_TRUE) return {};
+  GLint length = 0;
+  glGetProgramiv(program.name(), GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(length), '\0');
+  glGetProgramInfoLog(program.name(), length, &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  return {StatusCode::kInternal, "does not link:\n" + log, std::string(name)};
+}
+
+}  // namespace
+
+std::vector<std::string> Defines(const SceneShader& shader) {
+  using Kind = character::Material::Kind;
+  std::vector<std::string> defines = {
+      Define("VIEW", static_cast<int>(shader.view)),
+      Define("NORMAL_BLEND", static_cast<int>(shader.normal_blend)),
+      Define("WRINKLE_TEXTURE", shader.wrinkle_texture),
+      Define("WRINKLE_DYNAMIC", shader.wrinkle_dynamic),
+      Define("HAS_BASE_COLOUR", shader.base_colour_map),
+      Define("HAS_BASE_NORMAL", shader.base_normal_map),
+      Define("HAS_ROUGHNESS", shader.roughness_map),
+      Define("ALPHA_TEST", shader.alpha_test),
+      Define("ACTIVE_MAPS", shader.active_maps),
+      Define("MASK_LAYERS", shader.mask_layers),
+      Define("MASK_BITS", static_cast<int>(shader.mask_bits)),
+      Define("MAP_SLOTS", shader.map_slots),
+      Define("MATERIAL_SKIN", static_cast<int>(Kind::kSkin)),
+      Define("MATERIAL_CLOTH", static_cast<int>(Kind::kCloth)),
+      Define("MATERIAL_EYE", static_cast<int>(Kind::kEye)),
+      Define("MATERIAL_HAIR", static_cast<int>(Kind::kHair)),
+      Define("MATERIAL_OTHER", static_cast<int>(Kind::kOther)),
+      Define("MATERIAL", static_cast<int>(shader.material)),
+      Define("MATERIALS", shader.any_material),
+      Define("SHADOW_FILTER", static_cast<int>(shader.shadow_filter)),
+      Define("SHADOW_TAPS", shader.shadow_taps),
+      Define("SHADOW_LAMPS", shader.shadow_lamps),
+      Define("TRANSLUCENCY", shader.translucency),
+      Define("PREINTEGRATED", shader.preintegrated),
+      Define("SPECULAR_GEMS", shader.gems),
+      Define("BECKMANN_TABLE", shader.beckmann_table),
+      Define("CONSERVE", shader.conserve_energy),
+      Define("WIDEN", shader.widen),
+      Define("WRINKLE_LOOKS", shader.wrinkle_looks),
+      Define("HAS_THICKNESS", shader.thickness_map),
+      Define("DISPLACED", shader.displaced),
+      Define("SHADOW", shader.shadow),
+      Define("CROWD", shader.crowd),
+      Define("COMPOSED_LOOKS", shader.composed_looks),
+      "BECKMANN_SIZE float(" + std::to_string(kBeckmannTableSize) + ")",
+      "ALBEDO_SIZE float(" + std::to_string(kAlbedoTableSize) + ")",
+      "RING_SIZE float(" + std::to_string(kPreintegratedTableSize) + ")",
+      "MAX_CURVATURE " + std::to_string(kMaxCurvature),
+  };
+  for (int view = 0; view < kNumViews; ++view) {
+    std::string name = "VIEW_" + std::string(ViewName(static_cast<View>(view)));
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::toupper(c); });
+    defines.push_back(Define(name, view));
+  }
+  return defines;
+}
+
+std::vector<std::string> Defines(const PoseShader& shader) {
+  return {Define("NUM_JOINTS", shader.num_joints), Define("WRINKLE_DYNAMIC", shader.dynamic),
+          Define("DISPLACED", shader.displaced), Define("MAP_SLOTS", shader.map_slots)};
+}
+
+Result<gl::Program> BuildProgram(const ProgramFiles& program, std::span<const std::string> defines,
+                                 std::span<const ShaderFile> files) {
+  const std::pair<GLenum, std::string_view> stages[] = {
+      {GL_VERTEX_SHADER, program.vertex},
+      {GL_TESS_CONTROL_SHADER, program.tess_control},
+      {GL_TESS_EVALUATION_SHADER, program.tess_evaluation},
+      {GL_FRAGMENT_SHADER, program.fragment}};
+  gl::Program built(glCreateProgram());
+  for (const auto& [stage, name] : stages) {
+    if (name.empty()) continue;
+    const Result<gl::Shader> shader = Compile(stage, name, defines, files);
+    FURROW_RETURN_IF_ERROR(shader);
+    glAttachShader(built.name(), shader->name());  // keeps it as long as the program
+  }
+  const std::string_view name = program.fragment.empty() ? program.vertex : program.fragment;
+  FURROW_RETURN_IF_ERROR(Link(built, name));
+  return built;
+}
+
+Result<GLuint> ShaderLibrary::Get(const SceneShader& shader) {
+  if (const auto found = scene_.find(shader); found != scene_.end()) return found->second.name();
+  ProgramFiles files{"scene.vert.glsl", "scene.frag.glsl"};
+  if (shader.shading == Shading::kSkin) files.fragment = "skin.frag.glsl";
+  if (shader.unlit) files.fragment = "surface.frag.glsl";
+  if (shader.shadow) files.fragment = "shadow.frag.glsl";
+  if (shader.displaced) {
+    files.tess_control = "displace.tesc.glsl";
+    files.tess_evaluation = "displace.tese.glsl";
+  }
+  Result<gl::Program> program = BuildProgram(files, Defines(shader), EmbeddedShaders());
+  FURROW_RETURN_IF_ERROR(program);
+  return scene_.emplace(shader, std::move(*program)).first->second.name();
+}
+
+Result<GLuint> ShaderLibrary::Get(const PoseShader& shader) {
+  if (const auto found = pose_.find(shader); found != pose_.end()) return found->second.name();
+  Result<gl::Program> program =
+      BuildProgram({"pose.vert.glsl"}, Defines(shader), EmbeddedShaders());
+  FURROW_RETURN_IF_ERROR(program);
+  return pose_.emplace(shader, std::move(*program)).first->second.name();
+}
+
+Result<GLuint> ShaderLibrary::GetShadow(bool alpha_test) {
+  return GetNamed("shadow.vert.glsl", "shadow.frag.glsl", {Define("ALPHA_TEST", alpha_test)});
+}
+
+Result<GLuint> ShaderLibrary::GetFullscreen(std::string_view fragment,
+                                            const std::vector<std::string>& defines) {
+  return GetNamed("fullscreen.vert.glsl", fragment, defines);
+}
+
+Result<GLuint> ShaderLibrary::GetNamed(std::string_view vertex, std::string_view fragment,
+                                       const std::vector<std::string>& defines) {
+  std::string key(fragment);
+  for (const std::string& define : defines) key += ";" + define;
+  if (const auto found = named_.find(key); found != named_.end()) return found->second.name();
+  Result<gl::Program> program = BuildProgram({vertex, fragment}, defines, EmbeddedShaders());
+  FURROW_RETURN_IF_ERROR(program);
+  return named_.emplace(std::move(key), std::move(*program)).first->second.name();
+}
+
+}  // namespace furrow::render

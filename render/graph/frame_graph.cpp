@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/graph/frame_graph.h"
+
+#include <algorithm>
+
+namespace furrow::render {
+
+TransientPool::~TransientPool() {
+  for (const Entry& entry : entries_) device_->DestroyTexture(entry.texture);
+}
+
+TextureId TransientPool::Acquire(const TextureDesc& desc) {
+  const auto fits = [&](const Entry& entry) { return !entry.in_use && entry.desc == desc; };
+  auto found = std::find_if(entries_.begin(), entries_.end(), fits);
+  if (found == entries_.end()) {
+    entries_.push_back({desc, device_->CreateTexture(desc), false, 0});
+    found = entries_.end() - 1;
+  }
+  found->in_use = true;
+  found->idle_frames = 0;
+  return found->texture;
+}
+
+void TransientPool::Release(TextureId texture) {
+  for (Entry& entry : entries_) {
+    if (entry.texture == texture) entry.in_use = false;
+  }
+}
+
+void TransientPool::EndFrame() {
+  for (Entry& entry : entries_) {
+    if (!entry.in_use && ++entry.idle_frames > kKeepFrames) device_->DestroyTexture(entry.texture);
+  }
+  std::erase_if(entries_, [](const Entry& entry) { return entry.idle_frames > kKeepFrames; });
+}
+
+TextureId FrameGraph::Resources::Get(Handle handle) const {
+  return graph_->textures_[graph_->versions_[handle.version].texture].id;
+}
+
+const TextureDesc& FrameGraph::Resources::Desc(Handle handle) const {
+  return graph_->textures_[graph_->versions_[handle.version].texture].desc;
+}
+
+FrameGraph::Handle FrameGraph::Builder::Create(std::string_view name, const TextureDesc& desc) {
+  const int version = static_cast<int>(graph_->versions_.size());
+  graph_->versions_.push_back({static_cast<int>(graph_->textures_.size()), -1, -1});
+  graph_->textures_.push_back({.name = std::string(name), .desc = desc, .newest = version});
+  return {version};
+}
+
+void FrameGraph::Builder::Read(Handle handle) {
+  if (handle.version < 0) return graph_->Fail(pass_, handle.version, "reads");
+  const Version& version = graph_->versions_[handle.version];
+  if (version.writer < 0 && !graph_->textures_[version.texture].imported)
+    return graph_->Fail(pass_, handle.version, "reads, before any write,");
+  if (graph_->textures_[version.texture].newest != handle.version) {
+    return graph_->Fail(pass_, handle.version, "reads an overwritten version of");
+  }
+  graph_->passes_[pass_].reads.push_back(handle.version);
+}
+
+FrameGraph::Handle FrameGraph::Builder::Write(Handle handle) {
+  if (handle.version < 0) {
+    graph_->Fail(pass_, handle.version, "writes");
+    return handle;
+  }
+  const Version old = graph_->versions_[handle.version];
+  if (graph_->textures_[old.texture].newest != handle.version) {
+    graph_->Fail(pass_, handle.version, "writes to an overwritten version of");
+  }
+  const int version = static_cast<int>(graph_->versions_.size());
+  graph_->versions_.push_back({old.texture, pass_, handle.version});
+  graph_->textures_[old.texture].newest = version;
+  graph_->passes_[pass_].writes.push_back(version);
+  return {version};
+}
+
+void FrameGraph::Builder::SideEffect() { graph_->passes_[pass_].side_effect = true; }
+
+FrameGraph::Handle FrameGraph::Import(std::string_view name, const TextureDesc& desc,
+                                      TextureId texture) {
+  const int version = static_cast<int>(versions_.size());
+  versions_.push_back({static_cast<int>(textures_.size()), -1, -1});
+  textures_.push_back({.name = std::string(name),
+                       .desc = desc,
+                       .newest = version,
+                       .id = texture,
+                       .imported = true});
+  return {version};
+}
+
+int FrameGraph::BeginPass(std::string_view name) {
+  passes_.emplace_back().name = name;
+  return static_cast<int>(passes_.size()) - 1;
+}
+
+void FrameGraph::Fail(int pass, int version, std::string_view why) {
+  if (!error_.ok()) return;
+  const std::string texture =
+      version < 0 ? "no texture" : "'" + textures_[versions_[version].texture].name + "'";
+  error_ = Status(StatusCode::kInternal,
+                  "pass '" + passes_[pass].name + "' " + std::string(why) + " " + texture,
+                  "frame graph");
+}
+
+Status FrameGraph::Compile() {
+  if (!error_.ok()) return error_;
+  Cull();
+  ComputeLifetimes();
+  return {};
+}
+
+// Backwards from the passes with side effects: what a needed pass reads, or draws on top of, is
+// needed.
+void FrameGraph::Cull() {
+  for (Pass& pass : passes_) pass.needed = pass.side_effect;
+  for (auto pass = passes_.rbegin(); pass != passes_.rend(); ++pass) {
+    if (!pass->needed) continue;
+    const auto need = [&](int version) {
+      if (versions_[version].writer >= 0) passes_[versions_[version].writer].needed = true;
+    };
+    for (const int version : pass->reads) need(version);
+    for (const int version : pass->writes) need(versions_[version].previous);
+  }
+}
+
+void FrameGraph::ComputeLifetimes() {
+  for (int pass = 0; pass < static_cast<int>(passes_.size()); ++pass) {
+    if (!passes_[pass].needed) continue;
+    const auto touch = [&](int version) {
+      Texture& texture = textures_[versions_[version].texture];
+      if (texture.first_pass < 0) texture.first_pass = pass;
+      texture.last_pass = pass;
+    };
+    for (const int version : passes_[pass].reads) touch(version);
+    for (const int version : passes_[pass].writes) touch(version);
+  }
+}
+
+Status FrameGraph::Run(const Pass& pass, FrameGraphObserver* observer) const {
+  if (observer != nullptr) observer->BeforePass(pass.name);
+  Status status = pass.execute(Resources(this)).At(pass.name);
+  if (observer == nullptr || !status.ok()) return status;
+  std::vector<FrameGraphObserver::Written> written;
+  for (const int version : pass.writes) {
+    const Texture& texture = textures_[versions_[version].texture];
+    written.push_back({texture.name, texture.desc, texture.id});
+  }
+  observer->AfterPass(pass.name, written);
+  return status;
+}
+
+Status FrameGraph::Execute(TransientPool* pool, FrameGraphObserver* observer) {
+  Status status;
+  for (int index = 0; index < static_cast<int>(passes_.size()) && status.ok(); ++index) {
+    if (!passes_[index].needed) continue;
+    for (Texture& texture : textures_) {
+      if (texture.imported) continue;
+      if (texture.first_pass == index) texture.id = pool->Acquire(texture.desc);
+    }
+    status = Run(passes_[index], observer);
+    for (Texture& texture : textures_) {
+      if (texture.imported) continue;
+      if (texture.last_pass == index) pool->Release(std::exchange(texture.id, 0));
+    }
+  }
+  for (Texture& texture : textures_) {
+    if (texture.id != 0 && !texture.imported) pool->Release(std::exchange(texture.id, 0));
+  }
+  return status;
+}
+
+bool FrameGraph::IsCulled(std::string_view pass) const {
+  return std::any_of(passes_.begin(), passes_.end(),
+                     [&](const Pass& p) { return p.name == pass && !p.needed; });
+}
+
+}  // namespace furrow::render

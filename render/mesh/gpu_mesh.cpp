@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/mesh/gpu_mesh.h"
+
+#include <cstddef>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "render/mesh/displacement_patches.h"
+#include "render/mesh/uv_density.h"
+
+namespace furrow::render {
+namespace {
+
+using character::Vertex;
+
+void DescribeVertices(GLuint array, const gl::Buffer& vertices) {
+  glVertexArrayVertexBuffer(array, 0, vertices.name(), 0, sizeof(Vertex));
+  const auto attribute = [&](GLuint location, GLint size, std::size_t offset) {
+    glEnableVertexArrayAttrib(array, location);
+    glVertexArrayAttribFormat(array, location, size, GL_FLOAT, GL_FALSE,
+                              static_cast<GLuint>(offset));
+    glVertexArrayAttribBinding(array, location, 0);
+  };
+  attribute(0, 3, offsetof(Vertex, position));
+  attribute(1, 3, offsetof(Vertex, normal));
+  attribute(2, 4, offsetof(Vertex, tangent));
+  attribute(3, 2, offsetof(Vertex, uv));
+  attribute(5, 4, offsetof(Vertex, skin_weights));
+  glEnableVertexArrayAttrib(array, 4);
+  glVertexArrayAttribIFormat(array, 4, 4, GL_UNSIGNED_SHORT, offsetof(Vertex, joints));
+  glVertexArrayAttribBinding(array, 4, 0);
+}
+
+void DescribeShares(GLuint array, const gl::Buffer& shares) {
+  constexpr GLuint kShare = 6;  // a_share of pose.vert.glsl
+  glVertexArrayVertexBuffer(array, 1, shares.name(), 0, sizeof(float));
+  glEnableVertexArrayAttrib(array, kShare);
+  glVertexArrayAttribFormat(array, kShare, 1, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribBinding(array, kShare, 1);
+}
+
+float MeanEdge(const character::Mesh& mesh) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < mesh.indices.size(); ++i) {
+    sum += glm::distance(mesh.vertices[mesh.indices[i]].position,
+                         mesh.vertices[mesh.indices[i % 3 == 2 ? i - 2 : i + 1]].position);
+  }
+  return mesh.indices.empty() ? 0.0f
+                              : static_cast<float>(sum / static_cast<double>(mesh.indices.size()));
+}
+
+float Surface(const character::Mesh& mesh) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const glm::vec3& corner = mesh.vertices[mesh.indices[i]].position;
+    const glm::vec3 a = mesh.vertices[mesh.indices[i + 1]].position - corner;
+    const glm::vec3 b = mesh.vertices[mesh.indices[i + 2]].position - corner;
+    sum += 0.5 * glm::length(glm::cross(a, b));
+  }
+  return static_cast<float>(sum);
+}
+
+}  // namespace
+
+character::Mesh ReadMesh(const GpuMesh& mesh) {
+  character::Mesh read;
+  read.indices.resize(static_cast<std::size_t>(mesh.num_indices));
+  glGetNamedBufferSubData(mesh.indices.name(), 0, static_cast<GLsizeiptr>(read.indices.size() * 4),
+                          read.indices.data());
+  GLint bytes = 0;
+  glGetNamedBufferParameteriv(mesh.vertices.name(), GL_BUFFER_SIZE, &bytes);
+  read.vertices.resize(static_cast<std::size_t>(bytes) / sizeof(Vertex));
+  glGetNamedBufferSubData(mesh.vertices.name(), 0,
+                          static_cast<GLsizeiptr>(read.vertices.size() * sizeof(Vertex)),
+                          read.vertices.data());
+  return read;
+}
+
+GpuMesh MakeGpuMesh(const character::Mesh& mesh, std::span<const glm::mat4> inverse_bind_matrices) {
+  GpuMesh gpu;
+  gpu.vertices = gl::MakeStaticBuffer(mesh.vertices.data(), mesh.vertices.size() * sizeof(Vertex));
+  gpu.indices = gl::MakeStaticBuffer(mesh.indices.data(), mesh.indices.size() * 4);
+  gpu.vertex_array = gl::MakeVertexArray();
+  gpu.num_vertices = static_cast<GLsizei>(mesh.vertices.size());
+  gpu.num_indices = static_cast<GLsizei>(mesh.indices.size());
+  gpu.material = mesh.material;
+  gpu.mean_edge = MeanEdge(mesh);
+  gpu.surface = Surface(mesh);
+  gpu.uv_per_metre = LeastUvPerMetre(mesh);
+  gpu.bounds = JointBounds(mesh, inverse_bind_matrices);
+  DescribeVertices(gpu.vertex_array.name(), gpu.vertices);
+  glVertexArrayElementBuffer(gpu.vertex_array.name(), gpu.indices.name());
+  return gpu;
+}
+
+void AddLevels(GpuMesh* mesh, Borders borders) {
+  std::vector<std::uint32_t> indices;
+  for (const MeshLevel& level : MakeMeshLevels(ReadMesh(*mesh), borders)) {
+    mesh->levels.push_back({static_cast<GLsizei>(indices.size()),
+                            static_cast<GLsizei>(level.indices.size()), level.error});
+    indices.insert(indices.end(), level.indices.begin(), level.indices.end());
+  }
+  mesh->indices = gl::MakeStaticBuffer(indices.data(), indices.size() * 4);
+  glVertexArrayElementBuffer(mesh->vertex_array.name(), mesh->indices.name());
+}
+
+GpuMesh MakeUnindexed(const GpuMesh& mesh) {
+  const character::Mesh source = ReadMesh(mesh);
+  std::vector<Vertex> expanded;
+  expanded.reserve(source.indices.size());
+  for (const std::uint32_t vertex : source.indices) expanded.push_back(source.vertices[vertex]);
+  GpuMesh gpu;
+  gpu.vertices = gl::MakeStaticBuffer(expanded.data(), expanded.size() * sizeof(Vertex));
+  gpu.vertex_array = gl::MakeVertexArray();
+  gpu.num_vertices = gpu.num_indices = mesh.num_indices;
+  gpu.material = mesh.material;
+  DescribeVertices(gpu.vertex_array.name(), gpu.vertices);
+  return gpu;
+}
+
+GpuPatches MakePatches(const GpuMesh& mesh) {
+  const DisplacementPatches patches = MakeDisplacementPatches(ReadMesh(mesh));
+  GpuPatches gpu;
+  gpu.indices = gl::MakeStaticBuffer(patches.indices.data(), patches.indices.size() * 4);
+  gpu.shares = gl::MakeStaticBuffer(patches.shares.data(), patches.shares.size() * sizeof(float));
+  gpu.vertex_array = gl::MakeVertexArray();
+  gpu.num_indices = static_cast<GLsizei>(patches.indices.size());
+  gpu.metres_per_uv = patches.metres_per_uv;
+  DescribeVertices(gpu.vertex_array.name(), mesh.vertices);
+  DescribeShares(gpu.vertex_array.name(), gpu.shares);
+  glVertexArrayElementBuffer(gpu.vertex_array.name(), gpu.indices.name());
+  return gpu;
+}
+
+}  // namespace furrow::render

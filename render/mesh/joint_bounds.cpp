@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/mesh/joint_bounds.h"
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace furrow::render {
+
+JointBounds::JointBounds(const character::Character& character,
+                         const std::function<bool(const character::Material&)>& accept) {
+  for (const character::Mesh& mesh : character.meshes) {
+    if (accept(character.materials[static_cast<std::size_t>(mesh.material)])) {
+      Add(mesh, character.inverse_bind_matrices);
+    }
+  }
+}
+
+JointBounds::JointBounds(const character::Mesh& mesh,
+                         std::span<const glm::mat4> inverse_bind_matrices) {
+  Add(mesh, inverse_bind_matrices);
+}
+
+void JointBounds::Add(const character::Mesh& mesh,
+                      std::span<const glm::mat4> inverse_bind_matrices) {
+  std::map<int, Box> boxes;
+  for (const character::Vertex& vertex : mesh.vertices) {
+    for (int i = 0; i < 4; ++i) {
+      if (!(vertex.skin_weights[i] > 0.0f)) continue;
+      const int joint = vertex.joints[i];
+      const glm::vec3 place(inverse_bind_matrices[static_cast<std::size_t>(joint)] *
+                            glm::vec4(vertex.position, 1.0f));
+      const auto [found, is_new] = boxes.try_emplace(joint, Box{joint, place, place});
+      if (is_new) continue;
+      found->second.low = glm::min(found->second.low, place);
+      found->second.high = glm::max(found->second.high, place);
+    }
+  }
+  for (const auto& [joint, box] : boxes) boxes_.push_back(box);
+}
+
+JointBounds::Extent JointBounds::Look(std::span<const glm::mat4> model,
+                                      const glm::mat4& view_projection, float reach) const {
+  Extent extent{glm::vec2(std::numeric_limits<float>::max()),
+                glm::vec2(std::numeric_limits<float>::lowest()), std::numeric_limits<float>::max()};
+  for (const Box& box : boxes_) {
+    const glm::mat4 to_clip = view_projection * model[static_cast<std::size_t>(box.joint)];
+    const glm::vec3 low_corner = box.low - reach;
+    const glm::vec3 high_corner = box.high + reach;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::vec3 place((corner & 1) != 0 ? high_corner.x : low_corner.x,
+                            (corner & 2) != 0 ? high_corner.y : low_corner.y,
+                            (corner & 4) != 0 ? high_corner.z : low_corner.z);
+      const glm::vec4 clip = to_clip * glm::vec4(place, 1.0f);
+      if (!(clip.w > 1e-6f)) return {glm::vec2(-1.0f), glm::vec2(1.0f), 0.0f};
+      const glm::vec2 screen = glm::vec2(clip) / clip.w;
+      extent.low = glm::min(extent.low, screen);
+      extent.high = glm::max(extent.high, screen);
+      extent.nearest = std::min(extent.nearest, clip.w);
+    }
+  }
+  return extent;
+}
+
+ScreenRect JointBounds::Project(std::span<const glm::mat4> model, const glm::mat4& view_projection,
+                                int width, int height, float reach) const {
+  const Extent extent = Look(model, view_projection, reach);
+  const glm::vec2 size(width, height);
+  const auto pixel = [&](const glm::vec2& place) { return (place * 0.5f + 0.5f) * size; };
+  const glm::vec2 first = glm::clamp(glm::floor(pixel(extent.low)), glm::vec2(0), size);
+  const glm::vec2 last = glm::clamp(glm::ceil(pixel(extent.high)), glm::vec2(0), size);
+  return {static_cast<int>(first.x), static_cast<int>(first.y), static_cast<int>(last.x),
+          static_cast<int>(last.y)};
+}
+
+}  // namespace furrow::render

@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/mesh/mesh_levels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <compare>
+#include <queue>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+namespace furrow::render {
+namespace {
+
+using Index = std::uint32_t;
+using Triangle = std::array<Index, 3>;
+
+constexpr std::size_t kFewTriangles = 64;    // less is not worth a level
+constexpr std::size_t kMostOfAVertex = 256;  // triangles; what has more stays, and so does its fan
+constexpr double kMostError = 0.015;         // metres; nobody is so small in a picture
+constexpr double kLeastTurn = 0.3;           // cosine between a triangle before and after
+constexpr double kStraight = 0.7;            // ... and of a border that has no corner
+
+glm::dvec3 Cross(const std::array<glm::dvec3, 3>& corners) {
+  return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+}
+
+std::array<Index, 2> EdgeOf(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+
+// Sum of squared distances to planes, weighted.
+class Quadric {
+ public:
+  void AddPlane(const glm::dvec3& normal, const glm::dvec3& point, double weight) {
+    const double offset = -glm::dot(normal, point);
+    const std::array<double, 4> plane = {normal.x, normal.y, normal.z, offset};
+    for (int i = 0, next = 0; i < 4; ++i) {
+      for (int j = i; j < 4; ++j) terms_[next++] += weight * plane[i] * plane[j];
+    }
+    weight_ += weight;
+  }
+  void Add(const Quadric& other) {
+    for (std::size_t i = 0; i < terms_.size(); ++i) terms_[i] += other.terms_[i];
+    weight_ += other.weight_;
+  }
+  // Root of the mean.
+  [[nodiscard]] double ErrorAt(const glm::dvec3& point) const {
+    const std::array<double, 4> p = {point.x, point.y, point.z, 1.0};
+    double sum = 0.0;
+    for (int i = 0, next = 0; i < 4; ++i) {
+      for (int j = i; j < 4; ++j) sum += (i == j ? 1.0 : 2.0) * terms_[next++] * p[i] * p[j];
+    }
+    return weight_ > 0.0 ? std::sqrt(std::max(sum, 0.0) / weight_) : 0.0;
+  }
+
+ private:
+  std::array<double, 10> terms_{};
+  double weight_ = 0.0;
+};
+
+class Simplifier {
+ public:
+  Simplifier(const character::Mesh& mesh, Borders borders);
+
+  // Whether no more than `target` triangles are left.
+  bool Reduce(std::size_t target);
+  [[nodiscard]] MeshLevel level() const;
+  [[nodiscard]] std::size_t num_triangles() const { return num_alive_; }
+
+ private:
+  // Vertex `from` onto its neighbour `to`.
+  struct Collapse {
+    double error = 0.0;
+    Index from = 0;
+    Index to = 0;
+    int version = 0;  // of `from`
+    bool operator>(const Collapse& other) const { return error > other.error; }
+  };
+  void LockSeams();
+  [[nodiscard]] std::vector<std::array<Index, 2>> Edges() const;
+  // Has too many triangles to look at all of them again and again.
+  [[nodiscard]] bool IsHub(Index vertex) const {
+    return triangles_of_[vertex].size() > kMostOfAVertex;
+  }
+  [[nodiscard]] std::size_t NumTriangles(Index a, Index b) const;
+  void HoldBorders();
+  [[nodiscard]] std::vector<Index> Neighbours(Index vertex) const;
+  [[nodiscard]] bool IsAllowed(Index from, Index to) const;
+  void Propose(Index from);
+  void Apply(const Collapse& collapse);
+
+  Borders borders_;
+  std::vector<glm::dvec3> positions_;
+  std::vector<Triangle> triangles_;
+  std::vector<glm::dvec3> facing_;                // a triangle each, of the mesh itself
+  std::vector<bool> is_alive_;                    // a triangle each
+  std::vector<std::vector<Index>> triangles_of_;  // a vertex each; dead ones are taken out
+  std::vector<bool> is_locked_;
+  std::vector<bool> is_border_;
+  std::vector<int> versions_;
+  std::vector<Quadric> quadrics_;
+  std::priority_queue<Collapse, std::vector<Collapse>, std::greater<>> queue_;
+  std::size_t num_alive_ = 0;
+  double error_ = 0.0;
+};
+
+Simplifier::Simplifier(const character::Mesh& mesh, Borders borders)
+    : borders_(borders),
+      triangles_of_(mesh.vertices.size()),
+      is_locked_(mesh.vertices.size(), false),
+      is_border_(mesh.vertices.size(), false),
+      versions_(mesh.vertices.size(), 0),
+      quadrics_(mesh.vertices.size()) {
+  for (const character::Vertex& vertex : mesh.vertices) positions_.emplace_back(vertex.position);
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const Triangle triangle = {mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]};
+    const glm::dvec3 cross =
+        Cross({positions_[triangle[0]], positions_[triangle[1]], positions_[triangle[2]]});
+    const double twice_area = glm::length(cross);
+    for (const Index corner : triangle) {
+      triangles_of_[corner].push_back(static_cast<Index>(triangles_.size()));
+      if (twice_area > 0.0) {
+        quadrics_[corner].AddPlane(cross / twice_area, positions_[corner], twice_area);
+      }
+    }
+    triangles_.push_back(triangle);
+    facing_.push_back(cross);
+  }
+  num_alive_ = triangles_.size();
+  is_alive_.assign(num_alive_, true);
+  LockSeams();
+  HoldBorders();
+  for (Index vertex = 0; vertex < positions_.size(); ++vertex) Propose(vertex);
+}
+
+// At a seam, of UV or of shading, several vertices lie in one place.
+void Simplifier::LockSeams() {
+  constexpr double kOnePlace = 1e-6;             // metres
+  const glm::dvec3 direction(0.57, 0.61, 0.55);  // along which meshes seldom have many in a plane
+  // What lies in exactly one place is sorted side by side; of what is merely near, no more is
+  // looked at, however many lie in a plane.
+  constexpr std::ptrdiff_t kMostLookedAt = 32;
+  struct Along {
+    double distance = 0.0;
+    std::array<double, 3> position{};
+    Index vertex = 0;
+    auto operator<=>(const Along&) const = default;
+  };
+  std::vector<Along> order;
+  for (Index vertex = 0; vertex < positions_.size(); ++vertex) {
+    const glm::dvec3& position = positions_[vertex];
+    order.push_back({glm::dot(direction, position), {position.x, position.y, position.z}, vertex});
+  }
+  std::ranges::sort(order, [](const Along& a, const Along& b) { return a < b; });
+  for (auto one = order.begin(); one != order.end(); ++one) {
+    const auto end = one + std::min(kMostLookedAt, order.end() - one);
+    for (auto other = one + 1; other < end; ++other) {
+      if (other->distance - one->distance > kOnePlace) break;
+      const Index a = one->vertex;
+      const Index b = other->vertex;
+      if (glm::distance(positions_[a], positions_[b]) > kOnePlace) continue;
+      is_locked_[a] = is_locked_[b] = true;
+    }
+  }
+}
+
+// Every edge as often as triangles have it, in order.
+std::vector<std::array<Index, 2>> Simplifier::Edges() const {
+  std::vector<std::array<Index, 2>> edges;
+  edges.reserve(3 * triangles_.size());
+  for (const Triangle& triangle : triangles_) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      edges.push_back(EdgeOf(triangle[i], triangle[(i + 1) % 3]));
+    }
+  }
+  std::ranges::sort(edges);
+  return edges;
+}
+
+// An edge of one triangle is a border. Where it may be drawn in, a plane stands upright on it, so
+// that it keeps its line; where the line has a corner, or is not one line, it stays.
+void Simplifier::HoldBorders() {
+  std::vector<std::array<glm::dvec3, 2>> ways(positions_.size());  // of a vertex' two border edges
+  std::vector<std::size_t> num_ways(positions_.size(), 0);
+  const std::vector<std::array<Index, 2>> edges = Edges();
+  for (const Triangle& triangle : triangles_) {
+    const glm::dvec3 cross =
+        Cross({positions_[triangle[0]], positions_[triangle[1]], positions_[triangle[2]]});
+    for (int i = 0; i < 3; ++i) {
+      const Index a = triangle[i];
+      const Index b = triangle[(i + 1) % 3];
+      const auto [first, last] = std::equal_range(edges.begin(), edges.end(), EdgeOf(a, b));
+      const auto count = last - first;
+      const bool is_border = count == 1;
+      if (count > 2 || (is_border && borders_ == Borders::kStay)) {
+        is_locked_[a] = is_locked_[b] = true;
+      }
+      if (!is_border || borders_ == Borders::kStay) continue;
+      const glm::dvec3 edge = positions_[b] - positions_[a];
+      const glm::dvec3 upright = glm::cross(edge, cross);
+      const double length = glm::length(upright);
+      for (const Index end : {a, b}) {
+        is_border_[end] = true;
+        if (num_ways[end] < 2) ways[end][num_ways[end]] = edge;
+        ++num_ways[end];
+        if (!(length > 0.0)) continue;
+        quadrics_[end].AddPlane(upright / length, positions_[end], glm::dot(edge, edge));
+      }
+    }
+  }
+  for (Index vertex = 0; vertex < positions_.size(); ++vertex) {
+    if (num_ways[vertex] == 0) continue;
+    const auto& [first, second] = ways[vertex];
+    const bool is_straight =
+        glm::dot(first, second) > kStraight * glm::length(first) * glm::length(second);
+    if (num_ways[vertex] != 2 || !is_straight) is_locked_[vertex] = true;
+  }
+}
+
+std::size_t Simplifier::NumTriangles(Index a, Index b) const {
+  return static_cast<std::size_t>(std::ranges::count_if(triangles_of_[a], [&](Index triangle) {
+    return std::ranges::find(triangles_[triangle], b) != triangles_[triangle].end();
+  }));
+}
+
+std::vector<Index> Simplifier::Neighbours(Index vertex) const {
+  std::vector<Index> neighbours;
+  for (const Index triangle : triangles_of_[vertex]) {
+    for (const Index corner : triangles_[triangle]) {
+      if (corner != vertex) neighbours.push_back(corner);
+    }
+  }
+  std::ranges::sort(neighbours);
+  neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
+  return neighbours;
+}
+
+// The surface stays a surface (two triangles go, or one where a border is drawn in along itself),
+// and none of its triangles turns over.
+bool Simplifier::IsAllowed(Index from, Index to) const {
+  if (IsHub(from) || IsHub(to)) return false;
+  const std::vector<Index> of_from = Neighbours(from);
+  const std::vector<Index> of_to = Neighbours(to);
+  std::vector<Index> common;
+  std::ranges::set_intersection(of_from, of_to, std::back_inserter(common));
+  if (common.size() != (is_border_[from] ? 1u : 2u)) return false;
+  if (std::ranges::any_of(common, [&](Index vertex) { return IsHub(vertex); })) return false;
+  if (is_border_[from] && NumTriangles(from, to) != 1) return false;
+  return std::ranges::all_of(triangles_of_[from], [&](Index index) {
+    const Triangle& triangle = triangles_[index];
+    if (std::ranges::find(triangle, to) != triangle.end()) return true;
+    std::array<glm::dvec3, 3> before;
+    std::array<glm::dvec3, 3> after;
+    for (int i = 0; i < 3; ++i) {
+      before[i] = positions_[triangle[i]];
+      after[i] = positions_[triangle[i] == from ? to : triangle[i]];
+    }
+    const glm::dvec3 was = Cross(before);
+    const glm::dvec3 is = Cross(after);
+    // What has no surface, as at the pole of a sphere, has no side either.
+    const bool is_flat = glm::length(was) <= 1e-12;
+    if (glm::dot(facing_[index], is) < 0.0) return false;  // many small turns are one, too
+    return is_flat || glm::dot(was, is) > kLeastTurn * glm::length(was) * glm::length(is);
+  });
+}
+
+void Simplifier::Propose(Index from) {
+  if (is_locked_[from] || triangles_of_[from].empty() || IsHub(from)) return;
+  std::vector<Collapse> ways;
+  for (const Index to : Neighbours(from)) {
+    Quadric both = quadrics_[from];
+    both.Add(quadrics_[to]);
+    ways.push_back({both.ErrorAt(positions_[to]), from, to, versions_[from]});
+  }
+  std::ranges::sort(ways, {}, &Collapse::error);
+  const auto best =
+      std::ranges::find_if(ways, [&](const Collapse& way) { return IsAllowed(way.from, way.to); });
+  if (best != ways.end()) queue_.push(*best);
+}
+
+void Simplifier::Apply(const Collapse& collapse) {
+  const auto [error, from, to, version] = collapse;
+  error_ = std::max(error_, error);
+  quadrics_[to].Add(quadrics_[from]);
+  for (const Index index : triangles_of_[from]) {
+    Triangle& triangle = triangles_[index];
+    if (std::ranges::find(triangle, to) != triangle.end()) {
+      is_alive_[index] = false;
+      --num_alive_;
+      for (const Index corner : triangle) {
+        if (corner != from) std::erase(triangles_of_[corner], index);
+      }
+    } else {
+      std::ranges::replace(triangle, from, to);
+      triangles_of_[to].push_back(index);
+    }
+  }
+  triangles_of_[from].clear();
+  std::vector<Index> changed = Neighbours(to);
+  changed.push_back(to);
+  for (const Index vertex : changed) {
+    ++versions_[vertex];
+    Propose(vertex);
+  }
+}
+
+bool Simplifier::Reduce(std::size_t target) {
+  while (num_alive_ > target && !queue_.empty() && queue_.top().error < kMostError) {
+    const Collapse collapse = queue_.top();
+    queue_.pop();
+    if (collapse.version != versions_[collapse.from] || triangles_of_[collapse.from].empty()) {
+      continue;
+    }
+    if (IsAllowed(collapse.from, collapse.to)) {
+      Apply(collapse);
+    } else {
+      ++versions_[collapse.from];
+      Propose(collapse.from);
+    }
+  }
+  return num_alive_ <= target;
+}
+
+MeshLevel Simplifier::level() const {
+  MeshLevel level;
+  level.error = static_cast<float>(error_);
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    if (!is_alive_[i]) continue;
+    level.indices.insert(level.indices.end(), triangles_[i].begin(), triangles_[i].end());
+  }
+  return level;
+}
+
+}  // namespace
+
+std::vector<MeshLevel> MakeMeshLevels(const character::Mesh& mesh, Borders borders) {
+  std::vector<MeshLevel> levels{{mesh.indices, 0.0f}};
+  Simplifier simplifier(mesh, borders);
+  std::size_t target = simplifier.num_triangles() * 2 / 3;
+  while (target >= kFewTriangles && simplifier.Reduce(target)) {
+    levels.push_back(simplifier.level());
+    target = target * 2 / 3;
+  }
+  // As far as it goes, where that is something.
+  const std::size_t finest = levels.back().indices.size() / 3;
+  if (simplifier.num_triangles() * 5 < finest * 4) levels.push_back(simplifier.level());
+  return levels;
+}
+
+}  // namespace furrow::render

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/passes/scene_draw.h"
+
+#include <algorithm>
+
+#include "base/status.h"
+#include "render/mesh/displacement_patches.h"
+
+namespace furrow::render {
+namespace {
+
+// Binding points of shaders/common_*.glsl and skin.frag.glsl; see also scene_buffers.cpp.
+constexpr GLuint kMaterialBlock = 1;
+enum TextureUnit : GLuint {
+  kBaseColourUnit = 0,
+  kBaseDerivativesUnit = 1,
+  kMasksUnit = 2,
+  kWrinkleDerivativesUnit = 3,
+  kRoughnessUnit = 4,
+  kBeckmannUnit = 7,
+  kSpecularAlbedoUnit = 8,
+  kPreintegratedUnit = 9,
+  kWrinkleLooksUnit = 10,
+  kThicknessUnit = 11,
+  kWrinkleHeightsUnit = 12
+};
+constexpr GLint kLightLocation = 0;        // of shadow.vert.glsl and displace.tese.glsl
+constexpr GLint kHeightTexelLocation = 1;  // of displace.tese.glsl
+
+void SetCulling(bool cull) {
+  if (cull) {
+    glEnable(GL_CULL_FACE);
+  } else {
+    glDisable(GL_CULL_FACE);
+  }
+}
+
+gl::Sampler MakeShadowSampler(bool compare) {
+  gl::Sampler sampler = gl::MakeSampler();
+  const GLint filter = compare ? GL_LINEAR : GL_NEAREST;
+  glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, filter);
+  glSamplerParameteri(sampler.name(), GL_TEXTURE_MAG_FILTER, filter);
+  glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glSamplerParameteri(sampler.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  if (compare) {
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    glSamplerParameteri(sampler.name(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  }
+  return sampler;
+}
+
+// For the holes of a base colour in a shadow: one texel says enough of them.
+gl::Sampler MakeCutOutSampler() {
+  gl::Sampler sampler = gl::MakeSampler();
+  glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+  glSamplerParameteri(sampler.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  return sampler;
+}
+
+// What shows or needs every wrinkle by itself has them composed in every fragment.
+bool TakesComposed(const Settings& settings, View view) {
+  return settings.wrinkle_maps.cache && view != View::kWeights && view != View::kMaskDynamic &&
+         view != View::kMaskTexture && settings.normal_blend == NormalBlend::kPartialDerivative;
+}
+
+// ... of the picture and the strip beside it.
+bool SomeViewTakesComposed(const Settings& settings) {
+  return AnyView(settings, [&](View view) { return TakesComposed(settings, view); });
+}
+
+// The views that the skin pipeline's scene pass itself draws differently for.
+View SkinView(View view) {
+  switch (view) {
+    case View::kShadow:
+    case View::kSpecular:
+    case View::kTranslucency:
+    case View::kAlbedo:
+    case View::kMaterial: return view;
+    default: return View::kFinal;
+  }
+}
+
+bool CanShineThrough(const Settings& settings) {
+  return settings.translucency.enabled && settings.shadow.filter != ShadowFilter::kOff;
+}
+
+// What a program must know of the settings that lights a surface; `skin`: it may be skin.
+void AddLight(const Settings& settings, bool skin, SceneShader* shader) {
+  shader->view = SkinView(settings.view);
+  shader->shadow_filter = settings.shadow.filter;
+  shader->shadow_lamps = settings.shadow.filter == ShadowFilter::kOff ? 0 : settings.shadow.lamps;
+  shader->shadow_taps = settings.shadow.taps;
+  shader->translucency = skin && CanShineThrough(settings);
+  shader->preintegrated = skin && settings.subsurface.method == SubsurfaceMethod::kPreintegrated;
+  shader->beckmann_table = settings.specular.table;
+  shader->gems = settings.specular.mode == SpecularMode::kGems;
+  shader->conserve_energy = settings.specular.conserve_energy;
+}
+
+}  // namespace
+
+SceneDraw::SceneDraw(const wrinkle::Skeleton& skeleton,
+                     std::span<const glm::mat4> inverse_bind_matrices, GpuCharacter* gpu,
+                     WrinkleTables* tables, ShaderLibrary* shaders, bool is_software)
+    : skeleton_(skeleton),
+      inverse_bind_matrices_(inverse_bind_matrices),
+      gpu_(gpu),
+      tables_(tables),
+      shaders_(shaders),
+      buffers_(inverse_bind_matrices, tables),
+      cache_(gpu, tables, inverse_bind_matrices, is_software),
+      posed_(gpu, shaders),
+      shadow_compare_(MakeShadowSampler(true)),
+      shadow_depth_(MakeShadowSampler(false)),
+      cut_out_(MakeCutOutSampler()) {}
+
+Status SceneDraw::Update(const FrameRequest& request) {
+  FURROW_RETURN_IF_ERROR(tables_->Update(request));
+  setup_ = SetUpFrame(request, skeleton_, &ambient_);
+  const Settings& settings = request.settings;
+  displacement_reach_ = settings.displacement.enabled
+                            ? 0.001f * settings.displacement.strength * settings.wrinkle_strength *
+                                  gpu_->heights().most_mm
+                            : 0.0f;
+  const std::vector<NamedSubject> subjects = SubjectsOf(request);
+  is_crowd_ = subjects.size() > 1;
+  FindVisible(subjects, settings);
+  buffers_.Upload(MakeFrameBlock(setup_, settings), subjects, gpu_->layout());
+  posed_.BeginFrame();
+  PlanComposing(request);
+  return {};
+}
+
+void SceneDraw::PlanComposing(const FrameRequest& request) {
+  if (is_crowd_ || !SomeViewTakesComposed(request.settings)) return cache_.Disable();
+  cache_.Plan(request.settings,
+              {.subject = &request,
+               .projection = setup_.camera.view_projection,
+               .pixels = setup_.pixels_per_slope,
+               .picture = static_cast<float>(request.width) * static_cast<float>(request.height),
+               .list = &draw_list_});
+}
+
+void SceneDraw::FindVisible(std::span<const NamedSubject> subjects, const Settings& settings) {
+  std::array<DrawList::View, DrawList::kNumViews> views;
+  views[DrawList::kCamera].projection = setup_.camera.view_projection;
+  views[DrawList::kCamera].pixels = setup_.pixels_per_slope;
+  for (int light = 0; light < kNumLights; ++light) {
+    views[light].projection = FlatProjection(setup_.shadows[light]);
+    views[light].pixels =
+        0.5f * static_cast<float>(setup_.shadow_resolution) * setup_.shadows[light].scale;
+    // Nobody asks for a dark lamp's shadow.
+    views[light].is_asked = setup_.lighting.lights[light].radiance != glm::vec3(0.0f);
+  }
+  draw_list_.Build(gpu_, subjects, views,
+                   {.reach = displacement_reach_,
+                    .error_pixels = is_crowd_ ? settings.detail.error_pixels : 0.0f,
+                    .hair_shadow = setup_.hair_shadow_error});
+}
+
+void SceneDraw::BindMasks() {
+  glBindTextureUnit(kMasksUnit, gpu_->masks());
+  glBindTextureUnit(kWrinkleHeightsUnit, gpu_->heights().texture.name());
+}
+
+WrinkleCache::Composed SceneDraw::ComposedOf(int material, const Settings& settings) const {
+  return TakesComposed(settings, settings.view) ? cache_.Find(material) : WrinkleCache::Composed();
+}
+
+bool SceneDraw::NeedsComposing(const Settings& settings) const {
+  return TakesComposed(settings, settings.view) && cache_.is_stale();
+}
+
+void SceneDraw::BindMaterial(const GpuMaterial& material, const WrinkleCache::Composed& composed) {
+  const ComposedMaterial::Textures& textures = composed.textures;
+  glBindBufferBase(GL_UNIFORM_BUFFER, kMaterialBlock, material.block.name());
+  buffers_.BindWrinkles(material.group, composed.rest);
+  glBindTextureUnit(kBaseColourUnit, textures.colour != 0 ? textures.colour : material.base_colour);
+  glBindTextureUnit(kBaseDerivativesUnit,
+                    textures.derivatives != 0 ? textures.derivatives : material.derivatives);
+  glBindTextureUnit(kRoughnessUnit, material.roughness);
+  glBindTextureUnit(kThicknessUnit, material.thickness);
+}
+
+void SceneDraw::BindTables(GLuint shadows) {
+  for (const GLuint unit : kShadowUnits) glBindTextureUnit(unit, shadows);
+  BindLookUps();
+}
+
+void SceneDraw::BindLights(const Settings& settings) {
+  buffers_.Bind();
+  BindLookUps();
+  if (settings.subsurface.method == SubsurfaceMethod::kPreintegrated) {
+    glBindTextureUnit(kPreintegratedUnit, lookup_tables_.preintegrated());
+  }
+}
+
+void SceneDraw::BindLookUps() {
+  glBindSampler(kShadowUnits[0], shadow_compare_.name());
+  glBindSampler(kShadowUnits[1], shadow_depth_.name());
+  glBindTextureUnit(kBeckmannUnit, lookup_tables_.beckmann());
+  glBindTextureUnit(kSpecularAlbedoUnit, lookup_tables_.specular_albedo());
+}
+
+Result<PosedMeshes::Vertices> SceneDraw::Pose(std::size_t index, PosedMeshes::Form form,
+                                              WrinklePart part) {
+  const GpuMaterial& material = gpu_->material(gpu_->meshes()[index].material);
+  PoseShader shader;
+  shader.num_joints = static_cast<int>(inverse_bind_matrices_.size());
+  shader.displaced = form == PosedMeshes::Form::kPatches;
+  shader.dynamic = material.group != WrinkleGroup::kNone &&
+                   NeedsOf(tables_->table(material.group), part).uses_dynamic;
+  shader.map_slots = MapSlots(tables_->num_maps());
+  return posed_.Get(index, form, shader, part, draw_list_.subjects(index));
+}
+
+void SceneDraw::DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t index,
+                             PosedMeshes::Form form, int view) {
+  const auto seen = draw_list_.seen(view, index);
+  const auto num_draws = static_cast<GLsizei>(seen.size());
+  std::vector<GLint> first(seen.size());  // vertex of each subject
+  std::ranges::transform(seen, first.begin(), [&](std::uint32_t subject) {
+    return static_cast<GLint>(subject) * posed.per_subject;
+  });
+  glBindVertexArray(posed.vertex_array);
+  if (form == PosedMeshes::Form::kUnindexed) {
+    const std::vector<GLsizei> counts(seen.size(), gpu_->meshes()[index].num_indices);
+    glMultiDrawArrays(GL_TRIANGLES, first.data(), counts.data(), num_draws);
+    return;
+  }
+  std::vector<GLsizei> counts;
+  std::vector<const void*> offsets;
+  for (const std::uint32_t subject : seen) {
+    const GpuMesh::Level level = LevelOf(index, form, draw_list_.levels(view, index)[subject]);
+    counts.push_back(level.count);
+    offsets.push_back(reinterpret_cast<const void*>(std::uintptr_t{4} * level.first));
+  }
+  if (form == PosedMeshes::Form::kPatches) {
+    glUniform1f(kHeightTexelLocation,
+                gpu_->Patches(index).metres_per_uv / static_cast<float>(gpu_->heights().side));
+    glPatchParameteri(GL_PATCH_VERTICES, DisplacementPatches::kCorners);
+  }
+  const GLenum kind = form == PosedMeshes::Form::kPatches ? GL_PATCHES : GL_TRIANGLES;
+  glMultiDrawElementsBaseVertex(kind, counts.data(), GL_UNSIGNED_INT, offsets.data(), num_draws,
+                                first.data());
+}
+
+// Patches are as fine as the screen asks for anyway.
+GpuMesh::Level SceneDraw::LevelOf(std::size_t index, PosedMeshes::Form form, int level) {
+  if (form == PosedMeshes::Form::kPatches) return {0, gpu_->Patches(index).num_indices, 0.0f};
+  const GpuMesh& mesh = gpu_->meshes()[index];
+  if (mesh.levels.empty()) return {0, mesh.num_indices, 0.0f};
+  return mesh.levels[static_cast<std::size_t>(level)];
+}
+
+Status SceneDraw::DrawShadow(const Settings& settings, int light) {
+  buffers_.Bind();
+  BindMasks();
+  glBindSampler(kBaseColourUnit, cut_out_.name());
+  Status status;
+  for (std::size_t index = 0; index < gpu_->meshes().size() && status.ok(); ++index) {
+    if (!draw_list_.seen(light, index).empty()) status = DrawCaster(settings, light, index);
+  }
+  glBindSampler(kBaseColourUnit, 0);
+  return status;
+}
+
+Status SceneDraw::DrawCaster(const Settings& settings, int light, std::size_t index) {
+  const int number = gpu_->meshes()[index].material;
+  const GpuMaterial& material = gpu_->material(number);
+  SceneShader shader;
+  if (tables_->IsDisplaced(material.group, settings)) {
+    shader = SurfaceShader(material, {});
+    shader.displaced = shader.shadow = true;
+  }
+  const Result<GLuint> program =
+      shader.displaced ? shaders_->Get(shader) : shaders_->GetShadow(material.alpha_test);
+  FURROW_RETURN_IF_ERROR(program);
+  const auto form = shader.displaced ? PosedMeshes::Form::kPatches : PosedMeshes::Form::kIndexed;
+  const WrinkleCache::Composed composed = ComposedOf(number, settings);  // as in the scene
+  BindMaterial(material, {{}, composed.rest});
+  const Result<PosedMeshes::Vertices> posed = Pose(index, form, composed.rest);
+  FURROW_RETURN_IF_ERROR(posed);
+  SetCulling(!material.double_sided);
+  glUseProgram(*program);
+  glUniform1i(kLightLocation, light);
+  DrawSubjects(*posed, index, form, light);
+  return {};
+}
+
+Status SceneDraw::DrawScene(const Settings& settings, SceneKind kind) {
+  buffers_.Bind();
+  BindMasks();
+  glBindTextureUnit(kWrinkleDerivativesUnit, gpu_->wrinkle_derivatives());
+  glBindTextureUnit(kWrinkleLooksUnit, gpu_->wrinkle_looks());
+  for (std::size_t mesh = 0; mesh < gpu_->meshes().size(); ++mesh) {
+    if (draw_list_.seen(DrawList::kCamera, mesh).empty()) continue;
+    FURROW_RETURN_IF_ERROR(DrawMesh(settings, kind, mesh));
+  }
+  return {};
+}
+
+Status SceneDraw::DrawMesh(const Settings& settings, SceneKind kind, std::size_t index) {
+  const bool wireframe = kind == SceneKind::kPlain && settings.view == View::kWireframe;
+  const int number = gpu_->meshes()[index].material;
+  const GpuMaterial& material = gpu_->material(number);
+  const WrinkleCache::Composed composed = ComposedOf(number, settings);
+  const SceneShader shader = ShaderFor(material, composed, settings, kind);
+  const Result<GLuint> program = shaders_->Get(shader);
+  FURROW_RETURN_IF_ERROR(program);
+  auto form = wireframe ? PosedMeshes::Form::kUnindexed : PosedMeshes::Form::kIndexed;
+  if (shader.displaced) form = PosedMeshes::Form::kPatches;
+  BindMaterial(material, composed);
+  const Result<PosedMeshes::Vertices> posed = Pose(index, form, composed.rest);
+  FURROW_RETURN_IF_ERROR(posed);
+  if (shader.preintegrated) glBindTextureUnit(kPreintegratedUnit, lookup_tables_.preintegrated());
+  glUseProgram(*program);
+  SetCulling(!material.double_sided);
+  DrawSubjects(*posed, index, form, DrawList::kCamera);
+  return {};
+}
+
+SceneShader SceneDraw::SurfaceShader(const GpuMaterial& material,
+                                     const WrinkleCache::Composed& composed) const {
+  SceneShader shader;
+  if (material.group != WrinkleGroup::kNone) {
+    const WrinkleNeeds needs = NeedsOf(tables_->table(material.group), composed.rest);
+    shader.active_maps = PaddedMaps(needs.num_maps, tables_->num_maps());
+    shader.wrinkle_texture = needs.uses_texture;
+    shader.wrinkle_dynamic = needs.uses_dynamic;
+  }
+  shader.composed_looks = composed.textures.colour != 0;
+  shader.base_colour_map = material.base_colour != 0 || shader.composed_looks;
+  shader.base_normal_map = material.derivatives != 0 || composed.textures.derivatives != 0;
+  shader.roughness_map = material.roughness != 0;
+  shader.alpha_test = material.alpha_test;
+  shader.mask_bits = tables_->mask_bits(material.group);
+  shader.mask_layers = gpu_->layout().num_mask_layers;
+  shader.map_slots = MapSlots(tables_->num_maps());
+  shader.crowd = is_crowd_;
+  return shader;
+}
+
+SceneShader SceneDraw::ShaderFor(const GpuMaterial& material,
+                                 const WrinkleCache::Composed& composed, const Settings& settings,
+                                 SceneKind kind) const {
+  SceneShader shader = SurfaceShader(material, composed);
+  shader.view = settings.view;
+  shader.normal_blend = settings.normal_blend;
+  shader.displaced =
+      tables_->IsDisplaced(material.group, settings) && settings.view != View::kWireframe;
+  if (kind == SceneKind::kPlain) return shader;
+  const bool skin = material.kind == character::Material::Kind::kSkin;
+  shader.shading = Shading::kSkin;
+  shader.material = material.kind;
+  shader.widen = settings.specular.widen;
+  shader.wrinkle_looks = gpu_->wrinkle_looks() != 0;
+  shader.thickness_map = skin && CanShineThrough(settings) && material.thickness != 0;
+  shader.unlit = kind == SceneKind::kFacets;
+  if (shader.unlit) {
+    shader.view = View::kFinal;
+  } else {
+    AddLight(settings, skin, &shader);
+  }
+  return shader;
+}
+
+SceneShader SceneDraw::LightShader(const Settings& settings) {
+  SceneShader shader;
+  shader.shading = Shading::kSkin;
+  shader.any_material = true;
+  AddLight(settings, true, &shader);
+  return shader;
+}
+
+}  // namespace furrow::render

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/scene/gpu_character.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/status.h"
+
+namespace furrow::render {
+namespace {
+
+using character::Character;
+using character::Material;
+using character::Picture;
+using character::Vertex;
+
+// Mirrors the Material block of scene.frag.glsl (std140).
+struct MaterialBlock {
+  glm::vec4 base_colour;
+  float roughness;
+  float specular;
+  float alpha_cutoff;
+  float cavity_albedo;
+  float thickness;
+  float padding[3];
+};
+static_assert(sizeof(MaterialBlock) == 48);
+
+// Scales the specular lobe. Skin reflects 2.8% face on, water before the eye 2%; the eye's film is
+// smooth, so that its highlight is a small bright point.
+float SpecularOf(Material::Kind kind) {
+  switch (kind) {
+    case Material::Kind::kSkin: return 0.028f;
+    case Material::Kind::kEye: return 0.04f;
+    case Material::Kind::kHair: return 0.03f;
+    case Material::Kind::kCloth: return 0.012f;
+    case Material::Kind::kOther: return 0.03f;
+  }
+  return 0.03f;
+}
+
+// What hides most is drawn first: cloth over skin over what the head holds. Hair comes after the
+// skin that it lies on: it has many layers, and those at the back of the head are hidden by then.
+int LayerOf(Material::Kind kind) {
+  switch (kind) {
+    case Material::Kind::kCloth: return 0;
+    case Material::Kind::kSkin: return 1;
+    case Material::Kind::kHair: return 2;
+    case Material::Kind::kEye:
+    case Material::Kind::kOther: return 3;
+  }
+  return 3;
+}
+
+// Base colour below which a surface counts as hollow. Eyes have black pupils and glossy ones.
+float CavityAlbedoOf(Material::Kind kind) { return kind == Material::Kind::kSkin ? 0.02f : 0.0f; }
+
+float RoughnessOf(const Material& material) {
+  return material.kind == Material::Kind::kEye ? std::min(material.roughness, 0.3f)
+                                               : material.roughness;
+}
+
+int NumMips(int width, int height) {
+  return std::bit_width(static_cast<unsigned>(std::max(width, height)));
+}
+
+void SetFiltering(const gl::Texture& texture, GLenum wrap) {
+  glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_S, static_cast<GLint>(wrap));
+  glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_T, static_cast<GLint>(wrap));
+}
+
+Status CheckMesh(const character::Mesh& mesh, const Character& character) {
+  const auto fail = [&](const char* what) {
+    return Status(StatusCode::kInvalidArgument, what, "mesh '" + mesh.name + "'");
+  };
+  if (mesh.material < 0 || mesh.material >= static_cast<int>(character.materials.size())) {
+    return fail("has no material");
+  }
+  if (mesh.indices.size() % 3 != 0) return fail("is not made of triangles");
+  for (const std::uint32_t index : mesh.indices) {
+    if (index >= mesh.vertices.size()) return fail("has an index beyond its vertices");
+  }
+  for (const Vertex& vertex : mesh.vertices) {
+    for (const std::uint16_t joint : vertex.joints) {
+      if (joint >= character.skeleton.num_joints())
+        return fail("is skinned to a joint out of range");
+    }
+  }
+  return {};
+}
+
+Status CheckPicture(const Picture& picture) {
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+  const std::size_t samples =
+      static_cast<std::size_t>(picture.width) * picture.height * picture.channels;
+  const std::string where = "picture '" + picture.name + "'";
+  if (picture.width < 1 || picture.height < 1 || picture.channels < 1 ||
+      picture.pixels.size() + picture.pixels16.size() + picture.pixels_float.size() != samples) {
+    return {StatusCode::kInvalidArgument, "its pixels do not fit its size", where};
+  }
+  if (std::max(picture.width, picture.height) > limit) {
+    return {StatusCode::kLimit, "larger than the driver's " + std::to_string(limit) + " pixels",
+            where};
+  }
+  return {};
+}
+
+// 8-bit RGBA, nearest texel: only masks of other sizes than their neighbours come here.
+std::vector<std::uint8_t> ResizeRgba8(const Picture& picture, int width, int height) {
+  const std::vector<std::uint8_t> rgba = ToRgba8(picture);
+  if (picture.width == width && picture.height == height) return rgba;
+  std::vector<std::uint8_t> result(static_cast<std::size_t>(width) * height * 4);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const int sx = x * picture.width / width;
+      const int sy = y * picture.height / height;
+      const auto* from = &rgba[(static_cast<std::size_t>(sy) * picture.width + sx) * 4];
+      std::copy_n(from, 4, &result[(static_cast<std::size_t>(y) * width + x) * 4]);
+    }
+  }
+  return result;
+}
+
+gl::Texture MakeArray(GLenum format, int width, int height, int layers) {
+  gl::Texture texture = gl::MakeTexture(GL_TEXTURE_2D_ARRAY);
+  glTextureStorage3D(texture.name(), NumMips(width, height), format, width, height, layers);
+  SetFiltering(texture, GL_REPEAT);
+  return texture;
+}
+
+Status CheckLayers(std::size_t layers, const char* what) {
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &limit);
+  if (layers <= static_cast<std::size_t>(limit)) return {};
+  return {StatusCode::kLimit,
+          std::string("more ") + what + " than the driver's " + std::to_string(limit),
+          "wrinkle rig"};
+}
+
+// The active list must fit a uniform block, and the dynamic masks what a vertex brings and hands
+// on.
+Status CheckBlock(const WrinkleLayout& layout) {
+  const int num_maps = static_cast<int>(layout.map_layers.size());
+  GLint block_limit = 0;
+  GLint varying_limit = 0;
+  GLint attribute_limit = 0;
+  glGetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &block_limit);
+  glGetIntegerv(GL_MAX_VARYING_VECTORS, &varying_limit);
+  glGetIntegerv(GL_MAX_VERTEX_ATTRIBS, &attribute_limit);
+  constexpr int kOthers = 6;  // of scene.vert.glsl
+  if (WrinkleBlockSize(num_maps, layout.num_mask_layers) <= static_cast<std::size_t>(block_limit) &&
+      MapSlots(num_maps) + kOthers <= std::min(varying_limit, attribute_limit)) {
+    return {};
+  }
+  return {StatusCode::kLimit,
+          std::to_string(num_maps) + " wrinkle maps and " + std::to_string(layout.num_mask_layers) +
+              " mask textures are more than the driver's uniform blocks and vertices hold",
+          "wrinkle rig"};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<GpuCharacter>> GpuCharacter::Create(const Character& character) {
+  std::unique_ptr<GpuCharacter> gpu(new GpuCharacter());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  for (const Picture& picture : character.pictures) {
+    FURROW_RETURN_IF_ERROR(CheckPicture(picture));
+  }
+  FURROW_RETURN_IF_ERROR(gpu->AddMaterials(character));
+  FURROW_RETURN_IF_ERROR(gpu->AddMeshes(character));
+  FURROW_RETURN_IF_ERROR(gpu->AddMasks(character));
+  FURROW_RETURN_IF_ERROR(gpu->AddWrinkleMaps(character));
+  return gpu;
+}
+
+Status GpuCharacter::AddMaterials(const Character& character) {
+  const int num_pictures = static_cast<int>(character.pictures.size());
+  for (const Material& source : character.materials) {
+    for (const int picture : {source.base_colour_texture, source.normal_texture,
+                              source.roughness_texture, source.thickness_texture}) {
+      if (picture >= num_pictures) {
+        return {StatusCode::kInvalidArgument, "names a picture that is not there",
+                "material '" + source.name + "'"};
+      }
+    }
+    const MaterialBlock block{source.base_colour,
+                              RoughnessOf(source),
+                              SpecularOf(source.kind),
+                              source.alpha_cutoff,
+                              CavityAlbedoOf(source.kind),
+                              source.thickness,
+                              {}};
+    GpuMaterial material;
+    material.block = gl::MakeStaticBuffer(&block, sizeof(block));
+    material.base_colour = ColourTexture(character, source.base_colour_texture, true);
+    material.roughness = ColourTexture(character, source.roughness_texture, false);
+    material.thickness = ColourTexture(character, source.thickness_texture, false);
+    material.derivatives = DerivativeTexture(character, source.normal_texture);
+    material.kind = source.kind;
+    material.group = GroupOf(character, source.kind);
+    material.hollow = block.cavity_albedo / std::max(source.base_colour.g, 1e-3f);
+    material.alpha_test = source.alpha_cutoff > 0.0f;
+    material.double_sided = source.double_sided;
+    materials_.push_back(std::move(material));
+  }
+  return {};
+}
+
+// What lies over other surfaces comes first, so that what it covers is not shaded.
+Status GpuCharacter::AddMeshes(const Character& character) {
+  std::vector<const character::Mesh*> order;
+  for (const character::Mesh& source : character.meshes) {
+    FURROW_RETURN_IF_ERROR(CheckMesh(source, character));
+    order.push_back(&source);
+  }
+  std::ranges::stable_sort(order, {}, [&](const character::Mesh* mesh) {
+    return LayerOf(character.materials[static_cast<std::size_t>(mesh->material)].kind);
+  });
+  for (const character::Mesh* source : order) {
+    meshes_.push_back(MakeGpuMesh(*source, character.inverse_bind_matrices));
+  }
+  return {};
+}
+
+int GpuCharacter::Level(std::size_t index, float metres) {
+  constexpr float kLeastShare = 0.01f;  // of an edge: nothing collapses for less
+  GpuMesh& mesh = meshes_[index];
+  if (!(metres > kLeastShare * mesh.mean_edge)) return 0;
+  if (mesh.levels.empty()) {
+    const bool is_hair = material(mesh.material).kind == Material::Kind::kHair;
+    AddLevels(&mesh, is_hair ? Borders::kDrawnIn : Borders::kStay);
+  }
+  int level = static_cast<int>(mesh.levels.size()) - 1;
+  while (level > 0 && mesh.levels[static_cast<std::size_t>(level)].error > metres) --level;
+  return level;
+}
+
+const GpuMesh& GpuCharacter::Unindexed(std::size_t mesh) {
+  if (!unindexed_.contains(mesh)) unindexed_.emplace(mesh, MakeUnindexed(meshes_[mesh]));
+  return unindexed_.at(mesh);
+}
+
+const GpuPatches& GpuCharacter::Patches(std::size_t mesh) {
+  if (!patches_.contains(mesh)) patches_.emplace(mesh, MakePatches(meshes_[mesh]));
+  return patches_.at(mesh);
+}
+
+GLuint GpuCharacter::ColourTexture(const Character& character, int picture, bool srgb) {
+  if (picture < 0) return 0;
+  gl::Texture& texture = colour_textures_[{picture, srgb}];
+  if (texture) return texture.name();
+  const Picture& source = character.pictures[static_cast<std::size_t>(picture)];
+  const std::vector<std::uint8_t> rgba = ToRgba8(source);
+  texture = gl::MakeTexture(GL_TEXTURE_2D);
+  glTextureStorage2D(texture.name(), NumMips(source.width, source.height),
+                     srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8, source.width, source.height);
+  glTextureSubImage2D(texture.name(), 0, 0, 0, source.width, source.height, GL_RGBA,
+                      GL_UNSIGNED_BYTE, rgba.data());
+  glGenerateTextureMipmap(texture.name());
+  SetFiltering(texture, GL_REPEAT);
+  return texture.name();
+}
+
+GLuint GpuCharacter::DerivativeTexture(const Character& character, int picture) {
+  if (picture < 0) return 0;
+  gl::Texture& texture = derivative_textures_[picture];
+  if (texture) return texture.name();
+  const DerivativeMap map =
+      DerivativesFromNormalMap(character.pictures[static_cast<std::size_t>(picture)]);
+  texture = gl::MakeTexture(GL_TEXTURE_2D);
+  glTextureStorage2D(texture.name(), NumMips(map.width, map.height), GL_RGBA16F, map.width,
+                     map.height);
+  glTextureSubImage2D(texture.name(), 0, 0, 0, map.width, map.height, GL_RGBA, GL_FLOAT,
+                      WithMoments(map).data());
+  glGenerateTextureMipmap(texture.name());
+  SetFiltering(texture, GL_REPEAT);
+  return texture.name();
+}
+
+Status GpuCharacter::AddMasks(const Character& character) {
+  std::vector<const Picture*> pictures;
+  int width = 1;
+  int height = 1;
+  for (const wrinkle::Region& region : character.rig.regions) {
+    const std::string& name = region.mask.texture;
+    if (region.mask.kind != wrinkle::Mask::Kind::kTexture || layout_.MaskLayer(name) >= 0) continue;
+    const int index = character.FindRigPicture(name);
+    if (index < 0) continue;  // Character::missing_rig_pictures: not drawn
+    pictures.push_back(&character.pictures[static_cast<std::size_t>(index)]);
+    width = std::max(width, pictures.back()->width);
+    height = std::max(height, pictures.back()->height);
+    layout_.masks.push_back({name, static_cast<int>(layout_.masks.size())});
+  }
+  FURROW_RETURN_IF_ERROR(CheckLayers(pictures.size(), "mask textures"));
+  layout_.num_mask_layers = std::max(1, static_cast<int>(pictures.size()));
+  masks_ = MakeArray(GL_RGBA8, width, height, layout_.num_mask_layers);
+  for (std::size_t layer = 0; layer < pictures.size(); ++layer) {
+    const std::vector<std::uint8_t> rgba = ResizeRgba8(*pictures[layer], width, height);
+    glTextureSubImage3D(masks_.name(), 0, 0, 0, static_cast<GLint>(layer), width, height, 1,
+                        GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    AddMaskRegions(character, *pictures[layer], static_cast<int>(layer), &mask_regions_);
+  }
+  glGenerateTextureMipmap(masks_.name());
+  glTextureParameteri(masks_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
+  return {};
+}
+
+Status GpuCharacter::AddWrinkleMaps(const Character& character) {
+  std::vector<DerivativeMap> maps;
+  int width = 1;
+  int height = 1;
+  for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
+    const bool derivative = !map.derivative.empty();
+    const int index = character.FindRigPicture(derivative ? map.derivative : map.normal);
+    layout_.map_layers.push_back(index < 0 ? -1 : static_cast<int>(maps.size()));
+    if (index < 0) continue;  // Character::missing_rig_pictures: no relief
+    const Picture& picture = character.pictures[static_cast<std::size_t>(index)];
+    maps.push_back(derivative ? DerivativesFromDerivativeMap(picture, map.derivative_scale)
+                              : DerivativesFromNormalMap(picture));
+    width = std::max(width, picture.width);
+    height = std::max(height, picture.height);
+  }
+  FURROW_RETURN_IF_ERROR(CheckLayers(maps.size(), "wrinkle maps"));
+  FURROW_RETURN_IF_ERROR(CheckBlock(layout_));
+  const int layers = std::max(1, static_cast<int>(maps.size()));
+  wrinkle_derivatives_ = MakeArray(GL_RGBA16F, width, height, layers);
+  for (std::size_t layer = 0; layer < maps.size(); ++layer) {
+    const DerivativeMap map = Resample(maps[layer], width, height);
+    glTextureSubImage3D(wrinkle_derivatives_.name(), 0, 0, 0, static_cast<GLint>(layer), width,
+                        height, 1, GL_RGBA, GL_FLOAT, WithMoments(map).data());
+  }
+  glGenerateTextureMipmap(wrinkle_derivatives_.name());
+  AddWrinkleLooks(character);
+  heights_ = MakeWrinkleHeights(character);
+  layout_.height_layers = heights_.layers;
+  return {};
+}
+
+// One layer a wrinkle map: its colour in rgb, its cavity in alpha; white where it has none.
+void GpuCharacter::AddWrinkleLooks(const Character& character) {
+  const auto find = [&](const std::string& name) {
+    const int index = name.empty() ? -1 : character.FindRigPicture(name);
+    return index < 0 ? nullptr : &character.pictures[static_cast<std::size_t>(index)];
+  };
+  bool any = false;
+  int width = 1;
+  int height = 1;
+  for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
+    for (const Picture* picture : {find(map.colour), find(map.cavity)}) {
+      if (picture == nullptr) continue;
+      any = true;
+      width = std::max(width, picture->width);
+      height = std::max(height, picture->height);
+    }
+  }
+  if (!any) return;
+  const int layers = static_cast<int>(character.rig.wrinkle_maps.size());
+  wrinkle_looks_ = MakeArray(GL_SRGB8_ALPHA8, width, height, layers);
+  for (int layer = 0; layer < layers; ++layer) {
+    const wrinkle::WrinkleMap& map = character.rig.wrinkle_maps[static_cast<std::size_t>(layer)];
+    std::vector<std::uint8_t> rgba(static_cast<std::size_t>(width) * height * 4, 255);
+    if (const Picture* colour = find(map.colour)) rgba = ResizeRgba8(*colour, width, height);
+    const Picture* cavity = find(map.cavity);
+    const std::vector<std::uint8_t> hollow =
+        cavity == nullptr ? std::vector<std::uint8_t>() : ResizeRgba8(*cavity, width, height);
+    for (std::size_t i = 0; i < rgba.size(); i += 4) {
+      rgba[i + 3] = hollow.empty() ? 255 : hollow[i];
+    }
+    glTextureSubImage3D(wrinkle_looks_.name(), 0, 0, 0, layer, width, height, 1, GL_RGBA,
+                        GL_UNSIGNED_BYTE, rgba.data());
+  }
+  glGenerateTextureMipmap(wrinkle_looks_.name());
+}
+
+}  // namespace furrow::render

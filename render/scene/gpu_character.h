@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "character/character.h"
+#include "render/gl/gl_objects.h"
+#include "render/mesh/gpu_mesh.h"
+#include "render/wrinkles/derivative_map.h"
+#include "render/wrinkles/mask_regions.h"
+#include "render/wrinkles/wrinkle_heights.h"
+#include "render/wrinkles/wrinkle_table.h"
+
+namespace furrow::render {
+
+struct GpuMaterial {
+  gl::Buffer block;        // the Material block of scene.frag.glsl
+  GLuint base_colour = 0;  // textures; 0: none
+  GLuint derivatives = 0;
+  GLuint roughness = 0;
+  GLuint thickness = 0;
+  character::Material::Kind kind = character::Material::Kind::kOther;
+  WrinkleGroup group = WrinkleGroup::kNone;
+  float hollow = 0.0f;  // green of the base colour's texture below which cavity() counts
+  bool alpha_test = false;
+  bool double_sided = false;
+};
+
+// A character's meshes, materials and textures on the GPU. Normal maps become derivative maps in
+// half floats, with mips averaged from the derivatives; masks and wrinkle maps become one array
+// each.
+class GpuCharacter {
+ public:
+  // Errors: kInvalidArgument (a mesh or material points to nothing), kLimit (more layers or larger
+  // textures than the driver takes). `character` is not kept.
+  [[nodiscard]] static Result<std::unique_ptr<GpuCharacter>> Create(
+      const character::Character& character);
+
+  [[nodiscard]] std::span<const GpuMesh> meshes() const { return meshes_; }
+  [[nodiscard]] const GpuMaterial& material(int index) const { return materials_[index]; }
+  [[nodiscard]] int num_materials() const { return static_cast<int>(materials_.size()); }
+  [[nodiscard]] GLuint masks() const { return masks_.name(); }
+  // Where the masks let wrinkles show.
+  [[nodiscard]] std::span<const MaskRegion> mask_regions() const { return mask_regions_; }
+  [[nodiscard]] GLuint wrinkle_derivatives() const { return wrinkle_derivatives_.name(); }
+  // Colour and cavity of the wrinkle maps, a layer each; 0 where none has any.
+  [[nodiscard]] GLuint wrinkle_looks() const { return wrinkle_looks_.name(); }
+  [[nodiscard]] const WrinkleLayout& layout() const { return layout_; }
+  // Heights of the wrinkle maps (WrinkleLayout::height_layers).
+  [[nodiscard]] const WrinkleHeights& heights() const { return heights_; }
+  // The coarsest of a mesh's levels that is off by `metres` at most. Levels are made when one is
+  // first asked for that could be any coarser than the mesh.
+  [[nodiscard]] int Level(std::size_t mesh, float metres);
+  // Variants of a mesh, made on first use.
+  [[nodiscard]] const GpuMesh& Unindexed(std::size_t mesh);
+  [[nodiscard]] const GpuPatches& Patches(std::size_t mesh);
+
+ private:
+  GpuCharacter() = default;
+  [[nodiscard]] Status AddMaterials(const character::Character& character);
+  [[nodiscard]] Status AddMeshes(const character::Character& character);
+  [[nodiscard]] Status AddMasks(const character::Character& character);
+  [[nodiscard]] Status AddWrinkleMaps(const character::Character& character);
+  void AddWrinkleLooks(const character::Character& character);
+  GLuint ColourTexture(const character::Character& character, int picture, bool srgb);
+  GLuint DerivativeTexture(const character::Character& character, int picture);
+
+  std::vector<GpuMesh> meshes_;
+  std::map<std::size_t, GpuMesh> unindexed_;
+  std::map<std::size_t, GpuPatches> patches_;
+  std::vector<GpuMaterial> materials_;
+  std::map<std::pair<int, bool>, gl::Texture> colour_textures_;  // (picture, is it sRGB)
+  std::map<int, gl::Texture> derivative_textures_;
+  gl::Texture masks_;
+  std::vector<MaskRegion> mask_regions_;
+  gl::Texture wrinkle_derivatives_;
+  gl::Texture wrinkle_looks_;
+  WrinkleHeights heights_;
+  WrinkleLayout layout_;
+};
+
+}  // namespace furrow::render

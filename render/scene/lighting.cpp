@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/scene/lighting.h"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace furrow::render {
+namespace {
+
+constexpr float kLampDistance = 7.0f;  // of lamps with a place, in radii of the stage
+
+// Places lamps in the camera's frame: x to its right, y up, z back towards it.
+class Placer {
+ public:
+  Placer(const LightSettings& settings, const Stage& stage)
+      : stage_(stage), intensity_(settings.intensity) {
+    const glm::mat4 turn = glm::rotate(glm::mat4(1.0f), glm::radians(settings.turn_degrees),
+                                       glm::vec3(0.0f, 1.0f, 0.0f));
+    const glm::mat4 tilt =
+        glm::rotate(turn, -glm::radians(settings.tilt_degrees), glm::vec3(1.0f, 0.0f, 0.0f));
+    frame_ = stage.heading * glm::mat3(tilt);
+  }
+
+  [[nodiscard]] glm::vec3 Direction(const glm::vec3& towards) const {
+    return frame_ * glm::normalize(towards);
+  }
+  [[nodiscard]] LightSource Directional(const glm::vec3& towards, const glm::vec3& radiance) const {
+    LightSource light;
+    light.direction = Direction(towards);
+    light.radiance = intensity_ * radiance;
+    return light;
+  }
+  [[nodiscard]] LightSource Point(const glm::vec3& towards, const glm::vec3& radiance) const {
+    LightSource light = Directional(towards, radiance);
+    light.kind = LightKind::kPoint;
+    light.reach = kLampDistance * stage_.radius;
+    light.position = stage_.focus + light.reach * light.direction;
+    return light;
+  }
+  [[nodiscard]] LightSource Spot(const glm::vec3& towards, const glm::vec3& radiance,
+                                 float cone_degrees) const {
+    LightSource light = Point(towards, radiance);
+    light.kind = LightKind::kSpot;
+    light.cone_degrees = cone_degrees;
+    return light;
+  }
+
+ private:
+  const Stage& stage_;
+  float intensity_;
+  glm::mat3 frame_;
+};
+
+}  // namespace
+
+Lighting MakeLighting(const LightSettings& settings, const Stage& stage) {
+  const Placer place(settings, stage);
+  Lighting lighting;
+  switch (settings.preset) {
+    case LightPreset::kStudio:
+      lighting.lights = {place.Spot({-0.80f, 0.72f, 0.72f}, {1.22f, 1.06f, 0.90f}, 24.0f),
+                         place.Point({0.90f, 0.12f, 0.60f}, {0.13f, 0.16f, 0.21f}),
+                         place.Directional({0.72f, 0.42f, -0.75f}, {0.42f, 0.48f, 0.57f})};
+      lighting.sky = {{0.135f, 0.140f, 0.150f}, {0.060f, 0.058f, 0.058f}, {0.032f, 0.026f, 0.022f}};
+      break;
+    case LightPreset::kHard:
+      lighting.lights = {place.Spot({-0.75f, 0.95f, 0.45f}, {2.10f, 1.95f, 1.78f}, 24.0f),
+                         place.Point({0.9f, 0.0f, 0.6f}, {0.0f, 0.0f, 0.0f}),
+                         place.Directional({0.72f, 0.42f, -0.75f}, {0.0f, 0.0f, 0.0f})};
+      lighting.sky = {glm::vec3(0.045f), glm::vec3(0.028f), glm::vec3(0.016f)};
+      break;
+    case LightPreset::kThesis:
+      lighting.lights = {place.Directional({-0.75f, 0.45f, 0.65f}, glm::vec3(0.75f)),
+                         place.Directional({0.80f, 0.35f, 0.60f}, glm::vec3(0.45f)),
+                         place.Directional({0.10f, 0.60f, -0.80f}, glm::vec3(0.45f))};
+      lighting.sky = {glm::vec3(0.06f), glm::vec3(0.05f), glm::vec3(0.04f)};
+      break;
+  }
+  for (glm::vec3* colour : {&lighting.sky.zenith, &lighting.sky.horizon, &lighting.sky.ground}) {
+    *colour *= settings.ambient * settings.sky;
+  }
+  const glm::vec3 filters[] = {settings.key, settings.fill, settings.rim};
+  for (std::size_t i = 0; i < lighting.lights.size(); ++i)
+    lighting.lights[i].radiance *= filters[i];
+  return lighting;
+}
+
+}  // namespace furrow::render

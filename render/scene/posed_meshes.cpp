@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/scene/posed_meshes.h"
+
+#include "base/status.h"
+
+namespace furrow::render {
+namespace {
+
+constexpr GLuint kSubjectAttribute = 7;  // of pose.vert.glsl
+constexpr GLuint kSubjectBinding = 2;    // of a mesh's vertex array
+
+// Mirrors the outputs of pose.vert.glsl, bytes.
+struct Layout {
+  explicit Layout(const PoseShader& shader)
+      : masks(shader.displaced ? 56 : 52),
+        stride(masks + (shader.dynamic ? 16 * static_cast<GLuint>(shader.map_slots) : 0)) {}
+  static constexpr GLuint kPosition = 0;
+  static constexpr GLuint kNormal = 12;
+  static constexpr GLuint kTangent = 24;
+  static constexpr GLuint kUv = 40;
+  static constexpr GLuint kSubject = 48;
+  static constexpr GLuint kShare = 52;
+  GLuint masks;
+  GLuint stride;
+};
+
+// As the inputs of scene.vert.glsl.
+void DescribePosed(GLuint array, const gl::Buffer& vertices, const PoseShader& shader) {
+  const Layout layout(shader);
+  glVertexArrayVertexBuffer(array, 0, vertices.name(), 0, static_cast<GLsizei>(layout.stride));
+  const auto attribute = [&](GLuint location, GLint size, GLuint offset) {
+    glEnableVertexArrayAttrib(array, location);
+    glVertexArrayAttribFormat(array, location, size, GL_FLOAT, GL_FALSE, offset);
+    glVertexArrayAttribBinding(array, location, 0);
+  };
+  attribute(0, 3, Layout::kPosition);
+  attribute(1, 3, Layout::kNormal);
+  attribute(2, 4, Layout::kTangent);
+  attribute(3, 2, Layout::kUv);
+  glEnableVertexArrayAttrib(array, 4);
+  glVertexArrayAttribIFormat(array, 4, 1, GL_UNSIGNED_INT, Layout::kSubject);
+  glVertexArrayAttribBinding(array, 4, 0);
+  if (shader.displaced) attribute(5, 1, Layout::kShare);
+  for (GLuint slot = 0; slot < static_cast<GLuint>(shader.map_slots); ++slot) {
+    if (shader.dynamic) {
+      attribute(6 + slot, 4, layout.masks + 16 * slot);
+    } else {
+      glDisableVertexArrayAttrib(array, 6 + slot);
+    }
+  }
+}
+
+}  // namespace
+
+void PosedMeshes::BeginFrame() {
+  for (auto& [key, posed] : posed_) posed.is_fresh = false;
+}
+
+PosedMeshes::Source PosedMeshes::SourceOf(std::size_t mesh, Form form) {
+  const GpuMesh& indexed = gpu_->meshes()[mesh];
+  switch (form) {
+    case Form::kIndexed: break;
+    case Form::kUnindexed: {
+      const GpuMesh& unindexed = gpu_->Unindexed(mesh);
+      return {unindexed.vertex_array.name(), unindexed.num_vertices, 0};
+    }
+    case Form::kPatches: {
+      const GpuPatches& patches = gpu_->Patches(mesh);
+      return {patches.vertex_array.name(), indexed.num_vertices, patches.indices.name()};
+    }
+  }
+  return {indexed.vertex_array.name(), indexed.num_vertices, indexed.indices.name()};
+}
+
+Result<PosedMeshes::Vertices> PosedMeshes::Get(std::size_t mesh, Form form,
+                                               const PoseShader& shader, WrinklePart part,
+                                               std::span<const std::uint32_t> subjects) {
+  Posed& posed = posed_[{mesh, form}];
+  const auto masks = shader.dynamic ? std::optional(part) : std::nullopt;
+  if (!posed.is_fresh || posed.masks != masks) {
+    posed.masks = masks;
+    const Source source = SourceOf(mesh, form);
+    FURROW_RETURN_IF_ERROR(Pose(source, shader, subjects, &posed));
+  }
+  return Vertices{posed.vertex_array.name(), posed.per_subject};
+}
+
+// Kept from frame to frame as long as it fits: new memory is paid for page by page.
+void PosedMeshes::Reserve(std::size_t bytes, Posed* posed) {
+  if (!posed->vertex_array) {
+    posed->vertex_array = gl::MakeVertexArray();
+    posed->vertices = gl::MakeBuffer();
+    posed->subjects = gl::MakeBuffer();
+  }
+  if (posed->capacity >= bytes && posed->capacity / 4 <= bytes) return;
+  glNamedBufferData(posed->vertices.name(), static_cast<GLsizeiptr>(bytes), nullptr,
+                    GL_DYNAMIC_COPY);
+  posed->capacity = bytes;
+}
+
+Status PosedMeshes::Pose(const Source& source, const PoseShader& shader,
+                         std::span<const std::uint32_t> subjects, Posed* posed) {
+  const std::size_t count = static_cast<std::size_t>(source.num_vertices) * subjects.size();
+  if (count > kMaxVertices) {
+    return {StatusCode::kLimit,
+            std::to_string(subjects.size()) + " subjects of a mesh of " +
+                std::to_string(source.num_vertices) + " vertices; at most " +
+                std::to_string(kMaxVertices) + " vertices are posed of a mesh",
+            "others"};
+  }
+  const Result<GLuint> program = shaders_->Get(shader);
+  FURROW_RETURN_IF_ERROR(program);
+  Reserve(count * Layout(shader).stride, posed);
+  gl::Upload(posed->subjects, subjects.data(), subjects.size_bytes());
+  glVertexArrayVertexBuffer(source.vertex_array, kSubjectBinding, posed->subjects.name(), 0,
+                            sizeof(std::uint32_t));
+  glVertexArrayBindingDivisor(source.vertex_array, kSubjectBinding, 1);
+  glEnableVertexArrayAttrib(source.vertex_array, kSubjectAttribute);
+  glVertexArrayAttribIFormat(source.vertex_array, kSubjectAttribute, 1, GL_UNSIGNED_INT, 0);
+  glVertexArrayAttribBinding(source.vertex_array, kSubjectAttribute, kSubjectBinding);
+
+  glUseProgram(*program);
+  glBindVertexArray(source.vertex_array);
+  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, posed->vertices.name());
+  glEnable(GL_RASTERIZER_DISCARD);
+  glBeginTransformFeedback(GL_POINTS);
+  glDrawArraysInstanced(GL_POINTS, 0, source.num_vertices, static_cast<GLsizei>(subjects.size()));
+  glEndTransformFeedback();
+  glDisable(GL_RASTERIZER_DISCARD);
+  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+
+  DescribePosed(posed->vertex_array.name(), posed->vertices, shader);
+  glVertexArrayElementBuffer(posed->vertex_array.name(), source.indices);
+  posed->per_subject = source.num_vertices;
+  posed->is_fresh = true;
+  return {};
+}
+
+}  // namespace furrow::render

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/wrinkles/derivative_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+
+namespace furrow::render {
+namespace {
+
+// Fills a map of the picture's size from a function of (x, y).
+template <class Function>
+DerivativeMap MapTexels(const character::Picture& picture, const Function& function) {
+  DerivativeMap map{picture.width, picture.height, {}};
+  map.texels.reserve(static_cast<std::size_t>(map.width) * map.height * 2);
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      const glm::vec2 derivative = function(x, y);
+      map.texels.push_back(derivative.x);
+      map.texels.push_back(derivative.y);
+    }
+  }
+  return map;
+}
+
+glm::vec2 At(const DerivativeMap& map, int x, int y) {
+  x = std::clamp(x, 0, map.width - 1);
+  y = std::clamp(y, 0, map.height - 1);
+  const std::size_t index = 2 * (static_cast<std::size_t>(y) * map.width + x);
+  return {map.texels[index], map.texels[index + 1]};
+}
+
+}  // namespace
+
+float Texel(const character::Picture& picture, int x, int y, int channel) {
+  if (channel >= picture.channels) return channel == 3 ? 1.0f : 0.0f;
+  const std::size_t index =
+      (static_cast<std::size_t>(y) * picture.width + x) * picture.channels + channel;
+  if (!picture.pixels_float.empty()) return picture.pixels_float[index];
+  if (!picture.pixels16.empty()) return picture.pixels16[index] / 65535.0f;
+  return picture.pixels[index] / 255.0f;
+}
+
+DerivativeMap DerivativesFromNormalMap(const character::Picture& picture) {
+  return MapTexels(picture, [&](int x, int y) {
+    const glm::vec3 n(2.0f * Texel(picture, x, y, 0) - 1.0f, 2.0f * Texel(picture, x, y, 1) - 1.0f,
+                      2.0f * Texel(picture, x, y, 2) - 1.0f);
+    const glm::vec2 derivative = glm::vec2(n) / std::max(n.z, 1e-3f);
+    return glm::clamp(derivative, -kMaxDerivative, kMaxDerivative);
+  });
+}
+
+DerivativeMap DerivativesFromDerivativeMap(const character::Picture& picture, float scale) {
+  const bool floats = !picture.pixels_float.empty();
+  const float gain = floats ? 1.0f : 2.0f * scale;
+  const float offset = floats ? 0.0f : -scale;
+  return MapTexels(picture, [&](int x, int y) {
+    const glm::vec2 stored(Texel(picture, x, y, 0), Texel(picture, x, y, 1));
+    return glm::clamp(gain * stored + offset, -kMaxDerivative, kMaxDerivative);
+  });
+}
+
+std::vector<float> WithMoments(const DerivativeMap& map) {
+  std::vector<float> texels;
+  texels.reserve(map.texels.size() * 2);
+  for (std::size_t i = 0; i < map.texels.size(); i += 2) {
+    const float x = map.texels[i];
+    const float y = map.texels[i + 1];
+    texels.insert(texels.end(), {x, y, x * x, y * y});
+  }
+  return texels;
+}
+
+DerivativeMap Resample(const DerivativeMap& map, int width, int height) {
+  if (map.width == width && map.height == height) return map;
+  DerivativeMap result{width, height, {}};
+  result.texels.reserve(static_cast<std::size_t>(width) * height * 2);
+  for (int y = 0; y < height; ++y) {
+    const float source_y = (y + 0.5f) * map.height / height - 0.5f;
+    const int y0 = static_cast<int>(std::floor(source_y));
+    for (int x = 0; x < width; ++x) {
+      const float source_x = (x + 0.5f) * map.width / width - 0.5f;
+      const int x0 = static_cast<int>(std::floor(source_x));
+      const float fx = source_x - x0;
+      const glm::vec2 upper = glm::mix(At(map, x0, y0), At(map, x0 + 1, y0), fx);
+      const glm::vec2 lower = glm::mix(At(map, x0, y0 + 1), At(map, x0 + 1, y0 + 1), fx);
+      const glm::vec2 value = glm::mix(upper, lower, source_y - y0);
+      result.texels.push_back(value.x);
+      result.texels.push_back(value.y);
+    }
+  }
+  return result;
+}
+
+std::vector<std::uint8_t> ToRgba8(const character::Picture& picture) {
+  const bool grey = picture.channels < 3;  // grey, or grey and alpha
+  std::vector<std::uint8_t> rgba;
+  rgba.reserve(static_cast<std::size_t>(picture.width) * picture.height * 4);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      for (int channel = 0; channel < 4; ++channel) {
+        int source = channel;
+        if (grey) source = channel < 3 ? 0 : (picture.channels == 2 ? 1 : 3);
+        const float value = std::clamp(Texel(picture, x, y, source), 0.0f, 1.0f);
+        rgba.push_back(static_cast<std::uint8_t>(value * 255.0f + 0.5f));
+      }
+    }
+  }
+  return rgba;
+}
+
+}  // namespace furrow::render

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rig/rig_file.h"
+
+#include <flatbuffers/flatbuffers.h>
+
+#include "base/checked_json.h"
+#include "base/files.h"
+#include "base/json_index.h"
+#include "base/status.h"
+#include "rig/rig_check.h"
+#include "rig/rig_generated.h"
+#include "rig/rig_reader.h"
+#include "rig/rig_schema_text.h"
+
+namespace furrow::character {
+
+std::string_view RigSchemaText() { return kRigSchemaText; }
+
+Result<wrinkle::Rig> ParseRig(std::string_view json, std::string_view source_name,
+                              const std::filesystem::path& folder,
+                              const wrinkle::PoseSource& poses) {
+  const Result<CheckedJson> checked =
+      CheckedJson::Parse(json, source_name, {kRigSchemaText, "Rig", "rig/rig.fbs"});
+  FURROW_RETURN_IF_ERROR(checked);
+  const auto* tables = flatbuffers::GetRoot<schema::Rig>(checked->buffer());
+  Result<wrinkle::Rig> rig = ReadRigTables(*tables, folder, poses);
+  if (!rig.ok()) return checked->Located(rig.status());
+  if (Status status = CheckRig(*rig); !status.ok()) return checked->Located(status);
+  DropBuildingBlocks(*tables, &*rig);
+  return rig;
+}
+
+Result<wrinkle::Rig> LoadRig(const std::filesystem::path& path, const wrinkle::PoseSource& poses) {
+  const Result<std::string> text = ReadFile(path, JsonIndex::kMaxBytes);
+  FURROW_RETURN_IF_ERROR(text);
+  return ParseRig(*text, path.string(), path.parent_path(), poses);
+}
+
+Status SaveRig(const wrinkle::Rig& rig, const std::filesystem::path& path) {
+  if (const Status s = CheckRig(rig); !s.ok()) {
+    return {s.code(), s.what(), path.string() + ": " + s.where(), s.todo()};
+  }
+  return WriteFileAtomically(path, RigToJson(rig));
+}
+
+}  // namespace furrow::character

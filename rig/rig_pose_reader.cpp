@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rig/rig_pose_reader.h"
+
+#include <cmath>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "base/asset_path.h"
+#include "base/status.h"
+#include "rig/rig_reference_pose.h"
+#include "wrinkle/rig/rig_check.h"
+
+namespace furrow::character {
+namespace {
+
+using wrinkle::FieldAt;
+using wrinkle::InvalidField;
+
+// Reference poses in the order of the file; mixes wait until their parts are known.
+class PoseReader {
+ public:
+  PoseReader(const TableList<schema::ReferencePose>* list, const std::filesystem::path& folder,
+             const wrinkle::PoseSource& source)
+      : list_(list), folder_(folder), source_(source) {}
+
+  Status Run(std::vector<wrinkle::ReferencePose>* poses) {
+    const std::size_t count = list_ == nullptr ? 0 : list_->size();
+    if (count > wrinkle::kMaxReferencePoses) {
+      return {StatusCode::kLimit,
+              "more than " + std::to_string(wrinkle::kMaxReferencePoses) + " poses",
+              "reference_poses"};
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!index_.emplace(list_->Get(i)->name()->str(), i).second) {
+        return InvalidField("the name '" + list_->Get(i)->name()->str() + "' is given twice",
+                            FieldAt("reference_poses", i) + ".name");
+      }
+    }
+    poses_.resize(count);
+    state_.resize(count, State::kUntouched);
+    for (std::size_t i = 0; i < count; ++i) {
+      FURROW_RETURN_IF_ERROR(Resolve(i));
+    }
+    *poses = std::move(poses_);
+    return {};
+  }
+
+ private:
+  enum class State { kUntouched, kOpen, kDone };
+
+  Status Resolve(std::size_t i) {
+    if (state_[i] == State::kDone) return {};
+    state_[i] = State::kOpen;
+    const schema::ReferencePose& pose = *list_->Get(i);
+    const std::string at = FieldAt("reference_poses", i);
+    const int ways =
+        (pose.joints() != nullptr) + (pose.file() != nullptr) + (pose.mix() != nullptr);
+    if (ways != 1) {
+      return InvalidField(
+          "a reference pose has exactly one of joints, file and mix, not " + std::to_string(ways),
+          at);
+    }
+    Status status = pose.joints() != nullptr ? ReadJoints(pose, at, &poses_[i])
+                    : pose.file() != nullptr ? ReadFrame(pose, at, &poses_[i])
+                                             : ReadMix(pose, at, &poses_[i]);
+    state_[i] = State::kDone;
+    return status;
+  }
+
+  static Status ReadJoints(const schema::ReferencePose& from, const std::string& at,
+                           wrinkle::ReferencePose* to) {
+    to->name = from.name()->str();
+    to->source_size = from.source_size();
+    return ForEach(from.joints(), at + ".joints",
+                   [&](const schema::JointPose& joint, const std::string& where) -> Status {
+                     wrinkle::JointDelta delta;
+                     delta.joint = joint.joint()->str();
+                     if (joint.rotation() != nullptr && joint.euler_degrees() != nullptr) {
+                       return InvalidField("rotation and euler_degrees are both stated",
+                                           where + ".euler_degrees", "leave one out");
+                     }
+                     if (const schema::Quat* q = joint.rotation()) {
+                       delta.rotation = glm::quat(q->w(), q->x(), q->y(), q->z());
+                       const float square = glm::dot(delta.rotation, delta.rotation);
+                       const bool hand_rounded = std::abs(square - 1.0f) > 1e-6f;
+                       // Near enough to a unit is made one, else CheckRig() judges.
+                       if (hand_rounded && std::abs(square - 1.0f) < 2e-3f) {
+                         delta.rotation = glm::normalize(delta.rotation);
+                       }
+                     }
+                     if (joint.euler_degrees() != nullptr) {
+                       delta.rotation = FromEulerDegrees(ToVec3(*joint.euler_degrees()));
+                     }
+                     if (joint.translation() != nullptr) {
+                       delta.translation = ToVec3(*joint.translation());
+                     }
+                     to->joints.push_back(std::move(delta));
+                     return {};
+                   });
+  }
+
+  Result<wrinkle::PoseFrame> Frame(const std::filesystem::path& path, int frame,
+                                   const std::string& where) {
+    if (frame < 0) return InvalidField("frames count from 0", where);
+    Result<wrinkle::PoseFrame> result = source_(path, frame);
+    if (result.ok()) return result;
+    const Status s = result.status();
+    const std::string what = s.where().empty() ? s.what() : s.where() + ": " + s.what();
+    return Status(s.code(), what, where, s.todo());
+  }
+
+  Status ReadFrame(const schema::ReferencePose& from, const std::string& at,
+                   wrinkle::ReferencePose* to) {
+    if (!source_) {
+      return {StatusCode::kUnsupported, "this program reads no recordings, so no pose from a file",
+              at + ".file", "write the pose out as joints"};
+    }
+    const Result<std::filesystem::path> path = FindAsset(from.file()->string_view(), folder_);
+    if (!path.ok()) {
+      const Status s = path.status();
+      return {s.code(), s.what(), at + ".file", s.todo()};
+    }
+    const Result<wrinkle::PoseFrame> frame = Frame(*path, from.frame(), at + ".frame");
+    FURROW_RETURN_IF_ERROR(frame);
+    Result<wrinkle::PoseFrame> rest = Status(StatusCode::kNotFound, {});
+    if (from.rest_frame() >= 0) {
+      rest = Frame(*path, from.rest_frame(), at + ".rest_frame");
+      FURROW_RETURN_IF_ERROR(rest);
+    }
+    Result<wrinkle::ReferencePose> pose =
+        ReferencePoseFromFrame(from.name()->str(), *frame, rest.ok() ? &*rest : nullptr);
+    if (!pose.ok()) return pose.status().At(at + ".file");
+    *to = std::move(*pose);
+    return {};
+  }
+
+  Status ReadMix(const schema::ReferencePose& from, const std::string& at,
+                 wrinkle::ReferencePose* to) {
+    std::vector<std::size_t> parts;
+    std::vector<float> weights;
+    const auto resolve = [&](const schema::MixPart& part, const std::string& where) -> Status {
+      const auto found = index_.find(part.pose()->str());
+      if (found == index_.end()) {
+        return InvalidField("there is no reference pose '" + part.pose()->str() + "'",
+                            where + ".pose");
+      }
+      if (state_[found->second] == State::kOpen) {
+        return {StatusCode::kCyclic,
+                "the mix contains itself, by way of '" + part.pose()->str() + "'", where + ".pose"};
+      }
+      if (!(std::abs(part.weight()) <= 10.0f)) {
+        return InvalidField("the weight is not a number in [-10, 10]", where + ".weight");
+      }
+      parts.push_back(found->second);
+      weights.push_back(part.weight());
+      return Resolve(found->second);
+    };
+    FURROW_RETURN_IF_ERROR(ForEach(from.mix(), at + ".mix", resolve));
+    if (parts.empty()) return InvalidField("a mix needs a part", at + ".mix");
+    std::vector<WeightedPose> weighted;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      weighted.push_back({&poses_[parts[i]], weights[i]});
+    }
+    *to = MixReferencePoses(from.name()->str(), weighted);
+    return {};
+  }
+
+  const TableList<schema::ReferencePose>* list_;
+  const std::filesystem::path& folder_;
+  const wrinkle::PoseSource& source_;
+  std::unordered_map<std::string, std::size_t> index_;
+  std::vector<wrinkle::ReferencePose> poses_;
+  std::vector<State> state_;
+};
+
+}  // namespace
+
+Status ReadReferencePoses(const TableList<schema::ReferencePose>* list,
+                          const std::filesystem::path& folder, const wrinkle::PoseSource& source,
+                          std::vector<wrinkle::ReferencePose>* poses) {
+  return PoseReader(list, folder, source).Run(poses);
+}
+
+}  // namespace furrow::character

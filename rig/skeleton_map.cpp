@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rig/skeleton_map.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include "base/ascii.h"
+#include "base/data_dir.h"
+#include "base/files.h"
+#include "base/status.h"
+
+namespace furrow::character {
+namespace {
+
+namespace fs = std::filesystem;
+using wrinkle::JointRole;
+
+constexpr char kFolder[] = "skeleton_maps";
+
+std::string Folded(std::string_view name, bool ignore_case) {
+  std::string folded(name);
+  if (ignore_case) folded = AsciiLower(std::move(folded));
+  return folded;
+}
+
+std::string_view WithoutNamespace(std::string_view name) {
+  const std::size_t colon = name.rfind(':');
+  return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
+
+// `name` without `prefix` (both folded), or as it is where it does not begin so.
+std::string_view WithoutPrefix(std::string_view name, std::string_view prefix) {
+  if (prefix.starts_with('*')) {
+    const std::string_view mark = prefix.substr(1);
+    const std::size_t at = name.rfind(mark);
+    return mark.empty() || at == std::string_view::npos ? name : name.substr(at + mark.size());
+  }
+  return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
+}
+
+// A map ready to be asked: which role has a name, and which place of which entry it fills.
+struct Place {
+  std::size_t entry;
+  std::size_t of_chain;
+  std::size_t alternative;
+};
+using Places = std::unordered_multimap<std::string, Place>;
+
+Places PlacesOf(const SkeletonMap& map) {
+  Places places;
+  for (std::size_t e = 0; e < map.entries.size(); ++e) {
+    const auto& chain = map.entries[e].chain;
+    for (std::size_t c = 0; c < chain.size(); ++c) {
+      for (std::size_t a = 0; a < chain[c].size(); ++a) {
+        places.emplace(Folded(chain[c][a], map.ignore_case), Place{e, c, a});
+      }
+    }
+  }
+  return places;
+}
+
+// Which joint fills each place of each entry, -1 for none; the best alternative, then the first
+// joint wins.
+std::vector<std::vector<std::pair<int, std::size_t>>> FillPlaces(
+    const SkeletonMap& map, const Places& places, std::string_view prefix,
+    std::span<const std::string> joint_names) {
+  std::vector<std::vector<std::pair<int, std::size_t>>> filled;
+  for (const auto& entry : map.entries) filled.emplace_back(entry.chain.size(), std::pair(-1, 0));
+  for (std::size_t j = 0; j < joint_names.size(); ++j) {
+    const std::string name = Folded(WithoutNamespace(joint_names[j]), map.ignore_case);
+    const auto [first, last] = places.equal_range(std::string(WithoutPrefix(name, prefix)));
+    for (auto it = first; it != last; ++it) {
+      auto& [joint, alternative] = filled[it->second.entry][it->second.of_chain];
+      if (joint >= 0 && alternative <= it->second.alternative) continue;
+      joint = static_cast<int>(j);
+      alternative = it->second.alternative;
+    }
+  }
+  return filled;
+}
+
+SkeletonRoles ApplyWithPrefix(const SkeletonMap& map, const Places& places, std::string_view prefix,
+                              std::span<const std::string> joint_names) {
+  SkeletonRoles result;
+  result.map = map.name;
+  result.toes_height = map.toes_height;
+  result.roles.assign(joint_names.size(), JointRole::kNone);
+  const auto filled = FillPlaces(map, places, prefix, joint_names);
+  for (std::size_t e = 0; e < filled.size(); ++e) {
+    bool found = false;
+    for (const auto& [joint, alternative] : filled[e]) {
+      if (joint < 0 || result.roles[static_cast<std::size_t>(joint)] != JointRole::kNone) continue;
+      result.roles[static_cast<std::size_t>(joint)] = map.entries[e].role;
+      ++result.num_joints;
+      found = true;
+    }
+    if (found) {
+      ++result.num_roles;
+    } else {
+      result.missing.push_back(map.entries[e].role);
+    }
+  }
+  return result;
+}
+
+Result<SkeletonMap> LoadFile(const fs::path& path) {
+  const auto text = ReadFile(path, kMaxTextFileBytes);
+  FURROW_RETURN_IF_ERROR(text);
+  return ParseSkeletonMap(*text, path.string());
+}
+
+}  // namespace
+
+SkeletonRoles ApplySkeletonMap(const SkeletonMap& map, std::span<const std::string> joint_names) {
+  const Places places = PlacesOf(map);
+  SkeletonRoles best = ApplyWithPrefix(map, places, "", joint_names);
+  for (const std::string& prefix : map.prefixes) {
+    SkeletonRoles found =
+        ApplyWithPrefix(map, places, Folded(prefix, map.ignore_case), joint_names);
+    if (found.num_joints > best.num_joints) best = std::move(found);
+  }
+  return best;
+}
+
+SkeletonMaps::SkeletonMaps(std::vector<SkeletonMap> maps, bool chosen)
+    : maps_(std::move(maps)), chosen_(chosen) {
+  std::ranges::sort(maps_, {}, &SkeletonMap::name);
+}
+
+Result<SkeletonMaps> SkeletonMaps::LoadShipped() {
+  const auto folder = FindDataFile(kFolder);
+  FURROW_RETURN_IF_ERROR(folder);
+  std::vector<SkeletonMap> maps;
+  std::error_code error;
+  for (const auto& file : fs::directory_iterator(*folder, error)) {
+    if (file.path().extension() != ".json") continue;
+    auto map = LoadFile(file.path());
+    FURROW_RETURN_IF_ERROR(map);
+    maps.push_back(*std::move(map));
+  }
+  if (error) return Status(StatusCode::kIo, error.message(), folder->string());
+  return SkeletonMaps(std::move(maps));
+}
+
+Result<SkeletonMaps> SkeletonMaps::Load(const std::string& name_or_file) {
+  if (name_or_file.empty()) return LoadShipped();
+  std::error_code error;
+  fs::path path = name_or_file;
+  if (!fs::is_regular_file(path, error) && name_or_file.find('/') == std::string::npos) {
+    const auto shipped = FindDataFile(std::string(kFolder) + "/" + name_or_file + ".json");
+    FURROW_RETURN_IF_ERROR(shipped);
+    path = *shipped;
+  }
+  auto map = LoadFile(path);
+  FURROW_RETURN_IF_ERROR(map);
+  std::vector<SkeletonMap> maps;
+  maps.push_back(*std::move(map));
+  return SkeletonMaps(std::move(maps), /*chosen=*/true);
+}
+
+SkeletonRoles SkeletonMaps::RolesOf(const wrinkle::Skeleton& skeleton) const {
+  return RolesOf(skeleton.joint_names());
+}
+
+SkeletonRoles SkeletonMaps::RolesOf(std::span<const std::string> joint_names) const {
+  SkeletonRoles best;
+  for (const SkeletonMap& map : maps_) {
+    SkeletonRoles found = ApplySkeletonMap(map, joint_names);
+    const bool enough = chosen_ || found.num_roles >= kLeastRoles;
+    if (enough && (best.map.empty() || found.num_joints > best.num_joints)) best = std::move(found);
+  }
+  return best;
+}
+
+std::string JoinRoles(std::span<const JointRole> roles) {
+  std::string text;
+  for (const JointRole role : roles) {
+    text += (text.empty() ? "" : ", ") + std::string(wrinkle::ToString(role));
+  }
+  return text;
+}
+
+}  // namespace furrow::character

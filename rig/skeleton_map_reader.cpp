@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "base/status.h"
+#include "base/text.h"
+#include "rig/skeleton_map.h"
+
+namespace furrow::character {
+namespace {
+
+using Json = nlohmann::json;
+using wrinkle::JointRole;
+
+constexpr std::size_t kMaxBytes = 1 << 20;
+constexpr std::size_t kMaxPrefixes = 64;
+constexpr std::size_t kMaxChain = 16;
+constexpr std::size_t kMaxName = 255;
+
+// Reads one file; every message says where.
+class MapReader {
+ public:
+  explicit MapReader(std::string_view source) : source_(source) {}
+
+  Status Read(const Json& root, SkeletonMap* map);
+
+ private:
+  [[nodiscard]] Status Error(const std::string& field, std::string what,
+                             StatusCode code = StatusCode::kSchema) const {
+    return {code, std::move(what), source_ + ": " + field};
+  }
+  Status CheckFields(const Json& root) const;
+  Status ReadText(const Json& value, const std::string& field, std::string* text) const;
+  Status ReadPrefixes(const Json& root, SkeletonMap* map) const;
+  Status ReadSides(const Json& root);
+  Status ReadJoints(const Json& root, SkeletonMap* map);
+  Status ReadRole(const std::string& key, const Json& value, SkeletonMap* map);
+  Status AddEntry(const std::string& role, const Json& value, const std::string& side,
+                  const std::string& field, SkeletonMap* map);
+  // One place of a chain: a name, or several with '|' between them.
+  Status AddPlace(const Json& value, const std::string& side, const std::string& field,
+                  SkeletonMap::Entry* entry) const;
+
+  std::string source_;
+  std::string left_;
+  std::string right_;
+  std::set<JointRole> seen_;
+};
+
+std::string Replaced(std::string text, const std::string& by) {
+  for (std::size_t at = text.find('*'); at != std::string::npos;
+       at = text.find('*', at + by.size())) {
+    text.replace(at, 1, by);
+  }
+  return text;
+}
+
+std::vector<std::string> Alternatives(const std::string& text) {
+  std::vector<std::string> names;
+  std::size_t start = 0;
+  for (std::size_t end = 0; end != std::string::npos; start = end + 1) {
+    end = text.find('|', start);
+    names.push_back(text.substr(start, end == std::string::npos ? end : end - start));
+  }
+  return names;
+}
+
+Status MapReader::CheckFields(const Json& root) const {
+  if (!root.is_object()) return Error("(root)", "is not an object");
+  static const std::set<std::string> kKnown = {"version",     "name",  "title",  "prefixes",
+                                               "ignore_case", "sides", "joints", "toes_height"};
+  for (const auto& [key, value] : root.items()) {
+    if (!kKnown.contains(key)) return Error(Quoted(key), "there is no such field");
+  }
+  for (const char* key : {"version", "name", "joints"}) {
+    if (!root.contains(key)) return Error(key, "is missing");
+  }
+  if (root["version"] != 1) return Error("version", "is not 1", StatusCode::kUnsupported);
+  return {};
+}
+
+Status MapReader::ReadText(const Json& value, const std::string& field, std::string* text) const {
+  if (!value.is_string()) return Error(field, "is not a text");
+  *text = value.get<std::string>();
+  if (text->size() > kMaxName) return Error(field, "is over 255 bytes", StatusCode::kLimit);
+  return {};
+}
+
+Status MapReader::ReadPrefixes(const Json& root, SkeletonMap* map) const {
+  if (!root.contains("prefixes")) return {};
+  const Json& list = root["prefixes"];
+  if (!list.is_array()) return Error("prefixes", "is not a list");
+  if (list.size() > kMaxPrefixes) return Error("prefixes", "more than 64", StatusCode::kLimit);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string field = "prefixes[" + std::to_string(i) + "]";
+    std::string prefix;
+    FURROW_RETURN_IF_ERROR(ReadText(list[i], field, &prefix));
+    if (prefix.empty() || prefix == "*") return Error(field, "stands for nothing");
+    map->prefixes.push_back(std::move(prefix));
+  }
+  return {};
+}
+
+Status MapReader::ReadSides(const Json& root) {
+  if (!root.contains("sides")) return {};
+  const Json& sides = root["sides"];
+  if (!sides.is_object() || sides.size() != 2 || !sides.contains("left") ||
+      !sides.contains("right")) {
+    return Error("sides", "is not {\"left\": ..., \"right\": ...}");
+  }
+  FURROW_RETURN_IF_ERROR(ReadText(sides["left"], "sides.left", &left_));
+  FURROW_RETURN_IF_ERROR(ReadText(sides["right"], "sides.right", &right_));
+  if (left_ == right_ || left_.empty() || right_.empty()) {
+    return Error("sides", "left and right are to be told apart by it");
+  }
+  return {};
+}
+
+Status MapReader::AddPlace(const Json& value, const std::string& side, const std::string& field,
+                           SkeletonMap::Entry* entry) const {
+  std::string text;
+  FURROW_RETURN_IF_ERROR(ReadText(value, field, &text));
+  if (text.find('*') != std::string::npos && side.empty()) {
+    return Error(field, "a '*' in a name needs one in its role, and \"sides\"");
+  }
+  std::vector<std::string> names = Alternatives(Replaced(text, side));
+  if (std::ranges::any_of(names, &std::string::empty)) return Error(field, "an empty name");
+  entry->chain.push_back(std::move(names));
+  return {};
+}
+
+// `value` is looked at where it is: copies of JSON recurse as deep as it is nested.
+Status MapReader::AddEntry(const std::string& role, const Json& value, const std::string& side,
+                           const std::string& field, SkeletonMap* map) {
+  SkeletonMap::Entry entry;
+  const auto parsed = wrinkle::ParseJointRole(role);
+  if (!parsed) return Error(field, Quoted(role) + " is no role: see docs/SKELETONS.md");
+  entry.role = *parsed;
+  if (!seen_.insert(entry.role).second) return Error(field, "the role comes twice");
+  if (!value.is_array()) {
+    FURROW_RETURN_IF_ERROR(AddPlace(value, side, field, &entry));
+  } else if (value.empty()) {
+    return Error(field, "names no joint");
+  } else if (value.size() > kMaxChain) {
+    return Error(field, "more than 16 joints", StatusCode::kLimit);
+  } else {
+    for (const Json& item : value) {
+      FURROW_RETURN_IF_ERROR(AddPlace(item, side, field, &entry));
+    }
+  }
+  map->entries.push_back(std::move(entry));
+  return {};
+}
+
+// "*UpperArm" is the role of either side.
+Status MapReader::ReadRole(const std::string& key, const Json& value, SkeletonMap* map) {
+  const std::string field = "joints." + std::string(Quoted(key));
+  if (!key.starts_with('*')) return AddEntry(key, value, "", field, map);
+  if (left_.empty()) return Error(field, "a '*' in a role needs \"sides\"");
+  const std::string rest = key.substr(1);
+  FURROW_RETURN_IF_ERROR(AddEntry("left" + rest, value, left_, field, map));
+  return AddEntry("right" + rest, value, right_, field, map);
+}
+
+Status MapReader::ReadJoints(const Json& root, SkeletonMap* map) {
+  const Json& joints = root["joints"];
+  if (!joints.is_object() || joints.empty()) return Error("joints", "is not an object of roles");
+  for (const auto& [key, value] : joints.items()) {
+    FURROW_RETURN_IF_ERROR(ReadRole(key, value, map));
+  }
+  // In the body's order, whatever the order of the file.
+  std::ranges::sort(map->entries, {}, &SkeletonMap::Entry::role);
+  return {};
+}
+
+Status MapReader::Read(const Json& root, SkeletonMap* map) {
+  FURROW_RETURN_IF_ERROR(CheckFields(root));
+  FURROW_RETURN_IF_ERROR(ReadText(root["name"], "name", &map->name));
+  if (map->name.empty()) return Error("name", "is empty");
+  if (root.contains("title")) {
+    FURROW_RETURN_IF_ERROR(ReadText(root["title"], "title", &map->title));
+  }
+  if (root.contains("ignore_case")) {
+    if (!root["ignore_case"].is_boolean()) return Error("ignore_case", "is neither true nor false");
+    map->ignore_case = root["ignore_case"].get<bool>();
+  }
+  if (root.contains("toes_height")) {
+    const Json& height = root["toes_height"];
+    if (!height.is_number()) return Error("toes_height", "is not a number");
+    map->toes_height = height.get<float>();
+    if (!(*map->toes_height >= 0.0f && *map->toes_height <= 0.5f)) {
+      return Error("toes_height", "is not between 0 and 0.5 legs", StatusCode::kInvalidArgument);
+    }
+  }
+  FURROW_RETURN_IF_ERROR(ReadPrefixes(root, map));
+  FURROW_RETURN_IF_ERROR(ReadSides(root));
+  return ReadJoints(root, map);
+}
+
+}  // namespace
+
+Result<SkeletonMap> ParseSkeletonMap(std::string_view json, std::string_view source_name) {
+  if (json.size() > kMaxBytes) {
+    return Status(StatusCode::kLimit, "over 1 MiB", std::string(source_name));
+  }
+  Json root;
+  try {
+    root = Json::parse(json.begin(), json.end(), nullptr, true, /*ignore_comments=*/true);
+  } catch (const Json::exception& error) {
+    return Status(StatusCode::kParse, std::string("broken JSON: ") + error.what(),
+                  std::string(source_name));
+  }
+  SkeletonMap map;
+  FURROW_RETURN_IF_ERROR(MapReader(source_name).Read(root, &map));
+  return map;
+}
+
+}  // namespace furrow::character

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <iterator>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <toml++/toml.h>
+
+#include "base/files.h"
+#include "base/status.h"
+#include "server/config/config.h"
+
+namespace furrow::server {
+namespace {
+
+constexpr std::uint64_t kMaxConfigBytes = 1 << 20;
+
+// One key of a table and what to do with its value; `assign` returns what is wrong, empty when
+// fine.
+struct Key {
+  std::string_view name;
+  std::function<std::string(const toml::node&)> assign;
+};
+
+Key Text(std::string_view name, std::string* target) {
+  return {name, [target](const toml::node& node) -> std::string {
+            const auto value = node.value_exact<std::string>();
+            if (!value) return "must be a string";
+            *target = *value;
+            return {};
+          }};
+}
+
+Key Path(std::string_view name, std::filesystem::path* target, std::filesystem::path folder) {
+  return {name, [target, folder = std::move(folder)](const toml::node& node) -> std::string {
+            const auto value = node.value_exact<std::string>();
+            if (!value) return "must be a string";
+            *target = folder / *value;  // an absolute path replaces the folder
+            return {};
+          }};
+}
+
+// A name as it stands; what looks like a file is relative to `folder`.
+Key NameOrFile(std::string_view name, std::string* target, std::filesystem::path folder) {
+  return {name, [target, folder = std::move(folder)](const toml::node& node) -> std::string {
+            const auto value = node.value_exact<std::string>();
+            if (!value) return "must be a string";
+            const bool file = value->find('/') != std::string::npos || value->ends_with(".json");
+            *target = file ? (folder / *value).string() : *value;
+            return {};
+          }};
+}
+
+Key Flag(std::string_view name, bool* target) {
+  return {name, [target](const toml::node& node) -> std::string {
+            const auto value = node.value_exact<bool>();
+            if (!value) return "must be true or false";
+            *target = *value;
+            return {};
+          }};
+}
+
+template <class Target>
+Key Port(std::string_view name, Target* target) {
+  return {name, [target](const toml::node& node) -> std::string {
+            const auto value = node.value_exact<std::int64_t>();
+            if (!value || *value < 0 || *value > 65535) return "must be a port, 0 to 65535";
+            *target = static_cast<std::uint16_t>(*value);
+            return {};
+          }};
+}
+
+Key Count(std::string_view name, int* target) {
+  return {name, [target](const toml::node& node) -> std::string {
+            const auto value = node.value_exact<std::int64_t>();
+            if (!value || !std::in_range<int>(*value)) return "must be a whole number";
+            *target = static_cast<int>(*value);
+            return {};
+          }};
+}
+
+Key Number(std::string_view name, double* target) {
+  return {name, [target](const toml::node& node) -> std::string {
+            const auto value = node.value<double>();
+            if (!node.is_number() || !value) return "must be a number";
+            *target = *value;
+            return {};
+          }};
+}
+
+Key Destination(std::string_view name, std::optional<HostPort>* target) {
+  return {name, [target](const toml::node& node) -> std::string {
+            const auto value = node.value_exact<std::string>();
+            if (!value) return "must be a string, HOST:PORT";
+            const Result<HostPort> parsed = ParseHostPort(*value);
+            if (!parsed.ok()) return parsed.status().what();
+            *target = *parsed;
+            return {};
+          }};
+}
+
+Key Texts(std::string_view name, std::vector<std::string>* target) {
+  return {name, [target](const toml::node& node) -> std::string {
+            const toml::array* list = node.as_array();
+            if (list == nullptr) return "must be a list of strings";
+            std::vector<std::string> texts;
+            for (const toml::node& element : *list) {
+              const auto value = element.value_exact<std::string>();
+              if (!value) return "must be a list of strings";
+              texts.push_back(*value);
+            }
+            *target = std::move(texts);
+            return {};
+          }};
+}
+
+// A table's name, empty for the top of the file, and what may stand in it.
+using NamedKeys = std::pair<std::string_view, std::vector<Key>>;
+using Tables = std::vector<NamedKeys>;
+
+class Reader {
+ public:
+  Reader(std::string_view source_name) : source_name_(source_name) {}
+
+  // The top of the file, which is the first of `tables`, and the tables in it.
+  Status ReadFile(const toml::table& root, std::span<const NamedKeys> tables) const {
+    Status status = ReadTable(root, "", tables.front().second, tables.subspan(1));
+    for (const auto& [name, keys] : tables.subspan(1)) {
+      const toml::table* table = root[name].as_table();
+      if (status.ok() && table != nullptr) {
+        status = ReadTable(*table, std::string(name) + ".", keys, {});
+      }
+    }
+    return status;
+  }
+
+ private:
+  // `subtables`: names that are no keys here but tables of their own.
+  Status ReadTable(const toml::table& table, std::string_view prefix, std::span<const Key> keys,
+                   std::span<const NamedKeys> subtables) const {
+    for (const auto& [key, node] : table) {
+      const std::string name = std::string(prefix) + std::string(key.str());
+      const auto known = std::ranges::find(keys, key.str(), &Key::name);
+      const auto subtable = std::ranges::find(subtables, key.str(), &NamedKeys::first);
+      if (known != keys.end()) {
+        if (std::string fault = known->assign(node); !fault.empty()) {
+          return Error(StatusCode::kSchema, node, name + " " + fault);
+        }
+      } else if (subtable == subtables.end()) {
+        return Error(StatusCode::kSchema, node, "unknown key " + name);
+      } else if (!node.is_table()) {
+        return Error(StatusCode::kSchema, node, name + " must be a table");
+      }
+    }
+    return {};
+  }
+
+  Status Error(StatusCode code, const toml::node& node, std::string what) const {
+    return Status(code, std::move(what),
+                  std::string(source_name_) + ":" + std::to_string(node.source().begin.line));
+  }
+
+  std::string_view source_name_;
+};
+
+Tables InputTables(Config* config, const std::filesystem::path& folder) {
+  return {{"",
+           {Path("character", &config->character, folder), Path("rig", &config->rig, folder),
+            Path("play", &config->play, folder),
+            NameOrFile("skeleton_map", &config->skeleton_map, folder)}},
+          {"listen",
+           {Text("bind", &config->bind), Port("tcp", &config->tcp), Port("udp", &config->udp),
+            Count("threads", &config->threads)}},
+          {"mocap",
+           {Port("vmc", &config->vmc), Port("livelink_face", &config->livelink_face),
+            Texts("allow", &config->mocap_allow)}}};
+}
+
+Tables OutputTables(Config* config, const std::filesystem::path& folder) {
+  RecordConfig& record = config->record;
+  HttpConfig& http = config->http;
+  return {
+      {"render",
+       {Flag("enabled", &config->render), Flag("required", &config->require_render),
+        Text("device", &config->render_device),
+        Path("settings", &config->render_settings, folder)}},
+      {"osc", {Destination("out", &config->osc_out), Text("prefix", &config->osc_prefix)}},
+      {"record",
+       {Path("dir", &record.folder, folder), Number("rotate_megabytes", &record.rotate_megabytes),
+        Number("rotate_seconds", &record.rotate_seconds), Flag("datagrams", &record.datagrams)}},
+      {"http",
+       {Flag("enabled", &http.enabled), Port("port", &http.port),
+        Texts("allow_hosts", &http.allow_hosts), Texts("allow_origins", &http.allow_origins),
+        Count("max_connections", &http.max_connections), Path("page", &http.page, folder)}},
+      {"log", {Flag("verbose", &config->verbose), Flag("json", &config->log_json)}}};
+}
+
+Tables LimitTables(Limits* limits) {
+  return {{"limits",
+           {Count("max_connections", &limits->max_connections),
+            Count("max_udp_peers", &limits->max_udp_peers),
+            Count("max_subjects", &limits->max_subjects),
+            Count("max_skeletons", &limits->max_skeletons),
+            Count("max_subscriptions", &limits->max_subscriptions),
+            Number("packets_per_second", &limits->packets_per_second),
+            Number("packet_burst", &limits->packet_burst),
+            Count("outbox_messages", &limits->outbox_messages),
+            Number("idle_seconds", &limits->idle_seconds),
+            Number("loss_seconds", &limits->loss_seconds),
+            Number("drain_seconds", &limits->drain_seconds)}}};
+}
+
+}  // namespace
+
+Status ParseConfig(std::string_view text, std::string_view source_name, Config* config) {
+  toml::table root;
+  try {
+    root = toml::parse(text, source_name);
+  } catch (const toml::parse_error& error) {
+    return Status(StatusCode::kParse, std::string(error.description()),
+                  std::string(source_name) + ":" + std::to_string(error.source().begin.line));
+  }
+  Config read = *config;
+  const std::filesystem::path folder = std::filesystem::path(source_name).parent_path();
+  Tables tables = InputTables(&read, folder);
+  std::ranges::move(OutputTables(&read, folder), std::back_inserter(tables));
+  std::ranges::move(LimitTables(&read.limits), std::back_inserter(tables));
+  const Reader reader(source_name);
+  Status status = reader.ReadFile(root, tables);
+  if (status.ok()) *config = std::move(read);
+  return status;
+}
+
+Status LoadConfigFile(const std::filesystem::path& path, Config* config) {
+  const Result<std::string> text = ReadFile(path, kMaxConfigBytes);
+  FURROW_RETURN_IF_ERROR(text);
+  return ParseConfig(*text, path.string(), config);
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include <spdlog/sinks/base_sink.h>
+
+#include "server/core/token_bucket.h"
+
+namespace furrow::server {
+
+// Lets kLinesPerSecond through to the sink below, kBurst at once, so that no peer can fill a disk
+// by what it makes the daemon say. How many lines were left out is said with the next that passes.
+// Errors always pass. Time is the messages' own.
+class LimitedSink : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  static constexpr double kLinesPerSecond = 100.0;
+  static constexpr double kBurst = 1000.0;
+
+  explicit LimitedSink(spdlog::sink_ptr below) : below_(std::move(below)) {}
+  ~LimitedSink() override;
+
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override;
+  void flush_() override { below_->flush(); }
+  void set_pattern_(const std::string& pattern) override { below_->set_pattern(pattern); }
+  void set_formatter_(std::unique_ptr<spdlog::formatter> formatter) override {
+    below_->set_formatter(std::move(formatter));
+  }
+
+ private:
+  void SayLeftOut(spdlog::log_clock::time_point time);
+
+  const spdlog::sink_ptr below_;
+  TokenBucket bucket_{kLinesPerSecond, kBurst};
+  std::uint64_t left_out_ = 0;
+  spdlog::log_clock::time_point last_time_{};
+};
+
+}  // namespace furrow::server

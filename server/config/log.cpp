@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/config/log.h"
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include <spdlog/async.h>
+#include <spdlog/pattern_formatter.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "server/config/limited_sink.h"
+
+namespace furrow::server {
+namespace {
+
+constexpr std::size_t kMaxWaitingLines = 4096;
+
+// The message as the inside of a JSON string.
+class JsonText : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&,
+              spdlog::memory_buf_t& out) override {
+    constexpr char kHex[] = "0123456789abcdef";
+    for (const char c : message.payload) {
+      const auto byte = static_cast<unsigned char>(c);
+      if (c == '"' || c == '\\') {
+        out.push_back('\\');
+        out.push_back(c);
+      } else if (byte < 0x20) {
+        const char escaped[] = {'\\', 'u', '0', '0', kHex[byte >> 4], kHex[byte & 15]};
+        out.append(escaped, escaped + sizeof(escaped));
+      } else {
+        out.push_back(c);
+      }
+    }
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<JsonText>();
+  }
+};
+
+}  // namespace
+
+Log::Log(const Config& config) {
+  spdlog::init_thread_pool(kMaxWaitingLines, /*threads=*/1);
+  auto logger = std::make_shared<spdlog::async_logger>(
+      "furrowd",
+      std::make_shared<LimitedSink>(std::make_shared<spdlog::sinks::stderr_color_sink_mt>()),
+      spdlog::thread_pool(), spdlog::async_overflow_policy::overrun_oldest);
+  if (config.log_json) {
+    auto formatter = std::make_unique<spdlog::pattern_formatter>(spdlog::pattern_time_type::utc);
+    formatter->add_flag<JsonText>('*').set_pattern(
+        R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ","level":"%l","message":"%*"})");
+    logger->set_formatter(std::move(formatter));
+  } else {
+    logger->set_pattern("%H:%M:%S.%e %^%l%$ %v");
+  }
+  logger_ = logger;
+  spdlog::set_default_logger(std::move(logger));
+}
+
+Log::~Log() { spdlog::shutdown(); }
+
+}  // namespace furrow::server

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "server/core/time.h"
+
+namespace furrow::server {
+
+// At most `rate` things a second over time, `burst` at once. Full at the start.
+class TokenBucket {
+ public:
+  TokenBucket(double rate, double burst) : rate_(rate), burst_(burst), tokens_(burst) {}
+
+  // True when `cost` may pass at `now`. Time that runs backwards earns nothing.
+  [[nodiscard]] bool Take(Time now, double cost = 1.0) {
+    if (started_ && now > last_) {
+      tokens_ = std::min(burst_, tokens_ + rate_ * ToSeconds(now - last_));
+    }
+    if (!started_ || now > last_) last_ = now;
+    started_ = true;
+    if (tokens_ < cost) return false;
+    tokens_ -= cost;
+    return true;
+  }
+
+ private:
+  double rate_;
+  double burst_;
+  double tokens_;
+  Time last_{0};
+  bool started_ = false;
+};
+
+}  // namespace furrow::server

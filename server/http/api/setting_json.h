@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "base/status.h"
+#include "render/settings/settings.h"
+
+namespace furrow::server {
+
+// One entry of GET /api/settings.
+[[nodiscard]] nlohmann::ordered_json SettingJson(const render::SettingInfo& info,
+                                                 const std::string& value);
+
+// What PATCH says of a setting as the text that render::SetSetting() takes: text, a number, a
+// boolean. Error: kSchema, `where` is the name.
+[[nodiscard]] Result<std::string> SettingText(const std::string& name,
+                                              const nlohmann::ordered_json& value);
+
+}  // namespace furrow::server

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/http/pictures/picture_stream.h"
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/write.hpp>
+
+#include "protocol/codec/codec.h"
+#include "server/http/http_session.h"
+#include "server/http/pictures/picture_query.h"
+#include "server/http/socket/web_peer.h"
+
+namespace furrow::server {
+namespace {
+
+constexpr char kBoundary[] = "furrow-picture";
+constexpr char kMjpegType[] = "multipart/x-mixed-replace; boundary=furrow-picture";
+constexpr char kSnapshotType[] = "image/png";
+// Small, so that what a slow client has not read yet is no more than a picture or two.
+constexpr int kSendBufferBytes = 128 * 1024;
+constexpr std::uint64_t kSession = 1;  // one conversation a peer: any number does
+
+class PictureStream : public std::enable_shared_from_this<PictureStream> {
+ public:
+  PictureStream(beast::tcp_stream* stream, WebContext* context)
+      : stream_(stream), wake_(stream->get_executor()), context_(context) {
+    ++context_->viewers;
+  }
+  ~PictureStream() { --context_->viewers; }
+
+  void Open(const protocol::SubscribePictures& pictures) {
+    waits_ = pictures.wait;
+    auto wake = [weak = weak_from_this()] {
+      if (const auto self = weak.lock()) self->wake_.cancel();
+    };
+    peer_.emplace(context_->post_to_hub, "web pictures",
+                  [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
+    Send(0, pictures);
+  }
+
+  // The next picture; an answer that says why there is none; neither: the client has gone.
+  struct Next {
+    bool has_image = false;
+    std::optional<ApiReply> refusal;
+  };
+  net::awaitable<Next> Wait(std::optional<std::chrono::steady_clock::time_point> deadline) {
+    std::vector<std::uint8_t> message;
+    while (true) {
+      while (peer_->Pop(&message)) {
+        if (std::optional<Next> next = Take(message); next) co_return *std::move(next);
+      }
+      if (deadline && std::chrono::steady_clock::now() >= *deadline) {
+        co_return Next{false, ErrorReply(503, "unavailable", "subject",
+                                         "no picture within 10 s: no pose came, or what draws is "
+                                         "still being made ready",
+                                         "ask again")};
+      }
+      if (gone_) co_return Next{};
+      wake_.expires_at(deadline.value_or(net::steady_timer::time_point::max()));
+      beast::error_code ignored;
+      co_await wake_.async_wait(Redirect(ignored));
+    }
+  }
+  // A client of /mjpeg says nothing more: what can be read is its end.
+  void WatchForEnd() {
+    stream_->socket().async_wait(net::ip::tcp::socket::wait_read,
+                                 [weak = weak_from_this()](beast::error_code) {
+                                   if (const auto self = weak.lock()) {
+                                     self->gone_ = true;
+                                     self->wake_.cancel();
+                                   }
+                                 });
+  }
+  void Acknowledge() { Send(subscription_, protocol::FrameAck{image_.number}); }
+  [[nodiscard]] const protocol::ImageFrame& image() const { return image_; }
+
+ private:
+  template <class Message>
+  void Send(std::uint16_t stream, const Message& message) {
+    std::vector<std::uint8_t> bytes;
+    encoder_.Encode({.session = kSession, .stream = stream, .sequence = ++requests_}, message,
+                    bytes);
+    if (!peer_->Send(std::move(bytes))) gone_ = true;
+  }
+
+  std::optional<Next> Take(const std::vector<std::uint8_t>& message) {
+    protocol::MessageView view;
+    if (protocol::OpenMessage(message, view, protocol::kMaxReplyBytes) !=
+        protocol::DecodeStatus::kOk) {
+      return std::nullopt;
+    }
+    if (view.kind == protocol::MessageKind::kImage) {
+      subscription_ = view.header.stream;
+      const bool good = protocol::Decode(view, image_) == protocol::DecodeStatus::kOk;
+      return good ? std::optional(Next{true, std::nullopt}) : std::nullopt;
+    }
+    if (view.kind == protocol::MessageKind::kGoodbye) {
+      // Of the subject alone: it may come back.
+      const bool goes_on = waits_ && view.header.stream != 0;
+      return goes_on ? std::nullopt : std::optional(Next{});
+    }
+    protocol::ErrorMessage error;
+    if (protocol::Decode(view, error) != protocol::DecodeStatus::kOk) return std::nullopt;
+    return Next{false, Refusal(error)};
+  }
+
+  static ApiReply Refusal(const protocol::ErrorMessage& error) {
+    using protocol::ErrorCode;
+    switch (error.code) {
+      case ErrorCode::kUnknownSubject:
+        return ErrorReply(404, "not_found", "subject", error.message);
+      case ErrorCode::kNotRendering:
+      case ErrorCode::kDraining: return ErrorReply(503, "unavailable", "", error.message);
+      default: return ErrorReply(400, "invalid_argument", "", error.message);
+    }
+  }
+
+  beast::tcp_stream* stream_;
+  net::steady_timer wake_;
+  WebContext* context_;
+  std::optional<WebPeer> peer_;  // from Open() on
+  protocol::Encoder encoder_;
+  std::uint32_t requests_ = 0;
+  std::uint16_t subscription_ = 0;
+  bool waits_ = false;  // for a subject that is not there
+  protocol::ImageFrame image_;
+  bool gone_ = false;
+};
+
+net::awaitable<bool> WriteAll(beast::tcp_stream* stream, std::string_view head,
+                              const std::vector<std::uint8_t>& body, std::string_view tail) {
+  const std::array<net::const_buffer, 3> parts = {net::buffer(head.data(), head.size()),
+                                                  net::buffer(body),
+                                                  net::buffer(tail.data(), tail.size())};
+  stream->expires_after(kWebDeadline);
+  beast::error_code error;
+  const std::size_t size = co_await net::async_write(*stream, parts, Redirect(error));
+  co_return !error;
+}
+
+std::string PartHead(std::size_t bytes) {
+  return std::string("--") + kBoundary +
+         "\r\nContent-Type: image/jpeg\r\nContent-Length: " + std::to_string(bytes) + "\r\n\r\n";
+}
+
+net::awaitable<bool> ServeMjpeg(beast::tcp_stream* stream, PictureStream* pictures,
+                                const WebRequest& request) {
+  beast::error_code ignored;
+  stream->socket().set_option(net::socket_base::send_buffer_size(kSendBufferBytes), ignored);
+  const std::string head = std::string(
+                               "HTTP/1.1 200 OK\r\nServer: furrowd\r\nCache-Control: no-store\r\n"
+                               "Connection: close\r\nContent-Type: ") +
+                           kMjpegType + "\r\n\r\n";
+  bool has_begun = false;
+  pictures->WatchForEnd();
+  while (true) {
+    PictureStream::Next next = co_await pictures->Wait(std::nullopt);
+    if (next.refusal && !has_begun) {
+      co_return co_await WriteReply(*stream, request, *std::move(next.refusal));
+    }
+    if (!next.has_image) co_return false;
+    const std::string part = (has_begun ? "" : head) + PartHead(pictures->image().bytes.size());
+    has_begun = true;
+    if (!co_await WriteAll(stream, part, pictures->image().bytes, "\r\n")) co_return false;
+    pictures->Acknowledge();
+  }
+}
+
+net::awaitable<bool> ServeSnapshot(beast::tcp_stream* stream, PictureStream* pictures,
+                                   const WebRequest& request) {
+  const PictureStream::Next next =
+      co_await pictures->Wait(std::chrono::steady_clock::now() + kWebDeadline);
+  if (!next.has_image) {
+    co_return co_await WriteReply(
+        *stream, request,
+        next.refusal.value_or(ErrorReply(404, "not_found", "subject", "the subject has left")));
+  }
+  const std::vector<std::uint8_t>& bytes = pictures->image().bytes;
+  ApiReply picture{.type = kSnapshotType, .body = std::string(bytes.begin(), bytes.end())};
+  co_return co_await WriteReply(*stream, request, std::move(picture));
+}
+
+}  // namespace
+
+net::awaitable<bool> ServePictures(beast::tcp_stream* stream, WebContext* context,
+                                   const WebRequest& request, const Url& url) {
+  Result<protocol::SubscribePictures> wanted = PicturesOf(url);
+  if (!wanted.ok()) co_return co_await WriteReply(*stream, request, ErrorReply(wanted.status()));
+  const bool once = url.path == "/snapshot.png";
+  if (request.method() == http::verb::head) {  // right as it is; nothing is drawn for it
+    ApiReply reply{.type = once ? kSnapshotType : kMjpegType};
+    co_return co_await WriteReply(*stream, request, std::move(reply));
+  }
+  wanted->acknowledged = !once;
+  wanted->wait = !once;
+  if (once) wanted->format = protocol::ImageFormat::kPng;
+  stream->expires_never();
+  auto pictures = std::make_shared<PictureStream>(stream, context);
+  pictures->Open(*wanted);
+  if (once) co_return co_await ServeSnapshot(stream, pictures.get(), request);
+  co_return co_await ServeMjpeg(stream, pictures.get(), request);
+}
+
+}  // namespace furrow::server

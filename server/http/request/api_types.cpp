@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/http/request/api_types.h"
+
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace furrow::server {
+namespace {
+
+struct CodeInfo {
+  int status;
+  std::string_view name;
+};
+
+CodeInfo InfoOf(StatusCode code) {
+  switch (code) {
+    case StatusCode::kOk: return {200, "ok"};
+    case StatusCode::kNotFound: return {404, "not_found"};
+    case StatusCode::kParse: return {400, "parse"};
+    case StatusCode::kSchema: return {400, "schema"};
+    case StatusCode::kUnavailable: return {503, "unavailable"};
+    case StatusCode::kIo:
+    case StatusCode::kInternal: return {500, "internal"};
+    default: return {400, "invalid_argument"};
+  }
+}
+
+}  // namespace
+
+ApiReply ErrorReply(int status, std::string_view code, std::string_view field,
+                    std::string_view message, std::string_view hint) {
+  const nlohmann::ordered_json json = {
+      {"error", {{"code", code}, {"field", field}, {"message", message}, {"hint", hint}}}};
+  using Json = nlohmann::ordered_json;
+  // What a client sent may come back in it, UTF-8 or not.
+  return {.status = status, .body = json.dump(-1, ' ', false, Json::error_handler_t::replace)};
+}
+
+ApiReply ErrorReply(const Status& status) {
+  const CodeInfo info = InfoOf(status.code());
+  return ErrorReply(info.status, info.name, status.where(), status.what(), status.todo());
+}
+
+ApiReply MethodReply(std::string_view method, std::string_view path, std::string allow) {
+  ApiReply reply =
+      ErrorReply(405, "method", "", std::string(method) + " means nothing to " + std::string(path),
+                 "use " + allow);
+  reply.allow = std::move(allow);
+  return reply;
+}
+
+}  // namespace furrow::server

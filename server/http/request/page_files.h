@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "base/status.h"
+
+namespace furrow::server {
+
+struct PageFile {
+  std::string_view type;  // "text/html; charset=utf-8"
+  std::string bytes;
+  std::string gzip;        // empty where it would not be smaller
+  std::string etag;        // with its quotation marks
+  bool immutable = false;  // its name changes with its content
+};
+
+// The page's files, read and compressed once: what a request names is looked up, never opened.
+class PageFiles {
+ public:
+  static constexpr std::uintmax_t kMaxBytes = 64u << 20;  // of all files together
+
+  // Every regular file under `folder`, as "/<path>"; "/" is index.html. Errors: kNotFound (no
+  // folder, or no index.html), kIo, kLimit.
+  [[nodiscard]] static Result<PageFiles> Load(const std::filesystem::path& folder);
+
+  // Null: no such file.
+  [[nodiscard]] const PageFile* Find(std::string_view path) const;
+
+ private:
+  std::map<std::string, PageFile, std::less<>> files_;
+};
+
+}  // namespace furrow::server

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+
+#include "server/config/http_config.h"
+#include "server/core/metrics.h"
+#include "server/http/request/api_types.h"
+#include "server/http/request/hub_door.h"
+#include "server/http/request/page_files.h"
+#include "server/http/request/request_guard.h"
+
+namespace furrow::server {
+
+// Answers the JSON routes, and /metrics and /readyz; called on the hub's thread.
+using AnswerApi = std::function<ApiReply(const ApiRequest& request, Hub& hub, Time now)>;
+
+// What every connection of the web side shares. Outlives them.
+struct WebContext {
+  HttpConfig config;
+  RequestGuard guard;
+  PageFiles page;
+  PostToHub post_to_hub;
+  PostToWeb post_to_web;
+  AnswerApi answer;
+  Metrics* metrics = nullptr;
+  std::atomic<int> connections = 0;
+  std::atomic<int> viewers = 0;  // WebSockets and streams of pictures
+};
+
+inline constexpr std::size_t kMaxWebMessageBytes = 64 * 1024;
+inline constexpr std::size_t kMaxWebHeaderBytes = 8 * 1024;
+
+}  // namespace furrow::server

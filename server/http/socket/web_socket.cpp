@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/http/socket/web_socket.h"
+
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/websocket/stream.hpp>
+
+#include "protocol/codec/codec.h"
+#include "server/http/socket/web_message.h"
+#include "server/http/socket/web_peer.h"
+
+namespace furrow::server {
+namespace {
+
+namespace websocket = beast::websocket;
+
+constexpr char kProtocol[] = "furrow.1";
+
+class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
+ public:
+  WebSocketSession(beast::tcp_stream stream, WebContext* context)
+      : socket_(std::move(stream)),
+        wake_(socket_.get_executor()),
+        write_watch_(socket_.get_executor()),
+        context_(context) {
+    ++context_->viewers;
+  }
+  ~WebSocketSession() { --context_->viewers; }
+
+  net::awaitable<void> Run(WebRequest request) {
+    if (!co_await Accept(request)) co_return;
+    context_->metrics->Add(Counter::kWebSocketsAccepted);
+    auto wake = [weak = weak_from_this()] {
+      if (const auto self = weak.lock()) self->wake_.cancel();
+    };
+    const Ending ending{this};  // by an exception, too
+    peer_.emplace(context_->post_to_hub, name_,
+                  [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
+    net::co_spawn(
+        socket_.get_executor(), [self = shared_from_this()] { return self->Write(); },
+        [self = shared_from_this()](const std::exception_ptr& failed) {
+          if (failed) self->Abort();
+        });
+    co_await Read();
+  }
+
+ private:
+  struct Ending {
+    WebSocketSession* session;
+    ~Ending() {
+      session->Abort();
+      session->peer_.reset();
+    }
+  };
+
+  net::awaitable<bool> Accept(const WebRequest& request) {
+    beast::error_code ignored;
+    auto& tcp = beast::get_lowest_layer(socket_);
+    const auto remote = tcp.socket().remote_endpoint(ignored);
+    name_ = "web " + remote.address().to_string() + " port " + std::to_string(remote.port());
+    tcp.socket().set_option(net::ip::tcp::no_delay(true), ignored);
+    tcp.expires_never();  // the WebSocket has timeouts of its own
+    socket_.set_option(websocket::stream_base::timeout{kWebDeadline, kWebIdle, false});
+    socket_.set_option(websocket::stream_base::decorator([&](websocket::response_type& response) {
+      response.set(http::field::server, "furrowd");
+      const beast::string_view offered = request[http::field::sec_websocket_protocol];
+      if (offered.find(kProtocol) != beast::string_view::npos) {
+        response.set(http::field::sec_websocket_protocol, kProtocol);
+      }
+    }));
+    socket_.read_message_max(kMaxWebMessageBytes);
+    socket_.auto_fragment(false);
+    socket_.binary(true);
+    beast::error_code error;
+    co_await socket_.async_accept(request, Redirect(error));
+    co_return !error;
+  }
+
+  net::awaitable<void> Read() {
+    beast::flat_buffer buffer;
+    while (!closed_) {
+      beast::error_code error;
+      const std::size_t size = co_await socket_.async_read(buffer, Redirect(error));
+      if (error == websocket::error::message_too_big) {  // Beast has said 1009 already
+        context_->metrics->Add(Counter::kConnectionsMalformed);
+      }
+      if (error) co_return;
+      const auto* bytes = static_cast<const std::uint8_t*>(buffer.cdata().data());
+      std::vector<std::uint8_t> message(bytes, bytes + buffer.size());
+      buffer.consume(buffer.size());
+      if (const auto code = Refuse(message); code != websocket::close_code::none) {
+        context_->metrics->Add(Counter::kConnectionsMalformed);
+        co_await CloseWith(code);
+        co_return;
+      }
+      if (!peer_->Send(std::move(message))) {
+        context_->metrics->Add(Counter::kConnectionsOverrun);
+        co_await CloseWith(websocket::close_code::policy_error);
+        co_return;
+      }
+    }
+  }
+
+  // What is no message of the wire at all ends the connection; the hub answers the rest.
+  [[nodiscard]] websocket::close_code Refuse(const std::vector<std::uint8_t>& message) const {
+    if (socket_.got_text()) return websocket::close_code::unknown_data;
+    if (!IsWebMessage(message)) return websocket::close_code::protocol_error;
+    return websocket::close_code::none;
+  }
+
+  net::awaitable<void> CloseWith(websocket::close_code code) {
+    if (std::exchange(closing_, true)) co_return;
+    WatchWrite();
+    beast::error_code ignored;
+    co_await socket_.async_close(code, Redirect(ignored));
+  }
+
+  net::awaitable<void> Write() {
+    std::vector<std::uint8_t> out;
+    while (!closed_) {
+      if (peer_->overrun()) {
+        context_->metrics->Add(Counter::kConnectionsOverrun);
+        Abort();
+      } else if (peer_->Pop(&out)) {
+        WatchWrite();
+        beast::error_code error;
+        const std::size_t size = co_await socket_.async_write(net::buffer(out), Redirect(error));
+        write_watch_.cancel();
+        if (error) Abort();
+        if (EndsConversation(out)) {
+          co_await CloseWith(websocket::close_code::going_away);
+          co_return;
+        }
+      } else {
+        wake_.expires_at(net::steady_timer::time_point::max());
+        beast::error_code ignored;
+        co_await wake_.async_wait(Redirect(ignored));
+      }
+    }
+  }
+
+  // The hub's goodbye to the peer as a whole, not to one subscription: the daemon drains.
+  static bool EndsConversation(const std::vector<std::uint8_t>& message) {
+    protocol::MessageView view;
+    return protocol::OpenMessage(message, view, protocol::kMaxReplyBytes) ==
+               protocol::DecodeStatus::kOk &&
+           view.kind == protocol::MessageKind::kGoodbye && view.header.stream == 0;
+  }
+
+  // A client that does not take what it asked for is cut off.
+  void WatchWrite() {
+    write_watch_.expires_after(kWebDeadline);
+    write_watch_.async_wait([weak = weak_from_this()](beast::error_code error) {
+      if (error) return;
+      if (const auto self = weak.lock()) {
+        self->context_->metrics->Add(Counter::kConnectionsIdle);
+        self->Abort();
+      }
+    });
+  }
+
+  // Ends both loops.
+  void Abort() {
+    closed_ = true;
+    beast::error_code ignored;
+    beast::get_lowest_layer(socket_).socket().close(ignored);
+    wake_.cancel();
+    write_watch_.cancel();
+  }
+
+  websocket::stream<beast::tcp_stream> socket_;
+  net::steady_timer wake_;
+  net::steady_timer write_watch_;
+  WebContext* context_;
+  std::string name_;
+  std::optional<WebPeer> peer_;  // while it lasts
+  bool closed_ = false;
+  bool closing_ = false;  // the close frame is on its way
+};
+
+}  // namespace
+
+net::awaitable<void> ServeWebSocket(beast::tcp_stream stream, WebContext* context,
+                                    WebRequest request) {
+  auto session = std::make_shared<WebSocketSession>(std::move(stream), context);
+  co_await session->Run(std::move(request));
+}
+
+}  // namespace furrow::server

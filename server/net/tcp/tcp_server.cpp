@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/net/tcp/tcp_server.h"
+
+#include <chrono>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <asio/experimental/as_tuple.hpp>
+#include <asio/steady_timer.hpp>
+#include <asio/use_awaitable.hpp>
+#include <spdlog/spdlog.h>
+
+#include "protocol/framing/tcp_framing.h"
+#include "server/net/spawn.h"
+
+namespace furrow::server {
+namespace {
+
+using asio::ip::tcp;
+constexpr auto kToken = asio::experimental::as_tuple(asio::use_awaitable);
+constexpr auto kAcceptPause = std::chrono::milliseconds(100);
+
+// One answer on a connection that is closed at once. A fresh socket's buffer has room for it; where
+// not, the closing says enough.
+class LastWord : public Link {
+ public:
+  explicit LastWord(tcp::socket* socket) : socket_(socket) {}
+  void SendReply(std::span<const std::uint8_t> message) override {
+    const auto prefix = protocol::FramePrefix(message.size());
+    std::vector<std::uint8_t> frame(prefix.begin(), prefix.end());
+    frame.insert(frame.end(), message.begin(), message.end());
+    asio::error_code error;
+    socket_->non_blocking(true, error);
+    socket_->send(asio::buffer(frame), 0, error);
+    socket_->shutdown(tcp::socket::shutdown_send, error);
+  }
+  int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t, int) override {
+    return 0;
+  }
+  void DropFrames(std::uint64_t) override {}
+
+ private:
+  tcp::socket* socket_;
+};
+
+}  // namespace
+
+TcpServer::TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics)
+    : io_(io), acceptor_(io), limits_(limits), hub_(hub), metrics_(metrics) {}
+
+Status TcpServer::Open(const tcp::endpoint& endpoint) {
+  asio::error_code error;
+  acceptor_.open(endpoint.protocol(), error);
+  // A port in TIME_WAIT may be taken again at once; one that somebody listens on may not.
+  if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
+  if (!error) acceptor_.bind(endpoint, error);
+  if (!error) acceptor_.listen(tcp::acceptor::max_listen_connections, error);
+  if (!error) return {};
+  return Status(StatusCode::kUnavailable,
+                "cannot listen on TCP " + endpoint.address().to_string() + " port " +
+                    std::to_string(endpoint.port()) + ": " + error.message(),
+                "", "end what uses the port, or choose another with --tcp");
+}
+
+std::uint16_t TcpServer::port() const {
+  asio::error_code error;
+  return acceptor_.local_endpoint(error).port();
+}
+
+void TcpServer::Start() { SpawnVital(io_, Accept()); }
+
+asio::awaitable<void> TcpServer::Accept() {
+  while (acceptor_.is_open()) {
+    auto [error, socket] = co_await acceptor_.async_accept(kToken);
+    if (!acceptor_.is_open()) co_return;
+    if (error) {
+      // Out of descriptors, or the peer is gone already: a pause, so that the loop does not spin.
+      spdlog::warn("a connection could not be accepted: {}", error.message());
+      asio::steady_timer pause(io_, kAcceptPause);
+      co_await pause.async_wait(kToken);
+    } else if (sessions_.size() >= static_cast<std::size_t>(limits_.max_connections)) {
+      Refuse(std::move(socket));
+    } else {
+      metrics_->Add(Counter::kConnectionsAccepted);
+      const auto session = std::make_shared<TcpSession>(
+          std::move(socket), limits_, hub_, metrics_,
+          [this](const std::shared_ptr<TcpSession>& closed) { sessions_.erase(closed); });
+      sessions_.insert(session);
+      session->Start();
+    }
+  }
+}
+
+void TcpServer::Refuse(tcp::socket socket) {
+  metrics_->Add(Counter::kConnectionsRefused);
+  LastWord last_word(&socket);
+  hub_->RefuseConnection(&last_word);
+}
+
+void TcpServer::Drain() {
+  asio::error_code error;
+  acceptor_.close(error);
+  for (const auto& session : sessions_) session->CloseAfterFlush(/*linger=*/false);
+}
+
+void TcpServer::CloseAll() {
+  while (!sessions_.empty()) (*sessions_.begin())->Close();
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <unordered_set>
+
+#include <asio/awaitable.hpp>
+#include <asio/io_context.hpp>
+#include <asio/ip/tcp.hpp>
+
+#include "base/status.h"
+#include "server/config/config.h"
+#include "server/core/metrics.h"
+#include "server/net/tcp/tcp_session.h"
+#include "server/session/hub.h"
+
+namespace furrow::server {
+
+// Accepts connections, at most Limits::max_connections at a time, and keeps their sessions.
+class TcpServer {
+ public:
+  TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics);
+
+  // Errors: kUnavailable, naming address and port.
+  [[nodiscard]] Status Open(const asio::ip::tcp::endpoint& endpoint);
+  [[nodiscard]] std::uint16_t port() const;
+  void Start();
+
+  // No more connections; those there are send what waits and close.
+  void Drain();
+  void CloseAll();
+  [[nodiscard]] std::size_t num_sessions() const { return sessions_.size(); }
+
+ private:
+  asio::awaitable<void> Accept();
+  void Refuse(asio::ip::tcp::socket socket);
+
+  asio::io_context& io_;
+  asio::ip::tcp::acceptor acceptor_;
+  const Limits limits_;
+  Hub* const hub_;
+  Metrics* const metrics_;
+  std::unordered_set<std::shared_ptr<TcpSession>> sessions_;
+};
+
+}  // namespace furrow::server

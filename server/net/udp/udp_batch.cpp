@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/net/udp/udp_batch.h"
+
+#include <cerrno>
+#include <cstring>
+
+namespace furrow::server {
+
+UdpBatch::UdpBatch() : buffer_(kSize * kBufferBytes) {
+  for (std::size_t i = 0; i < kSize; ++i) {
+    slices_[i] = {buffer_.data() + i * kBufferBytes, kBufferBytes};
+    headers_[i].msg_hdr.msg_iov = &slices_[i];
+    headers_[i].msg_hdr.msg_iovlen = 1;
+    headers_[i].msg_hdr.msg_name = &senders_[i];
+    headers_[i].msg_hdr.msg_control = &controls_[i];
+  }
+}
+
+std::size_t UdpBatch::Receive(int socket) {
+  for (mmsghdr& header : std::span(headers_).first(used_)) {
+    header.msg_hdr.msg_namelen = sizeof(sockaddr_storage);
+    header.msg_hdr.msg_controllen = sizeof(Control);
+  }
+  int received = 0;
+  do {
+    received = recvmmsg(socket, headers_.data(), kSize, MSG_DONTWAIT, nullptr);
+  } while (received < 0 && errno == EINTR);
+  // Any other error is of an earlier send (ICMP) and has been taken by asking: the socket lives.
+  used_ = received > 0 ? static_cast<std::size_t>(received) : 0;
+  if (received <= 0) return 0;
+  ReadDropped(&headers_[static_cast<std::size_t>(received) - 1].msg_hdr);
+  return static_cast<std::size_t>(received);
+}
+
+void UdpBatch::CountDropped(int socket) {
+  const int on = 1;  // where it cannot be had, nothing is counted
+  setsockopt(socket, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof(on));
+}
+
+// The count comes with every datagram once there is one, and never goes back but by wrapping.
+void UdpBatch::ReadDropped(msghdr* header) {
+  for (cmsghdr* item = CMSG_FIRSTHDR(header); item != nullptr; item = CMSG_NXTHDR(header, item)) {
+    if (item->cmsg_level != SOL_SOCKET || item->cmsg_type != SO_RXQ_OVFL) continue;
+    std::uint32_t ever = 0;
+    std::memcpy(&ever, CMSG_DATA(item), sizeof(ever));
+    dropped_ += ever - std::exchange(dropped_ever_, ever);
+  }
+}
+
+std::span<const std::uint8_t> UdpBatch::bytes(std::size_t i) const {
+  return {static_cast<const std::uint8_t*>(slices_[i].iov_base), headers_[i].msg_len};
+}
+
+asio::ip::udp::endpoint UdpBatch::sender(std::size_t i) const {
+  asio::ip::udp::endpoint endpoint;
+  const std::size_t size = headers_[i].msg_hdr.msg_namelen;
+  endpoint.resize(size);
+  std::memcpy(endpoint.data(), &senders_[i], size);
+  return endpoint;
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <asio/ip/udp.hpp>
+#include <sys/socket.h>
+
+#include "protocol/messages/limits.h"
+
+namespace furrow::server {
+
+// A batch of datagrams by one recvmmsg: the hot path's only system call per up to kSize packets.
+class UdpBatch {
+ public:
+  static constexpr std::size_t kSize = 64;
+
+  UdpBatch();
+  UdpBatch(const UdpBatch&) = delete;
+  UdpBatch& operator=(const UdpBatch&) = delete;
+
+  // Has the system count what this socket's buffer had no room for.
+  static void CountDropped(int socket);
+
+  // Fills the batch from a non-blocking socket; the number received, 0 when none waits.
+  std::size_t Receive(int socket);
+  // Datagrams that were lost before those received, since the last call.
+  std::uint64_t TakeDropped() { return std::exchange(dropped_, 0); }
+
+  // Of datagram `i` of the last Receive(). A datagram longer than the wire allows shows as
+  // kMaxDatagramBytes + 1 bytes.
+  [[nodiscard]] std::span<const std::uint8_t> bytes(std::size_t i) const;
+  [[nodiscard]] asio::ip::udp::endpoint sender(std::size_t i) const;
+
+ private:
+  static constexpr std::size_t kBufferBytes = protocol::kMaxDatagramBytes + 1;
+  struct alignas(cmsghdr) Control {
+    std::array<std::uint8_t, CMSG_SPACE(sizeof(std::uint32_t))> bytes;
+  };
+  void ReadDropped(msghdr* header);
+
+  std::vector<std::uint8_t> buffer_;
+  std::array<mmsghdr, kSize> headers_{};
+  std::array<iovec, kSize> slices_{};
+  std::array<sockaddr_storage, kSize> senders_{};
+  std::array<Control, kSize> controls_{};
+  std::size_t used_ = kSize;        // headers that the last call filled, to be set up again
+  std::uint32_t dropped_ever_ = 0;  // as the system counts
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace furrow::server

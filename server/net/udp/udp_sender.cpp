@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/net/udp/udp_sender.h"
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <netinet/in.h>
+#include <netinet/udp.h>
+
+#include "protocol/framing/bundle.h"
+
+namespace furrow::server {
+
+UdpSender::UdpSender()
+    : buffer_(kBufferBytes),
+      items_(kMaxItems),
+      addresses_(kMaxAddresses),
+      slots_(kSlots),
+      datagrams_(kMaxItems),
+      slices_(kMaxItems) {}
+
+void UdpSender::Open(int socket) {
+  socket_ = socket;
+  int size = 0;
+  socklen_t length = sizeof(size);
+  can_cut_ = getsockopt(socket, SOL_UDP, UDP_SEGMENT, &size, &length) == 0;
+}
+
+std::span<std::uint8_t> UdpSender::Prepare() {
+  const bool is_full = num_items_ == kMaxItems || num_addresses_ == kMaxAddresses ||
+                       used_ + protocol::kMaxDatagramBytes > kBufferBytes;
+  if (is_full) Flush();
+  return std::span(buffer_).subspan(used_, protocol::kMaxDatagramBytes);
+}
+
+void UdpSender::Commit(std::uint64_t key, const asio::ip::udp::endpoint& to, std::size_t size,
+                       Packing packing) {
+  const auto index = static_cast<std::uint16_t>(num_items_++);
+  items_[index] = {static_cast<std::uint32_t>(used_), static_cast<std::uint16_t>(size), kNone,
+                   packing};
+  used_ += size;
+  Address& address = FindOrAdd(key, to);
+  (address.last == kNone ? address.first : items_[address.last].next) = index;
+  address.last = index;
+}
+
+// Keys are peers' numbers, given out one after the other: they seldom meet in a slot.
+UdpSender::Address& UdpSender::FindOrAdd(std::uint64_t key, const asio::ip::udp::endpoint& to) {
+  std::size_t slot = key % kSlots;
+  for (; slots_[slot] != 0; slot = (slot + 1) % kSlots) {
+    Address& address = addresses_[slots_[slot] - 1u];
+    if (address.key == key) return address;
+  }
+  addresses_[num_addresses_] = {key, slot, kNone, kNone, to};
+  slots_[slot] = static_cast<std::uint16_t>(num_addresses_ + 1);
+  return addresses_[num_addresses_++];
+}
+
+// Makes datagrams of what goes to one address.
+void UdpSender::Pack(std::size_t address) {
+  const Item* before = nullptr;
+  for (std::uint16_t i = addresses_[address].first; i != kNone; i = items_[i].next) {
+    const Item& item = items_[i];
+    const bool joins =
+        before != nullptr && before->packing == Packing::kShared &&
+        item.packing == Packing::kShared &&
+        datagrams_[num_datagrams_ - 1].size + item.size <= protocol::kMaxDatagramBytes;
+    if (joins) {
+      protocol::MarkFollowed(std::span(buffer_).subspan(before->offset, before->size));
+    } else {
+      datagrams_[num_datagrams_++] = {address, num_slices_, num_slices_, 0, 0};
+    }
+    Append(datagrams_[num_datagrams_ - 1], item);
+    before = &item;
+  }
+}
+
+void UdpSender::Append(Datagram& datagram, const Item& item) {
+  std::uint8_t* const bytes = buffer_.data() + item.offset;
+  iovec* const last = datagram.items > 0 ? &slices_[num_slices_ - 1] : nullptr;
+  if (last != nullptr && static_cast<std::uint8_t*>(last->iov_base) + last->iov_len == bytes) {
+    last->iov_len += item.size;
+  } else {
+    slices_[num_slices_++] = {bytes, item.size};
+  }
+  datagram.last = num_slices_;
+  datagram.size += item.size;
+  ++datagram.items;
+}
+
+// How far from `first` one message goes: the same address, equal sizes, the last may be smaller.
+std::size_t UdpSender::EndOfRun(std::size_t first) const {
+  const Datagram& head = datagrams_[first];
+  std::size_t bytes = head.size;
+  std::size_t last = first + 1;
+  while (can_cut_ && last < num_datagrams_ && last - first < kMaxSegments) {
+    const Datagram& next = datagrams_[last];
+    bytes += next.size;
+    if (next.address != head.address || next.size > head.size || bytes > kMaxCutBytes ||
+        next.last - head.first > kMaxSlices) {
+      break;
+    }
+    ++last;
+    if (next.size < head.size) break;
+  }
+  return last;
+}
+
+void UdpSender::Write(std::size_t message) {
+  const auto [first, last] = messages_[message];
+  const Datagram& head = datagrams_[first];
+  Address& address = addresses_[head.address];
+  msghdr& header = headers_[message].msg_hdr;
+  header = {};
+  header.msg_name = address.to.data();
+  header.msg_namelen = static_cast<socklen_t>(address.to.size());
+  header.msg_iov = &slices_[head.first];
+  header.msg_iovlen = datagrams_[last - 1].last - head.first;
+  if (last - first < 2) return;
+  header.msg_control = &controls_[message];
+  header.msg_controllen = sizeof(Control);
+  cmsghdr* item = CMSG_FIRSTHDR(&header);
+  item->cmsg_level = SOL_UDP;
+  item->cmsg_type = UDP_SEGMENT;
+  item->cmsg_len = CMSG_LEN(sizeof(std::uint16_t));
+  const auto size = static_cast<std::uint16_t>(head.size);
+  std::memcpy(CMSG_DATA(item), &size, sizeof(size));
+}
+
+void UdpSender::Flush() {
+  if (num_items_ == 0) return;
+  for (std::size_t i = 0; i < num_addresses_; ++i) {
+    Pack(i);
+    slots_[addresses_[i].slot] = 0;
+  }
+  for (std::size_t first = 0; first < num_datagrams_;) {
+    std::size_t count = 0;
+    for (; count < kMaxMessages && first < num_datagrams_; ++count) {
+      messages_[count] = {first, EndOfRun(first)};
+      first = messages_[count].last;
+      Write(count);
+    }
+    Send(count);
+  }
+  num_items_ = num_addresses_ = num_slices_ = num_datagrams_ = used_ = 0;
+}
+
+void UdpSender::Send(std::size_t num_messages) {
+  std::size_t at = 0;
+  while (at < num_messages) {
+    ++counts_.calls;
+    const int sent =
+        sendmmsg(socket_, &headers_[at], static_cast<unsigned>(num_messages - at), MSG_DONTWAIT);
+    if (sent < 0 && errno == EINTR) continue;
+    for (int i = 0; i < sent; ++i, ++at) {
+      const auto [first, last] = messages_[at];
+      for (std::size_t k = first; k < last; ++k) CountSent(datagrams_[k]);
+    }
+    if (sent > 0) continue;
+    if (!Retry(at)) counts_.lost += messages_[at].last - messages_[at].first;
+    ++at;
+  }
+}
+
+// A message that the system would not cut after all (the way out has no checksums): one by one, and
+// so from now on. False: that is not why it failed.
+bool UdpSender::Retry(std::size_t message) {
+  const auto [first, last] = messages_[message];
+  if (last - first < 2 || (errno != EIO && errno != EINVAL && errno != EOPNOTSUPP)) return false;
+  can_cut_ = false;
+  msghdr header = headers_[message].msg_hdr;
+  header.msg_control = nullptr;
+  header.msg_controllen = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    const Datagram& datagram = datagrams_[i];
+    header.msg_iov = &slices_[datagram.first];
+    header.msg_iovlen = datagram.last - datagram.first;
+    ++counts_.calls;
+    if (sendmsg(socket_, &header, MSG_DONTWAIT) < 0) {
+      ++counts_.lost;
+    } else {
+      CountSent(datagram);
+    }
+  }
+  return true;
+}
+
+void UdpSender::CountSent(const Datagram& datagram) {
+  ++counts_.sent;
+  if (datagram.items > 1) counts_.bundled += datagram.items;
+}
+
+UdpSender::Counts UdpSender::TakeCounts() { return std::exchange(counts_, {}); }
+
+}  // namespace furrow::server

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/net/udp/udp_server.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <string>
+
+#include <asio/experimental/as_tuple.hpp>
+#include <asio/post.hpp>
+#include <asio/use_awaitable.hpp>
+#include <sys/socket.h>
+
+#include "protocol/framing/envelope.h"
+#include "server/net/clock.h"
+#include "server/net/spawn.h"
+
+namespace furrow::server {
+namespace {
+
+using asio::ip::udp;
+
+// A burst of a thousand subjects at once must fit while the thread is busy.
+constexpr int kReceiveBufferBytes = 4 * 1024 * 1024;
+// Batches taken before other work of the thread gets its turn.
+constexpr int kBatchesPerTurn = 8;
+constexpr int kEvictionCandidates = 16;
+
+asio::error_code AllowSharing(int socket) {
+  const int yes = 1;
+  if (setsockopt(socket, SOL_SOCKET, SO_REUSEPORT, &yes, sizeof(yes)) == 0) return {};
+  return {errno, asio::error::get_system_category()};
+}
+
+}  // namespace
+
+// One UDP address. What goes to it leaves with all else of the turn, in bundles to who takes them,
+// and does not block: a full socket buffer drops, as UDP may.
+class UdpServer::UdpPeer : public Link {
+ public:
+  UdpPeer(UdpServer* server, udp::endpoint endpoint) : server_(server), endpoint_(endpoint) {}
+
+  void SendReply(std::span<const std::uint8_t> message) override {
+    Send(message, server_->sender_);
+  }
+  int SendFrame(std::uint64_t, std::span<const std::uint8_t> message, std::size_t,
+                int lane) override {
+    UdpServer& by = lane == kAlone ? *server_ : *server_->by_lane_[static_cast<std::size_t>(lane)];
+    Send(message, by.sender_);
+    return 0;
+  }
+  void TakesBundles(bool takes) override { takes_bundles_ = takes; }
+  void DropFrames(std::uint64_t) override {}  // nothing ever waits
+
+  PeerId id = 0;
+
+ private:
+  void Send(std::span<const std::uint8_t> message, UdpSender& sender) {
+    const std::size_t count = protocol::NumDatagrams(message.size());
+    const std::uint32_t message_id = count > 1 ? next_message_id_++ : 0;
+    const Packing packing = takes_bundles_ && count == 1 ? Packing::kShared : Packing::kAlone;
+    for (std::size_t index = 0; index < count; ++index) {
+      const auto datagram = sender.Prepare();
+      sender.Commit(id, endpoint_, protocol::WriteDatagram(message, message_id, index, datagram),
+                    packing);
+    }
+  }
+
+  UdpServer* server_;
+  udp::endpoint endpoint_;
+  std::atomic<std::uint32_t> next_message_id_ = 0;  // several lanes may send
+  bool takes_bundles_ = false;
+};
+
+UdpServer::UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
+                     RecordingTap* recording, int lane)
+    : io_(io),
+      socket_(io),
+      limits_(limits),
+      hub_(hub),
+      metrics_(metrics),
+      recording_(recording),
+      lane_(lane),
+      by_lane_(static_cast<std::size_t>(lane) + 1, this) {
+  hub_->SetOutlet(lane_, this);
+}
+
+UdpServer::~UdpServer() { hub_->SetOutlet(lane_, nullptr); }
+
+Status UdpServer::Open(const udp::endpoint& endpoint, Port port) {
+  asio::error_code error;
+  socket_.open(endpoint.protocol(), error);
+  if (!error && port == Port::kShared) error = AllowSharing(socket_.native_handle());
+  if (!error) socket_.bind(endpoint, error);
+  if (!error) socket_.non_blocking(true, error);
+  if (error) {
+    return Status(StatusCode::kUnavailable,
+                  "cannot listen on UDP " + endpoint.address().to_string() + " port " +
+                      std::to_string(endpoint.port()) + ": " + error.message(),
+                  "", "end what uses the port, or choose another with --udp");
+  }
+  UdpBatch::CountDropped(socket_.native_handle());
+  sender_.Open(socket_.native_handle());
+  // As much as the system allows; less only means earlier drops.
+  socket_.set_option(asio::socket_base::receive_buffer_size(kReceiveBufferBytes), error);
+  return {};
+}
+
+Status UdpServer::Share() {
+  const asio::error_code error = AllowSharing(socket_.native_handle());
+  if (!error) return {};
+  return Status(StatusCode::kUnavailable, "cannot share the UDP port: " + error.message(), "",
+                "start with --threads 1");
+}
+
+std::uint16_t UdpServer::port() const {
+  asio::error_code error;
+  return socket_.local_endpoint(error).port();
+}
+
+void UdpServer::Start() { SpawnVital(io_, Read()); }
+
+void UdpServer::DropWaiting() {
+  while (batch_.Receive(socket_.native_handle()) == UdpBatch::kSize) {
+  }
+}
+
+void UdpServer::Close() {
+  asio::error_code error;
+  socket_.close(error);
+  sender_.Close();
+}
+
+asio::awaitable<void> UdpServer::Read() {
+  while (socket_.is_open()) {
+    const auto [error] = co_await socket_.async_wait(
+        udp::socket::wait_read, asio::experimental::as_tuple(asio::use_awaitable));
+    if (error) co_return;
+    bool is_drained = false;
+    for (int turn = 0; turn < kBatchesPerTurn && !is_drained; ++turn) {
+      const std::size_t count = batch_.Receive(socket_.native_handle());
+      const Time now = ReadClock();
+      metrics_->Add(Counter::kDatagramsReceived, count);
+      metrics_->Add(Counter::kDatagramsOverrun, batch_.TakeDropped());
+      const Hub::Turn turn_of_batch(*hub_, lane_);
+      for (std::size_t i = 0; i < count; ++i) OnDatagram(batch_.bytes(i), batch_.sender(i), now);
+      is_drained = count < UdpBatch::kSize;
+    }
+    // Let timers and TCP have their turn, however fast datagrams come.
+    if (!is_drained) co_await asio::post(io_, asio::use_awaitable);
+  }
+}
+
+void UdpServer::Flush() {
+  sender_.Flush();
+  const UdpSender::Counts counts = sender_.TakeCounts();
+  metrics_->Add(Counter::kDatagramsSent, counts.sent);
+  metrics_->Add(Counter::kDatagramsUnsendable, counts.lost);
+  metrics_->Add(Counter::kMessagesBundled, counts.bundled);
+}
+
+void UdpServer::OnDatagram(std::span<const std::uint8_t> bytes, const udp::endpoint& sender,
+                           Time now) {
+  protocol::Envelope envelope;
+  if (bytes.size() > protocol::kMaxDatagramBytes ||
+      protocol::ReadEnvelope(bytes, envelope) != protocol::EnvelopeStatus::kOk) {
+    metrics_->Add(Counter::kDatagramsMalformed);
+    return;
+  }
+  if (recording_ != nullptr) recording_->OnDatagram(AddressOf(sender), bytes, now);
+  UdpPeer* peer = FindOrAdd(sender, now);
+  hub_->OnBytesReceived(peer->id, bytes.size(), now);
+  std::span<const std::uint8_t> message;
+  switch (reassembler_.Push(peer->id, bytes, ToMicroseconds(now), message)) {
+    // The batch keeps its datagrams, the reassembler what it put together only for now.
+    case protocol::FragmentStatus::kWhole: hub_->GatherMessage(peer->id, message, now); break;
+    case protocol::FragmentStatus::kComplete: hub_->OnMessage(peer->id, message, now); break;
+    case protocol::FragmentStatus::kPending:
+    case protocol::FragmentStatus::kDuplicate: break;
+    case protocol::FragmentStatus::kMalformed: metrics_->Add(Counter::kFragmentsMalformed); break;
+    case protocol::FragmentStatus::kOverLimit: metrics_->Add(Counter::kFragmentsRefused); break;
+  }
+}
+
+UdpServer::Address UdpServer::AddressOf(const udp::endpoint& sender) {
+  Address address{};
+  const auto ip = sender.address().is_v4()
+                      ? asio::ip::make_address_v6(asio::ip::v4_mapped, sender.address().to_v4())
+                      : sender.address().to_v6();
+  std::ranges::copy(ip.to_bytes(), address.begin());
+  address[16] = static_cast<std::uint8_t>(sender.port() >> 8);
+  address[17] = static_cast<std::uint8_t>(sender.port() & 0xFF);
+  return address;
+}
+
+UdpServer::UdpPeer* UdpServer::FindOrAdd(const udp::endpoint& sender, Time now) {
+  const Address address = AddressOf(sender);
+  auto found = peers_.find(address);
+  if (found != peers_.end()) return found->second.get();
+  if (peers_.size() >= static_cast<std::size_t>(limits_.max_udp_peers)) {
+    // The least worth of a few: a flood of forged addresses must not cost a walk over all peers
+    // each.
+    auto victim = peers_.begin();
+    int looks = kEvictionCandidates;
+    for (auto it = peers_.begin(); it != peers_.end() && looks-- > 0; ++it) {
+      if (hub_->IsLessWorthKeeping(it->second->id, victim->second->id)) victim = it;
+    }
+    hub_->RemovePeer(victim->second->id);
+    reassembler_.ForgetPeer(victim->second->id);
+    peers_.erase(victim);
+  }
+  auto peer = std::make_unique<UdpPeer>(this, sender);
+  const std::string name =
+      "udp " + sender.address().to_string() + " port " + std::to_string(sender.port());
+  peer->id = hub_->AddPeer(Transport::kUdp, name, peer.get(), now, lane_);
+  return peers_.emplace(address, std::move(peer)).first->second.get();
+}
+
+void UdpServer::Expire(Time now) {
+  const Hub::Turn turn(*hub_, lane_);
+  metrics_->Add(Counter::kFragmentsExpired, reassembler_.Expire(ToMicroseconds(now)));
+  std::erase_if(peers_, [&](const auto& entry) {
+    const PeerId id = entry.second->id;
+    if (!hub_->IsIdle(id, now)) return false;
+    hub_->RemovePeer(id);
+    reassembler_.ForgetPeer(id);
+    return true;
+  });
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include "server/session/peers/peer.h"
+
+namespace furrow::server {
+
+// The peers of one network thread. A Peer's address is stable until Remove(). Of several tables,
+// each gives out every so manieth id, so that an id tells its table.
+class PeerTable {
+ public:
+  explicit PeerTable(int table = 0, int tables = 1)
+      : step_(static_cast<PeerId>(tables)), next_id_(step_ + static_cast<PeerId>(table)) {}
+
+  // Which of `tables` tables gave it out.
+  [[nodiscard]] static std::size_t TableOf(PeerId id, std::size_t tables) { return id % tables; }
+
+  Peer& Add(Transport transport, std::string name, Link* link, TokenBucket bucket, Time now) {
+    auto peer = std::make_unique<Peer>();
+    peer->id = std::exchange(next_id_, next_id_ + step_);
+    peer->transport = transport;
+    peer->name = std::move(name);
+    peer->link = link;
+    peer->bucket = bucket;
+    peer->last_heard = now;
+    Peer& added = *peer;
+    peers_.emplace(added.id, std::move(peer));
+    return added;
+  }
+  [[nodiscard]] Peer* Find(PeerId id) {
+    const auto found = peers_.find(id);
+    return found == peers_.end() ? nullptr : found->second.get();
+  }
+  void Remove(PeerId id) { peers_.erase(id); }
+
+  template <class Function>
+  void ForEach(Function function) {
+    for (auto& [id, peer] : peers_) function(*peer);
+  }
+  [[nodiscard]] std::size_t size() const { return peers_.size(); }
+
+ private:
+  std::unordered_map<PeerId, std::unique_ptr<Peer>> peers_;
+  const PeerId step_;
+  PeerId next_id_;
+};
+
+}  // namespace furrow::server

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/subjects/publishers.h"
+
+#include <memory>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "server/pipeline/wire_adapter.h"
+
+namespace furrow::server {
+namespace {
+
+constexpr Time kDecayInterval = FromSeconds(1.0 / 60.0);
+
+}  // namespace
+
+Publishers::Publishers(const Limits& limits, StreamDefinitions* definitions,
+                       SubjectRegistry* subjects, Postman* postman, Metrics* metrics)
+    : limits_(limits),
+      definitions_(definitions),
+      subjects_(subjects),
+      postman_(postman),
+      metrics_(metrics) {}
+
+Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
+                             const protocol::SkeletonOffer& offer, Time now) {
+  metrics_->Add(Counter::kSkeletonsOffered);
+  const StreamKey key{peer.id, header.session, header.stream};
+  Subject* subject = subjects_->Find(offer.subject);
+  const bool is_owner = subject != nullptr && subject->owner == key;
+  if (is_owner && subject->skeleton_hash == offer.skeleton_hash) {
+    subject->ended = false;  // a resent offer, or one who said goodbye and is back
+  } else if (!is_owner && subject != nullptr && subjects_->IsRetired(key) && !subject->lost &&
+             !subject->ended) {
+    Reject(peer, header, offer.skeleton_hash,
+           "another sender has taken over '" + offer.subject + "'", now);
+    return nullptr;
+  } else {
+    if (subject == nullptr && subjects_->size() >= static_cast<std::size_t>(limits_.max_subjects)) {
+      Reject(peer, header, offer.skeleton_hash, "the daemon has its largest number of subjects",
+             now);
+      return nullptr;
+    }
+    auto definition =
+        definitions_->Get(ToStreamOffer(offer), [&] { return new_skeletons_.Take(now); });
+    if (!definition.ok()) {
+      Reject(peer, header, offer.skeleton_hash, definition.status().ToString(), now);
+      return nullptr;
+    }
+    if (*definition == nullptr) {
+      metrics_->Add(Counter::kSkeletonsThrottled);
+      return nullptr;
+    }
+    subject = Accept(peer, key, offer, *std::move(definition), now);
+  }
+  postman_->Reply(
+      peer, Postman::Answering(header),
+      protocol::SkeletonReply{offer.skeleton_hash, protocol::SkeletonStatus::kAccepted, {}});
+  return subject;
+}
+
+Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::SkeletonOffer& offer,
+                            std::shared_ptr<const StreamDefinition> stream, Time now) {
+  // A stream has one subject: another name on it ends the former.
+  if (Subject* former = subjects_->Find(key); former != nullptr && former->name != offer.subject) {
+    former->ended = true;
+    subjects_->Release(*former);
+  }
+  Subject* subject = subjects_->Find(offer.subject);
+  if (subject == nullptr) {
+    subject = &subjects_->Add(offer.subject, now);
+    spdlog::info("subject '{}' from {}: {} joints, {} blend shapes", offer.subject, peer.name,
+                 offer.joints.size(), offer.blend_shape_names.size());
+  } else if (subject->owner != key) {
+    metrics_->Add(Counter::kSubjectsRestarted);
+    spdlog::info("subject '{}' is taken over by {}", offer.subject, peer.name);
+  }
+  if (subject->owner != key) subject->window = {};
+  subjects_->SetOwner(*subject, key);
+  const bool has_neutral =
+      subject->pipeline != nullptr && subject->skeleton_hash == offer.skeleton_hash;
+  const auto former =
+      std::exchange(subject->pipeline, std::make_unique<SubjectPipeline>(std::move(stream)));
+  // It is the performer's, not the sender's.
+  if (has_neutral) subject->pipeline->SetNeutral(former->neutral_pose());
+  peer.publishes = true;
+  subject->skeleton_hash = offer.skeleton_hash;
+  subject->offer = Share(offer);
+  subject->last_pose = subject->last_update = now;
+  subject->ended = subject->lost = false;
+  return subject;
+}
+
+std::shared_ptr<const protocol::SkeletonOffer> Publishers::Share(
+    const protocol::SkeletonOffer& offer) {
+  protocol::SkeletonOffer nameless = offer;
+  nameless.subject.clear();
+  std::erase_if(offers_, [](const auto& known) { return known.second.expired(); });
+  const auto known = offers_[offer.skeleton_hash].lock();
+  if (known != nullptr && *known == nameless) return known;
+  auto shared = std::make_shared<const protocol::SkeletonOffer>(std::move(nameless));
+  offers_[offer.skeleton_hash] = shared;
+  return shared;
+}
+
+void Publishers::Reject(Peer& peer, const protocol::Header& header, std::uint64_t hash,
+                        std::string why, Time now) {
+  metrics_->Add(Counter::kSkeletonsRejected);
+  if (log_bucket_.Take(now)) spdlog::warn("a skeleton from {} is rejected: {}", peer.name, why);
+  postman_->Reply(peer, Postman::Answering(header),
+                  protocol::SkeletonReply{hash, protocol::SkeletonStatus::kRejected,
+                                          Postman::Clip(std::move(why))});
+}
+
+Subject* Publishers::Find(const Peer& peer, const protocol::Header& header,
+                          const protocol::PoseFrame& pose) {
+  metrics_->Add(Counter::kPosesReceived);
+  Subject* subject = subjects_->Find(StreamKey{peer.id, header.session, header.stream});
+  return subject != nullptr && subject->skeleton_hash == pose.skeleton_hash ? subject : nullptr;
+}
+
+bool Publishers::Take(Subject& subject, const protocol::Header& header,
+                      const protocol::PoseFrame& pose) {
+  if (subject.ended) {  // overtaken by its own goodbye
+    metrics_->Add(Counter::kPosesLate);
+    return false;
+  }
+  SubjectPipeline& pipeline = *subject.pipeline;
+  if (!PoseFits(pose, pipeline.stream())) {
+    metrics_->Add(Counter::kPosesInvalid);
+    return false;
+  }
+  if (!IsNew(subject, header)) return false;
+  ApplyPose(pose, pipeline.stream(), pipeline.mutable_pose());
+  return true;
+}
+
+bool Publishers::OnSolved(const GatheredPose& pose) {
+  if (pose.status != wrinkle::JobStatus::kOk) {
+    metrics_->Add(Counter::kPosesInvalid);
+    return false;
+  }
+  Subject& subject = *pose.subject;
+  subject.last_pose = subject.last_update = pose.now;
+  subject.lost = false;
+  subject.stats.OnPose(pose.header.sequence, pose.header.capture_time_us, pose.now);
+  return true;
+}
+
+bool Publishers::IsNew(Subject& subject, const protocol::Header& header) {
+  switch (subject.window.Accept(header.session, header.sequence)) {
+    case protocol::SequenceStatus::kNewest:
+    case protocol::SequenceStatus::kRestart: return true;
+    case protocol::SequenceStatus::kDuplicate: metrics_->Add(Counter::kPosesDuplicate); break;
+    case protocol::SequenceStatus::kLate:
+    case protocol::SequenceStatus::kOldSession: metrics_->Add(Counter::kPosesLate); break;
+  }
+  subject.stats.OnLate();
+  return false;
+}
+
+void Publishers::OnStray(Peer& peer, const protocol::Header& header, std::uint64_t hash,
+                         Postman& postman, Time now) {
+  const bool retired = subjects_->IsRetired({peer.id, header.session, header.stream});
+  metrics_->Add(retired ? Counter::kPosesRetiredSession : Counter::kPosesUnknownStream);
+  if (!peer.strays.Take(header.session, header.stream, now)) return;
+  protocol::SkeletonReply reply{hash, protocol::SkeletonStatus::kNeeded, {}};
+  if (retired) {
+    reply.status = protocol::SkeletonStatus::kRejected;
+    reply.message = "another sender has taken this subject over";
+  } else {
+    metrics_->Add(Counter::kSkeletonsRequested);
+  }
+  postman.Reply(peer, Postman::Answering(header), reply);
+}
+
+void Publishers::OnGoodbye(const Peer& peer, const protocol::Header& header, Time now) {
+  Subject* subject = subjects_->Find(StreamKey{peer.id, header.session, header.stream});
+  if (subject == nullptr) return;
+  spdlog::info("subject '{}' says goodbye", subject->name);
+  subject->ended = true;
+  subject->last_update = now;
+}
+
+Publishers::Change Publishers::Age(Subject& subject, Time now) {
+  const Time silence = now - subject.last_pose;
+  if (silence > FromSeconds(limits_.idle_seconds)) return Change::kGone;
+  SubjectPipeline& pipeline = *subject.pipeline;
+  if (!pipeline.has_pose()) return subject.ended ? Change::kGone : Change::kNone;
+  if (!subject.ended && silence < FromSeconds(limits_.loss_seconds)) return Change::kNone;
+  if (!subject.lost && !subject.ended) {
+    spdlog::warn("subject '{}' fell silent and decays to neutral", subject.name);
+    metrics_->Add(Counter::kSubjectsLost);
+  }
+  subject.lost = true;
+  if (pipeline.neutral()) return subject.ended ? Change::kGone : Change::kNone;
+  if (now - subject.last_update < kDecayInterval) return Change::kNone;
+  const bool decayed =
+      pipeline.Decay(ToSeconds(now - subject.last_update)) == wrinkle::JobStatus::kOk;
+  subject.last_update = now;
+  return decayed ? Change::kDecayed : Change::kNone;
+}
+
+}  // namespace furrow::server

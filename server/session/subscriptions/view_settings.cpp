@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/subscriptions/view_settings.h"
+
+#include <utility>
+
+#include "base/status.h"
+
+namespace furrow::server {
+
+Result<SharedSettings> ViewSettings::Get(std::span<const std::string> overrides) {
+  render::Settings settings = own_;
+  for (const std::string& assignment : overrides) {
+    FURROW_RETURN_IF_ERROR(render::SetSetting(assignment, &settings));
+  }
+  FURROW_RETURN_IF_ERROR(render::CheckSettings(settings));
+  settings.view = render::View::kFinal;  // the request's own, beside its settings
+  std::string key = render::SettingsToToml(settings);
+  if (const auto known = known_.find(key); known != known_.end()) {
+    if (SharedSettings shared = known->second.lock(); shared != nullptr) return shared;
+  }
+  std::erase_if(known_, [](const auto& entry) { return entry.second.expired(); });
+  auto shared = std::make_shared<const render::Settings>(std::move(settings));
+  known_.insert_or_assign(std::move(key), shared);
+  return SharedSettings(std::move(shared));
+}
+
+}  // namespace furrow::server

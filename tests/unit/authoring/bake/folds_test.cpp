@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What folds of strain must be: as long as the surface was, across its compression, whole over UV
+// seams, and nowhere else.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "authoring/bake/layers/compression.h"
+#include "authoring/paint/uv_raster.h"
+#include "tests/unit/authoring/bake/toys.h"
+
+namespace furrow::character::bake {
+namespace {
+
+using glm::vec2;
+using glm::vec3;
+
+constexpr float kWidth = 0.1f;  // of the sheet, metres
+
+// The mean length of the displaced, squeezed rows of a sheet, as a fraction of their length at rest
+// (`compression` along x). From heights alone. A border of a wavelength and a half is left out.
+float ArcOverRest(const BakedMap& map, float compression) {
+  const float texel = kWidth / static_cast<float>(map.width);
+  const int border = static_cast<int>(0.015f / texel);
+  double arc = 0.0, rest = 0.0;
+  for (int y = border; y < map.height - border; ++y) {
+    for (int x = border; x + 1 < map.width - border; ++x) {
+      const float rise =
+          0.001f * (map.height_mm[toys::At(map, x + 1, y)] - map.height_mm[toys::At(map, x, y)]);
+      arc += std::hypot((1.0f - compression) * texel, rise);
+      rest += texel;
+    }
+  }
+  return static_cast<float>(arc / rest);
+}
+
+class ArcLength : public ::testing::TestWithParam<float> {};
+
+TEST_P(ArcLength, OfTheDisplacedSurfaceIsThatAtRest) {
+  const float compression = GetParam();
+  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  for (const float sharpness : {0.0f, 0.7f}) {
+    BakeOptions options = toys::Exact();
+    options.skin.sharpness = sharpness;
+    const BakedMap map =
+        toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(compression, 0.0f))}, options);
+    EXPECT_NEAR(ArcOverRest(map, compression), 1.0f, 0.02f) << "sharpness " << sharpness;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Compressions, ArcLength,
+                         ::testing::Values(0.02f, 0.1f, 0.25f, 0.4f, 0.6f));
+
+TEST(Folds, OfUnevenDepthStillKeepTheLengthOnTheWhole) {
+  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  BakeOptions options = toys::Exact();
+  options.skin.variation = 0.4f;
+  options.skin.wavelength_mm = 5.0f;
+  options.size = 512;
+  const BakedMap map = toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(0.2f, 0.0f))}, options);
+  EXPECT_NEAR(ArcOverRest(map, 0.2f), 1.0f, 0.05f);
+}
+
+TEST(Folds, OfHalfTheShareTakeUpHalfTheCompression) {
+  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  BakeOptions options = toys::Exact();
+  options.skin.share = 0.5f;
+  const BakedMap map = toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(0.3f, 0.0f))}, options);
+  EXPECT_NEAR(ArcOverRest(map, 0.15f), 1.0f, 0.02f);
+}
+
+TEST(Folds, StandAWavelengthApart) {
+  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  const BakedMap map =
+      toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(0.2f, 0.0f))}, toys::Exact());
+  int crossings = 0;
+  const int middle = map.height / 2;
+  for (int x = 0; x + 1 < map.width; ++x) {
+    const float here = map.height_mm[toys::At(map, x, middle)];
+    const float next = map.height_mm[toys::At(map, x + 1, middle)];
+    crossings += here < 0.0f && next >= 0.0f ? 1 : 0;
+  }
+  EXPECT_NEAR(crossings, 10, 1);  // 100 mm of 10 mm folds
+}
+
+TEST(Folds, AreNoFinerThanTheTexelsThere) {
+  // The right half of the sheet has a fifth of the picture: 7.8 mm a texel, and 1.95 on the left.
+  Mesh mesh = toys::Grid(40, 20, [](float u, float v) {
+    const float right = std::max(u - 0.5f, 0.0f);
+    return toys::Point{
+        {0.4f * u, 0.1f * v, 0.0f}, {1.6f * std::min(u, 0.5f) + 0.4f * right, 1.0f - v}, 0.0f};
+  });
+  BakeOptions options = toys::Exact();
+  options.size = 128;
+  options.skin.wavelength_mm = 2.0f;
+  const BakedMap map = toys::BakeFolds(toys::Wearing(std::move(mesh)),
+                                       {toys::Pose(toys::Squeeze(0.2f, 0.0f))}, options);
+  const auto valleys = [&](int from, int to) {
+    int count = 0;
+    for (int x = from; x < to; ++x) {
+      const float here = map.height_mm[toys::At(map, x, 64)];
+      count += here < 0.0f && map.height_mm[toys::At(map, x + 1, 64)] >= 0.0f ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_GE(valleys(5, 95), 15);
+  EXPECT_LE(valleys(5, 95), 30);  // three texels each
+  EXPECT_LE(valleys(106, 125), 7);
+}
+
+// The median angle between the slopes of a map and a direction of its plane, degrees.
+float MedianAngle(const BakedMap& map, float degrees) {
+  const vec2 across(std::cos(glm::radians(degrees)), std::sin(glm::radians(degrees)));
+  std::vector<float> angles;
+  for (std::size_t i = 0; i < map.covered.size(); ++i) {
+    const vec2 slope(map.derivative[2 * i], map.derivative[2 * i + 1]);
+    const float length = glm::length(slope);
+    if (length < 0.05f) continue;
+    const float cosine = std::min(std::abs(glm::dot(slope, across)) / length, 1.0f);
+    angles.push_back(glm::degrees(std::acos(cosine)));
+  }
+  EXPECT_GT(angles.size(), map.covered.size() / 4);
+  std::nth_element(angles.begin(), angles.begin() + angles.size() / 2, angles.end());
+  return angles[angles.size() / 2];
+}
+
+TEST(Folds, RunAcrossTheCompressionWhateverItsDirection) {
+  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 14, 14));
+  BakeOptions options = toys::Exact();
+  options.skin.variation = BakeMaterial().variation;  // as uneven as by default
+  for (const float degrees : {0.0f, 33.0f, 90.0f, 145.0f}) {
+    const BakedMap map =
+        toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(0.25f, degrees))}, options);
+    EXPECT_LT(MedianAngle(map, degrees), 10.0f) << degrees;
+  }
+}
+
+TEST(Folds, DerivativeIsMinusTheSlopeOfTheHeight) {
+  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  BakeOptions options = toys::Exact();
+  options.size = 512;
+  options.skin.variation = 0.3f;
+  const BakedMap map = toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(0.2f, 30.0f))}, options);
+  const float texel_mm = 1000.0f * kWidth / static_cast<float>(map.width);
+  double error = 0.0, size = 0.0;
+  for (int y = 1; y + 1 < map.height; ++y) {
+    for (int x = 1; x + 1 < map.width; ++x) {
+      const auto h = [&](int dx, int dy) { return map.height_mm[toys::At(map, x + dx, y + dy)]; };
+      // The bitangent points up the picture, against y.
+      const vec2 slope((h(1, 0) - h(-1, 0)) / (2.0f * texel_mm),
+                       (h(0, -1) - h(0, 1)) / (2.0f * texel_mm));
+      const std::size_t i = toys::At(map, x, y);
+      const vec2 stored(map.derivative[2 * i], map.derivative[2 * i + 1]);
+      error += static_cast<double>(glm::length(slope + stored));
+      size += static_cast<double>(glm::length(slope));
+    }
+  }
+  EXPECT_LT(error, 0.06 * size);
+}
+
+TEST(Folds, AreNowhereWhereNothingIsCompressed) {
+  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 10, 10));
+  BakeOptions options;
+  options.size = 128;
+  const glm::mat4 still(1.0f);
+  const glm::mat4 pulled = toys::Squeeze(-0.3f, 20.0f);
+  for (const glm::mat4& pose : {still, pulled}) {
+    const BakedMap map = toys::BakeFolds(sheet, {toys::Pose(pose)}, options);
+    EXPECT_EQ(map.statistics.folded_texels, 0);
+    EXPECT_EQ(map.statistics.deepest_mm, 0.0f);
+    EXPECT_TRUE(std::all_of(map.derivative.begin(), map.derivative.end(),
+                            [](float value) { return value == 0.0f; }));
+    EXPECT_TRUE(std::all_of(map.cavity.begin(), map.cavity.end(),
+                            [](float value) { return value == 1.0f; }));
+  }
+}
+
+TEST(Folds, RunOutTowardsWhatIsNotCompressed) {
+  // The right half hangs on joint 1, which stays; the weights change over the middle third.
+  Mesh mesh = toys::Grid(30, 10, [](float u, float v) {
+    const float t = std::clamp(3.0f * u - 1.0f, 0.0f, 1.0f);
+    return toys::Point{{0.2f * u, 0.1f * v, 0.0f}, {u, 1.0f - v}, t};
+  });
+  const Character sheet = toys::Wearing(std::move(mesh));
+  BakeOptions options = toys::Exact();
+  options.skin.threshold = 0.02f;
+  const BakedMap map =
+      toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(0.3f, 90.0f), glm::mat4(1.0f))}, options);
+  const auto highest = [&](float from, float to) {
+    float most = 0.0f;
+    for (int y = 16; y < map.height - 16; ++y) {
+      for (int x = static_cast<int>(from * 256); x < static_cast<int>(to * 256); ++x) {
+        most = std::max(most, std::abs(map.height_mm[toys::At(map, x, y)]));
+      }
+    }
+    return most;
+  };
+  EXPECT_GT(highest(0.1f, 0.25f), 1.0f);
+  EXPECT_LT(highest(0.55f, 0.6f), 0.9f * highest(0.1f, 0.25f));
+  EXPECT_EQ(highest(0.8f, 1.0f), 0.0f);
+}
+
+// A sheet that is unwrapped in two islands, the right one turned by a right angle.
+Mesh SeamedSheet() {
+  Mesh mesh = toys::Grid(10, 20, [](float u, float v) {
+    return toys::Point{{0.05f * u, 0.1f * v, 0.0f}, {0.02f + 0.4f * u, 0.98f - 0.8f * v}, 0.0f};
+  });
+  toys::Append(toys::Grid(10, 20,
+                          [](float u, float v) {
+                            return toys::Point{{0.05f + 0.05f * u, 0.1f * v, 0.0f},
+                                               {0.5f + 0.4f * v, 0.1f + 0.3f * u},
+                                               0.0f};
+                          }),
+               &mesh);
+  return mesh;
+}
+
+TEST(Folds, DoNotKnowOfUvSeams) {
+  const Character sheet = toys::Wearing(SeamedSheet());
+  BakeOptions options = toys::Exact();
+  options.size = 512;
+  options.skin.variation = 0.3f;
+  const BakedMap map = toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(0.25f, 25.0f))}, options);
+  const std::vector<paint::Texel> texels = paint::RasterizeUv(sheet.meshes[0], 512, 512);
+  const auto height = [&](const paint::Texel& t) { return map.height_mm[toys::At(map, t.x, t.y)]; };
+  // Neighbours on the sheet: within a texel of each other. Over the seam they lie in two islands.
+  constexpr float kNear = 0.0004f;
+  const auto is_left = [](const paint::Texel& t) { return t.position.x < 0.05f; };
+  float over_seam = 0.0f, inside = 0.0f;
+  int pairs = 0;
+  for (const paint::Texel& a : texels) {
+    const bool at_seam = std::abs(a.position.x - 0.05f) < kNear;
+    const bool at_reference = std::abs(a.position.x - 0.03f) < kNear;
+    if ((!at_seam && !at_reference) || !is_left(a)) continue;
+    for (const paint::Texel& b : texels) {
+      if (glm::distance(a.position, b.position) > kNear) continue;
+      const float jump = std::abs(height(a) - height(b));
+      if (at_reference) inside = std::max(inside, jump);
+      if (!at_seam || is_left(b)) continue;
+      over_seam = std::max(over_seam, jump);
+      ++pairs;
+    }
+  }
+  EXPECT_GT(pairs, 100);
+  EXPECT_GT(inside, 0.01f);
+  EXPECT_LE(over_seam, 2.0f * inside);
+}
+
+TEST(Folds, AreTheSameBytesOnAnyNumberOfThreads) {
+  const Character sheet = toys::Wearing(SeamedSheet());
+  BakeOptions options;
+  options.size = 256;
+  options.threads = 1;
+  const std::vector<BakePose> poses = {toys::Pose(toys::Squeeze(0.25f, 25.0f)),
+                                       toys::Pose(toys::Squeeze(0.2f, 80.0f))};
+  const BakedMap one = toys::BakeFolds(sheet, poses, options);
+  options.threads = 3;
+  const BakedMap three = toys::BakeFolds(sheet, poses, options);
+  EXPECT_GT(one.statistics.folded_texels, 1000);
+  EXPECT_TRUE(one.height_mm == three.height_mm);
+  EXPECT_TRUE(one.derivative == three.derivative);
+  EXPECT_TRUE(one.cavity == three.cavity);
+  options.seed = 2;
+  EXPECT_FALSE(one.height_mm == toys::BakeFolds(sheet, poses, options).height_mm);
+}
+
+TEST(Folds, DoNotLeakFromOneLipToTheOther) {
+  // Two sheets in one place. Joint 0 squeezes the first; the second hangs on joint 1, which rests.
+  Mesh mesh = toys::Grid(12, 12, [](float u, float v) {
+    return toys::Point{{0.05f * u, 0.05f * v, 0.0f}, {0.45f * u, 1.0f - v}, 0.0f};
+  });
+  toys::Append(
+      toys::Grid(
+          12, 12,
+          [](float u, float v) {
+            return toys::Point{{0.05f * u, 0.05f * v, 0.0f}, {0.5f + 0.45f * u, 1.0f - v}, 1.0f};
+          }),
+      &mesh);
+  const Character lips = toys::Wearing(std::move(mesh));
+  BakeOptions options = toys::Exact();
+  options.skin.threshold = 0.01f;  // no fold of the last digit of an unmoved triangle's sides
+  const BakedMap map =
+      toys::BakeFolds(lips, {toys::Pose(toys::Squeeze(0.3f, 0.0f), glm::mat4(1.0f))}, options);
+  float first = 0.0f, second = 0.0f;
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      if (!map.covered[toys::At(map, x, y)]) continue;
+      float& most = x < map.width / 2 ? first : second;
+      most = std::max(most, std::abs(map.height_mm[toys::At(map, x, y)]));
+    }
+  }
+  EXPECT_GT(first, 0.5f);
+  EXPECT_EQ(second, 0.0f);
+}
+
+TEST(Folds, TooFineForASheetSoLargeAreRefusedAndNotDropped) {
+  const Character sheet = toys::Wearing(toys::Sheet(2.0f, 2.0f, 10, 10));
+  BakeOptions options = toys::Exact();
+  options.size = 2048;
+  options.skin.wavelength_mm = 1.0f;
+  const std::vector<BakePose> poses = {toys::Pose(toys::Squeeze(0.2f, 0.0f))};
+  const Status refused = Bake(sheet, poses, {}, options).status();
+  EXPECT_EQ(refused.code(), StatusCode::kLimit);
+  EXPECT_NE(refused.ToString().find("--skin-wavelength"), std::string::npos);
+  EXPECT_NE(refused.ToString().find("--size"), std::string::npos);
+}
+
+TEST(CompressionSolver, KeepsItsMemoryOnFineMeshes) {
+  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 60, 60));
+  const Mesh* meshes[] = {&sheet.meshes[0]};
+  const Surface surface(meshes);
+  Pace pace({});
+  const CompressionSolver solver(surface, 0.02f, &pace);  // some 900 triangles round a vertex
+  EXPECT_LE(solver.num_terms(), 64 * surface.positions().size());
+  const glm::mat4 squeeze[] = {toys::Squeeze(0.2f, 0.0f), toys::Squeeze(0.2f, 0.0f)};
+  for (const Tensor2& tensor : solver.Solve(squeeze, 0.5f).tensors) {
+    EXPECT_NEAR(tensor.xx + tensor.yy, 0.2f, 1e-3f);
+  }
+}
+
+// Valleys along the middle row.
+int Valleys(const BakedMap& map) {
+  int valleys = 0;
+  for (int x = 0; x + 1 < map.width; ++x) {
+    valleys += map.derivative[2 * toys::At(map, x, map.height / 2)] > 0.0f &&
+               map.derivative[2 * toys::At(map, x + 1, map.height / 2)] <= 0.0f;
+  }
+  return valleys;
+}
+
+TEST(Folds, HaveFineLinesAThirdApartWhereTheSkinHasThem) {
+  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  BakeOptions options = toys::Exact();
+  options.size = 512;
+  const std::vector<BakePose> poses = {toys::Pose(toys::Squeeze(0.2f, 0.0f))};
+  const BakedMap plain = toys::BakeFolds(sheet, poses, options);
+  options.skin.fine_lines = 1.0f;
+  const BakedMap lined = toys::BakeFolds(sheet, poses, options);
+  EXPECT_NEAR(Valleys(plain), 10, 1);
+  EXPECT_GT(Valleys(lined), 17);
+  EXPECT_NEAR(plain.statistics.finest_mm, 10.0f, 1e-3f);
+  EXPECT_NEAR(lined.statistics.finest_mm, 10.0f / 3.0f, 1e-3f);
+  EXPECT_NEAR(lined.statistics.coarsest_mm, 10.0f, 1e-3f);
+}
+
+TEST(Folds, SayWhatWasWidenedForTheTexels) {
+  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  BakeOptions options = toys::Exact();  // texels of 0.39 mm
+  // Of a region that this rig lacks: nobody's business.
+  options.wavelengths = {{"nose", 0.5f}};
+  const std::vector<BakePose> poses = {toys::Pose(toys::Squeeze(0.2f, 0.0f))};
+  EXPECT_EQ(toys::BakeFolds(sheet, poses, options).statistics.widened_texels, 0);
+  options.skin.wavelength_mm = 1.0f;
+  const BakedMap::Statistics fine = toys::BakeFolds(sheet, poses, options).statistics;
+  EXPECT_EQ(fine.widened_texels, fine.folded_texels);
+  EXPECT_NEAR(fine.widened_from_mm, 1.0f, 1e-3f);
+  EXPECT_NEAR(fine.widened_to_mm, kTexelsAWave * 100.0f / 256.0f, 0.01f);
+}
+
+}  // namespace
+}  // namespace furrow::character::bake

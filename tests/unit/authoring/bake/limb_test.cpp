@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A bent tube: the knee.
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "authoring/paint/uv_raster.h"
+#include "tests/unit/authoring/bake/toys.h"
+
+namespace furrow::character::bake {
+namespace {
+
+using glm::vec3;
+
+constexpr float kRadius = 0.06f;
+
+// A limb along -y with its joint at the origin, seam at the back; joint 1 is the lower half. u goes
+// round it, v up.
+Mesh Limb() {
+  return toys::Grid(40, 40, [](float u, float v) {
+    const float angle = 2.0f * 3.14159265f * u;
+    const float y = 0.25f * (2.0f * v - 1.0f);
+    toys::Point point;
+    point.position = {-kRadius * std::sin(angle), y, -kRadius * std::cos(angle)};
+    if (u == 1.0f) point.position = {0.0f, y, -kRadius};  // the seam closes to the bit
+    if (u == 0.0f) point.position = {0.0f, y, -kRadius};
+    point.uv = {0.02f + 0.45f * u, 0.98f - 0.9f * v};
+    const float t = std::clamp(0.5f - y / 0.12f, 0.0f, 1.0f);
+    point.weight_of_second = t * t * (3.0f - 2.0f * t);
+    return point;
+  });
+}
+
+BakedMap BendKnee(const Character& limb, float degrees) {
+  BakeOptions options;
+  options.size = 512;
+  options.skin = options.cloth;  // trousers
+  const glm::mat4 bend =
+      glm::rotate(glm::mat4(1.0f), glm::radians(degrees), vec3(1.0f, 0.0f, 0.0f));
+  return toys::BakeFolds(limb, {toys::Pose(glm::mat4(1.0f), bend)}, options);
+}
+
+TEST(Knee, FoldsInsideAndNotOutside) {
+  const Character limb = toys::Wearing(Limb());
+  // About +x, the lower half swings to the back: the inside is where z < 0.
+  for (const float degrees : {50.0f, 90.0f, 130.0f}) {
+    const BakedMap map = BendKnee(limb, degrees);
+    float inside = 0.0f, outside = 0.0f, far = 0.0f;
+    for (const paint::Texel& t : paint::RasterizeUv(limb.meshes[0], 512, 512)) {
+      const float height = std::abs(map.height_mm[toys::At(map, t.x, t.y)]);
+      if (t.position.z < -0.8f * kRadius) inside = std::max(inside, height);
+      if (t.position.z > 0.5f * kRadius) outside = std::max(outside, height);
+      if (std::abs(t.position.y) > 0.2f) far = std::max(far, height);
+    }
+    EXPECT_GT(inside, 1.0f) << degrees;
+    EXPECT_LT(outside, 0.02f * inside) << degrees;
+    EXPECT_EQ(far, 0.0f) << degrees;
+  }
+}
+
+TEST(Knee, FoldsRunAcrossTheLimb) {
+  const Character limb = toys::Wearing(Limb());
+  const BakedMap map = BendKnee(limb, 100.0f);
+  double along = 0.0, across = 0.0;
+  for (const paint::Texel& t : paint::RasterizeUv(limb.meshes[0], 512, 512)) {
+    if (t.position.z > -0.7f * kRadius) continue;
+    const std::size_t i = toys::At(map, t.x, t.y);
+    const vec3 slope = map.derivative[2 * i] * t.tangent + map.derivative[2 * i + 1] * t.bitangent;
+    along += static_cast<double>(std::abs(slope.y));
+    across += static_cast<double>(std::hypot(slope.x, slope.z));
+  }
+  EXPECT_GT(along, 4.0 * across);
+}
+
+TEST(Knee, SeamAtTheBackCannotBeSeen) {
+  const Character limb = toys::Wearing(Limb());
+  const BakedMap map = BendKnee(limb, 110.0f);
+  int first = map.width, last = 0;  // columns of the limb's island
+  for (int x = 0; x < map.width; ++x) {
+    if (!map.covered[toys::At(map, x, map.height / 2)]) continue;
+    first = std::min(first, x);
+    last = std::max(last, x);
+  }
+  const auto jump = [&](int x0, int x1) {
+    float most = 0.0f;
+    for (int y = 30; y < map.height - 60; ++y) {
+      most = std::max(most, std::abs(map.height_mm[toys::At(map, x0, y)] -
+                                     map.height_mm[toys::At(map, x1, y)]));
+    }
+    return most;
+  };
+  float inside = 0.0f;
+  for (int x = first; x < first + 12; ++x) inside = std::max(inside, jump(x, x + 1));
+  EXPECT_GT(inside, 0.01f);
+  EXPECT_LE(jump(first, last), 2.0f * inside);
+}
+
+}  // namespace
+}  // namespace furrow::character::bake

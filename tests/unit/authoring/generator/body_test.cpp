@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "authoring/generator/body/body_skeleton.h"
+#include "authoring/generator/body/hand_net.h"
+#include "authoring/generator/clothes/body_mesh.h"
+#include "authoring/generator/clothes/cloth_texture.h"
+#include "authoring/generator/clothes/clothes_net.h"
+#include "authoring/generator/mesh/mesh_tools.h"
+
+namespace furrow::character::generator {
+namespace {
+
+using glm::vec3;
+using Place = std::array<long, 3>;
+
+Place PlaceOf(const vec3& p) {
+  return {std::lround(p.x * 1e5), std::lround(p.y * 1e5), std::lround(p.z * 1e5)};
+}
+
+class BodyTest : public ::testing::TestWithParam<int> {
+ protected:
+  BodyShape Shape(BodyParameters parameters = {}) const {
+    parameters.level = GetParam();
+    return BodyShape(parameters, skeleton_, DefaultHead());
+  }
+  wrinkle::Skeleton skeleton_ = MakeSkeleton();
+};
+
+// Edges that only one triangle has, by place: the rims of a surface.
+std::map<Place, int> Rims(const Mesh& mesh) {
+  std::map<std::pair<Place, Place>, int> uses;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    for (int k = 0; k < 3; ++k) {
+      const Place a = PlaceOf(mesh.vertices[mesh.indices[i + k]].position);
+      const Place b = PlaceOf(mesh.vertices[mesh.indices[i + (k + 1) % 3]].position);
+      ++uses[std::minmax(a, b)];
+    }
+  }
+  std::map<Place, int> rims;
+  for (const auto& [edge, count] : uses) {
+    if (count == 1) ++rims[edge.first], ++rims[edge.second];
+  }
+  return rims;
+}
+
+TEST_P(BodyTest, ShirtAndSleevesAreOneSurface) {
+  const BodyShape shape = Shape();
+  Mesh shirt;
+  AppendNet(MakeShirt(shape), &shirt);
+  // Trunk and sleeves are open at the hem and at the cuffs and nowhere else; the collar has rims
+  // over the neckline.
+  for (const auto& [place, count] : Rims(shirt)) {
+    const vec3 p = vec3(place[0], place[1], place[2]) * 1e-5f;
+    const bool hem = p.y < 1.0f && std::abs(p.x) < 0.2f;
+    const bool cuff = std::abs(p.x) > 0.4f;
+    const bool collar = p.y > 1.40f && std::abs(p.x) < 0.13f;
+    EXPECT_TRUE(hem || cuff || collar) << p.x << " " << p.y << " " << p.z;
+  }
+}
+
+TEST_P(BodyTest, TrousersAreSewnBetweenTheLegs) {
+  Mesh trousers;
+  AppendNet(MakeTrousers(Shape()), &trousers);
+  for (const auto& [place, count] : Rims(trousers)) {
+    const float y = static_cast<float>(place[1]) * 1e-5f;
+    EXPECT_TRUE(y < 0.1f || y > 1.0f) << y;
+  }
+}
+
+// Singular values of the map from cloth to atlas, of every triangle, relative to its scale.
+TEST_P(BodyTest, ClothIsCutWithLittleStretch) {
+  const BodyShape shape = Shape();
+  QuadNet net = MakeShirt(shape);
+  Join(MakeTrousers(shape), &net);
+  FlattenPanels(&net);
+  double area = 0.0, stretched = 0.0;
+  for (const std::array<int, 4>& quad : net.quads) {
+    vec3 p[3];
+    glm::vec2 uv[3];
+    for (int k = 0; k < 3; ++k) {
+      p[k] = net.points[net.corners[quad[k]].point].place;
+      uv[k] = net.corners[quad[k]].uv;
+    }
+    const vec3 a = p[1] - p[0], b = p[2] - p[0];
+    const float length = glm::length(a), along = glm::dot(a, b) / length;
+    const float across = glm::length(glm::cross(a, b)) / length;
+    if (length * across < 1e-8f) continue;
+    const glm::vec2 du = (uv[1] - uv[0]) / length;
+    const glm::vec2 dv = ((uv[2] - uv[0]) - du * along) / across;
+    const float e = glm::dot(du, du), g = glm::dot(dv, dv), f = glm::dot(du, dv);
+    const float root = std::sqrt((e - g) * (e - g) + 4 * f * f);
+    const float most = std::sqrt(0.5f * (e + g + root));
+    const float least = std::sqrt(std::max(0.5f * (e + g - root), 0.0f));
+    const double weight = length * across;
+    area += weight;
+    if (most > 1.15f || least < 0.85f) stretched += weight;
+  }
+  EXPECT_LT(stretched, 0.05 * area);
+}
+
+TEST_P(BodyTest, NothingComesApartAtASeam) {
+  const Clothes clothes = MakeClothes(Shape());
+  ASSERT_EQ(clothes.vertex_panels.size(), clothes.mesh.vertices.size());
+  ASSERT_EQ(clothes.panels.size(), static_cast<std::size_t>(kNumClothPanels));
+  std::map<Place, const Vertex*> first;
+  int pairs = 0;
+  for (const Vertex& vertex : clothes.mesh.vertices) {
+    const auto [found, is_new] = first.emplace(PlaceOf(vertex.position), &vertex);
+    if (is_new || found->second->position != vertex.position) continue;
+    ++pairs;
+    for (int k = 0; k < 4; ++k) {
+      EXPECT_EQ(found->second->joints[k], vertex.joints[k]);
+      EXPECT_EQ(found->second->skin_weights[k], vertex.skin_weights[k]);
+    }
+  }
+  EXPECT_GT(pairs, 100);
+}
+
+// Share of a joint in a point.
+float ShareOf(const Influences& skin, int joint) {
+  float share = 0.0f;
+  for (int k = 0; k < 4; ++k) share += skin.joints[k] == joint ? skin.weights[k] : 0.0f;
+  return share;
+}
+
+// Along an edge of the clothes no joint gains or loses more than a part: cloth bends, it does not
+// break.
+TEST_P(BodyTest, WeightsOfClothAreSmooth) {
+  const BodyShape shape = Shape();
+  for (const QuadNet& net : {MakeShirt(shape), MakeTrousers(shape)}) {
+    const std::vector<std::vector<int>> neighbours = Neighbours(net);
+    float steepest = 0.0f;
+    for (std::size_t i = 0; i < net.points.size(); ++i) {
+      for (const int n : neighbours[i]) {
+        for (int j = 0; j < skeleton_.num_joints(); ++j) {
+          steepest = std::max(
+              steepest, std::abs(ShareOf(net.points[i].skin, j) - ShareOf(net.points[n].skin, j)));
+        }
+      }
+    }
+    EXPECT_LT(steepest, GetParam() == 0 ? 0.5f : 0.3f);
+  }
+}
+
+// Rings of edges across a bend: at least eight within 10 cm of elbow and knee.
+TEST_P(BodyTest, LimbsHaveRingsWhereTheyBend) {
+  const BodyShape shape = Shape();
+  const Clothes clothes = MakeClothes(shape);
+  std::set<long> elbow, knee;
+  for (const Vertex& vertex : clothes.mesh.vertices) {
+    const vec3& p = vertex.position;
+    if (std::abs(p.x - 0.455f) < 0.1f) elbow.insert(std::lround(p.x * 500.0f));
+    if (std::abs(p.y - 0.495f) < 0.1f && std::abs(p.x) < 0.2f)
+      knee.insert(std::lround(p.y * 500.0f));
+  }
+  EXPECT_GE(elbow.size(), 8u);
+  EXPECT_GE(knee.size(), 8u);
+}
+
+// A fist: every finger bends at its three joints until its tip lies near the palm.
+TEST_P(BodyTest, FingersClose) {
+  for (const float side : {1.0f, -1.0f}) {
+    const std::string suffix = side > 0.0f ? "_l" : "_r";
+    const QuadNet hand = MakeHand(skeleton_, side, 0, GetParam());
+    std::vector<glm::mat4> model(skeleton_.num_joints());
+    for (int j = 0; j < skeleton_.num_joints(); ++j) {
+      const std::string& name = skeleton_.joint_names()[j];
+      const bool finger = name.find("_proximal" + suffix) != std::string::npos ||
+                          name.find("_intermediate" + suffix) != std::string::npos ||
+                          name.find("_distal" + suffix) != std::string::npos;
+      const bool thumb = name.starts_with("thumb");
+      const float angle = finger && !thumb ? -side * 1.4f : 0.0f;
+      const glm::mat4 local =
+          glm::rotate(glm::translate(glm::mat4(1.0f), skeleton_.rest_pose()[j].translation), angle,
+                      vec3(0, 0, 1));
+      const int parent = skeleton_.joint_parents()[j];
+      model[j] = parent == wrinkle::kNoJoint ? local : model[parent] * local;
+    }
+    const vec3 wrist(skeleton_.rest_model()[skeleton_.Find("hand" + suffix)][3]);
+    float stretched = 0.0f, closed = 0.0f;
+    for (const QuadNet::Point& point : hand.points) {
+      vec3 posed(0.0f);
+      for (int k = 0; k < 4; ++k) {
+        const int j = point.skin.joints[k];
+        const glm::mat4 skin =
+            model[j] * glm::translate(glm::mat4(1.0f), -vec3(skeleton_.rest_model()[j][3]));
+        posed += point.skin.weights[k] * vec3(skin * glm::vec4(point.place, 1.0f));
+      }
+      stretched = std::max(stretched, side * (point.place.x - wrist.x));
+      closed = std::max(closed, side * (posed.x - wrist.x));
+    }
+    EXPECT_GT(stretched, 0.17f);
+    EXPECT_LT(closed, 0.135f);  // knuckles and first bones' width are what is left
+  }
+}
+
+TEST_P(BodyTest, HandsAreClosedButAtTheWrist) {
+  Mesh hand;
+  AppendNet(MakeHand(skeleton_, 1.0f, 0, GetParam()), &hand);
+  for (const auto& [place, count] : Rims(hand)) EXPECT_LT(place[0], 70000);  // inside the cuff
+}
+
+INSTANTIATE_TEST_SUITE_P(Levels, BodyTest, ::testing::Values(0, 1));
+
+TEST(GeneratorBody, BaseLevelHasAboutEightThousandTriangles) {
+  const wrinkle::Skeleton skeleton = MakeSkeleton();
+  const BodyShape shape({.level = 0}, skeleton, DefaultHead());
+  Mesh hands;
+  AddHands(shape, &hands);
+  const std::size_t indices = MakeClothes(shape).mesh.indices.size() +
+                              MakeLeather(shape).indices.size() + hands.indices.size();
+  EXPECT_GT(indices / 3, 7000u);
+  EXPECT_LT(indices / 3, 10000u);
+}
+
+TEST(GeneratorBody, ParametersMakeAnotherBody) {
+  const wrinkle::Skeleton skeleton = MakeSkeleton();
+  const BodyShape man({.level = 0}, skeleton, DefaultHead());
+  const BodyShape other({.waist = 1.1f, .hips = 1.12f, .bust = 0.03f, .level = 0}, skeleton,
+                        DefaultHead());
+  const auto front = [](const BodyShape& shape, float y) {
+    return CastOut([&](const vec3& p) { return shape.Shirt(p); }, {0, y, 0}, {0, 0, 1}, 0.4f).z;
+  };
+  EXPECT_GT(front(other, 1.265f), front(man, 1.265f) + 0.015f);
+  EXPECT_LT(other.Trousers({0.18f, 0.9f, 0.0f}), man.Trousers({0.18f, 0.9f, 0.0f}));
+}
+
+// The two sides of a bend have masks of their own, and either is somewhere full.
+TEST(GeneratorBody, MasksTellInnerFromOuter) {
+  const wrinkle::Skeleton skeleton = MakeSkeleton();
+  const BodyShape shape({.level = 0}, skeleton, DefaultHead());
+  const std::array<Picture, 6> masks = PaintClothMasks(MakeClothes(shape), 256);
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    const Picture& mask = masks[i];
+    ASSERT_EQ(mask.name, kClothMaskNames[i]);
+    int most[4] = {0, 0, 0, 0};
+    for (std::size_t t = 0; t < mask.pixels.size(); t += 4) {
+      int sum = 0;
+      for (int c = 0; c < 4; ++c) {
+        most[c] = std::max<int>(most[c], mask.pixels[t + c]);
+        sum += mask.pixels[t + c];
+      }
+      EXPECT_LE(sum, 258);  // shares of one surface, but for rounding
+    }
+    for (int c = 0; c < (i == 5 ? 2 : 4); ++c) EXPECT_GT(most[c], 200) << mask.name << " " << c;
+  }
+}
+
+}  // namespace
+}  // namespace furrow::character::generator

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/generator/head/head_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "authoring/generator/body/body_skeleton.h"
+#include "authoring/generator/head/skinning.h"
+
+namespace furrow::character::generator {
+namespace {
+
+std::size_t Triangles(const HeadMesh& head) { return head.mesh.indices.size() / 3; }
+
+TEST(HeadMesh, LevelsAreOfOneForm) {
+  const HeadMesh coarse = MakeHeadSkin(DefaultHead(), 0);
+  const HeadMesh middle = MakeHeadSkin(DefaultHead(), 1);
+  const HeadMesh fine = MakeHeadSkin(DefaultHead(), 2);
+  EXPECT_NEAR(static_cast<double>(Triangles(coarse)), 3000.0, 400.0);
+  EXPECT_GT(Triangles(middle), 2 * Triangles(coarse));
+  EXPECT_GT(Triangles(fine), 2 * Triangles(middle));
+  // Vertices of the coarse grid are vertices of the finer ones.
+  int kept = 0, all = 0;
+  for (std::size_t i = 0; i < coarse.info.size(); i += 7) {
+    if (coarse.info[i].part != kFacePart) continue;
+    ++all;
+    float nearest = 1e9f;
+    for (const HeadVertex& vertex : middle.info) {
+      nearest = std::min(nearest, glm::distance(vertex.place, coarse.info[i].place));
+    }
+    kept += nearest < 1e-3f;
+  }
+  EXPECT_GT(kept, all * 9 / 10);
+}
+
+// How much longer or shorter the unwrapping makes a triangle's sides against the island's median:
+// the larger and the smaller of the two stretches that area and shape imply.
+struct Stretch {
+  double large;
+  double small;
+};
+
+std::vector<Stretch> Stretches(const HeadMesh& head) {
+  std::vector<Stretch> stretches;
+  for (std::size_t i = 0; i < head.mesh.indices.size(); i += 3) {
+    const std::uint32_t* t = &head.mesh.indices[i];
+    if (head.info[t[0]].part != kFacePart) continue;
+    const glm::vec3 middle =
+        (head.info[t[0]].place + head.info[t[1]].place + head.info[t[2]].place) / 3.0f;
+    if (middle.z < 3.0f || middle.y > 6.0f || middle.y < -10.0f) continue;  // the face
+    const Vertex& a = head.mesh.vertices[t[0]];
+    const Vertex& b = head.mesh.vertices[t[1]];
+    const Vertex& c = head.mesh.vertices[t[2]];
+    const glm::dvec3 e1(b.position - a.position), e2(c.position - a.position);
+    const glm::dvec2 u1(b.uv - a.uv), u2(c.uv - a.uv);
+    const double det = u1.x * u2.y - u1.y * u2.x;
+    if (std::abs(det) < 1e-12) continue;
+    // The metric of the map from the picture to the surface, and its principal stretches.
+    const glm::dvec3 du = (e1 * u2.y - e2 * u1.y) / det;
+    const glm::dvec3 dv = (e2 * u1.x - e1 * u2.x) / det;
+    const double half = 0.5 * (glm::dot(du, du) + glm::dot(dv, dv));
+    const double area = glm::length(glm::cross(du, dv));
+    const double root = std::sqrt(std::max(half * half - area * area, 0.0));
+    stretches.push_back({std::sqrt(half + root), std::sqrt(std::max(half - root, 0.0))});
+  }
+  return stretches;
+}
+
+TEST(HeadMesh, UnwrapsTheFaceWithLittleStretch) {
+  const std::vector<Stretch> stretches = Stretches(MakeHeadSkin());
+  ASSERT_GT(stretches.size(), 1500u);
+  std::vector<double> ratios;
+  for (const Stretch& s : stretches) ratios.push_back(s.large / std::max(s.small, 1e-9));
+  std::sort(ratios.begin(), ratios.end());
+  EXPECT_LT(ratios[ratios.size() / 2], 2.0);
+  EXPECT_LT(ratios[ratios.size() * 9 / 10], 4.0);
+}
+
+// Weights change little from a vertex to the next, but across the openings.
+TEST(HeadMesh, SkinWeightsAreSmooth) {
+  const wrinkle::Skeleton skeleton = MakeSkeleton();
+  HeadMesh head = MakeHeadSkin(DefaultHead(), kFinestLevel);
+  SkinHead(skeleton, &head);
+  const auto change = [&](std::uint32_t i, std::uint32_t j) {
+    std::map<int, float> weights;
+    for (int k = 0; k < 4; ++k) {
+      weights[head.mesh.vertices[i].joints[k]] += head.mesh.vertices[i].skin_weights[k];
+      weights[head.mesh.vertices[j].joints[k]] -= head.mesh.vertices[j].skin_weights[k];
+    }
+    float sum = 0.0f;
+    for (const auto& [joint, difference] : weights) sum += std::abs(difference);
+    return 0.5f * sum;
+  };
+  std::vector<float> changes;
+  for (std::size_t i = 0; i < head.mesh.indices.size(); i += 3) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = head.mesh.indices[i + k], b = head.mesh.indices[i + (k + 1) % 3];
+      const HeadVertex& va = head.info[a];
+      const HeadVertex& vb = head.info[b];
+      if (va.part != kFacePart || vb.part != kFacePart || va.place.z < 2.0f) continue;
+      if (va.mouth_side != vb.mouth_side || va.eye_side != vb.eye_side) continue;
+      if (glm::distance(va.place, vb.place) < 0.05f) continue;
+      changes.push_back(change(a, b) / glm::distance(va.place, vb.place));
+    }
+  }
+  std::sort(changes.begin(), changes.end());
+  ASSERT_GT(changes.size(), 5000u);
+  EXPECT_LT(changes[changes.size() / 2], 0.5f);  // per centimetre
+  EXPECT_LT(changes[changes.size() * 99 / 100], 2.0f);
+}
+
+TEST(HeadMesh, HairCoversTheScalpAndLeavesTheFace) {
+  for (const float sex : {1.0f, -1.0f}) {
+    const HeadShape shape({.sex = sex});
+    const HeadMesh hair = MakeHair(shape);
+    int in_face = 0;
+    float lowest = 1e9f;
+    for (const HeadVertex& vertex : hair.info) {
+      const glm::vec3& p = vertex.place;
+      in_face += std::abs(p.x) < 4.0f && p.y < 3.5f && p.z > 6.0f;
+      lowest = std::min(lowest, p.y);
+    }
+    EXPECT_EQ(in_face, 0) << sex;
+    EXPECT_LT(lowest, -5.0f) << sex;
+    EXPECT_LT(Triangles(hair), 40000u);
+  }
+}
+
+}  // namespace
+}  // namespace furrow::character::generator

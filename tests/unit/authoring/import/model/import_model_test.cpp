@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/import/model/import_model.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <tuple>
+
+#include <glm/gtc/quaternion.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/temporary_folder.h"
+#include "tests/unit/authoring/import/model/toy_body.h"
+#include "wrinkle/skeleton/pose_frame.h"
+
+namespace furrow::character {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+class Folder : public TemporaryFolder {
+ public:
+  fs::path Write(const std::string& name, std::string_view bytes) const {
+    std::ofstream(path() / name, std::ios::binary) << bytes;
+    return path() / name;
+  }
+};
+
+SkeletonMaps Maps() {
+  return *SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/vrm.json");
+}
+
+// Model-space positions of all vertices with some joints turned, keyed by UV: importers reorder.
+std::map<std::pair<int, int>, glm::vec3> Posed(const Character& character) {
+  const auto turn = [](const std::string& name) {
+    const glm::vec3 x(1, 0, 0), z(0, 0, 1);
+    if (name == "leftLowerLeg") return glm::angleAxis(1.0f, x);
+    if (name == "rightUpperArm") return glm::angleAxis(-0.7f, z);
+    if (name == "neck") return glm::angleAxis(0.4f, glm::vec3(0, 1, 0));
+    return glm::quat(1, 0, 0, 0);
+  };
+  const wrinkle::Skeleton& skeleton = character.skeleton;
+  std::vector<glm::mat4> model(skeleton.num_joints());
+  std::vector<glm::mat4> skin(skeleton.num_joints());
+  for (int j = 0; j < skeleton.num_joints(); ++j) {
+    // About model axes, whatever the joint's own are.
+    const glm::quat rest = skeleton.rest_model_rotations()[j];
+    wrinkle::Transform local = skeleton.rest_pose()[j];
+    local.rotation = local.rotation * glm::inverse(rest) * turn(skeleton.joint_names()[j]) * rest;
+    const int parent = skeleton.joint_parents()[j];
+    model[j] = (parent < 0 ? glm::mat4(1) : model[parent]) * wrinkle::ToMatrix(local);
+    skin[j] = model[j] * character.inverse_bind_matrices[j];
+  }
+  std::map<std::pair<int, int>, glm::vec3> posed;
+  for (const Mesh& mesh : character.meshes) {
+    for (const Vertex& v : mesh.vertices) {
+      glm::vec4 p(0.0f);
+      for (int i = 0; i < 4; ++i) {
+        p += v.skin_weights[i] * (skin[v.joints[i]] * glm::vec4(v.position, 1.0f));
+      }
+      const auto key = std::pair(static_cast<int>(std::lround(v.uv.x * 1000)),
+                                 static_cast<int>(std::lround(v.uv.y * 1000)));
+      posed[key] = glm::vec3(p);
+    }
+  }
+  return posed;
+}
+
+void ExpectSamePoses(const Character& seen, const Character& due) {
+  const auto a = Posed(seen);
+  const auto b = Posed(due);
+  ASSERT_EQ(a.size(), b.size());
+  float worst = 0.0f;
+  for (const auto& [uv, position] : b) {
+    const auto found = a.find(uv);
+    ASSERT_NE(found, a.end()) << uv.first << " " << uv.second;
+    worst = std::max(worst, glm::distance(found->second, position));
+  }
+  EXPECT_LT(worst, 1e-4f);
+}
+
+class ForeignFormat : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+TEST_P(ForeignFormat, BendsAsTheOriginalDoes) {
+  const auto& [format, file] = GetParam();
+  const Character body = ToyBody();
+  const Folder folder;
+  const auto imported =
+      ImportModel(folder.Write(file, ConvertByAssimp(GlbOf(body), format)), Maps());
+  ASSERT_TRUE(imported.ok()) << imported.status().ToString();
+  for (const std::string& name : body.skeleton.joint_names()) {
+    EXPECT_NE(imported->character.skeleton.Find(name), wrinkle::kNoJoint) << name;
+  }
+  ExpectSamePoses(imported->character, body);
+  ASSERT_FALSE(imported->character.materials.empty());
+  const int used = imported->character.meshes[0].material;
+  const Material& material = imported->character.materials[static_cast<std::size_t>(used)];
+  EXPECT_EQ(material.kind, Material::Kind::kSkin) << material.name;
+  EXPECT_NEAR(material.base_colour.g, 0.25f, 1e-3f);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, ForeignFormat,
+                         ::testing::Values(std::pair("fbxa", "ascii.fbx"),
+                                           std::pair("collada", "body.DAE"),
+                                           std::pair("glb2", "other.glb")),
+                         [](const auto& format) { return std::string(format.param.first); });
+
+TEST(ImportModel, AGlbByAnyNameIsReadAsOne) {
+  const Folder folder;
+  const auto imported = ImportModel(folder.Write("body.fbx", GlbOf(ToyBody())), Maps());
+  ASSERT_TRUE(imported.ok()) << imported.status().ToString();
+  ExpectSamePoses(imported->character, ToyBody());
+}
+
+// A turned, scaled body stands up again, and poses as before.
+class Space : public ::testing::TestWithParam<std::tuple<glm::mat3, float>> {};
+
+TEST_P(Space, IsMadeOurs) {
+  Character body = ToyBody();
+  const auto& [turn, scale] = GetParam();
+  ASSERT_TRUE(MoveToSpace(turn, scale, &body).ok());
+  const Folder folder;
+  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(body)), Maps());
+  ASSERT_TRUE(imported.ok()) << imported.status().ToString();
+  ExpectSamePoses(imported->character, ToyBody());
+  EXPECT_FALSE(imported->remarks.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, Space,
+    ::testing::Values(std::tuple(glm::mat3(1, 0, 0, 0, 0, 1, 0, -1, 0), 1.0f),   // Z up
+                      std::tuple(glm::mat3(-1, 0, 0, 0, 1, 0, 0, 0, -1), 1.0f),  // facing -Z
+                      std::tuple(glm::mat3(1.0f), 100.0f),                       // centimetres
+                      std::tuple(glm::mat3(0, 1, 0, 0, 0, 1, 1, 0, 0), 1000.0f)));
+
+TEST(ImportModel, ScaleCanBeSaid) {
+  const Folder folder;
+  const auto imported =
+      ImportModel(folder.Write("body.glb", GlbOf(ToyBody())), Maps(), {.scale = 2.0f});
+  ASSERT_TRUE(imported.ok());
+  const int head = imported->character.skeleton.Find("head");
+  EXPECT_NEAR(imported->character.skeleton.rest_model()[head][3].y, 3.1f, 1e-4f);
+}
+
+Status StatusOf(const Character& character, const ModelOptions& options = {}) {
+  const Folder folder;
+  return ImportModel(folder.Write("bad.glb", GlbOf(character)), Maps(), options).status();
+}
+
+TEST(ImportModel, TrianglesWithoutAreaAreAnErrorOrLeftOut) {
+  Character body = ToyBody();
+  body.meshes[0].vertices[1].position = body.meshes[0].vertices[0].position;
+  const Status status = StatusOf(body);
+  EXPECT_EQ(status.code(), StatusCode::kUnsupported);
+  EXPECT_THAT(status.what(), HasSubstr("no area"));
+  EXPECT_THAT(status.where(), HasSubstr("mesh 'skin'"));
+  EXPECT_THAT(status.todo(), HasSubstr("--repair"));
+  EXPECT_TRUE(StatusOf(body, {.repair = true}).ok());
+}
+
+TEST(ImportModel, UnskinnedVerticesAreAnErrorOrFollowTheirNeighbours) {
+  Character body = ToyBody();
+  const int vertex = 24 * 7 + 2;  // of the left hand
+  for (float& weight : body.meshes[0].vertices[vertex].skin_weights) weight = 0.0f;
+  const Status status = StatusOf(body);
+  EXPECT_EQ(status.code(), StatusCode::kUnsupported);
+  EXPECT_THAT(status.what(), HasSubstr("1 vertex follows no joint"));
+  const Folder folder;
+  const auto repaired = ImportModel(folder.Write("bad.glb", GlbOf(body)), Maps(), {.repair = true});
+  ASSERT_TRUE(repaired.ok()) << repaired.status().ToString();
+  EXPECT_EQ(repaired->character.meshes[0].vertices[vertex].joints[0],
+            repaired->character.skeleton.Find("leftHand"));
+}
+
+TEST(ImportModel, OverlappingUvsAreAWarning) {
+  Character body = ToyBody();
+  for (std::size_t v = 0; v < 24; ++v) {
+    body.meshes[0].vertices[v].uv = body.meshes[0].vertices[v + 24].uv;
+  }
+  const Folder folder;
+  const auto imported = ImportModel(folder.Write("body.glb", GlbOf(body)), Maps());
+  ASSERT_TRUE(imported.ok());
+  EXPECT_THAT(imported->warnings, Contains(HasSubstr("used twice")));
+}
+
+TEST(ImportModel, FilesOfOtherKindsAreRefusedInOneSentence) {
+  const Folder folder;
+  const std::string fbx = ConvertByAssimp(GlbOf(ToyBody()), "fbxa");
+  ASSERT_FALSE(fbx.empty());
+  const std::pair<const char*, std::string> files[] = {
+      {"picture.fbx", "\x89PNG\r\n\x1a\n" + std::string(200, 'x')},
+      {"empty.fbx", ""},
+      {"text.dae", "<html><body>no</body></html>"},
+      {"cut.fbx", fbx.substr(0, fbx.size() / 3)},
+      {"fbx.glb", fbx},
+      {"notes.txt", "hello"}};
+  for (const auto& [name, bytes] : files) {
+    const Status status = ImportModel(folder.Write(name, bytes), Maps()).status();
+    EXPECT_FALSE(status.ok()) << name;
+    EXPECT_THAT(status.where(), HasSubstr(name));
+    EXPECT_THAT(status.what(), ::testing::Not(HasSubstr("\n"))) << name;
+  }
+  EXPECT_EQ(ImportModel("/no/such.fbx", Maps()).status().code(), StatusCode::kNotFound);
+}
+
+// Every length of a cut FBX ends in a status, never in a crash of this process.
+TEST(ImportModel, CutFilesEndInAStatus) {
+  const Folder folder;
+  const std::string fbx = ConvertByAssimp(GlbOf(ToyBody()), "fbxa");
+  for (std::size_t length = 0; length < fbx.size(); length += fbx.size() / 40 + 1) {
+    const Status status = OpenModel(folder.Write("cut.fbx", fbx.substr(0, length))).status();
+    EXPECT_FALSE(status.ok()) << length;
+  }
+}
+
+}  // namespace
+}  // namespace furrow::character

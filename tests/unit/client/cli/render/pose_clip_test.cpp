@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/render/pose_clip.h"
+
+#include <gtest/gtest.h>
+
+namespace furrow::cli {
+namespace {
+
+using wrinkle::kNoJoint;
+
+// A head with a brow on either side; map `squash` is fed by both brows' lowering.
+character::Character Brows() {
+  character::Character character;
+  auto skeleton =
+      wrinkle::Skeleton::Create({{"head", kNoJoint, {}}, {"brow_l", 0, {}}, {"brow_r", 0, {}}});
+  EXPECT_TRUE(skeleton.ok());
+  character.skeleton = *skeleton;
+  const glm::quat still(1, 0, 0, 0);
+  character.rig.reference_poses = {{"lower_l", {{"brow_l", still, {0, -1, 0}}}, 0},
+                                   {"lower_r", {{"brow_r", still, {0, -2, 0}}}, 0},
+                                   {"nod", {{"head", still, {0, 0, 3}}}, 0}};
+  for (const char* side : {"l", "r"}) {
+    wrinkle::Driver driver;
+    driver.name = std::string("brow_") + side;
+    driver.pose.values = {{"squash", std::string("lower_") + side}};
+    character.rig.drivers.push_back(driver);
+    wrinkle::Region region;
+    region.name = driver.name;
+    region.feeds = {{"squash", {{driver.name, "squash", 1.0f}}}};
+    character.rig.regions.push_back(region);
+  }
+  return character;
+}
+
+TEST(PoseClip, NeutralIsTheRestPose) {
+  const auto clip = PoseClip(Brows(), "neutral");
+  ASSERT_TRUE(clip.ok());
+  ASSERT_EQ(clip->num_frames(), 1);
+  for (const wrinkle::Transform& local : clip->locals)
+    EXPECT_EQ(local.translation, glm::vec3(0.0f));
+}
+
+TEST(PoseClip, WeightsScaleAndPosesAddUp) {
+  const auto clip = PoseClip(Brows(), "lower_l=0.5,nod,nod=-0.25");
+  ASSERT_TRUE(clip.ok()) << clip.status().ToString();
+  EXPECT_FLOAT_EQ(clip->locals[1].translation.y, -0.5f);
+  EXPECT_FLOAT_EQ(clip->locals[0].translation.z, 3.0f * 0.75f);
+  EXPECT_FLOAT_EQ(clip->locals[2].translation.y, 0.0f);
+}
+
+TEST(PoseClip, NeutralAddsNothingToOthers) {
+  for (const char* text : {"neutral,nod", "nod,neutral"}) {
+    const auto clip = PoseClip(Brows(), text);
+    ASSERT_TRUE(clip.ok()) << clip.status().ToString();
+    EXPECT_FLOAT_EQ(clip->locals[0].translation.z, 3.0f) << text;
+  }
+}
+
+TEST(PoseClip, ANameWithoutSideMeansBothAndAMapAllThatFeedsIt) {
+  for (const char* text : {"lower", "squash"}) {
+    const auto clip = PoseClip(Brows(), text);
+    ASSERT_TRUE(clip.ok()) << text;
+    EXPECT_FLOAT_EQ(clip->locals[1].translation.y, -1.0f) << text;
+    EXPECT_FLOAT_EQ(clip->locals[2].translation.y, -2.0f) << text;
+  }
+}
+
+TEST(PoseClip, WhatIsNotThereIsAnErrorThatListsWhatIs) {
+  const auto unknown = PoseClip(Brows(), "lower_l,smirk");
+  EXPECT_EQ(unknown.status().code(), StatusCode::kNotFound);
+  EXPECT_NE(unknown.status().ToString().find("lower_l, lower_r, nod"), std::string::npos);
+  for (const char* text : {"nod=", "nod=x", "nod=5", "nod=nan", "nod=1 "})
+    EXPECT_EQ(PoseClip(Brows(), text).status().code(), StatusCode::kParse) << text;
+  for (const char* text : {"", "nod,", "=1"})
+    EXPECT_EQ(PoseClip(Brows(), text).status().code(), StatusCode::kNotFound) << text;
+}
+
+}  // namespace
+}  // namespace furrow::cli

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/clip/up_axis.h"
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <glm/gtc/quaternion.hpp>
+#include <gtest/gtest.h>
+
+#include "tests/temporary_folder.h"
+
+namespace furrow::motion {
+namespace {
+
+wrinkle::JointDesc Joint(const char* name, int parent, const glm::vec3& offset) {
+  wrinkle::JointDesc joint;
+  joint.name = name;
+  joint.parent = parent;
+  joint.rest.translation = offset;
+  return joint;
+}
+
+Clip Standing(const char* top, const glm::vec3& up) {
+  Clip clip;
+  clip.skeleton =
+      *wrinkle::Skeleton::Create({Joint("Hips", -1, up), Joint("Spine", 0, up), Joint(top, 1, up)});
+  return clip;
+}
+
+TEST(UpAxis, IsFoundByTheHead) {
+  EXPECT_EQ(FindUpAxis(Standing("Head", {0, 1, 0}).skeleton), UpAxis::kY);
+  EXPECT_EQ(FindUpAxis(Standing("head", {0, 0, 1}).skeleton), UpAxis::kZ);
+  EXPECT_EQ(FindUpAxis(Standing("mixamorig:Head", {0, 0.2f, 1}).skeleton), UpAxis::kZ);
+  EXPECT_EQ(FindUpAxis(Standing("Head", {0, 0, -1}).skeleton), UpAxis::kY);  // upside down: no
+  EXPECT_EQ(FindUpAxis(Standing("Tail", {0, 0, 1}).skeleton), UpAxis::kY);   // nothing to go by
+  EXPECT_EQ(FindUpAxis(wrinkle::Skeleton()), UpAxis::kY);
+}
+
+// Model-space joint positions turn as a whole, whatever the pose.
+TEST(UpAxis, TurningAClipTurnsItsPoses) {
+  Clip clip = Standing("Head", {0.1f, 0.2f, 1});
+  clip.times = {0.0};
+  clip.locals.assign(clip.skeleton.rest_pose().begin(), clip.skeleton.rest_pose().end());
+  clip.locals[0].rotation = glm::angleAxis(0.7f, glm::normalize(glm::vec3(1, 2, 3)));
+  clip.locals[1].rotation = glm::angleAxis(-1.1f, glm::normalize(glm::vec3(-2, 1, 0.5f)));
+  clip.locals[1].scale = {1, 2, 3};
+  std::vector<glm::mat4> before(3), after(3);
+  ASSERT_EQ((wrinkle::LocalToModelJob{&clip.skeleton, clip.locals, before}).Run(),
+            wrinkle::JobStatus::kOk);
+  ASSERT_TRUE(TurnZUpToYUp(&clip).ok());
+  ASSERT_EQ((wrinkle::LocalToModelJob{&clip.skeleton, clip.locals, after}).Run(),
+            wrinkle::JobStatus::kOk);
+  for (std::size_t j = 0; j < 3; ++j) {
+    EXPECT_EQ(clip.skeleton.rest_pose()[j].rotation, glm::quat(1, 0, 0, 0));
+    EXPECT_NEAR(after[j][3].x, before[j][3].x, 1e-5f);
+    EXPECT_NEAR(after[j][3].y, before[j][3].z, 1e-5f);
+    EXPECT_NEAR(after[j][3].z, -before[j][3].y, 1e-5f);
+  }
+  EXPECT_EQ(FindUpAxis(clip.skeleton), UpAxis::kY);
+}
+
+std::string Bvh(const char* offset, const char* positions) {
+  return std::string("HIERARCHY\nROOT Hips\n{\nOFFSET ") + offset +
+         "\nCHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation\n"
+         "JOINT Head\n{\nOFFSET 0 0 2\nCHANNELS 3 Zrotation Yrotation Xrotation\n"
+         "End Site\n{\nOFFSET 0 0 1\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.1\n" +
+         positions + " 0 0 0 0 0 0\n" + positions + " 0 0 0 0 0 0\n";
+}
+
+TEST(UpAxis, LoadClipStandsBvhUpAndLetsAnUnmovedRootRest) {
+  const TemporaryFolder folder;
+  const auto path = folder / "clip.bvh";
+  const auto load = [&path](const std::string& text, UpAxis up) {
+    std::ofstream(path) << text;
+    LoadOptions options;
+    options.up_axis = up;
+    Result<Clip> clip = LoadClip(path, options);
+    EXPECT_TRUE(clip.ok()) << clip.status().ToString();
+    return clip.ok() ? std::move(*clip) : Clip();
+  };
+  const Clip unmoved = load(Bvh("1 2 3", "0 0 0"), UpAxis::kAuto);
+  ASSERT_EQ(unmoved.locals.size(), 4u);
+  EXPECT_EQ(unmoved.skeleton.rest_pose()[1].translation, glm::vec3(0, 2, 0));
+  EXPECT_EQ(unmoved.locals[2].translation, glm::vec3(1, 3, -2));
+  const Clip moved = load(Bvh("1 2 3", "0 0 5"), UpAxis::kAuto);
+  ASSERT_EQ(moved.locals.size(), 4u);
+  EXPECT_EQ(moved.locals[2].translation, glm::vec3(0, 5, 0));
+  const Clip as_it_is = load(Bvh("1 2 3", "0 0 5"), UpAxis::kY);
+  ASSERT_EQ(as_it_is.locals.size(), 4u);
+  EXPECT_EQ(as_it_is.locals[2].translation, glm::vec3(0, 0, 5));
+}
+
+}  // namespace
+}  // namespace furrow::motion

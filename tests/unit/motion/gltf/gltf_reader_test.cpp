@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "motion/gltf/gltf_animation.h"
+#include "tests/unit/motion/clip_testing.h"
+#include "tests/unit/motion/gltf_testing.h"
+
+namespace furrow::motion {
+namespace {
+
+using nlohmann::json;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+
+Clip Parse(const std::string& glb, const GltfOptions& options = {}, ClipReport* report = nullptr) {
+  Result<Clip> clip = ParseGltfAnimation(glb, "t.glb", options, report);
+  EXPECT_TRUE(clip.ok()) << clip.status().ToString();
+  return clip.ok() ? std::move(*clip) : Clip();
+}
+
+StatusCode CodeOf(const std::string& glb) {
+  const Result<Clip> clip = ParseGltfAnimation(glb, "t.glb");
+  EXPECT_EQ(clip.ok(), clip.status().ok());
+  if (!clip.ok()) {
+    EXPECT_THAT(clip.status().where(), HasSubstr("t.glb"));
+  }
+  return clip.status().code();
+}
+
+TEST(GltfReader, ReadsTheAnimatedTree) {
+  const Clip clip = Parse(TwoJoints().Glb(), {.load = {.sample_rate = 2.0}});
+  EXPECT_EQ(clip.name, "take");
+  EXPECT_THAT(clip.skeleton.joint_names(), ElementsAre("root", "child"));
+  EXPECT_THAT(clip.times, ElementsAre(0.0, 0.5, 1.0));
+  EXPECT_NEAR(ModelPosition(clip, 1, "child").x, 1.0f, 1e-6f);
+  // Half-way through a quarter turn about Z: 45 degrees.
+  EXPECT_NEAR(2.0f * std::asin(clip.locals[3].rotation.z), M_PI / 4.0, 1e-5);
+}
+
+TEST(GltfReader, FramesAreTheKeysOfAllSamplers) {
+  GltfBuilder gltf = TwoJoints();
+  const int times = gltf.AddFloats({0.25f, 1.5f}, "SCALAR");
+  gltf.AddChannel(1, "scale", "STEP", times, gltf.AddFloats({1, 1, 1, 2, 2, 2}, "VEC3"));
+  const Clip clip = Parse(gltf.Glb());
+  EXPECT_THAT(clip.times, ElementsAre(0.0, 0.25, 1.0, 1.5));
+  EXPECT_EQ(clip.locals[2 * 2 + 1].scale.x, 1.0f);
+  EXPECT_EQ(clip.locals[3 * 2 + 1].scale.x, 2.0f);
+}
+
+TEST(GltfReader, ScaleIsForLengths) {
+  const Clip clip = Parse(TwoJoints().Glb(), {.load = {.scale = 100.0f}});
+  EXPECT_NEAR(ModelPosition(clip, 1, "child").x, 200.0f, 1e-3f);
+  EXPECT_NEAR(ModelPosition(clip, 1, "child").y, 100.0f, 1e-3f);
+}
+
+TEST(GltfReader, JointsAreTheSkinsAndTheirAncestors) {
+  GltfBuilder gltf = TwoJoints();
+  gltf.json["nodes"] = {{{"name", "armature"}, {"children", {1, 3}}, {"rotation", {0, 0, 1, 0}}},
+                        {{"name", "hip"}, {"children", {2}}},
+                        {{"name", "knee"}},
+                        {{"name", "body"}},
+                        {{"name", "prop"}}};
+  gltf.json["skins"] = {{{"joints", {2, 1}}}};
+  EXPECT_THAT(Parse(gltf.Glb()).skeleton.joint_names(), ElementsAre("armature", "hip", "knee"));
+}
+
+TEST(GltfReader, NamesWhatHasNoNameAndWhatSharesOne) {
+  GltfBuilder gltf = TwoJoints();
+  gltf.json["nodes"] = {{{"children", {1}}}, {{"name", "a"}, {"children", {2}}}, {{"name", "a"}}};
+  EXPECT_THAT(Parse(gltf.Glb()).skeleton.joint_names(), ElementsAre("node_0", "a", "a_2"));
+}
+
+TEST(GltfReader, TakesMatricesApart) {
+  GltfBuilder gltf = TwoJoints();
+  // Scale by 2, a quarter turn about Z, then (5, 6, 7); column-major.
+  gltf.json["nodes"][1] = {{"name", "child"},
+                           {"matrix", {0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 5, 6, 7, 1}}};
+  const Clip clip = Parse(gltf.Glb());
+  const wrinkle::Transform& rest = clip.skeleton.rest_pose()[1];
+  EXPECT_NEAR(rest.scale.y, 2.0f, 1e-6f);
+  EXPECT_NEAR(rest.translation.z, 7.0f, 1e-6f);
+  EXPECT_NEAR(std::abs(rest.rotation.z), std::sqrt(0.5f), 1e-6f);
+}
+
+TEST(GltfReader, ReadsNormalisedIntegers) {
+  GltfBuilder gltf = TwoJoints();
+  const std::vector<std::int16_t> turns = {0, 0, 0, 32767, 0, 0, 23170, 23170};
+  const int values = gltf.AddAccessor(turns, "VEC4", 5122, 4);
+  gltf.json["animations"][0]["samplers"][0]["output"] = values;
+  EXPECT_EQ(CodeOf(gltf.Glb()), StatusCode::kSchema);  // not said to be normalised
+  gltf.json["accessors"][static_cast<std::size_t>(values)]["normalized"] = true;
+  EXPECT_NEAR(Parse(gltf.Glb()).locals[3].rotation.z, std::sqrt(0.5f), 1e-4f);
+}
+
+TEST(GltfReader, ReadsMorphWeightsByName) {
+  GltfBuilder gltf;
+  gltf.json["nodes"] = {{{"name", "face"}, {"mesh", 0}}};
+  gltf.json["meshes"] = {{{"name", "face"},
+                          {"extras", {{"targetNames", {"jawOpen", ""}}}},
+                          {"primitives", {{{"targets", {json::object(), json::object()}}}}}}};
+  const int times = gltf.AddFloats({0.0f, 1.0f, 2.0f}, "SCALAR");
+  gltf.AddChannel(0, "weights", "LINEAR", times, gltf.AddFloats({0, 1, 0.5, 0.5, 1, 0}, "SCALAR"));
+  const Clip clip = Parse(gltf.Glb());
+  EXPECT_EQ(clip.skeleton.num_joints(), 0);
+  EXPECT_THAT(clip.blend_shape_names, ElementsAre("jawOpen", "face.1"));
+  EXPECT_THAT(clip.blend_shapes, ElementsAre(0.0f, 1.0f, 0.5f, 0.5f, 1.0f, 0.0f));
+}
+
+TEST(GltfReader, ReadsDataUrisAndFilesBesideItOnly) {
+  GltfBuilder gltf = TwoJoints();
+  json whole = gltf.json;
+  TemporaryFolder folder;
+  std::ofstream(folder.path() / "a.bin", std::ios::binary) << gltf.binary;
+  std::ofstream(folder.path().parent_path() / "furrow-outside.bin", std::ios::binary)
+      << gltf.binary;
+  const auto code = [&](const std::string& uri, bool with_folder) {
+    whole["buffers"] = {{{"byteLength", gltf.binary.size()}, {"uri", uri}}};
+    GltfOptions options;
+    if (with_folder) options.folder = folder.path();
+    return ParseGltfAnimation(whole.dump(), "t.gltf", options).status().code();
+  };
+  EXPECT_EQ(code("a.bin", true), StatusCode::kOk);
+  EXPECT_EQ(code("a.bin", false), StatusCode::kUnsupported);
+  EXPECT_EQ(code("none.bin", true), StatusCode::kNotFound);
+  for (const char* uri : {"../furrow-outside.bin", "/etc/hostname", "..", "", "http://a/b",
+                          "%2e%2e/furrow-outside.bin", "sub/a.bin"}) {
+    EXPECT_EQ(code(uri, true), StatusCode::kUnsupported) << uri;
+  }
+  EXPECT_EQ(code("data:application/octet-stream;base64,AAAA", false), StatusCode::kSchema);
+  std::filesystem::remove(folder.path().parent_path() / "furrow-outside.bin");
+}
+
+TEST(GltfReader, ReadsVrmAnimation) {
+  const std::filesystem::path path = SharedFile("vrma/test.vrma");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  ClipReport report;
+  const Clip clip = Parse(ReadAll(path), {}, &report);
+  EXPECT_THAT(std::vector<std::string>(clip.skeleton.joint_names().begin(),
+                                       clip.skeleton.joint_names().end()),
+              IsSupersetOf({"hips", "head", "leftUpperArm", "rightLittleDistal"}));
+  EXPECT_EQ(clip.num_frames(), 7);
+  EXPECT_DOUBLE_EQ(clip.duration(), 3.0);
+  ASSERT_EQ(clip.blend_shape_names.size(), 1u);  // one expression, up to weight 1
+  EXPECT_EQ(*std::max_element(clip.blend_shapes.begin(), clip.blend_shapes.end()), 1.0f);
+  EXPECT_EQ(*std::min_element(clip.blend_shapes.begin(), clip.blend_shapes.end()), 0.0f);
+  EXPECT_THAT(report.warnings, ElementsAre(HasSubstr("lookAt")));
+  // Only the right upper arm turns in this file.
+  const auto arm = static_cast<std::size_t>(clip.skeleton.Find("rightUpperArm"));
+  const auto joints = static_cast<std::size_t>(clip.skeleton.num_joints());
+  float turned = 0.0f;
+  for (std::size_t f = 0; f < 7; ++f) {
+    for (std::size_t j = 0; j < joints; ++j) {
+      const float dot = std::abs(
+          glm::dot(clip.locals[f * joints + j].rotation, clip.skeleton.rest_pose()[j].rotation));
+      if (j == arm) turned = std::max(turned, 1.0f - dot);
+      if (j != arm) {
+        EXPECT_GT(dot, 0.9999f) << clip.skeleton.joint_names()[j];
+      }
+    }
+  }
+  EXPECT_GT(turned, 0.01f);
+}
+
+TEST(GltfReader, RefusesWhatIsNotSound) {
+  using Change = void (*)(json&);
+  const std::pair<Change, StatusCode> kCases[] = {
+      {[](json& j) { j["asset"]["version"] = "1.0"; }, StatusCode::kUnsupported},
+      {[](json& j) { j.erase("asset"); }, StatusCode::kUnsupported},
+      {[](json& j) { j.erase("animations"); }, StatusCode::kSchema},
+      {[](json& j) { j["nodes"][1]["children"] = {0}; }, StatusCode::kCyclic},
+      {[](json& j) { j["nodes"][1]["children"] = {1}; }, StatusCode::kCyclic},
+      {[](json& j) {
+         j["nodes"][0]["children"] = {1, 1};
+       },
+       StatusCode::kCyclic},
+      {[](json& j) { j["nodes"][0]["children"] = {7}; }, StatusCode::kSchema},
+      {[](json& j) { j["nodes"][0]["children"] = {-1}; }, StatusCode::kSchema},
+      {[](json& j) { j["nodes"][0]["mesh"] = 3; }, StatusCode::kSchema},
+      {[](json& j) {
+         j["nodes"][0]["rotation"] = {0, 0, 0, 0};
+       },
+       StatusCode::kSchema},
+      {[](json& j) {
+         j["nodes"][0]["translation"] = {0, 0};
+       },
+       StatusCode::kSchema},
+      {[](json& j) {
+         j["nodes"][0]["translation"] = {0, 0, 1e200};
+       },
+       StatusCode::kSchema},
+      {[](json& j) { j["nodes"] = 5; }, StatusCode::kSchema},
+      {[](json& j) {
+         j["skins"] = {{{"joints", {99}}}};
+       },
+       StatusCode::kSchema},
+      {[](json& j) { j["accessors"][0]["count"] = 3; }, StatusCode::kSchema},
+      {[](json& j) { j["accessors"][0]["count"] = 0; }, StatusCode::kSchema},
+      {[](json& j) { j["accessors"][0]["count"] = 4000000000u; }, StatusCode::kLimit},
+      {[](json& j) { j["accessors"][0]["byteOffset"] = 4; }, StatusCode::kSchema},
+      {[](json& j) { j["accessors"][0]["byteOffset"] = 0xFFFFFFFFFFFFFFF0u; }, StatusCode::kSchema},
+      {[](json& j) { j["accessors"][0]["componentType"] = 5125; }, StatusCode::kSchema},
+      {[](json& j) { j["accessors"][0]["type"] = "VEC2"; }, StatusCode::kSchema},
+      {[](json& j) { j["accessors"][0]["bufferView"] = 17; }, StatusCode::kSchema},
+      {[](json& j) { j["accessors"][0].erase("bufferView"); }, StatusCode::kSchema},
+      {[](json& j) {
+         j["accessors"][0]["sparse"] = {{"count", 1},
+                                        {"indices", {{"bufferView", 0}, {"componentType", 5123}}},
+                                        {"values", {{"bufferView", 0}}}};
+       },
+       StatusCode::kUnsupported},
+      {[](json& j) { j["bufferViews"][0]["buffer"] = 1; }, StatusCode::kSchema},
+      {[](json& j) { j["bufferViews"][0]["byteLength"] = 1 << 20; }, StatusCode::kSchema},
+      {[](json& j) { j["bufferViews"][0]["byteOffset"] = 1 << 20; }, StatusCode::kSchema},
+      {[](json& j) { j["bufferViews"][0]["byteStride"] = 252; }, StatusCode::kSchema},
+      {[](json& j) { j["animations"][0]["channels"][0]["sampler"] = 9; }, StatusCode::kSchema},
+      {[](json& j) { j["animations"][0]["channels"][0]["target"]["node"] = 9; },
+       StatusCode::kSchema},
+      {[](json& j) { j["animations"][0]["channels"][1] = j["animations"][0]["channels"][0]; },
+       StatusCode::kSchema},
+      {[](json& j) { j["animations"][0]["samplers"][0]["input"] = 44; }, StatusCode::kSchema},
+      {[](json& j) { j["animations"][0]["samplers"][0]["output"] = 0; }, StatusCode::kSchema},
+      {[](json& j) { j["animations"][0]["samplers"][0]["interpolation"] = "CUBICSPLINE"; },
+       StatusCode::kSchema},
+      {[](json& j) { j["animations"][0]["samplers"][0]["interpolation"] = "MAGIC"; },
+       StatusCode::kSchema},
+      {[](json& j) { j["animations"][0]["channels"][0]["target"]["path"] = "weights"; },
+       StatusCode::kSchema},
+      {[](json& j) { j["extensionsRequired"] = {"EXT_meshopt_compression"}; },
+       StatusCode::kUnsupported},
+      {[](json& j) {
+         j["extensions"]["VRMC_vrm_animation"]["humanoid"]["humanBones"]["hips"] = {{"node", 99}};
+       },
+       StatusCode::kSchema}};
+  int index = 0;
+  for (const auto& [change, code] : kCases) {
+    GltfBuilder gltf = TwoJoints();
+    change(gltf.json);
+    EXPECT_EQ(CodeOf(gltf.Glb()), code) << "case " << index;
+    ++index;
+  }
+}
+
+TEST(GltfReader, RefusesBadNumbers) {
+  const auto with_times = [](const std::vector<float>& times) {
+    GltfBuilder gltf = TwoJoints();
+    gltf.json["animations"][0]["samplers"][0]["input"] = gltf.AddFloats(times, "SCALAR");
+    return gltf.Glb();
+  };
+  EXPECT_EQ(CodeOf(with_times({0.0f, 1.0f})), StatusCode::kOk);
+  EXPECT_EQ(CodeOf(with_times({1.0f, 1.0f})), StatusCode::kSchema);
+  EXPECT_EQ(CodeOf(with_times({1.0f, 0.5f})), StatusCode::kSchema);
+  EXPECT_EQ(CodeOf(with_times({0.0f, NAN})), StatusCode::kNonFinite);
+  EXPECT_EQ(CodeOf(with_times({0.0f, INFINITY})), StatusCode::kNonFinite);
+  GltfBuilder zero = TwoJoints();
+  zero.json["animations"][0]["samplers"][0]["output"] =
+      zero.AddFloats({0, 0, 0, 0, 0, 0, 0, 1}, "VEC4");
+  EXPECT_EQ(CodeOf(zero.Glb()), StatusCode::kSchema);
+  // Finite keys whose spline overshoots the range of a float between them.
+  GltfBuilder huge = TwoJoints();
+  const float big = std::numeric_limits<float>::max();
+  huge.json["animations"][0]["samplers"][1]["output"] = huge.AddFloats(
+      {0, 0, 0, big, big, big, big, big, big, 0, 0, 0, big, big, big, 0, 0, 0}, "VEC3");
+  huge.json["animations"][0]["samplers"][1]["interpolation"] = "CUBICSPLINE";
+  EXPECT_EQ(
+      ParseGltfAnimation(huge.Glb(), "t.glb", {.load = {.sample_rate = 10.0}}).status().code(),
+      StatusCode::kNonFinite);
+}
+
+TEST(GltfReader, BoundsFramesJointsAndDepth) {
+  GltfBuilder gltf = TwoJoints();
+  EXPECT_EQ(
+      ParseGltfAnimation(gltf.Glb(), "t.glb", {.load = {.sample_rate = 1e12}}).status().code(),
+      StatusCode::kLimit);
+  json nodes = json::array();
+  for (int i = 0; i <= wrinkle::kMaxJoints; ++i) nodes.push_back({{"children", {i + 1}}});
+  nodes.push_back(json::object());
+  gltf.json["nodes"] = nodes;
+  EXPECT_EQ(CodeOf(gltf.Glb()), StatusCode::kLimit);
+  const std::string deep = R"({"asset":{"version":"2.0"},"x":)" + std::string(100'000, '[');
+  EXPECT_EQ(ParseGltfAnimation(deep, "t.glb").status().code(), StatusCode::kLimit);
+  // Brackets in a string do not count.
+  gltf = TwoJoints();
+  gltf.json["extras"] = std::string(1000, '[') + "\\\"";
+  EXPECT_EQ(CodeOf(gltf.Glb()), StatusCode::kOk);
+}
+
+TEST(GltfReader, TruncationDrill) {
+  const std::string whole = TwoJoints().Glb();
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const std::vector<char> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length));
+    const Result<Clip> clip = ParseGltfAnimation({cut.data(), cut.size()}, "t.glb");
+    ASSERT_FALSE(clip.ok()) << length;
+    EXPECT_EQ(clip.status().code(), StatusCode::kParse) << length;
+  }
+  EXPECT_TRUE(ParseGltfAnimation(whole + "trailing", "t.glb").ok());
+}
+
+TEST(GltfReader, ChunkSizesThatLie) {
+  const std::string whole = TwoJoints().Glb();
+  for (const std::size_t at : {4u, 8u, 12u, 16u}) {
+    for (const std::uint32_t value : {0u, 1u, 7u, 0x7FFFFFFFu, 0xFFFFFFFFu, 0xFFFFFFF0u}) {
+      std::string glb = whole;
+      glb.replace(at, 4, U32(value));
+      EXPECT_FALSE(ParseGltfAnimation(glb, "t.glb").ok()) << at << " " << value;
+    }
+  }
+}
+
+TEST(GltfReader, SurvivesGarbage) {
+  std::uint32_t state = 3;
+  const std::string good = TwoJoints().Glb();
+  for (int round = 0; round < 3000; ++round) {
+    std::string glb = good;
+    for (int i = 0; i < 3; ++i) {
+      state = state * 1664525u + 1013904223u;
+      glb[(state >> 8) % glb.size()] = static_cast<char>(state >> 24);
+    }
+    const Result<Clip> clip = ParseGltfAnimation(glb, "t.glb");
+    if (!clip.ok()) continue;
+    for (const wrinkle::Transform& local : clip->locals) EXPECT_TRUE(wrinkle::IsValid(local));
+  }
+}
+
+}  // namespace
+}  // namespace furrow::motion

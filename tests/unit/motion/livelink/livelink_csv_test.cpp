@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/livelink/livelink_csv.h"
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace furrow::motion {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+constexpr const char* kHeader = "Timecode,BlendShapeCount,JawOpen,EyeBlinkLeft,HeadYaw\n";
+
+Clip Parse(const std::string& text, const LoadOptions& options = {}, ClipReport* report = nullptr) {
+  Result<Clip> clip = ParseLiveLinkCsv(text, "t.csv", options, report);
+  EXPECT_TRUE(clip.ok()) << clip.status().ToString();
+  return clip.ok() ? std::move(*clip) : Clip();
+}
+
+TEST(LiveLinkCsv, FindsColumnsByName) {
+  const Clip clip = Parse(std::string(kHeader) + "14:03:22:59.500,3,0.25,1,-0.1\r\n" +
+                          "14:03:23:00.500,3,0.5,0,0\r\n");
+  EXPECT_THAT(clip.blend_shape_names, ElementsAre("JawOpen", "EyeBlinkLeft", "HeadYaw"));
+  EXPECT_THAT(clip.blend_shapes, ElementsAre(0.25f, 1.0f, -0.1f, 0.5f, 0.0f, 0.0f));
+  EXPECT_EQ(clip.skeleton.num_joints(), 0);
+  ASSERT_EQ(clip.num_frames(), 2);
+  EXPECT_EQ(clip.times[0], 0.0);
+  EXPECT_NEAR(clip.times[1], 1.0 / 60.0, 1e-9);
+  // The same take, its columns shuffled and in another case.
+  const Clip shuffled = Parse("HeadYaw,TIMECODE,JawOpen,blendshapecount\n1,00:00:00:00,2,2\n");
+  EXPECT_THAT(shuffled.blend_shape_names, ElementsAre("HeadYaw", "JawOpen"));
+  EXPECT_THAT(shuffled.blend_shapes, ElementsAre(1.0f, 2.0f));
+}
+
+TEST(LiveLinkCsv, InfersTheTimecodesRate) {
+  for (const int rate : {24, 25, 30, 60, 120}) {
+    std::string text = "Timecode,BlendShapeCount,JawOpen\n";
+    for (int f = 0; f < 2 * rate; ++f) {
+      text += "00:00:0" + std::to_string(f / rate) + ":" + std::to_string(f % rate) + ",1,0\n";
+    }
+    ClipReport report;
+    const Clip clip = Parse(text, {}, &report);
+    EXPECT_NEAR(clip.times.back(), (2.0 * rate - 1.0) / rate, 1e-9) << rate;
+    EXPECT_THAT(report.warnings, SizeIs(0));
+  }
+  ClipReport report;
+  const std::string brief = std::string(kHeader) + "00:00:00:00,3,0,0,0\n00:00:00:06,3,0,0,0\n";
+  EXPECT_NEAR(Parse(brief, {}, &report).times[1], 0.1, 1e-9);
+  EXPECT_THAT(report.warnings, ElementsAre(HasSubstr("too short")));
+  EXPECT_NEAR(Parse(brief, {.timecode_rate = 30.0}).times[1], 0.2, 1e-9);
+}
+
+TEST(LiveLinkCsv, PassesMidnightAndLeavesOutRowsWithoutAFace) {
+  ClipReport report;
+  const Clip clip = Parse(std::string(kHeader) +
+                              "23:59:59:59.000,3,0,0,0\n"
+                              "00:00:00:00.000,3,1,0,0\n"
+                              "00:00:00:01.000,0\n"
+                              "00:00:00:02.000,0,,,\n"
+                              "00:00:00:03.000,3,2,0,0\n"
+                              "00:00:00:03.000,3,9,0,0\n",
+                          {}, &report);
+  ASSERT_EQ(clip.num_frames(), 3);
+  EXPECT_NEAR(clip.times[1], 1.0 / 60.0, 1e-6);
+  EXPECT_NEAR(clip.times[2], 4.0 / 60.0, 1e-6);
+  EXPECT_EQ(clip.blend_shapes[6], 2.0f);
+  EXPECT_THAT(report.warnings,
+              ElementsAre(HasSubstr("2 rows without a face"), HasSubstr("1 rows")));
+}
+
+TEST(LiveLinkCsv, NamesTheLineOfEveryError) {
+  const std::string good = std::string(kHeader) + "00:00:01:00.000,3,0,0,0\n";
+  const std::tuple<std::string, StatusCode, const char*> kCases[] = {
+      {"", StatusCode::kParse, "t.csv:1"},
+      {"a,b,c\n", StatusCode::kParse, "t.csv:1"},
+      {"Timecode,BlendShapeCount\n", StatusCode::kParse, "t.csv:1"},
+      {"Timecode,A,A\n", StatusCode::kParse, "t.csv:1"},
+      {kHeader, StatusCode::kParse, "t.csv:2"},
+      {good + "00:00:02:00.000,3,0,0\n", StatusCode::kParse, "t.csv:3"},
+      {good + "00:00:02:00.000,3,0,0,0,0\n", StatusCode::kParse, "t.csv:3"},
+      {good + "00:00:02:00.000,3,0,nan,0\n", StatusCode::kNonFinite, "t.csv:3"},
+      {good + "00:00:02:00.000,3,0,,0\n", StatusCode::kParse, "t.csv:3"},
+      {good + "00:00:60:00.000,3,0,0,0\n", StatusCode::kParse, "t.csv:3"},
+      {good + "24:00:00:00.000,3,0,0,0\n", StatusCode::kParse, "t.csv:3"},
+      {good + "00:00:00:240,3,0,0,0\n", StatusCode::kParse, "t.csv:3"},
+      {good + "00:00:02,3,0,0,0\n", StatusCode::kParse, "t.csv:3"},
+      {good + "1.5:00:00:00,3,0,0,0\n", StatusCode::kParse, "t.csv:3"},
+      {good + "00:01:00:00,3,0,0,0\n00:00:30:00,3,0,0,0\n", StatusCode::kParse, "t.csv:4"}};
+  for (const auto& [text, code, where] : kCases) {
+    const Result<Clip> clip = ParseLiveLinkCsv(text, "t.csv");
+    ASSERT_FALSE(clip.ok()) << text;
+    EXPECT_EQ(clip.status().code(), code) << text << clip.status().ToString();
+    EXPECT_EQ(clip.status().where(), where) << text;
+  }
+  std::string wide = "Timecode";
+  for (int i = 0; i < 3000; ++i) wide += ",c" + std::to_string(i);
+  EXPECT_EQ(ParseLiveLinkCsv(wide, "t.csv").status().code(), StatusCode::kLimit);
+  const Status long_row =
+      ParseLiveLinkCsv(good + "00:00:02:00,3" + std::string(100'000, ','), "t.csv").status();
+  EXPECT_THAT(long_row.ToString(), HasSubstr("t.csv:3: the row has 100002 cells, the header 5"));
+}
+
+Clip MakeTake(double rate, int frames) {
+  Clip clip;
+  clip.blend_shape_names = {"JawOpen", "BrowInnerUp"};
+  for (int f = 0; f < frames; ++f) {
+    clip.times.push_back(f / rate);
+    clip.blend_shapes.push_back(std::sin(0.1f * static_cast<float>(f)));
+    clip.blend_shapes.push_back(1.0f / (1.0f + static_cast<float>(f)));
+  }
+  return clip;
+}
+
+TEST(LiveLinkCsv, RoundTripKeepsValuesExactlyAndTimesToAThousandthOfAFrame) {
+  for (const double rate : {24.0, 30.0, 59.94, 60.0, 90.0, 120.0}) {
+    const Clip take = MakeTake(rate, 400);
+    const Result<std::string> text = LiveLinkCsvToText(take);
+    ASSERT_TRUE(text.ok());
+    const Clip read = Parse(*text);
+    EXPECT_EQ(read.blend_shape_names, take.blend_shape_names);
+    EXPECT_EQ(read.blend_shapes, take.blend_shapes);
+    ASSERT_EQ(read.num_frames(), take.num_frames());
+    for (std::size_t f = 0; f < take.times.size(); ++f) {
+      EXPECT_NEAR(read.times[f], take.times[f], 0.001 / 24.0) << rate;
+    }
+  }
+}
+
+TEST(LiveLinkCsv, SaysWhatItCannotWrite) {
+  EXPECT_EQ(LiveLinkCsvToText(Clip()).status().code(), StatusCode::kUnsupported);
+  Clip none = MakeTake(60.0, 0);
+  EXPECT_EQ(LiveLinkCsvToText(none).status().code(), StatusCode::kInvalidArgument);
+  Clip comma = MakeTake(60.0, 2);
+  comma.blend_shape_names[0] = "a,b";
+  EXPECT_EQ(LiveLinkCsvToText(comma).status().code(), StatusCode::kInvalidArgument);
+  Clip day = MakeTake(1e-5, 3);
+  EXPECT_EQ(LiveLinkCsvToText(day).status().code(), StatusCode::kLimit);
+  day.times = {0.0, 1.0, 86399.9999999};  // would round to 24:00:00:00
+  EXPECT_EQ(LiveLinkCsvToText(day).status().code(), StatusCode::kLimit);
+}
+
+TEST(LiveLinkCsv, TruncationDrill) {
+  const std::string whole = *LiveLinkCsvToText(MakeTake(60.0, 3));
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const std::vector<char> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length));
+    const Result<Clip> clip = ParseLiveLinkCsv({cut.data(), cut.size()}, "t.csv");
+    if (clip.ok()) {
+      EXPECT_LE(clip->num_frames(), 3);
+      EXPECT_EQ(clip->blend_shapes.size(), clip->times.size() * clip->blend_shape_names.size());
+    } else {
+      EXPECT_THAT(clip.status().where(), HasSubstr("t.csv:"));
+    }
+  }
+}
+
+TEST(LiveLinkCsv, SurvivesGarbage) {
+  std::uint32_t state = 7;
+  const std::string good = *LiveLinkCsvToText(MakeTake(60.0, 5));
+  for (int round = 0; round < 2000; ++round) {
+    std::string text = good;
+    for (int i = 0; i < 3; ++i) {
+      state = state * 1664525u + 1013904223u;
+      text[(state >> 8) % text.size()] = static_cast<char>(state >> 24);
+    }
+    const Result<Clip> clip = ParseLiveLinkCsv(text, "t.csv");
+    if (!clip.ok()) continue;
+    for (std::size_t f = 1; f < clip->times.size(); ++f) {
+      EXPECT_GT(clip->times[f], clip->times[f - 1]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace furrow::motion

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/gl/shader_library.h"
+
+#include <gtest/gtest.h>
+
+#include "render/gl/egl_context.h"
+#include "render/passes/scene_draw.h"
+
+namespace furrow::render {
+namespace {
+
+class ShaderLibraryTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto context = EglContext::Create("");
+    ASSERT_TRUE(context.ok()) << context.status().ToString();
+    context_ = std::move(*context);
+  }
+  std::unique_ptr<EglContext> context_;
+  ShaderLibrary library_;
+};
+
+constexpr View kViews[] = {View::kFinal,       View::kNormal,  View::kMaskDynamic,
+                           View::kMaskTexture, View::kWeights, View::kWireframe};
+
+// The table of configurations in shaders/README.md: every view with every switch.
+TEST_F(ShaderLibraryTest, EverySceneConfigurationCompiles) {
+  for (const View view : kViews) {
+    for (int bits = 0; bits < 128; ++bits) {
+      SceneShader shader;
+      shader.view = view;
+      shader.normal_blend = static_cast<NormalBlend>(bits & 1);
+      shader.wrinkle_texture = (bits & 2) != 0;
+      shader.wrinkle_dynamic = (bits & 4) != 0;
+      shader.base_colour_map = (bits & 8) != 0;
+      shader.base_normal_map = (bits & 16) != 0;
+      shader.roughness_map = (bits & 32) != 0;
+      shader.alpha_test = (bits & 64) != 0;
+      shader.active_maps = shader.wrinkle_texture || shader.wrinkle_dynamic ? 2 : 0;
+      shader.mask_layers = 2;
+      const Result<GLuint> program = library_.Get(shader);
+      ASSERT_TRUE(program.ok()) << ViewName(view) << " " << bits << "\n"
+                                << program.status().ToString();
+    }
+  }
+}
+
+TEST_F(ShaderLibraryTest, AnyNumberOfMasksAndMapsCompiles) {
+  for (const int mask_layers : {1, 3, 8}) {
+    for (const int map_slots : {1, 2, 4}) {
+      SceneShader shader;
+      shader.wrinkle_texture = true;
+      shader.wrinkle_dynamic = true;
+      shader.mask_layers = mask_layers;
+      shader.map_slots = map_slots;
+      shader.active_maps = 4 * map_slots;
+      const Result<GLuint> program = library_.Get(shader);
+      ASSERT_TRUE(program.ok()) << program.status().ToString();
+    }
+  }
+}
+
+// Every switch of the skin pipeline's scene, one after the other, for every material and view.
+TEST_F(ShaderLibraryTest, EverySkinConfigurationCompiles) {
+  using Kind = character::Material::Kind;
+  for (const Kind kind : {Kind::kSkin, Kind::kCloth, Kind::kEye, Kind::kHair, Kind::kOther}) {
+    for (const View view : {View::kFinal, View::kShadow, View::kSpecular, View::kTranslucency,
+                            View::kAlbedo, View::kMaterial}) {
+      for (int bit = 0; bit < 8; ++bit) {
+        SceneShader shader;
+        shader.shading = Shading::kSkin;
+        shader.view = view;
+        shader.material = kind;
+        shader.shadow_filter = static_cast<ShadowFilter>(bit < 3 ? bit : 1);
+        shader.shadow_lamps = bit == 0 ? 0 : 3;
+        shader.shadow_taps = bit == 0 ? 1 : 8;
+        shader.translucency = bit >= 3 && kind == Kind::kSkin;
+        shader.preintegrated = bit == 4 && kind == Kind::kSkin;
+        shader.gems = shader.beckmann_table = bit == 5;
+        shader.mask_bits = bit == 7 ? 1u : ~0u;
+        shader.conserve_energy = bit != 6;
+        shader.wrinkle_texture = shader.wrinkle_dynamic = bit == 7;
+        shader.widen = shader.wrinkle_looks = shader.thickness_map = bit == 7;
+        shader.active_maps = bit == 7 ? 2 : 0;
+        const Result<GLuint> program = library_.Get(shader);
+        ASSERT_TRUE(program.ok()) << ViewName(view) << " " << bit << "\n"
+                                  << program.status().ToString();
+      }
+    }
+  }
+}
+
+// Facets of every material, and the light that falls on them.
+TEST_F(ShaderLibraryTest, EveryFacetConfigurationCompiles) {
+  using Kind = character::Material::Kind;
+  for (int bits = 0; bits < 16; ++bits) {
+    SceneShader shader;
+    shader.shading = Shading::kSkin;
+    shader.unlit = true;
+    shader.material = bits % 2 == 0 ? Kind::kSkin : Kind::kCloth;
+    shader.widen = (bits & 2) != 0;
+    shader.wrinkle_looks = shader.wrinkle_texture = (bits & 4) != 0;
+    shader.thickness_map = (bits & 8) != 0;
+    shader.active_maps = shader.wrinkle_texture ? 2 : 0;
+    const Result<GLuint> program = library_.Get(shader);
+    ASSERT_TRUE(program.ok()) << bits << "\n" << program.status().ToString();
+  }
+  for (const char* setting :
+       {"view=final", "view=shadow", "view=specular", "view=translucency", "view=albedo",
+        "view=material", "shadow.filter=off", "shadow.filter=pcss", "shadow.taps=1",
+        "translucency.enabled=off", "subsurface.method=preintegrated", "specular.table=on",
+        "specular.mode=gems", "specular.conserve_energy=off"}) {
+    Settings settings;
+    ASSERT_TRUE(SetSetting(setting, &settings).ok());
+    for (const char* occlusion : {"OCCLUSION 0", "OCCLUSION 1"}) {
+      std::vector<std::string> defines = Defines(SceneDraw::LightShader(settings));
+      defines.insert(defines.end(), {occlusion, "SCALE 2"});
+      const Result<GLuint> program = library_.GetFullscreen("light.frag.glsl", defines);
+      ASSERT_TRUE(program.ok()) << setting << "\n" << program.status().ToString();
+    }
+  }
+}
+
+TEST_F(ShaderLibraryTest, EveryDisplacedConfigurationCompiles) {
+  for (int bits = 0; bits < 64; ++bits) {
+    SceneShader shader;
+    shader.displaced = true;
+    shader.crowd = (bits & 32) != 0;
+    shader.wrinkle_texture = (bits & 1) != 0;
+    shader.wrinkle_dynamic = (bits & 2) != 0;
+    shader.shadow = (bits & 4) != 0;
+    shader.alpha_test = (bits & 8) != 0;
+    shader.shading = (bits & 16) != 0 ? Shading::kSkin : Shading::kDiffuse;
+    shader.active_maps = 4;
+    shader.mask_layers = 3;
+    shader.map_slots = 4;
+    const Result<GLuint> program = library_.Get(shader);
+    ASSERT_TRUE(program.ok()) << bits << "\n" << program.status().ToString();
+  }
+}
+
+TEST_F(ShaderLibraryTest, EveryCrowdsConfigurationCompiles) {
+  for (int bits = 0; bits < 16; ++bits) {
+    SceneShader shader;
+    shader.crowd = true;
+    shader.wrinkle_texture = (bits & 1) != 0;
+    shader.wrinkle_dynamic = (bits & 2) != 0;
+    shader.view = (bits & 4) != 0 ? View::kWeights : View::kFinal;
+    shader.shading = (bits & 8) != 0 ? Shading::kSkin : Shading::kDiffuse;
+    shader.active_maps = 2;
+    shader.mask_layers = 2;
+    const Result<GLuint> program = library_.Get(shader);
+    ASSERT_TRUE(program.ok()) << bits << "\n" << program.status().ToString();
+  }
+}
+
+TEST_F(ShaderLibraryTest, EveryPoseConfigurationCompiles) {
+  for (int bits = 0; bits < 4; ++bits) {
+    for (const int map_slots : {1, 10}) {
+      const PoseShader shader{.num_joints = 163,
+                              .dynamic = (bits & 1) != 0,
+                              .displaced = (bits & 2) != 0,
+                              .map_slots = map_slots};
+      const Result<GLuint> program = library_.Get(shader);
+      ASSERT_TRUE(program.ok()) << bits << "\n" << program.status().ToString();
+    }
+  }
+}
+
+TEST_F(ShaderLibraryTest, EveryFullscreenConfigurationCompiles) {
+  const std::pair<const char*, std::vector<std::string>> shaders[] = {
+      {"composite.frag.glsl", {"SAMPLES 4", "SHOW 0", "TONE_MAP 0", "BLOOM 0"}},
+      {"composite.frag.glsl", {"SAMPLES 1", "SHOW 1", "TONE_MAP 0", "BLOOM 0"}},
+      {"composite.frag.glsl", {"SAMPLES 1", "SHOW 2", "TONE_MAP 0", "BLOOM 1"}},
+      {"composite.frag.glsl", {"SAMPLES 4", "SHOW 2", "TONE_MAP 1", "BLOOM 0"}},
+      {"resolve.frag.glsl", {"SAMPLES 2"}},
+      {"separable.frag.glsl", {}},
+      {"combine.frag.glsl", {}},
+      {"gaussian_sum.frag.glsl", {}},
+      {"burley.frag.glsl", {}},
+      {"gtao.frag.glsl", {"SCALE 1", "SAMPLES 4"}},
+      {"gtao.frag.glsl", {"SCALE 2", "SAMPLES 64"}},
+      {"ssao.frag.glsl", {"SCALE 2", "SAMPLES 12"}},
+      {"occlusion_blur.frag.glsl", {"SCALE 1"}},
+      {"occlusion_blur.frag.glsl", {"SCALE 2"}},
+      {"occlude.frag.glsl", {"SCALE 1"}},
+      {"occlude.frag.glsl", {"SCALE 2"}},
+      {"bloom.frag.glsl", {"BRIGHT 0"}},
+      {"bloom.frag.glsl", {"BRIGHT 1"}},
+      {"show.frag.glsl", {"SHOWN 0"}},
+      {"show.frag.glsl", {"SHOWN 1"}},
+      {"show.frag.glsl", {"SHOWN 2"}},
+      {"fxaa.frag.glsl", {}},
+  };
+  for (const auto& [fragment, defines] : shaders) {
+    const Result<GLuint> program = library_.GetFullscreen(fragment, defines);
+    ASSERT_TRUE(program.ok()) << program.status().ToString();
+  }
+  for (const bool alpha_test : {false, true}) {
+    const Result<GLuint> program = library_.GetShadow(alpha_test);
+    ASSERT_TRUE(program.ok()) << program.status().ToString();
+  }
+}
+
+TEST_F(ShaderLibraryTest, AProgramIsCompiledOnce) {
+  EXPECT_EQ(*library_.Get(SceneShader{}), *library_.Get(SceneShader{}));
+}
+
+TEST_F(ShaderLibraryTest, AnErrorCarriesTheDriversLogAndTheFilesName) {
+  constexpr ShaderFile kFiles[] = {{"good.glsl", "void main() { gl_Position = vec4(0.0); }\n"},
+                                   {"part.glsl", "float broken() { return undeclared; }\n"},
+                                   {"bad.glsl", "#include \"part.glsl\"\nvoid main() {}\n"}};
+  const Status status = BuildProgram({"good.glsl", "bad.glsl"}, {}, kFiles).status();
+  EXPECT_EQ(status.code(), StatusCode::kInternal);
+  EXPECT_EQ(status.where(), "bad.glsl");
+  EXPECT_NE(status.what().find("part.glsl"), std::string::npos) << status.what();
+  EXPECT_NE(status.what().find("undeclared"), std::string::npos) << status.what();
+}
+
+TEST(EglContext, AnUnknownDeviceIsRefusedByName) {
+  const Status status = EglContext::Create("gpu9").status();
+  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+  EXPECT_NE(status.what().find("gpu9"), std::string::npos);
+  EXPECT_EQ(EglContext::Create("9999").status().code(), StatusCode::kInvalidArgument);
+}
+
+TEST(EglContext, TwoContextsOfOneThreadTakeTurns) {
+  auto first = EglContext::Create("");
+  auto second = EglContext::Create("");
+  ASSERT_TRUE(first.ok() && second.ok());
+  EXPECT_TRUE((*first)->MakeCurrent().ok());
+  (*second).reset();
+  EXPECT_TRUE((*first)->MakeCurrent().ok());
+  EXPECT_NE((*first)->description().find("device"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace furrow::render

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/mesh/joint_bounds.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "tests/unit/render/test_character.h"
+
+namespace furrow::render {
+namespace {
+
+constexpr int kSize = 200;
+
+glm::mat4 LookFrom(const glm::vec3& position) {
+  return glm::perspective(0.5f, 1.0f, 0.01f, 10.0f) *
+         glm::lookAt(position, glm::vec3(0.0f, 1.6f, 0.0f), glm::vec3(0.0f, 1.0f, 0.0f));
+}
+
+bool Everything(const character::Material&) { return true; }
+
+// Every vertex, skinned here, lies within; and the rectangle is not much larger than they need.
+TEST(JointBounds, HoldEverySkinnedVertex) {
+  const character::Character head = test::MakeHead();
+  test::Subject subject(head);
+  subject.pose.joints[1].rotation = glm::angleAxis(0.5f, glm::normalize(glm::vec3(1, 2, 0.5f)));
+  subject.pose.joints[2].rotation = glm::angleAxis(-0.8f, glm::vec3(1, 0, 0));
+  subject.Solve();
+  const glm::mat4 camera = LookFrom({0.3f, 1.7f, 1.0f});
+  const ScreenRect rect =
+      JointBounds(head, Everything).Project(subject.model, camera, kSize, kSize);
+  glm::vec2 low(kSize);
+  glm::vec2 high(0.0f);
+  for (const character::Vertex& vertex : head.meshes[0].vertices) {
+    glm::vec4 place(0.0f);
+    for (int i = 0; i < 4; ++i) {
+      const std::uint16_t joint = vertex.joints[i];
+      place += vertex.skin_weights[i] * (subject.model[joint] * head.inverse_bind_matrices[joint] *
+                                         glm::vec4(vertex.position, 1.0f));
+    }
+    const glm::vec4 clip = camera * place;
+    const glm::vec2 pixel = (glm::vec2(clip) / clip.w * 0.5f + 0.5f) * static_cast<float>(kSize);
+    low = glm::min(low, pixel);
+    high = glm::max(high, pixel);
+  }
+  EXPECT_LE(rect.x0, low.x);
+  EXPECT_LE(rect.y0, low.y);
+  EXPECT_GE(rect.x1, high.x);
+  EXPECT_GE(rect.y1, high.y);
+  EXPECT_LT(rect.x1 - rect.x0, 2.0f * (high.x - low.x));
+}
+
+TEST(JointBounds, NothingIsEmptyAndBehindTheCameraIsEverywhere) {
+  const character::Character head = test::MakeHead();
+  const test::Subject subject(head);
+  const JointBounds none(head, [](const character::Material&) { return false; });
+  EXPECT_TRUE(none.Project(subject.model, LookFrom({0, 1.6f, 1}), kSize, kSize).empty());
+  const ScreenRect inside = JointBounds(head, Everything)
+                                .Project(subject.model, LookFrom({0, 1.6f, 0.01f}), kSize, kSize);
+  EXPECT_EQ(inside.x1 - inside.x0, kSize);
+  EXPECT_EQ(inside.y1 - inside.y0, kSize);
+}
+
+}  // namespace
+}  // namespace furrow::render

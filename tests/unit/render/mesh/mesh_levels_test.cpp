@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/mesh/mesh_levels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "tests/unit/render/character_parts.h"
+#include "tests/unit/render/test_character.h"
+
+namespace furrow::render {
+namespace {
+
+glm::vec3 Corner(const character::Mesh& mesh, const MeshLevel& level, std::size_t i) {
+  return mesh.vertices[level.indices[i]].position;
+}
+
+TEST(MeshLevels, HalveTheTrianglesAndSayHowFarTheyAreOff) {
+  const character::Mesh mesh = test::MakeHead().meshes[0];
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kStay);
+  ASSERT_GE(levels.size(), 3u);
+  EXPECT_EQ(levels[0].indices, mesh.indices);
+  EXPECT_EQ(levels[0].error, 0.0f);
+  for (std::size_t i = 1; i < levels.size(); ++i) {
+    EXPECT_LT(levels[i].indices.size(), levels[i - 1].indices.size() * 4 / 5);
+    EXPECT_EQ(levels[i].indices.size() % 3, 0u);
+    EXPECT_GE(levels[i].error, levels[i - 1].error);
+    EXPECT_LT(levels[i].error, 0.02f);
+  }
+  EXPECT_GT(levels[1].error, 0.0f);
+}
+
+// Every corner of every triangle still faces outwards of an egg, and its middle is near its shell.
+TEST(MeshLevels, StayNearTheSurfaceAndTurnNoTriangleOver) {
+  const character::Mesh mesh = test::MakeHead().meshes[0];
+  const glm::vec3 centre(0.0f, 1.6f, 0.0f);
+  for (const MeshLevel& level : MakeMeshLevels(mesh, Borders::kStay)) {
+    double squares = 0.0;
+    for (std::size_t i = 0; i < level.indices.size(); i += 3) {
+      const glm::vec3 a = Corner(mesh, level, i);
+      const glm::vec3 b = Corner(mesh, level, i + 1);
+      const glm::vec3 c = Corner(mesh, level, i + 2);
+      const glm::vec3 cross = glm::cross(b - a, c - a);
+      const glm::vec3 middle = (a + b + c) / 3.0f;
+      EXPECT_GE(glm::dot(cross, middle - centre), -1e-9f);  // a pole's have no surface
+      // How far the flat triangle lies below its corners, seen from the middle of the egg.
+      const float shell =
+          (glm::length(a - centre) + glm::length(b - centre) + glm::length(c - centre)) / 3.0f;
+      squares += std::pow(shell - glm::length(middle - centre), 2.0);
+    }
+    const double off = std::sqrt(squares / (static_cast<double>(level.indices.size()) / 3.0));
+    EXPECT_LT(off, 0.001 + 3.0 * level.error);
+  }
+}
+
+// The seam's two columns of vertices are all still there.
+TEST(MeshLevels, KeepSeams) {
+  const character::Mesh mesh = test::MakeHead().meshes[0];
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kStay);
+  const std::set<std::uint32_t> left(levels.back().indices.begin(), levels.back().indices.end());
+  int on_seam = 0;
+  for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
+    const float u = mesh.vertices[i].uv.x;
+    if (u > 1e-4f && u < 1.0f - 1e-4f) continue;
+    EXPECT_TRUE(left.contains(i)) << i;
+    ++on_seam;
+  }
+  EXPECT_GT(on_seam, 10);
+}
+
+// Strips of `segments` quads each, bent to a quarter of a circle, side by side: as hair is.
+constexpr float kRadius = 0.25f;  // metres
+character::Mesh Strips(int count, int segments) {
+  character::Mesh mesh;
+  for (int strip = 0; strip < count; ++strip) {
+    for (int row = 0; row <= segments; ++row) {
+      const double angle = 0.5 * std::numbers::pi * row / segments;
+      for (const float side : {0.0f, 0.05f}) {
+        character::Vertex vertex;
+        vertex.position = {0.1f * static_cast<float>(strip) + side, kRadius * std::sin(angle),
+                           kRadius * std::cos(angle)};
+        mesh.vertices.push_back(vertex);
+        if (row == segments || side > 0.0f) continue;
+        const auto a = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+        mesh.indices.insert(mesh.indices.end(), {a, a + 2, a + 3, a, a + 3, a + 1});
+      }
+    }
+  }
+  return mesh;
+}
+
+// Every vertex of a strip lies on its border; its four corners stay, and so does its width.
+TEST(MeshLevels, DrawBordersInAlongThemselves) {
+  constexpr int kStrips = 40;
+  constexpr int kSegments = 12;
+  const character::Mesh mesh = Strips(kStrips, kSegments);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kDrawnIn);
+  ASSERT_GE(levels.size(), 4u);
+  for (const MeshLevel& level : levels) {
+    const std::set<std::uint32_t> left(level.indices.begin(), level.indices.end());
+    for (std::uint32_t strip = 0; strip < kStrips; ++strip) {
+      const std::uint32_t first = strip * 2 * (kSegments + 1);
+      for (const std::uint32_t corner : {0, 1, 2 * kSegments, 2 * kSegments + 1}) {
+        EXPECT_TRUE(left.contains(first + corner)) << strip << ' ' << corner;
+      }
+    }
+    // What lies between arc and chord of a segment is no more than the error says, by its mean.
+    double furthest = 0.0;
+    for (std::size_t i = 0; i < level.indices.size(); ++i) {
+      const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
+      const glm::vec3 middle = 0.5f * (Corner(mesh, level, i) + Corner(mesh, level, next));
+      furthest = std::max(furthest, double{kRadius} - glm::length(glm::vec2(middle.y, middle.z)));
+    }
+    EXPECT_LT(furthest, 0.001 + 4.0 * level.error);
+  }
+  EXPECT_LT(levels[2].error, 0.005f);
+}
+
+// As two meshes share it, which are simplified each by itself: without a crack.
+TEST(MeshLevels, KeepBordersThatMayBeShared) {
+  character::Mesh sheet;
+  test::AddGrid(
+      20, 20,
+      [](float u, float v) {
+        character::Vertex vertex;
+        vertex.position = {u, v, 0.0f};
+        return vertex;
+      },
+      &sheet);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(sheet, Borders::kStay);
+  ASSERT_GE(levels.size(), 3u);
+  const std::set<std::uint32_t> left(levels.back().indices.begin(), levels.back().indices.end());
+  for (std::uint32_t i = 0; i < sheet.vertices.size(); ++i) {
+    const glm::vec3& place = sheet.vertices[i].position;
+    const bool is_border = std::min(place.x, place.y) == 0.0f || std::max(place.x, place.y) == 1.0f;
+    EXPECT_TRUE(!is_border || left.contains(i)) << i;
+  }
+}
+
+// Neither many vertices in one place nor many triangles at one vertex take long, each of 200,000.
+TEST(MeshLevels, TakeNoLongerForWhatLiesTogether) {
+  constexpr std::uint32_t kMany = 200'000;
+  character::Mesh heap;
+  heap.vertices.resize(kMany);
+  for (std::uint32_t i = 0; i + 2 < kMany; i += 3) {
+    heap.indices.insert(heap.indices.end(), {i, i + 1, i + 2});
+  }
+  EXPECT_EQ(MakeMeshLevels(heap, Borders::kDrawnIn).size(), 1u);
+  character::Mesh fan;
+  fan.vertices.resize(kMany + 1);
+  for (std::uint32_t i = 0; i < kMany; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kMany;
+    fan.vertices[i + 1].position = {std::sin(angle), std::cos(angle), 0.0};
+    fan.indices.insert(fan.indices.end(), {0, i + 1, 1 + (i + 1) % kMany});
+  }
+  for (const Borders borders : {Borders::kStay, Borders::kDrawnIn}) {
+    EXPECT_EQ(MakeMeshLevels(fan, borders).size(), 1u);
+  }
+}
+
+TEST(MeshLevels, OfNothingAndOfLittleAreTheMeshAlone) {
+  EXPECT_EQ(MakeMeshLevels({}, Borders::kStay).size(), 1u);
+  const character::Mesh plane = test::MakePlane(4, [](float, float) { return 0.0f; }, {}).meshes[0];
+  EXPECT_EQ(MakeMeshLevels(plane, Borders::kStay).size(), 1u);
+}
+
+}  // namespace
+}  // namespace furrow::render

@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rig/rig_file.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/json_index.h"
+#include "tests/temporary_folder.h"
+
+namespace furrow::character {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+// One field a line, so that an error's line is easy to foretell.
+constexpr char kSmallRig[] = R"({
+  "name": "small",
+  "anchor": "head",
+  "reference_poses": [
+    {"name": "up",
+     "joints": [{"joint": "brow",
+                 "euler_degrees": [-20, 0, 0]}]}
+  ],
+  "drivers": [
+    {"name": "brow", "pose": {
+      "points": [{"joint": "brow"}],
+      "values": [{"name": "stretch", "reference_pose": "up"}]}},
+    {"name": "knee_l", "hinge": {
+      "parent": "thigh", "joint": "shin",
+      "axis": [1, 0, 0]}}
+  ],
+  "regions": [
+    {"name": "brow_l",
+     "mask": {"texture": "mask.png", "channel": "b"},
+     "neighbours": ["knee"],
+     "feeds": [{"map": "folds",
+                "sources": [{"from": "brow.stretch"}]}]},
+    {"name": "knee", "mask": {"kind": "skinning"},
+     "feeds": [{"map": "folds", "sources": [{"from": "knee_l.flexed", "gain": 0.5}]}]}
+  ],
+  "wrinkle_maps": [{"name": "folds", "normal": "folds.png"}],
+  "export": [{"profile": "mine", "names": [{"weight": "knee.folds", "name": "Knee"}]}]
+}
+)";
+
+Result<wrinkle::Rig> Parse(std::string_view json) { return ParseRig(json, "a.rig.json", "."); }
+
+std::string Replaced(std::string text, std::string_view from, std::string_view to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+// The pose of a source with two joints whose second is turned by the frame's number in degrees.
+Result<wrinkle::PoseFrame> TurningSource(const std::filesystem::path& path, int frame) {
+  if (frame > 10) return Status(StatusCode::kInvalidArgument, "11 frames", path.string());
+  wrinkle::PoseFrame result;
+  result.skeleton = *wrinkle::Skeleton::Create(
+      {{"root", -1, {}, {}}, {"brow", 0, {{0, 1, 0}}, glm::vec3(0, 0, 1)}});
+  result.pose.SetRest(result.skeleton);
+  result.pose.joints[1].rotation =
+      glm::angleAxis(glm::radians(static_cast<float>(frame)), glm::vec3(1, 0, 0));
+  return result;
+}
+
+TEST(RigFile, ReadsEveryPart) {
+  const auto rig = Parse(kSmallRig);
+  ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+  EXPECT_EQ(rig->name, "small");
+  EXPECT_EQ(rig->anchor, "head");
+  ASSERT_EQ(rig->reference_poses.size(), 1u);
+  EXPECT_NEAR(rig->reference_poses[0].joints[0].rotation.x, -0.17364818, 1e-6);  // sin(-10 deg)
+  ASSERT_EQ(rig->drivers.size(), 2u);
+  EXPECT_EQ(rig->drivers[1].kind, wrinkle::Driver::Kind::kHinge);
+  EXPECT_EQ(rig->drivers[1].hinge.axis, glm::vec3(1, 0, 0));
+  EXPECT_EQ(rig->drivers[1].hinge.beta_degrees, 30.0f);
+  ASSERT_EQ(rig->regions.size(), 2u);
+  EXPECT_EQ(rig->regions[0].mask.channel, 2);
+  EXPECT_EQ(rig->regions[1].mask.kind, wrinkle::Mask::Kind::kSkinning);
+  EXPECT_EQ(rig->regions[1].feeds[0].sources[0].driver, "knee_l");
+  EXPECT_EQ(rig->regions[1].feeds[0].sources[0].value, "flexed");
+  EXPECT_EQ(rig->regions[1].feeds[0].sources[0].gain, 0.5f);
+  EXPECT_EQ(rig->exports[0].name, "Knee");
+}
+
+TEST(RigFile, WritesWhatItReads) {
+  for (const char* file : {"arkit.json", "cmu.json"}) {
+    const auto rig = LoadRig(std::string(FURROW_SOURCE_DIR "/rig/rigs/") + file);
+    ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+    const std::string json = RigToJson(*rig);
+    const auto again = Parse(json);
+    ASSERT_TRUE(again.ok()) << again.status().ToString();
+    EXPECT_EQ(RigToJson(*again), json) << file;
+    EXPECT_EQ(again->drivers.size(), rig->drivers.size());
+    EXPECT_EQ(again->exports.size(), rig->exports.size());
+  }
+}
+
+TEST(RigFile, WritesFloatsThatReadBackEqual) {
+  auto rig = *Parse(kSmallRig);
+  rig.filter.beta = 1.0f / 3.0f;
+  rig.reference_poses[0].source_size = 0.1f;
+  rig.reference_poses[0].joints[0].translation = {1e-7f, -123456.789f, 1.0f / 7.0f};
+  const auto again = Parse(RigToJson(rig));
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  EXPECT_EQ(again->filter.beta, rig.filter.beta);
+  EXPECT_EQ(again->reference_poses[0].source_size, 0.1f);
+  EXPECT_EQ(again->reference_poses[0].joints[0].translation,
+            rig.reference_poses[0].joints[0].translation);
+  EXPECT_EQ(again->reference_poses[0].joints[0].rotation,
+            rig.reference_poses[0].joints[0].rotation);
+}
+
+TEST(RigFile, KeepsEveryFieldOfAMap) {
+  auto rig = *Parse(kSmallRig);
+  EXPECT_EQ(rig.wrinkle_maps[0].surface, wrinkle::WrinkleMap::Surface::kAny);
+  rig.wrinkle_maps[0] = {.name = "folds",
+                         .derivative = "d.exr",
+                         .derivative_scale = 2.5f,
+                         .height = "h.png",
+                         .height_mm = 3.25f,
+                         .colour = "c.png",
+                         .colour_scale = 1.5f,
+                         .cavity = "v.png",
+                         .amplitude = 0.5f,
+                         .surface = wrinkle::WrinkleMap::Surface::kCloth};
+  const auto again = Parse(RigToJson(rig));
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  const wrinkle::WrinkleMap& map = again->wrinkle_maps[0];
+  EXPECT_EQ(map.derivative, "d.exr");
+  EXPECT_EQ(map.derivative_scale, 2.5f);
+  EXPECT_EQ(map.height, "h.png");
+  EXPECT_EQ(map.height_mm, 3.25f);
+  EXPECT_EQ(map.colour, "c.png");
+  EXPECT_EQ(map.colour_scale, 1.5f);
+  EXPECT_EQ(map.cavity, "v.png");
+  EXPECT_EQ(map.surface, wrinkle::WrinkleMap::Surface::kCloth);
+}
+
+TEST(RigFile, KeepsAPatchOfStrain) {
+  auto rig = *Parse(kSmallRig);
+  wrinkle::Driver& driver = rig.drivers.emplace_back();
+  driver.name = "cheek";
+  driver.kind = wrinkle::Driver::Kind::kStrain;
+  driver.strain = {.joint = "head",
+                   .joints = {"head", "brow"},
+                   .vertices = {{{0, 0, 0}, {0}, {1.0f}},
+                                {{1, 0, 0}, {0, 1}, {0.25f, 0.75f}},
+                                {{0, 1.0f / 3.0f, 0}, {1}, {1.0f}}},
+                   .triangles = {0, 1, 2},
+                   .direction = {0, 1, 0},
+                   .full_compression = 0.125f,
+                   .size = 1.7f};
+  const auto again = Parse(RigToJson(rig));
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  const wrinkle::StrainDriver& strain = again->drivers.back().strain;
+  EXPECT_EQ(again->drivers.back().kind, wrinkle::Driver::Kind::kStrain);
+  EXPECT_EQ(strain.joint, "head");
+  EXPECT_EQ(strain.joints, driver.strain.joints);
+  ASSERT_EQ(strain.vertices.size(), 3u);
+  EXPECT_EQ(strain.vertices[2].position.y, 1.0f / 3.0f);
+  EXPECT_EQ(strain.vertices[1].joints, (std::vector<int>{0, 1}));
+  EXPECT_EQ(strain.vertices[1].skin_weights, (std::vector<float>{0.25f, 0.75f}));
+  EXPECT_EQ(strain.triangles, (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(strain.direction, glm::vec3(0, 1, 0));
+  EXPECT_EQ(strain.full_compression, 0.125f);
+  EXPECT_EQ(strain.size, 1.7f);
+}
+
+// Every way to be wrong, one at a time: what is changed, and the code, line and field it must give.
+struct Wrong {
+  const char* from;
+  const char* to;
+  StatusCode code;
+  const char* where;
+};
+
+class RigFileErrors : public ::testing::TestWithParam<Wrong> {};
+
+TEST_P(RigFileErrors, NameFileLineAndField) {
+  const Wrong& wrong = GetParam();
+  const auto rig = Parse(Replaced(kSmallRig, wrong.from, wrong.to));
+  ASSERT_FALSE(rig.ok());
+  EXPECT_EQ(rig.status().code(), wrong.code) << rig.status().ToString();
+  EXPECT_EQ(rig.status().where(), std::string("a.rig.json:") + wrong.where)
+      << rig.status().ToString();
+  EXPECT_FALSE(rig.status().what().empty());
+}
+
+constexpr StatusCode kSchema = StatusCode::kSchema;
+constexpr StatusCode kInvalid = StatusCode::kInvalidArgument;
+INSTANTIATE_TEST_SUITE_P(
+    All, RigFileErrors,
+    ::testing::Values(
+        Wrong{"\"anchor\"", "\"ancor\"", kSchema, "3: ancor"},
+        Wrong{"\"name\": \"small\",", "", kSchema, "1: name"},
+        Wrong{"\"axis\": [1, 0, 0]", "\"axis\": \"x\"", kSchema, "15: drivers[1].hinge.axis"},
+        Wrong{"\"axis\": [1, 0, 0]", "\"axis\": [1, 0]", kSchema, "15: drivers[1].hinge.axis"},
+        Wrong{"\"parent\": \"thigh\", ", "", kSchema, "13: drivers[1].hinge.parent"},
+        Wrong{"\"channel\": \"b\"", "\"channel\": \"x\"", kSchema, "19: regions[0].mask.channel"},
+        Wrong{"[{\"joint\": \"brow\"}]", "7", kSchema, "11: drivers[0].pose.points"},
+        Wrong{"\"axis\": [1, 0, 0]", "\"axis\": [0, 0, 0]", kInvalid, "15: drivers[1].hinge.axis"},
+        Wrong{"\"axis\": [1, 0, 0]", "\"axis\": [1, 0, 0], \"beta_degrees\": 180", kInvalid,
+              "15: drivers[1].hinge.beta_degrees"},
+        Wrong{"\"reference_pose\": \"up\"", "\"reference_pose\": \"down\"", kInvalid,
+              "12: drivers[0].pose.values[0].reference_pose"},
+        Wrong{"\"from\": \"brow.stretch\"", "\"from\": \"brow.squash\"", kInvalid,
+              "22: regions[0].feeds[0].sources[0].from"},
+        Wrong{"\"from\": \"brow.stretch\"", "\"from\": \"nobody.stretch\"", kInvalid,
+              "22: regions[0].feeds[0].sources[0].from"},
+        Wrong{"\"from\": \"brow.stretch\"", "\"from\": \"brow\"", kInvalid,
+              "22: regions[0].feeds[0].sources[0].from"},
+        Wrong{"\"from\": \"brow.stretch\"", "\"from\": \"brow.stretch\", \"gain\": \"nan\"",
+              StatusCode::kNonFinite, "22: regions[0].feeds[0].sources[0].gain"},
+        Wrong{"\"map\": \"folds\",\n", "\"map\": \"creases\",\n", kInvalid,
+              "21: regions[0].feeds[0].map"},
+        Wrong{"\"neighbours\": [\"knee\"]", "\"neighbours\": [\"toe\"]", kInvalid,
+              "20: regions[0].neighbours[0]"},
+        Wrong{"\"texture\": \"mask.png\"", "\"texture\": \"../mask.png\"", kInvalid,
+              "19: regions[0].mask.texture"},
+        Wrong{"\"texture\": \"mask.png\", ", "", kInvalid, "19: regions[0].mask.texture"},
+        Wrong{"\"normal\": \"folds.png\"", "\"normal\": \"/etc/passwd\"", kInvalid,
+              "26: wrinkle_maps[0].normal"},
+        Wrong{"\"name\": \"knee_l\"", "\"name\": \"brow\"", kInvalid, "13: drivers[1].name"},
+        Wrong{"\"name\": \"knee_l\"", "\"name\": \"knee.l\"", kInvalid, "13: drivers[1].name"},
+        Wrong{"\"weight\": \"knee.folds\"", "\"weight\": \"knee.creases\"", kInvalid,
+              "27: export[0].names[0].weight"},
+        Wrong{"\"euler_degrees\": [-20, 0, 0]", "\"rotation\": [0, 0, 0, 2]", kInvalid,
+              "7: reference_poses[0].joints[0].rotation"},
+        Wrong{"\"euler_degrees\": [-20, 0, 0]",
+              "\"euler_degrees\": [0, 0, 0], \"rotation\": [0, 0, 0, 1]", kInvalid,
+              "7: reference_poses[0].joints[0].euler_degrees"},
+        Wrong{"{\"name\": \"up\",\n", "{\"name\": \"up\", \"mix\": [],\n", kInvalid,
+              "5: reference_poses[0]"},
+        Wrong{"\"hinge\": {", "\"twist\": {\"joint\": \"x\"}, \"hinge\": {", kInvalid,
+              "13: drivers[1]"},
+        Wrong{"\"anchor\": \"head\"", "\"version\": 2", StatusCode::kUnsupported, "3: version"},
+        Wrong{"\"anchor\": \"head\"", "\"name\": \"twice\"", kSchema, "3: name"},
+        Wrong{"\"anchor\": \"head\",", "\"anchor\": \"head\"", StatusCode::kParse, "4: anchor"},
+        Wrong{"-20", "-2x0", StatusCode::kParse,
+              "7: reference_poses[0].joints[0].euler_degrees[0]"},
+        Wrong{"-20", "1e39", StatusCode::kNonFinite,
+              "7: reference_poses[0].joints[0].euler_degrees[0]"},
+        Wrong{"\"normal\": \"folds.png\"", "\"surface\": \"hair\"", kSchema,
+              "26: wrinkle_maps[0].surface"},
+        Wrong{"\"normal\": \"folds.png\"", "\"surface\": 3", kInvalid,
+              "26: wrinkle_maps[0].surface"},
+        Wrong{"\"normal\": \"folds.png\"", "\"height\": \"../h.exr\"", kInvalid,
+              "26: wrinkle_maps[0].height"},
+        Wrong{"\"normal\": \"folds.png\"", "\"height_mm\": 0", kInvalid,
+              "26: wrinkle_maps[0].height_mm"},
+        Wrong{"\"normal\": \"folds.png\"", "\"colour_scale\": 11", kInvalid,
+              "26: wrinkle_maps[0].colour_scale"},
+        Wrong{"\"normal\": \"folds.png\"", "\"derivative_scale\": -1", kInvalid,
+              "26: wrinkle_maps[0].derivative_scale"},
+        Wrong{"\"axis\": [1, 0, 0]}}", "\"axis\": [1, 0, 0]}}, {\"name\": \"s\", \"strain\": {}}",
+              kSchema, "15: drivers[2].strain.joint"},
+        Wrong{"\"kind\": \"skinning\"", "\"kind\": 7", kInvalid, "23: regions[1].mask.kind"}));
+
+TEST(RigFile, RefusesMoreValuesThanNnlsSolves) {
+  std::string values = "\"solve\": \"nnls\", \"values\": [";
+  for (int i = 0; i < 17; ++i) {
+    values += (i == 0 ? "" : ", ") + std::string("{\"name\": \"v") + std::to_string(i) +
+              "\", \"reference_pose\": \"up\"}";
+  }
+  const auto rig = Parse(Replaced(
+      kSmallRig, "\"values\": [{\"name\": \"stretch\", \"reference_pose\": \"up\"}", values));
+  EXPECT_EQ(rig.status().code(), StatusCode::kLimit);
+  EXPECT_EQ(rig.status().where(), "a.rig.json:12: drivers[0].pose.values");
+}
+
+TEST(RigFile, RefusesEveryTruncation) {
+  const std::string whole(kSmallRig, std::string_view(kSmallRig).find_last_of('}'));
+  for (std::size_t length = 0; length <= whole.size(); ++length) {
+    const std::string part(whole.data(), length);  // a buffer of its own: sanitizers see its end
+    const auto rig = Parse(part);
+    ASSERT_FALSE(rig.ok()) << length;
+    EXPECT_EQ(rig.status().code(), StatusCode::kParse) << length << rig.status().ToString();
+    EXPECT_THAT(rig.status().where(), StartsWith("a.rig.json:"));
+  }
+}
+
+TEST(RigFile, RefusesWhatIsTooMuch) {
+  EXPECT_EQ(Parse(std::string(JsonIndex::kMaxBytes + 1, ' ')).status().code(), StatusCode::kLimit);
+  const std::string deep = "{\"name\": " + std::string(1000, '[');
+  EXPECT_EQ(Parse(deep).status().code(), StatusCode::kLimit);
+  std::string many = "{\"name\": [";
+  for (std::size_t i = 0; i < JsonIndex::kMaxElements; ++i) many += "1,";
+  EXPECT_EQ(Parse(many).status().code(), StatusCode::kLimit);
+}
+
+TEST(RigFile, RefusesBytesThatAreNoText) {
+  EXPECT_EQ(Parse(std::string_view("{\0}", 3)).status().code(), StatusCode::kParse);
+  EXPECT_FALSE(Parse("{\"name\": \"\xff\xfe\"}").ok());
+  EXPECT_EQ(Parse("{\"name\": \"a\nb\"}").status().code(), StatusCode::kParse);
+  EXPECT_EQ(Parse("[]").status().where(), "a.rig.json:1");
+  // FlatBuffers' parser reads schemas, too; nothing of a rig may reach that.
+  EXPECT_EQ(Parse("include \"/etc/passwd\"; {}").status().code(), StatusCode::kParse);
+}
+
+TEST(RigFile, TakesPosesFromFramesAndMixes) {
+  const std::string json = Replaced(kSmallRig, R"({"name": "up",
+     "joints": [{"joint": "brow",
+                 "euler_degrees": [-20, 0, 0]}]})",
+                                    R"({"name": "unit", "file": "rig_file_test.cpp", "frame": 10},
+    {"name": "from_2", "file": "rig_file_test.cpp", "frame": 10, "rest_frame": 4},
+    {"name": "up", "mix": [{"pose": "unit", "weight": 0.5}, {"pose": "from_2"}]})");
+  const auto rig =
+      ParseRig(json, "a.rig.json", FURROW_SOURCE_DIR "/tests/unit/character", TurningSource);
+  ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+  ASSERT_EQ(rig->reference_poses.size(), 1u) << "building blocks are left out";
+  ASSERT_EQ(rig->reference_poses[0].joints.size(), 1u) << "the root does not move";
+  EXPECT_EQ(rig->reference_poses[0].joints[0].joint, "brow");
+  // 10 * 0.5 + (10 - 4) degrees about X.
+  EXPECT_NEAR(rig->reference_poses[0].joints[0].rotation.x, std::sin(glm::radians(5.5)), 1e-6);
+  EXPECT_GT(rig->reference_poses[0].source_size, 0.0f);
+}
+
+TEST(RigFile, SaysWhatIsWrongWithAFrame) {
+  const auto parse = [](const char* pose, const wrinkle::PoseSource& source) {
+    return ParseRig(Replaced(kSmallRig, R"({"name": "up",
+     "joints": [{"joint": "brow",
+                 "euler_degrees": [-20, 0, 0]}]})",
+                             pose),
+                    "a.rig.json", FURROW_SOURCE_DIR "/tests/unit/character", source)
+        .status();
+  };
+  const Status no_reader = parse(R"({"name": "up", "file": "rig_file_test.cpp"})", {});
+  EXPECT_EQ(no_reader.code(), StatusCode::kUnsupported);
+  EXPECT_EQ(no_reader.where(), "a.rig.json:5: reference_poses[0].file");
+  const Status no_file = parse(R"({"name": "up", "file": "none.bvh"})", TurningSource);
+  EXPECT_EQ(no_file.code(), StatusCode::kNotFound);
+  EXPECT_EQ(no_file.where(), "a.rig.json:5: reference_poses[0].file");
+  const Status no_frame =
+      parse(R"({"name": "up", "file": "rig_file_test.cpp", "frame": 11})", TurningSource);
+  EXPECT_EQ(no_frame.code(), kInvalid);
+  EXPECT_THAT(no_frame.what(), HasSubstr("11 frames"));
+  EXPECT_EQ(no_frame.where(), "a.rig.json:5: reference_poses[0].frame");
+  const Status cycle = parse(R"({"name": "up", "mix": [{"pose": "b"}]},
+    {"name": "b", "mix": [{"pose": "up"}]})",
+                             {});
+  EXPECT_EQ(cycle.code(), StatusCode::kCyclic);
+  EXPECT_EQ(cycle.where(), "a.rig.json:6: reference_poses[1].mix[0].pose");
+}
+
+TEST(RigFile, NamesTheFileThatIsNotThere) {
+  const Status status = LoadRig("no/such/rig.json").status();
+  EXPECT_EQ(status.code(), StatusCode::kNotFound);
+  EXPECT_EQ(status.where(), "no/such/rig.json");
+}
+
+TEST(RigFile, SavesAndLoads) {
+  const TemporaryFolder folder;
+  const auto path = folder / "test.rig.json";
+  const auto rig = *Parse(kSmallRig);
+  ASSERT_TRUE(SaveRig(rig, path).ok());
+  const auto again = LoadRig(path);
+  ASSERT_TRUE(again.ok()) << again.status().ToString();
+  EXPECT_EQ(RigToJson(*again), RigToJson(rig));
+  auto broken = rig;
+  broken.regions[0].feeds[0].map = "creases";
+  const auto nowhere = folder / "broken.rig.json";
+  EXPECT_EQ(SaveRig(broken, nowhere).where(), nowhere.string() + ": regions[0].feeds[0].map");
+  EXPECT_FALSE(std::filesystem::exists(nowhere));
+}
+
+TEST(RigFile, ReadsTheExampleOfItsManual) {
+  std::ifstream stream(FURROW_SOURCE_DIR "/docs/RIG.md");
+  std::stringstream text;
+  text << stream.rdbuf();
+  const std::string manual = text.str();
+  const std::size_t begin = manual.find("```json\n") + 8;
+  ASSERT_LT(begin, manual.size());
+  const auto rig = ParseRig(manual.substr(begin, manual.find("```", begin) - begin), "RIG.md", ".");
+  ASSERT_TRUE(rig.ok()) << rig.status().ToString();
+  EXPECT_EQ(rig->reference_poses.size(), 2u);
+  EXPECT_EQ(rig->regions.size(), 3u);
+}
+
+}  // namespace
+}  // namespace furrow::character

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rig/skeleton_map.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/data_dir.h"
+#include "tests/temporary_folder.h"
+
+namespace furrow::character {
+namespace {
+
+namespace fs = std::filesystem;
+using wrinkle::JointRole;
+using enum JointRole;
+using Names = std::vector<std::string>;
+
+constexpr char kToy[] = R"({
+  // a comment
+  "version": 1, "name": "toy", "title": "Toys", "prefixes": ["toy_", "*#"],
+  "sides": {"left": "L", "right": "R"},
+  "joints": {"hips": "Root|Pelvis", "neck": ["N1", "N2"], "*Hand": "Hand.*"}
+})";
+
+SkeletonMap Toy() { return ParseSkeletonMap(kToy, "toy.json").value(); }
+
+// The shipped files as they stand in the source tree.
+SkeletonMaps Shipped() {
+  std::vector<SkeletonMap> maps;
+  for (const auto& file :
+       fs::directory_iterator(fs::path(FURROW_SOURCE_DIR) / "rig/skeleton_maps")) {
+    std::ifstream in(file.path());
+    const std::string text((std::istreambuf_iterator<char>(in)), {});
+    auto map = ParseSkeletonMap(text, file.path().string());
+    EXPECT_TRUE(map.ok()) << map.status().ToString();
+    if (map.ok()) maps.push_back(*std::move(map));
+  }
+  return SkeletonMaps(std::move(maps));
+}
+
+TEST(JointRole, NamesParentsAndMirrorsAgree) {
+  std::set<std::string_view> names;
+  for (int i = 1; i < wrinkle::kNumJointRoles; ++i) {
+    const auto role = static_cast<JointRole>(i);
+    names.insert(ToString(role));
+    EXPECT_EQ(wrinkle::ParseJointRole(ToString(role)), role);
+    EXPECT_EQ(MirrorOf(MirrorOf(role)), role);
+    EXPECT_EQ(ParentOf(MirrorOf(role)), MirrorOf(ParentOf(role)));
+    JointRole above = role;
+    for (int step = 0; step < 12 && above != kHips; ++step) above = ParentOf(above);
+    EXPECT_EQ(above, kHips) << ToString(role);
+  }
+  EXPECT_EQ(names.size(), 55u);
+  EXPECT_EQ(wrinkle::ParseJointRole("none"), std::nullopt);
+  EXPECT_EQ(MirrorOf(kLeftLittleDistal), kRightLittleDistal);
+  EXPECT_EQ(ParentOf(kRightHand), kRightLowerArm);
+}
+
+TEST(SkeletonMap, FindsRolesChainsAndWhatIsMissing) {
+  const Names names = {"root", "n2", "Hand.L", "tail", "n1"};
+  const SkeletonRoles found = ApplySkeletonMap(Toy(), names);
+  EXPECT_EQ(found.map, "toy");
+  EXPECT_THAT(found.roles, testing::ElementsAre(kHips, kNeck, kLeftHand, kNone, kNeck));
+  EXPECT_EQ(found.num_roles, 3);
+  EXPECT_EQ(found.num_joints, 4);
+  EXPECT_THAT(found.missing, testing::ElementsAre(kRightHand));
+  EXPECT_EQ(JoinRoles(found.missing), "rightHand");
+}
+
+TEST(SkeletonMap, TheFirstAlternativeAndTheFirstJointWin) {
+  EXPECT_THAT(ApplySkeletonMap(Toy(), Names{"Pelvis", "Root", "ROOT"}).roles,
+              testing::ElementsAre(kNone, kHips, kNone));
+  EXPECT_THAT(ApplySkeletonMap(Toy(), Names{"Pelvis"}).roles, testing::ElementsAre(kHips));
+}
+
+TEST(SkeletonMap, NamespacesAndPrefixesAreSeenThrough) {
+  for (const char* prefix : {"", "any:", "a:b:", "toy_", "x:TOY_", "Take#1#"}) {
+    const Names names = {prefix + std::string("Root"), prefix + std::string("Hand.R")};
+    EXPECT_THAT(ApplySkeletonMap(Toy(), names).roles, testing::ElementsAre(kHips, kRightHand))
+        << prefix;
+  }
+  EXPECT_EQ(ApplySkeletonMap(Toy(), Names{"toyRoot"}).num_roles, 0);
+}
+
+TEST(SkeletonMap, CaseCountsWhereTheMapSaysSo) {
+  SkeletonMap map = Toy();
+  map.ignore_case = false;
+  EXPECT_EQ(ApplySkeletonMap(map, Names{"root"}).num_roles, 0);
+  EXPECT_EQ(ApplySkeletonMap(map, Names{"Root"}).num_roles, 1);
+}
+
+struct Bad {
+  const char* from;  // in kToy
+  const char* to;
+  StatusCode code;
+};
+
+TEST(SkeletonMap, EveryFaultIsNamed) {
+  const Bad kBad[] = {
+      {"\"version\": 1", "\"version\": 2", StatusCode::kUnsupported},
+      {"\"version\": 1,", "", StatusCode::kSchema},
+      {"\"name\": \"toy\"", "\"name\": \"\"", StatusCode::kSchema},
+      {"\"name\": \"toy\"", "\"name\": 3", StatusCode::kSchema},
+      {"\"title\"", "\"titel\"", StatusCode::kSchema},
+      {"\"*#\"", "\"*\"", StatusCode::kSchema},
+      {"[\"toy_\", \"*#\"]", "\"toy_\"", StatusCode::kSchema},
+      {"\"right\": \"R\"", "\"right\": \"L\"", StatusCode::kSchema},
+      {"\"right\"", "\"wrong\"", StatusCode::kSchema},
+      {"\"sides\": {\"left\": \"L\", \"right\": \"R\"},", "", StatusCode::kSchema},
+      {"\"hips\"", "\"hip\"", StatusCode::kSchema},
+      {"\"hips\"", "\"none\"", StatusCode::kSchema},
+      {"\"hips\"", "\"leftHand\"", StatusCode::kSchema},  // twice, by "*Hand"
+      {"Root|Pelvis", "Root|", StatusCode::kSchema},
+      {"Root|Pelvis", "Ro*t", StatusCode::kSchema},
+      {"[\"N1\", \"N2\"]", "[]", StatusCode::kSchema},
+      {"[\"N1\", \"N2\"]", "[[\"N1\"]]", StatusCode::kSchema},
+      {"\"sides\"", "\"toes_height\": true, \"sides\"", StatusCode::kSchema},
+      {"\"sides\"", "\"toes_height\": 0.6, \"sides\"", StatusCode::kInvalidArgument},
+      {"\"neck\"", "neck", StatusCode::kParse},
+  };
+  for (const Bad& bad : kBad) {
+    std::string text = kToy;
+    const std::size_t at = text.find(bad.from);
+    ASSERT_NE(at, std::string::npos) << bad.from;
+    text.replace(at, std::string(bad.from).size(), bad.to);
+    const auto map = ParseSkeletonMap(text, "toy.json");
+    ASSERT_FALSE(map.ok()) << bad.from << " -> " << bad.to;
+    EXPECT_EQ(map.status().code(), bad.code) << map.status().ToString();
+    EXPECT_THAT(map.status().where(), testing::StartsWith("toy.json"));
+  }
+}
+
+TEST(SkeletonMap, EveryTruncationAndOversizeIsRefused) {
+  const std::string whole = kToy;
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    EXPECT_FALSE(ParseSkeletonMap(whole.substr(0, length), "toy").ok()) << length;
+  }
+  EXPECT_EQ(ParseSkeletonMap(std::string((1 << 20) + 1, ' '), "toy").status().code(),
+            StatusCode::kLimit);
+  std::string many = whole;
+  many.replace(many.find("\"N1\""), 4, "\"" + std::string(256, 'x') + "\"");
+  EXPECT_EQ(ParseSkeletonMap(many, "toy").status().code(), StatusCode::kLimit);
+  // So deep that a walk down to the bottom would overflow the stack, wherever a value stands.
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  for (const char* value : {"1,", "\"toy\"", "\"Toys\"", "\"toy_\"", "\"L\"", "\"Root|Pelvis\"",
+                            "[\"N1\", \"N2\"]", "\"N1\"", "\"Hand.*\""}) {
+    std::string nested = whole;
+    const std::string by = deep + (std::string_view(value).ends_with(',') ? "," : "");
+    nested.replace(nested.find(value), std::string_view(value).size(), by);
+    const Status status = ParseSkeletonMap(nested, "toy").status();
+    EXPECT_TRUE(status.code() == StatusCode::kSchema || status.code() == StatusCode::kUnsupported)
+        << value << ": " << status.ToString();
+  }
+}
+
+TEST(SkeletonMaps, OnlyACertainNumberOfRolesProvesAFamily) {
+  const SkeletonMaps maps = Shipped();
+  EXPECT_TRUE(maps.RolesOf(Names{"head", "neck", "jaw"}).map.empty());
+  EXPECT_TRUE(maps.RolesOf(Names{"head", "neck", "jaw"}).roles.empty());
+  std::vector<SkeletonMap> one = {maps.maps()[0]};
+  const SkeletonMaps chosen(one, /*chosen=*/true);
+  EXPECT_EQ(chosen.RolesOf(Names{"head"}).map, one[0].name);
+}
+
+// For every shipped map: a skeleton of all its first names is recognised as itself, whole.
+TEST(SkeletonMaps, EveryShippedMapRecognisesItsOwnFamily) {
+  const SkeletonMaps maps = Shipped();
+  EXPECT_GE(maps.maps().size(), 11u);
+  for (const SkeletonMap& map : maps.maps()) {
+    Names names;
+    for (const auto& entry : map.entries) {
+      for (const auto& place : entry.chain) names.push_back(place.front());
+    }
+    EXPECT_EQ((std::set<std::string>(names.begin(), names.end()).size()), names.size()) << map.name;
+    const SkeletonRoles found = maps.RolesOf(names);
+    EXPECT_EQ(found.map, map.name);
+    EXPECT_TRUE(found.missing.empty()) << map.name << ": " << JoinRoles(found.missing);
+    for (const JointRole role : {kHips, kHead, kLeftHand, kRightHand, kLeftFoot}) {
+      EXPECT_EQ(std::ranges::count(found.roles, role), 1) << map.name;
+    }
+  }
+}
+
+TEST(SkeletonMaps, MixamoUnderAnyOfItsPrefixes) {
+  const SkeletonMaps maps = Shipped();
+  for (const char* prefix : {"mixamorig:", "mixamorig12:", "mixamorig", "mixamorig_", ""}) {
+    Names names;
+    for (const char* name : {"Hips", "Spine", "Spine1", "Spine2", "Neck", "Head", "LeftShoulder",
+                             "LeftArm", "LeftForeArm", "LeftHand", "LeftHandThumb1"}) {
+      names.push_back(prefix + std::string(name));
+    }
+    const SkeletonRoles found = maps.RolesOf(names);
+    EXPECT_EQ(found.map, "mixamo") << prefix;
+    EXPECT_THAT(found.roles, testing::ElementsAre(kHips, kSpine, kChest, kUpperChest, kNeck, kHead,
+                                                  kLeftShoulder, kLeftUpperArm, kLeftLowerArm,
+                                                  kLeftHand, kLeftThumbMetacarpal))
+        << prefix;
+  }
+}
+
+TEST(SkeletonMaps, AreLoadedByNameByFileOrAllAtOnce) {
+  setenv("FURROW_DATA_DIR", (std::string(FURROW_SOURCE_DIR) + "/character").c_str(), 1);
+  EXPECT_GE(SkeletonMaps::Load("").value().maps().size(), 11u);
+  EXPECT_EQ(SkeletonMaps::Load("cmu").value().maps()[0].name, "cmu");
+  const std::string file = std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/vrm.json";
+  EXPECT_EQ(SkeletonMaps::Load(file).value().maps()[0].name, "vrm");
+  // A folder of that name hides nothing.
+  const fs::path before = fs::current_path();
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "cmu");
+  fs::current_path(folder.path());
+  EXPECT_EQ(SkeletonMaps::Load("cmu").value().maps()[0].name, "cmu");
+  fs::current_path(before);
+  EXPECT_EQ(SkeletonMaps::Load("nobody").status().code(), StatusCode::kNotFound);
+  EXPECT_EQ(SkeletonMaps::Load("no/such/file.json").status().code(), StatusCode::kNotFound);
+  unsetenv("FURROW_DATA_DIR");
+}
+
+}  // namespace
+}  // namespace furrow::character

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/config/config.h"
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace furrow::server {
+namespace {
+
+using testing::HasSubstr;
+
+CommandLine Parse(std::vector<std::string> args) { return ParseCommandLine(args); }
+
+Status ParseText(std::string_view text, Config* config) {
+  return ParseConfig(text, "furrow.toml", config);
+}
+
+class ConfigFile {
+ public:
+  explicit ConfigFile(std::string_view text) {
+    path_ = std::filesystem::path(testing::TempDir()) /
+            (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".toml");
+    std::ofstream(path_) << text;
+  }
+  ~ConfigFile() { std::filesystem::remove(path_); }
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+TEST(CommandLine, DefaultsListenOnLoopbackAlone) {
+  const CommandLine line = Parse({});
+  ASSERT_TRUE(line.config.has_value()) << line.text;
+  EXPECT_EQ(line.config->bind, "127.0.0.1");
+  EXPECT_EQ(line.config->tcp, 7400);
+  EXPECT_EQ(line.config->udp, 7401);
+  EXPECT_TRUE(line.config->render);
+  EXPECT_FALSE(line.config->vmc.has_value());
+}
+
+TEST(CommandLine, EveryFlagReachesTheConfig) {
+  const CommandLine line = Parse({"--character",
+                                  "a.glb",
+                                  "--rig",
+                                  "b.json",
+                                  "--skeleton-map",
+                                  "mixamo",
+                                  "--bind",
+                                  "::1",
+                                  "--tcp",
+                                  "1",
+                                  "--udp",
+                                  "2",
+                                  "--no-render",
+                                  "--vmc",
+                                  "3",
+                                  "--livelink-face",
+                                  "4",
+                                  "--mocap-allow",
+                                  "10.0.0.1",
+                                  "--mocap-allow",
+                                  "::2",
+                                  "--osc-out",
+                                  "127.0.0.1:9000",
+                                  "--osc-prefix",
+                                  "stage",
+                                  "--record",
+                                  "takes",
+                                  "--record-rotate-megabytes",
+                                  "10",
+                                  "--record-rotate-seconds",
+                                  "0",
+                                  "--verbose",
+                                  "--log-json",
+                                  "--render-device",
+                                  "surfaceless"});
+  ASSERT_TRUE(line.config.has_value()) << line.text;
+  const Config& config = *line.config;
+  EXPECT_EQ(config.character, "a.glb");
+  EXPECT_EQ(config.rig, "b.json");
+  EXPECT_EQ(config.skeleton_map, "mixamo");
+  EXPECT_EQ(config.bind, "::1");
+  EXPECT_EQ(config.tcp, 1);
+  EXPECT_EQ(config.udp, 2);
+  EXPECT_FALSE(config.render);
+  EXPECT_EQ(config.vmc, 3);
+  EXPECT_EQ(config.livelink_face, 4);
+  EXPECT_THAT(config.mocap_allow, testing::ElementsAre("10.0.0.1", "::2"));
+  ASSERT_TRUE(config.osc_out.has_value());
+  EXPECT_EQ(config.osc_out->host, "127.0.0.1");
+  EXPECT_EQ(config.osc_out->port, 9000);
+  EXPECT_EQ(config.osc_prefix, "stage");
+  EXPECT_EQ(config.record.folder, "takes");
+  EXPECT_DOUBLE_EQ(config.record.rotate_megabytes, 10.0);
+  EXPECT_DOUBLE_EQ(config.record.rotate_seconds, 0.0);
+  EXPECT_TRUE(config.verbose);
+  EXPECT_TRUE(config.log_json);
+  EXPECT_EQ(config.render_device, "surfaceless");
+}
+
+TEST(CommandLine, HelpNamesTheExitCodesAndEndsWell) {
+  const CommandLine line = Parse({"--help"});
+  EXPECT_FALSE(line.config.has_value());
+  EXPECT_EQ(line.exit_code, ExitCode::kOk);
+  EXPECT_THAT(line.text, HasSubstr("Exit codes: 0"));
+  EXPECT_THAT(line.text, HasSubstr("--livelink-face"));
+}
+
+TEST(CommandLine, WrongUsageIsTwo) {
+  for (const std::vector<std::string>& args :
+       std::vector<std::vector<std::string>>{{"--nonsense"},
+                                             {"--tcp", "70000"},
+                                             {"--tcp", "x"},
+                                             {"--bind", "localhost"},
+                                             {"--osc-out", "nowhere"},
+                                             {"--mocap-allow", "stage-pc"},
+                                             {"--vmc", "7401"},
+                                             {"--threads", "0"},
+                                             {"--threads", "65"},
+                                             {"--require-render", "--no-render"}}) {
+    const CommandLine line = Parse(args);
+    EXPECT_FALSE(line.config.has_value()) << args[0];
+    EXPECT_EQ(line.exit_code, ExitCode::kUsage) << args[0];
+    EXPECT_FALSE(line.text.empty()) << args[0];
+  }
+}
+
+TEST(CommandLine, FlagsWinOverTheFileAndTheFileOverTheDefaults) {
+  const ConfigFile file(
+      "[listen]\ntcp = 100\nudp = 200\n[mocap]\nvmc = 300\n"
+      "allow = ['10.0.0.1', '10.0.0.2']\n");
+  CommandLine line = Parse({"--config", file.path(), "--tcp", "101"});
+  ASSERT_TRUE(line.config.has_value()) << line.text;
+  EXPECT_EQ(line.config->tcp, 101);
+  EXPECT_EQ(line.config->udp, 200);
+  EXPECT_EQ(line.config->vmc, 300);
+  EXPECT_THAT(line.config->mocap_allow, testing::ElementsAre("10.0.0.1", "10.0.0.2"));
+  line = Parse({"--config", file.path(), "--mocap-allow", "10.0.0.3"});
+  ASSERT_TRUE(line.config.has_value()) << line.text;
+  EXPECT_THAT(line.config->mocap_allow, testing::ElementsAre("10.0.0.3"));
+}
+
+TEST(CommandLine, AFaultInTheFileIsBadInputAndNamesTheLine) {
+  const ConfigFile file("[listen]\nbind = \"127.0.0.1\"\nport = 7\n");
+  const CommandLine line = Parse({"--config", file.path()});
+  EXPECT_EQ(line.exit_code, ExitCode::kBadInput);
+  EXPECT_THAT(line.text, HasSubstr(file.path() + ":3"));
+  EXPECT_THAT(line.text, HasSubstr("listen.port"));
+}
+
+TEST(CommandLine, AMissingFileIsBadInput) {
+  const CommandLine line = Parse({"--config", "/nowhere/furrow.toml"});
+  EXPECT_EQ(line.exit_code, ExitCode::kBadInput);
+  EXPECT_THAT(line.text, HasSubstr("/nowhere/furrow.toml"));
+}
+
+TEST(ParseConfig, ReadsEveryTable) {
+  Config config;
+  const Status status = ParseText(
+      "character = 'face.glb'\nrig = '/abs/rig.json'\nskeleton_map = 'cmu'\n"
+      "[listen]\nbind = '0.0.0.0'\ntcp = 0\nudp = 1\nthreads = 3\n"
+      "[render]\nenabled = true\nrequired = true\ndevice = '1'\n"
+      "[mocap]\nvmc = 39539\nlivelink_face = 11111\n"
+      "[osc]\nout = '[::1]:9000'\nprefix = 'x'\n"
+      "[record]\ndir = 'takes'\nrotate_megabytes = 2\nrotate_seconds = 60\ndatagrams = false\n"
+      "[log]\nverbose = true\njson = true\n"
+      "[limits]\nmax_subjects = 5\nidle_seconds = 2.5\npacket_burst = 10\n",
+      &config);
+  ASSERT_TRUE(status.ok()) << status.ToString();
+  EXPECT_EQ(config.character, "face.glb");
+  EXPECT_EQ(config.threads, 3);
+  EXPECT_EQ(config.rig, "/abs/rig.json");
+  EXPECT_EQ(config.skeleton_map, "cmu");
+  EXPECT_TRUE(config.require_render);
+  EXPECT_EQ(config.osc_out->host, "::1");
+  EXPECT_EQ(config.record, (RecordConfig{"takes", 2.0, 60.0, false}));
+  EXPECT_EQ(config.limits.max_subjects, 5);
+  EXPECT_DOUBLE_EQ(config.limits.idle_seconds, 2.5);
+  EXPECT_DOUBLE_EQ(config.limits.packet_burst, 10.0);
+  EXPECT_EQ(config.limits.max_connections, Limits().max_connections);
+}
+
+TEST(ParseConfig, TheExampleShowsTheDefaults) {
+  Config config;
+  config.tcp = config.udp = 1;
+  config.limits.max_subjects = config.limits.max_skeletons = 1;
+  const Status status = LoadConfigFile(FURROW_SOURCE_DIR "/server/furrow.example.toml", &config);
+  ASSERT_TRUE(status.ok()) << status.ToString();
+  EXPECT_EQ(config, Config());
+}
+
+TEST(ParseConfig, ARecordingRotatesForwardsOrNever) {
+  Config config;
+  config.record.rotate_seconds = -1.0;
+  EXPECT_EQ(ValidateConfig(config).code(), StatusCode::kInvalidArgument);
+  config.record.rotate_seconds = 0.0;
+  EXPECT_TRUE(ValidateConfig(config).ok());
+}
+
+TEST(ParseConfig, RelativeFilesAreRelativeToTheConfig) {
+  Config config;
+  ASSERT_TRUE(ParseConfig("rig = 'rig.json'", "/etc/furrow/furrow.toml", &config).ok());
+  EXPECT_EQ(config.rig, "/etc/furrow/rig.json");
+  ASSERT_TRUE(ParseConfig("skeleton_map = 'my.json'", "/etc/furrow/furrow.toml", &config).ok());
+  EXPECT_EQ(config.skeleton_map, "/etc/furrow/my.json");
+}
+
+TEST(ParseConfig, AnErrorLeavesTheConfigAsItWas) {
+  struct Case {
+    const char* text;
+    StatusCode code;
+    const char* where;
+    const char* what;
+  };
+  for (const Case& fault :
+       {Case{"[listen\n", StatusCode::kParse, ":1", ""},
+        Case{"a = 1", StatusCode::kSchema, ":1", "unknown key a"},
+        Case{"listen = 3", StatusCode::kSchema, ":1", "listen"},
+        Case{"[listen]\n\ntcp = -1", StatusCode::kSchema, ":3", "listen.tcp"},
+        Case{"[listen]\nudp = 65536", StatusCode::kSchema, ":2", "listen.udp"},
+        Case{"[listen]\nbind = 7", StatusCode::kSchema, ":2", "listen.bind"},
+        Case{"[log]\njson = 'yes'", StatusCode::kSchema, ":2", "log.json"},
+        Case{"[osc]\nout = 'x'", StatusCode::kSchema, ":2", "osc.out"},
+        Case{"[limits]\nmax_subjects = 1.5", StatusCode::kSchema, ":2", "limits.max_subjects"},
+        Case{"[limits]\nmax_subjects = -9223372036854775808", StatusCode::kSchema, ":2",
+             "limits.max_subjects"},
+        Case{"[limits]\nidle_seconds = 'x'", StatusCode::kSchema, ":2", "limits.idle_seconds"}}) {
+    Config config;
+    config.tcp = 4711;
+    const Status status = ParseText(fault.text, &config);
+    EXPECT_EQ(status.code(), fault.code) << fault.text;
+    EXPECT_THAT(status.where(), HasSubstr(std::string("furrow.toml") + fault.where)) << fault.text;
+    EXPECT_THAT(status.what(), HasSubstr(fault.what)) << fault.text;
+    EXPECT_EQ(config.tcp, 4711) << fault.text;
+  }
+}
+
+TEST(ValidateConfig, NamesTheLimitThatIsOutOfRange) {
+  Config config;
+  config.limits.max_subjects = 0;
+  EXPECT_THAT(ValidateConfig(config).what(), HasSubstr("limits.max_subjects"));
+  config = {};
+  config.limits.loss_seconds = 0.0;
+  EXPECT_THAT(ValidateConfig(config).what(), HasSubstr("limits.loss_seconds"));
+  config = {};
+  config.osc_prefix = "a b";
+  EXPECT_THAT(ValidateConfig(config).what(), HasSubstr("osc.prefix"));
+}
+
+TEST(ValidateConfig, TwoServicesMayBothAskForAnyPort) {
+  Config config;
+  config.udp = 0;
+  config.vmc = 0;
+  EXPECT_TRUE(ValidateConfig(config).ok());
+}
+
+TEST(ParseHostPort, TakesNumericAddresses) {
+  ASSERT_TRUE(ParseHostPort("10.0.0.1:80").ok());
+  EXPECT_EQ(ParseHostPort("[fe80::1]:65535")->host, "fe80::1");
+  for (const char* bad : {"", ":", "host:80", "1.2.3.4", "1.2.3.4:", "1.2.3.4:0", "1.2.3.4:65536",
+                          "1.2.3.4:8x", "::1:80", "[::1]"}) {
+    EXPECT_FALSE(ParseHostPort(bad).ok()) << bad;
+  }
+}
+
+}  // namespace
+}  // namespace furrow::server

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// Captures: what they change, what a preview does not, and what can be taken back.
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "server/http/api/api.h"
+#include "tests/unit/server/session/hub_fixture.h"
+
+namespace furrow::server {
+namespace {
+
+class ApiCaptureTest : public HubPeersTest {
+ protected:
+  void SetUp() override {
+    HubPeersTest::SetUp();
+    Publish(sender, "ann");
+    SendPose(0.5f);
+  }
+  Json Ask(const std::string& path, const Json& body, int status = 200) {
+    const ApiReply reply = api.Answer(
+        {.method = "POST", .url = {.path = path, .values = {}}, .body = body.dump()}, *hub, now);
+    EXPECT_EQ(reply.status, status) << reply.body;
+    return Json::parse(reply.body);
+  }
+  Json Capture(const std::string& pose, bool preview = false) {
+    return Ask("/api/capture", {{"subject", "ann"}, {"pose", pose}, {"preview", preview}});
+  }
+  Json Undo() { return Ask("/api/capture/undo", Json::object()); }
+  void SendPose(float brow) {
+    ++sequence;
+    Send(sender, Pose(brow), 1, sequence, std::int64_t{10'000} * sequence);
+  }
+  // The same sender with one blend shape more.
+  void OfferAnew() {
+    protocol::SkeletonOffer offer = Offer("ann");
+    offer.blend_shape_names.push_back("jaw");
+    offer.skeleton_hash = protocol::SkeletonHash(offer);
+    Send(sender, offer, 1);
+    ASSERT_TRUE(sender.Take<protocol::SkeletonReply>().has_value());
+  }
+  SubjectPipeline& pipeline() { return *hub->EvaluateInFull("ann")->pipeline; }
+  float brow() { return pipeline().wrinkle_weights()[0]; }
+
+  Api api{{}};
+  std::uint32_t sequence = 0;
+};
+
+TEST_F(ApiCaptureTest, ANeutralIsTakenBackToTheOneBeforeIt) {
+  Capture("neutral");
+  SendPose(0.75f);
+  EXPECT_NEAR(brow(), 0.25f, 1e-5f);
+  Capture("neutral");
+  EXPECT_NEAR(brow(), 0.0f, 1e-5f);
+  EXPECT_EQ(Undo()["captures"].size(), 1u);
+  EXPECT_NEAR(brow(), 0.25f, 1e-5f);
+  EXPECT_TRUE(Undo()["captures"].empty());
+  EXPECT_NEAR(brow(), 0.75f, 1e-5f);
+}
+
+TEST_F(ApiCaptureTest, ANeutralOfAnotherSkeletonIsNotTakenBack) {
+  Capture("neutral");
+  Capture("neutral");
+  OfferAnew();  // fewer values than it now has would be read from the former neutral
+  EXPECT_EQ(Undo()["captures"].size(), 1u);
+  EXPECT_FALSE(pipeline().neutral_pose().has_value());
+}
+
+TEST_F(ApiCaptureTest, ABodyThatIsNestedWithoutEndIsRefused) {
+  constexpr std::size_t kDepth = 30'000;  // fits a request; each level copied is a call within one
+  const std::string body =
+      R"({"subject":)" + std::string(kDepth, '[') + std::string(kDepth, ']') + "}";
+  const ApiReply reply = api.Answer(
+      {.method = "POST", .url = {.path = "/api/capture", .values = {}}, .body = body}, *hub, now);
+  EXPECT_EQ(reply.status, 400);
+  EXPECT_EQ(Json::parse(reply.body)["error"]["field"], "body");
+}
+
+TEST_F(ApiCaptureTest, ANeutralThatIsPreviewedLeavesTheSubjectAlone) {
+  Make({}, /*filter=*/true);
+  Connect(&sender);
+  Connect(&viewer);
+  Publish(sender, "ann");
+  ASSERT_NE(Watch(viewer, {.subject = "ann"}), 0);  // so that its weights are evaluated
+  SendPose(0.0f);
+  SendPose(1.0f);  // the filter is still on its way there
+  const float live = brow();
+  ASSERT_LT(live, 0.99f);
+  const Json weight = Capture("neutral", /*preview=*/true)["weights"][0];
+  EXPECT_EQ(weight["name"], "brow.squash");
+  EXPECT_FLOAT_EQ(weight["before"].get<float>(), live);
+  EXPECT_EQ(weight["after"].get<float>(), 0.0f);
+  EXPECT_EQ(brow(), live);
+  SendPose(1.0f);
+  EXPECT_LT(brow(), 0.99f) << "its filter began anew";
+}
+
+// A hinge that calls its joints as the rig of a game engine does, and a stream that calls them as
+// Mixamo does.
+class ApiForeignCaptureTest : public HubTest {
+ protected:
+  void SetUp() override {
+    setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/character", 1);
+    auto matcher = character::SkeletonMatcher::Create("");
+    unsetenv("FURROW_DATA_DIR");
+    ASSERT_TRUE(matcher.ok()) << matcher.status().ToString();
+    wrinkle::Rig rig = MakeRig(/*filter=*/false);
+    for (const char* side : {"l", "r"}) {
+      wrinkle::Driver& driver = rig.drivers.emplace_back();
+      driver.name = std::string("knee_") + side;
+      driver.kind = wrinkle::Driver::Kind::kHinge;
+      driver.hinge = {.parent = std::string("upper_leg_") + side,
+                      .joint = std::string("lower_leg_") + side,
+                      .end = std::string("foot_") + side};
+    }
+    rig.regions[0].feeds[0].sources = {{"knee_l", "flexed", 1.0f}};
+    Hub::Parts parts;
+    parts.rig = std::make_shared<const wrinkle::Rig>(std::move(rig));
+    parts.skeletons = *std::move(matcher);
+    parts.metrics = &metrics;
+    hub = std::make_unique<Hub>(std::move(parts));
+    Connect(&sender);
+  }
+  static protocol::SkeletonOffer Legs() {
+    protocol::SkeletonOffer offer;
+    offer.subject = "ann";
+    const std::pair<const char*, int> joints[] = {
+        {"Hips", -1},      {"LeftUpLeg", 0}, {"LeftLeg", 1},  {"LeftFoot", 2},
+        {"RightUpLeg", 0}, {"RightLeg", 4},  {"RightFoot", 5}};
+    for (const auto& [name, parent] : joints) {
+      protocol::OfferedJoint& joint = offer.joints.emplace_back();
+      joint.name = std::string("mixamorig:") + name;
+      joint.parent = static_cast<std::int16_t>(parent);
+      joint.rest_translation = {parent == 0 ? (name[0] == 'L' ? 0.1f : -0.1f) : 0.0f,
+                                parent < 0 ? 1.0f : -0.4f, 0.0f};
+    }
+    offer.skeleton_hash = protocol::SkeletonHash(offer);
+    return offer;
+  }
+
+  FakePeer sender;
+};
+
+TEST_F(ApiForeignCaptureTest, APoseIsStoredUnderTheJointsOfTheRig) {
+  const protocol::SkeletonOffer offer = Legs();
+  Send(sender, offer, 1);
+  protocol::PoseFrame pose;
+  pose.skeleton_hash = offer.skeleton_hash;
+  pose.num_joints = static_cast<std::uint16_t>(offer.joints.size());
+  pose.rotation_joints = {2};
+  pose.rotations = {{std::sin(0.6f), 0.0f, 0.0f, std::cos(0.6f)}};
+  Send(sender, pose, 1, 1);
+  Subject& subject = *hub->EvaluateInFull("ann");
+  const float bent = subject.pipeline->wrinkle_weights()[0];
+  ASSERT_GT(bent, 0.1f);
+
+  Api api{{}};
+  const ApiReply reply = api.Answer({.method = "POST",
+                                     .url = {.path = "/api/capture", .values = {}},
+                                     .body = R"({"pose":"crouch"})"},
+                                    *hub, now);
+  ASSERT_EQ(reply.status, 200) << reply.body;
+  const Json weight = Json::parse(reply.body)["weights"][0];
+  EXPECT_FLOAT_EQ(weight["before"].get<float>(), bent);
+  EXPECT_FLOAT_EQ(weight["after"].get<float>(), bent) << "a pose that no driver reads";
+  ASSERT_EQ(hub->rig().reference_poses.size(), 1u);
+  const auto& joints = hub->rig().reference_poses[0].joints;
+  ASSERT_EQ(joints.size(), 1u);
+  EXPECT_EQ(joints[0].joint, "lower_leg_l");
+}
+
+}  // namespace
+}  // namespace furrow::server

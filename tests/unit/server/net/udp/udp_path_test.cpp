@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// From datagram to weight packet through real sockets, server and hub.
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <asio/io_context.hpp>
+#include <gtest/gtest.h>
+
+#include "protocol/messages/hash.h"
+#include "server/net/udp/udp_server.h"
+#include "tests/unit/allocation_counter.h"
+#include "tests/unit/server/session/hub_fixture.h"
+
+namespace furrow::server {
+namespace {
+
+using asio::ip::udp;
+
+// Subjects of joints and blend shapes, solved with the filter, each published from a socket of its
+// own and all of them watched by one, over UDP. The parameter: lanes, which here take turns.
+class UdpPathTest : public HubTest, public testing::WithParamInterface<int> {
+ protected:
+  static constexpr int kJoints = 12;  // so that an offer fits a datagram
+  static constexpr int kSubjects = 8;
+
+  void SetUp() override {
+    MakeWith(MakeRig(/*filter=*/true), {}, GetParam());
+    OpenPort();
+    Connect(viewer);
+    viewer.set_option(asio::socket_base::receive_buffer_size(1 << 20));
+    for (int i = 0; i < kSubjects; ++i) Connect(senders.emplace_back(io, udp::v4()));
+  }
+  void TearDown() override {
+    for (const auto& server : servers) server->Close();
+    io.run();
+  }
+
+  // A socket a lane.
+  void OpenPort() {
+    std::vector<UdpServer*> by_lane;
+    for (int lane = 0; lane < GetParam(); ++lane) {
+      auto& server = servers.emplace_back(
+          std::make_unique<UdpServer>(io, Limits(), hub.get(), &metrics, nullptr, lane));
+      const std::uint16_t port = lane == 0 ? 0 : servers.front()->port();
+      ASSERT_TRUE(
+          server->Open({asio::ip::address_v4::loopback(), port}, UdpServer::Port::kShared).ok());
+      by_lane.push_back(server.get());
+    }
+    for (const auto& server : servers) server->Join(by_lane);
+    for (const auto& server : servers) server->Start();
+  }
+  void Connect(udp::socket& socket) {
+    socket.connect({asio::ip::address_v4::loopback(), servers.front()->port()});
+    socket.non_blocking(true);
+  }
+
+  template <class Message, class... Options>
+  void Say(udp::socket& socket, const Message& message, protocol::Header header,
+           const Options&... options) {
+    header.session = 77;
+    encoder.Encode(header, message, bytes, options...);
+    socket.send(asio::buffer(bytes));
+    io.restart();
+    io.poll();
+  }
+  // Takes what has come to the viewer; how many weights there are in it.
+  int TakeWeights() {
+    int count = 0;
+    for (;;) {
+      asio::error_code error;
+      const std::size_t size = viewer.receive(asio::buffer(received), 0, error);
+      if (error) return count;
+      protocol::MessageView view;
+      EXPECT_EQ(protocol::OpenMessage({received.data(), size}, view), protocol::DecodeStatus::kOk);
+      if (view.kind == protocol::MessageKind::kWelcome) {
+        EXPECT_EQ(protocol::Decode(view, welcome), protocol::DecodeStatus::kOk);
+      }
+      if (view.kind != protocol::MessageKind::kWeights) continue;
+      EXPECT_EQ(protocol::Decode(view, weights), protocol::DecodeStatus::kOk);
+      ++count;
+    }
+  }
+  static protocol::SkeletonOffer OfferOf(int subject) {
+    protocol::SkeletonOffer offer = Offer("subject " + std::to_string(subject));
+    for (int i = 0; i < kJoints; ++i) {
+      protocol::OfferedJoint joint;
+      joint.name = "joint" + std::to_string(i);
+      joint.parent = static_cast<std::int16_t>(i - 1);
+      offer.joints.push_back(joint);
+    }
+    offer.skeleton_hash = protocol::SkeletonHash(offer);
+    return offer;
+  }
+  void Meet() {
+    Say(viewer, protocol::Hello{"test", 0}, {});
+    TakeWeights();
+    Say(viewer, protocol::Hello{"test", welcome.token}, {});
+    for (int i = 0; i < kSubjects; ++i) {
+      const auto stream = static_cast<std::uint16_t>(i);
+      Say(senders[static_cast<std::size_t>(i)], OfferOf(i), {.stream = stream});
+      protocol::SubscribeWeights request;
+      request.subject = "subject " + std::to_string(i);
+      Say(viewer, request, {.sequence = 100u + stream});
+    }
+    pose = Pose(0.5f, 0.25f);
+    pose.skeleton_hash = OfferOf(0).skeleton_hash;
+    pose.num_joints = kJoints;
+    pose.rotations.resize(kJoints);
+  }
+  // One pose of every subject; the number of weights that came of them.
+  int Round(std::uint32_t number) {
+    for (int i = 0; i < kSubjects; ++i) {
+      pose.blend_shapes[0] = static_cast<float>(number % 10) * 0.1f;
+      const auto& encoding = number % 2 == 0 ? floats : small;
+      Say(senders[static_cast<std::size_t>(i)], pose,
+          {.stream = static_cast<std::uint16_t>(i),
+           .sequence = number,
+           .capture_time_us = 16'667 * static_cast<std::int64_t>(number)},
+          encoding);
+    }
+    return TakeWeights();
+  }
+
+  asio::io_context io{1};
+  std::vector<std::unique_ptr<UdpServer>> servers;
+  udp::socket viewer{io, udp::v4()};
+  std::deque<udp::socket> senders;  // by subject
+  std::vector<std::uint8_t> bytes;
+  std::vector<std::uint8_t> received = std::vector<std::uint8_t>(65536);
+  protocol::Welcome welcome;
+  protocol::WeightFrame weights;
+  protocol::PoseFrame pose;
+  const protocol::PoseEncoding floats;
+  const protocol::PoseEncoding small = protocol::PoseEncoding::Small();
+};
+
+TEST_P(UdpPathTest, NothingIsAllocatedAPoseInTheLongRun) {
+  Meet();
+  std::uint32_t number = 0;
+  while (number < 20) Round(number++);
+  const std::uint64_t before = furrow::test::NumAllocations();
+  int got = 0;
+  for (; number < 70; ++number) got += Round(number);
+  EXPECT_EQ(furrow::test::NumAllocations(), before);
+  EXPECT_EQ(got, 50 * kSubjects);
+  EXPECT_EQ(Count(Counter::kDatagramsUnsendable), 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lanes, UdpPathTest, testing::Values(1, 3));
+
+}  // namespace
+}  // namespace furrow::server

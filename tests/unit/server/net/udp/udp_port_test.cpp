@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// One port, several sockets with a thread each.
+#include "server/net/udp/udp_port.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/server/session/hub_fixture.h"
+
+namespace furrow::server {
+namespace {
+
+using asio::ip::udp;
+
+constexpr int kLanes = 3;
+constexpr int kSenders = 48;  // all of one lane: not once in 1e22 times
+
+class UdpPortTest : public HubTest {
+ protected:
+  void SetUp() override {
+    Hub::Parts parts;
+    parts.session = 4242;
+    parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(/*filter=*/false));
+    parts.metrics = &metrics;
+    parts.make_token = [] { return 900u; };
+    parts.lanes = kLanes;
+    parts.on_weights = [this](const Subject& subject, int lane) {
+      const std::lock_guard lock(mutex_);
+      lanes_of_[subject.name].insert(lane);
+      ++num_poses_;
+    };
+    hub = std::make_unique<Hub>(std::move(parts));
+    port_ = std::make_unique<UdpPort>(io_, kLanes, Limits(), hub.get(), &metrics, nullptr);
+    const Status status = port_->Open({asio::ip::address_v4::loopback(), 0});
+    ASSERT_TRUE(status.ok()) << status.ToString();
+    port_->Start();
+    thread_ = std::jthread([this] { io_.run(); });
+  }
+  void TearDown() override {
+    io_.stop();
+    thread_.join();
+    port_->Close();
+  }
+
+  asio::io_context io_{1};
+  std::unique_ptr<UdpPort> port_;
+  std::jthread thread_;
+  std::mutex mutex_;
+  std::map<std::string, std::set<int>> lanes_of_;
+  std::atomic<int> num_poses_ = 0;
+};
+
+TEST_F(UdpPortTest, SendersAreSpreadAndEachStaysInItsLane) {
+  constexpr int kPoses = 5;
+  asio::io_context io;
+  std::deque<udp::socket> senders;
+  std::vector<std::uint8_t> bytes(2000);
+  const auto send = [&](udp::socket& socket, const auto& message, std::uint32_t sequence) {
+    encoder.Encode({77, 1, sequence, 1 + sequence}, message, bytes);
+    socket.send(asio::buffer(bytes));
+  };
+  for (int i = 0; i < kSenders; ++i) {
+    udp::socket& socket = senders.emplace_back(io, udp::v4());
+    socket.connect({asio::ip::address_v4::loopback(), port_->port()});
+    send(socket, Offer("subject " + std::to_string(i)), 0);
+    bytes.resize(2000);
+    socket.receive(asio::buffer(bytes));  // accepted
+  }
+  for (std::uint32_t pose = 0; pose < kPoses; ++pose) {
+    for (udp::socket& socket : senders) send(socket, Pose(0.5f), pose);
+  }
+  while (num_poses_ < kSenders * kPoses) std::this_thread::yield();
+  const std::lock_guard lock(mutex_);
+  ASSERT_EQ(lanes_of_.size(), std::size_t{kSenders});
+  std::set<int> used;
+  for (const auto& [subject, lanes] : lanes_of_) {
+    EXPECT_EQ(lanes.size(), 1u) << subject;
+    used.insert(lanes.begin(), lanes.end());
+  }
+  EXPECT_GT(used.size(), 1u);
+  EXPECT_EQ(Count(Counter::kPosesReceived), std::uint64_t{kSenders * kPoses});
+}
+
+Hub::Parts TwoLanes(Metrics* metrics) {
+  Hub::Parts parts;
+  parts.session = 1;
+  parts.rig = std::make_shared<const wrinkle::Rig>();
+  parts.metrics = metrics;
+  parts.make_token = [] { return 1u; };
+  parts.lanes = 2;
+  return parts;
+}
+
+TEST(UdpPortFailure, WhatALaneDoesNotSurviveEndsTheCallersLoop) {
+  Metrics metrics;
+  Hub::Parts parts = TwoLanes(&metrics);
+  parts.make_token = []() -> std::uint64_t { throw std::runtime_error("no more numbers"); };
+  Hub hub(std::move(parts));
+  asio::io_context io{1};
+  UdpPort port(io, 2, Limits(), &hub, &metrics, nullptr);
+  ASSERT_TRUE(port.Open({asio::ip::address_v4::loopback(), 0}).ok());
+  port.Start();
+  udp::socket sender(io, udp::v4());
+  std::vector<std::uint8_t> hello;
+  protocol::Encoder().Encode({77, 0, 1, 0}, protocol::Hello{}, hello);
+  sender.send_to(asio::buffer(hello), {asio::ip::address_v4::loopback(), port.port()});
+  EXPECT_THROW(io.run_for(std::chrono::seconds(20)), std::runtime_error);
+}
+
+TEST(UdpPortFailure, WhatCameBeforeAllSocketsWereThereIsDropped) {
+  Metrics metrics;
+  Hub hub(TwoLanes(&metrics));
+  asio::io_context io{1};
+  UdpServer server(io, Limits(), &hub, &metrics);
+  ASSERT_TRUE(server.Open({asio::ip::address_v4::loopback(), 0}).ok());
+  udp::socket sender(io, udp::v4());
+  sender.connect({asio::ip::address_v4::loopback(), server.port()});
+  std::vector<std::uint8_t> hello;
+  const auto send = [&](std::uint32_t sequence) {
+    protocol::Encoder().Encode({77, 0, sequence, 0}, protocol::Hello{}, hello);
+    sender.send(asio::buffer(hello));
+  };
+  send(1);
+  server.DropWaiting();
+  send(2);
+  server.Start();
+  while (metrics.Get(Counter::kDatagramsSent) == 0) io.run_one_for(std::chrono::seconds(1));
+  EXPECT_EQ(metrics.Get(Counter::kDatagramsReceived), 1u);
+  server.Close();
+}
+
+TEST_F(UdpPortTest, ThePortIsNotSharedWithAStranger) {
+  Hub other(TwoLanes(&metrics));
+  asio::io_context io;
+  UdpPort second(io, 2, Limits(), &other, &metrics, nullptr);
+  const Status status = second.Open({asio::ip::address_v4::loopback(), port_->port()});
+  EXPECT_EQ(status.code(), StatusCode::kUnavailable);
+}
+
+}  // namespace
+}  // namespace furrow::server

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/peers/outbox.h"
+
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/session/peers/peer.h"
+
+namespace furrow::server {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using testing::ElementsAre;
+
+std::vector<int> PopAll(Outbox* outbox) {
+  std::vector<int> first_bytes;
+  Bytes bytes;
+  while (outbox->Pop(&bytes)) first_bytes.push_back(bytes.at(0));
+  return first_bytes;
+}
+
+TEST(Outbox, RepliesGoFirstAndInOrder) {
+  Outbox outbox(4, 4);
+  outbox.PushFrame(1, Bytes{10});
+  ASSERT_TRUE(outbox.PushReply(Bytes{1}));
+  ASSERT_TRUE(outbox.PushReply(Bytes{2}));
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(1, 2, 10));
+  EXPECT_TRUE(outbox.empty());
+}
+
+TEST(Outbox, RepliesAreBoundedByTheirBytesToo) {
+  Outbox outbox(100, 4, 1000);
+  EXPECT_TRUE(outbox.PushReply(Bytes(2000))) << "one alone may always wait";
+  EXPECT_FALSE(outbox.PushReply(Bytes(1)));
+  Bytes bytes;
+  ASSERT_TRUE(outbox.Pop(&bytes));
+  EXPECT_TRUE(outbox.PushReply(Bytes(600)));
+  EXPECT_TRUE(outbox.PushReply(Bytes(400)));
+  EXPECT_FALSE(outbox.PushReply(Bytes(1)));
+}
+
+TEST(Outbox, TheNewestFrameOfAKeyWinsAndKeepsItsPlace) {
+  Outbox outbox(4, 4);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{10}), 0);
+  EXPECT_EQ(outbox.PushFrame(2, Bytes{20}), 0);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{11, 12, 13}), 1);
+  EXPECT_EQ(outbox.num_frames(), 2u);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(11, 20));
+}
+
+TEST(Outbox, ABurstOfAKeyMayWaitUpToItsLimit) {
+  Outbox outbox(4, 8);
+  for (std::uint8_t i = 0; i < 4; ++i) EXPECT_EQ(outbox.PushFrame(1, Bytes{i}, 4), 0);
+  EXPECT_EQ(outbox.PushFrame(2, Bytes{20}, 4), 0);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{4}, 4), 1);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(1, 2, 3, 20, 4));
+}
+
+TEST(Outbox, AStalledPeerHoldsAtMostSoManyFramesAndTheOldestGoes) {
+  Outbox outbox(4, 3);
+  for (std::uint8_t key = 0; key < 3; ++key) EXPECT_EQ(outbox.PushFrame(key, Bytes{key}), 0);
+  for (std::uint8_t key = 3; key < 10; ++key) EXPECT_EQ(outbox.PushFrame(key, Bytes{key}), 1);
+  EXPECT_EQ(outbox.num_frames(), 3u);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(7, 8, 9));
+}
+
+TEST(Outbox, RepliesAreNeverDroppedButRefused) {
+  Outbox outbox(2, 1);
+  EXPECT_TRUE(outbox.PushReply(Bytes{1}));
+  EXPECT_TRUE(outbox.PushReply(Bytes{2}));
+  EXPECT_FALSE(outbox.PushReply(Bytes{3}));
+  outbox.PushFrame(1, Bytes{9});
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(1, 2, 9));
+}
+
+TEST(Outbox, AnEndedSubscriptionLeavesNothingBehind) {
+  Outbox outbox(2, 4);
+  outbox.PushFrame(1, Bytes{1});
+  outbox.PushFrame(2, Bytes{2});
+  outbox.DropFrames(1);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(2));
+}
+
+TEST(Outbox, FramesThatAreAllKeptStandInLineWithTheReplies) {
+  Outbox outbox(4, 4);
+  outbox.PushFrame(1, Bytes{10});
+  outbox.PushFrame(2, Bytes{20}, kKeepAll);
+  ASSERT_TRUE(outbox.PushReply(Bytes{1}));
+  for (std::uint8_t i = 21; i < 30; ++i) EXPECT_EQ(outbox.PushFrame(2, Bytes{i}, kKeepAll), 0);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(20, 1, 21, 22, 23, 24, 25, 26, 27, 28, 29, 10));
+}
+
+TEST(Outbox, WhoLeavesGetsTheLineAndNothingBehindIt) {
+  Outbox outbox(4, 4);
+  outbox.PushFrame(1, Bytes{10});
+  outbox.PushFrame(2, Bytes{20}, kKeepAll);
+  ASSERT_TRUE(outbox.PushReply(Bytes{1}));
+  outbox.DropAllBehindTheLine();
+  EXPECT_EQ(outbox.num_frames(), 0u);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(20, 1));
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{11}), 0) << "the key has room again";
+}
+
+TEST(Outbox, ALineThatIsFullTakesNoNewFrameUntilItMoves) {
+  Outbox outbox(4, 4);
+  const Bytes half(protocol::kMaxWaitingFrameBytes / 2, 1);
+  EXPECT_EQ(outbox.PushFrame(1, half, kKeepAll), 0);
+  EXPECT_EQ(outbox.PushFrame(1, half, kKeepAll), 0);
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{2}, kKeepAll), 1);
+  EXPECT_TRUE(outbox.PushReply(Bytes{3})) << "replies have room of their own";
+  Bytes bytes;
+  ASSERT_TRUE(outbox.Pop(&bytes));
+  EXPECT_EQ(outbox.PushFrame(1, Bytes{4}, kKeepAll), 0);
+  outbox.DropFrames(1);
+  EXPECT_THAT(PopAll(&outbox), ElementsAre(3)) << "the reply is not a frame";
+  EXPECT_EQ(outbox.PushFrame(1, half, kKeepAll), 0);
+  EXPECT_EQ(outbox.PushFrame(1, half, kKeepAll), 0) << "what was dropped makes room";
+}
+
+}  // namespace
+}  // namespace furrow::server

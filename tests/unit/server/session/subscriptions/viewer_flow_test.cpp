@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/subscriptions/viewer_flow.h"
+
+#include <gtest/gtest.h>
+
+namespace furrow::server {
+namespace {
+
+constexpr Time kFrame = FromSeconds(1.0 / 60.0);
+
+// Draws and sends one picture; its number.
+std::uint32_t Show(ViewerFlow& flow, Time now) {
+  EXPECT_TRUE(flow.MayAsk(now));
+  flow.Ask(false, now);
+  return flow.Send();
+}
+
+TEST(ViewerFlow, AtMostTwoPicturesAreUnderWay) {
+  ViewerFlow flow;
+  const Time now = FromSeconds(10);
+  EXPECT_EQ(Show(flow, now), 1u);
+  EXPECT_EQ(Show(flow, now), 2u);
+  EXPECT_FALSE(flow.MayAsk(now));
+  EXPECT_TRUE(flow.Acknowledge(1));
+  EXPECT_EQ(flow.under_way(), 1u);
+  EXPECT_EQ(Show(flow, now), 3u);
+  EXPECT_FALSE(flow.MayAsk(now));
+  EXPECT_TRUE(flow.Acknowledge(3));  // and with it the one before
+  EXPECT_EQ(flow.under_way(), 0u);
+}
+
+TEST(ViewerFlow, OneIsAskedForAtATime) {
+  ViewerFlow flow;
+  flow.Ask(false, FromSeconds(1));
+  EXPECT_TRUE(flow.asking());
+  EXPECT_FALSE(flow.MayAsk(FromSeconds(9)));
+  (void)flow.Send();
+  EXPECT_TRUE(flow.MayAsk(FromSeconds(9)));
+}
+
+TEST(ViewerFlow, WhatWasNeverSentCannotBeAcknowledged) {
+  ViewerFlow flow;
+  EXPECT_FALSE(flow.Acknowledge(1));
+  Show(flow, FromSeconds(1));
+  EXPECT_FALSE(flow.Acknowledge(2));
+  EXPECT_TRUE(flow.Acknowledge(1));
+  Show(flow, FromSeconds(1));
+  EXPECT_TRUE(flow.Acknowledge(1));  // once more: nothing new
+  EXPECT_EQ(flow.under_way(), 1u);
+}
+
+TEST(ViewerFlow, AStillAskedForBeforeTheViewChangedIsNone) {
+  ViewerFlow flow;
+  const Time asked = FromSeconds(5);
+  flow.Ask(true, asked);
+  EXPECT_TRUE(flow.HasStill(asked));
+  const Time changed = asked + Time(1);  // while the still is being drawn
+  EXPECT_EQ(flow.Send(), 1u);
+  EXPECT_FALSE(flow.HasStill(changed));
+}
+
+TEST(ViewerFlow, AFailedPictureIsTriedAgainAfterAWhile) {
+  ViewerFlow flow;
+  const Time now = FromSeconds(5);
+  flow.Ask(true, now);
+  flow.Fail();
+  EXPECT_FALSE(flow.HasStill(FromSeconds(0)));
+  EXPECT_EQ(flow.under_way(), 0u);
+  EXPECT_FALSE(flow.MayAsk(now + ViewerFlow::kRetry - Time(1)));
+  EXPECT_TRUE(flow.MayAsk(now + ViewerFlow::kRetry));
+}
+
+// Sixty poses a second for `seconds`; the viewer acknowledges at once or not at all.
+void Stream(ViewerFlow& flow, double seconds, bool acknowledges, Time* now) {
+  for (const Time end = *now + FromSeconds(seconds); *now < end; *now += kFrame) {
+    flow.CountDue(*now);
+    if (!flow.MayAsk(*now)) continue;
+    const std::uint32_t number = Show(flow, *now);
+    if (acknowledges) {
+      EXPECT_TRUE(flow.Acknowledge(number));
+    }
+  }
+}
+
+TEST(ViewerFlow, WhoKeepsUpStaysAtTheBest) {
+  ViewerFlow flow;
+  Time now = FromSeconds(3);
+  Stream(flow, 20, true, &now);
+  EXPECT_EQ(flow.tier(), 0);
+  EXPECT_EQ(flow.dropped(), 0u);
+}
+
+TEST(ViewerFlow, WhoStallsFallsAndComesBackSlowly) {
+  ViewerFlow flow;
+  Time now = FromSeconds(3);
+  Stream(flow, 1.5, false, &now);
+  EXPECT_EQ(flow.tier(), 1);
+  EXPECT_GT(flow.dropped(), 50u);
+  Stream(flow, 10, false, &now);
+  EXPECT_EQ(flow.tier(), ViewerFlow::kNumTiers - 1);  // and no further
+  EXPECT_TRUE(flow.Acknowledge(2));
+  Stream(flow, 3, true, &now);
+  EXPECT_EQ(flow.tier(), 2);
+  Stream(flow, 3.5, true, &now);
+  EXPECT_EQ(flow.tier(), 1);
+  Stream(flow, 5.5, true, &now);
+  EXPECT_EQ(flow.tier(), 0);
+}
+
+TEST(ViewerFlow, GoingUpInVainTakesLongerTheNextTime) {
+  ViewerFlow flow;
+  Time now = FromSeconds(3);
+  double waited[2] = {0.0, 0.0};
+  for (double& seconds : waited) {
+    Stream(flow, 1.5, false, &now);
+    ASSERT_EQ(flow.tier(), 1);
+    // What is under way is shown after all.
+    for (std::uint32_t number = 1; flow.under_way() > 0; ++number) (void)flow.Acknowledge(number);
+    const Time start = now;
+    while (flow.tier() > 0 && now - start < FromSeconds(100)) Stream(flow, 0.5, true, &now);
+    seconds = ToSeconds(now - start);
+  }
+  EXPECT_LT(waited[0], 10.0);  // two tiers: the second window was half lost, too
+  EXPECT_GT(waited[1], waited[0] + 3.0);
+}
+
+}  // namespace
+}  // namespace furrow::server

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Strain drivers on a patch whose skin weights run linearly from one joint to another: moving that
+// joint deforms it evenly, so that textbook strains come out, whatever the joints' local frames.
+#include "wrinkle/drivers/strain/strain_driver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/wrinkle/bound_rig.h"
+
+namespace furrow::wrinkle {
+namespace {
+
+constexpr float kHeight = 0.02f;  // of the patch
+const glm::vec3 kUp(0.0f, 1.0f, 0.0f);
+const glm::vec3 kRight(0.92847669f, 0.0f, -0.37139068f);  // along its rows: the viewer's right
+
+Rig PatchRig(const glm::vec3& direction = kUp, float full_compression = 0.25f) {
+  Rig rig;
+  rig.drivers = {CheekPatch()};
+  rig.drivers[0].strain.direction = direction;
+  rig.drivers[0].strain.full_compression = full_compression;
+  return rig;
+}
+
+class StrainDrivers : public testing::TestWithParam<unsigned> {
+ protected:
+  // The patch's values where its lowest row moves by `by`.
+  static void Expect(BoundRig rig, const glm::vec3& by, float along, float across, float left,
+                     float right) {
+    LocalPose pose = RestPose(rig.skeleton());
+    Move(rig.skeleton(), "cheek_l", by, &pose);
+    rig.Solve(pose);
+    EXPECT_NEAR(rig.Value("cheek_patch.along"), along, 2e-4f);
+    EXPECT_NEAR(rig.Value("cheek_patch.across"), across, 2e-4f);
+    EXPECT_NEAR(rig.Value("cheek_patch.diagonal_left"), left, 2e-4f);
+    EXPECT_NEAR(rig.Value("cheek_patch.diagonal_right"), right, 2e-4f);
+  }
+  BoundRig Patch(const glm::vec3& direction = kUp, float full_compression = 0.25f) {
+    return {PatchRig(direction, full_compression), MakeBody(GetParam())};
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(LocalFrames, StrainDrivers, testing::Values(0u, 31u, 32u));
+
+TEST_P(StrainDrivers, RestIsNothing) { Expect(Patch(), {}, 0, 0, 0, 0); }
+
+TEST_P(StrainDrivers, CompressionAlongAndAcrossTheDirection) {
+  Expect(Patch(), 0.1f * kHeight * kUp, 0.4f, 0, 0, 0);
+  Expect(Patch(kUp, 0.5f), 0.1f * kHeight * kUp, 0.2f, 0, 0, 0);
+  Expect(Patch(kRight), 0.1f * kHeight * kUp, 0, 0.4f, 0, 0);
+  Expect(Patch(-kRight), 0.1f * kHeight * kUp, 0, 0.4f, 0, 0);
+  // Up leans 45 degrees to the left of what points to the upper right.
+  Expect(Patch(kUp + kRight), 0.1f * kHeight * kUp, 0, 0, 0.4f, 0);
+}
+
+TEST_P(StrainDrivers, StretchIsNoCompression) {
+  Expect(Patch(), -0.3f * kHeight * kUp, 0, 0, 0, 0);
+}
+
+// Simple shear by g compresses to sqrt(1 + g^2/4) - g/2. With the lowest row moved to the viewer's
+// right that is along the line that leans to the right, a little further than 45 degrees from up,
+// since what stood upright is longer now.
+TEST_P(StrainDrivers, ShearCompressesDiagonally) {
+  const float g = 0.2f;
+  const float compression = 1.0f - (std::sqrt(1.0f + 0.25f * g * g) - 0.5f * g);
+  const float sine = 1.0f / std::sqrt(1.0f + 0.25f * g * g);  // of 2 phi: tan 2 phi = 2 / g
+  const float diagonal = 4.0f * compression * sine * sine;
+  const float rest = 4.0f * compression - diagonal;
+  Expect(Patch(), g * kHeight * kRight, 0, rest, 0, diagonal);
+  Expect(Patch(), -g * kHeight * kRight, 0, rest, diagonal, 0);
+}
+
+TEST_P(StrainDrivers, BeyondFullTheyStillSumToOne) {
+  BoundRig rig = Patch(kUp, 0.1f);
+  LocalPose pose = RestPose(rig.skeleton());
+  Move(rig.skeleton(), "cheek_l", kHeight * (0.5f * kUp + 0.3f * kRight), &pose);
+  rig.Solve(pose);
+  float sum = 0.0f;
+  for (const float value : rig.values()) sum += value;
+  EXPECT_NEAR(sum, 1.0f, 1e-5f);
+  EXPECT_GT(rig.Value("cheek_patch.along"), 0.3f);
+  EXPECT_GT(rig.Value("cheek_patch.diagonal_right"), 0.1f);
+}
+
+TEST_P(StrainDrivers, MotionsOfTheHeadAndTheWholeChangeNoBit) {
+  std::mt19937 random(3);
+  BoundRig rig = Patch();
+  LocalPose pose = RestPose(rig.skeleton());
+  Move(rig.skeleton(), "cheek_l", {0.003f, 0.004f, 0.001f}, &pose);
+  rig.Solve(pose);
+  const std::vector<float> before = rig.values();
+  for (int round = 0; round < 50; ++round) {
+    pose.joints[0].translation = RandomVector(&random, 1000.0f);
+    pose.joints[0].rotation = RandomRotation(&random);
+    Turn(rig.skeleton(), "head", RandomRotation(&random), &pose);
+    rig.Solve(pose);
+    EXPECT_EQ(rig.values(), before);
+  }
+}
+
+TEST_P(StrainDrivers, TheSkeletonsSizeDoesNotMatter) {
+  BoundRig large(PatchRig(), MakeBody(GetParam(), 100.0f));
+  Expect(large, 10.0f * kHeight * kUp, 0.4f, 0, 0, 0);
+}
+
+TEST_P(StrainDrivers, SweepIsContinuous) {
+  BoundRig rig = Patch();
+  std::vector<float> before;
+  float worst = 0.0f;
+  for (int i = 0; i <= 3600; ++i) {
+    const float degrees = 0.1f * static_cast<float>(i);
+    LocalPose pose = RestPose(rig.skeleton());
+    const float radians = glm::radians(degrees);
+    Move(rig.skeleton(), "cheek_l",
+         0.2f * kHeight * (std::cos(radians) * kUp + std::sin(radians) * kRight), &pose);
+    rig.Solve(pose);
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      worst = std::max(worst, std::abs(rig.values()[k] - before[k]));
+    }
+    before = rig.values();
+  }
+  std::printf("strain: at most %.6f per 0.1 degree\n", worst);
+  EXPECT_LE(worst, 0.005f);
+  EXPECT_GT(worst, 0.0f);
+}
+
+TEST(StrainDriver, WithoutItsJointsItRests) {
+  Rig rig = PatchRig();
+  rig.drivers[0].strain.joints[1] = "jowl";
+  const Skeleton body = MakeBody();
+  const auto binding = RigBinding::Create(rig, body, {}, {.allow_missing = true});
+  ASSERT_TRUE(binding.ok()) << binding.status().ToString();
+  EXPECT_EQ(binding->missing_joints().size(), 1u);
+  std::vector<float> values(4, -1.0f);
+  const LocalPose pose = RestPose(body);
+  const DriverJob job{.binding = &*binding, .local = pose.joints, .driver_values = values};
+  ASSERT_EQ(job.Run(), JobStatus::kOk);
+  EXPECT_EQ(values, std::vector<float>(4, 0.0f));
+}
+
+TEST(StrainDriver, AnswersForTheJointsThatMoveItsPatch) {
+  Rig rig = PatchRig();
+  rig.wrinkle_maps = {{.name = "squash"}};
+  rig.regions.resize(1);
+  rig.regions[0].name = "cheek";
+  rig.regions[0].mask.kind = Mask::Kind::kSkinning;
+  rig.regions[0].modulation = Modulation::kLinear;
+  rig.regions[0].feeds = {{"squash", {{"cheek_patch", "along", 1.0f}}}};
+  BoundRig bound(rig, MakeBody());
+  LocalPose pose = RestPose(bound.skeleton());
+  Move(bound.skeleton(), "cheek_l", 0.1f * kHeight * kUp, &pose);
+  bound.Solve(pose);
+  std::vector<float> influences(pose.joints.size());
+  const JointInfluenceJob job{
+      .binding = bound.binding().get(), .driver_values = bound.values(), .influences = influences};
+  ASSERT_EQ(job.Run(), JobStatus::kOk);
+  EXPECT_NEAR(influences[bound.skeleton().Find("cheek_l")], 0.4f, 1e-4f);
+  EXPECT_NEAR(influences[bound.skeleton().Find("head")], 0.4f, 1e-4f);
+  EXPECT_EQ(influences[bound.skeleton().Find("neck")], 0.0f);
+}
+
+}  // namespace
+}  // namespace furrow::wrinkle

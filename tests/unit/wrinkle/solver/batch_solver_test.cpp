@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+// The batch against one solver after another: on chance rigs, poses and times, with every set of
+// instructions that this processor has.
+#include "wrinkle/solver/batch_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include "tests/unit/allocation_counter.h"
+#include "tests/unit/wrinkle/bound_rig.h"
+#include "tests/unit/wrinkle/crowd.h"
+
+namespace furrow::wrinkle {
+namespace {
+
+float Uniform(std::mt19937* random, float from, float to) {
+  return std::uniform_real_distribution<float>(from, to)(*random);
+}
+int Pick(std::mt19937* random, int count) {
+  return std::uniform_int_distribution<int>(0, count - 1)(*random);
+}
+
+// Drivers of every kind with parameters by chance, in an order by chance.
+Rig RandomRig(std::mt19937* random) {
+  Rig rig = MakeRig();
+  if (Pick(random, 4) == 0) rig.anchor.clear();
+  for (Driver& driver : rig.drivers) {
+    driver.pose.solve = Pick(random, 3) == 0 ? PoseSolve::kNnls : PoseSolve::kProjection;
+    driver.pose.falloff = Pick(random, 2) == 0 ? 0.0f : Uniform(random, 0.2f, 2.0f);
+    if (Pick(random, 3) == 0) driver.hinge.axis.reset();
+    driver.hinge.beta_degrees = driver.ball.beta_degrees = Uniform(random, 10.0f, 120.0f);
+    driver.ball.mode = Pick(random, 3) == 0 ? BallMode::kThesis : BallMode::kSmooth;
+    driver.twist.full_degrees = Uniform(random, 30.0f, 180.0f);
+    driver.blend_shape.neutral = Uniform(random, 0.0f, 0.3f);
+    driver.blend_shape.full = Uniform(random, 0.5f, 1.0f);
+  }
+  std::shuffle(rig.drivers.begin(), rig.drivers.end(), *random);
+  for (Region& region : rig.regions) {
+    region.combine = static_cast<Combine>(Pick(random, 3));
+    region.modulation = static_cast<Modulation>(Pick(random, 3));
+    region.feeds[0].sources.push_back({"jaw", "value", Uniform(random, 0.1f, 1.0f)});
+  }
+  rig.regions[1].neighbours = {"cheek_l", "mouth"};
+  rig.filter = {.enabled = Pick(random, 5) != 0,
+                .min_cutoff_hz = Uniform(random, 0.5f, 10.0f),
+                .beta = Uniform(random, 0.0f, 5.0f),
+                .derivative_cutoff_hz = Uniform(random, 0.5f, 5.0f),
+                .slew_per_second = Pick(random, 3) == 0 ? 0.0f : Uniform(random, 1.0f, 60.0f)};
+  return rig;
+}
+
+// Anything from rest to a pose that nobody could take.
+void NextPose(const Skeleton& skeleton, std::mt19937* random, LocalPose* pose) {
+  const float share = Pick(random, 4) == 0 ? 1.0f : Uniform(random, 0.0f, 0.2f);
+  LocalPose wild;
+  RandomPose(skeleton, random, &wild);
+  pose->SetRest(skeleton);
+  for (std::size_t i = 0; i < pose->joints.size(); ++i) {
+    Transform& joint = pose->joints[i];
+    joint.rotation = glm::slerp(joint.rotation, wild.joints[i].rotation, share);
+    joint.translation = glm::mix(joint.translation, wild.joints[i].translation, share);
+    joint.scale = glm::vec3(1.0f) + share * RandomVector(random, 0.2f);
+  }
+  pose->blend_shapes.assign(Pick(random, 3) == 0 ? 0u : 1u, Uniform(random, -0.5f, 1.5f));
+}
+
+double NextStep(std::mt19937* random) {
+  const double steps[] = {0.0, 1e-7, 1.0 / 240.0, 1.0 / 60.0, 1.0 / 60.0, 0.1, 3.0};
+  return steps[Pick(random, 7)];
+}
+
+std::shared_ptr<const RigBinding> Bind(const Rig& rig, unsigned frame_seed = 0) {
+  return BoundRig(rig, MakeBody(frame_seed)).binding();
+}
+
+// One run of the tests below an instruction set.
+class BatchSolverTest : public testing::TestWithParam<std::int64_t> {
+ protected:
+  BatchSolverTest() {
+    hwy::SetSupportedTargetsForTest(GetParam());
+    hwy::GetChosenTarget().DeInit();
+  }
+  ~BatchSolverTest() override {
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().DeInit();
+  }
+};
+
+std::vector<std::int64_t> Targets() {
+  std::vector<std::int64_t> targets = {HWY_SCALAR};
+  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
+    const std::int64_t lowest = left & -left;
+    if (lowest != HWY_SCALAR) targets.push_back(lowest);
+  }
+  return targets;
+}
+
+INSTANTIATE_TEST_SUITE_P(Instructions, BatchSolverTest, testing::ValuesIn(Targets()),
+                         [](const auto& target) {
+                           return std::string(hwy::TargetName(target.param));
+                         });
+
+TEST_P(BatchSolverTest, EqualsOneAfterAnotherOnChanceRigsPosesAndTimes) {
+  std::mt19937 random(71);
+  for (int round = 0; round < 12; ++round) {
+    Crowd crowd(Bind(RandomRig(&random), static_cast<unsigned>(round % 3)), 37);
+    BatchSolver batch;
+    std::vector<BatchUpdate> updates;
+    for (int frame = 0; frame < 25; ++frame) {
+      updates.clear();
+      for (std::size_t subject = 0; subject < crowd.size(); ++subject) {
+        const int what = Pick(&random, 8);
+        if (what == 0) continue;  // no pose came
+        if (what == 1) {
+          crowd.Decay(subject, NextStep(&random));
+          continue;
+        }
+        NextPose(crowd.batched(subject).binding().skeleton(), &random, &crowd.pose(subject));
+        updates.push_back(crowd.Update(subject, NextStep(&random)));
+      }
+      batch.Run(updates);
+      crowd.ExpectStatuses(updates);
+      crowd.ExpectEqual();
+      if (HasFailure()) FAIL() << "round " << round << ", frame " << frame;
+    }
+  }
+}
+
+// Small errors must not add up: a slow filter, a thousand frames.
+TEST_P(BatchSolverTest, StaysEqualOverAThousandFrames) {
+  std::mt19937 random(72);
+  Rig rig = MakeRig();
+  rig.filter.min_cutoff_hz = 0.2f;
+  rig.filter.beta = 0.1f;
+  Crowd crowd(Bind(rig, 5), 16);
+  BatchSolver batch;
+  std::vector<BatchUpdate> updates;
+  for (int frame = 0; frame < 1000; ++frame) {
+    updates.clear();
+    for (std::size_t subject = 0; subject < crowd.size(); ++subject) {
+      if (frame % 10 == 0) {
+        NextPose(crowd.batched(subject).binding().skeleton(), &random, &crowd.pose(subject));
+      }
+      updates.push_back(crowd.Update(subject, 1.0 / 60.0));
+    }
+    batch.Run(updates);
+  }
+  crowd.ExpectEqual();
+}
+
+TEST_P(BatchSolverTest, AnyNumberOfSubjectsAndBindings) {
+  std::mt19937 random(73);
+  const auto first = Bind(MakeRig(), 0);
+  const auto second = Bind(RandomRig(&random), 5);
+  for (int count = 1; count <= 40; ++count) {
+    Crowd one(first, count);
+    Crowd other(second, count);
+    BatchSolver batch;
+    std::vector<BatchUpdate> updates;
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      NextPose(first->skeleton(), &random, &one.pose(i));
+      NextPose(second->skeleton(), &random, &other.pose(i));
+      updates.push_back(one.Update(i, 0.0));
+      if (i % 3 != 1) updates.push_back(other.Update(i, 0.0));
+    }
+    batch.Run(updates);
+    one.ExpectEqual();
+    other.ExpectEqual();
+  }
+}
+
+TEST_P(BatchSolverTest, ASubjectMayStandInABatchMoreThanOnce) {
+  const auto binding = Bind(MakeRig(), 5);
+  std::mt19937 random(74);
+  std::vector<LocalPose> poses(5);
+  SubjectSolver expected(binding);
+  SubjectSolver batched(binding);
+  std::vector<BatchUpdate> updates;
+  for (LocalPose& pose : poses) {
+    NextPose(binding->skeleton(), &random, &pose);
+    ASSERT_EQ(expected.Update(pose, 0.01), JobStatus::kOk);
+    updates.push_back({.solver = &batched, .pose = &pose, .dt = 0.01});
+  }
+  BatchSolver batch;
+  batch.Run(updates);
+  for (std::size_t i = 0; i < expected.wrinkle_weights().size(); ++i) {
+    EXPECT_NEAR(batched.wrinkle_weights()[i], expected.wrinkle_weights()[i], Crowd::kTolerance);
+  }
+}
+
+// Broken updates get their statuses, change nothing of theirs, and disturb nobody.
+TEST_P(BatchSolverTest, BadUpdatesFailAlone) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Rig rig = MakeRig();
+  rig.anchor = "thigh_l";  // control points are carried up to the hips and down again
+  const auto binding = BoundRig(rig, MakeBody(5)).binding();
+  const std::size_t num_floats =
+      static_cast<std::size_t>(binding->skeleton().num_joints()) * sizeof(Transform) / 4;
+  std::mt19937 random(75);
+  Crowd crowd(binding, 19);
+  BatchSolver batch;
+  std::vector<BatchUpdate> updates;
+  // Every number of a pose in turn, whether a driver reads it or not.
+  for (std::size_t number = 0; number < num_floats; ++number) {
+    updates.clear();
+    for (std::size_t i = 0; i < crowd.size(); ++i) {
+      NextPose(binding->skeleton(), &random, &crowd.pose(i));
+      if (i % 5 == number % 5) {
+        (&crowd.pose(i).joints[0].translation.x)[number] = i % 2 == 0 ? kNan : -kInfinity;
+      }
+      if (i == 7) crowd.pose(i).joints.pop_back();
+      if (i == 9) crowd.pose(i).blend_shapes = {0.0f, kNan};
+      updates.push_back(crowd.Update(i, i == 11 ? -1.0 : i == 12 ? double{kNan} : 0.01));
+    }
+    batch.Run(updates);
+    crowd.ExpectStatuses(updates);
+    crowd.ExpectEqual();
+    if (HasFailure()) FAIL() << "number " << number;
+  }
+  for (const std::size_t count : {1, 150}) {  // 300: looked at ahead of their turn
+    std::vector<BatchUpdate> incomplete;
+    for (std::size_t i = 0; i < count; ++i) {
+      incomplete.push_back({.solver = &crowd.batched(0)});
+      incomplete.push_back({.pose = &crowd.pose(0)});
+    }
+    batch.Run(incomplete);
+    for (const BatchUpdate& update : incomplete) {
+      EXPECT_EQ(update.status, JobStatus::kNullPointer);
+    }
+  }
+}
+
+// Numbers that overflow on the way are no reason to refuse a pose, alone or beside others.
+TEST_P(BatchSolverTest, SurvivesDegeneratePoses) {
+  const auto binding = Bind(MakeRig(), 5);
+  std::mt19937 random(76);
+  Crowd crowd(binding, 18);
+  std::vector<BatchUpdate> updates;
+  for (std::size_t i = 0; i < crowd.size(); ++i) {
+    NextPose(binding->skeleton(), &random, &crowd.pose(i));
+    for (Transform& joint : crowd.pose(i).joints) {
+      if (i % 3 == 0) joint.scale = joint.translation = glm::vec3(0.0f);
+      if (i % 3 == 1) {
+        joint.scale = glm::vec3(1e30f);
+        joint.translation = glm::vec3(3e38f);
+      }
+    }
+    updates.push_back(crowd.Update(i, 0.01));
+  }
+  BatchSolver batch;
+  batch.Run(updates);
+  crowd.ExpectStatuses(updates);
+  crowd.ExpectEqual();
+}
+
+TEST_P(BatchSolverTest, SolvesStreamsWithoutJoints) {
+  Rig rig;
+  Driver jaw;
+  jaw.name = "jaw";
+  jaw.kind = Driver::Kind::kBlendShape;
+  jaw.blend_shape = {.blend_shape = "jawOpen"};
+  rig.drivers = {jaw};
+  Crowd crowd(BoundRig(rig, Skeleton()).binding(), 3);
+  std::vector<BatchUpdate> updates;
+  for (std::size_t i = 0; i < crowd.size(); ++i) {
+    crowd.pose(i).blend_shapes = {0.25f * static_cast<float>(i + 1)};
+    updates.push_back(crowd.Update(i, 0.01));
+  }
+  BatchSolver().Run(updates);
+  crowd.ExpectStatuses(updates);
+  crowd.ExpectEqual();
+  EXPECT_EQ(crowd.batched(2).driver_values()[0], 0.75f);
+}
+
+TEST_P(BatchSolverTest, LevelsOfDetailAreAPrefixOfTheDrivers) {
+  std::mt19937 random(77);
+  const Rig rig = RandomRig(&random);
+  const auto binding = Bind(rig, 5);
+  Crowd crowd(binding, 40);
+  BatchSolver batch;
+  std::vector<BatchUpdate> updates;
+  for (int frame = 0; frame < 10; ++frame) {
+    updates.clear();
+    for (std::size_t i = 0; i < crowd.size(); ++i) {
+      if (frame % 4 == 0) crowd.SetLevel(i, (i + static_cast<std::size_t>(frame)) % 13);
+      NextPose(binding->skeleton(), &random, &crowd.pose(i));
+      updates.push_back(crowd.Update(i, 1.0 / 60.0));
+    }
+    batch.Run(updates);
+    crowd.ExpectEqual();
+  }
+}
+
+TEST_P(BatchSolverTest, DoesNotAllocateOnceItHasSeenASize) {
+  Rig rig = MakeRig();
+  rig.drivers[0].pose.solve = PoseSolve::kNnls;
+  const auto binding = Bind(rig, 5);
+  const auto small = Bind(MakeRig(), 0);
+  std::vector<LocalPose> poses(50);
+  std::vector<SubjectSolver> solvers;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    solvers.emplace_back(i % 5 == 0 ? small : binding);
+    poses[i].SetRest(solvers[i].binding().skeleton());
+  }
+  std::vector<BatchUpdate> updates;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    updates.push_back({.solver = &solvers[i], .pose = &poses[i], .dt = 0.01});
+  }
+  BatchSolver batch;
+  batch.Run(updates);
+  const std::uint64_t before = furrow::test::NumAllocations();
+  for (std::size_t count = 1; count <= updates.size(); ++count) {
+    batch.Run(std::span(updates).last(count));
+  }
+  poses[3].joints[2].scale.x = std::numeric_limits<float>::infinity();
+  batch.Run(updates);
+  EXPECT_EQ(furrow::test::NumAllocations(), before);
+  EXPECT_EQ(updates[3].status, JobStatus::kNonFinite);
+}
+
+// What a level means, on the scalar solver: the batch is held to it above.
+TEST(LevelOfDetail, DriversPastThePrefixFadeAndTheOthersStay) {
+  const auto binding = Bind(MakeRig(), 5);
+  std::mt19937 random(78);
+  LocalPose pose;
+  RandomPose(binding->skeleton(), &random, &pose);
+  SubjectSolver whole(binding);
+  SubjectSolver cut(binding);
+  ASSERT_EQ(whole.Update(pose, 0.0), JobStatus::kOk);
+  ASSERT_EQ(cut.Update(pose, 0.0), JobStatus::kOk);
+  cut.set_num_drivers(2);  // brow_l, brow_r: two values each
+  std::vector<float> before(cut.filtered_values().begin(), cut.filtered_values().end());
+  for (int frame = 0; frame < 60; ++frame) {
+    ASSERT_EQ(whole.Update(pose, 1.0 / 60.0), JobStatus::kOk);
+    ASSERT_EQ(cut.Update(pose, 1.0 / 60.0), JobStatus::kOk);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const float now = cut.filtered_values()[i];
+      if (i < 4) {
+        EXPECT_EQ(now, whole.filtered_values()[i]);
+      } else {
+        EXPECT_LE(now, before[i]);
+        EXPECT_TRUE(frame > 0 || before[i] == 0.0f || now > 0.0f) << "it jumps";
+      }
+      before[i] = now;
+    }
+  }
+  for (std::size_t i = 4; i < before.size(); ++i) EXPECT_LT(before[i], 1e-3f);
+}
+
+}  // namespace
+}  // namespace furrow::wrinkle

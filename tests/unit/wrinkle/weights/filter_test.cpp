@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "wrinkle/solver/solver.h"
+#include "wrinkle/weights/one_euro.h"
+
+namespace furrow::wrinkle {
+namespace {
+
+class FilterTest : public testing::Test {
+ protected:
+  FilterTest() { context_.Resize(1); }
+
+  float Step(float input, double dt) {
+    input_ = input;
+    const FilterJob job{.filter = &filter_,
+                        .context = &context_,
+                        .dt = dt,
+                        .input = std::span(&input_, 1),
+                        .output = std::span(&output_, 1)};
+    EXPECT_EQ(job.Run(), JobStatus::kOk);
+    return output_;
+  }
+  float Lose(double dt) {
+    const FilterJob job{.filter = &filter_,
+                        .context = &context_,
+                        .dt = dt,
+                        .input = {},
+                        .output = std::span(&output_, 1)};
+    EXPECT_EQ(job.Run(), JobStatus::kOk);
+    return output_;
+  }
+
+  Filter filter_;
+  FilterContext context_;
+  float input_ = 0.0f;
+  float output_ = -1.0f;
+};
+
+TEST(OneEuro, LowPassShareIsThatOfAFirstOrderFilter) {
+  EXPECT_EQ(LowPassShare(1.0, 0.0), 0.0);
+  // tau = 1 / (2 pi) s; dt = tau: 1 / (1 + 1).
+  EXPECT_NEAR(LowPassShare(1.0, 0.15915494), 0.5, 1e-6);
+  EXPECT_NEAR(LowPassShare(4.0, 1.0 / 60.0), 0.2952, 1e-4);  // 1 / (1 + 60 / 8 pi)
+  EXPECT_NEAR(LowPassShare(1.0, 1e9), 1.0, 1e-8);
+}
+
+// Two steps at 10 Hz by hand: min cut-off 1 Hz, beta 2, derivative cut-off 1 Hz.
+TEST(OneEuro, FollowsAWorkedExample) {
+  const OneEuro filter{.min_cutoff_hz = 1.0, .beta = 2.0, .derivative_cutoff_hz = 1.0};
+  double speed = 0.0;
+  // share(1 Hz, 0.1 s) = 1 / (1 + 1.591549) = 0.385869; speed = 0.385869 * 5 = 1.929346;
+  // cut-off = 4.858692 Hz, tau = 0.0327567, share = 1 / 1.327567 = 0.753258.
+  const double first = filter.Step(0.0, 0.5, 5.0, 0.1, &speed);
+  EXPECT_NEAR(speed, 1.929346, 1e-5);
+  EXPECT_NEAR(first, 0.376629, 1e-5);
+  // speed = 1.929346 * (1 - 0.385869) = 1.184872; cut-off
+  // 3.369745, share = 1 / 1.472306 = 0.679207.
+  const double second = filter.Step(first, 0.5, 0.0, 0.1, &speed);
+  EXPECT_NEAR(speed, 1.184872, 1e-5);
+  EXPECT_NEAR(second, first + 0.679207 * (0.5 - first), 1e-5);
+}
+
+TEST_F(FilterTest, FirstInputPassesUnchanged) { EXPECT_EQ(Step(0.83f, 0.0), 0.83f); }
+
+TEST_F(FilterTest, OutputsStayInRange) {
+  EXPECT_EQ(Step(7.0f, 0.0), 1.0f);
+  for (int i = 0; i < 50; ++i) {
+    const float output = Step(i % 2 == 0 ? -1e30f : 1e30f, 0.01);
+    EXPECT_GE(output, 0.0f);
+    EXPECT_LE(output, 1.0f);
+  }
+}
+
+TEST_F(FilterTest, RestIsSteadierAndMotionArrives) {
+  std::mt19937 random(4);
+  std::normal_distribution<float> jitter(0.0f, 0.02f);
+  filter_.min_cutoff_hz = 1.0f;
+  double raw = 0.0;
+  double smooth = 0.0;
+  Step(0.5f, 0.0);
+  for (int i = 0; i < 600; ++i) {
+    const float input = 0.5f + jitter(random);
+    const float output = Step(input, 1.0 / 60.0);
+    raw += (input - 0.5f) * (input - 0.5f);
+    smooth += (output - 0.5f) * (output - 0.5f);
+  }
+  EXPECT_LT(std::sqrt(smooth), 0.5 * std::sqrt(raw));
+  for (int i = 0; i < 60; ++i) Step(1.0f, 1.0 / 60.0);
+  EXPECT_NEAR(Step(1.0f, 1.0 / 60.0), 1.0f, 0.01f);
+}
+
+TEST_F(FilterTest, BetaShortensTheLagOfFastMotion) {
+  const auto lag = [&](float beta) {
+    filter_ = Filter{.min_cutoff_hz = 1.0f, .beta = beta, .slew_per_second = 0.0f};
+    context_.Reset();
+    float output = Step(0.0f, 0.0);
+    for (int i = 1; i <= 6; ++i) output = Step(static_cast<float>(i) / 6.0f, 1.0 / 60.0);
+    return 1.0f - output;
+  };
+  EXPECT_LT(lag(5.0f), 0.6f * lag(0.0f));
+}
+
+TEST_F(FilterTest, SlewLimitsTheChange) {
+  filter_.min_cutoff_hz = 1000.0f;
+  filter_.slew_per_second = 2.0f;
+  Step(0.0f, 0.0);
+  EXPECT_NEAR(Step(1.0f, 0.1), 0.2f, 1e-6f);
+  EXPECT_NEAR(Step(1.0f, 0.1), 0.4f, 1e-6f);
+  EXPECT_NEAR(Step(0.0f, 0.05), 0.3f, 1e-6f);
+}
+
+TEST_F(FilterTest, TimeThatStandsStillChangesNothing) {
+  Step(0.2f, 0.0);
+  EXPECT_EQ(Step(0.9f, 0.0), 0.2f);
+  EXPECT_EQ(Step(0.9f, 1e-300), 0.2f);
+  EXPECT_GT(Step(0.9f, 0.1), 0.2f);
+}
+
+TEST_F(FilterTest, AVeryLongStepArrives) {
+  for (const double dt : {1e3, 1e9, 1e300}) {
+    context_.Reset();
+    Step(0.1f, 0.0);
+    EXPECT_NEAR(Step(0.7f, dt), 0.7f, 1e-3f) << dt;
+    EXPECT_EQ(Lose(dt), 0.0f) << dt;
+  }
+}
+
+TEST_F(FilterTest, HoldsThenDecays) {
+  filter_.hold_seconds = 0.25f;
+  filter_.decay_seconds = 0.5f;
+  filter_.slew_per_second = 0.0f;
+  Step(0.8f, 0.0);
+  EXPECT_EQ(Lose(0.1), 0.8f);
+  EXPECT_EQ(Lose(0.15), 0.8f);
+  EXPECT_NEAR(Lose(0.5), 0.8f * std::exp(-1.0f), 1e-6f);
+  EXPECT_NEAR(Lose(0.25), 0.8f * std::exp(-1.5f), 1e-6f);
+  for (int i = 0; i < 100; ++i) Lose(0.1);
+  EXPECT_EQ(output_, 0.0f);
+}
+
+TEST_F(FilterTest, DecayDoesNotDependOnTheSteps) {
+  filter_.slew_per_second = 0.0f;
+  Step(1.0f, 0.0);
+  const float at_once = Lose(1.0);
+  context_.Reset();
+  Step(1.0f, 0.0);
+  for (int i = 0; i < 1000; ++i) Lose(0.001);
+  EXPECT_NEAR(output_, at_once, 1e-3f);
+}
+
+TEST_F(FilterTest, DecayObeysTheSlewLimit) {
+  filter_ = Filter{.slew_per_second = 1.0f, .hold_seconds = 0.0f, .decay_seconds = 0.0f};
+  Step(1.0f, 0.0);
+  EXPECT_NEAR(Lose(0.1), 0.9f, 1e-6f);
+}
+
+TEST_F(FilterTest, InputAfterALossIsMetWithoutAJump) {
+  Step(0.9f, 0.0);
+  const float before = Lose(1.5);
+  const float after = Step(0.9f, 1.0 / 60.0);
+  EXPECT_GT(after, before);
+  EXPECT_LE(after - before, filter_.slew_per_second / 60.0f + 1e-6f);
+  EXPECT_LT(after, 0.6f);
+}
+
+TEST_F(FilterTest, LossBeforeAnyInputIsNeutral) { EXPECT_EQ(Lose(10.0), 0.0f); }
+
+TEST_F(FilterTest, DisabledPassesInputButStillDecays) {
+  filter_.enabled = false;
+  EXPECT_EQ(Step(0.1f, 0.0), 0.1f);
+  EXPECT_EQ(Step(1.0f, 0.001), 1.0f);
+  EXPECT_EQ(Step(0.3f, 0.0), 0.3f);
+  EXPECT_EQ(Lose(0.2), 0.3f);
+  EXPECT_LT(Lose(1.0), 0.3f);
+}
+
+TEST_F(FilterTest, ResetForgets) {
+  Step(1.0f, 0.0);
+  context_.Reset();
+  EXPECT_EQ(Lose(0.0), 0.0f);
+  EXPECT_EQ(Step(0.4f, 0.0), 0.4f);
+}
+
+TEST_F(FilterTest, ValidatesOneInputAtATime) {
+  float values[2] = {0.1f, 0.2f};
+  const FilterJob good{.filter = &filter_,
+                       .context = &context_,
+                       .dt = 0.1,
+                       .input = std::span(values, 1),
+                       .output = std::span(&output_, 1)};
+  EXPECT_EQ(good.Validate(), JobStatus::kOk);
+  FilterJob job = good;
+  job.filter = nullptr;
+  EXPECT_EQ(job.Validate(), JobStatus::kNullPointer);
+  job = good;
+  job.context = nullptr;
+  EXPECT_EQ(job.Validate(), JobStatus::kNullPointer);
+  for (const double dt : {-1e-9, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    job = good;
+    job.dt = dt;
+    EXPECT_EQ(job.Validate(), JobStatus::kBadTime) << dt;
+  }
+  job = good;
+  job.input = values;
+  EXPECT_EQ(job.Validate(), JobStatus::kSizeMismatch);
+  job = good;
+  job.output = {};
+  EXPECT_EQ(job.Validate(), JobStatus::kSizeMismatch);
+  values[0] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(good.Run(), JobStatus::kNonFinite);
+  EXPECT_EQ(output_, -1.0f);
+}
+
+}  // namespace
+}  // namespace furrow::wrinkle

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/drivers/pose/nnls.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace furrow::wrinkle {
+namespace {
+
+using Vector = std::array<double, kMaxNnlsValues>;
+
+// The unknowns that may be positive, in the order in which they entered.
+struct PassiveSet {
+  std::array<int, kMaxNnlsValues> members{};
+  int size = 0;
+
+  [[nodiscard]] bool Has(int value) const {
+    return std::find(members.begin(), members.begin() + size, value) != members.begin() + size;
+  }
+  void Add(int value) { members[size++] = value; }
+  template <class Predicate>
+  void RemoveIf(Predicate predicate) {
+    size = static_cast<int>(std::remove_if(members.begin(), members.begin() + size, predicate) -
+                            members.begin());
+  }
+};
+
+// Least squares over the passive unknowns alone, by Cholesky. False where rounding costs a pivot.
+bool SolvePassive(std::span<const double> gram, std::span<const double> rhs, int n,
+                  const PassiveSet& set, Vector* solution) {
+  std::array<Vector, kMaxNnlsValues> lower;
+  Vector z{};
+  for (int i = 0; i < set.size; ++i) {
+    const int row = set.members[i];
+    for (int j = 0; j <= i; ++j) {
+      double sum = gram[row * n + set.members[j]];
+      for (int k = 0; k < j; ++k) sum -= lower[i][k] * lower[j][k];
+      if (i != j) {
+        lower[i][j] = sum / lower[j][j];
+      } else if (sum > 0.0) {
+        lower[i][i] = std::sqrt(sum);
+      } else {
+        return false;
+      }
+    }
+    double sum = rhs[row];
+    for (int k = 0; k < i; ++k) sum -= lower[i][k] * z[k];
+    z[i] = sum / lower[i][i];
+  }
+  for (int i = set.size - 1; i >= 0; --i) {
+    for (int k = i + 1; k < set.size; ++k) z[i] -= lower[k][i] * z[k];
+    z[i] /= lower[i][i];
+    (*solution)[set.members[i]] = z[i];
+  }
+  return true;
+}
+
+// The unknown outside the set whose growth would lower the error most; -1 when none would.
+int SteepestOutside(std::span<const double> gram, std::span<const double> rhs,
+                    std::span<const double> x, const PassiveSet& set, double tolerance) {
+  const int n = static_cast<int>(rhs.size());
+  int best = -1;
+  double best_slope = tolerance;
+  for (int i = 0; i < n; ++i) {
+    if (set.Has(i)) continue;
+    double slope = rhs[i];
+    for (int k = 0; k < n; ++k) slope -= gram[i * n + k] * x[k];
+    if (slope > best_slope) {
+      best_slope = slope;
+      best = i;
+    }
+  }
+  return best;
+}
+
+// Moves x towards the unconstrained solution until an unknown reaches 0, and drops what did. True
+// when all of it could be gone.
+bool StepTowards(const Vector& solution, PassiveSet* set, std::span<double> x) {
+  double step = 1.0;
+  int blocking = -1;
+  for (int i = 0; i < set->size; ++i) {
+    const int value = set->members[i];
+    if (solution[value] > 0.0) continue;
+    const double reach = x[value] / (x[value] - solution[value]);
+    if (blocking < 0 || reach < step) {
+      step = std::isfinite(reach) ? reach : 0.0;
+      blocking = value;
+    }
+  }
+  for (int i = 0; i < set->size; ++i) {
+    const int value = set->members[i];
+    x[value] = std::max(0.0, x[value] + step * (solution[value] - x[value]));
+  }
+  if (blocking < 0) return true;
+  x[blocking] = 0.0;
+  set->RemoveIf([&](int value) { return x[value] <= 0.0; });
+  return false;
+}
+
+void Multiply(const double* inverse, std::span<const double> rhs, Vector* solution) {
+  for (std::size_t i = 0; i < rhs.size(); ++i, inverse += rhs.size()) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < rhs.size(); ++k) sum += inverse[k] * rhs[k];
+    (*solution)[i] = sum;
+  }
+}
+
+double Tolerance(std::span<const double> rhs) {
+  double largest = 0.0;
+  for (const double value : rhs) largest = std::max(largest, std::abs(value));
+  return 1e-12 * largest;
+}
+
+}  // namespace
+
+void SolveNnls(std::span<const double> gram, std::span<const double> rhs, std::span<double> x) {
+  const int n = static_cast<int>(rhs.size());
+  std::fill(x.begin(), x.end(), 0.0);
+  const double tolerance = Tolerance(rhs);
+  PassiveSet set;
+  for (int round = 0; round < 3 * n; ++round) {
+    const int entering = SteepestOutside(gram, rhs, x, set, tolerance);
+    if (entering < 0) return;
+    set.Add(entering);
+    Vector solution{};
+    while (set.size > 0) {
+      if (!SolvePassive(gram, rhs, n, set, &solution)) return;  // x is feasible as it stands
+      if (StepTowards(solution, &set, x)) break;
+    }
+  }
+}
+
+NnlsTable::NnlsTable(std::span<const double> gram)
+    : n_(static_cast<int>(std::lround(std::sqrt(static_cast<double>(gram.size()))))),
+      gram_(gram.begin(), gram.end()) {
+  if (n_ <= kMaxTabled) Tabulate();
+}
+
+// Column by column: what solves the set for a unit vector.
+void NnlsTable::Tabulate() {
+  const auto n = static_cast<std::size_t>(n_);
+  inverses_.assign((std::size_t{1} << n) * n * n, 0.0);
+  for (unsigned bits = 1; bits < (1u << n_); ++bits) {
+    PassiveSet set;
+    for (int i = 0; i < n_; ++i) {
+      if ((bits >> i & 1u) != 0) set.Add(i);
+    }
+    for (int column = 0; column < n_; ++column) {
+      if ((bits >> column & 1u) == 0) continue;
+      Vector unit{};
+      Vector solution{};
+      unit[static_cast<std::size_t>(column)] = 1.0;
+      if (!SolvePassive(gram_, std::span(unit).first(n), n_, set, &solution)) {
+        inverses_.clear();
+        return;
+      }
+      double* const inverse = inverses_.data() + bits * n * n;
+      for (std::size_t row = 0; row < n; ++row) {
+        inverse[row * n + static_cast<std::size_t>(column)] = solution[row];
+      }
+    }
+  }
+}
+
+void NnlsTable::Solve(std::span<const double> rhs, std::span<double> x) const {
+  if (inverses_.empty()) return SolveNnls(gram_, rhs, x);
+  SolveByTable(rhs, x);
+}
+
+void NnlsTable::SolveByTable(std::span<const double> rhs, std::span<double> x) const {
+  std::fill(x.begin(), x.end(), 0.0);
+  const double tolerance = Tolerance(rhs);
+  PassiveSet set;
+  Vector solution;
+  for (int round = 0; round < 3 * n_; ++round) {
+    const int entering = SteepestOutside(gram_, rhs, x, set, tolerance);
+    if (entering < 0) return;
+    set.Add(entering);
+    while (set.size > 0) {
+      unsigned bits = 0;
+      for (int i = 0; i < set.size; ++i) bits |= 1u << set.members[i];
+      Multiply(inverses_.data() + bits * gram_.size(), rhs, &solution);
+      if (StepTowards(solution, &set, x)) break;
+    }
+  }
+}
+
+}  // namespace furrow::wrinkle

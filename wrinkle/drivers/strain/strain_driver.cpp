@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/drivers/strain/strain_driver.h"
+
+#include <algorithm>
+#include <array>
+
+#include <glm/geometric.hpp>
+
+#include "base/scalar.h"
+#include "base/status.h"
+#include "wrinkle/rig/driver_values.h"
+#include "wrinkle/rig/rig_check.h"
+#include "wrinkle/skeleton/retarget.h"
+
+namespace furrow::wrinkle {
+namespace {
+
+// The frame that a patch's places are measured in: the base joint's axes, its centre and radius.
+struct PatchFrame {
+  glm::vec3 centre{0.0f};
+  float radius = 1.0f;
+};
+
+PatchFrame FrameOf(std::span<const glm::vec3> places) {
+  PatchFrame frame;
+  for (const glm::vec3& place : places) frame.centre += place / static_cast<float>(places.size());
+  float radius = 0.0f;
+  for (const glm::vec3& place : places) {
+    radius = std::max(radius, glm::distance(place, frame.centre));
+  }
+  if (radius > 0.0f) frame.radius = radius;
+  return frame;
+}
+
+// The patch's vertices at rest, in the base joint's space.
+std::vector<glm::vec3> RestPlaces(const StrainDriver& strain, const Skeleton& skeleton, int base) {
+  const float scale = strain.size > 0.0f ? SkeletonSize(skeleton) / strain.size : 1.0f;
+  const glm::mat4& model = skeleton.rest_model()[base];
+  const glm::mat4 to_base = glm::inverse(model);
+  std::vector<glm::vec3> places;
+  for (const StrainDriver::Vertex& vertex : strain.vertices) {
+    const glm::vec3 position = glm::vec3(model[3]) + scale * vertex.position;
+    places.emplace_back(to_base * glm::vec4(position, 1.0f));
+  }
+  return places;
+}
+
+}  // namespace
+
+Status StrainDriverSet::Bind(const Driver& driver, int first_value, BindContext* context) {
+  const StrainDriver& strain = driver.strain;
+  const Skeleton& skeleton = context->skeleton();
+  std::vector<int> joints;
+  int base = kNoJoint;
+  FURROW_RETURN_IF_ERROR(BindJoints(driver, context, &joints, &base));
+  if (joints.size() < strain.joints.size() || base == kNoJoint) return {};  // it rests at 0
+
+  Entry entry;
+  entry.first_value = first_value;
+  entry.inverse_full = 1.0f / strain.full_compression;
+  entry.first_point = static_cast<std::uint32_t>(points_.size());
+  entry.num_joints = static_cast<std::uint32_t>(joints.size());
+  const std::vector<glm::vec3> places = RestPlaces(strain, skeleton, base);
+  const PatchFrame frame = FrameOf(places);
+  for (const int joint : joints) {
+    const glm::mat4 base_to_joint =
+        glm::inverse(skeleton.rest_model()[joint]) * skeleton.rest_model()[base];
+    for (int axis = -1; axis < 3; ++axis) {
+      glm::vec3 point = frame.centre;
+      if (axis >= 0) point[axis] += frame.radius;
+      const auto offset = glm::vec3(base_to_joint * glm::vec4(point, 1.0f));
+      points_.push_back(context->chains().Add(skeleton, joint, offset, base));
+    }
+  }
+  entry.first_vertex = static_cast<std::uint32_t>(vertices_.size());
+  BindVertices(strain, &entry);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    vertices_[entry.first_vertex + i].place = (places[i] - frame.centre) / frame.radius;
+  }
+  BindTriangles(strain, skeleton, base, context->chains(), &entry);
+  if (entry.num_triangles == 0) {
+    triangles_.resize(entry.first_triangle);
+    return context->Unusable("driver '" + driver.name + "'",
+                             "no triangle of its patch has an area on this skeleton");
+  }
+  entries_.push_back(entry);
+  return {};
+}
+
+// `joints` stays shorter than the driver's list where one is missing and may be.
+Status StrainDriverSet::BindJoints(const Driver& driver, BindContext* context,
+                                   std::vector<int>* joints, int* base) {
+  const std::string whose = "driver '" + driver.name + "'";
+  const Result<int> found = context->Joint(whose, "joint", driver.strain.joint);
+  FURROW_RETURN_IF_ERROR(found);
+  *base = *found;
+  for (const std::string& name : driver.strain.joints) {
+    const Result<int> joint = context->Joint(whose, "joints", name);
+    FURROW_RETURN_IF_ERROR(joint);
+    if (*joint != kNoJoint) joints->push_back(*joint);
+  }
+  return {};
+}
+
+void StrainDriverSet::BindVertices(const StrainDriver& strain, Entry* entry) {
+  entry->num_vertices = static_cast<std::uint32_t>(strain.vertices.size());
+  for (const StrainDriver::Vertex& from : strain.vertices) {
+    Vertex vertex;
+    float sum = 0.0f;
+    for (const float skin_weight : from.skin_weights) sum += skin_weight;
+    for (std::size_t i = 0; i < from.joints.size(); ++i) {
+      vertex.influences[i] = {static_cast<std::uint8_t>(from.joints[i]),
+                              from.skin_weights[i] / sum};
+    }
+    vertices_.push_back(vertex);
+  }
+}
+
+void StrainDriverSet::BindTriangles(const StrainDriver& strain, const Skeleton& skeleton, int base,
+                                    const JointChains& chains, Entry* entry) {
+  std::array<Frame, kMaxPatchJoints> frames;
+  std::array<glm::vec3, kMaxPatchVertices> rest;
+  EvaluatePoints(*entry, skeleton.rest_pose(), chains, frames);
+  Skin(*entry, frames, rest);
+  const glm::vec3 direction = ToJointAxes(skeleton, base, strain.direction);
+  entry->first_triangle = static_cast<std::uint32_t>(triangles_.size());
+  float area = 0.0f;
+  for (std::size_t i = 0; i + 2 < strain.triangles.size(); i += 3) {
+    const int* corners = &strain.triangles[i];
+    const auto triangle =
+        MakeRestTriangle(rest[corners[0]], rest[corners[1]], rest[corners[2]], direction);
+    if (!triangle) continue;
+    Triangle& added = triangles_.emplace_back();
+    for (int k = 0; k < 3; ++k) added.corners[k] = static_cast<std::uint16_t>(corners[k]);
+    added.rest = *triangle;
+    area += triangle->area;
+  }
+  entry->num_triangles = static_cast<std::uint32_t>(triangles_.size()) - entry->first_triangle;
+  entry->inverse_area = area > 0.0f ? 1.0f / area : 0.0f;
+}
+
+StrainDriverSet::Frame StrainDriverSet::MakeFrame(std::span<const glm::vec3, kFramePoints> points) {
+  const glm::vec3& origin = points[0];
+  return {points[1] - origin, points[2] - origin, points[3] - origin, origin};
+}
+
+void StrainDriverSet::EvaluatePoints(const Entry& entry, std::span<const Transform> local,
+                                     const JointChains& chains, std::span<Frame> frames) const {
+  const int* point = points_.data() + entry.first_point;
+  for (std::uint32_t i = 0; i < entry.num_joints; ++i, point += kFramePoints) {
+    std::array<glm::vec3, kFramePoints> points;
+    for (std::size_t k = 0; k < kFramePoints; ++k) points[k] = chains.Evaluate(local, point[k]);
+    frames[i] = MakeFrame(points);
+  }
+}
+
+void StrainDriverSet::Skin(const Entry& entry, std::span<const Frame> frames,
+                           std::span<glm::vec3> positions) const {
+  for (std::uint32_t i = 0; i < entry.num_vertices; ++i) {
+    const Vertex& vertex = vertices_[entry.first_vertex + i];
+    glm::vec3 position(0.0f);
+    for (const Influence& influence : vertex.influences) {
+      if (influence.skin_weight == 0.0f) continue;  // most hang on two or three
+      const Frame& frame = frames[influence.joint];
+      position += influence.skin_weight * (frame * glm::vec4(vertex.place, 1.0f));
+    }
+    positions[i] = position;
+  }
+}
+
+StrainDriverSet::Measured StrainDriverSet::Measure(int entry, std::span<const Transform> local,
+                                                   const JointChains& chains) const {
+  std::array<Frame, kMaxPatchJoints> frames;
+  EvaluatePoints(entries_[entry], local, chains, frames);
+  return MeasureFrames(entries_[entry], frames);
+}
+
+StrainDriverSet::Measured StrainDriverSet::MeasureFrames(const Entry& e,
+                                                         std::span<const Frame> frames) const {
+  std::array<glm::vec3, kMaxPatchVertices> positions;
+  Skin(e, frames, positions);
+  CauchyGreen mean{0.0f, 0.0f, 0.0f};
+  for (std::uint32_t i = e.first_triangle; i < e.first_triangle + e.num_triangles; ++i) {
+    const Triangle& triangle = triangles_[i];
+    const CauchyGreen c =
+        RightCauchyGreen(Deform(triangle.rest, positions[triangle.corners[0]],
+                                positions[triangle.corners[1]], positions[triangle.corners[2]]));
+    const float share = triangle.rest.area * e.inverse_area;
+    mean.xx += share * c.xx;
+    mean.xy += share * c.xy;
+    mean.yy += share * c.yy;
+  }
+  const PrincipalStretches stretches = Principal(mean);
+  return {.stretches = stretches, .shares = ShareCompression(stretches)};
+}
+
+void StrainDriverSet::EvaluateFrames(int entry, std::span<const Frame> frames,
+                                     std::span<float> values) const {
+  const CompressionShares shares = MeasureFrames(entries_[entry], frames).shares;
+  const bool is_compressed = shares.compression > 0.0f;
+  // A compression beyond the full one keeps its direction: the shares then sum to 1.
+  const float share = Saturate(shares.compression * entries_[entry].inverse_full);
+  const float gain = is_compressed ? share / shares.compression : 0.0f;
+  values[0] = Saturate(gain * shares.along);
+  values[1] = Saturate(gain * shares.across);
+  values[2] = Saturate(gain * shares.diagonal_left);
+  values[3] = Saturate(gain * shares.diagonal_right);
+}
+
+void StrainDriverSet::Evaluate(std::span<const Transform> local, const JointChains& chains,
+                               std::span<float> driver_values) const {
+  std::array<Frame, kMaxPatchJoints> frames;
+  for (int i = 0; i < num_entries() && Reaches(driver_values, first_value(i)); ++i) {
+    EvaluatePoints(entries_[i], local, chains, frames);
+    EvaluateFrames(i, frames,
+                   driver_values.subspan(static_cast<std::size_t>(first_value(i)), kNumValues));
+  }
+}
+
+}  // namespace furrow::wrinkle

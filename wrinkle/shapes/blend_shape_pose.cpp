@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/shapes/blend_shape_pose.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "base/ascii.h"
+#include "wrinkle/drivers/reference_pose.h"
+#include "wrinkle/skeleton/finite.h"
+
+namespace furrow::wrinkle {
+
+BlendShapePose BlendShapePose::Create(const Rig& rig, const Skeleton& skeleton,
+                                      std::span<const std::string> blend_shapes) {
+  BlendShapePose result;
+  result.num_joints_ = static_cast<std::size_t>(skeleton.num_joints());
+  for (std::size_t shape = 0; shape < blend_shapes.size(); ++shape) {
+    const auto pose = std::find_if(
+        rig.reference_poses.begin(), rig.reference_poses.end(),
+        [&](const ReferencePose& p) { return EqualsIgnoreCase(p.name, blend_shapes[shape]); });
+    if (pose == rig.reference_poses.end()) continue;
+    const float scale = ReferencePoseScale(*pose, skeleton);
+    for (const JointDelta& delta : pose->joints) {
+      const int joint = skeleton.Find(delta.joint);
+      if (joint == kNoJoint || IsRest(delta)) continue;
+      const Transform& rest = skeleton.rest_pose()[joint];
+      Transform moved = rest;
+      ApplyJointDelta(delta, skeleton, joint, scale, &moved);
+      glm::quat turn = glm::normalize(glm::conjugate(rest.rotation) * moved.rotation);
+      if (turn.w < 0.0f) turn = -turn;
+      const glm::vec3 vector(turn.x, turn.y, turn.z);
+      const float sine = glm::length(vector);
+      result.moves_.push_back({.blend_shape = static_cast<int>(shape),
+                               .joint = joint,
+                               .translation = moved.translation - rest.translation,
+                               .axis = sine > 1e-7f ? vector / sine : glm::vec3(1, 0, 0),
+                               .angle = 2.0f * std::atan2(sine, turn.w)});
+    }
+  }
+  return result;
+}
+
+JobStatus BlendShapePose::Run(std::span<const float> coefficients,
+                              std::span<Transform> local) const {
+  if (moves_.empty()) return JobStatus::kOk;
+  if (local.size() < num_joints_) return JobStatus::kSizeMismatch;
+  if (!AllFinite(coefficients)) return JobStatus::kNonFinite;
+  for (const Move& move : moves_) {
+    const auto shape = static_cast<std::size_t>(move.blend_shape);
+    const float amount = shape < coefficients.size() ? coefficients[shape] : 0.0f;
+    if (amount == 0.0f) continue;
+    Transform& joint = local[static_cast<std::size_t>(move.joint)];
+    joint.translation += amount * move.translation;
+    joint.rotation =
+        glm::normalize(joint.rotation * glm::angleAxis(amount * move.angle, move.axis));
+  }
+  return JobStatus::kOk;
+}
+
+}  // namespace furrow::wrinkle

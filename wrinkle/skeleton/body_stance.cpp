@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/skeleton/body_stance.h"
+
+#include <cmath>
+#include <cstddef>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+namespace furrow::wrinkle {
+namespace {
+
+using enum JointRole;
+
+constexpr float kLeastLength = 1e-6f;
+// A foot that points further down than this (sine) is not flat on the floor at rest.
+constexpr float kSteepFoot = 0.8f;
+
+std::size_t Index(JointRole role) { return static_cast<std::size_t>(role); }
+
+// A frame of one direction and a second, less certain one across it; columns orthonormal.
+std::optional<glm::mat3> Frame(const std::optional<glm::vec3>& along,
+                               const std::optional<glm::vec3>& aside) {
+  if (!along || !aside) return std::nullopt;
+  const glm::vec3 x = glm::normalize(*along);
+  const glm::vec3 across = *aside - glm::dot(*aside, x) * x;
+  if (glm::length(across) < 0.1f * glm::length(*aside)) return std::nullopt;
+  const glm::vec3 y = glm::normalize(across);
+  return glm::mat3(x, y, glm::cross(x, y));
+}
+
+// The model axis, with its sign, that `v` is nearest to, leaving out axis `but`.
+glm::vec3 NearestAxis(const glm::vec3& v, int but = -1) {
+  int best = but == 0 ? 1 : 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis != but && std::abs(v[axis]) > std::abs(v[best])) best = axis;
+  }
+  glm::vec3 result(0.0f);
+  result[best] = v[best] < 0.0f ? -1.0f : 1.0f;
+  return result;
+}
+
+std::optional<glm::vec3> Up(const Body& body) {
+  for (const JointRole top : {kHead, kNeck, kUpperChest, kChest, kSpine}) {
+    if (const auto span = body.RestSpan(kHips, top)) return span;
+  }
+  return std::nullopt;
+}
+
+std::optional<glm::vec3> Leftward(const Body& body) {
+  for (const JointRole role : {kRightUpperLeg, kRightUpperArm, kRightShoulder}) {
+    if (const auto span = body.RestSpan(role, MirrorOf(role))) return span;
+  }
+  return std::nullopt;
+}
+
+// Axes left, up, forward; each one of the model's.
+std::optional<glm::mat3> BodyAxes(const Body& body) {
+  const auto up = Up(body);
+  const auto left = Leftward(body);
+  if (!up || !left) return std::nullopt;
+  const glm::vec3 y = NearestAxis(*up);
+  int up_axis = 0;
+  while (y[up_axis] == 0.0f) ++up_axis;
+  const glm::vec3 x = NearestAxis(*left, up_axis);
+  return glm::mat3(x, y, glm::cross(x, y));
+}
+
+// The swing that brings the target's bone, as aligned so far, to where the source's points.
+glm::quat AlignBone(const Body& source, const Body& target, JointRole role, const glm::quat& turn,
+                    const glm::quat& so_far) {
+  const auto wanted = source.RestSpan(role, BoneEnd(role));
+  const auto own = target.RestSpan(role, BoneEnd(role));
+  if (!wanted || !own) return so_far;
+  return Swing(so_far * *own, turn * *wanted) * so_far;
+}
+
+// Hands whose index and little fingers are known turn their palms, too.
+glm::quat AlignHand(const Body& source, const Body& target, JointRole hand, const glm::quat& turn,
+                    const glm::quat& so_far) {
+  const bool left = hand == kLeftHand;
+  const JointRole index = left ? kLeftIndexProximal : kRightIndexProximal;
+  const JointRole little = left ? kLeftLittleProximal : kRightLittleProximal;
+  const auto wanted = Frame(source.RestSpan(hand, BoneEnd(hand)), source.RestSpan(little, index));
+  const auto own = Frame(target.RestSpan(hand, BoneEnd(hand)), target.RestSpan(little, index));
+  if (!wanted || !own) return AlignBone(source, target, hand, turn, so_far);
+  return turn * glm::quat_cast(*wanted * glm::transpose(*own));
+}
+
+// Feet that are flat at rest only take on a heading; how far below the ankle the toes' joint lies
+// is the rig's matter. `so_far` counts where a foot is not flat.
+glm::quat AlignFoot(const Body& source, const Body& target, JointRole foot, const glm::quat& turn,
+                    const glm::quat& so_far) {
+  const glm::quat flat(1.0f, 0.0f, 0.0f, 0.0f);
+  const auto wanted = source.RestSpan(foot, BoneEnd(foot));
+  const auto own = target.RestSpan(foot, BoneEnd(foot));
+  if (!wanted || !own) return flat;
+  const glm::vec3 up = UpAxis(target);
+  const glm::vec3 to = glm::normalize(turn * *wanted);
+  const glm::vec3 from = glm::normalize(*own);
+  if (std::abs(glm::dot(to, up)) > kSteepFoot || std::abs(glm::dot(from, up)) > kSteepFoot) {
+    return AlignBone(source, target, foot, turn, so_far);
+  }
+  return Swing(from - glm::dot(from, up) * up, to - glm::dot(to, up) * up);
+}
+
+}  // namespace
+
+glm::quat Swing(const glm::vec3& from, const glm::vec3& to) {
+  const glm::vec3 a = glm::normalize(from);
+  const glm::vec3 b = glm::normalize(to);
+  const float cosine = glm::dot(a, b);
+  if (cosine > -0.999999f) {
+    const glm::vec3 axis = glm::cross(a, b);
+    return glm::normalize(glm::quat(1.0f + cosine, axis.x, axis.y, axis.z));
+  }
+  const glm::vec3 other = std::abs(a.x) < 0.7f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+  const glm::vec3 axis = glm::normalize(glm::cross(a, other));
+  return {0.0f, axis.x, axis.y, axis.z};
+}
+
+Body::Body(const Skeleton& skeleton, const JointRoles& roles)
+    : skeleton_(&skeleton), roles_(&roles) {
+  for (int joint = 0; joint < skeleton.num_joints(); ++joint) {
+    const JointRole role = RoleOf(joint);
+    if (role != kNone) chains_[Index(role)].push_back(joint);
+  }
+}
+
+std::span<const int> Body::Chain(JointRole role) const { return chains_[Index(role)]; }
+
+int Body::First(JointRole role) const {
+  return Chain(role).empty() ? kNoJoint : Chain(role).front();
+}
+
+int Body::Last(JointRole role) const { return Chain(role).empty() ? kNoJoint : Chain(role).back(); }
+
+JointRole Body::RoleOf(int joint) const {
+  const auto i = static_cast<std::size_t>(joint);
+  return i < roles_->size() ? (*roles_)[i] : kNone;
+}
+
+glm::vec3 Body::RestOrigin(int joint) const {
+  return glm::vec3(skeleton_->rest_model()[static_cast<std::size_t>(joint)][3]);
+}
+
+std::optional<glm::vec3> Body::RestSpan(JointRole from, JointRole to) const {
+  const int a = First(from);
+  const int b = First(to);
+  if (a == kNoJoint || b == kNoJoint) return std::nullopt;
+  const glm::vec3 span = RestOrigin(b) - RestOrigin(a);
+  if (glm::length(span) < kLeastLength) return std::nullopt;
+  return span;
+}
+
+JointRole BoneEnd(JointRole role) {
+  switch (role) {
+    case kLeftUpperArm: return kLeftLowerArm;
+    case kLeftLowerArm: return kLeftHand;
+    case kLeftHand: return kLeftMiddleProximal;
+    case kLeftUpperLeg: return kLeftLowerLeg;
+    case kLeftLowerLeg: return kLeftFoot;
+    case kLeftFoot: return kLeftToes;
+    case kLeftThumbMetacarpal: return kLeftThumbProximal;
+    case kLeftThumbProximal: return kLeftThumbDistal;
+    case kLeftIndexProximal: return kLeftIndexIntermediate;
+    case kLeftIndexIntermediate: return kLeftIndexDistal;
+    case kLeftMiddleProximal: return kLeftMiddleIntermediate;
+    case kLeftMiddleIntermediate: return kLeftMiddleDistal;
+    case kLeftRingProximal: return kLeftRingIntermediate;
+    case kLeftRingIntermediate: return kLeftRingDistal;
+    case kLeftLittleProximal: return kLeftLittleIntermediate;
+    case kLeftLittleIntermediate: return kLeftLittleDistal;
+    default: break;
+  }
+  // The right side is the left one's mirror; the middle of the body and the ends have no bone.
+  return role > MirrorOf(role) ? MirrorOf(BoneEnd(MirrorOf(role))) : kNone;
+}
+
+glm::quat QuarterTurn(const Body& source, const Body& target) {
+  const auto from = BodyAxes(source);
+  const auto to = BodyAxes(target);
+  if (!from || !to) return {1.0f, 0.0f, 0.0f, 0.0f};
+  return glm::normalize(glm::quat_cast(*to * glm::transpose(*from)));
+}
+
+std::vector<glm::quat> AlignedStance(const Body& source, const Body& target,
+                                     const glm::quat& turn) {
+  const Skeleton& skeleton = target.skeleton();
+  std::vector<glm::quat> aligned;  // the turn away from target's rest pose, model space
+  std::vector<glm::quat> stance;
+  for (int joint = 0; joint < skeleton.num_joints(); ++joint) {
+    const int parent = skeleton.joint_parents()[static_cast<std::size_t>(joint)];
+    glm::quat turned = parent == kNoJoint ? glm::quat(1.0f, 0.0f, 0.0f, 0.0f)
+                                          : aligned[static_cast<std::size_t>(parent)];
+    const JointRole role = target.RoleOf(joint);
+    if (role != kNone && joint == target.First(role)) {
+      if (role == kLeftFoot || role == kRightFoot) {
+        turned = AlignFoot(source, target, role, turn, turned);
+      } else if (role == kLeftHand || role == kRightHand) {
+        turned = AlignHand(source, target, role, turn, turned);
+      } else {
+        turned = AlignBone(source, target, role, turn, turned);
+      }
+    }
+    aligned.push_back(turned);
+    stance.push_back(
+        glm::normalize(turned * skeleton.rest_model_rotations()[static_cast<std::size_t>(joint)]));
+  }
+  return stance;
+}
+
+float LegLength(const Body& body, const Body& other) {
+  const glm::vec3 up = UpAxis(body);
+  float sum = 0.0f;
+  int num = 0;
+  for (const bool left : {true, false}) {
+    const auto side = [left](JointRole role) { return left ? role : MirrorOf(role); };
+    const auto hip = body.RestSpan(kHips, side(kLeftUpperLeg));
+    const auto thigh = body.RestSpan(side(kLeftUpperLeg), side(kLeftLowerLeg));
+    const auto shin = body.RestSpan(side(kLeftLowerLeg), side(kLeftFoot));
+    if (!hip || !thigh || !shin) continue;
+    sum += std::abs(glm::dot(*hip, up)) + glm::length(*thigh) + glm::length(*shin);
+    const auto foot = body.RestSpan(side(kLeftFoot), side(kLeftToes));
+    if (foot && other.RestSpan(side(kLeftFoot), side(kLeftToes))) {
+      sum += std::abs(glm::dot(*foot, up));
+    }
+    ++num;
+  }
+  return num == 0 ? 0.0f : sum / static_cast<float>(num);
+}
+
+glm::vec3 UpAxis(const Body& body) {
+  const auto up = Up(body);
+  return up ? NearestAxis(*up) : glm::vec3(0.0f, 1.0f, 0.0f);
+}
+
+}  // namespace furrow::wrinkle

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/weights/weight_table.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/scalar.h"
+#include "base/status.h"
+#include "wrinkle/weights/incongruence.h"
+#include "wrinkle/weights/modulation.h"
+
+namespace furrow::wrinkle {
+namespace {
+
+bool Lists(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// A rig without maps is for weights alone: any map name will do.
+Status CheckMapName(const Rig& rig, const std::string& whose, const std::string& map) {
+  const bool known =
+      rig.wrinkle_maps.empty() ||
+      std::any_of(rig.wrinkle_maps.begin(), rig.wrinkle_maps.end(),
+                  [&](const WrinkleMap& candidate) { return candidate.name == map; });
+  if (known) return {};
+  return {StatusCode::kNotFound,
+          whose + " names wrinkle map '" + map + "', which the rig does not have"};
+}
+
+Status CheckNeighbours(const Rig& rig, const Region& region) {
+  for (const std::string& neighbour : region.neighbours) {
+    const bool known = std::any_of(rig.regions.begin(), rig.regions.end(),
+                                   [&](const Region& other) { return other.name == neighbour; });
+    if (!known || neighbour == region.name) {
+      return {known ? StatusCode::kInvalidArgument : StatusCode::kNotFound,
+              "region '" + region.name + "': neighbours names '" + neighbour + "', which is " +
+                  (known ? "the region itself" : "no region of the rig")};
+    }
+  }
+  return {};
+}
+
+// The maps that must not meet `map` over a border, whichever of the two says so.
+std::vector<std::string> OpposedMaps(const Rig& rig, const std::string& map) {
+  std::vector<std::string> opposed;
+  for (const WrinkleMap& candidate : rig.wrinkle_maps) {
+    if (candidate.name == map && !candidate.opposes.empty()) opposed.push_back(candidate.opposes);
+    if (candidate.opposes == map) opposed.push_back(candidate.name);
+  }
+  return opposed;
+}
+
+// Either may name the other: a border has two sides.
+bool Adjacent(const Region& a, const Region& b) {
+  return Lists(a.neighbours, b.name) || Lists(b.neighbours, a.name);
+}
+
+}  // namespace
+
+float CombineSources(Combine combine, std::span<const WeightSource> sources,
+                     std::span<const float> driver_values) {
+  float largest = 0.0f;
+  float sum = 0.0f;
+  float gains = 0.0f;
+  for (const WeightSource& source : sources) {
+    const float term = source.gain * driver_values[source.driver_value];
+    largest = std::max(largest, term);
+    sum += term;
+    gains += source.gain;
+  }
+  switch (combine) {
+    case Combine::kMax: return Saturate(largest);
+    case Combine::kSum: return Saturate(sum);
+    case Combine::kMean: return gains > 0.0f ? Saturate(sum / gains) : 0.0f;
+  }
+  return 0.0f;
+}
+
+Status WeightTable::Bind(const Rig& rig, const std::unordered_map<std::string, int>& value_index) {
+  for (const WrinkleMap& map : rig.wrinkle_maps) {
+    if (map.opposes.empty()) continue;
+    const std::string whose = "wrinkle map '" + map.name + "': opposes";
+    FURROW_RETURN_IF_ERROR(CheckMapName(rig, whose, map.opposes));
+  }
+  for (const Region& region : rig.regions) {
+    FURROW_RETURN_IF_ERROR(CheckNeighbours(rig, region));
+    for (const Feed& feed : region.feeds) {
+      const std::string whose = "region '" + region.name + "': a feed";
+      FURROW_RETURN_IF_ERROR(CheckMapName(rig, whose, feed.map));
+      FURROW_RETURN_IF_ERROR(BindFeed(region, feed, value_index));
+    }
+  }
+  BindOpponents(rig);
+  for (const Export& entry : rig.exports) {
+    if (Lists(names_, entry.weight)) continue;
+    return {StatusCode::kNotFound, "export '" + entry.profile + "' names wrinkle weight '" +
+                                       entry.weight + "', which the rig does not have"};
+  }
+  return {};
+}
+
+Status WeightTable::BindFeed(const Region& region, const Feed& feed,
+                             const std::unordered_map<std::string, int>& value_index) {
+  Entry entry;
+  entry.first_source = static_cast<std::uint32_t>(sources_.size());
+  entry.num_sources = static_cast<std::uint32_t>(feed.sources.size());
+  entry.combine = region.combine;
+  entry.modulation = region.modulation;
+  for (const Feed::Source& source : feed.sources) {
+    const auto found = value_index.find(source.driver + "." + source.value);
+    if (found == value_index.end()) {
+      return {StatusCode::kNotFound, "region '" + region.name + "': feed '" + feed.map +
+                                         "' names driver value '" + source.driver + "." +
+                                         source.value + "', which the rig does not have"};
+    }
+    sources_.push_back({.driver_value = found->second, .gain = source.gain});
+  }
+  entries_.push_back(entry);
+  names_.push_back(region.name + "." + feed.map);
+  return {};
+}
+
+void WeightTable::BindOpponents(const Rig& rig) {
+  std::size_t weight = 0;
+  for (const Region& own : rig.regions) {
+    std::vector<std::pair<const Feed*, std::uint16_t>> neighbours;  // their feeds and weights
+    std::uint16_t first = 0;
+    for (const Region& other : rig.regions) {
+      const std::size_t count = Adjacent(own, other) ? other.feeds.size() : 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        neighbours.emplace_back(&other.feeds[i], static_cast<std::uint16_t>(first + i));
+      }
+      first = static_cast<std::uint16_t>(first + other.feeds.size());
+    }
+    for (const Feed& feed : own.feeds) {
+      Entry& entry = entries_[weight++];
+      entry.first_opponent = static_cast<std::uint32_t>(opponents_.size());
+      const std::vector<std::string> opposed = OpposedMaps(rig, feed.map);
+      for (const auto& [other, index] : neighbours) {
+        if (Lists(opposed, other->map)) opponents_.push_back(index);
+      }
+      entry.num_opponents = static_cast<std::uint32_t>(opponents_.size()) - entry.first_opponent;
+    }
+  }
+}
+
+float WeightTable::Combined(int weight, std::span<const float> driver_values) const {
+  return CombineSources(entries_[weight].combine, sources(weight), driver_values);
+}
+
+float WeightTable::Modulated(int weight, std::span<const float> driver_values) const {
+  return Modulate(entries_[weight].modulation, Combined(weight, driver_values));
+}
+
+float WeightTable::Congruence(int weight, std::span<const float> modulated) const {
+  float factor = 1.0f;
+  for (const std::uint16_t opponent : opponents(weight)) {
+    factor *= CongruenceFactor(modulated[weight], modulated[opponent]);
+  }
+  return factor;
+}
+
+}  // namespace furrow::wrinkle
