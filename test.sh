@@ -1,21 +1,23 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is missing, builds, runs every test. Safe to run twice, quick the second time.
+# Installs the missing packages, builds, and runs the tests. Can be run twice; the second run is quick.
 #
-# usage: ./test.sh [--preset NAME] [--full] [-- CTEST ARGS...]
-#   --preset NAME   dev (default), release, asan-ubsan, tsan, coverage
-#   --full          also: asan-ubsan and tsan over the whole suite, and every fuzz target for 60 s
+# usage: ./test.sh [--preset NAME] [--all | --full] [-- CTEST ARGS...]
+#   --preset NAME   build preset: dev (default), release, asan-ubsan, tsan, coverage
+#   --all           add the slow tier: tests labelled `all` and 10 s of fuzzing per target (CI runs this)
+#   --full          add to --all: asan-ubsan and tsan over the whole suite, a build without unity files,
+#                   and 60 s of fuzzing per target
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
 preset=dev
-full=no
+tier=default
 while [[ $# -gt 0 ]]; do
   case "$1" in
     --preset) preset=${2:?--preset needs a name}; shift 2 ;;
-    --full) full=yes; shift ;;
+    --all|--full) tier=${1#--}; shift ;;
     --) shift; break ;;
-    -h|--help) sed -n '3,8s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h|--help) sed -n '3,10s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "test.sh: unknown option '$1' (--help lists them)" >&2; exit 2 ;;
   esac
 done
@@ -35,11 +37,15 @@ build() {
   cmake --build --preset "$1" -j "$jobs" --target "${2:-all}"
 }
 
+# run_tests PRESET [CTEST ARGS...]. Tests labelled `all` run in the tiers above the default one.
 run_tests() {
   step "tests: $1"
-  ctest --preset "$1" -j "$jobs" "${@:2}"
+  local exclude=()
+  [[ $tier != default ]] || exclude=(--label-exclude '^all$')
+  ctest --preset "$1" -j "$jobs" "${exclude[@]}" "${@:2}"
 }
 
+# fuzz_all SECONDS: every fuzz target for so many seconds, with the committed seeds.
 fuzz_all() {
   build fuzz fuzz_targets
   local target name corpus log
@@ -47,7 +53,7 @@ fuzz_all() {
     name=$(basename "$target")
     corpus=build/fuzz/corpus/$name
     mkdir -p "$corpus"
-    step "fuzz: $name, 60 s"
+    step "fuzz: $name, $1 s"
     local seeds=()
     case "$name" in
       fuzz_datagram) seeds=(protocol/vectors) ;;
@@ -55,23 +61,30 @@ fuzz_all() {
       *) [[ ! -d tests/fuzz/seeds/${name#fuzz_} ]] || seeds=("tests/fuzz/seeds/${name#fuzz_}") ;;
     esac
     log=build/fuzz/$name.log
-    if ! "$target" -max_total_time=60 -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
+    if ! "$target" -max_total_time="$1" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
         -artifact_prefix="build/fuzz/$name-" "$corpus" "${seeds[@]}" >"$log" 2>&1; then
       tail -n 40 "$log" >&2
-      echo "test.sh: $name found a fault; the input lies at build/fuzz/$name-*, the log at $log" >&2
+      echo "test.sh: $name found a fault; the input is build/fuzz/$name-*, the log is $log" >&2
       exit 1
     fi
     grep -E 'stat::number_of_executed_units|stat::peak_rss_mb' "$log"
   done
 }
 
-if [[ $full == yes ]]; then deploy/install-deps.sh full; else deploy/install-deps.sh test; fi
+case "$tier" in
+  default) deploy/install-deps.sh test ;;
+  *) deploy/install-deps.sh "$tier" ;;
+esac
 build "$preset"
 run_tests "$preset" "$@"
-if [[ $full == yes ]]; then
-  for extra in asan-ubsan tsan; do
-    build "$extra"
-    run_tests "$extra" "$@"
-  done
-  fuzz_all
-fi
+case "$tier" in
+  all) fuzz_all 10 ;;
+  full)
+    for extra in asan-ubsan tsan; do
+      build "$extra"
+      run_tests "$extra" "$@"
+    done
+    build no-unity
+    fuzz_all 60
+    ;;
+esac

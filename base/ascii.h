@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-// Letters A to Z without case, whatever the process's locale says.
+// Case conversion of the letters A to Z, independent of the process's locale.
 namespace furrow {
 
 [[nodiscard]] inline constexpr char AsciiLower(char c) {

@@ -9,13 +9,14 @@
 
 namespace furrow {
 
-// Whether `name` may name a file of a package: refuses (kInvalidArgument, kLimit) empty, overlong
-// and absolute names, "..", backslashes, colons and control bytes, so that a rig from outside
-// reaches nothing outside its folders.
+// Checks that `name` may name a file of a package. Rejects empty, overlong and absolute names,
+// "..", backslashes, colons and control characters (kInvalidArgument, kLimit), so that an untrusted
+// rig cannot reach files outside its folders.
 [[nodiscard]] Status CheckAssetName(std::string_view name);
 
-// The first of `folder`/name and FURROW_ASSET_PATH's folders (colon-separated) that holds a regular
-// file `name`; kNotFound lists the folders tried. Names are checked as by CheckAssetName().
+// Finds the regular file `name` in `folder`, then in the folders of FURROW_ASSET_PATH
+// (colon-separated). Errors: those of CheckAssetName(), and kNotFound, which lists the folders
+// searched.
 [[nodiscard]] Result<std::filesystem::path> FindAsset(std::string_view name,
                                                       const std::filesystem::path& folder);
 

@@ -9,48 +9,48 @@
 namespace furrow {
 namespace {
 
-// FlatBuffers says "12: 34: error: unknown field: drivrs, originally at: ..."; we say where by
-// field.
-struct ParserComplaint {
+// An error of the FlatBuffers parser, such as "12: 34: error: unknown field: drivrs, originally
+// at: ...". Line and column are turned into a field path for our own message.
+struct ParserError {
   int line = 1;
   int column = 0;
   std::string what;
 };
 
-ParserComplaint Dissect(std::string_view text) {
-  ParserComplaint complaint;
+ParserError SplitParserError(std::string_view text) {
+  ParserError result;
   const auto number = [&](int* value) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), *value);
     if (error != std::errc()) return;
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
     while (!text.empty() && (text.front() == ':' || text.front() == ' ')) text.remove_prefix(1);
   };
-  number(&complaint.line);
-  number(&complaint.column);
+  number(&result.line);
+  number(&result.column);
   constexpr std::string_view kPrefix = "error: ";
   if (text.starts_with(kPrefix)) text.remove_prefix(kPrefix.size());
-  complaint.what = text.substr(0, text.find(", originally at"));
-  return complaint;
+  result.what = text.substr(0, text.find(", originally at"));
+  return result;
 }
 
 Status FromParser(const std::string& error, const JsonIndex& index, const std::string& source,
                   const JsonSchema& schema) {
-  const ParserComplaint complaint = Dissect(error);
+  const ParserError parsed = SplitParserError(error);
   constexpr std::string_view kMissing = "required field is missing: ";
   std::string path;
-  std::string what = complaint.what;
+  std::string what = parsed.what;
   if (what.starts_with(kMissing)) {
     const std::size_t in = what.rfind(" in ");
     const std::string field = what.substr(kMissing.size(), in - kMissing.size());
     const bool of_root = what.substr(in) == std::string(" in ") + schema.root;
-    path = of_root ? "" : index.PathClosedBefore(complaint.line, complaint.column);
+    path = of_root ? "" : index.PathClosedBefore(parsed.line, parsed.column);
     path += (path.empty() ? "" : ".") + field;
-    what = "the field is missing";
+    what = "the required field is missing";
   } else {
-    path = index.PathAt(complaint.line, complaint.column);
+    path = index.PathAt(parsed.line, parsed.column);
   }
   if (what == "wrong number of unnamed fields in table vector") {
-    what = "the list has too few or too many entries";
+    what = "the list has the wrong number of entries";
     path = path.substr(0, path.rfind('['));
   }
   return {StatusCode::kSchema, what, source + ":" + index.Where(path),

@@ -11,18 +11,18 @@
 
 namespace furrow {
 
-// A schema that JSON from outside is checked against.
+// A FlatBuffers schema for untrusted JSON.
 struct JsonSchema {
-  const char* text = nullptr;  // a .fbs with a root_type
-  const char* root = nullptr;  // its name: "Rig"
-  const char* file = nullptr;  // where its fields are listed: "rig/rig.fbs"
+  const char* text = nullptr;  // the schema's source, with a root_type
+  const char* root = nullptr;  // the root table's name, such as "Rig"
+  const char* file = nullptr;  // the schema file that error messages point to
 };
 
-// JSON that has been checked against a FlatBuffers schema: every field known, there when required
-// and of the right type. Errors name file, line and field: "face.rig.json:14: drivers[0].jont".
+// JSON that conforms to a FlatBuffers schema: no unknown field, no missing required field, no wrong
+// type. Errors name file, line and field: "face.rig.json:14: drivers[0].jont".
 class CheckedJson {
  public:
-  // `source` stands for the file in errors. Errors: JsonIndex::Create()'s, kSchema.
+  // `source` is the file name in errors. Errors: those of JsonIndex::Create(), and kSchema.
   [[nodiscard]] static Result<CheckedJson> Parse(std::string_view json, std::string_view source,
                                                  const JsonSchema& schema);
   CheckedJson(CheckedJson&&) noexcept;
@@ -31,7 +31,7 @@ class CheckedJson {
 
   // The root table: flatbuffers::GetRoot<T>(buffer()).
   [[nodiscard]] const std::uint8_t* buffer() const;
-  // A failure whose `where` is a field, with file and line.
+  // Adds file and line to a failure whose `where` is a field path.
   [[nodiscard]] Status Located(const Status& status) const;
 
  private:

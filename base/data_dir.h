@@ -8,10 +8,10 @@
 
 namespace furrow {
 
-// A file of the data that the build makes (share/furrow): "default.glb", "rigs/cmu.json" ...
+// Finds a file of the built data folder share/furrow, such as "default.glb" or "rigs/cmu.json".
 //
-// Looked up in FURROW_DATA_DIR if it is set, else in ../share/furrow beside the running program.
-// Error: kNotFound, saying where it was looked for.
+// Searches FURROW_DATA_DIR if it is set, and otherwise ../share/furrow relative to the running
+// program's folder. Error: kNotFound, with the path that was tried.
 [[nodiscard]] Result<std::filesystem::path> FindDataFile(std::string_view name);
 
 }  // namespace furrow

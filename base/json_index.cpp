@@ -10,7 +10,7 @@
 namespace furrow {
 namespace {
 
-// RFC 8259's grammar of a number; from_chars() alone would take "inf", "1." and "01".
+// Checks RFC 8259's grammar of a number, because from_chars() also accepts "inf", "1." and "01".
 bool IsNumber(std::string_view token) {
   std::size_t i = 0;
   const auto digits = [&] {
@@ -38,8 +38,8 @@ bool FitsFloat(std::string_view number) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
   if (error == std::errc::result_out_of_range) {
-    // Too small is as good as 0; too large is not. from_chars() does not say which: the exponent
-    // does.
+    // from_chars() reports underflow and overflow alike; the exponent's sign tells them apart.
+    // Underflow is as good as 0.
     const std::size_t e = number.find_first_of("eE");
     return e != std::string_view::npos && number.substr(e + 1).starts_with('-');
   }
@@ -67,8 +67,8 @@ class JsonScanner {
     }
     FURROW_RETURN_IF_ERROR(SkipSpace());
     Enter(-1, -1, {});
-    if (AtEnd()) return Fail("there is nothing in it, a JSON object is due");
-    if (Peek() != '{') return Fail("a JSON object is due, it begins with '{'");
+    if (AtEnd()) return Fail("the text is empty; expected a JSON object");
+    if (Peek() != '{') return Fail("expected a JSON object, which begins with '{'");
     FURROW_RETURN_IF_ERROR(Value(0, 1));
     current_ = 0;
     FURROW_RETURN_IF_ERROR(SkipSpace());
@@ -106,7 +106,7 @@ class JsonScanner {
         while (!AtEnd() && Peek() != '\n') Advance();
       } else if (text_.substr(at_, 2) == "/*") {
         const std::size_t close = text_.find("*/", at_ + 2);
-        if (close == std::string_view::npos) return Fail("a comment that is not closed");
+        if (close == std::string_view::npos) return Fail("unterminated comment");
         while (at_ < close + 2) Advance();
       } else {
         break;
@@ -119,11 +119,11 @@ class JsonScanner {
     const std::size_t begin = ++at_;
     while (!AtEnd() && Peek() != '"') {
       if (static_cast<unsigned char>(Peek()) < 0x20) {
-        return Fail("a string that is not closed, or a control byte in it");
+        return Fail("unterminated string, or a control character inside a string");
       }
       at_ += Peek() == '\\' ? 2 : 1;
     }
-    if (AtEnd()) return Fail("a string that is not closed");
+    if (AtEnd()) return Fail("unterminated string");
     *content = text_.substr(begin, at_ - begin);
     ++at_;
     return {};
@@ -137,7 +137,7 @@ class JsonScanner {
     if (word == "true" || word == "false" || word == "null") return {};
     if (!IsNumber(word)) {
       return Fail("'" + std::string(word.substr(0, 40)) +
-                  "' is neither a number nor a word of JSON");
+                  "' is neither a number nor true, false or null");
     }
     if (!FitsFloat(word)) {
       return Fail("the number " + std::string(word.substr(0, 40)) + " is too large",
@@ -147,7 +147,7 @@ class JsonScanner {
   }
 
   Status Value(int element, int depth) {
-    if (AtEnd()) return Fail("the text ends where a value is due");
+    if (AtEnd()) return Fail("the text ends where a value is expected");
     Status status;
     std::string_view ignored;
     switch (Peek()) {
@@ -171,12 +171,12 @@ class JsonScanner {
     return {};
   }
 
-  // After an item: true at the closing bracket, false after a comma.
+  // Reads what follows an item. `closed` is set at the closing bracket and cleared after a comma.
   Status ItemEnd(char close, bool* closed) {
     FURROW_RETURN_IF_ERROR(SkipSpace());
-    if (AtEnd()) return Fail(std::string("the text ends where ',' or '") + close + "' is due");
+    if (AtEnd()) return Fail(std::string("the text ends where ',' or '") + close + "' is expected");
     if (Peek() != ',' && Peek() != close) {
-      return Fail(std::string("',' or '") + close + "' is due, not '" + Peek() + "'");
+      return Fail(std::string("expected ',' or '") + close + "', found '" + Peek() + "'");
     }
     *closed = Peek() == close;
     ++at_;
@@ -185,19 +185,19 @@ class JsonScanner {
 
   Status Field(int parent, int depth, std::vector<std::string_view>* keys) {
     if (AtEnd() || Peek() != '"') {
-      return Fail("a field's name in double quotes is due (is there a ',' too many?)");
+      return Fail("expected a field name in double quotes (is there an extra ','?)");
     }
     const int element = Enter(parent, -1, {});
     std::string_view key;
     FURROW_RETURN_IF_ERROR(String(&key));
     index_->elements_[element].key = key;
     if (std::find(keys->begin(), keys->end(), key) != keys->end()) {
-      return Fail("the field is stated twice", StatusCode::kSchema);
+      return Fail("the field appears twice", StatusCode::kSchema);
     }
     if (keys->size() >= 64) return Fail("too many fields in one object", StatusCode::kLimit);
     keys->push_back(key);
     FURROW_RETURN_IF_ERROR(SkipSpace());
-    if (AtEnd() || Peek() != ':') return Fail("':' is due after a field's name");
+    if (AtEnd() || Peek() != ':') return Fail("expected ':' after the field name");
     ++at_;
     FURROW_RETURN_IF_ERROR(SkipSpace());
     return Value(element, depth);
@@ -238,7 +238,7 @@ class JsonScanner {
   JsonIndex* index_;
   std::size_t at_ = 0;
   int line_ = 1;
-  int current_ = -1;  // element that an error is about
+  int current_ = -1;  // the element that an error names
 };
 
 Result<JsonIndex> JsonIndex::Create(std::string_view text) {
@@ -300,7 +300,7 @@ std::string JsonIndex::PathClosedBefore(int line, int column) const {
   std::size_t latest = 0;
   for (int i = 0; i < static_cast<int>(elements_.size()); ++i) {
     const Element& e = elements_[i];
-    // The token looked at may itself close something, right at `offset`: that is not the one.
+    // The next token may close an object right at `offset`; skip that object.
     if (!e.is_object || e.end >= offset || e.end < latest) continue;
     latest = e.end;
     found = i;

@@ -10,10 +10,10 @@
 namespace furrow {
 namespace {
 
-constexpr double kBeyondFloat = 0x1.ffffffp127;  // half-way from the largest float to the next
+constexpr double kBeyondFloat = 0x1.ffffffp127;  // halfway between the largest float and the next
 
-// from_chars says "out of range" of 1e-999 and of 1e999 alike: where the first digit that counts
-// stands tells which.
+// from_chars() reports underflow (1e-999) and overflow (1e999) alike. The position of the first
+// non-zero digit relative to the point and the exponent tells them apart.
 bool IsTiny(std::string_view digits) {
   const std::size_t e = std::min(digits.find_first_of("eE"), digits.size());
   const std::size_t point = std::min(digits.substr(0, e).find('.'), e);
@@ -23,7 +23,8 @@ bool IsTiny(std::string_view digits) {
     std::string_view power = digits.substr(e + 1);
     if (power.starts_with('+')) power.remove_prefix(1);
     const auto result = std::from_chars(power.data(), power.data() + power.size(), exponent);
-    if (result.ec != std::errc()) return power.starts_with('-');  // beyond any length of the digits
+    if (result.ec != std::errc())
+      return power.starts_with('-');  // the exponent outweighs any number of digits
   }
   return static_cast<long long>(point) + exponent < static_cast<long long>(first);
 }
@@ -47,7 +48,7 @@ Outcome Convert(std::string_view token, double* value) {
   if (error != std::errc() || rest != end) {
     return LooksNonFinite(token) ? Outcome::kNonFinite : Outcome::kNoNumber;
   }
-  // What does not round to a finite float would become infinite later; NaN compares false.
+  // A value that does not round to a finite float would become infinite later. NaN compares false.
   const bool fits = std::abs(*value) < kBeyondFloat;
   return fits ? Outcome::kNumber : Outcome::kNonFinite;
 }
@@ -74,7 +75,7 @@ Result<double> ParseNumber(std::string_view token, std::string_view where) {
   }
   const bool comma = token.find(',') != std::string_view::npos;
   return Status(StatusCode::kParse, Quoted(token) + " is not a number", std::string(where),
-                comma ? "the decimal sign is a point" : "");
+                comma ? "use a decimal point" : "");
 }
 
 bool TryParseNumber(std::string_view token, double* value) {

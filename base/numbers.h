@@ -7,28 +7,27 @@
 
 #include "base/status.h"
 
-// Numbers in text files: a point is the decimal sign whatever the process's locale says.
+// Numbers in text files. The decimal sign is a point, whatever the process's locale.
 namespace furrow {
 
-// A whole token as a number: "1", "-.0083333", "+2.5e-3".
-// `where` ("file:line") goes into the error.
+// Converts a whole token to a number: "1", "-.0083333", "+2.5e-3". Underflow gives 0.
 //
-// Errors: kNonFinite ("nan", "inf", MSVC's "1.#IND", or beyond a float's range), kParse (anything
-// else that is not a number). Too small to be told from 0 is 0.
+// Errors, with `where` ("file:line"): kNonFinite ("nan", "inf", MSVC's "1.#IND", or outside float's
+// range), kParse (not a number).
 [[nodiscard]] Result<double> ParseNumber(std::string_view token, std::string_view where);
 
-// As ParseNumber() without an error's text, for hot loops: false where ParseNumber() would fail.
+// As ParseNumber(), but returns false instead of building a message, for hot loops.
 [[nodiscard]] bool TryParseNumber(std::string_view token, double* value);
 
-// A whole word as a number; nullopt for anything else. Unlike ParseNumber(), accepts infinities and
-// NaN, so that the caller can report kNonFinite itself.
+// Converts a whole word to a number; nullopt if it is not one. Unlike ParseNumber(), these accept
+// infinities and NaN, so that the caller can report kNonFinite itself.
 [[nodiscard]] std::optional<float> ToFloat(std::string_view word);
 [[nodiscard]] std::optional<long> ToInteger(std::string_view word);
 
-// Appends `value` with at most `decimals` digits after the
-// point, trailing zeros dropped; "-0" is "0".
+// Appends `value` with at most `decimals` digits after the point, without trailing zeros; "-0"
+// becomes "0".
 void AppendFixed(double value, int decimals, std::string* text);
-// Appends the shortest text that reads back as the same float.
+// Appends the shortest text that parses back to the same float.
 void AppendShortest(float value, std::string* text);
 
 }  // namespace furrow

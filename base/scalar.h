@@ -4,14 +4,14 @@
 namespace furrow {
 
 inline constexpr float kPi = 3.14159265358979f;
-inline constexpr float kDegrees = kPi / 180.0f;  // 90 * kDegrees is a right angle in radians
+inline constexpr float kDegrees = kPi / 180.0f;  // radians per degree
 
-// `x` clamped to [0, 1]; 0 for a NaN, so that nothing leaves a formula out of range.
+// Clamps `x` to [0, 1]. NaN gives 0, so that no formula's result leaves the range.
 [[nodiscard]] inline constexpr float Saturate(float x) {
   return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f;
 }
 
-// GLSL's smoothstep; `from` < `to`.
+// GLSL's smoothstep. Precondition: `from` < `to`.
 [[nodiscard]] inline constexpr float Smoothstep(float from, float to, float x) {
   const float t = Saturate((x - from) / (to - from));
   return t * t * (3.0f - 2.0f * t);

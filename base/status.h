@@ -8,27 +8,27 @@
 
 namespace furrow {
 
-// Why something failed: what exit codes, replies to peers and tests go by. Words are Status's.
+// The kind of a failure. Exit codes, replies to peers and tests depend on it.
 enum class StatusCode {
   kOk = 0,
-  kInvalidArgument,  // the caller broke a contract: wrong size, unknown name, out of range
-  kNotFound,         // a file, joint, region or subject that is not there
-  kParse,            // the text or bytes are not what the format says
+  kInvalidArgument,  // wrong size, unknown name, or out of range
+  kNotFound,         // a file, joint, region or subject that does not exist
+  kParse,            // malformed text or bytes
   kSchema,           // well-formed, but a field is missing, unknown or of the wrong type
-  kLimit,            // larger or deeper than we accept from outside
-  kNonFinite,        // NaN or infinity where a number is due
-  kCyclic,           // a hierarchy that is not a tree
-  kUnsupported,      // valid, but nothing we implement
-  kIo,               // the operating system said no
-  kUnavailable,      // a service (GL, a socket, a peer) cannot be had now
-  kInternal,         // our own fault
+  kLimit,            // larger or deeper than the limit for untrusted input
+  kNonFinite,        // NaN or infinity
+  kCyclic,           // a hierarchy with a cycle
+  kUnsupported,      // valid, but not implemented
+  kIo,               // the operating system reported an error
+  kUnavailable,      // GL, a socket or a peer is unavailable at the moment
+  kInternal,         // a bug in Furrow
 };
 
 // Success, or one clear message: what went wrong, where, and what to do.
 //
-// `where` is "file:line" for text, "file" or "file: field" for the
-// rest, empty when there is no place. Not for the packet path: there,
-// jobs and decoders return bare enums (see JobStatus and protocol/).
+// `where` is "file:line" for text, "file" or "file: field" for other input, and empty if there is
+// no place. The packet path does not use Status: jobs and decoders return enums (JobStatus in
+// wrinkle/, DecodeStatus in protocol/).
 class [[nodiscard]] Status {
  public:
   Status() = default;
@@ -40,10 +40,10 @@ class [[nodiscard]] Status {
   [[nodiscard]] const std::string& where() const { return where_; }
   [[nodiscard]] const std::string& todo() const { return todo_; }
 
-  // "where: what (todo)", leaving out what is empty; "ok" on success.
+  // "where: what (todo)" without the empty parts; "ok" on success.
   [[nodiscard]] std::string ToString() const;
 
-  // The same failure seen from further out: prefixes `where` when it is still empty.
+  // The same failure, with `where` filled in if it was empty.
   [[nodiscard]] Status At(std::string_view where) const;
 
  private:
@@ -53,7 +53,7 @@ class [[nodiscard]] Status {
   std::string todo_;
 };
 
-// A value, or the Status that says why there is none. `status()` of a value is Ok.
+// A value, or the Status of the failure that prevented it. status() of a value is Ok.
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -63,7 +63,7 @@ class [[nodiscard]] Result {
   [[nodiscard]] bool ok() const { return state_.index() == 0; }
   [[nodiscard]] Status status() const { return ok() ? Status() : std::get<1>(state_); }
 
-  // Precondition of all below: ok().
+  // Precondition of the accessors below: ok().
   [[nodiscard]] T& value() & { return std::get<0>(state_); }
   [[nodiscard]] const T& value() const& { return std::get<0>(state_); }
   [[nodiscard]] T&& value() && { return std::get<0>(std::move(state_)); }

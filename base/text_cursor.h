@@ -9,23 +9,24 @@
 
 namespace furrow {
 
-// Walks a text by tokens or by lines and knows the line it is in. LF, CRLF and a lone CR end a
-// line. The text must outlive the cursor and everything it returned.
+// Reads a text by tokens or by lines and tracks the line number. LF, CRLF and a lone CR end a line.
+// The text must outlive the cursor and every view that the cursor returned.
 class TextCursor {
  public:
-  // `source_name` begins every Where(); a UTF-8 byte order mark is skipped.
+  // `source_name` is the file name in Where(). A UTF-8 byte order mark is skipped.
   TextCursor(std::string_view text, std::string_view source_name);
 
-  // The next run of non-blank characters, over line ends; empty at the end of the text. '{' and '}'
-  // are tokens of their own.
+  // The next run of non-blank characters, on this line or a later one; empty at the end of the
+  // text.
+  // '{' and '}' are separate tokens.
   std::string_view NextToken();
-  // What NextToken() would return; the cursor stays.
+  // The token that NextToken() would return, without moving the cursor.
   [[nodiscard]] std::string_view PeekToken() const;
-  // What is left of this line up to '{' or '}', without
-  // blanks at either end; stays before the brace.
+  // The rest of this line up to '{' or '}', without surrounding blanks. The cursor stops before the
+  // brace.
   std::string_view RestOfLine();
-  // The next whole line with something on it, or false at the end of the text. After it, line() is
-  // its number and line_was_ended() tells whether a line end followed it.
+  // Reads the next line that is not blank; false at the end of the text. Afterwards line() is its
+  // number, and line_was_ended() tells whether a line end followed it.
   bool NextLine(std::string_view* line);
 
   [[nodiscard]] std::size_t line() const { return line_; }
@@ -40,7 +41,8 @@ class TextCursor {
   std::string_view source_name_;
   std::size_t position_ = 0;
   std::size_t line_ = 1;
-  bool pending_line_end_ = false;  // NextLine() leaves its line end to the next call, for line()
+  bool pending_line_end_ =
+      false;  // NextLine() consumes its line end on the next call, so that line() stays
   bool line_was_ended_ = true;
 };
 

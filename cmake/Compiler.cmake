@@ -12,8 +12,14 @@ set(FURROW_COVERAGE OFF CACHE BOOL "Instrument for gcov")
 
 find_program(FURROW_CCACHE ccache)
 if(FURROW_CCACHE)
-  set(CMAKE_C_COMPILER_LAUNCHER "${FURROW_CCACHE}")
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${FURROW_CCACHE}")
+  # ccache handles precompiled headers only with these two kinds of sloppiness (its manual, "Precompiled
+  # headers"); -fpch-preprocess lets it see which header a unit used.
+  set(launcher "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${FURROW_CCACHE}")
+  set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)
+  endif()
 endif()
 
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wimplicit-fallthrough

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 # How a folder becomes a library, a schema becomes code, and a test folder becomes a test program.
 include(GoogleTest)
+include(Unity)
 
-# furrow_library(NAME SOURCES... LINK libs... PRIVATE_LINK libs...): headers are included from the root.
+# furrow_library(NAME SOURCES... LINK libs... PRIVATE_LINK libs...): a static library. Headers are included
+# by their path from the root.
 function(furrow_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_include_directories(${name} PUBLIC "${CMAKE_SOURCE_DIR}")
   target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK})
+  furrow_unity(${name})
 endfunction()
 
 # furrow_flatbuffers(TARGET SCHEMAS...): generated headers, included as "<folder>/<name>_generated.h".
@@ -33,7 +36,8 @@ function(furrow_flatbuffers target)
 endfunction()
 
 # furrow_test(NAME SOURCES... LINK libs... [ONE_PROCESS] [LABEL l]): a GoogleTest program. Each test is a
-# CTest test; ONE_PROCESS runs the whole program as one (dear set-up: GL contexts, daemons).
+# CTest test. ONE_PROCESS runs the whole program as one CTest test, for programs with a costly set-up (GL
+# contexts, whole characters). The label `all` keeps a program out of the default tier (test.sh --all).
 function(furrow_test name)
   cmake_parse_arguments(ARG "ONE_PROCESS" "LABEL" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -42,6 +46,7 @@ function(furrow_test name)
   target_compile_definitions(${name} PRIVATE
     FURROW_SOURCE_DIR="${CMAKE_SOURCE_DIR}" FURROW_BINARY_DIR="${CMAKE_BINARY_DIR}"
     FURROW_SHARED_DATA="${FURROW_SHARED_DATA}")
+  furrow_precompile_tests(${name})
   if(NOT ARG_LABEL)
     set(ARG_LABEL unit)
   endif()

@@ -1,9 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what building and testing Furrow needs on Debian 12. Quiet when nothing is missing; safe to
-# run twice; sudo only where it is needed.
+# Installs what Furrow needs on Debian 12. Prints nothing when nothing is missing, can be run twice,
+# uses sudo only when a package is missing, and never removes a package.
 #
-# usage: deploy/install-deps.sh [build|test|full]      (default test; each set holds the one before it)
+# usage: deploy/install-deps.sh [build|test|all|full]   (default: test; each set includes the sets before it)
+#   build  build and run the demo
+#   test   ./test.sh
+#   all    ./test.sh --all
+#   full   ./test.sh --full
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -11,16 +15,18 @@ want=${1:-test}
 case "$want" in
   build) sets='build' ;;
   test) sets='build test' ;;
-  full) sets='build test full' ;;
-  *) echo "install-deps: unknown set '$want' (build, test or full)" >&2; exit 2 ;;
+  all) sets='build test all' ;;
+  full) sets='build test all full' ;;
+  *) echo "install-deps: unknown set '$want' (build, test, all or full)" >&2; exit 2 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null; then
-  echo "install-deps: not a Debian system; install what deploy/packages.txt lists by hand" >&2
+  echo "install-deps: this is not a Debian system; install the packages of deploy/packages.txt by hand" >&2
   exit 1
 fi
 
-# Also what another package stands for: NodeSource's nodejs brings npm and conflicts with Debian's.
+# Packages that an installed package provides count as installed: NodeSource's nodejs provides npm and
+# conflicts with Debian's npm.
 provided=$(dpkg-query -W -f='${db:Status-Status}, ${Provides}\n' | sed -n 's/^installed, //p' |
            tr ',' '\n' | awk '{ print $1 }')
 missing=()
@@ -31,7 +37,8 @@ while read -r set package; do
   [[ $state == installed ]] || grep -qxF -- "$package" <<<"$provided" || missing+=("$package")
 done < "$here/packages.txt"
 
-# npm_ci FOLDER WHAT: the packages of FOLDER's lock file, unless they are there. WHAT is lost without them.
+# npm_ci FOLDER CONSEQUENCE: installs the packages of FOLDER's lock file unless they are installed
+# already. CONSEQUENCE says what is left out when that fails.
 npm_ci() {
   local folder=$here/../$1
   command -v npm >/dev/null || return 0
@@ -63,15 +70,34 @@ if [[ $(id -u) -ne 0 ]]; then
   sudo=(sudo)
 fi
 
-echo "install-deps: installing ${missing[*]}"
+export DEBIAN_FRONTEND=noninteractive
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-export DEBIAN_FRONTEND=noninteractive
-if ! { "${sudo[@]}" apt-get update &&
-       "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive \
-         apt-get install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+
+# fail MESSAGE: the end of apt-get's output, then MESSAGE.
+fail() {
   tail -n 30 "$log" >&2
-  echo "install-deps: apt-get failed; its last lines stand above" >&2
+  echo "install-deps: $1" >&2
+  exit 1
+}
+
+echo "install-deps: installing ${missing[*]}"
+"${sudo[@]}" apt-get update >"$log" 2>&1 || fail 'apt-get update failed (output above)'
+
+# Installing never removes a package: stop before it, and name what is in the way.
+"${sudo[@]}" apt-get install --simulate --no-install-recommends "${missing[@]}" >"$log" 2>&1 ||
+  fail "apt-get cannot install: ${missing[*]} (reason above)"
+removed=$(sed -n 's/^Remv \([^ ]*\).*/\1/p' "$log" | tr '\n' ' ')
+if [[ -n $removed ]]; then
+  cat >&2 <<MESSAGE
+install-deps: nothing was installed, because apt would remove: $removed
+  To go on, remove those packages yourself and run this again:
+    apt-get install --no-install-recommends ${missing[*]}
+  or build in a container or chroot of Debian 12.
+MESSAGE
   exit 1
 fi
+"${sudo[@]}" env DEBIAN_FRONTEND=noninteractive \
+  apt-get install -y --no-remove --no-install-recommends "${missing[@]}" >"$log" 2>&1 ||
+  fail 'apt-get install failed (output above)'
 install_npm_packages

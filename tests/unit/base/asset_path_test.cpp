@@ -10,7 +10,7 @@
 #include "base/files.h"
 #include "tests/temporary_folder.h"
 
-namespace furrow::character {
+namespace furrow {
 namespace {
 
 namespace fs = std::filesystem;
@@ -56,31 +56,5 @@ TEST_F(AssetPath, StaysInsideItsFolders) {
   EXPECT_TRUE(CheckAssetName("textures/skin..v2.png").ok());
 }
 
-TEST_F(AssetPath, ReadsWithinALimit) {
-  ASSERT_TRUE(WriteFileAtomically(root_ / "f", "12345").ok());
-  EXPECT_EQ(*ReadFile(root_ / "f", 5), "12345");
-  EXPECT_EQ(ReadFile(root_ / "f", 4).status().code(), StatusCode::kLimit);
-  EXPECT_EQ(ReadFile(root_ / "g", 4).status().code(), StatusCode::kNotFound);
-  EXPECT_EQ(ReadFile(root_.path(), 4).status().code(), StatusCode::kIo);
-}
-
-TEST_F(AssetPath, WritesAllOrNothing) {
-  ASSERT_TRUE(WriteFileAtomically(root_ / "f", "old").ok());
-  ASSERT_TRUE(WriteFileAtomically(root_ / "f", "new").ok());
-  EXPECT_EQ(*ReadFile(root_ / "f", 10), "new");
-  const Status status = WriteFileAtomically(root_ / "no/such/folder/f", "x");
-  EXPECT_EQ(status.code(), StatusCode::kIo);
-  EXPECT_EQ(status.where(), (root_ / "no/such/folder/f").string());
-  // A folder of that name: the rename fails, and the temporary file goes.
-  EXPECT_EQ(WriteFileAtomically(root_ / "beside", "x").code(), StatusCode::kIo);
-  // One that fails leaves the others of its package as they were.
-  const FileToWrite files[] = {{root_ / "f", "newer"}, {root_ / "beside", "x"}};
-  EXPECT_EQ(WriteFilesAtomically(files).code(), StatusCode::kIo);
-  EXPECT_EQ(*ReadFile(root_ / "f", 10), "new");
-  int entries = 0;
-  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(root_.path())) ++entries;
-  EXPECT_EQ(entries, 4);  // three folders and f
-}
-
 }  // namespace
-}  // namespace furrow::character
+}  // namespace furrow

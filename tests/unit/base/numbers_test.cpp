@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace furrow::motion {
+namespace furrow {
 namespace {
 
 TEST(ParseNumber, TakesWhatExportersWrite) {
@@ -127,4 +127,4 @@ TEST(Number, IgnoresTheCLocale) {
 }
 
 }  // namespace
-}  // namespace furrow::motion
+}  // namespace furrow

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+# Fewer and cheaper translation units. Most of a clean build's time goes into parsing the same headers
+# again, so each folder of a library is compiled as one unit, and test programs share a precompiled header.
+option(FURROW_UNITY "Compile each folder of a library as one unit, and precompile the tests' headers" ON)
+
+# furrow_unity(TARGET): the sources of one folder become one translation unit. Sources with the property
+# SKIP_UNITY_BUILD_INCLUSION stay on their own.
+function(furrow_unity target)
+  if(NOT FURROW_UNITY)
+    return()
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" NORMALIZE)
+    cmake_path(IS_PREFIX CMAKE_BINARY_DIR "${source}" generated)
+    if(NOT generated)
+      cmake_path(GET source PARENT_PATH folder)
+      file(RELATIVE_PATH folder "${CMAKE_SOURCE_DIR}" "${folder}")
+      string(REPLACE "/" "_" group "${folder}")
+      set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${group}")
+    endif()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
+
+# furrow_precompile_tests(TARGET): GoogleTest and the standard library, parsed once for all test programs.
+function(furrow_precompile_tests target)
+  if(NOT FURROW_UNITY)
+    return()
+  endif()
+  if(NOT TARGET furrow_test_headers)
+    file(WRITE "${CMAKE_BINARY_DIR}/test_headers.cpp" "// Carries the tests' precompiled header.\n")
+    add_library(furrow_test_headers OBJECT "${CMAKE_BINARY_DIR}/test_headers.cpp")
+    target_link_libraries(furrow_test_headers PRIVATE GTest::gtest GTest::gmock)
+    target_precompile_headers(furrow_test_headers PRIVATE
+      <gmock/gmock.h> <gtest/gtest.h> <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map>
+      <memory> <optional> <span> <string> <string_view> <vector>)
+  endif()
+  target_precompile_headers(${target} REUSE_FROM furrow_test_headers)
+endfunction()

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/text.h"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace furrow {
+namespace {
+
+TEST(Quoted, ShowsPrintableAsciiOnly) {
+  EXPECT_EQ(Quoted("jaw"), "'jaw'");
+  EXPECT_EQ(Quoted(""), "''");
+  EXPECT_EQ(Quoted(std::string("a\x1b[31m\n\xc3\xa4\0b", 11)), "'a?[31m????b'");
+}
+
+TEST(Quoted, CutsAfterFortyBytes) {
+  EXPECT_EQ(Quoted(std::string(40, 'x')), "'" + std::string(40, 'x') + "'");
+  EXPECT_EQ(Quoted(std::string(41, 'x')), "'" + std::string(40, 'x') + "...'");
+}
+
+TEST(LineOf, CountsFromOne) {
+  constexpr std::string_view kText = "a\nbc\n\nd";
+  EXPECT_EQ(LineOf(kText, 0), 1u);
+  EXPECT_EQ(LineOf(kText, 1), 1u);  // the line end belongs to its line
+  EXPECT_EQ(LineOf(kText, 2), 2u);
+  EXPECT_EQ(LineOf(kText, 6), 4u);
+  EXPECT_EQ(LineOf(kText, 999), 4u);
+  EXPECT_EQ(Where("a.obj", LineOf(kText, 2)), "a.obj:2");
+}
+
+TEST(SplitWords, SplitsAtBlanksAndDropsComments) {
+  std::vector<std::string_view> words = {"stale"};
+  SplitWords("  v 1.0\t-2 # v 3", &words);
+  EXPECT_THAT(words, ::testing::ElementsAre("v", "1.0", "-2"));
+  SplitWords("# nothing", &words);
+  EXPECT_THAT(words, ::testing::IsEmpty());
+  SplitWords("", &words);
+  EXPECT_THAT(words, ::testing::IsEmpty());
+}
+
+TEST(TakeToken, RemovesTheTokenFromTheLine) {
+  std::string_view line = "  one two";
+  EXPECT_EQ(TakeToken(&line), "one");
+  EXPECT_EQ(TakeToken(&line), "two");
+  EXPECT_EQ(TakeToken(&line), "");
+  EXPECT_EQ(line, "");
+}
+
+TEST(AsText, SeesTheSameBytes) {
+  const std::vector<std::uint8_t> bytes = {'o', 'k', 0};
+  EXPECT_EQ(AsText(bytes), std::string_view("ok\0", 3));
+}
+
+}  // namespace
+}  // namespace furrow
