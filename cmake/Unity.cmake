@@ -23,6 +23,12 @@ function(furrow_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
+# furrow_compile_alone(SOURCES...): keeps sources out of the unity files. Highway includes a kernel's source
+# once per instruction set, so it cannot share a unit. Call it before furrow_library().
+function(furrow_compile_alone)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
 # furrow_precompile_tests(TARGET): GoogleTest and the standard library, parsed once for all test programs.
 function(furrow_precompile_tests target)
   if(NOT FURROW_UNITY)
