@@ -14,6 +14,7 @@
 #include "character/gltf_material.h"
 #include "character/gltf_mesh.h"
 #include "character/gltf_skeleton.h"
+#include "character/picture_file.h"
 #include "rig/rig_file.h"
 
 namespace furrow::character {

@@ -13,6 +13,7 @@
 
 #include "base/asset_path.h"
 #include "base/status.h"
+#include "character/picture_file.h"
 
 namespace furrow::character {
 namespace {

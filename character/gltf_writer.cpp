@@ -15,6 +15,7 @@
 #include "character/character.h"
 #include "character/gltf_builder.h"
 #include "character/gltf_material.h"
+#include "character/picture_file.h"
 
 namespace furrow::character {
 namespace {

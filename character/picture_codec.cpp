@@ -15,7 +15,7 @@ std::filesystem::path ModulePath() {
   return program.parent_path().parent_path() / "lib" / "furrow" / "furrow-pictures.so";
 }
 
-// Stays until the program ends, as those libraries want it.
+// The module is never unloaded: some of OpenImageIO's libraries do not support that.
 Result<const PictureCodec*> LoadModule() {
   const std::filesystem::path path = ModulePath();
   void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);

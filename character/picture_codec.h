@@ -16,27 +16,24 @@ struct PictureStorage {
   enum class Type { kU8, kU16, kHalf };
   Format format = Format::kPng;
   Type type = Type::kU8;
-  bool srgb = false;    // said in the file; pixels stay as they are
-  int compression = 0;  // PNG: 1 to 9; 0: the library's own
+  bool srgb = false;    // marks the file as sRGB; pixels are not converted
+  int compression = 0;  // PNG: 1 to 9, or 0 for the library's default
 };
 
-// What reads and writes picture files: OpenImageIO, which brings 250 libraries and 110 MiB of
-// resident memory with it. So it is a module of its own, lib/furrow/furrow-pictures.so beside bin/,
-// that is loaded with the first picture: a daemon that draws none never has it.
+// Reads and writes picture files with OpenImageIO. That library loads 250 others and takes 110 MiB
+// of resident memory, so the codec is a module, lib/furrow/furrow-pictures.so beside bin/, which is
+// loaded with the first picture. A daemon without pictures never loads it.
 struct PictureCodec {
-  // Fills all of `picture` but its name. kOk, or why not, with `why`: the errors of DecodePicture()
-  // but for kNonFinite.
+  // Fills `picture` except its name. On failure returns a code of DecodePicture(), except
+  // kNonFinite, and sets `why`.
   StatusCode (*decode)(std::span<const std::uint8_t> bytes, Picture* picture, std::string* why);
-  // Precondition: the pixels fit the size. kOk, or kInternal and `why`.
+  // Precondition: the number of pixels matches the size. On failure returns kInternal and sets
+  // `why`.
   StatusCode (*encode)(const Picture& picture, const PictureStorage& storage, std::string* bytes,
                        std::string* why);
 };
 
-// The codec, loaded once. Errors: kUnavailable, naming the module.
+// The codec, loaded on the first call. Error: kUnavailable, with the module's path.
 [[nodiscard]] Result<const PictureCodec*> GetPictureCodec();
-
-// EncodePng() and EncodeExr() with all that can be chosen. Errors: theirs, GetPictureCodec()'s.
-[[nodiscard]] Result<std::string> EncodePicture(const Picture& picture,
-                                                const PictureStorage& storage);
 
 }  // namespace furrow::character

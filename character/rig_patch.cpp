@@ -21,10 +21,10 @@ namespace {
 
 constexpr float kLeastSkinWeight = 1e-3f;
 
-// Digits that say something: a hundredth of a millimetre, a ten-thousandth of a skin weight.
+// Precision worth writing: a hundredth of a millimetre, a ten-thousandth of a skin weight.
 float Rounded(float value, float steps) { return std::round(value * steps) / steps; }
 
-// Skin and cloth, and where nothing is marked as skin, all but eyes and hair: teeth never wrinkle.
+// Skin and cloth wrinkle. If no material is marked as skin, everything except eyes and hair does.
 bool Wrinkles(const Character& character, const Mesh& mesh) {
   const auto kind_of = [&](const Mesh& of) {
     return of.material < 0 ? Material::Kind::kOther
@@ -40,11 +40,12 @@ bool Wrinkles(const Character& character, const Mesh& mesh) {
 
 struct Piece {
   const Mesh* mesh = nullptr;
-  std::size_t first = 0;  // into its indices
-  float distance = 0.0f;  // of the middle from the centre
+  std::size_t first = 0;  // into the mesh's indices
+  float distance = 0.0f;  // from the centroid to the centre
 };
 
-// A point of the surface: vertices of UV seams are one, those of two meshes never.
+// A point of the surface. Vertices on both sides of a UV seam are the same point; vertices of two
+// meshes never are.
 using Point = std::pair<const Mesh*, std::uint32_t>;
 
 class PatchCutter {
@@ -82,7 +83,7 @@ class PatchCutter {
     return options_.mesh.empty() ? Wrinkles(character_, mesh) : mesh.name == options_.mesh;
   }
 
-  // The vertex that is nearest to the point that was asked for.
+  // Finds the vertex nearest to the requested point.
   Status FindCentre() {
     float nearest = std::numeric_limits<float>::max();
     bool any = false;
@@ -98,16 +99,17 @@ class PatchCutter {
     }
     if (!any) {
       return {StatusCode::kNotFound,
-              options_.mesh.empty() ? "the character has no skin and no cloth"
-                                    : "there is no mesh '" + options_.mesh + "'",
+              options_.mesh.empty() ? "the character has neither skin nor cloth"
+                                    : "no mesh '" + options_.mesh + "'",
               character_.name};
     }
     if (nearest <= std::max(options_.radius, 0.02f)) return {};
     char text[96];
-    std::snprintf(text, sizeof(text), "no surface is there; the nearest is at %.4f,%.4f,%.4f",
+    std::snprintf(text, sizeof(text), "no surface at that point; the nearest is at %.4f,%.4f,%.4f",
                   static_cast<double>(centre_.x), static_cast<double>(centre_.y),
                   static_cast<double>(centre_.z));
-    return {StatusCode::kNotFound, text, character_.name, "lengths are metres, at rest"};
+    return {StatusCode::kNotFound, text, character_.name,
+            "positions are in metres, in the rest pose"};
   }
 
   Status CollectPieces() {
@@ -126,8 +128,7 @@ class PatchCutter {
                      [](const Piece& a, const Piece& b) { return a.distance < b.distance; });
     if (!pieces_.empty()) return {};
     char text[128];
-    std::snprintf(text, sizeof text,
-                  "no triangle's middle lies within %.1f mm; the nearest lies at %.1f mm",
+    std::snprintf(text, sizeof text, "no triangle within %.1f mm; the nearest is %.1f mm away",
                   static_cast<double>(1e3f * options_.radius), static_cast<double>(1e3f * nearest));
     return {StatusCode::kNotFound, text, character_.name, "choose a larger radius"};
   }
@@ -199,7 +200,7 @@ class PatchCutter {
     return static_cast<int>(names.size()) - 1;
   }
 
-  // The rig's anchor where it carries the patch, else what moves the patch most.
+  // The rig's anchor if it carries the patch, otherwise the joint that moves the patch most.
   int Base() const {
     const int anchor = character_.skeleton.Find(character_.rig.anchor);
     const bool carries = anchor != wrinkle::kNoJoint &&
@@ -233,7 +234,7 @@ class PatchCutter {
   std::map<int, float> pull_;  // joint -> sum of its skin weights
 };
 
-// What a region's maps are drawn on; kOther stands for anything.
+// The kind of material that a region's maps are drawn on; kOther for any.
 Material::Kind SurfaceOf(const wrinkle::Rig& rig, const wrinkle::Region& region) {
   using Surface = wrinkle::WrinkleMap::Surface;
   for (const wrinkle::Feed& feed : region.feeds) {
@@ -256,22 +257,22 @@ Result<wrinkle::Driver> CutPatch(const Character& character, const PatchOptions&
   return PatchCutter(character, options).Run();
 }
 
-Result<glm::vec3> PlaceOfJoint(const Character& character, const std::string& joint) {
+Result<glm::vec3> JointPosition(const Character& character, const std::string& joint) {
   const int index = character.skeleton.Find(joint);
   if (index == wrinkle::kNoJoint) {
-    return Status(StatusCode::kNotFound, "there is no joint '" + joint + "'", character.name);
+    return Status(StatusCode::kNotFound, "no joint '" + joint + "'", character.name);
   }
   return glm::vec3(character.skeleton.rest_model()[static_cast<std::size_t>(index)][3]);
 }
 
-Result<glm::vec3> PlaceOfRegion(const Character& character, const std::string& region) {
+Result<glm::vec3> RegionPosition(const Character& character, const std::string& region) {
   for (const wrinkle::Region& candidate : character.rig.regions) {
     if (candidate.name != region) continue;
     const Material::Kind kind = SurfaceOf(character.rig, candidate);
     const int picture = character.FindRigPicture(candidate.mask.texture);
     if (picture < 0) {
       return Status(StatusCode::kNotFound, "region '" + region + "' has no mask picture",
-                    character.name, "say where with --around or --joint");
+                    character.name, "give the place with --around or --joint");
     }
     std::vector<glm::vec3> inside;
     glm::vec3 sum(0.0f);
@@ -284,7 +285,8 @@ Result<glm::vec3> PlaceOfRegion(const Character& character, const std::string& r
         sum += vertex.position;
       }
     }
-    // The middle of a bent surface lies beneath it, maybe nearer to another: to the surface again.
+    // The centroid of a bent surface lies below it, perhaps nearer to another surface, so snap to
+    // the surface again.
     const glm::vec3 middle = sum / static_cast<float>(std::max<std::size_t>(inside.size(), 1));
     const auto nearest =
         std::min_element(inside.begin(), inside.end(), [&](const glm::vec3& a, const glm::vec3& b) {

@@ -7,36 +7,39 @@
 
 namespace furrow::character {
 
-// What a strain driver's patch is cut out of a character by.
+// How to cut a strain driver's patch out of a character.
 struct PatchOptions {
-  std::string name = "patch";  // of the driver
-  std::string mesh;            // cut from this mesh alone; empty: from skin and cloth alike
-  glm::vec3 centre{0.0f};      // model space, rest pose, metres; carried to the nearest vertex
-  float radius = 0.015f;       // metres: triangles whose middle is nearer belong to it
+  std::string name = "patch";  // the driver's name
+  std::string mesh;            // the mesh to cut from; empty: skin and cloth
+  glm::vec3 centre{0.0f};      // model space, rest pose, metres; snaps to the nearest vertex
+  float radius = 0.015f;       // metres; selects triangles by their centroid
   glm::vec3 direction{0.0f, 1.0f, 0.0f};  // see wrinkle::StrainDriver
   float full_compression = 0.25f;
 };
 
-// A strain driver (wrinkle/rig/rig.h) over the triangles around a point, ready to be pasted into a
-// rig.
+// Makes a strain driver (wrinkle/rig/rig.h) from the triangles around a point, ready to be pasted
+// into a rig.
 //
-// - Where there are more triangles than a driver may have (rig_check.h), those nearest the centre
-//   are taken. Only triangles that hang together with the nearest one (weld.h) belong: not the
-//   other lip, though it may lie upon this one.
-// - Positions are measured from the rig's anchor where it moves the patch or is above what does,
-// else
-//   from the joint that moves the patch most. Skin weights below 0.001 are dropped.
-// Errors: kNotFound (no such mesh; no surface or no triangle within the radius, which names the
-// nearest),
-// kInvalidArgument (a driver that CheckRigFields() refuses, a patch that one joint alone moves: it
-// cannot be compressed).
+// - If the radius holds more triangles than a driver may have (wrinkle/rig/rig_check.h), the
+// nearest
+//   ones are taken.
+// - Only triangles connected to the nearest one (weld.h) are taken, so a patch on one lip never
+//   includes the other lip.
+// - Positions are relative to the rig's anchor if the anchor moves the patch or is an ancestor of
+// the
+//   joints that do, and otherwise to the joint that moves the patch most. Skin weights below 0.001
+//   are dropped.
+//
+// Errors: kNotFound (no such mesh, or no triangle within the radius; the message names the
+// nearest), kInvalidArgument (a driver that CheckRigFields() rejects, or a patch that a single
+// joint moves and that therefore cannot be compressed).
 [[nodiscard]] Result<wrinkle::Driver> CutPatch(const Character& character,
                                                const PatchOptions& options);
 
-// Where a joint starts (model space, rest pose), and the vertex in the middle of what a region's
-// mask covers. kNotFound where there is no such joint, region or mask picture.
-[[nodiscard]] Result<glm::vec3> PlaceOfJoint(const Character& character, const std::string& joint);
-[[nodiscard]] Result<glm::vec3> PlaceOfRegion(const Character& character,
-                                              const std::string& region);
+// The origin of a joint, and the vertex at the centre of a region's mask; model space, rest pose.
+// Error: kNotFound (no such joint, region or mask picture).
+[[nodiscard]] Result<glm::vec3> JointPosition(const Character& character, const std::string& joint);
+[[nodiscard]] Result<glm::vec3> RegionPosition(const Character& character,
+                                               const std::string& region);
 
 }  // namespace furrow::character

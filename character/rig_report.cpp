@@ -40,7 +40,7 @@ void Count(const Rig& rig, RigReport* report) {
                     {"exported names", rig.exports.size()}};
 }
 
-// What stands in the rig and leads nowhere.
+// Warns about parts of the rig that nothing uses.
 void WarnOfUnused(const Rig& rig, std::vector<std::string>* warnings) {
   std::set<std::string> poses, drivers, maps;
   for (const Driver& driver : rig.drivers) {
@@ -83,7 +83,7 @@ void WarnOfPictures(const Rig& rig, const RigReportOptions& options,
   }
 }
 
-// A reference pose that moves no point of a driver leaves its value at 0 for ever.
+// A reference pose that moves no control point of a driver leaves the driver's value at 0.
 void WarnOfStillPoints(const Rig& rig, const Skeleton& skeleton,
                        std::vector<std::string>* warnings) {
   const int anchor = skeleton.Find(rig.anchor);

@@ -13,34 +13,34 @@
 
 namespace furrow::character {
 
-// What `furrow rig check` says about a rig that has been read: what is in it, and what is probably
-// not meant. Errors of the file itself are LoadRig()'s.
+// The result of `furrow rig check` for a rig that has been read: its contents and its likely
+// mistakes. LoadRig() reports errors in the file itself.
 struct RigReport {
   std::string name;
   std::vector<std::pair<std::string, std::size_t>> counts;  // "drivers" -> 11
   std::vector<std::string> weight_names;                    // "<region>.<map>"
   std::vector<std::string> driver_value_names;              // "<driver>.<value>"
-  std::vector<std::string> warnings;  // one sentence each; empty: nothing to say
-  // With a skeleton: whether the rig binds strictly, as `furrow solve` does; Ok without one.
+  std::vector<std::string> warnings;                        // one sentence each
+  // Whether the rig binds strictly to the skeleton, as in `furrow solve`; Ok without a skeleton.
   Status binding;
-  float skeleton_size = 0.0f;  // what source_size and offset_size mean; 0: none given
+  float skeleton_size = 0.0f;  // the unit of source_size and offset_size; 0 without a skeleton
 };
 
 struct RigReportOptions {
-  // The skeleton to try it on, if any, and the blend shapes that come with it.
+  // The skeleton to bind to, if any, and its blend shapes.
   const wrinkle::Skeleton* skeleton = nullptr;
   std::span<const std::string> blend_shape_names;
   // See BindOptions::aliases.
   std::span<const std::pair<std::string, std::string>> aliases;
-  // Where the rig's pictures are looked up (then FURROW_ASSET_PATH); a picture inside a character
-  // is known by `embedded_pictures`.
+  // The folder that is searched for the rig's pictures, before FURROW_ASSET_PATH. Pictures embedded
+  // in a character are listed in `embedded_pictures`.
   std::filesystem::path folder;
   std::span<const std::string> embedded_pictures;
 };
 
 [[nodiscard]] RigReport ReportOnRig(const wrinkle::Rig& rig, const RigReportOptions& options = {});
 
-// For a terminal: counts, names, warnings, and the binding's verdict, one a line.
+// Formats a report for a terminal: counts, names, warnings and the result of binding, one per line.
 [[nodiscard]] std::string ToText(const RigReport& report);
 
 }  // namespace furrow::character

@@ -9,7 +9,7 @@
 namespace furrow::character {
 namespace {
 
-// Vertices as a graph: triangles join their corners, and vertices split at a seam are one.
+// The mesh as a graph: triangles connect their corners, and vertices split at a seam are one node.
 class VertexGraph {
  public:
   explicit VertexGraph(const Mesh& mesh) : place_(mesh.vertices.size()) {
@@ -28,7 +28,7 @@ class VertexGraph {
     }
   }
 
-  // The vertex that stands for all in the same place.
+  // The vertex that represents all vertices at one position.
   [[nodiscard]] std::uint32_t place(std::size_t vertex) const { return place_[vertex]; }
 
   template <class Visit>
@@ -67,7 +67,8 @@ void CopyInfluences(const Vertex& from, Vertex* to) {
 void SpreadInfluences(std::vector<bool> unskinned, int joint, Mesh* mesh) {
   constexpr std::uint32_t kNone = 0xffffffff;
   const VertexGraph graph(*mesh);
-  std::vector<std::uint32_t> source(mesh->vertices.size(), kNone);  // by place
+  std::vector<std::uint32_t> source(mesh->vertices.size(),
+                                    kNone);  // the representative of each position
   std::vector<std::uint32_t> queue;
   for (std::uint32_t v = 0; v < source.size(); ++v) {
     std::uint32_t& from = source[graph.place(v)];

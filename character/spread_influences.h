@@ -7,9 +7,10 @@
 
 namespace furrow::character {
 
-// Gives each vertex of `unskinned` (one flag a vertex) the influences of the skinned vertex that is
-// fewest edges away; where no edge leads to one, those of a vertex in the same place, else `joint`
-// alone. Linear in the size of the mesh, but for sorting.
+// Gives each vertex flagged in `unskinned` (one flag per vertex) the influences of the skinned
+// vertex that is the fewest edges away. Without a connected skinned vertex, the influences of a
+// vertex at the same position are used, and otherwise `joint` alone. O(n log n) in the size of the
+// mesh.
 void SpreadInfluences(std::vector<bool> unskinned, int joint, Mesh* mesh);
 
 }  // namespace furrow::character

@@ -23,7 +23,7 @@ void ComputeNormals(std::span<Vertex> vertices, std::span<const std::uint32_t> i
     const glm::vec3& a = vertices[corner[0]].position;
     const glm::vec3& b = vertices[corner[1]].position;
     const glm::vec3& c = vertices[corner[2]].position;
-    const glm::vec3 area = glm::cross(b - a, c - a);  // twice the area long
+    const glm::vec3 area = glm::cross(b - a, c - a);  // its length is twice the area
     for (int k = 0; k < 3; ++k) sums[corner[k]] += area;
   }
   for (std::size_t i = 0; i < sums.size(); ++i) {

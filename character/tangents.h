@@ -8,14 +8,14 @@
 
 namespace furrow::character::paint {
 
-// Smooth normals: of the triangles around each vertex, by area. Vertices that no triangle with
-// extent touches point along +Z. `indices`: three a triangle, all in range.
+// Computes smooth normals: the area-weighted mean of the triangles around each vertex. A vertex
+// without a triangle of non-zero area gets +Z. `indices` holds three per triangle, all in range.
 void ComputeNormals(std::span<Vertex> vertices, std::span<const std::uint32_t> indices);
 
-// Tangents along increasing u, of the triangles around each vertex by their UV gradients, made
-// orthogonal to the unit normals that must be there; w so that cross(normal, tangent) * w points up
-// the picture (decreasing v), as glTF's green-up normal maps need. Where UVs have no extent: any
-// unit vector across the normal.
+// Computes tangents along increasing u from the UV gradients of the triangles around each vertex.
+// Precondition: unit normals. Tangents are orthogonal to them, and cross(normal, tangent) * w
+// points up the picture (decreasing v), as glTF's green-up normal maps require. A vertex whose UVs
+// have no area gets any unit vector perpendicular to the normal.
 void ComputeTangents(std::span<Vertex> vertices, std::span<const std::uint32_t> indices);
 
 }  // namespace furrow::character::paint

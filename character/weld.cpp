@@ -10,7 +10,7 @@
 namespace furrow::character {
 namespace {
 
-// Vertices of a seam come from one vertex of the artist's: their positions are the same bits.
+// Hashes positions by their bits: both sides of a seam come from one vertex of the artist's mesh.
 struct PlaceKey {
   std::uint32_t bits[3];
   bool operator==(const PlaceKey&) const = default;
@@ -37,9 +37,10 @@ float WeightOf(const Vertex& vertex, std::uint16_t joint) {
   return sum;
 }
 
-// Whether every joint moves both alike.
+// True if every joint moves both vertices alike.
 bool MoveAlike(const Vertex& a, const Vertex& b) {
-  constexpr float kTolerance = 2e-3f;  // skin weights quantised to bytes differ by half a step
+  constexpr float kTolerance =
+      2e-3f;  // skin weights quantised to bytes differ by up to half a step
   for (int k = 0; k < 4; ++k) {
     if (std::abs(WeightOf(a, a.joints[k]) - WeightOf(b, a.joints[k])) > kTolerance) return false;
     if (std::abs(WeightOf(a, b.joints[k]) - WeightOf(b, b.joints[k])) > kTolerance) return false;
@@ -50,7 +51,8 @@ bool MoveAlike(const Vertex& a, const Vertex& b) {
 }  // namespace
 
 std::vector<std::uint32_t> WeldVertices(const Mesh& mesh) {
-  std::unordered_map<PlaceKey, std::vector<std::uint32_t>, PlaceHash> at;  // first ones
+  std::unordered_map<PlaceKey, std::vector<std::uint32_t>, PlaceHash>
+      at;  // the first vertices of each point
   std::vector<std::uint32_t> first(mesh.vertices.size());
   for (std::uint32_t i = 0; i < first.size(); ++i) {
     const Vertex& vertex = mesh.vertices[i];

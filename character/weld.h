@@ -8,10 +8,10 @@
 
 namespace furrow::character {
 
-// For every vertex of a mesh the first one that is the same point of its surface: it stands at the
-// same place (to the bit: the two sides of a UV seam come from one vertex of the artist's) and
-// every joint moves it alike. Closed lips, which stand at one place and move apart, are not the
-// same.
+// Maps every vertex of a mesh to the first vertex that is the same point of the surface: bitwise
+// the same position, and moved alike by every joint. The two sides of a UV seam weld, because they
+// come from one vertex of the artist's mesh. Closed lips share positions but move apart, so they do
+// not.
 [[nodiscard]] std::vector<std::uint32_t> WeldVertices(const Mesh& mesh);
 
 }  // namespace furrow::character

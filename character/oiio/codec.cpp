@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture codec by OpenImageIO, as a module.
+// The picture codec: a module on top of OpenImageIO.
 #include <algorithm>
 #include <initializer_list>
 #include <memory>
@@ -14,7 +14,7 @@
 namespace furrow::character {
 namespace {
 
-// The name that tells OpenImageIO which decoder to take; empty for what we do not read.
+// A file name that selects OpenImageIO's decoder; empty for formats that Furrow does not read.
 std::string_view FormatOf(std::span<const std::uint8_t> bytes) {
   const auto starts_with = [&](std::initializer_list<std::uint8_t> magic) {
     return bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
@@ -28,16 +28,16 @@ std::string_view FormatOf(std::span<const std::uint8_t> bytes) {
 StatusCode CheckSize(const OIIO::ImageSpec& spec, std::string* why) {
   const std::int64_t pixels = static_cast<std::int64_t>(spec.width) * spec.height;
   if (spec.width < 1 || spec.height < 1 || spec.depth > 1) {
-    *why = "the picture has no extent";
+    *why = "the picture is empty";
     return StatusCode::kParse;
   }
   if (spec.width > kMaxPictureSide || spec.height > kMaxPictureSide || pixels > kMaxPicturePixels) {
     *why = "the picture has " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-           " pixels, too many to read";
+           " pixels, which exceeds the limit";
     return StatusCode::kLimit;
   }
   if (spec.nchannels < 1 || spec.nchannels > 4) {
-    *why = "the picture has " + std::to_string(spec.nchannels) + " channels, 1 to 4 are read";
+    *why = "the picture has " + std::to_string(spec.nchannels) + " channels; 1 to 4 are supported";
     return StatusCode::kUnsupported;
   }
   return StatusCode::kOk;
@@ -53,7 +53,7 @@ struct Pixels {
   void* data = nullptr;
 };
 
-// Room for `values` of a file's type, in the list that keeps all of their precision.
+// Allocates `values` pixels in the list that keeps the file's full precision.
 Pixels Allocate(const OIIO::TypeDesc& format, std::size_t values, Picture* picture) {
   if (format.is_floating_point()) {
     picture->pixels_float.resize(values);
@@ -67,7 +67,7 @@ Pixels Allocate(const OIIO::TypeDesc& format, std::size_t values, Picture* pictu
   return {OIIO::TypeDesc::UINT8, picture->pixels.data()};
 }
 
-// What a picture holds.
+// The type of a picture's pixels.
 std::pair<OIIO::TypeDesc, const void*> Held(const Picture& picture) {
   if (!picture.pixels_float.empty()) {
     return {OIIO::TypeDesc::FLOAT, picture.pixels_float.data()};
@@ -90,14 +90,14 @@ OIIO::TypeDesc TypeOf(PictureStorage::Type type) {
 StatusCode Decode(std::span<const std::uint8_t> bytes, Picture* picture, std::string* why) {
   const std::string format(FormatOf(bytes));
   if (format.empty()) {
-    *why = "the picture is none of PNG, JPEG and OpenEXR";
+    *why = "the picture is not a PNG, JPEG or OpenEXR file";
     return StatusCode::kUnsupported;
   }
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
   OIIO::Filesystem::IOProxy* proxy = &memory;
   OIIO::ImageSpec config;
   OIIO::ImageSpec spec;
-  config["oiio:UnassociatedAlpha"] = 1;  // a mask's alpha is a channel like the others
+  config["oiio:UnassociatedAlpha"] = 1;  // keep a mask's alpha as an ordinary channel
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   const auto input = OIIO::ImageInput::create(format);
   if (input == nullptr || !input->open(format, spec, config)) {
@@ -120,7 +120,7 @@ StatusCode Decode(std::span<const std::uint8_t> bytes, Picture* picture, std::st
 
 StatusCode Encode(const Picture& picture, const PictureStorage& storage, std::string* bytes,
                   std::string* why) {
-  // Its ending names the format.
+  // The extension selects the format.
   const std::string file =
       storage.format == PictureStorage::Format::kExr ? "picture.exr" : "picture.png";
   OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, TypeOf(storage.type));

@@ -51,8 +51,8 @@ CLI::Validator VectorValidator() {
 }
 
 Result<glm::vec3> Centre(const PatchArguments& arguments, const character::Character& character) {
-  if (!arguments.joint.empty()) return character::PlaceOfJoint(character, arguments.joint);
-  if (!arguments.region.empty()) return character::PlaceOfRegion(character, arguments.region);
+  if (!arguments.joint.empty()) return character::JointPosition(character, arguments.joint);
+  if (!arguments.region.empty()) return character::RegionPosition(character, arguments.region);
   glm::vec3 centre(0.0f);
   ParseVector(arguments.around, &centre);
   return centre;

@@ -12,6 +12,7 @@
 
 #include "base/files.h"
 #include "character/gltf_container.h"
+#include "character/picture_file.h"
 #include "tests/temporary_folder.h"
 
 namespace furrow::character {

@@ -156,8 +156,8 @@ TEST(RigPatch, SaysWhyThereIsNone) {
 
 TEST(RigPatch, FindsJointsAndRegions) {
   Character sheets = Sheets();
-  EXPECT_EQ(*PlaceOfJoint(sheets, "high"), glm::vec3(0.0f, kSide, 0.0f));
-  EXPECT_EQ(PlaceOfJoint(sheets, "tail").status().code(), StatusCode::kNotFound);
+  EXPECT_EQ(*JointPosition(sheets, "high"), glm::vec3(0.0f, kSide, 0.0f));
+  EXPECT_EQ(JointPosition(sheets, "tail").status().code(), StatusCode::kNotFound);
   // A mask of the left half: UVs run with x.
   for (Mesh& mesh : sheets.meshes) {
     for (Vertex& vertex : mesh.vertices) vertex.uv = {0.99f * vertex.position.x / kSide, 0.5f};
@@ -172,13 +172,13 @@ TEST(RigPatch, FindsJointsAndRegions) {
   wrinkle::Region& region = sheets.rig.regions.emplace_back();
   region.name = "left";
   region.mask.texture = "mask.png";
-  const auto place = PlaceOfRegion(sheets, "left");
+  const auto place = RegionPosition(sheets, "left");
   ASSERT_TRUE(place.ok()) << place.status().ToString();
   EXPECT_NEAR(place->x, 0.025f, 0.006f);  // the vertex that is nearest to the middle
   EXPECT_NEAR(place->y, 0.05f, 1e-3f);
-  EXPECT_EQ(PlaceOfRegion(sheets, "right").status().code(), StatusCode::kNotFound);
+  EXPECT_EQ(RegionPosition(sheets, "right").status().code(), StatusCode::kNotFound);
   sheets.pictures[0].pixels = {0, 0};
-  EXPECT_THAT(PlaceOfRegion(sheets, "left").status().what(), HasSubstr("covers nothing"));
+  EXPECT_THAT(RegionPosition(sheets, "left").status().what(), HasSubstr("covers nothing"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "authoring/bake/layers/blood.h"
+#include "character/picture_file.h"
 
 namespace furrow::character::bake {
 namespace {

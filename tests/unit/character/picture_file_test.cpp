@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/picture.h"
+#include "character/picture_file.h"
 
 #include <cmath>
 #include <limits>

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "base/status.h"
+#include "character/picture.h"
+#include "character/picture_codec.h"
+
+namespace furrow::character {
+
+// Decodes a PNG, JPEG or OpenEXR picture with its own 1 to 4 channels. The first bytes decide the
+// format. Sizes are checked before memory is allocated.
+//
+// Errors: kUnsupported (another format, more channels), kLimit (too large), kParse (damaged),
+// kNonFinite (an EXR texel), kUnavailable (no codec module).
+[[nodiscard]] Result<Picture> DecodePicture(std::string name, std::span<const std::uint8_t> bytes);
+
+// Reads and decodes a picture file. `name` becomes Picture::name. Errors: those of ReadFile() and
+// DecodePicture(), with the path as `where`.
+[[nodiscard]] Result<Picture> LoadPicture(std::string name, const std::filesystem::path& path);
+
+// Encodes a PNG. Equal pictures give equal bytes. Errors: kInvalidArgument (the number of pixels
+// does not match the size), kUnsupported (float pixels).
+[[nodiscard]] Result<std::string> EncodePng(const Picture& picture);
+
+// Encodes an OpenEXR with half floats (11 bits of precision, +-65504). Integer pixels are written
+// as [0, 1]. Errors: kInvalidArgument (the number of pixels does not match the size).
+[[nodiscard]] Result<std::string> EncodeExr(const Picture& picture);
+
+// EncodePng() and EncodeExr() with every option. Errors: theirs, and kUnavailable (no codec module).
+[[nodiscard]] Result<std::string> EncodePicture(const Picture& picture,
+                                                const PictureStorage& storage);
+
+}  // namespace furrow::character
