@@ -32,7 +32,7 @@ std::string_view WithoutNamespace(std::string_view name) {
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
 
-// `name` without `prefix` (both folded), or as it is where it does not begin so.
+// Removes `prefix` from `name`, both already folded to one case. Other names stay as they are.
 std::string_view WithoutPrefix(std::string_view name, std::string_view prefix) {
   if (prefix.starts_with('*')) {
     const std::string_view mark = prefix.substr(1);
@@ -42,7 +42,7 @@ std::string_view WithoutPrefix(std::string_view name, std::string_view prefix) {
   return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
 }
 
-// A map ready to be asked: which role has a name, and which place of which entry it fills.
+// A map indexed by joint name: the entry and the place in its chain that a name fills.
 struct Place {
   std::size_t entry;
   std::size_t of_chain;
@@ -63,8 +63,8 @@ Places PlacesOf(const SkeletonMap& map) {
   return places;
 }
 
-// Which joint fills each place of each entry, -1 for none; the best alternative, then the first
-// joint wins.
+// The joint that fills each place of each entry, or -1. The earliest alternative name wins, then
+// the first joint.
 std::vector<std::vector<std::pair<int, std::size_t>>> FillPlaces(
     const SkeletonMap& map, const Places& places, std::string_view prefix,
     std::span<const std::string> joint_names) {
@@ -170,7 +170,7 @@ SkeletonRoles SkeletonMaps::RolesOf(std::span<const std::string> joint_names) co
   SkeletonRoles best;
   for (const SkeletonMap& map : maps_) {
     SkeletonRoles found = ApplySkeletonMap(map, joint_names);
-    const bool enough = chosen_ || found.num_roles >= kLeastRoles;
+    const bool enough = chosen_ || found.num_roles >= kMinRoles;
     if (enough && (best.map.empty() || found.num_joints > best.num_joints)) best = std::move(found);
   }
   return best;

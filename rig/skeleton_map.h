@@ -13,72 +13,75 @@
 
 namespace furrow::character {
 
-// Fewer roles than this prove nothing: two names in common are chance.
-inline constexpr int kLeastRoles = 6;
+// A map must find this many roles to be believed: a few common names may be chance.
+inline constexpr int kMinRoles = 6;
 
-// How one family of skeletons calls its joints (docs/SKELETONS.md is the manual of the file).
+// The joint names of one family of skeletons. docs/SKELETONS.md describes the file format.
 struct SkeletonMap {
   struct Entry {
     wrinkle::JointRole role = wrinkle::JointRole::kNone;
-    // A chain from above to below; each place with its alternative names, the first found counts.
+    // A chain of joints from parent to child. Each place lists alternative names; the first match
+    // counts.
     std::vector<std::vector<std::string>> chain;
   };
-  std::string name;   // "mixamo": what options and logs say
-  std::string title;  // for people
-  // What may stand before every name: a literal, or "*" and a literal (all up to its last
-  // occurrence). A namespace ("mixamorig:", all up to the last ':') always may.
+  std::string name;   // as options and logs show it, such as "mixamo"
+  std::string title;  // for display
+  // Optional prefixes of every name: a literal, or "*" and a literal, which matches everything up
+  // to the literal's last occurrence. A namespace, everything up to the last ':' ("mixamorig:"), is
+  // always optional.
   std::vector<std::string> prefixes;
   bool ignore_case = true;
   std::optional<float> toes_height;  // see Retarget::Create()
   std::vector<Entry> entries;        // no role twice
 };
 
-// What a map finds in a skeleton.
+// The roles that a map finds in a skeleton.
 struct SkeletonRoles {
-  std::string map;                          // its name; empty: no map knows this skeleton
-  wrinkle::JointRoles roles;                // one a joint; empty where `map` is
-  int num_roles = 0;                        // different ones found
-  int num_joints = 0;                       // that have a role
-  std::optional<float> toes_height;         // the map's
-  std::vector<wrinkle::JointRole> missing;  // in the map, not in the skeleton
+  std::string map;                          // the map's name; empty if no map fits the skeleton
+  wrinkle::JointRoles roles;                // one per joint; empty if `map` is empty
+  int num_roles = 0;                        // distinct roles found
+  int num_joints = 0;                       // joints that have a role
+  std::optional<float> toes_height;         // from the map
+  std::vector<wrinkle::JointRole> missing;  // in the map, but not in the skeleton
 };
 
-// Reads a map. Errors: kParse, kSchema (field unknown, missing, of the wrong type, a role that is
-// none or comes twice), kLimit (over 1 MiB, 64 prefixes, 16 joints a role, 255 bytes a name).
-// `where` is "file: field".
+// Reads a map. Errors, with "file: field" as `where`: kParse, kSchema (an unknown or missing field,
+// a wrong type, an unknown or duplicate role), kLimit (more than 1 MiB, 64 prefixes, 16 joints per
+// role or 255 bytes per name).
 [[nodiscard]] Result<SkeletonMap> ParseSkeletonMap(std::string_view json,
                                                    std::string_view source_name);
 
-// The roles that `map` finds among joints of these names; `map` of the result is always set.
+// The roles that `map` finds among these joint names. The result's `map` is always set.
 [[nodiscard]] SkeletonRoles ApplySkeletonMap(const SkeletonMap& map,
                                              std::span<const std::string> joint_names);
 
-// The maps that joints are looked up in.
+// A set of maps to find the roles of a skeleton's joints with.
 class SkeletonMaps {
  public:
-  SkeletonMaps() = default;  // none: every skeleton is unknown
-  // `chosen` true: the one map holds for every skeleton, however little it finds.
+  SkeletonMaps() = default;  // no maps: every skeleton is unknown
+  // `chosen`: use the single map for every skeleton, however few roles it finds.
   explicit SkeletonMaps(std::vector<SkeletonMap> maps, bool chosen = false);
 
-  // All maps that ship (share/furrow/skeleton_maps/*.json). Errors: kNotFound,
-  // ParseSkeletonMap()'s.
+  // Loads all shipped maps (share/furrow/skeleton_maps/*.json). Errors: kNotFound, and those of
+  // ParseSkeletonMap().
   [[nodiscard]] static Result<SkeletonMaps> LoadShipped();
-  // One map for every skeleton: a file, or the name of one that ships ("mixamo"). Empty: all that
-  // ship, and the best one is found for each skeleton.
+  // Loads one map for every skeleton: a file, or the name of a shipped map ("mixamo"). An empty
+  // argument loads all shipped maps; then each skeleton gets the map that fits best.
   [[nodiscard]] static Result<SkeletonMaps> Load(const std::string& name_or_file);
 
-  // The map that explains most joints, if it finds kLeastRoles; first by name among equals.
+  // The roles of the map that explains the most joints, if it finds at least kMinRoles. The first
+  // name wins a tie.
   [[nodiscard]] SkeletonRoles RolesOf(const wrinkle::Skeleton& skeleton) const;
   [[nodiscard]] SkeletonRoles RolesOf(std::span<const std::string> joint_names) const;
 
   [[nodiscard]] std::span<const SkeletonMap> maps() const { return maps_; }
 
  private:
-  std::vector<SkeletonMap> maps_;  // by name
+  std::vector<SkeletonMap> maps_;  // sorted by name
   bool chosen_ = false;
 };
 
-// "leftToes, rightToes": for messages.
+// Joins role names for messages: "leftToes, rightToes".
 [[nodiscard]] std::string JoinRoles(std::span<const wrinkle::JointRole> roles);
 
 }  // namespace furrow::character

@@ -20,7 +20,7 @@ constexpr std::size_t kMaxPrefixes = 64;
 constexpr std::size_t kMaxChain = 16;
 constexpr std::size_t kMaxName = 255;
 
-// Reads one file; every message says where.
+// Reads one file. Every error names the file and the field.
 class MapReader {
  public:
   explicit MapReader(std::string_view source) : source_(source) {}
@@ -40,7 +40,7 @@ class MapReader {
   Status ReadRole(const std::string& key, const Json& value, SkeletonMap* map);
   Status AddEntry(const std::string& role, const Json& value, const std::string& side,
                   const std::string& field, SkeletonMap* map);
-  // One place of a chain: a name, or several with '|' between them.
+  // One place of a chain: a name, or alternatives separated by '|'.
   Status AddPlace(const Json& value, const std::string& side, const std::string& field,
                   SkeletonMap::Entry* entry) const;
 
@@ -69,36 +69,37 @@ std::vector<std::string> Alternatives(const std::string& text) {
 }
 
 Status MapReader::CheckFields(const Json& root) const {
-  if (!root.is_object()) return Error("(root)", "is not an object");
+  if (!root.is_object()) return Error("(root)", "expected an object");
   static const std::set<std::string> kKnown = {"version",     "name",  "title",  "prefixes",
                                                "ignore_case", "sides", "joints", "toes_height"};
   for (const auto& [key, value] : root.items()) {
-    if (!kKnown.contains(key)) return Error(Quoted(key), "there is no such field");
+    if (!kKnown.contains(key)) return Error(Quoted(key), "unknown field");
   }
   for (const char* key : {"version", "name", "joints"}) {
     if (!root.contains(key)) return Error(key, "is missing");
   }
-  if (root["version"] != 1) return Error("version", "is not 1", StatusCode::kUnsupported);
+  if (root["version"] != 1) return Error("version", "expected 1", StatusCode::kUnsupported);
   return {};
 }
 
 Status MapReader::ReadText(const Json& value, const std::string& field, std::string* text) const {
-  if (!value.is_string()) return Error(field, "is not a text");
+  if (!value.is_string()) return Error(field, "expected a string");
   *text = value.get<std::string>();
-  if (text->size() > kMaxName) return Error(field, "is over 255 bytes", StatusCode::kLimit);
+  if (text->size() > kMaxName) return Error(field, "is longer than 255 bytes", StatusCode::kLimit);
   return {};
 }
 
 Status MapReader::ReadPrefixes(const Json& root, SkeletonMap* map) const {
   if (!root.contains("prefixes")) return {};
   const Json& list = root["prefixes"];
-  if (!list.is_array()) return Error("prefixes", "is not a list");
-  if (list.size() > kMaxPrefixes) return Error("prefixes", "more than 64", StatusCode::kLimit);
+  if (!list.is_array()) return Error("prefixes", "expected a list");
+  if (list.size() > kMaxPrefixes)
+    return Error("prefixes", "has more than 64 entries", StatusCode::kLimit);
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string field = "prefixes[" + std::to_string(i) + "]";
     std::string prefix;
     FURROW_RETURN_IF_ERROR(ReadText(list[i], field, &prefix));
-    if (prefix.empty() || prefix == "*") return Error(field, "stands for nothing");
+    if (prefix.empty() || prefix == "*") return Error(field, "is empty");
     map->prefixes.push_back(std::move(prefix));
   }
   return {};
@@ -114,7 +115,7 @@ Status MapReader::ReadSides(const Json& root) {
   FURROW_RETURN_IF_ERROR(ReadText(sides["left"], "sides.left", &left_));
   FURROW_RETURN_IF_ERROR(ReadText(sides["right"], "sides.right", &right_));
   if (left_ == right_ || left_.empty() || right_.empty()) {
-    return Error("sides", "left and right are to be told apart by it");
+    return Error("sides", "left and right must differ");
   }
   return {};
 }
@@ -124,28 +125,30 @@ Status MapReader::AddPlace(const Json& value, const std::string& side, const std
   std::string text;
   FURROW_RETURN_IF_ERROR(ReadText(value, field, &text));
   if (text.find('*') != std::string::npos && side.empty()) {
-    return Error(field, "a '*' in a name needs one in its role, and \"sides\"");
+    return Error(field, "a '*' in a name requires a '*' in its role, and \"sides\"");
   }
   std::vector<std::string> names = Alternatives(Replaced(text, side));
-  if (std::ranges::any_of(names, &std::string::empty)) return Error(field, "an empty name");
+  if (std::ranges::any_of(names, &std::string::empty))
+    return Error(field, "contains an empty name");
   entry->chain.push_back(std::move(names));
   return {};
 }
 
-// `value` is looked at where it is: copies of JSON recurse as deep as it is nested.
+// `value` is read in place: copying JSON recurses as deeply as it is nested.
 Status MapReader::AddEntry(const std::string& role, const Json& value, const std::string& side,
                            const std::string& field, SkeletonMap* map) {
   SkeletonMap::Entry entry;
   const auto parsed = wrinkle::ParseJointRole(role);
-  if (!parsed) return Error(field, Quoted(role) + " is no role: see docs/SKELETONS.md");
+  if (!parsed)
+    return Error(field, Quoted(role) + " is not a role; docs/SKELETONS.md lists the roles");
   entry.role = *parsed;
-  if (!seen_.insert(entry.role).second) return Error(field, "the role comes twice");
+  if (!seen_.insert(entry.role).second) return Error(field, "duplicate role");
   if (!value.is_array()) {
     FURROW_RETURN_IF_ERROR(AddPlace(value, side, field, &entry));
   } else if (value.empty()) {
-    return Error(field, "names no joint");
+    return Error(field, "lists no joint");
   } else if (value.size() > kMaxChain) {
-    return Error(field, "more than 16 joints", StatusCode::kLimit);
+    return Error(field, "has more than 16 joints", StatusCode::kLimit);
   } else {
     for (const Json& item : value) {
       FURROW_RETURN_IF_ERROR(AddPlace(item, side, field, &entry));
@@ -155,11 +158,11 @@ Status MapReader::AddEntry(const std::string& role, const Json& value, const std
   return {};
 }
 
-// "*UpperArm" is the role of either side.
+// "*UpperArm" stands for the role on both sides.
 Status MapReader::ReadRole(const std::string& key, const Json& value, SkeletonMap* map) {
   const std::string field = "joints." + std::string(Quoted(key));
   if (!key.starts_with('*')) return AddEntry(key, value, "", field, map);
-  if (left_.empty()) return Error(field, "a '*' in a role needs \"sides\"");
+  if (left_.empty()) return Error(field, "a '*' in a role requires \"sides\"");
   const std::string rest = key.substr(1);
   FURROW_RETURN_IF_ERROR(AddEntry("left" + rest, value, left_, field, map));
   return AddEntry("right" + rest, value, right_, field, map);
@@ -167,11 +170,12 @@ Status MapReader::ReadRole(const std::string& key, const Json& value, SkeletonMa
 
 Status MapReader::ReadJoints(const Json& root, SkeletonMap* map) {
   const Json& joints = root["joints"];
-  if (!joints.is_object() || joints.empty()) return Error("joints", "is not an object of roles");
+  if (!joints.is_object() || joints.empty())
+    return Error("joints", "expected an object with one field per role");
   for (const auto& [key, value] : joints.items()) {
     FURROW_RETURN_IF_ERROR(ReadRole(key, value, map));
   }
-  // In the body's order, whatever the order of the file.
+  // Entries are kept in the body's order, whatever the order in the file.
   std::ranges::sort(map->entries, {}, &SkeletonMap::Entry::role);
   return {};
 }
@@ -184,15 +188,16 @@ Status MapReader::Read(const Json& root, SkeletonMap* map) {
     FURROW_RETURN_IF_ERROR(ReadText(root["title"], "title", &map->title));
   }
   if (root.contains("ignore_case")) {
-    if (!root["ignore_case"].is_boolean()) return Error("ignore_case", "is neither true nor false");
+    if (!root["ignore_case"].is_boolean()) return Error("ignore_case", "expected true or false");
     map->ignore_case = root["ignore_case"].get<bool>();
   }
   if (root.contains("toes_height")) {
     const Json& height = root["toes_height"];
-    if (!height.is_number()) return Error("toes_height", "is not a number");
+    if (!height.is_number()) return Error("toes_height", "expected a number");
     map->toes_height = height.get<float>();
     if (!(*map->toes_height >= 0.0f && *map->toes_height <= 0.5f)) {
-      return Error("toes_height", "is not between 0 and 0.5 legs", StatusCode::kInvalidArgument);
+      return Error("toes_height", "must be between 0 and 0.5 leg lengths",
+                   StatusCode::kInvalidArgument);
     }
   }
   FURROW_RETURN_IF_ERROR(ReadPrefixes(root, map));
@@ -210,7 +215,7 @@ Result<SkeletonMap> ParseSkeletonMap(std::string_view json, std::string_view sou
   try {
     root = Json::parse(json.begin(), json.end(), nullptr, true, /*ignore_comments=*/true);
   } catch (const Json::exception& error) {
-    return Status(StatusCode::kParse, std::string("broken JSON: ") + error.what(),
+    return Status(StatusCode::kParse, std::string("malformed JSON: ") + error.what(),
                   std::string(source_name));
   }
   SkeletonMap map;

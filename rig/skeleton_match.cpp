@@ -26,7 +26,7 @@ bool IsOfFace(JointRole role) {
   return role == JointRole::kJaw || role == JointRole::kLeftEye || role == JointRole::kRightEye;
 }
 
-// The joint of a role that a rig means: the first of a chain.
+// The joint that a rig means by a role: the first of the role's chain.
 const std::string* FirstOf(JointRole role, const wrinkle::JointRoles& roles,
                            std::span<const std::string> names) {
   const auto found = std::ranges::find(roles, role);
@@ -86,7 +86,7 @@ std::string Describe(const SkeletonRoles& roles) {
   for (const auto& kind : {IsFinger, IsOfFace}) {
     if (std::ranges::none_of(roles.roles, kind)) std::erase_if(missing, kind);
   }
-  if (!missing.empty()) text += "; not there: " + JoinRoles(missing);
+  if (!missing.empty()) text += "; missing: " + JoinRoles(missing);
   return text;
 }
 

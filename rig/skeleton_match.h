@@ -11,26 +11,26 @@
 
 namespace furrow::character {
 
-// How a stream's (or a recording's) skeleton is seen by a rig and by a character.
+// How the joints of a stream or recording correspond to a rig and to a character.
 struct SkeletonMatch {
   SkeletonRoles stream;
-  SkeletonRoles character;  // empty without one
+  SkeletonRoles character;  // empty without a character
   // For BindOptions::aliases: (the rig's joint, the stream's joint of the same role).
   std::vector<std::pair<std::string, std::string>> aliases;
 };
 
-// Finds out what the joints of streams are, by the maps that ship and one more if it is asked for.
+// Finds the roles of a stream's joints with the shipped maps and, if requested, one more.
 class SkeletonMatcher {
  public:
-  SkeletonMatcher() = default;  // no maps: joints are matched by equal names alone
+  SkeletonMatcher() = default;  // no maps: joints match by equal names only
 
-  // `name_or_file`: the map that holds for every stream, see SkeletonMaps::Load(); empty: the best
-  // of those that ship. A character's own map is found among those that ship and that one.
+  // `name_or_file` is the map for every stream (SkeletonMaps::Load()); empty selects the best
+  // shipped map per stream. A character's map is chosen among the shipped maps and that one.
   [[nodiscard]] static Result<SkeletonMatcher> Create(const std::string& name_or_file);
 
-  // `character` may be null: it changes no alias, so weights are the same with and without
-  // pictures. A rig's joints are known by the map that explains their names best; joints that the
-  // stream has by the rig's own name get no alias.
+  // `character` may be null. It does not affect the aliases, so weights are the same with and
+  // without pictures. The map that explains most of the rig's joint names gives their roles. Joints
+  // that the stream has under the rig's own name get no alias.
   [[nodiscard]] SkeletonMatch Match(const wrinkle::Skeleton& stream, const wrinkle::Rig& rig,
                                     const wrinkle::Skeleton* character) const;
 
@@ -39,13 +39,14 @@ class SkeletonMatcher {
   SkeletonMaps characters_;
 };
 
-// By role as far as both are known, the rest by equal names.
+// Retargets by role where both skeletons have the role, and by equal names otherwise.
 [[nodiscard]] wrinkle::Retarget MakeRetarget(const SkeletonMatch& match,
                                              const wrinkle::Skeleton& stream,
                                              const wrinkle::Skeleton& character);
 
-// One line for a log: "skeleton map 'cmu': 22 roles; not there: leftToes, rightToes". Fingers, eyes
-// and jaw are only told of where some of them are there. Empty where no map knows the skeleton.
+// One line for a log: "skeleton map 'cmu': 22 roles; missing: leftToes, rightToes". Fingers, eyes
+// and jaw are listed as missing only if some of them are present. Empty if no map fits the
+// skeleton.
 [[nodiscard]] std::string Describe(const SkeletonRoles& roles);
 
 }  // namespace furrow::character
