@@ -9,8 +9,8 @@
 #include "render/passes/finish_pass.h"
 #include "render/passes/read_back_pass.h"
 #include "render/pipeline.h"
-#include "render/request_check.h"
-#include "render/scene/camera.h"
+#include "render/request/request_check.h"
+#include "render/scene/camera_frame.h"
 
 namespace furrow::render {
 namespace {

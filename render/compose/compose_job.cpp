@@ -134,7 +134,7 @@ void MultiplyLooks(const ComposeJob& job, std::size_t map, std::size_t first,
   });
 }
 
-// cavity() of shaders/common_surface_frag.glsl tells hollows by their dark base colour alone.
+// cavity() of shaders/scene/surface_frag.glsl tells hollows by their dark base colour alone.
 void KeepHollows(const ComposeTile& tile, std::size_t first, Looks* looks) {
   const Float hollow = hn::Set(Floats(), tile.hollow);
   ForLanes([&](std::size_t i) HWY_ATTR {

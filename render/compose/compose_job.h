@@ -44,7 +44,7 @@ struct ComposeInk {
   glm::vec2 looks{1.0f};          // strengths of colours and of cavities
 };
 
-// Paints the wrinkles of a tile: what shaders/common_wrinkles_frag.glsl does in a fragment, by
+// Paints the wrinkles of a tile: what shaders/wrinkles/wrinkles_frag.glsl does in a fragment, by
 // partial derivatives, of as many texels at once as the processor has lanes.
 //
 //   w_i = sum over masks of weight * mask + min(sum over skinned of weight * mask, 1)

@@ -126,7 +126,7 @@ std::vector<std::uint16_t> Planes(const Texels& texels, std::size_t planes, Valu
   return halves;
 }
 
-// As slopeOf() of shaders/common_wrinkles_frag.glsl.
+// As slopeOf() of shaders/wrinkles/wrinkles_frag.glsl.
 glm::vec4 SlopeOf(const glm::vec4& moments) {
   const glm::vec2 slope(moments);
   const glm::vec2 variance =

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 
+#include "base/status.h"
 #include "render/gl/gl_objects.h"
-#include "render/renderer.h"
+#include "render/request/image.h"
 
 namespace furrow::render {
 

@@ -126,13 +126,13 @@ Result<gl::Program> BuildProgram(const ProgramFiles& program, std::span<const st
 
 Result<GLuint> ShaderLibrary::Get(const SceneShader& shader) {
   if (const auto found = scene_.find(shader); found != scene_.end()) return found->second.name();
-  ProgramFiles files{"scene.vert.glsl", "scene.frag.glsl"};
-  if (shader.shading == Shading::kSkin) files.fragment = "skin.frag.glsl";
-  if (shader.unlit) files.fragment = "surface.frag.glsl";
-  if (shader.shadow) files.fragment = "shadow.frag.glsl";
+  ProgramFiles files{"scene/scene.vert.glsl", "scene/scene.frag.glsl"};
+  if (shader.shading == Shading::kSkin) files.fragment = "skin/skin.frag.glsl";
+  if (shader.unlit) files.fragment = "scene/surface.frag.glsl";
+  if (shader.shadow) files.fragment = "shadow/shadow.frag.glsl";
   if (shader.displaced) {
-    files.tess_control = "displace.tesc.glsl";
-    files.tess_evaluation = "displace.tese.glsl";
+    files.tess_control = "scene/displace.tesc.glsl";
+    files.tess_evaluation = "scene/displace.tese.glsl";
   }
   Result<gl::Program> program = BuildProgram(files, Defines(shader), EmbeddedShaders());
   FURROW_RETURN_IF_ERROR(program);
@@ -142,18 +142,18 @@ Result<GLuint> ShaderLibrary::Get(const SceneShader& shader) {
 Result<GLuint> ShaderLibrary::Get(const PoseShader& shader) {
   if (const auto found = pose_.find(shader); found != pose_.end()) return found->second.name();
   Result<gl::Program> program =
-      BuildProgram({"pose.vert.glsl"}, Defines(shader), EmbeddedShaders());
+      BuildProgram({"scene/pose.vert.glsl"}, Defines(shader), EmbeddedShaders());
   FURROW_RETURN_IF_ERROR(program);
   return pose_.emplace(shader, std::move(*program)).first->second.name();
 }
 
 Result<GLuint> ShaderLibrary::GetShadow(bool alpha_test) {
-  return GetNamed("shadow.vert.glsl", "shadow.frag.glsl", {Define("ALPHA_TEST", alpha_test)});
+  return GetNamed("shadow/shadow.vert.glsl", "shadow/shadow.frag.glsl", {Define("ALPHA_TEST", alpha_test)});
 }
 
 Result<GLuint> ShaderLibrary::GetFullscreen(std::string_view fragment,
                                             const std::vector<std::string>& defines) {
-  return GetNamed("fullscreen.vert.glsl", fragment, defines);
+  return GetNamed("common/fullscreen.vert.glsl", fragment, defines);
 }
 
 Result<GLuint> ShaderLibrary::GetNamed(std::string_view vertex, std::string_view fragment,

@@ -7,13 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "character/character.h"
 #include "render/gl/gl_objects.h"
 #include "render/gl/shader_loader.h"
-#include "render/renderer.h"
+#include "render/settings/settings.h"
 
 namespace furrow::render {
 
-// What a program of pose.vert.glsl is compiled for.
+// What a program of scene/pose.vert.glsl is compiled for.
 struct PoseShader {
   int num_joints = 0;      // of the character's skeleton
   bool dynamic = false;    // with the dynamic masks of each vertex
@@ -53,7 +54,7 @@ struct SceneShader {
   bool thickness_map = false;
   bool conserve_energy = true;
   bool any_material = false;  // `material` says nothing: each pixel does
-  // Only what light needs to know of the surface; light.frag.glsl comes later.
+  // Only what light needs to know of the surface; skin/light.frag.glsl comes later.
   bool unlit = false;
   bool displaced = false;       // tessellated, moved by heights
   bool shadow = false;          // displaced, as a lamp sees it: depth alone
@@ -82,7 +83,7 @@ class ShaderLibrary {
   [[nodiscard]] Result<GLuint> Get(const PoseShader& shader);
   // shadow.{vert,frag}.glsl.
   [[nodiscard]] Result<GLuint> GetShadow(bool alpha_test);
-  // A fragment shader that covers the picture: "combine.frag.glsl", ...
+  // A fragment shader that covers the picture: "skin/combine.frag.glsl", ...
   [[nodiscard]] Result<GLuint> GetFullscreen(std::string_view fragment,
                                              const std::vector<std::string>& defines);
   [[nodiscard]] int num_programs() const {

@@ -12,7 +12,7 @@
 namespace furrow::render {
 
 struct ShaderFile {
-  std::string_view name;  // "scene.frag.glsl"
+  std::string_view name;  // "scene/scene.frag.glsl"
   std::string_view text;
 };
 
@@ -33,7 +33,7 @@ struct ShaderSource {
                                                 std::span<const ShaderFile> files);
 
 // A driver's log with source numbers replaced by file names: "0:12(5): error" (Mesa) and
-// "0(12) : error" (NVIDIA) become "scene.frag.glsl:12(5): error" and "scene.frag.glsl(12) : error".
+// "0(12) : error" (NVIDIA) become "scene/scene.frag.glsl:12(5): error" and "scene/scene.frag.glsl(12) : error".
 [[nodiscard]] std::string NameSources(std::string_view log, std::span<const std::string> files);
 
 }  // namespace furrow::render

@@ -33,7 +33,7 @@ void DescribeVertices(GLuint array, const gl::Buffer& vertices) {
 }
 
 void DescribeShares(GLuint array, const gl::Buffer& shares) {
-  constexpr GLuint kShare = 6;  // a_share of pose.vert.glsl
+  constexpr GLuint kShare = 6;  // a_share of scene/pose.vert.glsl
   glVertexArrayVertexBuffer(array, 1, shares.name(), 0, sizeof(float));
   glEnableVertexArrayAttrib(array, kShare);
   glVertexArrayAttribFormat(array, kShare, 1, GL_FLOAT, GL_FALSE, 0);

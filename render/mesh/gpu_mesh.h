@@ -13,7 +13,7 @@
 
 namespace furrow::render {
 
-// A mesh on the GPU in its rest pose, as shaders/pose.vert.glsl reads it.
+// A mesh on the GPU in its rest pose, as shaders/scene/pose.vert.glsl reads it.
 struct GpuMesh {
   gl::VertexArray vertex_array;
   gl::Buffer vertices;

@@ -6,7 +6,7 @@
 
 namespace furrow::render {
 
-// The scene's samples made one a pixel (shaders/resolve.frag.glsl). Of one sample: as they are.
+// The scene's samples made one a pixel (shaders/scene/resolve.frag.glsl). Of one sample: as they are.
 [[nodiscard]] SkinTargets AddResolvePass(FrameGraph* graph, const SkinTargets& scene,
                                          const TextureDesc& desc, Fullscreen* fullscreen);
 

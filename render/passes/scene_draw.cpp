@@ -9,7 +9,7 @@
 namespace furrow::render {
 namespace {
 
-// Binding points of shaders/common_*.glsl and skin.frag.glsl; see also scene_buffers.cpp.
+// Binding points of shaders/common_*.glsl and skin/skin.frag.glsl; see also scene_buffers.cpp.
 constexpr GLuint kMaterialBlock = 1;
 enum TextureUnit : GLuint {
   kBaseColourUnit = 0,
@@ -24,8 +24,8 @@ enum TextureUnit : GLuint {
   kThicknessUnit = 11,
   kWrinkleHeightsUnit = 12
 };
-constexpr GLint kLightLocation = 0;        // of shadow.vert.glsl and displace.tese.glsl
-constexpr GLint kHeightTexelLocation = 1;  // of displace.tese.glsl
+constexpr GLint kLightLocation = 0;        // of shadow/shadow.vert.glsl and scene/displace.tese.glsl
+constexpr GLint kHeightTexelLocation = 1;  // of scene/displace.tese.glsl
 
 void SetCulling(bool cull) {
   if (cull) {

@@ -17,7 +17,7 @@
 namespace furrow::render {
 
 // What the scene is drawn as: plain light in one target; lit by the skin pipeline; or the facets
-// that it lights later (shaders/scene.frag.glsl, skin.frag.glsl, surface.frag.glsl).
+// that it lights later (shaders/scene/scene.frag.glsl, skin/skin.frag.glsl, scene/surface.frag.glsl).
 enum class SceneKind { kPlain, kSkin, kFacets };
 
 // The posed subjects and the frame's lights on the GPU, and the draws that several passes make of
@@ -42,7 +42,7 @@ class SceneDraw {
   // shadow maps are bound as that pass reads them, to kShadowUnits.
   void BindLights(const Settings& settings);
   static constexpr std::array<GLuint, 2> kShadowUnits = {5, 6};
-  // What light.frag.glsl is compiled for.
+  // What skin/light.frag.glsl is compiled for.
   [[nodiscard]] static SceneShader LightShader(const Settings& settings);
   // A scene of these settings draws with textures that Compose() has to make first.
   [[nodiscard]] bool NeedsComposing(const Settings& settings) const;

@@ -7,7 +7,7 @@
 
 namespace furrow::render {
 
-// The scene's targets by stage of the skin pipeline; see shaders/skin.frag.glsl for what each
+// The scene's targets by stage of the skin pipeline; see shaders/skin/skin.frag.glsl for what each
 // holds.
 struct SkinTargets {
   FrameGraph::Handle irradiance;
@@ -19,7 +19,7 @@ struct SkinTargets {
                              // samples
 };
 
-// The same before there is light; see shaders/common_stored_facet.glsl.
+// The same before there is light; see shaders/scene/stored_facet.glsl.
 struct FacetTargets {
   FrameGraph::Handle colour;
   FrameGraph::Handle normal;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/passes/shadow_pass.h"
 
-#include "render/scene/subjects.h"
+#include "render/request/subjects.h"
 
 namespace furrow::render {
 namespace {

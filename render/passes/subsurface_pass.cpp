@@ -13,7 +13,7 @@ using Handle = FrameGraph::Handle;
 
 constexpr float kNarrowest = 0.01f;  // of SubsurfaceSettings::width, that is worth a pass
 
-// Locations in separable.frag.glsl.
+// Locations in skin/separable.frag.glsl.
 enum Location : GLint {
   kAxis = 0,
   kNumTaps = 1,
@@ -22,14 +22,14 @@ enum Location : GLint {
   kOffset = 4,
   kWeight = 25
 };
-// In burley.frag.glsl.
+// In skin/burley.frag.glsl.
 enum BurleyLocation : GLint {
   kBurleyNumTaps = 0,
   kBurleyGeometry = 1,
   kBurleyOffset = 2,
   kBurleyWeight = 66
 };
-constexpr GLint kSumStrength = 0;  // in gaussian_sum.frag.glsl
+constexpr GLint kSumStrength = 0;  // in skin/gaussian_sum.frag.glsl
 
 // 32 bits: a software driver rounds halves towards zero, which adds up over the passes.
 TextureDesc LightDesc(const SkinGeometry& geometry) {
@@ -65,7 +65,7 @@ Handle SubsurfacePass::AddAxis(FrameGraph* graph, const AxisPass& what, Handle i
   return fullscreen_->AddSimplePass(
       graph,
       {.name = what.name,
-       .fragment = "separable.frag.glsl",
+       .fragment = "skin/separable.frag.glsl",
        .defines = {},
        .reads = {in, unscattered},
        .writes = {{what.target, LightDesc(geometry)}},
@@ -120,7 +120,7 @@ Handle SubsurfacePass::AddGaussians(FrameGraph* graph, Handle irradiance,
   return fullscreen_->AddSimplePass(
       graph,
       {.name = "gaussian sum",
-       .fragment = "gaussian_sum.frag.glsl",
+       .fragment = "skin/gaussian_sum.frag.glsl",
        .defines = {},
        .reads = {irradiance, blurs[0], blurs[1], blurs[2], blurs[3], blurs[4], blurs[5]},
        .writes = {{"scattered", LightDesc(geometry)}},
@@ -137,7 +137,7 @@ Handle SubsurfacePass::AddBurley(FrameGraph* graph, Handle irradiance,
   return fullscreen_->AddSimplePass(
       graph,
       {.name = "burley",
-       .fragment = "burley.frag.glsl",
+       .fragment = "skin/burley.frag.glsl",
        .defines = {},
        .reads = {irradiance},
        .writes = {{"scattered", LightDesc(geometry)}},

@@ -10,7 +10,7 @@
 
 #include "render/scene/gpu_character.h"
 #include "render/scene/lighting.h"
-#include "render/scene/subjects.h"
+#include "render/request/subjects.h"
 
 namespace furrow::render {
 

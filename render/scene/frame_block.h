@@ -6,14 +6,14 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
-#include "render/renderer.h"
-#include "render/scene/camera.h"
+#include "render/request/frame_request.h"
+#include "render/scene/camera_frame.h"
 #include "render/scene/lighting.h"
 #include "render/scene/shadow_view.h"
 
 namespace furrow::render {
 
-// Mirrors Light of shaders/common_frame.glsl (std140).
+// Mirrors Light of shaders/common/frame.glsl (std140).
 struct LightBlock {
   glm::vec4 position;   // xyz; w: 1, or 0 for a light that has a direction alone
   glm::vec4 direction;  // xyz: unit, towards the light; w: cosine at a spot's edge, -1: no spot
@@ -22,7 +22,7 @@ struct LightBlock {
   glm::vec4 shadow;  // scale, near plane, 1 / range, 1 for a perspective
 };
 
-// Mirrors Frame of shaders/common_frame.glsl (std140): what is the same for all of a frame.
+// Mirrors Frame of shaders/common/frame.glsl (std140): what is the same for all of a frame.
 struct FrameBlock {
   glm::mat4 view_projection;
   glm::vec4 camera_position;  // xyz

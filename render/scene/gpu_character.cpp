@@ -14,7 +14,7 @@ using character::Material;
 using character::Picture;
 using character::Vertex;
 
-// Mirrors the Material block of scene.frag.glsl (std140).
+// Mirrors the Material block of scene/scene.frag.glsl (std140).
 struct MaterialBlock {
   glm::vec4 base_colour;
   float roughness;
@@ -150,7 +150,7 @@ Status CheckBlock(const WrinkleLayout& layout) {
   glGetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &block_limit);
   glGetIntegerv(GL_MAX_VARYING_VECTORS, &varying_limit);
   glGetIntegerv(GL_MAX_VERTEX_ATTRIBS, &attribute_limit);
-  constexpr int kOthers = 6;  // of scene.vert.glsl
+  constexpr int kOthers = 6;  // of scene/scene.vert.glsl
   if (WrinkleBlockSize(num_maps, layout.num_mask_layers) <= static_cast<std::size_t>(block_limit) &&
       MapSlots(num_maps) + kOthers <= std::min(varying_limit, attribute_limit)) {
     return {};

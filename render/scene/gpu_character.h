@@ -16,7 +16,7 @@
 namespace furrow::render {
 
 struct GpuMaterial {
-  gl::Buffer block;        // the Material block of scene.frag.glsl
+  gl::Buffer block;        // the Material block of scene/scene.frag.glsl
   GLuint base_colour = 0;  // textures; 0: none
   GLuint derivatives = 0;
   GLuint roughness = 0;

@@ -6,10 +6,10 @@
 namespace furrow::render {
 namespace {
 
-constexpr GLuint kSubjectAttribute = 7;  // of pose.vert.glsl
+constexpr GLuint kSubjectAttribute = 7;  // of scene/pose.vert.glsl
 constexpr GLuint kSubjectBinding = 2;    // of a mesh's vertex array
 
-// Mirrors the outputs of pose.vert.glsl, bytes.
+// Mirrors the outputs of scene/pose.vert.glsl, bytes.
 struct Layout {
   explicit Layout(const PoseShader& shader)
       : masks(shader.displaced ? 56 : 52),
@@ -24,7 +24,7 @@ struct Layout {
   GLuint stride;
 };
 
-// As the inputs of scene.vert.glsl.
+// As the inputs of scene/scene.vert.glsl.
 void DescribePosed(GLuint array, const gl::Buffer& vertices, const PoseShader& shader) {
   const Layout layout(shader);
   glVertexArrayVertexBuffer(array, 0, vertices.name(), 0, static_cast<GLsizei>(layout.stride));

@@ -27,7 +27,7 @@ class PosedMeshes {
   void BeginFrame();
 
   struct Vertices {
-    GLuint vertex_array = 0;  // as shaders/scene.vert.glsl reads it, one subject after the other
+    GLuint vertex_array = 0;  // as shaders/scene/scene.vert.glsl reads it, one subject after the other
     GLsizei per_subject = 0;
   };
   // A mesh in the poses of `subjects`, of whom there is at least one. Joints and dynamic masks are

@@ -6,7 +6,7 @@
 namespace furrow::render {
 namespace {
 
-// Binding points of shaders/common_*.glsl and scene.frag.glsl.
+// Binding points of shaders/common_*.glsl and scene/scene.frag.glsl.
 enum UniformBinding : GLuint { kFrameBlock = 0, kWrinkleTable = 2 };
 enum StorageBinding : GLuint {
   kJointRows = 0,

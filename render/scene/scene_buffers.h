@@ -6,7 +6,7 @@
 
 #include "render/gl/gl_objects.h"
 #include "render/scene/frame_block.h"
-#include "render/scene/subjects.h"
+#include "render/request/subjects.h"
 #include "render/wrinkles/wrinkle_table.h"
 
 namespace furrow::render {

@@ -14,7 +14,7 @@
 
 namespace furrow::render {
 
-// A mask that the vertex shader works out. Mirrors DynamicMask of shaders/common_wrinkles_vert.glsl
+// A mask that the vertex shader works out. Mirrors DynamicMask of shaders/wrinkles/wrinkles_vert.glsl
 // (std430).
 struct DynamicMaskBlock {
   std::int32_t slot = 0;     // active map that it raises

@@ -9,8 +9,9 @@
 
 #include <glm/vec4.hpp>
 
-#include "render/renderer.h"
-#include "render/scene/subjects.h"
+#include "character/character.h"
+#include "render/request/frame_request.h"
+#include "render/request/subjects.h"
 #include "render/wrinkles/dynamic_masks.h"
 
 namespace furrow::render {
@@ -21,7 +22,7 @@ namespace furrow::render {
 enum class WrinkleGroup { kSkin, kCloth, kNone };
 inline constexpr int kNumWrinkleGroups = 2;  // kNone has no table
 
-// One wrinkle map that this frame needs. Mirrors ActiveMap of shaders/common_wrinkles.glsl
+// One wrinkle map that this frame needs. Mirrors ActiveMap of shaders/wrinkles/wrinkles.glsl
 // (std140).
 struct ActiveMap {
   glm::vec4 colour{1.0f};  // rgb: of the views; a: WrinkleMap::colour_scale
@@ -86,12 +87,12 @@ struct PartMasks {
 // which add nothing.
 [[nodiscard]] int PaddedMaps(std::size_t active, int num_maps);
 
-// The WrinkleTable block of shaders/common_wrinkles.glsl, byte for byte (std140), and its size. Its
+// The WrinkleTable block of shaders/wrinkles/wrinkles.glsl, byte for byte (std140), and its size. Its
 // mask weights are those of the first subject.
 [[nodiscard]] std::size_t WrinkleBlockSize(int num_maps, int num_mask_layers);
 [[nodiscard]] std::vector<std::uint8_t> WrinkleBlock(const WrinkleTable& table, WrinklePart part,
                                                      int num_maps, const WrinkleLayout& layout);
-// u_subject_weights of shaders/common_masks.glsl: all subjects' mask weights, a row as long as the
+// u_subject_weights of shaders/wrinkles/masks.glsl: all subjects' mask weights, a row as long as the
 // block's each.
 [[nodiscard]] std::vector<glm::vec4> SubjectWeights(const WrinkleTable& table, int num_maps,
                                                     const WrinkleLayout& layout);

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "render/renderer.h"
+#include "render/settings/named_settings.h"
 #include "test_character.h"
 
 namespace furrow::render {

@@ -4,6 +4,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
+#include "render/settings/named_settings.h"
 #include "tests/unit/render/scene_probe.h"
 #include "tests/unit/render/wrinkle_cache_scene.h"
 

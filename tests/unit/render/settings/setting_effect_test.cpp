@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "render/renderer.h"
+#include "render/settings/named_settings.h"
 #include "render/settings/setting_table.h"
 #include "tests/unit/render/wrinkle_cache_scene.h"
 
