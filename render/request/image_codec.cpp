@@ -36,7 +36,7 @@ Result<std::vector<std::uint8_t>> EncodePng(const Image& image) {
   picture.height = image.height;
   picture.channels = 3;
   picture.pixels = image.rgb;
-  // Half the time of the library's own compression for a few percent of size.
+  // Takes half the time of the library's default level and adds a few percent to the size.
   const auto bytes = character::EncodePicture(picture, {.srgb = true, .compression = 4});
   FURROW_RETURN_IF_ERROR(bytes);
   return std::vector<std::uint8_t>(bytes->begin(), bytes->end());
@@ -47,7 +47,8 @@ Result<std::vector<std::uint8_t>> EncodePng(const Image& image) {
 Result<std::vector<std::uint8_t>> EncodeImage(const Image& image, ImageFormat format, int quality) {
   const std::size_t bytes = static_cast<std::size_t>(image.width) * image.height * 3;
   if (image.width < 1 || image.height < 1 || image.rgb.size() != bytes) {
-    return Status(StatusCode::kInvalidArgument, "its pixels do not fit its size", "image");
+    return Status(StatusCode::kInvalidArgument, "the number of pixels does not match the size",
+                  "image");
   }
   if (format == ImageFormat::kPng) return EncodePng(image);
   if (quality < 1 || quality > 100) {

@@ -61,7 +61,8 @@ bool IsValid(const glm::vec3& colour) {
 // Lists the valid values of a field, for messages and help.
 struct ValidValues {
   std::string operator()(const NumberField& field) const {
-    return (field.above_low ? "(" : "[") + NumberText(field.low) + ", " + NumberText(field.high) + "]";
+    return (field.above_low ? "(" : "[") + NumberText(field.low) + ", " + NumberText(field.high) +
+           "]";
   }
   std::string operator()(const CountField& field) const {
     if (field.only.empty()) {
@@ -266,9 +267,10 @@ std::string GetSetting(std::string_view name, const Settings& settings) {
 Status CheckSettings(const Settings& settings) {
   for (const SettingEntry& entry : SettingTable()) {
     if (std::visit(Checker{const_cast<Settings&>(settings)}, entry.field)) continue;
-    return {StatusCode::kInvalidArgument,
-            GetSetting(entry.name, settings) + " is outside " + std::visit(ValidValues{}, entry.field),
-            "settings." + std::string(entry.name)};
+    return {
+        StatusCode::kInvalidArgument,
+        GetSetting(entry.name, settings) + " is outside " + std::visit(ValidValues{}, entry.field),
+        "settings." + std::string(entry.name)};
   }
   return {};
 }

@@ -58,11 +58,11 @@ struct OcclusionSettings {
 
 struct SubsurfaceSettings {
   SubsurfaceMethod method = SubsurfaceMethod::kSeparable;
-  int taps = 17;                // separable: samples per pass, 11, 17 or 25
-  int samples = 24;             // burley: samples per pixel, [4, 64]
-  float width = 1.0f;           // scales the diffusion profile's distances, [0, 8]
-  float strength = 1.0f;        // share of the light that scatters, [0, 1]
-  float gradient = 1.0f;        // beta of thesis 4.7: narrows the kernel on slanted surfaces, [0, 16]
+  int taps = 17;          // separable: samples per pass, 11, 17 or 25
+  int samples = 24;       // burley: samples per pixel, [4, 64]
+  float width = 1.0f;     // scales the diffusion profile's distances, [0, 8]
+  float strength = 1.0f;  // share of the light that scatters, [0, 1]
+  float gradient = 1.0f;  // beta of thesis 4.7: narrows the kernel on slanted surfaces, [0, 16]
   float depth_range_mm = 6.0f;  // largest depth difference of samples that mix, [0.1, 1000]
   float mix = 0.5f;             // share of the albedo applied before scattering, [0, 1]
 };

@@ -207,33 +207,5 @@ TEST_F(ShaderLibraryTest, AProgramIsCompiledOnce) {
   EXPECT_EQ(*library_.Get(SceneShader{}), *library_.Get(SceneShader{}));
 }
 
-TEST_F(ShaderLibraryTest, AnErrorCarriesTheDriversLogAndTheFilesName) {
-  constexpr ShaderFile kFiles[] = {{"good.glsl", "void main() { gl_Position = vec4(0.0); }\n"},
-                                   {"part.glsl", "float broken() { return undeclared; }\n"},
-                                   {"bad.glsl", "#include \"part.glsl\"\nvoid main() {}\n"}};
-  const Status status = BuildProgram({"good.glsl", "bad.glsl"}, {}, kFiles).status();
-  EXPECT_EQ(status.code(), StatusCode::kInternal);
-  EXPECT_EQ(status.where(), "bad.glsl");
-  EXPECT_NE(status.what().find("part.glsl"), std::string::npos) << status.what();
-  EXPECT_NE(status.what().find("undeclared"), std::string::npos) << status.what();
-}
-
-TEST(EglContext, AnUnknownDeviceIsRefusedByName) {
-  const Status status = EglContext::Create("gpu9").status();
-  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
-  EXPECT_NE(status.what().find("gpu9"), std::string::npos);
-  EXPECT_EQ(EglContext::Create("9999").status().code(), StatusCode::kInvalidArgument);
-}
-
-TEST(EglContext, TwoContextsOfOneThreadTakeTurns) {
-  auto first = EglContext::Create("");
-  auto second = EglContext::Create("");
-  ASSERT_TRUE(first.ok() && second.ok());
-  EXPECT_TRUE((*first)->MakeCurrent().ok());
-  (*second).reset();
-  EXPECT_TRUE((*first)->MakeCurrent().ok());
-  EXPECT_NE((*first)->description().find("device"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace furrow::render

@@ -58,7 +58,8 @@ TEST(ShaderLoader, EmbedsEveryShader) {
     EXPECT_TRUE(file.text.starts_with("// SPDX-License-Identifier")) << file.name;
     EXPECT_TRUE(ExpandShader(file.name, {}, EmbeddedShaders()).ok()) << file.name;
   }
-  for (const char* name : {"scene/scene.vert.glsl", "scene/scene.frag.glsl", "post/composite.frag.glsl"}) {
+  for (const char* name :
+       {"scene/scene.vert.glsl", "scene/scene.frag.glsl", "post/composite.frag.glsl"}) {
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   }
 }

@@ -64,8 +64,7 @@ TEST(ComputeCamera, LooksStraightDownWithoutDegenerating) {
   Camera camera;
   camera.position = {0.0f, 3.0f, 0.0f};
   camera.target = {0.0f, 1.0f, 0.0f};
-  const CameraFrame frame =
-      ComputeCamera(camera, head.skeleton, head.skeleton.rest_model(), 1.0f);
+  const CameraFrame frame = ComputeCamera(camera, head.skeleton, head.skeleton.rest_model(), 1.0f);
   const glm::vec4 clip = frame.view_projection * glm::vec4(camera.target, 1.0f);
   const glm::vec3 centre = glm::vec3(clip) / clip.w;
   EXPECT_NEAR(centre.x, 0.0f, 1e-5);

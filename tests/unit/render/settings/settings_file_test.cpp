@@ -35,7 +35,8 @@ TEST(SettingsFile, KeepsSettingsThatTheFileDoesNotMention) {
 }
 
 TEST(SettingsFile, ErrorsNameLineAndSetting) {
-  const auto expect_error = [](const char* toml, StatusCode code, const char* where, const char* word) {
+  const auto expect_error = [](const char* toml, StatusCode code, const char* where,
+                               const char* word) {
     Settings settings;
     const Status status = ParseSettings(toml, "look.toml", &settings);
     EXPECT_EQ(status.code(), code) << toml;
@@ -43,8 +44,8 @@ TEST(SettingsFile, ErrorsNameLineAndSetting) {
     EXPECT_NE(status.ToString().find(word), std::string::npos) << status.ToString();
     EXPECT_EQ(SettingsToToml(settings), SettingsToToml(Settings()));  // unchanged
   };
-  expect_error("exposure = 1.5\n[subsurface]\ntaps = 12", StatusCode::kInvalidArgument, "look.toml:3",
-         "11, 17, 25");
+  expect_error("exposure = 1.5\n[subsurface]\ntaps = 12", StatusCode::kInvalidArgument,
+               "look.toml:3", "11, 17, 25");
   expect_error("[subsurface]\ntap = 11", StatusCode::kSchema, "look.toml:2", "subsurface.taps");
   expect_error("[subsurface]\ntaps = '11'", StatusCode::kSchema, "look.toml:2", "a whole number");
   expect_error("wrinkles = 1", StatusCode::kSchema, "look.toml:1", "true or false");
