@@ -11,7 +11,7 @@ namespace {
 using Handle = FrameGraph::Handle;
 
 constexpr GLint kLook = 0;      // in post/bloom.frag.glsl and post/show.frag.glsl
-constexpr int kTileMargin = 4;  // pixels around a tile of the strip
+constexpr int kTileMargin = 4;  // pixels around each tile of the strip
 
 TextureDesc BloomDesc(const TextureDesc& desc) {
   return {std::max(desc.width / kBloomScale, 1), std::max(desc.height / kBloomScale, 1),

@@ -4,7 +4,7 @@
 namespace furrow::render {
 namespace {
 
-// Locations in common/view.glsl and skin/light.frag.glsl.
+// Uniform locations in common/view.glsl and skin/light.frag.glsl.
 enum Location : GLint { kViewRotation = 0, kLens = 3, kRange = 4 };
 constexpr std::size_t kOpenUnit = 10;
 

@@ -6,7 +6,8 @@ namespace {
 
 // Locations in common/view.glsl and occlusion/occlusion.glsl.
 enum Location : GLint { kViewRotation = 0, kLens = 3, kReach = 4 };
-constexpr GLint kRange = 0;  // in occlusion/occlusion_blur.frag.glsl and occlusion/occlude.frag.glsl
+constexpr GLint kRange =
+    0;  // in occlusion/occlusion_blur.frag.glsl and occlusion/occlude.frag.glsl
 // Of the radius: surfaces further apart in depth do not lend each other their openness.
 constexpr float kRangeOfRadius = 0.5f;
 

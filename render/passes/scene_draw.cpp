@@ -24,7 +24,7 @@ enum TextureUnit : GLuint {
   kThicknessUnit = 11,
   kWrinkleHeightsUnit = 12
 };
-constexpr GLint kLightLocation = 0;        // of shadow/shadow.vert.glsl and scene/displace.tese.glsl
+constexpr GLint kLightLocation = 0;  // of shadow/shadow.vert.glsl and scene/displace.tese.glsl
 constexpr GLint kHeightTexelLocation = 1;  // of scene/displace.tese.glsl
 
 void SetCulling(bool cull) {
@@ -120,7 +120,7 @@ Status SceneDraw::Update(const FrameRequest& request) {
   const Settings& settings = request.settings;
   displacement_reach_ = settings.displacement.enabled
                             ? 0.001f * settings.displacement.strength * settings.wrinkle_strength *
-                                  gpu_->heights().most_mm
+                                  gpu_->heights().max_mm
                             : 0.0f;
   const std::vector<NamedSubject> subjects = SubjectsOf(request);
   is_crowd_ = subjects.size() > 1;
@@ -150,7 +150,7 @@ void SceneDraw::FindVisible(std::span<const NamedSubject> subjects, const Settin
     views[light].pixels =
         0.5f * static_cast<float>(setup_.shadow_resolution) * setup_.shadows[light].scale;
     // Nobody asks for a dark lamp's shadow.
-    views[light].is_asked = setup_.lighting.lights[light].radiance != glm::vec3(0.0f);
+    views[light].is_active = setup_.lighting.lights[light].radiance != glm::vec3(0.0f);
   }
   draw_list_.Build(gpu_, subjects, views,
                    {.reach = displacement_reach_,

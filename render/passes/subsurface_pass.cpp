@@ -11,7 +11,7 @@ namespace {
 
 using Handle = FrameGraph::Handle;
 
-constexpr float kNarrowest = 0.01f;  // of SubsurfaceSettings::width, that is worth a pass
+constexpr float kMinWidth = 0.01f;  // of SubsurfaceSettings::width, that is worth a pass
 
 // Locations in skin/separable.frag.glsl.
 enum Location : GLint {
@@ -47,7 +47,7 @@ PixelTaps AlongY(PixelTaps kernel) {
 Handle SubsurfacePass::Add(FrameGraph* graph, Handle irradiance, const SubsurfaceSettings& settings,
                            const SkinGeometry& geometry) {
   const bool nothing_scatters =
-      settings.strength <= 0.0f || settings.width < kNarrowest || geometry.bounds.empty();
+      settings.strength <= 0.0f || settings.width < kMinWidth || geometry.bounds.empty();
   if (nothing_scatters) return irradiance;
   switch (settings.method) {
     case SubsurfaceMethod::kOff:

@@ -17,8 +17,8 @@ namespace {
 using character::Character;
 using character::Material;
 
-constexpr float kFovY = 24.0f;  // degrees: about 85 mm on a full frame, a portrait's lens
-// Degrees from the front towards the subject's left.
+constexpr float kFovY = 24.0f;  // degrees; about 85 mm on a full-frame camera, a portrait lens
+// Angles in degrees from the front towards the subject's left.
 constexpr float kThreeQuarter = 38.0f;
 constexpr float kFromTheLeft = 90.0f;
 constexpr std::array<std::string_view, 9> kNames = {
@@ -43,7 +43,7 @@ bool ContainsNoCase(std::string_view text, std::string_view part) {
   return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
 }
 
-// The rig's anchor; else the highest joint that is called head; else none.
+// The rig's anchor joint. Without one, the first joint with "head" in its name, if any.
 int FindHead(const Character& character) {
   const int anchor = character.skeleton.Find(character.rig.anchor);
   if (anchor != wrinkle::kNoJoint) return anchor;
@@ -54,8 +54,8 @@ int FindHead(const Character& character) {
   return wrinkle::kNoJoint;
 }
 
-// The vertices whose skin weights lie mostly in the joints that `accept_joint` takes, on materials
-// that `accept_kind` takes.
+// Bounds of the vertices with most of their skin weight on joints that `accept_joint` accepts, on
+// materials that `accept_kind` accepts.
 template <class AcceptKind, class AcceptJoint>
 Bounds BoundsOf(const Character& character, const AcceptKind& accept_kind,
                 const AcceptJoint& accept_joint) {
@@ -73,7 +73,8 @@ Bounds BoundsOf(const Character& character, const AcceptKind& accept_kind,
   return bounds;
 }
 
-// Mean of the rest-pose tails (where a virtual muscle ends) of the joints whose names hold a word.
+// The mean rest-pose tail of the joints with one of `words` in their name. A tail is the end of a
+// virtual muscle. nullopt: no such joint.
 std::optional<glm::vec3> MeanTail(const Character& character,
                                   std::span<const std::string_view> words) {
   const wrinkle::Skeleton& skeleton = character.skeleton;
@@ -91,9 +92,9 @@ std::optional<glm::vec3> MeanTail(const Character& character,
   return sum / static_cast<float>(count);
 }
 
-// A camera that sees `height` metres (and as much across) around `target`, from `azimuth` degrees
-// towards the subject's left; `depth` metres of the subject stand between the target and the
-// camera.
+// A camera that shows `height` metres, vertically and horizontally, around `target`, seen from
+// `azimuth` degrees towards the subject's left. `depth`: how far the subject reaches from the
+// target towards the camera, metres.
 Camera Frame(const glm::vec3& target, float height, float depth, float azimuth, int follow_joint) {
   Camera camera;
   camera.target = target;
@@ -128,8 +129,8 @@ Camera HeadPreset(const Bounds& head, int joint, float azimuth) {
   return Frame(head.centre(), height, 0.6f * radius, azimuth, joint);
 }
 
-// A part of the face `height` heads high, at `point` or, without one, at a fraction of the head's
-// height.
+// A part of the face, `height` head heights tall, at `point`. Without a point, at `fraction` of the
+// head's height.
 Camera DetailPreset(const Bounds& head, int joint, std::optional<glm::vec3> point, float fraction,
                     float height) {
   glm::vec3 target = head.centre();
@@ -147,8 +148,9 @@ std::optional<glm::vec3> EyePoint(const Character& character) {
   return MeanTail(character, std::array<std::string_view, 1>{"eye"});
 }
 
-// The whole body from `azimuth`. Its height decides how near: a picture that is narrower than high
-// shows people who stand and walk, and cuts off the hands of arms stretched out sideways.
+// The whole body from `azimuth` degrees. The height of the body determines the distance: a
+// portrait-format picture shows people who stand or walk, but cuts off the hands of arms stretched
+// sideways.
 Camera BodyPreset(const Character& character, float azimuth) {
   Bounds all = BoundsOf(
       character, [](auto) { return true; }, [](int) { return true; });

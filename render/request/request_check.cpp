@@ -45,7 +45,7 @@ Status CheckCamera(const Camera& camera, int num_joints) {
   return {};
 }
 
-// `field`: of the subject, "" or "others[3].".
+// `field`: prefix of the subject, "" or "others[3].".
 Status CheckModel(const std::string& field, std::span<const glm::mat4> model, int num_joints) {
   if (model.size() < static_cast<std::size_t>(num_joints)) {
     return {
@@ -63,7 +63,8 @@ Status CheckModel(const std::string& field, std::span<const glm::mat4> model, in
   return {};
 }
 
-// Directions are turned by the matrix itself, and triangles keep their sides.
+// Returns true for rotation, uniform scale and translation. The shaders rotate directions with the
+// matrix itself, and a mirrored mesh would turn its triangles inside out.
 bool IsRigidButForScale(const glm::mat4& placement) {
   const glm::mat3 turn(placement);
   const float scale2 = glm::dot(turn[0], turn[0]);

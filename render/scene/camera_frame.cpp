@@ -11,7 +11,7 @@ namespace {
 
 constexpr glm::vec3 kUp(0.0f, 1.0f, 0.0f);
 
-// The angle about +Y of the rotation's swing-twist decomposition, radians.
+// The rotation's angle about +Y by swing-twist decomposition, radians.
 float Heading(const glm::mat4& rotation) {
   const glm::quat q = glm::quat_cast(glm::mat3(glm::normalize(glm::vec3(rotation[0])),
                                                glm::normalize(glm::vec3(rotation[1])),
@@ -44,7 +44,7 @@ CameraFrame ComputeCamera(const Camera& camera, const wrinkle::Skeleton& skeleto
   const glm::vec3 target(follow * glm::vec4(camera.target, 1.0f));
   const glm::vec3 towards = target - position;
   const float distance = glm::length(towards);
-  // A camera that looks straight up or down needs another up than +Y.
+  // A camera that looks straight up or down cannot use +Y as its up direction.
   const bool steep = std::abs(towards.y) > 0.999f * distance;
   const glm::mat4 view = glm::lookAt(position, target, steep ? glm::vec3(0, 0, -1) : kUp);
   const float narrow = camera.fit_shorter_side ? std::min(aspect, 1.0f) : 1.0f;

@@ -46,8 +46,8 @@ struct CameraFrame {
                                         std::span<const glm::mat4> model);
 
 // Resolves `camera` for a pose. `model`: joint matrices of the followed subject, num_joints long;
-// `placement`: its PosedSubject::placement; `aspect`: width / height. The near and far planes follow
-// from the distance to the target.
+// `placement`: its PosedSubject::placement; `aspect`: width / height. The near and far planes
+// follow from the distance to the target.
 [[nodiscard]] CameraFrame ComputeCamera(const Camera& camera, const wrinkle::Skeleton& skeleton,
                                         std::span<const glm::mat4> model, float aspect,
                                         const glm::mat4& placement = glm::mat4(1.0f));

@@ -13,15 +13,15 @@ namespace furrow::render {
 namespace {
 
 // What is not worth this in any channel lies beyond the kernel's reach.
-constexpr float kLeastWeight = 5e-4f;
+constexpr float kMinWeight = 5e-4f;
 // Of the places that are tried for taps, where pixels are finer; it bounds the time that takes.
 constexpr float kMaxCellsPerMm = 24.0f;
 // What is far from an edge counts for more, by this for every mm: smooth light knows a kernel by
 // its variance, which its tail decides. As much of it as costs an edge nothing.
 constexpr double kTail = 2.0;
 constexpr double kAside = 0.2;  // of the way from the tap before, by a search from 0.1 to 0.5
-constexpr float kLeastSigma = 1.0f / 3.0f;  // pixels
-constexpr int kGaussianSide = 3;            // taps of a Gaussian on one side
+constexpr float kMinSigma = 1.0f / 3.0f;  // pixels
+constexpr int kGaussianSide = 3;          // taps of a Gaussian on one side
 
 // The lit side of a straight edge, cell by cell, and staircases that follow it. Errors are squared,
 // and count for more the further they are from the edge.
@@ -32,7 +32,7 @@ class EdgeResponse {
       const double mm = (cells() + 0.5) / cells_per_mm;
       const glm::dvec3 light(StepResponse(profile, mm));
       const glm::dvec3 rest = 1.0 - light;
-      if (std::max({rest.r, rest.g, rest.b}) < kLeastWeight) return;
+      if (std::max({rest.r, rest.g, rest.b}) < kMinWeight) return;
       const double counts = 1.0 + kTail * mm;
       counts_.push_back(counts_.back() + counts);
       rests_.push_back(rests_.back() + counts * rest);
@@ -40,7 +40,7 @@ class EdgeResponse {
     }
   }
 
-  // Up to where the response is 1 but for kLeastWeight.
+  // Up to where the response is 1 but for kMinWeight.
   [[nodiscard]] int cells() const { return static_cast<int>(rests_.size()) - 1; }
 
   // The best level for the cells [from, to), at least one.
@@ -126,7 +126,7 @@ PixelTaps PixelKernel(const SkinProfile& profile, int taps, float pixels_per_mm)
 // Samples of the Gaussian at whole pixels, each for the pixels that lie nearest to it, and then the
 // centre's share chosen so that the variance is exact.
 PixelTaps PixelGaussian(float sigma) {
-  if (sigma < kLeastSigma) return {{glm::vec2(0.0f)}, {glm::vec3(1.0f)}};
+  if (sigma < kMinSigma) return {{glm::vec2(0.0f)}, {glm::vec3(1.0f)}};
   std::array<int, kGaussianSide + 1> pixels{};
   for (int i = 1; i <= kGaussianSide; ++i) {
     const int nearest = static_cast<int>(std::lround(static_cast<float>(i) * sigma));

@@ -21,7 +21,7 @@ glm::vec3 Corner(const character::Mesh& mesh, const MeshLevel& level, std::size_
 
 TEST(MeshLevels, HalveTheTrianglesAndSayHowFarTheyAreOff) {
   const character::Mesh mesh = test::MakeHead().meshes[0];
-  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kStay);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kKeep);
   ASSERT_GE(levels.size(), 3u);
   EXPECT_EQ(levels[0].indices, mesh.indices);
   EXPECT_EQ(levels[0].error, 0.0f);
@@ -38,7 +38,7 @@ TEST(MeshLevels, HalveTheTrianglesAndSayHowFarTheyAreOff) {
 TEST(MeshLevels, StayNearTheSurfaceAndTurnNoTriangleOver) {
   const character::Mesh mesh = test::MakeHead().meshes[0];
   const glm::vec3 centre(0.0f, 1.6f, 0.0f);
-  for (const MeshLevel& level : MakeMeshLevels(mesh, Borders::kStay)) {
+  for (const MeshLevel& level : MakeMeshLevels(mesh, Borders::kKeep)) {
     double squares = 0.0;
     for (std::size_t i = 0; i < level.indices.size(); i += 3) {
       const glm::vec3 a = Corner(mesh, level, i);
@@ -60,7 +60,7 @@ TEST(MeshLevels, StayNearTheSurfaceAndTurnNoTriangleOver) {
 // The seam's two columns of vertices are all still there.
 TEST(MeshLevels, KeepSeams) {
   const character::Mesh mesh = test::MakeHead().meshes[0];
-  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kStay);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kKeep);
   const std::set<std::uint32_t> left(levels.back().indices.begin(), levels.back().indices.end());
   int on_seam = 0;
   for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -98,7 +98,7 @@ TEST(MeshLevels, DrawBordersInAlongThemselves) {
   constexpr int kStrips = 40;
   constexpr int kSegments = 12;
   const character::Mesh mesh = Strips(kStrips, kSegments);
-  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kDrawnIn);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kSimplify);
   ASSERT_GE(levels.size(), 4u);
   for (const MeshLevel& level : levels) {
     const std::set<std::uint32_t> left(level.indices.begin(), level.indices.end());
@@ -131,7 +131,7 @@ TEST(MeshLevels, KeepBordersThatMayBeShared) {
         return vertex;
       },
       &sheet);
-  const std::vector<MeshLevel> levels = MakeMeshLevels(sheet, Borders::kStay);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(sheet, Borders::kKeep);
   ASSERT_GE(levels.size(), 3u);
   const std::set<std::uint32_t> left(levels.back().indices.begin(), levels.back().indices.end());
   for (std::uint32_t i = 0; i < sheet.vertices.size(); ++i) {
@@ -149,7 +149,7 @@ TEST(MeshLevels, TakeNoLongerForWhatLiesTogether) {
   for (std::uint32_t i = 0; i + 2 < kMany; i += 3) {
     heap.indices.insert(heap.indices.end(), {i, i + 1, i + 2});
   }
-  EXPECT_EQ(MakeMeshLevels(heap, Borders::kDrawnIn).size(), 1u);
+  EXPECT_EQ(MakeMeshLevels(heap, Borders::kSimplify).size(), 1u);
   character::Mesh fan;
   fan.vertices.resize(kMany + 1);
   for (std::uint32_t i = 0; i < kMany; ++i) {
@@ -157,15 +157,15 @@ TEST(MeshLevels, TakeNoLongerForWhatLiesTogether) {
     fan.vertices[i + 1].position = {std::sin(angle), std::cos(angle), 0.0};
     fan.indices.insert(fan.indices.end(), {0, i + 1, 1 + (i + 1) % kMany});
   }
-  for (const Borders borders : {Borders::kStay, Borders::kDrawnIn}) {
+  for (const Borders borders : {Borders::kKeep, Borders::kSimplify}) {
     EXPECT_EQ(MakeMeshLevels(fan, borders).size(), 1u);
   }
 }
 
 TEST(MeshLevels, OfNothingAndOfLittleAreTheMeshAlone) {
-  EXPECT_EQ(MakeMeshLevels({}, Borders::kStay).size(), 1u);
+  EXPECT_EQ(MakeMeshLevels({}, Borders::kKeep).size(), 1u);
   const character::Mesh plane = test::MakePlane(4, [](float, float) { return 0.0f; }, {}).meshes[0];
-  EXPECT_EQ(MakeMeshLevels(plane, Borders::kStay).size(), 1u);
+  EXPECT_EQ(MakeMeshLevels(plane, Borders::kKeep).size(), 1u);
 }
 
 }  // namespace

@@ -87,8 +87,8 @@ TEST(UvDensity, IsThatOfTheMostStretchedSurface) {
     for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u})
       mesh.indices.push_back(first + corner);
   }
-  EXPECT_NEAR(LeastUvPerMetre(mesh), 0.1f, 1e-5f);
-  EXPECT_EQ(LeastUvPerMetre(character::Mesh()), 0.0f);
+  EXPECT_NEAR(MinUvPerMetre(mesh), 0.1f, 1e-5f);
+  EXPECT_EQ(MinUvPerMetre(character::Mesh()), 0.0f);
 }
 
 }  // namespace
