@@ -4,11 +4,10 @@
 namespace furrow::render {
 namespace {
 
-// Locations in common/view.glsl and occlusion/occlusion.glsl.
+// Uniform locations in common/view.glsl and occlusion/occlusion.glsl.
 enum Location : GLint { kViewRotation = 0, kLens = 3, kReach = 4 };
-constexpr GLint kRange =
-    0;  // in occlusion/occlusion_blur.frag.glsl and occlusion/occlude.frag.glsl
-// Of the radius: surfaces further apart in depth do not lend each other their openness.
+constexpr GLint kRange = 0;  // in occlusion_blur.frag.glsl and occlude.frag.glsl
+// As a share of the radius. Surfaces with a larger depth difference do not share their openness.
 constexpr float kRangeOfRadius = 0.5f;
 
 int ScaleOf(const OcclusionSettings& settings) { return settings.half_resolution ? 2 : 1; }

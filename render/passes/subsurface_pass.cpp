@@ -11,9 +11,9 @@ namespace {
 
 using Handle = FrameGraph::Handle;
 
-constexpr float kMinWidth = 0.01f;  // of SubsurfaceSettings::width, that is worth a pass
+constexpr float kMinWidth = 0.01f;  // a smaller SubsurfaceSettings::width has no visible effect
 
-// Locations in skin/separable.frag.glsl.
+// Uniform locations in skin/separable.frag.glsl.
 enum Location : GLint {
   kAxis = 0,
   kNumTaps = 1,
@@ -22,21 +22,22 @@ enum Location : GLint {
   kOffset = 4,
   kWeight = 25
 };
-// In skin/burley.frag.glsl.
+// Uniform locations in skin/burley.frag.glsl.
 enum BurleyLocation : GLint {
   kBurleyNumTaps = 0,
   kBurleyGeometry = 1,
   kBurleyOffset = 2,
   kBurleyWeight = 66
 };
-constexpr GLint kSumStrength = 0;  // in skin/gaussian_sum.frag.glsl
+constexpr GLint kSumStrength = 0;  // uniform location in skin/gaussian_sum.frag.glsl
 
-// 32 bits: a software driver rounds halves towards zero, which adds up over the passes.
+// 32 bits, because software drivers round half floats towards zero, and the error would add up over
+// the passes.
 TextureDesc LightDesc(const SkinGeometry& geometry) {
   return {geometry.width, geometry.height, PixelFormat::kRgba32F, 1};
 }
 
-// A kernel along x, turned to run along y.
+// Rotates a kernel that runs along x to run along y.
 PixelTaps AlongY(PixelTaps kernel) {
   for (glm::vec2& offset : kernel.offsets) offset = glm::vec2(-offset.y, offset.x);
   return kernel;
