@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "occlusion/occlusion.glsl"
 
-// Ground-truth ambient occlusion (Jimenez, Wu, Pesce and Jarabo 2016): in slices through the view
-// direction, the horizons to both sides are searched for, and the cosine-weighted sky between them
-// integrated. Normals come from the scene, wrinkles and all.
+// Ground-truth ambient occlusion (Jimenez, Wu, Pesce and Jarabo 2016). In slices through the view
+// direction, it searches for the horizon on both sides and integrates the cosine-weighted sky
+// between the horizons. Normals are the scene's, including wrinkles.
 
 const int SLICES = SAMPLES >= 24 ? 3 : 2;
-// From one slice to the next: by a right angle, or by 60 degrees.
+// Rotation from one slice to the next: 90 or 60 degrees.
 const mat2 SLICE_TURN = SLICES == 2 ? mat2(0.0, 1.0, -1.0, 0.0) : mat2(0.5, 0.8660254, -0.8660254, 0.5);
 const int STEPS = max(SAMPLES / (2 * SLICES), 1);
 
-// acos to 0.001 rad for x in [-1, 1] (Lagarde 2014).
+// acos for x in [-1, 1], within 0.001 rad (Lagarde 2014).
 float fastAcos(float x) {
   float a = abs(x);
   float y = (-0.156583 * a + 1.5707963) * sqrt(1.0 - a);
   return x >= 0.0 ? y : PI - y;
 }
 
-// Cosine of the horizon on one side: `direction` in pixels, the furthest step `reach` pixels away.
+// Cosine of the horizon on one side. `direction`: in pixels; the farthest step is `reach` pixels
+// away; `lowest`: the smallest possible result.
 float horizon(vec2 pixel, vec3 centre, vec3 toEye, vec2 direction, float reach, float jitter,
               float lowest, int steps) {
   float highest = lowest;
@@ -27,8 +28,8 @@ float horizon(vec2 pixel, vec3 centre, vec3 toEye, vec2 direction, float reach, 
     vec3 to = viewPosition(floor(at) + 0.5, depthAt(at)) - centre;
     float distance2 = max(dot(to, to), 1e-12);
     float cosine = dot(to, toEye) * inversesqrt(distance2);
-    // Surfaces fade out towards the radius. What stands in front is taken to be a radius thick, so
-    // that it counts from where its hidden part is nearest.
+    // Occluders fade out towards the radius. A surface in front is assumed to be one radius thick,
+    // so the distance is measured to the nearest point of its hidden part.
     float front = max(dot(to, toEye), 0.0);
     float excess = max(front - u_reach.x, 0.0);
     float nearest2 = distance2 - front * front + excess * excess;
@@ -38,9 +39,9 @@ float horizon(vec2 pixel, vec3 centre, vec3 toEye, vec2 direction, float reach, 
   return highest;
 }
 
-// Cosine-weighted sky between the normal and a horizon at the angle h, both counted from the view
+// Cosine-weighted sky between the normal and a horizon at the angle h, both measured from the view
 // direction: openArc(h, n) = (-cos(2 h - n) + cos n + 2 h sin n) / 4. `side`: the sign of h;
-// `cosH`: of the horizon; `n`: cosine and sine of the normal's angle.
+// `cosH`: cosine of h; `n`: cosine and sine of the normal's angle.
 float openArc(float cosH, float side, vec2 n) {
   float h = side * fastAcos(cosH);
   float sinH = side * sqrt(max(1.0 - cosH * cosH, 0.0));
@@ -56,24 +57,25 @@ void main() {
   vec3 centre = viewPosition(place, metres);
   vec3 toEye = -normalize(centre);
   vec3 normal = viewNormal(pixel);
-  // Nothing is further away than the picture's corners.
+  // The search never needs to leave the picture.
   float reach = clamp(u_reach.x * u_lens.x / metres, 2.0, length(2.0 * u_lens.yz));
   float noise = tileNoise();
-  // Groups of pixels that see no surface leave the loops.
+  // Groups of pixels without a surface skip the loops.
   int steps = metres < NO_SURFACE ? STEPS : 0;
   float sum = 0.0;
   float angle = PI * noise / float(SLICES);
   vec2 direction = vec2(cos(angle), sin(angle));
   for (int slice = 0; slice < SLICES; ++slice) {
     vec3 along = vec3(direction, 0.0);
-    vec3 axis = normalizeOrZero(cross(along, toEye));       // of the slice's plane
-    vec3 tangent = cross(toEye, axis);                      // in it, to the side of `direction`
+    vec3 axis = normalizeOrZero(cross(along, toEye));       // normal of the slice's plane
+    vec3 tangent = cross(toEye, axis);                      // in the plane, on the side of
+                                                            // `direction`
     vec3 projected = normal - axis * dot(normal, axis);
     float weight = length(projected);
     float cosN = saturate(dot(projected, toEye) / max(weight, 1e-6));
     float sinN = sign(dot(projected, tangent)) * sqrt(1.0 - cosN * cosN);
     float jitter = fract(noise * 7.0 + 0.37 * float(slice)) * 0.999 + 0.001;
-    // The lowest that a horizon can be is the surface itself, a right angle from the normal.
+    // The lowest possible horizon is the surface itself, at a right angle to the normal.
     float right = horizon(place, centre, toEye, direction, reach, jitter, -sinN, steps);
     float left = horizon(place, centre, toEye, -direction, reach, jitter, sinN, steps);
     sum += weight * (openArc(right, 1.0, vec2(cosN, sinN)) + openArc(left, -1.0, vec2(cosN, sinN)));

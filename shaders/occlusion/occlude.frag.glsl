@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "occlusion/openness.glsl"
 
-// Takes from the light of the sky what ambient occlusion leaves none of. Lamps have shadows.
+// Removes the occluded part of the sky's light. The light of lamps is unchanged, because lamps have
+// shadows.
 //
-// SCALE  1 or 2: pixels of the scene to one of the occlusion's, along each axis
+// SCALE  1 or 2: scene pixels per occlusion pixel, along each axis
 
 layout(binding = 0) uniform sampler2D u_irradiance;
 layout(binding = 1) uniform sampler2D u_radiance;  // a: the sky's share
 layout(binding = 2) uniform sampler2D u_albedo;    // a: the sky's share of u_irradiance; 0: no skin
 layout(binding = 3) uniform sampler2D u_open;
 layout(binding = 4) uniform sampler2D u_depth;
-layout(location = 0) uniform float u_range;        // metres of depth that still mix
+layout(location = 0) uniform float u_range;        // largest depth difference that mixes, metres
 
 layout(location = 0) out vec4 f_irradiance;
 layout(location = 1) out vec4 f_radiance;

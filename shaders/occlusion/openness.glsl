@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/math.glsl"
 
-// What ambient occlusion leaves of the light of the sky.
+// How much of the sky's light ambient occlusion leaves.
 //
-// SCALE  1 or 2: pixels of the scene to one of the occlusion's, along each axis
+// SCALE  1 or 2: scene pixels per occlusion pixel, along each axis
 
-// The nearest four values, those of other surfaces left out.
-// `range`: metres of depth that still mix.
+// Openness at a scene pixel of depth `metres`, [0, 1]: bilinear over the nearest four values,
+// without those of other surfaces. `range`: largest depth difference that mixes, metres.
 float openAt(sampler2D open, sampler2D depths, ivec2 pixel, float metres, float range) {
 #if SCALE == 1
   return texelFetch(open, pixel, 0).r;
@@ -31,8 +31,8 @@ float openAt(sampler2D open, sampler2D depths, ivec2 pixel, float metres, float 
 #endif
 }
 
-// What light that bounces between the sides of a fold gives back, by albedo (Jimenez 2016): folds
-// in skin are red, not grey.
+// Openness, [0, 1] per channel, including the light that bounces between the sides of a fold, by
+// albedo (Jimenez, Wu, Pesce and Jarabo 2016). It makes folds in skin red and not grey.
 vec3 withBounces(float open, vec3 albedo) {
   vec3 a = 2.0404 * albedo - 0.3324;
   vec3 b = -4.7951 * albedo + 0.6417;
@@ -40,8 +40,8 @@ vec3 withBounces(float open, vec3 albedo) {
   return max(vec3(open), ((open * a + b) * open + c) * open);
 }
 
-// Share of the sky's diffuse light that skin sends back.
+// Share of the sky's diffuse light that skin reflects, [0, 1] per channel.
 vec3 openForDiffuse(float open) {
-  const vec3 skin = vec3(0.55, 0.33, 0.25);  // a mean of light skin
+  const vec3 skin = vec3(0.55, 0.33, 0.25);  // mean albedo of light skin
   return withBounces(open, skin);
 }

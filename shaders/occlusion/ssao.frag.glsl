@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "occlusion/occlusion.glsl"
 
-// Screen-space ambient occlusion (Mittring 2007), as the thesis used it: the share of points in a
-// sphere around the surface that lie behind what the camera sees. Half of them do on a flat
-// surface, which counts as open; normals play no part.
+// Screen-space ambient occlusion (Mittring 2007) as in the thesis: the share of points in a sphere
+// around the surface that the camera sees in front of other surfaces. On a flat surface half of the
+// points are hidden, which counts as open. Normals are not used.
 
-// The k-th of SAMPLES points spread evenly in the unit ball.
+// The k-th of SAMPLES points, distributed evenly in the unit ball. `turn`: rotation, [0, 1).
 vec3 ballPoint(int k, float turn) {
   float z = 1.0 - 2.0 * (float(k) + 0.5) / float(SAMPLES);
   float angle = 2.39996323 * float(k) + 2.0 * PI * turn;
@@ -24,7 +24,7 @@ void main() {
     vec3 point = centre + u_reach.x * ballPoint(k, noise);
     vec2 at = u_lens.yz + point.xy / -point.z * u_lens.x;
     float surface = depthAt(at);
-    // What is nearer than the whole sphere is not what shades this point.
+    // A surface nearer to the camera than the whole sphere does not occlude this point.
     bool apart = surface < -point.z - 2.0 * u_reach.x;
     visible += surface >= -point.z || apart ? 1.0 : 0.0;
   }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/texel.glsl"
 
-// Light that a lens spreads: what is brighter than a threshold, a quarter as large, blurred along
-// x, then along y.
+// Bloom: keeps light above a threshold at a quarter of the picture's width and height, then blurs
+// it along x and along y.
 //
-// BRIGHT  1: takes what is bright and shrinks it; 0: one of the two blurs
+// BRIGHT  1: extract bright light and shrink it; 0: one of the two blurs
 
 layout(binding = 0) uniform sampler2D u_light;
-layout(location = 0) uniform vec4 u_look;  // BRIGHT: x: threshold, y: exposure
-                                           // else: x, y: the axis, z: standard deviation in pixels
+layout(location = 0) uniform vec4 u_look;  // BRIGHT: x: threshold, y: exposure; else x, y: the
+                                           // axis, z: standard deviation in pixels
 layout(location = 0) out vec4 f_light;
 
 void main() {
@@ -17,7 +17,8 @@ void main() {
 #if BRIGHT
   for (int i = 0; i < 16; ++i) {
     vec3 light = u_look.y * texelInside(u_light, 4 * pixel + ivec2(i & 3, i >> 2)).rgb;
-    // The colour stays: light is scaled by how far its strongest channel is above the threshold.
+    // Scales the light by how far its strongest channel exceeds the threshold, which keeps the
+    // colour.
     float peak = max(max(light.r, light.g), max(light.b, 1e-6));
     sum += light * (max(peak - u_look.x, 0.0) / peak);
   }

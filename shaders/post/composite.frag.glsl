@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "post/tonemap.glsl"
 
-// SAMPLES   of what is shown, at least 1; they are averaged in linear light
-// SHOW      0: data in [0, 1], stays as it is; 1: a colour in [0, 1], gets sRGB's curve; 2: light,
-//           gets exposure and tone map as well
-// BLOOM     1: light that bright parts spread is added
-// TONE_MAP  0: Khronos PBR Neutral, 1: cut at 1
+// Converts linear light, colours or data to the 8-bit picture.
+//
+// SAMPLES   samples per pixel of u_shown, at least 1, averaged in linear light
+// SHOW      0: data in [0, 1], unchanged; 1: colour in [0, 1], gets the sRGB curve; 2: light, gets
+//           exposure, tone map and the sRGB curve
+// BLOOM     1: add bloom
+// TONE_MAP  0: Khronos PBR Neutral, 1: clip at 1
 
 #if SAMPLES > 1
 layout(binding = 0) uniform sampler2DMS u_shown;   // linear
@@ -22,6 +24,7 @@ layout(location = 2) uniform float u_bloom_strength;
 
 layout(location = 0) out vec4 f_colour;            // rgb: display-referred, a: its luma
 
+// The display-referred colour, [0, 1], of a linear `colour` at `place` (UV).
 vec3 displayColour(vec3 colour, vec2 place) {
 #if SHOW == 2
   colour *= u_exposure;
@@ -40,7 +43,7 @@ vec3 displayColour(vec3 colour, vec2 place) {
 }
 
 void main() {
-  // Upside down: the rows of a picture start at the top, those of a read-back at the bottom.
+  // Flips the picture: its rows start at the top, but a read-back starts at the bottom.
   ivec2 pixel = ivec2(gl_FragCoord.x, u_height - 1 - int(gl_FragCoord.y));
   vec3 sum = vec3(0.0);
   for (int i = 0; i < SAMPLES; ++i) sum += texelFetch(u_shown, pixel, i).rgb;

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/texel.glsl"
 
-// Fast approximate anti-aliasing (Lottes 2009, the short form): where luma jumps, the picture is
-// averaged along the edge.
+// Fast approximate anti-aliasing (Lottes 2009, short form). Averages the picture along edges in
+// luma.
 
 layout(binding = 0) uniform sampler2D u_picture;  // rgb: display-referred, a: luma; linear filter
 
 layout(location = 0) out vec4 f_colour;
 
+// The picture at `pixel` (centres at halves), clamped to the border.
 vec4 at(vec2 pixel) {
   vec2 size = vec2(textureSize(u_picture, 0));
   return textureLod(u_picture, clamp(pixel, vec2(0.5), size - 0.5) / size, 0.0);
 }
 
-// The picture along the edge that the four corners' lumas show.
+// Averages along the edge that the lumas of the four corner pixels indicate. `low`, `high`: range
+// of the neighbourhood's lumas.
 vec4 smoothed(float nw, float ne, float sw, float se, float low, float high) {
   vec2 pixel = gl_FragCoord.xy;
   vec2 along = vec2((sw + se) - (nw + ne), (nw + sw) - (ne + se));
@@ -24,6 +26,7 @@ vec4 smoothed(float nw, float ne, float sw, float se, float low, float high) {
   return wide.a < low || wide.a > high ? narrow : wide;
 }
 
+// Luma of a neighbouring pixel.
 float lumaBeside(ivec2 offset) {
   return texelInside(u_picture, ivec2(gl_FragCoord.xy) + offset).a;
 }
@@ -38,7 +41,7 @@ void main() {
   float low = min(m, min(min(nw, ne), min(sw, se)));
   float high = max(m, max(max(nw, ne), max(sw, se)));
   f_colour = centre;
-  // A loop and no branch: groups of pixels without an edge leave it at once.
+  // A loop instead of a branch: groups of pixels without an edge skip it.
   int edges = high - low < max(0.03, 0.1 * high) ? 0 : 1;
   for (int i = 0; i < edges; ++i) f_colour = smoothed(nw, ne, sw, se, low, high);
 }

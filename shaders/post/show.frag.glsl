@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Turns what a pass left in its target into something to look at.
+// Makes the target of a pass visible.
 //
-// SHOWN  0: the colour as it is, nearest texel; 1: metres as grey, white is near; 2: the red channel
-//        as grey; 3: white; 4: depths of [0, 1] as grey, white is near, in the middle of the picture
+// SHOWN  0: colour, unchanged, nearest texel; 1: metres as grey, near is white; 2: the red channel as
+//        grey; 3: white; 4: depths in [0, 1] as grey, near is white, centred vertically
 
 layout(binding = 0) uniform sampler2D u_target;
-layout(location = 0) uniform vec4 u_look;  // x: pixels of the picture to one texel, y: metres that
-                                           // are white, z: metres that are black, w: pixels of the
-                                           // picture from its bottom to its top
+layout(location = 0) uniform vec4 u_look;  // x: picture pixels per texel, y: metres that are white,
+                                           // z: metres that are black, w: height of the picture in
+                                           // pixels
 layout(location = 0) out vec4 f_colour;
 
 void main() {

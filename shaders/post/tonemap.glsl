@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Khronos PBR Neutral (2024) without its toe, which takes away the 4% that a dielectric reflects
-// from everywhere: our specular has no such constant part. Colours below 0.76 stay as they are,
+// Khronos PBR Neutral (2024) without its toe. The toe subtracts the 4% that a dielectric reflects
+// everywhere, and our specular term has no such constant part. Colours below 0.76 stay unchanged;
 // highlights are compressed and desaturated. Linear in, linear [0, 1] out.
 vec3 tonemapNeutral(vec3 colour) {
   const float startCompression = 0.76;
@@ -14,7 +14,7 @@ vec3 tonemapNeutral(vec3 colour) {
   return peak < startCompression ? colour : compressed;
 }
 
-// Linear [0, 1] to sRGB's transfer curve (IEC 61966-2-1).
+// Converts linear [0, 1] to the sRGB transfer curve (IEC 61966-2-1).
 vec3 linearToSrgb(vec3 colour) {
   vec3 low = colour * 12.92;
   vec3 high = 1.055 * pow(max(colour, vec3(0.0)), vec3(1.0 / 2.4)) - 0.055;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/displacement.glsl"
 
-// How finely a triangle is divided: by the length of its edges on the screen, whichever camera or
-// lamp it is drawn for, and not at all where nothing is raised.
+// Chooses how finely a triangle is divided: by the length of its edges in the camera's picture, for
+// camera and lamps alike. Triangles without displacement are not divided.
 
 layout(vertices = 3) out;
 
-const float RAISED = 1.0 / 255.0;  // sum of coefficients from which on a place counts
-const float AROUND = 2.0;          // mip of the masks: what lies between the places looked at
+const float RAISED = 1.0 / 255.0;  // smallest sum of coefficients that counts as displaced
+const float AROUND = 2.0;          // mip of the masks that covers the area between the sampled
+                                   // points
 
 layout(location = 0) in vec3 v_position[];
 layout(location = 1) in vec3 v_normal[];
@@ -26,9 +27,10 @@ layout(location = 1) out vec3 c_normal[];
 layout(location = 2) out vec4 c_tangent[];
 layout(location = 3) out vec2 c_uv[];
 layout(location = 4) out float c_share[];
-layout(location = 5) out Place c_start[];   // the edge from this corner to the next, its owner's
+layout(location = 5) out Place c_start[];   // owner of the edge from this corner to the next: its
+                                            // start
 layout(location = 8) out Place c_end[];
-layout(location = 11) out Place c_corner[];  // this corner's owner's
+layout(location = 11) out Place c_corner[];  // owner of this corner
 layout(location = 14) out float c_level[];   // of the edge from this corner to the next
 #if CROWD
 layout(location = 15) out uint c_subject[];
@@ -37,9 +39,10 @@ layout(location = 15) out uint c_subject[];
 layout(location = 16) out vec4 c_dynamic_masks[][MAP_SLOTS];
 #endif
 
+// A vertex of the patch as a Place.
 Place placeOf(int vertex) { return Place(v_position[vertex], v_normal[vertex], v_uv[vertex]); }
 
-// Whether some map is at work about a place.
+// Returns true if any wrinkle map is active around `uv`.
 bool isRaised(vec2 uv, vec4 dynamicMasks[MAP_SLOTS]) {
   vec4 masks[MASK_LAYERS];
   masksAt(uv, AROUND, masks);
@@ -48,7 +51,8 @@ bool isRaised(vec2 uv, vec4 dynamicMasks[MAP_SLOTS]) {
   return sum > RAISED;
 }
 
-// The same from both sides: symmetric in start and end.
+// Tessellation level of an edge, [1, largest level]. Symmetric in start and end, so that both
+// neighbours agree.
 float edgeLevel(Place start, Place end) {
   vec3 middle = 0.5 * (start.position + end.position);
   float away = max(distance(middle, u_camera_position.xyz), 1e-4);
@@ -87,7 +91,7 @@ void main() {
   c_level[gl_InvocationID] = raised ? edgeLevel(start, end) : 1.0;
   barrier();
   if (corner != 0) return;
-  // OpenGL numbers edges by the corner that they lie across from.
+  // OpenGL numbers an edge by the opposite corner.
   gl_TessLevelOuter[0] = c_level[1];
   gl_TessLevelOuter[1] = c_level[2];
   gl_TessLevelOuter[2] = c_level[0];

@@ -2,16 +2,17 @@
 #include "scene/displacement.glsl"
 #include "shadow/shadow_view.glsl"
 
-// Moves the surface along its normal by the heights of the maps at work. Normal and tangent stay
-// those of the surface at rest: the derivative maps, which are these heights' slopes, turn the
-// normal from there, and would do it twice on a normal of the moved surface.
+// Moves the surface along its normal by the heights of the active wrinkle maps. The normal and
+// tangent stay those of the undisplaced surface: the derivative maps are the slopes of the same
+// heights and already tilt that normal.
 //
-// SHADOW  1: as the lamp u_light sees it
+// SHADOW  1: draw as lamp u_light sees it
 
 layout(triangles, fractional_odd_spacing, ccw) in;
 
 layout(binding = 12) uniform sampler2DArray u_wrinkle_heights;  // red: millimetres
-layout(location = 1) uniform float u_height_texel;              // metres of the surface
+layout(location = 1) uniform float u_height_texel;              // size of a texel on the surface,
+                                                                // metres
 
 layout(location = 0) in vec3 c_position[];
 layout(location = 1) in vec3 c_normal[];
@@ -43,7 +44,7 @@ layout(location = 6) out vec4 v_dynamic_masks[MAP_SLOTS];
 #endif
 layout(location = 3) out vec2 v_uv;
 
-// Millimetres over the surface. `lod`: of the heights.
+// Height above the surface in millimetres. `lod`: mip level of the heights.
 float heightAt(vec2 uv, vec4 dynamicMasks[MAP_SLOTS], float lod) {
   vec4 masks[MASK_LAYERS];
   masksAt(uv, 0.0, masks);
@@ -57,7 +58,8 @@ float heightAt(vec2 uv, vec4 dynamicMasks[MAP_SLOTS], float lod) {
   return sum;
 }
 
-// Where the surface at rest is, as every patch that has this point computes it.
+// The point of the undisplaced surface. Every patch that shares the point computes it with the same
+// operations.
 Place placeHere(vec3 at) {
   precise Place place;
   place.position = at.x * c_position[0] + at.y * c_position[1] + at.z * c_position[2];
@@ -74,8 +76,8 @@ Place placeHere(vec3 at) {
   return place;
 }
 
-// The mip whose texels are as far apart as vertices are. Of the place alone, not of the patch's
-// levels: the same from every side.
+// The mip level with texels as large as the distance between vertices. It depends on the position
+// only, not on the patch's levels, so that all neighbours agree.
 float lodAt(vec3 position) {
   float apart = u_displacement.z * distance(position, u_camera_position.xyz) / u_displacement.y;
   return max(log2(apart / u_height_texel), 0.0);

@@ -3,9 +3,10 @@
 #include "wrinkles/masks.glsl"
 #include "common/math.glsl"
 
-// A patch's corner on its way from control to evaluation. Edges and corners have owners, whose
-// place, normal and UV all patches take that meet there (render/mesh/displacement_patches.h): what is
-// computed of them in the same order is the same to the bit, so nothing gapes.
+// A corner or edge end of a patch, passed from tessellation control to evaluation. Edges and
+// corners have owners, and all adjacent patches use the owner's position, normal and UV
+// (render/mesh/displacement_patches.h). Equal inputs and an equal order of operations give
+// bit-identical results, so the surface has no cracks.
 
 struct Place {
   vec3 position;
@@ -13,7 +14,7 @@ struct Place {
   vec2 uv;
 };
 
-// Masks at a place. `lod`: 0, or above where a whole neighbourhood is asked for.
+// Samples all masks at `uv`. `lod`: 0, or higher to cover a neighbourhood.
 void masksAt(vec2 uv, float lod, out vec4 masks[MASK_LAYERS]) {
   for (int layer = 0; layer < MASK_LAYERS; ++layer) {
 #if WRINKLE_TEXTURE

@@ -3,19 +3,19 @@
 #include "common/frame.glsl"
 #include "scene/surface_frag.glsl"
 
-// The facet of a fragment, from the material's textures and the wrinkles at work.
+// Builds the facet of a fragment from the material's textures and the active wrinkles.
 //
 // MATERIAL       MATERIAL_SKIN, _CLOTH, _EYE, _HAIR or _OTHER
-// WIDEN          1: gloss is wider where the pixel covers many slopes
+// WIDEN          1: m grows by the variance of the slopes within the pixel
 // WRINKLE_LOOKS  1: some wrinkle map has a colour or a cavity
-// COMPOSED_LOOKS 1: the base colour has some already, and their cavity in its alpha
-// HAS_THICKNESS  1: the material has a texture of its flesh's thickness
+// COMPOSED_LOOKS 1: the base colour already includes them, with the cavity in its alpha
+// HAS_THICKNESS  1: the material has a thickness texture
 
 #if HAS_THICKNESS
 layout(binding = 11) uniform sampler2D u_thickness_map;  // green, as in glTF
 #endif
 
-// Metres of flesh that light meets at least, wherever it comes from.
+// Smallest thickness of flesh that light passes through from any direction, metres.
 float thickness() {
 #if HAS_THICKNESS
   return u_thickness * texture(u_thickness_map, v_uv).g;
@@ -24,11 +24,12 @@ float thickness() {
 #endif
 }
 
-// 1 / radius of the surface, per millimetre.
+// Curvature of the surface, 1 / radius, per millimetre. `normal`: unit, model space.
 float curvatureOf(vec3 normal) {
   return length(fwidth(normal)) / max(1000.0 * length(fwidth(v_position)), 1e-6);
 }
 
+// The facet of this fragment. Discards the fragment where its texture is cut out.
 Facet facetHere() {
   vec4 masks[MASK_LAYERS];
   vec4 dynamicMasks[MAP_SLOTS];
@@ -43,7 +44,7 @@ Facet facetHere() {
   float rough = roughness();
   facet.m = u_gloss.y * rough * rough;
 #if WIDEN
-  facet.m = sqrt(facet.m * facet.m + 2.0 * variance);  // Beckmann's m^2 is twice the slopes' variance
+  facet.m = sqrt(facet.m * facet.m + 2.0 * variance);  // Beckmann's m^2 is twice the variance
 #endif
   facet.m = clamp(facet.m, SMALLEST_M, 1.0);
   facet.curvature = curvatureOf(facet.geometric);
@@ -58,5 +59,5 @@ Facet facetHere() {
   return facet;
 }
 
-// Metres of a point along the camera's axis.
+// Depth of a point (model space) along the camera's axis, metres.
 float depthOf(vec3 position) { return dot(position - u_camera_position.xyz, u_camera_forward.xyz); }

@@ -6,11 +6,11 @@ struct Surface {
   vec3 albedo;      // linear, [0, 1]
   vec3 normal;      // unit, model space
   float exponent;   // of the Blinn-Phong lobe, >= 1
-  float specular;   // scales the lobe; reflectance F0 is folded in
+  float specular;   // scale of the lobe, including the reflectance F0
 };
 
-// Blinn-Phong, normalised so that a wider lobe is dimmer: (n + 8) / 8 over pi, pi being in the
-// lights' units; with Schlick's Fresnel, scaled so that it is 1 face on.
+// Blinn-Phong lobe, normalised so that a wider lobe is dimmer: (n + 8) / 8 over pi, where pi is
+// part of the lights' units. Includes Schlick's Fresnel term, scaled to 1 at normal incidence.
 float specularLobe(Surface surface, vec3 toLight, vec3 toCamera) {
   vec3 h = normalizeOrZero(toLight + toCamera);
   float fresnel = 1.0 + 24.0 * pow5(1.0 - saturate(dot(h, toCamera)));
@@ -18,8 +18,8 @@ float specularLobe(Surface surface, vec3 toLight, vec3 toCamera) {
   return surface.specular * fresnel * (surface.exponent + 8.0) * 0.125 * lobe;
 }
 
-// Light that leaves the surface at `position` towards the camera, nothing being in its way. Linear
-// radiance.
+// Unshadowed light that leaves the surface at `position` towards the camera (`toCamera`: unit).
+// Model space; linear radiance.
 vec3 shade(Surface surface, vec3 position, vec3 toCamera) {
   vec3 diffuse = skyIrradiance(surface.normal);
   vec3 specular = vec3(0.0);

@@ -4,8 +4,8 @@
 #include "wrinkles/wrinkles_vert.glsl"
 #endif
 
-// Poses a mesh for several subjects, one an instance. Nothing is drawn: what it writes is captured,
-// for every pass that draws the mesh (render/scene/posed_meshes.h).
+// Poses a mesh for several subjects, one per instance. It draws nothing: transform feedback
+// captures the output for every pass that draws the mesh (render/scene/posed_meshes.h).
 
 // Mirrors character::Vertex. Model space, rest pose, metres.
 layout(location = 0) in vec3 a_position;
@@ -15,12 +15,12 @@ layout(location = 3) in vec2 a_uv;
 layout(location = 4) in uvec4 a_joints;
 layout(location = 5) in vec4 a_skin_weights;
 #if DISPLACED
-layout(location = 6) in float a_share;  // of the heights: 0 on the mesh's border
+layout(location = 6) in float a_share;  // share of the heights; 0 on the mesh's border
 #endif
 layout(location = 7) in uint a_subject;
 
 layout(xfb_buffer = 0, xfb_stride = 52 + 4 * DISPLACED + 16 * WRINKLE_DYNAMIC * MAP_SLOTS) out;
-layout(location = 0, xfb_offset = 0) out vec3 p_position;  // the picture's space
+layout(location = 0, xfb_offset = 0) out vec3 p_position;  // model space of the picture
 layout(location = 1, xfb_offset = 12) out vec3 p_normal;
 layout(location = 2, xfb_offset = 24) out vec4 p_tangent;
 layout(location = 3, xfb_offset = 40) out vec2 p_uv;

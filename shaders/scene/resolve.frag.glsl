@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skin/scatter.glsl"
 
-// The scene's samples made one a pixel, so that edges stay smooth and nothing of skin mixes with
-// what is not: light on skin is the mean of the samples on skin alone, and its albedo, the sum of
-// theirs over all, says how much of the pixel they are. Where no skin is, the albedo is the rest's.
+// Resolves the scene's samples to one per pixel. Edges stay smooth, and light on skin does not mix
+// with other light: the light on skin is the mean over the skin samples only, and its albedo,
+// summed over these samples and divided by all, says how much of the pixel they cover. Without skin
+// samples the albedo is that of the other samples.
 //
-// SAMPLES  of the scene's targets, at least 2
+// SAMPLES  samples per pixel of the scene's targets, at least 2
 
 layout(binding = 0) uniform sampler2DMS u_irradiance;
 layout(binding = 1) uniform sampler2DMS u_radiance;
@@ -26,7 +27,6 @@ void main() {
   vec4 albedo = vec4(0.0);
   vec3 rest = vec3(0.0);
   vec4 normal = vec4(0.0);
-  float skyShare = 0.0;
   float skin = 0.0;
   float depth = 1e9;
   for (int i = 0; i < SAMPLES; ++i) {
@@ -40,7 +40,7 @@ void main() {
     } else {
       rest += colour.rgb;
     }
-    // The nearest sample stands for the pixel: a mean would lie on no surface.
+    // Keep the nearest sample: a mean depth would lie on no surface.
     float metres = texelFetch(u_depth, pixel, i).r;
     if (metres < depth) {
       depth = metres;

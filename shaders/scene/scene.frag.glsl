@@ -2,17 +2,19 @@
 #include "scene/lighting.glsl"
 #include "scene/surface_frag.glsl"
 
-// One row a mask layer's channel: the colour of its region in the view `mask_texture`.
+// Per channel of each mask layer: the colour of its region in the view `mask_texture`.
 layout(std430, binding = 2) readonly buffer MaskPalette { vec4 u_mask_palette[]; };
 
 layout(location = 0) out vec4 f_colour;  // linear; a: 1
 
-// Beckmann's roughness squared to a Blinn-Phong exponent: n = 2 / alpha^2 - 2, alpha = roughness^2.
+// Converts roughness to a Blinn-Phong exponent, at least 1: n = 2 / alpha^2 - 2, alpha =
+// roughness^2.
 float exponentOf(float rough) {
   float alpha = max(rough * rough, 0.04);
   return max(2.0 / (alpha * alpha) - 2.0, 1.0);
 }
 
+// Mixes the regions' colours by their masks.
 vec3 maskColour(vec4 masks[MASK_LAYERS]) {
   vec3 colour = vec3(0.0);
   for (int layer = 0; layer < MASK_LAYERS; ++layer) {
@@ -24,7 +26,8 @@ vec3 maskColour(vec4 masks[MASK_LAYERS]) {
 }
 
 #if VIEW == VIEW_WIREFRAME
-// 1 on an edge, 0 away from it; lines about a pixel wide whatever the triangle's size.
+// 1 on an edge of the triangle, 0 away from it. Lines are about one pixel wide at any triangle
+// size.
 float edge() {
   vec3 width = fwidth(v_barycentric);
   vec3 near = smoothstep(vec3(0.0), 0.9 * width, v_barycentric);

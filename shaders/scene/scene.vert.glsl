@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/frame.glsl"
 
-// A vertex as scene/pose.vert.glsl left it: skinned, where its subject stands.
+// A vertex as scene/pose.vert.glsl wrote it: skinned and placed.
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
 layout(location = 2) in vec4 a_tangent;
@@ -39,7 +39,7 @@ void main() {
   v_tangent = a_tangent;
   v_uv = a_uv;
 #if VIEW == VIEW_WIREFRAME
-  // Drawn without an index buffer: three vertices of its own to every triangle.
+  // This mesh is drawn without an index buffer, so each triangle has three vertices of its own.
   v_barycentric = vec3(0.0);
   v_barycentric[gl_VertexID % 3] = 1.0;
 #endif

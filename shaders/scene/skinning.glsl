@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// NUM_JOINTS  of the character's skeleton
+// NUM_JOINTS  joints of the character's skeleton
 
-// Rows of the joints' skinning matrices (placement * model * inverse_bind), three a joint: an affine
-// 3x4 each; subject after subject.
+// Skinning matrices (placement * model * inverse_bind) of the joints, subject after subject. Each
+// is an affine 3x4 matrix in three rows.
 layout(std430, binding = 0) readonly buffer Joints { vec4 u_joint_rows[]; };
 
 struct SkinMatrix {
@@ -24,12 +24,14 @@ SkinMatrix blendJoints(uint subject, uvec4 joints, vec4 skinWeights) {
   return m;
 }
 
+// Transforms a point from the rest pose to the picture's model space, metres.
 vec3 skinPoint(SkinMatrix m, vec3 p) {
   vec4 point = vec4(p, 1.0);
   return vec3(dot(m.row0, point), dot(m.row1, point), dot(m.row2, point));
 }
 
-// Directions turn with the matrix itself, which holds for rotation and uniform scale. Not unit.
+// Transforms a direction with the matrix itself, which is correct for rotation and uniform scale.
+// The result is not unit.
 vec3 skinDirection(SkinMatrix m, vec3 d) {
   return vec3(dot(m.row0.xyz, d), dot(m.row1.xyz, d), dot(m.row2.xyz, d));
 }

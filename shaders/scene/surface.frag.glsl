@@ -2,9 +2,10 @@
 #include "scene/facet_frag.glsl"
 #include "scene/stored_facet.glsl"
 
-// The scene pass of the skin pipeline where it has one sample a pixel: the facets alone, which
-// skin/light.frag.glsl lights afterwards. Triangles are often smaller than the squares of pixels that a
-// device shades at once, and hair lies in layers; this way light falls once on every pixel.
+// The skin pipeline's scene pass with one sample per pixel. It stores facets, and
+// skin/light.frag.glsl lights them afterwards, once per pixel. Triangles are often smaller than the
+// blocks of pixels that a device shades at once, and hair has many layers, so lighting every
+// fragment would be wasteful.
 
 layout(location = 0) out vec4 f_colour;     // see scene/stored_facet.glsl
 layout(location = 1) out vec4 f_normal;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// ALPHA_TEST  1: holes of the base colour's alpha let light through
+// ALPHA_TEST  1: light passes through where the base colour's alpha is below the cut-off
 
 layout(location = 3) in vec2 v_uv;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shadow/shadow_view.glsl"
 
-// A vertex as scene/pose.vert.glsl left it.
+// A vertex as scene/pose.vert.glsl wrote it.
 layout(location = 0) in vec3 a_position;
 layout(location = 3) in vec2 a_uv;
 

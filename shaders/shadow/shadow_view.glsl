@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/frame.glsl"
 
-// Where a lamp sees a point of model space. Depth is linear in metres for perspective lamps as
-// well: z is multiplied by the w that will divide it. It is exact at the vertices, and triangles are
-// small.
+// Clip-space position of a model-space point as a lamp sees it. Depth is linear in metres for
+// perspective lamps too: z is premultiplied by the w that it will be divided by. This is exact at
+// vertices, and triangles are small.
 vec4 shadowPosition(Light light, vec3 position) {
   vec3 p = (light.shadow_view * vec4(position, 1.0)).xyz;
   float w = light.shadow.w > 0.5 ? -p.z : 1.0;

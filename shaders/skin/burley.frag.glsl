@@ -3,8 +3,8 @@
 #include "skin/scatter.glsl"
 #include "common/texel.glsl"
 
-// Burley's normalised diffusion by one disc of taps (render/skin/subsurface_kernel.h: BurleyDisc), turned
-// by a different angle at every pixel.
+// Burley's normalised diffusion with one disc of taps (BurleyDisc() of
+// render/skin/subsurface_kernel.h), rotated by a different angle at every pixel.
 
 const int MAX_TAPS = 64;
 
@@ -22,7 +22,7 @@ void main() {
   vec4 centre = texelFetch(u_irradiance, pixel, 0);
   bool skin = isSkin(centre);
   float scale = u_geometry.z * u_geometry.x / (u_geometry.x + centre.a);
-  // From the picture's middle, so that its format changes nothing.
+  // Measured from the picture's centre, so that the noise does not depend on the picture's size.
   vec2 place = vec2(pixel - textureSize(u_irradiance, 0) / 2);
   float noise = fract(52.9829189 * fract(dot(place, vec2(0.06711056, 0.00583715))));
   float c = cos(2.0 * PI * noise);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// What scattered and what did not, put together: linear radiance.
+// Adds the scattered light, times albedo, to the light that did not scatter. Linear radiance.
 
 layout(binding = 0) uniform sampler2D u_scattered;
 layout(binding = 1) uniform sampler2D u_radiance;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// How light spreads in skin: six Gaussians (d'Eon and Luebke, GPU Gems 3, chapter 14). Each channel's
-// weights sum to 1. Mirrors HumanSkin() of render/skin/skin_profile.h.
+// The diffusion profile of skin: six Gaussians (d'Eon and Luebke, GPU Gems 3, chapter 14). The
+// weights of each channel sum to 1. Mirrors HumanSkin() of render/skin/skin_profile.h.
 
 const int NUM_GAUSSIANS = 6;
 const float GAUSSIAN_VARIANCE[NUM_GAUSSIANS] =
@@ -10,11 +10,12 @@ const vec3 GAUSSIAN_WEIGHT[NUM_GAUSSIANS] =
     vec3[](vec3(0.233, 0.455, 0.649), vec3(0.100, 0.336, 0.344), vec3(0.118, 0.198, 0.0),
            vec3(0.113, 0.007, 0.007), vec3(0.358, 0.004, 0.0), vec3(0.078, 0.0, 0.0));
 
-// Share of light that gets through `mm` millimetres (Jimenez 2010): sum of w exp(-s^2 / v). GPU Gems
-// has 2 v there; this is the shorter one.
+// Share of light that passes through `mm` millimetres of skin, [0, 1] (Jimenez 2010): sum of w
+// exp(-s^2 / v). GPU Gems 3 has 2 v here, which passes more light.
 vec3 transmittance(float mm) {
   vec3 sum = vec3(0.0);
-  // Nothing that 16 bits could hold comes through a centimetre; most of a subject is thicker.
+  // 16 bits cannot represent what passes through more than a centimetre, and most of a subject is
+  // thicker.
   int terms = mm < 12.0 ? NUM_GAUSSIANS : 0;
   for (int i = 0; i < terms; ++i) {
     sum += GAUSSIAN_WEIGHT[i] * exp(-mm * mm / GAUSSIAN_VARIANCE[i]);

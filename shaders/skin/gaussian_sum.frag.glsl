@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skin/diffusion.glsl"
 
-// The thesis' scattering: six blurs of the light on skin, each wider than the last, weighed by the
-// profile.
+// The thesis' scattering: the sum of six increasingly wide blurs of the light on skin, weighted by
+// the profile.
 
 layout(binding = 0) uniform sampler2D u_unscattered;
 layout(binding = 1) uniform sampler2D u_blur0;

@@ -4,11 +4,12 @@
 #include "skin/skin_light.glsl"
 #include "scene/stored_facet.glsl"
 
-// Light on what scene/surface.frag.glsl left, drawn only where there is a surface, the sky's as far as ambient occlusion leaves any.
+// Lights the facets that scene/surface.frag.glsl stored. Runs only on pixels with a surface.
+// Ambient occlusion reduces the sky's light.
 //
-// OCCLUSION  1: u_open is there
+// OCCLUSION  1: u_open is bound
 
-layout(binding = 0) uniform sampler2D u_colour;     // of struct StoredFacet
+layout(binding = 0) uniform sampler2D u_colour;     // see struct StoredFacet
 layout(binding = 1) uniform sampler2D u_normal;
 layout(binding = 2) uniform sampler2D u_geometric;
 layout(binding = 3) uniform sampler2D u_matter;
@@ -16,12 +17,13 @@ layout(binding = 4) uniform sampler2D u_depth;      // metres along the camera's
 #if OCCLUSION
 layout(binding = 10) uniform sampler2D u_open;
 #endif
-layout(location = 4) uniform float u_range;         // metres of depth that still mix
+layout(location = 4) uniform float u_range;         // largest depth difference that mixes, metres
 
-layout(location = 0) out vec4 f_irradiance;  // of struct Leaving
+layout(location = 0) out vec4 f_irradiance;  // see struct Leaving
 layout(location = 1) out vec4 f_radiance;
 layout(location = 2) out vec4 f_albedo;
 
+// The stored facet of a pixel at depth `metres`, model space.
 Facet facetAt(ivec2 pixel, float metres) {
   vec3 inView = viewPosition(vec2(pixel) + 0.5, metres);
   StoredFacet stored =

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// What the kinds of material are made of. `kind`: MATERIAL_SKIN, _CLOTH, _EYE, _HAIR or _OTHER.
+// Optical properties of the kinds of material. `kind`: MATERIAL_SKIN, _CLOTH, _EYE, _HAIR or
+// _OTHER.
 
-// Reflectance face on: skin's oil, fibres, the tear film, keratin, plastics.
+// Reflectance at normal incidence: oily skin, fibres, the tear film, keratin, plastics.
 float reflectanceOf(int kind) {
   return kind == MATERIAL_SKIN    ? 0.028
          : kind == MATERIAL_CLOTH ? 0.02
@@ -11,10 +12,10 @@ float reflectanceOf(int kind) {
                                   : 0.04;
 }
 
-// Strength of the fuzz.
+// Strength of the sheen.
 float sheenOf(int kind) { return kind == MATERIAL_CLOTH ? 0.06 : 0.0; }
 
-// For the view `material`.
+// Colour in the view `material`.
 vec3 materialColour(int kind) {
   return kind == MATERIAL_SKIN    ? vec3(1.0, 0.0, 0.0)
          : kind == MATERIAL_CLOTH ? vec3(0.0, 0.0, 1.0)

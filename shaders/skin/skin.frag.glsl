@@ -2,17 +2,17 @@
 #include "scene/facet_frag.glsl"
 #include "skin/skin_light.glsl"
 
-// The scene pass of the skin pipeline where it has several samples a pixel: light on skin apart from
-// all other light, and what the later passes need to know of the surface. With one sample,
-// scene/surface.frag.glsl and skin/light.frag.glsl do the same in two passes.
+// The skin pipeline's scene pass with several samples per pixel. It separates the light on skin
+// from all other light and stores the surface's properties for later passes. With one sample per
+// pixel, scene/surface.frag.glsl and skin/light.frag.glsl do the same in two passes.
 
-layout(location = 0) out vec4 f_irradiance;  // of struct Leaving
-layout(location = 1) out vec4 f_radiance;    // rgb; a: the share of it that comes from the sky
-layout(location = 2) out vec4 f_albedo;      // rgb; a: the share of f_irradiance that comes from
-                                             // the sky
+layout(location = 0) out vec4 f_irradiance;  // see struct Leaving
+layout(location = 1) out vec4 f_radiance;    // rgb; a: the sky's share of it
+layout(location = 2) out vec4 f_albedo;      // rgb; a: the sky's share of f_irradiance
 layout(location = 3) out vec4 f_normal;      // xyz: unit, model space
 layout(location = 4) out float f_depth;      // metres along the camera's axis
 
+// Share of luminance of `part` in `whole`, [0, 1].
 float share(vec3 part, vec3 whole) {
   return saturate(luminance(part) / max(luminance(whole), 1e-6));
 }

@@ -6,29 +6,33 @@
 #include "shadow/shadow.glsl"
 #include "skin/specular.glsl"
 
-// The light of the skin pipeline on a facet, and what of it goes into which target.
+// Lights a facet for the skin pipeline and splits the light into the pipeline's targets.
 //
-// TRANSLUCENCY   1: light goes through thin skin
-// CONSERVE       1: diffuse light is what the specular leaves
-// PREINTEGRATED  1: skin scatters by table, here and now
-// RING_SIZE, MAX_CURVATURE  texels of the table's side; its last row, per mm
-// MATERIALS      1: all materials come through one program; 0: MATERIAL is the only one
-// Where there are several, what is one material's alone stands in a loop that others leave at once.
+// TRANSLUCENCY   1: light passes through thin skin
+// CONSERVE       1: the diffuse light is reduced by the reflected light
+// PREINTEGRATED  1: skin scatters here, by look-up table
+// RING_SIZE      texels per side of that table
+// MAX_CURVATURE  curvature of its last row, per mm
+// MATERIALS      1: one program for all materials; 0: MATERIAL is the only one
+//
+// With MATERIALS, code for a single material is inside a loop, which other materials skip.
 
 #if PREINTEGRATED
-layout(binding = 9) uniform sampler2D u_ring_table;  // render/skin/subsurface_kernel.h: PreintegratedTable
+layout(binding = 9) uniform sampler2D u_ring_table;  // PreintegratedTable() of
+                                                     // render/skin/subsurface_kernel.h
 #endif
 
 struct Lit {
-  vec3 direct;       // diffuse, of lamps
-  vec3 sky;          // diffuse, of the sky
-  vec3 through;      // of lamps, through the subject
-  vec3 specular;     // of lamps
+  vec3 direct;       // diffuse, from lamps
+  vec3 sky;          // diffuse, from the sky
+  vec3 through;      // from lamps, through the subject
+  vec3 specular;     // from lamps
   vec3 skySpecular;
-  vec3 visible;      // of the lamps, one a channel: for the view `shadow`
+  vec3 visible;      // visibility of the lamps, one per channel, for the view `shadow`
 };
 
-// Charlie (Estevez and Kulla 2017) with Neubelt's visibility, times pi: the fuzz of cloth.
+// Sheen of cloth: the Charlie distribution (Estevez and Kulla 2017) with Neubelt's visibility,
+// times pi. Directions are unit.
 float sheen(vec3 normal, vec3 toLight, vec3 toCamera) {
   const float inverse = 1.0 / 0.45;
   vec3 h = normalizeOrZero(toLight + toCamera);
@@ -40,12 +44,12 @@ float sheen(vec3 normal, vec3 toLight, vec3 toCamera) {
   return lobe / (4.0 * max(nl + nv - nl * nv, 1e-3));
 }
 
-// Share of light from `cosine` that the fuzz reflects in all, [0, 1]: a fit to 0.02.
+// Share of light from `cosine` that the sheen reflects in total, [0, 1]; a fit within 0.02.
 float sheenAlbedo(float cosine) { return 0.78 - 0.7 * sqrt(cosine); }
 
-// Share of a lamp's light that a surface of bumps sends on: none hides another by its normal alone,
-// and where light grazes those that face it would blaze, up to a hard edge (Estevez, Lecocq and Stein
-// 2019, "A Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem").
+// Shadowing of bumps, [0, 1] (Estevez, Lecocq and Stein 2019, "A Microfacet-Based Shadowing
+// Function to Solve the Bump Terminator Problem"). Without it, bumps would not shade each other at
+// grazing light, and those that face the light would be overbright up to a hard edge.
 float bumpShadow(Facet facet, vec3 toLight) {
   float bump = saturate(dot(facet.geometric, facet.normal));
   float cosine = saturate(dot(facet.geometric, toLight));
@@ -53,7 +57,7 @@ float bumpShadow(Facet facet, vec3 toLight) {
   return 2.0 / (1.0 + sqrt(1.0 + steep * (1.0 / max(cosine * cosine, 1e-4) - 1.0)));
 }
 
-// Diffuse light of a lamp without its shadow, by table where that scatters.
+// Diffuse light of a lamp without its shadow. Looks up preintegrated scattering on skin.
 vec3 diffuseOf(Facet facet, Arrival arrival, float cosine) {
   vec3 facing = vec3(saturate(cosine));
 #if PREINTEGRATED
@@ -65,14 +69,15 @@ vec3 diffuseOf(Facet facet, Arrival arrival, float cosine) {
   return arrival.radiance * facing;
 }
 
-// What lamp `i` adds.
+// Adds the light of lamp `i`. `toCamera`: unit.
 void addLamp(int i, Facet facet, vec3 toCamera, inout Lit lit) {
   Arrival arrival = arrivalOf(u_lights[i], facet.position);
   float f0 = reflectanceOf(facet.kind);
   float cosine = dot(facet.normal, arrival.toLight);
   float seen = 1.0;
   if (i < SHADOW_LAMPS) {
-    // Skin scatters the noise of turned discs away; elsewhere it would be a screen of dots.
+    // Noise from rotated discs is invisible on skin, which scatters it. Other materials would show
+    // a dot pattern, so their discs are not rotated.
     vec2 turned = facet.kind == MATERIAL_SKIN ? gl_FragCoord.xy : vec2(0.0);
     seen = shadowOf(i, facet.position, facet.geometric, arrival.toLight, turned);
   }
@@ -84,7 +89,7 @@ void addLamp(int i, Facet facet, vec3 toCamera, inout Lit lit) {
 #if CONSERVE
   leaves = 1.0 - saturate(u_gloss.x * specularAlbedo(facing, facet.m, u_gloss.z, f0));
 #endif
-  float through = 1.0;  // what the fuzz lets through to what is under it
+  float through = 1.0;  // share of light that passes the sheen
 #if MATERIALS || MATERIAL == MATERIAL_CLOTH
   int fuzz = facet.kind == MATERIAL_CLOTH ? 1 : 0;
   for (int k = 0; k < fuzz; ++k) {
@@ -98,7 +103,7 @@ void addLamp(int i, Facet facet, vec3 toCamera, inout Lit lit) {
                                 kelemen(facet.normal, arrival.toLight, toCamera, facet.m,
                                         u_gloss.z, f0));
 #if TRANSLUCENCY
-  if (i >= SHADOW_LAMPS) return;  // no map to measure in
+  if (i >= SHADOW_LAMPS) return;  // no shadow map to measure the thickness in
   float behind = saturate(0.3 - dot(facet.geometric, arrival.toLight));
   int sides = behind > 0.0 && facet.kind == MATERIAL_SKIN ? 1 : 0;
   for (int side = 0; side < sides; ++side) {
@@ -109,8 +114,8 @@ void addLamp(int i, Facet facet, vec3 toCamera, inout Lit lit) {
 #endif
 }
 
-// Lamp by lamp and not in a loop: a loop around loops is not unrolled, and what is looked up by its
-// counter is looked up for every pixel by itself.
+// Lights a facet. The lamps are unrolled by hand, because compilers do not unroll a loop around
+// loops, and indexing the lamps by its counter would then be done per pixel.
 Lit lightFacet(Facet facet) {
   Lit lit = Lit(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
   vec3 toCamera = normalize(u_camera_position.xyz - facet.position);
@@ -122,7 +127,7 @@ Lit lightFacet(Facet facet) {
   float reflects = saturate(u_gloss.x * specularAlbedo(nv, facet.m, u_gloss.z, f0));
   float leaves = CONSERVE == 1 ? 1.0 - reflects : 1.0;
   vec3 tint = vec3(facet.open * facet.crease);
-  // Most of what hair sends back went through it: it has hair's colour, and little is white.
+  // Most light from hair has passed through strands. It has the hair's colour, with little white.
   vec3 strand = min(mix(vec3(0.25), 4.0 * facet.colour, 0.75), vec3(1.0));
   tint *= facet.kind == MATERIAL_HAIR ? strand : vec3(1.0);
   lit.direct *= leaves;
@@ -134,12 +139,12 @@ Lit lightFacet(Facet facet) {
 
 struct Leaving {
   vec4 irradiance;  // rgb: light on skin times albedo^mix; a: metres behind the focus, FAR_AWAY
-                    // where there is no skin
+                    // without skin
   vec3 radiance;    // all light that does not scatter
-  vec3 albedo;      // albedo^(1 - mix) of skin; of the rest, where no light scatters, its colour
+  vec3 albedo;      // skin: albedo^(1 - mix); other materials: the base colour
 };
 
-// `metres`: along the camera's axis.
+// Splits the light of a facet into the targets. `metres`: depth along the camera's axis.
 Leaving leavingLight(Facet facet, Lit lit, float metres) {
   vec3 diffuse = lit.direct + lit.sky + lit.through;
   vec3 specular = lit.specular + lit.skySpecular;

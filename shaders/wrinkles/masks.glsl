@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrinkles/wrinkles.glsl"
 
-layout(binding = 2) uniform sampler2DArray u_masks;                // RGBA, one region a channel
+layout(binding = 2) uniform sampler2DArray u_masks;                // RGBA, one region per channel
 
 #if CROWD
-// The same rows of every subject, one after the other.
+// The rows of u_mask_weights for every subject, one subject after another.
 layout(binding = 13) uniform samplerBuffer u_subject_weights;
-uint currentSubject = 0u;  // set first in main
+uint currentSubject = 0u;  // set at the start of main()
 
+// The weights of one mask layer's four regions for one active map: row = slot * MASK_LAYERS +
+// layer.
 vec4 maskWeights(int row) {
   int length = 4 * MAP_SLOTS * MASK_LAYERS;
   return texelFetch(u_subject_weights, int(currentSubject) * length + row);
@@ -16,10 +18,11 @@ vec4 maskWeights(int row) {
 vec4 maskWeights(int row) { return u_mask_weights[row]; }
 #endif
 
-// What the masks make of one active map here: the sum of the texture-masked regions' weight * mask,
-// plus the dynamic mask, [0, 1]. Not below 0; above 1 only where masks overlap. `dynamicMasks`:
-// sums that vertices bring. They are clamped here, so that within a triangle they stay a sum over
-// joints, which can be composed beforehand (render/compose/skinned_masks.h).
+// Coefficient of one active map at this place: the sum of weight * mask over the regions with
+// painted masks, plus the dynamic mask, clamped to [0, 1]. At least 0; above 1 only where masks
+// overlap. `dynamicMasks`: interpolated sums of the vertices. They are clamped here and not per
+// vertex, so that within a triangle they stay a sum over joints, which can be composed in advance
+// (render/compose/skinned_masks.h).
 float wrinkleCoefficient(int slot, vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS]) {
   float sum = 0.0;
 #if WRINKLE_TEXTURE

@@ -7,23 +7,24 @@ layout(binding = 3) uniform sampler2DArray u_wrinkle_derivatives;  // n.xy / n.z
 layout(binding = 10) uniform sampler2DArray u_wrinkle_looks;       // rgb: colour, a: cavity
 #endif
 
-// Derivative in xy, its variance within the pixel in z: a mean of both axes.
+// xy: derivative, z: its variance within the pixel, as the mean of both axes.
 vec3 slopeOf(vec4 moments) {
   vec2 variance = max(moments.ba - moments.rg * moments.rg, vec2(0.0));
   return vec3(moments.rg, 0.5 * (variance.x + variance.y));
 }
 
+// Slope and variance of one wrinkle map at full weight, as slopeOf().
 vec3 wrinkleSlope(ActiveMap map, vec2 uv) {
   vec3 slope = slopeOf(texture(u_wrinkle_derivatives, vec3(uv, float(map.layer))));
   return slope * vec3(map.amplitude, map.amplitude, map.amplitude * map.amplitude);
 }
 
-// Unit tangent-space normal of the base surface with its wrinkles. `base`: the base map's slope.
-// Adds the maps' variance to `variance`, as if they knew nothing of each other.
+// Unit tangent-space normal of the base surface with wrinkles. `base`: slope of the base map. Adds
+// the maps' variance to `variance`, assuming that the maps are independent.
 vec3 wrinkledNormal(vec2 base, vec2 uv, vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS],
                     inout float variance) {
 #if NORMAL_BLEND == 0
-  // Partial derivatives: p = p_base + sum w_i p_i. Heights superpose, so the sum is exact.
+  // Partial derivatives: p = p_base + sum w_i p_i. Heights add up, so the sum is exact.
   vec2 p = base;
   for (int i = 0; i < ACTIVE_MAPS; ++i) {
     ActiveMap map = u_active_maps[i];
@@ -49,7 +50,7 @@ vec3 wrinkledNormal(vec2 base, vec2 uv, vec4 masks[MASK_LAYERS], vec4 dynamicMas
 #endif
 }
 
-// Figure 4.3 of the thesis: the maps' colours, each by its coefficient. Linear, may exceed 1.
+// Thesis, figure 4.3: the maps' colours, each times its coefficient. Linear, may exceed 1.
 vec3 wrinkleColour(vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS]) {
   vec3 colour = vec3(0.0);
   for (int i = 0; i < ACTIVE_MAPS; ++i) {
@@ -59,8 +60,8 @@ vec3 wrinkleColour(vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS]) {
 }
 
 #if WRINKLE_LOOKS
-// What the maps' colours and cavities leave of the base colour and of light that gets in: rgb, a.
-// `strength`: x of the colours, y of the cavities.
+// Factors by which the maps' colours (rgb) and cavities (a) change the base colour and the incoming
+// light. `strength`: x: of colours, y: of cavities.
 vec4 wrinkleLook(vec2 uv, vec4 masks[MASK_LAYERS], vec4 dynamicMasks[MAP_SLOTS], vec2 strength) {
   vec4 look = vec4(1.0);
   for (int i = 0; i < ACTIVE_MAPS; ++i) {
