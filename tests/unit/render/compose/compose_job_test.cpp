@@ -28,7 +28,7 @@ class ComposeJobTest : public testing::Test {
     for (std::size_t map = 0; map < kMaps; ++map) {
       tile_.maps.push_back({Planes(3, 0.0f, 1.0f), Planes(4, 0.2f, 1.0f)});
     }
-    tile_.maps[1].looks.clear();  // not every map has looks
+    tile_.maps[1].looks.clear();  // some maps have no looks
     for (const std::size_t channel : {0u, 2u, 4u, 1u, 3u}) {
       auto& masks = channel % 2 == 0 ? tile_.masks : tile_.skinned;
       ComposeTile::Mask& mask = masks.emplace_back();
@@ -40,7 +40,7 @@ class ComposeJobTest : public testing::Test {
     for (std::size_t i = 0; i < kChannels * kMaps; ++i)
       strengths_.weights.push_back(Random(0.05f, 1.0f));
     strengths_.weights[7] = 0.0f;
-    strengths_.weights[2] = -1.0f;  // nothing is known of it, and nothing painted
+    strengths_.weights[2] = -1.0f;  // a weight of unknown state, which paints nothing
     strengths_.amplitudes = {1.0f, 0.5f, 2.0f};
     strengths_.scales = {1.0f, 1.0f, 1.5f};
     strengths_.looks = {0.8f, 1.2f};
@@ -102,7 +102,8 @@ class ComposeJobTest : public testing::Test {
       const glm::vec4 texel = expected(i);
       for (int k = 0; k < 4; ++k) {
         const float value = glm::unpackHalf1x16(halves[4 * i + static_cast<std::size_t>(k)]);
-        // Half an ulp of a half float, and little for the order of the sums.
+        // The tolerance is half a unit in the last place of a half float, plus a little for the
+        // order of summation.
         ASSERT_NEAR(value, texel[k], std::abs(texel[k]) * 5.2e-4f + 1e-5f) << i << " " << k;
       }
     }
@@ -116,14 +117,14 @@ class ComposeJobTest : public testing::Test {
   ComposeJob job_;
 };
 
-TEST_F(ComposeJobTest, IsTheFormulaTexelByTexel) {
+TEST_F(ComposeJobTest, MatchesTheFormulaTexelByTexel) {
   ASSERT_TRUE(job_.Run());
   ExpectTexels(slopes_, [&](std::size_t texel) { return Slope(texel); });
   ExpectTexels(colours_, [&](std::size_t texel) { return Colour(texel); });
 }
 
-// Beside other tiles, whose texels it leaves alone.
-TEST_F(ComposeJobTest, WritesRowsAsFarApartAsAsked) {
+// The job must not touch the texels of neighbouring tiles.
+TEST_F(ComposeJobTest, WritesRowsAtTheGivenStride) {
   ASSERT_TRUE(job_.Run());
   constexpr std::size_t kStride = 100;
   std::vector<std::uint16_t> wide(4 * kStride * ComposeTile::kSide, 7);
@@ -139,7 +140,7 @@ TEST_F(ComposeJobTest, WritesRowsAsFarApartAsAsked) {
   }
 }
 
-TEST_F(ComposeJobTest, WithoutWeightsThereIsTheBareSurface) {
+TEST_F(ComposeJobTest, WithoutWeightsWritesTheBaseSurface) {
   std::fill(strengths_.weights.begin(), strengths_.weights.end(), 0.0f);
   tile_.colour.clear();
   job_.colours = {};
@@ -150,7 +151,7 @@ TEST_F(ComposeJobTest, WithoutWeightsThereIsTheBareSurface) {
   }
 }
 
-TEST_F(ComposeJobTest, RefusesWhatDoesNotFit) {
+TEST_F(ComposeJobTest, RejectsInconsistentInput) {
   const auto refused =
       [&](const std::function<void(ComposeTile*, ComposeStrengths*, ComposeJob*)>& spoil) {
         ComposeTile tile = tile_;

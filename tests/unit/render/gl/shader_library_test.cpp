@@ -61,7 +61,7 @@ TEST_F(ShaderLibraryTest, AnyNumberOfMasksAndMapsCompiles) {
   }
 }
 
-// Every switch of the skin pipeline's scene, one after the other, for every material and view.
+// Every switch of the skin pipeline's scene shader, one at a time, for every material and view.
 TEST_F(ShaderLibraryTest, EverySkinConfigurationCompiles) {
   using Kind = character::Material::Kind;
   for (const Kind kind : {Kind::kSkin, Kind::kCloth, Kind::kEye, Kind::kHair, Kind::kOther}) {
@@ -91,7 +91,7 @@ TEST_F(ShaderLibraryTest, EverySkinConfigurationCompiles) {
   }
 }
 
-// Facets of every material, and the light that falls on them.
+// The facets of every material, and the shader that lights them.
 TEST_F(ShaderLibraryTest, EveryFacetConfigurationCompiles) {
   using Kind = character::Material::Kind;
   for (int bits = 0; bits < 16; ++bits) {
@@ -140,7 +140,7 @@ TEST_F(ShaderLibraryTest, EveryDisplacedConfigurationCompiles) {
   }
 }
 
-TEST_F(ShaderLibraryTest, EveryCrowdsConfigurationCompiles) {
+TEST_F(ShaderLibraryTest, EveryCrowdConfigurationCompiles) {
   for (int bits = 0; bits < 16; ++bits) {
     SceneShader shader;
     shader.crowd = true;

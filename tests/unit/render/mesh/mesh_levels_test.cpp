@@ -19,7 +19,7 @@ glm::vec3 Corner(const character::Mesh& mesh, const MeshLevel& level, std::size_
   return mesh.vertices[level.indices[i]].position;
 }
 
-TEST(MeshLevels, HalveTheTrianglesAndSayHowFarTheyAreOff) {
+TEST(MeshLevels, ReduceTheTrianglesAndStateTheError) {
   const character::Mesh mesh = test::MakeHead().meshes[0];
   const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kKeep);
   ASSERT_GE(levels.size(), 3u);
@@ -34,8 +34,9 @@ TEST(MeshLevels, HalveTheTrianglesAndSayHowFarTheyAreOff) {
   EXPECT_GT(levels[1].error, 0.0f);
 }
 
-// Every corner of every triangle still faces outwards of an egg, and its middle is near its shell.
-TEST(MeshLevels, StayNearTheSurfaceAndTurnNoTriangleOver) {
+// Every corner of every triangle still faces outwards from the egg, and its centre is near the
+// shell.
+TEST(MeshLevels, StayNearTheSurfaceAndFlipNoTriangle) {
   const character::Mesh mesh = test::MakeHead().meshes[0];
   const glm::vec3 centre(0.0f, 1.6f, 0.0f);
   for (const MeshLevel& level : MakeMeshLevels(mesh, Borders::kKeep)) {
@@ -46,8 +47,8 @@ TEST(MeshLevels, StayNearTheSurfaceAndTurnNoTriangleOver) {
       const glm::vec3 c = Corner(mesh, level, i + 2);
       const glm::vec3 cross = glm::cross(b - a, c - a);
       const glm::vec3 middle = (a + b + c) / 3.0f;
-      EXPECT_GE(glm::dot(cross, middle - centre), -1e-9f);  // a pole's have no surface
-      // How far the flat triangle lies below its corners, seen from the middle of the egg.
+      EXPECT_GE(glm::dot(cross, middle - centre), -1e-9f);  // triangles at a pole have no area
+      // Distance of the flat triangle below its corners, as seen from the egg's centre.
       const float shell =
           (glm::length(a - centre) + glm::length(b - centre) + glm::length(c - centre)) / 3.0f;
       squares += std::pow(shell - glm::length(middle - centre), 2.0);
@@ -57,7 +58,7 @@ TEST(MeshLevels, StayNearTheSurfaceAndTurnNoTriangleOver) {
   }
 }
 
-// The seam's two columns of vertices are all still there.
+// Both columns of vertices along the seam are kept.
 TEST(MeshLevels, KeepSeams) {
   const character::Mesh mesh = test::MakeHead().meshes[0];
   const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kKeep);
@@ -72,7 +73,7 @@ TEST(MeshLevels, KeepSeams) {
   EXPECT_GT(on_seam, 10);
 }
 
-// Strips of `segments` quads each, bent to a quarter of a circle, side by side: as hair is.
+// Adjacent strips of `segments` quads each, bent to a quarter of a circle, like hair.
 constexpr float kRadius = 0.25f;  // metres
 character::Mesh Strips(int count, int segments) {
   character::Mesh mesh;
@@ -93,8 +94,8 @@ character::Mesh Strips(int count, int segments) {
   return mesh;
 }
 
-// Every vertex of a strip lies on its border; its four corners stay, and so does its width.
-TEST(MeshLevels, DrawBordersInAlongThemselves) {
+// Every vertex of a strip is on its border. The four corners and the width of a strip are kept.
+TEST(MeshLevels, SimplifyBordersAlongThemselves) {
   constexpr int kStrips = 40;
   constexpr int kSegments = 12;
   const character::Mesh mesh = Strips(kStrips, kSegments);
@@ -108,7 +109,7 @@ TEST(MeshLevels, DrawBordersInAlongThemselves) {
         EXPECT_TRUE(left.contains(first + corner)) << strip << ' ' << corner;
       }
     }
-    // What lies between arc and chord of a segment is no more than the error says, by its mean.
+    // The mean distance between arc and chord of a segment is within the stated error.
     double furthest = 0.0;
     for (std::size_t i = 0; i < level.indices.size(); ++i) {
       const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
@@ -120,8 +121,8 @@ TEST(MeshLevels, DrawBordersInAlongThemselves) {
   EXPECT_LT(levels[2].error, 0.005f);
 }
 
-// As two meshes share it, which are simplified each by itself: without a crack.
-TEST(MeshLevels, KeepBordersThatMayBeShared) {
+// Two meshes share a border and are simplified separately; there must be no crack.
+TEST(MeshLevels, KeepSharedBorders) {
   character::Mesh sheet;
   test::AddGrid(
       20, 20,
@@ -141,8 +142,9 @@ TEST(MeshLevels, KeepBordersThatMayBeShared) {
   }
 }
 
-// Neither many vertices in one place nor many triangles at one vertex take long, each of 200,000.
-TEST(MeshLevels, TakeNoLongerForWhatLiesTogether) {
+// Inputs of 200,000 elements that must not take quadratic time: many vertices at one position, and
+// many triangles around one vertex.
+TEST(MeshLevels, StayFastWithManyElementsInOnePlace) {
   constexpr std::uint32_t kMany = 200'000;
   character::Mesh heap;
   heap.vertices.resize(kMany);
@@ -162,7 +164,7 @@ TEST(MeshLevels, TakeNoLongerForWhatLiesTogether) {
   }
 }
 
-TEST(MeshLevels, OfNothingAndOfLittleAreTheMeshAlone) {
+TEST(MeshLevels, EmptyAndSmallMeshesHaveOneLevel) {
   EXPECT_EQ(MakeMeshLevels({}, Borders::kKeep).size(), 1u);
   const character::Mesh plane = test::MakePlane(4, [](float, float) { return 0.0f; }, {}).meshes[0];
   EXPECT_EQ(MakeMeshLevels(plane, Borders::kKeep).size(), 1u);

@@ -44,7 +44,7 @@ TEST(CameraPreset, HeadPresetsShowTheWholeHeadAndFillThePicture) {
   }
 }
 
-TEST(CameraPreset, StandsWhereItsNameSays) {
+TEST(CameraPreset, IsWhereItsNameSays) {
   const character::Character head = test::MakeHead();
   const auto direction = [&](const char* name) {
     const Camera camera = Preset(head, name);
@@ -60,7 +60,7 @@ TEST(CameraPreset, StandsWhereItsNameSays) {
   EXPECT_NEAR(direction("body_back").z, -1.0f, 1e-5);
 }
 
-TEST(CameraPreset, TheNamesAreThoseThatThereAre) {
+TEST(CameraPreset, NamesMatchThePresets) {
   const auto presets = CameraPresets(test::MakeHead());
   ASSERT_EQ(presets.size(), CameraPresetNames().size());
   for (std::size_t i = 0; i < presets.size(); ++i) {
@@ -68,7 +68,7 @@ TEST(CameraPreset, TheNamesAreThoseThatThereAre) {
   }
 }
 
-// Whatever the picture's shape: the whole height is seen, with next to no air above and below.
+// In pictures of any shape, the whole height is visible with little space above and below.
 TEST(CameraPreset, BodyPresetsFillThePicturesHeight) {
   const character::Character head = test::MakeHead();
   for (const char* name : {"body", "body_three_quarter", "body_side", "body_back"}) {
@@ -86,7 +86,7 @@ TEST(CameraPreset, BodyPresetsFillThePicturesHeight) {
   }
 }
 
-// A body below the head must not pull the face camera down; with joints that do not skin, either.
+// A body below the head must not pull the face camera down, and neither must joints without skin.
 TEST(CameraPreset, FramesTheHeadOfACharacterWithABody) {
   character::Character character = test::MakeHead();
   const Camera alone = Preset(character, "face");

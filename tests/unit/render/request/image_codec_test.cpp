@@ -23,7 +23,7 @@ Image Gradient() {
   return image;
 }
 
-TEST(EncodeImage, PngComesBackExactly) {
+TEST(EncodeImage, PngIsLossless) {
   const Image image = Gradient();
   auto bytes = EncodeImage(image, ImageFormat::kPng);
   ASSERT_TRUE(bytes.ok()) << bytes.status().ToString();
@@ -38,7 +38,7 @@ TEST(EncodeImage, PngComesBackExactly) {
   EXPECT_EQ(pixels, image.rgb);
 }
 
-// Decodes and returns the chroma subsampling and the largest error of a component.
+// Decodes a JPEG. Returns the chroma subsampling and the largest error of a component.
 std::pair<int, int> DecodeJpeg(const std::vector<std::uint8_t>& bytes, const Image& image) {
   const tjhandle decoder = tjInitDecompress();
   int width = 0;
@@ -59,7 +59,7 @@ std::pair<int, int> DecodeJpeg(const std::vector<std::uint8_t>& bytes, const Ima
   return {subsampling, worst};
 }
 
-TEST(EncodeImage, JpegComesBackNearlyAndSubsamplesBelow90) {
+TEST(EncodeImage, JpegIsCloseAndSubsamplesBelow90) {
   const Image image = Gradient();
   const auto low = EncodeImage(image, ImageFormat::kJpeg, 85);
   const auto high = EncodeImage(image, ImageFormat::kJpeg, 95);
@@ -73,7 +73,7 @@ TEST(EncodeImage, JpegComesBackNearlyAndSubsamplesBelow90) {
   EXPECT_LT(low->size(), high->size());
 }
 
-TEST(EncodeImage, RefusesWhatIsNoPictureAndQualitiesOutOfRange) {
+TEST(EncodeImage, RejectsInvalidImagesAndQualities) {
   EXPECT_EQ(EncodeImage(Image{}, ImageFormat::kPng).status().where(), "image");
   EXPECT_EQ(EncodeImage(Image{4, 4, std::vector<std::uint8_t>(47), 0}, ImageFormat::kPng)
                 .status()

@@ -13,7 +13,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 class RequestCheck : public testing::Test {
  protected:
-  // Breaks one thing of a good request; the answer must name it.
+  // Invalidates one field of a valid request and expects the error to name it.
   void ExpectRefused(const std::string& field, const std::function<void(FrameRequest&)>& spoil,
                      StatusCode code = StatusCode::kInvalidArgument) {
     FrameRequest request;
@@ -38,7 +38,7 @@ TEST_F(RequestCheck, AcceptsDefaultsAndLimits) {
   EXPECT_TRUE(CheckRequest(request, 2).ok());
 }
 
-TEST_F(RequestCheck, NamesTheFieldThatIsWrong) {
+TEST_F(RequestCheck, NamesTheInvalidField) {
   ExpectRefused("width", [](FrameRequest& r) { r.width = kMinSize - 1; });
   ExpectRefused("height", [](FrameRequest& r) { r.height = kMaxSize + 1; });
   ExpectRefused("settings.wrinkle_strength",
@@ -57,7 +57,7 @@ TEST_F(RequestCheck, NamesTheFieldThatIsWrong) {
       "model", [](FrameRequest&) {}, StatusCode::kNonFinite);
 }
 
-TEST_F(RequestCheck, NamesTheSubjectThatIsWrong) {
+TEST_F(RequestCheck, NamesTheInvalidSubject) {
   PosedSubject good;
   good.model = model_;
   std::vector<PosedSubject> others(2, good);
@@ -71,16 +71,16 @@ TEST_F(RequestCheck, NamesTheSubjectThatIsWrong) {
   expect("others[1].model");
   others[1].placement[3].x = kNan;
   expect("others[1].placement", StatusCode::kNonFinite);
-  others[1].placement[0].x = 2.0f;  // wider, not larger
+  others[1].placement[0].x = 2.0f;  // not a uniform scale
   expect("others[1].placement");
-  others[1].placement[0].x = -1.0f;  // a mirror
+  others[1].placement[0].x = -1.0f;  // mirrored
   expect("others[1].placement");
   others[1].placement = glm::mat4(0.0f);
   expect("others[1].placement");
   ExpectRefused("placement", [](FrameRequest& r) { r.placement[0].y = 1.0f; });
 }
 
-TEST_F(RequestCheck, TakesSoManySubjectsAndNoMore) {
+TEST_F(RequestCheck, LimitsTheNumberOfSubjects) {
   FrameRequest request;
   request.model = model_;
   std::vector<PosedSubject> others(kMaxSubjects, request);

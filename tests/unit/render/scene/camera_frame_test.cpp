@@ -16,7 +16,7 @@ Camera FacePreset(const character::Character& character) {
   return CameraPresets(character).front().second;
 }
 
-// The picture of a subject that walked away and turned is the picture of the one that stayed.
+// A subject that walks away and turns looks the same as one that stays.
 TEST(ComputeCamera, FollowsASubjectThatTravelsAndTurns) {
   const character::Character head = test::MakeHead();
   const glm::mat4 moved = glm::translate(glm::mat4(1.0f), {3.0f, 0.2f, -2.0f}) *
@@ -37,9 +37,9 @@ TEST(ComputeCamera, FollowsASubjectThatTravelsAndTurns) {
   EXPECT_EQ(ComputeCamera(fixed, head.skeleton, model, 1.0f).position, still.position);
 }
 
-// Presets hold the same square of the subject in the middle of a picture of any shape; a camera
-// given by hand keeps the vertical angle that it states.
-TEST(ComputeCamera, PresetsSeeAsMuchAcrossInAHighPictureAsInASquareOne) {
+// Presets show the same square of the subject in the centre of a picture of any shape. Custom
+// cameras keep their vertical angle.
+TEST(ComputeCamera, PresetsShowTheSameWidthInPortraitFormat) {
   const character::Character head = test::MakeHead();
   Camera camera = FacePreset(head);
   const auto project = [&](float aspect) {

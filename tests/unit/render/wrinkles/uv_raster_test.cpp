@@ -16,7 +16,7 @@ std::map<std::size_t, UvTexel> TexelsOf(const UvTriangle& triangle, glm::ivec2 s
   return texels;
 }
 
-TEST(UvRaster, SharesSayWhereATexelLies) {
+TEST(UvRaster, SharesLocateATexel) {
   const UvTriangle triangle = {glm::vec2(0.1f, 0.2f), {0.9f, 0.3f}, {0.4f, 0.85f}};
   const glm::ivec2 size(32, 16);
   const auto texels = TexelsOf(triangle, size, 0.0f);
@@ -29,11 +29,11 @@ TEST(UvRaster, SharesSayWhereATexelLies) {
     EXPECT_NEAR(place.y, centre.y, 1e-5f);
     EXPECT_EQ(texel.distance_squared, 0.0f);
   }
-  // The surface, 0.245 of the texture.
+  // The triangle covers 0.245 of the texture.
   EXPECT_NEAR(static_cast<double>(texels.size()), 0.245 * 32 * 16, 8.0);
 }
 
-TEST(UvRaster, BeyondTheEdgeTheNearestPointCounts) {
+TEST(UvRaster, OutsideTheTriangleTheNearestPointCounts) {
   // The lower left half of a square from texel 4 to texel 8.
   const UvTriangle triangle = {glm::vec2(0.25f, 0.25f), {0.5f, 0.25f}, {0.25f, 0.5f}};
   const auto texels = TexelsOf(triangle, {16, 16}, 1.5f);
@@ -55,13 +55,13 @@ TEST(UvRaster, TexturesRepeat) {
   for (const auto& [index, texel] : texels) EXPECT_LT(index, 64u);
 }
 
-TEST(UvRaster, ALineIsReachedToo) {
+TEST(UvRaster, ADegenerateTriangleHasTexels) {
   const UvTriangle line = {glm::vec2(0.25f, 0.5f), {0.75f, 0.5f}, {0.5f, 0.5f}};
   EXPECT_TRUE(TexelsOf(line, {16, 16}, 0.0f).empty());
   EXPECT_NEAR(TexelsOf(line, {16, 16}, 1.0f).at(8 * 16 + 8).distance_squared, 0.25f, 1e-5f);
 }
 
-TEST(UvRaster, WhatCoversTheTextureManyTimesIsNoAtlas) {
+TEST(UvRaster, ManyOverlappingTrianglesAreNoAtlas) {
   const UvTriangle small = {glm::vec2(0.0f), {0.5f, 0.0f}, {0.0f, 0.5f}};
   EXPECT_TRUE(IsAtlas(std::vector{small, small}));
   EXPECT_FALSE(IsAtlas(std::vector(65, small)));

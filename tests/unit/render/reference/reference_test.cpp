@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact references themselves, against closed forms and plain sums.
+// Tests of the exact references, by closed forms and plain sums.
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -47,7 +47,7 @@ TEST(DiffusionReference, MatchesAPlainSumOfTheRadialProfile) {
   }
 }
 
-TEST(DiffusionReference, ConstantLightStaysAndNothingCrossesTheMask) {
+TEST(DiffusionReference, ConstantLightStaysAndNoLightCrossesTheMask) {
   FloatPicture picture(64, 48, glm::vec4(0.5f, 0.5f, 0.5f, 1.0f));
   for (int y = 0; y < 48; ++y) {
     for (int x = 40; x < 64; ++x) picture.At(x, y) = glm::vec4(9.0f, 9.0f, 9.0f, 0.0f);
@@ -59,7 +59,7 @@ TEST(DiffusionReference, ConstantLightStaysAndNothingCrossesTheMask) {
 }
 
 // A sphere above a plane hides (n . d) (r / |d|)^2 of a point's cosine-weighted sky.
-TEST(RayCastReference, OpennessUnderASphereIsTheClosedForm) {
+TEST(RayCastReference, OpennessUnderASphereMatchesTheClosedForm) {
   const SphereOnPlane scene{{0.0, 0.12, 0.0}, 0.1};
   const auto within = [](double reach) {
     return [reach](double distance) { return distance <= reach ? 1.0 : 0.0; };
@@ -70,7 +70,7 @@ TEST(RayCastReference, OpennessUnderASphereIsTheClosedForm) {
     EXPECT_NEAR(Openness(scene, {x, 0.0, 0.0}, {0, 1, 0}, within(10.0), 20000), 1.0 - hidden, 5e-3)
         << x;
   }
-  // Beyond reach, nothing hides; and the plane hides half of what the sphere's side sees.
+  // Nothing occludes beyond the radius, and the plane hides half of the sky of the sphere's side.
   EXPECT_EQ(Openness(scene, {0.0, 0.0, 0.0}, {0, 1, 0}, within(0.019), 1000), 1.0);
   EXPECT_NEAR(Openness(scene, {0.1, 0.12, 0.0}, {1, 0, 0}, within(1e9), 20000), 0.5, 5e-3);
 }
@@ -79,13 +79,13 @@ TEST(RayCastReference, TheShadowFallsAwayFromTheLight) {
   const SphereOnPlane scene{{0.0, 0.1, 0.0}, 0.1};
   const glm::dvec3 light = glm::normalize(glm::dvec3(-1.0, 1.0, 0.0));
   const glm::dvec3 up(0, 1, 0);
-  // The shadow's middle is where the ray through the centre meets the plane: x = 0.1.
+  // The centre of the shadow is where the ray through the sphere's centre meets the plane: x = 0.1.
   EXPECT_FALSE(SeesLight(scene, {0.1, 0.0, 0.0}, up, light));
-  // Its width across the light is the sphere's.
+  // The shadow is as wide as the sphere across the light.
   EXPECT_FALSE(SeesLight(scene, {0.1, 0.0, 0.0999}, up, light));
   EXPECT_TRUE(SeesLight(scene, {0.1, 0.0, 0.1001}, up, light));
   EXPECT_TRUE(SeesLight(scene, {-0.1, 0.0, 0.0}, up, light));
-  EXPECT_FALSE(SeesLight(scene, {0.1, 0.1, 0.0}, {1, 0, 0}, light));  // turned away
+  EXPECT_FALSE(SeesLight(scene, {0.1, 0.1, 0.0}, {1, 0, 0}, light));  // faces away
 }
 
 }  // namespace
