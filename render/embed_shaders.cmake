@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# Run with -P: writes OUTPUT, a C++ source that holds the FILES (a comma-separated list) as strings.
+# Run with -P. Writes OUTPUT, a C++ source that holds the FILES (a comma-separated list) as strings,
+# each under its path relative to ROOT.
 string(REPLACE "," ";" files "${FILES}")
 set(entries "")
 foreach(file IN LISTS files)
-  get_filename_component(name "${file}" NAME)
+  file(RELATIVE_PATH name "${ROOT}" "${file}")
   file(READ "${file}" text)
   string(APPEND entries "    {\"${name}\", R\"glsl(${text})glsl\"},\n")
 endforeach()

@@ -10,13 +10,13 @@ namespace {
 
 using Handle = FrameGraph::Handle;
 
-// Views of one part of the light alone show it before occlusion.
+// Returns true for views of one part of the light. They show it before occlusion.
 bool IsPartOfLight(View view) {
   return view == View::kShadow || view == View::kSpecular || view == View::kTranslucency ||
          view == View::kAlbedo || view == View::kMaterial;
 }
 
-// Data stays as it is.
+// Returns true for views that show light. FXAA would corrupt the other views' data.
 bool IsLight(View view) {
   return view == View::kFinal || view == View::kWeights || view == View::kWireframe;
 }
@@ -112,7 +112,7 @@ Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const S
     case View::kIrradiance: return surface.lit.irradiance;
     case View::kDepth:
     case View::kOcclusion: return AddShown(graph, surface, settings.view, desc);
-    default: return surface.unoccluded;  // light alone drew what the view shows
+    default: return surface.unoccluded;  // the lighting shader drew only what the view shows
   }
 }
 

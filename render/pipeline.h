@@ -10,19 +10,19 @@
 
 namespace furrow::render {
 
-// The order of the passes, from the posed character to a finished picture of one view.
+// Builds the passes that turn posed subjects into a finished picture of one view.
 //
 //   plain:  scene -> composite
 //   skin:   shadows -> scene (five targets) -> resolve -> occlusion, blur, occlude -> scatter ->
 //           combine -> bloom -> composite -> fxaa
-//   skin, one sample a pixel: shadows -> scene (facets) -> occlusion, blur -> light -> scatter ->
-//   ...
+//   skin, one sample per pixel: shadows -> scene (facets) -> occlusion, blur -> light -> scatter ->
+//           combine -> bloom -> composite -> fxaa
 //
-// What a view does not need, the frame graph leaves out.
+// The frame graph culls the passes that a view does not need.
 class Pipeline {
  public:
-  // `character` is not kept; the others outlive the pipeline.
-  // `is_software`: a processor draws; see AntiAliasingSettings.
+  // `character` is used only during construction; the other objects must outlive the pipeline.
+  // `is_software`: the driver renders on the CPU; see AntiAliasingSettings.
   Pipeline(const character::Character& character, SceneDraw* scene, ShaderLibrary* shaders,
            GlDevice* device, bool is_software);
 
@@ -30,9 +30,9 @@ class Pipeline {
     int width = 0;
     int height = 0;
   };
-  // After SceneDraw::Update() with the same request. Returns a picture of `view`, 8 bits, rows from
-  // the top. All views of one graph share its shadow maps.
-  // `shadows`: none before the first view of a graph; the others take the maps that it has drawn.
+  // Adds the passes for one view. Requires SceneDraw::Update() with the same request. Returns an
+  // 8-bit picture of `view`, rows from the top. All views of one graph share the shadow maps: pass
+  // the same `*shadows`, initially none, to every call.
   [[nodiscard]] FrameGraph::Handle Add(FrameGraph* graph, const FrameRequest& request, View view,
                                        const Size& size, FrameGraph::Handle* shadows);
 
@@ -40,10 +40,10 @@ class Pipeline {
   [[nodiscard]] FrameGraph::Handle AddSkin(FrameGraph* graph, const FrameRequest& request,
                                            const Settings& settings, const TextureDesc& desc,
                                            FrameGraph::Handle shadows);
-  // What is known of the surfaces once light fell on them.
+  // The surfaces after lighting.
   struct Surface {
     SkinTargets lit;
-    FrameGraph::Handle unoccluded;  // radiance
+    FrameGraph::Handle unoccluded;  // radiance before occlusion
     OcclusionPass::Openness open;
   };
   [[nodiscard]] Surface AddSurface(FrameGraph* graph, const Settings& settings,

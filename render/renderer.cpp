@@ -9,15 +9,15 @@
 #include "render/passes/finish_pass.h"
 #include "render/passes/read_back_pass.h"
 #include "render/pipeline.h"
-#include "render/request_check.h"
-#include "render/scene/camera.h"
+#include "render/request/request_check.h"
+#include "render/scene/camera_frame.h"
 
 namespace furrow::render {
 namespace {
 
-constexpr int kTilesAcross = 6;  // a tile of the strip is so many times smaller than the picture
+constexpr int kTilesAcross = 6;  // ratio between the picture's size and a strip tile's
 
-// Members in the order of need: what OpenGL objects live in is destroyed last.
+// Members are in dependency order, so that OpenGL objects are destroyed before their context.
 class GlRenderer final : public Renderer {
  public:
   static Result<std::unique_ptr<Renderer>> Create(const character::Character& character,
@@ -34,15 +34,16 @@ class GlRenderer final : public Renderer {
   }
 
   ~GlRenderer() override {
-    // The objects below are deleted in their own context, whichever was current. If it is gone,
-    // none is current now, and they went with it.
+    // Makes the members below delete their objects in their own context. If the context is lost,
+    // none is current now, and the objects are already gone.
     (void)context_->MakeCurrent().ok();
   }
 
   Status Submit(const FrameRequest& request) override {
     FURROW_RETURN_IF_ERROR(CheckRequest(request, skeleton_.num_joints()));
     if (read_back_.in_flight() == ReadBack::kCapacity) {
-      return {StatusCode::kUnavailable, "two pictures are in flight", "renderer", "poll first"};
+      return {StatusCode::kUnavailable, "two pictures are in flight", "renderer",
+              "call Poll() first"};
     }
     FURROW_RETURN_IF_ERROR(context_->MakeCurrent());
     FrameGraph graph;
@@ -124,7 +125,7 @@ Result<std::unique_ptr<Renderer>> Renderer::Create(const character::Character& c
 }
 
 Result<Image> Renderer::Render(const FrameRequest& request) {
-  while (in_flight() > 0) {  // pictures that nobody polled: the caller wants this one
+  while (in_flight() > 0) {  // discard pictures that were never polled
     const Result<Image> old = Poll(true);
     if (!old.ok()) return old;
   }

@@ -9,6 +9,7 @@
 
 #include "render/gl/pass_timer.h"
 #include "render/renderer.h"
+#include "render/settings/named_settings.h"
 #include "tests/unit/render/test_character.h"
 
 namespace furrow::render {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for each instruction set and chosen at run time: Highway includes this file again
-// and again. Vectors without a fixed size (SVE, RVV) are left out: no type can name them.
+// Compiled once per instruction set and chosen at run time: Highway includes this file repeatedly.
+// Vectors of unknown size (SVE, RVV) are disabled, because their types cannot be stored in arrays.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/compose/compose_job.cpp"
@@ -25,7 +25,7 @@ using Bytes = hn::Rebind<std::uint8_t, Floats>;
 using Ints = hn::Rebind<std::int32_t, Floats>;
 
 constexpr std::size_t kPlane = ComposeTile::kTexels;
-constexpr std::size_t kBlock = 256;  // texels that are worked on at once, within the first cache
+constexpr std::size_t kBlock = 256;  // texels per block; its planes fit the first-level cache
 static_assert(kPlane % kBlock == 0);
 using Numbers = std::array<float, kBlock>;
 
@@ -42,20 +42,20 @@ HWY_INLINE hn::Vec<Words> ToHalves(const float* from) {
   return ToHalves(hn::LoadU(Floats(), from));
 }
 
-// Calls `visit` with the first of every group of lanes of a block.
+// Calls `visit` with the index of the first lane of every vector in a block.
 template <class Visit>
 HWY_INLINE void ForLanes(Visit visit) {
   for (std::size_t i = 0; i < kBlock; i += hn::Lanes(Floats())) visit(i);
 }
 
-// Adds masks times their weights on a map in the block that begins at texel `first`. False: it is
-// not at work there.
+// Adds weight * mask for one map in the block that starts at texel `first`. False: all weights are
+// 0.
 bool AddMasks(const ComposeJob& job, const std::vector<ComposeTile::Mask>& masks, std::size_t map,
               std::size_t first, Numbers* sums) {
   const std::size_t maps = job.tile->maps.size();
   bool is_at_work = false;
   for (const ComposeTile::Mask& mask : masks) {
-    const float weight = job.ink->weights[mask.channel * maps + map];
+    const float weight = job.strengths->weights[mask.channel * maps + map];
     if (!(weight > 0.0f)) continue;
     const Float scale = hn::Set(Floats(), weight / 255.0f);
     ForLanes([&](std::size_t i) HWY_ATTR {
@@ -69,7 +69,7 @@ bool AddMasks(const ComposeJob& job, const std::vector<ComposeTile::Mask>& masks
   return is_at_work;
 }
 
-// The coefficients of a map in a block. False: it is not at work there.
+// Computes the coefficients of a map in a block. False: they are all 0.
 bool Coefficients(const ComposeJob& job, std::size_t map, std::size_t first, Numbers* sums) {
   sums->fill(0.0f);
   bool is_at_work = AddMasks(job, job.tile->skinned, map, first, sums);
@@ -88,7 +88,7 @@ using Slopes = std::array<Numbers, 3>;
 // Red, green, blue and cavity.
 using Looks = std::array<Numbers, 4>;
 
-// Three planes of halves.
+// Loads `count` planes of half floats.
 template <std::size_t count>
 void LoadPlanes(const std::vector<std::uint16_t>& planes, std::size_t first,
                 std::array<Numbers, count>* numbers) {
@@ -102,7 +102,7 @@ void LoadPlanes(const std::vector<std::uint16_t>& planes, std::size_t first,
 void AddSlopes(const ComposeJob& job, std::size_t map, std::size_t first,
                const Numbers& coefficients, Slopes* sums) {
   const std::vector<std::uint16_t>& from = job.tile->maps[map].slopes;
-  const Float amplitude = hn::Set(Floats(), job.ink->amplitudes[map]);
+  const Float amplitude = hn::Set(Floats(), job.strengths->amplitudes[map]);
   ForLanes([&](std::size_t i) HWY_ATTR {
     const Floats d;
     const Float w = hn::Mul(hn::LoadU(d, &coefficients[i]), amplitude);
@@ -123,8 +123,8 @@ void MultiplyLooks(const ComposeJob& job, std::size_t map, std::size_t first,
     const Floats d;
     const Float one = hn::Set(d, 1.0f);
     for (std::size_t k = 0; k < 4; ++k) {
-      const Float strength = hn::Set(d, k < 3 ? job.ink->looks.x : job.ink->looks.y);
-      const Float scale = hn::Set(d, k < 3 ? job.ink->scales[map] : 1.0f);
+      const Float strength = hn::Set(d, k < 3 ? job.strengths->looks.x : job.strengths->looks.y);
+      const Float scale = hn::Set(d, k < 3 ? job.strengths->scales[map] : 1.0f);
       const Float w = hn::Mul(hn::LoadU(d, &coefficients[i]), strength);
       const Float look = hn::MulSub(LoadHalves(&from[k * kPlane + first + i]), scale, one);
       const Float factor = hn::Max(hn::MulAdd(w, look, one), hn::Zero(d));
@@ -134,17 +134,19 @@ void MultiplyLooks(const ComposeJob& job, std::size_t map, std::size_t first,
   });
 }
 
-// cavity() of shaders/common_surface_frag.glsl tells hollows by their dark base colour alone.
-void KeepHollows(const ComposeTile& tile, std::size_t first, Looks* looks) {
-  const Float hollow = hn::Set(Floats(), tile.hollow);
+// Keeps green at or above min(base, cavity_albedo). Otherwise cavity() of
+// shaders/scene/surface_frag.glsl, which detects painted hollows by their dark base colour, would
+// mistake a wrinkle for one.
+void KeepAboveCavity(const ComposeTile& tile, std::size_t first, Looks* looks) {
+  const Float cavity_albedo = hn::Set(Floats(), tile.cavity_albedo);
   ForLanes([&](std::size_t i) HWY_ATTR {
     float* const green = &(*looks)[1][i];
-    const Float least = hn::Min(LoadHalves(&tile.colour[kPlane + first + i]), hollow);
+    const Float least = hn::Min(LoadHalves(&tile.colour[kPlane + first + i]), cavity_albedo);
     hn::StoreU(hn::Max(hn::LoadU(Floats(), green), least), Floats(), green);
   });
 }
 
-// Where a texel of the tile goes.
+// Index of a texel in the output.
 HWY_INLINE std::size_t Place(const ComposeJob& job, std::size_t texel) {
   return 4 * (texel / ComposeTile::kSide * job.stride + texel % ComposeTile::kSide);
 }
@@ -186,7 +188,7 @@ void ComposeBlock(const ComposeJob& job, std::size_t first) {
   }
   StoreSlopes(job, first, slopes);
   if (!has_looks) return;
-  KeepHollows(tile, first, &looks);
+  KeepAboveCavity(tile, first, &looks);
   StoreLooks(job, first, looks);
 }
 
@@ -223,13 +225,14 @@ bool IsWhole(const ComposeTile& tile, std::size_t channels) {
 }  // namespace
 
 bool ComposeJob::Validate() const {
-  if (tile == nullptr || ink == nullptr || tile->maps.empty()) return false;
+  if (tile == nullptr || strengths == nullptr || tile->maps.empty()) return false;
   const std::size_t maps = tile->maps.size();
   if (stride < ComposeTile::kSide) return false;
   const std::size_t halves = 4 * (stride * (ComposeTile::kSide - 1) + ComposeTile::kSide);
-  return ink->amplitudes.size() == maps && ink->scales.size() == maps &&
-         ink->weights.size() % maps == 0 && IsWhole(*tile, ink->weights.size() / maps) &&
-         slopes.size() >= halves && colours.size() >= (tile->colour.empty() ? 0 : halves);
+  return strengths->amplitudes.size() == maps && strengths->scales.size() == maps &&
+         strengths->weights.size() % maps == 0 &&
+         IsWhole(*tile, strengths->weights.size() / maps) && slopes.size() >= halves &&
+         colours.size() >= (tile->colour.empty() ? 0 : halves);
 }
 
 bool ComposeJob::Run() const {

@@ -30,7 +30,7 @@ float SrgbToLinear(float value) {
   return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
 }
 
-// Each value that a byte has is decoded once.
+// Decodes sRGB through a table of all 256 byte values.
 void DecodeSrgb(Texels* texels) {
   static const std::vector<float> decoded = [] {
     std::vector<float> table;
@@ -43,7 +43,7 @@ void DecodeSrgb(Texels* texels) {
   }
 }
 
-// Bilinear as a sampler does it, repeating: `size` texels.
+// Resamples to `size` texels as a bilinear, repeating sampler does.
 Texels Resampled(const Texels& from, glm::ivec2 from_size, glm::ivec2 size) {
   const auto at = [&](int x, int y) {
     const int column = (x + from_size.x) % from_size.x;
@@ -66,8 +66,8 @@ Texels Resampled(const Texels& from, glm::ivec2 from_size, glm::ivec2 size) {
   return texels;
 }
 
-// One layer of a texture as a level of some size sees it: from the level that is as fine, or the
-// next finer. Tile by tile, or, where that must be resampled, from a copy of all of it.
+// Reads one layer of a texture at a given size, from the level of that size or the next finer one.
+// Reads tile by tile, or, if it must resample, through a copy of the whole level.
 class LayerReader {
  public:
   LayerReader(GLuint texture, int layer, bool is_srgb, glm::ivec2 size)
@@ -110,10 +110,10 @@ class LayerReader {
   bool is_srgb_;
   glm::ivec2 size_;
   int level_ = 0;
-  Texels all_;  // empty: the level has the right size
+  Texels all_;  // empty if the level has the right size
 };
 
-// Planes of what `value` makes of each texel.
+// Converts `value` of each texel to planes.
 template <class Value>
 std::vector<std::uint16_t> Planes(const Texels& texels, std::size_t planes, Value value) {
   std::vector<std::uint16_t> halves(texels.size() * planes);
@@ -126,7 +126,7 @@ std::vector<std::uint16_t> Planes(const Texels& texels, std::size_t planes, Valu
   return halves;
 }
 
-// As slopeOf() of shaders/common_wrinkles_frag.glsl.
+// Same as slopeOf() of shaders/wrinkles/wrinkles_frag.glsl.
 glm::vec4 SlopeOf(const glm::vec4& moments) {
   const glm::vec2 slope(moments);
   const glm::vec2 variance =
@@ -138,7 +138,7 @@ glm::vec4 Same(const glm::vec4& texel) { return texel; }
 
 glm::ivec2 TilesOf(glm::ivec2 size) { return (size + kSide - 1) / kSide; }
 
-// Adds a mask to each tile in which a channel lets something through; tiles are row after row.
+// Adds a mask channel to each tile where it is above 0. Tiles are in row order.
 void AddMasks(const Texels& layer, int channel, std::size_t number, glm::ivec2 size,
               std::vector<ComposeTile>* tiles) {
   for (ComposeTile& tile : *tiles) {
@@ -183,7 +183,7 @@ std::vector<ComposeTile> ReadMasks(const GpuCharacter& gpu, const ComposeSelecti
   return tiles;
 }
 
-// Gives each tile its texels of a texture; all are `without` where there is none.
+// Passes each tile its texels of a texture, or `without` for all of them if there is no texture.
 template <class Give>
 void ForTiles(GLuint texture, bool is_srgb, const glm::vec4& without, glm::ivec2 size,
               std::vector<ComposeTile>* tiles, Give give) {
@@ -205,7 +205,7 @@ void ReadSurface(const GpuCharacter& gpu, const GpuMaterial& material, glm::ivec
   ForTiles(material.base_colour, true, glm::vec4(1.0f), size, tiles,
            [&](ComposeTile* tile, const Texels& texels) {
              tile->colour = Planes(texels, 3, Same);
-             tile->hollow = material.hollow;
+             tile->cavity_albedo = material.cavity_albedo;
            });
 }
 
@@ -245,18 +245,18 @@ std::vector<ComposeTile> ReadComposeTiles(const GpuCharacter& gpu,
   return tiles;
 }
 
-BareTexels ReadBareTexels(const GpuCharacter& gpu, const GpuMaterial& material, glm::ivec2 size) {
+BaseTexels ReadBaseTexels(const GpuCharacter& gpu, const GpuMaterial& material, glm::ivec2 size) {
   const auto read = [&](GLuint texture, bool is_srgb) {
     if (texture == 0) return Texels(Count(size), glm::vec4(is_srgb ? 1.0f : 0.0f));
     return LayerReader(texture, 0, is_srgb, size).ReadAll();
   };
-  BareTexels bare;
-  bare.slopes = Interleaved(read(material.derivatives, false));
-  if (gpu.wrinkle_looks() == 0) return bare;
+  BaseTexels base;
+  base.slopes = Interleaved(read(material.derivatives, false));
+  if (gpu.wrinkle_looks() == 0) return base;
   Texels colours = read(material.base_colour, true);
   for (glm::vec4& texel : colours) texel.a = 1.0f;  // no cavity
-  bare.colours = Interleaved(colours);
-  return bare;
+  base.colours = Interleaved(colours);
+  return base;
 }
 
 }  // namespace furrow::render

@@ -11,9 +11,9 @@
 
 namespace furrow::render {
 
-// What is composed of a material: the wrinkle maps (of the rig) that may go on it, and the channels
-// of the masks (four a layer) that say where; both ascending. Channels of skinned masks count on
-// from there.
+// Selects what is composed into a material: wrinkle maps of the rig, and the mask channels (four
+// per layer) that mask them. Both lists are ascending. Channels of skinned masks are numbered after
+// `channels`.
 struct ComposeSelection {
   const GpuMaterial* material = nullptr;
   std::vector<int> maps;
@@ -25,22 +25,22 @@ struct ComposeSelection {
   }
 };
 
-// Textures of a character as a level of `size` texels sees them, from the same levels of each,
-// where some mask lets something through: row after row. Needs a current context, and waits for it.
+// Reads the textures of a character at a mip level of `size` texels and returns the tiles where a
+// mask is above 0, row by row. Needs a current context and waits for it.
 [[nodiscard]] std::vector<ComposeTile> ReadComposeTiles(const GpuCharacter& gpu,
                                                         const ComposeSelection& selection,
                                                         glm::ivec2 size);
 
-// RGBA halves of a material's textures in that size: what ComposeJob writes where nothing is
-// painted. Without looks, `colours` stays empty.
-struct BareTexels {
+// RGBA half floats of a material's own textures at that size: what ComposeJob writes where nothing
+// is painted. `colours` is empty if no wrinkle map has looks.
+struct BaseTexels {
   std::vector<std::uint16_t> slopes;
   std::vector<std::uint16_t> colours;
 };
-[[nodiscard]] BareTexels ReadBareTexels(const GpuCharacter& gpu, const GpuMaterial& material,
+[[nodiscard]] BaseTexels ReadBaseTexels(const GpuCharacter& gpu, const GpuMaterial& material,
                                         glm::ivec2 size);
 
-// Of a texture's finest level; 0 x 0: there is none.
+// Size of a texture's finest level; 0 x 0 if there is no texture.
 [[nodiscard]] glm::ivec2 TextureSize(GLuint texture);
 
 }  // namespace furrow::render

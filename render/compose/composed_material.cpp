@@ -9,12 +9,12 @@
 namespace furrow::render {
 namespace {
 
-// Of a wrinkle weight: what moves by less is not seen.
-constexpr float kLeastChange = 1.0f / 4096.0f;
-constexpr float kUnknown = -1.0f;  // a weight, of which nothing is painted
-// Texels a side of a level that is read at once: by it, it is known about how much of the finer
-// ones there is to paint.
-constexpr int kOutlineSide = 256;
+// Smaller changes of a wrinkle weight are invisible.
+constexpr float kMinChange = 1.0f / 4096.0f;
+constexpr float kUnknown = -1.0f;  // weight of unknown state, which counts as changed
+// Texels per side of the level that is read immediately. It gives an estimate of how much there is
+// to paint on finer levels.
+constexpr int kEstimateSide = 256;
 
 gl::Texture MakeLevels(glm::ivec2 size, std::size_t levels) {
   gl::Texture texture = gl::MakeTexture(GL_TEXTURE_2D);
@@ -35,17 +35,17 @@ void Upload(GLuint texture, int level, glm::ivec2 first, glm::ivec2 size,
 ComposedMaterial::ComposedMaterial(const GpuCharacter& gpu, ComposeSelection selection,
                                    glm::ivec2 size)
     : gpu_(gpu), selection_(std::move(selection)), size_(size) {
-  // Down to a single texel: who is far away is drawn with the same texture as who is near.
+  // Levels go down to a single texel, because near and far subjects share the texture.
   for (glm::ivec2 level = size; level.x > 0 || level.y > 0; level /= 2) {
     levels_.push_back({glm::max(level, glm::ivec2(1)), false, {}});
   }
   copies_[front_] = MakeCopy();
-  FillBare(&copies_[front_]);
-  const auto is_outline = [](const Level& level) {
-    return std::max(level.size.x, level.size.y) <= kOutlineSide;
+  FillBase(&copies_[front_]);
+  const auto is_estimate = [](const Level& level) {
+    return std::max(level.size.x, level.size.y) <= kEstimateSide;
   };
-  const auto outline = std::ranges::find_if(levels_, is_outline);
-  if (outline != levels_.end()) ReadLevel(&*outline);
+  const auto estimate = std::ranges::find_if(levels_, is_estimate);
+  if (estimate != levels_.end()) ReadLevel(&*estimate);
 }
 
 ComposedMaterial::Copy ComposedMaterial::MakeCopy() const {
@@ -54,20 +54,21 @@ ComposedMaterial::Copy ComposedMaterial::MakeCopy() const {
   if (gpu_.wrinkle_looks() != 0) copy.colour = MakeLevels(size_, levels_.size());
   copy.textures = {copy.derivatives.name(), copy.colour.name()};
   const std::size_t maps = selection_.maps.size();
-  copy.ink = {std::vector<float>(selection_.num_channels() * maps, 0.0f),
-              std::vector<float>(maps, 1.0f), std::vector<float>(maps, 1.0f), glm::vec2(1.0f)};
+  copy.strengths = {std::vector<float>(selection_.num_channels() * maps, 0.0f),
+                    std::vector<float>(maps, 1.0f), std::vector<float>(maps, 1.0f),
+                    glm::vec2(1.0f)};
   copy.first_levels.assign(selection_.num_channels(), 0);
-  copy.inked_levels.assign(selection_.num_channels(), 0);
+  copy.painted_levels.assign(selection_.num_channels(), 0);
   return copy;
 }
 
-void ComposedMaterial::FillBare(Copy* copy) const {
+void ComposedMaterial::FillBase(Copy* copy) const {
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     const glm::ivec2 size = levels_[i].size;
-    const BareTexels bare = ReadBareTexels(gpu_, *selection_.material, size);
-    Upload(copy->textures.derivatives, static_cast<int>(i), {0, 0}, size, bare.slopes);
+    const BaseTexels base = ReadBaseTexels(gpu_, *selection_.material, size);
+    Upload(copy->textures.derivatives, static_cast<int>(i), {0, 0}, size, base.slopes);
     if (copy->colour)
-      Upload(copy->textures.colour, static_cast<int>(i), {0, 0}, size, bare.colours);
+      Upload(copy->textures.colour, static_cast<int>(i), {0, 0}, size, base.colours);
   }
 }
 
@@ -83,18 +84,18 @@ void ComposedMaterial::CopyFront(Copy* copy) const {
     one(front.derivatives, copy->derivatives);
     one(front.colour, copy->colour);
   }
-  copy->ink = front.ink;
+  copy->strengths = front.strengths;
   copy->first_levels = front.first_levels;
-  copy->inked_levels = front.inked_levels;
+  copy->painted_levels = front.painted_levels;
 }
 
-bool ComposedMaterial::IsChanged(const ComposeInk& from, const ComposeInk& to,
+bool ComposedMaterial::IsChanged(const ComposeStrengths& from, const ComposeStrengths& to,
                                  std::size_t channel) const {
   const std::size_t maps = selection_.maps.size();
   for (std::size_t map = 0; map < maps; ++map) {
     const float before = from.weights[channel * maps + map];
     const float now = to.weights[channel * maps + map];
-    if (std::abs(now - before) > kLeastChange) return true;
+    if (std::abs(now - before) > kMinChange) return true;
     const bool is_alike = from.amplitudes[map] == to.amplitudes[map] &&
                           from.scales[map] == to.scales[map] && from.looks == to.looks;
     if (!is_alike && (before > 0.0f || now > 0.0f)) return true;
@@ -102,25 +103,25 @@ bool ComposedMaterial::IsChanged(const ComposeInk& from, const ComposeInk& to,
   return false;
 }
 
-std::vector<bool> ComposedMaterial::Changes(const ComposeInk& from, const Wanted& to) const {
+std::vector<bool> ComposedMaterial::Changes(const ComposeStrengths& from, const Needs& to) const {
   std::vector<bool> changed;
   for (std::size_t channel = 0; channel < selection_.num_channels(); ++channel) {
-    changed.push_back(to.is_seen[channel] && IsChanged(from, to.ink, channel));
+    changed.push_back(to.is_seen[channel] && IsChanged(from, to.strengths, channel));
   }
   return changed;
 }
 
-bool ComposedMaterial::IsSame(const ComposeInk& from, const Wanted& to) const {
+bool ComposedMaterial::IsSame(const ComposeStrengths& from, const Needs& to) const {
   const std::vector<bool> changed = Changes(from, to);
   return std::ranges::find(changed, true) == changed.end();
 }
 
-bool ComposedMaterial::IsPainted(const Wanted& wanted) const {
+bool ComposedMaterial::IsPainted(const Needs& needs) const {
   const Copy& front = copies_[front_];
-  for (std::size_t i = 0; i < wanted.is_seen.size(); ++i) {
-    if (wanted.is_seen[i] && front.first_levels[i] > wanted.first_levels[i]) return false;
+  for (std::size_t i = 0; i < needs.is_seen.size(); ++i) {
+    if (needs.is_seen[i] && front.first_levels[i] > needs.first_levels[i]) return false;
   }
-  return IsSame(front.ink, wanted);
+  return IsSame(front.strengths, needs);
 }
 
 const ComposedMaterial::Copy& ComposedMaterial::Back() const {
@@ -147,33 +148,35 @@ std::vector<const ComposeTile*> ComposedMaterial::Stale(const Level& level,
   return stale;
 }
 
-bool ComposedMaterial::IsStale(const Copy& copy, const Wanted& wanted, bool is_changed,
+bool ComposedMaterial::IsStale(const Copy& copy, const Needs& needs, bool is_changed,
                                std::size_t channel, int level) {
-  const int first = wanted.first_levels[channel];
+  const int first = needs.first_levels[channel];
   const bool is_old = is_changed || copy.first_levels[channel] > level;
-  if (!wanted.is_seen[channel] || !is_old) return false;
-  return first <= level || (first == level + 1 && (copy.inked_levels[channel] >> level & 1u) != 0);
+  if (!needs.is_seen[channel] || !is_old) return false;
+  return first <= level ||
+         (first == level + 1 && (copy.painted_levels[channel] >> level & 1u) != 0);
 }
 
-std::vector<bool> ComposedMaterial::StaleChannels(const Copy& copy, const Wanted& wanted,
+std::vector<bool> ComposedMaterial::StaleChannels(const Copy& copy, const Needs& needs,
                                                   const std::vector<bool>& changed,
                                                   std::size_t level) {
   std::vector<bool> stale(changed.size());
   for (std::size_t i = 0; i < stale.size(); ++i) {
-    stale[i] = IsStale(copy, wanted, changed[i], i, static_cast<int>(level));
+    stale[i] = IsStale(copy, needs, changed[i], i, static_cast<int>(level));
   }
   return stale;
 }
 
-std::size_t ComposedMaterial::NumStale(const Wanted& wanted) const {
-  if (IsPainted(wanted)) return 0;
+std::size_t ComposedMaterial::NumStale(const Needs& needs) const {
+  if (IsPainted(needs)) return 0;
   const Copy& copy = Back();
-  const std::vector<bool> changed = Changes(copy.ink, wanted);
+  const std::vector<bool> changed = Changes(copy.strengths, needs);
   std::size_t texels = 0;
   for (std::size_t i = levels_.size(); i-- > 0;) {
-    const std::vector<bool> stale = StaleChannels(copy, wanted, changed, i);
+    const std::vector<bool> stale = StaleChannels(copy, needs, changed, i);
     if (std::ranges::find(stale, true) == stale.end()) continue;
-    // Four times as many as of the next coarser one that was read; the coarsest hardly count.
+    // Estimates unread levels: each has four times the texels of the next coarser one. The coarsest
+    // levels hardly count.
     std::size_t read = i;
     while (read + 1 < levels_.size() && !levels_[read].is_read) ++read;
     texels += (ComposeTile::kTexels * Stale(levels_[read], stale).size()) << (2 * (read - i));
@@ -181,59 +184,61 @@ std::size_t ComposedMaterial::NumStale(const Wanted& wanted) const {
   return texels;
 }
 
-ComposeInk ComposedMaterial::Merged(const ComposeInk& painted, const Wanted& wanted) const {
-  ComposeInk ink = wanted.ink;
+ComposeStrengths ComposedMaterial::Merged(const ComposeStrengths& painted,
+                                          const Needs& needs) const {
+  ComposeStrengths strengths = needs.strengths;
   const std::size_t maps = selection_.maps.size();
-  const bool is_alike = painted.amplitudes == ink.amplitudes && painted.scales == ink.scales &&
-                        painted.looks == ink.looks;
-  for (std::size_t i = 0; i < ink.weights.size(); ++i) {
-    const bool is_seen = wanted.is_seen[i / maps];
-    if (is_seen && IsChanged(painted, wanted.ink, i / maps)) continue;
+  const bool is_alike = painted.amplitudes == strengths.amplitudes &&
+                        painted.scales == strengths.scales && painted.looks == strengths.looks;
+  for (std::size_t i = 0; i < strengths.weights.size(); ++i) {
+    const bool is_seen = needs.is_seen[i / maps];
+    if (is_seen && IsChanged(painted, needs.strengths, i / maps)) continue;
     const bool is_known = is_seen || is_alike || painted.weights[i] == 0.0f;
-    ink.weights[i] = is_known ? painted.weights[i] : kUnknown;
+    strengths.weights[i] = is_known ? painted.weights[i] : kUnknown;
   }
-  return ink;
+  return strengths;
 }
 
-ComposeInk ComposedMaterial::InkOfLevel(const Copy& copy, int level) const {
-  ComposeInk ink = copy.ink;
+ComposeStrengths ComposedMaterial::StrengthsOfLevel(const Copy& copy, int level) const {
+  ComposeStrengths strengths = copy.strengths;
   const std::size_t maps = selection_.maps.size();
-  for (std::size_t i = 0; i < ink.weights.size(); ++i) {
-    if (copy.first_levels[i / maps] > level) ink.weights[i] = 0.0f;
+  for (std::size_t i = 0; i < strengths.weights.size(); ++i) {
+    if (copy.first_levels[i / maps] > level) strengths.weights[i] = 0.0f;
   }
-  return ink;
+  return strengths;
 }
 
 void ComposedMaterial::PaintLevel(std::size_t level, const std::vector<bool>& stale, Copy* copy) {
   const int number = static_cast<int>(level);
   ReadLevel(&levels_[level]);
   const bool is_whole = std::ranges::max(copy->first_levels) <= number;
-  PaintTiles(*copy, is_whole ? copy->ink : InkOfLevel(*copy, number), level,
+  PaintTiles(*copy, is_whole ? copy->strengths : StrengthsOfLevel(*copy, number), level,
              Stale(levels_[level], stale));
   for (std::size_t i = 0; i < stale.size(); ++i) {
     if (!stale[i]) continue;
     const auto bit = static_cast<std::uint16_t>(1u << level);
-    const bool is_inked = copy->first_levels[i] <= number;
-    copy->inked_levels[i] = is_inked ? copy->inked_levels[i] | bit : copy->inked_levels[i] & ~bit;
+    const bool is_painted_now = copy->first_levels[i] <= number;
+    copy->painted_levels[i] =
+        is_painted_now ? copy->painted_levels[i] | bit : copy->painted_levels[i] & ~bit;
   }
 }
 
-void ComposedMaterial::Paint(const Wanted& wanted) {
-  if (IsPainted(wanted)) return;
+void ComposedMaterial::Paint(const Needs& needs) {
+  if (IsPainted(needs)) return;
   Copy& back = copies_[1 - front_];
   if (!back.derivatives) {
     back = MakeCopy();
     CopyFront(&back);
   }
-  const std::vector<bool> changed = Changes(back.ink, wanted);
+  const std::vector<bool> changed = Changes(back.strengths, needs);
   std::vector<std::vector<bool>> stale;
   for (std::size_t i = 0; i < levels_.size(); ++i) {
-    stale.push_back(StaleChannels(back, wanted, changed, i));
+    stale.push_back(StaleChannels(back, needs, changed, i));
   }
-  back.ink = Merged(back.ink, wanted);
+  back.strengths = Merged(back.strengths, needs);
   for (std::size_t i = 0; i < changed.size(); ++i) {
-    const int first = wanted.first_levels[i];
-    if (wanted.is_seen[i] && (changed[i] || first < back.first_levels[i])) {
+    const int first = needs.first_levels[i];
+    if (needs.is_seen[i] && (changed[i] || first < back.first_levels[i])) {
       back.first_levels[i] = first;
     }
   }
@@ -243,30 +248,30 @@ void ComposedMaterial::Paint(const Wanted& wanted) {
   front_ = 1 - front_;
 }
 
-// Neighbours in a row go to the GPU at once.
-void ComposedMaterial::PaintTiles(const Copy& copy, const ComposeInk& ink, std::size_t level,
-                                  std::span<const ComposeTile* const> tiles) {
+// Uploads adjacent tiles of a row together.
+void ComposedMaterial::PaintTiles(const Copy& copy, const ComposeStrengths& strengths,
+                                  std::size_t level, std::span<const ComposeTile* const> tiles) {
   for (std::size_t first = 0; first < tiles.size();) {
     std::size_t count = 1;
     while (first + count < tiles.size() &&
            tiles[first + count]->place == tiles[first]->place + glm::ivec2(count, 0)) {
       ++count;
     }
-    PaintRun(copy, ink, level, tiles.subspan(first, count));
+    PaintRun(copy, strengths, level, tiles.subspan(first, count));
     first += count;
   }
 }
 
-void ComposedMaterial::PaintRun(const Copy& copy, const ComposeInk& ink, std::size_t level,
-                                std::span<const ComposeTile* const> run) {
+void ComposedMaterial::PaintRun(const Copy& copy, const ComposeStrengths& strengths,
+                                std::size_t level, std::span<const ComposeTile* const> run) {
   const std::size_t stride = ComposeTile::kSide * run.size();
   slopes_.resize(4 * stride * ComposeTile::kSide);
   colours_.resize(copy.colour ? slopes_.size() : 0);
   for (std::size_t i = 0; i < run.size(); ++i) {
     const std::size_t first = 4 * ComposeTile::kSide * i;
-    ComposeJob job{run[i], &ink, std::span(slopes_).subspan(first), {}, stride};
+    ComposeJob job{run[i], &strengths, std::span(slopes_).subspan(first), {}, stride};
     if (copy.colour) job.colours = std::span(colours_).subspan(first);
-    if (!job.Run()) return;  // never: we made the tile
+    if (!job.Run()) return;  // cannot happen: the tile is well-formed
   }
   const auto number = static_cast<int>(level);
   const glm::ivec2 first = run.front()->place * ComposeTile::kSide;

@@ -13,43 +13,43 @@
 
 namespace furrow::render {
 
-// A material's normal map, and where wrinkle maps have looks its base colour, with wrinkles in
-// them. Half floats; the finest level is as large as asked for.
+// A material's normal map with wrinkles painted into it, and also its base colour if wrinkle maps
+// have looks. Half floats; `size` is the size of the finest level.
 //
-// Painted on the processor, tile by tile where weights change, and into one of two copies in turn,
-// so that nothing waits for a frame that is still being drawn.
+// The CPU paints the tiles where weights have changed. It paints into two copies in turn, so that
+// it never waits for a frame that is still being drawn.
 class ComposedMaterial {
  public:
-  // `gpu` and what the selection points to outlive it.
+  // `gpu` and everything that `selection` points to must outlive this object.
   ComposedMaterial(const GpuCharacter& gpu, ComposeSelection selection, glm::ivec2 size);
 
   struct Textures {
     GLuint derivatives = 0;
-    GLuint colour = 0;  // base colour in rgb, cavity in alpha; 0: the material's own
+    GLuint colour = 0;  // base colour in rgb, cavity in alpha; 0: use the material's own
   };
   [[nodiscard]] const Textures& textures() const { return copies_[front_].textures; }
   [[nodiscard]] glm::ivec2 size() const { return size_; }
   [[nodiscard]] int num_levels() const { return static_cast<int>(levels_.size()); }
   [[nodiscard]] const ComposeSelection& selection() const { return selection_; }
 
-  // What a picture needs of it.
-  struct Wanted {
-    ComposeInk ink;
-    // A channel of the selection each; what is not seen may look otherwise.
+  // What a picture needs from the textures.
+  struct Needs {
+    ComposeStrengths strengths;
+    // Per channel of the selection. Invisible channels may be outdated.
     std::vector<bool> is_seen;
-    std::vector<int> first_levels;  // the finest that is looked up where the channel is seen
+    std::vector<int> first_levels;  // per visible channel: finest level that is sampled
   };
-  // Whether textures() are that already.
-  [[nodiscard]] bool IsPainted(const Wanted& wanted) const;
-  // How many texels Paint() would make: none where the other copy is that.
-  [[nodiscard]] std::size_t NumStale(const Wanted& wanted) const;
-  // The first time that a level is painted, all that goes into it is read back from the GPU, which
+  // Returns true if textures() already meet the needs.
+  [[nodiscard]] bool IsPainted(const Needs& needs) const;
+  // The number of texels that Paint() would paint; 0 if the other copy already meets the needs.
+  [[nodiscard]] std::size_t NumStale(const Needs& needs) const;
+  // Paints. The first time that a level is painted, its inputs are read back from the GPU, which
   // takes milliseconds.
-  void Paint(const Wanted& wanted);
+  void Paint(const Needs& needs);
 
-  // Whether what is seen looks the same with one ink and the other. A weight that moves by less
-  // than what is seen does not count.
-  [[nodiscard]] bool IsSame(const ComposeInk& from, const Wanted& to) const;
+  // Returns true if the visible channels look the same with `from` and `to`. Invisibly small
+  // changes of weights do not count.
+  [[nodiscard]] bool IsSame(const ComposeStrengths& from, const Needs& to) const;
 
  private:
   struct Level {
@@ -61,47 +61,48 @@ class ComposedMaterial {
     gl::Texture derivatives;
     gl::Texture colour;
     Textures textures;
-    ComposeInk ink;                 // what is in it,
-    std::vector<int> first_levels;  // of each channel from this level on.
-    // Of each channel, by bits, the levels that may hold it at all, as it is or as it was. The
-    // level before its first one does not: a pixel takes a little of that one, too.
-    std::vector<std::uint16_t> inked_levels;
+    ComposeStrengths strengths;     // strengths that are painted in the copy
+    std::vector<int> first_levels;  // per channel: finest level that is painted
+    // Per channel, one bit per level: the level may contain the channel, up to date or outdated.
+    // This matters for the level before a channel's first one, of which a pixel also samples a
+    // small share.
+    std::vector<std::uint16_t> painted_levels;
   };
-  [[nodiscard]] bool IsChanged(const ComposeInk& from, const ComposeInk& to,
+  [[nodiscard]] bool IsChanged(const ComposeStrengths& from, const ComposeStrengths& to,
                                std::size_t channel) const;
-  // Of the selection's channels: those that are seen and look otherwise.
-  [[nodiscard]] std::vector<bool> Changes(const ComposeInk& from, const Wanted& to) const;
+  // Per channel of the selection: it is visible and looks different.
+  [[nodiscard]] std::vector<bool> Changes(const ComposeStrengths& from, const Needs& to) const;
   [[nodiscard]] const Copy& Back() const;
   [[nodiscard]] Copy MakeCopy() const;
-  void FillBare(Copy* copy) const;
+  void FillBase(Copy* copy) const;
   void CopyFront(Copy* copy) const;
   void ReadLevel(Level* level) const;
-  // Of a level, those that a channel of `changed` reaches.
+  // The tiles of a level where one of the `changed` channels is above 0.
   [[nodiscard]] static std::vector<const ComposeTile*> Stale(const Level& level,
                                                              const std::vector<bool>& changed);
-  // Of a level of a copy: whether a channel is seen there and out of date, or was left there as it
-  // looked before. `changed`: on all levels.
-  [[nodiscard]] static bool IsStale(const Copy& copy, const Wanted& wanted, bool is_changed,
+  // Returns true if a level of a copy shows an outdated state of a visible channel. `is_changed`:
+  // the channel has changed on all levels.
+  [[nodiscard]] static bool IsStale(const Copy& copy, const Needs& needs, bool is_changed,
                                     std::size_t channel, int level);
-  [[nodiscard]] static std::vector<bool> StaleChannels(const Copy& copy, const Wanted& wanted,
+  [[nodiscard]] static std::vector<bool> StaleChannels(const Copy& copy, const Needs& needs,
                                                        const std::vector<bool>& changed,
                                                        std::size_t level);
-  // What is painted over `painted`: only what is seen, and changed, is painted anew. Of the rest it
-  // is known how it looks as long as settings stay.
-  [[nodiscard]] ComposeInk Merged(const ComposeInk& painted, const Wanted& wanted) const;
-  // The copy's, without the channels that begin on a coarser level.
-  [[nodiscard]] ComposeInk InkOfLevel(const Copy& copy, int level) const;
+  // The strengths of the copy after painting. Only visible channels that changed are repainted. The
+  // state of the others stays known while settings stay the same.
+  [[nodiscard]] ComposeStrengths Merged(const ComposeStrengths& painted, const Needs& needs) const;
+  // The copy's strengths, without the channels that start at a coarser level.
+  [[nodiscard]] ComposeStrengths StrengthsOfLevel(const Copy& copy, int level) const;
   void PaintLevel(std::size_t level, const std::vector<bool>& stale, Copy* copy);
-  void PaintTiles(const Copy& copy, const ComposeInk& ink, std::size_t level,
+  void PaintTiles(const Copy& copy, const ComposeStrengths& strengths, std::size_t level,
                   std::span<const ComposeTile* const> tiles);
-  void PaintRun(const Copy& copy, const ComposeInk& ink, std::size_t level,
+  void PaintRun(const Copy& copy, const ComposeStrengths& strengths, std::size_t level,
                 std::span<const ComposeTile* const> run);
 
   const GpuCharacter& gpu_;
   ComposeSelection selection_;
   glm::ivec2 size_;
   std::vector<Level> levels_;
-  std::array<Copy, 2> copies_;  // the second is made when first needed
+  std::array<Copy, 2> copies_;  // the second copy is created when first needed
   std::size_t front_ = 0;
   std::vector<std::uint16_t> slopes_;  // of the run that is being painted
   std::vector<std::uint16_t> colours_;

@@ -14,23 +14,23 @@ namespace furrow::render {
 namespace {
 
 constexpr int kSide = ComposeTile::kSide;
-// Texels beyond the surface that filtering may look up: the centres around a point of it.
+// Texels beyond the surface that filtering may sample.
 constexpr float kReach = 1.5f;
-// Of all masks of a place, what is off by less is the same: two steps of a byte.
-constexpr float kLeastApart = 2.0f / 255.0f;
-// Texels a side in which places are told apart, and how many may be shared: specks, as where
-// islands of an atlas touch.
+// Largest difference of masks that counts as equal: two steps of a byte.
+constexpr float kMaxDifference = 2.0f / 255.0f;
+// Resolution, in texels per side, at which points are distinguished, and the number of texels that
+// may be shared: specks, as where islands of an atlas touch.
 constexpr int kUniqueSide = 1024;
-constexpr int kMostShared = 16;
-// Of a triangle: closer to an edge, a texel may as well be its neighbour's.
+constexpr int kMaxShared = 16;
+// Barycentric distance. A texel nearer to an edge may belong to the neighbouring triangle.
 constexpr float kEdge = 1e-3f;
-// Of more, masks are not looked at: what a character brings must not hold up the picture. A face
-// has a few dozen channels, and a vertex of it a few of them.
-constexpr std::size_t kMostChannels = 1024;
-constexpr std::size_t kMostOfAVertex = 64;
-constexpr std::size_t kMostParts = std::size_t{1} << 22;
+// Limits that keep a character from delaying the picture. A face has a few dozen channels, and each
+// of its vertices takes part in a few of them.
+constexpr std::size_t kMaxChannels = 1024;
+constexpr std::size_t kMaxPartsPerVertex = 64;
+constexpr std::size_t kMaxParts = std::size_t{1} << 22;
 
-// Less is no step of a byte.
+// Returns true if the value is visible in 8 bits.
 bool IsSeen(float value) { return value > 0.5f / 255.0f; }
 
 }  // namespace
@@ -41,7 +41,7 @@ SkinnedMasks::SkinnedMasks(std::span<const character::Mesh> meshes,
     : first_parts_{0} {
   const bool is_small = AddParts(meshes, shares);
   if (is_small) FindChannels(shares);
-  is_unique_ = is_small && channels_.size() <= kMostChannels &&
+  is_unique_ = is_small && channels_.size() <= kMaxChannels &&
                (channels_.empty() || (IsAtlas(triangles_) && FindUnique()));
   if (is_unique_) {
     FindRegions(meshes, inverse_bind_matrices, material);
@@ -53,7 +53,7 @@ SkinnedMasks::SkinnedMasks(std::span<const character::Mesh> meshes,
 
 bool SkinnedMasks::AddParts(std::span<const character::Mesh> meshes,
                             std::span<const SkinnedShare> shares) {
-  std::vector<std::vector<std::uint32_t>> of_joint;  // the shares of each
+  std::vector<std::vector<std::uint32_t>> of_joint;  // indices of the shares of each joint
   for (std::uint32_t i = 0; i < shares.size(); ++i) {
     const auto joint = static_cast<std::size_t>(shares[i].joint);
     of_joint.resize(std::max(of_joint.size(), joint + 1));
@@ -72,7 +72,7 @@ bool SkinnedMasks::AddParts(std::span<const character::Mesh> meshes,
               wrinkle::Lambda(mask.lambda, vertex.skin_weights[i], mask.smooth_width);
           if (lambda > 0.0f) parts_.push_back({channel, lambda});
         }
-        if (parts_.size() > std::min(first + kMostOfAVertex, kMostParts)) return false;
+        if (parts_.size() > std::min(first + kMaxPartsPerVertex, kMaxParts)) return false;
       }
       first_parts_.push_back(static_cast<std::uint32_t>(parts_.size()));
     }
@@ -122,7 +122,7 @@ void SkinnedMasks::FindRegions(std::span<const character::Mesh> meshes,
       }
     }
     regions_.push_back({static_cast<int>(channel), material,
-                        JointBounds(surface, inverse_bind_matrices), LeastUvPerMetre(surface)});
+                        JointBounds(surface, inverse_bind_matrices), MinUvPerMetre(surface)});
   }
 }
 
@@ -145,60 +145,60 @@ void SkinnedMasks::AddValues(const Place& place, float factor, std::vector<float
   }
 }
 
-bool SkinnedMasks::IsAlike(const Place& a, const Place& b, std::vector<float>* apart) const {
-  AddValues(a, 1.0f, apart);
-  AddValues(b, -1.0f, apart);
+bool SkinnedMasks::IsAlike(const Place& a, const Place& b, std::vector<float>* difference) const {
+  AddValues(a, 1.0f, difference);
+  AddValues(b, -1.0f, difference);
   float sum = 0.0f;
   for (const Place* place : {&a, &b}) {
     for (std::size_t i = 0; i < 3; ++i) {
       for (const Part& part :
            PartsOf(corners_[3 * static_cast<std::size_t>(place->triangle) + i])) {
-        sum += std::abs(std::exchange((*apart)[part.channel], 0.0f));
+        sum += std::abs(std::exchange((*difference)[part.channel], 0.0f));
       }
     }
   }
-  return sum <= kLeastApart;
+  return sum <= kMaxDifference;
 }
 
-// All of it is one line of the texture, along which it has more than one mask.
-bool SkinnedMasks::IsFlat(std::size_t triangle, std::vector<float>* apart) const {
+// Returns true if the triangle is a line in the texture along which its masks differ.
+bool SkinnedMasks::IsFlat(std::size_t triangle, std::vector<float>* difference) const {
   const auto& [a, b, c] = triangles_[triangle];
   if ((b.x - a.x) * (c.y - a.y) != (b.y - a.y) * (c.x - a.x)) return false;
   const auto number = static_cast<std::int32_t>(triangle);
   const Place corner{number, 0.0f, {1.0f, 0.0f, 0.0f}};
-  return !IsAlike(corner, {number, 0.0f, {0.0f, 1.0f, 0.0f}}, apart) ||
-         !IsAlike(corner, {number, 0.0f, {0.0f, 0.0f, 1.0f}}, apart);
+  return !IsAlike(corner, {number, 0.0f, {0.0f, 1.0f, 0.0f}}, difference) ||
+         !IsAlike(corner, {number, 0.0f, {0.0f, 0.0f, 1.0f}}, difference);
 }
 
 bool SkinnedMasks::FindUnique() const {
   const glm::ivec2 size(kUniqueSide);
   std::vector<Place> places(std::size_t{kUniqueSide} * kUniqueSide);
-  std::vector<float> apart(channels_.size(), 0.0f);
+  std::vector<float> difference(channels_.size(), 0.0f);
   int shared = 0;
-  for (std::size_t i = 0; i < triangles_.size() && shared <= kMostShared; ++i) {
-    if (IsFlat(i, &apart)) ++shared;
+  for (std::size_t i = 0; i < triangles_.size() && shared <= kMaxShared; ++i) {
+    if (IsFlat(i, &difference)) ++shared;
     ForTexels(triangles_[i], size, 0.0f, [&](const UvTexel& texel) {
       if (std::min({texel.shares.x, texel.shares.y, texel.shares.z}) < kEdge) return;
       const Place place{static_cast<std::int32_t>(i), 0.0f, texel.shares};
       Place& other = places[texel.index];
       if (other.triangle < 0) {
         other = place;
-      } else if (shared <= kMostShared && !IsAlike(other, place, &apart)) {
+      } else if (shared <= kMaxShared && !IsAlike(other, place, &difference)) {
         ++shared;
       }
     });
   }
-  return shared <= kMostShared;
+  return shared <= kMaxShared;
 }
 
-// The nearest each: what lies in a triangle is its own.
+// Finds the nearest point for each texel. A texel inside a triangle belongs to it.
 std::vector<SkinnedMasks::Place> SkinnedMasks::Places(glm::ivec2 size) const {
   std::vector<Place> places(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     ForTexels(triangles_[i], size, kReach, [&](const UvTexel& texel) {
       Place& place = places[texel.index];
-      if (place.triangle >= 0 && place.away_squared <= texel.away_squared) return;
-      place = {static_cast<std::int32_t>(i), texel.away_squared, texel.shares};
+      if (place.triangle >= 0 && place.distance_squared <= texel.distance_squared) return;
+      place = {static_cast<std::int32_t>(i), texel.distance_squared, texel.shares};
     });
   }
   for (Place& place : places) {

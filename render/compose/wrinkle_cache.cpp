@@ -11,16 +11,16 @@ namespace furrow::render {
 namespace {
 
 constexpr int kMaxSide = 2048;  // texels
-// Texels made in the time that composing the wrinkles of a pixel takes, of all the fragments there.
-constexpr float kTexelsOfAPixel = 8.0f;
-// A level of which a pixel would take no more than this is left without wrinkles: the next coarser
-// one is nearer.
-constexpr float kSkippedShare = 0.25f;
-// A texture that is finer than it need be, by so many levels, goes when so many pictures in a row
-// would have done with less. A camera that moves to and fro makes none, nor do two viewers of whom
-// one is near and the other far away.
-constexpr float kKeptLevels = 1.25f;
-constexpr int kKeptPictures = 250;
+// Texels that can be painted in the time that the fragments of one pixel take to evaluate wrinkles.
+constexpr float kTexelsPerPixel = 8.0f;
+// A level that would contribute at most this share to a pixel is left without wrinkles. The pixel
+// is nearer to the next coarser level.
+constexpr float kIgnoredShare = 0.25f;
+// A texture that is finer than necessary by this many levels is replaced after this many pictures
+// in a row. A moving camera, or two viewers at different distances, therefore do not cause repeated
+// repainting.
+constexpr float kMaxExcessLevels = 1.25f;
+constexpr int kExcessPictures = 250;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ void WrinkleCache::Plan(const Settings& settings, const View& view) {
   for (int index = 0; index < gpu_->num_materials(); ++index) {
     const GpuMaterial& material = gpu_->material(index);
     if (material.group == WrinkleGroup::kNone) continue;
-    // The alpha of a base colour that is cut out is needed; there is no room for a cavity.
+    // Cut-outs need the alpha of the base colour, which leaves no room for the cavity.
     if (material.alpha_test && gpu_->wrinkle_looks() != 0) continue;
     if (tables_->IsDisplaced(material.group, settings)) continue;
     const WrinkleTable& table = tables_->table(material.group);
@@ -81,65 +81,65 @@ WrinkleCache::Sight WrinkleCache::Look(int material, const View& view) const {
     if (mesh.material != material || !(mesh.uv_per_metre > 0.0f)) continue;
     const DrawList::Sight& seen = view.list->sight(index);
     sight.texels_per_uv = std::max(sight.texels_per_uv, seen.pixels / mesh.uv_per_metre);
-    // What is round shows a quarter of its surface.
+    // A convex body shows about a quarter of its surface from any side.
     const float shown = 0.25f * mesh.surface * seen.pixels * seen.pixels;
     sight.pixels += std::min(seen.covered * view.picture, shown);
   }
   return sight;
 }
 
-void WrinkleCache::LookAtRegions(int material, const ComposedMaterial& composed, const View& view,
-                                 ComposedMaterial::Wanted* wanted) const {
+void WrinkleCache::FindVisibleRegions(int material, const ComposedMaterial& composed,
+                                      const View& view, ComposedMaterial::Needs* needs) const {
   const ComposeSelection& selection = composed.selection();
   const std::vector<int>& channels = selection.channels;
-  wanted->is_seen.assign(selection.num_channels(), false);
-  wanted->first_levels.assign(selection.num_channels(), composed.num_levels() - 1);
+  needs->is_seen.assign(selection.num_channels(), false);
+  needs->first_levels.assign(selection.num_channels(), composed.num_levels() - 1);
   for (const MaskRegion& region : gpu_->mask_regions()) {
     const auto channel = std::ranges::find(channels, region.channel);
     if (region.material != material || channel == channels.end()) continue;
-    LookAtRegion(region, static_cast<std::size_t>(channel - channels.begin()), composed, view,
-                 wanted);
+    AddVisibleRegion(region, static_cast<std::size_t>(channel - channels.begin()), composed, view,
+                     needs);
   }
   if (selection.skinned == nullptr) return;
   for (const MaskRegion& region : selection.skinned->regions()) {
-    LookAtRegion(region, channels.size() + static_cast<std::size_t>(region.channel), composed, view,
-                 wanted);
+    AddVisibleRegion(region, channels.size() + static_cast<std::size_t>(region.channel), composed,
+                     view, needs);
   }
 }
 
-void WrinkleCache::LookAtRegion(const MaskRegion& region, std::size_t channel,
-                                const ComposedMaterial& composed, const View& view,
-                                ComposedMaterial::Wanted* wanted) const {
+void WrinkleCache::AddVisibleRegion(const MaskRegion& region, std::size_t channel,
+                                    const ComposedMaterial& composed, const View& view,
+                                    ComposedMaterial::Needs* needs) const {
   const PosedSubject& subject = *view.subject;
   const JointBounds::Extent extent =
       region.bounds.Look(subject.model, view.projection * subject.placement);
   if (!extent.is_seen()) return;
-  wanted->is_seen[channel] = true;
+  needs->is_seen[channel] = true;
   const float pixels = view.pixels * glm::length(glm::vec3(subject.placement[0]));
   const auto side = static_cast<float>(std::max(composed.size().x, composed.size().y));
-  // Texels to a pixel, as powers of two, where the region is nearest and stretched most.
+  // log2 of texels per pixel where the region is nearest and most stretched.
   const float level =
       extent.nearest > 0.0f
           ? std::log2(side * std::max(region.uv_per_metre, 1e-6f) * extent.nearest / pixels)
           : 0.0f;
-  int& first = wanted->first_levels[channel];
-  first = static_cast<int>(std::clamp(level + kSkippedShare, 0.0f, static_cast<float>(first)));
+  int& first = needs->first_levels[channel];
+  first = static_cast<int>(std::clamp(level + kIgnoredShare, 0.0f, static_cast<float>(first)));
 }
 
 void WrinkleCache::PlanMaterial(int index, const Settings& settings, const View& view,
                                 const Sight& sight, Entry* entry) {
   if (!Prepare(gpu_->material(index), sight, entry)) return;
   ComposedMaterial& composed = *entry->composed;
-  ComposedMaterial::Wanted wanted{InkOf(composed, entry->rest, settings), {}, {}};
-  LookAtRegions(index, composed, view, &wanted);
-  const bool is_painted = composed.IsPainted(wanted);
-  const bool is_held = entry->wanted.ink.weights.size() == wanted.ink.weights.size() &&
-                       composed.IsSame(entry->wanted.ink, wanted);
-  const auto texels = static_cast<float>(composed.NumStale(wanted));
-  const bool pays = is_software_ && texels <= kTexelsOfAPixel * sight.pixels;
+  ComposedMaterial::Needs needs{StrengthsOf(composed, entry->rest, settings), {}, {}};
+  FindVisibleRegions(index, composed, view, &needs);
+  const bool is_painted = composed.IsPainted(needs);
+  const bool is_held = entry->needs.strengths.weights.size() == needs.strengths.weights.size() &&
+                       composed.IsSame(entry->needs.strengths, needs);
+  const auto texels = static_cast<float>(composed.NumStale(needs));
+  const bool pays = is_software_ && texels <= kTexelsPerPixel * sight.pixels;
   entry->is_used = is_painted || is_held || pays;
   entry->is_stale = entry->is_used && !is_painted;
-  entry->wanted = std::move(wanted);
+  entry->needs = std::move(needs);
 }
 
 bool WrinkleCache::Prepare(const GpuMaterial& material, const Sight& sight, Entry* entry) const {
@@ -148,17 +148,17 @@ bool WrinkleCache::Prepare(const GpuMaterial& material, const Sight& sight, Entr
   if (entry->composed != nullptr) {
     const float finer =
         std::log2(static_cast<float>(entry->composed->size().x) / static_cast<float>(size.x));
-    entry->num_too_fine = finer < kKeptLevels ? 0 : entry->num_too_fine + 1;
-    if (finer >= 0.0f && entry->num_too_fine < kKeptPictures) return true;
+    entry->num_too_fine = finer < kMaxExcessLevels ? 0 : entry->num_too_fine + 1;
+    if (finer >= 0.0f && entry->num_too_fine < kExcessPictures) return true;
   }
   entry->num_too_fine = 0;
-  entry->wanted = {};
+  entry->needs = {};
   entry->composed =
       std::make_unique<ComposedMaterial>(*gpu_, SelectionOf(material, *entry->skinned), size);
   return true;
 }
 
-// The finest of what goes into it, halved as often as the picture does not show the difference.
+// The finest of the input sizes, halved while the picture cannot show the difference.
 glm::ivec2 WrinkleCache::SizeFor(const GpuMaterial& material, const Sight& sight) const {
   const glm::ivec2 finest = glm::max(
       glm::max(TextureSize(material.derivatives), TextureSize(gpu_->wrinkle_derivatives())),
@@ -186,40 +186,40 @@ ComposeSelection WrinkleCache::SelectionOf(const GpuMaterial& material,
   return selection;
 }
 
-ComposeInk WrinkleCache::InkOf(const ComposedMaterial& composed, WrinklePart rest,
-                               const Settings& settings) const {
+ComposeStrengths WrinkleCache::StrengthsOf(const ComposedMaterial& composed, WrinklePart rest,
+                                           const Settings& settings) const {
   const ComposeSelection& selection = composed.selection();
   const WrinkleTable& table = tables_->table(selection.material->group);
   const std::size_t maps = selection.maps.size();
-  ComposeInk ink{std::vector<float>(selection.num_channels() * maps, 0.0f),
-                 std::vector<float>(maps, 1.0f),
-                 std::vector<float>(maps, 1.0f),
-                 {settings.wrinkle_maps.blood_flow, settings.wrinkle_maps.cavity}};
+  ComposeStrengths strengths{std::vector<float>(selection.num_channels() * maps, 0.0f),
+                             std::vector<float>(maps, 1.0f),
+                             std::vector<float>(maps, 1.0f),
+                             {settings.wrinkle_maps.blood_flow, settings.wrinkle_maps.cavity}};
   for (std::size_t slot = NeedsOf(table, rest).num_maps; slot < table.maps.size(); ++slot) {
     const auto found = std::ranges::find(selection.maps, table.maps[slot].map);
     if (found == selection.maps.end()) continue;
-    AddMap(selection, static_cast<std::size_t>(found - selection.maps.begin()), slot, &ink);
+    AddMap(selection, static_cast<std::size_t>(found - selection.maps.begin()), slot, &strengths);
   }
-  return ink;
+  return strengths;
 }
 
 void WrinkleCache::AddMap(const ComposeSelection& selection, std::size_t map, std::size_t slot,
-                          ComposeInk* ink) const {
+                          ComposeStrengths* strengths) const {
   const WrinkleTable& table = tables_->table(selection.material->group);
   const auto layers = static_cast<std::size_t>(gpu_->layout().num_mask_layers);
   const std::size_t maps = selection.maps.size();
-  ink->amplitudes[map] = table.maps[slot].amplitude;
-  ink->scales[map] = table.maps[slot].colour.a;
+  strengths->amplitudes[map] = table.maps[slot].amplitude;
+  strengths->scales[map] = table.maps[slot].colour.a;
   std::size_t mask = 0;
   for (const int channel : selection.channels) {
     const glm::vec4& row =
         table.mask_weights[slot * layers + static_cast<std::size_t>(channel / 4)];
-    ink->weights[mask++ * maps + map] = row[channel % 4];
+    strengths->weights[mask++ * maps + map] = row[channel % 4];
   }
   if (selection.skinned == nullptr) return;
   for (const SkinnedShare& share : selection.skinned->channels()) {
     if (share.mask.map == selection.maps[map]) {
-      ink->weights[mask * maps + map] = tables_->influence(share.joint, share.column);
+      strengths->weights[mask * maps + map] = tables_->influence(share.joint, share.column);
     }
     ++mask;
   }
@@ -235,7 +235,7 @@ bool WrinkleCache::is_stale() const { return std::ranges::any_of(entries_, &Entr
 
 void WrinkleCache::Compose() {
   for (Entry& entry : entries_) {
-    if (entry.is_stale) entry.composed->Paint(entry.wanted);
+    if (entry.is_stale) entry.composed->Paint(entry.needs);
     entry.is_stale = false;
   }
 }

@@ -64,35 +64,34 @@ Result<std::vector<Candidate>> ChooseCandidates(std::string_view device) {
   if (parsed.ec != std::errc() || parsed.ptr != device.data() + device.size() ||
       index >= candidates.size()) {
     return Status(StatusCode::kInvalidArgument,
-                  "no EGL device '" + std::string(device) + "'; there are " +
-                      std::to_string(candidates.size()),
-                  "device", "give an index from 0, \"surfaceless\", or nothing");
+                  "no EGL device '" + std::string(device) +
+                      "'; number of devices: " + std::to_string(candidates.size()),
+                  "device", "use an index from 0, \"surfaceless\", or an empty name");
   }
   return std::vector<Candidate>{candidates[index]};
 }
 
 EGLContext CreateCoreContext(EGLDisplay display, bool reset_notification) {
   const EGLint attributes[] = {
-      // 4.5 core: direct state access, storage buffers and clip control, with nothing deprecated.
+      // OpenGL 4.5 core provides direct state access, storage buffers and clip control.
       EGL_CONTEXT_MAJOR_VERSION, 4,  //
       EGL_CONTEXT_MINOR_VERSION, 5,  //
       EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-      // After a device reset glGetGraphicsResetStatus() says so, instead of the process being
-      // killed.
-      // Left out on a second try: not every driver knows it.
+      // Asks the driver to report a device reset through glGetGraphicsResetStatus() instead of
+      // killing the process. The second attempt leaves this out because some drivers reject it.
       reset_notification ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE,
       EGL_LOSE_CONTEXT_ON_RESET,  //
       EGL_NONE};
-  // No config (EGL_KHR_no_config_context): a config describes a surface, and there is none.
+  // A config describes a surface, and this context has none (EGL_KHR_no_config_context).
   return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
 }
 
 Result<EGLDisplay> OpenDisplay(const Candidate& candidate) {
-  // Calling what no driver provides would end the program.
+  // epoxy ends the process when it calls a function that no driver provides, so check first.
   if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base")) {
     return Status(StatusCode::kUnavailable, "no EGL driver is installed");
   }
-  // No display attributes: the platform and the device say it all.
+  // The platform and the device need no further display attributes.
   const EGLDisplay display =
       eglGetPlatformDisplayEXT(candidate.platform, candidate.native, nullptr);
   if (display == EGL_NO_DISPLAY) {
@@ -103,7 +102,7 @@ Result<EGLDisplay> OpenDisplay(const Candidate& candidate) {
   }
   for (const char* extension : {"EGL_KHR_no_config_context", "EGL_KHR_surfaceless_context"}) {
     if (!epoxy_has_egl_extension(display, extension)) {
-      return Status(StatusCode::kUnavailable, std::string("lacks ") + extension);
+      return Status(StatusCode::kUnavailable, std::string("missing extension ") + extension);
     }
   }
   return display;
@@ -152,7 +151,7 @@ Result<std::unique_ptr<EglContext>> EglContext::Create(std::string_view device) 
     }
     tried += (tried.empty() ? "" : "; ") + candidate.name + ": " + failure.what();
   }
-  return Status(StatusCode::kUnavailable, "no EGL device gives OpenGL 4.5 core; tried " + tried,
+  return Status(StatusCode::kUnavailable, "no EGL device provides OpenGL 4.5 core; tried " + tried,
                 "EGL",
                 "install a driver (Debian: libgl1-mesa-dri, libegl1), or run without rendering");
 }
@@ -168,14 +167,15 @@ Status EglContext::MakeCurrent() {
   if (eglGetCurrentContext() != context_ &&
       !eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
     Status lost(StatusCode::kUnavailable, EglError("eglMakeCurrent"), "EGL",
-                "the context was lost or belongs to another thread: create the renderer anew");
-    // Another renderer's context must not stay current: the names of this one mean its objects.
+                "the context is lost or in use by another thread; create a new renderer");
+    // No other renderer's context may stay current: the caller would use this context's object
+    // names in it.
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     return lost;
   }
   if (glGetGraphicsResetStatus() != GL_NO_ERROR) {
     return {StatusCode::kUnavailable, "the OpenGL context was lost to a device reset", description_,
-            "create the renderer anew"};
+            "create a new renderer"};
   }
   return {};
 }

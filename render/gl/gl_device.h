@@ -10,14 +10,15 @@
 
 namespace furrow::render {
 
-// The frame graph's textures as OpenGL's, and the framebuffers that draw into them.
+// Implements the frame graph's textures with OpenGL textures, and owns the framebuffers that draw
+// into them.
 class GlDevice final : public FrameGraphDevice {
  public:
   [[nodiscard]] TextureId CreateTexture(const TextureDesc& desc) override;
   void DestroyTexture(TextureId texture) override;
 
-  // A framebuffer with these colours, drawn to in their order, and (0: none) depth texture; made
-  // once, kept while all live.
+  // Returns a framebuffer that draws into `colours`, in order, with the depth texture `depth` (0:
+  // none). Framebuffers are cached until one of their textures is destroyed.
   [[nodiscard]] GLuint Framebuffer(std::span<const TextureId> colours, TextureId depth);
   [[nodiscard]] GLuint Framebuffer(TextureId colour, TextureId depth) {
     return Framebuffer(std::span(&colour, 1), depth);
@@ -25,7 +26,7 @@ class GlDevice final : public FrameGraphDevice {
 
  private:
   std::map<TextureId, gl::Texture> textures_;
-  // By the textures attached, the depth's first.
+  // By attached textures, the depth texture first.
   std::map<std::vector<TextureId>, gl::Framebuffer> framebuffers_;
 };
 

@@ -6,14 +6,14 @@
 
 #include <epoxy/gl.h>
 
-// OpenGL names that delete themselves. Private to render/: no public header includes this one.
+// OpenGL names with automatic deletion. Private to render/: no public header includes this file.
 namespace furrow::render::gl {
 
-// Whether an OpenGL context is current on this thread.
+// Returns true if an OpenGL context is current on this thread.
 [[nodiscard]] bool HasContext();
 
-// Owns one name. Destroy with its context current; without any, nothing is deleted: a context that
-// is gone took its names along.
+// Owns one OpenGL name. Destroy it while its context is current. Without a current context nothing
+// is deleted, because a lost context has already freed its objects.
 template <class Kind>
 class Object {
  public:
@@ -66,15 +66,15 @@ using Program = Object<ProgramKind>;
 using Sampler = Object<SamplerKind>;
 
 [[nodiscard]] Buffer MakeBuffer();
-// Immutable contents, written once.
+// A buffer with immutable contents.
 [[nodiscard]] Buffer MakeStaticBuffer(const void* data, std::size_t bytes);
 [[nodiscard]] Texture MakeTexture(GLenum target);
 [[nodiscard]] Framebuffer MakeFramebuffer();
 [[nodiscard]] VertexArray MakeVertexArray();
 [[nodiscard]] Sampler MakeSampler();
 
-// New storage with new contents: a frame still in flight keeps the old one, so nothing waits. An
-// empty range becomes 16 zero bytes, since a shader's block must be backed by something.
+// Replaces storage and contents. A frame in flight keeps the old storage, so the call does not wait
+// for it. An empty range becomes 16 zero bytes, because a uniform block must have storage.
 void Upload(const Buffer& buffer, const void* data, std::size_t bytes);
 
 }  // namespace furrow::render::gl

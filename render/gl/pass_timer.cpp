@@ -8,7 +8,7 @@
 namespace furrow::render {
 namespace {
 
-// The device's clock once all that was asked of it is done.
+// Waits until all submitted work is done. Returns the device's clock in nanoseconds.
 std::int64_t Timestamp() {
   GLuint query = 0;
   glCreateQueries(GL_TIMESTAMP, 1, &query);

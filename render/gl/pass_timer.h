@@ -11,19 +11,20 @@
 
 namespace furrow::render {
 
-// Milliseconds that one pass of a frame took.
+// Time that one pass of a frame took, in milliseconds.
 struct PassTime {
   std::string pass;
-  double gpu_ms = 0.0;   // between two timestamps of the device's own clock
-  double wall_ms = 0.0;  // of this thread, from before the pass until the device had finished it
-  double cpu_ms = 0.0;   // of all threads of the process in that time: the work where a processor
-                         // draws, which others that use it do not change
+  double gpu_ms = 0.0;   // between two timestamps of the device's clock
+  double wall_ms = 0.0;  // wall-clock time of this thread, from before the pass until the device
+                         // finished it
+  double cpu_ms = 0.0;   // CPU time of all threads of the process. With a software driver this is
+                         // the work done, unaffected by other processes.
 };
 
-// Times the passes of frames: Renderer::SetObserver(). It waits for the device before and after
-// every pass, so that no pass pays for another; a frame as a whole takes longer than without. A
-// software device does part of a pass's work (vertices) on this thread, outside its timestamps, so
-// that only wall_ms has all of it.
+// Measures the passes of frames; install it with Renderer::SetObserver(). It waits for the device
+// before and after every pass, so that no pass pays for another. A measured frame therefore takes
+// longer than an unmeasured one. A software driver processes vertices on the calling thread,
+// outside the timestamps, so only wall_ms and cpu_ms include that work.
 class PassTimer final : public FrameGraphObserver {
  public:
   PassTimer() = default;
@@ -34,7 +35,7 @@ class PassTimer final : public FrameGraphObserver {
   void BeforePass(std::string_view pass) override;
   void AfterPass(std::string_view pass, const std::vector<Written>& written) override;
 
-  // The passes since the last call, in the order they ran.
+  // Returns the passes since the last call, in the order in which they ran.
   [[nodiscard]] std::vector<PassTime> Take();
 
  private:

@@ -4,7 +4,8 @@
 namespace furrow::render {
 namespace {
 
-constexpr GLuint64 kLongestWait = 60'000'000'000;  // nanoseconds: 4096 x 4096 on a busy CPU
+constexpr GLuint64 kLongestWait = 60'000'000'000;  // nanoseconds; enough for 4096 x 4096 pixels on
+                                                   // a busy CPU
 
 // RGBA to RGB.
 std::vector<std::uint8_t> DropAlpha(const std::uint8_t* rgba, std::size_t num_pixels) {
@@ -64,8 +65,8 @@ Result<std::optional<Image>> ReadBack::Take(bool wait) {
                                    GL_MAP_READ_BIT);
   }
   if (pixels == nullptr) {
-    return Status(StatusCode::kUnavailable, "the picture did not come back from the GPU",
-                  "read-back", "create the renderer anew");
+    return Status(StatusCode::kUnavailable, "the GPU did not return the picture", "read-back",
+                  "create a new renderer");
   }
   Image image{slot.width, slot.height, {}, slot.token};
   image.rgb = DropAlpha(static_cast<const std::uint8_t*>(pixels), num_pixels);

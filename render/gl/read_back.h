@@ -2,15 +2,17 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 
+#include "base/status.h"
 #include "render/gl/gl_objects.h"
-#include "render/renderer.h"
+#include "render/request/image.h"
 
 namespace furrow::render {
 
-// Pictures on their way from the GPU: a ring of pixel buffers, each with a fence, so that drawing
-// the next frame need not wait for the last one's pixels. First in, first out.
+// Copies pictures from the GPU to memory through a ring of pixel buffers, each with a fence.
+// Drawing the next frame does not wait for the pixels of the last one. First in, first out.
 class ReadBack {
  public:
   static constexpr int kCapacity = 2;
@@ -25,8 +27,9 @@ class ReadBack {
   // Starts to copy the 8-bit RGBA colour of `framebuffer`. Precondition: in_flight() < kCapacity.
   void Start(GLuint framebuffer, int width, int height, std::uint64_t token);
 
-  // The oldest picture when its copy is complete; `wait`: until it is. Rows in the order that they
-  // were drawn from the bottom up. kUnavailable: the driver gave up waiting (a lost context).
+  // Returns the oldest picture if its copy is complete. `wait`: blocks until it is. Rows keep the
+  // order in which OpenGL stores them, from y = 0 upwards; composite.frag.glsl has flipped the
+  // picture. kUnavailable: the driver gave up waiting because the context was lost.
   [[nodiscard]] Result<std::optional<Image>> Take(bool wait);
 
  private:

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "base/status.h"
+#include "render/gl/shader_loader.h"
+#include "render/gl/shader_program.h"
 #include "render/skin/subsurface_kernel.h"
 
 namespace furrow::render {
@@ -12,40 +13,6 @@ namespace {
 
 std::string Define(std::string_view name, int value) {
   return std::string(name) + " " + std::to_string(value);
-}
-
-Result<gl::Shader> Compile(GLenum stage, std::string_view name,
-                           std::span<const std::string> defines,
-                           std::span<const ShaderFile> files) {
-  const Result<ShaderSource> source = ExpandShader(name, defines, files);
-  FURROW_RETURN_IF_ERROR(source);
-  gl::Shader shader(glCreateShader(stage));
-  const char* text = source->text.c_str();
-  glShaderSource(shader.name(), 1, &text, nullptr);
-  glCompileShader(shader.name());
-  GLint compiled = GL_FALSE;
-  glGetShaderiv(shader.name(), GL_COMPILE_STATUS, &compiled);
-  if (compiled == GL_TRUE) return shader;
-  GLint length = 0;
-  glGetShaderiv(shader.name(), GL_INFO_LOG_LENGTH, &length);
-  std::string log(static_cast<std::size_t>(length), '\0');
-  glGetShaderInfoLog(shader.name(), length, &length, log.data());
-  log.resize(static_cast<std::size_t>(length));
-  return Status(StatusCode::kInternal, "does not compile:\n" + NameSources(log, source->files),
-                std::string(name));
-}
-
-Status Link(const gl::Program& program, std::string_view name) {
-  glLinkProgram(program.name());
-  GLint linked = GL_FALSE;
-  glGetProgramiv(program.name(), GL_LINK_STATUS, &linked);
-  if (linked == GL_TRUE) return {};
-  GLint length = 0;
-  glGetProgramiv(program.name(), GL_INFO_LOG_LENGTH, &length);
-  std::string log(static_cast<std::size_t>(length), '\0');
-  glGetProgramInfoLog(program.name(), length, &length, log.data());
-  log.resize(static_cast<std::size_t>(length));
-  return {StatusCode::kInternal, "does not link:\n" + log, std::string(name)};
 }
 
 }  // namespace
@@ -105,34 +72,15 @@ std::vector<std::string> Defines(const PoseShader& shader) {
           Define("DISPLACED", shader.displaced), Define("MAP_SLOTS", shader.map_slots)};
 }
 
-Result<gl::Program> BuildProgram(const ProgramFiles& program, std::span<const std::string> defines,
-                                 std::span<const ShaderFile> files) {
-  const std::pair<GLenum, std::string_view> stages[] = {
-      {GL_VERTEX_SHADER, program.vertex},
-      {GL_TESS_CONTROL_SHADER, program.tess_control},
-      {GL_TESS_EVALUATION_SHADER, program.tess_evaluation},
-      {GL_FRAGMENT_SHADER, program.fragment}};
-  gl::Program built(glCreateProgram());
-  for (const auto& [stage, name] : stages) {
-    if (name.empty()) continue;
-    const Result<gl::Shader> shader = Compile(stage, name, defines, files);
-    FURROW_RETURN_IF_ERROR(shader);
-    glAttachShader(built.name(), shader->name());  // keeps it as long as the program
-  }
-  const std::string_view name = program.fragment.empty() ? program.vertex : program.fragment;
-  FURROW_RETURN_IF_ERROR(Link(built, name));
-  return built;
-}
-
 Result<GLuint> ShaderLibrary::Get(const SceneShader& shader) {
   if (const auto found = scene_.find(shader); found != scene_.end()) return found->second.name();
-  ProgramFiles files{"scene.vert.glsl", "scene.frag.glsl"};
-  if (shader.shading == Shading::kSkin) files.fragment = "skin.frag.glsl";
-  if (shader.unlit) files.fragment = "surface.frag.glsl";
-  if (shader.shadow) files.fragment = "shadow.frag.glsl";
+  ProgramFiles files{"scene/scene.vert.glsl", "scene/scene.frag.glsl"};
+  if (shader.shading == Shading::kSkin) files.fragment = "skin/skin.frag.glsl";
+  if (shader.unlit) files.fragment = "scene/surface.frag.glsl";
+  if (shader.shadow) files.fragment = "shadow/shadow.frag.glsl";
   if (shader.displaced) {
-    files.tess_control = "displace.tesc.glsl";
-    files.tess_evaluation = "displace.tese.glsl";
+    files.tess_control = "scene/displace.tesc.glsl";
+    files.tess_evaluation = "scene/displace.tese.glsl";
   }
   Result<gl::Program> program = BuildProgram(files, Defines(shader), EmbeddedShaders());
   FURROW_RETURN_IF_ERROR(program);
@@ -142,18 +90,19 @@ Result<GLuint> ShaderLibrary::Get(const SceneShader& shader) {
 Result<GLuint> ShaderLibrary::Get(const PoseShader& shader) {
   if (const auto found = pose_.find(shader); found != pose_.end()) return found->second.name();
   Result<gl::Program> program =
-      BuildProgram({"pose.vert.glsl"}, Defines(shader), EmbeddedShaders());
+      BuildProgram({"scene/pose.vert.glsl"}, Defines(shader), EmbeddedShaders());
   FURROW_RETURN_IF_ERROR(program);
   return pose_.emplace(shader, std::move(*program)).first->second.name();
 }
 
 Result<GLuint> ShaderLibrary::GetShadow(bool alpha_test) {
-  return GetNamed("shadow.vert.glsl", "shadow.frag.glsl", {Define("ALPHA_TEST", alpha_test)});
+  return GetNamed("shadow/shadow.vert.glsl", "shadow/shadow.frag.glsl",
+                  {Define("ALPHA_TEST", alpha_test)});
 }
 
 Result<GLuint> ShaderLibrary::GetFullscreen(std::string_view fragment,
                                             const std::vector<std::string>& defines) {
-  return GetNamed("fullscreen.vert.glsl", fragment, defines);
+  return GetNamed("common/fullscreen.vert.glsl", fragment, defines);
 }
 
 Result<GLuint> ShaderLibrary::GetNamed(std::string_view vertex, std::string_view fragment,

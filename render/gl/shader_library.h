@@ -5,41 +5,45 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "base/status.h"
+#include "character/character.h"
 #include "render/gl/gl_objects.h"
-#include "render/gl/shader_loader.h"
-#include "render/renderer.h"
+#include "render/settings/settings.h"
 
 namespace furrow::render {
 
-// What a program of pose.vert.glsl is compiled for.
+// Compile-time switches of scene/pose.vert.glsl.
 struct PoseShader {
   int num_joints = 0;      // of the character's skeleton
-  bool dynamic = false;    // with the dynamic masks of each vertex
-  bool displaced = false;  // ... and its share of the heights
-  int map_slots = 1;       // as of SceneShader
+  bool dynamic = false;    // write the dynamic masks of each vertex
+  bool displaced = false;  // write the vertex's share of the heights
+  int map_slots = 1;       // as in SceneShader
 
   friend auto operator<=>(const PoseShader&, const PoseShader&) = default;
 };
 
-// What a program of scene.{vert,frag}.glsl is compiled for. Everything that is the same for a whole
-// draw is settled here and not by branches: llvmpipe runs both sides of a branch.
+// Compile-time switches of the shaders in scene/ and skin/ that draw meshes. Everything that is
+// constant within a draw is a switch and not a branch, because llvmpipe runs both sides of a
+// branch.
 struct SceneShader {
   View view = View::kFinal;
   Shading shading = Shading::kDiffuse;
   NormalBlend normal_blend = NormalBlend::kPartialDerivative;
   bool wrinkle_texture = false;  // some active map is masked by textures
-  bool wrinkle_dynamic = false;  // ... by the joints' influences
+  bool wrinkle_dynamic = false;  // some active map is masked by the joints' influences
   bool base_colour_map = false;
   bool base_normal_map = false;
   bool roughness_map = false;
   bool alpha_test = false;
-  int active_maps = 0;  // wrinkle maps at work on this surface
+  int active_maps = 0;  // active wrinkle maps on this surface
   int mask_layers = 1;
-  std::uint32_t mask_bits = ~0u;  // the layers that hold masks of this surface's regions
-  int map_slots = 1;              // vec4s of dynamic masks: a quarter of the rig's maps, rounded up
-  // Of the skin pipeline alone.
+  std::uint32_t mask_bits = ~0u;  // mask layers with regions of this surface
+  int map_slots = 1;              // vec4s of dynamic masks per vertex: a quarter of the rig's maps,
+                                  // rounded up
+  // The following are used by the skin pipeline only.
   character::Material::Kind material = character::Material::Kind::kSkin;
   ShadowFilter shadow_filter = ShadowFilter::kOff;
   int shadow_taps = 1;
@@ -52,13 +56,13 @@ struct SceneShader {
   bool wrinkle_looks = false;
   bool thickness_map = false;
   bool conserve_energy = true;
-  bool any_material = false;  // `material` says nothing: each pixel does
-  // Only what light needs to know of the surface; light.frag.glsl comes later.
+  bool any_material = false;  // each pixel has its own material; `material` is ignored
+  // Store only the surface's properties; skin/light.frag.glsl lights them later.
   bool unlit = false;
-  bool displaced = false;       // tessellated, moved by heights
-  bool shadow = false;          // displaced, as a lamp sees it: depth alone
-  bool composed_looks = false;  // the wrinkles' are in the base colour already
-  bool crowd = false;           // several subjects, each with wrinkle weights of its own
+  bool displaced = false;       // tessellated and moved by heights
+  bool shadow = false;          // displaced geometry for a shadow map: depth only
+  bool composed_looks = false;  // the base colour already includes the wrinkles' colour and cavity
+  bool crowd = false;           // several subjects, each with its own wrinkle weights
 
   friend auto operator<=>(const SceneShader&, const SceneShader&) = default;
 };
@@ -67,22 +71,22 @@ struct SceneShader {
 [[nodiscard]] std::vector<std::string> Defines(const SceneShader& shader);
 [[nodiscard]] std::vector<std::string> Defines(const PoseShader& shader);
 
-// Texels of the sides of the tables that shaders look things up in.
+// Width and height, in texels, of the look-up tables in LookupTables.
 inline constexpr int kBeckmannTableSize = 512;
 inline constexpr int kAlbedoTableSize = 32;
 inline constexpr int kPreintegratedTableSize = 48;
 
-// Programs, compiled when first asked for and kept. Needs a current context.
+// Compiles programs on first use and keeps them. Needs a current context.
 //
-// Errors: kInternal with the driver's log, its source numbers replaced by file names.
+// Errors: those of BuildProgram().
 class ShaderLibrary {
  public:
   [[nodiscard]] Result<GLuint> Get(const SceneShader& shader);
-  // A vertex stage alone, for transform feedback.
+  // Vertex stage only, for transform feedback.
   [[nodiscard]] Result<GLuint> Get(const PoseShader& shader);
-  // shadow.{vert,frag}.glsl.
+  // shadow/shadow.{vert,frag}.glsl.
   [[nodiscard]] Result<GLuint> GetShadow(bool alpha_test);
-  // A fragment shader that covers the picture: "combine.frag.glsl", ...
+  // A fragment shader that covers the whole picture: "skin/combine.frag.glsl", for example.
   [[nodiscard]] Result<GLuint> GetFullscreen(std::string_view fragment,
                                              const std::vector<std::string>& defines);
   [[nodiscard]] int num_programs() const {
@@ -97,18 +101,5 @@ class ShaderLibrary {
   std::map<PoseShader, gl::Program> pose_;
   std::map<std::string, gl::Program> named_;  // by file and defines
 };
-
-// Names of files, by stage. Without tessellation, both of its are empty; without a picture, so is
-// the fragment's.
-struct ProgramFiles {
-  std::string_view vertex;
-  std::string_view fragment = {};
-  std::string_view tess_control = {};
-  std::string_view tess_evaluation = {};
-};
-// Compiles and links shaders of `files`.
-[[nodiscard]] Result<gl::Program> BuildProgram(const ProgramFiles& program,
-                                               std::span<const std::string> defines,
-                                               std::span<const ShaderFile> files);
 
 }  // namespace furrow::render

@@ -9,7 +9,7 @@
 namespace furrow::render {
 namespace {
 
-// Takes the first line, without its end, off `text`.
+// Removes the first line from `text` and returns it without its line end.
 std::string_view TakeLine(std::string_view* text) {
   const std::size_t end = std::min(text->find('\n'), text->size());
   const std::string_view line = text->substr(0, end);

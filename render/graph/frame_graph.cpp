@@ -111,8 +111,8 @@ Status FrameGraph::Compile() {
   return {};
 }
 
-// Backwards from the passes with side effects: what a needed pass reads, or draws on top of, is
-// needed.
+// Walks backwards from the passes with side effects: whatever a needed pass reads, or draws on top
+// of, is needed too.
 void FrameGraph::Cull() {
   for (Pass& pass : passes_) pass.needed = pass.side_effect;
   for (auto pass = passes_.rbegin(); pass != passes_.rend(); ++pass) {

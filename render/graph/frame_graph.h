@@ -10,8 +10,9 @@
 
 #include "base/status.h"
 
-// A frame as a list of passes that declare what they read and write, then only draw (the idea of
-// filament's FrameGraph). Knows nothing of OpenGL: textures come from a FrameGraphDevice.
+// A frame is a list of passes that first declare what they read and write and then only draw. The
+// design follows filament's FrameGraph. Nothing here depends on OpenGL: a FrameGraphDevice creates
+// the textures.
 namespace furrow::render {
 
 enum class PixelFormat { kRgba8, kRgba16F, kRgba32F, kR32F, kR8, kDepth32F };
@@ -25,9 +26,9 @@ struct TextureDesc {
   friend bool operator==(const TextureDesc&, const TextureDesc&) = default;
 };
 
-using TextureId = std::uint32_t;  // the device's name of a texture; 0: none
+using TextureId = std::uint32_t;  // the device's name for a texture; 0: none
 
-// Who makes textures.
+// Creates and destroys textures.
 class FrameGraphDevice {
  public:
   virtual ~FrameGraphDevice() = default;
@@ -35,24 +36,23 @@ class FrameGraphDevice {
   virtual void DestroyTexture(TextureId texture) = 0;
 };
 
-// What is told of every pass that runs, as it runs: for timing, and for looking at what it wrote.
+// Receives every pass that runs, for timing and for inspecting what the pass wrote.
 class FrameGraphObserver {
  public:
   struct Written {
-    std::string_view name;  // of the texture, as it was created
+    std::string_view name;  // as passed to Builder::Create() or Import()
     TextureDesc desc;
-    TextureId texture = 0;  // holds what the pass left there until AfterPass() returns
+    TextureId texture = 0;  // holds the pass's output until AfterPass() returns
   };
   virtual ~FrameGraphObserver() = default;
   virtual void BeforePass(std::string_view pass) = 0;
   virtual void AfterPass(std::string_view pass, const std::vector<Written>& written) = 0;
 };
 
-// Keeps released textures for the next frame, or the next pass of the same frame, that wants one
-// alike.
+// Keeps released textures for reuse by later passes and frames that need the same TextureDesc.
 class TransientPool {
  public:
-  static constexpr int kKeepFrames = 8;  // a texture unused for so many frames is destroyed
+  static constexpr int kKeepFrames = 8;  // a texture unused for this many frames is destroyed
 
   explicit TransientPool(FrameGraphDevice* device) : device_(device) {}
   ~TransientPool();
@@ -75,20 +75,20 @@ class TransientPool {
   std::vector<Entry> entries_;
 };
 
-// One frame. Add passes in pipeline order, Compile(), Execute().
+// One frame. Add passes in pipeline order, then call Compile() and Execute().
 //
-// - A handle names one *version* of a texture: Write() gives a new one, so a pass that reads a
-//   stale picture is a mistake that Compile() reports, by the names of pass and texture.
-// - A pass whose results nobody reads is culled, unless it has a side effect.
-// - A transient texture lives from the first to the last pass that uses it; two whose lives do not
-//   overlap may share memory. Its contents are undefined before the first write.
+// - A handle names one *version* of a texture, and Write() returns a new version. A pass that reads
+//   an outdated version is a mistake, which Compile() reports with the names of pass and texture.
+// - A pass is culled if no other pass reads its results and it has no side effect.
+// - A transient texture lives from the first to the last pass that uses it. Textures with disjoint
+//   lifetimes may share memory, so the contents are undefined before the first write.
 class FrameGraph {
  public:
   struct Handle {
     int version = -1;  // index of the version in the graph; -1: none
   };
 
-  // What a pass may touch while it draws: what it declared.
+  // Gives a drawing pass access to the textures that it declared.
   class Resources {
    public:
     [[nodiscard]] TextureId Get(Handle handle) const;
@@ -100,13 +100,13 @@ class FrameGraph {
     const FrameGraph* graph_;
   };
 
-  // What a pass says of itself while it is added.
+  // Declares what a pass creates, reads and writes.
   class Builder {
    public:
     [[nodiscard]] Handle Create(std::string_view name, const TextureDesc& desc);
     void Read(Handle handle);
     [[nodiscard]] Handle Write(Handle handle);
-    void SideEffect();  // never culled: it leaves the graph (read-back, a swap)
+    void SideEffect();  // never cull the pass: its result leaves the graph (read-back)
 
    private:
     friend class FrameGraph;
@@ -115,12 +115,12 @@ class FrameGraph {
     int pass_;
   };
 
-  // A texture that outlives the frame, with what it holds: passes may read it, or write over it.
+  // Adds a texture that outlives the frame. Passes may read its contents or write over them.
   [[nodiscard]] Handle Import(std::string_view name, const TextureDesc& desc, TextureId texture);
 
-  // `setup(Builder&, Data&)` declares, now; `execute(const Resources&, const Data&)` draws, later,
-  // and returns a Status. Data is what one tells the other: its handles. Returns it, for the next
-  // pass.
+  // Adds a pass. `setup(Builder&, Data&)` runs immediately and declares; `execute(const Resources&,
+  // const Data&)` draws later and returns a Status. Data passes handles from `setup` to `execute`,
+  // and is returned so that later passes can use them.
   template <class Data, class Setup, class Execute>
   Data AddPass(std::string_view name, Setup&& setup, Execute execute) {
     const auto data = std::make_shared<Data>();
@@ -133,27 +133,28 @@ class FrameGraph {
     return *data;
   }
 
-  // kInternal: a pass reads what nobody wrote, or a version that was written over.
+  // kInternal: a pass reads a texture that no pass wrote, or a version that was overwritten.
   [[nodiscard]] Status Compile();
-  // Runs the passes that were not culled, in order; stops at the first failure. After Compile().
+  // Runs the passes that were not culled, in order. Stops at the first failure. Requires Compile().
   [[nodiscard]] Status Execute(TransientPool* pool, FrameGraphObserver* observer = nullptr);
 
-  [[nodiscard]] bool IsCulled(std::string_view pass) const;  // after Compile(); false when unknown
+  [[nodiscard]] bool IsCulled(std::string_view pass) const;  // requires Compile(); false for
+                                                             // unknown names
 
  private:
   struct Texture {
     std::string name;
     TextureDesc desc;
     int newest = -1;      // version
-    int first_pass = -1;  // among those not culled
+    int first_pass = -1;  // among passes that were not culled
     int last_pass = -1;
     TextureId id = 0;
     bool imported = false;
   };
   struct Version {
     int texture = -1;
-    int writer = -1;    // pass; -1: created, not yet written; or imported
-    int previous = -1;  // version that it was written over
+    int writer = -1;    // pass; -1: imported, or created and not yet written
+    int previous = -1;  // the version that this one overwrote
   };
   struct Pass {
     std::string name;
@@ -173,7 +174,7 @@ class FrameGraph {
   std::vector<Texture> textures_;
   std::vector<Version> versions_;
   std::vector<Pass> passes_;
-  Status error_;  // of the declarations; the first one
+  Status error_;  // the first error of a declaration
 };
 
 }  // namespace furrow::render

@@ -15,9 +15,9 @@ namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-// Edges of the welded surface. The first triangle that has one owns it.
+// The first triangle that contains a welded edge owns it.
 struct EdgeOwner {
-  Edge vertices;  // the owner's, in the order of the key
+  Edge vertices;  // the owner's vertices, in the order of the key
   int triangles = 0;
 };
 
@@ -26,7 +26,7 @@ class Edges {
   Edges(const character::Mesh& mesh, const std::vector<std::uint32_t>& weld) : weld_(weld) {
     for (std::size_t i = 0; i < mesh.indices.size(); ++i) Add({mesh.indices[i], Next(mesh, i)});
   }
-  // The vertex after this one in its triangle.
+  // The vertex that follows index `i` in its triangle.
   static std::uint32_t Next(const character::Mesh& mesh, std::size_t i) {
     return mesh.indices[i % 3 == 2 ? i - 2 : i + 1];
   }

@@ -8,23 +8,22 @@
 
 namespace furrow::render {
 
-// A mesh as patches that can be displaced by a height map without a crack.
+// A mesh as tessellation patches that height maps can displace without cracks.
 //
-// At a UV seam two places of the atlas are one place of the surface, and their heights are never
-// quite the same. So every edge and every corner has an owner: one triangle's edge, one vertex,
-// whose place, normal and UV all triangles that meet there take (dominant edges and corners,
-// Castaño 2008). Where a mesh ends, what lies against it is not displaced with it, so neither is
-// the border.
+// At a UV seam, two places in the texture are one place of the surface, and their heights differ
+// slightly. Each edge and corner therefore has one owner, and all triangles that meet there use the
+// owner's position, normal and UV ("dominant edges" and "dominant corners", Castaño 2008). The
+// border of a mesh is not displaced, because adjacent meshes would not move with it.
 struct DisplacementPatches {
-  // A triangle's own corners; the owners of its edges' ends, edge i from corner i to the next;
-  // the owners of its corners.
+  // Vertices per patch: the triangle's three corners; for each edge i, from corner i to the next,
+  // the two vertices of its owner; for each corner, its owner.
   static constexpr int kCorners = 12;
-  std::vector<std::uint32_t> indices;  // kCorners a triangle, into the mesh's vertices
-  std::vector<float> shares;           // one a vertex: 0 on the mesh's border, else 1
-  float metres_per_uv = 1.0f;          // root of the mesh's surface over its surface in the atlas
+  std::vector<std::uint32_t> indices;  // kCorners per triangle, indices of the mesh's vertices
+  std::vector<float> shares;           // per vertex: 0 on the mesh's border, else 1
+  float metres_per_uv = 1.0f;          // square root of (surface area / area in UV)
 };
 
-// Vertices are the same point where character::WeldVertices() says so.
+// Treats vertices that character::WeldVertices() merges as one point.
 [[nodiscard]] DisplacementPatches MakeDisplacementPatches(const character::Mesh& mesh);
 
 }  // namespace furrow::render

@@ -33,7 +33,7 @@ void DescribeVertices(GLuint array, const gl::Buffer& vertices) {
 }
 
 void DescribeShares(GLuint array, const gl::Buffer& shares) {
-  constexpr GLuint kShare = 6;  // a_share of pose.vert.glsl
+  constexpr GLuint kShare = 6;  // a_share of shaders/scene/pose.vert.glsl
   glVertexArrayVertexBuffer(array, 1, shares.name(), 0, sizeof(float));
   glEnableVertexArrayAttrib(array, kShare);
   glVertexArrayAttribFormat(array, kShare, 1, GL_FLOAT, GL_FALSE, 0);
@@ -87,7 +87,7 @@ GpuMesh MakeGpuMesh(const character::Mesh& mesh, std::span<const glm::mat4> inve
   gpu.material = mesh.material;
   gpu.mean_edge = MeanEdge(mesh);
   gpu.surface = Surface(mesh);
-  gpu.uv_per_metre = LeastUvPerMetre(mesh);
+  gpu.uv_per_metre = MinUvPerMetre(mesh);
   gpu.bounds = JointBounds(mesh, inverse_bind_matrices);
   DescribeVertices(gpu.vertex_array.name(), gpu.vertices);
   glVertexArrayElementBuffer(gpu.vertex_array.name(), gpu.indices.name());

@@ -13,27 +13,27 @@
 
 namespace furrow::render {
 
-// A mesh on the GPU in its rest pose, as shaders/pose.vert.glsl reads it.
+// A mesh on the GPU in its rest pose, in the vertex format of shaders/scene/pose.vert.glsl.
 struct GpuMesh {
   gl::VertexArray vertex_array;
   gl::Buffer vertices;
   gl::Buffer indices;
-  JointBounds bounds;  // of the posed mesh
+  JointBounds bounds;  // bounds of the posed mesh
   GLsizei num_vertices = 0;
   GLsizei num_indices = 0;
   int material = 0;
-  float mean_edge = 0.0f;     // metres, of the rest pose
-  float surface = 0.0f;       // square metres
-  float uv_per_metre = 0.0f;  // ... of where the texture is stretched most, outliers left out
+  float mean_edge = 0.0f;     // mean edge length in metres, rest pose
+  float surface = 0.0f;       // square metres, rest pose
+  float uv_per_metre = 0.0f;  // MinUvPerMetre()
 
-  // A range of `indices`: the whole mesh, then with ever fewer triangles
-  // (render/mesh/mesh_levels.h).
+  // One level of detail: a range of `indices`. Level 0 is the whole mesh; each further level has
+  // fewer triangles (render/mesh/mesh_levels.h).
   struct Level {
     GLsizei first = 0;
     GLsizei count = 0;
     float error = 0.0f;  // metres
   };
-  std::vector<Level> levels;  // empty: not made yet, there is the whole mesh alone
+  std::vector<Level> levels;  // empty until AddLevels(): use the whole mesh
 };
 
 // The same surface as patches of DisplacementPatches::kCorners vertices, for tessellation.
@@ -42,19 +42,20 @@ struct GpuPatches {
   gl::Buffer indices;
   gl::Buffer shares;
   GLsizei num_indices = 0;
-  float metres_per_uv = 1.0f;  // of the rest pose: root of surface over surface in the atlas
+  float metres_per_uv = 1.0f;  // DisplacementPatches::metres_per_uv
 };
 
-// Needs a current context, as all of these. `mesh` is checked.
+// Uploads a validated mesh. This and the functions below need a current context.
 [[nodiscard]] GpuMesh MakeGpuMesh(const character::Mesh& mesh,
                                   std::span<const glm::mat4> inverse_bind_matrices);
-// Gives a mesh its levels.
+// Computes the mesh's levels of detail.
 void AddLevels(GpuMesh* mesh, Borders borders);
-// The whole mesh as it was uploaded: nobody keeps it.
+// Reads the whole mesh back from the GPU, where its only copy is.
 [[nodiscard]] character::Mesh ReadMesh(const GpuMesh& mesh);
-// With three vertices of its own to every triangle, for the view wireframe.
+// A copy of `mesh` without an index buffer, for the view wireframe: each triangle has three
+// vertices of its own.
 [[nodiscard]] GpuMesh MakeUnindexed(const GpuMesh& mesh);
-// Shares the vertices of `mesh`, which outlives it.
+// Uses the vertices of `mesh`, which must outlive the patches.
 [[nodiscard]] GpuPatches MakePatches(const GpuMesh& mesh);
 
 }  // namespace furrow::render

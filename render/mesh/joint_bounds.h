@@ -14,35 +14,36 @@
 
 namespace furrow::render {
 
-// Where on the screen a posed character can be, without skinning a vertex: a box a joint around all
-// vertices that it moves. A skinned vertex is a mean of places in its joints' boxes, so what holds
-// all boxes holds the surface.
+// Bounds of a posed character on the screen, computed without skinning a vertex. Each joint has a
+// box around all vertices that it moves. A skinned vertex is a weighted mean of points in its
+// joints' boxes, so a region that contains all boxes contains the surface.
 class JointBounds {
  public:
   JointBounds() = default;
-  // Of the meshes whose material `accept` takes.
+  // Bounds of the meshes for which `accept` returns true for the material.
   JointBounds(const character::Character& character,
               const std::function<bool(const character::Material&)>& accept);
-  // Of one mesh.
+  // Bounds of one mesh.
   JointBounds(const character::Mesh& mesh, std::span<const glm::mat4> inverse_bind_matrices);
 
-  // What the boxes are to one who looks at them.
+  // The projected boxes.
   struct Extent {
-    glm::vec2 low{0.0f};  // of the picture, which is [-1, 1]
+    glm::vec2 low{0.0f};  // normalised device coordinates; the picture is [-1, 1]
     glm::vec2 high{0.0f};
-    float nearest = 0.0f;  // clip space's w of the nearest corner; 0: some of it lies behind
+    float nearest = 0.0f;  // clip space's w of the nearest corner, 0 if a corner is behind the
+                           // camera
 
     [[nodiscard]] bool is_seen() const {
       return nearest <= 0.0f || (low.x < 1.0f && high.x > -1.0f && low.y < 1.0f && high.y > -1.0f);
     }
   };
-  // `model`: a pose of the character's skeleton. `reach`: metres that the surface may stand off
-  // what was skinned, in any direction.
+  // Projects the boxes. `model`: a pose of the character's skeleton. `reach`: largest distance in
+  // metres between the drawn surface and the skinned one (displacement).
   [[nodiscard]] Extent Look(std::span<const glm::mat4> model, const glm::mat4& view_projection,
                             float reach = 0.0f) const;
 
-  // The pixels of a picture that the boxes may cover; the whole picture where one reaches behind
-  // the camera; none where there are no boxes.
+  // Returns the pixels that the boxes may cover: the whole picture if a box reaches behind the
+  // camera, and an empty rectangle if there are no boxes.
   [[nodiscard]] ScreenRect Project(std::span<const glm::mat4> model,
                                    const glm::mat4& view_projection, int width, int height,
                                    float reach = 0.0f) const;

@@ -16,11 +16,14 @@ namespace {
 using Index = std::uint32_t;
 using Triangle = std::array<Index, 3>;
 
-constexpr std::size_t kFewTriangles = 64;    // less is not worth a level
-constexpr std::size_t kMostOfAVertex = 256;  // triangles; what has more stays, and so does its fan
-constexpr double kMostError = 0.015;         // metres; nobody is so small in a picture
-constexpr double kLeastTurn = 0.3;           // cosine between a triangle before and after
-constexpr double kStraight = 0.7;            // ... and of a border that has no corner
+constexpr std::size_t kMinTriangles = 64;  // a level with fewer triangles saves nothing
+constexpr std::size_t kMaxTrianglesPerVertex =
+    256;                                    // a vertex with more triangles is kept, with its fan
+constexpr double kMaxError = 0.015;         // metres
+constexpr double kMinTurnCosine = 0.3;      // smallest cosine between a triangle's normals before
+                                            // and after
+constexpr double kMinStraightCosine = 0.7;  // smallest cosine between the edges of a straight
+                                            // border
 
 glm::dvec3 Cross(const std::array<glm::dvec3, 3>& corners) {
   return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -28,7 +31,7 @@ glm::dvec3 Cross(const std::array<glm::dvec3, 3>& corners) {
 
 std::array<Index, 2> EdgeOf(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-// Sum of squared distances to planes, weighted.
+// A weighted sum of squared distances to planes.
 class Quadric {
  public:
   void AddPlane(const glm::dvec3& normal, const glm::dvec3& point, double weight) {
@@ -43,7 +46,7 @@ class Quadric {
     for (std::size_t i = 0; i < terms_.size(); ++i) terms_[i] += other.terms_[i];
     weight_ += other.weight_;
   }
-  // Root of the mean.
+  // Root of the weighted mean squared distance, metres.
   [[nodiscard]] double ErrorAt(const glm::dvec3& point) const {
     const std::array<double, 4> p = {point.x, point.y, point.z, 1.0};
     double sum = 0.0;
@@ -62,25 +65,25 @@ class Simplifier {
  public:
   Simplifier(const character::Mesh& mesh, Borders borders);
 
-  // Whether no more than `target` triangles are left.
+  // Collapses edges until at most `target` triangles are left. False: cannot get there.
   bool Reduce(std::size_t target);
   [[nodiscard]] MeshLevel level() const;
   [[nodiscard]] std::size_t num_triangles() const { return num_alive_; }
 
  private:
-  // Vertex `from` onto its neighbour `to`.
+  // The collapse of vertex `from` onto its neighbour `to`.
   struct Collapse {
     double error = 0.0;
     Index from = 0;
     Index to = 0;
-    int version = 0;  // of `from`
+    int version = 0;  // of `from`; an older version is outdated
     bool operator>(const Collapse& other) const { return error > other.error; }
   };
   void LockSeams();
   [[nodiscard]] std::vector<std::array<Index, 2>> Edges() const;
-  // Has too many triangles to look at all of them again and again.
+  // Returns true if the vertex has too many triangles to examine repeatedly.
   [[nodiscard]] bool IsHub(Index vertex) const {
-    return triangles_of_[vertex].size() > kMostOfAVertex;
+    return triangles_of_[vertex].size() > kMaxTrianglesPerVertex;
   }
   [[nodiscard]] std::size_t NumTriangles(Index a, Index b) const;
   void HoldBorders();
@@ -92,9 +95,9 @@ class Simplifier {
   Borders borders_;
   std::vector<glm::dvec3> positions_;
   std::vector<Triangle> triangles_;
-  std::vector<glm::dvec3> facing_;                // a triangle each, of the mesh itself
-  std::vector<bool> is_alive_;                    // a triangle each
-  std::vector<std::vector<Index>> triangles_of_;  // a vertex each; dead ones are taken out
+  std::vector<glm::dvec3> facing_;                // per triangle, in the original mesh
+  std::vector<bool> is_alive_;                    // per triangle
+  std::vector<std::vector<Index>> triangles_of_;  // per vertex, without removed triangles
   std::vector<bool> is_locked_;
   std::vector<bool> is_border_;
   std::vector<int> versions_;
@@ -133,13 +136,14 @@ Simplifier::Simplifier(const character::Mesh& mesh, Borders borders)
   for (Index vertex = 0; vertex < positions_.size(); ++vertex) Propose(vertex);
 }
 
-// At a seam, of UV or of shading, several vertices lie in one place.
+// Locks all vertices that share their position with another one, as at UV and shading seams.
 void Simplifier::LockSeams() {
-  constexpr double kOnePlace = 1e-6;             // metres
-  const glm::dvec3 direction(0.57, 0.61, 0.55);  // along which meshes seldom have many in a plane
-  // What lies in exactly one place is sorted side by side; of what is merely near, no more is
-  // looked at, however many lie in a plane.
-  constexpr std::ptrdiff_t kMostLookedAt = 32;
+  constexpr double kSamePosition = 1e-6;         // metres
+  const glm::dvec3 direction(0.57, 0.61, 0.55);  // meshes rarely have many vertices in a plane
+                                                 // across this direction
+  // Vertices at exactly the same position become neighbours in the sorted order. The limit bounds
+  // the search for nearly equal positions if many vertices lie in one plane.
+  constexpr std::ptrdiff_t kMaxCompared = 32;
   struct Along {
     double distance = 0.0;
     std::array<double, 3> position{};
@@ -153,18 +157,18 @@ void Simplifier::LockSeams() {
   }
   std::ranges::sort(order, [](const Along& a, const Along& b) { return a < b; });
   for (auto one = order.begin(); one != order.end(); ++one) {
-    const auto end = one + std::min(kMostLookedAt, order.end() - one);
+    const auto end = one + std::min(kMaxCompared, order.end() - one);
     for (auto other = one + 1; other < end; ++other) {
-      if (other->distance - one->distance > kOnePlace) break;
+      if (other->distance - one->distance > kSamePosition) break;
       const Index a = one->vertex;
       const Index b = other->vertex;
-      if (glm::distance(positions_[a], positions_[b]) > kOnePlace) continue;
+      if (glm::distance(positions_[a], positions_[b]) > kSamePosition) continue;
       is_locked_[a] = is_locked_[b] = true;
     }
   }
 }
 
-// Every edge as often as triangles have it, in order.
+// All edges in sorted order, one entry per triangle that contains the edge.
 std::vector<std::array<Index, 2>> Simplifier::Edges() const {
   std::vector<std::array<Index, 2>> edges;
   edges.reserve(3 * triangles_.size());
@@ -177,10 +181,11 @@ std::vector<std::array<Index, 2>> Simplifier::Edges() const {
   return edges;
 }
 
-// An edge of one triangle is a border. Where it may be drawn in, a plane stands upright on it, so
-// that it keeps its line; where the line has a corner, or is not one line, it stays.
+// Locks or constrains border vertices. For Borders::kSimplify, a quadric plane perpendicular to the
+// surface keeps each border edge on its line. Vertices where a border bends or branches stay.
 void Simplifier::HoldBorders() {
-  std::vector<std::array<glm::dvec3, 2>> ways(positions_.size());  // of a vertex' two border edges
+  std::vector<std::array<glm::dvec3, 2>> ways(positions_.size());  // the two border edges of each
+                                                                   // vertex
   std::vector<std::size_t> num_ways(positions_.size(), 0);
   const std::vector<std::array<Index, 2>> edges = Edges();
   for (const Triangle& triangle : triangles_) {
@@ -192,10 +197,10 @@ void Simplifier::HoldBorders() {
       const auto [first, last] = std::equal_range(edges.begin(), edges.end(), EdgeOf(a, b));
       const auto count = last - first;
       const bool is_border = count == 1;
-      if (count > 2 || (is_border && borders_ == Borders::kStay)) {
+      if (count > 2 || (is_border && borders_ == Borders::kKeep)) {
         is_locked_[a] = is_locked_[b] = true;
       }
-      if (!is_border || borders_ == Borders::kStay) continue;
+      if (!is_border || borders_ == Borders::kKeep) continue;
       const glm::dvec3 edge = positions_[b] - positions_[a];
       const glm::dvec3 upright = glm::cross(edge, cross);
       const double length = glm::length(upright);
@@ -212,7 +217,7 @@ void Simplifier::HoldBorders() {
     if (num_ways[vertex] == 0) continue;
     const auto& [first, second] = ways[vertex];
     const bool is_straight =
-        glm::dot(first, second) > kStraight * glm::length(first) * glm::length(second);
+        glm::dot(first, second) > kMinStraightCosine * glm::length(first) * glm::length(second);
     if (num_ways[vertex] != 2 || !is_straight) is_locked_[vertex] = true;
   }
 }
@@ -235,8 +240,8 @@ std::vector<Index> Simplifier::Neighbours(Index vertex) const {
   return neighbours;
 }
 
-// The surface stays a surface (two triangles go, or one where a border is drawn in along itself),
-// and none of its triangles turns over.
+// Returns true if the collapse keeps the surface a manifold (it removes two triangles, or one along
+// a border) and flips no triangle.
 bool Simplifier::IsAllowed(Index from, Index to) const {
   if (IsHub(from) || IsHub(to)) return false;
   const std::vector<Index> of_from = Neighbours(from);
@@ -257,10 +262,12 @@ bool Simplifier::IsAllowed(Index from, Index to) const {
     }
     const glm::dvec3 was = Cross(before);
     const glm::dvec3 is = Cross(after);
-    // What has no surface, as at the pole of a sphere, has no side either.
+    // Degenerate triangles, as at the pole of a sphere, have no orientation to preserve.
     const bool is_flat = glm::length(was) <= 1e-12;
-    if (glm::dot(facing_[index], is) < 0.0) return false;  // many small turns are one, too
-    return is_flat || glm::dot(was, is) > kLeastTurn * glm::length(was) * glm::length(is);
+    if (glm::dot(facing_[index], is) < 0.0)
+      return false;  // also catches a flip by many small
+                     // turns
+    return is_flat || glm::dot(was, is) > kMinTurnCosine * glm::length(was) * glm::length(is);
   });
 }
 
@@ -305,7 +312,7 @@ void Simplifier::Apply(const Collapse& collapse) {
 }
 
 bool Simplifier::Reduce(std::size_t target) {
-  while (num_alive_ > target && !queue_.empty() && queue_.top().error < kMostError) {
+  while (num_alive_ > target && !queue_.empty() && queue_.top().error < kMaxError) {
     const Collapse collapse = queue_.top();
     queue_.pop();
     if (collapse.version != versions_[collapse.from] || triangles_of_[collapse.from].empty()) {
@@ -337,11 +344,11 @@ std::vector<MeshLevel> MakeMeshLevels(const character::Mesh& mesh, Borders borde
   std::vector<MeshLevel> levels{{mesh.indices, 0.0f}};
   Simplifier simplifier(mesh, borders);
   std::size_t target = simplifier.num_triangles() * 2 / 3;
-  while (target >= kFewTriangles && simplifier.Reduce(target)) {
+  while (target >= kMinTriangles && simplifier.Reduce(target)) {
     levels.push_back(simplifier.level());
     target = target * 2 / 3;
   }
-  // As far as it goes, where that is something.
+  // Adds a last level if the simplifier got stuck after removing at least a fifth of the triangles.
   const std::size_t finest = levels.back().indices.size() / 3;
   if (simplifier.num_triangles() * 5 < finest * 4) levels.push_back(simplifier.level());
   return levels;

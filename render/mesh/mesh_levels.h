@@ -8,24 +8,25 @@
 
 namespace furrow::render {
 
-// A mesh with fewer triangles, for who is small in the picture, and for shadows.
+// A simplified mesh, for subjects that are small in the picture and for shadows.
 struct MeshLevel {
-  std::vector<std::uint32_t> indices;  // into the mesh's own vertices
-  float error = 0.0f;                  // metres that the surface in its rest pose is off by (RMS)
+  std::vector<std::uint32_t> indices;  // indices of the original mesh's vertices
+  float error = 0.0f;                  // RMS distance from the original surface in the rest pose,
+                                       // metres
 };
 
-// What becomes of edges that have one triangle. Meshes may share such a border, as a head and a
-// body of two materials do, and must keep it then, since each is simplified by itself; strips of
-// hair are hardly anything else, and nothing goes on beyond theirs.
-enum class Borders { kStay, kDrawnIn };
+// Treatment of border edges, which belong to one triangle only. Meshes can share a border, for
+// example a head and a body of two materials. Each mesh is simplified on its own, so shared borders
+// must be kept. Hair strips consist mostly of borders, and no other mesh adjoins them.
+enum class Borders { kKeep, kSimplify };
 
-// The mesh itself, then each level with two thirds of the triangles of the one before, as long as
-// that can be had within 15 mm.
+// Returns the mesh itself and then levels of detail, each with two thirds of the triangles of the
+// level before. Stops where the error would exceed 15 mm.
 //
-// Edges are collapsed onto one of their ends, the cheapest first by the quadric error metric
-// (Garland and Heckbert 1997), so vertices keep their UV, normal, skin weights and masks. What lies
-// on a UV seam or an edge of the shading stays, a border is at most drawn in along itself, which
-// leaves its corners where they are, and no triangle turns over.
+// The simplifier collapses each edge onto one of its end points, in the order of the quadric error
+// metric (Garland and Heckbert 1997). Remaining vertices therefore keep their UV, normal, skin
+// weights and masks. Vertices on a UV seam or a shading seam do not move. Border vertices only move
+// along a straight border, which keeps its corners. No triangle flips.
 [[nodiscard]] std::vector<MeshLevel> MakeMeshLevels(const character::Mesh& mesh, Borders borders);
 
 }  // namespace furrow::render

@@ -11,7 +11,7 @@
 namespace furrow::render {
 namespace {
 
-// Of a triangle: how far UV goes at most over a metre of it; 0: it has no surface.
+// Largest UV distance per metre of a triangle, over all directions; 0: degenerate.
 float UvPerMetre(const character::Vertex& a, const character::Vertex& b,
                  const character::Vertex& c) {
   const glm::vec3 side = b.position - a.position;
@@ -33,9 +33,9 @@ float UvPerMetre(const character::Vertex& a, const character::Vertex& b,
 
 }  // namespace
 
-float LeastUvPerMetre(const character::Mesh& mesh) {
+float MinUvPerMetre(const character::Mesh& mesh) {
   constexpr double kOutliers = 0.05;
-  std::vector<std::pair<float, double>> triangles;  // UV a metre, surface
+  std::vector<std::pair<float, double>> triangles;  // UV per metre, area
   double surface = 0.0;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const character::Vertex& a = mesh.vertices[mesh.indices[i]];

@@ -5,9 +5,9 @@
 
 namespace furrow::render {
 
-// How far UV goes over a metre of a mesh in its rest pose, along the direction in which it goes
-// furthest, where a texture is stretched most; outliers, a twentieth of the surface, are left out.
-// 0: there is no surface.
-[[nodiscard]] float LeastUvPerMetre(const character::Mesh& mesh);
+// The smallest UV distance per metre of surface where the texture is stretched most, measured per
+// triangle along its densest direction, in the rest pose. Ignores the most stretched twentieth of
+// the surface as outliers. 0: the mesh has no surface.
+[[nodiscard]] float MinUvPerMetre(const character::Mesh& mesh);
 
 }  // namespace furrow::render

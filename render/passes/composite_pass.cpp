@@ -6,7 +6,7 @@ namespace {
 
 enum UniformLocation : GLint { kExposure = 0, kHeight = 1, kBloom = 2 };
 
-// SHOW of composite.frag.glsl.
+// SHOW of post/composite.frag.glsl.
 enum class Show { kData, kColour, kLight };
 
 Show ShowOf(View view) {
@@ -37,7 +37,7 @@ FrameGraph::Handle CompositePass::Add(FrameGraph* graph, FrameGraph::Handle show
   return fullscreen_->AddSimplePass(
       graph,
       {.name = "composite",
-       .fragment = "composite.frag.glsl",
+       .fragment = "post/composite.frag.glsl",
        .defines = {Define("SAMPLES", desc.samples),
                    Define("SHOW", static_cast<int>(ShowOf(settings.view))),
                    Define("TONE_MAP", static_cast<int>(settings.tone_map)),

@@ -6,14 +6,15 @@
 
 namespace furrow::render {
 
-// Turns what a view shows into the 8-bit picture: resolves samples; light gets exposure, tone map
-// and sRGB's curve, colours the curve alone, data nothing. Writes the picture's rows from the top,
-// as files and encoders have them.
+// Converts the result of a view to the 8-bit picture. Resolves samples. Light gets exposure, tone
+// map and the sRGB curve; colours get the sRGB curve only; data stays unchanged. Writes rows from
+// the top, as files and encoders expect.
 class CompositePass {
  public:
   explicit CompositePass(Fullscreen* fullscreen) : fullscreen_(fullscreen) {}
 
-  // `shown`: linear, of `desc`. `bloom`: of AddBloomPass(), or none. Returns the picture.
+  // `shown`: linear, as `desc` describes it. `bloom`: the result of AddBloomPass(), or none.
+  // Returns the picture.
   [[nodiscard]] FrameGraph::Handle Add(FrameGraph* graph, FrameGraph::Handle shown,
                                        const TextureDesc& desc, const Settings& settings,
                                        FrameGraph::Handle bloom);

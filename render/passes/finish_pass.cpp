@@ -10,8 +10,8 @@ namespace {
 
 using Handle = FrameGraph::Handle;
 
-constexpr GLint kLook = 0;      // in bloom.frag.glsl and show.frag.glsl
-constexpr int kTileMargin = 4;  // pixels around a tile of the strip
+constexpr GLint kLook = 0;      // in post/bloom.frag.glsl and post/show.frag.glsl
+constexpr int kTileMargin = 4;  // pixels around each tile of the strip
 
 TextureDesc BloomDesc(const TextureDesc& desc) {
   return {std::max(desc.width / kBloomScale, 1), std::max(desc.height / kBloomScale, 1),
@@ -28,7 +28,7 @@ Handle AddBloomPass(FrameGraph* graph, Handle colour, const TextureDesc& desc,
                        const glm::vec4& look) {
     return fullscreen->AddSimplePass(graph,
                                      {.name = name,
-                                      .fragment = "bloom.frag.glsl",
+                                      .fragment = "post/bloom.frag.glsl",
                                       .defines = {bright ? "BRIGHT 1" : "BRIGHT 0"},
                                       .reads = {in},
                                       .writes = {{target, small}}},
@@ -49,7 +49,7 @@ Handle AddShowPass(FrameGraph* graph, Handle target, const ShowTarget& show,
   return fullscreen->AddSimplePass(
       graph,
       {.name = "show",
-       .fragment = "show.frag.glsl",
+       .fragment = "post/show.frag.glsl",
        .defines = {"SHOWN " + std::to_string(static_cast<int>(show.kind))},
        .reads = {target},
        .writes = {{"shown", {desc.width, desc.height, PixelFormat::kRgba16F, 1}}}},
@@ -65,7 +65,7 @@ Handle AddFxaaPass(FrameGraph* graph, Handle picture, const TextureDesc& desc,
   return fullscreen->AddSimplePass(
       graph,
       {.name = "fxaa",
-       .fragment = "fxaa.frag.glsl",
+       .fragment = "post/fxaa.frag.glsl",
        .defines = {},
        .reads = {picture},
        .writes = {{"smooth picture", {desc.width, desc.height, PixelFormat::kRgba8, 1}}}},

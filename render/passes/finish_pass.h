@@ -6,19 +6,20 @@
 
 namespace furrow::render {
 
-inline constexpr int kBloomScale = 4;  // pixels of the picture to one of the bloom's, each axis
+inline constexpr int kBloomScale = 4;  // picture pixels per bloom pixel, along each axis
 
-// Light that a lens spreads, a quarter as large as the picture; none where it is off.
+// The glow around bright parts, at a quarter of the picture's width and height. Returns no handle
+// if bloom is off.
 [[nodiscard]] FrameGraph::Handle AddBloomPass(FrameGraph* graph, FrameGraph::Handle colour,
                                               const TextureDesc& desc, const Settings& settings,
                                               Fullscreen* fullscreen);
 
-// How a target is made visible.
+// How AddShowPass() displays a target.
 struct ShowTarget {
-  // kMaps: depths in [0, 1], all of the target in the middle of the picture.
+  // kMaps shows depths in [0, 1], the whole target, centred vertically in the picture.
   enum class Kind { kColour, kMetres, kRed, kWhite, kMaps };
   Kind kind = Kind::kColour;
-  float scale = 1.0f;  // pixels of the picture to one texel
+  float scale = 1.0f;  // picture pixels per texel
   float near_metres = 0.0f;
   float far_metres = 1.0f;
 };
@@ -26,12 +27,12 @@ struct ShowTarget {
                                              const ShowTarget& show, const TextureDesc& desc,
                                              Fullscreen* fullscreen);
 
-// Smooths the edges of a finished picture.
+// Smooths the edges of a finished picture with FXAA.
 [[nodiscard]] FrameGraph::Handle AddFxaaPass(FrameGraph* graph, FrameGraph::Handle picture,
                                              const TextureDesc& desc, Fullscreen* fullscreen);
 
-// Puts small pictures on a picture's right-hand side, from the top. `picture` and `tiles` are
-// finished pictures, rows from the top; the tiles are of one size.
+// Draws small pictures along the right edge of a picture, from the top. `picture` and `tiles` are
+// finished pictures, rows from the top. All tiles have the same size.
 [[nodiscard]] FrameGraph::Handle AddStripPass(FrameGraph* graph, FrameGraph::Handle picture,
                                               const std::vector<FrameGraph::Handle>& tiles,
                                               GlDevice* device);

@@ -6,8 +6,8 @@
 namespace furrow::render {
 namespace {
 
-// The triangle over the picture lies at the far plane: it is behind whatever was drawn, and its
-// fragments pass only there.
+// The triangle that covers the picture lies at the far plane. With the test on, its fragments pass
+// only where the scene drew something nearer.
 void SetDepthTest(bool on_surface) {
   if (!on_surface) return glDisable(GL_DEPTH_TEST);
   glEnable(GL_DEPTH_TEST);

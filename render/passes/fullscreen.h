@@ -13,44 +13,45 @@
 
 namespace furrow::render {
 
-// A pass over the whole picture, as it is declared.
+// Declares a pass that covers the whole picture.
 struct FullscreenPass {
   struct Target {
     std::string_view name;
     TextureDesc desc;
   };
   std::string_view name;
-  std::string_view fragment;  // shader file
+  std::string_view fragment;  // path below shaders/
   std::vector<std::string> defines;
-  std::vector<FrameGraph::Handle> reads;  // bound to units from 0; those without a version are none
-  std::vector<Target> writes;             // made anew, of one size
-  // Depth of the scene, of the targets' size: draws only where there is a surface. None:
-  // everywhere.
+  std::vector<FrameGraph::Handle> reads;  // bound to texture units from 0; handles without a
+                                          // version are skipped
+  std::vector<Target> writes;             // created by the pass, all of the same size
+  // The scene's depth buffer, of the same size as the targets. Restricts drawing to pixels with a
+  // surface. None: draws everywhere.
   FrameGraph::Handle surface_z = {};
 };
 
-// What every pass over the whole picture does.
+// Runs the passes that cover the whole picture.
 class Fullscreen {
  public:
   Fullscreen(ShaderLibrary* shaders, GlDevice* device)
       : shaders_(shaders), device_(device), no_attributes_(gl::MakeVertexArray()) {}
 
-  // Adds a pass; `draw` runs with the pass's program current and its targets and textures bound: it
-  // sets uniforms and calls Draw(). Returns what the pass wrote, in its order. The pass fails where
-  // the ShaderLibrary does.
+  // Adds a pass. `draw` runs with the pass's program, targets and textures bound; it sets uniforms
+  // and calls Draw(). Returns the written textures in the order of `pass.writes`. The pass fails if
+  // ShaderLibrary reports an error.
   [[nodiscard]] std::vector<FrameGraph::Handle> AddPass(FrameGraph* graph,
                                                         const FullscreenPass& pass,
                                                         std::function<void()> draw);
-  // The same where there is one target.
+  // The same for a pass with one target.
   [[nodiscard]] FrameGraph::Handle AddSimplePass(FrameGraph* graph, const FullscreenPass& pass,
                                                  std::function<void()> draw) {
     return AddPass(graph, pass, std::move(draw)).front();
   }
 
-  // Of a pass that runs. Draws the whole target, or only what lies within a rectangle of pixels.
+  // Call only from a pass's `draw`. Draws the whole target, or a rectangle of pixels.
   void Draw();
   void Draw(const ScreenRect& rect);
-  // Fills a target of the pass with one value.
+  // Call only from a pass's `draw`. Fills a target with one value.
   void Clear(int target, float r, float g, float b, float a);
 
  private:

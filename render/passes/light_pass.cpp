@@ -4,7 +4,7 @@
 namespace furrow::render {
 namespace {
 
-// Locations in common_view.glsl and light.frag.glsl.
+// Uniform locations in common/view.glsl and skin/light.frag.glsl.
 enum Location : GLint { kViewRotation = 0, kLens = 3, kRange = 4 };
 constexpr std::size_t kOpenUnit = 10;
 
@@ -32,7 +32,7 @@ SkinTargets AddLightPass(FrameGraph* graph, const FacetTargets& facets, FrameGra
   const std::vector<FrameGraph::Handle> lit = fullscreen->AddPass(
       graph,
       {.name = "light",
-       .fragment = "light.frag.glsl",
+       .fragment = "skin/light.frag.glsl",
        .defines = defines,
        .reads = reads,
        .writes = {target("scene irradiance", PixelFormat::kRgba16F),

@@ -5,9 +5,9 @@
 
 namespace furrow::render {
 
-// Lights the facets of a scene of one sample a pixel, each pixel once, however small its triangles
-// are and however many lay under it. Takes from the light of the sky what `open` leaves none of.
-// `shadows`, `open`: none where there are none. Returns what the lit scene pass draws at once.
+// Lights the facets of a scene with one sample per pixel. Each pixel is lit once, however small the
+// triangles are and however many surfaces overlap. Reduces the sky's light by `open`. `shadows` and
+// `open` may be empty handles. Returns the same targets as the lit scene pass.
 [[nodiscard]] SkinTargets AddLightPass(FrameGraph* graph, const FacetTargets& facets,
                                        FrameGraph::Handle shadows,
                                        const OcclusionPass::Openness& open,

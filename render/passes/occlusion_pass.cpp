@@ -4,10 +4,10 @@
 namespace furrow::render {
 namespace {
 
-// Locations in common_view.glsl and common_occlusion.glsl.
+// Uniform locations in common/view.glsl and occlusion/occlusion.glsl.
 enum Location : GLint { kViewRotation = 0, kLens = 3, kReach = 4 };
 constexpr GLint kRange = 0;  // in occlusion_blur.frag.glsl and occlude.frag.glsl
-// Of the radius: surfaces further apart in depth do not lend each other their openness.
+// As a share of the radius. Surfaces with a larger depth difference do not share their openness.
 constexpr float kRangeOfRadius = 0.5f;
 
 int ScaleOf(const OcclusionSettings& settings) { return settings.half_resolution ? 2 : 1; }
@@ -38,7 +38,7 @@ FrameGraph::Handle OcclusionPass::AddSearch(FrameGraph* graph, FrameGraph::Handl
   return fullscreen_->AddSimplePass(
       graph,
       {.name = "occlusion",
-       .fragment = gtao ? "gtao.frag.glsl" : "ssao.frag.glsl",
+       .fragment = gtao ? "occlusion/gtao.frag.glsl" : "occlusion/ssao.frag.glsl",
        .defines = {Define("SCALE", scale), Define("SAMPLES", settings.samples)},
        .reads = {depth, normal},
        .writes = {{"occlusion noisy", TargetOf(settings, geometry)}}},
@@ -57,7 +57,7 @@ FrameGraph::Handle OcclusionPass::AddBlur(FrameGraph* graph, FrameGraph::Handle 
                                           const OcclusionGeometry& geometry) {
   return fullscreen_->AddSimplePass(graph,
                                     {.name = "occlusion blur",
-                                     .fragment = "occlusion_blur.frag.glsl",
+                                     .fragment = "occlusion/occlusion_blur.frag.glsl",
                                      .defines = {Define("SCALE", ScaleOf(settings))},
                                      .reads = {open, depth},
                                      .writes = {{"occlusion", TargetOf(settings, geometry)}}},
@@ -90,7 +90,7 @@ SkinTargets OcclusionPass::AddOcclude(FrameGraph* graph, const SkinTargets& lit,
   const std::vector<FrameGraph::Handle> left = fullscreen_->AddPass(
       graph,
       {.name = "occlude",
-       .fragment = "occlude.frag.glsl",
+       .fragment = "occlusion/occlude.frag.glsl",
        .defines = {Define("SCALE", open.scale)},
        .reads = {lit.irradiance, lit.radiance, lit.albedo, open.target, lit.depth},
        .writes = {{"occluded irradiance", desc}, {"occluded radiance", desc}}},

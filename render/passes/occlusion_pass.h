@@ -9,33 +9,34 @@
 
 namespace furrow::render {
 
-// What ambient occlusion knows of the camera.
+// The camera's geometry for ambient occlusion.
 struct OcclusionGeometry {
   int width = 0;  // pixels
   int height = 0;
-  glm::mat3 view_rotation{1.0f};  // model space to the camera's
-  float pixels_per_slope = 1.0f;  // H/2 cot(fov/2)
-  ScreenRect bounds;              // all surfaces lie within
-  glm::vec3 background{0.0f};     // light beyond them
+  glm::mat3 view_rotation{1.0f};  // model space to view space
+  float pixels_per_slope = 1.0f;  // height / 2 * cot(fov / 2)
+  ScreenRect bounds;              // contains all surfaces
+  glm::vec3 background{0.0f};     // radiance outside the surfaces
 };
 
-// Ambient occlusion: how much of the sky each pixel sees, and what that leaves of its light.
+// Ambient occlusion: how much of the sky each pixel sees, and how much of the sky's light remains.
 class OcclusionPass {
  public:
   explicit OcclusionPass(Fullscreen* fullscreen) : fullscreen_(fullscreen) {}
 
   struct Openness {
-    FrameGraph::Handle target;  // [0, 1] in red; none where the method is off
-    int scale = 1;              // pixels of the scene to one of the target's, along each axis
+    FrameGraph::Handle target;  // [0, 1] in red; no handle if the method is off
+    int scale = 1;              // scene pixels per target pixel, along each axis
   };
-  // Of surfaces given by their depth (metres along the camera's axis) and normals.
+  // Computes the openness of surfaces from their depth (metres along the camera's axis) and
+  // normals.
   [[nodiscard]] Openness Add(FrameGraph* graph, FrameGraph::Handle depth, FrameGraph::Handle normal,
                              const OcclusionSettings& settings, const OcclusionGeometry& geometry);
-  // Takes from irradiance and radiance that are lit already the light of the sky, by its share.
+  // Removes the occluded part of the sky's light from irradiance and radiance that are already lit.
   [[nodiscard]] SkinTargets AddOcclude(FrameGraph* graph, const SkinTargets& lit,
                                        const Openness& open, const OcclusionSettings& settings,
                                        const OcclusionGeometry& geometry);
-  // Metres of depth within which surfaces lend each other their openness.
+  // Largest depth difference in metres between pixels that share their openness in the blur.
   [[nodiscard]] static float RangeOf(const OcclusionSettings& settings);
 
  private:
@@ -47,7 +48,8 @@ class OcclusionPass {
                                            FrameGraph::Handle depth,
                                            const OcclusionSettings& settings,
                                            const OcclusionGeometry& geometry);
-  // Of a pass that runs: where the character can be; all is open elsewhere.
+  // Call only while a pass runs. Draws the part that the character may cover and marks the rest as
+  // open.
   void DrawBounds(const OcclusionSettings& settings, const OcclusionGeometry& geometry);
 
   Fullscreen* fullscreen_;

@@ -7,7 +7,8 @@
 
 namespace furrow::render {
 
-// Starts the picture's way back to memory: the side effect that keeps the passes before it.
+// Starts the copy of the picture to memory. This is the side effect that keeps the passes before it
+// from being culled.
 void AddReadBackPass(FrameGraph* graph, FrameGraph::Handle picture, std::uint64_t token,
                      GlDevice* device, ReadBack* read_back);
 

@@ -12,7 +12,7 @@ SkinTargets AddResolvePass(FrameGraph* graph, const SkinTargets& scene, const Te
   const std::vector<FrameGraph::Handle> out = fullscreen->AddPass(
       graph,
       {.name = "resolve",
-       .fragment = "resolve.frag.glsl",
+       .fragment = "scene/resolve.frag.glsl",
        .defines = {"SAMPLES " + std::to_string(desc.samples)},
        .reads = {scene.irradiance, scene.radiance, scene.albedo, scene.normal, scene.depth},
        .writes = {target("irradiance", PixelFormat::kRgba16F),
@@ -29,7 +29,7 @@ FrameGraph::Handle AddCombinePass(FrameGraph* graph, FrameGraph::Handle scattere
   return fullscreen->AddSimplePass(
       graph,
       {.name = "combine",
-       .fragment = "combine.frag.glsl",
+       .fragment = "skin/combine.frag.glsl",
        .defines = {},
        .reads = {scattered, scene.radiance, scene.albedo},
        .writes = {{"combined", {desc.width, desc.height, PixelFormat::kRgba16F, 1}}},

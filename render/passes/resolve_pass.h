@@ -6,12 +6,13 @@
 
 namespace furrow::render {
 
-// The scene's samples made one a pixel (shaders/resolve.frag.glsl). Of one sample: as they are.
+// Resolves the scene's samples to one per pixel (shaders/scene/resolve.frag.glsl). Returns
+// single-sample targets unchanged.
 [[nodiscard]] SkinTargets AddResolvePass(FrameGraph* graph, const SkinTargets& scene,
                                          const TextureDesc& desc, Fullscreen* fullscreen);
 
-// Scattered light times albedo, plus what did not scatter: linear radiance. All surfaces lie within
-// `bounds`; beyond is `background`.
+// Returns linear radiance: scattered light times albedo, plus the light that did not scatter.
+// `bounds` contains all surfaces; outside, the result is `background`.
 [[nodiscard]] FrameGraph::Handle AddCombinePass(FrameGraph* graph, FrameGraph::Handle scattered,
                                                 const SkinTargets& scene, const TextureDesc& desc,
                                                 const ScreenRect& bounds,

@@ -9,7 +9,7 @@
 namespace furrow::render {
 namespace {
 
-// Binding points of shaders/common_*.glsl and skin.frag.glsl; see also scene_buffers.cpp.
+// Binding points of the shaders in scene/, skin/ and wrinkles/. See also scene_buffers.cpp.
 constexpr GLuint kMaterialBlock = 1;
 enum TextureUnit : GLuint {
   kBaseColourUnit = 0,
@@ -49,7 +49,7 @@ gl::Sampler MakeShadowSampler(bool compare) {
   return sampler;
 }
 
-// For the holes of a base colour in a shadow: one texel says enough of them.
+// For cut-outs in shadow maps. One texel is precise enough there.
 gl::Sampler MakeCutOutSampler() {
   gl::Sampler sampler = gl::MakeSampler();
   glSamplerParameteri(sampler.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
@@ -57,18 +57,19 @@ gl::Sampler MakeCutOutSampler() {
   return sampler;
 }
 
-// What shows or needs every wrinkle by itself has them composed in every fragment.
+// Returns true if a view can use composed wrinkles. Views that show masks or weights need each
+// wrinkle separately, and the tangent-space blend cannot be composed in advance.
 bool TakesComposed(const Settings& settings, View view) {
   return settings.wrinkle_maps.cache && view != View::kWeights && view != View::kMaskDynamic &&
          view != View::kMaskTexture && settings.normal_blend == NormalBlend::kPartialDerivative;
 }
 
-// ... of the picture and the strip beside it.
+// The same for the picture's view or any view of its strip.
 bool SomeViewTakesComposed(const Settings& settings) {
   return AnyView(settings, [&](View view) { return TakesComposed(settings, view); });
 }
 
-// The views that the skin pipeline's scene pass itself draws differently for.
+// The view for which the skin pipeline's shaders are compiled. Views of later stages use kFinal.
 View SkinView(View view) {
   switch (view) {
     case View::kShadow:
@@ -84,7 +85,7 @@ bool CanShineThrough(const Settings& settings) {
   return settings.translucency.enabled && settings.shadow.filter != ShadowFilter::kOff;
 }
 
-// What a program must know of the settings that lights a surface; `skin`: it may be skin.
+// Sets the lighting switches. `skin`: the surface may be skin.
 void AddLight(const Settings& settings, bool skin, SceneShader* shader) {
   shader->view = SkinView(settings.view);
   shader->shadow_filter = settings.shadow.filter;
@@ -120,7 +121,7 @@ Status SceneDraw::Update(const FrameRequest& request) {
   const Settings& settings = request.settings;
   displacement_reach_ = settings.displacement.enabled
                             ? 0.001f * settings.displacement.strength * settings.wrinkle_strength *
-                                  gpu_->heights().most_mm
+                                  gpu_->heights().max_mm
                             : 0.0f;
   const std::vector<NamedSubject> subjects = SubjectsOf(request);
   is_crowd_ = subjects.size() > 1;
@@ -149,8 +150,8 @@ void SceneDraw::FindVisible(std::span<const NamedSubject> subjects, const Settin
     views[light].projection = FlatProjection(setup_.shadows[light]);
     views[light].pixels =
         0.5f * static_cast<float>(setup_.shadow_resolution) * setup_.shadows[light].scale;
-    // Nobody asks for a dark lamp's shadow.
-    views[light].is_asked = setup_.lighting.lights[light].radiance != glm::vec3(0.0f);
+    // A dark lamp needs no shadow map.
+    views[light].is_active = setup_.lighting.lights[light].radiance != glm::vec3(0.0f);
   }
   draw_list_.Build(gpu_, subjects, views,
                    {.reach = displacement_reach_,
@@ -218,7 +219,7 @@ void SceneDraw::DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t ind
                              PosedMeshes::Form form, int view) {
   const auto seen = draw_list_.seen(view, index);
   const auto num_draws = static_cast<GLsizei>(seen.size());
-  std::vector<GLint> first(seen.size());  // vertex of each subject
+  std::vector<GLint> first(seen.size());  // first vertex of each subject
   std::ranges::transform(seen, first.begin(), [&](std::uint32_t subject) {
     return static_cast<GLint>(subject) * posed.per_subject;
   });
@@ -245,7 +246,7 @@ void SceneDraw::DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t ind
                                 first.data());
 }
 
-// Patches are as fine as the screen asks for anyway.
+// Patches have no levels: tessellation adapts them to the screen.
 GpuMesh::Level SceneDraw::LevelOf(std::size_t index, PosedMeshes::Form form, int level) {
   if (form == PosedMeshes::Form::kPatches) return {0, gpu_->Patches(index).num_indices, 0.0f};
   const GpuMesh& mesh = gpu_->meshes()[index];
@@ -277,7 +278,7 @@ Status SceneDraw::DrawCaster(const Settings& settings, int light, std::size_t in
       shader.displaced ? shaders_->Get(shader) : shaders_->GetShadow(material.alpha_test);
   FURROW_RETURN_IF_ERROR(program);
   const auto form = shader.displaced ? PosedMeshes::Form::kPatches : PosedMeshes::Form::kIndexed;
-  const WrinkleCache::Composed composed = ComposedOf(number, settings);  // as in the scene
+  const WrinkleCache::Composed composed = ComposedOf(number, settings);  // same as in the scene
   BindMaterial(material, {{}, composed.rest});
   const Result<PosedMeshes::Vertices> posed = Pose(index, form, composed.rest);
   FURROW_RETURN_IF_ERROR(posed);

@@ -16,40 +16,42 @@
 
 namespace furrow::render {
 
-// What the scene is drawn as: plain light in one target; lit by the skin pipeline; or the facets
-// that it lights later (shaders/scene.frag.glsl, skin.frag.glsl, surface.frag.glsl).
+// How the scene is drawn: with plain light into one target (shaders/scene/scene.frag.glsl), lit by
+// the skin pipeline (skin/skin.frag.glsl), or as facets that the skin pipeline lights later
+// (scene/surface.frag.glsl).
 enum class SceneKind { kPlain, kSkin, kFacets };
 
-// The posed subjects and the frame's lights on the GPU, and the draws that several passes make of
-// them. A mesh is one draw call, however many subjects there are.
+// Holds the posed subjects and the frame's lights on the GPU, and draws them for several passes.
+// Each mesh is one draw call, whatever the number of subjects.
 class SceneDraw {
  public:
-  // Everything outlives it. `is_software`: a processor draws, for which composing wrinkles
-  // beforehand pays even while they move (WrinkleCache).
+  // All arguments must outlive this object. `is_software`: the driver renders on the CPU, where
+  // composing wrinkles in advance pays even while they move (WrinkleCache).
   SceneDraw(const wrinkle::Skeleton& skeleton, std::span<const glm::mat4> inverse_bind_matrices,
             GpuCharacter* gpu, WrinkleTables* tables, ShaderLibrary* shaders, bool is_software);
 
-  // Uploads what the request says, once a frame and before any pass draws; the request need not
-  // outlive the call. Errors: of WrinkleTables::Update.
+  // Uploads a request. Call once per frame, before any pass draws. The request may be freed
+  // afterwards. Errors: those of WrinkleTables::Update().
   [[nodiscard]] Status Update(const FrameRequest& request);
   [[nodiscard]] const FrameSetup& setup() const { return setup_; }
-  // Metres that the surface may stand off its bounds in this frame.
+  // Largest distance in metres between the drawn and the skinned surface in this frame.
   [[nodiscard]] float displacement_reach() const { return displacement_reach_; }
 
-  // Binds what light is looked up in. `shadows`: the texture of all maps, 0: none.
+  // Binds the look-up tables of the lighting. `shadows`: texture of all shadow maps; 0: none.
   void BindTables(GLuint shadows);
-  // The same and the frame's lights, for a pass that draws no mesh but lights its facets. The
-  // shadow maps are bound as that pass reads them, to kShadowUnits.
+  // Binds the look-up tables and the frame's lights for a pass that lights stored facets. That pass
+  // binds the shadow maps to kShadowUnits itself.
   void BindLights(const Settings& settings);
   static constexpr std::array<GLuint, 2> kShadowUnits = {5, 6};
-  // What light.frag.glsl is compiled for.
+  // The switches for skin/light.frag.glsl.
   [[nodiscard]] static SceneShader LightShader(const Settings& settings);
-  // A scene of these settings draws with textures that Compose() has to make first.
+  // Returns true if Compose() must run before a scene with these settings is drawn.
   [[nodiscard]] bool NeedsComposing(const Settings& settings) const;
   void Compose() { cache_.Compose(); }
-  // Every mesh as lamp `light` sees it, into the bound framebuffer's viewport: depth alone.
+  // Draws the depth of every mesh as lamp `light` sees it, into the viewport of the bound
+  // framebuffer.
   [[nodiscard]] Status DrawShadow(const Settings& settings, int light);
-  // Every mesh in colour, for the settings' view, or its facets: into one target or five.
+  // Draws every mesh in colour for the settings' view, or its facets, into one target or five.
   [[nodiscard]] Status DrawScene(const Settings& settings, SceneKind kind);
 
  private:
@@ -58,17 +60,17 @@ class SceneDraw {
   void BindMasks();
   [[nodiscard]] WrinkleCache::Composed ComposedOf(int material, const Settings& settings) const;
   void BindMaterial(const GpuMaterial& material, const WrinkleCache::Composed& composed);
-  // The material is bound, with the same part of its wrinkles.
+  // Requires a bound material with the same part of its wrinkles.
   [[nodiscard]] Result<PosedMeshes::Vertices> Pose(std::size_t index, PosedMeshes::Form form,
                                                    WrinklePart part);
   [[nodiscard]] GpuMesh::Level LevelOf(std::size_t index, PosedMeshes::Form form, int level);
-  // Everybody of whom the view sees the mesh, in one call.
+  // Draws all subjects that the view sees of the mesh, in one call.
   void DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t index, PosedMeshes::Form form,
                     int view);
   [[nodiscard]] Status DrawCaster(const Settings& settings, int light, std::size_t index);
   void BindLookUps();
   [[nodiscard]] Status DrawMesh(const Settings& settings, SceneKind kind, std::size_t index);
-  // What a program must know of the material and its wrinkles, whatever is made of them.
+  // The switches that depend on the material and its wrinkles only.
   [[nodiscard]] SceneShader SurfaceShader(const GpuMaterial& material,
                                           const WrinkleCache::Composed& composed) const;
   [[nodiscard]] SceneShader ShaderFor(const GpuMaterial& material,

@@ -6,9 +6,9 @@
 namespace furrow::render {
 namespace {
 
-constexpr float kNoSurface = 1e6f;  // metres: depth of the background
+constexpr float kNoSurface = 1e6f;  // metres; depth of the background
 
-// The views that show data, not light: no background but black.
+// Returns true for views that show data. Their background is black.
 bool IsData(View view) {
   return view == View::kNormal || view == View::kMaskDynamic || view == View::kMaskTexture;
 }
@@ -141,7 +141,8 @@ FacetTargets ScenePass::AddFacets(FrameGraph* graph, const Settings& settings, i
         const GLuint framebuffer = device_->Framebuffer(colours, resources.Get(out.z));
         const TextureDesc& desc = resources.Desc(out.depth);
         BeginScene(framebuffer, desc.width, desc.height);
-        Clear(framebuffer, 4, {kNoSurface, 0.0f, 0.0f, 0.0f});  // nobody reads the others there
+        Clear(framebuffer, 4, {kNoSurface, 0.0f, 0.0f, 0.0f});  // the other targets are not read
+                                                                // there
         return scene_->DrawScene(settings, SceneKind::kFacets);
       });
 }

@@ -7,19 +7,18 @@
 
 namespace furrow::render {
 
-// The scene's targets by stage of the skin pipeline; see shaders/skin.frag.glsl for what each
-// holds.
+// The skin pipeline's scene targets. See shaders/skin/skin.frag.glsl for their contents.
 struct SkinTargets {
   FrameGraph::Handle irradiance;
   FrameGraph::Handle radiance;
   FrameGraph::Handle albedo;
   FrameGraph::Handle normal;
   FrameGraph::Handle depth;  // metres along the camera's axis
-  FrameGraph::Handle z;      // the depth buffer, for FullscreenPass::surface_z; none of several
-                             // samples
+  FrameGraph::Handle z;      // the depth buffer for FullscreenPass::surface_z; no handle for
+                             // multisampled targets
 };
 
-// The same before there is light; see shaders/common_stored_facet.glsl.
+// The scene's targets before lighting. See shaders/scene/stored_facet.glsl for their contents.
 struct FacetTargets {
   FrameGraph::Handle colour;
   FrameGraph::Handle normal;
@@ -31,10 +30,10 @@ struct FacetTargets {
 
 inline constexpr float kFarAway = 60000.0f;  // FAR_AWAY of the shaders: no skin
 
-// Light where the skin pipeline sees no surface; black in views of single parts of the light.
+// Radiance where the skin pipeline sees no surface. Black in views of a single part of the light.
 [[nodiscard]] glm::vec3 SkinBackground(const Settings& settings);
 
-// Clears and draws the scene. SceneDraw::Update() comes first, once a frame.
+// Clears the targets and draws the scene. Requires SceneDraw::Update() once per frame.
 class ScenePass {
  public:
   struct Targets {
@@ -44,21 +43,23 @@ class ScenePass {
     int samples = 4;
   };
 
-  // Both outlive the pass.
+  // Both arguments must outlive the pass.
   ScenePass(SceneDraw* scene, GlDevice* device) : scene_(scene), device_(device) {}
 
-  // Lamps without shadows, one target: linear colour, or data, by the view (shaders/README.md).
+  // Draws the scene with lamps without shadows into one target: linear colour or data, depending on
+  // the view (shaders/README.md).
   [[nodiscard]] FrameGraph::Handle AddPlain(FrameGraph* graph, const Settings& settings,
                                             const Targets& targets);
-  // The skin pipeline's scene: five targets. `shadows`: of ShadowPass; none without shadows.
+  // Draws the skin pipeline's lit scene into five targets. `shadows`: the result of ShadowPass, or
+  // none.
   [[nodiscard]] SkinTargets AddSkin(FrameGraph* graph, const Settings& settings,
                                     const Targets& targets, FrameGraph::Handle shadows);
-  // The skin pipeline's scene without light, one sample a pixel: five targets.
+  // Draws the skin pipeline's scene without light into five targets, one sample per pixel.
   [[nodiscard]] FacetTargets AddFacets(FrameGraph* graph, const Settings& settings, int width,
                                        int height);
 
  private:
-  // Textures that the scene draws with, made when they are not yet; once a graph.
+  // Adds a pass that brings the composed textures up to date, if necessary; at most once per graph.
   void AddComposing(FrameGraph* graph, const Settings& settings);
 
   SceneDraw* scene_;

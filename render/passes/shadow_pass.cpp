@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/passes/shadow_pass.h"
 
-#include "render/scene/subjects.h"
+#include "render/request/subjects.h"
 
 namespace furrow::render {
 namespace {
@@ -46,7 +46,8 @@ FrameGraph::Handle ShadowPass::Add(FrameGraph* graph, const FrameRequest& reques
   }
   const FrameGraph::Handle maps = graph->Import("shadow maps", desc, maps_);
   std::vector<float> inputs = Inputs(request);
-  // How fine displaced patches are hangs on the camera, and where they are on wrinkle weights.
+  // The subdivision of displaced patches depends on the camera, and their position on wrinkle
+  // weights.
   if (inputs == drawn_ && !request.settings.displacement.enabled) return maps;
   drawn_.clear();
   struct Data {
@@ -74,7 +75,7 @@ Status ShadowPass::Draw(const Settings& settings, TextureId maps) {
   glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &nothing);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
-  glEnable(GL_DEPTH_CLAMP);  // what stands nearer to the lamp than the stage casts as well
+  glEnable(GL_DEPTH_CLAMP);  // objects nearer to the lamp than the stage cast shadows too
   Status status;
   for (int light = 0; light < settings.shadow.lamps && status.ok(); ++light) {
     glViewport(light * resolution, 0, resolution, resolution);

@@ -9,22 +9,23 @@
 
 namespace furrow::render {
 
-// The lamps' depth pictures, side by side in one texture of kNumLights squares. They are kept, and
-// drawn anew only when a lamp, or anybody who casts a shadow, has moved: not while a pose is held
-// and its looks are changed.
+// The lamps' depth pictures, side by side in one texture of kNumLights squares. They are kept from
+// frame to frame and redrawn only when a lamp or a caster has moved. Changing other settings while
+// a pose is held does not redraw them.
 class ShadowPass {
  public:
-  // Both outlive the pass.
+  // Both arguments must outlive the pass.
   ShadowPass(SceneDraw* scene, GlDevice* device) : scene_(scene), device_(device) {}
   ~ShadowPass();
   ShadowPass(const ShadowPass&) = delete;
   ShadowPass& operator=(const ShadowPass&) = delete;
 
-  // Those of the first ShadowSettings::lamps; the others are empty: nothing casts there.
+  // Returns the maps. Only the first ShadowSettings::lamps of them have casters; the others are
+  // empty.
   [[nodiscard]] FrameGraph::Handle Add(FrameGraph* graph, const FrameRequest& request);
 
  private:
-  // All that the maps depend on.
+  // All values that the maps depend on.
   [[nodiscard]] std::vector<float> Inputs(const FrameRequest& request) const;
   [[nodiscard]] Status Draw(const Settings& settings, TextureId maps);
 
@@ -32,7 +33,7 @@ class ShadowPass {
   GlDevice* device_;
   TextureDesc desc_;
   TextureId maps_ = 0;
-  std::vector<float> drawn_;  // Inputs() of what the maps hold; empty: of nothing
+  std::vector<float> drawn_;  // Inputs() of the current maps; empty: no maps yet
 };
 
 }  // namespace furrow::render

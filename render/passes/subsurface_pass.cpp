@@ -11,9 +11,9 @@ namespace {
 
 using Handle = FrameGraph::Handle;
 
-constexpr float kNarrowest = 0.01f;  // of SubsurfaceSettings::width, that is worth a pass
+constexpr float kMinWidth = 0.01f;  // a smaller SubsurfaceSettings::width has no visible effect
 
-// Locations in separable.frag.glsl.
+// Uniform locations in skin/separable.frag.glsl.
 enum Location : GLint {
   kAxis = 0,
   kNumTaps = 1,
@@ -22,21 +22,22 @@ enum Location : GLint {
   kOffset = 4,
   kWeight = 25
 };
-// In burley.frag.glsl.
+// Uniform locations in skin/burley.frag.glsl.
 enum BurleyLocation : GLint {
   kBurleyNumTaps = 0,
   kBurleyGeometry = 1,
   kBurleyOffset = 2,
   kBurleyWeight = 66
 };
-constexpr GLint kSumStrength = 0;  // in gaussian_sum.frag.glsl
+constexpr GLint kSumStrength = 0;  // uniform location in skin/gaussian_sum.frag.glsl
 
-// 32 bits: a software driver rounds halves towards zero, which adds up over the passes.
+// 32 bits, because software drivers round half floats towards zero, and the error would add up over
+// the passes.
 TextureDesc LightDesc(const SkinGeometry& geometry) {
   return {geometry.width, geometry.height, PixelFormat::kRgba32F, 1};
 }
 
-// A kernel along x, turned to run along y.
+// Rotates a kernel that runs along x to run along y.
 PixelTaps AlongY(PixelTaps kernel) {
   for (glm::vec2& offset : kernel.offsets) offset = glm::vec2(-offset.y, offset.x);
   return kernel;
@@ -47,7 +48,7 @@ PixelTaps AlongY(PixelTaps kernel) {
 Handle SubsurfacePass::Add(FrameGraph* graph, Handle irradiance, const SubsurfaceSettings& settings,
                            const SkinGeometry& geometry) {
   const bool nothing_scatters =
-      settings.strength <= 0.0f || settings.width < kNarrowest || geometry.bounds.empty();
+      settings.strength <= 0.0f || settings.width < kMinWidth || geometry.bounds.empty();
   if (nothing_scatters) return irradiance;
   switch (settings.method) {
     case SubsurfaceMethod::kOff:
@@ -65,7 +66,7 @@ Handle SubsurfacePass::AddAxis(FrameGraph* graph, const AxisPass& what, Handle i
   return fullscreen_->AddSimplePass(
       graph,
       {.name = what.name,
-       .fragment = "separable.frag.glsl",
+       .fragment = "skin/separable.frag.glsl",
        .defines = {},
        .reads = {in, unscattered},
        .writes = {{what.target, LightDesc(geometry)}},
@@ -120,7 +121,7 @@ Handle SubsurfacePass::AddGaussians(FrameGraph* graph, Handle irradiance,
   return fullscreen_->AddSimplePass(
       graph,
       {.name = "gaussian sum",
-       .fragment = "gaussian_sum.frag.glsl",
+       .fragment = "skin/gaussian_sum.frag.glsl",
        .defines = {},
        .reads = {irradiance, blurs[0], blurs[1], blurs[2], blurs[3], blurs[4], blurs[5]},
        .writes = {{"scattered", LightDesc(geometry)}},
@@ -137,7 +138,7 @@ Handle SubsurfacePass::AddBurley(FrameGraph* graph, Handle irradiance,
   return fullscreen_->AddSimplePass(
       graph,
       {.name = "burley",
-       .fragment = "burley.frag.glsl",
+       .fragment = "skin/burley.frag.glsl",
        .defines = {},
        .reads = {irradiance},
        .writes = {{"scattered", LightDesc(geometry)}},

@@ -7,22 +7,23 @@
 
 namespace furrow::render {
 
-// What the subsurface passes know of the picture's geometry.
+// The picture's geometry for the subsurface passes.
 struct SkinGeometry {
   int width = 0;  // pixels
   int height = 0;
-  float focus_distance = 1.0f;   // metres; depths in the irradiance's alpha count from it
-  float pixels_per_mm = 1.0f;    // there
-  ScreenRect bounds;             // all skin lies within
-  FrameGraph::Handle surface_z;  // of FullscreenPass
+  float focus_distance = 1.0f;   // metres; depths in the irradiance's alpha are relative to it
+  float pixels_per_mm = 1.0f;    // at the focus distance
+  ScreenRect bounds;             // contains all skin
+  FrameGraph::Handle surface_z;  // FullscreenPass::surface_z
 };
 
-// Lets the light on skin scatter. `irradiance`: rgb: light, a: metres behind the focus, 60000 where
-// there is no skin. Returns light in the same layout; `irradiance` itself where nothing scatters.
+// Scatters the light on skin. `irradiance` holds light in rgb and, in alpha, metres behind the
+// focus or 60000 where there is no skin. Returns scattered light in the same layout, or
+// `irradiance` itself if the method does not scatter here.
 //
-// - gaussians: the thesis' six blurs, one after the other, each along x and y, and their sum.
+// - gaussians: the thesis' six consecutive blurs, each along x and y, and their weighted sum.
 // - separable: one kernel along x and y. burley: one disc of taps.
-// - preintegrated has happened in the scene pass.
+// - preintegrated: nothing to do; the lighting has already applied it.
 class SubsurfacePass {
  public:
   explicit SubsurfacePass(Fullscreen* fullscreen) : fullscreen_(fullscreen) {}
@@ -32,7 +33,7 @@ class SubsurfacePass {
                                        const SkinGeometry& geometry);
 
  private:
-  // What a pass along one axis is.
+  // A pass along one axis.
   struct AxisPass {
     const char* name;
     const char* target;
@@ -53,7 +54,8 @@ class SubsurfacePass {
   [[nodiscard]] FrameGraph::Handle AddBurley(FrameGraph* graph, FrameGraph::Handle irradiance,
                                              const SubsurfaceSettings& settings,
                                              const SkinGeometry& geometry);
-  void DrawSkin(const SkinGeometry& geometry);  // of a pass that runs; no skin elsewhere
+  void DrawSkin(const SkinGeometry& geometry);  // call only while a pass runs; draws nothing
+                                                // outside the skin
 
   Fullscreen* fullscreen_;
 };

@@ -10,14 +10,14 @@
 namespace furrow::render {
 namespace {
 
-// How a mesh of one subject looks.
+// One subject's mesh as the views see it.
 struct Look {
   std::array<bool, DrawList::kNumViews> is_seen{};
-  float pixels = 0.0f;   // of a metre of the mesh where it is nearest
-  float covered = 0.0f;  // share of the camera's picture, at most
+  float pixels = 0.0f;   // pixels per metre of the mesh at its nearest point
+  float covered = 0.0f;  // upper bound of the covered share of the camera's picture
 };
 
-// Share of the picture that an extent covers.
+// The share of the picture that an extent covers.
 float Covered(const JointBounds::Extent& extent) {
   if (extent.nearest <= 0.0f) return 1.0f;
   const glm::vec2 size = glm::min(extent.high, glm::vec2(1.0f)) -  //
@@ -30,7 +30,7 @@ Look LookAt(const JointBounds& bounds, const PosedSubject& subject,
   Look look;
   float of_lamps = 0.0f;
   for (std::size_t view = 0; view < views.size(); ++view) {
-    if (!views[view].is_asked) continue;
+    if (!views[view].is_active) continue;
     const auto extent =
         bounds.Look(subject.model, views[view].projection * subject.placement, reach);
     if (!extent.is_seen()) continue;

@@ -8,49 +8,51 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "render/request/subjects.h"
 #include "render/scene/gpu_character.h"
 #include "render/scene/lighting.h"
-#include "render/scene/subjects.h"
 
 namespace furrow::render {
 
-// Which subjects' meshes the camera and the lamps of a frame can see at all.
+// Selects the subjects of each mesh that the camera and the lamps can see, and their level of
+// detail.
 class DrawList {
  public:
-  static constexpr int kCamera = kNumLights;  // the views: the lamps, then the camera
+  static constexpr int kCamera = kNumLights;  // index of the camera's view; the lamps' views come
+                                              // first
   static constexpr int kNumViews = kNumLights + 1;
   struct View {
-    glm::mat4 projection{1.0f};  // to clip space
-    float pixels = 0.0f;         // of a metre where clip space's w is 1
-    bool is_asked = true;        // a dark lamp's shadows are not
+    glm::mat4 projection{1.0f};  // model space to clip space
+    float pixels = 0.0f;         // pixels per metre where clip space's w is 1
+    bool is_active = true;       // false: a lamp that casts no shadow
   };
   struct Tolerance {
-    float reach = 0.0f;         // metres that surfaces may stand off their bounds
-    float error_pixels = 0.0f;  // that a simplified mesh may be off by
-    float hair_shadow = 0.0f;   // metres, hair as a caster of shadows
+    float reach = 0.0f;         // metres between the drawn and the skinned surface, at most
+    float error_pixels = 0.0f;  // allowed error of simplified meshes
+    float hair_shadow = 0.0f;   // metres; allowed error of hair in shadow maps
   };
 
   void Build(GpuCharacter* gpu, std::span<const NamedSubject> subjects,
              const std::array<View, kNumViews>& views, const Tolerance& tolerance);
 
-  // The subjects of whom some view sees the mesh, in ascending order.
+  // The subjects that any view sees of the mesh, in ascending order.
   [[nodiscard]] std::span<const std::uint32_t> subjects(std::size_t mesh) const {
     return meshes_[mesh].subjects;
   }
-  // Of GpuMesh::levels, one each of subjects(). By the camera, or by the lamps where the camera
-  // sees nothing. The same for all views, so that no surface throws the shadow of another on
-  // itself; but lamps see hair coarser, within the tolerance: it has no smooth surface that would
-  // show it.
+  // The level of detail (GpuMesh::levels) of each of subjects(). The camera's distance determines
+  // it, or the lamps' where the camera does not see the subject. All views use the same level,
+  // because a surface would otherwise cast shadows on itself. Only hair is coarser in shadow maps,
+  // within the tolerance: it has no smooth surface on which that would show.
   [[nodiscard]] std::span<const int> levels(int view, std::size_t mesh) const {
     return view == kCamera ? meshes_[mesh].levels : meshes_[mesh].shadow_levels;
   }
-  // How large the camera sees a mesh, of all subjects.
+  // Apparent size of a mesh in the camera's picture, over all subjects.
   struct Sight {
-    float pixels = 0.0f;   // of a metre of it where it is nearest; 0: nobody's is seen
-    float covered = 0.0f;  // of the picture, at most: [0, 1] for one subject
+    float pixels = 0.0f;   // pixels per metre of the nearest subject; 0: none is visible
+    float covered = 0.0f;  // upper bound of the covered share of the picture, [0, 1] per subject
   };
   [[nodiscard]] const Sight& sight(std::size_t mesh) const { return meshes_[mesh].sight; }
-  // Those whom a view sees, as positions in subjects().
+  // The subjects that one view sees, as positions in subjects().
   [[nodiscard]] std::span<const std::uint32_t> seen(int view, std::size_t mesh) const {
     return meshes_[mesh].seen[static_cast<std::size_t>(view)];
   }

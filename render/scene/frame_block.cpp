@@ -31,8 +31,8 @@ float HairShadowError(const Settings& settings, std::span<const ShadowView> shad
                   settings.shadow.normal_offset_mm * kMetresPerMm);
 }
 
-// Metres around the focus that shadows fall on: a picture of `radius` metres at the focus widens
-// behind it, and shows what lies as deep as a head or a trunk.
+// Radius in metres around the focus that the shadow maps cover. A picture of `radius` metres at the
+// focus widens behind it, and shows surfaces up to the depth of a head or a torso.
 float ShadedRadius(float radius, float distance) {
   constexpr float kDepth = 0.15f;
   return std::hypot(radius * (1.0f + kDepth / std::max(distance, kDepth)), kDepth);

@@ -6,52 +6,52 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
-#include "render/renderer.h"
-#include "render/scene/camera.h"
+#include "render/request/frame_request.h"
+#include "render/scene/camera_frame.h"
 #include "render/scene/lighting.h"
 #include "render/scene/shadow_view.h"
 
 namespace furrow::render {
 
-// Mirrors Light of shaders/common_frame.glsl (std140).
+// Mirrors Light of shaders/common/frame.glsl (std140).
 struct LightBlock {
-  glm::vec4 position;   // xyz; w: 1, or 0 for a light that has a direction alone
+  glm::vec4 position;   // xyz; w: 1, or 0 for a directional light
   glm::vec4 direction;  // xyz: unit, towards the light; w: cosine at a spot's edge, -1: no spot
-  glm::vec4 radiance;   // rgb; w: squared distance at which it holds
+  glm::vec4 radiance;   // rgb; w: squared distance for which rgb is given
   glm::mat4 shadow_view;
-  glm::vec4 shadow;  // scale, near plane, 1 / range, 1 for a perspective
+  glm::vec4 shadow;  // scale, near plane, 1 / range; w: 1 for a perspective projection
 };
 
-// Mirrors Frame of shaders/common_frame.glsl (std140): what is the same for all of a frame.
+// Mirrors Frame of shaders/common/frame.glsl (std140): the values that are constant within a frame.
 struct FrameBlock {
   glm::mat4 view_projection;
   glm::vec4 camera_position;  // xyz
-  glm::vec4 camera_forward;   // xyz: unit; w: distance of the focus, metres
+  glm::vec4 camera_forward;   // xyz: unit; w: focus distance, metres
   std::array<LightBlock, kNumLights> lights;
   std::array<glm::vec4, 9> ambient;  // AmbientPolynomial() of the sky
-  glm::vec4 sky_zenith;              // rgb: of GradientSky
+  glm::vec4 sky_zenith;              // rgb; see GradientSky
   glm::vec4 sky_horizon;
   glm::vec4 sky_ground;
-  glm::vec4 shadow_filter;  // metres: softness, lamp's radius, normal offset; w: resolution
-  glm::vec4 specular;       // rho_s, scale of m, second lobe's share; w: albedo mix
+  glm::vec4 shadow_filter;  // metres: softness, lamp radius, normal offset; w: resolution
+  glm::vec4 specular;       // rho_s, scale of m, share of the second lobe; w: albedo mix
   glm::vec4 translucency;   // strength, scale, shrink (metres); w: subsurface strength
-  glm::vec4 wrinkle_maps;   // blood flow, cavity
-  glm::vec4 displacement;  // metres a millimetre of height, FrameSetup::pixels_per_slope, pixels of
-                           // an edge, most levels
+  glm::vec4 wrinkle_maps;   // x: blood flow, y: cavity
+  glm::vec4 displacement;   // metres per millimetre of height, FrameSetup::pixels_per_slope, edge
+                            // length (pixels), largest level
 };
 
-// What a request's camera and settings make of the scene.
+// Camera, lights and shadow views of one frame, computed from a request.
 struct FrameSetup {
   CameraFrame camera;
   Lighting lighting;
   SphericalHarmonics ambient;  // AmbientPolynomial() of the sky
   std::array<ShadowView, kNumLights> shadows;
-  int shadow_resolution = 0;       // texels a side of each map
-  float hair_shadow_error = 0.0f;  // metres that hair may be off as a lamp sees it
-  float pixels_per_slope = 1.0f;   // height in the picture of what is as tall as it is far away
+  int shadow_resolution = 0;       // texels per side of each map
+  float hair_shadow_error = 0.0f;  // metres; allowed error of hair in shadow maps
+  float pixels_per_slope = 1.0f;   // CameraFrame::PixelsPerSlope()
 };
 
-// The sky's polynomial, worked out when the sky changes.
+// Caches the sky's polynomial until the sky changes.
 class AmbientCache {
  public:
   [[nodiscard]] const SphericalHarmonics& Get(const GradientSky& sky);

@@ -14,7 +14,7 @@ using character::Material;
 using character::Picture;
 using character::Vertex;
 
-// Mirrors the Material block of scene.frag.glsl (std140).
+// Mirrors the Material block of shaders/scene/surface_frag.glsl (std140).
 struct MaterialBlock {
   glm::vec4 base_colour;
   float roughness;
@@ -26,8 +26,8 @@ struct MaterialBlock {
 };
 static_assert(sizeof(MaterialBlock) == 48);
 
-// Scales the specular lobe. Skin reflects 2.8% face on, water before the eye 2%; the eye's film is
-// smooth, so that its highlight is a small bright point.
+// Scale of the specular lobe. Skin reflects 2.8% at normal incidence, the tear film 2%. The tear
+// film is smooth, so its highlight is a small bright point.
 float SpecularOf(Material::Kind kind) {
   switch (kind) {
     case Material::Kind::kSkin: return 0.028f;
@@ -39,8 +39,9 @@ float SpecularOf(Material::Kind kind) {
   return 0.03f;
 }
 
-// What hides most is drawn first: cloth over skin over what the head holds. Hair comes after the
-// skin that it lies on: it has many layers, and those at the back of the head are hidden by then.
+// Drawing order. Materials that hide others come first, so that hidden fragments are not shaded:
+// cloth, skin, and then the inside of the head. Hair comes after the skin that it lies on: it has
+// many layers, and skin then hides those at the back of the head.
 int LayerOf(Material::Kind kind) {
   switch (kind) {
     case Material::Kind::kCloth: return 0;
@@ -52,7 +53,8 @@ int LayerOf(Material::Kind kind) {
   return 3;
 }
 
-// Base colour below which a surface counts as hollow. Eyes have black pupils and glossy ones.
+// Base colour below which a surface counts as a painted cavity_albedo. Only skin has painted
+// hollows; dark eyes and hair keep their gloss.
 float CavityAlbedoOf(Material::Kind kind) { return kind == Material::Kind::kSkin ? 0.02f : 0.0f; }
 
 float RoughnessOf(const Material& material) {
@@ -99,7 +101,7 @@ Status CheckPicture(const Picture& picture) {
   const std::string where = "picture '" + picture.name + "'";
   if (picture.width < 1 || picture.height < 1 || picture.channels < 1 ||
       picture.pixels.size() + picture.pixels16.size() + picture.pixels_float.size() != samples) {
-    return {StatusCode::kInvalidArgument, "its pixels do not fit its size", where};
+    return {StatusCode::kInvalidArgument, "the number of pixels does not match the size", where};
   }
   if (std::max(picture.width, picture.height) > limit) {
     return {StatusCode::kLimit, "larger than the driver's " + std::to_string(limit) + " pixels",
@@ -108,7 +110,7 @@ Status CheckPicture(const Picture& picture) {
   return {};
 }
 
-// 8-bit RGBA, nearest texel: only masks of other sizes than their neighbours come here.
+// 8-bit RGBA by nearest texel. Used only for masks whose size differs from that of the other masks.
 std::vector<std::uint8_t> ResizeRgba8(const Picture& picture, int width, int height) {
   const std::vector<std::uint8_t> rgba = ToRgba8(picture);
   if (picture.width == width && picture.height == height) return rgba;
@@ -140,8 +142,8 @@ Status CheckLayers(std::size_t layers, const char* what) {
           "wrinkle rig"};
 }
 
-// The active list must fit a uniform block, and the dynamic masks what a vertex brings and hands
-// on.
+// Checks that the list of active maps fits a uniform block, and that the dynamic masks fit the
+// attributes and varyings of a vertex.
 Status CheckBlock(const WrinkleLayout& layout) {
   const int num_maps = static_cast<int>(layout.map_layers.size());
   GLint block_limit = 0;
@@ -150,7 +152,7 @@ Status CheckBlock(const WrinkleLayout& layout) {
   glGetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &block_limit);
   glGetIntegerv(GL_MAX_VARYING_VECTORS, &varying_limit);
   glGetIntegerv(GL_MAX_VERTEX_ATTRIBS, &attribute_limit);
-  constexpr int kOthers = 6;  // of scene.vert.glsl
+  constexpr int kOthers = 6;  // attributes and varyings that scene.vert.glsl needs besides
   if (WrinkleBlockSize(num_maps, layout.num_mask_layers) <= static_cast<std::size_t>(block_limit) &&
       MapSlots(num_maps) + kOthers <= std::min(varying_limit, attribute_limit)) {
     return {};
@@ -201,7 +203,7 @@ Status GpuCharacter::AddMaterials(const Character& character) {
     material.derivatives = DerivativeTexture(character, source.normal_texture);
     material.kind = source.kind;
     material.group = GroupOf(character, source.kind);
-    material.hollow = block.cavity_albedo / std::max(source.base_colour.g, 1e-3f);
+    material.cavity_albedo = block.cavity_albedo / std::max(source.base_colour.g, 1e-3f);
     material.alpha_test = source.alpha_cutoff > 0.0f;
     material.double_sided = source.double_sided;
     materials_.push_back(std::move(material));
@@ -209,7 +211,7 @@ Status GpuCharacter::AddMaterials(const Character& character) {
   return {};
 }
 
-// What lies over other surfaces comes first, so that what it covers is not shaded.
+// Uploads the meshes in drawing order (LayerOf()).
 Status GpuCharacter::AddMeshes(const Character& character) {
   std::vector<const character::Mesh*> order;
   for (const character::Mesh& source : character.meshes) {
@@ -226,12 +228,12 @@ Status GpuCharacter::AddMeshes(const Character& character) {
 }
 
 int GpuCharacter::Level(std::size_t index, float metres) {
-  constexpr float kLeastShare = 0.01f;  // of an edge: nothing collapses for less
+  constexpr float kMinShare = 0.01f;  // of the mean edge; no edge collapses for less
   GpuMesh& mesh = meshes_[index];
-  if (!(metres > kLeastShare * mesh.mean_edge)) return 0;
+  if (!(metres > kMinShare * mesh.mean_edge)) return 0;
   if (mesh.levels.empty()) {
     const bool is_hair = material(mesh.material).kind == Material::Kind::kHair;
-    AddLevels(&mesh, is_hair ? Borders::kDrawnIn : Borders::kStay);
+    AddLevels(&mesh, is_hair ? Borders::kSimplify : Borders::kKeep);
   }
   int level = static_cast<int>(mesh.levels.size()) - 1;
   while (level > 0 && mesh.levels[static_cast<std::size_t>(level)].error > metres) --level;
@@ -288,7 +290,7 @@ Status GpuCharacter::AddMasks(const Character& character) {
     const std::string& name = region.mask.texture;
     if (region.mask.kind != wrinkle::Mask::Kind::kTexture || layout_.MaskLayer(name) >= 0) continue;
     const int index = character.FindRigPicture(name);
-    if (index < 0) continue;  // Character::missing_rig_pictures: not drawn
+    if (index < 0) continue;  // not drawn; see Character::missing_rig_pictures
     pictures.push_back(&character.pictures[static_cast<std::size_t>(index)]);
     width = std::max(width, pictures.back()->width);
     height = std::max(height, pictures.back()->height);
@@ -316,7 +318,7 @@ Status GpuCharacter::AddWrinkleMaps(const Character& character) {
     const bool derivative = !map.derivative.empty();
     const int index = character.FindRigPicture(derivative ? map.derivative : map.normal);
     layout_.map_layers.push_back(index < 0 ? -1 : static_cast<int>(maps.size()));
-    if (index < 0) continue;  // Character::missing_rig_pictures: no relief
+    if (index < 0) continue;  // no relief; see Character::missing_rig_pictures
     const Picture& picture = character.pictures[static_cast<std::size_t>(index)];
     maps.push_back(derivative ? DerivativesFromDerivativeMap(picture, map.derivative_scale)
                               : DerivativesFromNormalMap(picture));
@@ -339,7 +341,7 @@ Status GpuCharacter::AddWrinkleMaps(const Character& character) {
   return {};
 }
 
-// One layer a wrinkle map: its colour in rgb, its cavity in alpha; white where it has none.
+// One layer per wrinkle map: colour in rgb, cavity in alpha, white where the map has none.
 void GpuCharacter::AddWrinkleLooks(const Character& character) {
   const auto find = [&](const std::string& name) {
     const int index = name.empty() ? -1 : character.FindRigPicture(name);
@@ -364,10 +366,10 @@ void GpuCharacter::AddWrinkleLooks(const Character& character) {
     std::vector<std::uint8_t> rgba(static_cast<std::size_t>(width) * height * 4, 255);
     if (const Picture* colour = find(map.colour)) rgba = ResizeRgba8(*colour, width, height);
     const Picture* cavity = find(map.cavity);
-    const std::vector<std::uint8_t> hollow =
+    const std::vector<std::uint8_t> cavity_albedo =
         cavity == nullptr ? std::vector<std::uint8_t>() : ResizeRgba8(*cavity, width, height);
     for (std::size_t i = 0; i < rgba.size(); i += 4) {
-      rgba[i + 3] = hollow.empty() ? 255 : hollow[i];
+      rgba[i + 3] = cavity_albedo.empty() ? 255 : cavity_albedo[i];
     }
     glTextureSubImage3D(wrinkle_looks_.name(), 0, 0, 0, layer, width, height, 1, GL_RGBA,
                         GL_UNSIGNED_BYTE, rgba.data());

@@ -16,25 +16,26 @@
 namespace furrow::render {
 
 struct GpuMaterial {
-  gl::Buffer block;        // the Material block of scene.frag.glsl
-  GLuint base_colour = 0;  // textures; 0: none
+  gl::Buffer block;        // the Material block of shaders/scene/surface_frag.glsl
+  GLuint base_colour = 0;  // texture names; 0: none
   GLuint derivatives = 0;
   GLuint roughness = 0;
   GLuint thickness = 0;
   character::Material::Kind kind = character::Material::Kind::kOther;
   WrinkleGroup group = WrinkleGroup::kNone;
-  float hollow = 0.0f;  // green of the base colour's texture below which cavity() counts
+  float cavity_albedo = 0.0f;  // cavity() applies where the base colour's green is below this
   bool alpha_test = false;
   bool double_sided = false;
 };
 
 // A character's meshes, materials and textures on the GPU. Normal maps become derivative maps in
-// half floats, with mips averaged from the derivatives; masks and wrinkle maps become one array
-// each.
+// half floats, whose mips are averaged from the derivatives. Masks and wrinkle maps become one
+// texture array each.
 class GpuCharacter {
  public:
-  // Errors: kInvalidArgument (a mesh or material points to nothing), kLimit (more layers or larger
-  // textures than the driver takes). `character` is not kept.
+  // Uploads `character` and keeps no reference to it. Errors: kInvalidArgument (a mesh or material
+  // refers to something that does not exist), kLimit (more layers or larger textures than the
+  // driver supports).
   [[nodiscard]] static Result<std::unique_ptr<GpuCharacter>> Create(
       const character::Character& character);
 
@@ -42,18 +43,18 @@ class GpuCharacter {
   [[nodiscard]] const GpuMaterial& material(int index) const { return materials_[index]; }
   [[nodiscard]] int num_materials() const { return static_cast<int>(materials_.size()); }
   [[nodiscard]] GLuint masks() const { return masks_.name(); }
-  // Where the masks let wrinkles show.
+  // The regions of the surface where the painted masks are above 0.
   [[nodiscard]] std::span<const MaskRegion> mask_regions() const { return mask_regions_; }
   [[nodiscard]] GLuint wrinkle_derivatives() const { return wrinkle_derivatives_.name(); }
-  // Colour and cavity of the wrinkle maps, a layer each; 0 where none has any.
+  // Texture array of the wrinkle maps' colour and cavity, one layer per map that has them; 0: none.
   [[nodiscard]] GLuint wrinkle_looks() const { return wrinkle_looks_.name(); }
   [[nodiscard]] const WrinkleLayout& layout() const { return layout_; }
-  // Heights of the wrinkle maps (WrinkleLayout::height_layers).
+  // Heights of the wrinkle maps, in the order of WrinkleLayout::height_layers.
   [[nodiscard]] const WrinkleHeights& heights() const { return heights_; }
-  // The coarsest of a mesh's levels that is off by `metres` at most. Levels are made when one is
-  // first asked for that could be any coarser than the mesh.
+  // The coarsest level of a mesh with an error of at most `metres`. Computes the mesh's levels the
+  // first time that a coarser level than the mesh itself may be used.
   [[nodiscard]] int Level(std::size_t mesh, float metres);
-  // Variants of a mesh, made on first use.
+  // Variants of a mesh, created on first use.
   [[nodiscard]] const GpuMesh& Unindexed(std::size_t mesh);
   [[nodiscard]] const GpuPatches& Patches(std::size_t mesh);
 

@@ -7,9 +7,10 @@
 namespace furrow::render {
 namespace {
 
-constexpr float kLampDistance = 7.0f;  // of lamps with a place, in radii of the stage
+constexpr float kLampDistance = 7.0f;  // distance of spots and points from the focus, in radii of
+                                       // the stage
 
-// Places lamps in the camera's frame: x to its right, y up, z back towards it.
+// Places lamps in the camera's frame: x to the right, y up, z towards the camera.
 class Placer {
  public:
   Placer(const LightSettings& settings, const Stage& stage)

@@ -5,16 +5,16 @@
 
 namespace furrow::render {
 
-// The tables that shaders look things up in, as textures; made when first used, the same for every
-// character and setting.
+// Look-up tables of the shaders as textures, created on first use. They do not depend on the
+// character or on settings.
 class LookupTables {
  public:
-  // PH of Kelemen and Szirmay-Kalos in R16 (render/skin/beckmann.h).
+  // The Beckmann term PH of Kelemen and Szirmay-Kalos, R16 (render/skin/beckmann.h).
   [[nodiscard]] GLuint beckmann();
-  // What it reflects in all, in RG32F.
+  // Albedo of both specular lobes, RGBA32F (TwoLobeAlbedoTable() of render/skin/beckmann.h).
   [[nodiscard]] GLuint specular_albedo();
-  // Light on a sphere of skin by cosine and curvature, in RGBA16F
-  // (render/skin/subsurface_kernel.h).
+  // Light on a sphere of skin by cosine and curvature, RGBA16F (PreintegratedTable() of
+  // render/skin/subsurface_kernel.h).
   [[nodiscard]] GLuint preintegrated();
 
  private:

@@ -6,10 +6,10 @@
 namespace furrow::render {
 namespace {
 
-constexpr GLuint kSubjectAttribute = 7;  // of pose.vert.glsl
+constexpr GLuint kSubjectAttribute = 7;  // of shaders/scene/pose.vert.glsl
 constexpr GLuint kSubjectBinding = 2;    // of a mesh's vertex array
 
-// Mirrors the outputs of pose.vert.glsl, bytes.
+// Offsets in bytes. Mirrors the outputs of shaders/scene/pose.vert.glsl.
 struct Layout {
   explicit Layout(const PoseShader& shader)
       : masks(shader.displaced ? 56 : 52),
@@ -24,7 +24,7 @@ struct Layout {
   GLuint stride;
 };
 
-// As the inputs of scene.vert.glsl.
+// Describes posed vertices as the inputs of shaders/scene/scene.vert.glsl.
 void DescribePosed(GLuint array, const gl::Buffer& vertices, const PoseShader& shader) {
   const Layout layout(shader);
   glVertexArrayVertexBuffer(array, 0, vertices.name(), 0, static_cast<GLsizei>(layout.stride));
@@ -85,7 +85,7 @@ Result<PosedMeshes::Vertices> PosedMeshes::Get(std::size_t mesh, Form form,
   return Vertices{posed.vertex_array.name(), posed.per_subject};
 }
 
-// Kept from frame to frame as long as it fits: new memory is paid for page by page.
+// Reuses the storage of earlier frames while it fits, because the first use of new memory is slow.
 void PosedMeshes::Reserve(std::size_t bytes, Posed* posed) {
   if (!posed->vertex_array) {
     posed->vertex_array = gl::MakeVertexArray();

@@ -13,27 +13,27 @@
 
 namespace furrow::render {
 
-// The vertices of meshes in the poses of a frame's subjects, worked out once a frame and read by
-// every pass that draws them: scene and shadow maps of all lamps alike.
+// Skinned vertices of meshes for all subjects of a frame. They are computed once per frame and read
+// by every pass that draws them: the scene and the shadow maps of all lamps.
 class PosedMeshes {
  public:
-  // How a mesh's triangles are put together.
+  // How a mesh's vertices form triangles.
   enum class Form { kIndexed, kUnindexed, kPatches };
-  static constexpr std::size_t kMaxVertices = std::size_t{1} << 24;  // of a mesh, all subjects
+  static constexpr std::size_t kMaxVertices = std::size_t{1} << 24;  // per mesh, over all subjects
 
   PosedMeshes(GpuCharacter* gpu, ShaderLibrary* shaders) : gpu_(gpu), shaders_(shaders) {}
 
-  // What was posed belongs to the last frame.
+  // Marks all posed vertices as outdated.
   void BeginFrame();
 
   struct Vertices {
-    GLuint vertex_array = 0;  // as shaders/scene.vert.glsl reads it, one subject after the other
+    GLuint vertex_array = 0;  // in the layout of scene.vert.glsl, one subject after another
     GLsizei per_subject = 0;
   };
-  // A mesh in the poses of `subjects`, of whom there is at least one. Joints and dynamic masks are
-  // bound; leaves its own program in use. PoseShader::dynamic: with the dynamic masks of each
-  // vertex, of the maps of `part`. Posed anew in a frame only where calls ask for different ones.
-  // Errors: kLimit (kMaxVertices), kInternal (a shader).
+  // Returns a mesh in the poses of `subjects`, at least one. PoseShader::dynamic adds the dynamic
+  // masks of each vertex, for the maps of `part`. Repeated calls within a frame reuse the vertices
+  // unless they ask for other masks. Requires bound joints and dynamic masks; changes the current
+  // program. Errors: kLimit (kMaxVertices), kInternal (a shader).
   [[nodiscard]] Result<Vertices> Get(std::size_t mesh, Form form, const PoseShader& shader,
                                      WrinklePart part, std::span<const std::uint32_t> subjects);
 
@@ -41,10 +41,10 @@ class PosedMeshes {
   struct Posed {
     gl::VertexArray vertex_array;
     gl::Buffer vertices;
-    std::size_t capacity = 0;  // of `vertices`, bytes
-    gl::Buffer subjects;       // one an instance
+    std::size_t capacity = 0;  // of `vertices`, in bytes
+    gl::Buffer subjects;       // one subject number per instance
     GLsizei per_subject = 0;
-    std::optional<WrinklePart> masks;  // that the vertices bring
+    std::optional<WrinklePart> masks;  // the part whose masks the vertices hold
     bool is_fresh = false;
   };
   struct Source {

@@ -6,7 +6,7 @@
 namespace furrow::render {
 namespace {
 
-// Binding points of shaders/common_*.glsl and scene.frag.glsl.
+// Binding points of the shaders in shaders/scene/ and shaders/wrinkles/.
 enum UniformBinding : GLuint { kFrameBlock = 0, kWrinkleTable = 2 };
 enum StorageBinding : GLuint {
   kJointRows = 0,
@@ -17,7 +17,7 @@ enum StorageBinding : GLuint {
 };
 constexpr GLuint kSubjectWeightsUnit = 13;
 
-// Of the lists of dynamic masks.
+// Index of GroupBuffers::dynamic_masks and first_masks.
 std::size_t MasksIndex(WrinklePart part) { return part == WrinklePart::kSliding ? 1 : 0; }
 
 }  // namespace

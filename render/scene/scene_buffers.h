@@ -5,29 +5,29 @@
 #include <span>
 
 #include "render/gl/gl_objects.h"
+#include "render/request/subjects.h"
 #include "render/scene/frame_block.h"
-#include "render/scene/subjects.h"
 #include "render/wrinkles/wrinkle_table.h"
 
 namespace furrow::render {
 
-// What the scene's shaders know of a frame, as buffers: camera and lamps, the subjects' joints, and
-// their wrinkles by group of surfaces.
+// Buffers that the scene's shaders read in a frame: camera and lamps, the subjects' joints, and
+// their wrinkles per group of surfaces.
 class SceneBuffers {
  public:
-  // Both outlive it.
+  // Both arguments must outlive this object.
   SceneBuffers(std::span<const glm::mat4> inverse_bind_matrices, const WrinkleTables* tables);
 
   void Upload(const FrameBlock& frame, std::span<const NamedSubject> subjects,
               const WrinkleLayout& layout);
-  // What is the same for all surfaces.
+  // Binds the buffers that all surfaces share.
   void Bind() const;
   void BindWrinkles(WrinkleGroup group, WrinklePart part = WrinklePart::kAll) const;
 
  private:
   struct GroupBuffers {
     std::array<gl::Buffer, kNumWrinkleParts> tables;  // by WrinklePart
-    // Of all vertices' masks, and of those of WrinklePart::kSliding.
+    // [0]: masks of all vertices; [1]: masks of WrinklePart::kSliding.
     std::array<gl::Buffer, 2> dynamic_masks;
     std::array<gl::Buffer, 2> first_masks;
     gl::Buffer subject_weights;
@@ -43,7 +43,7 @@ class SceneBuffers {
   gl::Buffer joints_;
   gl::Buffer influences_;
   GroupBuffers groups_[kNumWrinkleGroups];
-  gl::Buffer palettes_[kNumWrinkleGroups + 1];  // by group, kNone included
+  gl::Buffer palettes_[kNumWrinkleGroups + 1];  // by group, including kNone
 };
 
 }  // namespace furrow::render

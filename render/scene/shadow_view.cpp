@@ -10,7 +10,7 @@ namespace furrow::render {
 namespace {
 
 constexpr int kResolutionStep = 128;
-constexpr float kWidest = 1.0f;  // tangent of half a perspective picture's angle, at most
+constexpr float kMaxTangent = 1.0f;  // largest tangent of half the angle of a perspective view
 
 glm::vec3 UpFor(const glm::vec3& direction) {
   return std::abs(direction.y) > 0.99f ? glm::vec3(0.0f, 0.0f, 1.0f) : glm::vec3(0.0f, 1.0f, 0.0f);
@@ -22,7 +22,8 @@ ShadowView FitOrthographic(const glm::vec3& direction, const glm::vec3& centre, 
   fitted.scale = 1.0f / radius;
   fitted.texel = 2.0f * radius / static_cast<float>(resolution);
   fitted.range = 2.0f * radius;
-  // The lamp's axes at the model's origin; the centre, snapped to texels in them, moves them.
+  // The lamp's axes at the model's origin. The stage's centre, snapped to whole texels along these
+  // axes, shifts them.
   const glm::mat4 turn = glm::lookAt(glm::vec3(0.0f), -direction, UpFor(direction));
   const glm::vec3 there(turn * glm::vec4(centre, 1.0f));
   const glm::vec3 snapped(std::floor(there.x / fitted.texel) * fitted.texel,
@@ -63,11 +64,11 @@ ShadowView FitShadow(const LightSource& light, const glm::vec3& centre, float ra
   const glm::vec3 towards = (light.position - centre) / distance;
   fitted.view = glm::lookAt(light.position, centre, UpFor(towards));
   fitted.perspective = true;
-  // Tangent of the cone that touches the sphere.
+  // Tangent of half the angle of the cone that touches the sphere.
   const float tangent = distance > 1.01f * radius
                             ? radius / std::sqrt(distance * distance - radius * radius)
-                            : kWidest;
-  fitted.scale = 1.0f / std::min(tangent, kWidest);
+                            : kMaxTangent;
+  fitted.scale = 1.0f / std::min(tangent, kMaxTangent);
   fitted.near_plane = std::max(distance - radius, 0.01f * distance);
   fitted.range = distance + radius - fitted.near_plane;
   fitted.texel = 2.0f * distance / (fitted.scale * static_cast<float>(resolution));

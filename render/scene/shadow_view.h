@@ -8,34 +8,33 @@
 
 namespace furrow::render {
 
-// How a lamp sees the stage: a square picture whose depth is linear in metres, for every kind of
-// lamp.
+// A lamp's view of the stage: a square picture with linear depth in metres, for all kinds of lamps.
 struct ShadowView {
-  glm::mat4 view{1.0f};     // model space to the lamp's, which looks down its -z
-  float scale = 1.0f;       // xy (perspective: over the distance) to [-1, 1] of the picture
-  float near_plane = 0.0f;  // metres along -z: depth 0
+  glm::mat4 view{1.0f};     // model space to the lamp's, which looks along its -z
+  float scale = 1.0f;       // scales xy (perspective: xy / distance) to [-1, 1]
+  float near_plane = 0.0f;  // metres along -z that become depth 0
   float range = 1.0f;       // metres from depth 0 to depth 1
   bool perspective = false;
-  float texel = 0.0f;  // metres, at the centre of the stage
+  float texel = 0.0f;  // size of a texel in metres, at the centre of the stage
 };
 
-// The same as one matrix to clip space, but for depth, which it leaves at 0.
+// The view as one matrix to clip space. Depth is left at 0.
 [[nodiscard]] glm::mat4 FlatProjection(const ShadowView& view);
 
-// Texels a side of the maps of a stage of `radius` metres, in a picture whose pixels are
-// `pixel_metres` wide at the focus: settings.resolution, or with settings.fit fewer, where a texel
-// can be as large as a pixel, or as half the radius of the fixed filter that blurs it anyway. In
-// steps of 128, so that a camera that moves seldom changes it.
+// Texels per side of the shadow maps for a stage of `radius` metres in a picture whose pixels are
+// `pixel_metres` wide at the focus. Returns settings.resolution, or less with settings.fit: a texel
+// may be as large as a pixel, or as half the radius of the fixed-width filter, which blurs it
+// anyway. The result is a multiple of 128, so that it rarely changes while the camera moves.
 [[nodiscard]] int ShadowResolution(const ShadowSettings& settings, float radius,
                                    float pixel_metres);
 
-// Fits a lamp's picture of `resolution` texels a side to the sphere of the stage.
+// Fits a lamp's shadow map of `resolution` texels per side to the sphere of the stage.
 //
-// - Directional: orthographic, moved in whole texels as the stage moves, so that edges of shadows
-//   do not crawl (`radius` is to stay the same from frame to frame).
-// - Spot and point: one perspective picture from the lamp towards the stage, which lights around a
-//   stage need no cube for. A lamp inside the stage sees half a right angle to every side.
-// - What stands between lamp and stage still casts: draw with depth clamping.
+// - Directional lights: an orthographic view that moves by whole texels, so that shadow edges do
+//   not crawl. `radius` should stay constant from frame to frame.
+// - Spots and points: one perspective view from the lamp towards the stage. Lights around a stage
+//   do not need a cube map. A lamp inside the stage sees 45 degrees to each side.
+// - Objects between lamp and stage also cast shadows: draw with depth clamping.
 [[nodiscard]] ShadowView FitShadow(const LightSource& light, const glm::vec3& centre, float radius,
                                    int resolution);
 

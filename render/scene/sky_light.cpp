@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPi = glm::pi<double>();
 
-// The basis without its constants, in the order of SphericalHarmonics.
+// The basis functions without their constants, in the order of SphericalHarmonics.
 std::array<double, 9> Basis(const glm::dvec3& d) {
   return {1.0,
           d.y,
@@ -42,7 +42,7 @@ glm::vec3 SkyRadiance(const GradientSky& sky, const glm::vec3& direction) {
 }
 
 SphericalHarmonics ProjectRadiance(const std::function<glm::vec3(const glm::vec3&)>& radiance) {
-  constexpr int kHeights = 64;  // equal areas: midpoints of y and of the azimuth
+  constexpr int kHeights = 64;  // samples at the midpoints of equal areas in y and azimuth
   constexpr int kAzimuths = 64;
   const std::array<double, 9> constants = Constants();
   std::array<glm::dvec3, 9> sums{};
@@ -69,7 +69,7 @@ SphericalHarmonics AmbientPolynomial(const SphericalHarmonics& radiance) {
   const std::array<double, 9> constants = Constants();
   SphericalHarmonics polynomial;
   for (std::size_t k = 0; k < polynomial.size(); ++k) {
-    // The clamped cosine's pi, 2 pi / 3 and pi / 4, over pi.
+    // The bands of the clamped cosine, pi, 2 pi / 3 and pi / 4, divided by pi.
     const double band = k == 0 ? 1.0 : (k < 4 ? 2.0 / 3.0 : 0.25);
     polynomial[k] = radiance[k] * static_cast<float>(band * constants[k]);
   }

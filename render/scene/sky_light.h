@@ -6,13 +6,13 @@
 
 #include <glm/vec3.hpp>
 
-// Ambient light from all around as nine spherical harmonics a channel (Ramamoorthi and Hanrahan
-// 2001): within 1% of the integral over the hemisphere for any sky as smooth as these. Y is up;
-// colours are linear. No OpenGL here.
+// Ambient light as nine spherical harmonics per channel (Ramamoorthi and Hanrahan 2001). For skies
+// as smooth as these, the error is within 1% of the integral over the hemisphere. Y is up; colours
+// are linear. No OpenGL here.
 namespace furrow::render {
 
-// Radiance from straight above, all around the horizon and straight below; in between, smoothly by
-// the height y of the direction: mix(horizon, zenith or ground, y^2).
+// Radiance from straight above, from the horizon and from straight below. Between them, for a
+// direction of height y: mix(horizon, y > 0 ? zenith : ground, y^2).
 struct GradientSky {
   glm::vec3 zenith{0.0f};
   glm::vec3 horizon{0.0f};
@@ -25,16 +25,17 @@ struct GradientSky {
 // Coefficients in the order 1; y, z, x; xy, yz, 3 z^2 - 1, xz, x^2 - y^2.
 using SphericalHarmonics = std::array<glm::vec3, 9>;
 
-// The first nine coefficients of a function of the direction (unit), by quadrature.
+// The first nine coefficients of a function of direction (unit), by numerical integration.
 [[nodiscard]] SphericalHarmonics ProjectRadiance(
     const std::function<glm::vec3(const glm::vec3&)>& radiance);
 
-// What a white Lambertian surface with a normal n sends back, as the polynomial
-// c0 + c1 y + c2 z + c3 x + c4 xy + c5 yz + c6 (3 z^2 - 1) + c7 xz + c8 (x^2 - y^2) of n: radiance
-// convolved with the clamped cosine over pi, the basis' constants folded in.
+// The radiance that a white Lambertian surface of normal n reflects, as the polynomial c0 + c1 y +
+// c2 z + c3 x + c4 xy + c5 yz + c6 (3 z^2 - 1) + c7 xz + c8 (x^2 - y^2) of n. It is the sky's
+// radiance convolved with the clamped cosine over pi; the coefficients include the basis'
+// constants.
 [[nodiscard]] SphericalHarmonics AmbientPolynomial(const SphericalHarmonics& radiance);
 
-// The polynomial's value; `normal`: unit.
+// Evaluates the polynomial for a unit `normal`.
 [[nodiscard]] glm::vec3 EvaluateAmbient(const SphericalHarmonics& polynomial,
                                         const glm::vec3& normal);
 

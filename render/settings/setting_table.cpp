@@ -9,10 +9,6 @@ namespace {
 
 using Words = std::span<const std::string_view>;
 
-constexpr std::array<std::string_view, kNumViews> kViewNames = {
-    "final",  "normal",     "mask_dynamic", "mask_texture", "weights",      "wireframe",
-    "shadow", "irradiance", "scattered",    "specular",     "translucency", "albedo",
-    "depth",  "material",   "occlusion",    "bloom",        "shadow_maps"};
 constexpr std::array<std::string_view, 2> kShadingWords = {"diffuse", "skin"};
 constexpr std::array<std::string_view, 2> kBlendWords = {"partial_derivative", "tangent_space"};
 constexpr std::array<std::string_view, 3> kMaskWords = {"rig", "dynamic", "texture"};
@@ -24,159 +20,180 @@ constexpr std::array<std::string_view, 5> kSubsurfaceWords = {"off", "gaussians"
                                                               "burley", "preintegrated"};
 constexpr std::array<std::string_view, 2> kSpecularWords = {"physical", "gems"};
 
-// A field whose words are the enumerators of E, in their order.
+// A field whose words name the enumerators of E, in order.
 template <class E>
 WordField Word(Words words, E& (*of)(Settings&)) {
   return {words, [of](const Settings& s) { return static_cast<int>(of(const_cast<Settings&>(s))); },
           [of](Settings& s, int value) { of(s) = static_cast<E>(value); }};
 }
 
-// What the structure says of a member, once more by name.
+// The accessor of a member of Settings.
 #define FURROW_MEMBER(member) \
   [](Settings & s) -> auto& { return s.member; }
 
 std::vector<SettingEntry> PictureEntries() {
   return {
-      {"view", "", "What the picture shows", Word<View>(kViewNames, FURROW_MEMBER(view))},
-      {"shading", "", "Plain diffuse light, or the whole skin pipeline",
+      {"view", "", "What the picture shows", Word<View>(ViewNames(), FURROW_MEMBER(view))},
+      {"shading", "", "Shading model: plain diffuse light, or the full skin pipeline",
        Word<Shading>(kShadingWords, FURROW_MEMBER(shading))},
-      {"normal_blend", "", "How wrinkle normals are added (thesis 2.1, 4.5)",
+      {"normal_blend", "",
+       "Method that adds wrinkle normals to the base normal (thesis 2.1 and 4.5)",
        Word<NormalBlend>(kBlendWords, FURROW_MEMBER(normal_blend))},
-      {"mask_mode", "", "Masks as the rig says, or all of one kind",
+      {"mask_mode", "",
+       "Kind of wrinkle masks: as the rig says for each region, or all of one kind",
        Word<MaskMode>(kMaskWords, FURROW_MEMBER(mask_mode))},
-      {"wrinkles", "", "Whether there are any", SwitchField{FURROW_MEMBER(wrinkles)}},
-      {"wrinkle_strength", "", "Scales the depth of all wrinkles",
+      {"wrinkles", "", "Draw wrinkles", SwitchField{FURROW_MEMBER(wrinkles)}},
+      {"wrinkle_strength", "", "Scale of the depth of all wrinkles",
        NumberField{FURROW_MEMBER(wrinkle_strength), 0.0f, 4.0f}},
-      {"background", "", "Linear red, green and blue", ColourField{FURROW_MEMBER(background)}},
-      {"exposure", "", "Scales the light before the tone map",
+      {"background", "", "Background colour: linear red, green and blue",
+       ColourField{FURROW_MEMBER(background)}},
+      {"exposure", "", "Scale of the light before tone mapping",
        NumberField{FURROW_MEMBER(exposure), 0.0f, 16.0f, true}},
-      {"tone_map", "", "neutral compresses highlights, clip cuts them",
+      {"tone_map", "", "Tone map: neutral compresses highlights, clip cuts them off",
        Word<ToneMap>(kToneWords, FURROW_MEMBER(tone_map))},
   };
 }
 
 std::vector<SettingEntry> LightEntries() {
   return {
-      {"lights.preset", "", "Soft key, fill and rim; one hard key; three directional lights",
+      {"lights.preset", "",
+       "Lamps: soft key, fill and rim; one hard key; or the thesis' three directional lights",
        Word<LightPreset>(kLightWords, FURROW_MEMBER(lights.preset))},
-      {"lights.intensity", "", "Scales the lamps",
+      {"lights.intensity", "", "Scale of the lamps' light",
        NumberField{FURROW_MEMBER(lights.intensity), 0.0f, 8.0f}},
-      {"lights.ambient", "", "Scales the sky",
+      {"lights.ambient", "", "Scale of the sky's light",
        NumberField{FURROW_MEMBER(lights.ambient), 0.0f, 8.0f}},
-      {"lights.turn_degrees", "degrees", "Turns the lamps about the subject",
+      {"lights.turn_degrees", "degrees", "Rotation of the lamps around the subject",
        NumberField{FURROW_MEMBER(lights.turn_degrees), -180.0f, 180.0f}},
-      {"lights.tilt_degrees", "degrees", "Tilts the lamps: those in front of the subject go up",
+      {"lights.tilt_degrees", "degrees",
+       "Tilt of the lamps; positive values raise the lamps in front of the subject",
        NumberField{FURROW_MEMBER(lights.tilt_degrees), -90.0f, 90.0f}},
-      {"lights.key", "", "Filter of the first lamp: linear red, green and blue; 0,0,0: off",
+      {"lights.key", "",
+       "Colour filter of the first lamp: linear red, green and blue; 0,0,0 turns it off",
        ColourField{FURROW_MEMBER(lights.key)}},
-      {"lights.fill", "", "Filter of the second lamp", ColourField{FURROW_MEMBER(lights.fill)}},
-      {"lights.rim", "", "Filter of the third lamp", ColourField{FURROW_MEMBER(lights.rim)}},
-      {"lights.sky", "", "Filter of the sky", ColourField{FURROW_MEMBER(lights.sky)}},
-      {"shadow.filter", "", "None, a filter of fixed width, or one that widens with distance",
+      {"lights.fill", "", "Colour filter of the second lamp: linear red, green and blue",
+       ColourField{FURROW_MEMBER(lights.fill)}},
+      {"lights.rim", "", "Colour filter of the third lamp: linear red, green and blue",
+       ColourField{FURROW_MEMBER(lights.rim)}},
+      {"lights.sky", "", "Colour filter of the sky: linear red, green and blue",
+       ColourField{FURROW_MEMBER(lights.sky)}},
+      {"shadow.filter", "",
+       "Shadow filter: none, fixed width (pcf), or wider with distance from the caster (pcss)",
        Word<ShadowFilter>(kShadowWords, FURROW_MEMBER(shadow.filter))},
-      {"shadow.resolution", "texels", "Side of each lamp's shadow map",
+      {"shadow.resolution", "texels", "Width and height of each lamp's shadow map",
        CountField{FURROW_MEMBER(shadow.resolution), 128, 4096}},
-      {"shadow.fit", "", "Smaller maps where neither picture nor filter can show more texels",
+      {"shadow.fit", "",
+       "Use smaller shadow maps when the picture or the filter cannot show more texels",
        SwitchField{FURROW_MEMBER(shadow.fit)}},
-      {"shadow.lamps", "", "How many of the lamps cast shadows, in their order",
+      {"shadow.lamps", "", "Number of lamps that cast shadows, in lamp order",
        CountField{FURROW_MEMBER(shadow.lamps), 0, 3}},
-      {"shadow.taps", "", "Look-ups of the filter", CountField{FURROW_MEMBER(shadow.taps), 1, 32}},
-      {"shadow.softness_mm", "mm", "pcf: radius of the filter on the surface",
+      {"shadow.taps", "", "Samples of the shadow filter",
+       CountField{FURROW_MEMBER(shadow.taps), 1, 32}},
+      {"shadow.softness_mm", "mm", "Filter radius on the surface (pcf only)",
        NumberField{FURROW_MEMBER(shadow.softness_mm), 0.0f, 50.0f}},
-      {"shadow.lamp_mm", "mm", "pcss: radius of the lamp",
+      {"shadow.lamp_mm", "mm", "Radius of the lamps (pcss only)",
        NumberField{FURROW_MEMBER(shadow.lamp_mm), 0.0f, 1000.0f}},
-      {"shadow.normal_offset_mm", "mm", "Keeps a surface from shading itself",
+      {"shadow.normal_offset_mm", "mm",
+       "Offset along the normal that prevents self-shadowing artefacts",
        NumberField{FURROW_MEMBER(shadow.normal_offset_mm), 0.0f, 20.0f}},
       {"occlusion.method", "", "Ambient occlusion: none, the thesis' SSAO, or GTAO",
        Word<OcclusionMethod>(kOcclusionWords, FURROW_MEMBER(occlusion.method))},
-      {"occlusion.radius_mm", "mm", "How far a surface may stand and still count",
+      {"occlusion.radius_mm", "mm", "Largest distance of a surface that occludes",
        NumberField{FURROW_MEMBER(occlusion.radius_mm), 1.0f, 500.0f}},
-      {"occlusion.strength", "", "0: none, 1: as computed",
+      {"occlusion.strength", "", "Strength of the occlusion; 0: none, 1: as computed",
        NumberField{FURROW_MEMBER(occlusion.strength), 0.0f, 2.0f}},
-      {"occlusion.samples", "", "Look-ups a pixel",
+      {"occlusion.samples", "", "Occlusion samples per pixel",
        CountField{FURROW_MEMBER(occlusion.samples), 4, 64}},
-      {"occlusion.half_resolution", "", "Computed for every fourth pixel",
+      {"occlusion.half_resolution", "",
+       "Compute occlusion at half the width and height of the picture",
        SwitchField{FURROW_MEMBER(occlusion.half_resolution)}},
   };
 }
 
 std::vector<SettingEntry> SkinEntries() {
   return {
-      {"subsurface.method", "", "How light scatters below the skin",
+      {"subsurface.method", "", "Method that scatters light below the skin",
        Word<SubsurfaceMethod>(kSubsurfaceWords, FURROW_MEMBER(subsurface.method))},
-      {"subsurface.taps", "", "separable: look-ups of each of its two passes",
+      {"subsurface.taps", "", "Samples of each of the two passes (separable only)",
        CountField{FURROW_MEMBER(subsurface.taps), 11, 25, {11, 17, 25}}},
-      {"subsurface.samples", "", "burley: look-ups a pixel",
+      {"subsurface.samples", "", "Samples per pixel (burley only)",
        CountField{FURROW_MEMBER(subsurface.samples), 4, 64}},
-      {"subsurface.width", "", "Scales how far light travels",
+      {"subsurface.width", "", "Scale of the distance that light travels in skin",
        NumberField{FURROW_MEMBER(subsurface.width), 0.0f, 8.0f}},
       {"subsurface.strength", "", "Share of the light that scatters",
        NumberField{FURROW_MEMBER(subsurface.strength), 0.0f, 1.0f}},
-      {"subsurface.gradient", "", "Narrower where the surface turns away (beta of thesis 4.7)",
+      {"subsurface.gradient", "",
+       "How much scattering narrows where the surface turns away (beta of thesis 4.7)",
        NumberField{FURROW_MEMBER(subsurface.gradient), 0.0f, 16.0f}},
-      {"subsurface.depth_range_mm", "mm", "Surfaces further apart in depth do not exchange light",
+      {"subsurface.depth_range_mm", "mm",
+       "Largest depth difference between surfaces that exchange light",
        NumberField{FURROW_MEMBER(subsurface.depth_range_mm), 0.1f, 1000.0f}},
-      {"subsurface.mix", "", "Share of the albedo that is applied before the light scatters",
+      {"subsurface.mix", "", "Share of the albedo that is applied before light scatters",
        NumberField{FURROW_MEMBER(subsurface.mix), 0.0f, 1.0f}},
-      {"translucency.enabled", "", "Light through ears and nostrils",
+      {"translucency.enabled", "", "Let light through thin parts such as ears and nostrils",
        SwitchField{FURROW_MEMBER(translucency.enabled)}},
-      {"translucency.strength", "", "Scales that light",
+      {"translucency.strength", "", "Scale of the light through thin parts",
        NumberField{FURROW_MEMBER(translucency.strength), 0.0f, 8.0f}},
-      {"translucency.scale", "", "Scales the thickness that light meets",
+      {"translucency.scale", "", "Scale of the thickness that light passes through",
        NumberField{FURROW_MEMBER(translucency.scale), 0.01f, 100.0f}},
-      {"translucency.shrink_mm", "mm", "The look-up starts so far below the surface",
+      {"translucency.shrink_mm", "mm", "Depth below the surface where the thickness look-up starts",
        NumberField{FURROW_MEMBER(translucency.shrink_mm), 0.0f, 20.0f}},
-      {"specular.mode", "", "Kelemen and Szirmay-Kalos with the 1/pi, or as GPU Gems printed it",
+      {"specular.mode", "",
+       "Kelemen and Szirmay-Kalos with the factor 1/pi (physical), or as printed in GPU Gems 3",
        Word<SpecularMode>(kSpecularWords, FURROW_MEMBER(specular.mode))},
-      {"specular.strength", "", "rho_s; published for gems: 0.18",
+      {"specular.strength", "",
+       "Strength of the reflection (rho_s); GPU Gems 3 uses 0.18 with gems",
        NumberField{FURROW_MEMBER(specular.strength), 0.0f, 4.0f}},
-      {"specular.roughness", "", "Scales the m of every material",
+      {"specular.roughness", "", "Scale of every material's roughness m",
        NumberField{FURROW_MEMBER(specular.roughness), 0.25f, 4.0f}},
-      {"specular.second_lobe", "", "Share of a second lobe with half the m",
+      {"specular.second_lobe", "", "Share of a second lobe with half the roughness m",
        NumberField{FURROW_MEMBER(specular.second_lobe), 0.0f, 1.0f}},
-      {"specular.conserve_energy", "", "Diffuse light is what the specular leaves",
+      {"specular.conserve_energy", "", "Subtract the reflected light from the diffuse light",
        SwitchField{FURROW_MEMBER(specular.conserve_energy)}},
-      {"specular.widen", "", "m grows where a pixel covers many slopes of the normal maps",
+      {"specular.widen", "",
+       "Increase the roughness m where a pixel covers many slopes of the normal maps",
        SwitchField{FURROW_MEMBER(specular.widen)}},
-      {"specular.table", "", "Beckmann's term is looked up (GPU Gems 3), not worked out",
+      {"specular.table", "",
+       "Look up the Beckmann term in a table, as in GPU Gems 3, instead of computing it",
        SwitchField{FURROW_MEMBER(specular.table)}},
-      {"wrinkle_maps.blood_flow", "", "Strength of the maps' colour",
+      {"wrinkle_maps.blood_flow", "", "Strength of the wrinkle maps' colour",
        NumberField{FURROW_MEMBER(wrinkle_maps.blood_flow), 0.0f, 4.0f}},
-      {"wrinkle_maps.cavity", "", "Strength of the maps' cavity",
+      {"wrinkle_maps.cavity", "", "Strength of the wrinkle maps' cavity",
        NumberField{FURROW_MEMBER(wrinkle_maps.cavity), 0.0f, 4.0f}},
       {"wrinkle_maps.cache", "",
-       "Wrinkles of a single subject are composed once, in the texture, where that is cheaper",
+       "Compose a single subject's wrinkles in texture space where that is cheaper",
        SwitchField{FURROW_MEMBER(wrinkle_maps.cache)}},
-      {"displacement.enabled", "", "The maps' heights move the surface: outlines fold too",
+      {"displacement.enabled", "",
+       "Move the surface by the wrinkle maps' heights, so that outlines and shadows show folds",
        SwitchField{FURROW_MEMBER(displacement.enabled)}},
-      {"displacement.strength", "", "Scales the heights",
+      {"displacement.strength", "", "Scale of the heights",
        NumberField{FURROW_MEMBER(displacement.strength), 0.0f, 4.0f}},
-      {"displacement.edge_pixels", "pixels", "Triangles are divided until edges are so long",
+      {"displacement.edge_pixels", "pixels", "Target length of triangle edges after subdivision",
        NumberField{FURROW_MEMBER(displacement.edge_pixels), 1.0f, 64.0f}},
-      {"displacement.max_level", "", "Most parts that an edge is divided into",
+      {"displacement.max_level", "", "Largest number of parts that a triangle edge is divided into",
        CountField{FURROW_MEMBER(displacement.max_level), 1, 64}},
       {"detail.error_pixels", "pixels",
-       "Of several subjects, who is small has fewer triangles, off by so much; 0: never",
+       "Surface error allowed for small subjects among several (RMS); 0: draw all triangles",
        NumberField{FURROW_MEMBER(detail.error_pixels), 0.0f, 8.0f}},
       {"detail.hair_shadow_texels", "texels",
-       "How far hair may be off in shadow maps, within the normal offset; 0: as drawn",
+       "Error allowed for hair in shadow maps (RMS), at most the normal offset; 0: none",
        NumberField{FURROW_MEMBER(detail.hair_shadow_texels), 0.0f, 4.0f}},
   };
 }
 
 std::vector<SettingEntry> FinishEntries() {
   return {
-      {"bloom.strength", "", "Light that bright parts spread; 0: off",
+      {"bloom.strength", "", "Strength of the glow around bright parts; 0: off",
        NumberField{FURROW_MEMBER(bloom.strength), 0.0f, 1.0f}},
-      {"bloom.threshold", "", "From which linear value on, after exposure",
+      {"bloom.threshold", "", "Smallest linear value that glows, after exposure",
        NumberField{FURROW_MEMBER(bloom.threshold), 0.0f, 16.0f}},
-      {"bloom.radius", "picture heights", "Standard deviation of the spread",
+      {"bloom.radius", "picture heights", "Standard deviation of the glow",
        NumberField{FURROW_MEMBER(bloom.radius), 0.001f, 0.1f}},
-      {"anti_aliasing.samples", "", "Of the scene's targets; 0: as the device can afford",
+      {"anti_aliasing.samples", "", "Samples per pixel; 0: as many as the device can afford",
        CountField{FURROW_MEMBER(anti_aliasing.samples), 0, 8, {0, 1, 2, 4, 8}}},
-      {"anti_aliasing.fxaa", "", "Smooths the finished picture's edges",
+      {"anti_aliasing.fxaa", "", "Smooth the edges of the finished picture (FXAA)",
        SwitchField{FURROW_MEMBER(anti_aliasing.fxaa)}},
-      {"strip.views", "", "Views shown small at the right-hand side, from the top",
+      {"strip.views", "", "Views shown as small pictures along the right edge, from the top",
        ViewsField{FURROW_MEMBER(strip.views)}},
   };
 }
@@ -192,8 +209,6 @@ std::vector<SettingEntry> AllEntries() {
 }
 
 }  // namespace
-
-std::span<const std::string_view> ViewNames() { return kViewNames; }
 
 std::span<const SettingEntry> SettingTable() {
   static const std::vector<SettingEntry> table = AllEntries();

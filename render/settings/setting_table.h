@@ -3,58 +3,59 @@
 
 #include <functional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
 #include "render/settings/settings.h"
 
-// How each setting is reached, and what it may be: the one list that names, files, checks and help
-// are made from. Private to render/settings*.cpp.
+// The list of all settings: name, unit, help, accessor and valid values of each. Everything else in
+// this folder is derived from it. Private to render/settings/.
 namespace furrow::render {
 
 struct NumberField {
   float& (*of)(Settings&);
   float low;
   float high;
-  bool above_low = false;  // `low` itself is not allowed
+  bool above_low = false;  // excludes `low` itself
 };
 
 struct CountField {
   int& (*of)(Settings&);
   int low;
   int high;
-  std::vector<int> only = {};  // empty: all from low to high
+  std::vector<int> only = {};  // the valid values; empty: all from low to high
 };
 
 struct SwitchField {
   bool& (*of)(Settings&);
 };
 
+// Linear red, green and blue, each in [0, 1].
 struct ColourField {
   glm::vec3& (*of)(Settings&);
 };
 
+// An enumeration. Values are positions in `words`.
 struct WordField {
   std::span<const std::string_view> words;
   std::function<int(const Settings&)> get;
   std::function<void(Settings&, int)> set;
 };
 
+// A list of view names.
 struct ViewsField {
   std::vector<View>& (*of)(Settings&);
 };
 
 struct SettingEntry {
-  std::string_view name;
-  std::string_view unit;
+  std::string_view name;  // "subsurface.method"; at most one dot
+  std::string_view unit;  // empty: none
   std::string_view help;
   std::variant<NumberField, CountField, SwitchField, ColourField, WordField, ViewsField> field;
 };
 
-[[nodiscard]] std::span<const std::string_view> ViewNames();
 [[nodiscard]] std::span<const SettingEntry> SettingTable();
-[[nodiscard]] const SettingEntry* FindSetting(std::string_view name);  // null: no such
+[[nodiscard]] const SettingEntry* FindSetting(std::string_view name);  // null: unknown name
 
 }  // namespace furrow::render

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "render/settings/settings_file.h"
+
 #include <optional>
+#include <sstream>
 
 #include <toml++/toml.h>
 
 #include "base/files.h"
 #include "base/status.h"
+#include "render/settings/named_settings.h"
 #include "render/settings/setting_table.h"
-#include "render/settings/settings.h"
 
 namespace furrow::render {
 namespace {
 
 constexpr std::uint64_t kMaxSettingsBytes = 1 << 20;
 
-// The value as SetSetting() takes it, when its type is one that the field can be written in.
+// Converts a TOML value to the text that SetSetting() takes. nullopt: the value has the wrong type.
 struct NodeText {
   const toml::node& node;
 
@@ -55,6 +58,7 @@ struct NodeText {
   }
 };
 
+// The TOML type of a setting, for messages.
 std::string_view TypeName(const SettingEntry& entry) {
   struct Name {
     std::string_view operator()(const NumberField&) const { return "a number"; }
@@ -67,6 +71,7 @@ std::string_view TypeName(const SettingEntry& entry) {
   return std::visit(Name{}, entry.field);
 }
 
+// Reads a table and its sub-tables into Settings.
 class TomlReader {
  public:
   TomlReader(std::string_view source_name, Settings* settings)
@@ -78,8 +83,9 @@ class TomlReader {
       const toml::table* inner = node.as_table();
       if (inner != nullptr && FindSetting(name) == nullptr) {
         FURROW_RETURN_IF_ERROR(Read(*inner, name + "."));
-      } else
+      } else {
         FURROW_RETURN_IF_ERROR(ReadValue(name, node));
+      }
     }
     return {};
   }
@@ -87,9 +93,9 @@ class TomlReader {
  private:
   Status ReadValue(const std::string& name, const toml::node& node) {
     const SettingEntry* entry = FindSetting(name);
-    if (entry == nullptr) {  // for its message
-      const Status unknown = SetSetting(name, "", settings_);
-      return {StatusCode::kSchema, name + " is no setting", Place(node), unknown.todo()};
+    if (entry == nullptr) {
+      const Status unknown = SetSetting(name, "", settings_);  // lists similar settings
+      return {StatusCode::kSchema, "no setting '" + name + "'", Place(node), unknown.todo()};
     }
     const std::optional<std::string> text = std::visit(NodeText{node}, entry->field);
     if (!text) {
@@ -108,7 +114,7 @@ class TomlReader {
   Settings* settings_;
 };
 
-// As TOML writes the value of a field.
+// Converts the text of GetSetting() to a TOML value.
 struct TomlText {
   std::string text;  // GetSetting()
 

@@ -29,7 +29,7 @@ void ForEachTexel(int size, const Set& set) {
 }  // namespace
 
 double BeckmannPh(double cos_h, double m) {
-  if (cos_h <= 0.0) return 0.0;  // 0/0 there; the limit is 0
+  if (cos_h <= 0.0) return 0.0;  // avoids 0/0; the limit is 0
   const double safe_m = ClampM(m);
   const double cos2 = cos_h * cos_h;
   const double tan2 = (1.0 - std::min(cos2, 1.0)) / cos2;
@@ -65,9 +65,9 @@ std::vector<std::uint16_t> BeckmannTable(int size) {
 }
 
 glm::dvec2 SpecularAlbedo(double cos, double m) {
-  // Half vectors by importance: u of exp(-tan^2 / m^2) and the azimuth on a grid of midpoints. The
-  // density PH cos_h / pi cancels the distribution, and dL = 4 (V.H) dH, so that each sample is
-  // F cos_l / ((V.H) cos_h), which no grazing angle makes larger than 2.
+  // Half vectors by importance sampling: u of exp(-tan^2 / m^2) and the azimuth, on a grid of
+  // midpoints. The density PH cos_h / pi cancels the distribution, and dL = 4 (V.H) dH. Each sample
+  // is therefore F cos_l / ((V.H) cos_h), which stays at or below 2 even at grazing angles.
   constexpr int kRadii = 32;
   constexpr int kAzimuths = 32;
   const double safe_m = ClampM(m);

@@ -21,7 +21,7 @@ glm::vec3 WeighedSum(const SkinProfile& profile, const std::function<double(doub
   return glm::vec3(sum);
 }
 
-// Where `cost`, which falls and then rises, is least within [low, high]: golden-section search.
+// The minimum in [low, high] of `cost`, which falls and then rises, by golden-section search.
 double Minimise(const std::function<double(double)>& cost, double low, double high) {
   const double shrink = 1.0 / glm::golden_ratio<double>();
   for (int step = 0; step < 60; ++step) {
@@ -36,8 +36,8 @@ double Minimise(const std::function<double(double)>& cost, double low, double hi
   return 0.5 * (low + high);
 }
 
-// Squared difference of the shares within r, summed over equal steps of log r: a profile's details
-// are as wide as they are far out.
+// Squared difference of the shares within r, summed over equal steps of log r, because the details
+// of a profile are as wide as their distance.
 double ShareDistance(const SkinProfile& profile, int channel, double d) {
   double sum = 0.0;
   for (double r = 0.02; r < 12.0; r *= 1.05) {
@@ -95,7 +95,8 @@ std::array<float, kNumSkinGaussians> CascadedSigmas(const SkinProfile& profile) 
 }
 
 double BurleyProfile(double d, double r) {
-  const double safe = std::max(r, 1e-9);  // the profile is infinite at 0, its integral is not
+  const double safe = std::max(r, 1e-9);  // the profile is infinite at 0, but its integral is
+                                          // finite
   return (std::exp(-safe / d) + std::exp(-safe / (3.0 * d))) / (8.0 * kPi * d * safe);
 }
 
@@ -104,7 +105,7 @@ double BurleyShare(double d, double r) {
 }
 
 double BurleyRadius(double d, double share) {
-  // With u = 1 - share and e = exp(-r / 3d): e^3 + 3 e = 4 u, solved by Cardano.
+  // With u = 1 - share and e = exp(-r / 3d): e^3 + 3 e = 4 u, solved by Cardano's formula.
   const double u = 1.0 - std::clamp(share, 0.0, 1.0 - 1e-12);
   const double root = std::cbrt(2.0 * u + std::sqrt(1.0 + 4.0 * u * u));
   const double e = root - 1.0 / root;

@@ -5,8 +5,8 @@
 
 #include <glm/vec3.hpp>
 
-// How light that enters skin at a point spreads before it leaves: diffusion profiles. Lengths in
-// millimetres of the character, colours linear RGB. No OpenGL here.
+// Diffusion profiles: how light that enters skin at a point spreads before it leaves. Lengths are
+// in millimetres of the character; colours are linear RGB. No OpenGL here.
 namespace furrow::render {
 
 // One isotropic Gaussian G(v, r) = exp(-r^2 / 2v) / (2 pi v), r in mm.
@@ -17,36 +17,37 @@ struct SkinGaussian {
 
 inline constexpr int kNumSkinGaussians = 6;
 
-// The multipole fit of three-layered skin by d'Eon and Luebke (GPU Gems 3, chapter 14, table 14-1),
-// by increasing variance. Every channel sums to 1.
+// A sum of Gaussians in the order of increasing variance. Every channel sums to 1. HumanSkin() is
+// the fit to a multipole model of three-layered skin by d'Eon and Luebke (GPU Gems 3, chapter 14,
+// table 14-1).
 using SkinProfile = std::array<SkinGaussian, kNumSkinGaussians>;
 [[nodiscard]] const SkinProfile& HumanSkin();
 
-// R(r), the share of light per mm^2 that leaves at distance `r` (mm) from where it entered.
+// R(r): share of light per mm^2 that leaves at distance `r` (mm) from the point of entry.
 [[nodiscard]] glm::vec3 RadialProfile(const SkinProfile& profile, double r);
-// The share that leaves within distance `r` (mm), in [0, 1).
+// Share of light that leaves within distance `r` (mm), in [0, 1).
 [[nodiscard]] glm::vec3 RadialShare(const SkinProfile& profile, double r);
-// The profile of a line of light, per mm: R integrated across.
+// The profile of a line of light, per mm, at distance `x` (mm): R integrated along the line.
 [[nodiscard]] glm::vec3 LineProfile(const SkinProfile& profile, double x);
-// Light at `x` (mm) from a straight edge, skin being lit by 1 where x > 0 and dark elsewhere:
+// Light at `x` (mm) from a straight edge, where skin is lit with 1 for x > 0 and dark elsewhere:
 // sum_i w_i Phi(x / sigma_i), in [0, 1].
 [[nodiscard]] glm::vec3 StepResponse(const SkinProfile& profile, double x);
-// Light that comes through `thickness` mm: sum_i w_i exp(-s^2 / v_i) (Jimenez 2010; GPU Gems 3
-// divides by 2 v).
+// Share of light that passes through `thickness` mm of skin: sum_i w_i exp(-s^2 / v_i) (Jimenez
+// 2010; GPU Gems 3 divides by 2 v).
 [[nodiscard]] glm::vec3 Transmittance(const SkinProfile& profile, double thickness);
 
-// The standard deviations (mm) of blurs that, one after the other, widen a picture by one Gaussian
-// of the profile each: square roots of the differences of variance, the first from no blur at all.
+// Standard deviations (mm) of consecutive blurs, each of which widens a picture to the next
+// Gaussian of the profile: square roots of the differences of the variances, starting from 0.
 [[nodiscard]] std::array<float, kNumSkinGaussians> CascadedSigmas(const SkinProfile& profile);
 
-// Burley's normalised diffusion (Christensen and Burley 2015), R(r) = (exp(-r/d) + exp(-r/3d)) /
-// (8 pi d r), `d` in mm.
+// Burley's normalised diffusion (Christensen and Burley 2015), R(r) = (exp(-r/d) + exp(-r/3d)) / (8
+// pi d r); `d` and `r` in mm.
 [[nodiscard]] double BurleyProfile(double d, double r);
 // Its share within distance r: 1 - exp(-r/d)/4 - 3 exp(-r/3d)/4.
 [[nodiscard]] double BurleyShare(double d, double r);
-// Inverse of BurleyShare, for `share` in [0, 1) (Golubev 2018).
+// Inverse of BurleyShare for `share` in [0, 1), mm (Golubev 2018).
 [[nodiscard]] double BurleyRadius(double d, double share);
-// The `d` of each channel that comes nearest to a profile: least squares of the shares over r.
+// Fits Burley's profile: the `d` of each channel by least squares of the shares over r, mm.
 [[nodiscard]] glm::vec3 FitBurley(const SkinProfile& profile);
 
 }  // namespace furrow::render

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kPi = glm::pi<double>();
 
-// Area-weighted mean over psi of max(0, cos(angle between the light and a point that lies at the
-// angle phi from the normal, in the direction psi)), times 2 pi.
+// 2 pi times the mean of max(0, cosine between normal and light) over the ring of points at the
+// angle phi from the normal.
 double RingIrradiance(double cos_theta, double sin_theta, double phi) {
   const double a = cos_theta * std::cos(phi);
   const double b = sin_theta * std::sin(phi);
@@ -22,8 +22,9 @@ double RingIrradiance(double cos_theta, double sin_theta, double phi) {
   return 2.0 * (a * terminator + b * std::sin(terminator));
 }
 
-// SphereResponse of one Gaussian on a sphere of `radius`, before it is normalised, and what it is
-// normalised by. Gauss's midpoint rule over the chord length, on which the profile depends.
+// SphereResponse() of one Gaussian on a sphere of `radius` mm: x is the response before
+// normalisation, y the normalisation. Midpoint rule over the chord length, on which the profile
+// depends.
 glm::dvec2 SphereIntegral(double variance, double cos_theta, double radius) {
   constexpr int kSteps = 96;
   const double sin_theta = std::sqrt(std::max(0.0, 1.0 - cos_theta * cos_theta));
@@ -32,7 +33,7 @@ glm::dvec2 SphereIntegral(double variance, double cos_theta, double radius) {
   for (int step = 0; step < kSteps; ++step) {
     const double chord = reach * (step + 0.5) / kSteps;
     const double phi = 2.0 * std::asin(0.5 * chord / radius);
-    // The area of a zone of a sphere is 2 pi c dc, c being its chord: as in the plane.
+    // The area of a spherical zone is 2 pi c dc with the chord c, as in the plane.
     const double weight = chord * std::exp(-chord * chord / (2.0 * variance));
     sum += weight * glm::dvec2(RingIrradiance(cos_theta, sin_theta, phi), 2.0 * kPi);
   }
@@ -45,7 +46,7 @@ std::vector<DiscTap> BurleyDisc(const glm::vec3& d, int taps) {
   const int count = std::clamp(taps, 1, kMaxDiscTaps);
   const double widest = std::max({d.r, d.g, d.b});
   const double golden_angle = kPi * (3.0 - std::sqrt(5.0));
-  const auto ring = [&](int i) {  // shares within the inner border of tap i, per channel
+  const auto ring = [&](int i) {  // share inside the inner border of tap i, per channel
     if (i >= count) return glm::vec3(1.0f);
     const double r = BurleyRadius(widest, static_cast<double>(i) / count);
     return glm::vec3(BurleyShare(d.r, r), BurleyShare(d.g, r), BurleyShare(d.b, r));
@@ -61,7 +62,7 @@ std::vector<DiscTap> BurleyDisc(const glm::vec3& d, int taps) {
 
 glm::vec3 SphereResponse(const SkinProfile& profile, double cosine, double curvature) {
   const double cos_theta = std::clamp(cosine, -1.0, 1.0);
-  const double radius = 1.0 / std::max(curvature, 1e-5);  // 100 m: flat
+  const double radius = 1.0 / std::max(curvature, 1e-5);  // 100 m is practically flat
   glm::dvec3 light(0.0);
   glm::dvec3 whole(0.0);
   for (const SkinGaussian& gaussian : profile) {

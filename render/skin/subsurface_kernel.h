@@ -7,7 +7,7 @@
 
 #include "render/skin/skin_profile.h"
 
-// What the subsurface passes make of a diffusion profile: taps and tables. No OpenGL here.
+// Taps and tables that the subsurface passes derive from a diffusion profile. No OpenGL here.
 namespace furrow::render {
 
 // A tap of a two-dimensional kernel.
@@ -18,20 +18,21 @@ struct DiscTap {
 
 inline constexpr int kMaxDiscTaps = 64;
 
-// Burley's profile as a spiral of taps, the first at the centre: radii by importance of the widest
-// channel, turned by the golden angle; each tap weighs what its ring holds of each channel. `taps`
-// in [1, kMaxDiscTaps], else taken to the nearest.
+// Burley's profile as a spiral of taps, starting at the centre. Radii follow by importance sampling
+// of the widest channel, angles by the golden angle. A tap's weight is each channel's share of its
+// ring. `d`: of each channel, mm. `taps`: clamped to [1, kMaxDiscTaps].
 [[nodiscard]] std::vector<DiscTap> BurleyDisc(const glm::vec3& d, int taps);
 
-// Light that leaves a sphere of curvature `curvature` (1/radius, 1/mm, at least 0) where the
-// surface's normal and the direction of a distant light enclose the cosine `cosine`; the light's
-// irradiance at normal incidence is 1. Exact but for quadrature: the profile is integrated over the
-// sphere by chord length and normalised, as Penner and Borshukov (2011) do on a ring.
+// Light that leaves a sphere of `curvature` (1 / radius, 1/mm, at least 0). `cosine`: of the angle
+// between the surface normal and the direction of a distant light of irradiance 1 at normal
+// incidence. The profile is integrated numerically over the sphere by chord length and normalised,
+// as Penner and Borshukov (2011) do on a ring.
 [[nodiscard]] glm::vec3 SphereResponse(const SkinProfile& profile, double cosine, double curvature);
 
-// SphereResponse() for the method `preintegrated`: `size` x `size`, texel centres on the ends of
-// both ranges: column = cosine from -1 to 1, row = curvature from 0 to kMaxCurvature.
-inline constexpr float kMaxCurvature = 0.5f;  // 1/mm: a nostril's rim
+// SphereResponse() as a table for the method preintegrated: `size` x `size`, columns are cosines
+// from -1 to 1, rows are curvatures from 0 to kMaxCurvature, and the outer texel centres are at the
+// ends of both ranges.
+inline constexpr float kMaxCurvature = 0.5f;  // 1/mm; the rim of a nostril
 [[nodiscard]] std::vector<glm::vec3> PreintegratedTable(const SkinProfile& profile, int size);
 
 }  // namespace furrow::render

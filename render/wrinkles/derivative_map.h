@@ -7,38 +7,42 @@
 
 namespace furrow::render {
 
-// Steepest slope that is kept: a normal map's texel below the horizon has no derivative.
+// Largest absolute slope. Texels of a normal map that point to or below the horizon have none.
 inline constexpr float kMaxDerivative = 16.0f;
 
-// Two floats a texel, rows from the top: n.xy / n.z of the tangent-space normal, y up in the
-// picture.
+// A map of two floats per texel, rows from the top: the derivatives n.xy / n.z of the tangent-space
+// normal, with y up in the picture.
 struct DerivativeMap {
   int width = 0;
   int height = 0;
   std::vector<float> texels;
 };
 
-// From a tangent-space normal map as glTF has it: component = 2 value - 1, green up. Not normalised
-// maps are taken as they are, since only the ratio counts; slopes are clamped to kMaxDerivative.
+// Converts a tangent-space normal map in glTF's convention: component = 2 value - 1, green is up.
+// The normals need not have unit length, because only the ratio matters. Slopes are clamped to
+// kMaxDerivative.
 [[nodiscard]] DerivativeMap DerivativesFromNormalMap(const character::Picture& picture);
 
-// From a derivative map: the first two channels, as wrinkle/rig/rig.h says: (2 value - 1) *
-// `scale`, and as they are in a picture of floats; clamped to kMaxDerivative.
+// Reads a derivative map from the first two channels, as wrinkle/rig/rig.h defines it: (2 value -
+// 1) * `scale` for integer pictures, the value itself for float pictures. Slopes are clamped to
+// kMaxDerivative.
 [[nodiscard]] DerivativeMap DerivativesFromDerivativeMap(const character::Picture& picture,
                                                          float scale = 1.0f);
 
-// Four floats a texel: the derivative and its squares, whose mips tell how much it varies (LEAN
-// mapping, Olano and Baker 2010).
+// Four floats per texel: the derivative and its squares. The mips of the squares give the variance
+// of the derivative (LEAN mapping, Olano and Baker 2010).
 [[nodiscard]] std::vector<float> WithMoments(const DerivativeMap& map);
 
-// Bilinear, texel centres at halves, edges clamped: to give maps of one array one size.
+// Resamples bilinearly, with texel centres at halves and edges clamped, so that all maps of an
+// array have the same size.
 [[nodiscard]] DerivativeMap Resample(const DerivativeMap& map, int width, int height);
 
-// The value of one channel in [0, 1], whatever the depth; a float as it is. A missing channel is 0,
-// a missing alpha 1.
+// One channel: [0, 1] for integer pictures of any depth, the value itself for float pictures. A
+// missing colour channel is 0, a missing alpha is 1.
 [[nodiscard]] float Texel(const character::Picture& picture, int x, int y, int channel);
 
-// Any picture as 8-bit RGBA: grey is spread, a missing alpha is opaque.
+// Converts any picture to 8-bit RGBA. Grey is copied to all colour channels; a missing alpha is
+// opaque.
 [[nodiscard]] std::vector<std::uint8_t> ToRgba8(const character::Picture& picture);
 
 }  // namespace furrow::render

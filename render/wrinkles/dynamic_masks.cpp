@@ -10,8 +10,9 @@
 namespace furrow::render {
 namespace {
 
-// A joint at rest is seldom at rest to the last bit; a thousandth of a fold is not seen.
-constexpr float kLeastSeen = 1e-3f;
+// Weights below this are treated as 0. A resting joint is rarely at exactly 0, and a thousandth of
+// a fold is invisible.
+constexpr float kMinInfluence = 1e-3f;
 
 template <class Item>
 int IndexByName(const std::vector<Item>& items, const std::string& name) {
@@ -48,7 +49,7 @@ void DynamicMasks::FindSlides(const wrinkle::RigBinding& binding) {
           rig.drivers[static_cast<std::size_t>(IndexByName(rig.drivers, region.mask.ball))];
       const auto frame = wrinkle::RestBallFrame(driver.ball, binding.skeleton());
       const auto front = std::ranges::find(values, region.mask.ball + ".front");
-      if (!frame || front == values.end()) continue;  // a joint is missing: not drawn
+      if (!frame || front == values.end()) continue;  // a joint is missing; draw nothing
       slides_.push_back({IndexByName(rig.wrinkle_maps, feed.map), index,
                          static_cast<std::size_t>(front - values.begin()), *frame, region.mask});
     }
@@ -59,7 +60,7 @@ const wrinkle::RigBinding& DynamicMasks::BindingOf(MaskMode mode) const {
   return mode == MaskMode::kDynamic ? *skinning_ : *painted_;
 }
 
-// What any value raises, values of 1 do.
+// Evaluates with all values at 1: every value that can raise an influence then does.
 std::vector<SkinnedShare> DynamicMasks::Shares(MaskMode mode) const {
   const wrinkle::RigBinding& binding = BindingOf(mode);
   const auto masks = binding.dynamic_masks();
@@ -68,7 +69,7 @@ std::vector<SkinnedShare> DynamicMasks::Shares(MaskMode mode) const {
                                 masks.size());
   const wrinkle::JointInfluenceJob job{&binding, values, influences};
   std::vector<SkinnedShare> shares;
-  if (job.Run() != wrinkle::JobStatus::kOk) return shares;  // never: they are finite
+  if (job.Run() != wrinkle::JobStatus::kOk) return shares;  // cannot happen: the values are finite
   for (std::size_t i = 0; i < influences.size(); ++i) {
     if (!(influences[i] > 0.0f)) continue;
     const std::size_t column = i % masks.size();
@@ -90,11 +91,11 @@ void DynamicMasks::Update(MaskMode mode, std::span<const float> values,
   if (mode == MaskMode::kTexture || columns_.empty()) return;
   const wrinkle::JointInfluenceJob job{&binding, values_, influences_};
   if (job.Run() != wrinkle::JobStatus::kOk) {
-    std::ranges::fill(influences_, 0.0f);  // non-finite values: no wrinkles
+    std::ranges::fill(influences_, 0.0f);  // non-finite values draw no wrinkles
     return;
   }
   for (std::size_t i = 0; i < influences_.size(); ++i) {
-    if (influences_[i] > kLeastSeen) column_works_[i % columns_.size()] = true;
+    if (influences_[i] > kMinInfluence) column_works_[i % columns_.size()] = true;
   }
 }
 

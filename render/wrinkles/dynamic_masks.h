@@ -14,56 +14,56 @@
 
 namespace furrow::render {
 
-// A mask that the vertex shader works out. Mirrors DynamicMask of shaders/common_wrinkles_vert.glsl
-// (std430).
+// A mask that the vertex shader evaluates. Mirrors DynamicMask of
+// shaders/wrinkles/wrinkles_vert.glsl (std430).
 struct DynamicMaskBlock {
-  std::int32_t slot = 0;     // active map that it raises
-  std::int32_t column = -1;  // of the joints' influences; -1: it slides
+  std::int32_t slot = 0;     // position of its map in the active list
+  std::int32_t column = -1;  // column of the joints' influences; -1: a sliding mask
   std::int32_t lambda = 0;
   float smooth_width = 0.25f;
   glm::vec4 origin{0.0f};   // w: the wrinkle weight
-  glm::vec4 towards{0.0f};  // w: cosine from which on the mask is 0
-  glm::vec4 bone{0.0f};     // w: 1 / metres
+  glm::vec4 towards{0.0f};  // w: cosine at which the mask reaches 0
+  glm::vec4 bone{0.0f};     // w: 1 / bone length, 1/m
   glm::vec4 extent{0.0f};   // above, below, radius
 };
 static_assert(sizeof(DynamicMaskBlock) == 80);
 
-// The DynamicMasks block of the shader, byte for byte: a head and the list.
+// The DynamicMasks block of the shader, byte for byte: a header and the list.
 [[nodiscard]] std::vector<std::uint8_t> DynamicMasksBlock(std::span<const DynamicMaskBlock> masks,
                                                           int num_columns);
 
-// A joint that may raise a column of dynamic masks.
+// A joint that can raise a column of dynamic masks.
 struct SkinnedShare {
   int joint = 0;
   int column = 0;
   wrinkle::DynamicMask mask;
 };
 
-// One subject's masks of a rig that are found vertex by vertex: by skin weights, and those that
-// slide about ball joints.
+// The vertex masks of one subject: masks by skin weight, and masks that slide around ball joints.
 class DynamicMasks {
  public:
-  // `painted`: the character's rig on its own skeleton; `skinning`: the same with skinning masks in
-  // place of the painted ones (MaskMode::kDynamic). Both outlive this.
+  // `painted`: the character's rig, bound to its own skeleton. `skinning`: the same rig with
+  // skinning masks instead of painted ones (MaskMode::kDynamic). Both must outlive this object.
   DynamicMasks(const wrinkle::RigBinding* painted, const wrinkle::RigBinding* skinning);
 
-  // `values`, `weights`: of the painted binding (both bindings have the same names).
+  // Evaluates all masks. `values` and `weights`: driver values and wrinkle weights of the painted
+  // binding; both bindings have the same names.
   void Update(MaskMode mode, std::span<const float> values, std::span<const float> weights);
 
-  // The masks at work on a wrinkle map of the rig; their slot is the map.
+  // Appends the masks of a rig's wrinkle map that are above 0. Their slot is set to the map.
   void Append(int map, std::vector<DynamicMaskBlock>* masks) const;
   // num_joints x num_columns(), joint-major.
   [[nodiscard]] std::span<const float> influences() const { return influences_; }
   [[nodiscard]] int num_columns() const { return static_cast<int>(columns_.size()); }
-  // All that some pose could raise.
+  // All (joint, column) pairs that can be above 0 in some pose.
   [[nodiscard]] std::vector<SkinnedShare> Shares(MaskMode mode) const;
 
  private:
-  // One feed of a region whose mask slides.
+  // One input of a region with a sliding mask.
   struct Slide {
     int map = -1;
-    std::size_t weight = 0;  // of RigBinding::weight_names()
-    std::size_t value = 0;   // of the ball driver: front, back, left, right
+    std::size_t weight = 0;  // index of RigBinding::weight_names()
+    std::size_t value = 0;   // first index of the ball driver's values: front, back, left, right
     wrinkle::BallFrame frame;
     wrinkle::Mask mask;
   };

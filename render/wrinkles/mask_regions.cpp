@@ -15,7 +15,8 @@
 namespace furrow::render {
 namespace {
 
-// Where one channel of a mask is above 0, for asking after rectangles: a summed-area table.
+// The texels where one channel of a mask is above 0, as a summed-area table for queries by
+// rectangle.
 class Coverage {
  public:
   Coverage(const character::Picture& mask, int channel)
@@ -30,20 +31,21 @@ class Coverage {
     }
   }
 
-  // Whether filtering may find something there; UV beyond [0, 1] repeats.
+  // Returns true if a filtered look-up in the rectangle may return more than 0. UV beyond [0, 1]
+  // repeats.
   [[nodiscard]] bool Touches(const glm::vec2& low, const glm::vec2& high) {
     const glm::vec2 turn = glm::floor(low);
     const glm::ivec2 first(glm::floor((low - turn) * glm::vec2(size_)) - 1.0f);
     const glm::ivec2 last(glm::floor((high - turn) * glm::vec2(size_)) + 2.0f);
     if (first.x < 0 || first.y < 0 || last.x > size_.x || last.y > size_.y) {
-      return Sum(size_.x, size_.y) > 0;  // around the border: not worth a closer look
+      return Sum(size_.x, size_.y) > 0;  // wraps around: use a coarse answer
     }
     return Sum(last.x, last.y) + Sum(first.x, first.y) >
            Sum(first.x, last.y) + Sum(last.x, first.y);
   }
 
  private:
-  // Of all texels before (x, y), both ways.
+  // The sum of all texels to the left of x and above y.
   std::uint32_t& Sum(int x, int y) {
     return sums_[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.x + 1) +
                  static_cast<std::size_t>(x)];
@@ -53,8 +55,7 @@ class Coverage {
   std::vector<std::uint32_t> sums_;
 };
 
-// Appends the triangles of a mesh that a mask lets something through on, each with vertices of its
-// own.
+// Appends the triangles of a mesh where the mask may be above 0. Each gets its own vertices.
 void AddPart(const character::Mesh& mesh, Coverage* coverage, character::Mesh* part) {
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const auto corners = std::span(mesh.indices).subspan(i, 3);
@@ -87,8 +88,7 @@ void AddMaskRegions(const character::Character& character, const character::Pict
       }
       if (part.indices.empty()) continue;
       regions->push_back({4 * layer + channel, material,
-                          JointBounds(part, character.inverse_bind_matrices),
-                          LeastUvPerMetre(part)});
+                          JointBounds(part, character.inverse_bind_matrices), MinUvPerMetre(part)});
     }
   }
 }

@@ -8,16 +8,16 @@
 
 namespace furrow::render {
 
-// What a channel of the mask textures lets through on one material's surfaces: for finding out
-// whether a picture shows it, and how large.
+// The part of one material's surfaces where one channel of the mask textures is above 0. Used to
+// decide whether a picture shows it, and how large.
 struct MaskRegion {
-  int channel = 0;  // four a layer
+  int channel = 0;  // four per layer
   int material = 0;
   JointBounds bounds;
-  float uv_per_metre = 0.0f;  // LeastUvPerMetre() of those surfaces
+  float uv_per_metre = 0.0f;  // MinUvPerMetre() of these surfaces
 };
 
-// Appends those of the four channels of `mask`, which is `layer` of the mask textures.
+// Appends the regions of the four channels of `mask`, which is `layer` of the mask textures.
 void AddMaskRegions(const character::Character& character, const character::Picture& mask,
                     int layer, std::vector<MaskRegion>* regions);
 

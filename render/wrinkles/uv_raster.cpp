@@ -14,7 +14,7 @@ float Cross(const glm::vec2& a, const glm::vec2& b) { return a.x * b.y - a.y * b
 
 int Wrapped(int value, int size) { return ((value % size) + size) % size; }
 
-// A triangle in texels.
+// A triangle in texel coordinates.
 class TexelTriangle {
  public:
   TexelTriangle(const UvTriangle& triangle, glm::ivec2 size) {
@@ -46,7 +46,7 @@ class TexelTriangle {
     return corners_[static_cast<std::size_t>(i % 3)];
   }
 
-  // On an edge.
+  // The nearest point on the edges.
   [[nodiscard]] UvTexel Nearest(const glm::vec2& point) const {
     UvTexel nearest;
     for (int i = 0; i < 3; ++i) {
@@ -57,9 +57,9 @@ class TexelTriangle {
                               ? std::clamp(glm::dot(from, edge) / length_squared, 0.0f, 1.0f)
                               : 0.0f;
       const glm::vec2 apart = from - along * edge;
-      const float away_squared = glm::dot(apart, apart);
-      if (i > 0 && away_squared >= nearest.away_squared) continue;
-      nearest.away_squared = away_squared;
+      const float distance_squared = glm::dot(apart, apart);
+      if (i > 0 && distance_squared >= nearest.distance_squared) continue;
+      nearest.distance_squared = distance_squared;
       nearest.shares = glm::vec3(0.0f);
       nearest.shares[i] = 1.0f - along;
       nearest.shares[(i + 1) % 3] = along;
@@ -68,7 +68,7 @@ class TexelTriangle {
   }
 
   std::array<glm::vec2, 3> corners_;
-  float area_ = 0.0f;  // twice
+  float area_ = 0.0f;  // twice the area
 };
 
 }  // namespace
@@ -81,7 +81,7 @@ void ForTexels(const UvTriangle& triangle, glm::ivec2 size, float reach,
   for (int y = first.y; y < last.y; ++y) {
     for (int x = first.x; x < last.x; ++x) {
       UvTexel texel = texels.At(glm::vec2(x, y) + 0.5f);
-      if (texel.away_squared > reach * reach) continue;
+      if (texel.distance_squared > reach * reach) continue;
       texel.index =
           static_cast<std::size_t>(Wrapped(y, size.y)) * static_cast<std::size_t>(size.x) +
           static_cast<std::size_t>(Wrapped(x, size.x));
@@ -91,13 +91,14 @@ void ForTexels(const UvTriangle& triangle, glm::ivec2 size, float reach,
 }
 
 bool IsAtlas(std::span<const UvTriangle> triangles) {
-  // Of the triangles' boxes: half of a box is its triangle's, less where that is a sliver.
-  constexpr float kMostSurface = 16.0f;
-  constexpr float kFarAway = 1024.0f;  // texels further away cannot be told apart
+  // Limit of the summed area of the triangles' bounding boxes. A box is twice the area of its
+  // triangle, more for slivers.
+  constexpr float kMaxSurface = 16.0f;
+  constexpr float kMaxTexel = 1024.0f;  // floats cannot resolve texels beyond this
   float surface = 0.0f;
   for (const UvTriangle& triangle : triangles) {
     for (const glm::vec2& corner : triangle) {
-      if (!(std::abs(corner.x) < kFarAway && std::abs(corner.y) < kFarAway)) return false;
+      if (!(std::abs(corner.x) < kMaxTexel && std::abs(corner.y) < kMaxTexel)) return false;
     }
     const glm::vec2 low = glm::min(glm::min(triangle[0], triangle[1]), triangle[2]);
     const glm::vec2 high = glm::max(glm::max(triangle[0], triangle[1]), triangle[2]);
@@ -105,7 +106,7 @@ bool IsAtlas(std::span<const UvTriangle> triangles) {
     if (extent.x > 1.0f || extent.y > 1.0f) return false;
     surface += extent.x * extent.y;
   }
-  return surface <= kMostSurface;
+  return surface <= kMaxSurface;
 }
 
 }  // namespace furrow::render

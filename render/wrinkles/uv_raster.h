@@ -13,20 +13,21 @@ namespace furrow::render {
 
 using UvTriangle = std::array<glm::vec2, 3>;
 
-// Where the centre of a texel lies in a triangle, or which of the triangle's points is nearest.
+// A texel near a triangle, and the point of the triangle nearest to the texel's centre.
 struct UvTexel {
-  std::size_t index = 0;      // row after row, from (0, 0)
-  glm::vec3 shares{0.0f};     // of the corners; they sum to 1
-  float away_squared = 0.0f;  // texels; 0: within
+  std::size_t index = 0;          // row by row, from (0, 0)
+  glm::vec3 shares{0.0f};         // barycentric coordinates of the point; they sum to 1
+  float distance_squared = 0.0f;  // squared distance in texels; 0: the centre is inside
 };
 
-// Calls `visit` for each texel of a texture of `size` texels, which repeats, whose centre lies
-// within `reach` texels of a triangle.
+// Calls `visit` for each texel with its centre within `reach` texels of a triangle. The texture has
+// `size` texels and repeats.
 void ForTexels(const UvTriangle& triangle, glm::ivec2 size, float reach,
                const std::function<void(const UvTexel&)>& visit);
 
-// Whether no triangle, and not all of them together, go over so much of a texture that they must
-// lie on each other: what comes from a file may. False for corners that are no numbers.
+// Returns false if the triangles must overlap in the texture because one of them, or their sum,
+// covers too much of it. Files can contain such triangles. Also false for corners that are not
+// finite.
 [[nodiscard]] bool IsAtlas(std::span<const UvTriangle> triangles);
 
 }  // namespace furrow::render

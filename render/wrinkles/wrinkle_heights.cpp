@@ -12,7 +12,7 @@ namespace {
 
 using character::Picture;
 
-// Bilinear resampling is there for pairs: a height goes in both channels.
+// Resample() works on pairs, so both channels hold the height.
 DerivativeMap HeightsOf(const Picture& picture, float height_mm) {
   const bool floats = !picture.pixels_float.empty();
   DerivativeMap map{picture.width, picture.height, {}};
@@ -42,7 +42,7 @@ WrinkleHeights MakeWrinkleHeights(const character::Character& character) {
     width = std::max(width, maps.back().width);
     height = std::max(height, maps.back().height);
     for (const float texel : maps.back().texels) {
-      heights.most_mm = std::max(heights.most_mm, map.amplitude * std::abs(texel));
+      heights.max_mm = std::max(heights.max_mm, map.amplitude * std::abs(texel));
     }
   }
   if (maps.empty()) return heights;

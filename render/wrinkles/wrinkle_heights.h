@@ -8,16 +8,17 @@
 
 namespace furrow::render {
 
-// The heights of a rig's wrinkle maps as one array on the GPU: millimetres over the rest surface in
+// The heights of a rig's wrinkle maps as one texture array: millimetres above the rest surface,
 // half floats, with mips.
 struct WrinkleHeights {
-  gl::Texture texture;      // none where no map has heights
-  std::vector<int> layers;  // a wrinkle map of the rig -> layer, -1: none
+  gl::Texture texture;      // 0 if no map has heights
+  std::vector<int> layers;  // layer of each wrinkle map of the rig; -1: none
   int side = 1;             // texels of the longer side
-  float most_mm = 0.0f;     // furthest that a map at weight 1 can move the surface
+  float max_mm = 0.0f;      // largest displacement by one map of weight 1
 };
 
-// Needs a current context. Pictures that nobody has (Character::missing_rig_pictures) are left out.
+// Needs a current context. Maps with missing pictures (Character::missing_rig_pictures) are left
+// out.
 [[nodiscard]] WrinkleHeights MakeWrinkleHeights(const character::Character& character);
 
 }  // namespace furrow::render

@@ -20,14 +20,15 @@ bool Has(const character::Character& character, Material::Kind kind) {
                      [&](const Material& material) { return material.kind == kind; });
 }
 
-// The thesis' figure 4.3: stretch green, squash red; what else there is in blue and amber.
+// Colours of the thesis' figure 4.3: stretch is green and squash red. Other maps alternate between
+// blue and amber.
 glm::vec4 MapColour(std::string_view name, int index) {
   if (name == "stretch") return {0.05f, 0.8f, 0.1f, 1.0f};
   if (name == "squash") return {0.9f, 0.04f, 0.03f, 1.0f};
   return index % 2 == 0 ? glm::vec4{0.05f, 0.3f, 0.95f, 1.0f} : glm::vec4{0.95f, 0.5f, 0.02f, 1.0f};
 }
 
-// Evenly spread hues at full saturation; `turn` in [0, 1).
+// Evenly spaced hues at full saturation; `turn` in [0, 1).
 glm::vec4 Hue(float turn) {
   const auto channel = [&](float shift) {
     const float x = std::abs(std::fmod(turn + shift, 1.0f) * 6.0f - 3.0f) - 1.0f;
@@ -149,7 +150,7 @@ void WrinkleTables::NameMap::Carry(std::span<const float> from, std::span<float>
 
 Result<std::unique_ptr<WrinkleTables>> WrinkleTables::Create(const character::Character& character,
                                                              WrinkleLayout layout) {
-  // Missing joints are the rig's business where weights are solved; here their masks stay empty.
+  // Missing joints are reported where the rig is solved. Here their masks stay empty.
   const wrinkle::BindOptions options{.allow_missing = true};
   Result<wrinkle::RigBinding> binding =
       wrinkle::RigBinding::Create(character.rig, character.skeleton, {}, options);
@@ -186,7 +187,8 @@ void WrinkleTables::DescribeMaps(const character::Character& character) {
     if (!layout_.height_layers.empty()) {
       info.entry.height_layer = layout_.height_layers[static_cast<std::size_t>(index)];
     }
-    info.entry.amplitude = layer < 0 ? 0.0f : map.amplitude;  // no texture: no relief
+    info.entry.amplitude = layer < 0 ? 0.0f : map.amplitude;  // without a texture there is no
+                                                              // relief
     info.in_group[static_cast<int>(WrinkleGroup::kSkin)] =
         map.surface != Surface::kCloth || !has_cloth;
     info.in_group[static_cast<int>(WrinkleGroup::kCloth)] = map.surface != Surface::kSkin;
@@ -213,7 +215,7 @@ void WrinkleTables::DescribePalettes(const wrinkle::Rig& rig) {
     if (region.mask.kind != wrinkle::Mask::Kind::kTexture) continue;
     const int place = layout_.MaskLayer(region.mask.texture) * 4 + region.mask.channel;
     const glm::vec4 colour = Hue(turn);
-    // The golden ratio spreads hues so that regions next to each other in the rig differ.
+    // Steps by the golden ratio give neighbouring regions of the rig different hues.
     turn = std::fmod(turn + 0.61803399f, 1.0f);
     for (const wrinkle::Feed& feed : region.feeds) {
       const int map = FindMap(rig, feed.map);
@@ -326,7 +328,8 @@ void WrinkleTables::FindSources() {
   }
 }
 
-// `slots`: where each map of the rig is in the list; -1: nobody needs it.
+// Appends the active maps of one source. `slots`: the position of each map of the rig in the list;
+// -1: not listed.
 void WrinkleTables::ListMaps(int group, float strength, Source source, std::vector<int>* slots) {
   WrinkleTable& table = tables_[group];
   for (std::size_t map = 0; map < maps_.size(); ++map) {

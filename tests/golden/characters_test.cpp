@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two characters that people see, each with one side of its brow raised and the other lowered,
-// sneering and half smiling, so that a side mistaken for the other shows. The default character: in
-// every view. MakeHuman's: where its data is at hand.
+// The two shipped characters. One side of the brow is raised and the other lowered, one side sneers
+// and the other half smiles, so that swapped sides are visible. The default character is drawn in
+// every view; MakeHuman's character requires its data.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -53,7 +53,7 @@ constexpr Shot kMakeHuman[] = {
     {"occlusion", View::kOcclusion, "face"},
 };
 
-// Adds reference poses of the rig to the pose of rest.
+// Adds reference poses of the rig to the rest pose.
 void Pose(const std::vector<std::string>& names, Sitter* sitter) {
   const wrinkle::Rig& rig = sitter->character().rig;
   test::Subject& subject = sitter->subject();

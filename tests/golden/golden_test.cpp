@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every view of the procedural head with every region at work.
+// Every view of the procedural head with every region active.
 #include <gtest/gtest.h>
 
 #include "sitter.h"

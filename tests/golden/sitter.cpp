@@ -14,9 +14,10 @@ namespace furrow::render::golden {
 namespace {
 
 constexpr int kSize = 96;
-constexpr float kSmall = 6.0f / 255.0f;  // what another driver's rounding may do to any pixel ...
-constexpr double kMaxFailShare = 0.01;  // ... and the share of pixels, at edges, that may exceed it
-constexpr double kMaxMeanError = 1.5 / 255;  // of all pixels: nothing has shifted or changed tone
+constexpr float kSmall = 6.0f / 255.0f;      // largest difference of a pixel by another driver's
+                                             // rounding
+constexpr double kMaxFailShare = 0.01;       // share of pixels, at edges, that may differ more
+constexpr double kMaxMeanError = 1.5 / 255;  // of all pixels: nothing has moved or changed its tone
 
 void Save(const Image& image, const std::filesystem::path& path) {
   const auto bytes = EncodeImage(image, ImageFormat::kPng);

@@ -8,11 +8,11 @@
 #include "render/renderer.h"
 #include "test_character.h"
 
-// Pictures against expected pictures. Drivers differ at edges and in the last bit of a texture
-// filter, so a pixel may differ by little, and few may differ by much.
+// Compares pictures with expected pictures. Drivers differ at edges and in the last bit of texture
+// filtering, so every pixel may differ slightly, and a few may differ a lot.
 namespace furrow::render::golden {
 
-// One picture. Its name is that of a file in images/ without ".png".
+// One picture. `name` is the name of a file in images/ without ".png".
 struct Shot {
   const char* name;
   View view;
@@ -23,11 +23,11 @@ struct Shot {
 };
 void PrintTo(const Shot& shot, std::ostream* out);
 
-// A character that holds a pose while pictures are taken. Aborts where there is no OpenGL.
+// A character that holds a pose while pictures are taken. Aborts if OpenGL is unavailable.
 class Sitter {
  public:
   explicit Sitter(character::Character character);
-  // To be solved before pictures are taken.
+  // Call Solve() on it before taking pictures.
   [[nodiscard]] test::Subject& subject() { return subject_; }
   [[nodiscard]] const character::Character& character() const { return character_; }
   [[nodiscard]] Image Draw(const Shot& shot);
@@ -38,9 +38,9 @@ class Sitter {
   std::unique_ptr<Renderer> renderer_;
 };
 
-// Expects the picture to look like images/<name>.png; one that does not is written to the build
-// folder. With the environment variable FURROW_UPDATE_GOLDEN it is the expected one from now on,
-// and the test SKIPPED.
+// Expects the picture to look like images/<name>.png. A picture that does not is written to the
+// build folder. If the environment variable FURROW_UPDATE_GOLDEN is set, the picture becomes the
+// expected one and the test is SKIPPED.
 void ExpectLooksLike(Image drawn, const std::string& name);
 
 }  // namespace furrow::render::golden

@@ -32,7 +32,7 @@ struct BallFrame {
 // (BendDirection()) points to, 0 from `spread_degrees` to either side of it on, and fading out
 // along the bone and away from it; 0 everywhere without a direction. As the joint swings round, it
 // moves over the surface, where fixed masks in four directions fade into one another. Mirrored in
-// shaders/common_wrinkles_vert.glsl.
+// shaders/wrinkles/wrinkles_vert.glsl.
 [[nodiscard]] float SlidingMaskAt(const BallFrame& frame, const Mask& mask,
                                   const glm::vec3& towards, const glm::vec3& point);
 

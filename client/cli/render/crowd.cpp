@@ -10,7 +10,7 @@
 #include <glm/trigonometric.hpp>
 
 #include "base/status.h"
-#include "render/scene/camera.h"
+#include "render/scene/camera_frame.h"
 
 namespace furrow::cli {
 namespace {

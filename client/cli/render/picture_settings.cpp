@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/status.h"
+#include "render/settings/settings_file.h"
 
 namespace furrow::cli {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "render/settings/settings.h"
+#include "render/settings/named_settings.h"
 
 namespace furrow::cli {
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "base/status.h"
-#include "render/settings/settings.h"
+#include "render/settings/named_settings.h"
 
 namespace furrow::server {
 

@@ -8,6 +8,7 @@
 #include "base/status.h"
 #include "protocol/messages/limits.h"
 #include "render/renderer.h"
+#include "render/settings/named_settings.h"
 
 namespace furrow::server {
 namespace {

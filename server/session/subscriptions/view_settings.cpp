@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/status.h"
+#include "render/settings/named_settings.h"
 
 namespace furrow::server {
 

@@ -8,7 +8,7 @@
 
 #include "base/status.h"
 #include "protocol/messages/limits.h"
-#include "render/request_check.h"
+#include "render/request/request_check.h"
 #include "server/session/subscriptions/subscribers.h"
 
 namespace furrow::server {

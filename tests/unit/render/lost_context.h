@@ -5,7 +5,7 @@
 
 namespace furrow::render::test {
 
-// Takes the thread's OpenGL context away for good, as a driver's restart does.
+// Destroys the thread's OpenGL context, as a driver restart does.
 inline void DestroyCurrentContext() {
   const EGLDisplay display = eglGetCurrentDisplay();
   const EGLContext context = eglGetCurrentContext();

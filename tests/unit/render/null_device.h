@@ -7,7 +7,7 @@
 
 namespace furrow::render::test {
 
-// A frame graph's device without a GPU: hands out numbers and remembers what lives.
+// A frame graph device without a GPU. It returns numbers and records which textures are alive.
 class NullDevice final : public FrameGraphDevice {
  public:
   TextureId CreateTexture(const TextureDesc& desc) override {

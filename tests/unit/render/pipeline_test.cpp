@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "render/renderer.h"
+#include "render/settings/named_settings.h"
 #include "test_character.h"
 
 namespace furrow::render {
@@ -51,8 +52,8 @@ class PipelineTest : public testing::Test {
   std::unique_ptr<test::Subject> subject_;
 };
 
-// Whatever comes and goes in between, a picture depends on its own settings alone.
-TEST_F(PipelineTest, SettingsAreHot) {
+// A picture depends on its own settings only, whatever was drawn before.
+TEST_F(PipelineTest, SettingsTakeEffectWithTheNextPicture) {
   Make();
   const Image before = Draw(Skin(), 96);
   for (const char* change : {"subsurface.method=gaussians",
@@ -86,7 +87,7 @@ TEST_F(PipelineTest, SettingsAreHot) {
   EXPECT_EQ(Draw(Skin(), 96).rgb, before.rgb);
 }
 
-TEST_F(PipelineTest, ATileOfTheStripIsItsViewDrawnSmall) {
+TEST_F(PipelineTest, AStripTileIsItsViewDrawnSmall) {
   Make();
   constexpr int kSize = 240;
   constexpr int kTile = kSize / 6;
@@ -111,7 +112,7 @@ TEST_F(PipelineTest, ATileOfTheStripIsItsViewDrawnSmall) {
   }
 }
 
-// Counts what runs.
+// Counts the passes that run.
 class PassCounter final : public FrameGraphObserver {
  public:
   void BeforePass(std::string_view pass) override { ++runs_[std::string(pass)]; }
@@ -134,8 +135,8 @@ TEST_F(PipelineTest, AllViewsOfAFrameShareItsShadowMaps) {
   EXPECT_EQ(counter.runs("shadows"), 1);
 }
 
-// Shadow maps are drawn when somebody or a lamp moves, and else kept: what is drawn with kept ones
-// is the same to the last bit.
+// Shadow maps are drawn when a subject or a lamp moves and are otherwise kept. Pictures from kept
+// maps are identical.
 TEST_F(PipelineTest, ShadowMapsAreKeptWhileNothingMoves) {
   Make();
   PassCounter counter;
@@ -161,13 +162,13 @@ TEST_F(PipelineTest, ShadowMapsAreKeptWhileNothingMoves) {
   (void)Draw(settings, 96);
   EXPECT_EQ(counter.runs("shadows"), 5);
   renderer_->SetObserver(nullptr);
-  // A renderer that kept nothing draws what this one drew.
+  // A new renderer, which has kept nothing, draws the same.
   renderer_ = test::Expect(Renderer::Create(head_));
   EXPECT_EQ(Draw(Skin(), 96).rgb, moved.rgb);
 }
 
-// Beyond the surfaces a picture is its background, whatever the passes between leave out.
-TEST_F(PipelineTest, TheBackgroundIsEven) {
+// The background is even around the surfaces, although several passes leave pixels out.
+TEST_F(PipelineTest, TheBackgroundIsUniform) {
   Make();
   Settings settings = Skin();
   settings.background = {0.2f, 0.05f, 0.4f};
@@ -185,8 +186,8 @@ TEST_F(PipelineTest, TheBackgroundIsEven) {
   }
 }
 
-// A wrinkle map with a colour: blood that a squashed brow holds.
-TEST_F(PipelineTest, BloodFlowColoursWhereTheMapIsAtWork) {
+// A wrinkle map with a colour: blood that a squashed brow holds back.
+TEST_F(PipelineTest, BloodFlowColoursActiveMaps) {
   head_.rig.wrinkle_maps[1].colour = "blood";  // squash
   head_.rig_pictures.emplace_back("blood", static_cast<int>(head_.pictures.size()));
   head_.pictures.push_back(test::MakePicture(
@@ -199,14 +200,14 @@ TEST_F(PipelineTest, BloodFlowColoursWhereTheMapIsAtWork) {
   EXPECT_NEAR(Mean(red, 0), Mean(plain, 0), 1.5);
   EXPECT_LT(Mean(red, 1), Mean(plain, 1) - 2.0);
   Settings still = Skin();
-  still.wrinkles = false;  // the map is not at work
+  still.wrinkles = false;  // deactivates the map
   Settings still_without = still;
   still_without.wrinkle_maps.blood_flow = 0.0f;
   EXPECT_EQ(Draw(still, 96).rgb, Draw(still_without, 96).rgb);
 }
 
-// Squashed skin that lost its blood: lighter than at rest.
-TEST_F(PipelineTest, BloodFlowPalesByItsScale) {
+// A wrinkle map that presses blood out of squashed skin makes it lighter than at rest.
+TEST_F(PipelineTest, BloodFlowCanMakeSkinPaler) {
   head_.rig.wrinkle_maps[1].colour = "blood";
   head_.rig.wrinkle_maps[1].colour_scale = 1.5f;
   head_.rig_pictures.emplace_back("blood", static_cast<int>(head_.pictures.size()));
@@ -219,8 +220,9 @@ TEST_F(PipelineTest, BloodFlowPalesByItsScale) {
   for (int c = 0; c < 3; ++c) EXPECT_GT(Mean(pale, c), Mean(plain, c) + 1.0);
 }
 
-// Light that grazes a sheet of bumps: of those that face it most stand in the shadow of others.
-TEST_F(PipelineTest, BumpsDoNotBlazeWhereLightGrazes) {
+// Grazing light on a sheet of bumps: most of the bumps that face the light are in the shadow of
+// others.
+TEST_F(PipelineTest, BumpsAreNotOverbrightInGrazingLight) {
   const auto flat = [](float, float) { return 0.0f; };
   const auto bumpy = [](float u, float v) {
     return 0.04f * std::sin(60.0f * u) * std::sin(60.0f * v);
@@ -229,7 +231,7 @@ TEST_F(PipelineTest, BumpsDoNotBlazeWhereLightGrazes) {
   settings.view = View::kIrradiance;
   settings.subsurface.mix = 0.0f;
   settings.lights.preset = LightPreset::kThesis;
-  settings.lights.turn_degrees = -39.0f;  // the first lamp hardly stands above the sheet
+  settings.lights.turn_degrees = -39.0f;  // the first lamp is barely above the sheet
   settings.lights.ambient = 0.0f;
   settings.lights.fill = settings.lights.rim = glm::vec3(0.0f);
   head_ = test::MakePlane(64, flat, {flat});
@@ -242,8 +244,8 @@ TEST_F(PipelineTest, BumpsDoNotBlazeWhereLightGrazes) {
   EXPECT_LT(rough, 1.2 * smooth);
 }
 
-// A sheet lit from behind: light comes through it, and less the more flesh it has to pass.
-TEST_F(PipelineTest, LightComesThroughThinSkin) {
+// Light passes through a sheet that is lit from behind, and less through thicker flesh.
+TEST_F(PipelineTest, LightPassesThroughThinSkin) {
   const auto flat = [](float, float) { return 0.0f; };
   head_ = test::MakePlane(16, flat, {flat});
   Make("r0");
@@ -257,20 +259,20 @@ TEST_F(PipelineTest, LightComesThroughThinSkin) {
   Make("r0");
   const Image thick = Draw(settings, 64);
   EXPECT_LT(Mean(thick, 0), 0.8 * thin);
-  EXPECT_GT(Mean(thick, 0), Mean(thick, 2));  // it is red
+  EXPECT_GT(Mean(thick, 0), Mean(thick, 2));  // red
   settings.translucency.enabled = false;
   EXPECT_EQ(Mean(Draw(settings, 64), 0), 0.0);
 }
 
-// A slab of 4 mm lit from behind: what lies 5 mm below its front is before its back. The slab is as
-// thick as when the look-up starts at its front.
-TEST_F(PipelineTest, LightThatEntersNearerThanTheLookUpStartsIsDimmedAllTheSame) {
+// A slab of 4 mm lit from behind. The look-up starts 5 mm below the front, which is outside the
+// slab, and must measure the same thickness as one that starts at the front.
+TEST_F(PipelineTest, TranslucencyIsDimmedInPartsThinnerThanTheLookUpDepth) {
   const auto flat = [](float, float) { return 0.0f; };
   head_ = test::MakePlane(16, flat, {flat});
   head_.materials[0].double_sided = true;
   Settings settings = Skin();
   settings.view = View::kTranslucency;
-  settings.lights = {LightPreset::kThesis, 0.2f, 1.0f, 180.0f};  // parallel: depths are exact
+  settings.lights = {LightPreset::kThesis, 0.2f, 1.0f, 180.0f};  // parallel light, for exact depths
   Make("r0");
   const double bare = Mean(Draw(settings, 64), 0);
   head_.meshes.push_back(head_.meshes[0]);

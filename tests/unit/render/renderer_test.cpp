@@ -47,30 +47,31 @@ class RendererTest : public testing::Test {
   test::Subject subject_{head_};
 };
 
-TEST_F(RendererTest, SaysWhatItDrawsWith) {
+TEST_F(RendererTest, DescribesItsDriver) {
   EXPECT_NE(renderer_->description().find("4."), std::string::npos) << renderer_->description();
 }
 
 TEST_F(RendererTest, RowsStartAtTheTopAndLightComesFromTheUpperLeft) {
   const Image normals = Render(Request(subject_, View::kNormal));
-  EXPECT_GT(Pixel(normals, kSize / 2, 14).g, 180);             // the crown looks up
-  EXPECT_LT(Pixel(normals, kSize / 2, kSize - 15).g, 80);      // the chin looks down
-  EXPECT_GT(Pixel(normals, kSize * 2 / 3, kSize / 2).r, 140);  // +X is right of the picture
+  EXPECT_GT(Pixel(normals, kSize / 2, 14).g, 180);             // the crown faces up
+  EXPECT_LT(Pixel(normals, kSize / 2, kSize - 15).g, 80);      // the chin faces down
+  EXPECT_GT(Pixel(normals, kSize * 2 / 3, kSize / 2).r, 140);  // +X is on the right of the picture
   const Image lit = Render(Request(subject_));
   const int upper_left = Pixel(lit, kSize * 3 / 8, kSize / 3).g;
   EXPECT_GT(upper_left, Pixel(lit, kSize * 5 / 8, kSize * 2 / 3).g + 40);
 }
 
-TEST_F(RendererTest, TheBackgroundIsWhatTheSettingsSay) {
+TEST_F(RendererTest, TheBackgroundFollowsTheSettings) {
   FrameRequest request = Request(subject_);
   request.settings.background = {0.0f, 0.0f, 0.0f};
   EXPECT_EQ(Pixel(Render(request), 2, 2), glm::ivec3(0));
   request.settings.background = {0.5f, 0.5f, 0.5f};
-  EXPECT_NEAR(Pixel(Render(request), 2, 2).g, 188, 1);  // sRGB(0.5); the tone map starts above it
+  EXPECT_NEAR(Pixel(Render(request), 2, 2).g, 188, 1);  // sRGB(0.5), which the tone map does not
+                                                        // change
 }
 
-// Skin painted black is the inside of a mouth, and dark; a black eye is a pupil, and glossy.
-TEST(Renderer, BlackSkinIsHollowAndABlackEyeShines) {
+// Black skin is the dark inside of a mouth. A black eye is a glossy pupil.
+TEST(Renderer, BlackSkinIsDarkAndABlackEyeIsGlossy) {
   for (const auto kind : {character::Material::Kind::kSkin, character::Material::Kind::kEye}) {
     character::Character head = test::MakeHead();
     for (character::Material& material : head.materials) {
@@ -93,7 +94,7 @@ TEST(Renderer, BlackSkinIsHollowAndABlackEyeShines) {
   }
 }
 
-// A texel of what is composed beforehand may reach a pixel beyond a mask.
+// A composed texel may affect one pixel beyond a mask.
 TEST_F(RendererTest, WrinklesChangeOnlyMaskedPixels) {
   const Image mask = Render(Request(subject_, View::kMaskTexture));
   const Image base = Render(Request(subject_));
@@ -130,7 +131,7 @@ TEST_F(RendererTest, TheWeightsViewIsGreenForStretchAndRedForSquash) {
   EXPECT_GT(right.g, right.r + 40);
   EXPECT_GT(left.r, left.g + 40);
   const glm::ivec3 crown =
-      Pixel(image, kSize / 2, 14);  // no region: grey, but for the lights' tint
+      Pixel(image, kSize / 2, 14);  // no region: grey, tinted by the lights only
   EXPECT_LT(std::abs(crown.r - crown.g), 20);
 }
 
@@ -140,9 +141,9 @@ TEST_F(RendererTest, MaskModesChooseWhichRegionsShow) {
   FrameRequest request = Request(subject_);
   const Image as_rig = Render(request);
   request.settings.mask_mode = MaskMode::kTexture;
-  EXPECT_EQ(Render(request).rgb, as_rig.rgb);  // the only weight is texture-masked
+  EXPECT_EQ(Render(request).rgb, as_rig.rgb);  // the only active weight has a texture mask
   request.settings.mask_mode = MaskMode::kDynamic;
-  // Blend shapes move no joint: with dynamic masks alone this weight shows nowhere.
+  // Blend shapes move no joint, so this weight is invisible with dynamic masks only.
   const Image dynamic = Render(request);
   request.settings.wrinkles = false;
   EXPECT_EQ(Render(request).rgb, dynamic.rgb);
@@ -162,12 +163,12 @@ TEST_F(RendererTest, TheSameRequestGivesTheSamePicture) {
   }
 }
 
-TEST_F(RendererTest, TwoPicturesFlyAndLandInOrder) {
+TEST_F(RendererTest, TwoPicturesInFlightArriveInOrder) {
   FrameRequest first = Request(subject_, View::kNormal);
   first.token = 1;
   FrameRequest second = Request(subject_, View::kWireframe);
   second.token = 2;
-  second.width = 48;  // the ring's buffers take any size
+  second.width = 48;  // the ring's buffers adapt to any size
   ASSERT_TRUE(renderer_->Submit(first).ok());
   ASSERT_TRUE(renderer_->Submit(second).ok());
   EXPECT_EQ(renderer_->in_flight(), 2);
@@ -187,7 +188,7 @@ TEST_F(RendererTest, TwoPicturesFlyAndLandInOrder) {
   EXPECT_EQ(none->width, 0);
 }
 
-TEST_F(RendererTest, RenderGivesTheNewestPicture) {
+TEST_F(RendererTest, RenderReturnsTheNewestPicture) {
   FrameRequest request = Request(subject_);
   request.token = 1;
   ASSERT_TRUE(renderer_->Submit(request).ok());
@@ -196,7 +197,7 @@ TEST_F(RendererTest, RenderGivesTheNewestPicture) {
   EXPECT_EQ(renderer_->in_flight(), 0);
 }
 
-TEST_F(RendererTest, ARefusedRequestLeavesTheRendererWell) {
+TEST_F(RendererTest, ARejectedRequestDoesNotAffectTheRenderer) {
   FrameRequest bad = Request(subject_);
   bad.wrinkle_weights = bad.wrinkle_weights.first(1);
   const Status status = renderer_->Submit(bad);
@@ -209,7 +210,7 @@ TEST_F(RendererTest, ARefusedRequestLeavesTheRendererWell) {
   EXPECT_EQ(Render(Request(subject_)).width, kSize);
 }
 
-TEST_F(RendererTest, TwoRenderersOfOneThreadDoNotDisturbEachOther) {
+TEST_F(RendererTest, TwoRenderersOfOneThreadAreIndependent) {
   const Image before = Render(Request(subject_));
   {
     auto other = Renderer::Create(head_);
@@ -220,7 +221,7 @@ TEST_F(RendererTest, TwoRenderersOfOneThreadDoNotDisturbEachOther) {
   EXPECT_EQ(Render(Request(subject_)).rgb, before.rgb);
 }
 
-TEST_F(RendererTest, ALostContextIsSaidSoAndAnotherRendererDrawsTheSame) {
+TEST_F(RendererTest, ALostContextIsReportedAndANewRendererDrawsTheSame) {
   const FrameRequest request = Request(subject_);
   const Image before = Render(request);
   ASSERT_TRUE(renderer_->Submit(request).ok());
@@ -236,8 +237,8 @@ TEST_F(RendererTest, ALostContextIsSaidSoAndAnotherRendererDrawsTheSame) {
   EXPECT_EQ(Render(request).rgb, before.rgb);
 }
 
-// The lost renderer's names are other objects in the context of the one that goes on.
-TEST_F(RendererTest, ARendererWithoutItsContextTakesNothingFromAnother) {
+// In the other renderer's context, the lost renderer's names belong to other objects.
+TEST_F(RendererTest, ARendererWithALostContextDeletesNothingOfAnother) {
   auto lost = Renderer::Create(head_);
   ASSERT_TRUE(lost.ok());
   ASSERT_TRUE((*lost)->Render(Request(subject_)).ok());
@@ -247,9 +248,9 @@ TEST_F(RendererTest, ARendererWithoutItsContextTakesNothingFromAnother) {
   EXPECT_EQ(Render(Request(subject_)).rgb, before.rgb);
 }
 
-// A rig may name pictures that this character lacks: what needs them stays smooth, all else is
-// drawn.
-TEST_F(RendererTest, WhatTheRigLacksIsNotDrawn) {
+// A rig may name pictures that the character does not have. Their maps are not drawn, and
+// everything else is.
+TEST_F(RendererTest, MapsWithMissingPicturesAreNotDrawn) {
   subject_.Set("l_squash", 1.0f);
   subject_.Solve();
   FrameRequest request = Request(subject_);
@@ -272,7 +273,7 @@ TEST_F(RendererTest, WhatTheRigLacksIsNotDrawn) {
   }
 }
 
-TEST(RendererCreate, RefusesMeshesThatPointOutside) {
+TEST(RendererCreate, RejectsMeshesWithInvalidIndices) {
   character::Character head = test::MakeHead();
   head.meshes[0].indices[5] = 1u << 30;
   EXPECT_EQ(Renderer::Create(head).status().code(), StatusCode::kInvalidArgument);
@@ -287,7 +288,7 @@ TEST(RendererCreate, RefusesMeshesThatPointOutside) {
   EXPECT_EQ(Renderer::Create(head).status().code(), StatusCode::kInvalidArgument);
 }
 
-TEST(RendererCreate, SaysWhenARigHasMoreMapsThanTheDriverHolds) {
+TEST(RendererCreate, ReportsARigWithMoreMapsThanTheDriverSupports) {
   character::Character head = test::MakeHead();
   for (int i = 0; i < 4000; ++i) {
     head.rig.wrinkle_maps.emplace_back().name = "m" + std::to_string(i);
@@ -295,14 +296,6 @@ TEST(RendererCreate, SaysWhenARigHasMoreMapsThanTheDriverHolds) {
   const Status status = Renderer::Create(head).status();
   EXPECT_EQ(status.code(), StatusCode::kLimit);
   EXPECT_NE(status.what().find("4003 wrinkle maps"), std::string::npos) << status.ToString();
-}
-
-TEST(ParseView, KnowsItsNamesAndListsThem) {
-  EXPECT_EQ(*ParseView("mask_dynamic"), View::kMaskDynamic);
-  EXPECT_EQ(ViewName(View::kWireframe), "wireframe");
-  const Status status = ParseView("x-ray").status();
-  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
-  EXPECT_NE(status.ToString().find("mask_texture"), std::string::npos);
 }
 
 }  // namespace

@@ -11,13 +11,13 @@
 
 namespace furrow::render::test {
 
-// Draws the scene pass alone and hands back what it wrote, in 32-bit floats: for comparisons finer
-// than a picture's 8 bits.
+// Draws the scene pass only and returns its output as 32-bit floats, for comparisons that 8 bits
+// are too coarse for.
 class SceneProbe {
  public:
   explicit SceneProbe(const character::Character& character);
 
-  // width * height pixels, rows from the bottom, as OpenGL has them.
+  // Returns width * height pixels, rows from the bottom, as in OpenGL.
   [[nodiscard]] std::vector<glm::vec4> Draw(const FrameRequest& request);
   [[nodiscard]] const WrinkleTables& tables() const { return *tables_; }
 

@@ -61,9 +61,9 @@ wrinkle::Region TextureRegion(const std::string& name, int channel) {
   return region;
 }
 
-// A point of the egg; u goes once around from the back, v from the top.
+// A point of the egg; u runs around once from the back, v from the top.
 glm::vec3 Egg(float u, float v) {
-  const float longitude = kTwoPi * (u - 0.5f);  // 0 at the front, + to the subject's left
+  const float longitude = kTwoPi * (u - 0.5f);  // 0 at the front, positive to the subject's left
   const float latitude = glm::pi<float>() * v;
   const float radius = 0.085f * std::sin(latitude) * (1.0f - 0.12f * std::cos(latitude) * -1.0f);
   return {radius * std::sin(longitude), 1.6f + 0.12f * std::cos(latitude),
@@ -80,7 +80,7 @@ Vertex EggVertex(float u, float v) {
   vertex.normal = glm::normalize(glm::cross(down, along));
   vertex.tangent = glm::vec4(along, 1.0f);
   vertex.uv = {u, v};
-  // The brow joint takes over smoothly around a point at the upper front.
+  // The influence of the brow joint fades in smoothly around a point at the upper front.
   const float distance = glm::length(vertex.position - glm::vec3(0.0f, 1.64f, 0.09f));
   const float brow = std::clamp(1.0f - distance / 0.07f, 0.0f, 1.0f);
   vertex.joints[0] = 1;

@@ -12,10 +12,10 @@
 #include "character/character.h"
 #include "wrinkle/solver/solver.h"
 
-// Small characters made by formula, so that what they should look like is known.
+// Small procedural characters with a known appearance.
 namespace furrow::render::test {
 
-// Test set-up cannot go on without its value.
+// Aborts if the value is missing, because test set-up cannot continue without it.
 template <class T>
 T Expect(Result<T> result) {
   if (!result.ok()) {
@@ -25,34 +25,34 @@ T Expect(Result<T> result) {
   return std::move(result).value();
 }
 
-// A 16-bit RGBA picture of a function of (u, v in [0, 1], v down) with values in [0, 1].
+// A 16-bit RGBA picture of a function of (u, v), both in [0, 1] with v down, and values in [0, 1].
 [[nodiscard]] character::Picture MakePicture(
     const std::string& name, int size, const std::function<glm::vec4(float, float)>& function);
 
-// A normal map of a height field: u and v in [0, 1], heights in units of the texture's width.
+// The normal map of a height field: u and v in [0, 1], heights in units of the texture's width.
 [[nodiscard]] character::Picture NormalMapOf(const std::string& name, int size,
                                              const std::function<float(float, float)>& height);
 
-// An egg-shaped head of 0.24 m around (0, 1.6, 0), facing +Z, with its seam at the back.
+// An egg-shaped head of 0.24 m around (0, 1.6, 0) that faces +Z, with the seam at the back.
 //
-// Joints: root, head (at the egg's centre, the anchor) and brow (above the front). Rig, in the
+// Joints: root, head (the anchor, at the egg's centre) and brow (above the front). Rig, in the
 // order of its weights: region "left" (texture mask, red: the subject's left half) with the maps
-// stretch and squash, fed by the blend shapes l_stretch and l_squash; "right" (green) likewise;
-// region "brow" (skinning) with the map folds, fed by the hinge at the joint brow.
+// stretch and squash, driven by the blend shapes l_stretch and l_squash; region "right" (green),
+// likewise; region "brow" (skinning mask) with the map folds, driven by a hinge at the joint brow.
 [[nodiscard]] character::Character MakeHead();
 
-// A square of 2 x 2 m in the plane z = 0, facing +Z, one joint; u along +X, v along -Y. One
-// material of kind skin with the base normal map `base`; texture mask 1 everywhere in the red
-// channel; one wrinkle map a height field of `wrinkles`, each with a region r0, r1, ... fed by the
-// blend shape of that name.
+// A square of 2 x 2 m in the plane z = 0 that faces +Z, with one joint; u along +X, v along -Y. One
+// material of kind skin with the base normal map `base`. The texture mask is 1 everywhere in the
+// red channel. Each height field of `wrinkles` becomes a wrinkle map with a region r0, r1, ...,
+// driven by the blend shape of that name.
 [[nodiscard]] character::Character MakePlane(
     int map_size, const std::function<float(float, float)>& base,
     const std::vector<std::function<float(float, float)>>& wrinkles);
 
-// A subject of the character at rest with named weights: what a FrameRequest needs.
+// A subject of the character at rest with named weights, in the form that a FrameRequest needs.
 struct Subject {
   explicit Subject(const character::Character& character);
-  void Set(const std::string& blend_shape, float value);  // then Solve()
+  void Set(const std::string& blend_shape, float value);  // call Solve() afterwards
   void Solve();
 
   wrinkle::RigBinding binding;

@@ -14,12 +14,13 @@
 #include "render/renderer.h"
 #include "test_character.h"
 
-// What the tests of WrinkleCache share: what is composed beforehand is what fragments compose.
+// Shared by the tests of WrinkleCache, which compare composed wrinkles with wrinkles evaluated per
+// fragment.
 namespace furrow::render::test {
 
 inline constexpr const char* kShapes[] = {"l_stretch", "l_squash", "r_stretch", "r_squash"};
 
-// How often each pass ran.
+// Counts how often each pass ran.
 class PassCounter final : public FrameGraphObserver {
  public:
   void BeforePass(std::string_view pass) override { ++runs_[std::string(pass)]; }
@@ -30,7 +31,7 @@ class PassCounter final : public FrameGraphObserver {
   std::map<std::string, int> runs_;
 };
 
-// The egg with a base normal map, and maps with colours and cavities.
+// The egg with a base normal map, and wrinkle maps with colours and cavities.
 [[nodiscard]] character::Character HeadWithLooks();
 
 [[nodiscard]] FrameRequest RequestOf(const Subject& subject, const Camera& camera, View view,
@@ -38,7 +39,7 @@ class PassCounter final : public FrameGraphObserver {
 
 struct Difference {
   double mean = 0.0;
-  double share = 0.0;  // of values that are off by more than `much`
+  double share = 0.0;  // share of values that differ by more than `much`
 };
 
 template <class Value>
@@ -57,7 +58,7 @@ template <class Value>
 
 class WrinkleCacheTest : public testing::Test {
  protected:
-  // New weights: of all shapes, or as in a live face of some.
+  // Draws new random weights: of all blend shapes, or of some, as in a live face.
   void Randomise(bool all) {
     std::uniform_real_distribution<float> weight(0.0f, 1.0f);
     for (const char* shape : kShapes) {

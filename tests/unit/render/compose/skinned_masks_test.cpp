@@ -14,13 +14,13 @@ namespace furrow::render {
 namespace {
 
 constexpr int kJoints = 4;
-constexpr int kTexels = 64;  // a side
+constexpr int kTexels = 64;  // per side
 
 SkinnedShare ShareOf(int joint, int column, wrinkle::LambdaMode lambda) {
   return {joint, column, {column, lambda, 0.25f}};
 }
 
-// A sheet that `skin` skins, in a part of the texture.
+// A sheet in a part of the texture, skinned by `skin`.
 character::Mesh Sheet(glm::vec2 low, glm::vec2 high,
                       const std::function<void(float u, float v, character::Vertex*)>& skin) {
   character::Mesh mesh;
@@ -37,7 +37,7 @@ character::Mesh Sheet(glm::vec2 low, glm::vec2 high,
   return mesh;
 }
 
-// From one joint at the left to another at the right.
+// Skin weights that change from one joint on the left to another on the right.
 std::function<void(float, float, character::Vertex*)> Across(std::uint16_t left,
                                                              std::uint16_t right) {
   return [=](float u, float, character::Vertex* vertex) {
@@ -63,7 +63,7 @@ std::vector<ComposeTile> EmptyTiles() {
   return tiles;
 }
 
-// What a texel lets through of a channel, [0, 1].
+// A mask channel at a texel, [0, 1].
 float At(const std::vector<ComposeTile>& tiles, glm::ivec2 texel, std::size_t channel) {
   constexpr int kSide = ComposeTile::kSide;
   for (const ComposeTile& tile : tiles) {
@@ -80,7 +80,7 @@ float At(const std::vector<ComposeTile>& tiles, glm::ivec2 texel, std::size_t ch
   return 0.0f;
 }
 
-// The masks of a mesh's vertices, mixed as a triangle does it, at a place of the texture.
+// The mask of a mesh at a point of the texture, interpolated from its vertices.
 float MaskAt(const character::Mesh& mesh, glm::vec2 uv, const SkinnedShare& share) {
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     const character::Vertex* corners[3];
@@ -107,13 +107,13 @@ float MaskAt(const character::Mesh& mesh, glm::vec2 uv, const SkinnedShare& shar
 
 class SkinnedMasksTest : public testing::TestWithParam<wrinkle::LambdaMode> {};
 
-TEST_P(SkinnedMasksTest, TexelsHaveWhatTrianglesMixOfTheirVertices) {
+TEST_P(SkinnedMasksTest, TexelsMatchInterpolatedVertices) {
   const character::Mesh sheet = Sheet({0.1f, 0.2f}, {0.8f, 0.9f}, Across(1, 2));
   const std::vector<SkinnedShare> shares = {ShareOf(1, 0, GetParam()), ShareOf(3, 0, GetParam()),
                                             ShareOf(2, 0, GetParam())};
   const SkinnedMasks masks = MasksOf({sheet}, shares);
   ASSERT_TRUE(masks.is_unique());
-  ASSERT_EQ(masks.channels().size(), 2u);  // nobody is skinned to joint 3
+  ASSERT_EQ(masks.channels().size(), 2u);  // no vertex is skinned to joint 3
   std::vector<ComposeTile> tiles = EmptyTiles();
   masks.AddTo({kTexels, kTexels}, 5, &tiles);
   int within = 0;
@@ -136,8 +136,8 @@ INSTANTIATE_TEST_SUITE_P(Lambdas, SkinnedMasksTest,
                          testing::Values(wrinkle::LambdaMode::kSmooth, wrinkle::LambdaMode::kBinary,
                                          wrinkle::LambdaMode::kLinear));
 
-// So that filtering finds it at the edge of the surface, and not much further.
-TEST(SkinnedMasks, GoOnBeyondTheSurface) {
+// Masks extend beyond the edge of the surface as far as filtering needs, and not much further.
+TEST(SkinnedMasks, ExtendBeyondTheSurface) {
   const auto all = [](float, float, character::Vertex* vertex) { vertex->joints[0] = 1; };
   const SkinnedMasks masks = MasksOf({Sheet({0.25f, 0.25f}, {0.5f, 0.5f}, all)},
                                      {ShareOf(1, 0, wrinkle::LambdaMode::kLinear)});
@@ -154,8 +154,8 @@ TEST(SkinnedMasks, GoOnBeyondTheSurface) {
   }
 }
 
-// A sleeve each, with one texture.
-TEST(SkinnedMasks, PlacesThatShareATexelMustHaveTheSameMasks) {
+// Two sleeves that share a texture.
+TEST(SkinnedMasks, PointsThatShareATexelMustHaveTheSameMasks) {
   const std::vector<SkinnedShare> shares = {ShareOf(1, 0, wrinkle::LambdaMode::kSmooth),
                                             ShareOf(3, 0, wrinkle::LambdaMode::kSmooth)};
   const glm::vec2 low(0.1f);
@@ -171,10 +171,10 @@ TEST(SkinnedMasks, PlacesThatShareATexelMustHaveTheSameMasks) {
   EXPECT_FALSE(MasksOf({left, mirrored}, shares).is_unique());
   EXPECT_FALSE(MasksOf({left, bare}, shares).is_unique());
   EXPECT_FALSE(MasksOf({left, elsewhere}, shares).is_unique());  // the texture repeats
-  EXPECT_TRUE(MasksOf({left, right}, {}).is_unique());           // no joint raises anything
+  EXPECT_TRUE(MasksOf({left, right}, {}).is_unique());           // no joint raises a mask
 }
 
-// Whatever the texture looks like.
+// Holds for any texture layout.
 TEST(SkinnedMasks, NoMasksAtAllAreUnique) {
   const character::Mesh repeated = Sheet({0.0f, 0.0f}, {90.0f, 90.0f}, Across(0, 1));
   EXPECT_TRUE(MasksOf({repeated}, {ShareOf(3, 0, wrinkle::LambdaMode::kSmooth)}).is_unique());
@@ -197,14 +197,14 @@ TEST(SkinnedMasks, TooManyMasksOfAVertexStayInTheFragment) {
   EXPECT_TRUE(masks.regions().empty());
 }
 
-TEST(SkinnedMasks, WhatIsALineInTheTextureHasNoPlaceInIt) {
+TEST(SkinnedMasks, TrianglesThatAreLinesInTheTextureAreNotUnique) {
   const std::vector<SkinnedShare> shares = {ShareOf(1, 0, wrinkle::LambdaMode::kLinear)};
   EXPECT_FALSE(MasksOf({Sheet(glm::vec2(0.5f), {0.5f, 0.9f}, Across(0, 1))}, shares).is_unique());
   EXPECT_TRUE(MasksOf({Sheet(glm::vec2(0.5f), {0.5f, 0.9f}, Across(1, 1))}, shares).is_unique());
 }
 
-// A region each, of the triangles that a joint reaches.
-TEST(SkinnedMasks, RegionsAreWhereAJointReaches) {
+// One region for the triangles that each joint affects.
+TEST(SkinnedMasks, RegionsAreTheTrianglesThatAJointAffects) {
   const auto half = [](float u, float, character::Vertex* vertex) {
     vertex->joints[0] = u > 0.6f ? 2 : 0;
   };
@@ -215,7 +215,7 @@ TEST(SkinnedMasks, RegionsAreWhereAJointReaches) {
   const std::vector<glm::mat4> rest(kJoints, glm::mat4(1.0f));
   glm::mat4 projection(1.0f);
   const auto extent = masks.regions()[0].bounds.Look(rest, projection);
-  EXPECT_NEAR(extent.low.x, 0.5f, 1e-5f);  // the last vertex that is not reached
+  EXPECT_NEAR(extent.low.x, 0.5f, 1e-5f);  // the last vertex that is not affected
   EXPECT_NEAR(extent.high.x, 1.0f, 1e-5f);
   EXPECT_NEAR(masks.regions()[0].uv_per_metre, 1.0f, 1e-4f);
 }

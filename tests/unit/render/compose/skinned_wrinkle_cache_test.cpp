@@ -13,7 +13,7 @@
 namespace furrow::render {
 namespace {
 
-// Of masks by skin weights.
+// Tests of the wrinkle cache with masks by skin weights.
 using test::Compare;
 using test::Difference;
 using test::Numbers;
@@ -21,8 +21,8 @@ using test::PassCounter;
 using test::RequestOf;
 using test::WrinkleCacheTest;
 
-// The egg with muscles, so that its regions can be masked by skin weights: on its forehead, which
-// the brow moves, and all around, which the head does.
+// The egg with muscles, so that its regions can be masked by skin weights: the forehead by the brow
+// joint, everything else by the head.
 class SkinnedWrinkleCacheTest : public WrinkleCacheTest {
  protected:
   SkinnedWrinkleCacheTest() {
@@ -53,7 +53,7 @@ class SkinnedWrinkleCacheTest : public WrinkleCacheTest {
     request.settings.wrinkle_maps.cache = cache;
     return request;
   }
-  // How often wrinkles were composed for a frame.
+  // The number of compositions for a frame.
   int Composed(const FrameRequest& request) {
     PassCounter counter;
     renderer_->SetObserver(&counter);
@@ -61,7 +61,7 @@ class SkinnedWrinkleCacheTest : public WrinkleCacheTest {
     renderer_->SetObserver(nullptr);
     return counter.Take("wrinkles");
   }
-  // Normals of a few poses, with the cache and without.
+  // Compares the normals of several poses with and without the cache.
   void ExpectSame(MaskMode mode, int rounds) {
     test::SceneProbe probe(head_);
     for (const int size : {512, 160, 48}) {
@@ -77,7 +77,7 @@ class SkinnedWrinkleCacheTest : public WrinkleCacheTest {
   }
 };
 
-TEST_F(SkinnedWrinkleCacheTest, NormalsAreThoseOfFragmentsInAnyPose) {
+TEST_F(SkinnedWrinkleCacheTest, NormalsMatchFragmentsInAnyPose) {
   ExpectSame(MaskMode::kRig, 6);
   ExpectSame(MaskMode::kDynamic, 6);
 }
@@ -90,7 +90,7 @@ TEST_F(SkinnedWrinkleCacheTest, EveryLambdaIsComposed) {
   }
 }
 
-TEST_F(SkinnedWrinkleCacheTest, LightAndColourAreThoseOfFragments) {
+TEST_F(SkinnedWrinkleCacheTest, LightAndColourMatchFragments) {
   for (int round = 0; round < 4; ++round) {
     Bend();
     FrameRequest request = Request(MaskMode::kDynamic, true);
@@ -108,8 +108,8 @@ TEST_F(SkinnedWrinkleCacheTest, LightAndColourAreThoseOfFragments) {
   }
 }
 
-// What is composed is no longer worked out for vertices.
-TEST_F(SkinnedWrinkleCacheTest, ModesAndViewsTakeTurns) {
+// Vertices carry no masks for composed wrinkles, so every change of mode or view must restore them.
+TEST_F(SkinnedWrinkleCacheTest, ModesAndViewsAlternate) {
   Bend();
   std::map<MaskMode, Image> expected;
   for (const MaskMode mode : {MaskMode::kRig, MaskMode::kTexture, MaskMode::kDynamic}) {
@@ -120,7 +120,7 @@ TEST_F(SkinnedWrinkleCacheTest, ModesAndViewsTakeTurns) {
   for (int round = 0; round < 3; ++round) {
     for (const auto& [mode, whole] : expected) {
       FrameRequest request = Request(mode, true);
-      request.settings.strip.views = {View::kWeights};  // which fragments compose
+      request.settings.strip.views = {View::kWeights};  // fragments evaluate this view
       (void)test::Expect(renderer_->Render(request));
       request.settings.strip.views.clear();
       const Difference difference =
@@ -130,7 +130,7 @@ TEST_F(SkinnedWrinkleCacheTest, ModesAndViewsTakeTurns) {
   }
 }
 
-TEST_F(SkinnedWrinkleCacheTest, AViewThatShowsVerticesMasksHasThem) {
+TEST_F(SkinnedWrinkleCacheTest, AViewOfVertexMasksStillHasThem) {
   Bend();
   FrameRequest request = Request(MaskMode::kRig, true);
   request.settings.view = View::kWeights;
@@ -139,13 +139,13 @@ TEST_F(SkinnedWrinkleCacheTest, AViewThatShowsVerticesMasksHasThem) {
   EXPECT_EQ(test::Expect(renderer_->Render(request)).rgb, weights.rgb);
 }
 
-// Both halves of the egg with one half of the texture.
+// Both halves of the egg use the same half of the texture.
 TEST_F(SkinnedWrinkleCacheTest, MirroredTexturesStayInTheFragment) {
   head_.rig.regions.erase(head_.rig.regions.begin(), head_.rig.regions.begin() + 2);
   for (character::Vertex& vertex : head_.meshes[0].vertices) {
     vertex.uv.x = 0.5f - std::abs(vertex.uv.x - 0.5f);
     const bool left = vertex.position.x > 0.0f;
-    for (int i = 0; left && i < 2; ++i) vertex.joints[i] = 1;  // the brow's is the other half's
+    for (int i = 0; left && i < 2; ++i) vertex.joints[i] = 1;  // the brow's half is the other one
   }
   Rebuild();
   subject_.pose.joints[2].rotation = glm::angleAxis(1.0f, glm::vec3(1, 0, 0));
@@ -158,8 +158,8 @@ TEST_F(SkinnedWrinkleCacheTest, MirroredTexturesStayInTheFragment) {
   EXPECT_NE(test::Expect(renderer_->Render(off)).rgb, picture.rgb);
 }
 
-// Of a ball joint, beside maps that are composed.
-TEST_F(SkinnedWrinkleCacheTest, WhatSlidesStaysInTheFragment) {
+// A sliding mask of a ball joint, next to maps that are composed.
+TEST_F(SkinnedWrinkleCacheTest, SlidingMasksStayInTheFragment) {
   wrinkle::Rig& rig = head_.rig;
   wrinkle::Driver ball;
   ball.name = "roll";

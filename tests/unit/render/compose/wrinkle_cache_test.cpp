@@ -4,6 +4,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
+#include "render/settings/named_settings.h"
 #include "tests/unit/render/scene_probe.h"
 #include "tests/unit/render/wrinkle_cache_scene.h"
 
@@ -18,8 +19,8 @@ using test::PassCounter;
 using test::RequestOf;
 using test::WrinkleCacheTest;
 
-// From near and from far: with the finest level, and with coarser ones.
-TEST_F(WrinkleCacheTest, NormalsAreThoseOfFragmentsForAnyWeights) {
+// Close-ups use the finest level, distant views coarser ones.
+TEST_F(WrinkleCacheTest, NormalsMatchFragmentsForAnyWeights) {
   test::SceneProbe probe(head_);
   for (const int size : {512, 160, 48}) {
     for (int round = 0; round < 6; ++round) {
@@ -28,14 +29,14 @@ TEST_F(WrinkleCacheTest, NormalsAreThoseOfFragmentsForAnyWeights) {
       const std::vector<float> composed = Numbers(probe.Draw(request));
       request.settings.wrinkle_maps.cache = false;
       const Difference difference = Compare(composed, Numbers(probe.Draw(request)), 0.02);
-      // Of a face of 40 pixels, many are at the border of a mask.
+      // In a face of 40 pixels, many pixels are at the border of a mask.
       EXPECT_LT(difference.mean, size > 100 ? 5e-4 : 1e-3) << size << " " << round;
       EXPECT_LT(difference.share, size > 100 ? 2e-3 : 1e-2) << size << " " << round;
     }
   }
 }
 
-TEST_F(WrinkleCacheTest, LightAndColourAreThoseOfFragments) {
+TEST_F(WrinkleCacheTest, LightAndColourMatchFragments) {
   for (const View view : {View::kFinal, View::kAlbedo, View::kSpecular}) {
     for (int round = 0; round < 4; ++round) {
       Randomise(round == 0);
@@ -46,8 +47,8 @@ TEST_F(WrinkleCacheTest, LightAndColourAreThoseOfFragments) {
   }
 }
 
-// A region that moves by too little to be seen, again and again, arrives all the same.
-TEST_F(WrinkleCacheTest, ManySmallMovesAreSeen) {
+// Repeated changes that are too small to be visible one by one must show in sum.
+TEST_F(WrinkleCacheTest, ManySmallChangesAddUp) {
   subject_.Set("l_squash", 0.2f);
   subject_.Solve();
   (void)Draw(true);
@@ -59,7 +60,7 @@ TEST_F(WrinkleCacheTest, ManySmallMovesAreSeen) {
   EXPECT_LT(Compare(Draw(true).rgb, Draw(false).rgb, 6.0).mean, 0.25);
 }
 
-TEST_F(WrinkleCacheTest, WhatIsHeldIsComposedOnce) {
+TEST_F(WrinkleCacheTest, HeldWeightsAreComposedOnce) {
   PassCounter counter;
   renderer_->SetObserver(&counter);
   Randomise(true);
@@ -78,8 +79,8 @@ TEST_F(WrinkleCacheTest, WhatIsHeldIsComposedOnce) {
   renderer_->SetObserver(nullptr);
 }
 
-// Faces that come again, in every order.
-TEST_F(WrinkleCacheTest, FacesThatComeAgainAreThemselves) {
+// The same faces must look the same in any order.
+TEST_F(WrinkleCacheTest, RepeatedFacesLookTheSame) {
   constexpr float kFaces[][4] = {{0.9f, 0.0f, 0.3f, 0.0f}, {0.0f, 0.7f, 0.0f, 1.0f}, {0.4f, 0.4f}};
   const auto set = [&](int face) {
     for (int i = 0; i < 4; ++i) subject_.Set(kShapes[i], kFaces[face][i]);
@@ -97,8 +98,8 @@ TEST_F(WrinkleCacheTest, FacesThatComeAgainAreThemselves) {
   }
 }
 
-// A face at rest has no wrinkles, whatever it had before.
-TEST_F(WrinkleCacheTest, NothingOfAFormerFaceStays) {
+// A face at rest has no wrinkles, whatever was painted before.
+TEST_F(WrinkleCacheTest, NothingRemainsOfAnEarlierFace) {
   const Image rest = Draw(true);
   Randomise(true);
   (void)Draw(true);
@@ -111,8 +112,8 @@ TEST_F(WrinkleCacheTest, NothingOfAFormerFaceStays) {
   EXPECT_EQ(Draw(true).rgb, after.rgb);
 }
 
-// Settings that change how wrinkles look, with weights that are held.
-TEST_F(WrinkleCacheTest, SettingsReachWhatIsComposed) {
+// Settings that change the appearance of wrinkles while weights stay constant.
+TEST_F(WrinkleCacheTest, SettingsAffectComposedWrinkles) {
   Randomise(true);
   (void)Draw(true);
   for (const char* change : {"wrinkle_strength=0.3", "wrinkle_strength=2", "wrinkle_maps.cavity=3",
@@ -127,12 +128,12 @@ TEST_F(WrinkleCacheTest, SettingsReachWhatIsComposed) {
   }
 }
 
-// A region out of sight is painted when it comes into sight, at whatever size.
-TEST_F(WrinkleCacheTest, WhatComesIntoSightIsUpToDate) {
+// An invisible region is painted when it becomes visible, at any size.
+TEST_F(WrinkleCacheTest, RegionsThatBecomeVisibleAreUpToDate) {
   Randomise(true);
   (void)Draw(true);
   const Camera face = camera_;
-  Camera away = face;  // nobody is there
+  Camera away = face;  // looks at nothing
   away.target = away.position + (away.position - face.target);
   Camera near = face;
   near.fov_y_degrees = 6.0f;
@@ -149,9 +150,9 @@ TEST_F(WrinkleCacheTest, WhatComesIntoSightIsUpToDate) {
   }
 }
 
-// One renderer draws for viewers near and far in turn: what is composed for one is not thrown away
-// for the other. Where nobody is near any more, a smaller texture takes its place.
-TEST_F(WrinkleCacheTest, ViewersNearAndFarShareWhatIsComposed) {
+// One renderer draws for near and far viewers in turn. Textures composed for one are kept for the
+// other. When no viewer is near any more, a smaller texture replaces the large one.
+TEST_F(WrinkleCacheTest, NearAndFarViewersShareTextures) {
   Randomise(true);
   Camera far = camera_;
   far.fov_y_degrees = 90.0f;
@@ -172,9 +173,9 @@ TEST_F(WrinkleCacheTest, ViewersNearAndFarShareWhatIsComposed) {
   renderer_->SetObserver(nullptr);
 }
 
-// Whoever is seen from further and further away keeps nothing of how it looked from near by,
-// between two levels of the texture either.
-TEST_F(WrinkleCacheTest, NothingOfAFormerFaceShinesThroughFromFarAway) {
+// When a face is seen from farther and farther away, nothing of its former close-up remains, not
+// even between two levels of the texture.
+TEST_F(WrinkleCacheTest, NothingRemainsOfAnEarlierFaceFromFarAway) {
   const auto set = [&](float all, float last) {
     for (const char* shape : kShapes) subject_.Set(shape, all);
     subject_.Set(kShapes[3], last);
@@ -191,7 +192,7 @@ TEST_F(WrinkleCacheTest, NothingOfAFormerFaceShinesThroughFromFarAway) {
       }
       camera_.fov_y_degrees = fov;
       set(0.002f, 1.0f);
-      (void)Draw(true);  // what is held is composed in any case
+      (void)Draw(true);  // held weights are always composed
       pictures.push_back(Draw(true, View::kNormal));
     }
     const Difference difference = Compare(pictures[0].rgb, pictures[1].rgb, 2.0);
@@ -216,7 +217,7 @@ TEST_F(WrinkleCacheTest, DisplacedSurfacesComposeNothing) {
   renderer_->SetObserver(nullptr);
 }
 
-// What needs every wrinkle by itself composes none; nor do several subjects.
+// Views that need each wrinkle separately compose nothing, and neither do several subjects.
 TEST_F(WrinkleCacheTest, SomeFramesComposeNothing) {
   PassCounter counter;
   renderer_->SetObserver(&counter);

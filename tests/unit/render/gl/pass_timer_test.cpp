@@ -9,7 +9,7 @@
 namespace furrow::render {
 namespace {
 
-TEST(PassTimer, TimesThePassesOfItsFramesInTheirOrder) {
+TEST(PassTimer, TimesThePassesOfAFrameInOrder) {
   const character::Character head = test::MakeHead();
   auto renderer = Renderer::Create(head);
   ASSERT_TRUE(renderer.ok()) << renderer.status().ToString();

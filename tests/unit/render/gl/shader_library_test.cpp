@@ -5,6 +5,7 @@
 
 #include "render/gl/egl_context.h"
 #include "render/passes/scene_draw.h"
+#include "render/settings/named_settings.h"
 
 namespace furrow::render {
 namespace {
@@ -60,7 +61,7 @@ TEST_F(ShaderLibraryTest, AnyNumberOfMasksAndMapsCompiles) {
   }
 }
 
-// Every switch of the skin pipeline's scene, one after the other, for every material and view.
+// Every switch of the skin pipeline's scene shader, one at a time, for every material and view.
 TEST_F(ShaderLibraryTest, EverySkinConfigurationCompiles) {
   using Kind = character::Material::Kind;
   for (const Kind kind : {Kind::kSkin, Kind::kCloth, Kind::kEye, Kind::kHair, Kind::kOther}) {
@@ -90,7 +91,7 @@ TEST_F(ShaderLibraryTest, EverySkinConfigurationCompiles) {
   }
 }
 
-// Facets of every material, and the light that falls on them.
+// The facets of every material, and the shader that lights them.
 TEST_F(ShaderLibraryTest, EveryFacetConfigurationCompiles) {
   using Kind = character::Material::Kind;
   for (int bits = 0; bits < 16; ++bits) {
@@ -115,7 +116,7 @@ TEST_F(ShaderLibraryTest, EveryFacetConfigurationCompiles) {
     for (const char* occlusion : {"OCCLUSION 0", "OCCLUSION 1"}) {
       std::vector<std::string> defines = Defines(SceneDraw::LightShader(settings));
       defines.insert(defines.end(), {occlusion, "SCALE 2"});
-      const Result<GLuint> program = library_.GetFullscreen("light.frag.glsl", defines);
+      const Result<GLuint> program = library_.GetFullscreen("skin/light.frag.glsl", defines);
       ASSERT_TRUE(program.ok()) << setting << "\n" << program.status().ToString();
     }
   }
@@ -139,7 +140,7 @@ TEST_F(ShaderLibraryTest, EveryDisplacedConfigurationCompiles) {
   }
 }
 
-TEST_F(ShaderLibraryTest, EveryCrowdsConfigurationCompiles) {
+TEST_F(ShaderLibraryTest, EveryCrowdConfigurationCompiles) {
   for (int bits = 0; bits < 16; ++bits) {
     SceneShader shader;
     shader.crowd = true;
@@ -169,28 +170,28 @@ TEST_F(ShaderLibraryTest, EveryPoseConfigurationCompiles) {
 
 TEST_F(ShaderLibraryTest, EveryFullscreenConfigurationCompiles) {
   const std::pair<const char*, std::vector<std::string>> shaders[] = {
-      {"composite.frag.glsl", {"SAMPLES 4", "SHOW 0", "TONE_MAP 0", "BLOOM 0"}},
-      {"composite.frag.glsl", {"SAMPLES 1", "SHOW 1", "TONE_MAP 0", "BLOOM 0"}},
-      {"composite.frag.glsl", {"SAMPLES 1", "SHOW 2", "TONE_MAP 0", "BLOOM 1"}},
-      {"composite.frag.glsl", {"SAMPLES 4", "SHOW 2", "TONE_MAP 1", "BLOOM 0"}},
-      {"resolve.frag.glsl", {"SAMPLES 2"}},
-      {"separable.frag.glsl", {}},
-      {"combine.frag.glsl", {}},
-      {"gaussian_sum.frag.glsl", {}},
-      {"burley.frag.glsl", {}},
-      {"gtao.frag.glsl", {"SCALE 1", "SAMPLES 4"}},
-      {"gtao.frag.glsl", {"SCALE 2", "SAMPLES 64"}},
-      {"ssao.frag.glsl", {"SCALE 2", "SAMPLES 12"}},
-      {"occlusion_blur.frag.glsl", {"SCALE 1"}},
-      {"occlusion_blur.frag.glsl", {"SCALE 2"}},
-      {"occlude.frag.glsl", {"SCALE 1"}},
-      {"occlude.frag.glsl", {"SCALE 2"}},
-      {"bloom.frag.glsl", {"BRIGHT 0"}},
-      {"bloom.frag.glsl", {"BRIGHT 1"}},
-      {"show.frag.glsl", {"SHOWN 0"}},
-      {"show.frag.glsl", {"SHOWN 1"}},
-      {"show.frag.glsl", {"SHOWN 2"}},
-      {"fxaa.frag.glsl", {}},
+      {"post/composite.frag.glsl", {"SAMPLES 4", "SHOW 0", "TONE_MAP 0", "BLOOM 0"}},
+      {"post/composite.frag.glsl", {"SAMPLES 1", "SHOW 1", "TONE_MAP 0", "BLOOM 0"}},
+      {"post/composite.frag.glsl", {"SAMPLES 1", "SHOW 2", "TONE_MAP 0", "BLOOM 1"}},
+      {"post/composite.frag.glsl", {"SAMPLES 4", "SHOW 2", "TONE_MAP 1", "BLOOM 0"}},
+      {"scene/resolve.frag.glsl", {"SAMPLES 2"}},
+      {"skin/separable.frag.glsl", {}},
+      {"skin/combine.frag.glsl", {}},
+      {"skin/gaussian_sum.frag.glsl", {}},
+      {"skin/burley.frag.glsl", {}},
+      {"occlusion/gtao.frag.glsl", {"SCALE 1", "SAMPLES 4"}},
+      {"occlusion/gtao.frag.glsl", {"SCALE 2", "SAMPLES 64"}},
+      {"occlusion/ssao.frag.glsl", {"SCALE 2", "SAMPLES 12"}},
+      {"occlusion/occlusion_blur.frag.glsl", {"SCALE 1"}},
+      {"occlusion/occlusion_blur.frag.glsl", {"SCALE 2"}},
+      {"occlusion/occlude.frag.glsl", {"SCALE 1"}},
+      {"occlusion/occlude.frag.glsl", {"SCALE 2"}},
+      {"post/bloom.frag.glsl", {"BRIGHT 0"}},
+      {"post/bloom.frag.glsl", {"BRIGHT 1"}},
+      {"post/show.frag.glsl", {"SHOWN 0"}},
+      {"post/show.frag.glsl", {"SHOWN 1"}},
+      {"post/show.frag.glsl", {"SHOWN 2"}},
+      {"post/fxaa.frag.glsl", {}},
   };
   for (const auto& [fragment, defines] : shaders) {
     const Result<GLuint> program = library_.GetFullscreen(fragment, defines);
@@ -204,34 +205,6 @@ TEST_F(ShaderLibraryTest, EveryFullscreenConfigurationCompiles) {
 
 TEST_F(ShaderLibraryTest, AProgramIsCompiledOnce) {
   EXPECT_EQ(*library_.Get(SceneShader{}), *library_.Get(SceneShader{}));
-}
-
-TEST_F(ShaderLibraryTest, AnErrorCarriesTheDriversLogAndTheFilesName) {
-  constexpr ShaderFile kFiles[] = {{"good.glsl", "void main() { gl_Position = vec4(0.0); }\n"},
-                                   {"part.glsl", "float broken() { return undeclared; }\n"},
-                                   {"bad.glsl", "#include \"part.glsl\"\nvoid main() {}\n"}};
-  const Status status = BuildProgram({"good.glsl", "bad.glsl"}, {}, kFiles).status();
-  EXPECT_EQ(status.code(), StatusCode::kInternal);
-  EXPECT_EQ(status.where(), "bad.glsl");
-  EXPECT_NE(status.what().find("part.glsl"), std::string::npos) << status.what();
-  EXPECT_NE(status.what().find("undeclared"), std::string::npos) << status.what();
-}
-
-TEST(EglContext, AnUnknownDeviceIsRefusedByName) {
-  const Status status = EglContext::Create("gpu9").status();
-  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
-  EXPECT_NE(status.what().find("gpu9"), std::string::npos);
-  EXPECT_EQ(EglContext::Create("9999").status().code(), StatusCode::kInvalidArgument);
-}
-
-TEST(EglContext, TwoContextsOfOneThreadTakeTurns) {
-  auto first = EglContext::Create("");
-  auto second = EglContext::Create("");
-  ASSERT_TRUE(first.ok() && second.ok());
-  EXPECT_TRUE((*first)->MakeCurrent().ok());
-  (*second).reset();
-  EXPECT_TRUE((*first)->MakeCurrent().ok());
-  EXPECT_NE((*first)->description().find("device"), std::string::npos);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ TEST(ShaderLoader, IncludesEachFileOnceAndKeepsLineNumbers) {
   EXPECT_EQ(source->files, (std::vector<std::string>{"main.glsl", "a.glsl", "b.glsl"}));
 }
 
-TEST(ShaderLoader, AMissingFileIsNamedWithThePlaceThatWantsIt) {
+TEST(ShaderLoader, AMissingFileIsReportedWithTheIncludingLine) {
   const Status status = ExpandShader("missing.glsl", {}, kFiles).status();
   EXPECT_EQ(status.code(), StatusCode::kNotFound);
   EXPECT_EQ(status.where(), "missing.glsl:2");
@@ -45,7 +45,7 @@ TEST(ShaderLoader, AnUnquotedIncludeIsAnError) {
   EXPECT_EQ(status.where(), "unquoted.glsl:1");
 }
 
-TEST(ShaderLoader, LogsNameFilesInTheFormsOfMesaAndNvidia) {
+TEST(ShaderLoader, LogsNameFilesInTheFormatsOfMesaAndNvidia) {
   const std::vector<std::string> files = {"main.glsl", "a.glsl"};
   EXPECT_EQ(NameSources("1:12(5): error: x\n0(3) : error C1: y\n7:1: z\nplain", files),
             "a.glsl:12(5): error: x\nmain.glsl(3) : error C1: y\n7:1: z\nplain\n");
@@ -58,7 +58,8 @@ TEST(ShaderLoader, EmbedsEveryShader) {
     EXPECT_TRUE(file.text.starts_with("// SPDX-License-Identifier")) << file.name;
     EXPECT_TRUE(ExpandShader(file.name, {}, EmbeddedShaders()).ok()) << file.name;
   }
-  for (const char* name : {"scene.vert.glsl", "scene.frag.glsl", "composite.frag.glsl"}) {
+  for (const char* name :
+       {"scene/scene.vert.glsl", "scene/scene.frag.glsl", "post/composite.frag.glsl"}) {
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   }
 }

@@ -20,7 +20,7 @@ struct PassData {
 
 class FrameGraphTest : public testing::Test {
  protected:
-  // A pass that reads `in` (if any) and writes a new texture; it notes its name when it runs.
+  // A pass that reads `in` (if any), writes a new texture, and records its name when it runs.
   FrameGraph::Handle AddStep(const std::string& name, std::optional<FrameGraph::Handle> in,
                              const TextureDesc& desc = kSmall) {
     return graph_
@@ -64,13 +64,13 @@ class FrameGraphTest : public testing::Test {
   std::vector<TextureId> ids_;
 };
 
-TEST_F(FrameGraphTest, RunsInTheOrderOfThePipeline) {
+TEST_F(FrameGraphTest, RunsInPipelineOrder) {
   AddSink(AddStep("b", AddStep("a", {})));
   RunAll();
   EXPECT_EQ(ran_, (std::vector<std::string>{"a", "b", "sink"}));
 }
 
-TEST_F(FrameGraphTest, CullsWhatNobodyReads) {
+TEST_F(FrameGraphTest, CullsPassesWithUnreadResults) {
   const FrameGraph::Handle used = AddStep("used", {});
   const FrameGraph::Handle unused = AddStep("unused", {});
   AddStep("reads the unused", unused);
@@ -83,7 +83,7 @@ TEST_F(FrameGraphTest, CullsWhatNobodyReads) {
   EXPECT_EQ(device_.num_created(), 1);
 }
 
-TEST_F(FrameGraphTest, KeepsThePassThatIsDrawnOver) {
+TEST_F(FrameGraphTest, KeepsAPassThatAnotherDrawsOnTopOf) {
   const FrameGraph::Handle first = AddStep("first", {});
   FrameGraph::Handle second;
   graph_.AddPass<PassData>(
@@ -98,7 +98,7 @@ TEST_F(FrameGraphTest, KeepsThePassThatIsDrawnOver) {
   EXPECT_EQ(device_.num_created(), 1);
 }
 
-TEST_F(FrameGraphTest, AnImportedTextureIsReadAsItIs) {
+TEST_F(FrameGraphTest, AnImportedTextureKeepsItsContents) {
   const TextureId mine = device_.CreateTexture(kSmall);
   const FrameGraph::Handle imported = graph_.Import("mine", kSmall, mine);
   AddSink(AddStep("reads", imported));
@@ -106,7 +106,7 @@ TEST_F(FrameGraphTest, AnImportedTextureIsReadAsItIs) {
   EXPECT_EQ(ran_, (std::vector<std::string>{"reads", "sink"}));
   EXPECT_NE(ids_[0], mine);
   for (int frame = 0; frame < 2 * TransientPool::kKeepFrames; ++frame) pool_.EndFrame();
-  EXPECT_EQ(device_.num_alive(), 1);  // it is not the pool's
+  EXPECT_EQ(device_.num_alive(), 1);  // it does not belong to the pool
 }
 
 TEST_F(FrameGraphTest, APassWritesOverAnImportedTexture) {
@@ -128,7 +128,7 @@ TEST_F(FrameGraphTest, APassWritesOverAnImportedTexture) {
   EXPECT_EQ(ran_, (std::vector<std::string>{"over", "sink"}));
 }
 
-TEST_F(FrameGraphTest, TexturesWhoseLivesDoNotMeetShareMemory) {
+TEST_F(FrameGraphTest, TexturesWithDisjointLifetimesShareMemory) {
   AddSink(AddStep("c", AddStep("b", AddStep("a", {}))));
   RunAll();
   ASSERT_EQ(ids_.size(), 3u);
@@ -137,7 +137,7 @@ TEST_F(FrameGraphTest, TexturesWhoseLivesDoNotMeetShareMemory) {
   EXPECT_EQ(device_.num_created(), 2);
 }
 
-TEST_F(FrameGraphTest, OnlyTexturesAlikeShareMemory) {
+TEST_F(FrameGraphTest, OnlyEqualDescriptionsShareMemory) {
   AddSink(AddStep("c", AddStep("b", AddStep("a", {}), kLarge), kSmall));
   RunAll();
   EXPECT_EQ(ids_[0], ids_[2]);
@@ -163,7 +163,7 @@ TEST_F(FrameGraphTest, IdleTexturesAreDestroyedOnce) {
   EXPECT_EQ(device_.num_bad_destroys(), 0);
 }
 
-// Notes what it is told, and how many passes had run by then.
+// Records what the observer receives, and how many passes had run by then.
 class Notes final : public FrameGraphObserver {
  public:
   explicit Notes(const std::vector<std::string>* ran) : ran_(ran) {}
@@ -184,7 +184,7 @@ class Notes final : public FrameGraphObserver {
   const std::vector<std::string>* ran_;
 };
 
-TEST_F(FrameGraphTest, AnObserverSeesEveryPassThatRunsAndWhatItWrote) {
+TEST_F(FrameGraphTest, AnObserverSeesEveryPassAndItsOutput) {
   (void)AddStep("culled", {});
   AddSink(AddStep("a", {}));
   Notes notes(&ran_);
@@ -193,7 +193,7 @@ TEST_F(FrameGraphTest, AnObserverSeesEveryPassThatRunsAndWhatItWrote) {
                                                    "before sink 1", "after sink 2"}));
 }
 
-TEST_F(FrameGraphTest, ReadingWhatNobodyWroteIsAnError) {
+TEST_F(FrameGraphTest, ReadingAnUnwrittenTextureIsAnError) {
   graph_.AddPass<PassData>(
       "early",
       [&](FrameGraph::Builder& builder, PassData&) {

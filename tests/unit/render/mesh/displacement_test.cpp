@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces moved by height maps, against formulas: depth, outline, seam, shadow and normals.
+// Surfaces moved by height maps, compared with formulas: depth, outline, seam, shadow and normals.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,9 +19,9 @@ namespace furrow::render {
 namespace {
 
 constexpr int kSize = 192;
-constexpr int kCells = 20;  // a side of the sheet
+constexpr int kCells = 20;  // per side of the sheet
 constexpr float kTwoPi = glm::two_pi<float>();
-constexpr float kNothing = 1e5f;  // metres: beyond is background
+constexpr float kNothing = 1e5f;  // metres; anything farther is background
 
 float Waves(float u, float) { return 40.0f * std::sin(2.0f * kTwoPi * u); }  // millimetres
 
@@ -39,8 +39,8 @@ void SetHeights(const std::function<float(float, float)>& millimetres,
   for (wrinkle::WrinkleMap& map : character->rig.wrinkle_maps) map.height = "heights";
 }
 
-// A square of 1 x 1 m in the plane z = 0 in kCells x kCells quads; u along +X, v along -Y. One map
-// with these heights and no slopes, masked everywhere, raised by the blend shape r0.
+// A square of 1 x 1 m in the plane z = 0 of kCells x kCells quads; u along +X, v along -Y. It has
+// one map with the given heights and no slopes, masked everywhere, driven by the blend shape r0.
 character::Character MakeSheet(const std::function<float(float, float)>& millimetres) {
   const auto flat = [](float, float) { return 0.0f; };
   character::Character sheet = test::MakePlane(4, flat, {flat});
@@ -67,7 +67,8 @@ character::Character MakeSheet(const std::function<float(float, float)>& millime
   return sheet;
 }
 
-// The tests' egg, its seam and its poles closed to the bit, as an artist's mesh is.
+// The tests' egg with bit-identical positions along its seam and at its poles, as in an artist's
+// mesh.
 character::Character MakeEgg() {
   constexpr std::size_t kColumns = 49;
   character::Character egg = test::MakeHead();
@@ -84,7 +85,7 @@ character::Character MakeEgg() {
   return egg;
 }
 
-// Keeps the depth that the scene pass leaves: metres along the camera's axis, rows from the bottom.
+// Keeps the depth of the scene pass: metres along the camera's axis, rows from the bottom.
 class DepthWatcher : public FrameGraphObserver {
  public:
   void BeforePass(std::string_view) override {}
@@ -133,7 +134,7 @@ class Displacement : public testing::Test {
     request_.camera.target = target;
     request_.camera.fov_y_degrees = fov;
   }
-  // Tangent of the angle from the camera's axis to a pixel's middle.
+  // Tangent of the angle between the camera's axis and the centre of a pixel.
   [[nodiscard]] float Slope(int pixel) const {
     const float half = std::tan(glm::radians(0.5f * request_.camera.fov_y_degrees));
     return (2.0f * (static_cast<float>(pixel) + 0.5f) / kSize - 1.0f) * half;
@@ -146,7 +147,7 @@ class Displacement : public testing::Test {
   FrameRequest request_;
 };
 
-// Depth where a ray from (0, 0, 2) along (slope, ., -1) meets the waves.
+// Depth where a ray from (0, 0, 2) along (slope, ., -1) hits the waves.
 float ExpectedDepth(float slope, float weight) {
   float depth = 2.0f;
   for (int i = 0; i < 50; ++i) {
@@ -155,7 +156,7 @@ float ExpectedDepth(float slope, float weight) {
   return depth;
 }
 
-TEST_F(Displacement, TheSurfaceStandsWhereTheHeightsSay) {
+TEST_F(Displacement, TheSurfaceIsWhereTheHeightsSay) {
   Make(MakeSheet(Waves));
   LookFrom({0.0f, 0.0f, 2.0f}, glm::vec3(0.0f), 24.0f);
   for (const float weight : {1.0f, 0.5f, 0.0f}) {
@@ -176,8 +177,8 @@ TEST_F(Displacement, TheSurfaceStandsWhereTheHeightsSay) {
   EXPECT_NEAR(watcher_.At(130, 90), 2.0f, 1e-5f);
 }
 
-// Along the sheet, from below: what was a line has the waves' profile.
-TEST_F(Displacement, TheOutlineFolds) {
+// Seen along the sheet from below, the outline has the profile of the waves.
+TEST_F(Displacement, TheOutlineShowsTheFolds) {
   Make(MakeSheet(Waves));
   LookFrom({0.0f, -6.0f, 0.0f}, glm::vec3(0.0f, 0.0f, 0.0f), 8.0f);
   const auto thickness = [&](int x) {
@@ -192,7 +193,7 @@ TEST_F(Displacement, TheOutlineFolds) {
   (void)Draw("r0", 1.0f);
   int compared = 0;
   for (int x = 30; x < kSize - 30; ++x) {
-    // Of all rows of the sheet, from the near ones to the far, the highest and the deepest show.
+    // The visible outline is the highest and lowest point over all rows of the sheet.
     float high = 0.0f;
     float low = 0.0f;
     for (float away = 5.55f; away < 6.46f; away += 0.05f) {
@@ -207,7 +208,7 @@ TEST_F(Displacement, TheOutlineFolds) {
   EXPECT_GT(compared, 100);
 }
 
-// The egg's atlas ends at its back, where the heights leap by 8 mm: nothing gapes.
+// The egg's texture ends at its back, where the heights change by 8 mm. There must be no gap.
 TEST_F(Displacement, ASeamStaysClosed) {
   character::Character egg = MakeEgg();
   for (character::Picture& picture : egg.pictures) {
@@ -259,8 +260,8 @@ TEST_F(Displacement, RidgesCastShadows) {
   EXPECT_GT(dark(), 500);
 }
 
-// The derivative maps turn normals from the surface at rest; heights without slopes turn nothing.
-TEST_F(Displacement, NormalsAreThoseOfTheDerivativeMaps) {
+// Derivative maps tilt the normals of the undisplaced surface. Heights without slopes tilt nothing.
+TEST_F(Displacement, NormalsComeFromTheDerivativeMaps) {
   Make(MakeSheet(Waves));
   LookFrom({0.0f, 0.0f, 2.0f}, glm::vec3(0.0f), 24.0f);
   request_.settings.view = View::kNormal;
@@ -275,8 +276,8 @@ TEST_F(Displacement, NormalsAreThoseOfTheDerivativeMaps) {
   }
 }
 
-// Both sides of a seam take one side's UVs; borders stay where they are.
-TEST(DisplacementPatches, EveryEdgeAndCornerHasOneOwnerAndBordersStay) {
+// Both sides of a seam use the UV of one side, and borders are not displaced.
+TEST(DisplacementPatches, EveryEdgeAndCornerHasOneOwnerAndBordersAreNotDisplaced) {
   const character::Mesh egg = MakeEgg().meshes[0];
   const DisplacementPatches patches = MakeDisplacementPatches(egg);
   constexpr int kCorners = DisplacementPatches::kCorners;
@@ -286,7 +287,8 @@ TEST(DisplacementPatches, EveryEdgeAndCornerHasOneOwnerAndBordersStay) {
     return std::array{p.x, p.y, p.z};
   };
   using Place = std::array<float, 3>;
-  std::map<std::pair<Place, Place>, std::set<std::uint32_t>> owners;  // of an edge, by its start
+  std::map<std::pair<Place, Place>, std::set<std::uint32_t>> owners;  // per edge, keyed by its
+                                                                      // start and end
   std::map<Place, std::set<std::uint32_t>> corners;
   int borrowed = 0;
   for (std::size_t i = 0; i < patches.indices.size(); i += kCorners) {
@@ -305,12 +307,14 @@ TEST(DisplacementPatches, EveryEdgeAndCornerHasOneOwnerAndBordersStay) {
   }
   EXPECT_GT(borrowed, 20);
   for (const auto& [edge, vertices] : owners) {
-    if (edge.first != edge.second) EXPECT_EQ(vertices.size(), 1u);  // else a pole's
+    if (edge.first != edge.second)
+      EXPECT_EQ(vertices.size(), 1u);  // edges at a pole have no
+                                       // length
   }
   for (const auto& [corner, vertices] : corners) EXPECT_EQ(vertices.size(), 1u);
   EXPECT_EQ(std::ranges::count(patches.shares, 0.0f), 0);
   character::Mesh open = egg;
-  open.indices.resize(open.indices.size() / 2);  // the upper half: its rim is a border
+  open.indices.resize(open.indices.size() / 2);  // the upper half, with a border
   EXPECT_EQ(std::ranges::count(MakeDisplacementPatches(open).shares, 0.0f), 49);
 }
 

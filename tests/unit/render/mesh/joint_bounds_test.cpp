@@ -18,8 +18,9 @@ glm::mat4 LookFrom(const glm::vec3& position) {
 
 bool Everything(const character::Material&) { return true; }
 
-// Every vertex, skinned here, lies within; and the rectangle is not much larger than they need.
-TEST(JointBounds, HoldEverySkinnedVertex) {
+// The boxes contain every vertex, skinned here, and the rectangle is not much larger than
+// necessary.
+TEST(JointBounds, ContainEverySkinnedVertex) {
   const character::Character head = test::MakeHead();
   test::Subject subject(head);
   subject.pose.joints[1].rotation = glm::angleAxis(0.5f, glm::normalize(glm::vec3(1, 2, 0.5f)));
@@ -49,7 +50,7 @@ TEST(JointBounds, HoldEverySkinnedVertex) {
   EXPECT_LT(rect.x1 - rect.x0, 2.0f * (high.x - low.x));
 }
 
-TEST(JointBounds, NothingIsEmptyAndBehindTheCameraIsEverywhere) {
+TEST(JointBounds, NoBoxesAreEmptyAndBoxesBehindTheCameraCoverThePicture) {
   const character::Character head = test::MakeHead();
   const test::Subject subject(head);
   const JointBounds none(head, [](const character::Material&) { return false; });

@@ -19,9 +19,9 @@ glm::vec3 Corner(const character::Mesh& mesh, const MeshLevel& level, std::size_
   return mesh.vertices[level.indices[i]].position;
 }
 
-TEST(MeshLevels, HalveTheTrianglesAndSayHowFarTheyAreOff) {
+TEST(MeshLevels, ReduceTheTrianglesAndStateTheError) {
   const character::Mesh mesh = test::MakeHead().meshes[0];
-  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kStay);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kKeep);
   ASSERT_GE(levels.size(), 3u);
   EXPECT_EQ(levels[0].indices, mesh.indices);
   EXPECT_EQ(levels[0].error, 0.0f);
@@ -34,11 +34,12 @@ TEST(MeshLevels, HalveTheTrianglesAndSayHowFarTheyAreOff) {
   EXPECT_GT(levels[1].error, 0.0f);
 }
 
-// Every corner of every triangle still faces outwards of an egg, and its middle is near its shell.
-TEST(MeshLevels, StayNearTheSurfaceAndTurnNoTriangleOver) {
+// Every corner of every triangle still faces outwards from the egg, and its centre is near the
+// shell.
+TEST(MeshLevels, StayNearTheSurfaceAndFlipNoTriangle) {
   const character::Mesh mesh = test::MakeHead().meshes[0];
   const glm::vec3 centre(0.0f, 1.6f, 0.0f);
-  for (const MeshLevel& level : MakeMeshLevels(mesh, Borders::kStay)) {
+  for (const MeshLevel& level : MakeMeshLevels(mesh, Borders::kKeep)) {
     double squares = 0.0;
     for (std::size_t i = 0; i < level.indices.size(); i += 3) {
       const glm::vec3 a = Corner(mesh, level, i);
@@ -46,8 +47,8 @@ TEST(MeshLevels, StayNearTheSurfaceAndTurnNoTriangleOver) {
       const glm::vec3 c = Corner(mesh, level, i + 2);
       const glm::vec3 cross = glm::cross(b - a, c - a);
       const glm::vec3 middle = (a + b + c) / 3.0f;
-      EXPECT_GE(glm::dot(cross, middle - centre), -1e-9f);  // a pole's have no surface
-      // How far the flat triangle lies below its corners, seen from the middle of the egg.
+      EXPECT_GE(glm::dot(cross, middle - centre), -1e-9f);  // triangles at a pole have no area
+      // Distance of the flat triangle below its corners, as seen from the egg's centre.
       const float shell =
           (glm::length(a - centre) + glm::length(b - centre) + glm::length(c - centre)) / 3.0f;
       squares += std::pow(shell - glm::length(middle - centre), 2.0);
@@ -57,10 +58,10 @@ TEST(MeshLevels, StayNearTheSurfaceAndTurnNoTriangleOver) {
   }
 }
 
-// The seam's two columns of vertices are all still there.
+// Both columns of vertices along the seam are kept.
 TEST(MeshLevels, KeepSeams) {
   const character::Mesh mesh = test::MakeHead().meshes[0];
-  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kStay);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kKeep);
   const std::set<std::uint32_t> left(levels.back().indices.begin(), levels.back().indices.end());
   int on_seam = 0;
   for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -72,7 +73,7 @@ TEST(MeshLevels, KeepSeams) {
   EXPECT_GT(on_seam, 10);
 }
 
-// Strips of `segments` quads each, bent to a quarter of a circle, side by side: as hair is.
+// Adjacent strips of `segments` quads each, bent to a quarter of a circle, like hair.
 constexpr float kRadius = 0.25f;  // metres
 character::Mesh Strips(int count, int segments) {
   character::Mesh mesh;
@@ -93,12 +94,12 @@ character::Mesh Strips(int count, int segments) {
   return mesh;
 }
 
-// Every vertex of a strip lies on its border; its four corners stay, and so does its width.
-TEST(MeshLevels, DrawBordersInAlongThemselves) {
+// Every vertex of a strip is on its border. The four corners and the width of a strip are kept.
+TEST(MeshLevels, SimplifyBordersAlongThemselves) {
   constexpr int kStrips = 40;
   constexpr int kSegments = 12;
   const character::Mesh mesh = Strips(kStrips, kSegments);
-  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kDrawnIn);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(mesh, Borders::kSimplify);
   ASSERT_GE(levels.size(), 4u);
   for (const MeshLevel& level : levels) {
     const std::set<std::uint32_t> left(level.indices.begin(), level.indices.end());
@@ -108,7 +109,7 @@ TEST(MeshLevels, DrawBordersInAlongThemselves) {
         EXPECT_TRUE(left.contains(first + corner)) << strip << ' ' << corner;
       }
     }
-    // What lies between arc and chord of a segment is no more than the error says, by its mean.
+    // The mean distance between arc and chord of a segment is within the stated error.
     double furthest = 0.0;
     for (std::size_t i = 0; i < level.indices.size(); ++i) {
       const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
@@ -120,8 +121,8 @@ TEST(MeshLevels, DrawBordersInAlongThemselves) {
   EXPECT_LT(levels[2].error, 0.005f);
 }
 
-// As two meshes share it, which are simplified each by itself: without a crack.
-TEST(MeshLevels, KeepBordersThatMayBeShared) {
+// Two meshes share a border and are simplified separately; there must be no crack.
+TEST(MeshLevels, KeepSharedBorders) {
   character::Mesh sheet;
   test::AddGrid(
       20, 20,
@@ -131,7 +132,7 @@ TEST(MeshLevels, KeepBordersThatMayBeShared) {
         return vertex;
       },
       &sheet);
-  const std::vector<MeshLevel> levels = MakeMeshLevels(sheet, Borders::kStay);
+  const std::vector<MeshLevel> levels = MakeMeshLevels(sheet, Borders::kKeep);
   ASSERT_GE(levels.size(), 3u);
   const std::set<std::uint32_t> left(levels.back().indices.begin(), levels.back().indices.end());
   for (std::uint32_t i = 0; i < sheet.vertices.size(); ++i) {
@@ -141,15 +142,16 @@ TEST(MeshLevels, KeepBordersThatMayBeShared) {
   }
 }
 
-// Neither many vertices in one place nor many triangles at one vertex take long, each of 200,000.
-TEST(MeshLevels, TakeNoLongerForWhatLiesTogether) {
+// Inputs of 200,000 elements that must not take quadratic time: many vertices at one position, and
+// many triangles around one vertex.
+TEST(MeshLevels, StayFastWithManyElementsInOnePlace) {
   constexpr std::uint32_t kMany = 200'000;
   character::Mesh heap;
   heap.vertices.resize(kMany);
   for (std::uint32_t i = 0; i + 2 < kMany; i += 3) {
     heap.indices.insert(heap.indices.end(), {i, i + 1, i + 2});
   }
-  EXPECT_EQ(MakeMeshLevels(heap, Borders::kDrawnIn).size(), 1u);
+  EXPECT_EQ(MakeMeshLevels(heap, Borders::kSimplify).size(), 1u);
   character::Mesh fan;
   fan.vertices.resize(kMany + 1);
   for (std::uint32_t i = 0; i < kMany; ++i) {
@@ -157,15 +159,15 @@ TEST(MeshLevels, TakeNoLongerForWhatLiesTogether) {
     fan.vertices[i + 1].position = {std::sin(angle), std::cos(angle), 0.0};
     fan.indices.insert(fan.indices.end(), {0, i + 1, 1 + (i + 1) % kMany});
   }
-  for (const Borders borders : {Borders::kStay, Borders::kDrawnIn}) {
+  for (const Borders borders : {Borders::kKeep, Borders::kSimplify}) {
     EXPECT_EQ(MakeMeshLevels(fan, borders).size(), 1u);
   }
 }
 
-TEST(MeshLevels, OfNothingAndOfLittleAreTheMeshAlone) {
-  EXPECT_EQ(MakeMeshLevels({}, Borders::kStay).size(), 1u);
+TEST(MeshLevels, EmptyAndSmallMeshesHaveOneLevel) {
+  EXPECT_EQ(MakeMeshLevels({}, Borders::kKeep).size(), 1u);
   const character::Mesh plane = test::MakePlane(4, [](float, float) { return 0.0f; }, {}).meshes[0];
-  EXPECT_EQ(MakeMeshLevels(plane, Borders::kStay).size(), 1u);
+  EXPECT_EQ(MakeMeshLevels(plane, Borders::kKeep).size(), 1u);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ constexpr int kSize = 192;
 class LightPassTest : public testing::Test {
  protected:
   LightPassTest() {
-    // Every kind of material that light treats in its own way.
+    // All kinds of material that the lighting distinguishes.
     for (std::size_t i = 0; i < head_.materials.size(); ++i) {
       if (i % 2 == 1) head_.materials[i].kind = character::Material::Kind::kCloth;
     }
@@ -54,8 +54,8 @@ class LightPassTest : public testing::Test {
   std::unique_ptr<Renderer> renderer_;
 };
 
-// One sample a pixel is lit in a pass of its own, four are where they are drawn: but for edges,
-// which the four smooth, the pictures are the same.
+// One sample per pixel is lit in a separate pass; four samples are lit where they are drawn. The
+// pictures agree except at edges, which four samples smooth.
 TEST_F(LightPassTest, OneSampleIsLitLikeFour) {
   for (const View view :
        {View::kFinal, View::kIrradiance, View::kScattered, View::kShadow, View::kSpecular,
@@ -75,7 +75,8 @@ TEST_F(LightPassTest, OneSampleIsLitLikeFour) {
   }
 }
 
-// What light passes on, drawn for all the picture or only where the subject is.
+// The targets of the passes after lighting, drawn for the whole picture or only within the
+// subject's bounds.
 class RestrictedPasses : public LightPassTest {
  protected:
   struct Where {
@@ -144,7 +145,7 @@ class RestrictedPasses : public LightPassTest {
   Fullscreen fullscreen_{&shaders_, &device_};
 };
 
-TEST_F(RestrictedPasses, EqualThoseOfTheWholePicture) {
+TEST_F(RestrictedPasses, MatchUnrestrictedPasses) {
   for (const SubsurfaceMethod method :
        {SubsurfaceMethod::kSeparable, SubsurfaceMethod::kGaussians, SubsurfaceMethod::kBurley}) {
     FrameRequest request = Request(View::kFinal, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wrinkles are normals alone: ambient occlusion must see them all the same.
+// Wrinkles change normals only, and ambient occlusion must still respond to them.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +16,7 @@ constexpr float kFoldHalfWidth = 0.02f;  // of the texture; 40 mm
 
 float Flat(float, float) { return 0.0f; }
 
-// A furrow along v with flanks of 60 degrees.
+// A fold along v with flanks of 60 degrees.
 float DeepFold(float u, float) {
   const float slope = std::sqrt(3.0f);
   return slope * std::min(std::abs(u - 0.5f) - kFoldHalfWidth, 0.0f);
@@ -24,7 +24,7 @@ float DeepFold(float u, float) {
 
 class OcclusionNormals : public testing::TestWithParam<OcclusionSettings> {
  protected:
-  // How open columns of the picture are, [0, 1], whose width is 160 mm.
+  // Draws openness, [0, 1], in a picture 160 mm wide.
   [[nodiscard]] static Image Draw(const character::Character& plane, float wrinkle_weight) {
     const std::unique_ptr<Renderer> renderer = test::Expect(Renderer::Create(plane));
     test::Subject subject(plane);
@@ -44,7 +44,7 @@ class OcclusionNormals : public testing::TestWithParam<OcclusionSettings> {
     request.settings.anti_aliasing.samples = 1;
     return test::Expect(renderer->Render(request));
   }
-  // Mean over the columns [from, to), in millimetres from the picture's middle.
+  // Mean over the columns [from, to), in millimetres from the picture's centre.
   [[nodiscard]] static double Open(const Image& image, double from_mm, double to_mm) {
     const auto column = [](double mm) { return static_cast<int>(kSize * (0.5 + mm / 160.0)); };
     double sum = 0.0;
@@ -58,19 +58,19 @@ class OcclusionNormals : public testing::TestWithParam<OcclusionSettings> {
   }
 };
 
-// Over a flat surface a normal that leans by an angle a sees (1 + cos a) / 2 of its sky.
-TEST_P(OcclusionNormals, AFoldsFlanksSeeLessSky) {
+// Above a flat surface, a normal tilted by an angle a sees (1 + cos a) / 2 of its sky.
+TEST_P(OcclusionNormals, TheFlanksOfAFoldSeeLessSky) {
   const character::Character plane = test::MakePlane(512, Flat, {DeepFold});
   const Image folded = Draw(plane, 1.0f);
   EXPECT_NEAR(Open(folded, -32.0, -8.0), 0.75, 0.03);
   EXPECT_NEAR(Open(folded, 8.0, 32.0), 0.75, 0.03);
   EXPECT_GT(Open(folded, -75.0, -48.0), 0.97);
   EXPECT_GT(Open(folded, 48.0, 75.0), 0.97);
-  // As deep as its weight says: half the slope is 40.9 degrees.
+  // At half the weight, the slope is halved to 40.9 degrees.
   EXPECT_NEAR(Open(Draw(plane, 0.5f), 8.0, 32.0), 0.878, 0.03);
 }
 
-TEST_P(OcclusionNormals, AFoldOfWeight0HidesNothing) {
+TEST_P(OcclusionNormals, AFoldOfWeight0OccludesNothing) {
   const Image at_rest = Draw(test::MakePlane(512, Flat, {DeepFold}), 0.0f);
   EXPECT_EQ(at_rest.rgb, Draw(test::MakePlane(512, Flat, {Flat}), 1.0f).rgb);
   EXPECT_GT(Open(at_rest, -75.0, 75.0), 0.97);

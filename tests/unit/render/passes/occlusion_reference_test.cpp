@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ambient occlusion of the real renderer against rays on the CPU: a sphere on a plane.
+// The renderer's ambient occlusion compared with rays on the CPU: a sphere on a plane.
 #include <algorithm>
 #include <cmath>
 #include <ostream>
@@ -21,9 +21,10 @@ using test::SphereOnPlane;
 
 constexpr int kSize = 160;
 constexpr double kPlaneSize = 0.6;
-// Half of it above the plane: nothing that hides the sky is hidden from the camera.
+// Half of the sphere is above the plane. The camera sees everything that occludes.
 constexpr SphereOnPlane kDome{{0.0, 0.0, 0.0}, 0.08};
-// Resting on the plane: what hangs over it is what the camera does not see.
+// A sphere that rests on the plane. The camera does not see its overhanging part, which occludes
+// too.
 constexpr SphereOnPlane kBall{{0.0, 0.08, 0.0}, 0.08};
 
 Camera AboveThePlane() {
@@ -36,13 +37,13 @@ Camera AboveThePlane() {
 
 struct OcclusionError {
   double mean = 0.0;
-  double most = 0.0;  // 95 pixels of a hundred are off by less
+  double most = 0.0;  // 95th percentile of the errors
   double worst = 0.0;
-  double open_mean = 0.0;  // where nothing is near
+  double open_mean = 0.0;  // far from any occluder
   int texels = 0;
 };
 
-// Of pixels spread evenly, but for those within two of an edge of the picture's depth.
+// Errors over evenly spaced pixels, without those within two pixels of a depth discontinuity.
 OcclusionError ErrorOf(const Image& image, const SphereOnPlane& scene, double radius) {
   OcclusionError error;
   std::vector<double> differences;
@@ -50,7 +51,7 @@ OcclusionError ErrorOf(const Image& image, const SphereOnPlane& scene, double ra
   const int size = image.width;
   const int step = 3 * size / kSize;
   const Camera camera = AboveThePlane();
-  // As the shaders fade surfaces out towards the radius.
+  // Fades occluders towards the radius like the shaders.
   const auto hides = [radius](double distance) {
     return std::clamp(1.5 - 1.5 * distance * distance / (radius * radius), 0.0, 1.0);
   };
@@ -90,7 +91,7 @@ OcclusionError ErrorOf(const Image& image, const SphereOnPlane& scene, double ra
   return error;
 }
 
-// What is looked at: so many pixels a side, and surfaces within so many millimetres.
+// A view: picture size in pixels per side, and visible width in millimetres.
 struct Look {
   int size;
   float radius_mm;
@@ -148,8 +149,8 @@ TEST_P(OcclusionReference, SphereOnPlane) {
   }
 }
 
-// More pixels show the same: the radius is in millimetres, however many pixels it is.
-TEST_P(OcclusionReference, TheResolutionChangesNothing) {
+// The result does not depend on the resolution, because the radius is in millimetres.
+TEST_P(OcclusionReference, IsIndependentOfTheResolution) {
   const auto hidden = [this](int size, float radius_mm) {
     const Image image = Draw(size, radius_mm);
     double sum = 0.0;

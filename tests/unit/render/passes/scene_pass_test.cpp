@@ -6,6 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
+#include "render/request/camera_preset.h"
 #include "tests/unit/render/scene_probe.h"
 #include "tests/unit/render/test_character.h"
 #include "wrinkle/weights/vertex_influence.h"
@@ -29,7 +30,7 @@ FrameRequest RequestOf(const test::Subject& subject, View view) {
 
 Camera FaceOf(const character::Character& character) { return CameraPresets(character)[0].second; }
 
-// A camera that puts texel (x, y) of a plane's kSize maps on pixel (x, kSize - 1 - y).
+// A camera that maps texel (x, y) of a plane's kSize maps to pixel (x, kSize - 1 - y).
 Camera OverPlane() {
   Camera camera;
   camera.fov_y_degrees = 30.0f;
@@ -38,7 +39,7 @@ Camera OverPlane() {
   return camera;
 }
 
-// Heights with slopes up to about 0.5, and their gradient by u and v.
+// Heights with slopes of up to about 0.5, and their gradient by u and v.
 struct Wave {
   float cycles_u;
   float cycles_v;
@@ -58,7 +59,7 @@ constexpr Wave kSecond{0, 3, 0.01f};
 
 character::Character WavyPlane() { return test::MakePlane(kSize, kBase, {kFirst, kSecond}); }
 
-// The unit normal of the superposed heights, in a tangent space whose y is up in the picture.
+// Unit normal of the sum of both height fields, in a tangent space with y up in the picture.
 glm::dvec3 NormalOf(double u, double v, double first, double second) {
   const glm::dvec2 gradient =
       kBase.Gradient(u, v) + first * kFirst.Gradient(u, v) + second * kSecond.Gradient(u, v);
@@ -89,7 +90,7 @@ TEST(ScenePass, PartialDerivativesGiveTheNormalOfTheSummedHeights) {
   EXPECT_LT(worst, 1e-3);
 }
 
-TEST(ScenePass, TheTangentSpaceBlendIsThatOfTheFormula) {
+TEST(ScenePass, TheTangentSpaceBlendMatchesTheFormula) {
   const character::Character plane = WavyPlane();
   test::SceneProbe probe(plane);
   test::Subject subject(plane);
@@ -148,8 +149,8 @@ TEST(ScenePass, WeightZeroGivesExactlyTheBase) {
   EXPECT_NE(probe.Draw(full), expected);
 }
 
-// The same picture from a character whose vertices were skinned here.
-TEST(ScenePass, SkinningOnTheGpuIsSkinningOnTheCpu) {
+// A character with vertices skinned here gives the same picture.
+TEST(ScenePass, GpuSkinningMatchesCpuSkinning) {
   const character::Character head = test::MakeHead();
   test::Subject subject(head);
   subject.pose.joints[1].rotation = glm::angleAxis(0.4f, glm::normalize(glm::vec3(1, 2, 0.5f)));
@@ -185,10 +186,11 @@ TEST(ScenePass, SkinningOnTheGpuIsSkinningOnTheCpu) {
     if (glm::length(glm::vec3(on_cpu[i])) > 0.0f) ++covered;
   }
   EXPECT_GT(covered, kSize * kSize / 4);
-  EXPECT_LE(different, 4);  // pixels on an edge may fall to either side
+  EXPECT_LE(different, 4);  // pixels on an edge may belong to either side
 }
 
-// Each triangle of this egg has one skinning for its three corners, so its mask is one number.
+// An egg where the three corners of each triangle have the same skin weights, so that a triangle
+// has a single mask value.
 character::Character FacetedHead() {
   character::Character head = test::MakeHead();
   character::Mesh& mesh = head.meshes[0];
@@ -209,7 +211,7 @@ character::Character FacetedHead() {
 
 class DynamicMask : public testing::TestWithParam<wrinkle::LambdaMode> {};
 
-TEST_P(DynamicMask, EqualsTheReferenceOnTheCpu) {
+TEST_P(DynamicMask, MatchesTheCpuReference) {
   character::Character head = FacetedHead();
   head.rig.regions[2].mask.lambda = GetParam();
   test::SceneProbe probe(head);
@@ -237,7 +239,8 @@ TEST_P(DynamicMask, EqualsTheReferenceOnTheCpu) {
         vertices[i].joints, vertices[i].skin_weights, probe.tables().influences(),
         probe.tables().mask_columns(), mask.column, GetParam(), 0.25f);
     const float drawn = pixels[static_cast<std::size_t>(y * kSize + x)].b / map.colour.b;
-    // Triangles smaller than a pixel may miss its centre; their neighbours' masks are near.
+    // Triangles smaller than a pixel may miss its centre; the masks of their neighbours are
+    // similar.
     EXPECT_NEAR(drawn, expected, GetParam() == wrinkle::LambdaMode::kBinary ? 0.71f : 0.25f);
     if (std::abs(drawn - expected) < 1e-3f) ++compared;
     if (expected > 0.1f) ++masked;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shadows of the real renderer against rays on the CPU: a sphere on a plane.
+// The renderer's shadows compared with rays on the CPU: a sphere on a plane.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -22,10 +22,10 @@ using test::SphereOnPlane;
 
 constexpr int kSize = 256;
 constexpr double kPlaneSize = 0.6;
-// A head's size, a face's distance.
+// As large as a head, at the distance of a portrait.
 constexpr SphereOnPlane kScene{{0.0, 0.08, 0.0}, 0.08};
-// How far a shadow's edge may be off, on the surface: the filter's radius, the normal offset and
-// two texels of the map.
+// Allowed distance of a shadow's edge on the surface, metres: the filter's radius, the normal
+// offset and two texels of the map.
 constexpr double kTolerance = 0.003;
 
 Camera AboveThePlane() {
@@ -42,7 +42,7 @@ bool SeesLamp(const glm::dvec3& point, const glm::dvec3& normal, const LightSour
              : SeesPoint(kScene, point, normal, glm::dvec3(lamp.position));
 }
 
-// A spot lights nothing beyond its cone, and knows no shadows there.
+// A spot lights nothing outside its cone, so there are no shadows either.
 bool Lights(const LightSource& lamp, const glm::dvec3& point) {
   if (lamp.kind != LightKind::kSpot) return true;
   const glm::dvec3 to_light = glm::normalize(glm::dvec3(lamp.position) - point);
@@ -50,7 +50,7 @@ bool Lights(const LightSource& lamp, const glm::dvec3& point) {
          std::cos(glm::radians(static_cast<double>(lamp.cone_degrees)));
 }
 
-// Whether the lamp is seen, where all points within the tolerance agree on it.
+// Whether the point sees the lamp; nullopt if points within the tolerance disagree.
 std::optional<bool> Seen(const test::Hit& hit, const LightSource& lamp) {
   const bool seen = SeesLamp(hit.point, hit.normal, lamp);
   const glm::dvec3 side = glm::normalize(glm::cross(hit.normal, glm::dvec3(0.3, 0.1, 1.0)));
@@ -68,10 +68,10 @@ std::optional<bool> Seen(const test::Hit& hit, const LightSource& lamp) {
   return seen;
 }
 
-// A lamp's shadows against rays, where all points within the tolerance agree.
+// A lamp's shadows compared with rays, where all points within the tolerance agree.
 struct Comparison {
   int light = 0;
-  double height = 0.0;  // sine of the lamp's, over the plane
+  double height = 0.0;  // sine of the lamp's height above the plane
   int lit = 0;
   int dark = 0;
   int wrong = 0;
@@ -98,7 +98,7 @@ Comparison Compare(const FloatPicture& visible, const Camera& camera, int light,
   return found;
 }
 
-// The lamps of a preset that shine.
+// The lamps of a preset with non-zero radiance.
 std::vector<Comparison> CompareLamps(LightPreset preset, const ShadowSettings& shadow) {
   const character::Character scene = test::MakeSphereOnPlane(kScene, kPlaneSize);
   const Camera camera = AboveThePlane();
@@ -131,14 +131,14 @@ TEST_P(ShadowReference, SphereOnPlane) {
   for (const Comparison& found : CompareLamps(GetParam(), shadow)) {
     EXPECT_GT(found.lit, 5000);
     EXPECT_GT(found.dark, 2000);
-    // Of the pixels further than kTolerance from an edge, not one in a thousand is wrong.
+    // At most one in a thousand pixels farther than kTolerance from an edge is wrong.
     EXPECT_LE(found.wrong, (found.lit + found.dark) / 1000) << "lamp " << found.light;
   }
 }
 
-// Maps of no more texels than this picture can show are no worse than large ones: no surface shades
-// itself, no shadow comes loose, sharp or soft.
-TEST_P(ShadowReference, FittedMapsAreNoWorse) {
+// Maps with only as many texels as the picture can show are as good as large ones: no
+// self-shadowing, and no detached shadows, sharp or soft.
+TEST_P(ShadowReference, FittedMapsAreAsAccurate) {
   for (const float softness_mm : {0.5f, 3.0f}) {
     ShadowSettings shadow;
     shadow.softness_mm = softness_mm;
@@ -147,8 +147,8 @@ TEST_P(ShadowReference, FittedMapsAreNoWorse) {
     shadow.fit = true;
     const std::vector<Comparison> fitted = CompareLamps(GetParam(), shadow);
     for (std::size_t i = 0; i < large.size(); ++i) {
-      // What a texel of a pixel's size may move of a sharp edge beyond the tolerance: the lower the
-      // lamp, the further the texel lies over the plane.
+      // A texel as large as a pixel may move a sharp edge beyond the tolerance. The lower the lamp,
+      // the longer the texel is on the plane.
       const double reach = std::max(1.0, 0.33 / large[i].height);
       const double edge = reach * (fitted[i].lit + fitted[i].dark) / 500;
       EXPECT_LE(fitted[i].wrong, large[i].wrong + edge) << "lamp " << large[i].light;

@@ -7,10 +7,10 @@
 namespace furrow::render::test {
 namespace {
 
-// Light and how much skin it came from (w), per texel.
+// Per texel: light, and in w the share of skin that it came from.
 using Field = std::vector<glm::dvec4>;
 
-// What a Gaussian of `sigma` (pixels) leaves in the pixels 0, 1, 2, ... away from its centre.
+// The shares of a Gaussian of `sigma` (pixels) in the pixels 0, 1, 2, ... away from its centre.
 std::vector<double> PixelShares(double sigma) {
   const auto cumulative = [&](double x) { return 0.5 * std::erfc(-x / (sigma * std::sqrt(2.0))); };
   std::vector<double> shares;
@@ -20,7 +20,7 @@ std::vector<double> PixelShares(double sigma) {
   return shares;
 }
 
-// Convolves `lines` lines of `length` texels, `step` apart, that start `stride` apart.
+// Convolves `lines` lines of `length` texels. Texels are `step` apart in memory, lines `stride`.
 void ConvolveLines(const std::vector<double>& shares, int lines, int stride, int length, int step,
                    Field* field) {
   const int reach = static_cast<int>(shares.size()) - 1;

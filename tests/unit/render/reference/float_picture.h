@@ -9,7 +9,7 @@
 
 namespace furrow::render::test {
 
-// Linear values, rows from the bottom, as OpenGL has them.
+// Linear values, rows from the bottom, as in OpenGL.
 struct FloatPicture {
   int width = 0;
   int height = 0;
@@ -31,14 +31,14 @@ struct FloatPicture {
   }
 };
 
-// How far a picture is from its reference, per channel.
+// The difference of a picture from its reference, per channel.
 struct PictureError {
   glm::dvec3 rmse{0.0};
   glm::dvec3 worst{0.0};
   std::size_t texels = 0;
 };
 
-// Over the texels of `[margin, size - margin)` where the reference's alpha is above 0.5.
+// Compares the texels of `[margin, size - margin)` where the reference's alpha is above 0.5.
 [[nodiscard]] PictureError Compare(const FloatPicture& picture, const FloatPicture& reference,
                                    int margin);
 

@@ -12,7 +12,7 @@ namespace furrow::render::test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kLift = 1e-7;  // metres; keeps a surface from hiding itself
+constexpr double kLift = 1e-7;  // metres; prevents self-intersection
 
 double SphereDistance(const SphereOnPlane& scene, const glm::dvec3& origin,
                       const glm::dvec3& direction) {
@@ -59,7 +59,8 @@ double Openness(const SphereOnPlane& scene, const glm::dvec3& point, const glm::
   const double golden_angle = glm::pi<double>() * (3.0 - std::sqrt(5.0));
   double open = 0.0;
   for (int i = 0; i < rays; ++i) {
-    // Points spread evenly over the unit disc, lifted to the hemisphere: cosine-weighted (Malley).
+    // Evenly distributed points of the unit disc, lifted to the hemisphere: cosine-weighted
+    // (Malley).
     const double share = (i + 0.5) / rays;
     const double radius = std::sqrt(share);
     const glm::dvec3 direction = radius * std::cos(golden_angle * i) * tangent +

@@ -7,26 +7,27 @@
 
 namespace furrow::render::test {
 
-// A sphere over the plane y = 0, which reaches to infinity; metres.
+// A sphere over the infinite plane y = 0; metres.
 struct SphereOnPlane {
   glm::dvec3 centre{0.0};
   double radius = 1.0;
 };
 
-// Distance along a ray (unit direction) to the first surface, infinite when there is none.
+// Distance along a ray (unit direction) to the first surface; infinite if there is none.
 [[nodiscard]] double RayDistance(const SphereOnPlane& scene, const glm::dvec3& origin,
                                  const glm::dvec3& direction);
 
-// Whether the way from a point of a surface to a distant light (unit direction towards it) is free.
+// Returns true if the path from a surface point to a distant light (unit direction towards it) is
+// free.
 [[nodiscard]] bool SeesLight(const SphereOnPlane& scene, const glm::dvec3& point,
                              const glm::dvec3& normal, const glm::dvec3& to_light);
 
-// ... to a lamp at `lamp`; what stands behind it hides nothing.
+// The same for a lamp at `lamp`. Surfaces behind the lamp do not block it.
 [[nodiscard]] bool SeesPoint(const SphereOnPlane& scene, const glm::dvec3& point,
                              const glm::dvec3& normal, const glm::dvec3& lamp);
 
-// Share of the cosine-weighted hemisphere over a point of a surface that is open, by `rays` rays.
-// `hides`: how much of a ray a surface takes at a distance in metres, [0, 1].
+// Open share of the cosine-weighted hemisphere above a surface point, estimated with `rays` rays.
+// `hides`: share of a ray that a surface at a distance in metres blocks, [0, 1].
 [[nodiscard]] double Openness(const SphereOnPlane& scene, const glm::dvec3& point,
                               const glm::dvec3& normal, const std::function<double(double)>& hides,
                               int rays);

@@ -18,7 +18,7 @@ using character::Material;
 using character::Mesh;
 using character::Vertex;
 
-constexpr float kCardFovDegrees = 8.0f;  // nearly parallel rays: N.V is 1 but for 0.3%
+constexpr float kCardFovDegrees = 8.0f;  // nearly parallel rays: N.V is within 0.3% of 1
 
 Character OneJoint(const std::string& name) {
   Character character;
@@ -38,7 +38,7 @@ int AddMaterial(Character* character, Material::Kind kind, float albedo) {
   return static_cast<int>(character->materials.size()) - 1;
 }
 
-// `corner`, `across` and `up` span it; it faces across x up.
+// A quad spanned by `corner`, `across` and `up`, facing across x up.
 Mesh Quad(int material, const glm::vec3& corner, const glm::vec3& across, const glm::vec3& up) {
   Mesh mesh;
   mesh.name = "quad" + std::to_string(material);

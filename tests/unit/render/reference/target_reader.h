@@ -10,15 +10,16 @@
 
 namespace furrow::render::test {
 
-// Reads what a frame's passes leave in their targets, in floats: Renderer::SetObserver(). Targets
-// with several samples are not read: ask for one (Settings::anti_aliasing).
+// Reads the targets that a frame's passes write, as floats; install it with
+// Renderer::SetObserver(). It does not read multisampled targets, so request one sample
+// (Settings::anti_aliasing).
 class TargetReader final : public FrameGraphObserver {
  public:
   void BeforePass(std::string_view) override {}
   void AfterPass(std::string_view pass, const std::vector<Written>& written) override;
 
-  // As the last pass that wrote the texture left it. Throws std::out_of_range, which fails the
-  // test, when nobody did.
+  // The texture as its last pass left it. Throws std::out_of_range, which fails the test, if no
+  // pass wrote it.
   [[nodiscard]] const FloatPicture& Target(const std::string& name) const;
   [[nodiscard]] bool Has(const std::string& name) const { return targets_.count(name) != 0; }
 
@@ -26,7 +27,7 @@ class TargetReader final : public FrameGraphObserver {
   std::map<std::string, FloatPicture> targets_;
 };
 
-// What one frame of a character leaves in one target. Aborts where there is no OpenGL.
+// Draws one frame of a character and returns one target. Aborts if OpenGL is unavailable.
 [[nodiscard]] FloatPicture DrawTarget(const character::Character& character,
                                       const FrameRequest& request, const std::string& target);
 

@@ -30,7 +30,7 @@ glm::mat4 Spot(int i) {
                     glm::vec3(1.0f - 0.05f * static_cast<float>(i)));
 }
 
-// All of the three, with room between them.
+// Shows all three subjects, with space between them.
 Camera OverAll() {
   Camera camera;
   camera.position = {0.0f, 1.6f, 1.6f};
@@ -54,7 +54,7 @@ int NumDifferent(const Image& a, const Image& b, int by_more_than) {
   return count;
 }
 
-// Three faces: one stretched on the left, one squashed on the right with a bent brow, one neutral.
+// Three faces: stretched on the left; squashed on the right with a bent brow; neutral.
 class Crowd : public testing::Test {
  protected:
   Crowd() : renderer_(test::Expect(Renderer::Create(head_))) {
@@ -69,7 +69,7 @@ class Crowd : public testing::Test {
     request_.width = kWidth;
     request_.height = kHeight;
     request_.settings.detail.error_pixels = 0.0f;
-    // Crowds compose their wrinkles in every fragment.
+    // Crowds evaluate their wrinkles in every fragment.
     request_.settings.wrinkle_maps.cache = false;
   }
 
@@ -79,7 +79,8 @@ class Crowd : public testing::Test {
     return test::Expect(renderer_->Render(request_));
   }
 
-  // What differs between one picture of all and pictures of each, put together.
+  // Number of pixels that differ between one picture of all subjects and the combined pictures of
+  // each.
   int DifferentFromEachAlone() {
     const Image all = Draw(drawn_);
     PosedSubject nobody = drawn_[0];
@@ -98,7 +99,7 @@ class Crowd : public testing::Test {
       }
       most = std::max(most, covered);
     }
-    EXPECT_GT(most, 100) << "nobody is seen";  // the masks of who is neutral are black on black
+    EXPECT_GT(most, 100) << "nobody is seen";  // the masks of a neutral subject are black on black
     return NumDifferent(all, composed, 1);
   }
 
@@ -109,7 +110,7 @@ class Crowd : public testing::Test {
   FrameRequest request_;
 };
 
-TEST_F(Crowd, IsEachAlonePutTogether) {
+TEST_F(Crowd, EqualsThePicturesOfEachCombined) {
   for (const View view : {View::kFinal, View::kNormal, View::kWeights, View::kMaskDynamic,
                           View::kMaskTexture, View::kWireframe}) {
     request_.settings.view = view;
@@ -117,9 +118,9 @@ TEST_F(Crowd, IsEachAlonePutTogether) {
   }
 }
 
-TEST_F(Crowd, WithSkinShadingIsEachAlonePutTogether) {
+TEST_F(Crowd, WithSkinShadingEqualsThePicturesOfEachCombined) {
   request_.settings.shading = Shading::kSkin;
-  request_.settings.shadow.filter = ShadowFilter::kOff;  // they do throw shadows on each other
+  request_.settings.shadow.filter = ShadowFilter::kOff;  // they would cast shadows on each other
   request_.settings.bloom.strength = 0.0f;
   EXPECT_LE(DifferentFromEachAlone(), 4);
 }
@@ -134,7 +135,7 @@ TEST_F(Crowd, EachHasItsOwnFace) {
   EXPECT_GT(NumDifferent(Draw(drawn_), Draw(same), 10), 100);
 }
 
-// One mesh that holds all of them at rest, where a crowd holds one mesh several times.
+// A single mesh that contains all subjects at rest, where a crowd has one mesh several times.
 character::Character Merged(const character::Character& head) {
   character::Character merged = head;
   character::Mesh& mesh = merged.meshes[0];
@@ -154,14 +155,14 @@ character::Character Merged(const character::Character& head) {
   return merged;
 }
 
-// With all that surfaces do to each other: shadows, occlusion, light under the skin.
-TEST_F(Crowd, IsLitAsOneMeshThatHoldsAllOfThem) {
+// Includes all effects between surfaces: shadows, occlusion and scattering.
+TEST_F(Crowd, IsLitLikeOneMeshOfAll) {
   const test::Subject rest(head_);
   const character::Character merged = Merged(head_);
   for (const View view : {View::kShadow, View::kFinal}) {
     request_.settings.shading = Shading::kSkin;
     request_.settings.view = view;
-    // A lamp low at the side: everybody stands in the next one's shadow.
+    // A low lamp at the side: each subject is in the shadow of the next one.
     request_.camera.position = {0.9f, 1.6f, 1.3f};
     request_.settings.lights.preset = LightPreset::kHard;
     std::vector<PosedSubject> drawn;
@@ -195,8 +196,8 @@ TEST_F(Crowd, DisplacesEachByItsOwnWeights) {
   EXPECT_GT(NumDifferent(raised, Draw(drawn_), 10), 100);
 }
 
-// Simplified meshes may move outlines by about a pixel, and nothing else by much.
-TEST_F(Crowd, WhoIsSmallLooksTheSameWithFewerTriangles) {
+// Simplified meshes may move outlines by about a pixel and must change little else.
+TEST_F(Crowd, SmallSubjectsLookTheSameWithFewerTriangles) {
   const Image full = Draw(drawn_);
   request_.settings.detail.error_pixels = 0.5f;
   const Image simplified = Draw(drawn_);
@@ -207,8 +208,8 @@ TEST_F(Crowd, WhoIsSmallLooksTheSameWithFewerTriangles) {
   EXPECT_EQ(NumDifferent(alone, Draw(std::span(drawn_).first(1)), 0), 0);
 }
 
-// The edges of shadows may move by a part of a texel, and no surface shades itself.
-TEST_F(Crowd, SimplifiedHairThrowsTheSameShadows) {
+// Shadow edges may move by a fraction of a texel, and no surface may shade itself.
+TEST_F(Crowd, SimplifiedHairCastsTheSameShadows) {
   character::Character head = head_;
   for (character::Material& material : head.materials) {
     material.kind = character::Material::Kind::kHair;
@@ -221,7 +222,7 @@ TEST_F(Crowd, SimplifiedHairThrowsTheSameShadows) {
   const Image simplified = Draw(drawn_);
   EXPECT_GT(NumDifferent(full, simplified, 0), 0);
   EXPECT_LT(NumDifferent(full, simplified, 24), kWidth * kHeight / 200);
-  request_.settings.shadow.normal_offset_mm = 0.0f;  // nothing hides any error
+  request_.settings.shadow.normal_offset_mm = 0.0f;  // no offset hides an error
   const Image exact = Draw(drawn_);
   request_.settings.detail.hair_shadow_texels = 0.0f;
   EXPECT_EQ(NumDifferent(exact, Draw(drawn_), 0), 0);
@@ -235,7 +236,7 @@ TEST_F(Crowd, TheCameraFollowsTheFirst) {
   EXPECT_EQ(NumDifferent(Draw(std::span(&home, 1)), Draw(std::span(&away, 1)), 4), 0);
 }
 
-TEST_F(Crowd, OfMoreThanMemoryIsSetAsideForIsRefused) {
+TEST_F(Crowd, TooManyVerticesAreRejected) {
   character::Character fine = test::MakePlane(4, [](float, float) { return 0.0f; }, {});
   character::Mesh& mesh = fine.meshes[0];
   mesh.vertices.resize(70'000, mesh.vertices.front());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials that are cut out by the alpha of their base colour: hair, lashes.
+// Materials cut out by the alpha of their base colour: hair, lashes.
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -12,7 +12,7 @@
 namespace furrow::render {
 namespace {
 
-// A plane of vertical stripes, one seen and one cut out.
+// A plane of vertical stripes, alternately opaque and cut out.
 class CutOutTest : public testing::Test {
  protected:
   static constexpr int kTexels = 256;
@@ -43,7 +43,7 @@ class CutOutTest : public testing::Test {
     request.settings.anti_aliasing.samples = samples;
     return test::Expect(renderer_->Render(request));
   }
-  // Light in all, by the red channel.
+  // Total light of the red channel.
   static double Sum(const Image& image) {
     double sum = 0.0;
     for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
@@ -58,8 +58,8 @@ class CutOutTest : public testing::Test {
   std::unique_ptr<Renderer> renderer_;
 };
 
-// Half of the surface is there, whether a pixel covers a part of a stripe or many of them.
-TEST_F(CutOutTest, AsMuchIsLeftFromNearAndFar) {
+// Half of the surface is visible, whether a pixel covers part of a stripe or many stripes.
+TEST_F(CutOutTest, CoverageIsTheSameFromNearAndFar) {
   constexpr int kSizes[] = {480, 240, 120, 60, 30, 20};
   std::vector<double> whole;
   Make(0.0f);
@@ -71,7 +71,7 @@ TEST_F(CutOutTest, AsMuchIsLeftFromNearAndFar) {
   }
 }
 
-// Where stripes are a few pixels wide, their edges are neither seen nor cut out.
+// If stripes are a few pixels wide, the pixels on their edges are partly covered.
 TEST_F(CutOutTest, EdgesAreSmooth) {
   const auto share_between = [](const Image& image) {
     double between = 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// No material sends out more light than it gets: balls of every kind under the sky and under lamps,
-// as the whole pipeline lights them.
+// No material reflects more light than it receives: balls of every kind, under the sky and under
+// lamps, with the full lighting.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -33,7 +33,7 @@ struct Look {
   float roughness = 0.6f;
 };
 
-// Far away, so that rays are nearly parallel; the ball fills two thirds of the picture.
+// Far away, so that rays are nearly parallel. The ball fills two thirds of the picture.
 Camera From(const glm::vec3& direction) {
   Camera camera;
   camera.position = 4.0f * direction;
@@ -79,8 +79,8 @@ class Furnace {
 
 class FurnaceTest : public testing::TestWithParam<Kind> {};
 
-// The sky alone: every pixel is at most as bright as the brighter of what falls on it from all
-// around and from where it mirrors.
+// Sky only. Every pixel is at most as bright as the larger of its diffuse sky light and the sky in
+// its mirror direction.
 TEST_P(FurnaceTest, NoPixelIsBrighterThanItsSky) {
   for (const Look& look : {Look{GetParam(), 1.0f, 0.6f},
                            {GetParam(), 1.0f, 0.3f},
@@ -100,7 +100,9 @@ TEST_P(FurnaceTest, NoPixelIsBrighterThanItsSky) {
       for (int x = 0; x < kSize; ++x) {
         const test::Ray ray = test::PixelRay(request.camera, x, y, kSize, kSize);
         const auto hit = test::FirstHit(kBall, 0.0, ray);
-        if (!hit || glm::dot(hit->normal, ray.direction) > -0.05) continue;  // the facets' rim
+        if (!hit || glm::dot(hit->normal, ray.direction) > -0.05)
+          continue;  // the rim of the
+                     // facets
         const glm::vec3 mirrored(glm::reflect(ray.direction, hit->normal));
         const float arrives = std::max(EvaluateAmbient(ambient, glm::vec3(hit->normal)).g,
                                        SkyRadiance(sky, mirrored).g);
@@ -116,8 +118,8 @@ TEST_P(FurnaceTest, NoPixelIsBrighterThanItsSky) {
   }
 }
 
-// The light that a ball sends out under lamps that stand still, over all directions: the mean of
-// cameras all around.
+// The light that a ball reflects under fixed lamps, over all directions: the mean over cameras all
+// around.
 double SentOut(const Look& look, float strength) {
   constexpr int kCameras = 12;
   const double golden_angle = glm::pi<double>() * (3.0 - std::sqrt(5.0));
@@ -137,9 +139,9 @@ double SentOut(const Look& look, float strength) {
   return sum / kCameras;
 }
 
-// Lamps alone, from beside and behind: in all directions together a ball of any kind sends out no
-// more than one that is white and matt, which sends out all.
-TEST_P(FurnaceTest, LampsGiveAllThatLeaves) {
+// Lamps only, from the side and from behind. Over all directions, no ball reflects more light than
+// a white diffuse ball, which reflects all of it.
+TEST_P(FurnaceTest, NoBallReflectsMoreThanTheLampsGive) {
   const double all = SentOut({.kind = Kind::kOther}, 0.0f);
   for (const float strength : {0.0f, 1.0f}) {
     const double white = SentOut({.kind = GetParam()}, strength) / all;

@@ -12,7 +12,7 @@ namespace {
 constexpr glm::vec3 kCentre(0.1f, 1.6f, -0.05f);
 constexpr float kRadius = 0.25f;
 
-// As the shaders do: xy in [-1, 1] of the map, z: depth in [0, 1].
+// A point as the shaders see it. xy: [-1, 1] in the map, z: depth in [0, 1].
 glm::vec3 InMap(const ShadowView& view, const glm::vec3& place) {
   const glm::vec3 p(view.view * glm::vec4(place, 1.0f));
   const float scale = view.scale / (view.perspective ? -p.z : 1.0f);
@@ -27,10 +27,10 @@ LightSource LightOf(LightKind kind) {
   return light;
 }
 
-TEST(ShadowView, HoldsTheWholeStage) {
+TEST(ShadowView, ContainsTheWholeStage) {
   for (const LightKind kind : {LightKind::kDirectional, LightKind::kSpot, LightKind::kPoint}) {
     const ShadowView view = FitShadow(LightOf(kind), kCentre, kRadius, 512);
-    for (int i = 0; i < 200; ++i) {  // points spread over the sphere
+    for (int i = 0; i < 200; ++i) {  // points distributed over the sphere
       const float z = 1.0f - 2.0f * (static_cast<float>(i) + 0.5f) / 200.0f;
       const float angle = 2.39996f * static_cast<float>(i);
       const float ring = std::sqrt(1.0f - z * z);
@@ -45,7 +45,7 @@ TEST(ShadowView, HoldsTheWholeStage) {
   }
 }
 
-TEST(ShadowView, DepthIsMetresForEveryLamp) {
+TEST(ShadowView, DepthIsLinearInMetresForEveryLamp) {
   for (const LightKind kind : {LightKind::kDirectional, LightKind::kSpot}) {
     const LightSource light = LightOf(kind);
     const ShadowView view = FitShadow(light, kCentre, kRadius, 512);
@@ -55,7 +55,8 @@ TEST(ShadowView, DepthIsMetresForEveryLamp) {
   }
 }
 
-// A stage that moves by less than a texel moves nothing within the map but by whole texels.
+// If the stage moves by less than a texel, the contents of the map move by whole texels or not at
+// all.
 TEST(ShadowView, DirectionalMapsMoveInWholeTexels) {
   const LightSource light = LightOf(LightKind::kDirectional);
   const glm::vec3 landmark = kCentre + glm::vec3(0.03f, -0.02f, 0.01f);
@@ -70,7 +71,7 @@ TEST(ShadowView, DirectionalMapsMoveInWholeTexels) {
   }
 }
 
-// As many texels as the picture or the filter can show, and never more than were asked for.
+// As many texels as the picture or the filter can show, and never more than requested.
 TEST(ShadowResolution, FitsThePictureAndTheFilter) {
   ShadowSettings settings;
   settings.softness_mm = 0.0f;
@@ -84,8 +85,8 @@ TEST(ShadowResolution, FitsThePictureAndTheFilter) {
     }
   }
   settings.softness_mm = 3.0f;
-  EXPECT_EQ(ShadowResolution(settings, 0.35f, 0.0008f), 512);  // 1.5 mm a texel, not 0.8
-  settings.filter = ShadowFilter::kPcss;                       // whose edges may be sharp
+  EXPECT_EQ(ShadowResolution(settings, 0.35f, 0.0008f), 512);  // 1.5 mm per texel, not 0.8
+  settings.filter = ShadowFilter::kPcss;                       // its edges may be sharp
   EXPECT_EQ(ShadowResolution(settings, 0.35f, 0.0008f), 896);
   settings.resolution = 200;
   EXPECT_EQ(ShadowResolution(settings, 0.35f, 0.0008f), 200);
@@ -94,7 +95,7 @@ TEST(ShadowResolution, FitsThePictureAndTheFilter) {
   EXPECT_EQ(ShadowResolution(settings, 0.35f, 0.0008f), 1024);
 }
 
-TEST(ShadowView, ALampInsideTheStageStillHasAPicture) {
+TEST(ShadowView, ALampInsideTheStageHasAFiniteView) {
   LightSource light = LightOf(LightKind::kPoint);
   light.position = kCentre + 0.1f * light.direction;
   const ShadowView view = FitShadow(light, kCentre, kRadius, 512);

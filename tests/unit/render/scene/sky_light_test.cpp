@@ -33,14 +33,14 @@ SphericalHarmonics AmbientOf(const GradientSky& sky) {
       ProjectRadiance([&](const glm::vec3& direction) { return SkyRadiance(sky, direction); }));
 }
 
-TEST(SkyLight, IsItsColoursAtTheirPlaces) {
+TEST(SkyLight, HasItsColoursAtZenithHorizonAndGround) {
   const GradientSky sky{{1.0f, 2.0f, 3.0f}, {0.5f, 0.4f, 0.3f}, {0.1f, 0.2f, 0.0f}};
   EXPECT_EQ(SkyRadiance(sky, {0.0f, 1.0f, 0.0f}), sky.zenith);
   EXPECT_EQ(SkyRadiance(sky, {1.0f, 0.0f, 0.0f}), sky.horizon);
   EXPECT_EQ(SkyRadiance(sky, {0.0f, -1.0f, 0.0f}), sky.ground);
 }
 
-TEST(SkyLight, AnEvenSkyLightsAllNormalsAlike) {
+TEST(SkyLight, AUniformSkyLightsAllNormalsEqually) {
   const GradientSky even{glm::vec3(0.7f), glm::vec3(0.7f), glm::vec3(0.7f)};
   const SphericalHarmonics ambient = AmbientOf(even);
   for (const glm::vec3& normal : {glm::vec3(0, 1, 0), glm::vec3(0.6f, -0.8f, 0), {0, 0, -1}}) {
@@ -65,7 +65,7 @@ TEST(SkyLight, NineCoefficientsAreWithinOnePercentOfTheIntegral) {
 }
 
 // A sky that is brighter on one side: the bands of x and z, too.
-TEST(SkyLight, ProjectsWhatDependsOnEveryDirection) {
+TEST(SkyLight, ProjectsSkiesThatVaryInAllDirections) {
   const auto radiance = [](const glm::vec3& d) {
     return glm::vec3(1.0f + 0.5f * d.x, 1.0f - 0.5f * d.z, 1.0f + d.x * d.z);
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// No setting is there for nothing.
+// Every setting must have an effect.
 #include <map>
 #include <string>
 #include <vector>
@@ -7,13 +7,14 @@
 #include <gtest/gtest.h>
 
 #include "render/renderer.h"
+#include "render/settings/named_settings.h"
 #include "render/settings/setting_table.h"
 #include "tests/unit/render/wrinkle_cache_scene.h"
 
 namespace furrow::render {
 namespace {
 
-// What a setting is changed to, and what else must be so for that to show.
+// A change of a setting, and the other settings that make it visible.
 struct Case {
   const char* value = nullptr;  // null: OtherValues()
   std::vector<const char*> circumstances = {};
@@ -43,20 +44,20 @@ const std::map<std::string_view, Case>& Cases() {
   return cases;
 }
 
-// Those that change what a picture costs, or what goes wrong in it, and not this one; what they do
-// is tested with what it is done to.
+// Settings that change the cost of a picture, or artefacts that this picture does not have. Other
+// tests cover them.
 bool IsOfCost(std::string_view name) {
   return name == "wrinkle_maps.cache" || name == "specular.table" ||
          name == "translucency.shrink_mm" || name.starts_with("detail.");
 }
 
-// Those that want something thin, or something that stands before something else.
+// Settings that need a thin part, or an object in front of another.
 bool IsOfSheets(std::string_view name) {
   return name.starts_with("translucency.") || name.starts_with("shadow.");
 }
 
-// Other values than it has: of words and choices all others, of numbers the end of the range that
-// is further away.
+// Values other than the current one: all other words and choices, or the more distant end of a
+// number's range.
 std::vector<std::string> OtherValues(const SettingInfo& info, const Settings& settings) {
   using Kind = SettingInfo::Kind;
   const std::string now = GetSetting(info.name, settings);
@@ -82,7 +83,7 @@ class SettingEffectTest : public test::WrinkleCacheTest {
     renderer_ = test::Expect(Renderer::Create(head_));
     Randomise(true);
   }
-  // A slab of 4 mm, which light comes through, and a patch that throws a shadow on it.
+  // A slab of 4 mm that light passes through, and a patch that casts a shadow on it.
   void MakeSheets() {
     const auto flat = [](float, float) { return 0.0f; };
     head_ = test::MakePlane(16, flat, {flat});
@@ -114,7 +115,8 @@ class SettingEffectTest : public test::WrinkleCacheTest {
     for (const char* change : with.circumstances) {
       ASSERT_TRUE(SetSetting(change, &settings).ok()) << change;
     }
-    // Skin scatters by a few millimetres: they must be pixels for all taps of a kernel.
+    // Skin scatters over a few millimetres, which must cover several pixels for all taps of a
+    // kernel.
     const float nearer = info.name.starts_with("subsurface.") ? 6.0f : 1.0f;
     const Image before = DrawWith(settings, nearer);
     const std::vector<std::string> values =

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-// The albedo by plain quadrature over light directions: independent of SpecularAlbedo's half
+// The albedo by plain quadrature over light directions, independent of SpecularAlbedo()'s half
 // vectors.
 double BruteForceAlbedo(double cos_view, double m, double f0, SpecularNorm norm) {
   constexpr int kCosines = 2000;
@@ -43,15 +43,15 @@ TEST(Beckmann, DistributionIsNormalised) {
       const double cos_h = (i + 0.5) / kSteps;
       sum += BeckmannPh(cos_h, m) * cos_h * 2.0 * kPi / kSteps;
     }
-    EXPECT_NEAR(sum, kPi, 1e-3) << m;  // PH lacks the 1/pi
+    EXPECT_NEAR(sum, kPi, 1e-3) << m;  // PH does not include the 1/pi
   }
 }
 
-TEST(Beckmann, HasNoNanAtItsEnds) {
+TEST(Beckmann, IsFiniteAtTheEndsOfItsRange) {
   EXPECT_EQ(BeckmannPh(0.0, 0.3), 0.0);
   EXPECT_EQ(BeckmannPh(-0.5, 0.3), 0.0);
   EXPECT_NEAR(BeckmannPh(1.0, 0.3), 1.0 / 0.09, 1e-9);
-  EXPECT_NEAR(BeckmannPh(1.0, 0.0), 1024.0, 1e-6);  // m is at least 1/32
+  EXPECT_NEAR(BeckmannPh(1.0, 0.0), 1024.0, 1e-6);  // m is clamped to 1/32
   EXPECT_EQ(KelemenBrdf(0.0, 1.0, 0.0, 0.3, 0.028, SpecularNorm::kPhysical), 0.0);
   EXPECT_EQ(KelemenBrdf(1e-9, 1e-9, -1.0, 0.3, 0.028, SpecularNorm::kPhysical), 0.0);
 }
@@ -61,14 +61,14 @@ TEST(Beckmann, BrdfIsReciprocal) {
     return KelemenBrdf(l, v, 0.2, 0.3, 0.028, SpecularNorm::kPhysical);
   };
   EXPECT_DOUBLE_EQ(brdf(0.3, 0.9), brdf(0.9, 0.3));
-  // Face on: PH(1) F0 / 4 / pi.
+  // At normal incidence: PH(1) F0 / 4 / pi.
   const double face_on = KelemenBrdf(1.0, 1.0, 1.0, 0.3, 0.028, SpecularNorm::kPhysical);
   EXPECT_NEAR(face_on, 0.028 / 0.09 / 4.0 / kPi, 1e-9);
   const double gems = KelemenBrdf(1.0, 1.0, 1.0, 0.3, 0.028, SpecularNorm::kGems);
   EXPECT_NEAR(gems / face_on, kPi, 1e-9);
 }
 
-// The published form sends out more light than it gets at grazing angles.
+// The published form reflects more light than it receives at grazing angles.
 TEST(Beckmann, GemsExceedsOneWherePhysicalDoesNot) {
   EXPECT_NEAR(BruteForceAlbedo(0.1, 0.1, 0.028, SpecularNorm::kGems), 1.25, 0.01);
   EXPECT_NEAR(BruteForceAlbedo(0.1, 0.1, 0.028, SpecularNorm::kPhysical), 0.40, 0.005);
@@ -95,7 +95,7 @@ TEST(Beckmann, PhysicalAlbedoIsAtMostOneEverywhere) {
   }
 }
 
-// As a shader looks it up: bilinear, through the mapping that the header states.
+// Looks up the table as a shader does: bilinear, with the mapping that the header states.
 double LookUp(const std::vector<std::uint16_t>& table, int size, double x, double y) {
   const auto at = [&](int column, int row) {
     return table[static_cast<std::size_t>(row * size + column)] / 65535.0;
@@ -111,7 +111,7 @@ double LookUp(const std::vector<std::uint16_t>& table, int size, double x, doubl
   return std::pow(2.0 * t, 10.0);
 }
 
-// Wherever the highlight is brighter than a millionth of its peak.
+// Applies wherever the highlight is brighter than a millionth of its peak.
 TEST(Beckmann, TableIsWithinOnePercent) {
   constexpr int kSize = 512;
   const std::vector<std::uint16_t> table = BeckmannTable(kSize);
@@ -135,14 +135,14 @@ TEST(Beckmann, TableIsWithinOnePercent) {
 TEST(Beckmann, TablesHaveTheirEndsOnTexelCentres) {
   const std::vector<std::uint16_t> table = BeckmannTable(64);
   EXPECT_EQ(table.front(), 0);
-  EXPECT_EQ(table[63], 65535);     // m = 0 is 1/32: 0.5 * 1024^0.1 = 1
+  EXPECT_EQ(table[63], 65535);     // m = 0 is clamped to 1/32: 0.5 * 1024^0.1 = 1
   EXPECT_EQ(table.back(), 32768);  // m = 1: 0.5
   const std::vector<glm::vec2> albedo = SpecularAlbedoTable(4);
   EXPECT_EQ(albedo[4 * 1 + 2], glm::vec2(SpecularAlbedo(2.0 / 3.0, 1.0 / 3.0)));
 }
 
-TEST(Beckmann, TwoLobesAreOneTableAtTwoPlaces) {
-  constexpr int kSize = 65;  // every second row's half is a row
+TEST(Beckmann, TwoLobesMatchTheTableOfOne) {
+  constexpr int kSize = 65;  // half of every second row is a row
   const std::vector<glm::vec2> one = SpecularAlbedoTable(kSize);
   const std::vector<glm::vec4> both = TwoLobeAlbedoTable(kSize);
   ASSERT_EQ(both.size(), one.size());

@@ -11,13 +11,13 @@ namespace furrow::render {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kWindow = 8.0;  // mm to either side of an edge, over which errors are taken
+constexpr double kWindow = 8.0;  // mm to either side of an edge, for errors
 constexpr float kScales[] = {0.3f, 0.5f, 0.8f,  1.0f,  1.5f,  2.4f, 3.0f,
                              5.0f, 8.0f, 12.0f, 16.0f, 24.0f, 40.0f};  // pixels per mm
-constexpr double kTailLeftOut = 1.5e-4;  // RMSE, of what lies beyond a kernel's reach
+constexpr double kTailLeftOut = 1.5e-4;  // RMSE from the response beyond a kernel's reach
 constexpr int kTaps[] = {11, 17, 25};
 
-// Sum and variance (pixels^2) of a kernel along one axis of the picture, by both passes.
+// Sum and variance (pixels^2) of a kernel along one axis of the picture, over both passes.
 struct Moments {
   glm::dvec3 sum{0.0};
   glm::dvec3 variance{0.0};
@@ -34,7 +34,7 @@ Moments MomentsOf(const PixelTaps& kernel) {
   return moments;
 }
 
-TEST(PixelKernel, SumsToOneOnWholePixelsOfTheirOwn) {
+TEST(PixelKernel, SumsToOneOnDistinctWholePixels) {
   for (const int taps : kTaps) {
     for (const float pixels_per_mm : {0.05f, 0.3f, 1.0f, 2.4f, 8.0f, 40.0f}) {
       const PixelTaps kernel = PixelKernel(HumanSkin(), taps, pixels_per_mm);
@@ -58,19 +58,19 @@ TEST(PixelKernel, SumsToOneOnWholePixelsOfTheirOwn) {
   }
 }
 
-TEST(PixelKernel, OddTapCountsAreTakenIntoRange) {
+TEST(PixelKernel, TapCountsAreRoundedIntoRange) {
   EXPECT_EQ(PixelKernel(HumanSkin(), 0, 8.0f).weights.size(), 1u + kMinSeparableTaps / 2);
   EXPECT_EQ(PixelKernel(HumanSkin(), 12, 8.0f).weights.size(), 7u);
   EXPECT_EQ(PixelKernel(HumanSkin(), 999, 8.0f).weights.size(), 1u + kMaxSeparableTaps / 2);
 }
 
-TEST(PixelKernel, GetsShortWhereAPixelIsWide) {
+TEST(PixelKernel, GetsShorterWithWiderPixels) {
   EXPECT_EQ(PixelKernel(HumanSkin(), 17, 0.01f).weights.size(), 1u);
   EXPECT_LT(PixelKernel(HumanSkin(), 17, 0.5f).weights.size(), 9u);
   EXPECT_EQ(PixelKernel(HumanSkin(), 17, 5.0f).weights.size(), 9u);
 }
 
-// The published demo's kernel has a red variance of 0.755 mm^2; the profile's is 1.383.
+// The published demo's kernel has a red variance of 0.755 mm^2; the profile's is 1.383 mm^2.
 TEST(PixelKernel, KeepsMostOfTheVariance) {
   for (const auto& [taps, least] : {std::pair(11, 1.09), {17, 1.22}, {25, 1.30}}) {
     const double variance = MomentsOf(PixelKernel(HumanSkin(), taps, 8.0f)).variance.r / 64.0;
@@ -79,8 +79,8 @@ TEST(PixelKernel, KeepsMostOfTheVariance) {
   }
 }
 
-// A straight edge after both passes, at `mm` from it, the lit side being where it is positive;
-// `turned`: the angle between the edge's normal and the picture's x axis.
+// A straight edge after both passes at a distance of `mm`, positive on the lit side. `turned`:
+// angle between the edge's normal and the picture's x axis.
 class Edge {
  public:
   Edge(const PixelTaps& kernel, double pixels_per_mm, double turned) {
@@ -91,13 +91,13 @@ class Edge {
         taps_.push_back({(a.mm + b.mm) / pixels_per_mm, a.weight * b.weight});
       }
     }
-    // Sums from the outermost tap inwards, so that what an edge shows of them is looked up.
+    // Prefix sums from the outermost tap inwards, which make each query a look-up.
     std::sort(taps_.begin(), taps_.end(), [](const Tap& a, const Tap& b) { return a.mm > b.mm; });
     for (std::size_t i = 1; i < taps_.size(); ++i) taps_[i].weight += taps_[i - 1].weight;
   }
 
-  // Root mean square error over kWindow and the channels, at the centres of `samples` a mm; `soft`:
-  // the edge goes from dark to light over so many mm.
+  // Root mean square error over kWindow and the channels, at the centres of `samples` per mm.
+  // `soft`: width in mm of the transition from dark to light.
   [[nodiscard]] double Rmse(double samples, double soft) const {
     constexpr int kParts = 8;
     const int count = static_cast<int>(kWindow * samples);
@@ -135,13 +135,13 @@ class Edge {
   std::vector<Tap> taps_;
 };
 
-// A straight edge along the picture's columns, as its pixels show it.
+// A straight edge along the picture's columns, sampled at its pixels.
 double EdgeError(const PixelTaps& kernel, double pixels_per_mm) {
   return Edge(kernel, pixels_per_mm, 0.0).Rmse(pixels_per_mm, 0.0);
 }
 
-// The plain way to the same: places on the axis that get rarer with the square of their number, as
-// far out as is best for 11 to 25 taps, and for each the share of the profile that lies nearest.
+// A simple alternative kernel: taps on the axis at quadratically growing distances, with the best
+// reach for 11 to 25 taps, and for each tap the share of the profile nearest to it.
 PixelTaps MidpointKernel(int taps, double pixels_per_mm) {
   const int pairs = taps / 2;
   const double reach = 3.0 + 0.1 * (taps - 11);  // mm
@@ -162,8 +162,8 @@ PixelTaps MidpointKernel(int taps, double pixels_per_mm) {
   return kernel;
 }
 
-// What a staircase of many steps, anywhere, is off by at the least: that of `pairs` steps for a
-// curve of the slope s is sqrt(integral of s^(2/3))^3 / 12) / pairs (Panter and Dite 1951).
+// Smallest possible error of a staircase with many freely placed steps. For `pairs` steps and a
+// curve of slope s it is sqrt(integral of s^(2/3))^3 / 12) / pairs (Panter and Dite 1951).
 double StaircaseError(int pairs) {
   constexpr double kStep = 1e-3;  // mm
   double sum = 0.0;
@@ -186,8 +186,8 @@ TEST(PixelKernel, AnEdgeKeepsItsResponseAtEveryScale) {
   }
 }
 
-// An edge that is not along the picture's sides: both passes have their part in it.
-TEST(PixelKernel, EdgesInOtherDirectionsAreNoWorse) {
+// Both passes contribute to an edge that is not parallel to the picture's sides.
+TEST(PixelKernel, EdgesInOtherDirectionsAreAsAccurate) {
   for (const int taps : kTaps) {
     for (const float pixels_per_mm : {3.0f, 5.0f, 8.0f, 16.0f}) {
       double sum = 0.0;
@@ -206,8 +206,8 @@ TEST(PixelKernel, EdgesInOtherDirectionsAreNoWorse) {
   }
 }
 
-// Squared error of the staircase that begins its steps at `starts`, up to `pixels`; a millimetre
-// further from the edge it counts for twice as much again.
+// Squared error of the staircase with steps starting at `starts`, up to `pixels`, weighted as in
+// PixelKernel().
 double StairsError(const std::vector<int>& starts, int pixels, double pixels_per_mm) {
   double error = 0.0;
   for (std::size_t i = 0; i < starts.size(); ++i) {
@@ -231,8 +231,8 @@ double StairsError(const std::vector<int>& starts, int pixels, double pixels_per
   return error;
 }
 
-// Against all others there are: five taps of twenty pixels.
-TEST(PixelKernel, NoOtherPlacesAreBetter) {
+// Compared with all possible placements of five taps in twenty pixels.
+TEST(PixelKernel, TapPlacementIsOptimal) {
   constexpr double kPixelsPerMm = 3.0;
   constexpr int kPixels = 24;
   const PixelTaps kernel = PixelKernel(HumanSkin(), 11, kPixelsPerMm);
@@ -255,7 +255,7 @@ TEST(PixelKernel, NoOtherPlacesAreBetter) {
   EXPECT_EQ(better, 0);
 }
 
-TEST(PixelGaussian, HasTheVarianceThatIsAskedFor) {
+TEST(PixelGaussian, HasTheRequestedVariance) {
   EXPECT_EQ(PixelGaussian(0.2f).weights.size(), 1u);
   for (const float sigma : {0.4f, 0.7f, 1.0f, 1.5f, 3.0f, 11.0f}) {
     const PixelTaps kernel = PixelGaussian(sigma);

@@ -19,7 +19,7 @@ double Integrate(const std::function<double(double)>& f, double low, double high
   return sum * width;
 }
 
-TEST(SkinProfile, EveryChannelSendsOutAllLight) {
+TEST(SkinProfile, EveryChannelConservesLight) {
   for (int channel = 0; channel < 3; ++channel) {
     float sum = 0.0f;
     for (const SkinGaussian& gaussian : HumanSkin()) sum += gaussian.weight[channel];
@@ -31,7 +31,7 @@ TEST(SkinProfile, EveryChannelSendsOutAllLight) {
   }
 }
 
-// sum_i w_i v_i of GPU Gems 3's table 14-1, by hand.
+// sum_i w_i v_i of GPU Gems 3's table 14-1, calculated by hand.
 TEST(SkinProfile, SpreadsRedFarthest) {
   const double expected[3] = {1.38287, 0.06813, 0.02477};
   for (int channel = 0; channel < 3; ++channel) {
@@ -41,7 +41,7 @@ TEST(SkinProfile, SpreadsRedFarthest) {
   }
 }
 
-TEST(SkinProfile, LineProfileIsTheRadialOneIntegratedAcross) {
+TEST(SkinProfile, LineProfileIsTheIntegralOfTheRadialProfile) {
   for (const double x : {0.0, 0.3, 1.0, 2.5}) {
     for (int channel = 0; channel < 3; ++channel) {
       const double line =
@@ -76,7 +76,7 @@ TEST(SkinProfile, ShareWithinIsTheIntegralOfTheProfile) {
   }
 }
 
-// Roots of the differences of variance: sqrt(0.0484 - 0.0064) = 0.205, and so on.
+// Square roots of the differences of variance: sqrt(0.0484 - 0.0064) = 0.205, and so on.
 TEST(SkinProfile, CascadedBlursAddUpToTheVariances) {
   const auto sigmas = CascadedSigmas(HumanSkin());
   const float expected[kNumSkinGaussians] = {0.080f, 0.205f, 0.372f, 0.616f, 1.193f, 2.328f};
@@ -88,7 +88,7 @@ TEST(SkinProfile, CascadedBlursAddUpToTheVariances) {
   }
 }
 
-TEST(SkinProfile, ThinSkinLetsRedThroughFirst) {
+TEST(SkinProfile, ThinSkinTransmitsMostlyRed) {
   for (int channel = 0; channel < 3; ++channel) {
     EXPECT_NEAR(Transmittance(HumanSkin(), 0.0)[channel], 1.0f, 1e-6f);
   }
@@ -97,7 +97,7 @@ TEST(SkinProfile, ThinSkinLetsRedThroughFirst) {
   EXPECT_LT(Transmittance(HumanSkin(), 2.0).b, 1e-4f);
 }
 
-TEST(Burley, SendsOutAllLightAndItsShareIsItsIntegral) {
+TEST(Burley, ConservesLightAndItsShareIsItsIntegral) {
   for (const double d : {0.1, 0.5}) {
     for (const double r : {0.2, 1.0, 5.0}) {
       const double share =
@@ -116,9 +116,9 @@ TEST(Burley, RadiusInvertsTheShare) {
   EXPECT_TRUE(std::isfinite(BurleyRadius(0.4, 1.0)));
 }
 
-// One parameter a channel cannot do better: the six Gaussians are narrower in the middle, where
-// Burley's profile is infinite, and as wide at the foot.
-TEST(Burley, FitIsNearSkin) {
+// One parameter per channel cannot fit better. The six Gaussians are narrower in the centre, where
+// Burley's profile is infinite, and equally wide in the tail.
+TEST(Burley, FitIsCloseToSkin) {
   const glm::vec3 d = FitBurley(HumanSkin());
   EXPECT_GT(d.r, d.g);
   EXPECT_GT(d.g, d.b);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Specular light of the real renderer, pixel by pixel, against Kelemen and Szirmay-Kalos' formula
-// on the CPU: a sphere.
+// The renderer's specular light compared, pixel by pixel, with the formula of Kelemen and
+// Szirmay-Kalos on the CPU: a sphere.
 #include <algorithm>
 #include <cmath>
 
@@ -25,8 +25,8 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr SphereOnPlane kScene{{0.0, 0.0, 0.0}, 0.06};
 constexpr double kSecondLobe = 0.3;
 
-// Light that leaves towards the camera: radiance at normal incidence is in the lamps' unit, which
-// holds the 1 / pi of a white surface.
+// Light reflected towards the camera. Radiance at normal incidence is in the lamps' unit, which
+// includes the 1 / pi of a white surface.
 glm::dvec3 Reflected(const Lighting& lighting, const glm::dvec3& normal,
                      const glm::dvec3& to_camera, double m, SpecularNorm norm) {
   glm::dvec3 sum(0.0);
@@ -47,7 +47,7 @@ struct Case {
   SpecularMode mode;
   SpecularNorm norm;
   float roughness;     // m is its square
-  bool table = false;  // Beckmann's term is looked up
+  bool table = false;  // look up the Beckmann term
 };
 
 class SpecularReference : public testing::TestWithParam<Case> {};
@@ -80,7 +80,7 @@ TEST_P(SpecularReference, Sphere) {
     for (int x = 0; x < kSize; ++x) {
       const test::Ray ray = test::PixelRay(camera, x, y, kSize, kSize);
       const auto hit = test::FirstHit(kScene, 0.0, ray);
-      if (!hit || glm::dot(hit->normal, ray.direction) > -0.1) continue;  // the facets' rim
+      if (!hit || glm::dot(hit->normal, ray.direction) > -0.1) continue;  // the rim of the facets
       const glm::dvec3 light = Reflected(lighting, hit->normal, -ray.direction, m, GetParam().norm);
       exact.At(x, y) = glm::vec4(glm::vec3(light), 1.0f);
       brightest = std::max(brightest, light.g);

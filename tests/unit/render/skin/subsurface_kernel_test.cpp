@@ -18,7 +18,7 @@ glm::vec3 Sum(const std::vector<Tap>& taps) {
   return sum;
 }
 
-TEST(BurleyDisc, IsNormalisedAndWeighsRingsExactly) {
+TEST(BurleyDisc, IsNormalisedWithExactRingWeights) {
   const glm::vec3 d(0.4f, 0.15f, 0.08f);
   for (const int taps : {1, 16, 64}) {
     const std::vector<DiscTap> disc = BurleyDisc(d, taps);
@@ -27,7 +27,7 @@ TEST(BurleyDisc, IsNormalisedAndWeighsRingsExactly) {
       EXPECT_NEAR(Sum(disc)[channel], 1.0f, 1e-5f);
     }
   }
-  // By importance of red: each ring holds as much of it as the others.
+  // Importance sampling by red: each ring holds the same share of red.
   for (const DiscTap& tap : BurleyDisc(d, 16)) EXPECT_NEAR(tap.weight.r, 1.0f / 16, 1e-5f);
 }
 
@@ -37,7 +37,7 @@ TEST(BurleyDisc, IsBalancedAroundItsCentre) {
   EXPECT_LT(std::hypot(mean.x, mean.y), 0.1f);
 }
 
-// A flat field has the cosine of its light, clamped.
+// Without curvature, the response is the clamped cosine of the light.
 TEST(SphereResponse, WithoutCurvatureIsLambert) {
   for (const double cosine : {-0.5, 0.0, 0.3, 1.0}) {
     for (int channel = 0; channel < 3; ++channel) {
@@ -46,8 +46,8 @@ TEST(SphereResponse, WithoutCurvatureIsLambert) {
   }
 }
 
-// Diffusion moves light and makes none: over the whole sphere the mean stays 1/4.
-TEST(SphereResponse, KeepsTheLight) {
+// Diffusion moves light and creates none: the mean over the whole sphere stays 1/4.
+TEST(SphereResponse, ConservesLight) {
   for (const double curvature : {0.05, 0.2, 0.5}) {
     glm::dvec3 sum(0.0);
     constexpr int kSteps = 400;
@@ -60,7 +60,7 @@ TEST(SphereResponse, KeepsTheLight) {
   }
 }
 
-// By brute force: points spread evenly over a sphere, weighed by the profile of their chord.
+// Brute force: points distributed evenly over a sphere, weighted by the profile of their chord.
 TEST(SphereResponse, MatchesASumOverTheSphere) {
   constexpr int kPoints = 400000;
   constexpr double kRadius = 4.0;  // mm
@@ -70,7 +70,7 @@ TEST(SphereResponse, MatchesASumOverTheSphere) {
     glm::dvec3 light(0.0);
     glm::dvec3 whole(0.0);
     for (int i = 0; i < kPoints; ++i) {
-      const double z = 1.0 - 2.0 * (i + 0.5) / kPoints;  // the point of interest is z = 1
+      const double z = 1.0 - 2.0 * (i + 0.5) / kPoints;  // the point of interest is at z = 1
       const double x = std::sqrt(1.0 - z * z) * std::cos(golden_angle * i);
       const double chord = kRadius * std::sqrt(2.0 - 2.0 * z);
       const glm::dvec3 weight(RadialProfile(HumanSkin(), chord));
@@ -84,13 +84,13 @@ TEST(SphereResponse, MatchesASumOverTheSphere) {
   }
 }
 
-TEST(PreintegratedTable, HasTheEndsOfBothRanges) {
+TEST(PreintegratedTable, CoversBothRangesToTheirEnds) {
   const std::vector<glm::vec3> table = PreintegratedTable(HumanSkin(), 8);
   ASSERT_EQ(table.size(), 64u);
-  EXPECT_NEAR(table[7].r, 1.0f, 1e-3f);  // flat, face on
-  EXPECT_NEAR(table[0].r, 0.0f, 1e-6f);  // flat, from behind
+  EXPECT_NEAR(table[7].r, 1.0f, 1e-3f);  // flat, facing the light
+  EXPECT_NEAR(table[0].r, 0.0f, 1e-6f);  // flat, facing away
   EXPECT_EQ(table[56 + 4], SphereResponse(HumanSkin(), 1.0 / 7.0, kMaxCurvature));
-  EXPECT_GT(table[56 + 3].r, table[56 + 3].b);  // red bleeds over the terminator
+  EXPECT_GT(table[56 + 3].r, table[56 + 3].b);  // red light reaches beyond the terminator
 }
 
 }  // namespace

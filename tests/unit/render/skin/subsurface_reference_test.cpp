@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every subsurface method through the real renderer, against exact diffusion on the CPU: a card
-// under even light, a straight edge, a card's corner, a sphere.
+// Every subsurface method of the renderer compared with exact diffusion on the CPU: a card under
+// even light, a straight edge, the corner of a card, a sphere.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,7 +29,7 @@ using test::PictureError;
 constexpr float kMmPerPixel = 0.125f;
 constexpr int kWidth = 240;
 constexpr int kHeight = 200;
-constexpr float kNoSkin = 30000.0f;  // the irradiance's alpha: larger is no skin
+constexpr float kNoSkin = 30000.0f;  // the irradiance's alpha is larger without skin
 constexpr test::CardHalf kWhite{Material::Kind::kSkin, 1.0f};
 constexpr test::CardHalf kBlack{Material::Kind::kSkin, 0.0f};
 
@@ -51,7 +51,7 @@ const std::vector<Method>& AllMethods() {
   return methods;
 }
 
-// Light on skin before and after scattering; alpha 1 where there is skin, else 0.
+// Light on skin before and after scattering. Alpha is 1 on skin and 0 elsewhere.
 struct SkinLight {
   FloatPicture before;
   FloatPicture after;
@@ -64,7 +64,7 @@ FloatPicture SkinOf(FloatPicture picture) {
   return picture;
 }
 
-// Only diffuse light of directional lamps, all of it scattering: what the references know.
+// Only diffuse light of directional lamps, all of which scatters, as the references assume.
 FrameRequest DiffusionRequest(const character::Character& scene, const Camera& camera, int width,
                               int height, const Method& method) {
   FrameRequest request = test::SceneRequest(scene, camera, width, height);
@@ -78,7 +78,8 @@ FrameRequest DiffusionRequest(const character::Character& scene, const Camera& c
   settings.bloom.strength = 0.0f;
   settings.subsurface.method = method.method;
   settings.subsurface.taps = method.taps;
-  settings.subsurface.mix = 1.0f;  // the albedo is part of the light: a card can be painted lit
+  settings.subsurface.mix = 1.0f;  // includes the albedo in the light, so that a card can be
+                                   // painted lit
   return request;
 }
 
@@ -105,7 +106,7 @@ class SubsurfaceReference : public testing::Test {
   }
 };
 
-// Over all three channels.
+// RMSE over all three channels.
 double WholeRmse(const PictureError& error) { return glm::length(error.rmse) / std::sqrt(3.0); }
 
 void Print(const char* scene, const std::string& method, const PictureError& error) {
@@ -114,16 +115,16 @@ void Print(const char* scene, const std::string& method, const PictureError& err
               error.worst.r, error.worst.g, error.worst.b);
 }
 
-// Divided by the light that falls on white, so that errors are shares of it.
+// Divides by the light on a white surface, so that errors are relative.
 void Normalise(const glm::vec4& white, FloatPicture* picture) {
   for (glm::vec4& texel : picture->texels) {
     texel = glm::vec4(glm::vec3(texel) / glm::vec3(white), texel.a);
   }
 }
 
-TEST_F(SubsurfaceReference, EvenLightStaysEven) {
+TEST_F(SubsurfaceReference, UniformLightStaysUniform) {
   for (const Method& method : AllMethods()) {
-    // Larger than the picture, and with all of its edges in the picture.
+    // One card larger than the picture, and one with all its edges in the picture.
     for (const float width_mm : {100.0f, 20.0f}) {
       const SkinLight light = DrawCard(kWhite, kWhite, width_mm, method);
       double worst = 0.0;
@@ -143,7 +144,7 @@ TEST_F(SubsurfaceReference, EvenLightStaysEven) {
   }
 }
 
-// Light at `mm` right of an edge whose right side is lit, as a share of the light there.
+// Light at `mm` to the right of an edge, relative to the light on the lit right side.
 glm::vec3 AcrossEdge(const SkinLight& light, double mm) {
   const double x = kWidth / 2 + mm / kMmPerPixel - 0.5;
   const int left = static_cast<int>(std::floor(x));
@@ -154,7 +155,7 @@ glm::vec3 AcrossEdge(const SkinLight& light, double mm) {
          glm::vec3(white);
 }
 
-TEST_F(SubsurfaceReference, GaussiansGiveTheStepResponse) {
+TEST_F(SubsurfaceReference, GaussiansMatchTheStepResponse) {
   const SkinLight light = DrawCard(kBlack, kWhite, 100.0f, AllMethods()[0]);
   EXPECT_NEAR(AcrossEdge(light, 1.0).r, 0.875, 0.01);
   for (const double mm : {-4.0, -2.0, -1.0, -0.5, 0.5, 2.0, 4.0}) {
@@ -174,8 +175,8 @@ FloatPicture ExactEdge() {
   return exact;
 }
 
-// What a method may be off by (RMSE of red, the channel that travels) at an edge, on a card with
-// edges of its own, and on a sphere of 8 mm: what was measured, and a quarter more.
+// Allowed errors of a method (RMSE of red, which travels farthest) at an edge, on a card with its
+// own edges, and on a sphere of 8 mm: 1.25 times the measured errors.
 struct Limits {
   double edge;
   double card;
@@ -193,13 +194,13 @@ Limits LimitsOf(SubsurfaceMethod method) {
   return {0.085, 0.1, 0.015};
 }
 
-// However few its taps, the separable kernel is off by no more than twice as much as the six
-// Gaussians, which take more than twice its time; `errors`: of AllMethods(), in order.
+// With any number of taps, the error of the separable kernel is at most twice that of the six
+// Gaussians, which take more than twice the time. `errors`: of AllMethods(), in that order.
 void ExpectSeparableWithinTwice(const std::vector<double>& errors) {
   for (std::size_t i = 1; i < 4; ++i) {
     EXPECT_LE(errors[i], 2.0 * errors[0]) << AllMethods()[i].name;
   }
-  // More taps, less error.
+  // More taps give a smaller error.
   EXPECT_TRUE(std::is_sorted(errors.begin() + 1, errors.begin() + 4));
 }
 
@@ -214,13 +215,13 @@ TEST_F(SubsurfaceReference, ErrorsAtAStraightEdge) {
     EXPECT_LT(error.rmse.r, LimitsOf(method.method).edge) << method.name;
     errors.push_back(WholeRmse(error));
   }
-  // The screen-space methods are worth their while.
+  // The screen-space methods are better than no scattering.
   const double off = errors.back();
   for (std::size_t i = 0; i < 5; ++i) EXPECT_LT(errors[i], 0.25 * off) << AllMethods()[i].name;
   ExpectSeparableWithinTwice(errors);
 }
 
-// Both edges of the light and of the skin: a card of 20 x 16 mm, its right half lit.
+// Edges of both light and skin: a card of 20 x 16 mm with a lit right half.
 TEST_F(SubsurfaceReference, ErrorsOnACardWithEdges) {
   std::vector<double> errors;
   for (const Method& method : AllMethods()) {
@@ -238,7 +239,7 @@ TEST_F(SubsurfaceReference, ErrorsOnACardWithEdges) {
   ExpectSeparableWithinTwice(errors);
 }
 
-// Light on a sphere by its normal: what every lamp's response adds up to.
+// Light on a sphere by its normal: the sum of all lamps' responses.
 class LitSphere {
  public:
   LitSphere(double radius_mm, const Lighting& lighting) : lighting_(lighting) {
@@ -264,8 +265,8 @@ class LitSphere {
   std::array<glm::vec3, kSteps + 1> responses_;
 };
 
-// A sphere of 8 mm, but for its rim, where the picture shows less than a millimetre of what lights
-// it.
+// A sphere of 8 mm without its rim, where the picture shows less than a millimetre of the surface
+// that lights it.
 FloatPicture ExactSphere(const test::SphereOnPlane& scene, const Camera& camera,
                          const Lighting& lighting) {
   const LitSphere sphere(1e3 * scene.radius, lighting);
@@ -282,7 +283,7 @@ FloatPicture ExactSphere(const test::SphereOnPlane& scene, const Camera& camera,
 }
 
 TEST_F(SubsurfaceReference, ErrorsOnASphere) {
-  // The plane is far below, and not drawn.
+  // The plane is far below and not drawn.
   const test::SphereOnPlane scene{{0.0, 0.0, 0.0}, 0.008};
   character::Character ball = test::MakeSphereOnPlane(scene, 1e-4f);
   ball.meshes.erase(ball.meshes.begin());
@@ -304,7 +305,7 @@ TEST_F(SubsurfaceReference, ErrorsOnASphere) {
 }
 
 // A wide picture shows the same pixels as a square one, and more at its sides.
-TEST_F(SubsurfaceReference, TheFormatOfThePictureChangesNothing) {
+TEST_F(SubsurfaceReference, IsIndependentOfThePictureFormat) {
   constexpr int kWide = 256;
   constexpr int kTall = 144;  // 16:9
   for (const Method& method : AllMethods()) {
@@ -324,11 +325,11 @@ TEST_F(SubsurfaceReference, TheFormatOfThePictureChangesNothing) {
   }
 }
 
-TEST_F(SubsurfaceReference, NothingLeaksOverTheEdgeOfTheSkin) {
+TEST_F(SubsurfaceReference, NoLightCrossesTheEdgeOfTheSkin) {
   const test::CardHalf cloth{Material::Kind::kCloth, 1.0f};
   const test::CardHalf dark_cloth{Material::Kind::kCloth, 0.0f};
   for (const Method& method : AllMethods()) {
-    // Bright cloth gives dark skin nothing, and takes nothing from bright skin.
+    // Bright cloth adds no light to dark skin and takes none from bright skin.
     const SkinLight dark = DrawCard(kBlack, cloth, 100.0f, method);
     for (const glm::vec4& texel : dark.after.texels) ASSERT_LE(texel.r, 2e-4f) << method.name;
     const SkinLight bright = DrawCard(kWhite, dark_cloth, 100.0f, method);

@@ -10,9 +10,9 @@
 namespace furrow::render {
 namespace {
 
-TEST(DerivativeMap, OfANormalMapIsMinusTheGradientOfItsHeights) {
+TEST(DerivativeMap, OfANormalMapIsTheNegativeGradientOfItsHeights) {
   constexpr int kSize = 64;
-  // h = 0.02 sin(2 pi (u + 2 v)); y is up in the picture, so d/dy = -d/dv.
+  // h = 0.02 sin(2 pi (u + 2 v)). y is up in the picture, so d/dy = -d/dv.
   const auto height = [](float u, float v) { return 0.02f * std::sin(6.2831853f * (u + 2 * v)); };
   const DerivativeMap map = DerivativesFromNormalMap(test::NormalMapOf("n", kSize, height));
   for (int y = 0; y < kSize; ++y) {
@@ -47,7 +47,7 @@ TEST(DerivativeMap, OfADerivativeMapSpansMinusOneToOne) {
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(map.texels[i], expected[i], 1e-4);
 }
 
-TEST(DerivativeMap, AMapsScaleCountsForIntegersAlone) {
+TEST(DerivativeMap, TheScaleAppliesToIntegersOnly) {
   character::Picture integers;
   integers.width = 1;
   integers.height = 1;

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/scene/camera.h"
+#include "render/request/camera_preset.h"
 #include "tests/unit/render/scene_probe.h"
 #include "tests/unit/render/test_character.h"
 
@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kSize = 256;
 
-// The tests' head with a mask that slides about the joint at its middle, a ball to the root.
+// The tests' head with a mask that slides around its central joint, which is a ball joint of the
+// root.
 character::Character MakeSlidingHead() {
   character::Character head = test::MakeHead();
   wrinkle::Driver nod;
@@ -44,7 +45,7 @@ character::Character MakeSlidingHead() {
   return head;
 }
 
-// Bent by `front` and `left`, whose shares are squares of a direction's cosine and sine.
+// Bent by `front` and `left`, which are squares of a direction's cosine and sine.
 test::Subject Bent(const character::Character& head, float front, float left) {
   test::Subject subject(head);
   std::ranges::fill(subject.driver_values, 0.0f);
@@ -68,7 +69,7 @@ FrameRequest RequestOf(const test::Subject& subject) {
   return request;
 }
 
-TEST(SlidingMask, IsDrawnAsTheReferenceSays) {
+TEST(SlidingMask, MatchesTheReference) {
   const character::Character head = MakeSlidingHead();
   const wrinkle::Mask& mask = head.rig.regions.back().mask;
   const auto frame = wrinkle::RestBallFrame(head.rig.drivers.back().ball, head.skeleton);
@@ -102,7 +103,7 @@ TEST(SlidingMask, IsDrawnAsTheReferenceSays) {
   }
 }
 
-TEST(SlidingMask, RestsWithItsWeightAndWhereTexturesAloneAreAskedFor) {
+TEST(SlidingMask, IsInactiveAtWeight0AndWithTextureMasksOnly) {
   const character::Character head = MakeSlidingHead();
   test::SceneProbe probe(head);
   test::Subject subject = Bent(head, 0.5f, 0.0f);

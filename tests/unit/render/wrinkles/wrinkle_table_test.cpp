@@ -26,7 +26,7 @@ class WrinkleTableTest : public testing::Test {
     request.settings = settings_;
     return tables_->Update(request);
   }
-  // A subject whose brow is bent by so many radians.
+  // A subject with its brow bent by `radians`.
   test::Subject Bent(float radians) const {
     test::Subject subject(head_);
     subject.pose.joints[2].rotation = glm::angleAxis(radians, glm::vec3(1, 0, 0));
@@ -49,7 +49,7 @@ TEST_F(WrinkleTableTest, ANeutralFaceNeedsNoMap) {
   EXPECT_FALSE(Skin().uses_dynamic);
 }
 
-TEST_F(WrinkleTableTest, ListsTheActiveMapsWithTheRegionsWeightsByChannel) {
+TEST_F(WrinkleTableTest, ListsActiveMapsWithWeightsByChannel) {
   Make(head_);
   test::Subject subject(head_);
   subject.Set("l_squash", 0.25f);
@@ -67,7 +67,7 @@ TEST_F(WrinkleTableTest, ListsTheActiveMapsWithTheRegionsWeightsByChannel) {
   EXPECT_FALSE(Skin().uses_dynamic);
 }
 
-TEST_F(WrinkleTableTest, AHingeRaisesADynamicMap) {
+TEST_F(WrinkleTableTest, AHingeActivatesADynamicMap) {
   Make(head_);
   const test::Subject subject = Bent(1.2f);
   ASSERT_TRUE(Update(subject).ok());
@@ -82,15 +82,15 @@ TEST_F(WrinkleTableTest, AHingeRaisesADynamicMap) {
   EXPECT_TRUE(Skin().maps.empty());
 }
 
-TEST_F(WrinkleTableTest, AJointThatAllButRestsNeedsNoMap) {
+TEST_F(WrinkleTableTest, AJointAlmostAtRestNeedsNoMap) {
   Make(head_);
   ASSERT_TRUE(Update(Bent(0.02f)).ok());
   EXPECT_GT(tables_->influences()[2], 0.0f);
   EXPECT_TRUE(Skin().maps.empty());
 }
 
-// What one of several needs is listed for all, each with its own weights and masks.
-TEST_F(WrinkleTableTest, ACrowdsListIsWhatAnyOfItNeeds) {
+// A map that one subject needs is listed for all, each with its own weights and masks.
+TEST_F(WrinkleTableTest, ACrowdListsTheMapsThatAnySubjectNeeds) {
   Make(head_);
   test::Subject squashed(head_);
   squashed.Set("r_squash", 0.5f);
@@ -107,7 +107,7 @@ TEST_F(WrinkleTableTest, ACrowdsListIsWhatAnyOfItNeeds) {
   request.others = std::span(&other, 1);
   ASSERT_TRUE(tables_->Update(request).ok());
   ASSERT_EQ(Skin().maps.size(), 2u);
-  EXPECT_EQ(Skin().maps[0].map, 2);  // what vertices mask comes first
+  EXPECT_EQ(Skin().maps[0].map, 2);  // maps with vertex masks come first
   EXPECT_EQ(Skin().maps[1].map, 1);
   EXPECT_EQ(Skin().num_dynamic, 1u);
   EXPECT_FALSE(Skin().paints_dynamic);
@@ -119,7 +119,7 @@ TEST_F(WrinkleTableTest, ACrowdsListIsWhatAnyOfItNeeds) {
   EXPECT_EQ(tables_->influences().size(), 2 * head_.skeleton.joint_names().size());
 }
 
-TEST_F(WrinkleTableTest, MapsGoOnTheSurfaceThatTheRigSays) {
+TEST_F(WrinkleTableTest, MapsAreDrawnOnTheSurfaceThatTheRigNames) {
   using Surface = wrinkle::WrinkleMap::Surface;
   head_.rig.wrinkle_maps[0].surface = Surface::kSkin;
   head_.rig.wrinkle_maps[2].surface = Surface::kCloth;
@@ -135,7 +135,7 @@ TEST_F(WrinkleTableTest, MapsGoOnTheSurfaceThatTheRigSays) {
   EXPECT_EQ(Skin().maps[0].map, 0);
   ASSERT_EQ(Cloth().maps.size(), 1u);
   EXPECT_EQ(Cloth().maps[0].map, 2);
-  // What says nothing goes on both.
+  // Maps without a stated surface are drawn on both.
   for (wrinkle::WrinkleMap& map : head_.rig.wrinkle_maps) map.surface = Surface::kAny;
   Make(head_);
   ASSERT_TRUE(Update(subject).ok());
@@ -143,7 +143,7 @@ TEST_F(WrinkleTableTest, MapsGoOnTheSurfaceThatTheRigSays) {
   EXPECT_EQ(Cloth().maps.size(), 2u);
 }
 
-TEST_F(WrinkleTableTest, ClothsMapsGoOnSkinWhereThereIsNoCloth) {
+TEST_F(WrinkleTableTest, ClothMapsAreDrawnOnSkinWithoutCloth) {
   head_.rig.wrinkle_maps[2].surface = wrinkle::WrinkleMap::Surface::kCloth;
   Make(head_);
   const test::Subject subject = Bent(1.2f);
@@ -151,8 +151,9 @@ TEST_F(WrinkleTableTest, ClothsMapsGoOnSkinWhereThereIsNoCloth) {
   EXPECT_EQ(Skin().maps.size(), 1u);
 }
 
-// A stream with its own skeleton and rig: what both rigs name travels, the rest is left out.
-TEST_F(WrinkleTableTest, ValuesTravelByNameFromAnotherRig) {
+// A stream with its own skeleton and rig: values that both rigs name are matched, the others
+// ignored.
+TEST_F(WrinkleTableTest, ValuesOfAnotherRigAreMatchedByName) {
   Make(head_);
   character::Character other = head_;
   std::swap(other.rig.regions[0], other.rig.regions[1]);
@@ -163,7 +164,7 @@ TEST_F(WrinkleTableTest, ValuesTravelByNameFromAnotherRig) {
   ASSERT_TRUE(Update(subject).ok());
   ASSERT_EQ(Skin().maps.size(), 1u);
   EXPECT_EQ(Skin().mask_weights[0], glm::vec4(0.5f, 0.0f, 0.0f, 0.0f));
-  // And back to a binding with the character's own order.
+  // Values are matched again for a binding with the character's own order.
   test::Subject own(head_);
   own.Set("r_squash", 1.0f);
   own.Solve();
@@ -171,7 +172,7 @@ TEST_F(WrinkleTableTest, ValuesTravelByNameFromAnotherRig) {
   EXPECT_EQ(Skin().mask_weights[0], glm::vec4(0.0f, 1.0f, 0.0f, 0.0f));
 }
 
-TEST_F(WrinkleTableTest, ShortSpansAreNamed) {
+TEST_F(WrinkleTableTest, ShortSpansAreReportedByName) {
   Make(head_);
   test::Subject subject(head_);
   subject.weights.pop_back();
@@ -181,7 +182,7 @@ TEST_F(WrinkleTableTest, ShortSpansAreNamed) {
   EXPECT_EQ(Update(subject).where(), "filtered_values");
 }
 
-TEST_F(WrinkleTableTest, EveryTexturedRegionHasAColourOfItsOwn) {
+TEST_F(WrinkleTableTest, EveryTexturedRegionHasItsOwnColour) {
   for (wrinkle::WrinkleMap& map : head_.rig.wrinkle_maps) {
     map.surface = wrinkle::WrinkleMap::Surface::kSkin;
   }
@@ -193,7 +194,7 @@ TEST_F(WrinkleTableTest, EveryTexturedRegionHasAColourOfItsOwn) {
   EXPECT_EQ(tables_->mask_bits(WrinkleGroup::kSkin), 1u);
   for (const WrinkleGroup group : {WrinkleGroup::kCloth, WrinkleGroup::kNone}) {
     for (const glm::vec4& colour : tables_->mask_palette(group)) EXPECT_EQ(colour, glm::vec4(0.0f));
-    EXPECT_EQ(tables_->mask_bits(group), 0u);  // and its layer is looked up on skin alone
+    EXPECT_EQ(tables_->mask_bits(group), 0u);  // its layer is sampled on skin only
   }
 }
 

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <glm/mat4x4.hpp>
+
+#include "render/request/camera.h"
+#include "render/settings/settings.h"
+#include "wrinkle/solver/solver.h"
+
+namespace furrow::render {
+
+inline constexpr int kMaxSubjects = 256;  // per picture
+inline constexpr int kMinSize = 16;       // width and height of a picture, pixels
+inline constexpr int kMaxSize = 4096;
+
+// One subject of a picture: the character in a pose, with its own wrinkles.
+struct PosedSubject {
+  // Joint matrices in model space, one per joint of the character's skeleton. Joints that blend
+  // shapes move must be moved already (wrinkle::BlendShapePose).
+  std::span<const glm::mat4> model;
+  // The binding that computed the values below. Its rig names the regions. Null: no wrinkles.
+  const wrinkle::RigBinding* binding = nullptr;
+  std::span<const float> wrinkle_weights;  // one per weight of the binding, [0, 1]
+  std::span<const float> filtered_values;  // one per driver value of the binding, [0, 1]
+  // Takes model space to the subject's place in the picture: rotation, uniform scale, translation
+  // (metres).
+  glm::mat4 placement{1.0f};
+};
+
+// One picture to draw. The request is itself the first subject, which the camera follows; `others`
+// are drawn beside it, up to kMaxSubjects in total. Each mesh is one draw call per pass, whatever
+// the number of subjects.
+struct FrameRequest : PosedSubject {
+  std::span<const PosedSubject> others;
+  Settings settings;
+  Camera camera;
+  int width = 640;  // pixels, [kMinSize, kMaxSize]
+  int height = 640;
+  std::uint64_t token = 0;  // returned unchanged in Image::token
+};
+
+}  // namespace furrow::render

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/skinning.glsl"
+#if WRINKLE_DYNAMIC
+#include "wrinkles/wrinkles_vert.glsl"
+#endif
+
+// Poses a mesh for several subjects, one per instance. It draws nothing: transform feedback
+// captures the output for every pass that draws the mesh (render/scene/posed_meshes.h).
+
+// Mirrors character::Vertex. Model space, rest pose, metres.
+layout(location = 0) in vec3 a_position;
+layout(location = 1) in vec3 a_normal;
+layout(location = 2) in vec4 a_tangent;
+layout(location = 3) in vec2 a_uv;
+layout(location = 4) in uvec4 a_joints;
+layout(location = 5) in vec4 a_skin_weights;
+#if DISPLACED
+layout(location = 6) in float a_share;  // share of the heights; 0 on the mesh's border
+#endif
+layout(location = 7) in uint a_subject;
+
+layout(xfb_buffer = 0, xfb_stride = 52 + 4 * DISPLACED + 16 * WRINKLE_DYNAMIC * MAP_SLOTS) out;
+layout(location = 0, xfb_offset = 0) out vec3 p_position;  // model space of the picture
+layout(location = 1, xfb_offset = 12) out vec3 p_normal;
+layout(location = 2, xfb_offset = 24) out vec4 p_tangent;
+layout(location = 3, xfb_offset = 40) out vec2 p_uv;
+layout(location = 4, xfb_offset = 48) flat out uint p_subject;
+#if DISPLACED
+layout(location = 5, xfb_offset = 52) out float p_share;
+#endif
+#if WRINKLE_DYNAMIC
+layout(location = 6, xfb_offset = 52 + 4 * DISPLACED) out vec4 p_dynamic_masks[MAP_SLOTS];
+#endif
+
+void main() {
+  SkinMatrix skin = blendJoints(a_subject, a_joints, a_skin_weights);
+  p_position = skinPoint(skin, a_position);
+  p_normal = skinDirection(skin, a_normal);
+  p_tangent = vec4(skinDirection(skin, a_tangent.xyz), a_tangent.w);
+  p_uv = a_uv;
+  p_subject = a_subject;
+#if DISPLACED
+  p_share = a_share;
+#endif
+#if WRINKLE_DYNAMIC
+  dynamicMasksAt(a_position, a_subject, a_joints, a_skin_weights, p_dynamic_masks);
+#endif
+}

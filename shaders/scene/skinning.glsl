@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// NUM_JOINTS  joints of the character's skeleton
+
+// Skinning matrices (placement * model * inverse_bind) of the joints, subject after subject. Each
+// is an affine 3x4 matrix in three rows.
+layout(std430, binding = 0) readonly buffer Joints { vec4 u_joint_rows[]; };
+
+struct SkinMatrix {
+  vec4 row0;
+  vec4 row1;
+  vec4 row2;
+};
+
+// Linear blend of up to four joints. `skinWeights` sum to 1.
+SkinMatrix blendJoints(uint subject, uvec4 joints, vec4 skinWeights) {
+  SkinMatrix m = SkinMatrix(vec4(0.0), vec4(0.0), vec4(0.0));
+  for (int i = 0; i < 4; ++i) {
+    uint row = 3u * (subject * uint(NUM_JOINTS) + joints[i]);
+    m.row0 += skinWeights[i] * u_joint_rows[row];
+    m.row1 += skinWeights[i] * u_joint_rows[row + 1u];
+    m.row2 += skinWeights[i] * u_joint_rows[row + 2u];
+  }
+  return m;
+}
+
+// Transforms a point from the rest pose to the picture's model space, metres.
+vec3 skinPoint(SkinMatrix m, vec3 p) {
+  vec4 point = vec4(p, 1.0);
+  return vec3(dot(m.row0, point), dot(m.row1, point), dot(m.row2, point));
+}
+
+// Transforms a direction with the matrix itself, which is correct for rotation and uniform scale.
+// The result is not unit.
+vec3 skinDirection(SkinMatrix m, vec3 d) {
+  return vec3(dot(m.row0.xyz, d), dot(m.row1.xyz, d), dot(m.row2.xyz, d));
+}

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/view.glsl"
+#include "occlusion/openness.glsl"
+#include "skin/skin_light.glsl"
+#include "scene/stored_facet.glsl"
+
+// Lights the facets that scene/surface.frag.glsl stored. Runs only on pixels with a surface.
+// Ambient occlusion reduces the sky's light.
+//
+// OCCLUSION  1: u_open is bound
+
+layout(binding = 0) uniform sampler2D u_colour;     // see struct StoredFacet
+layout(binding = 1) uniform sampler2D u_normal;
+layout(binding = 2) uniform sampler2D u_geometric;
+layout(binding = 3) uniform sampler2D u_matter;
+layout(binding = 4) uniform sampler2D u_depth;      // metres along the camera's axis
+#if OCCLUSION
+layout(binding = 10) uniform sampler2D u_open;
+#endif
+layout(location = 4) uniform float u_range;         // largest depth difference that mixes, metres
+
+layout(location = 0) out vec4 f_irradiance;  // see struct Leaving
+layout(location = 1) out vec4 f_radiance;
+layout(location = 2) out vec4 f_albedo;
+
+// The stored facet of a pixel at depth `metres`, model space.
+Facet facetAt(ivec2 pixel, float metres) {
+  vec3 inView = viewPosition(vec2(pixel) + 0.5, metres);
+  StoredFacet stored =
+      StoredFacet(texelFetch(u_colour, pixel, 0), texelFetch(u_normal, pixel, 0),
+                  texelFetch(u_geometric, pixel, 0), texelFetch(u_matter, pixel, 0));
+  return loadFacet(stored, u_camera_position.xyz + inView * u_view_rotation);
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  float metres = texelFetch(u_depth, pixel, 0).r;
+  Facet facet = facetAt(pixel, metres);
+  Lit lit = lightFacet(facet);
+#if OCCLUSION
+  float open = openAt(u_open, u_depth, pixel, metres, u_range);
+  lit.sky *= facet.kind == MATERIAL_SKIN ? openForDiffuse(open) : withBounces(open, facet.colour);
+  lit.skySpecular *= open;
+#endif
+  Leaving leaving = leavingLight(facet, lit, metres);
+  f_irradiance = leaving.irradiance;
+  f_radiance = vec4(leaving.radiance, 0.0);
+  f_albedo = vec4(leaving.albedo, 0.0);
+}
