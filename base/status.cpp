@@ -20,4 +20,9 @@ Status Status::At(std::string_view where) const {
   return {code_, what_, std::string(where), todo_};
 }
 
+Status Status::Within(std::string_view outer) const {
+  if (ok()) return *this;
+  return {code_, what_, std::string(outer) + (where_.empty() ? "" : ": " + where_), todo_};
+}
+
 }  // namespace furrow

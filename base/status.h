@@ -46,6 +46,10 @@ class [[nodiscard]] Status {
   // The same failure, with `where` filled in if it was empty.
   [[nodiscard]] Status At(std::string_view where) const;
 
+  // The same failure inside a larger thing, for example a field inside a file: prefixes `where`
+  // with "outer: ".
+  [[nodiscard]] Status Within(std::string_view outer) const;
+
  private:
   StatusCode code_ = StatusCode::kOk;
   std::string what_;

@@ -5,60 +5,21 @@
 #include <system_error>
 #include <utility>
 
-#include <tiny_gltf.h>
-
 #include "base/asset_path.h"
 #include "base/files.h"
 #include "base/status.h"
-#include "character/gltf_container.h"
 #include "character/gltf_material.h"
 #include "character/gltf_mesh.h"
+#include "character/gltf_reader.h"
 #include "character/gltf_skeleton.h"
 #include "character/picture_file.h"
+#include "gltf/limits.h"
 #include "rig/rig_file.h"
 
 namespace furrow::character {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Takes out the pictures that could not be read (they have no pixels); materials go without them.
-void DropMissingPictures(Character* character) {
-  std::vector<Picture> kept;
-  std::vector<int> index;
-  for (Picture& picture : character->pictures) {
-    index.push_back(picture.width > 0 ? static_cast<int>(kept.size()) : -1);
-    if (picture.width > 0) kept.push_back(std::move(picture));
-  }
-  character->pictures = std::move(kept);
-  for (Material& material : character->materials) {
-    for (int* picture : {&material.base_colour_texture, &material.normal_texture,
-                         &material.roughness_texture, &material.thickness_texture}) {
-      if (*picture >= 0) *picture = index[static_cast<std::size_t>(*picture)];
-    }
-  }
-}
-
-// The glTF's part of a character; `where` of an error is a field.
-Status ReadGltf(const tinygltf::Model& model, const fs::path& folder, const ReadOptions& options,
-                Character* character) {
-  Result<GltfSkeleton> skeleton = ReadGltfSkeleton(model);
-  FURROW_RETURN_IF_ERROR(skeleton);
-  Result<std::vector<Mesh>> meshes = ReadGltfMeshes(model, *skeleton, options);
-  FURROW_RETURN_IF_ERROR(meshes);
-  Result<std::vector<Material>> materials = ReadGltfMaterials(model);
-  FURROW_RETURN_IF_ERROR(materials);
-  Result<std::vector<Picture>> pictures = ReadGltfPictures(model, folder, options);
-  FURROW_RETURN_IF_ERROR(pictures);
-  if (options.notes != nullptr) options.notes->nameless_joints = skeleton->nameless_joints;
-  character->skeleton = std::move(skeleton->skeleton);
-  character->inverse_bind_matrices = std::move(skeleton->inverse_bind_matrices);
-  character->meshes = std::move(*meshes);
-  character->materials = std::move(*materials);
-  character->pictures = std::move(*pictures);
-  if (options.lenient) DropMissingPictures(character);
-  return {};
-}
 
 int FindEmbedded(const Character& character, std::string_view name) {
   const auto& pictures = character.pictures;
@@ -119,25 +80,18 @@ int Character::FindRigPicture(std::string_view picture_name) const {
 
 Result<Character> ParseCharacter(std::string_view bytes, const fs::path& folder,
                                  const ReadOptions& options) {
-  const Result<std::unique_ptr<tinygltf::Model>> model = ParseGltf(bytes, folder);
-  FURROW_RETURN_IF_ERROR(model);
   Character character;
   character.folder = folder;
-  FURROW_RETURN_IF_ERROR(ReadGltf(**model, folder, options, &character));
-  if (!(*model)->scenes.empty()) character.name = (*model)->scenes.front().name;
+  FURROW_RETURN_IF_ERROR(ReadGltfCharacter(bytes, folder, options, &character));
   return character;
 }
 
 Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,
                                 const wrinkle::PoseSource& poses) {
-  const Result<std::string> bytes = ReadFile(glb, kMaxGltfBytes);
+  const Result<std::string> bytes = ReadFile(glb, gltf::kMaxFileBytes);
   FURROW_RETURN_IF_ERROR(bytes);
   Result<Character> character = ParseCharacter(*bytes, glb.parent_path());
-  if (!character.ok()) {
-    const Status s = character.status();
-    return Status(s.code(), s.what(), glb.string() + (s.where().empty() ? "" : ": " + s.where()),
-                  s.todo());
-  }
+  if (!character.ok()) return character.status().Within(glb.string());
   if (character->name.empty()) character->name = glb.stem().string();
 
   fs::path rig_path = rig;

@@ -69,6 +69,8 @@ struct Character {
   std::vector<std::pair<std::string, int>> rig_pictures;
   // Pictures that the rig names and nobody has: what needs them is not drawn (weights do not care).
   std::vector<std::string> missing_rig_pictures;
+  // Where the reader deviated from the glTF file: "nodes[3].matrix: the matrix has shear, ...".
+  std::vector<std::string> warnings;
 
   [[nodiscard]] int FindRigPicture(std::string_view name) const;  // -1 when there is none
 };

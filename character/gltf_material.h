@@ -1,35 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <string_view>
 #include <vector>
 
 #include "character/character.h"
-
-namespace tinygltf {
-class Model;
-}
+#include "gltf/document/document.h"
 
 namespace furrow::character {
 
-inline constexpr std::size_t kMaxPictures = 64;
-inline constexpr std::size_t kMaxMaterials = 1024;
-
-// What a material is made of by its name, where the file does not say: "skin", "face", "head" and
-// "body" are skin; "eye" and "cornea" eyes; "hair", "lash", "brow" and "beard" hair; "cloth",
-// "suit", "shirt", "jeans" and the like cloth.
+// The kind of a material by words in its name, for files that do not state it: "skin", "face",
+// "head" and "body" are skin; "eye" and "cornea" are eyes; "hair", "lash", "brow" and "beard" are
+// hair; "cloth", "suit", "shirt", "jeans" and similar words are cloth.
 [[nodiscard]] Material::Kind GuessMaterialKind(std::string_view name);
 [[nodiscard]] std::string_view MaterialKindName(Material::Kind kind);  // "skin", "cloth", ...
 
-// All pictures of the file in its order, decoded: from buffer views, data URIs or (a .gltf's) files
-// found by FindAsset(). `where` of an error: "images[2]". Read leniently, a picture that is absent or
-// damaged is noted and has no pixels; limits hold all the same.
-[[nodiscard]] Result<std::vector<Picture>> ReadGltfPictures(const tinygltf::Model& model,
-                                                            const std::filesystem::path& folder,
+// All images of the file, decoded, in the file's order.
+//
+// With options.lenient, an image that is missing or damaged is noted and has no pixels. Limits
+// still apply. Errors: gltf::LocateImage()'s, DecodePicture()'s, kLimit (too many pixels
+// together). `where` is "images[2]".
+[[nodiscard]] Result<std::vector<Picture>> ReadGltfPictures(const gltf::Document& document,
                                                             const ReadOptions& options = {});
 
-// Materials; the kind is the extra "furrow_kind" or a guess. Texture indices are into the pictures.
-[[nodiscard]] Result<std::vector<Material>> ReadGltfMaterials(const tinygltf::Model& model);
+// All materials. The kind is the extra "furrow_kind", or guessed from the name. Texture indices
+// refer to the pictures. Errors: gltf::ReadMaterials()'s.
+[[nodiscard]] Result<std::vector<Material>> ReadGltfMaterials(const gltf::Document& document);
 
 }  // namespace furrow::character

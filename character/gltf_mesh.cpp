@@ -10,27 +10,26 @@
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <tiny_gltf.h>
 
 #include "base/status.h"
-#include "character/gltf_accessor.h"
 #include "character/spread_influences.h"
 #include "character/tangents.h"
+#include "gltf/document/accessor.h"
+#include "gltf/limits.h"
+#include "gltf/scene/meshes.h"
 
 namespace furrow::character {
 namespace {
 
-using tinygltf::Model;
-using tinygltf::Primitive;
+using gltf::Accessor;
+using gltf::ElementType;
 
-constexpr int kMaxInfluenceSets = 4;  // JOINTS_0 to JOINTS_3: 16 influences
-
-// One primitive on its way to a Mesh.
+// Converts one primitive to a Mesh.
 class PrimitiveReader {
  public:
-  PrimitiveReader(const Model& model, const Primitive& primitive, std::string at, bool lenient,
-                  Mesh* mesh, MeshNotes* notes)
-      : model_(model),
+  PrimitiveReader(const gltf::Document& document, const gltf::Primitive& primitive, std::string at,
+                  bool lenient, Mesh* mesh, MeshNotes* notes)
+      : document_(document),
         primitive_(primitive),
         at_(std::move(at)),
         lenient_(lenient),
@@ -38,20 +37,21 @@ class PrimitiveReader {
         notes_(notes) {}
 
   Status ReadGeometry() {
-    if (primitive_.mode != TINYGLTF_MODE_TRIANGLES) {
-      return {StatusCode::kUnsupported, "only triangles are drawn", at_ + ".mode"};
+    if (!primitive_.is_triangles) {
+      return {StatusCode::kUnsupported, "only triangles are supported", at_ + ".mode"};
     }
-    std::optional<GltfAccessor> position, normal, tangent, uv;
-    FURROW_RETURN_IF_ERROR(Attribute("POSITION", 3, true, &position));
-    if (position->size() > kMaxVertices) return {StatusCode::kLimit, "too many vertices", at_};
+    std::optional<Accessor> position, normal, tangent, uv;
+    FURROW_RETURN_IF_ERROR(Attribute("POSITION", ElementType::kVec3, true, &position));
+    if (position->size() > gltf::kMaxVertices)
+      return {StatusCode::kLimit, "too many vertices", at_};
     mesh_->vertices.resize(position->size());
-    FURROW_RETURN_IF_ERROR(Attribute("NORMAL", 3, false, &normal));
-    FURROW_RETURN_IF_ERROR(Attribute("TANGENT", 4, false, &tangent));
-    FURROW_RETURN_IF_ERROR(Attribute("TEXCOORD_0", 2, false, &uv));
+    FURROW_RETURN_IF_ERROR(Attribute("NORMAL", ElementType::kVec3, false, &normal));
+    FURROW_RETURN_IF_ERROR(Attribute("TANGENT", ElementType::kVec4, false, &tangent));
+    FURROW_RETURN_IF_ERROR(Attribute("TEXCOORD_0", ElementType::kVec2, false, &uv));
     notes_->has_uvs = uv.has_value();
     notes_->has_normals = normal.has_value();
     notes_->has_tangents = tangent.has_value();
-    notes_->morph_targets = static_cast<int>(primitive_.targets.size());
+    notes_->morph_targets = static_cast<int>(primitive_.num_morph_targets);
     bool normals_usable = normal.has_value();
     bool tangents_usable = tangent.has_value();
     for (std::size_t v = 0; v < mesh_->vertices.size(); ++v) {
@@ -78,18 +78,19 @@ class PrimitiveReader {
     return {};
   }
 
-  // `joint_of`: index in the skin's list to joint of the skeleton.
+  // `joint_of`: from index in the skin's list to joint of the skeleton.
   Status ReadInfluences(const std::vector<int>& joint_of) {
     notes_->skinned = true;
     std::vector<bool> unskinned(mesh_->vertices.size(), false);
-    std::vector<std::pair<std::optional<GltfAccessor>, std::optional<GltfAccessor>>> sets;
-    for (int set = 0; set < kMaxInfluenceSets; ++set) {
+    std::vector<std::pair<std::optional<Accessor>, std::optional<Accessor>>> sets;
+    for (int set = 0; set < gltf::kMaxInfluenceSets; ++set) {
       const std::string suffix = "_" + std::to_string(set);
       auto& [joints, weights] = sets.emplace_back();
-      FURROW_RETURN_IF_ERROR(Attribute("JOINTS" + suffix, 4, set == 0, &joints));
-      FURROW_RETURN_IF_ERROR(Attribute("WEIGHTS" + suffix, 4, joints.has_value(), &weights));
+      FURROW_RETURN_IF_ERROR(Attribute("JOINTS" + suffix, ElementType::kVec4, set == 0, &joints));
+      FURROW_RETURN_IF_ERROR(
+          Attribute("WEIGHTS" + suffix, ElementType::kVec4, joints.has_value(), &weights));
       if (joints && !joints->is_unsigned()) {
-        return {StatusCode::kSchema, "unsigned integers are due", Field("JOINTS" + suffix)};
+        return {StatusCode::kSchema, "expected unsigned integers", Field("JOINTS" + suffix)};
       }
       if (!joints) {
         sets.pop_back();
@@ -112,8 +113,8 @@ class PrimitiveReader {
           if (weight == 0.0f) continue;
           if (joint >= joint_of.size()) {
             return {StatusCode::kSchema,
-                    "vertex " + std::to_string(v) + " names joint " + std::to_string(joint) +
-                        ", the skin has " + std::to_string(joint_of.size()),
+                    "vertex " + std::to_string(v) + " refers to joint " + std::to_string(joint) +
+                        ", the skin has " + std::to_string(joint_of.size()) + " joints",
                     Field("JOINTS" + suffix)};
           }
           influences.emplace_back(weight, joint_of[joint]);
@@ -122,8 +123,9 @@ class PrimitiveReader {
       if (lenient_ && influences.empty()) {
         unskinned[v] = true;
         ++notes_->unskinned_vertices;
-      } else
-        FURROW_RETURN_IF_ERROR(Keep(influences, v));
+        continue;
+      }
+      FURROW_RETURN_IF_ERROR(KeepStrongest(influences, v));
     }
     if (notes_->unskinned_vertices > 0) SpreadInfluences(unskinned, joint_of.front(), mesh_);
     return {};
@@ -148,19 +150,18 @@ class PrimitiveReader {
   static bool MakeUnit(glm::vec3* v) {
     const float length = glm::length(*v);
     if (!(length > 1e-6f)) return false;
-    if (std::abs(length - 1.0f) > 1e-6f) *v /= length;  // a unit stays as written
+    if (std::abs(length - 1.0f) > 1e-6f) *v /= length;  // keeps the bits of a unit vector
     return true;
   }
 
-  Status Attribute(const std::string& name, int components, bool required,
-                   std::optional<GltfAccessor>* accessor) const {
+  Status Attribute(const std::string& name, ElementType type, bool required,
+                   std::optional<Accessor>* accessor) const {
     const auto found = primitive_.attributes.find(name);
     if (found == primitive_.attributes.end()) {
       if (!required) return {};
       return {StatusCode::kSchema, "the attribute is missing", Field(name)};
     }
-    Result<GltfAccessor> result =
-        GltfAccessor::Create(model_, found->second, components, Field(name));
+    const Result<Accessor> result = Accessor::Create(document_, found->second, type, Field(name));
     FURROW_RETURN_IF_ERROR(result);
     if (!mesh_->vertices.empty() && result->size() != mesh_->vertices.size()) {
       return {StatusCode::kSchema,
@@ -173,7 +174,7 @@ class PrimitiveReader {
   }
 
   template <class V>
-  Status Vector(const GltfAccessor& accessor, std::size_t vertex, const char* name, V* to) const {
+  Status Vector(const Accessor& accessor, std::size_t vertex, const char* name, V* to) const {
     for (int i = 0; i < V::length(); ++i) {
       (*to)[i] = accessor.Float(vertex, i);
       if (!std::isfinite((*to)[i])) return NotFinite(name, vertex);
@@ -189,29 +190,31 @@ class PrimitiveReader {
         mesh_->indices.push_back(static_cast<std::uint32_t>(i));
       }
     } else {
-      const Result<GltfAccessor> indices =
-          GltfAccessor::Create(model_, primitive_.indices, 1, where);
+      const Result<Accessor> indices =
+          Accessor::Create(document_, primitive_.indices, ElementType::kScalar, where);
       FURROW_RETURN_IF_ERROR(indices);
-      if (!indices->is_unsigned()) return {StatusCode::kSchema, "unsigned integers are due", where};
-      if (indices->size() > kMaxIndices) return {StatusCode::kLimit, "too many indices", where};
+      if (!indices->is_unsigned())
+        return {StatusCode::kSchema, "expected unsigned integers", where};
+      if (indices->size() > gltf::kMaxIndices)
+        return {StatusCode::kLimit, "too many indices", where};
       mesh_->indices.resize(indices->size());
       for (std::size_t i = 0; i < indices->size(); ++i) {
         const std::uint32_t index = indices->Unsigned(i);
         if (index >= num_vertices) {
           return {StatusCode::kSchema,
-                  "index " + std::to_string(index) + " of " + std::to_string(num_vertices) +
-                      " vertices",
+                  "index " + std::to_string(index) + " is out of range, there are " +
+                      std::to_string(num_vertices) + " vertices",
                   where};
         }
         mesh_->indices[i] = index;
       }
     }
     if (mesh_->indices.size() % 3 == 0) return {};
-    return {StatusCode::kSchema, "the indices are not three a triangle", where};
+    return {StatusCode::kSchema, "the number of indices is not a multiple of 3", where};
   }
 
-  // The strongest four of a vertex, with their sum 1.
-  Status Keep(std::vector<std::pair<float, int>>& influences, std::size_t v) {
+  // Keeps the strongest four influences of a vertex and scales their sum to 1.
+  Status KeepStrongest(std::vector<std::pair<float, int>>& influences, std::size_t v) {
     std::stable_sort(influences.begin(), influences.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
     NoteSum(influences);
@@ -233,9 +236,9 @@ class PrimitiveReader {
     return {};
   }
 
-  // What the weights of a vertex were before they are cut and normalised.
+  // Records what KeepStrongest() is about to change.
   void NoteSum(const std::vector<std::pair<float, int>>& influences) {
-    constexpr float kTolerance = 0.01f;  // bytes that are rounded one by one miss 1 by less
+    constexpr float kTolerance = 0.01f;  // above the rounding error of weights stored as bytes
     float sum = 0.0f;
     for (const auto& [weight, joint] : influences) sum += weight;
     notes_->truncated_vertices += influences.size() > 4 ? 1 : 0;
@@ -244,15 +247,15 @@ class PrimitiveReader {
     if (std::abs(sum - 1.0f) > std::abs(notes_->worst_sum - 1.0f)) notes_->worst_sum = sum;
   }
 
-  const Model& model_;
-  const Primitive& primitive_;
+  const gltf::Document& document_;
+  const gltf::Primitive& primitive_;
   std::string at_;
   bool lenient_;
   Mesh* mesh_;
   MeshNotes* notes_;
 };
 
-// Moves a mesh without skin to where its node stands in the rest pose.
+// Moves a mesh without a skin to model space in the rest pose.
 void Place(const glm::mat4& node_model, Mesh* mesh) {
   const glm::mat3 axes(node_model);
   const float determinant = glm::determinant(axes);
@@ -265,42 +268,26 @@ void Place(const glm::mat4& node_model, Mesh* mesh) {
   }
   if (determinant >= 0.0f) return;
   for (std::size_t i = 0; i + 2 < mesh->indices.size(); i += 3) {
-    std::swap(mesh->indices[i + 1], mesh->indices[i + 2]);  // mirrored: keep the outside outside
+    std::swap(mesh->indices[i + 1], mesh->indices[i + 2]);  // mirrored: keep the winding
   }
 }
 
-Status ReadNode(const Model& model, const GltfSkeleton& skeleton, std::size_t n, bool lenient,
+Status ReadNode(const gltf::Document& document, const gltf::Mesh& from, const gltf::Node& node,
+                const GltfSkeleton& skeleton, std::size_t n, bool lenient,
                 std::vector<Mesh>* meshes, std::vector<MeshNotes>* notes) {
-  const tinygltf::Node& node = model.nodes[n];
-  const std::string at = "nodes[" + std::to_string(n) + "]";
-  if (node.mesh >= static_cast<int>(model.meshes.size())) {
-    return {StatusCode::kSchema, "there is no such mesh", at + ".mesh"};
-  }
-  if (node.skin >= static_cast<int>(model.skins.size())) {
-    return {StatusCode::kSchema, "there is no such skin", at + ".skin"};
-  }
-  std::vector<int> joint_of;
-  if (node.skin >= 0) {
-    for (const int joint : model.skins[node.skin].joints) {
-      joint_of.push_back(skeleton.exact_joint[joint]);
-    }
-  }
-  const tinygltf::Mesh& from = model.meshes[node.mesh];
   for (std::size_t p = 0; p < from.primitives.size(); ++p) {
-    const Primitive& primitive = from.primitives[p];
+    const gltf::Primitive& primitive = from.primitives[p];
     const std::string where =
         "meshes[" + std::to_string(node.mesh) + "].primitives[" + std::to_string(p) + "]";
     Mesh& mesh = meshes->emplace_back();
-    mesh.name = from.name.empty() ? "mesh_" + std::to_string(node.mesh) : from.name;
+    mesh.name = from.name;
     if (from.primitives.size() > 1) mesh.name += "_" + std::to_string(p);
     mesh.material = primitive.material;
-    if (mesh.material >= static_cast<int>(model.materials.size())) {
-      return {StatusCode::kSchema, "there is no such material", where + ".material"};
-    }
-    PrimitiveReader reader(model, primitive, where, lenient, &mesh, &notes->emplace_back());
+    PrimitiveReader reader(document, primitive, where, lenient, &mesh, &notes->emplace_back());
     FURROW_RETURN_IF_ERROR(reader.ReadGeometry());
-    if (node.skin >= 0) {
-      FURROW_RETURN_IF_ERROR(reader.ReadInfluences(joint_of));
+    if (node.skin != gltf::kNone) {
+      FURROW_RETURN_IF_ERROR(
+          reader.ReadInfluences(skeleton.skin_joints[static_cast<std::size_t>(node.skin)]));
     } else {
       Place(skeleton.node_model[n], &mesh);
       reader.FollowJoint(skeleton.joint_of_node[n]);
@@ -311,26 +298,29 @@ Status ReadNode(const Model& model, const GltfSkeleton& skeleton, std::size_t n,
 
 }  // namespace
 
-Result<std::vector<Mesh>> ReadGltfMeshes(const Model& model, const GltfSkeleton& skeleton,
-                                         const ReadOptions& options) {
+Result<std::vector<Mesh>> ReadGltfMeshes(const gltf::Document& document,
+                                         const gltf::NodeForest& forest,
+                                         const GltfSkeleton& skeleton, const ReadOptions& options) {
+  const Result<std::vector<gltf::Mesh>> from = gltf::ReadMeshes(document);
+  FURROW_RETURN_IF_ERROR(from);
   std::vector<Mesh> meshes;
   std::vector<MeshNotes> notes;
   std::size_t vertices = 0;
   std::size_t indices = 0;
-  for (std::size_t n = 0; n < model.nodes.size(); ++n) {
-    if (model.nodes[n].mesh < 0) continue;
+  for (std::size_t n = 0; n < forest.nodes.size(); ++n) {
+    const gltf::Node& node = forest.nodes[n];
+    if (node.mesh == gltf::kNone) continue;
     const std::size_t before = meshes.size();
-    if (Status status = ReadNode(model, skeleton, n, options.lenient, &meshes, &notes);
-        !status.ok()) {
-      return status;
-    }
+    FURROW_RETURN_IF_ERROR(ReadNode(document, (*from)[static_cast<std::size_t>(node.mesh)], node,
+                                    skeleton, n, options.lenient, &meshes, &notes));
     for (std::size_t m = before; m < meshes.size(); ++m) {
       vertices += meshes[m].vertices.size();
       indices += meshes[m].indices.size();
     }
-    // Many nodes may share one mesh: what they add up to is bounded, too.
-    if (vertices > kMaxVertices || indices > kMaxIndices) {
-      return Status(StatusCode::kLimit, "too many vertices or indices in all", "meshes");
+    // Many nodes may share one mesh, so the sum needs a limit as well.
+    if (vertices > gltf::kMaxVertices || indices > gltf::kMaxIndices) {
+      return Status(StatusCode::kLimit, "the meshes have too many vertices or indices together",
+                    "meshes");
     }
   }
   if (meshes.empty()) return Status(StatusCode::kSchema, "no node has a mesh", "nodes");

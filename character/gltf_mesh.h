@@ -5,19 +5,23 @@
 
 #include "character/character.h"
 #include "character/gltf_skeleton.h"
+#include "gltf/document/document.h"
+#include "gltf/scene/nodes.h"
 
 namespace furrow::character {
 
-inline constexpr std::size_t kMaxVertices = 8u << 20;
-inline constexpr std::size_t kMaxIndices = 48u << 20;
-
-// Every primitive of every node with a mesh, as one Mesh each. A mesh without skin follows the
-// nearest joint above its node.
+// Every primitive of every node with a mesh, as one Mesh each. A mesh without a skin follows the
+// nearest joint at or above its node.
 //
-// Errors name the field: "meshes[0].primitives[1].attributes.WEIGHTS_0". kSchema (missing or
-// mistyped attributes, counts that differ, indices out of range), kNonFinite, kInvalidArgument
-// (skin weights negative, or all zero unless read leniently), kUnsupported (not triangles), kLimit.
-[[nodiscard]] Result<std::vector<Mesh>> ReadGltfMeshes(const tinygltf::Model& model,
+// - Up to 16 influences per vertex are read; the strongest four are kept and normalised.
+// - Missing or degenerate normals and tangents are computed.
+//
+// Errors: kSchema (missing or mistyped attributes, counts that differ, indices out of range),
+// kNonFinite, kInvalidArgument (negative skin weights; weights that are all zero, unless
+// options.lenient), kUnsupported (not triangles), kLimit (gltf/limits.h). `where` names the field:
+// "meshes[0].primitives[1].attributes.WEIGHTS_0".
+[[nodiscard]] Result<std::vector<Mesh>> ReadGltfMeshes(const gltf::Document& document,
+                                                       const gltf::NodeForest& forest,
                                                        const GltfSkeleton& skeleton,
                                                        const ReadOptions& options = {});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// SaveCharacterGlb(): one .glb with everything in it. Equal characters give equal bytes: fields are
-// written in a fixed order, and no time or path goes in.
+// CharacterGlb(): a character as one GLB. Equal characters give equal bytes: fields have a fixed
+// order, and neither times nor paths are written.
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -13,21 +13,22 @@
 #include "base/files.h"
 #include "base/status.h"
 #include "character/character.h"
-#include "character/gltf_builder.h"
 #include "character/gltf_material.h"
 #include "character/picture_file.h"
+#include "gltf/scene/joints.h"
+#include "gltf/scene/materials.h"
+#include "gltf/write/builder.h"
+#include "gltf/write/scene_json.h"
 
 namespace furrow::character {
 namespace {
 
-using Json = GltfBuilder::Json;
+using gltf::Builder;
+using Json = Builder::Json;
 
-Json List(const glm::vec3& v) { return {v.x, v.y, v.z}; }
-Json List(const glm::quat& q) { return {q.x, q.y, q.z, q.w}; }
-
-class GlbWriter {
+class CharacterWriter {
  public:
-  explicit GlbWriter(const Character& character) : character_(character) {}
+  explicit CharacterWriter(const Character& character) : character_(character) {}
 
   Result<std::string> Run() {
     FURROW_RETURN_IF_ERROR(CheckSizes());
@@ -47,7 +48,8 @@ class GlbWriter {
     if (joints == 0)
       return {StatusCode::kInvalidArgument, "the character has no joints", "skeleton"};
     if (static_cast<int>(character_.inverse_bind_matrices.size()) != joints) {
-      return {StatusCode::kInvalidArgument, "not one matrix a joint", "inverse_bind_matrices"};
+      return {StatusCode::kInvalidArgument, "expected one matrix per joint",
+              "inverse_bind_matrices"};
     }
     if (character_.meshes.empty()) {
       return {StatusCode::kInvalidArgument, "the character has no mesh", "meshes"};
@@ -59,8 +61,8 @@ class GlbWriter {
     for (const Material& m : character_.materials) {
       if (std::max({m.base_colour_texture, m.normal_texture, m.roughness_texture,
                     m.thickness_texture}) >= pictures) {
-        return {StatusCode::kInvalidArgument, "material '" + m.name + "' names no picture",
-                "materials"};
+        return {StatusCode::kInvalidArgument,
+                "material '" + m.name + "' refers to a picture that does not exist", "materials"};
       }
     }
     return {};
@@ -72,7 +74,7 @@ class GlbWriter {
       return {StatusCode::kInvalidArgument, "the mesh has no triangles", where};
     }
     if (mesh.material >= static_cast<int>(character_.materials.size())) {
-      return {StatusCode::kInvalidArgument, "there is no such material", where + ".material"};
+      return {StatusCode::kInvalidArgument, "the material does not exist", where + ".material"};
     }
     const auto vertices = static_cast<std::uint32_t>(mesh.vertices.size());
     if (*std::max_element(mesh.indices.begin(), mesh.indices.end()) >= vertices) {
@@ -89,29 +91,22 @@ class GlbWriter {
     return {};
   }
 
-  // Joints are the first nodes, in the skeleton's order; meshes follow.
+  // Joints are the first nodes, in the skeleton's order. Meshes follow.
   void AddNodes() {
     const wrinkle::Skeleton& skeleton = character_.skeleton;
-    const int joints = skeleton.num_joints();
-    std::vector<Json> children(static_cast<std::size_t>(joints), Json::array());
-    Json roots = Json::array();
-    for (int j = 0; j < joints; ++j) {
-      const int parent = skeleton.joint_parents()[j];
-      (parent < 0 ? roots : children[static_cast<std::size_t>(parent)]).push_back(j);
+    std::vector<gltf::Joint> joints;
+    for (int j = 0; j < skeleton.num_joints(); ++j) {
+      const auto index = static_cast<std::size_t>(j);
+      const wrinkle::Transform& rest = skeleton.rest_pose()[index];
+      joints.push_back({skeleton.joint_names()[index],
+                        skeleton.joint_parents()[index],
+                        {rest.translation, rest.rotation, rest.scale},
+                        skeleton.tails()[index],
+                        j});
     }
     Json nodes = Json::array();
-    for (int j = 0; j < joints; ++j) {
-      const wrinkle::Transform& rest = skeleton.rest_pose()[j];
-      Json node = {{"name", skeleton.joint_names()[j]}};
-      node["translation"] = List(rest.translation);
-      if (rest.rotation != glm::quat(1, 0, 0, 0)) node["rotation"] = List(rest.rotation);
-      if (rest.scale != glm::vec3(1)) node["scale"] = List(rest.scale);
-      if (!children[static_cast<std::size_t>(j)].empty()) {
-        node["children"] = std::move(children[static_cast<std::size_t>(j)]);
-      }
-      node["extras"] = {{"furrow_tail", List(skeleton.tails()[j])}};
-      nodes.push_back(std::move(node));
-    }
+    Json roots = Json::array();
+    gltf::AddJointNodes(joints, &nodes, &roots);
     for (std::size_t m = 0; m < character_.meshes.size(); ++m) {
       roots.push_back(nodes.size());
       nodes.push_back({{"name", "mesh:" + character_.meshes[m].name}, {"mesh", m}, {"skin", 0}});
@@ -126,8 +121,8 @@ class GlbWriter {
     for (std::size_t j = 0; j < joints; ++j) list.push_back(j);
     root_["skins"] =
         Json::array({{{"inverseBindMatrices",
-                       builder_.AddAccessor(character_.inverse_bind_matrices, GltfBuilder::kFloat,
-                                            "MAT4", GltfBuilder::kNoTarget)},
+                       builder_.AddAccessor(character_.inverse_bind_matrices, Builder::kFloat,
+                                            "MAT4", Builder::kNoTarget)},
                       {"joints", std::move(list)}}});
   }
 
@@ -146,55 +141,52 @@ class GlbWriter {
       tangents.push_back(v.tangent);
       uvs.push_back(v.uv);
       weights.push_back(glm::make_vec4(v.skin_weights));
-      // A joint of weight 0 counts as unused and is written as 0.
+      // glTF validators expect joint 0 where the weight is 0.
       glm::u16vec4 used(0);
       for (int i = 0; i < 4; ++i) used[i] = v.skin_weights[i] > 0.0f ? v.joints[i] : 0;
       joints.push_back(used);
     }
     Json attributes;
     const int position =
-        builder_.AddAccessor(positions, GltfBuilder::kFloat, "VEC3", GltfBuilder::kArrayBuffer);
-    builder_.accessor(position)["min"] = List(low);
-    builder_.accessor(position)["max"] = List(high);
+        builder_.AddAccessor(positions, Builder::kFloat, "VEC3", Builder::kArrayBuffer);
+    builder_.accessor(position)["min"] = gltf::ToJson(low);
+    builder_.accessor(position)["max"] = gltf::ToJson(high);
     attributes["POSITION"] = position;
     attributes["NORMAL"] =
-        builder_.AddAccessor(normals, GltfBuilder::kFloat, "VEC3", GltfBuilder::kArrayBuffer);
+        builder_.AddAccessor(normals, Builder::kFloat, "VEC3", Builder::kArrayBuffer);
     attributes["TANGENT"] =
-        builder_.AddAccessor(tangents, GltfBuilder::kFloat, "VEC4", GltfBuilder::kArrayBuffer);
+        builder_.AddAccessor(tangents, Builder::kFloat, "VEC4", Builder::kArrayBuffer);
     attributes["TEXCOORD_0"] =
-        builder_.AddAccessor(uvs, GltfBuilder::kFloat, "VEC2", GltfBuilder::kArrayBuffer);
+        builder_.AddAccessor(uvs, Builder::kFloat, "VEC2", Builder::kArrayBuffer);
     attributes["JOINTS_0"] = AddJoints(joints);
     attributes["WEIGHTS_0"] =
-        builder_.AddAccessor(weights, GltfBuilder::kFloat, "VEC4", GltfBuilder::kArrayBuffer);
+        builder_.AddAccessor(weights, Builder::kFloat, "VEC4", Builder::kArrayBuffer);
     Json primitive = {{"attributes", std::move(attributes)}, {"indices", AddIndices(mesh)}};
     if (mesh.material >= 0) primitive["material"] = mesh.material;
     root_["meshes"].push_back(
         {{"name", mesh.name}, {"primitives", Json::array({std::move(primitive)})}});
   }
 
-  // Joints and indices are written in the narrowest integers that hold all of them.
+  // Joints and indices use the narrowest integers that hold all of them.
   int AddJoints(const std::vector<glm::u16vec4>& joints) {
     if (character_.skeleton.num_joints() > std::numeric_limits<std::uint8_t>::max() + 1) {
-      return builder_.AddAccessor(joints, GltfBuilder::kUnsignedShort, "VEC4",
-                                  GltfBuilder::kArrayBuffer);
+      return builder_.AddAccessor(joints, Builder::kUnsignedShort, "VEC4", Builder::kArrayBuffer);
     }
     const std::vector<glm::u8vec4> narrow(joints.begin(), joints.end());
-    return builder_.AddAccessor(narrow, GltfBuilder::kUnsignedByte, "VEC4",
-                                GltfBuilder::kArrayBuffer);
+    return builder_.AddAccessor(narrow, Builder::kUnsignedByte, "VEC4", Builder::kArrayBuffer);
   }
 
   int AddIndices(const Mesh& mesh) {
-    // The highest number of each width means that a strip begins anew.
+    // The highest number of each width is reserved: it restarts a strip.
     if (mesh.vertices.size() > std::numeric_limits<std::uint16_t>::max()) {
-      return builder_.AddAccessor(mesh.indices, GltfBuilder::kUnsignedInt, "SCALAR",
-                                  GltfBuilder::kElementBuffer);
+      return builder_.AddAccessor(mesh.indices, Builder::kUnsignedInt, "SCALAR",
+                                  Builder::kElementBuffer);
     }
     const std::vector<std::uint16_t> narrow(mesh.indices.begin(), mesh.indices.end());
-    return builder_.AddAccessor(narrow, GltfBuilder::kUnsignedShort, "SCALAR",
-                                GltfBuilder::kElementBuffer);
+    return builder_.AddAccessor(narrow, Builder::kUnsignedShort, "SCALAR", Builder::kElementBuffer);
   }
 
-  // Texture i shows picture i.
+  // Texture i refers to picture i.
   void AddMaterials() {
     for (const Material& m : character_.materials) {
       Json pbr = {
@@ -213,7 +205,7 @@ class GlbWriter {
       }
       if (m.double_sided) material["doubleSided"] = true;
       if (m.thickness > 0.0f) AddThickness(m, &material);
-      material["extras"] = {{"furrow_kind", MaterialKindName(m.kind)}};
+      material["extras"] = {{gltf::kKindExtra, MaterialKindName(m.kind)}};
       root_["materials"].push_back(std::move(material));
     }
   }
@@ -228,7 +220,7 @@ class GlbWriter {
   Status AddPicture(const Picture& picture) {
     const Result<std::string> png = EncodePng(picture);
     FURROW_RETURN_IF_ERROR(png);
-    const int view = builder_.AddView(png->data(), png->size(), GltfBuilder::kNoTarget);
+    const int view = builder_.AddView(png->data(), png->size(), Builder::kNoTarget);
     root_["textures"].push_back({{"source", root_["textures"].size()}});
     root_["images"].push_back(
         {{"name", picture.name}, {"mimeType", "image/png"}, {"bufferView", view}});
@@ -236,21 +228,19 @@ class GlbWriter {
   }
 
   const Character& character_;
-  GltfBuilder builder_;
+  Builder builder_;
   Json& root_ = builder_.root();
 };
 
 }  // namespace
 
-Result<std::string> CharacterGlb(const Character& character) { return GlbWriter(character).Run(); }
+Result<std::string> CharacterGlb(const Character& character) {
+  return CharacterWriter(character).Run();
+}
 
 Status SaveCharacterGlb(const Character& character, const std::filesystem::path& glb) {
-  Result<std::string> bytes = CharacterGlb(character);
-  if (!bytes.ok()) {
-    const Status s = bytes.status();
-    return {s.code(), s.what(), glb.string() + (s.where().empty() ? "" : ": " + s.where()),
-            s.todo()};
-  }
+  const Result<std::string> bytes = CharacterGlb(character);
+  if (!bytes.ok()) return bytes.status().Within(glb.string());
   return WriteFileAtomically(glb, *bytes);
 }
 

@@ -18,7 +18,7 @@ namespace furrow::character {
 // Reads a wrinkle rig (JSON, checked against rig/rig.fbs; docs/RIG.md is the manual).
 //
 // - Reference poses that name a file and frame are looked up beside the rig, then in the folders of
-//   FURROW_ASSET_PATH, and read by `poses` (see motion/clip/pose_source.h). Without a source such a
+//   FURROW_ASSET_PATH, and read by `poses` (see motion/pose_source.h). Without a source such a
 //   rig is kUnsupported. Mixes are resolved; a pose that only mixes use is left out.
 // - Names are checked within the rig: unique, and what refers to them exists. Joints are not: that
 //   is RigBinding's, once a skeleton is known. Textures are not opened.

@@ -8,7 +8,7 @@
 
 #include "base/data_dir.h"
 #include "base/status.h"
-#include "motion/clip/pose_source.h"
+#include "motion/pose_source.h"
 #include "render/settings/settings_file.h"
 #include "rig/rig_file.h"
 

@@ -338,6 +338,9 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
     spdlog::warn("the character has no wrinkle rig: there will be no weights; see --rig");
   }
   if (config.render && assets->character != nullptr) {
+    for (const std::string& warning : assets->character->warnings) {
+      spdlog::warn("character: {}", warning);
+    }
     for (const std::string& name : assets->character->missing_rig_pictures) {
       spdlog::warn("nobody has the rig's picture '{}': what needs it is not drawn", name);
     }

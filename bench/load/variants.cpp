@@ -11,6 +11,7 @@
 #include "client/cli/inputs.h"
 #include "client/cli/load/load_input.h"
 #include "motion/clip/clip.h"
+#include "motion/clip_file.h"
 #include "rig/rig_file.h"
 
 namespace furrow::bench {

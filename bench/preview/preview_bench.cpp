@@ -15,7 +15,7 @@
 #include "bench/report/command_line.h"
 #include "bench/report/results.h"
 #include "character/character.h"
-#include "motion/clip/pose_source.h"
+#include "motion/pose_source.h"
 #include "wrinkle/skeleton/pose.h"
 
 namespace furrow::bench {

@@ -9,7 +9,8 @@
 #include "base/data_dir.h"
 #include "base/status.h"
 #include "client/cli/progress.h"
-#include "motion/clip/pose_source.h"
+#include "motion/clip_file.h"
+#include "motion/pose_source.h"
 #include "recording/take_clip.h"
 #include "report/words.h"
 #include "rig/rig_file.h"
@@ -93,6 +94,7 @@ Result<character::Character> LoadCharacterArgument(const std::string& glb, const
   auto character = character::LoadCharacter(package, rig.empty() ? fs::path() : ResolveRigPath(rig),
                                             motion::CachedPoseSource());
   if (!character.ok()) return character;
+  PrintWarnings(character->warnings);
   for (const std::string& name : character->missing_rig_pictures) {
     PrintWarnings({"nobody has the rig's picture '" + name + "': what needs it is not drawn"});
   }

@@ -1,38 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-#include <utility>
 #include <vector>
 
-#include "motion/gltf/gltf_document.h"
+#include "base/status.h"
+#include "gltf/animation/animation.h"
+#include "gltf/animation/vrm_animation.h"
+#include "gltf/document/document.h"
+#include "gltf/scene/nodes.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-// Which nodes of a glTF file are joints, and what they are
-// called; private to motion/'s glTF reader.
+// The joints of a glTF animation; private to motion/gltf/.
 namespace furrow::motion {
-
-struct ClipReport;
-
-// What VRMC_vrm_animation says about nodes.
-struct VrmAnimation {
-  bool present = false;
-  std::vector<std::pair<std::string, int>> human_bones;  // VRM's name, node
-  std::vector<std::pair<std::string, int>> expressions;
-  int look_at = -1;  // node
-};
-
-[[nodiscard]] Result<VrmAnimation> ReadVrmAnimation(const GltfDocument& document);
 
 struct GltfSkeleton {
   wrinkle::Skeleton skeleton;
-  std::vector<int> joint_nodes;  // node of every joint, in the skeleton's order
+  std::vector<int> joint_of_node;  // per node: joint of `skeleton`, or kNoJoint
 };
 
-// See ParseGltfAnimation() for what becomes a joint. `moving`: nodes whose transform is animated.
-// A skeleton without joints is no error: the file may animate morph weights alone.
-[[nodiscard]] Result<GltfSkeleton> BuildGltfSkeleton(const GltfDocument& document,
-                                                     const VrmAnimation& vrm,
-                                                     const std::vector<int>& moving, float scale);
+// Chooses joints as ParseGltfAnimation() describes. `scale` multiplies every length.
+//
+// A skeleton without joints is valid: the file may animate morph weights alone. Errors: kLimit
+// (wrinkle::kMaxJoints), Skeleton::Create()'s.
+[[nodiscard]] Result<GltfSkeleton> BuildGltfSkeleton(gltf::Document* document,
+                                                     const gltf::NodeForest& forest,
+                                                     const gltf::VrmAnimation& vrm,
+                                                     const gltf::Animation& animation, float scale);
 
 }  // namespace furrow::motion

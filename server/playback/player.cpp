@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "base/status.h"
+#include "motion/clip_file.h"
 #include "protocol/codec/offer_check.h"
 #include "protocol/messages/hash.h"
 #include "protocol/messages/limits.h"

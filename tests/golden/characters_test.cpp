@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "authoring/import/makehuman/makehuman.h"
-#include "motion/clip/pose_source.h"
+#include "motion/pose_source.h"
 #include "rig/rig_reference_pose.h"
 #include "sitter.h"
 #include "wrinkle/drivers/reference_pose.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "motion/clip/pose_source.h"
+#include "motion/pose_source.h"
 #include "protocol/messages/hash.h"
 #include "protocol/mocap/livelink_face.h"
 #include "rig/rig_file.h"

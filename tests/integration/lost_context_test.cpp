@@ -16,7 +16,7 @@
 #include <spdlog/spdlog.h>
 
 #include "character/character.h"
-#include "motion/clip/pose_source.h"
+#include "motion/pose_source.h"
 #include "server/pipeline/render_thread.h"
 
 namespace furrow::testing_net {

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "character/character.h"
-#include "motion/clip/pose_source.h"
+#include "motion/pose_source.h"
 
 namespace furrow::testing_net {
 namespace {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon_fixture.h"
+#include "motion/clip_file.h"
 
 namespace furrow::testing_net {
 namespace {

@@ -1,4 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one implementation of tinygltf in the program; its configuration is in CMakeLists.txt.
+// The only translation unit that compiles tinygltf. CMakeLists.txt sets its options.
 #define TINYGLTF_IMPLEMENTATION
 #include <tiny_gltf.h>

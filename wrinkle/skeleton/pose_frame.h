@@ -17,7 +17,7 @@ struct PoseFrame {
 };
 
 // How a wrinkle rig that says "this file, that frame" gets its pose, without its reader knowing any
-// recording format: motion/clip/pose_source.h offers one, programs plug it in.
+// recording format: motion/pose_source.h offers one, programs plug it in.
 //
 // `path` exists; `frame` counts from 0. Errors name the file (kNotFound, kParse, kInvalidArgument:
 // no such frame, ...). May be called often for one file: a source should keep what it read last.

@@ -22,18 +22,18 @@
 #include "authoring/import/model/confined.h"
 #include "authoring/import/model/gltf_pieces.h"
 #include "base/status.h"
-#include "character/gltf_builder.h"
-#include "character/gltf_mesh.h"
+#include "gltf/limits.h"
+#include "gltf/scene/transform.h"
+#include "gltf/write/builder.h"
+#include "gltf/write/scene_json.h"
 #include "wrinkle/skeleton/transform.h"
 
 namespace furrow::character {
 namespace {
 
-using Json = GltfBuilder::Json;
+using Json = gltf::Builder::Json;
 
 constexpr std::size_t kMaxForeignBytes = 512u << 20;
-constexpr std::size_t kMaxForeignNodes = 16384;
-constexpr int kMaxSets = 4;  // of four influences
 
 // Reads nothing: the model is in memory, and no file that it names is followed.
 class NoFiles : public Assimp::IOSystem {
@@ -115,7 +115,7 @@ class SceneWriter {
       source_by_name_.emplace(NameFrom(node.mName), i);
       for (unsigned m = 0; m < node.mNumMeshes; ++m) instances_.emplace_back(node.mMeshes[m], i);
       for (unsigned c = 0; c < node.mNumChildren; ++c) {
-        if (sources_.size() >= kMaxForeignNodes) {
+        if (sources_.size() >= gltf::kMaxNodes) {
           return {StatusCode::kLimit, "the file has too many nodes"};
         }
         sources_.push_back({node.mChildren[c], static_cast<int>(i), sources_[i].model});
@@ -155,13 +155,13 @@ class SceneWriter {
       const int parent = Kept(source.parent);
       if (!source.is_joint && (parent < 0 || !below[i])) continue;
       const glm::mat4 above = parent < 0 ? glm::mat4(1.0f) : sources_[parent].model;
-      const wrinkle::Transform local = WithoutShear(glm::inverse(above) * source.model);
-      source.model = above * wrinkle::ToMatrix(local);
+      const gltf::Transform local = InvertibleTransform(glm::inverse(above) * source.model);
+      source.model = above * gltf::ToMatrix(local);
       source.written = static_cast<int>(nodes_.size());
       std::string name = NameFrom(source.node->mName);
       if (!names.insert(name).second) name += "." + std::to_string(i);
       (parent < 0 ? roots_ : nodes_[sources_[parent].written]["children"]).push_back(nodes_.size());
-      nodes_.push_back(NodeJson(name, local));
+      nodes_.push_back(gltf::NodeJson(name, local));
       if (source.is_joint) {
         joint_of_source_[i] = joints_.size();
         joints_.push_back(i);
@@ -184,8 +184,8 @@ class SceneWriter {
       joints.push_back(sources_[source].written);
     }
     root_["skins"] = Json::array(
-        {{{"inverseBindMatrices",
-           builder_.AddAccessor(inverse_bind, GltfBuilder::kFloat, "MAT4", GltfBuilder::kNoTarget)},
+        {{{"inverseBindMatrices", builder_.AddAccessor(inverse_bind, gltf::Builder::kFloat, "MAT4",
+                                                       gltf::Builder::kNoTarget)},
           {"joints", std::move(joints)}}});
   }
 
@@ -195,7 +195,7 @@ class SceneWriter {
     for (const auto& [mesh, source] : instances_) {
       vertices += scene_.mMeshes[mesh]->mNumVertices;
       indices += std::size_t{3} * scene_.mMeshes[mesh]->mNumFaces;
-      if (vertices > kMaxVertices || indices > kMaxIndices) {
+      if (vertices > gltf::kMaxVertices || indices > gltf::kMaxIndices) {
         return {StatusCode::kLimit, "the file has too many vertices or triangles"};
       }
       AddMesh(*scene_.mMeshes[mesh], source);
@@ -222,7 +222,8 @@ class SceneWriter {
     for (auto& list : influences) {
       std::stable_sort(list.begin(), list.end(),
                        [](const Influence& a, const Influence& b) { return a.weight > b.weight; });
-      if (list.size() > 4 * kMaxSets) list.resize(4 * kMaxSets);
+      if (list.size() > std::size_t{4} * gltf::kMaxInfluenceSets)
+        list.resize(std::size_t{4} * gltf::kMaxInfluenceSets);
     }
     return influences;
   }
@@ -285,7 +286,7 @@ class SceneWriter {
         uvs.emplace_back(mesh.mTextureCoords[0][v].x, 1.0f - mesh.mTextureCoords[0][v].y);
       }
     }
-    using B = GltfBuilder;
+    using B = gltf::Builder;
     Json attributes;
     attributes["POSITION"] = builder_.AddAccessor(positions, B::kFloat, "VEC3", B::kArrayBuffer);
     if (!normals.empty()) {
@@ -327,7 +328,7 @@ class SceneWriter {
   }
 
   const aiScene& scene_;
-  GltfBuilder builder_;
+  gltf::Builder builder_;
   Json& root_ = builder_.root();
   Json nodes_ = Json::array();
   Json roots_ = Json::array();

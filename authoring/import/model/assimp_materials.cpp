@@ -11,7 +11,7 @@
 namespace furrow::character {
 namespace {
 
-using Json = GltfBuilder::Json;
+using Json = gltf::Builder::Json;
 
 constexpr std::size_t kMaxPicturesOf = 64;
 
@@ -103,7 +103,7 @@ int AssimpMaterials::AddTexture(const aiString& path) {
   if (embedded != nullptr && embedded->mHeight == 0) {
     image["mimeType"] = "image/png";  // told by its first bytes, whatever it is
     image["bufferView"] =
-        builder_.AddView(embedded->pcData, embedded->mWidth, GltfBuilder::kNoTarget);
+        builder_.AddView(embedded->pcData, embedded->mWidth, gltf::Builder::kNoTarget);
   } else if (embedded != nullptr || name.empty()) {
     remarks_.push_back("the picture '" + name + "' is embedded as raw pixels: left out");
     return -1;

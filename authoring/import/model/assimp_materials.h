@@ -10,7 +10,7 @@
 #include <assimp/material.h>
 #include <assimp/scene.h>
 
-#include "character/gltf_builder.h"
+#include "gltf/write/builder.h"
 
 namespace furrow::character {
 
@@ -24,21 +24,21 @@ class AssimpMaterials {
  public:
   // Both outlive it. Materials, textures and images are appended to the builder's root, materials
   // in the scene's order.
-  AssimpMaterials(const aiScene& scene, GltfBuilder* builder)
+  AssimpMaterials(const aiScene& scene, gltf::Builder* builder)
       : scene_(scene), builder_(*builder), root_(builder->root()) {}
 
   // Appends a remark for each picture that is left out.
   void Run(std::vector<std::string>* remarks);
 
  private:
-  [[nodiscard]] GltfBuilder::Json Material(const aiMaterial& from);
+  [[nodiscard]] gltf::Builder::Json Material(const aiMaterial& from);
   // The texture of the first of `types` that the material has; -1 for none.
   int TextureOf(const aiMaterial& material, std::initializer_list<aiTextureType> types);
   int AddTexture(const aiString& path);
 
   const aiScene& scene_;
-  GltfBuilder& builder_;
-  GltfBuilder::Json& root_;
+  gltf::Builder& builder_;
+  gltf::Builder::Json& root_;
   std::map<std::string, int> texture_by_path_;
   std::vector<std::string> remarks_;
 };

@@ -2,41 +2,25 @@
 #include "authoring/import/model/gltf_pieces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <string>
 
-#include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
-#include <glm/matrix.hpp>
+#include <glm/gtc/type_precision.hpp>
 
 namespace furrow::character {
 
-wrinkle::Transform WithoutShear(const glm::mat4& m) {
-  wrinkle::Transform t;
-  t.translation = glm::vec3(m[3]);
-  glm::mat3 axes(m);
+gltf::Transform InvertibleTransform(const glm::mat4& m) {
+  gltf::Transform transform = gltf::Decompose(glm::dmat4(m)).transform;
   for (int i = 0; i < 3; ++i) {
-    t.scale[i] = std::max(glm::length(axes[i]), 1e-9f);
-    axes[i] /= t.scale[i];
+    float& scale = transform.scale[i];
+    if (std::abs(scale) < 1e-9f) scale = std::copysign(1e-9f, scale);
   }
-  if (glm::determinant(axes) < 0.0f) {
-    t.scale.x = -t.scale.x;
-    axes[0] = -axes[0];
-  }
-  const glm::quat rotation = glm::quat_cast(axes);
-  const float length = glm::length(rotation);
-  t.rotation = length > 1e-6f ? rotation / length : glm::quat(1.0f, 0.0f, 0.0f, 0.0f);
-  return t;
+  return transform;
 }
 
-GltfBuilder::Json NodeJson(const std::string& name, const wrinkle::Transform& t) {
-  return {{"name", name},
-          {"translation", {t.translation.x, t.translation.y, t.translation.z}},
-          {"rotation", {t.rotation.x, t.rotation.y, t.rotation.z, t.rotation.w}},
-          {"scale", {t.scale.x, t.scale.y, t.scale.z}}};
-}
-
-void AddInfluences(const std::vector<std::vector<Influence>>& influences, GltfBuilder* builder,
-                   GltfBuilder::Json* attributes) {
+void AddInfluences(const std::vector<std::vector<Influence>>& influences, gltf::Builder* builder,
+                   gltf::Builder::Json* attributes) {
   std::size_t most = 1;
   for (const auto& list : influences) most = std::max(most, list.size());
   for (std::size_t set = 0; 4 * set < most; ++set) {
@@ -48,7 +32,7 @@ void AddInfluences(const std::vector<std::vector<Influence>>& influences, GltfBu
         weights[v][static_cast<int>(i % 4)] = influences[v][i].weight;
       }
     }
-    using B = GltfBuilder;
+    using B = gltf::Builder;
     const std::string suffix = "_" + std::to_string(set);
     (*attributes)["JOINTS" + suffix] =
         builder->AddAccessor(joints, B::kUnsignedShort, "VEC4", B::kArrayBuffer);

@@ -2,29 +2,27 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
 
-#include "character/gltf_builder.h"
-#include "wrinkle/skeleton/transform.h"
+#include "gltf/scene/transform.h"
+#include "gltf/write/builder.h"
 
-// Pieces of a glTF that is written from another format.
+// Parts of a glTF file that is written from another format.
 namespace furrow::character {
 
-// The nearest transform without the shear that a file may have; axes of no length become tiny.
-[[nodiscard]] wrinkle::Transform WithoutShear(const glm::mat4& m);
-
-[[nodiscard]] GltfBuilder::Json NodeJson(const std::string& name, const wrinkle::Transform& t);
+// gltf::Decompose() with every scale at least 1e-9 in size, so that the result can be inverted.
+[[nodiscard]] gltf::Transform InvertibleTransform(const glm::mat4& m);
 
 struct Influence {
-  std::size_t joint;  // of the skin
+  std::size_t joint;  // index in the skin
   float weight;
 };
 
-// JOINTS_n and WEIGHTS_n, as many sets of four as the vertex with most influences needs.
-void AddInfluences(const std::vector<std::vector<Influence>>& influences, GltfBuilder* builder,
-                   GltfBuilder::Json* attributes);
+// Adds the attributes JOINTS_n and WEIGHTS_n, with as many sets of four as the vertex with the most
+// influences needs. `influences` has one list per vertex.
+void AddInfluences(const std::vector<std::vector<Influence>>& influences, gltf::Builder* builder,
+                   gltf::Builder::Json* attributes);
 
 }  // namespace furrow::character

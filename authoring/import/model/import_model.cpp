@@ -8,17 +8,12 @@
 #include "base/ascii.h"
 #include "base/files.h"
 #include "base/status.h"
-#include "character/gltf_container.h"
+#include "gltf/limits.h"
 
 namespace furrow::character {
 namespace {
 
 namespace fs = std::filesystem;
-
-Status At(const Status& s, const fs::path& path) {
-  return {s.code(), s.what(), path.string() + (s.where().empty() ? "" : ": " + s.where()),
-          s.todo()};
-}
 
 std::string Extension(const fs::path& path) { return AsciiLower(path.extension().string()); }
 
@@ -86,10 +81,11 @@ void BindUnskinned(OpenedModel* model) {
 }  // namespace
 
 Result<OpenedModel> OpenModel(const fs::path& path) {
-  const Result<std::string> bytes = ReadFile(path, kMaxGltfBytes);
+  const Result<std::string> bytes = ReadFile(path, gltf::kMaxFileBytes);
   FURROW_RETURN_IF_ERROR(bytes);
   OpenedModel model;
-  if (Status status = Parse(*bytes, path, &model); !status.ok()) return At(status, path);
+  if (Status status = Parse(*bytes, path, &model); !status.ok())
+    return status.Within(path.string());
   if (model.character.name.empty()) model.character.name = path.stem().string();
   return model;
 }
@@ -105,6 +101,7 @@ Result<ImportedModel> ImportModel(const fs::path& path, const SkeletonMaps& maps
   const CharacterReport report = CheckCharacter(opened->character, opened->notes, maps, false);
   ImportedModel imported;
   imported.remarks = std::move(opened->remarks);
+  imported.warnings = opened->character.warnings;
   for (const Finding& finding : report.findings) {
     const bool settled = finding.code == "up-axis" || finding.code == "units";
     if (finding.severity == Severity::kError) {
@@ -119,7 +116,7 @@ Result<ImportedModel> ImportModel(const fs::path& path, const SkeletonMaps& maps
   const float scale = options.scale.value_or(report.space.scale);
   if (report.space.rotation != glm::mat3(1.0f) || scale != 1.0f) {
     if (Status s = MoveToSpace(report.space.rotation, scale, &opened->character); !s.ok()) {
-      return At(s, path);
+      return s.Within(path.string());
     }
   }
   imported.character = std::move(opened->character);

@@ -50,6 +50,7 @@ int Check(const CheckArguments& arguments) {
   const auto rig_given = GiveRig(arguments, &opened->character);
   if (!rig_given.ok()) return Fail(rig_given.status());
   PrintNotes(opened->remarks);
+  PrintWarnings(opened->character.warnings);
   const character::CharacterReport report =
       character::CheckCharacter(opened->character, opened->notes, *maps, *rig_given);
   const std::string text = arguments.json ? ToJson(report) : ToText(report);

@@ -13,7 +13,7 @@
 #include "client/cli/exit_code.h"
 #include "client/cli/inputs.h"
 #include "client/cli/progress.h"
-#include "motion/clip/pose_source.h"
+#include "motion/pose_source.h"
 #include "report/words.h"
 
 namespace furrow::cli {

@@ -15,6 +15,7 @@
 #include "client/cli/inputs.h"
 #include "client/cli/output/take_output.h"
 #include "motion/clip/clip.h"
+#include "motion/clip_file.h"
 #include "recording/take_poses.h"
 #include "report/words.h"
 

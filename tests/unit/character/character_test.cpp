@@ -11,14 +11,15 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
-#include "character/gltf_container.h"
 #include "character/picture_file.h"
+#include "gltf/container/glb.h"
 #include "tests/temporary_folder.h"
 
 namespace furrow::character {
 namespace {
 
 using nlohmann::json;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
@@ -82,7 +83,7 @@ std::string Words(std::initializer_list<std::size_t> words) {
 // The square's file with its JSON, and its buffer, changed.
 std::string Changed(const std::function<void(json&, std::string&)>& change) {
   const std::string glb = GlbOf(Square());
-  const gltf::Glb parts = *SplitGlb(glb);
+  const gltf::Container parts = *gltf::SplitContainer(glb);
   json root = json::parse(parts.json);
   std::string binary(parts.binary);
   change(root, binary);
@@ -163,7 +164,10 @@ TEST(Character, RefusesEveryTruncation) {
     ASSERT_FALSE(character.ok()) << length;
     ASSERT_EQ(character.status().code(), StatusCode::kParse) << character.status().ToString();
   }
-  EXPECT_EQ(ParseCharacter(whole + '\0', ".").status().where(), "header.length");
+  const auto longer = ParseCharacter(whole + '\0', ".");
+  ASSERT_TRUE(longer.ok()) << longer.status().ToString();
+  EXPECT_THAT(longer->warnings,
+              ElementsAre("header.length: 1 bytes after the stated end are ignored"));
 }
 
 struct Wrong {
@@ -193,10 +197,10 @@ INSTANTIATE_TEST_SUITE_P(
               StatusCode::kCyclic, "nodes[2].children"},
         Wrong{"child", [](json& r, std::string&) { r["nodes"][0]["children"] = {99}; },
               StatusCode::kSchema, "nodes[0].children"},
-        Wrong{"twins", [](json& r, std::string&) { r["nodes"][1]["name"] = "root"; },
-              StatusCode::kInvalidArgument, "nodes"},
         Wrong{"rotation", [](json& r, std::string&) { r["nodes"][1]["rotation"] = {0, 0, 0, 0}; },
-              StatusCode::kNonFinite, "nodes[1]"},
+              StatusCode::kSchema, "nodes[1].rotation"},
+        Wrong{"huge", [](json& r, std::string&) { r["nodes"][1]["translation"] = {0, 1e200, 0}; },
+              StatusCode::kNonFinite, "nodes[1].translation"},
         Wrong{"skin joint", [](json& r, std::string&) { r["skins"][0]["joints"] = {0, 77}; },
               StatusCode::kSchema, "skins[0].joints"},
         Wrong{"bind", [](json& r, std::string& b) {
@@ -205,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"mesh", [](json& r, std::string&) { r["nodes"][2]["mesh"] = 5; }, StatusCode::kSchema,
               "nodes[2].mesh"},
         Wrong{"view", [](json& r, std::string&) { r["bufferViews"][1]["byteLength"] = 1u << 30; },
-              StatusCode::kParse, "bufferViews[1].byteLength"},
+              StatusCode::kSchema, "bufferViews[1].byteLength"},
         Wrong{"view offset", [](json& r, std::string&) { r["bufferViews"][1]["byteOffset"] = -4; },
               StatusCode::kSchema, "bufferViews[1].byteOffset"},
         Wrong{"buffer", [](json& r, std::string&) { r["bufferViews"][0]["buffer"] = 1; },
@@ -213,7 +217,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"no bytes", [](json& r, std::string&) { r["buffers"][0]["byteLength"] = 0; },
               StatusCode::kSchema, "buffers[0].byteLength"},
         Wrong{"count", [](json& r, std::string&) { r["accessors"][1]["count"] = 1000000000u; },
-              StatusCode::kParse, "meshes[0].primitives[0].attributes.POSITION"},
+              StatusCode::kLimit, "meshes[0].primitives[0].attributes.POSITION"},
         Wrong{"counts differ", [](json& r, std::string&) { r["accessors"][2]["count"] = 3; },
               StatusCode::kSchema, "meshes[0].primitives[0].attributes.NORMAL"},
         Wrong{"type", [](json& r, std::string&) { r["accessors"][1]["type"] = "VEC2"; },
@@ -260,6 +264,25 @@ INSTANTIATE_TEST_SUITE_P(
       for (char& c : name) c = c == ' ' ? '_' : c;
       return name;
     });
+
+TEST(Character, LoadsDeviatingFilesWithWarnings) {
+  const auto character =
+      ParseCharacter(Changed([](json& r, std::string&) {
+                       r["nodes"][1]["name"] = "root";
+                       r["nodes"][1].erase("rotation");
+                       r["nodes"][1].erase("translation");
+                       r["nodes"][1]["matrix"] = {1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1};
+                       r["extensionsRequired"] = {"EXT_something"};
+                     }),
+                     ".");
+  ASSERT_TRUE(character.ok()) << character.status().ToString();
+  EXPECT_THAT(character->skeleton.joint_names(), ElementsAre("root", "root_2"));
+  EXPECT_EQ(character->skeleton.rest_pose()[1].translation, glm::vec3(0, 1, 0));
+  EXPECT_THAT(character->warnings,
+              ElementsAre(HasSubstr("extensionsRequired: the extension 'EXT_something'"),
+                          HasSubstr("nodes[1].matrix: the matrix has shear"),
+                          HasSubstr("nodes[1].name: several joints are called 'root'")));
+}
 
 TEST(Character, KeepsTheStrongestFourInfluences) {
   // A second set of influences: the first set's data again, with other weights.

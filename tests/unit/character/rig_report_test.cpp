@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "motion/clip/clip.h"
+#include "motion/clip_file.h"
 #include "rig/rig_file.h"
 #include "wrinkle/solver/solver.h"
 

@@ -19,7 +19,7 @@
 #include "authoring/generator/default_character.h"
 #include "authoring/import/makehuman/makehuman.h"
 #include "base/status.h"
-#include "motion/clip/pose_source.h"
+#include "motion/pose_source.h"
 #include "rig/rig_file.h"
 #include "tests/unit/authoring/bake/toys.h"
 

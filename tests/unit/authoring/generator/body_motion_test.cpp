@@ -10,6 +10,7 @@
 
 #include "authoring/generator/body/body_skeleton.h"
 #include "motion/clip/clip.h"
+#include "motion/clip_file.h"
 #include "rig/skeleton_match.h"
 #include "wrinkle/skeleton/pose.h"
 

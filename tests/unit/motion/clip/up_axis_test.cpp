@@ -10,6 +10,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
+#include "motion/clip_file.h"
 #include "tests/temporary_folder.h"
 
 namespace furrow::motion {

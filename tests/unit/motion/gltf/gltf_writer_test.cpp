@@ -36,7 +36,7 @@ Clip MakeFace() {
   return clip;
 }
 
-TEST(GltfWriter, BvhSurvivesTheWayThroughGltf) {
+TEST(GltfWriter, KeepsBvhClips) {
   for (const char* name : {"cmu/01_01.bvh", "performances/emotions.bvh"}) {
     if (!std::filesystem::exists(SharedFile(name))) GTEST_SKIP() << name << " is not there";
     const Result<Clip> clip = ParseBvh(ReadAll(SharedFile(name)), name);
@@ -87,7 +87,7 @@ TEST(GltfWriter, WritesBlendShapesAlone) {
   EXPECT_EQ(read.blend_shapes, clip.blend_shapes);
 }
 
-TEST(GltfWriter, AStillClipStaysAClip) {
+TEST(GltfWriter, WritesClipsWithoutMotion) {
   Clip clip;
   clip.skeleton = *Skeleton::Create({{"a", kNoJoint, {}, {}}});
   clip.times = {0.0, 1.0};
@@ -95,7 +95,7 @@ TEST(GltfWriter, AStillClipStaysAClip) {
   EXPECT_EQ(Rewrite(clip).num_frames(), 2);
 }
 
-// An independent reader finds the same nodes, channels and keys.
+// Checks the file with an independent reader.
 TEST(GltfWriter, AssimpReadsIt) {
   Clip clip = MakeFace();
   clip.skeleton = *Skeleton::Create({{"hips", kNoJoint, {}, {}}, {"knee", 0, {{0, -1, 0}}, {}}});
@@ -117,7 +117,7 @@ TEST(GltfWriter, AssimpReadsIt) {
   EXPECT_FLOAT_EQ(animation.mChannels[0]->mPositionKeys[9].mValue.x, 4.5f);
 }
 
-TEST(GltfWriter, SaysWhatItCannotWrite) {
+TEST(GltfWriter, RejectsClipsThatGltfCannotExpress) {
   EXPECT_EQ(ClipToGlb(Clip()).status().code(), StatusCode::kUnsupported);
   Clip empty = MakeFace();
   empty.times.clear();
@@ -125,7 +125,7 @@ TEST(GltfWriter, SaysWhatItCannotWrite) {
   EXPECT_EQ(ClipToGlb(empty).status().code(), StatusCode::kInvalidArgument);
   Clip dense = MakeFace();
   for (double& time : dense.times) time += 1e6;
-  EXPECT_EQ(ClipToGlb(dense).status().code(), StatusCode::kOk);  // relative to the first
+  EXPECT_EQ(ClipToGlb(dense).status().code(), StatusCode::kOk);  // times count from the first frame
   dense.times.front() = 0.0;
   EXPECT_EQ(ClipToGlb(dense).status().code(), StatusCode::kInvalidArgument);
 }

@@ -18,7 +18,8 @@
 #include "authoring/import/makehuman/obj.h"
 #include "base/files.h"
 #include "motion/clip/clip.h"
-#include "motion/clip/pose_source.h"
+#include "motion/clip_file.h"
+#include "motion/pose_source.h"
 #include "rig/rig_file.h"
 #include "wrinkle/solver/solver.h"
 

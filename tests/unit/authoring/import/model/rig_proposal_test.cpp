@@ -10,6 +10,7 @@
 
 #include "authoring/import/model/character_space.h"
 #include "motion/clip/clip.h"
+#include "motion/clip_file.h"
 #include "rig/rig_check.h"
 #include "rig/rig_file.h"
 #include "tests/unit/authoring/import/model/toy_body.h"

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "character/gltf_reader.h"
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "character/gltf_material.h"
+#include "character/gltf_mesh.h"
+#include "character/gltf_skeleton.h"
+#include "gltf/document/document.h"
+#include "gltf/scene/nodes.h"
+
+namespace furrow::character {
+namespace {
+
+// Removes the pictures without pixels, which ReadGltfPictures() leaves for unreadable images, and
+// the references to them.
+void DropMissingPictures(Character* character) {
+  std::vector<Picture> kept;
+  std::vector<int> index;
+  for (Picture& picture : character->pictures) {
+    index.push_back(picture.width > 0 ? static_cast<int>(kept.size()) : -1);
+    if (picture.width > 0) kept.push_back(std::move(picture));
+  }
+  character->pictures = std::move(kept);
+  for (Material& material : character->materials) {
+    for (int* picture : {&material.base_colour_texture, &material.normal_texture,
+                         &material.roughness_texture, &material.thickness_texture}) {
+      if (*picture >= 0) *picture = index[static_cast<std::size_t>(*picture)];
+    }
+  }
+}
+
+}  // namespace
+
+Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& folder,
+                         const ReadOptions& options, Character* character) {
+  Result<gltf::Document> document =
+      gltf::Document::Open(bytes, {.contents = gltf::Contents::kCharacter, .folder = folder});
+  FURROW_RETURN_IF_ERROR(document);
+  const Result<gltf::NodeForest> forest = gltf::ReadNodes(&*document);
+  FURROW_RETURN_IF_ERROR(forest);
+  Result<GltfSkeleton> skeleton = ReadGltfSkeleton(&*document, *forest);
+  FURROW_RETURN_IF_ERROR(skeleton);
+  Result<std::vector<Mesh>> meshes = ReadGltfMeshes(*document, *forest, *skeleton, options);
+  FURROW_RETURN_IF_ERROR(meshes);
+  Result<std::vector<Material>> materials = ReadGltfMaterials(*document);
+  FURROW_RETURN_IF_ERROR(materials);
+  Result<std::vector<Picture>> pictures = ReadGltfPictures(*document, options);
+  FURROW_RETURN_IF_ERROR(pictures);
+  if (options.notes != nullptr) options.notes->nameless_joints = skeleton->num_nameless_joints;
+  character->name = document->SceneName();
+  character->skeleton = std::move(skeleton->skeleton);
+  character->inverse_bind_matrices = std::move(skeleton->inverse_bind_matrices);
+  character->meshes = std::move(*meshes);
+  character->materials = std::move(*materials);
+  character->pictures = std::move(*pictures);
+  character->warnings = document->warnings();
+  if (options.lenient) DropMissingPictures(character);
+  return {};
+}
+
+}  // namespace furrow::character

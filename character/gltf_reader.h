@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "base/status.h"
+#include "character/character.h"
+
+namespace furrow::character {
+
+// Reads the glTF part of a character: name (of the scene), skeleton, meshes, materials, pictures
+// and warnings. ParseCharacter() documents the parameters. `where` of errors is a field.
+[[nodiscard]] Status ReadGltfCharacter(std::string_view bytes, const std::filesystem::path& folder,
+                                       const ReadOptions& options, Character* character);
+
+}  // namespace furrow::character

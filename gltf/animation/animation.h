@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/status.h"
+#include "gltf/animation/track.h"
+#include "gltf/document/document.h"
+#include "gltf/scene/nodes.h"
+
+namespace furrow::gltf {
+
+// What a track animates. Values per key: 3, 4 (x y z w), 3, or one per morph target.
+enum class TrackTarget : std::uint8_t { kTranslation, kRotation, kScale, kMorphWeights };
+
+struct NodeTrack {
+  int node = kNone;
+  TrackTarget target = TrackTarget::kTranslation;
+  Track track;
+};
+
+struct Animation {
+  std::string name;               // may be empty
+  std::vector<NodeTrack> tracks;  // at most one per node and target
+};
+
+// Reads the first animation of a document with Contents::kAnimation.
+//
+// - Further animations, and channels with an unknown path, are warnings. A channel without a node
+//   is ignored, as the specification demands.
+// - Output values may be floats or normalised integers. Keys of rotations may deviate from unit
+//   length by a factor of 2.
+//
+// Errors: Accessor::Create()'s, kSchema (no animation, an index out of range, two channels for one
+// target, times that do not increase, a wrong number of values, an unknown interpolation), kLimit
+// (kMaxChannels, kMaxAnimationNumbers), kNonFinite.
+[[nodiscard]] Result<Animation> ReadFirstAnimation(Document* document, const NodeForest& forest);
+
+}  // namespace furrow::gltf

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gltf/document/raw_document.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "base/files.h"
+#include "base/text.h"
+#include "gltf/container/json_guard.h"
+#include "gltf/container/uri.h"
+#include "gltf/limits.h"
+
+namespace furrow::gltf {
+namespace {
+
+using Json = nlohmann::json;
+
+// Required extensions that do not change what this code reads. Any other required extension is a
+// warning, unless it is in kRefused below.
+constexpr std::string_view kHarmless[] = {"KHR_mesh_quantization",
+                                          "KHR_materials_unlit",
+                                          "KHR_materials_volume",
+                                          "VRMC_vrm_animation",
+                                          "VRM",
+                                          "VRMC_vrm"};
+
+// Extensions that move data to where this code does not look for it.
+struct RefusedExtension {
+  std::string_view name;
+  bool meshes_only;  // harmless for readers of animations
+};
+constexpr RefusedExtension kRefused[] = {{"EXT_meshopt_compression", false},
+                                         {"KHR_meshopt_compression", false},
+                                         {"KHR_draco_mesh_compression", true}};
+
+const Json* Find(const Json& object, const char* key) {
+  if (!object.is_object()) return nullptr;
+  const auto found = object.find(key);
+  return found == object.end() ? nullptr : &*found;
+}
+
+const Json& Array(const Json& object, const char* key) {
+  static const Json kEmpty = Json::array();
+  const Json* found = Find(object, key);
+  return found != nullptr && found->is_array() ? *found : kEmpty;
+}
+
+std::string Text(const Json& object, const char* key) {
+  const Json* found = Find(object, key);
+  return found != nullptr && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+// False if the member exists and is not an unsigned integer.
+bool ReadUnsigned(const Json& object, const char* key, std::uint64_t fallback,
+                  std::uint64_t* value) {
+  *value = fallback;
+  const Json* found = Find(object, key);
+  if (found == nullptr) return true;
+  if (!found->is_number_unsigned()) return false;
+  *value = found->get<std::uint64_t>();
+  return true;
+}
+
+std::string Entry(const char* list, std::size_t index) {
+  return list + ("[" + std::to_string(index) + "]");
+}
+
+class RawReader {
+ public:
+  RawReader(const Container& container, const OpenOptions& options)
+      : container_(container), options_(options) {}
+
+  Result<RawDocument> Run() {
+    result_.warnings = container_.warnings;
+    FURROW_RETURN_IF_ERROR(ParseJson());
+    FURROW_RETURN_IF_ERROR(CheckVersion());
+    FURROW_RETURN_IF_ERROR(CheckRequiredExtensions());
+    FURROW_RETURN_IF_ERROR(ReadBuffers());
+    FURROW_RETURN_IF_ERROR(ReadBufferViews());
+    result_.num_meshes = Array(json_, "meshes").size();
+    if (options_.contents == Contents::kCharacter) {
+      FURROW_RETURN_IF_ERROR(ReadImages());
+    } else {
+      FURROW_RETURN_IF_ERROR(ReadMorphTargets());
+    }
+    WriteReducedJson();
+    return std::move(result_);
+  }
+
+ private:
+  Status ParseJson() {
+    FURROW_RETURN_IF_ERROR(CheckJsonSize(container_.json));
+    json_ = Json::parse(container_.json.begin(), container_.json.end(), nullptr, false);
+    if (json_.is_discarded()) {
+      return {StatusCode::kParse, "the JSON is malformed or cut off", "json"};
+    }
+    if (!json_.is_object()) return {StatusCode::kSchema, "the JSON is not an object", "json"};
+    return {};
+  }
+
+  Status CheckVersion() const {
+    const Json* asset = Find(json_, "asset");
+    if (asset != nullptr && Text(*asset, "version").starts_with("2.")) return {};
+    return {StatusCode::kUnsupported, "the file is not glTF 2.x", "asset.version"};
+  }
+
+  Status CheckRequiredExtensions() {
+    const Json* required = Find(json_, "extensionsRequired");
+    if (required == nullptr) return {};
+    if (!required->is_array()) {
+      return {StatusCode::kSchema, "expected an array", "extensionsRequired"};
+    }
+    for (const Json& entry : *required) {
+      const std::string name = entry.is_string() ? entry.get<std::string>() : "?";
+      const auto refused = std::find_if(std::begin(kRefused), std::end(kRefused),
+                                        [&](const auto& known) { return known.name == name; });
+      if (refused != std::end(kRefused)) {
+        if (refused->meshes_only && options_.contents == Contents::kAnimation) continue;
+        return {StatusCode::kUnsupported, "the file requires the extension " + name,
+                "extensionsRequired", "export without mesh compression"};
+      }
+      if (std::find(std::begin(kHarmless), std::end(kHarmless), name) == std::end(kHarmless)) {
+        result_.warnings.push_back("extensionsRequired: the extension " + Quoted(name) +
+                                   " is not supported and is ignored");
+      }
+    }
+    return {};
+  }
+
+  Status ReadBuffers() {
+    const Json& buffers = Array(json_, "buffers");
+    if (buffers.size() > kMaxBuffers) {
+      return {StatusCode::kLimit, "more than " + std::to_string(kMaxBuffers) + " buffers",
+              "buffers"};
+    }
+    std::uint64_t total = 0;
+    for (std::size_t i = 0; i < buffers.size(); ++i) {
+      const std::string field = Entry("buffers", i);
+      std::uint64_t length = 0;
+      if (!ReadUnsigned(buffers[i], "byteLength", 0, &length) || length == 0) {
+        return {StatusCode::kSchema, "expected a length of at least 1 byte", field + ".byteLength"};
+      }
+      const Result<std::span<const std::uint8_t>> bytes = ReadBuffer(buffers[i], i, field);
+      FURROW_RETURN_IF_ERROR(bytes);
+      if (length > bytes->size()) {
+        return {StatusCode::kSchema,
+                "states " + std::to_string(length) + " bytes, the buffer has " +
+                    std::to_string(bytes->size()),
+                field + ".byteLength"};
+      }
+      total += bytes->size();
+      if (total > kMaxFileBytes) {
+        return {StatusCode::kLimit, "the buffers are larger than 1 GiB together", field};
+      }
+      buffers_.push_back(bytes->first(length));
+    }
+    return {};
+  }
+
+  Result<std::span<const std::uint8_t>> ReadBuffer(const Json& buffer, std::size_t index,
+                                                   const std::string& field) {
+    if (Find(buffer, "uri") == nullptr) {
+      if (index != 0 || !container_.has_binary) {
+        return Status(StatusCode::kSchema, "has no uri, and the file has no binary chunk", field);
+      }
+      return std::span(reinterpret_cast<const std::uint8_t*>(container_.binary.data()),
+                       container_.binary.size());
+    }
+    const std::string uri = Text(buffer, "uri");
+    Result<std::vector<std::uint8_t>> bytes =
+        IsDataUri(uri) ? DecodeDataUri(uri) : ReadExternal(uri);
+    if (!bytes.ok()) return bytes.status().At(field + ".uri");
+    result_.owned_buffers.push_back(std::move(*bytes));
+    return std::span<const std::uint8_t>(result_.owned_buffers.back());
+  }
+
+  Result<std::vector<std::uint8_t>> ReadExternal(const std::string& uri) const {
+    const Result<std::filesystem::path> path = FindExternalFile(uri, options_.folder);
+    FURROW_RETURN_IF_ERROR(path);
+    const Result<std::string> bytes = ReadFile(*path, kMaxFileBytes);
+    FURROW_RETURN_IF_ERROR(bytes);
+    return std::vector<std::uint8_t>(bytes->begin(), bytes->end());
+  }
+
+  Status ReadBufferViews() {
+    const Json* views = Find(json_, "bufferViews");
+    if (views == nullptr) return {};
+    if (!views->is_array()) return {StatusCode::kSchema, "expected an array", "bufferViews"};
+    for (std::size_t i = 0; i < views->size(); ++i) {
+      FURROW_RETURN_IF_ERROR(ReadBufferView((*views)[i], Entry("bufferViews", i)));
+    }
+    return {};
+  }
+
+  Status ReadBufferView(const Json& view, const std::string& field) {
+    std::uint64_t buffer = 0, offset = 0, length = 0, stride = 0;
+    if (!view.is_object()) return {StatusCode::kSchema, "expected an object", field};
+    if (!ReadUnsigned(view, "buffer", buffers_.size(), &buffer) || buffer >= buffers_.size()) {
+      return {StatusCode::kSchema, "the buffer does not exist", field + ".buffer"};
+    }
+    if (!ReadUnsigned(view, "byteOffset", 0, &offset)) {
+      return {StatusCode::kSchema, "expected an unsigned integer", field + ".byteOffset"};
+    }
+    if (!ReadUnsigned(view, "byteLength", 0, &length) || length == 0) {
+      return {StatusCode::kSchema, "expected a length of at least 1 byte", field + ".byteLength"};
+    }
+    if (!ReadUnsigned(view, "byteStride", 0, &stride) || stride > kMaxByteStride) {
+      return {StatusCode::kSchema, "expected an unsigned integer of at most 252",
+              field + ".byteStride"};
+    }
+    const std::span<const std::uint8_t> bytes = buffers_[buffer];
+    if (offset > bytes.size() || length > bytes.size() - offset) {
+      return {StatusCode::kSchema, "the view ends after the end of its buffer",
+              field + ".byteLength"};
+    }
+    result_.views.push_back({bytes.subspan(offset, length), stride});
+    return {};
+  }
+
+  Status ReadImages() {
+    const Json& images = Array(json_, "images");
+    if (images.size() > kMaxImages) {
+      return {StatusCode::kLimit, "more than " + std::to_string(kMaxImages) + " images", "images"};
+    }
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      ImageSource image{Text(images[i], "name"), Text(images[i], "uri"), -1};
+      if (Find(images[i], "bufferView") != nullptr) {
+        std::uint64_t view = 0;
+        if (!ReadUnsigned(images[i], "bufferView", 0, &view) || view >= result_.views.size()) {
+          return {StatusCode::kSchema, "the buffer view does not exist",
+                  Entry("images", i) + ".bufferView"};
+        }
+        image.view = static_cast<int>(view);
+      }
+      result_.images.push_back(std::move(image));
+    }
+    return {};
+  }
+
+  Status ReadMorphTargets() {
+    for (const Json& mesh : Array(json_, "meshes")) {
+      MorphTargetSource source;
+      for (const Json& primitive : Array(mesh, "primitives")) {
+        source.count = std::max(source.count, Array(primitive, "targets").size());
+      }
+      if (source.count > kMaxMorphTargets) {
+        return {StatusCode::kLimit,
+                "more than " + std::to_string(kMaxMorphTargets) + " morph targets",
+                Entry("meshes", result_.morph_targets.size())};
+      }
+      source.mesh_name = Text(mesh, "name");
+      const Json* extras = Find(mesh, "extras");
+      for (const Json& name : Array(extras != nullptr ? *extras : mesh, "targetNames")) {
+        if (source.names.size() == source.count) break;
+        source.names.push_back(name.is_string() ? name.get<std::string>() : std::string());
+      }
+      result_.morph_targets.push_back(std::move(source));
+    }
+    return {};
+  }
+
+  // Copies what the reader needs. tinygltf parses extensions of nodes and accessors strictly, and
+  // this code uses none of them, so only those of materials and the root's VRM animation stay.
+  void WriteReducedJson() {
+    static constexpr const char* kAnimationParts[] = {"nodes", "skins", "animations", "accessors"};
+    static constexpr const char* kCharacterParts[] = {
+        "nodes", "skins", "meshes", "accessors", "materials", "textures", "scenes"};
+    const bool animation = options_.contents == Contents::kAnimation;
+    const std::span<const char* const> parts =
+        animation ? std::span<const char* const>(kAnimationParts) : kCharacterParts;
+    Json reduced = {{"asset", {{"version", "2.0"}}}};
+    for (const char* part : parts) {
+      const auto found = json_.find(part);
+      if (found == json_.end()) continue;
+      Json& list = reduced[part] = std::move(*found);
+      if (!list.is_array() || std::string_view(part) == "materials") continue;
+      for (Json& entry : list) {
+        if (entry.is_object()) entry.erase("extensions");
+      }
+    }
+    const Json* extensions = Find(json_, "extensions");
+    const Json* vrm =
+        extensions != nullptr && animation ? Find(*extensions, "VRMC_vrm_animation") : nullptr;
+    if (vrm != nullptr) reduced["extensions"]["VRMC_vrm_animation"] = *vrm;
+    AddViewStandIns(&reduced);
+    result_.json = reduced.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+
+  // tinygltf rejects primitives whose accessor refers to a buffer view that it does not know.
+  void AddViewStandIns(Json* reduced) const {
+    if (result_.views.empty()) return;
+    const Json view = {{"buffer", 0}, {"byteLength", 1}};
+    (*reduced)["bufferViews"] = Json(result_.views.size(), view);
+  }
+
+  const Container& container_;
+  const OpenOptions& options_;
+  Json json_;
+  std::vector<std::span<const std::uint8_t>> buffers_;
+  RawDocument result_;
+};
+
+}  // namespace
+
+Result<RawDocument> ReadRawDocument(const Container& container, const OpenOptions& options) {
+  return RawReader(container, options).Run();
+}
+
+}  // namespace furrow::gltf

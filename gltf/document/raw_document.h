@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/status.h"
+#include "gltf/container/glb.h"
+
+// The checks that come before tinygltf; private to gltf/document/.
+namespace furrow::gltf {
+
+// What a reader needs of a file. Other parts are dropped unread, so faults in them do no harm.
+enum class Contents : std::uint8_t {
+  kAnimation,  // nodes, joints of skins, animations, VRMC_vrm_animation, morph target names
+  kCharacter,  // nodes, skins, meshes, materials, images
+};
+
+struct OpenOptions {
+  Contents contents = Contents::kCharacter;
+  std::optional<std::filesystem::path> folder;  // for external files; see FindExternalFile()
+};
+
+struct BufferView {
+  std::span<const std::uint8_t> bytes;
+  std::size_t stride = 0;  // 0: elements are tightly packed
+};
+
+// One entry of `images`, still encoded. Either `view` or `uri` says where the bytes are.
+struct ImageSource {
+  std::string name;
+  std::string uri;
+  int view = -1;  // checked: in range
+};
+
+// The morph targets of a mesh. `names` may be shorter than `count`, and names may be empty.
+struct MorphTargetSource {
+  std::string mesh_name;
+  std::size_t count = 0;
+  std::vector<std::string> names;
+};
+
+// A glTF file, taken apart.
+struct RawDocument {
+  std::string json;  // for tinygltf: without buffers, buffer views, images and unused parts
+  std::vector<BufferView> views;
+  std::vector<std::vector<std::uint8_t>> owned_buffers;  // of data URIs and external files
+  std::vector<ImageSource> images;                       // of kCharacter
+  std::vector<MorphTargetSource> morph_targets;          // of kAnimation; one per mesh
+  std::size_t num_meshes = 0;
+  std::vector<std::string> warnings;  // "field: what"
+};
+
+// Parses the JSON within the limits of gltf/limits.h, checks version and required extensions,
+// loads the buffers and checks the range of every buffer view.
+//
+// The views refer to `container`'s bytes, which must outlive them.
+//
+// Errors: kParse, kSchema, kLimit, kUnsupported (version; an extension that changes the layout of
+// the data), FindExternalFile()'s and ReadFile()'s. `where` is a field.
+[[nodiscard]] Result<RawDocument> ReadRawDocument(const Container& container,
+                                                  const OpenOptions& options);
+
+}  // namespace furrow::gltf

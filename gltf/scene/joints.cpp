@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gltf/scene/joints.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "base/text.h"
+#include "gltf/limits.h"
+
+namespace furrow::gltf {
+namespace {
+
+// Cuts a UTF-8 text to at most `most` bytes, between two characters.
+std::string CutText(const std::string& text, std::size_t most) {
+  if (text.size() <= most) return text;
+  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0) == 0x80) --most;
+  return text.substr(0, most);
+}
+
+class JointNames {
+ public:
+  JointNames(std::span<const std::pair<std::string, int>> names, Document* document)
+      : document_(*document) {
+    for (const auto& [name, node] : names) {
+      given_.emplace(node, name);
+      taken_.insert(name);
+    }
+  }
+
+  std::string NameOf(const Node& node, int index) {
+    const auto given = given_.find(index);
+    if (given != given_.end()) return given->second;
+    const std::string base =
+        node.name.empty() ? "node_" + std::to_string(index) : CutText(node.name, kMaxNameBytes);
+    std::string name = base;
+    // Starts at the number that the last joint of this name got: many equal names stay linear.
+    int& number = next_number_.try_emplace(base, 2).first->second;
+    while (!taken_.insert(name).second) name = base + "_" + std::to_string(number++);
+    if (name != base) {
+      document_.Warn(
+          "nodes[" + std::to_string(index) + "].name",
+          "several joints are called " + Quoted(base) + "; this one becomes " + Quoted(name));
+    } else if (base.size() < node.name.size()) {
+      document_.Warn(
+          "nodes[" + std::to_string(index) + "].name",
+          "the name is longer than " + std::to_string(kMaxNameBytes) + " bytes and is cut");
+    }
+    return name;
+  }
+
+ private:
+  Document& document_;
+  std::unordered_map<int, std::string> given_;
+  std::unordered_set<std::string> taken_;
+  std::unordered_map<std::string, int> next_number_;
+};
+
+}  // namespace
+
+void NodeSet::AddWithAncestors(int node) {
+  while (node != kNone && !Has(node)) {
+    in_[static_cast<std::size_t>(node)] = true;
+    node = forest_.nodes[static_cast<std::size_t>(node)].parent;
+  }
+}
+
+void NodeSet::AddTree(int node) {
+  const auto parent = [this](int of) { return forest_.nodes[static_cast<std::size_t>(of)].parent; };
+  while (parent(node) != kNone) node = parent(node);
+  if (Has(node)) return;
+  std::vector<int> open = {node};
+  while (!open.empty()) {
+    const auto next = static_cast<std::size_t>(open.back());
+    open.pop_back();
+    in_[next] = true;
+    const std::vector<int>& children = forest_.nodes[next].children;
+    open.insert(open.end(), children.begin(), children.end());
+  }
+}
+
+JointList ListJoints(const NodeForest& forest, const NodeSet& set,
+                     std::span<const std::pair<std::string, int>> names, Document* document) {
+  JointList list;
+  JointNames namer(names, document);
+  list.joint_of_node.assign(forest.nodes.size(), kNone);
+  for (int index = 0; index < static_cast<int>(forest.nodes.size()); ++index) {
+    if (!set.Has(index)) continue;
+    const Node& node = forest.nodes[static_cast<std::size_t>(index)];
+    list.joint_of_node[static_cast<std::size_t>(index)] = static_cast<int>(list.joints.size());
+    list.num_nameless += node.name.empty() ? 1 : 0;
+    list.joints.push_back({namer.NameOf(node, index), kNone, node.local, node.tail, index});
+  }
+  for (Joint& joint : list.joints) {
+    const int parent = forest.nodes[static_cast<std::size_t>(joint.node)].parent;
+    if (parent != kNone) joint.parent = list.joint_of_node[static_cast<std::size_t>(parent)];
+  }
+  return list;
+}
+
+}  // namespace furrow::gltf

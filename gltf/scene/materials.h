@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <glm/vec4.hpp>
+
+#include "base/status.h"
+#include "gltf/document/document.h"
+#include "gltf/scene/nodes.h"
+
+namespace furrow::gltf {
+
+// The extra in which Furrow keeps the kind of a material ("skin", "cloth", ...).
+inline constexpr char kKindExtra[] = "furrow_kind";
+
+// A metallic-roughness material. Texture fields are indices into Document::images(), or kNone.
+struct Material {
+  std::string name;
+  std::string kind;             // kKindExtra; may be empty
+  glm::vec4 base_colour{1.0f};  // linear, clamped to [0, 1]
+  int base_colour_image = kNone;
+  int normal_image = kNone;
+  float roughness = 1.0f;       // clamped to [0, 1]
+  int roughness_image = kNone;  // green channel
+  float thickness = 0.0f;       // metres (KHR_materials_volume); 0: not stated
+  int thickness_image = kNone;  // green channel, times `thickness`
+  bool double_sided = false;
+  float alpha_cutoff = 0.0f;  // 0: opaque. alphaMode BLEND becomes 0.5.
+};
+
+// All materials of a document with Contents::kCharacter.
+//
+// Errors: kLimit (kMaxMaterials), kSchema (a texture or image that does not exist), kNonFinite,
+// kUnsupported (a texture that uses another set than TEXCOORD_0).
+[[nodiscard]] Result<std::vector<Material>> ReadMaterials(const Document& document);
+
+// An image in its file format (PNG, JPEG, ...).
+struct EncodedImage {
+  std::filesystem::path file;          // an external file, not opened yet; else empty
+  std::span<const std::uint8_t> view;  // of a buffer view
+  std::vector<std::uint8_t> decoded;   // of a data URI
+
+  // The image if `file` is empty.
+  [[nodiscard]] std::span<const std::uint8_t> bytes() const {
+    return decoded.empty() ? view : std::span<const std::uint8_t>(decoded);
+  }
+};
+
+// Locates image `index` of Document::images(). The document must outlive the result. Errors:
+// DecodeDataUri()'s, FindExternalFile()'s.
+[[nodiscard]] Result<EncodedImage> LocateImage(const Document& document, std::size_t index);
+
+}  // namespace furrow::gltf

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/pose_source.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "base/status.h"
+#include "motion/clip_file.h"
+
+namespace furrow::motion {
+namespace {
+
+Result<wrinkle::PoseFrame> GetFrame(const Clip& clip, const std::filesystem::path& path,
+                                    int frame) {
+  if (clip.skeleton.num_joints() == 0) {
+    return Status(StatusCode::kUnsupported, "the recording has no joints to take a pose from",
+                  path.string());
+  }
+  if (frame < 0 || frame >= clip.num_frames()) {
+    return Status(StatusCode::kInvalidArgument,
+                  "there is no frame " + std::to_string(frame) + ": the recording has " +
+                      std::to_string(clip.num_frames()) + ", counted from 0",
+                  path.string());
+  }
+  wrinkle::PoseFrame result;
+  result.skeleton = clip.skeleton;
+  clip.GetPose(frame, &result.pose);
+  return result;
+}
+
+}  // namespace
+
+struct CachedPoseSource::Entry {
+  std::filesystem::path path;
+  std::filesystem::file_time_type time;
+  std::uintmax_t size = 0;
+  std::optional<Clip> clip;
+};
+
+CachedPoseSource::CachedPoseSource(const LoadOptions& options)
+    : options_(options), entry_(std::make_shared<Entry>()) {}
+
+Result<wrinkle::PoseFrame> CachedPoseSource::operator()(const std::filesystem::path& path,
+                                                        int frame) const {
+  std::error_code error;  // LoadClip() tells what is wrong with a file that cannot be looked at
+  const auto time = std::filesystem::last_write_time(path, error);
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  const bool fresh =
+      entry_->clip && entry_->path == path && entry_->time == time && entry_->size == size;
+  if (!fresh) {
+    entry_->clip.reset();
+    Result<Clip> clip = LoadClip(path, options_);
+    FURROW_RETURN_IF_ERROR(clip);
+    *entry_ = {path, time, size, std::move(*clip)};
+  }
+  return GetFrame(*entry_->clip, path, frame);
+}
+
+}  // namespace furrow::motion

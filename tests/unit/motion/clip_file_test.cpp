@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion/clip_file.h"
+
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "motion/bvh/bvh.h"
+#include "tests/unit/motion/clip_testing.h"
+
+namespace furrow::motion {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using wrinkle::kNoJoint;
+
+Clip MakeClip() {
+  Clip clip;
+  clip.skeleton = *wrinkle::Skeleton::Create(
+      {{"hips", kNoJoint, {}, {}}, {"Head", 0, {{0, 1, 0}}, {{0, 0.2f, 0}}}});
+  clip.blend_shape_names = {"jawOpen"};
+  for (int f = 0; f < 5; ++f) {
+    clip.times.push_back(f / 30.0);
+    clip.locals.push_back({{0.1f * static_cast<float>(f), 0.0f, 0.0f}});
+    clip.locals.push_back({{0.0f, 1.0f, 0.0f}});
+    clip.blend_shapes.push_back(0.2f * static_cast<float>(f));
+  }
+  return clip;
+}
+
+int CountFiles(const std::filesystem::path& folder) {
+  return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+TEST(Clip, GetPoseCopiesOneFrame) {
+  const Clip clip = MakeClip();
+  wrinkle::LocalPose pose;
+  clip.GetPose(3, &pose);
+  ASSERT_EQ(pose.joints.size(), 2u);
+  EXPECT_FLOAT_EQ(pose.joints[0].translation.x, 0.3f);
+  EXPECT_THAT(pose.blend_shapes, ElementsAre(0.6f));
+}
+
+TEST(SaveClip, WritesWhatLoadClipReadsByExtension) {
+  TemporaryFolder folder;
+  const Clip clip = MakeClip();
+  for (const char* name : {"a.bvh", "a.GLB", "a.csv"}) {
+    const std::filesystem::path path = folder.path() / name;
+    ClipReport report;
+    ASSERT_TRUE(SaveClip(clip, path, &report).ok()) << name;
+    const Result<Clip> read = LoadClip(path);
+    ASSERT_TRUE(read.ok()) << read.status().ToString();
+    EXPECT_EQ(read->num_frames(), 5) << name;
+    const bool has_joints = path.extension() != ".csv";
+    const bool has_shapes = path.extension() != ".bvh";
+    EXPECT_EQ(read->skeleton.num_joints(), has_joints ? 2 : 0);
+    EXPECT_EQ(read->blend_shapes, has_shapes ? clip.blend_shapes : std::vector<float>());
+    EXPECT_EQ(report.warnings.size(), has_joints && has_shapes ? 0u : 1u) << name;
+    EXPECT_EQ(read->name, "a");
+  }
+  EXPECT_EQ(CountFiles(folder.path()), 3);  // no temporary files
+}
+
+TEST(SaveClip, KeepsTheOldFileOnFailure) {
+  TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "a.bvh";
+  ASSERT_TRUE(SaveClip(MakeClip(), path).ok());
+  const std::string before = ReadAll(path);
+  Clip broken = MakeClip();
+  broken.locals.pop_back();
+  EXPECT_EQ(SaveClip(broken, path).code(), StatusCode::kInvalidArgument);
+  Clip unordered = MakeClip();
+  unordered.times[2] = unordered.times[1];
+  EXPECT_EQ(SaveClip(unordered, path).code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(ReadAll(path), before);
+  EXPECT_EQ(SaveClip(MakeClip(), folder.path() / "none" / "a.bvh").code(), StatusCode::kIo);
+  std::filesystem::create_directory(folder.path() / "folder.bvh");
+  EXPECT_EQ(SaveClip(MakeClip(), folder.path() / "folder.bvh").code(), StatusCode::kIo);
+  EXPECT_EQ(CountFiles(folder.path()), 2);
+}
+
+TEST(LoadClip, ReportsWhatIsWrongWithTheFile) {
+  TemporaryFolder folder;
+  const auto write = [&folder](const std::string& name, const std::string& bytes) {
+    std::ofstream(folder.path() / name, std::ios::binary) << bytes;
+    return folder.path() / name;
+  };
+  EXPECT_EQ(LoadClip(folder.path() / "none.bvh").status().code(), StatusCode::kNotFound);
+  EXPECT_EQ(LoadClip(folder.path()).status().code(), StatusCode::kUnsupported);
+  std::filesystem::create_directory(folder.path() / "folder.bvh");
+  EXPECT_EQ(LoadClip(folder.path() / "folder.bvh").status().code(), StatusCode::kIo);
+  for (const char* name : {"a.bvh", "a.glb", "a.gltf", "a.vrma", "a.csv"}) {
+    const Result<Clip> empty = LoadClip(write(name, ""));
+    EXPECT_EQ(empty.status().code(), StatusCode::kParse) << name;
+    EXPECT_THAT(empty.status().ToString(), HasSubstr(name));
+    EXPECT_THAT(empty.status().ToString(), HasSubstr("empty"));
+  }
+  const Status unknown = LoadClip(write("a.fbx", "x")).status();
+  EXPECT_EQ(unknown.code(), StatusCode::kUnsupported);
+  EXPECT_THAT(unknown.ToString(), HasSubstr(".bvh"));
+  EXPECT_EQ(LoadClip(write("plain", "x")).status().code(), StatusCode::kUnsupported);
+  // A .vrma needs the roles of its joints, which a clip does not have. A .gltf would need a second
+  // file for its buffer.
+  for (const char* name : {"a.fbx", "a.vrma", "a.gltf"}) {
+    EXPECT_EQ(SaveClip(MakeClip(), folder.path() / name).code(), StatusCode::kUnsupported) << name;
+  }
+}
+
+}  // namespace
+}  // namespace furrow::motion
