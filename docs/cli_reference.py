@@ -144,12 +144,14 @@ def bare(name):
 
 
 def table(entries, first):
-    rows = [f"| {first} | Meaning | Notes |", "|---|---|---|"]
-    for entry in entries:
+    """Rows for options or arguments; the column of notes only if some entry has one."""
+    notes = [constraint(entry.name) for entry in entries]
+    rows = [f"| {first} | Meaning | Notes |", "|---|---|---|"] if any(notes) else [f"| {first} | Meaning |", "|---|---|"]
+    for entry, note in zip(entries, notes):
         name = bare(entry.name)
         if first == "Argument":
             name = name.replace(" TEXT", "")
-        rows.append(f"| `{name}` | {cell(entry.text)} | {cell(constraint(entry.name))} |")
+        rows.append(f"| `{name}` | {cell(entry.text)} |" + (f" {cell(note)} |" if any(notes) else ""))
     return rows
 
 
