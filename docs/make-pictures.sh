@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Makes the pictures of the documents anew from a build: docs/make-pictures.sh [BUILD_DIR [NAMES...]]
-# NAMES: of the functions below, to make only what they make: docs/make-pictures.sh build/dev subsurface
+# Draws the pictures of the documents again, from a build: docs/make-pictures.sh [BUILD_DIR [NAMES...]]
+# NAMES: functions below; only their pictures are drawn: docs/make-pictures.sh build/dev subsurface
 #
-# FURROW_SHARED_DATA (default ../shared/data): MakeHuman's data and a recording made for its skeleton;
-# where it is not there, the pictures of the MakeHuman character stay as they are.
+# FURROW_SHARED_DATA (default ../shared/data): MakeHuman's data and a recording for its skeleton. If that
+# folder is missing, the pictures of the MakeHuman character stay as they are.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=${1:-build/release}
@@ -31,7 +31,7 @@ sheet() {
     --nosoftwareattrib -o "$out/$1.jpg"
 }
 
-# default_faces PREFIX CHARACTER: wrinkles off above, on below; neutral, stretch, squash, four emotions.
+# default_faces PREFIX CHARACTER: upper row without wrinkles, lower row with; neutral, stretch, squash, emotions.
 default_faces() {
   local prefix=$1 character=$share/$2.glb names=() wrinkles
   for wrinkles in off on; do
@@ -50,7 +50,7 @@ default_faces() {
   sheet "${prefix}_faces" 7x2 1680 "${names[@]}"
 }
 
-# bodies PREFIX OPTIONS...: a walk and a squat, wrinkles off and on.
+# bodies PREFIX OPTIONS...: a walk and a squat, without and with wrinkles.
 bodies() {
   local prefix=$1 wrinkles
   for wrinkles in off on; do
@@ -62,7 +62,7 @@ bodies() {
   sheet "${prefix}_body" 4x1 1200 "${prefix}"_{walk,squat}_{off,on}
 }
 
-# What README shows: three moments of a performance, without and with wrinkles.
+# The picture of the README: three moments of a performance, without and with wrinkles.
 performance() {
   local names=() wrinkles
   for wrinkles in off on; do
@@ -85,7 +85,7 @@ views() {
   sheet views 3x2 900 "${names[@]}"
 }
 
-# The same pose through texture masks and through skinning weights: what each lets fold.
+# One pose with texture masks and with masks by skinning weights.
 masks() {
   local names=()
   for view in final mask_texture mask_dynamic; do
@@ -95,7 +95,7 @@ masks() {
   sheet masks 3x1 1080 "${names[@]}"
 }
 
-# The reference poses with the maps that are blended for them: the face above, its normals below.
+# The reference poses: the face in the upper row, its normals with the blended maps in the lower row.
 reference_poses() {
   local names=()
   for view in final normal; do
@@ -107,7 +107,7 @@ reference_poses() {
   sheet reference_poses 3x2 1080 "${names[@]}"
 }
 
-# Clothing at hinge and ball joints, off and on: elbow and shoulder, hip and knee, close by.
+# Close-ups of clothing at hinge and ball joints, without and with wrinkles: arm, then leg.
 cloth_joints() {
   local names=() wrinkles
   for wrinkles in off on; do
@@ -119,7 +119,7 @@ cloth_joints() {
   sheet cloth_joints 4x1 1200 arm_off arm_on leg_off leg_on
 }
 
-# Pictures of docs/RENDERING.md: one setting against another.
+# Pictures of docs/RENDERING.md: comparisons of settings.
 shading() {
   for way in diffuse skin; do
     shading=$way size=640x640 still "shading_$way" --pose neutral --camera three_quarter
@@ -151,13 +151,13 @@ subsurface() {
   sheet subsurface 5x2 1600 "${above[@]}" "${below[@]}"
 }
 
-# Ten people on one recording, each at another moment of it.
+# Ten people who play one recording, each at another moment.
 crowd() {
   size=1280x640 still crowd "$recordings/performance.bvh" --subjects 10 --frames 60 --camera face
   sheet crowd 1x1 1080 crowd
 }
 
-# The outline of a forehead whose brows are raised, close by.
+# Close-up of a forehead in profile with raised brows, without and with displacement.
 displacement() {
   local names=()
   for way in off on; do
@@ -169,7 +169,7 @@ displacement() {
   sheet displacement 2x1 1080 "${names[@]}"
 }
 
-# Blood that comes and goes: none, as it is, twice as much; a smile above, a frown below.
+# Blood flow at strengths 0, 1 and 2; a smile in the upper row, a frown in the lower row.
 blood_flow() {
   local strength
   for strength in 0 1 2; do
@@ -181,8 +181,8 @@ blood_flow() {
   sheet blood_flow 3x2 1080 smile_{0,1,2} frown_{0,1,2}
 }
 
-# A leg that swings forwards, half aside, and aside; baked and drawn with the rig's four painted
-# directions above, with a mask that slides below.
+# A leg that swings forwards, diagonally and sideways. Upper row: the rig's masks, painted for four
+# directions. Lower row: one sliding mask. Both are baked first.
 sliding_masks() {
   local names=() rig pose
   for rig in fixed sliding; do
@@ -204,7 +204,7 @@ makehuman() {
   "$furrow" character import "$shared/makehuman" --out "$work/makehuman.glb"
   local names=() wrinkles
   for wrinkles in off on; do
-    # Neutral, then the heights of smile, anger, sadness, disgust and laughter.
+    # The frames of neutral and of the peaks of smile, anger, sadness, disgust and laughter.
     for frame in 0 60 180 300 420 540; do
       still "mh_${frame}_$wrinkles" "$shared/performances/emotions.bvh" --frames "$frame" \
         --character "$work/makehuman.glb" --wrinkles "$wrinkles" --camera face
@@ -238,6 +238,6 @@ bodies default
 if [[ -d $shared/makehuman && -f $shared/performances/emotions.bvh ]]; then
   makehuman
 else
-  echo "make-pictures: no $shared/makehuman: its pictures stay as they are" >&2
+  echo "make-pictures: $shared/makehuman is missing; the MakeHuman pictures stay as they are" >&2
 fi
 ls -l "$out"

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Gives the default rig poses of a leg that swings round and, on demand, hips whose masks slide.
+"""Adds poses of a swinging leg to the default rig and, with `sliding`, gives its hips sliding masks.
 
-sliding_rig.py fixed|sliding RIG OUT: for docs/make-pictures.sh.
+usage: sliding_rig.py fixed|sliding RIG OUT (docs/make-pictures.sh calls it)
 """
 import json
 import re
@@ -12,7 +12,7 @@ POSES = {"leg_forwards": [-65, 0, 0], "leg_between": [-46, 0, 46], "leg_aside": 
 
 
 def hip(side):
-    """A hip's region with a mask that slides, in place of a front and a back one."""
+    """The region of one hip with a sliding mask. It replaces the front and the back region."""
     return {
         "name": f"hip_{side}",
         "combine": "sum",

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every command line that the documents show runs: fenced lines that begin with furrow or furrowd."""
+"""The command lines of the guides run: fenced lines that begin with furrow or furrowd. The quick starts run in
+tests/docs/check_commands.py."""
 import os
 import pathlib
 import subprocess
@@ -33,31 +34,6 @@ class DocumentTest(unittest.TestCase):
         if out:
             out.write_bytes(result.stdout)
             self.assertGreater(out.stat().st_size, 0)
-
-    def test_readme(self):
-        seen = set()
-        with Daemon() as daemon:
-            stage = spawn("play", PERFORMANCE, "--to", daemon.udp, "--loop", "--subject", "stage")
-            self.addCleanup(stage.kill)
-            furrow("watch", daemon.tcp, "--subject", "stage", "--wait", "--frames", "1", check=0)
-            for words in commands("README.md"):
-                seen.add(" ".join(words[:2]))
-                if words[0] == "furrowd":
-                    with Daemon(*words[1:]):
-                        continue
-                to = daemon.udp if words[1] == "play" else daemon.tcp
-                words = [to if w == "localhost" else w for w in words]
-                if words[1] in ("render", "frames"):
-                    words += ["--size", "160x160"]  # as quick as a test should be
-                if words[1] in ("watch", "frames"):
-                    words += ["--frames", "2"]  # the stage goes on for ever
-                if words[1] == "play":
-                    words += ["--speed", "20"]
-                self.run_here(words)
-            stage.terminate()
-            finish(stage)
-        self.assertLessEqual({"furrowd", "furrow play", "furrow watch", "furrow frames", "furrow solve",
-                              "furrow render", "furrow rig"}, seen)
 
     def test_import_howto(self):
         if not SHARED.exists():
