@@ -1,123 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "character/character.h"
 
-#include <algorithm>
-#include <system_error>
-#include <utility>
-
-#include "base/asset_path.h"
-#include "base/files.h"
-#include "base/status.h"
-#include "character/gltf_material.h"
-#include "character/gltf_mesh.h"
-#include "character/gltf_reader.h"
-#include "character/gltf_skeleton.h"
-#include "character/picture_file.h"
-#include "gltf/limits.h"
-#include "rig/rig_file.h"
-
 namespace furrow::character {
-namespace {
-
-namespace fs = std::filesystem;
-
-int FindEmbedded(const Character& character, std::string_view name) {
-  const auto& pictures = character.pictures;
-  const auto found = std::find_if(pictures.begin(), pictures.end(),
-                                  [&](const Picture& picture) { return picture.name == name; });
-  return found == pictures.end() ? -1 : static_cast<int>(found - pictures.begin());
-}
-
-// One picture of the rig: embedded, or a file; noted as missing where there is neither.
-Status AddRigPicture(const std::string& name, Character* character) {
-  const auto& missing = character->missing_rig_pictures;
-  const bool known = character->FindRigPicture(name) >= 0 ||
-                     std::find(missing.begin(), missing.end(), name) != missing.end();
-  if (name.empty() || known) return {};
-  int index = FindEmbedded(*character, name);
-  if (index < 0) {
-    const Result<fs::path> path = FindAsset(name, character->folder);
-    if (!path.ok() && path.status().code() == StatusCode::kNotFound) {
-      character->missing_rig_pictures.push_back(name);
-      return {};
-    }
-    FURROW_RETURN_IF_ERROR(path);
-    Result<Picture> picture = LoadPicture(name, *path);
-    FURROW_RETURN_IF_ERROR(picture);
-    index = static_cast<int>(character->pictures.size());
-    character->pictures.push_back(std::move(*picture));
-  }
-  character->rig_pictures.emplace_back(name, index);
-  return {};
-}
-
-}  // namespace
-
-std::vector<std::string> RigPictureNames(const wrinkle::Rig& rig) {
-  std::vector<std::string> names;
-  const auto add = [&](const std::string& name) {
-    const bool is_new = std::find(names.begin(), names.end(), name) == names.end();
-    if (!name.empty() && is_new) names.push_back(name);
-  };
-  for (const wrinkle::Region& region : rig.regions) {
-    if (region.mask.kind == wrinkle::Mask::Kind::kTexture) add(region.mask.texture);
-  }
-  for (const wrinkle::WrinkleMap& map : rig.wrinkle_maps) {
-    for (const std::string* name :
-         {&map.normal, &map.derivative, &map.height, &map.colour, &map.cavity}) {
-      add(*name);
-    }
-  }
-  return names;
-}
 
 int Character::FindRigPicture(std::string_view picture_name) const {
   for (const auto& [known, index] : rig_pictures) {
     if (known == picture_name) return index;
   }
   return -1;
-}
-
-Result<Character> ParseCharacter(std::string_view bytes, const fs::path& folder,
-                                 const ReadOptions& options) {
-  Character character;
-  character.folder = folder;
-  FURROW_RETURN_IF_ERROR(ReadGltfCharacter(bytes, folder, options, &character));
-  return character;
-}
-
-Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,
-                                const wrinkle::PoseSource& poses) {
-  const Result<std::string> bytes = ReadFile(glb, gltf::kMaxFileBytes);
-  FURROW_RETURN_IF_ERROR(bytes);
-  Result<Character> character = ParseCharacter(*bytes, glb.parent_path());
-  if (!character.ok()) return character.status().Within(glb.string());
-  if (character->name.empty()) character->name = glb.stem().string();
-
-  fs::path rig_path = rig;
-  if (rig.empty()) {
-    rig_path = glb.parent_path() / (glb.stem().string() + ".rig.json");
-    std::error_code error;
-    if (!fs::exists(rig_path, error)) return character;  // a character that does not wrinkle
-  }
-  Result<wrinkle::Rig> loaded = LoadRig(rig_path, poses);
-  FURROW_RETURN_IF_ERROR(loaded);
-  if (Status status = AttachRig(std::move(*loaded), rig_path.parent_path(), &*character);
-      !status.ok()) {
-    return status.At(rig_path.string());
-  }
-  return character;
-}
-
-Status AttachRig(wrinkle::Rig rig, const fs::path& folder, Character* character) {
-  character->rig = std::move(rig);
-  character->folder = folder;
-  character->rig_pictures.clear();
-  character->missing_rig_pictures.clear();
-  for (const std::string& name : RigPictureNames(character->rig)) {
-    FURROW_RETURN_IF_ERROR(AddRigPicture(name, character));
-  }
-  return {};
 }
 
 }  // namespace furrow::character

@@ -8,6 +8,7 @@
 
 #include "base/data_dir.h"
 #include "base/status.h"
+#include "character/package/package.h"
 #include "motion/pose_source.h"
 #include "render/settings/settings_file.h"
 #include "rig/rig_file.h"

@@ -14,7 +14,8 @@
 #include "base/asset_path.h"
 #include "base/files.h"
 #include "base/status.h"
-#include "character/picture_file.h"
+#include "character/package/package.h"
+#include "character/pictures/picture_file.h"
 #include "rig/rig_check.h"
 #include "wrinkle/rig/rig_check.h"
 

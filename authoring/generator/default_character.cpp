@@ -27,6 +27,7 @@
 #include "authoring/paint/uv_raster.h"
 #include "base/files.h"
 #include "base/status.h"
+#include "character/package/package.h"
 #include "rig/rig_file.h"
 
 namespace furrow::character::generator {

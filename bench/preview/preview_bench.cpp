@@ -14,7 +14,7 @@
 #include "bench/preview/figures.h"
 #include "bench/report/command_line.h"
 #include "bench/report/results.h"
-#include "character/character.h"
+#include "character/package/package.h"
 #include "motion/pose_source.h"
 #include "wrinkle/skeleton/pose.h"
 

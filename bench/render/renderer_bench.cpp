@@ -7,6 +7,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "character/package/package.h"
 #include "render/gl/pass_timer.h"
 #include "render/renderer.h"
 #include "render/settings/named_settings.h"

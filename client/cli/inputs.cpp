@@ -8,6 +8,7 @@
 
 #include "base/data_dir.h"
 #include "base/status.h"
+#include "character/package/package.h"
 #include "client/cli/progress.h"
 #include "motion/clip_file.h"
 #include "motion/pose_source.h"

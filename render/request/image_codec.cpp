@@ -7,7 +7,7 @@
 #include <turbojpeg.h>
 
 #include "base/status.h"
-#include "character/picture_codec.h"
+#include "character/pictures/picture_codec.h"
 
 namespace furrow::render {
 namespace {

@@ -58,7 +58,7 @@ CONFINED = [
     (r"prometheus/", {"server/http"}),
     (r"glm/", GLM),
     (r"hwy/", {"wrinkle", "render"}),
-    (r"OpenImageIO/", {"character/oiio"}),
+    (r"OpenImageIO/", {"character/pictures/oiio"}),
     (r"turbojpeg\.h", {"render"}),
     (r"spdlog/", {"server"}),
     (r"CLI/", {"server/config", "client/cli", "authoring/generator"}),

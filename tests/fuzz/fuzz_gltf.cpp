@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "character/character.h"
+#include "character/package/package.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace furrow::character;

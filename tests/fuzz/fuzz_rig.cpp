@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "character/rig_report.h"
+#include "character/package/rig_report.h"
 #include "rig/rig_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

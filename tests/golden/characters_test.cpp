@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "authoring/import/makehuman/makehuman.h"
+#include "character/package/package.h"
 #include "motion/pose_source.h"
 #include "rig/rig_reference_pose.h"
 #include "sitter.h"
@@ -98,8 +99,7 @@ class MakeHuman : public testing::TestWithParam<Shot> {
     const std::filesystem::path folder = std::filesystem::path(FURROW_SHARED_DATA) / "makehuman";
     if (!std::filesystem::exists(folder)) return;
     character::ImportOptions options;
-    options.rig =
-        std::filesystem::path(FURROW_SOURCE_DIR) / "rig" / "rigs" / "makehuman.json";
+    options.rig = std::filesystem::path(FURROW_SOURCE_DIR) / "rig" / "rigs" / "makehuman.json";
     options.poses = motion::CachedPoseSource();
     options.texture_size = 256;
     sitter_ = std::make_unique<Sitter>(test::Expect(character::ImportMakeHuman(folder, options)));

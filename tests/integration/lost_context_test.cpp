@@ -15,7 +15,7 @@
 #include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/spdlog.h>
 
-#include "character/character.h"
+#include "character/package/package.h"
 #include "motion/pose_source.h"
 #include "server/pipeline/render_thread.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "character/character.h"
+#include "character/package/package.h"
 #include "motion/pose_source.h"
 
 namespace furrow::testing_net {

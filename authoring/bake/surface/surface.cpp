@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "character/weld.h"
+#include "character/mesh/weld.h"
 
 namespace furrow::character::bake {
 namespace {

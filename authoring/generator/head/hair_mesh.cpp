@@ -13,7 +13,7 @@
 #include "authoring/generator/head/head_shape.h"
 #include "authoring/generator/mesh/mesh_tools.h"
 #include "authoring/paint/hair_strands.h"
-#include "character/tangents.h"
+#include "character/mesh/tangents.h"
 
 namespace furrow::character::generator {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "character/tangents.h"
+#include "character/mesh/tangents.h"
 #include "wrinkle/drivers/strain/strain.h"
 
 namespace furrow::character::generator {

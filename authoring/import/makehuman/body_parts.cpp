@@ -10,7 +10,7 @@
 
 #include "authoring/import/makehuman/prop_paint.h"
 #include "authoring/paint/teeth.h"
-#include "character/tangents.h"
+#include "character/mesh/tangents.h"
 
 namespace furrow::character {
 namespace {

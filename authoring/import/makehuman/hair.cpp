@@ -13,7 +13,7 @@
 #include "authoring/import/makehuman/skin_paint.h"
 #include "authoring/paint/canvas.h"
 #include "authoring/paint/noise.h"
-#include "character/tangents.h"
+#include "character/mesh/tangents.h"
 
 namespace furrow::character {
 namespace {

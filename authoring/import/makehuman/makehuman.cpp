@@ -26,6 +26,7 @@
 #include "base/data_dir.h"
 #include "base/files.h"
 #include "base/status.h"
+#include "character/package/package.h"
 #include "rig/rig_check.h"
 #include "rig/rig_file.h"
 #include "wrinkle/solver/solver.h"

@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "character/tangents.h"
+#include "character/mesh/tangents.h"
 
 namespace furrow::character {
 namespace {

@@ -13,7 +13,8 @@
 
 #include "authoring/bake/surface/uv_check.h"
 #include "authoring/import/model/face_frame.h"
-#include "character/rig_report.h"
+#include "character/package/rig_report.h"
+#include "character/source_notes.h"
 
 namespace furrow::character {
 namespace {

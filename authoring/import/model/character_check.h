@@ -8,6 +8,7 @@
 #include "authoring/import/model/character_space.h"
 #include "authoring/import/model/joint_finder.h"
 #include "character/character.h"
+#include "character/source_notes.h"
 
 namespace furrow::character {
 

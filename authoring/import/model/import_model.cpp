@@ -8,6 +8,7 @@
 #include "base/ascii.h"
 #include "base/files.h"
 #include "base/status.h"
+#include "character/package/package.h"
 #include "gltf/limits.h"
 
 namespace furrow::character {

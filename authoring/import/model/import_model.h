@@ -9,6 +9,7 @@
 #include "authoring/import/model/character_check.h"
 #include "base/status.h"
 #include "character/character.h"
+#include "character/source_notes.h"
 #include "rig/skeleton_map.h"
 
 namespace furrow::character {

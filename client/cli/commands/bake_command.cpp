@@ -14,7 +14,7 @@
 #include "authoring/bake/strokes_file.h"
 #include "authoring/bake/surface/surface_check.h"
 #include "base/status.h"
-#include "character/picture_file.h"
+#include "character/pictures/picture_file.h"
 #include "client/cli/command.h"
 #include "client/cli/endpoint.h"
 #include "client/cli/exit_code.h"

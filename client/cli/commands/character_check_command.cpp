@@ -8,6 +8,7 @@
 #include "authoring/import/model/character_check.h"
 #include "authoring/import/model/import_model.h"
 #include "base/status.h"
+#include "character/package/package.h"
 #include "client/cli/commands/character_command.h"
 #include "client/cli/exit_code.h"
 #include "client/cli/file_output.h"

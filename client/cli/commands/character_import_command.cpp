@@ -9,6 +9,7 @@
 #include "authoring/import/makehuman/makehuman.h"
 #include "authoring/import/model/import_model.h"
 #include "base/status.h"
+#include "character/package/package.h"
 #include "client/cli/commands/character_command.h"
 #include "client/cli/exit_code.h"
 #include "client/cli/inputs.h"

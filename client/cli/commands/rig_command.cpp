@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "character/rig_report.h"
+#include "character/package/rig_report.h"
 #include "client/cli/command.h"
 #include "client/cli/exit_code.h"
 #include "client/cli/inputs.h"

@@ -7,7 +7,7 @@
 
 #include "base/files.h"
 #include "base/text.h"
-#include "character/rig_patch.h"
+#include "character/package/rig_patch.h"
 #include "client/cli/command.h"
 #include "client/cli/exit_code.h"
 #include "client/cli/file_output.h"

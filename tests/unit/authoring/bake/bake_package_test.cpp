@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "authoring/bake/layers/blood.h"
-#include "character/picture_file.h"
+#include "character/pictures/picture_file.h"
 
 namespace furrow::character::bake {
 namespace {

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "character/tangents.h"
+#include "character/mesh/tangents.h"
 
 namespace furrow::character::paint {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "authoring/generator/head/head_mesh.h"
 #include "authoring/paint/canvas.h"
+#include "character/package/package.h"
 
 namespace furrow::character::generator {
 namespace {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "authoring/paint/uv_raster.h"
+#include "character/package/package.h"
 #include "rig/rig_file.h"
 #include "toy_folder.h"
 

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "character/source_notes.h"
 #include "tests/unit/authoring/import/model/toy_body.h"
 
 namespace furrow::character {

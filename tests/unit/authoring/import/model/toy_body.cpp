@@ -12,7 +12,8 @@
 #include <gtest/gtest.h>
 
 #include "base/files.h"
-#include "character/tangents.h"
+#include "character/mesh/tangents.h"
+#include "character/package/package.h"
 #include "tests/temporary_folder.h"
 
 namespace furrow::character {

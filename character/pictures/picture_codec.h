@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/status.h"
-#include "character/picture.h"
+#include "character/pictures/picture.h"
 
 namespace furrow::character {
 

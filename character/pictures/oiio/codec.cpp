@@ -9,7 +9,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include "character/picture_codec.h"
+#include "character/pictures/picture_codec.h"
 
 namespace furrow::character {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/rig_patch.h"
+#include "character/package/rig_patch.h"
 
 #include <utility>
 

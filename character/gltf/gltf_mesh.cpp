@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/gltf_mesh.h"
+#include "character/gltf/gltf_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,9 @@
 #include <glm/matrix.hpp>
 
 #include "base/status.h"
-#include "character/spread_influences.h"
-#include "character/tangents.h"
+#include "character/mesh/spread_influences.h"
+#include "character/mesh/tangents.h"
+#include "character/source_notes.h"
 #include "gltf/document/accessor.h"
 #include "gltf/limits.h"
 #include "gltf/scene/meshes.h"

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "base/status.h"
-#include "character/picture.h"
-#include "character/picture_codec.h"
+#include "character/pictures/picture.h"
+#include "character/pictures/picture_codec.h"
 
 namespace furrow::character {
 
@@ -31,7 +31,8 @@ namespace furrow::character {
 // as [0, 1]. Errors: kInvalidArgument (the number of pixels does not match the size).
 [[nodiscard]] Result<std::string> EncodeExr(const Picture& picture);
 
-// EncodePng() and EncodeExr() with every option. Errors: theirs, and kUnavailable (no codec module).
+// EncodePng() and EncodeExr() with every option. Errors: theirs, and kUnavailable (no codec
+// module).
 [[nodiscard]] Result<std::string> EncodePicture(const Picture& picture,
                                                 const PictureStorage& storage);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/weld.h"
+#include "character/mesh/weld.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,6 +6,7 @@
 
 #include "base/status.h"
 #include "character/character.h"
+#include "character/source_notes.h"
 
 namespace furrow::character {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/tangents.h"
+#include "character/mesh/tangents.h"
 
 #include <cmath>
 #include <vector>

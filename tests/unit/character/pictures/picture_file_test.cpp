@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/picture_file.h"
+#include "character/pictures/picture_file.h"
 
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/rig_report.h"
+#include "character/package/rig_report.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/rig_report.h"
+#include "character/package/rig_report.h"
 
 #include <algorithm>
 #include <set>
 
 #include "base/asset_path.h"
 #include "base/text.h"
-#include "character/character.h"
+#include "character/package/package.h"
 #include "wrinkle/rig/driver_values.h"
 #include "wrinkle/skeleton/retarget.h"
 #include "wrinkle/solver/solver.h"

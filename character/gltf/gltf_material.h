@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "character/character.h"
+#include "character/source_notes.h"
 #include "gltf/document/document.h"
 
 namespace furrow::character {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/picture_codec.h"
+#include "character/pictures/picture_codec.h"
 
 #include <filesystem>
 #include <system_error>

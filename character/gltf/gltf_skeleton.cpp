@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/gltf_skeleton.h"
+#include "character/gltf/gltf_skeleton.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "character/character.h"
+#include "character/mesh/mesh.h"
 
 namespace furrow::character::paint {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/picture.h"
+#include "character/pictures/picture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/gltf_reader.h"
+#include "character/gltf/gltf_reader.h"
 
 #include <cstddef>
 #include <utility>
 #include <vector>
 
-#include "character/gltf_material.h"
-#include "character/gltf_mesh.h"
-#include "character/gltf_skeleton.h"
+#include "character/gltf/gltf_material.h"
+#include "character/gltf/gltf_mesh.h"
+#include "character/gltf/gltf_skeleton.h"
+#include "character/source_notes.h"
 #include "gltf/document/document.h"
 #include "gltf/scene/nodes.h"
 

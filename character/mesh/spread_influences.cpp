@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/spread_influences.h"
+#include "character/mesh/spread_influences.h"
 
 #include <algorithm>
 #include <cstdint>

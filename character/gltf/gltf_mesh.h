@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "character/character.h"
-#include "character/gltf_skeleton.h"
+#include "character/gltf/gltf_skeleton.h"
+#include "character/source_notes.h"
 #include "gltf/document/document.h"
 #include "gltf/scene/nodes.h"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/picture_file.h"
+#include "character/pictures/picture_file.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "base/files.h"
 #include "base/status.h"
-#include "character/picture_codec.h"
+#include "character/pictures/picture_codec.h"
 #include "wrinkle/skeleton/finite.h"
 
 namespace furrow::character {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/gltf_material.h"
+#include "character/gltf/gltf_material.h"
 
 #include <array>
 #include <cstddef>
@@ -9,7 +9,8 @@
 
 #include "base/ascii.h"
 #include "base/status.h"
-#include "character/picture_file.h"
+#include "character/pictures/picture_file.h"
+#include "character/source_notes.h"
 #include "gltf/container/uri.h"
 #include "gltf/scene/materials.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/character.h"
+#include "character/package/package.h"
 
 #include <filesystem>
 #include <functional>
@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
-#include "character/picture_file.h"
+#include "character/pictures/picture_file.h"
 #include "gltf/container/glb.h"
 #include "tests/temporary_folder.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/rig_patch.h"
+#include "character/package/rig_patch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/status.h"
-#include "character/weld.h"
+#include "character/mesh/weld.h"
 #include "wrinkle/rig/rig_check.h"
 #include "wrinkle/skeleton/retarget.h"
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "character/character.h"
+#include "character/mesh/mesh.h"
 
 namespace furrow::character {
 

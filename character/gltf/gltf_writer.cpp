@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// CharacterGlb(): a character as one GLB. Equal characters give equal bytes: fields have a fixed
-// order, and neither times nor paths are written.
+#include "character/gltf/gltf_writer.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -10,11 +10,9 @@
 
 #include <glm/gtc/type_ptr.hpp>
 
-#include "base/files.h"
 #include "base/status.h"
-#include "character/character.h"
-#include "character/gltf_material.h"
-#include "character/picture_file.h"
+#include "character/gltf/gltf_material.h"
+#include "character/pictures/picture_file.h"
 #include "gltf/scene/joints.h"
 #include "gltf/scene/materials.h"
 #include "gltf/write/builder.h"
@@ -236,12 +234,6 @@ class CharacterWriter {
 
 Result<std::string> CharacterGlb(const Character& character) {
   return CharacterWriter(character).Run();
-}
-
-Status SaveCharacterGlb(const Character& character, const std::filesystem::path& glb) {
-  const Result<std::string> bytes = CharacterGlb(character);
-  if (!bytes.ok()) return bytes.status().Within(glb.string());
-  return WriteFileAtomically(glb, *bytes);
 }
 
 }  // namespace furrow::character

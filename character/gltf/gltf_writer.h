@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "base/status.h"
+#include "character/character.h"
+
+namespace furrow::character {
+
+// Encodes skeleton, skin, meshes and textures as one .glb. Equal characters give equal bytes:
+// fields have a fixed order, and neither times nor paths are written. Errors: those of
+// EncodePicture().
+[[nodiscard]] Result<std::string> CharacterGlb(const Character& character);
+
+}  // namespace furrow::character

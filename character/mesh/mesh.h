@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+namespace furrow::character {
+
+// The parts of glTF's metallic-roughness material that are drawn, and the kind of surface.
+struct Material {
+  enum class Kind { kSkin, kCloth, kEye, kHair, kOther };
+  std::string name;
+  Kind kind = Kind::kOther;
+  glm::vec4 base_colour{1.0f};   // linear
+  int base_colour_texture = -1;  // index into Character::pictures; sRGB
+  int normal_texture = -1;       // tangent space, green up (glTF)
+  float roughness = 0.6f;
+  int roughness_texture = -1;  // green channel
+  // Thickness of translucent flesh in metres (KHR_materials_volume), 0 if not stated. It scales the
+  // green channel of thickness_texture, if there is one.
+  float thickness = 0.0f;
+  int thickness_texture = -1;
+  bool double_sided = false;
+  float alpha_cutoff = 0.0f;  // 0 for opaque materials
+};
+
+struct Vertex {
+  glm::vec3 position{0.0f};                          // model space, rest pose, metres
+  glm::vec3 normal{0.0f, 0.0f, 1.0f};                // unit
+  glm::vec4 tangent{1.0f, 0.0f, 0.0f, 1.0f};         // w: handedness of the bitangent (glTF)
+  glm::vec2 uv{0.0f};                                // v down (glTF)
+  std::uint16_t joints[4] = {0, 0, 0, 0};            // indices into Character::skeleton
+  float skin_weights[4] = {1.0f, 0.0f, 0.0f, 0.0f};  // sum to 1
+};
+
+struct Mesh {
+  std::string name;
+  int material = -1;
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from outside
+};
+
+}  // namespace furrow::character
