@@ -9,14 +9,6 @@
 #include "render/skin/subsurface_kernel.h"
 
 namespace furrow::render {
-namespace {
-
-std::string Define(std::string_view name, int value) {
-  return std::string(name) + " " + std::to_string(value);
-}
-
-}  // namespace
-
 std::vector<std::string> Defines(const SceneShader& shader) {
   using Kind = character::Material::Kind;
   std::vector<std::string> defines = {
