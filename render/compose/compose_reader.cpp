@@ -50,6 +50,7 @@ Texels Resampled(const Texels& from, glm::ivec2 from_size, glm::ivec2 size) {
   };
   Texels texels;
   texels.reserve(Count(size));
+  // Texel centres are at halves, hence the shift before and after scaling.
   const glm::vec2 scale = glm::vec2(from_size) / glm::vec2(size);
   for (int y = 0; y < size.y; ++y) {
     for (int x = 0; x < size.x; ++x) {
@@ -134,6 +135,7 @@ glm::vec4 SlopeOf(const glm::vec4& moments) {
 
 glm::vec4 Same(const glm::vec4& texel) { return texel; }
 
+// Tiles at the right and bottom edges may be partly outside the level.
 glm::ivec2 TilesOf(glm::ivec2 size) { return (size + ComposeTile::kSide - 1) / ComposeTile::kSide; }
 
 // Adds a mask channel to each tile where it is above 0. Tiles are in row order.
@@ -157,6 +159,7 @@ void AddMasks(const Texels& layer, int channel, std::size_t number, glm::ivec2 s
   }
 }
 
+// Reads masks first: a tile without any mask cannot have wrinkles and is dropped.
 std::vector<ComposeTile> ReadMasks(const GpuCharacter& gpu, const ComposeSelection& selection,
                                    glm::ivec2 size) {
   const std::vector<int>& channels = selection.channels;
@@ -207,6 +210,8 @@ void ReadSurface(const GpuCharacter& gpu, const GpuMaterial& material, glm::ivec
            });
 }
 
+// Every tile gets every map of the selection, so that positions in `maps` agree with
+// ComposeStrengths.
 void ReadMap(const GpuCharacter& gpu, int map, glm::ivec2 size, std::vector<ComposeTile>* tiles) {
   const int layer = std::max(gpu.layout().map_layers[static_cast<std::size_t>(map)], 0);
   const LayerReader slopes(gpu.wrinkle_derivatives(), layer, false, size);

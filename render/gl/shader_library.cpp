@@ -9,6 +9,8 @@
 #include "render/skin/subsurface_kernel.h"
 
 namespace furrow::render {
+// Defines every switch, even those that a program does not use: #if silently treats an undefined
+// name as 0.
 std::vector<std::string> Defines(const SceneShader& shader) {
   using Kind = character::Material::Kind;
   std::vector<std::string> defines = {
