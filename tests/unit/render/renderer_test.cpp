@@ -231,9 +231,9 @@ TEST_F(RendererTest, ALostContextIsReportedAndANewRendererDrawsTheSame) {
     EXPECT_NE(status.ToString().find("create a new renderer"), std::string::npos);
   }
   renderer_.reset();
-  auto anew = Renderer::Create(head_);
-  ASSERT_TRUE(anew.ok()) << anew.status().ToString();
-  renderer_ = std::move(*anew);
+  auto recreated = Renderer::Create(head_);
+  ASSERT_TRUE(recreated.ok()) << anew.status().ToString();
+  renderer_ = std::move(*recreated);
   EXPECT_EQ(Render(request).rgb, before.rgb);
 }
 
