@@ -21,6 +21,8 @@ bool IsLight(View view) {
   return view == View::kFinal || view == View::kWeights || view == View::kWireframe;
 }
 
+// Resolves the automatic number of samples. `affordable`: multisampling is cheap enough for this
+// view on this device.
 AntiAliasingSettings Chosen(const AntiAliasingSettings& asked, bool affordable) {
   if (asked.samples != 0) return asked;
   return affordable ? AntiAliasingSettings{4, asked.fxaa} : AntiAliasingSettings{1, true};
@@ -68,6 +70,7 @@ Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, 
     }
     if (view == View::kBloom && bloom.version >= 0) {
       shown = AddShowPass(graph, bloom, {.scale = kBloomScale}, desc, &fullscreen_);
+      // Shown itself, so it is not added to the picture.
       bloom = {};
     }
   } else {
@@ -83,6 +86,7 @@ Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const S
                          const TextureDesc& desc, Handle shadows) {
   const CameraFrame& camera = scene_->setup().camera;
   const float slope = camera.PixelsPerSlope(desc.height);
+  // The pixels that some subject can cover, extended by one pixel, because filters read neighbours.
   const auto project = [&](const JointBounds& bounds) {
     ScreenRect rect;
     for (const NamedSubject& named : SubjectsOf(request)) {

@@ -99,6 +99,7 @@ void LoadPlanes(const std::vector<std::uint16_t>& planes, std::size_t first,
   });
 }
 
+// Variances add as squares, because the maps are treated as independent.
 void AddSlopes(const ComposeJob& job, std::size_t map, std::size_t first,
                const Numbers& coefficients, Slopes* sums) {
   const std::vector<std::uint16_t>& from = job.tile->maps[map].slopes;
@@ -170,6 +171,7 @@ void StoreLooks(const ComposeJob& job, std::size_t first, const Looks& looks) {
   });
 }
 
+// One block at a time goes through all maps, so that the sums stay in the cache.
 void ComposeBlock(const ComposeJob& job, std::size_t first) {
   const ComposeTile& tile = *job.tile;
   const bool has_looks = !tile.colour.empty();
@@ -209,6 +211,7 @@ bool HasPlanes(const std::vector<std::uint16_t>& halves, std::size_t planes) {
   return halves.size() == planes * ComposeTile::kTexels;
 }
 
+// Checks all sizes before the SIMD code runs, which reads without bounds checks.
 bool IsWhole(const ComposeTile& tile, std::size_t channels) {
   if (!HasPlanes(tile.slopes, 3) || !(tile.colour.empty() || HasPlanes(tile.colour, 3))) {
     return false;

@@ -13,8 +13,6 @@ namespace {
 
 using Texels = std::vector<glm::vec4>;
 
-constexpr int kSide = ComposeTile::kSide;
-
 glm::ivec2 LevelSize(GLuint texture, int level) {
   glm::ivec2 size(0);
   glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_WIDTH, &size.x);
@@ -52,6 +50,7 @@ Texels Resampled(const Texels& from, glm::ivec2 from_size, glm::ivec2 size) {
   };
   Texels texels;
   texels.reserve(Count(size));
+  // Texel centres are at halves, hence the shift before and after scaling.
   const glm::vec2 scale = glm::vec2(from_size) / glm::vec2(size);
   for (int y = 0; y < size.y; ++y) {
     for (int x = 0; x < size.x; ++x) {
@@ -83,14 +82,14 @@ class LayerReader {
 
   // Texels beyond the border are 0.
   [[nodiscard]] Texels ReadTile(glm::ivec2 place) const {
-    const glm::ivec2 first = place * kSide;
-    const glm::ivec2 part = glm::min(size_ - first, glm::ivec2(kSide));
+    const glm::ivec2 first = place * ComposeTile::kSide;
+    const glm::ivec2 part = glm::min(size_ - first, glm::ivec2(ComposeTile::kSide));
     Texels tile(ComposeTile::kTexels, glm::vec4(0.0f));
     const Texels read = all_.empty() ? Read(first, part) : Texels();
     for (int y = 0; y < part.y; ++y) {
       const auto from = all_.empty() ? read.begin() + y * part.x
                                      : all_.begin() + (first.y + y) * size_.x + first.x;
-      std::copy_n(from, part.x, tile.begin() + y * kSide);
+      std::copy_n(from, part.x, tile.begin() + y * ComposeTile::kSide);
     }
     return tile;
   }
@@ -136,22 +135,23 @@ glm::vec4 SlopeOf(const glm::vec4& moments) {
 
 glm::vec4 Same(const glm::vec4& texel) { return texel; }
 
-glm::ivec2 TilesOf(glm::ivec2 size) { return (size + kSide - 1) / kSide; }
+// Tiles at the right and bottom edges may be partly outside the level.
+glm::ivec2 TilesOf(glm::ivec2 size) { return (size + ComposeTile::kSide - 1) / ComposeTile::kSide; }
 
 // Adds a mask channel to each tile where it is above 0. Tiles are in row order.
 void AddMasks(const Texels& layer, int channel, std::size_t number, glm::ivec2 size,
               std::vector<ComposeTile>* tiles) {
   for (ComposeTile& tile : *tiles) {
     ComposeTile::Mask mask{number, std::vector<std::uint8_t>(ComposeTile::kTexels)};
-    const glm::ivec2 first = tile.place * kSide;
-    const glm::ivec2 part = glm::min(size - first, glm::ivec2(kSide));
+    const glm::ivec2 first = tile.place * ComposeTile::kSide;
+    const glm::ivec2 part = glm::min(size - first, glm::ivec2(ComposeTile::kSide));
     bool is_any = false;
     for (int y = 0; y < part.y; ++y) {
       for (int x = 0; x < part.x; ++x) {
         const glm::vec4& texel =
             layer[static_cast<std::size_t>((first.y + y) * size.x + first.x + x)];
         const auto value = static_cast<std::uint8_t>(texel[channel] * 255.0f + 0.5f);
-        mask.values[static_cast<std::size_t>(y * kSide + x)] = value;
+        mask.values[static_cast<std::size_t>(y * ComposeTile::kSide + x)] = value;
         is_any = is_any || value > 0;
       }
     }
@@ -159,6 +159,7 @@ void AddMasks(const Texels& layer, int channel, std::size_t number, glm::ivec2 s
   }
 }
 
+// Reads masks first: a tile without any mask cannot have wrinkles and is dropped.
 std::vector<ComposeTile> ReadMasks(const GpuCharacter& gpu, const ComposeSelection& selection,
                                    glm::ivec2 size) {
   const std::vector<int>& channels = selection.channels;
@@ -209,6 +210,8 @@ void ReadSurface(const GpuCharacter& gpu, const GpuMaterial& material, glm::ivec
            });
 }
 
+// Every tile gets every map of the selection, so that positions in `maps` agree with
+// ComposeStrengths.
 void ReadMap(const GpuCharacter& gpu, int map, glm::ivec2 size, std::vector<ComposeTile>* tiles) {
   const int layer = std::max(gpu.layout().map_layers[static_cast<std::size_t>(map)], 0);
   const LayerReader slopes(gpu.wrinkle_derivatives(), layer, false, size);

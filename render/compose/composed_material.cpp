@@ -62,6 +62,8 @@ ComposedMaterial::Copy ComposedMaterial::MakeCopy() const {
   return copy;
 }
 
+// Paints the base surface without wrinkles. At rest, the composed textures replace the material's
+// own without further work.
 void ComposedMaterial::FillBase(Copy* copy) const {
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     const glm::ivec2 size = levels_[i].size;
@@ -72,6 +74,7 @@ void ComposedMaterial::FillBase(Copy* copy) const {
   }
 }
 
+// The second copy starts as a copy of the first, which is cheaper than painting everything again.
 void ComposedMaterial::CopyFront(Copy* copy) const {
   const Copy& front = copies_[front_];
   for (std::size_t i = 0; i < levels_.size(); ++i) {
@@ -89,6 +92,8 @@ void ComposedMaterial::CopyFront(Copy* copy) const {
   copy->painted_levels = front.painted_levels;
 }
 
+// Compares what is painted with what is needed for one mask channel. A change of amplitudes or
+// colours matters only where the channel has a weight.
 bool ComposedMaterial::IsChanged(const ComposeStrengths& from, const ComposeStrengths& to,
                                  std::size_t channel) const {
   const std::size_t maps = selection_.maps.size();
@@ -116,6 +121,7 @@ bool ComposedMaterial::IsSame(const ComposeStrengths& from, const Needs& to) con
   return std::ranges::find(changed, true) == changed.end();
 }
 
+// The front copy also has to be painted down to the finest level that each visible channel needs.
 bool ComposedMaterial::IsPainted(const Needs& needs) const {
   const Copy& front = copies_[front_];
   for (std::size_t i = 0; i < needs.is_seen.size(); ++i) {
@@ -124,6 +130,8 @@ bool ComposedMaterial::IsPainted(const Needs& needs) const {
   return IsSame(front.strengths, needs);
 }
 
+// The copy that the next Paint() changes. Until it exists, the front copy predicts how much there
+// is to paint.
 const ComposedMaterial::Copy& ComposedMaterial::Back() const {
   const Copy& back = copies_[1 - front_];
   return back.derivatives ? back : copies_[front_];
@@ -135,6 +143,7 @@ void ComposedMaterial::ReadLevel(Level* level) const {
   level->is_read = true;
 }
 
+// Tiles hold only the masks that are above 0 in them, so a changed channel affects few tiles.
 std::vector<const ComposeTile*> ComposedMaterial::Stale(const Level& level,
                                                         const std::vector<bool>& changed) {
   std::vector<const ComposeTile*> stale;
@@ -148,6 +157,7 @@ std::vector<const ComposeTile*> ComposedMaterial::Stale(const Level& level,
   return stale;
 }
 
+// See the comment of Copy::painted_levels for the level before the first one.
 bool ComposedMaterial::IsStale(const Copy& copy, const Needs& needs, bool is_changed,
                                std::size_t channel, int level) {
   const int first = needs.first_levels[channel];
@@ -167,6 +177,8 @@ std::vector<bool> ComposedMaterial::StaleChannels(const Copy& copy, const Needs&
   return stale;
 }
 
+// Counts from coarse to fine, so that unread levels can be estimated from the level that was read
+// last.
 std::size_t ComposedMaterial::NumStale(const Needs& needs) const {
   if (IsPainted(needs)) return 0;
   const Copy& copy = Back();
@@ -199,6 +211,8 @@ ComposeStrengths ComposedMaterial::Merged(const ComposeStrengths& painted,
   return strengths;
 }
 
+// Channels that start at a coarser level have not been painted on this level and must stay out of
+// it.
 ComposeStrengths ComposedMaterial::StrengthsOfLevel(const Copy& copy, int level) const {
   ComposeStrengths strengths = copy.strengths;
   const std::size_t maps = selection_.maps.size();
@@ -211,9 +225,11 @@ ComposeStrengths ComposedMaterial::StrengthsOfLevel(const Copy& copy, int level)
 void ComposedMaterial::PaintLevel(std::size_t level, const std::vector<bool>& stale, Copy* copy) {
   const int number = static_cast<int>(level);
   ReadLevel(&levels_[level]);
+  // Usually all channels start at or before this level, and the strengths need no copy.
   const bool is_whole = std::ranges::max(copy->first_levels) <= number;
   PaintTiles(*copy, is_whole ? copy->strengths : StrengthsOfLevel(*copy, number), level,
              Stale(levels_[level], stale));
+  // Records which channels this level contains from now on.
   for (std::size_t i = 0; i < stale.size(); ++i) {
     if (!stale[i]) continue;
     const auto bit = static_cast<std::uint16_t>(1u << level);
@@ -230,6 +246,7 @@ void ComposedMaterial::Paint(const Needs& needs) {
     back = MakeCopy();
     CopyFront(&back);
   }
+  // Determine what is stale before the back copy's state is updated.
   const std::vector<bool> changed = Changes(back.strengths, needs);
   std::vector<std::vector<bool>> stale;
   for (std::size_t i = 0; i < levels_.size(); ++i) {
@@ -267,6 +284,7 @@ void ComposedMaterial::PaintRun(const Copy& copy, const ComposeStrengths& streng
   const std::size_t stride = ComposeTile::kSide * run.size();
   slopes_.resize(4 * stride * ComposeTile::kSide);
   colours_.resize(copy.colour ? slopes_.size() : 0);
+  // The tiles of a run lie next to each other in one buffer, which needs a single upload.
   for (std::size_t i = 0; i < run.size(); ++i) {
     const std::size_t first = 4 * ComposeTile::kSide * i;
     ComposeJob job{run[i], &strengths, std::span(slopes_).subspan(first), {}, stride};

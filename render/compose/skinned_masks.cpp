@@ -13,7 +13,6 @@
 namespace furrow::render {
 namespace {
 
-constexpr int kSide = ComposeTile::kSide;
 // Texels beyond the surface that filtering may sample.
 constexpr float kReach = 1.5f;
 // Largest difference of masks that counts as equal: two steps of a byte.
@@ -218,8 +217,8 @@ void SkinnedMasks::AddTo(glm::ivec2 size, std::size_t first_channel,
 
 void SkinnedMasks::FillTile(const std::vector<Place>& places, glm::ivec2 size,
                             std::size_t first_channel, ComposeTile* tile) const {
-  const glm::ivec2 first = tile->place * kSide;
-  const glm::ivec2 part = glm::min(size - first, glm::ivec2(kSide));
+  const glm::ivec2 first = tile->place * ComposeTile::kSide;
+  const glm::ivec2 part = glm::min(size - first, glm::ivec2(ComposeTile::kSide));
   std::vector<std::vector<std::uint8_t>> planes(channels_.size());
   std::vector<float> values(channels_.size(), 0.0f);
   const auto store = [&](std::size_t texel, std::uint32_t vertex) {
@@ -238,7 +237,7 @@ void SkinnedMasks::FillTile(const std::vector<Place>& places, glm::ivec2 size,
       AddValues(place, 1.0f, &values);
       for (const std::uint32_t vertex :
            std::span(corners_).subspan(3 * static_cast<std::size_t>(place.triangle), 3)) {
-        store(static_cast<std::size_t>(y * kSide + x), vertex);
+        store(static_cast<std::size_t>(y * ComposeTile::kSide + x), vertex);
       }
     }
   }

@@ -36,6 +36,7 @@ void WrinkleCache::Disable() {
   for (Entry& entry : entries_) entry.is_used = entry.is_stale = false;
 }
 
+// Materials drop out for cheap reasons first. The comparison of texels and pixels comes last.
 void WrinkleCache::Plan(const Settings& settings, const View& view) {
   Disable();
   for (int index = 0; index < gpu_->num_materials(); ++index) {
@@ -56,6 +57,7 @@ void WrinkleCache::Plan(const Settings& settings, const View& view) {
   }
 }
 
+// The two mask modes have different skinned masks, so each has its own entry and textures.
 const WrinkleCache::Entry& WrinkleCache::EntryOf(int material) const {
   const bool is_dynamic = tables_->mask_mode() == MaskMode::kDynamic;
   return entries_[2 * static_cast<std::size_t>(material) + (is_dynamic ? 1 : 0)];
@@ -65,6 +67,8 @@ WrinkleCache::Entry& WrinkleCache::EntryOf(int material) {
   return const_cast<Entry&>(std::as_const(*this).EntryOf(material));
 }
 
+// Needs the meshes' skin weights, which are only on the GPU. The result is computed once per
+// material.
 std::unique_ptr<SkinnedMasks> WrinkleCache::FindSkinned(int material) const {
   const std::vector<SkinnedShare> shares = tables_->skinned(gpu_->material(material).group);
   std::vector<character::Mesh> meshes;
@@ -94,6 +98,7 @@ void WrinkleCache::FindVisibleRegions(int material, const ComposedMaterial& comp
   const std::vector<int>& channels = selection.channels;
   needs->is_seen.assign(selection.num_channels(), false);
   needs->first_levels.assign(selection.num_channels(), composed.num_levels() - 1);
+  // Regions of painted masks. Invisible ones need not be painted.
   for (const MaskRegion& region : gpu_->mask_regions()) {
     const auto channel = std::ranges::find(channels, region.channel);
     if (region.material != material || channel == channels.end()) continue;
@@ -129,6 +134,8 @@ void WrinkleCache::AddVisibleRegion(const MaskRegion& region, std::size_t channe
 void WrinkleCache::PlanMaterial(int index, const Settings& settings, const View& view,
                                 const Sight& sight, Entry* entry) {
   if (!Prepare(gpu_->material(index), sight, entry)) return;
+  // Decide in this order: the textures are already right; the weights are held, so painting pays
+  // over time; or painting is cheaper than evaluating fragments.
   ComposedMaterial& composed = *entry->composed;
   ComposedMaterial::Needs needs{StrengthsOf(composed, entry->rest, settings), {}, {}};
   FindVisibleRegions(index, composed, view, &needs);
@@ -144,6 +151,7 @@ void WrinkleCache::PlanMaterial(int index, const Settings& settings, const View&
 
 bool WrinkleCache::Prepare(const GpuMaterial& material, const Sight& sight, Entry* entry) const {
   const glm::ivec2 size = SizeFor(material, sight);
+  // Limits memory and painting time.
   if (std::max(size.x, size.y) > kMaxSide) return false;
   if (entry->composed != nullptr) {
     const float finer =
@@ -176,6 +184,7 @@ ComposeSelection WrinkleCache::SelectionOf(const GpuMaterial& material,
     const auto place = std::ranges::lower_bound(*list, item);
     if (place == list->end() || *place != item) list->insert(place, item);
   };
+  // Lists stay sorted and without duplicates, as ComposeSelection requires.
   for (const WrinkleTables::Painted& painted : tables_->painted(material.group)) {
     add(painted.map, &selection.maps);
     add(painted.channel, &selection.channels);
@@ -195,6 +204,7 @@ ComposeStrengths WrinkleCache::StrengthsOf(const ComposedMaterial& composed, Wri
                              std::vector<float>(maps, 1.0f),
                              std::vector<float>(maps, 1.0f),
                              {settings.wrinkle_maps.blood_flow, settings.wrinkle_maps.cavity}};
+  // Maps before NeedsOf() stay in the fragment shader.
   for (std::size_t slot = NeedsOf(table, rest).num_maps; slot < table.maps.size(); ++slot) {
     const auto found = std::ranges::find(selection.maps, table.maps[slot].map);
     if (found == selection.maps.end()) continue;

@@ -35,6 +35,7 @@ TextureId GlDevice::CreateTexture(const TextureDesc& desc) {
 }
 
 void GlDevice::DestroyTexture(TextureId texture) {
+  // OpenGL may reuse the name of a destroyed texture, so cached framebuffers must not refer to it.
   std::erase_if(framebuffers_, [&](const auto& entry) {
     return std::ranges::find(entry.first, texture) != entry.first.end();
   });

@@ -28,7 +28,7 @@ class ReadBack {
   void Start(GLuint framebuffer, int width, int height, std::uint64_t token);
 
   // Returns the oldest picture if its copy is complete. `wait`: blocks until it is. Rows keep the
-  // order in which OpenGL stores them, from y = 0 upwards; composite.frag.glsl has flipped the
+  // order in which OpenGL stores them, from y = 0 upwards; post/composite.frag.glsl has flipped the
   // picture. kUnavailable: the driver gave up waiting because the context was lost.
   [[nodiscard]] Result<std::optional<Image>> Take(bool wait);
 

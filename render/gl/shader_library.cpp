@@ -9,14 +9,8 @@
 #include "render/skin/subsurface_kernel.h"
 
 namespace furrow::render {
-namespace {
-
-std::string Define(std::string_view name, int value) {
-  return std::string(name) + " " + std::to_string(value);
-}
-
-}  // namespace
-
+// Defines every switch, even those that a program does not use: #if silently treats an undefined
+// name as 0.
 std::vector<std::string> Defines(const SceneShader& shader) {
   using Kind = character::Material::Kind;
   std::vector<std::string> defines = {

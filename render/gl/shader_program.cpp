@@ -42,6 +42,10 @@ Status Link(const gl::Program& program, std::string_view name) {
 
 }  // namespace
 
+std::string Define(std::string_view name, int value) {
+  return std::string(name) + " " + std::to_string(value);
+}
+
 Result<gl::Program> BuildProgram(const ProgramFiles& program, std::span<const std::string> defines,
                                  std::span<const ShaderFile> files) {
   const std::pair<GLenum, std::string_view> stages[] = {

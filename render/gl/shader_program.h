@@ -20,6 +20,9 @@ struct ProgramFiles {
   std::string_view tess_evaluation = {};
 };
 
+// One "NAME VALUE" for BuildProgram(), and for ShaderLibrary::GetFullscreen().
+[[nodiscard]] std::string Define(std::string_view name, int value);
+
 // Expands, compiles and links the shaders that `program` names, taken from `files`, with `defines`
 // ("NAME VALUE") in every stage. Needs a current context. Errors: those of ExpandShader(), and
 // kInternal with the driver's log, in which file names replace source numbers.

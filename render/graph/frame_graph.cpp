@@ -9,6 +9,7 @@ TransientPool::~TransientPool() {
   for (const Entry& entry : entries_) device_->DestroyTexture(entry.texture);
 }
 
+// A linear search is enough: a frame has a few dozen textures.
 TextureId TransientPool::Acquire(const TextureDesc& desc) {
   const auto fits = [&](const Entry& entry) { return !entry.in_use && entry.desc == desc; };
   auto found = std::find_if(entries_.begin(), entries_.end(), fits);
@@ -21,12 +22,14 @@ TextureId TransientPool::Acquire(const TextureDesc& desc) {
   return found->texture;
 }
 
+// The texture keeps its contents until another pass acquires it.
 void TransientPool::Release(TextureId texture) {
   for (Entry& entry : entries_) {
     if (entry.texture == texture) entry.in_use = false;
   }
 }
 
+// Destroys textures that no frame has used for a while, such as those of a former picture size.
 void TransientPool::EndFrame() {
   for (Entry& entry : entries_) {
     if (!entry.in_use && ++entry.idle_frames > kKeepFrames) device_->DestroyTexture(entry.texture);
@@ -49,17 +52,21 @@ FrameGraph::Handle FrameGraph::Builder::Create(std::string_view name, const Text
   return {version};
 }
 
+// All mistakes of declarations are recorded here and reported by Compile(), so that `setup`
+// functions need no error handling.
 void FrameGraph::Builder::Read(Handle handle) {
   if (handle.version < 0) return graph_->Fail(pass_, handle.version, "reads");
   const Version& version = graph_->versions_[handle.version];
   if (version.writer < 0 && !graph_->textures_[version.texture].imported)
-    return graph_->Fail(pass_, handle.version, "reads, before any write,");
+    return graph_->Fail(pass_, handle.version, "reads the unwritten texture");
   if (graph_->textures_[version.texture].newest != handle.version) {
-    return graph_->Fail(pass_, handle.version, "reads an overwritten version of");
+    return graph_->Fail(pass_, handle.version, "reads an overwritten version of texture");
   }
   graph_->passes_[pass_].reads.push_back(handle.version);
 }
 
+// A write makes a new version of the texture. The old version remains readable only for passes that
+// were added before, because passes run in the order in which they were added.
 FrameGraph::Handle FrameGraph::Builder::Write(Handle handle) {
   if (handle.version < 0) {
     graph_->Fail(pass_, handle.version, "writes");
@@ -67,7 +74,7 @@ FrameGraph::Handle FrameGraph::Builder::Write(Handle handle) {
   }
   const Version old = graph_->versions_[handle.version];
   if (graph_->textures_[old.texture].newest != handle.version) {
-    graph_->Fail(pass_, handle.version, "writes to an overwritten version of");
+    graph_->Fail(pass_, handle.version, "writes to an overwritten version of texture");
   }
   const int version = static_cast<int>(graph_->versions_.size());
   graph_->versions_.push_back({old.texture, pass_, handle.version});
@@ -95,6 +102,7 @@ int FrameGraph::BeginPass(std::string_view name) {
   return static_cast<int>(passes_.size()) - 1;
 }
 
+// Keeps the first error only. Later errors often follow from it.
 void FrameGraph::Fail(int pass, int version, std::string_view why) {
   if (!error_.ok()) return;
   const std::string texture =
@@ -117,6 +125,7 @@ void FrameGraph::Cull() {
   for (Pass& pass : passes_) pass.needed = pass.side_effect;
   for (auto pass = passes_.rbegin(); pass != passes_.rend(); ++pass) {
     if (!pass->needed) continue;
+    // A created texture without a writer, or an imported one, needs no earlier pass.
     const auto need = [&](int version) {
       if (versions_[version].writer >= 0) passes_[versions_[version].writer].needed = true;
     };
@@ -125,6 +134,7 @@ void FrameGraph::Cull() {
   }
 }
 
+// Culled passes do not extend lifetimes.
 void FrameGraph::ComputeLifetimes() {
   for (int pass = 0; pass < static_cast<int>(passes_.size()); ++pass) {
     if (!passes_[pass].needed) continue;
@@ -140,6 +150,7 @@ void FrameGraph::ComputeLifetimes() {
 
 Status FrameGraph::Run(const Pass& pass, FrameGraphObserver* observer) const {
   if (observer != nullptr) observer->BeforePass(pass.name);
+  // A failure is reported together with the pass that caused it.
   Status status = pass.execute(Resources(this)).At(pass.name);
   if (observer == nullptr || !status.ok()) return status;
   std::vector<FrameGraphObserver::Written> written;
@@ -155,6 +166,8 @@ Status FrameGraph::Execute(TransientPool* pool, FrameGraphObserver* observer) {
   Status status;
   for (int index = 0; index < static_cast<int>(passes_.size()) && status.ok(); ++index) {
     if (!passes_[index].needed) continue;
+    // Textures are acquired as late and released as early as possible, so that passes of one frame
+    // share memory.
     for (Texture& texture : textures_) {
       if (texture.imported) continue;
       if (texture.first_pass == index) texture.id = pool->Acquire(texture.desc);
@@ -165,6 +178,7 @@ Status FrameGraph::Execute(TransientPool* pool, FrameGraphObserver* observer) {
       if (texture.last_pass == index) pool->Release(std::exchange(texture.id, 0));
     }
   }
+  // After a failure, some textures are still held.
   for (Texture& texture : textures_) {
     if (texture.id != 0 && !texture.imported) pool->Release(std::exchange(texture.id, 0));
   }

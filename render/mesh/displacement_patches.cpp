@@ -21,9 +21,9 @@ struct EdgeOwner {
   int triangles = 0;
 };
 
-class Edges {
+class EdgeOwners {
  public:
-  Edges(const character::Mesh& mesh, const std::vector<std::uint32_t>& weld) : weld_(weld) {
+  EdgeOwners(const character::Mesh& mesh, const std::vector<std::uint32_t>& weld) : weld_(weld) {
     for (std::size_t i = 0; i < mesh.indices.size(); ++i) Add({mesh.indices[i], Next(mesh, i)});
   }
   // The vertex that follows index `i` in its triangle.
@@ -80,7 +80,7 @@ float MetresPerUv(const character::Mesh& mesh) {
 
 DisplacementPatches MakeDisplacementPatches(const character::Mesh& mesh) {
   const std::vector<std::uint32_t> weld = character::WeldVertices(mesh);
-  const Edges edges(mesh, weld);
+  const EdgeOwners edges(mesh, weld);
   DisplacementPatches patches;
   patches.indices.reserve(mesh.indices.size() / 3 * DisplacementPatches::kCorners);
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {

@@ -14,6 +14,8 @@ namespace {
 
 using character::Vertex;
 
+// Attribute locations are those of shaders/scene/pose.vert.glsl. All attributes come from one
+// interleaved buffer.
 void DescribeVertices(GLuint array, const gl::Buffer& vertices) {
   glVertexArrayVertexBuffer(array, 0, vertices.name(), 0, sizeof(Vertex));
   const auto attribute = [&](GLuint location, GLint size, std::size_t offset) {
@@ -27,11 +29,13 @@ void DescribeVertices(GLuint array, const gl::Buffer& vertices) {
   attribute(2, 4, offsetof(Vertex, tangent));
   attribute(3, 2, offsetof(Vertex, uv));
   attribute(5, 4, offsetof(Vertex, skin_weights));
+  // Joint numbers are integers and must not be converted to floats.
   glEnableVertexArrayAttrib(array, 4);
   glVertexArrayAttribIFormat(array, 4, 4, GL_UNSIGNED_SHORT, offsetof(Vertex, joints));
   glVertexArrayAttribBinding(array, 4, 0);
 }
 
+// The share is in a separate buffer at binding 1, because only patches need it.
 void DescribeShares(GLuint array, const gl::Buffer& shares) {
   constexpr GLuint kShare = 6;  // a_share of shaders/scene/pose.vert.glsl
   glVertexArrayVertexBuffer(array, 1, shares.name(), 0, sizeof(float));
@@ -40,6 +44,7 @@ void DescribeShares(GLuint array, const gl::Buffer& shares) {
   glVertexArrayAttribBinding(array, kShare, 1);
 }
 
+// Counts inner edges twice, which does not change the mean much.
 float MeanEdge(const character::Mesh& mesh) {
   double sum = 0.0;
   for (std::size_t i = 0; i + 1 < mesh.indices.size(); ++i) {
@@ -63,6 +68,8 @@ float Surface(const character::Mesh& mesh) {
 
 }  // namespace
 
+// The mesh is uploaded once and not kept in memory. Variants, which few pictures need, read it
+// back.
 character::Mesh ReadMesh(const GpuMesh& mesh) {
   character::Mesh read;
   read.indices.resize(static_cast<std::size_t>(mesh.num_indices));

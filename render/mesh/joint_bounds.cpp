@@ -23,9 +23,12 @@ JointBounds::JointBounds(const character::Mesh& mesh,
 
 void JointBounds::Add(const character::Mesh& mesh,
                       std::span<const glm::mat4> inverse_bind_matrices) {
+  // A map keeps the boxes in joint order, which makes the result independent of the vertex order.
   std::map<int, Box> boxes;
   for (const character::Vertex& vertex : mesh.vertices) {
     for (int i = 0; i < 4; ++i) {
+      // Boxes are in the joint's bind space. They rotate with the joint and stay valid in every
+      // pose.
       if (!(vertex.skin_weights[i] > 0.0f)) continue;
       const int joint = vertex.joints[i];
       const glm::vec3 place(inverse_bind_matrices[static_cast<std::size_t>(joint)] *
@@ -52,6 +55,7 @@ JointBounds::Extent JointBounds::Look(std::span<const glm::mat4> model,
                             (corner & 2) != 0 ? high_corner.y : low_corner.y,
                             (corner & 4) != 0 ? high_corner.z : low_corner.z);
       const glm::vec4 clip = to_clip * glm::vec4(place, 1.0f);
+      // A corner behind the camera has no projection, so the boxes may cover the whole picture.
       if (!(clip.w > 1e-6f)) return {glm::vec2(-1.0f), glm::vec2(1.0f), 0.0f};
       const glm::vec2 screen = glm::vec2(clip) / clip.w;
       extent.low = glm::min(extent.low, screen);
@@ -67,6 +71,7 @@ ScreenRect JointBounds::Project(std::span<const glm::mat4> model, const glm::mat
   const Extent extent = Look(model, view_projection, reach);
   const glm::vec2 size(width, height);
   const auto pixel = [&](const glm::vec2& place) { return (place * 0.5f + 0.5f) * size; };
+  // Rounded outwards, so that partly covered pixels count.
   const glm::vec2 first = glm::clamp(glm::floor(pixel(extent.low)), glm::vec2(0), size);
   const glm::vec2 last = glm::clamp(glm::ceil(pixel(extent.high)), glm::vec2(0), size);
   return {static_cast<int>(first.x), static_cast<int>(first.y), static_cast<int>(last.x),

@@ -5,9 +5,9 @@
 
 namespace furrow::render {
 
-// The smallest UV distance per metre of surface where the texture is stretched most, measured per
-// triangle along its densest direction, in the rest pose. Ignores the most stretched twentieth of
-// the surface as outliers. 0: the mesh has no surface.
+// UV distance per metre of surface where the texture is stretched most, in the rest pose. For each
+// triangle, the direction of the highest density counts. The most stretched twentieth of the
+// surface is ignored as outliers. 0: the mesh has no surface.
 [[nodiscard]] float MinUvPerMetre(const character::Mesh& mesh);
 
 }  // namespace furrow::render

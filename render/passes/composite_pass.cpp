@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/passes/composite_pass.h"
 
+#include "render/gl/shader_program.h"
+
 namespace furrow::render {
 namespace {
 
@@ -22,10 +24,6 @@ Show ShowOf(View view) {
     case View::kAlbedo: return Show::kColour;
     default: return Show::kLight;
   }
-}
-
-std::string Define(std::string_view name, int value) {
-  return std::string(name) + " " + std::to_string(value);
 }
 
 }  // namespace

@@ -8,8 +8,6 @@
 namespace furrow::render {
 namespace {
 
-using Handle = FrameGraph::Handle;
-
 constexpr GLint kLook = 0;      // in post/bloom.frag.glsl and post/show.frag.glsl
 constexpr int kTileMargin = 4;  // pixels around each tile of the strip
 
@@ -20,11 +18,12 @@ TextureDesc BloomDesc(const TextureDesc& desc) {
 
 }  // namespace
 
-Handle AddBloomPass(FrameGraph* graph, Handle colour, const TextureDesc& desc,
-                    const Settings& settings, Fullscreen* fullscreen) {
+FrameGraph::Handle AddBloomPass(FrameGraph* graph, FrameGraph::Handle colour,
+                                const TextureDesc& desc, const Settings& settings,
+                                Fullscreen* fullscreen) {
   if (settings.bloom.strength <= 0.0f) return {};
   const TextureDesc small = BloomDesc(desc);
-  const auto add = [&](const char* name, const char* target, Handle in, bool bright,
+  const auto add = [&](const char* name, const char* target, FrameGraph::Handle in, bool bright,
                        const glm::vec4& look) {
     return fullscreen->AddSimplePass(graph,
                                      {.name = name,
@@ -37,15 +36,16 @@ Handle AddBloomPass(FrameGraph* graph, Handle colour, const TextureDesc& desc,
                                        fullscreen->Draw();
                                      });
   };
-  const Handle bright = add("bloom bright", "bloom bright", colour, true,
-                            {settings.bloom.threshold, settings.exposure, 0.0f, 0.0f});
+  const FrameGraph::Handle bright = add("bloom bright", "bloom bright", colour, true,
+                                        {settings.bloom.threshold, settings.exposure, 0.0f, 0.0f});
   const float sigma = std::max(settings.bloom.radius * static_cast<float>(small.height), 0.3f);
-  const Handle across = add("bloom x", "bloom x", bright, false, {1.0f, 0.0f, sigma, 0.0f});
+  const FrameGraph::Handle across =
+      add("bloom x", "bloom x", bright, false, {1.0f, 0.0f, sigma, 0.0f});
   return add("bloom y", "bloom", across, false, {0.0f, 1.0f, sigma, 0.0f});
 }
 
-Handle AddShowPass(FrameGraph* graph, Handle target, const ShowTarget& show,
-                   const TextureDesc& desc, Fullscreen* fullscreen) {
+FrameGraph::Handle AddShowPass(FrameGraph* graph, FrameGraph::Handle target, const ShowTarget& show,
+                               const TextureDesc& desc, Fullscreen* fullscreen) {
   return fullscreen->AddSimplePass(
       graph,
       {.name = "show",
@@ -60,8 +60,8 @@ Handle AddShowPass(FrameGraph* graph, Handle target, const ShowTarget& show,
       });
 }
 
-Handle AddFxaaPass(FrameGraph* graph, Handle picture, const TextureDesc& desc,
-                   Fullscreen* fullscreen) {
+FrameGraph::Handle AddFxaaPass(FrameGraph* graph, FrameGraph::Handle picture,
+                               const TextureDesc& desc, Fullscreen* fullscreen) {
   return fullscreen->AddSimplePass(
       graph,
       {.name = "fxaa",
@@ -72,26 +72,26 @@ Handle AddFxaaPass(FrameGraph* graph, Handle picture, const TextureDesc& desc,
       [fullscreen] { fullscreen->Draw(); });
 }
 
-Handle AddStripPass(FrameGraph* graph, Handle picture, const std::vector<Handle>& tiles,
-                    GlDevice* device) {
+FrameGraph::Handle AddStripPass(FrameGraph* graph, FrameGraph::Handle picture,
+                                const std::vector<FrameGraph::Handle>& tiles, GlDevice* device) {
   if (tiles.empty()) return picture;
   struct Data {
-    Handle picture;
-    std::vector<Handle> tiles;
+    FrameGraph::Handle picture;
+    std::vector<FrameGraph::Handle> tiles;
   };
   return graph
       ->AddPass<Data>(
           "strip",
           [&](FrameGraph::Builder& builder, Data& pass) {
             pass.tiles = tiles;
-            for (const Handle tile : tiles) builder.Read(tile);
+            for (const FrameGraph::Handle tile : tiles) builder.Read(tile);
             pass.picture = builder.Write(picture);
           },
           [device](const FrameGraph::Resources& resources, const Data& pass) {
             const GLuint target = device->Framebuffer(resources.Get(pass.picture), 0);
             const TextureDesc& whole = resources.Desc(pass.picture);
             int top = kTileMargin;
-            for (const Handle tile : pass.tiles) {
+            for (const FrameGraph::Handle tile : pass.tiles) {
               const TextureDesc& desc = resources.Desc(tile);
               const int left = whole.width - desc.width - kTileMargin;
               if (left < 0 || top + desc.height > whole.height) break;

@@ -30,6 +30,7 @@ std::vector<FrameGraph::Handle> Fullscreen::AddPass(FrameGraph* graph, const Ful
       data.writes.push_back(builder.Write(builder.Create(target.name, target.desc)));
     }
   };
+  // The pass runs after this function has returned, so everything is copied.
   const auto execute = [this, fragment = std::string(pass.fragment), defines = pass.defines,
                         draw = std::move(draw)](const FrameGraph::Resources& resources,
                                                 const Handles& data) {
@@ -56,6 +57,8 @@ Status Fullscreen::Begin(std::string_view fragment, const std::vector<std::strin
   glUseProgram(*program);
   GLuint unit = 0;
   for (const FrameGraph::Handle texture : handles.reads) {
+    // The scene passes leave samplers bound to some units, which would override the texture's
+    // filtering.
     glBindSampler(unit, 0);
     glBindTextureUnit(unit++, texture.version < 0 ? 0 : resources.Get(texture));
   }

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/passes/light_pass.h"
 
+#include "render/gl/shader_program.h"
+
 namespace furrow::render {
 namespace {
 
 // Uniform locations in common/view.glsl and skin/light.frag.glsl.
-enum Location : GLint { kViewRotation = 0, kLens = 3, kRange = 4 };
+enum LightUniform : GLint { kLightViewRotation = 0, kLightLens = 3, kLightRange = 4 };
 constexpr std::size_t kOpenUnit = 10;
-
-std::string Define(const char* name, int value) {
-  return std::string(name) + " " + std::to_string(value);
-}
 
 }  // namespace
 
@@ -42,10 +40,11 @@ SkinTargets AddLightPass(FrameGraph* graph, const FacetTargets& facets, FrameGra
       [settings, geometry, scene, fullscreen] {
         const glm::vec3& back = geometry.background;
         scene->BindLights(settings);
-        glUniformMatrix3fv(kViewRotation, 1, GL_FALSE, &geometry.view_rotation[0].x);
-        glUniform4f(kLens, geometry.pixels_per_slope, 0.5f * static_cast<float>(geometry.width),
+        glUniformMatrix3fv(kLightViewRotation, 1, GL_FALSE, &geometry.view_rotation[0].x);
+        glUniform4f(kLightLens, geometry.pixels_per_slope,
+                    0.5f * static_cast<float>(geometry.width),
                     0.5f * static_cast<float>(geometry.height), 0.0f);
-        glUniform1f(kRange, OcclusionPass::RangeOf(settings.occlusion));
+        glUniform1f(kLightRange, OcclusionPass::RangeOf(settings.occlusion));
         fullscreen->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
         fullscreen->Clear(1, back.r, back.g, back.b, 0.0f);
         fullscreen->Draw(geometry.bounds);

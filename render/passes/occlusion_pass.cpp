@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/passes/occlusion_pass.h"
 
+#include "render/gl/shader_program.h"
+
 namespace furrow::render {
 namespace {
 
 // Uniform locations in common/view.glsl and occlusion/occlusion.glsl.
-enum Location : GLint { kViewRotation = 0, kLens = 3, kReach = 4 };
-constexpr GLint kRange = 0;  // in occlusion_blur.frag.glsl and occlude.frag.glsl
+enum OcclusionUniform : GLint {
+  kOcclusionViewRotation = 0,
+  kOcclusionLens = 3,
+  kOcclusionReach = 4
+};
+constexpr GLint kOcclusionRange = 0;  // in occlusion_blur.frag.glsl and occlude.frag.glsl
 // As a share of the radius. Surfaces with a larger depth difference do not share their openness.
 constexpr float kRangeOfRadius = 0.5f;
 
@@ -21,10 +27,6 @@ TextureDesc TargetOf(const OcclusionSettings& settings, const OcclusionGeometry&
 ScreenRect Scaled(const ScreenRect& rect, int scale) {
   return {rect.x0 / scale, rect.y0 / scale, (rect.x1 + scale - 1) / scale,
           (rect.y1 + scale - 1) / scale};
-}
-
-std::string Define(const char* name, int value) {
-  return std::string(name) + " " + std::to_string(value);
 }
 
 }  // namespace
@@ -43,10 +45,11 @@ FrameGraph::Handle OcclusionPass::AddSearch(FrameGraph* graph, FrameGraph::Handl
        .reads = {depth, normal},
        .writes = {{"occlusion noisy", TargetOf(settings, geometry)}}},
       [this, settings, geometry] {
-        glUniformMatrix3fv(kViewRotation, 1, GL_FALSE, &geometry.view_rotation[0].x);
-        glUniform4f(kLens, geometry.pixels_per_slope, 0.5f * static_cast<float>(geometry.width),
+        glUniformMatrix3fv(kOcclusionViewRotation, 1, GL_FALSE, &geometry.view_rotation[0].x);
+        glUniform4f(kOcclusionLens, geometry.pixels_per_slope,
+                    0.5f * static_cast<float>(geometry.width),
                     0.5f * static_cast<float>(geometry.height), 0.0f);
-        glUniform2f(kReach, 0.001f * settings.radius_mm, settings.strength);
+        glUniform2f(kOcclusionReach, 0.001f * settings.radius_mm, settings.strength);
         DrawBounds(settings, geometry);
       });
 }
@@ -62,7 +65,7 @@ FrameGraph::Handle OcclusionPass::AddBlur(FrameGraph* graph, FrameGraph::Handle 
                                      .reads = {open, depth},
                                      .writes = {{"occlusion", TargetOf(settings, geometry)}}},
                                     [this, settings, geometry] {
-                                      glUniform1f(kRange, RangeOf(settings));
+                                      glUniform1f(kOcclusionRange, RangeOf(settings));
                                       DrawBounds(settings, geometry);
                                     });
 }
@@ -95,7 +98,7 @@ SkinTargets OcclusionPass::AddOcclude(FrameGraph* graph, const SkinTargets& lit,
        .reads = {lit.irradiance, lit.radiance, lit.albedo, open.target, lit.depth},
        .writes = {{"occluded irradiance", desc}, {"occluded radiance", desc}}},
       [this, settings, geometry] {
-        glUniform1f(kRange, RangeOf(settings));
+        glUniform1f(kOcclusionRange, RangeOf(settings));
         const glm::vec3& back = geometry.background;
         fullscreen_->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
         fullscreen_->Clear(1, back.r, back.g, back.b, 0.0f);

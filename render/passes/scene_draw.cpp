@@ -125,6 +125,7 @@ Status SceneDraw::Update(const FrameRequest& request) {
                             : 0.0f;
   const std::vector<NamedSubject> subjects = SubjectsOf(request);
   is_crowd_ = subjects.size() > 1;
+  // Later steps use the results of earlier ones: tables, frame set-up, visibility, composing.
   FindVisible(subjects, settings);
   buffers_.Upload(MakeFrameBlock(setup_, settings), subjects, gpu_->layout());
   posed_.BeginFrame();

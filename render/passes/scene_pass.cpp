@@ -13,6 +13,7 @@ bool IsData(View view) {
   return view == View::kNormal || view == View::kMaskDynamic || view == View::kMaskTexture;
 }
 
+// Clears depth and sets the state that all scene passes share.
 void BeginScene(GLuint framebuffer, int width, int height) {
   const float clear_depth = 1.0f;
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
@@ -39,6 +40,7 @@ void ScenePass::AddComposing(FrameGraph* graph, const Settings& settings) {
   if (!scene_->NeedsComposing(settings)) return;
   struct Data {};
   graph->AddPass<Data>(
+      // The pass writes textures outside the graph, so it must not be culled.
       "wrinkles", [](FrameGraph::Builder& builder, Data&) { builder.SideEffect(); },
       [this](const FrameGraph::Resources&, const Data&) {
         scene_->Compose();
@@ -107,6 +109,8 @@ SkinTargets ScenePass::AddSkin(FrameGraph* graph, const Settings& settings, cons
         const TextureDesc& desc = resources.Desc(out.irradiance);
         BeginScene(framebuffer, desc.width, desc.height);
         const glm::vec3 back = SkinBackground(settings);
+        // The background has no skin: an infinitely distant point exchanges no light when light
+        // scatters.
         Clear(framebuffer, 0, {0.0f, 0.0f, 0.0f, kFarAway});
         Clear(framebuffer, 1, {back.r, back.g, back.b, 0.0f});
         Clear(framebuffer, 2, {0.0f, 0.0f, 0.0f, 0.0f});

@@ -18,6 +18,7 @@ ShadowPass::~ShadowPass() {
 
 std::vector<float> ShadowPass::Inputs(const FrameRequest& request) const {
   const FrameSetup& setup = scene_->setup();
+  // Settings that change the geometry of casters, and then all matrices.
   std::vector<float> values = {
       static_cast<float>(request.settings.shadow.lamps), request.settings.detail.error_pixels,
       request.settings.detail.hair_shadow_texels, request.settings.shadow.normal_offset_mm};
@@ -49,6 +50,7 @@ FrameGraph::Handle ShadowPass::Add(FrameGraph* graph, const FrameRequest& reques
   // The subdivision of displaced patches depends on the camera, and their position on wrinkle
   // weights.
   if (inputs == drawn_ && !request.settings.displacement.enabled) return maps;
+  // Cleared first, so that a failed pass does not leave outdated maps marked as current.
   drawn_.clear();
   struct Data {
     FrameGraph::Handle maps;
@@ -60,6 +62,7 @@ FrameGraph::Handle ShadowPass::Add(FrameGraph* graph, const FrameRequest& reques
           [this, settings = request.settings, inputs = std::move(inputs)](
               const FrameGraph::Resources& resources, const Data& pass) {
             Status status = Draw(settings, resources.Get(pass.maps));
+            // Recorded only when the pass has run: the graph may cull it.
             if (status.ok() && !settings.displacement.enabled) drawn_ = inputs;
             return status;
           })

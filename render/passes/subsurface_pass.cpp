@@ -9,12 +9,10 @@
 namespace furrow::render {
 namespace {
 
-using Handle = FrameGraph::Handle;
-
 constexpr float kMinWidth = 0.01f;  // a smaller SubsurfaceSettings::width has no visible effect
 
 // Uniform locations in skin/separable.frag.glsl.
-enum Location : GLint {
+enum SeparableUniform : GLint {
   kAxis = 0,
   kNumTaps = 1,
   kGeometry = 2,
@@ -23,7 +21,7 @@ enum Location : GLint {
   kWeight = 25
 };
 // Uniform locations in skin/burley.frag.glsl.
-enum BurleyLocation : GLint {
+enum BurleyUniform : GLint {
   kBurleyNumTaps = 0,
   kBurleyGeometry = 1,
   kBurleyOffset = 2,
@@ -45,8 +43,9 @@ PixelTaps AlongY(PixelTaps kernel) {
 
 }  // namespace
 
-Handle SubsurfacePass::Add(FrameGraph* graph, Handle irradiance, const SubsurfaceSettings& settings,
-                           const SkinGeometry& geometry) {
+FrameGraph::Handle SubsurfacePass::Add(FrameGraph* graph, FrameGraph::Handle irradiance,
+                                       const SubsurfaceSettings& settings,
+                                       const SkinGeometry& geometry) {
   const bool nothing_scatters =
       settings.strength <= 0.0f || settings.width < kMinWidth || geometry.bounds.empty();
   if (nothing_scatters) return irradiance;
@@ -60,9 +59,11 @@ Handle SubsurfacePass::Add(FrameGraph* graph, Handle irradiance, const Subsurfac
   return irradiance;
 }
 
-Handle SubsurfacePass::AddAxis(FrameGraph* graph, const AxisPass& what, Handle in,
-                               Handle unscattered, const PixelTaps& taps,
-                               const SubsurfaceSettings& settings, const SkinGeometry& geometry) {
+FrameGraph::Handle SubsurfacePass::AddAxis(FrameGraph* graph, const AxisPass& what,
+                                           FrameGraph::Handle in, FrameGraph::Handle unscattered,
+                                           const PixelTaps& taps,
+                                           const SubsurfaceSettings& settings,
+                                           const SkinGeometry& geometry) {
   return fullscreen_->AddSimplePass(
       graph,
       {.name = what.name,
@@ -84,20 +85,20 @@ Handle SubsurfacePass::AddAxis(FrameGraph* graph, const AxisPass& what, Handle i
       });
 }
 
-Handle SubsurfacePass::AddSeparable(FrameGraph* graph, Handle irradiance,
-                                    const SubsurfaceSettings& settings,
-                                    const SkinGeometry& geometry) {
+FrameGraph::Handle SubsurfacePass::AddSeparable(FrameGraph* graph, FrameGraph::Handle irradiance,
+                                                const SubsurfaceSettings& settings,
+                                                const SkinGeometry& geometry) {
   const PixelTaps kernel =
       PixelKernel(HumanSkin(), settings.taps, settings.width * geometry.pixels_per_mm);
-  const Handle across = AddAxis(graph, {"scatter x", "scattered x", 0}, irradiance, irradiance,
-                                kernel, settings, geometry);
+  const FrameGraph::Handle across = AddAxis(graph, {"scatter x", "scattered x", 0}, irradiance,
+                                            irradiance, kernel, settings, geometry);
   return AddAxis(graph, {"scatter y", "scattered", 1, settings.strength}, across, irradiance,
                  kernel, settings, geometry);
 }
 
-Handle SubsurfacePass::AddGaussians(FrameGraph* graph, Handle irradiance,
-                                    const SubsurfaceSettings& settings,
-                                    const SkinGeometry& geometry) {
+FrameGraph::Handle SubsurfacePass::AddGaussians(FrameGraph* graph, FrameGraph::Handle irradiance,
+                                                const SubsurfaceSettings& settings,
+                                                const SkinGeometry& geometry) {
   static constexpr std::array<std::array<const char*, 2>, kNumSkinGaussians> kNames = {
       {{"gaussian 1 x", "gaussian 1 y"},
        {"gaussian 2 x", "gaussian 2 y"},
@@ -106,12 +107,12 @@ Handle SubsurfacePass::AddGaussians(FrameGraph* graph, Handle irradiance,
        {"gaussian 5 x", "gaussian 5 y"},
        {"gaussian 6 x", "gaussian 6 y"}}};
   const std::array<float, kNumSkinGaussians> sigmas = CascadedSigmas(HumanSkin());
-  std::array<Handle, kNumSkinGaussians> blurs;
-  Handle light = irradiance;
+  std::array<FrameGraph::Handle, kNumSkinGaussians> blurs;
+  FrameGraph::Handle light = irradiance;
   for (std::size_t i = 0; i < blurs.size(); ++i) {
     const PixelTaps kernel = PixelGaussian(sigmas[i] * settings.width * geometry.pixels_per_mm);
     if (kernel.offsets.size() > 1) {
-      const Handle across =
+      const FrameGraph::Handle across =
           AddAxis(graph, {kNames[i][0], kNames[i][0], 0}, light, light, kernel, settings, geometry);
       light = AddAxis(graph, {kNames[i][1], kNames[i][1], 1}, across, across, kernel, settings,
                       geometry);
@@ -132,8 +133,9 @@ Handle SubsurfacePass::AddGaussians(FrameGraph* graph, Handle irradiance,
       });
 }
 
-Handle SubsurfacePass::AddBurley(FrameGraph* graph, Handle irradiance,
-                                 const SubsurfaceSettings& settings, const SkinGeometry& geometry) {
+FrameGraph::Handle SubsurfacePass::AddBurley(FrameGraph* graph, FrameGraph::Handle irradiance,
+                                             const SubsurfaceSettings& settings,
+                                             const SkinGeometry& geometry) {
   static const glm::vec3 distances = FitBurley(HumanSkin());
   return fullscreen_->AddSimplePass(
       graph,

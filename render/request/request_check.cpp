@@ -32,7 +32,7 @@ Status CheckCamera(const Camera& camera, int num_joints) {
   if (!IsFinite(camera.position)) return Invalid("camera.position", "is not finite");
   if (!IsFinite(camera.target)) return Invalid("camera.target", "is not finite");
   if (!(glm::length(camera.target - camera.position) > 1e-4f)) {
-    return Invalid("camera.target", "is where the camera stands");
+    return Invalid("camera.target", "must differ from camera.position");
   }
   if (!(camera.fov_y_degrees >= 1.0f && camera.fov_y_degrees <= 150.0f)) {
     return Invalid("camera.fov_y_degrees",
@@ -56,8 +56,8 @@ Status CheckModel(const std::string& field, std::span<const glm::mat4> model, in
   for (int joint = 0; joint < num_joints; ++joint) {
     for (int column = 0; column < 4; ++column) {
       if (IsFinite(glm::vec3(model[joint][column]))) continue;
-      return {StatusCode::kNonFinite, "the matrix of joint " + std::to_string(joint),
-              field + "model"};
+      return {StatusCode::kNonFinite,
+              "the matrix of joint " + std::to_string(joint) + " is not finite", field + "model"};
     }
   }
   return {};
@@ -86,8 +86,8 @@ Status CheckPlacement(const std::string& field, const glm::mat4& placement) {
     return {StatusCode::kNonFinite, "is not finite", field + "placement"};
   }
   if (IsRigidButForScale(placement)) return {};
-  return {StatusCode::kInvalidArgument, "is more than rotation, uniform scale and translation",
-          field + "placement"};
+  return {StatusCode::kInvalidArgument,
+          "must consist of rotation, uniform scale and translation only", field + "placement"};
 }
 
 Status CheckSubjects(const FrameRequest& request, int num_joints) {

@@ -22,6 +22,7 @@ LightBlock MakeLightBlock(const LightSource& light, const ShadowView& shadow) {
                      shadow.perspective ? 1.0f : 0.0f}};
 }
 
+// Allowed error of hair in shadow maps, metres. 0 if no view has shadows.
 float HairShadowError(const Settings& settings, std::span<const ShadowView> shadows) {
   const auto casts = [&](View view) { return NeedsSkinPipeline(view, settings); };
   if (settings.shadow.filter == ShadowFilter::kOff) return 0.0f;

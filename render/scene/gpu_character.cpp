@@ -53,10 +53,11 @@ int LayerOf(Material::Kind kind) {
   return 3;
 }
 
-// Base colour below which a surface counts as a painted cavity_albedo. Only skin has painted
+// Base colour below which a surface counts as a painted hollow. Only skin has painted
 // hollows; dark eyes and hair keep their gloss.
 float CavityAlbedoOf(Material::Kind kind) { return kind == Material::Kind::kSkin ? 0.02f : 0.0f; }
 
+// An eye's surface is the smooth tear film, whatever its texture says.
 float RoughnessOf(const Material& material) {
   return material.kind == Material::Kind::kEye ? std::min(material.roughness, 0.3f)
                                                : material.roughness;
@@ -82,12 +83,12 @@ Status CheckMesh(const character::Mesh& mesh, const Character& character) {
   }
   if (mesh.indices.size() % 3 != 0) return fail("is not made of triangles");
   for (const std::uint32_t index : mesh.indices) {
-    if (index >= mesh.vertices.size()) return fail("has an index beyond its vertices");
+    if (index >= mesh.vertices.size()) return fail("has a vertex index out of range");
   }
+  // Every joint is checked, even with a skin weight of 0, because the shader reads its matrix.
   for (const Vertex& vertex : mesh.vertices) {
     for (const std::uint16_t joint : vertex.joints) {
-      if (joint >= character.skeleton.num_joints())
-        return fail("is skinned to a joint out of range");
+      if (joint >= character.skeleton.num_joints()) return fail("refers to a joint out of range");
     }
   }
   return {};
@@ -104,8 +105,8 @@ Status CheckPicture(const Picture& picture) {
     return {StatusCode::kInvalidArgument, "the number of pixels does not match the size", where};
   }
   if (std::max(picture.width, picture.height) > limit) {
-    return {StatusCode::kLimit, "larger than the driver's " + std::to_string(limit) + " pixels",
-            where};
+    return {StatusCode::kLimit,
+            "larger than the driver's limit of " + std::to_string(limit) + " pixels", where};
   }
   return {};
 }
@@ -138,7 +139,7 @@ Status CheckLayers(std::size_t layers, const char* what) {
   glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &limit);
   if (layers <= static_cast<std::size_t>(limit)) return {};
   return {StatusCode::kLimit,
-          std::string("more ") + what + " than the driver's " + std::to_string(limit),
+          std::string("more ") + what + " than the driver's limit of " + std::to_string(limit),
           "wrinkle rig"};
 }
 
@@ -159,7 +160,7 @@ Status CheckBlock(const WrinkleLayout& layout) {
   }
   return {StatusCode::kLimit,
           std::to_string(num_maps) + " wrinkle maps and " + std::to_string(layout.num_mask_layers) +
-              " mask textures are more than the driver's uniform blocks and vertices hold",
+              " mask textures exceed the driver's limits for uniform blocks or vertices",
           "wrinkle rig"};
 }
 
@@ -184,7 +185,7 @@ Status GpuCharacter::AddMaterials(const Character& character) {
     for (const int picture : {source.base_colour_texture, source.normal_texture,
                               source.roughness_texture, source.thickness_texture}) {
       if (picture >= num_pictures) {
-        return {StatusCode::kInvalidArgument, "names a picture that is not there",
+        return {StatusCode::kInvalidArgument, "refers to a missing picture",
                 "material '" + source.name + "'"};
       }
     }
@@ -203,6 +204,7 @@ Status GpuCharacter::AddMaterials(const Character& character) {
     material.derivatives = DerivativeTexture(character, source.normal_texture);
     material.kind = source.kind;
     material.group = GroupOf(character, source.kind);
+    // In units of the texture: the shader multiplies the texture by the material's base colour.
     material.cavity_albedo = block.cavity_albedo / std::max(source.base_colour.g, 1e-3f);
     material.alpha_test = source.alpha_cutoff > 0.0f;
     material.double_sided = source.double_sided;
@@ -227,6 +229,7 @@ Status GpuCharacter::AddMeshes(const Character& character) {
   return {};
 }
 
+// Simplification takes long and is put off until it is certain to have an effect.
 int GpuCharacter::Level(std::size_t index, float metres) {
   constexpr float kMinShare = 0.01f;  // of the mean edge; no edge collapses for less
   GpuMesh& mesh = meshes_[index];

@@ -77,6 +77,7 @@ Result<PosedMeshes::Vertices> PosedMeshes::Get(std::size_t mesh, Form form,
                                                std::span<const std::uint32_t> subjects) {
   Posed& posed = posed_[{mesh, form}];
   const auto masks = shader.dynamic ? std::optional(part) : std::nullopt;
+  // Passes that need other masks, or none, cannot use these vertices, because the layout differs.
   if (!posed.is_fresh || posed.masks != masks) {
     posed.masks = masks;
     const Source source = SourceOf(mesh, form);

@@ -47,6 +47,8 @@ void SceneBuffers::Upload(const FrameBlock& frame, std::span<const NamedSubject>
   UploadWrinkles(layout);
 }
 
+// Matrices are multiplied once per joint here, not once per vertex in the shader. The last row of
+// an affine matrix is constant and left out.
 void SceneBuffers::UploadJoints(std::span<const NamedSubject> subjects) {
   std::vector<glm::vec4> rows;
   const std::size_t num_joints = inverse_bind_matrices_.size();
@@ -66,6 +68,7 @@ void SceneBuffers::UploadWrinkles(const WrinkleLayout& layout) {
   for (int index = 0; index < kNumWrinkleGroups; ++index) {
     const WrinkleTable& table = tables_->table(static_cast<WrinkleGroup>(index));
     GroupBuffers& group = groups_[index];
+    // Small blocks are uploaded for all parts, because which part a material uses is decided later.
     for (int part = 0; part < kNumWrinkleParts; ++part) {
       const auto block =
           WrinkleBlock(table, static_cast<WrinklePart>(part), tables_->num_maps(), layout);
@@ -95,6 +98,7 @@ void SceneBuffers::Bind() const {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kJointInfluences, influences_.name());
 }
 
+// kNone draws no wrinkles, but its shader still declares the blocks, so some buffers must be bound.
 void SceneBuffers::BindWrinkles(WrinkleGroup wrinkle_group, WrinklePart part) const {
   const bool none = wrinkle_group == WrinkleGroup::kNone;
   const GroupBuffers& group = groups_[none ? 0 : static_cast<int>(wrinkle_group)];

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kMaxStripViews = 6;
 
+// The shortest text that reads back as the same float, whatever the locale.
 std::string NumberText(float value) {
   char buffer[32];
   return {buffer, std::to_chars(buffer, buffer + sizeof(buffer), value).ptr};
@@ -25,6 +26,7 @@ std::string Join(std::span<const std::string_view> words, std::string_view betwe
   return joined;
 }
 
+// Reads the whole text as a number. Trailing characters make it invalid.
 template <class Number>
 bool ReadNumber(std::string_view text, Number* number) {
   const char* const end = text.data() + text.size();

@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <glm/common.hpp>
-#include <glm/gtc/constants.hpp>
 
 namespace furrow::render {
 namespace {
-
-constexpr double kPi = glm::pi<double>();
 
 double ClampM(double m) { return std::max(m, static_cast<double>(kMinBeckmannM)); }
 
@@ -51,7 +49,7 @@ double KelemenBrdf(double cos_light, double cos_view, double cos_between, double
   const double cos_h = (cos_light + cos_view) / length;
   const double ph = BeckmannPh(std::min(cos_h, 1.0), m);
   const double f = ph * SchlickFresnel(f0, 0.5 * length) / length2;  // H.V = |L + V| / 2
-  return norm == SpecularNorm::kPhysical ? f / kPi : f;
+  return norm == SpecularNorm::kPhysical ? f / std::numbers::pi : f;
 }
 
 std::vector<std::uint16_t> BeckmannTable(int size) {
@@ -79,7 +77,8 @@ glm::dvec2 SpecularAlbedo(double cos, double m) {
     const double cos_h = 1.0 / std::sqrt(1.0 + tan2);
     const double sin_h = std::sqrt(tan2) * cos_h;
     for (int j = 0; j < kAzimuths; ++j) {
-      const double azimuth = kPi * (j + 0.5) / kAzimuths;  // the other half is its mirror image
+      const double azimuth =
+          std::numbers::pi * (j + 0.5) / kAzimuths;  // the other half is its mirror image
       const double cos_vh = cos_v * cos_h + sin_v * sin_h * std::cos(azimuth);
       if (cos_vh <= 0.0) continue;
       const double cos_l = 2.0 * cos_vh * cos_h - cos_v;

@@ -4,13 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-
-#include <glm/gtc/constants.hpp>
+#include <numbers>
 
 namespace furrow::render {
 namespace {
-
-constexpr double kPi = glm::pi<double>();
 
 // Sum over the Gaussians of weight * term(variance).
 glm::vec3 WeighedSum(const SkinProfile& profile, const std::function<double(double)>& term) {
@@ -23,7 +20,7 @@ glm::vec3 WeighedSum(const SkinProfile& profile, const std::function<double(doub
 
 // The minimum in [low, high] of `cost`, which falls and then rises, by golden-section search.
 double Minimise(const std::function<double(double)>& cost, double low, double high) {
-  const double shrink = 1.0 / glm::golden_ratio<double>();
+  const double shrink = 1.0 / std::numbers::phi;
   for (int step = 0; step < 60; ++step) {
     const double a = high - shrink * (high - low);
     const double b = low + shrink * (high - low);
@@ -61,8 +58,9 @@ const SkinProfile& HumanSkin() {
 }
 
 glm::vec3 RadialProfile(const SkinProfile& profile, double r) {
-  return WeighedSum(profile,
-                    [r](double v) { return std::exp(-r * r / (2.0 * v)) / (2.0 * kPi * v); });
+  return WeighedSum(profile, [r](double v) {
+    return std::exp(-r * r / (2.0 * v)) / (2.0 * std::numbers::pi * v);
+  });
 }
 
 glm::vec3 RadialShare(const SkinProfile& profile, double r) {
@@ -70,8 +68,9 @@ glm::vec3 RadialShare(const SkinProfile& profile, double r) {
 }
 
 glm::vec3 LineProfile(const SkinProfile& profile, double x) {
-  return WeighedSum(
-      profile, [x](double v) { return std::exp(-x * x / (2.0 * v)) / std::sqrt(2.0 * kPi * v); });
+  return WeighedSum(profile, [x](double v) {
+    return std::exp(-x * x / (2.0 * v)) / std::sqrt(2.0 * std::numbers::pi * v);
+  });
 }
 
 glm::vec3 StepResponse(const SkinProfile& profile, double x) {
@@ -97,7 +96,7 @@ std::array<float, kNumSkinGaussians> CascadedSigmas(const SkinProfile& profile) 
 double BurleyProfile(double d, double r) {
   const double safe = std::max(r, 1e-9);  // the profile is infinite at 0, but its integral is
                                           // finite
-  return (std::exp(-safe / d) + std::exp(-safe / (3.0 * d))) / (8.0 * kPi * d * safe);
+  return (std::exp(-safe / d) + std::exp(-safe / (3.0 * d))) / (8.0 * std::numbers::pi * d * safe);
 }
 
 double BurleyShare(double d, double r) {

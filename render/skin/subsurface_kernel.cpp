@@ -3,20 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include <glm/gtc/constants.hpp>
+#include <numbers>
 
 namespace furrow::render {
 namespace {
-
-constexpr double kPi = glm::pi<double>();
 
 // 2 pi times the mean of max(0, cosine between normal and light) over the ring of points at the
 // angle phi from the normal.
 double RingIrradiance(double cos_theta, double sin_theta, double phi) {
   const double a = cos_theta * std::cos(phi);
   const double b = sin_theta * std::sin(phi);
-  if (a >= b) return 2.0 * kPi * a;
+  if (a >= b) return 2.0 * std::numbers::pi * a;
   if (a <= -b) return 0.0;
   const double terminator = std::acos(-a / b);
   return 2.0 * (a * terminator + b * std::sin(terminator));
@@ -35,9 +32,9 @@ glm::dvec2 SphereIntegral(double variance, double cos_theta, double radius) {
     const double phi = 2.0 * std::asin(0.5 * chord / radius);
     // The area of a spherical zone is 2 pi c dc with the chord c, as in the plane.
     const double weight = chord * std::exp(-chord * chord / (2.0 * variance));
-    sum += weight * glm::dvec2(RingIrradiance(cos_theta, sin_theta, phi), 2.0 * kPi);
+    sum += weight * glm::dvec2(RingIrradiance(cos_theta, sin_theta, phi), 2.0 * std::numbers::pi);
   }
-  return sum * (reach / kSteps) / (2.0 * kPi * variance);
+  return sum * (reach / kSteps) / (2.0 * std::numbers::pi * variance);
 }
 
 }  // namespace
@@ -45,7 +42,7 @@ glm::dvec2 SphereIntegral(double variance, double cos_theta, double radius) {
 std::vector<DiscTap> BurleyDisc(const glm::vec3& d, int taps) {
   const int count = std::clamp(taps, 1, kMaxDiscTaps);
   const double widest = std::max({d.r, d.g, d.b});
-  const double golden_angle = kPi * (3.0 - std::sqrt(5.0));
+  const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
   const auto ring = [&](int i) {  // share inside the inner border of tap i, per channel
     if (i >= count) return glm::vec3(1.0f);
     const double r = BurleyRadius(widest, static_cast<double>(i) / count);

@@ -37,6 +37,7 @@ glm::vec4 Hue(float turn) {
   return {channel(0.0f), channel(2.0f / 3.0f), channel(1.0f / 3.0f), 1.0f};
 }
 
+// The same rig for MaskMode::kDynamic.
 wrinkle::Rig WithSkinningMasks(wrinkle::Rig rig) {
   using Kind = wrinkle::Mask::Kind;
   for (wrinkle::Region& region : rig.regions) {
@@ -59,11 +60,14 @@ int WrinkleLayout::MaskLayer(std::string_view texture) const {
   return found == masks.end() ? -1 : found->layer;
 }
 
+// The block is sized for all maps of the rig and not for the active ones, so that one shader fits
+// every frame.
 std::size_t WrinkleBlockSize(int num_maps, int num_mask_layers) {
   const std::size_t maps = 4 * static_cast<std::size_t>(MapSlots(num_maps));
   return maps * (sizeof(ActiveMap) + sizeof(glm::vec4) * num_mask_layers);
 }
 
+// The table is sorted by kind of mask (FillTable()), so a part is a prefix of it.
 WrinkleNeeds NeedsOf(const WrinkleTable& table, WrinklePart part) {
   switch (part) {
     case WrinklePart::kAll: break;
@@ -75,6 +79,7 @@ WrinkleNeeds NeedsOf(const WrinkleTable& table, WrinklePart part) {
   return {table.maps.size(), table.uses_texture, table.uses_dynamic};
 }
 
+// Copies the masks of a part. Their slots stay valid because the part is a prefix of the table.
 PartMasks MasksOf(const WrinkleTable& table, WrinklePart part) {
   PartMasks masks;
   const auto num_maps = static_cast<std::int32_t>(NeedsOf(table, part).num_maps);
@@ -131,6 +136,7 @@ WrinkleGroup GroupOf(const character::Character& character, Material::Kind kind)
 
 void WrinkleTables::NameMap::Match(std::span<const std::string> from,
                                    std::span<const std::string> to) {
+  // Names rarely change from frame to frame, so the comparison is usually all the work.
   if (!source_index.empty() && std::equal(from.begin(), from.end(), source.begin(), source.end())) {
     return;
   }
@@ -189,6 +195,7 @@ void WrinkleTables::DescribeMaps(const character::Character& character) {
     }
     info.entry.amplitude = layer < 0 ? 0.0f : map.amplitude;  // without a texture there is no
                                                               // relief
+    // In the order of WrinkleGroup. Maps without a surface belong to both groups.
     info.in_group[static_cast<int>(WrinkleGroup::kSkin)] =
         map.surface != Surface::kCloth || !has_cloth;
     info.in_group[static_cast<int>(WrinkleGroup::kCloth)] = map.surface != Surface::kSkin;
@@ -201,6 +208,7 @@ void WrinkleTables::DescribeRegions(const wrinkle::Rig& rig) {
     const bool textured = region.mask.kind == wrinkle::Mask::Kind::kTexture;
     const int layer = textured ? layout_.MaskLayer(region.mask.texture) : -1;
     for (const wrinkle::Feed& feed : region.feeds) {
+      // In the order of RigBinding::weight_names(), which lists the feeds of all regions.
       slots_.push_back({FindMap(rig, feed.map), layer, region.mask.channel});
     }
   }
@@ -261,11 +269,11 @@ Status WrinkleTables::CarryValues(const NamedSubject& named) {
   const auto weight_names = subject.binding->weight_names();
   const auto value_names = subject.binding->driver_value_names();
   if (subject.wrinkle_weights.size() < weight_names.size()) {
-    return {StatusCode::kInvalidArgument, "fewer values than the binding has weights",
+    return {StatusCode::kInvalidArgument, "has fewer values than the binding has weights",
             named.field + "wrinkle_weights"};
   }
   if (subject.filtered_values.size() < value_names.size()) {
-    return {StatusCode::kInvalidArgument, "fewer values than the binding has driver values",
+    return {StatusCode::kInvalidArgument, "has fewer values than the binding has driver values",
             named.field + "filtered_values"};
   }
   weight_map_.Match(weight_names, binding_.weight_names());

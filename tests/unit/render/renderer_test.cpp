@@ -228,12 +228,12 @@ TEST_F(RendererTest, ALostContextIsReportedAndANewRendererDrawsTheSame) {
   test::DestroyCurrentContext();
   for (const Status& status : {renderer_->Submit(request), renderer_->Poll(true).status()}) {
     EXPECT_EQ(status.code(), StatusCode::kUnavailable) << status.ToString();
-    EXPECT_NE(status.ToString().find("create the renderer anew"), std::string::npos);
+    EXPECT_NE(status.ToString().find("create a new renderer"), std::string::npos);
   }
   renderer_.reset();
-  auto anew = Renderer::Create(head_);
-  ASSERT_TRUE(anew.ok()) << anew.status().ToString();
-  renderer_ = std::move(*anew);
+  auto recreated = Renderer::Create(head_);
+  ASSERT_TRUE(recreated.ok()) << anew.status().ToString();
+  renderer_ = std::move(*recreated);
   EXPECT_EQ(Render(request).rgb, before.rgb);
 }
 

@@ -9,16 +9,16 @@ namespace furrow::render {
 namespace {
 
 constexpr ShaderFile kFiles[] = {
-    {"main.glsl", "first\n#include \"a.glsl\"\nthird\n"},
-    {"a.glsl", "in a\n#include \"b.glsl\"\n"},
-    {"b.glsl", "in b\n#include \"a.glsl\"\n"},
-    {"missing.glsl", "ok\n#include \"nowhere.glsl\"\n"},
+    {"scene/main.glsl", "first\n#include \"common/a.glsl\"\nthird\n"},
+    {"common/a.glsl", "in a\n#include \"b.glsl\"\n"},
+    {"b.glsl", "in b\n#include \"common/a.glsl\"\n"},
+    {"scene/missing.glsl", "ok\n#include \"nowhere.glsl\"\n"},
     {"unquoted.glsl", "#include <a.glsl>\n"},
 };
 
 TEST(ShaderLoader, IncludesEachFileOnceAndKeepsLineNumbers) {
   const std::vector<std::string> defines = {"SIZE 4"};
-  const Result<ShaderSource> source = ExpandShader("main.glsl", defines, kFiles);
+  const Result<ShaderSource> source = ExpandShader("scene/main.glsl", defines, kFiles);
   ASSERT_TRUE(source.ok()) << source.status().ToString();
   EXPECT_EQ(source->text,
             "#version 450 core\n"
@@ -29,13 +29,14 @@ TEST(ShaderLoader, IncludesEachFileOnceAndKeepsLineNumbers) {
             "#line 3 2\n"
             "#line 3 1\n"
             "#line 3 0\nthird\n");
-  EXPECT_EQ(source->files, (std::vector<std::string>{"main.glsl", "a.glsl", "b.glsl"}));
+  EXPECT_EQ(source->files,
+            (std::vector<std::string>{"scene/main.glsl", "common/a.glsl", "b.glsl"}));
 }
 
 TEST(ShaderLoader, AMissingFileIsReportedWithTheIncludingLine) {
-  const Status status = ExpandShader("missing.glsl", {}, kFiles).status();
+  const Status status = ExpandShader("scene/missing.glsl", {}, kFiles).status();
   EXPECT_EQ(status.code(), StatusCode::kNotFound);
-  EXPECT_EQ(status.where(), "missing.glsl:2");
+  EXPECT_EQ(status.where(), "scene/missing.glsl:2");
   EXPECT_NE(status.what().find("nowhere.glsl"), std::string::npos);
 }
 

@@ -93,13 +93,13 @@ class Crowd : public testing::Test {
       int covered = 0;
       for (std::size_t pixel = 0; pixel < alone.rgb.size() / 3; ++pixel) {
         if (MostChannelDifference(alone, empty, pixel) == 0) continue;
-        EXPECT_EQ(MostChannelDifference(composed, empty, pixel), 0) << "they overlap";
+        EXPECT_EQ(MostChannelDifference(composed, empty, pixel), 0) << "the subjects overlap";
         std::copy_n(&alone.rgb[3 * pixel], 3, &composed.rgb[3 * pixel]);
         ++covered;
       }
       most = std::max(most, covered);
     }
-    EXPECT_GT(most, 100) << "nobody is seen";  // the masks of a neutral subject are black on black
+    EXPECT_GT(most, 100) << "nothing is visible";  // the masks of a neutral subject are black on black
     return NumDifferent(all, composed, 1);
   }
 

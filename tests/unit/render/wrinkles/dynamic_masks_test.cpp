@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "render/request/camera_preset.h"
+#include "render/scene/camera_frame.h"
 #include "tests/unit/render/scene_probe.h"
 #include "tests/unit/render/test_character.h"
 
