@@ -76,7 +76,7 @@ class Site:
         return f"```{match[2]}\n{(self.source / match[1]).read_text().rstrip()}\n```"
 
     def stage(self, folder, bin_folder):
-        """Collects all pages in `folder`, which is made anew."""
+        """Collects all pages in `folder`, and deletes what was there."""
         if folder.exists():
             shutil.rmtree(folder)
         for origin, place in self.places.items():

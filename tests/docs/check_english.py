@@ -24,7 +24,7 @@ OPENING = re.compile(r"(?:^|(?:^|\s)(?://+|#|\*|\d\.|-) +)"
                      r"(?:Who|Whoever|Whose|What is|What was|What comes|That which|Of who|Of what|Such a) ")
 ANYWHERE = re.compile(r"befall|cannot be had|\bstands in\b|\bstand beside\b|\b(?:is|are) told\b|by the thread of|"
                       r"\bof whom\b|\bthereof\b|\bit is due\b|as long as it stays|\bso many\b|\banew\b|falls silent|"
-                      r"\b(?:is|are) no (?!longer)|has been there longest", re.I)
+                      r"(?<!there )\b(?:is|are) no (?!longer)|has been there longest", re.I)
 
 
 def is_question(line):

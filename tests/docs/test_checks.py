@@ -116,7 +116,8 @@ class EnglishTest(unittest.TestCase):
         for line in ("// Who watches sees it.", "what cannot be had", "// It is told of it.", "- Whoever comes",
                      "there are so many of them"):
             self.assertTrue(check_english.matches(line), line)
-        for line in ("// Who sends it, and is it new?", "// The hub is no longer needed.", "int what = 0;"):
+        for line in ("// Who sends it, and is it new?", "// The hub is no longer needed.", "// If there is no hub, do nothing.",
+                     "int what = 0;"):
             self.assertFalse(check_english.matches(line), line)
 
 

@@ -87,7 +87,7 @@ class DocumentTest(unittest.TestCase):
         self.assertEqual(several, 2)
 
     def record_here(self, words, daemon):
-        """A recording of whom it names, or of somebody, ended after half a second."""
+        """Records the subjects that the command names, or one subject, for half a second."""
         names = [words[i + 1] for i, word in enumerate(words) if word == "--subject"] or ["zoe"]
         stage = [spawn("play", PERFORMANCE, "--to", daemon.udp, "--loop", "--subject", name) for name in names]
         for player, name in zip(stage, names):
