@@ -9,7 +9,7 @@
 #include "base/status.h"
 #include "character/character.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 struct CharacterOptions {
   FaceParameters face;
@@ -21,8 +21,8 @@ struct CharacterOptions {
 // The default character (CC0): a clothed body with a face on muscle joints, textures and masks as
 // embedded pictures under the names that rig/rigs/default.json uses; AddWrinkleMaps() bakes
 // his wrinkle maps. `rig` is stored in him. The same options give the same bytes on every run.
-[[nodiscard]] Character MakeDefaultCharacter(const wrinkle::Rig& rig,
-                                             const CharacterOptions& options = {});
+[[nodiscard]] character::Character MakeDefaultCharacter(const wrinkle::Rig& rig,
+                                                        const CharacterOptions& options = {});
 
 // Makes a character and bakes its wrinkle maps: `glb`, and its rig beside it (NAME.rig.json, a copy
 // of default.json in `rigs`). Errors: those of reading, baking and writing.
@@ -36,4 +36,4 @@ struct CharacterOptions {
 [[nodiscard]] Status WriteShare(const std::filesystem::path& rigs,
                                 const std::filesystem::path& share);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

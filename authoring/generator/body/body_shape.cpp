@@ -3,20 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::mat4;
 using glm::vec3;
 
-constexpr float kDegrees = std::numbers::pi_v<float> / 180.0f;
 constexpr float kShoulderDrop = 4.0f;  // degrees, of the modelling pose
 constexpr float kArmDrop = 42.0f;
 
@@ -99,15 +98,15 @@ BodyShape::BodyShape(const BodyParameters& parameters, const wrinkle::Skeleton& 
   if (forward_.z < 0.0f) forward_ = -forward_;
 
   torso_ = Fitted(kTorso, [&](Section* s) {
-    const float chest = SmoothStep(1.12f, 1.28f, s->height);
-    const float shoulders = SmoothStep(1.30f, 1.40f, s->height);
+    const float chest = Smoothstep(1.12f, 1.28f, s->height);
+    const float shoulders = Smoothstep(1.30f, 1.40f, s->height);
     Widen(parameters.waist + (parameters.chest - parameters.waist) * chest, s);
     s->half_width *= 1.0f + (parameters.shoulder_width / parameters.chest - 1.0f) * shoulders;
     s->front += parameters.bust * Bump(s->height - 1.265f, 0.075f);
     s->front += parameters.belly * Bump(s->height - 1.09f, 0.10f);
   });
   pelvis_ = Fitted(kPelvis, [&](Section* s) {
-    const float waist = SmoothStep(0.95f, 1.03f, s->height);
+    const float waist = Smoothstep(0.95f, 1.03f, s->height);
     Widen(parameters.hips + (parameters.waist - parameters.hips) * waist, s);
     s->front += parameters.belly * 0.5f * Bump(s->height - 1.02f, 0.08f);
   });
@@ -154,4 +153,4 @@ float BodyShape::Neck(const vec3& p) const {
   return head_->Distance(ModelToHead(p)) * 0.01f - 0.007f;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -10,7 +10,7 @@
 #include "authoring/generator/mesh/solid.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 // What tells one body from another. Factors are of a slim man of 1.75 m; the height is that of the
 // default character, whose head sits on top.
@@ -66,4 +66,4 @@ class BodyShape {
   std::vector<Section> torso_, pelvis_, leg_;
 };
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "authoring/generator/head/head_mesh.h"
+#include "authoring/generator/head/face_parts.h"
 #include "authoring/generator/head/head_shape.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
@@ -162,4 +162,4 @@ wrinkle::Skeleton MakeSkeleton() {
   return skeleton.ok() ? std::move(skeleton).value() : wrinkle::Skeleton();
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

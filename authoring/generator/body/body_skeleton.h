@@ -8,7 +8,7 @@
 
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 // A joint of the default character: its place in model space, metres. All rest rotations are
 // identity, so a joint's turn in a file is the turn that one sees.
@@ -24,4 +24,4 @@ struct JointPlace {
 
 [[nodiscard]] wrinkle::Skeleton MakeSkeleton();
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -11,8 +11,9 @@
 #include <glm/matrix.hpp>
 
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
@@ -40,7 +41,7 @@ class Shares {
       float beyond = 0.0f;
       if (i < borders.size()) {
         const Border& b = borders[i];
-        beyond = SmoothStep(b.at - b.half_width, b.at + b.half_width, place);
+        beyond = Smoothstep(b.at - b.half_width, b.at + b.half_width, place);
       }
       Add(joints[i], rest * (1.0f - beyond));
       rest *= beyond;
@@ -82,9 +83,9 @@ Influences TorsoInfluences(const BodyShape& shape, const vec3& place) {
   // Across a plane that leans from the cap of the shoulder in to the armpit; only above the latter.
   const vec3 from(x - shoulder.x, place.y - shoulder.y, 0.0f);
   const float across = glm::dot(from, vec3(0.97f, 0.24f, 0.0f));
-  const float arm = SmoothStep(-0.055f, 0.075f, across) * SmoothStep(1.20f, 1.36f, place.y);
+  const float arm = Smoothstep(-0.055f, 0.075f, across) * Smoothstep(1.20f, 1.36f, place.y);
   const float shoulder_share =
-      0.85f * SmoothStep(0.045f, 0.15f, x) * SmoothStep(1.27f, 1.43f, place.y);
+      0.85f * Smoothstep(0.045f, 0.15f, x) * Smoothstep(1.27f, 1.43f, place.y);
   Shares shares(shape.skeleton());
   shares.Add("upper_arm" + side, arm);
   shares.Add("shoulder" + side, (1.0f - arm) * shoulder_share);
@@ -101,7 +102,7 @@ Influences SleeveInfluences(const BodyShape& shape, float side, const vec3& plac
   const float elbow =
       glm::distance(vec3(shape.skeleton().rest_model()[shape.skeleton().Find("lower_arm_l")][3]),
                     vec3(shape.skeleton().rest_model()[shape.skeleton().Find("upper_arm_l")][3]));
-  const float free = SmoothStep(0.0f, 0.10f, from_hole);
+  const float free = Smoothstep(0.0f, 0.10f, from_hole);
   Shares shares(shape.skeleton());
   shares.Add(hole, 1.0f - free);
   const std::string joints[] = {std::string("upper_arm") + Suffix(side),
@@ -116,14 +117,14 @@ Influences TrouserInfluences(const BodyShape& shape, const vec3& place) {
   const std::string side = Suffix(place.x);
   const float x = std::abs(place.x);
   // The groin rises to the side in front; behind, the seat goes with the thigh for a while.
-  const float front = SmoothStep(-0.06f, 0.06f, place.z);
+  const float front = Smoothstep(-0.06f, 0.06f, place.z);
   const float groin = glm::mix(0.845f + 0.25f * x, 0.855f + 0.42f * x, front);
   const float half_width = glm::mix(0.085f, 0.06f, front);
-  const float below = SmoothStep(groin + half_width, groin - half_width, place.y);
+  const float below = Smoothstep(groin + half_width, groin - half_width, place.y);
   // Where both legs meet each has half.
-  const float apart = SmoothStep(-0.045f, 0.045f, x);
+  const float apart = Smoothstep(-0.045f, 0.045f, x);
   const float leg =
-      below * glm::mix(SmoothStep(0.0f, 0.05f, x), apart, SmoothStep(0.83f, 0.78f, place.y));
+      below * glm::mix(Smoothstep(0.0f, 0.05f, x), apart, Smoothstep(0.83f, 0.78f, place.y));
   Shares shares(shape.skeleton());
   const std::string upper = "upper_leg" + side;
   const std::string pelvis[] = {"hips", "spine"};
@@ -160,4 +161,4 @@ void CarryToRest(const BodyShape& shape, QuadNet* net) {
   }
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

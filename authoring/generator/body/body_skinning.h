@@ -9,7 +9,7 @@
 #include "authoring/generator/mesh/quad_net.h"
 
 // Skin weights of the body. Places are in the modelling pose (see BodyShape).
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 // Of the shirt's trunk, which hands over to the arms round the armholes.
 [[nodiscard]] Influences TorsoInfluences(const BodyShape& shape, const glm::vec3& place);
@@ -31,4 +31,4 @@ namespace furrow::character::generator {
 // Carries every point from the modelling pose to rest by its influences.
 void CarryToRest(const BodyShape& shape, QuadNet* net);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

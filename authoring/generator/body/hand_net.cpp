@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,13 +15,13 @@
 #include "authoring/generator/body/body_skinning.h"
 #include "authoring/generator/mesh/mesh_tools.h"
 #include "authoring/generator/mesh/solid.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kFingers = 4;
 constexpr int kRing = 8;               // points round a finger: 0 and 4 on its sides, 1 to 3 above
 constexpr int kPalmRows = 7;           // from the wrist to the webs
@@ -248,7 +247,7 @@ class HandMaker {
     }
     const bool thumb = nearest == &thumb_;
     float shares[4] = {1.0f, 0.0f, 0.0f, 0.0f};  // the hand and the digit's joints
-    const float near = SmoothStep(0.014f, 0.003f, least);
+    const float near = Smoothstep(0.014f, 0.003f, least);
     for (int i = 0; i < 3; ++i) {
       const vec3 along = glm::normalize(nearest->places[i + 1] - nearest->places[i]);
       // A joint bends in the middle between its bones.
@@ -256,12 +255,12 @@ class HandMaker {
           i > 0 ? glm::normalize(nearest->places[i] - nearest->places[i - 1]) : along;
       const float past = glm::dot(p - nearest->places[i], glm::normalize(along + before));
       const float half = thumb && i == 0 ? 0.016f : 0.0075f;
-      const float beyond = near * SmoothStep(-half, half, past - (thumb && i == 0 ? 0.010f : 0.0f));
+      const float beyond = near * Smoothstep(-half, half, past - (thumb && i == 0 ? 0.010f : 0.0f));
       shares[i + 1] = shares[i] * beyond;
       shares[i] *= 1.0f - beyond;
     }
     // The arm's end, inside the cuff.
-    const float arm = SmoothStep(0.022f, -0.014f, p.x - wrist_.x);
+    const float arm = Smoothstep(0.022f, -0.014f, p.x - wrist_.x);
     skin.joints[0] = static_cast<std::uint16_t>(skeleton_.Find("hand_l"));
     skin.weights[0] = shares[0];
     for (int i = 0; i < 3; ++i) {
@@ -316,4 +315,4 @@ QuadNet MakeHand(const wrinkle::Skeleton& skeleton, float side, int panel, int l
   return net;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

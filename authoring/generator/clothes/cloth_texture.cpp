@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -11,20 +10,20 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
-#include "authoring/generator/clothes/clothes_net.h"
+#include "authoring/generator/clothes/cloth_panels.h"
 #include "authoring/generator/mesh/mesh_tools.h"
 #include "authoring/paint/canvas.h"
+#include "authoring/paint/noise.h"
 #include "authoring/paint/strokes.h"
-#include "authoring/paint/uv_raster.h"
+#include "authoring/paint/surface_texels.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
 using glm::vec3;
-using paint::Texel;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kNormalBits = 8;
 
 // Where a texel lies on the cloth.
@@ -37,10 +36,10 @@ struct ClothPlace {
 class ClothAtlas {
  public:
   ClothAtlas(const Clothes& clothes, int size)
-      : clothes_(clothes), size_(size), texels_(paint::RasterizeUv(clothes.mesh, size, size)) {}
+      : clothes_(clothes), size_(size), texels_(RasterizeSurface(clothes.mesh, size, size)) {}
 
-  [[nodiscard]] const std::vector<Texel>& texels() const { return texels_; }
-  [[nodiscard]] ClothPlace At(const Texel& texel) const {
+  [[nodiscard]] const std::vector<SurfaceTexel>& texels() const { return texels_; }
+  [[nodiscard]] ClothPlace At(const SurfaceTexel& texel) const {
     const int panel = clothes_.vertex_panels[clothes_.mesh.indices[3 * texel.triangle]];
     const vec2 uv = (vec2(texel.x, texel.y) + 0.5f) / static_cast<float>(size_);
     const PanelPlace& place = clothes_.panels[panel];
@@ -50,7 +49,7 @@ class ClothAtlas {
  private:
   const Clothes& clothes_;
   int size_;
-  std::vector<Texel> texels_;
+  std::vector<SurfaceTexel> texels_;
 };
 
 bool IsTrousers(int panel) { return panel == kTrousersLeft || panel == kTrousersRight; }
@@ -61,12 +60,12 @@ bool IsCollar(int panel) {
 
 // 1 on a line that is `width` wide, fading over as much again.
 float Line(float distance, float width) {
-  return SmoothStep(width, 0.5f * width, std::abs(distance));
+  return Smoothstep(width, 0.5f * width, std::abs(distance));
 }
 
 // Stitches along a seam: dashes 3 mm long.
 float Stitches(float distance, float along) {
-  return Line(distance, 0.0012f) * SmoothStep(-0.2f, 0.3f, std::sin(along * 2.0f * kPi / 0.0036f));
+  return Line(distance, 0.0012f) * Smoothstep(-0.2f, 0.3f, std::sin(along * 2.0f * kPi / 0.0036f));
 }
 
 // Buttons of the placket, the first under the collar.
@@ -129,7 +128,7 @@ float SeamLines(const ClothPlace& at, float* stitches) {
       const float mouth = (x - 0.118f) - 0.30f * (1.0f - p.y);
       if (p.y > 0.855f) seam(mouth, p.y, false);
       if (p.y > 0.855f) seam(mouth + 0.006f, p.y, true);
-      const float fly = p.x > 0.0f ? p.x - 0.032f * SmoothStep(0.845f, 0.90f, p.y) : 1.0f;
+      const float fly = p.x > 0.0f ? p.x - 0.032f * Smoothstep(0.845f, 0.90f, p.y) : 1.0f;
       seam(fly, p.y, true);
     } else if (p.z < 0.0f && std::abs(x - 0.088f) < 0.062f) {
       seam(p.y - 0.955f, p.x, false);
@@ -141,8 +140,8 @@ float SeamLines(const ClothPlace& at, float* stitches) {
 
 // A crease kept by cloth: soft ridges along `across` = const, `spacing` apart, irregular.
 float Gathers(float across, float along, float spacing) {
-  return Noise({across / spacing, along / (6.0f * spacing), 3.0f}) +
-         0.5f * Noise({across / spacing * 2.1f, along / (4.0f * spacing), 8.0f});
+  return SignedNoise({across / spacing, along / (6.0f * spacing), 3.0f}) +
+         0.5f * SignedNoise({across / spacing * 2.1f, along / (4.0f * spacing), 8.0f});
 }
 
 float KeptCreases(const ClothPlace& at) {
@@ -163,10 +162,10 @@ float KeptCreases(const ClothPlace& at) {
            0.0012f * elbow * Gathers(x + 0.12f * std::abs(round), round, 0.021f);
   }
   if (IsTrousers(at.panel)) {
-    const float knee = Bump(p.y - 0.485f, 0.09f) * SmoothStep(0.03f, -0.03f, p.z);
+    const float knee = Bump(p.y - 0.485f, 0.09f) * Smoothstep(0.03f, -0.03f, p.z);
     const float hem = Bump(p.y - 0.105f, 0.07f);
     const float round = std::atan2(std::abs(p.x) - 0.097f, p.z) * 0.06f;
-    const float crotch = Bump(p.y - 0.80f, 0.07f) * SmoothStep(0.10f, 0.02f, std::abs(p.x));
+    const float crotch = Bump(p.y - 0.80f, 0.07f) * Smoothstep(0.10f, 0.02f, std::abs(p.x));
     return 0.0014f * knee * Gathers(p.y + 0.1f * round, round, 0.024f) +
            0.0016f * hem * Gathers(p.y + 0.25f * std::abs(round), round, 0.028f) +
            0.0013f * crotch * Gathers(p.y - 0.7f * std::abs(p.x), p.x, 0.022f);
@@ -178,10 +177,10 @@ float KeptCreases(const ClothPlace& at) {
 float Weave(const ClothPlace& at) {
   if (IsTrousers(at.panel)) {
     return std::sin((at.cut.x + at.cut.y) * 2.0f * kPi / 0.0042f) *
-           (0.7f + 0.3f * Noise(vec3(at.cut * 140.0f, 1.0f)));
+           (0.7f + 0.3f * SignedNoise(vec3(at.cut * 140.0f, 1.0f)));
   }
-  return 0.5f * Noise({at.cut.x * 420.0f, at.cut.y * 45.0f, 2.0f}) +
-         0.5f * Noise({at.cut.x * 45.0f, at.cut.y * 420.0f, 5.0f});
+  return 0.5f * SignedNoise({at.cut.x * 420.0f, at.cut.y * 45.0f, 2.0f}) +
+         0.5f * SignedNoise({at.cut.x * 45.0f, at.cut.y * 420.0f, 5.0f});
 }
 
 float Height(const ClothPlace& at) {  // metres
@@ -190,25 +189,25 @@ float Height(const ClothPlace& at) {  // metres
   float height = KeptCreases(at) - 0.0007f * groove - 0.00035f * stitches;
   height += (IsTrousers(at.panel) ? 0.00010f : 0.00007f) * Weave(at);
   if (at.panel == kShirtFront && at.p.z > 0.0f) {
-    height += 0.0008f * SmoothStep(0.018f, 0.0155f, std::abs(at.p.x));
-    height += 0.0006f * SmoothStep(0.0f, 0.002f, PocketInside(at));
+    height += 0.0008f * Smoothstep(0.018f, 0.0155f, std::abs(at.p.x));
+    height += 0.0006f * Smoothstep(0.0f, 0.002f, PocketInside(at));
     const float button = ButtonDistance(at);
-    height += 0.0018f * SmoothStep(kButton + 0.0006f, kButton - 0.001f, button) -
-              0.0007f * SmoothStep(0.0036f, 0.0026f, button);
+    height += 0.0018f * Smoothstep(kButton + 0.0006f, kButton - 0.001f, button) -
+              0.0007f * Smoothstep(0.0036f, 0.0026f, button);
   }
   if (IsTrousers(at.panel)) {  // pressed
     const float middle = std::abs(std::abs(at.p.x) - 0.096f);
-    height += 0.0012f * Bump(middle, 0.006f) * SmoothStep(0.02f, 0.045f, std::abs(at.p.z)) *
-              SmoothStep(0.86f, 0.72f, at.p.y);
+    height += 0.0012f * Bump(middle, 0.006f) * Smoothstep(0.02f, 0.045f, std::abs(at.p.z)) *
+              Smoothstep(0.86f, 0.72f, at.p.y);
   }
   return height;
 }
 
 }  // namespace
 
-Picture PaintClothColour(const Clothes& clothes, const BodyParameters& body, int size) {
+character::Picture PaintClothColour(const Clothes& clothes, const BodyParameters& body, int size) {
   const ClothAtlas atlas(clothes, size);
-  return paint::Fill("cloth_colour", atlas.texels(), size, 3, [&](const Texel& texel) {
+  return FillPicture("cloth_colour", atlas.texels(), size, 3, [&](const SurfaceTexel& texel) {
     const ClothPlace at = atlas.At(texel);
     const bool trousers = IsTrousers(at.panel);
     vec3 colour = trousers ? body.trousers : body.shirt;
@@ -222,19 +221,19 @@ Picture PaintClothColour(const Clothes& clothes, const BodyParameters& body, int
     colour = glm::mix(colour, colour * (trousers ? 1.25f : 1.08f), 0.7f * stitches);
     if (IsCollar(at.panel)) colour *= 1.015f;
     const float button = ButtonDistance(at);
-    colour *= 1.0f - 0.35f * SmoothStep(kButton + 0.0028f, kButton, button);
+    colour *= 1.0f - 0.35f * Smoothstep(kButton + 0.0028f, kButton, button);
     const vec3 pearl = vec3(0.86f, 0.84f, 0.80f) * (1.0f - 0.35f * Line(button - 0.0034f, 0.001f));
-    colour = glm::mix(colour, pearl, SmoothStep(kButton + 0.0004f, kButton - 0.0004f, button));
+    colour = glm::mix(colour, pearl, Smoothstep(kButton + 0.0004f, kButton - 0.0004f, button));
     return glm::vec4(colour, 1.0f);
   });
 }
 
-Picture PaintClothNormals(const Clothes& clothes, int size) {
+character::Picture PaintClothNormals(const Clothes& clothes, int size) {
   const ClothAtlas atlas(clothes, size);
   std::vector<vec2> slopes;
   slopes.reserve(atlas.texels().size());
   constexpr float kStep = 0.0006f;
-  for (const Texel& texel : atlas.texels()) {
+  for (const SurfaceTexel& texel : atlas.texels()) {
     const ClothPlace at = atlas.At(texel);
     const auto beside = [&](const vec2& by) {
       const vec3 p = at.p + (texel.tangent * by.x + texel.bitangent * by.y) * kStep;
@@ -243,19 +242,19 @@ Picture PaintClothNormals(const Clothes& clothes, int size) {
     slopes.emplace_back((beside({-1, 0}) - beside({1, 0})) / (2.0f * kStep),
                         (beside({0, -1}) - beside({0, 1})) / (2.0f * kStep));
   }
-  Picture picture = paint::EncodeNormals(atlas.texels(), slopes, size, size, kNormalBits);
+  character::Picture picture = EncodeNormals(atlas.texels(), slopes, size, size, kNormalBits);
   picture.name = "cloth_normal";
   return picture;
 }
 
-Picture PaintClothRoughness(const Clothes& clothes, int size) {
+character::Picture PaintClothRoughness(const Clothes& clothes, int size) {
   const ClothAtlas atlas(clothes, size);
-  return paint::Fill("cloth_roughness", atlas.texels(), size, 3, [&](const Texel& texel) {
+  return FillPicture("cloth_roughness", atlas.texels(), size, 3, [&](const SurfaceTexel& texel) {
     const ClothPlace at = atlas.At(texel);
     const float cloth = (IsTrousers(at.panel) ? 0.88f : 0.80f) + 0.04f * Weave(at);
-    const float button = SmoothStep(kButton + 0.0004f, kButton - 0.0004f, ButtonDistance(at));
+    const float button = Smoothstep(kButton + 0.0004f, kButton - 0.0004f, ButtonDistance(at));
     return glm::vec4(0.0f, glm::mix(cloth, 0.30f, button), 0.0f, 1.0f);
   });
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

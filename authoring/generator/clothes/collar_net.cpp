@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "authoring/generator/clothes/collar_net.h"
+
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "authoring/generator/clothes/clothes_net.h"
+#include "authoring/generator/clothes/cloth_panels.h"
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
@@ -40,7 +42,7 @@ std::vector<Foot> Feet(const std::vector<int>& neckline, const QuadNet& net) {
     vec3 out = place - middle;
     out.y = 0.0f;
     out = glm::normalize(out);
-    feet.push_back({place, out, SmoothStep(0.2f, 1.0f, out.z)});
+    feet.push_back({place, out, Smoothstep(0.2f, 1.0f, out.z)});
   }
   return feet;
 }
@@ -85,7 +87,7 @@ void AddCollar(const Solid& shirt, const std::vector<int>& neckline, QuadNet* ne
   for (int c = 1; c + 1 < count; ++c) {
     const Foot& foot = feet[c];
     // Points reach farther down and forward, apart from each other.
-    const float end = SmoothStep(0.45f, 1.0f, foot.front);
+    const float end = Smoothstep(0.45f, 1.0f, foot.front);
     const float drop = 0.040f + 0.022f * end;
     const float spread = 0.010f + 0.006f * end;
     const Row rows[kLeafRows] = {{0.032f - drop, spread - 0.0025f},
@@ -104,4 +106,4 @@ void AddCollar(const Solid& shirt, const std::vector<int>& neckline, QuadNet* ne
   AddPatch(leaf, kCollarLeaf, false, {}, net);
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

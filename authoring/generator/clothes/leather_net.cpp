@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -13,14 +12,14 @@
 
 #include "authoring/generator/body/body_skinning.h"
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
 using glm::vec3;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kAround = 20;  // columns of a shoe at level 0
 
 // The shape of a left shoe by z, metres: half width of the sole, height of the ridge.
@@ -107,7 +106,7 @@ class ShoeMaker {
       return vec3(place.x, y, place.y);
     };
     const auto ground = [](float z) {  // the waist of the sole stands off it, before the heel
-      return 0.013f * SmoothStep(-0.026f, -0.018f, z) * SmoothStep(0.075f, 0.02f, z);
+      return 0.013f * Smoothstep(-0.026f, -0.018f, z) * Smoothstep(0.075f, 0.02f, z);
     };
     PointGrid grid(5, columns_ + 1);
     std::map<long, int> ridge;
@@ -212,4 +211,4 @@ QuadNet MakeBelt(const BodyShape& shape, int panel) {
   return net;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

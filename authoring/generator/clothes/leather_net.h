@@ -4,7 +4,7 @@
 #include "authoring/generator/body/body_shape.h"
 #include "authoring/generator/mesh/quad_net.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 // A shoe (`side` +1: left) with its influences, in rest: the upper is `panel`, the sole `panel`
 // + 1.
@@ -13,4 +13,4 @@ namespace furrow::character::generator {
 // The belt (`panel`) with its buckle (`panel` + 1) round the waist of the trousers.
 [[nodiscard]] QuadNet MakeBelt(const BodyShape& shape, int panel);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

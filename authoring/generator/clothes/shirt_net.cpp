@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "authoring/generator/clothes/shirt_net.h"
+
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "authoring/generator/body/body_skinning.h"
-#include "authoring/generator/clothes/clothes_net.h"
+#include "authoring/generator/clothes/cloth_panels.h"
+#include "authoring/generator/clothes/collar_net.h"
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
-
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kDegrees = kPi / 180.0f;
 
 // The trunk's grid at level 0. Columns run round it from the middle of the front over the left
 // side; rows from the hem to the neckline. The armholes are left out of it.
@@ -34,9 +34,9 @@ constexpr float kHoleAngle = 70.0f;  // degrees from the front, where an armhole
 // Rings of a sleeve beyond the armhole's: metres from the shoulder's joint. Close at the elbow,
 // where it folds.
 constexpr int kCapRings = 4;
-constexpr float kRings[] = {0.150f, 0.178f, 0.202f, 0.222f, 0.239f, 0.254f, 0.268f,
-                            0.282f, 0.296f, 0.312f, 0.332f, 0.360f, 0.395f, 0.428f,
-                            0.454f, 0.465f, 0.473f, 0.505f, 0.535f};
+constexpr float kShirtRings[] = {0.150f, 0.178f, 0.202f, 0.222f, 0.239f, 0.254f, 0.268f,
+                                 0.282f, 0.296f, 0.312f, 0.332f, 0.360f, 0.395f, 0.428f,
+                                 0.454f, 0.465f, 0.473f, 0.505f, 0.535f};
 
 class ShirtMaker {
  public:
@@ -120,7 +120,7 @@ class ShirtMaker {
         const bool edge = r == 0 || r == trunk_.rows - 1;
         const float slack =
             edge ? 0.0f
-                 : SmoothStep(1.0f, static_cast<float>(kRowsBelow * f_), static_cast<float>(r));
+                 : Smoothstep(1.0f, static_cast<float>(kRowsBelow * f_), static_cast<float>(r));
         trunk_.At(r, c) = net_->AddPoint(TrunkPlace(r, c), slack);
       }
       trunk_.At(r, last) = trunk_.At(r, 0);
@@ -153,13 +153,13 @@ class ShirtMaker {
 
   std::vector<float> FineRings() const {
     std::vector<float> fine;
-    for (std::size_t i = 0; i + 1 < std::size(kRings); ++i) {
+    for (std::size_t i = 0; i + 1 < std::size(kShirtRings); ++i) {
       for (int k = 0; k < f_; ++k) {
-        fine.push_back(kRings[i] + (kRings[i + 1] - kRings[i]) * static_cast<float>(k) /
-                                       static_cast<float>(f_));
+        fine.push_back(kShirtRings[i] + (kShirtRings[i + 1] - kShirtRings[i]) *
+                                            static_cast<float>(k) / static_cast<float>(f_));
       }
     }
-    fine.push_back(kRings[std::size(kRings) - 1]);
+    fine.push_back(kShirtRings[std::size(kShirtRings) - 1]);
     return fine;
   }
 
@@ -256,4 +256,4 @@ QuadNet MakeShirt(const BodyShape& shape) {
   return net;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 // What a face is told to be. Landmarks and joints are the same for every face, so that recordings
 // and rigs fit them all; form, colour, hair and the depth of wrinkles follow from these.
@@ -29,4 +29,4 @@ struct FaceParameters {
   return t < 0.0f ? 0.0f : (t > 0.92f ? 0.92f : t);
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -7,7 +7,7 @@
 
 #include "authoring/generator/head/head_shape.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 // A lock of hair: where its middle runs from the root to the tip, which way is out there (unit),
 // and half its width. Head space, centimetres.
@@ -16,6 +16,10 @@ struct HairLock {
   std::vector<glm::vec3> out;
   float width = 0.5f;
 };
+
+// How far a point of the scalp lies inside the hairline, centimetres; negative: bare skin. `p`:
+// head space.
+[[nodiscard]] float InsideHairline(const glm::vec3& p);
 
 // Grows the lock at `root`, a point of the scalp: short at the sides and combed back from a parting
 // for a man, drawn back into a knot for a woman; mixtures between them. `number` varies it. The
@@ -26,4 +30,4 @@ struct HairLock {
 // The locks wound into the knot at the back of the head; none for a man.
 [[nodiscard]] std::vector<HairLock> WindKnot(const HeadShape& shape, int sections);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

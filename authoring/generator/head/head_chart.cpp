@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <vector>
 
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
-constexpr float kDegrees = std::numbers::pi_v<float> / 180.0f;
 constexpr float kFrontRadius = 8.3f;  // centimetres from the axis, where rows' heights are measured
 
 // Azimuths of the columns, degrees: dense where the face is.
@@ -128,7 +127,7 @@ float Azimuth(float column) {
 }
 
 // 0 where columns belong to the face, 1 at the sides and the back.
-float Turn(float azimuth) { return SmoothStep(36.0f, 100.0f, azimuth); }
+float Turn(float azimuth) { return Smoothstep(36.0f, 100.0f, azimuth); }
 
 // z of a fan's origin: far from the front it runs evenly from the neck to the skull.
 float FanAxis(float row, float azimuth) {
@@ -144,12 +143,12 @@ float FanBase(float row, float azimuth, float elevation) {
   static const int first_chin = FindHeadRow(-23.0f);
   const float height = RowField(&Row::height, row);
   const float front = height - kFrontRadius * std::tan(RowField(&Row::elevation, row) * kDegrees);
-  const float crown = SmoothStep(static_cast<float>(first_crown), first_crown + 6.0f, row);
+  const float crown = Smoothstep(static_cast<float>(first_crown), first_crown + 6.0f, row);
   if (crown > 0.0f) return front + (kCrownBase - front) * crown;
   // Fans under the chin stay where they are while they open to the sides; all others keep the
   // height at which they meet the face.
-  const float chin = SmoothStep(first_chin - 1.0f, static_cast<float>(first_chin), row) *
-                     (1.0f - SmoothStep(first_chin + 11.0f, first_chin + 12.0f, row));
+  const float chin = Smoothstep(first_chin - 1.0f, static_cast<float>(first_chin), row) *
+                     (1.0f - Smoothstep(first_chin + 11.0f, first_chin + 12.0f, row));
   const float level = height - kFrontRadius * std::tan(elevation);
   const float base = level + (front - level) * chin;
   // Far from the front a row has the height that the even spacing of the back gives it.
@@ -166,7 +165,7 @@ std::vector<float> TextureColumns() {
   for (int c = 1; c <= kHeadColumns; ++c) {
     const float middle = 0.5f * (kAzimuth[c] + kAzimuth[c - 1]);
     const float width = kAzimuth[c] - kAzimuth[c - 1];
-    u.push_back(u.back() + width * (1.0f - 0.65f * SmoothStep(50, 105, middle)));
+    u.push_back(u.back() + width * (1.0f - 0.65f * Smoothstep(50, 105, middle)));
   }
   const float total = u.back();
   for (float& value : u) value /= total;
@@ -198,7 +197,7 @@ glm::vec3 HeadSurface(const HeadShape& shape, const glm::vec2& place) {
   const float half_width = RowField(&Row::half_width, row);
   const float hold = half_width >= 180.0f
                          ? 1.0f
-                         : 1.0f - SmoothStep(0.35f * half_width, half_width, std::abs(azimuth));
+                         : 1.0f - Smoothstep(0.35f * half_width, half_width, std::abs(azimuth));
   const float elevation = RowField(&Row::elevation, row) * hold * kDegrees;
   const float base = FanBase(row, std::abs(azimuth), elevation);
   const glm::vec3 direction(std::sin(azimuth * kDegrees) * std::cos(elevation), std::sin(elevation),
@@ -231,4 +230,4 @@ glm::vec2 HeadPlaceAt(const HeadShape& shape, float x, float y) {
           row};
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

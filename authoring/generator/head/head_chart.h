@@ -10,7 +10,7 @@
 // Columns run round the head (0 in front, +-kHeadColumns at the back), rows from the neck to the
 // crown; both are denser where the face is. A row is a fan of rays that meet the surface from
 // outside.
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 inline constexpr int kHeadColumns = 30;  // on either side
 
@@ -26,4 +26,4 @@ inline constexpr int kHeadColumns = 30;  // on either side
 // The place of a point of the face, seen from the front at (x, y); above the chin.
 [[nodiscard]] glm::vec2 HeadPlaceAt(const HeadShape& shape, float x, float y);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

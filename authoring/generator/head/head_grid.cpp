@@ -10,7 +10,7 @@
 
 #include "authoring/generator/mesh/mesh_tools.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 // Openings in columns of the chart.
@@ -160,4 +160,4 @@ void HeadGrid::Relax(const std::vector<char>& fixed) {
   }
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -8,7 +8,7 @@
 
 #include "authoring/generator/head/head_chart.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 // Levels of detail: cells are twice as fine from one to the next.
 inline constexpr int kCoarsestLevel = 0;  // the whole head has about 3,000 triangles
@@ -60,4 +60,4 @@ class HeadGrid {
   std::vector<glm::vec2> offset_;  // of the finest vertices with column >= 0, in places
 };
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -7,14 +7,14 @@
 
 #include <glm/geometric.hpp>
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 
 // What a body gains per unit of a trait.
 struct Shift {
-  const char* body;
+  const char* primitive;
   vec3 a;
   vec3 b;
   glm::vec2 r;
@@ -56,7 +56,7 @@ constexpr Shift kAge[] = {
 };
 
 // Clay that age adds (jowls, bags under the eyes) and takes (temples, folds that stay).
-constexpr Dab kAgeDabs[] = {
+constexpr Bulge kAgeBulges[] = {
     {{3.9f, -9.2f, 5.4f}, 0.9f, 0.18f},    {{3.3f, -8.6f, 7.3f}, 0.5f, 0.16f},
     {{2.55f, -8.9f, 7.9f}, 0.45f, -0.16f}, {{2.95f, -7.9f, 8.2f}, 0.35f, -0.12f},
     {{2.4f, -4.9f, 8.9f}, 0.4f, -0.14f},   {{2.85f, -5.9f, 8.7f}, 0.4f, -0.15f},
@@ -67,13 +67,13 @@ constexpr Dab kAgeDabs[] = {
 };
 
 template <std::size_t N>
-void Apply(const Shift (&shifts)[N], float share, std::vector<Body>* bodies) {
+void Apply(const Shift (&shifts)[N], float share, std::vector<HeadPrimitive>* primitives) {
   for (const Shift& shift : shifts) {
-    for (Body& body : *bodies) {
-      if (std::string_view(body.name) != shift.body) continue;
-      body.a += share * shift.a;
-      body.b += share * shift.b;
-      body.r += share * shift.r;
+    for (HeadPrimitive& primitive : *primitives) {
+      if (std::string_view(primitive.name) != shift.primitive) continue;
+      primitive.a += share * shift.a;
+      primitive.b += share * shift.b;
+      primitive.r += share * shift.r;
     }
   }
 }
@@ -94,14 +94,14 @@ glm::vec3 ModelToHead(const glm::vec3& p) { return p * 100.0f - kHeadOrigin; }
 
 HeadShape::HeadShape(const FaceParameters& face)
     : face_(face),
-      bodies_(AdultBodies().begin(), AdultBodies().end()),
-      dabs_(AdultDabs().begin(), AdultDabs().end()) {
-  Apply(kMan, face.sex, &bodies_);
+      primitives_(AdultPrimitives().begin(), AdultPrimitives().end()),
+      bulges_(AdultBulges().begin(), AdultBulges().end()) {
+  Apply(kMan, face.sex, &primitives_);
   const float age = AgeShare(face);
-  Apply(kAge, age, &bodies_);
-  for (Dab dab : kAgeDabs) {
-    dab.height *= age;
-    if (age > 0.0f) dabs_.push_back(dab);
+  Apply(kAge, age, &primitives_);
+  for (Bulge bulge : kAgeBulges) {
+    bulge.height *= age;
+    if (age > 0.0f) bulges_.push_back(bulge);
   }
 }
 
@@ -109,7 +109,7 @@ float HeadShape::Distance(const glm::vec3& p) const {
   const vec3 w = Asymmetry(p);
   constexpr float kFold = 0.12f;  // |x|, rounded: no crease in the middle
   const vec3 q(std::sqrt(w.x * w.x + kFold * kFold) - kFold, w.y, w.z);
-  return BodiesDistance(bodies_, q) - DabsHeight(dabs_, q);
+  return PrimitivesDistance(primitives_, q) - BulgesHeight(bulges_, q);
 }
 
 glm::vec3 HeadShape::Normal(const glm::vec3& p) const {
@@ -141,4 +141,4 @@ const HeadShape& DefaultHead() {
   return head;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

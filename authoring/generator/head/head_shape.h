@@ -6,9 +6,9 @@
 #include <glm/vec3.hpp>
 
 #include "authoring/generator/head/face_parameters.h"
-#include "authoring/generator/head/head_bodies.h"
+#include "authoring/generator/head/head_primitives.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 // Head space: centimetres, origin between the eyes at half the head's height and half its depth, +Y
 // up, +Z out of the face, +X the subject's left. Model space is metres: (p + kHeadOrigin) / 100.
@@ -46,8 +46,8 @@ class HeadShape {
 
  private:
   FaceParameters face_;
-  std::vector<Body> bodies_;
-  std::vector<Dab> dabs_;
+  std::vector<HeadPrimitive> primitives_;
+  std::vector<Bulge> bulges_;
 };
 
 // The default character's.
@@ -59,4 +59,4 @@ class HeadShape {
   return DefaultHead().Cast(from, direction, length);
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

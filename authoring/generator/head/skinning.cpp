@@ -9,10 +9,12 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "authoring/generator/head/face_parts.h"
 #include "authoring/generator/head/head_shape.h"
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
@@ -28,7 +30,7 @@ class Weights {
   }
 
   // The four strongest, summing to 1.
-  void Store(Vertex* vertex) const {
+  void Store(character::Vertex* vertex) const {
     std::vector<int> order(by_joint_.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
     std::partial_sort(order.begin(), order.begin() + 4, order.end(), [&](int a, int b) {
@@ -81,17 +83,17 @@ float Field(const Muscle& muscle, const vec3& p, float side) {
 
 // Share of the neck (against the head), and of the chest below it.
 float NeckShare(const vec3& p) {
-  const float top = -4.0f - 7.5f * SmoothStep(-3.0f, 5.0f, p.z);
-  return SmoothStep(top, top - 6.0f, p.y);
+  const float top = -4.0f - 7.5f * Smoothstep(-3.0f, 5.0f, p.z);
+  return Smoothstep(top, top - 6.0f, p.y);
 }
 
 float JawShare(const HeadVertex& v) {
   const vec3& p = v.place;
   // The border runs from the corner of the mouth to the joint of the jaw.
   const float border = -3.6f - 3.35f * std::clamp((p.z - 0.6f) / 8.0f, 0.0f, 1.2f);
-  const float soft = SmoothStep(1.0f, -1.6f, p.y - border) * SmoothStep(-1.5f, 1.5f, p.z);
+  const float soft = Smoothstep(1.0f, -1.6f, p.y - border) * Smoothstep(-1.5f, 1.5f, p.z);
   const float hard = v.mouth_side < 0.0f ? 1.0f : (v.mouth_side > 0.0f ? 0.0f : 0.5f);
-  const float lips = SmoothStep(3.3f, 2.0f, std::abs(p.x)) * SmoothStep(1.0f, 3.0f, p.z);
+  const float lips = Smoothstep(3.3f, 2.0f, std::abs(p.x)) * Smoothstep(1.0f, 3.0f, p.z);
   return soft + (hard - soft) * lips;
 }
 
@@ -99,7 +101,7 @@ float UpperLid(const HeadVertex& v, float side) {
   const vec3 d = v.place - EyeCentre(side);
   if (v.eye_side <= 0.0f || d.z < -0.2f) return 0.0f;
   const float across = std::max(0.0f, 1.0f - d.x * d.x / (1.62f * 1.62f));
-  return SmoothStep(1.3f, 0.62f, d.y) * std::sqrt(across);
+  return Smoothstep(1.3f, 0.62f, d.y) * std::sqrt(across);
 }
 
 // How far a vertex belongs to the rims of the mouth, whose weights follow the lips' own curve.
@@ -107,8 +109,8 @@ float LipZone(const HeadVertex& v) {
   if (v.mouth_side == 0.0f && std::abs(v.place.x) < 0.9f * kMouthCornerX) return 0.0f;
   const float d = std::abs(v.place.y - kMouthY) / (v.mouth_side > 0.0f ? 1.15f : 1.25f);
   const float x = std::abs(v.place.x) / kMouthCornerX;
-  return SmoothStep(1.0f, 0.35f, d) * SmoothStep(1.35f, 1.0f, x) *
-         SmoothStep(4.0f, 6.0f, v.place.z);
+  return Smoothstep(1.0f, 0.35f, d) * Smoothstep(1.35f, 1.0f, x) *
+         Smoothstep(4.0f, 6.0f, v.place.z);
 }
 
 struct NamedField {
@@ -141,7 +143,7 @@ void WeighLips(const wrinkle::Skeleton& skeleton, const HeadVertex& v, float sha
                Weights* weights) {
   const float x = v.place.x / kMouthCornerX;
   const float corner = std::pow(std::min(std::abs(x), 1.0f), 2.6f);
-  const float left = SmoothStep(-0.35f, 0.35f, x);
+  const float left = Smoothstep(-0.35f, 0.35f, x);
   const std::string oris =
       v.mouth_side < 0.0f ? "orbicularis_oris_lower" : "orbicularis_oris_upper";
   weights->Add(skeleton, oris + "_l", share * (1.0f - corner) * left);
@@ -159,7 +161,7 @@ void WeighSkin(const wrinkle::Skeleton& skeleton, const HeadVertex& v, Weights* 
   const bool left = v.place.x >= 0.0f;
   take(left ? "orbicularis_oculi_upper_l" : "orbicularis_oculi_upper_r",
        UpperLid(v, left ? 1.0f : -1.0f));
-  const float hold = v.part == kMouthInside ? SmoothStep(5.5f, 8.5f, v.place.z) : 1.0f;
+  const float hold = v.part == kMouthInside ? Smoothstep(5.5f, 8.5f, v.place.z) : 1.0f;
   const float lips = hold * LipZone(v);
   WeighLips(skeleton, v, rest * lips, weights);
   rest *= 1.0f - lips;
@@ -169,13 +171,14 @@ void WeighSkin(const wrinkle::Skeleton& skeleton, const HeadVertex& v, Weights* 
   const float scale = rest * hold / std::max(sum, 1.0f);
   for (const NamedField& field : fields) weights->Add(skeleton, field.joint, field.weight * scale);
   rest *= std::max(0.0f, 1.0f - sum);
-  take("chest", SmoothStep(-15.5f, -20.0f, v.place.y));
+  take("chest", Smoothstep(-15.5f, -20.0f, v.place.y));
   take("neck", NeckShare(v.place));
   take("jaw", JawShare(v));
   weights->Add(skeleton, "head", rest);
 }
 
-void SkinHeadVertex(const wrinkle::Skeleton& skeleton, const HeadVertex& v, Vertex* vertex) {
+void SkinHeadVertex(const wrinkle::Skeleton& skeleton, const HeadVertex& v,
+                    character::Vertex* vertex) {
   Weights weights(skeleton);
   switch (v.part) {
     case kEyeball: weights.Add(skeleton, v.place.x >= 0.0f ? "eye_l" : "eye_r", 1.0f); break;
@@ -195,4 +198,4 @@ void SkinHead(const wrinkle::Skeleton& skeleton, HeadMesh* head) {
   }
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

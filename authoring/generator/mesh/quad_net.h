@@ -9,15 +9,10 @@
 #include <glm/vec3.hpp>
 
 #include "authoring/generator/mesh/solid.h"
+#include "authoring/skinning/influences.h"
 #include "character/character.h"
 
-namespace furrow::character::generator {
-
-// Four joints and their shares, as a Vertex has them.
-struct Influences {
-  std::uint16_t joints[4] = {0, 0, 0, 0};
-  float weights[4] = {1.0f, 0.0f, 0.0f, 0.0f};
-};
+namespace furrow::authoring {
 
 // A surface of quads under construction. Points are places on the surface, each once; panels, the
 // pieces of cloth that are unrolled one by one, meet at points and have corners of their own there.
@@ -70,9 +65,9 @@ void SmoothInfluences(int rounds, QuadNet* net);
 void Join(const QuadNet& from, QuadNet* to);
 
 // Appends the net to a mesh, a vertex for each corner; normals and tangents are not made.
-void AppendNet(const QuadNet& net, Mesh* mesh);
+void AppendNet(const QuadNet& net, character::Mesh* mesh);
 
 // The neighbours of every point along the edges of quads, each once, ascending.
 [[nodiscard]] std::vector<std::vector<int>> Neighbours(const QuadNet& net);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
@@ -105,4 +105,4 @@ vec3 CastOut(const Solid& solid, const vec3& from, const vec3& direction, float 
   return from + direction * outside;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

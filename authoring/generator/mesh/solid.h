@@ -8,7 +8,7 @@
 
 // Implicit solids: functions of a point that are negative inside, positive outside, and change by
 // about 1 a metre near their surface. Metres throughout.
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 using Solid = std::function<float(const glm::vec3&)>;
 
@@ -48,4 +48,4 @@ struct Section {
 [[nodiscard]] glm::vec3 CastOut(const Solid& solid, const glm::vec3& from,
                                 const glm::vec3& direction, float reach);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -11,7 +11,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
@@ -201,4 +201,4 @@ std::vector<PanelPlace> PackPanels(float margin, QuadNet* net) {
   return panels;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -7,7 +7,7 @@
 
 #include "authoring/generator/mesh/quad_net.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 // Lays every panel flat with as little stretch and shear as it allows, in metres, starting from the
 // uv that the corners have: as rigid as possible, by turns a rotation for each triangle and a
@@ -25,4 +25,4 @@ struct PanelPlace {
 // boxes allow, `margin` apart and from the edges (fractions of the square). Sets the corners' uv.
 [[nodiscard]] std::vector<PanelPlace> PackPanels(float margin, QuadNet* net);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

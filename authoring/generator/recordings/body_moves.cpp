@@ -3,20 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include <glm/common.hpp>
 
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
-
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kDegrees = kPi / 180.0f;
 
 // From the ankle to the ball and to the heel of a foot that stands, metres.
 constexpr vec3 kBall{0.0f, -0.063f, 0.135f};
@@ -53,18 +50,18 @@ FootPlace WalkingFoot(float cycle, float offset) {
   const float planted = kStride * (step + kUnder - offset);
   constexpr float kStrike = -17.0f, kOff = 48.0f;
   const auto standing = [&](float at) {
-    const float strike = kStrike * SmoothStep(0.09f, 0.0f, at);
-    return strike + kOff * std::pow(SmoothStep(0.36f, kStance + 0.09f, at), 1.2f);
+    const float strike = kStrike * Smoothstep(0.09f, 0.0f, at);
+    return strike + kOff * std::pow(Smoothstep(0.36f, kStance + 0.09f, at), 1.2f);
   };
   if (f < kStance) return Pivoted(planted, standing(f));
   const float t = (f - kStance) / (1.0f - kStance);
   const FootPlace from = Pivoted(planted, standing(kStance));
   const FootPlace to = Pivoted(planted + kStride, kStrike);
   // Leaves the floor with its own speed and arrives with little.
-  const float ease = SmoothStep(0.0f, 1.0f, std::pow(t, 0.9f));
+  const float ease = Smoothstep(0.0f, 1.0f, std::pow(t, 0.9f));
   const float lift = 0.055f * std::sin(kPi * t) * (1.0f - 0.5f * t);
-  return {glm::mix(from.z, to.z, ease), glm::mix(from.y, to.y, SmoothStep(0.0f, 0.8f, t)) + lift,
-          glm::mix(from.heel_up, to.heel_up, SmoothStep(0.0f, 0.85f, t))};
+  return {glm::mix(from.z, to.z, ease), glm::mix(from.y, to.y, Smoothstep(0.0f, 0.8f, t)) + lift,
+          glm::mix(from.heel_up, to.heel_up, Smoothstep(0.0f, 0.85f, t))};
 }
 
 // A value over time: eased between its keys, constant beyond them.
@@ -77,7 +74,7 @@ float Eased(std::span<const Key> keys, float t) {
   if (t <= keys.front().time) return keys.front().value;
   for (std::size_t i = 1; i < keys.size(); ++i) {
     if (t > keys[i].time) continue;
-    const float ease = SmoothStep(keys[i - 1].time, keys[i].time, t);
+    const float ease = Smoothstep(keys[i - 1].time, keys[i].time, t);
     return glm::mix(keys[i - 1].value, keys[i].value, ease);
   }
   return keys.back().value;
@@ -148,4 +145,4 @@ void SquatAndReach(float t, FramePose* pose) {
   }
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

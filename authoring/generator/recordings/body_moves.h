@@ -4,7 +4,7 @@
 #include "authoring/generator/recordings/frame_pose.h"
 
 // What the body does in recordings, by the time in seconds.
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 // Arms hang, fingers are relaxed; the chest breathes; the head drifts by a few degrees.
 void Stand(float t, FramePose* pose);
@@ -17,4 +17,4 @@ void Walk(float t, FramePose* pose);
 // round it, up again and overhead with it; then the trunk leans and turns to either side.
 void SquatAndReach(float t, FramePose* pose);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -3,20 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <glm/gtx/quaternion.hpp>
 
+#include "base/scalar.h"
 #include "base/status.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::quat;
 using glm::vec3;
-
-constexpr float kDegrees = std::numbers::pi_v<float> / 180.0f;
 
 quat About(float degrees, const vec3& axis) { return glm::angleAxis(degrees * kDegrees, axis); }
 
@@ -137,4 +135,4 @@ void FramePose::CloseHand(float side, float fist) {
   Turn(Sided("thumb_distal", side), 0, side * (10.0f + 45.0f * fist), 0);
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -11,7 +11,7 @@
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 // The pose of one frame of a recording under way, from rest.
 class FramePose {
@@ -50,4 +50,4 @@ class FramePose {
   std::vector<wrinkle::Transform> frame_;
 };
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -9,7 +9,7 @@
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 // Frames of a performance on one skeleton, 30 a second.
 struct Recording {
@@ -28,9 +28,4 @@ inline constexpr int kFramesPerSecond = 30;
 [[nodiscard]] Result<Recording> MakeRecording(std::string_view name, const wrinkle::Rig& rig,
                                               const wrinkle::Skeleton& skeleton);
 
-// As BVH text, metres: six channels on the root and on joints that translate, three on the others;
-// rotations Z Y X. The skeleton's rest rotations must be the identity.
-[[nodiscard]] std::string RecordingToBvh(const Recording& recording,
-                                         const wrinkle::Skeleton& skeleton);
-
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

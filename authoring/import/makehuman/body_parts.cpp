@@ -12,7 +12,7 @@
 #include "authoring/paint/teeth.h"
 #include "character/tangents.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 // Where the islands go: the face's left, all others in a strip on the right. The gap between keeps
@@ -126,8 +126,8 @@ std::vector<std::uint32_t> FacesOf(const ObjMesh& obj, std::string_view group) {
   return faces;
 }
 
-Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
-               const std::vector<bool>& deleted, int material, int* hidden_faces) {
+character::Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
+                          const std::vector<bool>& deleted, int material, int* hidden_faces) {
   const std::vector<std::uint32_t> faces = FacesOf(base.obj, "body");
   const std::vector<glm::vec3> normals = SmoothNormals(base.obj, base.positions, faces);
   MeshSource source;
@@ -144,7 +144,7 @@ Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
   return BuildMesh("skin", material, source);
 }
 
-Mesh BuildHelper(const BaseMesh& base, std::string_view group, int material) {
+character::Mesh BuildHelper(const BaseMesh& base, std::string_view group, int material) {
   MeshSource source;
   source.faces = FacesOf(base.obj, group);
   const std::vector<glm::vec3> normals = SmoothNormals(base.obj, base.positions, source.faces);
@@ -155,8 +155,8 @@ Mesh BuildHelper(const BaseMesh& base, std::string_view group, int material) {
   return BuildMesh(std::string(group), material, source);
 }
 
-Mesh BuildTeeth(const BaseMesh& base, std::string_view group, bool upper, int material) {
-  Mesh mesh;
+character::Mesh BuildTeeth(const BaseMesh& base, std::string_view group, bool upper, int material) {
+  character::Mesh mesh;
   mesh.name = std::string(group);
   mesh.material = material;
   const Bounds box = BoundsOf(base, group);
@@ -167,36 +167,33 @@ Mesh BuildTeeth(const BaseMesh& base, std::string_view group, bool upper, int ma
   const glm::vec3 front(0.5f * (box.low.x + box.high.x), upper ? incisors.low.y : incisors.high.y,
                         box.high.z);
   const glm::vec3 size = kCentimetres * (box.high - box.low);
-  const paint::ToothArch arch{upper, kCentimetres * front, 0.5f * size.x, size.z, 0.2f * size.z};
-  const paint::ToothRow row = paint::MakeToothRow(arch);
+  const ToothArch arch{upper, kCentimetres * front, 0.5f * size.x, size.z, 0.2f * size.z};
+  const ToothRow row = MakeToothRow(arch);
   const Influences& held = base.skin.vertices[box.vertex];
   for (std::size_t i = 0; i < row.positions.size(); ++i) {
-    Vertex vertex;
+    character::Vertex vertex;
     vertex.position = row.positions[i] / kCentimetres;
     vertex.uv = row.uvs[i];
-    for (int k = 0; k < 4; ++k) {
-      vertex.joints[k] = held.joints[k];
-      vertex.skin_weights[k] = held.weights[k];
-    }
+    held.CopyTo(&vertex);
     mesh.vertices.push_back(vertex);
   }
   for (std::size_t i = 0; i < row.quads.size(); i += 4) {
     const std::uint32_t* quad = &row.quads[i];
     mesh.indices.insert(mesh.indices.end(), {quad[0], quad[1], quad[2], quad[0], quad[2], quad[3]});
   }
-  paint::ComputeNormals(mesh.vertices, mesh.indices);
-  paint::ComputeTangents(mesh.vertices, mesh.indices);
+  character::paint::ComputeNormals(mesh.vertices, mesh.indices);
+  character::paint::ComputeTangents(mesh.vertices, mesh.indices);
   return mesh;
 }
 
-Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint, const glm::vec3& forward,
-              int material) {
+character::Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint,
+                         const glm::vec3& forward, int material) {
   constexpr int kRings = 24;
   constexpr int kSegments = 36;
   constexpr float kCorneaAngle = 0.6f;   // radians from the axis
   constexpr float kCorneaBulge = 0.06f;  // of the radius
   const Bounds box = BoundsOf(base, group);
-  Mesh mesh;
+  character::Mesh mesh;
   mesh.name = std::string(group);
   mesh.material = material;
   if (box.low.x > box.high.x) return mesh;
@@ -211,7 +208,7 @@ Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint, const glm
     for (int segment = 0; segment <= kSegments; ++segment) {
       const float turn = 2.0f * std::numbers::pi_v<float> * static_cast<float>(segment) / kSegments;
       const glm::vec2 spoke(std::cos(turn), std::sin(turn));
-      Vertex vertex;
+      character::Vertex vertex;
       vertex.normal =
           forward * std::cos(angle) + (right * spoke.x + up * spoke.y) * std::sin(angle);
       vertex.position = centre + vertex.normal * reach;
@@ -229,8 +226,8 @@ Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint, const glm
       if (ring > 0) mesh.indices.insert(mesh.indices.end(), {a, below + 1, a + 1});
     }
   }
-  paint::ComputeTangents(mesh.vertices, mesh.indices);
+  character::paint::ComputeTangents(mesh.vertices, mesh.indices);
   return mesh;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

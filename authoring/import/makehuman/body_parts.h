@@ -15,7 +15,7 @@
 #include "character/character.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // MakeHuman's base mesh, ready to be cut into what is drawn.
 struct BaseMesh {
@@ -30,19 +30,21 @@ struct BaseMesh {
 // The skin: the group "body" without the faces all of whose vertices `deleted` (by base vertex; may
 // be empty) names. UV islands move so that the face's fills three quarters of the picture and the
 // others share the rest: it is where the detail is needed.
-[[nodiscard]] Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
-                             const std::vector<bool>& deleted, int material, int* hidden_faces);
+[[nodiscard]] character::Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
+                                        const std::vector<bool>& deleted, int material,
+                                        int* hidden_faces);
 
 // One group of helpers as it stands (the tongue).
-[[nodiscard]] Mesh BuildHelper(const BaseMesh& base, std::string_view group, int material);
+[[nodiscard]] character::Mesh BuildHelper(const BaseMesh& base, std::string_view group,
+                                          int material);
 
 // A row of teeth (authoring/paint/teeth.h) where the group's coarse box stands, held as that is.
-[[nodiscard]] Mesh BuildTeeth(const BaseMesh& base, std::string_view group, bool upper,
-                              int material);
+[[nodiscard]] character::Mesh BuildTeeth(const BaseMesh& base, std::string_view group, bool upper,
+                                         int material);
 
 // A smooth ball with a slight cornea in place of the group's coarse one; it follows `joint` and
 // looks along `forward` (unit). UVs as PaintEye() has them.
-[[nodiscard]] Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint,
-                            const glm::vec3& forward, int material);
+[[nodiscard]] character::Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint,
+                                       const glm::vec3& forward, int material);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -13,11 +13,8 @@
 
 #include "authoring/paint/noise.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
-
-using bake::BakeStroke;
-using paint::Texel;
 
 // Sizes in millimetres of a face of usual size.
 struct FoldSize {
@@ -254,10 +251,10 @@ void Cheeks(const FaceLandmarks& face, FoldDrawing* drawing) {
 }
 
 // Along the normal of the nearest texel onto its plane: snapping to texels would make lines jagged.
-glm::vec3 OntoSurface(const std::vector<const Texel*>& surface, const glm::vec3& p) {
+glm::vec3 OntoSurface(const std::vector<const SurfaceTexel*>& surface, const glm::vec3& p) {
   float nearest = std::numeric_limits<float>::max();
-  const Texel* found = nullptr;
-  for (const Texel* texel : surface) {
+  const SurfaceTexel* found = nullptr;
+  for (const SurfaceTexel* texel : surface) {
     const glm::vec3 away = texel->position - p;
     const float distance = glm::dot(away, away);
     if (distance >= nearest) continue;
@@ -270,7 +267,8 @@ glm::vec3 OntoSurface(const std::vector<const Texel*>& surface, const glm::vec3&
 
 }  // namespace
 
-std::vector<BakeStroke> FaceStrokes(const FaceLandmarks& face, const std::vector<Texel>& texels) {
+std::vector<BakeStroke> FaceStrokes(const FaceLandmarks& face,
+                                    const std::vector<SurfaceTexel>& texels) {
   FoldDrawing stretch(face, "stretch");
   Forehead(face, &stretch);
   Marionette(face, &stretch);
@@ -287,7 +285,7 @@ std::vector<BakeStroke> FaceStrokes(const FaceLandmarks& face, const std::vector
 
   // A texel in three is fine enough to stand for the surface, which must face forward: the inside
   // of the mouth is nearer to some landmarks than the cheek is.
-  std::vector<const Texel*> surface;
+  std::vector<const SurfaceTexel*> surface;
   for (std::size_t i = 0; i < texels.size(); i += 3) {
     if (texels[i].normal.z > -0.2f) surface.push_back(&texels[i]);
   }
@@ -297,4 +295,4 @@ std::vector<BakeStroke> FaceStrokes(const FaceLandmarks& face, const std::vector
   return strokes;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

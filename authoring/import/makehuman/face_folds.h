@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "authoring/bake/bake.h"
+#include "authoring/bake/request/bake_request.h"
 #include "authoring/import/makehuman/face_landmarks.h"
-#include "authoring/paint/uv_raster.h"
+#include "authoring/paint/surface_texels.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // The folds of a face, placed by its landmarks: they run across the pull of the muscle that makes
 // them (FACS' action units), and a bake lets them win over strain. Points lie on the surface that
@@ -18,7 +18,7 @@ namespace furrow::character {
 // - Map "squash", what frowns, sneers, smiles and screwed-up eyes make: verticals of the glabella,
 //   the line across the nasal root, bunny lines, crow's feet, lines under the eye, nasolabial
 //   folds, dimples.
-[[nodiscard]] std::vector<bake::BakeStroke> FaceStrokes(const FaceLandmarks& face,
-                                                        const std::vector<paint::Texel>& texels);
+[[nodiscard]] std::vector<BakeStroke> FaceStrokes(const FaceLandmarks& face,
+                                                  const std::vector<SurfaceTexel>& texels);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

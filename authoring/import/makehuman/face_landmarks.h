@@ -6,7 +6,7 @@
 #include "base/status.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // Where a face's features are, read off MakeHuman's virtual-muscle joints (model space, metres,
 // rest pose): what the painters place colours, masks and folds by, so that they fit any shape of
@@ -45,4 +45,4 @@ struct FaceLandmarks {
 // in one place.
 [[nodiscard]] Result<FaceLandmarks> FindFaceLandmarks(const wrinkle::Skeleton& skeleton);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

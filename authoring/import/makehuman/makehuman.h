@@ -10,7 +10,7 @@
 #include "character/character.h"
 #include "wrinkle/skeleton/pose_frame.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 struct ImportOptions {
   // The garment: a folder of <folder>/clothes. Empty: the first by name, or none if there is none.
@@ -20,7 +20,7 @@ struct ImportOptions {
   // Reads the frames of <folder>/poseunits that the rig names (motion::CachedPoseSource).
   wrinkle::PoseSource poses;
   int texture_size = 1024;  // texels, square; [64, 4096]; wrinkle maps: the power of two below
-  std::function<bool(float)> progress;  // of the bake, as bake::Bake() takes it; may be empty
+  std::function<bool(float)> progress;  // of the bake, as Bake() takes it; may be empty
 };
 
 // What came in, for people: printed by `furrow character import`.
@@ -47,12 +47,8 @@ struct ImportReport {
 //
 // Errors name the file and line or field: kNotFound (a file, a joint), kParse, kSchema, kNonFinite,
 // kInvalidArgument (an index out of range, an option), kLimit, kIo.
-[[nodiscard]] Result<Character> ImportMakeHuman(const std::filesystem::path& folder,
-                                                const ImportOptions& options = {},
-                                                ImportReport* report = nullptr);
+[[nodiscard]] Result<character::Character> ImportMakeHuman(const std::filesystem::path& folder,
+                                                           const ImportOptions& options = {},
+                                                           ImportReport* report = nullptr);
 
-// Writes the character as `glb` and its rig as "<stem>.rig.json" beside it, reference poses inline
-// and pictures embedded: the two files are the whole package. An error leaves neither.
-[[nodiscard]] Status WritePackage(const Character& character, const std::filesystem::path& glb);
-
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -13,7 +13,7 @@
 #include "authoring/import/makehuman/skin_weights.h"
 #include "character/character.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // A rectangle of UV space (v up, as in .obj) and where it goes; a whole UV island moves at once.
 struct UvMove {
@@ -45,10 +45,11 @@ struct MeshSource {
 
 // Triangles with one vertex for each (position, UV) in use, tangents from the UVs (glTF's
 // convention: the bitangent points up the picture), v turned down.
-[[nodiscard]] Mesh BuildMesh(const std::string& name, int material, const MeshSource& source);
+[[nodiscard]] character::Mesh BuildMesh(const std::string& name, int material,
+                                        const MeshSource& source);
 
 // Connected pieces of UV space among `faces`: by obj uv, the index of its island; -1 where unused.
 [[nodiscard]] std::vector<int> UvIslands(const ObjMesh& obj, std::span<const std::uint32_t> faces,
                                          int* num_islands);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

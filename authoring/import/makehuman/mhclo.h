@@ -13,13 +13,13 @@
 
 #include "base/status.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // MakeHuman's .mhclo: how a garment hangs on the base mesh.
 struct Mhclo {
   // A garment vertex: `weights` over three base-mesh vertices, plus an offset along the model's
   // axes in units of the scales below.
-  struct Vertex {
+  struct GarmentVertex {
     std::array<std::uint32_t, 3> base{};
     std::array<float, 3> weights{};
     glm::vec3 offset{0.0f};
@@ -35,7 +35,7 @@ struct Mhclo {
   std::string name;
   std::string obj_file;                        // beside the .mhclo; no folders in it
   std::array<std::optional<Scale>, 3> scales;  // x, y, z; none: 1
-  std::vector<Vertex> vertices;                // as many as the .obj has, in its order
+  std::vector<GarmentVertex> vertices;         // as many as the .obj has, in its order
   std::vector<bool> deleted;                   // by base vertex: hidden under this garment
 };
 
@@ -51,4 +51,4 @@ struct Mhclo {
 [[nodiscard]] std::vector<glm::vec3> FitGarment(const Mhclo& garment,
                                                 std::span<const glm::vec3> base);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

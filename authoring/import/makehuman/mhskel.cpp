@@ -10,7 +10,7 @@
 #include "base/status.h"
 #include "base/text.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 using Json = nlohmann::json;
@@ -196,4 +196,4 @@ Result<wrinkle::Skeleton> BuildSkeleton(const MhSkeleton& skeleton,
   return built;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -12,7 +12,7 @@
 #include "base/status.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // MakeHuman's .mhskel: joints whose heads and tails are means of base-mesh vertices, so that the
 // skeleton fits whatever shape the mesh has.
@@ -52,4 +52,4 @@ struct MhWeights {
                                                       std::span<const glm::vec3> positions,
                                                       std::string_view source);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

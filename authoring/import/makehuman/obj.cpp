@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "base/text_cursor.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 constexpr std::size_t kMaxElements = 4'000'000;
@@ -165,4 +165,4 @@ Result<ObjMesh> ParseObj(std::string_view text, std::string_view source) {
   return ObjParser(text, source).Run();
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -11,7 +11,7 @@
 
 #include "base/status.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // A Wavefront .obj, as far as MakeHuman writes it: v, vt, f and g (or o). Units as in the file.
 struct ObjMesh {
@@ -42,4 +42,4 @@ struct ObjMesh {
 // latest, as the format says.
 [[nodiscard]] Result<ObjMesh> ParseObj(std::string_view text, std::string_view source);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // Distance of `p` from a line through two or more points.
 [[nodiscard]] inline float DistanceToLine(const glm::vec3& p,
@@ -29,4 +29,4 @@ namespace furrow::character {
   return x * x * (3.0f - 2.0f * x);
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

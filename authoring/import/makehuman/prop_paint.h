@@ -3,20 +3,22 @@
 
 #include <vector>
 
-#include "authoring/paint/uv_raster.h"
+#include "authoring/paint/surface_texels.h"
 #include "character/character.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // An eyeball seen from the front, 8-bit sRGB: the picture's centre is the pupil, and distance from
 // it is the angle from the axis of sight, half the picture's width being kEyePictureAngle.
 inline constexpr float kEyePictureAngle = 1.75f;  // radians
-[[nodiscard]] Picture PaintEye(int size);
+[[nodiscard]] character::Picture PaintEye(int size);
 
 // 8-bit sRGB cloth: trousers below `waist` (model space, metres), a shirt above, a subtle weave.
-[[nodiscard]] Picture PaintCloth(const std::vector<paint::Texel>& texels, float waist, int size);
+[[nodiscard]] character::Picture PaintCloth(const std::vector<SurfaceTexel>& texels, float waist,
+                                            int size);
 
 // Tangent-space normal map of the weave, 8 bits, green up.
-[[nodiscard]] Picture PaintWeaveNormals(const std::vector<paint::Texel>& texels, int size);
+[[nodiscard]] character::Picture PaintWeaveNormals(const std::vector<SurfaceTexel>& texels,
+                                                   int size);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -13,12 +13,8 @@
 #include "authoring/paint/canvas.h"
 #include "authoring/paint/noise.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
-
-using paint::Texel;
-
-constexpr int kDilation = 16;
 
 // sRGB in [0, 1]. What the eye reads as living skin is the difference between the regions.
 constexpr glm::vec3 kSkin{0.80f, 0.615f, 0.52f};
@@ -32,7 +28,7 @@ constexpr glm::vec3 kStubble{0.17f, 0.12f, 0.095f};
 
 // How much of the face's front a point belongs to: keeps features off the inside of the mouth,
 // whose surface lies close behind the lips.
-float Front(const Texel& texel) { return glm::smoothstep(-0.1f, 0.35f, texel.normal.z); }
+float Front(const SurfaceTexel& texel) { return glm::smoothstep(-0.1f, 0.35f, texel.normal.z); }
 
 float Redness(const glm::vec3& p, const FaceLandmarks& face) {
   float red = 0.4f * FadeOut(glm::distance(p, face.nose_tip), 0.0f, face.Millimetres(22.0f));
@@ -139,7 +135,7 @@ float LidShade(const glm::vec3& p, const FaceLandmarks& face) {
   return shade;
 }
 
-glm::vec3 SkinColour(const Texel& texel, const FaceLandmarks& face) {
+glm::vec3 SkinColour(const SurfaceTexel& texel, const FaceLandmarks& face) {
   const glm::vec3& p = texel.position;
   const float blotches = ValueNoise(p / face.Millimetres(11.0f)) - 0.5f;
   const float speckle = ValueNoise(p / face.Millimetres(1.7f)) - 0.5f;
@@ -206,18 +202,18 @@ float ScalpAmount(const glm::vec3& p, const FaceLandmarks& face) {
   return ScalpOf(p, face) * off_ear;
 }
 
-Picture PaintSkinColour(const std::vector<Texel>& texels, const FaceLandmarks& face, int size) {
-  Picture picture = paint::BlankPicture("skin_colour", size, size, 3);
-  for (const Texel& texel : texels) {
-    const glm::vec3 colour = SkinColour(texel, face);
-    std::uint8_t* out = paint::TexelAt(&picture, texel.x, texel.y);
-    for (int c = 0; c < 3; ++c) out[c] = paint::ToByte(colour[c]);
+character::Picture PaintMakeHumanSkin(const std::vector<SurfaceTexel>& texels,
+                                      const FaceLandmarks& face, int size) {
+  character::Picture picture = BlankPicture("skin_colour", size, size, 3);
+  for (const SurfaceTexel& texel : texels) {
+    SetTexel(&picture, texel.x, texel.y, glm::vec4(SkinColour(texel, face), 1.0f));
   }
-  paint::Dilate(&picture, texels, kDilation);
+  Dilate(&picture, texels, kSeamTexels);
   return picture;
 }
 
-Picture PaintSkinNormals(const std::vector<Texel>& texels, const FaceLandmarks& face, int size) {
+character::Picture PaintMakeHumanSkinNormals(const std::vector<SurfaceTexel>& texels,
+                                             const FaceLandmarks& face, int size) {
   const auto height = [&face](const glm::vec3& p) {
     // Ridges of |noise| read as the net of fine furrows between pores.
     const float net = std::abs(ValueNoise(p / face.Millimetres(1.6f)) - 0.5f);
@@ -225,43 +221,43 @@ Picture PaintSkinNormals(const std::vector<Texel>& texels, const FaceLandmarks& 
     return face.Millimetres(0.16f) * net + face.Millimetres(0.05f) * pores;
   };
   const float step = face.Millimetres(0.25f);
-  Picture picture = paint::BlankPicture("skin_normal", size, size, 3);
+  character::Picture picture = BlankPicture("skin_normal", size, size, 3);
   for (std::size_t i = 0; i < picture.pixels.size(); ++i)
     picture.pixels[i] = i % 3 == 2 ? 255 : 128;
-  for (const Texel& texel : texels) {
+  for (const SurfaceTexel& texel : texels) {
     const auto slope = [&](const glm::vec3& along) {
       return (height(texel.position + along * step) - height(texel.position - along * step)) /
              (2.0f * step);
     };
     const glm::vec3 n =
         glm::normalize(glm::vec3(-slope(texel.tangent), -slope(texel.bitangent), 1.0f));
-    std::uint8_t* out = paint::TexelAt(&picture, texel.x, texel.y);
-    for (int c = 0; c < 3; ++c) out[c] = paint::ToByte(n[c] * 0.5f + 0.5f);
+    SetTexel(&picture, texel.x, texel.y, glm::vec4(n * 0.5f + 0.5f, 1.0f));
   }
-  paint::Dilate(&picture, texels, kDilation);
+  Dilate(&picture, texels, kSeamTexels);
   return picture;
 }
 
-FaceMasks PaintFaceMasks(const std::vector<Texel>& texels, const FaceLandmarks& face, int size) {
-  FaceMasks masks{paint::BlankPicture("face_masks_a", size, size, 4),
-                  paint::BlankPicture("face_masks_b", size, size, 4)};
-  for (const Texel& texel : texels) {
+FaceMasks PaintFaceMasks(const std::vector<SurfaceTexel>& texels, const FaceLandmarks& face,
+                         int size) {
+  FaceMasks masks{BlankPicture("face_masks_a", size, size, 4),
+                  BlankPicture("face_masks_b", size, size, 4)};
+  for (const SurfaceTexel& texel : texels) {
     std::array<float, 8> field = RegionFields(texel.position, face);
     float sum = 0.0f;
     for (const float value : field) sum += value;
     // Temples face sideways and still wrinkle; what faces backwards does not.
     const float forward = glm::smoothstep(-0.5f, -0.1f, texel.normal.z);
     const float scale = forward / std::max(sum, 1.0f);
-    std::uint8_t* first = paint::TexelAt(&masks.first, texel.x, texel.y);
-    std::uint8_t* second = paint::TexelAt(&masks.second, texel.x, texel.y);
+    std::uint8_t* first = TexelAt(&masks.first, texel.x, texel.y);
+    std::uint8_t* second = TexelAt(&masks.second, texel.x, texel.y);
     for (std::size_t c = 0; c < 4; ++c) {
-      first[c] = paint::ToByte(field[c] * scale);
-      second[c] = paint::ToByte(field[4 + c] * scale);
+      first[c] = ToByte(field[c] * scale);
+      second[c] = ToByte(field[4 + c] * scale);
     }
   }
-  paint::Dilate(&masks.first, texels, kDilation);
-  paint::Dilate(&masks.second, texels, kDilation);
+  Dilate(&masks.first, texels, kSeamTexels);
+  Dilate(&masks.second, texels, kSeamTexels);
   return masks;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

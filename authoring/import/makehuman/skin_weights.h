@@ -7,16 +7,11 @@
 
 #include "authoring/import/makehuman/mhclo.h"
 #include "authoring/import/makehuman/mhskel.h"
+#include "authoring/skinning/influences.h"
 #include "base/status.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character {
-
-// The joints that move one vertex: at most four, the strongest first, weights summing to 1.
-struct Influences {
-  std::uint16_t joints[4] = {0, 0, 0, 0};
-  float weights[4] = {1.0f, 0.0f, 0.0f, 0.0f};
-};
+namespace furrow::authoring {
 
 struct SkinWeights {
   std::vector<Influences> vertices;
@@ -36,4 +31,4 @@ struct SkinWeights {
 // by (negative ones, from outside the triangle, count as 0).
 [[nodiscard]] SkinWeights BindGarment(const Mhclo& garment, const SkinWeights& base);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

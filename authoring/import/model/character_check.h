@@ -9,7 +9,7 @@
 #include "authoring/import/model/joint_finder.h"
 #include "character/character.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 enum class Severity {
   kError,    // wrinkles cannot be baked or drawn
@@ -49,17 +49,13 @@ struct CharacterReport {
 //             picture-missing, units, up-axis, joint-names, no-roles, rig, rig-picture
 //   notes     uv-outside, weights-truncated, tangents-missing, blend-shapes, roles-missing,
 //             no-face-joints, no-rig
-[[nodiscard]] CharacterReport CheckCharacter(const Character& character, const SourceNotes& notes,
-                                             const SkeletonMaps& maps, bool rig_given);
-
-// For a terminal.
-[[nodiscard]] std::string ToText(const CharacterReport& report);
-// One JSON object; the fields are those above.
-[[nodiscard]] std::string ToJson(const CharacterReport& report);
+[[nodiscard]] CharacterReport CheckCharacter(const character::Character& character,
+                                             const character::SourceNotes& notes,
+                                             const character::SkeletonMaps& maps, bool rig_given);
 
 // Triangles without area: two corners in one place, or all on a line.
-[[nodiscard]] std::size_t CountDegenerateTriangles(const Mesh& mesh);
+[[nodiscard]] std::size_t CountDegenerateTriangles(const character::Mesh& mesh);
 // Takes them out; how many there were. A mesh may be left without triangles.
-std::size_t DropDegenerateTriangles(Mesh* mesh);
+std::size_t DropDegenerateTriangles(character::Mesh* mesh);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

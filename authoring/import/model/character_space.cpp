@@ -15,13 +15,13 @@
 
 #include "base/status.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 using wrinkle::JointRole;
 using wrinkle::kNoJoint;
 
-glm::vec3 At(const wrinkle::Skeleton& skeleton, int joint) {
+glm::vec3 RestPlace(const wrinkle::Skeleton& skeleton, int joint) {
   return glm::vec3(skeleton.rest_model()[static_cast<std::size_t>(joint)][3]);
 }
 
@@ -32,7 +32,7 @@ glm::vec3 Across(const wrinkle::Skeleton& skeleton, const FoundJoints& joints) {
                                JointRole::kLeftShoulder, JointRole::kLeftEye}) {
     const int l = joints.First(left);
     const int r = joints.First(wrinkle::MirrorOf(left));
-    if (l != kNoJoint && r != kNoJoint) sum += At(skeleton, l) - At(skeleton, r);
+    if (l != kNoJoint && r != kNoJoint) sum += RestPlace(skeleton, l) - RestPlace(skeleton, r);
   }
   return sum;
 }
@@ -48,7 +48,8 @@ glm::vec3 Up(const wrinkle::Skeleton& skeleton, const FoundJoints& joints) {
     if (lowest == kNoJoint) lowest = joint;
     highest = joint;
   }
-  return lowest == highest ? glm::vec3(0.0f) : At(skeleton, highest) - At(skeleton, lowest);
+  return lowest == highest ? glm::vec3(0.0f)
+                           : RestPlace(skeleton, highest) - RestPlace(skeleton, lowest);
 }
 
 int LargestComponent(const glm::vec3& v, int except) {
@@ -75,7 +76,7 @@ float UsualScale(float height, bool is_body) {
 }
 
 // Where a vertex stands in the rest pose, as a matrix on its position.
-glm::mat4 RestMatrix(const Vertex& vertex, std::span<const glm::mat4> skin_matrices) {
+glm::mat4 RestMatrix(const character::Vertex& vertex, std::span<const glm::mat4> skin_matrices) {
   glm::mat4 blend(0.0f);
   for (int i = 0; i < 4; ++i) {
     if (vertex.skin_weights[i] > 0.0f) {
@@ -85,7 +86,7 @@ glm::mat4 RestMatrix(const Vertex& vertex, std::span<const glm::mat4> skin_matri
   return blend;
 }
 
-std::vector<glm::mat4> RestSkinMatrices(const Character& character) {
+std::vector<glm::mat4> RestSkinMatrices(const character::Character& character) {
   std::vector<glm::mat4> matrices;
   for (std::size_t j = 0; j < character.inverse_bind_matrices.size(); ++j) {
     matrices.push_back(character.skeleton.rest_model()[j] * character.inverse_bind_matrices[j]);
@@ -98,7 +99,7 @@ glm::vec3 UnitOr(const glm::vec3& v, const glm::vec3& otherwise) {
   return length > 1e-12f ? v / length : otherwise;
 }
 
-void MoveVertex(const glm::mat4& m, const glm::mat3& normals, Vertex* vertex) {
+void MoveVertex(const glm::mat4& m, const glm::mat3& normals, character::Vertex* vertex) {
   vertex->position = glm::vec3(m * glm::vec4(vertex->position, 1.0f));
   vertex->normal = UnitOr(normals * vertex->normal, vertex->normal);
   const glm::vec3 tangent(vertex->tangent);
@@ -124,7 +125,7 @@ Result<wrinkle::Skeleton> Rebuild(const wrinkle::Skeleton& from, const glm::mat3
     } else {
       const glm::quat above =
           rotation * from.rest_model_rotations()[static_cast<std::size_t>(parent)];
-      joint.rest.translation = glm::inverse(above) * (position - moved(At(from, parent)));
+      joint.rest.translation = glm::inverse(above) * (position - moved(RestPlace(from, parent)));
     }
     const glm::vec3 tail = glm::vec3(model * glm::vec4(from.tails()[j], 1.0f));
     joint.tail = glm::inverse(axes) * (moved(tail) - position);
@@ -141,7 +142,7 @@ bool IsNearIdentity(const glm::mat4& m) {
   return true;
 }
 
-Status ReplaceSkeleton(const glm::mat3& turn, float scale, Character* character) {
+Status ReplaceSkeleton(const glm::mat3& turn, float scale, character::Character* character) {
   Result<wrinkle::Skeleton> skeleton = Rebuild(character->skeleton, turn, scale);
   FURROW_RETURN_IF_ERROR(skeleton);
   character->skeleton = std::move(*skeleton);
@@ -154,7 +155,8 @@ Status ReplaceSkeleton(const glm::mat3& turn, float scale, Character* character)
 
 }  // namespace
 
-CharacterSpace FindCharacterSpace(const Character& character, const FoundJoints& joints) {
+CharacterSpace FindCharacterSpace(const character::Character& character,
+                                  const FoundJoints& joints) {
   CharacterSpace space;
   space.is_body = joints.First(JointRole::kLeftUpperLeg) != kNoJoint ||
                   joints.First(JointRole::kRightUpperLeg) != kNoJoint;
@@ -175,8 +177,8 @@ CharacterSpace FindCharacterSpace(const Character& character, const FoundJoints&
   const std::vector<glm::mat4> skin = RestSkinMatrices(character);
   float low = std::numeric_limits<float>::max();
   float high = std::numeric_limits<float>::lowest();
-  for (const Mesh& mesh : character.meshes) {
-    for (const Vertex& vertex : mesh.vertices) {
+  for (const character::Mesh& mesh : character.meshes) {
+    for (const character::Vertex& vertex : mesh.vertices) {
       const glm::vec4 position(vertex.position, 1.0f);
       const float along = glm::dot(glm::vec3(RestMatrix(vertex, skin) * position), up);
       low = std::min(low, along);
@@ -188,15 +190,15 @@ CharacterSpace FindCharacterSpace(const Character& character, const FoundJoints&
   return space;
 }
 
-Status MoveToSpace(const glm::mat3& rotation, float scale, Character* character) {
+Status MoveToSpace(const glm::mat3& rotation, float scale, character::Character* character) {
   const glm::mat4 move(rotation * scale);
-  for (Mesh& mesh : character->meshes) {
-    for (Vertex& vertex : mesh.vertices) MoveVertex(move, rotation, &vertex);
+  for (character::Mesh& mesh : character->meshes) {
+    for (character::Vertex& vertex : mesh.vertices) MoveVertex(move, rotation, &vertex);
   }
   return ReplaceSkeleton(rotation, scale, character);
 }
 
-Status BringToRestPose(Character* character) {
+Status BringToRestPose(character::Character* character) {
   const std::vector<glm::mat4> skin = RestSkinMatrices(*character);
   const bool at_rest = std::all_of(skin.begin(), skin.end(), IsNearIdentity);
   const auto rest = character->skeleton.rest_pose();
@@ -204,9 +206,9 @@ Status BringToRestPose(Character* character) {
     return glm::length(t.scale - glm::vec3(1.0f)) > 1e-5f;
   });
   if (at_rest && !scaled) return {};
-  for (Mesh& mesh : character->meshes) {
+  for (character::Mesh& mesh : character->meshes) {
     bool mirrored = false;
-    for (Vertex& vertex : mesh.vertices) {
+    for (character::Vertex& vertex : mesh.vertices) {
       const glm::mat4 m = RestMatrix(vertex, skin);
       const float determinant = glm::determinant(glm::mat3(m));
       const bool flat = std::abs(determinant) < 1e-30f;
@@ -220,4 +222,4 @@ Status BringToRestPose(Character* character) {
   return ReplaceSkeleton(glm::mat3(1.0f), 1.0f, character);
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

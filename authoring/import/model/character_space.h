@@ -9,7 +9,7 @@
 #include "authoring/import/model/joint_finder.h"
 #include "character/character.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // How a character stands in the space of its file, and what brings it to ours: metres, +Y up,
 // facing +Z.
@@ -22,15 +22,16 @@ struct CharacterSpace {
 };
 
 // From the joints (head over hips, left beside right) and the extent of the meshes.
-[[nodiscard]] CharacterSpace FindCharacterSpace(const Character& character,
+[[nodiscard]] CharacterSpace FindCharacterSpace(const character::Character& character,
                                                 const FoundJoints& joints);
 
 // Turns and scales a character: skeleton, meshes and inverse bind matrices.
-[[nodiscard]] Status MoveToSpace(const glm::mat3& rotation, float scale, Character* character);
+[[nodiscard]] Status MoveToSpace(const glm::mat3& rotation, float scale,
+                                 character::Character* character);
 
 // Brings vertices to where the skeleton's rest pose puts them and takes scales out of the joints,
 // so that inverse bind matrices are the inverses of the rest pose. A character that is so already
 // stays as it is, to the bit.
-[[nodiscard]] Status BringToRestPose(Character* character);
+[[nodiscard]] Status BringToRestPose(character::Character* character);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 using wrinkle::JointRole;
@@ -114,4 +114,4 @@ FaceMatch MatchFaces(const Skeleton& model, const FoundJoints& model_joints,
   return match;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -9,7 +9,7 @@
 #include "authoring/import/model/joint_finder.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // Which joint of one face lies where a joint of another does.
 struct FaceMatch {
@@ -37,4 +37,4 @@ struct FaceMatch {
 [[nodiscard]] std::vector<int> FaceJoints(const wrinkle::Skeleton& skeleton,
                                           const FoundJoints& joints);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -4,21 +4,17 @@
 #include <string_view>
 #include <utility>
 
-#include "authoring/import/model/assimp.h"
+#include "authoring/import/assimp/assimp.h"
+#include "authoring/import/file_status.h"
 #include "base/ascii.h"
 #include "base/files.h"
 #include "base/status.h"
 #include "character/gltf_container.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 namespace fs = std::filesystem;
-
-Status At(const Status& s, const fs::path& path) {
-  return {s.code(), s.what(), path.string() + (s.where().empty() ? "" : ": " + s.where()),
-          s.todo()};
-}
 
 std::string Extension(const fs::path& path) { return AsciiLower(path.extension().string()); }
 
@@ -29,7 +25,7 @@ bool IsGltf(std::string_view bytes, const std::string& extension) {
 
 // What is in the bytes of a model, `where` of an error being a field.
 Status Parse(std::string_view bytes, const fs::path& path, OpenedModel* model) {
-  const ReadOptions options{.lenient = true, .notes = &model->notes};
+  const character::ReadOptions options{.lenient = true, .notes = &model->notes};
   const std::string extension = Extension(path);
   std::string converted;
   if (!IsGltf(bytes, extension)) {
@@ -46,7 +42,8 @@ Status Parse(std::string_view bytes, const fs::path& path, OpenedModel* model) {
     converted = std::move(foreign->glb);
     bytes = converted;
   }
-  Result<Character> character = ParseCharacter(bytes, path.parent_path(), options);
+  Result<character::Character> character =
+      character::ParseCharacter(bytes, path.parent_path(), options);
   FURROW_RETURN_IF_ERROR(character);
   model->character = std::move(*character);
   return BringToRestPose(&model->character);
@@ -60,10 +57,10 @@ std::string Sentence(const Finding& finding) {
 // Leaves out what has no area; meshes that are nothing else go, too.
 void DropDegenerates(OpenedModel* model) {
   std::size_t dropped = 0;
-  std::vector<Mesh> kept;
-  std::vector<MeshNotes> notes;
+  std::vector<character::Mesh> kept;
+  std::vector<character::MeshNotes> notes;
   for (std::size_t m = 0; m < model->character.meshes.size(); ++m) {
-    Mesh& mesh = model->character.meshes[m];
+    character::Mesh& mesh = model->character.meshes[m];
     dropped += DropDegenerateTriangles(&mesh);
     if (mesh.indices.empty()) continue;
     kept.push_back(std::move(mesh));
@@ -78,7 +75,8 @@ void DropDegenerates(OpenedModel* model) {
 
 void BindUnskinned(OpenedModel* model) {
   int bound = 0;
-  for (MeshNotes& notes : model->notes.meshes) bound += std::exchange(notes.unskinned_vertices, 0);
+  for (character::MeshNotes& notes : model->notes.meshes)
+    bound += std::exchange(notes.unskinned_vertices, 0);
   if (bound == 0) return;
   model->remarks.push_back(std::to_string(bound) + " unskinned vertices follow their neighbours");
 }
@@ -86,15 +84,15 @@ void BindUnskinned(OpenedModel* model) {
 }  // namespace
 
 Result<OpenedModel> OpenModel(const fs::path& path) {
-  const Result<std::string> bytes = ReadFile(path, kMaxGltfBytes);
+  const Result<std::string> bytes = ReadFile(path, character::kMaxGltfBytes);
   FURROW_RETURN_IF_ERROR(bytes);
   OpenedModel model;
-  if (Status status = Parse(*bytes, path, &model); !status.ok()) return At(status, path);
+  if (Status status = Parse(*bytes, path, &model); !status.ok()) return InFile(status, path);
   if (model.character.name.empty()) model.character.name = path.stem().string();
   return model;
 }
 
-Result<ImportedModel> ImportModel(const fs::path& path, const SkeletonMaps& maps,
+Result<ImportedModel> ImportModel(const fs::path& path, const character::SkeletonMaps& maps,
                                   const ModelOptions& options) {
   Result<OpenedModel> opened = OpenModel(path);
   FURROW_RETURN_IF_ERROR(opened);
@@ -119,11 +117,11 @@ Result<ImportedModel> ImportModel(const fs::path& path, const SkeletonMaps& maps
   const float scale = options.scale.value_or(report.space.scale);
   if (report.space.rotation != glm::mat3(1.0f) || scale != 1.0f) {
     if (Status s = MoveToSpace(report.space.rotation, scale, &opened->character); !s.ok()) {
-      return At(s, path);
+      return InFile(s, path);
     }
   }
   imported.character = std::move(opened->character);
   return imported;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -11,12 +11,13 @@
 #include "character/character.h"
 #include "rig/skeleton_map.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // A model as it was read, with all that is wrong with it.
 struct OpenedModel {
-  Character character;  // in the rest pose (BringToRestPose), otherwise as the file has it
-  SourceNotes notes;
+  character::Character
+      character;  // in the rest pose (BringToRestPose), otherwise as the file has it
+  character::SourceNotes notes;
   std::vector<std::string> remarks;  // of a converter
 };
 
@@ -34,7 +35,7 @@ struct ModelOptions {
 };
 
 struct ImportedModel {
-  Character character;               // metres, +Y up, facing +Z; without a rig
+  character::Character character;    // metres, +Y up, facing +Z; without a rig
   std::vector<std::string> remarks;  // what was changed, what is not carried
   std::vector<std::string> warnings;
 };
@@ -44,7 +45,7 @@ struct ImportedModel {
 // Errors: OpenModel()'s, and kUnsupported for the first error that CheckCharacter() finds: no skin,
 // no UVs, unskinned vertices, degenerate triangles.
 [[nodiscard]] Result<ImportedModel> ImportModel(const std::filesystem::path& path,
-                                                const SkeletonMaps& maps,
+                                                const character::SkeletonMaps& maps,
                                                 const ModelOptions& options = {});
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -7,7 +7,7 @@
 #include "wrinkle/skeleton/joint_role.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // Which joint is what, and how that was found out.
 struct FoundJoints {
@@ -23,6 +23,7 @@ struct FoundJoints {
 // Roles by the names that `maps` know; where no map knows the skeleton, by its hierarchy: the
 // branches of the body (two like legs and a spine, two like arms and a neck), and the sides by
 // where the toes point. A guess for a person to check.
-[[nodiscard]] FoundJoints FindJoints(const wrinkle::Skeleton& skeleton, const SkeletonMaps& maps);
+[[nodiscard]] FoundJoints FindJoints(const wrinkle::Skeleton& skeleton,
+                                     const character::SkeletonMaps& maps);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -12,7 +12,7 @@
 #include "authoring/import/model/face_frame.h"
 #include "wrinkle/skeleton/retarget.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 using wrinkle::Driver;
@@ -20,7 +20,7 @@ using wrinkle::JointRole;
 using wrinkle::kNoJoint;
 using wrinkle::Rig;
 
-glm::vec3 At(const KnownSkeleton& known, int joint) {
+glm::vec3 PlaceOf(const KnownSkeleton& known, int joint) {
   return glm::vec3(known.skeleton->rest_model()[static_cast<std::size_t>(joint)][3]);
 }
 
@@ -129,8 +129,8 @@ class Proposer {
     const JointRole role = target_.joints->roles[static_cast<std::size_t>(joint)];
     const int start =
         target_.joints->First(target_.joints->roles[static_cast<std::size_t>(parent)]);
-    hinge.axis = HingeAxis(role, At(target_, joint) - At(target_, start),
-                           At(target_, end) - At(target_, joint));
+    hinge.axis = HingeAxis(role, PlaceOf(target_, joint) - PlaceOf(target_, start),
+                           PlaceOf(target_, end) - PlaceOf(target_, joint));
     hinge.parent = NameOf(target_, parent);
     hinge.joint = NameOf(target_, joint);
     hinge.end = NameOf(target_, end);
@@ -294,4 +294,4 @@ Result<RigProposal> ProposeRig(const Rig& rig, const KnownSkeleton& model,
   return Proposer(rig, model, target).Run();
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

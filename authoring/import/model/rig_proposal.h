@@ -9,7 +9,7 @@
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // A skeleton, and which joint of it is what.
 struct KnownSkeleton {
@@ -39,4 +39,4 @@ struct RigProposal {
 [[nodiscard]] Result<RigProposal> ProposeRig(const wrinkle::Rig& rig, const KnownSkeleton& model,
                                              const KnownSkeleton& target);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

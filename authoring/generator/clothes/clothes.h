@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "authoring/generator/body/body_shape.h"
+#include "authoring/generator/mesh/unwrap.h"
+#include "character/character.h"
+
+namespace furrow::authoring {
+
+// Shirt and trousers in one atlas, skinned, in rest.
+struct Clothes {
+  character::Mesh mesh;
+  std::vector<PanelPlace> panels;  // where the atlas has them, by ClothPanel
+  std::vector<int> vertex_panels;  // one a vertex
+};
+[[nodiscard]] Clothes MakeClothes(const BodyShape& shape);
+
+// A pair of shoes and the belt, skinned.
+[[nodiscard]] character::Mesh MakeLeather(const BodyShape& shape);
+
+// Appends both hands, skinned, to the head's skin: they lie in the free middle of its lowest band.
+void AddHands(const BodyShape& shape, character::Mesh* skin);
+
+}  // namespace furrow::authoring

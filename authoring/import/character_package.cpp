@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/import/character_package.h"
+
+#include <string>
+
+#include "authoring/import/file_status.h"
+#include "base/files.h"
+#include "rig/rig_check.h"
+#include "rig/rig_file.h"
+
+namespace furrow::authoring {
+
+Status WriteCharacterPackage(const character::Character& character,
+                             const std::filesystem::path& glb) {
+  std::filesystem::path rig = glb;
+  rig.replace_extension(".rig.json");
+  if (const Status s = character::CheckRig(character.rig); !s.ok()) return InFile(s, rig);
+  const Result<std::string> bytes = character::CharacterGlb(character);
+  if (!bytes.ok()) return InFile(bytes.status(), glb);
+  const std::string json = character::RigToJson(character.rig);
+  const FileToWrite files[] = {{glb, *bytes}, {rig, json}};
+  return WriteFilesAtomically(files);
+}
+
+}  // namespace furrow::authoring
