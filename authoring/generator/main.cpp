@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// furrow-make-character: the data of share/furrow while Furrow is built, or one face of one's own.
+// furrow-make-character: writes share/furrow during the build of Furrow, or a single character.
 #include <cstdio>
 #include <filesystem>
 #include <string>

@@ -21,13 +21,13 @@ using glm::vec4;
 
 float Side(float x, float soft) { return Smoothstep(-soft, soft, x); }
 
-// Left and right shares of two values: (a, b) of the left, (a, b) of the right.
+// Puts (a, b) into the first two channels on the left side and into the last two on the right.
 vec4 BySide(const vec3& p, float a, float b, float soft) {
   const float left = Side(p.x, soft);
   return {a * left, b * left, a * (1.0f - left), b * (1.0f - left)};
 }
 
-// Arms lie along X: they fold in front, where the forearm comes.
+// Arms lie along X at rest. They fold in front, toward the forearm.
 vec4 Elbows(const vec3& p) {
   const float near = Smoothstep(0.130f, 0.035f, std::abs(std::abs(p.x) - 0.455f));
   const float inner = Side(p.z + 0.018f, 0.038f);
@@ -56,7 +56,7 @@ vec4 Shoulders(const vec3& p) {
   return BySide(p, near * front, near * (1.0f - front), 0.01f);
 }
 
-// Front, back, left and right by the quarters that the driver of a ball has: cosine squares.
+// Front, back, left and right with the weights of a ball driver's quarters: squared cosines.
 vec4 Waist(const vec3& p) {
   const float near = Smoothstep(0.965f, 1.02f, p.y) * Smoothstep(1.235f, 1.14f, p.y) *
                      Smoothstep(0.30f, 0.24f, std::abs(p.x));

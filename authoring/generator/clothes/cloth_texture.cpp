@@ -26,11 +26,11 @@ using glm::vec3;
 
 constexpr int kNormalBits = 8;
 
-// Where a texel lies on the cloth.
+// The position of a texel on the cloth.
 struct ClothPlace {
   int panel;
-  vec2 cut;  // metres in the panel as it was cut, along the weave
-  vec3 p;    // metres in rest
+  vec2 cut;  // metres in the flat panel, along the weave
+  vec3 p;    // metres, at rest
 };
 
 class ClothAtlas {
@@ -58,17 +58,17 @@ bool IsCollar(int panel) {
   return panel == kCollarStand || panel == kCollarLeaf || panel == kCollarLining;
 }
 
-// 1 on a line that is `width` wide, fading over as much again.
+// 1 on a line of width `width`, with soft edges.
 float Line(float distance, float width) {
   return Smoothstep(width, 0.5f * width, std::abs(distance));
 }
 
-// Stitches along a seam: dashes 3 mm long.
+// Stitches along a seam: dashes of 3 mm.
 float Stitches(float distance, float along) {
   return Line(distance, 0.0012f) * Smoothstep(-0.2f, 0.3f, std::sin(along * 2.0f * kPi / 0.0036f));
 }
 
-// Buttons of the placket, the first under the collar.
+// The distance from the buttons of the placket. The first is below the collar.
 float ButtonDistance(const ClothPlace& at) {
   if (at.panel != kShirtFront || at.p.z < 0.0f) return 1.0f;
   constexpr float kFirst = 1.405f;
@@ -80,7 +80,7 @@ float ButtonDistance(const ClothPlace& at) {
 
 constexpr float kButton = 0.0056f;
 
-// How far a point lies inside the pocket on the left of the chest.
+// How far a point is inside the pocket on the left of the chest; negative outside.
 float PocketInside(const ClothPlace& at) {
   if (at.panel != kShirtFront) return -1.0f;
   const vec2 d = glm::abs(vec2(at.p.x - 0.083f, at.p.y - 1.262f)) - vec2(0.052f, 0.060f);
@@ -88,7 +88,7 @@ float PocketInside(const ClothPlace& at) {
   return -std::max({d.x, d.y, corner > 0.0f ? corner : -1.0f});
 }
 
-// Seams as (distance, place along) of the nearest: what is stitched through and shows as a line.
+// The distance from the nearest seam that shows as a line.
 float SeamLines(const ClothPlace& at, float* stitches) {
   const vec3& p = at.p;
   const float x = std::abs(p.x);
@@ -123,7 +123,7 @@ float SeamLines(const ClothPlace& at, float* stitches) {
   if (IsTrousers(at.panel)) {
     seam(p.y - 0.083f, p.x + p.z, true);
     if (p.y < 0.98f) seam(p.z + 0.004f, p.y, p.y > 1.1f);  // outer and inner seam
-    // Slanting pockets in front, the fly, a welt behind.
+    // Slanted pockets in front, the fly, and a welt behind.
     if (p.z > 0.0f && p.y > 0.84f) {
       const float mouth = (x - 0.118f) - 0.30f * (1.0f - p.y);
       if (p.y > 0.855f) seam(mouth, p.y, false);
@@ -138,7 +138,7 @@ float SeamLines(const ClothPlace& at, float* stitches) {
   return groove;
 }
 
-// A crease kept by cloth: soft ridges along `across` = const, `spacing` apart, irregular.
+// Permanent creases: soft, irregular ridges along lines of constant `across`, `spacing` apart.
 float Gathers(float across, float along, float spacing) {
   return SignedNoise({across / spacing, along / (6.0f * spacing), 3.0f}) +
          0.5f * SignedNoise({across / spacing * 2.1f, along / (4.0f * spacing), 8.0f});
@@ -150,7 +150,7 @@ float KeptCreases(const ClothPlace& at) {
     const float round = std::atan2(p.x, p.z) * 0.15f;
     const float near = Bump(std::max(p.y - 1.05f, 0.0f), 0.055f);
     const float drape = 0.35f * Bump(p.y - 1.17f, 0.12f);
-    // From the armpits towards the waist: slanting.
+    // Slanted, from the armpits toward the waist.
     return 0.0017f * (near + drape) * Gathers(round, p.y + 0.35f * std::abs(p.x), 0.016f);
   }
   if (IsSleeve(at.panel)) {
@@ -173,7 +173,7 @@ float KeptCreases(const ClothPlace& at) {
   return 0.0f;
 }
 
-// Threads: warp and weft of the shirt, the diagonal of the trousers' twill. About [-1, 1].
+// Threads: warp and weft of the shirt, diagonal twill of the trousers. About [-1, 1].
 float Weave(const ClothPlace& at) {
   if (IsTrousers(at.panel)) {
     return std::sin((at.cut.x + at.cut.y) * 2.0f * kPi / 0.0042f) *
@@ -213,7 +213,7 @@ character::Picture PaintClothColour(const Clothes& clothes, const BodyParameters
     vec3 colour = trousers ? body.trousers : body.shirt;
     const float worn = FractalNoise(at.p * 9.0f);
     colour *= 1.0f + (trousers ? 0.06f : 0.03f) * Weave(at) + (trousers ? 0.05f : 0.025f) * worn;
-    // Rubbed paler where it is pressed and bent; darker in the folds that it keeps.
+    // Paler at pressed edges and bends, darker in the permanent creases.
     colour *= 1.0f + 45.0f * KeptCreases(at);
     float stitches = 0.0f;
     const float groove = SeamLines(at, &stitches);

@@ -6,15 +6,15 @@
 
 namespace furrow::authoring {
 
-// Pictures of the clothes' atlas, painted in rest; `size` x `size`.
+// Pictures of the clothes' atlas, painted at rest. `size`: width and height, texels.
 
-// Weave, placket and buttons, seams, pockets, wear: sRGB.
+// Weave, placket and buttons, seams, pockets and wear. sRGB.
 [[nodiscard]] character::Picture PaintClothColour(const Clothes& clothes,
                                                   const BodyParameters& body, int size);
-// The relief of the same, and the creases that cloth keeps: gathers over the belt and the cuffs,
-// the pressed crease of the trousers. Tangent space, green up.
+// The relief of the same details, and permanent creases: gathers above belt and cuffs, the pressed
+// crease of the trousers. Tangent space, green up.
 [[nodiscard]] character::Picture PaintClothNormals(const Clothes& clothes, int size);
-// Green: shirting is smoother than twill, buttons than either.
+// Roughness in the green channel. Shirting is smoother than twill, buttons are smoother still.
 [[nodiscard]] character::Picture PaintClothRoughness(const Clothes& clothes, int size);
 
 }  // namespace furrow::authoring

@@ -14,7 +14,7 @@
 namespace furrow::authoring {
 namespace {
 
-// Of the atlas of the head's skin: low and high corner.
+// The place of the hands in the atlas of the head's skin: low and high corner.
 constexpr glm::vec2 kHandsLow{0.415f, 0.876f};
 constexpr glm::vec2 kHandsHigh{0.583f, 0.991f};
 

@@ -9,18 +9,19 @@
 
 namespace furrow::authoring {
 
-// Shirt and trousers in one atlas, skinned, in rest.
+// Shirt and trousers in one atlas, skinned, at rest.
 struct Clothes {
   character::Mesh mesh;
-  std::vector<PanelPlace> panels;  // where the atlas has them, by ClothPanel
-  std::vector<int> vertex_panels;  // one a vertex
+  std::vector<PanelPlace> panels;  // place of each ClothPanel in the atlas
+  std::vector<int> vertex_panels;  // the panel of each vertex
 };
 [[nodiscard]] Clothes MakeClothes(const BodyShape& shape);
 
 // A pair of shoes and the belt, skinned.
 [[nodiscard]] character::Mesh MakeLeather(const BodyShape& shape);
 
-// Appends both hands, skinned, to the head's skin: they lie in the free middle of its lowest band.
+// Appends both hands, skinned, to the skin of the head. They use the free middle of its lowest band
+// in the atlas.
 void AddHands(const BodyShape& shape, character::Mesh* skin);
 
 }  // namespace furrow::authoring

@@ -18,16 +18,17 @@ namespace {
 
 using glm::vec3;
 
-// Level 0: columns round a leg from its inside over the front; rows from the hem upward.
+// The grid at level 0. Columns run around a leg from its inside over the front; rows run from the
+// hem upward.
 constexpr int kColumns = 18;
 constexpr int kRise = 9;  // rows from the crotch to the waist
 constexpr float kCrotch = 0.79f;
 constexpr float kWaist = 1.042f;
-// Rings of a leg, metres over the floor; close at the knee, where it folds.
+// The rings of a leg: heights above the floor, metres. They are dense at the knee, which bends.
 constexpr float kTrouserRings[] = {0.052f, 0.085f, 0.125f, 0.17f,  0.22f,  0.27f,  0.315f, 0.355f,
                                    0.390f, 0.418f, 0.442f, 0.462f, 0.480f, 0.497f, 0.514f, 0.532f,
                                    0.553f, 0.578f, 0.610f, 0.648f, 0.688f, 0.725f, 0.757f};
-constexpr int kLips = 2;  // rows of cloth turned inward at the hem, and at the waist
+constexpr int kLips = 2;  // rows of cloth that turn inward at the hem and at the waist
 
 class TrouserMaker {
  public:
@@ -58,7 +59,7 @@ class TrouserMaker {
   }
 
  private:
-  // Below the crotch; `turn` 0 is the inside of the leg, a quarter its front.
+  // A point below the crotch. `turn` is 0 on the inside of the leg and a quarter turn in front.
   vec3 LegPlace(float y, float turn) const {
     const Solid leg = [this](const vec3& p) { return shape_.TrouserLeg(p); };
     return CastOut(leg, {LegMiddle(), y, -0.004f}, {-std::cos(turn), 0.0f, std::sin(turn)}, 0.2f);
@@ -68,7 +69,8 @@ class TrouserMaker {
     return skeleton.rest_model()[skeleton.Find("lower_leg_l")][3].x;
   }
 
-  // The middle of the front (`ahead` +1) or the back from the crotch to the waist: equal steps.
+  // The middle of the front (`ahead` +1) or the back (-1), from the crotch to the waist in equal
+  // steps.
   std::vector<vec3> Middle(float ahead) const {
     constexpr int kFine = 64;
     constexpr float kFocus = 0.90f;
@@ -98,7 +100,7 @@ class TrouserMaker {
     return steps;
   }
 
-  // Above the crotch, between the middle of the front or the back and the side.
+  // A point above the crotch, between the side and the middle of the front or the back.
   vec3 RisePlace(int i, float around, const vec3& middle) const {
     const float rise = static_cast<float>(i) / static_cast<float>(kRise * f_);
     const float ox = glm::mix(LegMiddle(), 0.03f, Smoothstep(0.0f, 0.7f, rise));
@@ -128,7 +130,7 @@ class TrouserMaker {
         const float around =
             1.0f - std::abs(1.0f - 2.0f * static_cast<float>(c) / static_cast<float>(columns));
         const vec3& middle = 2 * c <= columns ? front[i] : back[i];
-        if (c == columns && i == 0) continue;  // one crotch
+        if (c == columns && i == 0) continue;  // both legs share one crotch point
         const bool on_middle = c == 0 || c == columns;
         const vec3 place = on_middle ? middle : RisePlace(i, around, middle);
         const float slack = on_middle || i == rise
@@ -142,7 +144,7 @@ class TrouserMaker {
     return grid;
   }
 
-  // The hem falls to the heel.
+  // The hem is lower at the heel.
   static float HemDrop(float y, float turn) {
     return -0.012f * Smoothstep(0.12f, 0.05f, y) * (0.5f - 0.5f * std::sin(turn));
   }

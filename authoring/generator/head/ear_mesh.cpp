@@ -22,7 +22,8 @@ constexpr float kRadii[] = {0.0f,  0.16f, 0.28f, 0.38f, 0.46f, 0.53f, 0.59f, 0.6
 constexpr int kFrontRings = static_cast<int>(std::size(kRadii));
 constexpr int kBackRings = 3;
 
-// The ear's plane: s toward the back of the head, t up; phi = 0 is back, counter-clockwise.
+// The outline in the ear's plane: s toward the back of the head, t up. phi is 0 at the back and
+// grows counter-clockwise.
 vec2 Outline(float phi) {
   const float s = std::cos(phi);
   const float t = std::sin(phi);
@@ -31,7 +32,7 @@ vec2 Outline(float phi) {
   return {s * width + 0.12f * t - 0.35f * lobe, t * 3.15f};
 }
 
-// Height over the ear's plane, centimetres. Places in the unit disc: x back, y up.
+// The height above the ear's plane, centimetres. Positions are in the unit disc: x back, y up.
 float Relief(float rho, float phi) {
   const vec2 p = rho * vec2(std::cos(phi), std::sin(phi));
   const auto ridge = [&p](const vec2& a, const vec2& b, float width) {
@@ -41,12 +42,12 @@ float Relief(float rho, float phi) {
   const float back = Smoothstep(-0.55f, 0.1f, p.x);
   const float lobe = Smoothstep(-0.35f, -0.85f, p.y);
   const float above = 1.0f - lobe;
-  // The rim rolls over from the root in front, round the top, down to the lobe; a groove inside it.
+  // The rim curls from its root in front over the top down to the lobe, with a groove inside it.
   const float rim =
       above * (1.0f - 0.85f * Smoothstep(0.55f, 0.9f, -p.x) * Smoothstep(0.5f, 0, p.y));
   const float helix = (0.42f * Bump(rho - 0.89f, 0.095f) - 0.14f * Bump(rho - 0.72f, 0.09f)) * rim;
   const float crus = 0.26f * ridge({-0.85f, 0.12f}, {-0.28f, 0.02f}, 0.09f);
-  // The inner ridge: an arc that forks above.
+  // The inner ridge: an arc that forks at the top.
   const float arc =
       Bump(glm::length((p - vec2(-0.16f, -0.14f)) / vec2(0.80f, 0.62f)) - 1.0f, 0.13f);
   const float anti = 0.40f * arc * back * Smoothstep(0.40f, 0.15f, p.y) * above;
@@ -61,7 +62,7 @@ float Relief(float rho, float phi) {
          0.14f * Smoothstep(0.95f, 1.0f, rho);
 }
 
-// Where the ear sits: its middle and its plane's axes, leaning back, standing off the head.
+// The frame of an ear: its centre and axes. Ears lean back and stand off the head.
 struct Seat {
   vec3 centre;
   vec3 back;
@@ -79,7 +80,7 @@ Seat SeatOf(float side) {
           vec3(side * std::cos(stand), 0.0f, std::sin(stand))};
 }
 
-// Ring `ring` of the ear: the front side from its middle to the rim, then the back of it.
+// Adds a ring of the ear. Rings run over the front from the middle to the rim, then over the back.
 void AddRing(float side, int ring, int segments, HeadMesh* head) {
   const Seat seat = SeatOf(side);
   const bool behind = ring >= kFrontRings;
@@ -119,7 +120,7 @@ void AddEar(float side, int level, HeadMesh* head) {
     for (int k = 0; k < segments; ++k) {
       const std::uint32_t a = index(i, k), b = index(i + 1, k), c = index(i + 1, k + 1),
                           d = index(i, k + 1);
-      // Backward, up, outward: right-handed on the left side alone.
+      // The axes (back, up, out) are right-handed only on the left side.
       if (side > 0.0f) {
         AddQuad(&head->mesh, a, b, c, d);
       } else {

@@ -22,7 +22,7 @@ namespace {
 using glm::vec2;
 using glm::vec3;
 
-// The edge of a lid from the inner to the outer corner, on the skin.
+// The edge of a lid on the skin, from the inner to the outer corner.
 std::vector<vec3> LidEdge(const HeadGrid& grid, float side, bool upper) {
   const std::vector<glm::ivec2> outline = grid.EyeOutline();
   const std::size_t half = outline.size() / 2;
@@ -40,7 +40,8 @@ vec3 Along(const std::vector<vec3>& line, float t) {
   return glm::mix(line[i], line[i + 1], at - static_cast<float>(i));
 }
 
-// One lash: a strip of three joints, wider than the hair that PaintLash() leaves of it.
+// Adds one lash: a strip with three cross-sections, wider than the hair that PaintLash() paints on
+// it.
 void AddLash(const vec3& root, const vec3& out, const vec3& curl, const vec3& across, float length,
              float eye_side, HeadMesh* lashes) {
   const auto first = static_cast<std::uint32_t>(lashes->mesh.vertices.size());
@@ -69,7 +70,7 @@ void AddLashRow(const HeadGrid& grid, float side, bool upper, HeadMesh* lashes) 
   for (int i = 0; i < count; ++i) {
     const float t = (static_cast<float>(i) + 0.7f) / (static_cast<float>(count) + 0.4f);
     const float stray = RandomAt(i, upper, side > 0.0f) - 0.5f;
-    // On the edge of the lid, just outside the ball.
+    // On the edge of the lid, just outside the eyeball.
     const vec3 skin = Along(edge, t);
     const vec3 root =
         centre + glm::normalize(skin - centre) * (glm::distance(skin, centre) - 0.05f);
@@ -173,9 +174,9 @@ HeadMesh MakeTongue() {
                      std::cos(back));
       HeadVertex info;
       info.part = kTeeth;
-      info.mouth_side = -1.0f;  // the jaw carries it
+      info.mouth_side = -1.0f;  // follows the jaw
       info.place = kCentre + kRadii * out;
-      // The furrow along its middle.
+      // The furrow along the middle.
       if (out.y > 0.0f) info.place.y -= 0.16f * out.y * Bump(info.place.x, 0.35f);
       AddHeadVertex(&tongue, info, vec2(turn, ring) / vec2(kTurns, kRings));
     }

@@ -24,10 +24,11 @@ using glm::vec2;
 using glm::vec3;
 
 constexpr int kSections = 7;              // of a lock, root to tip
-constexpr int kMaxLocks = 1800;           // what the triangles are spent on
-constexpr float kCapTop = kStrandBottom;  // strands above this v, the cap below
-constexpr float kCapBehind = 0.6f;        // the hairline, which is made of strands
-constexpr float kLockArea = 0.52f;        // square centimetres of scalp a lock grows from
+constexpr int kMaxLocks = 1800;           // limits the number of triangles
+constexpr float kCapTop = kStrandBottom;  // v: strands above, the cap below
+constexpr float kCapBehind =
+    0.6f;  // centimetres; in front of it the hairline consists of strands only
+constexpr float kLockArea = 0.52f;  // square centimetres of scalp per lock
 
 std::uint32_t AddHairVertex(HeadMesh* hair, const vec3& place, const vec2& uv) {
   HeadVertex info;
@@ -36,7 +37,7 @@ std::uint32_t AddHairVertex(HeadMesh* hair, const vec3& place, const vec2& uv) {
   return AddHeadVertex(hair, info, uv);
 }
 
-// The shade below the locks: a thin cap, so that no skin is seen between them.
+// Adds a thin dark cap, so that no skin shows between the locks.
 void AddCap(const HeadGrid& grid, HeadMesh* hair) {
   const int last = grid.num_columns();
   const int rows = grid.num_rows();
@@ -72,9 +73,8 @@ void AddCap(const HeadGrid& grid, HeadMesh* hair) {
   }
 }
 
-// One lock: a card that follows the path. Its normals fan out, so that it is lit as if it were
-// round; beyond that locks are lit as the hair's whole mass is: each by itself would look like a
-// scale.
+// Adds one lock: a card along the path. Its normals fan out a little, as if it were round.
+// Otherwise they follow the scalp: locks that were lit one by one would look like scales.
 void AddLock(const HairLock& lock, int tile, HeadMesh* hair) {
   constexpr float kFan = 0.3f;
   const auto first = static_cast<std::uint32_t>(hair->mesh.vertices.size());
@@ -97,7 +97,7 @@ void AddLock(const HairLock& lock, int tile, HeadMesh* hair) {
   }
 }
 
-// Full in the mass, a few strands where the hair begins.
+// Dense tiles inside, sparse ones at the hairline.
 int ChooseTile(float inside, int number) {
   const bool sparse = RandomAt(number, 10, 9) < Smoothstep(1.1f, 0.2f, inside);
   const float choice = RandomAt(number, 11, 9);
@@ -120,13 +120,13 @@ HeadMesh MakeHair(const HeadShape& shape) {
   hair.mesh.name = "hair";
   AddCap(grid, &hair);
   int number = 0;
-  float due = 0.0f;  // locks that the area so far has earned
+  float due = 0.0f;  // number of locks that the area so far allows
   for (int c = -grid.num_columns(); c < grid.num_columns(); ++c) {
     for (int r = 0; r + 1 < grid.num_rows(); ++r) {
       const vec3 middle = grid.Surface(0.5f * (grid.Plain(c, r) + grid.Plain(c + 1, r + 1)));
       const float inside = InsideHairline(middle);
       if (inside < -0.25f) continue;
-      // Denser where the hairline shows.
+      // Denser at the hairline, where gaps would show.
       due += CellArea(grid, c, r) / (kLockArea * (inside < 0.9f ? 0.4f : 1.0f));
       for (; due >= 1.0f && number < kMaxLocks; due -= 1.0f, ++number) {
         const vec2 jitter(RandomAt(number, 1, 7), RandomAt(number, 2, 7));

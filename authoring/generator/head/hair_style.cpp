@@ -17,23 +17,24 @@ namespace {
 
 using glm::vec3;
 
-// Height of the hairline by azimuth, degrees from the front: forehead, temple, sideburn, ear, nape.
+// Height of the hairline by azimuth in degrees from the front: forehead, temple, sideburn, ear,
+// nape.
 constexpr Knot kHairline[] = {{0, 6.3f},    {14, 6.45f},  {26, 6.5f},  {36, 5.9f},   {44, 4.7f},
                               {51, 3.4f},   {58, 2.4f},   {63, 1.0f},  {68, -1.2f},  {75, -1.6f},
                               {80, -0.3f},  {90, 0.3f},   {104, 0.2f}, {113, -1.0f}, {122, -4.0f},
                               {135, -6.6f}, {160, -7.6f}, {180, -7.8f}};
 constexpr float kDegreesPerRadian = 180.0f / std::numbers::pi_v<float>;
-constexpr float kPartX = 3.6f;  // the parting, on the subject's left
+constexpr float kPartX = 3.6f;  // x of the parting, on the subject's left
 constexpr vec3 kSkull{0.0f, 1.5f, -1.0f};
 constexpr float kSkullRadius = 9.3f;
 constexpr vec3 kKnotRadii{2.7f, 2.3f, 1.7f};
 
-// What a place of the scalp grows.
+// How hair grows at a point of the scalp.
 struct Style {
-  vec3 comb;     // direction, not yet along the scalp
+  vec3 comb;     // direction, not yet projected onto the scalp
   float length;  // centimetres
-  float body;    // how far the lock stands off at its highest
-  float width;   // half of it
+  float body;    // largest height of the lock above the scalp, centimetres
+  float width;   // half the width, centimetres
 };
 
 float WomanShare(const HeadShape& shape) { return 0.5f - 0.5f * shape.face().sex; }
@@ -103,7 +104,7 @@ HairLock GrowLock(const HeadShape& shape, const vec3& root, int number, int sect
       style.length * (0.85f + 0.3f * RandomAt(number, 3, 9)) * (0.6f + 0.4f * edge);
   if (length < 0.6f) return {};
   const float body = style.body * (0.55f + 0.55f * RandomAt(number, 4, 9)) * (0.3f + 0.7f * edge);
-  // Neighbours lean the same way; single locks hardly stray from them.
+  // Neighbouring locks lean the same way, with small deviations.
   const vec3 lean =
       0.16f * vec3(SignedNoise(root * 0.45f), SignedNoise(root * 0.45f + 20.0f),
                    SignedNoise(root * 0.45f + 40.0f)) +
@@ -120,7 +121,7 @@ HairLock GrowLock(const HeadShape& shape, const vec3& root, int number, int sect
       vec3 along = comb - normal * glm::dot(comb, normal);
       if (glm::length(along) < 1e-3f) along = vec3(0, -1, 0);
       p += glm::normalize(along) * (length / static_cast<float>(sections));
-      // It rises from the scalp and lies down again.
+      // The lock rises from the scalp and lies down again.
       const float height =
           0.09f + body * Smoothstep(0.0f, 0.4f, t) * glm::mix(1.0f, tip, Smoothstep(0.5f, 1.0f, t));
       p += shape.Normal(p) * (height - shape.Distance(p));
@@ -134,7 +135,7 @@ HairLock GrowLock(const HeadShape& shape, const vec3& root, int number, int sect
 std::vector<HairLock> WindKnot(const HeadShape& shape, int sections) {
   constexpr int kRings = 7;
   constexpr int kAround = 12;
-  constexpr float kArc = 1.7f;  // radians that a lock winds
+  constexpr float kArc = 1.7f;  // radians that a lock winds around the knot
   std::vector<HairLock> locks;
   const float size = Smoothstep(0.3f, 0.8f, WomanShare(shape));
   if (size <= 0.0f) return locks;
@@ -149,7 +150,7 @@ std::vector<HairLock> WindKnot(const HeadShape& shape, int sections) {
       for (int s = 0; s <= sections; ++s) {
         const float t = static_cast<float>(s) / static_cast<float>(sections);
         const float turn = 2.0f * std::numbers::pi_v<float> * start + kArc * t;
-        // From the rim of the knot to its middle, each lock winding inward a little.
+        // Each lock winds from the rim of the knot inward.
         const float tilt = 0.22f + 0.235f * (static_cast<float>(ring) + 0.7f * (0.5f - t));
         const vec3 d(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn),
                      -std::cos(tilt));

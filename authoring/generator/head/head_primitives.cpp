@@ -11,7 +11,7 @@ namespace {
 
 using glm::vec3;
 
-// Union, rounded over about `k` centimetres where the two surfaces meet (Quilez's polynomial form).
+// Union with a rounding about `k` centimetres wide where the surfaces meet (Quilez's polynomial).
 float Join(float a, float b, float k) {
   const float h = std::max(k - std::abs(a - b), 0.0f) / k;
   return std::min(a, b) - h * h * k * 0.25f;
@@ -29,7 +29,7 @@ float Ellipsoid(const vec3& p, const HeadPrimitive& primitive) {
                     : -std::min({primitive.b.x, primitive.b.y, primitive.b.z});
 }
 
-// A capsule whose radius runs from one end's to the other's.
+// A capsule with a different radius at each end.
 float Limb(const vec3& p, const HeadPrimitive& primitive) {
   const vec3 ab = primitive.b - primitive.a;
   const float t = std::clamp(glm::dot(p - primitive.a, ab) / glm::dot(ab, ab), 0.0f, 1.0f);
@@ -54,9 +54,9 @@ constexpr HeadPrimitive CutLimb(const char* name, vec3 a, vec3 b, float ra, floa
   return {name, HeadPrimitive::Form::kLimb, HeadPrimitive::Use::kCut, a, b, {ra, rb}, blend};
 }
 
-// Fitted to MakeHuman's base mesh (CC0), scaled to the landmarks of docs/DEFAULT-CHARACTER.md:
-// first the primitives, by least squares on 5,400 points and their normals, then the bulges on what
-// was left.
+// Fitted to MakeHuman's base mesh (CC0), scaled to the landmarks of docs/DEFAULT-CHARACTER.md. The
+// primitives were fitted first, by least squares on 5,400 points and their normals. The bulges were
+// then fitted to the remaining differences.
 constexpr HeadPrimitive kPrimitives[] = {
     Add("skull", {0.00f, 3.84f, -0.71f}, {7.71f, 7.82f, 8.80f}, 1.00f, {0.00f, -0.12f}),
     Add("forehead", {0.00f, 4.27f, 2.53f}, {5.69f, 4.83f, 6.39f}, 3.02f, {0.00f, 0.15f}),
@@ -102,9 +102,9 @@ constexpr HeadPrimitive kPrimitives[] = {
     AddLimb("between the lips", {0.00f, -6.88f, 9.40f}, {2.50f, -6.93f, 8.38f}, 0.40f, 0.30f,
             0.25f),
     Cut("corner", {2.76f, -6.98f, 8.95f}, {0.30f, 0.22f, 0.28f}, 0.45f),
-    // Lids: a shell over the ball, longer than high so that it runs out at the corners.
+    // The lids: a shell over the eyeball, longer than high, so that it ends at the corners.
     Add("lids", {3.2f, 0.0f, 7.22f}, {1.76f, 1.42f, 1.43f}, 0.75f),
-    // The fold over the upper lid.
+    // The fold above the upper lid.
     CutLimb("lid crease, inner half", {2.25f, 0.75f, 8.42f}, {3.3f, 0.93f, 8.55f}, 0.02f, 0.05f,
             0.25f),
     CutLimb("lid crease, outer half", {3.3f, 0.93f, 8.55f}, {4.6f, 0.62f, 8.0f}, 0.05f, 0.02f,
@@ -149,7 +149,7 @@ constexpr Bulge kBulges[] = {
     {{2.23f, -4.67f, 9.02f}, 0.5f, 0.059f},
     {{2.35f, -7.93f, 8.64f}, 0.5f, 0.044f},
     {{0.92f, -2.63f, 10.10f}, 0.5f, 0.041f},
-    // By hand: fuller vermilion, a quieter rim.
+    // Adjusted by hand: fuller lips, a softer rim.
     {{0.40f, -6.50f, 10.0f}, 0.38f, 0.12f},
     {{1.35f, -6.52f, 9.65f}, 0.32f, 0.12f},
     {{0.00f, -5.60f, 10.4f}, 0.60f, -0.04f},

@@ -31,7 +31,7 @@ vec2 Atlas(const vec2& uv) {
   return {kGridLeft + kGridWidth * uv.x, kGridTop + kGridHeight * uv.y};
 }
 
-// Builds the grid's surface and what lies behind its openings.
+// Builds the surface of the grid and the parts behind its openings.
 class SkinBuilder {
  public:
   SkinBuilder(const HeadShape& shape, int level) : layout_(shape, level) {}
@@ -60,7 +60,7 @@ class SkinBuilder {
     const int eye = (layout_.eye_row(0) + layout_.eye_row(1)) / 2;
     info.mouth_side = static_cast<float>((row > mouth) - (row < mouth));
     info.eye_side = static_cast<float>((row > eye) - (row < eye));
-    if (std::abs(column) == layout_.num_columns()) info.place.x = 0.0f;  // the seam closes
+    if (std::abs(column) == layout_.num_columns()) info.place.x = 0.0f;  // closes the seam
     return info;
   }
 
@@ -81,8 +81,8 @@ class SkinBuilder {
     }
   }
 
-  // Joins two closed loops of equal length; `outer` runs clockwise seen from the surface's outside
-  // when the surface continues inward from it.
+  // Connects two closed loops of equal length. If the surface continues inward from `outer`, that
+  // loop runs clockwise from outside.
   void Bridge(const std::vector<std::uint32_t>& outer, const std::vector<std::uint32_t>& inner) {
     for (std::size_t i = 0; i < outer.size(); ++i) {
       const std::size_t next = (i + 1) % outer.size();
@@ -90,7 +90,7 @@ class SkinBuilder {
     }
   }
 
-  // The lid's edge turns in to the ball and follows it back out of sight.
+  // The edge of the lid turns in toward the eyeball and follows it back out of sight.
   void AddLids(float side) {
     std::vector<glm::ivec2> outline = layout_.EyeOutline();
     if (side < 0.0f) {
@@ -127,8 +127,8 @@ class SkinBuilder {
     }
   }
 
-  // From the lips' line back into a dark bag, which has a round island of its own: in the grid's
-  // unwrapping closed lips leave it no room.
+  // Builds a dark bag behind the line of the lips. It has a round UV island of its own, since the
+  // closed lips leave it no room in the grid's island.
   void AddMouth() {
     const std::vector<glm::ivec2> outline = layout_.MouthOutline();
     const auto island = [&](std::size_t i, float radius) {
@@ -151,7 +151,7 @@ class SkinBuilder {
       std::vector<std::uint32_t> next;
       for (std::size_t i = 0; i < outline.size(); ++i) {
         HeadVertex info = head_.info[GridIndex(outline[i].x, outline[i].y)];
-        // The first ring is the lips' line itself and stays skin: it must move as the grid does.
+        // The first ring is the line of the lips and stays skin, since it must move like the grid.
         if (!ring.empty()) info.part = kMouthInside;
         const float corner = 1.0f - std::abs(info.place.x) / kMouthCornerX;
         info.place.x *= step.narrow;

@@ -20,7 +20,7 @@ void AddTriangle(character::Mesh* mesh, std::uint32_t a, std::uint32_t b, std::u
   const glm::vec3& pa = mesh->vertices[a].position;
   const glm::vec3& pb = mesh->vertices[b].position;
   const glm::vec3& pc = mesh->vertices[c].position;
-  if (!wrinkle::MakeRestTriangle(pa, pb, pc, {})) return;  // no area
+  if (!wrinkle::MakeRestTriangle(pa, pb, pc, {})) return;  // degenerate
   mesh->indices.insert(mesh->indices.end(), {a, b, c});
 }
 
@@ -34,7 +34,7 @@ std::array<long, 3> Place(const glm::vec3& p) {
 void AddQuad(character::Mesh* mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c,
              std::uint32_t d) {
   const auto& v = mesh->vertices;
-  // Along the shorter diagonal: it follows the form better.
+  // Splits along the shorter diagonal, which follows the shape better.
   if (glm::distance(v[a].position, v[c].position) <= glm::distance(v[b].position, v[d].position)) {
     AddTriangle(mesh, a, b, c);
     AddTriangle(mesh, a, c, d);

@@ -15,7 +15,7 @@ namespace {
 using glm::vec2;
 using glm::vec3;
 
-// Mean distance between the points of columns (or rows) `i` and `i + 1`.
+// The mean distance between the points of columns (or rows) `i` and `i + 1`.
 float MeanStep(const PointGrid& grid, const QuadNet& net, bool along_rows, int i) {
   float sum = 0.0f;
   int count = 0;
@@ -29,7 +29,7 @@ float MeanStep(const PointGrid& grid, const QuadNet& net, bool along_rows, int i
   return count > 0 ? sum / static_cast<float>(count) : 0.0f;
 }
 
-// Makes the middles of edges and quads, each once.
+// Creates the midpoints of edges and quads, each once.
 class Divider {
  public:
   Divider(const Solid& solid, QuadNet* net) : solid_(solid), net_(net) {}

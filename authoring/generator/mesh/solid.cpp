@@ -12,7 +12,7 @@ namespace {
 
 using glm::vec3;
 
-// Catmull-Rom through b and c at unequal steps: slopes are divided differences.
+// Catmull-Rom between b and c for uneven steps. Slopes are divided differences.
 float Cubic(const float (&at)[4], float a, float b, float c, float d, float x) {
   const float span = at[2] - at[1];
   const float slope_b = (c - a) / (at[2] - at[0]) * span;

@@ -20,7 +20,7 @@ float Presence(float start, float onset, float end, float offset, float t) {
 }
 
 float Weight(const Action& action, float t) {
-  // Never quite steady at the peak.
+  // The expression is never quite steady at its peak.
   const float breath = 1.0f - 0.06f * (0.5f - 0.5f * std::cos(1.7f * (t - action.start)));
   return action.peak * breath * Presence(action.start, action.onset, action.end, action.offset, t);
 }
@@ -31,7 +31,7 @@ float BlinkWeight(float since) {
   return Smoothstep(0.0f, 0.08f, since) * Smoothstep(0.27f, 0.11f, since);
 }
 
-// Reference poses by name, added up: actions of one pose may overlap, the strongest counts.
+// A reference pose with its weights. Where actions of one pose overlap, the larger weight counts.
 struct PoseWeight {
   std::string pose;
   float left;

@@ -19,7 +19,7 @@ namespace {
 using glm::vec2;
 using glm::vec3;
 
-// A hair of a brow, seen from the front: from `root` to `tip`, bent by `bend` to its left.
+// A hair of a brow, seen from the front: from `root` to `tip`, curved by `bend`.
 struct BrowHair {
   vec2 root;
   vec2 tip;
@@ -32,7 +32,8 @@ constexpr Knot kLine[] = {
 constexpr Knot kHeight[] = {
     {0.9f, 0.26f}, {1.5f, 0.36f}, {2.6f, 0.32f}, {4.0f, 0.20f}, {5.3f, 0.06f}};
 
-// Hairs stand up at the inner end, then lie outward: lower ones rise, upper ones sink.
+// Hairs stand up at the inner end and lie outward farther along. Lower hairs point up, upper ones
+// down.
 std::vector<BrowHair> MakeBrow(float side, const FaceParameters& face) {
   std::vector<BrowHair> hairs;
   const int seed = side > 0.0f ? 11 : 47;
@@ -57,7 +58,7 @@ std::vector<BrowHair> MakeBrow(float side, const FaceParameters& face) {
   return hairs;
 }
 
-// How much a hair darkens a place: it tapers to its tip.
+// How much a hair darkens a point. The hair tapers to its tip.
 float Cover(const BrowHair& hair, const vec2& p) {
   const vec2 line = hair.tip - hair.root;
   const float t = std::clamp(glm::dot(p - hair.root, line) / glm::dot(line, line), 0.0f, 1.0f);
@@ -71,7 +72,7 @@ float Cover(const BrowHair& hair, const vec2& p) {
 float BrowShare(const vec3& p, const FaceParameters& face) {
   const vec3 q = OnLeftSide(p);
   if (q.x < 0.7f || q.x > 6.0f || q.z < 3.0f || q.y < 0.8f || q.y > 3.2f) return 0.0f;
-  // Colours are painted texel by texel: the hairs of the last face are kept.
+  // The painter calls this for each texel, so the hairs of the last face are cached.
   thread_local float of_sex = 9.0f, of_age = 0.0f;
   thread_local std::vector<BrowHair> brows[2];
   if (of_sex != face.sex || of_age != face.age) {

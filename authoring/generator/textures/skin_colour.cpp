@@ -21,7 +21,8 @@ namespace {
 
 using glm::vec3;
 
-// Where a beard would grow: chin, jaw, upper lip; not in the hollow under the lower lip.
+// How much beard grows at a point: on chin, jaw and upper lip, not in the hollow under the lower
+// lip.
 float BeardShare(const vec3& p) {
   const vec3 q = OnLeftSide(p);
   const float jaw = Smoothstep(-4.6f, -7.4f, q.y + 0.30f * (8.0f - q.z)) *
@@ -31,7 +32,7 @@ float BeardShare(const vec3& p) {
   return std::max(jaw * cheek, lip);
 }
 
-// Blood near the surface: cheeks, nose, chin, ears.
+// Blood near the surface: cheeks, nose, chin and ears.
 float Redness(const vec3& q) {
   return 0.80f * Spot(q, {4.4f, -3.0f, 7.0f}, {1.9f, 1.5f, 3.0f}) +
          0.60f * Spot(q, {0.2f, -3.9f, 11.0f}, {1.3f, 1.1f, 1.8f}) +
@@ -77,7 +78,7 @@ vec3 BareSkin(const vec3& p, const vec3& normal, const FaceParameters& face) {
   colour = glm::mix(colour, vec3(0.42f, 0.37f, 0.36f), (0.34f - 0.12f * age) * stubble);
   colour *= 1.0f + 0.03f * blotch + 0.035f * fine;
   colour = Marks(colour, p, q, age);
-  // Nostrils are dark inside; the furrow behind the wing and the crease of the chin redden.
+  // Nostrils are dark inside.
   const float nostril =
       Spot(q, {0.72f, -4.55f, 9.9f}, {0.36f, 0.34f, 0.6f}) * Smoothstep(0.0f, -0.6f, normal.y);
   return glm::mix(colour, vec3(0.20f, 0.08f, 0.06f), std::clamp(1.5f * nostril, 0.0f, 0.93f));
@@ -97,7 +98,7 @@ vec3 Lips(vec3 colour, const vec3& p, const FaceParameters& face) {
   return glm::mix(colour, vec3(0.26f, 0.08f, 0.08f), 0.8f * line);
 }
 
-// Edges of the lids: wet and pink by the ball, dark where the lashes grow.
+// The edges of the lids: wet and pink at the eyeball, dark where the lashes grow.
 vec3 LidRims(vec3 colour, const vec3& p) {
   const vec3 q = OnLeftSide(p);
   const vec3 eye = p - EyeCentre(p.x > 0.0f ? 1.0f : -1.0f);
@@ -107,15 +108,15 @@ vec3 LidRims(vec3 colour, const vec3& p) {
   colour = glm::mix(colour, vec3(0.66f, 0.38f, 0.34f), 0.6f * wet);
   const float edge = Bump(ball - 1.41f, 0.045f) * near;
   const float upper = Smoothstep(-0.1f, 0.25f, eye.y);
-  const float shade = Bump(ball - 1.47f, 0.10f) * near * upper;  // of the lashes on the lid
+  const float shade = Bump(ball - 1.47f, 0.10f) * near * upper;  // shadow of the lashes on the lid
   const float lash = glm::mix(0.25f, 0.75f, upper) * edge + 0.22f * shade;
   colour = glm::mix(colour, vec3(0.20f, 0.11f, 0.09f), std::min(lash, 0.85f));
   const float caruncle = Spot(q, {kInnerCanthusX + 0.08f, -0.1f, 8.0f}, {0.20f, 0.2f, 0.6f});
   return glm::mix(colour, vec3(0.76f, 0.42f, 0.38f), 0.6f * caruncle);
 }
 
-// Hair that grows out of the skin, root by root: its edge is made of hairs, combed up over the
-// forehead and back at the temples. The cap and the locks begin behind it.
+// The roots of the hair. Single hairs form the hairline, combed up over the forehead and back at
+// the temples. Cap and locks begin behind it.
 vec3 Roots(const vec3& colour, const vec3& p, const vec3& hair) {
   const float inside = InsideHairline(p);
   if (inside < -1.2f) return colour;
@@ -141,7 +142,7 @@ glm::vec4 HeadColour(const SurfaceTexel& texel, const FaceParameters& face) {
   return {Roots(colour, p, 1.3f * dark), 1.0f};
 }
 
-// The face's landmarks mean nothing on hands.
+// The landmarks of the face do not apply to hands.
 glm::vec4 HandColour(const SurfaceTexel& texel) {
   const vec3 p = texel.position * 100.0f;
   const float tip = Smoothstep(84.0f, 87.0f, std::abs(p.x));
@@ -149,7 +150,7 @@ glm::vec4 HandColour(const SurfaceTexel& texel) {
   return {colour * (1.0f + 0.04f * FractalNoise(p * 0.8f)), 1.0f};
 }
 
-// What lies behind the lips' line: gums and dark. 0 outside, 1 deep inside.
+// Gums and darkness behind the line of the lips: 0 outside, 1 deep inside.
 float InsideMouth(const vec3& p, const HeadShape& shape) {
   if (std::abs(p.x) > 2.7f || std::abs(p.y - kMouthY) > 1.6f || p.z < 0.0f) return 0.0f;
   const float depth = -shape.Distance(p);

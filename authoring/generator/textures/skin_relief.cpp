@@ -25,7 +25,7 @@ using glm::vec3;
 
 constexpr int kSkinNormalBits = 9;
 
-// How coarse the pores are: nose and inner cheeks most, lids least.
+// How coarse the pores are: coarsest on nose and inner cheeks, finest on the lids.
 float PoreShare(const vec3& q) {
   const float coarse = 0.45f + 0.9f * Spot(q, {0, -3.8f, 10.6f}, {1.7f, 1.4f, 2.0f}) +
                        0.8f * Spot(q, {2.7f, -3.2f, 8.6f}, {1.9f, 1.7f, 3.0f}) +
@@ -34,7 +34,7 @@ float PoreShare(const vec3& q) {
   return coarse * (1.0f - 0.8f * Spot(q, {3.2f, 0.0f, 8.4f}, {1.8f, 1.1f, 2.0f}));
 }
 
-// Fine lines run across the pull of the muscle below: level on the forehead, fanning round the
+// Fine lines run across the pull of the muscle below: level on the forehead, fanned around the
 // eyes, down from the nose over the cheeks.
 float FineLines(const vec3& q, float age) {
   const float brow = Spot(q, {0, 4.2f, 9.0f}, {6.0f, 2.0f, 5.0f});
@@ -60,7 +60,8 @@ float Height(const vec3& p, const FaceParameters& face) {  // centimetres
          0.0028f * lips * creases;
 }
 
-// Centimetres of flesh between a point of the skin and the nearest way out behind it.
+// The thickness of the flesh between a point of the skin and the nearest exit behind it,
+// centimetres.
 float Thickness(const HeadShape& shape, const vec3& p, const vec3& normal) {
   constexpr float kLongest = 100.0f * kFullThickness;
   float t = 0.12f;
@@ -104,7 +105,7 @@ character::Picture PaintSkinRoughness(const character::Mesh& skin, int size) {
                          rough += 0.05f * Spot(q, {5.2f, -5.0f, 5.0f}, {1.8f, 2.5f, 3.0f});
                          rough = glm::mix(rough, 0.42f, LipShare(p));
                          rough += 0.16f * Smoothstep(7.4f, 7.9f, q.x);  // ears are dry
-                         // Between roots no skin shines.
+                         // Hair roots make the skin dull.
                          rough = glm::mix(rough, 1.0f, Smoothstep(-0.5f, 0.4f, InsideHairline(p)));
                          rough = glm::mix(rough, 0.9f, Bump(p.y - kMouthY, 0.10f) * LipShare(p));
                        }
@@ -120,8 +121,8 @@ character::Picture PaintSkinThickness(const character::Mesh& skin, const HeadSha
         const vec3 p = ModelToHead(texel.position);
         float thick = 1.2f;  // fingers
         if (!OnHand(texel)) {
-          // Ears are a mesh of their own: what stands off the head is gristle of 2 mm, the lobe
-          // fat.
+          // Ears are separate surfaces that stand off the head: 2 mm of cartilage, and a thicker
+          // lobe.
           const float off = shape.Distance(p);
           const float ear = glm::mix(0.32f, 0.16f, Smoothstep(-4.6f, -3.2f, p.y));
           thick = off > 0.15f ? ear : Thickness(shape, p, texel.normal);

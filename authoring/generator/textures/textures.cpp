@@ -30,7 +30,7 @@ using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 
-// The part of the hair below its strands: they share their texels, the cap's are its own.
+// The cap, which has texels of its own. The strands above it share theirs.
 character::Mesh CapOf(const character::Mesh& hair) {
   character::Mesh cap = hair;
   cap.indices.clear();
@@ -124,7 +124,7 @@ float Soft(const vec3& p, std::initializer_list<Blob> blobs) {
   return mask;
 }
 
-// Share of the left side at x, blending over the middle.
+// The share of the left side at x, blended across the middle.
 float LeftShare(float x) { return Smoothstep(-0.8f, 0.8f, x); }
 
 character::Picture PaintMasks(const char* name, const character::Mesh& skin, int size,

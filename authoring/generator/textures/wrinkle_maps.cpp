@@ -15,8 +15,8 @@
 namespace furrow::authoring {
 namespace {
 
-constexpr int kWrinkleNormalBits = 10;  // a tenth of a degree: folds are smooth
-constexpr float kFineLines = 0.8f;      // of a skin that folds twice as deep as a young man's
+constexpr int kWrinkleNormalBits = 10;  // a tenth of a degree is enough, since folds are smooth
+constexpr float kFineLines = 0.8f;      // for skin that folds twice as deep as at 30 years
 
 Status AddPictures(const BakedMap& baked, character::Character* character) {
   const auto& maps = character->rig.wrinkle_maps;
