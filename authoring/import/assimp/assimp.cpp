@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// assimp's headers stay here and in assimp_materials: what leaves them is glTF.
+// Only this file and assimp_materials include assimp's headers; other code sees glTF.
 #include "authoring/import/assimp/assimp.h"
 
 #include <algorithm>
@@ -31,9 +31,9 @@ namespace {
 
 constexpr std::size_t kMaxForeignBytes = 512u << 20;
 constexpr std::size_t kMaxForeignNodes = 16384;
-constexpr int kMaxSets = 4;  // of four influences
+constexpr int kMaxSets = 4;  // sets of four influences
 
-// Reads nothing: the model is in memory, and no file that it names is followed.
+// Denies access to files. The model is in memory, and files that it names are not opened.
 class NoFiles : public Assimp::IOSystem {
  public:
   bool Exists(const char*) const override { return false; }
@@ -45,7 +45,7 @@ class NoFiles : public Assimp::IOSystem {
 glm::mat4 ToGlm(const aiMatrix4x4& m) { return glm::transpose(glm::make_mat4(&m.a1)); }
 glm::vec3 ToGlm(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-// A scene on its way to glTF.
+// Converts a scene to glTF.
 class SceneWriter {
  public:
   explicit SceneWriter(const aiScene& scene) : scene_(scene) {}
@@ -73,7 +73,7 @@ class SceneWriter {
     return std::nullopt;
   }
 
-  // What the file says about its space, as a turn and a scale of the whole.
+  // The axes and unit that the file states, as a rotation and scale of the whole scene.
   wrinkle::Transform Space() {
     wrinkle::Transform space;
     const std::optional<int> up = Metadata<int>("UpAxis");
@@ -98,13 +98,13 @@ class SceneWriter {
 
   struct SourceNode {
     const aiNode* node;
-    int parent;       // into sources_; -1 for the root
-    glm::mat4 model;  // as the file has it; of a kept node, as it is written
+    int parent;       // index into sources_; -1 for the root
+    glm::mat4 model;  // as in the file; for a kept node, as written
     bool is_joint = false;
-    int written = -1;  // into nodes_, if it is kept
+    int written = -1;  // index into nodes_; -1 if not kept
   };
 
-  // All nodes, parents first.
+  // Collects all nodes, parents first.
   Status CollectNodes() {
     sources_.push_back({scene_.mRootNode, -1, wrinkle::ToMatrix(Space())});
     for (std::size_t i = 0; i < sources_.size(); ++i) {
@@ -122,7 +122,7 @@ class SceneWriter {
     return {};
   }
 
-  // Joints: the nodes that bones name, each once.
+  // Finds the joints: every node that a bone names.
   Status FindJoints() {
     for (unsigned m = 0; m < scene_.mNumMeshes; ++m) {
       const aiMesh& mesh = *scene_.mMeshes[m];
@@ -139,8 +139,8 @@ class SceneWriter {
     return {};
   }
 
-  // Writes the joints and what stands between two of them. What stands above all joints (the scene,
-  // an armature, axis and unit) is folded into the topmost ones.
+  // Writes the joints and the nodes between them. Nodes above all joints (scene, armature, axes,
+  // unit) are folded into the topmost joints.
   void WriteNodes() {
     std::vector<bool> below(sources_.size(), false);
     for (std::size_t i = sources_.size(); i-- > 1;) {
@@ -167,7 +167,7 @@ class SceneWriter {
     }
   }
 
-  // The nearest kept node at or above one; -1 for none.
+  // The nearest kept node at or above a node, or -1.
   [[nodiscard]] int Kept(int source) const {
     while (source >= 0 && sources_[source].written < 0) source = sources_[source].parent;
     return source;
@@ -205,7 +205,7 @@ class SceneWriter {
             "export the character with its mesh and skeleton"};
   }
 
-  // By vertex, the strongest first.
+  // Influences by vertex, the strongest first.
   std::vector<std::vector<Influence>> InfluencesOf(const aiMesh& mesh) {
     std::vector<std::vector<Influence>> influences(mesh.mNumVertices);
     for (unsigned b = 0; b < mesh.mNumBones; ++b) {
@@ -229,7 +229,7 @@ class SceneWriter {
     return joint_of_source_.at(source_by_name_.at(NameFrom(bone.mName)));
   }
 
-  // Mesh space to model space in the rest pose, for each joint of the mesh.
+  // The matrix from mesh space to model space in the rest pose, for each joint of the mesh.
   std::unordered_map<std::size_t, glm::mat4> SkinMatrices(const aiMesh& mesh) {
     std::unordered_map<std::size_t, glm::mat4> matrices;
     for (unsigned b = 0; b < mesh.mNumBones; ++b) {
@@ -240,8 +240,8 @@ class SceneWriter {
     return matrices;
   }
 
-  // Where each vertex of a mesh goes: model space in the rest pose of a skinned one, the space of
-  // the nearest kept node of a plain one.
+  // The placement of each vertex of a mesh. Skinned meshes: model space in the rest pose. Other
+  // meshes: the space of the nearest kept node.
   std::vector<glm::mat4> Placements(const aiMesh& mesh, std::size_t source,
                                     const std::vector<std::vector<Influence>>& influences) {
     const int kept = Kept(static_cast<int>(source));

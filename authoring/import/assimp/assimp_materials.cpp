@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxPicturesOf = 64;
 
-// The last part of a path in either system's manner.
+// The last component of a path with either kind of slash.
 std::string FileName(const std::string& path) {
   const std::size_t slash = path.find_last_of("/\\");
   return slash == std::string::npos ? path : path.substr(slash + 1);
@@ -24,7 +24,7 @@ float RoughnessOf(const aiMaterial& from) {
   float shininess = 0.0f;
   if (from.Get(AI_MATKEY_ROUGHNESS_FACTOR, roughness) != AI_SUCCESS &&
       from.Get(AI_MATKEY_SHININESS, shininess) == AI_SUCCESS && shininess > 0.0f) {
-    // Blinn-Phong's exponent as a roughness with the same width of highlight.
+    // Converts a Blinn-Phong exponent to a roughness with the same width of highlight.
     roughness = std::pow(2.0f / (shininess + 2.0f), 0.25f);
   }
   return std::clamp(roughness, 0.0f, 1.0f);
@@ -63,7 +63,7 @@ GltfJson AssimpMaterials::Material(const aiMaterial& from) {
   if (const int texture = TextureOf(from, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE});
       texture >= 0) {
     pbr["baseColorTexture"] = {{"index", texture}};
-    pbr["baseColorFactor"] = {1.0f, 1.0f, 1.0f, 1.0f};  // exporters leave 0.8 grey beside it
+    pbr["baseColorFactor"] = {1.0f, 1.0f, 1.0f, 1.0f};  // exporters often add a grey of 0.8
   }
   GltfJson material = {{"name", NameFrom(from.GetName())},
                        {"pbrMetallicRoughness", std::move(pbr)}};
@@ -100,7 +100,7 @@ int AssimpMaterials::AddTexture(const aiString& path) {
   const std::string name = FileName(NameFrom(path));
   GltfJson image = {{"name", name}};
   if (embedded != nullptr && embedded->mHeight == 0) {
-    image["mimeType"] = "image/png";  // told by its first bytes, whatever it is
+    image["mimeType"] = "image/png";  // a placeholder; readers detect the format by its first bytes
     image["bufferView"] =
         builder_.AddView(embedded->pcData, embedded->mWidth, character::GltfBuilder::kNoTarget);
   } else if (embedded != nullptr || name.empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// assimp's headers stay in this folder: what leaves it is glTF.
+// Includes assimp's headers, which stay in this folder: other code sees glTF.
 #pragma once
 
 #include <initializer_list>
@@ -15,25 +15,25 @@
 
 namespace furrow::authoring {
 
-// Names from outside may be in any encoding; JSON takes UTF-8 alone: what is not printable ASCII is
-// an underscore.
+// Converts a name to ASCII. Foreign names may have any encoding, but JSON requires UTF-8, so every
+// byte that is not printable ASCII becomes an underscore.
 [[nodiscard]] std::string NameFrom(const aiString& name);
 
-// A scene's materials on their way to glTF: base colour, roughness, the pictures of base colour and
-// normals, two-sidedness.
+// Converts a scene's materials to glTF: base colour, roughness, the pictures of base colour and
+// normals, double-sidedness.
 class AssimpMaterials {
  public:
-  // Both outlive it. Materials, textures and images are appended to the builder's root, materials
-  // in the scene's order.
+  // Both arguments must outlive the object. Materials, textures and images are appended to the
+  // builder's root, materials in the scene's order.
   AssimpMaterials(const aiScene& scene, character::GltfBuilder* builder)
       : scene_(scene), builder_(*builder), root_(builder->root()) {}
 
-  // Appends a remark for each picture that is left out.
+  // Appends a remark for each picture that cannot be converted.
   void Run(std::vector<std::string>* remarks);
 
  private:
   [[nodiscard]] GltfJson Material(const aiMaterial& from);
-  // The texture of the first of `types` that the material has; -1 for none.
+  // The first texture of the material that has one of `types`, or -1.
   int TextureOf(const aiMaterial& material, std::initializer_list<aiTextureType> types);
   int AddTexture(const aiString& path);
 

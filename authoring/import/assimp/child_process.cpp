@@ -34,7 +34,7 @@ constexpr bool kMemoryCanBeLimited = true;
 constexpr bool kMemoryCanBeLimited = true;
 #endif
 
-// What the child sends: a StatusCode, then the result, or what, where and to do with their lengths.
+// The child sends a StatusCode. The result follows, or the fields of the status with their lengths.
 constexpr std::size_t kMaxErrorBytes = 1u << 16;
 
 std::string ErrorMessage(const Status& status) {
@@ -71,7 +71,7 @@ std::size_t AddressSpaceInUse() {
 
 void Limit(int resource, rlim_t value) {
   const rlimit limit = {value, value};
-  (void)setrlimit(resource, &limit);  // where it may not be lowered, a lower one holds already
+  (void)setrlimit(resource, &limit);  // cannot fail except where a lower limit already applies
 }
 
 bool WriteAll(int pipe, std::string_view bytes) {
@@ -84,12 +84,12 @@ bool WriteAll(int pipe, std::string_view bytes) {
   return true;
 }
 
-[[noreturn]] void RunChild(const ChildProcessLimits& confinement, int pipe,
+[[noreturn]] void RunChild(const ChildProcessLimits& limits, int pipe,
                            const std::function<Result<std::string>()>& work) {
   Limit(RLIMIT_CORE, 0);
-  Limit(RLIMIT_FSIZE, 0);  // nothing that is read this way writes a file
-  Limit(RLIMIT_CPU, confinement.max_cpu_seconds);
-  if (kMemoryCanBeLimited) Limit(RLIMIT_AS, AddressSpaceInUse() + confinement.max_memory_bytes);
+  Limit(RLIMIT_FSIZE, 0);  // readers never write files
+  Limit(RLIMIT_CPU, limits.max_cpu_seconds);
+  if (kMemoryCanBeLimited) Limit(RLIMIT_AS, AddressSpaceInUse() + limits.max_memory_bytes);
   for (const int fatal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) std::signal(fatal, SIG_DFL);
   if (const int null = open("/dev/null", O_WRONLY); null >= 0) dup2(null, STDERR_FILENO);
   std::string message;
@@ -106,7 +106,7 @@ bool WriteAll(int pipe, std::string_view bytes) {
   _exit(WriteAll(pipe, message) ? 0 : 1);
 }
 
-// All that comes through the pipe; false where it is more than `max_bytes`.
+// Reads the pipe to its end. Returns false if there are more than `max_bytes`.
 bool ReadAll(int pipe, std::size_t max_bytes, std::string* bytes) {
   std::array<char, 1 << 16> block;
   for (;;) {
@@ -132,7 +132,7 @@ Status EndOf(int exit_status) {
 
 }  // namespace
 
-Result<std::string> RunInChildProcess(const ChildProcessLimits& confinement,
+Result<std::string> RunInChildProcess(const ChildProcessLimits& limits,
                                       const std::function<Result<std::string>()>& work) {
   int ends[2] = {-1, -1};
   if (pipe2(ends, O_CLOEXEC) != 0) return Status(StatusCode::kIo, std::strerror(errno), "pipe");
@@ -145,12 +145,12 @@ Result<std::string> RunInChildProcess(const ChildProcessLimits& confinement,
   }
   if (child == 0) {
     close(ends[0]);
-    RunChild(confinement, ends[1], work);
+    RunChild(limits, ends[1], work);
   }
   close(ends[1]);
   std::string message;
-  const bool fits = ReadAll(ends[0], confinement.max_result_bytes, &message);
-  close(ends[0]);  // a child that still writes ends by it
+  const bool fits = ReadAll(ends[0], limits.max_result_bytes, &message);
+  close(ends[0]);  // ends a child that still writes
   int exit_status = 0;
   while (waitpid(child, &exit_status, 0) < 0 && errno == EINTR) {
   }

@@ -9,23 +9,24 @@
 
 namespace furrow::authoring {
 
-// What a confined piece of work may use.
+// The resources that the child process may use.
 struct ChildProcessLimits {
-  std::size_t max_memory_bytes = std::size_t{4} << 30;  // address space, besides what we hold now
+  std::size_t max_memory_bytes = std::size_t{4}
+                                 << 30;  // address space, in addition to that of this process
   unsigned max_cpu_seconds = 120;
   std::size_t max_result_bytes = std::size_t{1} << 30;
 };
 
-// Runs `work` in a child process and brings its result back: for parsers that are not ours and read
-// files from anywhere. Whatever they do - crash, eat memory, never end - costs the child alone.
+// Runs `work` in a child process and returns its result. Use it for third-party parsers of
+// untrusted files: a crash, excessive memory or an endless loop affects only the child.
 //
-// - `work` sees a copy of this process's memory as it is now, and only what it returns comes back.
-//   It must not rely on other threads: none of them exist in the child.
-// - Under AddressSanitizer and ThreadSanitizer, which reserve address space by the terabyte, memory
-//   is not limited.
-// - Errors: what `work` returned; kLimit (memory, time, result too long); kParse (it crashed);
-//   kIo (no process or pipe to be had).
+// - `work` sees a copy of this process's memory. Only its return value comes back. It must not rely
+//   on other threads, which do not exist in the child.
+// - Memory is not limited under AddressSanitizer and ThreadSanitizer, which reserve terabytes of
+//   address space.
+// - Errors: those that `work` returned; kLimit (memory, time, size of the result); kParse (the
+//   child crashed); kIo (no process or pipe available).
 [[nodiscard]] Result<std::string> RunInChildProcess(
-    const ChildProcessLimits& confinement, const std::function<Result<std::string>()>& work);
+    const ChildProcessLimits& limits, const std::function<Result<std::string>()>& work);
 
 }  // namespace furrow::authoring

@@ -10,22 +10,22 @@
 #include "character/gltf_builder.h"
 #include "wrinkle/skeleton/transform.h"
 
-// Pieces of a glTF that is written from another format.
+// Helpers to write glTF from another format.
 namespace furrow::authoring {
 
 using GltfJson = character::GltfBuilder::Json;
 
-// The nearest transform without the shear that a file may have; axes of no length become tiny.
+// The nearest transform without shear. Axes of zero length become very small.
 [[nodiscard]] wrinkle::Transform WithoutShear(const glm::mat4& m);
 
 [[nodiscard]] GltfJson NodeJson(const std::string& name, const wrinkle::Transform& t);
 
 struct Influence {
-  std::size_t joint;  // of the skin
+  std::size_t joint;  // index in the skin
   float weight;
 };
 
-// JOINTS_n and WEIGHTS_n, as many sets of four as the vertex with most influences needs.
+// Adds JOINTS_n and WEIGHTS_n, with enough sets of four for the vertex with the most influences.
 void AddInfluences(const std::vector<std::vector<Influence>>& influences,
                    character::GltfBuilder* builder, GltfJson* attributes);
 

@@ -15,8 +15,8 @@
 namespace furrow::authoring {
 namespace {
 
-// Where the islands go: the face's left, all others in a strip on the right. The gap between keeps
-// dilation and mip levels apart.
+// The layout of the UV islands: the face on the left, all others in a strip on the right. The gap
+// keeps dilation and mip levels apart.
 constexpr float kFaceRight = 0.74f;
 constexpr float kRestLeft = 0.76f;
 constexpr float kMargin = 0.004f;
@@ -49,7 +49,7 @@ std::vector<Island> DescribeIslands(const BaseMesh& base, const wrinkle::Skeleto
   return islands;
 }
 
-// Fills in the moves of `source`: [0] the face's island, [1] all others together.
+// Sets the moves of `source`: [0] for the face's island, [1] for all others.
 void ArrangeIslands(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
                     std::span<const std::uint32_t> faces, MeshSource* source) {
   int num_islands = 0;
@@ -83,7 +83,8 @@ bool AllDeleted(const ObjMesh& obj, const ObjMesh::Face& face, const std::vector
   return true;
 }
 
-// The box of a group's vertices before `z`, and one of them. None: low above high.
+// The bounding box of a group's vertices in front of `z`, and one of the vertices. Empty: low >
+// high.
 struct Bounds {
   glm::vec3 low{std::numeric_limits<float>::max()};
   glm::vec3 high{std::numeric_limits<float>::lowest()};
@@ -107,7 +108,7 @@ Bounds BoundsOf(const BaseMesh& base, std::string_view group,
   return bounds;
 }
 
-// Unit vectors that complete `forward` to a right-handed frame: right (of the picture) and up.
+// Completes `forward` to a right-handed frame of unit vectors: right (of the picture) and up.
 void PictureAxes(const glm::vec3& forward, glm::vec3* right, glm::vec3* up) {
   const glm::vec3 above =
       std::abs(forward.y) < 0.9f ? glm::vec3(0.0f, 1.0f, 0.0f) : glm::vec3(0.0f, 0.0f, -1.0f);
@@ -162,7 +163,7 @@ character::Mesh BuildTeeth(const BaseMesh& base, std::string_view group, bool up
   const Bounds box = BoundsOf(base, group);
   if (box.low.x > box.high.x) return mesh;
   constexpr float kCentimetres = 100.0f;
-  constexpr float kFront = 0.007f;  // metres behind the foremost point: incisors
+  constexpr float kFront = 0.007f;  // depth of the incisors behind the foremost point, metres
   const Bounds incisors = BoundsOf(base, group, box.high.z - kFront);
   const glm::vec3 front(0.5f * (box.low.x + box.high.x), upper ? incisors.low.y : incisors.high.y,
                         box.high.z);
@@ -191,7 +192,7 @@ character::Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint
   constexpr int kRings = 24;
   constexpr int kSegments = 36;
   constexpr float kCorneaAngle = 0.6f;   // radians from the axis
-  constexpr float kCorneaBulge = 0.06f;  // of the radius
+  constexpr float kCorneaBulge = 0.06f;  // fraction of the radius
   const Bounds box = BoundsOf(base, group);
   character::Mesh mesh;
   mesh.name = std::string(group);

@@ -19,10 +19,10 @@ namespace furrow::authoring {
 namespace {
 
 constexpr int kSections = 4;          // of a lock, root to tip
-constexpr float kLockArea = 0.4e-4f;  // square metres of scalp that a lock grows from
-constexpr float kStreak = 0.08f;      // of the picture's width that a lock shows
+constexpr float kLockArea = 0.4e-4f;  // square metres of scalp per lock
+constexpr float kStreak = 0.08f;      // width of a lock in the picture, fraction of its width
 
-// Where locks may lie: the vertices of the head above the jaw.
+// Finds the scalp: the vertices of the head above the chin.
 class Scalp {
  public:
   Scalp(const character::Mesh& skin, const FaceLandmarks& face) : skin_(skin) {
@@ -31,7 +31,7 @@ class Scalp {
     }
   }
 
-  // `p` at `height` over the surface, and the surface's normal there.
+  // The point at `height` above the surface near `p`. Also returns the surface normal there.
   glm::vec3 Over(const glm::vec3& p, float height, glm::vec3* normal) const {
     float nearest = std::numeric_limits<float>::max();
     const character::Vertex* found = nullptr;
@@ -51,7 +51,7 @@ class Scalp {
   std::vector<std::uint32_t> head_;
 };
 
-// One lock on its way into the mesh.
+// Adds locks to the hair's mesh.
 class LockBuilder {
  public:
   LockBuilder(const character::Mesh& skin, const FaceLandmarks& face, character::Mesh* hair)
@@ -81,7 +81,8 @@ class LockBuilder {
   }
 
  private:
-  // Away from the whorl; on top, forward and to the left as well: a parting on the right.
+  // The direction of combing: away from the whorl, and on top also forward and to the left, so that
+  // the parting is on the right.
   [[nodiscard]] glm::vec3 Comb(const glm::vec3& p) const {
     const glm::vec3 whorl(face_.Millimetres(12.0f), face_.crown.y,
                           face_.head.z - face_.Millimetres(45.0f));
@@ -91,7 +92,7 @@ class LockBuilder {
            (1.0f - top) * glm::vec3(0.0f, -1.0f, 0.1f);
   }
 
-  // Three vertices across, the middle one raised; the tip is a point.
+  // Adds a strip with three vertices across, the middle one raised. It narrows to the tip.
   void Add(const std::array<glm::vec3, kSections + 1>& path,
            const std::array<glm::vec3, kSections + 1>& normals, float width,
            const character::Vertex& influences, float shade) {
@@ -133,7 +134,7 @@ character::Mesh BuildMakeHumanHair(const character::Mesh& skin, const FaceLandma
   hair.name = "hair";
   hair.material = material;
   LockBuilder locks(skin, face, &hair);
-  float owed = 0.0f;  // area whose lock has not grown yet
+  float owed = 0.0f;  // area without locks so far
   int number = 0;
   const float area_of_lock = kLockArea * face.scale * face.scale;
   for (std::size_t i = 0; i + 2 < skin.indices.size(); i += 3) {
@@ -150,7 +151,7 @@ character::Mesh BuildMakeHumanHair(const character::Mesh& skin, const FaceLandma
       if (u + v > 1.0f) u = 1.0f - u, v = 1.0f - v;
       const glm::vec3 root = a + u * ab + v * ac;
       if (ScalpAmount(root, face) < HashLattice(number, 10, 17))
-        continue;  // the hairline thins out
+        continue;  // thins out the hairline
       locks.Grow(root, *corners[0], number);
     }
   }
@@ -170,7 +171,7 @@ character::Mesh BuildLashes(const BaseMesh& base, std::string_view group, const 
     left = std::min(left, vertex.position.x);
     right = std::max(right, vertex.position.x);
   }
-  constexpr float kAcross = 0.9f;  // tips keep away from where the picture begins again
+  constexpr float kAcross = 0.9f;  // keeps tips away from the row where the picture repeats
   for (character::Vertex& vertex : lashes.vertices) {
     const float out = (glm::distance(vertex.position, eye) - low) / std::max(high - low, 1e-6f);
     vertex.uv = {(vertex.position.x - left) / std::max(right - left, 1e-6f),
@@ -210,7 +211,7 @@ character::Picture PaintLashes(int size) {
       const float bend = 0.3f * (HashLattice(number, 2, 5) - 0.5f) * out;
       const float aside = std::abs(u - static_cast<float>(number) - 0.5f - bend);
       const float half = 0.42f * (1.0f - out / length);
-      // Where the lids meet, the rows of both would show as hooks.
+      // The corners stay empty. Upper and lower lashes would form hooks there.
       const bool corner = u < 4.0f || u > kLashes - 6.0f;
       const bool on = !corner && (out < 0.05f || aside < half);
       SetTexel(&picture, x, y, glm::vec4(glm::vec3(0.06f, 0.045f, 0.04f), on ? 1.0f : 0.0f));

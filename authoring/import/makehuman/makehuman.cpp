@@ -35,9 +35,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kMetresPerUnit = 0.1f;  // MakeHuman's unit is the decimetre
+constexpr float kMetresPerUnit = 0.1f;  // MakeHuman uses decimetres
 
-// The one importer run: reads, fits, cuts and paints, in that order.
+// One run of the importer: reads, fits, cuts and paints.
 class MakeHumanImport {
  public:
   MakeHumanImport(const fs::path& folder, const ImportOptions& options)
@@ -95,7 +95,8 @@ class MakeHumanImport {
     return {};
   }
 
-  // Metres, with the body's lowest point (not the helpers': a skirt may hang lower) on the ground.
+  // Converts to metres and puts the lowest point of the body on the ground. Helpers do not count,
+  // since a skirt may hang lower.
   Status PlaceBase(const fs::path& path) {
     const std::vector<std::uint32_t> body = FacesOf(base_.obj, "body");
     if (body.empty())
@@ -113,7 +114,7 @@ class MakeHumanImport {
     return {};
   }
 
-  // The garment's folder: the one that was asked for, or the first.
+  // The folder of the garment: the requested one, or the first by name.
   Result<fs::path> FindGarment() {
     const fs::path clothes = folder_ / "clothes";
     if (!options_.clothes.empty())

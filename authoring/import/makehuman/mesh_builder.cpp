@@ -92,7 +92,7 @@ character::Mesh BuildMesh(const std::string& name, int material, const MeshSourc
     for (std::size_t i = 1; i + 1 < face.num_corners; ++i) {
       const std::uint32_t b = split.VertexOf(corners[i]);
       const std::uint32_t c = split.VertexOf(corners[i + 1]);
-      if (first == b || b == c || c == first) continue;  // a corner stated twice
+      if (first == b || b == c || c == first) continue;  // repeated corner
       mesh.indices.insert(mesh.indices.end(), {first, b, c});
     }
   }

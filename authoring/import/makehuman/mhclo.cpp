@@ -59,7 +59,7 @@ class MhcloParser {
     if (word == "x_scale") return Scale(0);
     if (word == "y_scale") return Scale(1);
     if (word == "z_scale") return Scale(2);
-    return {};  // material, tag, z_depth, ...: not needed
+    return {};  // material, tag, z_depth, ...: not used
   }
 
   Status Error(StatusCode code, std::string what) const {
@@ -105,7 +105,7 @@ class MhcloParser {
     return {};
   }
 
-  // Nine numbers, or one: the garment's vertex lies on that base vertex.
+  // Nine numbers. A single number places the vertex exactly on that base vertex.
   Status Vertex() {
     Mhclo::GarmentVertex vertex;
     if (words_.size() != 1 && words_.size() < 9)

@@ -99,7 +99,7 @@ class ObjParser {
     return {};
   }
 
-  // One index of a corner: from 1, or negative, counted back from the latest.
+  // One index of a corner: 1 or more, or negative to count back from the latest.
   Status Index(std::string_view word, std::size_t count, std::string_view kind,
                std::int64_t* index) const {
     const std::optional<long> value = ToInteger(word);

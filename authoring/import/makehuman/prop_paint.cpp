@@ -22,7 +22,7 @@ character::Picture Filled(const char* name, int size, const glm::vec3& fill) {
   return picture;
 }
 
-// Angles of an adult eye of 12 mm radius with an iris 11.7 mm across.
+// Angles of an adult eye with a radius of 12 mm and an iris 11.7 mm wide.
 constexpr float kIris = 0.509f;
 constexpr float kPupil = 0.17f;
 
@@ -46,8 +46,8 @@ glm::vec3 EyeColour(float angle, float around) {
                   glm::smoothstep(kPupil - 0.015f, kPupil + 0.015f, angle));
 }
 
-// One crossing thread every 1.4 mm would alias at texture sizes of a whole body: the weave is drawn
-// at 3 mm, which reads as a coarse twill.
+// Real threads, 1.4 mm apart, would alias in the texture of a whole body. The weave is drawn at 3
+// mm, which looks like coarse twill.
 float Weave(const glm::vec3& p) {
   constexpr float kThread = 2.0f * std::numbers::pi_v<float> / 0.003f;
   return 0.5f + 0.25f * std::sin(kThread * (p.x + p.z + 0.5f * p.y)) +

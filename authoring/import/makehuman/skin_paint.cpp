@@ -16,7 +16,7 @@
 namespace furrow::authoring {
 namespace {
 
-// sRGB in [0, 1]. What the eye reads as living skin is the difference between the regions.
+// sRGB in [0, 1]. Skin looks alive because of the differences between its regions.
 constexpr glm::vec3 kSkin{0.80f, 0.615f, 0.52f};
 constexpr glm::vec3 kRed{0.77f, 0.48f, 0.42f};
 constexpr glm::vec3 kYellow{0.82f, 0.66f, 0.54f};
@@ -26,8 +26,8 @@ constexpr glm::vec3 kMouth{0.25f, 0.09f, 0.085f};
 constexpr glm::vec3 kBrow{0.23f, 0.165f, 0.13f};
 constexpr glm::vec3 kStubble{0.17f, 0.12f, 0.095f};
 
-// How much of the face's front a point belongs to: keeps features off the inside of the mouth,
-// whose surface lies close behind the lips.
+// How much a point belongs to the front of the face. This keeps features off the inside of the
+// mouth, which is close behind the lips.
 float Front(const SurfaceTexel& texel) { return glm::smoothstep(-0.1f, 0.35f, texel.normal.z); }
 
 float Redness(const glm::vec3& p, const FaceLandmarks& face) {
@@ -35,7 +35,7 @@ float Redness(const glm::vec3& p, const FaceLandmarks& face) {
   for (const FaceLandmarks::Side& side : face.sides) {
     const glm::vec3 apple = glm::mix(side.cheek, side.fold_top, 0.35f);
     red = std::max(red, 0.42f * FadeOut(glm::distance(p, apple), 0.0f, face.Millimetres(36.0f)));
-    glm::vec3 ear = side.temple;  // ears lie level with the temples, well behind them
+    glm::vec3 ear = side.temple;  // ears are level with the temples, well behind them
     ear.z = face.head.z;
     red = std::max(red, 0.6f * FadeOut(glm::distance(p, ear), face.Millimetres(10.0f),
                                        face.Millimetres(40.0f)));
@@ -43,7 +43,7 @@ float Redness(const glm::vec3& p, const FaceLandmarks& face) {
   return red;
 }
 
-// Distance as seen from the front: lips and brows curve round the face, away from straight lines.
+// The distance seen from the front, since lips and brows curve around the face.
 float FrontDistance(glm::vec3 p, std::initializer_list<glm::vec3> line) {
   p.z = 0.0f;
   float nearest = 1.0f;
@@ -60,7 +60,7 @@ float Lips(const glm::vec3& p, const FaceLandmarks& face) {
   float amount = 0.0f;
   for (const FaceLandmarks::Side& side : face.sides) {
     const glm::vec3 corner = glm::mix(side.fold_bottom, side.mouth_corner, 0.4f);
-    if (p.z < corner.z - face.Millimetres(8.0f)) continue;  // the back of the head
+    if (p.z < corner.z - face.Millimetres(8.0f)) continue;  // back of the head
     const float along =
         std::clamp(std::abs(p.x - above.x) / std::abs(corner.x - above.x), 0.0f, 1.0f);
     const float half = face.Millimetres(glm::mix(3.9f, 0.9f, along * along));
@@ -71,8 +71,8 @@ float Lips(const glm::vec3& p, const FaceLandmarks& face) {
   return amount;
 }
 
-// Hairs of a brow: noise drawn out along them. They stand up at the nose and lie down toward the
-// temple. `out`, `up` in millimetres from the inner end, `along` in [0, 1] from it.
+// The hairs of a brow: noise that is stretched along them. Hairs stand up at the nose and lie down
+// toward the temple. `out` and `up`: millimetres from the inner end; `along`: [0, 1] from there.
 float BrowHairs(float out, float up, float along) {
   const float rise = glm::mix(1.2f, 0.15f, glm::smoothstep(0.0f, 0.35f, along));
   const glm::vec2 hair(std::cos(rise), std::sin(rise));
@@ -93,7 +93,7 @@ float Brow(const glm::vec3& p, const FaceLandmarks& face) {
     arch.y += face.Millimetres(1.0f);
     end.y = glm::mix(arch.y, end.y, 0.4f);
     const float distance = FrontDistance(p, {inner, arch, end});
-    // Thick at the nose, thin at the temple, and ragged: single hairs stand out.
+    // Thick at the nose, thin at the temple, and ragged, so that single hairs show.
     const float along = std::clamp((p.x - inner.x) / (end.x - inner.x), 0.0f, 1.0f);
     const float millimetre = face.Millimetres(1.0f);
     const float hairs =
@@ -156,7 +156,7 @@ glm::vec3 SkinColour(const SurfaceTexel& texel, const FaceLandmarks& face) {
   return colour * (1.0f + 0.05f * blotches + 0.05f * speckle);
 }
 
-// Weight of the eight regions at a point, before overlaps are settled.
+// The weights of the eight regions at a point, before overlaps are resolved.
 std::array<float, 8> RegionFields(const glm::vec3& p, const FaceLandmarks& face) {
   std::array<float, 8> field{};
   const auto mm = [&face](float v) { return face.Millimetres(v); };
@@ -193,7 +193,7 @@ std::array<float, 8> RegionFields(const glm::vec3& p, const FaceLandmarks& face)
 }  // namespace
 
 float ScalpAmount(const glm::vec3& p, const FaceLandmarks& face) {
-  // Ears lie behind the temples, below the brows.
+  // Ears are behind the temples, below the brows.
   const FaceLandmarks::Side& side = face.sides[p.x > 0.0f ? 0 : 1];
   const glm::vec3 ear(1.1f * side.temple.x, side.eye.y - face.Millimetres(20.0f),
                       side.eye.z - face.Millimetres(86.0f));
@@ -215,7 +215,7 @@ character::Picture PaintMakeHumanSkin(const std::vector<SurfaceTexel>& texels,
 character::Picture PaintMakeHumanSkinNormals(const std::vector<SurfaceTexel>& texels,
                                              const FaceLandmarks& face, int size) {
   const auto height = [&face](const glm::vec3& p) {
-    // Ridges of |noise| read as the net of fine furrows between pores.
+    // The magnitude of noise has sharp valleys, which look like the fine furrows between pores.
     const float net = std::abs(ValueNoise(p / face.Millimetres(1.6f)) - 0.5f);
     const float pores = ValueNoise(p / face.Millimetres(0.8f));
     return face.Millimetres(0.16f) * net + face.Millimetres(0.05f) * pores;
@@ -245,7 +245,7 @@ FaceMasks PaintFaceMasks(const std::vector<SurfaceTexel>& texels, const FaceLand
     std::array<float, 8> field = RegionFields(texel.position, face);
     float sum = 0.0f;
     for (const float value : field) sum += value;
-    // Temples face sideways and still wrinkle; what faces backwards does not.
+    // Temples face sideways and still wrinkle. Surfaces that face backward do not.
     const float forward = glm::smoothstep(-0.5f, -0.1f, texel.normal.z);
     const float scale = forward / std::max(sum, 1.0f);
     std::uint8_t* first = TexelAt(&masks.first, texel.x, texel.y);

@@ -143,7 +143,7 @@ class Checker {
     }
   }
 
-  // Meshes of one material share their pictures, and so their UVs' space.
+  // Meshes with the same material share pictures and therefore UV space.
   void CheckAtlases() {
     std::map<int, std::vector<int>> meshes_of;
     for (std::size_t m = 0; m < character_.meshes.size(); ++m) {

@@ -25,7 +25,8 @@ glm::vec3 RestPlace(const wrinkle::Skeleton& skeleton, int joint) {
   return glm::vec3(skeleton.rest_model()[static_cast<std::size_t>(joint)][3]);
 }
 
-// From the subject's right to its left, over all pairs that there are; zero for none.
+// The direction from the subject's right to its left, summed over all available pairs; zero if
+// none.
 glm::vec3 Across(const wrinkle::Skeleton& skeleton, const FoundJoints& joints) {
   glm::vec3 sum(0.0f);
   for (const JointRole left : {JointRole::kLeftUpperLeg, JointRole::kLeftUpperArm,
@@ -65,7 +66,7 @@ std::string AxisName(const glm::vec3& v) {
   return std::string(1, v[axis] < 0.0f ? '-' : '+') + "XYZ"[axis];
 }
 
-// The unit that brings `height` nearest to that of a person, where it is out of all proportion.
+// The unit that brings `height` nearest to that of a person. 1 if the height is plausible already.
 float UsualScale(float height, bool is_body) {
   const float usual = is_body ? 1.7f : 0.3f;
   if (height > usual / 3.5f && height < usual * 3.0f) return 1.0f;
@@ -75,7 +76,7 @@ float UsualScale(float height, bool is_body) {
   });
 }
 
-// Where a vertex stands in the rest pose, as a matrix on its position.
+// The matrix that moves a vertex to the rest pose.
 glm::mat4 RestMatrix(const character::Vertex& vertex, std::span<const glm::mat4> skin_matrices) {
   glm::mat4 blend(0.0f);
   for (int i = 0; i < 4; ++i) {
@@ -106,7 +107,7 @@ void MoveVertex(const glm::mat4& m, const glm::mat3& normals, character::Vertex*
   vertex->tangent = glm::vec4(UnitOr(glm::mat3(m) * tangent, tangent), vertex->tangent.w);
 }
 
-// The same joints with other positions in model space, turned by `turn`, without scales.
+// The same joints at rotated and scaled positions in model space, without scales of their own.
 Result<wrinkle::Skeleton> Rebuild(const wrinkle::Skeleton& from, const glm::mat3& turn,
                                   float scale) {
   const auto moved = [&](const glm::vec3& p) { return turn * p * scale; };
@@ -216,7 +217,7 @@ Status BringToRestPose(character::Character* character) {
       MoveVertex(m, flat ? glm::mat3(m) : glm::transpose(glm::inverse(glm::mat3(m))), &vertex);
     }
     for (std::size_t i = 0; mirrored && i + 2 < mesh.indices.size(); i += 3) {
-      std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);  // keep the outside outside
+      std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);  // keeps the winding after a mirroring
     }
   }
   return ReplaceSkeleton(glm::mat3(1.0f), 1.0f, character);

@@ -13,7 +13,7 @@ using wrinkle::JointRole;
 using wrinkle::kNoJoint;
 using wrinkle::Skeleton;
 
-constexpr float kFar = 0.4f;  // of the distance between the eyes
+constexpr float kFar = 0.4f;  // maximum distance of a match, in distances between the eyes
 
 struct FaceFrame {
   glm::vec3 middle;
@@ -31,7 +31,7 @@ std::optional<FaceFrame> FrameOf(const Skeleton& skeleton, const FoundJoints& jo
   return FaceFrame{0.5f * (left + right), unit};
 }
 
-// A place that a joint may stand for, in the frame of its face.
+// A position that may match a joint, in the frame of its face.
 struct Place {
   glm::vec3 at;
   int joint;

@@ -23,7 +23,7 @@ bool IsGltf(std::string_view bytes, const std::string& extension) {
          extension == ".vrm";
 }
 
-// What is in the bytes of a model, `where` of an error being a field.
+// Reads a model from its bytes. `where` of an error is a field.
 Status Parse(std::string_view bytes, const fs::path& path, OpenedModel* model) {
   const character::ReadOptions options{.lenient = true, .notes = &model->notes};
   const std::string extension = Extension(path);
@@ -54,7 +54,7 @@ std::string Sentence(const Finding& finding) {
          (finding.todo.empty() ? "" : " (" + finding.todo + ")");
 }
 
-// Leaves out what has no area; meshes that are nothing else go, too.
+// Removes triangles without area, and meshes that have no others.
 void DropDegenerates(OpenedModel* model) {
   std::size_t dropped = 0;
   std::vector<character::Mesh> kept;
