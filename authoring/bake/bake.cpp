@@ -5,16 +5,16 @@
 #include <memory>
 #include <utility>
 
-#include "authoring/bake/bake_check.h"
 #include "authoring/bake/layers/map_baker.h"
-#include "authoring/bake/pace.h"
+#include "authoring/bake/request/bake_progress.h"
+#include "authoring/bake/request/request_check.h"
 #include "authoring/bake/surface/bake_surface.h"
 #include "base/status.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
-constexpr float kSurface = 0.15f;  // of the time of a map, until its strain is known
+constexpr float kSurface = 0.15f;  // share of a map's time that its surface and strain take
 
 bool Names(const BakeStroke& stroke, const std::string& map) {
   return std::find(stroke.maps.begin(), stroke.maps.end(), map) != stroke.maps.end();
@@ -28,28 +28,28 @@ bool IsFed(const std::string& map, std::span<const BakePose> poses,
 
 }  // namespace
 
-Result<BakedMaps> Bake(const Character& character, std::span<const BakePose> poses,
+Result<BakedMaps> Bake(const character::Character& character, std::span<const BakePose> poses,
                        std::span<const BakeStroke> strokes, const BakeOptions& options,
-                       const std::function<bool(float)>& progress) {
+                       const std::function<bool(float)>& callback) {
   FURROW_RETURN_IF_ERROR(CheckBake(character, poses, strokes, options));
   std::vector<const wrinkle::WrinkleMap*> fed;
   for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
     if (IsFed(map.name, poses, strokes)) fed.push_back(&map);
   }
-  Pace pace(progress);
-  if (!pace.Tell(0.0f)) return Pace::Cancelled();
+  BakeProgress progress(callback);
+  if (!progress.Report(0.0f)) return BakeProgress::CancelledStatus();
   std::unique_ptr<BakeSurface> surfaces[2];  // skin, cloth
   BakedMaps maps;
   for (const wrinkle::WrinkleMap* map : fed) {
     const float share = 1.0f / static_cast<float>(fed.size());
     const float from = share * static_cast<float>(maps.maps.size());
     const bool last = map == fed.back();
-    pace.Enter(from, from + kSurface * share);
+    progress.BeginPart(from, from + kSurface * share);
     const bool cloth = GoesOnCloth(character, *map);
     std::unique_ptr<BakeSurface>& surface = surfaces[cloth ? 1 : 0];
     if (surface == nullptr) {
       Result<std::unique_ptr<BakeSurface>> made =
-          BakeSurface::Create(character, cloth, options, &pace);
+          BakeSurface::Create(character, cloth, options, &progress);
       FURROW_RETURN_IF_ERROR(made);
       surface = std::move(made).value();
     }
@@ -57,16 +57,16 @@ Result<BakedMaps> Bake(const Character& character, std::span<const BakePose> pos
     for (const BakePose& pose : poses) {
       if (pose.map != map->name) continue;
       baker.AddPose(pose);
-      if (!pace.Tell(1.0f)) return Pace::Cancelled();
+      if (!progress.Report(1.0f)) return BakeProgress::CancelledStatus();
     }
     for (const BakeStroke& stroke : strokes) {
       if (Names(stroke, map->name)) baker.AddStroke(stroke);
     }
-    auto baked = baker.Bake(from + kSurface * share, last ? 1.0f : from + share, &pace);
+    auto baked = baker.Bake(from + kSurface * share, last ? 1.0f : from + share, &progress);
     FURROW_RETURN_IF_ERROR(baked);
     maps.maps.push_back(std::move(**baked));
   }
   return maps;
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -19,7 +19,7 @@
 #include "rig/rig_check.h"
 #include "wrinkle/rig/rig_check.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 constexpr std::size_t kMaxCopiedBytes = 256u << 20;
@@ -31,10 +31,11 @@ wrinkle::WrinkleMap* FindMap(wrinkle::Rig* rig, const std::string& name) {
   return nullptr;
 }
 
-// Collects the files of a bake, and makes its rig name them.
+// Collects the files of a bake and makes the rig name them.
 class Packager {
  public:
-  Packager(const Character& character, const BakedMaps& maps, const PackageOptions& options)
+  Packager(const character::Character& character, const BakedMaps& maps,
+           const PackageOptions& options)
       : character_(character), maps_(maps), options_(options) {
     out_.rig = character.rig;
   }
@@ -47,13 +48,14 @@ class Packager {
     for (const bool cloth : {false, true}) {
       FURROW_RETURN_IF_ERROR(AddMasks(cloth));
     }
-    FURROW_RETURN_IF_ERROR(CheckRig(out_.rig));
+    FURROW_RETURN_IF_ERROR(character::CheckRig(out_.rig));
     FURROW_RETURN_IF_ERROR(CopyPictures());
     return std::move(out_);
   }
 
  private:
-  // Takes from the rig what this bake replaces, and so learns whose names it must not write over.
+  // Removes from the rig every picture that this bake replaces. The names that remain in use must
+  // not be overwritten.
   Status Release() {
     std::map<std::string, std::set<bool>> surfaces;
     for (const BakedMap& baked : maps_.maps) {
@@ -78,16 +80,16 @@ class Packager {
                              "own mask");
       }
     }
-    for (std::string& name : RigPictureNames(out_.rig)) taken_.insert(std::move(name));
-    for (const Picture& picture : character_.pictures) {
+    for (std::string& name : character::RigPictureNames(out_.rig)) taken_.insert(std::move(name));
+    for (const character::Picture& picture : character_.pictures) {
       const bool file = character_.FindRigPicture(picture.name) >= 0 &&
                         FindAsset(picture.name, character_.folder).ok();
-      if (!file) taken_.insert(picture.name);  // a name is looked up inside the character first
+      if (!file) taken_.insert(picture.name);  // the renderer looks inside the character first
     }
     return {};
   }
 
-  // A name that stands for nothing else: "stem.png", else "stem_2.png" and so on.
+  // An unused name: "stem.png", or "stem_2.png" and so on.
   std::string Free(const std::string& stem, const std::string& extension) {
     std::string name = stem + extension;
     for (int i = 2; !taken_.insert(name).second; ++i) {
@@ -103,13 +105,13 @@ class Packager {
     FURROW_RETURN_IF_ERROR(AddHeight(baked, map));
     map->cavity = Free(baked.map + "_cavity", ".png");
     FURROW_RETURN_IF_ERROR(Add(CavityPicture(baked, map->cavity)));
-    if (baked.cloth) return {};  // no blood is in it
+    if (baked.cloth) return {};  // cloth holds no blood
     map->colour = Free(baked.map + "_colour", ".png");
     map->colour_scale = kBloodTintScale;
     return Add(ColourPicture(baked, map->colour_scale, map->colour));
   }
 
-  // Skin and cloth have an atlas each, so regions are gathered by kind.
+  // Skin and cloth have separate atlases, so the regions of each are packed separately.
   Status AddMasks(bool cloth) {
     std::map<std::string, BakedMask> masks;
     for (const BakedMap& baked : maps_.maps) {
@@ -130,7 +132,7 @@ class Packager {
       if (group.size() < 4 && !(last && !group.empty())) continue;
       const std::string name = Free(stem + std::to_string(pictures++), ".png");
       const BakedMask& first = masks.at(group.front()->name);
-      Picture picture = paint::BlankPicture(name.c_str(), first.width, first.height, 4);
+      character::Picture picture = BlankPicture(name.c_str(), first.width, first.height, 4);
       FURROW_RETURN_IF_ERROR(AddMaskPicture(std::move(picture), group, masks));
       group.clear();
     }
@@ -138,11 +140,11 @@ class Packager {
   }
 
   Status CopyPictures() {
-    for (const std::string& name : RigPictureNames(out_.rig)) {
+    for (const std::string& name : character::RigPictureNames(out_.rig)) {
       const auto named = [&](const BakedFiles::File& file) { return file.name == name; };
       if (std::any_of(out_.files.begin(), out_.files.end(), named)) continue;
       const auto path = FindAsset(name, character_.folder);
-      if (!path.ok()) continue;  // inside the character, or nowhere
+      if (!path.ok()) continue;  // embedded in the character, or missing
       Result<std::string> bytes = ReadFile(*path, kMaxCopiedBytes);
       FURROW_RETURN_IF_ERROR(bytes);
       out_.files.push_back({name, std::move(*bytes)});
@@ -150,9 +152,9 @@ class Packager {
     return {};
   }
 
-  Status Add(const Picture& picture) {
+  Status Add(const character::Picture& picture) {
     const bool exr = !picture.pixels_float.empty();
-    Result<std::string> bytes = exr ? EncodeExr(picture) : EncodePng(picture);
+    Result<std::string> bytes = exr ? character::EncodeExr(picture) : character::EncodePng(picture);
     FURROW_RETURN_IF_ERROR(bytes);
     out_.files.push_back({picture.name, std::move(*bytes)});
     return {};
@@ -190,13 +192,13 @@ class Packager {
     for (std::size_t i = 0; i < mask.size(); ++i) (*all)[i] = std::max((*all)[i], mask[i]);
   }
 
-  Status AddMaskPicture(Picture picture, const std::vector<wrinkle::Region*>& regions,
+  Status AddMaskPicture(character::Picture picture, const std::vector<wrinkle::Region*>& regions,
                         const std::map<std::string, BakedMask>& masks) {
     const std::size_t texels = static_cast<std::size_t>(picture.width) * picture.height;
     for (std::size_t channel = 0; channel < regions.size(); ++channel) {
       const std::vector<float>& mask = masks.at(regions[channel]->name).texels;
       for (std::size_t i = 0; i < texels; ++i) {
-        picture.pixels[4 * i + channel] = paint::ToByte(mask[i]);
+        picture.pixels[4 * i + channel] = ToByte(mask[i]);
       }
       if (!options_.masks) continue;
       regions[channel]->mask.kind = wrinkle::Mask::Kind::kTexture;
@@ -206,11 +208,11 @@ class Packager {
     return Add(picture);
   }
 
-  const Character& character_;
+  const character::Character& character_;
   const BakedMaps& maps_;
   PackageOptions options_;
   std::set<std::string> masked_;  // regions that take a suggested mask
-  std::set<std::string> taken_;   // names of pictures
+  std::set<std::string> taken_;   // names of pictures in use in use
   BakedFiles out_;
 };
 
@@ -219,14 +221,14 @@ class Packager {
 float RoundScale(const std::vector<float>& values, float least) {
   float most = least;
   for (const float value : values) most = std::max(most, std::abs(value));
-  // One significant digit and a half, upwards: 0.25, 0.3, 0.35, ...
+  // Rounds up to steps of 0.05 of the leading power of ten: 0.25, 0.3, 0.35, ...
   const float step = 0.05f * std::pow(10.0f, std::floor(std::log10(most)) + 1.0f);
   return std::ceil(most / step - 1e-4f) * step;
 }
 
-Result<BakedFiles> PackageMaps(const Character& character, const BakedMaps& maps,
+Result<BakedFiles> PackageMaps(const character::Character& character, const BakedMaps& maps,
                                const PackageOptions& options) {
   return Packager(character, maps, options).Run();
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -5,46 +5,48 @@
 #include <string>
 #include <vector>
 
-#include "authoring/bake/bake.h"
+#include "authoring/bake/request/baked_maps.h"
 #include "base/files.h"
+#include "character/character.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 
-// A finished bake as files that lie in one folder: pictures, and a rig that names them.
+// A finished bake as files for one folder: pictures, and a rig that names them.
 struct BakedFiles {
   struct File {
-    std::string name;  // within the folder, "squash_derivative.png"
+    std::string name;  // relative to the folder: "squash_derivative.png"
     std::string bytes;
   };
   std::vector<File> files;
-  wrinkle::Rig rig;                // the character's own, with the baked maps in it
-  std::vector<std::string> notes;  // what was not done as asked, and why; for people
+  wrinkle::Rig rig;                // the character's rig with the baked maps added
+  std::vector<std::string> notes;  // requests that were not carried out, and why; one sentence each
 };
 
 struct PackageOptions {
-  bool exr = false;    // derivatives and heights as half floats, not as 16-bit PNG
-  bool masks = false;  // the rig's regions take the suggested masks instead of their own
+  bool exr = false;    // write derivatives and heights as half floats instead of 16-bit PNG
+  bool masks = false;  // use the suggested masks in the rig's regions
 };
 
-// A map `squash` becomes squash_derivative, squash_height, squash_cavity and, on skin,
-// squash_colour; the masks that its
-// poses suggest, four regions a picture, suggested_masks_skin_0, suggested_masks_cloth_0 and so on
-// (red, green, blue and alpha in the order of the rig's regions).
+// Packs the baked maps. A map `squash` becomes the pictures squash_derivative, squash_height,
+// squash_cavity and, on skin, squash_colour. The suggested masks become suggested_masks_skin_0,
+// suggested_masks_cloth_0 and so on, with four regions per picture (red, green, blue, alpha in the
+// order of the rig's regions).
 //
-// - With `masks` they are called masks_skin_0, ..., and the rig's regions name them; a region that
-//   folds on skin and on cloth keeps its own, with a note.
-// - No file takes the name of a picture that the rig goes on naming, or that the character holds:
-//   it becomes squash_height_2. So masks that were not asked for, and those of regions that are not
-//   baked, stay as they were edited.
-// - Baked maps lose their normal map and an amplitude that was made for it. Pictures of files that
-//   the rig goes on naming are copied from `character.folder`; those inside the character stay.
+// - With `masks`, the mask pictures are named masks_skin_0, ..., and the rig's regions use them. A
+//   region that folds on both skin and cloth keeps its own mask, and a note says so.
+// - A file never takes the name of a picture that the rig still uses or that the character
+//   contains; it becomes squash_height_2 instead. Hand-edited masks therefore survive unless the
+//   bake replaces them.
+// - Baked maps lose their normal map, and their amplitude becomes 1. Picture files that the rig
+//   still uses are copied from `character.folder`; embedded pictures stay in the character.
 //
-// Errors: kInvalidArgument (slopes beyond what a rig may state, another fault that CheckRig()
-// finds), EncodePng()'s and EncodeExr()'s, and ReadFile()'s.
-[[nodiscard]] Result<BakedFiles> PackageMaps(const Character& character, const BakedMaps& maps,
-                                             const PackageOptions& options);
+// Errors: kInvalidArgument (slopes beyond the limit of a rig, or another fault that CheckRig()
+// finds), and those of EncodePng(), EncodeExr() and ReadFile().
+[[nodiscard]] Result<BakedFiles> PackageMaps(const character::Character& character,
+                                             const BakedMaps& maps, const PackageOptions& options);
 
-// The next round number at which all of `values` fit a picture of integers, at least `least`.
+// The smallest round number, at least `least`, that is not below the magnitude of any value. Used
+// as the scale of a picture of integers.
 [[nodiscard]] float RoundScale(const std::vector<float>& values, float least);
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -15,11 +15,11 @@
 #include "authoring/paint/canvas.h"
 #include "base/status.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
-Picture Sized(const BakedMap& map, std::string name, int channels) {
-  Picture picture;
+character::Picture Sized(const BakedMap& map, std::string name, int channels) {
+  character::Picture picture;
   picture.name = std::move(name);
   picture.width = map.width;
   picture.height = map.height;
@@ -31,7 +31,7 @@ std::uint16_t Unsigned16(float value) {
   return static_cast<std::uint16_t>(std::lround(65535.0f * std::clamp(value, 0.0f, 1.0f)));
 }
 
-// See wrinkle::WrinkleMap: a texel t stands for (2 t - 1) * scale.
+// Texel t stands for (2 t - 1) * scale; see wrinkle::WrinkleMap.
 std::uint16_t Signed16(float value, float scale) { return Unsigned16(0.5f + 0.5f * value / scale); }
 
 float ToSrgb(float linear) {
@@ -71,8 +71,8 @@ Status CheckHeights(const BakedMap& map, float height_mm) {
 
 }  // namespace
 
-Picture NormalPicture(const BakedMap& map, std::string name) {
-  Picture picture = Sized(map, std::move(name), 3);
+character::Picture NormalPicture(const BakedMap& map, std::string name) {
+  character::Picture picture = Sized(map, std::move(name), 3);
   picture.pixels16.reserve(map.derivative.size() / 2 * 3);
   for (std::size_t i = 0; i + 1 < map.derivative.size(); i += 2) {
     const glm::vec3 n = glm::normalize(glm::vec3(map.derivative[i], map.derivative[i + 1], 1.0f));
@@ -81,9 +81,9 @@ Picture NormalPicture(const BakedMap& map, std::string name) {
   return picture;
 }
 
-Picture DerivativePicture(const BakedMap& map, float scale, std::string name) {
-  // Three channels: a PNG has no two that every reader takes for red and green.
-  Picture picture = Sized(map, std::move(name), 3);
+character::Picture DerivativePicture(const BakedMap& map, float scale, std::string name) {
+  // PNG has no two-channel format that every reader takes for red and green, so blue is 0.
+  character::Picture picture = Sized(map, std::move(name), 3);
   picture.pixels16.reserve(map.derivative.size() / 2 * 3);
   for (std::size_t i = 0; i + 1 < map.derivative.size(); i += 2) {
     picture.pixels16.push_back(Signed16(map.derivative[i], scale));
@@ -93,33 +93,34 @@ Picture DerivativePicture(const BakedMap& map, float scale, std::string name) {
   return picture;
 }
 
-Picture HeightPicture(const BakedMap& map, float height_mm, std::string name) {
-  Picture picture = Sized(map, std::move(name), 1);
+character::Picture HeightPicture(const BakedMap& map, float height_mm, std::string name) {
+  character::Picture picture = Sized(map, std::move(name), 1);
   picture.pixels16.reserve(map.height_mm.size());
   for (const float mm : map.height_mm) picture.pixels16.push_back(Signed16(mm, height_mm));
   return picture;
 }
 
-Picture FloatPicture(const BakedMap& map, const std::vector<float>& plane, std::string name) {
+character::Picture FloatPicture(const BakedMap& map, const std::vector<float>& plane,
+                                std::string name) {
   const auto texels = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
-  Picture picture = Sized(map, std::move(name), static_cast<int>(plane.size() / texels));
+  character::Picture picture = Sized(map, std::move(name), static_cast<int>(plane.size() / texels));
   picture.pixels_float = plane;
   return picture;
 }
 
-Picture CavityPicture(const BakedMap& map, std::string name) {
-  Picture picture = Sized(map, std::move(name), 1);
+character::Picture CavityPicture(const BakedMap& map, std::string name) {
+  character::Picture picture = Sized(map, std::move(name), 1);
   picture.pixels.reserve(map.cavity.size());
-  for (const float open : map.cavity) picture.pixels.push_back(paint::ToByte(open));
+  for (const float open : map.cavity) picture.pixels.push_back(ToByte(open));
   return picture;
 }
 
-Picture ColourPicture(const BakedMap& map, float scale, std::string name) {
-  Picture picture = Sized(map, std::move(name), 3);
+character::Picture ColourPicture(const BakedMap& map, float scale, std::string name) {
+  character::Picture picture = Sized(map, std::move(name), 3);
   picture.pixels.reserve(3 * map.blood.size());
   for (const float blood : map.blood) {
     const glm::vec3 tint = BloodTint(blood) / scale;
-    for (int c = 0; c < 3; ++c) picture.pixels.push_back(paint::ToByte(ToSrgb(tint[c])));
+    for (int c = 0; c < 3; ++c) picture.pixels.push_back(ToByte(ToSrgb(tint[c])));
   }
   return picture;
 }
@@ -137,8 +138,9 @@ BakedMap Halved(const BakedMap& map) {
   return half;
 }
 
-Result<std::vector<Picture>> PicturesOf(const BakedMap& baked, const wrinkle::WrinkleMap& map) {
-  std::vector<Picture> pictures;
+Result<std::vector<character::Picture>> WrinkleMapPictures(const BakedMap& baked,
+                                                           const wrinkle::WrinkleMap& map) {
+  std::vector<character::Picture> pictures;
   if (!map.normal.empty()) pictures.push_back(NormalPicture(baked, map.normal));
   const bool halves = baked.width % 2 == 0 && baked.width / 2 >= kSmallestHalf;
   const BakedMap small = halves ? Halved(baked) : baked;
@@ -153,4 +155,4 @@ Result<std::vector<Picture>> PicturesOf(const BakedMap& baked, const wrinkle::Wr
   return pictures;
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

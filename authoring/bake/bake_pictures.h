@@ -4,41 +4,44 @@
 #include <string>
 #include <vector>
 
-#include "authoring/bake/bake.h"
+#include "authoring/bake/request/baked_maps.h"
+#include "character/character.h"
 
-// The planes of a baked map as pictures that a rig's WrinkleMap names.
-namespace furrow::character::bake {
+// Converts the planes of a baked map to the pictures that a rig's WrinkleMap names.
+namespace furrow::authoring {
 
 // Tangent-space normals: RGB = n * 0.5 + 0.5, 16 bits, green up.
-[[nodiscard]] Picture NormalPicture(const BakedMap& map, std::string name);
+[[nodiscard]] character::Picture NormalPicture(const BakedMap& map, std::string name);
 
-// n.xy / n.z in red and green, 16 bits: a texel t stands for (2 t - 1) * scale, clamped.
-[[nodiscard]] Picture DerivativePicture(const BakedMap& map, float scale, std::string name);
+// n.xy / n.z in red and green, 16 bits: texel t stands for (2 t - 1) * scale, clamped.
+[[nodiscard]] character::Picture DerivativePicture(const BakedMap& map, float scale,
+                                                   std::string name);
 
-// Millimetres over the rest surface, one channel of 16 bits: (2 t - 1) * height_mm, clamped.
-[[nodiscard]] Picture HeightPicture(const BakedMap& map, float height_mm, std::string name);
+// Millimetres above the rest surface, one channel, 16 bits: (2 t - 1) * height_mm, clamped.
+[[nodiscard]] character::Picture HeightPicture(const BakedMap& map, float height_mm,
+                                               std::string name);
 
-// One of the map's planes as it is, in as many channels as it has numbers a texel.
-[[nodiscard]] Picture FloatPicture(const BakedMap& map, const std::vector<float>& plane,
-                                   std::string name);
+// A plane of the map as floats, with as many channels as the plane has values per texel.
+[[nodiscard]] character::Picture FloatPicture(const BakedMap& map, const std::vector<float>& plane,
+                                              std::string name);
 
-// How open a place is to the sky, one channel of 8 bits.
-[[nodiscard]] Picture CavityPicture(const BakedMap& map, std::string name);
+// How open each point is to the sky, one channel, 8 bits.
+[[nodiscard]] character::Picture CavityPicture(const BakedMap& map, std::string name);
 
-// What blood makes of skin's colour (blood.h): RGB, sRGB of 8 bits; a full texel stands for `scale`
-// times the colour at rest.
-[[nodiscard]] Picture ColourPicture(const BakedMap& map, float scale, std::string name);
+// The tint of the skin by blood (blood.h): RGB, sRGB, 8 bits. A full texel stands for `scale` times
+// the colour at rest.
+[[nodiscard]] character::Picture ColourPicture(const BakedMap& map, float scale, std::string name);
 
-// The map at half its size, each texel the mean of four; masks and statistics are left out.
-// Precondition: an even size.
+// The map at half its size. Each texel is the mean of four; masks and statistics are left out.
+// Precondition: width and height are even.
 [[nodiscard]] BakedMap Halved(const BakedMap& map);
 
-// Those of normal, height, cavity and colour that `map` names, to be packed with a character.
-// Normals are as large as they were baked. The others change slowly over skin: half as large, but
-// not below kSmallestHalf texels a side.
+// The pictures that `map` names (normal, height, cavity, colour), to embed in a character. Normals
+// keep the baked size. The other pictures vary slowly over skin, so they have half the size, but at
+// least kSmallestHalf texels per side.
 // Errors: kInvalidArgument (folds higher than the map's height_mm).
-[[nodiscard]] Result<std::vector<Picture>> PicturesOf(const BakedMap& baked,
-                                                      const wrinkle::WrinkleMap& map);
+[[nodiscard]] Result<std::vector<character::Picture>> WrinkleMapPictures(
+    const BakedMap& baked, const wrinkle::WrinkleMap& map);
 inline constexpr int kSmallestHalf = 512;
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

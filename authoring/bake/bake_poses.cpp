@@ -12,7 +12,7 @@
 #include "wrinkle/rig/rig_field.h"
 #include "wrinkle/skeleton/retarget.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 using wrinkle::Driver;
@@ -20,8 +20,8 @@ using wrinkle::FieldAt;
 using wrinkle::Rig;
 using wrinkle::Transform;
 
-// Poses whose joints turn and move less than this cannot fold anything: radians, and parts of the
-// skeleton's size.
+// A pose folds nothing if its joints turn by less than kLeastTurn (radians) and move by less than
+// kLeastMove (fraction of the skeleton's size).
 constexpr float kLeastTurn = 1e-3f;
 constexpr float kLeastMove = 1e-5f;
 
@@ -48,7 +48,7 @@ bool IsRest(std::span<const Transform> locals, const wrinkle::Skeleton& skeleton
 
 class PoseCollector {
  public:
-  explicit PoseCollector(const Character& character) : character_(character) {}
+  explicit PoseCollector(const character::Character& character) : character_(character) {}
 
   Status Add(const wrinkle::Region& region, const wrinkle::Feed& feed,
              const wrinkle::Feed::Source& source) {
@@ -73,7 +73,7 @@ class PoseCollector {
     return {};
   }
 
-  PosesToBake Take() { return std::move(found_); }
+  CollectedPoses Take() { return std::move(found_); }
 
  private:
   Status AtRest(const Driver& driver, const std::string& value, const std::string& pose) {
@@ -106,8 +106,8 @@ class PoseCollector {
     }
   }
 
-  const Character& character_;
-  PosesToBake found_;
+  const character::Character& character_;
+  CollectedPoses found_;
 };
 
 Status CheckMaps(const Rig& rig, std::span<const std::string> maps) {
@@ -128,7 +128,8 @@ Status CheckMaps(const Rig& rig, std::span<const std::string> maps) {
 
 }  // namespace
 
-Result<PosesToBake> PosesOf(const Character& character, std::span<const std::string> maps) {
+Result<CollectedPoses> CollectBakePoses(const character::Character& character,
+                                        std::span<const std::string> maps) {
   const Rig& rig = character.rig;
   if (rig.wrinkle_maps.empty() || rig.regions.empty()) {
     return Status(StatusCode::kNotFound, "the character has no wrinkle rig with regions and maps",
@@ -153,4 +154,4 @@ Result<PosesToBake> PosesOf(const Character& character, std::span<const std::str
   return collector.Take();
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

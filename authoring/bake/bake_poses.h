@@ -5,26 +5,28 @@
 #include <string>
 #include <vector>
 
-#include "authoring/bake/bake.h"
+#include "authoring/bake/request/bake_request.h"
+#include "character/character.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 
-// What a rig's drivers have to give to a bake.
-struct PosesToBake {
+// The poses of a rig that a bake can use.
+struct CollectedPoses {
   std::vector<BakePose> poses;
-  // What feeds a map and cannot be baked, one sentence each: blend shapes and strain drivers, which
-  // no pose of joints answers for, and limbs that are as straight at rest as they can get.
+  // Drivers that feed a map but have no pose to bake, one sentence each: blend shapes, strain
+  // drivers, and limbs that are fully straight at rest.
   std::vector<std::string> notes;
 };
 
-// For every region and wrinkle map of the character's rig, the poses that feed it at their fullest
-// (wrinkle/rig/full_pose.h), skinned: model matrix times inverse bind matrix. A source's gain, at
-// most 1, becomes the pose's weight. `maps` (names; empty: all) says which maps are wanted.
+// Collects, for every region and wrinkle map of the character's rig, the poses that feed the map at
+// full strength (wrinkle/rig/full_pose.h). Skin matrices are model matrix times inverse bind
+// matrix. A source's gain, at most 1, becomes the weight of the pose. `maps`: names of the maps to
+// collect for; empty: all.
 //
-// Errors: kNotFound (no rig; a map that it has not; a joint that the skeleton has not),
-// kInvalidArgument (a reference pose equal to the rest pose: it cannot fold anything; a driver that
-// makes no sense on this skeleton). `where` is the rig's field, "regions[3].feeds[0].sources[1]".
-[[nodiscard]] Result<PosesToBake> PosesOf(const Character& character,
-                                          std::span<const std::string> maps = {});
+// Errors: kNotFound (no rig; a map that the rig lacks; a joint that the skeleton lacks),
+// kInvalidArgument (a reference pose equal to the rest pose, which cannot fold anything; a driver
+// that does not fit the skeleton). `where` is a field of the rig: "regions[3].feeds[0].sources[1]".
+[[nodiscard]] Result<CollectedPoses> CollectBakePoses(const character::Character& character,
+                                                      std::span<const std::string> maps = {});
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -9,11 +9,11 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 constexpr int kLargestPreview = 1024;
-constexpr float kFewWidened = 0.05f;  // of the folded texels: not worth a word
+constexpr float kFewWidened = 0.05f;  // fraction of the folded texels; fewer give no warning
 
 std::string Number(double value, int digits = 2) {
   char text[48];
@@ -39,12 +39,12 @@ float Share(std::int64_t part, std::int64_t whole) {
   return whole > 0 ? static_cast<float>(part) / static_cast<float>(whole) : 0.0f;
 }
 
-// Every `step`-th texel of a map through `colour(index)`, grey where no triangle is.
-Picture Preview(const BakedMap& map, std::string name,
-                const std::function<glm::vec3(std::size_t)>& colour) {
+// Samples every `step`-th texel of a map with `colour(index)`. Texels outside triangles are grey.
+character::Picture Preview(const BakedMap& map, std::string name,
+                           const std::function<glm::vec3(std::size_t)>& colour) {
   const int step =
       std::max(1, (std::max(map.width, map.height) + kLargestPreview - 1) / kLargestPreview);
-  Picture picture;
+  character::Picture picture;
   picture.name = std::move(name);
   picture.width = map.width / step;
   picture.height = map.height / step;
@@ -63,7 +63,7 @@ Picture Preview(const BakedMap& map, std::string name,
   return picture;
 }
 
-Picture Lit(const BakedMap& map) {
+character::Picture Lit(const BakedMap& map) {
   const glm::vec3 light = glm::normalize(glm::vec3(-0.5f, 0.6f, 0.62f));
   return Preview(map, "report/" + map.map + "_lit.png", [&, light](std::size_t i) {
     const glm::vec3 n =
@@ -72,7 +72,7 @@ Picture Lit(const BakedMap& map) {
   });
 }
 
-Picture Heights(const BakedMap& map) {
+character::Picture Heights(const BakedMap& map) {
   const float scale = std::max({map.statistics.deepest_mm, map.statistics.highest_mm, 1e-3f});
   return Preview(map, "report/" + map.map + "_height.png", [&, scale](std::size_t i) {
     const float h = map.height_mm[i] / scale;
@@ -82,7 +82,7 @@ Picture Heights(const BakedMap& map) {
   });
 }
 
-// A colour a region: hues a golden ratio apart.
+// A distinct colour per region. Hues are a golden ratio apart.
 glm::vec3 Hue(std::size_t index) {
   const float turn = std::fmod(0.61803399f * static_cast<float>(index), 1.0f);
   const auto channel = [&](float shift) {
@@ -91,7 +91,7 @@ glm::vec3 Hue(std::size_t index) {
   return {channel(0.0f), channel(2.0f / 3.0f), channel(1.0f / 3.0f)};
 }
 
-Picture Masks(const BakedMap& map) {
+character::Picture Masks(const BakedMap& map) {
   return Preview(map, "report/" + map.map + "_masks.png", [&](std::size_t i) {
     glm::vec3 sum(0.05f);
     const std::size_t x = i % static_cast<std::size_t>(map.width);
@@ -153,7 +153,8 @@ figcaption{color:#666;font-size:.9em}
 </style></head><body>
 )";
 
-void DoubtMap(const BakedMap& map, const BakeOptions& options, std::vector<std::string>* doubts) {
+void AddMapWarnings(const BakedMap& map, const BakeOptions& options,
+                    std::vector<std::string>* doubts) {
   const BakedMap::Statistics& s = map.statistics;
   const auto say = [&](const std::string& what) {
     doubts->push_back("map '" + map.map + "' " + what);
@@ -169,20 +170,20 @@ void DoubtMap(const BakedMap& map, const BakeOptions& options, std::vector<std::
   }
   if (Share(s.widened_texels, s.folded_texels) > kFewWidened) {
     say("has folds that were widened from " + Number(s.widened_from_mm, 1) + " to " +
-        Number(s.widened_to_mm, 1) + " mm, " + Number(kTexelsAWave, 0) + " texels: raise --size");
+        Number(s.widened_to_mm, 1) + " mm, " + Number(kTexelsPerWave, 0) + " texels: raise --size");
   }
 }
 
 }  // namespace
 
-std::vector<std::string> Doubts(const BakedMaps& maps, const BakeOptions& options) {
+std::vector<std::string> BakeWarnings(const BakedMaps& maps, const BakeOptions& options) {
   std::vector<std::string> doubts;
-  for (const BakedMap& map : maps.maps) DoubtMap(map, options, &doubts);
+  for (const BakedMap& map : maps.maps) AddMapWarnings(map, options, &doubts);
   return doubts;
 }
 
-std::vector<Picture> ReportPictures(const BakedMaps& maps) {
-  std::vector<Picture> pictures;
+std::vector<character::Picture> ReportPictures(const BakedMaps& maps) {
+  std::vector<character::Picture> pictures;
   for (const BakedMap& map : maps.maps) {
     pictures.push_back(Lit(map));
     pictures.push_back(Heights(map));
@@ -191,14 +192,14 @@ std::vector<Picture> ReportPictures(const BakedMaps& maps) {
   return pictures;
 }
 
-std::string ReportHtml(const BakedMaps& maps, const ReportFacts& facts) {
+std::string ReportHtml(const BakedMaps& maps, const ReportDetails& facts) {
   std::string html = kHead;
   html += "<h1>Wrinkle maps of " + Escaped(facts.character) + "</h1>\n<p>Rig " +
           Escaped(facts.rig) +
           (facts.strokes.empty() ? ", no strokes" : ", strokes " + Escaped(facts.strokes)) + ", " +
           std::to_string(facts.options.size) + " texels a side, depth " +
           Number(facts.options.depth) + "; baked in " + Number(facts.seconds, 1) + " s.</p>\n";
-  const std::vector<std::string> doubts = Doubts(maps, facts.options);
+  const std::vector<std::string> doubts = BakeWarnings(maps, facts.options);
   html += List("Look at", doubts) + List("Put up with", facts.warnings) +
           List("Not baked", facts.notes);
   for (const BakedMap& map : maps.maps) {
@@ -218,4 +219,4 @@ std::string ReportHtml(const BakedMaps& maps, const ReportFacts& facts) {
   return html + "</body></html>\n";
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

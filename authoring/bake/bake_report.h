@@ -5,32 +5,35 @@
 #include <string>
 #include <vector>
 
-#include "authoring/bake/bake.h"
+#include "authoring/bake/request/bake_request.h"
+#include "authoring/bake/request/baked_maps.h"
+#include "character/character.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 
-// What a report says besides the maps themselves.
-struct ReportFacts {
-  std::string character;  // file names, for people
+// What a report states besides the maps.
+struct ReportDetails {
+  std::string character;  // names of files, for people
   std::string rig;
-  std::string strokes;  // empty: none
+  std::string strokes;  // empty: no strokes
   std::span<const BakePose> poses;
-  std::span<const std::string> notes;     // what could not be baked
-  std::span<const std::string> warnings;  // what was put up with
+  std::span<const std::string> notes;     // drivers that could not be baked
+  std::span<const std::string> warnings;  // faults of the surfaces that do not prevent a bake
   BakeOptions options;
   double seconds = 0.0;
 };
 
-// The report of a bake, to judge it by: report.html and the pictures that it shows, each map lit
-// from the upper left, its heights (blue valleys, red ridges) and its masks in colours, at most
-// 1024 texels a side.
-[[nodiscard]] std::string ReportHtml(const BakedMaps& maps, const ReportFacts& facts);
+// The report of a bake as HTML (report.html). It shows the pictures of ReportPictures().
+[[nodiscard]] std::string ReportHtml(const BakedMaps& maps, const ReportDetails& facts);
 
-// Named as in the HTML: "report/squash_lit.png".
-[[nodiscard]] std::vector<Picture> ReportPictures(const BakedMaps& maps);
+// The pictures of the report, at most 1,024 texels per side: each map lit from the upper left, its
+// heights (blue valleys, red ridges) and its masks in colours. The names match the HTML:
+// "report/squash_lit.png".
+[[nodiscard]] std::vector<character::Picture> ReportPictures(const BakedMaps& maps);
 
-// What a person should look at, one sentence each: a map without folds, skinning that compresses
-// beyond what the material does, folds too fine for the texels.
-[[nodiscard]] std::vector<std::string> Doubts(const BakedMaps& maps, const BakeOptions& options);
+// Suspicious results, one sentence each: a map without folds, a compression beyond the material's
+// limit, folds too fine for the texels.
+[[nodiscard]] std::vector<std::string> BakeWarnings(const BakedMaps& maps,
+                                                    const BakeOptions& options);
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

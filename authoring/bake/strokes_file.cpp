@@ -8,7 +8,7 @@
 
 #include <flatbuffers/flatbuffers.h>
 
-#include "authoring/bake/bake_check.h"
+#include "authoring/bake/request/request_check.h"
 #include "authoring/bake/strokes_generated.h"
 #include "authoring/bake/strokes_schema_text.h"
 #include "base/checked_json.h"
@@ -17,15 +17,16 @@
 #include "wrinkle/rig/rig_check.h"
 #include "wrinkle/rig/rig_field.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 using wrinkle::FieldAt;
 using wrinkle::InvalidField;
 
 constexpr std::size_t kMaxStrokes = 4096;
-constexpr std::size_t kMaxPoints = 1024;  // of one stroke
-constexpr float kFarthest = 100.0f;  // metres from the origin: nearer than any mistake of units
+constexpr std::size_t kMaxPoints = 1024;  // per stroke
+constexpr float kFarthest =
+    100.0f;  // from the origin, metres; a larger value is a mistake of units
 
 template <class Item>
 bool IsNameOf(const std::vector<Item>& items, std::string_view name) {
@@ -88,7 +89,7 @@ Status ReadStroke(const schema::Stroke& from, const wrinkle::Rig& rig, const std
   return ReadPoints(*from.points(), at + ".points", &to->points);
 }
 
-// "brow_l" to "brow_r" and back; a name without a side stays.
+// Exchanges "_l" and "_r" at the end of a name. Other names stay unchanged.
 std::string OtherSide(std::string name) {
   if (name.ends_with("_l")) {
     name.back() = 'r';
@@ -157,4 +158,4 @@ Result<std::vector<BakeStroke>> LoadStrokes(const std::filesystem::path& path,
   return ParseStrokes(*text, path.string(), rig);
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -12,64 +12,70 @@
 #include "authoring/bake/strokes_file.h"
 #include "authoring/generator/body/body_shape.h"
 #include "authoring/generator/body/body_skeleton.h"
-#include "authoring/generator/clothes/body_mesh.h"
+#include "authoring/generator/clothes/cloth_masks.h"
 #include "authoring/generator/clothes/cloth_texture.h"
-#include "authoring/generator/head/head_mesh.h"
+#include "authoring/generator/clothes/clothes.h"
+#include "authoring/generator/head/face_parts.h"
+#include "authoring/generator/head/hair_mesh.h"
+#include "authoring/generator/head/head_skin.h"
 #include "authoring/generator/head/skinning.h"
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "authoring/generator/recordings/recording_bvh.h"
 #include "authoring/generator/recordings/recordings.h"
-#include "authoring/generator/textures/skin_paint.h"
+#include "authoring/generator/textures/skin_colour.h"
+#include "authoring/generator/textures/skin_relief.h"
 #include "authoring/generator/textures/textures.h"
 #include "authoring/generator/textures/wrinkle_maps.h"
 #include "authoring/paint/hair_strands.h"
 #include "authoring/paint/strokes.h"
+#include "authoring/paint/surface_texels.h"
 #include "authoring/paint/teeth.h"
-#include "authoring/paint/uv_raster.h"
 #include "base/files.h"
 #include "base/status.h"
 #include "character/package/package.h"
 #include "rig/rig_file.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
-int AddPicture(Character* character, Picture picture) {
+int AddPicture(character::Character* character, character::Picture picture) {
   character->pictures.push_back(std::move(picture));
   return static_cast<int>(character->pictures.size()) - 1;
 }
 
-void AddRigPicture(Character* character, const char* name, Picture picture) {
+void AddRigPicture(character::Character* character, const char* name, character::Picture picture) {
   picture.name = name;
   const int index = AddPicture(character, std::move(picture));
   character->rig_pictures.emplace_back(name, index);
 }
 
-void AddMesh(Character* character, Mesh mesh, Material material) {
+void AddMesh(character::Character* character, character::Mesh mesh, character::Material material) {
   mesh.material = static_cast<int>(character->materials.size());
   character->materials.push_back(std::move(material));
   character->meshes.push_back(std::move(mesh));
 }
 
-Material MakeMaterial(const char* name, Material::Kind kind, float roughness) {
-  Material material;
+character::Material MakeMaterial(const char* name, character::Material::Kind kind,
+                                 float roughness) {
+  character::Material material;
   material.name = name;
   material.kind = kind;
   material.roughness = roughness;
   return material;
 }
 
-Mesh SkinnedPart(const wrinkle::Skeleton& skeleton, HeadMesh part) {
+character::Mesh SkinnedPart(const wrinkle::Skeleton& skeleton, HeadMesh part) {
   SkinHead(skeleton, &part);
   return std::move(part.mesh);
 }
 
 void AddSkin(const CharacterOptions& options, const HeadShape& shape, const BodyShape& body,
-             Character* character) {
-  Mesh skin = SkinnedPart(character->skeleton, MakeHeadSkin(shape, options.level));
+             character::Character* character) {
+  character::Mesh skin = SkinnedPart(character->skeleton, MakeHeadSkin(shape, options.level));
   AddHands(body, &skin);
   FinishSurface(&skin);
   const int size = options.texture_size;
-  Material material = MakeMaterial("skin", Material::Kind::kSkin, 1.0f);
+  character::Material material = MakeMaterial("skin", character::Material::Kind::kSkin, 1.0f);
   material.base_colour_texture = AddPicture(character, PaintSkinColour(skin, shape, size));
   material.normal_texture = AddPicture(character, PaintSkinNormals(skin, shape, size));
   material.roughness_texture = AddPicture(character, PaintSkinRoughness(skin, size / 2));
@@ -80,53 +86,55 @@ void AddSkin(const CharacterOptions& options, const HeadShape& shape, const Body
   AddMesh(character, std::move(skin), std::move(material));
 }
 
-void AddHeadParts(const CharacterOptions& options, const HeadShape& shape, Character* character) {
-  Material eyes = MakeMaterial("eyes", Material::Kind::kEye, 0.12f);
+void AddHeadParts(const CharacterOptions& options, const HeadShape& shape,
+                  character::Character* character) {
+  character::Material eyes = MakeMaterial("eyes", character::Material::Kind::kEye, 0.12f);
   eyes.base_colour_texture = AddPicture(character, PaintEyes(options.texture_size / 2));
   AddMesh(character, SkinnedPart(character->skeleton, MakeEyes()), std::move(eyes));
 
-  Mesh hair = SkinnedPart(character->skeleton, MakeHair(shape));
-  Material strands = MakeMaterial("hair", Material::Kind::kHair, 0.68f);
+  character::Mesh hair = SkinnedPart(character->skeleton, MakeHair(shape));
+  character::Material strands = MakeMaterial("hair", character::Material::Kind::kHair, 0.68f);
   strands.double_sided = true;
-  strands.alpha_cutoff = paint::kStrandCutoff;
+  strands.alpha_cutoff = kStrandCutoff;
   HairPictures pictures = PaintHair(hair, options.face, options.texture_size);
   strands.base_colour_texture = AddPicture(character, std::move(pictures.colour));
   strands.normal_texture = AddPicture(character, std::move(pictures.normals));
   AddMesh(character, std::move(hair), std::move(strands));
 
-  Material lashes = MakeMaterial("lashes", Material::Kind::kHair, 0.7f);
+  character::Material lashes = MakeMaterial("lashes", character::Material::Kind::kHair, 0.7f);
   lashes.base_colour = glm::vec4(0.012f, 0.008f, 0.006f, 1.0f);
   lashes.base_colour_texture = AddPicture(character, PaintLash());
-  lashes.alpha_cutoff = paint::kStrandCutoff;
+  lashes.alpha_cutoff = kStrandCutoff;
   lashes.double_sided = true;
   AddMesh(character, SkinnedPart(character->skeleton, MakeLashes(shape)), std::move(lashes));
 
-  Material teeth = MakeMaterial("teeth", Material::Kind::kOther, 0.3f);
-  Mesh rows = SkinnedPart(character->skeleton, MakeTeeth());
+  character::Material teeth = MakeMaterial("teeth", character::Material::Kind::kOther, 0.3f);
+  character::Mesh rows = SkinnedPart(character->skeleton, MakeTeeth());
   teeth.base_colour_texture =
-      AddPicture(character, paint::PaintTeeth(AgeShare(options.face), options.texture_size / 2));
+      AddPicture(character, PaintTeeth(AgeShare(options.face), options.texture_size / 2));
   AddMesh(character, std::move(rows), std::move(teeth));
 
-  Material tongue = MakeMaterial("tongue", Material::Kind::kOther, 0.4f);
+  character::Material tongue = MakeMaterial("tongue", character::Material::Kind::kOther, 0.4f);
   tongue.base_colour = glm::vec4(0.36f, 0.085f, 0.08f, 1.0f);
   AddMesh(character, SkinnedPart(character->skeleton, MakeTongue()), std::move(tongue));
 }
 
-void AddClothes(const CharacterOptions& options, const BodyShape& shape, Character* character) {
+void AddClothes(const CharacterOptions& options, const BodyShape& shape,
+                character::Character* character) {
   Clothes clothes = MakeClothes(shape);
-  Material cloth = MakeMaterial("cloth", Material::Kind::kCloth, 0.85f);
+  character::Material cloth = MakeMaterial("cloth", character::Material::Kind::kCloth, 0.85f);
   const int size = options.texture_size;
   cloth.base_colour_texture =
       AddPicture(character, PaintClothColour(clothes, options.body, 2 * size));
   cloth.normal_texture = AddPicture(character, PaintClothNormals(clothes, 2 * size));
   cloth.roughness_texture = AddPicture(character, PaintClothRoughness(clothes, size));
-  for (Picture& mask : PaintClothMasks(clothes, size / 2)) {
+  for (character::Picture& mask : PaintClothMasks(clothes, size / 2)) {
     const std::string name = mask.name;
     AddRigPicture(character, name.c_str(), std::move(mask));
   }
   AddMesh(character, std::move(clothes.mesh), std::move(cloth));
 
-  Material leather = MakeMaterial("leather", Material::Kind::kOther, 0.45f);
+  character::Material leather = MakeMaterial("leather", character::Material::Kind::kOther, 0.45f);
   leather.base_colour = glm::vec4(0.035f, 0.022f, 0.015f, 1.0f);
   AddMesh(character, MakeLeather(shape), std::move(leather));
 }
@@ -162,8 +170,9 @@ Status WriteRecordings(const wrinkle::Rig& rig, const wrinkle::Skeleton& skeleto
 
 }  // namespace
 
-Character MakeDefaultCharacter(const wrinkle::Rig& rig, const CharacterOptions& options) {
-  Character character;
+character::Character MakeDefaultCharacter(const wrinkle::Rig& rig,
+                                          const CharacterOptions& options) {
+  character::Character character;
   character.name = "default";
   character.skeleton = MakeSkeleton();
   character.rig = rig;
@@ -181,19 +190,18 @@ Character MakeDefaultCharacter(const wrinkle::Rig& rig, const CharacterOptions& 
 
 Status WriteCharacter(const std::filesystem::path& rigs, const CharacterOptions& options,
                       const std::filesystem::path& glb) {
-  Result<wrinkle::Rig> rig = LoadRig(rigs / "default.json");
+  Result<wrinkle::Rig> rig = character::LoadRig(rigs / "default.json");
   FURROW_RETURN_IF_ERROR(rig);
-  Result<std::vector<bake::BakeStroke>> strokes =
-      bake::LoadStrokes(rigs / "default.strokes.json", rig.value());
+  Result<std::vector<BakeStroke>> strokes = LoadStrokes(rigs / "default.strokes.json", rig.value());
   FURROW_RETURN_IF_ERROR(strokes);
-  Character character = MakeDefaultCharacter(rig.value(), options);
+  character::Character character = MakeDefaultCharacter(rig.value(), options);
   character.name = glb.stem().string();
   if (Status status = AddWrinkleMaps(strokes.value(), options.texture_size,
                                      WrinkleDepth(options.face), &character);
       !status.ok()) {
     return status;
   }
-  FURROW_RETURN_IF_ERROR(SaveCharacterGlb(character, glb));
+  FURROW_RETURN_IF_ERROR(character::SaveCharacterGlb(character, glb));
   constexpr std::size_t kMaxRig = 16u << 20;
   Result<std::string> text = ReadFile(rigs / "default.json", kMaxRig);
   FURROW_RETURN_IF_ERROR(text);
@@ -219,9 +227,9 @@ Status WriteShare(const std::filesystem::path& rigs, const std::filesystem::path
   elder.texture_size = 512;
   FURROW_RETURN_IF_ERROR(WriteCharacter(rigs, elder, share / "elder.glb"));
   FURROW_RETURN_IF_ERROR(CopyRigs(rigs, share));
-  Result<wrinkle::Rig> rig = LoadRig(rigs / "default.json");
+  Result<wrinkle::Rig> rig = character::LoadRig(rigs / "default.json");
   FURROW_RETURN_IF_ERROR(rig);
   return WriteRecordings(rig.value(), MakeSkeleton(), share / "recordings");
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

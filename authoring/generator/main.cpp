@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// furrow-make-character: the data of share/furrow while Furrow is built, or one face of one's own.
+// furrow-make-character: writes share/furrow during the build of Furrow, or a single character.
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace {
 
-using furrow::character::generator::CharacterOptions;
+using furrow::authoring::CharacterOptions;
 
 furrow::Status MakeOne(const std::string& out, std::string rigs, const CharacterOptions& options) {
   if (rigs.empty()) {
@@ -21,7 +21,7 @@ furrow::Status MakeOne(const std::string& out, std::string rigs, const Character
     FURROW_RETURN_IF_ERROR(shipped);
     rigs = shipped->string();
   }
-  return furrow::character::generator::WriteCharacter(rigs, options, out);
+  return furrow::authoring::WriteCharacter(rigs, options, out);
 }
 
 }  // namespace
@@ -56,9 +56,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "furrow-make-character: either --out FILE.glb, or RIGS SHARE\n");
     return 2;
   }
-  const furrow::Status status = share.empty()
-                                    ? MakeOne(out, rigs, options)
-                                    : furrow::character::generator::WriteShare(rigs, share);
+  const furrow::Status status =
+      share.empty() ? MakeOne(out, rigs, options) : furrow::authoring::WriteShare(rigs, share);
   if (status.ok()) return 0;
   std::fprintf(stderr, "furrow-make-character: %s\n", status.ToString().c_str());
   return 1;

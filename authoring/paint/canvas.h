@@ -8,20 +8,22 @@
 
 #include <glm/vec4.hpp>
 
-#include "authoring/paint/uv_raster.h"
+#include "authoring/paint/dilate.h"
+#include "authoring/paint/surface_texels.h"
 #include "character/character.h"
 
-// A picture of 8 bits a channel, as painters fill it.
-namespace furrow::character::paint {
+// Pictures with 8 bits per channel for painters.
+namespace furrow::authoring {
 
-// [0, 1], clamped, to the nearest of 256 steps.
+// Maps [0, 1] to [0, 255], clamped and rounded.
 [[nodiscard]] inline std::uint8_t ToByte(float value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
 }
 
-// All zero.
-[[nodiscard]] inline Picture BlankPicture(const char* name, int width, int height, int channels) {
-  Picture picture;
+// A picture of 8 bits per channel, all zero.
+[[nodiscard]] inline character::Picture BlankPicture(const char* name, int width, int height,
+                                                     int channels) {
+  character::Picture picture;
   picture.name = name;
   picture.width = width;
   picture.height = height;
@@ -31,27 +33,32 @@ namespace furrow::character::paint {
   return picture;
 }
 
-// The channels of a texel, which must lie in the picture.
-[[nodiscard]] inline std::uint8_t* TexelAt(Picture* picture, int x, int y) {
+// The channels of a texel. Precondition: the texel is in the picture.
+[[nodiscard]] inline std::uint8_t* TexelAt(character::Picture* picture, int x, int y) {
   const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(picture->width);
   return &picture->pixels[(row + static_cast<std::size_t>(x)) *
                           static_cast<std::size_t>(picture->channels)];
 }
 
-// A square picture, filled texel by texel by `colour(texel)` (a glm::vec4, [0, 1]) and grown by a
-// few texels over the borders of its islands.
+// Writes `colour` to the channels of a texel. A picture with 3 channels ignores alpha.
+inline void SetTexel(character::Picture* picture, int x, int y, const glm::vec4& colour) {
+  std::uint8_t* out = TexelAt(picture, x, y);
+  for (int c = 0; c < picture->channels; ++c) out[c] = ToByte(colour[c]);
+}
+
+// A square picture with `colour(texel)` (a glm::vec4, [0, 1]) at each texel, dilated by a few
+// texels beyond the UV islands.
 template <typename Colour>
-[[nodiscard]] Picture Fill(const char* name, const std::vector<Texel>& texels, int size,
-                           int channels, const Colour& colour) {
+[[nodiscard]] character::Picture FillPicture(const char* name,
+                                             const std::vector<SurfaceTexel>& texels, int size,
+                                             int channels, const Colour& colour) {
   constexpr int kDilation = 6;
-  Picture picture = BlankPicture(name, size, size, channels);
-  for (const Texel& texel : texels) {
-    const glm::vec4 value = colour(texel);
-    std::uint8_t* out = TexelAt(&picture, texel.x, texel.y);
-    for (int c = 0; c < channels; ++c) out[c] = ToByte(value[c]);
+  character::Picture picture = BlankPicture(name, size, size, channels);
+  for (const SurfaceTexel& texel : texels) {
+    SetTexel(&picture, texel.x, texel.y, colour(texel));
   }
   Dilate(&picture, texels, kDilation);
   return picture;
 }
 
-}  // namespace furrow::character::paint
+}  // namespace furrow::authoring

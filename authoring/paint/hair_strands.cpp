@@ -9,29 +9,28 @@
 #include <glm/geometric.hpp>
 
 #include "authoring/paint/canvas.h"
+#include "authoring/paint/noise.h"
 
-namespace furrow::character::paint {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
 using glm::vec3;
 
 constexpr int kTiles = kFullTiles + kSparseTiles;
-constexpr float kGutter = 0.04f;  // of a tile's width, on either side
-constexpr int kLayers = 3;        // of strands over each other
-constexpr int kWisps = 5;         // strands of a tile gather towards their tips
+constexpr float kGutter = 0.04f;  // fraction of a tile's width on either side
+constexpr int kLayers = 3;        // strands on top of each other
+constexpr int kWisps = 5;         // bundles of strands per tile, at the tips
 
-// A repeatable number in [0, 1).
-float Random(int tile, int strand, int what) {
-  std::uint32_t h = static_cast<std::uint32_t>(tile) * 0x9E3779B9u ^
-                    static_cast<std::uint32_t>(strand) * 0x85EBCA6Bu ^
-                    static_cast<std::uint32_t>(what) * 0xC2B2AE35u;
-  h = (h ^ (h >> 16)) * 0x7FEB352Du;
-  h = (h ^ (h >> 15)) * 0x846CA68Bu;
-  return static_cast<float>((h ^ (h >> 16)) >> 8) / 16777216.0f;
+// A repeatable random number in [0, 1).
+float StrandRandom(int tile, int strand, int what) {
+  return RandomFromBits(static_cast<std::uint32_t>(tile) * 0x9e3779b9u ^
+                        static_cast<std::uint32_t>(strand) * 0x85ebca6bu ^
+                        static_cast<std::uint32_t>(what) * 0xc2b2ae35u);
 }
 
-// One hair, or a few that cling together. Across in shares of the tile's width, along in [0, 1].
+// One hair or a few that stick together. `Across` is a fraction of the tile's width, t in [0, 1]
+// runs from root to tip.
 struct Strand {
   float root = 0.5f;
   float tip = 0.5f;
@@ -53,36 +52,37 @@ struct Strand {
 
 Strand MakeStrand(const StrandLook& look, int tile, int layer, int number) {
   const int id = layer * 1000 + number;
-  const auto random = [&](int what) { return Random(tile, id, what); };
+  const auto random = [&](int what) { return StrandRandom(tile, id, what); };
   const bool sparse = tile >= kFullTiles;
   Strand strand;
-  const float middle = 0.5f * (random(1) + random(2));  // thinner towards the card's edges
+  const float middle = 0.5f * (random(1) + random(2));  // fewer near the card's edges
   strand.root = glm::mix(0.06f, 0.94f, glm::mix(random(1), middle, 0.45f));
   const float wisp = (std::floor(strand.root * kWisps) + 0.25f + 0.5f * random(3)) / kWisps;
   strand.tip = glm::mix(strand.root, wisp, 0.6f) * 0.9f + 0.05f + 0.05f * (random(4) - 0.5f);
   strand.wave = 0.035f * (random(5) - 0.5f);
   strand.phase = 6.3f * random(6);
-  strand.begin = (sparse ? 0.18f : 0.22f) * random(7);  // roots of a card lie apart
+  strand.begin = (sparse ? 0.18f : 0.22f) * random(7);  // the roots of a card are staggered
   strand.end = glm::mix(0.52f, 1.0f, random(8));
   strand.half_width = (sparse ? 0.7f : 1.0f) * glm::mix(0.010f, 0.022f, random(9));
   const float silver =
       std::clamp(look.grey_share + 0.30f * (random(10) - 0.5f) * look.grey_share, 0.0f, 1.0f);
-  const float depth = 0.66f + 0.17f * static_cast<float>(layer);  // what lies below is in shade
-  const float tone = 1.0f + 0.16f * (random(11) - 0.5f) + 0.06f * (Random(tile, 0, 12) - 0.5f);
+  const float depth = 0.66f + 0.17f * static_cast<float>(layer);  // lower layers are in shade
+  const float tone =
+      1.0f + 0.16f * (random(11) - 0.5f) + 0.06f * (StrandRandom(tile, 0, 12) - 0.5f);
   strand.colour = glm::mix(look.colour, look.grey, silver) * (depth * tone);
   return strand;
 }
 
 class TilePainter {
  public:
-  TilePainter(Picture* colour, Picture* normals, int tile)
+  TilePainter(character::Picture* colour, character::Picture* normals, int tile)
       : colour_(colour),
         normals_(normals),
         left_(static_cast<float>(tile) / kTiles * static_cast<float>(colour->width)),
         width_(static_cast<float>(colour->width) / kTiles),
         rows_(static_cast<int>(kStrandBottom * static_cast<float>(colour->height))) {}
 
-  // No coverage; the colour is what mip levels mix in at the strands' edges.
+  // Sets coverage to 0. The colour still matters, since mip levels mix it in at the strands' edges.
   void Clear(const vec3& colour) {
     for (int y = 0; y < rows_; ++y) {
       for (int x = static_cast<int>(left_); x < static_cast<int>(left_ + width_); ++x) {
@@ -97,7 +97,7 @@ class TilePainter {
       if (t < strand.begin || t > strand.end) continue;
       const float x = left_ + width_ * strand.Across(t);
       const float half = std::max(width_ * strand.HalfWidth(t), 0.35f);
-      // Roots lie in the shade of what grows over them.
+      // Roots are in the shade of the strands above them.
       const vec3 colour = strand.colour * glm::mix(0.90f, 1.0f, glm::smoothstep(0.05f, 0.5f, t));
       const int last = static_cast<int>(std::ceil(x + half));
       for (int column = static_cast<int>(x - half); column <= last; ++column) {
@@ -111,7 +111,7 @@ class TilePainter {
   }
 
  private:
-  // `side`: -1 at the strand's left edge, +1 at its right. `cover` 0 clears.
+  // `side`: -1 at the strand's left edge, +1 at its right edge. A `cover` of 0 clears the texel.
   void Put(int x, int y, const vec3& colour, float side, float cover) {
     std::uint8_t* out = TexelAt(colour_, x, y);
     std::uint8_t* slope = TexelAt(normals_, x, y);
@@ -130,8 +130,8 @@ class TilePainter {
     return ToByte(glm::mix(static_cast<float>(from) / 255.0f, to, share));
   }
 
-  Picture* colour_;
-  Picture* normals_;
+  character::Picture* colour_;
+  character::Picture* normals_;
   float left_;
   float width_;
   int rows_;
@@ -144,7 +144,7 @@ vec2 StrandUv(int tile, float across, float along) {
   return {(static_cast<float>(tile) + in_tile) / kTiles, kStrandBottom * (0.005f + 0.985f * along)};
 }
 
-void PaintStrands(const StrandLook& look, Picture* colour, Picture* normals) {
+void PaintStrands(const StrandLook& look, character::Picture* colour, character::Picture* normals) {
   const vec3 shade = 0.6f * glm::mix(look.colour, look.grey, look.grey_share);
   for (int tile = 0; tile < kTiles; ++tile) {
     TilePainter painter(colour, normals, tile);
@@ -156,4 +156,4 @@ void PaintStrands(const StrandLook& look, Picture* colour, Picture* normals) {
   }
 }
 
-}  // namespace furrow::character::paint
+}  // namespace furrow::authoring

@@ -1,35 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 
-#include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
-namespace furrow::character {
+// Repeatable noise: every function returns the same value on every machine.
+//
+// There are two independent sequences, HashLattice() with ValueNoise() and RandomAt() with
+// SignedNoise(). They are kept apart because the bytes of shipped characters depend on them.
+namespace furrow::authoring {
 
-// A fixed random number in [0, 1) for a lattice point: the same on every machine.
-[[nodiscard]] inline float HashLattice(int x, int y, int z) {
-  auto h = static_cast<std::uint32_t>(x) * 0x8da6b343u ^
-           static_cast<std::uint32_t>(y) * 0xd8163841u ^
-           static_cast<std::uint32_t>(z) * 0xcb1ab31fu;
-  h = (h ^ (h >> 15)) * 0x2c1b3c6du;
-  h = (h ^ (h >> 12)) * 0x297a2d39u;
-  return static_cast<float>((h ^ (h >> 15)) >> 8) / 16777216.0f;
-}
+// A random number in [0, 1) for a lattice point.
+[[nodiscard]] float HashLattice(int x, int y, int z);
 
-// Value noise in [0, 1], smooth, with features of size 1.
-[[nodiscard]] inline float ValueNoise(const glm::vec3& p) {
-  const glm::vec3 cell = glm::floor(p);
-  const glm::vec3 f = p - cell;
-  const glm::vec3 s = f * f * (3.0f - 2.0f * f);
-  const int x = static_cast<int>(cell.x), y = static_cast<int>(cell.y),
-            z = static_cast<int>(cell.z);
-  const auto row = [&](int dy, int dz) {
-    return glm::mix(HashLattice(x, y + dy, z + dz), HashLattice(x + 1, y + dy, z + dz), s.x);
-  };
-  return glm::mix(glm::mix(row(0, 0), row(1, 0), s.y), glm::mix(row(0, 1), row(1, 1), s.y), s.z);
-}
+// Smooth value noise over HashLattice(), in [0, 1], with features of size 1.
+[[nodiscard]] float ValueNoise(const glm::vec3& p);
 
-}  // namespace furrow::character
+// A random number in [0, 1) for three integers, with better mixed bits than HashLattice().
+[[nodiscard]] float RandomAt(int x, int y, int z);
+
+// Smooth value noise over RandomAt(), in [-1, 1], with features of size 1.
+[[nodiscard]] float SignedNoise(const glm::vec3& p);
+
+// Three octaves of SignedNoise(), in [-1, 1].
+[[nodiscard]] float FractalNoise(const glm::vec3& p);
+
+// A random number in [0, 1) for the bits of `seed`, which need not be mixed.
+[[nodiscard]] float RandomFromBits(std::uint32_t seed);
+
+}  // namespace furrow::authoring

@@ -9,7 +9,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-namespace furrow::character::paint {
+#include "authoring/paint/dilate.h"
+
+namespace furrow::authoring {
 
 using glm::vec3;
 
@@ -53,8 +55,8 @@ float StrokeTaper(float place, float taper) {
   return x * x * (3.0f - 2.0f * x);
 }
 
-// The valley's 1/(1 + ...) shape is narrower at the bottom than a Gaussian of the same foot: skin
-// creases, it does not undulate.
+// The factor 1 / (1 + ...) makes the bottom of the valley narrower than that of a Gaussian with the
+// same foot, since skin creases rather than undulates.
 FoldShape FoldShapeAt(float widths, float ridge) {
   const float x = widths;
   const float q = 1.0f + 14.0f * x * x;
@@ -66,10 +68,10 @@ FoldShape FoldShapeAt(float widths, float ridge) {
   return {bump - valley, -4.0f * r * bump - valley_slope};
 }
 
-Picture EncodeNormals(const std::vector<Texel>& texels, std::span<const glm::vec2> slopes,
-                      int width, int height, int bits) {
-  constexpr int kDilation = 16;
-  Picture picture;
+character::Picture EncodeNormals(const std::vector<SurfaceTexel>& texels,
+                                 std::span<const glm::vec2> slopes, int width, int height,
+                                 int bits) {
+  character::Picture picture;
   picture.width = width;
   picture.height = height;
   picture.channels = 3;
@@ -84,11 +86,11 @@ Picture EncodeNormals(const std::vector<Texel>& texels, std::span<const glm::vec
     for (int c = 0; c < 3; ++c) picture.pixels16[at + c] = encode(n[c]);
   }
   RoundNormals(bits, &picture);
-  Dilate(&picture, texels, kDilation);
+  Dilate(&picture, texels, kSeamTexels);
   return picture;
 }
 
-void RoundNormals(int bits, Picture* normals) {
+void RoundNormals(int bits, character::Picture* normals) {
   for (std::size_t i = 0; i < normals->pixels16.size(); ++i) {
     const long step = 1L << (i % 3 == 2 ? 18 - bits : 16 - bits);
     const long rounded = (normals->pixels16[i] + step / 2) / step * step;
@@ -115,4 +117,4 @@ std::vector<glm::vec3> Smooth(std::span<const glm::vec3> points, int per_segment
   return line;
 }
 
-}  // namespace furrow::character::paint
+}  // namespace furrow::authoring

@@ -7,30 +7,31 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "authoring/paint/uv_raster.h"
+#include "authoring/paint/surface_texels.h"
 #include "character/character.h"
 
-namespace furrow::character::paint {
+namespace furrow::authoring {
 
-// A fold drawn as a line on a surface: a valley with a round ridge on either side, which tapers to
-// nothing at both ends.
+// A fold along a line on a surface: a valley with a round ridge on either side. It tapers off at
+// both ends.
 //
 //   height = depth * (ridge * exp(-(2 (x - 1))^2) - exp(-x^2) / (1 + 14 x^2)) * taper(s)
-// with x the distance from the line in widths (valley to ridge) and s in [0, 1] the place along it.
+// x is the distance from the line in widths (valley to ridge), s in [0, 1] the position along the
+// line.
 
-// Beyond this many widths from its line a stroke is nothing.
+// A stroke has no effect beyond this many widths from its line.
 inline constexpr float kStrokeReach = 2.5f;
 
-// A polyline that is asked for its nearest point many times.
+// A polyline that answers nearest-point queries.
 class StrokeLine {
  public:
-  explicit StrokeLine(std::vector<glm::vec3> points);  // two or more
+  explicit StrokeLine(std::vector<glm::vec3> points);  // at least two points
 
   struct Nearest {
     float distance = 0.0f;  // metres
-    float place = 0.0f;     // along the line, [0, 1]
-    glm::vec3 away{0.0f};   // unit, from the line to the point; zero on the line
-    glm::vec3 along{0.0f};  // the line's direction there, as long as the piece it is of
+    float place = 0.0f;     // position along the line, [0, 1]
+    glm::vec3 away{0.0f};   // unit vector from the line to the point; zero on the line
+    glm::vec3 along{0.0f};  // the nearest segment, from its start to its end
   };
   [[nodiscard]] Nearest FindNearest(const glm::vec3& p) const;
   [[nodiscard]] const std::vector<glm::vec3>& points() const { return points_; }
@@ -42,30 +43,31 @@ class StrokeLine {
   float length_ = 0.0f;
 };
 
-// 0 at both ends of a line, 1 between; `taper`: fraction of the length over which the ends fade,
-// (0, 1].
+// 0 at both ends of a line, 1 between them. `taper`: fraction of the length over which the ends
+// fade, (0, 1].
 [[nodiscard]] float StrokeTaper(float place, float taper);
 
-// A fold's height in depths and its derivative by the distance in widths. `ridge`: height of the
-// ridges as a fraction of the depth, [0, 1].
+// The height of a fold in depths and its derivative by the distance in widths. `ridge`: height of
+// the ridges as a fraction of the depth, [0, 1].
 struct FoldShape {
   float height = 0.0f;
   float slope = 0.0f;
 };
 [[nodiscard]] FoldShape FoldShapeAt(float widths, float ridge);
 
-// Slopes as a tangent-space normal map of width x height, 16 bits a channel, RGB = n * 0.5 + 0.5,
-// green up (glTF), dilated by 16 texels; flat elsewhere. 16 bits, since 8 cannot say 0 and show
-// bands on smooth skin; of them `bits` are kept, as RoundNormals() does.
-[[nodiscard]] Picture EncodeNormals(const std::vector<Texel>& texels,
-                                    std::span<const glm::vec2> slopes, int width, int height,
-                                    int bits);
+// Encodes slopes as a tangent-space normal map of width x height: 16 bits per channel, RGB = n *
+// 0.5 + 0.5, green up (glTF), dilated by kSeamTexels, flat elsewhere. 8 bits could not represent 0
+// and would show bands on smooth skin. `bits`: see RoundNormals().
+[[nodiscard]] character::Picture EncodeNormals(const std::vector<SurfaceTexel>& texels,
+                                               std::span<const glm::vec2> slopes, int width,
+                                               int height, int bits);
 
-// Rounds a 16-bit normal map to the first `bits` of x and y, [8, 16]: the last ones of a rough
-// surface are noise that no PNG packs. z has two fewer, since a slope x / z hardly feels them.
-void RoundNormals(int bits, Picture* normals);
+// Rounds a 16-bit normal map to the first `bits` bits of x and y, [8, 16]. The last bits of a rough
+// surface are noise that PNG cannot compress. z keeps two bits fewer, since the slope x / z depends
+// little on it.
+void RoundNormals(int bits, character::Picture* normals);
 
-// A polyline through `points` by a Catmull-Rom spline, `per_segment` >= 1 pieces each.
+// A Catmull-Rom spline through `points` as a polyline, with `per_segment` >= 1 pieces per segment.
 [[nodiscard]] std::vector<glm::vec3> Smooth(std::span<const glm::vec3> points, int per_segment);
 
-}  // namespace furrow::character::paint
+}  // namespace furrow::authoring

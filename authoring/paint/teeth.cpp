@@ -10,15 +10,15 @@
 
 #include "authoring/paint/canvas.h"
 
-namespace furrow::character::paint {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
 using glm::vec3;
 
-constexpr int kSteps = 72;      // columns on either side
-constexpr float kStep = 0.06f;  // centimetres of arc
-// Heights from the biting edge, where the crown ends and the gum begins.
+constexpr int kSteps = 72;      // columns on either side of the middle
+constexpr float kStep = 0.06f;  // arc length per column, centimetres
+// Heights above the biting edge, centimetres: the crown, then the gum.
 constexpr float kHeights[] = {0.0f, 0.06f, 0.25f, 0.55f, 0.8f, 0.92f, 1.05f, 1.5f};
 constexpr int kRows = static_cast<int>(std::size(kHeights));
 constexpr float kTop = kHeights[kRows - 1];
@@ -28,7 +28,7 @@ constexpr float kTop = kHeights[kRows - 1];
 constexpr float kUpperTeeth[] = {0.43f, 0.33f, 0.38f, 0.35f, 0.34f, 0.50f, 0.48f};
 constexpr float kLowerTeeth[] = {0.27f, 0.29f, 0.34f, 0.35f, 0.35f, 0.52f, 0.50f};
 
-// Which tooth stands at arc length `s` from the middle, and where on it, [-1, 1].
+// The tooth at arc length `s` from the middle, and the position across it, [-1, 1].
 struct OnTooth {
   int tooth;
   float across;
@@ -44,9 +44,10 @@ OnTooth ToothAt(float s, bool upper) {
   return {6, 1.0f};
 }
 
-// A point of the row: `s` along the arch (negative: the subject's right), `h` from the edge.
+// A point of the row. `s`: arc length (negative on the subject's right); `h`: height above the
+// edge.
 vec3 PlaceOf(const ToothArch& arch, float s, float h) {
-  // The ellipse by its angle; arc length grows faster than the angle toward the sides.
+  // The arch as an ellipse by its angle. Arc length grows faster than the angle toward the sides.
   const float angle = std::atan2(s / arch.half_width, 1.0f - 0.055f * s * s);
   const auto [tooth, across] = ToothAt(std::abs(s), arch.upper);
   const float round = 1.0f - std::pow(std::abs(across), 5.0f);
@@ -62,7 +63,7 @@ vec3 PlaceOf(const ToothArch& arch, float s, float h) {
                            (arch.upper ? lift : -lift) + arch.rise * back / arch.half_depth, -back);
 }
 
-// Enamel, gums and the dark between teeth, at a place along the arch.
+// The colour at a point of the row: enamel, gums, or the gap between two teeth.
 vec3 ToothColour(float s, float h, bool upper, float age) {
   const vec3 enamel =
       glm::mix(vec3(0.97f, 0.945f, 0.90f), vec3(0.84f, 0.74f, 0.57f), 0.06f + 0.6f * age);
@@ -72,7 +73,7 @@ vec3 ToothColour(float s, float h, bool upper, float age) {
   colour *= 1.0f - 0.35f * glm::smoothstep(0.86f, 1.0f, across);
   const float scallop = 0.10f * across * across - 0.08f * age;  // gums dip between the teeth
   colour = glm::mix(colour, vec3(0.62f, 0.30f, 0.29f), glm::smoothstep(0.86f, 0.96f, h + scallop));
-  // The farther back, the darker: little light comes in between the lips.
+  // Back teeth are darker, since little light passes between the lips.
   return colour * glm::mix(1.0f, 0.55f, glm::smoothstep(2.2f, 4.2f, std::abs(s)));
 }
 
@@ -100,19 +101,17 @@ ToothRow MakeToothRow(const ToothArch& arch) {
   return row;
 }
 
-Picture PaintTeeth(float age, int size) {
-  Picture picture = BlankPicture("teeth_colour", size, size, 3);
+character::Picture PaintTeeth(float age, int size) {
+  character::Picture picture = BlankPicture("teeth_colour", size, size, 3);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
       const vec2 uv = (vec2(x, y) + 0.5f) / static_cast<float>(size);
       const float s = (uv.x - 0.5f) / 0.49f * kStep * kSteps;
       const float h = kTop * std::max(std::abs(uv.y - 0.5f) - 0.01f, 0.0f) / 0.48f;
-      const vec3 colour = ToothColour(s, h, uv.y < 0.5f, age);
-      std::uint8_t* out = TexelAt(&picture, x, y);
-      for (int c = 0; c < 3; ++c) out[c] = ToByte(colour[c]);
+      SetTexel(&picture, x, y, glm::vec4(ToothColour(s, h, uv.y < 0.5f, age), 1.0f));
     }
   }
   return picture;
 }
 
-}  // namespace furrow::character::paint
+}  // namespace furrow::authoring

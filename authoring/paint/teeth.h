@@ -9,28 +9,29 @@
 
 #include "character/character.h"
 
-// Teeth as characters that are made here wear them: a row of crowns with gums on an elliptic arch,
-// seen from the front alone, and the picture that both rows share.
-namespace furrow::character::paint {
+// Teeth of generated and imported characters: rows of crowns with gums on an elliptic arch,
+// modelled from the front only, and the picture that both rows share.
+namespace furrow::authoring {
 
-// Centimetres; x to the subject's left, y up, z forward.
+// Centimetres. x: the subject's left; y: up; z: forward.
 struct ToothArch {
   bool upper = true;
   glm::vec3 front{0.0f};  // the middle of the biting edge
   float half_width = 2.75f;
   float half_depth = 4.2f;
-  float rise = 0.0f;  // of the edge from the front to the molars
+  float rise = 0.0f;  // height of the molars' edge above the front
 };
 
 struct ToothRow {
   std::vector<glm::vec3> positions;  // centimetres
-  std::vector<glm::vec2> uvs;        // one a position: the upper row above, the lower one below
-  std::vector<std::uint32_t> quads;  // four a quad, counter-clockwise from in front
+  std::vector<glm::vec2>
+      uvs;  // one per position; the upper row is in the upper half of the picture
+  std::vector<std::uint32_t> quads;  // four indices per quad, counter-clockwise from the front
 };
 
 [[nodiscard]] ToothRow MakeToothRow(const ToothArch& arch);
 
-// 8-bit sRGB. `age` in [0, 1]: yellower, receding gums.
-[[nodiscard]] Picture PaintTeeth(float age, int size);
+// 8-bit sRGB. `age`, [0, 1]: yellower teeth and receding gums.
+[[nodiscard]] character::Picture PaintTeeth(float age, int size);
 
-}  // namespace furrow::character::paint
+}  // namespace furrow::authoring

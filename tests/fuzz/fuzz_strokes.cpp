@@ -12,7 +12,7 @@
 
 namespace {
 
-using furrow::character::bake::BakeStroke;
+using furrow::authoring::BakeStroke;
 
 furrow::wrinkle::Rig SmallRig() {
   furrow::wrinkle::Rig rig;
@@ -47,7 +47,7 @@ bool IsSound(const BakeStroke& stroke, const furrow::wrinkle::Rig& rig) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const furrow::wrinkle::Rig rig = SmallRig();
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const auto strokes = furrow::character::bake::ParseStrokes(text, "fuzz.json", rig);
+  const auto strokes = furrow::authoring::ParseStrokes(text, "fuzz.json", rig);
   if (!strokes.ok()) {
     if (!strokes.status().where().starts_with("fuzz.json")) std::abort();
     return 0;

@@ -98,11 +98,11 @@ class MakeHuman : public testing::TestWithParam<Shot> {
   static void SetUpTestSuite() {
     const std::filesystem::path folder = std::filesystem::path(FURROW_SHARED_DATA) / "makehuman";
     if (!std::filesystem::exists(folder)) return;
-    character::ImportOptions options;
+    authoring::ImportOptions options;
     options.rig = std::filesystem::path(FURROW_SOURCE_DIR) / "rig" / "rigs" / "makehuman.json";
     options.poses = motion::CachedPoseSource();
     options.texture_size = 256;
-    sitter_ = std::make_unique<Sitter>(test::Expect(character::ImportMakeHuman(folder, options)));
+    sitter_ = std::make_unique<Sitter>(test::Expect(authoring::ImportMakeHuman(folder, options)));
     Pose({"brow_inner_up_l", "brow_outer_up_l", "brow_down_r", "nose_wrinkle", "smile_r"},
          sitter_.get());
   }

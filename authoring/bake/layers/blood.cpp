@@ -7,20 +7,22 @@
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
-constexpr float kMostChange = 2.0f;   // of the area, either way: more is skinning gone wrong
-constexpr float kPressedOut = 0.6f;   // of the blood, where no light of the sky reaches
-constexpr float kAbsorbance = 0.36f;  // of green, of as much blood as skin holds at rest
+constexpr float kMaxChange =
+    2.0f;  // largest factor of the area, or its inverse; more is a skinning artefact
+constexpr float kPressedOut =
+    0.6f;  // fraction of the blood that leaves the bottom of a deep furrow
+constexpr float kAbsorbance = 0.36f;  // absorbance of green light by the blood at rest
 const glm::vec3 kBlood(0.30f, 1.0f,
-                       0.95f);  // by channel: haemoglobin's bands lie in green and blue
+                       0.95f);  // absorption per colour channel: haemoglobin absorbs green and blue
 
 }  // namespace
 
 void BloodSum::Add(std::span<const float> growth, std::span<const float> weights) {
   for (std::size_t i = 0; i < sums_.size(); ++i) {
-    const float area = std::clamp(growth[i], 1.0f / kMostChange, kMostChange);
+    const float area = std::clamp(growth[i], 1.0f / kMaxChange, kMaxChange);
     const float change = -weights[i] * std::log(area);
     sums_[i] += change * std::abs(change) * change * change;
   }
@@ -43,4 +45,4 @@ glm::vec3 BloodTint(float blood) {
   return glm::min(glm::exp(kBlood * (kAbsorbance * (1.0f - blood))), glm::vec3(kBloodTintScale));
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -7,15 +7,16 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "authoring/bake/layers/compression.h"
+#include "authoring/bake/surface/compression.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
 using glm::vec3;
 
-// Turns the compression so that folds run along `along` (in the axes, as long as it is wanted).
+// Rotates the compression so that folds run along `along` (in the tensor's axes). The length of
+// `along`, [0, 1], is the strength of the rotation.
 Tensor2 Steer(const Tensor2& tensor, const vec2& along) {
   const float wanted = glm::length(along);
   if (wanted < 1e-4f) return tensor;
@@ -39,20 +40,20 @@ FoldField::FoldField(const Surface& surface, const StrokeLayer& strokes,
       wavelengths_(std::move(wavelengths)),
       smallest_(std::move(smallest)) {}
 
-FoldDemand FoldField::At(const SurfacePoint& point) const {
+FoldParameters FoldField::At(const SurfacePoint& point) const {
   const wrinkle::SurfaceAxes& axes = surface_.triangles()[point.triangle].axes;
   const StrokeLayer::Guidance guidance = strokes_.GuidanceAt(point);
   const vec2 along(glm::dot(guidance.along, axes.x), glm::dot(guidance.along, axes.y));
   const Principal2 principal = PrincipalOf(Steer(surface_.Interpolate(tensors_, point), along));
-  FoldDemand demand;
-  demand.across = axes.x * principal.direction.x + axes.y * principal.direction.y;
-  demand.along = glm::cross(axes.normal, demand.across);
-  demand.compression = guidance.keep * std::max(principal.large, 0.0f);
-  demand.crossing = guidance.keep * std::max(principal.small, 0.0f);
-  demand.wavelength = glm::mix(surface_.Interpolate(wavelengths_, point), guidance.wavelength,
-                               guidance.wavelength_share);
-  demand.smallest = surface_.Interpolate(smallest_, point);
-  return demand;
+  FoldParameters fold;
+  fold.across = axes.x * principal.direction.x + axes.y * principal.direction.y;
+  fold.along = glm::cross(axes.normal, fold.across);
+  fold.compression = guidance.keep * std::max(principal.large, 0.0f);
+  fold.crossing = guidance.keep * std::max(principal.small, 0.0f);
+  fold.wavelength = glm::mix(surface_.Interpolate(wavelengths_, point), guidance.wavelength,
+                             guidance.wavelength_share);
+  fold.smallest = surface_.Interpolate(smallest_, point);
+  return fold;
 }
 
 float FoldField::Strongest(std::uint32_t triangle, bool crossing) const {
@@ -64,4 +65,4 @@ float FoldField::Strongest(std::uint32_t triangle, bool crossing) const {
   return strongest;
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -10,30 +10,32 @@
 #include "authoring/bake/layers/stroke_layer.h"
 #include "authoring/bake/surface/surface.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 
-// What a place of a surface asks of its folds.
-struct FoldDemand {
-  glm::vec3 across{1.0f, 0.0f, 0.0f};  // unit, in the surface: the strongest compression
-  glm::vec3 along{0.0f, 1.0f, 0.0f};   // unit: the way folds run
-  float compression = 0.0f;            // along `across`
-  float crossing = 0.0f;               // along `along`, at most as much
-  float wavelength = 0.005f;           // metres
-  float smallest = 0.0f;               // wavelength that the map's texels can show here
+// The parameters of the folds at one point of a surface.
+struct FoldParameters {
+  glm::vec3 across{1.0f, 0.0f,
+                   0.0f};  // direction of strongest compression; unit vector in the surface
+  glm::vec3 along{0.0f, 1.0f, 0.0f};  // direction that folds run in; unit vector in the surface
+  float compression = 0.0f;           // along `across`
+  float crossing = 0.0f;              // compression along `along`, at most `compression`
+  float wavelength = 0.005f;          // metres
+  float smallest = 0.0f;  // the shortest wavelength that the map's texels can show here, metres
 };
 
-// The compression of a map's poses and the guidance of its strokes, as one field over the surface.
+// Combines the compression of a map's poses with the guidance of its strokes.
 class FoldField {
  public:
-  // `tensors`: compression, one a welded vertex, in its axes. `wavelengths`: metres, one a welded
-  // vertex; `smallest`: what texels can show, likewise. `surface` and `strokes` outlive the field.
+  // Per welded vertex: `tensors`, the compression in the vertex's axes; `wavelengths`, metres;
+  // `smallest`, the shortest wavelength that texels can show, metres. `surface` and `strokes` must
+  // outlive the field.
   FoldField(const Surface& surface, const StrokeLayer& strokes, std::vector<Tensor2> tensors,
             std::vector<float> wavelengths, std::vector<float> smallest);
 
-  [[nodiscard]] FoldDemand At(const SurfacePoint& point) const;
-  // The strongest compression of the triangle's vertices, and across it.
+  [[nodiscard]] FoldParameters At(const SurfacePoint& point) const;
+  // The strongest compression at the triangle's vertices; with `crossing`, the strongest across it.
   [[nodiscard]] float Strongest(std::uint32_t triangle, bool crossing) const;
-  // The wavelength, scaled, as far as it can be shown.
+  // The wavelength times `scale`, but not below what texels can show. Metres.
   [[nodiscard]] float Wavelength(const SurfacePoint& point, float scale) const {
     return std::max(scale * surface_.Interpolate(wavelengths_, point),
                     surface_.Interpolate(smallest_, point));
@@ -49,4 +51,4 @@ class FoldField {
   std::vector<float> smallest_;
 };
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -9,12 +9,12 @@
 
 #include <glm/geometric.hpp>
 
-#include "authoring/bake/layers/compression.h"
 #include "authoring/bake/layers/phases.h"
+#include "authoring/bake/surface/compression.h"
 #include "base/scalar.h"
 #include "base/status.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
@@ -28,8 +28,8 @@ KernelSet::Options KernelOptions(const FoldLayer::Options& options) {
           .seed = options.seed};
 }
 
-// Half the height of a fold: the length that `share` of the compression leaves over goes up and
-// down. It sets in softly above the threshold, so folds run out instead of ending.
+// Half the height of a fold. `share` of the compressed length goes into the arc of the fold. The
+// height rises smoothly above the threshold, so folds run out instead of ending abruptly.
 KernelSet::Amplitude AmplitudeOf(const FoldLayer::Options& options, const FoldProfile& profile) {
   return [options, &profile](float compression, float wavelength) {
     const BakeMaterial& material = options.material;
@@ -40,15 +40,15 @@ KernelSet::Amplitude AmplitudeOf(const FoldLayer::Options& options, const FoldPr
   };
 }
 
-// A place where folds have set in fully: how far it is compressed, and how steep they are there.
+// A sample of a fully developed fold.
 struct Slope {
-  float compression = 0.0f;  // that folds take up
-  float across = 0.0f;       // of the height, by the surface at rest, in its direction
+  float compression = 0.0f;  // the part of the compression that the fold takes up
+  float across = 0.0f;       // dh/dx across the fold, x on the surface at rest
   float weight = 0.0f;
 };
 
-// Length of the arc over that of the surface at rest, mean over `slopes`, of folds `factor` as
-// high.
+// The mean arc length over `slopes`, relative to the surface at rest, with fold heights scaled by
+// `factor`.
 double MeanArc(const std::vector<Slope>& slopes, float factor) {
   double arc = 0.0, weight = 0.0;
   for (const Slope& slope : slopes) {
@@ -60,9 +60,9 @@ double MeanArc(const std::vector<Slope>& slopes, float factor) {
   return weight > 0.0 ? arc / weight : 1.0;
 }
 
-// The n-th of an endless row of points of triangles, spread evenly and the same on every run
-// (Roberts' R2 sequence). Triangles go on where the one before ended: a grid of them, each looked
-// at in the same places, would see a row of folds at the same phases again and again.
+// Point `n` of an infinite, evenly spread and repeatable sequence of barycentric coordinates
+// (Roberts' R2 sequence). The sequence continues from triangle to triangle: with the same points in
+// every triangle, a regular mesh would sample a row of folds at the same few phases.
 vec3 CornersOf(std::uint64_t n) {
   const auto place = [n](double step) {
     const double at = 0.5 + step * static_cast<double>(n);
@@ -73,7 +73,7 @@ vec3 CornersOf(std::uint64_t n) {
   return {1.0f - u.x - u.y, u.x, u.y};
 }
 
-// A value with its derivatives along the tangent and the bitangent.
+// A value with its derivatives along tangent and bitangent (forward-mode differentiation).
 struct Dual {
   float value = 0.0f;
   vec2 slope{0.0f};
@@ -86,17 +86,17 @@ Dual operator/(const Dual& a, const Dual& b) {
   return {a.value * inverse, (a.slope - b.slope * (a.value * inverse)) * inverse};
 }
 
-// How far the waves that meet at a place agree, as a factor of their height.
+// A factor of the height that grows with the agreement of the waves at a point.
 Dual Agreement(const Dual& coherence) {
   constexpr float kNone = 0.15f, kFull = 0.6f;
   const float t = Saturate((coherence.value - kNone) / (kFull - kNone));
   return {t * t * (3.0f - 2.0f * t), coherence.slope * (6.0f * t * (1.0f - t) / (kFull - kNone))};
 }
 
-// The waves around a place, added up.
+// The weighted sum of the waves around a point.
 struct WaveSum {
   Dual share, amplitude, x, y;
-  float frequency = 0.0f;  // mean length, times the share
+  float frequency = 0.0f;  // mean length of the frequency, times the weights
 
   void Add(const Dual& weight, float kernel_amplitude, const vec2& frequency2, float phase) {
     const Dual cosine{std::cos(phase), frequency2 * -std::sin(phase)};
@@ -136,25 +136,26 @@ FoldSample ToFold(const WaveSum& sum, const FoldProfile& profile, float scale) {
 
 Result<std::unique_ptr<FoldLayer>> FoldLayer::Create(const FoldField& field,
                                                      const FoldProfile& profile,
-                                                     const Options& options, Pace* pace) {
+                                                     const Options& options,
+                                                     BakeProgress* progress) {
   Result<KernelSet> kernels =
-      KernelSet::Create(field, KernelOptions(options), AmplitudeOf(options, profile), pace);
+      KernelSet::Create(field, KernelOptions(options), AmplitudeOf(options, profile), progress);
   FURROW_RETURN_IF_ERROR(kernels);
   PhaseSolver phases(field.surface(), &*kernels);
-  phases.Align(pace);
-  if (pace->stopped()) return Pace::Cancelled();
+  phases.Align(progress);
+  if (progress->cancelled()) return BakeProgress::CancelledStatus();
   phases.VaryDepth(options.material.variation, options.seed);
   std::unique_ptr<FoldLayer> layer(new FoldLayer(profile, std::move(*kernels)));
   if (!options.crossing && options.wavelength_scale == 1.0f)
-    layer->height_ = layer->MissingHeight(field, options);
+    layer->height_ = layer->HeightCorrection(field, options);
   return layer;
 }
 
-// Where waves from two sides do not agree, folds are lower than the profile asks. Their neighbours
-// make up for it, so that the surface as a whole keeps its length.
-float FoldLayer::MissingHeight(const FoldField& field, const Options& options) const {
-  constexpr float kMost = 1.6f;
-  constexpr int kMostPoints = 48;  // a triangle
+// Folds are lower than the profile requires where waves from different sides disagree. A common
+// factor raises all folds of the layer, so that the surface as a whole keeps its length.
+float FoldLayer::HeightCorrection(const FoldField& field, const Options& options) const {
+  constexpr float kMax = 1.6f;
+  constexpr int kMaxPoints = 48;  // per triangle
   const Surface& surface = field.surface();
   const auto triangles = surface.triangles();
   if (options.height <= 0.0f) return 1.0f;
@@ -166,20 +167,20 @@ float FoldLayer::MissingHeight(const FoldField& field, const Options& options) c
     }
     const float wavelength = field.Wavelength(surface.PointOf(t, vec3(1.0f / 3.0f)), 1.0f);
     const float wanted = 32.0f * triangles[t].area / (wavelength * wavelength);
-    const int count = std::clamp(static_cast<int>(std::ceil(wanted)), 1, kMostPoints);
+    const int count = std::clamp(static_cast<int>(std::ceil(wanted)), 1, kMaxPoints);
     for (int i = 0; i < count; ++i) {
       const SurfacePoint point = surface.PointOf(t, CornersOf(points++));
-      const FoldDemand demand = field.At(point);
-      if (demand.compression < 3.0f * options.material.threshold) continue;
-      // Where a stroke was drawn, its own folds show.
-      if (field.strokes().At(point, demand.across, demand.along).keep < 1.0f) continue;
-      const FoldSample fold = At(point, demand.across, demand.along);
-      slopes.push_back({options.material.share * demand.compression, fold.slope.x / options.height,
+      const FoldParameters fold = field.At(point);
+      if (fold.compression < 3.0f * options.material.threshold) continue;
+      // A stroke replaces the folds from strain here.
+      if (field.strokes().At(point, fold.across, fold.along).keep < 1.0f) continue;
+      const FoldSample sample = At(point, fold.across, fold.along);
+      slopes.push_back({options.material.share * fold.compression, sample.slope.x / options.height,
                         triangles[t].area / static_cast<float>(count)});
     }
   }
   if (slopes.empty() || MeanArc(slopes, 1.0f) >= 1.0) return 1.0f;
-  float low = 1.0f, high = kMost;
+  float low = 1.0f, high = kMax;
   for (int step = 0; step < 20; ++step) {
     const float middle = 0.5f * (low + high);
     (MeanArc(slopes, middle) < 1.0 ? low : high) = middle;
@@ -191,8 +192,8 @@ FoldSample FoldLayer::At(const SurfacePoint& point, const vec3& tangent,
                          const vec3& bitangent) const {
   const auto all = kernels_.kernels();
   const auto reaching = kernels_.Reaching(point.triangle);
-  // Waves are lines without a sign: the direction that most of them share, continuous over the
-  // surface, says which phases are to be turned round.
+  // A wave has no sign: f and -f describe the same folds. The leading direction, which is
+  // continuous over the surface, decides which phases are negated.
   Tensor2 directions;
   for (const std::uint32_t k : reaching) {
     const vec3 step = point.position - all[k].place.position;
@@ -223,4 +224,4 @@ FoldSample FoldLayer::At(const SurfacePoint& point, const vec3& tangent,
   return ToFold(sum, profile_, height_);
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -7,15 +7,15 @@
 
 #include <glm/vec3.hpp>
 
-#include "authoring/bake/bake.h"
 #include "authoring/bake/layers/fold_field.h"
 #include "authoring/bake/layers/kernels.h"
 #include "authoring/bake/layers/profile.h"
-#include "authoring/bake/pace.h"
+#include "authoring/bake/request/bake_progress.h"
+#include "authoring/bake/request/bake_request.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 
-// One set of folds across (or, crossing, along) the compression of a surface.
+// One set of folds across the compression of a surface (with `crossing`: along it).
 class FoldLayer {
  public:
   struct Options {
@@ -25,13 +25,13 @@ class FoldLayer {
     float height = 1.0f;  // scales the height
     std::uint32_t seed = 1;
   };
-  // `profile` outlives the layer. Errors: KernelSet::Create()'s.
+  // `profile` must outlive the layer. Errors: those of KernelSet::Create().
   [[nodiscard]] static Result<std::unique_ptr<FoldLayer>> Create(const FoldField& field,
                                                                  const FoldProfile& profile,
                                                                  const Options& options,
-                                                                 Pace* pace);
+                                                                 BakeProgress* progress);
 
-  // Safe from several threads. Zero where no fold reaches.
+  // Thread-safe. Zero where no fold reaches.
   [[nodiscard]] FoldSample At(const SurfacePoint& point, const glm::vec3& tangent,
                               const glm::vec3& bitangent) const;
 
@@ -40,12 +40,12 @@ class FoldLayer {
  private:
   FoldLayer(const FoldProfile& profile, KernelSet kernels)
       : profile_(profile), kernels_(std::move(kernels)) {}
-  // The height that all folds together are short of what keeps the arc's length, as a factor.
-  [[nodiscard]] float MissingHeight(const FoldField& field, const Options& options) const;
+  // The factor by which all folds must grow to preserve the arc length, at least 1.
+  [[nodiscard]] float HeightCorrection(const FoldField& field, const Options& options) const;
 
   const FoldProfile& profile_;
   KernelSet kernels_;
-  float height_ = 1.0f;  // scales every fold
+  float height_ = 1.0f;  // scales the height of every fold
 };
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

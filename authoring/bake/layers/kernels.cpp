@@ -15,28 +15,28 @@
 #include "base/scalar.h"
 #include "base/status.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 
-constexpr float kSpacing = 0.5f;     // least distance of two kernels, wavelengths
+constexpr float kSpacing = 0.5f;     // minimum distance of two kernels, wavelengths
 constexpr float kReach = 1.7f;       // of a kernel, wavelengths
-constexpr float kCandidates = 5.0f;  // places tried for a kernel that will stand
-constexpr double kMostCandidates = 6e6;
+constexpr float kCandidates = 5.0f;  // candidates tried per kernel that fits
+constexpr double kMaxCandidates = 6e6;
 
 float Random(std::uint32_t seed, std::uint32_t a, std::uint32_t b) {
   return HashLattice(static_cast<int>(seed * 7919u + 13u), static_cast<int>(a),
                      static_cast<int>(b));
 }
 
-// The triangles where kernels stand: folds, and as far around them as kernels reach.
+// The triangles that get kernels: folded triangles and those within the reach of a kernel.
 std::vector<char> ActiveTriangles(const FoldField& field, const KernelSet::Options& options,
-                                  Pace* pace) {
+                                  BakeProgress* progress) {
   const Surface& surface = field.surface();
   std::vector<char> active(surface.triangles().size(), 0);
-  SurfaceReach reach(surface);
-  for (std::uint32_t t = 0; t < active.size() && pace->Step(t, active.size()); ++t) {
+  SurfaceSearch reach(surface);
+  for (std::uint32_t t = 0; t < active.size() && progress->ReportStep(t, active.size()); ++t) {
     if (field.Strongest(t, options.crossing) < 0.5f * options.threshold) continue;
     active[t] = 1;
     const SurfacePoint centre = surface.PointOf(t, vec3(1.0f / 3.0f));
@@ -48,26 +48,26 @@ std::vector<char> ActiveTriangles(const FoldField& field, const KernelSet::Optio
   return active;
 }
 
-// The direction across the folds, strayed a little from place to place: no two folds of a real skin
-// run side by side for long.
-vec3 Strayed(const FoldDemand& demand, const KernelSet::Options& options, float wavelength,
-             const vec3& position) {
-  constexpr float kStray = 0.9f;  // radians, times the variation
+// The direction across the folds with a random deviation that varies over the surface. Folds of
+// real skin do not stay parallel for long.
+vec3 VariedDirection(const FoldParameters& fold, const KernelSet::Options& options,
+                     float wavelength, const vec3& position) {
+  constexpr float kStray = 0.9f;  // radians, times `variation`
   const vec3 at = position / (3.0f * wavelength) + static_cast<float>(options.seed) + 31.7f;
   const float angle = kStray * options.variation * (2.0f * ValueNoise(at) - 1.0f);
-  const vec3& main = options.crossing ? demand.along : demand.across;
-  const vec3& side = options.crossing ? demand.across : demand.along;
+  const vec3& main = options.crossing ? fold.along : fold.across;
+  const vec3& side = options.crossing ? fold.across : fold.along;
   return main * std::cos(angle) + side * std::sin(angle);
 }
 
-// Metres, varied from place to place.
-float WavelengthAt(const FoldDemand& demand, const SurfacePoint& place,
+// Metres, with a random variation over the surface.
+float WavelengthAt(const FoldParameters& fold, const SurfacePoint& place,
                    const KernelSet::Options& options) {
-  const float base = std::max(demand.wavelength * options.wavelength_scale, demand.smallest);
-  // Features of the variation are some folds wide.
+  const float base = std::max(fold.wavelength * options.wavelength_scale, fold.smallest);
+  // The variation is several folds wide.
   const vec3 at = place.position / (5.0f * base) + static_cast<float>(options.seed);
   const float vary = 1.0f + options.variation * (2.0f * ValueNoise(at) - 1.0f);
-  return std::max(base * vary, demand.smallest);
+  return std::max(base * vary, fold.smallest);
 }
 
 struct Candidate {
@@ -76,11 +76,11 @@ struct Candidate {
   SurfacePoint place;
 };
 
-// How many candidates each triangle wants; a fraction is the chance of one more.
+// The number of candidates per triangle. The fraction is the probability of one more.
 std::vector<float> CandidatesWanted(const FoldField& field, const KernelSet::Options& options,
-                                    Pace* pace) {
+                                    BakeProgress* progress) {
   const Surface& surface = field.surface();
-  const std::vector<char> active = ActiveTriangles(field, options, pace);
+  const std::vector<char> active = ActiveTriangles(field, options, progress);
   std::vector<float> wanted(active.size(), 0.0f);
   for (std::uint32_t t = 0; t < active.size(); ++t) {
     if (!active[t]) continue;
@@ -94,13 +94,13 @@ std::vector<float> CandidatesWanted(const FoldField& field, const KernelSet::Opt
 Status CheckCount(const std::vector<float>& wanted) {
   double sum = 0.0;
   for (const float count : wanted) sum += static_cast<double>(count);
-  if (sum <= kMostCandidates) return {};
+  if (sum <= kMaxCandidates) return {};
   char text[128];
   std::snprintf(text, sizeof(text),
                 "folds so fine on a surface so large want %.1f million waves, "
                 "%.1f million are the most",
                 1e-6 * sum / static_cast<double>(kCandidates),
-                1e-6 * kMostCandidates / static_cast<double>(kCandidates));
+                1e-6 * kMaxCandidates / static_cast<double>(kCandidates));
   return {
       StatusCode::kLimit, text, "options",
       "take a longer wavelength (--skin-wavelength, --cloth-wavelength) or fewer texels (--size)"};
@@ -130,14 +130,14 @@ std::vector<Candidate> Candidates(const Surface& surface, const std::vector<floa
   return candidates;
 }
 
-// Kernels by their place, so that the ones near a point are found.
+// Finds kernels near a point with a hashed grid of cells.
 class Grid {
  public:
   explicit Grid(float cell) : cell_(cell) {}
 
   void Add(const vec3& p, std::uint32_t kernel) { cells_[Key(Cell(p))].push_back(kernel); }
 
-  // Whether `test` holds for any kernel in the cells around a point.
+  // Returns true if `test` holds for any kernel in the cells around a point.
   template <class Test>
   bool Any(const vec3& p, const Test& test) const {
     const glm::ivec3 cell = Cell(p);
@@ -167,34 +167,35 @@ class Grid {
 }  // namespace
 
 Result<KernelSet> KernelSet::Create(const FoldField& field, const Options& options,
-                                    const Amplitude& amplitude, Pace* pace) {
+                                    const Amplitude& amplitude, BakeProgress* progress) {
   KernelSet set;
-  FURROW_RETURN_IF_ERROR(set.Strew(field, options, amplitude, pace));
-  set.Connect(field.surface(), pace);
-  if (pace->stopped()) return Pace::Cancelled();
+  FURROW_RETURN_IF_ERROR(set.PlaceKernels(field, options, amplitude, progress));
+  set.Connect(field.surface(), progress);
+  if (progress->cancelled()) return BakeProgress::CancelledStatus();
   return set;
 }
 
-Status KernelSet::Strew(const FoldField& field, const Options& options, const Amplitude& amplitude,
-                        Pace* pace) {
-  const std::vector<float> wanted = CandidatesWanted(field, options, pace);
-  if (pace->stopped()) return Pace::Cancelled();
+Status KernelSet::PlaceKernels(const FoldField& field, const Options& options,
+                               const Amplitude& amplitude, BakeProgress* progress) {
+  const std::vector<float> wanted = CandidatesWanted(field, options, progress);
+  if (progress->cancelled()) return BakeProgress::CancelledStatus();
   FURROW_RETURN_IF_ERROR(CheckCount(wanted));
   const std::vector<Candidate> candidates = Candidates(field.surface(), wanted, options);
   std::vector<float> wavelengths;
   float longest = 0.0f;
   for (const Candidate& candidate : candidates) {
-    if (!pace->Step(wavelengths.size(), candidates.size())) return Pace::Cancelled();
+    if (!progress->ReportStep(wavelengths.size(), candidates.size()))
+      return BakeProgress::CancelledStatus();
     wavelengths.push_back(WavelengthAt(field.At(candidate.place), candidate.place, options));
     longest = std::max(longest, wavelengths.back());
   }
   Grid grid(std::max(kSpacing * longest, 1e-6f));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!pace->Step(i, candidates.size())) return Pace::Cancelled();
+    if (!progress->ReportStep(i, candidates.size())) return BakeProgress::CancelledStatus();
     const SurfacePoint& place = candidates[i].place;
     const vec3 normal = field.surface().triangles()[place.triangle].axes.normal;
     const float spacing = kSpacing * wavelengths[i];
-    // Closed lips lie upon each other: what faces away takes no room.
+    // Closed lips touch each other, so kernels that face the other way do not count.
     const bool taken = grid.Any(place.position, [&](std::uint32_t k) {
       const FoldKernel& other = kernels_[k];
       const vec3 facing = field.surface().triangles()[other.place.triangle].axes.normal;
@@ -202,13 +203,13 @@ Status KernelSet::Strew(const FoldField& field, const Options& options, const Am
              glm::dot(facing, normal) > 0.0f;
     });
     if (taken) continue;
-    const FoldDemand demand = field.At(place);
+    const FoldParameters fold = field.At(place);
     FoldKernel kernel;
     kernel.place = place;
-    kernel.frequency =
-        Strayed(demand, options, wavelengths[i], place.position) * (2.0f * kPi / wavelengths[i]);
+    kernel.frequency = VariedDirection(fold, options, wavelengths[i], place.position) *
+                       (2.0f * kPi / wavelengths[i]);
     kernel.amplitude =
-        amplitude(options.crossing ? demand.crossing : demand.compression, wavelengths[i]);
+        amplitude(options.crossing ? fold.crossing : fold.compression, wavelengths[i]);
     kernel.reach = kReach * wavelengths[i];
     grid.Add(place.position, static_cast<std::uint32_t>(kernels_.size()));
     kernels_.push_back(kernel);
@@ -216,10 +217,10 @@ Status KernelSet::Strew(const FoldField& field, const Options& options, const Am
   return {};
 }
 
-void KernelSet::Connect(const Surface& surface, Pace* pace) {
+void KernelSet::Connect(const Surface& surface, BakeProgress* progress) {
   std::vector<std::vector<std::uint32_t>> lists(surface.triangles().size());
-  SurfaceReach reach(surface);
-  for (std::uint32_t k = 0; k < kernels_.size() && pace->Step(k, kernels_.size()); ++k) {
+  SurfaceSearch reach(surface);
+  for (std::uint32_t k = 0; k < kernels_.size() && progress->ReportStep(k, kernels_.size()); ++k) {
     const FoldKernel& kernel = kernels_[k];
     for (const std::uint32_t t :
          reach.Find(kernel.place.position, {&kernel.place.triangle, 1}, kernel.reach)) {
@@ -233,4 +234,4 @@ void KernelSet::Connect(const Surface& surface, Pace* pace) {
   }
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

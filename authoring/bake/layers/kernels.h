@@ -9,45 +9,49 @@
 #include <glm/vec3.hpp>
 
 #include "authoring/bake/layers/fold_field.h"
-#include "authoring/bake/pace.h"
+#include "authoring/bake/request/bake_progress.h"
 #include "authoring/bake/surface/surface.h"
 #include "base/status.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 
-// A wave of limited reach that stands on the surface: phase + dot(frequency, p - position) near it.
+// A wave with limited reach around a point of the surface. Its phase near the point is `phase` +
+// dot(frequency, p - position).
 struct FoldKernel {
   SurfacePoint place;
-  glm::vec3 frequency{0.0f};  // radians a metre, in the surface, across the fold; its sign is free
-  float phase = 0.0f;         // at `place`, radians
-  float amplitude = 0.0f;     // metres, of the unit profile
-  float reach = 0.0f;         // metres
+  glm::vec3 frequency{
+      0.0f};           // radians per metre, in the surface, across the fold; the sign is arbitrary
+  float phase = 0.0f;  // at `place`, radians
+  float amplitude = 0.0f;  // half the height from valley to ridge, metres
+  float reach = 0.0f;      // metres
 
-  // Its share of a point at a squared distance: 1 at its place, 0 and smooth at the reach.
+  // The weight of the kernel at a squared distance: 1 at the centre, falling smoothly to 0 at
+  // `reach`.
   [[nodiscard]] float ShareAt(float squared_distance) const {
     const float q = 1.0f - squared_distance / (reach * reach);
     return q > 0.0f ? q * q * q : 0.0f;
   }
 };
 
-// The kernels of one set of folds, and which of them reach each triangle.
+// The kernels of one set of folds, with a list per triangle of the kernels that reach it.
 class KernelSet {
  public:
   struct Options {
-    float wavelength_scale = 1.0f;  // of the field's
-    bool crossing = false;          // folds along the field's `across`, of its weaker compression
-    float threshold = 0.02f;        // places with less than half of this have no kernels nearby
-    float variation = 0.0f;         // of the wavelength, from place to place
+    float wavelength_scale = 1.0f;  // factor of the field's wavelength
+    bool crossing =
+        false;  // folds run along the field's `across` and answer to its weaker compression
+    float threshold = 0.02f;  // no kernels far from places with at least half this compression
+    float variation = 0.0f;   // of the wavelength over the surface, as in BakeMaterial
     std::uint32_t seed = 1;
   };
-  // Metres of half a fold's height for (compression, wavelength).
+  // Half the height of a fold in metres, for a compression and a wavelength in metres.
   using Amplitude = std::function<float(float compression, float wavelength)>;
 
-  // Kernels about half a wavelength apart, evenly strewn, wherever folds are or could fade into;
-  // their phases are 0. kLimit: folds so fine on a surface so large that there would be millions.
-  // kUnavailable: stopped.
+  // Places kernels about half a wavelength apart wherever there are folds and as far as folds can
+  // fade out. All phases are 0. Errors: kLimit (folds so fine on such a large surface need millions
+  // of kernels), kUnavailable (cancelled).
   [[nodiscard]] static Result<KernelSet> Create(const FoldField& field, const Options& options,
-                                                const Amplitude& amplitude, Pace* pace);
+                                                const Amplitude& amplitude, BakeProgress* progress);
 
   [[nodiscard]] std::vector<FoldKernel>& kernels() { return kernels_; }
   [[nodiscard]] std::span<const FoldKernel> kernels() const { return kernels_; }
@@ -57,13 +61,13 @@ class KernelSet {
 
  private:
   KernelSet() = default;
-  Status Strew(const FoldField& field, const Options& options, const Amplitude& amplitude,
-               Pace* pace);
-  void Connect(const Surface& surface, Pace* pace);
+  Status PlaceKernels(const FoldField& field, const Options& options, const Amplitude& amplitude,
+                      BakeProgress* progress);
+  void Connect(const Surface& surface, BakeProgress* progress);
 
   std::vector<FoldKernel> kernels_;
   std::vector<std::uint32_t> lists_;
   std::vector<std::size_t> starts_;
 };
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -7,16 +7,16 @@
 
 #include <glm/geometric.hpp>
 
-#include "authoring/bake/layers/planes.h"
+#include "authoring/bake/layers/parallel_for.h"
+#include "authoring/paint/dilate.h"
 #include "base/scalar.h"
 #include "base/status.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
-constexpr float kMetres = 0.001f;          // a millimetre
-constexpr float kFineLines = 1.0f / 3.0f;  // their wavelength, of the folds'
-constexpr int kGutter = 16;                // texels that planes grow past the UV border
+constexpr float kFineLines = 1.0f / 3.0f;  // wavelength relative to the main folds
+constexpr int kGutter = 16;                // texels to grow planes beyond UV borders
 constexpr float kFoldedMillimetres = 0.01f;
 
 const wrinkle::Region* FindRegion(const wrinkle::Rig& rig, const std::string& name) {
@@ -26,27 +26,28 @@ const wrinkle::Region* FindRegion(const wrinkle::Rig& rig, const std::string& na
   return found == rig.regions.end() ? nullptr : &*found;
 }
 
-// The picture's mask scales what is drawn; here it only says where poses and strokes count, so it
-// is full well inside its soft border.
+// The renderer scales folds by the mask. The bake only needs to know where poses and strokes apply,
+// so the value is 1 well inside the mask's soft border.
 float Inside(float mask) { return Smoothstep(0.02f, 0.3f, mask); }
 
 bool Matches(const std::string& region, const std::string& entry) {
   return region == entry || region == entry + "_l" || region == entry + "_r";
 }
 
-// Masks lie in the atlas of the surface that their region's maps are drawn on.
+// A mask is in the atlas of the surface that its region's maps are drawn on. Other masks do not fit
+// this surface.
 bool Feeds(const wrinkle::Region& region, const std::string& map) {
   return std::any_of(region.feeds.begin(), region.feeds.end(),
                      [&](const wrinkle::Feed& feed) { return feed.map == map; });
 }
 
-SurfacePoint PlaceOf(const paint::Texel& texel) {
+SurfacePoint PlaceOf(const SurfaceTexel& texel) {
   return {texel.triangle, texel.corners, texel.position};
 }
 
 }  // namespace
 
-MapBaker::MapBaker(const Character& character, const BakeSurface& surface,
+MapBaker::MapBaker(const character::Character& character, const BakeSurface& surface,
                    const BakeOptions& options, std::string map, bool cloth)
     : character_(character),
       surface_(surface),
@@ -92,14 +93,14 @@ void MapBaker::AddStroke(const BakeStroke& stroke) { strokes_.push_back(&stroke)
 
 std::vector<float> MapBaker::Wavelengths() const {
   const std::size_t count = surface_.surface().positions().size();
-  const float base = std::log(material_.wavelength_mm * kMetres);
+  const float base = std::log(material_.wavelength_mm * kMetresPerMillimetre);
   std::vector<float> sums(count, 0.0f), shares(count, 0.0f);
   for (const BakeRegionWavelength& entry : options_.wavelengths) {
     for (const wrinkle::Region& region : character_.rig.regions) {
       if (!Matches(region.name, entry.region) || !Feeds(region, map_)) continue;
       const std::vector<float> mask = surface_.MaskOf(character_, region);
       for (std::size_t v = 0; v < mask.size(); ++v) {
-        sums[v] += mask[v] * std::log(entry.wavelength_mm * kMetres);
+        sums[v] += mask[v] * std::log(entry.wavelength_mm * kMetresPerMillimetre);
         shares[v] += mask[v];
       }
     }
@@ -113,11 +114,11 @@ std::vector<float> MapBaker::Wavelengths() const {
 
 std::vector<float> MapBaker::Smallest() const {
   std::vector<float> smallest(surface_.texel_metres().begin(), surface_.texel_metres().end());
-  for (float& side : smallest) side *= kTexelsAWave;
+  for (float& side : smallest) side *= kTexelsPerWave;
   return smallest;
 }
 
-Status MapBaker::MakeLayers(const FoldField& field, Pace* pace) {
+Status MapBaker::MakeLayers(const FoldField& field, BakeProgress* progress) {
   std::vector<FoldLayer::Options> wanted;
   FoldLayer::Options options;
   options.material = material_;
@@ -138,7 +139,7 @@ Status MapBaker::MakeLayers(const FoldField& field, Pace* pace) {
     wanted.push_back(options);
   }
   for (const FoldLayer::Options& layer : wanted) {
-    auto made = FoldLayer::Create(field, profile_, layer, pace);
+    auto made = FoldLayer::Create(field, profile_, layer, progress);
     FURROW_RETURN_IF_ERROR(made);
     layers_.push_back(std::move(*made));
   }
@@ -154,43 +155,43 @@ FoldSample MapBaker::FoldsAt(const SurfacePoint& point, const glm::vec3& tangent
     sum.slope += fold.slope;
     sum.cavity *= fold.cavity;
   }
-  const StrokeLayer::Drawn drawn = strokes.At(point, tangent, bitangent);
+  const StrokeLayer::Sample drawn = strokes.At(point, tangent, bitangent);
   sum.slope = sum.slope * drawn.keep + drawn.keep_slope * sum.height + drawn.fold.slope;
   sum.height = sum.height * drawn.keep + drawn.fold.height;
   sum.cavity = (1.0f - drawn.keep * (1.0f - sum.cavity)) * drawn.fold.cavity;
   return sum;
 }
 
-bool MapBaker::FillTexels(const StrokeLayer& strokes, Pace* pace, BakedMap* map) const {
+bool MapBaker::FillTexels(const StrokeLayer& strokes, BakeProgress* progress, BakedMap* map) const {
   const std::size_t count =
       static_cast<std::size_t>(map->width) * static_cast<std::size_t>(map->height);
   map->height_mm.assign(count, 0.0f);
   map->derivative.assign(2 * count, 0.0f);
   map->cavity.assign(count, 1.0f);
   map->covered.assign(count, 0);
-  const std::vector<paint::Texel>& texels = surface_.texels();
+  const std::vector<SurfaceTexel>& texels = surface_.texels();
   const auto work = [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      const paint::Texel& texel = texels[i];
+      const SurfaceTexel& texel = texels[i];
       const FoldSample fold = FoldsAt(PlaceOf(texel), texel.tangent, texel.bitangent, strokes);
       const std::size_t at =
           static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
           static_cast<std::size_t>(texel.x);
-      map->height_mm[at] = fold.height / kMetres;
+      map->height_mm[at] = fold.height / kMetresPerMillimetre;
       map->derivative[2 * at] = -fold.slope.x;
       map->derivative[2 * at + 1] = -fold.slope.y;
       map->cavity[at] = fold.cavity;
       map->covered[at] = 1;
     }
   };
-  return ForRuns(texels.size(), options_.threads, work,
-                 [&](float done) { return pace->Tell(done); });
+  return ParallelFor(texels.size(), options_.threads, work,
+                     [&](float done) { return progress->Report(done); });
 }
 
 void MapBaker::FillBlood(BakedMap* map) const {
   const std::vector<float> blood = blood_.Take();
   map->blood.assign(map->cavity.size(), 1.0f);
-  for (const paint::Texel& texel : surface_.texels()) {
+  for (const SurfaceTexel& texel : surface_.texels()) {
     const std::size_t at =
         static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
         static_cast<std::size_t>(texel.x);
@@ -206,7 +207,7 @@ void MapBaker::Measure(const std::vector<float>& compression, const StrokeLayer&
   statistics.overlapping_texels = surface_.overlaps();
   double sum = 0.0, sides = 0.0;
   std::vector<char> seen(strokes.num_strokes(), 0);
-  for (const paint::Texel& texel : surface_.texels()) {
+  for (const SurfaceTexel& texel : surface_.texels()) {
     const std::size_t at =
         static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
         static_cast<std::size_t>(texel.x);
@@ -228,24 +229,27 @@ void MapBaker::Measure(const std::vector<float>& compression, const StrokeLayer&
     statistics.mean_compression =
         static_cast<float>(sum / static_cast<double>(statistics.folded_texels));
     statistics.texel_mm =
-        static_cast<float>(sides / static_cast<double>(statistics.folded_texels)) / kMetres;
+        static_cast<float>(sides / static_cast<double>(statistics.folded_texels)) /
+        kMetresPerMillimetre;
   }
 }
 
-// Over what strain folds: the wavelengths asked for, and how far texels widen them.
+// Measures the requested wavelengths where strain makes folds, and how far the texels force them to
+// be wider.
 void MapBaker::MeasureWavelengths(BakedMap* map) const {
   BakedMap::Statistics& statistics = map->statistics;
   const std::vector<float> asked = Wavelengths(), smallest = Smallest();
   const float scale = material_.fine_lines > 0.0f ? kFineLines : 1.0f;
   float widened = 1.0f;
-  for (const paint::Texel& texel : surface_.texels()) {
+  for (const SurfaceTexel& texel : surface_.texels()) {
     const std::size_t at =
         static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
         static_cast<std::size_t>(texel.x);
     if (std::abs(map->height_mm[at]) < kFoldedMillimetres) continue;
     const SurfacePoint place = PlaceOf(texel);
-    const float wavelength = scale * surface_.surface().Interpolate(asked, place) / kMetres;
-    const float least = surface_.surface().Interpolate(smallest, place) / kMetres;
+    const float wavelength =
+        scale * surface_.surface().Interpolate(asked, place) / kMetresPerMillimetre;
+    const float least = surface_.surface().Interpolate(smallest, place) / kMetresPerMillimetre;
     if (statistics.finest_mm == 0.0f) statistics.finest_mm = wavelength;
     statistics.finest_mm = std::min(statistics.finest_mm, wavelength);
     statistics.coarsest_mm = std::max(statistics.coarsest_mm, wavelength / scale);
@@ -259,7 +263,7 @@ void MapBaker::MeasureWavelengths(BakedMap* map) const {
 }
 
 BakedMask MapBaker::SuggestMask(const RegionFolds& folds) const {
-  // Full where the region's poses fold half as much as at their most.
+  // The mask is 1 where the region's poses reach half of their largest compression.
   const float most = *std::max_element(folds.compression.begin(), folds.compression.end());
   const float full = std::max(0.5f * most, 2.0f * material_.threshold + 1e-4f);
   std::vector<float> values;
@@ -272,49 +276,50 @@ BakedMask MapBaker::SuggestMask(const RegionFolds& folds) const {
   const auto count = static_cast<std::size_t>(mask.width) * static_cast<std::size_t>(mask.height);
   mask.texels.assign(count, 0.0f);
   std::vector<std::uint8_t> covered(count, 0);
-  for (const paint::Texel& texel :
-       paint::RasterizeUv(surface_.surface().mesh(), mask.width, mask.height)) {
+  for (const SurfaceTexel& texel :
+       RasterizeSurface(surface_.surface().mesh(), mask.width, mask.height)) {
     const std::size_t at =
         static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(mask.width) +
         static_cast<std::size_t>(texel.x);
     mask.texels[at] = surface_.surface().Interpolate(values, PlaceOf(texel));
     covered[at] = 1;
   }
-  const FloatPlane planes[] = {{&mask.texels, 1}};
-  DilatePlanes(planes, covered, mask.width, mask.height, kGutter / 4);
+  Dilation(covered, mask.width, mask.height, kGutter / 4).Apply(1, &mask.texels);
   return mask;
 }
 
-Result<std::unique_ptr<BakedMap>> MapBaker::Bake(float from, float to, Pace* pace) {
-  constexpr float kStrokes = 0.1f, kFolds = 0.35f;  // of the time, when they are done
+Result<std::unique_ptr<BakedMap>> MapBaker::Bake(float from, float to, BakeProgress* progress) {
+  constexpr float kStrokes = 0.1f, kFolds = 0.35f;  // completed share of the time after each part
   const auto at = [&](float share) { return from + (to - from) * share; };
-  pace->Enter(from, at(kStrokes));
+  progress->BeginPart(from, at(kStrokes));
   std::vector<std::vector<float>> masks;
   for (const BakeStroke* stroke : strokes_) masks.push_back(MaskOf(stroke->region));
   const auto strokes =
-      StrokeLayer::Create(surface_.surface(), strokes_, std::move(masks), Depth(), pace);
+      StrokeLayer::Create(surface_.surface(), strokes_, std::move(masks), Depth(), progress);
   FURROW_RETURN_IF_ERROR(strokes);
   const std::vector<Tensor2> tensors = sum_.Take();
   std::vector<float> compression;
   for (const Tensor2& tensor : tensors) compression.push_back(PrincipalOf(tensor).large);
   const FoldField field(surface_.surface(), **strokes, tensors, Wavelengths(), Smallest());
-  pace->Enter(at(kStrokes), at(kFolds));
-  FURROW_RETURN_IF_ERROR(MakeLayers(field, pace));
+  progress->BeginPart(at(kStrokes), at(kFolds));
+  FURROW_RETURN_IF_ERROR(MakeLayers(field, progress));
 
   auto map = std::make_unique<BakedMap>();
   map->map = map_;
   map->cloth = cloth_;
   map->width = map->height = options_.size;
-  pace->Enter(at(kFolds), to);
-  if (!FillTexels(**strokes, pace, map.get())) return Pace::Cancelled();
+  progress->BeginPart(at(kFolds), to);
+  if (!FillTexels(**strokes, progress, map.get())) return BakeProgress::CancelledStatus();
   FillBlood(map.get());
   Measure(compression, **strokes, map.get());
   MeasureWavelengths(map.get());
-  const FloatPlane planes[] = {
-      {&map->height_mm, 1}, {&map->derivative, 2}, {&map->cavity, 1}, {&map->blood, 1}};
-  DilatePlanes(planes, map->covered, map->width, map->height, kGutter);
+  const Dilation dilation(map->covered, map->width, map->height, kGutter);
+  dilation.Apply(1, &map->height_mm);
+  dilation.Apply(2, &map->derivative);
+  dilation.Apply(1, &map->cavity);
+  dilation.Apply(1, &map->blood);
   for (const RegionFolds& region : regions_) map->masks.push_back(SuggestMask(region));
   return map;
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

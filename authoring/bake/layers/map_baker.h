@@ -7,51 +7,54 @@
 #include <string>
 #include <vector>
 
-#include "authoring/bake/bake.h"
 #include "authoring/bake/layers/blood.h"
 #include "authoring/bake/layers/fold_layer.h"
 #include "authoring/bake/layers/profile.h"
 #include "authoring/bake/layers/stroke_layer.h"
-#include "authoring/bake/pace.h"
+#include "authoring/bake/request/bake_progress.h"
+#include "authoring/bake/request/bake_request.h"
+#include "authoring/bake/request/baked_maps.h"
 #include "authoring/bake/surface/bake_surface.h"
+#include "character/character.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 
-// Bakes one map onto a surface: strain of its poses, strokes, folds, texels.
+// Bakes one map of one surface: the strain of the poses, then strokes and folds, then texels.
 class MapBaker {
  public:
-  // All are kept by reference.
-  MapBaker(const Character& character, const BakeSurface& surface, const BakeOptions& options,
-           std::string map, bool cloth);
+  // All references must outlive the baker.
+  MapBaker(const character::Character& character, const BakeSurface& surface,
+           const BakeOptions& options, std::string map, bool cloth);
 
   void AddPose(const BakePose& pose);
   void AddStroke(const BakeStroke& stroke);
 
-  // From `from` to `to` of the whole. Errors: StrokeLayer's, KernelSet's.
-  [[nodiscard]] Result<std::unique_ptr<BakedMap>> Bake(float from, float to, Pace* pace);
+  // Reports progress from `from` to `to`. Errors: those of StrokeLayer and KernelSet.
+  [[nodiscard]] Result<std::unique_ptr<BakedMap>> Bake(float from, float to,
+                                                       BakeProgress* progress);
 
  private:
   struct RegionFolds {
     std::string region;
-    std::vector<float> compression;  // one a welded vertex, the strongest of its poses
+    std::vector<float> compression;  // per welded vertex, the largest of the region's poses
   };
 
   [[nodiscard]] std::vector<float> MaskOf(const std::string& region) const;
   [[nodiscard]] float Depth() const { return options_.depth * material_.depth; }
   [[nodiscard]] std::vector<float> Wavelengths() const;
-  // Metres; what the map's texels can show, one a welded vertex.
+  // The shortest wavelength that the map's texels can show, per welded vertex, metres.
   [[nodiscard]] std::vector<float> Smallest() const;
-  Status MakeLayers(const FoldField& field, Pace* pace);
+  Status MakeLayers(const FoldField& field, BakeProgress* progress);
   [[nodiscard]] FoldSample FoldsAt(const SurfacePoint& point, const glm::vec3& tangent,
                                    const glm::vec3& bitangent, const StrokeLayer& strokes) const;
-  bool FillTexels(const StrokeLayer& strokes, Pace* pace, BakedMap* map) const;
+  bool FillTexels(const StrokeLayer& strokes, BakeProgress* progress, BakedMap* map) const;
   void FillBlood(BakedMap* map) const;
   void Measure(const std::vector<float>& compression, const StrokeLayer& strokes,
                BakedMap* map) const;
   void MeasureWavelengths(BakedMap* map) const;
   [[nodiscard]] BakedMask SuggestMask(const RegionFolds& folds) const;
 
-  const Character& character_;
+  const character::Character& character_;
   const BakeSurface& surface_;
   const BakeOptions& options_;
   const BakeMaterial& material_;
@@ -66,4 +69,4 @@ class MapBaker {
   std::vector<std::unique_ptr<FoldLayer>> layers_;
 };
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -10,7 +10,7 @@
 #include "authoring/paint/noise.h"
 #include "base/scalar.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
@@ -32,7 +32,7 @@ PhaseSolver::PhaseSolver(const Surface& surface, KernelSet* set) : set_(*set) {
       const vec3 step = here.place.position - there.place.position;
       const float share = there.ShareAt(glm::dot(step, step));
       if (j == i || share <= 0.0f) continue;
-      // The other's wave, carried into the surface here.
+      // The neighbour's frequency, projected into the surface here.
       vec3 carried = there.frequency - normal * glm::dot(there.frequency, normal);
       const float length = glm::length(carried);
       if (length < 1e-6f) continue;
@@ -40,7 +40,7 @@ PhaseSolver::PhaseSolver(const Surface& surface, KernelSet* set) : set_(*set) {
       const float cosine =
           glm::dot(carried, here.frequency) / (glm::length(carried) * glm::length(here.frequency));
       const float turn = cosine < 0.0f ? -1.0f : 1.0f;
-      // The mean of both frequencies is right to the second order on a curved way.
+      // On a curved surface the mean of both frequencies is accurate to second order.
       const float shift = 0.5f * glm::dot(here.frequency + turn * there.frequency, step);
       const float weight = share * cosine * cosine * (there.amplitude + 0.02f * strongest);
       neighbours_.push_back({j, weight, turn, shift});
@@ -49,7 +49,8 @@ PhaseSolver::PhaseSolver(const Surface& surface, KernelSet* set) : set_(*set) {
   }
 }
 
-bool PhaseSolver::Foretell(std::size_t kernel, const std::vector<char>& known, float* phase) const {
+bool PhaseSolver::PredictPhase(std::size_t kernel, const std::vector<char>& known,
+                               float* phase) const {
   float x = 0.0f, y = 0.0f;
   for (const Neighbour& neighbour : Of(kernel)) {
     if (!known[neighbour.kernel]) continue;
@@ -74,14 +75,15 @@ void PhaseSolver::Grow() {
   std::priority_queue<Entry> front;
   std::vector<char> known(kernels.size(), 0);
   std::vector<float> support(kernels.size(), 0.0f);
-  // Seeds by their strength, below everything that has a neighbour to go by.
+  // Every kernel starts in the queue, strongest first, but below all kernels that have a known
+  // neighbour.
   for (std::uint32_t i = 0; i < kernels.size(); ++i) front.push({kernels[i].amplitude - 1e6f, i});
   while (!front.empty()) {
     const std::uint32_t i = front.top().kernel;
     front.pop();
     if (known[i]) continue;
     float phase = 0.0f;
-    if (Foretell(i, known, &phase)) kernels[i].phase = phase;
+    if (PredictPhase(i, known, &phase)) kernels[i].phase = phase;
     known[i] = 1;
     for (const Neighbour& neighbour : Of(i)) {
       const std::uint32_t j = neighbour.kernel;
@@ -92,15 +94,15 @@ void PhaseSolver::Grow() {
   }
 }
 
-void PhaseSolver::Align(Pace* pace) {
+void PhaseSolver::Align(BakeProgress* progress) {
   Grow();
   std::vector<FoldKernel>& kernels = set_.kernels();
   const std::vector<char> all(kernels.size(), 1);
   for (int pass = 0; pass < kRelaxations; ++pass) {
-    if (!pace->Tell(static_cast<float>(pass) / static_cast<float>(kRelaxations))) return;
+    if (!progress->Report(static_cast<float>(pass) / static_cast<float>(kRelaxations))) return;
     for (std::size_t i = 0; i < kernels.size(); ++i) {
       float phase = 0.0f;
-      if (Foretell(i, all, &phase)) kernels[i].phase = phase;
+      if (PredictPhase(i, all, &phase)) kernels[i].phase = phase;
     }
   }
 }
@@ -119,7 +121,7 @@ void PhaseSolver::VaryDepth(float variation, std::uint32_t seed) {
       float sum = noise[i], total = 1.0f;
       for (const Neighbour& neighbour : Of(i)) {
         const vec3 step = kernels[i].place.position - kernels[neighbour.kernel].place.position;
-        // In radians across the fold: a third of a wavelength off and the share is gone.
+        // In radians across the fold: the weight vanishes within a third of a wavelength.
         const float across = glm::dot(step, kernels[i].frequency);
         const float share = std::exp(-1.2f * across * across);
         sum += share * noise[neighbour.kernel];
@@ -139,4 +141,4 @@ void PhaseSolver::VaryDepth(float variation, std::uint32_t seed) {
   }
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -6,12 +6,12 @@
 
 #include "base/scalar.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
-constexpr int kPhases = 256;    // of a period, where the profile is integrated
-constexpr int kTable = 256;     // compressions whose amplitude is solved
-constexpr float kMost = 0.95f;  // compression
+constexpr int kPhases = 256;   // samples of a period for integrals
+constexpr int kTable = 256;    // tabulated compressions
+constexpr float kMax = 0.95f;  // largest compression
 
 }  // namespace
 
@@ -30,7 +30,7 @@ FoldProfile::FoldProfile(float sharpness) {
   amplitudes_.resize(kTable + 1);
   for (int i = 1; i <= kTable; ++i) {
     const float root = static_cast<float>(i) / kTable;
-    amplitudes_[static_cast<std::size_t>(i)] = SolveAmplitude(root * root * kMost);
+    amplitudes_[static_cast<std::size_t>(i)] = SolveAmplitude(root * root * kMax);
   }
 }
 
@@ -41,7 +41,7 @@ FoldProfile::Sample FoldProfile::At(float cosine, float sine) const {
 }
 
 float FoldProfile::Amplitude(float compression) const {
-  const float root = std::sqrt(std::clamp(compression, 0.0f, kMost) / kMost) * kTable;
+  const float root = std::sqrt(std::clamp(compression, 0.0f, kMax) / kMax) * kTable;
   const auto cell = std::min(static_cast<std::size_t>(root), std::size_t{kTable - 1});
   const float within = root - static_cast<float>(cell);
   return amplitudes_[cell] + (amplitudes_[cell + 1] - amplitudes_[cell]) * within;
@@ -66,4 +66,4 @@ float FoldProfile::SolveAmplitude(float compression) const {
   return 0.5f * (low + high);
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -10,21 +10,20 @@
 
 #include "base/status.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
 using glm::vec3;
 
-constexpr float kSteerWidths = 4.0f;  // within which folds of strain run along a drawn one
-constexpr float kMetres = 0.001f;     // a millimetre
-constexpr float kFarthest = 0.02f;    // metres off the surface
-constexpr std::size_t kMostPoints = 200'000;
+constexpr float kSteerWidths = 4.0f;  // strain folds follow a drawn fold within this many widths
+constexpr float kFarthest = 0.02f;    // largest distance of a stroke from the surface, metres
+constexpr std::size_t kMaxPoints = 200'000;
 
-// 1 on the line, 0 at `reach` and beyond, smooth at both.
+// 1 on the line, 0 from `reach` on, smooth at both ends.
 struct Falloff {
   float value = 0.0f;
-  float slope = 0.0f;  // by the distance
+  float slope = 0.0f;  // derivative by the distance
 };
 Falloff FalloffAt(float distance, float reach) {
   const float x = distance / reach;
@@ -33,16 +32,18 @@ Falloff FalloffAt(float distance, float reach) {
   return {q * q, -4.0f * x * q / reach};
 }
 
-// Metres between points on the line.
-float PieceOf(const BakeStroke& stroke) { return std::max(stroke.width_mm * kMetres, 0.001f); }
+// Distance between points on the line, metres.
+float PieceOf(const BakeStroke& stroke) {
+  return std::max(stroke.width_mm * kMetresPerMillimetre, 0.001f);
+}
 
 std::string NameOf(const BakeStroke& stroke) { return "stroke '" + stroke.name + "'"; }
 
-// Points on the line close enough to each other that straight pieces between them stay near the
-// surface once the points are carried to it.
+// Points on the line that are close enough together for the straight segments between them to stay
+// near the surface once the points are projected onto it.
 std::vector<vec3> Densify(const BakeStroke& stroke) {
   std::vector<vec3> line = stroke.points;
-  if (stroke.smooth) line = paint::Smooth(stroke.points, 8);
+  if (stroke.smooth) line = Smooth(stroke.points, 8);
   std::vector<vec3> dense;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
     const float length = glm::distance(line[i], line[i + 1]);
@@ -57,7 +58,7 @@ std::vector<vec3> Densify(const BakeStroke& stroke) {
 }
 
 float ReachOf(const BakeStroke& stroke) {
-  const float width = stroke.width_mm * kMetres;
+  const float width = stroke.width_mm * kMetresPerMillimetre;
   return stroke.kind == BakeStroke::Kind::kFold ? kSteerWidths * width : width;
 }
 
@@ -70,15 +71,16 @@ float CavityOf(float height, float wavelength) {
 
 Result<std::unique_ptr<StrokeLayer>> StrokeLayer::Create(
     const Surface& surface, const std::vector<const BakeStroke*>& strokes,
-    std::vector<std::vector<float>> masks, float depth, Pace* pace) {
+    std::vector<std::vector<float>> masks, float depth, BakeProgress* progress) {
   std::unique_ptr<StrokeLayer> layer(new StrokeLayer(surface, depth));
-  SurfaceReach reach(surface);
+  SurfaceSearch reach(surface);
   std::vector<std::vector<std::uint32_t>> lists(surface.triangles().size());
   for (std::size_t i = 0; i < strokes.size(); ++i) {
-    if (!pace->Tell(static_cast<float>(i) / static_cast<float>(strokes.size()))) break;
-    FURROW_RETURN_IF_ERROR(layer->Lay(*strokes[i], std::move(masks[i]), &reach, &lists, pace));
+    if (!progress->Report(static_cast<float>(i) / static_cast<float>(strokes.size()))) break;
+    FURROW_RETURN_IF_ERROR(
+        layer->Place(*strokes[i], std::move(masks[i]), &reach, &lists, progress));
   }
-  if (pace->stopped()) return Pace::Cancelled();
+  if (progress->cancelled()) return BakeProgress::CancelledStatus();
   layer->starts_.push_back(0);
   for (const auto& list : lists) {
     layer->lists_.insert(layer->lists_.end(), list.begin(), list.end());
@@ -87,62 +89,62 @@ Result<std::unique_ptr<StrokeLayer>> StrokeLayer::Create(
   return layer;
 }
 
-Status StrokeLayer::Lay(const BakeStroke& stroke, std::vector<float> mask, SurfaceReach* reach,
-                        std::vector<std::vector<std::uint32_t>>* lists, Pace* pace) {
+Status StrokeLayer::Place(const BakeStroke& stroke, std::vector<float> mask, SurfaceSearch* reach,
+                          std::vector<std::vector<std::uint32_t>>* lists, BakeProgress* progress) {
   std::vector<vec3> points = Densify(stroke);
   num_points_ += points.size();
-  if (num_points_ > kMostPoints) {
+  if (num_points_ > kMaxPoints) {
     return {StatusCode::kLimit,
-            "the strokes of one map are cut into more than " + std::to_string(kMostPoints) +
+            "the strokes of one map are cut into more than " + std::to_string(kMaxPoints) +
                 " pieces, each as long as its stroke is wide",
             NameOf(stroke), "make strokes wider or shorter"};
   }
-  const auto index = static_cast<std::uint32_t>(laid_.size());
+  const auto index = static_cast<std::uint32_t>(strokes_.size());
   const float radius = ReachOf(stroke);
   float farthest = 0.0f;
-  for (std::size_t i = 0; i < points.size() && pace->Ask(i); ++i) {
+  for (std::size_t i = 0; i < points.size() && progress->RepeatReport(i); ++i) {
     const SurfacePoint place = surface_.Nearest(points[i]);
     farthest = std::max(farthest, glm::distance(points[i], place.position));
     points[i] = place.position;
-    // Half a piece more, so that what is near the middle of a piece is found from its ends.
+    // Half a segment more, so that the middle of a segment is also found from its ends.
     const float reached = radius + 0.5f * PieceOf(stroke);
     for (const std::uint32_t t : reach->Find(place.position, {&place.triangle, 1}, reached)) {
       std::vector<std::uint32_t>& list = (*lists)[t];
       if (list.empty() || list.back() != index) list.push_back(index);
     }
   }
-  if (farthest > std::max(kFarthest, kSteerWidths * stroke.width_mm * kMetres)) {
+  if (farthest > std::max(kFarthest, kSteerWidths * stroke.width_mm * kMetresPerMillimetre)) {
     return {StatusCode::kInvalidArgument,
-            "the stroke lies " + std::to_string(std::lround(farthest / kMetres)) +
+            "the stroke lies " + std::to_string(std::lround(farthest / kMetresPerMillimetre)) +
                 " mm off the surface",
             NameOf(stroke), "points are metres in model space, on this character at rest"};
   }
-  laid_.push_back({&stroke, paint::StrokeLine(std::move(points)), std::move(mask), radius});
+  strokes_.push_back({&stroke, StrokeLine(std::move(points)), std::move(mask), radius});
   return {};
 }
 
 void StrokeLayer::MarkFolds(const SurfacePoint& point, std::vector<char>* seen) const {
   for (const std::uint32_t index : Near(point.triangle)) {
-    const Laid& laid = laid_[index];
-    if ((*seen)[index] || laid.stroke->kind != BakeStroke::Kind::kFold) continue;
-    const float reach = paint::kStrokeReach * laid.stroke->width_mm * kMetres;
-    const bool there = laid.line.FindNearest(point.position).distance < reach;
-    (*seen)[index] = there && MaskAt(laid, point) > 0.0f;
+    const PlacedStroke& placed = strokes_[index];
+    if ((*seen)[index] || placed.stroke->kind != BakeStroke::Kind::kFold) continue;
+    const float reach = kStrokeReach * placed.stroke->width_mm * kMetresPerMillimetre;
+    const bool there = placed.line.FindNearest(point.position).distance < reach;
+    (*seen)[index] = there && MaskAt(placed, point) > 0.0f;
   }
 }
 
-float StrokeLayer::MaskAt(const Laid& laid, const SurfacePoint& point) const {
-  return laid.mask.empty() ? 1.0f : surface_.Interpolate(laid.mask, point);
+float StrokeLayer::MaskAt(const PlacedStroke& placed, const SurfacePoint& point) const {
+  return placed.mask.empty() ? 1.0f : surface_.Interpolate(placed.mask, point);
 }
 
 StrokeLayer::Guidance StrokeLayer::GuidanceAt(const SurfacePoint& point) const {
   Guidance guidance;
   vec3 sum(0.0f);
   for (const std::uint32_t index : Near(point.triangle)) {
-    const Laid& laid = laid_[index];
-    const BakeStroke& stroke = *laid.stroke;
-    const auto nearest = laid.line.FindNearest(point.position);
-    const float weight = FalloffAt(nearest.distance, laid.reach).value * MaskAt(laid, point);
+    const PlacedStroke& placed = strokes_[index];
+    const BakeStroke& stroke = *placed.stroke;
+    const auto nearest = placed.line.FindNearest(point.position);
+    const float weight = FalloffAt(nearest.distance, placed.reach).value * MaskAt(placed, point);
     if (weight <= 0.0f) continue;
     if (stroke.kind == BakeStroke::Kind::kExclude) {
       guidance.keep *= 1.0f - weight;
@@ -154,7 +156,7 @@ StrokeLayer::Guidance StrokeLayer::GuidanceAt(const SurfacePoint& point) const {
       sum += (glm::dot(along, sum) < 0.0f ? -weight : weight) * along;
     }
     if (stroke.kind == BakeStroke::Kind::kDirection && stroke.wavelength_mm > 0.0f) {
-      guidance.wavelength += weight * stroke.wavelength_mm * kMetres;
+      guidance.wavelength += weight * stroke.wavelength_mm * kMetresPerMillimetre;
       guidance.wavelength_share += weight;
     }
   }
@@ -167,24 +169,24 @@ StrokeLayer::Guidance StrokeLayer::GuidanceAt(const SurfacePoint& point) const {
   return guidance;
 }
 
-StrokeLayer::Drawn StrokeLayer::At(const SurfacePoint& point, const vec3& tangent,
-                                   const vec3& bitangent) const {
-  Drawn drawn;
+StrokeLayer::Sample StrokeLayer::At(const SurfacePoint& point, const vec3& tangent,
+                                    const vec3& bitangent) const {
+  Sample drawn;
   for (const std::uint32_t index : Near(point.triangle)) {
-    const Laid& laid = laid_[index];
-    const BakeStroke& stroke = *laid.stroke;
+    const PlacedStroke& placed = strokes_[index];
+    const BakeStroke& stroke = *placed.stroke;
     if (stroke.kind != BakeStroke::Kind::kFold) continue;
-    const float width = stroke.width_mm * kMetres;
-    const auto nearest = laid.line.FindNearest(point.position);
-    if (nearest.distance >= paint::kStrokeReach * width) continue;
-    const float strength = paint::StrokeTaper(nearest.place, stroke.taper) * MaskAt(laid, point);
+    const float width = stroke.width_mm * kMetresPerMillimetre;
+    const auto nearest = placed.line.FindNearest(point.position);
+    if (nearest.distance >= kStrokeReach * width) continue;
+    const float strength = StrokeTaper(nearest.place, stroke.taper) * MaskAt(placed, point);
     const vec2 away(glm::dot(nearest.away, tangent), glm::dot(nearest.away, bitangent));
-    const paint::FoldShape shape = paint::FoldShapeAt(nearest.distance / width, stroke.ridge);
-    const float depth = depth_ * stroke.depth_mm * kMetres * strength;
+    const FoldShape shape = FoldShapeAt(nearest.distance / width, stroke.ridge);
+    const float depth = depth_ * stroke.depth_mm * kMetresPerMillimetre * strength;
     drawn.fold.height += shape.height * depth;
     drawn.fold.slope += away * (shape.slope * depth / width);
     drawn.fold.cavity *= CavityOf(shape.height * depth, 2.0f * width);
-    const Falloff cover = FalloffAt(nearest.distance, paint::kStrokeReach * width);
+    const Falloff cover = FalloffAt(nearest.distance, kStrokeReach * width);
     const float keep = 1.0f - cover.value * strength;
     drawn.keep_slope = drawn.keep_slope * keep - away * (cover.slope * strength * drawn.keep);
     drawn.keep *= keep;
@@ -192,4 +194,4 @@ StrokeLayer::Drawn StrokeLayer::At(const SurfacePoint& point, const vec3& tangen
   return drawn;
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

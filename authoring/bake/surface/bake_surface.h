@@ -6,50 +6,54 @@
 #include <string>
 #include <vector>
 
-#include "authoring/bake/bake.h"
-#include "authoring/bake/layers/compression.h"
-#include "authoring/bake/pace.h"
+#include "authoring/bake/request/bake_progress.h"
+#include "authoring/bake/request/bake_request.h"
+#include "authoring/bake/surface/compression.h"
 #include "authoring/bake/surface/surface.h"
-#include "authoring/paint/uv_raster.h"
+#include "authoring/paint/surface_texels.h"
+#include "character/character.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 
-// Everything about the skin or the clothes of a character that several maps share.
+// The skin or the clothes of a character, with the data that all maps of this surface share.
 class BakeSurface {
  public:
-  // kInvalidArgument: nothing of the kind, no UVs, no triangle of extent. kUnavailable: stopped.
-  [[nodiscard]] static Result<std::unique_ptr<BakeSurface>> Create(const Character& character,
-                                                                   bool cloth,
-                                                                   const BakeOptions& options,
-                                                                   Pace* pace);
+  // Errors: kInvalidArgument (no mesh of the kind, no UVs, no triangle with an area), kUnavailable
+  // (cancelled).
+  [[nodiscard]] static Result<std::unique_ptr<BakeSurface>> Create(
+      const character::Character& character, bool cloth, const BakeOptions& options,
+      BakeProgress* progress);
 
   [[nodiscard]] const Surface& surface() const { return surface_; }
   [[nodiscard]] const CompressionSolver& solver() const { return solver_; }
-  [[nodiscard]] const std::vector<paint::Texel>& texels() const { return texels_; }
+  [[nodiscard]] const std::vector<SurfaceTexel>& texels() const { return texels_; }
   [[nodiscard]] std::int64_t overlaps() const { return overlaps_; }
-  // Side of a texel on the surface, metres, one a welded vertex: a face takes more of its picture
-  // than a back.
+  // The side of a texel on the surface at each welded vertex, metres. It varies: a face gets more
+  // texels than a back.
   [[nodiscard]] std::span<const float> texel_metres() const { return texel_metres_; }
 
-  // A region's mask at the welded vertices, [0, 1]; empty where it has no picture: everywhere all.
-  [[nodiscard]] std::vector<float> MaskOf(const Character& character,
+  // A region's mask at the welded vertices, [0, 1]. Empty if the region has no texture mask, which
+  // means 1 everywhere.
+  [[nodiscard]] std::vector<float> MaskOf(const character::Character& character,
                                           const wrinkle::Region& region) const;
 
  private:
-  BakeSurface(std::span<const Mesh* const> meshes, float smoothing, int size, Pace* pace);
+  BakeSurface(std::span<const character::Mesh* const> meshes, float smoothing, int size,
+              BakeProgress* progress);
   [[nodiscard]] std::vector<float> TexelSides(int size) const;
 
   Surface surface_;
   CompressionSolver solver_;
   std::int64_t overlaps_ = 0;
-  std::vector<paint::Texel> texels_;
+  std::vector<SurfaceTexel> texels_;
   std::vector<float> texel_metres_;
 };
 
-// The meshes that make up the skin or the clothes: indices into Character::meshes.
-[[nodiscard]] std::vector<int> MeshesOn(const Character& character, bool cloth);
+// The meshes of the skin or the clothes, as indices into Character::meshes.
+[[nodiscard]] std::vector<int> MeshesOn(const character::Character& character, bool cloth);
 
-// Whether a map goes on cloth; see Bake().
-[[nodiscard]] bool GoesOnCloth(const Character& character, const wrinkle::WrinkleMap& map);
+// Whether a map is drawn on cloth; see Bake().
+[[nodiscard]] bool GoesOnCloth(const character::Character& character,
+                               const wrinkle::WrinkleMap& map);
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

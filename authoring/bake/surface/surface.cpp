@@ -10,19 +10,10 @@
 
 #include "character/mesh/weld.h"
 
-namespace furrow::character::bake {
-namespace {
+namespace furrow::authoring {
 
 using glm::vec3;
 using wrinkle::SurfaceAxes;
-
-vec3 NearestOnEdge(const vec3& p, const vec3& a, const vec3& b) {
-  const vec3 along = b - a;
-  const float t = glm::dot(p - a, along) / std::max(glm::dot(along, along), 1e-20f);
-  return a + along * std::clamp(t, 0.0f, 1.0f);
-}
-
-}  // namespace
 
 SurfaceAxes AxesAcross(const vec3& normal) {
   const vec3 helper = std::abs(normal.x) < 0.8f ? vec3(1, 0, 0) : vec3(0, 1, 0);
@@ -33,8 +24,8 @@ SurfaceAxes AxesAcross(const vec3& normal) {
   return axes;
 }
 
-Turn Transport(const SurfaceAxes& from, const SurfaceAxes& to) {
-  // A vector v across n1 turned by the shortest rotation of n1 onto n2.
+PlaneRotation Transport(const SurfaceAxes& from, const SurfaceAxes& to) {
+  // Applies the shortest rotation from one normal to the other to the x axis.
   const float along = 1.0f + glm::dot(from.normal, to.normal);
   if (along < 1e-4f) return {};
   const vec3 sum = from.normal + to.normal;
@@ -45,23 +36,23 @@ Turn Transport(const SurfaceAxes& from, const SurfaceAxes& to) {
   return {turned.x / length, turned.y / length};
 }
 
-Tensor2 Carry(const Tensor2& tensor, const Turn& turn) {
+Tensor2 Carry(const Tensor2& tensor, const PlaneRotation& turn) {
   const float c = turn.cosine, s = turn.sine;
   return {c * c * tensor.xx - 2.0f * c * s * tensor.xy + s * s * tensor.yy,
           c * s * (tensor.xx - tensor.yy) + (c * c - s * s) * tensor.xy,
           s * s * tensor.xx + 2.0f * c * s * tensor.xy + c * c * tensor.yy};
 }
 
-Surface::Surface(std::span<const Mesh* const> meshes) {
-  for (const Mesh* mesh : meshes) Append(*mesh);
+Surface::Surface(std::span<const character::Mesh* const> meshes) {
+  for (const character::Mesh* mesh : meshes) Append(*mesh);
   Connect();
   MakeAxes();
   MakeTree();
 }
 
-void Surface::Append(const Mesh& mesh) {
+void Surface::Append(const character::Mesh& mesh) {
   const auto base = static_cast<std::uint32_t>(mesh_.vertices.size());
-  const std::vector<std::uint32_t> first = WeldVertices(mesh);
+  const std::vector<std::uint32_t> first = character::WeldVertices(mesh);
   std::vector<std::uint32_t> welded(mesh.vertices.size());
   for (std::uint32_t i = 0; i < first.size(); ++i) {
     if (first[i] != i) {
@@ -127,7 +118,7 @@ void Surface::MakeAxes() {
   }
 }
 
-// Only triangles that have an extent; where none has, all.
+// Uses only triangles with an area, or all triangles if none has one.
 void Surface::MakeTree() {
   std::vector<TriangleTree::Corners> corners;
   std::vector<std::uint32_t> whole, all;
@@ -171,13 +162,14 @@ Tensor2 Surface::Interpolate(std::span<const Tensor2> tensors, const SurfacePoin
   return sum;
 }
 
-SurfaceReach::SurfaceReach(const Surface& surface)
+SurfaceSearch::SurfaceSearch(const Surface& surface)
     : surface_(surface), stamps_(surface.triangles().size(), 0) {}
 
-std::span<const std::uint32_t> SurfaceReach::Find(const vec3& centre,
-                                                  std::span<const std::uint32_t> seeds,
-                                                  float radius) {
-  // Ways go from edge to edge by their nearest points, a little longer than the shortest.
+std::span<const std::uint32_t> SurfaceSearch::Find(const vec3& centre,
+                                                   std::span<const std::uint32_t> seeds,
+                                                   float radius) {
+  // Paths lead from edge to edge through the nearest points, so they are a little longer than the
+  // shortest path.
   constexpr float kDetour = 1.4f;
   ++stamp_;
   heap_.clear();
@@ -198,8 +190,8 @@ std::span<const std::uint32_t> SurfaceReach::Find(const vec3& centre,
       const std::uint32_t next = surface_.triangles()[entry.triangle].neighbours[k];
       if (next == kNoTriangle || stamps_[next] == stamp_) continue;
       const vec3 a = corners[k], b = corners[(k + 1) % 3];
-      // The edge must be within reach; of its points the way takes the nearest to the centre,
-      // which keeps ways on an even surface straight.
+      // The edge must be within reach. The path crosses it at the point nearest to the centre,
+      // which keeps paths on a flat surface straight.
       const vec3 gate = NearestOnEdge(centre, a, b);
       if (glm::distance(gate, centre) >= radius) continue;
       const float length = entry.length + glm::distance(gate, entry.point);
@@ -211,4 +203,4 @@ std::span<const std::uint32_t> SurfaceReach::Find(const vec3& centre,
   return found_;
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -13,11 +13,11 @@
 #include "character/character.h"
 #include "wrinkle/drivers/strain/strain.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 
-// A symmetric 2x2 tensor in axes of the surface.
+// A symmetric 2x2 tensor in the axes of a surface.
 struct Tensor2 {
   float xx = 0.0f;
   float xy = 0.0f;
@@ -30,84 +30,85 @@ struct Tensor2 {
   return {s * t.xx, s * t.xy, s * t.yy};
 }
 
-// The cosine and sine of the angle by which axes are turned against others after they were carried
-// over the surface (by the shortest rotation of one normal onto the other).
-struct Turn {
+// A rotation within a surface, as the cosine and sine of its angle.
+struct PlaneRotation {
   float cosine = 1.0f;
   float sine = 0.0f;
 };
-[[nodiscard]] Turn Transport(const wrinkle::SurfaceAxes& from, const wrinkle::SurfaceAxes& to);
-// A tensor of the axes that a turn starts from, in the axes that it leads to.
-[[nodiscard]] Tensor2 Carry(const Tensor2& tensor, const Turn& turn);
+[[nodiscard]] PlaneRotation Transport(const wrinkle::SurfaceAxes& from,
+                                      const wrinkle::SurfaceAxes& to);
+// Converts a tensor from the axes `from` to the axes `to` of Transport().
+[[nodiscard]] Tensor2 Carry(const Tensor2& tensor, const PlaneRotation& turn);
 
-// Axes across a unit normal, wherever they point.
+// Orthonormal axes perpendicular to a unit normal. Their rotation about the normal is arbitrary.
 [[nodiscard]] wrinkle::SurfaceAxes AxesAcross(const glm::vec3& normal);
 
-// A place on a surface: everything that varies over it is read there from the triangle's corners.
+// A point on a surface. Values at the triangle's corners are interpolated there.
 struct SurfacePoint {
   std::uint32_t triangle = 0;
   glm::vec3 corners{1.0f, 0.0f, 0.0f};  // barycentric
   glm::vec3 position{0.0f};             // metres
 };
 
-// Some meshes as one surface at rest, whole across UV seams.
+// Several meshes at rest as one surface that is continuous across UV seams.
 //
-// - Vertices of one mesh are welded where they lie on the same place and every joint moves them
-//   alike: so the two sides of a UV seam are one, and closed lips, which lie upon each other and
-//   move apart, are not.
-// - Nothing connects one mesh to another.
+// - Vertices of one mesh are welded if they share a position and all skin weights. The two sides of
+//   a UV seam become one. Closed lips stay apart, since different joints move them.
+// - Meshes are never connected to each other.
 class Surface {
  public:
   struct Triangle {
     std::array<std::uint32_t, 3> vertices{};  // welded
-    // Across the edges (0, 1), (1, 2), (2, 0); kNoTriangle at a border.
+    // The triangles across the edges (0, 1), (1, 2), (2, 0); kNoTriangle at a border.
     std::array<std::uint32_t, 3> neighbours{kNoTriangle, kNoTriangle, kNoTriangle};
     wrinkle::SurfaceAxes axes;
     float area = 0.0f;                            // square metres
-    std::optional<wrinkle::RestTriangle> strain;  // none: degenerate, says nothing of strain
+    std::optional<wrinkle::RestTriangle> strain;  // empty: a degenerate triangle without strain
   };
 
-  // The meshes' skin weights must be in order: indices in range, joints in the skeleton.
-  explicit Surface(std::span<const Mesh* const> meshes);
+  // Precondition: the meshes' indices are in range, and their skin weights name joints of the
+  // skeleton.
+  explicit Surface(std::span<const character::Mesh* const> meshes);
 
-  // All meshes in one list: triangle t of the surface has its corners at indices 3 t, 3 t + 1, ...
-  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+  // All meshes concatenated. The corners of triangle t are at indices 3 t, 3 t + 1 and 3 t + 2.
+  [[nodiscard]] const character::Mesh& mesh() const { return mesh_; }
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
   [[nodiscard]] std::span<const glm::vec3> positions() const { return positions_; }   // welded
   [[nodiscard]] std::span<const wrinkle::SurfaceAxes> axes() const { return axes_; }  // welded
-  // A vertex of mesh() that a welded vertex stands for.
-  [[nodiscard]] const Vertex& SourceOf(std::size_t welded) const {
+  // One of the vertices of mesh() that a welded vertex replaces.
+  [[nodiscard]] const character::Vertex& SourceOf(std::size_t welded) const {
     return mesh_.vertices[source_[welded]];
   }
-  // Triangles around a welded vertex.
+  // The triangles around a welded vertex.
   [[nodiscard]] std::span<const std::uint32_t> Around(std::size_t welded) const {
     return std::span(fans_).subspan(fan_starts_[welded],
                                     fan_starts_[welded + 1] - fan_starts_[welded]);
   }
-  // A value that is known at the welded vertices.
+  // Interpolates a value per welded vertex.
   [[nodiscard]] float Interpolate(std::span<const float> values, const SurfacePoint& point) const {
     const auto& v = triangles_[point.triangle].vertices;
     return values[v[0]] * point.corners.x + values[v[1]] * point.corners.y +
            values[v[2]] * point.corners.z;
   }
-  // A tensor in the vertices' axes, as one in the triangle's.
+  // Interpolates a tensor per welded vertex. The tensors are in their vertices' axes; the result is
+  // in the axes of the point's triangle.
   [[nodiscard]] Tensor2 Interpolate(std::span<const Tensor2> tensors,
                                     const SurfacePoint& point) const;
   [[nodiscard]] std::array<glm::vec3, 3> Corners(std::uint32_t triangle) const;
 
-  // The nearest point of the surface, which must have a triangle; of those without extent none,
-  // where there are others.
+  // The nearest point of the surface. Degenerate triangles are ignored unless there are no others.
+  // Precondition: the surface has a triangle.
   [[nodiscard]] SurfacePoint Nearest(const glm::vec3& p) const;
-  // A point of a triangle by its barycentric coordinates.
+  // The point with the given barycentric coordinates of a triangle.
   [[nodiscard]] SurfacePoint PointOf(std::uint32_t triangle, const glm::vec3& corners) const;
 
  private:
-  void Append(const Mesh& mesh);
+  void Append(const character::Mesh& mesh);
   void Connect();
   void MakeAxes();
   void MakeTree();
 
-  Mesh mesh_;
+  character::Mesh mesh_;
   std::vector<Triangle> triangles_;
   std::vector<glm::vec3> positions_;
   std::vector<wrinkle::SurfaceAxes> axes_;
@@ -117,14 +118,14 @@ class Surface {
   std::optional<TriangleTree> tree_;
 };
 
-// Finds what lies within a distance of a point *over the surface*, so that nothing leaks from one
-// lip or finger to the next. Keeps its memory between searches; one thread at a time.
-class SurfaceReach {
+// Finds triangles within a distance of a point, measured over the surface, so that effects do not
+// leak from one lip or finger to the next. Reuses its memory between searches. Not thread-safe.
+class SurfaceSearch {
  public:
-  explicit SurfaceReach(const Surface& surface);
+  explicit SurfaceSearch(const Surface& surface);
 
-  // The triangles that come within `radius` metres of `centre` and can be walked to from `seeds`
-  // on a way that is not much longer than the straight one. Valid until the next search.
+  // The triangles within `radius` metres of `centre` that are connected to `seeds` by a path not
+  // much longer than the straight line. The result is valid until the next search.
   [[nodiscard]] std::span<const std::uint32_t> Find(const glm::vec3& centre,
                                                     std::span<const std::uint32_t> seeds,
                                                     float radius);
@@ -143,4 +144,4 @@ class SurfaceReach {
   std::vector<std::uint32_t> found_;
 };
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -9,10 +9,10 @@
 #include "authoring/bake/surface/uv_check.h"
 #include "base/status.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
-std::string MeshName(const Character& character, int mesh) {
+std::string MeshName(const character::Character& character, int mesh) {
   return "mesh '" + character.meshes[static_cast<std::size_t>(mesh)].name + "'";
 }
 
@@ -26,7 +26,7 @@ Status Refuse(std::string what, std::string where, std::string todo) {
   return {StatusCode::kInvalidArgument, std::move(what), std::move(where), std::move(todo)};
 }
 
-Status CheckOverlap(const Character& character, const UvReport& uvs) {
+Status CheckOverlap(const character::Character& character, const UvReport& uvs) {
   if (!(uvs.overlapping > kTolerableUvOverlap) || !uvs.example) return {};
   const UvReport::Overlap& at = *uvs.example;
   char place[64];
@@ -41,8 +41,8 @@ Status CheckOverlap(const Character& character, const UvReport& uvs) {
                 "unwrap it so that every place has texels of its own; mirrored halves do not");
 }
 
-Status CheckSkin(const Character& character, int index) {
-  const Mesh& mesh = character.meshes[static_cast<std::size_t>(index)];
+Status CheckSkin(const character::Character& character, int index) {
+  const character::Mesh& mesh = character.meshes[static_cast<std::size_t>(index)];
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const float* w = mesh.vertices[v].skin_weights;
     if (std::abs(w[0] + w[1] + w[2] + w[3] - 1.0f) <= 0.01f) continue;
@@ -52,10 +52,10 @@ Status CheckSkin(const Character& character, int index) {
   return {};
 }
 
-// The joint that alone moves a mesh, or -1.
-int OnlyJoint(const Mesh& mesh) {
+// The only joint that moves a mesh, or -1 if there are several.
+int OnlyJoint(const character::Mesh& mesh) {
   int joint = -1;
-  for (const Vertex& vertex : mesh.vertices) {
+  for (const character::Vertex& vertex : mesh.vertices) {
     for (int i = 0; i < 4; ++i) {
       if (!(vertex.skin_weights[i] > 0.0f)) continue;
       if (joint >= 0 && joint != vertex.joints[i]) return -1;
@@ -65,7 +65,7 @@ int OnlyJoint(const Mesh& mesh) {
   return joint;
 }
 
-void Warn(const Character& character, const UvReport& uvs, std::span<const int> meshes,
+void Warn(const character::Character& character, const UvReport& uvs, std::span<const int> meshes,
           const std::string& kind, std::vector<std::string>* warnings) {
   const auto count = [&](int triangles, const std::string& what) {
     if (triangles > 0)
@@ -85,7 +85,7 @@ void Warn(const Character& character, const UvReport& uvs, std::span<const int> 
 
 }  // namespace
 
-Status CheckSurfaces(const Character& character, std::span<const std::string> maps,
+Status CheckSurfaces(const character::Character& character, std::span<const std::string> maps,
                      std::vector<std::string>* warnings) {
   if (character.inverse_bind_matrices.size() !=
       static_cast<std::size_t>(character.skeleton.num_joints())) {
@@ -120,4 +120,4 @@ Status CheckSurfaces(const Character& character, std::span<const std::string> ma
   return {};
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -5,17 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "authoring/bake/bake.h"
+#include "character/character.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 
-// Whether the surfaces that `maps` (names; empty: all of the rig's) are drawn on can be baked.
+// Checks whether the surfaces of the wrinkle maps can be baked. `maps`: names of the maps to check;
+// empty: all maps of the rig.
 //
-// - Refused (kInvalidArgument, `where` the mesh): no mesh of the kind, no UVs, UVs that overlap, an
-//   inverse bind matrix too few, a vertex whose skin weights do not sum to 1.
-// - Put up with, one sentence each in `warnings`: triangles without area (they are never drawn),
-//   triangles without UVs, UVs outside the picture, meshes that follow one joint rigidly.
-[[nodiscard]] Status CheckSurfaces(const Character& character, std::span<const std::string> maps,
+// - Errors (kInvalidArgument, `where` names the mesh): no mesh of the kind, no UVs, overlapping
+//   UVs, a missing inverse bind matrix, skin weights of a vertex that do not sum to 1.
+// - Warnings, one sentence each: triangles without area (never drawn), triangles without UVs, UVs
+//   outside the picture, meshes that follow a single joint rigidly.
+[[nodiscard]] Status CheckSurfaces(const character::Character& character,
+                                   std::span<const std::string> maps,
                                    std::vector<std::string>* warnings);
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -8,21 +8,14 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 
-constexpr std::uint32_t kLeaf = 4;  // triangles
+constexpr std::uint32_t kLeaf = 4;  // triangles per leaf
 
 float SquareOf(const vec3& v) { return glm::dot(v, v); }
-
-vec3 NearestOnEdge(const vec3& p, const vec3& a, const vec3& b) {
-  const vec3 along = b - a;
-  const float square = SquareOf(along);
-  if (!(square > 0.0f)) return a;
-  return a + along * std::clamp(glm::dot(p - a, along) / square, 0.0f, 1.0f);
-}
 
 vec3 NearestOnBorder(const vec3& p, const vec3& a, const vec3& b, const vec3& c) {
   vec3 best = NearestOnEdge(p, a, b);
@@ -38,11 +31,18 @@ float SquareToBox(const vec3& p, const vec3& low, const vec3& high) {
 
 }  // namespace
 
+vec3 NearestOnEdge(const vec3& p, const vec3& a, const vec3& b) {
+  const vec3 along = b - a;
+  const float square = SquareOf(along);
+  if (!(square > 0.0f)) return a;
+  return a + along * std::clamp(glm::dot(p - a, along) / square, 0.0f, 1.0f);
+}
+
 vec3 NearestInTriangle(const vec3& p, const vec3& a, const vec3& b, const vec3& c) {
   const vec3 ab = b - a, ac = c - a;
   const vec3 normal = glm::cross(ab, ac);
   const float square = SquareOf(normal);
-  // Narrower than this, the inside is not told from the border.
+  // A narrower triangle is treated as its border, since its inside is below rounding errors.
   if (!(square > 1e-12f * SquareOf(ab) * SquareOf(ac))) return NearestOnBorder(p, a, b, c);
   const vec3 ap = p - a;
   const float v = glm::dot(glm::cross(ap, ac), normal), w = glm::dot(glm::cross(ab, ap), normal);
@@ -120,4 +120,4 @@ TriangleTree::Nearest TriangleTree::Find(const vec3& p) const {
   return best.nearest;
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

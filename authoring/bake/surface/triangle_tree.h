@@ -9,30 +9,35 @@
 
 #include <glm/vec3.hpp>
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 
-// The point of a triangle that is nearest to `p`. Triangles without extent are lines or points.
+// The point of the edge from `a` to `b` that is nearest to `p`. An edge of length 0 is a point.
+[[nodiscard]] glm::vec3 NearestOnEdge(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b);
+
+// The point of a triangle that is nearest to `p`. Degenerate triangles are lines or points.
 [[nodiscard]] glm::vec3 NearestInTriangle(const glm::vec3& p, const glm::vec3& a,
                                           const glm::vec3& b, const glm::vec3& c);
 
-// Boxes within boxes round triangles, to find the nearest one without a look at all.
+// A hierarchy of bounding boxes that finds the nearest triangle without testing all of them.
 class TriangleTree {
  public:
   using Corners = std::array<glm::vec3, 3>;
-  // Metres, finite. `names`: which triangles the tree holds.
+  // Corners in metres, finite. `names`: indices of the triangles to put into the tree.
   TriangleTree(std::span<const Corners> triangles, std::vector<std::uint32_t> names);
 
   struct Nearest {
     std::uint32_t triangle = 0;
     glm::vec3 position{0.0f};
   };
-  // Of triangles as near as each other the lowest; the tree must hold one.
+  // The nearest triangle; of equally near ones the lowest index. Precondition: the tree is not
+  // empty.
   [[nodiscard]] Nearest Find(const glm::vec3& p) const;
 
  private:
   struct Node {
     glm::vec3 low{0.0f}, high{0.0f};
-    std::uint32_t first = 0;  // a leaf's triangles, or the second child (the first one follows)
+    std::uint32_t first =
+        0;  // leaf: its first triangle; other: the second child (the first child is the next node)
     std::uint32_t count = 0;  // 0: not a leaf
   };
   struct Best;
@@ -44,4 +49,4 @@ class TriangleTree {
   std::vector<Node> nodes_;
 };
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

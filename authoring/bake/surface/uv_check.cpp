@@ -12,12 +12,12 @@
 
 #include "wrinkle/drivers/strain/strain.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
-constexpr std::int64_t kSubsamples = 256;  // fixed point: parts of a sample
-constexpr std::int64_t kMaxRounds = 64;    // samples looked at, at most: this often all of them
-constexpr float kFarthestUv = 1024.0f;     // more is not a texture coordinate
+constexpr std::int64_t kSubsamples = 256;  // fixed-point units per sample
+constexpr std::int64_t kMaxRounds = 64;    // maximum number of visits, per sample of the atlas
+constexpr float kFarthestUv = 1024.0f;     // larger values are not texture coordinates
 
 struct Corner {
   std::int64_t x = 0;
@@ -25,12 +25,12 @@ struct Corner {
 };
 using Corners = std::array<Corner, 3>;
 
-// Twice the signed area; > 0 where a, b, c turn from +x to +y.
+// Twice the signed area; positive if a, b, c turn from +x to +y.
 std::int64_t Cross(const Corner& a, const Corner& b, const Corner& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Whether samples on the edge from a to b belong to the triangle on its positive side.
+// Whether samples exactly on the edge from a to b belong to the triangle on its positive side.
 bool OwnsEdge(const Corner& a, const Corner& b) { return (a.y == b.y && b.x > a.x) || b.y < a.y; }
 
 bool Covers(const Corners& t, const Corner& sample) {
@@ -47,7 +47,7 @@ std::int64_t FloorDivide(std::int64_t a, std::int64_t b) {
   return a / b - (a % b != 0 && (a < 0) != (b < 0) ? 1 : 0);
 }
 
-// Who covers each sample of the atlas first, and how many are covered again.
+// Records the first triangle on each sample of the atlas, and counts samples with several.
 class Atlas {
  public:
   explicit Atlas(int size) : size_(size), owner_(static_cast<std::size_t>(size) * size) {}
@@ -58,7 +58,7 @@ class Atlas {
     bool shared = false;
   };
 
-  // False once there is nothing more to learn.
+  // Returns false once the limit of visits is reached.
   bool Paint(const std::array<glm::vec2, 3>& uvs, const Owner& who, UvReport* report) {
     Corners corners;
     for (int i = 0; i < 3; ++i) {
@@ -87,7 +87,7 @@ class Atlas {
   }
 
  private:
-  // The samples whose centres may lie within the corners.
+  // The range of samples with centres between the corners.
   static std::pair<std::int64_t, std::int64_t> Range(const Corners& t, std::int64_t Corner::*axis) {
     const auto [low, high] = std::minmax({t[0].*axis, t[1].*axis, t[2].*axis});
     return {FloorDivide(low - kSubsamples / 2, kSubsamples),
@@ -120,13 +120,13 @@ class Atlas {
   std::int64_t visits_ = 0;
 };
 
-// Pieces of a mesh that hang together: vertices at one place with one UV are the same.
-int CountIslands(const Mesh& mesh) {
+// Counts the connected pieces of a mesh. Vertices with the same position and UV are the same.
+int CountIslands(const character::Mesh& mesh) {
   using Key = std::tuple<float, float, float, float, float>;
   std::map<Key, std::uint32_t> first;
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   for (std::uint32_t i = 0; i < parent.size(); ++i) {
-    const Vertex& v = mesh.vertices[i];
+    const character::Vertex& v = mesh.vertices[i];
     const Key key{v.position.x, v.position.y, v.position.z, v.uv.x, v.uv.y};
     parent[i] = first.emplace(key, i).first->second;
   }
@@ -147,7 +147,7 @@ int CountIslands(const Mesh& mesh) {
 }
 
 bool IsUsable(const glm::vec2& uv) {
-  return std::abs(uv.x) < kFarthestUv && std::abs(uv.y) < kFarthestUv;  // false for a NaN
+  return std::abs(uv.x) < kFarthestUv && std::abs(uv.y) < kFarthestUv;  // false for NaN
 }
 
 bool IsOutside(const glm::vec2& uv) {
@@ -163,17 +163,17 @@ float Area(const std::array<glm::vec2, 3>& t) {
 
 }  // namespace
 
-UvReport CheckUvs(const Character& character, std::span<const int> meshes, int size) {
+UvReport CheckUvs(const character::Character& character, std::span<const int> meshes, int size) {
   constexpr float kLeastUvArea = 1e-12f;
   UvReport report;
   Atlas atlas(size);
   bool painting = true;
   for (const int index : meshes) {
-    const Mesh& mesh = character.meshes[static_cast<std::size_t>(index)];
+    const character::Mesh& mesh = character.meshes[static_cast<std::size_t>(index)];
     report.islands += CountIslands(mesh);
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
       ++report.triangles;
-      const Vertex* corners[3];
+      const character::Vertex* corners[3];
       std::array<glm::vec2, 3> uvs;
       for (std::size_t k = 0; k < 3; ++k) {
         corners[k] = &mesh.vertices[mesh.indices[i + k]];
@@ -194,4 +194,4 @@ UvReport CheckUvs(const Character& character, std::span<const int> meshes, int s
   return report;
 }
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -8,42 +8,42 @@
 
 #include "character/character.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 
-// Whether meshes that share one picture give every place of their surface texels of its own: what a
-// wrinkle map, a mask or any painted texture needs.
+// Whether the meshes of one atlas have texels of their own everywhere. Wrinkle maps, masks and
+// other painted textures require that.
 struct UvReport {
-  // Two triangles on the same texels, and where (UV, v down).
+  // Two triangles that share texels, and a shared place (UV, v down).
   struct Overlap {
-    int meshes[2] = {-1, -1};  // into Character::meshes; may be the same one
+    int meshes[2] = {-1, -1};  // into Character::meshes; may be equal
     int triangles[2] = {-1, -1};
     glm::vec2 uv{0.0f};
   };
   int triangles = 0;
-  int islands = 0;                 // pieces whose triangles share vertices (place and UV)
-  int degenerate_triangles = 0;    // no area on the surface: never drawn, so they need no UVs
-  int unmapped_triangles = 0;      // an area on the surface, none in the picture
-  int outside_triangles = 0;       // a corner outside [0, 1], where a sampler wraps round
-  float covered = 0.0f;            // share of the picture under at least one triangle, [0, 1]
-  float overlapping = 0.0f;        // share of that under more than one, [0, 1]
-  std::optional<Overlap> example;  // of the overlaps, the first one met
+  int islands = 0;  // connected pieces (vertices with the same position and UV are the same)
+  int degenerate_triangles = 0;    // without area on the surface; never drawn, so they need no UVs
+  int unmapped_triangles = 0;      // with area on the surface, but none in the atlas
+  int outside_triangles = 0;       // with a corner outside [0, 1], where the sampler wraps around
+  float covered = 0.0f;            // fraction of the atlas under at least one triangle, [0, 1]
+  float overlapping = 0.0f;        // fraction of that under several triangles, [0, 1]
+  std::optional<Overlap> example;  // the first overlap found
 
-  // No triangle with an area has UVs.
+  // True if no triangle with an area has UVs.
   [[nodiscard]] bool no_uvs() const {
     return unmapped_triangles > 0 && unmapped_triangles == triangles - degenerate_triangles;
   }
 };
 
-// Overlaps smaller than this share of the covered area are rounding where islands touch.
+// A smaller overlap, as a fraction of the covered area, is a rounding error where islands touch.
 inline constexpr float kTolerableUvOverlap = 1e-3f;
 
-// Looks at `meshes` (indices into character.meshes) as one atlas of `size` x `size` samples.
+// Checks `meshes` (indices into character.meshes) as one atlas of `size` x `size` samples.
 //
-// - Exact about shared edges: corners are rounded to 1/256 of a sample, and a sample on the edge of
-//   two triangles belongs to one of them (the rasteriser's top-left rule).
-// - Wraps round as a sampler does. Work is bounded, whatever the UVs are: after 64 looks at every
-//   sample it gives up, and what it has found counts.
-[[nodiscard]] UvReport CheckUvs(const Character& character, std::span<const int> meshes,
+// - Shared edges are exact: corners are rounded to 1/256 of a sample, and a sample on the edge of
+//   two triangles belongs to one of them (the top-left rule of rasterisers).
+// - UVs wrap around like a sampler. The work is bounded for any input: the check stops after 64
+//   visits per sample and reports what it has found.
+[[nodiscard]] UvReport CheckUvs(const character::Character& character, std::span<const int> meshes,
                                 int size = 1024);
 
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

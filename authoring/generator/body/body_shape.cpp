@@ -3,24 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::mat4;
 using glm::vec3;
 
-constexpr float kDegrees = std::numbers::pi_v<float> / 180.0f;
-constexpr float kShoulderDrop = 4.0f;  // degrees, of the modelling pose
+constexpr float kShoulderDrop = 4.0f;  // degrees, in the modelling pose
 constexpr float kArmDrop = 42.0f;
 
-// Metres: height, half width, front, back, x, z. A shirt tucked in, with some air above the belt.
+// Metres: height, half width, front, back, x, z. The shirt is tucked in and loose above the belt.
 constexpr Section kTorso[] = {
     {0.960f, 0.146f, 0.100f, 0.103f, 0, 0.000f},  {1.020f, 0.147f, 0.103f, 0.103f, 0, 0.000f},
     {1.040f, 0.150f, 0.107f, 0.106f, 0, 0.000f},  {1.056f, 0.161f, 0.119f, 0.114f, 0, 0.000f},
@@ -51,7 +50,7 @@ constexpr Section kLeg[] = {{0.920f, 0.080f, 0.100f, 0.118f, 0.090f, 0.000f},
                             {0.090f, 0.0560f, 0.066f, 0.064f, 0.100f, -0.009f},
                             {0.040f, 0.0575f, 0.070f, 0.066f, 0.100f, -0.007f}};
 
-// A sleeve's radius by metres from the joint of the shoulder; the cuff gathers it.
+// The radius of a sleeve at a distance from the shoulder's joint, metres. The cuff narrows it.
 constexpr Knot kSleeve[] = {
     {-0.02f, 0.0310f}, {0.01f, 0.0380f},  {0.05f, 0.0455f}, {0.09f, 0.0490f},
     {0.14f, 0.0495f},  {0.20f, 0.0485f},  {0.25f, 0.0470f}, {0.29f, 0.0465f},
@@ -99,15 +98,15 @@ BodyShape::BodyShape(const BodyParameters& parameters, const wrinkle::Skeleton& 
   if (forward_.z < 0.0f) forward_ = -forward_;
 
   torso_ = Fitted(kTorso, [&](Section* s) {
-    const float chest = SmoothStep(1.12f, 1.28f, s->height);
-    const float shoulders = SmoothStep(1.30f, 1.40f, s->height);
+    const float chest = Smoothstep(1.12f, 1.28f, s->height);
+    const float shoulders = Smoothstep(1.30f, 1.40f, s->height);
     Widen(parameters.waist + (parameters.chest - parameters.waist) * chest, s);
     s->half_width *= 1.0f + (parameters.shoulder_width / parameters.chest - 1.0f) * shoulders;
     s->front += parameters.bust * Bump(s->height - 1.265f, 0.075f);
     s->front += parameters.belly * Bump(s->height - 1.09f, 0.10f);
   });
   pelvis_ = Fitted(kPelvis, [&](Section* s) {
-    const float waist = SmoothStep(0.95f, 1.03f, s->height);
+    const float waist = Smoothstep(0.95f, 1.03f, s->height);
     Widen(parameters.hips + (parameters.waist - parameters.hips) * waist, s);
     s->front += parameters.belly * 0.5f * Bump(s->height - 1.02f, 0.08f);
   });
@@ -121,7 +120,7 @@ BodyShape::BodyShape(const BodyParameters& parameters, const wrinkle::Skeleton& 
 float BodyShape::Sleeve(const vec3& p) const {
   const float along = std::clamp(glm::dot(p - shoulder_, arm_), -0.02f, 0.54f);
   const vec3 middle = shoulder_ + arm_ * along;
-  // Deltoid and triceps: fuller outside above, behind below.
+  // Deltoid and triceps: fuller on the outside near the shoulder, and behind below it.
   const vec3 off = outward_ * (0.002f * Bump(along - 0.08f, 0.07f)) -
                    forward_ * (0.005f * Bump(along - 0.20f, 0.10f));
   return glm::distance(p, middle + off) - Interpolate(kSleeve, along) * parameters_.limbs;
@@ -130,11 +129,11 @@ float BodyShape::Sleeve(const vec3& p) const {
 float BodyShape::Shirt(const vec3& p) const {
   const vec3 q = Mirrored(p);
   const float wide = parameters_.shoulder_width;
-  // From the neck to the joint's cap: the shoulder's slope.
+  // The slope of the shoulder, from the neck to the cap of the joint.
   const float slope =
       RodDistance(q, {0.050f, 1.466f, -0.038f}, {0.155f * wide, 1.391f, -0.022f}, 0.036f, 0.035f);
   const float trunk = SmoothMin(TrunkDistance(q, torso_, 2.3f), slope, 0.05f);
-  // Shoulder blades and the chest's muscles, softened by the cloth.
+  // Shoulder blades and chest muscles, softened by the cloth.
   const float blades =
       RodDistance(q, {0.075f, 1.36f, -0.105f}, {0.085f, 1.29f, -0.098f}, 0.032f, 0.03f);
   const float chest =
@@ -154,4 +153,4 @@ float BodyShape::Neck(const vec3& p) const {
   return head_->Distance(ModelToHead(p)) * 0.01f - 0.007f;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

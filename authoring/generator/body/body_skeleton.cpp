@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "authoring/generator/head/head_mesh.h"
+#include "authoring/generator/head/face_parts.h"
 #include "authoring/generator/head/head_shape.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
@@ -17,7 +17,7 @@ using glm::vec3;
 struct Entry {
   const char* name;  // "*" stands for "_l" and "_r"
   const char* parent;
-  vec3 place;  // metres for the body, head space for the face; the left one of a pair
+  vec3 place;  // body: metres; face: head space. The left one of a pair.
 };
 
 const Entry kBody[] = {
@@ -36,7 +36,7 @@ const Entry kBody[] = {
     {"toes*", "foot*", {0.105f, 0.022f, 0.115f}},
 };
 
-// Fingers of a hand that is stretched out, palm down, a little bent; the last place is the tip.
+// The fingers of a stretched hand, palm down, slightly bent. The last position is the tip.
 struct Finger {
   const char* joints[3];
   vec3 places[4];
@@ -108,7 +108,7 @@ void Append(const Entry& entry, bool face, std::vector<JointPlace>* places) {
   }
 }
 
-// Ends of leaves, relative to the joint, metres.
+// Tails of leaf joints relative to the joint, metres.
 std::optional<vec3> Tail(const std::string& name) {
   const float side = name.ends_with("_r") ? -1.0f : 1.0f;
   if (name.starts_with("hand_")) return vec3(side * 0.09f, 0, 0);
@@ -157,9 +157,9 @@ wrinkle::Skeleton MakeSkeleton() {
     joint.tail = Tail(place.name);
     joints.push_back(std::move(joint));
   }
-  // The table above is a tree of known size: Create() cannot fail on it (a test holds it to that).
+  // The table above is a tree of valid size, so Create() cannot fail; a test checks that.
   Result<wrinkle::Skeleton> skeleton = wrinkle::Skeleton::Create(std::move(joints));
   return skeleton.ok() ? std::move(skeleton).value() : wrinkle::Skeleton();
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

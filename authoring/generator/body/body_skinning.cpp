@@ -11,28 +11,30 @@
 #include <glm/matrix.hpp>
 
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "authoring/skinning/influences.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 
-// Shares under way, by joint.
+// Adds up the shares of joints by their names.
 class Shares {
  public:
-  explicit Shares(const wrinkle::Skeleton& skeleton)
-      : skeleton_(skeleton), shares_(skeleton.num_joints(), 0.0f) {}
+  explicit Shares(const wrinkle::Skeleton& skeleton) : skeleton_(skeleton) {}
 
-  void Add(const std::string& joint, float share) { shares_[skeleton_.Find(joint)] += share; }
-  void Add(const Influences& skin, float share) {
-    for (int k = 0; k < 4; ++k) shares_[skin.joints[k]] += share * skin.weights[k];
+  void Add(const std::string& joint, float share) {
+    sum_.Add(static_cast<std::uint16_t>(skeleton_.Find(joint)), share);
   }
+  void Add(const Influences& skin, float share) { sum_.Add(skin, share); }
 
-  // Blends along a limb: each border hands over from one joint to the next.
+  // Where one joint of a limb hands over to the next: the middle and half the width of the blend.
   struct Border {
     float at;
     float half_width;
   };
+  // Distributes `share` over the joints of a limb. `borders` has one entry fewer than `joints`.
   void AddChain(std::span<const std::string> joints, std::span<const Border> borders, float place,
                 float share) {
     float rest = share;
@@ -40,35 +42,18 @@ class Shares {
       float beyond = 0.0f;
       if (i < borders.size()) {
         const Border& b = borders[i];
-        beyond = SmoothStep(b.at - b.half_width, b.at + b.half_width, place);
+        beyond = Smoothstep(b.at - b.half_width, b.at + b.half_width, place);
       }
       Add(joints[i], rest * (1.0f - beyond));
       rest *= beyond;
     }
   }
 
-  // The four strongest, summing to 1.
-  [[nodiscard]] Influences Take() const {
-    std::vector<int> order;
-    for (std::size_t j = 0; j < shares_.size(); ++j) {
-      if (shares_[j] > 0.0f) order.push_back(static_cast<int>(j));
-    }
-    std::stable_sort(order.begin(), order.end(),
-                     [&](int a, int b) { return shares_[a] > shares_[b]; });
-    order.resize(std::min<std::size_t>(order.size(), 4));
-    float sum = 0.0f;
-    for (const int j : order) sum += shares_[j];
-    Influences skin;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      skin.joints[k] = static_cast<std::uint16_t>(order[k]);
-      skin.weights[k] = shares_[order[k]] / sum;
-    }
-    return skin;
-  }
+  [[nodiscard]] Influences Strongest() const { return sum_.Strongest(); }
 
  private:
   const wrinkle::Skeleton& skeleton_;
-  std::vector<float> shares_;
+  InfluenceSum sum_;
 };
 
 const char* Suffix(float side) { return side >= 0.0f ? "_l" : "_r"; }
@@ -79,19 +64,20 @@ Influences TorsoInfluences(const BodyShape& shape, const vec3& place) {
   const std::string side = Suffix(place.x);
   const float x = std::abs(place.x);
   const vec3 shoulder = shape.shoulder();
-  // Across a plane that leans from the cap of the shoulder in to the armpit; only above the latter.
+  // The border of the arm leans from the cap of the shoulder in to the armpit. It applies only
+  // above the armpit.
   const vec3 from(x - shoulder.x, place.y - shoulder.y, 0.0f);
   const float across = glm::dot(from, vec3(0.97f, 0.24f, 0.0f));
-  const float arm = SmoothStep(-0.055f, 0.075f, across) * SmoothStep(1.20f, 1.36f, place.y);
+  const float arm = Smoothstep(-0.055f, 0.075f, across) * Smoothstep(1.20f, 1.36f, place.y);
   const float shoulder_share =
-      0.85f * SmoothStep(0.045f, 0.15f, x) * SmoothStep(1.27f, 1.43f, place.y);
+      0.85f * Smoothstep(0.045f, 0.15f, x) * Smoothstep(1.27f, 1.43f, place.y);
   Shares shares(shape.skeleton());
   shares.Add("upper_arm" + side, arm);
   shares.Add("shoulder" + side, (1.0f - arm) * shoulder_share);
   const std::string joints[] = {"hips", "spine", "chest", "neck"};
   const Shares::Border borders[] = {{1.065f, 0.075f}, {1.20f, 0.10f}, {1.495f, 0.035f}};
   shares.AddChain(joints, borders, place.y, (1.0f - arm) * (1.0f - shoulder_share));
-  return shares.Take();
+  return shares.Strongest();
 }
 
 Influences SleeveInfluences(const BodyShape& shape, float side, const vec3& place,
@@ -101,7 +87,7 @@ Influences SleeveInfluences(const BodyShape& shape, float side, const vec3& plac
   const float elbow =
       glm::distance(vec3(shape.skeleton().rest_model()[shape.skeleton().Find("lower_arm_l")][3]),
                     vec3(shape.skeleton().rest_model()[shape.skeleton().Find("upper_arm_l")][3]));
-  const float free = SmoothStep(0.0f, 0.10f, from_hole);
+  const float free = Smoothstep(0.0f, 0.10f, from_hole);
   Shares shares(shape.skeleton());
   shares.Add(hole, 1.0f - free);
   const std::string joints[] = {std::string("upper_arm") + Suffix(side),
@@ -109,21 +95,21 @@ Influences SleeveInfluences(const BodyShape& shape, float side, const vec3& plac
                                 std::string("hand") + Suffix(side)};
   const Shares::Border borders[] = {{elbow, 0.055f}, {0.56f, 0.03f}};
   shares.AddChain(joints, borders, along, free);
-  return shares.Take();
+  return shares.Strongest();
 }
 
 Influences TrouserInfluences(const BodyShape& shape, const vec3& place) {
   const std::string side = Suffix(place.x);
   const float x = std::abs(place.x);
-  // The groin rises to the side in front; behind, the seat goes with the thigh for a while.
-  const float front = SmoothStep(-0.06f, 0.06f, place.z);
+  // The groin rises toward the side in front. Behind, the seat follows the thigh for a while.
+  const float front = Smoothstep(-0.06f, 0.06f, place.z);
   const float groin = glm::mix(0.845f + 0.25f * x, 0.855f + 0.42f * x, front);
   const float half_width = glm::mix(0.085f, 0.06f, front);
-  const float below = SmoothStep(groin + half_width, groin - half_width, place.y);
-  // Where both legs meet each has half.
-  const float apart = SmoothStep(-0.045f, 0.045f, x);
+  const float below = Smoothstep(groin + half_width, groin - half_width, place.y);
+  // Where the legs meet, each has half of the weight.
+  const float apart = Smoothstep(-0.045f, 0.045f, x);
   const float leg =
-      below * glm::mix(SmoothStep(0.0f, 0.05f, x), apart, SmoothStep(0.83f, 0.78f, place.y));
+      below * glm::mix(Smoothstep(0.0f, 0.05f, x), apart, Smoothstep(0.83f, 0.78f, place.y));
   Shares shares(shape.skeleton());
   const std::string upper = "upper_leg" + side;
   const std::string pelvis[] = {"hips", "spine"};
@@ -132,7 +118,7 @@ Influences TrouserInfluences(const BodyShape& shape, const vec3& place) {
   const std::string joints[] = {upper, "lower_leg" + side, "foot" + side};
   const Shares::Border borders[] = {{-0.497f, 0.075f}, {-0.03f, 0.06f}};
   shares.AddChain(joints, borders, -place.y, leg);
-  return shares.Take();
+  return shares.Strongest();
 }
 
 Influences ShoeInfluences(const BodyShape& shape, const vec3& place) {
@@ -141,13 +127,13 @@ Influences ShoeInfluences(const BodyShape& shape, const vec3& place) {
   const std::string joints[] = {"foot" + side, "toes" + side};
   const Shares::Border borders[] = {{0.110f, 0.03f}};
   shares.AddChain(joints, borders, place.z, 1.0f);
-  return shares.Take();
+  return shares.Strongest();
 }
 
 Influences InfluenceOf(const wrinkle::Skeleton& skeleton, const std::string& joint) {
   Shares shares(skeleton);
   shares.Add(joint, 1.0f);
-  return shares.Take();
+  return shares.Strongest();
 }
 
 void CarryToRest(const BodyShape& shape, QuadNet* net) {
@@ -160,4 +146,4 @@ void CarryToRest(const BodyShape& shape, QuadNet* net) {
   }
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,22 +15,22 @@
 #include "authoring/generator/body/body_skinning.h"
 #include "authoring/generator/mesh/mesh_tools.h"
 #include "authoring/generator/mesh/solid.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kFingers = 4;
-constexpr int kRing = 8;               // points round a finger: 0 and 4 on its sides, 1 to 3 above
+constexpr int kRing = 8;               // points around a finger: 0 and 4 at its sides, 1 to 3 above
 constexpr int kPalmRows = 7;           // from the wrist to the webs
-constexpr int kAcross = 2 * kFingers;  // cells over the back of the hand
-constexpr int kThumbRow = 2;           // where the thumb's opening begins: two rows
+constexpr int kAcross = 2 * kFingers;  // cells across the back of the hand
+constexpr int kThumbRow = 2;           // first of the two rows with the thumb's opening
 constexpr float kWristX = 0.668f;      // inside the cuff
 constexpr float kWeb = 0.019f;         // from the knuckles to the webs
 
-// A finger: joints and tip, radii there, and the names of its joints.
+// A finger or thumb: positions and radii of its joints and tip, and the names of the joints.
 struct Digit {
   std::array<vec3, 4> places;
   std::array<float, 4> radii;
@@ -113,7 +112,7 @@ class HandMaker {
 
   float Distance(const vec3& p) const {
     float palm = RodDistance(p, wrist_ + vec3(-0.06f, 0, 0), wrist_, 0.0265f, 0.0235f);
-    // A wrist is flat.
+    // A wrist is flatter than it is wide.
     const vec3 flat(p.x, wrist_.y + (p.y - wrist_.y) * 1.35f, p.z);
     palm = std::max(palm, RodDistance(flat, wrist_ + vec3(-0.06f, 0, 0), wrist_, 0.0265f, 0.0250f));
     float fingers = 1.0f;
@@ -134,7 +133,7 @@ class HandMaker {
     return SmoothMin(d, DigitDistance(thumb_, p), 0.009f);
   }
 
-  // Where column `k` of the back of the hand ends: between the fingers and on their middles.
+  // The end of column `k` of the back of the hand, between two fingers or at the middle of one.
   vec3 Web(int k) const {
     const auto at = [&](int i) {
       const Digit& finger = fingers_[std::clamp(i, 0, kFingers - 1)];
@@ -159,7 +158,7 @@ class HandMaker {
       }
       const vec3 front = glm::mix(vec3(kWristX, wrist_.y, wrist_.z + 0.01f), Web(0), t);
       const vec3 back = glm::mix(vec3(kWristX, wrist_.y, wrist_.z - 0.01f), Web(kAcross), t);
-      const bool opening = r == kThumbRow + 1;  // within the thumb's opening there is no side
+      const bool opening = r == kThumbRow + 1;  // the thumb's opening has no side
       radial_.push_back(
           opening ? -1 : net_->AddPoint(CastOut(solid_, front, {0, 0, 1}, 0.05f), Slack(r)));
       ulnar_.push_back(net_->AddPoint(CastOut(solid_, back, {0, 0, -1}, 0.05f), Slack(r)));
@@ -186,7 +185,8 @@ class HandMaker {
 
   static float Slack(int row) { return row == 0 ? 0.0f : 0.8f; }
 
-  // Rings from `ring` to the tip, each at a share of the way from one joint to the next.
+  // Adds rings from `ring` to the tip. Each stop names a joint and a fraction of the way to the
+  // next.
   void MakeTube(const Digit& digit, std::span<const std::pair<int, float>> stops,
                 std::vector<int> ring) {
     const Solid solid = [&digit](const vec3& p) { return DigitDistance(digit, p); };
@@ -209,7 +209,7 @@ class HandMaker {
       }
       ring = std::move(next);
     }
-    // The tip: a middle line from side to side, above it the back's panel.
+    // The tip has a line from side to side; the panel of the back is above it.
     const vec3 tip = digit.places[3];
     const vec3 side = 0.5f * (net_->points[ring[0]].place - net_->points[ring[4]].place);
     const int middle = net_->AddPoint(tip);
@@ -227,7 +227,7 @@ class HandMaker {
     net_->quads.push_back({Corner(panel, a), Corner(panel, b), Corner(panel, c), Corner(panel, d)});
   }
 
-  // Seen from above, and from below.
+  // The two sides of the hand, from above and from below.
   int Corner(int panel, int point) {
     const auto [found, is_new] =
         corners_.emplace(std::pair(panel, point), static_cast<int>(net_->corners.size()));
@@ -248,20 +248,20 @@ class HandMaker {
     }
     const bool thumb = nearest == &thumb_;
     float shares[4] = {1.0f, 0.0f, 0.0f, 0.0f};  // the hand and the digit's joints
-    const float near = SmoothStep(0.014f, 0.003f, least);
+    const float near = Smoothstep(0.014f, 0.003f, least);
     for (int i = 0; i < 3; ++i) {
       const vec3 along = glm::normalize(nearest->places[i + 1] - nearest->places[i]);
-      // A joint bends in the middle between its bones.
+      // The blend of two joints is centred between the two bones.
       const vec3 before =
           i > 0 ? glm::normalize(nearest->places[i] - nearest->places[i - 1]) : along;
       const float past = glm::dot(p - nearest->places[i], glm::normalize(along + before));
       const float half = thumb && i == 0 ? 0.016f : 0.0075f;
-      const float beyond = near * SmoothStep(-half, half, past - (thumb && i == 0 ? 0.010f : 0.0f));
+      const float beyond = near * Smoothstep(-half, half, past - (thumb && i == 0 ? 0.010f : 0.0f));
       shares[i + 1] = shares[i] * beyond;
       shares[i] *= 1.0f - beyond;
     }
-    // The arm's end, inside the cuff.
-    const float arm = SmoothStep(0.022f, -0.014f, p.x - wrist_.x);
+    // The end of the arm inside the cuff.
+    const float arm = Smoothstep(0.022f, -0.014f, p.x - wrist_.x);
     skin.joints[0] = static_cast<std::uint16_t>(skeleton_.Find("hand_l"));
     skin.weights[0] = shares[0];
     for (int i = 0; i < 3; ++i) {
@@ -290,7 +290,7 @@ class HandMaker {
   std::map<std::pair<int, int>, int> corners_;
 };
 
-// The right hand is the left one in a mirror.
+// Mirrors the left hand to make the right hand.
 void Mirror(const wrinkle::Skeleton& skeleton, QuadNet* net) {
   for (QuadNet::Point& point : net->points) {
     point.place.x = -point.place.x;
@@ -316,4 +316,4 @@ QuadNet MakeHand(const wrinkle::Skeleton& skeleton, float side, int panel, int l
   return net;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

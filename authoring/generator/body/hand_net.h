@@ -4,11 +4,11 @@
 #include "authoring/generator/mesh/quad_net.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
-// A hand of rest (`side` +1: left) with its influences, stretched out with the palm down: fingers
-// and thumb grow out of one surface. `panel` takes the back of the hand, `panel` + 1 the palm; they
-// meet along the sides of the hand and the fingers. `level` as in BodyParameters.
+// A stretched hand at rest, palm down, with its influences. Fingers and thumb are one surface with
+// the palm. `side`: +1 left, -1 right. The back of the hand is `panel`, the palm `panel` + 1; they
+// meet along the sides of hand and fingers. `level` as in BodyParameters.
 [[nodiscard]] QuadNet MakeHand(const wrinkle::Skeleton& skeleton, float side, int panel, int level);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "authoring/generator/clothes/cloth_masks.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -6,43 +8,42 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
-#include "authoring/generator/clothes/cloth_texture.h"
 #include "authoring/generator/mesh/mesh_tools.h"
 #include "authoring/paint/canvas.h"
-#include "authoring/paint/uv_raster.h"
+#include "authoring/paint/surface_texels.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 using glm::vec4;
-using paint::Texel;
 
-float Side(float x, float soft) { return SmoothStep(-soft, soft, x); }
+float Side(float x, float soft) { return Smoothstep(-soft, soft, x); }
 
-// Left and right shares of two values: (a, b) of the left, (a, b) of the right.
+// Puts (a, b) into the first two channels on the left side and into the last two on the right.
 vec4 BySide(const vec3& p, float a, float b, float soft) {
   const float left = Side(p.x, soft);
   return {a * left, b * left, a * (1.0f - left), b * (1.0f - left)};
 }
 
-// Arms lie along X: they fold in front, where the forearm comes.
+// Arms lie along X at rest. They fold in front, toward the forearm.
 vec4 Elbows(const vec3& p) {
-  const float near = SmoothStep(0.130f, 0.035f, std::abs(std::abs(p.x) - 0.455f));
+  const float near = Smoothstep(0.130f, 0.035f, std::abs(std::abs(p.x) - 0.455f));
   const float inner = Side(p.z + 0.018f, 0.038f);
   return BySide(p, near * inner, near * (1.0f - inner), 0.01f);
 }
 
 // Knees fold behind.
 vec4 Knees(const vec3& p) {
-  const float near = SmoothStep(0.150f, 0.040f, std::abs(p.y - 0.495f));
+  const float near = Smoothstep(0.150f, 0.040f, std::abs(p.y - 0.495f));
   const float outer = Side(p.z - 0.002f, 0.045f);
   return BySide(p, near * (1.0f - outer), near * outer, 0.01f);
 }
 
 vec4 Hips(const vec3& p) {
-  const float near = SmoothStep(0.74f, 0.83f, p.y) * SmoothStep(1.005f, 0.965f, p.y) *
-                     SmoothStep(0.30f, 0.24f, std::abs(p.x));
+  const float near = Smoothstep(0.74f, 0.83f, p.y) * Smoothstep(1.005f, 0.965f, p.y) *
+                     Smoothstep(0.30f, 0.24f, std::abs(p.x));
   const float front = Side(p.z, 0.05f);
   return BySide(p, near * front, near * (1.0f - front), 0.035f);
 }
@@ -50,15 +51,15 @@ vec4 Hips(const vec3& p) {
 vec4 Shoulders(const vec3& p) {
   const float x = std::abs(p.x);
   const float near =
-      SmoothStep(0.085f, 0.15f, x) * SmoothStep(0.345f, 0.27f, x) * SmoothStep(1.21f, 1.29f, p.y);
+      Smoothstep(0.085f, 0.15f, x) * Smoothstep(0.345f, 0.27f, x) * Smoothstep(1.21f, 1.29f, p.y);
   const float front = Side(p.z + 0.015f, 0.04f);
   return BySide(p, near * front, near * (1.0f - front), 0.01f);
 }
 
-// Front, back, left and right by the quarters that the driver of a ball has: cosine squares.
+// Front, back, left and right with the weights of a ball driver's quarters: squared cosines.
 vec4 Waist(const vec3& p) {
-  const float near = SmoothStep(0.965f, 1.02f, p.y) * SmoothStep(1.235f, 1.14f, p.y) *
-                     SmoothStep(0.30f, 0.24f, std::abs(p.x));
+  const float near = Smoothstep(0.965f, 1.02f, p.y) * Smoothstep(1.235f, 1.14f, p.y) *
+                     Smoothstep(0.30f, 0.24f, std::abs(p.x));
   const float length = std::max(std::hypot(p.x, p.z), 1e-4f);
   const float across = p.x / length, ahead = p.z / length;
   const auto square = [](float v) { return v > 0.0f ? v * v : 0.0f; };
@@ -66,23 +67,23 @@ vec4 Waist(const vec3& p) {
 }
 
 vec4 Neck(const vec3& p) {
-  const float near = SmoothStep(1.38f, 1.44f, p.y) * SmoothStep(0.15f, 0.09f, std::abs(p.x));
+  const float near = Smoothstep(1.38f, 1.44f, p.y) * Smoothstep(0.15f, 0.09f, std::abs(p.x));
   const float left = Side(p.x, 0.03f);
   return {near * left, near * (1.0f - left), 0.0f, 0.0f};
 }
 
 }  // namespace
 
-std::array<Picture, 6> PaintClothMasks(const Clothes& clothes, int size) {
+std::array<character::Picture, 6> PaintClothMasks(const Clothes& clothes, int size) {
   using Regions = vec4 (*)(const vec3&);
   constexpr Regions kRegions[] = {Elbows, Knees, Hips, Shoulders, Waist, Neck};
-  const std::vector<Texel> texels = paint::RasterizeUv(clothes.mesh, size, size);
-  std::array<Picture, 6> masks;
+  const std::vector<SurfaceTexel> texels = RasterizeSurface(clothes.mesh, size, size);
+  std::array<character::Picture, 6> masks;
   for (std::size_t i = 0; i < masks.size(); ++i) {
-    const auto regions = [&](const Texel& texel) { return kRegions[i](texel.position); };
-    masks[i] = paint::Fill(kClothMaskNames[i], texels, size, 4, regions);
+    const auto regions = [&](const SurfaceTexel& texel) { return kRegions[i](texel.position); };
+    masks[i] = FillPicture(kClothMaskNames[i], texels, size, 4, regions);
   }
   return masks;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -11,36 +10,36 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
-#include "authoring/generator/clothes/clothes_net.h"
+#include "authoring/generator/clothes/cloth_panels.h"
 #include "authoring/generator/mesh/mesh_tools.h"
 #include "authoring/paint/canvas.h"
+#include "authoring/paint/noise.h"
 #include "authoring/paint/strokes.h"
-#include "authoring/paint/uv_raster.h"
+#include "authoring/paint/surface_texels.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
 using glm::vec3;
-using paint::Texel;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kNormalBits = 8;
 
-// Where a texel lies on the cloth.
+// The position of a texel on the cloth.
 struct ClothPlace {
   int panel;
-  vec2 cut;  // metres in the panel as it was cut, along the weave
-  vec3 p;    // metres in rest
+  vec2 cut;  // metres in the flat panel, along the weave
+  vec3 p;    // metres, at rest
 };
 
 class ClothAtlas {
  public:
   ClothAtlas(const Clothes& clothes, int size)
-      : clothes_(clothes), size_(size), texels_(paint::RasterizeUv(clothes.mesh, size, size)) {}
+      : clothes_(clothes), size_(size), texels_(RasterizeSurface(clothes.mesh, size, size)) {}
 
-  [[nodiscard]] const std::vector<Texel>& texels() const { return texels_; }
-  [[nodiscard]] ClothPlace At(const Texel& texel) const {
+  [[nodiscard]] const std::vector<SurfaceTexel>& texels() const { return texels_; }
+  [[nodiscard]] ClothPlace At(const SurfaceTexel& texel) const {
     const int panel = clothes_.vertex_panels[clothes_.mesh.indices[3 * texel.triangle]];
     const vec2 uv = (vec2(texel.x, texel.y) + 0.5f) / static_cast<float>(size_);
     const PanelPlace& place = clothes_.panels[panel];
@@ -50,7 +49,7 @@ class ClothAtlas {
  private:
   const Clothes& clothes_;
   int size_;
-  std::vector<Texel> texels_;
+  std::vector<SurfaceTexel> texels_;
 };
 
 bool IsTrousers(int panel) { return panel == kTrousersLeft || panel == kTrousersRight; }
@@ -59,17 +58,17 @@ bool IsCollar(int panel) {
   return panel == kCollarStand || panel == kCollarLeaf || panel == kCollarLining;
 }
 
-// 1 on a line that is `width` wide, fading over as much again.
+// 1 on a line of width `width`, with soft edges.
 float Line(float distance, float width) {
-  return SmoothStep(width, 0.5f * width, std::abs(distance));
+  return Smoothstep(width, 0.5f * width, std::abs(distance));
 }
 
-// Stitches along a seam: dashes 3 mm long.
+// Stitches along a seam: dashes of 3 mm.
 float Stitches(float distance, float along) {
-  return Line(distance, 0.0012f) * SmoothStep(-0.2f, 0.3f, std::sin(along * 2.0f * kPi / 0.0036f));
+  return Line(distance, 0.0012f) * Smoothstep(-0.2f, 0.3f, std::sin(along * 2.0f * kPi / 0.0036f));
 }
 
-// Buttons of the placket, the first under the collar.
+// The distance from the buttons of the placket. The first is below the collar.
 float ButtonDistance(const ClothPlace& at) {
   if (at.panel != kShirtFront || at.p.z < 0.0f) return 1.0f;
   constexpr float kFirst = 1.405f;
@@ -81,7 +80,7 @@ float ButtonDistance(const ClothPlace& at) {
 
 constexpr float kButton = 0.0056f;
 
-// How far a point lies inside the pocket on the left of the chest.
+// How far a point is inside the pocket on the left of the chest; negative outside.
 float PocketInside(const ClothPlace& at) {
   if (at.panel != kShirtFront) return -1.0f;
   const vec2 d = glm::abs(vec2(at.p.x - 0.083f, at.p.y - 1.262f)) - vec2(0.052f, 0.060f);
@@ -89,7 +88,7 @@ float PocketInside(const ClothPlace& at) {
   return -std::max({d.x, d.y, corner > 0.0f ? corner : -1.0f});
 }
 
-// Seams as (distance, place along) of the nearest: what is stitched through and shows as a line.
+// The distance from the nearest seam that shows as a line.
 float SeamLines(const ClothPlace& at, float* stitches) {
   const vec3& p = at.p;
   const float x = std::abs(p.x);
@@ -124,12 +123,12 @@ float SeamLines(const ClothPlace& at, float* stitches) {
   if (IsTrousers(at.panel)) {
     seam(p.y - 0.083f, p.x + p.z, true);
     if (p.y < 0.98f) seam(p.z + 0.004f, p.y, p.y > 1.1f);  // outer and inner seam
-    // Slanting pockets in front, the fly, a welt behind.
+    // Slanted pockets in front, the fly, and a welt behind.
     if (p.z > 0.0f && p.y > 0.84f) {
       const float mouth = (x - 0.118f) - 0.30f * (1.0f - p.y);
       if (p.y > 0.855f) seam(mouth, p.y, false);
       if (p.y > 0.855f) seam(mouth + 0.006f, p.y, true);
-      const float fly = p.x > 0.0f ? p.x - 0.032f * SmoothStep(0.845f, 0.90f, p.y) : 1.0f;
+      const float fly = p.x > 0.0f ? p.x - 0.032f * Smoothstep(0.845f, 0.90f, p.y) : 1.0f;
       seam(fly, p.y, true);
     } else if (p.z < 0.0f && std::abs(x - 0.088f) < 0.062f) {
       seam(p.y - 0.955f, p.x, false);
@@ -139,10 +138,10 @@ float SeamLines(const ClothPlace& at, float* stitches) {
   return groove;
 }
 
-// A crease kept by cloth: soft ridges along `across` = const, `spacing` apart, irregular.
+// Permanent creases: soft, irregular ridges along lines of constant `across`, `spacing` apart.
 float Gathers(float across, float along, float spacing) {
-  return Noise({across / spacing, along / (6.0f * spacing), 3.0f}) +
-         0.5f * Noise({across / spacing * 2.1f, along / (4.0f * spacing), 8.0f});
+  return SignedNoise({across / spacing, along / (6.0f * spacing), 3.0f}) +
+         0.5f * SignedNoise({across / spacing * 2.1f, along / (4.0f * spacing), 8.0f});
 }
 
 float KeptCreases(const ClothPlace& at) {
@@ -151,7 +150,7 @@ float KeptCreases(const ClothPlace& at) {
     const float round = std::atan2(p.x, p.z) * 0.15f;
     const float near = Bump(std::max(p.y - 1.05f, 0.0f), 0.055f);
     const float drape = 0.35f * Bump(p.y - 1.17f, 0.12f);
-    // From the armpits towards the waist: slanting.
+    // Slanted, from the armpits toward the waist.
     return 0.0017f * (near + drape) * Gathers(round, p.y + 0.35f * std::abs(p.x), 0.016f);
   }
   if (IsSleeve(at.panel)) {
@@ -163,10 +162,10 @@ float KeptCreases(const ClothPlace& at) {
            0.0012f * elbow * Gathers(x + 0.12f * std::abs(round), round, 0.021f);
   }
   if (IsTrousers(at.panel)) {
-    const float knee = Bump(p.y - 0.485f, 0.09f) * SmoothStep(0.03f, -0.03f, p.z);
+    const float knee = Bump(p.y - 0.485f, 0.09f) * Smoothstep(0.03f, -0.03f, p.z);
     const float hem = Bump(p.y - 0.105f, 0.07f);
     const float round = std::atan2(std::abs(p.x) - 0.097f, p.z) * 0.06f;
-    const float crotch = Bump(p.y - 0.80f, 0.07f) * SmoothStep(0.10f, 0.02f, std::abs(p.x));
+    const float crotch = Bump(p.y - 0.80f, 0.07f) * Smoothstep(0.10f, 0.02f, std::abs(p.x));
     return 0.0014f * knee * Gathers(p.y + 0.1f * round, round, 0.024f) +
            0.0016f * hem * Gathers(p.y + 0.25f * std::abs(round), round, 0.028f) +
            0.0013f * crotch * Gathers(p.y - 0.7f * std::abs(p.x), p.x, 0.022f);
@@ -174,14 +173,14 @@ float KeptCreases(const ClothPlace& at) {
   return 0.0f;
 }
 
-// Threads: warp and weft of the shirt, the diagonal of the trousers' twill. About [-1, 1].
+// Threads: warp and weft of the shirt, diagonal twill of the trousers. About [-1, 1].
 float Weave(const ClothPlace& at) {
   if (IsTrousers(at.panel)) {
     return std::sin((at.cut.x + at.cut.y) * 2.0f * kPi / 0.0042f) *
-           (0.7f + 0.3f * Noise(vec3(at.cut * 140.0f, 1.0f)));
+           (0.7f + 0.3f * SignedNoise(vec3(at.cut * 140.0f, 1.0f)));
   }
-  return 0.5f * Noise({at.cut.x * 420.0f, at.cut.y * 45.0f, 2.0f}) +
-         0.5f * Noise({at.cut.x * 45.0f, at.cut.y * 420.0f, 5.0f});
+  return 0.5f * SignedNoise({at.cut.x * 420.0f, at.cut.y * 45.0f, 2.0f}) +
+         0.5f * SignedNoise({at.cut.x * 45.0f, at.cut.y * 420.0f, 5.0f});
 }
 
 float Height(const ClothPlace& at) {  // metres
@@ -190,31 +189,31 @@ float Height(const ClothPlace& at) {  // metres
   float height = KeptCreases(at) - 0.0007f * groove - 0.00035f * stitches;
   height += (IsTrousers(at.panel) ? 0.00010f : 0.00007f) * Weave(at);
   if (at.panel == kShirtFront && at.p.z > 0.0f) {
-    height += 0.0008f * SmoothStep(0.018f, 0.0155f, std::abs(at.p.x));
-    height += 0.0006f * SmoothStep(0.0f, 0.002f, PocketInside(at));
+    height += 0.0008f * Smoothstep(0.018f, 0.0155f, std::abs(at.p.x));
+    height += 0.0006f * Smoothstep(0.0f, 0.002f, PocketInside(at));
     const float button = ButtonDistance(at);
-    height += 0.0018f * SmoothStep(kButton + 0.0006f, kButton - 0.001f, button) -
-              0.0007f * SmoothStep(0.0036f, 0.0026f, button);
+    height += 0.0018f * Smoothstep(kButton + 0.0006f, kButton - 0.001f, button) -
+              0.0007f * Smoothstep(0.0036f, 0.0026f, button);
   }
   if (IsTrousers(at.panel)) {  // pressed
     const float middle = std::abs(std::abs(at.p.x) - 0.096f);
-    height += 0.0012f * Bump(middle, 0.006f) * SmoothStep(0.02f, 0.045f, std::abs(at.p.z)) *
-              SmoothStep(0.86f, 0.72f, at.p.y);
+    height += 0.0012f * Bump(middle, 0.006f) * Smoothstep(0.02f, 0.045f, std::abs(at.p.z)) *
+              Smoothstep(0.86f, 0.72f, at.p.y);
   }
   return height;
 }
 
 }  // namespace
 
-Picture PaintClothColour(const Clothes& clothes, const BodyParameters& body, int size) {
+character::Picture PaintClothColour(const Clothes& clothes, const BodyParameters& body, int size) {
   const ClothAtlas atlas(clothes, size);
-  return paint::Fill("cloth_colour", atlas.texels(), size, 3, [&](const Texel& texel) {
+  return FillPicture("cloth_colour", atlas.texels(), size, 3, [&](const SurfaceTexel& texel) {
     const ClothPlace at = atlas.At(texel);
     const bool trousers = IsTrousers(at.panel);
     vec3 colour = trousers ? body.trousers : body.shirt;
     const float worn = FractalNoise(at.p * 9.0f);
     colour *= 1.0f + (trousers ? 0.06f : 0.03f) * Weave(at) + (trousers ? 0.05f : 0.025f) * worn;
-    // Rubbed paler where it is pressed and bent; darker in the folds that it keeps.
+    // Paler at pressed edges and bends, darker in the permanent creases.
     colour *= 1.0f + 45.0f * KeptCreases(at);
     float stitches = 0.0f;
     const float groove = SeamLines(at, &stitches);
@@ -222,19 +221,19 @@ Picture PaintClothColour(const Clothes& clothes, const BodyParameters& body, int
     colour = glm::mix(colour, colour * (trousers ? 1.25f : 1.08f), 0.7f * stitches);
     if (IsCollar(at.panel)) colour *= 1.015f;
     const float button = ButtonDistance(at);
-    colour *= 1.0f - 0.35f * SmoothStep(kButton + 0.0028f, kButton, button);
+    colour *= 1.0f - 0.35f * Smoothstep(kButton + 0.0028f, kButton, button);
     const vec3 pearl = vec3(0.86f, 0.84f, 0.80f) * (1.0f - 0.35f * Line(button - 0.0034f, 0.001f));
-    colour = glm::mix(colour, pearl, SmoothStep(kButton + 0.0004f, kButton - 0.0004f, button));
+    colour = glm::mix(colour, pearl, Smoothstep(kButton + 0.0004f, kButton - 0.0004f, button));
     return glm::vec4(colour, 1.0f);
   });
 }
 
-Picture PaintClothNormals(const Clothes& clothes, int size) {
+character::Picture PaintClothNormals(const Clothes& clothes, int size) {
   const ClothAtlas atlas(clothes, size);
   std::vector<vec2> slopes;
   slopes.reserve(atlas.texels().size());
   constexpr float kStep = 0.0006f;
-  for (const Texel& texel : atlas.texels()) {
+  for (const SurfaceTexel& texel : atlas.texels()) {
     const ClothPlace at = atlas.At(texel);
     const auto beside = [&](const vec2& by) {
       const vec3 p = at.p + (texel.tangent * by.x + texel.bitangent * by.y) * kStep;
@@ -243,19 +242,19 @@ Picture PaintClothNormals(const Clothes& clothes, int size) {
     slopes.emplace_back((beside({-1, 0}) - beside({1, 0})) / (2.0f * kStep),
                         (beside({0, -1}) - beside({0, 1})) / (2.0f * kStep));
   }
-  Picture picture = paint::EncodeNormals(atlas.texels(), slopes, size, size, kNormalBits);
+  character::Picture picture = EncodeNormals(atlas.texels(), slopes, size, size, kNormalBits);
   picture.name = "cloth_normal";
   return picture;
 }
 
-Picture PaintClothRoughness(const Clothes& clothes, int size) {
+character::Picture PaintClothRoughness(const Clothes& clothes, int size) {
   const ClothAtlas atlas(clothes, size);
-  return paint::Fill("cloth_roughness", atlas.texels(), size, 3, [&](const Texel& texel) {
+  return FillPicture("cloth_roughness", atlas.texels(), size, 3, [&](const SurfaceTexel& texel) {
     const ClothPlace at = atlas.At(texel);
     const float cloth = (IsTrousers(at.panel) ? 0.88f : 0.80f) + 0.04f * Weave(at);
-    const float button = SmoothStep(kButton + 0.0004f, kButton - 0.0004f, ButtonDistance(at));
+    const float button = Smoothstep(kButton + 0.0004f, kButton - 0.0004f, ButtonDistance(at));
     return glm::vec4(0.0f, glm::mix(cloth, 0.30f, button), 0.0f, 1.0f);
   });
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "authoring/generator/clothes/collar_net.h"
+
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "authoring/generator/clothes/clothes_net.h"
+#include "authoring/generator/clothes/cloth_panels.h"
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 
-// Where a row of the collar lies: how far over the neckline, and how far out from the neck, metres.
+// A row of the collar: height above the neckline and distance from the neck, metres.
 struct Row {
   float up;
   float out;
@@ -23,11 +25,11 @@ struct Row {
 constexpr Row kStand[] = {{-0.004f, 0.000f}, {0.014f, 0.0005f}, {0.026f, 0.001f}};
 constexpr Row kLining[] = {{0.030f, -0.0015f}, {0.029f, -0.004f}, {0.002f, -0.004f}};
 
-// One point of the neckline and the frame the collar is built in there.
+// A point of the neckline with the local frame of the collar.
 struct Foot {
   vec3 place;
   vec3 out;
-  float front;  // 1 in the middle of the front, 0 at the sides and behind
+  float front;  // 1 at the middle of the front, 0 at the sides and behind
 };
 
 std::vector<Foot> Feet(const std::vector<int>& neckline, const QuadNet& net) {
@@ -40,7 +42,7 @@ std::vector<Foot> Feet(const std::vector<int>& neckline, const QuadNet& net) {
     vec3 out = place - middle;
     out.y = 0.0f;
     out = glm::normalize(out);
-    feet.push_back({place, out, SmoothStep(0.2f, 1.0f, out.z)});
+    feet.push_back({place, out, Smoothstep(0.2f, 1.0f, out.z)});
   }
   return feet;
 }
@@ -50,7 +52,7 @@ vec3 At(const Foot& foot, const Row& row) {
          vec3(0.0f, row.up * (1.0f - 0.12f * foot.front), 0.0f);
 }
 
-// At least `height` over the shirt.
+// Moves a point so that it is at least `height` above the shirt.
 vec3 Above(const Solid& shirt, float height, const vec3& place) {
   const float lack = height - shirt(place);
   return lack > 0.0f ? place + SolidNormal(shirt, place) * lack : place;
@@ -66,7 +68,7 @@ void AddCollar(const Solid& shirt, const std::vector<int>& neckline, QuadNet* ne
     net->points[index].skin = net->points[neckline[point]].skin;
     return index;
   };
-  // Stand and lining close round the neck.
+  // Stand and lining, close around the neck.
   const auto band = [&](std::span<const Row> rows, int panel) {
     PointGrid grid(static_cast<int>(rows.size()), count);
     for (int r = 0; r < grid.rows; ++r) {
@@ -78,14 +80,14 @@ void AddCollar(const Solid& shirt, const std::vector<int>& neckline, QuadNet* ne
   band(kStand, kCollarStand);
   band(kLining, kCollarLining);
 
-  // The leaf folds down over the stand, from one point in front round to the other; its edge turns
-  // under. It is laid from the edge up.
+  // The leaf folds down over the stand, from one collar point around to the other. Its edge turns
+  // under. Rows run from the edge up.
   constexpr int kLeafRows = 6;
   PointGrid leaf(kLeafRows, count - 2);
   for (int c = 1; c + 1 < count; ++c) {
     const Foot& foot = feet[c];
-    // Points reach farther down and forward, apart from each other.
-    const float end = SmoothStep(0.45f, 1.0f, foot.front);
+    // The collar points reach farther down and forward, and spread apart.
+    const float end = Smoothstep(0.45f, 1.0f, foot.front);
     const float drop = 0.040f + 0.022f * end;
     const float spread = 0.010f + 0.006f * end;
     const Row rows[kLeafRows] = {{0.032f - drop, spread - 0.0025f},
@@ -104,4 +106,4 @@ void AddCollar(const Solid& shirt, const std::vector<int>& neckline, QuadNet* ne
   AddPatch(leaf, kCollarLeaf, false, {}, net);
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -13,14 +12,14 @@
 
 #include "authoring/generator/body/body_skinning.h"
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
 using glm::vec3;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kAround = 20;  // columns of a shoe at level 0
 
 // The shape of a left shoe by z, metres: half width of the sole, height of the ridge.
@@ -30,7 +29,7 @@ constexpr Knot kWidth[] = {
     {0.180f, 0.0300f}, {0.193f, 0.0175f}, {0.199f, 0.000f}};
 constexpr Knot kRidge[] = {{-0.045f, 0.112f}, {0.005f, 0.112f}, {0.03f, 0.100f}, {0.06f, 0.083f},
                            {0.09f, 0.070f},   {0.12f, 0.0605f}, {0.145f, 0.055f}};
-constexpr float kWelt = 0.020f;  // where upper and sole meet
+constexpr float kWelt = 0.020f;  // height where upper and sole meet
 
 class ShoeMaker {
  public:
@@ -53,7 +52,7 @@ class ShoeMaker {
   }
 
  private:
-  // The outline of the sole, from the toe over the outer side to the heel and back: (x, z).
+  // The outline of the sole as (x, z), from the toe over the outer side to the heel and back.
   vec2 Outline(int k) const {
     const float turn = 2.0f * kPi * static_cast<float>(k) / static_cast<float>(columns_);
     const float z = 0.058f + 0.141f * std::cos(turn);
@@ -61,7 +60,7 @@ class ShoeMaker {
     return {MiddleX(z) + (std::sin(turn) >= 0.0f ? half : -half), z};
   }
 
-  float MiddleX(float z) const {  // feet point outward a little, toes in again
+  float MiddleX(float z) const {  // feet turn out slightly, toes turn in again
     return middle_ + 0.075f * std::max(z, 0.0f) - 0.35f * std::max(z, 0.0f) * std::max(z, 0.0f);
   }
 
@@ -76,7 +75,7 @@ class ShoeMaker {
     return {place.x, kWelt + (Interpolate(kRidge, z) - kWelt) * rise, place.y};
   }
 
-  // Both sides meet on the middle line, and at its ends several columns: one point for each place.
+  // Both sides share the points on the middle line. At its ends several columns share one point.
   int OnRidge(const vec3& place, std::map<long, int>* ridge) {
     const auto [found, is_new] = ridge->emplace(std::lround(place.z * 1e5f), 0);
     if (is_new) found->second = net_->AddPoint(place);
@@ -106,8 +105,8 @@ class ShoeMaker {
       const vec2 place = edge + glm::normalize(edge - from) * out;
       return vec3(place.x, y, place.y);
     };
-    const auto ground = [](float z) {  // the waist of the sole stands off it, before the heel
-      return 0.013f * SmoothStep(-0.026f, -0.018f, z) * SmoothStep(0.075f, 0.02f, z);
+    const auto ground = [](float z) {  // the sole is raised in front of the heel
+      return 0.013f * Smoothstep(-0.026f, -0.018f, z) * Smoothstep(0.075f, 0.02f, z);
     };
     PointGrid grid(5, columns_ + 1);
     std::map<long, int> ridge;
@@ -125,8 +124,8 @@ class ShoeMaker {
     LayDisk(grid, panel_ + 1, false, 1.3f);
   }
 
-  // Quads of a grid whose rows close round, seen from above or from below; first laid out as a
-  // plan, its rim `spread` as far from the middle line as it is.
+  // Adds quads for a grid with closed rows, seen from above or below. Their first UVs are the plan
+  // view, with the rim `spread` times as far from the middle line.
   void LayDisk(const PointGrid& grid, int panel, bool from_above, float spread) {
     std::map<int, int> corners;
     const auto corner = [&](int r, int k) {
@@ -147,8 +146,8 @@ class ShoeMaker {
       for (int k = 0; k + 1 < grid.columns; ++k) {
         std::array<int, 4> quad = {corner(r, k), corner(r, k + 1), corner(r + 1, k + 1),
                                    corner(r + 1, k)};
-        // Columns run from the toe over the left side, clockwise from above; a mirror turns that
-        // round.
+        // Columns run from the toe over the left side, clockwise from above. The mirrored shoe runs
+        // the other way.
         if ((side_ > 0.0f) != from_above) std::swap(quad[1], quad[3]);
         net_->quads.push_back(quad);
       }
@@ -186,7 +185,7 @@ QuadNet MakeBelt(const BodyShape& shape, int panel) {
   for (int r = 0; r < 4; ++r) {
     for (int c = 0; c < columns; ++c) {
       const float turn = 2.0f * kPi * static_cast<float>(c) / static_cast<float>(columns);
-      const vec3 out(std::sin(turn + kPi), 0.0f, std::cos(turn + kPi));  // the seam is behind
+      const vec3 out(std::sin(turn + kPi), 0.0f, std::cos(turn + kPi));  // the seam is at the back
       const vec3 place = CastOut(trousers, {0, kRows[r].y, 0}, out, 0.4f) + out * kRows[r].out;
       grid.At(r, c) = net.AddPoint(place);
       net.points.back().skin = TrouserInfluences(shape, place);
@@ -212,4 +211,4 @@ QuadNet MakeBelt(const BodyShape& shape, int panel) {
   return net;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -4,13 +4,13 @@
 #include "authoring/generator/body/body_shape.h"
 #include "authoring/generator/mesh/quad_net.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
-// A shoe (`side` +1: left) with its influences, in rest: the upper is `panel`, the sole `panel`
-// + 1.
+// A shoe at rest with its influences. `side`: +1 left, -1 right. The upper is `panel`, the sole
+// `panel` + 1.
 [[nodiscard]] QuadNet MakeShoe(const BodyShape& shape, float side, int panel);
 
-// The belt (`panel`) with its buckle (`panel` + 1) round the waist of the trousers.
+// The belt (`panel`) and its buckle (`panel` + 1), around the waist of the trousers.
 [[nodiscard]] QuadNet MakeBelt(const BodyShape& shape, int panel);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

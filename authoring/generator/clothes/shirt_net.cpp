@@ -1,42 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "authoring/generator/clothes/shirt_net.h"
+
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "authoring/generator/body/body_skinning.h"
-#include "authoring/generator/clothes/clothes_net.h"
+#include "authoring/generator/clothes/cloth_panels.h"
+#include "authoring/generator/clothes/collar_net.h"
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kDegrees = kPi / 180.0f;
-
-// The trunk's grid at level 0. Columns run round it from the middle of the front over the left
-// side; rows from the hem to the neckline. The armholes are left out of it.
+// The grid of the trunk at level 0. Columns run around the trunk from the middle of the front over
+// the left side; rows run from the hem to the neckline. The cells of the armholes are left out.
 constexpr int kQuarter = 8;          // columns from the front to the side
-constexpr int kHoleHalf = 2;         // columns of an armhole on either side of it
-constexpr int kRowsBelow = 11;       // to the armpit
-constexpr int kHoleRows = 6;         // to the top of the shoulder
-constexpr int kYokeRows = 4;         // to the neckline
+constexpr int kHoleHalf = 2;         // columns on either side of an armhole's middle
+constexpr int kRowsBelow = 11;       // rows from the hem to the armpit
+constexpr int kHoleRows = 6;         // rows from the armpit to the top of the shoulder
+constexpr int kYokeRows = 4;         // rows from the shoulder to the neckline
 constexpr float kHem = 0.985f;       // metres
 constexpr float kArmpit = 1.272f;    // metres
-constexpr float kHoleTop = 47.0f;    // degrees over the armpit, seen from the middle of the trunk
-constexpr float kHoleAngle = 70.0f;  // degrees from the front, where an armhole begins
+constexpr float kHoleTop = 47.0f;    // degrees above the armpit, seen from the middle of the trunk
+constexpr float kHoleAngle = 70.0f;  // degrees from the front, the start of an armhole
 
-// Rings of a sleeve beyond the armhole's: metres from the shoulder's joint. Close at the elbow,
-// where it folds.
+// The rings of a sleeve beyond the armhole: distances from the shoulder's joint, metres. They are
+// dense at the elbow, which bends.
 constexpr int kCapRings = 4;
-constexpr float kRings[] = {0.150f, 0.178f, 0.202f, 0.222f, 0.239f, 0.254f, 0.268f,
-                            0.282f, 0.296f, 0.312f, 0.332f, 0.360f, 0.395f, 0.428f,
-                            0.454f, 0.465f, 0.473f, 0.505f, 0.535f};
+constexpr float kShirtRings[] = {0.150f, 0.178f, 0.202f, 0.222f, 0.239f, 0.254f, 0.268f,
+                                 0.282f, 0.296f, 0.312f, 0.332f, 0.360f, 0.395f, 0.428f,
+                                 0.454f, 0.465f, 0.473f, 0.505f, 0.535f};
 
 class ShirtMaker {
  public:
@@ -59,7 +59,8 @@ class ShirtMaker {
   }
 
  private:
-  // Degrees from the front of a column; the grid is the same on both sides and front and back.
+  // The angle of a column from the front, degrees. The grid is symmetric left to right and front to
+  // back.
   float Angle(int column) const {
     const int around = 4 * kQuarter * f_;
     if (column > around / 2) return 360.0f - Angle(around - column);
@@ -72,21 +73,21 @@ class ShirtMaker {
   }
 
   vec3 Neckline(float degrees) const {
-    // Slanting: lower in front.
+    // The neckline slants: it is lower in front.
     const float y = 1.4830f - 0.0200f * std::cos(degrees * kDegrees);
     const vec3 out(std::sin(degrees * kDegrees), 0.0f, std::cos(degrees * kDegrees));
     return CastOut([this](const vec3& p) { return shape_.Neck(p); }, {0.0f, y, -0.032f}, out,
                    0.085f);
   }
 
-  bool InHole(int row, int column) const {  // of cells
+  bool InHole(int row, int column) const {  // for cells
     if (row < kRowsBelow * f_ || row >= (kRowsBelow + kHoleRows) * f_) return false;
     const int quarter = kQuarter * f_, half = kHoleHalf * f_;
     const auto near = [&](int side) { return column >= side - half && column < side + half; };
     return near(quarter) || near(3 * quarter);
   }
 
-  bool InsideHole(int row, int column) const {  // of points
+  bool InsideHole(int row, int column) const {  // for points
     if (row <= kRowsBelow * f_ || row >= (kRowsBelow + kHoleRows) * f_) return false;
     const int quarter = kQuarter * f_, half = kHoleHalf * f_;
     return std::abs(column - quarter) < half || std::abs(column - 3 * quarter) < half;
@@ -120,15 +121,15 @@ class ShirtMaker {
         const bool edge = r == 0 || r == trunk_.rows - 1;
         const float slack =
             edge ? 0.0f
-                 : SmoothStep(1.0f, static_cast<float>(kRowsBelow * f_), static_cast<float>(r));
+                 : Smoothstep(1.0f, static_cast<float>(kRowsBelow * f_), static_cast<float>(r));
         trunk_.At(r, c) = net_->AddPoint(TrunkPlace(r, c), slack);
       }
       trunk_.At(r, last) = trunk_.At(r, 0);
     }
   }
 
-  // The points round an armhole from the armpit over the front, the shoulder and the back to the
-  // armpit again.
+  // The points around an armhole, from the armpit over the front, the shoulder and the back to the
+  // armpit.
   std::vector<int> Armhole(float side) const {
     const int around = 4 * kQuarter * f_, quarter = kQuarter * f_, half = kHoleHalf * f_;
     const int low = kRowsBelow * f_, high = (kRowsBelow + kHoleRows) * f_;
@@ -144,7 +145,7 @@ class ShirtMaker {
     return loop;
   }
 
-  // Beyond the cap: ring `row` of column angle `turn`, for the left arm.
+  // A point of the left sleeve beyond the cap, by its distance along the arm and its angle.
   vec3 RingPlace(float along, float turn) const {
     const vec3 out = shape_.arm_outward() * std::cos(turn) + shape_.arm_forward() * std::sin(turn);
     const Solid sleeve = [&](const vec3& p) { return shape_.Sleeve(p); };
@@ -153,13 +154,13 @@ class ShirtMaker {
 
   std::vector<float> FineRings() const {
     std::vector<float> fine;
-    for (std::size_t i = 0; i + 1 < std::size(kRings); ++i) {
+    for (std::size_t i = 0; i + 1 < std::size(kShirtRings); ++i) {
       for (int k = 0; k < f_; ++k) {
-        fine.push_back(kRings[i] + (kRings[i + 1] - kRings[i]) * static_cast<float>(k) /
-                                       static_cast<float>(f_));
+        fine.push_back(kShirtRings[i] + (kShirtRings[i + 1] - kShirtRings[i]) *
+                                            static_cast<float>(k) / static_cast<float>(f_));
       }
     }
-    fine.push_back(kRings[std::size(kRings) - 1]);
+    fine.push_back(kShirtRings[std::size(kShirtRings) - 1]);
     return fine;
   }
 
@@ -256,4 +257,4 @@ QuadNet MakeShirt(const BodyShape& shape) {
   return net;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -1,33 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "authoring/generator/clothes/trousers_net.h"
+
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "authoring/generator/body/body_skinning.h"
-#include "authoring/generator/clothes/clothes_net.h"
+#include "authoring/generator/clothes/cloth_panels.h"
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
-// Level 0: columns round a leg from its inside over the front; rows from the hem upward.
+// The grid at level 0. Columns run around a leg from its inside over the front; rows run from the
+// hem upward.
 constexpr int kColumns = 18;
 constexpr int kRise = 9;  // rows from the crotch to the waist
 constexpr float kCrotch = 0.79f;
 constexpr float kWaist = 1.042f;
-// Rings of a leg, metres over the floor; close at the knee, where it folds.
-constexpr float kRings[] = {0.052f, 0.085f, 0.125f, 0.17f,  0.22f,  0.27f,  0.315f, 0.355f,
-                            0.390f, 0.418f, 0.442f, 0.462f, 0.480f, 0.497f, 0.514f, 0.532f,
-                            0.553f, 0.578f, 0.610f, 0.648f, 0.688f, 0.725f, 0.757f};
-constexpr int kLips = 2;  // rows of cloth turned inward at the hem, and at the waist
+// The rings of a leg: heights above the floor, metres. They are dense at the knee, which bends.
+constexpr float kTrouserRings[] = {0.052f, 0.085f, 0.125f, 0.17f,  0.22f,  0.27f,  0.315f, 0.355f,
+                                   0.390f, 0.418f, 0.442f, 0.462f, 0.480f, 0.497f, 0.514f, 0.532f,
+                                   0.553f, 0.578f, 0.610f, 0.648f, 0.688f, 0.725f, 0.757f};
+constexpr int kLips = 2;  // rows of cloth that turn inward at the hem and at the waist
 
 class TrouserMaker {
  public:
@@ -36,11 +37,11 @@ class TrouserMaker {
         net_(net),
         f_(1 << shape.parameters().level),
         solid_([&shape](const vec3& p) { return shape.Trousers(p); }) {
-    for (std::size_t i = 0; i < std::size(kRings); ++i) {
-      const float next = i + 1 < std::size(kRings) ? kRings[i + 1] : kCrotch;
+    for (std::size_t i = 0; i < std::size(kTrouserRings); ++i) {
+      const float next = i + 1 < std::size(kTrouserRings) ? kTrouserRings[i + 1] : kCrotch;
       for (int k = 0; k < f_; ++k) {
-        rings_.push_back(kRings[i] +
-                         (next - kRings[i]) * static_cast<float>(k) / static_cast<float>(f_));
+        rings_.push_back(kTrouserRings[i] + (next - kTrouserRings[i]) * static_cast<float>(k) /
+                                                static_cast<float>(f_));
       }
     }
   }
@@ -58,7 +59,7 @@ class TrouserMaker {
   }
 
  private:
-  // Below the crotch; `turn` 0 is the inside of the leg, a quarter its front.
+  // A point below the crotch. `turn` is 0 on the inside of the leg and a quarter turn in front.
   vec3 LegPlace(float y, float turn) const {
     const Solid leg = [this](const vec3& p) { return shape_.TrouserLeg(p); };
     return CastOut(leg, {LegMiddle(), y, -0.004f}, {-std::cos(turn), 0.0f, std::sin(turn)}, 0.2f);
@@ -68,7 +69,8 @@ class TrouserMaker {
     return skeleton.rest_model()[skeleton.Find("lower_leg_l")][3].x;
   }
 
-  // The middle of the front (`ahead` +1) or the back from the crotch to the waist: equal steps.
+  // The middle of the front (`ahead` +1) or the back (-1), from the crotch to the waist in equal
+  // steps.
   std::vector<vec3> Middle(float ahead) const {
     constexpr int kFine = 64;
     constexpr float kFocus = 0.90f;
@@ -98,14 +100,14 @@ class TrouserMaker {
     return steps;
   }
 
-  // Above the crotch, between the middle of the front or the back and the side.
+  // A point above the crotch, between the side and the middle of the front or the back.
   vec3 RisePlace(int i, float around, const vec3& middle) const {
     const float rise = static_cast<float>(i) / static_cast<float>(kRise * f_);
-    const float ox = glm::mix(LegMiddle(), 0.03f, SmoothStep(0.0f, 0.7f, rise));
+    const float ox = glm::mix(LegMiddle(), 0.03f, Smoothstep(0.0f, 0.7f, rise));
     const float side_y = kCrotch + (kWaist - kCrotch) * rise;
     const float start = std::atan2(std::abs(middle.z), ox);
     const float turn = glm::mix(start, kPi, around);
-    const float y = glm::mix(middle.y, side_y, SmoothStep(0.0f, 0.8f, around));
+    const float y = glm::mix(middle.y, side_y, Smoothstep(0.0f, 0.8f, around));
     const float ahead = middle.z >= 0.0f ? 1.0f : -1.0f;
     return CastOut(solid_, {ox, y, 0}, {-std::cos(turn), 0.0f, ahead * std::sin(turn)}, 0.3f);
   }
@@ -119,7 +121,7 @@ class TrouserMaker {
     for (int c = 0; c <= columns; ++c) {
       const float turn = 2.0f * kPi * static_cast<float>(c) / static_cast<float>(columns);
       for (int r = 0; r < legs && c < columns; ++r) {
-        const float slack = SmoothStep(0.62f, 0.72f, rings_[r]);
+        const float slack = Smoothstep(0.62f, 0.72f, rings_[r]);
         grid.At(kLips + r, c) =
             net_->AddPoint(LegPlace(rings_[r] + HemDrop(rings_[r], turn), turn), slack);
       }
@@ -128,12 +130,12 @@ class TrouserMaker {
         const float around =
             1.0f - std::abs(1.0f - 2.0f * static_cast<float>(c) / static_cast<float>(columns));
         const vec3& middle = 2 * c <= columns ? front[i] : back[i];
-        if (c == columns && i == 0) continue;  // one crotch
+        if (c == columns && i == 0) continue;  // both legs share one crotch point
         const bool on_middle = c == 0 || c == columns;
         const vec3 place = on_middle ? middle : RisePlace(i, around, middle);
         const float slack = on_middle || i == rise
                                 ? 0.0f
-                                : SmoothStep(0.0f, 4.0f * f_, static_cast<float>(rise - i));
+                                : Smoothstep(0.0f, 4.0f * f_, static_cast<float>(rise - i));
         grid.At(row, c) = net_->AddPoint(place, slack);
       }
     }
@@ -142,9 +144,9 @@ class TrouserMaker {
     return grid;
   }
 
-  // The hem falls to the heel.
+  // The hem is lower at the heel.
   static float HemDrop(float y, float turn) {
-    return -0.012f * SmoothStep(0.12f, 0.05f, y) * (0.5f - 0.5f * std::sin(turn));
+    return -0.012f * Smoothstep(0.12f, 0.05f, y) * (0.5f - 0.5f * std::sin(turn));
   }
 
   void AddLips(PointGrid* grid) {
@@ -195,4 +197,4 @@ QuadNet MakeTrousers(const BodyShape& shape) {
   return net;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

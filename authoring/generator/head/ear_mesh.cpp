@@ -3,65 +3,66 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 
+#include "authoring/generator/head/head_grid.h"
 #include "authoring/generator/head/head_shape.h"
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
 using glm::vec3;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kRadii[] = {0.0f,  0.16f, 0.28f, 0.38f, 0.46f, 0.53f, 0.59f, 0.65f,
                             0.71f, 0.77f, 0.82f, 0.87f, 0.92f, 0.96f, 0.99f, 1.0f};
 constexpr int kFrontRings = static_cast<int>(std::size(kRadii));
 constexpr int kBackRings = 3;
 
-// The ear's plane: s toward the back of the head, t up; phi = 0 is back, counter-clockwise.
+// The outline in the ear's plane: s toward the back of the head, t up. phi is 0 at the back and
+// grows counter-clockwise.
 vec2 Outline(float phi) {
   const float s = std::cos(phi);
   const float t = std::sin(phi);
-  const float lobe = SmoothStep(0.2f, 1.0f, -t);
+  const float lobe = Smoothstep(0.2f, 1.0f, -t);
   const float width = (1.75f - 0.45f * lobe) * (s < 0.0f ? 0.9f : 1.0f);
   return {s * width + 0.12f * t - 0.35f * lobe, t * 3.15f};
 }
 
-// Height over the ear's plane, centimetres. Places in the unit disc: x back, y up.
+// The height above the ear's plane, centimetres. Positions are in the unit disc: x back, y up.
 float Relief(float rho, float phi) {
   const vec2 p = rho * vec2(std::cos(phi), std::sin(phi));
   const auto ridge = [&p](const vec2& a, const vec2& b, float width) {
     const float t = std::clamp(glm::dot(p - a, b - a) / glm::dot(b - a, b - a), 0.0f, 1.0f);
     return Bump(glm::distance(p, a + t * (b - a)), width);
   };
-  const float back = SmoothStep(-0.55f, 0.1f, p.x);
-  const float lobe = SmoothStep(-0.35f, -0.85f, p.y);
+  const float back = Smoothstep(-0.55f, 0.1f, p.x);
+  const float lobe = Smoothstep(-0.35f, -0.85f, p.y);
   const float above = 1.0f - lobe;
-  // The rim rolls over from the root in front, round the top, down to the lobe; a groove inside it.
+  // The rim curls from its root in front over the top down to the lobe, with a groove inside it.
   const float rim =
-      above * (1.0f - 0.85f * SmoothStep(0.55f, 0.9f, -p.x) * SmoothStep(0.5f, 0, p.y));
+      above * (1.0f - 0.85f * Smoothstep(0.55f, 0.9f, -p.x) * Smoothstep(0.5f, 0, p.y));
   const float helix = (0.42f * Bump(rho - 0.89f, 0.095f) - 0.14f * Bump(rho - 0.72f, 0.09f)) * rim;
   const float crus = 0.26f * ridge({-0.85f, 0.12f}, {-0.28f, 0.02f}, 0.09f);
-  // The inner ridge: an arc that forks above.
+  // The inner ridge: an arc that forks at the top.
   const float arc =
       Bump(glm::length((p - vec2(-0.16f, -0.14f)) / vec2(0.80f, 0.62f)) - 1.0f, 0.13f);
-  const float anti = 0.40f * arc * back * SmoothStep(0.40f, 0.15f, p.y) * above;
+  const float anti = 0.40f * arc * back * Smoothstep(0.40f, 0.15f, p.y) * above;
   const float forks = 0.30f * std::max(ridge({0.45f, 0.22f}, {0.20f, 0.66f}, 0.10f),
                                        ridge({0.40f, 0.24f}, {-0.32f, 0.50f}, 0.09f));
   const float bowl =
-      -0.62f * SmoothStep(1.0f, 0.45f, glm::length((p - vec2(-0.2f, -0.14f)) / vec2(0.56f, 0.5f)));
+      -0.62f * Smoothstep(1.0f, 0.45f, glm::length((p - vec2(-0.2f, -0.14f)) / vec2(0.56f, 0.5f)));
   const float tragus = 0.55f * Bump(glm::length(p - vec2(-0.74f, -0.20f)), 0.22f);
   const float swell = 0.22f * lobe * (1.0f - rho * rho);
-  const float root = -0.6f * SmoothStep(0.72f, 1.0f, -p.x);  // the front sinks into the head
+  const float root = -0.6f * Smoothstep(0.72f, 1.0f, -p.x);  // the front sinks into the head
   return helix + crus + std::max(anti, forks) + bowl + tragus + swell + root -
-         0.14f * SmoothStep(0.95f, 1.0f, rho);
+         0.14f * Smoothstep(0.95f, 1.0f, rho);
 }
 
-// Where the ear sits: its middle and its plane's axes, leaning back, standing off the head.
+// The frame of an ear: its centre and axes. Ears lean back and stand off the head.
 struct Seat {
   vec3 centre;
   vec3 back;
@@ -79,7 +80,7 @@ Seat SeatOf(float side) {
           vec3(side * std::cos(stand), 0.0f, std::sin(stand))};
 }
 
-// Ring `ring` of the ear: the front side from its middle to the rim, then the back of it.
+// Adds a ring of the ear. Rings run over the front from the middle to the rim, then over the back.
 void AddRing(float side, int ring, int segments, HeadMesh* head) {
   const Seat seat = SeatOf(side);
   const bool behind = ring >= kFrontRings;
@@ -93,7 +94,7 @@ void AddRing(float side, int ring, int segments, HeadMesh* head) {
     HeadVertex info;
     info.part = kEar;
     info.place = seat.centre + seat.back * st.x + seat.up * st.y + seat.out * height;
-    Vertex vertex;
+    character::Vertex vertex;
     vertex.position = HeadToModel(info.place);
     vertex.uv = {(side > 0.0f ? 0.25f : 0.75f) + 2.3f * reach * std::cos(phi),
                  0.932f - reach * std::sin(phi)};
@@ -119,7 +120,7 @@ void AddEar(float side, int level, HeadMesh* head) {
     for (int k = 0; k < segments; ++k) {
       const std::uint32_t a = index(i, k), b = index(i + 1, k), c = index(i + 1, k + 1),
                           d = index(i, k + 1);
-      // Backward, up, outward: right-handed on the left side alone.
+      // The axes (back, up, out) are right-handed only on the left side.
       if (side > 0.0f) {
         AddQuad(&head->mesh, a, b, c, d);
       } else {
@@ -129,4 +130,4 @@ void AddEar(float side, int level, HeadMesh* head) {
   }
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -3,10 +3,11 @@
 
 #include "authoring/generator/head/head_mesh.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
-// Appends an outer ear (helix, antihelix, concha, tragus, lobe), sunk a little into the head, to
-// the head's skin; its island lies in the band below v = 0.87. `side` +1 is the subject's left.
+// Appends an outer ear (helix, antihelix, concha, tragus, lobe) to the skin of the head. The ear is
+// sunk slightly into the head. Its UV island is in the band below v = 0.87. `side`: +1 is the
+// subject's left.
 void AddEar(float side, int level, HeadMesh* head);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

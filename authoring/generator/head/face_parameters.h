@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
-// What a face is told to be. Landmarks and joints are the same for every face, so that recordings
-// and rigs fit them all; form, colour, hair and the depth of wrinkles follow from these.
+// The parameters of a face. Shape, colour, hair and the depth of wrinkles depend on them. Landmarks
+// and joints are the same for every face, so recordings and rigs fit all faces.
 struct FaceParameters {
-  float sex = 1.0f;    // -1 a woman, 0 neither, 1 a man; between them, mixtures
+  float sex = 1.0f;    // -1 a woman, 0 neutral, 1 a man; values between are mixtures
   float age = 30.0f;   // years, 18 to 90
-  float grey = -1.0f;  // share of grey hair, [0, 1]; negative: follows from the age
+  float grey = -1.0f;  // fraction of grey hair, [0, 1]; negative: depends on the age
 };
 
-// 0 up to 25 years, 1 at 75.
+// 0 up to 25 years, 1 at 75 years.
 [[nodiscard]] constexpr float AgeShare(const FaceParameters& face) {
   const float t = (face.age - 25.0f) / 50.0f;
   return t < 0.0f ? 0.0f : (t > 1.3f ? 1.3f : t);
 }
 
-// Factor of the wrinkle maps: shallow at 18, 1 at 30, deep in old age.
+// The factor of the wrinkle maps' depth: below 1 for the young, 1 at 30 years, deep in old age.
 [[nodiscard]] constexpr float WrinkleDepth(const FaceParameters& face) {
   const float young = 0.75f + 0.25f * (face.age - 18.0f) / 12.0f;
   return face.age < 30.0f ? (young < 0.75f ? 0.75f : young) : 1.0f + 0.9f * AgeShare(face) - 0.09f;
@@ -29,4 +29,4 @@ struct FaceParameters {
   return t < 0.0f ? 0.0f : (t > 0.92f ? 0.92f : t);
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

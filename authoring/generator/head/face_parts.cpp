@@ -1,34 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "authoring/generator/head/face_parts.h"
+
+#include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <iterator>
 #include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "authoring/generator/head/head_grid.h"
-#include "authoring/generator/head/head_mesh.h"
 #include "authoring/generator/head/head_shape.h"
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "authoring/paint/noise.h"
 #include "authoring/paint/teeth.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
 using glm::vec3;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
-void AddVertex(HeadMesh* head, const HeadVertex& info, const vec2& uv) {
-  Vertex vertex;
-  vertex.position = HeadToModel(info.place);
-  vertex.uv = uv;
-  head->mesh.vertices.push_back(vertex);
-  head->info.push_back(info);
-}
-
-// The edge of a lid from the inner to the outer corner, on the skin.
+// The edge of a lid on the skin, from the inner to the outer corner.
 std::vector<vec3> LidEdge(const HeadGrid& grid, float side, bool upper) {
   const std::vector<glm::ivec2> outline = grid.EyeOutline();
   const std::size_t half = outline.size() / 2;
@@ -46,7 +40,8 @@ vec3 Along(const std::vector<vec3>& line, float t) {
   return glm::mix(line[i], line[i + 1], at - static_cast<float>(i));
 }
 
-// One lash: a strip of three joints, wider than the hair that PaintLash() leaves of it.
+// Adds one lash: a strip with three cross-sections, wider than the hair that PaintLash() paints on
+// it.
 void AddLash(const vec3& root, const vec3& out, const vec3& curl, const vec3& across, float length,
              float eye_side, HeadMesh* lashes) {
   const auto first = static_cast<std::uint32_t>(lashes->mesh.vertices.size());
@@ -59,7 +54,7 @@ void AddLash(const vec3& root, const vec3& out, const vec3& curl, const vec3& ac
       info.part = kLash;
       info.eye_side = eye_side;
       info.place = middle + across * (s * kHalf);
-      AddVertex(lashes, info, vec2(0.5f + 0.49f * s, 0.01f + 0.98f * t));
+      AddHeadVertex(lashes, info, vec2(0.5f + 0.49f * s, 0.01f + 0.98f * t));
     }
   }
   for (std::uint32_t k = 0; k < 2; ++k) {
@@ -74,8 +69,8 @@ void AddLashRow(const HeadGrid& grid, float side, bool upper, HeadMesh* lashes) 
   const int count = upper ? 46 : 24;
   for (int i = 0; i < count; ++i) {
     const float t = (static_cast<float>(i) + 0.7f) / (static_cast<float>(count) + 0.4f);
-    const float stray = Hash(i, upper, side > 0.0f) - 0.5f;
-    // On the edge of the lid, just outside the ball.
+    const float stray = RandomAt(i, upper, side > 0.0f) - 0.5f;
+    // On the edge of the lid, just outside the eyeball.
     const vec3 skin = Along(edge, t);
     const vec3 root =
         centre + glm::normalize(skin - centre) * (glm::distance(skin, centre) - 0.05f);
@@ -85,21 +80,21 @@ void AddLashRow(const HeadGrid& grid, float side, bool upper, HeadMesh* lashes) 
     const vec3 curl(0, upper ? 0.55f : -0.15f, -0.1f);
     const float length = (upper ? 0.55f : 0.22f) *
                          (0.55f + 0.45f * std::sin(kPi * std::min(t + 0.12f, 1.0f))) *
-                         (0.85f + 0.3f * Hash(i, 3, upper));
+                         (0.85f + 0.3f * RandomAt(i, 3, upper));
     const vec3 across = glm::normalize(glm::cross(out, vec3(0, 1, 0)));
     AddLash(root, out, curl, across, length, upper ? 1.0f : -1.0f, lashes);
   }
 }
 
-void AddTeethRow(const paint::ToothArch& arch, HeadMesh* teeth) {
-  const paint::ToothRow row = paint::MakeToothRow(arch);
+void AddTeethRow(const ToothArch& arch, HeadMesh* teeth) {
+  const ToothRow row = MakeToothRow(arch);
   const auto first = static_cast<std::uint32_t>(teeth->mesh.vertices.size());
   for (std::size_t i = 0; i < row.positions.size(); ++i) {
     HeadVertex info;
     info.part = kTeeth;
     info.mouth_side = arch.upper ? 1.0f : -1.0f;
     info.place = row.positions[i];
-    AddVertex(teeth, info, row.uvs[i]);
+    AddHeadVertex(teeth, info, row.uvs[i]);
   }
   for (std::size_t i = 0; i < row.quads.size(); i += 4) {
     const auto corner = [&](std::size_t k) { return first + row.quads[i + k]; };
@@ -107,7 +102,52 @@ void AddTeethRow(const paint::ToothArch& arch, HeadMesh* teeth) {
   }
 }
 
+void AddEye(float side, HeadMesh* eyes) {
+  constexpr int kSegments = 28;
+  constexpr float kAngles[] = {0, 5, 10, 15, 20, 24, 27.5f, 31, 36, 44, 56, 72, 90, 112};
+  constexpr int kRings = static_cast<int>(std::size(kAngles));
+  const auto first = static_cast<std::uint32_t>(eyes->mesh.vertices.size());
+  const vec3 centre = EyeCentre(side);
+  for (int i = 0; i < kRings; ++i) {
+    const float angle = kAngles[i] * kPi / 180.0f;
+    const float cornea = std::max(0.0f, 1.0f - kAngles[i] * kAngles[i] / (31.0f * 31.0f));
+    const float radius = kEyeRadius + 0.07f * cornea;
+    for (int k = 0; k <= kSegments; ++k) {
+      const float turn = 2.0f * kPi * static_cast<float>(k % kSegments) / kSegments;
+      const vec3 direction(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn),
+                           std::cos(angle));
+      HeadVertex info;
+      info.part = kEyeball;
+      info.place = centre + direction * radius;
+      const float spread = 0.48f * kAngles[i] / 112.0f;
+      const vec2 uv(0.5f + spread * std::cos(turn), 0.5f - spread * std::sin(turn));
+      AddHeadVertex(eyes, info, {(side > 0.0f ? 0.0f : 0.5f) + 0.5f * uv.x, uv.y});
+    }
+  }
+  const auto index = [&](int ring, int k) {
+    return first + static_cast<std::uint32_t>(ring * (kSegments + 1) + k);
+  };
+  for (int i = 0; i + 1 < kRings; ++i) {
+    for (int k = 0; k < kSegments; ++k) {
+      AddQuad(&eyes->mesh, index(i, k), index(i + 1, k), index(i + 1, k + 1), index(i, k + 1));
+    }
+  }
+}
+
 }  // namespace
+
+vec3 EyeCentre(float side) {
+  return {side * kEyeCentre.x, kEyeCentre.y - side * 0.057f, kEyeCentre.z};
+}
+
+HeadMesh MakeEyes() {
+  HeadMesh eyes;
+  eyes.mesh.name = "eyes";
+  AddEye(1.0f, &eyes);
+  AddEye(-1.0f, &eyes);
+  FinishSurface(&eyes.mesh);
+  return eyes;
+}
 
 HeadMesh MakeLashes(const HeadShape& shape) {
   HeadMesh lashes;
@@ -134,11 +174,11 @@ HeadMesh MakeTongue() {
                      std::cos(back));
       HeadVertex info;
       info.part = kTeeth;
-      info.mouth_side = -1.0f;  // the jaw carries it
+      info.mouth_side = -1.0f;  // follows the jaw
       info.place = kCentre + kRadii * out;
-      // The furrow along its middle.
+      // The furrow along the middle.
       if (out.y > 0.0f) info.place.y -= 0.16f * out.y * Bump(info.place.x, 0.35f);
-      AddVertex(&tongue, info, vec2(turn, ring) / vec2(kTurns, kRings));
+      AddHeadVertex(&tongue, info, vec2(turn, ring) / vec2(kTurns, kRings));
     }
   }
   const auto at = [](int ring, int turn) {
@@ -163,4 +203,4 @@ HeadMesh MakeTeeth() {
   return teeth;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "authoring/generator/head/hair_mesh.h"
+
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -9,44 +10,34 @@
 
 #include "authoring/generator/head/hair_style.h"
 #include "authoring/generator/head/head_grid.h"
-#include "authoring/generator/head/head_mesh.h"
 #include "authoring/generator/head/head_shape.h"
 #include "authoring/generator/mesh/mesh_tools.h"
 #include "authoring/paint/hair_strands.h"
+#include "authoring/paint/noise.h"
+#include "base/scalar.h"
 #include "character/mesh/tangents.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
 using glm::vec3;
 
-constexpr float kDegrees = 180.0f / std::numbers::pi_v<float>;
-constexpr int kSections = 7;                     // of a lock, root to tip
-constexpr int kMaxLocks = 1800;                  // what the triangles are spent on
-constexpr float kCapTop = paint::kStrandBottom;  // strands above this v, the cap below
-constexpr float kCapBehind = 0.6f;               // the hairline, which is made of strands
-constexpr float kLockArea = 0.52f;               // square centimetres of scalp a lock grows from
+constexpr int kSections = 7;              // of a lock, root to tip
+constexpr int kMaxLocks = 1800;           // limits the number of triangles
+constexpr float kCapTop = kStrandBottom;  // v: strands above, the cap below
+constexpr float kCapBehind =
+    0.6f;  // centimetres; in front of it the hairline consists of strands only
+constexpr float kLockArea = 0.52f;  // square centimetres of scalp per lock
 
-// Height of the hairline by azimuth, degrees from the front: forehead, temple, sideburn, ear, nape.
-constexpr Knot kHairline[] = {{0, 6.3f},    {14, 6.45f},  {26, 6.5f},  {36, 5.9f},   {44, 4.7f},
-                              {51, 3.4f},   {58, 2.4f},   {63, 1.0f},  {68, -1.2f},  {75, -1.6f},
-                              {80, -0.3f},  {90, 0.3f},   {104, 0.2f}, {113, -1.0f}, {122, -4.0f},
-                              {135, -6.6f}, {160, -7.6f}, {180, -7.8f}};
-
-std::uint32_t Add(HeadMesh* hair, const vec3& place, const vec2& uv) {
+std::uint32_t AddHairVertex(HeadMesh* hair, const vec3& place, const vec2& uv) {
   HeadVertex info;
   info.part = kHairCap;
   info.place = place;
-  Vertex vertex;
-  vertex.position = HeadToModel(place);
-  vertex.uv = uv;
-  hair->mesh.vertices.push_back(vertex);
-  hair->info.push_back(info);
-  return static_cast<std::uint32_t>(hair->mesh.vertices.size() - 1);
+  return AddHeadVertex(hair, info, uv);
 }
 
-// The shade below the locks: a thin cap, so that no skin is seen between them.
+// Adds a thin dark cap, so that no skin shows between the locks.
 void AddCap(const HeadGrid& grid, HeadMesh* hair) {
   const int last = grid.num_columns();
   const int rows = grid.num_rows();
@@ -63,11 +54,11 @@ void AddCap(const HeadGrid& grid, HeadMesh* hair) {
     vec3 place = skin[at(c, r)];
     const float inside = InsideHairline(place);
     place += grid.shape().Normal(place) *
-             (-0.12f + 0.20f * SmoothStep(-0.3f, 1.2f, inside - kCapBehind));
+             (-0.12f + 0.20f * Smoothstep(-0.3f, 1.2f, inside - kCapBehind));
     if (std::abs(c) == last) place.x = 0.0f;
     const vec3 normal = grid.shape().Normal(place);
     const vec2 uv = glm::mix(vec2(0.01f), vec2(0.99f), HeadUv(grid.Plain(c, r)));
-    index = Add(hair, place, {uv.x, kCapTop + 0.01f + (0.98f - kCapTop) * uv.y});
+    index = AddHairVertex(hair, place, {uv.x, kCapTop + 0.01f + (0.98f - kCapTop) * uv.y});
     hair->mesh.vertices[index].normal = normal;
     return index;
   };
@@ -82,9 +73,8 @@ void AddCap(const HeadGrid& grid, HeadMesh* hair) {
   }
 }
 
-// One lock: a card that follows the path. Its normals fan out, so that it is lit as if it were
-// round; beyond that locks are lit as the hair's whole mass is: each by itself would look like a
-// scale.
+// Adds one lock: a card along the path. Its normals fan out a little, as if it were round.
+// Otherwise they follow the scalp: locks that were lit one by one would look like scales.
 void AddLock(const HairLock& lock, int tile, HeadMesh* hair) {
   constexpr float kFan = 0.3f;
   const auto first = static_cast<std::uint32_t>(hair->mesh.vertices.size());
@@ -94,10 +84,10 @@ void AddLock(const HairLock& lock, int tile, HeadMesh* hair) {
     const vec3 along =
         glm::normalize(lock.path[std::min(i + 1, count - 1)] - lock.path[std::max(i - 1, 0)]);
     const vec3 across = glm::normalize(glm::cross(lock.out[i], along));
-    const float width = lock.width * (0.8f + 0.2f * SmoothStep(0.0f, 0.2f, t)) * (1.0f - 0.35f * t);
+    const float width = lock.width * (0.8f + 0.2f * Smoothstep(0.0f, 0.2f, t)) * (1.0f - 0.35f * t);
     for (const float s : {-1.0f, 1.0f}) {
       const std::uint32_t added =
-          Add(hair, lock.path[i] + across * (s * width), paint::StrandUv(tile, s, t));
+          AddHairVertex(hair, lock.path[i] + across * (s * width), StrandUv(tile, s, t));
       hair->mesh.vertices[added].normal = glm::normalize(lock.out[i] + kFan * s * across);
     }
   }
@@ -107,12 +97,12 @@ void AddLock(const HairLock& lock, int tile, HeadMesh* hair) {
   }
 }
 
-// Full in the mass, a few strands where the hair begins.
+// Dense tiles inside, sparse ones at the hairline.
 int ChooseTile(float inside, int number) {
-  const bool sparse = Hash(number, 10, 9) < SmoothStep(1.1f, 0.2f, inside);
-  const float choice = Hash(number, 11, 9);
-  return sparse ? paint::kFullTiles + static_cast<int>(choice * paint::kSparseTiles)
-                : static_cast<int>(choice * paint::kFullTiles);
+  const bool sparse = RandomAt(number, 10, 9) < Smoothstep(1.1f, 0.2f, inside);
+  const float choice = RandomAt(number, 11, 9);
+  return sparse ? kFullTiles + static_cast<int>(choice * kSparseTiles)
+                : static_cast<int>(choice * kFullTiles);
 }
 
 // The area of a cell of the grid, square centimetres.
@@ -124,29 +114,22 @@ float CellArea(const HeadGrid& grid, int c, int r) {
 
 }  // namespace
 
-float InsideHairline(const vec3& p) {
-  const float azimuth = std::abs(std::atan2(p.x, p.z)) * kDegrees;
-  const float ragged =
-      0.16f * Noise({p.x * 1.3f, p.z * 1.3f, 3.0f}) + 0.12f * Noise({p.x * 3.7f, p.z * 3.7f, 8.0f});
-  return p.y - Interpolate(kHairline, azimuth) + ragged;
-}
-
 HeadMesh MakeHair(const HeadShape& shape) {
   const HeadGrid grid(shape);
   HeadMesh hair;
   hair.mesh.name = "hair";
   AddCap(grid, &hair);
   int number = 0;
-  float due = 0.0f;  // locks that the area so far has earned
+  float due = 0.0f;  // number of locks that the area so far allows
   for (int c = -grid.num_columns(); c < grid.num_columns(); ++c) {
     for (int r = 0; r + 1 < grid.num_rows(); ++r) {
       const vec3 middle = grid.Surface(0.5f * (grid.Plain(c, r) + grid.Plain(c + 1, r + 1)));
       const float inside = InsideHairline(middle);
       if (inside < -0.25f) continue;
-      // Denser where the hairline shows.
+      // Denser at the hairline, where gaps would show.
       due += CellArea(grid, c, r) / (kLockArea * (inside < 0.9f ? 0.4f : 1.0f));
       for (; due >= 1.0f && number < kMaxLocks; due -= 1.0f, ++number) {
-        const vec2 jitter(Hash(number, 1, 7), Hash(number, 2, 7));
+        const vec2 jitter(RandomAt(number, 1, 7), RandomAt(number, 2, 7));
         const vec3 root =
             grid.Surface(glm::mix(grid.Plain(c, r), grid.Plain(c + 1, r + 1), jitter));
         const float depth = InsideHairline(root);
@@ -158,10 +141,10 @@ HeadMesh MakeHair(const HeadShape& shape) {
   }
   int wound = 0;
   for (const HairLock& lock : WindKnot(shape, kSections)) {
-    AddLock(lock, wound++ % paint::kFullTiles, &hair);
+    AddLock(lock, wound++ % kFullTiles, &hair);
   }
-  paint::ComputeTangents(hair.mesh.vertices, hair.mesh.indices);
+  character::paint::ComputeTangents(hair.mesh.vertices, hair.mesh.indices);
   return hair;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -8,40 +8,48 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "authoring/generator/head/head_mesh.h"
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "authoring/paint/noise.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 
-constexpr float kPartX = 3.6f;  // the parting, on the subject's left
+// Height of the hairline by azimuth in degrees from the front: forehead, temple, sideburn, ear,
+// nape.
+constexpr Knot kHairline[] = {{0, 6.3f},    {14, 6.45f},  {26, 6.5f},  {36, 5.9f},   {44, 4.7f},
+                              {51, 3.4f},   {58, 2.4f},   {63, 1.0f},  {68, -1.2f},  {75, -1.6f},
+                              {80, -0.3f},  {90, 0.3f},   {104, 0.2f}, {113, -1.0f}, {122, -4.0f},
+                              {135, -6.6f}, {160, -7.6f}, {180, -7.8f}};
+constexpr float kDegreesPerRadian = 180.0f / std::numbers::pi_v<float>;
+constexpr float kPartX = 3.6f;  // x of the parting, on the subject's left
 constexpr vec3 kSkull{0.0f, 1.5f, -1.0f};
 constexpr float kSkullRadius = 9.3f;
 constexpr vec3 kKnotRadii{2.7f, 2.3f, 1.7f};
 
-// What a place of the scalp grows.
+// How hair grows at a point of the scalp.
 struct Style {
-  vec3 comb;     // direction, not yet along the scalp
+  vec3 comb;     // direction, not yet projected onto the scalp
   float length;  // centimetres
-  float body;    // how far the lock stands off at its highest
-  float width;   // half of it
+  float body;    // largest height of the lock above the scalp, centimetres
+  float width;   // half the width, centimetres
 };
 
 float WomanShare(const HeadShape& shape) { return 0.5f - 0.5f * shape.face().sex; }
 
 // How far up the head a root is: 0 at the sides, 1 on top.
-float Top(const vec3& p) { return SmoothStep(4.2f, 8.0f, p.y); }
+float Top(const vec3& p) { return Smoothstep(4.2f, 8.0f, p.y); }
 
 Style ShortHair(const vec3& root) {
   const float top = Top(root);
-  const float front = SmoothStep(1.5f, 6.5f, root.z) * top;
-  const float left = SmoothStep(kPartX - 0.5f, kPartX + 0.5f, root.x);
+  const float front = Smoothstep(1.5f, 6.5f, root.z) * top;
+  const float left = Smoothstep(kPartX - 0.5f, kPartX + 0.5f, root.x);
   const float side = root.x < 0.0f ? -1.0f : 1.0f;
   const vec3 swept = glm::mix(vec3(-0.55f, 0.1f, -0.9f), vec3(0.7f, -0.4f, -0.8f), left);
   const vec3 sides(0.1f * side, -0.75f, -0.75f);
-  const float nape = SmoothStep(-1.0f, -7.0f, root.y) * SmoothStep(0.0f, -6.0f, root.z);
+  const float nape = Smoothstep(-1.0f, -7.0f, root.y) * Smoothstep(0.0f, -6.0f, root.z);
   Style style;
   style.comb = glm::mix(sides, swept + vec3(0.0f, 0.6f * front, 0.0f), top);
   style.comb = glm::mix(style.comb, vec3(0.0f, -1.0f, -0.3f), nape);
@@ -65,7 +73,7 @@ Style LongHair(const HeadShape& shape, const vec3& root) {
   Style style;
   style.comb = to - from * cosine;
   style.length = std::min(9.0f, left);
-  style.body = (0.16f + 0.16f * Top(root)) * SmoothStep(-1.0f, 4.0f, left);
+  style.body = (0.16f + 0.16f * Top(root)) * Smoothstep(-1.0f, 4.0f, left);
   style.width = 0.52f;
   return style;
 }
@@ -81,19 +89,28 @@ Style StyleAt(const HeadShape& shape, const vec3& root) {
 
 }  // namespace
 
+float InsideHairline(const vec3& p) {
+  const float azimuth = std::abs(std::atan2(p.x, p.z)) * kDegreesPerRadian;
+  const float ragged = 0.16f * SignedNoise({p.x * 1.3f, p.z * 1.3f, 3.0f}) +
+                       0.12f * SignedNoise({p.x * 3.7f, p.z * 3.7f, 8.0f});
+  return p.y - Interpolate(kHairline, azimuth) + ragged;
+}
+
 HairLock GrowLock(const HeadShape& shape, const vec3& root, int number, int sections) {
   const Style style = StyleAt(shape, root);
   const float edge =
-      SmoothStep(-0.2f, 1.6f, InsideHairline(root));  // short and flat at the hairline
-  const float length = style.length * (0.85f + 0.3f * Hash(number, 3, 9)) * (0.6f + 0.4f * edge);
+      Smoothstep(-0.2f, 1.6f, InsideHairline(root));  // short and flat at the hairline
+  const float length =
+      style.length * (0.85f + 0.3f * RandomAt(number, 3, 9)) * (0.6f + 0.4f * edge);
   if (length < 0.6f) return {};
-  const float body = style.body * (0.55f + 0.55f * Hash(number, 4, 9)) * (0.3f + 0.7f * edge);
-  // Neighbours lean the same way; single locks hardly stray from them.
+  const float body = style.body * (0.55f + 0.55f * RandomAt(number, 4, 9)) * (0.3f + 0.7f * edge);
+  // Neighbouring locks lean the same way, with small deviations.
   const vec3 lean =
-      0.16f * vec3(Noise(root * 0.45f), Noise(root * 0.45f + 20.0f), Noise(root * 0.45f + 40.0f)) +
-      0.12f * (vec3(Hash(number, 5, 9), Hash(number, 6, 9), Hash(number, 7, 9)) - 0.5f);
+      0.16f * vec3(SignedNoise(root * 0.45f), SignedNoise(root * 0.45f + 20.0f),
+                   SignedNoise(root * 0.45f + 40.0f)) +
+      0.12f * (vec3(RandomAt(number, 5, 9), RandomAt(number, 6, 9), RandomAt(number, 7, 9)) - 0.5f);
   HairLock lock;
-  lock.width = style.width * (0.8f + 0.4f * Hash(number, 8, 9)) * (0.45f + 0.55f * edge);
+  lock.width = style.width * (0.8f + 0.4f * RandomAt(number, 8, 9)) * (0.45f + 0.55f * edge);
   const float tip = glm::mix(0.5f, 0.35f, WomanShare(shape));
   vec3 p = root - shape.Normal(root) * 0.05f;
   for (int i = 0; i <= sections; ++i) {
@@ -104,9 +121,9 @@ HairLock GrowLock(const HeadShape& shape, const vec3& root, int number, int sect
       vec3 along = comb - normal * glm::dot(comb, normal);
       if (glm::length(along) < 1e-3f) along = vec3(0, -1, 0);
       p += glm::normalize(along) * (length / static_cast<float>(sections));
-      // It rises from the scalp and lies down again.
+      // The lock rises from the scalp and lies down again.
       const float height =
-          0.09f + body * SmoothStep(0.0f, 0.4f, t) * glm::mix(1.0f, tip, SmoothStep(0.5f, 1.0f, t));
+          0.09f + body * Smoothstep(0.0f, 0.4f, t) * glm::mix(1.0f, tip, Smoothstep(0.5f, 1.0f, t));
       p += shape.Normal(p) * (height - shape.Distance(p));
     }
     lock.path.push_back(p);
@@ -118,22 +135,22 @@ HairLock GrowLock(const HeadShape& shape, const vec3& root, int number, int sect
 std::vector<HairLock> WindKnot(const HeadShape& shape, int sections) {
   constexpr int kRings = 7;
   constexpr int kAround = 12;
-  constexpr float kArc = 1.7f;  // radians that a lock winds
+  constexpr float kArc = 1.7f;  // radians that a lock winds around the knot
   std::vector<HairLock> locks;
-  const float size = SmoothStep(0.3f, 0.8f, WomanShare(shape));
+  const float size = Smoothstep(0.3f, 0.8f, WomanShare(shape));
   if (size <= 0.0f) return locks;
   const vec3 centre = KnotCentre(shape);
   for (int ring = 0; ring < kRings; ++ring) {
     for (int i = 0; i < kAround; ++i) {
       const int number = ring * kAround + i;
       HairLock lock;
-      lock.width = size * (0.42f + 0.12f * Hash(number, 1, 21));
-      const float out = size * (1.0f + 0.05f * Hash(number, 2, 21));
-      const float start = (static_cast<float>(i) + Hash(number, 3, 21)) / kAround;
+      lock.width = size * (0.42f + 0.12f * RandomAt(number, 1, 21));
+      const float out = size * (1.0f + 0.05f * RandomAt(number, 2, 21));
+      const float start = (static_cast<float>(i) + RandomAt(number, 3, 21)) / kAround;
       for (int s = 0; s <= sections; ++s) {
         const float t = static_cast<float>(s) / static_cast<float>(sections);
         const float turn = 2.0f * std::numbers::pi_v<float> * start + kArc * t;
-        // From the rim of the knot to its middle, each lock winding inward a little.
+        // Each lock winds from the rim of the knot inward.
         const float tilt = 0.22f + 0.235f * (static_cast<float>(ring) + 0.7f * (0.5f - t));
         const vec3 d(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn),
                      -std::cos(tilt));
@@ -146,4 +163,4 @@ std::vector<HairLock> WindKnot(const HeadShape& shape, int sections) {
   return locks;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -4,31 +4,31 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <vector>
 
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
-constexpr float kDegrees = std::numbers::pi_v<float> / 180.0f;
-constexpr float kFrontRadius = 8.3f;  // centimetres from the axis, where rows' heights are measured
+constexpr float kFrontRadius =
+    8.3f;  // centimetres from the axis, where the heights of rows are measured
 
-// Azimuths of the columns, degrees: dense where the face is.
+// Azimuths of the columns, degrees. They are dense in the face.
 constexpr float kAzimuth[kHeadColumns + 1] = {0,     2.4f,  4.8f, 7.1f,  9.4f,  11.7f, 14,    16.8f,
                                               19.8f, 22.9f, 26,   29.1f, 32.3f, 35.7f, 39.5f, 43.8f,
                                               48.6f, 54,    60,   67,    75,    83,    91,    99,
                                               108,   118,   129,  141,   154,   167,   180};
 
-// A row of the grid: a fan of rays from (0, base, axis) at `elevation`; `base` follows from the
-// height that the row has in front. Rays that look up show the undersides of nose and chin.
+// A row of the grid: a fan of rays from (0, base, axis) at `elevation`. `base` follows from the
+// row's height in front. Rays that point up reach the undersides of nose and chin.
 struct Row {
   float height;          // in front, centimetres
   float elevation;       // degrees, in front
   float axis;            // z of the fan's origin
-  float half_width;      // degrees of azimuth within which the elevation holds
-  float texture_height;  // share of the texture that the step from the row below takes
+  float half_width;      // azimuth up to which the elevation applies, degrees
+  float texture_height;  // height of the step from the row below, relative to the others
 };
 
 constexpr Row kRows[] = {{-22.5f, 0, -3.9f, 90, 0.0f},
@@ -109,8 +109,9 @@ constexpr Row kRows[] = {{-22.5f, 0, -3.9f, 90, 0.0f},
                          {34.5f, 90, -0.8f, 180, 0.6f}};
 
 constexpr int kNumRows = static_cast<int>(std::size(kRows));
-constexpr float kCrownBase = 3.5f;  // where the fans of the crown come from
-constexpr float kBackHigh = 4.5f;   // at the back rows are even between the neck and this height
+constexpr float kCrownBase = 3.5f;  // origin of the crown's fans
+constexpr float kBackHigh =
+    4.5f;  // at the back, rows are evenly spaced between the neck and this height
 
 float Lerp(const auto& value, float index, int count) {
   const int low = std::clamp(static_cast<int>(std::floor(index)), 0, count - 2);
@@ -127,10 +128,10 @@ float Azimuth(float column) {
   return column < 0.0f ? -a : a;
 }
 
-// 0 where columns belong to the face, 1 at the sides and the back.
-float Turn(float azimuth) { return SmoothStep(36.0f, 100.0f, azimuth); }
+// 0 in the face, 1 at the sides and the back.
+float Turn(float azimuth) { return Smoothstep(36.0f, 100.0f, azimuth); }
 
-// z of a fan's origin: far from the front it runs evenly from the neck to the skull.
+// z of a fan's origin. Far from the front it changes evenly from the neck to the skull.
 float FanAxis(float row, float azimuth) {
   constexpr Knot kBack[] = {{0, -3.8f}, {6, -3.1f}, {37, -0.8f}, {60, 0.0f}};
   const float front = RowField(&Row::axis, row);
@@ -138,21 +139,21 @@ float FanAxis(float row, float azimuth) {
   return front + (Interpolate(kBack, row) - front) * Turn(azimuth);
 }
 
-// Height of a fan's origin.
+// The height of a fan's origin.
 float FanBase(float row, float azimuth, float elevation) {
   static const int first_crown = FindHeadRow(6.0f);
   static const int first_chin = FindHeadRow(-23.0f);
   const float height = RowField(&Row::height, row);
   const float front = height - kFrontRadius * std::tan(RowField(&Row::elevation, row) * kDegrees);
-  const float crown = SmoothStep(static_cast<float>(first_crown), first_crown + 6.0f, row);
+  const float crown = Smoothstep(static_cast<float>(first_crown), first_crown + 6.0f, row);
   if (crown > 0.0f) return front + (kCrownBase - front) * crown;
-  // Fans under the chin stay where they are while they open to the sides; all others keep the
-  // height at which they meet the face.
-  const float chin = SmoothStep(first_chin - 1.0f, static_cast<float>(first_chin), row) *
-                     (1.0f - SmoothStep(first_chin + 11.0f, first_chin + 12.0f, row));
+  // Fans under the chin keep their origin to the sides. All others keep the height at which they
+  // meet the face.
+  const float chin = Smoothstep(first_chin - 1.0f, static_cast<float>(first_chin), row) *
+                     (1.0f - Smoothstep(first_chin + 11.0f, first_chin + 12.0f, row));
   const float level = height - kFrontRadius * std::tan(elevation);
   const float base = level + (front - level) * chin;
-  // Far from the front a row has the height that the even spacing of the back gives it.
+  // Far from the front, the even spacing of the back decides the height of a row.
   const Knot back_knots[] = {{0.0f, kRows[0].height},
                              {static_cast<float>(first_chin - 1), kRows[first_chin - 1].height},
                              {static_cast<float>(first_crown), kBackHigh}};
@@ -160,13 +161,13 @@ float FanBase(float row, float azimuth, float elevation) {
   return base + (back - base) * Turn(azimuth);
 }
 
-// Shares of the texture that columns and rows have come to, from 0 to 1.
+// Texture coordinates of the columns and rows, from 0 to 1.
 std::vector<float> TextureColumns() {
   std::vector<float> u{0.0f};
   for (int c = 1; c <= kHeadColumns; ++c) {
     const float middle = 0.5f * (kAzimuth[c] + kAzimuth[c - 1]);
     const float width = kAzimuth[c] - kAzimuth[c - 1];
-    u.push_back(u.back() + width * (1.0f - 0.65f * SmoothStep(50, 105, middle)));
+    u.push_back(u.back() + width * (1.0f - 0.65f * Smoothstep(50, 105, middle)));
   }
   const float total = u.back();
   for (float& value : u) value /= total;
@@ -198,7 +199,7 @@ glm::vec3 HeadSurface(const HeadShape& shape, const glm::vec2& place) {
   const float half_width = RowField(&Row::half_width, row);
   const float hold = half_width >= 180.0f
                          ? 1.0f
-                         : 1.0f - SmoothStep(0.35f * half_width, half_width, std::abs(azimuth));
+                         : 1.0f - Smoothstep(0.35f * half_width, half_width, std::abs(azimuth));
   const float elevation = RowField(&Row::elevation, row) * hold * kDegrees;
   const float base = FanBase(row, std::abs(azimuth), elevation);
   const glm::vec3 direction(std::sin(azimuth * kDegrees) * std::cos(elevation), std::sin(elevation),
@@ -218,7 +219,7 @@ glm::vec2 HeadUv(const glm::vec2& place) {
 
 glm::vec2 HeadPlaceAt(const HeadShape& shape, float x, float y) {
   const glm::vec3 p = shape.Cast({x, y, 20.0f}, {0, 0, -1}, 20.0f);
-  float row = static_cast<float>(FindHeadRow(-9.15f));  // rows below are not in order of height
+  float row = static_cast<float>(FindHeadRow(-9.15f));  // rows below are not ordered by height
   while (kRows[static_cast<int>(row) + 1].height < y) row += 1.0f;
   const Row& low = kRows[static_cast<int>(row)];
   const Row& high = kRows[static_cast<int>(row) + 1];
@@ -231,4 +232,4 @@ glm::vec2 HeadPlaceAt(const HeadShape& shape, float x, float y) {
           row};
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -10,14 +10,14 @@
 
 #include "authoring/generator/mesh/mesh_tools.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
-// Openings in columns of the chart.
+// The columns of the openings on the chart.
 constexpr int kEyeColumns[2] = {6, 14};
 constexpr int kMouthColumn = 8;
 
-// y of the upper and the lower lid at s in [0, 1] from the inner to the outer corner.
+// y of the upper or lower lid at s in [0, 1] from the inner to the outer corner.
 float LidHeight(float s, bool upper) {
   const float tilt = -0.10f + 0.20f * s;
   const float pi = std::numbers::pi_v<float>;
@@ -26,7 +26,7 @@ float LidHeight(float s, bool upper) {
   return tilt - 0.53f * std::pow(std::max(std::sin(pi * std::pow(s, 1.12f)), 0.0f), 0.85f);
 }
 
-// `count` + 1 points of a lid at equal distances, inner corner first.
+// `count` + 1 points of a lid at equal distances, from the inner corner.
 std::vector<glm::vec2> LidPoints(int count, bool upper) {
   constexpr int kFine = 200;
   std::vector<glm::vec2> fine;
@@ -92,7 +92,7 @@ std::vector<glm::ivec2> HeadGrid::EyeOutline(int stride) const {
   const int low = fine_eye_rows_[0] / stride, high = fine_eye_rows_[1] / stride;
   const int inner = kEyeColumns[0] * kFine / stride, outer = kEyeColumns[1] * kFine / stride;
   const int middle = (low + high) / 2;
-  std::vector<glm::ivec2> outline;  // +x is to the right as the viewer sees it: down first
+  std::vector<glm::ivec2> outline;  // +x is on the viewer's right, so the outline first runs down
   for (int r = middle; r > low; --r) outline.emplace_back(inner, r);
   for (int c = inner; c < outer; ++c) outline.emplace_back(c, low);
   for (int r = low; r < high; ++r) outline.emplace_back(outer, r);
@@ -127,7 +127,8 @@ void HeadGrid::DrawToOutlines() {
   for (int i = 0; i <= half; ++i) pin(eye[i], lower[i].x, lower[i].y);
   for (int i = 1; i < half; ++i) pin(eye[2 * half - i], upper[i].x, upper[i].y);
 
-  constexpr float kGap = 0.002f;  // lips touch: what lies above the line and below it is told apart
+  constexpr float kGap =
+      0.002f;  // the lips touch; the gap separates points above and below the line
   const std::vector<glm::ivec2> mouth = MouthOutline(1);
   const int quarter = static_cast<int>(mouth.size()) / 4;  // from the left corner to the middle
   for (int i = 0; i <= quarter; ++i) {
@@ -140,7 +141,8 @@ void HeadGrid::DrawToOutlines() {
 }
 
 void HeadGrid::Relax(const std::vector<char>& fixed) {
-  constexpr float kHold = 0.982f;  // pulls back to the plain grid: far places do not move
+  constexpr float kHold =
+      0.982f;  // pulls toward the plain grid, so that distant points do not move
   const int columns = kHeadColumns * kFine;
   const int rows = num_fine_rows_ + 1;
   const auto at = [&](int c, int r) -> glm::vec2& {
@@ -150,7 +152,7 @@ void HeadGrid::Relax(const std::vector<char>& fixed) {
     for (int c = 0; c < columns; ++c) {
       for (int r = 1; r + 1 < rows; ++r) {
         if (fixed[static_cast<std::size_t>(c) * rows + r]) continue;
-        // Column -1 mirrors column 1.
+        // Column -1 is the mirror image of column 1.
         const glm::vec2 before = c > 0 ? at(c - 1, r) : glm::vec2(-at(1, r).x, at(1, r).y);
         glm::vec2 mean = 0.25f * (before + at(c + 1, r) + at(c, r - 1) + at(c, r + 1));
         if (c == 0) mean.x = 0.0f;
@@ -160,4 +162,4 @@ void HeadGrid::Relax(const std::vector<char>& fixed) {
   }
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

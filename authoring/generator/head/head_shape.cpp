@@ -7,14 +7,14 @@
 
 #include <glm/geometric.hpp>
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 
-// What a body gains per unit of a trait.
+// The change of a primitive per unit of a trait.
 struct Shift {
-  const char* body;
+  const char* primitive;
   vec3 a;
   vec3 b;
   glm::vec2 r;
@@ -41,7 +41,7 @@ constexpr Shift kMan[] = {
     {"lower lip", {0, 0, -0.05f}, {0, 0, -0.05f}, {-0.04f, -0.04f}},
 };
 
-// At 75 against 25.
+// The change from 25 to 75 years.
 constexpr Shift kAge[] = {
     {"tip", {0, -0.2f, 0.1f}, {0.06f, 0.08f, 0.06f}, {}},
     {"wing", {0.06f, -0.1f, 0}, {0.05f, 0.05f, 0.05f}, {}},
@@ -55,8 +55,8 @@ constexpr Shift kAge[] = {
     {"brow", {0, -0.1f, 0}, {0, -0.25f, 0}, {}},
 };
 
-// Clay that age adds (jowls, bags under the eyes) and takes (temples, folds that stay).
-constexpr Dab kAgeDabs[] = {
+// Bulges and dents of age: jowls, bags under the eyes, hollow temples, permanent folds.
+constexpr Bulge kAgeBulges[] = {
     {{3.9f, -9.2f, 5.4f}, 0.9f, 0.18f},    {{3.3f, -8.6f, 7.3f}, 0.5f, 0.16f},
     {{2.55f, -8.9f, 7.9f}, 0.45f, -0.16f}, {{2.95f, -7.9f, 8.2f}, 0.35f, -0.12f},
     {{2.4f, -4.9f, 8.9f}, 0.4f, -0.14f},   {{2.85f, -5.9f, 8.7f}, 0.4f, -0.15f},
@@ -67,13 +67,13 @@ constexpr Dab kAgeDabs[] = {
 };
 
 template <std::size_t N>
-void Apply(const Shift (&shifts)[N], float share, std::vector<Body>* bodies) {
+void Apply(const Shift (&shifts)[N], float share, std::vector<HeadPrimitive>* primitives) {
   for (const Shift& shift : shifts) {
-    for (Body& body : *bodies) {
-      if (std::string_view(body.name) != shift.body) continue;
-      body.a += share * shift.a;
-      body.b += share * shift.b;
-      body.r += share * shift.r;
+    for (HeadPrimitive& primitive : *primitives) {
+      if (std::string_view(primitive.name) != shift.primitive) continue;
+      primitive.a += share * shift.a;
+      primitive.b += share * shift.b;
+      primitive.r += share * shift.r;
     }
   }
 }
@@ -81,8 +81,8 @@ void Apply(const Shift (&shifts)[N], float share, std::vector<Body>* bodies) {
 // Faces are not symmetric: a smooth warp of 1 to 2 mm.
 vec3 Asymmetry(const vec3& p) {
   vec3 w = p;
-  w.x += 0.10f * std::exp(-(p.y + 4.0f) * (p.y + 4.0f) / 8.0f);         // nose leans
-  w.y += 0.06f * std::tanh(p.x * 0.6f) * std::exp(-p.y * p.y / 20.0f);  // one eye higher
+  w.x += 0.10f * std::exp(-(p.y + 4.0f) * (p.y + 4.0f) / 8.0f);         // the nose leans
+  w.y += 0.06f * std::tanh(p.x * 0.6f) * std::exp(-p.y * p.y / 20.0f);  // one eye is higher
   w.y -= 0.07f * std::tanh(p.x * 0.5f) * std::exp(-(p.y + 7.0f) * (p.y + 7.0f) / 6.0f);
   return w;
 }
@@ -94,34 +94,34 @@ glm::vec3 ModelToHead(const glm::vec3& p) { return p * 100.0f - kHeadOrigin; }
 
 HeadShape::HeadShape(const FaceParameters& face)
     : face_(face),
-      bodies_(AdultBodies().begin(), AdultBodies().end()),
-      dabs_(AdultDabs().begin(), AdultDabs().end()) {
-  Apply(kMan, face.sex, &bodies_);
+      primitives_(AdultPrimitives().begin(), AdultPrimitives().end()),
+      bulges_(AdultBulges().begin(), AdultBulges().end()) {
+  Apply(kMan, face.sex, &primitives_);
   const float age = AgeShare(face);
-  Apply(kAge, age, &bodies_);
-  for (Dab dab : kAgeDabs) {
-    dab.height *= age;
-    if (age > 0.0f) dabs_.push_back(dab);
+  Apply(kAge, age, &primitives_);
+  for (Bulge bulge : kAgeBulges) {
+    bulge.height *= age;
+    if (age > 0.0f) bulges_.push_back(bulge);
   }
 }
 
 float HeadShape::Distance(const glm::vec3& p) const {
   const vec3 w = Asymmetry(p);
-  constexpr float kFold = 0.12f;  // |x|, rounded: no crease in the middle
+  constexpr float kFold = 0.12f;  // |x| is rounded, so there is no crease in the middle
   const vec3 q(std::sqrt(w.x * w.x + kFold * kFold) - kFold, w.y, w.z);
-  return BodiesDistance(bodies_, q) - DabsHeight(dabs_, q);
+  return PrimitivesDistance(primitives_, q) - BulgesHeight(bulges_, q);
 }
 
 glm::vec3 HeadShape::Normal(const glm::vec3& p) const {
   constexpr float kStep = 0.02f;
-  // Four taps of a tetrahedron.
+  // Central differences at the corners of a tetrahedron.
   const vec3 a(1, -1, -1), b(-1, -1, 1), c(-1, 1, -1), e(1, 1, 1);
   return glm::normalize(a * Distance(p + a * kStep) + b * Distance(p + b * kStep) +
                         c * Distance(p + c * kStep) + e * Distance(p + e * kStep));
 }
 
 glm::vec3 HeadShape::Cast(const glm::vec3& from, const glm::vec3& direction, float length) const {
-  constexpr float kSafety = 0.6f;  // the distance is an estimate
+  constexpr float kSafety = 0.6f;  // steps are shortened, since the distance is an estimate
   float t = 0.0f;
   for (int i = 0; i < 160 && t < length; ++i) {
     const float d = Distance(from + direction * t);
@@ -141,4 +141,4 @@ const HeadShape& DefaultHead() {
   return head;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -6,15 +6,16 @@
 #include <glm/vec3.hpp>
 
 #include "authoring/generator/head/face_parameters.h"
-#include "authoring/generator/head/head_bodies.h"
+#include "authoring/generator/head/head_primitives.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
-// Head space: centimetres, origin between the eyes at half the head's height and half its depth, +Y
-// up, +Z out of the face, +X the subject's left. Model space is metres: (p + kHeadOrigin) / 100.
+// Head space: centimetres. The origin is between the eyes, at half the height and half the depth of
+// the head; +Y up, +Z out of the face, +X the subject's left. Model space, metres: (p +
+// kHeadOrigin) / 100.
 inline constexpr glm::vec3 kHeadOrigin{0.0f, 163.5f, 1.0f};
 
-// Landmarks, averages of an adult head (docs/DEFAULT-CHARACTER.md). x for the left side.
+// Landmarks of the left side: averages of adult heads (docs/DEFAULT-CHARACTER.md).
 inline constexpr glm::vec3 kEyeCentre{3.2f, 0.0f, 7.22f};
 inline constexpr float kEyeRadius = 1.2f;
 inline constexpr float kInnerCanthusX = 1.72f;
@@ -25,10 +26,10 @@ inline constexpr float kMouthY = -6.90f;
 [[nodiscard]] glm::vec3 HeadToModel(const glm::vec3& p);
 [[nodiscard]] glm::vec3 ModelToHead(const glm::vec3& p);
 
-// The form of one head, as a function that is negative inside, positive outside, and changes by
-// about 1 a centimetre: skull, face and neck in one piece, slightly asymmetric as faces are. Lids
-// lie over the eyes up to their openings, the lips meet at the mouth's line; ears, eyeballs and
-// hair are meshes of their own.
+// The shape of one head as a signed distance, negative inside, with a gradient of about 1 per
+// centimetre: skull, face and neck in one piece, slightly asymmetric. The lids cover the eyes up to
+// the openings; the lips meet at the line of the mouth. Ears, eyeballs and hair are separate
+// meshes.
 class HeadShape {
  public:
   explicit HeadShape(const FaceParameters& face = {});
@@ -37,20 +38,20 @@ class HeadShape {
   [[nodiscard]] float Distance(const glm::vec3& p) const;
   // Unit gradient of Distance().
   [[nodiscard]] glm::vec3 Normal(const glm::vec3& p) const;
-  // The first point of the surface on the ray from `from` (outside) along unit `direction`; stops
-  // at `length` centimetres where it meets nothing.
+  // The first point of the surface on the ray from `from` (outside) along the unit vector
+  // `direction`, or the point at `length` centimetres if there is none.
   [[nodiscard]] glm::vec3 Cast(const glm::vec3& from, const glm::vec3& direction,
                                float length) const;
-  // The nearest point of the surface to one that is near it.
+  // The nearest point of the surface. Precondition: `p` is near the surface.
   [[nodiscard]] glm::vec3 Onto(glm::vec3 p) const;
 
  private:
   FaceParameters face_;
-  std::vector<Body> bodies_;
-  std::vector<Dab> dabs_;
+  std::vector<HeadPrimitive> primitives_;
+  std::vector<Bulge> bulges_;
 };
 
-// The default character's.
+// The head of the default character.
 [[nodiscard]] const HeadShape& DefaultHead();
 [[nodiscard]] inline float HeadDistance(const glm::vec3& p) { return DefaultHead().Distance(p); }
 [[nodiscard]] inline glm::vec3 HeadNormal(const glm::vec3& p) { return DefaultHead().Normal(p); }
@@ -59,4 +60,4 @@ class HeadShape {
   return DefaultHead().Cast(from, direction, length);
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

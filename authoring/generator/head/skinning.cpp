@@ -9,51 +9,40 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "authoring/generator/head/face_parts.h"
 #include "authoring/generator/head/head_shape.h"
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "authoring/skinning/influences.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 
-// Weights under way: joints may be named twice, Store() sorts that out.
+// Adds up the weights of a vertex by the names of joints. Unknown joints are ignored.
 class Weights {
  public:
-  explicit Weights(const wrinkle::Skeleton& skeleton) : by_joint_(skeleton.num_joints(), 0.0f) {}
+  explicit Weights(const wrinkle::Skeleton& skeleton) : skeleton_(skeleton) {}
 
-  void Add(const wrinkle::Skeleton& skeleton, const std::string& joint, float weight) {
-    const int index = skeleton.Find(joint);
-    if (index >= 0 && weight > 0.0f) by_joint_[index] += weight;
+  void Add(const std::string& joint, float weight) {
+    const int index = skeleton_.Find(joint);
+    if (index >= 0) sum_.Add(static_cast<std::uint16_t>(index), weight);
   }
-
-  // The four strongest, summing to 1.
-  void Store(Vertex* vertex) const {
-    std::vector<int> order(by_joint_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-    std::partial_sort(order.begin(), order.begin() + 4, order.end(), [&](int a, int b) {
-      return by_joint_[a] != by_joint_[b] ? by_joint_[a] > by_joint_[b] : a < b;
-    });
-    float sum = 0.0f;
-    for (int k = 0; k < 4; ++k) sum += by_joint_[order[k]];
-    for (int k = 0; k < 4; ++k) {
-      const float weight = by_joint_[order[k]] / sum;
-      vertex->joints[k] = static_cast<std::uint16_t>(weight > 0.0f ? order[k] : 0);
-      vertex->skin_weights[k] = weight;
-    }
-  }
+  void Store(character::Vertex* vertex) const { sum_.Strongest().CopyTo(vertex); }
 
  private:
-  std::vector<float> by_joint_;
+  const wrinkle::Skeleton& skeleton_;
+  InfluenceSum sum_;
 };
 
-// The field of a muscle: full at its centre, nothing beyond its radii (head space, left side).
+// The influence of a muscle: full at its centre, zero beyond its radii (head space, left side).
 struct Muscle {
   const char* name;  // "*" stands for the side
   vec3 centre;
   vec3 radii;
   float strength;
-  int lip;  // +1 upper alone, -1 lower alone, 0 both
+  int lip;  // +1 upper lip only, -1 lower lip only, 0 both
 };
 
 const Muscle kMuscles[] = {
@@ -79,19 +68,19 @@ float Field(const Muscle& muscle, const vec3& p, float side) {
   return muscle.strength * fall * fall * (3.0f - 2.0f * fall);
 }
 
-// Share of the neck (against the head), and of the chest below it.
+// The weight of the neck relative to the head.
 float NeckShare(const vec3& p) {
-  const float top = -4.0f - 7.5f * SmoothStep(-3.0f, 5.0f, p.z);
-  return SmoothStep(top, top - 6.0f, p.y);
+  const float top = -4.0f - 7.5f * Smoothstep(-3.0f, 5.0f, p.z);
+  return Smoothstep(top, top - 6.0f, p.y);
 }
 
 float JawShare(const HeadVertex& v) {
   const vec3& p = v.place;
   // The border runs from the corner of the mouth to the joint of the jaw.
   const float border = -3.6f - 3.35f * std::clamp((p.z - 0.6f) / 8.0f, 0.0f, 1.2f);
-  const float soft = SmoothStep(1.0f, -1.6f, p.y - border) * SmoothStep(-1.5f, 1.5f, p.z);
+  const float soft = Smoothstep(1.0f, -1.6f, p.y - border) * Smoothstep(-1.5f, 1.5f, p.z);
   const float hard = v.mouth_side < 0.0f ? 1.0f : (v.mouth_side > 0.0f ? 0.0f : 0.5f);
-  const float lips = SmoothStep(3.3f, 2.0f, std::abs(p.x)) * SmoothStep(1.0f, 3.0f, p.z);
+  const float lips = Smoothstep(3.3f, 2.0f, std::abs(p.x)) * Smoothstep(1.0f, 3.0f, p.z);
   return soft + (hard - soft) * lips;
 }
 
@@ -99,16 +88,16 @@ float UpperLid(const HeadVertex& v, float side) {
   const vec3 d = v.place - EyeCentre(side);
   if (v.eye_side <= 0.0f || d.z < -0.2f) return 0.0f;
   const float across = std::max(0.0f, 1.0f - d.x * d.x / (1.62f * 1.62f));
-  return SmoothStep(1.3f, 0.62f, d.y) * std::sqrt(across);
+  return Smoothstep(1.3f, 0.62f, d.y) * std::sqrt(across);
 }
 
-// How far a vertex belongs to the rims of the mouth, whose weights follow the lips' own curve.
+// How much a vertex belongs to the rims of the mouth, which are weighted along the lips' own curve.
 float LipZone(const HeadVertex& v) {
   if (v.mouth_side == 0.0f && std::abs(v.place.x) < 0.9f * kMouthCornerX) return 0.0f;
   const float d = std::abs(v.place.y - kMouthY) / (v.mouth_side > 0.0f ? 1.15f : 1.25f);
   const float x = std::abs(v.place.x) / kMouthCornerX;
-  return SmoothStep(1.0f, 0.35f, d) * SmoothStep(1.35f, 1.0f, x) *
-         SmoothStep(4.0f, 6.0f, v.place.z);
+  return Smoothstep(1.0f, 0.35f, d) * Smoothstep(1.35f, 1.0f, x) *
+         Smoothstep(4.0f, 6.0f, v.place.z);
 }
 
 struct NamedField {
@@ -116,7 +105,7 @@ struct NamedField {
   float weight;
 };
 
-// The muscles that hold a vertex, those of the other lip and of the other lid left out.
+// The muscles that move a vertex, without those of the other lip and the other lid.
 std::vector<NamedField> MuscleFields(const HeadVertex& v) {
   std::vector<NamedField> fields;
   for (const Muscle& muscle : kMuscles) {
@@ -135,54 +124,54 @@ std::vector<NamedField> MuscleFields(const HeadVertex& v) {
   return fields;
 }
 
-// The rims of the lips: the middle hangs on orbicularis oris, the corner on risorius, and between
-// them one gives way to the other along a parabola, so that a smile is an arc and not a box.
-void WeighLips(const wrinkle::Skeleton& skeleton, const HeadVertex& v, float share,
-               Weights* weights) {
+// The middle of a lip follows orbicularis oris, the corner follows risorius. Between them the
+// weight changes along a parabola, so that a smile is an arc and not a box.
+void WeighLips(const HeadVertex& v, float share, Weights* weights) {
   const float x = v.place.x / kMouthCornerX;
   const float corner = std::pow(std::min(std::abs(x), 1.0f), 2.6f);
-  const float left = SmoothStep(-0.35f, 0.35f, x);
+  const float left = Smoothstep(-0.35f, 0.35f, x);
   const std::string oris =
       v.mouth_side < 0.0f ? "orbicularis_oris_lower" : "orbicularis_oris_upper";
-  weights->Add(skeleton, oris + "_l", share * (1.0f - corner) * left);
-  weights->Add(skeleton, oris + "_r", share * (1.0f - corner) * (1.0f - left));
-  weights->Add(skeleton, x > 0.0f ? "risorius_l" : "risorius_r", share * corner);
+  weights->Add(oris + "_l", share * (1.0f - corner) * left);
+  weights->Add(oris + "_r", share * (1.0f - corner) * (1.0f - left));
+  weights->Add(x > 0.0f ? "risorius_l" : "risorius_r", share * corner);
 }
 
-// Face and neck: lids first, then lips and muscles, then chest, neck and jaw of what is left.
-void WeighSkin(const wrinkle::Skeleton& skeleton, const HeadVertex& v, Weights* weights) {
+// Face and neck. Lids come first, then lips and muscles; chest, neck and jaw share the rest.
+void WeighSkin(const HeadVertex& v, Weights* weights) {
   float rest = 1.0f;
   const auto take = [&](const std::string& joint, float share) {
-    weights->Add(skeleton, joint, rest * share);
+    weights->Add(joint, rest * share);
     rest *= 1.0f - share;
   };
   const bool left = v.place.x >= 0.0f;
   take(left ? "orbicularis_oculi_upper_l" : "orbicularis_oculi_upper_r",
        UpperLid(v, left ? 1.0f : -1.0f));
-  const float hold = v.part == kMouthInside ? SmoothStep(5.5f, 8.5f, v.place.z) : 1.0f;
+  const float hold = v.part == kMouthInside ? Smoothstep(5.5f, 8.5f, v.place.z) : 1.0f;
   const float lips = hold * LipZone(v);
-  WeighLips(skeleton, v, rest * lips, weights);
+  WeighLips(v, rest * lips, weights);
   rest *= 1.0f - lips;
   const std::vector<NamedField> fields = MuscleFields(v);
   float sum = 0.0f;
   for (const NamedField& field : fields) sum += hold * field.weight;
   const float scale = rest * hold / std::max(sum, 1.0f);
-  for (const NamedField& field : fields) weights->Add(skeleton, field.joint, field.weight * scale);
+  for (const NamedField& field : fields) weights->Add(field.joint, field.weight * scale);
   rest *= std::max(0.0f, 1.0f - sum);
-  take("chest", SmoothStep(-15.5f, -20.0f, v.place.y));
+  take("chest", Smoothstep(-15.5f, -20.0f, v.place.y));
   take("neck", NeckShare(v.place));
   take("jaw", JawShare(v));
-  weights->Add(skeleton, "head", rest);
+  weights->Add("head", rest);
 }
 
-void SkinHeadVertex(const wrinkle::Skeleton& skeleton, const HeadVertex& v, Vertex* vertex) {
+void SkinHeadVertex(const wrinkle::Skeleton& skeleton, const HeadVertex& v,
+                    character::Vertex* vertex) {
   Weights weights(skeleton);
   switch (v.part) {
-    case kEyeball: weights.Add(skeleton, v.place.x >= 0.0f ? "eye_l" : "eye_r", 1.0f); break;
+    case kEyeball: weights.Add(v.place.x >= 0.0f ? "eye_l" : "eye_r", 1.0f); break;
     case kHairCap:
-    case kEar: weights.Add(skeleton, "head", 1.0f); break;
-    case kTeeth: weights.Add(skeleton, v.mouth_side < 0.0f ? "jaw" : "head", 1.0f); break;
-    default: WeighSkin(skeleton, v, &weights); break;
+    case kEar: weights.Add("head", 1.0f); break;
+    case kTeeth: weights.Add(v.mouth_side < 0.0f ? "jaw" : "head", 1.0f); break;
+    default: WeighSkin(v, &weights); break;
   }
   weights.Store(vertex);
 }
@@ -195,4 +184,4 @@ void SkinHead(const wrinkle::Skeleton& skeleton, HeadMesh* head) {
   }
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

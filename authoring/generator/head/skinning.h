@@ -5,10 +5,11 @@
 #include "character/character.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
-// Skin weights of the head: the skull and the jaw, the neck below, and over them a soft field about
-// every muscle; lips and lids are told apart by `info`. At most four a vertex, summing to 1.
+// Sets the skin weights of the head: skull and jaw, the neck below, and a soft influence around
+// every muscle. `HeadVertex` separates the lips and the lids. At most four joints per vertex; the
+// weights sum to 1.
 void SkinHead(const wrinkle::Skeleton& skeleton, HeadMesh* head);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

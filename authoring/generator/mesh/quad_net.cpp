@@ -9,13 +9,13 @@
 
 #include "authoring/generator/mesh/mesh_tools.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
 using glm::vec3;
 
-// Mean distance between the points of columns (or rows) `i` and `i + 1`.
+// The mean distance between the points of columns (or rows) `i` and `i + 1`.
 float MeanStep(const PointGrid& grid, const QuadNet& net, bool along_rows, int i) {
   float sum = 0.0f;
   int count = 0;
@@ -29,28 +29,7 @@ float MeanStep(const PointGrid& grid, const QuadNet& net, bool along_rows, int i
   return count > 0 ? sum / static_cast<float>(count) : 0.0f;
 }
 
-Influences Strongest(const std::map<int, float>& shares) {
-  std::vector<std::pair<float, int>> order;
-  for (const auto& [joint, share] : shares) order.emplace_back(-share, joint);
-  std::sort(order.begin(), order.end());
-  order.resize(std::min<std::size_t>(order.size(), 4));
-  float sum = 0.0f;
-  for (const auto& entry : order) sum -= entry.first;
-  Influences skin;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    skin.joints[k] = static_cast<std::uint16_t>(order[k].second);
-    skin.weights[k] = -order[k].first / sum;
-  }
-  return skin;
-}
-
-void AddShares(const Influences& skin, float share, std::map<int, float>* shares) {
-  for (int k = 0; k < 4; ++k) {
-    if (skin.weights[k] > 0.0f) (*shares)[skin.joints[k]] += share * skin.weights[k];
-  }
-}
-
-// Makes the middles of edges and quads, each once.
+// Creates the midpoints of edges and quads, each once.
 class Divider {
  public:
   Divider(const Solid& solid, QuadNet* net) : solid_(solid), net_(net) {}
@@ -76,14 +55,14 @@ class Divider {
     const auto [found, is_new] = points_.emplace(points, static_cast<int>(net_->points.size()));
     if (!is_new) return found->second;
     QuadNet::Point middle;
-    std::map<int, float> shares;
+    InfluenceSum sum;
     const float share = 1.0f / static_cast<float>(points.size());
     for (const int i : points) {
       middle.place += net_->points[i].place * share;
-      AddShares(net_->points[i].skin, share, &shares);
+      sum.Add(net_->points[i].skin, share);
     }
     middle.place = OnSurface(solid_, middle.place);
-    middle.skin = Strongest(shares);
+    middle.skin = sum.Strongest();
     net_->points.push_back(middle);
     return found->second;
   }
@@ -178,11 +157,11 @@ void SmoothInfluences(int rounds, QuadNet* net) {
   std::vector<Influences> next(net->points.size());
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < net->points.size(); ++i) {
-      std::map<int, float> shares;
-      AddShares(net->points[i].skin, 0.5f, &shares);
+      InfluenceSum sum;
+      sum.Add(net->points[i].skin, 0.5f);
       const float share = 0.5f / static_cast<float>(std::max<std::size_t>(neighbours[i].size(), 1));
-      for (const int n : neighbours[i]) AddShares(net->points[n].skin, share, &shares);
-      next[i] = Strongest(shares);
+      for (const int n : neighbours[i]) sum.Add(net->points[n].skin, share);
+      next[i] = sum.Strongest();
     }
     for (std::size_t i = 0; i < net->points.size(); ++i) net->points[i].skin = next[i];
   }
@@ -202,15 +181,14 @@ void Join(const QuadNet& from, QuadNet* to) {
   }
 }
 
-void AppendNet(const QuadNet& net, Mesh* mesh) {
+void AppendNet(const QuadNet& net, character::Mesh* mesh) {
   const auto first = static_cast<std::uint32_t>(mesh->vertices.size());
   for (const QuadNet::Corner& corner : net.corners) {
     const QuadNet::Point& point = net.points[corner.point];
-    Vertex vertex;
+    character::Vertex vertex;
     vertex.position = point.place;
     vertex.uv = corner.uv;
-    std::copy(std::begin(point.skin.joints), std::end(point.skin.joints), vertex.joints);
-    std::copy(std::begin(point.skin.weights), std::end(point.skin.weights), vertex.skin_weights);
+    point.skin.CopyTo(&vertex);
     mesh->vertices.push_back(vertex);
   }
   for (const std::array<int, 4>& quad : net.quads) {
@@ -218,4 +196,4 @@ void AppendNet(const QuadNet& net, Mesh* mesh) {
   }
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

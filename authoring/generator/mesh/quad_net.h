@@ -9,18 +9,14 @@
 #include <glm/vec3.hpp>
 
 #include "authoring/generator/mesh/solid.h"
+#include "authoring/skinning/influences.h"
 #include "character/character.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
-// Four joints and their shares, as a Vertex has them.
-struct Influences {
-  std::uint16_t joints[4] = {0, 0, 0, 0};
-  float weights[4] = {1.0f, 0.0f, 0.0f, 0.0f};
-};
-
-// A surface of quads under construction. Points are places on the surface, each once; panels, the
-// pieces of cloth that are unrolled one by one, meet at points and have corners of their own there.
+// A surface of quads under construction. Each point is a position on the surface. Panels are pieces
+// of cloth that are flattened one by one; they meet at points, and each panel has corners of its
+// own there.
 struct QuadNet {
   struct Point {
     glm::vec3 place{0.0f};
@@ -30,11 +26,11 @@ struct QuadNet {
   struct Corner {
     int point = 0;
     int panel = 0;
-    glm::vec2 uv{0.0f};  // metres in the panel, v down, until the panels are placed in an atlas
+    glm::vec2 uv{0.0f};  // metres in the panel, v down; atlas coordinates after PackPanels()
   };
   std::vector<Point> points;
   std::vector<Corner> corners;
-  std::vector<std::array<int, 4>> quads;  // of corners, counter-clockwise from outside
+  std::vector<std::array<int, 4>> quads;  // indices of corners, counter-clockwise from outside
 
   int AddPoint(const glm::vec3& place, float slack = 0.0f);
 };
@@ -51,28 +47,30 @@ struct PointGrid {
   [[nodiscard]] int At(int row, int column) const { return points[row * columns + column]; }
 };
 
-// Lays quads over the cells of a grid as part of `panel`; `skip` (may be empty) leaves cells out by
-// their low row and column. To a viewer outside rows run upward and columns to the right, or to the
-// left where `mirrored`. The corners' first uv is their place in the grid by mean lengths of edges.
+// Adds quads for the cells of a grid to `panel`. `skip(row, column)` (optional) leaves out the cell
+// with that low corner. Seen from outside, rows run upward and columns to the right, or to the left
+// if `mirrored`. The first UVs of the corners are their grid positions, scaled by mean edge
+// lengths.
 void AddPatch(const PointGrid& grid, int panel, bool mirrored,
               const std::function<bool(int, int)>& skip, QuadNet* net);
 
-// Evens out the points that have slack over their neighbours, on the surface of `solid`.
+// Moves points with slack toward the mean of their neighbours, on the surface of `solid`.
 void Relax(const Solid& solid, int rounds, QuadNet* net);
 
-// Four quads of each, the new points on the surface of `solid`; influences and uv are means.
+// Splits each quad into four. New points lie on the surface of `solid`; their influences and UVs
+// are means.
 void Subdivide(const Solid& solid, QuadNet* net);
 
-// Means of the influences of neighbours, `rounds` times; the strongest four are kept.
+// Averages the influences with those of the neighbours, `rounds` times. Keeps the strongest four.
 void SmoothInfluences(int rounds, QuadNet* net);
 
-// Appends a net to another one; they share nothing.
+// Appends a net to another one, without shared points.
 void Join(const QuadNet& from, QuadNet* to);
 
-// Appends the net to a mesh, a vertex for each corner; normals and tangents are not made.
-void AppendNet(const QuadNet& net, Mesh* mesh);
+// Appends the net to a mesh with one vertex per corner. Does not set normals and tangents.
+void AppendNet(const QuadNet& net, character::Mesh* mesh);
 
-// The neighbours of every point along the edges of quads, each once, ascending.
+// The neighbours of each point along the edges of quads, without repetition, in ascending order.
 [[nodiscard]] std::vector<std::vector<int>> Neighbours(const QuadNet& net);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

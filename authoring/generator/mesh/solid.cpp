@@ -7,12 +7,12 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 
-// Catmull-Rom through b and c at unequal steps: slopes are divided differences.
+// Catmull-Rom between b and c for uneven steps. Slopes are divided differences.
 float Cubic(const float (&at)[4], float a, float b, float c, float d, float x) {
   const float span = at[2] - at[1];
   const float slope_b = (c - a) / (at[2] - at[0]) * span;
@@ -105,4 +105,4 @@ vec3 CastOut(const Solid& solid, const vec3& from, const vec3& direction, float 
   return from + direction * outside;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

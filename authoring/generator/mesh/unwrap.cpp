@@ -11,13 +11,13 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
 using glm::vec3;
 
-// A triangle in its own plane, and the cotangent of the angle opposite each edge (k, k + 1).
+// A triangle in its own plane, with the cotangent of the angle opposite each edge (k, k + 1).
 struct FlatTriangle {
   std::array<int, 3> corner;
   std::array<vec2, 3> place;
@@ -36,7 +36,7 @@ FlatTriangle Flatten(const QuadNet& net, const std::array<int, 3>& corner) {
   const vec3 other = p[2] - p[0];
   const float along = glm::dot(other, side) / length;
   const float across = glm::length(glm::cross(side, other)) / length;
-  // Texture coordinates grow downward: counter-clockwise triangles turn over.
+  // Texture coordinates grow downward, so counter-clockwise triangles are flipped.
   t.place = {vec2(0.0f), vec2(length, 0.0f), vec2(along, -across)};
   for (int k = 0; k < 3; ++k) {
     const vec2 a = t.place[k] - t.place[(k + 2) % 3];
@@ -47,8 +47,8 @@ FlatTriangle Flatten(const QuadNet& net, const std::array<int, 3>& corner) {
   return t;
 }
 
-// The least-squares fit to rotated triangles: a Laplacian, solved by conjugate gradients from where
-// the corners are.
+// The least-squares fit to rotated triangles: a Laplacian, solved by conjugate gradients from the
+// current corners.
 class Fit {
  public:
   Fit(const std::vector<FlatTriangle>& triangles, std::vector<QuadNet::Corner>* corners)
@@ -103,7 +103,7 @@ class Fit {
     return out;
   }
 
-  // Towards every triangle at its best rotation.
+  // The residual for every triangle at its best rotation.
   std::vector<vec2> Residual(const std::vector<vec2>& x) const {
     std::vector<vec2> out(x.size(), vec2(0.0f));
     for (const FlatTriangle& t : triangles_) {
@@ -138,7 +138,7 @@ struct Box {
   [[nodiscard]] vec2 size() const { return high - low; }
 };
 
-// Rows of boxes, the tallest first; nothing when they do not fit at this scale.
+// Places boxes in rows, the tallest first. Returns nothing if they do not fit at this scale.
 std::optional<std::vector<vec2>> PlaceInRows(const std::vector<Box>& boxes,
                                              const std::vector<int>& order, float scale,
                                              float margin) {
@@ -201,4 +201,4 @@ std::vector<PanelPlace> PackPanels(float margin, QuadNet* net) {
   return panels;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -7,22 +7,23 @@
 
 #include "authoring/generator/mesh/quad_net.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
-// Lays every panel flat with as little stretch and shear as it allows, in metres, starting from the
-// uv that the corners have: as rigid as possible, by turns a rotation for each triangle and a
-// least-squares fit to all (Liu and others, "A local/global approach to mesh parameterization",
-// 2008). The mesh of a panel must be a disk: cut open along its seams.
+// Flattens every panel with as little stretch and shear as possible, in metres, starting from the
+// corners' UVs. The method is as-rigid-as-possible: it alternates a rotation per triangle with a
+// least-squares fit (Liu et al., "A local/global approach to mesh parameterization", 2008).
+// Precondition: the mesh of each panel is a disk.
 void FlattenPanels(QuadNet* net);
 
-// Where a panel lies in the atlas: atlas uv = place + scale * (panel uv in metres).
+// The place of a panel in the atlas: atlas uv = place + scale * (panel uv in metres).
 struct PanelPlace {
   glm::vec2 place{0.0f};
-  float scale = 1.0f;  // alike for all
+  float scale = 1.0f;  // the same for all panels
 };
 
-// Places the flat panels in the unit square, none overlapping, as large as rows of their bounding
-// boxes allow, `margin` apart and from the edges (fractions of the square). Sets the corners' uv.
+// Places the flat panels in the unit square without overlap, as large as rows of their bounding
+// boxes allow. Panels keep a distance of `margin` from each other and from the edges (fraction of
+// the square). Sets the corners' UVs.
 [[nodiscard]] std::vector<PanelPlace> PackPanels(float margin, QuadNet* net);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -3,30 +3,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include <glm/common.hpp>
 
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "base/scalar.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kDegrees = kPi / 180.0f;
-
-// From the ankle to the ball and to the heel of a foot that stands, metres.
+// From the ankle of a standing foot to the ball and to the heel, metres.
 constexpr vec3 kBall{0.0f, -0.063f, 0.135f};
 constexpr vec3 kHeel{0.0f, -0.085f, -0.052f};
 constexpr float kAnkleHeight = 0.085f;
 
-constexpr float kCycle = 10.0f / 9.0f;  // seconds: nine of them in a recording
-constexpr float kStride = 1.15f;        // metres a cycle
-constexpr float kStance = 0.61f;        // share of the cycle a foot stands
-constexpr float kUnder = 0.27f;         // where in the cycle the hips pass over it
+constexpr float kCycle = 10.0f / 9.0f;  // seconds; nine cycles in a recording
+constexpr float kStride = 1.15f;        // metres per cycle
+constexpr float kStance = 0.61f;        // fraction of the cycle in which a foot stands
+constexpr float kUnder = 0.27f;  // fraction of the cycle at which the hips pass over the foot
 
 vec3 Pitched(const vec3& v, float degrees) {
   const float c = std::cos(degrees * kDegrees), s = std::sin(degrees * kDegrees);
@@ -36,7 +33,7 @@ vec3 Pitched(const vec3& v, float degrees) {
 struct FootPlace {
   float z;
   float y;
-  float heel_up;  // degrees; negative: the heel touches, toes up
+  float heel_up;  // degrees; negative: the heel touches and the toes are up
 };
 
 // The ankle of a foot that pivots on the floor about its ball or its heel.
@@ -46,28 +43,29 @@ FootPlace Pivoted(float planted, float heel_up) {
   return {planted + ankle.z, kAnkleHeight + ankle.y, heel_up};
 }
 
-// `cycle` counts from when a foot strikes; its whole part says which step.
+// The foot at `cycle`, counted from a strike of the foot. The integer part is the number of the
+// step.
 FootPlace WalkingFoot(float cycle, float offset) {
   const float step = std::floor(cycle);
   const float f = cycle - step;
   const float planted = kStride * (step + kUnder - offset);
   constexpr float kStrike = -17.0f, kOff = 48.0f;
   const auto standing = [&](float at) {
-    const float strike = kStrike * SmoothStep(0.09f, 0.0f, at);
-    return strike + kOff * std::pow(SmoothStep(0.36f, kStance + 0.09f, at), 1.2f);
+    const float strike = kStrike * Smoothstep(0.09f, 0.0f, at);
+    return strike + kOff * std::pow(Smoothstep(0.36f, kStance + 0.09f, at), 1.2f);
   };
   if (f < kStance) return Pivoted(planted, standing(f));
   const float t = (f - kStance) / (1.0f - kStance);
   const FootPlace from = Pivoted(planted, standing(kStance));
   const FootPlace to = Pivoted(planted + kStride, kStrike);
-  // Leaves the floor with its own speed and arrives with little.
-  const float ease = SmoothStep(0.0f, 1.0f, std::pow(t, 0.9f));
+  // The foot leaves the floor at its own speed and arrives slowly.
+  const float ease = Smoothstep(0.0f, 1.0f, std::pow(t, 0.9f));
   const float lift = 0.055f * std::sin(kPi * t) * (1.0f - 0.5f * t);
-  return {glm::mix(from.z, to.z, ease), glm::mix(from.y, to.y, SmoothStep(0.0f, 0.8f, t)) + lift,
-          glm::mix(from.heel_up, to.heel_up, SmoothStep(0.0f, 0.85f, t))};
+  return {glm::mix(from.z, to.z, ease), glm::mix(from.y, to.y, Smoothstep(0.0f, 0.8f, t)) + lift,
+          glm::mix(from.heel_up, to.heel_up, Smoothstep(0.0f, 0.85f, t))};
 }
 
-// A value over time: eased between its keys, constant beyond them.
+// A value at a time. Values are eased between keys and constant beyond them.
 struct Key {
   float time;
   float value;
@@ -77,7 +75,7 @@ float Eased(std::span<const Key> keys, float t) {
   if (t <= keys.front().time) return keys.front().value;
   for (std::size_t i = 1; i < keys.size(); ++i) {
     if (t > keys[i].time) continue;
-    const float ease = SmoothStep(keys[i - 1].time, keys[i].time, t);
+    const float ease = Smoothstep(keys[i - 1].time, keys[i].time, t);
     return glm::mix(keys[i - 1].value, keys[i].value, ease);
   }
   return keys.back().value;
@@ -101,9 +99,10 @@ void Stand(float t, FramePose* pose) {
 }
 
 void Walk(float t, FramePose* pose) {
-  const float cycle = t / kCycle + 0.13f;  // begins in mid-step
+  const float cycle = t / kCycle + 0.13f;  // starts in mid-step
   const float phase = 2.0f * kPi * cycle;
-  // Lowest while both feet stand, highest over either; from side to side over the one that stands.
+  // The hips are lowest while both feet stand and highest over either foot. They sway toward the
+  // foot that stands.
   const float strike = std::cos(2.0f * (phase - 0.06f * 2.0f * kPi));
   pose->Move("hips", {0.020f * std::sin(phase), -0.034f - 0.013f * strike, kStride * cycle});
   pose->Turn("hips", 2.5f, -5.0f * std::cos(phase), 2.0f * std::sin(phase));
@@ -115,7 +114,7 @@ void Walk(float t, FramePose* pose) {
     const FootPlace foot = WalkingFoot(cycle + offset, offset);
     pose->PlantFoot(side, {side * 0.088f, foot.y, foot.z}, foot.heel_up, 6.0f);
     pose->Turn(side > 0.0f ? "toes_l" : "toes_r", -0.85f * std::max(foot.heel_up, 0.0f), 0, 0);
-    // Arms go with the other leg, elbows bend as they come forward.
+    // Each arm moves with the opposite leg. Elbows bend as they come forward.
     const float swing = std::cos(phase + 2.0f * kPi * offset - 0.15f);
     pose->Turn(side > 0.0f ? "upper_arm_l" : "upper_arm_r", 0, side * (22.0f * swing - 2.0f), 0);
     pose->Turn(side > 0.0f ? "lower_arm_l" : "lower_arm_r", 0, side * (-16.0f + 15.0f * swing), 0);
@@ -140,7 +139,7 @@ void SquatAndReach(float t, FramePose* pose) {
   for (const float side : {1.0f, -1.0f}) {
     pose->PlantFoot(side, {side * 0.118f, kAnkleHeight, -0.02f}, 0.0f, 12.0f);
     const std::string end = side > 0.0f ? "_l" : "_r";
-    // The arm hangs along its own X: forward is a turn about its Y, outward one about its Z.
+    // The arm hangs along its own X: rotating about Y moves it forward, about Z outward.
     pose->Turn("shoulder" + end, 0, 0, side * 16.0f * up);
     pose->Turn("upper_arm" + end, 0, -side * (34.0f * reach + 20.0f * up), side * 112.0f * up);
     pose->Turn("lower_arm" + end, 0, -side * (12.0f * reach + 26.0f * up), 0);
@@ -148,4 +147,4 @@ void SquatAndReach(float t, FramePose* pose) {
   }
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -3,18 +3,18 @@
 
 #include "authoring/generator/recordings/frame_pose.h"
 
-// What the body does in recordings, by the time in seconds.
-namespace furrow::character::generator {
+// Motions of the body in recordings. `t`: seconds.
+namespace furrow::authoring {
 
-// Arms hang, fingers are relaxed; the chest breathes; the head drifts by a few degrees.
+// Standing: hanging arms, relaxed fingers, breathing, and a head that drifts by a few degrees.
 void Stand(float t, FramePose* pose);
 
-// Over Stand(): 1.04 m a second along +Z, a cycle of two steps every 10/9 s. The foot that carries
-// stays where it is on the floor; the pose is the same every cycle.
+// Adds a walk to Stand(): 1.04 m/s along +Z, two steps every 10/9 s. The standing foot does not
+// move on the floor. Every cycle is the same.
 void Walk(float t, FramePose* pose);
 
-// Over Stand(), 12 s: down on the haunches, both hands reach for something on the floor and close
-// round it, up again and overhead with it; then the trunk leans and turns to either side.
+// Adds 12 s of motion to Stand(): a squat in which both hands reach for something on the floor and
+// close around it, then a rise with the hands overhead, then leaning and turning to both sides.
 void SquatAndReach(float t, FramePose* pose);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -3,20 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <glm/gtx/quaternion.hpp>
 
+#include "base/scalar.h"
 #include "base/status.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::quat;
 using glm::vec3;
-
-constexpr float kDegrees = std::numbers::pi_v<float> / 180.0f;
 
 quat About(float degrees, const vec3& axis) { return glm::angleAxis(degrees * kDegrees, axis); }
 
@@ -100,7 +98,7 @@ void FramePose::PlantFoot(float side, const vec3& ankle, float heel_up, float ou
   const vec3 want = glm::inverse(hips) * (ankle - PlaceOf(Sided("upper_leg", side)));
   const vec3 upper = frame_[shin].translation;
   const vec3 lower = frame_[foot].translation;
-  // The more a knee bends the nearer the ankle comes.
+  // Bending the knee brings the ankle closer to the hip, so bisection finds the angle.
   float straight = 0.0f, bent = 150.0f;
   for (int i = 0; i < 24; ++i) {
     const float middle = 0.5f * (straight + bent);
@@ -125,16 +123,18 @@ void FramePose::CloseHand(float side, float fist) {
       {"proximal", 14.0f, 82.0f}, {"intermediate", 20.0f, 98.0f}, {"distal", 10.0f, 60.0f}};
   constexpr const char* kFingers[] = {"index", "middle", "ring", "little"};
   for (int i = 0; i < 4; ++i) {
-    const float more = 1.0f + 0.14f * static_cast<float>(i);  // relaxed fingers: a fan
+    const float more =
+        1.0f +
+        0.14f * static_cast<float>(i);  // relaxed fingers curl more from index to little finger
     for (const Bend& bend : kBends) {
       const float angle = bend.relaxed * more * (1.0f - fist) + bend.closed * fist;
       Turn(Sided(std::string(kFingers[i]) + "_" + bend.joint, side), 0, 0, -side * angle);
     }
   }
-  // The thumb lies across the fingers.
+  // The thumb closes across the fingers.
   Turn(Sided("thumb_metacarpal", side), 25.0f * fist, side * (8.0f + 18.0f * fist), 0);
   Turn(Sided("thumb_proximal", side), 0, side * (6.0f + 34.0f * fist), 0);
   Turn(Sided("thumb_distal", side), 0, side * (10.0f + 45.0f * fist), 0);
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

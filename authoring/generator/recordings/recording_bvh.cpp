@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "authoring/generator/recordings/recording_bvh.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -8,26 +10,25 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 
-#include "authoring/generator/recordings/recordings.h"
-
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
-constexpr float kDegrees = 57.29577951308232f;
+constexpr float kDegreesPerRadian = 57.29577951308232f;
 
 std::string Numbers(const glm::vec3& v) {
   char text[96];
-  // No "-0.000000": equal poses must give equal text.
+  // Avoids "-0.000000", so that equal poses give equal text.
   const auto tidy = [](float x) { return std::abs(x) < 5e-7f ? 0.0 : static_cast<double>(x); };
   std::snprintf(text, sizeof text, "%.6f %.6f %.6f", tidy(v.x), tidy(v.y), tidy(v.z));
   return text;
 }
 
-// Angles of R = Rz * Ry * Rx, degrees, as (z, y, x).
+// The angles of R = Rz * Ry * Rx as (z, y, x), degrees.
 glm::vec3 ZyxDegrees(const glm::quat& rotation) {
   const glm::mat3 m = glm::mat3_cast(rotation);  // m[column][row]
   const float y = std::asin(std::clamp(-m[0][2], -1.0f, 1.0f));
-  return glm::vec3(std::atan2(m[0][1], m[0][0]), y, std::atan2(m[1][2], m[2][2])) * kDegrees;
+  return glm::vec3(std::atan2(m[0][1], m[0][0]), y, std::atan2(m[1][2], m[2][2])) *
+         kDegreesPerRadian;
 }
 
 bool Translates(const Recording& recording, const wrinkle::Skeleton& skeleton, int joint) {
@@ -37,7 +38,7 @@ bool Translates(const Recording& recording, const wrinkle::Skeleton& skeleton, i
                      [&](const auto& frame) { return frame[joint].translation != rest; });
 }
 
-// Writes joints depth first, as BVH wants its channels, and remembers that order.
+// Writes joints depth first, which is the order of BVH channels, and records that order.
 class Hierarchy {
  public:
   Hierarchy(const Recording& recording, const wrinkle::Skeleton& skeleton)
@@ -102,4 +103,4 @@ std::string RecordingToBvh(const Recording& recording, const wrinkle::Skeleton& 
   return text;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -2,8 +2,9 @@
 #include "authoring/generator/recordings/recording_scripts.h"
 
 #include "authoring/generator/mesh/mesh_tools.h"
+#include "authoring/paint/noise.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 Script Happiness() {
@@ -94,9 +95,9 @@ Script Performance() {
 void Speak(float start, float end, int seed, std::vector<Action>* actions) {
   int i = 0;
   for (float t = start; t < end - 0.2f; ++i) {
-    const float beat = 0.15f + 0.11f * Hash(seed, i, 1);
-    const float loud = 0.55f + 0.45f * Hash(seed, i, 2);
-    const float kind = Hash(seed, i, 3);
+    const float beat = 0.15f + 0.11f * RandomAt(seed, i, 1);
+    const float loud = 0.55f + 0.45f * RandomAt(seed, i, 2);
+    const float kind = RandomAt(seed, i, 3);
     const auto mouth = [&](const char* pose, float peak) {
       actions->push_back({pose, t, 0.12f, t + 0.6f * beat, 0.15f, peak * loud});
     };
@@ -172,4 +173,4 @@ const std::vector<Script>& Scripts() {
   return scripts;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
 // A reference pose that comes, stays and goes: seconds; `pose` without side means both sides, the
 // right one a little later and a little less, as faces do.
@@ -44,4 +44,4 @@ struct Script {
 // 9 + 10 + 15 + 17), a talk, a performance of all, a walk, a squat. Made once.
 [[nodiscard]] const std::vector<Script>& Scripts();
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

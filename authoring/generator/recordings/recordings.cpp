@@ -8,18 +8,19 @@
 #include "authoring/generator/recordings/body_moves.h"
 #include "authoring/generator/recordings/frame_pose.h"
 #include "authoring/generator/recordings/recording_scripts.h"
+#include "base/scalar.h"
 #include "base/status.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 // How far something that comes, stays and goes is there at a time.
 float Presence(float start, float onset, float end, float offset, float t) {
-  return SmoothStep(start, start + onset, t) * SmoothStep(end + offset, end, t);
+  return Smoothstep(start, start + onset, t) * Smoothstep(end + offset, end, t);
 }
 
 float Weight(const Action& action, float t) {
-  // Never quite steady at the peak.
+  // The expression is never quite steady at its peak.
   const float breath = 1.0f - 0.06f * (0.5f - 0.5f * std::cos(1.7f * (t - action.start)));
   return action.peak * breath * Presence(action.start, action.onset, action.end, action.offset, t);
 }
@@ -27,10 +28,10 @@ float Weight(const Action& action, float t) {
 // Down in 0.08 s, up in 0.16 s.
 float BlinkWeight(float since) {
   if (since < 0.0f) return 0.0f;
-  return SmoothStep(0.0f, 0.08f, since) * SmoothStep(0.27f, 0.11f, since);
+  return Smoothstep(0.0f, 0.08f, since) * Smoothstep(0.27f, 0.11f, since);
 }
 
-// Reference poses by name, added up: actions of one pose may overlap, the strongest counts.
+// A reference pose with its weights. Where actions of one pose overlap, the larger weight counts.
 struct PoseWeight {
   std::string pose;
   float left;
@@ -99,4 +100,4 @@ Result<Recording> MakeRecording(std::string_view name, const wrinkle::Rig& rig,
   return recording;
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

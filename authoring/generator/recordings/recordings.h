@@ -9,12 +9,12 @@
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
-// Frames of a performance on one skeleton, 30 a second.
+// The frames of a performance on one skeleton, 30 per second.
 struct Recording {
   std::string name;
-  std::vector<std::vector<wrinkle::Transform>> frames;  // local, num_joints each
+  std::vector<std::vector<wrinkle::Transform>> frames;  // local transforms, num_joints per frame
 };
 
 inline constexpr int kFramesPerSecond = 30;
@@ -22,15 +22,10 @@ inline constexpr int kFramesPerSecond = 30;
 // "happiness", "anger", "sadness", "disgust", "performance", "conversation", "walk", "squat".
 [[nodiscard]] std::vector<std::string> RecordingNames();
 
-// Plays a recording's script: weights over time of the rig's reference poses (FACS' action units),
-// eased with onsets of 0.3 to 0.6 s, with blinks every 3 to 5 s and a head that never quite rests.
-// Error: kNotFound for a name, or a reference pose or joint that is not there.
+// Plays a script: the weights of the rig's reference poses (FACS action units) over time, with
+// onsets of 0.3 to 0.6 s, blinks every 3 to 5 s and slight motion of the head. Error: kNotFound (an
+// unknown name; a missing reference pose or joint).
 [[nodiscard]] Result<Recording> MakeRecording(std::string_view name, const wrinkle::Rig& rig,
                                               const wrinkle::Skeleton& skeleton);
 
-// As BVH text, metres: six channels on the root and on joints that translate, three on the others;
-// rotations Z Y X. The skeleton's rest rotations must be the identity.
-[[nodiscard]] std::string RecordingToBvh(const Recording& recording,
-                                         const wrinkle::Skeleton& skeleton);
-
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

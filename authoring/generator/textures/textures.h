@@ -4,28 +4,28 @@
 #include "authoring/generator/head/face_parameters.h"
 #include "character/character.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
-// Everything here is painted in model space on the surface that a texel shows, so no seam of the
-// unwrapping can be seen. Colours are sRGB.
+// All pictures are painted in model space at the surface point of each texel, so UV seams are
+// invisible. Colours are sRGB.
 
-// Iris, pupil, limbus and veined white, both eyes side by side (2 size x size).
-[[nodiscard]] Picture PaintEyes(int size);
-// How much of a lash's strip is hair, in alpha: so little that its mip levels end below
-// paint::kStrandCutoff. Where a lash is thinner than about a pixel it is gone, not a row of dots;
-// the dark edge of the lid (PaintSkinColour) stays.
-[[nodiscard]] Picture PaintLash();
-// Strands with holes between them (paint::kStrandCutoff), the cap below them, and the slopes of the
-// strands.
+// Both eyes side by side (2 size x size): iris, pupil, limbus, veined white.
+[[nodiscard]] character::Picture PaintEyes(int size);
+// The alpha of a lash's strip. Only a small part is opaque, so that small mip levels fall below
+// kStrandCutoff: a lash thinner than about a pixel disappears instead of becoming a row of dots.
+// The dark edge of the lid (PaintSkinColour) remains.
+[[nodiscard]] character::Picture PaintLash();
+// Strands with gaps (kStrandCutoff) above, the cap below, and the slopes of the strands.
 struct HairPictures {
-  Picture colour;
-  Picture normals;
+  character::Picture colour;
+  character::Picture normals;
 };
-[[nodiscard]] HairPictures PaintHair(const Mesh& hair, const FaceParameters& face, int size);
+[[nodiscard]] HairPictures PaintHair(const character::Mesh& hair, const FaceParameters& face,
+                                     int size);
 
-// The eight facial regions in two RGBA textures: brow_l, brow_r, glabella, nose; eye_l, eye_r,
-// mouth_l, mouth_r. Soft, and nothing on ears and hands.
-[[nodiscard]] Picture PaintMasksA(const Mesh& skin, int size);
-[[nodiscard]] Picture PaintMasksB(const Mesh& skin, int size);
+// The masks of the eight facial regions: brow_l, brow_r, glabella, nose in the first picture,
+// eye_l, eye_r, mouth_l, mouth_r in the second. They are soft, and empty on ears and hands.
+[[nodiscard]] character::Picture PaintMasksA(const character::Mesh& skin, int size);
+[[nodiscard]] character::Picture PaintMasksB(const character::Mesh& skin, int size);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

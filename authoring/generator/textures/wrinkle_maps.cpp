@@ -6,18 +6,19 @@
 #include <utility>
 #include <vector>
 
+#include "authoring/bake/bake.h"
 #include "authoring/bake/bake_pictures.h"
 #include "authoring/bake/bake_poses.h"
 #include "authoring/paint/strokes.h"
 #include "base/status.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
-constexpr int kNormalBits = 10;     // a tenth of a degree: folds are smooth
-constexpr float kFineLines = 0.8f;  // of a skin that folds twice as deep as a young man's
+constexpr int kWrinkleNormalBits = 10;  // a tenth of a degree is enough, since folds are smooth
+constexpr float kFineLines = 0.8f;      // for skin that folds twice as deep as at 30 years
 
-Status AddPictures(const bake::BakedMap& baked, Character* character) {
+Status AddPictures(const BakedMap& baked, character::Character* character) {
   const auto& maps = character->rig.wrinkle_maps;
   const auto map = std::find_if(maps.begin(), maps.end(),
                                 [&](const auto& entry) { return entry.name == baked.map; });
@@ -25,10 +26,10 @@ Status AddPictures(const bake::BakedMap& baked, Character* character) {
     return Status(StatusCode::kNotFound, "no normal map is named for '" + baked.map + "'",
                   character->rig.name, "give the wrinkle map a 'normal' in the rig");
   }
-  Result<std::vector<Picture>> pictures = bake::PicturesOf(baked, *map);
+  Result<std::vector<character::Picture>> pictures = WrinkleMapPictures(baked, *map);
   FURROW_RETURN_IF_ERROR(pictures);
-  for (Picture& picture : pictures.value()) {
-    if (picture.name == map->normal) paint::RoundNormals(kNormalBits, &picture);
+  for (character::Picture& picture : pictures.value()) {
+    if (picture.name == map->normal) RoundNormals(kWrinkleNormalBits, &picture);
     character->rig_pictures.emplace_back(picture.name,
                                          static_cast<int>(character->pictures.size()));
     character->pictures.push_back(std::move(picture));
@@ -38,25 +39,25 @@ Status AddPictures(const bake::BakedMap& baked, Character* character) {
 
 }  // namespace
 
-bake::BakeOptions WrinkleMapOptions(int size, float depth) {
-  bake::BakeOptions options;
+BakeOptions WrinkleMapOptions(int size, float depth) {
+  BakeOptions options;
   options.size = size;
   options.skin.depth = depth;
   options.skin.fine_lines = std::clamp(kFineLines * (depth - 1.0f), 0.0f, 1.0f);
   return options;
 }
 
-Status AddWrinkleMaps(std::span<const bake::BakeStroke> strokes, int size, float depth,
-                      Character* character) {
-  Result<bake::PosesToBake> poses = bake::PosesOf(*character);
+Status AddWrinkleMaps(std::span<const BakeStroke> strokes, int size, float depth,
+                      character::Character* character) {
+  Result<CollectedPoses> poses = CollectBakePoses(*character);
   FURROW_RETURN_IF_ERROR(poses);
-  Result<bake::BakedMaps> maps =
-      bake::Bake(*character, poses.value().poses, strokes, WrinkleMapOptions(size, depth));
+  Result<BakedMaps> maps =
+      Bake(*character, poses.value().poses, strokes, WrinkleMapOptions(size, depth));
   FURROW_RETURN_IF_ERROR(maps);
-  for (const bake::BakedMap& map : maps.value().maps) {
+  for (const BakedMap& map : maps.value().maps) {
     FURROW_RETURN_IF_ERROR(AddPictures(map, character));
   }
   return Status();
 }
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -3,22 +3,22 @@
 
 #include <span>
 
-#include "authoring/bake/bake.h"
+#include "authoring/bake/request/bake_request.h"
 #include "base/status.h"
 #include "character/character.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 
-// How the default character's skin and clothes fold; what `furrow bake` does by itself. Skin that
-// folds deeper than at 30 (`depth` above 1) has fine lines too.
-[[nodiscard]] bake::BakeOptions WrinkleMapOptions(int size, float depth);
+// How the skin and clothes of the default character fold, with the defaults of `furrow bake`. Skin
+// that folds deeper than at 30 years (`depth` above 1) also has fine lines.
+[[nodiscard]] BakeOptions WrinkleMapOptions(int size, float depth);
 
-// Bakes the wrinkle maps of the character's rig from the strain of its own reference poses and from
-// `strokes` (rig/rigs/default.strokes.json), and adds to the character the normals, heights,
-// cavities and colours that its rig names. `depth` scales what is on skin (WrinkleDepth()).
-// Errors: those of bake::PosesOf(), bake::Bake() and bake::PicturesOf(); kNotFound where a map that
-// is baked has no `normal` in the rig.
-[[nodiscard]] Status AddWrinkleMaps(std::span<const bake::BakeStroke> strokes, int size,
-                                    float depth, Character* character);
+// Bakes the wrinkle maps of the character's rig from its reference poses and from `strokes`
+// (rig/rigs/default.strokes.json). Adds the normals, heights, cavities and colours that the rig
+// names. `depth` scales the folds of skin (WrinkleDepth()).
+// Errors: those of CollectBakePoses(), Bake() and WrinkleMapPictures(); kNotFound (a baked map
+// without `normal` in the rig).
+[[nodiscard]] Status AddWrinkleMaps(std::span<const BakeStroke> strokes, int size, float depth,
+                                    character::Character* character);
 
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

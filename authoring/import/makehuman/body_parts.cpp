@@ -12,11 +12,11 @@
 #include "authoring/paint/teeth.h"
 #include "character/mesh/tangents.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
-// Where the islands go: the face's left, all others in a strip on the right. The gap between keeps
-// dilation and mip levels apart.
+// The layout of the UV islands: the face on the left, all others in a strip on the right. The gap
+// keeps dilation and mip levels apart.
 constexpr float kFaceRight = 0.74f;
 constexpr float kRestLeft = 0.76f;
 constexpr float kMargin = 0.004f;
@@ -49,7 +49,7 @@ std::vector<Island> DescribeIslands(const BaseMesh& base, const wrinkle::Skeleto
   return islands;
 }
 
-// Fills in the moves of `source`: [0] the face's island, [1] all others together.
+// Sets the moves of `source`: [0] for the face's island, [1] for all others.
 void ArrangeIslands(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
                     std::span<const std::uint32_t> faces, MeshSource* source) {
   int num_islands = 0;
@@ -83,7 +83,8 @@ bool AllDeleted(const ObjMesh& obj, const ObjMesh::Face& face, const std::vector
   return true;
 }
 
-// The box of a group's vertices before `z`, and one of them. None: low above high.
+// The bounding box of a group's vertices in front of `z`, and one of the vertices. Empty: low >
+// high.
 struct Bounds {
   glm::vec3 low{std::numeric_limits<float>::max()};
   glm::vec3 high{std::numeric_limits<float>::lowest()};
@@ -107,7 +108,7 @@ Bounds BoundsOf(const BaseMesh& base, std::string_view group,
   return bounds;
 }
 
-// Unit vectors that complete `forward` to a right-handed frame: right (of the picture) and up.
+// Completes `forward` to a right-handed frame of unit vectors: right (of the picture) and up.
 void PictureAxes(const glm::vec3& forward, glm::vec3* right, glm::vec3* up) {
   const glm::vec3 above =
       std::abs(forward.y) < 0.9f ? glm::vec3(0.0f, 1.0f, 0.0f) : glm::vec3(0.0f, 0.0f, -1.0f);
@@ -126,8 +127,8 @@ std::vector<std::uint32_t> FacesOf(const ObjMesh& obj, std::string_view group) {
   return faces;
 }
 
-Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
-               const std::vector<bool>& deleted, int material, int* hidden_faces) {
+character::Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
+                          const std::vector<bool>& deleted, int material, int* hidden_faces) {
   const std::vector<std::uint32_t> faces = FacesOf(base.obj, "body");
   const std::vector<glm::vec3> normals = SmoothNormals(base.obj, base.positions, faces);
   MeshSource source;
@@ -144,7 +145,7 @@ Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
   return BuildMesh("skin", material, source);
 }
 
-Mesh BuildHelper(const BaseMesh& base, std::string_view group, int material) {
+character::Mesh BuildHelper(const BaseMesh& base, std::string_view group, int material) {
   MeshSource source;
   source.faces = FacesOf(base.obj, group);
   const std::vector<glm::vec3> normals = SmoothNormals(base.obj, base.positions, source.faces);
@@ -155,48 +156,45 @@ Mesh BuildHelper(const BaseMesh& base, std::string_view group, int material) {
   return BuildMesh(std::string(group), material, source);
 }
 
-Mesh BuildTeeth(const BaseMesh& base, std::string_view group, bool upper, int material) {
-  Mesh mesh;
+character::Mesh BuildTeeth(const BaseMesh& base, std::string_view group, bool upper, int material) {
+  character::Mesh mesh;
   mesh.name = std::string(group);
   mesh.material = material;
   const Bounds box = BoundsOf(base, group);
   if (box.low.x > box.high.x) return mesh;
   constexpr float kCentimetres = 100.0f;
-  constexpr float kFront = 0.007f;  // metres behind the foremost point: incisors
+  constexpr float kFront = 0.007f;  // depth of the incisors behind the foremost point, metres
   const Bounds incisors = BoundsOf(base, group, box.high.z - kFront);
   const glm::vec3 front(0.5f * (box.low.x + box.high.x), upper ? incisors.low.y : incisors.high.y,
                         box.high.z);
   const glm::vec3 size = kCentimetres * (box.high - box.low);
-  const paint::ToothArch arch{upper, kCentimetres * front, 0.5f * size.x, size.z, 0.2f * size.z};
-  const paint::ToothRow row = paint::MakeToothRow(arch);
+  const ToothArch arch{upper, kCentimetres * front, 0.5f * size.x, size.z, 0.2f * size.z};
+  const ToothRow row = MakeToothRow(arch);
   const Influences& held = base.skin.vertices[box.vertex];
   for (std::size_t i = 0; i < row.positions.size(); ++i) {
-    Vertex vertex;
+    character::Vertex vertex;
     vertex.position = row.positions[i] / kCentimetres;
     vertex.uv = row.uvs[i];
-    for (int k = 0; k < 4; ++k) {
-      vertex.joints[k] = held.joints[k];
-      vertex.skin_weights[k] = held.weights[k];
-    }
+    held.CopyTo(&vertex);
     mesh.vertices.push_back(vertex);
   }
   for (std::size_t i = 0; i < row.quads.size(); i += 4) {
     const std::uint32_t* quad = &row.quads[i];
     mesh.indices.insert(mesh.indices.end(), {quad[0], quad[1], quad[2], quad[0], quad[2], quad[3]});
   }
-  paint::ComputeNormals(mesh.vertices, mesh.indices);
-  paint::ComputeTangents(mesh.vertices, mesh.indices);
+  character::paint::ComputeNormals(mesh.vertices, mesh.indices);
+  character::paint::ComputeTangents(mesh.vertices, mesh.indices);
   return mesh;
 }
 
-Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint, const glm::vec3& forward,
-              int material) {
+character::Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint,
+                         const glm::vec3& forward, int material) {
   constexpr int kRings = 24;
   constexpr int kSegments = 36;
   constexpr float kCorneaAngle = 0.6f;   // radians from the axis
-  constexpr float kCorneaBulge = 0.06f;  // of the radius
+  constexpr float kCorneaBulge = 0.06f;  // fraction of the radius
   const Bounds box = BoundsOf(base, group);
-  Mesh mesh;
+  character::Mesh mesh;
   mesh.name = std::string(group);
   mesh.material = material;
   if (box.low.x > box.high.x) return mesh;
@@ -211,7 +209,7 @@ Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint, const glm
     for (int segment = 0; segment <= kSegments; ++segment) {
       const float turn = 2.0f * std::numbers::pi_v<float> * static_cast<float>(segment) / kSegments;
       const glm::vec2 spoke(std::cos(turn), std::sin(turn));
-      Vertex vertex;
+      character::Vertex vertex;
       vertex.normal =
           forward * std::cos(angle) + (right * spoke.x + up * spoke.y) * std::sin(angle);
       vertex.position = centre + vertex.normal * reach;
@@ -229,8 +227,8 @@ Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint, const glm
       if (ring > 0) mesh.indices.insert(mesh.indices.end(), {a, below + 1, a + 1});
     }
   }
-  paint::ComputeTangents(mesh.vertices, mesh.indices);
+  character::paint::ComputeTangents(mesh.vertices, mesh.indices);
   return mesh;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -15,34 +15,37 @@
 #include "character/character.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
-// MakeHuman's base mesh, ready to be cut into what is drawn.
+// MakeHuman's base mesh, fitted and skinned. The parts of the character are cut from it.
 struct BaseMesh {
   ObjMesh obj;
-  std::vector<glm::vec3> positions;  // metres, feet on y = 0; all vertices, helpers too
+  std::vector<glm::vec3> positions;  // metres, feet on y = 0; all vertices, including helpers
   SkinWeights skin;
 };
 
-// The faces of a group of `obj`; empty when there is no such group.
+// The faces of a group of `obj`; empty if there is no such group.
 [[nodiscard]] std::vector<std::uint32_t> FacesOf(const ObjMesh& obj, std::string_view group);
 
-// The skin: the group "body" without the faces all of whose vertices `deleted` (by base vertex; may
-// be empty) names. UV islands move so that the face's fills three quarters of the picture and the
-// others share the rest: it is where the detail is needed.
-[[nodiscard]] Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
-                             const std::vector<bool>& deleted, int material, int* hidden_faces);
+// The skin: the group "body" without faces that are fully hidden. `deleted`: by base vertex,
+// whether clothes hide it (may be empty). UV islands are rearranged so that the face, which needs
+// the most detail, fills three quarters of the picture.
+[[nodiscard]] character::Mesh BuildSkin(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
+                                        const std::vector<bool>& deleted, int material,
+                                        int* hidden_faces);
 
-// One group of helpers as it stands (the tongue).
-[[nodiscard]] Mesh BuildHelper(const BaseMesh& base, std::string_view group, int material);
+// A group of helpers without changes (the tongue).
+[[nodiscard]] character::Mesh BuildHelper(const BaseMesh& base, std::string_view group,
+                                          int material);
 
-// A row of teeth (authoring/paint/teeth.h) where the group's coarse box stands, held as that is.
-[[nodiscard]] Mesh BuildTeeth(const BaseMesh& base, std::string_view group, bool upper,
-                              int material);
+// A row of teeth (authoring/paint/teeth.h) in place of the group's coarse box, with its skin
+// weights.
+[[nodiscard]] character::Mesh BuildTeeth(const BaseMesh& base, std::string_view group, bool upper,
+                                         int material);
 
-// A smooth ball with a slight cornea in place of the group's coarse one; it follows `joint` and
-// looks along `forward` (unit). UVs as PaintEye() has them.
-[[nodiscard]] Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint,
-                            const glm::vec3& forward, int material);
+// A smooth eyeball with a slight cornea in place of the group's coarse ball. It follows `joint` and
+// looks along the unit vector `forward`. UVs fit PaintEye().
+[[nodiscard]] character::Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint,
+                                       const glm::vec3& forward, int material);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -13,13 +13,10 @@
 
 #include "authoring/paint/noise.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
-using bake::BakeStroke;
-using paint::Texel;
-
-// Sizes in millimetres of a face of usual size.
+// Sizes in millimetres for a face of average size.
 struct FoldSize {
   float width;
   float depth;
@@ -27,13 +24,13 @@ struct FoldSize {
   float taper = 0.6f;
 };
 
-// Collects strokes; places are moved a little at random (always the same way), since evenly spaced
-// folds read as stripes.
+// Collects strokes. Points are displaced by a small repeatable random amount, since evenly spaced
+// folds look like stripes.
 class FoldDrawing {
  public:
   FoldDrawing(const FaceLandmarks& face, const char* map) : face_(face), map_(map) {}
 
-  // What the following strokes are called, and whose pull they answer to.
+  // Sets the name and the muscle of the following strokes.
   void Begin(const char* name, const char* muscle) {
     name_ = name;
     muscle_ = muscle;
@@ -59,7 +56,7 @@ class FoldDrawing {
     strokes_.push_back(std::move(stroke));
   }
 
-  // Keeps folds of strain away, `reach` millimetres to either side.
+  // Prevents strain folds within `reach` millimetres of a line.
   void Exclude(std::vector<glm::vec3> points, float reach) {
     BakeStroke stroke;
     stroke.name = name_;
@@ -71,7 +68,7 @@ class FoldDrawing {
     strokes_.push_back(std::move(stroke));
   }
 
-  // A point given in millimetres from a landmark: `out` away from the middle of the face, `up`.
+  // A point relative to a landmark, in millimetres: `out` is away from the middle of the face.
   [[nodiscard]] glm::vec3 From(const glm::vec3& landmark, int side, float out, float up) const {
     return landmark + face_.Millimetres(1.0f) * glm::vec3(side == 0 ? out : -out, up, 0.0f);
   }
@@ -86,8 +83,8 @@ class FoldDrawing {
   std::vector<BakeStroke> strokes_;
 };
 
-// Furrows from temple to temple, none like the next: the lowest crosses the middle and sags there,
-// the second is broken and overlaps itself, the upper ones belong to one side each and fade.
+// Irregular furrows across the forehead. The lowest crosses the middle and sags there, the second
+// is broken and overlaps itself, and the upper ones are on one side each and fade out.
 void Forehead(const FaceLandmarks& face, FoldDrawing* drawing) {
   drawing->Begin("forehead furrow", "frontalis");
   const FaceLandmarks::Side& left = face.sides[0];
@@ -125,12 +122,12 @@ void Glabella(const FaceLandmarks& face, FoldDrawing* drawing) {
   drawing->Begin("glabella", "corrugator supercilii, procerus");
   for (int s = 0; s < 2; ++s) {
     const glm::vec3& brow = face.sides[s].brow_inner;
-    // One line is longer than the other: no face is a mirror.
+    // One line is longer than the other, since faces are not symmetric.
     const float top = s == 0 ? 17.0f : 12.0f;
     drawing->Add({drawing->From(brow, s, -6.0f, top), drawing->From(brow, s, -6.5f, 0.5f * top),
                   drawing->From(brow, s, -8.0f, -1.0f), drawing->From(brow, s, -8.5f, -10.0f)},
                  {4.6f, s == 0 ? 1.25f : 1.0f, 0.4f, 0.9f});
-    // The brow's own roll: skin pushed up over its inner end.
+    // The roll of the brow: skin that is pushed up over its inner end.
     drawing->Add({drawing->From(brow, s, 1.5f, 5.0f), drawing->From(brow, s, 7.0f, 9.0f),
                   drawing->From(brow, s, 16.0f, 10.0f)},
                  {5.0f, 0.3f, 0.35f, 1.0f});
@@ -147,7 +144,7 @@ void Glabella(const FaceLandmarks& face, FoldDrawing* drawing) {
 void BunnyLines(const FaceLandmarks& face, FoldDrawing* drawing) {
   drawing->Begin("bunny line", "nasalis");
   for (int s = 0; s < 2; ++s) {
-    // {start, fall, length}: they slant down and outward, none like the next.
+    // {start, fall, length}: the lines slant down and outward and all differ.
     constexpr std::array<std::array<float, 3>, 3> kLines{
         {{5.0f, 4.0f, 11.0f}, {0.0f, 6.5f, 14.0f}, {-6.0f, 6.0f, 12.0f}}};
     for (const auto& [up, fall, length] : kLines) {
@@ -159,10 +156,10 @@ void BunnyLines(const FaceLandmarks& face, FoldDrawing* drawing) {
   }
 }
 
-// A fan from the outer corner of the eye, and lines that follow the lower lid.
+// A fan at the outer corner of the eye, and lines along the lower lid.
 void EyeFolds(const FaceLandmarks& face, FoldDrawing* drawing) {
   drawing->Begin("crow's foot", "orbicularis oculi");
-  // {out, up, depth}: the middle ones are long and deep.
+  // {out, up, depth}: the middle lines are long and deep.
   constexpr std::array<std::array<float, 3>, 5> kFan{{{4.5f, 9.0f, 0.28f},
                                                       {8.5f, 4.0f, 0.45f},
                                                       {10.0f, -3.0f, 0.50f},
@@ -183,7 +180,7 @@ void EyeFolds(const FaceLandmarks& face, FoldDrawing* drawing) {
                     drawing->From(side.lower_lid, s, 12.0f, 1.5f - down)},
                    {2.9f, line == 0 ? 0.5f : 0.28f, 0.35f, 0.95f});
     }
-    // Below them a pouch, which the lower lid's joint would crumple.
+    // The pouch below must stay smooth, although the joint of the lower lid would crumple it.
     drawing->Exclude({drawing->From(side.lower_lid, s, -14.0f, -6.0f),
                       drawing->From(side.lower_lid, s, 0.0f, -10.0f),
                       drawing->From(side.lower_lid, s, 16.0f, -8.0f),
@@ -202,7 +199,7 @@ void Nasolabial(const FaceLandmarks& face, FoldDrawing* drawing) {
          drawing->From(side.fold_bottom, s, 3.5f, -1.0f),
          drawing->From(side.mouth_corner, s, 7.0f, -6.0f)},
         {5.4f, 1.8f, 0.5f, 0.8f});
-    // The dimple's arc, outside the fold's lower end.
+    // The arc of the dimple, outside the lower end of the fold.
     drawing->Add({drawing->From(side.fold_bottom, s, 11.0f, 7.0f),
                   drawing->From(side.fold_bottom, s, 13.0f, -1.0f),
                   drawing->From(side.fold_bottom, s, 11.0f, -9.0f)},
@@ -230,7 +227,7 @@ void Chin(const FaceLandmarks& face, FoldDrawing* drawing) {
   drawing->Add({drawing->From(under, 0, -14.0f, -4.0f), drawing->From(under, 0, 0.0f, -1.5f),
                 drawing->From(under, 0, 14.0f, -4.0f)},
                {3.8f, 1.35f});
-  // Pebbles: short dents over the mentalis.
+  // A pebbled chin: short dents over the mentalis.
   for (int i = 0; i < 16; ++i) {
     const float out = (HashLattice(i, 11, 5) - 0.5f) * 24.0f;
     const float up = -6.0f - 14.0f * HashLattice(i, 12, 5);
@@ -241,7 +238,7 @@ void Chin(const FaceLandmarks& face, FoldDrawing* drawing) {
   }
 }
 
-// A cheek that is pushed up bulges and does not fold, wherever its joints press it.
+// A raised cheek bulges without folds, although its joints compress it.
 void Cheeks(const FaceLandmarks& face, FoldDrawing* drawing) {
   drawing->Begin("smooth cheek", "malar fat");
   for (int s = 0; s < 2; ++s) {
@@ -253,11 +250,12 @@ void Cheeks(const FaceLandmarks& face, FoldDrawing* drawing) {
   }
 }
 
-// Along the normal of the nearest texel onto its plane: snapping to texels would make lines jagged.
-glm::vec3 OntoSurface(const std::vector<const Texel*>& surface, const glm::vec3& p) {
+// Projects a point onto the plane of the nearest texel. Using the texel itself would make lines
+// jagged.
+glm::vec3 OntoSurface(const std::vector<const SurfaceTexel*>& surface, const glm::vec3& p) {
   float nearest = std::numeric_limits<float>::max();
-  const Texel* found = nullptr;
-  for (const Texel* texel : surface) {
+  const SurfaceTexel* found = nullptr;
+  for (const SurfaceTexel* texel : surface) {
     const glm::vec3 away = texel->position - p;
     const float distance = glm::dot(away, away);
     if (distance >= nearest) continue;
@@ -270,7 +268,8 @@ glm::vec3 OntoSurface(const std::vector<const Texel*>& surface, const glm::vec3&
 
 }  // namespace
 
-std::vector<BakeStroke> FaceStrokes(const FaceLandmarks& face, const std::vector<Texel>& texels) {
+std::vector<BakeStroke> FaceStrokes(const FaceLandmarks& face,
+                                    const std::vector<SurfaceTexel>& texels) {
   FoldDrawing stretch(face, "stretch");
   Forehead(face, &stretch);
   Marionette(face, &stretch);
@@ -285,9 +284,9 @@ std::vector<BakeStroke> FaceStrokes(const FaceLandmarks& face, const std::vector
   std::vector<BakeStroke> strokes = stretch.Take();
   for (BakeStroke& stroke : squash.Take()) strokes.push_back(std::move(stroke));
 
-  // A texel in three is fine enough to stand for the surface, which must face forward: the inside
-  // of the mouth is nearer to some landmarks than the cheek is.
-  std::vector<const Texel*> surface;
+  // One texel in three is dense enough. Only texels that face forward count, since the inside of
+  // the mouth is nearer to some landmarks than the cheek.
+  std::vector<const SurfaceTexel*> surface;
   for (std::size_t i = 0; i < texels.size(); i += 3) {
     if (texels[i].normal.z > -0.2f) surface.push_back(&texels[i]);
   }
@@ -297,4 +296,4 @@ std::vector<BakeStroke> FaceStrokes(const FaceLandmarks& face, const std::vector
   return strokes;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -3,22 +3,22 @@
 
 #include <vector>
 
-#include "authoring/bake/bake.h"
+#include "authoring/bake/request/bake_request.h"
 #include "authoring/import/makehuman/face_landmarks.h"
-#include "authoring/paint/uv_raster.h"
+#include "authoring/paint/surface_texels.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
-// The folds of a face, placed by its landmarks: they run across the pull of the muscle that makes
-// them (FACS' action units), and a bake lets them win over strain. Points lie on the surface that
-// `texels` (of the skin) cover.
+// The folds of a face, placed by its landmarks. They run across the pull of the muscle that causes
+// them (FACS action units), and the bake prefers them to folds from strain. `texels` cover the
+// skin; the points of the strokes lie on their surface.
 //
-// - Map "stretch", what raised brows and lowered corners of the mouth make: horizontal furrows of
-//   the forehead, marionette lines, the crease under the lip and a pebbled chin.
-// - Map "squash", what frowns, sneers, smiles and screwed-up eyes make: verticals of the glabella,
-//   the line across the nasal root, bunny lines, crow's feet, lines under the eye, nasolabial
-//   folds, dimples.
-[[nodiscard]] std::vector<bake::BakeStroke> FaceStrokes(const FaceLandmarks& face,
-                                                        const std::vector<paint::Texel>& texels);
+// - Map "stretch" (raised brows, lowered corners of the mouth): horizontal furrows of the forehead,
+//   marionette lines, the crease under the lip, a pebbled chin.
+// - Map "squash" (frowns, sneers, smiles, squinting): vertical lines of the glabella, the line
+//   across the root of the nose, bunny lines, crow's feet, lines under the eye, nasolabial folds,
+//   dimples.
+[[nodiscard]] std::vector<BakeStroke> FaceStrokes(const FaceLandmarks& face,
+                                                  const std::vector<SurfaceTexel>& texels);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 constexpr float kUsualPupilDistance = 0.062f;
@@ -84,4 +84,4 @@ Result<FaceLandmarks> FindFaceLandmarks(const wrinkle::Skeleton& skeleton) {
   return face;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -6,11 +6,10 @@
 #include "base/status.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
-// Where a face's features are, read off MakeHuman's virtual-muscle joints (model space, metres,
-// rest pose): what the painters place colours, masks and folds by, so that they fit any shape of
-// the mesh.
+// The positions of facial features (model space, metres, rest pose), taken from MakeHuman's muscle
+// joints. Colours, masks and folds are placed by them, so that they fit every shape of the mesh.
 struct FaceLandmarks {
   struct Side {
     glm::vec3 brow_inner;  // above the inner corner of the eye
@@ -20,29 +19,29 @@ struct FaceLandmarks {
     glm::vec3 eye;  // centre of the eyeball
     glm::vec3 pupil;
     glm::vec3 lower_lid;
-    glm::vec3 fold_top;  // the nasolabial fold, beside the wing
+    glm::vec3 fold_top;  // the nasolabial fold, beside the wing of the nose
     glm::vec3 fold_middle;
     glm::vec3 fold_bottom;  // beside the corner of the mouth
     glm::vec3 mouth_corner;
     glm::vec3 chin_side;
     glm::vec3 cheek;
   };
-  Side sides[2];  // the subject's left (+X), right
+  Side sides[2];  // left (+X), right
   glm::vec3 nose_bridge;
   glm::vec3 nose_tip;
-  glm::vec3 upper_lip;  // fullest point
+  glm::vec3 upper_lip;  // its fullest point
   glm::vec3 lower_lip;
   glm::vec3 lower_lip_bottom;
   glm::vec3 chin;
   glm::vec3 head;  // origin of the head joint
   glm::vec3 crown;
-  float scale = 1.0f;  // size of this face, 1: pupils 62 mm apart
+  float scale = 1.0f;  // size of the face; 1: pupils 62 mm apart
 
   [[nodiscard]] float Millimetres(float mm) const { return mm * 0.001f * scale; }
 };
 
-// Error: kNotFound, naming the joint that the skeleton lacks; kInvalidArgument where both eyes are
-// in one place.
+// Errors: kNotFound (names the joint that the skeleton lacks), kInvalidArgument (both eyes at the
+// same position).
 [[nodiscard]] Result<FaceLandmarks> FindFaceLandmarks(const wrinkle::Skeleton& skeleton);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

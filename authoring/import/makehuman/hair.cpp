@@ -15,26 +15,26 @@
 #include "authoring/paint/noise.h"
 #include "character/mesh/tangents.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 constexpr int kSections = 4;          // of a lock, root to tip
-constexpr float kLockArea = 0.4e-4f;  // square metres of scalp that a lock grows from
-constexpr float kStreak = 0.08f;      // of the picture's width that a lock shows
+constexpr float kLockArea = 0.4e-4f;  // square metres of scalp per lock
+constexpr float kStreak = 0.08f;      // width of a lock in the picture, fraction of its width
 
-// Where locks may lie: the vertices of the head above the jaw.
+// Finds the scalp: the vertices of the head above the chin.
 class Scalp {
  public:
-  Scalp(const Mesh& skin, const FaceLandmarks& face) : skin_(skin) {
+  Scalp(const character::Mesh& skin, const FaceLandmarks& face) : skin_(skin) {
     for (std::uint32_t v = 0; v < skin.vertices.size(); ++v) {
       if (skin.vertices[v].position.y > face.chin.y) head_.push_back(v);
     }
   }
 
-  // `p` at `height` over the surface, and the surface's normal there.
+  // The point at `height` above the surface near `p`. Also returns the surface normal there.
   glm::vec3 Over(const glm::vec3& p, float height, glm::vec3* normal) const {
     float nearest = std::numeric_limits<float>::max();
-    const Vertex* found = nullptr;
+    const character::Vertex* found = nullptr;
     for (const std::uint32_t v : head_) {
       const glm::vec3 away = skin_.vertices[v].position - p;
       if (glm::dot(away, away) >= nearest) continue;
@@ -47,17 +47,17 @@ class Scalp {
   }
 
  private:
-  const Mesh& skin_;
+  const character::Mesh& skin_;
   std::vector<std::uint32_t> head_;
 };
 
-// One lock on its way into the mesh.
+// Adds locks to the hair's mesh.
 class LockBuilder {
  public:
-  LockBuilder(const Mesh& skin, const FaceLandmarks& face, Mesh* hair)
+  LockBuilder(const character::Mesh& skin, const FaceLandmarks& face, character::Mesh* hair)
       : face_(face), scalp_(skin, face), hair_(hair) {}
 
-  void Grow(const glm::vec3& root, const Vertex& influences, int number) {
+  void Grow(const glm::vec3& root, const character::Vertex& influences, int number) {
     const auto random = [&](int what) { return HashLattice(number, what, 17); };
     const float amount = ScalpAmount(root, face_);
     const float top = glm::smoothstep(face_.sides[0].brow_middle.y, face_.crown.y, root.y);
@@ -81,7 +81,8 @@ class LockBuilder {
   }
 
  private:
-  // Away from the whorl; on top, forward and to the left as well: a parting on the right.
+  // The direction of combing: away from the whorl, and on top also forward and to the left, so that
+  // the parting is on the right.
   [[nodiscard]] glm::vec3 Comb(const glm::vec3& p) const {
     const glm::vec3 whorl(face_.Millimetres(12.0f), face_.crown.y,
                           face_.head.z - face_.Millimetres(45.0f));
@@ -91,10 +92,10 @@ class LockBuilder {
            (1.0f - top) * glm::vec3(0.0f, -1.0f, 0.1f);
   }
 
-  // Three vertices across, the middle one raised; the tip is a point.
+  // Adds a strip with three vertices across, the middle one raised. It narrows to the tip.
   void Add(const std::array<glm::vec3, kSections + 1>& path,
            const std::array<glm::vec3, kSections + 1>& normals, float width,
-           const Vertex& influences, float shade) {
+           const character::Vertex& influences, float shade) {
     const auto first = static_cast<std::uint32_t>(hair_->vertices.size());
     for (int i = 0; i <= kSections; ++i) {
       const float t = static_cast<float>(i) / kSections;
@@ -103,7 +104,7 @@ class LockBuilder {
       const glm::vec3 across = glm::normalize(glm::cross(normals[i], along));
       const float half = width * (1.0f - 0.85f * t * t);
       for (int side = -1; side <= 1; ++side) {
-        Vertex vertex = influences;
+        character::Vertex vertex = influences;
         const auto s = static_cast<float>(side);
         vertex.position =
             path[i] + across * (s * half) + normals[i] * (side == 0 ? 0.2f * half : 0.0f);
@@ -122,27 +123,22 @@ class LockBuilder {
 
   const FaceLandmarks& face_;
   Scalp scalp_;
-  Mesh* hair_;
+  character::Mesh* hair_;
 };
-
-void Put(Picture* picture, int x, int y, const glm::vec3& colour, float alpha) {
-  std::uint8_t* out = paint::TexelAt(picture, x, y);
-  for (int c = 0; c < 3; ++c) out[c] = paint::ToByte(colour[c]);
-  if (picture->channels == 4) out[3] = paint::ToByte(alpha);
-}
 
 }  // namespace
 
-Mesh BuildHair(const Mesh& skin, const FaceLandmarks& face, int material) {
-  Mesh hair;
+character::Mesh BuildMakeHumanHair(const character::Mesh& skin, const FaceLandmarks& face,
+                                   int material) {
+  character::Mesh hair;
   hair.name = "hair";
   hair.material = material;
   LockBuilder locks(skin, face, &hair);
-  float owed = 0.0f;  // area whose lock has not grown yet
+  float owed = 0.0f;  // area without locks so far
   int number = 0;
   const float area_of_lock = kLockArea * face.scale * face.scale;
   for (std::size_t i = 0; i + 2 < skin.indices.size(); i += 3) {
-    const Vertex* corners[3];
+    const character::Vertex* corners[3];
     for (std::size_t k = 0; k < 3; ++k) corners[k] = &skin.vertices[skin.indices[i + k]];
     const glm::vec3& a = corners[0]->position;
     const glm::vec3 ab = corners[1]->position - a;
@@ -155,40 +151,40 @@ Mesh BuildHair(const Mesh& skin, const FaceLandmarks& face, int material) {
       if (u + v > 1.0f) u = 1.0f - u, v = 1.0f - v;
       const glm::vec3 root = a + u * ab + v * ac;
       if (ScalpAmount(root, face) < HashLattice(number, 10, 17))
-        continue;  // the hairline thins out
+        continue;  // thins out the hairline
       locks.Grow(root, *corners[0], number);
     }
   }
-  paint::ComputeTangents(hair.vertices, hair.indices);
+  character::paint::ComputeTangents(hair.vertices, hair.indices);
   return hair;
 }
 
-Mesh BuildLashes(const BaseMesh& base, std::string_view group, const glm::vec3& eye, float reach,
-                 int material) {
-  Mesh lashes = BuildHelper(base, group, material);
+character::Mesh BuildLashes(const BaseMesh& base, std::string_view group, const glm::vec3& eye,
+                            float reach, int material) {
+  character::Mesh lashes = BuildHelper(base, group, material);
   float low = std::numeric_limits<float>::max(), high = 0.0f;
   float left = low, right = std::numeric_limits<float>::lowest();
-  for (const Vertex& vertex : lashes.vertices) {
+  for (const character::Vertex& vertex : lashes.vertices) {
     const float distance = glm::distance(vertex.position, eye);
     low = std::min(low, distance);
     high = std::max(high, distance);
     left = std::min(left, vertex.position.x);
     right = std::max(right, vertex.position.x);
   }
-  constexpr float kAcross = 0.9f;  // tips keep away from where the picture begins again
-  for (Vertex& vertex : lashes.vertices) {
+  constexpr float kAcross = 0.9f;  // keeps tips away from the row where the picture repeats
+  for (character::Vertex& vertex : lashes.vertices) {
     const float out = (glm::distance(vertex.position, eye) - low) / std::max(high - low, 1e-6f);
     vertex.uv = {(vertex.position.x - left) / std::max(right - left, 1e-6f),
                  1.0f - kAcross * std::min(out / reach, 1.0f)};
   }
-  paint::ComputeTangents(lashes.vertices, lashes.indices);
+  character::paint::ComputeTangents(lashes.vertices, lashes.indices);
   return lashes;
 }
 
-Picture PaintHair(int size) {
+character::Picture PaintMakeHumanHair(int size) {
   constexpr glm::vec3 kDark{0.15f, 0.105f, 0.075f};
   constexpr glm::vec3 kLight{0.36f, 0.26f, 0.185f};
-  Picture picture = paint::BlankPicture("hair_colour", size, size, 3);
+  character::Picture picture = BlankPicture("hair_colour", size, size, 3);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
       const float u = static_cast<float>(x) / static_cast<float>(size);
@@ -196,15 +192,16 @@ Picture PaintHair(int size) {
       const float strand = ValueNoise({u * 180.0f, root * 2.0f, 0.5f});
       const float lock = ValueNoise({u * 14.0f, 0.5f, 3.5f});
       const float light = 0.55f * strand * (1.0f - 0.6f * root) + 0.35f * lock;
-      Put(&picture, x, y, glm::mix(kDark, kLight, std::clamp(light, 0.0f, 1.0f)), 1.0f);
+      SetTexel(&picture, x, y,
+               glm::vec4(glm::mix(kDark, kLight, std::clamp(light, 0.0f, 1.0f)), 1.0f));
     }
   }
   return picture;
 }
 
-Picture PaintLashes(int size) {
+character::Picture PaintLashes(int size) {
   constexpr int kLashes = 34;
-  Picture picture = paint::BlankPicture("lash_colour", size, size, 4);
+  character::Picture picture = BlankPicture("lash_colour", size, size, 4);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
       const float u = (static_cast<float>(x) + 0.5f) / static_cast<float>(size) * kLashes;
@@ -214,13 +211,13 @@ Picture PaintLashes(int size) {
       const float bend = 0.3f * (HashLattice(number, 2, 5) - 0.5f) * out;
       const float aside = std::abs(u - static_cast<float>(number) - 0.5f - bend);
       const float half = 0.42f * (1.0f - out / length);
-      // Where the lids meet, the rows of both would show as hooks.
+      // The corners stay empty. Upper and lower lashes would form hooks there.
       const bool corner = u < 4.0f || u > kLashes - 6.0f;
       const bool on = !corner && (out < 0.05f || aside < half);
-      Put(&picture, x, y, glm::vec3(0.06f, 0.045f, 0.04f), on ? 1.0f : 0.0f);
+      SetTexel(&picture, x, y, glm::vec4(glm::vec3(0.06f, 0.045f, 0.04f), on ? 1.0f : 0.0f));
     }
   }
   return picture;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -7,25 +7,26 @@
 #include "authoring/import/makehuman/face_landmarks.h"
 #include "character/character.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
-// Short hair: locks that grow from the scalp (ScalpAmount() of skin_paint.h), combed from the whorl
-// of the crown, a few millimetres at the nape and four centimetres on top. The same every time;
-// each lock follows the joints of the place that it grows from. UVs as PaintHair() has them.
-[[nodiscard]] Mesh BuildHair(const Mesh& skin, const FaceLandmarks& face, int material);
+// Short hair: locks that grow from the scalp (ScalpAmount()), combed away from the whorl of the
+// crown, a few millimetres long at the nape and four centimetres on top. The result is always the
+// same. Each lock follows the joints of its root. UVs fit PaintMakeHumanHair().
+[[nodiscard]] character::Mesh BuildMakeHumanHair(const character::Mesh& skin,
+                                                 const FaceLandmarks& face, int material);
 
-// A group of lashes around the eye at `eye`: u runs along the lid, v from the tips (0) to the lid.
-// They take up `reach` of the group's strip, (0, 1].
-[[nodiscard]] Mesh BuildLashes(const BaseMesh& base, std::string_view group, const glm::vec3& eye,
-                               float reach, int material);
+// A group of lashes around the eye at `eye`. u runs along the lid, v from the tips (0) to the lid.
+// The lashes use the fraction `reach` of the group's strip, (0, 1].
+[[nodiscard]] character::Mesh BuildLashes(const BaseMesh& base, std::string_view group,
+                                          const glm::vec3& eye, float reach, int material);
 
-// 8-bit sRGB: strands run from the tips (top) to the roots.
-[[nodiscard]] Picture PaintHair(int size);
+// The colour of the hair, 8-bit sRGB. Strands run from the tips (top) to the roots.
+[[nodiscard]] character::Picture PaintMakeHumanHair(int size);
 
-// For Material::alpha_cutoff: from afar, where lashes are finer than texels, their fringe stays.
+// For Material::alpha_cutoff: keeps a fringe where distant lashes are finer than texels.
 inline constexpr float kLashCutoff = 0.4f;
 
-// 8-bit sRGB and alpha: dark lashes that taper, of uneven length.
-[[nodiscard]] Picture PaintLashes(int size);
+// The colour and alpha of the lashes, 8-bit sRGB: dark, tapered, of uneven length.
+[[nodiscard]] character::Picture PaintLashes(int size);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

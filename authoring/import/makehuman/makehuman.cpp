@@ -21,8 +21,8 @@
 #include "authoring/import/makehuman/obj.h"
 #include "authoring/import/makehuman/prop_paint.h"
 #include "authoring/import/makehuman/skin_paint.h"
+#include "authoring/paint/surface_texels.h"
 #include "authoring/paint/teeth.h"
-#include "authoring/paint/uv_raster.h"
 #include "base/data_dir.h"
 #include "base/files.h"
 #include "base/status.h"
@@ -31,20 +31,20 @@
 #include "rig/rig_file.h"
 #include "wrinkle/solver/solver.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kMetresPerUnit = 0.1f;  // MakeHuman's unit is the decimetre
+constexpr float kMetresPerUnit = 0.1f;  // MakeHuman uses decimetres
 
-// The one importer run: reads, fits, cuts and paints, in that order.
+// One run of the importer: reads, fits, cuts and paints.
 class MakeHumanImport {
  public:
   MakeHumanImport(const fs::path& folder, const ImportOptions& options)
       : folder_(folder), options_(options) {}
 
-  Result<Character> Run(ImportReport* report) {
+  Result<character::Character> Run(ImportReport* report) {
     if (options_.texture_size < 64 || options_.texture_size > 4096)
       return Status(StatusCode::kInvalidArgument, "texture_size is not in [64, 4096]");
     character_.name = "makehuman";
@@ -96,7 +96,8 @@ class MakeHumanImport {
     return {};
   }
 
-  // Metres, with the body's lowest point (not the helpers': a skirt may hang lower) on the ground.
+  // Converts to metres and puts the lowest point of the body on the ground. Helpers do not count,
+  // since a skirt may hang lower.
   Status PlaceBase(const fs::path& path) {
     const std::vector<std::uint32_t> body = FacesOf(base_.obj, "body");
     if (body.empty())
@@ -114,7 +115,7 @@ class MakeHumanImport {
     return {};
   }
 
-  // The garment's folder: the one that was asked for, or the first.
+  // The folder of the garment: the requested one, or the first by name.
   Result<fs::path> FindGarment() {
     const fs::path clothes = folder_ / "clothes";
     if (!options_.clothes.empty())
@@ -167,7 +168,7 @@ class MakeHumanImport {
     const Result<std::string> text = ReadFile(path, kMaxTextFileBytes);
     FURROW_RETURN_IF_ERROR(text);
     Result<wrinkle::Rig> rig =
-        ParseRig(*text, path.string(), folder_ / "poseunits", options_.poses);
+        character::ParseRig(*text, path.string(), folder_ / "poseunits", options_.poses);
     FURROW_RETURN_IF_ERROR(rig);
     const Result<wrinkle::RigBinding> binding =
         wrinkle::RigBinding::Create(*rig, character_.skeleton, {});
@@ -178,14 +179,14 @@ class MakeHumanImport {
 
   Status BuildBody() {
     const int size = options_.texture_size;
-    Material skin{.name = "skin", .kind = Material::Kind::kSkin, .roughness = 0.5f};
+    character::Material skin{
+        .name = "skin", .kind = character::Material::Kind::kSkin, .roughness = 0.5f};
     character_.meshes.push_back(BuildSkin(base_, character_.skeleton,
                                           garment_ ? garment_->deleted : std::vector<bool>(), 0,
                                           &report_.hidden_faces));
-    const std::vector<paint::Texel> texels =
-        paint::RasterizeUv(character_.meshes.back(), size, size);
-    skin.base_colour_texture = AddPicture(PaintSkinColour(texels, face_, size));
-    skin.normal_texture = AddPicture(PaintSkinNormals(texels, face_, size));
+    const std::vector<SurfaceTexel> texels = RasterizeSurface(character_.meshes.back(), size, size);
+    skin.base_colour_texture = AddPicture(PaintMakeHumanSkin(texels, face_, size));
+    skin.normal_texture = AddPicture(PaintMakeHumanSkinNormals(texels, face_, size));
     character_.materials.push_back(skin);
     FaceMasks masks = PaintFaceMasks(texels, face_, size);
     AddPicture(std::move(masks.first));
@@ -198,7 +199,8 @@ class MakeHumanImport {
   }
 
   void BuildEyes() {
-    Material material{.name = "eye", .kind = Material::Kind::kEye, .roughness = 0.12f};
+    character::Material material{
+        .name = "eye", .kind = character::Material::Kind::kEye, .roughness = 0.12f};
     material.base_colour_texture = AddPicture(PaintEye(std::max(options_.texture_size / 2, 64)));
     const int index = AddMaterial(material);
     constexpr const char* kGroups[2] = {"helper-l-eye", "helper-r-eye"};
@@ -213,12 +215,15 @@ class MakeHumanImport {
   }
 
   void BuildHairAndLashes() {
-    Material hair{.name = "hair", .kind = Material::Kind::kHair, .roughness = 0.45f};
+    character::Material hair{
+        .name = "hair", .kind = character::Material::Kind::kHair, .roughness = 0.45f};
     hair.double_sided = true;
-    hair.base_colour_texture = AddPicture(PaintHair(std::max(options_.texture_size / 2, 64)));
-    const Mesh& skin = character_.meshes.front();
-    AddPart(BuildHair(skin, face_, AddMaterial(hair)));
-    Material lashes{.name = "lashes", .kind = Material::Kind::kHair, .roughness = 0.6f};
+    hair.base_colour_texture =
+        AddPicture(PaintMakeHumanHair(std::max(options_.texture_size / 2, 64)));
+    const character::Mesh& skin = character_.meshes.front();
+    AddPart(BuildMakeHumanHair(skin, face_, AddMaterial(hair)));
+    character::Material lashes{
+        .name = "lashes", .kind = character::Material::Kind::kHair, .roughness = 0.6f};
     lashes.double_sided = true;
     lashes.alpha_cutoff = kLashCutoff;
     lashes.base_colour_texture = AddPicture(PaintLashes(std::max(options_.texture_size / 2, 64)));
@@ -231,9 +236,9 @@ class MakeHumanImport {
   }
 
   void BuildMouth() {
-    Material teeth{.name = "teeth", .roughness = 0.3f};
+    character::Material teeth{.name = "teeth", .roughness = 0.3f};
     teeth.base_colour_texture =
-        AddPicture(paint::PaintTeeth(0.1f, std::max(options_.texture_size / 2, 64)));
+        AddPicture(PaintTeeth(0.1f, std::max(options_.texture_size / 2, 64)));
     const int material = AddMaterial(teeth);
     AddPart(BuildTeeth(base_, "helper-upper-teeth", true, material));
     AddPart(BuildTeeth(base_, "helper-lower-teeth", false, material));
@@ -263,9 +268,10 @@ class MakeHumanImport {
     source.influences = skin.vertices;
     source.faces = std::move(faces);
     const int size = options_.texture_size;
-    Mesh mesh = BuildMesh("clothes", 0, source);
-    const std::vector<paint::Texel> texels = paint::RasterizeUv(mesh, size, size);
-    Material cloth{.name = "cloth", .kind = Material::Kind::kCloth, .roughness = 0.85f};
+    character::Mesh mesh = BuildMesh("clothes", 0, source);
+    const std::vector<SurfaceTexel> texels = RasterizeSurface(mesh, size, size);
+    character::Material cloth{
+        .name = "cloth", .kind = character::Material::Kind::kCloth, .roughness = 0.85f};
     cloth.double_sided = true;  // cuffs and collars show their inside
     cloth.base_colour_texture = AddPicture(PaintCloth(texels, Waist(), size));
     cloth.normal_texture = AddPicture(PaintWeaveNormals(texels, size));
@@ -287,29 +293,29 @@ class MakeHumanImport {
   Status BakeMaps() {
     for (const wrinkle::Region& region : character_.rig.regions) UsePicture(region.mask.texture);
     // A rig of another's making may do without the face's maps.
-    std::erase_if(strokes_, [this](const bake::BakeStroke& stroke) {
+    std::erase_if(strokes_, [this](const BakeStroke& stroke) {
       const auto& maps = character_.rig.wrinkle_maps;
       return std::none_of(maps.begin(), maps.end(), [&](const wrinkle::WrinkleMap& map) {
         return map.name == stroke.maps.front();
       });
     });
-    const Result<bake::PosesToBake> poses = bake::PosesOf(character_);
+    const Result<CollectedPoses> poses = CollectBakePoses(character_);
     FURROW_RETURN_IF_ERROR(poses);
-    bake::BakeOptions options;
+    BakeOptions options;
     options.size = static_cast<int>(std::bit_floor(static_cast<unsigned>(options_.texture_size)));
     // Joints that only turn squeeze the cheeks more than muscles do: little of it is believed.
     options.skin.share = 0.2f;
     options.skin.max_compression = 0.3f;
     options.skin.threshold = 0.08f;
-    const Result<bake::BakedMaps> baked =
-        bake::Bake(character_, poses->poses, strokes_, options, options_.progress);
+    const Result<BakedMaps> baked =
+        Bake(character_, poses->poses, strokes_, options, options_.progress);
     FURROW_RETURN_IF_ERROR(baked);
     for (wrinkle::WrinkleMap& map : character_.rig.wrinkle_maps) {
-      for (const bake::BakedMap& from : baked->maps) {
+      for (const BakedMap& from : baked->maps) {
         if (from.map != map.name) continue;
-        Result<std::vector<Picture>> pictures = bake::PicturesOf(from, map);
+        Result<std::vector<character::Picture>> pictures = WrinkleMapPictures(from, map);
         FURROW_RETURN_IF_ERROR(pictures);
-        for (Picture& picture : *pictures) AddPicture(std::move(picture));
+        for (character::Picture& picture : *pictures) AddPicture(std::move(picture));
       }
       for (const std::string* name :
            {&map.normal, &map.derivative, &map.height, &map.colour, &map.cavity}) {
@@ -335,7 +341,7 @@ class MakeHumanImport {
     report_.joints = character_.skeleton.num_joints();
     report_.unweighted_vertices += base_.skin.unweighted;
     report_.truncated_vertices += base_.skin.truncated;
-    for (const Mesh& mesh : character_.meshes) {
+    for (const character::Mesh& mesh : character_.meshes) {
       report_.vertices += static_cast<int>(mesh.vertices.size());
       report_.triangles += static_cast<int>(mesh.indices.size() / 3);
     }
@@ -345,7 +351,7 @@ class MakeHumanImport {
   }
 
   // A part that the folder lacks is left out, and said.
-  void AddPart(Mesh mesh) {
+  void AddPart(character::Mesh mesh) {
     if (mesh.indices.empty()) {
       report_.warnings.push_back("base.obj has no group '" + mesh.name + "': left out");
       return;
@@ -353,12 +359,12 @@ class MakeHumanImport {
     character_.meshes.push_back(std::move(mesh));
   }
 
-  int AddMaterial(Material material) {
+  int AddMaterial(character::Material material) {
     character_.materials.push_back(std::move(material));
     return static_cast<int>(character_.materials.size()) - 1;
   }
 
-  int AddPicture(Picture picture) {
+  int AddPicture(character::Picture picture) {
     character_.pictures.push_back(std::move(picture));
     return static_cast<int>(character_.pictures.size()) - 1;
   }
@@ -369,33 +375,16 @@ class MakeHumanImport {
   std::optional<Mhclo> garment_;
   ObjMesh garment_obj_;
   FaceLandmarks face_;
-  std::vector<bake::BakeStroke> strokes_;
-  Character character_;
+  std::vector<BakeStroke> strokes_;
+  character::Character character_;
   ImportReport report_;
 };
 
 }  // namespace
 
-Result<Character> ImportMakeHuman(const fs::path& folder, const ImportOptions& options,
-                                  ImportReport* report) {
+Result<character::Character> ImportMakeHuman(const fs::path& folder, const ImportOptions& options,
+                                             ImportReport* report) {
   return MakeHumanImport(folder, options).Run(report);
 }
 
-Status WritePackage(const Character& character, const fs::path& glb) {
-  fs::path rig = glb;
-  rig.replace_extension(".rig.json");
-  if (const Status s = CheckRig(character.rig); !s.ok()) {
-    return {s.code(), s.what(), rig.string() + ": " + s.where(), s.todo()};
-  }
-  const Result<std::string> bytes = CharacterGlb(character);
-  if (!bytes.ok()) {
-    const Status s = bytes.status();
-    return {s.code(), s.what(), glb.string() + (s.where().empty() ? "" : ": " + s.where()),
-            s.todo()};
-  }
-  const std::string json = RigToJson(character.rig);
-  const FileToWrite files[] = {{glb, *bytes}, {rig, json}};
-  return WriteFilesAtomically(files);
-}
-
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -10,7 +10,7 @@
 
 #include "character/mesh/tangents.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 glm::vec3 NormalizeOr(glm::vec3 v, glm::vec3 fallback) {
@@ -20,7 +20,7 @@ glm::vec3 NormalizeOr(glm::vec3 v, glm::vec3 fallback) {
 
 class SplitMesh {
  public:
-  SplitMesh(const MeshSource& source, Mesh* mesh) : source_(source), mesh_(*mesh) {}
+  SplitMesh(const MeshSource& source, character::Mesh* mesh) : source_(source), mesh_(*mesh) {}
 
   std::uint32_t VertexOf(const ObjMesh::Corner& corner) {
     const std::uint64_t key =
@@ -31,15 +31,11 @@ class SplitMesh {
   }
 
  private:
-  Vertex MakeVertex(const ObjMesh::Corner& corner) const {
-    Vertex vertex;
+  character::Vertex MakeVertex(const ObjMesh::Corner& corner) const {
+    character::Vertex vertex;
     vertex.position = source_.positions[corner.position];
     vertex.normal = source_.normals[corner.position];
-    const Influences& influences = source_.influences[corner.position];
-    for (std::size_t i = 0; i < 4; ++i) {
-      vertex.joints[i] = influences.joints[i];
-      vertex.skin_weights[i] = influences.weights[i];
-    }
+    source_.influences[corner.position].CopyTo(&vertex);
     glm::vec2 uv(0.0f);
     if (corner.uv >= 0) {
       const auto index = static_cast<std::size_t>(corner.uv);
@@ -52,7 +48,7 @@ class SplitMesh {
   }
 
   const MeshSource& source_;
-  Mesh& mesh_;
+  character::Mesh& mesh_;
   std::unordered_map<std::uint64_t, std::uint32_t> index_;
 };
 
@@ -84,8 +80,8 @@ std::vector<glm::vec3> SmoothNormals(const ObjMesh& obj, std::span<const glm::ve
   return normals;
 }
 
-Mesh BuildMesh(const std::string& name, int material, const MeshSource& source) {
-  Mesh mesh;
+character::Mesh BuildMesh(const std::string& name, int material, const MeshSource& source) {
+  character::Mesh mesh;
   mesh.name = name;
   mesh.material = material;
   SplitMesh split(source, &mesh);
@@ -96,11 +92,11 @@ Mesh BuildMesh(const std::string& name, int material, const MeshSource& source) 
     for (std::size_t i = 1; i + 1 < face.num_corners; ++i) {
       const std::uint32_t b = split.VertexOf(corners[i]);
       const std::uint32_t c = split.VertexOf(corners[i + 1]);
-      if (first == b || b == c || c == first) continue;  // a corner stated twice
+      if (first == b || b == c || c == first) continue;  // repeated corner
       mesh.indices.insert(mesh.indices.end(), {first, b, c});
     }
   }
-  paint::ComputeTangents(mesh.vertices, mesh.indices);
+  character::paint::ComputeTangents(mesh.vertices, mesh.indices);
   return mesh;
 }
 
@@ -136,4 +132,4 @@ std::vector<int> UvIslands(const ObjMesh& obj, std::span<const std::uint32_t> fa
   return island;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

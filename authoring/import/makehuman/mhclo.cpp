@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "base/text_cursor.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 class MhcloParser {
@@ -59,7 +59,7 @@ class MhcloParser {
     if (word == "x_scale") return Scale(0);
     if (word == "y_scale") return Scale(1);
     if (word == "z_scale") return Scale(2);
-    return {};  // material, tag, z_depth, ...: not needed
+    return {};  // material, tag, z_depth, ...: not used
   }
 
   Status Error(StatusCode code, std::string what) const {
@@ -105,9 +105,9 @@ class MhcloParser {
     return {};
   }
 
-  // Nine numbers, or one: the garment's vertex lies on that base vertex.
+  // Nine numbers. A single number places the vertex exactly on that base vertex.
   Status Vertex() {
-    Mhclo::Vertex vertex;
+    Mhclo::GarmentVertex vertex;
     if (words_.size() != 1 && words_.size() < 9)
       return Error(StatusCode::kParse, "a vertex is 1 or 9 numbers");
     FURROW_RETURN_IF_ERROR(BaseIndex(words_[0], &vertex.base[0]));
@@ -171,7 +171,7 @@ std::vector<glm::vec3> FitGarment(const Mhclo& garment, std::span<const glm::vec
   }
   std::vector<glm::vec3> fitted;
   fitted.reserve(garment.vertices.size());
-  for (const Mhclo::Vertex& vertex : garment.vertices) {
+  for (const Mhclo::GarmentVertex& vertex : garment.vertices) {
     glm::vec3 position = vertex.offset * scale;
     for (std::size_t i = 0; i < 3; ++i) position += vertex.weights[i] * base[vertex.base[i]];
     fitted.push_back(position);
@@ -179,4 +179,4 @@ std::vector<glm::vec3> FitGarment(const Mhclo& garment, std::span<const glm::vec
   return fitted;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -10,7 +10,7 @@
 #include "base/status.h"
 #include "base/text.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 using Json = nlohmann::json;
@@ -24,7 +24,7 @@ Result<Json> ParseJson(std::string_view text, std::string_view source) {
   } catch (const Json::parse_error& error) {
     const std::size_t line = LineOf(text, error.byte == 0 ? 0 : error.byte - 1);
     return Status(StatusCode::kParse, "broken JSON", Where(source, line));
-  } catch (const Json::exception&) {  // a number out of range
+  } catch (const Json::exception&) {  // number out of range
     return Status(StatusCode::kParse, "a number that JSON cannot hold", std::string(source));
   }
 }
@@ -196,4 +196,4 @@ Result<wrinkle::Skeleton> BuildSkeleton(const MhSkeleton& skeleton,
   return built;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -12,25 +12,26 @@
 #include "base/status.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
-// MakeHuman's .mhskel: joints whose heads and tails are means of base-mesh vertices, so that the
-// skeleton fits whatever shape the mesh has.
+// MakeHuman's .mhskel file. Heads and tails of joints are means of base vertices, so the skeleton
+// fits every shape of the mesh.
 struct MhSkeleton {
   struct Joint {
     std::string name;
     std::string parent;               // empty: a root
-    std::vector<std::uint32_t> head;  // base-mesh vertices; their mean is the joint's origin
+    std::vector<std::uint32_t> head;  // base vertices; the joint's origin is their mean
     std::vector<std::uint32_t> tail;
   };
   std::vector<Joint> joints;
 };
 
-// Errors name `source` and the line of broken JSON or the field: kParse, kSchema (a field that is
-// missing or of the wrong type), kNotFound (a head or tail that "joints" does not list), kLimit.
+// Parses a .mhskel file. Errors name `source` and the line of invalid JSON or the field: kParse,
+// kSchema (field missing or of the wrong type), kNotFound (a head or tail missing from "joints"),
+// kLimit.
 [[nodiscard]] Result<MhSkeleton> ParseMhskel(std::string_view text, std::string_view source);
 
-// MakeHuman's .mhw: (vertex, weight) lists by joint.
+// MakeHuman's .mhw file: a list of (vertex, weight) per joint.
 struct MhWeights {
   struct Joint {
     std::string name;
@@ -39,17 +40,17 @@ struct MhWeights {
   std::vector<Joint> joints;
 };
 
-// Errors as above, and kNonFinite or kInvalidArgument for a weight that is not a number in [0, 1].
+// Parses a .mhw file. Errors: as above, and kNonFinite or kInvalidArgument (weight outside [0, 1]).
 [[nodiscard]] Result<MhWeights> ParseMhw(std::string_view text, std::string_view source);
 
-// The skeleton on `positions` (model space, any unit): origins at the heads, tails stored, and
-// every joint's axes parallel to the model's, so that a BVH rotation of MakeHuman's applies as it
-// stands.
+// Builds the skeleton on `positions` (model space, any unit). Origins are at the heads, tails are
+// stored, and the axes of every joint are parallel to the model's, so that rotations in MakeHuman's
+// BVH files apply unchanged.
 //
-// Errors name `source` and the joint: kInvalidArgument (a vertex the mesh lacks), kNotFound (a
-// parent that is not there), kCyclic, kLimit.
+// Errors name `source` and the joint: kInvalidArgument (a vertex missing from the mesh), kNotFound
+// (unknown parent), kCyclic, kLimit.
 [[nodiscard]] Result<wrinkle::Skeleton> BuildSkeleton(const MhSkeleton& skeleton,
                                                       std::span<const glm::vec3> positions,
                                                       std::string_view source);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "base/text_cursor.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 constexpr std::size_t kMaxElements = 4'000'000;
@@ -99,7 +99,7 @@ class ObjParser {
     return {};
   }
 
-  // One index of a corner: from 1, or negative, counted back from the latest.
+  // One index of a corner: 1 or more, or negative to count back from the latest.
   Status Index(std::string_view word, std::size_t count, std::string_view kind,
                std::int64_t* index) const {
     const std::optional<long> value = ToInteger(word);
@@ -165,4 +165,4 @@ Result<ObjMesh> ParseObj(std::string_view text, std::string_view source) {
   return ObjParser(text, source).Run();
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

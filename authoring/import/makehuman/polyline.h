@@ -8,9 +8,11 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-namespace furrow::character {
+#include "base/scalar.h"
 
-// Distance of `p` from a line through two or more points.
+namespace furrow::authoring {
+
+// The distance of `p` from a polyline of at least two points.
 [[nodiscard]] inline float DistanceToLine(const glm::vec3& p,
                                           std::initializer_list<glm::vec3> line) {
   float nearest = std::numeric_limits<float>::max();
@@ -23,10 +25,9 @@ namespace furrow::character {
   return nearest;
 }
 
-// 1 within `inner` of something, 0 beyond `outer`, smooth between.
+// 1 up to the distance `inner`, 0 from `outer` on, smooth between.
 [[nodiscard]] inline float FadeOut(float distance, float inner, float outer) {
-  const float x = std::clamp((outer - distance) / (outer - inner), 0.0f, 1.0f);
-  return x * x * (3.0f - 2.0f * x);
+  return Smoothstep(outer, inner, distance);
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

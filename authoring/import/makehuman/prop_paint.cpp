@@ -11,27 +11,18 @@
 #include "authoring/paint/canvas.h"
 #include "authoring/paint/noise.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
-using paint::Texel;
-
-constexpr int kDilation = 16;
-
-void Put(Picture* picture, int x, int y, const glm::vec3& colour) {
-  std::uint8_t* out = paint::TexelAt(picture, x, y);
-  for (int c = 0; c < 3; ++c) out[c] = paint::ToByte(colour[c]);
-}
-
-Picture Filled(const char* name, int size, const glm::vec3& fill) {
-  Picture picture = paint::BlankPicture(name, size, size, 3);
+character::Picture Filled(const char* name, int size, const glm::vec3& fill) {
+  character::Picture picture = BlankPicture(name, size, size, 3);
   for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) Put(&picture, x, y, fill);
+    for (int x = 0; x < size; ++x) SetTexel(&picture, x, y, glm::vec4(fill, 1.0f));
   }
   return picture;
 }
 
-// Angles of an adult eye of 12 mm radius with an iris 11.7 mm across.
+// Angles of an adult eye with a radius of 12 mm and an iris 11.7 mm wide.
 constexpr float kIris = 0.509f;
 constexpr float kPupil = 0.17f;
 
@@ -55,8 +46,8 @@ glm::vec3 EyeColour(float angle, float around) {
                   glm::smoothstep(kPupil - 0.015f, kPupil + 0.015f, angle));
 }
 
-// One crossing thread every 1.4 mm would alias at texture sizes of a whole body: the weave is drawn
-// at 3 mm, which reads as a coarse twill.
+// Real threads, 1.4 mm apart, would alias in the texture of a whole body. The weave is drawn at 3
+// mm, which looks like coarse twill.
 float Weave(const glm::vec3& p) {
   constexpr float kThread = 2.0f * std::numbers::pi_v<float> / 0.003f;
   return 0.5f + 0.25f * std::sin(kThread * (p.x + p.z + 0.5f * p.y)) +
@@ -64,7 +55,7 @@ float Weave(const glm::vec3& p) {
 }
 
 template <class Height>
-glm::vec2 Slope(const Texel& texel, float step, const Height& height) {
+glm::vec2 Slope(const SurfaceTexel& texel, float step, const Height& height) {
   const auto along = [&](const glm::vec3& axis) {
     return (height(texel.position + axis * step) - height(texel.position - axis * step)) /
            (2.0f * step);
@@ -74,43 +65,45 @@ glm::vec2 Slope(const Texel& texel, float step, const Height& height) {
 
 }  // namespace
 
-Picture PaintEye(int size) {
-  Picture picture = paint::BlankPicture("eye_colour", size, size, 3);
+character::Picture PaintEye(int size) {
+  character::Picture picture = BlankPicture("eye_colour", size, size, 3);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
       const glm::vec2 p = (glm::vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) /
                               (0.5f * static_cast<float>(size)) -
                           1.0f;
-      Put(&picture, x, y, EyeColour(glm::length(p) * kEyePictureAngle, std::atan2(p.y, p.x)));
+      SetTexel(&picture, x, y,
+               glm::vec4(EyeColour(glm::length(p) * kEyePictureAngle, std::atan2(p.y, p.x)), 1.0f));
     }
   }
   return picture;
 }
 
-Picture PaintCloth(const std::vector<Texel>& texels, float waist, int size) {
+character::Picture PaintCloth(const std::vector<SurfaceTexel>& texels, float waist, int size) {
   constexpr glm::vec3 kShirt{0.42f, 0.46f, 0.50f};
   constexpr glm::vec3 kTrousers{0.20f, 0.22f, 0.27f};
-  Picture picture = Filled("cloth_colour", size, kShirt);
-  for (const Texel& texel : texels) {
+  character::Picture picture = Filled("cloth_colour", size, kShirt);
+  for (const SurfaceTexel& texel : texels) {
     const float above = glm::smoothstep(waist - 0.004f, waist + 0.004f, texel.position.y);
     const float worn = ValueNoise(texel.position / 0.06f) - 0.5f;
     const glm::vec3 colour =
         glm::mix(kTrousers, kShirt, above) * (0.92f + 0.12f * Weave(texel.position) + 0.08f * worn);
-    Put(&picture, texel.x, texel.y, colour);
+    SetTexel(&picture, texel.x, texel.y, glm::vec4(colour, 1.0f));
   }
-  paint::Dilate(&picture, texels, kDilation);
+  Dilate(&picture, texels, kSeamTexels);
   return picture;
 }
 
-Picture PaintWeaveNormals(const std::vector<Texel>& texels, int size) {
-  Picture picture = Filled("cloth_normal", size, glm::vec3(0.5f, 0.5f, 1.0f));
-  for (const Texel& texel : texels) {
+character::Picture PaintWeaveNormals(const std::vector<SurfaceTexel>& texels, int size) {
+  character::Picture picture = Filled("cloth_normal", size, glm::vec3(0.5f, 0.5f, 1.0f));
+  for (const SurfaceTexel& texel : texels) {
     const glm::vec2 slope =
         Slope(texel, 0.0004f, [](const glm::vec3& p) { return 0.00012f * Weave(p); });
-    Put(&picture, texel.x, texel.y, glm::normalize(glm::vec3(slope, 1.0f)) * 0.5f + 0.5f);
+    SetTexel(&picture, texel.x, texel.y,
+             glm::vec4(glm::normalize(glm::vec3(slope, 1.0f)) * 0.5f + 0.5f, 1.0f));
   }
-  paint::Dilate(&picture, texels, kDilation);
+  Dilate(&picture, texels, kSeamTexels);
   return picture;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -3,20 +3,23 @@
 
 #include <vector>
 
-#include "authoring/paint/uv_raster.h"
+#include "authoring/paint/surface_texels.h"
 #include "character/character.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
-// An eyeball seen from the front, 8-bit sRGB: the picture's centre is the pupil, and distance from
-// it is the angle from the axis of sight, half the picture's width being kEyePictureAngle.
+// An eyeball seen from the front, 8-bit sRGB. The pupil is in the centre of the picture. The
+// distance from it is the angle from the line of sight; half the picture's width is
+// kEyePictureAngle.
 inline constexpr float kEyePictureAngle = 1.75f;  // radians
-[[nodiscard]] Picture PaintEye(int size);
+[[nodiscard]] character::Picture PaintEye(int size);
 
-// 8-bit sRGB cloth: trousers below `waist` (model space, metres), a shirt above, a subtle weave.
-[[nodiscard]] Picture PaintCloth(const std::vector<paint::Texel>& texels, float waist, int size);
+// Cloth, 8-bit sRGB: trousers below `waist` (model space, metres), a shirt above, a subtle weave.
+[[nodiscard]] character::Picture PaintCloth(const std::vector<SurfaceTexel>& texels, float waist,
+                                            int size);
 
-// Tangent-space normal map of the weave, 8 bits, green up.
-[[nodiscard]] Picture PaintWeaveNormals(const std::vector<paint::Texel>& texels, int size);
+// The weave as a tangent-space normal map, 8 bits, green up.
+[[nodiscard]] character::Picture PaintWeaveNormals(const std::vector<SurfaceTexel>& texels,
+                                                   int size);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -13,14 +13,10 @@
 #include "authoring/paint/canvas.h"
 #include "authoring/paint/noise.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
-using paint::Texel;
-
-constexpr int kDilation = 16;
-
-// sRGB in [0, 1]. What the eye reads as living skin is the difference between the regions.
+// sRGB in [0, 1]. Skin looks alive because of the differences between its regions.
 constexpr glm::vec3 kSkin{0.80f, 0.615f, 0.52f};
 constexpr glm::vec3 kRed{0.77f, 0.48f, 0.42f};
 constexpr glm::vec3 kYellow{0.82f, 0.66f, 0.54f};
@@ -30,16 +26,16 @@ constexpr glm::vec3 kMouth{0.25f, 0.09f, 0.085f};
 constexpr glm::vec3 kBrow{0.23f, 0.165f, 0.13f};
 constexpr glm::vec3 kStubble{0.17f, 0.12f, 0.095f};
 
-// How much of the face's front a point belongs to: keeps features off the inside of the mouth,
-// whose surface lies close behind the lips.
-float Front(const Texel& texel) { return glm::smoothstep(-0.1f, 0.35f, texel.normal.z); }
+// How much a point belongs to the front of the face. This keeps features off the inside of the
+// mouth, which is close behind the lips.
+float Front(const SurfaceTexel& texel) { return glm::smoothstep(-0.1f, 0.35f, texel.normal.z); }
 
 float Redness(const glm::vec3& p, const FaceLandmarks& face) {
   float red = 0.4f * FadeOut(glm::distance(p, face.nose_tip), 0.0f, face.Millimetres(22.0f));
   for (const FaceLandmarks::Side& side : face.sides) {
     const glm::vec3 apple = glm::mix(side.cheek, side.fold_top, 0.35f);
     red = std::max(red, 0.42f * FadeOut(glm::distance(p, apple), 0.0f, face.Millimetres(36.0f)));
-    glm::vec3 ear = side.temple;  // ears lie level with the temples, well behind them
+    glm::vec3 ear = side.temple;  // ears are level with the temples, well behind them
     ear.z = face.head.z;
     red = std::max(red, 0.6f * FadeOut(glm::distance(p, ear), face.Millimetres(10.0f),
                                        face.Millimetres(40.0f)));
@@ -47,7 +43,7 @@ float Redness(const glm::vec3& p, const FaceLandmarks& face) {
   return red;
 }
 
-// Distance as seen from the front: lips and brows curve round the face, away from straight lines.
+// The distance seen from the front, since lips and brows curve around the face.
 float FrontDistance(glm::vec3 p, std::initializer_list<glm::vec3> line) {
   p.z = 0.0f;
   float nearest = 1.0f;
@@ -64,7 +60,7 @@ float Lips(const glm::vec3& p, const FaceLandmarks& face) {
   float amount = 0.0f;
   for (const FaceLandmarks::Side& side : face.sides) {
     const glm::vec3 corner = glm::mix(side.fold_bottom, side.mouth_corner, 0.4f);
-    if (p.z < corner.z - face.Millimetres(8.0f)) continue;  // the back of the head
+    if (p.z < corner.z - face.Millimetres(8.0f)) continue;  // back of the head
     const float along =
         std::clamp(std::abs(p.x - above.x) / std::abs(corner.x - above.x), 0.0f, 1.0f);
     const float half = face.Millimetres(glm::mix(3.9f, 0.9f, along * along));
@@ -75,8 +71,8 @@ float Lips(const glm::vec3& p, const FaceLandmarks& face) {
   return amount;
 }
 
-// Hairs of a brow: noise drawn out along them. They stand up at the nose and lie down toward the
-// temple. `out`, `up` in millimetres from the inner end, `along` in [0, 1] from it.
+// The hairs of a brow: noise that is stretched along them. Hairs stand up at the nose and lie down
+// toward the temple. `out` and `up`: millimetres from the inner end; `along`: [0, 1] from there.
 float BrowHairs(float out, float up, float along) {
   const float rise = glm::mix(1.2f, 0.15f, glm::smoothstep(0.0f, 0.35f, along));
   const glm::vec2 hair(std::cos(rise), std::sin(rise));
@@ -97,7 +93,7 @@ float Brow(const glm::vec3& p, const FaceLandmarks& face) {
     arch.y += face.Millimetres(1.0f);
     end.y = glm::mix(arch.y, end.y, 0.4f);
     const float distance = FrontDistance(p, {inner, arch, end});
-    // Thick at the nose, thin at the temple, and ragged: single hairs stand out.
+    // Thick at the nose, thin at the temple, and ragged, so that single hairs show.
     const float along = std::clamp((p.x - inner.x) / (end.x - inner.x), 0.0f, 1.0f);
     const float millimetre = face.Millimetres(1.0f);
     const float hairs =
@@ -139,7 +135,7 @@ float LidShade(const glm::vec3& p, const FaceLandmarks& face) {
   return shade;
 }
 
-glm::vec3 SkinColour(const Texel& texel, const FaceLandmarks& face) {
+glm::vec3 SkinColour(const SurfaceTexel& texel, const FaceLandmarks& face) {
   const glm::vec3& p = texel.position;
   const float blotches = ValueNoise(p / face.Millimetres(11.0f)) - 0.5f;
   const float speckle = ValueNoise(p / face.Millimetres(1.7f)) - 0.5f;
@@ -160,7 +156,7 @@ glm::vec3 SkinColour(const Texel& texel, const FaceLandmarks& face) {
   return colour * (1.0f + 0.05f * blotches + 0.05f * speckle);
 }
 
-// Weight of the eight regions at a point, before overlaps are settled.
+// The weights of the eight regions at a point, before overlaps are resolved.
 std::array<float, 8> RegionFields(const glm::vec3& p, const FaceLandmarks& face) {
   std::array<float, 8> field{};
   const auto mm = [&face](float v) { return face.Millimetres(v); };
@@ -197,7 +193,7 @@ std::array<float, 8> RegionFields(const glm::vec3& p, const FaceLandmarks& face)
 }  // namespace
 
 float ScalpAmount(const glm::vec3& p, const FaceLandmarks& face) {
-  // Ears lie behind the temples, below the brows.
+  // Ears are behind the temples, below the brows.
   const FaceLandmarks::Side& side = face.sides[p.x > 0.0f ? 0 : 1];
   const glm::vec3 ear(1.1f * side.temple.x, side.eye.y - face.Millimetres(20.0f),
                       side.eye.z - face.Millimetres(86.0f));
@@ -206,62 +202,62 @@ float ScalpAmount(const glm::vec3& p, const FaceLandmarks& face) {
   return ScalpOf(p, face) * off_ear;
 }
 
-Picture PaintSkinColour(const std::vector<Texel>& texels, const FaceLandmarks& face, int size) {
-  Picture picture = paint::BlankPicture("skin_colour", size, size, 3);
-  for (const Texel& texel : texels) {
-    const glm::vec3 colour = SkinColour(texel, face);
-    std::uint8_t* out = paint::TexelAt(&picture, texel.x, texel.y);
-    for (int c = 0; c < 3; ++c) out[c] = paint::ToByte(colour[c]);
+character::Picture PaintMakeHumanSkin(const std::vector<SurfaceTexel>& texels,
+                                      const FaceLandmarks& face, int size) {
+  character::Picture picture = BlankPicture("skin_colour", size, size, 3);
+  for (const SurfaceTexel& texel : texels) {
+    SetTexel(&picture, texel.x, texel.y, glm::vec4(SkinColour(texel, face), 1.0f));
   }
-  paint::Dilate(&picture, texels, kDilation);
+  Dilate(&picture, texels, kSeamTexels);
   return picture;
 }
 
-Picture PaintSkinNormals(const std::vector<Texel>& texels, const FaceLandmarks& face, int size) {
+character::Picture PaintMakeHumanSkinNormals(const std::vector<SurfaceTexel>& texels,
+                                             const FaceLandmarks& face, int size) {
   const auto height = [&face](const glm::vec3& p) {
-    // Ridges of |noise| read as the net of fine furrows between pores.
+    // The magnitude of noise has sharp valleys, which look like the fine furrows between pores.
     const float net = std::abs(ValueNoise(p / face.Millimetres(1.6f)) - 0.5f);
     const float pores = ValueNoise(p / face.Millimetres(0.8f));
     return face.Millimetres(0.16f) * net + face.Millimetres(0.05f) * pores;
   };
   const float step = face.Millimetres(0.25f);
-  Picture picture = paint::BlankPicture("skin_normal", size, size, 3);
+  character::Picture picture = BlankPicture("skin_normal", size, size, 3);
   for (std::size_t i = 0; i < picture.pixels.size(); ++i)
     picture.pixels[i] = i % 3 == 2 ? 255 : 128;
-  for (const Texel& texel : texels) {
+  for (const SurfaceTexel& texel : texels) {
     const auto slope = [&](const glm::vec3& along) {
       return (height(texel.position + along * step) - height(texel.position - along * step)) /
              (2.0f * step);
     };
     const glm::vec3 n =
         glm::normalize(glm::vec3(-slope(texel.tangent), -slope(texel.bitangent), 1.0f));
-    std::uint8_t* out = paint::TexelAt(&picture, texel.x, texel.y);
-    for (int c = 0; c < 3; ++c) out[c] = paint::ToByte(n[c] * 0.5f + 0.5f);
+    SetTexel(&picture, texel.x, texel.y, glm::vec4(n * 0.5f + 0.5f, 1.0f));
   }
-  paint::Dilate(&picture, texels, kDilation);
+  Dilate(&picture, texels, kSeamTexels);
   return picture;
 }
 
-FaceMasks PaintFaceMasks(const std::vector<Texel>& texels, const FaceLandmarks& face, int size) {
-  FaceMasks masks{paint::BlankPicture("face_masks_a", size, size, 4),
-                  paint::BlankPicture("face_masks_b", size, size, 4)};
-  for (const Texel& texel : texels) {
+FaceMasks PaintFaceMasks(const std::vector<SurfaceTexel>& texels, const FaceLandmarks& face,
+                         int size) {
+  FaceMasks masks{BlankPicture("face_masks_a", size, size, 4),
+                  BlankPicture("face_masks_b", size, size, 4)};
+  for (const SurfaceTexel& texel : texels) {
     std::array<float, 8> field = RegionFields(texel.position, face);
     float sum = 0.0f;
     for (const float value : field) sum += value;
-    // Temples face sideways and still wrinkle; what faces backwards does not.
+    // Temples face sideways and still wrinkle. Surfaces that face backward do not.
     const float forward = glm::smoothstep(-0.5f, -0.1f, texel.normal.z);
     const float scale = forward / std::max(sum, 1.0f);
-    std::uint8_t* first = paint::TexelAt(&masks.first, texel.x, texel.y);
-    std::uint8_t* second = paint::TexelAt(&masks.second, texel.x, texel.y);
+    std::uint8_t* first = TexelAt(&masks.first, texel.x, texel.y);
+    std::uint8_t* second = TexelAt(&masks.second, texel.x, texel.y);
     for (std::size_t c = 0; c < 4; ++c) {
-      first[c] = paint::ToByte(field[c] * scale);
-      second[c] = paint::ToByte(field[4 + c] * scale);
+      first[c] = ToByte(field[c] * scale);
+      second[c] = ToByte(field[4 + c] * scale);
     }
   }
-  paint::Dilate(&masks.first, texels, kDilation);
-  paint::Dilate(&masks.second, texels, kDilation);
+  Dilate(&masks.first, texels, kSeamTexels);
+  Dilate(&masks.second, texels, kSeamTexels);
   return masks;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -16,7 +16,7 @@
 #include "character/package/rig_report.h"
 #include "character/source_notes.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 using wrinkle::JointRole;
@@ -32,7 +32,7 @@ std::string Number(float value) {
   return text;
 }
 
-bool IsDegenerate(const Mesh& mesh, std::size_t triangle) {
+bool IsDegenerate(const character::Mesh& mesh, std::size_t triangle) {
   const glm::vec3& a = mesh.vertices[mesh.indices[triangle]].position;
   const glm::vec3& b = mesh.vertices[mesh.indices[triangle + 1]].position;
   const glm::vec3& c = mesh.vertices[mesh.indices[triangle + 2]].position;
@@ -42,10 +42,11 @@ bool IsDegenerate(const Mesh& mesh, std::size_t triangle) {
 
 class Checker {
  public:
-  Checker(const Character& character, const SourceNotes& notes, bool rig_given)
+  Checker(const character::Character& character, const character::SourceNotes& notes,
+          bool rig_given)
       : character_(character), notes_(notes), rig_given_(rig_given) {}
 
-  CharacterReport Run(const SkeletonMaps& maps) {
+  CharacterReport Run(const character::SkeletonMaps& maps) {
     report_.name = character_.name;
     report_.joints = FindJoints(character_.skeleton, maps);
     report_.space = FindCharacterSpace(character_, report_.joints);
@@ -72,7 +73,7 @@ class Checker {
   void CountAll() {
     std::size_t vertices = 0;
     std::size_t triangles = 0;
-    for (const Mesh& mesh : character_.meshes) {
+    for (const character::Mesh& mesh : character_.meshes) {
       vertices += mesh.vertices.size();
       triangles += mesh.indices.size() / 3;
     }
@@ -88,7 +89,7 @@ class Checker {
 
   void CheckMeshes() {
     const bool skinned = std::any_of(notes_.meshes.begin(), notes_.meshes.end(),
-                                     [](const MeshNotes& mesh) { return mesh.skinned; });
+                                     [](const character::MeshNotes& mesh) { return mesh.skinned; });
     if (!skinned) {
       Find(Severity::kError, "no-skin", {}, "no mesh is skinned: nothing bends, nothing folds",
            "bind the mesh to its skeleton and export both");
@@ -105,7 +106,7 @@ class Checker {
     }
   }
 
-  void CheckMesh(const Mesh& mesh, const MeshNotes& notes) {
+  void CheckMesh(const character::Mesh& mesh, const character::MeshNotes& notes) {
     const std::string where = "mesh '" + mesh.name + "'";
     if (!notes.has_uvs) {
       Find(Severity::kError, "uv-missing", where, "there are no UVs, so no map can lie on it",
@@ -143,7 +144,7 @@ class Checker {
     }
   }
 
-  // Meshes of one material share their pictures, and so their UVs' space.
+  // Meshes with the same material share pictures and therefore UV space.
   void CheckAtlases() {
     std::map<int, std::vector<int>> meshes_of;
     for (std::size_t m = 0; m < character_.meshes.size(); ++m) {
@@ -151,16 +152,16 @@ class Checker {
       meshes_of[character_.meshes[m].material].push_back(static_cast<int>(m));
     }
     for (const auto& [material, meshes] : meshes_of) {
-      const Material* known =
+      const character::Material* known =
           material < 0 ? nullptr : &character_.materials[static_cast<std::size_t>(material)];
-      const bool wrinkles = known != nullptr && (known->kind == Material::Kind::kSkin ||
-                                                 known->kind == Material::Kind::kCloth);
+      const bool wrinkles = known != nullptr && (known->kind == character::Material::Kind::kSkin ||
+                                                 known->kind == character::Material::Kind::kCloth);
       if (wrinkles) CheckAtlas("material '" + known->name + "'", meshes);
     }
   }
 
   void CheckAtlas(const std::string& where, const std::vector<int>& meshes) {
-    const bake::UvReport uvs = bake::CheckUvs(character_, meshes);
+    const UvReport uvs = CheckUvs(character_, meshes);
     if (uvs.no_uvs()) {
       Find(Severity::kError, "uv-missing", where, "all UVs lie in one place",
            "unwrap it without overlaps");
@@ -169,7 +170,7 @@ class Checker {
            Count(uvs.unmapped_triangles, "triangle has", "triangles have") + " no area in the UVs",
            "unwrap them, too");
     }
-    if (uvs.overlapping > bake::kTolerableUvOverlap) {
+    if (uvs.overlapping > kTolerableUvOverlap) {
       const std::string place = uvs.example ? ", first at u " + Number(uvs.example->uv.x) + ", v " +
                                                   Number(uvs.example->uv.y) + " (v down)"
                                             : std::string();
@@ -247,12 +248,12 @@ class Checker {
       return;
     }
     std::vector<std::string> embedded;
-    for (const Picture& picture : character_.pictures) embedded.push_back(picture.name);
-    RigReportOptions options;
+    for (const character::Picture& picture : character_.pictures) embedded.push_back(picture.name);
+    character::RigReportOptions options;
     options.skeleton = &character_.skeleton;
     options.folder = character_.folder;
     options.embedded_pictures = embedded;
-    const RigReport rig = ReportOnRig(character_.rig, options);
+    const character::RigReport rig = character::ReportOnRig(character_.rig, options);
     if (!rig.binding.ok()) {
       Find(Severity::kError, "rig-binding", rig.binding.where(), rig.binding.what(),
            rig.binding.todo());
@@ -265,8 +266,8 @@ class Checker {
     }
   }
 
-  const Character& character_;
-  const SourceNotes& notes_;
+  const character::Character& character_;
+  const character::SourceNotes& notes_;
   const bool rig_given_;
   CharacterReport report_;
 };
@@ -284,18 +285,19 @@ std::size_t CharacterReport::Count(Severity severity) const {
                     [&](const Finding& finding) { return finding.severity == severity; }));
 }
 
-CharacterReport CheckCharacter(const Character& character, const SourceNotes& notes,
-                               const SkeletonMaps& maps, bool rig_given) {
+CharacterReport CheckCharacter(const character::Character& character,
+                               const character::SourceNotes& notes,
+                               const character::SkeletonMaps& maps, bool rig_given) {
   return Checker(character, notes, rig_given).Run(maps);
 }
 
-std::size_t CountDegenerateTriangles(const Mesh& mesh) {
+std::size_t CountDegenerateTriangles(const character::Mesh& mesh) {
   std::size_t count = 0;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) count += IsDegenerate(mesh, i);
   return count;
 }
 
-std::size_t DropDegenerateTriangles(Mesh* mesh) {
+std::size_t DropDegenerateTriangles(character::Mesh* mesh) {
   std::vector<std::uint32_t> kept;
   for (std::size_t i = 0; i + 2 < mesh->indices.size(); i += 3) {
     if (IsDegenerate(*mesh, i)) continue;
@@ -307,4 +309,4 @@ std::size_t DropDegenerateTriangles(Mesh* mesh) {
   return dropped;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -10,16 +10,16 @@
 #include "character/character.h"
 #include "character/source_notes.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 enum class Severity {
-  kError,    // wrinkles cannot be baked or drawn
-  kWarning,  // they can, and will look or move wrong
-  kNote,     // worth knowing
+  kError,    // prevents baking or drawing wrinkles
+  kWarning,  // wrinkles work, but look or move wrong
+  kNote,     // for information
 };
 [[nodiscard]] const char* ToString(Severity severity);  // "error", "warning", "note"
 
-// One thing that is missing or wrong.
+// One fault or missing feature.
 struct Finding {
   Severity severity = Severity::kNote;
   std::string code;   // stable, for scripts: "uv-overlap"
@@ -28,21 +28,22 @@ struct Finding {
   std::string todo;
 };
 
-// What a character lacks for wrinkles.
+// The state of a character with respect to wrinkles.
 struct CharacterReport {
   std::string name;
   std::vector<std::pair<std::string, std::size_t>> counts;  // "joints" -> 163
   CharacterSpace space;
   FoundJoints joints;
-  std::size_t face_joints = 0;    // below the head, eyes and jaw aside
+  std::size_t face_joints = 0;    // below the head, without eyes and jaw
   std::vector<Finding> findings;  // errors first
 
   [[nodiscard]] std::size_t Count(Severity severity) const;
 };
 
-// Looks at a character that was read leniently, and at the notes that its reader took.
+// Checks a character that was read leniently, together with the notes of its reader.
 //
-// `rig_given`: Character::rig is meant to go with it; where none is, that is a note, not an error.
+// `rig_given`: the caller attached Character::rig. Without it, a missing rig is a note, not an
+// error.
 //
 // Codes
 //   errors    no-skin, uv-missing, unskinned-vertices, degenerate-triangles, rig-binding
@@ -50,17 +51,13 @@ struct CharacterReport {
 //             picture-missing, units, up-axis, joint-names, no-roles, rig, rig-picture
 //   notes     uv-outside, weights-truncated, tangents-missing, blend-shapes, roles-missing,
 //             no-face-joints, no-rig
-[[nodiscard]] CharacterReport CheckCharacter(const Character& character, const SourceNotes& notes,
-                                             const SkeletonMaps& maps, bool rig_given);
+[[nodiscard]] CharacterReport CheckCharacter(const character::Character& character,
+                                             const character::SourceNotes& notes,
+                                             const character::SkeletonMaps& maps, bool rig_given);
 
-// For a terminal.
-[[nodiscard]] std::string ToText(const CharacterReport& report);
-// One JSON object; the fields are those above.
-[[nodiscard]] std::string ToJson(const CharacterReport& report);
+// Counts triangles without area: coinciding corners or corners on one line.
+[[nodiscard]] std::size_t CountDegenerateTriangles(const character::Mesh& mesh);
+// Removes them and returns their number. The mesh may end up without triangles.
+std::size_t DropDegenerateTriangles(character::Mesh* mesh);
 
-// Triangles without area: two corners in one place, or all on a line.
-[[nodiscard]] std::size_t CountDegenerateTriangles(const Mesh& mesh);
-// Takes them out; how many there were. A mesh may be left without triangles.
-std::size_t DropDegenerateTriangles(Mesh* mesh);
-
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A CharacterReport for people and for scripts.
+#include "authoring/import/model/character_report.h"
+
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
 
-#include "authoring/import/model/character_check.h"
-
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 std::string RolesLine(const CharacterReport& report) {
@@ -64,4 +63,4 @@ std::string ToJson(const CharacterReport& report) {
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -15,24 +15,25 @@
 
 #include "base/status.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 using wrinkle::JointRole;
 using wrinkle::kNoJoint;
 
-glm::vec3 At(const wrinkle::Skeleton& skeleton, int joint) {
+glm::vec3 RestPlace(const wrinkle::Skeleton& skeleton, int joint) {
   return glm::vec3(skeleton.rest_model()[static_cast<std::size_t>(joint)][3]);
 }
 
-// From the subject's right to its left, over all pairs that there are; zero for none.
+// The direction from the subject's right to its left, summed over all available pairs; zero if
+// none.
 glm::vec3 Across(const wrinkle::Skeleton& skeleton, const FoundJoints& joints) {
   glm::vec3 sum(0.0f);
   for (const JointRole left : {JointRole::kLeftUpperLeg, JointRole::kLeftUpperArm,
                                JointRole::kLeftShoulder, JointRole::kLeftEye}) {
     const int l = joints.First(left);
     const int r = joints.First(wrinkle::MirrorOf(left));
-    if (l != kNoJoint && r != kNoJoint) sum += At(skeleton, l) - At(skeleton, r);
+    if (l != kNoJoint && r != kNoJoint) sum += RestPlace(skeleton, l) - RestPlace(skeleton, r);
   }
   return sum;
 }
@@ -48,7 +49,8 @@ glm::vec3 Up(const wrinkle::Skeleton& skeleton, const FoundJoints& joints) {
     if (lowest == kNoJoint) lowest = joint;
     highest = joint;
   }
-  return lowest == highest ? glm::vec3(0.0f) : At(skeleton, highest) - At(skeleton, lowest);
+  return lowest == highest ? glm::vec3(0.0f)
+                           : RestPlace(skeleton, highest) - RestPlace(skeleton, lowest);
 }
 
 int LargestComponent(const glm::vec3& v, int except) {
@@ -64,7 +66,7 @@ std::string AxisName(const glm::vec3& v) {
   return std::string(1, v[axis] < 0.0f ? '-' : '+') + "XYZ"[axis];
 }
 
-// The unit that brings `height` nearest to that of a person, where it is out of all proportion.
+// The unit that brings `height` nearest to that of a person. 1 if the height is plausible already.
 float UsualScale(float height, bool is_body) {
   const float usual = is_body ? 1.7f : 0.3f;
   if (height > usual / 3.5f && height < usual * 3.0f) return 1.0f;
@@ -74,8 +76,8 @@ float UsualScale(float height, bool is_body) {
   });
 }
 
-// Where a vertex stands in the rest pose, as a matrix on its position.
-glm::mat4 RestMatrix(const Vertex& vertex, std::span<const glm::mat4> skin_matrices) {
+// The matrix that moves a vertex to the rest pose.
+glm::mat4 RestMatrix(const character::Vertex& vertex, std::span<const glm::mat4> skin_matrices) {
   glm::mat4 blend(0.0f);
   for (int i = 0; i < 4; ++i) {
     if (vertex.skin_weights[i] > 0.0f) {
@@ -85,7 +87,7 @@ glm::mat4 RestMatrix(const Vertex& vertex, std::span<const glm::mat4> skin_matri
   return blend;
 }
 
-std::vector<glm::mat4> RestSkinMatrices(const Character& character) {
+std::vector<glm::mat4> RestSkinMatrices(const character::Character& character) {
   std::vector<glm::mat4> matrices;
   for (std::size_t j = 0; j < character.inverse_bind_matrices.size(); ++j) {
     matrices.push_back(character.skeleton.rest_model()[j] * character.inverse_bind_matrices[j]);
@@ -98,14 +100,14 @@ glm::vec3 UnitOr(const glm::vec3& v, const glm::vec3& otherwise) {
   return length > 1e-12f ? v / length : otherwise;
 }
 
-void MoveVertex(const glm::mat4& m, const glm::mat3& normals, Vertex* vertex) {
+void MoveVertex(const glm::mat4& m, const glm::mat3& normals, character::Vertex* vertex) {
   vertex->position = glm::vec3(m * glm::vec4(vertex->position, 1.0f));
   vertex->normal = UnitOr(normals * vertex->normal, vertex->normal);
   const glm::vec3 tangent(vertex->tangent);
   vertex->tangent = glm::vec4(UnitOr(glm::mat3(m) * tangent, tangent), vertex->tangent.w);
 }
 
-// The same joints with other positions in model space, turned by `turn`, without scales.
+// The same joints at rotated and scaled positions in model space, without scales of their own.
 Result<wrinkle::Skeleton> Rebuild(const wrinkle::Skeleton& from, const glm::mat3& turn,
                                   float scale) {
   const auto moved = [&](const glm::vec3& p) { return turn * p * scale; };
@@ -124,7 +126,7 @@ Result<wrinkle::Skeleton> Rebuild(const wrinkle::Skeleton& from, const glm::mat3
     } else {
       const glm::quat above =
           rotation * from.rest_model_rotations()[static_cast<std::size_t>(parent)];
-      joint.rest.translation = glm::inverse(above) * (position - moved(At(from, parent)));
+      joint.rest.translation = glm::inverse(above) * (position - moved(RestPlace(from, parent)));
     }
     const glm::vec3 tail = glm::vec3(model * glm::vec4(from.tails()[j], 1.0f));
     joint.tail = glm::inverse(axes) * (moved(tail) - position);
@@ -141,7 +143,7 @@ bool IsNearIdentity(const glm::mat4& m) {
   return true;
 }
 
-Status ReplaceSkeleton(const glm::mat3& turn, float scale, Character* character) {
+Status ReplaceSkeleton(const glm::mat3& turn, float scale, character::Character* character) {
   Result<wrinkle::Skeleton> skeleton = Rebuild(character->skeleton, turn, scale);
   FURROW_RETURN_IF_ERROR(skeleton);
   character->skeleton = std::move(*skeleton);
@@ -154,7 +156,8 @@ Status ReplaceSkeleton(const glm::mat3& turn, float scale, Character* character)
 
 }  // namespace
 
-CharacterSpace FindCharacterSpace(const Character& character, const FoundJoints& joints) {
+CharacterSpace FindCharacterSpace(const character::Character& character,
+                                  const FoundJoints& joints) {
   CharacterSpace space;
   space.is_body = joints.First(JointRole::kLeftUpperLeg) != kNoJoint ||
                   joints.First(JointRole::kRightUpperLeg) != kNoJoint;
@@ -175,8 +178,8 @@ CharacterSpace FindCharacterSpace(const Character& character, const FoundJoints&
   const std::vector<glm::mat4> skin = RestSkinMatrices(character);
   float low = std::numeric_limits<float>::max();
   float high = std::numeric_limits<float>::lowest();
-  for (const Mesh& mesh : character.meshes) {
-    for (const Vertex& vertex : mesh.vertices) {
+  for (const character::Mesh& mesh : character.meshes) {
+    for (const character::Vertex& vertex : mesh.vertices) {
       const glm::vec4 position(vertex.position, 1.0f);
       const float along = glm::dot(glm::vec3(RestMatrix(vertex, skin) * position), up);
       low = std::min(low, along);
@@ -188,15 +191,15 @@ CharacterSpace FindCharacterSpace(const Character& character, const FoundJoints&
   return space;
 }
 
-Status MoveToSpace(const glm::mat3& rotation, float scale, Character* character) {
+Status MoveToSpace(const glm::mat3& rotation, float scale, character::Character* character) {
   const glm::mat4 move(rotation * scale);
-  for (Mesh& mesh : character->meshes) {
-    for (Vertex& vertex : mesh.vertices) MoveVertex(move, rotation, &vertex);
+  for (character::Mesh& mesh : character->meshes) {
+    for (character::Vertex& vertex : mesh.vertices) MoveVertex(move, rotation, &vertex);
   }
   return ReplaceSkeleton(rotation, scale, character);
 }
 
-Status BringToRestPose(Character* character) {
+Status BringToRestPose(character::Character* character) {
   const std::vector<glm::mat4> skin = RestSkinMatrices(*character);
   const bool at_rest = std::all_of(skin.begin(), skin.end(), IsNearIdentity);
   const auto rest = character->skeleton.rest_pose();
@@ -204,9 +207,9 @@ Status BringToRestPose(Character* character) {
     return glm::length(t.scale - glm::vec3(1.0f)) > 1e-5f;
   });
   if (at_rest && !scaled) return {};
-  for (Mesh& mesh : character->meshes) {
+  for (character::Mesh& mesh : character->meshes) {
     bool mirrored = false;
-    for (Vertex& vertex : mesh.vertices) {
+    for (character::Vertex& vertex : mesh.vertices) {
       const glm::mat4 m = RestMatrix(vertex, skin);
       const float determinant = glm::determinant(glm::mat3(m));
       const bool flat = std::abs(determinant) < 1e-30f;
@@ -214,10 +217,10 @@ Status BringToRestPose(Character* character) {
       MoveVertex(m, flat ? glm::mat3(m) : glm::transpose(glm::inverse(glm::mat3(m))), &vertex);
     }
     for (std::size_t i = 0; mirrored && i + 2 < mesh.indices.size(); i += 3) {
-      std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);  // keep the outside outside
+      std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);  // keeps the winding after a mirroring
     }
   }
   return ReplaceSkeleton(glm::mat3(1.0f), 1.0f, character);
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

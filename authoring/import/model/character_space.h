@@ -9,28 +9,30 @@
 #include "authoring/import/model/joint_finder.h"
 #include "character/character.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
-// How a character stands in the space of its file, and what brings it to ours: metres, +Y up,
-// facing +Z.
+// The orientation and size of a character in its file, and the conversion to metres, +Y up, facing
+// +Z.
 struct CharacterSpace {
-  glm::mat3 rotation{1.0f};  // a quarter turn about an axis, or several; identity: it stands right
-  float scale = 1.0f;        // a usual unit (0.01, 0.0254, 10, ...); 1: the size is that of people
-  float height = 0.0f;       // of the mesh along its own up, in the file's unit
-  bool is_body = false;      // it has legs: some 1.7 m are due, else some 0.3 m
-  std::string axes;          // "up +Z, facing -Y" as it stands; empty: the joints do not tell
+  glm::mat3 rotation{1.0f};  // quarter turns about axes; identity: the orientation is right
+  float scale = 1.0f;   // factor of a common unit (0.01, 0.0254, 10, ...); 1: the size is plausible
+  float height = 0.0f;  // of the mesh along its own up direction, in the file's unit
+  bool is_body = false;  // has legs: a height of about 1.7 m is expected, otherwise about 0.3 m
+  std::string axes;      // "up +Z, facing -Y", as in the file; empty: unknown
 };
 
-// From the joints (head over hips, left beside right) and the extent of the meshes.
-[[nodiscard]] CharacterSpace FindCharacterSpace(const Character& character,
+// Determines the space from the joints (head above hips, left beside right) and the extent of the
+// meshes.
+[[nodiscard]] CharacterSpace FindCharacterSpace(const character::Character& character,
                                                 const FoundJoints& joints);
 
-// Turns and scales a character: skeleton, meshes and inverse bind matrices.
-[[nodiscard]] Status MoveToSpace(const glm::mat3& rotation, float scale, Character* character);
+// Rotates and scales a character: skeleton, meshes and inverse bind matrices.
+[[nodiscard]] Status MoveToSpace(const glm::mat3& rotation, float scale,
+                                 character::Character* character);
 
-// Brings vertices to where the skeleton's rest pose puts them and takes scales out of the joints,
-// so that inverse bind matrices are the inverses of the rest pose. A character that is so already
-// stays as it is, to the bit.
-[[nodiscard]] Status BringToRestPose(Character* character);
+// Moves vertices to the skeleton's rest pose and removes scales from the joints, so that inverse
+// bind matrices are the inverses of the rest pose. A character that already meets this stays
+// exactly as it is.
+[[nodiscard]] Status BringToRestPose(character::Character* character);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

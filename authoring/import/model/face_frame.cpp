@@ -6,14 +6,14 @@
 
 #include <glm/geometric.hpp>
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 using wrinkle::JointRole;
 using wrinkle::kNoJoint;
 using wrinkle::Skeleton;
 
-constexpr float kFar = 0.4f;  // of the distance between the eyes
+constexpr float kFar = 0.4f;  // maximum distance of a match, in distances between the eyes
 
 struct FaceFrame {
   glm::vec3 middle;
@@ -31,7 +31,7 @@ std::optional<FaceFrame> FrameOf(const Skeleton& skeleton, const FoundJoints& jo
   return FaceFrame{0.5f * (left + right), unit};
 }
 
-// A place that a joint may stand for, in the frame of its face.
+// A position that may match a joint, in the frame of its face.
 struct Place {
   glm::vec3 at;
   int joint;
@@ -114,4 +114,4 @@ FaceMatch MatchFaces(const Skeleton& model, const FoundJoints& model_joints,
   return match;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

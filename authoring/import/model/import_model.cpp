@@ -4,14 +4,14 @@
 #include <string_view>
 #include <utility>
 
-#include "authoring/import/model/assimp.h"
+#include "authoring/import/assimp/assimp.h"
 #include "base/ascii.h"
 #include "base/files.h"
 #include "base/status.h"
 #include "character/package/package.h"
 #include "gltf/limits.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 namespace fs = std::filesystem;
@@ -23,9 +23,9 @@ bool IsGltf(std::string_view bytes, const std::string& extension) {
          extension == ".vrm";
 }
 
-// What is in the bytes of a model, `where` of an error being a field.
+// Reads a model from its bytes. `where` of an error is a field.
 Status Parse(std::string_view bytes, const fs::path& path, OpenedModel* model) {
-  const ReadOptions options{.lenient = true, .notes = &model->notes};
+  const character::ReadOptions options{.lenient = true, .notes = &model->notes};
   const std::string extension = Extension(path);
   std::string converted;
   if (!IsGltf(bytes, extension)) {
@@ -42,7 +42,8 @@ Status Parse(std::string_view bytes, const fs::path& path, OpenedModel* model) {
     converted = std::move(foreign->glb);
     bytes = converted;
   }
-  Result<Character> character = ParseCharacter(bytes, path.parent_path(), options);
+  Result<character::Character> character =
+      character::ParseCharacter(bytes, path.parent_path(), options);
   FURROW_RETURN_IF_ERROR(character);
   model->character = std::move(*character);
   return BringToRestPose(&model->character);
@@ -53,13 +54,13 @@ std::string Sentence(const Finding& finding) {
          (finding.todo.empty() ? "" : " (" + finding.todo + ")");
 }
 
-// Leaves out what has no area; meshes that are nothing else go, too.
+// Removes triangles without area, and meshes that have no others.
 void DropDegenerates(OpenedModel* model) {
   std::size_t dropped = 0;
-  std::vector<Mesh> kept;
-  std::vector<MeshNotes> notes;
+  std::vector<character::Mesh> kept;
+  std::vector<character::MeshNotes> notes;
   for (std::size_t m = 0; m < model->character.meshes.size(); ++m) {
-    Mesh& mesh = model->character.meshes[m];
+    character::Mesh& mesh = model->character.meshes[m];
     dropped += DropDegenerateTriangles(&mesh);
     if (mesh.indices.empty()) continue;
     kept.push_back(std::move(mesh));
@@ -74,7 +75,8 @@ void DropDegenerates(OpenedModel* model) {
 
 void BindUnskinned(OpenedModel* model) {
   int bound = 0;
-  for (MeshNotes& notes : model->notes.meshes) bound += std::exchange(notes.unskinned_vertices, 0);
+  for (character::MeshNotes& notes : model->notes.meshes)
+    bound += std::exchange(notes.unskinned_vertices, 0);
   if (bound == 0) return;
   model->remarks.push_back(std::to_string(bound) + " unskinned vertices follow their neighbours");
 }
@@ -91,7 +93,7 @@ Result<OpenedModel> OpenModel(const fs::path& path) {
   return model;
 }
 
-Result<ImportedModel> ImportModel(const fs::path& path, const SkeletonMaps& maps,
+Result<ImportedModel> ImportModel(const fs::path& path, const character::SkeletonMaps& maps,
                                   const ModelOptions& options) {
   Result<OpenedModel> opened = OpenModel(path);
   FURROW_RETURN_IF_ERROR(opened);
@@ -124,4 +126,4 @@ Result<ImportedModel> ImportModel(const fs::path& path, const SkeletonMaps& maps
   return imported;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

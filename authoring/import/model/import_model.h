@@ -12,40 +12,41 @@
 #include "character/source_notes.h"
 #include "rig/skeleton_map.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
-// A model as it was read, with all that is wrong with it.
+// A model as it was read, including its faults.
 struct OpenedModel {
-  Character character;  // in the rest pose (BringToRestPose), otherwise as the file has it
-  SourceNotes notes;
-  std::vector<std::string> remarks;  // of a converter
+  character::Character character;  // in the rest pose (BringToRestPose), otherwise as in the file
+  character::SourceNotes notes;
+  std::vector<std::string> remarks;  // from the conversion
 };
 
-// Opens any skinned model leniently: glTF 2.0 (.glb, .gltf, .vrm, or by its first bytes) through
-// the reader of characters, everything else through assimp. Nothing but the file itself and the
-// pictures beside it that it names is read.
+// Opens any skinned model leniently: glTF 2.0 (.glb, .gltf, .vrm, or detected by its first bytes)
+// with the reader of characters, other formats with assimp. Only the file and the pictures that it
+// names are read.
 //
-// Errors, whose `where` begins with the path: kNotFound, kIo, kLimit, kParse, kSchema, kNonFinite,
-// kCyclic, kUnsupported (an extension that nobody reads).
+// Errors (`where` starts with the path): kNotFound, kIo, kLimit, kParse, kSchema, kNonFinite,
+// kCyclic, kUnsupported (unknown extension).
 [[nodiscard]] Result<OpenedModel> OpenModel(const std::filesystem::path& path);
 
 struct ModelOptions {
-  bool repair = false;         // leaves out degenerate triangles and binds unskinned vertices
-  std::optional<float> scale;  // metres in the file's unit; none: told from the height
+  bool repair = false;         // removes degenerate triangles and binds unskinned vertices
+  std::optional<float> scale;  // metres per unit of the file; empty: derived from the height
 };
 
 struct ImportedModel {
-  Character character;               // metres, +Y up, facing +Z; without a rig
-  std::vector<std::string> remarks;  // what was changed, what is not carried
+  character::Character character;    // metres, +Y up, facing +Z; without a rig
+  std::vector<std::string> remarks;  // what was changed, and what was lost
   std::vector<std::string> warnings;
 };
 
-// OpenModel(), then made fit to be drawn: turned, scaled, and repaired where `options` say so.
+// Opens a model with OpenModel() and prepares it for drawing: rotates, scales, and repairs it as
+// `options` say.
 //
-// Errors: OpenModel()'s, and kUnsupported for the first error that CheckCharacter() finds: no skin,
-// no UVs, unskinned vertices, degenerate triangles.
+// Errors: those of OpenModel(), and kUnsupported for the first error of CheckCharacter() (no skin,
+// no UVs, unskinned vertices, degenerate triangles).
 [[nodiscard]] Result<ImportedModel> ImportModel(const std::filesystem::path& path,
-                                                const SkeletonMaps& maps,
+                                                const character::SkeletonMaps& maps,
                                                 const ModelOptions& options = {});
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -10,14 +10,14 @@
 
 #include <glm/geometric.hpp>
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 using wrinkle::JointRole;
 using wrinkle::kNoJoint;
 using wrinkle::Skeleton;
 
-// Tells roles by the shape of the tree.
+// Determines roles from the shape of the hierarchy.
 class HierarchyReader {
  public:
   explicit HierarchyReader(const Skeleton& skeleton)
@@ -33,7 +33,7 @@ class HierarchyReader {
     }
   }
 
-  // Empty where the tree is not that of a body.
+  // Returns no roles if the hierarchy is not that of a body.
   wrinkle::JointRoles Run() {
     const std::optional<Fork> hips = FindFork(0, 3);
     if (!hips) return {};
@@ -49,7 +49,7 @@ class HierarchyReader {
     const bool first_is_left = FirstIsLeft(*hips, *chest);
     NameLeg(hips->pair.first, first_is_left);
     NameLeg(hips->pair.second, !first_is_left);
-    // The arm on the side of a leg is the one that is nearer to it.
+    // The arm nearer to a leg is on the same side.
     const glm::vec3 across = At(hips->pair.first) - At(hips->pair.second);
     const bool same = glm::dot(At(chest->pair.first) - At(chest->pair.second), across) > 0.0f;
     NameArm(chest->pair.first, first_is_left == same);
@@ -58,7 +58,7 @@ class HierarchyReader {
   }
 
  private:
-  // A joint with two limbs of one shape below it.
+  // A joint with two similar limbs below it.
   struct Fork {
     int at;
     std::pair<int, int> pair;
@@ -68,7 +68,7 @@ class HierarchyReader {
     return glm::vec3(skeleton_.rest_model()[static_cast<std::size_t>(joint)][3]);
   }
 
-  // The joints of the longest way down from `joint`, itself first.
+  // The joints of the longest path down from `joint`, including it.
   [[nodiscard]] std::vector<int> LongestWay(int joint) const {
     std::vector<int> way = {joint};
     for (;;) {
@@ -84,7 +84,7 @@ class HierarchyReader {
     }
   }
 
-  // The topmost fork at or below `from` whose limbs have `depth` joints or more.
+  // The topmost fork at or below `from` with limbs of at least `depth` joints.
   [[nodiscard]] std::optional<Fork> FindFork(int from, std::size_t depth) const {
     std::optional<Fork> best;
     float longest = 0.0f;
@@ -109,7 +109,7 @@ class HierarchyReader {
            LongestWay(a).size() >= depth && LongestWay(b).size() >= depth;
   }
 
-  // Spine, chest and upper chest from the hips to the arms; neck and head above.
+  // Spine, chest and upper chest from the hips to the arms; neck and head above them.
   void NameTrunk(int hips, const Fork& chest) {
     std::vector<int> trunk;
     for (int j = chest.at; j != hips; j = skeleton_.joint_parents()[j]) trunk.push_back(j);
@@ -124,17 +124,17 @@ class HierarchyReader {
       if (!is_arm && (neck < 0 || reach_[child] > reach_[neck])) neck = child;
     }
     if (neck < 0) return;
-    // A neck is what has but one joint below; the head is the first that branches or ends.
+    // A neck has a single joint below it. The first joint that branches or ends is the head.
     std::vector<int> way = {neck};
     while (children_[way.back()].size() == 1 && way.size() < 4) {
       way.push_back(children_[way.back()].front());
     }
-    if (way.size() > 2 && children_[way.back()].empty()) way.pop_back();  // the crown's end
+    if (way.size() > 2 && children_[way.back()].empty()) way.pop_back();  // end of the crown
     roles_[way.back()] = JointRole::kHead;
     for (std::size_t i = 0; i + 1 < way.size(); ++i) roles_[way[i]] = JointRole::kNeck;
   }
 
-  // By where the feet point; where they say nothing, the left is on the side of +X.
+  // The feet point forward. Without feet, the limb on the side of +X is the left one.
   [[nodiscard]] bool FirstIsLeft(const Fork& hips, const Fork& chest) const {
     const glm::vec3 up = At(chest.at) - At(hips.at);
     const glm::vec3 across = At(hips.pair.first) - At(hips.pair.second);
@@ -161,7 +161,7 @@ class HierarchyReader {
     }
   }
 
-  // The hand is where the fingers start; without fingers, the third or fourth joint.
+  // The hand is where the fingers start. Without fingers it is the third or fourth joint.
   void NameArm(int arm, bool is_left) {
     const std::vector<int> way = LongestWay(arm);
     std::size_t hand = std::min<std::size_t>(way.size() - 1, 3);
@@ -178,7 +178,7 @@ class HierarchyReader {
 
   const Skeleton& skeleton_;
   std::vector<std::vector<int>> children_;
-  std::vector<float> reach_;  // from a joint down to its furthest leaf
+  std::vector<float> reach_;  // distance from a joint down to its farthest leaf
   wrinkle::JointRoles roles_;
 };
 
@@ -194,8 +194,8 @@ int FoundJoints::Last(JointRole role) const {
   return found == roles.rend() ? kNoJoint : static_cast<int>(roles.rend() - found) - 1;
 }
 
-FoundJoints FindJoints(const Skeleton& skeleton, const SkeletonMaps& maps) {
-  SkeletonRoles known = maps.RolesOf(skeleton);
+FoundJoints FindJoints(const Skeleton& skeleton, const character::SkeletonMaps& maps) {
+  character::SkeletonRoles known = maps.RolesOf(skeleton);
   FoundJoints found;
   found.map = std::move(known.map);
   found.roles = found.map.empty() ? HierarchyReader(skeleton).Run() : std::move(known.roles);
@@ -209,4 +209,4 @@ FoundJoints FindJoints(const Skeleton& skeleton, const SkeletonMaps& maps) {
   return found;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

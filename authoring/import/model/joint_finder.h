@@ -7,22 +7,23 @@
 #include "wrinkle/skeleton/joint_role.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
-// Which joint is what, and how that was found out.
+// The roles of a skeleton's joints, and how they were determined.
 struct FoundJoints {
-  wrinkle::JointRoles roles;  // one a joint
-  std::string map;            // the skeleton map that knew the names; empty: told by the hierarchy
-  int num_roles = 0;          // different ones
+  wrinkle::JointRoles roles;  // one per joint
+  std::string map;            // the skeleton map that matched the names; empty: from the hierarchy
+  int num_roles = 0;          // number of different roles
 
-  // The topmost joint of a role, or the lowest; kNoJoint when nobody holds it.
+  // The topmost or the lowest joint of a role; kNoJoint if there is none.
   [[nodiscard]] int First(wrinkle::JointRole role) const;
   [[nodiscard]] int Last(wrinkle::JointRole role) const;
 };
 
-// Roles by the names that `maps` know; where no map knows the skeleton, by its hierarchy: the
-// branches of the body (two like legs and a spine, two like arms and a neck), and the sides by
-// where the toes point. A guess for a person to check.
-[[nodiscard]] FoundJoints FindJoints(const wrinkle::Skeleton& skeleton, const SkeletonMaps& maps);
+// Determines roles from names that `maps` contain. If no map fits, roles follow from the hierarchy:
+// one fork with two legs and a spine, another with two arms and a neck, and the direction of the
+// toes for the sides. That is a guess which a person should check.
+[[nodiscard]] FoundJoints FindJoints(const wrinkle::Skeleton& skeleton,
+                                     const character::SkeletonMaps& maps);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

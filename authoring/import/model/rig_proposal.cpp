@@ -12,7 +12,7 @@
 #include "authoring/import/model/face_frame.h"
 #include "wrinkle/skeleton/retarget.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 using wrinkle::Driver;
@@ -20,7 +20,7 @@ using wrinkle::JointRole;
 using wrinkle::kNoJoint;
 using wrinkle::Rig;
 
-glm::vec3 At(const KnownSkeleton& known, int joint) {
+glm::vec3 PlaceOf(const KnownSkeleton& known, int joint) {
   return glm::vec3(known.skeleton->rest_model()[static_cast<std::size_t>(joint)][3]);
 }
 
@@ -28,7 +28,7 @@ const std::string& NameOf(const KnownSkeleton& known, int joint) {
   return known.skeleton->joint_names()[static_cast<std::size_t>(joint)];
 }
 
-// A rig on its way to another skeleton.
+// Transfers a rig to another skeleton.
 class Proposer {
  public:
   Proposer(const Rig& from, const KnownSkeleton& model, const KnownSkeleton& target)
@@ -60,7 +60,7 @@ class Proposer {
   }
 
  private:
-  // Where each joint counts: at its control point, at its origin where no driver looks at it.
+  // The position that counts for each joint: its control point, or its origin if no driver uses it.
   static std::vector<glm::vec3> PointsOf(const Rig& rig, const wrinkle::Skeleton& skeleton) {
     std::vector<glm::vec3> points;
     for (const glm::mat4& model : skeleton.rest_model()) points.emplace_back(model[3]);
@@ -77,8 +77,9 @@ class Proposer {
     return points;
   }
 
-  // The target's joint for a joint of the model: by role, in a chain by its end. `above`: it is
-  // the upper end of a bone whose lower end is another joint, so of a chain the last one.
+  // The target's joint with the role of a joint of the model. In a chain of joints with one role it
+  // is the lower end; with `above`, which means that another joint is the lower end of the same
+  // bone, it is the upper end.
   [[nodiscard]] int ByRole(const std::string& name, bool above) const {
     const int joint = model_.skeleton->Find(name);
     if (joint == kNoJoint) return kNoJoint;
@@ -92,7 +93,7 @@ class Proposer {
     return kNoJoint;
   }
 
-  // The spine has as many names as joints: what is missing is stood in for by its neighbours.
+  // Spines have different numbers of joints. A missing joint is replaced by a neighbour.
   static std::vector<JointRole> Substitutes(JointRole role) {
     switch (role) {
       case JointRole::kChest: return {JointRole::kUpperChest, JointRole::kChest, JointRole::kSpine};
@@ -109,8 +110,8 @@ class Proposer {
       case Driver::Kind::kHinge: driver = CarryHinge(from); break;
       case Driver::Kind::kBall: driver = CarryBall(from); break;
       case Driver::Kind::kTwist: driver = CarryTwist(from); break;
-      case Driver::Kind::kBlendShape:      // of a tracker, not of a skeleton
-      case Driver::Kind::kStrain: return;  // of one mesh
+      case Driver::Kind::kBlendShape:      // belongs to a tracker, not to a skeleton
+      case Driver::Kind::kStrain: return;  // belongs to one mesh
     }
     if (driver) {
       drivers_.insert(from.name);
@@ -129,18 +130,19 @@ class Proposer {
     const JointRole role = target_.joints->roles[static_cast<std::size_t>(joint)];
     const int start =
         target_.joints->First(target_.joints->roles[static_cast<std::size_t>(parent)]);
-    hinge.axis = HingeAxis(role, At(target_, joint) - At(target_, start),
-                           At(target_, end) - At(target_, joint));
+    hinge.axis = HingeAxis(role, PlaceOf(target_, joint) - PlaceOf(target_, start),
+                           PlaceOf(target_, end) - PlaceOf(target_, joint));
     hinge.parent = NameOf(target_, parent);
     hinge.joint = NameOf(target_, joint);
     hinge.end = NameOf(target_, end);
     return driver;
   }
 
-  // The axis about which a limb flexes: across both bones where it is bent at rest already, else
-  // across the upper one so that a shin goes back and a forearm forward and up.
+  // The axis of flexion. If the limb is bent at rest, the axis is perpendicular to both bones.
+  // Otherwise it is perpendicular to the upper bone, such that a shin moves back and a forearm
+  // moves forward and up.
   static glm::vec3 HingeAxis(JointRole role, const glm::vec3& upper, const glm::vec3& lower) {
-    constexpr float kBent = 0.2f;  // sine of the angle that is bend and not how it was modelled
+    constexpr float kBent = 0.2f;  // sine of the angle from which a limb counts as bent
     const bool leg = role == JointRole::kLeftLowerLeg || role == JointRole::kRightLowerLeg;
     const glm::vec3 bone = glm::length(upper) > 0.0f ? glm::normalize(upper) : glm::vec3(0, -1, 0);
     const glm::vec3 toward =
@@ -167,7 +169,7 @@ class Proposer {
     return driver;
   }
 
-  // All joints of the roles that the model's twist adds up, each once.
+  // All joints with the roles of the model's twist, each once.
   std::optional<Driver> CarryTwist(Driver driver) {
     wrinkle::TwistDriver& twist = driver.twist;
     std::vector<std::string> names = {twist.joint};
@@ -209,7 +211,7 @@ class Proposer {
     return driver;
   }
 
-  // The poses that drivers look at, on the target's joints.
+  // Transfers the poses that drivers use to the target's joints.
   void AddPoses() {
     const float size = wrinkle::SkeletonSize(*model_.skeleton);
     for (const wrinkle::ReferencePose& from : from_.reference_poses) {
@@ -219,7 +221,7 @@ class Proposer {
         const int joint = face_.Of(model_.skeleton->Find(delta.joint));
         if (joint == kNoJoint) continue;
         delta.joint = NameOf(target_, joint);
-        // Origin and tail of one joint may stand for two of the model's: the first one counts.
+        // Origin and tail of one joint may match two joints of the model. The first one counts.
         const auto is_same = [&](const auto& known) { return known.joint == delta.joint; };
         if (std::any_of(pose.joints.begin(), pose.joints.end(), is_same)) continue;
         pose.joints.push_back(std::move(delta));
@@ -294,4 +296,4 @@ Result<RigProposal> ProposeRig(const Rig& rig, const KnownSkeleton& model,
   return Proposer(rig, model, target).Run();
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -9,9 +9,9 @@
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
-// A skeleton, and which joint of it is what.
+// A skeleton with the roles of its joints.
 struct KnownSkeleton {
   const wrinkle::Skeleton* skeleton = nullptr;
   const FoundJoints* joints = nullptr;
@@ -19,24 +19,23 @@ struct KnownSkeleton {
 
 struct RigProposal {
   wrinkle::Rig rig;
-  std::vector<std::string> remarks;  // what was carried over to where, what was not, what to edit
+  std::vector<std::string>
+      remarks;  // what was transferred to which joint, what was not, what to edit
 };
 
-// Proposes a wrinkle rig for `target` from one that works on another skeleton.
+// Proposes a wrinkle rig for `target` from a rig that works on another skeleton.
 //
-// - Clothing: hinges, balls and twists go to the joints of the same roles. A hinge's axis is that
-// of
-//   a knee that bends backwards, of an elbow that bends forwards and up, across the bone as it lies
-//   in the target's rest pose; angles are `model`'s.
-// - Face: control points go to the joint that lies where the model's does, measured in distances
-//   between the eyes from the point between them; reference poses with them. A driver that finds no
-//   joint within two fifths of that distance is left out.
-// - Regions keep those feeds whose drivers are there; masks become skin weights (kind `skinning`),
-//   since painted masks belong to one mesh. Wrinkle maps lose their pictures: `furrow bake` makes
-//   them.
-// - The target must stand up, +Y, and face +Z (character_space.h).
-// Errors: kNotFound where nothing can be carried over: no joint has a role.
+// - Clothing: hinges, balls and twists move to the joints with the same roles. The axis of a hinge
+//   follows from the target's rest pose: knees bend backward, elbows forward and up. Angles stay as
+//   in the model's rig.
+// - Face: control points move to the joint at the same position relative to the eyes
+//   (MatchFaces()), and reference poses move with them. A driver without a match is left out.
+// - Regions keep the feeds that still have drivers. Masks become skin weights (kind `skinning`),
+//   since painted masks belong to one mesh. Wrinkle maps lose their pictures, which `furrow bake`
+//   makes again.
+// - The target must be upright (+Y) and face +Z (character_space.h).
+// Errors: kNotFound (no joint has a role, so nothing can be transferred).
 [[nodiscard]] Result<RigProposal> ProposeRig(const wrinkle::Rig& rig, const KnownSkeleton& model,
                                              const KnownSkeleton& target);
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -29,7 +29,6 @@ namespace furrow::cli {
 namespace {
 
 namespace fs = std::filesystem;
-namespace bake = character::bake;
 
 enum class MapFormat { kPng, kExr };
 
@@ -41,14 +40,14 @@ struct BakeArguments {
   std::vector<std::string> maps;
   MapFormat format = MapFormat::kPng;
   bool masks = false;
-  bake::BakeOptions options;
+  authoring::BakeOptions options;
 };
 
 // All that a bake needs, read and checked.
 struct BakeJob {
   character::Character character;
-  bake::PosesToBake poses;
-  std::vector<bake::BakeStroke> strokes;
+  authoring::CollectedPoses poses;
+  std::vector<authoring::BakeStroke> strokes;
   std::vector<std::string> warnings;
 };
 
@@ -71,14 +70,14 @@ Status CheckOutput(const BakeArguments& arguments) {
 }
 
 // Strokes of maps that are not wanted are left out.
-void KeepWanted(const std::vector<std::string>& maps, std::vector<bake::BakeStroke>* strokes) {
+void KeepWanted(const std::vector<std::string>& maps, std::vector<authoring::BakeStroke>* strokes) {
   if (maps.empty()) return;
-  for (bake::BakeStroke& stroke : *strokes) {
+  for (authoring::BakeStroke& stroke : *strokes) {
     std::erase_if(stroke.maps, [&](const std::string& map) {
       return std::find(maps.begin(), maps.end(), map) == maps.end();
     });
   }
-  std::erase_if(*strokes, [](const bake::BakeStroke& stroke) { return stroke.maps.empty(); });
+  std::erase_if(*strokes, [](const authoring::BakeStroke& stroke) { return stroke.maps.empty(); });
 }
 
 Result<BakeJob> Prepare(const BakeArguments& arguments) {
@@ -87,18 +86,18 @@ Result<BakeJob> Prepare(const BakeArguments& arguments) {
   auto character = LoadCharacterArgument(arguments.character, arguments.rig);
   FURROW_RETURN_IF_ERROR(character);
   job.character = std::move(*character);
-  auto poses = bake::PosesOf(job.character, arguments.maps);
+  auto poses = authoring::CollectBakePoses(job.character, arguments.maps);
   if (!poses.ok()) {
     const Status s = poses.status();
     const std::string field = s.where().empty() ? "" : ": " + s.where();
     return Status(s.code(), s.what(), RigName(arguments) + field, s.todo());
   }
   job.poses = std::move(*poses);
-  if (Status s = bake::CheckSurfaces(job.character, arguments.maps, &job.warnings); !s.ok()) {
+  if (Status s = authoring::CheckSurfaces(job.character, arguments.maps, &job.warnings); !s.ok()) {
     return Status(s.code(), s.what(), arguments.character + ": " + s.where(), s.todo());
   }
   if (!arguments.strokes.empty()) {
-    auto strokes = bake::LoadStrokes(arguments.strokes, job.character.rig);
+    auto strokes = authoring::LoadStrokes(arguments.strokes, job.character.rig);
     FURROW_RETURN_IF_ERROR(strokes);
     job.strokes = std::move(*strokes);
     KeepWanted(arguments.maps, &job.strokes);
@@ -110,52 +109,52 @@ Result<BakeJob> Prepare(const BakeArguments& arguments) {
   return job;
 }
 
-Result<bake::BakedMaps> BakeWithBar(const BakeArguments& arguments, const BakeJob& job) {
+Result<authoring::BakedMaps> BakeWithBar(const BakeArguments& arguments, const BakeJob& job) {
   constexpr int kSteps = 1000;
   Progress bar("baking", kSteps);
-  auto maps =
-      bake::Bake(job.character, job.poses.poses, job.strokes, arguments.options, [&](float done) {
-        bar.Set(static_cast<std::int64_t>(done * kSteps));
-        return !Interrupted();
-      });
+  auto maps = authoring::Bake(job.character, job.poses.poses, job.strokes, arguments.options,
+                              [&](float done) {
+                                bar.Set(static_cast<std::int64_t>(done * kSteps));
+                                return !Interrupted();
+                              });
   if (maps.ok()) return maps;
   if (Interrupted()) return Status(StatusCode::kUnavailable, "interrupted; nothing was written");
   return maps.status().At(arguments.character);
 }
 
-Status WriteAll(const BakeArguments& arguments, const bake::BakedMaps& maps, double seconds,
+Status WriteAll(const BakeArguments& arguments, const authoring::BakedMaps& maps, double seconds,
                 BakeJob* job, StagedFolder* folder) {
-  const bake::PackageOptions options{.exr = arguments.format == MapFormat::kExr,
-                                     .masks = arguments.masks};
-  const auto package = bake::PackageMaps(job->character, maps, options);
+  const authoring::PackageOptions options{.exr = arguments.format == MapFormat::kExr,
+                                          .masks = arguments.masks};
+  const auto package = authoring::PackageMaps(job->character, maps, options);
   if (!package.ok()) return package.status().At(arguments.character);
   job->warnings.insert(job->warnings.end(), package->notes.begin(), package->notes.end());
-  for (const bake::BakedFiles::File& file : package->files) {
+  for (const authoring::BakedFiles::File& file : package->files) {
     FURROW_RETURN_IF_ERROR(folder->Write(file.name, file.bytes));
   }
-  for (const character::Picture& picture : bake::ReportPictures(maps)) {
+  for (const character::Picture& picture : authoring::ReportPictures(maps)) {
     const auto png = character::EncodePng(picture);
     FURROW_RETURN_IF_ERROR(png);
     FURROW_RETURN_IF_ERROR(folder->Write(picture.name, *png));
   }
-  const bake::ReportFacts facts{.character = arguments.character,
-                                .rig = RigName(arguments),
-                                .strokes = arguments.strokes,
-                                .poses = job->poses.poses,
-                                .notes = job->poses.notes,
-                                .warnings = job->warnings,
-                                .options = arguments.options,
-                                .seconds = seconds};
-  FURROW_RETURN_IF_ERROR(folder->Write("report.html", bake::ReportHtml(maps, facts)));
+  const authoring::ReportDetails facts{.character = arguments.character,
+                                       .rig = RigName(arguments),
+                                       .strokes = arguments.strokes,
+                                       .poses = job->poses.poses,
+                                       .notes = job->poses.notes,
+                                       .warnings = job->warnings,
+                                       .options = arguments.options,
+                                       .seconds = seconds};
+  FURROW_RETURN_IF_ERROR(folder->Write("report.html", authoring::ReportHtml(maps, facts)));
   return folder->Write(NewRig(arguments).filename().string(), character::RigToJson(package->rig));
 }
 
-void PrintSummary(const BakeArguments& arguments, const BakeJob& job, const bake::BakedMaps& maps,
-                  double seconds) {
+void PrintSummary(const BakeArguments& arguments, const BakeJob& job,
+                  const authoring::BakedMaps& maps, double seconds) {
   PrintWarnings(job.warnings);
-  PrintWarnings(bake::Doubts(maps, arguments.options));
-  for (const bake::BakedMap& map : maps.maps) {
-    const bake::BakedMap::Statistics& s = map.statistics;
+  PrintWarnings(authoring::BakeWarnings(maps, arguments.options));
+  for (const authoring::BakedMap& map : maps.maps) {
+    const authoring::BakedMap::Statistics& s = map.statistics;
     const double share = s.covered_texels > 0 ? static_cast<double>(s.folded_texels) /
                                                     static_cast<double>(s.covered_texels)
                                               : 0.0;
@@ -190,7 +189,7 @@ int Bake(const BakeArguments& arguments) {
   return kDone;
 }
 
-void AddMaterialOptions(CLI::App& command, bake::BakeOptions& options) {
+void AddMaterialOptions(CLI::App& command, authoring::BakeOptions& options) {
   command.add_option("--depth", options.depth, "Scales every fold: the age of a face")
       ->check(Within(0.0, 4.0))
       ->capture_default_str();

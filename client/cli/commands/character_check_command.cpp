@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "authoring/import/model/character_check.h"
+#include "authoring/import/model/character_report.h"
 #include "authoring/import/model/import_model.h"
 #include "base/status.h"
 #include "character/package/package.h"
@@ -46,22 +47,22 @@ Result<bool> GiveRig(const CheckArguments& arguments, character::Character* char
 int Check(const CheckArguments& arguments) {
   const auto maps = character::SkeletonMaps::Load(arguments.map);
   if (!maps.ok()) return Fail(maps.status());
-  auto opened = character::OpenModel(arguments.file);
+  auto opened = authoring::OpenModel(arguments.file);
   if (!opened.ok()) return Fail(opened.status());
   const auto rig_given = GiveRig(arguments, &opened->character);
   if (!rig_given.ok()) return Fail(rig_given.status());
   PrintNotes(opened->remarks);
   PrintWarnings(opened->character.warnings);
-  const character::CharacterReport report =
-      character::CheckCharacter(opened->character, opened->notes, *maps, *rig_given);
+  const authoring::CharacterReport report =
+      authoring::CheckCharacter(opened->character, opened->notes, *maps, *rig_given);
   const std::string text = arguments.json ? ToJson(report) : ToText(report);
   if (Status s = WriteStandardOutput(
           std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
       !s.ok()) {
     return Fail(s);
   }
-  const bool usable = report.Count(character::Severity::kError) == 0 &&
-                      (!arguments.strict || report.Count(character::Severity::kWarning) == 0);
+  const bool usable = report.Count(authoring::Severity::kError) == 0 &&
+                      (!arguments.strict || report.Count(authoring::Severity::kWarning) == 0);
   return usable ? kDone : kBadInput;
 }
 

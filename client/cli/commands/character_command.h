@@ -13,7 +13,7 @@ void AddProposeRig(CLI::App& group, Action& action);
 
 // ProposeRig() from the default character to `skeleton`. `map`: the skeleton map to read its names
 // by (a file or a name); empty: the one that fits.
-[[nodiscard]] Result<character::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skeleton,
+[[nodiscard]] Result<authoring::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skeleton,
                                                                 const std::string& map);
 
 // Prints "furrow: note: <text>" for each to standard error.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <system_error>
 
+#include "authoring/import/character_package.h"
 #include "authoring/import/makehuman/makehuman.h"
 #include "authoring/import/model/import_model.h"
 #include "base/status.h"
@@ -27,12 +28,12 @@ struct ImportArguments {
   std::string out;
   std::string rig;
   std::string map;
-  character::ImportOptions makehuman;
-  character::ModelOptions model;
+  authoring::ImportOptions makehuman;
+  authoring::ModelOptions model;
 };
 
 int ImportFolder(const ImportArguments& arguments) {
-  character::ImportOptions options = arguments.makehuman;
+  authoring::ImportOptions options = arguments.makehuman;
   options.rig = arguments.rig.empty() ? std::filesystem::path() : ResolveRigPath(arguments.rig);
   options.poses = motion::CachedPoseSource();
   Progress progress("importing", 100);
@@ -40,10 +41,10 @@ int ImportFolder(const ImportArguments& arguments) {
     progress.Set(std::lround(100.0f * done));
     return true;
   };
-  character::ImportReport report;
-  const auto character = character::ImportMakeHuman(arguments.in, options, &report);
+  authoring::ImportReport report;
+  const auto character = authoring::ImportMakeHuman(arguments.in, options, &report);
   if (!character.ok()) return Fail(character.status());
-  if (Status status = character::WritePackage(*character, arguments.out); !status.ok())
+  if (Status status = authoring::WriteCharacterPackage(*character, arguments.out); !status.ok())
     return Fail(status);
   PrintWarnings(report.warnings);
   std::fprintf(
@@ -79,7 +80,7 @@ Status GiveRig(const ImportArguments& arguments, character::Character* character
 int ImportFile(const ImportArguments& arguments) {
   const auto maps = character::SkeletonMaps::Load(arguments.map);
   if (!maps.ok()) return Fail(maps.status());
-  auto imported = character::ImportModel(arguments.in, *maps, arguments.model);
+  auto imported = authoring::ImportModel(arguments.in, *maps, arguments.model);
   if (!imported.ok()) return Fail(imported.status());
   character::Character& character = imported->character;
   PrintNotes(imported->remarks);
@@ -87,7 +88,7 @@ int ImportFile(const ImportArguments& arguments) {
   if (Status status = GiveRig(arguments, &character); !status.ok()) return Fail(status);
   const Status written = character.rig.drivers.empty()
                              ? character::SaveCharacterGlb(character, arguments.out)
-                             : character::WritePackage(character, arguments.out);
+                             : authoring::WriteCharacterPackage(character, arguments.out);
   if (!written.ok()) return Fail(written);
   std::size_t vertices = 0;
   std::size_t triangles = 0;

@@ -31,7 +31,7 @@ Result<wrinkle::Skeleton> SkeletonOf(const std::string& file) {
     FURROW_RETURN_IF_ERROR(clip);
     return std::move(clip->skeleton);
   }
-  auto model = character::OpenModel(file);
+  auto model = authoring::OpenModel(file);
   FURROW_RETURN_IF_ERROR(model);
   return std::move(model->character.skeleton);
 }
@@ -52,7 +52,7 @@ int Propose(const ProposeArguments& arguments) {
 
 }  // namespace
 
-Result<character::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skeleton,
+Result<authoring::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skeleton,
                                                   const std::string& map) {
   const auto maps = character::SkeletonMaps::Load(map);
   FURROW_RETURN_IF_ERROR(maps);
@@ -60,9 +60,9 @@ Result<character::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skele
   FURROW_RETURN_IF_ERROR(shipped);
   const auto model = LoadCharacterArgument({}, {});
   FURROW_RETURN_IF_ERROR(model);
-  const character::FoundJoints model_joints = character::FindJoints(model->skeleton, *shipped);
-  const character::FoundJoints joints = character::FindJoints(skeleton, *maps);
-  return character::ProposeRig(model->rig, {&model->skeleton, &model_joints}, {&skeleton, &joints});
+  const authoring::FoundJoints model_joints = authoring::FindJoints(model->skeleton, *shipped);
+  const authoring::FoundJoints joints = authoring::FindJoints(skeleton, *maps);
+  return authoring::ProposeRig(model->rig, {&model->skeleton, &model_joints}, {&skeleton, &joints});
 }
 
 void PrintNotes(const std::vector<std::string>& notes) {

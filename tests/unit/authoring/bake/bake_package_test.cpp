@@ -6,12 +6,12 @@
 #include "authoring/bake/layers/blood.h"
 #include "character/pictures/picture_file.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 // One texel high, four wide: a map, and masks of five regions, half as wide.
-Character Rigged(BakedMaps* maps) {
-  Character character;
+character::Character Rigged(BakedMaps* maps) {
+  character::Character character;
   character.rig.name = "toy";
   wrinkle::Driver& driver = character.rig.drivers.emplace_back();
   driver.name = "smile";
@@ -38,11 +38,11 @@ Character Rigged(BakedMaps* maps) {
   return character;
 }
 
-Picture Decoded(const BakedFiles& files, const std::string& name) {
+character::Picture Decoded(const BakedFiles& files, const std::string& name) {
   for (const BakedFiles::File& file : files.files) {
     if (file.name != name) continue;
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(file.bytes.data());
-    return *DecodePicture(name, {bytes, file.bytes.size()});
+    return *character::DecodePicture(name, {bytes, file.bytes.size()});
   }
   ADD_FAILURE() << name;
   return {};
@@ -50,7 +50,7 @@ Picture Decoded(const BakedFiles& files, const std::string& name) {
 
 TEST(BakePackage, SixteenBitsAndAScaleGiveTheNumbersBack) {
   BakedMaps maps;
-  const Character character = Rigged(&maps);
+  const character::Character character = Rigged(&maps);
   const auto files = PackageMaps(character, maps, {});
   ASSERT_TRUE(files.ok()) << files.status().ToString();
   const wrinkle::WrinkleMap& map = files->rig.wrinkle_maps[0];
@@ -58,8 +58,8 @@ TEST(BakePackage, SixteenBitsAndAScaleGiveTheNumbersBack) {
   EXPECT_EQ(map.amplitude, 1.0f);
   EXPECT_EQ(map.cavity, "squash_cavity.png");
   EXPECT_EQ(files->rig.wrinkle_maps[1].derivative, "");  // not baked
-  const Picture derivative = Decoded(*files, map.derivative);
-  const Picture height = Decoded(*files, map.height);
+  const character::Picture derivative = Decoded(*files, map.derivative);
+  const character::Picture height = Decoded(*files, map.height);
   const auto value = [](std::uint16_t texel, float scale) {
     return (2.0f * static_cast<float>(texel) / 65535.0f - 1.0f) * scale;
   };
@@ -74,7 +74,7 @@ TEST(BakePackage, SixteenBitsAndAScaleGiveTheNumbersBack) {
   EXPECT_EQ(Decoded(*files, map.cavity).pixels[1], 64);
   EXPECT_EQ(map.colour, "squash_colour.png");
   EXPECT_EQ(map.colour_scale, kBloodTintScale);
-  const Picture colour = Decoded(*files, map.colour);
+  const character::Picture colour = Decoded(*files, map.colour);
   EXPECT_EQ(colour.pixels[0], 230);  // as at rest
   EXPECT_LT(colour.pixels[3 + 1], 225);
   EXPECT_GT(colour.pixels[6 + 1], 232);
@@ -82,7 +82,7 @@ TEST(BakePackage, SixteenBitsAndAScaleGiveTheNumbersBack) {
 
 TEST(BakePackage, ClothHasNoBloodAndKeepsItsColour) {
   BakedMaps maps;
-  Character character = Rigged(&maps);
+  character::Character character = Rigged(&maps);
   character.rig.wrinkle_maps[0].colour = "worn.png";
   maps.maps[0].cloth = true;
   const auto files = PackageMaps(character, maps, {});
@@ -93,10 +93,10 @@ TEST(BakePackage, ClothHasNoBloodAndKeepsItsColour) {
 
 TEST(BakePackage, ExrHoldsThemAsTheyAre) {
   BakedMaps maps;
-  const Character character = Rigged(&maps);
+  const character::Character character = Rigged(&maps);
   const auto files = PackageMaps(character, maps, {.exr = true});
   ASSERT_TRUE(files.ok());
-  const Picture derivative = Decoded(*files, "squash_derivative.exr");
+  const character::Picture derivative = Decoded(*files, "squash_derivative.exr");
   ASSERT_EQ(derivative.pixels_float.size(), 8u);
   for (std::size_t i = 0; i < 8; ++i) {
     EXPECT_NEAR(derivative.pixels_float[i], maps.maps[0].derivative[i], 2e-3f);
@@ -106,10 +106,10 @@ TEST(BakePackage, ExrHoldsThemAsTheyAre) {
 
 TEST(BakePackage, PacksFourRegionsAPicture) {
   BakedMaps maps;
-  const Character character = Rigged(&maps);
+  const character::Character character = Rigged(&maps);
   const auto files = PackageMaps(character, maps, {.masks = true});
   ASSERT_TRUE(files.ok());
-  const Picture first = Decoded(*files, "masks_skin_0.png");
+  const character::Picture first = Decoded(*files, "masks_skin_0.png");
   EXPECT_EQ(first.width, 2);
   EXPECT_EQ(first.pixels[2], 102);  // blue, the third region: 0.4
   EXPECT_EQ(Decoded(*files, "masks_skin_1.png").pixels[0], 204);
@@ -123,7 +123,7 @@ TEST(BakePackage, PacksFourRegionsAPicture) {
 
 TEST(BakePackage, WritesOverNoMaskThatARegionKeeps) {
   BakedMaps maps;
-  Character character = Rigged(&maps);
+  character::Character character = Rigged(&maps);
   // Region 4 is not baked this time: its mask is the blue of what an earlier bake wrote.
   maps.maps[0].masks.pop_back();
   wrinkle::Mask& mask = character.rig.regions[4].mask;
@@ -138,7 +138,7 @@ TEST(BakePackage, WritesOverNoMaskThatARegionKeeps) {
 
 TEST(BakePackage, ARegionOfTwoAtlasesKeepsItsMask) {
   BakedMaps maps;
-  Character character = Rigged(&maps);
+  character::Character character = Rigged(&maps);
   character.rig.regions[1].mask.texture = "mine.png";
   BakedMap cloth = maps.maps[0];
   cloth.map = "other";
@@ -156,7 +156,7 @@ TEST(BakePackage, ARegionOfTwoAtlasesKeepsItsMask) {
 
 TEST(BakePackage, RefusesWhatARigCannotState) {
   BakedMaps maps;
-  const Character character = Rigged(&maps);
+  const character::Character character = Rigged(&maps);
   maps.maps[0].derivative[0] = 700.0f;
   const Status steep = PackageMaps(character, maps, {}).status();
   EXPECT_EQ(steep.code(), StatusCode::kInvalidArgument);
@@ -176,4 +176,4 @@ TEST(BakePackage, ScalesAreRoundAndLargeEnough) {
 }
 
 }  // namespace
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -9,7 +9,7 @@
 
 #include "authoring/bake/layers/blood.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 BakedMap Square(int side) {
@@ -28,9 +28,9 @@ float ToLinear(std::uint8_t srgb) {
   return std::pow((static_cast<float>(srgb) / 255.0f + 0.055f) / 1.055f, 2.4f);
 }
 
-std::vector<std::string> Names(const std::vector<Picture>& pictures) {
+std::vector<std::string> Names(const std::vector<character::Picture>& pictures) {
   std::vector<std::string> names;
-  for (const Picture& picture : pictures) names.push_back(picture.name);
+  for (const character::Picture& picture : pictures) names.push_back(picture.name);
   return names;
 }
 
@@ -39,7 +39,7 @@ TEST(NormalPicture, HoldsTheNormalOfTheDerivative) {
   map.width = 2;
   map.height = 1;
   map.derivative = {0.0f, 0.0f, 1.0f, -1.0f};
-  const Picture picture = NormalPicture(map, "n");
+  const character::Picture picture = NormalPicture(map, "n");
   ASSERT_EQ(picture.pixels16.size(), 6u);
   EXPECT_EQ(picture.pixels16[0], 32768);
   EXPECT_EQ(picture.pixels16[2], 65535);
@@ -52,7 +52,7 @@ TEST(ColourPicture, LeavesSkinAtRestAsItIs) {
   BakedMap map = Square(1);
   map.width = 3;
   map.blood = {1.0f, 1.5f, 0.6f};
-  const Picture picture = ColourPicture(map, kBloodTintScale, "c");
+  const character::Picture picture = ColourPicture(map, kBloodTintScale, "c");
   ASSERT_EQ(picture.pixels.size(), 9u);
   const auto factor = [&](int i) { return ToLinear(picture.pixels[i]) * kBloodTintScale; };
   for (int c = 0; c < 3; ++c) {
@@ -78,40 +78,40 @@ TEST(Halved, IsTheMeanOfFour) {
   EXPECT_EQ(half.blood.size(), 4u);
 }
 
-TEST(PicturesOf, MakesThoseThatTheRigNames) {
+TEST(WrinkleMapPictures, MakesThoseThatTheRigNames) {
   const BakedMap map = Square(64);
   wrinkle::WrinkleMap named{.name = "squash", .normal = "n", .height = "h", .height_mm = 2.0f};
-  auto some = PicturesOf(map, named);
+  auto some = WrinkleMapPictures(map, named);
   ASSERT_TRUE(some.ok());
   EXPECT_EQ(Names(*some), (std::vector<std::string>{"n", "h"}));
   EXPECT_EQ((*some)[1].pixels16[0], 40959);  // 0.5 of 2 mm, about the middle
   named.colour = "c";
   named.cavity = "v";
-  const auto all = PicturesOf(map, named);
+  const auto all = WrinkleMapPictures(map, named);
   ASSERT_TRUE(all.ok());
   EXPECT_EQ(Names(*all), (std::vector<std::string>{"n", "h", "v", "c"}));
-  for (const Picture& picture : *all) EXPECT_EQ(picture.width, 64) << picture.name;
+  for (const character::Picture& picture : *all) EXPECT_EQ(picture.width, 64) << picture.name;
 }
 
-TEST(PicturesOf, HalvesAllButNormalsWhereEnoughIsLeft) {
+TEST(WrinkleMapPictures, HalvesAllButNormalsWhereEnoughIsLeft) {
   const wrinkle::WrinkleMap named{
       .name = "squash", .normal = "n", .height = "h", .colour = "c", .cavity = "v"};
-  const auto pictures = PicturesOf(Square(2 * kSmallestHalf), named);
+  const auto pictures = WrinkleMapPictures(Square(2 * kSmallestHalf), named);
   ASSERT_TRUE(pictures.ok());
-  for (const Picture& picture : *pictures) {
+  for (const character::Picture& picture : *pictures) {
     EXPECT_EQ(picture.width, picture.name == "n" ? 2 * kSmallestHalf : kSmallestHalf);
   }
-  const auto odd = PicturesOf(Square(2 * kSmallestHalf + 1), named);
+  const auto odd = WrinkleMapPictures(Square(2 * kSmallestHalf + 1), named);
   ASSERT_TRUE(odd.ok());
-  for (const Picture& picture : *odd) EXPECT_EQ(picture.width, 2 * kSmallestHalf + 1);
+  for (const character::Picture& picture : *odd) EXPECT_EQ(picture.width, 2 * kSmallestHalf + 1);
 }
 
-TEST(PicturesOf, RefusesFoldsThatTheRigCannotHold) {
+TEST(WrinkleMapPictures, RefusesFoldsThatTheRigCannotHold) {
   const wrinkle::WrinkleMap named{.name = "squash", .height = "h", .height_mm = 0.4f};
-  const Status status = PicturesOf(Square(8), named).status();
+  const Status status = WrinkleMapPictures(Square(8), named).status();
   EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
   EXPECT_NE(status.what().find("0.50 mm high"), std::string::npos) << status.ToString();
 }
 
 }  // namespace
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -4,15 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 // A leg and a brow: hip at 1 m, knee at 0.5 m; the bind pose is the rest pose.
-Character Body() {
-  Character body;
+character::Character Body() {
+  character::Character body;
   body.skeleton =
       *wrinkle::Skeleton::Create({{"hip", -1, {{0, 1, 0}}, {}},
                                   {"knee", 0, {{0, -0.5f, 0}}, glm::vec3(0, -0.5f, 0)},
@@ -42,7 +42,7 @@ Character Body() {
 }
 
 TEST(BakePoses, PosesEveryDriverThatJointsRaise) {
-  const auto found = PosesOf(Body());
+  const auto found = CollectBakePoses(Body());
   ASSERT_TRUE(found.ok()) << found.status().ToString();
   ASSERT_EQ(found->poses.size(), 2u);
   const BakePose& knee = found->poses[0];
@@ -62,34 +62,34 @@ TEST(BakePoses, PosesEveryDriverThatJointsRaise) {
 
 TEST(BakePoses, TakesTheMapsThatAreWanted) {
   const std::string wanted[] = {"stretch"};
-  const auto found = PosesOf(Body(), wanted);
+  const auto found = CollectBakePoses(Body(), wanted);
   ASSERT_TRUE(found.ok());
   ASSERT_EQ(found->poses.size(), 1u);
   EXPECT_EQ(found->poses[0].map, "stretch");
   const std::string unknown[] = {"squash"};
-  const Status status = PosesOf(Body(), unknown).status();
+  const Status status = CollectBakePoses(Body(), unknown).status();
   EXPECT_EQ(status.code(), StatusCode::kNotFound);
   EXPECT_THAT(status.todo(), HasSubstr("folds, stretch"));
 }
 
 TEST(BakePoses, RefusesAReferencePoseThatIsRest) {
-  Character body = Body();
+  character::Character body = Body();
   body.rig.reference_poses[0].joints[0].translation = glm::vec3(0.0f);
-  const Status status = PosesOf(body).status();
+  const Status status = CollectBakePoses(body).status();
   EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
   EXPECT_THAT(status.what(), HasSubstr("'up' is the rest pose"));
   EXPECT_EQ(status.where(), "regions[1].feeds[0].sources[0]");
 }
 
 TEST(BakePoses, NamesWhatIsMissing) {
-  Character body = Body();
+  character::Character body = Body();
   body.rig.drivers[0].hinge.joint = "shin";
-  EXPECT_THAT(PosesOf(body).status().what(), HasSubstr("'shin'"));
+  EXPECT_THAT(CollectBakePoses(body).status().what(), HasSubstr("'shin'"));
   body = Body();
   body.rig.reference_poses[0].joints[0].joint = "eyebrow";
-  EXPECT_EQ(PosesOf(body).status().code(), StatusCode::kNotFound);
-  EXPECT_EQ(PosesOf(Character()).status().code(), StatusCode::kNotFound);
+  EXPECT_EQ(CollectBakePoses(body).status().code(), StatusCode::kNotFound);
+  EXPECT_EQ(CollectBakePoses(character::Character()).status().code(), StatusCode::kNotFound);
 }
 
 }  // namespace
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -9,10 +9,10 @@
 
 #include "tests/unit/authoring/bake/toys.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
-Character Sheet() { return toys::Wearing(toys::Sheet(0.1f, 0.1f, 10, 10)); }
+character::Character Sheet() { return toys::Wearing(toys::Sheet(0.1f, 0.1f, 10, 10)); }
 
 BakeOptions Small() {
   BakeOptions options;
@@ -23,7 +23,7 @@ BakeOptions Small() {
 
 // One thing wrong at a time.
 struct Request {
-  Character character = Sheet();
+  character::Character character = Sheet();
   std::vector<BakePose> poses = {toys::Pose(toys::Squeeze(0.2f, 0.0f))};
   std::vector<BakeStroke> strokes;
   BakeOptions options = Small();
@@ -93,10 +93,11 @@ TEST(Bake, RefusesSurfacesThatCannotHoldAMap) {
   request.character.rig.wrinkle_maps[0].surface = wrinkle::WrinkleMap::Surface::kCloth;
   EXPECT_EQ(request.Code(), StatusCode::kInvalidArgument);  // nothing is cloth
   request = Request();
-  for (Vertex& vertex : request.character.meshes[0].vertices) vertex.uv = glm::vec2(0.5f);
+  for (character::Vertex& vertex : request.character.meshes[0].vertices)
+    vertex.uv = glm::vec2(0.5f);
   EXPECT_EQ(request.Code(), StatusCode::kInvalidArgument);  // no UVs
   request = Request();
-  for (Vertex& vertex : request.character.meshes[0].vertices) vertex.position.y = 0.0f;
+  for (character::Vertex& vertex : request.character.meshes[0].vertices) vertex.position.y = 0.0f;
   EXPECT_EQ(request.Code(), StatusCode::kInvalidArgument);  // no extent
 }
 
@@ -141,7 +142,7 @@ TEST(Bake, TellsItsProgressAndCanBeStopped) {
 
 TEST(Bake, TakesAPoseWhereTheRegionsMaskIs) {
   Request request;
-  Picture mask;
+  character::Picture mask;
   mask.name = "mask";
   mask.width = 2;
   mask.height = 1;
@@ -176,7 +177,7 @@ TEST(Bake, CountsTexelsThatTwoTrianglesClaim) {
   EXPECT_EQ(toys::BakeFolds(request.character, request.poses, request.options)
                 .statistics.overlapping_texels,
             0);
-  toys::Append(Mesh(request.character.meshes[0]), &request.character.meshes[0]);
+  toys::Append(character::Mesh(request.character.meshes[0]), &request.character.meshes[0]);
   EXPECT_GT(toys::BakeFolds(request.character, request.poses, request.options)
                 .statistics.overlapping_texels,
             64 * 64 / 2);
@@ -194,4 +195,4 @@ TEST(Bake, AgeScalesTheDepth) {
 }
 
 }  // namespace
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

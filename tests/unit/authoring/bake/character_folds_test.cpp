@@ -23,7 +23,7 @@
 #include "rig/rig_file.h"
 #include "tests/unit/authoring/bake/toys.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
@@ -46,13 +46,13 @@ BakeOptions Exact() {
   return options;
 }
 
-Result<Character> DefaultCharacter() {
-  auto rig = LoadRig(kRigs / "default.json");
+Result<character::Character> DefaultCharacter() {
+  auto rig = character::LoadRig(kRigs / "default.json");
   FURROW_RETURN_IF_ERROR(rig);
-  return generator::MakeDefaultCharacter(*rig, {.texture_size = kTextureSize});
+  return MakeDefaultCharacter(*rig, {.texture_size = kTextureSize});
 }
 
-Result<Character> MakeHumanCharacter() {
+Result<character::Character> MakeHumanCharacter() {
   ImportOptions options;
   options.rig = kRigs / "makehuman.json";
   options.poses = motion::CachedPoseSource();
@@ -62,24 +62,24 @@ Result<Character> MakeHumanCharacter() {
 
 // A character's skin, one of its poses taken wherever that strains, and the map of it.
 struct Folded {
-  std::unique_ptr<Character> character;
+  std::unique_ptr<character::Character> character;
   std::unique_ptr<BakeSurface> surface;
   std::vector<Tensor2> strain;
   BakedMap map;
 };
 
-Result<Folded> Fold(Character character) {
+Result<Folded> Fold(character::Character character) {
   Folded folded;
-  folded.character = std::make_unique<Character>(std::move(character));
-  auto poses = PosesOf(*folded.character, {});
+  folded.character = std::make_unique<character::Character>(std::move(character));
+  auto poses = CollectBakePoses(*folded.character, {});
   FURROW_RETURN_IF_ERROR(poses);
   const auto pose = std::find_if(poses->poses.begin(), poses->poses.end(), [](const BakePose& p) {
     return p.map == "squash" && p.region == "mouth_l";
   });
   if (pose == poses->poses.end()) return Status(StatusCode::kNotFound, "no pose of mouth_l");
   pose->region.clear();
-  Pace pace({});
-  auto surface = BakeSurface::Create(*folded.character, false, Exact(), &pace);
+  BakeProgress progress({});
+  auto surface = BakeSurface::Create(*folded.character, false, Exact(), &progress);
   FURROW_RETURN_IF_ERROR(surface);
   folded.surface = std::move(*surface);
   folded.strain =
@@ -90,7 +90,7 @@ Result<Folded> Fold(Character character) {
 
 struct Subject {
   const char* name;
-  Result<Character> (*make)();
+  Result<character::Character> (*make)();
   std::filesystem::path needs;  // empty: nothing
 };
 
@@ -104,7 +104,7 @@ class CharacterFolds : public ::testing::TestWithParam<Subject> {
     static std::map<std::string, Folded> made;
     auto found = made.find(subject.name);
     if (found == made.end()) {
-      Result<Character> character = subject.make();
+      Result<character::Character> character = subject.make();
       ASSERT_TRUE(character.ok()) << character.status().ToString();
       Result<Folded> folded = Fold(std::move(*character));
       ASSERT_TRUE(folded.ok()) << folded.status().ToString();
@@ -123,7 +123,7 @@ class CharacterFolds : public ::testing::TestWithParam<Subject> {
     const Surface& surface = folded_->surface->surface();
     const std::vector<float>& derivative = folded_->map.derivative;
     std::vector<Place> places;
-    for (const paint::Texel& t : folded_->surface->texels()) {
+    for (const SurfaceTexel& t : folded_->surface->texels()) {
       const SurfacePoint point{t.triangle, t.corners, t.position};
       const Principal2 strain = PrincipalOf(surface.Interpolate(folded_->strain, point));
       if (strain.large < 0.1f) continue;
@@ -189,7 +189,7 @@ float Largest(std::vector<float> jumps, double share) {
 }
 
 TEST_P(CharacterFolds, DoNotJumpOverUvSeams) {
-  const Mesh& mesh = folded_->surface->surface().mesh();
+  const character::Mesh& mesh = folded_->surface->surface().mesh();
   const auto triangles = folded_->surface->surface().triangles();
   std::vector<float> seam, interior;
   const auto corner = [&](std::uint32_t t, std::uint32_t welded) {
@@ -220,4 +220,4 @@ TEST_P(CharacterFolds, DoNotJumpOverUvSeams) {
 }
 
 }  // namespace
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -10,11 +10,11 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "authoring/bake/layers/compression.h"
-#include "authoring/paint/uv_raster.h"
+#include "authoring/bake/surface/compression.h"
+#include "authoring/paint/surface_texels.h"
 #include "tests/unit/authoring/bake/toys.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec2;
@@ -43,7 +43,7 @@ class ArcLength : public ::testing::TestWithParam<float> {};
 
 TEST_P(ArcLength, OfTheDisplacedSurfaceIsThatAtRest) {
   const float compression = GetParam();
-  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
   for (const float sharpness : {0.0f, 0.7f}) {
     BakeOptions options = toys::Exact();
     options.skin.sharpness = sharpness;
@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Compressions, ArcLength,
                          ::testing::Values(0.02f, 0.1f, 0.25f, 0.4f, 0.6f));
 
 TEST(Folds, OfUnevenDepthStillKeepTheLengthOnTheWhole) {
-  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
   BakeOptions options = toys::Exact();
   options.skin.variation = 0.4f;
   options.skin.wavelength_mm = 5.0f;
@@ -67,7 +67,7 @@ TEST(Folds, OfUnevenDepthStillKeepTheLengthOnTheWhole) {
 }
 
 TEST(Folds, OfHalfTheShareTakeUpHalfTheCompression) {
-  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
   BakeOptions options = toys::Exact();
   options.skin.share = 0.5f;
   const BakedMap map = toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(0.3f, 0.0f))}, options);
@@ -75,7 +75,7 @@ TEST(Folds, OfHalfTheShareTakeUpHalfTheCompression) {
 }
 
 TEST(Folds, StandAWavelengthApart) {
-  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
   const BakedMap map =
       toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(0.2f, 0.0f))}, toys::Exact());
   int crossings = 0;
@@ -90,7 +90,7 @@ TEST(Folds, StandAWavelengthApart) {
 
 TEST(Folds, AreNoFinerThanTheTexelsThere) {
   // The right half of the sheet has a fifth of the picture: 7.8 mm a texel, and 1.95 on the left.
-  Mesh mesh = toys::Grid(40, 20, [](float u, float v) {
+  character::Mesh mesh = toys::Grid(40, 20, [](float u, float v) {
     const float right = std::max(u - 0.5f, 0.0f);
     return toys::Point{
         {0.4f * u, 0.1f * v, 0.0f}, {1.6f * std::min(u, 0.5f) + 0.4f * right, 1.0f - v}, 0.0f};
@@ -130,7 +130,7 @@ float MedianAngle(const BakedMap& map, float degrees) {
 }
 
 TEST(Folds, RunAcrossTheCompressionWhateverItsDirection) {
-  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 14, 14));
+  const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 14, 14));
   BakeOptions options = toys::Exact();
   options.skin.variation = BakeMaterial().variation;  // as uneven as by default
   for (const float degrees : {0.0f, 33.0f, 90.0f, 145.0f}) {
@@ -141,7 +141,7 @@ TEST(Folds, RunAcrossTheCompressionWhateverItsDirection) {
 }
 
 TEST(Folds, DerivativeIsMinusTheSlopeOfTheHeight) {
-  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
   BakeOptions options = toys::Exact();
   options.size = 512;
   options.skin.variation = 0.3f;
@@ -164,7 +164,7 @@ TEST(Folds, DerivativeIsMinusTheSlopeOfTheHeight) {
 }
 
 TEST(Folds, AreNowhereWhereNothingIsCompressed) {
-  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 10, 10));
+  const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 10, 10));
   BakeOptions options;
   options.size = 128;
   const glm::mat4 still(1.0f);
@@ -182,11 +182,11 @@ TEST(Folds, AreNowhereWhereNothingIsCompressed) {
 
 TEST(Folds, RunOutTowardsWhatIsNotCompressed) {
   // The right half hangs on joint 1, which stays; the weights change over the middle third.
-  Mesh mesh = toys::Grid(30, 10, [](float u, float v) {
+  character::Mesh mesh = toys::Grid(30, 10, [](float u, float v) {
     const float t = std::clamp(3.0f * u - 1.0f, 0.0f, 1.0f);
     return toys::Point{{0.2f * u, 0.1f * v, 0.0f}, {u, 1.0f - v}, t};
   });
-  const Character sheet = toys::Wearing(std::move(mesh));
+  const character::Character sheet = toys::Wearing(std::move(mesh));
   BakeOptions options = toys::Exact();
   options.skin.threshold = 0.02f;
   const BakedMap map =
@@ -206,8 +206,8 @@ TEST(Folds, RunOutTowardsWhatIsNotCompressed) {
 }
 
 // A sheet that is unwrapped in two islands, the right one turned by a right angle.
-Mesh SeamedSheet() {
-  Mesh mesh = toys::Grid(10, 20, [](float u, float v) {
+character::Mesh SeamedSheet() {
+  character::Mesh mesh = toys::Grid(10, 20, [](float u, float v) {
     return toys::Point{{0.05f * u, 0.1f * v, 0.0f}, {0.02f + 0.4f * u, 0.98f - 0.8f * v}, 0.0f};
   });
   toys::Append(toys::Grid(10, 20,
@@ -221,23 +221,23 @@ Mesh SeamedSheet() {
 }
 
 TEST(Folds, DoNotKnowOfUvSeams) {
-  const Character sheet = toys::Wearing(SeamedSheet());
+  const character::Character sheet = toys::Wearing(SeamedSheet());
   BakeOptions options = toys::Exact();
   options.size = 512;
   options.skin.variation = 0.3f;
   const BakedMap map = toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(0.25f, 25.0f))}, options);
-  const std::vector<paint::Texel> texels = paint::RasterizeUv(sheet.meshes[0], 512, 512);
-  const auto height = [&](const paint::Texel& t) { return map.height_mm[toys::At(map, t.x, t.y)]; };
+  const std::vector<SurfaceTexel> texels = RasterizeSurface(sheet.meshes[0], 512, 512);
+  const auto height = [&](const SurfaceTexel& t) { return map.height_mm[toys::At(map, t.x, t.y)]; };
   // Neighbours on the sheet: within a texel of each other. Over the seam they lie in two islands.
   constexpr float kNear = 0.0004f;
-  const auto is_left = [](const paint::Texel& t) { return t.position.x < 0.05f; };
+  const auto is_left = [](const SurfaceTexel& t) { return t.position.x < 0.05f; };
   float over_seam = 0.0f, inside = 0.0f;
   int pairs = 0;
-  for (const paint::Texel& a : texels) {
+  for (const SurfaceTexel& a : texels) {
     const bool at_seam = std::abs(a.position.x - 0.05f) < kNear;
     const bool at_reference = std::abs(a.position.x - 0.03f) < kNear;
     if ((!at_seam && !at_reference) || !is_left(a)) continue;
-    for (const paint::Texel& b : texels) {
+    for (const SurfaceTexel& b : texels) {
       if (glm::distance(a.position, b.position) > kNear) continue;
       const float jump = std::abs(height(a) - height(b));
       if (at_reference) inside = std::max(inside, jump);
@@ -252,7 +252,7 @@ TEST(Folds, DoNotKnowOfUvSeams) {
 }
 
 TEST(Folds, AreTheSameBytesOnAnyNumberOfThreads) {
-  const Character sheet = toys::Wearing(SeamedSheet());
+  const character::Character sheet = toys::Wearing(SeamedSheet());
   BakeOptions options;
   options.size = 256;
   options.threads = 1;
@@ -271,7 +271,7 @@ TEST(Folds, AreTheSameBytesOnAnyNumberOfThreads) {
 
 TEST(Folds, DoNotLeakFromOneLipToTheOther) {
   // Two sheets in one place. Joint 0 squeezes the first; the second hangs on joint 1, which rests.
-  Mesh mesh = toys::Grid(12, 12, [](float u, float v) {
+  character::Mesh mesh = toys::Grid(12, 12, [](float u, float v) {
     return toys::Point{{0.05f * u, 0.05f * v, 0.0f}, {0.45f * u, 1.0f - v}, 0.0f};
   });
   toys::Append(
@@ -281,7 +281,7 @@ TEST(Folds, DoNotLeakFromOneLipToTheOther) {
             return toys::Point{{0.05f * u, 0.05f * v, 0.0f}, {0.5f + 0.45f * u, 1.0f - v}, 1.0f};
           }),
       &mesh);
-  const Character lips = toys::Wearing(std::move(mesh));
+  const character::Character lips = toys::Wearing(std::move(mesh));
   BakeOptions options = toys::Exact();
   options.skin.threshold = 0.01f;  // no fold of the last digit of an unmoved triangle's sides
   const BakedMap map =
@@ -299,7 +299,7 @@ TEST(Folds, DoNotLeakFromOneLipToTheOther) {
 }
 
 TEST(Folds, TooFineForASheetSoLargeAreRefusedAndNotDropped) {
-  const Character sheet = toys::Wearing(toys::Sheet(2.0f, 2.0f, 10, 10));
+  const character::Character sheet = toys::Wearing(toys::Sheet(2.0f, 2.0f, 10, 10));
   BakeOptions options = toys::Exact();
   options.size = 2048;
   options.skin.wavelength_mm = 1.0f;
@@ -311,11 +311,11 @@ TEST(Folds, TooFineForASheetSoLargeAreRefusedAndNotDropped) {
 }
 
 TEST(CompressionSolver, KeepsItsMemoryOnFineMeshes) {
-  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 60, 60));
-  const Mesh* meshes[] = {&sheet.meshes[0]};
+  const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 60, 60));
+  const character::Mesh* meshes[] = {&sheet.meshes[0]};
   const Surface surface(meshes);
-  Pace pace({});
-  const CompressionSolver solver(surface, 0.02f, &pace);  // some 900 triangles round a vertex
+  BakeProgress progress({});
+  const CompressionSolver solver(surface, 0.02f, &progress);  // some 900 triangles round a vertex
   EXPECT_LE(solver.num_terms(), 64 * surface.positions().size());
   const glm::mat4 squeeze[] = {toys::Squeeze(0.2f, 0.0f), toys::Squeeze(0.2f, 0.0f)};
   for (const Tensor2& tensor : solver.Solve(squeeze, 0.5f).tensors) {
@@ -334,7 +334,7 @@ int Valleys(const BakedMap& map) {
 }
 
 TEST(Folds, HaveFineLinesAThirdApartWhereTheSkinHasThem) {
-  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
   BakeOptions options = toys::Exact();
   options.size = 512;
   const std::vector<BakePose> poses = {toys::Pose(toys::Squeeze(0.2f, 0.0f))};
@@ -349,7 +349,7 @@ TEST(Folds, HaveFineLinesAThirdApartWhereTheSkinHasThem) {
 }
 
 TEST(Folds, SayWhatWasWidenedForTheTexels) {
-  const Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
+  const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
   BakeOptions options = toys::Exact();  // texels of 0.39 mm
   // Of a region that this rig lacks: nobody's business.
   options.wavelengths = {{"nose", 0.5f}};
@@ -359,8 +359,8 @@ TEST(Folds, SayWhatWasWidenedForTheTexels) {
   const BakedMap::Statistics fine = toys::BakeFolds(sheet, poses, options).statistics;
   EXPECT_EQ(fine.widened_texels, fine.folded_texels);
   EXPECT_NEAR(fine.widened_from_mm, 1.0f, 1e-3f);
-  EXPECT_NEAR(fine.widened_to_mm, kTexelsAWave * 100.0f / 256.0f, 0.01f);
+  EXPECT_NEAR(fine.widened_to_mm, kTexelsPerWave * 100.0f / 256.0f, 0.01f);
 }
 
 }  // namespace
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -8,10 +8,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "authoring/paint/uv_raster.h"
+#include "authoring/paint/surface_texels.h"
 #include "tests/unit/authoring/bake/toys.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
@@ -20,7 +20,7 @@ constexpr float kRadius = 0.06f;
 
 // A limb along -y with its joint at the origin, seam at the back; joint 1 is the lower half. u goes
 // round it, v up.
-Mesh Limb() {
+character::Mesh Limb() {
   return toys::Grid(40, 40, [](float u, float v) {
     const float angle = 2.0f * 3.14159265f * u;
     const float y = 0.25f * (2.0f * v - 1.0f);
@@ -35,7 +35,7 @@ Mesh Limb() {
   });
 }
 
-BakedMap BendKnee(const Character& limb, float degrees) {
+BakedMap BendKnee(const character::Character& limb, float degrees) {
   BakeOptions options;
   options.size = 512;
   options.skin = options.cloth;  // trousers
@@ -45,12 +45,12 @@ BakedMap BendKnee(const Character& limb, float degrees) {
 }
 
 TEST(Knee, FoldsInsideAndNotOutside) {
-  const Character limb = toys::Wearing(Limb());
+  const character::Character limb = toys::Wearing(Limb());
   // About +x, the lower half swings to the back: the inside is where z < 0.
   for (const float degrees : {50.0f, 90.0f, 130.0f}) {
     const BakedMap map = BendKnee(limb, degrees);
     float inside = 0.0f, outside = 0.0f, far = 0.0f;
-    for (const paint::Texel& t : paint::RasterizeUv(limb.meshes[0], 512, 512)) {
+    for (const SurfaceTexel& t : RasterizeSurface(limb.meshes[0], 512, 512)) {
       const float height = std::abs(map.height_mm[toys::At(map, t.x, t.y)]);
       if (t.position.z < -0.8f * kRadius) inside = std::max(inside, height);
       if (t.position.z > 0.5f * kRadius) outside = std::max(outside, height);
@@ -63,10 +63,10 @@ TEST(Knee, FoldsInsideAndNotOutside) {
 }
 
 TEST(Knee, FoldsRunAcrossTheLimb) {
-  const Character limb = toys::Wearing(Limb());
+  const character::Character limb = toys::Wearing(Limb());
   const BakedMap map = BendKnee(limb, 100.0f);
   double along = 0.0, across = 0.0;
-  for (const paint::Texel& t : paint::RasterizeUv(limb.meshes[0], 512, 512)) {
+  for (const SurfaceTexel& t : RasterizeSurface(limb.meshes[0], 512, 512)) {
     if (t.position.z > -0.7f * kRadius) continue;
     const std::size_t i = toys::At(map, t.x, t.y);
     const vec3 slope = map.derivative[2 * i] * t.tangent + map.derivative[2 * i + 1] * t.bitangent;
@@ -77,7 +77,7 @@ TEST(Knee, FoldsRunAcrossTheLimb) {
 }
 
 TEST(Knee, SeamAtTheBackCannotBeSeen) {
-  const Character limb = toys::Wearing(Limb());
+  const character::Character limb = toys::Wearing(Limb());
   const BakedMap map = BendKnee(limb, 110.0f);
   int first = map.width, last = 0;  // columns of the limb's island
   for (int x = 0; x < map.width; ++x) {
@@ -100,4 +100,4 @@ TEST(Knee, SeamAtTheBackCannotBeSeen) {
 }
 
 }  // namespace
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -7,7 +7,7 @@
 
 #include "base/files.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 wrinkle::Rig SmallRig() {
@@ -176,4 +176,4 @@ TEST(StrokesFile, RefusesFoldsThatNoSurfaceMakes) {
 }
 
 }  // namespace
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

@@ -7,7 +7,7 @@
 
 #include "tests/unit/authoring/bake/toys.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 constexpr float kSide = 0.1f;
@@ -25,11 +25,11 @@ BakeStroke Across(BakeStroke::Kind kind) {
   return stroke;
 }
 
-Character Sheet() { return toys::Wearing(toys::Sheet(kSide, kSide, 20, 20)); }
+character::Character StrokeSheet() { return toys::Wearing(toys::Sheet(kSide, kSide, 20, 20)); }
 
 TEST(Strokes, FoldWithoutAnyPose) {
   const BakedMap map =
-      toys::BakeFolds(Sheet(), {}, toys::Exact(), {Across(BakeStroke::Kind::kFold)});
+      toys::BakeFolds(StrokeSheet(), {}, toys::Exact(), {Across(BakeStroke::Kind::kFold)});
   EXPECT_EQ(map.statistics.strokes, 1);
   EXPECT_NEAR(map.height_mm[toys::At(map, 128, 128)], -0.8f, 0.08f);
   EXPECT_LT(map.cavity[toys::At(map, 128, 128)], 0.95f);
@@ -40,10 +40,10 @@ TEST(Strokes, FoldWithoutAnyPose) {
 
 TEST(Strokes, WinOverStrainWhereTheyAreAndLeaveItAloneElsewhere) {
   const std::vector<BakePose> poses = {toys::Pose(toys::Squeeze(0.2f, 90.0f))};
-  const BakedMap strain = toys::BakeFolds(Sheet(), poses, toys::Exact());
+  const BakedMap strain = toys::BakeFolds(StrokeSheet(), poses, toys::Exact());
   BakeStroke stroke = Across(BakeStroke::Kind::kFold);
   stroke.taper = 0.1f;
-  const BakedMap both = toys::BakeFolds(Sheet(), poses, toys::Exact(), {stroke});
+  const BakedMap both = toys::BakeFolds(StrokeSheet(), poses, toys::Exact(), {stroke});
   float off = 0.0f, away = 0.0f, strongest = 0.0f;
   for (int y = 100; y < 156; ++y) {
     off = std::max(off, std::abs(both.height_mm[toys::At(both, 128, y)] + 0.8f));
@@ -59,8 +59,8 @@ TEST(Strokes, WinOverStrainWhereTheyAreAndLeaveItAloneElsewhere) {
 TEST(Strokes, ExcludeStrain) {
   BakeStroke stroke = Across(BakeStroke::Kind::kExclude);
   stroke.width_mm = 35.0f;
-  const BakedMap map =
-      toys::BakeFolds(Sheet(), {toys::Pose(toys::Squeeze(0.2f, 90.0f))}, toys::Exact(), {stroke});
+  const BakedMap map = toys::BakeFolds(StrokeSheet(), {toys::Pose(toys::Squeeze(0.2f, 90.0f))},
+                                       toys::Exact(), {stroke});
   float middle = 0.0f, border = 0.0f;
   for (int y = 100; y < 156; ++y) {
     middle = std::max(middle, std::abs(map.height_mm[toys::At(map, 128, y)]));
@@ -75,8 +75,8 @@ TEST(Strokes, DirectFoldsAlongThemselves) {
   BakeStroke stroke = Across(BakeStroke::Kind::kDirection);
   stroke.width_mm = 30.0f;
   // Compressed upright, folds would lie level; the stroke stands upright.
-  const BakedMap map =
-      toys::BakeFolds(Sheet(), {toys::Pose(toys::Squeeze(0.2f, 90.0f))}, toys::Exact(), {stroke});
+  const BakedMap map = toys::BakeFolds(StrokeSheet(), {toys::Pose(toys::Squeeze(0.2f, 90.0f))},
+                                       toys::Exact(), {stroke});
   double level = 0.0, upright = 0.0;
   for (int y = 110; y < 146; ++y) {
     for (int x = 120; x < 136; ++x) {
@@ -90,7 +90,7 @@ TEST(Strokes, DirectFoldsAlongThemselves) {
 
 TEST(Strokes, ReachNoFurtherThanOverTheSurface) {
   // Two sheets a millimetre apart: the line is drawn on the upper one.
-  Mesh mesh = toys::Grid(10, 10, [](float u, float v) {
+  character::Mesh mesh = toys::Grid(10, 10, [](float u, float v) {
     return toys::Point{{0.05f * u, 0.05f * v, 0.001f}, {0.45f * u, 1.0f - v}, 0.0f};
   });
   toys::Append(
@@ -118,12 +118,12 @@ TEST(Strokes, ReachNoFurtherThanOverTheSurface) {
 // A fan often leaves triangles of two equal corners behind; they are no place for a stroke.
 TEST(Strokes, DoNotFallForTrianglesWithoutExtent) {
   const BakeStroke stroke = Across(BakeStroke::Kind::kFold);
-  const BakedMap whole = toys::BakeFolds(Sheet(), {}, toys::Exact(), {stroke});
+  const BakedMap whole = toys::BakeFolds(StrokeSheet(), {}, toys::Exact(), {stroke});
   const std::uint32_t a = 0, b = 220;  // far corner, and right beside the line
   const std::uint32_t kCorners[][3] = {{a, a, b}, {a, b, a}, {b, a, a}, {b, b, b}};
   for (const auto& corners : kCorners) {
     for (const std::size_t place : {0u, 300u, 1200u}) {
-      Character character = Sheet();
+      character::Character character = StrokeSheet();
       std::vector<std::uint32_t>& indices = character.meshes[0].indices;
       indices.insert(indices.begin() + static_cast<std::ptrdiff_t>(place), corners, corners + 3);
       const BakedMap map = toys::BakeFolds(character, {}, toys::Exact(), {stroke});
@@ -135,18 +135,19 @@ TEST(Strokes, DoNotFallForTrianglesWithoutExtent) {
 TEST(Strokes, FarFromTheSurfaceAreRefusedByName) {
   BakeStroke stroke = Across(BakeStroke::Kind::kFold);
   for (glm::vec3& point : stroke.points) point.z = 0.019f;
-  EXPECT_TRUE(Bake(Sheet(), {}, {&stroke, 1}, toys::Exact()).ok());
+  EXPECT_TRUE(Bake(StrokeSheet(), {}, {&stroke, 1}, toys::Exact()).ok());
   stroke.points[1].z = 0.06f;
-  const Status refused = Bake(Sheet(), {}, {&stroke, 1}, toys::Exact()).status();
+  const Status refused = Bake(StrokeSheet(), {}, {&stroke, 1}, toys::Exact()).status();
   EXPECT_EQ(refused.code(), StatusCode::kInvalidArgument);
   EXPECT_EQ(refused.where(), "stroke 'line'");
   stroke.width_mm = 20.0f;  // a broad one may lie four widths off
-  EXPECT_TRUE(Bake(Sheet(), {}, {&stroke, 1}, toys::Exact()).ok());
+  EXPECT_TRUE(Bake(StrokeSheet(), {}, {&stroke, 1}, toys::Exact()).ok());
 }
 
 TEST(Strokes, CountOnlyWhereTheyCoverTexels) {
-  Character sheet = Sheet();
-  for (Vertex& vertex : sheet.meshes[0].vertices) vertex.uv.x *= 2.0f;  // half lies off the picture
+  character::Character sheet = StrokeSheet();
+  for (character::Vertex& vertex : sheet.meshes[0].vertices)
+    vertex.uv.x *= 2.0f;  // half lies off the picture
   BakeStroke off = Across(BakeStroke::Kind::kFold);
   for (glm::vec3& point : off.points) point.x = 0.08f;
   BakeStroke on = off;
@@ -163,8 +164,8 @@ TEST(Strokes, OfTooManyPiecesAreALimit) {
   for (int i = 0; i < 1024; ++i) stroke.points.push_back({i % 2 == 0 ? 0.0f : 0.1f, 0.05f, 0.0f});
   stroke.smooth = false;
   const std::vector<BakeStroke> strokes(4, stroke);  // 65,000 pieces each
-  EXPECT_EQ(Bake(Sheet(), {}, strokes, toys::Exact()).status().code(), StatusCode::kLimit);
+  EXPECT_EQ(Bake(StrokeSheet(), {}, strokes, toys::Exact()).status().code(), StatusCode::kLimit);
 }
 
 }  // namespace
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

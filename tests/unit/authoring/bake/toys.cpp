@@ -8,15 +8,15 @@
 
 #include "character/mesh/tangents.h"
 
-namespace furrow::character::bake::toys {
+namespace furrow::authoring::toys {
 
-Mesh Grid(int columns, int rows, const std::function<Point(float, float)>& point) {
-  Mesh mesh;
+character::Mesh Grid(int columns, int rows, const std::function<Point(float, float)>& point) {
+  character::Mesh mesh;
   for (int row = 0; row <= rows; ++row) {
     for (int column = 0; column <= columns; ++column) {
       const Point p = point(static_cast<float>(column) / static_cast<float>(columns),
                             static_cast<float>(row) / static_cast<float>(rows));
-      Vertex vertex;
+      character::Vertex vertex;
       vertex.position = p.position;
       vertex.uv = p.uv;
       vertex.joints[1] = 1;
@@ -35,19 +35,19 @@ Mesh Grid(int columns, int rows, const std::function<Point(float, float)>& point
       for (const std::uint32_t corner : {a, b, c, a, c, d}) mesh.indices.push_back(corner);
     }
   }
-  paint::ComputeNormals(mesh.vertices, mesh.indices);
-  paint::ComputeTangents(mesh.vertices, mesh.indices);
+  character::paint::ComputeNormals(mesh.vertices, mesh.indices);
+  character::paint::ComputeTangents(mesh.vertices, mesh.indices);
   return mesh;
 }
 
-void Append(const Mesh& from, Mesh* to) {
+void Append(const character::Mesh& from, character::Mesh* to) {
   const auto base = static_cast<std::uint32_t>(to->vertices.size());
   to->vertices.insert(to->vertices.end(), from.vertices.begin(), from.vertices.end());
   for (const std::uint32_t index : from.indices) to->indices.push_back(base + index);
 }
 
-Character Wearing(Mesh mesh) {
-  Character character;
+character::Character Wearing(character::Mesh mesh) {
+  character::Character character;
   character.name = "toy";
   std::vector<wrinkle::JointDesc> joints(2);
   joints[0].name = "a";
@@ -57,8 +57,8 @@ Character Wearing(Mesh mesh) {
   EXPECT_TRUE(skeleton.ok());
   character.skeleton = std::move(skeleton).value();
   character.inverse_bind_matrices.assign(2, glm::mat4(1.0f));
-  Material skin;
-  skin.kind = Material::Kind::kSkin;
+  character::Material skin;
+  skin.kind = character::Material::Kind::kSkin;
   character.materials.push_back(skin);
   mesh.material = 0;
   character.meshes.push_back(std::move(mesh));
@@ -74,7 +74,7 @@ Character Wearing(Mesh mesh) {
   return character;
 }
 
-Mesh Sheet(float width, float height, int columns, int rows) {
+character::Mesh Sheet(float width, float height, int columns, int rows) {
   return Grid(columns, rows, [&](float u, float v) {
     return Point{{u * width, v * height, 0.0f}, {u, 1.0f - v}, 0.0f};
   });
@@ -103,7 +103,7 @@ BakeOptions Exact() {
   return options;
 }
 
-BakedMap BakeFolds(const Character& character, std::vector<BakePose> poses,
+BakedMap BakeFolds(const character::Character& character, std::vector<BakePose> poses,
                    const BakeOptions& options, std::vector<BakeStroke> strokes) {
   Result<BakedMaps> maps = Bake(character, poses, strokes, options);
   EXPECT_TRUE(maps.ok()) << maps.status().ToString();
@@ -114,4 +114,4 @@ BakedMap BakeFolds(const Character& character, std::vector<BakePose> poses,
   return std::move(maps.value().maps.front());
 }
 
-}  // namespace furrow::character::bake::toys
+}  // namespace furrow::authoring::toys

@@ -12,7 +12,7 @@
 #include "authoring/bake/bake.h"
 
 // Surfaces whose strain is known, to bake maps onto.
-namespace furrow::character::bake::toys {
+namespace furrow::authoring::toys {
 
 // What a point of a toy's grid is: u, v in [0, 1] along the grid.
 struct Point {
@@ -23,18 +23,19 @@ struct Point {
 
 // A mesh of columns x rows quads from a function of (u, v), counter-clockwise from the side where
 // u goes right and v goes up; normals and tangents are computed.
-[[nodiscard]] Mesh Grid(int columns, int rows, const std::function<Point(float, float)>& point);
+[[nodiscard]] character::Mesh Grid(int columns, int rows,
+                                   const std::function<Point(float, float)>& point);
 
 // Appends a mesh to another one.
-void Append(const Mesh& from, Mesh* to);
+void Append(const character::Mesh& from, character::Mesh* to);
 
 // A character of two joints, "a" and "b", with one skin mesh, a region "patch" without a mask
 // picture, and one wrinkle map "folds" on skin.
-[[nodiscard]] Character Wearing(Mesh mesh);
+[[nodiscard]] character::Character Wearing(character::Mesh mesh);
 
 // A sheet in the plane z = 0, `width` x `height` metres, lower left corner at the origin, which
 // fills the picture.
-[[nodiscard]] Mesh Sheet(float width, float height, int columns, int rows);
+[[nodiscard]] character::Mesh Sheet(float width, float height, int columns, int rows);
 
 // A pose of the map "folds" that moves joint 0 and joint 1 by these matrices.
 [[nodiscard]] BakePose Pose(const glm::mat4& first, const glm::mat4& second);
@@ -47,7 +48,7 @@ void Append(const Mesh& from, Mesh* to);
 [[nodiscard]] BakeOptions Exact();
 
 // Bakes the one map "folds"; fails the test where that fails.
-[[nodiscard]] BakedMap BakeFolds(const Character& character, std::vector<BakePose> poses,
+[[nodiscard]] BakedMap BakeFolds(const character::Character& character, std::vector<BakePose> poses,
                                  const BakeOptions& options, std::vector<BakeStroke> strokes = {});
 
 // A texel's index from the picture's rows and columns.
@@ -56,4 +57,4 @@ void Append(const Mesh& from, Mesh* to);
          static_cast<std::size_t>(x);
 }
 
-}  // namespace furrow::character::bake::toys
+}  // namespace furrow::authoring::toys

@@ -13,7 +13,7 @@
 #include "wrinkle/shapes/blend_shape_pose.h"
 #include "wrinkle/solver/solver.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 std::vector<std::string> ArkitNames() {
@@ -36,7 +36,7 @@ class ArkitPoseTest : public ::testing::Test {
  protected:
   static wrinkle::Rig LoadDefault() {
     Result<wrinkle::Rig> rig =
-        LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.json");
+        character::LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.json");
     EXPECT_TRUE(rig.ok()) << rig.status().ToString();
     return rig.ok() ? std::move(rig).value() : wrinkle::Rig();
   }
@@ -137,4 +137,4 @@ TEST_F(ArkitPoseTest, CoefficientsWrinkleTheFace) {
 }
 
 }  // namespace
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -14,7 +14,7 @@
 #include "rig/skeleton_match.h"
 #include "wrinkle/skeleton/pose.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 namespace fs = std::filesystem;
@@ -43,10 +43,10 @@ class BodyMotion : public testing::Test {
     auto clip = motion::LoadClip(path, options);
     EXPECT_TRUE(clip.ok()) << clip.status().ToString();
     clip_ = *std::move(clip);
-    const auto matcher = SkeletonMatcher::Create("");
+    const auto matcher = character::SkeletonMatcher::Create("");
     EXPECT_TRUE(matcher.ok()) << matcher.status().ToString();
     match_ = matcher->Match(clip_.skeleton, {}, &body_);
-    retarget_ = MakeRetarget(match_, clip_.skeleton, body_);
+    retarget_ = character::MakeRetarget(match_, clip_.skeleton, body_);
     EXPECT_TRUE(retarget_.by_role());
     from_.resize(static_cast<std::size_t>(clip_.skeleton.num_joints()));
     to_.resize(static_cast<std::size_t>(body_.num_joints()));
@@ -77,9 +77,9 @@ class BodyMotion : public testing::Test {
     return glm::degrees(2.0f * std::asin(0.5f * glm::distance(a, b)));
   }
 
-  wrinkle::Skeleton body_ = generator::MakeSkeleton();
+  wrinkle::Skeleton body_ = MakeSkeleton();
   motion::Clip clip_;
-  SkeletonMatch match_;
+  character::SkeletonMatch match_;
   wrinkle::Retarget retarget_;
   std::vector<wrinkle::Transform> local_;
   std::vector<glm::mat4> from_;
@@ -150,4 +150,4 @@ TEST_F(BodyMotion, MakeHumansPosesKeepTheirLimbs) {
 }
 
 }  // namespace
-}  // namespace furrow::character
+}  // namespace furrow::authoring

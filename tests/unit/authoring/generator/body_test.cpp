@@ -13,12 +13,15 @@
 
 #include "authoring/generator/body/body_skeleton.h"
 #include "authoring/generator/body/hand_net.h"
-#include "authoring/generator/clothes/body_mesh.h"
+#include "authoring/generator/clothes/cloth_masks.h"
+#include "authoring/generator/clothes/cloth_panels.h"
 #include "authoring/generator/clothes/cloth_texture.h"
-#include "authoring/generator/clothes/clothes_net.h"
+#include "authoring/generator/clothes/clothes.h"
+#include "authoring/generator/clothes/shirt_net.h"
+#include "authoring/generator/clothes/trousers_net.h"
 #include "authoring/generator/mesh/mesh_tools.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
@@ -38,7 +41,7 @@ class BodyTest : public ::testing::TestWithParam<int> {
 };
 
 // Edges that only one triangle has, by place: the rims of a surface.
-std::map<Place, int> Rims(const Mesh& mesh) {
+std::map<Place, int> Rims(const character::Mesh& mesh) {
   std::map<std::pair<Place, Place>, int> uses;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     for (int k = 0; k < 3; ++k) {
@@ -56,7 +59,7 @@ std::map<Place, int> Rims(const Mesh& mesh) {
 
 TEST_P(BodyTest, ShirtAndSleevesAreOneSurface) {
   const BodyShape shape = Shape();
-  Mesh shirt;
+  character::Mesh shirt;
   AppendNet(MakeShirt(shape), &shirt);
   // Trunk and sleeves are open at the hem and at the cuffs and nowhere else; the collar has rims
   // over the neckline.
@@ -70,7 +73,7 @@ TEST_P(BodyTest, ShirtAndSleevesAreOneSurface) {
 }
 
 TEST_P(BodyTest, TrousersAreSewnBetweenTheLegs) {
-  Mesh trousers;
+  character::Mesh trousers;
   AppendNet(MakeTrousers(Shape()), &trousers);
   for (const auto& [place, count] : Rims(trousers)) {
     const float y = static_cast<float>(place[1]) * 1e-5f;
@@ -113,9 +116,9 @@ TEST_P(BodyTest, NothingComesApartAtASeam) {
   const Clothes clothes = MakeClothes(Shape());
   ASSERT_EQ(clothes.vertex_panels.size(), clothes.mesh.vertices.size());
   ASSERT_EQ(clothes.panels.size(), static_cast<std::size_t>(kNumClothPanels));
-  std::map<Place, const Vertex*> first;
+  std::map<Place, const character::Vertex*> first;
   int pairs = 0;
-  for (const Vertex& vertex : clothes.mesh.vertices) {
+  for (const character::Vertex& vertex : clothes.mesh.vertices) {
     const auto [found, is_new] = first.emplace(PlaceOf(vertex.position), &vertex);
     if (is_new || found->second->position != vertex.position) continue;
     ++pairs;
@@ -158,7 +161,7 @@ TEST_P(BodyTest, LimbsHaveRingsWhereTheyBend) {
   const BodyShape shape = Shape();
   const Clothes clothes = MakeClothes(shape);
   std::set<long> elbow, knee;
-  for (const Vertex& vertex : clothes.mesh.vertices) {
+  for (const character::Vertex& vertex : clothes.mesh.vertices) {
     const vec3& p = vertex.position;
     if (std::abs(p.x - 0.455f) < 0.1f) elbow.insert(std::lround(p.x * 500.0f));
     if (std::abs(p.y - 0.495f) < 0.1f && std::abs(p.x) < 0.2f)
@@ -206,7 +209,7 @@ TEST_P(BodyTest, FingersClose) {
 }
 
 TEST_P(BodyTest, HandsAreClosedButAtTheWrist) {
-  Mesh hand;
+  character::Mesh hand;
   AppendNet(MakeHand(skeleton_, 1.0f, 0, GetParam()), &hand);
   for (const auto& [place, count] : Rims(hand)) EXPECT_LT(place[0], 70000);  // inside the cuff
 }
@@ -216,7 +219,7 @@ INSTANTIATE_TEST_SUITE_P(Levels, BodyTest, ::testing::Values(0, 1));
 TEST(GeneratorBody, BaseLevelHasAboutEightThousandTriangles) {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   const BodyShape shape({.level = 0}, skeleton, DefaultHead());
-  Mesh hands;
+  character::Mesh hands;
   AddHands(shape, &hands);
   const std::size_t indices = MakeClothes(shape).mesh.indices.size() +
                               MakeLeather(shape).indices.size() + hands.indices.size();
@@ -240,9 +243,9 @@ TEST(GeneratorBody, ParametersMakeAnotherBody) {
 TEST(GeneratorBody, MasksTellInnerFromOuter) {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   const BodyShape shape({.level = 0}, skeleton, DefaultHead());
-  const std::array<Picture, 6> masks = PaintClothMasks(MakeClothes(shape), 256);
+  const std::array<character::Picture, 6> masks = PaintClothMasks(MakeClothes(shape), 256);
   for (std::size_t i = 0; i < masks.size(); ++i) {
-    const Picture& mask = masks[i];
+    const character::Picture& mask = masks[i];
     ASSERT_EQ(mask.name, kClothMaskNames[i]);
     int most[4] = {0, 0, 0, 0};
     for (std::size_t t = 0; t < mask.pixels.size(); t += 4) {
@@ -258,4 +261,4 @@ TEST(GeneratorBody, MasksTellInnerFromOuter) {
 }
 
 }  // namespace
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

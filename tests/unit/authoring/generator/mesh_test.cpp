@@ -12,18 +12,20 @@
 #include <gtest/gtest.h>
 
 #include "authoring/generator/body/body_skeleton.h"
-#include "authoring/generator/clothes/body_mesh.h"
-#include "authoring/generator/head/head_mesh.h"
+#include "authoring/generator/clothes/clothes.h"
+#include "authoring/generator/head/face_parts.h"
+#include "authoring/generator/head/hair_mesh.h"
 #include "authoring/generator/head/head_shape.h"
+#include "authoring/generator/head/head_skin.h"
 #include "authoring/generator/head/skinning.h"
 #include "authoring/generator/mesh/mesh_tools.h"
 #include "authoring/generator/textures/textures.h"
 #include "authoring/paint/hair_strands.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
-Mesh MakeSkin(const wrinkle::Skeleton& skeleton) {
+character::Mesh MakeSkin(const wrinkle::Skeleton& skeleton) {
   HeadMesh head = MakeHeadSkin();
   SkinHead(skeleton, &head);
   AddHands(BodyShape({}, skeleton, DefaultHead()), &head.mesh);
@@ -31,10 +33,11 @@ Mesh MakeSkin(const wrinkle::Skeleton& skeleton) {
   return std::move(head.mesh);
 }
 
-std::vector<Mesh> AllMeshes() {
+std::vector<character::Mesh> AllMeshes() {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   const BodyShape body({}, skeleton, DefaultHead());
-  std::vector<Mesh> meshes = {MakeSkin(skeleton), MakeClothes(body).mesh, MakeLeather(body)};
+  std::vector<character::Mesh> meshes = {MakeSkin(skeleton), MakeClothes(body).mesh,
+                                         MakeLeather(body)};
   for (HeadMesh part : {MakeEyes(), MakeHair(), MakeLashes(), MakeTeeth(), MakeTongue()}) {
     SkinHead(skeleton, &part);
     meshes.push_back(std::move(part.mesh));
@@ -43,7 +46,7 @@ std::vector<Mesh> AllMeshes() {
 }
 
 TEST(GeneratorMesh, HasNoDegenerateTrianglesAndUnitFrames) {
-  for (const Mesh& mesh : AllMeshes()) {
+  for (const character::Mesh& mesh : AllMeshes()) {
     SCOPED_TRACE(mesh.name);
     ASSERT_FALSE(mesh.indices.empty());
     ASSERT_EQ(mesh.indices.size() % 3, 0u);
@@ -53,7 +56,7 @@ TEST(GeneratorMesh, HasNoDegenerateTrianglesAndUnitFrames) {
       const glm::vec3 c = mesh.vertices[mesh.indices[i + 2]].position;
       ASSERT_GT(glm::length(glm::cross(b - a, c - a)), 1e-11f) << "triangle " << i / 3;
     }
-    for (const Vertex& vertex : mesh.vertices) {
+    for (const character::Vertex& vertex : mesh.vertices) {
       ASSERT_NEAR(glm::length(vertex.normal), 1.0f, 1e-4f);
       ASSERT_NEAR(glm::dot(vertex.normal, glm::vec3(vertex.tangent)), 0.0f, 1e-3f);
       ASSERT_EQ(std::abs(vertex.tangent.w), 1.0f);
@@ -74,7 +77,7 @@ TEST(GeneratorMesh, TheTongueLiesBehindTheLowerTeethAndGoesWithTheJaw) {
       if (std::abs(v.place.x - tooth.x) < 0.2f) ASSERT_LT(v.place.z, tooth.z);
     }
   }
-  for (const Vertex& vertex : tongue.mesh.vertices) {
+  for (const character::Vertex& vertex : tongue.mesh.vertices) {
     ASSERT_EQ(vertex.joints[0], skeleton.Find("jaw"));
     ASSERT_FLOAT_EQ(vertex.skin_weights[0], 1.0f);
   }
@@ -82,9 +85,9 @@ TEST(GeneratorMesh, TheTongueLiesBehindTheLowerTeethAndGoesWithTheJaw) {
 
 TEST(GeneratorMesh, SkinWeightsSumToOneOnJointsOfTheSkeleton) {
   const int num_joints = MakeSkeleton().num_joints();
-  for (const Mesh& mesh : AllMeshes()) {
+  for (const character::Mesh& mesh : AllMeshes()) {
     SCOPED_TRACE(mesh.name);
-    for (const Vertex& vertex : mesh.vertices) {
+    for (const character::Vertex& vertex : mesh.vertices) {
       float sum = 0.0f;
       for (int k = 0; k < 4; ++k) {
         ASSERT_GE(vertex.skin_weights[k], 0.0f);
@@ -102,7 +105,7 @@ double Edge(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
 }
 
 // How many texel centres lie well inside more than one triangle of the unwrapping.
-int CountOverlap(const Mesh& mesh, int size) {
+int CountOverlap(const character::Mesh& mesh, int size) {
   std::vector<int> hits(static_cast<std::size_t>(size) * size, 0);
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     glm::dvec2 p[3];
@@ -131,13 +134,13 @@ int CountOverlap(const Mesh& mesh, int size) {
 
 // Locks of hair share the tiles of strands; what lies below them has texels of its own. No triangle
 // is of both.
-Mesh CapOf(const Mesh& hair) {
-  Mesh cap = hair;
+character::Mesh CapOf(const character::Mesh& hair) {
+  character::Mesh cap = hair;
   cap.indices.clear();
   for (std::size_t i = 0; i < hair.indices.size(); i += 3) {
     int below = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      below += hair.vertices[hair.indices[i + k]].uv.y >= paint::kStrandBottom;
+      below += hair.vertices[hair.indices[i + k]].uv.y >= kStrandBottom;
     }
     EXPECT_EQ(below % 3, 0);
     if (below > 0) cap.indices.insert(cap.indices.end(), &hair.indices[i], &hair.indices[i] + 3);
@@ -147,9 +150,9 @@ Mesh CapOf(const Mesh& hair) {
 }
 
 TEST(GeneratorMesh, UvsLieInTheUnitSquareAndDoNotOverlap) {
-  for (const Mesh& mesh : AllMeshes()) {
+  for (const character::Mesh& mesh : AllMeshes()) {
     SCOPED_TRACE(mesh.name);
-    for (const Vertex& vertex : mesh.vertices) {
+    for (const character::Vertex& vertex : mesh.vertices) {
       ASSERT_GE(vertex.uv.x, 0.0f);
       ASSERT_LE(vertex.uv.x, 1.0f);
       ASSERT_GE(vertex.uv.y, 0.0f);
@@ -162,27 +165,27 @@ TEST(GeneratorMesh, UvsLieInTheUnitSquareAndDoNotOverlap) {
 
 // Far away a lash is gone: its last mip level is below the cut-off, and near by all of it is drawn.
 TEST(GeneratorMesh, LashesFadeBeforeTheyAreDots) {
-  const Picture lash = PaintLash();
+  const character::Picture lash = PaintLash();
   double sum = 0.0;
   int drawn = 0;
   for (int y = 0; y < lash.height; ++y) {
     int row = 0;
     for (int x = 0; x < lash.width; ++x) {
-      const float alpha =
-          ChannelAt(lash, (glm::vec2(x, y) + 0.5f) / glm::vec2(lash.width, lash.height), 3);
+      const float alpha = character::ChannelAt(
+          lash, (glm::vec2(x, y) + 0.5f) / glm::vec2(lash.width, lash.height), 3);
       sum += alpha;
-      row += alpha >= paint::kStrandCutoff;
+      row += alpha >= kStrandCutoff;
     }
     drawn += row > 0;
   }
-  EXPECT_LT(sum / (lash.width * lash.height), paint::kStrandCutoff);
+  EXPECT_LT(sum / (lash.width * lash.height), kStrandCutoff);
   EXPECT_EQ(drawn, lash.height);
 }
 
 // Every edge, by place, is used at most once in each direction: neighbours agree on what is
 // outside.
 TEST(GeneratorMesh, NeighbouringTrianglesWindAlike) {
-  const Mesh skin = MakeSkin(MakeSkeleton());
+  const character::Mesh skin = MakeSkin(MakeSkeleton());
   using Place = std::array<long, 3>;
   const auto place = [&](std::uint32_t i) {
     const glm::vec3 p = skin.vertices[i].position;
@@ -258,7 +261,7 @@ TEST(GeneratorMesh, LipsPartWithTheJaw) {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   HeadMesh head = MakeHeadSkin();
   SkinHead(skeleton, &head);
-  const auto under_jaw = [&](const Vertex& vertex) {
+  const auto under_jaw = [&](const character::Vertex& vertex) {
     float share = 0.0f;
     for (int k = 0; k < 4; ++k) {
       if (skeleton.IsAncestor(skeleton.Find("jaw"), vertex.joints[k])) {
@@ -291,11 +294,11 @@ TEST(GeneratorMesh, NothingComesApartAtASeam) {
   SkinHead(MakeSkeleton(), &head);
   // What lies above and what lies below an opening touch while it is closed, and part with it.
   using Place = std::tuple<float, float, float, float, float>;
-  std::map<Place, const Vertex*> first;
+  std::map<Place, const character::Vertex*> first;
   int pairs = 0;
   for (std::size_t i = 0; i < head.info.size(); ++i) {
     const HeadVertex& info = head.info[i];
-    const Vertex& vertex = head.mesh.vertices[i];
+    const character::Vertex& vertex = head.mesh.vertices[i];
     const Place place{info.place.x, info.place.y, info.place.z, info.mouth_side, info.eye_side};
     const auto [found, is_new] = first.emplace(place, &vertex);
     if (is_new) continue;
@@ -321,8 +324,8 @@ TEST(GeneratorSkeleton, StandsOnTheFloorAndMirrors) {
     EXPECT_GT(skeleton.rest_model()[j][3].x, 0.0f) << name;
   }
   float low = 1e9f, high = -1e9f;
-  for (const Mesh& mesh : AllMeshes()) {
-    for (const Vertex& vertex : mesh.vertices) {
+  for (const character::Mesh& mesh : AllMeshes()) {
+    for (const character::Vertex& vertex : mesh.vertices) {
       low = std::min(low, vertex.position.y);
       high = std::max(high, vertex.position.y);
     }
@@ -332,4 +335,4 @@ TEST(GeneratorSkeleton, StandsOnTheFloorAndMirrors) {
 }
 
 }  // namespace
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -15,30 +15,31 @@
 #include "authoring/bake/strokes_file.h"
 #include "authoring/generator/body/body_skeleton.h"
 #include "authoring/generator/default_character.h"
+#include "authoring/generator/recordings/recording_bvh.h"
 #include "authoring/generator/recordings/recordings.h"
 #include "authoring/generator/textures/wrinkle_maps.h"
-#include "authoring/paint/uv_raster.h"
+#include "authoring/paint/surface_texels.h"
 #include "base/files.h"
 #include "motion/bvh/bvh.h"
 #include "rig/rig_file.h"
 #include "wrinkle/solver/solver.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 wrinkle::Rig DefaultRig() {
   Result<wrinkle::Rig> rig =
-      LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.json");
+      character::LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.json");
   EXPECT_TRUE(rig.ok()) << rig.status().ToString();
   return rig.ok() ? std::move(rig).value() : wrinkle::Rig();
 }
 
 // The default character with his wrinkle maps, small.
-Character WholeCharacter(int maps = 256) {
+character::Character WholeCharacter(int maps = 256) {
   const std::filesystem::path file =
       std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.strokes.json";
-  Character character = MakeDefaultCharacter(DefaultRig(), {.texture_size = 256});
-  Result<std::vector<bake::BakeStroke>> strokes = bake::LoadStrokes(file, character.rig);
+  character::Character character = MakeDefaultCharacter(DefaultRig(), {.texture_size = 256});
+  Result<std::vector<BakeStroke>> strokes = LoadStrokes(file, character.rig);
   EXPECT_TRUE(strokes.ok()) << strokes.status().ToString();
   if (!strokes.ok()) return character;
   const Status status = AddWrinkleMaps(strokes.value(), maps, 1.0f, &character);
@@ -225,14 +226,14 @@ TEST(GeneratorRecordings, UnknownNameIsNotFound) {
 
 class PackageTest : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() { character_ = new Character(WholeCharacter()); }
+  static void SetUpTestSuite() { character_ = new character::Character(WholeCharacter()); }
   static void TearDownTestSuite() { delete character_; }
-  static Character* character_;
+  static character::Character* character_;
 };
-Character* PackageTest::character_ = nullptr;
+character::Character* PackageTest::character_ = nullptr;
 
 TEST_F(PackageTest, HoldsEveryPictureThatTheRigNames) {
-  const Character& c = *character_;
+  const character::Character& c = *character_;
   for (const wrinkle::Region& region : c.rig.regions) {
     if (region.mask.kind != wrinkle::Mask::Kind::kTexture) continue;
     EXPECT_GE(c.FindRigPicture(region.mask.texture), 0) << region.name;
@@ -249,7 +250,7 @@ TEST_F(PackageTest, HoldsEveryPictureThatTheRigNames) {
 // Skin pales and reddens, and keeps its colour where nothing moves it: at the back of the head.
 TEST_F(PackageTest, BloodComesAndGoes) {
   for (const char* name : {"face_stretch_colour", "face_squash_colour"}) {
-    const Picture& colour = character_->pictures[character_->FindRigPicture(name)];
+    const character::Picture& colour = character_->pictures[character_->FindRigPicture(name)];
     int least = 255, most = 0, still = 0;
     for (std::size_t i = 0; i < colour.pixels.size(); i += 3) {
       least = std::min<int>(least, colour.pixels[i + 1]);
@@ -264,19 +265,19 @@ TEST_F(PackageTest, BloodComesAndGoes) {
 
 // A map's normals and heights where the skin is, in millimetres.
 struct Relief {
-  const Picture& normals;
-  const Picture& heights;
+  const character::Picture& normals;
+  const character::Picture& heights;
   float height_mm;
 
-  [[nodiscard]] std::size_t At(const paint::Texel& t) const {
+  [[nodiscard]] std::size_t At(const SurfaceTexel& t) const {
     return static_cast<std::size_t>(t.y) * static_cast<std::size_t>(heights.width) +
            static_cast<std::size_t>(t.x);
   }
-  [[nodiscard]] float Height(const paint::Texel& t) const {
+  [[nodiscard]] float Height(const SurfaceTexel& t) const {
     return height_mm * (2.0f * static_cast<float>(heights.pixels16[At(t)]) / 65535.0f - 1.0f);
   }
   // What the normal says that a step rises by.
-  [[nodiscard]] float Rise(const paint::Texel& t, const glm::vec3& step) const {
+  [[nodiscard]] float Rise(const SurfaceTexel& t, const glm::vec3& step) const {
     glm::vec3 n;
     for (int c = 0; c < 3; ++c) n[c] = 2.0f * normals.pixels16[3 * At(t) + c] / 65535.0f - 1.0f;
     return -(n.x * glm::dot(step, t.tangent) + n.y * glm::dot(step, t.bitangent)) / n.z;
@@ -287,10 +288,10 @@ struct Relief {
 // three texels wide, where the two slopes miss some of what lies between them.
 TEST(WrinkleMaps, HeightsAreThoseOfTheNormals) {
   constexpr int kSize = 512;
-  const Character character = WholeCharacter(kSize);
-  const Mesh& skin = character.meshes[0];
-  ASSERT_EQ(character.materials[skin.material].kind, Material::Kind::kSkin);
-  const std::vector<paint::Texel> texels = paint::RasterizeUv(skin, kSize, kSize);
+  const character::Character character = WholeCharacter(kSize);
+  const character::Mesh& skin = character.meshes[0];
+  ASSERT_EQ(character.materials[skin.material].kind, character::Material::Kind::kSkin);
+  const std::vector<SurfaceTexel> texels = RasterizeSurface(skin, kSize, kSize);
   for (const int map : {0, 1}) {
     const wrinkle::WrinkleMap& named = character.rig.wrinkle_maps[map];
     const Relief relief{character.pictures[character.FindRigPicture(named.normal)],
@@ -299,7 +300,7 @@ TEST(WrinkleMaps, HeightsAreThoseOfTheNormals) {
     ASSERT_EQ(relief.heights.width, kSize);
     double steps = 0.0, slopes = 0.0, both = 0.0;
     for (std::size_t i = 0; i + 1 < texels.size(); ++i) {
-      const paint::Texel &left = texels[i], &right = texels[i + 1];
+      const SurfaceTexel &left = texels[i], &right = texels[i + 1];
       const glm::vec3 step = 1000.0f * (right.position - left.position);
       if (right.y != left.y || right.x != left.x + 1 || glm::length(step) > 1.5f) continue;
       const double rise = relief.Height(right) - relief.Height(left);
@@ -317,7 +318,7 @@ TEST(WrinkleMaps, HeightsAreThoseOfTheNormals) {
 
 TEST_F(PackageTest, MasksAreSoftAndEachRegionIsSomewhere) {
   for (const char* name : {"face_masks_a", "face_masks_b"}) {
-    const Picture& mask = character_->pictures[character_->FindRigPicture(name)];
+    const character::Picture& mask = character_->pictures[character_->FindRigPicture(name)];
     ASSERT_EQ(mask.channels, 4);
     for (int channel = 0; channel < 4; ++channel) {
       std::set<int> levels;
@@ -332,9 +333,9 @@ TEST_F(PackageTest, MasksAreSoftAndEachRegionIsSomewhere) {
 TEST_F(PackageTest, SameBytesOnEveryRun) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "furrow_package";
   std::filesystem::create_directories(folder);
-  const Character again = WholeCharacter();
-  ASSERT_TRUE(SaveCharacterGlb(*character_, folder / "a.glb").ok());
-  ASSERT_TRUE(SaveCharacterGlb(again, folder / "b.glb").ok());
+  const character::Character again = WholeCharacter();
+  ASSERT_TRUE(character::SaveCharacterGlb(*character_, folder / "a.glb").ok());
+  ASSERT_TRUE(character::SaveCharacterGlb(again, folder / "b.glb").ok());
   constexpr std::size_t kMax = 64u << 20;
   Result<std::string> a = ReadFile(folder / "a.glb", kMax);
   Result<std::string> b = ReadFile(folder / "b.glb", kMax);
@@ -346,9 +347,9 @@ TEST_F(PackageTest, SameBytesOnEveryRun) {
 TEST_F(PackageTest, SurvivesWritingAndReading) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "furrow_share";
   std::filesystem::create_directories(folder);
-  ASSERT_TRUE(SaveCharacterGlb(*character_, folder / "c.glb").ok());
-  ASSERT_TRUE(SaveRig(character_->rig, folder / "c.rig.json").ok());
-  Result<Character> read = LoadCharacter(folder / "c.glb");
+  ASSERT_TRUE(character::SaveCharacterGlb(*character_, folder / "c.glb").ok());
+  ASSERT_TRUE(character::SaveRig(character_->rig, folder / "c.rig.json").ok());
+  Result<character::Character> read = character::LoadCharacter(folder / "c.glb");
   ASSERT_TRUE(read.ok()) << read.status().ToString();
   ASSERT_EQ(read.value().meshes.size(), character_->meshes.size());
   EXPECT_EQ(read.value().skeleton.hash(), character_->skeleton.hash());
@@ -363,4 +364,4 @@ TEST_F(PackageTest, SurvivesWritingAndReading) {
 }
 
 }  // namespace
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

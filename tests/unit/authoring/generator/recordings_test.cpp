@@ -16,7 +16,7 @@
 #include "authoring/generator/recordings/frame_pose.h"
 #include "rig/rig_file.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
@@ -40,7 +40,7 @@ class RecordingTest : public ::testing::Test {
   }
 
   Result<wrinkle::Rig> rig_ =
-      LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.json");
+      character::LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.json");
   wrinkle::Skeleton skeleton_ = MakeSkeleton();
 };
 
@@ -145,4 +145,4 @@ TEST_F(RecordingTest, ConversationMovesTheMouth) {
 }
 
 }  // namespace
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -8,14 +8,14 @@
 
 #include "authoring/paint/canvas.h"
 
-namespace furrow::character::paint {
+namespace furrow::authoring {
 namespace {
 
 constexpr int kSize = 512;
 
 struct Painted {
-  Picture colour = BlankPicture("colour", kSize, kSize, 4);
-  Picture normals = BlankPicture("normals", kSize, kSize, 3);
+  character::Picture colour = BlankPicture("colour", kSize, kSize, 4);
+  character::Picture normals = BlankPicture("normals", kSize, kSize, 3);
 };
 
 Painted Paint(const StrandLook& look) {
@@ -89,4 +89,4 @@ TEST(HairStrands, GreyIsBrighterAndLessColourful) {
 }
 
 }  // namespace
-}  // namespace furrow::character::paint
+}  // namespace furrow::authoring

@@ -9,37 +9,37 @@
 
 #include "character/mesh/tangents.h"
 
-namespace furrow::character::paint {
+namespace furrow::authoring {
 namespace {
 
 // A square of 10 cm in the plane z = 0, facing +Z, unwrapped whole: u along x, v down.
-Mesh Square() {
-  Mesh mesh;
+character::Mesh Square() {
+  character::Mesh mesh;
   for (const glm::vec2 corner :
        {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(1, 1), glm::vec2(0, 1)}) {
-    Vertex vertex;
+    character::Vertex vertex;
     vertex.position = glm::vec3(0.1f * corner, 0.0f);
     vertex.uv = {corner.x, 1.0f - corner.y};
     mesh.vertices.push_back(vertex);
   }
   mesh.indices = {0, 1, 2, 0, 2, 3};
-  ComputeTangents(mesh.vertices, mesh.indices);
+  character::paint::ComputeTangents(mesh.vertices, mesh.indices);
   return mesh;
 }
 
 TEST(PaintTangents, FollowTheTexture) {
-  const Mesh mesh = Square();
-  for (const Vertex& vertex : mesh.vertices) {
+  const character::Mesh mesh = Square();
+  for (const character::Vertex& vertex : mesh.vertices) {
     EXPECT_NEAR(vertex.tangent.x, 1.0f, 1e-6f);
     EXPECT_EQ(vertex.tangent.w, 1.0f);  // the bitangent points up the picture
   }
 }
 
 TEST(PaintTangents, MirroredUvsTurnTheBitangent) {
-  Mesh mesh = Square();
-  for (Vertex& vertex : mesh.vertices) vertex.uv.x = 1.0f - vertex.uv.x;
-  ComputeTangents(mesh.vertices, mesh.indices);
-  for (const Vertex& vertex : mesh.vertices) {
+  character::Mesh mesh = Square();
+  for (character::Vertex& vertex : mesh.vertices) vertex.uv.x = 1.0f - vertex.uv.x;
+  character::paint::ComputeTangents(mesh.vertices, mesh.indices);
+  for (const character::Vertex& vertex : mesh.vertices) {
     EXPECT_NEAR(vertex.tangent.x, -1.0f, 1e-6f);
     EXPECT_EQ(vertex.tangent.w, -1.0f);
   }
@@ -82,9 +82,9 @@ TEST(PaintStrokes, LineKnowsItsNearestPoint) {
 }
 
 TEST(PaintStrokes, NormalMapSaysTheSlope) {
-  const std::vector<Texel> texels = RasterizeUv(Square(), 8, 8);
+  const std::vector<SurfaceTexel> texels = RasterizeSurface(Square(), 8, 8);
   const std::vector<glm::vec2> slopes(texels.size(), glm::vec2(0.5f, -0.25f));
-  const Picture map = EncodeNormals(texels, slopes, 8, 8, 11);
+  const character::Picture map = EncodeNormals(texels, slopes, 8, 8, 11);
   ASSERT_EQ(map.pixels16.size(), 8u * 8u * 3u);
   const auto decode = [&](int c) { return static_cast<float>(map.pixels16[c]) / 65535.0f * 2 - 1; };
   // Half a step of x and y, and of z's, which are four times as wide.
@@ -95,7 +95,7 @@ TEST(PaintStrokes, NormalMapSaysTheSlope) {
     const std::uint16_t value = map.pixels16[i];
     EXPECT_TRUE(value % (i % 3 == 2 ? 128 : 32) == 0 || value == 65535) << i;
   }
-  const Picture flat = EncodeNormals(texels, {}, 8, 8, 8);
+  const character::Picture flat = EncodeNormals(texels, {}, 8, 8, 8);
   EXPECT_EQ(flat.pixels16[0], 32768);  // no slope is said exactly
   EXPECT_EQ(flat.pixels16[2], 65535);
 }
@@ -110,4 +110,4 @@ TEST(PaintStrokes, SmoothKeepsItsControlPoints) {
 }
 
 }  // namespace
-}  // namespace furrow::character::paint
+}  // namespace furrow::authoring

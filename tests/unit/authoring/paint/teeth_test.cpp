@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-namespace furrow::character::paint {
+namespace furrow::authoring {
 namespace {
 
 const ToothArch kUpper{true, {1.0f, 20.0f, 9.0f}, 2.75f, 4.2f, 0.8f};
@@ -56,8 +56,8 @@ TEST(Teeth, FaceOutwardsAndKeepApartInThePicture) {
 
 TEST(Teeth, GumsAreRedAndAgeIsYellow) {
   constexpr int kSize = 256;
-  const Picture young = PaintTeeth(0.0f, kSize), old = PaintTeeth(1.0f, kSize);
-  const auto at = [](const Picture& picture, float u, float v) {
+  const character::Picture young = PaintTeeth(0.0f, kSize), old = PaintTeeth(1.0f, kSize);
+  const auto at = [](const character::Picture& picture, float u, float v) {
     const auto x = static_cast<std::size_t>(u * kSize), y = static_cast<std::size_t>(v * kSize);
     return &picture.pixels[(y * kSize + x) * 3];
   };
@@ -72,4 +72,4 @@ TEST(Teeth, GumsAreRedAndAgeIsYellow) {
 }
 
 }  // namespace
-}  // namespace furrow::character::paint
+}  // namespace furrow::authoring

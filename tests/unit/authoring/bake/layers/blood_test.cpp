@@ -8,7 +8,7 @@
 
 #include "tests/unit/authoring/bake/toys.h"
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 std::vector<float> Sum(const std::vector<std::vector<float>>& poses,
@@ -62,7 +62,7 @@ TEST(Blood, IsPressedOutOfFurrows) {
 
 // A sheet that a pose makes a fifth narrower.
 TEST(Blood, OfABakedMapIsThatOfItsPoses) {
-  const Character sheet = toys::Wearing(toys::Sheet(0.1f, 0.1f, 10, 10));
+  const character::Character sheet = toys::Wearing(toys::Sheet(0.1f, 0.1f, 10, 10));
   BakeOptions flat = toys::Exact();
   flat.skin.share = 0.0f;  // no folds
   const BakedMap map = toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(0.2f, 30.0f))}, flat);
@@ -76,4 +76,4 @@ TEST(Blood, OfABakedMapIsThatOfItsPoses) {
 }
 
 }  // namespace
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

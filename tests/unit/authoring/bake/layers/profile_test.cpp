@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 constexpr double kTurn = 6.283185307179586;
@@ -78,4 +78,4 @@ TEST(FoldProfile, AmplitudeKeepsTheArc) {
 }
 
 }  // namespace
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

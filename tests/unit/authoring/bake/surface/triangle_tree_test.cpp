@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-namespace furrow::character::bake {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
@@ -62,4 +62,4 @@ TEST(TriangleTree, FindsWhatALookAtAllFinds) {
 }
 
 }  // namespace
-}  // namespace furrow::character::bake
+}  // namespace furrow::authoring

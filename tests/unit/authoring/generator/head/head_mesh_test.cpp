@@ -10,9 +10,11 @@
 #include <gtest/gtest.h>
 
 #include "authoring/generator/body/body_skeleton.h"
+#include "authoring/generator/head/hair_mesh.h"
+#include "authoring/generator/head/head_skin.h"
 #include "authoring/generator/head/skinning.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 std::size_t Triangles(const HeadMesh& head) { return head.mesh.indices.size() / 3; }
@@ -53,9 +55,9 @@ std::vector<Stretch> Stretches(const HeadMesh& head) {
     const glm::vec3 middle =
         (head.info[t[0]].place + head.info[t[1]].place + head.info[t[2]].place) / 3.0f;
     if (middle.z < 3.0f || middle.y > 6.0f || middle.y < -10.0f) continue;  // the face
-    const Vertex& a = head.mesh.vertices[t[0]];
-    const Vertex& b = head.mesh.vertices[t[1]];
-    const Vertex& c = head.mesh.vertices[t[2]];
+    const character::Vertex& a = head.mesh.vertices[t[0]];
+    const character::Vertex& b = head.mesh.vertices[t[1]];
+    const character::Vertex& c = head.mesh.vertices[t[2]];
     const glm::dvec3 e1(b.position - a.position), e2(c.position - a.position);
     const glm::dvec2 u1(b.uv - a.uv), u2(c.uv - a.uv);
     const double det = u1.x * u2.y - u1.y * u2.x;
@@ -132,4 +134,4 @@ TEST(HeadMesh, HairCoversTheScalpAndLeavesTheFace) {
 }
 
 }  // namespace
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -10,7 +10,7 @@
 
 #include "authoring/generator/head/head_mesh.h"
 
-namespace furrow::character::generator {
+namespace furrow::authoring {
 namespace {
 
 using glm::vec3;
@@ -154,4 +154,4 @@ TEST(FaceParameters, WrinklesDeepenWithAge) {
 }
 
 }  // namespace
-}  // namespace furrow::character::generator
+}  // namespace furrow::authoring

@@ -9,12 +9,13 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "authoring/paint/uv_raster.h"
+#include "authoring/import/character_package.h"
+#include "authoring/paint/surface_texels.h"
 #include "character/package/package.h"
 #include "rig/rig_file.h"
 #include "toy_folder.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 ImportOptions ToyOptions(const ToyFolder& folder) {
@@ -27,7 +28,8 @@ ImportOptions ToyOptions(const ToyFolder& folder) {
 TEST(ImportMakeHuman, MakesACharacterOfTheToyFolder) {
   const ToyFolder folder;
   ImportReport report;
-  const Result<Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder), &report);
+  const Result<character::Character> character =
+      ImportMakeHuman(folder.path(), ToyOptions(folder), &report);
   ASSERT_TRUE(character.ok()) << character.status().ToString();
   EXPECT_EQ(report.joints, character->skeleton.num_joints());
   EXPECT_EQ(report.hidden_faces, 2 * 24);  // three rows of vertices are two of faces
@@ -39,7 +41,7 @@ TEST(ImportMakeHuman, MakesACharacterOfTheToyFolder) {
   EXPECT_EQ(character->meshes[3].name, "hair");
   EXPECT_EQ(character->meshes[4].name, "clothes");
   EXPECT_EQ(character->materials[static_cast<std::size_t>(character->meshes[4].material)].kind,
-            Material::Kind::kCloth);
+            character::Material::Kind::kCloth);
   EXPECT_GE(character->FindRigPicture("face_masks_a"), 0);
   EXPECT_GE(character->FindRigPicture("face_squash"), 0);
 }
@@ -47,27 +49,27 @@ TEST(ImportMakeHuman, MakesACharacterOfTheToyFolder) {
 // Locks lie close over the scalp, follow the head, and are the same in every import.
 TEST(ImportMakeHuman, HairGrowsFromTheScalp) {
   const ToyFolder folder;
-  const Result<Character> first = ImportMakeHuman(folder.path(), ToyOptions(folder));
-  const Result<Character> second = ImportMakeHuman(folder.path(), ToyOptions(folder));
+  const Result<character::Character> first = ImportMakeHuman(folder.path(), ToyOptions(folder));
+  const Result<character::Character> second = ImportMakeHuman(folder.path(), ToyOptions(folder));
   ASSERT_TRUE(first.ok() && second.ok());
-  const Mesh& hair = first->meshes[3];
+  const character::Mesh& hair = first->meshes[3];
   ASSERT_GT(hair.vertices.size(), 100u);
   ASSERT_EQ(hair.vertices.size(), second->meshes[3].vertices.size());
   for (std::size_t v = 0; v < hair.vertices.size(); ++v) {
-    const Vertex& vertex = hair.vertices[v];
+    const character::Vertex& vertex = hair.vertices[v];
     EXPECT_EQ(vertex.position, second->meshes[3].vertices[v].position);
     EXPECT_EQ(vertex.joints[0], first->skeleton.Find("head"));
     float nearest = 1.0f;
-    for (const Vertex& skin : first->meshes[0].vertices) {
+    for (const character::Vertex& skin : first->meshes[0].vertices) {
       nearest = std::min(nearest, glm::distance(skin.position, vertex.position));
     }
     EXPECT_LT(nearest, 0.05f);
   }
   // A lock that is wound the other way round is lit from inside the head.
   for (std::size_t i = 0; i < hair.indices.size(); i += 3) {
-    const Vertex& a = hair.vertices[hair.indices[i]];
-    const Vertex& b = hair.vertices[hair.indices[i + 1]];
-    const Vertex& c = hair.vertices[hair.indices[i + 2]];
+    const character::Vertex& a = hair.vertices[hair.indices[i]];
+    const character::Vertex& b = hair.vertices[hair.indices[i + 1]];
+    const character::Vertex& c = hair.vertices[hair.indices[i + 2]];
     const glm::vec3 outward = glm::cross(b.position - a.position, c.position - a.position);
     EXPECT_GE(glm::dot(outward, a.normal + b.normal + c.normal), 0.0f) << i;
   }
@@ -75,11 +77,11 @@ TEST(ImportMakeHuman, HairGrowsFromTheScalp) {
 
 TEST(ImportMakeHuman, VerticesAreMetresUnitAndFaceOutwards) {
   const ToyFolder folder;
-  const Result<Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
+  const Result<character::Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
   ASSERT_TRUE(character.ok()) << character.status().ToString();
-  const Mesh& skin = character->meshes[0];
+  const character::Mesh& skin = character->meshes[0];
   float lowest = 1.0f, highest = 0.0f;
-  for (const Vertex& vertex : skin.vertices) {
+  for (const character::Vertex& vertex : skin.vertices) {
     lowest = std::min(lowest, vertex.position.y);
     highest = std::max(highest, vertex.position.y);
     EXPECT_NEAR(glm::length(vertex.normal), 1.0f, 1e-4f);
@@ -105,10 +107,10 @@ TEST(ImportMakeHuman, VerticesAreMetresUnitAndFaceOutwards) {
 
 TEST(ImportMakeHuman, NormalsDoNotBreakAtUvSeams) {
   const ToyFolder folder;
-  const Result<Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
+  const Result<character::Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
   ASSERT_TRUE(character.ok());
   std::set<std::tuple<float, float, float>> positions, normals;
-  for (const Vertex& v : character->meshes[0].vertices) {
+  for (const character::Vertex& v : character->meshes[0].vertices) {
     positions.emplace(v.position.x, v.position.y, v.position.z);
     normals.emplace(v.normal.x, v.normal.y, v.normal.z);
   }
@@ -119,13 +121,13 @@ TEST(ImportMakeHuman, NormalsDoNotBreakAtUvSeams) {
 // The picture's region lies over its place on the face, and not on the other side.
 TEST(ImportMakeHuman, MasksLieOnTheirSide) {
   const ToyFolder folder;
-  const Result<Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
+  const Result<character::Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
   ASSERT_TRUE(character.ok());
-  const Picture& mask =
+  const character::Picture& mask =
       character->pictures[static_cast<std::size_t>(character->FindRigPicture("face_masks_a"))];
   int left = 0, right = 0, sum_over = 0;
-  for (const paint::Texel& texel :
-       paint::RasterizeUv(character->meshes[0], mask.width, mask.height)) {
+  for (const SurfaceTexel& texel :
+       RasterizeSurface(character->meshes[0], mask.width, mask.height)) {
     const std::uint8_t* p =
         &mask.pixels[static_cast<std::size_t>(texel.y * mask.width + texel.x) * 4];
     (texel.position.x > 0.011f ? left : right) +=
@@ -141,7 +143,8 @@ TEST(ImportMakeHuman, WithoutClothesTheBodyIsBareAndSaidSo) {
   const ToyFolder folder;
   folder.Remove("clothes/cap/cap.mhclo");
   ImportReport report;
-  const Result<Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder), &report);
+  const Result<character::Character> character =
+      ImportMakeHuman(folder.path(), ToyOptions(folder), &report);
   ASSERT_TRUE(character.ok()) << character.status().ToString();
   EXPECT_EQ(report.hidden_faces, 0);
   EXPECT_EQ(character->meshes.size(), 4u);
@@ -224,15 +227,15 @@ TEST(ImportMakeHuman, TextureSizeIsChecked) {
 
 TEST(ImportMakeHuman, APackageIsWrittenWholeOrNotAtAll) {
   const ToyFolder folder;
-  Result<Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
+  Result<character::Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
   ASSERT_TRUE(character.ok());
   const std::filesystem::path glb = folder.path() / "whole.glb";
   std::filesystem::create_directory(folder.path() / "whole.rig.json");
-  EXPECT_EQ(WritePackage(*character, glb).code(), StatusCode::kIo);
+  EXPECT_EQ(WriteCharacterPackage(*character, glb).code(), StatusCode::kIo);
   EXPECT_FALSE(std::filesystem::exists(glb));
   std::filesystem::remove(folder.path() / "whole.rig.json");
   character->rig.wrinkle_maps[0].derivative_scale = 700.0f;
-  const Status refused = WritePackage(*character, glb);
+  const Status refused = WriteCharacterPackage(*character, glb);
   EXPECT_EQ(refused.code(), StatusCode::kInvalidArgument);
   EXPECT_NE(refused.where().find("whole.rig.json: wrinkle_maps[0]"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(glb));
@@ -240,16 +243,16 @@ TEST(ImportMakeHuman, APackageIsWrittenWholeOrNotAtAll) {
 
 TEST(ImportMakeHuman, PackageReadsBackWithTheSameRig) {
   const ToyFolder folder;
-  const Result<Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
+  const Result<character::Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
   ASSERT_TRUE(character.ok());
   const std::filesystem::path glb = folder.path() / "toy.glb";
-  const Status written = WritePackage(*character, glb);
+  const Status written = WriteCharacterPackage(*character, glb);
   ASSERT_TRUE(written.ok()) << written.ToString();
   std::filesystem::remove(folder.rig());  // shares its name with the package's
-  ASSERT_TRUE(WritePackage(*character, glb).ok());
-  const Result<Character> loaded = LoadCharacter(glb);
+  ASSERT_TRUE(WriteCharacterPackage(*character, glb).ok());
+  const Result<character::Character> loaded = character::LoadCharacter(glb);
   ASSERT_TRUE(loaded.ok()) << loaded.status().ToString();
-  EXPECT_EQ(RigToJson(loaded->rig), RigToJson(character->rig));
+  EXPECT_EQ(character::RigToJson(loaded->rig), character::RigToJson(character->rig));
   EXPECT_EQ(loaded->skeleton.num_joints(), character->skeleton.num_joints());
   EXPECT_EQ(loaded->meshes.size(), character->meshes.size());
   EXPECT_GE(loaded->FindRigPicture("face_masks_a"), 0);
@@ -257,4 +260,4 @@ TEST(ImportMakeHuman, PackageReadsBackWithTheSameRig) {
 }
 
 }  // namespace
-}  // namespace furrow::character
+}  // namespace furrow::authoring

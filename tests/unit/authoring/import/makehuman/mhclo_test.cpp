@@ -8,7 +8,7 @@
 
 #include "authoring/import/makehuman/skin_weights.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 constexpr char kGarment[] =
@@ -50,13 +50,13 @@ TEST(ImportMhclo, GarmentScalesWithTheBody) {
   for (std::size_t i = 0; i < once.size(); ++i) EXPECT_EQ(fitted[i], 2.0f * once[i]);
 }
 
-struct BadCase {
+struct BadGarment {
   const char* text;
   StatusCode code;
   const char* where;
 };
 
-class ImportMhcloErrors : public testing::TestWithParam<BadCase> {};
+class ImportMhcloErrors : public testing::TestWithParam<BadGarment> {};
 
 TEST_P(ImportMhcloErrors, NameTheLine) {
   const Result<Mhclo> garment = ParseMhclo(GetParam().text, "g", 4);
@@ -67,26 +67,27 @@ TEST_P(ImportMhcloErrors, NameTheLine) {
 
 INSTANTIATE_TEST_SUITE_P(
     Each, ImportMhcloErrors,
-    testing::Values(BadCase{"", StatusCode::kSchema, "g"},
-                    BadCase{"obj_file a.obj\n", StatusCode::kSchema, "g"},
-                    BadCase{"verts 0\n1\n", StatusCode::kSchema, "g"},
-                    BadCase{"obj_file ../a.obj\n", StatusCode::kSchema, "g:1"},
-                    BadCase{"obj_file /etc/passwd\n", StatusCode::kSchema, "g:1"},
-                    BadCase{"1 2 3\n", StatusCode::kParse, "g:1"},
-                    BadCase{"x_scale 0 1\n", StatusCode::kParse, "g:1"},
-                    BadCase{"x_scale 0 4 1\n", StatusCode::kInvalidArgument, "g:1"},
-                    BadCase{"x_scale 0 1 0\n", StatusCode::kSchema, "g:1"},
-                    BadCase{"x_scale 0 1 nan\n", StatusCode::kNonFinite, "g:1"},
-                    BadCase{"verts 0\n4\n", StatusCode::kInvalidArgument, "g:2"},
-                    BadCase{"verts 0\n-1\n", StatusCode::kInvalidArgument, "g:2"},
-                    BadCase{"verts 0\n1.5\n", StatusCode::kParse, "g:2"},
-                    BadCase{"verts 0\n0 1 2 .5 .5\n", StatusCode::kParse, "g:2"},
-                    BadCase{"verts 0\n0 1 2 .5 .5 0 0 0 x\n", StatusCode::kParse, "g:2"},
-                    BadCase{"verts 0\n0 1 9 .5 .5 0 0 0 0\n", StatusCode::kInvalidArgument, "g:2"},
-                    BadCase{"verts 0\n0 1 2 .5 inf 0 0 0 0\n", StatusCode::kNonFinite, "g:2"},
-                    BadCase{"delete_verts\n1 -\n", StatusCode::kParse, "g:2"},
-                    BadCase{"delete_verts\n3 - 1\n", StatusCode::kInvalidArgument, "g:2"},
-                    BadCase{"delete_verts\n0 - 4\n", StatusCode::kInvalidArgument, "g:2"}));
+    testing::Values(BadGarment{"", StatusCode::kSchema, "g"},
+                    BadGarment{"obj_file a.obj\n", StatusCode::kSchema, "g"},
+                    BadGarment{"verts 0\n1\n", StatusCode::kSchema, "g"},
+                    BadGarment{"obj_file ../a.obj\n", StatusCode::kSchema, "g:1"},
+                    BadGarment{"obj_file /etc/passwd\n", StatusCode::kSchema, "g:1"},
+                    BadGarment{"1 2 3\n", StatusCode::kParse, "g:1"},
+                    BadGarment{"x_scale 0 1\n", StatusCode::kParse, "g:1"},
+                    BadGarment{"x_scale 0 4 1\n", StatusCode::kInvalidArgument, "g:1"},
+                    BadGarment{"x_scale 0 1 0\n", StatusCode::kSchema, "g:1"},
+                    BadGarment{"x_scale 0 1 nan\n", StatusCode::kNonFinite, "g:1"},
+                    BadGarment{"verts 0\n4\n", StatusCode::kInvalidArgument, "g:2"},
+                    BadGarment{"verts 0\n-1\n", StatusCode::kInvalidArgument, "g:2"},
+                    BadGarment{"verts 0\n1.5\n", StatusCode::kParse, "g:2"},
+                    BadGarment{"verts 0\n0 1 2 .5 .5\n", StatusCode::kParse, "g:2"},
+                    BadGarment{"verts 0\n0 1 2 .5 .5 0 0 0 x\n", StatusCode::kParse, "g:2"},
+                    BadGarment{"verts 0\n0 1 9 .5 .5 0 0 0 0\n", StatusCode::kInvalidArgument,
+                               "g:2"},
+                    BadGarment{"verts 0\n0 1 2 .5 inf 0 0 0 0\n", StatusCode::kNonFinite, "g:2"},
+                    BadGarment{"delete_verts\n1 -\n", StatusCode::kParse, "g:2"},
+                    BadGarment{"delete_verts\n3 - 1\n", StatusCode::kInvalidArgument, "g:2"},
+                    BadGarment{"delete_verts\n0 - 4\n", StatusCode::kInvalidArgument, "g:2"}));
 
 TEST(ImportMhclo, TruncatedAnywhereIsReadOrRefused) {
   const std::string text = kGarment;
@@ -164,4 +165,4 @@ TEST(ImportSkinWeights, GarmentMixesItsBaseVertices) {
 }
 
 }  // namespace
-}  // namespace furrow::character
+}  // namespace furrow::authoring

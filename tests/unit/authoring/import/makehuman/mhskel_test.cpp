@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 // "a.tip" stands before its parent, as MakeHuman's alphabetical files have it.
@@ -51,13 +51,13 @@ TEST(ImportMhskel, ParentsMustExistAndNotCircle) {
   EXPECT_EQ(BuildSkeleton(skeleton, kPositions, "x").status().code(), StatusCode::kNotFound);
 }
 
-struct BadCase {
+struct BadSkeleton {
   const char* text;
   StatusCode code;
   const char* where;
 };
 
-class ImportMhskelErrors : public testing::TestWithParam<BadCase> {};
+class ImportMhskelErrors : public testing::TestWithParam<BadSkeleton> {};
 
 TEST_P(ImportMhskelErrors, NameTheField) {
   const Result<MhSkeleton> skeleton = ParseMhskel(GetParam().text, "s");
@@ -69,25 +69,26 @@ TEST_P(ImportMhskelErrors, NameTheField) {
 INSTANTIATE_TEST_SUITE_P(
     Each, ImportMhskelErrors,
     testing::Values(
-        BadCase{"", StatusCode::kParse, "s:1"},
-        BadCase{"{\n\"bones\": ,\n}", StatusCode::kParse, "s:2"},
-        BadCase{"[]", StatusCode::kSchema, "s: (whole file)"},
-        BadCase{R"({"joints": {}})", StatusCode::kSchema, "s: bones"},
-        BadCase{R"({"bones": [], "joints": {}})", StatusCode::kSchema, "s: bones"},
-        BadCase{R"({"bones": {}})", StatusCode::kSchema, "s: joints"},
-        BadCase{R"({"bones": {"a": 1}, "joints": {}})", StatusCode::kSchema, "s: bones.a"},
-        BadCase{R"({"bones": {"a": {"parent": 3}}, "joints": {}})", StatusCode::kSchema,
-                "s: bones.a.parent"},
-        BadCase{R"({"bones": {"a": {"parent": null}}, "joints": {}})", StatusCode::kSchema,
-                "s: bones.a.head"},
-        BadCase{R"({"bones": {"a": {"parent": null, "head": "h"}}, "joints": {}})",
-                StatusCode::kNotFound, "s: bones.a.head"},
-        BadCase{R"({"bones": {"a": {"parent": null, "head": "h"}}, "joints": {"h": []}})",
-                StatusCode::kSchema, "s: joints.h"},
-        BadCase{R"({"bones": {"a": {"parent": null, "head": "h"}}, "joints": {"h": [-1]}})",
-                StatusCode::kSchema, "s: joints.h"},
-        BadCase{R"({"bones": {"a": {"parent": null, "head": "h"}}, "joints": {"h": [4294967296]}})",
-                StatusCode::kSchema, "s: joints.h"}));
+        BadSkeleton{"", StatusCode::kParse, "s:1"},
+        BadSkeleton{"{\n\"bones\": ,\n}", StatusCode::kParse, "s:2"},
+        BadSkeleton{"[]", StatusCode::kSchema, "s: (whole file)"},
+        BadSkeleton{R"({"joints": {}})", StatusCode::kSchema, "s: bones"},
+        BadSkeleton{R"({"bones": [], "joints": {}})", StatusCode::kSchema, "s: bones"},
+        BadSkeleton{R"({"bones": {}})", StatusCode::kSchema, "s: joints"},
+        BadSkeleton{R"({"bones": {"a": 1}, "joints": {}})", StatusCode::kSchema, "s: bones.a"},
+        BadSkeleton{R"({"bones": {"a": {"parent": 3}}, "joints": {}})", StatusCode::kSchema,
+                    "s: bones.a.parent"},
+        BadSkeleton{R"({"bones": {"a": {"parent": null}}, "joints": {}})", StatusCode::kSchema,
+                    "s: bones.a.head"},
+        BadSkeleton{R"({"bones": {"a": {"parent": null, "head": "h"}}, "joints": {}})",
+                    StatusCode::kNotFound, "s: bones.a.head"},
+        BadSkeleton{R"({"bones": {"a": {"parent": null, "head": "h"}}, "joints": {"h": []}})",
+                    StatusCode::kSchema, "s: joints.h"},
+        BadSkeleton{R"({"bones": {"a": {"parent": null, "head": "h"}}, "joints": {"h": [-1]}})",
+                    StatusCode::kSchema, "s: joints.h"},
+        BadSkeleton{
+            R"({"bones": {"a": {"parent": null, "head": "h"}}, "joints": {"h": [4294967296]}})",
+            StatusCode::kSchema, "s: joints.h"}));
 
 TEST(ImportMhw, ReadsWeightsAndRefusesOthers) {
   const Result<MhWeights> weights = ParseMhw(R"({"weights": {"a": [[3, 0.25], [7, 1]]}})", "w");
@@ -124,4 +125,4 @@ TEST(ImportMhskel, DeepNestingIsRefusedNotFollowed) {
 }
 
 }  // namespace
-}  // namespace furrow::character
+}  // namespace furrow::authoring

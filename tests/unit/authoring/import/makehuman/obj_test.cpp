@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 constexpr char kTwoFaces[] =
@@ -41,13 +41,13 @@ TEST(ImportObj, ReadsFacesByGroup) {
   EXPECT_EQ(mesh->corners[mesh->faces[3].first_corner].uv, -1);
 }
 
-struct BadCase {
+struct BadObj {
   const char* text;
   StatusCode code;
   const char* where;
 };
 
-class ImportObjErrors : public testing::TestWithParam<BadCase> {};
+class ImportObjErrors : public testing::TestWithParam<BadObj> {};
 
 TEST_P(ImportObjErrors, NameTheLine) {
   const Result<ObjMesh> mesh = ParseObj(GetParam().text, "bad.obj");
@@ -58,20 +58,20 @@ TEST_P(ImportObjErrors, NameTheLine) {
 
 INSTANTIATE_TEST_SUITE_P(
     Each, ImportObjErrors,
-    testing::Values(BadCase{"", StatusCode::kParse, "bad.obj"},
-                    BadCase{"v 0 0\n", StatusCode::kParse, "bad.obj:1"},
-                    BadCase{"v 0 0 zero\n", StatusCode::kParse, "bad.obj:1"},
-                    BadCase{"v 0 0 1e\n", StatusCode::kParse, "bad.obj:1"},
-                    BadCase{"\nv 0 nan 0\n", StatusCode::kNonFinite, "bad.obj:2"},
-                    BadCase{"v 0 0 0\nvt inf 0\n", StatusCode::kNonFinite, "bad.obj:2"},
-                    BadCase{"v 0 0 0\nf 1 1\n", StatusCode::kParse, "bad.obj:2"},
-                    BadCase{"v 0 0 0\nf 1 1 2\n", StatusCode::kInvalidArgument, "bad.obj:2"},
-                    BadCase{"v 0 0 0\nf 1 1 0\n", StatusCode::kInvalidArgument, "bad.obj:2"},
-                    BadCase{"v 0 0 0\nf 1 1 -2\n", StatusCode::kInvalidArgument, "bad.obj:2"},
-                    BadCase{"v 0 0 0\nf 1/1 1 1\n", StatusCode::kInvalidArgument, "bad.obj:2"},
-                    BadCase{"v 0 0 0\nf 1 1 99999999999999999999\n", StatusCode::kParse,
-                            "bad.obj:2"},
-                    BadCase{"v 0 0 0\nf 1 1 x\n", StatusCode::kParse, "bad.obj:2"}));
+    testing::Values(BadObj{"", StatusCode::kParse, "bad.obj"},
+                    BadObj{"v 0 0\n", StatusCode::kParse, "bad.obj:1"},
+                    BadObj{"v 0 0 zero\n", StatusCode::kParse, "bad.obj:1"},
+                    BadObj{"v 0 0 1e\n", StatusCode::kParse, "bad.obj:1"},
+                    BadObj{"\nv 0 nan 0\n", StatusCode::kNonFinite, "bad.obj:2"},
+                    BadObj{"v 0 0 0\nvt inf 0\n", StatusCode::kNonFinite, "bad.obj:2"},
+                    BadObj{"v 0 0 0\nf 1 1\n", StatusCode::kParse, "bad.obj:2"},
+                    BadObj{"v 0 0 0\nf 1 1 2\n", StatusCode::kInvalidArgument, "bad.obj:2"},
+                    BadObj{"v 0 0 0\nf 1 1 0\n", StatusCode::kInvalidArgument, "bad.obj:2"},
+                    BadObj{"v 0 0 0\nf 1 1 -2\n", StatusCode::kInvalidArgument, "bad.obj:2"},
+                    BadObj{"v 0 0 0\nf 1/1 1 1\n", StatusCode::kInvalidArgument, "bad.obj:2"},
+                    BadObj{"v 0 0 0\nf 1 1 99999999999999999999\n", StatusCode::kParse,
+                           "bad.obj:2"},
+                    BadObj{"v 0 0 0\nf 1 1 x\n", StatusCode::kParse, "bad.obj:2"}));
 
 TEST(ImportObj, FacesOfManyCornersAreRefused) {
   std::string text = "v 0 0 0\nf";
@@ -99,4 +99,4 @@ TEST(ImportObj, TruncatedAnywhereIsReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -10,7 +10,7 @@
 
 #include <glm/vec3.hpp>
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 constexpr int kColumns = 24;
@@ -103,7 +103,7 @@ void AddCubes(std::ostringstream* out, int first) {
   }
 }
 
-constexpr char kRig[] = R"({
+constexpr char kToyRig[] = R"({
   "name": "toy", "anchor": "head",
   "reference_poses": [{"name": "up", "joints": [{"joint": "oculi01.L", "euler_degrees": [20, 0, 20]}]}],
   "drivers": [{"name": "brow", "pose": {"points": [{"joint": "oculi01.L"}],
@@ -146,7 +146,7 @@ ToyFolder::ToyFolder() {
   Write("clothes/cap/cap.mhclo",
         "name cap\nobj_file cap.obj\nverts 0\n0 8 16 1 0 0 0 0.1 0\n"
         "0 8 16 0 1 0 0 0.1 0\n16\ndelete_verts\n0 - 71\n");
-  Write("toy.rig.json", kRig);
+  Write("toy.rig.json", kToyRig);
 }
 
 void ToyFolder::Write(const std::string& file, const std::string& text) const {
@@ -161,4 +161,4 @@ std::string ToyFolder::Read(const std::string& file) const {
 
 void ToyFolder::Remove(const std::string& file) const { std::filesystem::remove(folder_ / file); }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -6,7 +6,7 @@
 
 #include "tests/temporary_folder.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 
 // A folder in MakeHuman's layout with a head of 24 x 16 quads, a helper cube for each eye, the face
 // joints that landmarks need, and a cap to wear: as small as an import can be. Removed on
@@ -26,4 +26,4 @@ class ToyFolder {
   TemporaryFolder folder_;
 };
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

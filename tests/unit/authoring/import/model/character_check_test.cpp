@@ -9,27 +9,29 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "authoring/import/model/character_report.h"
 #include "character/source_notes.h"
 #include "tests/unit/authoring/import/model/toy_body.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 using ::testing::HasSubstr;
 
-SkeletonMaps Maps() {
-  return *SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/vrm.json");
+character::SkeletonMaps Maps() {
+  return *character::SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) +
+                                        "/rig/skeleton_maps/vrm.json");
 }
 
 // What a reader notes of a file with nothing wrong.
-SourceNotes GoodNotes() {
-  SourceNotes notes;
+character::SourceNotes GoodNotes() {
+  character::SourceNotes notes;
   notes.meshes.push_back(
       {.skinned = true, .has_uvs = true, .has_normals = true, .has_tangents = true});
   return notes;
 }
 
-const Finding* Find(const CharacterReport& report, const std::string& code) {
+const Finding* FindFinding(const CharacterReport& report, const std::string& code) {
   const auto found = std::find_if(report.findings.begin(), report.findings.end(),
                                   [&](const Finding& finding) { return finding.code == code; });
   return found == report.findings.end() ? nullptr : &*found;
@@ -39,8 +41,8 @@ TEST(CharacterCheck, AGoodBodyLacksFaceAndRigAlone) {
   const CharacterReport report = CheckCharacter(ToyBody(), GoodNotes(), Maps(), false);
   EXPECT_EQ(report.Count(Severity::kError), 0u) << ToText(report);
   EXPECT_EQ(report.Count(Severity::kWarning), 0u) << ToText(report);
-  EXPECT_NE(Find(report, "no-rig"), nullptr);
-  EXPECT_NE(Find(report, "no-face-joints"), nullptr);
+  EXPECT_NE(FindFinding(report, "no-rig"), nullptr);
+  EXPECT_NE(FindFinding(report, "no-face-joints"), nullptr);
   EXPECT_EQ(report.space.axes, "up +Y, facing +Z");
   EXPECT_EQ(report.joints.map, "vrm");
   EXPECT_EQ(report.joints.num_roles, 19);
@@ -50,17 +52,17 @@ struct Fault {
   const char* code;
   Severity severity;
   const char* says;
-  std::function<void(Character*, SourceNotes*)> make;
+  std::function<void(character::Character*, character::SourceNotes*)> make;
 };
 
 class CharacterFaults : public ::testing::TestWithParam<Fault> {};
 
 TEST_P(CharacterFaults, IsFound) {
-  Character body = ToyBody();
-  SourceNotes notes = GoodNotes();
+  character::Character body = ToyBody();
+  character::SourceNotes notes = GoodNotes();
   GetParam().make(&body, &notes);
   const CharacterReport report = CheckCharacter(body, notes, Maps(), false);
-  const Finding* finding = Find(report, GetParam().code);
+  const Finding* finding = FindFinding(report, GetParam().code);
   ASSERT_NE(finding, nullptr) << ToText(report);
   EXPECT_EQ(finding->severity, GetParam().severity);
   EXPECT_THAT(finding->what, HasSubstr(GetParam().says));
@@ -69,51 +71,67 @@ TEST_P(CharacterFaults, IsFound) {
 INSTANTIATE_TEST_SUITE_P(
     Each, CharacterFaults,
     ::testing::Values(
-        Fault{"no-skin", Severity::kError, "no mesh is skinned",
-              [](Character*, SourceNotes* n) { n->meshes[0].skinned = false; }},
-        Fault{"uv-missing", Severity::kError, "no UVs",
-              [](Character*, SourceNotes* n) { n->meshes[0].has_uvs = false; }},
+        Fault{
+            "no-skin", Severity::kError, "no mesh is skinned",
+            [](character::Character*, character::SourceNotes* n) { n->meshes[0].skinned = false; }},
+        Fault{
+            "uv-missing", Severity::kError, "no UVs",
+            [](character::Character*, character::SourceNotes* n) { n->meshes[0].has_uvs = false; }},
         Fault{"uv-missing", Severity::kError, "one place",
-              [](Character* c, SourceNotes*) {
-                for (Vertex& v : c->meshes[0].vertices) v.uv = {0.5f, 0.5f};
+              [](character::Character* c, character::SourceNotes*) {
+                for (character::Vertex& v : c->meshes[0].vertices) v.uv = {0.5f, 0.5f};
               }},
         Fault{"uv-overlap", Severity::kWarning, "used twice",
-              [](Character* c, SourceNotes*) {
+              [](character::Character* c, character::SourceNotes*) {
                 for (std::size_t v = 0; v < 24; ++v) {
                   c->meshes[0].vertices[v].uv = c->meshes[0].vertices[v + 48].uv;
                 }
               }},
         Fault{"unskinned-vertices", Severity::kError, "3 vertices follow no joint",
-              [](Character*, SourceNotes* n) { n->meshes[0].unskinned_vertices = 3; }},
-        Fault{"degenerate-triangles", Severity::kError, "1 triangle has no area",
-              [](Character* c, SourceNotes*) { c->meshes[0].indices[1] = 0; }},
+              [](character::Character*, character::SourceNotes* n) {
+                n->meshes[0].unskinned_vertices = 3;
+              }},
+        Fault{
+            "degenerate-triangles", Severity::kError, "1 triangle has no area",
+            [](character::Character* c, character::SourceNotes*) { c->meshes[0].indices[1] = 0; }},
         Fault{"weights-sum", Severity::kWarning, "the worst: 1.8",
-              [](Character*, SourceNotes* n) {
+              [](character::Character*, character::SourceNotes* n) {
                 n->meshes[0].unnormalised_vertices = 5;
                 n->meshes[0].worst_sum = 1.8f;
               }},
         Fault{"weights-truncated", Severity::kNote, "more than four",
-              [](Character*, SourceNotes* n) { n->meshes[0].truncated_vertices = 2; }},
+              [](character::Character*, character::SourceNotes* n) {
+                n->meshes[0].truncated_vertices = 2;
+              }},
         Fault{"normals-missing", Severity::kWarning, "computed",
-              [](Character*, SourceNotes* n) { n->meshes[0].has_normals = false; }},
+              [](character::Character*, character::SourceNotes* n) {
+                n->meshes[0].has_normals = false;
+              }},
         Fault{"tangents-missing", Severity::kNote, "computed",
-              [](Character*, SourceNotes* n) { n->meshes[0].has_tangents = false; }},
+              [](character::Character*, character::SourceNotes* n) {
+                n->meshes[0].has_tangents = false;
+              }},
         Fault{"blend-shapes", Severity::kNote, "52 blend shapes are not carried",
-              [](Character*, SourceNotes* n) { n->meshes[0].morph_targets = 52; }},
+              [](character::Character*, character::SourceNotes* n) {
+                n->meshes[0].morph_targets = 52;
+              }},
         Fault{"picture-missing", Severity::kWarning, "skin.png",
-              [](Character*, SourceNotes* n) { n->missing_pictures = {"skin.png: no such file"}; }},
+              [](character::Character*, character::SourceNotes* n) {
+                n->missing_pictures = {"skin.png: no such file"};
+              }},
         Fault{"joint-names", Severity::kWarning, "4 joints have no name",
-              [](Character*, SourceNotes* n) { n->nameless_joints = 4; }},
+              [](character::Character*, character::SourceNotes* n) { n->nameless_joints = 4; }},
         Fault{"units", Severity::kWarning, "the unit is probably 0.01 m",
-              [](Character* c, SourceNotes*) {
+              [](character::Character* c, character::SourceNotes*) {
                 ASSERT_TRUE(MoveToSpace(glm::mat3(1.0f), 100.0f, c).ok());
               }},
-        Fault{"up-axis", Severity::kWarning, "up +Z, facing -Y", [](Character* c, SourceNotes*) {
+        Fault{"up-axis", Severity::kWarning, "up +Z, facing -Y",
+              [](character::Character* c, character::SourceNotes*) {
                 ASSERT_TRUE(MoveToSpace(glm::mat3(1, 0, 0, 0, 0, 1, 0, -1, 0), 1.0f, c).ok());
               }}));
 
 TEST(CharacterCheck, JsonSaysTheSame) {
-  SourceNotes notes = GoodNotes();
+  character::SourceNotes notes = GoodNotes();
   notes.meshes[0].unskinned_vertices = 1;
   const CharacterReport report = CheckCharacter(ToyBody(), notes, Maps(), false);
   const auto json = nlohmann::json::parse(ToJson(report));
@@ -124,4 +142,4 @@ TEST(CharacterCheck, JsonSaysTheSame) {
 }
 
 }  // namespace
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -16,7 +16,7 @@
 #include "tests/unit/authoring/import/model/toy_body.h"
 #include "wrinkle/skeleton/pose_frame.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,12 +31,13 @@ class Folder : public TemporaryFolder {
   }
 };
 
-SkeletonMaps Maps() {
-  return *SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/vrm.json");
+character::SkeletonMaps Maps() {
+  return *character::SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) +
+                                        "/rig/skeleton_maps/vrm.json");
 }
 
 // Model-space positions of all vertices with some joints turned, keyed by UV: importers reorder.
-std::map<std::pair<int, int>, glm::vec3> Posed(const Character& character) {
+std::map<std::pair<int, int>, glm::vec3> Posed(const character::Character& character) {
   const auto turn = [](const std::string& name) {
     const glm::vec3 x(1, 0, 0), z(0, 0, 1);
     if (name == "leftLowerLeg") return glm::angleAxis(1.0f, x);
@@ -57,8 +58,8 @@ std::map<std::pair<int, int>, glm::vec3> Posed(const Character& character) {
     skin[j] = model[j] * character.inverse_bind_matrices[j];
   }
   std::map<std::pair<int, int>, glm::vec3> posed;
-  for (const Mesh& mesh : character.meshes) {
-    for (const Vertex& v : mesh.vertices) {
+  for (const character::Mesh& mesh : character.meshes) {
+    for (const character::Vertex& v : mesh.vertices) {
       glm::vec4 p(0.0f);
       for (int i = 0; i < 4; ++i) {
         p += v.skin_weights[i] * (skin[v.joints[i]] * glm::vec4(v.position, 1.0f));
@@ -71,7 +72,7 @@ std::map<std::pair<int, int>, glm::vec3> Posed(const Character& character) {
   return posed;
 }
 
-void ExpectSamePoses(const Character& seen, const Character& due) {
+void ExpectSamePoses(const character::Character& seen, const character::Character& due) {
   const auto a = Posed(seen);
   const auto b = Posed(due);
   ASSERT_EQ(a.size(), b.size());
@@ -88,7 +89,7 @@ class ForeignFormat : public ::testing::TestWithParam<std::pair<const char*, con
 
 TEST_P(ForeignFormat, BendsAsTheOriginalDoes) {
   const auto& [format, file] = GetParam();
-  const Character body = ToyBody();
+  const character::Character body = ToyBody();
   const Folder folder;
   const auto imported =
       ImportModel(folder.Write(file, ConvertByAssimp(GlbOf(body), format)), Maps());
@@ -99,8 +100,9 @@ TEST_P(ForeignFormat, BendsAsTheOriginalDoes) {
   ExpectSamePoses(imported->character, body);
   ASSERT_FALSE(imported->character.materials.empty());
   const int used = imported->character.meshes[0].material;
-  const Material& material = imported->character.materials[static_cast<std::size_t>(used)];
-  EXPECT_EQ(material.kind, Material::Kind::kSkin) << material.name;
+  const character::Material& material =
+      imported->character.materials[static_cast<std::size_t>(used)];
+  EXPECT_EQ(material.kind, character::Material::Kind::kSkin) << material.name;
   EXPECT_NEAR(material.base_colour.g, 0.25f, 1e-3f);
 }
 
@@ -121,7 +123,7 @@ TEST(ImportModel, AGlbByAnyNameIsReadAsOne) {
 class Space : public ::testing::TestWithParam<std::tuple<glm::mat3, float>> {};
 
 TEST_P(Space, IsMadeOurs) {
-  Character body = ToyBody();
+  character::Character body = ToyBody();
   const auto& [turn, scale] = GetParam();
   ASSERT_TRUE(MoveToSpace(turn, scale, &body).ok());
   const Folder folder;
@@ -147,13 +149,13 @@ TEST(ImportModel, ScaleCanBeSaid) {
   EXPECT_NEAR(imported->character.skeleton.rest_model()[head][3].y, 3.1f, 1e-4f);
 }
 
-Status StatusOf(const Character& character, const ModelOptions& options = {}) {
+Status StatusOf(const character::Character& character, const ModelOptions& options = {}) {
   const Folder folder;
   return ImportModel(folder.Write("bad.glb", GlbOf(character)), Maps(), options).status();
 }
 
 TEST(ImportModel, TrianglesWithoutAreaAreAnErrorOrLeftOut) {
-  Character body = ToyBody();
+  character::Character body = ToyBody();
   body.meshes[0].vertices[1].position = body.meshes[0].vertices[0].position;
   const Status status = StatusOf(body);
   EXPECT_EQ(status.code(), StatusCode::kUnsupported);
@@ -164,7 +166,7 @@ TEST(ImportModel, TrianglesWithoutAreaAreAnErrorOrLeftOut) {
 }
 
 TEST(ImportModel, UnskinnedVerticesAreAnErrorOrFollowTheirNeighbours) {
-  Character body = ToyBody();
+  character::Character body = ToyBody();
   const int vertex = 24 * 7 + 2;  // of the left hand
   for (float& weight : body.meshes[0].vertices[vertex].skin_weights) weight = 0.0f;
   const Status status = StatusOf(body);
@@ -178,7 +180,7 @@ TEST(ImportModel, UnskinnedVerticesAreAnErrorOrFollowTheirNeighbours) {
 }
 
 TEST(ImportModel, OverlappingUvsAreAWarning) {
-  Character body = ToyBody();
+  character::Character body = ToyBody();
   for (std::size_t v = 0; v < 24; ++v) {
     body.meshes[0].vertices[v].uv = body.meshes[0].vertices[v + 24].uv;
   }
@@ -219,4 +221,4 @@ TEST(ImportModel, CutFilesEndInAStatus) {
 }
 
 }  // namespace
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -16,14 +16,14 @@
 #include "tests/unit/authoring/import/model/toy_body.h"
 #include "wrinkle/solver/solver.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 using wrinkle::JointRole;
 
-SkeletonMaps Map(const std::string& name) {
-  return *SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/" + name +
-                             ".json");
+character::SkeletonMaps Map(const std::string& name) {
+  return *character::SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/" +
+                                        name + ".json");
 }
 
 // A rig for the body of boxes: the one that is carried over in these tests.
@@ -42,7 +42,7 @@ wrinkle::Rig ToyRig() {
     {"name": "elbow", "mask": {"texture": "painted", "channel": "r"},
      "feeds": [{"map": "folds", "sources": [{"from": "elbow_r.flexed"}]}]}],
    "wrinkle_maps": [{"name": "folds", "normal": "folds"}]})";
-  return *ParseRig(kText, "toy", ".");
+  return *character::ParseRig(kText, "toy", ".");
 }
 
 const wrinkle::Driver* Find(const wrinkle::Rig& rig, const std::string& name) {
@@ -58,7 +58,7 @@ class CmuProposal : public ::testing::Test {
     if (!clip.ok()) GTEST_SKIP() << "the CMU recording is absent";
     skeleton_ = clip->skeleton;
     joints_ = FindJoints(skeleton_, Map("cmu"));
-    const Character body = ToyBody();
+    const character::Character body = ToyBody();
     const FoundJoints body_joints = FindJoints(body.skeleton, Map("vrm"));
     const auto proposal =
         ProposeRig(ToyRig(), {&body.skeleton, &body_joints}, {&skeleton_, &joints_});
@@ -86,7 +86,7 @@ TEST_F(CmuProposal, HingesTurnAboutTheAxesOfTheShippedRig) {
 }
 
 TEST_F(CmuProposal, BindsStrictlyAndChecks) {
-  EXPECT_TRUE(CheckRig(rig_).ok()) << CheckRig(rig_).ToString();
+  EXPECT_TRUE(character::CheckRig(rig_).ok()) << character::CheckRig(rig_).ToString();
   const auto binding = wrinkle::RigBinding::Create(rig_, skeleton_, {});
   EXPECT_TRUE(binding.ok()) << binding.status().ToString();
   EXPECT_EQ(rig_.anchor, "Head");
@@ -108,7 +108,7 @@ TEST_F(CmuProposal, MasksBecomeSkinWeightsAndMapsLoseTheirPictures) {
 }
 
 TEST(RigProposal, WhatHasNoJointIsLeftOutWithAllThatNamesIt) {
-  const Character body = ToyBody();
+  const character::Character body = ToyBody();
   const FoundJoints body_joints = FindJoints(body.skeleton, Map("vrm"));
   // A bust: no legs.
   std::vector<wrinkle::JointDesc> descs;
@@ -128,11 +128,11 @@ TEST(RigProposal, WhatHasNoJointIsLeftOutWithAllThatNamesIt) {
   EXPECT_NE(Find(proposal->rig, "elbow_r"), nullptr);
   ASSERT_EQ(proposal->rig.regions.size(), 1u);
   EXPECT_EQ(proposal->rig.regions[0].name, "elbow");
-  EXPECT_TRUE(CheckRig(proposal->rig).ok());
+  EXPECT_TRUE(character::CheckRig(proposal->rig).ok());
 }
 
 TEST(RigProposal, AnUnknownSkeletonIsNotFound) {
-  const Character body = ToyBody();
+  const character::Character body = ToyBody();
   const FoundJoints body_joints = FindJoints(body.skeleton, Map("vrm"));
   const auto rope = *wrinkle::Skeleton::Create(
       {{"a", -1, {}, {}}, {"b", 0, {glm::vec3(0, 1, 0)}, {}}, {"c", 1, {glm::vec3(0, 1, 0)}, {}}});
@@ -145,7 +145,7 @@ TEST(RigProposal, AnUnknownSkeletonIsNotFound) {
 class Hierarchy : public ::testing::TestWithParam<glm::vec3> {};
 
 TEST_P(Hierarchy, TellsTheRolesThatTheNamesWouldHaveTold) {
-  Character body = ToyBody();
+  character::Character body = ToyBody();
   const FoundJoints by_name = FindJoints(body.skeleton, Map("vrm"));
   ASSERT_EQ(by_name.map, "vrm");
   const glm::vec3 angles = GetParam();
@@ -156,7 +156,8 @@ TEST_P(Hierarchy, TellsTheRolesThatTheNamesWouldHaveTold) {
     descs.push_back({"bone" + std::to_string(j), body.skeleton.joint_parents()[j],
                      body.skeleton.rest_pose()[j], body.skeleton.tails()[j]});
   }
-  const FoundJoints found = FindJoints(*wrinkle::Skeleton::Create(descs), SkeletonMaps());
+  const FoundJoints found =
+      FindJoints(*wrinkle::Skeleton::Create(descs), character::SkeletonMaps());
   EXPECT_TRUE(found.map.empty());
   for (int j = 0; j < body.skeleton.num_joints(); ++j) {
     EXPECT_EQ(wrinkle::ToString(found.roles[j]), wrinkle::ToString(by_name.roles[j]))
@@ -170,4 +171,4 @@ INSTANTIATE_TEST_SUITE_P(Turns, Hierarchy,
                                            glm::vec3(0.4f, -1.2f, 2.0f)));
 
 }  // namespace
-}  // namespace furrow::character
+}  // namespace furrow::authoring

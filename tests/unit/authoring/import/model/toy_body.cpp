@@ -16,7 +16,7 @@
 #include "character/package/package.h"
 #include "tests/temporary_folder.h"
 
-namespace furrow::character {
+namespace furrow::authoring {
 namespace {
 
 struct ToyJoint {
@@ -47,7 +47,7 @@ const std::array<ToyJoint, 19> kJoints = {{{"hips", -1, {0, 0.95f, 0}},
                                            {"rightToes", 17, {-0.1f, 0.05f, 0.12f}}}};
 
 // The six faces of a box, each in a cell of its own of the picture.
-void AddBox(int joint, const glm::vec3& centre, float half, Mesh* mesh) {
+void AddBox(int joint, const glm::vec3& centre, float half, character::Mesh* mesh) {
   constexpr int kCells = 11;  // a side: 121 for 114 faces
   for (int face = 0; face < 6; ++face) {
     const int axis = face / 2;
@@ -58,7 +58,7 @@ void AddBox(int joint, const glm::vec3& centre, float half, Mesh* mesh) {
     for (int k = 0; k < 4; ++k) {
       const float a = k == 1 || k == 2 ? 1.0f : -1.0f;
       const float b = k >= 2 ? 1.0f : -1.0f;
-      Vertex vertex;
+      character::Vertex vertex;
       glm::vec3 offset(0.0f);
       offset[axis] = side;
       offset[(axis + 1) % 3] = side * a;
@@ -88,8 +88,8 @@ void DropMetadata(aiNode* node) {
 
 }  // namespace
 
-Character ToyBody() {
-  Character body;
+character::Character ToyBody() {
+  character::Character body;
   body.name = "toy";
   std::vector<wrinkle::JointDesc> joints;
   for (const ToyJoint& joint : kJoints) {
@@ -100,7 +100,7 @@ Character ToyBody() {
   for (const glm::mat4& rest : body.skeleton.rest_model()) {
     body.inverse_bind_matrices.push_back(glm::inverse(rest));
   }
-  Mesh mesh;
+  character::Mesh mesh;
   mesh.name = "skin";
   mesh.material = 0;
   for (std::size_t j = 0; j < kJoints.size(); ++j) {
@@ -108,16 +108,16 @@ Character ToyBody() {
     AddBox(static_cast<int>(j), kJoints[j].at + glm::vec3(0, head ? 0.07f : 0.0f, 0),
            head ? 0.08f : 0.05f, &mesh);
   }
-  paint::ComputeTangents(mesh.vertices, mesh.indices);
+  character::paint::ComputeTangents(mesh.vertices, mesh.indices);
   body.meshes.push_back(std::move(mesh));
-  body.materials.push_back({.name = "skin", .kind = Material::Kind::kSkin});
+  body.materials.push_back({.name = "skin", .kind = character::Material::Kind::kSkin});
   body.materials.back().base_colour = {0.5f, 0.25f, 0.125f, 1.0f};
   return body;
 }
 
-std::string GlbOf(const Character& character) {
+std::string GlbOf(const character::Character& character) {
   const TemporaryFolder folder;
-  EXPECT_TRUE(SaveCharacterGlb(character, folder / "toy.glb").ok());
+  EXPECT_TRUE(character::SaveCharacterGlb(character, folder / "toy.glb").ok());
   return *ReadFile(folder / "toy.glb", 64u << 20);
 }
 
@@ -133,4 +133,4 @@ std::string ConvertByAssimp(std::string_view glb, const std::string& format) {
   return {static_cast<const char*>(blob->data), blob->size};
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::authoring

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "authoring/generator/head/face_parameters.h"
+
+namespace furrow::authoring {
+
+// Fraction of a point that hairs of the brows cover, [0, 1]. `p`: head space, centimetres.
+[[nodiscard]] float BrowShare(const glm::vec3& p, const FaceParameters& face);
+
+}  // namespace furrow::authoring

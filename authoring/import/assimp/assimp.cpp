@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: Apache-2.0
+// Only this file and assimp_materials include assimp's headers; other code sees glTF.
+#include "authoring/import/assimp/assimp.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+
+#include "authoring/import/assimp/assimp_materials.h"
+#include "authoring/import/assimp/child_process.h"
+#include "authoring/import/assimp/gltf_pieces.h"
+#include "base/status.h"
+#include "gltf/limits.h"
+#include "gltf/scene/transform.h"
+#include "gltf/write/builder.h"
+#include "gltf/write/scene_json.h"
+#include "wrinkle/skeleton/transform.h"
+
+namespace furrow::authoring {
+namespace {
+
+constexpr std::size_t kMaxForeignBytes = 512u << 20;
+
+// Denies access to files. The model is in memory, and files that it names are not opened.
+class NoFiles : public Assimp::IOSystem {
+ public:
+  bool Exists(const char*) const override { return false; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char*, const char*) override { return nullptr; }
+  void Close(Assimp::IOStream*) override {}
+};
+
+glm::mat4 ToGlm(const aiMatrix4x4& m) { return glm::transpose(glm::make_mat4(&m.a1)); }
+glm::vec3 ToGlm(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+
+// Converts a scene to glTF.
+class SceneWriter {
+ public:
+  explicit SceneWriter(const aiScene& scene) : scene_(scene) {}
+
+  Result<std::string> Run(std::vector<std::string>* remarks) {
+    FURROW_RETURN_IF_ERROR(CollectNodes());
+    FURROW_RETURN_IF_ERROR(FindJoints());
+    WriteNodes();
+    AddSkin();
+    FURROW_RETURN_IF_ERROR(AddMeshes());
+    AssimpMaterials(scene_, &builder_).Run(&remarks_);
+    RemarkOnRest();
+    root_["nodes"] = std::move(nodes_);
+    root_["scenes"] =
+        GltfJson::array({{{"name", NameFrom(scene_.mName)}, {"nodes", std::move(roots_)}}});
+    *remarks = std::move(remarks_);
+    return builder_.Finish();
+  }
+
+ private:
+  template <class T>
+  std::optional<T> Metadata(const char* key) const {
+    T value{};
+    if (scene_.mMetaData != nullptr && scene_.mMetaData->Get(key, value)) return value;
+    return std::nullopt;
+  }
+
+  // The axes and unit that the file states, as a rotation and scale of the whole scene.
+  wrinkle::Transform Space() {
+    wrinkle::Transform space;
+    const std::optional<int> up = Metadata<int>("UpAxis");
+    const float sign = static_cast<float>(Metadata<int>("UpAxisSign").value_or(1));
+    constexpr float kHalf = 0.70710678f;
+    if (up == 0) space.rotation = glm::quat(kHalf, 0.0f, 0.0f, sign * kHalf);
+    if (up == 2) space.rotation = glm::quat(kHalf, -sign * kHalf, 0.0f, 0.0f);
+    if (up == 0 || up == 2) {
+      remarks_.push_back(std::string("the file says that ") + (up == 0 ? "X" : "Z") +
+                         " is up: turned to +Y up");
+    }
+    const std::optional<double> exact = Metadata<double>("UnitScaleFactor");
+    const float centimetres =
+        exact ? static_cast<float>(*exact) : Metadata<float>("UnitScaleFactor").value_or(100.0f);
+    if (centimetres > 1e-6f && centimetres < 1e6f && centimetres != 100.0f) {
+      space.scale = glm::vec3(0.01f * centimetres);
+      remarks_.push_back("the file's unit is " + std::to_string(centimetres) +
+                         " cm: converted to metres");
+    }
+    return space;
+  }
+
+  struct SourceNode {
+    const aiNode* node;
+    int parent;       // index into sources_; -1 for the root
+    glm::mat4 model;  // as in the file; for a kept node, as written
+    bool is_joint = false;
+    int written = -1;  // index into nodes_; -1 if not kept
+  };
+
+  // Collects all nodes, parents first.
+  Status CollectNodes() {
+    sources_.push_back({scene_.mRootNode, -1, wrinkle::ToMatrix(Space())});
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      const aiNode& node = *sources_[i].node;
+      sources_[i].model *= ToGlm(node.mTransformation);
+      source_by_name_.emplace(NameFrom(node.mName), i);
+      for (unsigned m = 0; m < node.mNumMeshes; ++m) instances_.emplace_back(node.mMeshes[m], i);
+      for (unsigned c = 0; c < node.mNumChildren; ++c) {
+        if (sources_.size() >= gltf::kMaxNodes) {
+          return {StatusCode::kLimit, "the file has too many nodes"};
+        }
+        sources_.push_back({node.mChildren[c], static_cast<int>(i), sources_[i].model});
+      }
+    }
+    return {};
+  }
+
+  // Finds the joints: every node that a bone names.
+  Status FindJoints() {
+    for (unsigned m = 0; m < scene_.mNumMeshes; ++m) {
+      const aiMesh& mesh = *scene_.mMeshes[m];
+      for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+        const std::string name = NameFrom(mesh.mBones[b]->mName);
+        const auto source = source_by_name_.find(name);
+        if (source == source_by_name_.end()) {
+          return {StatusCode::kSchema, "mesh '" + NameFrom(mesh.mName) + "' names the joint '" +
+                                           name + "', which the file does not have"};
+        }
+        sources_[source->second].is_joint = true;
+      }
+    }
+    return {};
+  }
+
+  // Writes the joints and the nodes between them. Nodes above all joints (scene, armature, axes,
+  // unit) are folded into the topmost joints.
+  void WriteNodes() {
+    std::vector<bool> below(sources_.size(), false);
+    for (std::size_t i = sources_.size(); i-- > 1;) {
+      if (below[i] || sources_[i].is_joint)
+        below[static_cast<std::size_t>(sources_[i].parent)] = true;
+    }
+    std::unordered_set<std::string> names;
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      SourceNode& source = sources_[i];
+      const int parent = Kept(source.parent);
+      if (!source.is_joint && (parent < 0 || !below[i])) continue;
+      const glm::mat4 above = parent < 0 ? glm::mat4(1.0f) : sources_[parent].model;
+      const gltf::Transform local = InvertibleTransform(glm::inverse(above) * source.model);
+      source.model = above * gltf::ToMatrix(local);
+      source.written = static_cast<int>(nodes_.size());
+      std::string name = NameFrom(source.node->mName);
+      if (!names.insert(name).second) name += "." + std::to_string(i);
+      (parent < 0 ? roots_ : nodes_[sources_[parent].written]["children"]).push_back(nodes_.size());
+      nodes_.push_back(gltf::NodeJson(name, local));
+      if (source.is_joint) {
+        joint_of_source_[i] = joints_.size();
+        joints_.push_back(i);
+      }
+    }
+  }
+
+  // The nearest kept node at or above a node, or -1.
+  [[nodiscard]] int Kept(int source) const {
+    while (source >= 0 && sources_[source].written < 0) source = sources_[source].parent;
+    return source;
+  }
+
+  void AddSkin() {
+    if (joints_.empty()) return;
+    std::vector<glm::mat4> inverse_bind;
+    GltfJson joints = GltfJson::array();
+    for (const std::size_t source : joints_) {
+      inverse_bind.push_back(glm::inverse(sources_[source].model));
+      joints.push_back(sources_[source].written);
+    }
+    root_["skins"] = GltfJson::array(
+        {{{"inverseBindMatrices", builder_.AddAccessor(inverse_bind, gltf::Builder::kFloat, "MAT4",
+                                                       gltf::Builder::kNoTarget)},
+          {"joints", std::move(joints)}}});
+  }
+
+  Status AddMeshes() {
+    std::size_t vertices = 0;
+    std::size_t indices = 0;
+    for (const auto& [mesh, source] : instances_) {
+      vertices += scene_.mMeshes[mesh]->mNumVertices;
+      indices += std::size_t{3} * scene_.mMeshes[mesh]->mNumFaces;
+      if (vertices > gltf::kMaxVertices || indices > gltf::kMaxIndices) {
+        return {StatusCode::kLimit, "the file has too many vertices or triangles"};
+      }
+      AddMesh(*scene_.mMeshes[mesh], source);
+    }
+    if (root_.contains("meshes")) return {};
+    return {StatusCode::kUnsupported,
+            "the file has no mesh",
+            {},
+            "export the character with its mesh and skeleton"};
+  }
+
+  // Influences by vertex, the strongest first.
+  std::vector<std::vector<Influence>> InfluencesOf(const aiMesh& mesh) {
+    std::vector<std::vector<Influence>> influences(mesh.mNumVertices);
+    for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+      const aiBone& bone = *mesh.mBones[b];
+      const std::size_t joint = JointOf(bone);
+      for (unsigned w = 0; w < bone.mNumWeights; ++w) {
+        const aiVertexWeight& weight = bone.mWeights[w];
+        if (weight.mVertexId >= mesh.mNumVertices || !(weight.mWeight > 0.0f)) continue;
+        influences[weight.mVertexId].push_back({joint, weight.mWeight});
+      }
+    }
+    for (auto& list : influences) {
+      std::stable_sort(list.begin(), list.end(),
+                       [](const Influence& a, const Influence& b) { return a.weight > b.weight; });
+      if (list.size() > std::size_t{4} * gltf::kMaxInfluenceSets)
+        list.resize(std::size_t{4} * gltf::kMaxInfluenceSets);
+    }
+    return influences;
+  }
+
+  [[nodiscard]] std::size_t JointOf(const aiBone& bone) const {
+    return joint_of_source_.at(source_by_name_.at(NameFrom(bone.mName)));
+  }
+
+  // The matrix from mesh space to model space in the rest pose, for each joint of the mesh.
+  std::unordered_map<std::size_t, glm::mat4> SkinMatrices(const aiMesh& mesh) {
+    std::unordered_map<std::size_t, glm::mat4> matrices;
+    for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+      const aiBone& bone = *mesh.mBones[b];
+      const std::size_t joint = JointOf(bone);
+      matrices[joint] = sources_[joints_[joint]].model * ToGlm(bone.mOffsetMatrix);
+    }
+    return matrices;
+  }
+
+  // The placement of each vertex of a mesh. Skinned meshes: model space in the rest pose. Other
+  // meshes: the space of the nearest kept node.
+  std::vector<glm::mat4> Placements(const aiMesh& mesh, std::size_t source,
+                                    const std::vector<std::vector<Influence>>& influences) {
+    const int kept = Kept(static_cast<int>(source));
+    if (mesh.mNumBones == 0) {
+      const glm::mat4 above = kept < 0 ? glm::mat4(1.0f) : sources_[kept].model;
+      return std::vector<glm::mat4>(mesh.mNumVertices,
+                                    glm::inverse(above) * sources_[source].model);
+    }
+    const std::unordered_map<std::size_t, glm::mat4> matrices = SkinMatrices(mesh);
+    std::vector<glm::mat4> placements(mesh.mNumVertices, sources_[source].model);
+    for (std::size_t v = 0; v < placements.size(); ++v) {
+      if (influences[v].empty()) continue;
+      glm::mat4 blend(0.0f);
+      float sum = 0.0f;
+      for (const Influence& influence : influences[v]) {
+        blend += matrices.at(influence.joint) * influence.weight;
+        sum += influence.weight;
+      }
+      placements[v] = blend / sum;
+    }
+    return placements;
+  }
+
+  void AddMesh(const aiMesh& mesh, std::size_t source) {
+    const bool skinned = mesh.mNumBones > 0;
+    blend_shapes_ += mesh.mNumAnimMeshes;
+    const std::vector<std::uint32_t> indices = TrianglesOf(mesh);
+    if (indices.empty() || mesh.mNumVertices == 0) return;
+    const std::vector<std::vector<Influence>> influences = InfluencesOf(mesh);
+    const std::vector<glm::mat4> placements = Placements(mesh, source, influences);
+    std::vector<glm::vec3> positions, normals;
+    std::vector<glm::vec2> uvs;
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      positions.emplace_back(placements[v] * glm::vec4(ToGlm(mesh.mVertices[v]), 1.0f));
+      if (mesh.HasNormals()) {
+        normals.push_back(glm::mat3(placements[v]) * ToGlm(mesh.mNormals[v]));
+      }
+      if (mesh.HasTextureCoords(0)) {
+        uvs.emplace_back(mesh.mTextureCoords[0][v].x, 1.0f - mesh.mTextureCoords[0][v].y);
+      }
+    }
+    using B = gltf::Builder;
+    GltfJson attributes;
+    attributes["POSITION"] = builder_.AddAccessor(positions, B::kFloat, "VEC3", B::kArrayBuffer);
+    if (!normals.empty()) {
+      attributes["NORMAL"] = builder_.AddAccessor(normals, B::kFloat, "VEC3", B::kArrayBuffer);
+    }
+    if (!uvs.empty()) {
+      attributes["TEXCOORD_0"] = builder_.AddAccessor(uvs, B::kFloat, "VEC2", B::kArrayBuffer);
+    }
+    if (skinned) AddInfluences(influences, &builder_, &attributes);
+    GltfJson primitive = {
+        {"attributes", std::move(attributes)},
+        {"indices", builder_.AddAccessor(indices, B::kUnsignedInt, "SCALAR", B::kElementBuffer)},
+        {"material", mesh.mMaterialIndex}};
+    std::string name = NameFrom(mesh.mName);
+    if (name.empty()) name = "mesh_" + std::to_string(root_["meshes"].size());
+    GltfJson holder = {{"name", "mesh:" + name}, {"mesh", root_["meshes"].size()}};
+    if (skinned) holder["skin"] = 0;
+    const int kept = skinned ? -1 : Kept(static_cast<int>(source));
+    (kept < 0 ? roots_ : nodes_[sources_[kept].written]["children"]).push_back(nodes_.size());
+    nodes_.push_back(std::move(holder));
+    root_["meshes"].push_back(
+        {{"name", std::move(name)}, {"primitives", GltfJson::array({std::move(primitive)})}});
+  }
+
+  static std::vector<std::uint32_t> TrianglesOf(const aiMesh& mesh) {
+    std::vector<std::uint32_t> indices;
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices == 3) indices.insert(indices.end(), face.mIndices, face.mIndices + 3);
+    }
+    return indices;
+  }
+
+  void RemarkOnRest() {
+    if (blend_shapes_ > 0) {
+      remarks_.push_back(std::to_string(blend_shapes_) +
+                         " blend shapes are not carried: the face moves by joints alone");
+    }
+  }
+
+  const aiScene& scene_;
+  gltf::Builder builder_;
+  GltfJson& root_ = builder_.root();
+  GltfJson nodes_ = GltfJson::array();
+  GltfJson roots_ = GltfJson::array();
+  std::vector<SourceNode> sources_;
+  std::unordered_map<std::string, std::size_t> source_by_name_;
+  std::vector<std::pair<unsigned, std::size_t>> instances_;  // mesh, source
+  std::vector<std::size_t> joints_;                          // sources, in the skin's order
+  std::unordered_map<std::size_t, std::size_t> joint_of_source_;
+  unsigned blend_shapes_ = 0;
+  std::vector<std::string> remarks_;
+};
+
+std::string OneLine(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  return text.substr(0, 300);
+}
+
+// In the child process: remarks, a line each, an empty line, the GLB.
+Result<std::string> Convert(std::string_view bytes, const std::string& extension) {
+  Assimp::Importer importer;
+  importer.SetIOHandler(new NoFiles);  // which owns it
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+  const aiScene* scene =
+      importer.ReadFileFromMemory(bytes.data(), bytes.size(),
+                                  aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
+                                      aiProcess_SortByPType | aiProcess_ValidateDataStructure,
+                                  extension.c_str() + 1);
+  if (scene == nullptr || scene->mRootNode == nullptr) {
+    return Status(
+        StatusCode::kParse,
+        "cannot be read as " + extension.substr(1) + ": " + OneLine(importer.GetErrorString()), {},
+        "is it a whole file of that kind?");
+  }
+  std::vector<std::string> remarks;
+  Result<std::string> glb = SceneWriter(*scene).Run(&remarks);
+  FURROW_RETURN_IF_ERROR(glb);
+  if (scene->mNumAnimations > 0) remarks.emplace_back("its animations are not carried");
+  std::string text;
+  for (const std::string& remark : remarks) text += OneLine(remark) + "\n";
+  return text + "\n" + *glb;
+}
+
+}  // namespace
+
+bool AssimpReads(std::string_view extension) {
+  return extension.size() > 1 && Assimp::Importer().IsExtensionSupported(std::string(extension));
+}
+
+Result<ForeignModel> ReadWithAssimp(std::string_view bytes, const std::string& extension) {
+  if (bytes.size() > kMaxForeignBytes) {
+    return Status(StatusCode::kLimit, "the file is longer than 512 MiB");
+  }
+  Result<std::string> message =
+      RunInChildProcess({}, [&]() -> Result<std::string> { return Convert(bytes, extension); });
+  FURROW_RETURN_IF_ERROR(message);
+  ForeignModel model;
+  std::size_t at = 0;
+  for (std::size_t end; (end = message->find('\n', at)) != at; at = end + 1) {
+    if (end == std::string::npos) return Status(StatusCode::kInternal, "an unfinished conversion");
+    model.remarks.push_back(message->substr(at, end - at));
+  }
+  model.glb = message->substr(at + 1);
+  return model;
+}
+
+}  // namespace furrow::authoring

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "authoring/import/character_package.h"
+
+#include <string>
+
+#include "base/files.h"
+#include "rig/rig_check.h"
+#include "rig/rig_file.h"
+
+namespace furrow::authoring {
+
+Status WriteCharacterPackage(const character::Character& character,
+                             const std::filesystem::path& glb) {
+  std::filesystem::path rig = glb;
+  rig.replace_extension(".rig.json");
+  if (const Status s = character::CheckRig(character.rig); !s.ok()) return s.Within(rig.string());
+  const Result<std::string> bytes = character::CharacterGlb(character);
+  if (!bytes.ok()) return bytes.status().Within(glb.string());
+  const std::string json = character::RigToJson(character.rig);
+  const FileToWrite files[] = {{glb, *bytes}, {rig, json}};
+  return WriteFilesAtomically(files);
+}
+
+}  // namespace furrow::authoring
