@@ -16,7 +16,7 @@ using svg::Text;
 constexpr double kLabelWidth = 300.0;
 constexpr double kPlotWidth = 420.0;
 constexpr double kRightMargin = 90.0;
-constexpr double kTop = 62.0;
+constexpr double kFirstBarY = 62.0;
 constexpr double kBar = 16.0;
 constexpr double kGap = 12.0;
 
@@ -40,7 +40,7 @@ std::string ToSvg(const BarChart& chart) {
   const double scale = largest > 0.0 ? kPlotWidth / largest : 0.0;
   std::string body = Text(12.0, 22.0, "start", chart.title + " (" + chart.unit + ")") +
                      (chart.series.size() > 1 ? Legend(chart) : std::string());
-  double y = kTop;
+  double y = kFirstBarY;
   for (const BarChart::Group& group : chart.groups) {
     const double height = kBar * static_cast<double>(group.values.size());
     body += Text(kLabelWidth - 8.0, y + 0.5 * height + 4.0, "end", group.label);
