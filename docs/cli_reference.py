@@ -63,35 +63,26 @@ def parse(words, text):
     """Takes apart what CLI11 prints."""
     result = Help(words)
     lines = text.splitlines()
-    section, index, paragraph = None, 0, []
-    while index < len(lines):
-        line = lines[index]
+    section, indent, about = None, 2, []  # entries of an option group are indented by 4, others by 2
+    for index, line in enumerate(lines):
         following = lines[index + 1] if index + 1 < len(lines) else ""
-        heading = re.fullmatch(r"\s*(?:\[Option Group: (\w+)\]|([A-Z]\w+):)\s*", line)
+        heading = re.fullmatch(r"([A-Z]\w+):\s*", line)
+        group = re.fullmatch(r"\[Option Group: (.+)\]\s*", line)
         if line.startswith("Usage: "):
-            result.about, result.usage = " ".join(paragraph), line[len("Usage: "):]
-        elif heading and not line.startswith(" " * 3):
-            if heading[2] != "Options" or section is None or line[:1] != " ":
-                section = heading[1] or heading[2]
-                result.sections.setdefault(section, [])
-        elif section and re.match(r" {2,4}[-A-Za-z]", line) and not result.footer:
-            indent = len(line) - len(line.lstrip())
-            if indent == 2 and section in ("where",) or line.strip().startswith("["):
-                pass  # the text of an option group
-            elif is_name_only(line, following):
-                result.sections[section].append(Entry(line.strip(), ""))
-            else:
-                result.sections[section].append(Entry(line[:COLUMN].strip(), line[COLUMN:].strip()))
+            result.about, result.usage = " ".join(about), line[len("Usage: "):]
+        elif not result.usage:
+            about.append(line)
+        elif heading or group:
+            section, indent = (group or heading)[1], 4 if group else 2
+            result.sections.setdefault(section, [])
+        elif line and not line.startswith(" ") or result.footer:
+            result.footer.append(line)
+        elif section and re.match(rf" {{{indent}}}[-A-Za-z]", line):
+            name, description = (line, "") if is_name_only(line, following) else (line[:COLUMN], line[COLUMN:])
+            result.sections[section].append(Entry(name.strip(), description.strip()))
         elif section and line.startswith(" " * 20) and result.sections[section]:
             entry = result.sections[section][-1]
             entry.text = f"{entry.text} {line.strip()}".strip()
-        elif result.usage and line and not line.startswith(" "):
-            result.footer.append(line)
-        elif result.footer:
-            result.footer.append(line)
-        elif not result.usage:
-            paragraph.append(line)
-        index += 1
     return result
 
 
