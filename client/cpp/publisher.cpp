@@ -25,7 +25,7 @@ std::uint16_t Publisher::AddSubject(const protocol::SkeletonOffer& offer, std::i
   stream.skeleton_hash = protocol::SkeletonHash(offer);
   encoder_.Encode({.session = session_, .stream = number}, offer, stream.offer);
   // A daemon does not answer malformed datagrams: who offers nonsense would wait in vain.
-  stream.rejection = protocol::WhyUnsendable(stream.offer);
+  stream.rejection = protocol::FindOfferProblem(stream.offer);
   if (stream.rejection.empty()) SendOffer(stream, now_us);
   return number;
 }

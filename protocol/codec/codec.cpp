@@ -2,125 +2,59 @@
 #include "protocol/codec/codec.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstring>
 
-#include "protocol/codec/codec_internal.h"
-#include "protocol/messages/text.h"
+#include "protocol/codec/connection_messages.h"
+#include "protocol/codec/picture_messages.h"
+#include "protocol/codec/pose_message.h"
+#include "protocol/codec/skeleton_messages.h"
+#include "protocol/codec/subscription_messages.h"
+#include "protocol/codec/weights_message.h"
+#include "protocol/codec/wire_fields.h"
 
 namespace furrow::protocol {
-namespace {
 
-struct KindInfo {
-  MessageKind kind;
-  const char* identifier;
-  std::string_view name;
+struct Encoder::State {
+  internal::PayloadBuilder payload;
 };
 
-constexpr std::array<KindInfo, 21> kKinds = {{
-    {MessageKind::kHello, "FHEL", "hello"},
-    {MessageKind::kWelcome, "FWEL", "welcome"},
-    {MessageKind::kPing, "FPIN", "ping"},
-    {MessageKind::kPong, "FPON", "pong"},
-    {MessageKind::kGoodbye, "FBYE", "goodbye"},
-    {MessageKind::kError, "FERR", "error"},
-    {MessageKind::kSkeletonOffer, "FSKO", "skeleton_offer"},
-    {MessageKind::kSkeletonReply, "FSKR", "skeleton_reply"},
-    {MessageKind::kPose, "FPOS", "pose"},
-    {MessageKind::kSubscribeWeights, "FSUW", "subscribe_weights"},
-    {MessageKind::kSubscribePictures, "FSUP", "subscribe_pictures"},
-    {MessageKind::kUnsubscribe, "FUNS", "unsubscribe"},
-    {MessageKind::kSubscribeReply, "FSUR", "subscribe_reply"},
-    {MessageKind::kWeights, "FWGT", "weights"},
-    {MessageKind::kImage, "FIMG", "image"},
-    {MessageKind::kUpdatePictures, "FUPP", "update_pictures"},
-    {MessageKind::kFrameAck, "FACK", "frame_ack"},
-    {MessageKind::kSubscribePoses, "FSPO", "subscribe_poses"},
-    {MessageKind::kDropped, "FDRP", "dropped"},
-    {MessageKind::kListSubjects, "FLSU", "list_subjects"},
-    {MessageKind::kSubjects, "FSBJ", "subjects"},
-}};
+namespace {
 
-constexpr std::array<std::string_view, kNumDecodeStatuses> kStatusNames = {
-    "ok",         "too_short",    "bad_magic",  "bad_version", "bad_flags",     "bad_session",
-    "bad_length", "unknown_kind", "wrong_kind", "unverified",  "missing_field", "bad_count",
-    "limit",      "non_finite",   "not_unit",   "bad_value",   "bad_text",      "bad_hash"};
+// Each message: its struct, its FlatBuffers table and its kind.
+template <class WireTable, MessageKind message_kind>
+struct Entry {
+  using Table = WireTable;
+  static constexpr MessageKind kKind = message_kind;
+};
+template <class Message>
+struct EntryOf;
+// clang-format off
+template <> struct EntryOf<Hello> : Entry<wire::Hello, MessageKind::kHello> {};
+template <> struct EntryOf<Welcome> : Entry<wire::Welcome, MessageKind::kWelcome> {};
+template <> struct EntryOf<Ping> : Entry<wire::Ping, MessageKind::kPing> {};
+template <> struct EntryOf<Pong> : Entry<wire::Pong, MessageKind::kPong> {};
+template <> struct EntryOf<Goodbye> : Entry<wire::Goodbye, MessageKind::kGoodbye> {};
+template <> struct EntryOf<ErrorMessage> : Entry<wire::Error, MessageKind::kError> {};
+template <> struct EntryOf<SkeletonOffer> : Entry<wire::SkeletonOffer, MessageKind::kSkeletonOffer> {};
+template <> struct EntryOf<SkeletonReply> : Entry<wire::SkeletonReply, MessageKind::kSkeletonReply> {};
+template <> struct EntryOf<PoseFrame> : Entry<wire::Pose, MessageKind::kPose> {};
+template <> struct EntryOf<SubscribeWeights> : Entry<wire::SubscribeWeights, MessageKind::kSubscribeWeights> {};
+template <> struct EntryOf<SubscribePictures> : Entry<wire::SubscribePictures, MessageKind::kSubscribePictures> {};
+template <> struct EntryOf<Unsubscribe> : Entry<wire::Unsubscribe, MessageKind::kUnsubscribe> {};
+template <> struct EntryOf<SubscribeReply> : Entry<wire::SubscribeReply, MessageKind::kSubscribeReply> {};
+template <> struct EntryOf<WeightFrame> : Entry<wire::Weights, MessageKind::kWeights> {};
+template <> struct EntryOf<ImageFrame> : Entry<wire::Image, MessageKind::kImage> {};
+template <> struct EntryOf<UpdatePictures> : Entry<wire::UpdatePictures, MessageKind::kUpdatePictures> {};
+template <> struct EntryOf<FrameAck> : Entry<wire::FrameAck, MessageKind::kFrameAck> {};
+template <> struct EntryOf<SubscribePoses> : Entry<wire::SubscribePoses, MessageKind::kSubscribePoses> {};
+template <> struct EntryOf<Dropped> : Entry<wire::Dropped, MessageKind::kDropped> {};
+template <> struct EntryOf<ListSubjects> : Entry<wire::ListSubjects, MessageKind::kListSubjects> {};
+template <> struct EntryOf<Subjects> : Entry<wire::Subjects, MessageKind::kSubjects> {};
+// clang-format on
 
-// Exclusive, either way: any two capture times may be subtracted.
-constexpr std::int64_t kCaptureTimeBound = std::int64_t{1} << 62;
-
-DecodeStatus FromEnvelope(EnvelopeStatus status) {
-  switch (status) {
-    case EnvelopeStatus::kOk: return DecodeStatus::kOk;
-    case EnvelopeStatus::kTooShort: return DecodeStatus::kTooShort;
-    case EnvelopeStatus::kBadMagic: return DecodeStatus::kBadMagic;
-    case EnvelopeStatus::kBadVersion: return DecodeStatus::kBadVersion;
-    case EnvelopeStatus::kBadFlags: return DecodeStatus::kBadFlags;
-    case EnvelopeStatus::kBadSession: return DecodeStatus::kBadSession;
-  }
-  return DecodeStatus::kBadFlags;
-}
-
-}  // namespace
-
-std::string_view DecodeStatusName(DecodeStatus status) {
-  const auto index = static_cast<std::size_t>(status);
-  return index < kStatusNames.size() ? kStatusNames[index] : "unknown";
-}
-
-std::string_view MessageKindName(MessageKind kind) {
-  for (const KindInfo& info : kKinds) {
-    if (info.kind == kind) return info.name;
-  }
-  return "unknown";
-}
-
-DecodeStatus OpenMessage(std::span<const std::uint8_t> bytes, MessageView& view,
-                         std::size_t max_bytes) {
-  Envelope envelope;
-  FURROW_CHECK_DECODE(FromEnvelope(ReadEnvelope(bytes, envelope)));
-  if (envelope.flags != 0) return DecodeStatus::kBadFlags;
-  const std::int64_t time = envelope.header.capture_time_us;
-  if (time <= -kCaptureTimeBound || time >= kCaptureTimeBound) return DecodeStatus::kBadValue;
-  view.header = envelope.header;
-  view.payload = bytes.subspan(kEnvelopeBytes);
-  if (bytes.size() > max_bytes || view.payload.size() != envelope.payload_bytes ||
-      view.payload.size() < kMinPayloadBytes) {
-    return DecodeStatus::kBadLength;
-  }
-  for (const KindInfo& info : kKinds) {
-    if (std::memcmp(info.identifier, view.payload.data() + 4, 4) == 0) {
-      view.kind = info.kind;
-      return DecodeStatus::kOk;
-    }
-  }
-  view.kind = MessageKind::kUnknown;
-  return DecodeStatus::kUnknownKind;
-}
-
-void WriteMessage(const Header& header, std::span<const std::uint8_t> payload,
-                  std::vector<std::uint8_t>& out) {
-  out.resize(kEnvelopeBytes + payload.size());
-  const Envelope envelope{header, 0, static_cast<std::uint32_t>(payload.size())};
-  WriteEnvelope(envelope, std::span<std::uint8_t, kEnvelopeBytes>(out.data(), kEnvelopeBytes));
-  std::copy(payload.begin(), payload.end(), out.begin() + kEnvelopeBytes);
-}
-
-Encoder::Encoder() : state_(std::make_unique<State>()) {}
-Encoder::~Encoder() = default;
-Encoder::Encoder(Encoder&&) noexcept = default;
-Encoder& Encoder::operator=(Encoder&&) noexcept = default;
-
-namespace internal {
-
-const char* Identifier(MessageKind kind) {
-  for (const KindInfo& info : kKinds) {
-    if (info.kind == kind) return info.identifier;
-  }
-  return nullptr;
-}
-
+// FlatBuffers loads numbers from aligned addresses, and a message inside a receive buffer may lie
+// anywhere. Returns the payload itself if its address is a multiple of 8. Otherwise returns a copy
+// in memory of this thread, valid until the next call.
 const std::uint8_t* AlignedPayload(std::span<const std::uint8_t> payload) {
   if (reinterpret_cast<std::uintptr_t>(payload.data()) % 8 == 0) return payload.data();
   thread_local std::vector<std::uint64_t> copy;
@@ -129,98 +63,181 @@ const std::uint8_t* AlignedPayload(std::span<const std::uint8_t> payload) {
   return reinterpret_cast<const std::uint8_t*>(copy.data());
 }
 
-DecodeStatus ReadText(const flatbuffers::String* text, int max_bytes, std::string& out,
-                      Presence presence) {
-  out.clear();
-  if (text == nullptr || text->size() == 0) {
-    return presence == Presence::kRequired ? DecodeStatus::kMissingField : DecodeStatus::kOk;
-  }
-  if (text->size() > static_cast<std::size_t>(max_bytes)) return DecodeStatus::kLimit;
-  if (!IsPlainText(text->string_view())) return DecodeStatus::kBadText;
-  out.assign(text->c_str(), text->size());
-  return DecodeStatus::kOk;
+template <class Message>
+DecodeStatus DecodeMessage(const MessageView& view, Message& message) {
+  using Table = typename EntryOf<Message>::Table;
+  constexpr MessageKind kKind = EntryOf<Message>::kKind;
+  if (view.kind != kKind) return DecodeStatus::kWrongKind;
+  const std::uint8_t* payload = AlignedPayload(view.payload);
+  flatbuffers::Verifier verifier(payload, view.payload.size(), kMaxVerifierDepth,
+                                 kMaxVerifierTables);
+  if (!verifier.VerifyBuffer<Table>(FileIdentifier(kKind))) return DecodeStatus::kUnverified;
+  return internal::ReadTable(*flatbuffers::GetRoot<Table>(payload), message);
 }
 
-TextOffset WriteText(Builder& builder, std::string_view text) {
-  return text.empty() ? TextOffset(0) : builder.CreateString(text.data(), text.size());
+// `options`: what the WriteTable() of this message takes besides the message.
+template <class Message, class... Options>
+void EncodeMessage(internal::PayloadBuilder& payload, const Header& header, const Message& message,
+                   std::vector<std::uint8_t>& out, const Options&... options) {
+  flatbuffers::FlatBufferBuilder& builder = payload.builder;
+  builder.Clear();
+  builder.Finish(internal::WriteTable(payload, message, options...),
+                 FileIdentifier(EntryOf<Message>::kKind));
+  WriteMessage(header, {builder.GetBufferPointer(), builder.GetSize()}, out);
 }
 
-DecodeStatus CheckNames(const TextVector* names, int max_names) {
-  if (names == nullptr) return DecodeStatus::kOk;
-  if (names->size() > static_cast<std::size_t>(max_names)) return DecodeStatus::kLimit;
-  std::vector<std::string_view> sorted;
-  sorted.reserve(names->size());
-  for (const flatbuffers::String* name : *names) {
-    if (name->size() == 0) return DecodeStatus::kBadText;
-    if (name->size() > kMaxNameBytes) return DecodeStatus::kLimit;
-    if (!IsPlainText(name->string_view())) return DecodeStatus::kBadText;
-    sorted.push_back(name->string_view());
-  }
-  std::sort(sorted.begin(), sorted.end());
-  const bool twice = std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
-  return twice ? DecodeStatus::kBadText : DecodeStatus::kOk;
+}  // namespace
+
+Encoder::Encoder() : state_(std::make_unique<State>()) {}
+Encoder::~Encoder() = default;
+Encoder::Encoder(Encoder&&) noexcept = default;
+Encoder& Encoder::operator=(Encoder&&) noexcept = default;
+
+void Encoder::Encode(const Header& header, const Hello& message, std::vector<std::uint8_t>& out) {
+  // The size of the other fields depends on alignment. The first round encodes without padding and
+  // shows how many bytes are missing.
+  std::size_t padding = 0;
+  do {
+    EncodeMessage(state_->payload, header, message, out, padding);
+    padding += kHelloBytes - std::min(kHelloBytes, out.size());
+  } while (out.size() < kHelloBytes);
 }
 
-DecodeStatus ReadNames(const TextVector* names, int max_names, std::vector<std::string>& out) {
-  FURROW_CHECK_DECODE(CheckNames(names, max_names));
-  out.resize(SizeOf(names));
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const flatbuffers::String* name = names->Get(static_cast<flatbuffers::uoffset_t>(i));
-    out[i].assign(name->c_str(), name->size());
-  }
-  return DecodeStatus::kOk;
+void Encoder::Encode(const Header& header, const PoseFrame& message, std::vector<std::uint8_t>& out,
+                     const PoseEncoding& encoding) {
+  EncodeMessage(state_->payload, header, message, out, encoding);
 }
 
-DecodeStatus CheckNumber(float value) {
-  if (!std::isfinite(value)) return DecodeStatus::kNonFinite;
-  return std::fabs(value) <= kMaxMagnitude ? DecodeStatus::kOk : DecodeStatus::kBadValue;
+void Encoder::Encode(const Header& header, const Welcome& message, std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const Ping& message, std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const Pong& message, std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const Goodbye& message, std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const ErrorMessage& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const SkeletonOffer& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const SkeletonReply& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const SubscribeWeights& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const SubscribePictures& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const Unsubscribe& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const SubscribeReply& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const WeightFrame& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const ImageFrame& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const UpdatePictures& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const FrameAck& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const SubscribePoses& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const Dropped& message, std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const ListSubjects& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
+}
+void Encoder::Encode(const Header& header, const Subjects& message,
+                     std::vector<std::uint8_t>& out) {
+  EncodeMessage(state_->payload, header, message, out);
 }
 
-DecodeStatus CheckVector(const Vec3& value) {
-  FURROW_CHECK_DECODE(CheckNumber(value.x));
-  FURROW_CHECK_DECODE(CheckNumber(value.y));
-  return CheckNumber(value.z);
+DecodeStatus Decode(const MessageView& view, Hello& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, Welcome& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, Ping& message) { return DecodeMessage(view, message); }
+DecodeStatus Decode(const MessageView& view, Pong& message) { return DecodeMessage(view, message); }
+DecodeStatus Decode(const MessageView& view, Goodbye& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, ErrorMessage& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, SkeletonOffer& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, SkeletonReply& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, PoseFrame& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, SubscribeWeights& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, SubscribePictures& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, Unsubscribe& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, SubscribeReply& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, WeightFrame& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, ImageFrame& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, UpdatePictures& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, FrameAck& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, SubscribePoses& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, Dropped& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, ListSubjects& message) {
+  return DecodeMessage(view, message);
+}
+DecodeStatus Decode(const MessageView& view, Subjects& message) {
+  return DecodeMessage(view, message);
 }
 
-DecodeStatus CheckRotation(const Quat& q) {
-  const float squared = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
-  if (!std::isfinite(q.x) || !std::isfinite(q.y) || !std::isfinite(q.z) || !std::isfinite(q.w)) {
-    return DecodeStatus::kNonFinite;
-  }
-  return std::fabs(std::sqrt(squared) - 1.0f) <= 1e-3f ? DecodeStatus::kOk : DecodeStatus::kNotUnit;
-}
-
-DecodeStatus CheckRate(float rate_hz) {
-  FURROW_CHECK_DECODE(CheckNumber(rate_hz));
-  return rate_hz >= 0.0f && rate_hz <= kMaxRateHz ? DecodeStatus::kOk : DecodeStatus::kBadValue;
-}
-
-DecodeStatus ReadMask(const flatbuffers::Vector<std::uint8_t>* mask, std::size_t n,
-                      std::size_t num_values, std::vector<std::uint16_t>& indices) {
-  indices.clear();
-  if (mask == nullptr) {
-    if (num_values != 0 && num_values != n) return DecodeStatus::kBadCount;
-    for (std::size_t i = 0; i < num_values; ++i) indices.push_back(static_cast<std::uint16_t>(i));
-    return DecodeStatus::kOk;
-  }
-  if (mask->size() != (n + 7) / 8) return DecodeStatus::kBadCount;
-  for (std::size_t i = 0; i < mask->size() * std::size_t{8}; ++i) {
-    if ((mask->Get(static_cast<flatbuffers::uoffset_t>(i / 8)) >> (i % 8) & 1) == 0) continue;
-    if (i >= n || indices.size() == num_values) return DecodeStatus::kBadCount;
-    indices.push_back(static_cast<std::uint16_t>(i));
-  }
-  return indices.size() == num_values ? DecodeStatus::kOk : DecodeStatus::kBadCount;
-}
-
-flatbuffers::Offset<flatbuffers::Vector<std::uint8_t>> WriteMask(
-    Encoder::State& state, std::span<const std::uint16_t> indices, std::size_t n) {
-  if (indices.empty() || indices.size() == n) return 0;
-  state.mask.assign((n + 7) / 8, 0);
-  for (const std::uint16_t index : indices) {
-    state.mask[index / 8] = static_cast<std::uint8_t>(state.mask[index / 8] | 1u << (index % 8));
-  }
-  return state.builder.CreateVector(state.mask);
-}
-
-}  // namespace internal
 }  // namespace furrow::protocol

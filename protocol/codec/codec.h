@@ -3,83 +3,25 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
-#include <string_view>
 #include <vector>
 
-#include "protocol/framing/envelope.h"
+#include "protocol/codec/decode_status.h"
+#include "protocol/codec/message_view.h"
 #include "protocol/messages/messages.h"
+#include "protocol/messages/quantise.h"
 
+// Encodes and decodes every message of the wire. This header is all that callers need.
+//
+// How the folder is built: decode_status.h lists the reasons of a rejection, message_view.h reads
+// envelopes. Each *_message(s).h converts some messages between our structs and their FlatBuffers
+// tables, with the checks of wire_fields.h. codec.cpp maps each struct to its table.
 namespace furrow::protocol {
 
-// What a message is: the FlatBuffers file identifier of its payload.
-enum class MessageKind : std::uint8_t {
-  kUnknown = 0,
-  kHello,              // "FHEL"
-  kWelcome,            // "FWEL"
-  kPing,               // "FPIN"
-  kPong,               // "FPON"
-  kGoodbye,            // "FBYE"
-  kError,              // "FERR"
-  kSkeletonOffer,      // "FSKO"
-  kSkeletonReply,      // "FSKR"
-  kPose,               // "FPOS"
-  kSubscribeWeights,   // "FSUW"
-  kSubscribePictures,  // "FSUP"
-  kUnsubscribe,        // "FUNS"
-  kSubscribeReply,     // "FSUR"
-  kWeights,            // "FWGT"
-  kImage,              // "FIMG"
-  kUpdatePictures,     // "FUPP"
-  kFrameAck,           // "FACK"
-  kSubscribePoses,     // "FSPO"
-  kDropped,            // "FDRP"
-  kListSubjects,       // "FLSU"
-  kSubjects,           // "FSBJ"
-};
-
-// Why bytes were refused. For counters; the order is the order of the checks, cheapest first.
-enum class DecodeStatus : std::uint8_t {
-  kOk = 0,
-  kTooShort,
-  kBadMagic,
-  kBadVersion,
-  kBadFlags,  // undefined flags, or a fragment or bundle where a whole message is due
-  kBadSession,
-  kBadLength,    // payload size and byte count differ, or exceed the limit of the transport
-  kUnknownKind,  // no such file identifier (a newer peer: ignore it)
-  kWrongKind,    // Decode() into another message's struct
-  kUnverified,   // FlatBuffers' verifier said no
-  kMissingField,
-  kBadCount,   // counts that contradict each other, or unordered indices
-  kLimit,      // more joints, names or characters than limits.h allows
-  kNonFinite,  // NaN or infinity
-  kNotUnit,    // a quaternion further than 1e-3 from unit length
-  kBadValue,   // an unknown enum value or a number out of its range
-  kBadText,    // not UTF-8, empty or twice where that is not allowed
-  kBadHash,    // an offer or name table that does not hash to what it says
-};
-inline constexpr int kNumDecodeStatuses = static_cast<int>(DecodeStatus::kBadHash) + 1;
-
-// Stable lower-case names ("bad_magic", "pose"), for counters and logs.
-[[nodiscard]] std::string_view DecodeStatusName(DecodeStatus status);
-[[nodiscard]] std::string_view MessageKindName(MessageKind kind);
-
-// A message whose envelope was checked, its payload not yet. Points into the caller's bytes.
-struct MessageView {
-  Header header;
-  MessageKind kind = MessageKind::kUnknown;
-  std::span<const std::uint8_t> payload;
-};
-
-// First step: envelope and kind; cheap enough for garbage at line rate. `bytes` is one whole
-// message (a datagram, a reassembled message or a TCP frame) of at most `max_bytes`.
-[[nodiscard]] DecodeStatus OpenMessage(std::span<const std::uint8_t> bytes, MessageView& view,
-                                       std::size_t max_bytes = kMaxRequestBytes);
-
-// Second step: verify, check and copy. On failure `message` is unspecified but safe to reuse.
-// Never throws, never reads beyond the payload, needs no alignment; does not allocate once
-// `message` has grown (PoseFrame, WeightFrame, ImageFrame). Safe to call from any thread.
+// The second decoding step, after OpenMessage(): verifies the payload, checks every field and
+// copies. On failure `message` is unspecified but safe to reuse.
+//
+// Never throws and never reads beyond the payload. The payload may have any alignment. PoseFrame,
+// WeightFrame and ImageFrame do not allocate once `message` has grown. Safe to call on any thread.
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, Hello& message);
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, Welcome& message);
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, Ping& message);
@@ -102,25 +44,13 @@ struct MessageView {
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, ListSubjects& message);
 [[nodiscard]] DecodeStatus Decode(const MessageView& view, Subjects& message);
 
-// An envelope before a payload that is encoded already: what Encode() would have made of it.
-void WriteMessage(const Header& header, std::span<const std::uint8_t> payload,
-                  std::vector<std::uint8_t>& out);
-
-// How a pose is written.
-struct PoseEncoding {
-  bool quantise_rotations = false;     // 6 bytes a joint, off by at most 1.5e-4 rad (quantise.h)
-  bool quantise_translations = false;  // 6 bytes, off by at most largest offset / 65534 an axis
-  bool quantise_blend_shapes = false;  // 2 bytes, clamped to (-2, 2), off by at most 1/32768
-  [[nodiscard]] static PoseEncoding Small() { return {true, true, true}; }
-};
-
-// Writes messages. Keeps its working memory: one a thread,
-// reused, does not allocate in the long run.
+// Encodes messages. Reuse one encoder per thread: it keeps its working memory, so repeated calls
+// stop allocating.
 //
-// Encode() replaces the content of `out` by envelope and payload: what goes
-// into one TCP frame, one datagram, or fragments (fragment.h). Precondition:
-// the message would pass Decode(); lists of indices may be left empty to
-// mean "all, in order" when their values are as many as the skeleton's.
+// Encode() replaces the content of `out` with envelope and payload. The result is one TCP frame or
+// one datagram, or is cut into fragments (fragment.h). Precondition: the message would pass
+// Decode(). A list of indices may be empty, which means "all, in order", if the values are as many
+// as the skeleton's joints or blend shapes.
 class Encoder {
  public:
   Encoder();
@@ -128,13 +58,14 @@ class Encoder {
   Encoder(Encoder&&) noexcept;
   Encoder& operator=(Encoder&&) noexcept;
 
+  // Pads the message to kHelloBytes (STANDARD.md section 4).
   void Encode(const Header& header, const Hello& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const Welcome& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const Ping& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const Pong& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const Goodbye& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const ErrorMessage& message, std::vector<std::uint8_t>& out);
-  // Computes and writes the hash itself; message.skeleton_hash is not read.
+  // Computes the hash; ignores message.skeleton_hash.
   void Encode(const Header& header, const SkeletonOffer& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const SkeletonReply& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const PoseFrame& message, std::vector<std::uint8_t>& out,
@@ -144,7 +75,7 @@ class Encoder {
   void Encode(const Header& header, const SubscribePictures& message,
               std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const Unsubscribe& message, std::vector<std::uint8_t>& out);
-  // Computes and writes the names' hash itself (0 without names).
+  // Computes the hash of the names (0 without names); ignores message.names_hash.
   void Encode(const Header& header, const SubscribeReply& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const WeightFrame& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const ImageFrame& message, std::vector<std::uint8_t>& out);
@@ -155,9 +86,8 @@ class Encoder {
   void Encode(const Header& header, const ListSubjects& message, std::vector<std::uint8_t>& out);
   void Encode(const Header& header, const Subjects& message, std::vector<std::uint8_t>& out);
 
-  struct State;  // defined where FlatBuffers is known
-
  private:
+  struct State;  // holds FlatBuffers types, which this header hides
   std::unique_ptr<State> state_;
 };
 

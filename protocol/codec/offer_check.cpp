@@ -6,7 +6,7 @@
 
 namespace furrow::protocol {
 
-std::string WhyUnsendable(std::span<const std::uint8_t> offer) {
+std::string FindOfferProblem(std::span<const std::uint8_t> offer) {
   MessageView view;
   SkeletonOffer decoded;
   DecodeStatus status = OpenMessage(offer, view);
@@ -14,14 +14,15 @@ std::string WhyUnsendable(std::span<const std::uint8_t> offer) {
   switch (status) {
     case DecodeStatus::kOk: return {};
     case DecodeStatus::kBadText:
-      return "a name of a joint or blend shape, or the subject's, is empty, there twice, not UTF-8 "
-             "or has control characters";
+      return "the name of the subject, a joint or a blend shape is empty, duplicated, not UTF-8 or "
+             "contains control characters";
     case DecodeStatus::kLimit:
     case DecodeStatus::kBadLength:
-      return "it has more than " + std::to_string(kMaxJoints) + " joints or " +
-             std::to_string(kMaxBlendShapes) + " blend shapes, or a name above " +
+      return "the skeleton has more than " + std::to_string(kMaxJoints) + " joints or " +
+             std::to_string(kMaxBlendShapes) + " blend shapes, or a name longer than " +
              std::to_string(kMaxNameBytes) + " bytes";
-    default: return "it cannot be put on the wire (" + std::string(DecodeStatusName(status)) + ")";
+    default:
+      return "the skeleton cannot be encoded (" + std::string(DecodeStatusName(status)) + ")";
   }
 }
 

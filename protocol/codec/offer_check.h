@@ -7,8 +7,9 @@
 
 namespace furrow::protocol {
 
-// Why the wire cannot carry an encoded SkeletonOffer, for people; empty where it can. A publisher
-// asks before it sends: a daemon that cannot read an offer may only drop it.
-[[nodiscard]] std::string WhyUnsendable(std::span<const std::uint8_t> offer);
+// Checks an encoded SkeletonOffer before it is sent. Returns a human-readable problem, or an empty
+// string if the wire can carry the offer. Publishers call this first, because a daemon drops an
+// offer that it cannot read and may be unable to reply.
+[[nodiscard]] std::string FindOfferProblem(std::span<const std::uint8_t> offer);
 
 }  // namespace furrow::protocol

@@ -15,7 +15,7 @@ std::size_t MessageBytes(std::span<const std::uint8_t> message) {
   return kEnvelopeBytes + LoadLittle<std::uint32_t>(&message[20]);
 }
 
-// One message of a bundle of `session`, and how many bytes of `rest` it takes.
+// Checks the first message in `rest`. Sets `bytes` to its size with envelope.
 BundleStatus CheckMessage(std::span<const std::uint8_t> rest, std::uint64_t session,
                           std::size_t& bytes) {
   Envelope envelope;

@@ -10,43 +10,44 @@
 
 namespace furrow::protocol {
 
-// A bundle is one datagram that holds several whole messages of one sender, one right behind the
-// other; all but the last have kFlagFollowed set. Where a message ends follows from its own payload
-// size, so there is nothing else that could lie (STANDARD.md section 3). Never nested, never with a
-// fragment inside; servers send them to clients that asked for it in their Hello.
+// A bundle is one datagram with several whole messages of one sender, back to back (STANDARD.md
+// section 3). All but the last have kFlagFollowed set. The payload size of each message states
+// where the next one starts; there are no other lengths that could contradict it. Bundles are never
+// nested and never hold fragments. Servers send them only to clients that opt in with Hello.
 
-// Why a bundle was refused. The order is the order of the checks.
+// The reason for which a bundle is rejected. The values are in the order of the checks.
 enum class BundleStatus : std::uint8_t {
   kOk = 0,
   kTooLarge,     // above kMaxDatagramBytes
-  kBadEnvelope,  // of a later message: not all there, another magic, version or flags, session 0
-  kFragment,     // a fragment inside
-  kBadSession,   // messages of different sessions
-  kBadLength,    // a payload that is no message's, ends beyond the datagram or before its end
+  kBadEnvelope,  // a later envelope is incomplete or has a bad magic, version, flags or session
+  kFragment,     // the bundle holds a fragment
+  kBadSession,   // the messages belong to different sessions
+  kBadLength,    // a payload is too short, exceeds the datagram or leaves bytes behind it
 };
 
-// Says of a message that another one follows it in its datagram. `message`: its envelope and more.
+// Marks a message as followed by another one. `message` holds at least its envelope.
 inline void MarkFollowed(std::span<std::uint8_t> message) { message[5] |= kFlagFollowed; }
 
-// The messages as one bundle (a single one as it is). False, and `out` is unspecified, where they
-// are none or exceed kMaxDatagramBytes. Precondition: whole messages of one session.
+// Joins messages into one bundle. A single message is copied as it is. Returns false, with `out`
+// unspecified, if there are no messages or they exceed kMaxDatagramBytes. Precondition: whole
+// messages of one session.
 [[nodiscard]] bool WriteBundle(std::span<const std::vector<std::uint8_t>> messages,
                                std::vector<std::uint8_t>& out);
 
-// Takes datagrams apart.
+// Splits datagrams into messages.
 //
 //   (void)unbundler.Open(datagram);
 //   while (unbundler.Next(message)) ...
 class Unbundler {
  public:
-  // Begins with `datagram`, which must outlive the last Next(), and is changed in place: what
-  // Next() gives is what Encode() made. All of a bundle is checked before any of it is given out. A
-  // datagram that is no bundle is given out as it is, unchecked; so is a malformed one, unchanged,
-  // which OpenMessage() then refuses for its flags. Never reads beyond `datagram`, whatever it
-  // says.
+  // Starts with `datagram`, which must outlive the last Next(). Clears the bundle flags in place,
+  // so Next() returns messages exactly as Encode() wrote them. Checks a whole bundle before Next()
+  // returns any message of it. Next() returns other datagrams unchecked and unchanged. That
+  // includes malformed bundles, which OpenMessage() then rejects because of their flags. Never
+  // reads beyond `datagram`.
   BundleStatus Open(std::span<std::uint8_t> datagram);
 
-  // The next message, in the order they were sent; false: no more.
+  // Gets the next message, in sending order. Returns false if there are no more.
   [[nodiscard]] bool Next(std::span<const std::uint8_t>& message);
   [[nodiscard]] bool has_more() const { return !rest_.empty(); }
 

@@ -16,17 +16,17 @@ namespace furrow::protocol {
 inline constexpr std::array<std::uint8_t, 4> kMagic = {'F', 'R', 'R', 'W'};
 inline constexpr std::uint8_t kVersion = 1;
 inline constexpr std::uint8_t kFlagFragment = 1;  // fragment.h
-inline constexpr std::uint8_t kFlagFollowed = 2;  // another message in the datagram: bundle.h
+inline constexpr std::uint8_t kFlagFollowed = 2;  // another message follows: bundle.h
 inline constexpr std::size_t kEnvelopeBytes = 32;
-// A FlatBuffers buffer has at least its root's offset and its file identifier.
+// A FlatBuffers buffer has at least a root offset and a file identifier.
 inline constexpr std::size_t kMinPayloadBytes = 8;
 
 enum class EnvelopeStatus : std::uint8_t {
   kOk = 0,
   kTooShort,  // fewer bytes than an envelope
   kBadMagic,
-  kBadVersion,  // a version that this build does not speak
-  kBadFlags,    // a bit that version 1 does not define, or a fragment that is followed
+  kBadVersion,  // a version that this build does not support
+  kBadFlags,    // a bit that version 1 does not define, or both bits together
   kBadSession,  // session 0
 };
 
@@ -36,7 +36,7 @@ struct Envelope {
   std::uint32_t payload_bytes = 0;  // of the whole message, also in a fragment
 };
 
-// Reads the envelope alone; says nothing about what follows it. Never reads beyond `bytes`.
+// Reads and checks the envelope only, not the payload. Never reads beyond `bytes`.
 [[nodiscard]] EnvelopeStatus ReadEnvelope(std::span<const std::uint8_t> bytes, Envelope& envelope);
 
 void WriteEnvelope(const Envelope& envelope, std::span<std::uint8_t, kEnvelopeBytes> out);

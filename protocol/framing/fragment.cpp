@@ -28,7 +28,7 @@ std::size_t SliceBytes(std::size_t payload_bytes, std::size_t index) {
   return std::min(kFragmentPayloadBytes, payload_bytes - index * kFragmentPayloadBytes);
 }
 
-// False unless every number follows from the payload size.
+// Returns false unless all numbers agree with the payload size.
 bool ReadSlice(std::span<const std::uint8_t> datagram, const Envelope& envelope,
                std::size_t max_message_bytes, Slice& slice) {
   const std::size_t payload = envelope.payload_bytes;
@@ -75,7 +75,7 @@ FragmentStatus Reassembler::Push(std::uint64_t peer, std::span<const std::uint8_
   Envelope envelope;
   if (ReadEnvelope(datagram, envelope) != EnvelopeStatus::kOk ||
       (envelope.flags & kFlagFragment) == 0) {
-    message = datagram;  // OpenMessage() says what is wrong with it, if anything
+    message = datagram;  // OpenMessage() reports faults in it
     return FragmentStatus::kWhole;
   }
   Slice slice;
@@ -125,9 +125,10 @@ Reassembler::Pending& Reassembler::Begin(const Key& key, const Envelope& envelop
   return pending;
 }
 
-// First the peer's own oldest gives way, then anybody's. The pieces of a message come one behind
-// the other, so a flood of beginnings pushes out other beginnings; were it refused instead, a few
-// datagrams a second from many ports could keep every large message out.
+// Drops the oldest unfinished message of the peer first, then the oldest of all peers. The
+// fragments of one message arrive back to back, so a flood of first fragments mostly evicts other
+// first fragments. Rejecting new messages instead would let a few datagrams per second from many
+// ports block every large message.
 void Reassembler::MakeRoom(std::uint64_t peer, std::size_t bytes) {
   std::size_t count = 0;
   auto oldest = pending_.end();
@@ -137,11 +138,11 @@ void Reassembler::MakeRoom(std::uint64_t peer, std::size_t bytes) {
   }
   if (count >= limits_.max_pending_per_peer && oldest != pending_.end()) {
     Remove(oldest);
-    ++pushed_out_;
+    ++evicted_;
   }
   while (pending_bytes_ + bytes > limits_.max_total_bytes) {
     Remove(pending_.find(by_age_.front()));
-    ++pushed_out_;
+    ++evicted_;
   }
 }
 
@@ -152,14 +153,14 @@ void Reassembler::Remove(PendingMap::iterator it) {
 }
 
 std::size_t Reassembler::Expire(std::int64_t now_us) {
-  std::size_t given_up = std::exchange(pushed_out_, 0);
+  std::size_t dropped = std::exchange(evicted_, 0);
   while (!by_age_.empty()) {
     const auto oldest = pending_.find(by_age_.front());
     if (now_us - oldest->second.first_us <= limits_.max_age_us) break;
     Remove(oldest);
-    ++given_up;
+    ++dropped;
   }
-  return given_up;
+  return dropped;
 }
 
 void Reassembler::ForgetPeer(std::uint64_t peer) {

@@ -12,52 +12,53 @@
 
 namespace furrow::protocol {
 
-// A fragment is the message's own envelope with kFlagFragment set, then u32 message id, u16 index,
-// u16 count, then a slice of the payload. All slices but the last have kFragmentPayloadBytes, so
-// that every size and place follows from the envelope and nothing can lie (STANDARD.md section 3).
+// A fragment is the envelope of the message with kFlagFragment set, then u32 message id, u16 index,
+// u16 count, then a slice of the payload (STANDARD.md section 3). All slices but the last have
+// kFragmentPayloadBytes. Every size and position therefore follows from the envelope, and receivers
+// reject fragments that contradict it.
 inline constexpr std::size_t kFragmentHeaderBytes = 8;
 inline constexpr std::size_t kFragmentPayloadBytes =
     kMaxDatagramBytes - kEnvelopeBytes - kFragmentHeaderBytes;
 
-// How many datagrams carry a message of this size (envelope included): 1 if it fits as it is.
+// Number of datagrams for a message of this size, envelope included. 1 if it fits one datagram.
 [[nodiscard]] std::size_t NumDatagrams(std::size_t message_bytes);
 
-// Writes datagram `index` of `message` (an Encode() result of at most kMaxUdpMessageBytes) and
-// returns its size. `message_id`: any number that differs between the fragmented messages of a
-// session; a counter. `out` needs kMaxDatagramBytes.
+// Writes datagram `index` of `message` (a result of Encode() of at most kMaxUdpMessageBytes) and
+// returns its size. `message_id` must differ between the fragmented messages of a session; use a
+// counter. `out` must hold kMaxDatagramBytes.
 std::size_t WriteDatagram(std::span<const std::uint8_t> message, std::uint32_t message_id,
                           std::size_t index, std::span<std::uint8_t> out);
 
 struct ReassemblyLimits {
   std::size_t max_message_bytes = kMaxUdpMessageBytes;
-  std::size_t max_pending_per_peer = 4;           // unfinished messages; the oldest gives way
-  std::size_t max_total_bytes = 8 * 1024 * 1024;  // over all peers; the oldest give way
-  std::int64_t max_age_us = 1'000'000;            // an unfinished message is forgotten after this
+  std::size_t max_pending_per_peer = 4;           // unfinished messages; the oldest is dropped
+  std::size_t max_total_bytes = 8 * 1024 * 1024;  // over all peers; the oldest are dropped
+  std::int64_t max_age_us = 1'000'000;            // unfinished messages are dropped after this time
 };
 
 enum class FragmentStatus : std::uint8_t {
   kWhole = 0,  // not a fragment: the datagram is the message
-  kComplete,   // the last missing piece: `message` is whole
-  kPending,    // kept
+  kComplete,   // the last missing fragment: `message` is whole
+  kPending,    // stored
   kDuplicate,
-  kMalformed,  // sizes that do not follow from the envelope, or differ from earlier fragments
-  kOverLimit,  // a message above max_total_bytes by itself
+  kMalformed,  // sizes contradict the envelope or earlier fragments
+  kOverLimit,  // the message alone exceeds max_total_bytes
 };
 
-// Puts messages together again; bounded in memory, and time is a parameter.
+// Reassembles fragmented messages within bounded memory.
 class Reassembler {
  public:
   explicit Reassembler(const ReassemblyLimits& limits = {});
   Reassembler(const Reassembler&) = delete;
   Reassembler& operator=(const Reassembler&) = delete;
 
-  // `peer`: the caller's number for the source address. On kWhole and kComplete `message` is a
-  // whole message for OpenMessage(), valid until the next call.
+  // Takes one datagram. `peer` is a number the caller assigns to the source address. On kWhole and
+  // kComplete, `message` is a whole message for OpenMessage(), valid until the next call.
   [[nodiscard]] FragmentStatus Push(std::uint64_t peer, std::span<const std::uint8_t> datagram,
                                     std::int64_t now_us, std::span<const std::uint8_t>& message);
 
-  // Forgets what is too old. Returns how many messages were given up since the last call, for their
-  // age or for want of room. Call it about once a second.
+  // Drops unfinished messages above max_age_us. Returns the number of messages dropped since the
+  // last call, for their age or for lack of memory. Call it about once per second.
   std::size_t Expire(std::int64_t now_us);
   void ForgetPeer(std::uint64_t peer);
 
@@ -72,7 +73,7 @@ class Reassembler {
     friend auto operator<=>(const Key&, const Key&) = default;
   };
   struct Pending {
-    std::list<Key>::iterator age;  // its place in by_age_
+    std::list<Key>::iterator age;  // position in by_age_
     Envelope envelope;
     std::int64_t first_us = 0;
     std::size_t missing = 0;
@@ -90,7 +91,7 @@ class Reassembler {
   PendingMap pending_;
   std::list<Key> by_age_;  // oldest first
   std::size_t pending_bytes_ = 0;
-  std::size_t pushed_out_ = 0;  // since the last Expire()
+  std::size_t evicted_ = 0;  // since the last Expire()
   std::vector<std::uint8_t> done_;
 };
 

@@ -21,7 +21,7 @@ SequenceStatus SequenceWindow::Accept(std::uint64_t session, std::uint32_t seque
   const std::uint32_t behind = newest_ - sequence;
   if (behind >= kWindow) return SequenceStatus::kLate;
   if (TestAndSet(sequence)) return SequenceStatus::kDuplicate;
-  // What comes after all is no longer lost; what precedes the first was never counted.
+  // A late pose is no longer lost. A pose before the first one was never counted as lost.
   if (static_cast<std::int32_t>(sequence - first_) > 0 && lost_ > 0) --lost_;
   return SequenceStatus::kLate;
 }

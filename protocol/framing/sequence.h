@@ -7,26 +7,26 @@
 namespace furrow::protocol {
 
 enum class SequenceStatus : std::uint8_t {
-  kNewest = 0,  // use it
-  kRestart,     // use it: the first of a new session (also the very first); forget the old state
-  kLate,        // older than what was used already: drop
-  kDuplicate,   // seen already: drop
-  kOldSession,  // a straggler of a session that was replaced: drop
+  kNewest = 0,  // use the pose
+  kRestart,     // use the pose and reset the state: it is the first of all or of a new session
+  kLate,        // drop the pose: a newer one was used
+  kDuplicate,   // drop the pose: it was received before
+  kOldSession,  // drop the pose: its session was replaced
 };
 
-// Which poses of one stream are new. Sequences wrap, so they are compared by subtraction.
+// Decides which poses of one stream are new. Sequences wrap, so they are compared by subtraction.
 class SequenceWindow {
  public:
-  static constexpr std::uint32_t kWindow =
-      1024;  // duplicates are told from late ones this far back
+  // How far back duplicates can be distinguished from late poses.
+  static constexpr std::uint32_t kWindow = 1024;
 
-  // Classifies and remembers.
+  // Classifies a pose and records it.
   [[nodiscard]] SequenceStatus Accept(std::uint64_t session, std::uint32_t sequence);
 
   [[nodiscard]] bool started() const { return started_; }
   [[nodiscard]] std::uint64_t session() const { return session_; }
   [[nodiscard]] std::uint32_t newest() const { return newest_; }
-  // Sequences skipped when newer ones came, less the late ones that did come after all.
+  // Number of skipped sequences, minus those that arrived late.
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
 
  private:

@@ -9,27 +9,27 @@
 
 namespace furrow::protocol {
 
-// On TCP every message follows its length in bytes, u32 little-endian.
+// On TCP the length in bytes, u32 little-endian, precedes every message.
 inline constexpr std::size_t kFramePrefixBytes = 4;
 
 [[nodiscard]] std::array<std::uint8_t, kFramePrefixBytes> FramePrefix(std::size_t message_bytes);
 
 enum class FrameStatus : std::uint8_t {
-  kNeedMore = 0,  // all bytes were taken; no frame yet
-  kFrame,         // `frame` is whole; there may be bytes left
-  kBadLength,     // shorter than an envelope or above the cap: close the connection
+  kNeedMore = 0,  // all bytes were consumed; the frame is incomplete
+  kFrame,         // `frame` is complete; bytes may be left
+  kBadLength,     // shorter than an envelope or above the limit: close the connection
 };
 
-// Cuts a byte stream into frames. Memory grows with the bytes that came, never with a claimed
-// length, and is at most the cap.
+// Splits a byte stream into frames. Memory grows with the bytes received, not with the claimed
+// length, and never exceeds `max_frame_bytes`.
 //
 //   while (!bytes.empty()) switch (reader.Push(bytes, frame)) { ... }
 class FrameReader {
  public:
   explicit FrameReader(std::size_t max_frame_bytes);
 
-  // Takes from the front of `bytes` until a frame is whole or nothing is left. `frame` is valid
-  // until the next call and 8-byte aligned. After kBadLength every call says so.
+  // Consumes `bytes` from the front until a frame is complete or no bytes are left. `frame` is
+  // 8-byte aligned and valid until the next call. After kBadLength all calls return kBadLength.
   [[nodiscard]] FrameStatus Push(std::span<const std::uint8_t>& bytes,
                                  std::span<const std::uint8_t>& frame);
 

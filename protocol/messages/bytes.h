@@ -7,7 +7,7 @@
 
 namespace furrow::protocol {
 
-// Integers in a stated byte order at any address; the compiler makes single moves of them.
+// Integers in a stated byte order, at any address. Compilers turn each loop into a single move.
 template <class T>
 [[nodiscard]] T LoadLittle(const std::uint8_t* bytes) {
   std::make_unsigned_t<T> value = 0;

@@ -10,13 +10,13 @@
 
 namespace furrow::protocol {
 
-// 64-bit FNV-1a, fed byte by byte; numbers little-endian, strings followed by a zero byte.
-// Not a defence against anyone: it tells skeletons and name tables apart, nothing more.
+// 64-bit FNV-1a over bytes. Numbers are little-endian; a zero byte follows each string. The hash
+// tells skeletons and name lists apart. It does not protect against deliberate collisions.
 class Hasher {
  public:
   void String(std::string_view text);
   void U16(std::uint16_t value);
-  void F32(float value);  // the bits as they stand
+  void F32(float value);  // the IEEE 754 bits, so -0 and 0 differ
   [[nodiscard]] std::uint64_t value() const { return value_; }
 
  private:
@@ -24,11 +24,11 @@ class Hasher {
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
 
-// Over everything that gives a pose its meaning: joints (name, parent, rest, tail), unit and
-// blend-shape names; not over the subject. STANDARD.md section 6 gives the order of the bytes.
+// Hashes everything that gives a pose its meaning: joints (name, parent, rest pose, tail), unit and
+// blend-shape names. The subject is not part of it. STANDARD.md section 6 states the byte order.
 [[nodiscard]] std::uint64_t SkeletonHash(const SkeletonOffer& offer);
 
-// Over the names in order; 0 for none.
+// Hashes the names in order. Returns 0 for an empty list.
 [[nodiscard]] std::uint64_t NamesHash(std::span<const std::string> names);
 
 }  // namespace furrow::protocol

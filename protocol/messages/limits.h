@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// Every bound of the wire in one place; STANDARD.md section 11 is the same table in words.
+// All limits of the wire. STANDARD.md section 11 states the same table.
 namespace furrow::protocol {
 
 inline constexpr std::uint16_t kDefaultTcpPort = 7400;
@@ -17,33 +17,34 @@ inline constexpr std::size_t kMaxReplyBytes = 16 * 1024 * 1024;  // TCP, server 
 
 inline constexpr int kMaxJoints = 1024;
 inline constexpr int kMaxBlendShapes = 512;
-inline constexpr int kMaxWeights = 2048;       // names of one subscription
+inline constexpr int kMaxWeights = 2048;       // names per subscription
 inline constexpr int kMaxNameBytes = 255;      // joint, blend shape, subject, weight, view, camera
 inline constexpr int kMaxProgramBytes = 64;    // Hello's client, Welcome's server
-inline constexpr int kMaxPatternBytes = 4096;  // comma list of globs
+inline constexpr int kMaxPatternBytes = 4096;  // comma-separated globs
 inline constexpr int kMaxListedSubjects = 16384;
 inline constexpr int kMaxPictureSettings = 128;
 inline constexpr int kNumPictureTiers = 3;
-inline constexpr int kMaxTextBytes = 1024;  // messages for people
-inline constexpr int kMaxImageSize = 4096;  // pixels a side
+inline constexpr int kMaxTextBytes = 1024;  // human-readable messages
+inline constexpr int kMaxImageSize = 4096;  // pixels per side
 inline constexpr int kMinImageSize = 16;
 inline constexpr float kMaxRateHz = 1000.0f;
-inline constexpr float kMaxMagnitude = 1e6f;  // of any coordinate, scale or coefficient
+inline constexpr float kMaxMagnitude = 1e6f;  // of a coordinate, scale or coefficient
 
-// A Hello has at least this many bytes, a Welcome at most: the answer never exceeds the question.
+// Minimum size of a Hello and maximum size of a Welcome. A reply is never larger than the request,
+// so the server cannot be used to amplify traffic.
 inline constexpr std::size_t kHelloBytes = 256;
 
-// Of frames that a subscriber to every one of them has not taken yet, over a connection.
+// Frames that wait on one connection for subscriptions with `every`.
 inline constexpr std::size_t kMaxWaitingFrameBytes = 8 * 1024 * 1024;
 
 inline constexpr int kMaxVerifierDepth = 8;  // FlatBuffers nesting
 inline constexpr int kMaxVerifierTables = 256;
 
-// A UDP subscription lapses after this long without any datagram from its owner.
+// A UDP subscription ends after this time without a datagram from its owner.
 inline constexpr std::int64_t kUdpLeaseMicroseconds = 5'000'000;
-// A publisher resends its offer this often until it is answered.
+// Interval at which a publisher repeats its offer until the server replies.
 inline constexpr std::int64_t kOfferResendMicroseconds = 200'000;
-// A server asks one stream for its skeleton at most this often.
+// Minimum interval between two requests of the server for the skeleton of one stream.
 inline constexpr std::int64_t kNeedSkeletonMicroseconds = 200'000;
 
 }  // namespace furrow::protocol

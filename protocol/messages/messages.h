@@ -8,10 +8,10 @@
 
 #include "protocol/messages/limits.h"
 
-// The messages of the wire as plain structs: what STANDARD.md section 5 onwards describes, decoded.
+// The messages of the wire as plain structs (STANDARD.md, section 4 and later).
 //
-// All of them are meant to be kept and reused: decoding into the same object again does not
-// allocate once its vectors have grown. Text is UTF-8. Spaces are right-handed, Y up, +Z forward.
+// Reuse them: decoding into the same object stops allocating once its vectors have grown. Text is
+// UTF-8. Spaces are right-handed, Y up, +Z forward.
 namespace furrow::protocol {
 
 struct Vec3 {
@@ -19,58 +19,58 @@ struct Vec3 {
   friend bool operator==(const Vec3&, const Vec3&) = default;
 };
 
-// A rotation, unit length, x y z w as on the wire.
+// A rotation of unit length, stored x y z w as on the wire.
 struct Quat {
   float x = 0.0f, y = 0.0f, z = 0.0f, w = 1.0f;
   friend bool operator==(const Quat&, const Quat&) = default;
 };
 
-// What the envelope carries with every message.
+// The fields of the envelope, which every message carries.
 struct Header {
-  std::uint64_t session = 0;  // random, not 0; new at every start of the one who sends
-  // Offers, poses, their answers: the publisher's number of its subject. Weights, pictures, their
-  // replies and errors: the subscription. Else 0.
+  std::uint64_t session = 0;  // random, never 0, new at every start of the sending program
+  // Offers, poses and replies to them: the publisher's number for the subject. Weights, pictures
+  // and replies and errors about them: the subscription. Otherwise 0.
   std::uint16_t stream = 0;
-  // Poses: counts from 0 by one per stream. Weights and pictures: the pose's. Requests: any number
-  // that the client chooses; the answer repeats it.
+  // Poses: counts up from 0 per stream. Weights and pictures: the sequence of their pose. Requests:
+  // any number the client chooses; the reply repeats it.
   std::uint32_t sequence = 0;
-  // Poses: when they were captured, microseconds on the publisher's own clock (any epoch, never
-  // backwards within a session). Weights and pictures: the pose's. Else 0.
+  // Poses: capture time in microseconds on the publisher's clock (any epoch, never backwards within
+  // a session). Weights and pictures: the capture time of their pose. Otherwise 0.
   std::int64_t capture_time_us = 0;
   friend bool operator==(const Header&, const Header&) = default;
 };
 
-// --- Meeting ------------------------------------------------------------------------------------
+// --- Connecting ---------------------------------------------------------------------------------
 
-// Client to server. Over UDP a subscriber says Hello twice: with
-// token 0, then with Welcome's token, which proves that it receives
-// at its address. Padded by the encoder (see STANDARD.md section 4).
+// Client to server. Over UDP a subscriber sends Hello twice: first with token 0, then with the
+// token from Welcome, which proves that the client receives at its address. The encoder pads the
+// message (STANDARD.md section 4).
 struct Hello {
   std::string client;  // program and version, for logs
   std::uint64_t token = 0;
-  bool bundles = false;  // UDP: takes several messages in a datagram (bundle.h)
+  bool bundles = false;  // UDP: accepts several messages per datagram (bundle.h)
 };
 
 struct Welcome {
   std::string server;       // program and version
-  std::uint64_t token = 0;  // send it back in Hello; 0 once proven, and on TCP
+  std::uint64_t token = 0;  // to be returned in Hello; 0 once the address is proven, and on TCP
 };
 
-// Either way; answered by Pong at once. Keeps a UDP subscription alive.
+// Either direction. The receiver replies with Pong at once. Keeps a UDP subscription alive.
 struct Ping {
-  std::int64_t time_us = 0;  // on the asker's clock
+  std::int64_t time_us = 0;  // on the sender's clock
 };
 
 struct Pong {
-  std::int64_t time_us = 0;         // Ping's, unchanged
-  std::int64_t server_time_us = 0;  // on the answerer's clock
+  std::int64_t time_us = 0;         // copied from Ping
+  std::int64_t server_time_us = 0;  // on the replying side's clock
 };
 
 enum class GoodbyeReason : std::uint8_t {
-  kDone = 0,         // the sender ends this stream or subscription of its own will
-  kSubjectGone = 1,  // to a subscriber: the subject it watched has left
-  kDraining = 2,     // the server shuts down
-  kTimedOut = 3,     // nothing was heard for too long
+  kDone = 0,         // the sender ends this stream or subscription
+  kSubjectGone = 1,  // to a subscriber: the subject has left
+  kDraining = 2,     // the server is shutting down
+  kTimedOut = 3,     // nothing was received for too long
 };
 
 // header.stream names what ends; stream 0 with kDraining means everything.
@@ -79,43 +79,44 @@ struct Goodbye {
 };
 
 enum class ErrorCode : std::uint16_t {
-  kMalformed = 1,  // the bytes are not a message, or its content contradicts itself
+  kMalformed = 1,  // not a message, or contradictory content
   kUnsupportedVersion = 2,
-  kUnsupported = 3,  // a valid message that this end does not serve
+  kUnsupported = 3,  // a valid message that the receiver does not serve
   kUnknownSubject = 4,
-  kNoMatch = 5,           // the pattern names no weight
-  kLimit = 6,             // too large, too many, too often
-  kBadSkeleton = 7,       // see SkeletonReply, which is the usual answer
-  kNotRendering = 8,      // pictures asked of a server that draws none
-  kBadPicture = 9,        // size, view or camera that cannot be had
-  kNeedsTcp = 10,         // pictures asked over UDP
-  kUnprovenAddress = 11,  // UDP subscription without Hello's token
+  kNoMatch = 5,           // the pattern matches no weight
+  kLimit = 6,             // too large, too many or too often
+  kBadSkeleton = 7,       // usually sent as SkeletonReply instead
+  kNotRendering = 8,      // a picture request to a server that does not render
+  kBadPicture = 9,        // unavailable size, view or camera
+  kNeedsTcp = 10,         // a picture or list request over UDP
+  kUnprovenAddress = 11,  // a UDP subscription without a token from Hello
   kDraining = 12,
   kInternal = 13,
 };
 
-// header.sequence: that of the request that failed; header.stream: its stream or subscription.
+// header.sequence and header.stream: those of the request that failed.
 struct ErrorMessage {
   ErrorCode code = ErrorCode::kInternal;
-  std::string message;  // one sentence for people: what, and what to do
+  std::string message;  // one human-readable sentence: what went wrong and what to do
 };
 
 // --- Publishing ---------------------------------------------------------------------------------
 
 struct OfferedJoint {
-  std::string name;          // unique in its skeleton, not empty
+  std::string name;          // unique in the skeleton, not empty
   std::int16_t parent = -1;  // index of an earlier joint; -1 for a root
   Vec3 rest_translation;     // local: relative to the parent
   Quat rest_rotation;
   Vec3 rest_scale{1.0f, 1.0f, 1.0f};
   bool has_tail = false;
-  Vec3 tail;  // local end of a joint, where the source states one (BVH's End Site)
+  Vec3 tail;  // local end of the joint if the source states one (End Site in BVH)
   friend bool operator==(const OfferedJoint&, const OfferedJoint&) = default;
 };
 
-// What a stream's poses mean. Sent before the first pose, and again until a SkeletonReply comes.
+// Describes the skeleton of a stream, which gives its poses their meaning. A publisher sends it
+// before the first pose and repeats it until a SkeletonReply arrives.
 struct SkeletonOffer {
-  std::string subject;                         // who is captured; not empty
+  std::string subject;                         // name of the captured subject; not empty
   std::uint64_t skeleton_hash = 0;             // SkeletonHash() of this offer (hash.h)
   float metres_per_unit = 1.0f;                // of all translations
   std::vector<OfferedJoint> joints;            // parents first; may be empty if there are shapes
@@ -125,8 +126,8 @@ struct SkeletonOffer {
 
 enum class SkeletonStatus : std::uint8_t {
   kAccepted = 0,
-  kRejected = 1,  // `message` says why; sending it again will not help
-  kNeeded = 2,    // poses came with a hash that the server does not know: send the offer
+  kRejected = 1,  // `message` states the reason; sending the offer again does not help
+  kNeeded = 2,    // the server does not know the hash of the poses: send the offer
 };
 
 struct SkeletonReply {
@@ -137,14 +138,15 @@ struct SkeletonReply {
 
 // One pose. Lists of indices are strictly ascending and parallel to their values.
 //
-// Joints (and blend shapes) not listed are at rest (0), or, where `partial`, as in the last
-// accepted pose of the stream. Translations are *offsets from the rest translation*, in the
-// parent's space; rotations and scales are whole local values.
+// Joints that are not listed are at rest and blend shapes that are not listed are 0. If `partial`,
+// both keep their value from the last accepted pose of the stream instead. Translations are
+// *offsets from the rest translation*, in the parent's space. Rotations and scales are complete
+// local values.
 struct PoseFrame {
   std::uint64_t skeleton_hash = 0;
   bool partial = false;
-  std::uint16_t num_joints = 0;        // of the skeleton; 0 for a face of shapes alone
-  std::uint16_t num_blend_shapes = 0;  // of the skeleton offer
+  std::uint16_t num_joints = 0;        // of the skeleton; 0 if it has only blend shapes
+  std::uint16_t num_blend_shapes = 0;  // of the skeleton
   std::vector<std::uint16_t> rotation_joints;
   std::vector<Quat> rotations;
   std::vector<std::uint16_t> translation_joints;
@@ -159,7 +161,7 @@ struct PoseFrame {
 
 enum class WeightFormat : std::uint8_t {
   kF32 = 0,
-  kU8 = 1,  // round(255 * value): half a step, 1/510, is the largest error
+  kU8 = 1,  // round(255 * value), error up to 1/510
 };
 
 enum class WeightSource : std::uint8_t {
@@ -167,26 +169,26 @@ enum class WeightSource : std::uint8_t {
   kDriverValues = 1,    // "<driver>.<value>", before modulation and filter
 };
 
-// Sending the same request again (session and sequence equal) is harmless: the same subscription
-// answers with another SubscribeReply. Used when that reply, or its names, were lost.
+// A repeated request (same session and sequence) does not create a second subscription. The server
+// sends the SubscribeReply again. Clients repeat the request if the reply or its names were lost.
 struct SubscribeWeights {
-  std::string subject;        // empty: the subject that has been there longest
-  bool wait = false;          // true: no error when the subject is not there yet; wait for it
-  std::string pattern = "*";  // comma list of globs over weight names, see pattern.h
+  std::string subject;        // empty: the oldest live subject
+  bool wait = false;          // true: wait for an absent subject instead of failing
+  std::string pattern = "*";  // comma-separated globs over weight names (pattern.h)
   float max_rate_hz = 0.0f;   // 0: every pose
   WeightFormat format = WeightFormat::kF32;
   WeightSource source = WeightSource::kWrinkleWeights;
-  bool every = false;  // TCP: as for poses
+  bool every = false;  // TCP: see SubscribePoses
 };
 
-// Answered by SubscribeReply and the SkeletonOffer that says what the poses mean; both come again,
-// before the first pose that they concern, when another sender or another skeleton takes over.
+// The server replies with SubscribeReply and the SkeletonOffer of the poses. It sends both again
+// before the first pose of another sender or another skeleton.
 struct SubscribePoses {
   std::string subject;  // as for weights
   bool wait = false;
   float max_rate_hz = 0.0f;
-  // TCP: what is late waits in line instead of giving way to what is newer. Beyond 8 MiB a
-  // connection the newest are left out, which Dropped tells.
+  // TCP: late frames queue instead of being replaced by newer ones. If more than 8 MiB queue on a
+  // connection, the server drops the newest frames and reports their number in Dropped.
   bool every = false;
 };
 
@@ -195,7 +197,7 @@ enum class ImageFormat : std::uint8_t {
   kPng = 1,
 };
 
-// An explicit camera, in metres in the character's model space.
+// An explicit camera in the character's model space, in metres.
 struct Camera {
   Vec3 eye{0.0f, 1.6f, 2.0f};
   Vec3 target{0.0f, 1.6f, 0.0f};
@@ -212,78 +214,77 @@ struct SubscribePictures {
   std::uint8_t quality = 80;   // JPEG, 1 to 100
   std::string view = "final";  // final, normal, mask_dynamic, mask_texture, weights, wireframe
   std::string camera_preset;   // empty: the server's default, unless has_camera
-  bool has_camera = false;     // true: `camera` counts and camera_preset must be empty
+  bool has_camera = false;     // true: use `camera`; camera_preset must be empty
   Camera camera;
-  // Flow control: at most two pictures are under way until FrameAck comes (STANDARD.md section 9).
+  // Flow control: at most two pictures are unacknowledged at a time (STANDARD.md section 9).
   bool acknowledged = false;
-  std::vector<std::string> settings;  // "name=value", over the server's own
-  // The explicit camera goes with the subject, and its angle counts across the picture's shorter
-  // side: as presets' do.
+  std::vector<std::string> settings;  // "name=value", override the server's settings
+  // As camera presets do: the explicit camera follows the subject, and its field of view spans the
+  // shorter side of the picture.
   bool camera_follows = false;
 };
 
-// header.stream names a subscription of pictures; all of its view is replaced. Answered where it is
-// refused alone. subject, wait and acknowledged are not read.
+// Replaces the complete view of the picture subscription in header.stream. The server replies only
+// on failure. Ignores subject, wait and acknowledged.
 struct UpdatePictures {
   SubscribePictures pictures;
 };
 
-// header.stream names the subscription: this picture and all before it were shown.
+// The client has shown this picture and all earlier ones. header.stream: the subscription.
 struct FrameAck {
   std::uint32_t number = 0;  // ImageFrame::number, from 1
 };
 
-// header.stream names the subscription.
+// header.stream: the subscription.
 struct Unsubscribe {};
 
-// header.stream: the subscription's id; header.sequence: the
-// request's. Sent again of its own accord whenever the names change
-// (another rig or skeleton), before the first frame that uses them.
+// header.stream: the id of the subscription; header.sequence: that of the request. The server sends
+// it again when the names change (another rig or skeleton), before the first frame that uses them.
 struct SubscribeReply {
-  std::string subject;             // who was chosen; empty while waiting for one
+  std::string subject;             // the chosen subject; empty while waiting
   std::uint64_t names_hash = 0;    // NamesHash(names); 0 while unknown, and for pictures
-  std::vector<std::string> names;  // of the values of a WeightFrame, in their order
-  // Poses: the session of who publishes, so that a restart is told from a leap; else 0.
+  std::vector<std::string> names;  // of the values of a WeightFrame, in the same order
+  // Poses: the publisher's session, which tells a restart from a jump in the sequence. Otherwise 0.
   std::uint64_t publisher_session = 0;
 };
 
-// Who is there? Over TCP.
+// Requests the list of live subjects. TCP only.
 struct ListSubjects {
-  bool follow = false;  // answered again whenever it changes
+  bool follow = false;  // true: send the list again whenever it changes
 };
 
-// header.sequence: the request's.
+// header.sequence: that of the request.
 struct Subjects {
   std::vector<std::string> names;  // in order of arrival; at most kMaxListedSubjects
-  std::uint32_t total = 0;         // how many there are, beyond those named
+  std::uint32_t total = 0;         // number of live subjects, including those not listed
 };
 
-// header.stream: a subscription to every frame. At most once a second, while it grows.
+// header.stream: a subscription with `every`. Sent at most once per second while the number grows.
 struct Dropped {
-  std::uint64_t frames = 0;  // that were left out since the subscription began
+  std::uint64_t frames = 0;  // frames dropped since the subscription began
 };
 
-// header.stream: the subscription; header.sequence and capture_time_us: the pose's.
+// header.stream: the subscription; header.sequence and capture_time_us: those of the pose.
 struct WeightFrame {
-  std::uint64_t names_hash = 0;  // equal to the last SubscribeReply's, or the frame cannot be read
-  std::int64_t age_us = 0;       // time without a pose since: > 0 while weights hold and decay
+  std::uint64_t names_hash = 0;  // the last SubscribeReply with this hash names the values
+  std::int64_t age_us = 0;       // time since the pose; > 0 while weights are held or decay
   WeightFormat format = WeightFormat::kF32;
-  std::vector<float> values;  // decoded to [0, 1] whatever the format
+  std::vector<float> values;  // decoded to [0, 1] in both formats
 };
 
-// TCP and WebSocket. header as in WeightFrame.
+// TCP and WebSocket only. The header is as for WeightFrame.
 struct ImageFrame {
   std::uint16_t width = 0;
   std::uint16_t height = 0;
   ImageFormat format = ImageFormat::kJpeg;
   std::int64_t age_us = 0;
   std::vector<std::uint8_t> bytes;  // the encoded file
-  std::uint32_t number = 0;         // counts from 1 where acknowledged, else 0
-  std::uint8_t tier = 0;            // 0 best, below kNumPictureTiers
+  std::uint32_t number = 0;         // counts from 1 if acknowledged, otherwise 0
+  std::uint8_t tier = 0;            // quality: 0 is best; below kNumPictureTiers
   bool still = false;               // the refined picture of a pose at rest
-  std::uint32_t dropped = 0;        // poses not shown for want of acknowledgements, so far
-  std::int64_t received_us = 0;     // when the server got the pose, on Pong's clock
-  std::uint32_t view_request = 0;   // sequence of the request whose view this is
+  std::uint32_t dropped = 0;        // poses not drawn so far because acknowledgements were missing
+  std::int64_t received_us = 0;     // arrival of the pose at the server, on the clock of Pong
+  std::uint32_t view_request = 0;   // sequence of the request that defined the view
 };
 
 }  // namespace furrow::protocol

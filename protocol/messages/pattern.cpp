@@ -6,7 +6,8 @@
 namespace furrow::protocol {
 namespace {
 
-// On a mismatch only the last `*` takes one character more: earlier ones never need to.
+// On a mismatch, only the last `*` is extended by one character. Extending an earlier `*` never
+// finds a match that the last one misses, so there is no need for recursion.
 bool MatchesGlob(std::string_view glob, std::string_view name) {
   std::size_t g = 0;
   std::size_t n = 0;

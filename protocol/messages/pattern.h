@@ -5,10 +5,10 @@
 
 namespace furrow::protocol {
 
-// Globs separated by commas over names such as "brow_l.squash": `*` stands for any run of
-// characters, `?` for any one; everything else for itself, case counting. Spaces around a glob do
-// not count. Empty patterns match nothing. Time is at most the product of the lengths, whatever the
-// pattern.
+// Matches `name` (such as "brow_l.squash") against a comma-separated list of globs. `*` matches any
+// run of characters and `?` any one character; other characters match themselves, case-sensitively.
+// Spaces around a glob are ignored. An empty pattern matches nothing. The running time is at most
+// proportional to the product of the two lengths, so a hostile pattern is harmless.
 [[nodiscard]] bool MatchesPattern(std::string_view pattern, std::string_view name);
 
 }  // namespace furrow::protocol

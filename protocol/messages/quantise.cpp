@@ -8,7 +8,7 @@ namespace furrow::protocol {
 namespace {
 
 constexpr float kSqrt2 = 1.41421356f;
-constexpr int kQuatSteps = 32766;  // even, so that 0 has a code of its own
+constexpr int kQuatSteps = 32766;  // even, so that 0 has an exact code
 constexpr int kOffsetSteps = 32767;
 constexpr float kBlendShapeSteps = 16384.0f;
 
@@ -17,7 +17,7 @@ std::uint64_t PackComponent(float value) {
   return static_cast<std::uint64_t>(std::clamp(scaled, 0.0f, static_cast<float>(kQuatSteps)));
 }
 
-// By how many steps it is off the middle, which is exact and takes no division.
+// Counts steps from the middle code: the middle decodes to exactly 0, and there is no division.
 float UnpackComponent(std::uint64_t code) {
   constexpr float kStep = 2.0f / (static_cast<float>(kQuatSteps) * kSqrt2);
   return static_cast<float>(static_cast<int>(code) - kQuatSteps / 2) * kStep;
@@ -45,7 +45,7 @@ PackedQuat PackQuat(const Quat& rotation) {
           static_cast<std::uint16_t>(bits >> 32)};
 }
 
-// The hot path's most frequent call: no list that is filled by index, no loop.
+// The most frequent call of the hot path, therefore without loops and without an indexed array.
 bool UnpackQuat(const PackedQuat& packed, Quat& rotation) {
   rotation = Quat{};
   const std::uint64_t bits = packed[0] | static_cast<std::uint64_t>(packed[1]) << 16 |

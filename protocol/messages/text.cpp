@@ -7,7 +7,7 @@
 namespace furrow::protocol {
 namespace {
 
-// Bytes of the character that begins at `at`; 0 where it is not well formed.
+// Returns the size in bytes of the character that starts at `at`, or 0 if it is malformed.
 std::size_t CharacterBytes(std::string_view text, std::size_t at) {
   const auto lead = static_cast<std::uint8_t>(text[at]);
   if (lead < 0x80) return (lead < 0x20 || lead == 0x7F) ? 0 : 1;

@@ -6,11 +6,11 @@
 
 namespace furrow::protocol {
 
-// Well-formed UTF-8 (no overlong forms, no surrogates, at
-// most U+10FFFF) without control characters.
+// True for well-formed UTF-8 (no overlong forms, no surrogates, at most U+10FFFF) without control
+// characters (below 0x20, and 0x7F).
 [[nodiscard]] bool IsPlainText(std::string_view text);
 
-// The longest beginning of at most `max_bytes` that does not cut a character of plain text in two.
+// Returns the longest prefix of at most `max_bytes` that does not split a character of plain text.
 [[nodiscard]] std::string_view PlainPrefix(std::string_view text, std::size_t max_bytes);
 
 }  // namespace furrow::protocol

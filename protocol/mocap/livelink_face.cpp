@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint8_t kPacketVersion = 6;
 constexpr std::size_t kMaxSubjects = 16;
-constexpr std::int64_t kStragglerUs = 5'000'000;
+constexpr std::int64_t kLateToleranceUs = 5'000'000;
 constexpr std::size_t kDeviceSuffixBytes = 8;
 
 // clang-format off
@@ -44,7 +44,8 @@ struct Packet {
   std::array<float, kNumLiveLinkFaceShapes> values{};
 };
 
-// Takes big-endian numbers off the front; after a read beyond the end everything is 0 and !ok().
+// Reads big-endian numbers from the front. After a read beyond the end, ok() is false and all reads
+// return 0.
 class Cursor {
  public:
   explicit Cursor(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -132,7 +133,7 @@ class LiveLinkFaceAdapter final : public MocapAdapter {
     Sender& sender = FindOrAdd(packet);
     sender.heard_us = now_us;
     const auto source_us = static_cast<std::int64_t>(std::llround(packet.seconds * 1e6));
-    if (sender.clock.Advance(source_us, now_us, kStragglerUs) == SourceClock::Order::kNotNewer) {
+    if (sender.clock.Advance(source_us, now_us, kLateToleranceUs) == SourceClock::Order::kNotNewer) {
       ++counters_.reordered;
       return;
     }
@@ -149,7 +150,7 @@ class LiveLinkFaceAdapter final : public MocapAdapter {
     ++frame.sequence;
   }
 
-  // A datagram is a whole frame: nothing waits.
+  // Every datagram is a whole frame, so no frame ever waits.
   void Tick(std::int64_t /*now_us*/, const FrameSink& /*sink*/) override {}
 
  private:

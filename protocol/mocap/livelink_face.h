@@ -12,22 +12,22 @@ namespace furrow::protocol::mocap {
 inline constexpr std::uint16_t kLiveLinkFacePort = 11111;
 inline constexpr int kNumLiveLinkFaceShapes = 61;
 
-// The 61 names in the order of the wire, Unreal's spelling ("EyeBlinkLeft" .. "RightEyeRoll").
+// The 61 names in wire order, in Unreal's spelling ("EyeBlinkLeft" to "RightEyeRoll").
 [[nodiscard]] std::span<const std::string_view> LiveLinkFaceShapeNames();
 
 // Epic's Live Link Face (ARKit mode, packet version 6), several phones on one port.
 //
-// - A frame has no joints and the 61 blend shapes; 52 are in [0, 1], the nine of head and eyes are
-//   small signed numbers, passed on as they are.
-// - A datagram without a face gives a frame with tracked = false and the last values.
-// - Capture time: the sender's frame number, subframe and rate. A frame not newer than the last is
-//   dropped as reordered, unless it lies more than five seconds back: then the sender restarted, or
-//   midnight passed.
-// - Two devices that use one subject name are told apart by the first
-//   eight characters of the device id after the name of the later one.
-//   The one silent longest gives way when there are more than 16.
-// - Other packet versions, strings above 255 bytes, other counts than 61, and sizes that do not fit
-//   to the byte are malformed.
+// - A frame has no joints and 61 blend shapes. 52 are in [0, 1]; the nine of head and eyes are
+// small
+//   signed numbers. All are passed on unchanged.
+// - A datagram without a face yields a frame with tracked = false and the last values.
+// - The capture time follows from the sender's frame number, subframe and frame rate. A frame that
+//   is not newer than the last one is dropped as reordered, unless it is more than 5 s older: then
+//   the sender restarted or its clock passed midnight.
+// - If two devices use one subject name, the first eight characters of the device id are appended
+//   to the name of the later device. Above 16 devices, the one that was silent longest is dropped.
+// - Malformed: another packet version, a string above 255 bytes, another count than 61, or a size
+//   that does not match to the byte.
 // Source: decoded from a capture of the app.
 [[nodiscard]] std::unique_ptr<MocapAdapter> MakeLiveLinkFaceAdapter();
 

@@ -10,36 +10,38 @@
 namespace furrow::protocol::mocap {
 
 struct NeutralJoint {
-  std::string name;       // as the sender calls it
+  std::string name;       // in the sender's spelling
   int parent = -1;        // index of an earlier joint of the same frame; -1 for a root
   Vec3 translation;       // local, metres
-  Quat rotation;          // local, unit
-  Vec3 rest_translation;  // local, metres; does not change while NeutralFrame::layout stands
+  Quat rotation;          // local, unit length
+  Vec3 rest_translation;  // local, metres; constant for one NeutralFrame::layout
 };
 
 struct NeutralBlendShape {
-  std::string name;  // as the sender spells it (VMC: as first seen)
+  std::string name;  // in the sender's spelling (VMC: the first spelling received)
   float value = 0.0f;
 };
 
-// One subject at one instant, whatever wire it came by: right-handed, Y up, +Z forward, metres.
+// One subject at one instant, independent of the source protocol. Right-handed, Y up, +Z forward,
+// metres.
 struct NeutralFrame {
   std::string subject;
-  std::int64_t capture_time_us = 0;  // the sender's clock where it has one, else arrival
-  std::uint32_t sequence = 0;        // counts the frames of this subject from 0, by the adapter
-  // Changes whenever the names, parents or order of joints
-  // and blend shapes do: offer a skeleton anew.
+  std::int64_t capture_time_us = 0;  // on the sender's clock if it has one, otherwise arrival time
+  std::uint32_t sequence = 0;        // the adapter counts the frames of this subject from 0
+  // Changes whenever names, parents or the order of joints or blend shapes change. Each layout
+  // needs its own skeleton offer.
   std::uint32_t layout = 0;
-  bool tracked = true;  // false: the sender says it lost the subject; values are its last
+  bool tracked = true;  // false: the sender lost the subject; the values are the last ones
   std::vector<NeutralJoint> joints;
   std::vector<NeutralBlendShape> blend_shapes;
 };
 
-// The skeleton that such a frame implies; rest rotations are identity (foreign wires send none).
+// Makes the skeleton offer for the layout of a frame. Rest rotations are the identity, because
+// foreign protocols send none.
 [[nodiscard]] SkeletonOffer MakeOffer(const NeutralFrame& frame);
 
-// The pose of `frame` against an offer made from a frame of
-// the same layout. Reuses `pose`'s memory.
+// Makes the pose of a frame for an offer that MakeOffer() made from a frame of the same layout.
+// Reuses the memory of `pose`.
 void MakePose(const NeutralFrame& frame, const SkeletonOffer& offer, PoseFrame& pose);
 
 }  // namespace furrow::protocol::mocap

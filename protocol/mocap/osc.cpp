@@ -15,7 +15,7 @@ using Bytes = std::span<const std::uint8_t>;
 constexpr std::string_view kBundleTag("#bundle\0", 8);
 constexpr std::size_t kBundleHeaderBytes = 16;
 
-// Takes a string with its padding off the front.
+// Consumes a string and its padding from the front.
 bool TakeString(Bytes& bytes, std::string_view& text) {
   const auto end = std::find(bytes.begin(), bytes.end(), std::uint8_t{0});
   if (end == bytes.end()) return false;
@@ -68,7 +68,7 @@ bool ReadMessage(Bytes bytes, OscMessage& message) {
   if (!TakeString(bytes, message.address) || !message.address.starts_with('/')) return false;
   message.tags = {};
   message.arguments = {};
-  if (bytes.empty()) return true;  // senders older than type tags: no arguments
+  if (bytes.empty()) return true;  // old senders without type tags: no arguments
   if (!TakeString(bytes, message.tags) || !message.tags.starts_with(',')) return false;
   message.tags.remove_prefix(1);
   message.arguments = bytes;
@@ -82,7 +82,7 @@ bool IsBundle(Bytes bytes) {
          std::memcmp(bytes.data(), kBundleTag.data(), kBundleTag.size()) == 0;
 }
 
-// Walks a packet; with `visit` null it only checks.
+// Walks a packet. Only checks it if `visit` is null.
 class Walker {
  public:
   explicit Walker(const OscVisitor* visit) : visit_(visit) {}

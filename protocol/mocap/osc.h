@@ -8,21 +8,21 @@
 #include <string_view>
 #include <vector>
 
-// Open Sound Control 1.0: big-endian, everything padded to four bytes.
+// Open Sound Control 1.0: big-endian numbers, all elements padded to four bytes.
 namespace furrow::protocol::mocap {
 
 inline constexpr int kMaxOscDepth = 4;        // bundles in bundles
 inline constexpr int kMaxOscMessages = 4096;  // in one packet
 
-// One message inside a packet that was checked: nothing here is copied.
+// One message of a checked packet. Points into the packet.
 struct OscMessage {
   std::string_view address;
-  std::string_view tags;                    // without the comma
-  std::span<const std::uint8_t> arguments;  // as long as `tags` says
+  std::string_view tags;                    // type tags without the comma
+  std::span<const std::uint8_t> arguments;  // their sizes agree with `tags`
 };
 
-// Reads arguments in order. Each call is false, and takes
-// nothing, where the next tag is another type.
+// Reads arguments in order. A call returns false and consumes nothing if the next argument has
+// another type.
 class OscArguments {
  public:
   explicit OscArguments(const OscMessage& message);
@@ -39,15 +39,16 @@ class OscArguments {
 
 enum class OscStatus : std::uint8_t {
   kOk = 0,
-  kMalformed,  // sizes, padding or tags that are not OSC
+  kMalformed,  // sizes, padding or type tags violate OSC
   kTooDeep,
   kTooMany,
 };
 
 using OscVisitor = std::function<void(const OscMessage& message)>;
 
-// Calls `visit` for every message of a packet, bare or in nested bundles, in order; time tags count
-// as immediate. The whole packet is checked first: a malformed one is not visited at all.
+// Calls `visit` for every message of a packet in order. Messages may be bare or in nested bundles;
+// all time tags are treated as immediate. Checks the whole packet first, so no message of a
+// malformed packet is visited.
 [[nodiscard]] OscStatus VisitOsc(std::span<const std::uint8_t> packet, const OscVisitor& visit);
 
 // Appends OSC to a byte vector.
@@ -74,7 +75,7 @@ class OscWriter {
   std::size_t size_at_ = 0;
 };
 
-// Bytes of an OSC string with its terminator and padding.
+// Size of an OSC string with its terminator and padding.
 [[nodiscard]] constexpr std::size_t OscStringBytes(std::size_t length) {
   return (length / 4 + 1) * 4;
 }

@@ -15,26 +15,26 @@ enum class OscProfile : std::uint8_t {
   kVmc,         // /VMC/Ext/Blend/Val ,sf name value ... /VMC/Ext/Blend/Apply ,
 };
 
-// One subject's weights as OSC bundles of at most 1,200 bytes; the last message of the last bundle
-// is the mark that the frame is whole. Does not allocate after SetNames() and a first frame.
+// Writes the weights of one subject as OSC bundles of at most 1,200 bytes. The last message of the
+// last bundle marks the end of the frame. Does not allocate after SetNames() and a first frame.
 class OscWeightWriter {
  public:
   using Emit = std::function<void(std::span<const std::uint8_t> datagram)>;
 
-  // `prefix` without the trailing slash; for kFurrow alone.
+  // `prefix`: start of the addresses without a trailing slash, for kFurrow only.
   explicit OscWeightWriter(OscProfile profile = OscProfile::kFurrow,
                            std::string prefix = "/furrow");
 
-  // Characters that OSC addresses may not have (space # * , / ? [ ] { } and controls) become '_';
-  // UTF-8 beyond ASCII stays, so that subjects of other scripts stay apart.
+  // Replaces the characters that OSC addresses forbid (space # * , / ? [ ] { } and control
+  // characters) by '_'. Keeps non-ASCII UTF-8, so subjects in other scripts stay distinct.
   void SetNames(const std::string& subject, std::span<const std::string> names);
 
-  // Writes min(values, names) messages and the mark. `emit` is called once a datagram.
+  // Writes min(values, names) messages and the end mark. Calls `emit` once per datagram.
   void Write(std::uint32_t sequence, std::int64_t capture_time_us, std::span<const float> values,
              const Emit& emit);
 
  private:
-  // As bundle elements.
+  // Sizes as bundle elements.
   [[nodiscard]] std::size_t MessageBytes(const std::string& address) const;
   [[nodiscard]] std::size_t MarkBytes() const;
 

@@ -6,14 +6,17 @@
 
 namespace furrow::protocol::mocap {
 
-// Turns a sender's clock, which may restart or pass midnight, into one that never runs backwards.
+// Converts a sender's clock, which may restart or pass midnight, to a clock that never runs
+// backwards.
 class SourceClock {
  public:
   enum class Order : std::uint8_t { kNewer, kNotNewer };
 
-  // `source_us` at most `tolerance_us` behind the newest (or equal) is kNotNewer: a straggler.
-  // Further behind, or further ahead than what passed on the receiver's clock by more than
-  // `tolerance_us`, the clock was set anew: time goes on by what passed on the receiver's.
+  // Takes the sender's time `source_us` of a frame that arrived at `now_us`.
+  // - At most `tolerance_us` behind the newest time, or equal: returns kNotNewer, a late frame.
+  // - Further behind, or ahead by more than `tolerance_us` plus the time that passed for the
+  //   receiver: the sender's clock was reset. The output advances by the receiver's time.
+  // - Otherwise the output advances by the sender's time.
   [[nodiscard]] Order Advance(std::int64_t source_us, std::int64_t now_us,
                               std::int64_t tolerance_us) {
     const bool follows = started_ && has_source_;
@@ -33,7 +36,7 @@ class SourceClock {
     return Order::kNewer;
   }
 
-  // A frame without a time of the sender's: time goes on by what passed on the receiver's clock.
+  // Takes a frame without a sender's time. The output advances by the receiver's time.
   void AdvanceByArrival(std::int64_t now_us) {
     time_us_ = started_ ? time_us_ + std::max<std::int64_t>(now_us - arrived_us_, 0) : now_us;
     started_ = true;
@@ -45,10 +48,10 @@ class SourceClock {
 
  private:
   bool started_ = false;
-  bool has_source_ = false;      // newest_us_ counts
-  std::int64_t newest_us_ = 0;   // of the sender
-  std::int64_t arrived_us_ = 0;  // of the receiver, when that came
-  std::int64_t time_us_ = 0;
+  bool has_source_ = false;      // newest_us_ is valid
+  std::int64_t newest_us_ = 0;   // newest frame, on the sender's clock
+  std::int64_t arrived_us_ = 0;  // arrival of that frame, on the receiver's clock
+  std::int64_t time_us_ = 0;     // output
 };
 
 }  // namespace furrow::protocol::mocap

@@ -13,12 +13,12 @@
 namespace furrow::protocol::mocap {
 namespace {
 
-constexpr std::int64_t kRecentUs = 1'000'000;     // a mark of the end counts for this long
-constexpr std::int64_t kStragglerUs = 1'000'000;  // /T further back: the sender restarted
+constexpr std::int64_t kRecentUs = 1'000'000;        // validity of an end mark
+constexpr std::int64_t kMaxClockStepUs = 1'000'000;  // a /T further back means a restart
 
 enum class Read : std::uint8_t { kUsed, kIgnored, kMalformed };
 
-// Position and rotation, from Unity's axes to ours.
+// Reads position and rotation, and converts them from Unity's axes (see vmc.h).
 bool ReadTransform(OscArguments& arguments, Vec3& translation, Quat& rotation) {
   float v[7];
   for (float& value : v) {
@@ -138,10 +138,11 @@ class VmcAdapter final : public MocapAdapter {
     if (!pending_) return Read::kUsed;
     const auto source_us = static_cast<std::int64_t>(std::llround(double{seconds} * 1e6));
     if (source_us == last_source_us_) {
-      // Seconds in 32 bits: after a day or two they stand still for a
-      // frame, and with some senders always.
+      // A 32-bit float of seconds repeats from frame to frame after a day or two. Some senders
+      // always send the same value.
       clock_.AdvanceByArrival(now_us_);
-    } else if (clock_.Advance(source_us, now_us_, kStragglerUs) == SourceClock::Order::kNotNewer) {
+    } else if (clock_.Advance(source_us, now_us_, kMaxClockStepUs) ==
+               SourceClock::Order::kNotNewer) {
       ++counters_.reordered;
       pending_ = false;
       state_.EndFrame();
@@ -209,7 +210,7 @@ class VmcAdapter final : public MocapAdapter {
   std::int64_t now_us_ = 0;
   std::int64_t last_time_us_ = kNever;
   std::int64_t last_apply_us_ = kNever;
-  std::int64_t last_source_us_ = kNever;  // what the last /T said
+  std::int64_t last_source_us_ = kNever;  // time in the last /T
   std::int64_t pending_since_us_ = 0;
   std::optional<std::uint64_t> avatar_hash_;
   bool pending_ = false;

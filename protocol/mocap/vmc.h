@@ -11,25 +11,27 @@ namespace furrow::protocol::mocap {
 inline constexpr std::uint16_t kVmcPort = 39539;
 
 struct VmcOptions {
-  std::string subject = "vmc";       // the wire names nobody
-  std::int64_t timeout_us = 50'000;  // a frame without a mark of its end is given out after this
+  std::string subject = "vmc";       // the protocol does not name the subject
+  std::int64_t timeout_us = 50'000;  // passes on a frame without an end mark after this time
 };
 
-// Virtual Motion Capture Protocol 3.1 as a Marionette: OSC messages, bare or in bundles, to frames.
+// Virtual Motion Capture Protocol 3.1 in the role of a Marionette: converts OSC messages, bare or
+// in bundles, to frames.
 //
-// - End of a frame: /VMC/Ext/T where the sender has sent one within a second, else Blend/Apply,
-//   else the second time a joint comes, else `timeout_us`.
-// - Joints are the 55 humanoid ones under the hierarchy of Unity's HumanBodyBones (a joint whose
-//   usual parent was never sent hangs on the nearest ancestor that was); other names hang on Hips.
-//   The root joint "Root" carries /VMC/Ext/Root/Pos; motion may be in it, in Hips, or in both.
-// - Many senders give zero for all translations but those of Root and Hips: such joints stand at
-//   the distances of an average adult, so that drivers find limbs of some length. The first
-//   translation that is not zero becomes the joint's rest translation.
-// - Blend-shape names match whatever their case; shapes not sent keep their value.
-// - Another avatar (/VMC/Ext/VRM) begins with nothing known: what the last one had is forgotten.
-// - While /VMC/Ext/OK says loaded = 0, frames are dropped as stale.
-// Space: Unity's (left-handed, Y up, Z forward) by M = (-x, y, z), determinant -1: positions
-// (-x, y, z), quaternions (x, -y, -z, w).
+// - A frame ends with /VMC/Ext/T if the sender sent one within the last second, otherwise with
+//   Blend/Apply, otherwise when a joint repeats, otherwise after `timeout_us`.
+// - The 55 humanoid joints have the hierarchy of Unity's HumanBodyBones. If the sender never sent
+//   the parent of a joint, the nearest ancestor that it did send becomes the parent. Joints with
+//   other names become children of Hips. The joint "Root" carries /VMC/Ext/Root/Pos. Locomotion may
+//   be in Root, in Hips or in both.
+// - Many senders send zero for all translations except those of Root and Hips. Such joints get the
+//   offsets of an average adult, because drivers need limbs with a length. The first non-zero
+//   translation of a joint becomes its rest translation.
+// - Blend-shape names are case-insensitive. A blend shape that is not sent keeps its value.
+// - A new avatar (/VMC/Ext/VRM) discards all joints and blend shapes.
+// - Frames are dropped as stale while /VMC/Ext/OK reports loaded = 0.
+// Space: Unity's left-handed axes (Y up, Z forward) are mirrored by M = (-x, y, z), determinant -1.
+// Positions become (-x, y, z) and quaternions (x, -y, -z, w).
 // Source: sh-akira/VirtualMotionCaptureProtocol.
 [[nodiscard]] std::unique_ptr<MocapAdapter> MakeVmcAdapter(const VmcOptions& options = {});
 

@@ -33,7 +33,7 @@ bool IsZero(const Vec3& v) { return v == Vec3{}; }
 VmcState::VmcState(std::string subject) { frame_.subject = std::move(subject); }
 
 int VmcState::FindOrAddJoint(std::string_view name) {
-  // Senders repeat their order: the next slot is nearly always the one.
+  // Senders keep the order of joints from frame to frame, so the next slot nearly always matches.
   if (last_joint_ + 1 < joints_.size() && joints_[last_joint_ + 1].name == name) {
     return static_cast<int>(++last_joint_);
   }
@@ -130,7 +130,7 @@ int VmcState::SlotOfHumanoid(int humanoid) const {
   return -1;
 }
 
-// The nearest ancestor that was sent; the root joint above all.
+// Returns the nearest ancestor that the sender sent. The root joint is the ancestor of all others.
 int VmcState::ParentOf(const Joint& joint) const {
   if (joint.is_root) return -1;
   int ancestor = joint.humanoid < 0
@@ -146,7 +146,8 @@ int VmcState::ParentOf(const Joint& joint) const {
   return root == joints_.end() ? -1 : static_cast<int>(root - joints_.begin());
 }
 
-// Root, then the humanoid joints in the table's order (parents first), then the others.
+// Orders the frame's joints: root, humanoid joints in the order of the table (parents first), then
+// all others.
 void VmcState::Rebuild() {
   order_.resize(joints_.size());
   for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<int>(i);

@@ -10,26 +10,27 @@
 
 namespace furrow::protocol::mocap {
 
-// What a VMC sender has told so far: joints and blend shapes with their newest values, and the
-// frame made of them. Private to the VMC adapter.
+// The state of a VMC sender: its joints and blend shapes with their newest values, and the frame
+// made of them. Private to the VMC adapter.
 class VmcState {
  public:
   explicit VmcState(std::string subject);
 
-  // Slot of a joint by the name on the wire; -1 where the name is not usable or there are too many.
+  // Returns the slot of a joint by its name on the wire, or -1 if the name is unusable or there are
+  // too many joints.
   [[nodiscard]] int FindOrAddJoint(std::string_view name);
   [[nodiscard]] int AddRoot();
-  // True where the joint was set since EndFrame().
+  // True if the joint was set since EndFrame().
   [[nodiscard]] bool HasInFrame(int joint) const;
-  // Keeps the sign of the rotation continuous.
+  // Chooses the sign of the quaternion that is nearer to the previous rotation.
   void SetJoint(int joint, const Vec3& translation, const Quat& rotation);
-  // False where the name is not usable or there are too many.
+  // Returns false if the name is unusable or there are too many blend shapes.
   [[nodiscard]] bool SetBlendShape(std::string_view name, float value);
   void EndFrame();
-  // Forgets all joints and blend shapes; the numbers of frames and layouts go on.
+  // Discards all joints and blend shapes. The numbers of frames and layouts continue.
   void Clear();
 
-  // The frame as it stands, numbered; rebuilt in place, valid until the next call.
+  // Returns the current frame with the next sequence number. Valid until the next call.
   [[nodiscard]] const NeutralFrame& Frame(std::int64_t capture_time_us, bool tracked);
 
  private:
@@ -38,7 +39,7 @@ class VmcState {
     int humanoid = -1;  // index in HumanoidJoints(); -1 for the root and foreign names
     bool is_root = false;
     bool in_frame = false;
-    bool has_length = false;  // a translation other than zero has come
+    bool has_length = false;  // a non-zero translation was received
     Vec3 rest_translation;
     Vec3 translation;
     Quat rotation;
@@ -51,12 +52,12 @@ class VmcState {
   void Rebuild();
 
   std::vector<Joint> joints_;
-  std::vector<int> order_;  // slots, parents first: the frame's joints
+  std::vector<int> order_;  // slots of the frame's joints, parents first
   std::size_t last_joint_ = 0;
   std::size_t last_shape_ = 0;
   bool layout_changed_ = true;
   std::uint32_t next_sequence_ = 0;
-  NeutralFrame frame_;  // holds the blend shapes' newest values
+  NeutralFrame frame_;  // also holds the newest values of the blend shapes
 };
 
 }  // namespace furrow::protocol::mocap

@@ -7,7 +7,7 @@
 #include "protocol/messages/messages.h"
 #include "protocol/vectors/json.h"
 
-// What the JSON beside an example says of its message.
+// Converts messages to the fields of the JSON file beside each example.
 namespace furrow::protocol::vectors {
 
 inline Fields FieldsOf(const Hello& m) {

@@ -10,7 +10,7 @@
 
 #include "protocol/messages/messages.h"
 
-// Messages as JSON text, in the shape that tests/conformance/decode.py prints too.
+// Messages as JSON text, in the same form as tests/conformance/decode.py prints them.
 namespace furrow::protocol::vectors {
 
 using Fields = std::vector<std::pair<std::string, std::string>>;  // name, JSON
@@ -19,21 +19,21 @@ inline std::string Json(bool value) { return value ? "true" : "false"; }
 inline std::string Json(int value) { return std::to_string(value); }
 inline std::string Json(std::int64_t value) { return std::to_string(value); }
 
-// Nine digits give every binary32 back exactly.
+// Nine digits reproduce every binary32 exactly.
 inline std::string Json(float value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.9g", static_cast<double>(value));
   return text;
 }
 
-// As text: many JSON readers keep 53 bits.
+// As a string: many JSON readers keep only 53 bits of a number.
 inline std::string JsonHex(std::uint64_t value) {
   char text[32];
   std::snprintf(text, sizeof text, "\"0x%016" PRIx64 "\"", value);
   return text;
 }
 
-// Plain text (see text.h) needs two escapes alone.
+// Plain text (text.h) has no control characters, so only two characters need an escape.
 inline std::string Json(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the example messages of protocol/vectors: furrow-make-vectors [--check] FOLDER. With
-// --check it writes nothing and fails where a committed file is not what the encoder makes today.
+// Writes the example messages of protocol/vectors. Usage: furrow-make-vectors [--check] FOLDER.
+// --check writes nothing and fails if a committed file differs from the encoder's output.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -43,14 +43,14 @@ std::string Document(const std::string& container, const MessageView& view, cons
          "\n";
 }
 
-// Encodes, decodes and writes both; the JSON is what was decoded, so packed numbers stand as they
-// arrive. An example that does not decode is a fault of this program.
+// Encodes a message, decodes it and adds both files. The JSON states the decoded message, so packed
+// numbers have the values that a receiver gets. Exits if an example does not decode.
 template <class Message, class... Options>
-Bytes Add(Files& files, const std::string& name, const Message& message,
-          const Options&... options) {
+Bytes AddWithHeader(Files& files, const std::string& name, const Header& header,
+                    const Message& message, const Options&... options) {
   Encoder encoder;
   Bytes bytes;
-  encoder.Encode(kHeader, message, bytes, options...);
+  encoder.Encode(header, message, bytes, options...);
   MessageView view;
   Message decoded;
   DecodeStatus status = OpenMessage(bytes, view);
@@ -64,7 +64,13 @@ Bytes Add(Files& files, const std::string& name, const Message& message,
   return bytes;
 }
 
-// Exact to a rounding: sines would tie the files to one C library.
+template <class Message, class... Options>
+Bytes Add(Files& files, const std::string& name, const Message& message,
+          const Options&... options) {
+  return AddWithHeader(files, name, kHeader, message, options...);
+}
+
+// Literal numbers, because sine and cosine would tie the files to one C library.
 constexpr std::array<Quat, 5> kTurns = {{{0.0f, 0.0f, 0.0f, 1.0f},
                                          {0.2f, 0.4f, -0.4f, 0.8f},
                                          {0.5f, -0.5f, 0.5f, -0.5f},
@@ -221,7 +227,7 @@ void AddViewing(Files& files) {
                  5});
 }
 
-// A message in fragments, last first, each datagram after its length as on TCP.
+// A message in fragments. The last fragment is first; a length precedes each datagram, as on TCP.
 void AddFragments(Files& files) {
   Files ignored;
   const Bytes message = Add(ignored, "large", LargeOffer());
@@ -246,8 +252,8 @@ void Refuse(Files& files, const std::string& name, const Bytes& bytes, const std
       Json(Fields{{"container", Json(std::string_view("refuse"))}, {"why", Json(why)}}) + "\n";
 }
 
-// Messages that share a datagram, and bundles that must be refused. The JSON is a list of what its
-// messages would be by themselves.
+// Messages that share a datagram, and bundles that decoders must reject. The JSON lists the
+// messages as if they had been sent alone.
 void AddBundles(Files& files) {
   Files alone;
   const std::vector<std::string> names = {"brow_l.stretch", "brow_l.squash", "nose.squash"};
@@ -282,7 +288,59 @@ void AddBundles(Files& files) {
   refuse("length", bad, "a first message that ends inside the third");
 }
 
-// Each differs from a good message in one place and must be refused.
+// The datagrams of the worked session in STANDARD.md section 13: a publisher sends a skeleton and
+// two poses over UDP, and a subscriber proves its address and receives weights. The order follows
+// the file names.
+void AddSession(Files& files) {
+  constexpr std::uint64_t kPublisher = 0x1111111111111111ULL;
+  constexpr std::uint64_t kSubscriber = 0x2222222222222222ULL;
+  constexpr std::uint64_t kServer = 0x3333333333333333ULL;
+  constexpr std::uint64_t kToken = 0x0123456789abcdefULL;
+  SkeletonOffer offer;
+  offer.subject = "anna";
+  offer.joints.resize(2);
+  offer.joints[0].name = "neck";
+  offer.joints[0].rest_translation = {0.0f, 1.5f, 0.0f};
+  offer.joints[1].name = "head";
+  offer.joints[1].parent = 0;
+  offer.joints[1].rest_translation = {0.0f, 0.125f, 0.0f};
+  PoseFrame pose;
+  pose.skeleton_hash = SkeletonHash(offer);
+  pose.num_joints = 2;
+  pose.rotation_joints = {0, 1};
+  pose.rotations = {kTurns[0], kTurns[0]};
+  const std::vector<std::string> names = {"neck.squash", "neck.stretch"};
+  const auto add = [&files](const std::string& name, const Header& header, const auto& message,
+                            const auto&... options) {
+    AddWithHeader(files, "session_" + name, header, message, options...);
+  };
+  add("01_skeleton_offer", {.session = kPublisher}, offer);
+  add("02_skeleton_reply", {.session = kServer},
+      SkeletonReply{pose.skeleton_hash, SkeletonStatus::kAccepted, {}});
+  add("03_pose", {.session = kPublisher, .capture_time_us = 1'000'000}, pose,
+      PoseEncoding::Small());
+  add("04_hello", {.session = kSubscriber}, Hello{"example/1.0", 0});
+  add("05_welcome", {.session = kServer}, Welcome{"furrowd", kToken});
+  add("06_hello_token", {.session = kSubscriber}, Hello{"example/1.0", kToken});
+  add("07_welcome_proven", {.session = kServer}, Welcome{"furrowd", 0});
+  add("08_subscribe_weights", {.session = kSubscriber, .sequence = 1},
+      SubscribeWeights{.subject = "anna", .pattern = "neck.*", .format = WeightFormat::kU8});
+  add("09_subscribe_reply", {.session = kServer, .stream = 1, .sequence = 1},
+      SubscribeReply{"anna", 0, names});
+  // The turn that makes the neck bend: 0.6 is the sine of half the angle, 0.8 its cosine.
+  pose.partial = true;
+  pose.rotation_joints = {0};
+  pose.rotations = {{0.6f, 0.0f, 0.0f, 0.8f}};
+  add("10_pose_partial", {.session = kPublisher, .sequence = 1, .capture_time_us = 1'016'667}, pose,
+      PoseEncoding::Small());
+  add("11_weights", {.session = kServer, .stream = 1, .sequence = 1, .capture_time_us = 1'016'667},
+      WeightFrame{NamesHash(names), 0, WeightFormat::kU8, {0.6f, 0.0f}});
+  add("12_goodbye", {.session = kPublisher, .sequence = 2}, Goodbye{});
+  add("13_goodbye_subject", {.session = kServer, .stream = 1, .sequence = 1},
+      Goodbye{GoodbyeReason::kSubjectGone});
+}
+
+// Messages that decoders must reject. Each differs from a good message in one place.
 void AddRefused(Files& files) {
   const Bytes pose = Add(files, "pose", SmallPose());
   const auto add = [&files](const std::string& name, const Bytes& bytes, const std::string& why) {
@@ -330,11 +388,10 @@ int Check(const std::filesystem::path& folder, const Files& files) {
     std::ifstream in(folder / name, std::ios::binary);
     const std::string found{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     if (found == content) continue;
-    std::cerr << name << (in.is_open() ? " differs from" : " is missing, but is")
-              << " what the encoder makes\n";
+    std::cerr << name << (in.is_open() ? ": differs from the encoder's output\n" : ": missing\n");
     ++wrong;
   }
-  std::cout << files.size() << " files compared, " << wrong << " wrong\n";
+  std::cout << files.size() << " files compared, " << wrong << " faults\n";
   return wrong == 0 ? 0 : 1;
 }
 
@@ -342,7 +399,7 @@ int Write(const std::filesystem::path& folder, const Files& files) {
   for (const auto& [name, content] : files) {
     std::ofstream out(folder / name, std::ios::binary);
     if (!(out << content << std::flush)) {
-      std::cerr << (folder / name).string() << ": cannot write\n";
+      std::cerr << (folder / name).string() << ": cannot write the file\n";
       return 1;
     }
   }
@@ -364,6 +421,7 @@ int Run(std::span<char* const> arguments) {
   AddViewing(files);
   AddFragments(files);
   AddBundles(files);
+  AddSession(files);
   AddRefused(files);
   return check ? Check(arguments[2], files) : Write(arguments[1], files);
 }

@@ -38,7 +38,7 @@ Result<std::unique_ptr<Player>> Player::Load(const std::filesystem::path& path) 
   }
   clip->name = path.stem().string();
   auto player = std::make_unique<Player>(*std::move(clip), path.filename().string());
-  if (std::string why = protocol::WhyUnsendable(player->offer_); !why.empty()) {
+  if (std::string why = protocol::FindOfferProblem(player->offer_); !why.empty()) {
     return Status(StatusCode::kInvalidArgument, "the skeleton cannot be offered: " + why,
                   path.string());
   }

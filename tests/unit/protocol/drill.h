@@ -7,13 +7,13 @@
 #include <span>
 #include <vector>
 
-// The hostile-input drill, shared by all parsers of the wire.
+// Hostile inputs for every parser of the wire.
 namespace furrow::protocol::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// Calls `parse` with every proper prefix of `good`, each in a heap block of exactly its size, so
-// that a sanitizer sees the first byte read beyond the end.
+// Calls `parse` with every proper prefix of `good`. Each prefix has a heap block of exactly its
+// size, so a sanitizer detects the first byte read beyond the end.
 template <class Parse>
 void ForEveryTruncation(std::span<const std::uint8_t> good, const Parse& parse) {
   for (std::size_t size = 0; size < good.size(); ++size) {
@@ -23,7 +23,7 @@ void ForEveryTruncation(std::span<const std::uint8_t> good, const Parse& parse) 
   }
 }
 
-// Calls `parse` with `good` after each single byte was replaced by each of a few telling values.
+// Calls `parse` with variants of `good`. Each variant has one byte replaced by an edge value.
 template <class Parse>
 void ForEveryCorruption(std::span<const std::uint8_t> good, const Parse& parse) {
   for (std::size_t at = 0; at < good.size(); ++at) {

@@ -3,18 +3,19 @@
 
 #include "protocol/codec/codec.h"
 
-// Messages that several tests use.
+// Messages for several tests.
 namespace furrow::protocol::test {
 
 inline constexpr Header kHeader{0xfeedULL, 7, 11, 123'456'789};
 
-// A chain of joints with tails and blend shapes.
+// Makes a chain of joints with tails and blend shapes.
 [[nodiscard]] SkeletonOffer MakeOffer(int num_joints, int num_blend_shapes);
 
-// A pose of that skeleton from a seed: all rotations, all translations within 5 cm, all shapes.
+// Makes a random pose of that skeleton: all rotations, translations within 5 cm, blend shapes.
 [[nodiscard]] PoseFrame MakePose(int num_joints, int num_blend_shapes, std::uint32_t seed);
 
-// Radians between two rotations; the distance of unit quaternions keeps digits that a cosine loses.
+// Angle between two rotations in radians. The distance of unit quaternions is more accurate than
+// the arc cosine for small angles.
 [[nodiscard]] double AngleBetween(const Quat& a, const Quat& b);
 
 template <class Message, class... Options>

@@ -16,7 +16,7 @@ namespace {
 using test::Encoded;
 using test::OpenAndDecode;
 
-// Decodes `bytes` as whatever kind it claims to be.
+// Decodes `bytes` as the kind that its identifier states.
 DecodeStatus DecodeAny(std::span<const std::uint8_t> bytes) {
   MessageView view;
   const DecodeStatus status = OpenMessage(bytes, view);
@@ -79,7 +79,7 @@ std::vector<test::Bytes> OneOfEach() {
           Encoded(ImageFrame{4, 3, ImageFormat::kPng, 0, {1, 2, 3}})};
 }
 
-TEST(Codec, EveryKindIsRecognised) {
+TEST(Codec, RecognisesEveryKind) {
   std::set<MessageKind> kinds;
   for (const test::Bytes& bytes : OneOfEach()) {
     MessageView view;
@@ -91,7 +91,7 @@ TEST(Codec, EveryKindIsRecognised) {
   EXPECT_EQ(kinds.size(), 21u);
 }
 
-TEST(Codec, NoTruncationIsAccepted) {
+TEST(Codec, RejectsEveryTruncation) {
   for (const test::Bytes& bytes : OneOfEach()) {
     test::ForEveryTruncation(bytes, [](std::span<const std::uint8_t> cut) {
       EXPECT_NE(DecodeAny(cut), DecodeStatus::kOk) << cut.size();
@@ -99,8 +99,8 @@ TEST(Codec, NoTruncationIsAccepted) {
   }
 }
 
-// The payload size made to agree with the cut, so that FlatBuffers' own lengths are what lies.
-TEST(Codec, NoTruncationWithAnAgreeingEnvelopeIsReadBeyond) {
+// The payload size is changed to match the cut, so that only lengths inside FlatBuffers are wrong.
+TEST(Codec, NeverReadsBeyondATruncationWithMatchingEnvelope) {
   for (const test::Bytes& bytes : OneOfEach()) {
     test::ForEveryTruncation(bytes, [](std::span<const std::uint8_t> cut) {
       if (cut.size() < kEnvelopeBytes) return;
@@ -116,8 +116,8 @@ TEST(Codec, NoTruncationWithAnAgreeingEnvelopeIsReadBeyond) {
   }
 }
 
-// So that the difference of any two does not overflow.
-TEST(Codec, CaptureTimesAreBounded) {
+// The difference of any two capture times must not overflow.
+TEST(Codec, BoundsCaptureTimes) {
   constexpr std::int64_t kBound = std::int64_t{1} << 62;
   const auto status = [](std::int64_t time) {
     test::Bytes bytes;
@@ -132,14 +132,14 @@ TEST(Codec, CaptureTimesAreBounded) {
   }
 }
 
-TEST(Codec, ExtraBytesAreRefused) {
+TEST(Codec, RejectsExtraBytes) {
   for (test::Bytes bytes : OneOfEach()) {
     bytes.push_back(0);
     EXPECT_EQ(DecodeAny(bytes), DecodeStatus::kBadLength);
   }
 }
 
-TEST(Codec, CorruptedBytesAreDecodedOrRefusedButNothingElse) {
+TEST(Codec, DecodesOrRejectsCorruptedBytes) {
   std::size_t refused = 0;
   for (const test::Bytes& bytes : OneOfEach()) {
     test::ForEveryCorruption(bytes, [&refused](std::span<const std::uint8_t> bad) {
@@ -149,7 +149,7 @@ TEST(Codec, CorruptedBytesAreDecodedOrRefusedButNothingElse) {
   EXPECT_GT(refused, 1000u);
 }
 
-TEST(Codec, UnalignedBytesDecodeAlike) {
+TEST(Codec, DecodesUnalignedBytes) {
   for (const test::Bytes& bytes : OneOfEach()) {
     for (std::size_t shift = 1; shift < 8; ++shift) {
       test::Bytes shifted(bytes.size() + shift);
@@ -159,7 +159,7 @@ TEST(Codec, UnalignedBytesDecodeAlike) {
   }
 }
 
-TEST(Codec, FragmentsLimitsAndStrangersAreRefused) {
+TEST(Codec, RejectsFragmentsOversizeAndUnknownKinds) {
   test::Bytes bytes = Encoded(Ping{1});
   MessageView view;
   EXPECT_EQ(OpenMessage(bytes, view, bytes.size() - 1), DecodeStatus::kBadLength);
@@ -172,7 +172,7 @@ TEST(Codec, FragmentsLimitsAndStrangersAreRefused) {
   EXPECT_EQ(OpenAndDecode(Encoded(Ping{1}), pong), DecodeStatus::kWrongKind);
 }
 
-TEST(Codec, EveryStatusAndKindHasANameOfItsOwn) {
+TEST(Codec, EveryStatusAndKindHasAUniqueName) {
   std::set<std::string_view> names;
   for (int i = 0; i < kNumDecodeStatuses; ++i) {
     names.insert(DecodeStatusName(static_cast<DecodeStatus>(i)));
@@ -182,7 +182,7 @@ TEST(Codec, EveryStatusAndKindHasANameOfItsOwn) {
   EXPECT_EQ(MessageKindName(MessageKind::kPose), "pose");
 }
 
-TEST(Codec, PoseAndWeightsDoNotAllocateOnceWarm) {
+TEST(Codec, PoseAndWeightsDoNotAllocateAfterWarmUp) {
   Encoder encoder;
   test::Bytes bytes;
   PoseFrame pose;
@@ -195,7 +195,7 @@ TEST(Codec, PoseAndWeightsDoNotAllocateOnceWarm) {
       for (const PoseFrame* message : {&full, &partial}) {
         encoder.Encode(test::kHeader, *message, bytes, encoding);
         ASSERT_EQ(OpenAndDecode(bytes, pose), DecodeStatus::kOk);
-        // From an odd address, as a copy in this thread's own memory.
+        // An odd address makes the decoder copy to thread-local memory.
         bytes.insert(bytes.begin(), 0);
         ASSERT_EQ(OpenAndDecode(std::span(bytes).subspan(1), pose), DecodeStatus::kOk);
       }

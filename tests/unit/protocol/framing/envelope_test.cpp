@@ -14,7 +14,7 @@ std::array<std::uint8_t, kEnvelopeBytes> Good() {
   return bytes;
 }
 
-TEST(Envelope, StandsByteForByteAsInTheStandard) {
+TEST(Envelope, BytesMatchTheStandard) {
   const std::array<std::uint8_t, kEnvelopeBytes> expected = {
       'F',  'R',  'R',  'W',  1,    0,    0xAA, 0x99, 0x88, 0x77, 0x66,
       0x55, 0x44, 0x33, 0x22, 0x11, 0xEE, 0xDD, 0xCC, 0xBB, 0x04, 0x03,
@@ -22,14 +22,14 @@ TEST(Envelope, StandsByteForByteAsInTheStandard) {
   EXPECT_EQ(Good(), expected);
 }
 
-TEST(Envelope, ComesBack) {
+TEST(Envelope, RoundTrip) {
   Envelope envelope;
   ASSERT_EQ(ReadEnvelope(Good(), envelope), EnvelopeStatus::kOk);
   EXPECT_EQ(envelope.header, (Header{0x1122334455667788ULL, 0x99AA, 0xBBCCDDEE, -2}));
   EXPECT_EQ(envelope.payload_bytes, 0x01020304u);
 }
 
-TEST(Envelope, RefusesOneFaultAtATime) {
+TEST(Envelope, RejectsEachFault) {
   Envelope envelope;
   const auto read_with = [&envelope](std::size_t at, std::uint8_t value) {
     auto bytes = Good();

@@ -35,7 +35,7 @@ class Fragments : public ::testing::Test {
   std::span<const std::uint8_t> message_;
 };
 
-TEST_F(Fragments, SmallMessagesTravelAsTheyAre) {
+TEST_F(Fragments, SmallMessageIsOneDatagram) {
   const Bytes ping = test::Encoded(Ping{1});
   ASSERT_EQ(NumDatagrams(ping.size()), 1u);
   EXPECT_EQ(Split(ping, 9).front(), ping);
@@ -43,7 +43,7 @@ TEST_F(Fragments, SmallMessagesTravelAsTheyAre) {
   EXPECT_EQ(Bytes(message_.begin(), message_.end()), ping);
 }
 
-TEST_F(Fragments, ComeTogetherInAnyOrderDespiteDuplicates) {
+TEST_F(Fragments, ReassembleInAnyOrderDespiteDuplicates) {
   const Bytes message = LargeMessage();
   std::vector<Bytes> datagrams = Split(message, 9);
   ASSERT_GT(datagrams.size(), 5u);
@@ -64,7 +64,7 @@ TEST_F(Fragments, ComeTogetherInAnyOrderDespiteDuplicates) {
   }
 }
 
-TEST_F(Fragments, OfDifferentPeersAndMessagesDoNotMix) {
+TEST_F(Fragments, PeersAndMessagesDoNotMix) {
   const std::vector<Bytes> first = Split(LargeMessage(), 1);
   const std::vector<Bytes> second = Split(LargeMessage(), 2);
   for (std::size_t i = 0; i + 1 < first.size(); ++i) {
@@ -78,7 +78,7 @@ TEST_F(Fragments, OfDifferentPeersAndMessagesDoNotMix) {
   EXPECT_EQ(reassembler_.pending_messages(), 0u);
 }
 
-TEST_F(Fragments, NumbersThatLieAreMalformed) {
+TEST_F(Fragments, RejectContradictoryNumbers) {
   const Bytes good = Split(LargeMessage(), 1).front();
   const auto with = [&](std::size_t at, std::uint8_t value) {
     Bytes bad = good;
@@ -103,7 +103,7 @@ TEST_F(Fragments, NumbersThatLieAreMalformed) {
   EXPECT_EQ(reassembler_.pending_messages(), 0u);
 }
 
-TEST_F(Fragments, OfAnotherEnvelopeAreMalformed) {
+TEST_F(Fragments, RejectDifferingEnvelope) {
   const std::vector<Bytes> datagrams = Split(LargeMessage(), 1);
   ASSERT_EQ(Push(datagrams[0]), FragmentStatus::kPending);
   Bytes other = datagrams[1];
@@ -112,15 +112,15 @@ TEST_F(Fragments, OfAnotherEnvelopeAreMalformed) {
   EXPECT_EQ(Push(datagrams[1]), FragmentStatus::kPending);
 }
 
-TEST_F(Fragments, MemoryIsBoundedAPeerAndOverall) {
+TEST_F(Fragments, MemoryIsBoundedPerPeerAndInTotal) {
   const Bytes message = LargeMessage();
   for (std::uint32_t id = 0; id < 100; ++id) (void)Push(Split(message, id).front(), 1, id);
   EXPECT_EQ(reassembler_.pending_messages(), ReassemblyLimits{}.max_pending_per_peer);
-  // The oldest gave way: the newest still completes.
+  // The oldest message was dropped; the newest one still completes.
   const std::vector<Bytes> newest = Split(message, 99);
   for (std::size_t i = 1; i + 1 < newest.size(); ++i) (void)Push(newest[i], 1, 200);
   EXPECT_EQ(Push(newest.back(), 1, 200), FragmentStatus::kComplete);
-  // Beginnings from everywhere push each other out; who sends all pieces still comes through.
+  // First fragments from many peers evict each other. A complete message still gets through.
   for (std::uint64_t peer = 10; peer < 5000; ++peer) {
     ASSERT_EQ(Push(newest.front(), peer, 300), FragmentStatus::kPending);
     ASSERT_LE(reassembler_.pending_bytes(), ReassemblyLimits{}.max_total_bytes);
@@ -128,12 +128,12 @@ TEST_F(Fragments, MemoryIsBoundedAPeerAndOverall) {
   for (std::size_t i = 0; i + 1 < newest.size(); ++i) (void)Push(newest[i], 1, 300);
   EXPECT_EQ(Push(newest.back(), 1, 300), FragmentStatus::kComplete);
   EXPECT_EQ(Bytes(message_.begin(), message_.end()), message);
-  // Begun: 100 of the one peer, 4,990 of others, one more; two were completed.
+  // Started: 100 messages of one peer, 4,990 of others and one more. Completed: two.
   const std::size_t left = reassembler_.pending_messages();
   EXPECT_EQ(reassembler_.Expire(300), 100u + 4990u + 1u - 2u - left);
 }
 
-TEST(ReassemblerLimits, AMessageThatCanNeverFitIsRefused) {
+TEST(ReassemblerLimits, RejectsAMessageAboveTheTotal) {
   Reassembler small({.max_total_bytes = 2000});
   std::span<const std::uint8_t> message;
   EXPECT_EQ(small.Push(1, Split(LargeMessage(), 1).front(), 0, message),
@@ -141,7 +141,7 @@ TEST(ReassemblerLimits, AMessageThatCanNeverFitIsRefused) {
   EXPECT_EQ(small.pending_bytes(), 0u);
 }
 
-TEST_F(Fragments, OldOnesAreForgotten) {
+TEST_F(Fragments, OldMessagesExpire) {
   const std::vector<Bytes> datagrams = Split(LargeMessage(), 1);
   (void)Push(datagrams[0], 1, 0);
   (void)Push(datagrams[0], 2, 900'000);

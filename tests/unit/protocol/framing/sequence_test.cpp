@@ -8,7 +8,7 @@ namespace {
 
 using enum SequenceStatus;
 
-TEST(SequenceWindow, TakesNewerOnesAndCountsWhatIsMissing) {
+TEST(SequenceWindow, AcceptsNewerPosesAndCountsLostOnes) {
   SequenceWindow window;
   EXPECT_EQ(window.Accept(1, 5), kRestart);
   EXPECT_EQ(window.Accept(1, 6), kNewest);
@@ -32,7 +32,7 @@ TEST(SequenceWindow, WrapsAround) {
   EXPECT_EQ(window.lost(), 0u);
 }
 
-TEST(SequenceWindow, ASenderThatRestartsIsWelcomeAndItsStragglersAreNot) {
+TEST(SequenceWindow, AcceptsARestartAndRejectsTheOldSession) {
   SequenceWindow window;
   EXPECT_EQ(window.Accept(1, 5000), kRestart);
   EXPECT_EQ(window.Accept(2, 0), kRestart);
@@ -41,15 +41,15 @@ TEST(SequenceWindow, ASenderThatRestartsIsWelcomeAndItsStragglersAreNot) {
   EXPECT_EQ(window.session(), 2u);
 }
 
-TEST(SequenceWindow, FarBehindIsLateAndNeverSetsTheWindowBack) {
+TEST(SequenceWindow, OldSequenceIsLateAndKeepsTheWindow) {
   SequenceWindow window;
   (void)window.Accept(1, 100'000);
   EXPECT_EQ(window.Accept(1, 0), kLate);
   EXPECT_EQ(window.newest(), 100'000u);
 }
 
-// Against the plainest model: the set of all that came.
-TEST(SequenceWindow, TellsEveryDuplicateWithinTheWindow) {
+// Compares with a simple model: the set of all received sequences.
+TEST(SequenceWindow, DetectsEveryDuplicateInTheWindow) {
   SequenceWindow window;
   std::vector<bool> seen(20'000);
   std::uint32_t newest = 0;

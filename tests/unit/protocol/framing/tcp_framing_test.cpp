@@ -25,7 +25,7 @@ Bytes Framed(const std::vector<Bytes>& messages) {
   return stream;
 }
 
-// Feeds `stream` in pieces of `step` bytes, each in a block of its own.
+// Feeds `stream` in pieces of `step` bytes, each in its own heap block.
 std::vector<Bytes> ReadAll(const Bytes& stream, std::size_t step) {
   FrameReader reader(kMaxRequestBytes);
   std::vector<Bytes> frames;
@@ -44,7 +44,7 @@ std::vector<Bytes> ReadAll(const Bytes& stream, std::size_t step) {
   return frames;
 }
 
-TEST(FrameReader, CutsWhateverThePieces) {
+TEST(FrameReader, SplitsPiecesOfAnySize) {
   const std::vector<Bytes> messages = {test::Encoded(Ping{1}),
                                        test::Encoded(test::MakeOffer(100, 5)),
                                        test::Encoded(Unsubscribe{}), test::Encoded(Pong{1, 2})};
@@ -54,7 +54,7 @@ TEST(FrameReader, CutsWhateverThePieces) {
   }
 }
 
-TEST(FrameReader, HalfAFrameIsNone) {
+TEST(FrameReader, WaitsForTheWholeFrame) {
   const Bytes stream = Framed({test::Encoded(Ping{1})});
   test::ForEveryTruncation(stream, [](std::span<const std::uint8_t> cut) {
     FrameReader reader(kMaxRequestBytes);
@@ -64,7 +64,7 @@ TEST(FrameReader, HalfAFrameIsNone) {
   });
 }
 
-TEST(FrameReader, LengthsOutOfRangeEndIt) {
+TEST(FrameReader, StopsAtALengthOutOfRange) {
   for (const std::size_t length : {std::size_t{0}, kEnvelopeBytes - 1, std::size_t{1001}}) {
     FrameReader reader(1000);
     const auto prefix = FramePrefix(length);
@@ -77,7 +77,7 @@ TEST(FrameReader, LengthsOutOfRangeEndIt) {
   }
 }
 
-TEST(FrameReader, AClaimedLengthTakesNoMemory) {
+TEST(FrameReader, ClaimedLengthTakesNoMemory) {
   FrameReader reader(kMaxReplyBytes);
   const auto prefix = FramePrefix(kMaxReplyBytes);
   std::span<const std::uint8_t> bytes(prefix);

@@ -8,7 +8,7 @@
 namespace furrow::protocol {
 namespace {
 
-// FNV-1a's published test vectors (Landon Curt Noll): with the string's own zero byte.
+// Published FNV-1a test vectors (Landon Curt Noll) that include the zero byte of the string.
 TEST(Hash, AgreesWithPublishedVectors) {
   EXPECT_EQ(Hasher().value(), 0xcbf29ce484222325ULL);
   Hasher empty;
@@ -19,14 +19,14 @@ TEST(Hash, AgreesWithPublishedVectors) {
   EXPECT_EQ(foobar.value(), 0x34531ca7168b8f38ULL);
 }
 
-TEST(Hash, NamesAreToldApart) {
+TEST(Hash, DistinguishesNames) {
   const std::vector<std::string> ab_c = {"ab", "c"};
   const std::vector<std::string> a_bc = {"a", "bc"};
   EXPECT_NE(NamesHash(ab_c), NamesHash(a_bc));
   EXPECT_EQ(NamesHash({}), 0u);
 }
 
-TEST(Hash, EveryPartOfASkeletonCountsButTheSubject) {
+TEST(Hash, CoversEverythingButTheSubject) {
   const SkeletonOffer base = test::MakeOffer(4, 2);
   const std::uint64_t hash = SkeletonHash(base);
   const auto with = [&base](const auto& change) {

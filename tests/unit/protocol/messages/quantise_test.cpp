@@ -13,7 +13,7 @@
 namespace furrow::protocol {
 namespace {
 
-TEST(Quantise, RotationsStayWithinTheStatedError) {
+TEST(Quantise, RotationsStayWithinStatedError) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   double worst = 0.0;
@@ -33,7 +33,7 @@ TEST(Quantise, RotationsStayWithinTheStatedError) {
   EXPECT_GE(worst, 0.5 * kMaxRotationError) << "the stated bound is far from tight";
 }
 
-TEST(Quantise, TheNeutralRotationIsExact) {
+TEST(Quantise, IdentityIsExact) {
   for (const Quat& q : {Quat{0, 0, 0, 1}, Quat{1, 0, 0, 0}, Quat{0, 1, 0, 0}, Quat{0, 0, 1, 0}}) {
     Quat back;
     ASSERT_TRUE(UnpackQuat(PackQuat(q), back));
@@ -43,7 +43,7 @@ TEST(Quantise, TheNeutralRotationIsExact) {
   }
 }
 
-TEST(Quantise, BitsThatAreNoRotationAreRefused) {
+TEST(Quantise, RejectsBitsThatAreNotARotation) {
   Quat q;
   const PackedQuat identity = PackQuat({0, 0, 0, 1});
   EXPECT_FALSE(
@@ -66,7 +66,7 @@ TEST(Quantise, OffsetsAndShapesStayWithinHalfAStep) {
   EXPECT_EQ(PackBlendShape(-7.0f), -32767);
 }
 
-TEST(Quantise, WeightsStayWithinHalfAStepAndKeepTheirEnds) {
+TEST(Quantise, WeightsStayWithinHalfAStepAndKeepEnds) {
   for (int i = 0; i <= 1000; ++i) {
     const float value = static_cast<float>(i) / 1000.0f;
     EXPECT_NEAR(UnpackWeight(PackWeight(value)), value, 1.0f / 510 * 1.001f);

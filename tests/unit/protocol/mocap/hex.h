@@ -7,7 +7,7 @@
 
 namespace furrow::protocol::test {
 
-// "2F56 4D" to bytes; spaces do not count.
+// Converts "2F56 4D" to bytes. Ignores spaces.
 [[nodiscard]] inline Bytes FromHex(std::string_view text) {
   const auto digit = [](char c) { return c <= '9' ? c - '0' : c - 'A' + 10; };
   Bytes bytes;

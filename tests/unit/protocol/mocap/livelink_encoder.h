@@ -8,7 +8,7 @@
 
 namespace furrow::protocol::test {
 
-// A Live Link Face datagram as the layout on paper says it; shares nothing with the decoder.
+// Writes Live Link Face datagrams from the documented layout. Shares no code with the decoder.
 struct LiveLinkPacket {
   int version = 6;
   std::string device = "8E5C3A10-1B2F-4D3E-9A77-0123456789AB";  // 36 characters

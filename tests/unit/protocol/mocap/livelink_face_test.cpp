@@ -28,15 +28,15 @@ class LiveLinkFace : public ::testing::Test {
   std::vector<NeutralFrame> frames_;
 };
 
-// The sizes of the real capture: 319 bytes with a face, 74 without.
-TEST_F(LiveLinkFace, TheEncoderMakesTheSizesOfARealCapture) {
+// Sizes in a real capture: 319 bytes with a face, 74 without.
+TEST_F(LiveLinkFace, TestEncoderMatchesCapturedSizes) {
   LiveLinkPacket packet;
   EXPECT_EQ(packet.Encode().size(), 319u);
   packet.values.clear();
   EXPECT_EQ(packet.Encode().size(), 74u);
 }
 
-TEST_F(LiveLinkFace, NamesStandAtTheirPlaces) {
+TEST_F(LiveLinkFace, NamesAreInWireOrder) {
   const std::map<int, std::string_view> places = {
       {0, "EyeBlinkLeft"}, {6, "EyeWideLeft"},     {7, "EyeBlinkRight"}, {13, "EyeWideRight"},
       {14, "JawForward"},  {15, "JawLeft"},        {16, "JawRight"},     {17, "JawOpen"},
@@ -48,7 +48,7 @@ TEST_F(LiveLinkFace, NamesStandAtTheirPlaces) {
   }
 }
 
-TEST_F(LiveLinkFace, AFaceBecomesAFrame) {
+TEST_F(LiveLinkFace, FaceBecomesAFrame) {
   LiveLinkPacket packet;
   for (int i = 0; i < 61; ++i)
     packet.values[static_cast<std::size_t>(i)] = 0.01f * static_cast<float>(i);
@@ -64,7 +64,7 @@ TEST_F(LiveLinkFace, AFaceBecomesAFrame) {
   EXPECT_EQ(frame.capture_time_us, std::llround((1'234'567 + 0.25) / 60.0 * 1e6));
 }
 
-TEST_F(LiveLinkFace, WithoutAFaceTheLastValuesStandUntracked) {
+TEST_F(LiveLinkFace, NoFaceKeepsLastValuesUntracked) {
   LiveLinkPacket packet;
   packet.values[17] = 0.5f;
   Push(packet);
@@ -77,7 +77,7 @@ TEST_F(LiveLinkFace, WithoutAFaceTheLastValuesStandUntracked) {
   EXPECT_EQ(frames_[1].sequence, 1u);
 }
 
-TEST_F(LiveLinkFace, StragglersAreDroppedAndMidnightPasses) {
+TEST_F(LiveLinkFace, DropsLateFramesAndPassesMidnight) {
   LiveLinkPacket packet;
   Push(packet, 0);
   Push(packet, 0);
@@ -94,7 +94,7 @@ TEST_F(LiveLinkFace, StragglersAreDroppedAndMidnightPasses) {
               1e6 / 60, 1);
 }
 
-TEST_F(LiveLinkFace, PhonesAreToldApart) {
+TEST_F(LiveLinkFace, DistinguishesPhones) {
   LiveLinkPacket anna;
   LiveLinkPacket other = anna;
   other.device[0] = '7';
@@ -106,7 +106,7 @@ TEST_F(LiveLinkFace, PhonesAreToldApart) {
   EXPECT_EQ(counters().reordered, 0u);
 }
 
-TEST_F(LiveLinkFace, SubjectsAreBounded) {
+TEST_F(LiveLinkFace, BoundsSubjects) {
   LiveLinkPacket packet;
   for (int i = 0; i < 40; ++i) {
     packet.subject = "subject_" + std::to_string(i);
@@ -121,7 +121,7 @@ TEST_F(LiveLinkFace, SubjectsAreBounded) {
   EXPECT_EQ(counters().accepted, 41u) << "forgotten, so new";
 }
 
-TEST_F(LiveLinkFace, MalformedPacketsAreCountedAndChangeNothing) {
+TEST_F(LiveLinkFace, CountsMalformedPacketsAndKeepsState) {
   std::uint64_t expected = 0;
   const auto refuse = [&](const auto& change) {
     LiveLinkPacket packet;
@@ -149,7 +149,7 @@ TEST_F(LiveLinkFace, MalformedPacketsAreCountedAndChangeNothing) {
   EXPECT_TRUE(frames_.empty());
 }
 
-TEST_F(LiveLinkFace, TheDrill) {
+TEST_F(LiveLinkFace, SurvivesTruncationAndCorruption) {
   const test::Bytes good = LiveLinkPacket{}.Encode();
   std::size_t cuts = 0;
   test::ForEveryTruncation(good, [&](std::span<const std::uint8_t> cut) {
@@ -160,7 +160,7 @@ TEST_F(LiveLinkFace, TheDrill) {
   test::ForEveryCorruption(good, [this](std::span<const std::uint8_t> bad) { PushBytes(bad); });
 }
 
-TEST_F(LiveLinkFace, DoesNotAllocateOnceWarm) {
+TEST_F(LiveLinkFace, DoesNotAllocateAfterWarmUp) {
   std::vector<test::Bytes> packets;
   LiveLinkPacket packet;
   for (int i = 0; i < 10; ++i, ++packet.frame) packets.push_back(packet.Encode());

@@ -25,7 +25,7 @@ std::vector<float> Values(int count) {
   return values;
 }
 
-TEST(OscWeightWriter, EveryWeightArrivesInBoundedBundlesAndTheMarkIsLast) {
+TEST(OscWeightWriter, WritesEveryWeightInBoundedBundlesAndTheMarkLast) {
   OscWeightWriter writer;
   writer.SetNames("anna b", Names(100));
   std::vector<test::Bytes> datagrams;
@@ -56,7 +56,7 @@ TEST(OscWeightWriter, EveryWeightArrivesInBoundedBundlesAndTheMarkIsLast) {
   EXPECT_EQ(heard["/furrow/anna_b/region_64.squash"], 0.125f);
 }
 
-TEST(OscWeightWriter, TheVmcProfileIsWhatAVmcReceiverTakes) {
+TEST(OscWeightWriter, VmcProfileSuitsVmcReceivers) {
   OscWeightWriter writer(OscProfile::kVmc);
   writer.SetNames("anna", Names(60));
   const auto receiver = MakeVmcAdapter();
@@ -72,7 +72,7 @@ TEST(OscWeightWriter, TheVmcProfileIsWhatAVmcReceiverTakes) {
   EXPECT_EQ(receiver->counters().malformed, 0u);
 }
 
-TEST(OscWeightWriter, ForbiddenCharactersDoNotReachTheAddress) {
+TEST(OscWeightWriter, ReplacesForbiddenCharacters) {
   OscWeightWriter writer(OscProfile::kFurrow, "/w");
   writer.SetNames("a/b#*", std::vector<std::string>{"x,y?[z]{q}"});
   writer.Write(0, 0, Values(1), [](std::span<const std::uint8_t> datagram) {
@@ -83,7 +83,7 @@ TEST(OscWeightWriter, ForbiddenCharactersDoNotReachTheAddress) {
   });
 }
 
-TEST(OscWeightWriter, DoesNotAllocateOnceWarm) {
+TEST(OscWeightWriter, DoesNotAllocateAfterWarmUp) {
   OscWeightWriter writer;
   writer.SetNames("anna", Names(100));
   const std::vector<float> values = Values(100);

@@ -35,7 +35,7 @@ Bytes Bundle(const std::vector<Bytes>& elements) {
   return bytes;
 }
 
-// Byte vectors that Debian's oscdump decoded and oscsend emitted.
+// Byte vectors from Debian's oscsend, verified with oscdump.
 const char* const kBlendValue =
     "2F564D43 2F457874 2F426C65 6E642F56 616C0000 2C736600 41000000 3F000000";
 const char* const kBlendApply = "2F564D43 2F457874 2F426C65 6E642F41 70706C79 00000000 2C000000";
@@ -84,7 +84,7 @@ TEST(Osc, WritesKnownVectors) {
   EXPECT_EQ(bytes, Bundle({FromHex(kBlendApply), FromHex(kBlendApply)}));
 }
 
-TEST(Osc, BundlesNestToADepth) {
+TEST(Osc, LimitsBundleDepth) {
   Bytes packet = FromHex(kBlendApply);
   for (int depth = 1; depth <= kMaxOscDepth; ++depth) {
     packet = Bundle({packet, FromHex(kBlendValue)});
@@ -93,7 +93,7 @@ TEST(Osc, BundlesNestToADepth) {
   EXPECT_EQ(Visit(Bundle({packet})).status, OscStatus::kTooDeep);
 }
 
-TEST(Osc, ADamagedPacketIsNotVisitedAtAll) {
+TEST(Osc, VisitsNothingOfADamagedPacket) {
   Bytes packet = Bundle({FromHex(kBlendApply), FromHex(kBlendValue)});
   packet[packet.size() - 11] = 'x';  // a type tag
   const Heard heard = Visit(packet);
@@ -101,7 +101,7 @@ TEST(Osc, ADamagedPacketIsNotVisitedAtAll) {
   EXPECT_TRUE(heard.addresses.empty());
 }
 
-TEST(Osc, HostilePacketsAreRefused) {
+TEST(Osc, RejectsHostilePackets) {
   EXPECT_EQ(Visit({}).status, OscStatus::kMalformed);
   EXPECT_EQ(Visit(FromHex("61626300")).status, OscStatus::kMalformed) << "no slash";
   EXPECT_EQ(Visit(FromHex("2F616263")).status, OscStatus::kMalformed) << "no end";
@@ -117,7 +117,7 @@ TEST(Osc, HostilePacketsAreRefused) {
             OscStatus::kMalformed);
   const Bytes good = Bundle({FromHex(kBlendValue), Bundle({FromHex(kBlendApply)})});
   test::ForEveryTruncation(good, [](std::span<const std::uint8_t> cut) {
-    // A bundle may end after any whole element.
+    // A bundle is still valid after any complete element.
     const Heard heard = Visit(cut);
     EXPECT_TRUE(heard.status != OscStatus::kOk || heard.addresses.size() < 2);
   });

@@ -16,7 +16,7 @@ namespace {
 
 using test::Bytes;
 
-// A sender's packet: messages in one bundle, or one bare message.
+// Builds a sender's packet: several messages in a bundle, or one bare message.
 class Packet {
  public:
   explicit Packet(bool bundle = true) : writer_(bytes_) {
@@ -86,7 +86,7 @@ class Vmc : public ::testing::Test {
   FrameSink sink_ = [this](const NeutralFrame& frame) { frames_.push_back(frame); };
 };
 
-TEST_F(Vmc, ReadsTheKnownByteVectors) {
+TEST_F(Vmc, ReadsKnownVectors) {
   PushBytes(
       test::FromHex("2F564D43 2F457874 2F426F6E 652F506F 73000000 2C736666 66666666 66000000 "
                     "48697073 00000000 00000000 3F800000 00000000 00000000 00000000 00000000 "
@@ -105,9 +105,9 @@ TEST_F(Vmc, ReadsTheKnownByteVectors) {
   EXPECT_EQ(frames_[0].blend_shapes[0].value, 0.5f);
 }
 
-// Unity's left-handed axes: mirrored in x. A turn that carries +Z (forward) to Unity's +X (its
-// right) must carry it to our -X, which is the right of who faces +Z in right-handed axes.
-TEST_F(Vmc, AxesAreMirroredIntoOurs) {
+// Unity's left-handed axes are mirrored in x. A rotation that turns +Z (forward) to Unity's +X (the
+// right-hand side) must turn +Z to -X in right-handed axes, which is the right-hand side there.
+TEST_F(Vmc, MirrorsUnityAxes) {
   const float h = std::sqrt(0.5f);
   Push(Packet().Bone("Hips", {0.25f, 1.0f, 0.5f}, {0, h, 0, h}).Apply());
   ASSERT_EQ(frames_.size(), 1u);
@@ -118,7 +118,7 @@ TEST_F(Vmc, AxesAreMirroredIntoOurs) {
   EXPECT_NEAR(1 - 2 * (q.x * q.x + q.y * q.y), 0.0f, 1e-6f) << "z of the turned +Z";
 }
 
-TEST_F(Vmc, JointsHangUnderTheNearestSentAncestor) {
+TEST_F(Vmc, ParentIsTheNearestSentAncestor) {
   Push(Packet()
            .Bone("LeftEye", {0, 0.1f, 0})
            .Bone("Head", {0, 0.1f, 0})
@@ -141,7 +141,7 @@ TEST_F(Vmc, JointsHangUnderTheNearestSentAncestor) {
   }
 }
 
-TEST_F(Vmc, ZeroTranslationsGetAverageLengths) {
+TEST_F(Vmc, ZeroTranslationsGetAverageOffsets) {
   Push(Packet()
            .Bone("Hips", {0, 0, 0})
            .Bone("LeftUpperLeg", {0, 0, 0})
@@ -157,7 +157,7 @@ TEST_F(Vmc, ZeroTranslationsGetAverageLengths) {
   EXPECT_EQ(Find(frames_[1], "LeftLowerLeg")->rest_translation, (Vec3{0, -0.5f, 0}));
 }
 
-TEST_F(Vmc, TimeEndsAFrameWhereItIsSent) {
+TEST_F(Vmc, TimeEndsAFrame) {
   for (int i = 0; i < 3; ++i) {
     Push(Packet()
              .Bone("Hips", {0, 1, 0})
@@ -166,13 +166,13 @@ TEST_F(Vmc, TimeEndsAFrameWhereItIsSent) {
              .Time(1.0f + 0.25f * static_cast<float>(i)),
          i * 250'000);
   }
-  // Only the first Apply came before any time.
+  // Only the first Apply arrived before a Time message.
   ASSERT_EQ(frames_.size(), 3u);
   EXPECT_EQ(frames_[2].capture_time_us - frames_[1].capture_time_us, 250'000);
   EXPECT_EQ(counters().incomplete, 0u);
 }
 
-TEST_F(Vmc, ARepeatedBoneEndsAFrameOfASenderWithoutMarks) {
+TEST_F(Vmc, RepeatedBoneEndsAFrameWithoutMarks) {
   for (int i = 0; i < 3; ++i) {
     Push(Packet(false).Bone("Hips", {0, 1, 0}), i * 10'000);
     Push(Packet(false).Bone("Spine", {0, 0.1f, 0}), i * 10'000);
@@ -188,7 +188,7 @@ TEST_F(Vmc, ARepeatedBoneEndsAFrameOfASenderWithoutMarks) {
   EXPECT_EQ(frames_.size(), 3u) << "nothing waits";
 }
 
-TEST_F(Vmc, BlendShapesMatchWithoutCaseAndKeepTheirValues) {
+TEST_F(Vmc, BlendShapesAreCaseInsensitiveAndKeepValues) {
   Push(Packet().Blend("Joy", 0.5f).Blend("EyeBlinkLeft", 0.1f).Apply());
   Push(Packet().Blend("JOY", 0.75f).Apply(), 1000);
   ASSERT_EQ(frames_.size(), 2u);
@@ -198,7 +198,7 @@ TEST_F(Vmc, BlendShapesMatchWithoutCaseAndKeepTheirValues) {
   EXPECT_EQ(frames_[0].layout, frames_[1].layout);
 }
 
-TEST_F(Vmc, AnotherAvatarBeginsWithNothingKnown) {
+TEST_F(Vmc, NewAvatarDiscardsState) {
   const auto avatar = [](std::string_view title) {
     return Packet().Texts("/VMC/Ext/VRM", "avatar.vrm", title);
   };
@@ -218,7 +218,7 @@ TEST_F(Vmc, AnotherAvatarBeginsWithNothingKnown) {
   EXPECT_EQ(frames_[2].sequence, 2u);
 }
 
-TEST_F(Vmc, AnotherSenderBeginsWithNothingKnown) {
+TEST_F(Vmc, NewSenderDiscardsState) {
   Push(Packet().Bone("Hips", {0, 1, 0}).Blend("Joy", 1).Apply());
   Push(Packet().Ok(0), 1000);  // the last word of the one before
   adapter_->Forget();
@@ -231,7 +231,7 @@ TEST_F(Vmc, AnotherSenderBeginsWithNothingKnown) {
   EXPECT_GT(frames_[1].capture_time_us, frames_[0].capture_time_us);
 }
 
-TEST_F(Vmc, NothingIsGivenWhileNoModelIsLoaded) {
+TEST_F(Vmc, DropsFramesWhileNoModelIsLoaded) {
   Push(Packet().Ok(0).Bone("Hips", {0, 1, 0}).Apply());
   EXPECT_TRUE(frames_.empty());
   EXPECT_EQ(counters().stale, 1u);
@@ -239,7 +239,7 @@ TEST_F(Vmc, NothingIsGivenWhileNoModelIsLoaded) {
   EXPECT_EQ(frames_.size(), 1u);
 }
 
-TEST_F(Vmc, StragglersByTimeAreDroppedAndRestartsAreNot) {
+TEST_F(Vmc, DropsLateFramesButAcceptsRestarts) {
   const auto frame = [](float seconds) { return Packet().Bone("Hips", {0, 1, 0}).Time(seconds); };
   Push(frame(100.0f), 0);
   Push(frame(99.5f), 10'000);
@@ -249,7 +249,7 @@ TEST_F(Vmc, StragglersByTimeAreDroppedAndRestartsAreNot) {
   EXPECT_EQ(frames_[1].capture_time_us - frames_[0].capture_time_us, 20'000);
 }
 
-TEST_F(Vmc, AClockThatStandsStillLosesNoFrame) {
+TEST_F(Vmc, StoppedClockLosesNoFrame) {
   const auto frame = [](float seconds) { return Packet().Bone("Hips", {0, 1, 0}).Time(seconds); };
   for (int i = 0; i < 4; ++i) Push(frame(300'000.0f), i * 16'000);
   ASSERT_EQ(frames_.size(), 4u);
@@ -257,8 +257,8 @@ TEST_F(Vmc, AClockThatStandsStillLosesNoFrame) {
   EXPECT_EQ(counters().reordered, 0u);
 }
 
-// A clock thrown to and fro, as by somebody hostile, must not add up to an overflow.
-TEST_F(Vmc, AClockThatLeapsAheadGoesOnByArrival) {
+// A hostile clock that jumps back and forth must not cause an overflow.
+TEST_F(Vmc, JumpingClockContinuesByArrival) {
   const auto frame = [](float seconds) { return Packet().Bone("Hips", {0, 1, 0}).Time(seconds); };
   Push(frame(1.0f), 0);
   for (int i = 1; i <= 10'000; ++i) Push(frame(i % 2 == 0 ? 1.0f : 9e8f), i * 10'000);
@@ -273,7 +273,7 @@ TEST_F(Vmc, RotationsKeepTheirSign) {
   EXPECT_GT(frames_[1].joints[0].rotation.w, 0.9f);
 }
 
-TEST_F(Vmc, OldRootsAndExtraArgumentsAreTaken) {
+TEST_F(Vmc, AcceptsOldRootsAndExtraArguments) {
   Push(Packet().Message("/VMC/Ext/Root/Pos", "fffffff", "", {1, 2, 3, 0, 0, 0, 1}).Apply());
   Push(Packet()
            .Message("/VMC/Ext/Root/Pos", "sffffffffffff", "root",
@@ -283,7 +283,7 @@ TEST_F(Vmc, OldRootsAndExtraArgumentsAreTaken) {
   EXPECT_EQ(counters().malformed, 0u);
 }
 
-TEST_F(Vmc, BadMessagesAreCountedAndChangeNothing) {
+TEST_F(Vmc, CountsBadMessagesAndKeepsState) {
   std::uint64_t expected = 0;
   const auto refuse = [&](const Packet& packet) {
     Push(packet);
@@ -305,7 +305,7 @@ TEST_F(Vmc, BadMessagesAreCountedAndChangeNothing) {
   EXPECT_EQ(counters().ignored, 2u);
 }
 
-TEST_F(Vmc, NamesAreBounded) {
+TEST_F(Vmc, BoundsNames) {
   Packet packet;
   for (int i = 0; i < 500; ++i) packet.Bone("bone_" + std::to_string(i), {0, 0, 1});
   for (int i = 0; i < 700; ++i) packet.Blend("shape_" + std::to_string(i), 0);
@@ -316,7 +316,7 @@ TEST_F(Vmc, NamesAreBounded) {
   EXPECT_GT(counters().malformed, 0u);
 }
 
-TEST_F(Vmc, TheDrill) {
+TEST_F(Vmc, SurvivesTruncationAndCorruption) {
   const Bytes good =
       Packet().Bone("Hips", {0, 1, 0}).Blend("A", 1).Root({}).Ok(1).Apply().Time(1).bytes();
   test::ForEveryTruncation(good, [this](std::span<const std::uint8_t> cut) { PushBytes(cut); });
@@ -324,7 +324,7 @@ TEST_F(Vmc, TheDrill) {
   EXPECT_GT(counters().malformed, 100u);
 }
 
-TEST_F(Vmc, DoesNotAllocateOnceWarm) {
+TEST_F(Vmc, DoesNotAllocateAfterWarmUp) {
   std::vector<Bytes> packets;
   for (int i = 0; i < 12; ++i) {
     packets.push_back(Packet()
@@ -343,8 +343,8 @@ TEST_F(Vmc, DoesNotAllocateOnceWarm) {
   EXPECT_GE(counters().accepted, 11u);
 }
 
-// Foreign frames go the way of any stream: an offer and poses that the codec accepts.
-TEST_F(Vmc, FramesMakeOffersAndPosesThatTravel) {
+// Foreign frames become an offer and poses that the codec accepts.
+TEST_F(Vmc, FramesBecomeValidOffersAndPoses) {
   Push(Packet().Root({}).Bone("Hips", {0, 1, 0}).Bone("Spine", {}).Blend("A", 1).Apply());
   Push(Packet().Root({1, 0, 0}).Bone("Hips", {0, 1.5f, 0}, {0.6f, 0, 0, 0.8f}).Apply(), 1000);
   ASSERT_EQ(frames_.size(), 2u);

@@ -9,7 +9,7 @@ namespace {
 using test::Encoded;
 using test::OpenAndDecode;
 
-TEST(CodecMeeting, ContentComesBack) {
+TEST(ConnectionMessages, RoundTrip) {
   Hello hello;
   ASSERT_EQ(OpenAndDecode(Encoded(Hello{"prog/1.0", 77}), hello), DecodeStatus::kOk);
   EXPECT_EQ(hello.client, "prog/1.0");
@@ -35,7 +35,7 @@ TEST(CodecMeeting, ContentComesBack) {
   EXPECT_EQ(error.message, "use TCP");
 }
 
-TEST(CodecMeeting, AWelcomeNeverExceedsTheHelloItAnswers) {
+TEST(ConnectionMessages, WelcomeIsNeverLargerThanHello) {
   const std::string longest(kMaxProgramBytes, 'x');
   for (const std::string& name : {std::string(), std::string("a"), longest}) {
     EXPECT_GE(Encoded(Hello{name, 0}).size(), kHelloBytes);
@@ -45,7 +45,7 @@ TEST(CodecMeeting, AWelcomeNeverExceedsTheHelloItAnswers) {
   EXPECT_LE(Encoded(Hello{longest, ~0ULL, true}).size(), kMaxDatagramBytes);
 }
 
-TEST(CodecMeeting, RefusesUnknownValuesAndBadText) {
+TEST(ConnectionMessages, RejectsUnknownValuesAndBadText) {
   Goodbye goodbye;
   EXPECT_EQ(OpenAndDecode(Encoded(Goodbye{static_cast<GoodbyeReason>(4)}), goodbye),
             DecodeStatus::kBadValue);

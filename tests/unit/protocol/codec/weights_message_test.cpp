@@ -11,7 +11,7 @@ namespace {
 using test::Encoded;
 using test::OpenAndDecode;
 
-TEST(CodecFrames, WeightsComeBack) {
+TEST(WeightsMessage, RoundTrip) {
   WeightFrame sent{77, 1000, WeightFormat::kF32, {0.0f, 0.123456f, 1.0f}};
   WeightFrame out;
   ASSERT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kOk);
@@ -28,7 +28,7 @@ TEST(CodecFrames, WeightsComeBack) {
   EXPECT_EQ(out.values[2], 1.0f);
 }
 
-TEST(CodecFrames, AnEmptySetOfWeightsKeepsItsFormat) {
+TEST(WeightsMessage, EmptyWeightsKeepTheirFormat) {
   WeightFrame out;
   ASSERT_EQ(OpenAndDecode(Encoded(WeightFrame{0, 0, WeightFormat::kU8, {}}), out),
             DecodeStatus::kOk);
@@ -36,7 +36,7 @@ TEST(CodecFrames, AnEmptySetOfWeightsKeepsItsFormat) {
   EXPECT_TRUE(out.values.empty());
 }
 
-TEST(CodecFrames, WeightsAreChecked) {
+TEST(WeightsMessage, RejectsBadWeights) {
   const auto decoded = [](const WeightFrame& sent) {
     WeightFrame out;
     return OpenAndDecode(Encoded(sent), out);
@@ -47,28 +47,6 @@ TEST(CodecFrames, WeightsAreChecked) {
   EXPECT_EQ(decoded({0, -1, WeightFormat::kF32, {0.5f}}), DecodeStatus::kBadValue);
   EXPECT_EQ(decoded({0, 0, WeightFormat::kU8, std::vector<float>(kMaxWeights + 1)}),
             DecodeStatus::kLimit);
-}
-
-TEST(CodecFrames, ImagesComeBackAndAreChecked) {
-  const ImageFrame sent{1280, 720, ImageFormat::kPng, 5, std::vector<std::uint8_t>(300'000, 7)};
-  ImageFrame out;
-  MessageView view;
-  const auto bytes = Encoded(sent);
-  ASSERT_EQ(OpenMessage(bytes, view, kMaxReplyBytes), DecodeStatus::kOk);
-  ASSERT_EQ(Decode(view, out), DecodeStatus::kOk);
-  EXPECT_EQ(out.width, 1280);
-  EXPECT_EQ(out.height, 720);
-  EXPECT_EQ(out.format, ImageFormat::kPng);
-  EXPECT_EQ(out.age_us, 5);
-  EXPECT_EQ(out.bytes, sent.bytes);
-  EXPECT_EQ(OpenAndDecode(Encoded(ImageFrame{4, 4, ImageFormat::kPng, 0, {}}), out),
-            DecodeStatus::kMissingField);
-  EXPECT_EQ(OpenAndDecode(Encoded(ImageFrame{0, 4, ImageFormat::kPng, 0, {1}}), out),
-            DecodeStatus::kBadValue);
-  EXPECT_EQ(OpenAndDecode(Encoded(ImageFrame{4, 4097, ImageFormat::kPng, 0, {1}}), out),
-            DecodeStatus::kBadValue);
-  EXPECT_EQ(OpenAndDecode(Encoded(ImageFrame{4, 4, static_cast<ImageFormat>(2), 0, {1}}), out),
-            DecodeStatus::kBadValue);
 }
 
 }  // namespace

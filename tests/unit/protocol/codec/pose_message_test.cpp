@@ -16,14 +16,14 @@ using test::Encoded;
 using test::OpenAndDecode;
 
 template <class Change>
-DecodeStatus With(const Change& change, const PoseEncoding& encoding = {}) {
+DecodeStatus DecodeChanged(const Change& change, const PoseEncoding& encoding = {}) {
   PoseFrame pose = test::MakePose(9, 4, 1);
   change(pose);
   PoseFrame out;
   return OpenAndDecode(Encoded(pose, encoding), out);
 }
 
-TEST(CodecPose, FloatsComeBackExactly) {
+TEST(PoseMessage, FloatRoundTripIsExact) {
   PoseFrame pose = test::MakePose(9, 4, 1);
   pose.partial = true;
   pose.scale_joints = {0, 8};
@@ -46,7 +46,7 @@ TEST(CodecPose, FloatsComeBackExactly) {
   EXPECT_EQ(out.blend_shapes, pose.blend_shapes);
 }
 
-TEST(CodecPose, PackedStaysWithinTheStatedErrors) {
+TEST(PoseMessage, PackedNumbersStayWithinStatedErrors) {
   for (std::uint32_t seed = 0; seed < 50; ++seed) {
     const PoseFrame pose = test::MakePose(60, 52, seed);
     PoseFrame out;
@@ -63,7 +63,7 @@ TEST(CodecPose, PackedStaysWithinTheStatedErrors) {
   }
 }
 
-TEST(CodecPose, LeftOutIndicesMeanAllInOrder) {
+TEST(PoseMessage, EmptyIndicesMeanAllInOrder) {
   PoseFrame pose = test::MakePose(9, 4, 1);
   const PoseFrame whole = pose;
   pose.rotation_joints.clear();
@@ -77,8 +77,8 @@ TEST(CodecPose, LeftOutIndicesMeanAllInOrder) {
   EXPECT_EQ(Encoded(pose), Encoded(whole));
 }
 
-// The sizes that STANDARD.md section 7 states.
-TEST(CodecPose, SizesAreAsTheStandardSays) {
+// STANDARD.md section 7 states these sizes.
+TEST(PoseMessage, SizesMatchTheStandard) {
   const std::size_t face = Encoded(test::MakePose(60, 0, 1), PoseEncoding::Small()).size();
   PoseFrame body = test::MakePose(163, 0, 1);
   const std::size_t full = Encoded(body, PoseEncoding::Small()).size();
@@ -97,28 +97,35 @@ TEST(CodecPose, SizesAreAsTheStandardSays) {
   EXPECT_EQ(NumDatagrams(full), 2u);
 }
 
-TEST(CodecPose, RefusesOneFaultAtATime) {
-  EXPECT_EQ(With([](auto&) {}), DecodeStatus::kOk);
-  EXPECT_EQ(With([](auto& p) { p.rotations[3].x = NAN; }), DecodeStatus::kNonFinite);
-  EXPECT_EQ(With([](auto& p) { p.rotations[3].x = 1e30f; }), DecodeStatus::kNotUnit);
-  EXPECT_EQ(With([](auto& p) { p.rotations[3] = {0, 0, 0, 0}; }), DecodeStatus::kNotUnit);
-  EXPECT_EQ(With([](auto& p) { p.translations[0].z = INFINITY; }), DecodeStatus::kNonFinite);
-  EXPECT_EQ(With([](auto& p) { p.translations[0].z = -2e6f; }), DecodeStatus::kBadValue);
-  EXPECT_EQ(With([](auto& p) { p.scales.assign(9, {1, NAN, 1}); }), DecodeStatus::kNonFinite);
-  EXPECT_EQ(With([](auto& p) { p.blend_shapes[1] = -INFINITY; }), DecodeStatus::kNonFinite);
-  EXPECT_EQ(With([](auto& p) { p.rotations.pop_back(); }), DecodeStatus::kBadCount);
-  EXPECT_EQ(With([](auto& p) { p.blend_shapes.push_back(0); }), DecodeStatus::kBadCount);
-  EXPECT_EQ(With([](auto& p) { p.scales = {{1, 1, 1}}; }), DecodeStatus::kBadCount);
-  EXPECT_EQ(With([](auto& p) { p.num_joints = 1025; }), DecodeStatus::kLimit);
-  EXPECT_EQ(With([](auto& p) { p.num_blend_shapes = 513; }), DecodeStatus::kLimit);
-  // Masks whose bits and values differ in number.
-  EXPECT_EQ(With([](auto& p) { p.rotation_joints = {1, 2}; }), DecodeStatus::kBadCount);
-  EXPECT_EQ(With([](auto& p) { p.translation_joints.pop_back(); }), DecodeStatus::kBadCount);
+TEST(PoseMessage, RejectsEachFault) {
+  EXPECT_EQ(DecodeChanged([](auto&) {}), DecodeStatus::kOk);
+  EXPECT_EQ(DecodeChanged([](auto& p) { p.rotations[3].x = NAN; }), DecodeStatus::kNonFinite);
+  EXPECT_EQ(DecodeChanged([](auto& p) { p.rotations[3].x = 1e30f; }), DecodeStatus::kNotUnit);
+  EXPECT_EQ(DecodeChanged([](auto& p) { p.rotations[3] = {0, 0, 0, 0}; }), DecodeStatus::kNotUnit);
+  EXPECT_EQ(DecodeChanged([](auto& p) { p.translations[0].z = INFINITY; }),
+            DecodeStatus::kNonFinite);
+  EXPECT_EQ(DecodeChanged([](auto& p) { p.translations[0].z = -2e6f; }), DecodeStatus::kBadValue);
+  EXPECT_EQ(DecodeChanged([](auto& p) {
+              p.scales.assign(9, {1, NAN, 1});
+            }),
+            DecodeStatus::kNonFinite);
+  EXPECT_EQ(DecodeChanged([](auto& p) { p.blend_shapes[1] = -INFINITY; }),
+            DecodeStatus::kNonFinite);
+  EXPECT_EQ(DecodeChanged([](auto& p) { p.rotations.pop_back(); }), DecodeStatus::kBadCount);
+  EXPECT_EQ(DecodeChanged([](auto& p) { p.blend_shapes.push_back(0); }), DecodeStatus::kBadCount);
+  EXPECT_EQ(DecodeChanged([](auto& p) { p.scales = {{1, 1, 1}}; }), DecodeStatus::kBadCount);
+  EXPECT_EQ(DecodeChanged([](auto& p) { p.num_joints = 1025; }), DecodeStatus::kLimit);
+  EXPECT_EQ(DecodeChanged([](auto& p) { p.num_blend_shapes = 513; }), DecodeStatus::kLimit);
+  // Masks with another number of bits than values.
+  EXPECT_EQ(DecodeChanged([](auto& p) { p.rotation_joints = {1, 2}; }), DecodeStatus::kBadCount);
+  EXPECT_EQ(DecodeChanged([](auto& p) { p.translation_joints.pop_back(); }),
+            DecodeStatus::kBadCount);
   const auto packed_nan = [](auto& p) { p.translations[0].x = INFINITY; };
-  EXPECT_EQ(With(packed_nan, PoseEncoding::Small()), DecodeStatus::kNonFinite) << "the range";
+  EXPECT_EQ(DecodeChanged(packed_nan, PoseEncoding::Small()), DecodeStatus::kNonFinite)
+      << "translation range";
 }
 
-TEST(CodecPose, MaskBitsBeyondTheLastJointAreRefused) {
+TEST(PoseMessage, RejectsMaskBitsBeyondTheLastJoint) {
   PoseFrame pose = test::MakePose(9, 0, 1);
   pose.translations.clear();
   pose.translation_joints.clear();

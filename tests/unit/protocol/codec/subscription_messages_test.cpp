@@ -15,15 +15,16 @@ namespace {
 using test::Encoded;
 using test::OpenAndDecode;
 
+// Encodes a default message after `change`, and decodes it.
 template <class Message, class Change>
-DecodeStatus With(const Change& change) {
+DecodeStatus DecodeChanged(const Change& change) {
   Message message;
   change(message);
   Message out;
   return OpenAndDecode(Encoded(message), out);
 }
 
-TEST(CodecSubscribe, WeightRequestsComeBack) {
+TEST(SubscriptionMessages, WeightRequestRoundTrip) {
   const SubscribeWeights sent{
       "anna", true, "a*,b?", 60, WeightFormat::kU8, WeightSource::kDriverValues, true};
   SubscribeWeights out;
@@ -41,9 +42,9 @@ TEST(CodecSubscribe, WeightRequestsComeBack) {
   EXPECT_FALSE(out.every);
 }
 
-TEST(CodecSubscribe, WeightRequestsAreChecked) {
+TEST(SubscriptionMessages, RejectsBadWeightRequest) {
   using S = SubscribeWeights;
-  const auto with = [](const auto& change) { return With<S>(change); };
+  const auto with = [](const auto& change) { return DecodeChanged<S>(change); };
   EXPECT_EQ(with([](S& s) { s.max_rate_hz = -1; }), DecodeStatus::kBadValue);
   EXPECT_EQ(with([](S& s) { s.max_rate_hz = 1001; }), DecodeStatus::kBadValue);
   EXPECT_EQ(with([](S& s) { s.max_rate_hz = NAN; }), DecodeStatus::kNonFinite);
@@ -53,7 +54,7 @@ TEST(CodecSubscribe, WeightRequestsAreChecked) {
   EXPECT_EQ(with([](S& s) { s.source = static_cast<WeightSource>(2); }), DecodeStatus::kBadValue);
 }
 
-TEST(CodecSubscribe, PoseRequestsComeBackAndAreChecked) {
+TEST(SubscriptionMessages, PoseRequestRoundTripAndChecks) {
   using S = SubscribePoses;
   S out;
   ASSERT_EQ(OpenAndDecode(Encoded(S{"anna", true, 30, true}), out), DecodeStatus::kOk);
@@ -63,63 +64,13 @@ TEST(CodecSubscribe, PoseRequestsComeBackAndAreChecked) {
   EXPECT_TRUE(out.every);
   ASSERT_EQ(OpenAndDecode(Encoded(S{}), out), DecodeStatus::kOk);
   EXPECT_FALSE(out.every);
-  const auto with = [](const auto& change) { return With<S>(change); };
+  const auto with = [](const auto& change) { return DecodeChanged<S>(change); };
   EXPECT_EQ(with([](S& s) { s.max_rate_hz = -1; }), DecodeStatus::kBadValue);
   EXPECT_EQ(with([](S& s) { s.max_rate_hz = NAN; }), DecodeStatus::kNonFinite);
   EXPECT_EQ(with([](S& s) { s.subject = std::string(256, 'a'); }), DecodeStatus::kLimit);
 }
 
-TEST(CodecSubscribe, PictureRequestsComeBack) {
-  SubscribePictures sent;
-  sent.subject = "anna";
-  sent.width = 1920;
-  sent.height = 16;
-  sent.quality = 100;
-  sent.format = ImageFormat::kPng;
-  sent.view = "normal";
-  sent.has_camera = true;
-  sent.camera = {{1, 2, 3}, {4, 5, 6}, 45};
-  SubscribePictures out;
-  ASSERT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kOk);
-  EXPECT_EQ(out.width, 1920);
-  EXPECT_EQ(out.height, 16);
-  EXPECT_EQ(out.quality, 100);
-  EXPECT_EQ(out.format, ImageFormat::kPng);
-  EXPECT_EQ(out.view, "normal");
-  ASSERT_TRUE(out.has_camera);
-  EXPECT_EQ(out.camera.eye, sent.camera.eye);
-  EXPECT_EQ(out.camera.target, sent.camera.target);
-  EXPECT_EQ(out.camera.vertical_fov_degrees, 45.0f);
-  sent.has_camera = false;
-  sent.camera_preset = "face";
-  ASSERT_EQ(OpenAndDecode(Encoded(sent), out), DecodeStatus::kOk);
-  EXPECT_FALSE(out.has_camera);
-  EXPECT_EQ(out.camera_preset, "face");
-}
-
-TEST(CodecSubscribe, PictureRequestsAreChecked) {
-  using S = SubscribePictures;
-  const auto with = [](const auto& change) { return With<S>(change); };
-  const auto with_camera = [](const auto& change) {
-    return With<S>([&change](S& s) {
-      s.has_camera = true;
-      change(s);
-    });
-  };
-  EXPECT_EQ(with([](S& s) { s.width = 15; }), DecodeStatus::kBadValue);
-  EXPECT_EQ(with([](S& s) { s.height = 4097; }), DecodeStatus::kBadValue);
-  EXPECT_EQ(with([](S& s) { s.quality = 0; }), DecodeStatus::kBadValue);
-  EXPECT_EQ(with([](S& s) { s.quality = 101; }), DecodeStatus::kBadValue);
-  EXPECT_EQ(with([](S& s) { s.format = static_cast<ImageFormat>(9); }), DecodeStatus::kBadValue);
-  EXPECT_EQ(with_camera([](S&) {}), DecodeStatus::kOk);
-  EXPECT_EQ(with_camera([](S& s) { s.camera_preset = "face"; }), DecodeStatus::kBadValue);
-  EXPECT_EQ(with_camera([](S& s) { s.camera.eye = s.camera.target; }), DecodeStatus::kBadValue);
-  EXPECT_EQ(with_camera([](S& s) { s.camera.eye.x = NAN; }), DecodeStatus::kNonFinite);
-  EXPECT_EQ(with_camera([](S& s) { s.camera.vertical_fov_degrees = 170; }),
-            DecodeStatus::kBadValue);
-}
-
-TEST(CodecSubscribe, RepliesCarryNamesThatHash) {
+TEST(SubscriptionMessages, ReplyCarriesHashedNames) {
   SubscribeReply out;
   const SubscribeReply sent{"anna", 0, {"brow_l.squash", "nose.squash"}};
   std::vector<std::uint8_t> bytes = Encoded(sent);

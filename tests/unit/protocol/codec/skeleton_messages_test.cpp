@@ -27,12 +27,12 @@ DecodeStatus With(const Change& change) {
   return Decoded(offer);
 }
 
-TEST(CodecSkeleton, ContentComesBackExactly) {
+TEST(SkeletonMessages, RoundTripIsExact) {
   SkeletonOffer offer = test::MakeOffer(6, 3);
   offer.joints[4].rest_scale = {1, 2, 3};
   offer.joints[2].rest_rotation = {0.6f, 0, 0, 0.8f};
   offer.metres_per_unit = 0.0254f;
-  SkeletonOffer out = test::MakeOffer(9, 1);  // reused memory must not shine through
+  SkeletonOffer out = test::MakeOffer(9, 1);  // old content must not remain
   ASSERT_EQ(OpenAndDecode(Encoded(offer), out), DecodeStatus::kOk);
   EXPECT_EQ(out.subject, offer.subject);
   EXPECT_EQ(out.skeleton_hash, SkeletonHash(offer));
@@ -50,7 +50,7 @@ TEST(CodecSkeleton, ContentComesBackExactly) {
   }
 }
 
-TEST(CodecSkeleton, RefusesOneFaultAtATime) {
+TEST(SkeletonMessages, RejectsEachFault) {
   EXPECT_EQ(With([](auto&) {}), DecodeStatus::kOk);
   EXPECT_EQ(With([](auto& o) { o.subject.clear(); }), DecodeStatus::kMissingField);
   EXPECT_EQ(With([](auto& o) { o.subject = std::string(256, 'x'); }), DecodeStatus::kLimit);
@@ -72,14 +72,14 @@ TEST(CodecSkeleton, RefusesOneFaultAtATime) {
             DecodeStatus::kMissingField);
 }
 
-TEST(CodecSkeleton, LimitsHoldAtTheirEdge) {
+TEST(SkeletonMessages, LimitsAreExact) {
   EXPECT_EQ(Decoded(test::MakeOffer(kMaxJoints, kMaxBlendShapes)), DecodeStatus::kOk);
   EXPECT_EQ(Decoded(test::MakeOffer(kMaxJoints + 1, 0)), DecodeStatus::kLimit);
   EXPECT_EQ(Decoded(test::MakeOffer(1, kMaxBlendShapes + 1)), DecodeStatus::kLimit);
   EXPECT_EQ(Decoded(test::MakeOffer(0, 1)), DecodeStatus::kOk);
 }
 
-TEST(CodecSkeleton, AnotherHashIsRefused) {
+TEST(SkeletonMessages, RejectsWrongHash) {
   std::vector<std::uint8_t> bytes = Encoded(test::MakeOffer(6, 0));
   const std::string_view name = "joint_3";
   const auto at = std::search(bytes.begin(), bytes.end(), name.begin(), name.end());
@@ -89,7 +89,7 @@ TEST(CodecSkeleton, AnotherHashIsRefused) {
   EXPECT_EQ(OpenAndDecode(bytes, out), DecodeStatus::kBadHash);
 }
 
-TEST(CodecSkeleton, RepliesComeBack) {
+TEST(SkeletonMessages, ReplyRoundTrip) {
   SkeletonReply reply;
   ASSERT_EQ(OpenAndDecode(Encoded(SkeletonReply{5, SkeletonStatus::kNeeded, "why"}), reply),
             DecodeStatus::kOk);
