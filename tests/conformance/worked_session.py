@@ -17,6 +17,7 @@ import sys
 from pathlib import Path
 
 from decode import decode, equal
+from messages import unpack_rotation
 
 # The slots of the session's messages: sections 4 and 6 to 9. A number is its struct format.
 STRING, STRINGS = "string", "[string]"
@@ -65,8 +66,13 @@ class Annotator:
         return self.read(offset, layout)[0]
 
     def value(self, offset, layout, name):
-        values = ", ".join(map(shown, self.read(offset, layout)))
-        self.row(offset, layout, f"{name}: {values}")
+        values = self.read(offset, layout)
+        meaning = f"{name}: {', '.join(map(shown, values))}"
+        if name.startswith("packed_rotations"):
+            meaning += f" = rotation {', '.join(f'{c + 0:.4g}' for c in unpack_rotation(values))}"
+        if name.startswith("packed_values"):
+            meaning += f" = {values[0] / 255:.4g}"
+        self.row(offset, layout, meaning)
 
     def string(self, offset, name):
         count = self.row(offset, "I", f"length of {name}")
@@ -74,7 +80,7 @@ class Annotator:
         self.rows[offset + 4 + count] = (1, "zero byte behind the string")
 
     def vector(self, offset, element, name):
-        count = self.row(offset, "I", f"number of {name}")
+        count = self.row(offset, "I", f"number of elements in {name}")
         size = struct.calcsize("<" + element)
         begin = offset + 4
         if not any(self.data[begin:begin + count * size]) and count * size > 16:
@@ -84,7 +90,7 @@ class Annotator:
             self.value(begin + i * size, element, f"{name}[{i}]")
 
     def strings(self, offset, name):
-        count = self.row(offset, "I", f"number of {name}")
+        count = self.row(offset, "I", f"number of elements in {name}")
         for i in range(count):
             place = offset + 4 + 4 * i
             self.string(place + self.row(place, "I", f"offset to {name}[{i}]"), f"{name}[{i}]")
@@ -148,7 +154,7 @@ def formatted(data):
     return "".join(f"{offset:>4}  {part:<{width}}  {meaning}\n" for offset, part, meaning in rows)
 
 
-ROW = re.compile(r"^ *(\d+)  ((?:[0-9a-f]{2} )*[0-9a-f]{2}|00 \* \d+) +(\S.*)$")
+ROW = re.compile(r"^ *(\d+)  (00 \* \d+|(?:[0-9a-f]{2} )*[0-9a-f]{2}) +(\S.*)$")
 
 
 def parse(block):
