@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Run by CMake (CMakeLists.txt), which says where the generated wire code is and where the page goes.
+// CMake runs this file and passes the folders of the generated wire code and of the built page.
 import { fileURLToPath } from 'node:url';
 import { defineConfig } from 'vite';
 
@@ -10,7 +10,7 @@ function setting(name: string): string {
 }
 
 export default defineConfig({
-  base: './', // the page may stand behind a proxy, below a path
+  base: './', // relative, because a proxy may serve the page below a path
   cacheDir: `${setting('FURROW_WEB_BUILD')}/vite-cache`,
   resolve: {
     alias: {

@@ -18,7 +18,7 @@ export function launch() {
   });
 }
 
-/** A page of its own, with nothing shared; `errors` collects what its console complains of. */
+/** Opens an isolated page. `errors` collects the errors on its console. */
 export async function openPage(browser, address, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1000, height: 640 }, acceptDownloads: true, ...options });
   const page = await context.newPage();
@@ -30,17 +30,17 @@ export async function openPage(browser, address, options = {}) {
   return page;
 }
 
-/** The daemon's answer to the last change is on the screen. */
+/** Waits until the picture shows the last change. */
 export async function shown(page) {
   await page.waitForSelector('.stage[aria-busy=false]');
 }
 
-/** The picture of a pose at rest, refined, with the last change in it. */
+/** Waits for the refined picture of a pose at rest that shows the last change. */
 export async function still(page) {
   await page.waitForSelector('.stage[aria-busy=false][data-still=true]');
 }
 
-/** The pixels of the picture alone, without what lies over it. */
+/** Returns the pixels of the picture, without overlays. */
 export async function pixels(page) {
   const url = await page.evaluate(() => new Promise((resolve) => {
     requestAnimationFrame(() => requestAnimationFrame(() => resolve(document.querySelector('canvas.picture').toDataURL('image/png'))));
@@ -48,15 +48,15 @@ export async function pixels(page) {
   return PNG.sync.read(Buffer.from(url.split(',')[1], 'base64'));
 }
 
-/** Mean absolute difference of two pictures, 0 to 255; of other sizes: wholly different. */
+/** Mean absolute difference of two pictures, 0 to 255. 255 if their sizes differ. */
 export function difference(a, b) {
   if (a.width !== b.width || a.height !== b.height) return 255;
   let sum = 0;
   for (let i = 0; i < a.data.length; ++i) sum += Math.abs(a.data[i] - b.data[i]);
-  return sum / (a.data.length * 0.75); // alpha is the same everywhere
+  return sum / (a.data.length * 0.75); // alpha is equal everywhere and does not count
 }
 
-/** Share of pixels that differ visibly. */
+/** Fraction of pixels that differ visibly. */
 export function changedShare(a, b) {
   if (a.width !== b.width || a.height !== b.height) return 1;
   let changed = 0;
@@ -66,7 +66,7 @@ export function changedShare(a, b) {
   return changed / (a.data.length / 4);
 }
 
-/** Asked again until it holds. */
+/** Repeats a check until it succeeds. */
 export async function eventually(what, holds, patienceMs = PATIENCE_MS) {
   const end = Date.now() + patienceMs;
   while (!(await holds())) {
@@ -75,7 +75,7 @@ export async function eventually(what, holds, patienceMs = PATIENCE_MS) {
   }
 }
 
-/** Fingers put down at `from`, moved to `to` in steps, and lifted; a point a finger. */
+/** Touches at the points `from`, moves to `to` in steps and lifts. One point per finger. */
 export async function swipe(page, from, to) {
   const steps = 6;
   const session = await page.context().newCDPSession(page);

@@ -8,7 +8,7 @@ const BIN = process.env.FURROW_BIN;
 export const SHARE = process.env.FURROW_SHARE;
 export const recording = (name) => join(SHARE, 'recordings', `${name}.bvh`);
 
-/** A furrowd that serves; `ports` of a former one to come back at the same place. */
+/** Starts a furrowd. `ports` of a former daemon make it reuse the same addresses. */
 export class Daemon {
   static async start(options = [], ports = { tcp: 0, udp: 0, http: 0 }) {
     const listen = Object.entries(ports).flatMap(([name, port]) => [`--${name}`, String(port)]);
@@ -54,7 +54,7 @@ export class Daemon {
     return response.json();
   }
 
-  /** The recording of --play stands still at this second. */
+  /** Pauses the recording of --play at this second. */
   async hold(seconds) {
     await this.patch('api/playback', { playing: false, position_s: seconds });
   }
@@ -68,12 +68,12 @@ export class Daemon {
   }
 }
 
-/** `furrow ARGS...`: the process; stop it with kill(). */
+/** Starts `furrow ARGS...` and returns the process, which the caller stops with kill(). */
 export function furrow(...args) {
   return spawn(join(BIN, 'furrow'), args, { stdio: ['ignore', 'pipe', 'inherit'] });
 }
 
-/** What `furrow ARGS...` prints, when it ends well. */
+/** Runs `furrow ARGS...` and returns its output. Fails if it exits with an error. */
 export async function furrowOutput(...args) {
   const child = furrow(...args);
   let out = '';

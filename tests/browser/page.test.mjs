@@ -15,7 +15,7 @@ async function closePage(page) {
   await page.context().close();
 }
 
-test('pictures come, and change as the pose does', async () => {
+test('pictures arrive and change with the pose', async () => {
   const page = await openPage(browser, daemon.address);
   await shown(page);
   const first = await pixels(page);
@@ -25,7 +25,7 @@ test('pictures come, and change as the pose does', async () => {
   await closePage(page);
 });
 
-test('a pose at rest gives one and the same picture', async () => {
+test('a pose at rest gives one stable picture', async () => {
   await daemon.hold(SMILE_S);
   const page = await openPage(browser, daemon.address);
   await still(page);
@@ -33,7 +33,7 @@ test('a pose at rest gives one and the same picture', async () => {
   await closePage(page);
 });
 
-test('a drag turns the camera, a framing brings it back', async () => {
+test('a drag orbits the camera, a framing resets it', async () => {
   await daemon.hold(SMILE_S);
   const page = await openPage(browser, daemon.address);
   await still(page);
@@ -51,7 +51,7 @@ test('a drag turns the camera, a framing brings it back', async () => {
   await closePage(page);
 });
 
-test('fingers turn, move and zoom the picture, and tap what there is', async () => {
+test('touch orbits, pans, zooms and taps', async () => {
   await daemon.hold(SMILE_S);
   const page = await openPage(browser, daemon.address, { hasTouch: true, viewport: { width: 1180, height: 820 } });
   await still(page);
@@ -74,7 +74,7 @@ test('fingers turn, move and zoom the picture, and tap what there is', async () 
   assert(changedShare(former, await pixels(page)) > 0.05);
   await page.tap('#tab-session');
   await page.locator('.subjects button').first().waitFor();
-  assert.equal(await page.evaluate(() => document.scrollingElement.scrollTop), 0); // fingers move the camera alone
+  assert.equal(await page.evaluate(() => document.scrollingElement.scrollTop), 0); // touch moves only the camera, not the page
   await closePage(page);
 });
 
@@ -91,7 +91,7 @@ test('the first paint takes at most 300 kB', async () => {
   await closePage(page);
 });
 
-test('keys walk, orbit and zoom; wheel and framings too', async () => {
+test('keys, wheel and framings move the camera', async () => {
   await daemon.hold(SMILE_S);
   const page = await openPage(browser, daemon.address);
   await still(page);
@@ -116,14 +116,14 @@ test('keys walk, orbit and zoom; wheel and framings too', async () => {
   await closePage(page);
 });
 
-test('what is set survives a reload', async () => {
+test('settings survive a reload', async () => {
   await daemon.hold(SMILE_S);
   const page = await openPage(browser, `${daemon.address}#camera=mouth&wrinkles=off&wrinkle_strength=2&panel=session`);
   await still(page);
   const former = await pixels(page);
   await page.click('[data-preset=profile]');
   await eventually('the address', () => page.url().includes('camera=profile'));
-  // The first picture from there is not a still yet; until it comes the former still is on the stage.
+  // The first picture from the new camera is not a still yet. The stage shows the former still until it arrives.
   await eventually('the profile', async () => changedShare(former, await pixels(page)) > 0.05);
   await still(page);
   const profile = await pixels(page);
@@ -146,7 +146,7 @@ test('the wipe shows both sides', async () => {
   await still(page);
   const half = await pixels(page);
   await keep(page, 'wipe-wrinkles');
-  // Right of the divider nothing changed.
+  // The picture right of the divider must not change.
   const right = (image) => ({ width: 1, height: 1, data: image.data.filter((_, i) => (i / 4) % image.width > image.width * 0.52) });
   assert(difference(right(on), right(half)) < 1.5);
   await closePage(page);

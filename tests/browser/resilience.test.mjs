@@ -10,7 +10,7 @@ let browser;
 before(async () => (browser = await launch()));
 after(() => browser?.close());
 
-test('a daemon that was killed and comes back is on the page again by itself', async () => {
+test('the page reconnects to a daemon that was killed and restarted', async () => {
   const first = await Daemon.start(['--play', recording('performance')]);
   let second;
   try {
@@ -34,7 +34,7 @@ test('a daemon that was killed and comes back is on the page again by itself', a
   }
 });
 
-test('a daemon that ends in peace is told as that', async () => {
+test('the page reports a daemon that shuts down', async () => {
   const daemon = await Daemon.start(['--play', recording('performance')]);
   const page = await openPage(browser, daemon.address);
   await shown(page);
@@ -43,16 +43,16 @@ test('a daemon that ends in peace is told as that', async () => {
   await page.context().close();
 });
 
-test('nobody streams, nothing is drawn: the page says so', async () => {
+test('the page reports a missing subject and a missing renderer', async () => {
   const quiet = await Daemon.start();
   const blind = await Daemon.start(['--no-render', '--play', recording('performance')]);
   try {
     const page = await openPage(browser, quiet.address);
-    await page.locator('.condition', { hasText: 'Nobody streams' }).waitFor();
+    await page.locator('.condition', { hasText: 'No subject is streaming' }).waitFor();
     assert.deepEqual(page.errors, []);
     await page.goto(blind.address);
-    await page.locator('.condition', { hasText: 'draws no pictures' }).waitFor();
-    await page.locator('.chip').first().waitFor(); // weights all the same
+    await page.locator('.condition', { hasText: 'does not render pictures' }).waitFor();
+    await page.locator('.chip').first().waitFor(); // weights arrive even without pictures
     await page.context().close();
   } finally {
     await quiet.stop();
@@ -60,7 +60,7 @@ test('nobody streams, nothing is drawn: the page says so', async () => {
   }
 });
 
-test('two viewers do not disturb each other', async () => {
+test('two viewers do not affect each other', async () => {
   const daemon = await Daemon.start(['--play', recording('performance')]);
   try {
     await daemon.hold(2);
@@ -81,7 +81,7 @@ test('two viewers do not disturb each other', async () => {
   }
 });
 
-test('a stalled viewer delays nobody and comes back to a fresh picture', async () => {
+test('a stalled viewer delays nobody and resumes with a fresh picture', async () => {
   const daemon = await Daemon.start(['--play', recording('performance')]);
   try {
     const page = await openPage(browser, daemon.address);
@@ -91,7 +91,7 @@ test('a stalled viewer delays nobody and comes back to a fresh picture', async (
     const debuggerOf = await stalled.context().newCDPSession(stalled);
     await debuggerOf.send('Debugger.enable');
     const halted = new Promise((resolve) => debuggerOf.once('Debugger.paused', resolve));
-    await debuggerOf.send('Debugger.pause'); // its scripts stand still: no picture is acknowledged
+    await debuggerOf.send('Debugger.pause'); // its scripts stop, so it acknowledges no picture
     await halted;
     const rendered = async () => (await daemon.get('api/status')).pictures_rendered;
     const before = await rendered();
@@ -104,7 +104,7 @@ test('a stalled viewer delays nobody and comes back to a fresh picture', async (
     await still(page);
     await debuggerOf.send('Debugger.resume');
     await still(stalled);
-    assert(difference(await pixels(page), await pixels(stalled)) < 1); // what is now, not what it missed
+    assert(difference(await pixels(page), await pixels(stalled)) < 1); // the current picture, not a missed one
     await page.context().close();
     await stalled.context().close();
   } finally {

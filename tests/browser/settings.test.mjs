@@ -13,7 +13,7 @@ async function search(page, text) {
 
 const row = (page, name) => page.locator(`[data-setting="${name}"]`);
 
-/** Another value than the one it has, by the control that the menu gives it. */
+/** Changes a setting to another value with its control in the menu. */
 async function change(page, setting) {
   await search(page, setting.name);
   const target = row(page, setting.name);
@@ -52,12 +52,12 @@ test('every setting of the daemon is in the menu', async () => {
   await page.context().close();
 });
 
-test('each group takes effect on the picture', async () => {
+test('each group of settings changes the picture', async () => {
   const { settings } = await daemon.get('api/settings');
-  // The detail of crowds is for pictures of several subjects, which the page does not show.
+  // Crowd settings apply to pictures of several subjects, which the page does not show.
   const groups = new Set(settings.map(({ group }) => group));
   assert(groups.delete('detail'));
-  // A view in which every group has a part: light from behind, bright enough to spread, on folds that stand out.
+  // A view in which every group has a visible effect: strong light from behind on pronounced folds.
   const page = await openPage(browser, `${daemon.address}#shading=skin&wrinkle_strength=2&translucency.strength=4` +
     '&lights.turn_degrees=180&bloom.strength=0.5&bloom.threshold=0.3&displacement.enabled=on&displacement.strength=3');
   await page.selectOption('select[aria-label=Sharpness]', 'fast');
@@ -82,7 +82,7 @@ test('each group takes effect on the picture', async () => {
   await page.context().close();
 });
 
-test('compare shows the picture before the change while it is held', async () => {
+test('holding Compare shows the picture before the change', async () => {
   const page = await openPage(browser, `${daemon.address}#wrinkle_strength=3`);
   await still(page);
   const base = await pixels(page);
@@ -100,7 +100,7 @@ test('compare shows the picture before the change while it is held', async () =>
   await page.context().close();
 });
 
-test('presets are one step of undo, and name settings that exist', async () => {
+test('presets are one undo step and use existing settings', async () => {
   const page = await openPage(browser, daemon.address);
   await still(page);
   const presets = page.locator('select[aria-label=Preset]');
@@ -115,18 +115,18 @@ test('presets are one step of undo, and name settings that exist', async () => {
   await page.context().close();
 });
 
-test('what the daemon refuses is said, and taken back', async () => {
+test('rejected settings are reported and reverted', async () => {
   const page = await openPage(browser, `${daemon.address}#subsurface.width=99`);
   await page.locator('.toast.error', { hasText: 'subsurface.width' }).waitFor();
-  await still(page); // and there is a picture all the same
+  await still(page); // the page still shows a picture
   await page.getByRole('button', { name: 'As text…' }).click();
   const text = page.locator('dialog textarea');
   await text.fill('[subsurface]\nwidth = 99\n');
-  await page.getByRole('button', { name: 'Set for everybody' }).click();
+  await page.getByRole('button', { name: 'Set for all viewers' }).click();
   await page.locator('dialog .error', { hasText: 'subsurface.width' }).waitFor();
   await keep(page, 'refused');
   await text.fill('[subsurface\nwidth = 1');
-  await page.getByRole('button', { name: 'Set for everybody' }).click();
+  await page.getByRole('button', { name: 'Set for all viewers' }).click();
   await page.locator('dialog .error', { hasText: 'Line 1' }).waitFor();
   const { settings } = await daemon.get('api/settings');
   const width = settings.find(({ name }) => name === 'subsurface.width');
@@ -134,14 +134,14 @@ test('what the daemon refuses is said, and taken back', async () => {
   await page.context().close();
 });
 
-test('a setting for everybody reaches other pages', async () => {
+test('a setting for all viewers reaches other pages', async () => {
   const one = await openPage(browser, daemon.address);
   const other = await openPage(browser, daemon.address);
   await still(other);
   const former = await pixels(other);
   await one.getByRole('button', { name: 'As text…' }).click();
   await one.fill('dialog textarea', 'exposure = 3.0\n');
-  await one.getByRole('button', { name: 'Set for everybody' }).click();
+  await one.getByRole('button', { name: 'Set for all viewers' }).click();
   await eventually('a brighter picture', async () => difference(former, await pixels(other)) > 10);
   await daemon.patch('api/settings', { exposure: 1 });
   await one.context().close();

@@ -8,18 +8,18 @@ import { eventually, keep, openPage, still } from './browser.mjs';
 import { furrow, furrowOutput, recording } from './daemon.mjs';
 import { browser, daemon } from './played.mjs';
 
-/** Brows down. */
+/** A pose with lowered brows. */
 const FROWN_S = 6.5;
-/** On their way there: a frown that the rig's pose is not yet. */
+/** A pose on the way to lowered brows, weaker than the rig's frown. */
 const HALF_FROWN_S = 9;
 
-/** Rows of a CSV by their first column; the header's names with them. */
+/** Reads a CSV: rows by their first column, and the names in the header. */
 function table(csv) {
   const [header, ...lines] = csv.trim().split('\n').map((line) => line.split(','));
   return { names: header.slice(2), rows: new Map(lines.map(([frame, , ...values]) => [frame, values.map(Number)])) };
 }
 
-test('curves are what furrow watch prints', async () => {
+test('curves equal the output of furrow watch', async () => {
   await daemon.patch('api/playback', { playing: true, position_s: 0 });
   const page = await openPage(browser, daemon.address);
   await page.locator('.chip').first().waitFor();
@@ -43,7 +43,7 @@ test('curves are what furrow watch prints', async () => {
   await page.context().close();
 });
 
-test('chosen curves stay chosen', async () => {
+test('chosen curves remain chosen', async () => {
   const page = await openPage(browser, `${daemon.address}#curves=brow_l.squash,nose.squash`);
   await page.locator('.chip[data-name="nose.squash"]').waitFor();
   assert.equal(await page.locator('.chip').count(), 2);
@@ -54,7 +54,7 @@ test('chosen curves stay chosen', async () => {
   await page.context().close();
 });
 
-test('the face map leads to the drivers and poses behind a region', async () => {
+test('the face map opens the explanation of a region', async () => {
   await daemon.hold(FROWN_S);
   const page = await openPage(browser, `${daemon.address}#panel=wrinkles`, { viewport: { width: 1280, height: 720 } });
   await page.locator('.region-shape[data-region=brow_l]').waitFor();
@@ -76,7 +76,7 @@ test('the face map leads to the drivers and poses behind a region', async () => 
   await page.context().close();
 });
 
-test('capture: preview changes nothing, capture does, undo takes it back', async () => {
+test('capture: preview changes nothing, capture changes the rig, undo reverts it', async () => {
   await daemon.hold(HALF_FROWN_S);
   const page = await openPage(browser, `${daemon.address}#panel=capture`);
   await still(page);
@@ -84,12 +84,12 @@ test('capture: preview changes nothing, capture does, undo takes it back', async
   const before = await file();
   await page.selectOption('select[aria-label="What the pose becomes"]', 'brow_lower_l');
   await page.getByRole('button', { name: 'Preview' }).click();
-  await page.getByText('Preview: this pose would give').waitFor();
+  await page.getByText('Preview: weights with this pose').waitFor();
   assert.equal(await file(), before);
   assert(await page.locator('.capture-result tbody tr').count() > 0);
   await keep(page, 'capture');
   await page.getByRole('button', { name: 'Capture', exact: true }).last().click();
-  await page.getByText('This pose now gives').waitFor();
+  await page.getByText('Weights with the captured pose').waitFor();
   const captured = await file();
   assert.notEqual(captured, before);
   const [saved] = await Promise.all([page.waitForEvent('download'), page.getByText('Download changed rig').click()]);
@@ -100,7 +100,7 @@ test('capture: preview changes nothing, capture does, undo takes it back', async
   await page.context().close();
 });
 
-test('a second subject can be chosen, and is named in the list', async () => {
+test('a second subject is listed and can be chosen', async () => {
   const publisher = furrow('play', recording('anger'), '--to', `localhost:${daemon.ports.udp}`, '--udp', '--subject', 'guest', '--loop');
   try {
     const page = await openPage(browser, `${daemon.address}#panel=session`);

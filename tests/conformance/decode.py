@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A decoder of the Furrow wire, written from protocol/STANDARD.md alone (Python's own library only).
+"""A decoder of the Furrow wire, written from protocol/STANDARD.md alone, with the Python standard library.
 
     decode.py FILE...          print messages as JSON
-    decode.py --check FOLDER   decode every *.bin there and compare with the *.json beside it
+    decode.py --check FOLDER   decode every *.bin in FOLDER and compare the result with its *.json
 
-What a message says is in messages.py; here is how messages lie in datagrams and streams.
+messages.py reads the content of messages; this file reads envelopes, fragments, bundles and streams.
 """
 import json
 import math
@@ -27,32 +27,32 @@ SLICE = 1160
 def envelope(data):
     require(len(data) >= ENVELOPE.size, "shorter than an envelope")
     magic, version, flags, stream, session, sequence, size, time = ENVELOPE.unpack_from(data)
-    require(magic == b"FRRW", "another magic")
-    require(version == 1, "another version")
-    require(flags in (0, 1, 2), "undefined flags, or a fragment that is followed")
+    require(magic == b"FRRW", "wrong magic")
+    require(version == 1, "unsupported version")
+    require(flags in (0, 1, 2), "undefined flags, or both flags together")
     require(session != 0, "session 0")
-    require(abs(time) < 2**62, "a capture time that cannot be")
+    require(abs(time) < 2**62, "capture time out of range")
     return flags, size, {"session": hexadecimal(session), "stream": stream, "sequence": sequence,
                          "capture_time_us": time}
 
 
 def decode(data):
     flags, size, result = envelope(data)
-    require(flags == 0, "a fragment or a bundle where a message is due")
+    require(flags == 0, "a fragment or bundle instead of a whole message")
     payload = data[ENVELOPE.size:]
-    require(len(payload) == size and size >= 8, "payload size and bytes differ")
+    require(len(payload) == size and size >= 8, "payload size and byte count differ")
     kind = KINDS.get(payload[4:8])
-    require(kind is not None, "an unknown identifier")
+    require(kind is not None, "unknown identifier")
     root = Table(payload, struct.unpack_from("<I", payload)[0])
     return {"kind": kind.__name__, **result, "message": kind(root)}
 
 
 def frames(data):
-    """Section 1: what a TCP connection carries."""
+    """Section 1: splits the bytes of a TCP connection into messages."""
     while data:
-        require(len(data) >= 4, "half a length")
+        require(len(data) >= 4, "incomplete length")
         size = struct.unpack_from("<I", data)[0]
-        require(len(data) >= 4 + size, "half a frame")
+        require(len(data) >= 4 + size, "incomplete frame")
         yield data[4:4 + size]
         data = data[4 + size:]
 
@@ -64,19 +64,19 @@ def reassemble(datagrams):
         flags, size, head = envelope(datagram)
         require(flags == 1, "not a fragment")
         number, index, count = struct.unpack_from("<IHH", datagram, 32)
-        require(count == -(-size // SLICE) and index < count, "a count that lies")
-        require(len(datagram) == 40 + min(SLICE, size - SLICE * index), "a size that lies")
+        require(count == -(-size // SLICE) and index < count, "count or index contradicts the payload size")
+        require(len(datagram) == 40 + min(SLICE, size - SLICE * index), "length contradicts the payload size")
         first = first or (head, size, number, datagram)
         require(first[:3] == (head, size, number), "fragments of different messages")
         slices[index] = datagram[40:]
-    require(first and len(slices) == -(-first[1] // SLICE), "fragments missing")
+    require(first and len(slices) == -(-first[1] // SLICE), "missing fragments")
     head = bytearray(first[3][:32])
     head[5] = 0
     return bytes(head) + b"".join(slices[i] for i in sorted(slices))
 
 
 def unbundle(datagram):
-    """Section 3: the messages of a datagram, each as it would have come alone."""
+    """Section 3: splits a datagram into messages, each identical to the message sent alone."""
     require(len(datagram) <= MAX_DATAGRAM, "a datagram above 1,200 bytes")
     messages, followed, session = [], True, datagram[8:16]
     while followed:
@@ -84,7 +84,7 @@ def unbundle(datagram):
         followed = flags == 2
         require(flags != 1, "a fragment inside")
         require(datagram[8:16] == session, "messages of different sessions")
-        require(8 <= size <= len(datagram) - 32, "a payload that is none or leaves its datagram")
+        require(8 <= size <= len(datagram) - 32, "payload too short or beyond the datagram")
         require(followed or size == len(datagram) - 32, "bytes after the last message")
         messages.append(datagram[:5] + b"\0" + datagram[6:32 + size])
         datagram = datagram[32 + size:]
@@ -109,16 +109,16 @@ def equal(a, b):
 
 
 def check_one(path):
-    """None, or what is wrong."""
+    """Returns None, or a description of the fault."""
     expected = json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
     container = expected.pop("container")
     data = path.read_bytes()
     try:
         decoded = decode(reassemble(frames(data))) if container == "datagrams" else decode_datagram(data)
     except Refused as refusal:
-        return None if container == "refuse" else f"refused: {refusal}"
+        return None if container == "refuse" else f"rejected: {refusal}"
     if container == "refuse":
-        return f"accepted, but it has {expected['why']}"
+        return f"accepted in spite of: {expected['why']}"
     if container == "bundle":
         expected = [{k: v for k, v in m.items() if k != "container"} for m in expected["messages"]]
     return None if equal(expected, decoded) else f"decoded as {json.dumps(decoded)}"
@@ -133,7 +133,7 @@ def check(folder):
     missing = {kind.__name__ for kind in KINDS.values()} - kinds
     if missing:
         print(f"no vector of: {', '.join(sorted(missing))}", file=sys.stderr)
-    print(f"{len(paths)} vectors, {len(wrong)} wrong")
+    print(f"{len(paths)} vectors, {len(wrong)} faults")
     return 1 if wrong or missing else 0
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The messages of protocol/STANDARD.md, sections 4 to 11: each table as a dictionary, or Refused."""
+"""The messages of protocol/STANDARD.md, sections 4 to 11: converts each table to a dictionary or raises Refused."""
 import math
 import struct
 
@@ -9,37 +9,37 @@ from flat_table import Table, require
 
 
 def masked(mask, n, values):
-    """Indices of the values."""
+    """Returns the indices of the values."""
     if mask is None:
-        require(len(values) in (0, n), "values for some, and no mask")
+        require(len(values) in (0, n), "mask missing for a partial list")
         return list(range(len(values)))
-    require(len(mask) == (n + 7) // 8, "a mask of another length")
+    require(len(mask) == (n + 7) // 8, "wrong length of a mask")
     indices = [i for i in range(8 * len(mask)) if mask[i // 8] >> (i % 8) & 1]
-    require(all(i < n for i in indices), "mask bits beyond the last")
-    require(len(indices) == len(values), "as many bits as values")
+    require(all(i < n for i in indices), "mask bits beyond the last item")
+    require(len(indices) == len(values), "numbers of bits and values differ")
     return indices
 
 
 def finite(values):
     for value in values:
-        require(math.isfinite(value) and abs(value) <= 1e6, "a number that is not finite or too large")
+        require(math.isfinite(value) and abs(value) <= 1e6, "number not finite or too large")
     return list(values)
 
 
 def rotation(q):
     finite(q)
-    require(abs(math.sqrt(sum(c * c for c in q)) - 1) <= 1e-3, "a rotation not of unit length")
+    require(abs(math.sqrt(sum(c * c for c in q)) - 1) <= 1e-3, "rotation not of unit length")
     return list(q)
 
 
 def unpack_rotation(words):
     bits = words[0] | words[1] << 16 | words[2] << 32
-    require(bits >> 47 == 0, "bit 47 of a packed rotation")
+    require(bits >> 47 == 0, "bit 47 of a packed rotation is set")
     codes = [bits >> shift & 0x7FFF for shift in (0, 15, 30)]
     require(all(code <= 32766 for code in codes), "32767 in a packed rotation")
     three = [(code / 32766 * 2 - 1) / math.sqrt(2) for code in codes]
     rest = 1 - sum(c * c for c in three)
-    require(rest >= -1e-6, "a packed rotation longer than 1")
+    require(rest >= -1e-6, "length of a packed rotation above 1")
     three.insert(bits >> 45 & 3, math.sqrt(max(rest, 0)))
     return three
 
@@ -50,7 +50,7 @@ def unpack_offset(value, scale):
 
 
 def either(plain, packed):
-    require(plain is None or packed is None, "both forms of one thing")
+    require(plain is None or packed is None, "both forms of one field")
     return plain or packed or []
 
 
@@ -66,7 +66,7 @@ def hexadecimal(value):
 
 
 def one_of(value, count):
-    require(value < count, "an unknown enumeration value")
+    require(value < count, "unknown enumeration value")
     return value
 
 
@@ -96,7 +96,7 @@ def goodbye(t):
 
 def error(t):
     code = t.scalar(0, "H")
-    require(1 <= code <= 13, "an unknown error code")
+    require(1 <= code <= 13, "unknown error code")
     return {"code": code, "message": t.text(1, limit=1024)}
 
 
@@ -106,20 +106,20 @@ def skeleton_offer(t):
     names, shapes = t.texts(3), t.texts(10)
     count = len(names)
     require(count + len(shapes) > 0, "neither joints nor blend shapes")
-    require(count <= 1024 and len(shapes) <= 512, "too many")
+    require(count <= 1024 and len(shapes) <= 512, "too many joints or blend shapes")
     parents = t.vector(4, "h") or []
     translations = t.vector(5, "3f") or []
     rotations = t.vector(6, "4f") or []
     scales = t.vector(7, "3f")
     scales = [[1.0, 1.0, 1.0]] * count if scales is None else scales
-    require(all(len(v) == count for v in (parents, translations, rotations, scales)), "lengths differ")
+    require(all(len(v) == count for v in (parents, translations, rotations, scales)), "vectors of different lengths")
     tails = t.vector(9, "3f") or []
     tail_of = dict(zip(masked(t.vector(8, "B"), count, tails), tails))
     unit = t.scalar(2, "f", 1.0)
     require(finite([unit])[0] > 0, "metres_per_unit")
     joints, data = [], struct.pack("<H", count)
     for i in range(count):
-        require(-1 <= parents[i] < i, "a parent that is not an earlier joint")
+        require(-1 <= parents[i] < i, "parent is not an earlier joint")
         joint = {"name": names[i], "parent": parents[i],
                  "rest_translation": finite(translations[i]),
                  "rest_rotation": rotation(rotations[i]), "rest_scale": finite(scales[i])}
@@ -131,7 +131,7 @@ def skeleton_offer(t):
             data += struct.pack("<3f", *tail_of[i])
         joints.append(joint)
     data += struct.pack("<fH", unit, len(shapes)) + b"".join(s.encode() + b"\0" for s in shapes)
-    require(fnv1a(data) == t.scalar(1, "Q"), "another hash")
+    require(fnv1a(data) == t.scalar(1, "Q"), "wrong hash")
     return {"subject": subject, "skeleton_hash": hexadecimal(t.scalar(1, "Q")),
             "metres_per_unit": unit, "joints": joints, "blend_shape_names": shapes}
 
@@ -143,14 +143,14 @@ def skeleton_reply(t):
 
 def pose(t):
     joints, shapes = t.scalar(1, "H"), t.scalar(2, "H")
-    require(joints <= 1024 and shapes <= 512, "too many")
+    require(joints <= 1024 and shapes <= 512, "too many joints or blend shapes")
     plain, packed = t.vector(5, "4f"), t.vector(6, "3H")
     either(plain, packed)
     rotations = [unpack_rotation(w) for w in packed] if packed else [rotation(q) for q in plain or []]
     plain, packed = t.vector(8, "3f"), t.vector(9, "3h")
     either(plain, packed)
     reach = finite([t.scalar(10, "f")])[0]
-    require(reach >= 0, "a range below 0")
+    require(reach >= 0, "negative range")
     translations = [[unpack_offset(c, reach / 32767) for c in v] for v in packed] if packed else [
         finite(v) for v in plain or []]
     scales = [finite(v) for v in t.vector(12, "3f") or []]
@@ -167,7 +167,7 @@ def pose(t):
 
 
 def rate(value):
-    require(0 <= finite([value])[0] <= 1000, "a rate out of range")
+    require(0 <= finite([value])[0] <= 1000, "rate out of range")
     return value
 
 
@@ -187,17 +187,17 @@ def subscribe_pictures(t):
                "height": t.scalar(3, "H", 480), "max_rate_hz": rate(t.scalar(4, "f")),
                "format": one_of(t.scalar(5, "B"), 2), "quality": t.scalar(6, "B", 80),
                "view": t.text(7, "final"), "camera_preset": t.text(8)}
-    require(16 <= message["width"] <= 4096 and 16 <= message["height"] <= 4096, "a size")
-    require(1 <= message["quality"] <= 100, "a quality")
+    require(16 <= message["width"] <= 4096 and 16 <= message["height"] <= 4096, "size out of range")
+    require(1 <= message["quality"] <= 100, "quality out of range")
     camera = t.struct(9, "7f")
     if camera is not None:
-        require(message["camera_preset"] == "", "a camera and a preset")
+        require(message["camera_preset"] == "", "both a camera and a preset")
         finite(camera)
-        require(1 < camera[6] < 170, "a field of view")
-        require(camera[0:3] != camera[3:6], "an eye at its target")
+        require(1 < camera[6] < 170, "field of view out of range")
+        require(camera[0:3] != camera[3:6], "eye equals target")
         message.update(eye=camera[0:3], target=camera[3:6], vertical_fov_degrees=camera[6])
     settings = t.texts(11, unique=False)
-    require(len(settings) <= 128 and "" not in settings, "too many settings, or an empty one")
+    require(len(settings) <= 128 and "" not in settings, "too many settings or an empty setting")
     message.update(acknowledged=t.flag(10), settings=settings, camera_follows=t.flag(12))
     return message
 
@@ -209,7 +209,7 @@ def update_pictures(t):
 
 
 def frame_ack(t):
-    require(t.scalar(0, "I") > 0, "picture 0")
+    require(t.scalar(0, "I") > 0, "number is 0")
     return {"number": t.scalar(0, "I")}
 
 
@@ -220,13 +220,13 @@ def unsubscribe(_):
 def subscribe_reply(t):
     names = t.texts(2)
     expected = fnv1a(b"".join(n.encode() + b"\0" for n in names)) if names else 0
-    require(t.scalar(1, "Q") == expected, "another hash of the names")
+    require(t.scalar(1, "Q") == expected, "wrong hash of the names")
     return {"subject": t.text(0), "names_hash": hexadecimal(expected), "names": names,
             "publisher_session": hexadecimal(t.scalar(3, "Q"))}
 
 
 def age(value):
-    require(value >= 0, "an age below 0")
+    require(value >= 0, "negative age")
     return value
 
 
@@ -234,7 +234,7 @@ def weights(t):
     plain, packed = t.vector(2, "f"), t.vector(3, "B")
     either(plain, packed)
     values = [v / 255 for v in packed] if packed is not None else finite(plain or [])
-    require(all(0 <= v <= 1 for v in values), "a weight out of range")
+    require(all(0 <= v <= 1 for v in values), "weight out of range")
     return {"names_hash": hexadecimal(t.scalar(0, "Q")), "age_us": age(t.scalar(1, "q")),
             "format": 0 if packed is None else 1, "values": values}
 
@@ -249,7 +249,7 @@ def list_subjects(t):
 
 def subjects(t):
     names, total = t.texts(0), t.scalar(1, "I")
-    require(len(names) <= total and len(set(names)) == len(names), "more names than there are, or one twice")
+    require(len(names) <= total and len(set(names)) == len(names), "more names than subjects, or a duplicate")
     return {"names": names, "total": total}
 
 
@@ -257,7 +257,7 @@ def image(t):
     data = t.vector(4, "B")
     require(data, "no bytes")
     width, height = t.scalar(0, "H"), t.scalar(1, "H")
-    require(1 <= width <= 4096 and 1 <= height <= 4096, "a size")
+    require(1 <= width <= 4096 and 1 <= height <= 4096, "size out of range")
     return {"width": width, "height": height, "format": one_of(t.scalar(2, "B"), 2),
             "age_us": age(t.scalar(3, "q")), "bytes": data, "number": t.scalar(5, "I"),
             "tier": one_of(t.scalar(6, "B"), 3), "still": t.flag(7), "dropped": t.scalar(8, "I"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The daemon's JSON (docs/HTTP-API.md), typed. What it refuses is thrown as an ApiError.
+// Typed access to the daemon's JSON (docs/HTTP-API.md). Rejected requests throw an ApiError.
 import type { CameraPreset } from './view/camera';
 
 export interface SettingInfo {
@@ -102,7 +102,7 @@ export interface Playback {
   speed: number;
 }
 
-/** What the daemon says is wrong with a request. `status` 0: it did not answer. */
+/** The daemon's reason for rejecting a request. `status` is 0 if the daemon did not reply. */
 export class ApiError extends Error {
   constructor(
     readonly status: number,
@@ -113,7 +113,7 @@ export class ApiError extends Error {
     super(message);
   }
 
-  /** One sentence for people. */
+  /** One human-readable sentence. */
   words(): string {
     const where = this.field !== '' ? `${this.field}: ` : '';
     return `${where}${this.message}${this.hint !== '' ? ` (${this.hint})` : ''}`;
@@ -125,7 +125,7 @@ async function errorOf(response: Response): Promise<ApiError> {
     const { error } = await response.json();
     return new ApiError(response.status, error.field, error.message, error.hint);
   } catch {
-    return new ApiError(response.status, '', `The daemon answered ${response.status}`);
+    return new ApiError(response.status, '', `The daemon replied with HTTP status ${response.status}`);
   }
 }
 
@@ -166,11 +166,11 @@ export const api = {
   playback: () => call<Playback>('api/playback'),
   patchPlayback: (values: Partial<Pick<Playback, 'playing' | 'loop' | 'speed' | 'position_s'>>) =>
     call<Playback>('api/playback', 'PATCH', values),
-  /** Where the rig in use is downloaded from. */
+  /** The address from which the current rig can be downloaded. */
   rigFile: 'api/rig.json',
 };
 
-/** The sentence to show for whatever was thrown. */
+/** The sentence to show for any thrown value. */
 export function wordsOf(error: unknown): string {
   if (error instanceof ApiError) return error.words();
   return error instanceof Error ? error.message : String(error);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts the page together, and keeps it supplied with what the daemon says of itself.
+// Assembles the page and feeds it with the state of the daemon.
 import { api, type DaemonStatus, type SubjectInfo, wordsOf } from './api';
 import { CapturePanel } from './panels/capture';
 import { assess } from './panels/condition';
@@ -58,7 +58,7 @@ export class App {
     this.connection = new Connection(new URL('ws', document.baseURI.replace(/^http/, 'ws').replace(/#.*$/, '')).href);
     this.curves = new CurvesPanel(state, this.history);
     this.explain = new ExplainPanel(subject, () => this.faceMap.setChosen(''));
-    this.faceMap = new FaceMap(this.history, (region, weights) => this.why(region, weights));
+    this.faceMap = new FaceMap(this.history, (region, weights) => this.explainRegion(region, weights));
     this.weights = new WeightStream(this.connection, state.subject.value, this.history, () => this.onWeights());
     this.viewer = new Viewer(this.connection, state, (text) => toasts.say(text, 'error'));
     this.capture = new CapturePanel(subject, toasts, () => void this.readRig());
@@ -79,13 +79,13 @@ export class App {
       { id: 'capture', label: 'Capture', content: this.capture.element },
       { id: 'session', label: 'Session', content: this.session.element },
     ], (id) => this.began && state.panel.set(id));
-    this.lay(parent, text.element);
+    this.buildLayout(parent, text.element);
     installKeys(commands);
-    this.wire();
+    this.connectSignals();
     void this.poll();
   }
 
-  private lay(parent: HTMLElement, dialog: HTMLElement): void {
+  private buildLayout(parent: HTMLElement, dialog: HTMLElement): void {
     this.root.append(
       this.header.element,
       this.strip.element,
@@ -98,7 +98,7 @@ export class App {
     this.state.panel.bind((panel) => this.root.classList.toggle('no-panel', panel === ''));
   }
 
-  private wire(): void {
+  private connectSignals(): void {
     const { state } = this;
     new CameraInput(this.viewer.stage.surface, {
       camera: () => state.camera.value, move: (camera) => state.camera.set(camera),
@@ -114,7 +114,7 @@ export class App {
       this.showCondition();
     });
     this.viewer.notDrawn.watch(() => this.showCondition());
-    window.addEventListener('hashchange', () => location.reload()); // somebody pasted another address
+    window.addEventListener('hashchange', () => location.reload()); // the user entered another URL
   }
 
   private commands(): Command[] {
@@ -122,18 +122,18 @@ export class App {
     const command = (key: string, words: string, run: () => void, release?: () => void): Command =>
       ({ key, words, run, ...(release ? { release } : {}) });
     return [
-      ...Array.from({ length: 9 }, (_, i) => command(String(i + 1), i === 0 ? 'framings: 1 to 9, in their order' : '', () => this.viewBar.choose(i))),
+      ...Array.from({ length: 9 }, (_, i) => command(String(i + 1), i === 0 ? 'choose framing 1 to 9' : '', () => this.viewBar.choose(i))),
       command('0', 'first framing', () => this.viewBar.choose(0)),
       command('space', 'play or pause the recording', () => this.timeline.toggle()),
-      command('c', 'hold: before the last change', () => state.comparing.set(true), () => state.comparing.set(false)),
-      command('x', 'wipe: wrinkles, shading, none', () => this.viewBar.nextWipe()),
-      command('escape', 'back from a debug view', () => state.settings.set('view', 'final', performance.now())),
+      command('c', 'hold to see the picture without the last change', () => state.comparing.set(true), () => state.comparing.set(false)),
+      command('x', 'change the wipe: wrinkles, shading, none', () => this.viewBar.nextWipe()),
+      command('escape', 'leave a debug view', () => state.settings.set('view', 'final', performance.now())),
       command('/', 'search the settings', () => this.openMenu()),
-      command('ctrl+z', 'undo a setting', () => state.settings.undo()),
+      command('ctrl+z', 'undo the last change', () => state.settings.undo()),
       command('ctrl+y', 'redo', () => state.settings.redo()),
-      command('p', 'side panel', () => this.togglePanel()),
-      command('g', 'curves', () => this.toggleDock()),
-      command('?', 'this list', () => this.help.showModal()),
+      command('p', 'show or hide the side panel', () => this.togglePanel()),
+      command('g', 'show or hide the curves', () => this.toggleDock()),
+      command('?', 'show this list', () => this.help.showModal()),
     ];
   }
 
@@ -150,7 +150,7 @@ export class App {
     this.root.classList.toggle('no-curves');
   }
 
-  private why(region: string, weights: string[]): void {
+  private explainRegion(region: string, weights: string[]): void {
     this.faceMap.setChosen(region);
     this.explain.show(region, weights);
   }
@@ -160,7 +160,7 @@ export class App {
     this.faceMap.onFrame();
   }
 
-  /** What the daemon has: on the first connection, and again when it was restarted. */
+  /** Reads settings and cameras on the first connection and after every restart of the daemon. */
   private async readDaemon(): Promise<void> {
     try {
       const [settings, cameras] = await Promise.all([api.settings(), api.cameras().catch(() => [])]);
@@ -170,7 +170,7 @@ export class App {
       } else {
         const unknown = this.state.begin(cameras);
         this.began = true;
-        if (unknown.length > 0) this.toasts.say(`The address names what this daemon does not have: ${unknown.join(', ')}`, 'error');
+        if (unknown.length > 0) this.toasts.say(`Unknown to this daemon and ignored: ${unknown.join(', ')}`, 'error');
       }
     } catch (error) {
       this.toasts.say(wordsOf(error), 'error');
@@ -183,7 +183,7 @@ export class App {
       await this.faceMap.load(this.weights.subject.value);
       await this.capture.load();
     } catch {
-      // No subject yet, or the daemon went away: read again when the subject is known.
+      // There is no subject yet, or the daemon left. The rig is read again once the subject is known.
     }
   }
 
@@ -203,7 +203,7 @@ export class App {
       [this.subjects, this.status] = await Promise.all([api.subjects(), api.status()]);
       this.showDaemon();
     } catch {
-      // The connection's state says what is wrong.
+      // The header already reports the state of the connection.
     }
   }
 
@@ -214,7 +214,7 @@ export class App {
     this.session.show(subjects, status, this.weights.subject.value);
     this.header.showSubjects(subjects.map(({ name }) => name));
     if (this.daemonSession !== '' && status.session !== this.daemonSession) {
-      this.toasts.say('The daemon was restarted; the page goes on as it was');
+      this.toasts.say('The daemon was restarted; this page keeps its settings');
     }
     this.daemonSession = status.session;
   }

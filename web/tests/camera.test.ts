@@ -23,33 +23,33 @@ test('orbit keeps target and distance and never goes over the pole', () => {
   assert(camera.eye[1] < FRONT.target[1] + 1 && camera.eye[1] > 2.49);
 });
 
-test('looking to the right turns the target to the picture’s right', () => {
-  // The camera looks along -Z: its right is +X.
+test('looking right moves the target to the left of the picture', () => {
+  // The camera looks along -Z, so its right is +X.
   near(look(FRONT, Math.PI / 2, 0).target, [1, 1.5, 1]);
   near(look(FRONT, 0, 0.1).eye, FRONT.eye);
 });
 
-test('pan by a picture height moves by what the picture shows', () => {
+test('panning by the picture height moves by the visible height', () => {
   assert(Math.abs(heightAtTarget(FRONT) - 2) < 1e-9); // 90 degrees at 1 m
-  const moved = pan(FRONT, 0.5, 0.25); // content to the right and down: the camera to the left and up
+  const moved = pan(FRONT, 0.5, 0.25); // the content moves right and down, the camera left and up
   near(moved.eye, [-1, 2, 1]);
   near(moved.target, [-1, 2, 0]);
 });
 
-test('zoom is along the view and has ends', () => {
+test('zoom follows the view direction and is limited', () => {
   near(zoom(FRONT, 0.5).eye, [0, 1.5, 0.5]);
   assert(Math.abs(distance(zoom(FRONT, 1e-9)) - 0.03) < 1e-9);
   assert(Math.abs(distance(zoom(FRONT, 1e9)) - 20) < 1e-9);
 });
 
-test('walking goes along the view, to its right, and up', () => {
+test('walking moves forward, right and up', () => {
   near(walk(FRONT, 0.5, 0, 0).eye, [0, 1.5, 0.5]);
   near(walk(FRONT, 0, 0.5, 0.25).target, [0.5, 1.75, 0]);
-  const aside = orbit(FRONT, Math.PI / 2, 0); // looks along -X: its right is -Z
+  const aside = orbit(FRONT, Math.PI / 2, 0); // looks along -X, so its right is -Z
   near(walk(aside, 0, 1, 0).eye, [1, 1.5, -1]);
 });
 
-test('the same camera is the same but for rounding', () => {
+test('camera comparison ignores rounding', () => {
   assert(sameCamera(FRONT, { ...FRONT, eye: [0.00001, 1.5, 1] }));
   assert(!sameCamera(FRONT, orbit(FRONT, 0.01, 0)));
   assert(!sameCamera(FRONT, { ...FRONT, follows: false }));

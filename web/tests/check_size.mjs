@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a browser loads before the first paint: index.html and all that it names, compressed. At most 300 kB; and
-// nothing of it may point at another address.
+// Measures what a browser loads before the first paint: index.html and the files it names, compressed. At most 300 kB.
+// None of them may refer to another host.
 import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { gzipSync } from 'node:zlib';

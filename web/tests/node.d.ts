@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The little of Node that the tests use; Node's own types would hide mistakes of browser code.
+// The part of Node that the tests use. Node's complete types would hide mistakes in browser code.
 declare module 'node:test' {
   export default function test(name: string, body: () => void | Promise<void>): void;
 }

@@ -11,7 +11,7 @@ function history(): WeightHistory {
   return weights;
 }
 
-test('weights older than what is kept are forgotten', () => {
+test('old weights are dropped', () => {
   const weights = history();
   for (let i = 0; i <= 30; ++i) weights.add({ sequence: i, atS: i, values: new Float32Array([i / 100, 0, 0]) });
   assert.equal(weights.frames.length, 11);
@@ -20,14 +20,14 @@ test('weights older than what is kept are forgotten', () => {
   assert.equal(weights.value('nobody'), 0);
 });
 
-test('the most active are those that moved, in the daemon’s order', () => {
+test('the most active weights are those that moved, in the daemon’s order', () => {
   const weights = history();
   weights.add({ sequence: 0, atS: 0, values: new Float32Array([0.9, 0, 0.2]) });
   weights.add({ sequence: 1, atS: 1, values: new Float32Array([0.9, 0.4, 0.9]) });
   assert.deepEqual(weights.mostActive(2), ['b', 'c']);
 });
 
-test('other names begin anew; frames of another length are not taken', () => {
+test('new names reset the history; frames of another length are ignored', () => {
   const weights = history();
   weights.add({ sequence: 0, atS: 0, values: new Float32Array([1, 1]) });
   assert.equal(weights.frames.length, 0);
@@ -38,7 +38,7 @@ test('other names begin anew; frames of another length are not taken', () => {
   assert.equal(weights.frames.length, 0);
 });
 
-test('the CSV is that of furrow watch', () => {
+test('the CSV equals the output of furrow watch', () => {
   const weights = history();
   weights.add({ sequence: 41, atS: 5, values: new Float32Array([0, 0.5, 1]) });
   weights.add({ sequence: 42, atS: 5.25, values: new Float32Array([0, 0.25, 1]) });
@@ -54,7 +54,7 @@ test('latency is the median of fresh pictures on the daemon’s clock', () => {
   stats.add({ ...FACTS, sequence: 2 }, 530_000, 500_000); // 40 ms
   stats.add({ ...FACTS, sequence: 3 }, 510_000, 500_000); // 20 ms
   assert.equal(stats.latencyMs(), 20);
-  stats.add({ ...FACTS, sequence: 3 }, 900_000, 500_000); // the camera moved: the same pose again
+  stats.add({ ...FACTS, sequence: 3 }, 900_000, 500_000); // the camera moved, so the same pose is drawn again
   stats.add({ ...FACTS, sequence: 4, still: true }, 900_000, 500_000);
   stats.add({ ...FACTS, sequence: 5, ageUs: 400_000 }, 900_000, 500_000);
   assert.equal(stats.latencyMs(), 20);
@@ -71,7 +71,7 @@ test('rate and drops', () => {
   assert.equal(stats.shown, 41);
 });
 
-test('a change at rest is no movement, several in a row are', () => {
+test('a single change at rest is not movement, several in a row are', () => {
   const stats = new PictureStats();
   const see = (still: boolean): boolean => {
     stats.add({ ...FACTS, still }, 0, null);
@@ -81,7 +81,7 @@ test('a change at rest is no movement, several in a row are', () => {
     [false, true, true, true, true, true, true, false, true]);
 });
 
-test('fewer pixels where pictures come too slowly, more again after a while', () => {
+test('slow pictures reduce the pixels, which return after a while', () => {
   const scale = new AdaptiveScale();
   assert(scale.observe(5, 60, 0));
   assert(scale.observe(5, 60, 1));
@@ -98,12 +98,12 @@ test('a slow publisher is not the renderer’s fault', () => {
   assert.equal(scale.scale, 1);
 });
 
-test('a try that failed is tried less often', () => {
+test('failed attempts become rarer', () => {
   const scale = new AdaptiveScale();
   scale.observe(5, 60, 0);
   let raised = 0;
   for (let s = 1; raised === 0; ++s) if (scale.observe(50, 60, s)) raised = s;
-  scale.observe(5, 60, raised + 1); // it was too much
+  scale.observe(5, 60, raised + 1); // the larger size was too slow
   let again = 0;
   for (let s = raised + 2; again === 0; ++s) if (scale.observe(50, 60, s)) again = s;
   assert(again - raised - 2 >= 2 * (raised - 1));

@@ -12,7 +12,7 @@ function model(): SettingsModel {
   return settings;
 }
 
-test('what equals the daemon is no override', () => {
+test('a value equal to the daemon’s is not an override', () => {
   const settings = model();
   settings.set('shadow.softness_mm', '5', 0);
   assert.deepEqual([...settings.overrides], [['shadow.softness_mm', '5']]);
@@ -21,7 +21,7 @@ test('what equals the daemon is no override', () => {
   assert.equal(settings.value('shadow.softness_mm'), '3');
 });
 
-test('a drag is one step of undo, a later change another', () => {
+test('a drag is one undo step, a later change another', () => {
   const settings = model();
   for (let i = 0; i < 10; ++i) settings.set('shadow.taps', String(10 + i), 50 * i);
   settings.set('wrinkles', 'off', 500);
@@ -36,7 +36,7 @@ test('a drag is one step of undo, a later change another', () => {
   assert.deepEqual(Object.fromEntries(settings.overrides), { 'shadow.taps': '19' });
 });
 
-test('a change after undo forgets what could be redone', () => {
+test('a change after undo clears the redo steps', () => {
   const settings = model();
   settings.set('wrinkles', 'off', 0);
   settings.undo();
@@ -44,7 +44,7 @@ test('a change after undo forgets what could be redone', () => {
   assert.equal(settings.canRedo, false);
 });
 
-test('compare shows what stood before the last step', () => {
+test('compare shows the values before the last step', () => {
   const settings = model();
   assert.deepEqual([...settings.previous], []);
   settings.set('wrinkles', 'off', 0);
@@ -52,7 +52,7 @@ test('compare shows what stood before the last step', () => {
   assert.deepEqual([...settings.previous], [['wrinkles', 'off']]);
 });
 
-test('a refusal leaves no trace', () => {
+test('a rejected change leaves no undo step', () => {
   const settings = model();
   settings.set('wrinkles', 'off', 0);
   const accepted = settings.overrides;
@@ -69,13 +69,13 @@ test('unknown names are returned and not sent', () => {
   assert.deepEqual(assignments(settings.overrides), ['wrinkles=off']);
 });
 
-test('the view travels apart from the settings', () => {
+test('the view is sent separately from the settings', () => {
   const settings = model();
   settings.set('view', 'normal', 0);
   assert.deepEqual(assignments(settings.overrides), []);
 });
 
-test('overrides from the address survive until the daemon is known', () => {
+test('overrides from the URL last until the daemon has replied', () => {
   const settings = new SettingsModel();
   settings.setInfos([]);
   settings.set('wrinkles', 'off', 0);
@@ -83,7 +83,7 @@ test('overrides from the address survive until the daemon is known', () => {
   assert.deepEqual([...settings.overrides], [['wrinkles', 'off']]);
 });
 
-test('values are compared by what they mean', () => {
+test('values are compared by meaning', () => {
   const [, wrinkles, background, softness] = someSettings();
   assert(sameValue(wrinkles!, 'on', 'true'));
   assert(!sameValue(wrinkles!, 'on', 'off'));
@@ -92,7 +92,7 @@ test('values are compared by what they mean', () => {
   assert(sameValue(background!, '0.1,0.2,0.3', '0.10, 0.2, 0.3'));
 });
 
-test('controls take and give what the daemon says', () => {
+test('controls convert the daemon’s values both ways', () => {
   for (const info of someSettings()) {
     if (info.kind === 'colour') continue;
     const back = fromControl(info, toControl(info, info.value));
@@ -104,12 +104,12 @@ test('controls take and give what the daemon says', () => {
   assert.equal(fromControl(background!, '#8000ff'), '0.21586,0,1');
 });
 
-test('a label says its unit once', () => {
+test('a label states its unit once', () => {
   assert.equal(labelOf(someSettings()[3]!), 'Softness (mm)');
   assert.equal(labelOf(someSettings()[4]!), 'Taps');
 });
 
-test('own presets are kept, those that ship are not overwritten', () => {
+test('own presets are saved, built-in presets are not overwritten', () => {
   const kept = new Map<string, string>();
   const store = { getItem: (key: string) => kept.get(key) ?? null, setItem: (key: string, v: string) => void kept.set(key, v) };
   const shelf = new PresetShelf(store);

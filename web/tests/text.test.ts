@@ -16,20 +16,20 @@ test('TOML has plain names first, then tables, and reads back equal', () => {
   assert.deepEqual(Object.fromEntries(fromToml(toml)), Object.fromEntries(values));
 });
 
-test('nothing changed is no text', () => assert.equal(toToml(someSettings(), new Map()), ''));
+test('no changes give no text', () => assert.equal(toToml(someSettings(), new Map()), ''));
 
 test('TOML: comments, underscores, quoted hashes, negative numbers', () => {
   const values = fromToml('# a\n[a]\nb = -1_000.5 # c\nd = "x # y"\n\n[e]\nf = true\n');
   assert.deepEqual(Object.fromEntries(values), { 'a.b': '-1000.5', 'a.d': 'x # y', 'e.f': 'on' });
 });
 
-test('bad TOML names its line', () => {
+test('errors in TOML name the line', () => {
   for (const [text, line] of [['a = 1\nb', 2], ['a = word', 1], ['a = [1, ', 1], ['= 3', 1], ['a = {}', 1]] as const) {
     assert.throws(() => fromToml(text), new RegExp(`Line ${line}:`));
   }
 });
 
-test('the address keeps the page', () => {
+test('the URL restores the page', () => {
   const state = {
     subject: 'stage left & right', wipe: 'shading' as const, strip: ['normal', 'depth'], curves: ['brow_l.squash'], panel: '',
     camera: { eye: [0.1, 1.6, 0.8] as const, target: [0, 1.6, 0] as const, fovDegrees: 24, follows: true },
@@ -40,12 +40,12 @@ test('the address keeps the page', () => {
   assert.match(hash, /subsurface\.width=1\.2/);
 });
 
-test('the page as it comes has no address', () => {
+test('the default page has an empty fragment', () => {
   assert.equal(writeAddress(readAddress('')), '');
   assert.equal(readAddress('#camera=eyes').camera, 'eyes');
 });
 
-test('nonsense in the address is left out', () => {
+test('invalid parts of the URL are ignored', () => {
   assert.equal(readAddress('#camera=1,2,x,4,5,6,7,8').camera, null);
   assert.equal(readAddress('#camera=0,0,1,0,0,0,400,1').camera, null);
   assert.equal(readAddress('#wipe=upside').wipe, 'none');

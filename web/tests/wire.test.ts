@@ -16,7 +16,7 @@ const REQUEST: PictureRequest = {
   camera: { eye: [0.5, 1.5, 1], target: [0, 1.5, 0], fovDegrees: 24, follows: true },
 };
 
-test('the envelope is what STANDARD.md section 2 says', () => {
+test('the envelope matches STANDARD.md section 2', () => {
   const bytes = writeMessage({ stream: 0x0102, session: 0x1122334455667788n, sequence: 7 }, frameAck(3));
   const head = [0x46, 0x52, 0x52, 0x57, 1, 0, 2, 1, 0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11, 7, 0, 0, 0];
   assert.deepEqual([...bytes.subarray(0, 20)], head);
@@ -28,7 +28,7 @@ test('the envelope is what STANDARD.md section 2 says', () => {
   assert.equal(message.sequence, 7);
 });
 
-test('what is no message is null', () => {
+test('bytes that are not a message read as null', () => {
   const good = writeMessage({ stream: 0, session: 1n, sequence: 0 }, frameAck(1));
   for (let length = 0; length < good.length; ++length) {
     assert.equal(readMessage(good.slice(0, length).buffer), null, `of ${length} bytes`);
@@ -40,7 +40,7 @@ test('what is no message is null', () => {
   }
 });
 
-test('a request for pictures says all that it should', () => {
+test('a picture request has all its fields', () => {
   const wanted = SubscribePictures.getRootAsSubscribePictures(new ByteBuffer(subscribePictures(REQUEST)));
   assert.equal(wanted.subject(), 'demo');
   assert.equal(wanted.wait(), true);
@@ -71,7 +71,7 @@ test('a picture is copied out of its message', () => {
   assert.deepEqual([picture.width, picture.number, picture.still, picture.receivedUs], [640, 12, true, 5e9]);
 });
 
-test('weights are read wherever they lie', () => {
+test('weights are read at any alignment', () => {
   const builder = new Builder(64);
   const values = Weights.createValuesVector(builder, [0.25, 1]);
   Weights.finishWeightsBuffer(builder, Weights.createWeights(builder, 77n, 5n, values, 0));
@@ -85,20 +85,20 @@ test('weights are read wherever they lie', () => {
   }
 });
 
-test('the clock believes the shortest round trip of late', () => {
+test('the clock uses the shortest recent round trip', () => {
   const clock = new ServerClock(3);
   assert.equal(clock.offsetUs(), null);
   clock.add(1000, 1200, 51_100); // offset 50,000 in 200
   clock.add(2000, 6000, 59_000); // slow: 55,000 in 4,000
   assert.equal(clock.offsetUs(), 50_000);
   assert.equal(clock.roundTripUs(), 200);
-  clock.add(7000, 6000, 0); // answered before it was asked
+  clock.add(7000, 6000, 0); // received before it was sent
   clock.add(8000, 8400, 68_200); // offset 60,000 in 400
   clock.add(9000, 9400, 69_200);
-  assert.equal(clock.offsetUs(), 60_000); // the first is forgotten: clocks drift
+  assert.equal(clock.offsetUs(), 60_000); // the first measurement is dropped, because clocks drift
 });
 
-test('retries are prompt, then patient', () => {
+test('retries start quickly and slow down', () => {
   const delays = Array.from({ length: 12 }, (_, i) => retryDelayMs(i));
   assert(delays[0]! <= 100 && delays.at(-1) === 4000);
   assert(delays.every((delay, i) => i === 0 || delay >= delays[i - 1]!));

@@ -12,21 +12,21 @@ const GOOD: Situation = {
   subjects: [{ name: 'demo', state: 'live', age_ms: 8 }],
 };
 
-test('each trouble has its own words', () => {
+test('each condition has its own sentence', () => {
   const cases: [Partial<Situation>, 'ok' | 'wait' | 'bad', RegExp][] = [
     [{}, 'ok', /Live: demo/],
     [{ link: 'lost' }, 'bad', /Connection lost/],
-    [{ link: 'lost', everConnected: false }, 'bad', /No daemon answers/],
+    [{ link: 'lost', everConnected: false }, 'bad', /No daemon responds/],
     [{ link: 'draining' }, 'bad', /shutting down/],
     [{ link: 'connecting' }, 'wait', /Connecting/],
     [{ subjects: null }, 'wait', /Connecting/],
-    [{ subjects: [] }, 'wait', /Nobody streams/],
-    [{ wanted: 'other' }, 'wait', /“other” is not here/],
-    [{ renders: false }, 'bad', /draws no pictures/],
-    [{ notDrawn: 'no EGL device' }, 'bad', /draws no pictures/],
+    [{ subjects: [] }, 'wait', /No subject is streaming/],
+    [{ wanted: 'other' }, 'wait', /“other” is not streaming/],
+    [{ renders: false }, 'bad', /does not render pictures/],
+    [{ notDrawn: 'no EGL device' }, 'bad', /does not render pictures/],
     [{ subjects: [{ name: 'demo', state: 'waiting', age_ms: 0 }] }, 'wait', /no pose yet/],
-    [{ subjects: [{ name: 'demo', state: 'lost', age_ms: 4200 }] }, 'bad', /silent for 4 s/],
-    [{ subjects: [{ name: 'demo', state: 'ended', age_ms: 0 }] }, 'wait', /Nobody streams/],
+    [{ subjects: [{ name: 'demo', state: 'lost', age_ms: 4200 }] }, 'bad', /No data from “demo” for 4 s/],
+    [{ subjects: [{ name: 'demo', state: 'ended', age_ms: 0 }] }, 'wait', /No subject is streaming/],
     [{ hasPicture: false }, 'wait', /first picture/],
   ];
   for (const [part, level, text] of cases) {
@@ -45,15 +45,15 @@ test('an API error names field and remedy', () => {
 const CONTRIBUTION = { value: 'brow_inner_l.squash', kind: 'pose', reference_pose: 'squash', driver_value: 0.44, gain: 1, product: 0.44, pose: null, angles: null, strain: null };
 const EXPLANATION: Explanation = { subject: 'demo', sequence: 1, weight: 'brow_l.squash', live: 0.4, result: 0.4, combined: 0.4, modulated: 0.4, contributions: [], conflicts: [] };
 
-test('why, in words', () => {
-  assert.match(contributionWords({ ...CONTRIBUTION, pose: { along: 0.44, perpendicular: 0, falloff: 1 } }), /^went 44 % of the way to the pose “squash”$/);
-  assert.match(contributionWords({ ...CONTRIBUTION, pose: { along: 0.44, perpendicular: 0.1, falloff: 0.5 } }), /cut to 50 %/);
+test('contributions are described in a sentence', () => {
+  assert.match(contributionWords({ ...CONTRIBUTION, pose: { along: 0.44, perpendicular: 0, falloff: 1 } }), /^44 % of the way to the pose “squash”$/);
+  assert.match(contributionWords({ ...CONTRIBUTION, pose: { along: 0.44, perpendicular: 0.1, falloff: 0.5 } }), /reduced to 50 %/);
   assert.equal(contributionWords({ ...CONTRIBUTION, angles: [{ what: 'flexion', degrees: 12.34 }] }), 'flexion 12.3°');
   assert.match(contributionWords({ ...CONTRIBUTION, strain: { smallest: 0.8, largest: 1.05, degrees: 0 } }), /80 % to 105 %/);
-  assert.equal(contributionWords(CONTRIBUTION), 'the coefficient itself');
+  assert.equal(contributionWords(CONTRIBUTION), 'the coefficient of the blend shape');
 });
 
-test('what does not matter is not said', () => {
+test('steps without an effect are not described', () => {
   assert.deepEqual(afterwardsWords(EXPLANATION), []);
   const all = afterwardsWords({ ...EXPLANATION, modulated: 0.3, live: 0.1, conflicts: [{ weight: 'brow_l.stretch', other: 0.5, factor: 0.7 }] });
   assert.equal(all.length, 3);
@@ -61,16 +61,16 @@ test('what does not matter is not said', () => {
 
 const PLAYBACK: Playback = { file: 'a.bvh', subject: 'a', frames: 600, seconds: 10, rate_hz: 60, position_s: 9, frame: 540, playing: true, loop: true, speed: 2 };
 
-test('the timeline runs on between answers', () => {
+test('the timeline advances between replies', () => {
   assert.equal(positionAfter(PLAYBACK, 0.25), 9.5);
-  assert.equal(positionAfter(PLAYBACK, 1), 1); // around the end
+  assert.equal(positionAfter(PLAYBACK, 1), 1); // wraps around at the end
   assert.equal(positionAfter({ ...PLAYBACK, loop: false }, 1), 10);
   assert.equal(positionAfter({ ...PLAYBACK, playing: false }, 1), 9);
   assert.equal(clockText(75.04), '1:15.0');
   assert.equal(clockText(3.2), '0:03.2');
 });
 
-test('the face map is warm where pressed, cool where drawn, grey at rest', () => {
+test('the face map is warm for compressed skin, cool for stretched skin, grey at rest', () => {
   assert.equal(colourOf(1, 0.2), 'hsl(28 85% 60%)');
   assert.equal(colourOf(0.2, 1), 'hsl(205 85% 60%)');
   assert.equal(colourOf(0, 0), 'hsl(28 0% 22%)');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The live pose becomes the performer's neutral or one of the rig's reference poses.
+// Captures the live pose as the performer's neutral pose or as a reference pose of the rig.
 import { api, type Capture, type CaptureResult, wordsOf } from '../api';
 import { button, h, select, setOptions } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
@@ -17,20 +17,20 @@ export class CapturePanel {
   private readonly done = h('ol', { class: 'captures', 'aria-label': 'Captures so far' });
 
   constructor(private readonly subject: () => string, private readonly toasts: Toasts, private readonly onChanged: () => void) {
-    this.pose = select('What the pose becomes', [], () => {
+    this.pose = select('Save the pose as', [], () => {
       this.newName.hidden = this.pose.value !== NEW;
       if (!this.newName.hidden) this.newName.focus();
     });
-    this.undo = button('Undo', () => void this.takeBack(), { disabled: true });
+    this.undo = button('Undo', () => void this.undoCapture(), { disabled: true });
     this.save = h('a', { href: api.rigFile, download: 'rig.json', class: 'button' }, 'Download rig');
     this.element = h('div', { class: 'capture' },
-      h('p', {}, 'Let the performer hold a face, then take it: as this performer\'s neutral, which all poses are measured from, or into the wrinkle rig as a pose that drivers aim at.'),
+      h('p', {}, 'Hold the expression, then click Capture. The pose becomes the neutral pose of this performer, from which all poses are measured, or a reference pose of the wrinkle rig, which its drivers use.'),
       h('div', { class: 'row' }, this.pose, this.newName),
       h('div', { class: 'row' },
-        button('Preview', () => void this.take(true), { title: 'What the weights would become; nothing changes' }),
-        button('Capture', () => void this.take(false), { class: 'primary' }), this.undo, this.save),
+        button('Preview', () => void this.capturePose(true), { title: 'Show the resulting weights without changing anything' }),
+        button('Capture', () => void this.capturePose(false), { class: 'primary' }), this.undo, this.save),
       this.error, this.result, this.done,
-      h('p', { class: 'fine' }, 'A capture changes the rig of the running daemon for every subject. No file is written: download keeps it.'));
+      h('p', { class: 'fine' }, 'A capture changes the rig of the running daemon for every subject. It is not written to a file: download the rig to keep it.'));
   }
 
   async load(): Promise<void> {
@@ -42,9 +42,9 @@ export class CapturePanel {
     this.save.textContent = rig.changed ? 'Download changed rig' : 'Download rig';
   }
 
-  private async take(preview: boolean): Promise<void> {
+  private async capturePose(preview: boolean): Promise<void> {
     const pose = this.pose.value === NEW ? this.newName.value.trim() : this.pose.value;
-    this.error.textContent = pose === '' ? 'A new pose needs a name.' : '';
+    this.error.textContent = pose === '' ? 'Enter a name for the new pose.' : '';
     if (pose === '') return;
     try {
       const result = await api.capture(this.subject(), pose, preview);
@@ -58,7 +58,7 @@ export class CapturePanel {
     }
   }
 
-  private async takeBack(): Promise<void> {
+  private async undoCapture(): Promise<void> {
     try {
       this.showCaptures((await api.undoCapture()).captures);
       this.result.replaceChildren();
@@ -74,13 +74,13 @@ export class CapturePanel {
     this.done.replaceChildren(...captures.map(({ pose }) => h('li', {}, pose)));
   }
 
-  /** Only the weights that a capture changes by more than a hundredth. */
+  /** Lists only the weights that a capture changes by more than 0.01. */
   private showResult(result: CaptureResult): void {
     const moved = result.weights.filter(({ before, after }) => Math.abs(after - before) > 0.01);
     const rows = moved.map(({ name, before, after }) =>
       h('tr', {}, h('th', { scope: 'row' }, name), h('td', { class: 'number' }, before.toFixed(2)), h('td', { class: 'number' }, after.toFixed(2))));
-    const title = result.preview ? 'Preview: this pose would give' : 'This pose now gives';
-    const note = result.added ? [h('p', { class: 'note' }, 'The pose is new: no driver of the rig aims at it yet.')] : [];
+    const title = result.preview ? 'Preview: weights with this pose' : 'Weights with the captured pose';
+    const note = result.added ? [h('p', { class: 'note' }, 'This pose is new: no driver of the rig uses it yet.')] : [];
     this.result.replaceChildren(h('h3', {}, title), ...note, moved.length === 0
       ? h('p', { class: 'empty' }, 'No weight changes.')
       : h('table', {}, h('thead', {}, h('tr', {}, ...['Weight', 'Before', 'After'].map((word) => h('th', { scope: 'col' }, word)))), h('tbody', {}, ...rows)));

@@ -9,9 +9,9 @@ import { button, download, h } from '../ui/dom';
 const SHOWN_S = 10;
 const AUTOMATIC = 5;
 const REDRAW_MS = 50;
-/** How long an automatic choice stands, so that curves do not come and go. */
+/** Seconds for which an automatic choice is kept, so that curves do not flicker. */
 const CHOICE_S = 4;
-/** Told apart on a dark ground, also by the colour-blind (Okabe and Ito, lightened). */
+/** Distinguishable on a dark background, also with colour blindness (Okabe and Ito, lightened). */
 const COLOURS = ['#f0b43c', '#62bdf0', '#3fcf9e', '#f3ec6c', '#7aa5ff', '#ff8a5c', '#e09fcb', '#e6e6e6'];
 
 export class CurvesPanel {
@@ -33,7 +33,7 @@ export class CurvesPanel {
     this.picker.addEventListener('toggle', () => this.fillPicker());
     this.element = h('section', { class: 'curves', 'aria-label': 'Weight curves' },
       h('div', { class: 'row bar-row' }, this.chips, this.picker, this.freeze,
-        button('CSV', () => this.save(), { title: 'Download what is kept (20 s) as furrow watch writes it' })),
+        button('CSV', () => this.save(), { title: 'Download the last 20 s in the format of furrow watch' })),
       this.plotHolder);
     state.curves.watch(() => {
       this.choose();
@@ -42,7 +42,7 @@ export class CurvesPanel {
     new ResizeObserver(() => this.plot?.setSize(this.size())).observe(this.plotHolder);
   }
 
-  /** A frame came. */
+  /** Called for each new frame of weights. */
   onFrame(): void {
     const nowMs = performance.now();
     if (this.frozen || nowMs - this.drawnMs < REDRAW_MS || !this.element.isConnected) return;
@@ -102,7 +102,7 @@ export class CurvesPanel {
       box.addEventListener('change', () => this.pick(name, box.checked));
       return h('label', { class: 'check' }, box, name);
     });
-    const automatic = button('The most active', () => {
+    const automatic = button('Most active', () => {
       this.picker.querySelectorAll('input').forEach((box) => (box.checked = false));
       this.state.curves.set([]);
     });

@@ -1,44 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a region wrinkles: which drivers and poses make its weights, read again while it is shown.
+// Explains a region: the drivers and poses behind its weights, refreshed while the panel is shown.
 import { api, type Contribution, type Explanation, wordsOf } from '../api';
 import { button, h, regionWords } from '../ui/dom';
 
-const AGAIN_MS = 400;
+const REFRESH_MS = 400;
 
 const fixed = (x: number): string => x.toFixed(2);
 
-/** One sentence on how a driver came to its value. */
+/** Describes how a driver computed its value. */
 export function contributionWords(item: Contribution): string {
   const parts: string[] = [];
   if (item.pose !== null) {
     const goal = item.reference_pose ? `the pose “${item.reference_pose}”` : 'its reference pose';
-    parts.push(`went ${Math.round(item.pose.along * 100)} % of the way to ${goal}`);
-    if (item.pose.falloff < 0.995) parts.push(`cut to ${Math.round(item.pose.falloff * 100)} % for straying off it`);
+    parts.push(`${Math.round(item.pose.along * 100)} % of the way to ${goal}`);
+    if (item.pose.falloff < 0.995) parts.push(`reduced to ${Math.round(item.pose.falloff * 100)} % because it deviates from that path`);
   }
   for (const { what, degrees } of item.angles ?? []) parts.push(`${what} ${degrees.toFixed(1)}°`);
   if (item.strain !== null) {
     parts.push(`skin at ${Math.round(item.strain.smallest * 100)} % to ${Math.round(item.strain.largest * 100)} % of its length`);
   }
-  return parts.length > 0 ? parts.join(', ') : `the coefficient itself`;
+  return parts.length > 0 ? parts.join(', ') : 'the coefficient of the blend shape';
 }
 
-/** What happened after the drivers were combined, in words; empty: nothing. */
+/** Describes the steps after the drivers were combined. Empty if those steps changed nothing. */
 export function afterwardsWords(explanation: Explanation): string[] {
   const words: string[] = [];
   if (Math.abs(explanation.modulated - explanation.combined) > 0.005) {
-    words.push(`Modulation makes ${fixed(explanation.combined)} into ${fixed(explanation.modulated)}.`);
+    words.push(`Modulation changes ${fixed(explanation.combined)} to ${fixed(explanation.modulated)}.`);
   }
   for (const { weight, other, factor } of explanation.conflicts) {
-    if (factor < 0.995) words.push(`${weight} at ${fixed(other)} contradicts it: times ${fixed(factor)}.`);
+    if (factor < 0.995) words.push(`${weight} is ${fixed(other)} and conflicts with this weight: multiplied by ${fixed(factor)}.`);
   }
   if (Math.abs(explanation.live - explanation.result) > 0.02) {
-    words.push(`The filter is still on its way: ${fixed(explanation.live)} live, ${fixed(explanation.result)} for this pose alone.`);
+    words.push(`The filter has not settled: ${fixed(explanation.live)} now, ${fixed(explanation.result)} for this pose without the filter.`);
   }
   return words;
 }
 
 export class ExplainPanel {
-  readonly element = h('section', { class: 'explain', 'aria-label': 'Why', hidden: true });
+  readonly element = h('section', { class: 'explain', 'aria-label': 'Explanation', hidden: true });
   private readonly title = h('h3', {});
   private readonly body = h('div', { class: 'explain-body' });
   private weights: string[] = [];
@@ -51,9 +51,9 @@ export class ExplainPanel {
 
   show(region: string, weights: string[]): void {
     this.weights = weights;
-    this.title.textContent = `Why: ${regionWords(region)}`;
+    this.title.textContent = `Explanation: ${regionWords(region)}`;
     this.element.hidden = false;
-    this.body.replaceChildren(h('p', { class: 'empty' }, 'Asking the daemon…'));
+    this.body.replaceChildren(h('p', { class: 'empty' }, 'Loading…'));
     this.element.scrollIntoView({ block: 'nearest' });
     if (this.timer !== null) clearTimeout(this.timer);
     void this.ask();
@@ -79,7 +79,7 @@ export class ExplainPanel {
       if (asked !== this.weights) return;
       this.body.replaceChildren(h('p', { class: 'error' }, wordsOf(error)));
     }
-    this.timer = setTimeout(() => void this.ask(), AGAIN_MS);
+    this.timer = setTimeout(() => void this.ask(), REFRESH_MS);
   }
 }
 

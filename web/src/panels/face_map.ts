@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the face wrinkles: the facial regions as a map, coloured by weight, and every region of the
-// rig as a list with bars. Either leads to why.
+// Shows the facial regions as a map, coloured by weight, and all regions of the rig as a list with
+// bars. A click on either opens the explanation.
 import { api, type RigInfo } from '../api';
 import type { WeightHistory } from '../state/weight_history';
 import { h, regionWords, svg } from '../ui/dom';
 
 const SVG_VIEW = '0 0 200 236';
 /**
- * Outlines of the regions that a face rig has by contract. The subject's left is at the right, as when one faces
- * them; the other side is the mirror image.
+ * Outlines of the regions that every face rig has. The map faces the viewer, so the subject's left is on the right.
+ * The other half is mirrored.
  */
 const HALF: Record<string, string> = {
   brow_l: 'M111 78 C122 66 146 62 166 78 C172 62 168 42 156 30 C142 20 124 17 111 17 Z',
@@ -29,7 +29,7 @@ interface RegionView {
   button: HTMLButtonElement;
 }
 
-/** Warm where skin is pressed together, cool where it is drawn out, by the larger of the two. */
+/** Warm for compressed skin, cool for stretched skin. The larger of the two decides. */
 export function colourOf(pressed: number, drawn: number): string {
   const strength = Math.max(pressed, drawn);
   const hue = pressed >= drawn ? 28 : 205;
@@ -46,10 +46,10 @@ export class FaceMap {
 
   constructor(private readonly history: WeightHistory, private readonly onChoose: (region: string, weights: string[]) => void) {
     this.map = h('figure', { class: 'map' }, this.picture,
-      h('figcaption', {}, h('span', { class: 'key pressed' }, 'pressed (squash, folds)'), h('span', { class: 'key drawn' }, 'drawn (stretch)')));
+      h('figcaption', {}, h('span', { class: 'key pressed' }, 'compressed (squash, folds)'), h('span', { class: 'key drawn' }, 'stretched (stretch)')));
   }
 
-  /** Reads the rig again where the subject is another. */
+  /** Loads the rig of a subject. Rebuilds the map only if the regions differ. */
   async load(subject: string): Promise<void> {
     const rig = await api.rig(subject);
     const shape = JSON.stringify(rig.regions);

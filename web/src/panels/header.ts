@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bar at the top: who, how well, and what is wrong.
+// The bar at the top: subject, condition and picture statistics.
 import type { AppState } from '../state/app_state';
 import { button, h, select, setOptions } from '../ui/dom';
 import type { PictureStats } from '../view/picture_stats';
@@ -18,13 +18,13 @@ export class Header {
     this.element = h('header', {},
       h('h1', {}, 'Furrow'), this.subject, this.status, h('span', { class: 'space' }),
       h('div', { class: 'numbers', 'aria-label': 'Picture', role: 'group' },
-        this.number('rate', 'Pictures', 'Pictures a second'),
-        this.number('latency', 'Latency', 'From the pose’s arrival at the daemon to this screen, median'),
-        this.number('dropped', 'Dropped', 'Poses that were not shown because newer ones came'),
-        this.number('tier', 'Quality', 'How strongly pictures are packed: best, medium, low; “still” is the refined picture of a pose at rest')),
+        this.number('rate', 'Pictures', 'Pictures per second'),
+        this.number('latency', 'Latency', 'Median time from the arrival of a pose at the daemon to this screen'),
+        this.number('dropped', 'Dropped', 'Poses that were replaced by newer ones before they were shown'),
+        this.number('tier', 'Quality', 'JPEG quality: best, medium or low; “still” is the refined picture of a pose at rest')),
       button('Curves', commands.dock, { title: 'Show or hide the curves (key G)' }),
       button('Panel', commands.panel, { title: 'Show or hide the side panel (key P)' }),
-      button('?', commands.help, { title: 'Keys (key ?)', 'aria-label': 'Help: keys' }));
+      button('?', commands.help, { title: 'Keyboard shortcuts (key ?)', 'aria-label': 'Help: keyboard shortcuts' }));
   }
 
   private number(id: string, label: string, title: string): HTMLElement {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A setting that is a list of choices: a folder with a switch for each, on in the order chosen.
+// A setting with a list of choices: a folder with one switch per choice. The list keeps the order in
+// which the choices were switched on.
 import type { BindingApi, FolderApi } from '@tweakpane/core';
 import type { SettingInfo } from '../api';
 import { readable } from '../ui/dom';
@@ -16,7 +17,7 @@ export class ListRow {
     this.folder = parent.addFolder({ title: labelOf(info), expanded: false });
     this.folder.element.dataset.setting = info.name;
     this.folder.element.title = info.help;
-    this.folder.element.addEventListener('pointerenter', events.onLooked);
+    this.folder.element.addEventListener('pointerenter', events.onPointed);
     for (const word of info.choices ?? []) {
       this.holder[word] = false;
       const binding = this.folder.addBinding(this.holder, word, { label: readable(word) });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The menu of the renderer's settings: made from GET /api/settings, whatever that holds.
+// The menu of the renderer's settings, built from the reply to GET /api/settings.
 import type { FolderApi } from '@tweakpane/core';
 import { Pane } from 'tweakpane';
 import type { SettingInfo } from '../api';
@@ -12,7 +12,7 @@ import { SettingRow } from './setting_binding';
 
 type Row = SettingRow | ListRow;
 
-/** Groups that are open at the beginning; the rest is a click or a search away. */
+/** Groups that are open initially. */
 const OPEN_GROUPS = new Set(['picture', 'lights']);
 
 export class SettingsMenu {
@@ -21,7 +21,7 @@ export class SettingsMenu {
   private readonly search = h('input', {
     type: 'search', placeholder: 'Search settings', 'aria-label': 'Search settings', id: 'settings-search',
   });
-  private readonly help = h('p', { class: 'help-line' }, 'Point at a setting to read what it does.');
+  private readonly help = h('p', { class: 'help-line' }, 'Point at a setting to read its description.');
   private readonly nothing = h('p', { class: 'empty', hidden: true }, 'No setting matches.');
   private readonly undo: HTMLButtonElement;
   private readonly redo: HTMLButtonElement;
@@ -38,16 +38,16 @@ export class SettingsMenu {
     const { settings } = state;
     this.undo = button('Undo', () => settings.undo(), { title: 'Undo (Ctrl+Z)' });
     this.redo = button('Redo', () => settings.redo(), { title: 'Redo (Ctrl+Y)' });
-    this.reset = button('Reset', () => settings.replace(new Map()), { title: 'All settings as the daemon has them' });
-    this.compare = button('Compare', () => {}, { title: 'Hold to see the picture before the last change (key C)' });
+    this.reset = button('Reset', () => settings.replace(new Map()), { title: 'Reset all settings to the daemon’s values' });
+    this.compare = button('Compare', () => {}, { title: 'Hold to see the picture without the last change (key C)' });
     this.shelf = new PresetShelf(storage());
     this.presets = select('Preset', [], (name) => this.choosePreset(name));
     this.search.addEventListener('input', () => this.filter());
     this.holdToCompare();
     this.element = h('div', { class: 'menu' },
       h('div', { class: 'row' }, this.presets,
-        button('Save…', () => this.savePreset(), { title: 'Keep these settings as a preset in this browser' }),
-        button('As text…', openText, { title: 'Copy as TOML, paste, set for everybody' })),
+        button('Save…', () => this.savePreset(), { title: 'Save these settings as a preset in this browser' }),
+        button('As text…', openText, { title: 'Copy or paste the settings as TOML, or set them for all viewers' })),
       h('div', { class: 'row' }, this.undo, this.redo, this.reset, this.compare),
       h('div', { class: 'row' }, this.search),
       this.paneHolder, this.nothing, this.help);
@@ -111,7 +111,7 @@ export class SettingsMenu {
     const events = {
       onChange: (text: string) => settings.set(info.name, text, performance.now()),
       onReset: () => settings.reset(info.name),
-      onLooked: () => this.explain(info),
+      onPointed: () => this.explain(info),
     };
     const Kind = info.kind === 'list' ? ListRow : SettingRow;
     return new Kind(this.folder(info.group), info, settings.value(info.name), events);
@@ -144,18 +144,18 @@ export class SettingsMenu {
     this.presets.value = '';
     if (preset === undefined) return;
     const unknown = this.state.settings.replace(preset.values);
-    if (unknown.length > 0) this.toasts.say(`This daemon has no ${unknown.join(', ')}: left out`);
+    if (unknown.length > 0) this.toasts.say(`Unknown to this daemon and ignored: ${unknown.join(', ')}`);
   }
 
   private savePreset(): void {
-    const name = prompt('Name of the preset (kept in this browser):')?.trim();
+    const name = prompt('Name of the preset (saved in this browser):')?.trim();
     if (name === undefined) return;
     if (this.shelf.save(name, this.state.settings.overrides)) this.fillPresets();
-    else this.toasts.say('That name is taken by a preset that ships', 'error');
+    else this.toasts.say('This name belongs to a built-in preset', 'error');
   }
 }
 
-/** Null where the browser forbids it. */
+/** Null if the browser forbids storage. */
 function storage(): Storage | null {
   try {
     return window.localStorage;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who streams, how well; and the daemon itself.
+// Lists the streaming subjects with their statistics, and facts about the daemon.
 import type { DaemonStatus, SubjectInfo } from '../api';
 import { h } from '../ui/dom';
 
 const HEADINGS: readonly (readonly [string, string])[] = [
-  ['Subject', 'And where it comes from'],
+  ['Subject', 'Name and source address'],
   ['State', ''],
   ['Hz', 'Poses in the last second'],
-  ['Lost', 'Share of the poses that are missing in the sequence numbers'],
-  ['Jitter', 'Of arrival against capture, ms'],
+  ['Lost', 'Share of poses lost on the way'],
+  ['Jitter', 'Arrival jitter against capture time, in ms'],
 ];
 
 export class SessionPanel {
   private readonly rows = h('tbody', {});
-  private readonly empty = h('p', { class: 'empty' }, 'Nobody streams to this daemon.');
+  private readonly empty = h('p', { class: 'empty' }, 'No subject is streaming.');
   private readonly facts = h('dl', { class: 'facts' });
   readonly element = h('div', { class: 'session' },
     h('h3', {}, 'Subjects'),
@@ -30,10 +30,10 @@ export class SessionPanel {
     if (focused !== undefined) this.rows.querySelector<HTMLElement>(`tr[data-subject="${CSS.escape(focused)}"] button`)?.focus();
     const facts: [string, string][] = [
       ['Version', status.version],
-      ['Renderer', status.render ? status.renderer : 'none: weights only'],
+      ['Renderer', status.render ? status.renderer : 'none (weights only)'],
       ['Viewers', String(status.viewers)],
-      ['Pictures', `${status.pictures_rendered} drawn, ${status.pictures_encoded} packed, ${status.pictures_dropped} dropped`],
-      ['Running for', `${Math.round(status.uptime_s)} s`],
+      ['Pictures', `${status.pictures_rendered} drawn, ${status.pictures_encoded} encoded, ${status.pictures_dropped} dropped`],
+      ['Uptime', `${Math.round(status.uptime_s)} s`],
     ];
     this.facts.replaceChildren(...facts.flatMap(([name, value]) => [h('dt', {}, name), h('dd', {}, value)]));
   }

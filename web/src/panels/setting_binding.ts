@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One setting as a row of the menu: which control it gets, and how its text becomes the control's
-// value and back. Made from what the daemon says of the setting; nothing is known of any by name.
+// One setting as a row of the menu: chooses its control and converts between the setting's text and
+// the control's value. Uses only the daemon's description of the setting, never its name.
 import type { BindingApi, BindingParams, FolderApi } from '@tweakpane/core';
 import type { SettingInfo } from '../api';
 import { isOn } from '../state/settings';
@@ -11,7 +11,7 @@ const toLinear = (x: number): number => (x <= 0.04045 ? x / 12.92 : ((x + 0.055)
 
 const hexByte = (x: number): string => Math.round(255 * Math.min(1, Math.max(0, x))).toString(16).padStart(2, '0');
 
-/** The control's value of a setting's text. Colours: linear on the wire, sRGB in the picker. */
+/** Converts a setting's text to the control's value. Colours are linear on the wire, sRGB in the picker. */
 export function toControl(info: SettingInfo, text: string): string | number | boolean {
   switch (info.kind) {
     case 'bool':
@@ -41,7 +41,7 @@ export function fromControl(info: SettingInfo, value: unknown): string {
   }
 }
 
-/** "softness (mm)" of "shadow.softness_mm". */
+/** Returns "softness (mm)" for "shadow.softness_mm". */
 export function labelOf(info: SettingInfo): string {
   let name = info.name.slice(info.name.indexOf('.') + 1);
   if (info.unit !== '' && name.endsWith(`_${info.unit}`)) name = name.slice(0, -info.unit.length - 1);
@@ -70,8 +70,8 @@ function bindingParams(info: SettingInfo): BindingParams {
 export interface RowEvents {
   onChange(text: string): void;
   onReset(): void;
-  /** The pointer or the focus is on it. */
-  onLooked(): void;
+  /** The pointer or the focus is on the row. */
+  onPointed(): void;
 }
 
 export class SettingRow {
@@ -97,10 +97,10 @@ export class SettingRow {
     // Tweakpane's colour swatch is a button without a name.
     for (const swatch of element.querySelectorAll('button')) swatch.setAttribute('aria-label', `${label}: picker`);
     this.resetButton = button('↺', events.onReset, {
-      class: 'reset', title: 'Back to the daemon’s value', 'aria-label': `Reset ${label}`, hidden: true,
+      class: 'reset', title: 'Reset to the daemon’s value', 'aria-label': `Reset ${label}`, hidden: true,
     });
     element.append(this.resetButton);
-    for (const look of ['pointerenter', 'focusin'] as const) element.addEventListener(look, events.onLooked);
+    for (const type of ['pointerenter', 'focusin'] as const) element.addEventListener(type, events.onPointed);
   }
 
   get element(): HTMLElement {
@@ -116,7 +116,7 @@ export class SettingRow {
     this.element.classList.toggle('changed', changed);
   }
 
-  /** True where it is shown. */
+  /** Shows or hides the row. Returns true if the row matches. */
   filter(query: string): boolean {
     const { name, group, help, unit, choices } = this.info;
     const haystack = [name, readable(group), help, unit, labelOf(this.info), ...(choices ?? [])].join(' ').toLowerCase();

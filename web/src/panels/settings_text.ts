@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The settings as TOML in a dialog: to copy, to paste, and to set for everybody.
+// A dialog with the settings as TOML, to copy, to paste and to set for all viewers.
 import { api, wordsOf } from '../api';
 import type { AppState } from '../state/app_state';
 import { fromToml, toToml } from '../state/toml';
@@ -16,14 +16,14 @@ export class SettingsText {
     this.everything.addEventListener('change', () => this.fill());
     this.element = h('dialog', { 'aria-labelledby': 'toml-title', class: 'settings-text' },
       h('h2', { id: 'toml-title' }, 'Settings as text'),
-      h('p', {}, 'What this page has changed, as a file for ', h('code', {}, 'furrowd --render-settings'), '. Edit or paste to apply.'),
+      h('p', {}, 'The changes of this page as a file for ', h('code', {}, 'furrowd --render-settings'), '. Edit or paste to apply.'),
       this.text, this.error,
       h('div', { class: 'row' },
-        h('label', { for: 'toml-everything', class: 'check' }, this.everything, 'All settings, not the changed alone')),
+        h('label', { for: 'toml-everything', class: 'check' }, this.everything, 'Include unchanged settings')),
       h('div', { class: 'row end' },
         button('Copy', () => void this.copy()),
-        button('Use here', () => this.useHere(), { title: 'For this page alone' }),
-        button('Set for everybody', () => void this.setForAll(), { title: 'Changes the daemon’s own settings, which every viewer starts from' }),
+        button('Apply here', () => this.applyHere(), { title: 'Apply to this page only' }),
+        button('Set for all viewers', () => void this.setForAll(), { title: 'Change the daemon’s settings, which every viewer starts with' }),
         button('Close', () => this.element.close(), { class: 'primary' })));
   }
 
@@ -38,7 +38,7 @@ export class SettingsText {
     const values = this.everything.checked
       ? new Map(settings.infos.map((info) => [info.name, settings.value(info.name)]))
       : settings.overrides;
-    this.text.value = toToml(settings.infos, values) || '# Nothing was changed here.\n';
+    this.text.value = toToml(settings.infos, values) || '# No settings were changed.\n';
     this.error.textContent = '';
   }
 
@@ -46,8 +46,8 @@ export class SettingsText {
     try {
       await navigator.clipboard.writeText(this.text.value);
     } catch {
-      this.text.select(); // not allowed outside of https and localhost: leave it selected for Ctrl+C
-      this.error.textContent = 'This browser does not let the page copy: press Ctrl+C.';
+      this.text.select(); // browsers forbid copying except on https and localhost
+      this.error.textContent = 'This browser does not allow the page to copy. Press Ctrl+C.';
       return;
     }
     this.toasts.say('Copied');
@@ -63,11 +63,11 @@ export class SettingsText {
     }
   }
 
-  private useHere(): void {
+  private applyHere(): void {
     const values = this.read();
     if (values === null) return;
     const unknown = this.state.settings.replace(values);
-    if (unknown.length > 0) this.error.textContent = `No such setting: ${unknown.join(', ')}`;
+    if (unknown.length > 0) this.error.textContent = `Unknown setting: ${unknown.join(', ')}`;
     else this.element.close();
   }
 
@@ -81,6 +81,6 @@ export class SettingsText {
       return;
     }
     this.element.close();
-    this.toasts.say('Set for everybody who has nothing else chosen');
+    this.toasts.say('Set for all viewers without their own value');
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The debug strip: targets of the pipeline as small live pictures beside the large one.
+// The debug strip: small live pictures of render targets beside the main picture.
 import type { AppState } from '../state/app_state';
 import { assignments } from '../state/settings';
 import { button, h, readable, select, setOptions } from '../ui/dom';
@@ -43,7 +43,7 @@ class Thumbnail {
 
 export class DebugStrip {
   readonly element = h('aside', { class: 'strip', 'aria-label': 'Debug views' });
-  /** For the bar below the picture. */
+  /** The select that adds views. The bar below the picture shows it. */
   readonly adder: HTMLSelectElement;
   private readonly thumbnails = new Map<string, Thumbnail>();
 

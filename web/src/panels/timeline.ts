@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The recording that the daemon plays: play, pause, scrub, loop, speed. Hidden where it plays none.
+// Controls the recording that the daemon plays: play, pause, scrub, loop and speed. Hidden if the
+// daemon plays none.
 import { api, type Playback, wordsOf } from '../api';
 import { button, h, select } from '../ui/dom';
 import type { Toasts } from '../ui/toast';
@@ -13,7 +14,7 @@ export function clockText(seconds: number): string {
   return `${minutes}:${(seconds - 60 * minutes).toFixed(1).padStart(4, '0')}`;
 }
 
-/** Where the recording stands `elapsedS` after it was asked, in [0, seconds]. */
+/** The position in the recording `elapsedS` after the daemon's reply, in [0, seconds]. */
 export function positionAfter(playback: Playback, elapsedS: number): number {
   if (!playback.playing) return playback.position_s;
   const position = playback.position_s + elapsedS * playback.speed;
@@ -54,25 +55,25 @@ export class Timeline {
     if (this.state !== null) void this.patch({ playing: !this.state.playing });
   }
 
-  /** Whether the daemon plays a recording (its status says so). */
+  /** States whether the daemon plays a recording, as reported in its status. */
   setAvailable(available: boolean): void {
     if (available === this.available) return;
     this.available = available;
     if (available) void this.poll();
-    else this.take(null);
+    else this.show(null);
   }
 
   private async poll(): Promise<void> {
     if (!this.available) return;
     try {
-      if (!document.hidden) this.take(await api.playback());
+      if (!document.hidden) this.show(await api.playback());
     } catch {
-      // Not there at the moment: the connection's own state says so.
+      // The daemon is unreachable. The header already reports the state of the connection.
     }
     setTimeout(() => void this.poll(), POLL_MS);
   }
 
-  private take(playback: Playback | null): void {
+  private show(playback: Playback | null): void {
     this.state = playback;
     this.askedMs = performance.now();
     this.element.hidden = playback === null;
@@ -110,7 +111,7 @@ export class Timeline {
 
   private async patch(values: Parameters<typeof api.patchPlayback>[0]): Promise<void> {
     try {
-      this.take(await api.patchPlayback(values));
+      this.show(await api.patchPlayback(values));
     } catch (error) {
       this.toasts.say(wordsOf(error), 'error');
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Below the picture: framing, comparison, sharpness.
+// The bar below the picture: framing, comparison and sharpness.
 import type { Wipe } from '../state/address';
 import type { AppState } from '../state/app_state';
 import { button, h, readable, select } from '../ui/dom';
@@ -9,10 +9,10 @@ const WIPES: readonly (readonly [Wipe, string])[] = [
   ['none', 'No wipe'], ['wrinkles', 'Wipe wrinkles'], ['shading', 'Wipe shading'],
 ];
 const SHARPNESS: readonly (readonly [Sharpness, string])[] = [
-  ['auto', 'Auto detail'], ['sharp', 'Full detail'], ['fast', 'Fast, coarse'],
+  ['auto', 'Auto detail'], ['sharp', 'Full detail'], ['fast', 'Fast (coarse)'],
 ];
 
-/** As in a title, but in as little room: all framings stand in one row. */
+/** A short label, because all framings share one row. */
 function shortName(name: string): string {
   return readable(name.replace('three_quarter', '¾'));
 }
@@ -32,7 +32,7 @@ export class ViewBar {
     state.wipe.bind((wipe) => (this.wipe.value = wipe));
   }
 
-  /** The n-th preset, from 0. */
+  /** Chooses the preset at `index`, counted from 0. */
   choose(index: number): void {
     const preset = this.state.presets.value[index];
     if (preset !== undefined) this.state.choosePreset(preset.name);

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page's state in its address, behind the '#', so that a reload or a link shows the same again:
-// settings under their own names, the rest under short ones.
+// The page's state in the fragment of its URL, so that a reload or a link restores the page. Settings
+// have their own names; everything else has short names.
 import type { Camera, Vec3 } from '../view/camera';
 
 export type Wipe = 'none' | 'wrinkles' | 'shading';
 
 export interface PageState {
   subject: string;
-  /** A preset's name, or where the camera was moved to; null: the first preset. */
+  /** The name of a preset, or an explicit camera. Null: the first preset. */
   camera: string | Camera | null;
   settings: Map<string, string>;
   wipe: Wipe;
-  /** Views of the debug strip, from the top. */
+  /** Views in the debug strip, from top to bottom. */
   strip: string[];
-  /** Chosen curves; empty: the most active. */
+  /** Chosen curves. Empty: the most active ones. */
   curves: string[];
-  /** The open tab of the side panel; empty: it is closed. */
+  /** The open tab of the side panel. Empty: the panel is closed. */
   panel: string;
 }
 
@@ -43,7 +43,7 @@ function readCamera(text: string): string | Camera | null {
 
 const words = (text: string | null): string[] => (text ? text.split(',').filter(Boolean) : []);
 
-/** "#..." of an address; what cannot be understood is left out. */
+/** Reads the fragment of a URL. Ignores parts that are not valid. */
 export function readAddress(hash: string): PageState {
   const parameters = new URLSearchParams(hash.replace(/^#/, ''));
   const wipe = parameters.get('wipe');
@@ -62,7 +62,7 @@ export function readAddress(hash: string): PageState {
   return state;
 }
 
-/** With the '#'; readable, since it is meant to be sent to colleagues. */
+/** Writes the fragment with its '#'. Keeps it readable, because people share these links. */
 export function writeAddress(state: PageState): string {
   const pairs: [string, string][] = [];
   if (state.subject !== '') pairs.push(['subject', state.subject]);

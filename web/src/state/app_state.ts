@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page shows, in one place; the address follows it.
+// The complete state of the page. The URL follows it.
 import { Signal } from '../ui/signal';
 import { type Camera, type CameraPreset, fromPreset, sameCamera } from '../view/camera';
 import type { Sharpness } from '../view/resolution';
@@ -15,12 +15,12 @@ export class AppState {
   readonly camera = new Signal<Camera | null>(null);
   readonly wipe: Signal<Wipe>;
   readonly strip: Signal<readonly string[]>;
-  /** Empty: the most active. */
+  /** Empty: the most active ones. */
   readonly curves: Signal<readonly string[]>;
-  /** The side panel's tab; empty: closed. */
+  /** The open tab of the side panel. Empty: closed. */
   readonly panel: Signal<string>;
   readonly sharpness = new Signal<Sharpness>('auto');
-  /** While held: the picture as it was before the last change. */
+  /** True while the user compares: the picture is drawn without the last change. */
   readonly comparing = new Signal(false);
   private readonly wishes: PageState;
   private timer: ReturnType<typeof setTimeout> | null = null;
@@ -34,7 +34,7 @@ export class AppState {
     this.panel = new Signal(this.wishes.panel);
   }
 
-  /** Once the daemon said what there is. Returns what the address asks for and nobody knows. */
+  /** Applies the URL once the daemon has replied. Returns names in the URL that the daemon does not know. */
   begin(presets: readonly CameraPreset[]): string[] {
     const unknown = this.settings.begin(this.wishes.settings);
     this.setPresets(presets);
@@ -44,7 +44,7 @@ export class AppState {
     return unknown;
   }
 
-  /** Also after a restart with another character: a preset that was chosen is chosen again. */
+  /** Also called after a restart with another character. Chooses the same preset again. */
   setPresets(presets: readonly CameraPreset[]): void {
     const chosen = this.presetName();
     this.presets.set(presets);
@@ -59,7 +59,7 @@ export class AppState {
     if (preset !== undefined) this.camera.set(fromPreset(preset));
   }
 
-  /** The preset that the camera stands at, or null. */
+  /** The preset that equals the current camera, or null. */
   presetName(): string | null {
     const camera = this.camera.value;
     if (camera === null) return null;

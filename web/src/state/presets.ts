@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Named sets of settings: a few of ours, and those that the user saves in this browser. A setting
-// that a preset does not name is the daemon's.
+// Named sets of settings: built-in presets and those that the user saves in this browser. A setting
+// that a preset does not name has the daemon's value.
 import type { Values } from './settings';
 
 export interface Preset {
   name: string;
   values: Values;
-  /** Made by the user: can be deleted. */
+  /** Saved by the user; can be deleted. */
   own: boolean;
 }
 
 const SHIPPED: Record<string, Record<string, string>> = {
-  'Daemon’s own': {},
+  'Daemon settings': {},
   'Skin, portrait': { shading: 'skin' },
   'Fast': { shading: 'diffuse', 'shadow.filter': 'off', 'occlusion.method': 'off', 'anti_aliasing.samples': '1' },
   'Wrinkles, exaggerated': { wrinkle_strength: '2.5', 'lights.preset': 'hard' },
@@ -31,7 +31,7 @@ export function shippedPresets(): Preset[] {
   }));
 }
 
-/** Of Storage what is needed here; localStorage may be forbidden, then nothing is kept. */
+/** The part of Storage that presets need. Without storage, presets last until the page is closed. */
 export interface Store {
   getItem(key: string): string | null;
   setItem(key: string, value: string): void;
@@ -48,7 +48,7 @@ export class PresetShelf {
     return [...shippedPresets(), ...this.saved];
   }
 
-  /** Replaces one of the same name; false where the name is one of ours or empty. */
+  /** Replaces a preset of the same name. Returns false if the name is empty or built-in. */
   save(name: string, values: Values): boolean {
     if (name === '' || name in SHIPPED) return false;
     this.saved = [...this.saved.filter((p) => p.name !== name), { name, values, own: true }];
@@ -79,7 +79,7 @@ export class PresetShelf {
     try {
       this.store?.setItem(KEY, JSON.stringify(Object.fromEntries(plain)));
     } catch {
-      // Full or forbidden: the preset lives until the page is closed.
+      // The storage is full or forbidden. The preset lasts until the page is closed.
     }
   }
 }

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// How this page's picture is drawn: the daemon's own settings, and what this page has instead.
+// The settings of this page's picture: the daemon's settings and this page's overrides.
 import type { SettingInfo } from '../api';
 import { Signal } from '../ui/signal';
 
-/** Values as the daemon takes them: text by name. */
+/** Values in the daemon's text form, by name. */
 export type Values = ReadonlyMap<string, string>;
 
-/** Changes of one setting that follow each other so fast are one step of undo. */
+/** Changes of one setting within this time form one undo step. */
 const ONE_STEP_MS = 800;
 const MAX_STEPS = 200;
 
-/** Whether two texts say the same of a setting: "1" and "1.0", "on" and "true". */
+/** True if two texts mean the same value of a setting, such as "1" and "1.0", or "on" and "true". */
 export function sameValue(info: SettingInfo, a: string, b: string): boolean {
   if (a === b) return true;
   if (info.kind === 'bool') return isOn(a) === isOn(b);
@@ -25,7 +25,7 @@ export function isOn(text: string): boolean {
 }
 
 export class SettingsModel {
-  /** Told of every change: values, infos, what can be undone. */
+  /** Notifies of every change of values, infos or undo steps. */
   readonly changed = new Signal(0);
   private infos_: SettingInfo[] = [];
   private byName = new Map<string, SettingInfo>();
@@ -40,7 +40,7 @@ export class SettingsModel {
   info(name: string): SettingInfo | undefined {
     return this.byName.get(name);
   }
-  /** What this page has that differs from the daemon. */
+  /** The values of this page that differ from the daemon's. */
   get overrides(): Values {
     return this.own;
   }
@@ -51,7 +51,7 @@ export class SettingsModel {
     return this.redoSteps.length > 0;
   }
 
-  /** The overrides before the last step: what "compare" shows. */
+  /** The overrides before the last undo step, which "Compare" shows. */
   get previous(): Values {
     return this.undoSteps.at(-1) ?? this.own;
   }
@@ -60,7 +60,7 @@ export class SettingsModel {
     return this.own.get(name) ?? this.byName.get(name)?.value ?? '';
   }
 
-  /** The daemon's settings, also after a reconnection or a PATCH. Steps of undo stay. */
+  /** Sets the daemon's settings, also after a reconnection or a PATCH. Undo steps remain. */
   setInfos(infos: SettingInfo[]): void {
     this.infos_ = infos;
     this.byName = new Map(infos.map((info) => [info.name, info]));
@@ -75,13 +75,13 @@ export class SettingsModel {
     this.change(new Map(this.own).set(name, value), sameStep);
   }
 
-  /** Back to what the daemon has. */
+  /** Resets a setting to the daemon's value. */
   reset(name: string): void {
     const next = new Map(this.own);
     if (next.delete(name)) this.change(next, false);
   }
 
-  /** As replace(), but nothing that could be undone: where the page begins. */
+  /** Like replace(), but without an undo step. For the start of the page. */
   begin(values: Values): string[] {
     const unknown = this.replace(values);
     this.undoSteps = [];
@@ -89,7 +89,7 @@ export class SettingsModel {
     return unknown;
   }
 
-  /** All overrides at once, as one step. Unknown names are left out and returned. */
+  /** Replaces all overrides in one undo step. Ignores unknown names and returns them. */
   replace(values: Values): string[] {
     const known = new Map<string, string>();
     const unknown: string[] = [];
@@ -108,7 +108,7 @@ export class SettingsModel {
     this.step(this.redoSteps, this.undoSteps);
   }
 
-  /** The daemon refused what is set now: back to `accepted`, leaving no trace in undo. */
+  /** Returns to `accepted` after the daemon rejected the current values. Leaves no undo step. */
   reject(accepted: Values): void {
     if (this.undoSteps.length > 0) this.undoSteps.pop();
     this.own = this.normalised(accepted);
@@ -149,7 +149,7 @@ export class SettingsModel {
   }
 }
 
-/** "name=value" for the wire; the view travels in a field of its own. */
+/** Settings as "name=value" for the wire, except the view, which has its own field. */
 export function assignments(values: Values): string[] {
   return [...values].filter(([name]) => name !== 'view').map(([name, v]) => `${name}=${v}`);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Settings as TOML, the dialect that `furrowd --render-settings` reads and writes: tables one deep;
-// strings, numbers, booleans, and arrays of strings or numbers.
+// Settings as TOML, in the subset of `furrowd --render-settings`: one level of tables, strings, numbers,
+// booleans, and arrays of strings or numbers.
 import type { SettingInfo } from '../api';
 import { isOn, type Values } from './settings';
 
@@ -19,7 +19,7 @@ function tomlValue(info: SettingInfo, text: string): string {
   }
 }
 
-/** Only what `infos` knows. What has no table comes first, as TOML wants it. */
+/** Writes the settings in `infos`. Settings without a table come first, as TOML requires. */
 export function toToml(infos: readonly SettingInfo[], values: Values): string {
   const tables = new Map<string, string[]>([['', []]]);
   for (const info of infos) {
@@ -40,7 +40,7 @@ export function toToml(infos: readonly SettingInfo[], values: Values): string {
 
 export class TomlError extends Error {}
 
-/** Without what follows a '#' outside of quotes. */
+/** Removes a comment: everything from a '#' outside quotes. */
 function withoutComment(line: string): string {
   let quoted = false;
   for (let i = 0; i < line.length; ++i) {
@@ -65,7 +65,7 @@ function plainValue(toml: string): string | null {
   return /^[+-]?[\d_]+(\.\d+)?([eE][+-]?\d+)?$/.test(toml) ? toml.replaceAll('_', '') : null;
 }
 
-/** Values by name as the daemon takes them. Throws a TomlError that names the line. */
+/** Returns values by name, in the daemon's text form. Throws a TomlError that names the line. */
 export function fromToml(text: string): Map<string, string> {
   const values = new Map<string, string>();
   let table = '';
@@ -80,7 +80,7 @@ export function fromToml(text: string): Map<string, string> {
     const pair = /^([\w.]+)\s*=\s*(.+)$/.exec(line);
     const value = pair ? plainValue(pair[2]!) : null;
     if (!pair || value === null) {
-      throw new TomlError(`Line ${index + 1}: "${line}" is not name = value (words stand in quotes)`);
+      throw new TomlError(`Line ${index + 1}: "${line}" must be name = value, with strings in quotes`);
     }
     values.set(table + pair[1]!, value);
   });

@@ -3,7 +3,7 @@
 
 export interface WeightFrame {
   sequence: number;
-  /** Seconds on the page's clock, when they came. */
+  /** Arrival time in seconds on the page's clock. */
   atS: number;
   values: Float32Array;
 }
@@ -13,7 +13,7 @@ export class WeightHistory {
   private frames_: WeightFrame[] = [];
   private index = new Map<string, number>();
 
-  /** Frames older than `seconds` are forgotten. */
+  /** Drops frames older than `seconds`. */
   constructor(readonly seconds = 20) {}
 
   get frames(): readonly WeightFrame[] {
@@ -23,7 +23,7 @@ export class WeightHistory {
     return this.frames_.at(-1);
   }
 
-  /** Another subject, or another rig: what was kept means nothing any more. */
+  /** Discards all frames, because the subject or the rig changed. */
   setNames(names: readonly string[]): void {
     if (names.length === this.names.length && names.every((n, i) => n === this.names[i])) return;
     this.names = names;
@@ -69,7 +69,7 @@ export class WeightHistory {
     return ranges.slice(0, count).sort((a, b) => a.i - b.i).map(({ name }) => name);
   }
 
-  /** As `furrow watch --format csv` writes them; time in seconds since the first row. */
+  /** The format of `furrow watch --format csv`; time in seconds since the first row. */
   toCsv(): string {
     const first = this.frames_[0]?.atS ?? 0;
     const rows = this.frames_.map(({ sequence, atS, values }) =>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elements in one expression. Text is always set as text, never parsed as HTML.
+// Creates elements in one expression. Text is always set as text, never parsed as HTML.
 
 type Attributes = Record<string, string | number | boolean | EventListener | undefined>;
 type Child = Node | string | null;
@@ -13,7 +13,7 @@ function fill(element: Element, attributes: Attributes, children: Child[]): void
   element.append(...children.filter((child) => child !== null));
 }
 
-/** `onclick` and the like take a listener; false and undefined leave an attribute out. */
+/** `onclick` and similar take a listener. An attribute with the value false or undefined is left out. */
 export function h<K extends keyof HTMLElementTagNameMap>(
   tag: K, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
@@ -32,7 +32,7 @@ export function button(label: string, onClick: () => void, attributes: Attribute
   return h('button', { type: 'button', onclick: onClick, ...attributes }, label);
 }
 
-/** A select with its label for screen readers. */
+/** Makes a select with a label for screen readers. */
 export function select(label: string, options: readonly (readonly [string, string])[],
                        onChange: (value: string) => void): HTMLSelectElement {
   const element = h('select', { 'aria-label': label });
@@ -41,7 +41,7 @@ export function select(label: string, options: readonly (readonly [string, strin
   return element;
 }
 
-/** Leaves an open list alone where nothing changed. */
+/** Does nothing if the options are unchanged, so that an open list stays open. */
 export function setOptions(element: HTMLSelectElement, options: readonly (readonly [string, string])[]): void {
   const now = Array.from(element.options, (option) => [option.value, option.text]);
   if (JSON.stringify(now) === JSON.stringify(options)) return;
@@ -50,7 +50,7 @@ export function setOptions(element: HTMLSelectElement, options: readonly (readon
   if (options.some(([value]) => value === chosen)) element.value = chosen;
 }
 
-/** Keys typed here mean text or a control's own handling, not a command of the page. */
+/** True if the element handles keys itself, as text or as a control, so that they are not page commands. */
 export function takesKeys(target: EventTarget | null): boolean {
   return target instanceof Element &&
     target.closest('input, select, textarea, button, [role=tab], [role=slider], dialog, a') !== null;
@@ -62,12 +62,12 @@ export function download(name: string, type: string, text: string): void {
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
-/** "knee_l_inner" for people: "Knee left inner", the subject's left. */
+/** A readable region name: "Knee left inner" for "knee_l_inner". Left is the subject's left. */
 export function regionWords(name: string): string {
   return readable(name.replace(/_l(?=_|$)/, '_left').replace(/_r(?=_|$)/, '_right'));
 }
 
-/** "mask_dynamic" for people. */
+/** A readable name: "Mask dynamic" for "mask_dynamic". */
 export function readable(name: string): string {
   const spaced = name.replaceAll('_', ' ');
   return spaced.charAt(0).toUpperCase() + spaced.slice(1);

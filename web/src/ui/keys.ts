@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page's keys, and the dialog that lists them.
+// The keyboard shortcuts of the page, and the dialog that lists them.
 import { button, h, takesKeys } from './dom';
 
 export interface Command {
-  /** As KeyboardEvent.key says, in lower case; "ctrl+z" with a modifier. */
+  /** KeyboardEvent.key in lowercase; "ctrl+z" with a modifier. */
   key: string;
   words: string;
   run: () => void;
@@ -11,11 +11,11 @@ export interface Command {
 }
 
 const CAMERA_KEYS: readonly (readonly [string, string])[] = [
-  ['drag, arrows', 'turn the camera about the subject'],
-  ['shift + drag, right button, two fingers', 'move the picture'],
-  ['wheel, pinch, + −', 'nearer, further'],
+  ['drag, arrows', 'orbit the camera around the subject'],
+  ['shift + drag, right button, two fingers', 'pan'],
+  ['wheel, pinch, + −', 'zoom'],
   ['alt + drag', 'look around'],
-  ['w a s d, q e', 'walk, go down and up'],
+  ['w a s d, q e', 'move the camera, down and up'],
 ];
 
 function nameOf(event: KeyboardEvent): string {
@@ -23,7 +23,7 @@ function nameOf(event: KeyboardEvent): string {
   return modifier + (event.key === ' ' ? 'space' : event.key.toLowerCase());
 }
 
-/** Keys work wherever no control wants them; those with Ctrl everywhere but in text. */
+/** Keys work unless the focused control uses them. Ctrl shortcuts work everywhere except in text fields. */
 export function installKeys(commands: readonly Command[]): void {
   document.addEventListener('keydown', (event) => {
     const name = nameOf(event);
@@ -43,10 +43,10 @@ export function helpDialog(commands: readonly Command[]): HTMLDialogElement {
     h('tr', {}, h('th', { scope: 'row' }, h('kbd', {}, keys)), h('td', {}, words));
   const shown = commands.filter(({ words }) => words !== '');
   const dialog = h('dialog', { class: 'help', 'aria-labelledby': 'help-title' },
-    h('h2', { id: 'help-title' }, 'Hands and keys'),
+    h('h2', { id: 'help-title' }, 'Mouse, touch and keyboard'),
     h('table', {}, h('tbody', {}, ...CAMERA_KEYS.map(([keys, words]) => row(keys, words)),
       ...shown.map(({ key, words }) => row(key.replace('ctrl+', 'Ctrl + '), words)))),
-    h('p', { class: 'fine' }, 'Camera keys work while the picture has the focus. What you set stands in the address: reload it, bookmark it, send it.'));
+    h('p', { class: 'fine' }, 'Camera keys work while the picture has the focus. All settings are saved in the URL, which you can bookmark or share.'));
   dialog.append(h('div', { class: 'row end' }, button('Close', () => dialog.close(), { class: 'primary' })));
   return dialog;
 }

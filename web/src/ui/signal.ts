@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-/** A value that others watch. Listeners run in the order in which they came. */
+/** A value with listeners. Listeners run in the order in which they were added. */
 export class Signal<T> {
   private readonly listeners = new Set<(value: T) => void>();
 
@@ -16,18 +16,18 @@ export class Signal<T> {
     this.tell();
   }
 
-  /** For a value that was changed in place. */
+  /** Notifies the listeners after the value was changed in place. */
   tell(): void {
     for (const listener of [...this.listeners]) listener(this.current);
   }
 
-  /** Called on every change from now on; the answer ends it. */
+  /** Calls the listener on every change. Returns a function that removes the listener. */
   watch(listener: (value: T) => void): () => void {
     this.listeners.add(listener);
     return () => this.listeners.delete(listener);
   }
 
-  /** As watch(), and at once with the value that there is. */
+  /** Like watch(), but also calls the listener at once with the current value. */
   bind(listener: (value: T) => void): () => void {
     listener(this.current);
     return this.watch(listener);

@@ -7,7 +7,7 @@ export interface Tab {
   content: HTMLElement;
 }
 
-/** A tab list by the ARIA pattern: arrow keys move, one tab stop for the list. */
+/** A tab list after the ARIA pattern: arrow keys move between tabs, and the list is one tab stop. */
 export class Tabs {
   readonly list = h('div', { role: 'tablist', class: 'tabs', 'aria-label': 'Panels' });
   readonly panels = h('div', { class: 'tab-panels' });
@@ -34,7 +34,7 @@ export class Tabs {
     return this.chosen;
   }
 
-  /** An unknown name chooses the first. */
+  /** Chooses a tab by its id. An unknown id chooses the first tab. */
   choose(id: string): void {
     this.chosen = this.buttons.has(id) ? id : this.tabs[0]!.id;
     for (const [name, tab] of this.buttons) {

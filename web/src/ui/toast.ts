@@ -3,7 +3,7 @@ import { button, h } from './dom';
 
 const SHOWN_MS = 8000;
 
-/** Short messages in the corner, read out by screen readers; each goes by itself or on its button. */
+/** Short messages in the corner, announced by screen readers. They close by themselves or with their button. */
 export class Toasts {
   readonly element = h('div', { class: 'toasts', role: 'log', 'aria-live': 'polite', 'aria-label': 'Messages' });
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the camera stands, and what dragging, wheels and keys do to it. Metres, the character's
-// model space (right-handed, Y up, the character faces +Z), degrees. All functions are pure.
+// The camera, and its response to drags, wheels and keys. Metres in the character's model space
+// (right-handed, Y up, the character faces +Z), degrees. All functions are pure.
 
 export type Vec3 = readonly [number, number, number];
 

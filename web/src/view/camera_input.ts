@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands on the camera: mouse, touch, wheel and keys on the picture.
+// Moves the camera by mouse, touch, wheel and keys on the picture.
 import { type Camera, look, orbit, pan, walk, walkSpeed, zoom } from './camera';
 
 export interface CameraHost {
@@ -7,13 +7,13 @@ export interface CameraHost {
   move(camera: Camera): void;
 }
 
-const TURN_PER_HEIGHT = Math.PI; // a drag over the picture's height
+const TURN_PER_HEIGHT = Math.PI; // radians for a drag across the height of the picture
 const ARROW_STEP = Math.PI / 36;
 const WALK_KEYS = new Set(['w', 'a', 's', 'd', 'q', 'e']);
 
 /**
  * Drag: orbit. Shift, middle or right button: pan. Alt: look around. Wheel and pinch: zoom. Two fingers: pan.
- * w a s d q e: walk, at a speed that suits the distance. Arrows: orbit; + and -: zoom.
+ * w a s d q e: walk, faster at a larger distance. Arrows: orbit. + and -: zoom.
  */
 export class CameraInput {
   private readonly pointers = new Map<number, { x: number; y: number }>();
@@ -63,7 +63,7 @@ export class CameraInput {
     }
   }
 
-  /** One of two fingers moved: half of its way pans, the change of their distance zooms. */
+  /** One of two fingers moved. Half of its movement pans, and the change of their distance zooms. */
   private onPinch(event: PointerEvent, dx: number, dy: number): void {
     const moved = this.pointers.get(event.pointerId)!;
     const other = [...this.pointers.entries()].find(([id]) => id !== event.pointerId)![1];

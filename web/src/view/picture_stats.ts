@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How late and how lossy the picture is.
+// Statistics of the pictures: rate, latency and losses.
 
 export interface PictureFacts {
   sequence: number;
@@ -34,7 +34,7 @@ export class PictureStats {
     return this.sinceStill < MOVES;
   }
 
-  /** `nowUs` and `offsetUs`: our clock, and what makes it the daemon's (null: not known yet). */
+  /** `nowUs`: time on this page's clock. `offsetUs`: its offset to the daemon's clock, null while unknown. */
   add(picture: PictureFacts, nowUs: number, offsetUs: number | null): void {
     const nowS = nowUs / 1e6;
     ++this.shown;
@@ -43,7 +43,7 @@ export class PictureStats {
     this.tier = picture.tier;
     this.still = picture.still;
     this.sinceStill = picture.still ? 0 : this.sinceStill + 1;
-    // Counts since the subscription: a smaller number is a new one.
+    // The daemon counts per subscription, so a smaller number means a new subscription.
     this.dropped += picture.dropped >= this.lastDropped ? picture.dropped - this.lastDropped : picture.dropped;
     this.lastDropped = picture.dropped;
     const isFresh = picture.ageUs === 0 && !picture.still && picture.sequence !== this.lastSequence;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// One subscription of pictures: asked for, changed, decoded, acknowledged.
+// One picture subscription: requests, updates, decoding and acknowledgements.
 import { Signal } from '../ui/signal';
 import type { Connection, Subscriber, Subscription } from '../wire/connection';
 import type { Envelope } from '../wire/envelope';
 import { frameAck, type PictureMessage, type PictureRequest, readPicture, type ReplyMessage,
   subscribePictures, unsubscribe, updatePictures } from '../wire/messages';
 
-/** A decoded picture; whoever gets it closes the bitmap. */
+/** A decoded picture. The receiver must close the bitmap. */
 export interface Picture extends Omit<PictureMessage, 'bytes'> {
   bitmap: ImageBitmap;
   sequence: number;
@@ -15,7 +15,7 @@ export interface Picture extends Omit<PictureMessage, 'bytes'> {
 
 export interface PictureEvents {
   onPicture(picture: Picture): void;
-  /** The daemon will not draw this; `error` is its sentence. */
+  /** The daemon rejected the request. `error` is its sentence. */
   onRefused(code: number, error: string): void;
 }
 
@@ -23,11 +23,11 @@ function sameView(a: PictureRequest | null, b: PictureRequest): boolean {
   return JSON.stringify(a) === JSON.stringify(b);
 }
 
-/** A view changes at most so often: a drag makes a hundred changes a second. */
+/** Minimum time between two updates of the view. A drag makes about 100 changes per second. */
 const UPDATE_MS = 33;
 
 export class PictureStream implements Subscriber {
-  /** The last change asked for has not been seen yet. */
+  /** True until a picture shows the last requested change. */
   readonly pending = new Signal(true);
   private subscription: Subscription | null = null;
   private answered = false;
@@ -35,7 +35,7 @@ export class PictureStream implements Subscriber {
   private wanted = 0;
   private timer: ReturnType<typeof setTimeout> | null = null;
   private lastUpdateMs = -Infinity;
-  /** What the daemon was told last. */
+  /** The last request sent to the daemon. */
   private asked: PictureRequest | null = null;
 
   constructor(
@@ -60,7 +60,7 @@ export class PictureStream implements Subscriber {
     return this.wantedView;
   }
 
-  /** What to show from now on. Another subject is another subscription. */
+  /** Changes the view. Another subject needs a new subscription. */
   update(view: PictureRequest): void {
     const former = this.wantedView;
     if (sameView(former, view)) return;
@@ -77,7 +77,7 @@ export class PictureStream implements Subscriber {
     this.timer = setTimeout(() => this.sendUpdate(), wait);
   }
 
-  /** Asks from the beginning, as after a refusal. */
+  /** Subscribes again, for example after a rejection. */
   restart(view: PictureRequest): void {
     this.wantedView = view;
     this.stop();
@@ -87,10 +87,10 @@ export class PictureStream implements Subscriber {
   private sendUpdate(): void {
     this.timer = null;
     this.lastUpdateMs = performance.now();
-    // Not answered yet: the answer sends what is wanted then.
+    // The daemon has not replied yet. Its reply triggers an update to the view that is current then.
     if (!this.answered) return;
     if (sameView(this.asked, this.wantedView)) {
-      this.pending.set(false); // there and back again: nothing new will come of it
+      this.pending.set(false); // the view is back at the last request, so no new picture will follow
       return;
     }
     this.asked = this.wantedView;
@@ -129,12 +129,12 @@ export class PictureStream implements Subscriber {
     try {
       bitmap = await createImageBitmap(new Blob([bytes], { type: picture.mimeType }));
     } catch {
-      // A picture that cannot be decoded is acknowledged all the same: the next one may be whole.
+      // Undecodable pictures are acknowledged too, because the next picture may be valid.
     }
     this.subscription?.send(frameAck(picture.number));
     if (bitmap === null) return;
     if (this.subscription === null || picture.number <= this.newestShown) {
-      bitmap.close(); // overtaken while it was decoded
+      bitmap.close(); // a newer picture was shown while this one was decoded
       return;
     }
     this.newestShown = picture.number;

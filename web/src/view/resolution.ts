@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many pixels the daemon is asked for. Sharp is the screen's own density; where the daemon cannot
-// draw that fast enough, "auto" asks for fewer while the picture moves and for all of them at rest.
+// The number of pixels to request. "sharp" uses the density of the screen. If the daemon cannot draw
+// that fast enough, "auto" requests fewer pixels while the picture moves and all of them at rest.
 
 export type Sharpness = 'auto' | 'sharp' | 'fast';
 
 const STEPS = [1, 0.75, 0.5, 0.35] as const;
 const TOO_SLOW_HZ = 14;
 const FAST_HZ = 27;
-/** A picture that was made larger and soon proved too large again shows that this was a mistake. */
+/** If a larger size turns out too slow within this time, the next attempt waits longer. */
 const SOON_S = 10;
 const MAX_PATIENCE_S = 64;
 
-/** Chooses one of STEPS by the rate at which pictures of a moving pose come. */
+/** Chooses one of STEPS from the picture rate of a moving pose. */
 export class AdaptiveScale {
   private step = 0;
   private fastSinceS: number | null = null;
@@ -22,7 +22,7 @@ export class AdaptiveScale {
     return STEPS[this.step]!;
   }
 
-  /** Once a second: pictures and poses a second. True: the scale changed. */
+  /** Called once per second with pictures and poses per second. Returns true if the scale changed. */
   observe(picturesHz: number, posesHz: number, nowS: number): boolean {
     if (picturesHz < Math.min(TOO_SLOW_HZ, 0.8 * posesHz)) return this.lower(nowS);
     if (picturesHz < Math.min(FAST_HZ, 0.9 * posesHz) || this.step === 0) {
@@ -46,7 +46,7 @@ export class AdaptiveScale {
   }
 }
 
-/** Pixels to ask for: the stage's CSS size times the density, of even sides, in [16, 4096]. */
+/** Pixels to request: CSS size times density, rounded to even numbers in [16, 4096]. */
 export function pictureSize(cssWidth: number, cssHeight: number, density: number, scale: number):
     { width: number; height: number } {
   const factor = Math.min(density * scale, 4096 / Math.max(cssWidth, cssHeight, 1));

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture on the screen: one, or two beside a divider that can be dragged.
+// The picture on the screen, or two pictures with a draggable divider.
 import { h } from '../ui/dom';
 import type { Picture } from './picture_stream';
 
 export type Side = 'right' | 'left';
 
-const HELP = 'Live picture. Drag or arrow keys turn the camera, w a s d walk, plus and minus zoom; ' +
-  'question mark lists all keys.';
+const HELP = 'Live picture. Drag or arrow keys orbit the camera, w a s d move it, plus and minus zoom. ' +
+  'Question mark lists all keys.';
 
 export class Stage {
   readonly canvas = h('canvas', { class: 'picture', 'aria-hidden': 'true' });
@@ -16,7 +16,7 @@ export class Stage {
     type: 'range', min: 0, max: 1000, value: 500, class: 'wipe-slider', 'aria-label': 'Position of the divider',
   });
   private readonly wipe = h('div', { class: 'wipe', hidden: true }, this.divider, this.labels.left, this.labels.right, this.slider);
-  /** Takes the camera's keys and pointers. */
+  /** Receives the keys and pointers for the camera. */
   readonly surface = h('div', { class: 'surface', tabindex: 0, role: 'application', 'aria-label': HELP }, this.canvas);
   readonly element = h('div', { class: 'stage' }, this.surface, this.wipe);
   private readonly bitmaps: Record<Side, ImageBitmap | null> = { left: null, right: null };
@@ -29,14 +29,14 @@ export class Stage {
     this.place();
   }
 
-  /** The bitmap is the stage's from now on. */
+  /** Takes ownership of the bitmap. */
   show(side: Side, picture: Picture): void {
     this.bitmaps[side]?.close();
     this.bitmaps[side] = picture.bitmap;
     this.schedule();
   }
 
-  /** Null: one picture over the whole of it. */
+  /** Sets the labels of both sides. Null: one picture without a divider. */
   setWipe(labels: { left: string; right: string } | null): void {
     this.split = labels !== null;
     this.wipe.hidden = !this.split;
@@ -92,7 +92,7 @@ export class Stage {
   }
 }
 
-/** Fills the canvas; of a picture of another shape (the window was just resized) the middle. */
+/** Fills the canvas. Crops a picture of another aspect ratio, such as just after a resize, to its middle. */
 function cover(context: CanvasRenderingContext2D, bitmap: ImageBitmap): void {
   const { width, height } = context.canvas;
   const scale = Math.max(width / bitmap.width, height / bitmap.height);

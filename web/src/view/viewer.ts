@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps the picture what the page's state says: asks for it, again where something changes, and for
-// a second one where two are compared.
+// Keeps the picture in step with the state of the page. Requests a second picture while two are
+// compared.
 import type { Wipe } from '../state/address';
 import type { AppState } from '../state/app_state';
 import { assignments, type Values } from '../state/settings';
@@ -32,7 +32,7 @@ const BAD_PICTURE = 9;
 export class Viewer {
   readonly stage = new Stage();
   readonly stats = new PictureStats();
-  /** The daemon's sentence where it draws nothing at all. */
+  /** The daemon's reason for not rendering; empty if it renders. */
   readonly notDrawn = new Signal('');
   private readonly scale = new AdaptiveScale();
   private main: PictureStream | null = null;
@@ -52,7 +52,7 @@ export class Viewer {
     connection.state.watch(() => this.onLink());
   }
 
-  /** Once a second: whether the daemon keeps up with `posesHz`. */
+  /** Called once per second to check whether the daemon keeps up with `posesHz`. */
   observeRate(posesHz: number, nowS: number): void {
     if (this.state.sharpness.value !== 'auto' || this.stats.resting || posesHz < 1) return;
     if (this.scale.observe(this.stats.rateHz(nowS), posesHz, nowS)) this.refresh();
@@ -151,9 +151,9 @@ export class Viewer {
     this.say(message);
     const { settings } = this.state;
     const isNews = assignments(settings.overrides).join() !== assignments(this.accepted).join();
-    if (code !== BAD_PICTURE || !isNews) return; // nothing to take back: asking again is in vain
+    if (code !== BAD_PICTURE || !isNews) return; // there is no change to revert, so a new request would fail too
     settings.reject(this.accepted);
-    // A subscription that was refused is none: ask from the beginning.
+    // A rejected request leaves no subscription, so subscribe again.
     this.main?.restart(this.main.view);
     this.other?.restart(this.other.view);
   }

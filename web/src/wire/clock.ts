@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The daemon's clock, seen from here. A ping's answer bounds the difference by half its round trip,
-// so the shortest of the last few is believed.
+// Estimates the offset of the daemon's clock. Half the round trip of a ping bounds the error, so the
+// shortest of the last few round trips is used.
 
 interface Sample {
   offsetUs: number;

@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// One WebSocket to the daemon, for all that the page subscribes to. It comes back by itself, and
-// what was subscribed to is subscribed to again.
+// One WebSocket to the daemon for all subscriptions of the page. It reconnects and subscribes again
+// by itself.
 import { Signal } from '../ui/signal';
 import { nowUs, ServerClock } from './clock';
 import { type Envelope, readMessage, writeMessage } from './envelope';
 import { ping, readError, readGoodbye, readPong, readReply, type ReplyMessage } from './messages';
 
 const PING_MS = 1000;
-/** So long without a word and the connection counts as lost: pongs come every second. */
+/** The connection counts as lost after this time without a message. Pongs arrive every second. */
 const SILENCE_MS = 5000;
 
-/** One subscription: what to ask for, and who hears what comes of it. */
+/** The request of a subscription and its callbacks. */
 export interface Subscriber {
-  /** The request as it should be now; called for every (re)connection. */
+  /** Returns the current request. Called for every connection. */
   request(): Uint8Array;
   onReply(reply: ReplyMessage, requestSequence: number): void;
   onMessage(message: Envelope): void;
-  /** The subject left; it is waited for. */
+  /** The subject left. The subscription waits for it. */
   onGone(): void;
-  /** `sequence`: of the request that was refused. */
+  /** `sequence`: that of the rejected request. */
   onRefused(code: number, message: string, sequence: number): void;
 }
 
 export type LinkState = 'connecting' | 'open' | 'lost' | 'draining';
 
-/** Milliseconds before try number `attempt` (from 0): at once, then slower, never above 4 s. */
+/** Milliseconds before attempt `attempt` (from 0): 100 ms, then growing up to 4 s. */
 export function retryDelayMs(attempt: number): number {
   return attempt === 0 ? 100 : Math.min(4000, 250 * 2 ** Math.min(attempt - 1, 8));
 }
@@ -37,11 +37,11 @@ function randomSession(): bigint {
 
 interface Entry {
   subscriber: Subscriber;
-  /** Of the request that made it; its reply repeats it. */
+  /** Sequence of the subscribing request, which the reply repeats. */
   sequence: number;
-  /** 0: not answered yet. */
+  /** 0 until the daemon has replied. */
   stream: number;
-  /** Sequences of requests about it, so that refusals find it. */
+  /** Sequences of requests about the subscription, to assign errors to it. */
   requests: Set<number>;
 }
 
@@ -60,7 +60,7 @@ export class Connection {
     this.connect();
   }
 
-  /** Asks at once where the line is open, else when it is. */
+  /** Sends the request now if the connection is open, otherwise once it is. */
   subscribe(subscriber: Subscriber): Subscription {
     const entry: Entry = { subscriber, sequence: 0, stream: 0, requests: new Set() };
     this.entries.add(entry);
@@ -115,7 +115,7 @@ export class Connection {
     if (performance.now() - this.heardMs > SILENCE_MS && document.visibilityState === 'visible') {
       const socket = this.socket!;
       socket.close();
-      this.closed(socket); // a dead line answers no closing handshake: do not wait for it
+      this.closed(socket); // a dead connection never completes the closing handshake
       return;
     }
     this.send(0, ping(nowUs()));
@@ -134,7 +134,7 @@ export class Connection {
     entry.requests = new Set([entry.sequence]);
   }
 
-  /** The request's sequence, or null: not sent, since there is no stream to send it on. */
+  /** Returns the sequence of the request, or null if there is no stream to send it on. */
   private sendAbout(entry: Entry, payload: Uint8Array): number | null {
     if (!this.isOpen() || entry.stream === 0) return null;
     const sequence = this.send(entry.stream, payload);
@@ -197,11 +197,11 @@ export class Connection {
   }
 }
 
-/** The handle of what Connection.subscribe() made. */
+/** Handle of a subscription made by Connection.subscribe(). */
 export interface Subscription {
-  /** A message on the subscription's stream; its sequence, or null where it could not be sent. */
+  /** Sends a message on the subscription's stream. Returns its sequence, or null if it was not sent. */
   send(payload: Uint8Array): number | null;
   close(farewell: Uint8Array): void;
-  /** Asks anew, as after a refusal. */
+  /** Subscribes again, for example after a rejection. */
   askAgain(): void;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The messages that the page sends and gets, as plain objects. FlatBuffers stays in this file.
+// The messages that the page sends and receives, as plain objects. Only this file uses FlatBuffers.
 import { Builder, ByteBuffer } from 'flatbuffers';
 import { Camera as WireCamera } from '@wire/camera';
 import { Error as WireError } from '@wire/error';
@@ -17,9 +17,9 @@ import { UpdatePictures } from '@wire/update-pictures';
 import { Weights } from '@wire/weights';
 import type { Camera } from '../view/camera';
 
-/** What a viewer wants to see: all that FSUP and FUPP carry. */
+/** A viewer's request: the content of FSUP and FUPP. */
 export interface PictureRequest {
-  /** Empty: the subject that has been there longest. */
+  /** Empty: the oldest live subject. */
   subject: string;
   width: number;
   height: number;
@@ -27,7 +27,7 @@ export interface PictureRequest {
   maxRateHz: number;
   view: string;
   camera: Camera;
-  /** "name=value" over the daemon's own settings. */
+  /** "name=value", override the daemon's settings. */
   settings: string[];
 }
 
@@ -35,7 +35,7 @@ export interface PictureMessage {
   width: number;
   height: number;
   mimeType: string;
-  /** A copy: outlives the message. */
+  /** A copy, which outlives the message. */
   bytes: Uint8Array<ArrayBuffer>;
   ageUs: number;
   number: number;
@@ -44,7 +44,7 @@ export interface PictureMessage {
   dropped: number;
   /** On the daemon's clock. */
   receivedUs: number;
-  /** Sequence of the request that this picture shows. */
+  /** Sequence of the request that defined the view. */
   viewRequest: number;
 }
 
@@ -152,7 +152,7 @@ export function readPicture(payload: Uint8Array): PictureMessage {
 
 export function readWeights(payload: Uint8Array): WeightsMessage {
   const weights = Weights.getRootAsWeights(new ByteBuffer(payload));
-  // Read one by one: a vector on the wire need not lie where a Float32Array may begin.
+  // Read one by one, because a vector on the wire may not be aligned for a Float32Array.
   const values = new Float32Array(weights.valuesLength());
   for (let i = 0; i < values.length; ++i) values[i] = weights.values(i) ?? 0;
   return { namesHash: weights.namesHash(), ageUs: Number(weights.ageUs()), values };

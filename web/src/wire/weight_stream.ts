@@ -9,7 +9,7 @@ import { readWeights, type ReplyMessage, subscribeWeights, unsubscribe } from '.
 const MAX_RATE_HZ = 120;
 
 export class WeightStream implements Subscriber {
-  /** Who is watched; empty while nobody is there. */
+  /** The watched subject; empty while there is none. */
   readonly subject = new Signal('');
   readonly error = new Signal('');
   private subscription: Subscription;
@@ -24,7 +24,7 @@ export class WeightStream implements Subscriber {
     this.subscription = connection.subscribe(this);
   }
 
-  /** Empty: whoever has been there longest. */
+  /** Empty: the oldest live subject. */
   choose(subject: string): void {
     if (subject === this.wanted) return;
     this.wanted = subject;
@@ -48,7 +48,7 @@ export class WeightStream implements Subscriber {
   onMessage(message: Envelope): void {
     if (message.identifier !== 'FWGT') return;
     const weights = readWeights(message.payload);
-    if (weights.namesHash !== this.namesHash) return; // the reply with the new names is on its way
+    if (weights.namesHash !== this.namesHash) return; // the reply with the new names has not arrived yet
     this.history.add({
       sequence: message.sequence,
       atS: performance.now() / 1000,
