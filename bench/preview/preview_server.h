@@ -19,15 +19,15 @@ namespace furrow::bench {
 // A daemon's preview, of its own parts: hub, render thread, web side, each on its thread as in
 // furrowd. What is drawn is given and ready at once, so that all that is measured is what happens
 // to a picture after it was drawn.
-class House {
+class PreviewServer {
  public:
   static constexpr double kRate = 60.0;  // poses a second
 
   // `picture`: what every frame shows, at its size. Ends the program where a socket cannot be had.
-  explicit House(render::Image picture);
-  ~House();
-  House(const House&) = delete;
-  House& operator=(const House&) = delete;
+  explicit PreviewServer(render::Image picture);
+  ~PreviewServer();
+  PreviewServer(const PreviewServer&) = delete;
+  PreviewServer& operator=(const PreviewServer&) = delete;
 
   [[nodiscard]] std::uint16_t port() const { return http_->port(); }
   [[nodiscard]] std::uint64_t Count(server::Counter counter) const { return metrics_.Get(counter); }
