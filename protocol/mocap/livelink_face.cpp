@@ -133,7 +133,8 @@ class LiveLinkFaceAdapter final : public MocapAdapter {
     Sender& sender = FindOrAdd(packet);
     sender.heard_us = now_us;
     const auto source_us = static_cast<std::int64_t>(std::llround(packet.seconds * 1e6));
-    if (sender.clock.Advance(source_us, now_us, kLateToleranceUs) == SourceClock::Order::kNotNewer) {
+    if (sender.clock.Advance(source_us, now_us, kLateToleranceUs) ==
+        SourceClock::Order::kNotNewer) {
       ++counters_.reordered;
       return;
     }
