@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Measures the fast path: the solver, the codec, the way out to subscribers, and furrowd end to end beside raw
-# UDP echoes. Writes fast_path.md and fast_path.json, load.md, load.json and the load's curves (SVG). Some 20
-# minutes; wants a machine with nothing else to do.
+# Measures the fast path: the solver, the codec, sending to subscribers, and furrowd end to end compared with raw
+# UDP echo servers. Writes fast_path.md and fast_path.json, load.md, load.json and curves of the load (SVG). Takes
+# about 20 minutes and needs an otherwise idle machine.
 #
 # usage: bench/run.sh [--quick] [--out DIR] [--build DIR]
-#   --quick      a few minutes, to see that it works: its figures say little
-#   --out DIR    default docs/performance, or with --quick bench-out
-#   --build DIR  a build with the benchmarks in it; default: preset bench, which is built first
+#   --quick      Take a few minutes to check that everything works; the figures are inaccurate
+#   --out DIR    Folder for the results (default: docs/performance, with --quick bench-out)
+#   --build DIR  Build folder with the benchmarks (default: build the preset bench first)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -51,7 +51,7 @@ step "the solver"
 "$bin/bench_wrinkle" "${micro[@]}" --benchmark_out="$raw/wrinkle.json"
 step "the codec"
 "$bin/bench_codec" "${micro[@]}" --benchmark_out="$raw/codec.json"
-step "to 64 subscribers"
+step "sending to 64 subscribers"
 "$bin/bench_fanout" "${fanout[@]}" --out "$raw"
 step "end to end"
 "$bin/bench_load" "${load[@]}" --out "$out"

@@ -6,19 +6,19 @@
 
 namespace furrow::report {
 
-// Groups of horizontal bars, one bar a series in each group; lengths from 0.
+// Groups of horizontal bars. Each group has one bar per series. Lengths start at 0.
 struct BarChart {
   std::string title;
-  std::string unit;  // of the values, for the axis
+  std::string unit;  // of the values; labels the axis
   std::vector<std::string> series;
   struct Group {
     std::string label;
-    std::vector<double> values;  // one a series
+    std::vector<double> values;  // one per series
   };
   std::vector<Group> groups;
 };
 
-// A standalone SVG picture.
+// Returns a standalone SVG picture.
 [[nodiscard]] std::string ToSvg(const BarChart& chart);
 
 }  // namespace furrow::report

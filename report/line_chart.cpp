@@ -18,12 +18,12 @@ constexpr double kTop = 56.0;
 constexpr double kBottom = 270.0;
 constexpr const char* kGrid = "#dddddd";
 
-// How many digits behind the point 1, 2 or 5 times a power of ten needs.
+// Number of decimals that 1, 2 or 5 times a power of ten needs.
 int DigitsOf(double step) {
   return std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
 }
 
-// Values to pixels along one axis.
+// Maps values to pixels along one axis.
 class Scale {
  public:
   Scale(const Axis& axis, double low, double high, double from, double to)
@@ -39,7 +39,8 @@ class Scale {
     return from_ + (to_ - from_) * (place - low_) / (high_ - low_);
   }
 
-  // Tenfold steps, or about five of 1, 2 or 5 times a power of ten, which all have the same digits.
+  // Logarithmic: powers of ten. Linear: about five steps of 1, 2 or 5 times a power of ten, all
+  // written with the same number of decimals.
   [[nodiscard]] std::vector<std::pair<double, std::string>> Ticks() const {
     std::vector<std::pair<double, std::string>> ticks;
     if (logarithmic_) {

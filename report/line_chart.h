@@ -7,15 +7,15 @@
 
 namespace furrow::report {
 
-// Where an axis begins and how it is divided.
+// The label, scale and ticks of an axis.
 struct Axis {
   std::string label;         // with its unit
-  bool logarithmic = false;  // tenfold steps; values of 0 and below are left out
-  // Names for places on the axis instead of round numbers: (value, name).
+  bool logarithmic = false;  // steps of 10; values of 0 and below are left out
+  // Named ticks instead of round numbers: (value, name).
   std::vector<std::pair<double, std::string>> ticks;
 };
 
-// Curves over one pair of axes. A linear axis begins at 0 or below.
+// Curves over one pair of axes. A linear axis starts at 0 or below.
 struct LineChart {
   std::string title;
   Axis x;
@@ -27,7 +27,7 @@ struct LineChart {
   std::vector<Series> series;
 };
 
-// A standalone SVG picture of all charts, one below the other.
+// Returns a standalone SVG picture with all charts, one below the other.
 [[nodiscard]] std::string ToSvg(const std::vector<LineChart>& charts);
 
 }  // namespace furrow::report

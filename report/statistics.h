@@ -5,7 +5,7 @@
 
 namespace furrow::report {
 
-// Of at least one sample; of an even number, the mean of the middle two.
+// Median of at least one sample. For an even number of samples, the mean of the middle two.
 [[nodiscard]] double Median(std::vector<double> samples);
 
 }  // namespace furrow::report

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-// The few SVG elements that charts are made of. Lengths in pixels, y downwards.
+// The SVG elements of charts. Lengths in pixels, y downwards.
 namespace furrow::report::svg {
 
 // `anchor`: start, middle or end.
@@ -17,13 +17,13 @@ namespace furrow::report::svg {
 [[nodiscard]] std::string Polyline(const std::vector<std::pair<double, double>>& points,
                                    const char* colour);
 
-// A whole picture on white.
+// Returns a complete picture with a white background.
 [[nodiscard]] std::string Document(double width, double height, const std::string& body);
 
-// Of the i-th series; they repeat after four.
+// Colour of a series, by its index. Colours repeat after four series.
 [[nodiscard]] const char* Colour(std::size_t series);
 
-// About three figures, whatever the size.
+// Formats a number with about three significant digits.
 [[nodiscard]] std::string Short(double value);
 
 }  // namespace furrow::report::svg

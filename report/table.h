@@ -6,17 +6,17 @@
 
 namespace furrow::report {
 
-// Rows of text, as wide as its header.
+// A table of text. All rows have as many cells as the header.
 struct Table {
   std::string title;
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
 };
 
-// A Markdown table with aligned columns and its title as a heading.
+// Returns a Markdown table with aligned columns, below its title as a heading.
 [[nodiscard]] std::string ToMarkdown(const Table& table);
 
-// "%.*f".
+// Formats a number with `digits` decimals.
 [[nodiscard]] std::string Fixed(double value, int digits);
 
 }  // namespace furrow::report

@@ -6,7 +6,7 @@
 
 namespace furrow::report {
 
-// "1 pose", "2 poses", "0 poses". `many`: the plural where it is not `one` with an s.
+// Returns "1 pose", "2 poses", "0 poses". `many` is the plural if it is not `one` with an s.
 [[nodiscard]] std::string Counted(std::uint64_t count, const std::string& one,
                                   const std::string& many = {});
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it costs to read and write poses and weights: the codec beside a copy of the same bytes,
-// and beside FlatBuffers used plainly, which checks neither counts nor numbers and unpacks nothing.
-// Poses turn every joint and move the root, as a performer does.
+// Measures reading and writing of poses and weights. Compares the codec with a copy of the same
+// bytes and with plain FlatBuffers, which checks neither counts nor numbers and unpacks nothing.
+// Poses rotate every joint and move the root, as a performer does.
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,13 +16,13 @@
 namespace furrow::protocol::bench {
 namespace {
 
-constexpr int kWeights = 37;  // of the default character's rig
+constexpr int kWeights = 37;  // in the default character's rig
 
 PoseEncoding EncodingOf(const benchmark::State& state) {
   return state.range(1) != 0 ? PoseEncoding::Small() : PoseEncoding{};
 }
 
-// Of as many joints as range(0) says.
+// Poses of range(0) joints.
 std::vector<PoseFrame> Poses(const benchmark::State& state) {
   std::vector<PoseFrame> poses;
   for (std::uint32_t seed = 0; seed < Ring<PoseFrame>::kSize; ++seed) {
@@ -33,7 +33,7 @@ std::vector<PoseFrame> Poses(const benchmark::State& state) {
   return poses;
 }
 
-// Of a format as range(0) says.
+// Weights in the format range(0).
 std::vector<WeightFrame> Weights(const benchmark::State& state) {
   std::vector<WeightFrame> frames(Ring<WeightFrame>::kSize);
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -58,7 +58,7 @@ Ring<Bytes> PoseMessages(const benchmark::State& state) {
 }
 Ring<Bytes> WeightMessages(const benchmark::State& state) { return Ring(Encoded(Weights(state))); }
 
-// `use` says false where a message is refused. Nothing is allocated after the first one.
+// `use` returns false if it rejects a message. Only the first message may allocate.
 template <class Use>
 void ForEach(benchmark::State& state, Ring<Bytes> messages, const Use& use) {
   const auto size = static_cast<std::int64_t>(messages.front().size());

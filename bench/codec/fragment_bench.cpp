@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it costs to cut a message into datagrams and to put it together again, beside a copy of it:
-// a pose of 163 joints in full, and offers of skeletons of as many joints and of the most.
+// Measures fragmentation and reassembly of a message, compared with a copy of it: a pose of 163
+// joints in floats, and skeleton offers of 163 joints and of the maximum.
 #include <array>
 #include <vector>
 
@@ -14,7 +14,7 @@
 namespace furrow::protocol::bench {
 namespace {
 
-// range(0): 0 for a pose of 163 joints, else an offer of so many.
+// range(0): 0 for a pose of 163 joints, otherwise the number of joints in an offer.
 Bytes Message(const benchmark::State& state) {
   const int joints = static_cast<int>(state.range(0));
   return joints == 0 ? test::Encoded(test::MakePose(163, 0, 1))
@@ -63,7 +63,7 @@ void BM_Reassemble(benchmark::State& state) {
     FragmentStatus status = FragmentStatus::kPending;
     for (const Bytes& datagram : datagrams) status = reassembler.Push(1, datagram, 0, whole);
     if (status != FragmentStatus::kComplete) {
-      state.SkipWithError("not whole");
+      state.SkipWithError("the message is incomplete");
       break;
     }
   }

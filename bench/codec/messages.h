@@ -16,8 +16,8 @@ namespace furrow::protocol::bench {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// Many of a kind, one after the other and round again, so that no branch is learnt by heart. What
-// they fill is above a first-level cache and within a second-level one.
+// Cycles through many messages of one kind, so that the branch predictor cannot learn them.
+// Together they exceed a first-level cache and fit a second-level cache.
 template <class T>
 class Ring {
  public:
@@ -32,16 +32,16 @@ class Ring {
   std::size_t next_ = 0;
 };
 
-// How often the loop calls operator new; counts from here to Report() or Refuse().
+// Counts calls of operator new until Report() or Refuse().
 class Allocations {
  public:
   Allocations() : before_(furrow::test::NumAllocations()) {}
-  // By message.
+  // Per message.
   void Report(benchmark::State& state) const {
     state.counters["allocations"] =
         static_cast<double>(Count()) / static_cast<double>(state.iterations());
   }
-  // One is an error of the benchmark.
+  // A single allocation fails the benchmark.
   void Refuse(benchmark::State& state) const {
     if (Count() > 0) state.SkipWithError("allocates");
   }
@@ -52,7 +52,7 @@ class Allocations {
   std::uint64_t before_;
 };
 
-// What memory alone costs: the same bytes, into one place.
+// The cost of memory access alone: copies the same bytes to one buffer.
 inline void CopyMessages(benchmark::State& state, Ring<Bytes> messages) {
   Bytes copy(messages.front().size());
   for (auto _ : state) {

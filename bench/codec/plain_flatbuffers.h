@@ -9,8 +9,8 @@
 
 namespace furrow::protocol::bench {
 
-// What a program does that trusts its peer: FlatBuffers' own verifier with its own limits, then
-// every field as it lies, packed ones packed. No number is looked at.
+// The baseline: a program that trusts its peer. It runs the FlatBuffers verifier with default
+// limits and copies every field as stored. It neither unpacks nor checks numbers.
 struct PlainPose {
   std::uint64_t skeleton_hash = 0;
   int num_joints = 0;
@@ -30,12 +30,12 @@ struct PlainWeights {
   std::array<std::uint8_t, kMaxWeights> packed_values;
 };
 
-// `payload`: at a multiple of 8, of at most as many values as there is room for. False where the
-// verifier says no.
+// `payload` must be aligned to 8 bytes and have no more values than the target has room for.
+// Returns false if the verifier rejects it.
 [[nodiscard]] bool ReadPlainly(std::span<const std::uint8_t> payload, PlainPose& pose);
 [[nodiscard]] bool ReadPlainly(std::span<const std::uint8_t> payload, PlainWeights& weights);
 
-// The verifier alone.
+// Runs only the verifier.
 [[nodiscard]] bool VerifyPlainly(std::span<const std::uint8_t> pose_payload);
 
 }  // namespace furrow::protocol::bench

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bench/fast_path/tables.h"
-#include "bench/report/take.h"
+#include "bench/report/value_or_exit.h"
 #include "report/table.h"
 
 namespace furrow::bench {
@@ -12,37 +12,39 @@ namespace {
 
 using report::Fixed;
 
-// What bench_codec measured, as cells. Names are benchmarks'.
+// The results of bench_codec as table cells, by the names of the benchmarks.
 class Cells {
  public:
   explicit Cells(const MicroResults& results) : results_(results) {}
 
   [[nodiscard]] std::string Nanoseconds(const std::string& name) const {
-    return Fixed(Take(results_.Nanoseconds(name)), 0);
+    return Fixed(ValueOrExit(results_.Nanoseconds(name)), 0);
   }
   // "364 (2.4 GB/s)"
   [[nodiscard]] std::string WithRate(const std::string& name) const {
     return Nanoseconds(name) + " (" + Fixed(BytesPerSecond(name) * 1e-9, 1) + " GB/s)";
   }
   [[nodiscard]] std::string Ratio(const std::string& name, const std::string& of) const {
-    return Fixed(Take(results_.Nanoseconds(name)) / Take(results_.Nanoseconds(of)), 1) + "x";
+    return Fixed(ValueOrExit(results_.Nanoseconds(name)) / ValueOrExit(results_.Nanoseconds(of)),
+                 1) +
+           "x";
   }
-  // Of one message.
+  // Per message.
   [[nodiscard]] std::string Bytes(const std::string& name) const {
-    return Fixed(BytesPerSecond(name) * Take(results_.Nanoseconds(name)) * 1e-9, 0);
+    return Fixed(BytesPerSecond(name) * ValueOrExit(results_.Nanoseconds(name)) * 1e-9, 0);
   }
   [[nodiscard]] std::string Count(const std::string& name, const std::string& counter) const {
-    return Fixed(Take(results_.Counter(name, counter)), 0);
+    return Fixed(ValueOrExit(results_.Counter(name, counter)), 0);
   }
 
  private:
   [[nodiscard]] double BytesPerSecond(const std::string& name) const {
-    return Take(results_.Counter(name, "bytes_per_second"));
+    return ValueOrExit(results_.Counter(name, "bytes_per_second"));
   }
   const MicroResults& results_;
 };
 
-// What reading and writing cost, behind what they are held against.
+// The cost of reading and writing, after their baselines.
 void AddReadAndWrite(const Cells& cells, const std::string& of, std::vector<std::string>* row) {
   row->insert(row->end(),
               {cells.Nanoseconds("BM_ReadPlain" + of), cells.WithRate("BM_Decode" + of),
@@ -52,7 +54,7 @@ void AddReadAndWrite(const Cells& cells, const std::string& of, std::vector<std:
 
 report::Table Poses(const Cells& cells) {
   report::Table table{
-      "The codec: poses, ns of processor time a message",
+      "The codec: poses, ns of processor time per message",
       {"joints", "as", "bytes", "copy", "copy again", "FlatBuffers: verify",
        "FlatBuffers: verify, read", "decode", "of FlatBuffers", "encode", "of the copy"},
       {}};
@@ -73,7 +75,7 @@ report::Table Poses(const Cells& cells) {
 }
 
 report::Table Weights(const Cells& cells) {
-  report::Table table{"The codec: 37 weights, ns of processor time a message",
+  report::Table table{"The codec: 37 weights, ns of processor time per message",
                       {"as", "bytes", "copy", "FlatBuffers: verify, read", "decode",
                        "of FlatBuffers", "encode", "of the copy"},
                       {}};
@@ -88,11 +90,11 @@ report::Table Weights(const Cells& cells) {
 }
 
 report::Table Fragments(const Cells& cells) {
-  report::Table table{"The codec: messages above one datagram, ns of processor time a message",
-                      {"message", "bytes", "datagrams", "copy", "cut", "of the copy",
-                       "put together", "of the copy", "allocations"},
+  report::Table table{"The codec: messages above one datagram, ns of processor time per message",
+                      {"message", "bytes", "datagrams", "copy", "split", "of the copy",
+                       "reassemble", "of the copy", "allocations"},
                       {}};
-  const std::pair<const char*, const char*> messages[] = {{"0", "pose of 163 joints in full"},
+  const std::pair<const char*, const char*> messages[] = {{"0", "pose of 163 joints in floats"},
                                                           {"163", "offer of 163 joints"},
                                                           {"1024", "offer of 1,024 joints"}};
   for (const auto& [argument, what] : messages) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts what the benchmarks of the fast path measured into one page and one file: the solver, the
-// codec, the way out to subscribers, the daemon end to end. bench/run.sh runs them all.
+// Writes one page and one JSON file with the results of the fast path: solver, codec, sending to
+// subscribers, and the daemon end to end. bench/run.sh runs all of them.
 #include <fstream>
 #include <sstream>
 
@@ -12,7 +12,7 @@
 #include "bench/report/command_line.h"
 #include "bench/report/machine.h"
 #include "bench/report/results.h"
-#include "bench/report/take.h"
+#include "bench/report/value_or_exit.h"
 
 namespace furrow::bench {
 namespace {
@@ -25,7 +25,8 @@ struct Options {
 nlohmann::json ReadJson(const std::filesystem::path& path) {
   std::ifstream file(path);
   auto json = nlohmann::json::parse(file, nullptr, false);
-  if (json.is_discarded()) FailWith({StatusCode::kInvalidArgument, "is no JSON", path.string()});
+  if (json.is_discarded())
+    FailWith({StatusCode::kInvalidArgument, "the file is not JSON", path.string()});
   return json;
 }
 
@@ -38,16 +39,15 @@ std::string ReadText(const std::filesystem::path& path) {
 }
 
 int Run(const Options& options) {
-  const auto solver = Take(MicroResults::Load(options.from / "wrinkle.json"));
-  const auto codec = Take(MicroResults::Load(options.from / "codec.json"));
+  const auto solver = ValueOrExit(MicroResults::Load(options.from / "wrinkle.json"));
+  const auto codec = ValueOrExit(MicroResults::Load(options.from / "codec.json"));
   const nlohmann::json load = ReadJson(options.out / "load.json");
-  const auto aims = Take(AimsFromJson(load.value("aims", nlohmann::json())));
+  const auto aims = ValueOrExit(AimsFromJson(load.value("aims", nlohmann::json())));
   const Machine machine = ThisMachine();
   WriteResult(options.out / "fast_path.md",
               "# The fast path\n\nMeasured by `bench/run.sh`, which ended on " + ToText(machine) +
-                  ". What is measured how: [PERFORMANCE.md](../PERFORMANCE.md).\n\n" +
-                  SolverTables(solver) + "\n" + CodecTables(codec) + "\n" +
-                  ReadText(options.from / "fanout.md") +
+                  ". Method: [PERFORMANCE.md](../PERFORMANCE.md).\n\n" + SolverTables(solver) +
+                  "\n" + CodecTables(codec) + "\n" + ReadText(options.from / "fanout.md") +
                   ToMarkdown(aims, "raw against raw", "End to end") +
                   "\nBy threads, subjects, subscribers, joints and regions: [load.md](load.md).\n");
   const nlohmann::json json = {{"measured", ToJson(machine)},
@@ -64,13 +64,13 @@ int Run(const Options& options) {
 
 int main(int argc, char** argv) {
   furrow::bench::Options options;
-  CLI::App app{"One page of what the benchmarks of the fast path measured; see bench/run.sh"};
+  CLI::App app{"Write one page with the results of the fast-path benchmarks (see bench/run.sh)"};
   app.add_option("--from", options.from,
-                 "folder of wrinkle.json and codec.json (--benchmark_out) and of bench_fanout's "
+                 "Folder of wrinkle.json and codec.json (--benchmark_out) and of bench_fanout's "
                  "fanout.md and fanout.json")
       ->required();
   app.add_option("--out", options.out,
-                 "folder of bench_load's load.json, for fast_path.md and fast_path.json")
+                 "Folder of bench_load's load.json, for fast_path.md and fast_path.json")
       ->capture_default_str();
   furrow::bench::ReadCommandLine(app, argc, argv);
   return furrow::bench::Run(options);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/fast_path/tables.h"
 #include "bench/report/aims.h"
-#include "bench/report/take.h"
+#include "bench/report/value_or_exit.h"
 #include "report/table.h"
 
 namespace furrow::bench {
@@ -9,20 +9,21 @@ namespace {
 
 using report::Fixed;
 
-// Nanoseconds of a subject-frame.
+// Nanoseconds per subject and frame.
 double ASubject(const MicroResults& results, const std::string& name, int subjects) {
-  return Take(results.Nanoseconds(name + "/subjects:" + std::to_string(subjects))) / subjects;
+  return ValueOrExit(results.Nanoseconds(name + "/subjects:" + std::to_string(subjects))) /
+         subjects;
 }
 
-// "169 (3.4x)": beside the copy of the poses.
+// "169 (3.4x)": the ratio is to copying the poses.
 std::string BesideCopy(double nanoseconds, double copy) {
   return Fixed(nanoseconds, 0) + " (" + Fixed(nanoseconds / copy, 1) + "x)";
 }
 
-// `solve` as in the benchmarks' names.
+// `solve`: part of the benchmark names.
 report::Table Synthetic(const MicroResults& results, const std::string& solve,
                         const std::string& name) {
-  report::Table table{"60 pose drivers, " + name + ": ns of processor time a subject-frame",
+  report::Table table{"60 pose drivers, " + name + ": ns of processor time per subject and frame",
                       {"subjects", "copy the poses", "scalar, 2 poses", "batch, 2 poses",
                        "scalar, 8 poses", "batch, 8 poses"},
                       {}};
@@ -41,7 +42,7 @@ report::Table Synthetic(const MicroResults& results, const std::string& solve,
 }
 
 report::Table Shipped(const MicroResults& results) {
-  report::Table table{"The rig that ships, poses of its recording: ns a subject-frame",
+  report::Table table{"The default rig with poses of its recording: ns per subject and frame",
                       {"subjects", "scalar", "batch", "batch of scalar"},
                       {}};
   for (const int subjects : {1, 16, 100}) {

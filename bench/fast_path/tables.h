@@ -7,8 +7,8 @@
 
 namespace furrow::bench {
 
-// Markdown tables of what bench_wrinkle and bench_codec measured. What was left out there ends the
-// program.
+// Return Markdown tables of the results of bench_wrinkle and bench_codec. A missing measurement
+// exits the program.
 [[nodiscard]] std::string SolverTables(const MicroResults& results);
 [[nodiscard]] std::string CodecTables(const MicroResults& results);
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "bench/report/take.h"
+#include "bench/report/value_or_exit.h"
 #include "client/cli/load/load_input.h"
 #include "client/load/verdict.h"
 #include "protocol/codec/codec.h"
@@ -17,17 +17,17 @@ using report::Fixed;
 
 constexpr double kRate = 60.0;
 constexpr double kMany = 10000.0;
-constexpr double kUdpBytes = 28.0;  // of IPv4 and UDP before each datagram
+constexpr double kUdpBytes = 28.0;  // IPv4 and UDP headers of each datagram
 
-// Bytes on the wire of one pose, and of its weights for one subscriber.
+// Bytes on the wire for one pose, and for its weights to one subscriber.
 struct WireBytes {
   double pose = 0.0;
   double weights = 0.0;
 };
 
-WireBytes Measure(const Setting& setting) {
-  const auto performance =
-      Take(cli::LoadPerformance({.file = setting.recording, .rig = setting.rig, .quantise = true}));
+WireBytes Measure(const LoadSetup& setting) {
+  const auto performance = ValueOrExit(
+      cli::LoadPerformance({.file = setting.recording, .rig = setting.rig, .quantise = true}));
   protocol::WeightFrame frame;
   frame.values.resize(performance.binding->weight_names().size(), 0.5f);
   std::vector<std::uint8_t> weights;
@@ -42,7 +42,7 @@ std::string Gigabits(double bytes_per_second) {
 
 }  // namespace
 
-std::string BudgetMarkdown(const Curve& subjects, const Setting& setting) {
+std::string BudgetMarkdown(const Curve& subjects, const LoadSetup& setting) {
   const Curve::Point* few = nullptr;
   const Curve::Point* many = nullptr;
   for (const Curve::Point& point : subjects.points) {
@@ -50,7 +50,7 @@ std::string BudgetMarkdown(const Curve& subjects, const Setting& setting) {
     if (few == nullptr) few = &point;
     many = &point;
   }
-  if (few == many) return "No two numbers of subjects were held: there is nothing to reckon.\n";
+  if (few == many) return "The budget needs two numbers of subjects without loss.\n";
   const auto core_share = [](const Curve::Point& point) {
     return *point.run.cpu_seconds / point.run.seconds;
   };
@@ -62,11 +62,11 @@ std::string BudgetMarkdown(const Curve& subjects, const Setting& setting) {
   const double memory = (resident(*many) - resident(*few)) / more;
   const WireBytes wire = Measure(setting);
   const report::Table table{
-      "What a performer at 60 Hz costs, and 10,000 of them",
+      "Cost of one performer and of 10,000 performers at 60 Hz",
       {"", "one", "10,000"},
-      {{"largest number held by one core, p99 < 16.7 ms", Fixed(many->x, 0), ""},
-       {"processor", Fixed(1e6 * cores / kRate, 1) + " us a pose",
-        Fixed(std::ceil(kMany * cores), 0) + " cores kept busy"},
+      {{"largest number on one core, p99 < 16.7 ms", Fixed(many->x, 0), ""},
+       {"processor", Fixed(1e6 * cores / kRate, 1) + " us per pose",
+        Fixed(std::ceil(kMany * cores), 0) + " busy cores"},
        {"memory", Fixed(memory / 1024.0, 1) + " KiB",
         Fixed(kMany * memory / (1 << 30), 2) + " GiB"},
        {"poses in, packed", Fixed(wire.pose, 0) + " bytes", Gigabits(kMany * kRate * wire.pose)},

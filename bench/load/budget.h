@@ -4,13 +4,13 @@
 #include <string>
 
 #include "bench/load/curves.h"
-#include "bench/load/setting.h"
+#include "bench/load/load_setup.h"
 
 namespace furrow::bench {
 
-// What a performer at 60 Hz costs and what 10,000 of them ask for, from the curve of subjects: a
-// table. Processor time and memory are slopes between the points with the fewest and the most
-// subjects that lost nothing, so that what a daemon costs by itself does not count.
-[[nodiscard]] std::string BudgetMarkdown(const Curve& subjects, const Setting& setting);
+// Returns a table with the cost of one performer at 60 Hz and the requirements of 10,000, computed
+// from the curve of subjects. Processor time and memory are slopes between the points with the
+// fewest and the most subjects without loss, so the base cost of a daemon does not count.
+[[nodiscard]] std::string BudgetMarkdown(const Curve& subjects, const LoadSetup& setting);
 
 }  // namespace furrow::bench

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/load/variants.h"
-#include "bench/report/take.h"
+#include "bench/report/value_or_exit.h"
 #include "client/load/report.h"
 #include "report/line_chart.h"
 #include "report/table.h"
@@ -18,7 +18,7 @@ namespace {
 using report::Fixed;
 using report::LineChart;
 
-constexpr int kCrowd = 100;  // subjects, where something else grows
+constexpr int kCrowd = 100;  // subjects, while another quantity grows
 
 void Add(Curve& curve, double x, load::RunResult run) {
   std::fprintf(stderr, "%s: %.0f\n", curve.id.c_str(), x);
@@ -55,17 +55,18 @@ LineChart::Series Series(const Curve& curve, const std::string& name, const Valu
 
 }  // namespace
 
-Curve GrowSubjects(const Setting& setting) {
+Curve GrowSubjects(const LoadSetup& setting) {
   Curve curve{"load-subjects", "Subjects at 60 Hz", "subjects", {}};
   for (const int subjects : {1, 50, 100, 200, 400, 700, 1000, 1400}) {
     Add(curve, subjects,
-        Take(RunFresh(setting, setting.recording, setting.rig, At60Hz(subjects, setting.seconds))));
+        ValueOrExit(
+            RunFresh(setting, setting.recording, setting.rig, At60Hz(subjects, setting.seconds))));
   }
   return curve;
 }
 
-Curve GrowSubscribers(const Setting& setting) {
-  constexpr int kFew = 16;  // subjects: 64 subscribers of each are 61,440 messages a second
+Curve GrowSubscribers(const LoadSetup& setting) {
+  constexpr int kFew = 16;  // subjects: 64 subscribers of each receive 61,440 messages per second
   Curve curve{"load-subscribers",
               "Subscribers of each of 16 subjects at 60 Hz",
               "subscribers of each subject",
@@ -73,24 +74,25 @@ Curve GrowSubscribers(const Setting& setting) {
   for (const int subscribers : {1, 2, 4, 8, 16, 32, 64}) {
     load::RunOptions options = At60Hz(kFew, setting.seconds);
     options.watchers = subscribers;
-    Add(curve, subscribers, Take(RunFresh(setting, setting.recording, setting.rig, options)));
+    Add(curve, subscribers,
+        ValueOrExit(RunFresh(setting, setting.recording, setting.rig, options)));
   }
   return curve;
 }
 
-Curve GrowJoints(const Setting& setting) {
+Curve GrowJoints(const LoadSetup& setting) {
   Curve curve{"load-joints", "Joints of each of 100 subjects at 60 Hz", "joints", {}};
   for (const int joints : {51, 100, 163, 250, 400}) {
     const auto recording = setting.folder / ("joints-" + std::to_string(joints) + ".bvh");
     if (Status status = SavePaddedRecording(setting.recording, joints, recording); !status.ok())
       FailWith(status);
     Add(curve, joints,
-        Take(RunFresh(setting, recording, setting.rig, At60Hz(kCrowd, setting.seconds))));
+        ValueOrExit(RunFresh(setting, recording, setting.rig, At60Hz(kCrowd, setting.seconds))));
   }
   return curve;
 }
 
-Curve GrowRegions(const Setting& setting) {
+Curve GrowRegions(const LoadSetup& setting) {
   Curve curve{"load-regions",
               "Regions and their drivers, 100 subjects at 60 Hz",
               "wrinkle weights of a subject",
@@ -98,9 +100,9 @@ Curve GrowRegions(const Setting& setting) {
   for (const int copies : {1, 2, 3, 4}) {
     const auto rig = setting.folder / ("regions-" + std::to_string(copies) + ".json");
     if (Status status = SaveMultipliedRig(setting.rig, copies, rig); !status.ok()) FailWith(status);
-    const auto weights = Take(CountWeights(setting.recording, rig));
+    const auto weights = ValueOrExit(CountWeights(setting.recording, rig));
     Add(curve, weights,
-        Take(RunFresh(setting, setting.recording, rig, At60Hz(kCrowd, setting.seconds))));
+        ValueOrExit(RunFresh(setting, setting.recording, rig, At60Hz(kCrowd, setting.seconds))));
   }
   return curve;
 }

@@ -6,15 +6,15 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "bench/load/setting.h"
+#include "bench/load/load_setup.h"
 
 namespace furrow::bench {
 
-// How the cost of a daemon grows with one thing.
+// The cost of a daemon as a function of one quantity.
 struct Curve {
   std::string id;  // of the files
   std::string title;
-  std::string axis;  // what grows, with its unit
+  std::string axis;  // the quantity, with its unit
   struct Point {
     double x = 0.0;
     load::RunResult run;
@@ -22,13 +22,13 @@ struct Curve {
   std::vector<Point> points;
 };
 
-// Each with a fresh daemon a point, on one core.
-[[nodiscard]] Curve GrowSubjects(const Setting& setting);
-[[nodiscard]] Curve GrowSubscribers(const Setting& setting);
-[[nodiscard]] Curve GrowJoints(const Setting& setting);
-[[nodiscard]] Curve GrowRegions(const Setting& setting);
+// Measure a curve, with a new daemon on one core for each point.
+[[nodiscard]] Curve GrowSubjects(const LoadSetup& setting);
+[[nodiscard]] Curve GrowSubscribers(const LoadSetup& setting);
+[[nodiscard]] Curve GrowJoints(const LoadSetup& setting);
+[[nodiscard]] Curve GrowRegions(const LoadSetup& setting);
 
-// Processor time, latency and memory by x: an SVG picture; a table; and all figures.
+// Processor time, latency and memory over x as an SVG picture, as a table, and as JSON.
 [[nodiscard]] std::string Draw(const Curve& curve);
 [[nodiscard]] std::string ToMarkdown(const Curve& curve);
 [[nodiscard]] nlohmann::json ToJson(const Curve& curve);

@@ -17,7 +17,7 @@
 namespace furrow::bench {
 namespace {
 
-// So many cores from the first on, but never the last.
+// The first `count` cores, but never the last core.
 void PinToFirst(int cores) {
   cpu_set_t allowed;
   if (sched_getaffinity(0, sizeof(allowed), &allowed) != 0) return;
@@ -30,7 +30,7 @@ void PinToFirst(int cores) {
   sched_setaffinity(0, sizeof(chosen), &chosen);
 }
 
-// All but the first core. On a machine of one core there is nothing to choose.
+// All cores but the first. A machine with one core keeps its only core.
 void PinToOthers() {
   cpu_set_t allowed;
   if (sched_getaffinity(0, sizeof(allowed), &allowed) != 0 || CPU_COUNT(&allowed) < 2) return;
@@ -40,7 +40,7 @@ void PinToOthers() {
   sched_setaffinity(0, sizeof(allowed), &allowed);
 }
 
-// "... udp=127.0.0.1:7401 ..." to 7401; 0 where it is not there.
+// Returns 7401 for "... udp=127.0.0.1:7401 ...", or 0 if there is no port.
 std::uint16_t PortOf(const std::string& line, const std::string& name) {
   const std::size_t at = line.find(" " + name + "=");
   const std::size_t colon = at == std::string::npos ? at : line.find(':', at);

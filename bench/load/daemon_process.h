@@ -8,12 +8,12 @@
 
 namespace furrow::bench {
 
-// A furrowd of our own on free ports, on the machine's first core alone, or with several threads on
-// so many, but never on the last; this program moves to all but the first when the first one is
-// started. Ended with the object.
+// A furrowd process on free ports. It runs on the first core only, or on one core per thread except
+// the last core. When the first daemon starts, this program moves to all cores but the first. The
+// destructor ends the process.
 class DaemonProcess {
  public:
-  // `program`: furrowd. `folder`: for its configuration, which lifts the limits of subjects.
+  // `program`: furrowd. `folder`: receives its configuration, which lifts the limits on subjects.
   [[nodiscard]] static Result<DaemonProcess> Start(const std::filesystem::path& program,
                                                    const std::filesystem::path& rig,
                                                    const std::filesystem::path& folder,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a daemon on one core can take, and how its cost grows: the figures of docs/PERFORMANCE.md
-// and the curves of docs/CAPACITY.md, by one command.
+// Measures the capacity of a daemon on one core and how its cost grows. Writes the figures of
+// docs/PERFORMANCE.md and the curves of docs/CAPACITY.md.
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -15,12 +15,12 @@
 #include "base/data_dir.h"
 #include "bench/load/budget.h"
 #include "bench/load/curves.h"
-#include "bench/load/figures.h"
+#include "bench/load/measure_aims.h"
 #include "bench/load/threads.h"
 #include "bench/report/command_line.h"
 #include "bench/report/machine.h"
 #include "bench/report/results.h"
-#include "bench/report/take.h"
+#include "bench/report/value_or_exit.h"
 #include "client/load/net/clock.h"
 #include "report/table.h"
 #include "report/words.h"
@@ -31,35 +31,35 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  Setting setting;
+  LoadSetup setting;
   std::string only;
 };
 
-fs::path DataFile(const std::string& name) { return Take(furrow::FindDataFile(name)); }
+fs::path DataFile(const std::string& name) { return ValueOrExit(furrow::FindDataFile(name)); }
 
-// One part of the measurement: its tables and figures; curves also draw themselves.
+// The tables and figures of one part of the measurement. Curves also write an SVG picture.
 struct Part {
   std::string markdown;
   nlohmann::json json;
 };
-using Measure = std::function<Part(const Setting&)>;
+using Measure = std::function<Part(const LoadSetup&)>;
 
-Part Aims(const Setting& setting) {
+Part Aims(const LoadSetup& setting) {
   const auto aims = MeasureAims(setting);
   return {ToMarkdown(aims, "raw against raw"), ToJson(aims)};
 }
 
-Part Threads(const Setting& setting) {
+Part Threads(const LoadSetup& setting) {
   const auto threads = MeasureThreads(setting);
   return {ToMarkdown(threads), ToJson(threads)};
 }
 
-Part Drawn(const Curve& curve, const Setting& setting) {
+Part Drawn(const Curve& curve, const LoadSetup& setting) {
   WriteResult(setting.out / (curve.id + ".svg"), Draw(curve));
   return {ToMarkdown(curve), ToJson(curve)};
 }
 
-Part Subjects(const Setting& setting) {
+Part Subjects(const LoadSetup& setting) {
   const Curve curve = GrowSubjects(setting);
   Part part = Drawn(curve, setting);
   part.markdown += "\n" + BudgetMarkdown(curve, setting);
@@ -71,9 +71,9 @@ const std::vector<std::pair<std::string, Measure>>& Parts() {
       {"aims", Aims},
       {"threads", Threads},
       {"subjects", Subjects},
-      {"subscribers", [](const Setting& s) { return Drawn(GrowSubscribers(s), s); }},
-      {"joints", [](const Setting& s) { return Drawn(GrowJoints(s), s); }},
-      {"regions", [](const Setting& s) { return Drawn(GrowRegions(s), s); }}};
+      {"subscribers", [](const LoadSetup& s) { return Drawn(GrowSubscribers(s), s); }},
+      {"joints", [](const LoadSetup& s) { return Drawn(GrowJoints(s), s); }},
+      {"regions", [](const LoadSetup& s) { return Drawn(GrowRegions(s), s); }}};
   return parts;
 }
 
@@ -83,7 +83,7 @@ std::vector<std::string> PartNames() {
   return names;
 }
 
-std::string Heading(const Machine& machine, const Setting& setting, double minutes) {
+std::string Heading(const Machine& machine, const LoadSetup& setting, double minutes) {
   return "Measured by `bench_load`: " + ToText(machine) + ", load " +
          report::Fixed(machine.load, 1) + " before it began. Runs of " +
          report::Fixed(setting.seconds, 1) + " s, " +
@@ -92,10 +92,10 @@ std::string Heading(const Machine& machine, const Setting& setting, double minut
 }
 
 int Run(Options options) {
-  Setting& setting = options.setting;
+  LoadSetup& setting = options.setting;
   if (setting.recording.empty()) setting.recording = DataFile("recordings/performance.bvh");
   if (setting.rig.empty()) setting.rig = DataFile("default.rig.json");
-  // It stays where the program fails: messages point to the daemon's log in it.
+  // Kept if the program fails, because messages refer to the daemon's log in it.
   setting.folder = fs::temp_directory_path() / ("bench_load-" + std::to_string(getpid()));
   MakeResultFolder(setting.folder);
   const Machine machine = ThisMachine();
@@ -130,20 +130,25 @@ int main(int argc, char** argv) {
   options.setting.daemon = std::filesystem::path(argv[0]).parent_path() / "furrowd";
   options.setting.out = "bench-out";
   CLI::App app{
-      "What a furrowd on one core can take, beside raw UDP echoes, and how its cost grows"};
-  app.add_option("--out", options.setting.out,
-                 "folder for load.md, load.json and the curves (SVG); with --only it is "
-                 "load-PART.md and load-PART.json, and load.md stays as it is")
+      "Measure the capacity of furrowd on one core, compared with raw UDP echo servers, and its "
+      "cost"};
+  app.add_option(
+         "--out", options.setting.out,
+         "Folder for load.md, load.json and the curves (SVG). --only writes load-PART.md and "
+         "load-PART.json and keeps load.md")
       ->capture_default_str();
-  app.add_option("--only", options.only, "this part alone; default: all, a quarter of an hour")
+  app.add_option("--only", options.only,
+                 "Measure only this part (default: all parts, about 15 minutes)")
       ->check(CLI::IsMember(furrow::bench::PartNames()));
-  app.add_option("--daemon", options.setting.daemon, "furrowd; default: beside this program");
-  app.add_option("--recording", options.setting.recording, "BVH; default: performance.bvh");
-  app.add_option("--rig", options.setting.rig, "wrinkle rig; default: the default character's");
-  app.add_option("--seconds", options.setting.seconds, "of one run")
+  app.add_option("--daemon", options.setting.daemon,
+                 "Path of furrowd (default: beside this program)");
+  app.add_option("--recording", options.setting.recording, "BVH file (default: performance.bvh)");
+  app.add_option("--rig", options.setting.rig,
+                 "Wrinkle rig (default: that of the default character)");
+  app.add_option("--seconds", options.setting.seconds, "Seconds per run")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
-  app.add_option("--rounds", options.setting.rounds, "of paired runs")
+  app.add_option("--rounds", options.setting.rounds, "Number of paired runs")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   furrow::bench::ReadCommandLine(app, argc, argv);

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/load/duel.h"
-#include "bench/report/take.h"
+#include "bench/load/paired_runs.h"
+#include "bench/report/value_or_exit.h"
 #include "client/load/compare/comparison_report.h"
 #include "report/table.h"
 
@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kRate = 50000.0;
 
-DaemonProcess Daemon(const Setting& setting, int threads) {
-  return Take(DaemonProcess::Start(setting.daemon, setting.rig, setting.folder, threads));
+DaemonProcess Daemon(const LoadSetup& setting, int threads) {
+  return ValueOrExit(DaemonProcess::Start(setting.daemon, setting.rig, setting.folder, threads));
 }
 
 std::vector<std::string> Row(int threads, const load::Figure& figure, const std::string& what) {
@@ -33,14 +33,14 @@ void AddRow(const ThreadsResult& result, const load::Comparison& comparison,
 
 }  // namespace
 
-std::vector<ThreadsResult> MeasureThreads(const Setting& setting) {
+std::vector<ThreadsResult> MeasureThreads(const LoadSetup& setting) {
   std::vector<ThreadsResult> results;
   const DaemonProcess one = Daemon(setting, 1);
   const DaemonProcess control = Daemon(setting, 1);
   for (const int threads : {2, 4}) {
     const DaemonProcess several = Daemon(setting, threads);
-    Duel duel(setting,
-              {.server = several.target(), .raw = one.target(), .control = control.target()}, 1);
+    PairedRuns duel(
+        setting, {.server = several.target(), .raw = one.target(), .control = control.target()}, 1);
     ThreadsResult& result = results.emplace_back();
     result.threads = threads;
     result.steady = duel.At(kRate);
@@ -51,11 +51,12 @@ std::vector<ThreadsResult> MeasureThreads(const Setting& setting) {
 
 std::string ToMarkdown(const std::vector<ThreadsResult>& results) {
   report::Table table{
-      "Threads of the daemon, beside one thread",
+      "Daemon threads compared with one thread",
       {"threads", "figure", "one thread", "of one thread (middle half)", "one thread again"},
       {}};
   for (const ThreadsResult& result : results) {
-    AddRow(result, result.steady, "CPU a pose", "processor time a pose at 50,000 poses/s", &table);
+    AddRow(result, result.steady, "CPU a pose", "processor time per pose at 50,000 poses/s",
+           &table);
     AddRow(result, result.steady, "p50", "round trip at 50,000 poses/s, p50", &table);
     AddRow(result, result.highest, "highest rate",
            result.highest.generator_behind_at ? "highest rate without loss (the generator's limit)"

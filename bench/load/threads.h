@@ -6,21 +6,21 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "bench/load/setting.h"
+#include "bench/load/load_setup.h"
 #include "client/load/compare/comparison.h"
 
 namespace furrow::bench {
 
-// A daemon of several threads beside one of one thread, which also stands in for its control.
+// Compares a daemon with several threads to a daemon with one thread, which is also the control.
 struct ThreadsResult {
   int threads = 0;
-  load::Comparison steady;   // at 50,000 poses a second
-  load::Comparison highest;  // one search of each for the highest rate without loss
+  load::Comparison steady;   // at 50,000 poses per second
+  load::Comparison highest;  // one search per daemon for the highest rate without loss
 };
 
-// Daemons of 2 and of 4 threads. On a machine of two cores all have one of them, however many
-// threads: there it says what a thread more costs, and cannot say what it gains.
-[[nodiscard]] std::vector<ThreadsResult> MeasureThreads(const Setting& setting);
+// Measures daemons with 2 and 4 threads. On a machine with two cores, every daemon has only one
+// core. There the result shows the cost of further threads but not their benefit.
+[[nodiscard]] std::vector<ThreadsResult> MeasureThreads(const LoadSetup& setting);
 
 [[nodiscard]] std::string ToMarkdown(const std::vector<ThreadsResult>& results);
 [[nodiscard]] nlohmann::json ToJson(const std::vector<ThreadsResult>& results);

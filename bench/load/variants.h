@@ -7,17 +7,18 @@
 
 namespace furrow::bench {
 
-// A rig with all drivers and regions `copies` times over, under names of their own; saved as a
-// file. Errors: LoadRig()'s and SaveRig()'s.
+// Saves a rig with `copies` copies of all drivers and regions, each with its own name. Errors:
+// those of LoadRig() and SaveRig().
 [[nodiscard]] Status SaveMultipliedRig(const std::filesystem::path& rig, int copies,
                                        const std::filesystem::path& out);
 
-// A recording with as many joints as asked for: further ones that turn, and that no rig reads. The
-// recording has at most so many. Errors: those of the motion readers and writers.
+// Saves a recording with extra moving joints, which no rig uses, up to `joints` in total.
+// Precondition: the recording has at most `joints`. Errors: those of the motion readers and
+// writers.
 [[nodiscard]] Status SavePaddedRecording(const std::filesystem::path& recording, int joints,
                                          const std::filesystem::path& out);
 
-// How many wrinkle weights a rig makes of a recording.
+// Number of wrinkle weights that the rig computes from the recording.
 [[nodiscard]] Result<int> CountWeights(const std::filesystem::path& recording,
                                        const std::filesystem::path& rig);
 

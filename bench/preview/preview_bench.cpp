@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of a picture once it is drawn: the figures of the preview in docs/PERFORMANCE.md, by
-// one command.
+// Measures the path of a drawn picture to its viewers: the preview figures of docs/PERFORMANCE.md.
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -11,7 +10,7 @@
 
 #include "base/data_dir.h"
 #include "base/status.h"
-#include "bench/preview/figures.h"
+#include "bench/preview/measure_preview.h"
 #include "bench/report/command_line.h"
 #include "bench/report/results.h"
 #include "character/package/package.h"
@@ -22,13 +21,13 @@ namespace furrow::bench {
 namespace {
 
 struct Options {
-  PreviewSetting setting;
+  PreviewSetup setting;
   std::filesystem::path out = "bench-out";
   int width = 1280;
   int height = 720;
 };
 
-// The default character at rest, in skin: as hard to pack as what a session looks at.
+// The default character at rest with skin shading: as hard to encode as pictures of a session.
 Result<render::Image> DrawPicture(int width, int height) {
   const auto path = furrow::FindDataFile("default.glb");
   FURROW_RETURN_IF_ERROR(path);
@@ -50,7 +49,8 @@ Result<render::Image> DrawPicture(int width, int height) {
 }
 
 int Run(Options options) {
-  spdlog::set_level(spdlog::level::err);  // the performer has a brow and no joints
+  spdlog::set_level(spdlog::level::err);  // hides warnings about the subject, which has one blend
+                                          // shape and no joints
   auto picture = DrawPicture(options.width, options.height);
   if (!picture.ok()) {
     std::fprintf(stderr, "bench_preview: %s\n", picture.status().ToString().c_str());
@@ -70,16 +70,16 @@ int Run(Options options) {
 
 int main(int argc, char** argv) {
   furrow::bench::Options options;
-  CLI::App app{"What becomes of a drawn picture: to its viewers, and while they stall"};
-  app.add_option("--out", options.out, "folder for preview.md and preview.json")
+  CLI::App app{"Measure the path of drawn pictures to their viewers, also while viewers stall"};
+  app.add_option("--out", options.out, "Folder for preview.md and preview.json")
       ->capture_default_str();
-  app.add_option("--rounds", options.setting.rounds, "pictures of the first figure")
+  app.add_option("--rounds", options.setting.rounds, "Pictures for the delivery time")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  app.add_option("--stall", options.setting.stall_seconds, "seconds")
+  app.add_option("--stall", options.setting.stall_seconds, "Duration of a stall in seconds")
       ->check(CLI::Range(0.5, 25.0))
       ->capture_default_str();
-  app.add_option("--viewers", options.setting.viewers, "of all figures but the first")
+  app.add_option("--viewers", options.setting.viewers, "Viewers for the other figures")
       ->check(CLI::Range(1, 200))
       ->capture_default_str();
   furrow::bench::ReadCommandLine(app, argc, argv);

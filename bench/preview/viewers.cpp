@@ -26,7 +26,7 @@ Viewer::Viewer(std::uint16_t port, int width, int height, bool acknowledged, int
 Received Viewer::Next() {
   std::optional<protocol::ImageFrame> image = client_.Await<protocol::ImageFrame>();
   if (!image) {
-    std::fprintf(stderr, "bench_preview: a viewer was cut off\n");
+    std::fprintf(stderr, "bench_preview: a viewer lost its connection\n");
     std::exit(1);
   }
   const server::Time now = server::ReadClock();
@@ -50,8 +50,8 @@ double Viewer::RoundTrip() {
   return server::ToSeconds(server::ReadClock() - sent);
 }
 
-// Answers overtake pictures that wait, so it is asked until an answer had none before it.
-std::vector<std::size_t> Viewer::TakeUnderWay() {
+// Replies overtake waiting pictures. The ping is repeated until no picture precedes the reply.
+std::vector<std::size_t> Viewer::DrainInFlight() {
   std::vector<std::size_t> pictures;
   for (int answers_in_a_row = 0; answers_in_a_row < 3;) {
     client_.Send(protocol::Ping{1});

@@ -10,33 +10,32 @@
 
 namespace furrow::bench {
 
-// A picture as it came.
+// A received picture.
 struct Received {
   protocol::ImageFrame image;  // without its bytes
   server::Time at{0};
-  // Since its pose came to the daemon, whose clock is ours here.
+  // Time since the pose reached the daemon, which shares the clock of this process.
   [[nodiscard]] double age_seconds() const {
     return server::ToSeconds(at) - 1e-6 * static_cast<double>(image.received_us);
   }
 };
 
-// Somebody who looks at the performer over a WebSocket. `acknowledged`: as the page does; else
-// everything is sent that is drawn.
+// A viewer over a WebSocket. `acknowledged`: with flow control, as the preview page; otherwise the
+// daemon sends every picture that it draws.
 class Viewer {
  public:
   Viewer(std::uint16_t port, int width, int height, bool acknowledged, int quality = 85);
 
-  // The next picture; what else comes before it is let go. Ends the program where the connection
-  // ends: there is nothing to measure.
+  // Returns the next picture and ignores other messages. Exits the program if the connection ends.
   Received Next();
   void Acknowledge(std::uint32_t number);
-  // Shows pictures for so long, each acknowledged when it has come.
+  // Receives and acknowledges pictures for `seconds`.
   void Watch(double seconds);
-  // Seconds from a ping to its answer, pictures aside.
+  // Round trip of a ping in seconds, without waiting pictures.
   [[nodiscard]] double RoundTrip();
-  // Takes what is under way and acknowledges none of it: the bytes of each picture. The subject
-  // rests.
-  [[nodiscard]] std::vector<std::size_t> TakeUnderWay();
+  // Receives the pictures that are still in flight without acknowledging them. Returns their sizes
+  // in bytes. Precondition: the subject rests.
+  [[nodiscard]] std::vector<std::size_t> DrainInFlight();
 
  private:
   testing_net::WebClient client_;

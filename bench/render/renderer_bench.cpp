@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Milliseconds a picture, of the character named by FURROW_BENCH_CHARACTER (a .glb), or without it
-// of the tests' procedural head.
+// Milliseconds per picture of the character in FURROW_BENCH_CHARACTER (a .glb file) or, by default,
+// of the procedural head of the tests.
 #include <cstdlib>
 #include <sstream>
 #include <string>
@@ -38,7 +38,7 @@ class Scene {
     request_.camera = *renderer_->Preset("face");
   }
 
-  // As little as can be: a live subject does not hold still, and neither may what is kept of it.
+  // The smallest movement. A live subject never holds still, so cached results must not be reused.
   void Move() {
     step_ = -step_;
     subject_.model[0][3].y += step_;
@@ -69,7 +69,7 @@ BENCHMARK(BM_Render)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-// Two in flight, as the daemon draws.
+// Two frames in flight, as in the daemon.
 void BM_Pipelined(benchmark::State& state) {
   Scene& scene = TheScene();
   FrameRequest request = scene.request_;
@@ -83,7 +83,7 @@ void BM_Pipelined(benchmark::State& state) {
 }
 BENCHMARK(BM_Pipelined)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-// FURROW_BENCH_SET="shadow.filter=off bloom.strength=0": to find what a setting costs.
+// FURROW_BENCH_SET="shadow.filter=off bloom.strength=0" measures the cost of settings.
 void SetFromEnvironment(Settings* settings) {
   const char* text = std::getenv("FURROW_BENCH_SET");
   std::istringstream assignments(text == nullptr ? "" : text);
@@ -106,9 +106,9 @@ void CountPasses(Scene* scene, const FrameRequest& request, benchmark::State* st
   }
 }
 
-// Two in flight, with skin shading: a laptop's or a cheap server's picture, with FXAA where the
-// scene has one sample. CPU: of all threads. Counters: milliseconds of the processor that each pass
-// takes, the device waited for in between (render/gl/pass_timer.h).
+// Two frames in flight with skin shading, as on a laptop or a small server. Uses FXAA if the scene
+// has one sample. CPU time covers all threads. The counters are milliseconds of processor time per
+// pass, with a wait for the device between passes (render/gl/pass_timer.h).
 void BM_Skin(benchmark::State& state) {
   Scene& scene = TheScene();
   FrameRequest request = scene.request_;
@@ -120,7 +120,7 @@ void BM_Skin(benchmark::State& state) {
   request.settings.anti_aliasing.fxaa = state.range(1) == 1;
   SetFromEnvironment(&request.settings);
   state.SetLabel(GetSetting("subsurface.method", request.settings));
-  // Shaders are compiled and tables made.
+  // The first frames compile shaders and build tables.
   if (!scene.renderer_->Render(request).ok()) std::abort();
   for (auto _ : state) {
     if (scene.renderer_->in_flight() == 2) {

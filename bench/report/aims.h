@@ -10,25 +10,24 @@
 
 namespace furrow::bench {
 
-// One line of the table of what is aimed at: a ratio or a number beside its limit.
+// One row of the table of performance aims: a measured figure and its limit.
 struct Aim {
   std::string what;
-  std::string baseline;  // what it is measured against, as measured; empty: nothing
+  std::string baseline;  // the measured baseline; empty if there is none
   std::string reached;
-  std::string control;  // the baseline against itself; empty: there is none
+  std::string control;  // the baseline compared with itself; empty if there is none
   std::string aim;
   bool met = false;
 };
 
-// "1.05 (1.01 to 1.12)": a median, and between what the middle half lies.
+// Formats a median and its interquartile range: "1.05 (1.01 to 1.12)".
 [[nodiscard]] std::string Between(double median, double low, double high, int digits);
 
-// `control`: the heading of that column; empty: there is none.
-[[nodiscard]] std::string ToMarkdown(
-    const std::vector<Aim>& aims, const std::string& control,
-    const std::string& title = "What was aimed at, and what was reached");
+// `control` is the heading of the control column; empty for no such column.
+[[nodiscard]] std::string ToMarkdown(const std::vector<Aim>& aims, const std::string& control,
+                                     const std::string& title = "Aims and results");
 [[nodiscard]] nlohmann::json ToJson(const std::vector<Aim>& aims);
-// What ToJson() made. Errors: kInvalidArgument.
+// Reads the result of ToJson(). Errors: kInvalidArgument.
 [[nodiscard]] Result<std::vector<Aim>> AimsFromJson(const nlohmann::json& json);
 
 }  // namespace furrow::bench

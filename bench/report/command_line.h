@@ -5,8 +5,8 @@
 
 namespace furrow::bench {
 
-// Reads the command line, or ends the program: with exit status 0 after --help, with 2 after one
-// that is wrong, which stderr says.
+// Reads the command line. Exits the program with status 0 after --help, and with status 2 and a
+// message on stderr after an invalid command line.
 void ReadCommandLine(CLI::App& app, int argc, char** argv);
 
 }  // namespace furrow::bench

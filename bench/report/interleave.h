@@ -7,21 +7,21 @@
 
 namespace furrow::bench {
 
-// Seconds that something took: on the wall, and of this process's processor time, all threads
-// together. With a software renderer the latter is the work itself, whatever else the machine does.
+// The duration of something in seconds. With a software renderer, the processor time measures the
+// rendering itself, independent of other load on the machine.
 struct Sample {
-  double wall = 0.0;
-  double cpu = 0.0;
+  double wall = 0.0;  // elapsed time
+  double cpu = 0.0;   // processor time of this process, summed over its threads
 };
 
-// Measures one call, per one of `count` things that it does.
+// Measures one call that processes `count` items. Returns the duration per item.
 [[nodiscard]] Sample Measure(const std::function<void()>& call, int count);
 
-// One thing to measure: each call gives one sample.
+// Something to measure: each call returns one sample.
 using Sampler = std::function<Sample()>;
 
-// Samples of all of them, in turn: one of each, then the next of each, so that a machine that slows
-// down slows all of them. A first round is thrown away: it compiles shaders and fills caches.
+// Takes samples in rounds: one sample of each sampler per round, so that a change in the machine's
+// speed affects all of them alike. Discards a first round, which compiles shaders and fills caches.
 [[nodiscard]] std::vector<std::vector<Sample>> Interleave(std::span<const Sampler> samplers,
                                                           int repetitions);
 

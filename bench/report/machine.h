@@ -8,19 +8,19 @@
 
 namespace furrow::bench {
 
-// On what, when, and beside how much other work something is measured.
+// The conditions of a measurement: machine, date and load.
 struct Machine {
   std::string date;       // "2026-11-21 18:30 UTC"
-  std::string processor;  // its name
-  int cores = 0;          // that this program may use
-  double load = 0.0;      // runnable tasks of the machine, the last minute's average
+  std::string processor;  // name
+  int cores = 0;          // available to this program
+  double load = 0.0;      // load average of the last minute
   std::string compiler;   // of this program
 };
 
-// Call it before anything is measured.
+// Call this before the measurement, which raises the load.
 [[nodiscard]] Machine ThisMachine();
 
-// The first core's name as /proc/cpuinfo has it; "unknown processor" where it has none.
+// Returns the name of the first core in /proc/cpuinfo, or "unknown processor".
 [[nodiscard]] std::string ProcessorName(std::istream& cpuinfo);
 
 // "2026-11-21 18:30 UTC, 2 cores of AMD EPYC, g++ 12.2.0"

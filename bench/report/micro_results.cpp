@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kNanoseconds = "cpu_ns";
 using Samples = std::map<std::string, std::map<std::string, std::vector<double>>>;
 
-// Counters of the user's are those numbers that Google Benchmark does not write of its own accord.
+// The numbers that Google Benchmark itself writes. All other numbers are counters of the benchmark.
 bool IsOwn(const std::string& key) {
   return key == "family_index" || key == "per_family_instance_index" || key == "repetitions" ||
          key == "repetition_index" || key == "threads" || key == "iterations" ||
@@ -82,7 +82,7 @@ Result<double> MicroResults::Counter(const std::string& name, const std::string&
     const auto median = benchmark->second.find(counter);
     if (median != benchmark->second.end()) return median->second;
   }
-  return Status(StatusCode::kNotFound, "was not measured: " + counter, name);
+  return Status(StatusCode::kNotFound, "no measurement of " + counter, name);
 }
 
 nlohmann::json MicroResults::ToJson() const { return benchmarks_; }

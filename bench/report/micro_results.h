@@ -11,25 +11,24 @@
 
 namespace furrow::bench {
 
-// What a program of Google Benchmark measured (--benchmark_out=FILE): nanoseconds of processor time
-// an iteration and the other counters, each the median over the repetitions.
+// The results of a Google Benchmark program (--benchmark_out=FILE): processor time per iteration in
+// nanoseconds, and counters. Each value is the median over the repetitions.
 class MicroResults {
  public:
-  // Errors: kIo; kInvalidArgument where it is not such a file, or where a benchmark in it failed.
+  // Errors: kIo; kInvalidArgument for another kind of file, or if a benchmark in it failed.
   [[nodiscard]] static Result<MicroResults> Load(const std::filesystem::path& path);
   [[nodiscard]] static Result<MicroResults> Parse(const std::string& text,
                                                   const std::string& where);
 
-  // Of a benchmark by its whole name ("BM_CopyPose/joints:51/packed:0"). Errors: kNotFound where it
-  // was not measured.
+  // Values of a benchmark by its full name ("BM_CopyPose/joints:51/packed:0"). Errors: kNotFound.
   [[nodiscard]] Result<double> Nanoseconds(const std::string& name) const;
   [[nodiscard]] Result<double> Counter(const std::string& name, const std::string& counter) const;
 
-  // By name: nanoseconds and counters.
+  // Nanoseconds and counters, by name.
   [[nodiscard]] nlohmann::json ToJson() const;
 
  private:
-  using Medians = std::map<std::string, double>;  // by counter
+  using Medians = std::map<std::string, double>;  // by name of the counter
 
   std::map<std::string, Medians> benchmarks_;
 };

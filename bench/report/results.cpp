@@ -4,7 +4,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "bench/report/take.h"
+#include "bench/report/value_or_exit.h"
 
 namespace furrow::bench {
 
@@ -12,7 +12,7 @@ void MakeResultFolder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
-    FailWith({StatusCode::kIo, "cannot make the folder: " + error.message(), folder.string()});
+    FailWith({StatusCode::kIo, "cannot create the folder: " + error.message(), folder.string()});
 }
 
 void WriteResult(const std::filesystem::path& path, const std::string& text) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it costs to solve a performance by the rig that ships with it: drivers of every kind, in
-// poses that a body and a face take. Each subject is at another place of the recording, and every
-// update a frame further.
+// Measures solving the default recording with the default rig: drivers of every kind in realistic
+// poses of body and face. Each subject starts at another frame and advances by one frame per
+// update.
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 #include <benchmark/benchmark.h>
 
 #include "base/data_dir.h"
-#include "bench/report/take.h"
+#include "bench/report/value_or_exit.h"
 #include "motion/clip/clip.h"
 #include "motion/clip_file.h"
 #include "motion/pose_source.h"
@@ -20,16 +20,16 @@
 namespace furrow::wrinkle {
 namespace {
 
-using bench::Take;
+using bench::ValueOrExit;
 
-// Loaded once.
+// Loaded once for all benchmarks.
 struct Performance {
   Performance() {
-    const Rig rig = Take(character::LoadRig(Take(furrow::FindDataFile("rigs/default.json")),
-                                            motion::CachedPoseSource()));
-    const auto clip =
-        Take(motion::LoadClip(Take(furrow::FindDataFile("recordings/performance.bvh"))));
-    binding = std::make_shared<const RigBinding>(Take(
+    const Rig rig = ValueOrExit(character::LoadRig(
+        ValueOrExit(furrow::FindDataFile("rigs/default.json")), motion::CachedPoseSource()));
+    const auto clip = ValueOrExit(
+        motion::LoadClip(ValueOrExit(furrow::FindDataFile("recordings/performance.bvh"))));
+    binding = std::make_shared<const RigBinding>(ValueOrExit(
         RigBinding::Create(rig, clip.skeleton, clip.blend_shape_names, {.allow_missing = true})));
     frames.resize(static_cast<std::size_t>(clip.num_frames()));
     for (int i = 0; i < clip.num_frames(); ++i) {
@@ -41,7 +41,7 @@ struct Performance {
   std::vector<LocalPose> frames;
 };
 
-// As many as range(0), each its own poses.
+// range(0) subjects, each with its own poses.
 class Cast {
  public:
   explicit Cast(const benchmark::State& state) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it costs to solve many subjects of one rig: 60 pose drivers of 2 and of 8 reference poses,
-// for 1, 100 and 10,000 subjects that move in every frame. The baseline copies the same poses,
-// which is what memory alone would cost.
+// Measures solving many subjects of one rig: 60 pose drivers with 2 and with 8 reference poses, for
+// 1, 100 and 10,000 subjects that move in every frame. The baseline copies the same poses, which is
+// the cost of memory access alone.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kNumDrivers = 60;
 
-// A head with one leaf joint a driver, set on a sphere.
+// A head with one leaf joint per driver, placed on a sphere.
 Skeleton Face() {
   std::vector<JointDesc> joints(2);
   joints[0].name = "neck";
@@ -94,9 +94,9 @@ void SetCounters(benchmark::State& state, int subjects, int joints) {
                           static_cast<std::int64_t>(sizeof(Transform)));
 }
 
-// As many as range(1) says, of one binding with range(0) reference poses. From frame to frame each
-// takes the pose that its neighbour had, so that all move and no more memory is read than poses
-// would fill that are received anew.
+// range(1) subjects of one binding with range(0) reference poses. In every frame each subject takes
+// the pose of its neighbour. So all subjects move, and the memory read per frame equals that of
+// newly received poses.
 struct Subjects {
   Subjects(const benchmark::State& state, PoseSolve solve)
       : poses(Poses(skeleton, std::max(static_cast<int>(state.range(1)), 2))) {
@@ -173,7 +173,7 @@ void BM_LocalToModel(benchmark::State& state) {
   for (auto _ : state) {
     for (const LocalPose& pose : poses) {
       const LocalToModelJob job{.skeleton = &skeleton, .local = pose.joints, .model = model};
-      if (job.Run() != JobStatus::kOk) state.SkipWithError("local to model");
+      if (job.Run() != JobStatus::kOk) state.SkipWithError("the local-to-model job failed");
     }
     benchmark::ClobberMemory();
   }

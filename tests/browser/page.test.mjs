@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page as whoever runs a session meets it: it loads, shows the performer, and follows hands and keys.
+// Basic use of the page: it loads, shows the performer, and responds to mouse, touch and keys.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';

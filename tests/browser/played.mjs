@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// For a file whose tests share one daemon that plays the performance, and one browser. Both are there before the
-// first hook of the file runs, whatever order a version of the runner gives to the hooks of several modules.
+// One daemon that plays the performance, and one browser, for test files that share them. Both start before the
+// first hook of the file, because the order of hooks from several modules depends on the version of the runner.
 import { after } from 'node:test';
 import { launch } from './browser.mjs';
 import { Daemon, recording } from './daemon.mjs';

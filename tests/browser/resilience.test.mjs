@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes wrong in a session: daemons that die, viewers that stall, nobody who streams.
+// Faults during a session: daemons that die, viewers that stall, missing subjects.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { changedShare, difference, eventually, keep, launch, openPage, pixels, shown, still } from './browser.mjs';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs one test file, or says why it cannot: run.mjs FILE.test.mjs
+// Usage: run.mjs FILE.test.mjs. Runs one test file, or prints SKIPPED and the reason.
 import { spawnSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
@@ -7,13 +7,13 @@ import { join } from 'node:path';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
 const needs = {
-  'a browser: /usr/bin/chromium': '/usr/bin/chromium',
+  'the browser /usr/bin/chromium': '/usr/bin/chromium',
   'the packages of tests/browser/package-lock.json': join(here, 'node_modules/playwright-core'),
-  'the page, which was not built': join(process.env.FURROW_SHARE, 'web/index.html'),
+  'the built page': join(process.env.FURROW_SHARE, 'web/index.html'),
 };
 for (const [what, path] of Object.entries(needs)) {
   if (existsSync(path)) continue;
-  console.log(`SKIPPED: there is not ${what} (deploy/install-deps.sh)`);
+  console.log(`SKIPPED: missing ${what} (deploy/install-deps.sh installs what is needed)`);
   process.exit(0);
 }
 process.exit(spawnSync(process.execPath, ['--test', process.argv[2]], { stdio: 'inherit' }).status ?? 1);

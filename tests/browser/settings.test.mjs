@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The menu: every group takes effect on the picture; undo, compare, presets, text; what is refused says so.
+// The settings menu: every group changes the picture; undo, compare, presets, text; rejected values are reported.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { changedShare, difference, eventually, keep, openPage, pixels, still } from './browser.mjs';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// BVH: what is read is a sound clip, and what we write of it is read again.
+// BVH: an accepted file is a valid clip, and the written clip can be read again.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a UDP socket hands on: reassembly, bundles taken apart, then any message decoded as the kind
-// it claims to be. What is accepted is encoded and decoded again: it must be accepted again. A
-// bundle that is accepted is what its messages make again, and one that is refused stays whole.
+// Datagrams from a UDP socket: reassembly, splitting of bundles, then decoding of each message as
+// its stated kind. An accepted message must be accepted again after it was encoded. The messages of
+// an accepted bundle must form the same bundle again. A rejected bundle must stay unchanged.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -63,7 +63,7 @@ void DecodeAny(std::span<const std::uint8_t> bytes) {
   }
 }
 
-// `datagram`: in a block of its own size, so that a sanitizer sees what is read beyond it.
+// Copies `datagram` to a heap block of its size, so a sanitizer detects reads beyond its end.
 void TakeApart(std::vector<std::uint8_t> datagram) {
   namespace p = furrow::protocol;
   const std::vector<std::uint8_t> before = datagram;
@@ -85,7 +85,7 @@ void TakeApart(std::vector<std::uint8_t> datagram) {
 
 }  // namespace
 
-// The input is cut into datagrams by a length in two bytes before each.
+// The input is a sequence of datagrams, each preceded by its length in two bytes.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   TakeApart({data, data + size});
   furrow::protocol::Reassembler reassembler;

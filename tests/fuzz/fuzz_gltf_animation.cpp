@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF, GLB and VRMA: what is read is a sound clip.
+// Animations in glTF, GLB and VRMA: an accepted file is a valid clip.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Live Link Face takes: what is read has increasing times and can be written and read again.
+// Live Link Face recordings: an accepted file has increasing times and can be written and read
+// again.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

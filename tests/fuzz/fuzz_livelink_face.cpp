@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Live Link Face datagrams; a second one with the next byte counts as another frame.
+// Live Link Face datagrams. The adapter first gets the input and then the input without its first
+// byte.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

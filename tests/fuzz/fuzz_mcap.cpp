@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MCAP: whatever is shown lies in the range asked for, and all that a reader allows itself is kept.
+// MCAP: all returned messages are in the requested time range, and the reader keeps its limits.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -15,7 +15,7 @@ namespace {
 using furrow::motion::mcap::Message;
 using furrow::motion::mcap::Reader;
 
-// A file in memory: readers want a path.
+// A file in memory, because readers take a path.
 int Memory() {
   static const int file = ::memfd_create("fuzz", MFD_CLOEXEC);
   return file;
@@ -28,7 +28,7 @@ void ReadAll(Reader& reader, const Reader::Range& range) {
     for (const std::uint8_t byte : message.data) sum += byte;
     return true;
   });
-  // Nothing is wrong with this disk.
+  // The disk is healthy, so an I/O error is a fault of the reader.
   if (!status.ok() && status.code() != furrow::StatusCode::kLimit) std::abort();
   static volatile std::uint64_t kept;
   kept = sum;

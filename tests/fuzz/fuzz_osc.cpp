@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OSC packets, and what the VMC adapter makes of them: every frame must make an offer that the
-// codec accepts.
+// OSC packets through the VMC adapter: every frame must yield an offer that the codec accepts.
 #include <cstdint>
 #include <cstdlib>
 #include <span>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wrinkle rigs: what is read passes every check again once it is written and read back.
+// Wrinkle rigs: an accepted rig passes all checks again after it was written and read back.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Skeleton maps: what is read finds its own names again, one role a joint.
+// Skeleton maps: an accepted map finds its own names, with one role per joint.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

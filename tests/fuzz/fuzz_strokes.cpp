@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strokes: what is read names maps and regions that the rig has, and every number is in its range.
+// Strokes: an accepted file names only maps and regions of the rig, and all numbers are in range.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A byte stream cut into frames in two ways, whole and in pieces: both must find the same frames.
+// A byte stream is read as a whole and in pieces. Both ways must find the same frames.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

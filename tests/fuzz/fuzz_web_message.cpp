@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A WebSocket's messages as they reach the hub: the input is cut into messages (u16 length, bytes),
-// each of which a viewer sends. The hub must take whatever passes for one.
+// WebSocket messages from a viewer to the hub. The input is a sequence of messages (u16 length,
+// then bytes). The hub must survive every message that passes the checks.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

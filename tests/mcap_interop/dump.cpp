@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// mcap-dump FILE: what our reader finds, in the lines of read.mjs. Of a file whose writer died: up
-// to where it broke off.
+// mcap-dump FILE: prints the messages that our reader finds, in the format of read.mjs. Prints the
+// complete part of a file whose writer died.
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>

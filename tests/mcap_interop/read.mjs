@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// node read.mjs [--cut] FILE: every message of an MCAP file, by @mcap/core's stream reader (which goes
-// by the records and checks their checksums) and again by its indexed reader (which goes by the summary
-// and the message indexes); fails where the two do not agree. "--cut": of a file whose writer died,
-// which has no index, by its records up to the last whole one. A line each:
+// node read.mjs [--cut] FILE: prints every message of an MCAP file. Reads it with the stream reader of
+// @mcap/core (which follows the records and verifies their checksums) and with its indexed reader (which
+// follows the summary and the message indexes), and fails if they differ. --cut is for a file without an
+// index, because its writer died: reads the records up to the last complete one. One line per message:
 //   topic sequence log_time publish_time bytes crc32
-// In the order of (log time, topic, sequence, crc32), since readers may differ where times are equal.
+// Sorted by (log time, topic, sequence, crc32), because readers may order equal times differently.
 import { readFileSync } from "node:fs";
 import { crc32 } from "@foxglove/crc";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
@@ -47,7 +47,7 @@ for (let record; (record = stream.nextRecord()); ) {
     attachments.push(`attachment ${record.name} ${record.data.byteLength} ${crc32(record.data)}`);
 }
 if (isCut && stream.done()) {
-  console.error("the file is whole");
+  console.error("the file is complete; --cut is for truncated files");
   process.exit(1);
 }
 
@@ -69,7 +69,7 @@ const found = [...inOrder(streamed), ...attachments];
 if (!isCut) {
   const indexed = await viaIndex();
   if ([...indexed].sort().join("\n") !== [...found].sort().join("\n")) {
-    console.error(`the index leads to ${indexed.length} messages and attachments, the records hold ${found.length}`);
+    console.error(`the index lists ${indexed.length} messages and attachments, the records hold ${found.length}`);
     process.exit(1);
   }
 }

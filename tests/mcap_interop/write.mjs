@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// node write.mjs IN OUT none|zstd|lz4: the messages of the MCAP file IN, written anew by @mcap/core's
-// writer in small chunks.
+// node write.mjs IN OUT none|zstd|lz4: copies the messages of the MCAP file IN to OUT with the writer of
+// @mcap/core, in small chunks.
 import { readFileSync, writeFileSync } from "node:fs";
 import { McapIndexedReader, McapWriter } from "@mcap/core";
 import zstd from "@foxglove/wasm-zstd";

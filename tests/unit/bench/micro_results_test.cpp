@@ -19,7 +19,7 @@ Result<MicroResults> Parse(const std::vector<nlohmann::json>& runs) {
   return MicroResults::Parse(nlohmann::json{{"benchmarks", runs}}.dump(), "here.json");
 }
 
-TEST(MicroResults, ARepeatedBenchmarkIsItsMedian) {
+TEST(MicroResults, UsesTheMedianOfRepetitions) {
   const auto results = Parse({OneRun("BM_A/n:1", 5.0), OneRun("BM_B", 1.0), OneRun("BM_A/n:1", 3.0),
                               OneRun("BM_A/n:1", 100.0)});
   ASSERT_TRUE(results.ok());
@@ -28,7 +28,7 @@ TEST(MicroResults, ARepeatedBenchmarkIsItsMedian) {
   EXPECT_EQ(results->Nanoseconds("BM_B").value(), 1.0);
 }
 
-TEST(MicroResults, TimesAreNanosecondsInWhateverUnitTheyWereWritten) {
+TEST(MicroResults, ConvertsTimesToNanoseconds) {
   const auto results =
       Parse({OneRun("us", 2.0, "us"), OneRun("ms", 2.0, "ms"), OneRun("s", 2.0, "s")});
   ASSERT_TRUE(results.ok());
@@ -37,8 +37,8 @@ TEST(MicroResults, TimesAreNanosecondsInWhateverUnitTheyWereWritten) {
   EXPECT_EQ(results->Nanoseconds("s").value(), 2e9);
 }
 
-// Means and deviations of Google Benchmark's own are no measurements.
-TEST(MicroResults, AggregatesDoNotCount) {
+// The means and deviations that Google Benchmark adds are not measurements.
+TEST(MicroResults, IgnoresAggregates) {
   nlohmann::json mean = OneRun("BM_A", 1000.0);
   mean["run_type"] = "aggregate";
   const auto results = Parse({OneRun("BM_A", 4.0), mean, mean});
@@ -46,14 +46,14 @@ TEST(MicroResults, AggregatesDoNotCount) {
   EXPECT_EQ(results->Nanoseconds("BM_A").value(), 4.0);
 }
 
-TEST(MicroResults, WhatWasNotMeasuredIsNotFound) {
+TEST(MicroResults, ReportsMissingMeasurements) {
   const auto results = Parse({OneRun("BM_A", 4.0)});
   ASSERT_TRUE(results.ok());
   EXPECT_EQ(results->Nanoseconds("BM_B").status().code(), StatusCode::kNotFound);
   EXPECT_EQ(results->Counter("BM_A", "allocations").status().code(), StatusCode::kNotFound);
 }
 
-TEST(MicroResults, AFailedBenchmarkSpoilsTheFile) {
+TEST(MicroResults, RejectsAFileWithAFailedBenchmark) {
   nlohmann::json failed = OneRun("BM_B", 0.0);
   failed["error_occurred"] = true;
   failed["error_message"] = "allocates";
@@ -63,7 +63,7 @@ TEST(MicroResults, AFailedBenchmarkSpoilsTheFile) {
   EXPECT_EQ(status.where(), "here.json");
 }
 
-TEST(MicroResults, OtherFilesAreRefused) {
+TEST(MicroResults, RejectsOtherFiles) {
   EXPECT_EQ(MicroResults::Parse("", "x").status().code(), StatusCode::kInvalidArgument);
   EXPECT_EQ(MicroResults::Parse("{}", "x").status().code(), StatusCode::kInvalidArgument);
   EXPECT_EQ(Parse({nlohmann::json{{"run_type", "iteration"}}}).status().code(),
@@ -71,7 +71,7 @@ TEST(MicroResults, OtherFilesAreRefused) {
   EXPECT_EQ(MicroResults::Load("/nowhere/at/all.json").status().code(), StatusCode::kIo);
 }
 
-TEST(MicroResults, JsonHasTimesAndCountersAndNothingOfGoogleBenchmarksOwn) {
+TEST(MicroResults, JsonHasOnlyTimesAndUserCounters) {
   const auto results = Parse({OneRun("BM_A", 4.0)});
   ASSERT_TRUE(results.ok());
   EXPECT_EQ(results->ToJson(),

@@ -10,7 +10,7 @@
 namespace furrow::bench {
 namespace {
 
-TEST(Aims, ComeBackFromTheirJson) {
+TEST(Aims, RoundTripThroughJson) {
   const std::vector<Aim> aims = {{"p50", "echo 74 us", "1.18x", "1.00x", "<= 1.25x", true},
                                  {"p90", "", "1.47x", "", "<= 1.30x", false}};
   const auto back = AimsFromJson(ToJson(aims));
@@ -20,7 +20,7 @@ TEST(Aims, ComeBackFromTheirJson) {
   EXPECT_EQ(AimsFromJson({1, 2}).status().code(), StatusCode::kInvalidArgument);
 }
 
-TEST(Machine, ProcessorIsNamedByItsFirstCore) {
+TEST(Machine, NamesTheProcessorOfTheFirstCore) {
   std::istringstream two(
       "processor\t: 0\nmodel\t\t: 17\nmodel name\t: AMD EPYC 9004\nprocessor\t: 1\n"
       "model name\t: other\n");
@@ -29,7 +29,7 @@ TEST(Machine, ProcessorIsNamedByItsFirstCore) {
   EXPECT_EQ(ProcessorName(none), "unknown processor");
 }
 
-TEST(Machine, TextHasAllThatComparingNeeds) {
+TEST(Machine, TextStatesDateProcessorAndLoad) {
   EXPECT_EQ(ToText({"2026-11-21 18:30 UTC", "AMD EPYC", 2, 0.3, "g++ 12.2.0"}),
             "2026-11-21 18:30 UTC, 2 cores of AMD EPYC, g++ 12.2.0");
   EXPECT_EQ(ToText({"today", "X", 1, 0.0, "clang"}), "today, 1 core of X, clang");

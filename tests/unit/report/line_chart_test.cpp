@@ -22,7 +22,7 @@ LineChart Chart() {
           .series = {{"p50", {{0.0, 0.0}, {10.0, 5.0}}}, {"p99", {{0.0, 1.0}, {10.0, 10.0}}}}};
 }
 
-TEST(LineChart, EndsOfTheDataLieInTheCornersOfThePlot) {
+TEST(LineChart, EndsOfTheDataAreInTheCornersOfThePlot) {
   const std::string svg = ToSvg({Chart()});
   EXPECT_EQ(Count(svg, "<polyline"), 2u);
   EXPECT_NE(svg.find("points=\"80.0,270.0 730.0,163.0 \""), std::string::npos) << svg;
@@ -30,7 +30,7 @@ TEST(LineChart, EndsOfTheDataLieInTheCornersOfThePlot) {
   EXPECT_NE(svg.find("latency &lt; 1 s (ms)"), std::string::npos);
 }
 
-TEST(LineChart, ALogarithmicAxisHasTenfoldStepsAndNoZero) {
+TEST(LineChart, LogarithmicAxisHasPowersOfTenAndNoZero) {
   LineChart chart = Chart();
   chart.series = {{"p50", {{0.0, 1.0}, {1.0, 2.0}, {10.0, 3.0}, {100.0, 4.0}}}};
   chart.x.logarithmic = true;
@@ -49,7 +49,7 @@ std::vector<std::string> TickLabels(const LineChart& chart, const std::string& a
   return labels;
 }
 
-TEST(LineChart, TicksOfAnAxisHaveTheSameDigits) {
+TEST(LineChart, TicksHaveTheSameNumberOfDecimals) {
   using Labels = std::vector<std::string>;
   LineChart chart = Chart();
   chart.series = {{"p50", {{0.0, 0.0}, {1.0, 2.5}}}};
@@ -65,7 +65,7 @@ TEST(LineChart, TicksOfAnAxisHaveTheSameDigits) {
   EXPECT_EQ(TickLabels(chart, "end"), (Labels{"0.01", "0.1", "1", "10", "100"}));
 }
 
-TEST(LineChart, ChartsStandBelowEachOther) {
+TEST(LineChart, PlacesChartsBelowEachOther) {
   const std::string one = ToSvg({Chart()});
   const std::string two = ToSvg({Chart(), Chart()});
   EXPECT_NE(one.find("height=\"320\""), std::string::npos);
@@ -73,7 +73,7 @@ TEST(LineChart, ChartsStandBelowEachOther) {
   EXPECT_EQ(Count(two, "<polyline"), 4u);
 }
 
-TEST(LineChart, WithoutPointsThereAreAxesAlone) {
+TEST(LineChart, DrawsOnlyAxesWithoutPoints) {
   LineChart chart = Chart();
   chart.series = {{"p50", {}}};
   EXPECT_EQ(Count(ToSvg({chart}), "nan"), 0u);

@@ -11,7 +11,7 @@ export interface PictureFacts {
 }
 
 const WINDOW_S = 2;
-/** So many pictures in a row that are no stills, and the pose or the camera moves. */
+/** After this many pictures in a row without a still, the pose or the camera counts as moving. */
 const MOVES = 3;
 
 export class PictureStats {
@@ -19,7 +19,7 @@ export class PictureStats {
   private latencies: number[] = [];
   private lastSequence = -1;
   private lastDropped = 0;
-  /** Pictures so far. A pose at rest gets none: few a second is no fault. */
+  /** Pictures so far. A pose at rest gets no pictures, so a low rate is not a fault. */
   shown = 0;
   dropped = 0;
   tier = 0;
@@ -27,8 +27,8 @@ export class PictureStats {
   private sinceStill = Infinity;
 
   /**
-   * Nothing moves. A single change at rest is a picture and then its still: that alone is no movement, or else asking
-   * for another size at rest would end the rest.
+   * True while nothing moves. A single change at rest causes a picture and its still, which does not count as
+   * movement. Otherwise a request for another size would end the rest.
    */
   get resting(): boolean {
     return this.sinceStill < MOVES;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/report/take.h"
+#include "bench/report/value_or_exit.h"
 
 #include <cerrno>
 #include <cstdio>

@@ -5,30 +5,30 @@
 #include <string>
 #include <vector>
 
-#include "bench/thesis/stage.h"
+#include "bench/render/moving_scene.h"
 
 namespace furrow::bench {
 
 struct ExperimentOptions {
   PictureSize size;
-  int frames = 8;      // a sample
+  int frames = 8;      // per sample
   std::string device;  // RendererOptions::device
 };
 
-// One line of a table.
+// One row of a table.
 struct Row {
   std::string name;
-  std::size_t stage = 0;  // in Experiment::stages
+  std::size_t scene = 0;  // index in Experiment::scenes
   render::Settings settings;
-  std::size_t baseline = 0;   // row that its frame rate is compared with
-  double thesis_fps = 0.0;    // what the thesis measured; 0: not stated
-  double thesis_share = 0.0;  // its frame rate as a share of the baseline's; 0: not stated
+  std::size_t baseline = 0;   // index of the row for comparison
+  double thesis_fps = 0.0;    // frame rate in the thesis; 0: not stated
+  double thesis_share = 0.0;  // frame rate in the thesis relative to the baseline; 0: not stated
 };
 
 struct Experiment {
   std::string id;  // "table-5.1"
   std::string title;
-  std::vector<std::unique_ptr<Stage>> stages;
+  std::vector<std::unique_ptr<MovingScene>> scenes;
   std::vector<Row> rows;
 };
 

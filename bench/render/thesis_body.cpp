@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "bench/render/thesis_body.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,7 +8,6 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
-#include "bench/thesis/subjects.h"
 #include "tests/unit/render/character_parts.h"
 #include "tests/unit/render/test_character.h"
 
@@ -20,7 +21,7 @@ using character::Vertex;
 
 constexpr float kTwoPi = glm::two_pi<float>();
 
-// A part of the body: a tube that tapers to its ends, with a chain of joints along its middle.
+// A part of the body: a tube that tapers towards its ends, with a chain of joints along its axis.
 struct Tube {
   const char* name;
   glm::vec3 start;
@@ -47,13 +48,13 @@ constexpr int NumTriangles() {
 }
 static_assert(NumTriangles() == kBodyTriangles);
 
-constexpr int kNumBendingJoints = 150;  // all but the first of each chain
+constexpr int kNumBendingJoints = 150;  // all joints but the first of each chain
 
-// Of the atlas, in which every tube has a cell of its own.
+// The texture atlas has one cell per tube.
 constexpr std::size_t kAtlasColumns = 3;
 constexpr std::size_t kAtlasRows = 2;
 static_assert(kAtlasColumns * kAtlasRows == kTubes.size());
-constexpr float kGutter = 0.02f;  // of a cell
+constexpr float kGutter = 0.02f;  // fraction of a cell
 
 glm::vec2 InAtlas(std::size_t tube, float around, float along) {
   const glm::vec2 cell(tube % kAtlasColumns, tube / kAtlasColumns);
@@ -93,7 +94,7 @@ void AddTube(std::size_t index, int first_joint, Mesh* mesh) {
   render::test::AddGrid(kTubes[index].columns, kTubes[index].rows, vertex, mesh);
 }
 
-// The root, then each tube's chain; skinned by position in this list.
+// The root, then the chain of each tube. Skin weights refer to positions in this list.
 std::vector<wrinkle::JointDesc> Joints() {
   std::vector<wrinkle::JointDesc> joints(1);
   joints[0].name = "root";
@@ -111,8 +112,7 @@ std::vector<wrinkle::JointDesc> Joints() {
   return joints;
 }
 
-// The joints that bend: those whose parent lies in their own chain, so that they are straight at
-// rest.
+// The bending joints: those with a parent in the same chain. They are straight at rest.
 std::vector<std::size_t> BendingJoints(const std::vector<wrinkle::JointDesc>& joints) {
   std::vector<std::size_t> bending;
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -121,7 +121,7 @@ std::vector<std::size_t> BendingJoints(const std::vector<wrinkle::JointDesc>& jo
   return bending;
 }
 
-// Hinges first, then balls, spread over the chains.
+// Hinges first, then balls, distributed over the chains.
 void AddRig(const std::vector<wrinkle::JointDesc>& joints, int hinges, int balls,
             Character* character) {
   wrinkle::Rig& rig = character->rig;

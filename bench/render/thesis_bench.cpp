@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thesis's tables 5.1 and 5.2 and its figure 5.1, measured again: the same triangles, lights,
-// resolution and depth maps, every row's frame rate relative to the first beside the thesis's own.
+// Repeats tables 5.1 and 5.2 and figure 5.1 of the thesis with the same triangle counts, lights,
+// resolution and depth maps. Compares the frame rate of every row, relative to its baseline, with
+// the thesis.
 #include <cstdio>
 #include <filesystem>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "bench/render/experiments.h"
 #include "bench/report/interleave.h"
 #include "bench/report/results.h"
-#include "bench/thesis/experiments.h"
 #include "report/bar_chart.h"
 #include "report/statistics.h"
 #include "report/table.h"
@@ -29,9 +30,9 @@ struct Options {
   std::filesystem::path out;
 };
 
-// What one row measured.
+// The measurements of one row.
 struct Outcome {
-  std::vector<Sample> samples;           // seconds a frame, one a repetition
+  std::vector<Sample> samples;           // seconds per frame, one per repetition
   std::vector<render::PassTime> passes;  // medians
   [[nodiscard]] double fps() const { return 1.0 / MedianWall(samples); }
 };
@@ -40,7 +41,7 @@ std::vector<render::PassTime> MedianPasses(const Row& row, const Experiment& exp
                                            int repetitions) {
   std::vector<std::vector<render::PassTime>> frames;
   for (int i = 0; i < repetitions; ++i) {
-    frames.push_back(experiment.stages[row.stage]->TimePasses(row.settings));
+    frames.push_back(experiment.scenes[row.scene]->TimePasses(row.settings));
   }
   std::vector<render::PassTime> medians = frames.front();
   for (std::size_t pass = 0; pass < medians.size(); ++pass) {
@@ -60,7 +61,7 @@ std::vector<Outcome> Measure(const Experiment& experiment, const Options& option
   std::vector<Sampler> samplers;
   for (const Row& row : experiment.rows) {
     samplers.push_back([&] {
-      return experiment.stages[row.stage]->SecondsPerFrame(row.settings, options.experiment.frames);
+      return experiment.scenes[row.scene]->SecondsPerFrame(row.settings, options.experiment.frames);
     });
   }
   const auto samples = Interleave(samplers, options.repetitions);
@@ -74,8 +75,8 @@ std::vector<Outcome> Measure(const Experiment& experiment, const Options& option
 
 std::string Percent(double share) { return Fixed(100.0 * share, 2) + "%"; }
 
-// The baseline's processor time as a share of a row's: what `of its baseline` would be on a machine
-// that does nothing else, where the processor is the renderer.
+// Processor time of the baseline divided by that of a row: the relative frame rate on an otherwise
+// idle machine with a software renderer.
 double CpuShare(const std::vector<Outcome>& outcomes, const Experiment& experiment,
                 std::size_t row) {
   const std::size_t baseline = experiment.rows[row].baseline;
@@ -84,7 +85,7 @@ double CpuShare(const std::vector<Outcome>& outcomes, const Experiment& experime
 
 Table RowTable(const Experiment& experiment, const std::vector<Outcome>& outcomes) {
   Table table{experiment.title,
-              {"run", "ms a frame", "frames/s", "of its baseline", "CPU ms a frame",
+              {"run", "ms per frame", "frames/s", "of its baseline", "CPU ms per frame",
                "of its baseline, by CPU", "thesis: frames/s", "thesis: of its baseline"},
               {}};
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
@@ -142,7 +143,7 @@ nlohmann::json ToJson(const Experiment& experiment, const std::vector<Outcome>& 
   return {{"id", experiment.id}, {"title", experiment.title}, {"rows", rows}};
 }
 
-// Frame rates relative to the baseline, ours beside the thesis's.
+// Frame rates relative to the baseline, measured and in the thesis.
 BarChart Chart(const Experiment& experiment, const std::vector<Outcome>& outcomes) {
   BarChart chart{experiment.title,
                  "frame rate, % of its baseline",
@@ -168,7 +169,7 @@ int Run(const Options& options) {
   for (const auto& make : {MakeTable51, MakeTable52, MakeFigure51, MakeMethods}) {
     const Experiment experiment = make(options.experiment);
     if (!options.only.empty() && options.only != experiment.id) continue;
-    report["device"] = experiment.stages.front()->device();
+    report["device"] = experiment.scenes.front()->device();
     const std::vector<Outcome> outcomes = Measure(experiment, options);
     const std::string text = ToMarkdown(RowTable(experiment, outcomes)) + "\n" +
                              ToMarkdown(PassTable(experiment, outcomes)) + "\n";
@@ -193,18 +194,19 @@ int Run(const Options& options) {
 
 int main(int argc, char** argv) {
   furrow::bench::Options options;
-  CLI::App app{"The thesis's tables 5.1 and 5.2 and figure 5.1, measured again"};
-  app.add_option("--out", options.out, "folder for thesis.json, thesis.md and the charts (SVG)");
-  app.add_option("--only", options.only, "one of table-5.1, table-5.2, figure-5.1, methods");
-  app.add_option("--repetitions", options.repetitions, "samples of every row, taken in turn")
+  CLI::App app{"Repeat tables 5.1 and 5.2 and figure 5.1 of the thesis"};
+  app.add_option("--out", options.out, "Folder for thesis.json, thesis.md and the charts (SVG)");
+  app.add_option("--only", options.only, "One of table-5.1, table-5.2, figure-5.1, methods");
+  app.add_option("--repetitions", options.repetitions, "Samples per row, taken in turn")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--frames", options.experiment.frames, "frames a sample")
+  app.add_option("--frames", options.experiment.frames, "Frames per sample")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  app.add_option("--width", options.experiment.size.width, "pixels")->capture_default_str();
-  app.add_option("--height", options.experiment.size.height, "pixels")->capture_default_str();
-  app.add_option("--device", options.experiment.device, "EGL device, as for furrow render");
+  app.add_option("--width", options.experiment.size.width, "Size in pixels")->capture_default_str();
+  app.add_option("--height", options.experiment.size.height, "Size in pixels")
+      ->capture_default_str();
+  app.add_option("--device", options.experiment.device, "EGL device (as for furrow render)");
   CLI11_PARSE(app, argc, argv);
   if (!options.out.empty()) furrow::bench::MakeResultFolder(options.out);
   return furrow::bench::Run(options);

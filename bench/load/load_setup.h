@@ -10,27 +10,28 @@
 
 namespace furrow::bench {
 
-// What all experiments are told.
-struct Setting {
+// The parameters that all experiments share.
+struct LoadSetup {
   std::filesystem::path daemon;     // furrowd
   std::filesystem::path recording;  // BVH
   std::filesystem::path rig;
-  std::filesystem::path folder;  // for what is made meanwhile: rigs, recordings, the daemon's log
+  std::filesystem::path folder;  // for intermediate files: rigs, recordings, the daemon's log
   std::filesystem::path out;     // for results
-  double seconds = 2.0;          // of one run
-  int rounds = 11;               // of paired runs
+  double seconds = 2.0;          // duration of one run
+  int rounds = 11;               // number of paired runs
 };
 
-// Hooks of a run that nobody watches.
+// Run hooks that print nothing.
 [[nodiscard]] load::RunHooks Silently();
 
-// A new daemon with this rig, one run of this recording, packed. Errors: the daemon's and Run()'s.
-[[nodiscard]] Result<load::RunResult> RunFresh(const Setting& setting,
+// Starts a new daemon with `rig` and runs `recording` once, packed. Errors: those of the daemon and
+// of Run().
+[[nodiscard]] Result<load::RunResult> RunFresh(const LoadSetup& setting,
                                                const std::filesystem::path& recording,
                                                const std::filesystem::path& rig,
                                                const load::RunOptions& options);
 
-// So many subjects at 60 Hz.
+// Options of a run with `subjects` subjects at 60 Hz.
 [[nodiscard]] load::RunOptions At60Hz(int subjects, double seconds);
 
 }  // namespace furrow::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/preview/figures.h"
+#include "bench/preview/measure_preview.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include <malloc.h>
 #include <turbojpeg.h>
 
-#include "bench/preview/house.h"
+#include "bench/preview/preview_server.h"
 #include "bench/preview/viewers.h"
 #include "client/load/compare/comparison.h"
 #include "report/statistics.h"
@@ -26,16 +26,16 @@ namespace {
 using report::Fixed;
 using server::Counter;
 
-constexpr double kFrame = 1.0 / House::kRate;
+constexpr double kFrame = 1.0 / PreviewServer::kRate;
 constexpr int kQuality = 80;
 constexpr int kWarmUp = 10;
-constexpr double kSettle = 0.5;      // seconds, until all is where it stays
-constexpr double kWatched = 2.5;     // seconds; a viewer rises by a tier after four
-constexpr double kPastWindow = 0.1;  // tiers are decided once a second
+constexpr double kSettle = 0.5;      // seconds until the state is stable
+constexpr double kWatched = 2.5;     // seconds; a viewer changes to a better tier after 4 s
+constexpr double kPastWindow = 0.1;  // seconds; tiers are decided once per second
 
 using Crowd = std::vector<std::unique_ptr<Viewer>>;
 
-Crowd MakeCrowd(const House& house, const PreviewSetting& setting, bool acknowledged) {
+Crowd MakeCrowd(const PreviewServer& house, const PreviewSetup& setting, bool acknowledged) {
   Crowd crowd;
   for (int i = 0; i < setting.viewers; ++i) {
     crowd.push_back(std::make_unique<Viewer>(house.port(), setting.picture.width,
@@ -51,7 +51,7 @@ std::string Middle(const std::vector<double>& values, int digits) {
   return Between(spread.median, spread.low, spread.high, digits);
 }
 
-// libjpeg-turbo alone, with its compressor and its memory kept: seconds.
+// Measures libjpeg-turbo alone, in seconds. Reuses its compressor and its memory.
 class BareEncoder {
  public:
   explicit BareEncoder(const render::Image& image)
@@ -77,9 +77,9 @@ class BareEncoder {
   tjhandle compressor_ = tjInitCompress();
 };
 
-// A picture is drawn, and another is packed by libjpeg-turbo alone, in turn.
-Aim DrawnToViewer(const PreviewSetting& setting) {
-  House house(setting.picture);
+// Alternates between a picture through the daemon and a picture encoded by libjpeg-turbo alone.
+Aim DrawnToViewer(const PreviewSetup& setting) {
+  PreviewServer house(setting.picture);
   BareEncoder bare(setting.picture);
   Viewer viewer(house.port(), setting.picture.width, setting.picture.height, false, kQuality);
   std::vector<double> bare_ms;
@@ -97,7 +97,7 @@ Aim DrawnToViewer(const PreviewSetting& setting) {
   }
   const double median = load::SpreadOf(ratios).median;
   return {std::to_string(setting.picture.width) + " x " + std::to_string(setting.picture.height) +
-              ", quality 80: drawn to received",
+              ", quality 80: from drawn to received",
           "libjpeg-turbo alone " + Middle(bare_ms, 2) + " ms",
           Middle(ratios, 2) + "x, " + Fixed(report::Median(ms), 2) + " ms",
           "",
@@ -105,9 +105,9 @@ Aim DrawnToViewer(const PreviewSetting& setting) {
           median <= 1.3};
 }
 
-// The subject moves once, and then rests.
-Aim StillAfterRest(const PreviewSetting& setting) {
-  House house(setting.picture);
+// The subject moves once and then rests.
+Aim StillAfterRest(const PreviewSetup& setting) {
+  PreviewServer house(setting.picture);
   Viewer viewer(house.port(), setting.picture.width, setting.picture.height, true);
   std::vector<double> ages;
   for (int round = 0; round < setting.stills; ++round) {
@@ -119,8 +119,8 @@ Aim StillAfterRest(const PreviewSetting& setting) {
     }
     ages.push_back(picture.age_seconds() * 1e3);
   }
-  return {"refined still, after the subject came to rest",
-          "rest is 100 ms without a move",
+  return {"refined still after the subject came to rest",
+          "at rest: 100 ms without movement",
           Middle(ages, 1) + " ms",
           "",
           "<= 150 ms",
@@ -132,14 +132,14 @@ double HeapBytes() {
   return static_cast<double>(info.uordblks + info.hblkhd);
 }
 
-// What a crowd that stopped reading was sent and has not taken, however long.
+// The data sent to stalled viewers that they have not read.
 struct Held {
-  double pictures = 0.0;  // the most of a viewer, on the heap and in sockets
-  double heap = 0.0;      // of the heap alone a viewer, in pictures
+  double pictures = 0.0;  // the maximum per viewer, on the heap and in sockets
+  double heap = 0.0;      // on the heap per viewer, in pictures
 };
 
-Held Stall(const PreviewSetting& setting, bool acknowledged) {
-  House house(setting.picture);
+Held Stall(const PreviewSetup& setting, bool acknowledged) {
+  PreviewServer house(setting.picture);
   Viewer active(house.port(), setting.picture.width, setting.picture.height, true);
   Crowd crowd = MakeCrowd(house, setting, acknowledged);
   const double before = HeapBytes();
@@ -152,7 +152,7 @@ Held Stall(const PreviewSetting& setting, bool acknowledged) {
   double bytes = 0.0;
   double pictures = 0.0;
   for (const auto& viewer : crowd) {
-    const std::vector<std::size_t> taken = viewer->TakeUnderWay();
+    const std::vector<std::size_t> taken = viewer->DrainInFlight();
     held.pictures = std::max(held.pictures, static_cast<double>(taken.size()));
     pictures += static_cast<double>(taken.size());
     for (const std::size_t size : taken) bytes += static_cast<double>(size);
@@ -161,30 +161,30 @@ Held Stall(const PreviewSetting& setting, bool acknowledged) {
   return held;
 }
 
-Aim StallMemory(const PreviewSetting& setting) {
+Aim StallMemory(const PreviewSetup& setting) {
   const Held all = Stall(setting, false);
   const Held held = Stall(setting, true);
   const auto say = [](const Held& what) {
-    return Fixed(what.pictures, 0) + " pictures, of them " + Fixed(what.heap, 1) + " on the heap";
+    return Fixed(what.pictures, 0) + " pictures, including " + Fixed(what.heap, 1) + " on the heap";
   };
-  return {"held for a viewer that stalled for " + Fixed(setting.stall_seconds, 0) + " s",
-          "sent everything: " + say(all),
+  return {"data held for a viewer that stalled for " + Fixed(setting.stall_seconds, 0) + " s",
+          "without flow control: " + say(all),
           say(held),
           "",
           "<= 2 pictures",
           held.pictures <= 2.0 && held.heap <= 2.0};
 }
 
-// Ages in milliseconds of the third picture that each of a stalled crowd reads: two may have been
-// under way. Limits: a round trip and two frames.
+// Ages in milliseconds of the third picture that each viewer reads after a stall, because two may
+// have been in flight. Limit: a round trip and two frames.
 struct Freshness {
   std::vector<double> ages;
   std::vector<double> limits;
   int within = 0;
 };
 
-Freshness ComeBack(const PreviewSetting& setting, bool acknowledged) {
-  House house(setting.picture);
+Freshness ComeBack(const PreviewSetup& setting, bool acknowledged) {
+  PreviewServer house(setting.picture);
   Crowd crowd = MakeCrowd(house, setting, acknowledged);
   house.Stream(true);
   Sleep(setting.stall_seconds);
@@ -200,13 +200,13 @@ Freshness ComeBack(const PreviewSetting& setting, bool acknowledged) {
   return fresh;
 }
 
-Aim FirstAfterStall(const PreviewSetting& setting) {
+Aim FirstAfterStall(const PreviewSetup& setting) {
   const Freshness all = ComeBack(setting, false);
   const Freshness fresh = ComeBack(setting, true);
   const double limit = report::Median(fresh.limits);
   return {
       "age of the first picture drawn after a stall of " + Fixed(setting.stall_seconds, 0) + " s",
-      "sent everything: " + Fixed(report::Median(all.ages), 0) + " ms",
+      "without flow control: " + Fixed(report::Median(all.ages), 0) + " ms",
       Middle(fresh.ages, 1) + " ms, " + std::to_string(fresh.within) + " of " +
           std::to_string(fresh.ages.size()) + " within",
       "",
@@ -214,8 +214,8 @@ Aim FirstAfterStall(const PreviewSetting& setting) {
       report::Median(fresh.ages) <= limit};
 }
 
-// What a crowd that looks at one view cost, once each has stalled for as many seconds as the tier
-// that it is to fall to.
+// The cost of several viewers of one view. Each viewer first stalls for as many seconds as the tier
+// that it shall fall to.
 struct Shared {
   double encodes_a_picture = 0.0;
   double sent_a_picture = 0.0;
@@ -223,8 +223,8 @@ struct Shared {
   int most_encodes = 0;
 };
 
-Shared Look(const PreviewSetting& setting, int num_tiers) {
-  House house(setting.picture);
+Shared Look(const PreviewSetup& setting, int num_tiers) {
+  PreviewServer house(setting.picture);
   Crowd crowd = MakeCrowd(house, setting, true);
   house.Stream(true);
   std::vector<std::future<void>> looking;
@@ -248,19 +248,19 @@ Shared Look(const PreviewSetting& setting, int num_tiers) {
   const auto after = counts();
   const double pictures = std::max(1.0, after[0] - before[0]);
   const Shared shared{(after[1] - before[1]) / pictures, (after[2] - before[2]) / pictures,
-                      pictures / (kWatched * House::kRate), house.TakeMostEncodes()};
+                      pictures / (kWatched * PreviewServer::kRate), house.TakeMostEncodes()};
   for (auto& one : looking) one.get();
   return shared;
 }
 
-Aim Encodes(const PreviewSetting& setting, int num_tiers) {
+Aim Encodes(const PreviewSetup& setting, int num_tiers) {
   const Shared shared = Look(setting, num_tiers);
   const std::string viewers = std::to_string(setting.viewers) + " viewers of one view";
   return {num_tiers == 1 ? viewers + ", all at the best tier" : viewers + ", at three tiers",
-          "one each: " + Fixed(shared.sent_a_picture, 1) + " encodes a picture",
-          Fixed(shared.encodes_a_picture, 2) + " encodes a picture, at most " +
+          "one each: " + Fixed(shared.sent_a_picture, 1) + " encodings per picture",
+          Fixed(shared.encodes_a_picture, 2) + " encodings per picture, at most " +
               std::to_string(shared.most_encodes) + "; " + Fixed(shared.pictures_a_pose, 2) +
-              " pictures a pose",
+              " pictures per pose",
           "",
           "<= " + std::to_string(num_tiers),
           shared.most_encodes <= num_tiers};
@@ -268,7 +268,7 @@ Aim Encodes(const PreviewSetting& setting, int num_tiers) {
 
 }  // namespace
 
-std::vector<Aim> MeasurePreview(const PreviewSetting& setting) {
+std::vector<Aim> MeasurePreview(const PreviewSetup& setting) {
   return {DrawnToViewer(setting),
           StallMemory(setting),
           FirstAfterStall(setting),

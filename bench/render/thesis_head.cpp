@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "bench/render/thesis_head.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -6,7 +8,6 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "bench/thesis/subjects.h"
 #include "tests/unit/render/character_parts.h"
 #include "tests/unit/render/test_character.h"
 
@@ -26,7 +27,7 @@ static_assert(kColumns * kRows * 2 == kHeadTriangles);
 constexpr glm::vec3 kRadii{0.085f, 0.12f, 0.098f};
 constexpr float kTwoPi = glm::two_pi<float>();
 
-// (u, v) of a region's middle on the face; the front of the head is u = 0.5.
+// (u, v) of the centre of each region on the face. u = 0.5 is the front of the head.
 glm::vec2 RegionCentre(int region) {
   const float side = region % 2 == 0 ? 0.06f : -0.06f;
   return {0.5f + side, 0.3f + 0.13f * static_cast<float>(region / 2)};
@@ -39,7 +40,7 @@ glm::vec3 OnHead(float u, float v) {
                             std::sin(polar) * std::cos(longitude));
 }
 
-// 1 in the middle of a region, 0 a tenth of the map away.
+// 1 at the centre of a region, 0 at a distance of a tenth of the map.
 float RegionMask(int region, float u, float v) {
   const float distance = glm::length(glm::vec2(u, v) - RegionCentre(region)) / 0.1f;
   return std::clamp(1.0f - distance * distance, 0.0f, 1.0f);
@@ -53,7 +54,7 @@ Vertex HeadVertex(float u, float v) {
   const float longitude = kTwoPi * (u - 0.5f);
   vertex.tangent = {std::cos(longitude), 0.0f, -std::sin(longitude), 1.0f};
   vertex.uv = {u, v};
-  // The head, and the two regions that are strongest here.
+  // The head joint and the two strongest regions at this vertex.
   float strongest[2] = {0.0f, 0.0f};
   for (int region = 0; region < kRegions; ++region) {
     const float mask = RegionMask(region, u, v);
@@ -75,7 +76,7 @@ struct Grid {
   int rows = 1;
 };
 
-// As wide a grid as a 16:10 picture asks for.
+// The number of columns that fits a 16:10 picture.
 Grid GridOf(int heads) {
   const int columns =
       std::max(1, static_cast<int>(std::lround(std::sqrt(heads * 1.6 * 1.2 / 0.9))));
@@ -150,7 +151,7 @@ void AddPictures(Character* character) {
     return
         [=](float u, float v) { return height * std::cos(kTwoPi * (u_cycles * u + v_cycles * v)); };
   };
-  // The same waves in millimetres: the head measures about 0.6 m round.
+  // The same waves in millimetres. The circumference of the head is about 0.6 m.
   const auto heights = [&](const char* name, float u_cycles, float v_cycles, float height) {
     return MakePicture(name, kMapSize, [=](float u, float v) {
       return glm::vec4(0.5f + 0.5f * waves(u_cycles, v_cycles, height)(u, v) / height);

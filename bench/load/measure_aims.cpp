@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/load/figures.h"
+#include "bench/load/measure_aims.h"
 
 #include <cstdio>
 
-#include "bench/load/duel.h"
-#include "bench/report/take.h"
+#include "bench/load/paired_runs.h"
+#include "bench/report/value_or_exit.h"
 #include "client/load/net/echo.h"
 #include "client/load/verdict.h"
 #include "report/table.h"
@@ -16,7 +16,7 @@ using report::Fixed;
 
 constexpr int kSearches = 3;
 
-// Whether a figure's ratio keeps its limit: at most it, or at least it.
+// True if the ratio of a figure meets its limit, which is a maximum or a minimum.
 Aim RatioAim(const load::Figure& figure, const std::string& what, double limit, bool at_most) {
   const double ratio = figure.ratio.median;
   return {what,
@@ -38,26 +38,27 @@ void AddRatios(const load::Comparison& comparison, const std::string& name, cons
   }
 }
 
-// The daemon and two raw echoes.
-std::vector<Aim> BesideEchoes(const Setting& setting) {
-  const auto daemon = Take(DaemonProcess::Start(setting.daemon, setting.rig, setting.folder));
-  const auto raw = Take(load::EchoServer::Start(daemon.target().pid));
-  const auto control = Take(load::EchoServer::Start(daemon.target().pid));
-  Duel duel(setting, {.server = daemon.target(), .raw = Echo(raw), .control = Echo(control)},
-            kSearches);
+// The daemon and two raw echo servers.
+std::vector<Aim> BesideEchoes(const LoadSetup& setting) {
+  const auto daemon =
+      ValueOrExit(DaemonProcess::Start(setting.daemon, setting.rig, setting.folder));
+  const auto raw = ValueOrExit(load::EchoServer::Start(daemon.target().pid));
+  const auto control = ValueOrExit(load::EchoServer::Start(daemon.target().pid));
+  PairedRuns duel(setting, {.server = daemon.target(), .raw = Echo(raw), .control = Echo(control)},
+                  kSearches);
   std::vector<Aim> aims;
   const load::Comparison gentle = duel.At(10000.0);
   AddRatios(gentle, "p50", "round trip at 10,000 poses/s, p50", 1.25, true, &aims);
   AddRatios(gentle, "p90", "round trip at 10,000 poses/s, p90", 1.30, true, &aims);
-  AddRatios(duel.At(50000.0), "CPU a pose", "processor time a pose at 50,000 poses/s", 2.0, true,
+  AddRatios(duel.At(50000.0), "CPU a pose", "processor time per pose at 50,000 poses/s", 2.0, true,
             &aims);
   AddRatios(duel.Highest(), "highest rate", "highest rate without loss", 0.5, false, &aims);
   return aims;
 }
 
-Aim ThousandSubjects(const Setting& setting) {
+Aim ThousandSubjects(const LoadSetup& setting) {
   const auto run =
-      Take(RunFresh(setting, setting.recording, setting.rig, At60Hz(1000, setting.seconds)));
+      ValueOrExit(RunFresh(setting, setting.recording, setting.rig, At60Hz(1000, setting.seconds)));
   const double p99_ms = run.p(99.0) * 1e-3;
   return {"1,000 subjects at 60 Hz on one core",
           "",
@@ -68,13 +69,13 @@ Aim ThousandSubjects(const Setting& setting) {
           load::Held(run, 1e6 / 60.0)};
 }
 
-// The memory of 1,000 subjects that hardly move, beside that of one.
-Aim IdleMemory(const Setting& setting) {
+// The memory of 1,000 subjects at a low pose rate, compared with that of one subject.
+Aim IdleMemory(const LoadSetup& setting) {
   load::RunOptions options = At60Hz(1, 1.0);
   options.plan.rate = 2.0;
   const auto resident = [&](int subjects) {
     options.plan.subjects = subjects;
-    const auto run = Take(RunFresh(setting, setting.recording, setting.rig, options));
+    const auto run = ValueOrExit(RunFresh(setting, setting.recording, setting.rig, options));
     return run.usage ? static_cast<double>(run.usage->resident_bytes) / (1 << 20) : 0.0;
   };
   const double one = resident(1);
@@ -87,16 +88,16 @@ Aim IdleMemory(const Setting& setting) {
           many <= 64.0};
 }
 
-// Runs with and without 40 subscribers that never read, in turn.
-std::vector<Aim> Stalled(const Setting& setting) {
+// Alternating runs with and without 40 subscribers that never read.
+std::vector<Aim> Stalled(const LoadSetup& setting) {
   std::vector<double> p50;
   std::vector<double> p90;
   for (int round = 0; round < setting.rounds; ++round) {
     std::fprintf(stderr, "stalled subscribers, round %d\n", round + 1);
     load::RunOptions options = At60Hz(64, setting.seconds);
-    const auto without = Take(RunFresh(setting, setting.recording, setting.rig, options));
+    const auto without = ValueOrExit(RunFresh(setting, setting.recording, setting.rig, options));
     options.burdens.stalled = 40;
-    const auto with = Take(RunFresh(setting, setting.recording, setting.rig, options));
+    const auto with = ValueOrExit(RunFresh(setting, setting.recording, setting.rig, options));
     p50.push_back(with.p(50.0) / without.p(50.0));
     p90.push_back(with.p(90.0) / without.p(90.0));
   }
@@ -115,7 +116,7 @@ std::vector<Aim> Stalled(const Setting& setting) {
 
 }  // namespace
 
-std::vector<Aim> MeasureAims(const Setting& setting) {
+std::vector<Aim> MeasureAims(const LoadSetup& setting) {
   std::vector<Aim> aims = BesideEchoes(setting);
   aims.push_back(ThousandSubjects(setting));
   for (Aim& aim : Stalled(setting)) aims.push_back(std::move(aim));

@@ -16,27 +16,27 @@
 
 namespace furrow::bench {
 
-// A daemon's preview, of its own parts: hub, render thread, web side, each on its thread as in
-// furrowd. What is drawn is given and ready at once, so that all that is measured is what happens
-// to a picture after it was drawn.
-class House {
+// A daemon reduced to its preview: hub, render thread and web server, each on its own thread as in
+// furrowd. The drawn picture is fixed and ready at once, so only the path of a picture after
+// drawing is measured.
+class PreviewServer {
  public:
-  static constexpr double kRate = 60.0;  // poses a second
+  static constexpr double kRate = 60.0;  // poses per second
 
-  // `picture`: what every frame shows, at its size. Ends the program where a socket cannot be had.
-  explicit House(render::Image picture);
-  ~House();
-  House(const House&) = delete;
-  House& operator=(const House&) = delete;
+  // `picture`: the content and size of every frame. Exits the program if no socket is available.
+  explicit PreviewServer(render::Image picture);
+  ~PreviewServer();
+  PreviewServer(const PreviewServer&) = delete;
+  PreviewServer& operator=(const PreviewServer&) = delete;
 
   [[nodiscard]] std::uint16_t port() const { return http_->port(); }
   [[nodiscard]] std::uint64_t Count(server::Counter counter) const { return metrics_.Get(counter); }
-  // When the last picture was ready to be packed.
+  // Time at which the last picture was ready to be encoded.
   [[nodiscard]] server::Time ready_at() const { return ready_at_.load(); }
-  // The most pictures packed of one drawn, since the last call.
+  // Maximum number of encodings of one drawn picture since the last call.
   [[nodiscard]] int TakeMostEncodes() { return most_encodes_.exchange(0); }
 
-  // The subject moves: once, or at kRate from now on and no more.
+  // Moves the subject once, or continuously at kRate while `on`.
   void MoveOnce();
   void Stream(bool on);
 
@@ -62,7 +62,7 @@ class House {
   std::deque<Task> tasks_;
   bool stopping_ = false;
 
-  struct Silent : server::Link {  // the publisher's: it does not listen
+  struct Silent : server::Link {  // the publisher's link, which ignores replies
     void SendReply(std::span<const std::uint8_t>) override {}
     int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t, int) override {
       return 0;

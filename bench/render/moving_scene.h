@@ -7,20 +7,20 @@
 #include <vector>
 
 #include "bench/report/interleave.h"
-#include "bench/thesis/subjects.h"
+#include "character/character.h"
 #include "render/gl/pass_timer.h"
 #include "render/renderer.h"
 #include "wrinkle/solver/solver.h"
 
 namespace furrow::bench {
 
-// Puts a subject into its pose at a time in seconds: local transforms, from the rest pose.
+// Sets a subject's pose at a time in seconds: local transforms, starting from the rest pose.
 using Motion = std::function<void(double seconds, const wrinkle::Skeleton&, wrinkle::LocalPose*)>;
 
-// Facial joints that swing between the poses stretch and squash, each at its own phase, so that
-// both maps are at work in every frame.
+// Swings the facial joints between the poses stretch and squash, each at its own phase, so that
+// every frame uses both maps.
 void MoveFace(double seconds, const wrinkle::Skeleton& skeleton, wrinkle::LocalPose* pose);
-// Every joint of the body sways by up to 34 degrees.
+// Bends every joint of the body by up to 34 degrees.
 void MoveBody(double seconds, const wrinkle::Skeleton& skeleton, wrinkle::LocalPose* pose);
 
 struct PictureSize {
@@ -28,19 +28,25 @@ struct PictureSize {
   int height = 800;
 };
 
-// A moving character, once or many times, in front of a camera that it just fills. Every subject
-// has its own solver and is ahead of the one before, so that no two make the same face.
-class Stage {
- public:
-  // `placements`: one a subject, at least one. Aborts with the error on stderr where there is no
-  // OpenGL: a benchmark has nothing to fall back on.
-  Stage(const character::Character& character, const std::vector<glm::mat4>& placements,
-        const Extent& extent, PictureSize size, Motion motion, const std::string& device);
+// Half the width and height of the visible area, in metres.
+struct Extent {
+  float half_width = 0.0f;
+  float half_height = 0.0f;
+};
 
-  // Seconds a frame, pose to pixels, over `frames` frames of 1/60 s each: solve, draw and read
-  // back, two frames in flight as in the daemon.
+// One or more instances of a moving character that just fill the view of the camera. Every subject
+// has its own solver and a time offset, so no two subjects have the same pose.
+class MovingScene {
+ public:
+  // `placements`: one per subject, at least one. Exits the program with an error on stderr if
+  // OpenGL is unavailable.
+  MovingScene(const character::Character& character, const std::vector<glm::mat4>& placements,
+              const Extent& extent, PictureSize size, Motion motion, const std::string& device);
+
+  // Seconds per frame from pose to pixels (solve, draw, read back), over `frames` frames of 1/60 s
+  // each. Two frames are in flight, as in the daemon.
   [[nodiscard]] Sample SecondsPerFrame(const render::Settings& settings, int frames);
-  // Times of the passes of one frame, drawn alone.
+  // Times of the passes of a single frame, with nothing else in flight.
   [[nodiscard]] std::vector<render::PassTime> TimePasses(const render::Settings& settings);
 
   [[nodiscard]] std::string device() const { return renderer_->description(); }
@@ -52,7 +58,7 @@ class Stage {
     std::vector<glm::mat4> model;
     glm::mat4 placement;
   };
-  // Moves a subject to the frame's time; what to draw points into it.
+  // Moves a subject to the time of the frame. The result points into the subject.
   [[nodiscard]] render::PosedSubject Advance(std::size_t subject);
   void Submit(const render::Settings& settings);
 

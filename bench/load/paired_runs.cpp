@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/load/duel.h"
+#include "bench/load/paired_runs.h"
 
 #include <algorithm>
 #include <cstdio>
 
 #include "bench/report/aims.h"
-#include "bench/report/take.h"
+#include "bench/report/value_or_exit.h"
 #include "client/cli/load/load_input.h"
 #include "client/load/net/clock.h"
 
@@ -16,32 +16,32 @@ constexpr int kSubjects = 256;
 
 }  // namespace
 
-Duel::Duel(const Setting& setting, const load::Contestants& contestants, int searches)
+PairedRuns::PairedRuns(const LoadSetup& setting, const load::Contestants& contestants, int searches)
     : contestants_(contestants),
-      performance_(Take(cli::LoadPerformance(
+      performance_(ValueOrExit(cli::LoadPerformance(
           {.file = setting.recording, .rig = setting.rig, .quantise = true}))) {
   options_.run = At60Hz(kSubjects, setting.seconds);
   options_.rounds = setting.rounds;
   options_.searches = std::min(searches, setting.rounds);
   options_.probe_seconds = std::min(1.0, setting.seconds);
-  // What is slower is searched for downwards.
+  // Slower servers are searched from high to low rates.
   options_.search_start = 32000.0;
 }
 
-load::Comparison Duel::At(double rate) {
+load::Comparison PairedRuns::At(double rate) {
   load::ComparisonOptions options = options_;
   options.run.plan.rate = rate / kSubjects;
   return Run(options);
 }
 
-load::Comparison Duel::Highest() {
+load::Comparison PairedRuns::Highest() {
   load::ComparisonOptions options = options_;
   options.find_max = true;
   options.rounds = 0;
   return Run(options);
 }
 
-load::Comparison Duel::Run(const load::ComparisonOptions& options) {
+load::Comparison PairedRuns::Run(const load::ComparisonOptions& options) {
   load::Comparison comparison = load::Compare(
       [this](const load::Target& target, const load::RunOptions& run) {
         return load::Run(performance_, target, run, Silently());

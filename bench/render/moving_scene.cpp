@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/thesis/stage.h"
+#include "bench/render/moving_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,19 +7,19 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/trigonometric.hpp>
 
-#include "bench/report/take.h"
+#include "bench/report/value_or_exit.h"
 
 namespace furrow::bench {
 namespace {
 
 constexpr double kFrameSeconds = 1.0 / 60.0;
-constexpr double kSecondsAhead = 0.37;  // of a subject to the next
+constexpr double kSecondsAhead = 0.37;  // time offset from one subject to the next
 constexpr float kFovDegrees = 30.0f;
 constexpr float kMargin = 1.05f;
 
 std::shared_ptr<const wrinkle::RigBinding> Bind(const character::Character& character) {
   return std::make_shared<const wrinkle::RigBinding>(
-      Take(wrinkle::RigBinding::Create(character.rig, character.skeleton, {})));
+      ValueOrExit(wrinkle::RigBinding::Create(character.rig, character.skeleton, {})));
 }
 
 render::Camera Facing(const Extent& extent, PictureSize size) {
@@ -52,11 +52,12 @@ void MoveBody(double seconds, const wrinkle::Skeleton& skeleton, wrinkle::LocalP
   }
 }
 
-Stage::Stage(const character::Character& character, const std::vector<glm::mat4>& placements,
-             const Extent& extent, PictureSize size, Motion motion, const std::string& device)
+MovingScene::MovingScene(const character::Character& character,
+                         const std::vector<glm::mat4>& placements, const Extent& extent,
+                         PictureSize size, Motion motion, const std::string& device)
     : skeleton_(character.skeleton),
       motion_(std::move(motion)),
-      renderer_(Take(render::Renderer::Create(character, {device}))) {
+      renderer_(ValueOrExit(render::Renderer::Create(character, {device}))) {
   const auto binding = Bind(character);
   for (const glm::mat4& placement : placements) {
     Subject& subject = subjects_.emplace_back(
@@ -71,20 +72,20 @@ Stage::Stage(const character::Character& character, const std::vector<glm::mat4>
   request_.height = size.height;
 }
 
-render::PosedSubject Stage::Advance(std::size_t index) {
+render::PosedSubject MovingScene::Advance(std::size_t index) {
   Subject& subject = subjects_[index];
   motion_(kFrameSeconds * frame_ + kSecondsAhead * static_cast<double>(index), skeleton_,
           &subject.pose);
   const wrinkle::LocalToModelJob to_model{&skeleton_, subject.pose.joints, subject.model};
   if (to_model.Run() != wrinkle::JobStatus::kOk ||
       subject.solver.Update(subject.pose, kFrameSeconds) != wrinkle::JobStatus::kOk) {
-    FailWith({StatusCode::kInternal, "the benchmark's pose cannot be solved", "stage"});
+    FailWith({StatusCode::kInternal, "cannot solve the pose of the benchmark", "scene"});
   }
   return {subject.model, &subject.solver.binding(), subject.solver.wrinkle_weights(),
           subject.solver.filtered_values(), subject.placement};
 }
 
-void Stage::Submit(const render::Settings& settings) {
+void MovingScene::Submit(const render::Settings& settings) {
   static_cast<render::PosedSubject&>(request_) = Advance(0);
   others_.clear();
   for (std::size_t i = 1; i < subjects_.size(); ++i) others_.push_back(Advance(i));
@@ -94,22 +95,22 @@ void Stage::Submit(const render::Settings& settings) {
   if (Status status = renderer_->Submit(request_); !status.ok()) FailWith(status);
 }
 
-Sample Stage::SecondsPerFrame(const render::Settings& settings, int frames) {
+Sample MovingScene::SecondsPerFrame(const render::Settings& settings, int frames) {
   const auto draw = [&] {
     for (int i = 0; i < frames; ++i) {
-      if (renderer_->in_flight() == 2) (void)Take(renderer_->Poll(true));
+      if (renderer_->in_flight() == 2) (void)ValueOrExit(renderer_->Poll(true));
       Submit(settings);
     }
-    while (renderer_->in_flight() > 0) (void)Take(renderer_->Poll(true));
+    while (renderer_->in_flight() > 0) (void)ValueOrExit(renderer_->Poll(true));
   };
   return Measure(draw, frames);
 }
 
-std::vector<render::PassTime> Stage::TimePasses(const render::Settings& settings) {
+std::vector<render::PassTime> MovingScene::TimePasses(const render::Settings& settings) {
   render::PassTimer timer;
   renderer_->SetObserver(&timer);
   Submit(settings);
-  (void)Take(renderer_->Poll(true));
+  (void)ValueOrExit(renderer_->Poll(true));
   renderer_->SetObserver(nullptr);
   return timer.Take();
 }

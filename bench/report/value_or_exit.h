@@ -7,13 +7,13 @@
 
 namespace furrow::bench {
 
-// Prints why and ends, with exit status 1: a benchmark has nothing to clean up but processes that
-// end with it.
+// Prints the failure and exits with status 1. A benchmark needs no clean-up: the processes that it
+// started end with it.
 [[noreturn]] void FailWith(const Status& status);
 
-// The value, or the end.
+// Returns the value, or exits the program with the failure.
 template <class T>
-[[nodiscard]] T Take(Result<T> result) {
+[[nodiscard]] T ValueOrExit(Result<T> result) {
   if (!result.ok()) FailWith(result.status());
   return *std::move(result);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/preview/house.h"
+#include "bench/preview/preview_server.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "bench/report/value_or_exit.h"
 #include "protocol/messages/hash.h"
 #include "server/net/clock.h"
 
@@ -16,16 +17,9 @@ namespace {
 using server::Time;
 
 constexpr char kSubject[] = "performer";
-constexpr Time kTick = server::FromSeconds(0.01);  // as furrowd's
+constexpr Time kTick = server::FromSeconds(0.01);  // as in furrowd
 
-template <class T>
-T Take(Result<T> result) {
-  if (result.ok()) return *std::move(result);
-  std::fprintf(stderr, "bench_preview: %s\n", result.status().ToString().c_str());
-  std::exit(1);
-}
-
-// One blend shape that makes one wrinkle weight: a subject that costs nothing.
+// One blend shape and one wrinkle weight: a subject with almost no cost.
 wrinkle::Rig SmallRig() {
   wrinkle::Rig rig;
   rig.name = "preview";
@@ -44,10 +38,10 @@ wrinkle::Rig SmallRig() {
 
 }  // namespace
 
-// Has its picture ready as soon as it is asked, and notes when.
-class House::ReadyRenderer : public render::Renderer {
+// Returns its picture at once and records the time.
+class PreviewServer::ReadyRenderer : public render::Renderer {
  public:
-  explicit ReadyRenderer(House* house) : house_(house) {}
+  explicit ReadyRenderer(PreviewServer* house) : house_(house) {}
   Status Submit(const render::FrameRequest&) override {
     ++in_flight_;
     return {};
@@ -67,16 +61,16 @@ class House::ReadyRenderer : public render::Renderer {
   Result<render::Camera> Preset(std::string_view) const override { return render::Camera(); }
 
  private:
-  House* house_;
+  PreviewServer* house_;
   int in_flight_ = 0;
   int encoded_ = 0;
 };
 
-House::House(render::Image picture)
+PreviewServer::PreviewServer(render::Image picture)
     : picture_(std::move(picture)),
       skeleton_(
           wrinkle::Skeleton::Create({{.name = "head", .parent = wrinkle::kNoJoint}}).value()) {
-  render_ = Take(server::RenderThread::Start(
+  render_ = ValueOrExit(server::RenderThread::Start(
       &skeleton_,
       [this]() -> Result<std::unique_ptr<render::Renderer>> {
         return std::unique_ptr<render::Renderer>(std::make_unique<ReadyRenderer>(this));
@@ -93,29 +87,29 @@ House::House(render::Image picture)
   parts.metrics = &metrics_;
   parts.make_token = [] { return 1; };
   hub_ = std::make_unique<server::Hub>(std::move(parts));
-  http_ =
-      Take(server::HttpServer::Start({.config = {.port = 0, .max_connections = 1024},
-                                      .bind = "127.0.0.1",
-                                      .post_to_hub = [this](Task task) { Post(std::move(task)); },
-                                      .answer = {},
-                                      .metrics = &metrics_}));
+  http_ = ValueOrExit(
+      server::HttpServer::Start({.config = {.port = 0, .max_connections = 1024},
+                                 .bind = "127.0.0.1",
+                                 .post_to_hub = [this](Task task) { Post(std::move(task)); },
+                                 .answer = {},
+                                 .metrics = &metrics_}));
   loop_ = std::thread([this] { Run(); });
 }
 
-House::~House() {
+PreviewServer::~PreviewServer() {
   Post([this](server::Hub&, Time) { stopping_ = true; });
   loop_.join();
   http_.reset();
   hub_.reset();
 }
 
-void House::Post(Task task) {
+void PreviewServer::Post(Task task) {
   const std::lock_guard lock(mutex_);
   tasks_.push_back(std::move(task));
   changed_.notify_one();
 }
 
-void House::Run() {
+void PreviewServer::Run() {
   Offer();
   Time next_tick = server::ReadClock();
   Time next_pose = next_tick;
@@ -141,7 +135,7 @@ void House::Run() {
 }
 
 template <class Message>
-void House::Send(const Message& message, Time now) {
+void PreviewServer::Send(const Message& message, Time now) {
   std::vector<std::uint8_t> bytes;
   encoder_.Encode({.session = 1,
                    .stream = 1,
@@ -151,7 +145,7 @@ void House::Send(const Message& message, Time now) {
   hub_->OnMessage(publisher_, bytes, now);
 }
 
-void House::Offer() {
+void PreviewServer::Offer() {
   const Time now = server::ReadClock();
   publisher_ = hub_->AddPeer(server::Transport::kWeb, "publisher", &publisher_link_, now);
   protocol::SkeletonOffer offer;
@@ -161,7 +155,7 @@ void House::Offer() {
   Send(offer, now);
 }
 
-void House::SendPose(Time now) {
+void PreviewServer::SendPose(Time now) {
   protocol::PoseFrame pose;
   pose.skeleton_hash = skeleton_hash_;
   pose.num_blend_shapes = 1;
@@ -170,10 +164,10 @@ void House::SendPose(Time now) {
   Send(pose, now);
 }
 
-void House::MoveOnce() {
+void PreviewServer::MoveOnce() {
   Post([this](server::Hub&, Time now) { SendPose(now); });
 }
 
-void House::Stream(bool on) { streaming_ = on; }
+void PreviewServer::Stream(bool on) { streaming_ = on; }
 
 }  // namespace furrow::bench

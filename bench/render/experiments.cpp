@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/thesis/experiments.h"
+#include "bench/render/experiments.h"
+
+#include "bench/render/thesis_body.h"
+#include "bench/render/thesis_head.h"
 
 namespace furrow::bench {
 namespace {
@@ -10,7 +13,7 @@ using render::Settings;
 using render::ShadowFilter;
 using render::SubsurfaceMethod;
 
-// As the thesis: three directional lights, depth maps of 512 x 512, no anti-aliasing.
+// As in the thesis: three directional lights, depth maps of 512 x 512, no anti-aliasing.
 Settings Diffuse() {
   Settings settings;
   settings.wrinkles = false;
@@ -27,7 +30,7 @@ Settings Wrinkled(MaskMode mode) {
   return settings;
 }
 
-// The skin pipeline with everything that the thesis did not have switched off.
+// The skin pipeline without the features that the thesis lacks.
 Settings Skin(SubsurfaceMethod method) {
   Settings settings = Wrinkled(MaskMode::kTexture);
   settings.shading = render::Shading::kSkin;
@@ -50,7 +53,7 @@ Settings Displaced(Settings settings) {
   return settings;
 }
 
-// A crowd in which nobody's mesh is simplified.
+// Without simplified meshes for crowds.
 Settings AllTriangles(Settings settings) {
   settings.detail.error_pixels = 0.0f;
   return settings;
@@ -64,21 +67,21 @@ Settings DepthPasses(int lamps) {
   return settings;
 }
 
-std::unique_ptr<Stage> HeadStage(int heads, const ExperimentOptions& options) {
-  return std::make_unique<Stage>(MakeHead(), HeadPlacements(heads), HeadsExtent(heads),
-                                 options.size, MoveFace, options.device);
+std::unique_ptr<MovingScene> HeadScene(int heads, const ExperimentOptions& options) {
+  return std::make_unique<MovingScene>(MakeHead(), HeadPlacements(heads), HeadsExtent(heads),
+                                       options.size, MoveFace, options.device);
 }
 
-std::unique_ptr<Stage> BodyStage(int hinges, int balls, const Motion& motion,
-                                 const ExperimentOptions& options) {
-  return std::make_unique<Stage>(MakeBody(hinges, balls), std::vector{glm::mat4(1.0f)}, kBodyExtent,
-                                 options.size, motion, options.device);
+std::unique_ptr<MovingScene> BodyScene(int hinges, int balls, const Motion& motion,
+                                       const ExperimentOptions& options) {
+  return std::make_unique<MovingScene>(MakeBody(hinges, balls), std::vector{glm::mat4(1.0f)},
+                                       kBodyExtent, options.size, motion, options.device);
 }
 
-// Nothing moves, so that no driver has a value.
+// Nothing moves, so all drivers are 0.
 void Rest(double, const wrinkle::Skeleton&, wrinkle::LocalPose*) {}
 
-// Shares of the thesis, from its frame rates; a row of 0 has none.
+// Computes the relative frame rates of the thesis. A row with frame rate 0 has none.
 void SetShares(Experiment* experiment) {
   for (Row& row : experiment->rows) {
     const double base = experiment->rows[row.baseline].thesis_fps;
@@ -90,7 +93,7 @@ void SetShares(Experiment* experiment) {
 
 Experiment MakeTable51(const ExperimentOptions& options) {
   Experiment experiment{"table-5.1", "Table 5.1: a head of 3,080 triangles", {}, {}};
-  experiment.stages.push_back(HeadStage(1, options));
+  experiment.scenes.push_back(HeadScene(1, options));
   const Settings gaussians = Skin(SubsurfaceMethod::kGaussians);
   experiment.rows = {
       {"diffuse, no wrinkles", 0, Diffuse(), 0, 2942.0},
@@ -108,8 +111,8 @@ Experiment MakeTable51(const ExperimentOptions& options) {
 Experiment MakeTable52(const ExperimentOptions& options) {
   Experiment experiment{"table-5.2", "Table 5.2: a body of 8,290 triangles", {}, {}};
   for (const auto& [hinges, balls] : {std::pair(0, 0), {2, 1}, {100, 50}}) {
-    experiment.stages.push_back(BodyStage(hinges, balls, MoveBody, options));
-    experiment.stages.push_back(BodyStage(hinges, balls, Rest, options));
+    experiment.scenes.push_back(BodyScene(hinges, balls, MoveBody, options));
+    experiment.scenes.push_back(BodyScene(hinges, balls, Rest, options));
   }
   const Settings settings = Wrinkled(MaskMode::kRig);
   experiment.rows = {{"no wrinkle joints", 0, settings, 0, 3777.0},
@@ -124,7 +127,7 @@ Experiment MakeTable52(const ExperimentOptions& options) {
 
 Experiment MakeFigure51(const ExperimentOptions& options) {
   Experiment experiment{"figure-5.1", "Figure 5.1: heads of 3,080 triangles each", {}, {}};
-  for (const int heads : {1, 10, 100}) experiment.stages.push_back(HeadStage(heads, options));
+  for (const int heads : {1, 10, 100}) experiment.scenes.push_back(HeadScene(heads, options));
   const Settings diffuse = Wrinkled(MaskMode::kTexture);
   const Settings skin = Skin(SubsurfaceMethod::kGaussians);
   const Settings fast = Skin(SubsurfaceMethod::kSeparable);
@@ -144,7 +147,7 @@ Experiment MakeFigure51(const ExperimentOptions& options) {
 
 Experiment MakeMethods(const ExperimentOptions& options) {
   Experiment experiment{"methods", "Skin shading of a head of 3,080 triangles, by method", {}, {}};
-  experiment.stages.push_back(HeadStage(1, options));
+  experiment.scenes.push_back(HeadScene(1, options));
   const auto separable = [](int taps) {
     Settings settings = Skin(SubsurfaceMethod::kSeparable);
     settings.subsurface.taps = taps;

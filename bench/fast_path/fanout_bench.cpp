@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it costs to send weights to 64 subscribers: sendto beside the daemon's packed path. Both
-// write each subscriber's envelope before the same payload and send it to the same addresses; what
-// came is read between the batches, which is not measured.
+// Measures sending weights to 64 subscribers: sendto compared with the daemon's batched path. Both
+// write each subscriber's envelope before the same payload and send to the same addresses. Received
+// datagrams are read between the batches, outside the measurement.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -46,7 +46,7 @@ struct Subscriber {
   udp::endpoint to;
 };
 
-// The way that weights take from the hub to the sockets, with so many subjects in a batch.
+// The path of weights from the hub to the sockets, with several subjects in a batch.
 class FanOut {
  public:
   FanOut(int subjects, int weights) : subjects_(subjects) {
@@ -67,7 +67,7 @@ class FanOut {
 
   void SendPlain() {
     ForEach([this](std::size_t, const udp::endpoint& to) {
-      asio::error_code full;  // shows in what comes
+      asio::error_code full;  // lost datagrams are counted on receipt
       socket_.send_to(asio::buffer(message_), to, 0, full);
     });
   }
@@ -79,7 +79,7 @@ class FanOut {
     sender_.Flush();
   }
 
-  // Reads what came; false where it is not all that was sent.
+  // Reads the received datagrams. Returns false if some were lost.
   [[nodiscard]] bool Drain() {
     std::size_t messages = 0;
     for (Subscriber& subscriber : subscribers_) {
@@ -96,11 +96,11 @@ class FanOut {
     }
     return messages == kSubscribers * static_cast<std::size_t>(subjects_);
   }
-  // That came since the last call.
+  // Received since the last call.
   [[nodiscard]] std::size_t TakeDatagrams() { return std::exchange(datagrams_, 0); }
 
  private:
-  // As the hub goes about it: subject after subject, each to everybody.
+  // In the order of the hub: one subject after the other, each to all subscribers.
   template <class Use>
   void ForEach(const Use& use) {
     ++sequence_;
@@ -126,7 +126,7 @@ class FanOut {
   std::size_t datagrams_ = 0;
 };
 
-// Seconds a weight set, over so many batches; the program ends where one is lost.
+// Seconds per weight set over `batches` batches. Exits the program if one is lost.
 Sample SampleOf(FanOut& fan_out, int subjects, int batches, const std::function<void()>& send) {
   Sample sum;
   for (int i = 0; i < batches; ++i) {
@@ -134,7 +134,8 @@ Sample SampleOf(FanOut& fan_out, int subjects, int batches, const std::function<
     sum.wall += one.wall;
     sum.cpu += one.cpu;
     if (!fan_out.Drain()) {
-      std::fprintf(stderr, "error: weights were lost; give sockets more room: net.core.rmem_max\n");
+      std::fprintf(stderr,
+                   "error: weights were lost; raise the socket buffer limit net.core.rmem_max\n");
       std::exit(1);
     }
   }
@@ -151,15 +152,15 @@ std::string Text(const load::Spread& ratio) {
   return Between(ratio.median, ratio.low, ratio.high, 2) + "x";
 }
 
-// So many subjects whose weights leave together.
+// The results for one number of subjects in a batch.
 struct Outcome {
   int subjects = 0;
-  std::size_t bytes = 0;   // of a weight set
-  double sendto_ns = 0.0;  // of processor time a set
-  load::Spread again;      // ratios to it
-  load::Spread cut;        // by the system
+  std::size_t bytes = 0;   // per weight set
+  double sendto_ns = 0.0;  // processor time per set
+  load::Spread again;      // ratios to sendto_ns
+  load::Spread cut;        // segmented by the kernel
   load::Spread bundled;
-  double sets_a_datagram = 0.0;  // bundled
+  double sets_a_datagram = 0.0;  // with bundles
 };
 
 Outcome MeasureOne(int subjects, int weights, int repetitions) {
@@ -222,9 +223,9 @@ struct Options {
 };
 
 int Run(const Options& options) {
-  report::Table table{"A weight set to one of 64 subscribers",
-                      {"subjects in a batch", "bytes", "sendto, ns of CPU", "sendto again",
-                       "system cuts", "bundles", "sets a datagram", "<= 0.45x"},
+  report::Table table{"A weight set to each of 64 subscribers",
+                      {"subjects per batch", "bytes", "sendto, ns of CPU", "sendto again",
+                       "kernel segmentation", "bundles", "sets per datagram", "<= 0.45x"},
                       {}};
   nlohmann::json json = nlohmann::json::array();
   for (const int weights : options.weights) {
@@ -247,20 +248,20 @@ int Run(const Options& options) {
 
 int main(int argc, char** argv) {
   furrow::bench::Options options;
-  CLI::App app{"What it costs to send weights to 64 subscribers: sendto beside the packed path"};
-  app.add_option("--subjects", options.subjects, "whose weights leave together")
+  CLI::App app{"Measure sending weights to 64 subscribers: sendto compared with the batched path"};
+  app.add_option("--subjects", options.subjects, "Numbers of subjects per batch")
       ->delimiter(',')
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_option("--weights", options.weights,
-                 "of a subject: 37 has the default rig, 81 make 400 bytes")
+                 "Weights per subject (the default rig has 37; 81 make 400 bytes)")
       ->delimiter(',')
       ->check(CLI::Range(1, 250))
       ->capture_default_str();
-  app.add_option("--repetitions", options.repetitions, "of each way, in turn")
+  app.add_option("--repetitions", options.repetitions, "Samples of each path, in turn")
       ->check(CLI::Range(3, 10000))
       ->capture_default_str();
-  app.add_option("--out", options.out, "folder for fanout.md and fanout.json; default: neither");
+  app.add_option("--out", options.out, "Folder for fanout.md and fanout.json (default: none)");
   furrow::bench::ReadCommandLine(app, argc, argv);
   if (!options.out.empty()) furrow::bench::MakeResultFolder(options.out);
   return furrow::bench::Run(options);

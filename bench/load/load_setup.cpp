@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/load/setting.h"
+#include "bench/load/load_setup.h"
 
 #include "base/status.h"
 #include "client/cli/load/load_input.h"
@@ -13,7 +13,7 @@ load::RunHooks Silently() {
           .second = [](double, const load::Tally&, const load::Histogram&) {}};
 }
 
-Result<load::RunResult> RunFresh(const Setting& setting, const std::filesystem::path& recording,
+Result<load::RunResult> RunFresh(const LoadSetup& setting, const std::filesystem::path& recording,
                                  const std::filesystem::path& rig,
                                  const load::RunOptions& options) {
   const auto performance = cli::LoadPerformance({.file = recording, .rig = rig, .quantise = true});
