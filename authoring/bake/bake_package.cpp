@@ -60,7 +60,7 @@ class Packager {
     std::map<std::string, std::set<bool>> surfaces;
     for (const BakedMap& baked : maps_.maps) {
       wrinkle::WrinkleMap* map = FindMap(&out_.rig, baked.map);
-      if (map == nullptr) return {StatusCode::kInternal, "a map was baked that the rig has not"};
+      if (map == nullptr) return {StatusCode::kInternal, "a baked map is missing from the rig"};
       map->normal.clear();
       map->derivative.clear();
       map->height.clear();
@@ -75,9 +75,10 @@ class Packager {
         region.mask = {};
         masked_.insert(region.name);
       } else {
-        out_.notes.push_back("region '" + region.name +
-                             "' folds on skin and on cloth, which have an atlas each: it keeps its "
-                             "own mask");
+        out_.notes.push_back(
+            "region '" + region.name +
+            "' folds on skin and on cloth, which have separate atlases; it keeps its "
+            "own mask");
       }
     }
     for (std::string& name : character::RigPictureNames(out_.rig)) taken_.insert(std::move(name));
@@ -164,13 +165,14 @@ class Packager {
 
   static Status TooSteep(const wrinkle::WrinkleMap& map) {
     char text[96];
-    std::snprintf(text, sizeof text, "is too steep: slopes of %.0f, where a rig holds up to %.0f",
+    std::snprintf(text, sizeof text,
+                  "is too steep: its slopes reach %.0f, and a rig allows at most %.0f",
                   static_cast<double>(map.derivative_scale),
                   static_cast<double>(wrinkle::kMaxDerivativeScale));
     return {StatusCode::kInvalidArgument,
             "map '" + map.name + "' " + text,
             {},
-            "make its strokes wider or shallower, or give a smaller --depth"};
+            "make its strokes wider or shallower, or reduce --depth"};
   }
 
   Status AddDerivative(const BakedMap& baked, wrinkle::WrinkleMap* map) {

@@ -63,10 +63,10 @@ Status CheckHeights(const BakedMap& map, float height_mm) {
   for (const float mm : map.height_mm) most = std::max(most, std::abs(mm));
   if (most <= height_mm) return {};
   char text[96];
-  std::snprintf(text, sizeof text, "folds are %.2f mm high, where the rig holds up to %.2f",
+  std::snprintf(text, sizeof text, "folds are %.2f mm high; the rig allows at most %.2f mm",
                 static_cast<double>(most), static_cast<double>(height_mm));
   return {StatusCode::kInvalidArgument, text, "map '" + map.map + "'",
-          "give the wrinkle map a larger height_mm"};
+          "increase the wrinkle map's height_mm"};
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ class PoseCollector {
     if (driver == nullptr) return {StatusCode::kNotFound, "there is no driver '" + value + "'"};
     const auto pose = wrinkle::FullPose(character_.rig, *driver, source.value, character_.skeleton);
     if (pose.status().code() == StatusCode::kUnsupported) {
-      Note(value + " is no pose of joints: strokes alone can give " + region.name + "." + feed.map +
+      Note(value + " has no joint pose; only strokes can give " + region.name + "." + feed.map +
            " its folds");
       return {};
     }
@@ -79,11 +79,11 @@ class PoseCollector {
   Status AtRest(const Driver& driver, const std::string& value, const std::string& pose) {
     if (driver.kind == Driver::Kind::kPose) {
       return {StatusCode::kInvalidArgument,
-              "reference pose '" + pose + "' is the rest pose: it cannot fold anything",
+              "reference pose '" + pose + "' equals the rest pose, so it cannot fold anything",
               {},
-              "state in the rig how its joints move, or leave it out"};
+              "define how its joints move, or remove it from the rig"};
     }
-    Note(value + " is the rest pose itself: strokes alone can give it folds");
+    Note(value + " is the rest pose; only strokes can give it folds");
     return {};
   }
 
@@ -121,7 +121,7 @@ Status CheckMaps(const Rig& rig, std::span<const std::string> maps) {
     return {StatusCode::kNotFound,
             "the rig has no wrinkle map '" + wanted + "'",
             {},
-            "its maps are " + known};
+            "available maps: " + known};
   }
   return {};
 }
@@ -133,7 +133,7 @@ Result<CollectedPoses> CollectBakePoses(const character::Character& character,
   const Rig& rig = character.rig;
   if (rig.wrinkle_maps.empty() || rig.regions.empty()) {
     return Status(StatusCode::kNotFound, "the character has no wrinkle rig with regions and maps",
-                  {}, "state one with --rig");
+                  {}, "add one with --rig");
   }
   FURROW_RETURN_IF_ERROR(CheckMaps(rig, maps));
   PoseCollector collector(character);

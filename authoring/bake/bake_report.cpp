@@ -132,9 +132,9 @@ std::string Statistics(const BakedMap& map, std::span<const BakePose> poses) {
          Row("valleys", Number(s.deepest_mm) + " mm deep") +
          Row("ridges", Number(s.highest_mm) + " mm high") +
          Row("steepest slope", Number(s.steepest)) + Row("wavelength", wavelengths) +
-         Row("a texel", Number(s.texel_mm) + " mm where it folds") +
-         Row("claimed twice", Number(100.0 * Share(s.overlapping_texels, s.covered_texels), 2) +
-                                  "% of the texels, by triangles that overlap in the atlas") +
+         Row("texel size", Number(s.texel_mm) + " mm where it folds") +
+         Row("overlapping", Number(100.0 * Share(s.overlapping_texels, s.covered_texels), 2) +
+                                "% of the texels, where triangles overlap in the atlas") +
          "</table>\n";
 }
 
@@ -161,15 +161,15 @@ void AddMapWarnings(const BakedMap& map, const BakeOptions& options,
   };
   const BakeMaterial& material = MaterialOf(options, map.cloth);
   if (s.folded_texels == 0) {
-    say("has no folds: its poses compress nothing and no stroke reaches it");
+    say("has no folds: its poses compress nothing and it has no strokes");
     return;
   }
   if (s.worst_compression > material.max_compression) {
-    say("meets a compression of " + Number(s.worst_compression) + ", which was taken for " +
-        Number(material.max_compression) + ": look at the skinning there");
+    say("has a compression of " + Number(s.worst_compression) + ", limited to " +
+        Number(material.max_compression) + ": check the skinning there");
   }
   if (Share(s.widened_texels, s.folded_texels) > kFewWidened) {
-    say("has folds that were widened from " + Number(s.widened_from_mm, 1) + " to " +
+    say("has folds that are widened from " + Number(s.widened_from_mm, 1) + " to " +
         Number(s.widened_to_mm, 1) + " mm, " + Number(kTexelsPerWave, 0) + " texels: raise --size");
   }
 }
@@ -197,11 +197,10 @@ std::string ReportHtml(const BakedMaps& maps, const ReportDetails& facts) {
   html += "<h1>Wrinkle maps of " + Escaped(facts.character) + "</h1>\n<p>Rig " +
           Escaped(facts.rig) +
           (facts.strokes.empty() ? ", no strokes" : ", strokes " + Escaped(facts.strokes)) + ", " +
-          std::to_string(facts.options.size) + " texels a side, depth " +
+          std::to_string(facts.options.size) + " texels per side, depth " +
           Number(facts.options.depth) + "; baked in " + Number(facts.seconds, 1) + " s.</p>\n";
   const std::vector<std::string> doubts = BakeWarnings(maps, facts.options);
-  html += List("Look at", doubts) + List("Put up with", facts.warnings) +
-          List("Not baked", facts.notes);
+  html += List("Check", doubts) + List("Warnings", facts.warnings) + List("Not baked", facts.notes);
   for (const BakedMap& map : maps.maps) {
     const std::string stem = "report/" + map.map;
     html += "<h2>" + Escaped(map.map) + "</h2>\n" + Statistics(map, facts.poses) +

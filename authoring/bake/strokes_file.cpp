@@ -36,8 +36,7 @@ bool IsNameOf(const std::vector<Item>& items, std::string_view name) {
 
 Status CheckNames(const BakeStroke& stroke, const wrinkle::Rig& rig, const std::string& at) {
   FURROW_RETURN_IF_ERROR(wrinkle::CheckLabel(stroke.name, at + ".name"));
-  if (stroke.maps.empty())
-    return InvalidField("a stroke belongs to at least one map", at + ".maps");
+  if (stroke.maps.empty()) return InvalidField("a stroke needs at least one map", at + ".maps");
   for (std::size_t i = 0; i < stroke.maps.size(); ++i) {
     if (IsNameOf(rig.wrinkle_maps, stroke.maps[i])) continue;
     return InvalidField("the rig has no wrinkle map '" + stroke.maps[i] + "'",
@@ -49,7 +48,7 @@ Status CheckNames(const BakeStroke& stroke, const wrinkle::Rig& rig, const std::
 
 Status ReadPoints(const flatbuffers::Vector<const schema::Vec3*>& from, const std::string& at,
                   std::vector<glm::vec3>* points) {
-  if (from.size() < 2) return InvalidField("a stroke needs two points", at);
+  if (from.size() < 2) return InvalidField("a stroke needs at least two points", at);
   if (from.size() > kMaxPoints) {
     return {StatusCode::kLimit, "more than " + std::to_string(kMaxPoints) + " points", at};
   }
@@ -71,7 +70,7 @@ Status ReadPoints(const flatbuffers::Vector<const schema::Vec3*>& from, const st
 Status ReadStroke(const schema::Stroke& from, const wrinkle::Rig& rig, const std::string& at,
                   BakeStroke* to) {
   if (from.kind() < schema::Kind::MIN || from.kind() > schema::Kind::MAX) {
-    return InvalidField("there is no such choice", at + ".kind");
+    return InvalidField("invalid value", at + ".kind");
   }
   to->name = from.name()->str();
   to->kind = static_cast<BakeStroke::Kind>(from.kind());
@@ -112,7 +111,7 @@ Result<std::vector<BakeStroke>> ReadStrokes(const schema::Strokes& tables,
   if (tables.version() != 1) {
     return Status(
         StatusCode::kUnsupported,
-        "the strokes are of version " + std::to_string(tables.version()) + ", this is version 1",
+        "unsupported version " + std::to_string(tables.version()) + "; the supported version is 1",
         "version");
   }
   std::vector<BakeStroke> strokes;
@@ -129,7 +128,7 @@ Result<std::vector<BakeStroke>> ReadStrokes(const schema::Strokes& tables,
     }
     for (std::size_t k = strokes.size() - (from.mirror() ? 2 : 1); k < strokes.size(); ++k) {
       if (names.insert(strokes[k].name).second) continue;
-      return InvalidField("the name '" + strokes[k].name + "' is given twice", at + ".name");
+      return InvalidField("the name '" + strokes[k].name + "' is used twice", at + ".name");
     }
     if (strokes.size() > kMaxStrokes) {
       return Status(StatusCode::kLimit, "more than " + std::to_string(kMaxStrokes) + " strokes",

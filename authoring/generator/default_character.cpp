@@ -213,7 +213,7 @@ Status WriteShare(const std::filesystem::path& rigs, const std::filesystem::path
   std::error_code error;
   std::filesystem::create_directories(share / "rigs", error);
   std::filesystem::create_directories(share / "recordings", error);
-  if (error) return Status(StatusCode::kIo, "cannot make the folder: " + error.message(), share);
+  if (error) return Status(StatusCode::kIo, "cannot create the folder: " + error.message(), share);
   FURROW_RETURN_IF_ERROR(WriteCharacter(rigs, {}, share / "default.glb"));
   CharacterOptions elder;
   elder.face = {.sex = -1.0f, .age = 65.0f};

@@ -27,24 +27,27 @@ furrow::Status MakeOne(const std::string& out, std::string rigs, const Character
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Makes characters by code");
+  CLI::App app("Generates characters");
   std::string rigs, share, out;
   CharacterOptions options;
-  app.add_option("RIGS", rigs, "Folder of rig files; default: the one that ships");
-  app.add_option("SHARE", share, "Folder for all that ships: characters, rigs, recordings");
-  app.add_option("--out", out, "FILE.glb of one character; FILE.rig.json is written beside it");
-  app.add_option("--sex", options.face.sex, "-1 a woman, 0 neither, 1 a man")
+  app.add_option("RIGS", rigs, "Folder of rig files (default: the shipped folder)");
+  app.add_option("SHARE", share, "Output folder for the shipped characters, rigs and recordings");
+  app.add_option("--out", out, "Output FILE.glb of one character; also writes FILE.rig.json");
+  app.add_option("--sex", options.face.sex, "Sex: -1 a woman, 0 neutral, 1 a man")
       ->check(CLI::Range(-1.0f, 1.0f))
       ->capture_default_str();
-  app.add_option("--age", options.face.age, "Years; sets form, skin, hair and depth of wrinkles")
+  app.add_option("--age", options.face.age,
+                 "Age in years; affects shape, skin, hair and depth of wrinkles")
       ->check(CLI::Range(18.0f, 90.0f))
       ->capture_default_str();
-  app.add_option("--grey", options.face.grey, "Share of grey hair, 0 to 1; default: by age")
+  app.add_option("--grey", options.face.grey,
+                 "Fraction of grey hair, 0 to 1 (default: depends on the age)")
       ->check(CLI::Range(0.0f, 1.0f));
-  app.add_option("--level", options.level, "Detail of the head: 0 (about 3,000 triangles) to 2")
+  app.add_option("--level", options.level,
+                 "Level of detail of the head, 0 (about 3,000 triangles) to 2")
       ->check(CLI::Range(0, 2))
       ->capture_default_str();
-  app.add_option("--texture-size", options.texture_size, "Texels, square")
+  app.add_option("--texture-size", options.texture_size, "Width and height of textures, texels")
       ->check(CLI::Range(64, 4096))
       ->capture_default_str();
   try {
@@ -53,7 +56,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   if (out.empty() == share.empty()) {
-    std::fprintf(stderr, "furrow-make-character: either --out FILE.glb, or RIGS SHARE\n");
+    std::fprintf(stderr, "furrow-make-character: give either --out FILE.glb, or RIGS and SHARE\n");
     return 2;
   }
   const furrow::Status status =

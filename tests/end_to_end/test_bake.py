@@ -136,7 +136,7 @@ class BadInputTest(BakeCase):
 
     def test_pose_equal_to_rest(self):
         self.refuse(BAD_INPUT, self.package(rig_json=rig(down=0.0)),
-                    says=["sheet.rig.json: regions[0].feeds[0].sources[0]", "'pressed' is the rest pose"])
+                    says=["sheet.rig.json: regions[0].feeds[0].sources[0]", "'pressed' equals the rest pose"])
 
     def test_unknown_joint(self):
         self.refuse(BAD_INPUT, self.package(rig_json=rig(joint="top")), says=["sheet.rig.json", "'top'"])
@@ -152,7 +152,7 @@ class BadInputTest(BakeCase):
     def test_map_on_a_surface_that_is_not_there(self):
         cloth = rig()
         cloth["wrinkle_maps"][0]["surface"] = "cloth"
-        self.refuse(BAD_INPUT, self.package(rig_json=cloth), says=["goes on cloth", "no mesh is cloth"])
+        self.refuse(BAD_INPUT, self.package(rig_json=cloth), says=["is drawn on cloth", "no mesh is cloth"])
 
     def test_sizes_out_of_range(self):
         package = self.package()

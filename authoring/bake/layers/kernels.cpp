@@ -97,13 +97,12 @@ Status CheckCount(const std::vector<float>& wanted) {
   if (sum <= kMaxCandidates) return {};
   char text[128];
   std::snprintf(text, sizeof(text),
-                "folds so fine on a surface so large want %.1f million waves, "
-                "%.1f million are the most",
+                "the folds need %.1f million waves, "
+                "more than the limit of %.1f million",
                 1e-6 * sum / static_cast<double>(kCandidates),
                 1e-6 * kMaxCandidates / static_cast<double>(kCandidates));
-  return {
-      StatusCode::kLimit, text, "options",
-      "take a longer wavelength (--skin-wavelength, --cloth-wavelength) or fewer texels (--size)"};
+  return {StatusCode::kLimit, text, "options",
+          "increase the wavelength (--skin-wavelength, --cloth-wavelength) or reduce --size"};
 }
 
 std::vector<Candidate> Candidates(const Surface& surface, const std::vector<float>& wanted,

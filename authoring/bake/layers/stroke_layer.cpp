@@ -95,8 +95,8 @@ Status StrokeLayer::Place(const BakeStroke& stroke, std::vector<float> mask, Sur
   num_points_ += points.size();
   if (num_points_ > kMaxPoints) {
     return {StatusCode::kLimit,
-            "the strokes of one map are cut into more than " + std::to_string(kMaxPoints) +
-                " pieces, each as long as its stroke is wide",
+            "the strokes of one map have more than " + std::to_string(kMaxPoints) +
+                " pieces, each as long as the width of its stroke",
             NameOf(stroke), "make strokes wider or shorter"};
   }
   const auto index = static_cast<std::uint32_t>(strokes_.size());
@@ -116,8 +116,8 @@ Status StrokeLayer::Place(const BakeStroke& stroke, std::vector<float> mask, Sur
   if (farthest > std::max(kFarthest, kSteerWidths * stroke.width_mm * kMetresPerMillimetre)) {
     return {StatusCode::kInvalidArgument,
             "the stroke lies " + std::to_string(std::lround(farthest / kMetresPerMillimetre)) +
-                " mm off the surface",
-            NameOf(stroke), "points are metres in model space, on this character at rest"};
+                " mm away from the surface",
+            NameOf(stroke), "give points in metres, in model space, on the character at rest"};
   }
   strokes_.push_back({&stroke, StrokeLine(std::move(points)), std::move(mask), radius});
   return {};

@@ -57,11 +57,11 @@ Status CheckPose(const character::Character& character, const BakePose& pose,
 }
 
 Status CheckStroke(const wrinkle::Rig& rig, const BakeStroke& stroke, const std::string& where) {
-  if (stroke.maps.empty()) return Refuse("the stroke names no wrinkle map", where);
+  if (stroke.maps.empty()) return Refuse("the stroke has no wrinkle map", where);
   for (const std::string& map : stroke.maps) {
     FURROW_RETURN_IF_ERROR(CheckNames(rig, map, stroke.region, where));
   }
-  if (stroke.points.size() < 2) return Refuse("a stroke needs two points", where);
+  if (stroke.points.size() < 2) return Refuse("a stroke needs at least two points", where);
   for (const glm::vec3& p : stroke.points) {
     if (!std::isfinite(p.x + p.y + p.z)) {
       return Status(StatusCode::kNonFinite, "a point is not finite", where);

@@ -79,7 +79,7 @@ Result<std::unique_ptr<BakeSurface>> BakeSurface::Create(const character::Charac
   }
   if (!(area > 1e-9f)) {
     return Status(StatusCode::kInvalidArgument, "the " + kind + " has no UVs", character.name,
-                  "unwrap the mesh: wrinkle maps lie in its UV atlas");
+                  "unwrap the mesh; wrinkle maps use its UV atlas");
   }
   const float smoothing = MaterialOf(options, cloth).smoothing_mm * kMetresPerMillimetre;
   auto made =
@@ -89,7 +89,7 @@ Result<std::unique_ptr<BakeSurface>> BakeSurface::Create(const character::Charac
   const bool extent = std::any_of(triangles.begin(), triangles.end(),
                                   [](const auto& t) { return t.strain.has_value(); });
   if (!extent || made->texels_.empty()) {
-    return Status(StatusCode::kInvalidArgument, "no triangle of the " + kind + " has any extent",
+    return Status(StatusCode::kInvalidArgument, "no triangle of the " + kind + " has an area",
                   character.name);
   }
   return made;

@@ -38,7 +38,7 @@ Status CheckOverlap(const character::Character& character, const UvReport& uvs) 
                     (one ? "" : " of " + MeshName(character, at.meshes[1])) + " share (" + place +
                     ")",
                 MeshName(character, at.meshes[0]),
-                "unwrap it so that every place has texels of its own; mirrored halves do not");
+                "unwrap the mesh without overlaps; mirrored halves need texels of their own");
 }
 
 Status CheckSkin(const character::Character& character, int index) {
@@ -67,19 +67,21 @@ int OnlyJoint(const character::Mesh& mesh) {
 
 void Warn(const character::Character& character, const UvReport& uvs, std::span<const int> meshes,
           const std::string& kind, std::vector<std::string>* warnings) {
-  const auto count = [&](int triangles, const std::string& what) {
-    if (triangles > 0)
-      warnings->push_back(std::to_string(triangles) + " triangles of the " + kind + what);
+  const auto count = [&](int triangles, const std::string& one, const std::string& several) {
+    if (triangles == 1) warnings->push_back("1 triangle of the " + kind + " " + one);
+    if (triangles < 2) return;
+    warnings->push_back(std::to_string(triangles) + " triangles of the " + kind + " " + several);
   };
-  count(uvs.degenerate_triangles, " have no area and are left out");
-  count(uvs.unmapped_triangles, " have no UVs and get no folds");
-  count(uvs.outside_triangles, " have UVs outside [0, 1], which wrap round");
+  count(uvs.degenerate_triangles, "has no area and is skipped", "have no area and are skipped");
+  count(uvs.unmapped_triangles, "has no UVs and gets no folds", "have no UVs and get no folds");
+  count(uvs.outside_triangles, "has UVs outside [0, 1], which wrap around",
+        "have UVs outside [0, 1], which wrap around");
   for (const int mesh : meshes) {
     const int joint = OnlyJoint(character.meshes[static_cast<std::size_t>(mesh)]);
     if (joint < 0) continue;
     warnings->push_back(MeshName(character, mesh) + " follows joint '" +
                         character.skeleton.joint_names()[static_cast<std::size_t>(joint)] +
-                        "' rigidly: no pose can fold it");
+                        "' rigidly, so no pose can fold it");
   }
 }
 
@@ -89,7 +91,7 @@ Status CheckSurfaces(const character::Character& character, std::span<const std:
                      std::vector<std::string>* warnings) {
   if (character.inverse_bind_matrices.size() !=
       static_cast<std::size_t>(character.skeleton.num_joints())) {
-    return Refuse("a joint needs an inverse bind matrix", character.name, "");
+    return Refuse("a joint has no inverse bind matrix", character.name, "");
   }
   bool done[2] = {false, false};
   for (const wrinkle::WrinkleMap& map : character.rig.wrinkle_maps) {
@@ -100,11 +102,12 @@ Status CheckSurfaces(const character::Character& character, std::span<const std:
     const std::string kind = cloth ? "cloth" : "skin";
     const std::vector<int> meshes = MeshesOn(character, cloth);
     if (meshes.empty()) {
-      return Refuse("wrinkle map '" + map.name + "' goes on " + kind + ", and no mesh is " + kind,
-                    character.name,
-                    "name a material '" + kind +
-                        "', change the map's surface in the rig, or "
-                        "leave it out with --map");
+      return Refuse(
+          "wrinkle map '" + map.name + "' is drawn on " + kind + ", but no mesh is " + kind,
+          character.name,
+          "name a material '" + kind +
+              "', change the map's surface in the rig, or "
+              "exclude the map with --map");
     }
     for (const int mesh : meshes) {
       FURROW_RETURN_IF_ERROR(CheckSkin(character, mesh));
@@ -112,7 +115,7 @@ Status CheckSurfaces(const character::Character& character, std::span<const std:
     const UvReport uvs = CheckUvs(character, meshes);
     if (uvs.no_uvs()) {
       return Refuse("the " + kind + " has no UVs", MeshName(character, meshes.front()),
-                    "unwrap it: wrinkle maps lie in its UV atlas");
+                    "unwrap it; wrinkle maps use its UV atlas");
     }
     FURROW_RETURN_IF_ERROR(CheckOverlap(character, uvs));
     Warn(character, uvs, meshes, kind, warnings);

@@ -23,8 +23,8 @@ Status AddPictures(const BakedMap& baked, character::Character* character) {
   const auto map = std::find_if(maps.begin(), maps.end(),
                                 [&](const auto& entry) { return entry.name == baked.map; });
   if (map == maps.end() || map->normal.empty()) {
-    return Status(StatusCode::kNotFound, "no normal map is named for '" + baked.map + "'",
-                  character->rig.name, "give the wrinkle map a 'normal' in the rig");
+    return Status(StatusCode::kNotFound, "no normal map for '" + baked.map + "'",
+                  character->rig.name, "add a 'normal' to the wrinkle map in the rig");
   }
   Result<std::vector<character::Picture>> pictures = WrinkleMapPictures(baked, *map);
   FURROW_RETURN_IF_ERROR(pictures);

@@ -82,8 +82,8 @@ class SceneWriter {
     if (up == 0) space.rotation = glm::quat(kHalf, 0.0f, 0.0f, sign * kHalf);
     if (up == 2) space.rotation = glm::quat(kHalf, -sign * kHalf, 0.0f, 0.0f);
     if (up == 0 || up == 2) {
-      remarks_.push_back(std::string("the file says that ") + (up == 0 ? "X" : "Z") +
-                         " is up: turned to +Y up");
+      remarks_.push_back(std::string("the file states ") + (up == 0 ? "X" : "Z") +
+                         " as up; rotated to +Y up");
     }
     const std::optional<double> exact = Metadata<double>("UnitScaleFactor");
     const float centimetres =
@@ -91,7 +91,7 @@ class SceneWriter {
     if (centimetres > 1e-6f && centimetres < 1e6f && centimetres != 100.0f) {
       space.scale = glm::vec3(0.01f * centimetres);
       remarks_.push_back("the file's unit is " + std::to_string(centimetres) +
-                         " cm: converted to metres");
+                         " cm; converted to metres");
     }
     return space;
   }
@@ -131,7 +131,7 @@ class SceneWriter {
         const auto source = source_by_name_.find(name);
         if (source == source_by_name_.end()) {
           return {StatusCode::kSchema, "mesh '" + NameFrom(mesh.mName) + "' names the joint '" +
-                                           name + "', which the file does not have"};
+                                           name + "', which is missing from the file"};
         }
         sources_[source->second].is_joint = true;
       }
@@ -321,7 +321,7 @@ class SceneWriter {
   void RemarkOnRest() {
     if (blend_shapes_ > 0) {
       remarks_.push_back(std::to_string(blend_shapes_) +
-                         " blend shapes are not carried: the face moves by joints alone");
+                         " blend shapes are not imported; the face moves only by joints");
     }
   }
 
@@ -360,13 +360,13 @@ Result<std::string> Convert(std::string_view bytes, const std::string& extension
   if (scene == nullptr || scene->mRootNode == nullptr) {
     return Status(
         StatusCode::kParse,
-        "cannot be read as " + extension.substr(1) + ": " + OneLine(importer.GetErrorString()), {},
-        "is it a whole file of that kind?");
+        "is not readable as " + extension.substr(1) + ": " + OneLine(importer.GetErrorString()), {},
+        "check that the file is complete and has this format");
   }
   std::vector<std::string> remarks;
   Result<std::string> glb = SceneWriter(*scene).Run(&remarks);
   FURROW_RETURN_IF_ERROR(glb);
-  if (scene->mNumAnimations > 0) remarks.emplace_back("its animations are not carried");
+  if (scene->mNumAnimations > 0) remarks.emplace_back("its animations are not imported");
   std::string text;
   for (const std::string& remark : remarks) text += OneLine(remark) + "\n";
   return text + "\n" + *glb;

@@ -93,7 +93,7 @@ int AssimpMaterials::TextureOf(const aiMaterial& material,
 int AssimpMaterials::AddTexture(const aiString& path) {
   if (root_["textures"].size() >= kMaxPicturesOf) {
     remarks_.push_back("more than " + std::to_string(kMaxPicturesOf) +
-                       " pictures: the rest is left out");
+                       " pictures; the rest is skipped");
     return -1;
   }
   const aiTexture* embedded = scene_.GetEmbeddedTexture(path.C_Str());
@@ -104,7 +104,7 @@ int AssimpMaterials::AddTexture(const aiString& path) {
     image["bufferView"] =
         builder_.AddView(embedded->pcData, embedded->mWidth, gltf::Builder::kNoTarget);
   } else if (embedded != nullptr || name.empty()) {
-    remarks_.push_back("the picture '" + name + "' is embedded as raw pixels: left out");
+    remarks_.push_back("the picture '" + name + "' is embedded as raw pixels and skipped");
     return -1;
   } else {
     image["uri"] = name;

@@ -99,7 +99,7 @@ bool WriteAll(int pipe, std::string_view bytes) {
     const bool sent = WriteAll(pipe, message) && (!result.ok() || WriteAll(pipe, *result));
     _exit(sent ? 0 : 1);
   } catch (const std::bad_alloc&) {
-    message = ErrorMessage({StatusCode::kLimit, "reading it takes too much memory"});
+    message = ErrorMessage({StatusCode::kLimit, "reading the file takes too much memory"});
   } catch (const std::exception& exception) {
     message = ErrorMessage({StatusCode::kParse, exception.what()});
   }
@@ -122,12 +122,12 @@ Status EndOf(int exit_status) {
   if (WIFSIGNALED(exit_status)) {
     const int signal = WTERMSIG(exit_status);
     if (signal == SIGXCPU || signal == SIGKILL) {
-      return {StatusCode::kLimit, "reading it takes too long, or too much memory"};
+      return {StatusCode::kLimit, "reading the file takes too long or too much memory"};
     }
-    return {StatusCode::kParse,
-            "reading it crashed (signal " + std::to_string(signal) + "): the file is damaged"};
+    return {StatusCode::kParse, "reading the file crashed (signal " + std::to_string(signal) +
+                                    "): the file is damaged"};
   }
-  return {StatusCode::kParse, "reading it gave up: the file is damaged"};
+  return {StatusCode::kParse, "reading the file failed: it is damaged"};
 }
 
 }  // namespace
@@ -154,7 +154,7 @@ Result<std::string> RunInChildProcess(const ChildProcessLimits& limits,
   int exit_status = 0;
   while (waitpid(child, &exit_status, 0) < 0 && errno == EINTR) {
   }
-  if (!fits) return Status(StatusCode::kLimit, "what was read is too large");
+  if (!fits) return Status(StatusCode::kLimit, "the converted model is too large");
   if (exit_status != 0 || message.empty()) return EndOf(exit_status);
   if (message.front() != '\0') return ParseError(message);
   message.erase(0, 1);

@@ -76,10 +76,11 @@ Result<FaceLandmarks> FindFaceLandmarks(const wrinkle::Skeleton& skeleton) {
   face.crown = points.Tail("head");
   if (!points.missing().empty())
     return Status(StatusCode::kNotFound, "the skeleton has no joint '" + points.missing() + "'", {},
-                  "faces are imported from MakeHuman's default rig");
+                  "use MakeHuman's default rig, which has the joints of the face");
   const float pupils = glm::distance(face.sides[0].eye, face.sides[1].eye);
   if (!(pupils > 1e-4f))
-    return Status(StatusCode::kInvalidArgument, "both eyes are in one place", "eye.L, eye.R");
+    return Status(StatusCode::kInvalidArgument, "both eyes are at the same position",
+                  "eye.L, eye.R");
   face.scale = pupils / kUsualPupilDistance;
   return face;
 }

@@ -102,7 +102,7 @@ class MakeHumanImport {
     const std::vector<std::uint32_t> body = FacesOf(base_.obj, "body");
     if (body.empty())
       return Status(StatusCode::kSchema, "has no group 'body'", path.string(),
-                    "is it MakeHuman's base mesh?");
+                    "use MakeHuman's base mesh");
     float ground = base_.obj.positions[base_.obj.corners[0].position].y;
     for (const std::uint32_t f : body) {
       const ObjMesh::Face& face = base_.obj.faces[f];
@@ -136,7 +136,7 @@ class MakeHumanImport {
     FURROW_RETURN_IF_ERROR(path);
     if (path->empty()) {
       report_.warnings.push_back((folder_ / "clothes").string() +
-                                 " holds no clothes: the body is bare");
+                                 " contains no clothes; the body stays bare");
       return {};
     }
     const Result<std::string> text = ReadFile(*path, kMaxTextFileBytes);
@@ -254,8 +254,8 @@ class MakeHumanImport {
       constexpr float kFar = 100.0f;  // metres
       if (!(glm::length(p) < kFar))
         return Status(StatusCode::kInvalidArgument,
-                      "the garment '" + garment_->name + "' lies 100 m away from the body",
-                      garment_->obj_file, "are its scales and offsets right?");
+                      "the garment '" + garment_->name + "' is 100 m away from the body",
+                      garment_->obj_file, "check its scales and offsets");
     }
     const SkinWeights skin = BindGarment(*garment_, base_.skin);
     std::vector<std::uint32_t> faces(garment_obj_.faces.size());
@@ -334,7 +334,7 @@ class MakeHumanImport {
       return;
     }
     report_.warnings.push_back("the rig names the picture '" + name +
-                               "', which this import does not make");
+                               "', which this import does not create");
   }
 
   void FinishReport() {
@@ -353,7 +353,7 @@ class MakeHumanImport {
   // A part that the folder lacks is left out, and said.
   void AddPart(character::Mesh mesh) {
     if (mesh.indices.empty()) {
-      report_.warnings.push_back("base.obj has no group '" + mesh.name + "': left out");
+      report_.warnings.push_back("base.obj has no group '" + mesh.name + "'; skipped");
       return;
     }
     character_.meshes.push_back(std::move(mesh));

@@ -27,7 +27,7 @@ class MhcloParser {
       FURROW_RETURN_IF_ERROR(Statement());
     }
     if (garment_.obj_file.empty())
-      return Status(StatusCode::kSchema, "names no obj_file", std::string(source_));
+      return Status(StatusCode::kSchema, "has no obj_file", std::string(source_));
     if (garment_.vertices.empty())
       return Status(StatusCode::kSchema, "has no verts", std::string(source_));
     return std::move(garment_);
@@ -69,7 +69,7 @@ class MhcloParser {
   Status ObjFile() {
     if (words_.size() != 2 || words_[1].find_first_of("/\\") != std::string_view::npos ||
         words_[1] == "..")
-      return Error(StatusCode::kSchema, "obj_file is not the plain name of a file");
+      return Error(StatusCode::kSchema, "obj_file must be a file name without folders");
     garment_.obj_file = std::string(words_[1]);
     return {};
   }
@@ -95,7 +95,8 @@ class MhcloParser {
   }
 
   Status Scale(std::size_t axis) {
-    if (words_.size() < 4) return Error(StatusCode::kParse, "a scale is two vertices and a length");
+    if (words_.size() < 4)
+      return Error(StatusCode::kParse, "a scale needs two vertices and a length");
     Mhclo::Scale scale;
     FURROW_RETURN_IF_ERROR(BaseIndex(words_[1], &scale.first));
     FURROW_RETURN_IF_ERROR(BaseIndex(words_[2], &scale.second));
@@ -109,7 +110,7 @@ class MhcloParser {
   Status Vertex() {
     Mhclo::GarmentVertex vertex;
     if (words_.size() != 1 && words_.size() < 9)
-      return Error(StatusCode::kParse, "a vertex is 1 or 9 numbers");
+      return Error(StatusCode::kParse, "a vertex needs 1 or 9 numbers");
     FURROW_RETURN_IF_ERROR(BaseIndex(words_[0], &vertex.base[0]));
     if (words_.size() == 1) {
       vertex.base[1] = vertex.base[2] = vertex.base[0];
@@ -136,9 +137,9 @@ class MhcloParser {
       FURROW_RETURN_IF_ERROR(BaseIndex(words_[i], &first));
       std::uint32_t last = first;
       if (i + 1 < words_.size() && words_[i + 1] == "-") {
-        if (i + 2 >= words_.size()) return Error(StatusCode::kParse, "a range without its end");
+        if (i + 2 >= words_.size()) return Error(StatusCode::kParse, "a range without an end");
         FURROW_RETURN_IF_ERROR(BaseIndex(words_[i + 2], &last));
-        if (last < first) return Error(StatusCode::kInvalidArgument, "a range that runs backwards");
+        if (last < first) return Error(StatusCode::kInvalidArgument, "a reversed range");
         i += 2;
       }
       for (std::uint32_t vertex = first; vertex <= last; ++vertex) garment_.deleted[vertex] = true;

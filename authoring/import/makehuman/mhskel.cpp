@@ -25,7 +25,7 @@ Result<Json> ParseJson(std::string_view text, std::string_view source) {
     const std::size_t line = LineOf(text, error.byte == 0 ? 0 : error.byte - 1);
     return Status(StatusCode::kParse, "broken JSON", Where(source, line));
   } catch (const Json::exception&) {  // number out of range
-    return Status(StatusCode::kParse, "a number that JSON cannot hold", std::string(source));
+    return Status(StatusCode::kParse, "a number out of range", std::string(source));
   }
 }
 
@@ -48,11 +48,11 @@ Status ReadVertices(const Json& list, std::string_view source, const std::string
   if (!list.is_array() || list.empty())
     return SchemaError(source, field, "is not a list of vertices");
   if (list.size() > kMaxJointVertices)
-    return Status(StatusCode::kLimit, "more than 65536 vertices",
+    return Status(StatusCode::kLimit, "more than 65,536 vertices",
                   std::string(source) + ": " + field);
   for (const Json& item : list) {
     if (!item.is_number_unsigned() || item.get<std::uint64_t>() > UINT32_MAX)
-      return SchemaError(source, field, "holds something that is not a vertex index");
+      return SchemaError(source, field, "contains an invalid vertex index");
     vertices->push_back(item.get<std::uint32_t>());
   }
   return {};
@@ -80,8 +80,7 @@ Result<glm::vec3> MeanOf(std::span<const std::uint32_t> vertices,
       return Status(StatusCode::kInvalidArgument,
                     "vertex " + std::to_string(vertex) + " is out of range (the mesh has " +
                         std::to_string(positions.size()) + ")",
-                    std::string(source) + ": " + joint,
-                    "the skeleton belongs to another base mesh");
+                    std::string(source) + ": " + joint, "use the skeleton of this base mesh");
     sum += glm::dvec3(positions[vertex]);
   }
   return glm::vec3(sum / static_cast<double>(vertices.size()));
@@ -91,10 +90,10 @@ Status ReadWeight(const Json& item, std::string_view source, const std::string& 
                   std::pair<std::uint32_t, float>* out) {
   if (!item.is_array() || item.size() != 2 || !item[0].is_number_unsigned() ||
       !item[1].is_number() || item[0].get<std::uint64_t>() > UINT32_MAX)
-    return SchemaError(source, field, "holds something that is not [vertex, weight]");
+    return SchemaError(source, field, "contains an entry other than [vertex, weight]");
   const double weight = item[1].get<double>();
   if (!(weight >= 0.0 && weight <= 1.0))
-    return Status(StatusCode::kInvalidArgument, "a weight that is not in [0, 1]",
+    return Status(StatusCode::kInvalidArgument, "contains a weight outside [0, 1]",
                   std::string(source) + ": " + field);
   *out = {item[0].get<std::uint32_t>(), static_cast<float>(weight)};
   return {};
@@ -111,7 +110,7 @@ Result<MhSkeleton> ParseMhskel(std::string_view text, std::string_view source) {
   const auto positions = Member(*json, "joints", Json::value_t::object, source, "joints");
   FURROW_RETURN_IF_ERROR(positions);
   if ((*bones)->size() > wrinkle::kMaxJoints)
-    return Status(StatusCode::kLimit, "more than 1024 bones", std::string(source));
+    return Status(StatusCode::kLimit, "more than 1,024 bones", std::string(source));
   MhSkeleton skeleton;
   for (const auto& [name, bone] : (*bones)->items()) {
     const std::string field = "bones." + name;
@@ -181,7 +180,7 @@ Result<wrinkle::Skeleton> BuildSkeleton(const MhSkeleton& skeleton,
     if (!joint.parent.empty()) {
       const auto parent = index.find(joint.parent);
       if (parent == index.end())
-        return Status(StatusCode::kNotFound, "parent " + Quoted(joint.parent) + " is not there",
+        return Status(StatusCode::kNotFound, "parent " + Quoted(joint.parent) + " does not exist",
                       std::string(source) + ": " + joint.name);
       desc.parent = parent->second;
       desc.rest.translation -= heads[static_cast<std::size_t>(parent->second)];

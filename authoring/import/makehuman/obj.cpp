@@ -35,7 +35,8 @@ class ObjParser {
       FURROW_RETURN_IF_ERROR(Statement());
     }
     if (mesh_.faces.empty())
-      return Status(StatusCode::kParse, "has no faces", std::string(source_), "is it an .obj?");
+      return Status(StatusCode::kParse, "has no faces", std::string(source_),
+                    "check that the file is an .obj");
     return std::move(mesh_);
   }
 
@@ -63,7 +64,7 @@ class ObjParser {
       if (!std::isfinite(*value))
         return Error(StatusCode::kNonFinite, Quoted(words_[i + 1]) + " is not finite");
       if (std::abs(*value) > kMaxCoordinate)
-        return Error(StatusCode::kLimit, Quoted(words_[i + 1]) + " is beyond a million");
+        return Error(StatusCode::kLimit, Quoted(words_[i + 1]) + " is larger than one million");
       out[i] = *value;
     }
     return {};
@@ -92,7 +93,7 @@ class ObjParser {
     const auto [it, added] = group_index_.emplace(name, mesh_.groups.size());
     if (added) {
       if (mesh_.groups.size() >= kMaxGroups)
-        return Error(StatusCode::kLimit, "more than 65535 groups");
+        return Error(StatusCode::kLimit, "more than 65,535 groups");
       mesh_.groups.push_back(name);
     }
     group_ = static_cast<std::uint16_t>(it->second);
@@ -135,7 +136,7 @@ class ObjParser {
     const std::size_t corners = words_.size() - 1;
     if (corners < 3 || corners > kMaxCorners)
       return Error(StatusCode::kParse,
-                   "a face of " + std::to_string(corners) + " corners (3 to 64 are read)");
+                   "a face of " + std::to_string(corners) + " corners (3 to 64 are allowed)");
     if (mesh_.corners.size() + corners > kMaxElements)
       return Error(StatusCode::kLimit, "more than 4 million face corners");
     const auto first = static_cast<std::uint32_t>(mesh_.corners.size());

@@ -23,7 +23,7 @@ Result<SkinWeights> BindBaseMesh(const MhWeights& weights, const wrinkle::Skelet
   for (const MhWeights::Joint& joint : weights.joints) {
     const int index = skeleton.Find(joint.name);
     if (index == wrinkle::kNoJoint)
-      return Status(StatusCode::kNotFound, "the skeleton has no such joint",
+      return Status(StatusCode::kNotFound, "the skeleton lacks this joint",
                     std::string(source) + ": weights." + joint.name);
     for (const auto& [vertex, weight] : joint.vertices) {
       if (vertex >= num_vertices)

@@ -91,7 +91,7 @@ class Checker {
     const bool skinned = std::any_of(notes_.meshes.begin(), notes_.meshes.end(),
                                      [](const character::MeshNotes& mesh) { return mesh.skinned; });
     if (!skinned) {
-      Find(Severity::kError, "no-skin", {}, "no mesh is skinned: nothing bends, nothing folds",
+      Find(Severity::kError, "no-skin", {}, "no mesh is skinned, so nothing can fold",
            "bind the mesh to its skeleton and export both");
     }
     int morph_targets = 0;
@@ -101,46 +101,47 @@ class Checker {
     }
     if (morph_targets > 0) {
       Find(Severity::kNote, "blend-shapes", {},
-           Count(morph_targets, "blend shape is", "blend shapes are") + " not carried",
-           "drive wrinkles by the tracker's coefficients with the rig 'arkit', or add face joints");
+           Count(morph_targets, "blend shape is", "blend shapes are") + " not imported",
+           "drive wrinkles with a tracker's blend shapes (rig 'arkit'), or add face joints");
     }
   }
 
   void CheckMesh(const character::Mesh& mesh, const character::MeshNotes& notes) {
     const std::string where = "mesh '" + mesh.name + "'";
     if (!notes.has_uvs) {
-      Find(Severity::kError, "uv-missing", where, "there are no UVs, so no map can lie on it",
+      Find(Severity::kError, "uv-missing", where, "there are no UVs, which wrinkle maps require",
            "unwrap it without overlaps");
     }
     if (notes.unskinned_vertices > 0) {
       Find(Severity::kError, "unskinned-vertices", where,
            Count(notes.unskinned_vertices, "vertex follows", "vertices follow") + " no joint",
-           "bind every vertex, or import with --repair: they follow their neighbours then");
+           "bind every vertex, or import with --repair to make them follow their neighbours");
     }
     if (const std::size_t flat = CountDegenerateTriangles(mesh); flat > 0) {
       Find(Severity::kError, "degenerate-triangles", where,
            Count(flat, "triangle has", "triangles have") + " no area",
-           "merge doubled vertices, or import with --repair: they are left out then");
+           "merge duplicate vertices, or import with --repair to remove them");
     }
     if (notes.unnormalised_vertices > 0) {
       Find(Severity::kWarning, "weights-sum", where,
            "the skin weights of " + Count(notes.unnormalised_vertices, "vertex do", "vertices do") +
                " not sum to 1 (the worst: " + Number(notes.worst_sum) + ")",
-           "normalise the weights: they are scaled here, and bend otherwise than in the tool");
+           "normalise the weights; the import scales them, so the mesh bends differently than in "
+           "its editor");
     }
     if (!notes.has_normals) {
       Find(Severity::kWarning, "normals-missing", where,
-           "there are no normals: they are computed, and hard edges are lost",
+           "there are no normals; they are computed, and hard edges are lost",
            "export with normals");
     }
     if (notes.truncated_vertices > 0) {
       Find(Severity::kNote, "weights-truncated", where,
            Count(notes.truncated_vertices, "vertex has", "vertices have") +
-               " more than four joints: the strongest four count");
+               " more than four joints; the strongest four are used");
     }
     if (!notes.has_tangents && notes.has_uvs) {
       Find(Severity::kNote, "tangents-missing", where,
-           "there are no tangents: they are computed from the UVs");
+           "there are no tangents; they are computed from the UVs");
     }
   }
 
@@ -163,25 +164,25 @@ class Checker {
   void CheckAtlas(const std::string& where, const std::vector<int>& meshes) {
     const UvReport uvs = CheckUvs(character_, meshes);
     if (uvs.no_uvs()) {
-      Find(Severity::kError, "uv-missing", where, "all UVs lie in one place",
+      Find(Severity::kError, "uv-missing", where, "all UVs are at one point",
            "unwrap it without overlaps");
     } else if (uvs.unmapped_triangles > 0) {
       Find(Severity::kWarning, "uv-flat", where,
            Count(uvs.unmapped_triangles, "triangle has", "triangles have") + " no area in the UVs",
-           "unwrap them, too");
+           "unwrap these triangles, too");
     }
     if (uvs.overlapping > kTolerableUvOverlap) {
       const std::string place = uvs.example ? ", first at u " + Number(uvs.example->uv.x) + ", v " +
                                                   Number(uvs.example->uv.y) + " (v down)"
                                             : std::string();
       Find(Severity::kWarning, "uv-overlap", where,
-           Number(100.0f * uvs.overlapping) + " % of the UVs' area is used twice" + place,
-           "give mirrored or stacked parts UVs of their own: a bake refuses them");
+           Number(100.0f * uvs.overlapping) + " % of the UV area is used twice" + place,
+           "give mirrored or stacked parts UVs of their own; a bake rejects overlaps");
     }
     if (uvs.outside_triangles > 0) {
       Find(Severity::kNote, "uv-outside", where,
            Count(uvs.outside_triangles, "triangle lies", "triangles lie") +
-               " outside the unit square of the UVs and wraps round");
+               " outside the unit square of the UVs and wraps around");
     }
   }
 
@@ -195,15 +196,15 @@ class Checker {
   void CheckSpace() {
     const CharacterSpace& space = report_.space;
     if (!space.axes.empty() && space.rotation != glm::mat3(1.0f)) {
-      Find(Severity::kWarning, "up-axis", {}, "the character stands " + space.axes,
-           "+Y up, facing +Z is due: import turns it");
+      Find(Severity::kWarning, "up-axis", {}, "the orientation is " + space.axes,
+           "expected +Y up, facing +Z; the import rotates the character");
     }
     if (space.scale != 1.0f) {
       Find(Severity::kWarning, "units", {},
            std::string("a ") + (space.is_body ? "body " : "head ") + Number(space.height) +
-               " m high: the unit is probably " + Number(space.scale) + " m",
-           "import scales it to " + Number(space.height * space.scale) +
-               " m, or by --scale; depths of folds are in metres");
+               " m high, so the unit is probably " + Number(space.scale) + " m",
+           "the import scales it to " + Number(space.height * space.scale) +
+               " m (override with --scale); depths of folds are in metres");
     }
   }
 
@@ -211,11 +212,11 @@ class Checker {
     if (notes_.nameless_joints > 0) {
       Find(Severity::kWarning, "joint-names", {},
            Count(notes_.nameless_joints, "joint has", "joints have") + " no name",
-           "poses find their joints by name: name them before exporting");
+           "poses address joints by name; name them before exporting");
     }
     if (report_.joints.num_roles == 0) {
       Find(Severity::kWarning, "no-roles", {},
-           "neither names nor hierarchy tell which joint is an arm, a leg or the head",
+           "neither names nor hierarchy identify the arms, the legs and the head",
            "write a skeleton map (docs/SKELETONS.md), or a rig by hand (docs/RIG.md)");
       return;
     }
@@ -233,18 +234,18 @@ class Checker {
     }
     if (!missing.empty()) {
       Find(Severity::kNote, "roles-missing", {}, "no joint is the " + missing,
-           "their clothing regions have nothing to drive them");
+           "clothing regions of these joints have no driver");
     }
     if (report_.face_joints == 0) {
-      Find(Severity::kNote, "no-face-joints", {}, "there are no joints of the face",
-           "facial wrinkles then need a tracker's blend shapes: rig 'arkit'");
+      Find(Severity::kNote, "no-face-joints", {}, "there are no face joints",
+           "facial wrinkles then require a tracker's blend shapes (rig 'arkit')");
     }
   }
 
   void CheckRig() {
     if (!rig_given_) {
-      Find(Severity::kNote, "no-rig", {}, "no wrinkle rig: no regions, no poses, no wrinkles",
-           "furrow character propose-rig writes one to start from");
+      Find(Severity::kNote, "no-rig", {}, "there is no wrinkle rig, so there are no wrinkles",
+           "create a draft with furrow character propose-rig");
       return;
     }
     std::vector<std::string> embedded;
@@ -261,8 +262,8 @@ class Checker {
     for (const std::string& warning : rig.warnings) Find(Severity::kWarning, "rig", "rig", warning);
     for (const wrinkle::WrinkleMap& map : character_.rig.wrinkle_maps) {
       if (!map.normal.empty() || !map.derivative.empty()) continue;
-      Find(Severity::kWarning, "rig-picture", "wrinkle map '" + map.name + "'",
-           "it has no picture, so it shows nothing", "furrow bake makes it");
+      Find(Severity::kWarning, "rig-picture", "wrinkle map '" + map.name + "'", "it has no picture",
+           "create it with furrow bake");
     }
   }
 

@@ -30,11 +30,11 @@ Status Parse(std::string_view bytes, const fs::path& path, OpenedModel* model) {
   std::string converted;
   if (!IsGltf(bytes, extension)) {
     if (!AssimpReads(extension)) {
-      return {
-          StatusCode::kUnsupported,
-          "no reader knows the extension '" + extension + "'",
-          {},
-          "glTF (.glb, .gltf, .vrm), FBX, Collada (.dae) and what else assimp reads are models"};
+      return {StatusCode::kUnsupported,
+              "unknown file extension '" + extension + "'",
+              {},
+              "supported formats: glTF (.glb, .gltf, .vrm), FBX, Collada (.dae) and the other "
+              "formats of assimp"};
     }
     Result<ForeignModel> foreign = ReadWithAssimp(bytes, extension);
     FURROW_RETURN_IF_ERROR(foreign);
@@ -69,7 +69,7 @@ void DropDegenerates(OpenedModel* model) {
   model->character.meshes = std::move(kept);
   model->notes.meshes = std::move(notes);
   if (dropped > 0) {
-    model->remarks.push_back(std::to_string(dropped) + " triangles without area are left out");
+    model->remarks.push_back("removed triangles without area: " + std::to_string(dropped));
   }
 }
 
@@ -78,7 +78,8 @@ void BindUnskinned(OpenedModel* model) {
   for (character::MeshNotes& notes : model->notes.meshes)
     bound += std::exchange(notes.unskinned_vertices, 0);
   if (bound == 0) return;
-  model->remarks.push_back(std::to_string(bound) + " unskinned vertices follow their neighbours");
+  model->remarks.push_back("unskinned vertices that now follow their neighbours: " +
+                           std::to_string(bound));
 }
 
 }  // namespace

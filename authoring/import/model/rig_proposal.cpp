@@ -47,8 +47,9 @@ class Proposer {
     }
     for (const Driver& driver : from_.drivers) AddDriver(driver);
     if (rig.drivers.empty()) {
-      return Status(StatusCode::kNotFound, "no joint is known by its name or by its place", {},
-                    "name the joints as VRM, Mixamo or another known skeleton does, or write a "
+      return Status(StatusCode::kNotFound, "no joint is recognised by its name or by its position",
+                    {},
+                    "rename the joints to VRM, Mixamo or another known skeleton, or write a "
                     "skeleton map (docs/SKELETONS.md)");
     }
     AddPoses();
@@ -77,9 +78,9 @@ class Proposer {
     return points;
   }
 
-  // The target's joint with the role of a joint of the model. In a chain of joints with one role it
-  // is the lower end; with `above`, which means that another joint is the lower end of the same
-  // bone, it is the upper end.
+  // The target's joint with the role of a joint of the model. Where several joints of the target
+  // have the role, the first one is used. With `above` the last one is used: the joint is then the
+  // upper end of a bone that ends at another joint.
   [[nodiscard]] int ByRole(const std::string& name, bool above) const {
     const int joint = model_.skeleton->Find(name);
     if (joint == kNoJoint) return kNoJoint;
@@ -265,17 +266,18 @@ class Proposer {
 
   void Remark() {
     auto& remarks = proposal_.remarks;
-    remarks.push_back(target_.joints->map.empty()
-                          ? "the joints were told by the hierarchy: check each driver's joints"
-                          : "the joints have the names of '" + target_.joints->map + "'");
+    remarks.push_back(
+        target_.joints->map.empty()
+            ? "joint roles were guessed from the hierarchy; check the joints of each driver"
+            : "joint names match '" + target_.joints->map + "'");
     if (!left_out_.empty()) {
       std::string names;
       for (const std::string& name : left_out_) names += (names.empty() ? "" : ", ") + name;
-      remarks.push_back("no joint was found for the drivers " + names);
+      remarks.push_back("no joint found for the drivers " + names);
     }
     if (!poses_.empty()) {
       remarks.emplace_back(
-          "facial reference poses were carried over by place: put your own poses in their stead");
+          "facial reference poses were transferred by position; replace them with your own poses");
     }
   }
 

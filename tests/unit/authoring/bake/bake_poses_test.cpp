@@ -57,7 +57,7 @@ TEST(BakePoses, PosesEveryDriverThatJointsRaise) {
   EXPECT_NEAR(glm::distance(hip, glm::vec3(0, 1, 0)), 0.0f, 1e-5f);
   EXPECT_EQ(found->poses[1].weight, 0.7f);
   EXPECT_THAT(found->notes, ElementsAre(HasSubstr("knee.extended is the rest pose"),
-                                        HasSubstr("blink.value is no pose of joints")));
+                                        HasSubstr("blink.value has no joint pose")));
 }
 
 TEST(BakePoses, TakesTheMapsThatAreWanted) {
@@ -77,7 +77,7 @@ TEST(BakePoses, RefusesAReferencePoseThatIsRest) {
   body.rig.reference_poses[0].joints[0].translation = glm::vec3(0.0f);
   const Status status = CollectBakePoses(body).status();
   EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
-  EXPECT_THAT(status.what(), HasSubstr("'up' is the rest pose"));
+  EXPECT_THAT(status.what(), HasSubstr("'up' equals the rest pose"));
   EXPECT_EQ(status.where(), "regions[1].feeds[0].sources[0]");
 }
 

@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{
             "uv-missing", Severity::kError, "no UVs",
             [](character::Character*, character::SourceNotes* n) { n->meshes[0].has_uvs = false; }},
-        Fault{"uv-missing", Severity::kError, "one place",
+        Fault{"uv-missing", Severity::kError, "one point",
               [](character::Character* c, character::SourceNotes*) {
                 for (character::Vertex& v : c->meshes[0].vertices) v.uv = {0.5f, 0.5f};
               }},
@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(
               [](character::Character*, character::SourceNotes* n) {
                 n->meshes[0].has_tangents = false;
               }},
-        Fault{"blend-shapes", Severity::kNote, "52 blend shapes are not carried",
+        Fault{"blend-shapes", Severity::kNote, "52 blend shapes are not imported",
               [](character::Character*, character::SourceNotes* n) {
                 n->meshes[0].morph_targets = 52;
               }},
