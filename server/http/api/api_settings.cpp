@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "render/settings/settings_file.h"
 #include "server/http/api/api.h"
 #include "server/http/api/setting_json.h"
 

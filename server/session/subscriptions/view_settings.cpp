@@ -5,6 +5,7 @@
 
 #include "base/status.h"
 #include "render/settings/named_settings.h"
+#include "render/settings/settings_file.h"
 
 namespace furrow::server {
 
