@@ -10,7 +10,7 @@ import unittest
 
 from furrow_testing import SOURCE, Daemon, Table, finish, spawn
 
-ARKIT = SOURCE / "character" / "rigs" / "arkit.json"
+ARKIT = SOURCE / "rig" / "rigs" / "arkit.json"
 # Live Link Face's order of curves, as the wire has it.
 CURVES = """EyeBlinkLeft EyeLookDownLeft EyeLookInLeft EyeLookOutLeft EyeLookUpLeft EyeSquintLeft EyeWideLeft
 EyeBlinkRight EyeLookDownRight EyeLookInRight EyeLookOutRight EyeLookUpRight EyeSquintRight EyeWideRight

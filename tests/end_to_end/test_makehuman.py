@@ -22,7 +22,7 @@ class MakeHumanTest(unittest.TestCase):
     def setUpClass(cls):
         cls.recording = needs_shared("performances", "emotions.bvh")
         cls.env = {"FURROW_ASSET_PATH": str(needs_shared("makehuman", "poseunits"))}
-        cls.rig = SOURCE / "character" / "rigs" / "makehuman.json"
+        cls.rig = SOURCE / "rig" / "rigs" / "makehuman.json"
         cls.folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.folder.cleanup)
         cls.root = pathlib.Path(cls.folder.name)

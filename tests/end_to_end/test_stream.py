@@ -97,7 +97,7 @@ class StreamTest(unittest.TestCase):
 
     def test_cmu_body(self):
         recording = needs_shared("cmu", "01_01.bvh")
-        rig = SOURCE / "character" / "rigs" / "cmu.json"
+        rig = SOURCE / "rig" / "rigs" / "cmu.json"
         solved = solve(recording, "--rig", rig)
         with Daemon("--rig", rig) as daemon:
             self.assert_same(self.stream(recording, daemon, ["--speed", 8]), solved)

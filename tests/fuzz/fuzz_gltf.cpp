@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Characters in glTF: whatever is read, every index leads somewhere and every number is finite.
+// Characters in glTF: in every accepted file, all indices are in range and skin weights sum to 1.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

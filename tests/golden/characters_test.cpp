@@ -99,7 +99,7 @@ class MakeHuman : public testing::TestWithParam<Shot> {
     if (!std::filesystem::exists(folder)) return;
     character::ImportOptions options;
     options.rig =
-        std::filesystem::path(FURROW_SOURCE_DIR) / "character" / "rigs" / "makehuman.json";
+        std::filesystem::path(FURROW_SOURCE_DIR) / "rig" / "rigs" / "makehuman.json";
     options.poses = motion::CachedPoseSource();
     options.texture_size = 256;
     sitter_ = std::make_unique<Sitter>(test::Expect(character::ImportMakeHuman(folder, options)));

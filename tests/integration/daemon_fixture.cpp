@@ -53,7 +53,7 @@ server::ExitCode DaemonThread::Stop() {
 
 server::Config WeightsConfig(const std::string& rig) {
   server::Config config;
-  config.rig = std::filesystem::path(FURROW_SOURCE_DIR) / "character" / "rigs" / rig;
+  config.rig = std::filesystem::path(FURROW_SOURCE_DIR) / "rig" / "rigs" / rig;
   config.tcp = 0;
   config.udp = 0;
   config.http.port = 0;
@@ -127,7 +127,7 @@ motion::Clip ArkitClip(int num_frames) {
 }
 
 std::vector<std::vector<float>> Solve(const motion::Clip& clip, const std::string& rig_name) {
-  const auto path = std::filesystem::path(FURROW_SOURCE_DIR) / "character" / "rigs" / rig_name;
+  const auto path = std::filesystem::path(FURROW_SOURCE_DIR) / "rig" / "rigs" / rig_name;
   auto rig = character::LoadRig(path, motion::CachedPoseSource());
   EXPECT_TRUE(rig.ok()) << rig.status().ToString();
   auto binding = wrinkle::RigBinding::Create(*rig, clip.skeleton, clip.blend_shape_names,

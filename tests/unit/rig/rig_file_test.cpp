@@ -313,7 +313,7 @@ TEST(RigFile, TakesPosesFromFramesAndMixes) {
     {"name": "from_2", "file": "rig_file_test.cpp", "frame": 10, "rest_frame": 4},
     {"name": "up", "mix": [{"pose": "unit", "weight": 0.5}, {"pose": "from_2"}]})");
   const auto rig =
-      ParseRig(json, "a.rig.json", FURROW_SOURCE_DIR "/tests/unit/character", TurningSource);
+      ParseRig(json, "a.rig.json", FURROW_SOURCE_DIR "/tests/unit/rig", TurningSource);
   ASSERT_TRUE(rig.ok()) << rig.status().ToString();
   ASSERT_EQ(rig->reference_poses.size(), 1u) << "building blocks are left out";
   ASSERT_EQ(rig->reference_poses[0].joints.size(), 1u) << "the root does not move";
@@ -329,7 +329,7 @@ TEST(RigFile, SaysWhatIsWrongWithAFrame) {
      "joints": [{"joint": "brow",
                  "euler_degrees": [-20, 0, 0]}]})",
                              pose),
-                    "a.rig.json", FURROW_SOURCE_DIR "/tests/unit/character", source)
+                    "a.rig.json", FURROW_SOURCE_DIR "/tests/unit/rig", source)
         .status();
   };
   const Status no_reader = parse(R"({"name": "up", "file": "rig_file_test.cpp"})", {});

@@ -205,7 +205,7 @@ TEST(SkeletonMaps, MixamoUnderAnyOfItsPrefixes) {
 }
 
 TEST(SkeletonMaps, AreLoadedByNameByFileOrAllAtOnce) {
-  setenv("FURROW_DATA_DIR", (std::string(FURROW_SOURCE_DIR) + "/character").c_str(), 1);
+  setenv("FURROW_DATA_DIR", (std::string(FURROW_SOURCE_DIR) + "/rig").c_str(), 1);
   EXPECT_GE(SkeletonMaps::Load("").value().maps().size(), 11u);
   EXPECT_EQ(SkeletonMaps::Load("cmu").value().maps()[0].name, "cmu");
   const std::string file = std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/vrm.json";

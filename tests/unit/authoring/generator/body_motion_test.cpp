@@ -32,7 +32,7 @@ constexpr JointRole kLimbs[][2] = {
 class BodyMotion : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    setenv("FURROW_DATA_DIR", (std::string(FURROW_SOURCE_DIR) + "/character").c_str(), 1);
+    setenv("FURROW_DATA_DIR", (std::string(FURROW_SOURCE_DIR) + "/rig").c_str(), 1);
   }
   static void TearDownTestSuite() { unsetenv("FURROW_DATA_DIR"); }
 

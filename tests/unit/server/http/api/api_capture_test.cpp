@@ -105,7 +105,7 @@ TEST_F(ApiCaptureTest, ANeutralThatIsPreviewedLeavesTheSubjectAlone) {
 class ApiForeignCaptureTest : public HubTest {
  protected:
   void SetUp() override {
-    setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/character", 1);
+    setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/rig", 1);
     auto matcher = character::SkeletonMatcher::Create("");
     unsetenv("FURROW_DATA_DIR");
     ASSERT_TRUE(matcher.ok()) << matcher.status().ToString();
