@@ -44,4 +44,8 @@ std::string_view TakeToken(std::string_view* line) {
   return token;
 }
 
+std::string Counted(std::uint64_t count, const std::string& one, const std::string& many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
+}
+
 }  // namespace furrow

@@ -14,6 +14,10 @@ namespace furrow {
 // every byte that is not printable ASCII.
 [[nodiscard]] std::string Quoted(std::string_view text);
 
+// "1 pose", "2 poses", "0 poses". `many` is the plural if it is not `one` with an s.
+[[nodiscard]] std::string Counted(std::uint64_t count, const std::string& one,
+                                  const std::string& many = {});
+
 // Bytes seen as text; no copy is made.
 [[nodiscard]] inline std::string_view AsText(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};

@@ -59,8 +59,8 @@ Status SetUpright(UpAxis up, Clip* clip) {
   return up == UpAxis::kZ ? TurnZUpToYUp(clip) : Status();
 }
 
-// Moves roots to their OFFSET if their position is 0 in every frame. Such files come from tools
-// whose position channels add to the OFFSET (MakeHuman).
+// Moves roots to their OFFSET if their position is 0 in every frame. MakeHuman writes such files: its
+// position channels add to the OFFSET.
 void KeepRootsAtOffset(Clip* clip) {
   const auto joints = static_cast<std::size_t>(clip->skeleton.num_joints());
   for (std::size_t j = 0; j < joints; ++j) {

@@ -16,13 +16,12 @@ namespace {
 Result<wrinkle::PoseFrame> GetFrame(const Clip& clip, const std::filesystem::path& path,
                                     int frame) {
   if (clip.skeleton.num_joints() == 0) {
-    return Status(StatusCode::kUnsupported, "the recording has no joints to take a pose from",
-                  path.string());
+    return Status(StatusCode::kUnsupported, "the recording has no joints", path.string());
   }
   if (frame < 0 || frame >= clip.num_frames()) {
     return Status(StatusCode::kInvalidArgument,
-                  "there is no frame " + std::to_string(frame) + ": the recording has " +
-                      std::to_string(clip.num_frames()) + ", counted from 0",
+                  "frame " + std::to_string(frame) + " does not exist: the recording has " +
+                      std::to_string(clip.num_frames()) + " frames, counted from 0",
                   path.string());
   }
   wrinkle::PoseFrame result;
@@ -45,7 +44,7 @@ CachedPoseSource::CachedPoseSource(const LoadOptions& options)
 
 Result<wrinkle::PoseFrame> CachedPoseSource::operator()(const std::filesystem::path& path,
                                                         int frame) const {
-  std::error_code error;  // LoadClip() tells what is wrong with a file that cannot be looked at
+  std::error_code error;  // ignored: LoadClip() reports what is wrong with the file
   const auto time = std::filesystem::last_write_time(path, error);
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   const bool fresh =

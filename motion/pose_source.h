@@ -9,10 +9,10 @@
 
 namespace furrow::motion {
 
-// A wrinkle::PoseSource over LoadClip() that keeps the recording it read last: a rig that names
-// sixty frames of one file reads it once. A file that changed on disk (size or time) is read anew.
+// A wrinkle::PoseSource over LoadClip(). It caches the last recording, so that a rig with sixty
+// frames of one file reads the file once. A file that changed on disk (size or time) is read again.
 //
-// - Copies share the recording. Not for several threads at once.
+// - Copies share the cache. Not thread-safe.
 // - Errors: LoadClip()'s, kInvalidArgument (no such frame; the message says how many there are),
 //   kUnsupported (a recording without joints).
 class CachedPoseSource {

@@ -32,14 +32,14 @@ Result<wrinkle::Skeleton> ToSkeleton(const protocol::SkeletonOffer& offer, float
   return wrinkle::Skeleton::Create(std::move(joints));
 }
 
-// Calls `use(index, value)` for each value: an empty list of indices means all, in order.
+// Calls `use(index, value)` for each value. An empty list of indices means 0, 1, 2 and so on.
 template <class Value, class Use>
 void ForEachIndexed(std::span<const std::uint16_t> indices, std::span<const Value> values,
                     const Use& use) {
   for (std::size_t i = 0; i < values.size(); ++i) use(indices.empty() ? i : indices[i], values[i]);
 }
 
-// Poses written over one another, joints in the skeleton's order.
+// The current pose of a stream, with joints in the skeleton's order.
 class RunningPose {
  public:
   RunningPose(const wrinkle::Skeleton& skeleton, std::size_t num_shapes, float scale)
@@ -82,7 +82,7 @@ class RunningPose {
  private:
   const wrinkle::Skeleton& skeleton_;
   float scale_;
-  std::vector<std::size_t> place_;  // of the wire's joints in the skeleton
+  std::vector<std::size_t> place_;  // per joint of the offer: its index in the skeleton
   std::vector<wrinkle::Transform> joints_;
   std::vector<float> shapes_;
 };
@@ -93,7 +93,7 @@ Result<motion::Clip> ToClip(const TakePoses& poses, float scale) {
   const protocol::SkeletonOffer& offer = poses.offer();
   if (poses.size() * std::max<std::size_t>(offer.joints.size(), 1) > motion::kMaxTransforms ||
       poses.size() * offer.blend_shape_names.size() > motion::kMaxBlendShapeValues) {
-    return Status(StatusCode::kLimit, "too many poses to hold at once as a clip");
+    return Status(StatusCode::kLimit, "the take has too many poses for one clip");
   }
   auto skeleton = ToSkeleton(offer, scale);
   FURROW_RETURN_IF_ERROR(skeleton);

@@ -10,12 +10,12 @@
 
 namespace furrow::recording {
 
-// The poses as a clip, in the stream's own units times `scale`. Partial poses build on the ones
-// before them. Errors: Skeleton::Create()'s, kLimit.
+// Converts poses to a clip. `scale` multiplies every length. A partial pose keeps the previous
+// values of joints and blend shapes that it leaves out. Errors: Skeleton::Create()'s, kLimit.
 [[nodiscard]] Result<motion::Clip> ToClip(const TakePoses& poses, float scale = 1.0f);
 
-// Loads one subject of a take as a clip: "take.mcap" or "take.mcap#NAME" (SplitTakePath()).
-// `progress` is told how far reading it is. Errors: TakePoses::Load()'s and ToClip()'s.
+// Loads one subject of a take as a clip. `path` is "take.mcap" or "take.mcap#NAME" (see
+// SplitTakePath()). `progress` is optional. Errors: TakePoses::Load()'s and ToClip()'s.
 [[nodiscard]] Result<motion::Clip> LoadTakeClip(const std::string& path, float scale = 1.0f,
                                                 motion::ClipReport* report = nullptr,
                                                 ReadProgress progress = nullptr);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMaxSameName = 100000;
 
-// "take-20260514T093000Z"
+// A name like "take-20260514T093000Z".
 std::string NameAt(std::uint64_t now_ns) {
   const auto seconds = static_cast<std::time_t>(now_ns / 1'000'000'000);
   std::tm utc{};
@@ -30,14 +30,15 @@ Result<std::unique_ptr<TakeFolder>> TakeFolder::Open(TakeFolderOptions options,
   std::error_code error;
   if (!options.folder.empty()) std::filesystem::create_directories(options.folder, error);
   if (error)
-    return Status(StatusCode::kIo, "the folder cannot be made: " + error.message(),
+    return Status(StatusCode::kIo, "cannot create the folder: " + error.message(),
                   options.folder.string());
   std::unique_ptr<TakeFolder> folder(new TakeFolder(std::move(options)));
   FURROW_RETURN_IF_ERROR(folder->Begin(now_ns));
   return folder;
 }
 
-// The first name that is free; that of the first file, where it was asked for, whether free or not.
+// The first free name. A requested name of the first file is returned even if it exists, so that
+// TakeWriter::Create() reports the error.
 std::filesystem::path TakeFolder::NextPath(std::uint64_t now_ns) const {
   const bool is_named = !options_.name.empty();
   const std::string stem = is_named ? options_.name.stem().string() : NameAt(now_ns);
@@ -100,7 +101,7 @@ bool TakeFolder::IsRepeated(TakeKind kind, std::string_view subject, const TakeS
 Status TakeFolder::Write(TakeKind kind, std::string_view subject, const TakeStamp& stamp,
                          std::span<const std::uint8_t> payload) {
   if (!failure_.ok()) return failure_;
-  // Before the declaration is remembered, or a new file would begin with it and get it again.
+  // Rotate before remembering the declaration. Otherwise the new file would contain it twice.
   if (Status status = RotateIfDue(stamp.log_time_ns); !status.ok()) return Remember(status);
   const bool declares = kind == TakeKind::kSkeleton || kind == TakeKind::kNames;
   if (declares && IsRepeated(kind, subject, stamp, payload)) return {};

@@ -15,23 +15,23 @@
 namespace furrow::recording {
 
 struct TakeFolderOptions {
-  std::filesystem::path folder;    // made where it is absent; empty: the current one
-  std::filesystem::path name;      // of the first file; empty: by the time it begins
-  std::uint64_t rotate_bytes = 0;  // a file ends when it has grown to this; 0: never
-  std::uint64_t rotate_ns = 0;     // and when it covers so much time; 0: never
+  std::filesystem::path folder;    // created if absent; empty: the current folder
+  std::filesystem::path name;      // of the first file; empty: its start time
+  std::uint64_t rotate_bytes = 0;  // start the next file at this size; 0: never
+  std::uint64_t rotate_ns = 0;     // start the next file after this time; 0: never
   std::string rig_json;            // attached to every file; may be empty
 };
 
-// A recording without an end: takes in a folder, one after the other, each complete in itself.
+// An open-ended recording: a folder of consecutive takes, each complete in itself.
 //
-// - Files are named by the time they begin, "take-20260514T093000Z.mcap", "_2" and so on where that
-//   is taken; or "name.mcap", "name_2.mcap" and so on. Nothing is ever overwritten.
-// - Every file begins with the skeletons and names of the subjects that are there.
-// - The same skeleton or names again, as senders repeat them, are written once a file and session.
-// - After an error (a full disk) all further calls return it, and the file stays readable.
+// - Files are named by their start time, "take-20260514T093000Z.mcap", or "name.mcap". If the name
+//   exists, "_2", "_3" and so on are appended. No file is ever overwritten.
+// - Every file begins with the skeletons and weight names of the current subjects.
+// - Senders repeat skeletons and names. Repetitions are written once per file and session.
+// - After an error (a full disk), all later calls return the same error. The file stays readable.
 class TakeFolder {
  public:
-  // Errors: kIo (also where the named file exists).
+  // Creates the folder and the first file. Errors: kIo (also if `options.name` exists).
   [[nodiscard]] static Result<std::unique_ptr<TakeFolder>> Open(TakeFolderOptions options,
                                                                 std::uint64_t now_ns);
 
@@ -39,16 +39,16 @@ class TakeFolder {
                              std::span<const std::uint8_t> payload);
   [[nodiscard]] Status WriteDatagram(const DatagramSender& sender, std::uint64_t log_time_ns,
                                      std::span<const std::uint8_t> bytes);
-  // The subject has left: the next file does not begin with it.
+  // Call it when a subject leaves: later files do not begin with its skeleton.
   void Forget(std::string_view subject);
 
   [[nodiscard]] Status Flush();
   [[nodiscard]] Status Close();
 
-  // The file that is being written.
+  // The current file.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] int num_files() const { return num_files_; }
-  // In all files, with what each begins with; repeated declarations are not.
+  // Messages in all files, including those that each file begins with, without repetitions.
   [[nodiscard]] std::uint64_t num_messages() const {
     return earlier_messages_ + take_->num_messages();
   }
@@ -56,7 +56,7 @@ class TakeFolder {
  private:
   struct Declaration {
     TakeStamp stamp;
-    std::vector<std::uint8_t> payload;  // empty: none yet
+    std::vector<std::uint8_t> payload;  // empty if there is none yet
   };
   struct SubjectState {
     Declaration skeleton;
@@ -68,7 +68,7 @@ class TakeFolder {
   [[nodiscard]] std::filesystem::path NextPath(std::uint64_t now_ns) const;
   [[nodiscard]] Status RotateIfDue(std::uint64_t now_ns);
   [[nodiscard]] Status Remember(Status status);
-  // True where this is what the subject's last declaration said.
+  // Whether this equals the subject's last declaration. Remembers it if not.
   [[nodiscard]] bool IsRepeated(TakeKind kind, std::string_view subject, const TakeStamp& stamp,
                                 std::span<const std::uint8_t> payload);
 
@@ -76,9 +76,9 @@ class TakeFolder {
   std::unique_ptr<TakeWriter> take_;
   std::filesystem::path path_;
   std::uint64_t begun_ns_ = 0;
-  std::uint64_t begun_bytes_ = 0;  // what the file begins with does not count toward its end
+  std::uint64_t begun_bytes_ = 0;  // size of what the file begins with, which rotate_bytes ignores
   int num_files_ = 0;
-  std::uint64_t earlier_messages_ = 0;  // in the files before
+  std::uint64_t earlier_messages_ = 0;  // in earlier files
   std::map<std::string, SubjectState, std::less<>> subjects_;
   Status failure_;
 };

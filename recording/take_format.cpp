@@ -17,7 +17,7 @@ namespace {
 using protocol::MessageKind;
 
 struct KindRow {
-  std::string_view topic;  // its last part
+  std::string_view topic;  // the last part of the topic
   std::string_view schema;
   std::span<const std::uint8_t> binary;
   MessageKind message;

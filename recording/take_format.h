@@ -9,29 +9,29 @@
 
 #include "protocol/codec/codec.h"
 
-// How a take lies in an MCAP file; docs/RECORDING.md is the same for people.
+// The layout of a take in an MCAP file. docs/RECORDING.md documents it for users.
 namespace furrow::recording {
 
-// What a message of a take is. All but the last carry the FlatBuffers payload of a wire message,
-// without its envelope.
+// The kinds of messages in a take. All except kDatagram carry the FlatBuffers payload of a wire
+// message, without its envelope.
 enum class TakeKind : std::uint8_t {
   kSkeleton = 0,  // "/<subject>/skeleton": SkeletonOffer
   kPose,          // "/<subject>/pose": Pose
-  kNames,         // "/<subject>/names": SubscribeReply, what the values of Weights are called
+  kNames,         // "/<subject>/names": SubscribeReply, the names of the values in Weights
   kWeights,       // "/<subject>/weights": Weights
-  kDatagram,      // "/raw/udp": where a datagram came from, then the datagram
+  kDatagram,      // "/raw/udp": the sender's address and the datagram
 };
 inline constexpr int kNumTakeKinds = 5;
 
-// When, and from which run of a sender: what the envelope said, and the moment it came.
+// The envelope of a wire message, and the time when the daemon received it.
 struct TakeStamp {
-  std::uint64_t session = 0;         // the channel's metadata "session"
-  std::uint32_t sequence = 0;        // of the pose; MCAP's sequence
-  std::int64_t capture_time_us = 0;  // on the sender's clock; MCAP's publish time
-  std::uint64_t log_time_ns = 0;     // when it came, since the Unix epoch; MCAP's log time
+  std::uint64_t session = 0;         // the run of a sender; channel metadata "session"
+  std::uint32_t sequence = 0;        // of the pose; stored as MCAP's sequence
+  std::int64_t capture_time_us = 0;  // sender's clock; stored as MCAP's publish time
+  std::uint64_t log_time_ns = 0;     // arrival, since the Unix epoch; MCAP's log time
 };
 
-// A datagram's sender: IPv6 address (or mapped IPv4) and port, both in network order.
+// A datagram's sender: an IPv6 address (or mapped IPv4) and a port, both in network order.
 using DatagramSender = std::array<std::uint8_t, 18>;
 
 inline constexpr char kTakeProfile[] = "furrow-take";
@@ -42,22 +42,22 @@ inline constexpr char kRigAttachment[] = "rig.json";
 
 // The topic of a subject's messages of a kind.
 [[nodiscard]] std::string TopicOf(TakeKind kind, std::string_view subject);
-// Back from a topic; false where it is none of ours. The subject may contain slashes.
+// Splits a topic into kind and subject, which may contain slashes. False for foreign topics.
 [[nodiscard]] bool ParseTopic(std::string_view topic, TakeKind* kind, std::string* subject);
 
-// The name of the FlatBuffers table and the binary schema (.bfbs) of a kind's messages; both empty
-// for datagrams.
+// The name of the FlatBuffers table and the binary schema (.bfbs) of a kind's messages. Both are
+// empty for datagrams.
 [[nodiscard]] std::string_view SchemaName(TakeKind kind);
 [[nodiscard]] std::span<const std::uint8_t> BinarySchema(TakeKind kind);
 
-// Which wire message a kind's payload is; kUnknown for datagrams.
+// The wire message that a kind's payload holds; kUnknown for datagrams.
 [[nodiscard]] protocol::MessageKind MessageKindOf(TakeKind kind);
 
-// How long the wire's messages of a kind are at most: those of publishers, and the server's.
+// The maximum payload of a kind: the wire's limit for messages of publishers or of the daemon.
 [[nodiscard]] std::size_t MaxPayloadBytes(TakeKind kind);
 
-// The wire's microseconds as MCAP's nanoseconds and back: two's complement, so that clocks with any
-// epoch survive; a clock further than 292 years from its epoch is held at that.
+// Converts the wire's microseconds to MCAP's nanoseconds and back. The value is stored as two's
+// complement, so negative times survive. Times more than 292 years from the epoch are clamped.
 [[nodiscard]] std::uint64_t ToPublishTime(std::int64_t capture_time_us);
 [[nodiscard]] std::int64_t FromPublishTime(std::uint64_t publish_time_ns);
 

@@ -9,6 +9,7 @@
 
 #include "base/ascii.h"
 #include "base/status.h"
+#include "base/text.h"
 #include "motion/clip/limits.h"
 
 namespace furrow::recording {
@@ -35,28 +36,30 @@ bool EndsInMcap(std::string_view text) {
 Status NoPoses(const TakeReader& take, std::string_view subject, const Names& names) {
   const std::string file = take.path().string();
   if (names.contains(subject) || (subject.empty() && !names.empty()))
-    return {StatusCode::kNotFound, "none of its poses can be read", file};
-  const std::string here = names.empty() ? "nobody" : Join(names);
-  return {StatusCode::kNotFound,
-          subject.empty() ? "the take has no poses"
-                          : "there are no poses of '" + std::string(subject) + "', but of " + here,
-          file};
+    return {StatusCode::kNotFound, "none of its poses is readable", file};
+  if (subject.empty() || names.empty()) {
+    return {StatusCode::kNotFound, "the take has no poses", file};
+  }
+  return {StatusCode::kNotFound, "the take has no poses of '" + std::string(subject) + "'", file,
+          "its subjects are: " + Join(names)};
 }
 
-void Warn(motion::ClipReport* report, const TakeReader& take, std::size_t count,
-          const std::string& what) {
+// "take.mcap: skipped 2 <one>s of 'ada'<why>".
+void WarnSkipped(motion::ClipReport* report, const TakeReader& take, std::size_t count,
+                 const std::string& one, const std::string& subject, const std::string& why) {
   if (report == nullptr || count == 0) return;
-  report->warnings.push_back(take.path().string() + ": " + std::to_string(count) + " " + what);
+  report->warnings.push_back(take.path().string() + ": skipped " + Counted(count, one) + " of '" +
+                             subject + "'" + why);
 }
 
 }  // namespace
 
-// Microseconds from the last pose to one of `stamp`, at least 1.
+// Microseconds from the last pose to the pose with `stamp`, at least 1.
 std::int64_t TakePoses::StepTo(const TakeStamp& stamp) const {
   constexpr std::int64_t kLeap = 60'000'000;
-  constexpr std::int64_t kFastest = 1000;               // `furrow play --speed` at most
-  constexpr std::int64_t kLongest = 1'000'000'000'000;  // 11 days: sums stay numbers
-  // Log times are in order; capture times are as the sender says.
+  constexpr std::int64_t kFastest = 1000;               // maximum of `furrow play --speed`
+  constexpr std::int64_t kLongest = 1'000'000'000'000;  // 11 days, so that sums cannot overflow
+  // The reader sorts by log time. Capture times are whatever the sender stated.
   const auto arrived = static_cast<std::int64_t>((stamp.log_time_ns - last_.log_time_ns) / 1000);
   std::int64_t step = 0;
   const bool is_broken =
@@ -73,14 +76,14 @@ void TakePoses::Add(const TakeMessage& message) {
   ends_.push_back(bytes_.size());
 }
 
-// Sorts the messages of a take into the poses of its subjects: of one, of the only one there is
-// (`subject` empty), or of all.
+// Distributes the messages of a take to its subjects. With an empty `subject` it collects all
+// subjects, or the only one.
 class TakePoses::Loader {
  public:
   Loader(std::string_view subject, bool only_one) : subject_(subject), only_one_(only_one) {}
 
-  // False: too many to hold.
-  bool Take(const TakeMessage& message) {
+  // Returns false if the poses exceed the limits.
+  bool Add(const TakeMessage& message) {
     if (message.kind != TakeKind::kSkeleton && message.kind != TakeKind::kPose) return true;
     if (message.kind == TakeKind::kPose && !names_.contains(message.subject))
       names_.emplace(message.subject);
@@ -89,28 +92,26 @@ class TakePoses::Loader {
     if (found == tracks_.end())
       found = tracks_.emplace(std::string(message.subject), Track()).first;
     Track& track = found->second;
-    if (message.kind == TakeKind::kPose) return TakePose(message, &track);
+    if (message.kind == TakeKind::kPose) return AddPose(message, &track);
     if (track.has_offer) return true;
     track.has_offer = protocol::Decode(message.View(), track.poses.offer_) == DecodeStatus::kOk;
     track.unreadable += track.has_offer ? 0 : 1;
     return true;
   }
 
-  // Everybody who has poses.
+  // All subjects with poses.
   [[nodiscard]] const Names& names() const { return names_; }
-  // There are several, of whom none was named: nobody's poses are of use.
+  // Whether the caller wants one subject, named none, and the take has several.
   [[nodiscard]] bool is_ambiguous() const {
     return only_one_ && subject_.empty() && names_.size() > 1;
   }
 
-  // Those that have poses, in the order of their first ones.
+  // The subjects with poses, in order of their first poses.
   std::vector<TakePoses> Finish(const TakeReader& take, motion::ClipReport* report) {
     std::vector<Track*> order;
     for (auto& [name, track] : tracks_) {
-      Warn(report, take, track.unreadable,
-           "messages of '" + name + "' cannot be read and are left out");
-      Warn(report, take, track.foreign,
-           "poses of '" + name + "' are of another skeleton than its first and are left out");
+      WarnSkipped(report, take, track.unreadable, "unreadable message", name, "");
+      WarnSkipped(report, take, track.foreign, "pose", name, ": not of its first skeleton");
       if (track.poses.size() > 0) order.push_back(&track);
     }
     std::ranges::stable_sort(order, {}, &Track::first_ns);
@@ -131,7 +132,7 @@ class TakePoses::Loader {
     std::size_t foreign = 0;
   };
 
-  bool TakePose(const TakeMessage& message, Track* track) {
+  bool AddPose(const TakeMessage& message, Track* track) {
     const protocol::SkeletonOffer& offer = track->poses.offer_;
     if (protocol::Decode(message.View(), pose_) != DecodeStatus::kOk) {
       ++track->unreadable;
@@ -153,7 +154,7 @@ class TakePoses::Loader {
   Names names_;
   std::map<std::string, Track, std::less<>> tracks_;
   std::size_t num_bytes_ = 0;
-  protocol::PoseFrame pose_;  // reused
+  protocol::PoseFrame pose_;  // a member to reuse its memory
 };
 
 Result<std::vector<TakePoses>> TakePoses::LoadOf(TakeReader& take, std::string_view subject,
@@ -161,19 +162,19 @@ Result<std::vector<TakePoses>> TakePoses::LoadOf(TakeReader& take, std::string_v
   Loader loader(subject, only_one);
   bool fits = true;
   Status status = take.ForEach([&](const TakeMessage& message) {
-    fits = loader.Take(message);
+    fits = loader.Add(message);
     return fits;
   });
   if (!status.ok()) return status;
   if (!fits) {
-    return Status(StatusCode::kLimit, "too many poses to hold at once", take.path().string(),
+    return Status(StatusCode::kLimit, "the take has too many poses", take.path().string(),
                   "record with --rotate-seconds for shorter files");
   }
   const Names& names = loader.names();
   if (loader.is_ambiguous()) {
     return Status(StatusCode::kInvalidArgument, "the take has several subjects: " + Join(names),
                   take.path().string(),
-                  "name one: " + take.path().filename().string() + "#" + *names.begin());
+                  "choose one: " + take.path().filename().string() + "#" + *names.begin());
   }
   std::vector<TakePoses> all = loader.Finish(take, report);
   for (const std::string& text : take.file().warnings())

@@ -14,37 +14,38 @@
 
 namespace furrow::recording {
 
-// The poses of one subject of a take, as they were received: what `furrow play` sends again, number
-// for number.
+// The poses of one subject of a take, exactly as they were received. `furrow play` sends them again
+// unchanged.
 class TakePoses {
  public:
-  // `subject` empty: the only one there is. Left out, with a warning in `report`: poses that cannot
-  // be read, and those of another skeleton than the subject's first.
+  // Loads one subject. An empty `subject` means the only one in the take. Unreadable poses, and
+  // poses of a skeleton other than the subject's first, are skipped with a warning in `report`.
   //
-  // Errors: kNotFound (no such subject, or one without poses), kInvalidArgument (no subject is
-  // named and there are several; the message names them), kLimit, the reader's.
+  // Errors: kNotFound (no such subject, or no poses), kInvalidArgument (`subject` is empty and the
+  // take has several; the message lists them), kLimit, TakeReader's.
   [[nodiscard]] static Result<TakePoses> Load(TakeReader& take, std::string_view subject,
                                               motion::ClipReport* report);
-  // `subject` empty: all there are, in the order of their first poses; at least one. Errors: as
-  // Load()'s, but for several subjects.
+  // Loads one subject, or all if `subject` is empty, in order of their first poses. The result has
+  // at least one entry. Errors: Load()'s except kInvalidArgument.
   [[nodiscard]] static Result<std::vector<TakePoses>> LoadAll(TakeReader& take,
                                                               std::string_view subject,
                                                               motion::ClipReport* report);
 
   [[nodiscard]] const protocol::SkeletonOffer& offer() const { return offer_; }
-  // When its first pose arrived: seconds since the first one of all that were loaded with it.
+  // The arrival of the first pose, in seconds since the earliest first pose of all subjects that
+  // were loaded together.
   [[nodiscard]] double start() const { return start_; }
   [[nodiscard]] std::size_t size() const { return times_.size(); }
-  // Seconds since the first pose, increasing: the differences of the capture times. Where those go
-  // back, leap (a clock that was set) or a sender was restarted, the differences of the times of
-  // arrival.
+  // Seconds since the first pose, increasing. Steps are differences of capture times. If capture
+  // times go back or leap (a clock was set), or a sender was restarted, the step is the difference
+  // of arrival times instead.
   [[nodiscard]] std::span<const double> times() const { return times_; }
-  // Decodes pose `index` < size(); it was checked when it was loaded.
+  // Decodes pose `index`, which must be below size(). Loading has verified it.
   void Get(std::size_t index, protocol::PoseFrame* pose) const;
 
  private:
   class Loader;
-  // `only_one`: as Load(), else as LoadAll().
+  // `only_one`: several subjects are an error if `subject` is empty.
   [[nodiscard]] static Result<std::vector<TakePoses>> LoadOf(TakeReader& take,
                                                              std::string_view subject,
                                                              bool only_one,
@@ -61,10 +62,10 @@ class TakePoses {
   std::int64_t elapsed_us_ = 0;
 };
 
-// Whether a path names a take by its extension, ".mcap" in any case; "take.mcap#NAME" names one
-// subject of it.
+// Whether a path has the extension of a take, ".mcap" in any case, with or without "#NAME".
 [[nodiscard]] bool IsTakePath(const std::string& path);
-// "take.mcap#ada" apart; a file that is really called so stays whole.
+// Splits "take.mcap#ada" into file and subject. If a file with the whole name exists, `subject`
+// stays empty.
 void SplitTakePath(const std::string& path, std::string* file, std::string* subject);
 
 }  // namespace furrow::recording

@@ -52,26 +52,26 @@ Status TakeReader::ForEach(const std::function<bool(const TakeMessage&)>& visit)
   std::uint64_t num_bytes = 1;
   for (const motion::mcap::ChunkInfo& chunk : file_->chunks())
     num_bytes += chunk.uncompressed_bytes;
-  Status status = ShowAll(visit, num_bytes);
+  Status status = VisitAll(visit, num_bytes);
   if (progress_) progress_(num_bytes, num_bytes);
   return status;
 }
 
-Status TakeReader::ShowAll(const std::function<bool(const TakeMessage&)>& visit,
-                           std::uint64_t num_bytes) {
+Status TakeReader::VisitAll(const std::function<bool(const TakeMessage&)>& visit,
+                            std::uint64_t num_bytes) {
   std::uint64_t done = 0;
   return file_->ForEach({}, [&](const Message& message) {
     done += message.data.size();
     if (progress_) progress_(std::min(done, num_bytes - 1), num_bytes);
     const ChannelInfo* info = InfoOf(message.channel_id);
     if (info == nullptr) return true;
-    TakeMessage shown;
-    shown.kind = info->kind;
-    shown.subject = info->subject;
-    shown.stamp = {info->session, message.sequence, FromPublishTime(message.publish_time),
+    TakeMessage known;
+    known.kind = info->kind;
+    known.subject = info->subject;
+    known.stamp = {info->session, message.sequence, FromPublishTime(message.publish_time),
                    message.log_time};
-    if (message.data.size() <= MaxPayloadBytes(info->kind)) shown.payload = message.data;
-    return visit(shown);
+    if (message.data.size() <= MaxPayloadBytes(info->kind)) known.payload = message.data;
+    return visit(known);
   });
 }
 

@@ -18,24 +18,24 @@
 
 namespace furrow::recording {
 
-// A message of a take in the reader's memory: it lasts as long as the call that shows it. One that
-// is longer than any of its kind on the wire is shown without its payload, and so is unreadable.
+// A message of a take. It refers to the reader's memory and is valid during the call that passes
+// it. If the payload is longer than MaxPayloadBytes(), it is empty and cannot be decoded.
 struct TakeMessage {
   TakeKind kind = TakeKind::kPose;
   std::string_view subject;  // empty for datagrams
   TakeStamp stamp;
   std::span<const std::uint8_t> payload;
 
-  // The payload as a message of the wire, still to be decoded (and so verified).
+  // The payload as a wire message. Decode() verifies it.
   [[nodiscard]] protocol::MessageView View() const;
 };
 
-// Called while a take is read with how many bytes are behind, of how many; the last call, with both
-// equal, comes however the reading ends.
+// Called with the bytes read so far and the total while a take is read. The last call has both
+// equal, even if reading fails or stops early, so that a progress bar always ends.
 using ReadProgress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
-// Reads a take, ours or one that another program wrote with our topics. Topics and encodings that
-// are none of ours are passed over; a torn or damaged file is read as mcap::Reader does.
+// Reads a take, whatever program wrote it. Foreign topics and encodings are ignored. mcap::Reader
+// defines what is read of a torn or damaged file.
 class TakeReader {
  public:
   // Errors: mcap::Reader's.
@@ -44,10 +44,10 @@ class TakeReader {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] const motion::mcap::Reader& file() const { return *file_; }
 
-  // Who is told how far every ForEach() is.
+  // Called by every ForEach().
   void set_progress(ReadProgress progress) { progress_ = std::move(progress); }
 
-  // Shows every message of the take in the order of log times until `visit` returns false.
+  // Calls `visit` for every message in order of log time until it returns false.
   [[nodiscard]] Status ForEach(const std::function<bool(const TakeMessage&)>& visit);
 
  private:
@@ -59,14 +59,15 @@ class TakeReader {
 
   TakeReader(std::filesystem::path path, std::unique_ptr<motion::mcap::Reader> file)
       : path_(std::move(path)), file_(std::move(file)) {}
-  // Null: not one of ours.
+  // Null for a foreign channel.
   [[nodiscard]] const ChannelInfo* InfoOf(std::uint16_t channel);
-  [[nodiscard]] Status ShowAll(const std::function<bool(const TakeMessage&)>& visit,
-                               std::uint64_t num_bytes);
+  [[nodiscard]] Status VisitAll(const std::function<bool(const TakeMessage&)>& visit,
+                                std::uint64_t num_bytes);
 
   std::filesystem::path path_;
   std::unique_ptr<motion::mcap::Reader> file_;
-  std::map<std::uint16_t, std::optional<ChannelInfo>> channels_;  // as they are met
+  std::map<std::uint16_t, std::optional<ChannelInfo>>
+      channels_;  // filled on first use; none: foreign
   ReadProgress progress_;
 };
 

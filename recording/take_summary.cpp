@@ -28,7 +28,7 @@ class Summariser {
   [[nodiscard]] const TakeSummary& summary() const { return summary_; }
 
  private:
-  // False: not what the topic says.
+  // Returns false if the payload does not decode.
   bool AddTo(SubjectSummary& subject, const TakeMessage& message) {
     switch (message.kind) {
       case TakeKind::kSkeleton:
@@ -57,7 +57,8 @@ class Summariser {
   void AddPose(SubjectSummary& subject, const TakeStamp& stamp) {
     TakeStamp& last = last_[&subject];
     const bool goes_on = subject.poses > 0 && last.session == stamp.session;
-    // Numbers wrap: the step is small, or the sender began again.
+    // Sequence numbers wrap. A step of half their range or more means that the sender started
+    // again.
     const std::uint32_t step = stamp.sequence - last.sequence;
     if (goes_on && step > 0 && step < 0x80000000u) {
       subject.missing += step - 1;

@@ -12,24 +12,24 @@
 
 namespace furrow::recording {
 
-// What a take holds of one subject.
+// The contents of a take for one subject.
 struct SubjectSummary {
   std::size_t joints = 0;  // of its last skeleton
   std::size_t blend_shapes = 0;
-  std::size_t skeletons = 0;  // different ones
+  std::size_t skeletons = 0;  // number of different skeletons
   std::set<std::uint64_t> sessions;
   std::size_t poses = 0;
   std::size_t weights = 0;
   std::size_t weight_names = 0;
-  std::uint64_t missing = 0;       // numbers that were left out between poses of one session
-  double longest_gap = 0.0;        // seconds between two poses of one session, as captured
-  double captured_seconds = 0.0;   // from pose to pose within the sessions, as captured
-  std::size_t captured_steps = 0;  // how many steps those are
-  std::size_t unreadable = 0;      // messages that are not what their topic says
+  std::uint64_t missing = 0;       // gaps in the sequence numbers of one session
+  double longest_gap = 0.0;        // seconds of capture time between two poses of one session
+  double captured_seconds = 0.0;   // sum of the steps between poses, in capture time
+  std::size_t captured_steps = 0;  // number of these steps
+  std::size_t unreadable = 0;      // messages that do not decode as their topic's kind
   std::uint64_t first_ns = 0;      // log times of its poses
   std::uint64_t last_ns = 0;
 
-  // Poses a second; 0 where one cannot tell.
+  // Poses per second; 0 if unknown.
   [[nodiscard]] double rate() const {
     return captured_seconds > 0.0 ? static_cast<double>(captured_steps) / captured_seconds : 0.0;
   }
@@ -44,7 +44,7 @@ struct TakeSummary {
   [[nodiscard]] double seconds() const { return static_cast<double>(last_ns - first_ns) * 1e-9; }
 };
 
-// Reads the whole take, and every message in it. Errors: the reader's.
+// Reads and decodes every message of a take. Errors: TakeReader::ForEach()'s.
 [[nodiscard]] Result<TakeSummary> Summarise(TakeReader& take);
 
 }  // namespace furrow::recording

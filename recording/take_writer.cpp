@@ -63,7 +63,7 @@ Status TakeWriter::AttachSkeleton(std::string_view subject, std::uint64_t log_ti
 
 Status TakeWriter::Write(TakeKind kind, std::string_view subject, const TakeStamp& stamp,
                          std::span<const std::uint8_t> payload) {
-  if (is_full()) return {StatusCode::kLimit, "the take has as many channels as a file holds"};
+  if (is_full()) return {StatusCode::kLimit, "the take has the maximum number of channels"};
   if (kind == TakeKind::kSkeleton) {
     FURROW_RETURN_IF_ERROR(AttachSkeleton(subject, stamp.log_time_ns, payload));
   }

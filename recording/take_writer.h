@@ -16,34 +16,35 @@
 
 namespace furrow::recording {
 
-// Writes one take, a file of its own.
+// Writes one take to one file.
 //
-// - Messages come in the order of their log times. A subject's skeleton comes before its poses, its
-//   names before its weights.
-// - Channels are made as they are met, one a (kind, subject, session).
-// - Errors are mcap::Writer's: after the first nothing more is written, and Close() still leaves a
-//   file that is readable up to there.
+// - Write messages in order of log time, a subject's skeleton before its poses, and its names
+// before
+//   its weights.
+// - Each (kind, subject, session) gets a channel on first use.
+// - Errors are mcap::Writer's. After the first error nothing more is written, and Close() still
+//   leaves a file that is readable up to that point.
 class TakeWriter {
  public:
-  // `rig_json`: attached as "rig.json"; empty: none. Errors: kIo (also where the file exists).
+  // Attaches `rig_json` as "rig.json" unless it is empty. Errors: kIo (also if the file exists).
   [[nodiscard]] static Result<std::unique_ptr<TakeWriter>> Create(const std::filesystem::path& path,
                                                                   std::string_view rig_json);
 
-  // `payload`: the FlatBuffers buffer of the kind's wire message. A skeleton that differs from the
-  // subject's last becomes an attachment too. Errors: kLimit (is_full()), kIo.
+  // `payload` is the FlatBuffers buffer of the kind's wire message. A skeleton that differs from
+  // the subject's last one is also attached. Errors: kLimit (is_full()), kIo.
   [[nodiscard]] Status Write(TakeKind kind, std::string_view subject, const TakeStamp& stamp,
                              std::span<const std::uint8_t> payload);
   [[nodiscard]] Status WriteDatagram(const DatagramSender& sender, std::uint64_t log_time_ns,
                                      std::span<const std::uint8_t> bytes);
 
-  // Hands what there is to the operating system as a whole chunk.
+  // Finishes the current chunk and passes it to the operating system.
   [[nodiscard]] Status Flush() { return file_->FlushChunk(); }
   [[nodiscard]] Status Close() { return file_->Close(); }
 
-  // Without the chunk under way.
+  // Bytes in the file, without the current chunk.
   [[nodiscard]] std::uint64_t bytes_written() const { return file_->bytes_written(); }
   [[nodiscard]] std::uint64_t num_messages() const { return file_->num_messages(); }
-  // MCAP counts channels in 16 bits: time for the next file.
+  // Whether all 16-bit channel ids are used, so that the next message needs a new file.
   [[nodiscard]] bool is_full() const { return channels_.size() >= kMaxChannels; }
 
  private:
@@ -60,9 +61,10 @@ class TakeWriter {
   std::unique_ptr<motion::mcap::Writer> file_;
   std::map<ChannelKey, std::uint16_t> channels_;
   std::map<TakeKind, std::uint16_t> schemas_;
-  std::map<std::string, std::vector<std::uint8_t>, std::less<>> skeletons_;  // the last a subject
-  ChannelKey key_;                                                           // reused
-  std::vector<std::uint8_t> datagram_;                                       // reused
+  std::map<std::string, std::vector<std::uint8_t>, std::less<>>
+      skeletons_;                       // the last one of each subject
+  ChannelKey key_;                      // reused
+  std::vector<std::uint8_t> datagram_;  // reused
 };
 
 }  // namespace furrow::recording

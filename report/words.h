@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <string>
+#include "base/text.h"
 
 namespace furrow::report {
 
-// Returns "1 pose", "2 poses", "0 poses". `many` is the plural if it is not `one` with an s.
-[[nodiscard]] std::string Counted(std::uint64_t count, const std::string& one,
-                                  const std::string& many = {});
+using furrow::Counted;
 
 }  // namespace furrow::report

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/text.h"
 #include "gltf/limits.h"
 
 namespace furrow::gltf {
@@ -54,8 +55,8 @@ Status ReadChunks(std::string_view bytes, Container* container) {
     at += size;
   }
   if (at != bytes.size()) {
-    container->warnings.push_back("chunks: " + std::to_string(bytes.size() - at) +
-                                  " bytes after the last chunk are ignored");
+    container->warnings.push_back("chunks: ignored " + Counted(bytes.size() - at, "byte") +
+                                  " after the last chunk");
   }
   return {};
 }
@@ -72,14 +73,14 @@ Result<Container> SplitBinary(std::string_view bytes) {
   }
   const std::size_t stated = ReadU32(bytes, 8);
   if (stated > bytes.size() || stated < kHeaderBytes + kChunkHeaderBytes) {
-    return ParseError("the header states " + std::to_string(stated) + " bytes, the file has " +
-                          std::to_string(bytes.size()),
+    return ParseError("the header states " + Counted(stated, "byte") + ", the file has " +
+                          Counted(bytes.size(), "byte"),
                       "header.length", stated > bytes.size() ? kCutOff : "");
   }
   Container container;
   if (stated < bytes.size()) {
-    container.warnings.push_back("header.length: " + std::to_string(bytes.size() - stated) +
-                                 " bytes after the stated end are ignored");
+    container.warnings.push_back("header.length: ignored " +
+                                 Counted(bytes.size() - stated, "byte") + " after the stated end");
   }
   FURROW_RETURN_IF_ERROR(ReadChunks(bytes.substr(0, stated), &container));
   return container;

@@ -7,6 +7,7 @@
 
 #include <tiny_gltf.h>
 
+#include "base/text.h"
 #include "gltf/container/glb.h"
 #include "gltf/limits.h"
 
@@ -82,7 +83,7 @@ std::vector<std::string> Document::warnings() const {
   std::vector<std::string> warnings(raw_.warnings.begin(),
                                     raw_.warnings.begin() + static_cast<std::ptrdiff_t>(shown));
   if (shown < raw_.warnings.size()) {
-    warnings.push_back(std::to_string(raw_.warnings.size() - shown) + " more warnings");
+    warnings.push_back(Counted(raw_.warnings.size() - shown, "more warning"));
   }
   return warnings;
 }

@@ -147,8 +147,8 @@ class RawReader {
       FURROW_RETURN_IF_ERROR(bytes);
       if (length > bytes->size()) {
         return {StatusCode::kSchema,
-                "states " + std::to_string(length) + " bytes, the buffer has " +
-                    std::to_string(bytes->size()),
+                "states " + Counted(length, "byte") + ", the buffer has " +
+                    Counted(bytes->size(), "byte"),
                 field + ".byteLength"};
       }
       total += bytes->size();

@@ -8,6 +8,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <tiny_gltf.h>
 
+#include "base/text.h"
 #include "gltf/limits.h"
 
 namespace furrow::gltf {
@@ -26,7 +27,7 @@ class NodeCount {
   void WarnIfAny(Document* document, const std::string& what) const {
     if (count_ == 0) return;
     const std::string others =
-        count_ == 1 ? "" : " (and " + std::to_string(count_ - 1) + " other nodes)";
+        count_ == 1 ? "" : " (and " + Counted(count_ - 1, "other node") + ")";
     document->Warn(NodeField(first_, ".matrix"), what + others);
   }
 

@@ -7,39 +7,42 @@
 #include "motion/clip/clip.h"
 
 // Biovision Hierarchy, the text format of body mocap: a tree of OFFSETs and CHANNELS, then one line
-// of numbers a frame. Nobody owns the format; what is read here is what Blender, MotionBuilder, 3ds
-// Max, MakeHuman and the CMU conversions write.
+// of numbers per frame. The format has no standard. The reader accepts the files of Blender,
+// MotionBuilder, 3ds Max, MakeHuman and the CMU conversions.
 namespace furrow::motion {
 
 // Reads a BVH text.
 //
-// - Several ROOTs; keywords in any case; names with blanks; LF, CRLF or CR; tabs; lines of any
-//   length; a UTF-8 byte order mark.
-// - CHANNELS: 0 to 6 a joint, in the joint's own order. Rotations multiply in that order as
-//   R = R1 * R2 * R3 (column vectors), in degrees; the rest pose is OFFSET without rotation.
-//   Position channels: see BvhPositions.
-// - `End Site` becomes the joint's tail. Of several, the first counts.
-// - Rotations are quaternions whose sign follows from frame to frame.
-// - A wrong `Frames:` is a warning: what stands in the file counts. But a last line that is short,
-//   or ends without a newline before the stated number is reached, is a file that was cut: kParse.
-// - Only `scale`, `bvh_positions` of the options are read.
+// - Accepted: several ROOTs, keywords in any case, names with blanks, LF, CRLF or CR, tabs, lines
+// of
+//   any length, a UTF-8 byte order mark. The locale has no effect.
+// - CHANNELS: 0 to 6 per joint, in the joint's own order. Rotations are in degrees and multiply in
+//   that order, R = R1 * R2 * R3 (column vectors). The rest pose is OFFSET without rotation.
+//   BvhPositions explains position channels.
+// - `End Site` becomes the joint's tail. If a joint has several, the first counts.
+// - Consecutive rotations have quaternions of consistent sign.
+// - If `Frames:` differs from the number of lines, the lines count and `report` gets a warning.
+//   A short last line, or a last line without newline before the stated number, is kParse: the file
+//   was cut off.
+// - Only `scale` and `bvh_positions` of the options are used.
 //
-// Errors: kParse, kNonFinite, kLimit, kUnsupported (channels other than the six); `where` is
-// "source_name:line". Nothing is read from the locale.
+// Errors: kParse, kNonFinite, kLimit, kUnsupported (scale channels). `where` is
+// "source_name:line".
 [[nodiscard]] Result<Clip> ParseBvh(std::string_view text, std::string_view source_name,
                                     const LoadOptions& options = {}, ClipReport* report = nullptr);
 
-// The clip as BVH text, rotation channels Z Y X, six decimals.
+// Writes the clip as BVH text with rotation channels Z Y X and six decimals.
 //
-// - BVH's rest pose has no rotations: joints are turned so that theirs vanish, which moves no joint
-//   in model space, in the rest pose or in any frame, and no departure from rest (see
-//   wrinkle::JointDelta).
-// - Position channels stand where a joint's translation leaves its offset, and at roots.
-// - Frames must be evenly spaced; a clip that is not is resampled at its mean rate (a warning).
-// - Constant scales are carried into the offsets;
-//   kUnsupported where a scale changes or is not uniform.
-// - Blend shapes are left out (a warning). kUnsupported without joints, kInvalidArgument without
-//   frames or where a name cannot be written.
+// - BVH's rest pose has no rotations, so each joint's local axes are turned until its rest rotation
+//   vanishes. Joints keep their model-space positions in the rest pose and in every frame, and
+//   deviations from the rest pose (wrinkle::JointDelta) stay the same.
+// - Roots, and joints with translations that differ from their offset, get position channels.
+// - BVH frames are evenly spaced. Other clips are resampled at their mean rate, with a warning.
+// - Constant uniform scales are multiplied into the offsets.
+// - Blend shapes are dropped with a warning.
+//
+// Errors: kUnsupported (no joints; a scale that changes or is not uniform), kInvalidArgument (no
+// frames, or a name that BVH cannot hold).
 [[nodiscard]] Result<std::string> BvhToText(const Clip& clip, ClipReport* report = nullptr);
 
 }  // namespace furrow::motion

@@ -32,7 +32,7 @@ std::optional<BvhChannel> FindChannel(std::string_view name) {
   return std::nullopt;
 }
 
-// Recursive descent without recursion: the open joints are a stack, so depth costs no call stack.
+// Parses nested joints with an explicit stack, so that a deep file cannot exhaust the call stack.
 class HierarchyParser {
  public:
   HierarchyParser(TextCursor* cursor, ClipReport* report) : cursor_(*cursor), report_(report) {}
@@ -78,7 +78,7 @@ class HierarchyParser {
     return EqualsIgnoreCase(token, keyword) ? Status() : Unexpected(token, keyword);
   }
 
-  // Everything up to the end of the line: 3ds Max writes "ROOT Bip01 Pelvis".
+  // A name extends to the end of the line: 3ds Max writes "ROOT Bip01 Pelvis".
   Status OpenJoint() {
     const std::string name(cursor_.RestOfLine());
     if (name.empty()) return cursor_.Error(StatusCode::kParse, "the joint has no name");
@@ -86,7 +86,7 @@ class HierarchyParser {
       return cursor_.Error(StatusCode::kLimit, "the joint's name is longer than 255 bytes");
     }
     if (!names_.insert(name).second) {
-      return cursor_.Error(StatusCode::kParse, "a second joint is named " + Quoted(name),
+      return cursor_.Error(StatusCode::kParse, "several joints are named " + Quoted(name),
                            "rename one of them");
     }
     if (hierarchy_.joints.size() >= static_cast<std::size_t>(wrinkle::kMaxJoints)) {
@@ -136,7 +136,7 @@ class HierarchyParser {
 
   Status ReadChannels() {
     if (open_.back().has_channels) {
-      return cursor_.Error(StatusCode::kParse, "a second CHANNELS in one joint");
+      return cursor_.Error(StatusCode::kParse, "the joint has a second CHANNELS");
     }
     open_.back().has_channels = true;
     const std::string_view token = cursor_.NextToken();
@@ -146,7 +146,7 @@ class HierarchyParser {
       return cursor_.Error(StatusCode::kParse, "a joint has 0 to 6 channels, not " + Quoted(token));
     }
     BvhJointChannels& channels = hierarchy_.channels.back();
-    // CHANNELS after a child would belong to a joint that is not the newest.
+    // `channels` has one entry per joint in order, and a child has already appended its own.
     if (open_.back().joint != static_cast<int>(hierarchy_.joints.size()) - 1) {
       return cursor_.Error(StatusCode::kParse, "CHANNELS must come before the joint's children");
     }
@@ -154,27 +154,27 @@ class HierarchyParser {
       FURROW_RETURN_IF_ERROR(ReadChannel(&channels));
     }
     if (FindChannel(cursor_.PeekToken())) {
-      return cursor_.Error(StatusCode::kParse, "more channels are named than CHANNELS counts");
+      return cursor_.Error(StatusCode::kParse, "there are more channel names than CHANNELS states");
     }
     hierarchy_.num_channels += static_cast<std::size_t>(channels.count);
     return {};
   }
 
-  // One rotation axis may come twice (Z X Z); a position axis may not.
+  // A rotation axis may occur twice (Z X Z), a position axis may not.
   Status ReadChannel(BvhJointChannels* channels) {
     const std::string_view token = cursor_.NextToken();
     const std::optional<BvhChannel> channel = FindChannel(token);
     if (!channel) {
       if (EqualsIgnoreCase(token, "Xscale") || EqualsIgnoreCase(token, "Yscale") ||
           EqualsIgnoreCase(token, "Zscale")) {
-        return cursor_.Error(StatusCode::kUnsupported, "scale channels are not read",
+        return cursor_.Error(StatusCode::kUnsupported, "scale channels are not supported",
                              "export without scale");
       }
-      return Unexpected(token, "a channel's name (Xposition, ..., Zrotation)");
+      return Unexpected(token, "a channel name (Xposition, ..., Zrotation)");
     }
     for (int i = 0; *channel <= BvhChannel::kZPosition && i < channels->count; ++i) {
       if (channels->channels[static_cast<std::size_t>(i)] == *channel) {
-        return cursor_.Error(StatusCode::kParse, "channel " + Quoted(token) + " comes twice");
+        return cursor_.Error(StatusCode::kParse, "channel " + Quoted(token) + " occurs twice");
       }
     }
     channels->channels[static_cast<std::size_t>(channels->count++)] = *channel;
@@ -183,7 +183,7 @@ class HierarchyParser {
 
   Status ReadEndSite() {
     FURROW_RETURN_IF_ERROR(Expect("Site"));
-    cursor_.RestOfLine();  // some exporters name it
+    cursor_.RestOfLine();  // some exporters write a name here
     FURROW_RETURN_IF_ERROR(Expect("{"));
     FURROW_RETURN_IF_ERROR(Expect("OFFSET"));
     glm::vec3 tail(0.0f);

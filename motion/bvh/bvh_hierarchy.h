@@ -9,12 +9,12 @@
 #include "base/text_cursor.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-// The HIERARCHY part of a BVH file; private to motion/'s BVH reader.
+// The HIERARCHY part of a BVH file; private to motion/bvh/.
 namespace furrow::motion {
 
 struct ClipReport;
 
-// What one number of a frame's line does to its joint.
+// What one number of a frame's line means for its joint.
 enum class BvhChannel { kXPosition, kYPosition, kZPosition, kXRotation, kYRotation, kZRotation };
 
 struct BvhJointChannels {
@@ -23,12 +23,13 @@ struct BvhJointChannels {
 };
 
 struct BvhHierarchy {
-  std::vector<wrinkle::JointDesc> joints;  // parents first, depth first, in the file's order
-  std::vector<BvhJointChannels> channels;  // one a joint
-  std::size_t num_channels = 0;            // numbers a frame
+  std::vector<wrinkle::JointDesc> joints;  // in the file's order, which has parents first
+  std::vector<BvhJointChannels> channels;  // one entry per joint
+  std::size_t num_channels = 0;            // numbers per frame
 };
 
-// Reads from the start up to and including the word MOTION. Lengths are left in the file's unit.
+// Reads from the start of the text through the word MOTION. Lengths keep the file's unit. Errors
+// are ParseBvh()'s.
 [[nodiscard]] Result<BvhHierarchy> ParseBvhHierarchy(TextCursor* cursor, ClipReport* report);
 
 }  // namespace furrow::motion

@@ -27,7 +27,7 @@ struct MotionHeader {
   double frame_time = 0.0;  // seconds
 };
 
-// "Frames: 12", "Frames:12", "Frames : 12", "Frame Time: .0083333": the value after the colon.
+// Reads the value in "Frames: 12", "Frames:12", "Frames : 12" or "Frame Time: .0083333".
 Result<double> ReadHeaderNumber(TextCursor* cursor, std::string_view keyword) {
   std::string_view line;
   if (!cursor->NextLine(&line)) {
@@ -51,7 +51,7 @@ Result<double> ReadHeaderNumber(TextCursor* cursor, std::string_view keyword) {
   return ParseNumber(token, cursor->Where());
 }
 
-// A pose file of one frame often states no time; a moving one must.
+// Files with a single pose often state no frame time. Files with motion must.
 constexpr double kDefaultFrameTime = 1.0 / 30.0;
 
 Result<MotionHeader> ReadMotionHeader(TextCursor* cursor, ClipReport* report) {
@@ -70,11 +70,11 @@ Result<MotionHeader> ReadMotionHeader(TextCursor* cursor, ClipReport* report) {
   header.frame_time = *time;
   if (*time <= 0.0) {
     if (*time < 0.0 || header.stated_frames > 1) {
-      return cursor->Error(StatusCode::kParse, "'Frame Time:' must be above 0");
+      return cursor->Error(StatusCode::kParse, "'Frame Time:' must be greater than 0");
     }
     header.frame_time = kDefaultFrameTime;
     if (report != nullptr) {
-      report->warnings.push_back(cursor->Where() + ": the frame time is 0; 1/30 s is taken");
+      report->warnings.push_back(cursor->Where() + ": the frame time is 0; 1/30 s is used");
     }
   }
   return header;
@@ -83,11 +83,11 @@ Result<MotionHeader> ReadMotionHeader(TextCursor* cursor, ClipReport* report) {
 glm::dquat AxisRotation(int axis, double degrees) {
   const double half = degrees * (std::numbers::pi / 360.0);
   glm::dquat rotation(std::cos(half), 0.0, 0.0, 0.0);
-  rotation[axis] = std::sin(half);  // glm 0.9.9's operator[] counts x, y, z, w
+  rotation[axis] = std::sin(half);  // glm 0.9.9's operator[] orders x, y, z, w
   return rotation;
 }
 
-// One joint's numbers of one frame, in the file's unit.
+// One joint's channel values in one frame, in the file's unit.
 Transform MakeLocal(const BvhJointChannels& channels, const double* values, const glm::vec3& offset,
                     BvhPositions positions) {
   glm::dvec3 translation(offset);
@@ -106,7 +106,7 @@ Transform MakeLocal(const BvhJointChannels& channels, const double* values, cons
   return local;
 }
 
-// Reads the frames of MOTION into a clip whose skeleton stands.
+// Reads the frames of MOTION into a clip with a complete skeleton.
 class FrameReader {
  public:
   FrameReader(TextCursor* cursor, const BvhHierarchy& hierarchy, const LoadOptions& options)
@@ -138,14 +138,14 @@ class FrameReader {
     for (std::string_view rest = line;; ++count) {
       const std::string_view token = TakeToken(&rest);
       if (token.empty()) break;
-      if (count >= values_.size()) continue;  // counted for the message alone
+      if (count >= values_.size()) continue;  // still counted, for the message
       if (!TryParseNumber(token, &values_[count])) {
         return ParseNumber(token, cursor_.Where()).status();
       }
     }
     if (count == values_.size()) return {};
     return cursor_.Error(StatusCode::kParse,
-                         "the frame has " + std::to_string(count) + " numbers, the hierarchy " +
+                         "the frame has " + std::to_string(count) + " numbers, the hierarchy has " +
                              std::to_string(values_.size()) + " channels",
                          cursor_.line_was_ended() ? "" : "the file seems to be cut off");
   }
@@ -169,7 +169,8 @@ class FrameReader {
     return {};
   }
 
-  // q and -q are one rotation; the one nearer to the frame before is taken.
+  // q and -q are the same rotation. Takes the one closer to the previous frame, so that later
+  // interpolation follows the shorter arc.
   static void KeepSign(const Clip& clip, std::size_t num_joints, glm::quat* rotation) {
     const std::size_t at = clip.locals.size();
     const float sign =
@@ -212,9 +213,10 @@ Result<wrinkle::Skeleton> MakeSkeleton(const BvhHierarchy& hierarchy, float scal
 Result<Clip> ParseBvh(std::string_view text, std::string_view source_name,
                       const LoadOptions& options, ClipReport* report) {
   TextCursor cursor(text, source_name);
-  if (text.size() > kMaxFileBytes) return cursor.Error(StatusCode::kLimit, "the text is too large");
+  if (text.size() > kMaxFileBytes)
+    return cursor.Error(StatusCode::kLimit, "the file is larger than 512 MiB");
   if (!std::isfinite(options.scale) || options.scale <= 0.0f) {
-    return Status(StatusCode::kInvalidArgument, "the scale must be above 0");
+    return Status(StatusCode::kInvalidArgument, "the scale must be greater than 0");
   }
   const Result<BvhHierarchy> hierarchy = ParseBvhHierarchy(&cursor, report);
   FURROW_RETURN_IF_ERROR(hierarchy);

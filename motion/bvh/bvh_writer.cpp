@@ -34,7 +34,8 @@ double Nearest(double angle, double previous) {
   return angle + 360.0 * std::round((previous - angle) / 360.0);
 }
 
-// Angles of `rotation`, of the equal sets the one nearest to `previous`: curves stay continuous.
+// Euler angles of `rotation`. Of all equivalent sets, takes the one closest to `previous`, so that
+// curves stay continuous.
 Euler ToEuler(const glm::quat& rotation, const Euler& previous) {
   const glm::dmat3 m = glm::mat3_cast(glm::normalize(glm::dquat(rotation)));  // m[column][row]
   const double cos_y = std::hypot(m[0][0], m[0][1]);
@@ -43,7 +44,7 @@ Euler ToEuler(const glm::quat& rotation, const Euler& previous) {
   if (cos_y > 1e-9) {
     a.z = std::atan2(m[0][1], m[0][0]) * kDegrees;
     a.x = std::atan2(m[1][2], m[2][2]) * kDegrees;
-  } else {  // gimbal lock: only x - z (or x + z) is determined; z stays
+  } else {  // gimbal lock: only x - z (or x + z) is determined, so z keeps its value
     a.z = previous.z;
     const double sign = a.y > 0.0 ? 1.0 : -1.0;
     a.x = sign * a.z + std::atan2(sign * m[1][0], sign * m[2][0]) * kDegrees;
@@ -65,10 +66,10 @@ Status CheckName(const std::string& name) {
     good = good && static_cast<unsigned char>(c) >= ' ' && c != '{' && c != '}';
   }
   if (good) return {};
-  return {StatusCode::kInvalidArgument, "BVH cannot hold the joint name '" + name + "'"};
+  return {StatusCode::kInvalidArgument, "BVH cannot express the joint name '" + name + "'"};
 }
 
-// The skeleton and motion with rest rotations and constant scales taken out.
+// Writes the skeleton and the motion after it has removed rest rotations and constant scales.
 class BvhWriter {
  public:
   explicit BvhWriter(const Clip& clip)
@@ -110,7 +111,7 @@ class BvhWriter {
       }
       if (!good) {
         return {StatusCode::kUnsupported,
-                "joint '" + skeleton_.joint_names()[j] + "' is scaled, which BVH cannot say"};
+                "joint '" + skeleton_.joint_names()[j] + "' has a scale that BVH cannot express"};
       }
       scale_[j] =
           rest.x * (Parent(j) == kNoJoint ? 1.0f : scale_[static_cast<std::size_t>(Parent(j))]);
@@ -136,8 +137,8 @@ class BvhWriter {
     }
   }
 
-  // A translation in the parent's frame, in the axes the
-  // parent has after its rest rotation is gone.
+  // Converts a translation in the parent's space to the parent's axes after its rest rotation was
+  // removed.
   [[nodiscard]] glm::vec3 Offset(std::size_t j, const glm::vec3& translation) const {
     if (Parent(j) == kNoJoint) return translation;
     const auto parent = static_cast<std::size_t>(Parent(j));
@@ -178,7 +179,7 @@ class BvhWriter {
     Line(depth + 1, "}");
   }
 
-  // Depth first with a stack of its own: (joint, children already written).
+  // Depth first with an explicit stack of (joint, number of children already written).
   void WriteTree(std::size_t root) {
     std::vector<std::pair<std::size_t, std::size_t>> open = {{root, 0}};
     OpenJoint(root, 0);
@@ -225,9 +226,9 @@ class BvhWriter {
   const Skeleton& skeleton_;
   const std::size_t num_joints_;
   std::vector<std::vector<std::size_t>> children_;
-  std::vector<bool> moves_;  // has position channels
+  std::vector<bool> moves_;  // per joint: has position channels
   std::vector<float> scale_;
-  std::vector<std::size_t> order_;  // joints as the file names them
+  std::vector<std::size_t> order_;  // joints in the order of the file
   std::string text_;
 };
 
@@ -235,16 +236,18 @@ class BvhWriter {
 
 Result<std::string> BvhToText(const Clip& clip, ClipReport* report) {
   if (clip.skeleton.num_joints() == 0) {
-    return Status(StatusCode::kUnsupported, "the clip has no joints, and BVH holds nothing else");
+    return Status(StatusCode::kUnsupported,
+                  "the clip has no joints, and BVH can express nothing else");
   }
   if (clip.num_frames() == 0) return Status(StatusCode::kInvalidArgument, "the clip has no frames");
   if (!clip.blend_shape_names.empty() && report != nullptr) {
     report->warnings.push_back("BVH has no blend shapes: " +
-                               std::to_string(clip.blend_shape_names.size()) + " are left out");
+                               std::to_string(clip.blend_shape_names.size()) + " are dropped");
   }
   if (IsEvenlySpaced(clip)) return BvhWriter(clip).Run();
   if (report != nullptr) {
-    report->warnings.emplace_back("frames are not evenly spaced: resampled at their mean rate");
+    report->warnings.emplace_back(
+        "the frames are not evenly spaced and were resampled at their mean rate");
   }
   const Clip even = Resample(clip, 1.0 / MeanFrameTime(clip));
   return BvhWriter(even).Run();

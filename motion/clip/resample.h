@@ -5,15 +5,15 @@
 
 namespace furrow::motion {
 
-// The clip at evenly spaced times from its first to its last (the last is met within half a step):
-// translations, scales and blend shapes linear between frames, rotations by slerp.
+// Resamples a clip at evenly spaced times from its first frame to its last, which may move by half
+// a step. Translations, scales and blend shapes are interpolated linearly, rotations by slerp.
 //
-// `rate` in Hz, above 0; a clip of fewer than two frames comes back as it is.
+// `rate` is in Hz and greater than 0. A clip of fewer than two frames is returned unchanged.
 [[nodiscard]] Clip Resample(const Clip& clip, double rate);
 
-// True where the clip's frames are evenly spaced to a hundredth of their distance.
+// Whether no frame deviates from even spacing by more than a hundredth of a step.
 [[nodiscard]] bool IsEvenlySpaced(const Clip& clip);
-// Mean distance of the frames in seconds; 0 for fewer than two.
+// The mean time between frames in seconds; 0 for fewer than two frames.
 [[nodiscard]] double MeanFrameTime(const Clip& clip);
 
 }  // namespace furrow::motion

@@ -23,7 +23,7 @@ glm::vec3 Turn(const glm::vec3& v) { return {v.x, v.z, -v.y}; }
 wrinkle::Transform Turn(const wrinkle::Transform& t) {
   wrinkle::Transform turned;
   turned.translation = Turn(t.translation);
-  // The same turn about the turned axis: the vector part of a quaternion turns as a vector.
+  // Same angle about the turned axis: the vector part of a quaternion turns like a vector.
   turned.rotation =
       glm::quat(t.rotation.w, Turn(glm::vec3(t.rotation.x, t.rotation.y, t.rotation.z)));
   turned.scale = {t.scale.x, t.scale.z, t.scale.y};
@@ -56,7 +56,7 @@ Status TurnZUpToYUp(Clip* clip) {
   }
   Result<wrinkle::Skeleton> turned = wrinkle::Skeleton::Create(std::move(joints));
   FURROW_RETURN_IF_ERROR(turned);
-  clip->skeleton = std::move(*turned);  // the same order: parents stood first already
+  clip->skeleton = std::move(*turned);  // keeps the order, which had parents first
   for (wrinkle::Transform& local : clip->locals) local = Turn(local);
   return {};
 }

@@ -5,16 +5,17 @@
 
 namespace furrow::motion {
 
-// Which axis of a recording points up: kAuto's answer is looked for in its rest pose.
+// Infers from the rest pose which axis points up.
 //
-// A joint whose name contains "head" (any case) stands above the root: if it does so along Z rather
-// than Y, up is Z. Without such a joint, Y. MakeHuman and 3ds Max write Z-up BVH, most others Y-up.
+// Up is Z if the first joint with "head" in its name (any case) is further from the root along Z
+// than along Y. Otherwise, and without such a joint, up is Y. MakeHuman and 3ds Max write Z-up BVH
+// files, most other tools Y-up ones.
 [[nodiscard]] UpAxis FindUpAxis(const wrinkle::Skeleton& skeleton);
 
-// Turns a Z-up clip (facing -Y) to Y up, facing +Z, which all of Furrow means by model space: every
-// translation and every local frame turns, so rest rotations that were none stay none.
+// Turns a Z-up clip that faces -Y to Furrow's model space: Y up, facing +Z. Every joint's
+// translation and local axes turn, so joints without a rest rotation still have none.
 //
-// Errors: Skeleton::Create()'s, which a valid clip does not meet.
+// Errors: Skeleton::Create()'s, which a valid clip never causes.
 [[nodiscard]] Status TurnZUpToYUp(Clip* clip);
 
 }  // namespace furrow::motion

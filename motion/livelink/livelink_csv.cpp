@@ -13,6 +13,7 @@
 #include "base/ascii.h"
 #include "base/numbers.h"
 #include "base/status.h"
+#include "base/text.h"
 #include "base/text_cursor.h"
 #include "motion/clip/limits.h"
 #include "motion/clip/resample.h"
@@ -21,7 +22,7 @@ namespace furrow::motion {
 namespace {
 
 constexpr int kRates[] = {24, 25, 30, 48, 50, 60, 100, 120, 240};
-constexpr double kDefaultRate = 60.0;  // the app's own
+constexpr double kDefaultRate = 60.0;  // the app's default
 constexpr double kSecondsADay = 86400.0;
 
 struct Timecode {
@@ -39,7 +40,7 @@ std::size_t CountCells(std::string_view line) {
   return static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) + 1;
 }
 
-// The first `most` cells: a line of commas alone must not become a list of millions.
+// Splits off the first `most` cells, so that a line of commas cannot become a list of millions.
 std::vector<std::string_view> SplitCells(std::string_view line, std::size_t most) {
   std::vector<std::string_view> cells;
   while (cells.size() < most) {
@@ -84,11 +85,11 @@ class TakeReader {
       FURROW_RETURN_IF_ERROR(ReadRow(line));
     }
     if (clip_.times.empty()) {
-      return cursor_.Error(StatusCode::kParse, "there is no row with a face");
+      return cursor_.Error(StatusCode::kParse, "no row has a face");
     }
     FURROW_RETURN_IF_ERROR(SetTimes());
-    Warn(rows_without_face_, "rows without a face are left out");
-    Warn(rows_repeated_, "rows that repeat a timecode are left out");
+    WarnSkipped(rows_without_face_, "without a face");
+    WarnSkipped(rows_repeated_, "with a repeated timecode");
     return std::move(clip_);
   }
 
@@ -105,13 +106,13 @@ class TakeReader {
     std::unordered_set<std::string> seen;
     for (const std::string_view cell : SplitCells(line, kMaxBlendShapes)) {
       if (!cell.empty() && !seen.insert(std::string(cell)).second) {
-        return cursor_.Error(StatusCode::kParse, "column '" + std::string(cell) + "' comes twice");
+        return cursor_.Error(StatusCode::kParse, "column '" + std::string(cell) + "' occurs twice");
       }
       if (EqualsIgnoreCase(cell, "Timecode")) {
         columns_.push_back(kTimecode);
       } else if (EqualsIgnoreCase(cell, "BlendShapeCount")) {
         columns_.push_back(kCount);
-      } else if (cell.empty()) {  // a comma at the end of every line
+      } else if (cell.empty()) {  // some files end every line with a comma
         columns_.push_back(kIgnored);
       } else {
         columns_.push_back(static_cast<int>(clip_.blend_shape_names.size()));
@@ -120,10 +121,10 @@ class TakeReader {
     }
     if (std::count(columns_.begin(), columns_.end(), kTimecode) != 1) {
       return cursor_.Error(StatusCode::kParse, "the header has no column Timecode",
-                           "the first line of a Live Link Face take names its columns");
+                           "the first line of a Live Link Face recording must name its columns");
     }
     if (clip_.blend_shape_names.empty()) {
-      return cursor_.Error(StatusCode::kParse, "the header names no blend shape");
+      return cursor_.Error(StatusCode::kParse, "the header has no blend shape");
     }
     return {};
   }
@@ -137,7 +138,7 @@ class TakeReader {
     }
     if (const std::size_t count = CountCells(line); count != columns_.size()) {
       return cursor_.Error(StatusCode::kParse,
-                           "the row has " + std::to_string(count) + " cells, the header " +
+                           "the row has " + std::to_string(count) + " cells, the header has " +
                                std::to_string(columns_.size()),
                            cursor_.line_was_ended() ? "" : "the file seems to be cut off");
     }
@@ -168,7 +169,7 @@ class TakeReader {
     return std::min(static_cast<std::size_t>(found - columns_.begin()), num_cells - 1);
   }
 
-  // The app writes "timecode,0" and then nothing, or empty cells, while it sees nobody.
+  // While the app sees no face, it writes "timecode,0" and then nothing, or empty cells.
   [[nodiscard]] bool HasNoFace(const std::vector<std::string_view>& cells) const {
     for (std::size_t i = 0; i < std::min(cells.size(), columns_.size()); ++i) {
       double count = 1.0;
@@ -187,14 +188,14 @@ class TakeReader {
     }
     if (!second_ended && highest < kDefaultRate) {
       if (report_ != nullptr && timecodes_.size() > 1) {
-        report_->warnings.push_back(cursor_.Where() + ": the take is too short to tell the " +
-                                    "timecode's rate; 60 a second is taken");
+        report_->warnings.push_back(cursor_.Where() + ": the recording is too short to infer " +
+                                    "the timecode's rate; 60 frames per second are assumed");
       }
       return kDefaultRate;
     }
     const auto above = std::find_if(std::begin(kRates), std::end(kRates),
                                     [&](int rate) { return rate > highest; });
-    return *above;  // ParseTimecode() admits nothing beyond the last
+    return *above;  // ParseTimecode() rejects frames above the last rate
   }
 
   Status SetTimes() {
@@ -212,7 +213,7 @@ class TakeReader {
       }
       if (i > 0 && time <= previous) {
         if (time < previous - 1.0) {
-          return Status(StatusCode::kParse, "the timecode runs backwards", WhereOf(lines_[i]));
+          return Status(StatusCode::kParse, "the timecode goes backwards", WhereOf(lines_[i]));
         }
         ++rows_repeated_;
         continue;
@@ -233,11 +234,11 @@ class TakeReader {
     return here.substr(0, here.rfind(':') + 1) + std::to_string(line);
   }
 
-  void Warn(std::size_t count, std::string_view what) {
+  void WarnSkipped(std::size_t count, std::string_view which) {
     if (count == 0 || report_ == nullptr) return;
     const std::string here = cursor_.Where();
-    report_->warnings.push_back(here.substr(0, here.rfind(':')) + ": " + std::to_string(count) +
-                                " " + std::string(what));
+    report_->warnings.push_back(here.substr(0, here.rfind(':')) + ": skipped " +
+                                Counted(count, "row") + " " + std::string(which));
   }
 
   TextCursor cursor_;
@@ -251,7 +252,7 @@ class TakeReader {
   std::size_t rows_repeated_ = 0;
 };
 
-// The smallest usual rate whose frames are no longer than the clip's.
+// The smallest common rate with frames that are no longer than the clip's.
 int WritingRate(const Clip& clip) {
   const double step = MeanFrameTime(clip);
   if (step <= 0.0) return static_cast<int>(kDefaultRate);
@@ -283,19 +284,21 @@ Result<Clip> ParseLiveLinkCsv(std::string_view text, std::string_view source_nam
 Result<std::string> LiveLinkCsvToText(const Clip& clip, ClipReport* report) {
   const std::size_t num_shapes = clip.blend_shape_names.size();
   if (num_shapes == 0) {
-    return Status(StatusCode::kUnsupported,
-                  "the clip has no blend shapes, and a Live Link Face take holds nothing else");
+    return Status(
+        StatusCode::kUnsupported,
+        "the clip has no blend shapes, and a Live Link Face CSV can express nothing else");
   }
   if (clip.num_frames() == 0) return Status(StatusCode::kInvalidArgument, "the clip has no frames");
-  // The last second is kept free: a time may round up to midnight.
-  if (clip.duration() >= kSecondsADay - 1.0) return Status(StatusCode::kLimit, "longer than a day");
+  // The last second stays unused because a time may round up to midnight.
+  if (clip.duration() >= kSecondsADay - 1.0)
+    return Status(StatusCode::kLimit, "the clip is longer than a day");
   if (clip.skeleton.num_joints() > 0 && report != nullptr) {
-    report->warnings.emplace_back("a Live Link Face take has no joints: they are left out");
+    report->warnings.emplace_back("a Live Link Face CSV has no joints: they are dropped");
   }
   std::string text = "Timecode,BlendShapeCount";
   for (const std::string& name : clip.blend_shape_names) {
     if (name.empty() || name.find_first_of(",\r\n") != std::string::npos) {
-      return Status(StatusCode::kInvalidArgument, "CSV cannot hold the name '" + name + "'");
+      return Status(StatusCode::kInvalidArgument, "CSV cannot express the name '" + name + "'");
     }
     text += "," + name;
   }

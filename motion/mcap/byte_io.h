@@ -13,7 +13,7 @@
 
 namespace furrow::motion::mcap {
 
-// Appends MCAP's little-endian values to a record under way.
+// Appends MCAP's little-endian values to a record.
 class ByteWriter {
  public:
   template <std::unsigned_integral T>
@@ -26,7 +26,7 @@ class ByteWriter {
     bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
     return *this;
   }
-  // Length in 32 bits, then the bytes.
+  // Appends the length as 32 bits and then the bytes.
   ByteWriter& PutText(std::string_view text) {
     Put(static_cast<std::uint32_t>(text.size()));
     bytes_.insert(bytes_.end(), text.begin(), text.end());
@@ -38,7 +38,7 @@ class ByteWriter {
     Put(static_cast<std::uint32_t>(entries.bytes_.size()));
     return PutBytes(entries.bytes_);
   }
-  // A whole record: opcode, length, content.
+  // Appends a whole record: opcode, length, content.
   ByteWriter& PutRecord(Opcode opcode, const ByteWriter& content) {
     Put(static_cast<std::uint8_t>(opcode)).Put(static_cast<std::uint64_t>(content.size()));
     return PutBytes(content.bytes_);
@@ -52,21 +52,21 @@ class ByteWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-// Reads them back from bytes that may be hostile: past the end every value is zero or empty, and
-// ok() says so from then on.
+// Reads the same values from bytes that may be hostile. Past the end, every value is zero or empty
+// and ok() stays false.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
   template <std::unsigned_integral T>
   [[nodiscard]] T Get() {
-    const auto taken = Take(sizeof(T));
+    const auto taken = GetBytes(sizeof(T));
     T value = 0;
     for (std::size_t i = 0; i < taken.size(); ++i)
       value = static_cast<T>(value | static_cast<T>(T{taken[i]} << (8 * i)));
     return value;
   }
-  [[nodiscard]] std::span<const std::uint8_t> Take(std::uint64_t size) {
+  [[nodiscard]] std::span<const std::uint8_t> GetBytes(std::uint64_t size) {
     if (size > bytes_.size() - at_) {
       ok_ = false;
       at_ = bytes_.size();
@@ -77,11 +77,11 @@ class ByteReader {
     return taken;
   }
   [[nodiscard]] std::string GetText() {
-    const auto taken = Take(Get<std::uint32_t>());
+    const auto taken = GetBytes(Get<std::uint32_t>());
     return {taken.begin(), taken.end()};
   }
   [[nodiscard]] std::map<std::string, std::string> GetMap() {
-    ByteReader entries(Take(Get<std::uint32_t>()));
+    ByteReader entries(GetBytes(Get<std::uint32_t>()));
     std::map<std::string, std::string> map;
     while (entries.ok() && !entries.at_end()) {
       std::string key = entries.GetText();

@@ -17,24 +17,24 @@ Status Damaged(std::string_view method) {
   return {StatusCode::kParse, "a chunk's " + std::string(method) + " data is damaged"};
 }
 
-// What is unpacked. It grows with what comes, whatever size is stated: a small file with a large
-// number in it costs little.
+// The decompressed bytes. The buffer grows with the data instead of the stated size, so that a
+// small file with a large number in it costs little.
 class Output {
  public:
   explicit Output(std::uint64_t size) : size_(size) {}
 
-  // Where the next bytes go; empty once `size` of them are there.
+  // The space for the next bytes; empty once `size` bytes are there.
   [[nodiscard]] std::span<std::uint8_t> Room() {
     if (written_ == bytes_.size()) {
       const std::uint64_t size = std::min(size_, std::max(kFirst, 2 * bytes_.size()));
-      bytes_.reserve(size);  // not a byte more
+      bytes_.reserve(size);  // the exact size: no doubling at the end
       bytes_.resize(size);
     }
     return std::span(bytes_).subspan(written_);
   }
   void Wrote(std::size_t count) { written_ += count; }
   [[nodiscard]] bool full() const { return written_ == size_; }
-  [[nodiscard]] std::vector<std::uint8_t> Take() { return std::move(bytes_); }
+  [[nodiscard]] std::vector<std::uint8_t> Release() { return std::move(bytes_); }
 
  private:
   static constexpr std::uint64_t kFirst = 64u << 10;
@@ -47,7 +47,7 @@ Result<std::vector<std::uint8_t>> DecompressZstd(std::span<const std::uint8_t> b
                                                  std::uint64_t size) {
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(),
                                                                      &ZSTD_freeDCtx);
-  if (context == nullptr) return Status(StatusCode::kInternal, "no memory for zstd");
+  if (context == nullptr) return Status(StatusCode::kInternal, "out of memory for zstd");
   Output out(size);
   ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
   std::size_t hint = 0;  // 0: a frame has ended
@@ -61,14 +61,14 @@ Result<std::vector<std::uint8_t>> DecompressZstd(std::span<const std::uint8_t> b
     out.Wrote(to.pos);
   }
   if (!out.full()) return Damaged("zstd");
-  return out.Take();
+  return out.Release();
 }
 
 Result<std::vector<std::uint8_t>> DecompressLz4(std::span<const std::uint8_t> bytes,
                                                 std::uint64_t size) {
   LZ4F_dctx* raw = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION)) != 0)
-    return Status(StatusCode::kInternal, "no memory for lz4");
+    return Status(StatusCode::kInternal, "out of memory for lz4");
   const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> context(
       raw, &LZ4F_freeDecompressionContext);
   Output out(size);
@@ -83,7 +83,7 @@ Result<std::vector<std::uint8_t>> DecompressLz4(std::span<const std::uint8_t> by
     bytes = bytes.subspan(taken);
   }
   if (!out.full()) return Damaged("lz4");
-  return out.Take();
+  return out.Release();
 }
 
 }  // namespace
@@ -102,15 +102,16 @@ Result<std::vector<std::uint8_t>> Decompress(std::string_view method,
   if (method == "zstd") return DecompressZstd(bytes, size);
   if (method == "lz4") return DecompressLz4(bytes, size);
   if (!method.empty()) {
-    return Status(StatusCode::kUnsupported,
-                  "a chunk is compressed by '" + std::string(method) + "'; known are zstd and lz4");
+    return Status(StatusCode::kUnsupported, "a chunk has the unknown compression '" +
+                                                std::string(method) +
+                                                "', supported are zstd and lz4");
   }
   if (bytes.size() != size) return Damaged("uncompressed");
   return std::vector<std::uint8_t>(bytes.begin(), bytes.end());
 }
 
 std::uint32_t Crc32(std::span<const std::uint8_t> bytes, std::uint32_t crc) {
-  constexpr std::size_t kMost = 1u << 30;  // zlib counts in 32 bits
+  constexpr std::size_t kMost = 1u << 30;  // zlib takes 32-bit lengths
   while (!bytes.empty()) {
     const std::size_t size = std::min(bytes.size(), kMost);
     crc = static_cast<std::uint32_t>(::crc32(crc, bytes.data(), static_cast<uInt>(size)));

@@ -10,18 +10,20 @@
 
 namespace furrow::motion::mcap {
 
-// The bytes as one zstd frame. `level` in [1, 19].
+// Compresses bytes to one zstd frame. `level` is in [1, 19].
 [[nodiscard]] std::vector<std::uint8_t> CompressZstd(std::span<const std::uint8_t> bytes,
                                                      int level);
 
-// `method`: "" (a copy), "zstd" or "lz4" (frames). Errors: kUnsupported (another method), kParse
-// (not such a frame, or not exactly `size` bytes in it). Allocates as it unpacks, never much more
-// than there really is, and never more than `size` for what it returns.
+// Decompresses bytes. `method` is "" (a copy), "zstd" or "lz4" (frames). `size` is the stated size
+// of the result; memory grows with the actual data, so a false size costs little.
+//
+// Errors: kUnsupported (another method), kParse (damaged data, or not exactly `size` bytes),
+// kInternal (out of memory).
 [[nodiscard]] Result<std::vector<std::uint8_t>> Decompress(std::string_view method,
                                                            std::span<const std::uint8_t> bytes,
                                                            std::uint64_t size);
 
-// CRC-32 (zlib's) of `bytes`, going on from `crc` of what came before (0 at the start).
+// CRC-32 (as in zlib) of `bytes`. Pass the result for the preceding bytes as `crc` to continue.
 [[nodiscard]] std::uint32_t Crc32(std::span<const std::uint8_t> bytes, std::uint32_t crc = 0);
 
 }  // namespace furrow::motion::mcap

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <memory>
 #include <utility>
 
 #include <fcntl.h>
@@ -17,9 +18,33 @@ namespace furrow::motion::mcap {
 namespace {
 
 constexpr std::uint64_t kFooterBytes = kRecordHeaderBytes + 20;
-constexpr std::uint64_t kChunkHeadBytes = 64;  // all before a chunk's data, but for its name
-constexpr std::uint64_t kAttachmentHeadBytes = 64u << 10;  // names of an attachment fit
-constexpr std::uint64_t kEntryBytes = 128;  // what a record or an entry of its map costs unfilled
+constexpr std::uint64_t kChunkHeadBytes =
+    64;  // the fields before a chunk's data, without the name of its compression
+constexpr std::uint64_t kAttachmentHeadBytes = 64u << 10;  // enough for the names of an attachment
+constexpr std::uint64_t kEntryBytes = 128;  // estimated overhead of a record or of a map entry
+
+using Bytes = std::vector<std::uint8_t>;
+
+bool ParseMessage(ByteReader content, Message* message) {
+  message->channel_id = content.Get<std::uint16_t>();
+  message->sequence = content.Get<std::uint32_t>();
+  message->log_time = content.Get<std::uint64_t>();
+  message->publish_time = content.Get<std::uint64_t>();
+  message->data = content.GetBytes(content.left());
+  return content.ok();
+}
+
+// Calls `use(opcode, content)` for every record. False if the lengths of the records are wrong.
+template <class Use>
+bool ForEachRecord(std::span<const std::uint8_t> bytes, const Use& use) {
+  ByteReader records(bytes);
+  while (records.ok() && !records.at_end()) {
+    const auto opcode = static_cast<Opcode>(records.Get<std::uint8_t>());
+    ByteReader content(records.GetBytes(records.Get<std::uint64_t>()));
+    if (!records.ok() || !use(opcode, content)) return false;
+  }
+  return records.ok();
+}
 
 }  // namespace
 
@@ -86,8 +111,8 @@ Result<std::vector<std::uint8_t>> Reader::ReadAt(std::uint64_t offset, std::uint
     return Status(StatusCode::kParse, "the file ends too early", path_.string());
   if (size > limits_.record_bytes)
     return Status(StatusCode::kLimit,
-                  "a record of " + std::to_string(size) + " bytes; at most " +
-                      std::to_string(limits_.record_bytes) + " are read",
+                  "a record has " + std::to_string(size) + " bytes, the limit is " +
+                      std::to_string(limits_.record_bytes),
                   path_.string());
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
   std::size_t done = 0;
@@ -119,7 +144,7 @@ std::optional<Reader::Record> Reader::RecordAt(std::uint64_t offset) const {
 void Reader::Warn(std::uint64_t offset, std::string_view what) {
   constexpr std::size_t kMost = 32;
   std::string text = path_.string() + ": byte " + std::to_string(offset) + ": " + std::string(what);
-  // Whoever reads a damaged file twice hears of the damage once.
+  // A second pass over a damaged file must not repeat its warnings.
   if (warnings_.size() < kMost && std::ranges::find(warnings_, text) == warnings_.end())
     warnings_.push_back(std::move(text));
 }
@@ -134,14 +159,14 @@ bool Reader::ReadSummary() {
   if (footer.Get<std::uint8_t>() != static_cast<std::uint8_t>(Opcode::kFooter)) return false;
   if (footer.Get<std::uint64_t>() != kFooterBytes - kRecordHeaderBytes) return false;
   const auto start = footer.Get<std::uint64_t>();
-  (void)footer.Get<std::uint64_t>();  // where the summary's groups are listed: not needed
+  (void)footer.Get<std::uint64_t>();  // start of the summary offsets, which are not needed
   const auto crc = footer.Get<std::uint32_t>();
   if (start < sizeof kMagic || start > footer_at) return false;
   const auto summary = ReadAt(start, footer_at - start);
   if (!summary.ok()) return false;
   const std::span<const std::uint8_t> covered(tail->data(), kFooterBytes - sizeof crc);
   if (crc != 0 && Crc32(covered, Crc32(*summary)) != crc) {
-    Warn(start, "the summary is damaged; the file was read from its start instead");
+    Warn(start, "the summary is damaged; the whole file was scanned instead");
     return false;
   }
   return ReadSummaryRecords(*summary);
@@ -153,7 +178,7 @@ bool Reader::ReadSummaryRecords(std::span<const std::uint8_t> summary) {
   std::uint64_t num_messages = 0;
   while (records.ok() && !records.at_end()) {
     const auto opcode = static_cast<Opcode>(records.Get<std::uint8_t>());
-    ByteReader content(records.Take(records.Get<std::uint64_t>()));
+    ByteReader content(records.GetBytes(records.Get<std::uint64_t>()));
     if (!records.ok()) return false;
     if (opcode == Opcode::kStatistics) {
       has_statistics = true;
@@ -162,7 +187,7 @@ bool Reader::ReadSummaryRecords(std::span<const std::uint8_t> summary) {
       return false;
     }
   }
-  // Messages outside chunks are in no index; without statistics nobody can know.
+  // No index lists messages outside chunks. Only the statistics reveal that there are none.
   return records.ok() && has_statistics && (num_messages == 0 || !chunks_.empty()) &&
          ExtentsAreApart();
 }
@@ -185,7 +210,7 @@ bool Reader::AddExtent(std::uint64_t offset, std::uint64_t length) {
   return true;
 }
 
-// Otherwise a small file could have one record read as often as its summary says.
+// Otherwise a small file could make the reader read one record millions of times.
 bool Reader::ExtentsAreApart() {
   std::vector<Extent> extents = std::exchange(extents_, {});
   std::ranges::sort(extents, {}, &Extent::offset);
@@ -201,7 +226,7 @@ bool Reader::AddSchema(ByteReader content) {
   schema.id = content.Get<std::uint16_t>();
   schema.name = content.GetText();
   schema.encoding = content.GetText();
-  const auto data = content.Take(content.Get<std::uint32_t>());
+  const auto data = content.GetBytes(content.Get<std::uint32_t>());
   schema.data.assign(data.begin(), data.end());
   if (!content.ok() || schema.id == 0) return false;
   if (schemas_.contains(schema.id)) return true;
@@ -242,7 +267,7 @@ bool Reader::AddChunkIndex(ByteReader content) {
   info.end_time = content.Get<std::uint64_t>();
   info.offset = content.Get<std::uint64_t>();
   info.length = content.Get<std::uint64_t>();
-  (void)content.Take(content.Get<std::uint32_t>());  // offsets of the message indexes
+  (void)content.GetBytes(content.Get<std::uint32_t>());  // offsets of the message indexes
   (void)content.Get<std::uint64_t>();                // their length
   info.compression = content.GetText();
   info.compressed_bytes = content.Get<std::uint64_t>();
@@ -289,7 +314,7 @@ Status Reader::Scan() {
   while (!ended && offset < file_bytes_) {
     const auto record = RecordAt(offset);
     if (!record) {
-      Warn(offset, "the file ends within a record: its writer died or its disk was full");
+      Warn(offset, "the file ends within a record; its writer died or its disk was full");
       return {};
     }
     ended = record->opcode == Opcode::kDataEnd || record->opcode == Opcode::kFooter;
@@ -299,7 +324,7 @@ Status Reader::Scan() {
     offset += kRecordHeaderBytes + record->length;
   }
   Warn(offset, ended ? "the index after the data is cut off or damaged; all data was read"
-                     : "the file ends without an index: its writer died");
+                     : "the file has no index; its writer died");
   return {};
 }
 
@@ -311,7 +336,7 @@ Status Reader::ScanRecord(const Record& record) {
     const auto bytes = ReadAt(record.offset + kRecordHeaderBytes, std::min(record.length, head));
     FURROW_RETURN_IF_ERROR(bytes);
     if (record.opcode == Opcode::kAttachment) {
-      if (!AddAttachment(*bytes, record)) Warn(record.offset, "a damaged attachment is left out");
+      if (!AddAttachment(*bytes, record)) Warn(record.offset, "a damaged attachment is skipped");
       return {};
     }
     return AddScannedChunk(ByteReader(*bytes), record);
@@ -327,26 +352,26 @@ Status Reader::ScanRecord(const Record& record) {
   if (record.opcode == Opcode::kChannel) good = AddChannel(ByteReader(*bytes));
   if (record.opcode == Opcode::kMetadata) good = AddMetadata(ByteReader(*bytes));
   if (loose) good = AddLooseMessage(ByteReader(*bytes), record);
-  if (!good) Warn(record.offset, "a record is left out: it is damaged, or one too many");
+  if (!good) Warn(record.offset, "a record is skipped: it is damaged or exceeds a limit");
   return {};
 }
 
-// A chunk met while scanning counts when it can be unpacked, which also declares its channels.
+// A scanned chunk counts if it can be decompressed, which also adds its channels.
 Status Reader::AddScannedChunk(ByteReader head, const Record& record) {
   ChunkInfo info;
   info.start_time = head.Get<std::uint64_t>();
   info.end_time = head.Get<std::uint64_t>();
   info.uncompressed_bytes = head.Get<std::uint64_t>();
-  (void)head.Get<std::uint32_t>();  // LoadChunk() looks at the checksum
+  (void)head.Get<std::uint32_t>();  // the checksum, which LoadChunk() verifies
   info.compression = head.GetText();
   info.offset = record.offset;
   info.length = record.length + kRecordHeaderBytes;
   const auto records = LoadChunk(info);
   if (records.status().code() == StatusCode::kIo) return records.status();
   if (!records.ok()) {
-    Warn(record.offset, "a chunk is left out: " + records.status().what());
+    Warn(record.offset, "a chunk is skipped: " + records.status().what());
   } else if (chunks_.size() >= limits_.records || info.start_time > info.end_time) {
-    Warn(record.offset, "a chunk is left out: its times are wrong, or it is one too many");
+    Warn(record.offset, "a chunk is skipped: its times are wrong or there are too many chunks");
   } else {
     chunks_.push_back(std::move(info));
   }
@@ -388,6 +413,165 @@ bool Reader::AddAttachment(std::span<const std::uint8_t> head, const Record& rec
     return false;
   attachments_.push_back(std::move(info));
   return true;
+}
+
+// The messages of a loaded chunk that ForEach() has not passed on yet, in order of time.
+class Reader::Run {
+ public:
+  Run(std::uint64_t offset, Bytes records) : offset_(offset), records_(std::move(records)) {}
+
+  [[nodiscard]] const Bytes& records() const { return records_; }
+  [[nodiscard]] std::uint64_t held_bytes() const {
+    return records_.capacity() + messages_.capacity() * sizeof(Message);
+  }
+  // `message` must refer to records().
+  void Add(const Message& message) { messages_.push_back(message); }
+  void Sort() { std::ranges::stable_sort(messages_, {}, &Message::log_time); }
+
+  [[nodiscard]] bool at_end() const { return next_ == messages_.size(); }
+  [[nodiscard]] const Message& front() const { return messages_[next_]; }
+  void Pop() { ++next_; }
+  // Orders by the time of the next message, then by the position in the file.
+  [[nodiscard]] bool IsLaterThan(const Run& other) const {
+    if (front().log_time != other.front().log_time)
+      return front().log_time > other.front().log_time;
+    return offset_ > other.offset_;
+  }
+
+ private:
+  std::uint64_t offset_;
+  Bytes records_;
+  std::vector<Message> messages_;
+  std::size_t next_ = 0;
+};
+
+Result<Bytes> Reader::LoadChunk(const ChunkInfo& info) {
+  if (info.compression == kLooseMessages) return ReadAt(info.offset, info.length);
+  const auto record = ReadAt(info.offset, info.length);
+  FURROW_RETURN_IF_ERROR(record);
+  ByteReader content(*record);
+  if (content.Get<std::uint8_t>() != static_cast<std::uint8_t>(Opcode::kChunk))
+    return Status(StatusCode::kParse, "the index does not refer to a chunk");
+  (void)content.Get<std::uint64_t>();  // length
+  (void)content.Get<std::uint64_t>();  // start and
+  (void)content.Get<std::uint64_t>();  // end time
+  const auto size = content.Get<std::uint64_t>();
+  if (size != info.uncompressed_bytes)
+    return Status(StatusCode::kParse, "the index states a different size");
+  const auto crc = content.Get<std::uint32_t>();
+  const std::string compression = content.GetText();
+  const auto packed = content.GetBytes(content.Get<std::uint64_t>());
+  if (!content.ok()) return Status(StatusCode::kParse, "its lengths are wrong");
+  if (size > limits_.record_bytes)
+    return Status(StatusCode::kLimit,
+                  "its decompressed size of " + std::to_string(size) + " bytes exceeds the limit");
+  auto records = Decompress(compression, packed, size);
+  if (!records.ok()) return records;
+  if (crc != 0 && Crc32(*records) != crc)
+    return Status(StatusCode::kParse, "its checksum is wrong");
+  FURROW_RETURN_IF_ERROR(AddDeclarations(*records));
+  return records;
+}
+
+Status Reader::AddDeclarations(std::span<const std::uint8_t> records) {
+  bool declared = true;
+  const bool whole = ForEachRecord(records, [&](Opcode opcode, const ByteReader& content) {
+    if (opcode == Opcode::kSchema) declared = AddSchema(content);
+    if (opcode == Opcode::kChannel) declared = AddChannel(content);
+    return declared;
+  });
+  if (!declared)
+    return {StatusCode::kParse, "one of its schemas or channels is damaged or exceeds a limit"};
+  if (!whole) return {StatusCode::kParse, "the lengths of its records are wrong"};
+  return {};
+}
+
+Result<std::unique_ptr<Reader::Run>> Reader::LoadRun(const ChunkInfo& info, const Range& range,
+                                                     std::uint64_t held) {
+  const Status too_much(StatusCode::kLimit, "too many chunks overlap in time", path_.string());
+  if (held > limits_.loaded_bytes || info.uncompressed_bytes > limits_.loaded_bytes - held)
+    return too_much;
+  auto records = LoadChunk(info);
+  if (records.status().code() == StatusCode::kIo) return records.status();
+  if (!records.ok()) {
+    Warn(info.offset, "a chunk is skipped: " + records.status().what());
+    return std::unique_ptr<Run>();
+  }
+  auto run = std::make_unique<Run>(info.offset, std::move(*records));
+  bool fits = true;
+  const bool whole = ForEachRecord(run->records(), [&](Opcode opcode, const ByteReader& content) {
+    Message message;
+    if (opcode != Opcode::kMessage) return true;
+    if (!ParseMessage(content, &message)) return false;
+    if (message.log_time < range.from || message.log_time > range.to) return true;
+    run->Add(message);
+    fits = run->held_bytes() <= limits_.loaded_bytes - held;
+    return fits;
+  });
+  if (!fits) return too_much;
+  if (!whole)
+    Warn(info.offset, "messages of a chunk are skipped: the lengths of its records are wrong");
+  run->Sort();
+  return run;
+}
+
+Status Reader::ForEach(const Range& range, const std::function<bool(const Message&)>& visit) {
+  std::vector<const ChunkInfo*> chunks;
+  for (const ChunkInfo& chunk : chunks_)
+    if (chunk.end_time >= range.from && chunk.start_time <= range.to) chunks.push_back(&chunk);
+  std::ranges::stable_sort(chunks, {}, &ChunkInfo::start_time);
+
+  const auto later = [](const std::unique_ptr<Run>& a, const std::unique_ptr<Run>& b) {
+    return a->IsLaterThan(*b);
+  };
+  std::vector<std::unique_ptr<Run>> runs;  // a heap with the earliest next message at the front
+  std::uint64_t held = 0;
+  std::size_t next = 0;
+  while (next < chunks.size() || !runs.empty()) {
+    // Load a chunk before passing on a message that may be later than one of the chunk's.
+    if (next < chunks.size() &&
+        (runs.empty() || chunks[next]->start_time <= runs.front()->front().log_time)) {
+      auto run = LoadRun(*chunks[next++], range, held);
+      FURROW_RETURN_IF_ERROR(run);
+      if (*run == nullptr || (*run)->at_end()) continue;
+      held += (*run)->held_bytes();
+      runs.push_back(*std::move(run));
+      std::ranges::push_heap(runs, later);
+      continue;
+    }
+    std::ranges::pop_heap(runs, later);
+    Run& first = *runs.back();
+    if (!visit(first.front())) return {};
+    first.Pop();
+    if (first.at_end()) {
+      held -= first.held_bytes();
+      runs.pop_back();
+    } else {
+      std::ranges::push_heap(runs, later);
+    }
+  }
+  return {};
+}
+
+Result<Bytes> Reader::ReadAttachment(const AttachmentInfo& info) const {
+  auto record = ReadAt(info.offset, info.length);
+  if (!record.ok()) return record;
+  ByteReader content(*record);
+  const bool right = content.Get<std::uint8_t>() == static_cast<std::uint8_t>(Opcode::kAttachment);
+  (void)content.Get<std::uint64_t>();  // length
+  (void)content.Get<std::uint64_t>();  // log and
+  (void)content.Get<std::uint64_t>();  // create time
+  (void)content.GetText();
+  (void)content.GetText();
+  const auto data = content.GetBytes(content.Get<std::uint64_t>());
+  const auto crc = content.Get<std::uint32_t>();
+  const std::string where = path_.string() + ": attachment '" + info.name + "'";
+  if (!right || !content.ok()) return Status(StatusCode::kParse, "its lengths are wrong", where);
+  const auto covered =
+      std::span(*record).subspan(kRecordHeaderBytes, record->size() - kRecordHeaderBytes - 4);
+  if (crc != 0 && Crc32(covered) != crc)
+    return Status(StatusCode::kParse, "its checksum is wrong", where);
+  return Bytes(data.begin(), data.end());
 }
 
 }  // namespace furrow::motion::mcap

@@ -17,24 +17,24 @@
 
 namespace furrow::motion::mcap {
 
-// ChunkInfo::compression of a run of messages that no chunk holds.
+// ChunkInfo::compression of a run of messages outside chunks.
 inline constexpr const char* kLooseMessages = "-";
 
-// What a file may make a reader allocate.
+// Limits on what a file can make a reader allocate.
 struct ReaderLimits {
-  std::uint64_t record_bytes = 256u << 20;  // of one record, and of one chunk unpacked
-  std::uint64_t loaded_bytes = 1u << 30;    // of chunks that overlap in time, together
-  std::uint64_t kept_bytes = 32u << 20;     // of schemas, channels and metadata, together
-  std::size_t records = 1u << 20;           // chunks and attachments: each
+  std::uint64_t record_bytes = 256u << 20;  // of one record, and of one decompressed chunk
+  std::uint64_t loaded_bytes = 1u << 30;    // of all chunks that overlap in time
+  std::uint64_t kept_bytes = 32u << 20;     // of all schemas, channels and metadata
+  std::size_t records = 1u << 20;           // of chunks, and of attachments
 };
 
-// Reads an MCAP file of any writer. Everything in it is hostile until checked.
+// Reads MCAP files of any writer. Treats every file as hostile.
 //
-// - A file without a summary (its writer died) or with a damaged one (one that names bytes of the
-//   file twice is) is scanned from the start: every whole chunk counts, and warnings() says what
-//   was lost.
-// - Checksums are verified where the writer stated them; a damaged chunk is left out with a
-//   warning, and so are records beyond ReaderLimits::kept_bytes and ::records.
+// - A file without a summary (its writer died), or with a damaged one, is scanned from the start.
+//   Every complete chunk counts, and warnings() reports what was lost. A summary that refers to the
+//   same bytes twice counts as damaged.
+// - Checksums are verified if the writer stated them. Damaged chunks, and records beyond
+//   ReaderLimits::kept_bytes and ::records, are skipped with a warning.
 class Reader {
  public:
   // Errors: kNotFound, kIo, kParse (not an MCAP file), kLimit.
@@ -51,21 +51,22 @@ class Reader {
   [[nodiscard]] const std::vector<ChunkInfo>& chunks() const { return chunks_; }
   [[nodiscard]] const std::vector<AttachmentInfo>& attachments() const { return attachments_; }
   [[nodiscard]] const std::vector<Metadata>& metadata() const { return metadata_; }
-  // False where the file ends without its summary.
+  // False if the file has no intact summary.
   [[nodiscard]] bool complete() const { return complete_; }
   [[nodiscard]] std::uint64_t file_bytes() const { return file_bytes_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
   struct Range {
-    std::uint64_t from = 0;  // log time, both included
+    std::uint64_t from = 0;  // log times, inclusive
     std::uint64_t to = std::numeric_limits<std::uint64_t>::max();
   };
-  // Shows every message of the range in the order of log times (of the file where they are equal)
-  // until `visit` returns false. Errors: kIo, kLimit (too much overlaps in time).
+  // Calls `visit` for every message of the range until it returns false. Messages come in order of
+  // log time; messages with equal times come in order of the file. Errors: kIo, kLimit (chunks that
+  // overlap in time exceed ReaderLimits::loaded_bytes).
   [[nodiscard]] Status ForEach(const Range& range,
                                const std::function<bool(const Message&)>& visit);
 
-  // Errors: kIo, kParse (its checksum), kLimit.
+  // The data of an attachment. Errors: kIo, kParse (wrong checksum), kLimit.
   [[nodiscard]] Result<std::vector<std::uint8_t>> ReadAttachment(const AttachmentInfo& info) const;
 
  private:
@@ -74,7 +75,7 @@ class Reader {
     std::uint64_t offset = 0;  // of the record
     std::uint64_t length = 0;  // of its content
   };
-  // Bytes of the file that the summary names.
+  // A range of the file that the summary refers to.
   struct Extent {
     std::uint64_t offset = 0;
     std::uint64_t length = 0;
@@ -85,7 +86,8 @@ class Reader {
   [[nodiscard]] bool ReadSummary();
   [[nodiscard]] bool ReadSummaryRecords(std::span<const std::uint8_t> summary);
   [[nodiscard]] bool AddSummaryRecord(Opcode opcode, ByteReader content);
-  // Notes bytes that the summary names; false where they are outside of the file or no record.
+  // Records a range that the summary refers to. False if it is outside the file or too short for a
+  // record.
   [[nodiscard]] bool AddExtent(std::uint64_t offset, std::uint64_t length);
   [[nodiscard]] bool ExtentsAreApart();
   [[nodiscard]] Status Scan();
@@ -94,7 +96,7 @@ class Reader {
 
   [[nodiscard]] Result<std::vector<std::uint8_t>> ReadAt(std::uint64_t offset,
                                                          std::uint64_t size) const;
-  // The record at `offset`; none where the file ends before its end.
+  // The record at `offset`; none if the file ends before the record does.
   [[nodiscard]] std::optional<Record> RecordAt(std::uint64_t offset) const;
   [[nodiscard]] bool AddSchema(ByteReader content);
   [[nodiscard]] bool AddChannel(ByteReader content);
@@ -105,13 +107,13 @@ class Reader {
   [[nodiscard]] bool AddAttachment(std::span<const std::uint8_t> head, const Record& record);
   [[nodiscard]] Status AddScannedChunk(ByteReader head, const Record& record);
   [[nodiscard]] bool AddLooseMessage(ByteReader content, const Record& record);
-  // Counts towards ReaderLimits::kept_bytes; false where that is used up.
+  // Counts bytes towards ReaderLimits::kept_bytes. False if they exceed it.
   [[nodiscard]] bool Keep(std::uint64_t bytes);
-  // Unpacked records of a chunk. Schemas and channels in it are added.
+  // The decompressed records of a chunk. Adds the chunk's schemas and channels.
   [[nodiscard]] Result<std::vector<std::uint8_t>> LoadChunk(const ChunkInfo& info);
   [[nodiscard]] Status AddDeclarations(std::span<const std::uint8_t> records);
-  // The messages of a chunk that lie in `range`, which with `held` bytes stay under loaded_bytes;
-  // null where the chunk is left out. Errors: kIo, kLimit.
+  // The messages of a chunk in `range`; null if the chunk is skipped. `held` is the number of bytes
+  // that other loaded chunks occupy. Errors: kIo, kLimit (loaded_bytes).
   [[nodiscard]] Result<std::unique_ptr<Run>> LoadRun(const ChunkInfo& info, const Range& range,
                                                      std::uint64_t held);
   void Warn(std::uint64_t offset, std::string_view what);

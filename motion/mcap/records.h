@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-// The records of an MCAP file (mcap.dev/spec, version 0), as far as a program meets them. Times are
-// nanoseconds since the Unix epoch.
+// The records of an MCAP file (mcap.dev/spec, version 0) that programs use. Times are nanoseconds
+// since the Unix epoch.
 namespace furrow::motion::mcap {
 
 struct Schema {
@@ -26,16 +26,17 @@ struct Channel {
   std::map<std::string, std::string> metadata;
 };
 
-// A message in a reader's or a caller's memory; `data` lasts as long as the call that shows it.
+// A message. `data` refers to the memory of the reader or caller and is valid during the call that
+// passes it.
 struct Message {
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;
   std::uint64_t log_time = 0;      // when it was recorded
-  std::uint64_t publish_time = 0;  // when it was made
+  std::uint64_t publish_time = 0;  // when it was created
   std::span<const std::uint8_t> data;
 };
 
-// A file within the file.
+// A file inside the MCAP file.
 struct AttachmentInfo {
   std::string name;
   std::string media_type;

@@ -36,13 +36,14 @@ ByteWriter ToIndexRecord(const AttachmentInfo& info) {
   return record;
 }
 
-// The summary section: records grouped by kind, where each group lies, the footer and the magic.
+// Builds the summary section: records grouped by kind, the offset of each group, the footer and the
+// magic bytes.
 class SummaryBuilder {
  public:
-  // `start`: where the section begins in the file.
+  // `start` is the section's offset in the file.
   explicit SummaryBuilder(std::uint64_t start) : start_(start) {}
 
-  // Records of one kind are to be added one after the other.
+  // Add all records of one kind before those of the next.
   void Add(Opcode opcode, const ByteWriter& content) {
     if (groups_.empty() || groups_.back().opcode != opcode)
       groups_.push_back({opcode, out_.size(), 0});
@@ -83,7 +84,7 @@ Result<std::unique_ptr<Writer>> Writer::Create(const std::filesystem::path& path
   if (file < 0) {
     const int error = errno;
     return Status(StatusCode::kIo, std::strerror(error), path.string(),
-                  error == EEXIST ? "a recording never overwrites a file: move it away" : "");
+                  error == EEXIST ? "a recording never overwrites a file; move the file away" : "");
   }
   std::unique_ptr<Writer> writer(new Writer(file, path, options));
   Status status = writer->Append(kMagic);
@@ -127,7 +128,7 @@ Status Writer::Append(std::span<const std::uint8_t> bytes) {
       const int error = written == 0 ? ENOSPC : errno;
       failure_ = {StatusCode::kIo, std::strerror(error), path_.string(),
                   "what was written before stays readable"};
-      // Nothing more can be done where even this fails: readers stop at the torn record.
+      // If even this fails, readers stop at the torn record.
       if (::ftruncate(file_, static_cast<off_t>(offset_)) == 0)
         ::lseek(file_, static_cast<off_t>(offset_), SEEK_SET);
       return failure_;
@@ -156,7 +157,7 @@ Status Writer::Write(const Message& message) {
   if (!failure_.ok()) return failure_;
   if (message.channel_id == 0 || message.channel_id > channels_.size())
     return {StatusCode::kInvalidArgument,
-            "there is no channel " + std::to_string(message.channel_id)};
+            "channel " + std::to_string(message.channel_id) + " does not exist"};
   DeclareInChunk(channels_[message.channel_id - 1u]);
   const std::uint64_t place = chunk_.size();
   chunk_.Put(static_cast<std::uint8_t>(Opcode::kMessage));
@@ -200,7 +201,7 @@ Status Writer::FlushChunk() {
   return status;
 }
 
-// What the chunk under way adds to the statistics, once it is in the file.
+// Adds the current chunk to the statistics, after it was written to the file.
 void Writer::CountChunk() {
   for (ChannelIndex& channel : index_) channel.count += channel.entries.size();
   const bool first = written_messages_ == 0;
@@ -218,8 +219,8 @@ void Writer::BeginChunk() {
   declared_schemas_.clear();
 }
 
-// Writes the message indexes of the chunk that was just written; returns its chunk index record,
-// which names those that are in the file.
+// Writes the message indexes of the chunk that was just written. Returns the chunk index record,
+// which lists those that reached the file.
 ByteWriter Writer::IndexChunk(const ChunkInfo& chunk) {
   const std::uint64_t begin = offset_;
   ByteWriter offsets;
@@ -229,7 +230,7 @@ ByteWriter Writer::IndexChunk(const ChunkInfo& chunk) {
     ByteWriter record;
     record.Put(id).Put(static_cast<std::uint32_t>(entries.size())).PutBytes(entries.bytes());
     const std::uint64_t offset = offset_;
-    if (!AppendRecord(Opcode::kMessageIndex, record).ok()) break;  // failure_ remembers
+    if (!AppendRecord(Opcode::kMessageIndex, record).ok()) break;  // failure_ has the reason
     offsets.Put(id).Put(offset);
   }
   ByteWriter out;
@@ -266,7 +267,7 @@ Status Writer::Close() {
   if (closed_) return failure_;
   closed_ = true;
   Status before = failure_.ok() ? FlushChunk() : failure_;
-  // After a failure the file was cut back to a whole record: its summary may still fit.
+  // A failure cut the file back to a whole record, so the summary may still fit.
   failure_ = {};
   Status status = WriteSummary();
   if (status.ok() && ::fsync(file_) != 0)

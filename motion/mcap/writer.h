@@ -22,42 +22,43 @@ struct WriterOptions {
   int zstd_level = 3;                    // [1, 19]
 };
 
-// Writes an MCAP file as it goes: chunked, zstd, indexed, with every checksum of the format.
+// Writes an MCAP file incrementally: chunked, compressed with zstd, indexed, with every checksum of
+// the format.
 //
-// - The file grows in place, a whole record at a time: whatever happens, everything up to the last
-//   chunk that was ended is readable. Every chunk states the schemas and channels it uses.
-// - A write that fails (a full disk) cuts the file back to its last whole record and is reported
-//   once; everything after it returns the same error, and Close() leaves a readable file.
-// - Messages should come in the order of their log times; readers cope when they do not.
+// - The file grows by whole records. After a crash, everything up to the last finished chunk is
+//   readable, because every chunk declares the schemas and channels that it uses.
+// - If a write fails (a full disk), the file is cut back to its last whole record. All later calls
+//   return the same error, and Close() still leaves a readable file.
+// - Messages should come in order of log time. Readers also accept other orders.
 class Writer {
  public:
-  // Errors: kIo (the path; a file that is there already is not overwritten).
+  // Errors: kIo (also if the file exists: a recording never overwrites a file).
   [[nodiscard]] static Result<std::unique_ptr<Writer>> Create(const std::filesystem::path& path,
                                                               const WriterOptions& options = {});
-  ~Writer();  // closes the file as it is; Close() completes it
+  ~Writer();  // closes the file without a summary, unlike Close()
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  // Ids count from 1.
+  // Both return the new id. Ids count from 1.
   [[nodiscard]] std::uint16_t AddSchema(std::string_view name, std::string_view encoding,
                                         std::span<const std::uint8_t> data);
   [[nodiscard]] std::uint16_t AddChannel(std::string_view topic, std::string_view message_encoding,
                                          std::uint16_t schema_id,
                                          const std::map<std::string, std::string>& metadata = {});
 
-  // `message.channel_id` is one that AddChannel() gave.
+  // `message.channel_id` is an id that AddChannel() returned.
   [[nodiscard]] Status Write(const Message& message);
-  // Ends the chunk under way and hands it to the operating system.
+  // Finishes the current chunk and passes it to the operating system.
   [[nodiscard]] Status FlushChunk();
   [[nodiscard]] Status Attach(std::string_view name, std::string_view media_type,
                               std::uint64_t time, std::span<const std::uint8_t> data);
   [[nodiscard]] Status WriteMetadata(const Metadata& metadata);
-  // The last chunk, the summary and the footer.
+  // Writes the last chunk, the summary and the footer, and flushes the file to disk.
   [[nodiscard]] Status Close();
 
-  // In the file, without the chunk under way.
+  // Bytes in the file, without the current chunk.
   [[nodiscard]] std::uint64_t bytes_written() const { return offset_; }
-  // That Write() took; those of a chunk whose writing failed are not in the file.
+  // Messages that Write() accepted. The messages of a chunk that failed are not in the file.
   [[nodiscard]] std::uint64_t num_messages() const { return num_messages_; }
 
  private:
@@ -68,7 +69,7 @@ class Writer {
   };
   struct ChannelIndex {
     std::vector<std::pair<std::uint64_t, std::uint64_t>> entries;  // log time, offset in the chunk
-    std::uint64_t count = 0;                                       // in chunks that are written
+    std::uint64_t count = 0;                                       // in written chunks
   };
 
   Writer(int file, std::filesystem::path path, const WriterOptions& options);
@@ -85,7 +86,7 @@ class Writer {
   std::filesystem::path path_;
   WriterOptions options_;
   std::uint64_t offset_ = 0;
-  std::uint32_t crc_ = 0;  // of the whole file up to here
+  std::uint32_t crc_ = 0;  // of the file so far
   Status failure_;
   bool closed_ = false;
 
@@ -95,10 +96,10 @@ class Writer {
   ByteWriter chunk_;
   ChunkInfo chunk_info_;
   std::uint64_t chunk_messages_ = 0;
-  std::set<std::uint16_t> declared_;  // channels of the chunk under way
+  std::set<std::uint16_t> declared_;  // channels of the current chunk
   std::set<std::uint16_t> declared_schemas_;
-  std::uint64_t num_messages_ = 0;      // given to Write()
-  std::uint64_t written_messages_ = 0;  // in chunks that are written, as are the times
+  std::uint64_t num_messages_ = 0;      // accepted by Write()
+  std::uint64_t written_messages_ = 0;  // in written chunks, like the times below
   std::uint64_t start_time_ = 0;
   std::uint64_t end_time_ = 0;
   std::vector<ByteWriter> chunk_index_;

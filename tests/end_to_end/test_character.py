@@ -125,7 +125,7 @@ class CharacterTest(unittest.TestCase):
                 "count": 1 << 30, "indices": {"bufferView": 0, "componentType": 5125},
                 "values": {"bufferView": 0}}
 
-        for change, words in ((longer_buffer, "json"), (view_past_the_end, "bufferViews[3].byteLength"),
+        for change, words in ((longer_buffer, "buffers[0].byteLength"), (view_past_the_end, "bufferViews[3].byteLength"),
                               (huge_count, "POSITION"), (wide_stride, "POSITION"), (sparse, "POSITION")):
             with self.subTest(change.__name__):
                 self.refused(self.changed(change), words)

@@ -139,7 +139,7 @@ class RecordTest(FolderTest):
         result = subprocess.run([BIN / "furrowd", "--no-render", "--tcp", "0", "--udp", "0", "--record",
                                  self.root / "file" / "takes"], capture_output=True, timeout=GUARD)
         self.assertEqual(result.returncode, 1)
-        self.assertIn("the folder cannot be made", result.stderr.decode())
+        self.assertIn("cannot create the folder", result.stderr.decode())
 
 
 class ListeningTest(FolderTest):

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Characters in glTF: in an accepted file all indices are valid and all numbers finite.
+// Characters in glTF: in every accepted file, all indices are in range and skin weights sum to 1.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Animations in glTF, GLB and VRMA: an accepted file is a valid clip.
+// glTF, GLB and VRMA: every accepted file gives a clip of valid transforms and finite values.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -16,7 +16,7 @@
 #include "tests/temporary_folder.h"
 #include "wrinkle/skeleton/pose.h"
 
-// What several of motion's tests need.
+// Helpers for the tests of motion/.
 namespace furrow::motion {
 
 inline std::vector<glm::mat4> ModelMatrices(const Clip& clip, int frame) {
@@ -32,7 +32,7 @@ inline glm::vec3 ModelPosition(const Clip& clip, int frame, std::string_view joi
   return glm::vec3(ModelMatrices(clip, frame).at(static_cast<std::size_t>(index))[3]);
 }
 
-// The largest distance of any joint between two clips, matched by name, over all frames of `a`.
+// The largest distance between joints of the same name in two clips, over all frames of `a`.
 inline float WorstDistance(const Clip& a, const Clip& b) {
   float worst = 0.0f;
   for (int frame = 0; frame < a.num_frames(); ++frame) {

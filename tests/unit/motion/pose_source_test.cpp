@@ -31,7 +31,7 @@ class PoseSourceTest : public ::testing::Test {
   std::filesystem::path path_ = folder_.path() / "a.bvh";
 };
 
-TEST_F(PoseSourceTest, GivesOneFrame) {
+TEST_F(PoseSourceTest, ReturnsOneFrame) {
   Write(Bvh(180));
   const Result<wrinkle::PoseFrame> frame = CachedPoseSource()(path_, 1);
   ASSERT_TRUE(frame.ok()) << frame.status().ToString();
@@ -39,7 +39,7 @@ TEST_F(PoseSourceTest, GivesOneFrame) {
   EXPECT_NEAR(std::abs(frame->pose.joints[0].rotation.x), 1.0f, 1e-6f);
 }
 
-TEST_F(PoseSourceTest, SaysHowManyFramesThereAre) {
+TEST_F(PoseSourceTest, ReportsTheNumberOfFrames) {
   Write(Bvh(0));
   for (const int frame : {-1, 2}) {
     const Result<wrinkle::PoseFrame> result = CachedPoseSource()(path_, frame);
@@ -54,8 +54,8 @@ TEST_F(PoseSourceTest, SaysHowManyFramesThereAre) {
             StatusCode::kUnsupported);
 }
 
-// A file that is rewritten with the same size and time cannot be told from an unchanged one: that
-// the old pose still comes shows that the second call did not read.
+// The test rewrites the file with the same size and time, which the source cannot detect. The old
+// pose proves that the second call did not read the file.
 TEST_F(PoseSourceTest, KeepsTheRecordingUntilTheFileChanges) {
   Write(Bvh(100));
   const auto time = std::filesystem::last_write_time(path_);

@@ -37,7 +37,7 @@ class TakeFolderTest : public TakeTest {
   }
 };
 
-TEST_F(TakeFolderTest, FilesAreNamedByTheirBeginningAndNeverOverwritten) {
+TEST_F(TakeFolderTest, NamesFilesByStartTimeAndNeverOverwrites) {
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(OpenFolder(0, 0)->Close().ok());
   const auto takes = Takes();
   ASSERT_EQ(takes.size(), 3u);
@@ -45,7 +45,7 @@ TEST_F(TakeFolderTest, FilesAreNamedByTheirBeginningAndNeverOverwritten) {
   EXPECT_EQ(takes[2].filename(), "take-19700101T010000Z_3.mcap");
 }
 
-TEST_F(TakeFolderTest, DeclarationsLargerThanAFileDoNotMakeAFileOfEveryMessage) {
+TEST_F(TakeFolderTest, DeclarationsBeyondTheSizeLimitDoNotRotateOnEveryMessage) {
   const auto folder = OpenFolder(/*rotate_bytes=*/40'000, 0);
   for (int i = 0; i < 400; ++i) {
     const std::string name = "subject with a long name, number " + std::to_string(i);
@@ -57,7 +57,7 @@ TEST_F(TakeFolderTest, DeclarationsLargerThanAFileDoNotMakeAFileOfEveryMessage) 
   EXPECT_TRUE(folder->Close().ok());
 }
 
-TEST_F(TakeFolderTest, EveryFileBeginsWithTheSubjectsThatAreThere) {
+TEST_F(TakeFolderTest, EveryFileBeginsWithTheCurrentSubjects) {
   const auto folder = OpenFolder(0, 100'000'000);
   const auto offer = Payload(Offer("ada"));
   ASSERT_TRUE(folder->Write(TakeKind::kSkeleton, "ada", Stamp(0), offer).ok());
@@ -85,12 +85,12 @@ TEST_F(TakeFolderTest, EveryFileBeginsWithTheSubjectsThatAreThere) {
     const auto summary = Summarise(**take);
     ASSERT_TRUE(summary.ok());
     poses += summary->subjects.at("ada").poses;
-    EXPECT_EQ(summary->subjects.contains("bob"), poses == 10) << "in the first file alone";
+    EXPECT_EQ(summary->subjects.contains("bob"), poses == 10) << "only in the first file";
   }
   EXPECT_EQ(poses, 30u);
 }
 
-TEST_F(TakeFolderTest, SizeEndsAFileToo) {
+TEST_F(TakeFolderTest, RotatesBySize) {
   const auto folder = OpenFolder(/*rotate_bytes=*/3000, 0);
   for (std::uint32_t i = 0; i < 200; ++i) {
     ASSERT_TRUE(WritePose(*folder, i).ok());
@@ -100,7 +100,7 @@ TEST_F(TakeFolderTest, SizeEndsAFileToo) {
   EXPECT_GT(folder->num_files(), 3);
 }
 
-TEST_F(TakeFolderTest, AFullDiskEndsItOnceAndLeavesWhatWasWritten) {
+TEST_F(TakeFolderTest, AFullDiskLeavesAReadableFile) {
   const auto folder = OpenFolder(0, 0);
   ASSERT_TRUE(folder->Write(TakeKind::kSkeleton, "ada", Stamp(0), Payload(Offer("ada"))).ok());
   ASSERT_TRUE(WritePose(*folder, 0).ok());
@@ -117,7 +117,7 @@ TEST_F(TakeFolderTest, AFullDiskEndsItOnceAndLeavesWhatWasWritten) {
     if (status.ok()) status = folder->Flush();
   }
   EXPECT_EQ(status.code(), StatusCode::kIo);
-  EXPECT_EQ(WritePose(*folder, 100).code(), StatusCode::kIo) << "and it stays so";
+  EXPECT_EQ(WritePose(*folder, 100).code(), StatusCode::kIo) << "the error persists";
   EXPECT_FALSE(folder->Close().ok());
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);

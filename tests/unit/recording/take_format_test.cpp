@@ -8,7 +8,7 @@
 namespace furrow::recording {
 namespace {
 
-TEST(TakeFormat, TopicsGoThereAndBackWhateverTheSubject) {
+TEST(TakeFormat, TopicsRoundTripForAnySubject) {
   for (const char* subject : {"ada", "stage/left", "pose", "raw", "Ünï 7"}) {
     for (int i = 0; i < static_cast<int>(TakeKind::kDatagram); ++i) {
       const auto kind = static_cast<TakeKind>(i);
@@ -26,18 +26,18 @@ TEST(TakeFormat, TopicsGoThereAndBackWhateverTheSubject) {
   EXPECT_EQ(subject, "");
 }
 
-TEST(TakeFormat, OtherTopicsAreNotOurs) {
+TEST(TakeFormat, RejectsForeignTopics) {
   TakeKind kind = TakeKind::kPose;
   std::string subject;
   for (const char* topic : {"", "/", "pose", "/pose", "//pose", "ada/pose", "/ada/", "/ada/image"})
     EXPECT_FALSE(ParseTopic(topic, &kind, &subject)) << topic;
 }
 
-TEST(TakeFormat, EveryMessageHasItsBinarySchema) {
+TEST(TakeFormat, EveryKindHasItsBinarySchema) {
   for (int i = 0; i < static_cast<int>(TakeKind::kDatagram); ++i) {
     const auto schema = BinarySchema(static_cast<TakeKind>(i));
     ASSERT_GT(schema.size(), 8u);
-    // FlatBuffers' own identifier of binary schemas.
+    // The file identifier of FlatBuffers' binary schemas.
     EXPECT_EQ(std::string(schema.begin() + 4, schema.begin() + 8), "BFBS");
     const std::string text(schema.begin(), schema.end());
     EXPECT_NE(text.find(SchemaName(static_cast<TakeKind>(i))), std::string::npos);
@@ -45,11 +45,11 @@ TEST(TakeFormat, EveryMessageHasItsBinarySchema) {
   EXPECT_TRUE(BinarySchema(TakeKind::kDatagram).empty());
 }
 
-TEST(TakeFormat, CaptureTimesOfAnyEpochSurvive) {
+TEST(TakeFormat, CaptureTimesOfAnyEpochRoundTrip) {
   for (const std::int64_t time : {std::int64_t{0}, std::int64_t{1'763'690'000'000'000},
                                   std::int64_t{-5}, std::int64_t{9'000'000'000'000'000}})
     EXPECT_EQ(FromPublishTime(ToPublishTime(time)), time);
-  // Beyond 292 years from the epoch they are held there, not wrapped.
+  // Times more than 292 years from the epoch are clamped instead of wrapped.
   constexpr std::int64_t kFar = std::int64_t{1} << 62;
   EXPECT_GT(FromPublishTime(ToPublishTime(kFar)), 9'000'000'000'000'000);
   EXPECT_LT(FromPublishTime(ToPublishTime(-kFar)), -9'000'000'000'000'000);

@@ -12,7 +12,7 @@ namespace {
 
 class TakePosesTest : public TakeTest {};
 
-TEST_F(TakePosesTest, PosesComeBackNumberForNumberAtTheirTimes) {
+TEST_F(TakePosesTest, ReturnsPosesAndTimesUnchanged) {
   const auto writer = Create("take.mcap");
   WriteSubject(*writer, "ada", 5);
   ASSERT_TRUE(writer->Close().ok());
@@ -31,7 +31,7 @@ TEST_F(TakePosesTest, PosesComeBackNumberForNumberAtTheirTimes) {
   }
 }
 
-TEST_F(TakePosesTest, ASenderThatBeganAgainGoesOnByTheTimeOfArrival) {
+TEST_F(TakePosesTest, ARestartedSenderContinuesByArrivalTime) {
   const auto writer = Create("take.mcap");
   WriteSubject(*writer, "ada", 2);
   TakeStamp stamp = Stamp(0, /*session=*/6);
@@ -45,7 +45,7 @@ TEST_F(TakePosesTest, ASenderThatBeganAgainGoesOnByTheTimeOfArrival) {
   EXPECT_NEAR(poses->times()[2], 0.51, 1e-12);
 }
 
-TEST_F(TakePosesTest, WhatIsNotAPoseOfTheSkeletonIsLeftOutAndTold) {
+TEST_F(TakePosesTest, SkipsForeignAndUnreadablePosesWithAWarning) {
   const auto writer = Create("take.mcap");
   WriteSubject(*writer, "ada", 2);
   auto broken = Payload(Pose(0.5f));
@@ -70,7 +70,7 @@ TEST_F(TakePosesTest, ASubjectWhosePosesAreAllUnreadableIsNotCalledAbsent) {
   for (const char* subject : {"", "ada"}) {
     const auto poses = TakePoses::Load(*Open("take.mcap"), subject, nullptr);
     EXPECT_EQ(poses.status().code(), StatusCode::kNotFound);
-    EXPECT_EQ(poses.status().what(), "none of its poses can be read");
+    EXPECT_EQ(poses.status().what(), "none of its poses is readable");
   }
 }
 
@@ -89,7 +89,7 @@ TEST_F(TakePosesTest, OneOfSeveralSubjectsMustBeNamed) {
   EXPECT_EQ(bob->size(), 3u);
 }
 
-TEST_F(TakePosesTest, ASessionKeepsWhenEachSubjectCame) {
+TEST_F(TakePosesTest, KeepsTheStartOfEachSubject) {
   const auto writer = Create("take.mcap");
   WriteSubject(*writer, "zoe", 2);
   TakeStamp late = Stamp(0, /*session=*/8);
@@ -110,7 +110,7 @@ TEST_F(TakePosesTest, ASessionKeepsWhenEachSubjectCame) {
   EXPECT_EQ(one->front().start(), 0.0);
 }
 
-TEST_F(TakePosesTest, AClockThatLeapsCountsByArrival) {
+TEST_F(TakePosesTest, UsesArrivalTimesWhenTheClockLeaps) {
   constexpr std::int64_t kHour = 3'600'000'000;
   const std::int64_t clocks[] = {0, kHour, std::numeric_limits<std::int64_t>::min(),
                                  std::numeric_limits<std::int64_t>::max(), kHour};
@@ -128,7 +128,7 @@ TEST_F(TakePosesTest, AClockThatLeapsCountsByArrival) {
   for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(poses->times()[i], 0.02 * double(i), 1e-9);
 }
 
-TEST_F(TakePosesTest, AClipHoldsPosesPartialOnesToo) {
+TEST_F(TakePosesTest, ConvertsCompleteAndPartialPosesToAClip) {
   const auto writer = Create("take.mcap");
   WriteSubject(*writer, "ada", 2);
   auto partial = Pose(0.0f);
@@ -148,7 +148,7 @@ TEST_F(TakePosesTest, AClipHoldsPosesPartialOnesToo) {
   const auto knee = [&](std::size_t frame) { return clip->locals[2 * frame + 1].translation.y; };
   EXPECT_EQ(knee(0), 1.0f);
   EXPECT_EQ(knee(1), 1.5f) << "lifted by 1 unit";
-  EXPECT_EQ(knee(2), 1.5f) << "what a partial pose leaves out stays";
+  EXPECT_EQ(knee(2), 1.5f) << "a partial pose keeps the other values";
   EXPECT_EQ(clip->blend_shapes[2], 0.75f);
 }
 
@@ -163,7 +163,7 @@ TEST_F(TakePosesTest, PathsMayNameASubject) {
   const std::string odd = (folder_ / "odd.mcap#1.mcap").string();
   std::ofstream(odd) << "x";
   SplitTakePath(odd, &file, &subject);
-  EXPECT_EQ(file, odd) << "a file that is really called so";
+  EXPECT_EQ(file, odd) << "a file with the whole name exists";
 }
 
 }  // namespace

@@ -11,9 +11,9 @@ class TakeSummaryTest : public TakeTest {};
 TEST_F(TakeSummaryTest, CountsRatesAndGaps) {
   const auto writer = Create("take.mcap");
   WriteSubject(*writer, "ada", 3);
-  for (const std::uint32_t i : {6u, 7u})  // 3, 4 and 5 were lost
+  for (const std::uint32_t i : {6u, 7u})  // 3, 4 and 5 are missing
     ASSERT_TRUE(writer->Write(TakeKind::kPose, "ada", Stamp(i), Payload(Pose(0.0f))).ok());
-  // Another sender, whose numbers and clock begin anew: no gap.
+  // Another run of the sender restarts its numbers and its clock. That is not a gap.
   ASSERT_TRUE(writer->Write(TakeKind::kPose, "ada", Stamp(100, 6), Payload(Pose(0.0f))).ok());
   const DatagramSender sender{};
   ASSERT_TRUE(writer->WriteDatagram(sender, Stamp(200).log_time_ns, Payload(Pose(0.0f))).ok());
@@ -34,7 +34,7 @@ TEST_F(TakeSummaryTest, CountsRatesAndGaps) {
   EXPECT_NEAR(ada.rate(), 4 / 0.07, 1e-6) << "four steps in 70 ms";
 }
 
-TEST_F(TakeSummaryTest, SkeletonsThatDifferAreAttachedAndCounted) {
+TEST_F(TakeSummaryTest, AttachesAndCountsDifferentSkeletons) {
   const auto writer = Create("take.mcap");
   for (const float length : {2.0f, 2.0f, 3.0f})
     ASSERT_TRUE(

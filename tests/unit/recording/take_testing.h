@@ -17,7 +17,7 @@
 
 namespace furrow::recording {
 
-// A folder of its own, and messages as a daemon would record them: two joints, one blend shape.
+// Provides a temporary folder and messages as a daemon records them: two joints, one blend shape.
 class TakeTest : public testing::Test {
  protected:
   template <class Message>
@@ -47,12 +47,13 @@ class TakeTest : public testing::Test {
     pose.blend_shapes = {jaw};
     return pose;
   }
-  // The i-th of a stream at 100 Hz whose clock began at 7 s, an hour into 1970.
+  // The stamp of message i in a stream at 100 Hz. Its clock starts at 7 s, one hour after the
+  // epoch.
   static TakeStamp Stamp(std::uint32_t i, std::uint64_t session = 5) {
     return {session, i, 7'000'000 + 10'000 * std::int64_t{i},
             3'600'000'000'000 + 10'000'000 * std::uint64_t{i}};
   }
-  // Skeleton and `count` poses of a subject, the jaw opening by a hundredth each.
+  // Writes a subject's skeleton and `count` poses. Each opens the jaw by another hundredth.
   void WriteSubject(TakeWriter& take, const std::string& subject, int count) {
     ASSERT_TRUE(take.Write(TakeKind::kSkeleton, subject, Stamp(0), Payload(Offer(subject))).ok());
     for (int i = 0; i < count; ++i) {

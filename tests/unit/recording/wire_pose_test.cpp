@@ -23,7 +23,7 @@ motion::Clip TwoJoints() {
   return clip;
 }
 
-TEST(WirePoseTest, OfferAndPosesSurviveTheWire) {
+TEST(WirePoseTest, OfferAndPosesRoundTripOverTheWire) {
   const motion::Clip clip = TwoJoints();
   protocol::Encoder encoder;
   std::vector<std::uint8_t> bytes;
@@ -53,7 +53,7 @@ TEST(WirePoseTest, OfferAndPosesSurviveTheWire) {
   EXPECT_EQ(decoded.blend_shapes, std::vector<float>{0.5f});
 }
 
-TEST(WirePoseTest, ReusedPoseForgetsTheLastFrame) {
+TEST(WirePoseTest, AReusedPoseDropsTheLastFrame) {
   const motion::Clip clip = TwoJoints();
   protocol::PoseFrame pose;
   FillPose(clip, 1, &pose);

@@ -166,8 +166,7 @@ TEST(Character, RefusesEveryTruncation) {
   }
   const auto longer = ParseCharacter(whole + '\0', ".");
   ASSERT_TRUE(longer.ok()) << longer.status().ToString();
-  EXPECT_THAT(longer->warnings,
-              ElementsAre("header.length: 1 bytes after the stated end are ignored"));
+  EXPECT_THAT(longer->warnings, ElementsAre("header.length: ignored 1 byte after the stated end"));
 }
 
 struct Wrong {

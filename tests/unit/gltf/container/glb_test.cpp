@@ -28,13 +28,13 @@ TEST(SplitContainer, AcceptsJsonWithBlanksAndByteOrderMark) {
 
 TEST(SplitContainer, WarnsOfHarmlessDeviations) {
   EXPECT_THAT(SplitContainer(PackGlb("{}", "1234") + "more")->warnings,
-              ElementsAre("header.length: 4 bytes after the stated end are ignored"));
+              ElementsAre("header.length: ignored 4 bytes after the stated end"));
   EXPECT_THAT(SplitContainer(PackGlb("{}", "12345"))->warnings,
               ElementsAre("chunks[1].length: is not a multiple of 4"));
   std::string glb = PackGlb("{}", "1234") + "cut";
   glb.replace(8, 4, U32(glb.size()));
   EXPECT_THAT(SplitContainer(glb)->warnings,
-              ElementsAre("chunks: 3 bytes after the last chunk are ignored"));
+              ElementsAre("chunks: ignored 3 bytes after the last chunk"));
 }
 
 TEST(SplitContainer, NamesTheField) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// BVH against an implementation that shares nothing with ours: assimp 5.2.
+// Compares the BVH reader with an independent implementation, assimp 5.2.
 #include <algorithm>
 #include <map>
 #include <string>
@@ -15,7 +15,7 @@
 namespace furrow::motion {
 namespace {
 
-// Model position of every node of one frame, by name. assimp's times count frames.
+// Model-space positions of all nodes in one frame, by name. assimp's times are frame numbers.
 void AddPositions(const aiNode* node, const aiMatrix4x4& parent,
                   const std::map<std::string, const aiNodeAnim*>& channels, unsigned frame,
                   std::map<std::string, aiVector3D>* positions) {
@@ -34,7 +34,7 @@ void AddPositions(const aiNode* node, const aiMatrix4x4& parent,
   }
 }
 
-// Compares joints, and tails of leaves against assimp's "EndSite_<joint>".
+// Compares joints, and the tails of leaves with assimp's "EndSite_<joint>".
 void CompareWithAssimp(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   const std::string text = ReadAll(path);

@@ -14,7 +14,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// An arm of two: every joint one unit along X, an End Site half a unit on.
+// Two joints, each one unit along X, and an End Site after another half unit.
 std::string Arm(const std::string& root_channels, const std::string& child_channels,
                 const std::string& motion) {
   return "HIERARCHY\nROOT Upper\n{\n\tOFFSET 1 2 3\n\tCHANNELS " + root_channels +
@@ -44,15 +44,15 @@ TEST(BvhReader, ReadsHierarchyTailsAndTimes) {
   EXPECT_THAT(clip.skeleton.joint_parents(), ElementsAre(wrinkle::kNoJoint, 0));
   ExpectNear(clip.skeleton.tails()[1], {0.5f, 0.0f, 0.0f});
   EXPECT_THAT(clip.times, ElementsAre(0.0, 0.0083333));
-  // A quarter turn about Z carries the child from +X to +Y.
+  // A quarter turn about Z moves the child from +X to +Y.
   ExpectNear(ModelPosition(clip, 0, "Lower"), {2.0f, 2.0f, 3.0f});
   ExpectNear(ModelPosition(clip, 1, "Lower"), {1.0f, 3.0f, 3.0f});
 }
 
-// R = R1 * R2 * R3 in the joint's own order. Worked by hand: with Z
+// R = R1 * R2 * R3 in the joint's own order. Computed by hand: with Z
 // first, v = Rz(90) Rx(90) (0,1,0) = Rz(90) (0,0,1) = (0,0,1); with
 // X first, v = Rx(90) Rz(90) (0,1,0) = Rx(90) (-1,0,0) = (-1,0,0).
-TEST(BvhReader, TakesTheChannelOrderOfEachJoint) {
+TEST(BvhReader, UsesTheChannelOrderOfEachJoint) {
   const std::string head = "HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS ";
   const std::string tail =
       "\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 1\nFrame Time: 0.1\n90 90 0\n";
@@ -73,7 +73,7 @@ TEST(BvhReader, ReadsZeroOneThreeAndSixChannelJointsInOneFile) {
   const Clip clip = Parse(text);
   ASSERT_EQ(clip.skeleton.num_joints(), 5);
   ExpectNear(ModelPosition(clip, 0, "One"), {10.0f, 22.0f, 30.0f});
-  // One turns +Y to +Z by 90 degrees about X.
+  // `One` turns +Y to +Z: 90 degrees about X.
   ExpectNear(ModelPosition(clip, 0, "Bare"), {10.0f, 22.0f, 31.0f});
   ExpectNear(ModelPosition(clip, 0, "Three"), {10.0f, 22.0f, 31.0f});
 }
@@ -81,7 +81,7 @@ TEST(BvhReader, ReadsZeroOneThreeAndSixChannelJointsInOneFile) {
 TEST(BvhReader, PositionChannelsReplaceTheOffsetOrAddToIt) {
   const std::string text = Arm("4 Xposition Yposition Zrotation Xrotation", "0",
                                "Frames: 1\nFrame Time: 1\n10 20 0 0\n");
-  // Z has no channel: its offset stays in both ways.
+  // Z has no channel, so its offset stays in both cases.
   ExpectNear(Parse(text).locals[0].translation, {10.0f, 20.0f, 3.0f});
   const Clip added = Parse(text, {.bvh_positions = BvhPositions::kAdd});
   ExpectNear(added.locals[0].translation, {11.0f, 22.0f, 3.0f});
@@ -105,7 +105,7 @@ TEST(BvhReader, ReadsSeveralRoots) {
   EXPECT_NEAR(2.0 * std::asin(clip.locals[1].rotation.x), 20.0 * M_PI / 180.0, 1e-6);
 }
 
-TEST(BvhReader, PutsUpWithCaseTabsBlanksAndLineEnds) {
+TEST(BvhReader, AcceptsAnyCaseTabsBlanksAndLineEnds) {
   const std::string text =
       "\xEF\xBB\xBFhierarchy\r\nRoot  Bip01 Pelvis \t\r\n{\r\n\t\tOffset\t0.0 \t1e0 0 \r\n"
       "channels 3 ZROTATION xrotation Yrotation   \r\nend site\r\n{\r\noffset 0 1 "
@@ -117,7 +117,7 @@ TEST(BvhReader, PutsUpWithCaseTabsBlanksAndLineEnds) {
   EXPECT_EQ(clip.num_frames(), 2);
   EXPECT_DOUBLE_EQ(clip.times[1], 0.033);
   EXPECT_THAT(report.warnings, ElementsAre());
-  // The same with nothing but carriage returns.
+  // The same text with carriage returns only.
   std::string old_mac = text;
   std::erase(old_mac, '\n');
   EXPECT_EQ(Parse(old_mac).num_frames(), 2);
@@ -138,7 +138,7 @@ TEST(BvhReader, ReadsVeryLongLines) {
   EXPECT_EQ(Parse(text + "\n").skeleton.num_joints(), kJoints);
 }
 
-TEST(BvhReader, ZeroLengthJointsAndSitesAreFine) {
+TEST(BvhReader, AcceptsJointsAndSitesOfLengthZero) {
   const std::string text =
       "HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT B\n{\nOFFSET 0 0 0\n"
       "CHANNELS 1 Xrotation\nEnd Site\n{\nOFFSET 0 -0 0\n}\n}\n}\n"
@@ -147,7 +147,7 @@ TEST(BvhReader, ZeroLengthJointsAndSitesAreFine) {
   ExpectNear(ModelPosition(clip, 0, "B"), {0.0f, 0.0f, 0.0f});
 }
 
-TEST(BvhReader, TellsAWrongFrameCount) {
+TEST(BvhReader, WarnsOfAWrongFrameCount) {
   const std::string rows = "0 0 0 0 0 0\n0 0 0 0 0 0\n";
   for (const char* stated : {"1", "3"}) {
     ClipReport report;
@@ -160,7 +160,7 @@ TEST(BvhReader, TellsAWrongFrameCount) {
   }
 }
 
-TEST(BvhReader, FollowsTheQuaternionsSign) {
+TEST(BvhReader, KeepsTheSignOfQuaternions) {
   std::string motion = "Frames: 73\nFrame Time: 1\n";
   for (int i = 0; i <= 72; ++i) motion += std::to_string(i * 10 % 360 - 180) + " 0 0 0 0 0\n";
   const Clip clip = Parse(Arm(kZxy, kZxy, motion));
@@ -213,7 +213,7 @@ TEST(BvhReader, NamesTheLineOfEveryError) {
   }
 }
 
-TEST(BvhReader, RefusesMoreJointsThanASkeletonHolds) {
+TEST(BvhReader, RejectsTooManyJoints) {
   std::string text = "HIERARCHY\n";
   for (int i = 0; i <= wrinkle::kMaxJoints; ++i) {
     text += (i == 0 ? "ROOT j" : "JOINT j") + std::to_string(i) + " {\nOFFSET 0 0 0\nCHANNELS 0\n";
@@ -223,10 +223,9 @@ TEST(BvhReader, RefusesMoreJointsThanASkeletonHolds) {
   EXPECT_EQ(clip.status().code(), StatusCode::kLimit);
 }
 
-// Cut anywhere, a file is an error, or what stands before the cut is
-// whole: the last line may lack its newline, and blanks at its end.
-// Each length in a buffer of its own, for the address sanitizer.
-TEST(BvhReader, TruncationDrill) {
+// A cut file is an error, unless only blanks or the newline after the last line are missing. Each
+// length gets its own buffer, so that the address sanitizer finds reads past the end.
+TEST(BvhReader, RejectsEveryTruncation) {
   const std::string whole = Arm(kZxy, kZxy, "Frames: 2\nFrame Time: 1\n0 0 0 0 0 0\n1 2 3 4 5 6\n");
   int accepted = 0;
   for (std::size_t length = 0; length < whole.size(); ++length) {

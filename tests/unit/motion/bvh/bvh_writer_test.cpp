@@ -25,7 +25,7 @@ glm::quat Turn(float degrees, const glm::vec3& axis) {
   return glm::angleAxis(glm::radians(degrees), glm::normalize(axis));
 }
 
-// Two roots, a fork, rest rotations everywhere, a scaled root: what glTF files look like.
+// A skeleton like those of glTF files: two roots, a fork, rest rotations, a scaled root.
 Clip MakeClip() {
   const Transform arm{{1.0f, 0.2f, 0.0f}, Turn(70.0f, {1, 2, 3}), glm::vec3(1.0f)};
   std::vector<JointDesc> joints = {
@@ -40,7 +40,7 @@ Clip MakeClip() {
     const auto t = static_cast<float>(f);
     for (int j = 0; j < clip.skeleton.num_joints(); ++j) {
       Transform local = clip.skeleton.rest_pose()[static_cast<std::size_t>(j)];
-      // Turns through gimbal lock (Y by 90) and past 360.
+      // Passes gimbal lock (Y at 90 degrees) and 360 degrees.
       local.rotation = local.rotation * Turn(t * 15.0f, {0, 1, 0}) *
                        Turn(t * 7.0f, {1.0f, static_cast<float>(j), 0.5f});
       if (j == 0 || j == 2) local.translation += glm::vec3(0.1f * t, 0.0f, -0.05f * t);
@@ -60,7 +60,7 @@ Clip Rewrite(const Clip& clip, std::string* text = nullptr) {
   return std::move(*read);
 }
 
-TEST(BvhWriter, MovesNoJointThoughRestRotationsAndScalesVanish) {
+TEST(BvhWriter, KeepsPositionsWithoutRestRotationsAndScales) {
   const Clip clip = MakeClip();
   const Clip read = Rewrite(clip);
   ASSERT_EQ(read.num_frames(), clip.num_frames());
@@ -70,7 +70,7 @@ TEST(BvhWriter, MovesNoJointThoughRestRotationsAndScalesVanish) {
   }
 }
 
-TEST(BvhWriter, KeepsTheRestPoseAndTheDeparturesFromIt) {
+TEST(BvhWriter, KeepsTheRestPoseAndDeviationsFromIt) {
   const Clip clip = MakeClip();
   const Clip read = Rewrite(clip);
   for (int j = 0; j < clip.skeleton.num_joints(); ++j) {
@@ -86,7 +86,7 @@ TEST(BvhWriter, KeepsTheRestPoseAndTheDeparturesFromIt) {
                             glm::vec4(read.skeleton.tails()[b], 1.0f));
       EXPECT_LT(glm::length(tail - other), 1e-5f);
     }
-    // What has turned away from rest, in model axes: the rotation a JointDelta is about.
+    // The deviation from the rest pose in model axes, which JointDelta uses.
     const auto departure = [](const Clip& c, std::size_t joint) {
       glm::mat3 axes(ModelMatrices(c, 17)[joint]);
       for (int i = 0; i < 3; ++i) axes[i] = glm::normalize(axes[i]);
@@ -96,7 +96,7 @@ TEST(BvhWriter, KeepsTheRestPoseAndTheDeparturesFromIt) {
   }
 }
 
-TEST(BvhWriter, RoundTripOfBvhIsExactToItsDecimals) {
+TEST(BvhWriter, RoundTripIsExactToTheWrittenDecimals) {
   for (const char* name : {"cmu/01_01.bvh", "performances/emotions.bvh"}) {
     if (!std::filesystem::exists(SharedFile(name))) GTEST_SKIP() << name << " is not there";
     const Result<Clip> clip = ParseBvh(ReadAll(SharedFile(name)), name);
@@ -109,7 +109,7 @@ TEST(BvhWriter, RoundTripOfBvhIsExactToItsDecimals) {
     EXPECT_LT(worst, 2e-5f);
     EXPECT_NEAR(read.times.back(), clip->times.back(), 1e-6);
     EXPECT_EQ(read.skeleton.hash(), clip->skeleton.hash());
-    // Written again, the text is the same but for the last decimal of a few angles.
+    // A second text differs at most in the last decimal of a few angles.
     EXPECT_NEAR(static_cast<double>(text.size()), static_cast<double>(BvhToText(read)->size()),
                 0.001 * static_cast<double>(text.size()));
   }
@@ -119,7 +119,7 @@ TEST(BvhWriter, AnglesDoNotJump) {
   const Clip clip = MakeClip();
   const Result<std::string> text = BvhToText(clip);
   ASSERT_TRUE(text.ok());
-  // "prop" turns evenly: no angle may change by more than half a turn from frame to frame.
+  // "prop" turns at constant speed. No angle may change by more than half a turn per frame.
   std::istringstream stream(text->substr(text->find("Frame Time")));
   std::string line;
   std::getline(stream, line);
@@ -144,7 +144,7 @@ TEST(BvhWriter, ResamplesUnevenFrames) {
   EXPECT_EQ(ParseBvh(*text, "t.bvh")->num_frames(), 40);
 }
 
-TEST(BvhWriter, SaysWhatItCannotWrite) {
+TEST(BvhWriter, RejectsClipsThatBvhCannotExpress) {
   Clip shapes;
   shapes.blend_shape_names = {"jawOpen"};
   shapes.times = {0.0};

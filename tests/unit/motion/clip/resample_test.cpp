@@ -12,7 +12,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::FloatNear;
 
-// One joint that turns and travels evenly, sampled unevenly.
+// One joint that turns and moves at constant speed, sampled at uneven times.
 Clip MakeClip() {
   Clip clip;
   clip.skeleton = *wrinkle::Skeleton::Create({{"a", wrinkle::kNoJoint, {}, {}}});
@@ -26,7 +26,7 @@ Clip MakeClip() {
   return clip;
 }
 
-TEST(Resample, EvenMotionStaysEven) {
+TEST(Resample, KeepsConstantSpeed) {
   const Clip even = Resample(MakeClip(), 4.0);
   EXPECT_THAT(even.times, ElementsAre(1.0, 1.25, 1.5, 1.75, 2.0));
   EXPECT_TRUE(IsEvenlySpaced(even));
@@ -38,7 +38,7 @@ TEST(Resample, EvenMotionStaysEven) {
   }
 }
 
-TEST(Resample, KnowsEvenFromUneven) {
+TEST(Resample, DetectsUnevenSpacing) {
   Clip clip = MakeClip();
   EXPECT_FALSE(IsEvenlySpaced(clip));
   EXPECT_DOUBLE_EQ(MeanFrameTime(clip), 1.0 / 3.0);

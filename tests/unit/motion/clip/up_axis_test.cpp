@@ -31,16 +31,16 @@ Clip Standing(const char* top, const glm::vec3& up) {
   return clip;
 }
 
-TEST(UpAxis, IsFoundByTheHead) {
+TEST(UpAxis, IsInferredFromTheHead) {
   EXPECT_EQ(FindUpAxis(Standing("Head", {0, 1, 0}).skeleton), UpAxis::kY);
   EXPECT_EQ(FindUpAxis(Standing("head", {0, 0, 1}).skeleton), UpAxis::kZ);
   EXPECT_EQ(FindUpAxis(Standing("mixamorig:Head", {0, 0.2f, 1}).skeleton), UpAxis::kZ);
-  EXPECT_EQ(FindUpAxis(Standing("Head", {0, 0, -1}).skeleton), UpAxis::kY);  // upside down: no
-  EXPECT_EQ(FindUpAxis(Standing("Tail", {0, 0, 1}).skeleton), UpAxis::kY);   // nothing to go by
+  EXPECT_EQ(FindUpAxis(Standing("Head", {0, 0, -1}).skeleton), UpAxis::kY);  // upside down
+  EXPECT_EQ(FindUpAxis(Standing("Tail", {0, 0, 1}).skeleton), UpAxis::kY);   // no head
   EXPECT_EQ(FindUpAxis(wrinkle::Skeleton()), UpAxis::kY);
 }
 
-// Model-space joint positions turn as a whole, whatever the pose.
+// In every pose, all model-space positions turn about the same axis.
 TEST(UpAxis, TurningAClipTurnsItsPoses) {
   Clip clip = Standing("Head", {0.1f, 0.2f, 1});
   clip.times = {0.0};
@@ -71,7 +71,7 @@ std::string Bvh(const char* offset, const char* positions) {
          positions + " 0 0 0 0 0 0\n" + positions + " 0 0 0 0 0 0\n";
 }
 
-TEST(UpAxis, LoadClipStandsBvhUpAndLetsAnUnmovedRootRest) {
+TEST(UpAxis, LoadClipTurnsBvhUprightAndKeepsUnmovedRootsAtRest) {
   const TemporaryFolder folder;
   const auto path = folder / "clip.bvh";
   const auto load = [&path](const std::string& text, UpAxis up) {

@@ -34,7 +34,7 @@ TEST(LiveLinkCsv, FindsColumnsByName) {
   ASSERT_EQ(clip.num_frames(), 2);
   EXPECT_EQ(clip.times[0], 0.0);
   EXPECT_NEAR(clip.times[1], 1.0 / 60.0, 1e-9);
-  // The same take, its columns shuffled and in another case.
+  // The same recording with shuffled columns in another case.
   const Clip shuffled = Parse("HeadYaw,TIMECODE,JawOpen,blendshapecount\n1,00:00:00:00,2,2\n");
   EXPECT_THAT(shuffled.blend_shape_names, ElementsAre("HeadYaw", "JawOpen"));
   EXPECT_THAT(shuffled.blend_shapes, ElementsAre(1.0f, 2.0f));
@@ -58,7 +58,7 @@ TEST(LiveLinkCsv, InfersTheTimecodesRate) {
   EXPECT_NEAR(Parse(brief, {.timecode_rate = 30.0}).times[1], 0.2, 1e-9);
 }
 
-TEST(LiveLinkCsv, PassesMidnightAndLeavesOutRowsWithoutAFace) {
+TEST(LiveLinkCsv, PassesMidnightAndSkipsRowsWithoutAFace) {
   ClipReport report;
   const Clip clip = Parse(std::string(kHeader) +
                               "23:59:59:59.000,3,0,0,0\n"
@@ -72,8 +72,8 @@ TEST(LiveLinkCsv, PassesMidnightAndLeavesOutRowsWithoutAFace) {
   EXPECT_NEAR(clip.times[1], 1.0 / 60.0, 1e-6);
   EXPECT_NEAR(clip.times[2], 4.0 / 60.0, 1e-6);
   EXPECT_EQ(clip.blend_shapes[6], 2.0f);
-  EXPECT_THAT(report.warnings,
-              ElementsAre(HasSubstr("2 rows without a face"), HasSubstr("1 rows")));
+  EXPECT_THAT(report.warnings, ElementsAre(HasSubstr("2 rows without a face"),
+                                           HasSubstr("1 row with a repeated timecode")));
 }
 
 TEST(LiveLinkCsv, NamesTheLineOfEveryError) {
@@ -105,7 +105,8 @@ TEST(LiveLinkCsv, NamesTheLineOfEveryError) {
   EXPECT_EQ(ParseLiveLinkCsv(wide, "t.csv").status().code(), StatusCode::kLimit);
   const Status long_row =
       ParseLiveLinkCsv(good + "00:00:02:00,3" + std::string(100'000, ','), "t.csv").status();
-  EXPECT_THAT(long_row.ToString(), HasSubstr("t.csv:3: the row has 100002 cells, the header 5"));
+  EXPECT_THAT(long_row.ToString(),
+              HasSubstr("t.csv:3: the row has 100002 cells, the header has 5"));
 }
 
 Clip MakeTake(double rate, int frames) {
@@ -134,7 +135,7 @@ TEST(LiveLinkCsv, RoundTripKeepsValuesExactlyAndTimesToAThousandthOfAFrame) {
   }
 }
 
-TEST(LiveLinkCsv, SaysWhatItCannotWrite) {
+TEST(LiveLinkCsv, RejectsClipsThatTheCsvCannotExpress) {
   EXPECT_EQ(LiveLinkCsvToText(Clip()).status().code(), StatusCode::kUnsupported);
   Clip none = MakeTake(60.0, 0);
   EXPECT_EQ(LiveLinkCsvToText(none).status().code(), StatusCode::kInvalidArgument);
@@ -147,7 +148,7 @@ TEST(LiveLinkCsv, SaysWhatItCannotWrite) {
   EXPECT_EQ(LiveLinkCsvToText(day).status().code(), StatusCode::kLimit);
 }
 
-TEST(LiveLinkCsv, TruncationDrill) {
+TEST(LiveLinkCsv, HandlesEveryTruncation) {
   const std::string whole = *LiveLinkCsvToText(MakeTake(60.0, 3));
   for (std::size_t length = 0; length < whole.size(); ++length) {
     const std::vector<char> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length));

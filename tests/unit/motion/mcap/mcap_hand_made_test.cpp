@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files as other writers make them, and as nobody should: put together record by record.
+// Files built record by record: valid files of other writers, and invalid ones.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -42,7 +42,7 @@ ByteWriter MessageRecord(std::uint64_t time, std::string_view data) {
   return content.PutBytes(ToBytes(data));
 }
 
-// An lz4 frame of stored blocks of 64 KiB; its head's checksum is the reference program's.
+// An lz4 frame of stored 64 KiB blocks. The header checksum comes from the reference program.
 Bytes Lz4Frame(std::span<const std::uint8_t> bytes) {
   ByteWriter frame;
   frame.PutBytes(Bytes{0x04, 0x22, 0x4d, 0x18, 0x60, 0x40, 0x82});
@@ -60,11 +60,11 @@ struct Placed {
   std::uint64_t length = 0;
 };
 
-// A chunk's times and messages: (log time, data).
+// The contents of a chunk; messages are (log time, data).
 struct ChunkOf {
   std::vector<std::pair<std::uint64_t, std::string>> messages;
   std::string compression;
-  std::size_t schemas = 0;  // that it declares, each of 1000 bytes
+  std::size_t schemas = 0;  // number of declared schemas of 1000 bytes each
 };
 
 class HandMade {
@@ -99,7 +99,7 @@ class HandMade {
     return Add(Opcode::kChunk, content);
   }
 
-  // Of the chunk that was added last, with messages at all times.
+  // Adds an index of the last chunk that covers all times.
   void IndexChunk(const Placed& chunk) {
     ByteWriter content;
     content.Put(std::uint64_t{0}).Put(~std::uint64_t{0}).Put(chunk.offset).Put(chunk.length);
@@ -118,7 +118,7 @@ class HandMade {
     summary_.PutRecord(Opcode::kMetadataIndex, content);
   }
 
-  // An attachment without a checksum, and its index.
+  // Adds an attachment without a checksum, and its index.
   Placed AddAttachment(std::string_view data) {
     ByteWriter content;
     content.Put(std::uint64_t{0}).Put(std::uint64_t{0}).PutText("name").PutText("text/plain");
@@ -132,7 +132,7 @@ class HandMade {
     summary_.PutRecord(Opcode::kAttachmentIndex, content.PutText("name").PutText("text/plain"));
   }
 
-  // Writes the file; with its summary, which counts no message that is in no chunk.
+  // Writes the file with a summary. Its statistics omit messages outside chunks.
   [[nodiscard]] fs::path Finish(const fs::path& path) {
     file_.PutRecord(Opcode::kDataEnd, ByteWriter().Put(std::uint32_t{0}));
     const std::uint64_t start = file_.size();
@@ -143,7 +143,7 @@ class HandMade {
     file_.PutBytes(kMagic);
     return Write(path);
   }
-  // Writes the file as it is: without a summary.
+  // Writes the file without a summary.
   [[nodiscard]] fs::path Write(const fs::path& path) const {
     const auto bytes = file_.bytes();
     std::ofstream(path, std::ios::binary | std::ios::trunc)
@@ -182,7 +182,7 @@ class McapHandMadeTest : public testing::Test {
 
 using Texts = std::vector<std::string>;
 
-TEST_F(McapHandMadeTest, ChunksOfEveryCompressionAndLooseMessagesAreRead) {
+TEST_F(McapHandMadeTest, ReadsAllCompressionsAndLooseMessages) {
   HandMade file;
   (void)file.Add(Opcode::kChannel, ChannelRecord(1));
   (void)file.Add(Opcode::kMessage, MessageRecord(5, "loose"));
@@ -197,15 +197,15 @@ TEST_F(McapHandMadeTest, ChunksOfEveryCompressionAndLooseMessagesAreRead) {
             (Texts{"loose", "zstd 1", "lz4 1", "plain 1", "alone", "zstd 2", "lz4 2", "plain 2"}));
 }
 
-TEST_F(McapHandMadeTest, EqualTimesAreShownInTheOrderOfTheFile) {
+TEST_F(McapHandMadeTest, MessagesWithEqualTimesKeepTheFilesOrder) {
   HandMade file;
   (void)file.AddChunk({{{10, "a"}, {20, "b"}, {20, "c"}}, ""});
   (void)file.AddChunk({{{5, "first"}, {20, "d"}}, ""});
   EXPECT_EQ(ReadAll(*Open(file.Write(Path()))), (Texts{"first", "a", "b", "c", "d"}));
 }
 
-// Such a summary is not believed: a small file would be read as often as it likes.
-TEST_F(McapHandMadeTest, ASummaryThatNamesARecordTwiceIsNotBelieved) {
+// Otherwise a small file could make the reader read it any number of times.
+TEST_F(McapHandMadeTest, IgnoresASummaryWithDuplicateRecords) {
   for (const int times : {1, 2, 1000}) {
     for (const Opcode twice : {Opcode::kChunk, Opcode::kMetadata, Opcode::kAttachment}) {
       const auto count = [&](Opcode opcode) { return opcode == twice ? times : 1; };
@@ -226,7 +226,7 @@ TEST_F(McapHandMadeTest, ASummaryThatNamesARecordTwiceIsNotBelieved) {
   }
 }
 
-TEST_F(McapHandMadeTest, ASummaryWhoseRecordsOverlapOrLieOutsideIsNotBelieved) {
+TEST_F(McapHandMadeTest, IgnoresASummaryWithOverlappingOrOutsideRecords) {
   const std::vector<Placed> shifts = {{1, 0}, {0, 1}, {1u << 20, 0}, {0, 1u << 20}};
   for (const Placed& shift : shifts) {
     HandMade file;
@@ -242,22 +242,22 @@ TEST_F(McapHandMadeTest, ASummaryWhoseRecordsOverlapOrLieOutsideIsNotBelieved) {
 
 TEST_F(McapHandMadeTest, LimitOfARecord) {
   HandMade file;
-  (void)file.AddChunk({{{10, std::string(5000, 'x')}}, "zstd"});  // little, until it is unpacked
+  (void)file.AddChunk({{{10, std::string(5000, 'x')}}, "zstd"});  // small until it is decompressed
   (void)file.AddChunk({{{20, "small"}}, "zstd"});
   (void)file.Write(Path());
   EXPECT_EQ(ReadAll(*Open(Path())).size(), 2u);
   const auto reader = Open(Path(), {.record_bytes = 4000});
   EXPECT_EQ(ReadAll(*reader), Texts{"small"});
-  EXPECT_EQ(reader->warnings().size(), 2u);  // and that there is no index
+  EXPECT_EQ(reader->warnings().size(), 2u);  // the second: there is no index
   EXPECT_EQ(Reader::Open(Path(), {.record_bytes = 8}).status().code(), StatusCode::kParse);
 }
 
-// Messages cost more than their bytes: they count, too.
-TEST_F(McapHandMadeTest, LimitOfWhatIsLoadedAtATime) {
+// The overhead of each message counts as well.
+TEST_F(McapHandMadeTest, LimitOfLoadedBytes) {
   HandMade file;
   ChunkOf chunk;
   for (std::uint64_t i = 0; i < 1000; ++i) chunk.messages.emplace_back(i, "");
-  for (int i = 0; i < 3; ++i) (void)file.AddChunk(chunk);  // 31 kB each, all at one time
+  for (int i = 0; i < 3; ++i) (void)file.AddChunk(chunk);  // 31 kB each, at the same time
   (void)file.Write(Path());
   EXPECT_EQ(ReadAll(*Open(Path(), {.loaded_bytes = 300'000})).size(), 3000u);
   for (const std::uint64_t limit : {1'000, 35'000, 110'000}) {
@@ -265,13 +265,13 @@ TEST_F(McapHandMadeTest, LimitOfWhatIsLoadedAtATime) {
         Open(Path(), {.loaded_bytes = limit})->ForEach({}, [](const Message&) { return true; });
     EXPECT_EQ(status.code(), StatusCode::kLimit) << limit;
   }
-  // One after the other they fit, however many there are.
+  // Any number of chunks fits if they do not overlap.
   HandMade row;
   for (std::uint64_t i = 0; i < 20; ++i) (void)row.AddChunk({{{i, std::string(900, 'x')}}, ""});
   EXPECT_EQ(ReadAll(*Open(row.Write(Path()), {.loaded_bytes = 2'500})).size(), 20u);
 }
 
-TEST_F(McapHandMadeTest, LimitOfWhatIsKept) {
+TEST_F(McapHandMadeTest, LimitOfKeptBytes) {
   HandMade file;
   for (int i = 0; i < 10; ++i) file.IndexMetadata(file.AddMetadata(1000));
   (void)file.Finish(Path());
@@ -281,7 +281,7 @@ TEST_F(McapHandMadeTest, LimitOfWhatIsKept) {
   EXPECT_EQ(few->metadata().size(), 3u);
   EXPECT_FALSE(few->warnings().empty());
 
-  // Of chunks, those that declare too much are left out.
+  // Chunks that declare too much are skipped.
   HandMade chunks;
   (void)chunks.AddChunk({{{10, "a"}}, "", 2});
   (void)chunks.AddChunk({{{20, "b"}}, "", 9});
@@ -305,7 +305,7 @@ TEST_F(McapHandMadeTest, LimitOfRecords) {
   EXPECT_EQ(reader->warnings().size(), 5u);  // two chunks, two attachments, no index
 }
 
-TEST_F(McapHandMadeTest, AFileThatShrinksWhileItIsReadIsAnErrorOfTheDisk) {
+TEST_F(McapHandMadeTest, AFileThatShrinksIsAnIoError) {
   HandMade file;
   (void)file.AddChunk({{{10, std::string(1000, 'x')}}, ""});
   const auto reader = Open(file.Write(Path()));
@@ -314,8 +314,8 @@ TEST_F(McapHandMadeTest, AFileThatShrinksWhileItIsReadIsAnErrorOfTheDisk) {
   EXPECT_EQ(status.code(), StatusCode::kIo) << status.ToString();
 }
 
-TEST(McapCompression, FramesOfLz4AreUnpacked) {
-  // `lz4 --no-frame-crc` of twelve times "furrow ", then "end of it".
+TEST(McapCompression, DecompressesLz4Frames) {
+  // Output of `lz4 --no-frame-crc` for twelve times "furrow " and then "end of it".
   const Bytes packed = {0x04, 0x22, 0x4d, 0x18, 0x60, 0x40, 0x82, 0x15, 0x00, 0x00, 0x00, 0x7f,
                         0x66, 0x75, 0x72, 0x72, 0x6f, 0x77, 0x20, 0x07, 0x00, 0x3a, 0x90, 0x65,
                         0x6e, 0x64, 0x20, 0x6f, 0x66, 0x20, 0x69, 0x74, 0x00, 0x00, 0x00, 0x00};
@@ -329,8 +329,8 @@ TEST(McapCompression, FramesOfLz4AreUnpacked) {
     EXPECT_FALSE(Decompress("lz4", std::span(packed).first(size), text.size()).ok()) << size;
 }
 
-// A size that no memory holds is stated: nothing is taken before there is something to put there.
-TEST(McapCompression, StatedSizesAreNotBelieved) {
+// The stated size exceeds any memory. Nothing may be allocated before there is data for it.
+TEST(McapCompression, DoesNotTrustStatedSizes) {
   const Bytes bytes(200'000, 7);
   const Bytes zstd = CompressZstd(bytes, 3);
   EXPECT_EQ(Decompress("zstd", zstd, bytes.size()).value(), bytes);
@@ -340,7 +340,7 @@ TEST(McapCompression, StatedSizesAreNotBelieved) {
     EXPECT_EQ(Decompress(method, packed, std::uint64_t{1} << 60).status().code(),
               StatusCode::kParse);
   }
-  // Several frames in a row are one.
+  // Consecutive frames form one result.
   Bytes both = zstd;
   both.insert(both.end(), zstd.begin(), zstd.end());
   EXPECT_EQ(Decompress("zstd", both, 2 * bytes.size()).value().size(), 2 * bytes.size());

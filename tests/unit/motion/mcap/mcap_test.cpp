@@ -41,7 +41,7 @@ class McapTest : public testing::Test {
     return folder_ / name;
   }
 
-  // Two channels, `count` messages, an attachment and metadata.
+  // Writes two channels, `count` messages, an attachment and metadata.
   void WriteTake(const fs::path& path, int count, std::uint64_t chunk_bytes, bool close = true) {
     auto writer = Writer::Create(path, {.chunk_bytes = chunk_bytes});
     ASSERT_TRUE(writer.ok()) << writer.status().ToString();
@@ -85,14 +85,14 @@ class McapTest : public testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
   void Spill(const fs::path& path, const std::string& bytes) {
-    fs::remove(path);  // some file systems wait for the disk where a file is cut and written again
+    fs::remove(path);  // some file systems wait for the disk when a truncated file is rewritten
     std::ofstream(path, std::ios::binary) << bytes;
   }
 
   TemporaryFolder folder_;
 };
 
-TEST_F(McapTest, WhatIsWrittenIsReadBack) {
+TEST_F(McapTest, RoundTrip) {
   WriteTake(Path(), 100, 400);
   auto reader = Reader::Open(Path());
   ASSERT_TRUE(reader.ok()) << reader.status().ToString();
@@ -118,7 +118,7 @@ TEST_F(McapTest, WhatIsWrittenIsReadBack) {
   }
 }
 
-TEST_F(McapTest, ARangeOfTimeIsReadAlone) {
+TEST_F(McapTest, ReadsARangeOfTime) {
   WriteTake(Path(), 100, 400);
   auto reader = Reader::Open(Path());
   ASSERT_TRUE(reader.ok());
@@ -128,7 +128,7 @@ TEST_F(McapTest, ARangeOfTimeIsReadAlone) {
   EXPECT_EQ(seen.back().sequence, 30u);
 }
 
-TEST_F(McapTest, CutAnywhereEveryWholeChunkComesBack) {
+TEST_F(McapTest, ATruncatedFileKeepsEveryWholeChunk) {
   WriteTake(Path(), 8, 200);
   const std::string whole = Slurp(Path());
   auto reader = Reader::Open(Path());
@@ -139,7 +139,7 @@ TEST_F(McapTest, CutAnywhereEveryWholeChunkComesBack) {
     Spill(Path("cut.mcap"), whole.substr(0, size));
     auto cut = Reader::Open(Path("cut.mcap"));
     if (!cut.ok()) {
-      EXPECT_LT(size, 64u) << cut.status().ToString();  // not even a header
+      EXPECT_LT(size, 64u) << cut.status().ToString();  // shorter than a header
       continue;
     }
     EXPECT_FALSE((*cut)->complete());
@@ -153,7 +153,7 @@ TEST_F(McapTest, CutAnywhereEveryWholeChunkComesBack) {
   }
 }
 
-TEST_F(McapTest, AWriterThatDiesLeavesWhatWasFlushed) {
+TEST_F(McapTest, ADeadWriterLeavesWhatWasFlushed) {
   WriteTake(Path(), 40, 300, false);
   auto reader = Reader::Open(Path());
   ASSERT_TRUE(reader.ok());
@@ -162,9 +162,9 @@ TEST_F(McapTest, AWriterThatDiesLeavesWhatWasFlushed) {
   EXPECT_EQ((*reader)->attachments().size(), 1u);
 }
 
-// Every byte, one after the other, is changed: nothing crashes, and whatever is still shown is
-// true.
-TEST_F(McapTest, DamageIsNeverShownAsData) {
+// Changes every byte in turn. The reader must not crash, and every message that it still passes on
+// must be genuine.
+TEST_F(McapTest, NeverPassesOnDamagedData) {
   WriteTake(Path(), 5, 200);
   const std::string whole = Slurp(Path());
   auto reader = Reader::Open(Path());
@@ -185,7 +185,7 @@ TEST_F(McapTest, DamageIsNeverShownAsData) {
   }
 }
 
-TEST_F(McapTest, DamageIsToldOnceHoweverOftenTheFileIsRead) {
+TEST_F(McapTest, WarnsOfDamageOnce) {
   WriteTake(Path(), 100, 400);
   auto whole = Reader::Open(Path());
   ASSERT_TRUE(whole.ok());
@@ -202,7 +202,7 @@ TEST_F(McapTest, DamageIsToldOnceHoweverOftenTheFileIsRead) {
   EXPECT_EQ((*bad)->warnings().size(), 1u);
 }
 
-TEST_F(McapTest, ChunksThatOverlapAreShownInTheOrderOfTime) {
+TEST_F(McapTest, SortsOverlappingChunksByTime) {
   auto writer = Writer::Create(Path());
   ASSERT_TRUE(writer.ok());
   const auto channel = (*writer)->AddChannel("/x", "text", 0);
@@ -223,11 +223,11 @@ TEST_F(McapTest, ChunksThatOverlapAreShownInTheOrderOfTime) {
   EXPECT_EQ(times, (std::vector<std::uint64_t>{0, 5, 5, 10, 20, 30, 50, 60}));
 }
 
-TEST_F(McapTest, AFullDiskEndsTheRecordingAndTheFileIsReadable) {
+TEST_F(McapTest, AFullDiskLeavesAReadableFile) {
   const pid_t child = ::fork();
   if (child == 0) {
     ::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{20000, 20000};  // write() fails with EFBIG beyond
+    const rlimit limit{20000, 20000};  // beyond this size write() fails with EFBIG
     ::setrlimit(RLIMIT_FSIZE, &limit);
     auto writer = Writer::Create(Path(), {.chunk_bytes = 2000});
     if (!writer.ok()) ::_exit(2);
@@ -243,7 +243,7 @@ TEST_F(McapTest, AFullDiskEndsTheRecordingAndTheFileIsReadable) {
       message.log_time = i + 1;
       message.data = noise;
       if (Status status = (*writer)->Write(message); !status.ok()) {
-        // Once failed, it stays failed; closing says so, too.
+        // The error persists, and Close() returns it as well.
         const bool again = (*writer)->Write(message).ok() || (*writer)->Close().ok();
         ::_exit(status.code() == StatusCode::kIo && !again ? 0 : 3);
       }
@@ -261,7 +261,7 @@ TEST_F(McapTest, AFullDiskEndsTheRecordingAndTheFileIsReadable) {
   for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i].sequence, i);
 }
 
-// What the summary of a closed file says of its data.
+// The contents of a closed file's summary.
 struct Summary {
   std::uint64_t messages = 0;
   std::uint32_t chunks = 0;
@@ -278,21 +278,21 @@ Summary ReadSummary(std::span<const std::uint8_t> file) {
   ByteReader records(file.subspan(start, file.size() - kTail - kRecordHeaderBytes - start));
   while (records.ok() && !records.at_end()) {
     const auto opcode = static_cast<Opcode>(records.Get<std::uint8_t>());
-    ByteReader content(records.Take(records.Get<std::uint64_t>()));
+    ByteReader content(records.GetBytes(records.Get<std::uint64_t>()));
     if (opcode == Opcode::kStatistics) {
       summary.messages = content.Get<std::uint64_t>();
-      (void)content.Take(2 + 4 + 4 + 4);  // schemas, channels, attachments, metadata
+      (void)content.GetBytes(2 + 4 + 4 + 4);  // schemas, channels, attachments, metadata
       summary.chunks = content.Get<std::uint32_t>();
       summary.start_time = content.Get<std::uint64_t>();
       summary.end_time = content.Get<std::uint64_t>();
-      ByteReader counts(content.Take(content.Get<std::uint32_t>()));
+      ByteReader counts(content.GetBytes(content.Get<std::uint32_t>()));
       while (!counts.at_end()) {
         const auto id = counts.Get<std::uint16_t>();
         summary.of_channel[id] = counts.Get<std::uint64_t>();
       }
     } else if (opcode == Opcode::kChunkIndex) {
-      (void)content.Take(4 * 8);  // times, offset and length of the chunk
-      ByteReader offsets(content.Take(content.Get<std::uint32_t>()));
+      (void)content.GetBytes(4 * 8);  // times, offset and length of the chunk
+      ByteReader offsets(content.GetBytes(content.Get<std::uint32_t>()));
       while (!offsets.at_end()) {
         const auto id = offsets.Get<std::uint16_t>();
         summary.message_indexes.emplace_back(id, offsets.Get<std::uint64_t>());
@@ -303,7 +303,7 @@ Summary ReadSummary(std::span<const std::uint8_t> file) {
   return summary;
 }
 
-// Writes to a disk of `bytes` until it is full, then closes on one with room again.
+// Writes until a disk of `bytes` bytes is full, then closes the file on a disk with space.
 void FillThenClose(const fs::path& path, rlim_t bytes) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -334,8 +334,8 @@ void FillThenClose(const fs::path& path, rlim_t bytes) {
   ASSERT_EQ(WEXITSTATUS(status), 0);
 }
 
-// Wherever the disk ends, within a chunk or within its index: the summary tells what is there.
-TEST_F(McapTest, AfterAFullDiskTheIndexTellsWhatIsThere) {
+// The summary must list what is in the file, whether the disk ends within a chunk or its index.
+TEST_F(McapTest, TheIndexIsRightAfterAFullDisk) {
   for (rlim_t bytes = 900; bytes < 1900; bytes += 37) {
     const fs::path path = Path(std::to_string(bytes));
     ASSERT_NO_FATAL_FAILURE(FillThenClose(path, bytes));
@@ -362,7 +362,7 @@ TEST_F(McapTest, AfterAFullDiskTheIndexTellsWhatIsThere) {
   }
 }
 
-TEST_F(McapTest, WhatIsNoMcapFileSaysSo) {
+TEST_F(McapTest, RejectsOtherFiles) {
   Spill(Path("x"), "HIERARCHY\nROOT hips\n{\n}\n");
   EXPECT_EQ(Reader::Open(Path("x")).status().code(), StatusCode::kParse);
   Spill(Path("empty"), "");
@@ -371,13 +371,13 @@ TEST_F(McapTest, WhatIsNoMcapFileSaysSo) {
   EXPECT_EQ(Reader::Open(folder_.path()).status().code(), StatusCode::kIo);
 }
 
-TEST_F(McapTest, ARecordingNeverOverwrites) {
+TEST_F(McapTest, NeverOverwrites) {
   Spill(Path(), "precious");
   EXPECT_EQ(Writer::Create(Path()).status().code(), StatusCode::kIo);
   EXPECT_EQ(Slurp(Path()), "precious");
 }
 
-TEST(McapCompression, UnknownMethodsAndWrongSizesAreErrors) {
+TEST(McapCompression, RejectsUnknownMethodsAndWrongSizes) {
   const std::vector<std::uint8_t> bytes(1000, 7);
   const auto packed = CompressZstd(bytes, 3);
   EXPECT_LT(packed.size(), 100u);
@@ -388,8 +388,8 @@ TEST(McapCompression, UnknownMethodsAndWrongSizesAreErrors) {
   EXPECT_EQ(Decompress("brotli", packed, 1000).status().code(), StatusCode::kUnsupported);
 }
 
-TEST(McapCompression, Crc32IsThatOfTheFormat) {
-  // The check value of CRC-32/ISO-HDLC.
+TEST(McapCompression, Crc32MatchesTheFormat) {
+  // The published check value of CRC-32/ISO-HDLC.
   EXPECT_EQ(Crc32(Bytes("123456789")), 0xCBF43926u);
   EXPECT_EQ(Crc32(Bytes("6789"), Crc32(Bytes("12345"))), 0xCBF43926u);
 }
