@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/files.h"
+#include "character/package/package.h"
 #include "rig/rig_check.h"
 #include "rig/rig_file.h"
 
