@@ -7,7 +7,7 @@
 
 #include "base/status.h"
 #include "rig/rig_generated.h"
-#include "wrinkle/rig/rig_field.h"
+#include "wrinkle/fields/rig_field.h"
 
 // What the readers of a rig's FlatBuffers tables share.
 namespace furrow::character {

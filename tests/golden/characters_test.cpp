@@ -14,7 +14,7 @@
 #include "motion/clip/pose_source.h"
 #include "rig/rig_reference_pose.h"
 #include "sitter.h"
-#include "wrinkle/drivers/reference_pose.h"
+#include "wrinkle/skeleton/reference_pose.h"
 
 namespace furrow::render::golden {
 namespace {
