@@ -2,8 +2,8 @@
 // Vectors of floats, one driver or weight per SIMD lane. Compiled once per instruction set
 // (solver/subject_kernel.cpp).
 //
-// Products and sums are never fused, and follow the order that GLM uses. Points therefore have the
-// same bits as JointChains::Evaluate(), with every instruction set.
+// The vector operations below never fuse a product with a sum, and follow the order that GLM uses.
+// Points therefore have the same bits as JointChains::Evaluate(), with every instruction set.
 #if defined(FURROW_WRINKLE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FURROW_WRINKLE_LANES_INL_H_
 #undef FURROW_WRINKLE_LANES_INL_H_

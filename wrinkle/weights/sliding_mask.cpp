@@ -13,7 +13,7 @@
 namespace furrow::wrinkle {
 namespace {
 
-// Shares of the mask's length and radius over which it fades out; the shader's are the same.
+// The shares of the mask's length and radius over which it fades. The shader has the same values.
 constexpr float kSoftEnd = 0.4f;
 constexpr float kSoftRim = 0.4f;
 

@@ -10,7 +10,8 @@
 
 namespace furrow::wrinkle {
 
-// A ball joint in the rest pose, model axes: where a sliding mask lies (thesis 6.2.2). Unit axes.
+// A ball joint in the rest pose, the frame of a sliding mask (thesis 6.2.2). Unit vectors in model
+// axes.
 struct BallFrame {
   glm::vec3 origin{0.0f};
   glm::vec3 bone{0.0f, -1.0f, 0.0f};  // the direction that counts as straight
@@ -19,20 +20,21 @@ struct BallFrame {
   float length = 1.0f;                 // of the bone below the joint
 };
 
-// None where the skeleton lacks a joint or a bone has no length.
+// nullopt if the skeleton lacks a joint or a bone has no length.
 [[nodiscard]] std::optional<BallFrame> RestBallFrame(const BallDriver& ball,
                                                      const Skeleton& skeleton);
 
-// Where the joint bends to: unit, across the bone, model axes at rest; zero at rest. From the
-// driver's values: their roots are the cosines of the direction (ball.h).
+// The direction that the joint bends to, from the ball driver's values: a unit vector across the
+// bone, model axes at rest; zero at rest. The square roots of the values are proportional to the
+// cosines of the direction (BallMode::kSmooth).
 [[nodiscard]] glm::vec3 BendDirection(const BallFrame& frame, float front, float back, float left,
                                       float right);
 
-// The mask at a point of the rest pose, [0, 1]: full in the middle of the side that `towards`
-// (BendDirection()) points to, 0 from `spread_degrees` to either side of it on, and fading out
-// along the bone and away from it; 0 everywhere without a direction. As the joint swings round, it
-// moves over the surface, where fixed masks in four directions fade into one another. Mirrored in
-// shaders/common_wrinkles_vert.glsl.
+// The mask at a point of the rest pose, [0, 1]. It is full in the direction `towards`
+// (BendDirection()), fades to 0 at `spread_degrees` to either side, and also fades along the bone
+// and away from it. Without a direction it is 0 everywhere. As the joint swings around, the mask
+// moves over the surface, whereas fixed masks in four directions would fade into one another.
+// shaders/common_wrinkles_vert.glsl has the same formula.
 [[nodiscard]] float SlidingMaskAt(const BallFrame& frame, const Mask& mask,
                                   const glm::vec3& towards, const glm::vec3& point);
 
