@@ -109,8 +109,7 @@ class Proposer {
       case Driver::Kind::kHinge: driver = CarryHinge(from); break;
       case Driver::Kind::kBall: driver = CarryBall(from); break;
       case Driver::Kind::kTwist: driver = CarryTwist(from); break;
-      case Driver::Kind::kBlendShape:      // of a tracker, not of a skeleton
-      case Driver::Kind::kStrain: return;  // of one mesh
+      default: return;  // the other kinds belong to a tracker or to one mesh
     }
     if (driver) {
       drivers_.insert(from.name);
