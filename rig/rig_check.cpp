@@ -11,9 +11,9 @@
 
 #include "base/asset_path.h"
 #include "base/status.h"
+#include "wrinkle/fields/rig_field.h"
 #include "wrinkle/rig/driver_values.h"
 #include "wrinkle/rig/rig_check.h"
-#include "wrinkle/rig/rig_field.h"
 
 namespace furrow::character {
 namespace {

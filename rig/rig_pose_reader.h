@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "rig/rig_tables.h"
+#include "rig/json/rig_tables.h"
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/skeleton/pose_frame.h"
 

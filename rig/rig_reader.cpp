@@ -2,12 +2,14 @@
 #include "rig/rig_reader.h"
 
 #include <string>
+#include <string_view>
 #include <unordered_set>
 #include <vector>
 
 #include "base/status.h"
+#include "rig/drivers/driver_json.h"
+#include "rig/json/rig_tables.h"
 #include "rig/rig_pose_reader.h"
-#include "rig/rig_tables.h"
 
 namespace furrow::character {
 namespace {
@@ -15,106 +17,37 @@ namespace {
 using flatbuffers::String;
 using wrinkle::InvalidField;
 
-// The schema's enumerations name the same things in the same order as wrinkle/rig/rig.h's. JSON may
-// also state one by number, and nobody has checked that number yet.
-template <class To, class From>
-Status Enum(From from, To* to, const std::string& where) {
-  if (from < From::MIN || from > From::MAX) return InvalidField("there is no such choice", where);
-  *to = static_cast<To>(from);
-  return {};
-}
-
-Status ReadPoseDriver(const schema::PoseDriver& from, const std::string& at,
-                      wrinkle::PoseDriver* to) {
-  to->falloff = from.falloff();
-  for (const schema::PoseValue* value : *from.values()) {
-    to->values.push_back({value->name()->str(), value->reference_pose()->str()});
+// The kinds for an error message: "pose, hinge, ball, twist, blend_shape and strain".
+std::string ListOfKinds() {
+  std::vector<std::string_view> names;
+#define FURROW_KIND_LIST(Name, field) names.push_back(#field);
+  FURROW_DRIVER_KINDS(FURROW_KIND_LIST)
+#undef FURROW_KIND_LIST
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) list += i + 1 == names.size() ? " and " : ", ";
+    list += names[i];
   }
-  FURROW_RETURN_IF_ERROR(Enum(from.solve(), &to->solve, at + ".solve"));
-  return ForEach(from.points(), at + ".points",
-                 [&](const schema::ControlPoint& point, const std::string& where) {
-                   wrinkle::ControlPoint& added = to->points.emplace_back();
-                   added.joint = point.joint()->str();
-                   if (point.offset() != nullptr) added.offset = ToVec3(*point.offset());
-                   added.offset_size = point.offset_size();
-                   return Enum(point.kind(), &added.kind, where + ".kind");
-                 });
-}
-
-void ReadHinge(const schema::HingeDriver& from, wrinkle::HingeDriver* to) {
-  to->parent = from.parent()->str();
-  to->joint = from.joint()->str();
-  to->end = Text(from.end());
-  if (from.axis() != nullptr) to->axis = ToVec3(*from.axis());
-  to->beta_degrees = from.beta_degrees();
-}
-
-Status ReadBall(const schema::BallDriver& from, const std::string& at, wrinkle::BallDriver* to) {
-  to->parent = from.parent()->str();
-  to->joint = from.joint()->str();
-  to->end = Text(from.end());
-  if (from.bone() != nullptr) to->bone = ToVec3(*from.bone());
-  if (from.forward() != nullptr) to->forward = ToVec3(*from.forward());
-  to->beta_degrees = from.beta_degrees();
-  return Enum(from.mode(), &to->mode, at + ".mode");
-}
-
-void ReadTwist(const schema::TwistDriver& from, wrinkle::TwistDriver* to) {
-  to->joint = from.joint()->str();
-  if (from.axis() != nullptr) to->axis = ToVec3(*from.axis());
-  to->full_degrees = from.full_degrees();
-  if (from.through() == nullptr) return;
-  for (const String* joint : *from.through()) to->through.push_back(joint->str());
-}
-
-void ReadStrain(const schema::StrainDriver& from, wrinkle::StrainDriver* to) {
-  to->joint = from.joint()->str();
-  for (const String* joint : *from.joints()) to->joints.push_back(joint->str());
-  for (const schema::PatchVertex* vertex : *from.vertices()) {
-    wrinkle::StrainDriver::Vertex& added = to->vertices.emplace_back();
-    added.position = ToVec3(*vertex->position());
-    added.joints.assign(vertex->joints()->begin(), vertex->joints()->end());
-    added.skin_weights.assign(vertex->skin_weights()->begin(), vertex->skin_weights()->end());
-  }
-  to->triangles.assign(from.triangles()->begin(), from.triangles()->end());
-  to->direction = ToVec3(*from.direction());
-  to->full_compression = from.full_compression();
-  to->size = from.size();
+  return list;
 }
 
 Status ReadDriver(const schema::Driver& from, const std::string& at, wrinkle::Driver* to) {
   to->name = from.name()->str();
-  const int kinds = (from.pose() != nullptr) + (from.hinge() != nullptr) +
-                    (from.ball() != nullptr) + (from.twist() != nullptr) +
-                    (from.blend_shape() != nullptr) + (from.strain() != nullptr);
+  int kinds = 0;
+#define FURROW_KIND_COUNT(Name, field) kinds += from.field() != nullptr ? 1 : 0;
+  FURROW_DRIVER_KINDS(FURROW_KIND_COUNT)
+#undef FURROW_KIND_COUNT
   if (kinds != 1) {
     return InvalidField(
-        "a driver has exactly one of pose, hinge, ball, twist, blend_shape and strain, not " +
-            std::to_string(kinds),
-        at);
+        "a driver has exactly one of " + ListOfKinds() + ", not " + std::to_string(kinds), at);
   }
-  using Kind = wrinkle::Driver::Kind;
-  if (from.pose() != nullptr) {
-    to->kind = Kind::kPose;
-    return ReadPoseDriver(*from.pose(), at + ".pose", &to->pose);
+#define FURROW_KIND_READ(Name, field)                              \
+  if (from.field() != nullptr) {                                   \
+    to->kind = wrinkle::Driver::Kind::k##Name;                     \
+    return ReadFields(*from.field(), at + "." #field, &to->field); \
   }
-  if (from.hinge() != nullptr) {
-    to->kind = Kind::kHinge;
-    ReadHinge(*from.hinge(), &to->hinge);
-  } else if (from.ball() != nullptr) {
-    to->kind = Kind::kBall;
-    return ReadBall(*from.ball(), at + ".ball", &to->ball);
-  } else if (from.twist() != nullptr) {
-    to->kind = Kind::kTwist;
-    ReadTwist(*from.twist(), &to->twist);
-  } else if (from.strain() != nullptr) {
-    to->kind = Kind::kStrain;
-    ReadStrain(*from.strain(), &to->strain);
-  } else {
-    to->kind = Kind::kBlendShape;
-    to->blend_shape = {from.blend_shape()->blend_shape()->str(), from.blend_shape()->neutral(),
-                       from.blend_shape()->full()};
-  }
+  FURROW_DRIVER_KINDS(FURROW_KIND_READ)
+#undef FURROW_KIND_READ
   return {};
 }
 
@@ -145,10 +78,10 @@ Status ReadRegion(const schema::Region& from, const std::string& at, wrinkle::Re
   to->mask.above = mask.above();
   to->mask.below = mask.below();
   to->mask.radius = mask.radius();
-  FURROW_RETURN_IF_ERROR(Enum(mask.kind(), &to->mask.kind, at + ".mask.kind"));
-  FURROW_RETURN_IF_ERROR(Enum(mask.lambda(), &to->mask.lambda, at + ".mask.lambda"));
-  FURROW_RETURN_IF_ERROR(Enum(from.combine(), &to->combine, at + ".combine"));
-  FURROW_RETURN_IF_ERROR(Enum(from.modulation(), &to->modulation, at + ".modulation"));
+  FURROW_RETURN_IF_ERROR(ReadEnum(mask.kind(), &to->mask.kind, at + ".mask.kind"));
+  FURROW_RETURN_IF_ERROR(ReadEnum(mask.lambda(), &to->mask.lambda, at + ".mask.lambda"));
+  FURROW_RETURN_IF_ERROR(ReadEnum(from.combine(), &to->combine, at + ".combine"));
+  FURROW_RETURN_IF_ERROR(ReadEnum(from.modulation(), &to->modulation, at + ".modulation"));
   if (from.neighbours() != nullptr) {
     for (const String* name : *from.neighbours()) to->neighbours.push_back(name->str());
   }
@@ -200,7 +133,7 @@ Status ReadMap(const schema::WrinkleMap& from, const std::string& at, wrinkle::W
   to->cavity = Text(from.cavity());
   to->amplitude = from.amplitude();
   to->opposes = Text(from.opposes());
-  return Enum(from.surface(), &to->surface, at + ".surface");
+  return ReadEnum(from.surface(), &to->surface, at + ".surface");
 }
 
 }  // namespace

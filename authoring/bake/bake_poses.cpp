@@ -7,9 +7,9 @@
 #include <glm/geometric.hpp>
 
 #include "base/status.h"
-#include "wrinkle/drivers/reference_pose.h"
+#include "wrinkle/fields/rig_field.h"
 #include "wrinkle/rig/full_pose.h"
-#include "wrinkle/rig/rig_field.h"
+#include "wrinkle/skeleton/reference_pose.h"
 #include "wrinkle/skeleton/retarget.h"
 
 namespace furrow::authoring {

@@ -14,8 +14,8 @@
 #include "base/checked_json.h"
 #include "base/files.h"
 #include "base/status.h"
+#include "wrinkle/fields/rig_field.h"
 #include "wrinkle/rig/rig_check.h"
-#include "wrinkle/rig/rig_field.h"
 
 namespace furrow::authoring {
 namespace {

@@ -9,8 +9,8 @@
 #include <glm/vec4.hpp>
 
 #include "render/settings/settings.h"
-#include "wrinkle/drivers/sliding_mask.h"
 #include "wrinkle/solver/solver.h"
+#include "wrinkle/weights/sliding_mask.h"
 
 namespace furrow::render {
 

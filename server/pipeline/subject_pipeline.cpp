@@ -4,18 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "wrinkle/solver/batch_solver.h"
-
 namespace furrow::server {
-namespace {
-
-// What it keeps is scratch, of no subject, so a thread has one.
-wrinkle::BatchSolver& Batch() {
-  thread_local wrinkle::BatchSolver batch;
-  return batch;
-}
-
-}  // namespace
 
 SubjectPipeline::SubjectPipeline(std::shared_ptr<const StreamDefinition> stream)
     : stream_(std::move(stream)), solver_(stream_->binding) {
@@ -24,10 +13,8 @@ SubjectPipeline::SubjectPipeline(std::shared_ptr<const StreamDefinition> stream)
 }
 
 wrinkle::JobStatus SubjectPipeline::Solve(std::uint32_t sequence, std::int64_t capture_time_us) {
-  // As a batch of one: twice as fast as by itself, and the very numbers of any larger batch.
-  wrinkle::BatchUpdate update = Prepare(sequence, capture_time_us);
-  Batch().Run({&update, 1});
-  return Finish(update.status);
+  const wrinkle::BatchUpdate update = Prepare(sequence, capture_time_us);
+  return Finish(solver_.Update(*update.pose, update.dt));
 }
 
 wrinkle::BatchUpdate SubjectPipeline::Prepare(std::uint32_t sequence,
@@ -97,7 +84,7 @@ void SubjectPipeline::SolveAnew() {
 void SubjectPipeline::SetLevel(std::size_t num_drivers) {
   if (num_drivers == level()) return;
   // A pose that was refused is refused again.
-  (void)Batch().SetLevel(&solver_, solved_pose(), num_drivers);
+  (void)solver_.SetLevel(solved_pose(), num_drivers);
 }
 
 wrinkle::JobStatus SubjectPipeline::Decay(double dt) { return solver_.Decay(dt); }

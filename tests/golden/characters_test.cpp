@@ -15,7 +15,7 @@
 #include "motion/pose_source.h"
 #include "rig/rig_reference_pose.h"
 #include "sitter.h"
-#include "wrinkle/drivers/reference_pose.h"
+#include "wrinkle/skeleton/reference_pose.h"
 
 namespace furrow::render::golden {
 namespace {

@@ -8,7 +8,8 @@
 
 namespace furrow::wrinkle {
 
-// The names of all joints that a rig reads: its anchor, its reference poses' and its drivers'.
+// The names of all joints that a rig reads: the anchor and the joints of reference poses and
+// drivers.
 [[nodiscard]] std::set<std::string> JointsOf(const Rig& rig);
 
 }  // namespace furrow::wrinkle

@@ -8,8 +8,8 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "base/ascii.h"
-#include "wrinkle/drivers/reference_pose.h"
 #include "wrinkle/skeleton/finite.h"
+#include "wrinkle/skeleton/reference_pose.h"
 
 namespace furrow::wrinkle {
 

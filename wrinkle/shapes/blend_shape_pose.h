@@ -12,24 +12,24 @@
 
 namespace furrow::wrinkle {
 
-// Lets a stream of blend shapes move joints: a reference pose of the rig that has a blend shape's
-// name (whatever the case) is what that blend shape does to the face at 1. Made once a stream, for
-// the skeleton that is moved; then one pass a pose.
+// Lets a stream of blend shapes move joints: a reference pose with the name of a blend shape
+// (matched without case) is the face at coefficient 1. Created once per stream for the skeleton to
+// move, then run once per pose.
 class BlendShapePose {
  public:
   BlendShapePose() = default;  // moves nothing
 
   // `blend_shapes`: the stream's names, in its order. Names without a pose, and joints that
-  // `skeleton` lacks, are passed over.
+  // `skeleton` lacks, are ignored.
   [[nodiscard]] static BlendShapePose Create(const Rig& rig, const Skeleton& skeleton,
                                              std::span<const std::string> blend_shapes);
 
-  // True where no blend shape of the stream moves anything.
+  // True if no blend shape of the stream moves a joint.
   [[nodiscard]] bool empty() const { return moves_.empty(); }
 
-  // Adds to `local`, num_joints of the skeleton, what `coefficients` (the stream's order; those
-  // past its end count as 0) say: translations add up, rotations are scaled as rotation vectors and
-  // follow one another. Does not allocate; changes nothing where it fails.
+  // Adds the blend shapes' motion to `local`, which has num_joints of the skeleton. Translations
+  // add up; rotations are scaled as rotation vectors and applied one after another. Missing
+  // coefficients count as 0. Does not allocate, and changes nothing on failure.
   [[nodiscard]] JobStatus Run(std::span<const float> coefficients,
                               std::span<Transform> local) const;
 
@@ -38,7 +38,7 @@ class BlendShapePose {
     int blend_shape;
     int joint;
     glm::vec3 translation;  // in the parent's axes
-    glm::vec3 axis;         // unit, in the joint's own axes; any where `angle` is 0
+    glm::vec3 axis;         // unit, in the joint's own axes; arbitrary if `angle` is 0
     float angle;            // radians
   };
   std::vector<Move> moves_;

@@ -14,21 +14,21 @@
 
 namespace furrow::wrinkle {
 
-// What a stream's pose comes to on the character that is drawn: its joints carried over, what its
-// blend shapes move put upon that, all in model space. Keeps the memory; one a thread.
+// A stream's pose on the drawn character, in model space: the joints are retargeted, then the blend
+// shapes' motion is added. Owns the memory; use one per thread.
 class CharacterPose {
  public:
-  // The character's skeleton; outlives it.
+  // `skeleton`: the character's; outlives this object.
   explicit CharacterPose(const Skeleton* skeleton)
       : skeleton_(skeleton), local_(skeleton->num_joints()), model_(skeleton->num_joints()) {}
 
-  // `retarget` and `shapes` are from the stream to this skeleton; `joints` and `blend_shapes` in
-  // the stream's order. Does not allocate. Where it fails model() is no pose.
+  // `retarget` and `shapes` map the stream to this skeleton. `joints` and `blend_shapes` are in the
+  // stream's order. Does not allocate. After a failure model() is undefined.
   [[nodiscard]] JobStatus Run(const Retarget& retarget, const BlendShapePose& shapes,
                               std::span<const Transform> joints,
                               std::span<const float> blend_shapes);
 
-  // Of the last Run(): num_joints, model space.
+  // The result of the last Run(): num_joints matrices.
   [[nodiscard]] std::span<const glm::mat4> model() const { return model_; }
 
  private:

@@ -10,19 +10,28 @@
 #include <utility>
 #include <vector>
 
-#include "wrinkle/simd/lane_plan.h"
-#include "wrinkle/solver/binding_data.h"
+#include <glm/glm.hpp>
+
+#include "wrinkle/simd/lane_rows.h"
+#include "wrinkle/simd/point_plan.h"
+#include "wrinkle/simd/row_gather.h"
+#include "wrinkle/skeleton/joint_chain.h"
 
 namespace furrow::wrinkle {
 
-// Makes a LanePlan: which drivers share a block, and where things go. Private to wrinkle/.
+inline constexpr std::int32_t kLaneYes = -1;  // a set lane of a mask
+inline constexpr std::int32_t kLaneNo = 0;
 
 template <int kN>
 void SetLane(const glm::vec<kN, float>& v, std::size_t lane, FloatRow* rows) {
   for (int i = 0; i < kN; ++i) rows[i].at[lane] = v[i];
 }
 
-// Up to sixteen indices, one a lane; the first one again where there is none.
+// Sets the joint of one lane. kNoJoint: the lane's chain has ended; the lane then reads joint 0 and
+// ignores it.
+void SetJoint(int joint, std::size_t lane, JointStep* step);
+
+// Up to sixteen indices, one per lane. Lanes past `count` read the first index.
 struct Lanes {
   std::array<int, kRowLanes> at{};
   std::size_t count = 0;
@@ -31,8 +40,9 @@ struct Lanes {
   [[nodiscard]] int operator[](std::size_t lane) const { return at[lane < count ? lane : 0]; }
 };
 
-// Entries 0 to `count` - 1 in blocks: by their `kind`, which lanes of a block share, then by
-// `length`, so that those whose loops are equally long share a block, then in order.
+// Distributes entries 0 to `count` - 1 over blocks. All lanes of a block have the same `kind`.
+// Within a kind, entries are sorted by `length`, so that chains of one length share a block, and
+// then by index.
 template <class Kind, class Length>
 std::vector<Lanes> InBlocks(std::size_t count, Kind kind, Length length) {
   std::vector<int> order(count);
@@ -50,62 +60,43 @@ std::vector<Lanes> InBlocks(std::size_t count, Kind kind, Length length) {
   return blocks;
 }
 
-// Of a PoseDriverSet.
-using PoseEntries = std::span<const PoseDriverSet::Entry* const>;
+// The `kind` for InBlocks() where all entries may share a block.
+inline constexpr auto kOneKind = [](int) { return 0; };
 
+// Lays out the drivers of a binding in lanes: adds points, reserves rows of the scratch memory, and
+// records the place of each driver value. Each kind's driver set plans its own blocks with it.
+// Private to wrinkle/.
 class LanePlanner {
  public:
-  explicit LanePlanner(const BindingData& data)
-      : data_(data), places_(static_cast<std::size_t>(data.first_values.back()), 0) {}
+  // `num_values` driver values in all. The references outlive the planner.
+  LanePlanner(const JointChains& chains, std::size_t num_values, PointPlan* plan)
+      : chains_(chains), plan_(*plan), places_(num_values, 0) {}
 
-  LanePlan Plan() && {
-    AddPoses();
-    AddHinges();
-    AddBalls();
-    AddTwists();
-    AddBlendShapes();
-    AddNnls();
-    AddStrains();
-    plan_.values = RowGather(places_, 0);
-    return std::move(plan_);
+  [[nodiscard]] const JointChains& chains() const { return chains_; }
+  [[nodiscard]] PointPlan& plan() { return plan_; }
+
+  // Adds a row with the given points of the chains. Returns the row's index.
+  std::uint32_t AddPoints(const Lanes& points);
+  // Reserves rows of the scratch memory. Returns the index of the first.
+  std::uint32_t AddRows(std::size_t count) {
+    return std::exchange(num_rows_, num_rows_ + static_cast<std::uint32_t>(count));
   }
+  // Records that a driver's values are written to lane `lane` of the block's rows.
+  void Place(int first_value, std::size_t num_values, std::size_t lane, Block* block);
+  // Reserves rows for the values of a single driver, one after another.
+  void PlaceSingle(SingleDriver* driver);
+
+  // After all kinds: brings the values from the scratch memory into the order of the rig.
+  [[nodiscard]] RowGather Values() const { return {places_, 0}; }
+  [[nodiscard]] std::uint32_t num_rows() const { return num_rows_; }
 
  private:
-  void AddPoses();
-  void AddPoseBlock(PoseEntries entries);
-  void AddPosePoints(PoseEntries entries, PoseBlock* block);
-  void AddLeafBlock(const PoseBlock& block);
-  void AddProjections(PoseEntries entries, PoseBlock* block);
-  void AddFalloffs(PoseEntries entries, PoseBlock* block);
-  void AddHinges();
-  void AddBalls();
-  void AddTwists();
-  void AddTwistStep(const Lanes& lanes, std::size_t index);
-  void AddBlendShapes();
-  void AddNnls();
-  void AddStrains();
-
-  // Points of the binding's JointChains: the row's index.
-  std::uint32_t AddPoints(const Lanes& points);
   void AddStep(const Lanes& points, std::size_t index, bool up);
-  // Rows of the scratch memory: the first one's index.
-  std::uint32_t AddRows(std::size_t count) {
-    return std::exchange(plan_.num_rows, plan_.num_rows + static_cast<std::uint32_t>(count));
-  }
-  // A driver's values come to one lane of the block's rows.
-  void Place(int first_value, std::size_t num_values, std::size_t lane, Block* block);
-  // They come to rows of their own, one after the other.
-  void PlaceAlone(LoneDriver* driver);
-  template <class Entry>
-  auto LengthOfBones(std::span<const Entry> entries) const;
-  // What hinges and balls have in common.
-  template <class Entry>
-  void BindBones(std::span<const Entry> entries, const Lanes& lanes, std::size_t num_values,
-                 BoneBlock* block);
 
-  const BindingData& data_;
-  LanePlan plan_;
+  const JointChains& chains_;
+  PointPlan& plan_;
   std::vector<std::uint32_t> places_;  // of the rig's values, in the scratch memory
+  std::uint32_t num_rows_ = 1;         // row 0 holds zeros
 };
 
 }  // namespace furrow::wrinkle

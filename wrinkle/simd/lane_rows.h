@@ -8,8 +8,9 @@
 
 namespace furrow::wrinkle {
 
-// Sixteen numbers that are worked on side by side: a vector of AVX-512, two of AVX2, four of SSE4
-// and NEON. Tables made of rows are the same for every set of instructions. Private to wrinkle/.
+// A row is sixteen numbers that are processed side by side: one vector of AVX-512, two of AVX2,
+// four of SSE4 and NEON. Tables of rows are the same for every instruction set. Private to
+// wrinkle/.
 inline constexpr std::size_t kRowLanes = 16;
 inline constexpr std::size_t kRowAlignment = 64;  // a cache line
 
@@ -21,12 +22,12 @@ struct alignas(kRowAlignment) IntRow {
   std::int32_t at[kRowLanes] = {};
 };
 
-// How many rows `count` numbers fill.
+// The number of rows that hold `count` numbers.
 [[nodiscard]] constexpr std::size_t NumRows(std::size_t count) {
   return (count + kRowLanes - 1) / kRowLanes;
 }
 
-// A list that begins where a row may, so that no vector of it lies in two cache lines.
+// Aligns lists to rows, so that no vector crosses a cache line.
 template <class T>
 struct RowAllocator {
   using value_type = T;

@@ -8,7 +8,7 @@ namespace furrow::wrinkle {
 namespace {
 
 constexpr std::uint32_t kLane =
-    kRowLanes - 1;  // of an index; the rest of it is where its row begins
+    kRowLanes - 1;  // mask for the lane of an index; the other bits are the start of its row
 constexpr auto kSecond = static_cast<std::int32_t>(kRowLanes);
 constexpr auto kOther = std::numeric_limits<std::int32_t>::min();
 

@@ -10,32 +10,32 @@
 
 namespace furrow::wrinkle {
 
-// Numbers picked out of a list, always from the same places: which rows of it to load for each row
-// that comes out, and which lanes to take. Processors' own gathers take many times as long, one
-// number after another. Private to wrinkle/; carried out by batch_lanes-inl.h.
+// A plan to pick numbers from fixed places of a list: which rows of the list to load for each
+// output row, and which of their lanes to take. It is many times faster than a processor's own
+// gathers, which load one number after another. Private to wrinkle/. simd/lanes-inl.h performs it.
 class RowGather {
  public:
-  // Two rows of the list, and which of their lanes goes to each lane of what comes out: in the low
-  // bits, the second row's after the first one's; negative where another step's goes there.
+  // Two rows of the list, and the source of each output lane: 0 to 15 for a lane of the first row,
+  // 16 to 31 for a lane of the second row, negative for a lane that another step fills.
   struct Step {
     IntRow lanes;
-    std::uint32_t first = 0;  // where the rows begin in the list
+    std::uint32_t first = 0;  // the start of each row in the list
     std::uint32_t second = 0;
-    // Of a first step: how many others there are for the same row, and where they begin in more().
+    // In a first step: the number of further steps for the same row, and their start in more().
     std::uint32_t num_more = 0;
     std::uint32_t first_more = 0;
   };
 
   RowGather() = default;
-  // `indices` of the list, which is read in whole rows; what comes out fills whole rows with the
-  // number at `filler`.
+  // `indices`: places in the list, which is read in whole rows. The output is filled to whole rows
+  // with the number at `filler`.
   RowGather(std::span<const std::uint32_t> indices, std::uint32_t filler);
 
   [[nodiscard]] std::size_t num_rows() const { return first_steps_.size(); }
-  // One for each row that comes out. Most need no more than that.
+  // One per output row. Most rows need no further steps.
   [[nodiscard]] const Step* first_steps() const { return first_steps_.data(); }
   [[nodiscard]] const Step* more() const { return more_.data(); }
-  // The places themselves, kRowLanes for each row.
+  // The places themselves, kRowLanes per output row.
   [[nodiscard]] const std::uint32_t* indices() const { return indices_.data(); }
 
  private:

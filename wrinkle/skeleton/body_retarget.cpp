@@ -17,13 +17,13 @@ using enum JointRole;
 
 const glm::quat kNoTurn(1.0f, 0.0f, 0.0f, 0.0f);
 constexpr float kLeastLength = 1e-6f;
-// Hips that are nearer to their rest than this have not moved (leg lengths): what the rounding of a
-// file's text and of the joints above them adds up to.
+// Hips closer to their rest than this distance, in leg lengths, have not moved. The distance covers
+// the rounding of a file's text and of the joints above.
 constexpr float kStill = 1e-5f;
 
 std::size_t At(int index) { return static_cast<std::size_t>(index); }
 
-// The last joint of the nearest role above `role` that the body has.
+// The last joint of the nearest role above `role` that exists in the body.
 int JointAbove(const Body& body, JointRole role) {
   for (JointRole above = ParentOf(role); above != kNone; above = ParentOf(above)) {
     if (body.Last(above) != kNoJoint) return body.Last(above);
@@ -61,8 +61,8 @@ glm::mat4 ModelOf(int joint, std::span<const std::int16_t> parents,
   return model;
 }
 
-// Whether the rest pose stands on a floor at height 0. A BVH file's often does not: its root rests
-// at the origin and its motion says where it is.
+// True if the rest pose stands on a floor at height 0. That of a BVH file often does not: its root
+// rests at the origin, and only its motion states the position.
 bool StandsOnFloor(const Body& body, float leg) {
   const float height = glm::dot(body.RestOrigin(body.First(kHips)), UpAxis(body));
   return std::abs(height - leg) < 0.3f * leg;
@@ -128,8 +128,9 @@ void BodyRetarget::PlanTree(const Body& source, const Body& target) {
   }
 }
 
-// Spreads the turns of the source's chain evenly over the target's: the first joint takes part of
-// the first turn where it has more joints, the last one always the last turn.
+// Distributes the turns of the source's chain evenly over the target's chain. The last joint always
+// receives the last turn. If the target has more joints, its first joint receives part of the first
+// turn.
 void BodyRetarget::PlanChain(const Body& source, const Body& target,
                              std::span<const JointRole> roles) {
   const std::vector<int> from = JointsOf(source, roles);
@@ -138,7 +139,7 @@ void BodyRetarget::PlanChain(const Body& source, const Body& target,
   const int above = JointAbove(source, roles.front());
   for (std::size_t i = 0; i < to.size(); ++i) {
     const std::size_t place = (i + 1) * from.size();  // in steps of 1 / to.size()
-    const std::size_t lower = place / to.size();      // joints passed whole
+    const std::size_t lower = place / to.size();      // source joints passed completely
     const std::size_t part = place % to.size();
     Joint& joint = joints_[At(to[i])];
     joint.from = lower == 0 ? above : from[lower - 1];
@@ -147,7 +148,7 @@ void BodyRetarget::PlanChain(const Body& source, const Body& target,
   }
 }
 
-// One bone of a limb: each joint of the target's has the whole swing, the twist grows along it.
+// One bone of a limb: every target joint receives the whole swing; the twist grows along the bone.
 void BodyRetarget::PlanBone(const Body& source, const Body& target, JointRole role) {
   const std::span<const int> from = source.Chain(role);
   const std::span<const int> to = target.Chain(role);
@@ -184,7 +185,8 @@ void BodyRetarget::PlanHips(const Body& source, const Body& target,
   rests_off_floor_ = !StandsOnFloor(source, source_leg) && StandsOnFloor(target, target_leg);
   if (!rests_off_floor_) return;
   still_ = kStill * source_leg;
-  // The source's floor is the target's: where its hips are while it stands, the target's rest.
+  // Both bodies share the floor: the source's standing hips correspond to the target's resting
+  // hips.
   const glm::vec3 up = UpAxis(target);
   const float target_height = glm::dot(target_rest_place_, up);
   const float source_height =
@@ -200,7 +202,7 @@ glm::quat BodyRetarget::Turn(int source_joint, const Rotations& rotations) const
   return turn_ * turn * glm::conjugate(turn_);
 }
 
-// With the rest pose's lengths: senders that leave translations out are many.
+// Uses the lengths of the rest pose, because many senders omit translations.
 glm::vec3 BodyRetarget::BoneVector(const Joint& joint, const Rotations& rotations) const {
   glm::vec3 bone(0.0f);
   for (int i = joint.end; i != joint.first; i = source_parents_[At(i)]) {
@@ -226,7 +228,7 @@ glm::quat BodyRetarget::TurnOf(const Joint& joint, const Rotations& rotations) c
 
 glm::vec3 BodyRetarget::HipsPlace(std::span<const Transform> pose) const {
   const glm::vec3 place(ModelOf(source_hips_, source_parents_, pose)[3]);
-  // Without motion of its own, a root that rests off the floor tells no place.
+  // A root that rests off the floor states no position unless it moves.
   if (rests_off_floor_ && glm::distance(place, source_rest_place_) <= still_) {
     return target_rest_place_;
   }

@@ -13,12 +13,12 @@ namespace {
 using enum JointRole;
 
 constexpr float kLeastLength = 1e-6f;
-// A foot that points further down than this (sine) is not flat on the floor at rest.
+// Sine of the steepest slope of a foot that counts as flat on the floor at rest.
 constexpr float kSteepFoot = 0.8f;
 
 std::size_t Index(JointRole role) { return static_cast<std::size_t>(role); }
 
-// A frame of one direction and a second, less certain one across it; columns orthonormal.
+// An orthonormal frame from one direction and a second, less certain direction across it.
 std::optional<glm::mat3> Frame(const std::optional<glm::vec3>& along,
                                const std::optional<glm::vec3>& aside) {
   if (!along || !aside) return std::nullopt;
@@ -29,7 +29,7 @@ std::optional<glm::mat3> Frame(const std::optional<glm::vec3>& along,
   return glm::mat3(x, y, glm::cross(x, y));
 }
 
-// The model axis, with its sign, that `v` is nearest to, leaving out axis `but`.
+// The signed model axis nearest to `v`, except axis `but`.
 glm::vec3 NearestAxis(const glm::vec3& v, int but = -1) {
   int best = but == 0 ? 1 : 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -54,7 +54,7 @@ std::optional<glm::vec3> Leftward(const Body& body) {
   return std::nullopt;
 }
 
-// Axes left, up, forward; each one of the model's.
+// The left, up and forward directions, each along a model axis.
 std::optional<glm::mat3> BodyAxes(const Body& body) {
   const auto up = Up(body);
   const auto left = Leftward(body);
@@ -66,7 +66,7 @@ std::optional<glm::mat3> BodyAxes(const Body& body) {
   return glm::mat3(x, y, glm::cross(x, y));
 }
 
-// The swing that brings the target's bone, as aligned so far, to where the source's points.
+// The swing from the target's bone, as aligned so far, to the direction of the source's bone.
 glm::quat AlignBone(const Body& source, const Body& target, JointRole role, const glm::quat& turn,
                     const glm::quat& so_far) {
   const auto wanted = source.RestSpan(role, BoneEnd(role));
@@ -75,7 +75,7 @@ glm::quat AlignBone(const Body& source, const Body& target, JointRole role, cons
   return Swing(so_far * *own, turn * *wanted) * so_far;
 }
 
-// Hands whose index and little fingers are known turn their palms, too.
+// Also aligns the palms of hands with known index and little fingers.
 glm::quat AlignHand(const Body& source, const Body& target, JointRole hand, const glm::quat& turn,
                     const glm::quat& so_far) {
   const bool left = hand == kLeftHand;
@@ -87,8 +87,8 @@ glm::quat AlignHand(const Body& source, const Body& target, JointRole hand, cons
   return turn * glm::quat_cast(*wanted * glm::transpose(*own));
 }
 
-// Feet that are flat at rest only take on a heading; how far below the ankle the toes' joint lies
-// is the rig's matter. `so_far` counts where a foot is not flat.
+// Feet that are flat at rest only receive a heading, because the height of the ankle above the toe
+// joint is a property of the rig. Other feet keep `so_far`.
 glm::quat AlignFoot(const Body& source, const Body& target, JointRole foot, const glm::quat& turn,
                     const glm::quat& so_far) {
   const glm::quat flat(1.0f, 0.0f, 0.0f, 0.0f);
@@ -173,7 +173,7 @@ JointRole BoneEnd(JointRole role) {
     case kLeftLittleIntermediate: return kLeftLittleDistal;
     default: break;
   }
-  // The right side is the left one's mirror; the middle of the body and the ends have no bone.
+  // The right side mirrors the left. The middle of the body and the ends of limbs have no bone.
   return role > MirrorOf(role) ? MirrorOf(BoneEnd(MirrorOf(role))) : kNone;
 }
 

@@ -3,12 +3,12 @@
 
 #include <span>
 
+#include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 
-#include "wrinkle/skeleton/transform.h"
-
-// Whether every number is finite, without branches: x * 0 is 0 for a finite x and NaN for the rest,
-// so a sum of such products tells, and no large value can overflow it.
+// Tests that every number is finite, without branches: x * 0 is 0 for a finite x and NaN otherwise,
+// so the sum of these products is 0 exactly if all numbers are finite. The sum cannot overflow.
 namespace furrow::wrinkle {
 
 [[nodiscard]] inline bool AllFinite(std::span<const float> values) {
@@ -23,16 +23,6 @@ namespace furrow::wrinkle {
 
 [[nodiscard]] inline bool AllFinite(const glm::quat& q) {
   return q.x * 0.0f + q.y * 0.0f + q.z * 0.0f + q.w * 0.0f == 0.0f;
-}
-
-[[nodiscard]] inline bool AllFinite(std::span<const Transform> transforms) {
-  glm::vec3 zero(0.0f);
-  glm::quat zero_rotation(0.0f, 0.0f, 0.0f, 0.0f);
-  for (const Transform& transform : transforms) {
-    zero += transform.translation * 0.0f + transform.scale * 0.0f;
-    zero_rotation = zero_rotation + transform.rotation * 0.0f;
-  }
-  return AllFinite(zero) && AllFinite(zero_rotation);
 }
 
 [[nodiscard]] inline bool AllFinite(std::span<const glm::mat4> matrices) {

@@ -9,18 +9,18 @@
 
 namespace furrow::wrinkle {
 
-// Points fixed to joints, each seen from a base joint: what drivers measure.
+// Points fixed to joints, each in the space of a base joint. Drivers measure these points.
 //
-// A point is carried along the joints between its own and the base alone, never through the root.
-// So a character that walks kilometres from the origin loses no precision, and a motion of the
-// whole character leaves every point unchanged to the last bit.
+// A point is carried along the joints between its own joint and the base, never through the root. A
+// character kilometres from the origin therefore loses no precision, and a motion of the whole
+// character changes no bit of any point.
 class JointChains {
  public:
-  // A point at `offset` (joint's space) of `joint`, seen from `base` (kNoJoint: model space).
-  // Returns its index.
+  // Adds a point at `offset` in the space of `joint`, to be measured in the space of `base`
+  // (kNoJoint: model space). Returns its index.
   int Add(const Skeleton& skeleton, int joint, const glm::vec3& offset, int base);
 
-  // What a point is carried along: joints up to the one shared with the base, then down to it.
+  // A point's way: the joints up to the ancestor shared with the base, then the joints down to it.
   struct Chain {
     glm::vec3 offset{0.0f};
     std::span<const std::int16_t> up;
@@ -33,14 +33,14 @@ class JointChains {
             joints.subspan(p.first + p.num_up, p.num_down)};
   }
 
-  // Where point `point` is, in its base's space. `local` is the skeleton's pose.
+  // The position of point `point` in its base's space. `local` is the skeleton's pose.
   [[nodiscard]] glm::vec3 Evaluate(std::span<const Transform> local, int point) const;
 
  private:
   struct Point {
     glm::vec3 offset{0.0f};
-    std::uint32_t first = 0;   // into joints_: first those up to the shared ancestor, then
-    std::uint16_t num_up = 0;  // those down to the base
+    std::uint32_t first = 0;   // into joints_: `num_up` joints up to the shared
+    std::uint16_t num_up = 0;  // ancestor, then `num_down` joints to the base
     std::uint16_t num_down = 0;
   };
   std::vector<Point> points_;

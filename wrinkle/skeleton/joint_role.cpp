@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, kFirstLeft> kMiddle = {
 struct SideRole {
   std::string_view left;
   std::string_view right;
-  JointRole parent;  // the left one
+  JointRole parent;  // of the left side
 };
 
 constexpr std::array<SideRole, kNumOfASide> kSides = {{

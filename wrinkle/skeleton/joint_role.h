@@ -9,10 +9,11 @@
 
 namespace furrow::wrinkle {
 
-// What a joint is in a human body, whatever it is called: VRM 1.0's humanoid bones, which name the
-// fingers, too. Left and right are the subject's own.
+// The part of a human body that a joint represents, independent of its name: the humanoid bones of
+// VRM 1.0, which include the fingers. Left and right are the subject's.
 //
-// A role may be held by several joints, one below the other (a neck of two joints): a chain.
+// Several joints below one another may have the same role and form a chain, such as a neck of two
+// joints.
 enum class JointRole : std::uint8_t {
   kNone,
   kHips,
@@ -73,17 +74,17 @@ enum class JointRole : std::uint8_t {
 };
 inline constexpr int kNumJointRoles = 56;  // with kNone
 
-// One a joint, in the skeleton's order; empty: nothing is known.
+// One role per joint, in the skeleton's order; empty: unknown.
 using JointRoles = std::vector<JointRole>;
 
-// "leftUpperArm", as VRM spells it; "none" for kNone.
+// VRM's spelling: "leftUpperArm"; "none" for kNone.
 [[nodiscard]] std::string_view ToString(JointRole role);
-// The role of that exact name; nullopt when there is none.
+// The role with exactly this name; nullopt if there is none.
 [[nodiscard]] std::optional<JointRole> ParseJointRole(std::string_view name);
 
 // The role above it in VRM's tree; kNone for the hips.
 [[nodiscard]] JointRole ParentOf(JointRole role);
-// The same role on the other side; the role itself in the middle of the body.
+// The same role on the other side; roles in the middle of the body are their own mirror.
 [[nodiscard]] JointRole MirrorOf(JointRole role);
 
 }  // namespace furrow::wrinkle

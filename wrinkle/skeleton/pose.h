@@ -17,17 +17,17 @@ enum class JobStatus {
   kBadTime,       // dt negative or not finite
 };
 
-// A subject's pose: one local transform a joint and one coefficient a blend shape.
+// A subject's pose: one local transform per joint and one coefficient per blend shape.
 struct LocalPose {
   std::vector<Transform> joints;    // num_joints, in the skeleton's order
-  std::vector<float> blend_shapes;  // in the stream's order of names; empty when it has none
+  std::vector<float> blend_shapes;  // in the stream's order; empty if the stream has none
 
   void SetRest(const Skeleton& skeleton);
 };
 
-// Local transforms to model-space matrices, parents first (ozz's job of the same name).
+// Converts local transforms to model-space matrices, parents first (like ozz's job of that name).
 //
-// - `skeleton` not null; `local` and `model` at least num_joints long.
+// - `skeleton` is not null; `local` and `model` have at least num_joints entries.
 // - Does not allocate. model[j] = model[parent] * T * R * S.
 struct LocalToModelJob {
   const Skeleton* skeleton = nullptr;

@@ -16,11 +16,12 @@ struct PoseFrame {
   LocalPose pose;  // skeleton.num_joints() joints
 };
 
-// How a wrinkle rig that says "this file, that frame" gets its pose, without its reader knowing any
-// recording format: motion/pose_source.h offers one, programs plug it in.
+// Loads a pose that a wrinkle rig references by file and frame, so that the reader of rigs needs no
+// recording formats. motion/pose_source.h has an implementation, which programs pass in.
 //
-// `path` exists; `frame` counts from 0. Errors name the file (kNotFound, kParse, kInvalidArgument:
-// no such frame, ...). May be called often for one file: a source should keep what it read last.
+// `path` exists; `frame` counts from 0. Errors name the file (kNotFound, kParse, kInvalidArgument
+// for a missing frame, ...). A source may be called often for one file and should cache the last
+// one.
 using PoseSource = std::function<Result<PoseFrame>(const std::filesystem::path& path, int frame)>;
 
 }  // namespace furrow::wrinkle

@@ -43,7 +43,7 @@ float SumOfTails(const Skeleton& skeleton) {
   return sum;
 }
 
-// Each target joint's joint of the source, by alias and then by name.
+// The source joint for each target joint, by alias and then by name.
 std::vector<int> MatchJoints(const Skeleton& source, const Skeleton& target,
                              std::span<const std::pair<std::string, std::string>> aliases) {
   std::vector<int> match;
@@ -57,8 +57,8 @@ std::vector<int> MatchJoints(const Skeleton& source, const Skeleton& target,
   return match;
 }
 
-// Ratio of sizes over the spans between matched joints, so that joints which only one of the two
-// skeletons has between them (a longer chain of spine joints) do not count.
+// The ratio of sizes over the spans between matched joints. Joints that only one skeleton has, such
+// as further spine joints, do not affect it.
 float SizeRatio(const Skeleton& source, const Skeleton& target, std::span<const int> match) {
   float source_sum = 0.0f;
   float target_sum = 0.0f;
@@ -77,8 +77,8 @@ float SizeRatio(const Skeleton& source, const Skeleton& target, std::span<const 
   return source_sum > 0.0f && target_sum > 0.0f ? target_sum / source_sum : 1.0f;
 }
 
-// Each target joint's joint of the source: by role where both have that role in as many joints,
-// else, for joints without a role on either side, by name.
+// The source joint for each target joint: by role if both skeletons have equally many joints with
+// that role; by name for joints without a role on either side.
 std::vector<int> PairJoints(const Body& source, const Body& target) {
   std::vector<int> match;
   for (int joint = 0; joint < target.skeleton().num_joints(); ++joint) {
@@ -97,7 +97,7 @@ std::vector<int> PairJoints(const Body& source, const Body& target) {
   return match;
 }
 
-// Whether bones of joints with roles are as long, but for the ratio of sizes, to 1 in 100.
+// True if the bones of joints with roles have the same lengths to 1%, up to the ratio of sizes.
 bool HaveSameShape(const Body& source, const Body& target, std::span<const int> match,
                    float scale) {
   constexpr float kAlike = 0.01f;
@@ -112,8 +112,8 @@ bool HaveSameShape(const Body& source, const Body& target, std::span<const int> 
   return true;
 }
 
-// Names of the source's joints that no joint of the target matches and that are not `read`
-// otherwise (one a joint).
+// The names of source joints that match no target joint and that are not `read` otherwise (one
+// entry per joint).
 std::vector<std::string> Unmatched(const Skeleton& source, std::span<const int> match,
                                    std::vector<bool> read) {
   for (const int joint : match) {
@@ -212,7 +212,8 @@ Transform Retarget::Carry(const Joint& joint, const Transform& source) const {
       joint.parent_to_target * (source.translation - joint.source_rest_translation) * scale_;
   if (source.scale != joint.source_rest_scale &&
       glm::all(glm::notEqual(joint.source_rest_scale, glm::vec3(0.0f)))) {
-    // Diagonal of Q S inverse(Q): a scale along the source's axes, seen along the target's.
+    // The diagonal of Q S inverse(Q): a scale along the source's axes, expressed in the target's
+    // axes.
     glm::mat3 squared = glm::mat3_cast(joint.to_target);
     for (int column = 0; column < 3; ++column) squared[column] *= squared[column];
     result.scale *= squared * (source.scale / joint.source_rest_scale);

@@ -13,26 +13,27 @@
 
 namespace furrow::wrinkle {
 
-// A length that tells a skeleton's scale: the sum of its rest bones'
-// lengths over the joints it shares by name with `other` (over all
-// joints when `other` is null). Never 0 for a skeleton with extent.
+// A measure of a skeleton's scale: the sum of the lengths of its rest bones, over the joints that
+// it shares by name with `other`, or over all joints if `other` is null. Above 0 for a skeleton
+// with extent.
 [[nodiscard]] float SkeletonSize(const Skeleton& skeleton, const Skeleton* other = nullptr);
 
 class BodyRetarget;
 
-// Carries poses of one skeleton to another: made once a stream, then one pass a pose.
+// Carries poses from one skeleton to another. Created once per stream, then run once per pose.
 //
-// By name, a joint's departure from rest travels in model axes (see JointDelta), so local frames
-// may differ; both rest poses should show the same stance. Translations are scaled by the ratio of
-// sizes. Scales are carried as a ratio to rest; where local frames differ by no multiple of 90
-// degrees, a non-uniform ratio is spread over the target's axes (uniform ones are always exact).
-// Joints that the source lacks rest; source joints that the target lacks are listed once.
+// By name, a joint's departure from rest is carried in model axes (see JointDelta), so local frames
+// may differ. Both rest poses should have the same stance. Translations are scaled by the ratio of
+// sizes. Scales are carried as a ratio to rest. If local frames do not differ by a multiple of 90
+// degrees, a non-uniform ratio is distributed over the target's axes; uniform ratios are always
+// exact. Joints that the source lacks stay at rest. unmatched_source() lists joints that the target
+// lacks.
 //
-// By role (see joint_role.h; body_retarget.h says how), two bodies need not be alike: the target's
-// limbs, hands and fingers point where the source's do, whatever the two rest poses, local frames
-// and proportions; chains of unlike counts share the bend; hips travel as far as the legs are long,
-// so that feet which stand still do. Translations of other joints with roles are carried where both
-// bodies have the same shape, and no others: bones keep their length.
+// By role (joint_role.h, body_retarget.h), the two bodies may differ. The target's limbs, hands and
+// fingers point in the source's directions, whatever the rest poses, local frames and proportions.
+// Chains with different numbers of joints share the bend. The hips' motion is scaled by the length
+// of the legs, so that feet that stand still stay still. Translations of other joints with roles
+// are only carried if both bodies have the same shape; otherwise bones keep their length.
 class Retarget {
  public:
   // `aliases`: (source name, target name), tried before equal names.
@@ -40,17 +41,18 @@ class Retarget {
       const Skeleton& source, const Skeleton& target,
       std::span<const std::pair<std::string, std::string>> aliases = {});
 
-  // By role where a joint has one on both sides, the rest by equal names. Roles one a joint each;
-  // where either list is empty or of another length, all goes by name.
-  // `toes_height`: of the source's toes' joints above the floor where feet stand flat, in leg
-  // lengths; matters where its rest pose does not stand on the floor. Unknown: as the target's.
+  // Carries by role the joints that have a role on both sides, and the others by equal names. Each
+  // list has one role per joint. If either list is empty or has another length, all joints are
+  // carried by name. `toes_height`: height of the source's toe joints above the floor when the feet
+  // are flat, in leg lengths. It matters if the source's rest pose does not stand on the floor.
+  // None: the target's height.
   [[nodiscard]] static Retarget Create(const Skeleton& source, const JointRoles& source_roles,
                                        const Skeleton& target, const JointRoles& target_roles,
                                        std::optional<float> toes_height = {});
 
-  // True where joints are carried by role.
+  // True if joints are carried by role.
   [[nodiscard]] bool by_role() const { return body_ != nullptr; }
-  // Joints of the source that change nothing.
+  // The source joints without any effect.
   [[nodiscard]] std::span<const std::string> unmatched_source() const { return unmatched_; }
 
   // `source` num_joints of the source, `target` of the target. Does not allocate.
@@ -66,8 +68,8 @@ class Retarget {
     glm::vec3 source_rest_scale{1.0f};
     Transform rest;  // target's
   };
-  // `match`: the source's joint of each of the target's. `stance`: the target's model rotations
-  // where it stands as the source does at rest. `turn`: source's model space to the target's.
+  // `match`: the source joint of each target joint. `stance`: the target's model rotations in the
+  // source's rest stance. `turn`: from the source's model space to the target's.
   void Plan(const Skeleton& source, const Skeleton& target, std::span<const int> match,
             std::span<const glm::quat> stance, const glm::quat& turn);
   [[nodiscard]] Transform Carry(const Joint& joint, const Transform& source) const;
@@ -76,7 +78,7 @@ class Retarget {
   std::vector<std::string> unmatched_;
   std::size_t num_source_ = 0;
   float scale_ = 1.0f;
-  std::shared_ptr<const BodyRetarget> body_;  // null: all goes by name
+  std::shared_ptr<const BodyRetarget> body_;  // null: all joints are carried by name
 };
 
 }  // namespace furrow::wrinkle

@@ -19,7 +19,7 @@ constexpr std::size_t kMaxNameBytes = 255;
 
 std::string Quoted(const std::string& name) { return "joint '" + name + "'"; }
 
-// FNV-1a, 64 bits, over little-endian bytes whatever the machine.
+// 64-bit FNV-1a over little-endian bytes on every machine.
 class Fnv1a {
  public:
   void AddByte(std::uint8_t byte) { hash_ = (hash_ ^ byte) * 0x100000001b3u; }
@@ -91,13 +91,13 @@ Status CheckJoints(const std::vector<JointDesc>& joints) {
   return {};
 }
 
-// A joint on the cycle that `start`, which no root reaches, hangs from.
+// A joint on the cycle above `start`, which no root reaches.
 int JointOnCycle(const std::vector<JointDesc>& joints, int start) {
   for (std::size_t step = 0; step < joints.size(); ++step) start = joints[start].parent;
   return start;
 }
 
-// Parents first, and otherwise the smallest index first: input in a valid order keeps its order.
+// Sorts parents before children, and otherwise by index. Input in a valid order keeps its order.
 Result<std::vector<int>> SortParentsFirst(const std::vector<JointDesc>& joints) {
   const int count = static_cast<int>(joints.size());
   std::vector<std::vector<int>> children(joints.size());
@@ -201,7 +201,7 @@ int Skeleton::Find(std::string_view name) const {
 }
 
 bool Skeleton::IsAncestor(int ancestor, int joint) const {
-  // Parents come first, so an ancestor's index is never larger.
+  // Parents precede children, so an ancestor never has a larger index.
   while (joint > ancestor) joint = parents_[joint];
   return joint == ancestor && joint >= 0;
 }

@@ -17,18 +17,18 @@ namespace furrow::wrinkle {
 inline constexpr int kNoJoint = -1;
 inline constexpr int kMaxJoints = 1024;
 
-// One joint as a file or a stream states it.
+// One joint as a file or a stream describes it.
 struct JointDesc {
   std::string name;               // unique, not empty, at most 255 bytes
   int parent = kNoJoint;          // index into the same list, in any order; kNoJoint for a root
   Transform rest;                 // local: relative to the parent
-  std::optional<glm::vec3> tail;  // local end of a leaf (BVH's End Site); none: derived
+  std::optional<glm::vec3> tail;  // local end of a leaf (BVH's End Site); none: see tails()
 };
 
 // An immutable tree (or forest) of named joints with their rest pose.
 //
-// Joints are stored parents first, so one forward loop computes model space. Create() sorts where
-// the input does not, and keeps the input order otherwise; `source_index` maps back.
+// Parents are stored before their children, so one forward loop computes model space. Create()
+// sorts the joints if necessary, and otherwise keeps the input order; source_index() maps back.
 class Skeleton {
  public:
   Skeleton() = default;
@@ -45,20 +45,21 @@ class Skeleton {
   // Model-space rotation and position of every joint in the rest pose.
   [[nodiscard]] std::span<const glm::mat4> rest_model() const { return rest_model_; }
   [[nodiscard]] std::span<const glm::quat> rest_model_rotations() const { return rest_rotations_; }
-  // End of the joint in its own space: the stated tail, else the mean of its children's rest
-  // translations, else (a leaf without end site) its own offset carried on.
+  // The end of each joint in its own space: the tail from JointDesc, or else the mean of its
+  // children's rest translations, or else (for a leaf) its own translation repeated.
   [[nodiscard]] std::span<const glm::vec3> tails() const { return tails_; }
-  // Index in the list given to Create() of every joint.
+  // The index of each joint in the list given to Create().
   [[nodiscard]] std::span<const std::int16_t> source_index() const { return source_; }
 
-  [[nodiscard]] int Find(std::string_view name) const;  // kNoJoint when there is none
-  // True where `ancestor` is `joint` itself or stands above it.
+  [[nodiscard]] int Find(std::string_view name) const;  // kNoJoint if there is none
+  // True if `ancestor` is `joint` itself or above it.
   [[nodiscard]] bool IsAncestor(int ancestor, int joint) const;
-  // FNV-1a over names, parents, rest pose and tails: equal skeletons hash alike on every machine.
+  // FNV-1a over names, parents, rest pose and tails: equal skeletons have equal hashes on every
+  // machine.
   [[nodiscard]] std::uint64_t hash() const { return hash_; }
 
  private:
-  // Everything derived from names, parents, rest pose and the tails that the input stated.
+  // Computes everything that follows from names, parents, rest pose and stated tails.
   void Finish(std::span<const std::optional<glm::vec3>> stated_tails);
 
   std::vector<std::string> names_;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrinkle/skeleton/transform.h"
 
-#include "wrinkle/skeleton/finite.h"
-
 namespace furrow::wrinkle {
 
 glm::mat4 ToMatrix(const Transform& transform) {

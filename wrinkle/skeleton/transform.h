@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+
+#include "wrinkle/skeleton/finite.h"
 
 namespace furrow::wrinkle {
 
 // Translation, rotation and scale of one joint; as a matrix T * R * S (glTF's order).
 //
-// Spaces are right-handed and Y up, a character faces +Z. Lengths are in the units of whoever made
-// the skeleton (metres in our own characters); no wrinkle weight depends on them.
+// Spaces are right-handed and Y up, a character faces +Z. Lengths are in the units of the
+// skeleton's source (metres in our own characters); no wrinkle weight depends on them.
 struct Transform {
   glm::vec3 translation{0.0f};
   glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};  // unit; glm's constructor takes w first
@@ -19,7 +23,17 @@ struct Transform {
 
 [[nodiscard]] glm::mat4 ToMatrix(const Transform& transform);
 
-// Every component finite and the rotation's length within 1e-3 of 1.
+[[nodiscard]] inline bool AllFinite(std::span<const Transform> transforms) {
+  glm::vec3 zero(0.0f);
+  glm::quat zero_rotation(0.0f, 0.0f, 0.0f, 0.0f);
+  for (const Transform& transform : transforms) {
+    zero += transform.translation * 0.0f + transform.scale * 0.0f;
+    zero_rotation = zero_rotation + transform.rotation * 0.0f;
+  }
+  return AllFinite(zero) && AllFinite(zero_rotation);
+}
+
+// Every component is finite and the rotation's length is within 1e-3 of 1.
 [[nodiscard]] bool IsValid(const Transform& transform);
 
 }  // namespace furrow::wrinkle

@@ -6,14 +6,15 @@
 
 namespace furrow::wrinkle {
 
-// Below this sum of squares of sine and cosine there is no twist to tell from the swing.
+// If sine^2 + cosine^2 is below this value, twist and swing cannot be separated.
 inline constexpr float kLeastTwistSquare = 1e-10f;
 
-// The twist of a swing-twist decomposition: by how many radians, in [-pi, pi], unit quaternion
-// `rotation` turns right-handed about unit vector `axis`, the rest of it being a swing that moves
-// the axis. `rotation` and its negative give the same angle.
+// The twist of a swing-twist decomposition: the angle in radians, in [-pi, pi], by which the unit
+// quaternion `rotation` turns right-handed about the unit vector `axis`. The rest of the rotation
+// is a swing that moves the axis. `rotation` and its negative give the same angle.
 //
-// Undefined where the swing is a half turn: 0 there. Jumps between pi and -pi at a half twist.
+// A swing of half a turn has no defined twist; the result is then 0. The angle jumps between pi and
+// -pi at half a turn of twist.
 [[nodiscard]] float TwistAngle(const glm::quat& rotation, const glm::vec3& axis);
 
 }  // namespace furrow::wrinkle

@@ -3,36 +3,44 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "wrinkle/drivers/ball/ball_driver.h"
-#include "wrinkle/drivers/blend_shape/blend_shape_driver.h"
-#include "wrinkle/drivers/hinge/hinge_driver.h"
-#include "wrinkle/drivers/influence_table.h"
-#include "wrinkle/drivers/pose/pose_driver.h"
-#include "wrinkle/drivers/strain/strain_driver.h"
-#include "wrinkle/drivers/twist/twist_driver.h"
-#include "wrinkle/simd/lane_plan.h"
-#include "wrinkle/simd/weight_plan.h"
+#define FURROW_BOUND_DRIVERS
+#include "wrinkle/drivers/driver_kinds.h"
+#include "wrinkle/rig/rig.h"
+#include "wrinkle/simd/point_plan.h"
+#include "wrinkle/simd/row_gather.h"
 #include "wrinkle/skeleton/joint_chain.h"
-#include "wrinkle/solver/solver.h"
+#include "wrinkle/weights/influence_table.h"
+#include "wrinkle/weights/weight_plan.h"
 #include "wrinkle/weights/weight_table.h"
 
 namespace furrow::wrinkle {
 
-// A rig compiled for one skeleton, private to wrinkle/: contiguous arrays a driver kind, immutable,
-// and nothing in it belongs to a subject.
+// The bound drivers of each kind: `pose` is a PoseDriverSet, `hinge` a HingeDriverSet, and so on.
+struct BoundDrivers {
+#define FURROW_KIND_SET(Name, field) Name##DriverSet field;
+  FURROW_DRIVER_KINDS(FURROW_KIND_SET)
+#undef FURROW_KIND_SET
+};
+
+// Calls `visit` with the driver set of each kind.
+template <class Drivers, class Visitor>
+void VisitDriverSets(Drivers& drivers, Visitor visit) {
+#define FURROW_KIND_VISIT(Name, field) visit(drivers.field);
+  FURROW_DRIVER_KINDS(FURROW_KIND_VISIT)
+#undef FURROW_KIND_VISIT
+}
+
+// A rig compiled for one skeleton: immutable, and without anything that belongs to a subject.
+// Private to wrinkle/.
 struct BindingData {
   Rig rig;
   Skeleton skeleton;
   JointChains chains;
-  PoseDriverSet pose_drivers;
-  HingeDriverSet hinge_drivers;
-  BallDriverSet ball_drivers;
-  TwistDriverSet twist_drivers;
-  BlendShapeDriverSet blend_shape_drivers;
-  StrainDriverSet strain_drivers;
+  BoundDrivers drivers;
   WeightTable weights;
   InfluenceTable influences;
   std::vector<std::string> driver_value_names;
@@ -41,9 +49,12 @@ struct BindingData {
   [[nodiscard]] std::size_t NumValues(std::size_t num_drivers) const {
     return static_cast<std::size_t>(first_values[std::min(num_drivers, first_values.size() - 1)]);
   }
-  // The same drivers and weights, laid out for the batch.
-  LanePlan lanes;
+  // The layout for the kernel.
+  PointPlan points;
+  RowGather values;                  // brings driver values from the scratch memory into rig order
+  std::uint32_t num_value_rows = 1;  // rows of the scratch memory that drivers use
   WeightPlan weight_plan;
+
   std::vector<std::string> missing_joints;
   std::vector<std::string> missing_blend_shapes;
   std::vector<std::string> warnings;

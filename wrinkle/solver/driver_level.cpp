@@ -8,7 +8,7 @@
 namespace furrow::wrinkle {
 namespace {
 
-// How many drivers there are up to the one that a value is of.
+// The number of drivers up to and including the driver of a value.
 std::size_t DriversUpTo(const BindingData& data, int value) {
   const auto after = std::ranges::upper_bound(data.first_values, value);
   return static_cast<std::size_t>(after - data.first_values.begin());
@@ -30,7 +30,7 @@ std::size_t DriversOfWeights(const RigBinding& binding, std::span<const std::uin
   for (const std::uint32_t index : weights) {
     const auto weight = static_cast<int>(index);
     drivers = std::max(drivers, DriversOfSources(data, weight));
-    // What a weight gives way to counts before it gives way itself.
+    // An opponent counts with its weight before incongruence, so its own opponents do not matter.
     for (const std::uint16_t opponent : data.weights.opponents(weight)) {
       drivers = std::max(drivers, DriversOfSources(data, opponent));
     }

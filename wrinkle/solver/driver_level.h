@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <span>
 
-#include "wrinkle/solver/solver.h"
+#include "wrinkle/solver/rig_binding.h"
 
 namespace furrow::wrinkle {
 
-// The level of detail (SubjectSolver::set_num_drivers) that some outputs need: so many of the rig's
-// drivers, in its order, give them as all drivers would. 0 where none is named. Indices are those
-// of weight_names(), or of driver_value_names().
+// The lowest level of detail (SubjectSolver::set_num_drivers()) at which the given outputs are the
+// same as with all drivers, to the bit. 0 for no outputs. Indices refer to weight_names() and to
+// driver_value_names().
 [[nodiscard]] std::size_t DriversOfWeights(const RigBinding& binding,
                                            std::span<const std::uint32_t> weights);
 [[nodiscard]] std::size_t DriversOfValues(const RigBinding& binding,

@@ -1,140 +1,91 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrinkle/solver/explain.h"
 
-#include <array>
-#include <cmath>
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <span>
 #include <utility>
 
-#include "base/scalar.h"
-#include "wrinkle/drivers/pose/pose_projection.h"
-#include "wrinkle/solver/binding_data.h"
-#include "wrinkle/weights/incongruence.h"
+#include "wrinkle/solver/subject_kernel.h"
+#include "wrinkle/solver/subject_solver.h"
 
 namespace furrow::wrinkle {
 namespace {
 
-Explanation::Weight ExplainWeight(const BindingData& data, int weight,
-                                  std::span<const float> driver_values,
-                                  std::span<const float> modulated) {
+// The numbers of all weights, step by step.
+struct Steps {
+  std::span<const float> driver_values;
+  RowList combined;
+  RowList modulated;
+  std::span<const float> results;
+};
+
+// The weights after the plan's first half. An extra row because plans count one (num_rows()).
+RowList ModulatedWeights(const WeightPlan& plan, const RowList& values) {
+  RowList modulated(plan.num_rows() * kRowLanes, 0.0f);
+  BestSubjectKernel().modulate_all(plan, values.data(), modulated.data());
+  return modulated;
+}
+
+// The same plan with linear modulation, which leaves the combined values.
+WeightPlan WithoutModulation(WeightPlan plan) {
+  for (WeightBlock& block : plan.blocks) {
+    for (std::size_t lane = 0; lane < kRowLanes; ++lane) {
+      block.modulation.Set(Modulation::kLinear, lane);
+    }
+  }
+  return plan;
+}
+
+Explanation::Weight ExplainWeight(const BindingData& data, int weight, const Steps& steps) {
   const WeightTable& table = data.weights;
+  const auto index = static_cast<std::size_t>(weight);
   Explanation::Weight result;
-  result.name = table.names()[weight];
+  result.name = table.names()[index];
   for (const WeightSource& source : table.sources(weight)) {
-    const float value = driver_values[source.driver_value];
-    result.contributions.push_back({.driver_value = data.driver_value_names[source.driver_value],
+    const auto from = static_cast<std::size_t>(source.driver_value);
+    const float value = steps.driver_values[from];
+    result.contributions.push_back({.driver_value = data.driver_value_names[from],
                                     .value = value,
                                     .gain = source.gain,
                                     .product = source.gain * value});
   }
-  result.combined = table.Combined(weight, driver_values);
-  result.modulated = modulated[weight];
+  result.combined = steps.combined[index];
+  result.modulated = steps.modulated[index];
   for (const std::uint16_t opponent : table.opponents(weight)) {
-    result.conflicts.push_back(
-        {.weight = table.names()[opponent],
-         .other = modulated[opponent],
-         .factor = CongruenceFactor(modulated[weight], modulated[opponent])});
+    const float other = steps.modulated[opponent];
+    result.conflicts.push_back({.weight = table.names()[opponent],
+                                .other = other,
+                                .factor = BestSubjectKernel().congruence(result.modulated, other)});
   }
-  result.result = modulated[weight] * table.Congruence(weight, modulated);
+  result.result = steps.results[index];
   return result;
-}
-
-std::vector<Explanation::PoseValue> ExplainPoseDrivers(const BindingData& data,
-                                                       std::span<const Transform> local) {
-  const PoseDriverSet& drivers = data.pose_drivers;
-  std::array<glm::vec3, kMaxControlPoints> points;
-  std::array<PoseDriverSet::Fit, kMaxPoseValues> fits;
-  std::vector<Explanation::PoseValue> values;
-  for (int i = 0; i < drivers.num_entries(); ++i) {
-    const int num_points = drivers.Measure(i, local, data.chains, points);
-    const StackedPoints moved = StackedPoints(points).first(static_cast<std::size_t>(num_points));
-    drivers.Solve(i, moved, fits);
-    for (int k = 0; k < drivers.num_values(i); ++k) {
-      const float square = drivers.SquaredDisplacement(i, k);
-      values.push_back(
-          {.driver_value = data.driver_value_names[drivers.first_value(i) + k],
-           .displacement = std::sqrt(square),
-           .moved = static_cast<float>(std::sqrt(Dot(moved, moved))),
-           .numerator = static_cast<float>(Dot(moved, drivers.Displacement(i, k))),
-           .along = fits[k].along,
-           .perpendicular = std::sqrt(fits[k].squared_perpendicular),
-           .falloff = Falloff(fits[k].squared_perpendicular, square, drivers.falloff(i)),
-           .result = drivers.Value(i, k, fits[k])});
-    }
-  }
-  return values;
-}
-
-std::string DriverOf(const BindingData& data, int first_value) {
-  const std::string& name = data.driver_value_names[first_value];
-  return name.substr(0, name.rfind('.'));
-}
-
-std::vector<Explanation::Angle> ExplainAngles(const BindingData& data,
-                                              std::span<const Transform> local) {
-  std::vector<Explanation::Angle> angles;
-  for (int i = 0; i < data.hinge_drivers.num_entries(); ++i) {
-    angles.push_back({.driver = DriverOf(data, data.hinge_drivers.first_value(i)),
-                      .what = "flexion",
-                      .degrees = data.hinge_drivers.AngleDegrees(i, local, data.chains)});
-  }
-  for (int i = 0; i < data.ball_drivers.num_entries(); ++i) {
-    const std::string driver = DriverOf(data, data.ball_drivers.first_value(i));
-    const BallDriverSet::Bending bending = data.ball_drivers.Measure(i, local, data.chains);
-    const float across = std::hypot(bending.forward, bending.right);
-    angles.push_back({.driver = driver,
-                      .what = "bend",
-                      .degrees = std::atan2(across, bending.cosine) / kDegrees});
-    angles.push_back({.driver = driver,
-                      .what = "direction",
-                      .degrees = std::atan2(bending.right, bending.forward) / kDegrees});
-  }
-  for (int i = 0; i < data.twist_drivers.num_entries(); ++i) {
-    angles.push_back({.driver = DriverOf(data, data.twist_drivers.first_value(i)),
-                      .what = "twist",
-                      .degrees = data.twist_drivers.Angle(i, local) / kDegrees});
-  }
-  return angles;
-}
-
-std::vector<Explanation::Strain> ExplainStrains(const BindingData& data,
-                                                std::span<const Transform> local) {
-  const StrainDriverSet& drivers = data.strain_drivers;
-  std::vector<Explanation::Strain> strains;
-  for (int i = 0; i < drivers.num_entries(); ++i) {
-    const PrincipalStretches stretches = drivers.Measure(i, local, data.chains).stretches;
-    glm::vec2 direction = stretches.smallest_direction;
-    if (direction.x < 0.0f || (direction.x == 0.0f && direction.y < 0.0f)) direction = -direction;
-    strains.push_back({.driver = DriverOf(data, drivers.first_value(i)),
-                       .smallest = stretches.smallest,
-                       .largest = stretches.largest,
-                       .degrees = std::atan2(direction.y, direction.x) / kDegrees});
-  }
-  return strains;
 }
 
 }  // namespace
 
 JobStatus Explain(const RigBinding& binding, const LocalPose& pose, Explanation* explanation) {
   const BindingData& data = binding.data();
-  std::vector<float> driver_values(data.driver_value_names.size());
-  const DriverJob drivers{.binding = &binding,
-                          .local = pose.joints,
-                          .blend_shapes = pose.blend_shapes,
-                          .driver_values = driver_values};
-  if (const JobStatus status = drivers.Run(); status != JobStatus::kOk) return status;
-
-  const int num_weights = static_cast<int>(data.weights.names().size());
-  std::vector<float> modulated;
-  for (int i = 0; i < num_weights; ++i) {
-    modulated.push_back(data.weights.Modulated(i, driver_values));
-  }
+  // The binding outlives this call, so the pointer need not own it.
+  SubjectSolver solver(std::shared_ptr<const RigBinding>(std::shared_ptr<void>(), &binding), false);
+  if (const JobStatus status = solver.Update(pose, 0.0); status != JobStatus::kOk) return status;
+  const std::span<const float> values = solver.driver_values();
+  RowList rows(NumRows(values.size()) * kRowLanes, 0.0f);
+  std::ranges::copy(values, rows.begin());
+  const Steps steps{.driver_values = values,
+                    .combined = ModulatedWeights(WithoutModulation(data.weight_plan), rows),
+                    .modulated = ModulatedWeights(data.weight_plan, rows),
+                    .results = solver.wrinkle_weights()};
   Explanation result;
-  for (int i = 0; i < num_weights; ++i) {
-    result.weights.push_back(ExplainWeight(data, i, driver_values, modulated));
+  for (std::size_t i = 0; i < data.weights.names().size(); ++i) {
+    result.weights.push_back(ExplainWeight(data, static_cast<int>(i), steps));
   }
-  result.pose_values = ExplainPoseDrivers(data, pose.joints);
-  result.angles = ExplainAngles(data, pose.joints);
-  result.strains = ExplainStrains(data, pose.joints);
+  const SolvedPose solved{.local = pose.joints,
+                          .chains = data.chains,
+                          .driver_values = values,
+                          .driver_value_names = data.driver_value_names};
+  VisitDriverSets(data.drivers, [&](const auto& drivers) { drivers.Explain(solved, &result); });
   *explanation = std::move(result);
   return JobStatus::kOk;
 }

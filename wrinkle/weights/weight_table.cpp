@@ -4,10 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/scalar.h"
 #include "base/status.h"
-#include "wrinkle/weights/incongruence.h"
-#include "wrinkle/weights/modulation.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -16,7 +13,7 @@ bool Lists(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// A rig without maps is for weights alone: any map name will do.
+// A rig without maps only computes weights and accepts any map name.
 Status CheckMapName(const Rig& rig, const std::string& whose, const std::string& map) {
   const bool known =
       rig.wrinkle_maps.empty() ||
@@ -40,7 +37,7 @@ Status CheckNeighbours(const Rig& rig, const Region& region) {
   return {};
 }
 
-// The maps that must not meet `map` over a border, whichever of the two says so.
+// The maps that must not meet `map` at a border. Either map of a pair may state it.
 std::vector<std::string> OpposedMaps(const Rig& rig, const std::string& map) {
   std::vector<std::string> opposed;
   for (const WrinkleMap& candidate : rig.wrinkle_maps) {
@@ -50,31 +47,12 @@ std::vector<std::string> OpposedMaps(const Rig& rig, const std::string& map) {
   return opposed;
 }
 
-// Either may name the other: a border has two sides.
+// Either region may name the other.
 bool Adjacent(const Region& a, const Region& b) {
   return Lists(a.neighbours, b.name) || Lists(b.neighbours, a.name);
 }
 
 }  // namespace
-
-float CombineSources(Combine combine, std::span<const WeightSource> sources,
-                     std::span<const float> driver_values) {
-  float largest = 0.0f;
-  float sum = 0.0f;
-  float gains = 0.0f;
-  for (const WeightSource& source : sources) {
-    const float term = source.gain * driver_values[source.driver_value];
-    largest = std::max(largest, term);
-    sum += term;
-    gains += source.gain;
-  }
-  switch (combine) {
-    case Combine::kMax: return Saturate(largest);
-    case Combine::kSum: return Saturate(sum);
-    case Combine::kMean: return gains > 0.0f ? Saturate(sum / gains) : 0.0f;
-  }
-  return 0.0f;
-}
 
 Status WeightTable::Bind(const Rig& rig, const std::unordered_map<std::string, int>& value_index) {
   for (const WrinkleMap& map : rig.wrinkle_maps) {
@@ -142,22 +120,6 @@ void WeightTable::BindOpponents(const Rig& rig) {
       entry.num_opponents = static_cast<std::uint32_t>(opponents_.size()) - entry.first_opponent;
     }
   }
-}
-
-float WeightTable::Combined(int weight, std::span<const float> driver_values) const {
-  return CombineSources(entries_[weight].combine, sources(weight), driver_values);
-}
-
-float WeightTable::Modulated(int weight, std::span<const float> driver_values) const {
-  return Modulate(entries_[weight].modulation, Combined(weight, driver_values));
-}
-
-float WeightTable::Congruence(int weight, std::span<const float> modulated) const {
-  float factor = 1.0f;
-  for (const std::uint16_t opponent : opponents(weight)) {
-    factor *= CongruenceFactor(modulated[weight], modulated[opponent]);
-  }
-  return factor;
 }
 
 }  // namespace furrow::wrinkle

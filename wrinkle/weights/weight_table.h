@@ -18,16 +18,12 @@ struct WeightSource {
   float gain = 1.0f;
 };
 
-// max, clamped sum or weighted mean of gain * value; in [0, 1].
-[[nodiscard]] float CombineSources(Combine combine, std::span<const WeightSource> sources,
-                                   std::span<const float> driver_values);
-
-// How driver values become wrinkle weights: one entry a
-// weight, over flat pools. Private to wrinkle/.
+// How driver values become wrinkle weights: one entry per weight, over flat pools. weight_plan.h
+// lays it out for the kernel. Private to wrinkle/.
 class WeightTable {
  public:
-  // `value_index`: "<driver>.<value>" to its index. Errors:
-  // kNotFound for a name that leads nowhere.
+  // `value_index`: the index of each "<driver>.<value>". Errors: kNotFound for an unknown name,
+  // kInvalidArgument for a region that is its own neighbour.
   [[nodiscard]] Status Bind(const Rig& rig,
                             const std::unordered_map<std::string, int>& value_index);
 
@@ -36,7 +32,7 @@ class WeightTable {
     const Entry& entry = entries_[weight];
     return std::span(sources_).subspan(entry.first_source, entry.num_sources);
   }
-  // Weights of neighbouring regions on maps that oppose this one's.
+  // The weights of neighbouring regions on maps that oppose this weight's map.
   [[nodiscard]] std::span<const std::uint16_t> opponents(int weight) const {
     const Entry& entry = entries_[weight];
     return std::span(opponents_).subspan(entry.first_opponent, entry.num_opponents);
@@ -44,11 +40,6 @@ class WeightTable {
 
   [[nodiscard]] Combine combine(int weight) const { return entries_[weight].combine; }
   [[nodiscard]] Modulation modulation(int weight) const { return entries_[weight].modulation; }
-
-  [[nodiscard]] float Combined(int weight, std::span<const float> driver_values) const;
-  [[nodiscard]] float Modulated(int weight, std::span<const float> driver_values) const;
-  // What remains of a weight beside all its opponents, as a factor; `modulated` holds all weights.
-  [[nodiscard]] float Congruence(int weight, std::span<const float> modulated) const;
 
  private:
   struct Entry {

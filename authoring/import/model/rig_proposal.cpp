@@ -111,8 +111,7 @@ class Proposer {
       case Driver::Kind::kHinge: driver = CarryHinge(from); break;
       case Driver::Kind::kBall: driver = CarryBall(from); break;
       case Driver::Kind::kTwist: driver = CarryTwist(from); break;
-      case Driver::Kind::kBlendShape:      // belongs to a tracker, not to a skeleton
-      case Driver::Kind::kStrain: return;  // belongs to one mesh
+      default: return;  // the other kinds belong to a tracker or to one mesh
     }
     if (driver) {
       drivers_.insert(from.name);

@@ -8,7 +8,7 @@
 
 #include "base/status.h"
 #include "rig/rig_reference_pose.h"
-#include "wrinkle/drivers/reference_pose.h"
+#include "wrinkle/skeleton/reference_pose.h"
 
 namespace furrow::cli {
 namespace {

@@ -14,18 +14,6 @@ namespace {
 
 using wrinkle::Driver;
 
-std::string_view KindName(Driver::Kind kind) {
-  switch (kind) {
-    case Driver::Kind::kPose: return "pose";
-    case Driver::Kind::kHinge: return "hinge";
-    case Driver::Kind::kBall: return "ball";
-    case Driver::Kind::kTwist: return "twist";
-    case Driver::Kind::kBlendShape: return "blend_shape";
-    case Driver::Kind::kStrain: return "strain";
-  }
-  return "";
-}
-
 std::string_view CombineName(wrinkle::Combine combine) {
   switch (combine) {
     case wrinkle::Combine::kMax: return "max";
@@ -95,7 +83,8 @@ Json DriverJson(const Driver& driver, const wrinkle::Rig& rig) {
       }
     }
   }
-  return {{"name", driver.name}, {"kind", KindName(driver.kind)}, {"values", std::move(values)}};
+  return {
+      {"name", driver.name}, {"kind", DriverKindName(driver.kind)}, {"values", std::move(values)}};
 }
 
 const Driver* FindDriver(const wrinkle::Rig& rig, std::string_view driver_value) {
@@ -145,7 +134,7 @@ Json ContributionJson(const wrinkle::Explanation& explanation, const wrinkle::Ri
                       const wrinkle::Explanation::Contribution& part) {
   const Driver* driver = FindDriver(rig, part.driver_value);
   Json json = {{"value", part.driver_value},
-               {"kind", driver == nullptr ? "" : KindName(driver->kind)},
+               {"kind", driver == nullptr ? "" : DriverKindName(driver->kind)},
                {"reference_pose", nullptr},
                {"driver_value", part.value},
                {"gain", part.gain},

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
@@ -255,16 +256,14 @@ void Subject::Set(const std::string& blend_shape, float value) {
 void Subject::Solve() {
   using wrinkle::JobStatus;
   const wrinkle::LocalToModelJob to_model{&binding.skeleton(), pose.joints, model};
-  wrinkle::DriverJob drivers;
-  drivers.binding = &binding;
-  drivers.local = pose.joints;
-  drivers.blend_shapes = pose.blend_shapes;
-  drivers.driver_values = driver_values;
-  const wrinkle::WrinkleWeightsJob solve{&binding, driver_values, weights};
-  if (to_model.Run() != JobStatus::kOk || drivers.Run() != JobStatus::kOk ||
-      solve.Run() != JobStatus::kOk) {
+  // The subject owns the binding and outlives the solver.
+  wrinkle::SubjectSolver solver(
+      std::shared_ptr<const wrinkle::RigBinding>(std::shared_ptr<void>(), &binding), false);
+  if (to_model.Run() != JobStatus::kOk || solver.Update(pose, 0.0) != JobStatus::kOk) {
     std::abort();
   }
+  std::ranges::copy(solver.driver_values(), driver_values.begin());
+  std::ranges::copy(solver.wrinkle_weights(), weights.begin());
 }
 
 }  // namespace furrow::render::test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,14 +27,10 @@ class BoundRig {
 
   // Driver values and wrinkle weights of `pose`, unfiltered.
   void Solve(const LocalPose& pose) {
-    const DriverJob drivers{.binding = binding_.get(),
-                            .local = pose.joints,
-                            .blend_shapes = pose.blend_shapes,
-                            .driver_values = values_};
-    EXPECT_EQ(drivers.Run(), JobStatus::kOk);
-    const WrinkleWeightsJob weights{
-        .binding = binding_.get(), .driver_values = values_, .wrinkle_weights = weights_};
-    EXPECT_EQ(weights.Run(), JobStatus::kOk);
+    SubjectSolver solver(binding_, false);
+    EXPECT_EQ(solver.Update(pose, 0.0), JobStatus::kOk);
+    std::ranges::copy(solver.driver_values(), values_.begin());
+    std::ranges::copy(solver.wrinkle_weights(), weights_.begin());
   }
 
   [[nodiscard]] float Value(const std::string& name) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 #include <memory>
 #include <span>
 #include <string>
@@ -9,11 +10,23 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/wrinkle/oracle/oracle_solver.h"
 #include "wrinkle/solver/batch_solver.h"
 
 namespace furrow::wrinkle {
 
-// The same subjects twice: solved one after another, and in batches.
+inline bool SameBits(std::span<const float> a, std::span<const float> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+inline bool SameBits(const SubjectSolver& a, const SubjectSolver& b) {
+  return SameBits(a.driver_values(), b.driver_values()) &&
+         SameBits(a.filtered_values(), b.filtered_values()) &&
+         SameBits(a.wrinkle_weights(), b.wrinkle_weights());
+}
+
+// The same subjects three times: solved by the oracle, by SubjectSolver::Update(), and in batches.
+// The oracle agrees within a tolerance; the other two agree to the bit.
 class Crowd {
  public:
   static constexpr float kTolerance = 1e-6f;
@@ -22,6 +35,7 @@ class Crowd {
       : poses_(static_cast<std::size_t>(count)) {
     for (int i = 0; i < count; ++i) {
       expected_.emplace_back(binding);
+      single_.emplace_back(binding);
       batched_.emplace_back(binding);
     }
     for (LocalPose& pose : poses_) pose.SetRest(binding->skeleton());
@@ -29,19 +43,22 @@ class Crowd {
 
   void SetLevel(std::size_t subject, std::size_t num_drivers) {
     expected_[subject].set_num_drivers(num_drivers);
+    single_[subject].set_num_drivers(num_drivers);
     batched_[subject].set_num_drivers(num_drivers);
   }
   [[nodiscard]] LocalPose& pose(std::size_t subject) { return poses_[subject]; }
   [[nodiscard]] SubjectSolver& batched(std::size_t subject) { return batched_[subject]; }
   [[nodiscard]] std::size_t size() const { return poses_.size(); }
 
-  // Solves the subject's pose the one way, and makes the update for the other.
+  // Solves the subject's pose by the oracle and by itself, and returns the update for the batch.
   BatchUpdate Update(std::size_t subject, double dt) {
     statuses_.push_back(expected_[subject].Update(poses_[subject], dt));
+    EXPECT_EQ(single_[subject].Update(poses_[subject], dt), statuses_.back());
     return {.solver = &batched_[subject], .pose = &poses_[subject], .dt = dt};
   }
   void Decay(std::size_t subject, double dt) {
-    EXPECT_EQ(expected_[subject].Decay(dt), JobStatus::kOk);
+    expected_[subject].Decay(dt);
+    EXPECT_EQ(single_[subject].Decay(dt), JobStatus::kOk);
     EXPECT_EQ(batched_[subject].Decay(dt), JobStatus::kOk);
   }
   void ExpectStatuses(const std::vector<BatchUpdate>& updates) {
@@ -50,15 +67,16 @@ class Crowd {
   }
   void ExpectEqual() const {
     for (std::size_t i = 0; i < poses_.size(); ++i) {
-      const std::string whose = "subject " + std::to_string(i) + ", ";
-      const SubjectSolver& expected = expected_[i];
+      const std::string owner = "subject " + std::to_string(i) + ", ";
+      const OracleSolver& expected = expected_[i];
       const SubjectSolver& batched = batched_[i];
       const auto& binding = expected.binding();
-      Compare(whose + "raw ", binding.driver_value_names(), expected.driver_values(),
+      Compare(owner + "raw ", binding.driver_value_names(), expected.driver_values(),
               batched.driver_values());
-      Compare(whose + "filtered ", binding.driver_value_names(), expected.filtered_values(),
+      Compare(owner + "filtered ", binding.driver_value_names(), expected.filtered_values(),
               batched.filtered_values());
-      Compare(whose, binding.weight_names(), expected.wrinkle_weights(), batched.wrinkle_weights());
+      Compare(owner, binding.weight_names(), expected.wrinkle_weights(), batched.wrinkle_weights());
+      EXPECT_TRUE(SameBits(single_[i], batched)) << owner << "by itself and in a batch";
     }
   }
 
@@ -71,7 +89,8 @@ class Crowd {
     }
   }
 
-  std::vector<SubjectSolver> expected_;
+  std::vector<OracleSolver> expected_;
+  std::vector<SubjectSolver> single_;
   std::vector<SubjectSolver> batched_;
   std::vector<LocalPose> poses_;
   std::vector<JobStatus> statuses_;

@@ -2,52 +2,50 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
-#include "wrinkle/drivers/bone_pair.h"
+#include "wrinkle/drivers/ball/ball_fields.h"
+#include "wrinkle/drivers/common/bone_pair.h"
+#include "wrinkle/drivers/common/driver_explanation.h"
 
 namespace furrow::wrinkle {
 
-// The unit direction across `bone` and `forward` (unit, model axes) that counts as the subject's
-// right: characters face +Z with +Y up, so their right is -X. A bone that lies sideways has no
-// right or left; there "right" is up.
-[[nodiscard]] glm::vec3 SubjectsRight(const glm::vec3& bone, const glm::vec3& forward);
+inline constexpr float kLeastProjection = 1e-6f;  // shorter projections have no direction
+inline constexpr float kThesisThreshold = 0.75f;  // cosine of BallMode::kThesis
 
-// All ball-and-socket drivers of a binding (also pivot, saddle and condyloid joints, with other
-// limits). Private to wrinkle/; the formula is in ball.h.
+struct BallBlock : BoneBlock {
+  FloatRow straight[3];
+  IntRow has_straight;  // -1; 0: the upper bone's direction counts as straight
+  FloatRow forward[3];
+  FloatRow right[3];
+  BallMode mode = BallMode::kSmooth;
+};
+
+// All ball-and-socket drivers of a binding (with other limits also pivot, saddle and condyloid
+// joints). Private to wrinkle/. ball_lanes-inl.h evaluates them.
 class BallDriverSet {
  public:
-  // How far and whither the lower bone has bent.
-  struct Bending {
-    float cosine = 1.0f;   // to the straight direction
-    float forward = 0.0f;  // of the projection across it
-    float right = 0.0f;
-  };
-
-  struct Entry {
-    int first_value = 0;
-    BonePair bones;
+  struct Entry : BoneEntry {
     glm::vec3 straight{0.0f};  // unit, parent's axes; zero: the upper bone's direction
     glm::vec3 forward{0.0f};   // unit, across the rest straight direction, parent's axes
     glm::vec3 right{0.0f};     // unit, across both, towards the subject's right
-    float bend_scale = 0.0f;
     BallMode mode = BallMode::kSmooth;
   };
 
-  [[nodiscard]] Status Bind(const Driver& driver, int first_value, BindContext* context);
-  void Evaluate(std::span<const Transform> local, const JointChains& chains,
-                std::span<float> driver_values) const;
+  [[nodiscard]] Status Bind(const std::string& name, const BallDriver& driver, int first_value,
+                            BindContext* context);
+  // After the last Bind().
+  void Plan(LanePlanner* planner);
+  // Adds the angle of the bend and its direction, from forward towards the subject's right.
+  void Explain(const SolvedPose& pose, DriverExplanation* explanation) const;
 
   [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
-  [[nodiscard]] int num_entries() const { return static_cast<int>(entries_.size()); }
-  [[nodiscard]] int first_value(int entry) const { return entries_[entry].first_value; }
-  [[nodiscard]] Bending Measure(int entry, std::span<const Transform> local,
-                                const JointChains& chains) const;
+  [[nodiscard]] const std::vector<BallBlock>& blocks() const { return blocks_; }
 
  private:
-  [[nodiscard]] static Bending MeasureEntry(const Entry& entry, std::span<const Transform> local,
-                                            const JointChains& chains);
   std::vector<Entry> entries_;
+  std::vector<BallBlock> blocks_;
 };
 
 }  // namespace furrow::wrinkle

@@ -2,33 +2,46 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
-#include "wrinkle/drivers/bind_context.h"
+#include "wrinkle/drivers/blend_shape/blend_shape_fields.h"
+#include "wrinkle/drivers/common/bind_context.h"
+#include "wrinkle/drivers/common/driver_explanation.h"
+#include "wrinkle/simd/lane_planner.h"
 
 namespace furrow::wrinkle {
 
-// A tracker's coefficient as a driver value: clamp((c - neutral) / (full - neutral), 0, 1). `full`
-// may lie below `neutral`, not on it.
-[[nodiscard]] float BlendShapeValue(float coefficient, float neutral, float full);
+struct BlendShapeBlock : Block {
+  IntRow blend_shape;
+  FloatRow neutral;
+  FloatRow range;  // full - neutral
+};
 
-// All blend-shape drivers of a binding. Private to wrinkle/.
+// All blend-shape drivers of a binding. Private to wrinkle/. blend_shape_lanes-inl.h evaluates
+// them.
 class BlendShapeDriverSet {
  public:
   struct Entry {
     int first_value = 0;
-    int blend_shape = 0;
+    int blend_shape = 0;  // index into the stream's coefficients
     float neutral = 0.0f;
     float full = 1.0f;
   };
 
-  [[nodiscard]] Status Bind(const Driver& driver, int first_value, BindContext* context);
-  // Coefficients past the end of `blend_shapes` count as 0.
-  void Evaluate(std::span<const float> blend_shapes, std::span<float> driver_values) const;
+  [[nodiscard]] Status Bind(const std::string& name, const BlendShapeDriver& driver,
+                            int first_value, BindContext* context);
+  // After the last Bind().
+  void Plan(LanePlanner* planner);
+  // Adds nothing: a coefficient has no geometry.
+  void Explain(const SolvedPose&, DriverExplanation*) const {}
+
   [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
+  [[nodiscard]] const std::vector<BlendShapeBlock>& blocks() const { return blocks_; }
 
  private:
   std::vector<Entry> entries_;
+  std::vector<BlendShapeBlock> blocks_;
 };
 
 }  // namespace furrow::wrinkle

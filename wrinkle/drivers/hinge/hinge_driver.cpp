@@ -3,33 +3,27 @@
 
 #include <cmath>
 
-#include <glm/geometric.hpp>
-
 #include "base/scalar.h"
-#include "wrinkle/drivers/hinge/hinge.h"
-#include "wrinkle/rig/driver_values.h"
 
 namespace furrow::wrinkle {
 
-Status HingeDriverSet::Bind(const Driver& driver, int first_value, BindContext* context) {
-  const HingeDriver& hinge = driver.hinge;
-  const std::string whose = "driver '" + driver.name + "'";
+Status HingeDriverSet::Bind(const std::string& name, const HingeDriver& driver, int first_value,
+                            BindContext* context) {
+  const std::string owner = "driver '" + name + "'";
   Entry entry;
   entry.first_value = first_value;
-  entry.bend_scale = BendScale(hinge.beta_degrees);
+  entry.bend_scale = BendScale(driver.beta_degrees);
   bool usable = false;
-  if (Status status = BindBonePair(whose, hinge.parent, hinge.joint, hinge.end, true, context,
-                                   &entry.bones, &usable);
-      !status.ok() || !usable) {
-    return status;
-  }
-  if (hinge.axis) {
+  FURROW_RETURN_IF_ERROR(BindBonePair(owner, driver.parent, driver.joint, driver.end, true, context,
+                                      &entry.bones, &usable));
+  if (!usable) return {};
+  if (driver.axis) {
     const Skeleton& skeleton = context->skeleton();
-    const glm::vec3 axis = Direction(ToJointAxes(skeleton, entry.bones.parent, *hinge.axis));
+    const glm::vec3 axis = Direction(ToJointAxes(skeleton, entry.bones.parent, *driver.axis));
     const glm::vec3 upper = entry.bones.Upper(skeleton.rest_pose(), context->chains());
     const glm::vec3 across = axis - glm::dot(axis, upper) * upper;
     if (glm::length(across) < kLeastAcross) {
-      return context->Unusable(whose, "axis lies along the upper bone");
+      return context->Unusable(owner, "axis lies along the upper bone");
     }
     entry.axis = Direction(across);
   }
@@ -37,31 +31,32 @@ Status HingeDriverSet::Bind(const Driver& driver, int first_value, BindContext* 
   return {};
 }
 
-void HingeDriverSet::Evaluate(std::span<const Transform> local, const JointChains& chains,
-                              std::span<float> driver_values) const {
-  for (const Entry& entry : entries_) {
-    if (!Reaches(driver_values, entry.first_value)) break;
-    const glm::vec3 upper = entry.bones.Upper(local, chains);
-    const glm::vec3 lower = entry.bones.Lower(local, chains);
-    float flexed = 0.0f;
-    if (upper != glm::vec3(0.0f) && lower != glm::vec3(0.0f)) {
-      flexed = entry.axis == glm::vec3(0.0f)
-                   ? Bend(glm::dot(upper, lower), entry.bend_scale)
-                   : SignedBend(upper, lower, entry.axis, entry.bend_scale);
+void HingeDriverSet::Plan(LanePlanner* planner) {
+  const auto length = LengthOfBones(entries(), planner->chains());
+  for (const Lanes& lanes : InBlocks(entries_.size(), kOneKind, length)) {
+    HingeBlock& block = blocks_.emplace_back();
+    std::vector<BoneEntry> bones;
+    for (std::size_t lane = 0; lane < lanes.count; ++lane) {
+      const Entry& entry = entries_[static_cast<std::size_t>(lanes[lane])];
+      bones.push_back(entry);
+      SetLane(entry.axis, lane, block.axis);
+      block.has_axis.at[lane] = entry.axis != glm::vec3(0.0f) ? kLaneYes : kLaneNo;
     }
-    driver_values[entry.first_value] = flexed;
-    driver_values[entry.first_value + 1] = 1.0f - flexed;
+    PlanBones(bones, 2, planner, &block);
   }
 }
 
-float HingeDriverSet::AngleDegrees(int entry, std::span<const Transform> local,
-                                   const JointChains& chains) const {
-  const Entry& e = entries_[entry];
-  const glm::vec3 upper = e.bones.Upper(local, chains);
-  const glm::vec3 lower = e.bones.Lower(local, chains);
-  const glm::vec3 normal = glm::cross(upper, lower);
-  const float angle = std::atan2(glm::length(normal), glm::dot(upper, lower)) / kDegrees;
-  return glm::dot(normal, e.axis) < 0.0f ? -angle : angle;
+void HingeDriverSet::Explain(const SolvedPose& pose, DriverExplanation* explanation) const {
+  for (const Entry& entry : entries_) {
+    const glm::vec3 upper = entry.bones.Upper(pose.local, pose.chains);
+    const glm::vec3 lower = entry.bones.Lower(pose.local, pose.chains);
+    const glm::vec3 normal = glm::cross(upper, lower);
+    const float angle = std::atan2(glm::length(normal), glm::dot(upper, lower)) / kDegrees;
+    explanation->angles.push_back(
+        {.driver = pose.DriverName(entry.first_value),
+         .what = "flexion",
+         .degrees = glm::dot(normal, entry.axis) < 0.0f ? -angle : angle});
+  }
 }
 
 }  // namespace furrow::wrinkle

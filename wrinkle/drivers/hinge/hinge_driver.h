@@ -2,35 +2,43 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
-#include "wrinkle/drivers/bone_pair.h"
+#include "wrinkle/drivers/common/bone_pair.h"
+#include "wrinkle/drivers/common/driver_explanation.h"
+#include "wrinkle/drivers/hinge/hinge_fields.h"
 
 namespace furrow::wrinkle {
 
-// All hinge drivers of a binding. Private to wrinkle/; the formula is in hinge.h.
+inline constexpr float kLeastSine = 1e-6f;     // bones closer to parallel define no plane
+inline constexpr float kFullAlongAxis = 0.5f;  // cosine to the axis above which a bend counts fully
+
+struct HingeBlock : BoneBlock {
+  FloatRow axis[3];
+  IntRow has_axis;  // -1 or 0
+};
+
+// All hinge drivers of a binding. Private to wrinkle/. hinge_lanes-inl.h evaluates them.
 class HingeDriverSet {
  public:
-  struct Entry {
-    int first_value = 0;
-    BonePair bones;
+  struct Entry : BoneEntry {
     glm::vec3 axis{0.0f};  // unit, across the rest upper bone, parent's axes; zero: unsigned
-    float bend_scale = 0.0f;
   };
 
-  [[nodiscard]] Status Bind(const Driver& driver, int first_value, BindContext* context);
-  void Evaluate(std::span<const Transform> local, const JointChains& chains,
-                std::span<float> driver_values) const;
+  [[nodiscard]] Status Bind(const std::string& name, const HingeDriver& driver, int first_value,
+                            BindContext* context);
+  // After the last Bind().
+  void Plan(LanePlanner* planner);
+  // Adds the angle between the bones: 0 when straight, negative for a turn against the axis.
+  void Explain(const SolvedPose& pose, DriverExplanation* explanation) const;
 
   [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
-  [[nodiscard]] int num_entries() const { return static_cast<int>(entries_.size()); }
-  [[nodiscard]] int first_value(int entry) const { return entries_[entry].first_value; }
-  // Angle between the bones in degrees, 0 when straight; negative where it turns against the axis.
-  [[nodiscard]] float AngleDegrees(int entry, std::span<const Transform> local,
-                                   const JointChains& chains) const;
+  [[nodiscard]] const std::vector<HingeBlock>& blocks() const { return blocks_; }
 
  private:
   std::vector<Entry> entries_;
+  std::vector<HingeBlock> blocks_;
 };
 
 }  // namespace furrow::wrinkle

@@ -11,7 +11,7 @@ namespace {
 
 using Vector = std::array<double, kMaxNnlsValues>;
 
-// The unknowns that may be positive, in the order in which they entered.
+// The unknowns that may be positive, in the order of their entry.
 struct PassiveSet {
   std::array<int, kMaxNnlsValues> members{};
   int size = 0;
@@ -27,7 +27,8 @@ struct PassiveSet {
   }
 };
 
-// Least squares over the passive unknowns alone, by Cholesky. False where rounding costs a pivot.
+// Solves least squares over the passive unknowns alone, by Cholesky. False if rounding makes a
+// pivot non-positive.
 bool SolvePassive(std::span<const double> gram, std::span<const double> rhs, int n,
                   const PassiveSet& set, Vector* solution) {
   std::array<Vector, kMaxNnlsValues> lower;
@@ -57,7 +58,7 @@ bool SolvePassive(std::span<const double> gram, std::span<const double> rhs, int
   return true;
 }
 
-// The unknown outside the set whose growth would lower the error most; -1 when none would.
+// The unknown outside the set that lowers the error most when it grows; -1 if none lowers it.
 int SteepestOutside(std::span<const double> gram, std::span<const double> rhs,
                     std::span<const double> x, const PassiveSet& set, double tolerance) {
   const int n = static_cast<int>(rhs.size());
@@ -75,8 +76,8 @@ int SteepestOutside(std::span<const double> gram, std::span<const double> rhs,
   return best;
 }
 
-// Moves x towards the unconstrained solution until an unknown reaches 0, and drops what did. True
-// when all of it could be gone.
+// Moves x towards the unconstrained solution until an unknown reaches 0, and drops that unknown
+// from the set. True if x reached the solution.
 bool StepTowards(const Vector& solution, PassiveSet* set, std::span<double> x) {
   double step = 1.0;
   int blocking = -1;
@@ -126,7 +127,7 @@ void SolveNnls(std::span<const double> gram, std::span<const double> rhs, std::s
     set.Add(entering);
     Vector solution{};
     while (set.size > 0) {
-      if (!SolvePassive(gram, rhs, n, set, &solution)) return;  // x is feasible as it stands
+      if (!SolvePassive(gram, rhs, n, set, &solution)) return;  // x is already feasible
       if (StepTowards(solution, &set, x)) break;
     }
   }
@@ -138,7 +139,7 @@ NnlsTable::NnlsTable(std::span<const double> gram)
   if (n_ <= kMaxTabled) Tabulate();
 }
 
-// Column by column: what solves the set for a unit vector.
+// A column of an inverse is the solution for a unit vector.
 void NnlsTable::Tabulate() {
   const auto n = static_cast<std::size_t>(n_);
   inverses_.assign((std::size_t{1} << n) * n * n, 0.0);

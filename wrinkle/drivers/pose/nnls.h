@@ -11,15 +11,16 @@ inline constexpr int kMaxNnlsValues = 16;
 // Non-negative least squares on normal equations: the x >= 0 that minimises |A x - y|, given the
 // Gram matrix transpose(A) A and transpose(A) y.
 //
-// - `gram` n x n, symmetric positive definite. Where columns of A may depend on each other, add a
-//   small multiple of the identity: the solution is then unique, and continuous in y.
-// - `rhs`, `x` n long; n at most kMaxNnlsValues.
+// - `gram` n x n, symmetric positive definite. If columns of A may depend on each other, add a
+//   small multiple of the identity. The solution is then unique, and continuous in y.
+// - `rhs` and `x` have n entries; n is at most kMaxNnlsValues.
 // - Deterministic, bounded in time, does not allocate.
 // - Source: Lawson and Hanson, Solving Least Squares Problems (1974), chapter 23.
 void SolveNnls(std::span<const double> gram, std::span<const double> rhs, std::span<double> x);
 
-// SolveNnls() for many right-hand sides of one Gram matrix. Of up to four unknowns the inverses for
-// every choice of which are positive are kept, so that nothing is left to factor or to divide.
+// SolveNnls() for many right-hand sides of one Gram matrix. For up to four unknowns it keeps the
+// inverse for every set of positive unknowns, so that solving needs no factorisation and no
+// division.
 class NnlsTable {
  public:
   explicit NnlsTable(std::span<const double> gram);
@@ -33,8 +34,8 @@ class NnlsTable {
 
   int n_ = 0;
   std::vector<double> gram_;
-  // n x n for each set of unknowns (a bit each), 0 for those that are not in it; empty: too many,
-  // or a set whose inverse is not to be had.
+  // One n x n inverse per set of unknowns (the bits of its index), 0 outside the set. Empty if
+  // there are too many unknowns, or if some set has no inverse.
   std::vector<double> inverses_;
 };
 

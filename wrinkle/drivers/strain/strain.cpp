@@ -15,8 +15,8 @@ constexpr float kLeastSine = 0.01f;   // of the angle between a direction and th
 
 float SquareOfPositive(double x) { return x > 0.0 ? static_cast<float>(x * x) : 0.0f; }
 
-// (cos, sin) of half the angle in [-pi, pi] whose cosine and sine these are: from whichever of the
-// two is not small, so that no digits are lost.
+// (cos, sin) of half the angle in [-pi, pi] with this cosine and sine. The larger of the two
+// results is computed first, so that no digits are lost.
 glm::dvec2 HalfAngle(double cosine, double sine) {
   if (cosine >= 0.0) {
     const double c = std::sqrt(0.5 * (1.0 + cosine));
@@ -26,7 +26,7 @@ glm::dvec2 HalfAngle(double cosine, double sine) {
   return {0.5 * sine / s, s};
 }
 
-// Along `direction` in the plane across `normal`, or else along `edge`, which lies in it.
+// The unit projection of `direction` into the plane across `normal`; along `edge` if it has none.
 glm::vec3 AxisAlong(const glm::vec3& direction, const glm::vec3& normal, const glm::vec3& edge) {
   const glm::vec3 across = direction - glm::dot(direction, normal) * normal;
   const bool lies_in_plane = glm::length(across) > kLeastSine * glm::length(direction);

@@ -11,16 +11,16 @@
 namespace furrow::wrinkle {
 
 // In-plane strain of a surface triangle: how the cloth or skin between three points is stretched
-// and squeezed when the points move. A triangle can only turn, stretch and shear in its own plane,
-// so a 2x2 tensor in axes fixed to the *rest* surface says all of it, whatever the pose's own space
-// is.
+// and compressed when the points move. A triangle can only turn, stretch and shear in its own
+// plane, so a 2x2 tensor in axes fixed to the *rest* surface describes its strain completely, in
+// any pose space.
 //
-// - Lengths are in any unit, the same at rest and posed; stretches are ratios (posed over rest
-// length).
-// - Nothing here depends on a rigid motion of the posed triangle, nor on its being mirrored.
+// - Lengths are in any unit, the same at rest and posed. Stretches are ratios, posed over rest
+// length.
+// - Rigid motions and mirroring of the posed triangle change nothing.
 // - Source: the right Cauchy-Green tensor C = F^T F of continuum mechanics (Bonet and Wood,
 // Nonlinear
-//   Continuum Mechanics, 2008, 4.5); its eigenvalues are the squared principal stretches.
+//   Continuum Mechanics, 2008, 4.5). Its eigenvalues are the squared principal stretches.
 
 // Orthonormal axes in the plane of a rest triangle, right-handed with its normal (counter-clockwise
 // from outside): seen from outside, y lies a quarter turn to the left of x.
@@ -30,22 +30,22 @@ struct SurfaceAxes {
   glm::vec3 normal{0.0f, 0.0f, 1.0f};
 };
 
-// A triangle at rest, ready to be compared with any number of poses.
+// A triangle at rest, prepared for comparison with poses.
 struct RestTriangle {
   SurfaceAxes axes;
   float area = 0.0f;
   glm::mat2 inverse_edges{1.0f};  // of the matrix whose columns are b - a and c - a in the axes
 };
 
-// What one unit of length along each rest axis has become: the columns of the 3x2 deformation
-// gradient F, in the space of the posed points.
+// The images of the unit vectors along the rest axes: the columns of the 3x2 deformation gradient
+// F, in the space of the posed points.
 struct DeformationGradient {
   glm::vec3 x{1.0f, 0.0f, 0.0f};
   glm::vec3 y{0.0f, 1.0f, 0.0f};
 };
 
-// The right Cauchy-Green tensor F^T F in the rest axes; the identity at rest. Such tensors in
-// common axes may be averaged: that averages the squared lengths.
+// The right Cauchy-Green tensor F^T F in the rest axes; the identity at rest. Averaging tensors in
+// common axes averages the squared lengths.
 struct CauchyGreen {
   float xx = 1.0f;
   float xy = 0.0f;
@@ -56,17 +56,17 @@ struct CauchyGreen {
 struct PrincipalStretches {
   float largest = 1.0f;
   float smallest = 1.0f;  // >= 0; 1 - smallest is the principal compression where it is below 1
-  // Unit directions in the rest axes, up to sign. Where both stretches are the same every direction
-  // is a principal one, and these are the axes y and x.
+  // Unit directions in the rest axes, up to sign. If both stretches are equal, every direction is
+  // principal, and these are the axes y and x.
   glm::vec2 largest_direction{0.0f, 1.0f};
   glm::vec2 smallest_direction{1.0f, 0.0f};
 };
 
-// The rest triangle a, b, c with its x axis along `direction` as far as it lies in the plane; where
-// `direction` has nothing in it (within 0.6 degrees of the normal), along the edge from a to b.
+// The rest triangle a, b, c. Its x axis is the projection of `direction` into the plane, or the
+// edge from a to b if `direction` is within 0.6 degrees of the normal.
 //
-// None for a degenerate triangle: an area not above 1e-6 of its longest edge squared (a sliver
-// thinner than a needle, a point, a non-finite corner), whose strain would be noise.
+// nullopt for a degenerate triangle, since its strain would be noise: its area is not above 1e-6 of
+// its longest edge squared, or a corner is not finite.
 [[nodiscard]] std::optional<RestTriangle> MakeRestTriangle(const glm::vec3& a, const glm::vec3& b,
                                                            const glm::vec3& c,
                                                            const glm::vec3& direction);
@@ -87,22 +87,22 @@ struct PrincipalStretches {
 // Closed form. A tensor that is not finite gives the identity's stretches.
 [[nodiscard]] PrincipalStretches Principal(const CauchyGreen& tensor);
 
-// A direction in the rest axes as a vector of the rest triangle's space, and as the unit vector
-// that it becomes in the pose (zero where F squeezes it to nothing).
+// Converts a direction in the rest axes to a vector in the rest triangle's space, and to a unit
+// vector in the pose's space (zero if F maps it to zero).
 [[nodiscard]] glm::vec3 ToRestSpace(const SurfaceAxes& axes, const glm::vec2& direction);
 [[nodiscard]] glm::vec3 ToPosedSpace(const DeformationGradient& f, const glm::vec2& direction);
 
-// The principal compression of a strain, shared out by its direction: what lets one place fold
-// along or across.
+// The principal compression of a strain, divided by direction, so that one place can fold along or
+// across.
 //
 // - `compression` = max(0, 1 - smallest stretch). The shares are >= 0 and sum to it.
-// - `along`, `across`: compressed along or across the x axis (so that folds run across or along
-// it);
-//   `diagonal_left`, `diagonal_right`: along the line that, seen from outside, leans 45 degrees to
-//   the left or the right of it.
+// - `along`, `across`: compression along or across the x axis; folds then run across or along it.
+//   `diagonal_left`, `diagonal_right`: compression along the line 45 degrees to the left or right
+//   of the x axis, as seen from outside.
 // - With compressions c1 >= c2 and c1's angle phi from x, along gets
-//   (c1 - c2) max(0, cos 2 phi)^2 + c2 / 4, and so on by quarter turns of 2 phi: the excess goes by
-//   direction, an even squeeze to all alike. C1 in phi, continuous where c1 = c2 has no direction.
+//   (c1 - c2) max(0, cos 2 phi)^2 + c2 / 4, and the others the same with 2 phi turned by
+//   quarter turns. An even compression goes to all shares equally. C1 in phi; continuous at c1 =
+//   c2.
 struct CompressionShares {
   float compression = 0.0f;
   float along = 0.0f;

@@ -3,19 +3,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "base/scalar.h"
-#include "base/status.h"
-#include "wrinkle/rig/driver_values.h"
-#include "wrinkle/rig/rig_check.h"
 #include "wrinkle/skeleton/retarget.h"
 
 namespace furrow::wrinkle {
 namespace {
 
-// The frame that a patch's places are measured in: the base joint's axes, its centre and radius.
+// The frame of a patch's places: the base joint's axes, the patch's centre and its radius.
 struct PatchFrame {
   glm::vec3 centre{0.0f};
   float radius = 1.0f;
@@ -47,12 +46,13 @@ std::vector<glm::vec3> RestPlaces(const StrainDriver& strain, const Skeleton& sk
 
 }  // namespace
 
-Status StrainDriverSet::Bind(const Driver& driver, int first_value, BindContext* context) {
-  const StrainDriver& strain = driver.strain;
+Status StrainDriverSet::Bind(const std::string& name, const StrainDriver& strain, int first_value,
+                             BindContext* context) {
+  const std::string owner = "driver '" + name + "'";
   const Skeleton& skeleton = context->skeleton();
   std::vector<int> joints;
   int base = kNoJoint;
-  FURROW_RETURN_IF_ERROR(BindJoints(driver, context, &joints, &base));
+  FURROW_RETURN_IF_ERROR(BindJoints(owner, strain, context, &joints, &base));
   if (joints.size() < strain.joints.size() || base == kNoJoint) return {};  // it rests at 0
 
   Entry entry;
@@ -80,22 +80,20 @@ Status StrainDriverSet::Bind(const Driver& driver, int first_value, BindContext*
   BindTriangles(strain, skeleton, base, context->chains(), &entry);
   if (entry.num_triangles == 0) {
     triangles_.resize(entry.first_triangle);
-    return context->Unusable("driver '" + driver.name + "'",
-                             "no triangle of its patch has an area on this skeleton");
+    return context->Unusable(owner, "no triangle of its patch has an area on this skeleton");
   }
   entries_.push_back(entry);
   return {};
 }
 
-// `joints` stays shorter than the driver's list where one is missing and may be.
-Status StrainDriverSet::BindJoints(const Driver& driver, BindContext* context,
-                                   std::vector<int>* joints, int* base) {
-  const std::string whose = "driver '" + driver.name + "'";
-  const Result<int> found = context->Joint(whose, "joint", driver.strain.joint);
+// `joints` becomes shorter than the driver's list if a joint is missing and may be.
+Status StrainDriverSet::BindJoints(const std::string& owner, const StrainDriver& strain,
+                                   BindContext* context, std::vector<int>* joints, int* base) {
+  const Result<int> found = context->Joint(owner, "joint", strain.joint);
   FURROW_RETURN_IF_ERROR(found);
   *base = *found;
-  for (const std::string& name : driver.strain.joints) {
-    const Result<int> joint = context->Joint(whose, "joints", name);
+  for (const std::string& name : strain.joints) {
+    const Result<int> joint = context->Joint(owner, "joints", name);
     FURROW_RETURN_IF_ERROR(joint);
     if (*joint != kNoJoint) joints->push_back(*joint);
   }
@@ -160,12 +158,21 @@ void StrainDriverSet::Skin(const Entry& entry, std::span<const Frame> frames,
     const Vertex& vertex = vertices_[entry.first_vertex + i];
     glm::vec3 position(0.0f);
     for (const Influence& influence : vertex.influences) {
-      if (influence.skin_weight == 0.0f) continue;  // most hang on two or three
+      if (influence.skin_weight == 0.0f) continue;  // most vertices have two or three influences
       const Frame& frame = frames[influence.joint];
       position += influence.skin_weight * (frame * glm::vec4(vertex.place, 1.0f));
     }
     positions[i] = position;
   }
+}
+
+std::vector<StrainDriverSet::Frame> StrainDriverSet::Frames(int entry,
+                                                            std::span<const Transform> local,
+                                                            const JointChains& chains) const {
+  const Entry& e = entries_[static_cast<std::size_t>(entry)];
+  std::vector<Frame> frames(e.num_joints);
+  EvaluatePoints(e, local, chains, frames);
+  return frames;
 }
 
 StrainDriverSet::Measured StrainDriverSet::Measure(int entry, std::span<const Transform> local,
@@ -198,7 +205,7 @@ void StrainDriverSet::EvaluateFrames(int entry, std::span<const Frame> frames,
                                      std::span<float> values) const {
   const CompressionShares shares = MeasureFrames(entries_[entry], frames).shares;
   const bool is_compressed = shares.compression > 0.0f;
-  // A compression beyond the full one keeps its direction: the shares then sum to 1.
+  // A compression beyond the full one keeps its direction; the shares then sum to 1.
   const float share = Saturate(shares.compression * entries_[entry].inverse_full);
   const float gain = is_compressed ? share / shares.compression : 0.0f;
   values[0] = Saturate(gain * shares.along);
@@ -207,13 +214,47 @@ void StrainDriverSet::EvaluateFrames(int entry, std::span<const Frame> frames,
   values[3] = Saturate(gain * shares.diagonal_right);
 }
 
-void StrainDriverSet::Evaluate(std::span<const Transform> local, const JointChains& chains,
-                               std::span<float> driver_values) const {
-  std::array<Frame, kMaxPatchJoints> frames;
-  for (int i = 0; i < num_entries() && Reaches(driver_values, first_value(i)); ++i) {
-    EvaluatePoints(entries_[i], local, chains, frames);
-    EvaluateFrames(i, frames,
-                   driver_values.subspan(static_cast<std::size_t>(first_value(i)), kNumValues));
+// The joints of all patches are planned one after another, four points each.
+void StrainDriverSet::Plan(LanePlanner* planner) {
+  std::vector<std::pair<const int*, std::uint32_t>> frames;  // four points, driver's first value
+  for (int i = 0; i < num_entries(); ++i) {
+    const Entry& entry = entries_[static_cast<std::size_t>(i)];
+    SingleDriver driver{.entry = i,
+                        .first_value = static_cast<std::uint32_t>(entry.first_value),
+                        .num_values = kNumValues,
+                        .first_lane = static_cast<std::uint32_t>(frames.size()),
+                        .num_lanes = entry.num_joints};
+    planner->PlaceSingle(&driver);
+    drivers_.push_back(driver);
+    for (std::uint32_t k = 0; k < entry.num_joints; ++k) {
+      frames.emplace_back(&points_[entry.first_point + k * kFramePoints], driver.first_value);
+    }
+  }
+  for (std::size_t first = 0; first < frames.size(); first += kRowLanes) {
+    StrainFrameBlock& block = frame_blocks_.emplace_back();
+    block.first_value = frames[first].second;
+    block.first_row = planner->AddRows(3 * kFramePoints);
+    for (std::size_t corner = 0; corner < kFramePoints; ++corner) {
+      Lanes lanes;
+      for (std::size_t i = first; i < std::min(first + kRowLanes, frames.size()); ++i) {
+        lanes.Add(frames[i].first[corner]);
+      }
+      const std::uint32_t row = planner->AddPoints(lanes);
+      if (corner == 0) block.first_point = row;
+      block.num_lanes = static_cast<std::uint32_t>(lanes.count);
+    }
+  }
+}
+
+void StrainDriverSet::Explain(const SolvedPose& pose, DriverExplanation* explanation) const {
+  for (int i = 0; i < num_entries(); ++i) {
+    const PrincipalStretches stretches = Measure(i, pose.local, pose.chains).stretches;
+    glm::vec2 direction = stretches.smallest_direction;
+    if (direction.x < 0.0f || (direction.x == 0.0f && direction.y < 0.0f)) direction = -direction;
+    explanation->strains.push_back({.driver = pose.DriverName(first_value(i)),
+                                    .smallest = stretches.smallest,
+                                    .largest = stretches.largest,
+                                    .degrees = std::atan2(direction.y, direction.x) / kDegrees});
   }
 }
 

@@ -3,57 +3,70 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <glm/mat4x3.hpp>
 
-#include "wrinkle/drivers/bind_context.h"
+#include "wrinkle/drivers/common/bind_context.h"
+#include "wrinkle/drivers/common/driver_explanation.h"
 #include "wrinkle/drivers/strain/strain.h"
+#include "wrinkle/drivers/strain/strain_fields.h"
+#include "wrinkle/simd/lane_planner.h"
 
 namespace furrow::wrinkle {
 
-// All strain drivers of a binding. Private to wrinkle/; the formulas are in strain.h.
+// The joints of all patches, sixteen per block, each with the four points of its frame.
+struct StrainFrameBlock : SinglePoints {};
+
+// All strain drivers of a binding. Private to wrinkle/. The formulas are in strain.h;
+// strain_lanes-inl.h evaluates the drivers.
 //
-// A patch is skinned with what each joint does relative to the driver's base joint: four points of
-// it that lie at the patch in the rest pose say where the joint takes any point of the patch. So a
-// motion of the whole character changes nothing, and the differences that strain is made of are
-// not lost in the distance to the joints.
+// A patch is skinned with the motion of its joints relative to the driver's base joint. Each
+// joint's motion is known from four points: the patch's centre and one point along each axis. A
+// motion of the whole character therefore changes nothing, and the small differences that make up
+// strain are not lost in the distance to the joints.
 class StrainDriverSet {
  public:
+  static constexpr int kNumValues = 4;
+  static constexpr std::size_t kFramePoints = 4;
+
+  // Maps any point of the patch to where a joint takes it.
+  using Frame = glm::mat4x3;
+
   struct Measured {
     PrincipalStretches stretches;
     CompressionShares shares;  // not yet divided by the full compression
   };
 
-  [[nodiscard]] Status Bind(const Driver& driver, int first_value, BindContext* context);
-  void Evaluate(std::span<const Transform> local, const JointChains& chains,
-                std::span<float> driver_values) const;
+  [[nodiscard]] Status Bind(const std::string& name, const StrainDriver& driver, int first_value,
+                            BindContext* context);
+  // After the last Bind().
+  void Plan(LanePlanner* planner);
+  void Explain(const SolvedPose& pose, DriverExplanation* explanation) const;
 
-  // For the batch: the same in two steps, with points that were evaluated elsewhere.
-  static constexpr int kNumValues = 4;
-  static constexpr std::size_t kFramePoints = 4;
-  // Of the binding's JointChains, kFramePoints for each joint that moves the patch.
-  [[nodiscard]] std::span<const int> points(int entry) const {
-    const Entry& e = entries_[entry];
-    return std::span(points_).subspan(e.first_point, e.num_joints * kFramePoints);
-  }
-  // Where a joint takes any point of the patch.
-  using Frame = glm::mat4x3;
   [[nodiscard]] static Frame MakeFrame(std::span<const glm::vec3, kFramePoints> points);
-  // `frames`: a joint each. `values`: kNumValues.
+  // The values of one driver. `frames`: one per joint that moves the patch. `values`: kNumValues.
   void EvaluateFrames(int entry, std::span<const Frame> frames, std::span<float> values) const;
 
-  // For `furrow rig explain`: the same numbers that Evaluate() goes through.
   [[nodiscard]] int num_entries() const { return static_cast<int>(entries_.size()); }
-  [[nodiscard]] int first_value(int entry) const { return entries_[entry].first_value; }
+  [[nodiscard]] int first_value(int entry) const {
+    return entries_[static_cast<std::size_t>(entry)].first_value;
+  }
+  // The frames of an entry's joints in a pose, without lanes.
+  [[nodiscard]] std::vector<Frame> Frames(int entry, std::span<const Transform> local,
+                                          const JointChains& chains) const;
+  // The strain in a pose, without lanes.
   [[nodiscard]] Measured Measure(int entry, std::span<const Transform> local,
                                  const JointChains& chains) const;
+  [[nodiscard]] const std::vector<StrainFrameBlock>& frame_blocks() const { return frame_blocks_; }
+  [[nodiscard]] const std::vector<SingleDriver>& drivers() const { return drivers_; }
 
  private:
   struct Entry {
     int first_value = 0;
     float inverse_full = 4.0f;
-    std::uint32_t first_point = 0;  // into points_: four a joint
+    std::uint32_t first_point = 0;  // into points_: four per joint
     std::uint32_t num_joints = 0;
     std::uint32_t first_vertex = 0;
     std::uint32_t num_vertices = 0;
@@ -66,20 +79,20 @@ class StrainDriverSet {
     float skin_weight = 0.0f;
   };
   struct Vertex {
-    glm::vec3 place{0.0f};  // in frames whose origin is the patch's centre, whose unit its radius
-    Influence influences[StrainDriver::kMaxInfluences];  // unused ones weigh nothing
+    glm::vec3 place{0.0f};  // from the patch's centre, in units of its radius
+    Influence influences[StrainDriver::kMaxInfluences];  // unused influences weigh 0
   };
   struct Triangle {
     std::uint16_t corners[3] = {};  // of the entry's vertices
     RestTriangle rest;
   };
 
-  [[nodiscard]] Status BindJoints(const Driver& driver, BindContext* context,
-                                  std::vector<int>* joints, int* base);
+  [[nodiscard]] Status BindJoints(const std::string& owner, const StrainDriver& strain,
+                                  BindContext* context, std::vector<int>* joints, int* base);
   void BindVertices(const StrainDriver& strain, Entry* entry);
   void BindTriangles(const StrainDriver& strain, const Skeleton& skeleton, int base,
                      const JointChains& chains, Entry* entry);
-  // As many as the entry has joints.
+  // Fills one frame per joint of the entry.
   void EvaluatePoints(const Entry& entry, std::span<const Transform> local,
                       const JointChains& chains, std::span<Frame> frames) const;
   // The patch's vertices in the base joint's space.
@@ -91,6 +104,8 @@ class StrainDriverSet {
   std::vector<int> points_;  // into the binding's JointChains
   std::vector<Vertex> vertices_;
   std::vector<Triangle> triangles_;
+  std::vector<StrainFrameBlock> frame_blocks_;
+  std::vector<SingleDriver> drivers_;
 };
 
 }  // namespace furrow::wrinkle

@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wrinkle/drivers/twist/twist_driver.h"
 
+#include <algorithm>
+
 #include "base/scalar.h"
-#include "base/status.h"
-#include "wrinkle/rig/driver_values.h"
 #include "wrinkle/skeleton/twist.h"
 
 namespace furrow::wrinkle {
 
-Status TwistDriverSet::Bind(const Driver& driver, int first_value, BindContext* context) {
-  const TwistDriver& twist = driver.twist;
-  const std::string whose = "driver '" + driver.name + "'";
+Status TwistDriverSet::Bind(const std::string& name, const TwistDriver& driver, int first_value,
+                            BindContext* context) {
+  const std::string owner = "driver '" + name + "'";
   const Skeleton& skeleton = context->skeleton();
-  std::vector<std::string> names = {twist.joint};
-  names.insert(names.end(), twist.through.begin(), twist.through.end());
+  const std::vector<std::string> names = JointsRead(driver);
   std::vector<TwistJoint> joints;
   bool usable = true;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const Result<int> found = context->Joint(whose, i == 0 ? "joint" : "through", names[i]);
+    const Result<int> found = context->Joint(owner, i == 0 ? "joint" : "through", names[i]);
     FURROW_RETURN_IF_ERROR(found);
     if (*found == kNoJoint) {
       usable = false;
@@ -26,10 +25,10 @@ Status TwistDriverSet::Bind(const Driver& driver, int first_value, BindContext* 
     TwistJoint joint;
     joint.joint = *found;
     joint.rest_inverse = glm::conjugate(glm::normalize(skeleton.rest_pose()[*found].rotation));
-    joint.axis = Direction(twist.axis ? ToJointAxes(skeleton, *found, *twist.axis)
-                                      : skeleton.tails()[*found]);
+    joint.axis = Direction(driver.axis ? ToJointAxes(skeleton, *found, *driver.axis)
+                                       : skeleton.tails()[*found]);
     if (joint.axis == glm::vec3(0.0f)) {
-      return context->Unusable(whose, "joint '" + names[i] + "' has no tail to twist about");
+      return context->Unusable(owner, "joint '" + names[i] + "' has no tail to twist about");
     }
     joints.push_back(joint);
   }
@@ -37,27 +36,49 @@ Status TwistDriverSet::Bind(const Driver& driver, int first_value, BindContext* 
   entries_.push_back({.first_value = first_value,
                       .first_joint = static_cast<int>(joints_.size()),
                       .num_joints = static_cast<int>(joints.size()),
-                      .inverse_full = 1.0f / (twist.full_degrees * kDegrees)});
+                      .inverse_full = 1.0f / (driver.full_degrees * kDegrees)});
   joints_.insert(joints_.end(), joints.begin(), joints.end());
   return {};
 }
 
-float TwistDriverSet::Angle(int entry, std::span<const Transform> local) const {
-  const Entry& e = entries_[entry];
-  float sum = 0.0f;
-  for (int i = e.first_joint; i < e.first_joint + e.num_joints; ++i) {
-    const TwistJoint& joint = joints_[i];
-    sum += TwistAngle(joint.rest_inverse * local[joint.joint].rotation, joint.axis);
+void TwistDriverSet::Plan(LanePlanner* planner) {
+  const auto num_joints = [&](int i) { return entries_[static_cast<std::size_t>(i)].num_joints; };
+  for (const Lanes& lanes : InBlocks(entries_.size(), kOneKind, num_joints)) {
+    TwistBlock& block = blocks_.emplace_back();
+    block.first_row = planner->AddRows(2);
+    block.first_step = static_cast<std::uint32_t>(steps_.size());
+    for (std::size_t lane = 0; lane < lanes.count; ++lane) {
+      const Entry& entry = entries_[static_cast<std::size_t>(lanes[lane])];
+      planner->Place(entry.first_value, 2, lane, &block);
+      block.inverse_full.at[lane] = entry.inverse_full;
+      block.num_steps = std::max(block.num_steps, static_cast<std::uint32_t>(entry.num_joints));
+    }
+    for (std::uint32_t i = 0; i < block.num_steps; ++i) PlanStep(lanes, i);
   }
-  return sum;
 }
 
-void TwistDriverSet::Evaluate(std::span<const Transform> local,
-                              std::span<float> driver_values) const {
-  for (int i = 0; i < num_entries() && Reaches(driver_values, first_value(i)); ++i) {
-    const float share = Angle(i, local) * entries_[i].inverse_full;
-    driver_values[first_value(i)] = Saturate(share);
-    driver_values[first_value(i) + 1] = Saturate(-share);
+void TwistDriverSet::PlanStep(const Lanes& lanes, std::size_t index) {
+  TwistStep& step = steps_.emplace_back();
+  for (std::size_t lane = 0; lane < kRowLanes; ++lane) {
+    const auto own = joints(entries_[static_cast<std::size_t>(lanes[lane])]);
+    const bool active = lane < lanes.count && index < own.size();
+    SetJoint(active ? own[index].joint : kNoJoint, lane, &step.joint);
+    if (!active) continue;
+    const glm::quat& r = own[index].rest_inverse;
+    SetLane(glm::vec4(r.x, r.y, r.z, r.w), lane, step.rest_inverse);
+    SetLane(own[index].axis, lane, step.axis);
+  }
+}
+
+void TwistDriverSet::Explain(const SolvedPose& pose, DriverExplanation* explanation) const {
+  for (const Entry& entry : entries_) {
+    float radians = 0.0f;
+    for (const TwistJoint& joint : joints(entry)) {
+      radians += TwistAngle(joint.rest_inverse * pose.local[joint.joint].rotation, joint.axis);
+    }
+    explanation->angles.push_back({.driver = pose.DriverName(entry.first_value),
+                                   .what = "twist",
+                                   .degrees = radians / kDegrees});
   }
 }
 

@@ -9,8 +9,8 @@
 
 #include "authoring/generator/body/body_skeleton.h"
 #include "rig/rig_file.h"
-#include "wrinkle/drivers/reference_pose.h"
 #include "wrinkle/shapes/blend_shape_pose.h"
+#include "wrinkle/skeleton/reference_pose.h"
 #include "wrinkle/solver/solver.h"
 
 namespace furrow::authoring {

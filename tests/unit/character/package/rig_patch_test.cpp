@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "character/package/rig_patch.h"
 
+#include <memory>
+#include <span>
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -60,14 +62,14 @@ TEST(RigPatch, MeasuresTheStrainOfTheSurfaceItWasCutFrom) {
   EXPECT_EQ(driver->strain.joint, "root");
   wrinkle::Rig rig;
   rig.drivers = {*driver};
-  const auto binding = wrinkle::RigBinding::Create(rig, sheets.skeleton, {});
+  auto binding = wrinkle::RigBinding::Create(rig, sheets.skeleton, {});
   ASSERT_TRUE(binding.ok()) << binding.status().ToString();
   wrinkle::LocalPose pose;
   pose.SetRest(sheets.skeleton);
   pose.joints[2].translation.y -= 0.1f * kSide;  // the sheet is nine tenths as high
-  std::vector<float> values(4);
-  const wrinkle::DriverJob job{.binding = &*binding, .local = pose.joints, .driver_values = values};
-  ASSERT_EQ(job.Run(), wrinkle::JobStatus::kOk);
+  wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(binding)));
+  ASSERT_EQ(solver.Update(pose, 0.0), wrinkle::JobStatus::kOk);
+  const std::span<const float> values = solver.driver_values();
   EXPECT_NEAR(values[0], 0.4f, 2e-3f);  // along; 0.25 is full
   EXPECT_NEAR(values[1] + values[2] + values[3], 0.0f, 2e-3f);
 }

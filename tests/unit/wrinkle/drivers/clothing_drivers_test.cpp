@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/wrinkle/bound_rig.h"
-#include "wrinkle/drivers/blend_shape/blend_shape_driver.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -161,11 +160,22 @@ TEST_P(ClothingDrivers, AllIsAtRestInTheRestPose) {
   }
 }
 
-TEST(BlendShapeValue, RunsFromNeutralToFull) {
-  EXPECT_FLOAT_EQ(BlendShapeValue(0.5f, 0.2f, 0.8f), 0.5f);
-  EXPECT_EQ(BlendShapeValue(0.1f, 0.2f, 0.8f), 0.0f);
-  EXPECT_EQ(BlendShapeValue(3.0f, 0.2f, 0.8f), 1.0f);
-  EXPECT_FLOAT_EQ(BlendShapeValue(-0.25f, 0.0f, -1.0f), 0.25f);  // a coefficient that falls
+TEST(BlendShapes, RunFromNeutralToFull) {
+  const auto value = [](float coefficient, float neutral, float full) {
+    Rig rig;
+    rig.drivers.resize(1);
+    rig.drivers[0].name = "shape";
+    rig.drivers[0].kind = Driver::Kind::kBlendShape;
+    rig.drivers[0].blend_shape = {.blend_shape = "shape", .neutral = neutral, .full = full};
+    BoundRig bound(rig, Skeleton(), {"shape"});
+    LocalPose pose;
+    pose.blend_shapes = {coefficient};
+    return bound.ValueAt(pose, "shape.value");
+  };
+  EXPECT_FLOAT_EQ(value(0.5f, 0.2f, 0.8f), 0.5f);
+  EXPECT_EQ(value(0.1f, 0.2f, 0.8f), 0.0f);
+  EXPECT_EQ(value(3.0f, 0.2f, 0.8f), 1.0f);
+  EXPECT_FLOAT_EQ(value(-0.25f, 0.0f, -1.0f), 0.25f);  // a coefficient that falls
 }
 
 }  // namespace

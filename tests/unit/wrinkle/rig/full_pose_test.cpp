@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/wrinkle/bound_rig.h"
-#include "wrinkle/drivers/reference_pose.h"
 #include "wrinkle/rig/driver_values.h"
+#include "wrinkle/skeleton/reference_pose.h"
 
 namespace furrow::wrinkle {
 namespace {

@@ -10,7 +10,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
-#include "wrinkle/drivers/reference_pose.h"
+#include "wrinkle/skeleton/reference_pose.h"
 
 namespace furrow::wrinkle {
 namespace {

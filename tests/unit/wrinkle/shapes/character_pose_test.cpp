@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/wrinkle/test_characters.h"
-#include "wrinkle/drivers/reference_pose.h"
+#include "wrinkle/skeleton/reference_pose.h"
 
 namespace furrow::wrinkle {
 namespace {

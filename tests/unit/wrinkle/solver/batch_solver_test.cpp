@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The batch against one solver after another: on chance rigs, poses and times, with every set of
-// instructions that this processor has.
+// The solver, by itself and in batches, against the oracle: on chance rigs, poses and times, with
+// every instruction set of this processor.
 #include "wrinkle/solver/batch_solver.h"
 
 #include <algorithm>
@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(Instructions, BatchSolverTest, testing::ValuesIn(Target
                            return std::string(hwy::TargetName(target.param));
                          });
 
-TEST_P(BatchSolverTest, EqualsOneAfterAnotherOnChanceRigsPosesAndTimes) {
+TEST_P(BatchSolverTest, EqualsTheOracleOnChanceRigsPosesAndTimes) {
   std::mt19937 random(71);
   for (int round = 0; round < 12; ++round) {
     Crowd crowd(Bind(RandomRig(&random), static_cast<unsigned>(round % 3)), 37);
@@ -177,22 +177,53 @@ TEST_P(BatchSolverTest, AnyNumberOfSubjectsAndBindings) {
   }
 }
 
-TEST_P(BatchSolverTest, ASubjectMayStandInABatchMoreThanOnce) {
+TEST_P(BatchSolverTest, ASubjectMayAppearInABatchMoreThanOnce) {
   const auto binding = Bind(MakeRig(), 5);
   std::mt19937 random(74);
   std::vector<LocalPose> poses(5);
-  SubjectSolver expected(binding);
+  SubjectSolver single(binding);
   SubjectSolver batched(binding);
   std::vector<BatchUpdate> updates;
   for (LocalPose& pose : poses) {
     NextPose(binding->skeleton(), &random, &pose);
-    ASSERT_EQ(expected.Update(pose, 0.01), JobStatus::kOk);
+    ASSERT_EQ(single.Update(pose, 0.01), JobStatus::kOk);
     updates.push_back({.solver = &batched, .pose = &pose, .dt = 0.01});
   }
   BatchSolver batch;
   batch.Run(updates);
-  for (std::size_t i = 0; i < expected.wrinkle_weights().size(); ++i) {
-    EXPECT_NEAR(batched.wrinkle_weights()[i], expected.wrinkle_weights()[i], Crowd::kTolerance);
+  EXPECT_TRUE(SameBits(single, batched));
+}
+
+// One stream of poses, by itself and at every place of batches of every length with other subjects
+// of other rigs: all results have the same bits.
+TEST_P(BatchSolverTest, ResultsHaveTheSameBitsAtAnyPlaceInAnyBatch) {
+  std::mt19937 random(79);
+  const auto binding = Bind(RandomRig(&random), 5);
+  const auto other = Bind(RandomRig(&random), 0);
+  std::vector<LocalPose> stream(20);
+  for (LocalPose& pose : stream) NextPose(binding->skeleton(), &random, &pose);
+  LocalPose noise;
+  for (const std::size_t length : {1u, 2u, 7u, 16u, 33u, 300u}) {
+    for (std::size_t place = 0; place < length; place += 1 + length / 5) {
+      SubjectSolver single(binding);
+      SubjectSolver batched(binding);
+      std::vector<SubjectSolver> others(length, SubjectSolver(other));
+      BatchSolver batch;
+      for (const LocalPose& pose : stream) {
+        NextPose(other->skeleton(), &random, &noise);
+        std::vector<BatchUpdate> updates;
+        for (std::size_t i = 0; i < length; ++i) {
+          updates.push_back({.solver = &others[i], .pose = &noise, .dt = 0.02});
+        }
+        updates[place] = {.solver = &batched, .pose = &pose, .dt = 1.0 / 60.0};
+        batch.Run(updates);
+        ASSERT_EQ(single.Update(pose, 1.0 / 60.0), JobStatus::kOk);
+        ASSERT_TRUE(SameBits(single, batched)) << length << " " << place;
+      }
+      ASSERT_EQ(single.Decay(0.4), JobStatus::kOk);
+      ASSERT_EQ(batched.Decay(0.4), JobStatus::kOk);
+      ASSERT_TRUE(SameBits(single, batched));
+    }
   }
 }
 
@@ -327,7 +358,7 @@ TEST_P(BatchSolverTest, DoesNotAllocateOnceItHasSeenASize) {
   EXPECT_EQ(updates[3].status, JobStatus::kNonFinite);
 }
 
-// What a level means, on the scalar solver: the batch is held to it above.
+// The meaning of a level, on single poses. The batch equals them (above).
 TEST(LevelOfDetail, DriversPastThePrefixFadeAndTheOthersStay) {
   const auto binding = Bind(MakeRig(), 5);
   std::mt19937 random(78);

@@ -294,6 +294,13 @@ TEST(RigBinding, RefusesMoreRegionsThanItCounts) {
   EXPECT_EQ(Bind(rig).status().code(), StatusCode::kLimit);
 }
 
+// The unfiltered driver values of a pose.
+std::vector<float> DriverValues(const RigBinding& binding, const LocalPose& pose) {
+  SubjectSolver solver(std::shared_ptr<const RigBinding>(std::shared_ptr<void>(), &binding), false);
+  EXPECT_EQ(solver.Update(pose, 0.0), JobStatus::kOk);
+  return {solver.driver_values().begin(), solver.driver_values().end()};
+}
+
 TEST(RigBinding, ListsWhatIsMissingOnceWhereThatIsAllowed) {
   const Skeleton half = MakeSkeleton({{"hips", "", {0, 1, 0}, {}},
                                       {"thigh_l", "hips", {0.1f, 0.95f, 0}, {}},
@@ -307,9 +314,7 @@ TEST(RigBinding, ListsWhatIsMissingOnceWhereThatIsAllowed) {
 
   LocalPose pose = RestPose(half);
   Turn(half, "shin_l", AngleAxis(90.0f, {1, 0, 0}), &pose);
-  std::vector<float> values(binding->driver_value_names().size(), -1.0f);
-  const DriverJob job{.binding = &*binding, .local = pose.joints, .driver_values = values};
-  ASSERT_EQ(job.Run(), JobStatus::kOk);
+  const std::vector<float> values = DriverValues(*binding, pose);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::string& name = binding->driver_value_names()[i];
     if (name == "knee_l.flexed") {
@@ -357,17 +362,10 @@ TEST(RigBinding, MatchesBlendShapesWithoutCase) {
   const Result<RigBinding> binding = Bind(MakeRig());
   ASSERT_TRUE(binding.ok());
   LocalPose pose = RestPose(binding->skeleton());
-  const float coefficients[] = {0.9f, 0.25f};
-  std::vector<float> values(binding->driver_value_names().size());
-  DriverJob job{.binding = &*binding,
-                .local = pose.joints,
-                .blend_shapes = coefficients,
-                .driver_values = values};
-  ASSERT_EQ(job.Run(), JobStatus::kOk);
-  EXPECT_EQ(values.back(), 0.25f);
-  job.blend_shapes = std::span(coefficients).first(1);  // shorter than bound
-  ASSERT_EQ(job.Run(), JobStatus::kOk);
-  EXPECT_EQ(values.back(), 0.0f);
+  pose.blend_shapes = {0.9f, 0.25f};
+  EXPECT_EQ(DriverValues(*binding, pose).back(), 0.25f);
+  pose.blend_shapes.pop_back();  // shorter than bound
+  EXPECT_EQ(DriverValues(*binding, pose).back(), 0.0f);
 }
 
 TEST(RigBinding, NeedsNoSkeletonForBlendShapesAlone) {

@@ -101,7 +101,7 @@ class LevelChange : public testing::Test {
     return {solver_.filtered_values().begin(), solver_.filtered_values().end()};
   }
   void SetLevel(std::size_t count) {
-    EXPECT_EQ(batch_.SetLevel(&solver_, poses_.back(), count), JobStatus::kOk);
+    EXPECT_EQ(solver_.SetLevel(poses_.back(), count), JobStatus::kOk);
   }
 
   BatchSolver batch_;

@@ -131,62 +131,22 @@ TEST(Solver, SurvivesDegeneratePoses) {
   for (const float value : rig.values()) EXPECT_TRUE(value >= 0.0f && value <= 1.0f) << value;
 }
 
-TEST(DriverJob, ValidatesOneInputAtATime) {
+TEST(SubjectSolver, ValidatesOneInputAtATime) {
   BoundRig rig(MakeRig(), MakeBody());
   LocalPose pose = Expressive(rig.skeleton());
-  const auto job = [&] {
-    return DriverJob{.binding = rig.binding().get(),
-                     .local = pose.joints,
-                     .blend_shapes = pose.blend_shapes,
-                     .driver_values = rig.values()};
-  };
-  EXPECT_EQ(job().Validate(), JobStatus::kOk);
-  DriverJob broken = job();
-  broken.binding = nullptr;
-  EXPECT_EQ(broken.Validate(), JobStatus::kNullPointer);
-  broken = job();
-  broken.local = broken.local.first(broken.local.size() - 1);
-  EXPECT_EQ(broken.Validate(), JobStatus::kSizeMismatch);
-  broken = job();
-  broken.driver_values = broken.driver_values.first(broken.driver_values.size() - 1);
-  EXPECT_EQ(broken.Validate(), JobStatus::kSizeMismatch);
-  broken = job();
-  broken.blend_shapes = {};
-  EXPECT_EQ(broken.Validate(), JobStatus::kOk);
-  pose.blend_shapes[0] = std::numeric_limits<float>::infinity();
-  EXPECT_EQ(job().Validate(), JobStatus::kNonFinite);
-  pose.blend_shapes[0] = 0.0f;
-  pose.joints[2].scale.x = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(job().Run(), JobStatus::kNonFinite);
-}
-
-// Of a job on the rig's values that writes `output`.
-template <class Job>
-void ExpectItValidatesOneInputAtATime(BoundRig& rig, const Job& job,
-                                      std::span<float> Job::*output) {
-  EXPECT_EQ(job.Validate(), JobStatus::kOk);
-  Job broken = job;
-  broken.binding = nullptr;
-  EXPECT_EQ(broken.Validate(), JobStatus::kNullPointer);
-  broken = job;
-  broken.driver_values = broken.driver_values.first(broken.driver_values.size() - 1);
-  EXPECT_EQ(broken.Validate(), JobStatus::kSizeMismatch);
-  broken = job;
-  broken.*output = (broken.*output).first((broken.*output).size() - 1);
-  EXPECT_EQ(broken.Validate(), JobStatus::kSizeMismatch);
-  for (const float value :
-       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-    rig.values()[3] = value;
-    EXPECT_EQ(job.Run(), JobStatus::kNonFinite);
-  }
-}
-
-TEST(WrinkleWeightsJob, ValidatesOneInputAtATime) {
-  BoundRig rig(MakeRig(), MakeBody());
-  const WrinkleWeightsJob job{.binding = rig.binding().get(),
-                              .driver_values = rig.values(),
-                              .wrinkle_weights = rig.weights()};
-  ExpectItValidatesOneInputAtATime(rig, job, &WrinkleWeightsJob::wrinkle_weights);
+  SubjectSolver solver(rig.binding());
+  EXPECT_EQ(solver.Update(pose, 0.0), JobStatus::kOk);
+  LocalPose broken = pose;
+  broken.joints.pop_back();
+  EXPECT_EQ(solver.Update(broken, 0.0), JobStatus::kSizeMismatch);
+  broken = pose;
+  broken.blend_shapes.clear();
+  EXPECT_EQ(solver.Update(broken, 0.0), JobStatus::kOk);
+  broken.blend_shapes = {std::numeric_limits<float>::infinity()};
+  EXPECT_EQ(solver.Update(broken, 0.0), JobStatus::kNonFinite);
+  broken = pose;
+  broken.joints[2].scale.x = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(solver.Update(broken, 0.0), JobStatus::kNonFinite);
 }
 
 TEST(JointInfluenceJob, ValidatesOneInputAtATime) {
@@ -195,10 +155,24 @@ TEST(JointInfluenceJob, ValidatesOneInputAtATime) {
                                 rig.binding()->dynamic_masks().size());
   const JointInfluenceJob job{
       .binding = rig.binding().get(), .driver_values = rig.values(), .influences = influences};
-  ExpectItValidatesOneInputAtATime(rig, job, &JointInfluenceJob::influences);
+  EXPECT_EQ(job.Validate(), JobStatus::kOk);
+  JointInfluenceJob broken = job;
+  broken.binding = nullptr;
+  EXPECT_EQ(broken.Validate(), JobStatus::kNullPointer);
+  broken = job;
+  broken.driver_values = broken.driver_values.first(broken.driver_values.size() - 1);
+  EXPECT_EQ(broken.Validate(), JobStatus::kSizeMismatch);
+  broken = job;
+  broken.influences = broken.influences.first(broken.influences.size() - 1);
+  EXPECT_EQ(broken.Validate(), JobStatus::kSizeMismatch);
+  for (const float value :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    rig.values()[3] = value;
+    EXPECT_EQ(job.Run(), JobStatus::kNonFinite);
+  }
 }
 
-TEST(SubjectSolver, WithoutFilterEqualsTheJobs) {
+TEST(SubjectSolver, WithoutFilterEachPoseStandsAlone) {
   BoundRig rig(MakeRig(), MakeBody(5));
   const LocalPose pose = Expressive(rig.skeleton());
   rig.Solve(pose);
@@ -280,9 +254,6 @@ TEST(Allocation, NoneAfterSetUp) {
   std::vector<Transform> carried(pose.joints.size());
   std::vector<glm::mat4> model(pose.joints.size());
   std::vector<float> influences(pose.joints.size() * test_rig.wrinkle_maps.size());
-  FilterContext context;
-  context.Resize(static_cast<int>(rig.values().size()));
-  std::vector<float> filtered(rig.values().size());
   SubjectSolver solver(rig.binding());
 
   const std::uint64_t before = furrow::test::NumAllocations();
@@ -290,31 +261,13 @@ TEST(Allocation, NoneAfterSetUp) {
   for (int frame = 0; frame < 10; ++frame) {
     const auto run = [&](const auto& job) { ok = ok && job.Run() == JobStatus::kOk; };
     run(LocalToModelJob{.skeleton = &skeleton, .local = pose.joints, .model = model});
-    run(DriverJob{.binding = rig.binding().get(),
-                  .local = pose.joints,
-                  .blend_shapes = pose.blend_shapes,
-                  .driver_values = rig.values()});
-    run(FilterJob{.filter = &test_rig.filter,
-                  .context = &context,
-                  .dt = 0.01,
-                  .input = rig.values(),
-                  .output = filtered});
-    run(FilterJob{.filter = &test_rig.filter,
-                  .context = &context,
-                  .dt = 0.5,
-                  .input = {},
-                  .output = filtered});
-    run(WrinkleWeightsJob{.binding = rig.binding().get(),
-                          .driver_values = filtered,
-                          .wrinkle_weights = rig.weights()});
     run(JointInfluenceJob{
-        .binding = rig.binding().get(), .driver_values = filtered, .influences = influences});
+        .binding = rig.binding().get(), .driver_values = rig.values(), .influences = influences});
     ok = ok && retarget.Run(pose.joints, carried) == JobStatus::kOk;
     ok = ok && solver.Update(pose, 0.01) == JobStatus::kOk;
     ok = ok && solver.Decay(0.01) == JobStatus::kOk;
   }
   solver.Reset();
-  context.Reset();
   EXPECT_EQ(furrow::test::NumAllocations(), before);
   EXPECT_TRUE(ok);
 }

@@ -1,44 +1,49 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "wrinkle/solver/solver.h"
-#include "wrinkle/weights/one_euro.h"
+#include "tests/unit/wrinkle/bound_rig.h"
+#include "tests/unit/wrinkle/oracle/filter_oracle.h"
+#include "tests/unit/wrinkle/oracle/one_euro.h"
+#include "wrinkle/solver/subject_solver.h"
 
 namespace furrow::wrinkle {
 namespace {
 
+// The solver's filter, on a rig with a single driver: its value is the input.
 class FilterTest : public testing::Test {
  protected:
-  FilterTest() { context_.Resize(1); }
-
   float Step(float input, double dt) {
-    input_ = input;
-    const FilterJob job{.filter = &filter_,
-                        .context = &context_,
-                        .dt = dt,
-                        .input = std::span(&input_, 1),
-                        .output = std::span(&output_, 1)};
-    EXPECT_EQ(job.Run(), JobStatus::kOk);
-    return output_;
+    pose_.blend_shapes = {input};
+    EXPECT_EQ(Solver().Update(pose_, dt), JobStatus::kOk);
+    return Output();
   }
   float Lose(double dt) {
-    const FilterJob job{.filter = &filter_,
-                        .context = &context_,
-                        .dt = dt,
-                        .input = {},
-                        .output = std::span(&output_, 1)};
-    EXPECT_EQ(job.Run(), JobStatus::kOk);
-    return output_;
+    EXPECT_EQ(Solver().Decay(dt), JobStatus::kOk);
+    return Output();
+  }
+  // Starts again, with filter_ as it is now.
+  void Restart() { solver_.reset(); }
+  float Output() { return Solver().filtered_values()[0]; }
+  SubjectSolver& Solver() {
+    if (!solver_) {
+      Rig rig;
+      rig.filter = filter_;
+      rig.drivers.resize(1);
+      rig.drivers[0].name = "input";
+      rig.drivers[0].kind = Driver::Kind::kBlendShape;
+      rig.drivers[0].blend_shape.blend_shape = "input";
+      solver_.emplace(BoundRig(rig, Skeleton(), {"input"}).binding());
+    }
+    return *solver_;
   }
 
   Filter filter_;
-  FilterContext context_;
-  float input_ = 0.0f;
-  float output_ = -1.0f;
+  std::optional<SubjectSolver> solver_;
+  LocalPose pose_;
 };
 
 TEST(OneEuro, LowPassShareIsThatOfAFirstOrderFilter) {
@@ -97,7 +102,7 @@ TEST_F(FilterTest, RestIsSteadierAndMotionArrives) {
 TEST_F(FilterTest, BetaShortensTheLagOfFastMotion) {
   const auto lag = [&](float beta) {
     filter_ = Filter{.min_cutoff_hz = 1.0f, .beta = beta, .slew_per_second = 0.0f};
-    context_.Reset();
+    Restart();
     float output = Step(0.0f, 0.0);
     for (int i = 1; i <= 6; ++i) output = Step(static_cast<float>(i) / 6.0f, 1.0 / 60.0);
     return 1.0f - output;
@@ -123,7 +128,7 @@ TEST_F(FilterTest, TimeThatStandsStillChangesNothing) {
 
 TEST_F(FilterTest, AVeryLongStepArrives) {
   for (const double dt : {1e3, 1e9, 1e300}) {
-    context_.Reset();
+    Restart();
     Step(0.1f, 0.0);
     EXPECT_NEAR(Step(0.7f, dt), 0.7f, 1e-3f) << dt;
     EXPECT_EQ(Lose(dt), 0.0f) << dt;
@@ -140,17 +145,17 @@ TEST_F(FilterTest, HoldsThenDecays) {
   EXPECT_NEAR(Lose(0.5), 0.8f * std::exp(-1.0f), 1e-6f);
   EXPECT_NEAR(Lose(0.25), 0.8f * std::exp(-1.5f), 1e-6f);
   for (int i = 0; i < 100; ++i) Lose(0.1);
-  EXPECT_EQ(output_, 0.0f);
+  EXPECT_EQ(Output(), 0.0f);
 }
 
 TEST_F(FilterTest, DecayDoesNotDependOnTheSteps) {
   filter_.slew_per_second = 0.0f;
   Step(1.0f, 0.0);
   const float at_once = Lose(1.0);
-  context_.Reset();
+  Restart();
   Step(1.0f, 0.0);
   for (int i = 0; i < 1000; ++i) Lose(0.001);
-  EXPECT_NEAR(output_, at_once, 1e-3f);
+  EXPECT_NEAR(Output(), at_once, 1e-3f);
 }
 
 TEST_F(FilterTest, DecayObeysTheSlewLimit) {
@@ -181,39 +186,46 @@ TEST_F(FilterTest, DisabledPassesInputButStillDecays) {
 
 TEST_F(FilterTest, ResetForgets) {
   Step(1.0f, 0.0);
-  context_.Reset();
+  Solver().Reset();
   EXPECT_EQ(Lose(0.0), 0.0f);
   EXPECT_EQ(Step(0.4f, 0.0), 0.4f);
 }
 
-TEST_F(FilterTest, ValidatesOneInputAtATime) {
-  float values[2] = {0.1f, 0.2f};
-  const FilterJob good{.filter = &filter_,
-                       .context = &context_,
-                       .dt = 0.1,
-                       .input = std::span(values, 1),
-                       .output = std::span(&output_, 1)};
-  EXPECT_EQ(good.Validate(), JobStatus::kOk);
-  FilterJob job = good;
-  job.filter = nullptr;
-  EXPECT_EQ(job.Validate(), JobStatus::kNullPointer);
-  job = good;
-  job.context = nullptr;
-  EXPECT_EQ(job.Validate(), JobStatus::kNullPointer);
+TEST_F(FilterTest, RejectsBadTimes) {
+  Step(0.3f, 0.0);
   for (const double dt : {-1e-9, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
-    job = good;
-    job.dt = dt;
-    EXPECT_EQ(job.Validate(), JobStatus::kBadTime) << dt;
+    EXPECT_EQ(Solver().Update(pose_, dt), JobStatus::kBadTime) << dt;
+    EXPECT_EQ(Solver().Decay(dt), JobStatus::kBadTime) << dt;
   }
-  job = good;
-  job.input = values;
-  EXPECT_EQ(job.Validate(), JobStatus::kSizeMismatch);
-  job = good;
-  job.output = {};
-  EXPECT_EQ(job.Validate(), JobStatus::kSizeMismatch);
-  values[0] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(good.Run(), JobStatus::kNonFinite);
-  EXPECT_EQ(output_, -1.0f);
+  EXPECT_EQ(Output(), 0.3f);
+}
+
+// Chance inputs, times, losses and parameters: the solver's filter in single precision against the
+// oracle in double.
+TEST_F(FilterTest, FollowsTheOracle) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  for (int round = 0; round < 50; ++round) {
+    filter_ = {.enabled = round % 10 != 0,
+               .min_cutoff_hz = 0.5f + 10.0f * uniform(random),
+               .beta = 5.0f * uniform(random),
+               .derivative_cutoff_hz = 0.5f + 5.0f * uniform(random),
+               .slew_per_second = round % 3 == 0 ? 0.0f : 60.0f * uniform(random)};
+    Restart();
+    FilterOracle oracle(filter_, 1);
+    for (int i = 0; i < 100; ++i) {
+      const double dt = i % 7 == 0 ? 0.0 : 0.05 * uniform(random);
+      if (i % 9 == 8) {
+        oracle.Decay(dt);
+        Lose(dt);
+      } else {
+        const float input = uniform(random);
+        oracle.Update({&input, 1}, dt);
+        Step(input, dt);
+      }
+      EXPECT_NEAR(Output(), oracle.values()[0], 2e-6f) << round << " " << i;
+    }
+  }
 }
 
 }  // namespace

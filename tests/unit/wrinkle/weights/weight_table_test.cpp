@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include <gtest/gtest.h>
 
 #include "tests/unit/wrinkle/bound_rig.h"
+#include "tests/unit/wrinkle/oracle/combine.h"
 
 namespace furrow::wrinkle {
 namespace {
@@ -22,6 +24,37 @@ TEST(CombineSources, GivesTheWorkedValues) {
   EXPECT_EQ(CombineSources(Combine::kMax, strong, values), 1.0f);
   EXPECT_EQ(CombineSources(Combine::kSum, strong, values), 1.0f);
   EXPECT_FLOAT_EQ(CombineSources(Combine::kMean, strong, values), 3.2f / 4.0f);
+}
+
+// The same worked values from the solver: three blend shapes feed one region.
+TEST(WrinkleWeights, AreCombinedAsWorked) {
+  const auto weight = [](Combine combine, std::vector<Feed::Source> sources) {
+    Rig rig;
+    for (const char* name : {"a", "b", "c"}) {
+      Driver& driver = rig.drivers.emplace_back();
+      driver.name = name;
+      driver.kind = Driver::Kind::kBlendShape;
+      driver.blend_shape.blend_shape = name;
+    }
+    Region& region = rig.regions.emplace_back();
+    region.name = "region";
+    region.combine = combine;
+    region.modulation = Modulation::kLinear;
+    region.feeds = {{"map", std::move(sources)}};
+    BoundRig bound(rig, Skeleton(), {"a", "b", "c"});
+    LocalPose pose;
+    pose.blend_shapes = {0.9f, 0.2f, 0.5f};
+    bound.Solve(pose);
+    return bound.Weight("region.map");
+  };
+  const std::vector<Feed::Source> sources = {{"b", "value", 2.0f}, {"c", "value", 0.5f}};
+  EXPECT_FLOAT_EQ(weight(Combine::kMax, sources), 0.4f);
+  EXPECT_FLOAT_EQ(weight(Combine::kSum, sources), 0.65f);
+  EXPECT_FLOAT_EQ(weight(Combine::kMean, sources), 0.65f / 2.5f);
+  const std::vector<Feed::Source> strong = {{"a", "value", 3.0f}, {"c", "value", 1.0f}};
+  EXPECT_EQ(weight(Combine::kMax, strong), 1.0f);
+  EXPECT_EQ(weight(Combine::kSum, strong), 1.0f);
+  EXPECT_FLOAT_EQ(weight(Combine::kMean, strong), 3.2f / 4.0f);
 }
 
 // Weights of driver values alone: four blend shapes feed two opposed maps of two neighbours, "l"
@@ -51,11 +84,10 @@ class Incongruence : public testing::Test {
  protected:
   // Values in the order l.stretch, l.squash, r.stretch, r.squash, far.stretch, far.squash.
   std::vector<float> Weights(std::vector<float> values) {
-    std::vector<float> weights(values.size());
-    const WrinkleWeightsJob job{
-        .binding = rig_.binding().get(), .driver_values = values, .wrinkle_weights = weights};
-    EXPECT_EQ(job.Run(), JobStatus::kOk);
-    return weights;
+    LocalPose pose;
+    pose.blend_shapes = std::move(values);
+    rig_.Solve(pose);
+    return rig_.weights();
   }
   BoundRig rig_{BrowRig(),
                 Skeleton(),
@@ -102,6 +134,17 @@ TEST_F(Incongruence, AtMostOneDominatesAndNothingJumpsInTime) {
   }
   std::printf("incongruence: at most %.6f for inputs that move %.6f\n", worst, 1.05e-3);
   EXPECT_LE(worst, 5e-3f);
+}
+
+// Worked values of the cubic: 0.4994525 at 1/2, and 1 where the printed formula leaves the range.
+TEST(WrinkleWeights, CubicGivesTheWorkedValues) {
+  BoundRig rig(BrowRig(Modulation::kCubic), Skeleton(),
+               {"l_stretch", "l_squash", "r_stretch", "r_squash", "far_stretch", "far_squash"});
+  LocalPose pose;
+  pose.blend_shapes = {0.0f, 0.0f, 0.0f, 0.0f, 0.5f, 1.0f};
+  rig.Solve(pose);
+  EXPECT_NEAR(rig.Weight("far.stretch"), 0.4994525f, 1e-6f);
+  EXPECT_EQ(rig.Weight("far.squash"), 1.0f);
 }
 
 TEST(WrinkleWeights, AreModulatedAfterCombining) {

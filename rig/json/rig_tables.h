@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <glm/vec3.hpp>
+
+#include "base/status.h"
+#include "rig/rig_generated.h"
+#include "wrinkle/fields/rig_field.h"
+
+// Helpers for the readers of a rig's FlatBuffers tables.
+namespace furrow::character {
+
+template <class T>
+using TableList = flatbuffers::Vector<flatbuffers::Offset<T>>;
+
+// The text of an optional field; empty if it is absent.
+[[nodiscard]] inline std::string Text(const flatbuffers::String* text) {
+  return text == nullptr ? std::string() : text->str();
+}
+
+[[nodiscard]] inline glm::vec3 ToVec3(const schema::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+// Converts an enumeration. The schema's enumerations have the same entries in the same order as the
+// wrinkle rig's. JSON may state an entry by number, so the range is checked here.
+template <class To, class From>
+[[nodiscard]] Status ReadEnum(From from, To* to, const std::string& where) {
+  if (from < From::MIN || from > From::MAX) {
+    return wrinkle::InvalidField("there is no such choice", where);
+  }
+  *to = static_cast<To>(from);
+  return {};
+}
+
+// Calls `each(entry, path)` for the entries of an optional list; stops at the first failure.
+template <class T, class Each>
+[[nodiscard]] Status ForEach(const TableList<T>* list, const std::string& path, Each each) {
+  if (list == nullptr) return {};
+  for (flatbuffers::uoffset_t i = 0; i < list->size(); ++i) {
+    FURROW_RETURN_IF_ERROR(each(*list->Get(i), wrinkle::FieldAt(path, i)));
+  }
+  return {};
+}
+
+}  // namespace furrow::character

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/drivers/ball/ball_fields.h"
+
+#include <cmath>
+
+#include "wrinkle/drivers/common/bone_pair.h"
+#include "wrinkle/drivers/common/full_pose_builder.h"
+#include "wrinkle/fields/field_check.h"
+
+namespace furrow::wrinkle {
+
+std::vector<std::string> DriverValueNames(const BallDriver&) {
+  return {"front", "back", "left", "right"};
+}
+
+void CheckFields(const BallDriver& driver, const std::string& at, FieldCheck* check) {
+  check->Label(at, ".parent", driver.parent);
+  check->Label(at, ".joint", driver.joint);
+  if (!driver.end.empty()) check->Label(at, ".end", driver.end);
+  if (driver.bone != glm::vec3(0.0f)) check->Direction(at, ".bone", driver.bone);
+  check->Direction(at, ".forward", driver.forward);
+  check->Range(at, ".beta_degrees", driver.beta_degrees, 0.0f, kMaxBetaDegrees);
+}
+
+std::vector<std::string> JointsRead(const BallDriver& driver) {
+  return {driver.parent, driver.joint, driver.end};
+}
+
+std::vector<std::string> JointsInfluenced(const BallDriver& driver) { return {driver.joint}; }
+
+Result<ReferencePose> FullPose(const BallDriver& driver, const FullPoseBuilder& builder) {
+  const Result<Limb> limb = builder.FindLimb(driver.parent, driver.joint, driver.end);
+  FURROW_RETURN_IF_ERROR(limb);
+  const glm::vec3 straight = driver.bone == glm::vec3(0.0f) ? limb->upper : Direction(driver.bone);
+  const glm::vec3 front = AcrossBone(driver.forward, straight);
+  if (straight == glm::vec3(0.0f) || front == glm::vec3(0.0f)) {
+    return builder.CannotPose("forward lies along the straight direction");
+  }
+  const glm::vec3 right = SubjectsRight(straight, front);
+  const std::string_view value = builder.value();
+  const glm::vec3 towards = value == "front"  ? front
+                            : value == "back" ? -front
+                            : value == "left" ? -right
+                                              : right;
+  return builder.Bent(*limb, straight, towards, driver.beta_degrees);
+}
+
+glm::vec3 SubjectsRight(const glm::vec3& bone, const glm::vec3& forward) {
+  const glm::vec3 side = Direction(glm::cross(bone, forward));
+  const float towards_right = -side.x;
+  const float decisive = std::abs(towards_right) > kLeastAcross ? towards_right : side.y;
+  return decisive < 0.0f ? -side : side;
+}
+
+}  // namespace furrow::wrinkle

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "wrinkle/skeleton/reference_pose.h"
+
+namespace furrow::wrinkle {
+
+class FieldCheck;
+class FullPoseBuilder;
+
+enum class BallMode { kSmooth, kThesis };
+
+// A hip, a shoulder or a waist: values "front", "back", "left" and "right", the subject's left and
+// right.
+struct BallDriver {
+  static constexpr bool kReadsJoints = true;
+  static constexpr bool kMeasuresFromAnchor = false;
+
+  std::string parent;  // joint of the upper bone: gives its direction and its frame
+  std::string joint;
+  std::string end;       // as HingeDriver::end
+  glm::vec3 bone{0.0f};  // the direction that counts as straight, model axes at rest; zero: the
+                         // parent bone's own direction
+  glm::vec3 forward{0.0f, 0.0f, 1.0f};  // model axes in the rest pose
+  float beta_degrees = 30.0f;           // angle between the bones when fully bent, [0, 179]
+  BallMode mode = BallMode::kSmooth;
+};
+
+[[nodiscard]] std::vector<std::string> DriverValueNames(const BallDriver& driver);
+void CheckFields(const BallDriver& driver, const std::string& at, FieldCheck* check);
+[[nodiscard]] std::vector<std::string> JointsRead(const BallDriver& driver);
+[[nodiscard]] std::vector<std::string> JointsInfluenced(const BallDriver& driver);
+// The full bend towards the value's side.
+[[nodiscard]] Result<ReferencePose> FullPose(const BallDriver& driver,
+                                             const FullPoseBuilder& builder);
+
+// The unit direction across `bone` and `forward` (unit, model axes) that counts as the subject's
+// right. Characters face +Z with +Y up, so their right is -X. A bone that lies sideways has no left
+// or right; "right" is then up.
+[[nodiscard]] glm::vec3 SubjectsRight(const glm::vec3& bone, const glm::vec3& forward);
+
+}  // namespace furrow::wrinkle

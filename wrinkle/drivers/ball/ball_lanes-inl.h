@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ball drivers, one per lane: the bend of thesis 4.6, split by direction (docs/ALGORITHM.md).
+#if defined(FURROW_WRINKLE_BALL_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FURROW_WRINKLE_BALL_LANES_INL_H_
+#undef FURROW_WRINKLE_BALL_LANES_INL_H_
+#else
+#define FURROW_WRINKLE_BALL_LANES_INL_H_
+#endif
+
+#include "wrinkle/drivers/ball/ball_driver.h"
+#include "wrinkle/drivers/common/bone_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace furrow::wrinkle::HWY_NAMESPACE {
+
+// Stores the shares of a bend: front, back, left, right. `forward` and `right` are the lower bone's
+// projection across the straight direction; only psi = atan2(right, forward) counts. All shares are
+// 0 if the projection has no length.
+//
+// - kSmooth: bend times the squares of the positive parts of cos(psi), -cos(psi), -sin(psi) and
+//   sin(psi). They sum to `bend` and are C1 in psi.
+// - kThesis: the whole bend goes to front if cos(psi) > 0.75, to back if < -0.75, and to left or
+//   right between them. At exactly +-0.75 the thesis states no case: all shares are 0.
+inline void StoreShares(BallMode mode, Float bend, Float forward, Float right, float* values) {
+  const Floats d;
+  const Float zero = hn::Zero(d);
+  const Float length = hn::Sqrt(hn::Add(hn::Mul(forward, forward), hn::Mul(right, right)));
+  const auto has_length = hn::Gt(length, Splat(kLeastProjection));
+  const Float share = hn::IfThenElseZero(has_length, bend);
+  const Float cosine = hn::IfThenElseZero(has_length, hn::Div(forward, length));
+  const Float sine = hn::IfThenElseZero(has_length, hn::Div(right, length));
+  if (mode == BallMode::kSmooth) {
+    const Float directions[4] = {cosine, hn::Neg(cosine), hn::Neg(sine), sine};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Float positive = hn::Max(directions[i], zero);
+      StoreLanes(hn::Mul(share, hn::Mul(positive, positive)), values + i * kRowLanes);
+    }
+    return;
+  }
+  const Float threshold = Splat(kThesisThreshold);
+  const Float beside = hn::IfThenElseZero(hn::Lt(hn::Abs(cosine), threshold), share);
+  const auto is_left = hn::Lt(sine, zero);
+  StoreLanes(hn::IfThenElseZero(hn::Gt(cosine, threshold), share), values);
+  StoreLanes(hn::IfThenElseZero(hn::Lt(cosine, hn::Neg(threshold)), share), values + kRowLanes);
+  StoreLanes(hn::IfThenElseZero(is_left, beside), values + 2 * kRowLanes);
+  StoreLanes(hn::IfThenZeroElse(is_left, beside), values + 3 * kRowLanes);
+}
+
+template <bool kScaled>
+void EvaluateDrivers(const BallDriverSet& drivers, const PointPlan& plan, LanePose<kScaled> pose,
+                     const DriverInput& input, float* rows) {
+  const auto evaluate = [&](const BallBlock& block, std::size_t lane, float* to) HWY_ATTR {
+    const BoneLanes bones = EvaluateBones(plan, block, pose, lane);
+    const Mask fixed = LoadMask(block.has_straight, lane);
+    const Float3 straight = IfThenElse(fixed, LoadRows(block.straight, lane), bones.upper.unit);
+    const Float3& lower = bones.lower.unit;
+    const Float cosine = Dot(straight, lower);
+    const Float3 across = lower - cosine * straight;
+    const Mask counts = hn::And(bones.lower.has_length, hn::Or(fixed, bones.upper.has_length));
+    const Float bend = hn::IfThenElseZero(counts, Bend(cosine, LoadRow(block.bend_scale, lane)));
+    StoreShares(block.mode, bend, Dot(across, LoadRows(block.forward, lane)),
+                Dot(across, LoadRows(block.right, lane)), to);
+  };
+  ForEachBlock(drivers.blocks(), input.num_values, rows, evaluate);
+}
+
+}  // namespace furrow::wrinkle::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Blend-shape drivers, one per lane.
+#if defined(FURROW_WRINKLE_BLEND_SHAPE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FURROW_WRINKLE_BLEND_SHAPE_LANES_INL_H_
+#undef FURROW_WRINKLE_BLEND_SHAPE_LANES_INL_H_
+#else
+#define FURROW_WRINKLE_BLEND_SHAPE_LANES_INL_H_
+#endif
+
+#include "wrinkle/drivers/blend_shape/blend_shape_driver.h"
+#include "wrinkle/simd/lane_points-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace furrow::wrinkle::HWY_NAMESPACE {
+
+// Coefficients past the end of the input count as 0.
+template <bool kScaled>
+void EvaluateDrivers(const BlendShapeDriverSet& drivers, const PointPlan&, LanePose<kScaled>,
+                     const DriverInput& input, float* rows) {
+  const auto evaluate = [&](const BlendShapeBlock& block, std::size_t lane, float* to) HWY_ATTR {
+    HWY_ALIGN float coefficients[kLanes];
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const auto index = static_cast<std::size_t>(block.blend_shape.at[lane + i]);
+      coefficients[i] = index < input.blend_shapes.size() ? input.blend_shapes[index] : 0.0f;
+    }
+    const Float above = hn::Sub(LoadLanes(coefficients), LoadRow(block.neutral, lane));
+    StoreLanes(Saturate(hn::Div(above, LoadRow(block.range, lane))), to);
+  };
+  ForEachBlock(drivers.blocks(), input.num_values, rows, evaluate);
+}
+
+}  // namespace furrow::wrinkle::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/drivers/common/bind_context.h"
+
+#include <algorithm>
+
+#include "base/ascii.h"
+#include "base/status.h"
+#include "wrinkle/skeleton/retarget.h"
+
+namespace furrow::wrinkle {
+namespace {
+
+void AddOnce(const std::string& name, std::vector<std::string>* list) {
+  if (std::find(list->begin(), list->end(), name) == list->end()) list->push_back(name);
+}
+
+}  // namespace
+
+BindContext::BindContext(const BindSource& source, const Skeleton& skeleton,
+                         const BindOptions& options, JointChains* chains)
+    : source_(source),
+      skeleton_(skeleton),
+      options_(options),
+      chains_(chains),
+      size_(SkeletonSize(skeleton)) {}
+
+Status BindContext::ResolveAnchorAndPoses() {
+  if (!source_.anchor.empty()) {
+    Result<int> anchor = Joint("the rig", "anchor", source_.anchor);
+    FURROW_RETURN_IF_ERROR(anchor);
+    anchor_ = *anchor;
+    anchor_missing_ = anchor_ == kNoJoint;
+  }
+  for (const ReferencePose& pose : source_.reference_poses) {
+    std::vector<Transform> locals(skeleton_.rest_pose().begin(), skeleton_.rest_pose().end());
+    FURROW_RETURN_IF_ERROR(ApplyPose(pose, &locals));
+    reference_locals_.push_back(std::move(locals));
+  }
+  return {};
+}
+
+Status BindContext::ApplyPose(const ReferencePose& pose, std::vector<Transform>* locals) {
+  const float scale = ReferencePoseScale(pose, skeleton_);
+  for (const JointDelta& delta : pose.joints) {
+    if (IsRest(delta)) continue;
+    const Result<int> joint = Joint("reference pose '" + pose.name + "'", "joint", delta.joint);
+    FURROW_RETURN_IF_ERROR(joint);
+    if (*joint == kNoJoint) continue;
+    ApplyJointDelta(delta, skeleton_, *joint, scale, &(*locals)[*joint]);
+  }
+  return {};
+}
+
+Result<int> BindContext::Joint(std::string_view owner, std::string_view field,
+                               const std::string& name) {
+  int joint = skeleton_.Find(name);
+  for (const auto& [own, theirs] : options_.aliases) {
+    if (joint == kNoJoint && own == name) joint = skeleton_.Find(theirs);
+  }
+  if (joint != kNoJoint) return joint;
+  if (!options_.allow_missing) {
+    return Status(StatusCode::kNotFound, std::string(owner) + ": " + std::string(field) +
+                                             " names joint '" + name +
+                                             "', which the skeleton does not have");
+  }
+  AddOnce(name, &missing_joints_);
+  return kNoJoint;
+}
+
+Result<int> BindContext::BlendShape(std::string_view owner, const std::string& name) {
+  const std::span<const std::string> names = source_.blend_shape_names;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (EqualsIgnoreCase(names[i], name)) return static_cast<int>(i);
+  }
+  // A rig that also reads joints accepts a stream of joints alone.
+  if (!options_.allow_missing && !(names.empty() && source_.reads_joints)) {
+    return Status(StatusCode::kNotFound,
+                  std::string(owner) + ": blend shape '" + name + "' is not among the stream's");
+  }
+  AddOnce(name, &missing_blend_shapes_);
+  return -1;
+}
+
+Status BindContext::Unusable(std::string_view owner, std::string_view why) {
+  std::string what = std::string(owner) + ": " + std::string(why);
+  if (!options_.allow_missing) return {StatusCode::kInvalidArgument, std::move(what)};
+  Warn(std::move(what) + "; it rests at 0");
+  return {};
+}
+
+const std::vector<Transform>* BindContext::ReferenceLocals(std::string_view name) const {
+  for (std::size_t i = 0; i < source_.reference_poses.size(); ++i) {
+    if (source_.reference_poses[i].name == name) return &reference_locals_[i];
+  }
+  return nullptr;
+}
+
+}  // namespace furrow::wrinkle

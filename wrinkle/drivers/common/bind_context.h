@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "wrinkle/drivers/common/bind_options.h"
+#include "wrinkle/skeleton/direction.h"
+#include "wrinkle/skeleton/joint_chain.h"
+#include "wrinkle/skeleton/reference_pose.h"
+
+namespace furrow::wrinkle {
+
+// The parts of a rig that drivers refer to while they are bound.
+struct BindSource {
+  std::string anchor;  // joint; empty if the rig has no anchor or no driver measures from it
+  std::span<const ReferencePose> reference_poses;
+  bool reads_joints = false;  // some driver reads joints
+  std::span<const std::string> blend_shape_names;
+};
+
+// Binding state that all driver kinds share: looks up joints, poses and blend shapes, and handles
+// missing ones (BindOptions::allow_missing). Private to wrinkle/.
+class BindContext {
+ public:
+  // The arguments outlive the context. `chains` receives the drivers' points.
+  BindContext(const BindSource& source, const Skeleton& skeleton, const BindOptions& options,
+              JointChains* chains);
+
+  // Finds the anchor and applies the reference poses to the skeleton. Call it before any Bind().
+  [[nodiscard]] Status ResolveAnchorAndPoses();
+
+  // The index of a joint; kNoJoint if it is missing and BindOptions allow that. `owner` and `field`
+  // describe the reference in errors: "driver 'x'", "joint".
+  [[nodiscard]] Result<int> Joint(std::string_view owner, std::string_view field,
+                                  const std::string& name);
+  // The index of a blend shape, matched without case; -1 if it is missing and may be. A blend shape
+  // may also be missing if some driver reads joints and the stream has no blend shapes at all.
+  [[nodiscard]] Result<int> BlendShape(std::string_view owner, const std::string& name);
+  // Reports a driver that cannot work on this skeleton, for example a bone without length: an
+  // error, or Ok and a warning if BindOptions allow missing joints. The driver then rests at 0.
+  [[nodiscard]] Status Unusable(std::string_view owner, std::string_view why);
+  void Warn(std::string warning) { warnings_.push_back(std::move(warning)); }
+
+  [[nodiscard]] const Skeleton& skeleton() const { return skeleton_; }
+  [[nodiscard]] JointChains& chains() { return *chains_; }
+  [[nodiscard]] float size() const { return size_; }  // SkeletonSize()
+  [[nodiscard]] int anchor() const { return anchor_; }
+  [[nodiscard]] bool anchor_missing() const { return anchor_missing_; }
+  // The skeleton's local transforms in reference pose `name`; null if the rig has no such pose.
+  [[nodiscard]] const std::vector<Transform>* ReferenceLocals(std::string_view name) const;
+
+  [[nodiscard]] std::vector<std::string>& missing_joints() { return missing_joints_; }
+  [[nodiscard]] std::vector<std::string>& missing_blend_shapes() { return missing_blend_shapes_; }
+  [[nodiscard]] std::vector<std::string>& warnings() { return warnings_; }
+
+ private:
+  [[nodiscard]] Status ApplyPose(const ReferencePose& pose, std::vector<Transform>* locals);
+
+  const BindSource& source_;
+  const Skeleton& skeleton_;
+  BindOptions options_;
+  JointChains* chains_;
+  float size_ = 0.0f;
+  int anchor_ = kNoJoint;
+  bool anchor_missing_ = false;
+  std::vector<std::vector<Transform>> reference_locals_;  // one per reference pose
+  std::vector<std::string> missing_joints_;
+  std::vector<std::string> missing_blend_shapes_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace furrow::wrinkle

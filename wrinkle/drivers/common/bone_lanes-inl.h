@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// The bones and the bend of hinge and ball drivers (thesis 4.6), one driver per lane.
+#if defined(FURROW_WRINKLE_BONE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FURROW_WRINKLE_BONE_LANES_INL_H_
+#undef FURROW_WRINKLE_BONE_LANES_INL_H_
+#else
+#define FURROW_WRINKLE_BONE_LANES_INL_H_
+#endif
+
+#include "wrinkle/drivers/common/bone_pair.h"
+#include "wrinkle/simd/lane_points-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace furrow::wrinkle::HWY_NAMESPACE {
+
+// A unit vector per lane. A vector without length gives zero and clears `has_length`.
+struct LaneDirection {
+  Float3 unit;
+  Mask has_length;
+};
+HWY_INLINE LaneDirection DirectionOf(Float3 v) {
+  const Float length = hn::Sqrt(Dot(v, v));
+  const Float infinity = hn::Inf(Floats());
+  const auto has_length = hn::And(hn::Gt(length, Splat(kLeastLength)), hn::Lt(length, infinity));
+  const Float3 unit = v / Float3{length, length, length};
+  return {{hn::IfThenElseZero(has_length, unit.x), hn::IfThenElseZero(has_length, unit.y),
+           hn::IfThenElseZero(has_length, unit.z)},
+          has_length};
+}
+
+// The upper and the lower bone (BonePair).
+struct BoneLanes {
+  LaneDirection upper, lower;
+};
+template <bool kScaled>
+HWY_INLINE BoneLanes EvaluateBones(const PointPlan& plan, const BoneBlock& block,
+                                   LanePose<kScaled> pose, std::size_t lane) {
+  const Float3 joint = EvaluatePoint(plan, plan.points[block.joint_point], pose, lane);
+  const Float3 end = EvaluatePoint(plan, plan.points[block.end_point], pose, lane);
+  return {DirectionOf(joint), DirectionOf(end - joint)};
+}
+
+// Thesis 4.6: how far a joint is bent, in [0, 1], from the cosine between its bones. Straight (1)
+// gives 0; fully flexed (cos(180 - beta)) gives 1.
+HWY_INLINE Float Bend(Float cosine, Float bend_scale) {
+  return Saturate(hn::Mul(hn::Sub(Splat(1.0f), cosine), bend_scale));
+}
+
+}  // namespace furrow::wrinkle::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

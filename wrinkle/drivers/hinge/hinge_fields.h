@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "wrinkle/skeleton/reference_pose.h"
+
+namespace furrow::wrinkle {
+
+class FieldCheck;
+class FullPoseBuilder;
+
+// A knee or an elbow (4.6): values "flexed" and "extended".
+struct HingeDriver {
+  static constexpr bool kReadsJoints = true;
+  static constexpr bool kMeasuresFromAnchor = false;
+
+  std::string parent;             // upper bone: from this joint's origin to `joint`'s origin
+  std::string joint;              // lower bone: from this joint's origin to its tail, or to `end`
+  std::string end;                // optional: the joint at the end of the lower bone
+  std::optional<glm::vec3> axis;  // model axes in the rest pose; a right-handed turn about it
+                                  // flexes. None: bending either way counts, as printed
+  float beta_degrees = 30.0f;     // angle between the bones when fully flexed, [0, 179]
+};
+
+[[nodiscard]] std::vector<std::string> DriverValueNames(const HingeDriver& driver);
+void CheckFields(const HingeDriver& driver, const std::string& at, FieldCheck* check);
+[[nodiscard]] std::vector<std::string> JointsRead(const HingeDriver& driver);
+[[nodiscard]] std::vector<std::string> JointsInfluenced(const HingeDriver& driver);
+// Full flexion about the axis, or ("extended") the straight limb. Without an axis the limb bends
+// the way it is bent at rest.
+[[nodiscard]] Result<ReferencePose> FullPose(const HingeDriver& driver,
+                                             const FullPoseBuilder& builder);
+
+}  // namespace furrow::wrinkle

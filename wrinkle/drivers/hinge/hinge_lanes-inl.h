@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hinge drivers, one per lane: thesis 4.6 with a sign (docs/ALGORITHM.md).
+#if defined(FURROW_WRINKLE_HINGE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FURROW_WRINKLE_HINGE_LANES_INL_H_
+#undef FURROW_WRINKLE_HINGE_LANES_INL_H_
+#else
+#define FURROW_WRINKLE_HINGE_LANES_INL_H_
+#endif
+
+#include "wrinkle/drivers/common/bone_lanes-inl.h"
+#include "wrinkle/drivers/hinge/hinge_driver.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace furrow::wrinkle::HWY_NAMESPACE {
+
+// The bend counts fully while its plane is within 60 degrees of the hinge's, and fades from there
+// to 90 degrees. Hyperextension gives 0. Without an axis, bending either way counts.
+template <bool kScaled>
+void EvaluateDrivers(const HingeDriverSet& drivers, const PointPlan& plan, LanePose<kScaled> pose,
+                     const DriverInput& input, float* rows) {
+  const auto evaluate = [&](const HingeBlock& block, std::size_t lane, float* to) HWY_ATTR {
+    const BoneLanes bones = EvaluateBones(plan, block, pose, lane);
+    const Float3& upper = bones.upper.unit;
+    const Float3& lower = bones.lower.unit;
+    const Float bend = Bend(Dot(upper, lower), LoadRow(block.bend_scale, lane));
+    const Float3 normal = Cross(upper, lower);
+    const Float sine = hn::Sqrt(Dot(normal, normal));
+    const Float along = hn::Div(Dot(normal, LoadRows(block.axis, lane)), sine);
+    const Float share = Smoothstep(0.0f, kFullAlongAxis, along);
+    const Mask is_signed = hn::And(LoadMask(block.has_axis, lane), hn::Gt(sine, Splat(kLeastSine)));
+    const Float turned = hn::IfThenElse(is_signed, hn::Mul(bend, share), bend);
+    const Float flexed =
+        hn::IfThenElseZero(hn::And(bones.upper.has_length, bones.lower.has_length), turned);
+    StoreLanes(flexed, to);
+    StoreLanes(hn::Sub(Splat(1.0f), flexed), to + kRowLanes);
+  };
+  ForEachBlock(drivers.blocks(), input.num_values, rows, evaluate);
+}
+
+}  // namespace furrow::wrinkle::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

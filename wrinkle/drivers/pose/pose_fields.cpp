@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/drivers/pose/pose_fields.h"
+
+#include <string_view>
+#include <unordered_set>
+
+#include "wrinkle/drivers/common/full_pose_builder.h"
+#include "wrinkle/drivers/pose/nnls.h"
+#include "wrinkle/fields/field_check.h"
+#include "wrinkle/fields/rig_field.h"
+
+namespace furrow::wrinkle {
+
+std::vector<std::string> DriverValueNames(const PoseDriver& driver) {
+  std::vector<std::string> names;
+  for (const PoseDriver::Value& value : driver.values) names.push_back(value.name);
+  return names;
+}
+
+void CheckFields(const PoseDriver& driver, const std::string& at, FieldCheck* check) {
+  const bool nnls = driver.solve == PoseSolve::kNnls;
+  check->Require(!driver.points.empty(), at, ".points", "a pose driver needs a control point");
+  check->Require(!driver.values.empty(), at, ".values", "a pose driver needs a value");
+  check->Count(at, ".points", driver.points.size(), kMaxControlPoints);
+  check->Count(at, ".values", driver.values.size(), nnls ? kMaxNnlsValues : kMaxPoseValues);
+  check->Range(at, ".falloff", driver.falloff, 0.0f, 1000.0f);
+  for (std::size_t i = 0; i < driver.points.size(); ++i) {
+    const std::string point = FieldAt(at + ".points", i);
+    check->Label(point, ".joint", driver.points[i].joint);
+    check->Finite(point, ".offset", driver.points[i].offset);
+    check->Range(point, ".offset_size", driver.points[i].offset_size, 0.0f, kMaxSkeletonSize);
+  }
+  std::unordered_set<std::string_view> names;
+  for (std::size_t i = 0; i < driver.values.size(); ++i) {
+    const std::string value = FieldAt(at + ".values", i);
+    check->Name(value, ".name", driver.values[i].name);
+    check->Once(value, ".name", driver.values[i].name, &names);
+  }
+}
+
+std::vector<std::string> JointsRead(const PoseDriver& driver) {
+  std::vector<std::string> joints;
+  for (const ControlPoint& point : driver.points) joints.push_back(point.joint);
+  return joints;
+}
+
+std::vector<std::string> JointsInfluenced(const PoseDriver& driver) { return JointsRead(driver); }
+
+Result<ReferencePose> FullPose(const PoseDriver& driver, const FullPoseBuilder& builder) {
+  for (const PoseDriver::Value& value : driver.values) {
+    if (value.name == builder.value()) return builder.FromRig(value.reference_pose);
+  }
+  return Status(StatusCode::kInternal, "the driver has no such value");
+}
+
+}  // namespace furrow::wrinkle

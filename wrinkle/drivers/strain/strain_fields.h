@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "wrinkle/skeleton/reference_pose.h"
+
+namespace furrow::wrinkle {
+
+class FieldCheck;
+class FullPoseBuilder;
+
+// Limits of one strain driver. The whole patch is computed on the stack.
+inline constexpr std::size_t kMaxPatchVertices = 256;
+inline constexpr std::size_t kMaxPatchTriangles = 512;
+inline constexpr std::size_t kMaxPatchJoints = 32;
+
+// How strongly a patch of the skinned surface is compressed, and in which direction. Values
+// "along", "across", "diagonal_left" and "diagonal_right" refer to a direction in the surface, so
+// that one place can fold along or across. Their sum is the principal compression divided by
+// `full_compression` (strain.h).
+//
+// The rig stores the patch as points and skin weights and therefore needs no mesh. `furrow rig
+// patch` cuts a patch out of a character.
+struct StrainDriver {
+  static constexpr bool kReadsJoints = true;
+  static constexpr bool kMeasuresFromAnchor = false;
+  static constexpr int kMaxInfluences = 4;
+
+  struct Vertex {
+    glm::vec3 position{0.0f};         // rest pose, model axes, from the origin of `joint`
+    std::vector<int> joints;          // into `joints` below, at most kMaxInfluences
+    std::vector<float> skin_weights;  // one per joint, > 0, sum 1
+  };
+  std::string joint;                // positions are measured from its origin
+  std::vector<std::string> joints;  // the joints that move the patch
+  std::vector<Vertex> vertices;
+  std::vector<int> triangles;             // three vertices each, counter-clockwise from outside
+  glm::vec3 direction{1.0f, 0.0f, 0.0f};  // model axes, rest pose; projected into the surface
+  float full_compression = 0.25f;         // the compression that gives 1, [0.01, 1]
+  float size = 0.0f;  // SkeletonSize() the positions were measured on; 0: bound skeleton's units
+};
+
+[[nodiscard]] std::vector<std::string> DriverValueNames(const StrainDriver& driver);
+void CheckFields(const StrainDriver& driver, const std::string& at, FieldCheck* check);
+[[nodiscard]] std::vector<std::string> JointsRead(const StrainDriver& driver);
+[[nodiscard]] std::vector<std::string> JointsInfluenced(const StrainDriver& driver);
+// Always kUnsupported: many poses compress a patch fully.
+[[nodiscard]] Result<ReferencePose> FullPose(const StrainDriver& driver,
+                                             const FullPoseBuilder& builder);
+
+}  // namespace furrow::wrinkle

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Strain drivers: the joints' frames in lanes, then each driver by itself, because patches differ
+// too much in size to share lanes.
+#if defined(FURROW_WRINKLE_STRAIN_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FURROW_WRINKLE_STRAIN_LANES_INL_H_
+#undef FURROW_WRINKLE_STRAIN_LANES_INL_H_
+#else
+#define FURROW_WRINKLE_STRAIN_LANES_INL_H_
+#endif
+
+#include <array>
+
+#include "wrinkle/drivers/strain/strain_driver.h"
+#include "wrinkle/simd/lane_points-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace furrow::wrinkle::HWY_NAMESPACE {
+
+// The values of one driver, from the points in `rows`.
+inline void EvaluateStrain(const StrainDriverSet& drivers, const SingleDriver& driver,
+                           float* rows) {
+  std::array<StrainDriverSet::Frame, kMaxPatchJoints> frames;
+  for (std::size_t i = 0; i < driver.num_lanes; ++i) {
+    const std::size_t lane = driver.first_lane + i;
+    const StrainFrameBlock& block = drivers.frame_blocks()[lane / kRowLanes];
+    std::array<glm::vec3, StrainDriverSet::kFramePoints> points;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      points[k] = StoredPoint(block, lane % kRowLanes, k, rows);
+    }
+    frames[i] = StrainDriverSet::MakeFrame(points);
+  }
+  drivers.EvaluateFrames(driver.entry, std::span(frames).first(driver.num_lanes),
+                         {rows + driver.first_number, driver.num_values});
+}
+
+template <bool kScaled>
+void EvaluateDrivers(const StrainDriverSet& drivers, const PointPlan& plan, LanePose<kScaled> pose,
+                     const DriverInput& input, float* rows) {
+  const auto evaluate = [&](const StrainFrameBlock& block, std::size_t lane, float* to) HWY_ATTR {
+    const FourPoints four = EvaluateFour(plan, &plan.points[block.first_point], pose, lane);
+    for (const Float3& point : four.at) {
+      StoreRows(point, to);
+      to += 3 * kRowLanes;
+    }
+  };
+  ForEachBlock(drivers.frame_blocks(), input.num_values, rows, evaluate);
+  for (const SingleDriver& driver : drivers.drivers()) {
+    if (driver.first_value < input.num_values) EvaluateStrain(drivers, driver, rows);
+  }
+}
+
+}  // namespace furrow::wrinkle::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

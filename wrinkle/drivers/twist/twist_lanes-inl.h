@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Twist drivers, one per lane: the sum of the joints' twists away from rest (skeleton/twist.h).
+#if defined(FURROW_WRINKLE_TWIST_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FURROW_WRINKLE_TWIST_LANES_INL_H_
+#undef FURROW_WRINKLE_TWIST_LANES_INL_H_
+#else
+#define FURROW_WRINKLE_TWIST_LANES_INL_H_
+#endif
+
+#include "wrinkle/drivers/twist/twist_driver.h"
+#include "wrinkle/simd/lane_math-inl.h"
+#include "wrinkle/simd/lane_points-inl.h"
+#include "wrinkle/skeleton/twist.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace furrow::wrinkle::HWY_NAMESPACE {
+
+HWY_INLINE FloatQuat Multiply(FloatQuat p, FloatQuat q) {
+  const auto sum = [](Float a, Float b, Float c, Float e)
+                       HWY_ATTR { return hn::Sub(hn::Add(hn::Add(a, b), c), e); };
+  return {sum(hn::Mul(p.w, q.x), hn::Mul(p.x, q.w), hn::Mul(p.y, q.z), hn::Mul(p.z, q.y)),
+          sum(hn::Mul(p.w, q.y), hn::Mul(p.y, q.w), hn::Mul(p.z, q.x), hn::Mul(p.x, q.z)),
+          sum(hn::Mul(p.w, q.z), hn::Mul(p.z, q.w), hn::Mul(p.x, q.y), hn::Mul(p.y, q.x)),
+          hn::Sub(hn::Sub(hn::Sub(hn::Mul(p.w, q.w), hn::Mul(p.x, q.x)), hn::Mul(p.y, q.y)),
+                  hn::Mul(p.z, q.z))};
+}
+
+// TwistAngle(), per lane.
+HWY_INLINE Float TwistOf(FloatQuat q, Float3 axis) {
+  const Float sine = Dot({q.x, q.y, q.z}, axis);
+  const Float square = hn::Add(hn::Mul(sine, sine), hn::Mul(q.w, q.w));
+  const auto turned = hn::Lt(q.w, hn::Zero(Floats()));
+  const Float angle = ArcTangent(hn::IfThenElse(turned, hn::Neg(sine), sine), hn::Abs(q.w));
+  return hn::IfThenElseZero(hn::Gt(square, Splat(kLeastTwistSquare)), hn::Add(angle, angle));
+}
+
+template <bool kScaled>
+void EvaluateDrivers(const TwistDriverSet& drivers, const PointPlan&, LanePose<kScaled> pose,
+                     const DriverInput& input, float* rows) {
+  const auto evaluate = [&](const TwistBlock& block, std::size_t lane, float* to) HWY_ATTR {
+    Float sum = hn::Zero(Floats());
+    for (std::uint32_t i = 0; i < block.num_steps; ++i) {
+      const TwistStep& step = drivers.steps()[block.first_step + i];
+      const Float3 r = LoadRows(step.rest_inverse, lane);
+      const FloatQuat rest_inverse{r.x, r.y, r.z, LoadRow(step.rest_inverse[3], lane)};
+      const FloatQuat rotation = LoadRotation(pose.numbers, step.joint.joints.at + lane);
+      const Float angle = TwistOf(Multiply(rest_inverse, rotation), LoadRows(step.axis, lane));
+      sum = hn::Add(sum, hn::IfThenElseZero(LoadMask(step.joint.active, lane), angle));
+    }
+    const Float share = hn::Mul(sum, LoadRow(block.inverse_full, lane));
+    StoreLanes(Saturate(share), to);
+    StoreLanes(Saturate(hn::Neg(share)), to + kRowLanes);
+  };
+  ForEachBlock(drivers.blocks(), input.num_values, rows, evaluate);
+}
+
+}  // namespace furrow::wrinkle::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Transcendental functions for drivers and weights, accurate to about 1e-7 on the stated ranges.
+#if defined(FURROW_WRINKLE_LANE_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FURROW_WRINKLE_LANE_MATH_INL_H_
+#undef FURROW_WRINKLE_LANE_MATH_INL_H_
+#else
+#define FURROW_WRINKLE_LANE_MATH_INL_H_
+#endif
+
+#include "wrinkle/simd/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace furrow::wrinkle::HWY_NAMESPACE {
+
+// Horner's scheme; the coefficient of the highest power comes first.
+template <class... Rest>
+HWY_INLINE Float Polynomial(Float x, float first, Rest... rest) {
+  Float sum = Splat(first);
+  ((sum = hn::MulAdd(sum, x, Splat(rest))), ...);
+  return sum;
+}
+
+// atan2(y, x) in radians, for x >= 0; 0 if both are 0. The argument is folded to [0, tan(pi/8)], on
+// which Cephes' polynomial is accurate to 1e-8.
+HWY_INLINE Float ArcTangent(Float y, Float x) {
+  const Floats d;
+  const Float size = hn::Abs(y);
+  const Float small = hn::Min(size, x);
+  const Float large = hn::Max(size, x);
+  // atan(s / l) = pi/4 + atan((s - l) / (s + l)) beyond tan(pi/8).
+  const auto beyond = hn::Gt(small, hn::Mul(large, Splat(0.41421356f)));
+  const Float over = hn::IfThenElse(beyond, hn::Sub(small, large), small);
+  const Float under = hn::IfThenElse(beyond, hn::Add(small, large), large);
+  const Float t = hn::IfThenElseZero(hn::Gt(under, hn::Zero(d)), hn::Div(over, under));
+  const Float z = hn::Mul(t, t);
+  const Float p =
+      Polynomial(z, 8.05374449538e-2f, -1.38776856032e-1f, 1.99777106478e-1f, -3.33329491539e-1f);
+  Float angle = hn::MulAdd(hn::Mul(p, z), t, t);
+  angle = hn::Add(angle, hn::IfThenElseZero(beyond, Splat(0.785398163f)));
+  angle = hn::IfThenElse(hn::Gt(size, x), hn::Sub(Splat(1.57079633f), angle), angle);
+  return hn::CopySign(angle, y);
+}
+
+// exp(x) for x <= 0: 2^n times a polynomial (Cephes); 0 below the smallest normal number.
+HWY_INLINE Float Exponential(Float x) {
+  const hn::RebindToSigned<Floats> ints;
+  const Float clamped = hn::Max(x, Splat(-87.0f));
+  const Float n = hn::Round(hn::Mul(clamped, Splat(1.44269504f)));
+  // ln 2 in two parts, so that the remainder keeps all its digits.
+  const Float r =
+      hn::NegMulAdd(n, Splat(-2.12194440e-4f), hn::NegMulAdd(n, Splat(0.693359375f), clamped));
+  const Float p = Polynomial(r, 1.9875691500e-4f, 1.3981999507e-3f, 8.3334519073e-3f,
+                             4.1665795894e-2f, 1.6666665459e-1f, 5.0000001201e-1f);
+  const Float mantissa = hn::Add(hn::MulAdd(p, hn::Mul(r, r), r), Splat(1.0f));
+  const auto exponent = hn::ShiftLeft<23>(hn::Add(hn::ConvertTo(ints, n), hn::Set(ints, 127)));
+  return hn::IfThenElseZero(hn::Ge(x, Splat(-87.0f)),
+                            hn::Mul(mantissa, hn::BitCast(Floats(), exponent)));
+}
+
+// (1 - cos(pi x)) / 2 = sin(pi x / 2)^2 for x in [0, 1]. Coefficients: Hastings, Approximations for
+// Digital Computers (1955), sheet 16.
+HWY_INLINE Float CosineCurve(Float x) {
+  const Float z = hn::Mul(x, x);
+  const Float sine = hn::Mul(x, Polynomial(z, 1.5148419e-4f, -4.67376557e-3f, 7.968967928e-2f,
+                                           -6.4596371106e-1f, 1.57079631847f));
+  return hn::Min(hn::Mul(sine, sine), Splat(1.0f));
+}
+
+}  // namespace furrow::wrinkle::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrinkle/skeleton/reference_pose.h"
+
+#include <glm/geometric.hpp>
+
+#include "wrinkle/skeleton/direction.h"
+#include "wrinkle/skeleton/retarget.h"
+
+namespace furrow::wrinkle {
+namespace {
+
+constexpr float kLeastDelta = 1e-6f;  // radians, source units
+
+}  // namespace
+
+bool IsRest(const JointDelta& delta) {
+  const float turn = glm::length(glm::vec3(delta.rotation.x, delta.rotation.y, delta.rotation.z));
+  return turn < kLeastDelta && glm::length(delta.translation) < kLeastDelta;
+}
+
+void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int joint, float scale,
+                     Transform* local) {
+  const glm::quat& rest_model = skeleton.rest_model_rotations()[joint];
+  local->rotation =
+      glm::normalize(local->rotation * glm::conjugate(rest_model) * delta.rotation * rest_model);
+  local->translation +=
+      ToJointAxes(skeleton, skeleton.joint_parents()[joint], delta.translation) * scale;
+}
+
+float ReferencePoseScale(const ReferencePose& pose, const Skeleton& skeleton) {
+  return pose.source_size > 0.0f ? SkeletonSize(skeleton) / pose.source_size : 1.0f;
+}
+
+Status ApplyReferencePose(const ReferencePose& pose, const Skeleton& skeleton,
+                          std::span<Transform> locals) {
+  for (const JointDelta& delta : pose.joints) {
+    if (IsRest(delta) || skeleton.Find(delta.joint) != kNoJoint) continue;
+    return {StatusCode::kNotFound, "reference pose '" + pose.name + "': joint names joint '" +
+                                       delta.joint + "', which the skeleton does not have"};
+  }
+  const float scale = ReferencePoseScale(pose, skeleton);
+  for (const JointDelta& delta : pose.joints) {
+    if (IsRest(delta)) continue;
+    const int joint = skeleton.Find(delta.joint);
+    ApplyJointDelta(delta, skeleton, joint, scale, &locals[static_cast<std::size_t>(joint)]);
+  }
+  return {};
+}
+
+}  // namespace furrow::wrinkle

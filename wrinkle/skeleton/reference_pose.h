@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/status.h"
+#include "wrinkle/skeleton/skeleton.h"
+#include "wrinkle/skeleton/transform.h"
+
+namespace furrow::wrinkle {
+
+// A joint's departure from its rest pose, in model axes. Model axes let a reference pose made on
+// one skeleton apply to another skeleton with different local frames.
+//
+// With rest-pose model rotation G of the joint and G_p of its parent (identity for a root):
+//   local rotation    = rest.rotation * inverse(G) * rotation * G
+//   local translation = rest.translation + inverse(G_p) * translation * bound_size / source_size
+// On a skeleton with identity rest rotations (BVH), `rotation` is the local rotation itself.
+struct JointDelta {
+  std::string joint;
+  glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
+  glm::vec3 translation{0.0f};  // in units of the source skeleton; see ReferencePose::source_size
+};
+
+struct ReferencePose {
+  std::string name;
+  std::vector<JointDelta> joints;  // all other joints stay at rest
+  float source_size = 0.0f;  // SkeletonSize() of the source; 0: same units as the bound skeleton
+};
+
+// True if the delta leaves its joint at rest. Pose files often list every joint.
+[[nodiscard]] bool IsRest(const JointDelta& delta);
+
+// Adds a joint's departure from rest to `local`, its local transform (formula: JointDelta).
+// `scale` converts the delta's units to the skeleton's.
+void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int joint, float scale,
+                     Transform* local);
+
+// SkeletonSize(skeleton) / pose.source_size; 1 if the pose states no size.
+[[nodiscard]] float ReferencePoseScale(const ReferencePose& pose, const Skeleton& skeleton);
+
+// Adds a reference pose to `locals`, which holds num_joints local transforms: the rest pose or any
+// other pose. Error: kNotFound if the skeleton lacks a joint that moves; `locals` is then
+// unchanged.
+[[nodiscard]] Status ApplyReferencePose(const ReferencePose& pose, const Skeleton& skeleton,
+                                        std::span<Transform> locals);
+
+}  // namespace furrow::wrinkle

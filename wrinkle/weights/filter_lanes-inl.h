@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// The filter of one subject, one driver value per lane: One-Euro (Casiez, Roussel and Vogel 2012)
+// and a slew limit.
+#if defined(FURROW_WRINKLE_FILTER_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FURROW_WRINKLE_FILTER_LANES_INL_H_
+#undef FURROW_WRINKLE_FILTER_LANES_INL_H_
+#else
+#define FURROW_WRINKLE_FILTER_LANES_INL_H_
+#endif
+
+#include <algorithm>
+
+#include "base/scalar.h"
+#include "wrinkle/simd/lanes-inl.h"
+#include "wrinkle/weights/filter.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace furrow::wrinkle::HWY_NAMESPACE {
+
+// A filter's parameters and times in the form that Follow() needs. A first-order low-pass of
+// cut-off f takes over the share c / (1 + c) of a new value after dt, with c = 2 pi f dt. With s
+// the share for the derivative: speed = s / since * (input - last input) + (1 - s) * last speed.
+// The cut-off for the value is min_cutoff + beta * |speed|.
+struct FilterLanes {
+  Float slope_share, speed_left, c_least, c_of_speed, largest_change, largest_fall;
+};
+
+HWY_INLINE FilterLanes MakeFilterLanes(const Filter& filter, double since_input, double dt) {
+  const double angle = 2.0 * double{kPi} * std::min(dt, 1e20);  // c / (1 + c) is 1 long before
+  const double derivative = angle * double{filter.derivative_cutoff_hz};
+  const double since = since_input + dt;
+  const bool limited = filter.slew_per_second > 0.0f;
+  const double largest_change = limited ? double{filter.slew_per_second} * dt : 2.0;
+  const auto splat = [](double x) HWY_ATTR { return Splat(static_cast<float>(x)); };
+  return {.slope_share = splat(derivative / ((1.0 + derivative) * since)),
+          .speed_left = splat(1.0 / (1.0 + derivative)),
+          .c_least = splat(angle * double{filter.min_cutoff_hz}),
+          .c_of_speed = splat(angle * double{filter.beta}),
+          .largest_change = splat(largest_change),
+          .largest_fall = splat(-largest_change)};
+}
+
+// The state of kLanes values.
+struct FilterState {
+  Float raw, value, derivative;
+};
+
+// One step of One-Euro and the slew limit.
+HWY_INLINE FilterState Follow(const FilterLanes& f, FilterState old, Float input) {
+  const Float slope = hn::Mul(f.slope_share, hn::Sub(input, old.raw));
+  const Float speed = hn::MulAdd(f.speed_left, old.derivative, slope);
+  const Float c = hn::MulAdd(f.c_of_speed, hn::Abs(speed), f.c_least);
+  const Float most = hn::Mul(c, hn::Sub(input, old.value));
+  const Float wanted = hn::Div(most, hn::Add(c, Splat(1.0f)));
+  const Float change = hn::Max(hn::Min(wanted, f.largest_change), f.largest_fall);
+  return {input, SaturateNumber(hn::Add(old.value, change)), speed};
+}
+
+// A subject's part of the filter.
+struct FilterStep {
+  const Filter& filter;
+  const FilterLanes& lanes;
+  double dt;
+  const RowGather& inputs;  // brings the inputs into the order of the rig
+  std::size_t num_inputs;   // the values from here on are 0 (level of detail)
+  FilterContext* context;
+  float* raw_values;  // receives the inputs if the filter does not move (FilterMove::kStay)
+  bool* is_apart;     // true if it did
+};
+
+// Calls `function` with each vector of inputs in the order of the rig, and with its first index.
+template <class Function>
+HWY_INLINE void ForEachInput(const FilterStep& step, const float* rows, Function function) {
+  const Floats d;
+  const Gatherer gatherer(step.inputs);
+  const std::size_t num_values = step.num_inputs;
+  const std::size_t num_rows = step.inputs.num_rows();
+  for (std::size_t row = 0; row < num_rows; ++row) {
+    for (std::size_t lane = 0; lane < kRowLanes; lane += kLanes) {
+      const std::size_t first = row * kRowLanes + lane;
+      Float values = hn::Zero(d);
+      if (first < num_values) values = gatherer.Row(row, lane, rows);
+      if (first + kLanes > num_values && first < num_values) {
+        values = hn::IfThenElseZero(hn::FirstN(d, num_values - first), values);
+      }
+      function(values, first);
+    }
+  }
+}
+
+// `rows`: the driver values in the scratch memory.
+inline void FilterValues(const FilterStep& step, const float* rows) {
+  const FilterLanes lanes = step.lanes;
+  FilterContext* const context = step.context;
+  float* const raw = context->raw.data();
+  float* const value = context->value.data();
+  float* const derivative = context->derivative.data();
+  float* const apart = step.raw_values;
+  const FilterMove move = MoveOn(step.filter, *context, step.dt);
+  *step.is_apart = move == FilterMove::kStay;
+  switch (move) {
+    case FilterMove::kStay:
+      ForEachInput(step, rows,
+                   [=](Float input, std::size_t i) HWY_ATTR { StoreLanes(input, apart + i); });
+      return;
+    case FilterMove::kStart:
+      ForEachInput(step, rows, [=](Float input, std::size_t i) HWY_ATTR {
+        StoreLanes(input, value + i);
+        StoreLanes(input, raw + i);
+        StoreLanes(hn::Zero(Floats()), derivative + i);
+      });
+      context->started = true;
+      break;
+    case FilterMove::kFollow:
+      ForEachInput(step, rows, [=](Float input, std::size_t i) HWY_ATTR {
+        const FilterState old{LoadLanes(raw + i), LoadLanes(value + i), LoadLanes(derivative + i)};
+        const FilterState now = Follow(lanes, old, input);
+        StoreLanes(now.raw, raw + i);
+        StoreLanes(now.value, value + i);
+        StoreLanes(now.derivative, derivative + i);
+      });
+      break;
+  }
+  context->since_input = 0.0;
+}
+
+}  // namespace furrow::wrinkle::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard
