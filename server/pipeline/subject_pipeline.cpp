@@ -9,7 +9,7 @@
 namespace furrow::server {
 namespace {
 
-// What it keeps is scratch, of no subject, so a thread has one.
+// The solver keeps only scratch memory, so all subjects of a thread share one.
 wrinkle::BatchSolver& Batch() {
   thread_local wrinkle::BatchSolver batch;
   return batch;
@@ -24,7 +24,7 @@ SubjectPipeline::SubjectPipeline(std::shared_ptr<const StreamDefinition> stream)
 }
 
 wrinkle::JobStatus SubjectPipeline::Solve(std::uint32_t sequence, std::int64_t capture_time_us) {
-  // As a batch of one: twice as fast as by itself, and the very numbers of any larger batch.
+  // A batch of one is faster than the scalar solver and gives the same numbers as a larger batch.
   wrinkle::BatchUpdate update = Prepare(sequence, capture_time_us);
   Batch().Run({&update, 1});
   return Finish(update.status);
@@ -38,7 +38,7 @@ wrinkle::BatchUpdate SubjectPipeline::Prepare(std::uint32_t sequence,
   } else if (has_pose_) {
     solver_.Reset();
   }
-  if (neutral_pose_) MeasureFromNeutral();
+  if (neutral_pose_) SubtractNeutral();
   next_sequence_ = sequence;
   next_capture_time_us_ = capture_time_us;
   waits_ = true;
@@ -54,8 +54,8 @@ wrinkle::JobStatus SubjectPipeline::Finish(wrinkle::JobStatus status) {
   return status;
 }
 
-// Each joint's departure from the neutral pose, put upon the rest pose.
-void SubjectPipeline::MeasureFromNeutral() {
+// Applies each joint's difference from the neutral pose to the rest pose.
+void SubjectPipeline::SubtractNeutral() {
   const auto rest = stream_->skeleton.rest_pose();
   for (std::size_t joint = 0; joint < pose_.joints.size(); ++joint) {
     const wrinkle::Transform& now = pose_.joints[joint];
@@ -78,32 +78,32 @@ bool SubjectPipeline::SetNeutral(std::optional<wrinkle::LocalPose> neutral) {
   }
   neutral_pose_ = std::move(neutral);
   corrected_ = pose_;
-  SolveAnew();
+  SolveAgain();
   return true;
 }
 
 void SubjectPipeline::SetStream(std::shared_ptr<const StreamDefinition> stream) {
   stream_ = std::move(stream);
   solver_ = wrinkle::SubjectSolver(stream_->binding);
-  SolveAnew();
+  SolveAgain();
 }
 
-// A pose that was refused is refused again.
-void SubjectPipeline::SolveAnew() {
+// The status is not needed: a pose that was refused before is refused again.
+void SubjectPipeline::SolveAgain() {
   solver_.Reset();
   if (has_pose_) (void)Solve(sequence_, capture_time_us_);
 }
 
 void SubjectPipeline::SetLevel(std::size_t num_drivers) {
   if (num_drivers == level()) return;
-  // A pose that was refused is refused again.
+  // The status is not needed: a pose that was refused before is refused again.
   (void)Batch().SetLevel(&solver_, solved_pose(), num_drivers);
 }
 
 wrinkle::JobStatus SubjectPipeline::Decay(double dt) { return solver_.Decay(dt); }
 
 bool SubjectPipeline::neutral() const {
-  // Below half a u8 step there is nothing left to see or to send.
+  // Half a step of an 8-bit weight: smaller values are neither visible nor sent.
   constexpr float kNothing = 0.5f / 255.0f;
   const auto is_nothing = [](float value) { return value < kNothing; };
   return std::ranges::all_of(solver_.filtered_values(), is_nothing) &&

@@ -220,7 +220,7 @@ TEST(ParseConfig, AnErrorLeavesTheConfigAsItWas) {
   };
   for (const Case& fault :
        {Case{"[listen\n", StatusCode::kParse, ":1", ""},
-        Case{"a = 1", StatusCode::kSchema, ":1", "unknown key a"},
+        Case{"a = 1", StatusCode::kSchema, ":1", "unknown key 'a'"},
         Case{"listen = 3", StatusCode::kSchema, ":1", "listen"},
         Case{"[listen]\n\ntcp = -1", StatusCode::kSchema, ":3", "listen.tcp"},
         Case{"[listen]\nudp = 65536", StatusCode::kSchema, ":2", "listen.udp"},

@@ -49,7 +49,7 @@ TEST_F(LimitedSinkTest, AFloodIsCutAndTheNextLineSaysByHowMuch) {
   Log(0, "broken", spdlog::level::err);
   EXPECT_EQ(Take(), "error broken\n") << "errors pass";
   Log(1, "calm");
-  EXPECT_EQ(Take(), "warning 4000 log lines were left out: too many at once\ninfo calm\n");
+  EXPECT_EQ(Take(), "warning 4000 log lines were dropped because of the rate limit\ninfo calm\n");
   Log(1, "calm");
   EXPECT_EQ(Take(), "info calm\n");
 }
@@ -58,7 +58,7 @@ TEST_F(LimitedSinkTest, WhatIsLeftOutAtTheEndIsSaidAtTheEnd) {
   for (int i = 0; i < 1003; ++i) Log(0, "flood");
   Take();
   sink.reset();
-  EXPECT_EQ(Take(), "warning 3 log lines were left out: too many at once\n");
+  EXPECT_EQ(Take(), "warning 3 log lines were dropped because of the rate limit\n");
 }
 
 }  // namespace

@@ -185,8 +185,8 @@ TEST(StreamDefinitions, AStreamThatFitsNothingIsSaidToOnceAndClearly) {
   offer.joints = {{.name = "tail_01", .parent = wrinkle::kNoJoint}};
   LogCapture log;
   ASSERT_TRUE(definitions.Get(offer).ok());
-  EXPECT_THAT(log.text(), HasSubstr("all weights rest"));
-  EXPECT_THAT(log.text(), HasSubstr("pictures show its rest pose"));
+  EXPECT_THAT(log.text(), HasSubstr("all weights stay at rest"));
+  EXPECT_THAT(log.text(), HasSubstr("pictures show the rest pose"));
   EXPECT_THAT(log.text(), HasSubstr("ignored: tail_01"));
   const std::string once = log.text();
   ASSERT_TRUE(definitions.Get(offer).ok());

@@ -43,7 +43,7 @@ class PlayerTest : public HubTest {
     now = end;
     player->Advance(now);
   }
-  Subject& subject() { return *hub->EvaluateInFull("take"); }
+  Subject& subject() { return *hub->RequireAllDrivers("take"); }
   float brow() { return subject().pipeline->wrinkle_weights()[0]; }
 
   std::unique_ptr<Player> player;

@@ -108,10 +108,10 @@ class HubTest : public testing::Test {
   }
 
   void Make(Limits limits, bool filter = false) { MakeWith(MakeRig(filter), limits); }
-  void MakeWith(wrinkle::Rig rig, Limits limits = {}, int lanes = 1) {
+  void MakeWith(wrinkle::Rig rig, Limits limits = {}, int shards = 1) {
     Hub::Parts parts;
     parts.limits = limits;
-    parts.lanes = lanes;
+    parts.shards = shards;
     parts.session = 4242;
     parts.rig = std::make_shared<const wrinkle::Rig>(std::move(rig));
     parts.pictures = &pictures;

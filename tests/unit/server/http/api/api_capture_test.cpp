@@ -44,7 +44,7 @@ class ApiCaptureTest : public HubPeersTest {
     Send(sender, offer, 1);
     ASSERT_TRUE(sender.Take<protocol::SkeletonReply>().has_value());
   }
-  SubjectPipeline& pipeline() { return *hub->EvaluateInFull("ann")->pipeline; }
+  SubjectPipeline& pipeline() { return *hub->RequireAllDrivers("ann")->pipeline; }
   float brow() { return pipeline().wrinkle_weights()[0]; }
 
   Api api{{}};
@@ -155,7 +155,7 @@ TEST_F(ApiForeignCaptureTest, APoseIsStoredUnderTheJointsOfTheRig) {
   pose.rotation_joints = {2};
   pose.rotations = {{std::sin(0.6f), 0.0f, 0.0f, std::cos(0.6f)}};
   Send(sender, pose, 1, 1);
-  Subject& subject = *hub->EvaluateInFull("ann");
+  Subject& subject = *hub->RequireAllDrivers("ann");
   const float bent = subject.pipeline->wrinkle_weights()[0];
   ASSERT_GT(bent, 0.1f);
 

@@ -24,11 +24,11 @@ TEST(RequestGuard, NumbersAndLocalhostAreOurs) {
 TEST(RequestGuard, AnOriginIsThatOfTheHost) {
   HttpConfig config;
   config.allow_hosts = {"stage.lan"};
-  config.allow_origins = {"https://desk.example"};
+  config.allow_origins = {"https://context.example"};
   const RequestGuard guard(config);
   EXPECT_EQ(guard.Check("localhost:7480", "http://localhost:7480"), "");
   EXPECT_EQ(guard.Check("stage.lan:7480", "http://stage.lan:7480"), "");
-  EXPECT_EQ(guard.Check("localhost:7480", "https://desk.example"), "");
+  EXPECT_EQ(guard.Check("localhost:7480", "https://context.example"), "");
   EXPECT_NE(guard.Check("localhost:7480", "http://localhost:3000"), "");
   EXPECT_NE(guard.Check("localhost:7480", "http://evil.example"), "");
   EXPECT_NE(guard.Check("localhost:7480", "null"), "");

@@ -69,8 +69,8 @@ TEST_F(UdpBundlesTest, WhatMayShareADatagramDoesUntilItIsFull) {
   std::vector<Bytes> messages;
   for (int i = 0; i < 7; ++i) {
     messages.push_back(Message(400));
-    Push(a, messages.back(), Packing::kShared);
-    Push(b, messages.back(), Packing::kAlone);
+    Push(a, messages.back(), Packing::kBundled);
+    Push(b, messages.back(), Packing::kSeparate);
   }
   sender.Flush();
   using Datagrams = std::vector<std::vector<Bytes>>;
@@ -87,7 +87,7 @@ TEST_F(UdpBundlesTest, WhatMayShareADatagramDoesUntilItIsFull) {
 
 TEST_F(UdpBundlesTest, OneMessageLeavesAsItIs) {
   const Bytes message = Message(300);
-  Push(a, message, Packing::kShared);
+  Push(a, message, Packing::kBundled);
   sender.Flush();
   Bytes got(2000);
   got.resize(a.receive(asio::buffer(got)));
@@ -96,10 +96,10 @@ TEST_F(UdpBundlesTest, OneMessageLeavesAsItIs) {
 }
 
 TEST_F(UdpBundlesTest, OneByteTooManyIsAnotherDatagram) {
-  Push(a, Message(600), Packing::kShared);
-  Push(a, Message(600), Packing::kShared);
-  Push(b, Message(600), Packing::kShared);
-  Push(b, Message(601), Packing::kShared);
+  Push(a, Message(600), Packing::kBundled);
+  Push(a, Message(600), Packing::kBundled);
+  Push(b, Message(600), Packing::kBundled);
+  Push(b, Message(601), Packing::kBundled);
   sender.Flush();
   EXPECT_EQ(TakeAll(a).size(), 1u);
   EXPECT_EQ(TakeAll(b).size(), 2u);
@@ -113,11 +113,11 @@ TEST_F(UdpBundlesTest, AnythingOfAnySizeComesInOrderAndAsItWas) {
     const std::size_t size = 40 + random() % 1161;
     for (int i = 0; i < 100; ++i) {
       udp::socket& end = random() % 2 == 0 ? a : b;
-      const Packing packing = random() % 8 == 0 ? Packing::kAlone : Packing::kShared;
+      const Packing packing = random() % 8 == 0 ? Packing::kSeparate : Packing::kBundled;
       const Bytes message = Message(equal_sizes ? size : 40 + random() % 1161);
       Push(end, message, packing);
       sent[&end].push_back(message);
-      if (packing == Packing::kAlone) ++alone[&end];
+      if (packing == Packing::kSeparate) ++alone[&end];
     }
     sender.Flush();
     std::size_t datagrams = 0;

@@ -19,7 +19,7 @@ namespace {
 using asio::ip::udp;
 
 // Subjects of joints and blend shapes, solved with the filter, each published from a socket of its
-// own and all of them watched by one, over UDP. The parameter: lanes, which here take turns.
+// own and all of them watched by one, over UDP. The parameter: shards, which here take turns.
 class UdpPathTest : public HubTest, public testing::WithParamInterface<int> {
  protected:
   static constexpr int kJoints = 12;  // so that an offer fits a datagram
@@ -37,18 +37,18 @@ class UdpPathTest : public HubTest, public testing::WithParamInterface<int> {
     io.run();
   }
 
-  // A socket a lane.
+  // A socket a shard.
   void OpenPort() {
-    std::vector<UdpServer*> by_lane;
-    for (int lane = 0; lane < GetParam(); ++lane) {
+    std::vector<UdpServer*> by_shard;
+    for (int shard = 0; shard < GetParam(); ++shard) {
       auto& server = servers.emplace_back(
-          std::make_unique<UdpServer>(io, Limits(), hub.get(), &metrics, nullptr, lane));
-      const std::uint16_t port = lane == 0 ? 0 : servers.front()->port();
+          std::make_unique<UdpServer>(io, Limits(), hub.get(), &metrics, nullptr, shard));
+      const std::uint16_t port = shard == 0 ? 0 : servers.front()->port();
       ASSERT_TRUE(
           server->Open({asio::ip::address_v4::loopback(), port}, UdpServer::Port::kShared).ok());
-      by_lane.push_back(server.get());
+      by_shard.push_back(server.get());
     }
-    for (const auto& server : servers) server->Join(by_lane);
+    for (const auto& server : servers) server->Join(by_shard);
     for (const auto& server : servers) server->Start();
   }
   void Connect(udp::socket& socket) {
@@ -148,7 +148,7 @@ TEST_P(UdpPathTest, NothingIsAllocatedAPoseInTheLongRun) {
   EXPECT_EQ(Count(Counter::kDatagramsUnsendable), 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lanes, UdpPathTest, testing::Values(1, 3));
+INSTANTIATE_TEST_SUITE_P(Shards, UdpPathTest, testing::Values(1, 3));
 
 }  // namespace
 }  // namespace furrow::server

@@ -97,7 +97,7 @@ TEST(Outbox, WhoLeavesGetsTheLineAndNothingBehindIt) {
   outbox.PushFrame(1, Bytes{10});
   outbox.PushFrame(2, Bytes{20}, kKeepAll);
   ASSERT_TRUE(outbox.PushReply(Bytes{1}));
-  outbox.DropAllBehindTheLine();
+  outbox.DropReplaceableFrames();
   EXPECT_EQ(outbox.num_frames(), 0u);
   EXPECT_THAT(PopAll(&outbox), ElementsAre(20, 1));
   EXPECT_EQ(outbox.PushFrame(1, Bytes{11}), 0) << "the key has room again";

@@ -10,8 +10,8 @@ constexpr Time kFrame = FromSeconds(1.0 / 60.0);
 
 // Draws and sends one picture; its number.
 std::uint32_t Show(ViewerFlow& flow, Time now) {
-  EXPECT_TRUE(flow.MayAsk(now));
-  flow.Ask(false, now);
+  EXPECT_TRUE(flow.CanRequest(now));
+  flow.Request(false, now);
   return flow.Send();
 }
 
@@ -20,22 +20,22 @@ TEST(ViewerFlow, AtMostTwoPicturesAreUnderWay) {
   const Time now = FromSeconds(10);
   EXPECT_EQ(Show(flow, now), 1u);
   EXPECT_EQ(Show(flow, now), 2u);
-  EXPECT_FALSE(flow.MayAsk(now));
+  EXPECT_FALSE(flow.CanRequest(now));
   EXPECT_TRUE(flow.Acknowledge(1));
   EXPECT_EQ(flow.under_way(), 1u);
   EXPECT_EQ(Show(flow, now), 3u);
-  EXPECT_FALSE(flow.MayAsk(now));
+  EXPECT_FALSE(flow.CanRequest(now));
   EXPECT_TRUE(flow.Acknowledge(3));  // and with it the one before
   EXPECT_EQ(flow.under_way(), 0u);
 }
 
 TEST(ViewerFlow, OneIsAskedForAtATime) {
   ViewerFlow flow;
-  flow.Ask(false, FromSeconds(1));
-  EXPECT_TRUE(flow.asking());
-  EXPECT_FALSE(flow.MayAsk(FromSeconds(9)));
+  flow.Request(false, FromSeconds(1));
+  EXPECT_TRUE(flow.is_pending());
+  EXPECT_FALSE(flow.CanRequest(FromSeconds(9)));
   (void)flow.Send();
-  EXPECT_TRUE(flow.MayAsk(FromSeconds(9)));
+  EXPECT_TRUE(flow.CanRequest(FromSeconds(9)));
 }
 
 TEST(ViewerFlow, WhatWasNeverSentCannotBeAcknowledged) {
@@ -52,7 +52,7 @@ TEST(ViewerFlow, WhatWasNeverSentCannotBeAcknowledged) {
 TEST(ViewerFlow, AStillAskedForBeforeTheViewChangedIsNone) {
   ViewerFlow flow;
   const Time asked = FromSeconds(5);
-  flow.Ask(true, asked);
+  flow.Request(true, asked);
   EXPECT_TRUE(flow.HasStill(asked));
   const Time changed = asked + Time(1);  // while the still is being drawn
   EXPECT_EQ(flow.Send(), 1u);
@@ -62,19 +62,19 @@ TEST(ViewerFlow, AStillAskedForBeforeTheViewChangedIsNone) {
 TEST(ViewerFlow, AFailedPictureIsTriedAgainAfterAWhile) {
   ViewerFlow flow;
   const Time now = FromSeconds(5);
-  flow.Ask(true, now);
+  flow.Request(true, now);
   flow.Fail();
   EXPECT_FALSE(flow.HasStill(FromSeconds(0)));
   EXPECT_EQ(flow.under_way(), 0u);
-  EXPECT_FALSE(flow.MayAsk(now + ViewerFlow::kRetry - Time(1)));
-  EXPECT_TRUE(flow.MayAsk(now + ViewerFlow::kRetry));
+  EXPECT_FALSE(flow.CanRequest(now + ViewerFlow::kRetry - Time(1)));
+  EXPECT_TRUE(flow.CanRequest(now + ViewerFlow::kRetry));
 }
 
 // Sixty poses a second for `seconds`; the viewer acknowledges at once or not at all.
 void Stream(ViewerFlow& flow, double seconds, bool acknowledges, Time* now) {
   for (const Time end = *now + FromSeconds(seconds); *now < end; *now += kFrame) {
     flow.CountDue(*now);
-    if (!flow.MayAsk(*now)) continue;
+    if (!flow.CanRequest(*now)) continue;
     const std::uint32_t number = Show(flow, *now);
     if (acknowledges) {
       EXPECT_TRUE(flow.Acknowledge(number));
