@@ -95,7 +95,7 @@ TEST(Furrowd, LogsAsJsonWhenAsked) {
   ASSERT_TRUE(daemon.ReadLine().has_value());
   daemon.Signal(SIGTERM);
   EXPECT_EQ(daemon.Wait(), 0);
-  EXPECT_THAT(daemon.ReadErrors(), HasSubstr(R"("level":"info","message":"draining"})"));
+  EXPECT_THAT(daemon.ReadErrors(), HasSubstr(R"("level":"info","message":"shutting down"})"));
 }
 
 }  // namespace
