@@ -63,7 +63,7 @@ void ExpectFrame(UdpClient& watcher, const std::vector<Performer>& performers, i
   }
 }
 
-TEST(FanOut, EveryWeightArrivesRightAtEverySubscriberInFewerDatagrams) {
+TEST(FanOut, WeightsArriveAtEverySubscriberInFewerDatagrams) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   UdpClient sender(daemon.ready().udp);

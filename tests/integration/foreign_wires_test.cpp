@@ -175,7 +175,7 @@ TEST(ForeignWires, VmcRaisesTheRightWeights) {
   EXPECT_LT(weights["brow_l.squash"], 0.05f);
 }
 
-TEST(ForeignWires, APortListensToItsFirstSenderAndCountsTheOthers) {
+TEST(ForeignWires, APortAcceptsItsFirstSenderAndCountsOthers) {
   DaemonThread daemon(ForeignConfig());
   ASSERT_TRUE(daemon.serves());
   TcpClient viewer(daemon.ready().tcp);

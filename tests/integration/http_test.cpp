@@ -69,7 +69,7 @@ class Http : public testing::Test {
   std::optional<TcpClient> sender;
 };
 
-TEST_F(Http, RoutesAnswerAndAConnectionServesMany) {
+TEST_F(Http, RoutesAnswerOnOneConnection) {
   WebClient client(port());
   EXPECT_EQ(client.Ask("GET", "/healthz").body, "{\"ok\":true}");
   EXPECT_EQ(client.Ask("GET", "/readyz").status, 200);
@@ -86,7 +86,7 @@ TEST_F(Http, RoutesAnswerAndAConnectionServesMany) {
   EXPECT_EQ(Json::parse(client.Ask("GET", "/api/status").body)["render"], false);
 }
 
-TEST_F(Http, AWrongMethodIsToldTheRightOnes) {
+TEST_F(Http, AWrongMethodGetsAllow) {
   WebClient client(port());
   const auto allowed = [&](std::string_view method, std::string_view path) {
     const auto answer = client.Ask(method, path);
@@ -106,7 +106,7 @@ TEST_F(Http, AWrongMethodIsToldTheRightOnes) {
   EXPECT_EQ(client.Ask("GET", "/healthz").status, 200);  // on the same connection
 }
 
-TEST_F(Http, TheHeadOfPicturesIsThatOfTheirAnswerAndNothingIsDrawnForIt) {
+TEST_F(Http, HeadOfPicturesRendersNothing) {
   WebClient client(port());
   const auto stream = client.Ask("HEAD", "/mjpeg?width=64");
   EXPECT_EQ(stream.status, 200);
@@ -127,7 +127,7 @@ TEST_F(Http, ARequestIsAnsweredOnce) {
   EXPECT_EQ(daemon->Count(Counter::kHttpRequests), 1u);
 }
 
-TEST_F(Http, StrangersAreRefused) {
+TEST_F(Http, ForeignHostsAndOriginsAreForbidden) {
   WebClient client(port());
   const auto ask = [&](std::string_view headers) {
     return client.Ask("GET", "/api/status", {}, headers).status;
@@ -140,7 +140,7 @@ TEST_F(Http, StrangersAreRefused) {
   EXPECT_EQ(daemon->Count(Counter::kHttpRefused), 3u);
 }
 
-TEST_F(Http, WhatIsNoRequestOrTooLargeEndsItsConnectionAlone) {
+TEST_F(Http, InvalidOrLargeRequestsCloseOnlyTheirConnection) {
   WebClient other(port());
   EXPECT_EQ(other.Ask("GET", "/healthz").status, 200);
   EXPECT_EQ(WebClient(port()).AskRaw("\x16\x03\x01 what is this\r\n\r\n").status, 400);
@@ -205,7 +205,7 @@ TEST_F(Http, SubjectsAndTheirWeightsAreExplained) {
   EXPECT_EQ(Json::parse(unknown.body)["error"]["field"], "weight");
 }
 
-TEST_F(Http, ANeutralIsCapturedPreviewedAndTakenBack) {
+TEST_F(Http, ANeutralCanBePreviewedCapturedAndUndone) {
   PublishAnn();
   WebClient client(port());
   EXPECT_EQ(client.Ask("POST", "/api/capture/undo", "{}").status, 409);
@@ -227,7 +227,7 @@ TEST_F(Http, ANeutralIsCapturedPreviewedAndTakenBack) {
   EXPECT_EQ(largest("before", preview), before);
 }
 
-TEST_F(Http, WithoutPicturesThatIsWhatIsSaid) {
+TEST_F(Http, WithoutARendererPicturesAreUnavailable) {
   EXPECT_EQ(Get("/snapshot.png").status, 503);
   EXPECT_EQ(Get("/mjpeg").status, 503);
   EXPECT_EQ(Get("/api/cameras").status, 503);
@@ -291,7 +291,7 @@ TEST_F(Http, AWebSocketIsAPeerOfTheHub) {
   EXPECT_EQ(client.Take<protocol::ErrorMessage>()->code, protocol::ErrorCode::kNotRendering);
 }
 
-TEST_F(Http, AWebSocketThatBreaksTheRulesIsClosedAndNoOther) {
+TEST_F(Http, AnInvalidWebSocketIsClosedAndOthersStay) {
   WebClient good(port());
   ASSERT_EQ(good.Upgrade().status, 101);
   const auto close_code = [&](int opcode, const std::vector<std::uint8_t>& payload) {
@@ -308,7 +308,7 @@ TEST_F(Http, AWebSocketThatBreaksTheRulesIsClosedAndNoOther) {
   EXPECT_EQ(good.Take<protocol::Pong>()->time_us, 7);
 }
 
-TEST_F(Http, AWebSocketHearsOfTheEnd) {
+TEST_F(Http, AWebSocketReceivesTheGoodbye) {
   std::jthread stop;  // joined after the client has gone
   WebClient client(port());
   ASSERT_EQ(client.Upgrade().status, 101);

@@ -103,7 +103,7 @@ class LostContext : public testing::Test {
   std::unique_ptr<server::RenderThread> thread;  // the first to go
 };
 
-TEST_F(LostContext, PicturesGoOnAndTheLossIsLoggedAndCounted) {
+TEST_F(LostContext, PicturesContinueAndTheLossIsLogged) {
   Submit(1);
   const server::FinishedPicture before = drawn[0].get_future().get();
   ASSERT_EQ(before.sequence, 1u);

@@ -36,7 +36,7 @@ std::pair<int, int> Ports(const std::string& line) {
   return {std::stoi(match[1]), std::stoi(match[2])};
 }
 
-TEST(Furrowd, SaysWhereItServesAndEndsWellOnSigterm) {
+TEST(Furrowd, PrintsItsPortsAndStopsOnSigterm) {
   for (const int signal : {SIGTERM, SIGINT}) {
     Process daemon(Command({"--tcp", "0", "--udp", "0"}));
     const auto [tcp, udp] = Ports(daemon.ReadLine().value_or(""));
@@ -50,7 +50,7 @@ TEST(Furrowd, SaysWhereItServesAndEndsWellOnSigterm) {
   }
 }
 
-TEST(Furrowd, ASecondOneOnTheSamePortSaysWhichAndFails) {
+TEST(Furrowd, ASecondDaemonOnAPortFailsAndNamesThePort) {
   Process first(Command({"--tcp", "0", "--udp", "0"}));
   const auto [tcp, udp] = Ports(first.ReadLine().value_or(""));
   ASSERT_NE(tcp, 0);
@@ -62,7 +62,7 @@ TEST(Furrowd, ASecondOneOnTheSamePortSaysWhichAndFails) {
   EXPECT_THAT(third.ReadErrors(), HasSubstr("port " + std::to_string(udp)));
 }
 
-TEST(Furrowd, WrongUsageIsTwoAndBadInputThree) {
+TEST(Furrowd, ExitsWithTwoForUsageAndThreeForInput) {
   Process usage({kProgram, "--nonsense"});
   EXPECT_EQ(usage.Wait(), 2);
   EXPECT_FALSE(usage.ReadErrors().empty());
@@ -74,7 +74,7 @@ TEST(Furrowd, WrongUsageIsTwoAndBadInputThree) {
   EXPECT_THAT(config.ReadErrors(), HasSubstr("/nowhere.toml"));
 }
 
-TEST(Furrowd, HelpEndsWellAndNamesTheExitCodes) {
+TEST(Furrowd, HelpSucceedsAndListsExitCodes) {
   Process help({kProgram, "--help"});
   std::string text;
   while (auto line = help.ReadLine()) text += *line + "\n";
@@ -82,7 +82,7 @@ TEST(Furrowd, HelpEndsWellAndNamesTheExitCodes) {
   EXPECT_THAT(text, HasSubstr("Exit codes"));
 }
 
-TEST(Furrowd, GoesOnWhenTheReaderOfItsLogHasLeft) {
+TEST(Furrowd, ContinuesWhenTheReaderOfItsLogLeaves) {
   Process daemon(Command({"--tcp", "0", "--udp", "0"}));
   daemon.CloseErrors();
   ASSERT_TRUE(daemon.ReadLine().has_value());

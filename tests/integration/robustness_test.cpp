@@ -57,7 +57,7 @@ TEST(Robustness, GarbageDatagramsLeaveARealStreamUnharmed) {
   EXPECT_EQ(daemon.Count(Counter::kPosesLate), 0u);
 }
 
-TEST(Robustness, AFrameOfImpossibleLengthEndsThatConnectionAloneAndIsAnswered) {
+TEST(Robustness, AnInvalidFrameLengthClosesOnlyItsConnection) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   TcpClient other(daemon.ready().tcp);
@@ -75,7 +75,7 @@ TEST(Robustness, AFrameOfImpossibleLengthEndsThatConnectionAloneAndIsAnswered) {
   EXPECT_EQ(other.Await<protocol::Pong>()->time_us, 9);
 }
 
-TEST(Robustness, AMalformedMessageInAGoodFrameCostsOnlyItself) {
+TEST(Robustness, AMalformedMessageDoesNotCloseTheConnection) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   TcpClient client(daemon.ready().tcp);
@@ -87,7 +87,7 @@ TEST(Robustness, AMalformedMessageInAGoodFrameCostsOnlyItself) {
   EXPECT_EQ(client.Await<protocol::Pong>()->time_us, 3);
 }
 
-TEST(Robustness, AByteAtATimeIsStillAMessage) {
+TEST(Robustness, AMessageMayArriveByteByByte) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   TcpClient client(daemon.ready().tcp);
@@ -113,7 +113,7 @@ TEST(Robustness, UnknownSubjectsAndPicturesWithoutARendererAreErrors) {
   EXPECT_EQ(client.Await<protocol::ErrorMessage>()->code, protocol::ErrorCode::kNotRendering);
 }
 
-TEST(Robustness, ASlowSubscriberLosesOldFramesAndSlowsNobody) {
+TEST(Robustness, ASlowSubscriberLosesOldFramesAndDelaysNobody) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   const motion::Clip clip = ArkitClip(1);
@@ -146,7 +146,7 @@ TEST(Robustness, ASlowSubscriberLosesOldFramesAndSlowsNobody) {
   }
 }
 
-TEST(Robustness, AConnectionThatNeitherSendsNorWatchesIsClosed) {
+TEST(Robustness, AnIdleConnectionIsClosed) {
   server::Config config = WeightsConfig("arkit.json");
   config.limits.idle_seconds = 0.01;
   DaemonThread daemon(config);
@@ -156,7 +156,7 @@ TEST(Robustness, AConnectionThatNeitherSendsNorWatchesIsClosed) {
   EXPECT_EQ(daemon.Count(Counter::kConnectionsIdle), 1u);
 }
 
-TEST(Robustness, WhoAsksAndNeverReadsTheAnswersIsClosed) {
+TEST(Robustness, AClientThatDoesNotReadRepliesIsClosed) {
   server::Config config = WeightsConfig("arkit.json");
   config.limits.packets_per_second = config.limits.packet_burst = 1e9;
   config.limits.idle_seconds = 1e6;  // else it might be taken for idle on a slow machine
@@ -179,13 +179,13 @@ TEST(Robustness, WhoAsksAndNeverReadsTheAnswersIsClosed) {
   EXPECT_EQ(other.Await<protocol::Pong>()->time_us, 9);
 }
 
-TEST(Robustness, WhatIsThrownIsAFailureAndNotACrash) {
+TEST(Robustness, AnExceptionIsAFailureAndNotACrash) {
   server::RunOptions options;
   options.on_ready = [](const server::Ready&) { throw std::runtime_error("no thread to be had"); };
   EXPECT_EQ(server::Run(WeightsConfig("arkit.json"), options), server::ExitCode::kFailed);
 }
 
-TEST(Robustness, ConnectionsBeyondTheLimitAreToldSoAndClosed) {
+TEST(Robustness, ConnectionsBeyondTheLimitAreRefused) {
   server::Config config = WeightsConfig("arkit.json");
   config.limits.max_connections = 2;
   DaemonThread daemon(config);
@@ -218,13 +218,13 @@ TEST(Robustness, ASecondDaemonOnAPortFails) {
   }
 }
 
-TEST(Robustness, ARigThatIsNotThereIsBadInput) {
+TEST(Robustness, AMissingRigIsBadInput) {
   DaemonThread daemon(WeightsConfig("nowhere.json"));
   EXPECT_FALSE(daemon.serves());
   EXPECT_EQ(daemon.Stop(), server::ExitCode::kBadInput);
 }
 
-TEST(Robustness, SettingsThatAreNotThereAreBadInput) {
+TEST(Robustness, MissingSettingsAreBadInput) {
   server::Config config = WeightsConfig("arkit.json");
   config.render_settings = "nowhere.toml";
   DaemonThread daemon(config);
@@ -233,7 +233,7 @@ TEST(Robustness, SettingsThatAreNotThereAreBadInput) {
 }
 
 // More than the sockets hold: it waits in the daemon when the draining begins.
-TEST(Robustness, WhoAsksForEveryFrameHasThemAllBeforeTheGoodbye) {
+TEST(Robustness, SubscriptionsToEveryFrameCompleteBeforeTheGoodbye) {
   constexpr int kFrames = 20'000;
   server::Config config = WeightsConfig("arkit.json");
   config.limits.packet_burst = 2 * kFrames;

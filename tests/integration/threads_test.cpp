@@ -84,7 +84,7 @@ class Troupe {
 class Threads : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Counts, Threads, testing::Values(1, 2, 3));
 
-TEST_P(Threads, EveryWatcherGetsEveryPoseOfEverybodyOnceAndInOrder) {
+TEST_P(Threads, EverySubscriberReceivesEveryPoseOnceAndInOrder) {
   DaemonThread daemon(Threaded(GetParam()));
   ASSERT_TRUE(daemon.serves());
   Troupe troupe(daemon.ready());
@@ -112,7 +112,7 @@ TEST_P(Threads, EveryWatcherGetsEveryPoseOfEverybodyOnceAndInOrder) {
             std::uint64_t{kWatchers * kSubjects * kFrames});
 }
 
-TEST_P(Threads, ASubjectGoesFromSenderToSender) {
+TEST_P(Threads, ASubjectMovesBetweenSenders) {
   DaemonThread daemon(Threaded(GetParam()));
   const motion::Clip clip = ArkitClip(kFrames);
   const protocol::SkeletonOffer offer = OfferOf(clip, "ann");
@@ -148,7 +148,7 @@ TEST_P(Threads, ASubjectGoesFromSenderToSender) {
   EXPECT_EQ(daemon.Count(server::Counter::kPosesRetiredSession), std::uint64_t{kSubjects - 1});
 }
 
-TEST_P(Threads, WhoWaitsIsToldWhoComesAndGoes) {
+TEST_P(Threads, AWaitingSubscriberFollowsItsSubject) {
   DaemonThread daemon(Threaded(GetParam()));
   std::deque<UdpClient> watchers;
   for (int i = 0; i < kSubjects; ++i) {
@@ -175,7 +175,7 @@ TEST_P(Threads, WhoWaitsIsToldWhoComesAndGoes) {
   }
 }
 
-TEST_P(Threads, ARecordingHasThePosesOfAll) {
+TEST_P(Threads, ARecordingHasThePosesOfAllThreads) {
   const TemporaryFolder folder;
   {
     server::Config config = Threaded(GetParam());
@@ -205,7 +205,7 @@ TEST_P(Threads, ARecordingHasThePosesOfAll) {
   }
 }
 
-TEST_P(Threads, EverybodyIsToldGoodbye) {
+TEST_P(Threads, EveryPeerReceivesAGoodbye) {
   DaemonThread daemon(Threaded(GetParam()));
   std::deque<UdpClient> peers;
   for (int i = 0; i < kSubjects; ++i) {

@@ -77,7 +77,7 @@ class WebFailure : public testing::Test {
   std::unique_ptr<server::HttpServer> http;
 };
 
-TEST_F(WebFailure, AWebSocketThatEndsByAnExceptionLeavesNothingInTheHub) {
+TEST_F(WebFailure, AFailedWebSocketLeavesNothingInTheHub) {
   WebClient client(http->port());
   ASSERT_EQ(client.Upgrade().status, 101);
   door.RunNext(*hub);  // the peer
@@ -93,7 +93,7 @@ TEST_F(WebFailure, AWebSocketThatEndsByAnExceptionLeavesNothingInTheHub) {
   hub->Drain();  // tells every link
 }
 
-TEST_F(WebFailure, SoDoesAStreamOfPictures) {
+TEST_F(WebFailure, AFailedPictureStreamLeavesNothingInTheHub) {
   WebClient client(http->port());
   door.FailAfter(1);  // the peer comes, what it asks for does not
   EXPECT_EQ(client.Ask("GET", "/mjpeg").status, 0);

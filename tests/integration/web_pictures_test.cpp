@@ -52,7 +52,7 @@ class WebPictures : public PicturesTest {
   }
 };
 
-TEST_F(WebPictures, TwoAreUnderWayAndWhoStalledGetsTheNewest) {
+TEST_F(WebPictures, AStalledViewerReceivesTheNewestPicture) {
   WebClient viewer(port());
   const std::uint16_t stream = View(viewer);
   SendPose(0);
@@ -79,7 +79,7 @@ TEST_F(WebPictures, TwoAreUnderWayAndWhoStalledGetsTheNewest) {
   EXPECT_GT(image->received_us, 0);
 }
 
-TEST_F(WebPictures, APoseAtRestGetsOneStillAndThenNone) {
+TEST_F(WebPictures, APoseAtRestGetsExactlyOneStill) {
   WebClient viewer(port());
   const std::uint16_t stream = View(viewer);
   SendPose(3);
@@ -91,7 +91,7 @@ TEST_F(WebPictures, APoseAtRestGetsOneStillAndThenNone) {
   EXPECT_TRUE(viewer.Take<protocol::Pong>().has_value());
 }
 
-TEST_F(WebPictures, AChangedViewIsShownWithoutAPoseAndAWrongOneChangesNothing) {
+TEST_F(WebPictures, AChangedViewIsShownWithoutANewPose) {
   WebClient viewer(port());
   const std::uint16_t stream = View(viewer);
   SendPose(0);
@@ -119,7 +119,7 @@ TEST_F(WebPictures, AChangedViewIsShownWithoutAPoseAndAWrongOneChangesNothing) {
   EXPECT_EQ(image->width, 96);
 }
 
-TEST_F(WebPictures, TheDaemonsOwnSettingsAreShownToWhoHasNoneOfTheirOwn) {
+TEST_F(WebPictures, TheDaemonsSettingsApplyToViewsWithoutOverrides) {
   WebClient viewer(port());
   const std::uint16_t stream = View(viewer);
   SendPose(0);
@@ -131,7 +131,7 @@ TEST_F(WebPictures, TheDaemonsOwnSettingsAreShownToWhoHasNoneOfTheirOwn) {
   EXPECT_NE(before->bytes, after->bytes);
 }
 
-TEST_F(WebPictures, MjpegGoesOnFromPoseToPose) {
+TEST_F(WebPictures, MjpegFollowsThePoses) {
   SendPose(0);
   WebClient client(port());
   const auto answer = client.Ask("GET", "/mjpeg?subject=ann&width=64&height=64&shading=diffuse");
@@ -164,7 +164,7 @@ TEST_F(WebPictures, MjpegWaitsForASubjectThatHasLeft) {
   }
 }
 
-TEST_F(WebPictures, ASnapshotIsDrawnOfThePoseThereIs) {
+TEST_F(WebPictures, ASnapshotShowsTheCurrentPose) {
   SendPose(5);
   sender->Send(protocol::Ping{1});
   ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());

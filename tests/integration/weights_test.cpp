@@ -63,7 +63,7 @@ TEST(Weights, QuantisedOverTcpAreWithinTheWiresError) {
                  protocol::PoseEncoding::Small());
 }
 
-TEST(Weights, OfRealBodyCaptureEqualTheSolver) {
+TEST(Weights, OfBodyCaptureEqualTheSolver) {
   const auto path = std::filesystem::path(FURROW_SHARED_DATA) / "cmu" / "01_01.bvh";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
   auto loaded = motion::LoadClip(path);
@@ -77,7 +77,7 @@ TEST(Weights, OfRealBodyCaptureEqualTheSolver) {
   PlayAndCompare(sender, viewer, clip, Solve(clip, "cmu.json"), 1e-4, {});
 }
 
-TEST(Weights, ARestartedSenderStartsTheSubjectAnew) {
+TEST(Weights, ARestartedSenderRestartsTheSubject) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   const motion::Clip clip = ArkitClip(30);
@@ -91,7 +91,7 @@ TEST(Weights, ARestartedSenderStartsTheSubjectAnew) {
   EXPECT_EQ(daemon.Count(server::Counter::kSubjectsRestarted), 2u);
 }
 
-TEST(Weights, PartialPosesBuildOnWhatWasUsed) {
+TEST(Weights, PartialPosesBuildOnEarlierPoses) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   motion::Clip clip = ArkitClip(40);
@@ -185,7 +185,7 @@ TEST(Weights, TwoSubjectsTwoFormatsTwoPatterns) {
   }
 }
 
-TEST(Weights, ARateLimitLeavesPosesOut) {
+TEST(Weights, ARateLimitSkipsPoses) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   const motion::Clip clip = ArkitClip(1);

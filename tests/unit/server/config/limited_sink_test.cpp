@@ -36,13 +36,13 @@ class LimitedSinkTest : public testing::Test {
   std::unique_ptr<LimitedSink> sink;
 };
 
-TEST_F(LimitedSinkTest, WhatIsWithinTheLimitPassesUnchanged) {
+TEST_F(LimitedSinkTest, LinesWithinTheLimitPassUnchanged) {
   Log(0, "one");
   Log(0, "two", spdlog::level::warn);
   EXPECT_EQ(Take(), "info one\nwarning two\n");
 }
 
-TEST_F(LimitedSinkTest, AFloodIsCutAndTheNextLineSaysByHowMuch) {
+TEST_F(LimitedSinkTest, AFloodIsCutAndTheDropsAreReported) {
   for (int i = 0; i < 5000; ++i) Log(0, "flood");
   const std::string flood = Take();
   EXPECT_EQ(std::ranges::count(flood, '\n'), static_cast<long>(LimitedSink::kBurst));
@@ -54,7 +54,7 @@ TEST_F(LimitedSinkTest, AFloodIsCutAndTheNextLineSaysByHowMuch) {
   EXPECT_EQ(Take(), "info calm\n");
 }
 
-TEST_F(LimitedSinkTest, WhatIsLeftOutAtTheEndIsSaidAtTheEnd) {
+TEST_F(LimitedSinkTest, DropsAtTheEndAreReportedAtTheEnd) {
   for (int i = 0; i < 1003; ++i) Log(0, "flood");
   Take();
   sink.reset();

@@ -6,7 +6,7 @@
 namespace furrow::server {
 namespace {
 
-TEST(TokenBucket, LetsABurstThroughThenTheRate) {
+TEST(TokenBucket, AllowsABurstThenTheRate) {
   TokenBucket bucket(10.0, 3.0);
   const Time start = FromSeconds(100);
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(bucket.Take(start));
@@ -24,7 +24,7 @@ TEST(TokenBucket, NeverHoldsMoreThanTheBurst) {
   EXPECT_EQ(passed, 2);
 }
 
-TEST(TokenBucket, TimeThatRunsBackEarnsNothing) {
+TEST(TokenBucket, TimeThatGoesBackAddsNothing) {
   TokenBucket bucket(10.0, 1.0);
   EXPECT_TRUE(bucket.Take(FromSeconds(10)));
   EXPECT_FALSE(bucket.Take(FromSeconds(5)));

@@ -16,7 +16,7 @@ const auto kBen = make_address("192.168.0.21");
 constexpr Time kStart = FromSeconds(1000);
 constexpr Time kMoment{1};
 
-TEST(SenderGate, TheFirstHasThePortUntilItIsSilent) {
+TEST(SenderGate, TheFirstSenderHoldsThePortUntilItIsSilent) {
   SenderGate gate({}, Policy::kOne);
   EXPECT_TRUE(gate.Admits(kBen, kStart)) << "nobody has it yet";
   EXPECT_TRUE(gate.Hold(kAnn, kStart));
@@ -29,7 +29,7 @@ TEST(SenderGate, TheFirstHasThePortUntilItIsSilent) {
   EXPECT_FALSE(gate.Admits(kAnn, silent + kMoment));
 }
 
-TEST(SenderGate, WhatMakesNoSenseDoesNotTakeThePort) {
+TEST(SenderGate, InvalidDatagramsDoNotTakeThePort) {
   SenderGate gate({}, Policy::kOne);
   EXPECT_TRUE(gate.Admits(kAnn, kStart));  // and no Hold(): it was garbage
   EXPECT_TRUE(gate.Admits(kBen, kStart));
@@ -39,13 +39,13 @@ TEST(SenderGate, WhatMakesNoSenseDoesNotTakeThePort) {
   EXPECT_TRUE(gate.IsSuccessor(kAnn));
 }
 
-TEST(SenderGate, AListAdmitsNobodyElse) {
+TEST(SenderGate, OnlyListedSendersAreAdmitted) {
   SenderGate gate(std::vector{kAnn}, Policy::kOne);
   EXPECT_TRUE(gate.Admits(kAnn, kStart));
   EXPECT_FALSE(gate.Admits(kBen, kStart));
 }
 
-TEST(SenderGate, WiresThatTellTheirSendersApartTakeEveryListedOne) {
+TEST(SenderGate, AllAllowedSendersMaySendAtOnceIfListed) {
   SenderGate gate(std::vector{kAnn, kBen}, Policy::kAllAllowed);
   EXPECT_FALSE(gate.Hold(kAnn, kStart));
   EXPECT_TRUE(gate.Admits(kBen, kStart));
@@ -56,7 +56,7 @@ TEST(SenderGate, WiresThatTellTheirSendersApartTakeEveryListedOne) {
   EXPECT_FALSE(open.Admits(kBen, kStart));
 }
 
-TEST(SenderGate, Ipv4IsTheSameOnASocketOfBothFamilies) {
+TEST(SenderGate, MappedIpv4AddressesMatch) {
   SenderGate gate(std::vector{make_address("::ffff:192.168.0.20")}, Policy::kOne);
   EXPECT_TRUE(gate.Admits(kAnn, kStart));
   gate.Hold(make_address("::ffff:192.168.0.20"), kStart);

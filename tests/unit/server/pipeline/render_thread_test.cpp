@@ -131,7 +131,7 @@ class RenderThreadTest : public testing::Test {
   std::unique_ptr<RenderThread> thread;  // the first to go
 };
 
-TEST_F(RenderThreadTest, ALostContextIsRebuiltAndDrawingGoesOn) {
+TEST_F(RenderThreadTest, ALostContextIsCreatedAgain) {
   script.submit = {Status(), kLost};
   Start();
   Submit(1);
@@ -145,7 +145,7 @@ TEST_F(RenderThreadTest, ALostContextIsRebuiltAndDrawingGoesOn) {
   EXPECT_EQ(Count(Counter::kPicturesRendered), 2u);
 }
 
-TEST_F(RenderThreadTest, WhatWasInFlightIsCountedWhenTheContextGoes) {
+TEST_F(RenderThreadTest, PicturesInFlightFailWithTheContext) {
   std::latch both_wait(1);
   script.hold_first_submit = &both_wait;
   script.poll = {kLost};
@@ -160,7 +160,7 @@ TEST_F(RenderThreadTest, WhatWasInFlightIsCountedWhenTheContextGoes) {
   EXPECT_EQ(pictures.num_failed_tickets(), 2u);  // who waits is told
 }
 
-TEST_F(RenderThreadTest, WhileItCannotBeRebuiltJobsAreDroppedCountedAndTriedLessOften) {
+TEST_F(RenderThreadTest, AttemptsBecomeRarerWhileCreationFails) {
   script.create = {Status(), kLost, kLost};
   script.submit = {kLost};
   Start();
@@ -177,7 +177,7 @@ TEST_F(RenderThreadTest, WhileItCannotBeRebuiltJobsAreDroppedCountedAndTriedLess
   EXPECT_EQ(pictures.Take().sequence, 10u);
 }
 
-TEST_F(RenderThreadTest, AJobThatCannotBeDrawnCostsOnlyItself) {
+TEST_F(RenderThreadTest, AFailedJobDoesNotAffectOthers) {
   script.submit = {Status(StatusCode::kInvalidArgument, "no such size")};
   Start();
   Submit(1);
@@ -188,7 +188,7 @@ TEST_F(RenderThreadTest, AJobThatCannotBeDrawnCostsOnlyItself) {
   EXPECT_EQ(Count(Counter::kPicturesFailed), 1u);
 }
 
-TEST_F(RenderThreadTest, StillsHaveSamplesWhereTheSettingsLeaveThemToTheDevice) {
+TEST_F(RenderThreadTest, StillsUseMoreSamplesIfTheSettingsAllow) {
   Start();
   render::Settings fixed;
   fixed.anti_aliasing.samples = 2;
@@ -202,7 +202,7 @@ TEST_F(RenderThreadTest, StillsHaveSamplesWhereTheSettingsLeaveThemToTheDevice) 
   EXPECT_EQ(script.samples, (std::deque<int>{0, RenderThread::kStillSamples, 2}));
 }
 
-TEST_F(RenderThreadTest, WithoutARendererItDoesNotStart) {
+TEST_F(RenderThreadTest, StartFailsWithoutARenderer) {
   script.create = {kLost};
   const auto started = RenderThread::Start(
       &skeleton, [this] { return Create(); }, &metrics, [](FinishedPicture) {});

@@ -74,7 +74,7 @@ std::shared_ptr<const StreamDefinition> Define(bool filter = false) {
   return *std::move(definition);
 }
 
-TEST(WireAdapter, TakesNamesParentsRestAndTails) {
+TEST(WireAdapter, ConvertsNamesParentsRestAndTails) {
   protocol::SkeletonOffer offer = KneeOffer();
   offer.joints[3].has_tail = true;
   offer.joints[3].tail = {0.0f, 0.0f, 0.2f};
@@ -90,7 +90,7 @@ TEST(WireAdapter, TakesNamesParentsRestAndTails) {
   EXPECT_EQ(result.blend_shapes.size(), 1u);
 }
 
-TEST(WireAdapter, TranslationsAreOffsetsFromRestAndTheUnlistedRests) {
+TEST(WireAdapter, TranslationsAreOffsetsFromRest) {
   const auto stream = Define();
   wrinkle::LocalPose pose;
   pose.SetRest(stream->skeleton);
@@ -117,7 +117,7 @@ TEST(WireAdapter, TranslationsAreOffsetsFromRestAndTheUnlistedRests) {
   EXPECT_FLOAT_EQ(pose.joints[0].translation.y, 1.0f);
 }
 
-TEST(WireAdapter, RefusesWhatIsNotOfTheStream) {
+TEST(WireAdapter, RejectsPosesOfOtherStreams) {
   const auto stream = Define();
   protocol::PoseFrame frame = Bend(1.0f);
   frame.num_joints = 5;
@@ -134,7 +134,7 @@ TEST(WireAdapter, RefusesWhatIsNotOfTheStream) {
   EXPECT_FALSE(PoseFits(frame, *stream));
 }
 
-TEST(StreamDefinitions, EqualStreamsShareOneAndTheOldestGoes) {
+TEST(StreamDefinitions, EqualStreamsShareADefinitionAndTheOldestIsEvicted) {
   StreamDefinitions definitions(KneeRig(), nullptr, 2);
   const auto get = [&](const protocol::SkeletonOffer& offer) {
     return definitions.Get(ToStreamOffer(offer)).value();
@@ -151,7 +151,7 @@ TEST(StreamDefinitions, EqualStreamsShareOneAndTheOldestGoes) {
   EXPECT_EQ(first, get(KneeOffer()));
 }
 
-TEST(StreamDefinitions, AStreamThatIsNoTreeIsRefused) {
+TEST(StreamDefinitions, ASkeletonThatIsNotATreeIsRejected) {
   StreamDefinitions definitions(KneeRig(), nullptr, 2);
   StreamOffer offer = ToStreamOffer(KneeOffer());
   offer.joints[1].parent = 2;
@@ -178,7 +178,7 @@ wrinkle::Skeleton Head(const char* joint) {
   return wrinkle::Skeleton::Create({{.name = joint, .parent = wrinkle::kNoJoint}}).value();
 }
 
-TEST(StreamDefinitions, AStreamThatFitsNothingIsSaidToOnceAndClearly) {
+TEST(StreamDefinitions, AStreamThatMatchesNothingIsLoggedOnce) {
   const wrinkle::Skeleton character = Head("head");
   StreamDefinitions definitions(KneeRig(), &character, 4);
   StreamOffer offer;
@@ -193,7 +193,7 @@ TEST(StreamDefinitions, AStreamThatFitsNothingIsSaidToOnceAndClearly) {
   EXPECT_EQ(log.text(), once);
 }
 
-TEST(StreamDefinitions, JointsThatNobodyReadsAreNamedWithAndWithoutPictures) {
+TEST(StreamDefinitions, IgnoredJointsAreLogged) {
   const wrinkle::Skeleton character = Head("foot");
   for (const wrinkle::Skeleton* drawn :
        {static_cast<const wrinkle::Skeleton*>(nullptr), &character}) {
@@ -277,7 +277,7 @@ TEST(SubjectPipeline, FollowsTheBend) {
   EXPECT_EQ(subject.capture_time_us(), 10'000);
 }
 
-TEST(SubjectPipeline, ACaptureTimeThatGoesBackStartsTheFilterAnew) {
+TEST(SubjectPipeline, ACaptureTimeThatGoesBackRestartsTheFilter) {
   SubjectPipeline subject(Define(/*filter=*/true));
   const auto solve = [&](float bend, std::uint32_t sequence, std::int64_t time_us) {
     ApplyPose(Bend(bend), subject.stream(), subject.mutable_pose());
@@ -289,7 +289,7 @@ TEST(SubjectPipeline, ACaptureTimeThatGoesBackStartsTheFilterAnew) {
   EXPECT_EQ(solve(2.0f, 2, 1'000), bent) << "a first pose passes unchanged";
 }
 
-TEST(SubjectPipeline, DecaysToNeutralAndTheSnapshotShowsIt) {
+TEST(SubjectPipeline, SnapshotsShowTheDecay) {
   SubjectPipeline subject(Define(/*filter=*/true));
   ApplyPose(Bend(2.0f), subject.stream(), subject.mutable_pose());
   ASSERT_EQ(subject.Solve(7, 0), wrinkle::JobStatus::kOk);

@@ -61,7 +61,7 @@ TEST_F(PlayerTest, EveryFrameIsSentAtItsTime) {
   EXPECT_EQ(Count(Counter::kPosesInvalid), 0u);
 }
 
-TEST_F(PlayerTest, ALoopBeginsAnewAndWithoutOneItStandsAtTheEnd) {
+TEST_F(PlayerTest, LoopsRestartAndOtherwisePlaybackStopsAtTheEnd) {
   PlayFor(1.25);  // the last frame is shown for a tenth, too
   EXPECT_NEAR(brow(), 0.1f, 1e-5f);
   ASSERT_TRUE(player->Apply({.loop = false}, now).ok());
@@ -72,7 +72,7 @@ TEST_F(PlayerTest, ALoopBeginsAnewAndWithoutOneItStandsAtTheEnd) {
   EXPECT_NEAR(brow(), 0.0f, 1e-5f);
 }
 
-TEST_F(PlayerTest, WhilePausedTheFrameStandsAndTheSubjectIsNotLost) {
+TEST_F(PlayerTest, APausedSubjectIsNotLost) {
   PlayFor(0.3);
   ASSERT_TRUE(player->Apply({.playing = false}, now).ok());
   for (int i = 0; i < 500; ++i) {
@@ -84,7 +84,7 @@ TEST_F(PlayerTest, WhilePausedTheFrameStandsAndTheSubjectIsNotLost) {
   EXPECT_EQ(subject().pipeline->capture_time_us(), 300'001);
 }
 
-TEST_F(PlayerTest, ItMovesAtOnceAndRunsAtAnotherSpeed) {
+TEST_F(PlayerTest, SeekAndSpeedTakeEffectAtOnce) {
   ASSERT_TRUE(player->Apply({.playing = false, .position = 0.82}, now).ok());
   EXPECT_NEAR(brow(), 0.8f, 1e-5f);
   ASSERT_TRUE(player->Apply({.playing = true, .speed = 0.5, .position = 0.0}, now).ok());
@@ -94,7 +94,7 @@ TEST_F(PlayerTest, ItMovesAtOnceAndRunsAtAnotherSpeed) {
   EXPECT_NEAR(player->state(now).position, 1.0, 1e-9);
 }
 
-TEST_F(PlayerTest, ASubjectThatWasForgottenIsOfferedAgain) {
+TEST_F(PlayerTest, AForgottenSubjectIsOfferedAgain) {
   PlayFor(2.0);
   Advance(60.0);  // as where the machine slept
   hub->Tick(now);
@@ -105,7 +105,7 @@ TEST_F(PlayerTest, ASubjectThatWasForgottenIsOfferedAgain) {
   EXPECT_NEAR(brow(), 0.1f * static_cast<float>(player->state(now).frame), 1e-5f);
 }
 
-TEST_F(PlayerTest, ASubjectThatAnotherTookIsPlayedAgainWhenThatOneHasGone) {
+TEST_F(PlayerTest, PlaybackRegainsItsSubjectWhenTheOtherSenderLeaves) {
   FakePeer other;
   Connect(&other);
   Publish(other, "take");
@@ -119,7 +119,7 @@ TEST_F(PlayerTest, ASubjectThatAnotherTookIsPlayedAgainWhenThatOneHasGone) {
   EXPECT_NE(subject().owner, taken);
 }
 
-TEST_F(PlayerTest, WhatTheWireCannotCarryIsSaidWhenItIsLoaded) {
+TEST_F(PlayerTest, LoadingRejectsWhatTheWireCannotCarry) {
   const auto path = std::filesystem::path(testing::TempDir()) / "furrow_player_latin1.bvh";
   std::ofstream(path, std::ios::binary)
       << "HIERARCHY\nROOT H\xFC"
@@ -134,7 +134,7 @@ TEST_F(PlayerTest, WhatTheWireCannotCarryIsSaidWhenItIsLoaded) {
       << loaded.status().ToString();
 }
 
-TEST_F(PlayerTest, AWrongChangeNamesItsFieldAndChangesNothing) {
+TEST_F(PlayerTest, AnInvalidChangeNamesItsFieldAndChangesNothing) {
   for (const double speed : {0.0, -1.0, 9.0, std::nan("")}) {
     const Status status = player->Apply({.playing = false, .speed = speed}, now);
     EXPECT_EQ(status.where(), "speed");

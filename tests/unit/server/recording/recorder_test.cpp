@@ -49,7 +49,7 @@ class RecorderTest : public HubTest {
   FakePeer sender_;
 };
 
-TEST_F(RecorderTest, APoseAndItsWeightsAreRecordedWithTheirTimes) {
+TEST_F(RecorderTest, PosesAndWeightsAreRecordedWithTheirTimes) {
   Publish(sender_, "ada");
   Publish(sender_, "ada");  // again, as senders do until they are answered
   Send(sender_, Pose(0.25f, 1.0f), 1, 0, 7'000);
@@ -92,7 +92,7 @@ TEST_F(RecorderTest, APartialPoseIsRecordedWhole) {
   EXPECT_EQ(pose.blend_shapes, (std::vector<float>{0.5f, 1.0f}));
 }
 
-TEST_F(RecorderTest, WhatTheDaemonDoesNotUseIsNotRecorded) {
+TEST_F(RecorderTest, DroppedPosesAreNotRecorded) {
   Publish(sender_, "ada");
   Send(sender_, Pose(0.25f), 1, 5, 1'000);
   Send(sender_, Pose(0.75f), 1, 5, 1'000);  // twice
@@ -103,7 +103,7 @@ TEST_F(RecorderTest, WhatTheDaemonDoesNotUseIsNotRecorded) {
   EXPECT_EQ(summary->subjects.at("ada").poses, 1u);
 }
 
-TEST_F(RecorderTest, DatagramsAreRecordedAsTheyCame) {
+TEST_F(RecorderTest, DatagramsAreRecordedUnchanged) {
   recording::DatagramSender sender{};
   sender[15] = 1;
   sender[17] = 80;

@@ -16,7 +16,7 @@ class BundlePeer : public FakePeer {
   std::optional<bool> takes_bundles;  // as it was told last
 };
 
-class HubHello : public HubTest {
+class DispatcherHelloTest : public HubTest {
  protected:
   void SetUp() override {
     HubTest::SetUp();
@@ -31,20 +31,20 @@ class HubHello : public HubTest {
   BundlePeer udp;
 };
 
-TEST_F(HubHello, WhoProvesItsAddressAndSetTakesBundlesGetsThem) {
+TEST_F(DispatcherHelloTest, AProvenAddressMayTurnBundlesOn) {
   const std::uint64_t token = Hello(0, true);
   EXPECT_FALSE(udp.takes_bundles.has_value()) << "anybody can say so from a forged address";
   EXPECT_EQ(Hello(token, true), 0u);
   EXPECT_EQ(udp.takes_bundles, true);
 }
 
-TEST_F(HubHello, WhoDoesNotSaySoNeverGetsAny) {
+TEST_F(DispatcherHelloTest, ClientsThatDoNotOptInNeverReceiveBundles) {
   const std::uint64_t token = Hello(0, false);
   Hello(token, false);
   EXPECT_EQ(udp.takes_bundles, false);
 }
 
-TEST_F(HubHello, AForgedHelloCanEndBundlesAndNotBeginThem) {
+TEST_F(DispatcherHelloTest, AForgedHelloCanOnlyTurnBundlesOff) {
   const std::uint64_t token = Hello(0, false);
   Hello(token, false);
   Hello(0, true);
@@ -56,7 +56,7 @@ TEST_F(HubHello, AForgedHelloCanEndBundlesAndNotBeginThem) {
   EXPECT_EQ(udp.takes_bundles, false);
 }
 
-TEST_F(HubHello, ABundleOfAClientsIsMalformedAndEarnsNothing) {
+TEST_F(DispatcherHelloTest, BundlesFromClientsAreMalformed) {
   std::vector<std::vector<std::uint8_t>> pings(2);
   for (auto& ping : pings) encoder.Encode({.session = 77}, protocol::Ping{}, ping);
   std::vector<std::uint8_t> bundle;
@@ -67,7 +67,7 @@ TEST_F(HubHello, ABundleOfAClientsIsMalformedAndEarnsNothing) {
   EXPECT_TRUE(udp.inbox.empty());
 }
 
-TEST_F(HubHello, OverTcpItMeansNothing) {
+TEST_F(DispatcherHelloTest, BundlesAreIgnoredOverTcp) {
   BundlePeer tcp;
   Connect(&tcp, Transport::kTcp);
   Send(tcp, protocol::Hello{"test", 0, true});

@@ -12,7 +12,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-class HubList : public HubTest {
+class DispatcherListTest : public HubTest {
  protected:
   void SetUp() override {
     HubTest::SetUp();
@@ -27,7 +27,7 @@ class HubList : public HubTest {
   FakePeer asker;
 };
 
-TEST_F(HubList, NamesInOrderOfArrival) {
+TEST_F(DispatcherListTest, ListsNamesInOrderOfArrival) {
   Send(asker, protocol::ListSubjects{});
   const auto nobody = asker.Take<protocol::Subjects>();
   ASSERT_TRUE(nobody);
@@ -43,7 +43,7 @@ TEST_F(HubList, NamesInOrderOfArrival) {
   EXPECT_EQ(both->message.total, 2u);
 }
 
-TEST_F(HubList, WhoFollowsIsToldWhoComesAndGoes) {
+TEST_F(DispatcherListTest, AFollowerReceivesChanges) {
   Send(asker, protocol::ListSubjects{.follow = true});
   ASSERT_TRUE(asker.Take<protocol::Subjects>());
   Come("ada", 1);
@@ -69,7 +69,7 @@ TEST_F(HubList, WhoFollowsIsToldWhoComesAndGoes) {
   EXPECT_TRUE(asker.inbox.empty()) << "it follows no longer";
 }
 
-TEST_F(HubList, NotOverUdp) {
+TEST_F(DispatcherListTest, IsUnavailableOverUdp) {
   FakePeer udp;
   Connect(&udp, Transport::kUdp);
   hub->OnBytesReceived(udp.id, 1000, now);

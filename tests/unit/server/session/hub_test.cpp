@@ -12,7 +12,7 @@ using protocol::ErrorCode;
 
 class HubSessionTest : public HubPeersTest {};
 
-TEST_F(HubSessionTest, WhoNeitherSendsNorWatchesIsIdle) {
+TEST_F(HubSessionTest, PeersThatNeitherSendNorSubscribeAreIdle) {
   Limits limits;
   limits.idle_seconds = 30;
   Make(limits);
@@ -51,14 +51,14 @@ TEST_F(HubSessionTest, GarbageIsAnsweredOnTcpAndIgnoredOnUdp) {
   ExpectError(viewer, ErrorCode::kMalformed);
 }
 
-TEST_F(HubSessionTest, DrainingTellsEverybodyAndTakesNobodyNew) {
+TEST_F(HubSessionTest, DrainingSaysGoodbyeAndRefusesSubscriptions) {
   hub->Drain();
   EXPECT_EQ(viewer.Take<protocol::Goodbye>()->message.reason, protocol::GoodbyeReason::kDraining);
   Send(viewer, protocol::SubscribeWeights{.wait = true});
   ExpectError(viewer, ErrorCode::kDraining);
 }
 
-TEST_F(HubSessionTest, NothingComesBehindAGoodbye) {
+TEST_F(HubSessionTest, NothingFollowsAGoodbye) {
   Publish(sender, "ann");
   EXPECT_NE(Watch(viewer, {.subject = "ann", .max_rate_hz = 10.0}), 0);
   Send(sender, Pose(0.5f), 1, 0);

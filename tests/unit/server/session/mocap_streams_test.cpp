@@ -11,9 +11,9 @@ namespace {
 using testing::ElementsAre;
 using testing::FloatEq;
 
-class HubMocap : public HubPeersTest {};
+class MocapStreamsTest : public HubPeersTest {};
 
-TEST_F(HubMocap, AForeignSubjectThatIsRefusedIsCountedAndTriedAgain) {
+TEST_F(MocapStreamsTest, ARejectedSubjectIsCountedAndRetried) {
   Limits limits;
   limits.max_subjects = 1;
   limits.idle_seconds = 5;
@@ -38,7 +38,7 @@ TEST_F(HubMocap, AForeignSubjectThatIsRefusedIsCountedAndTriedAgain) {
   EXPECT_EQ(Count(Counter::kMocapRefused), 10u);
 }
 
-TEST_F(HubMocap, AForeignFrameIsASubjectLikeAnyOther) {
+TEST_F(MocapStreamsTest, FramesBecomeASubject) {
   FakePeer tracker;
   Connect(&tracker, Transport::kMocap);
   Watch(viewer, {.subject = "phone", .wait = true});

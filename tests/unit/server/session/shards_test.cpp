@@ -45,7 +45,7 @@ class CountingSender : public BufferedSender {
   int flushes = 0;
 };
 
-class HubShards : public HubTest {
+class ShardsTest : public HubTest {
  protected:
   void SetUp() override {
     Limits limits;
@@ -58,7 +58,7 @@ class HubShards : public HubTest {
   }
 };
 
-TEST_F(HubShards, PeersOfAllShardsHaveIdsOfTheirOwn) {
+TEST_F(ShardsTest, PeerIdsAreUniqueAcrossShards) {
   FakePeer peers[2 * kShards];
   std::map<PeerId, int> seen;
   for (int i = 0; i < 2 * kShards; ++i) {
@@ -69,7 +69,7 @@ TEST_F(HubShards, PeersOfAllShardsHaveIdsOfTheirOwn) {
   }
 }
 
-TEST_F(HubShards, WhoWatchesInOneShardGetsWhatIsPublishedInAnother) {
+TEST_F(ShardsTest, SubscribersReceivePosesFromOtherShards) {
   FakePeer sender;
   FakePeer viewer;
   ConnectIn(2, &sender);
@@ -82,7 +82,7 @@ TEST_F(HubShards, WhoWatchesInOneShardGetsWhatIsPublishedInAnother) {
   EXPECT_EQ(weights->message.values, (std::vector<float>{0.5f, 0.25f}));
 }
 
-TEST_F(HubShards, AnotherShardsSenderTakesASubjectOver) {
+TEST_F(ShardsTest, ASenderOfAnotherShardTakesOverASubject) {
   FakePeer first;
   FakePeer second;
   FakePeer viewer;
@@ -107,7 +107,7 @@ TEST_F(HubShards, AnotherShardsSenderTakesASubjectOver) {
   EXPECT_EQ(hub->num_subjects(), 1u);
 }
 
-TEST_F(HubShards, ASenderThatGoesIsForgottenWhateverItsShard) {
+TEST_F(ShardsTest, ARemovedSenderIsForgottenInAnyShard) {
   FakePeer sender;
   ConnectIn(2, &sender);
   Publish(sender, "ada");
@@ -116,14 +116,14 @@ TEST_F(HubShards, ASenderThatGoesIsForgottenWhateverItsShard) {
   EXPECT_EQ(hub->SourceOf(*hub->RequireAllDrivers("ada")), "");
 }
 
-TEST_F(HubShards, GoodbyesGoToAllShards) {
+TEST_F(ShardsTest, GoodbyesReachAllShards) {
   FakePeer peers[kShards];
   for (int shard = 0; shard < kShards; ++shard) ConnectIn(shard, &peers[shard]);
   hub->Drain();
   for (FakePeer& peer : peers) EXPECT_TRUE(peer.Take<protocol::Goodbye>().has_value());
 }
 
-TEST_F(HubShards, AllIsSentBeforeATurnIsLeftAndBeforeOthersGoOn) {
+TEST_F(ShardsTest, BufferedMessagesLeaveBeforeALockIsReleased) {
   CountingSender buffered_senders[kShards];
   for (int shard = 0; shard < kShards; ++shard)
     hub->SetBufferedSender(shard, &buffered_senders[shard]);
@@ -185,7 +185,7 @@ class Wire {
   std::vector<protocol::MessageKind> left;
 };
 
-TEST_F(HubShards, WeightsNeverOvertakeTheNamesThatTheyMean) {
+TEST_F(ShardsTest, WeightsNeverOvertakeTheirNames) {
   FakePeer sender;
   ConnectIn(0, &sender);
   Publish(sender, "ada");
@@ -210,7 +210,7 @@ TEST_F(HubShards, WeightsNeverOvertakeTheNamesThatTheyMean) {
   for (int shard = 0; shard < kShards; ++shard) hub->SetBufferedSender(shard, nullptr);
 }
 
-TEST_F(HubShards, PosesOfAllShardsAtOnceWhileTheSessionChanges) {
+TEST_F(ShardsTest, ShardsPublishAtOnceWhileTheSessionChanges) {
   constexpr int kSubjects = 4;  // of a shard
   constexpr std::uint32_t kPoses = 300;
   SharedPeer watcher;

@@ -63,7 +63,7 @@ struct World {
   std::unique_ptr<Hub> hub;
 };
 
-class HubGather : public HubTest {
+class StreamRouterTest : public HubTest {
  protected:
   struct Piece {
     std::size_t peer = 0;
@@ -159,7 +159,7 @@ void ExpectSame(const World& one, const World& other) {
   }
 }
 
-TEST_F(HubGather, WhatIsEvaluatedTogetherGoesOutAsOneByOne) {
+TEST_F(StreamRouterTest, BatchedPosesProduceTheSameOutputAsSinglePoses) {
   World one(MakeRig(/*filter=*/true));
   World many(MakeRig(/*filter=*/true));
   std::vector<Piece> script = Opening();
@@ -186,7 +186,7 @@ TEST_F(HubGather, WhatIsEvaluatedTogetherGoesOutAsOneByOne) {
 }
 
 // Also when it is the address book that makes room for another.
-TEST_F(HubGather, APeerThatGoesGetsWhatWaits) {
+TEST_F(StreamRouterTest, RemovingAPeerPublishesWaitingPosesFirst) {
   World world(MakeRig(/*filter=*/false));
   for (const auto& [peer, bytes] : Opening()) {
     world.hub->OnMessage(world.peers[peer].id, bytes, now);

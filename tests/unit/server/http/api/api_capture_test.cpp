@@ -51,7 +51,7 @@ class ApiCaptureTest : public HubPeersTest {
   std::uint32_t sequence = 0;
 };
 
-TEST_F(ApiCaptureTest, ANeutralIsTakenBackToTheOneBeforeIt) {
+TEST_F(ApiCaptureTest, UndoRestoresThePreviousNeutral) {
   Capture("neutral");
   SendPose(0.75f);
   EXPECT_NEAR(brow(), 0.25f, 1e-5f);
@@ -63,7 +63,7 @@ TEST_F(ApiCaptureTest, ANeutralIsTakenBackToTheOneBeforeIt) {
   EXPECT_NEAR(brow(), 0.75f, 1e-5f);
 }
 
-TEST_F(ApiCaptureTest, ANeutralOfAnotherSkeletonIsNotTakenBack) {
+TEST_F(ApiCaptureTest, UndoIgnoresTheNeutralOfAnotherSkeleton) {
   Capture("neutral");
   Capture("neutral");
   OfferAnew();  // fewer values than it now has would be read from the former neutral
@@ -71,7 +71,7 @@ TEST_F(ApiCaptureTest, ANeutralOfAnotherSkeletonIsNotTakenBack) {
   EXPECT_FALSE(pipeline().neutral_pose().has_value());
 }
 
-TEST_F(ApiCaptureTest, ABodyThatIsNestedWithoutEndIsRefused) {
+TEST_F(ApiCaptureTest, ADeeplyNestedBodyIsRejected) {
   constexpr std::size_t kDepth = 30'000;  // fits a request; each level copied is a call within one
   const std::string body =
       R"({"subject":)" + std::string(kDepth, '[') + std::string(kDepth, ']') + "}";
@@ -81,7 +81,7 @@ TEST_F(ApiCaptureTest, ABodyThatIsNestedWithoutEndIsRefused) {
   EXPECT_EQ(Json::parse(reply.body)["error"]["field"], "body");
 }
 
-TEST_F(ApiCaptureTest, ANeutralThatIsPreviewedLeavesTheSubjectAlone) {
+TEST_F(ApiCaptureTest, APreviewChangesNothing) {
   Make({}, /*filter=*/true);
   Connect(&sender);
   Connect(&viewer);
@@ -146,7 +146,7 @@ class ApiForeignCaptureTest : public HubTest {
   FakePeer sender;
 };
 
-TEST_F(ApiForeignCaptureTest, APoseIsStoredUnderTheJointsOfTheRig) {
+TEST_F(ApiForeignCaptureTest, APoseIsStoredWithTheJointNamesOfTheRig) {
   const protocol::SkeletonOffer offer = Legs();
   Send(sender, offer, 1);
   protocol::PoseFrame pose;

@@ -16,7 +16,7 @@ class ApiRigTest : public HubTest {
   FakePeer sender;
 };
 
-TEST_F(ApiRigTest, EveryKindOfMaskIsShownAsWhatItIs) {
+TEST_F(ApiRigTest, EveryKindOfMaskIsShown) {
   using Kind = wrinkle::Mask::Kind;
   wrinkle::Rig rig = MakeRig(/*filter=*/false);
   wrinkle::Driver& ball = rig.drivers.emplace_back();

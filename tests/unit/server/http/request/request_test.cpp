@@ -9,7 +9,7 @@
 namespace furrow::server {
 namespace {
 
-TEST(RequestGuard, NumbersAndLocalhostAreOurs) {
+TEST(RequestGuard, NumericHostsAndLocalhostAreAllowed) {
   const RequestGuard guard(HttpConfig{});
   for (const char* host :
        {"localhost", "LOCALHOST:7480", "127.0.0.1:7480", "[::1]:7480", "[::1]", "192.168.0.7:80"}) {
@@ -21,7 +21,7 @@ TEST(RequestGuard, NumbersAndLocalhostAreOurs) {
   }
 }
 
-TEST(RequestGuard, AnOriginIsThatOfTheHost) {
+TEST(RequestGuard, OriginMustMatchHost) {
   HttpConfig config;
   config.allow_hosts = {"stage.lan"};
   config.allow_origins = {"https://context.example"};
@@ -47,7 +47,7 @@ TEST(Url, PathAndQueryAreDecoded) {
   EXPECT_EQ(url->values.size(), 5u);
 }
 
-TEST(Url, WhatMeansNothingIsRefused) {
+TEST(Url, InvalidTargetsAreRejected) {
   for (const char* target : {"", "api", "*", "/%", "/%4", "/%zz", "/?a=%", "/?%g1=1"}) {
     EXPECT_FALSE(ParseUrl(target).has_value()) << target;
   }
@@ -55,7 +55,7 @@ TEST(Url, WhatMeansNothingIsRefused) {
   EXPECT_TRUE(ParseUrl("/?&&").has_value());
 }
 
-TEST(PictureQuery, NamesItsOwnFieldsAndPassesSettingsOn) {
+TEST(PictureQuery, ReadsItsFieldsAndPassesSettingsOn) {
   const auto url = ParseUrl("/mjpeg?camera=eyes&width=320&rate=12.5&shading=skin&wrinkles=off");
   const auto pictures = PicturesOf(*url);
   ASSERT_TRUE(pictures.ok());
@@ -76,7 +76,7 @@ TEST(PictureQuery, NumbersOutOfRangeNameTheirField) {
   EXPECT_FALSE(PicturesOf(*ParseUrl("/mjpeg?quality=0")).ok());
 }
 
-TEST(PictureQuery, WhatIsNotThereNamesItsField) {
+TEST(PictureQuery, UnknownNamesAreErrorsWithTheirField) {
   for (const auto& [query, field] :
        {std::pair("view=sideways", "view"), std::pair("camera=behind", "camera"),
         std::pair("shading=oil", "shading"), std::pair("subsurface.width=99", "subsurface.width"),

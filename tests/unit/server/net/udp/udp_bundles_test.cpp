@@ -65,7 +65,7 @@ class UdpBundlesTest : public testing::Test {
   UdpSender sender;
 };
 
-TEST_F(UdpBundlesTest, WhatMayShareADatagramDoesUntilItIsFull) {
+TEST_F(UdpBundlesTest, MessagesShareADatagramUntilItIsFull) {
   std::vector<Bytes> messages;
   for (int i = 0; i < 7; ++i) {
     messages.push_back(Message(400));
@@ -85,7 +85,7 @@ TEST_F(UdpBundlesTest, WhatMayShareADatagramDoesUntilItIsFull) {
   EXPECT_EQ(counts.bundled, 6u);
 }
 
-TEST_F(UdpBundlesTest, OneMessageLeavesAsItIs) {
+TEST_F(UdpBundlesTest, ASingleMessageIsNotBundled) {
   const Bytes message = Message(300);
   Push(a, message, Packing::kBundled);
   sender.Flush();
@@ -95,7 +95,7 @@ TEST_F(UdpBundlesTest, OneMessageLeavesAsItIs) {
   EXPECT_EQ(sender.TakeCounts().bundled, 0u);
 }
 
-TEST_F(UdpBundlesTest, OneByteTooManyIsAnotherDatagram) {
+TEST_F(UdpBundlesTest, OneByteTooManyStartsAnotherDatagram) {
   Push(a, Message(600), Packing::kBundled);
   Push(a, Message(600), Packing::kBundled);
   Push(b, Message(600), Packing::kBundled);
@@ -105,7 +105,7 @@ TEST_F(UdpBundlesTest, OneByteTooManyIsAnotherDatagram) {
   EXPECT_EQ(TakeAll(b).size(), 2u);
 }
 
-TEST_F(UdpBundlesTest, AnythingOfAnySizeComesInOrderAndAsItWas) {
+TEST_F(UdpBundlesTest, RandomMessagesArriveUnchangedAndInOrder) {
   for (int round = 0; round < 50; ++round) {
     std::map<udp::socket*, std::vector<Bytes>> sent;
     std::map<udp::socket*, std::size_t> alone;

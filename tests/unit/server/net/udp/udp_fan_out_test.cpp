@@ -160,7 +160,7 @@ class UdpFanOutTest : public HubTest {
   std::vector<std::uint8_t> bytes;
 };
 
-TEST_F(UdpFanOutTest, EveryWeightArrivesRightInFewerDatagramsAndNoBundleWhereNoneIsTaken) {
+TEST_F(UdpFanOutTest, WeightsArriveInFewerDatagramsAndBundlesOnlyWhereAccepted) {
   std::vector<Watcher> watchers;
   for (int i = 0; i < kSubscribers; ++i) watchers.push_back(Join(/*takes_bundles=*/i > 0));
   Watcher& old = watchers.front();
@@ -188,7 +188,7 @@ TEST_F(UdpFanOutTest, EveryWeightArrivesRightInFewerDatagramsAndNoBundleWhereNon
             std::uint64_t{(kSubscribers - 1) * kSubjects * kRounds});
 }
 
-TEST_F(UdpFanOutTest, WhatATickSendsSharesDatagramsToo) {
+TEST_F(UdpFanOutTest, FramesOfATickShareDatagrams) {
   Watcher watcher = Join(/*takes_bundles=*/true);
   Play(0);
   Play(1);  // of which nobody is neutral

@@ -136,7 +136,7 @@ class UdpPathTest : public HubTest, public testing::WithParamInterface<int> {
   const protocol::PoseEncoding small = protocol::PoseEncoding::Small();
 };
 
-TEST_P(UdpPathTest, NothingIsAllocatedAPoseInTheLongRun) {
+TEST_P(UdpPathTest, PosesDoNotAllocate) {
   Meet();
   std::uint32_t number = 0;
   while (number < 20) Round(number++);

@@ -64,7 +64,7 @@ class UdpPortTest : public HubTest {
   std::atomic<int> num_poses_ = 0;
 };
 
-TEST_F(UdpPortTest, SendersAreSpreadAndEachStaysInItsShard) {
+TEST_F(UdpPortTest, SendersAreSpreadOverShardsAndStayThere) {
   constexpr int kPoses = 5;
   asio::io_context io;
   std::deque<udp::socket> senders;
@@ -105,7 +105,7 @@ Hub::Parts TwoShards(Metrics* metrics) {
   return parts;
 }
 
-TEST(UdpPortFailure, WhatAShardDoesNotSurviveEndsTheCallersLoop) {
+TEST(UdpPortFailure, AnExceptionInAShardEndsTheCallersLoop) {
   Metrics metrics;
   Hub::Parts parts = TwoShards(&metrics);
   parts.make_token = []() -> std::uint64_t { throw std::runtime_error("no more numbers"); };
@@ -121,7 +121,7 @@ TEST(UdpPortFailure, WhatAShardDoesNotSurviveEndsTheCallersLoop) {
   EXPECT_THROW(io.run_for(std::chrono::seconds(20)), std::runtime_error);
 }
 
-TEST(UdpPortFailure, WhatCameBeforeAllSocketsWereThereIsDropped) {
+TEST(UdpPortFailure, DatagramsFromBeforeAllSocketsWereOpenAreDropped) {
   Metrics metrics;
   Hub hub(TwoShards(&metrics));
   asio::io_context io{1};
@@ -143,7 +143,7 @@ TEST(UdpPortFailure, WhatCameBeforeAllSocketsWereThereIsDropped) {
   server.Close();
 }
 
-TEST_F(UdpPortTest, ThePortIsNotSharedWithAStranger) {
+TEST_F(UdpPortTest, APortInUseIsAnError) {
   Hub other(TwoShards(&metrics));
   asio::io_context io;
   UdpPort second(io, 2, Limits(), &other, &metrics, nullptr);

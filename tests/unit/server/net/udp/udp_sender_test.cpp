@@ -58,7 +58,7 @@ class UdpSenderTest : public testing::Test {
   UdpSender sender;
 };
 
-TEST_F(UdpSenderTest, EachAddressGetsItsDatagramsWholeAndInOrder) {
+TEST_F(UdpSenderTest, DatagramsArriveWholeAndInOrder) {
   Push(1, a, 100, 1);
   Push(2, b, 100, 2);
   Push(1, a, 100, 3);
@@ -79,7 +79,7 @@ TEST_F(UdpSenderTest, EachAddressGetsItsDatagramsWholeAndInOrder) {
   EXPECT_TRUE(a.TakeAll().empty());
 }
 
-TEST_F(UdpSenderTest, MoreThanFitsLeavesByItself) {
+TEST_F(UdpSenderTest, AFullBufferFlushes) {
   // As few bytes for each end as its buffer surely holds: all of them come in the end.
   constexpr int kEach = 400;
   std::deque<FarEnd> ends;
@@ -98,7 +98,7 @@ TEST_F(UdpSenderTest, MoreThanFitsLeavesByItself) {
   }
 }
 
-TEST_F(UdpSenderTest, MoreAddressesThanItHoldsGetTheirsToo) {
+TEST_F(UdpSenderTest, AFullAddressTableFlushes) {
   constexpr std::uint64_t kAddresses = 3000;  // all of them one socket's: only keys count
   for (std::uint64_t key = 0; key < kAddresses; ++key) {
     Push(key << 20, key % 2 == 0 ? a : b, 40, 1);  // keys that meet in one slot
@@ -109,7 +109,7 @@ TEST_F(UdpSenderTest, MoreAddressesThanItHoldsGetTheirsToo) {
   EXPECT_EQ(sender.TakeCounts().sent, kAddresses);
 }
 
-TEST_F(UdpSenderTest, WhatCannotBeSentIsCountedAndTheRestLeaves) {
+TEST_F(UdpSenderTest, UnsendableDatagramsAreCountedAndOthersLeave) {
   Push(1, udp::endpoint(asio::ip::make_address_v4("255.255.255.255"), 9), 50, 1);  // not allowed
   Push(2, a, 60, 2);
   Push(3, udp::endpoint(asio::ip::address_v6::loopback(), 9), 70, 3);  // another family

@@ -6,7 +6,7 @@
 namespace furrow::server {
 namespace {
 
-TEST(SendCredit, UnprovenGetsAtMostWhatItSent) {
+TEST(SendCredit, AnUnprovenAddressReceivesAtMostWhatItSent) {
   SendCredit credit;
   credit.Received(100);
   EXPECT_TRUE(credit.Spend(60));

@@ -16,9 +16,9 @@ using testing::ElementsAre;
 using testing::FloatEq;
 using testing::HasSubstr;
 
-class HubPublish : public HubPeersTest {};
+class PublishersTest : public HubPeersTest {};
 
-TEST_F(HubPublish, APoseBecomesWeightsWithItsSequenceAndCaptureTime) {
+TEST_F(PublishersTest, APoseBecomesWeightsWithItsSequenceAndCaptureTime) {
   Publish(sender, "ann");
   const std::uint16_t id = Watch(viewer, {.subject = "ann"});
   Send(sender, Pose(0.25f, 1.0f), 1, 5, 123456);
@@ -32,7 +32,7 @@ TEST_F(HubPublish, APoseBecomesWeightsWithItsSequenceAndCaptureTime) {
   EXPECT_THAT(frame->message.values, ElementsAre(FloatEq(0.25f), FloatEq(1.0f)));
 }
 
-TEST_F(HubPublish, APartialPoseKeepsWhatItLeavesOut) {
+TEST_F(PublishersTest, APartialPoseKeepsTheOtherValues) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});
   Send(sender, Pose(0.25f, 0.5f), 1, 0);
@@ -50,7 +50,7 @@ TEST_F(HubPublish, APartialPoseKeepsWhatItLeavesOut) {
               ElementsAre(FloatEq(0.0f), FloatEq(0.75f)));
 }
 
-TEST_F(HubPublish, PosesWithoutAnOfferAreAskedForAtMostOnceAnInterval) {
+TEST_F(PublishersTest, UnknownStreamsAreAskedForSkeletonsOncePerInterval) {
   for (std::uint32_t i = 0; i < 10; ++i) Send(sender, Pose(1), 3, i);
   const auto reply = sender.Take<protocol::SkeletonReply>();
   ASSERT_TRUE(reply.has_value());
@@ -64,14 +64,14 @@ TEST_F(HubPublish, PosesWithoutAnOfferAreAskedForAtMostOnceAnInterval) {
   EXPECT_EQ(Count(Counter::kSkeletonsRequested), 2u);
 }
 
-TEST_F(HubPublish, EveryStreamOfAPeerIsAskedForItsOwnSkeleton) {
+TEST_F(PublishersTest, EachUnknownStreamIsAskedForItsSkeleton) {
   for (const std::uint16_t stream : {3, 4, 3, 4}) Send(sender, Pose(1), stream);
   EXPECT_EQ(sender.Take<protocol::SkeletonReply>()->header.stream, 3);
   EXPECT_EQ(sender.Take<protocol::SkeletonReply>()->header.stream, 4);
   EXPECT_TRUE(sender.inbox.empty());
 }
 
-TEST_F(HubPublish, NewSkeletonsThatComeTooFastAreOfferedAgain) {
+TEST_F(PublishersTest, NewSkeletonsAreThrottled) {
   protocol::SkeletonOffer offer = Offer("ann");
   const auto offer_another = [&](int number) {
     offer.blend_shape_names = {"brow", "shape" + std::to_string(number)};
@@ -89,7 +89,7 @@ TEST_F(HubPublish, NewSkeletonsThatComeTooFastAreOfferedAgain) {
   EXPECT_FALSE(offer_another(accepted + 1));
 }
 
-TEST_F(HubPublish, ANeutralStaysWhereThePerformerIsSentAnewWithTheSameSkeleton) {
+TEST_F(PublishersTest, TheNeutralSurvivesARestartWithTheSameSkeleton) {
   Publish(sender, "ann");
   ASSERT_NE(Watch(viewer, {.subject = "ann"}), 0);  // so that its weights are evaluated
   Send(sender, Pose(0.25f), 1, 1);
@@ -106,7 +106,7 @@ TEST_F(HubPublish, ANeutralStaysWhereThePerformerIsSentAnewWithTheSameSkeleton) 
   EXPECT_FALSE(subject.pipeline->neutral_pose().has_value());
 }
 
-TEST_F(HubPublish, ASubjectThatRestartsWithoutEndTakesBoundedMemory) {
+TEST_F(PublishersTest, EndlessRestartsUseBoundedMemory) {
   Publish(sender, "ann");
   const std::uint64_t first = sender.session;
   for (std::size_t i = 0; i <= SubjectRegistry::kMaxRetired; ++i) {
@@ -122,7 +122,7 @@ TEST_F(HubPublish, ASubjectThatRestartsWithoutEndTakesBoundedMemory) {
   Publish(sender, "ann");
 }
 
-TEST_F(HubPublish, LateAndRepeatedPosesAreDroppedAndCounted) {
+TEST_F(PublishersTest, LateAndDuplicatePosesAreDroppedAndCounted) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});
   for (const std::uint32_t sequence : {1u, 3u, 2u, 3u, 2u, 4u}) Send(sender, Pose(1), 1, sequence);
@@ -133,7 +133,7 @@ TEST_F(HubPublish, LateAndRepeatedPosesAreDroppedAndCounted) {
   EXPECT_EQ(Count(Counter::kPosesLate) + Count(Counter::kPosesDuplicate), 3u);
 }
 
-TEST_F(HubPublish, APoseOfAnotherShapeIsInvalidAndMovesNothing) {
+TEST_F(PublishersTest, APoseWithOtherCountsIsInvalid) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});
   protocol::PoseFrame wrong = Pose(1, 1);
@@ -145,7 +145,7 @@ TEST_F(HubPublish, APoseOfAnotherShapeIsInvalidAndMovesNothing) {
   EXPECT_EQ(viewer.inbox.size(), 1u);
 }
 
-TEST_F(HubPublish, ARestartedSenderTakesItsSubjectOver) {
+TEST_F(PublishersTest, ARestartedSenderTakesOverItsSubject) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});
   Send(sender, Pose(1), 1, 500);
@@ -166,7 +166,7 @@ TEST_F(HubPublish, ARestartedSenderTakesItsSubjectOver) {
   EXPECT_EQ(sender.Take<protocol::SkeletonReply>()->message.status, SkeletonStatus::kRejected);
 }
 
-TEST_F(HubPublish, ARetiredSenderMayReturnWhenTheOtherHasGone) {
+TEST_F(PublishersTest, ARetiredSenderMayReturnAfterTheOtherHasLeft) {
   Publish(sender, "ann");
   FakePeer other;
   other.session = 78;
@@ -180,7 +180,7 @@ TEST_F(HubPublish, ARetiredSenderMayReturnWhenTheOtherHasGone) {
   EXPECT_EQ(Count(Counter::kPosesLate), 0u);
 }
 
-TEST_F(HubPublish, ResendingAnOfferChangesNothing) {
+TEST_F(PublishersTest, RepeatingAnOfferChangesNothing) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});
   Send(sender, Pose(1), 1, 7);
@@ -190,7 +190,7 @@ TEST_F(HubPublish, ResendingAnOfferChangesNothing) {
   EXPECT_EQ(Count(Counter::kPosesDuplicate), 1u);
 }
 
-TEST_F(HubPublish, AnOfferBeyondTheLimitIsRejectedWithItsReason) {
+TEST_F(PublishersTest, AnOfferBeyondTheLimitIsRejectedWithItsReason) {
   Limits limits;
   limits.max_subjects = 1;
   Make(limits);
@@ -203,7 +203,7 @@ TEST_F(HubPublish, AnOfferBeyondTheLimitIsRejectedWithItsReason) {
   EXPECT_EQ(Count(Counter::kSkeletonsRejected), 1u);
 }
 
-TEST_F(HubPublish, SeveralSubjectsOfOneSenderStayApart) {
+TEST_F(PublishersTest, SubjectsOfOneSenderAreSeparate) {
   Publish(sender, "ann", 1);
   Publish(sender, "ben", 2);
   const std::uint16_t ben = Watch(viewer, {.subject = "ben"});
@@ -215,7 +215,7 @@ TEST_F(HubPublish, SeveralSubjectsOfOneSenderStayApart) {
   EXPECT_FLOAT_EQ(frame->message.values[0], 0.8f);
 }
 
-TEST_F(HubPublish, AVanishedPublisherHoldsThenDecaysToNeutral) {
+TEST_F(PublishersTest, ASilentSubjectHoldsThenDecays) {
   Make({}, /*filter=*/true);
   Connect(&sender);
   Connect(&viewer);
@@ -247,7 +247,7 @@ TEST_F(HubPublish, AVanishedPublisherHoldsThenDecaysToNeutral) {
   EXPECT_EQ(viewer.inbox.size(), 1u);
 }
 
-TEST_F(HubPublish, GoodbyeDecaysThenTellsTheSubscribers) {
+TEST_F(PublishersTest, AGoodbyeDecaysTheSubjectThenInformsSubscribers) {
   Make({}, /*filter=*/true);
   Connect(&sender);
   Connect(&viewer);
@@ -270,7 +270,7 @@ TEST_F(HubPublish, GoodbyeDecaysThenTellsTheSubscribers) {
 
 // A seeded network that loses, repeats and reorders: what comes out is in order, once each, and
 // everything that went in is accounted for.
-TEST_F(HubPublish, ABadNetworkCostsFramesAndNothingElse) {
+TEST_F(PublishersTest, ABadNetworkOnlyLosesFrames) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});
   std::mt19937 random(20240611);

@@ -7,7 +7,7 @@
 namespace furrow::server {
 namespace {
 
-class HubStuck : public HubPeersTest {
+class FanOutTest : public HubPeersTest {
  protected:
   void Tick() {
     Advance(0.01);
@@ -26,7 +26,7 @@ class HubStuck : public HubPeersTest {
   }
 };
 
-TEST_F(HubStuck, WhoTakesNothingIsSentNothingAndThenTheNewestOnce) {
+TEST_F(FanOutTest, AStuckPeerReceivesTheNewestPoseOnceItReads) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});
   SetStuck(true);
@@ -43,7 +43,7 @@ TEST_F(HubStuck, WhoTakesNothingIsSentNothingAndThenTheNewestOnce) {
   EXPECT_TRUE(viewer.inbox.empty());
 }
 
-TEST_F(HubStuck, WhatWaitsForItIsDroppedOnce) {
+TEST_F(FanOutTest, QueuedFramesOfAStuckPeerAreDroppedOnce) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});
   SetStuck(true);
@@ -58,7 +58,7 @@ TEST_F(HubStuck, WhatWaitsForItIsDroppedOnce) {
   EXPECT_EQ(viewer.dropped_keys.size(), 2u);
 }
 
-TEST_F(HubStuck, OthersGoOn) {
+TEST_F(FanOutTest, OtherSubscribersContinue) {
   FakePeer other;
   Connect(&other);
   Publish(sender, "ann");
@@ -69,7 +69,7 @@ TEST_F(HubStuck, OthersGoOn) {
   EXPECT_EQ(other.inbox.size(), 3u);
 }
 
-TEST_F(HubStuck, WhoWantsEveryFrameStillGetsThemInLine) {
+TEST_F(FanOutTest, SubscriptionsToEveryFrameAreNotHeldBack) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann", .every = true});
   SetStuck(true);
@@ -77,7 +77,7 @@ TEST_F(HubStuck, WhoWantsEveryFrameStillGetsThemInLine) {
   EXPECT_EQ(viewer.inbox.size(), 3u);
 }
 
-TEST_F(HubStuck, PosesAreHeldBackAsWeightsAre) {
+TEST_F(FanOutTest, PosesAreHeldBackLikeWeights) {
   Publish(sender, "ann");
   Send(viewer, protocol::SubscribePoses{.subject = "ann"}, 0, 1);
   ASSERT_TRUE(viewer.Take<protocol::SubscribeReply>().has_value());

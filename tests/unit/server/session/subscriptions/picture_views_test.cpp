@@ -11,7 +11,7 @@ namespace {
 using protocol::ErrorCode;
 using testing::ElementsAre;
 
-class HubViewers : public HubPeersTest {
+class PictureViewsFlowTest : public HubPeersTest {
  protected:
   std::uint16_t View(FakePeer& peer, std::uint32_t request = 1) {
     Send(peer, protocol::SubscribePictures{.subject = "ann", .acknowledged = true}, 0, request);
@@ -45,7 +45,7 @@ class HubViewers : public HubPeersTest {
   std::uint32_t sequence = 0;
 };
 
-TEST_F(HubViewers, AStalledViewerIsDrawnNothingAndComesBackToTheNewestPose) {
+TEST_F(PictureViewsFlowTest, AStalledViewerContinuesWithTheNewestPose) {
   Publish(sender, "ann");
   const std::uint16_t stream = View(viewer);
   for (int i = 0; i < 2; ++i) {
@@ -74,7 +74,7 @@ TEST_F(HubViewers, AStalledViewerIsDrawnNothingAndComesBackToTheNewestPose) {
   EXPECT_EQ(fresh->header.sequence, sequence - 1);
 }
 
-TEST_F(HubViewers, WhatWaitsToBeDrawnIsDrawnAsOfNow) {
+TEST_F(PictureViewsFlowTest, AWaitingPictureShowsTheNewestPose) {
   Publish(sender, "ann");
   View(viewer);
   Pose1(0.1f);
@@ -86,7 +86,7 @@ TEST_F(HubViewers, WhatWaitsToBeDrawnIsDrawnAsOfNow) {
   EXPECT_EQ(pictures.jobs[1].snapshot->sequence, 1u);
 }
 
-TEST_F(HubViewers, ViewersOfOneViewAndTierShareAnEncode) {
+TEST_F(PictureViewsFlowTest, ViewersOfOneViewAndTierShareAnEncoding) {
   Publish(sender, "ann");
   std::vector<FakePeer> viewers(16);
   for (FakePeer& peer : viewers) {
@@ -101,7 +101,7 @@ TEST_F(HubViewers, ViewersOfOneViewAndTierShareAnEncode) {
   }
 }
 
-TEST_F(HubViewers, APoseAtRestIsSentOnceMoreRefinedAndThenNoMore) {
+TEST_F(PictureViewsFlowTest, APoseAtRestGetsOneStill) {
   Publish(sender, "ann");
   const std::uint16_t stream = View(viewer);
   std::uint32_t stills = 0;
@@ -135,7 +135,7 @@ TEST_F(HubViewers, APoseAtRestIsSentOnceMoreRefinedAndThenNoMore) {
   EXPECT_FALSE(pictures.jobs.front().tickets.front().still);
 }
 
-TEST_F(HubViewers, AnUpdateChangesTheViewAtOnceAndAWrongOneNothing) {
+TEST_F(PictureViewsFlowTest, AnUpdateChangesTheViewAndAnInvalidOneDoesNot) {
   Publish(sender, "ann");
   const std::uint16_t stream = View(viewer);
   Pose1(0.5f);
@@ -162,7 +162,7 @@ TEST_F(HubViewers, AnUpdateChangesTheViewAtOnceAndAWrongOneNothing) {
   ExpectError(viewer, ErrorCode::kBadPicture);
 }
 
-TEST_F(HubViewers, AnotherViewDoesNotWaitForTheStillOfTheFormerOne) {
+TEST_F(PictureViewsFlowTest, ANewViewDoesNotWaitForTheOldStill) {
   Publish(sender, "ann");
   const std::uint16_t stream = View(viewer);
   Pose1(0.5f);
@@ -188,7 +188,7 @@ TEST_F(HubViewers, AnotherViewDoesNotWaitForTheStillOfTheFormerOne) {
   EXPECT_TRUE(pictures.jobs.back().IsStill());  // of the new view
 }
 
-TEST_F(HubViewers, TheDaemonsOwnSettingsReachEveryViewThatDoesNotSayOtherwise) {
+TEST_F(PictureViewsFlowTest, TheDaemonsSettingsReachViewsWithoutOverrides) {
   Publish(sender, "ann");
   FakePeer second;
   Connect(&second);
@@ -214,7 +214,7 @@ TEST_F(HubViewers, TheDaemonsOwnSettingsReachEveryViewThatDoesNotSayOtherwise) {
   EXPECT_EQ(most, 2.0f);
 }
 
-TEST_F(HubViewers, AFailedPictureIsAskedForAgain) {
+TEST_F(PictureViewsFlowTest, AFailedPictureIsRequestedAgain) {
   Publish(sender, "ann");
   View(viewer);
   Pose1(0.5f);
@@ -228,14 +228,14 @@ TEST_F(HubViewers, AFailedPictureIsAskedForAgain) {
   EXPECT_EQ(Tickets(), 1u);
 }
 
-TEST_F(HubViewers, AcknowledgingWhatWasNeverSentIsAnError) {
+TEST_F(PictureViewsFlowTest, AcknowledgingAnUnsentPictureIsAnError) {
   Publish(sender, "ann");
   const std::uint16_t stream = View(viewer);
   Send(viewer, protocol::FrameAck{7}, stream);
   ExpectError(viewer, ErrorCode::kMalformed);
 }
 
-TEST_F(HubViewers, ANeutralAndAnotherRigChangeTheWeightsOfTheLivePose) {
+TEST_F(PictureViewsFlowTest, ANeutralAndANewRigChangeTheLiveWeights) {
   Publish(sender, "ann");
   Pose1(0.5f);
   Subject& subject = *hub->RequireAllDrivers("ann");
@@ -252,9 +252,9 @@ TEST_F(HubViewers, ANeutralAndAnotherRigChangeTheWeightsOfTheLivePose) {
   EXPECT_NEAR(subject.pipeline->wrinkle_weights()[0], 1.0f, 1e-6f);
 }
 
-class HubPictures : public HubPeersTest {};
+class PictureViewsTest : public HubPeersTest {};
 
-TEST_F(HubPictures, EqualPicturesAreDrawnOnceAndFoundByTheirTickets) {
+TEST_F(PictureViewsTest, EqualPicturesAreRenderedOnce) {
   Publish(sender, "ann");
   FakePeer second;
   Connect(&second);
@@ -292,7 +292,7 @@ TEST_F(HubPictures, EqualPicturesAreDrawnOnceAndFoundByTheirTickets) {
   hub->OnPicture(picture);  // too late: nobody is there, nothing happens
 }
 
-TEST_F(HubPictures, APictureLargerThanTheWireCarriesIsCountedAndNotSent) {
+TEST_F(PictureViewsTest, AnOversizedPictureIsCountedAndNotSent) {
   Publish(sender, "ann");
   Send(viewer, protocol::SubscribePictures{.subject = "ann"}, 0, 1);
   viewer.Take<protocol::SubscribeReply>();
@@ -308,14 +308,14 @@ TEST_F(HubPictures, APictureLargerThanTheWireCarriesIsCountedAndNotSent) {
   EXPECT_EQ(Count(Counter::kPicturesSent), 0u);
 }
 
-TEST_F(HubPictures, NothingIsDrawnWhileNobodyWatches) {
+TEST_F(PictureViewsTest, NothingIsRenderedWithoutViewers) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});
   Send(sender, Pose(1), 1, 0);
   EXPECT_TRUE(pictures.jobs.empty());
 }
 
-TEST_F(HubPictures, PicturesThatCannotBeHadAreErrors) {
+TEST_F(PictureViewsTest, InvalidPictureRequestsAreErrors) {
   Publish(sender, "ann");
   Send(viewer, protocol::SubscribePictures{.view = "xray"});
   ExpectError(viewer, ErrorCode::kBadPicture);
@@ -333,7 +333,7 @@ TEST_F(HubPictures, PicturesThatCannotBeHadAreErrors) {
   ExpectError(udp, ErrorCode::kNeedsTcp);
 }
 
-TEST_F(HubPictures, WithoutARendererPicturesAreRefused) {
+TEST_F(PictureViewsTest, WithoutARendererPicturesAreRefused) {
   Hub::Parts parts;
   parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(false));
   parts.metrics = &metrics;

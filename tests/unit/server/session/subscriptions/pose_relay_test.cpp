@@ -24,7 +24,7 @@ class SlowPeer : public FakePeer {
   std::vector<std::size_t> kept;
 };
 
-class HubPoses : public HubTest {
+class PoseRelayTest : public HubTest {
  protected:
   void SetUp() override {
     HubTest::SetUp();
@@ -42,7 +42,7 @@ class HubPoses : public HubTest {
   SlowPeer viewer;
 };
 
-TEST_F(HubPoses, TheSkeletonComesFirstThenEveryPoseAsItWasPublished) {
+TEST_F(PoseRelayTest, TheSkeletonComesFirstThenUnchangedPoses) {
   Publish(sender, "ann");
   Send(viewer, protocol::SubscribePoses{.subject = "ann"}, 0, 5);
   const auto reply = viewer.Take<protocol::SubscribeReply>();
@@ -69,7 +69,7 @@ TEST_F(HubPoses, TheSkeletonComesFirstThenEveryPoseAsItWasPublished) {
   EXPECT_EQ(Count(Counter::kPosesRelayed), 1u);
 }
 
-TEST_F(HubPoses, WhatIsDroppedIsNotHandedOnAndDecayIsNoPose) {
+TEST_F(PoseRelayTest, DroppedPosesAndDecayAreNotRelayed) {
   Publish(sender, "ann");
   Follow({});
   Send(sender, Pose(0.5f), 1, 10);
@@ -83,7 +83,7 @@ TEST_F(HubPoses, WhatIsDroppedIsNotHandedOnAndDecayIsNoPose) {
   EXPECT_EQ(viewer.inbox.size(), 1u);
 }
 
-TEST_F(HubPoses, APartialPoseIsHandedOnWhole) {
+TEST_F(PoseRelayTest, APartialPoseIsRelayedWhole) {
   Publish(sender, "ann");
   Follow({});
   Send(sender, Pose(0.25f, 0.5f), 1, 0);
@@ -100,7 +100,7 @@ TEST_F(HubPoses, APartialPoseIsHandedOnWhole) {
   EXPECT_THAT(whole->message.blend_shapes, ElementsAre(FloatEq(0.75f), FloatEq(0.5f)));
 }
 
-TEST_F(HubPoses, WhoComesLateGetsTheNewestPoseAtOnce) {
+TEST_F(PoseRelayTest, ALateSubscriberReceivesTheNewestPoseAtOnce) {
   Publish(sender, "ann");
   Send(sender, Pose(0.25f, 0.5f), 1, 3);
   Follow({});
@@ -112,7 +112,7 @@ TEST_F(HubPoses, WhoComesLateGetsTheNewestPoseAtOnce) {
   EXPECT_TRUE(viewer.inbox.empty());
 }
 
-TEST_F(HubPoses, AnotherSessionIsToldBeforeItsFirstPoseAndARepeatedOfferIsNot) {
+TEST_F(PoseRelayTest, ANewSessionIsAnnouncedBeforeItsFirstPose) {
   Publish(sender, "ann");
   Follow({});
   Publish(sender, "ann");  // again
@@ -127,7 +127,7 @@ TEST_F(HubPoses, AnotherSessionIsToldBeforeItsFirstPoseAndARepeatedOfferIsNot) {
   EXPECT_TRUE(viewer.Take<protocol::PoseFrame>().has_value());
 }
 
-TEST_F(HubPoses, WaitingIsAnsweredWhenTheSubjectComes) {
+TEST_F(PoseRelayTest, AWaitingSubscriptionIsAnsweredWhenTheSubjectAppears) {
   Send(viewer, protocol::SubscribePoses{.subject = "ann", .wait = true}, 0, 5);
   auto reply = viewer.Take<protocol::SubscribeReply>();
   ASSERT_TRUE(reply.has_value());
@@ -139,7 +139,7 @@ TEST_F(HubPoses, WaitingIsAnsweredWhenTheSubjectComes) {
   EXPECT_TRUE(viewer.Take<protocol::SkeletonOffer>().has_value());
 }
 
-TEST_F(HubPoses, WhoAsksForPosesBeforeWeightsGetsThemInThatOrder) {
+TEST_F(PoseRelayTest, FramesFollowTheOrderOfSubscriptions) {
   for (std::uint32_t request = 0; request < 40; ++request) {
     Send(viewer, protocol::SubscribePoses{.subject = "ann", .wait = true}, 0, 2 * request);
     Send(viewer, protocol::SubscribeWeights{.subject = "ann", .wait = true}, 0, 2 * request + 1);
@@ -156,14 +156,14 @@ TEST_F(HubPoses, WhoAsksForPosesBeforeWeightsGetsThemInThatOrder) {
   }
 }
 
-TEST_F(HubPoses, ARepeatedRequestIsAnsweredWithTheSkeletonAgain) {
+TEST_F(PoseRelayTest, ARepeatedRequestIsAnsweredWithTheSkeletonAgain) {
   Publish(sender, "ann");
   const std::uint16_t id = Follow({.subject = "ann"});
   EXPECT_EQ(Follow({.subject = "ann"}), id);
   EXPECT_EQ(hub->num_subscriptions(), 1u);
 }
 
-TEST_F(HubPoses, ARateLeavesPosesOut) {
+TEST_F(PoseRelayTest, ARateSkipsPoses) {
   Publish(sender, "ann");
   Follow({.max_rate_hz = 10.0f});
   for (std::uint32_t i = 0; i < 60; ++i) {
@@ -173,7 +173,7 @@ TEST_F(HubPoses, ARateLeavesPosesOut) {
   EXPECT_NEAR(static_cast<double>(viewer.inbox.size()), 10.0, 1.0);
 }
 
-TEST_F(HubPoses, ARecorderIsToldWhatItDidNotGetAtMostOnceASecond) {
+TEST_F(PoseRelayTest, LostPosesAreReportedAtMostOncePerSecond) {
   Publish(sender, "ann");
   const std::uint16_t id = Follow({.every = true});
   viewer.room = 2;
@@ -202,7 +202,7 @@ TEST_F(HubPoses, ARecorderIsToldWhatItDidNotGetAtMostOnceASecond) {
   }
 }
 
-TEST_F(HubPoses, EveryWeightIsKeptWhereItIsAskedFor) {
+TEST_F(PoseRelayTest, EveryWeightIsKeptOnRequest) {
   Publish(sender, "ann");
   Send(viewer, protocol::SubscribeWeights{.every = true}, 0, 1);
   Send(viewer, protocol::SubscribeWeights{}, 0, 2);
@@ -210,7 +210,7 @@ TEST_F(HubPoses, EveryWeightIsKeptWhereItIsAskedFor) {
   EXPECT_THAT(viewer.kept, testing::UnorderedElementsAre(kKeepAll, testing::Lt(100u)));
 }
 
-TEST_F(HubPoses, ASkeletonThatUdpCannotCarryIsRefusedThere) {
+TEST_F(PoseRelayTest, ASkeletonTooLargeForUdpIsRefused) {
   protocol::SkeletonOffer large;
   large.subject = "ann";
   for (int i = 0; i < 600; ++i) {
@@ -235,7 +235,7 @@ TEST_F(HubPoses, ASkeletonThatUdpCannotCarryIsRefusedThere) {
 }
 
 // Their order is (sequence, age): what comes without a pose comes after it.
-TEST_F(HubPoses, OtherWeightsOfTheSamePoseAreNoNewPose) {
+TEST_F(PoseRelayTest, ChangedWeightsOfTheSamePoseAreNotRelayed) {
   Publish(sender, "ann");
   Follow({.subject = "ann"});
   FakePeer weights;
@@ -253,7 +253,7 @@ TEST_F(HubPoses, OtherWeightsOfTheSamePoseAreNoNewPose) {
   EXPECT_TRUE(viewer.inbox.empty());
 }
 
-TEST_F(HubPoses, AnEndedSubjectEndsItsSubscription) {
+TEST_F(PoseRelayTest, AnEndedSubjectEndsItsSubscription) {
   Publish(sender, "ann");
   Follow({.subject = "ann"});
   Send(sender, protocol::Goodbye{}, 1);

@@ -25,7 +25,7 @@ TEST(RateGate, HalvesAStreamThatJitters) {
   EXPECT_NEAR(passed, 300, 3);
 }
 
-TEST(RateGate, NeverExceedsTheRateByMoreThanItsGrace) {
+TEST(RateGate, NeverExceedsTheRateByMoreThanItsTolerance) {
   RateGate gate(25.0);
   int passed = 0;
   for (int frame = 0; frame < 1000; ++frame) {
@@ -34,7 +34,7 @@ TEST(RateGate, NeverExceedsTheRateByMoreThanItsGrace) {
   EXPECT_NEAR(passed, 25, 2);
 }
 
-TEST(RateGate, APauseEarnsNoBurst) {
+TEST(RateGate, APauseAllowsNoBurst) {
   RateGate gate(10.0);
   EXPECT_TRUE(gate.Pass(FromSeconds(0)));
   EXPECT_TRUE(gate.Pass(FromSeconds(60)));
@@ -43,7 +43,7 @@ TEST(RateGate, APauseEarnsNoBurst) {
   EXPECT_TRUE(gate.Pass(FromSeconds(60.1)));
 }
 
-TEST(RateGate, AnotherRateCountsFromWhatPassedLast) {
+TEST(RateGate, ANewRateCountsFromTheLastEvent) {
   RateGate gate(10.0);
   EXPECT_TRUE(gate.Pass(FromSeconds(1)));
   for (int i = 0; i < 5; ++i) {
@@ -55,7 +55,7 @@ TEST(RateGate, AnotherRateCountsFromWhatPassedLast) {
   EXPECT_TRUE(gate.Pass(FromSeconds(1.05)));
 }
 
-TEST(RateGate, TheTiniestRateStillPassesNowAndThen) {
+TEST(RateGate, TheLowestRateIsOnePerHour) {
   RateGate gate(1e-30);
   EXPECT_TRUE(gate.Pass(FromSeconds(10)));
   EXPECT_FALSE(gate.Pass(FromSeconds(1000)));

@@ -11,7 +11,7 @@ namespace {
 using wrinkle::kAllDrivers;
 
 // The rig's drivers are brow and nose, in this order.
-class HubLevel : public HubPeersTest {
+class DriverLevelTest : public HubPeersTest {
  protected:
   void SetUp() override {
     HubPeersTest::SetUp();
@@ -21,7 +21,7 @@ class HubLevel : public HubPeersTest {
   std::size_t Level() const { return hub->subjects().all().front()->pipeline->level(); }
 };
 
-TEST_F(HubLevel, WhomNobodyWatchesIsNotEvaluated) {
+TEST_F(DriverLevelTest, UnwatchedSubjectsAreNotEvaluated) {
   EXPECT_EQ(Level(), 0u);
   Send(sender, Pose(0.5f, 0.25f), 1, 0);
   for (const float weight : hub->subjects().all().front()->pipeline->wrinkle_weights()) {
@@ -29,7 +29,7 @@ TEST_F(HubLevel, WhomNobodyWatchesIsNotEvaluated) {
   }
 }
 
-TEST_F(HubLevel, TheLevelIsThatOfTheSubscriptionsThereAre) {
+TEST_F(DriverLevelTest, TheLevelFollowsTheSubscriptions) {
   const std::uint16_t brow = Watch(viewer, {.subject = "ann", .pattern = "brow*"}, 1);
   EXPECT_EQ(Level(), 1u);
   const std::uint16_t nose = Watch(viewer, {.subject = "ann", .pattern = "nose*"}, 2);
@@ -40,7 +40,7 @@ TEST_F(HubLevel, TheLevelIsThatOfTheSubscriptionsThereAre) {
   EXPECT_EQ(Level(), 0u);
 }
 
-TEST_F(HubLevel, WhoComesLaterSeesThePoseThatIsThereAtOnce) {
+TEST_F(DriverLevelTest, ALateSubscriberReceivesAllWeightsOfTheCurrentPose) {
   Watch(viewer, {.subject = "ann", .pattern = "brow*"}, 1);
   Send(sender, Pose(0.5f, 0.75f), 1, 0);
   EXPECT_FLOAT_EQ(viewer.Take<protocol::WeightFrame>()->message.values[0], 0.5f);
@@ -55,13 +55,13 @@ TEST_F(HubLevel, WhoComesLaterSeesThePoseThatIsThereAtOnce) {
   EXPECT_FLOAT_EQ(frame->message.values[1], 0.75f);
 }
 
-TEST_F(HubLevel, DriverValuesCountAsWeightsDo) {
+TEST_F(DriverLevelTest, DriverValuesCountLikeWeights) {
   Watch(viewer,
         {.subject = "ann", .pattern = "brow*", .source = protocol::WeightSource::kDriverValues});
   EXPECT_EQ(Level(), 1u);
 }
 
-TEST_F(HubLevel, PicturesAndWhoeverAsksForTheSubjectNeedAll) {
+TEST_F(DriverLevelTest, PicturesAndTheApiNeedAllDrivers) {
   Send(viewer, protocol::SubscribePictures{.subject = "ann"}, 0, 1);
   EXPECT_EQ(Level(), kAllDrivers);
   hub->RemovePeer(viewer.id);
@@ -70,7 +70,7 @@ TEST_F(HubLevel, PicturesAndWhoeverAsksForTheSubjectNeedAll) {
   EXPECT_EQ(Level(), kAllDrivers);
 }
 
-TEST_F(HubLevel, AnotherSkeletonAndAnotherRigKeepTheLevel) {
+TEST_F(DriverLevelTest, NewSkeletonsAndRigsKeepTheLevel) {
   Watch(viewer, {.subject = "ann", .pattern = "brow*"});
   ASSERT_TRUE(hub->SetRig(std::make_shared<const wrinkle::Rig>(MakeRig(false)), now).ok());
   EXPECT_EQ(Level(), 1u);
@@ -81,7 +81,7 @@ TEST_F(HubLevel, AnotherSkeletonAndAnotherRigKeepTheLevel) {
   EXPECT_EQ(Level(), 1u);
 }
 
-TEST_F(HubTest, WhereAllWeightsAreUsedAllIsEvaluated) {
+TEST_F(HubTest, OscOutputNeedsAllDrivers) {
   Hub::Parts parts;
   parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(false));
   parts.metrics = &metrics;

@@ -13,9 +13,9 @@ using testing::ElementsAre;
 using testing::FloatEq;
 using testing::HasSubstr;
 
-class HubSubscribe : public HubPeersTest {};
+class SubscribersTest : public HubPeersTest {};
 
-TEST_F(HubSubscribe, APatternPicksNamesInTheRigsOrder) {
+TEST_F(SubscribersTest, APatternSelectsNamesInTheOrderOfTheRig) {
   Publish(sender, "ann");
   Send(viewer, protocol::SubscribeWeights{.subject = "ann", .pattern = "no*, nothing"}, 0, 8);
   const auto reply = viewer.Take<protocol::SubscribeReply>();
@@ -29,7 +29,7 @@ TEST_F(HubSubscribe, APatternPicksNamesInTheRigsOrder) {
   EXPECT_THAT(frame->message.values, ElementsAre(FloatEq(0.9f)));
 }
 
-TEST_F(HubSubscribe, U8IsWithinHalfAStepAndDriverValuesHaveTheirOwnNames) {
+TEST_F(SubscribersTest, U8IsWithinHalfAStepAndDriverValuesHaveOwnNames) {
   Publish(sender, "ann");
   Send(viewer,
        protocol::SubscribeWeights{.format = protocol::WeightFormat::kU8,
@@ -44,14 +44,14 @@ TEST_F(HubSubscribe, U8IsWithinHalfAStepAndDriverValuesHaveTheirOwnNames) {
   EXPECT_NEAR(frame->message.values[1], 0.777f, 1.0f / 510.0f + 1e-6f);
 }
 
-TEST_F(HubSubscribe, APatternThatNamesNothingIsAnError) {
+TEST_F(SubscribersTest, APatternWithoutMatchesIsAnError) {
   Publish(sender, "ann");
   Send(viewer, protocol::SubscribeWeights{.pattern = "elbow*"});
   ExpectError(viewer, ErrorCode::kNoMatch);
   EXPECT_EQ(hub->num_subscriptions(), 0u);
 }
 
-TEST_F(HubSubscribe, AnUnknownSubjectIsAnErrorThatSaysWhoIsThere) {
+TEST_F(SubscribersTest, AnUnknownSubjectIsAnErrorThatListsSubjects) {
   Publish(sender, "ann");
   Send(viewer, protocol::SubscribeWeights{.subject = "eve"}, 0, 31);
   const auto error = viewer.Take<protocol::ErrorMessage>();
@@ -61,7 +61,7 @@ TEST_F(HubSubscribe, AnUnknownSubjectIsAnErrorThatSaysWhoIsThere) {
   EXPECT_THAT(error->message.message, HasSubstr("ann"));
 }
 
-TEST_F(HubSubscribe, AGoodbyeSaidTwiceLeavesASubscriptionOfThatNumberAlone) {
+TEST_F(SubscribersTest, ARepeatedGoodbyeDoesNotEndASubscription) {
   const std::uint16_t id = Watch(sender, {.subject = "ann", .wait = true});
   Publish(sender, "ben", id);
   Send(sender, protocol::Goodbye{}, id);
@@ -70,7 +70,7 @@ TEST_F(HubSubscribe, AGoodbyeSaidTwiceLeavesASubscriptionOfThatNumberAlone) {
   EXPECT_EQ(hub->num_subscriptions(), 1u);
 }
 
-TEST_F(HubSubscribe, WaitingBindsWhenTheSubjectComesAndAgainWhenItReturns) {
+TEST_F(SubscribersTest, AWaitingSubscriptionBindsEachTimeItsSubjectAppears) {
   const std::uint16_t id = Watch(viewer, {.subject = "ann", .wait = true});
   ASSERT_NE(id, 0);
   Publish(sender, "ben", 2);
@@ -93,7 +93,7 @@ TEST_F(HubSubscribe, WaitingBindsWhenTheSubjectComesAndAgainWhenItReturns) {
   EXPECT_EQ(reply->header.stream, id);
 }
 
-TEST_F(HubSubscribe, WhoWaitsForAnybodyGoesOverToWhoeverIsStillThere) {
+TEST_F(SubscribersTest, AnUnnamedSubscriptionMovesToTheOldestSubject) {
   Publish(sender, "ann", 1);
   Publish(sender, "ben", 2);
   const std::uint16_t id = Watch(viewer, {.wait = true});
@@ -108,14 +108,14 @@ TEST_F(HubSubscribe, WhoWaitsForAnybodyGoesOverToWhoeverIsStillThere) {
   EXPECT_TRUE(viewer.Take<protocol::WeightFrame>().has_value());
 }
 
-TEST_F(HubSubscribe, NoNameMeansWhoHasBeenThereLongest) {
+TEST_F(SubscribersTest, NoNameSelectsTheOldestSubject) {
   Publish(sender, "zoe", 1);
   Publish(sender, "ann", 2);
   Send(viewer, protocol::SubscribeWeights{});
   EXPECT_EQ(viewer.Take<protocol::SubscribeReply>()->message.subject, "zoe");
 }
 
-TEST_F(HubSubscribe, TheSameRequestAgainIsTheSameSubscription) {
+TEST_F(SubscribersTest, ARepeatedRequestIsTheSameSubscription) {
   Publish(sender, "ann");
   const std::uint16_t first = Watch(viewer, {.subject = "ann"}, 5);
   const std::uint16_t again = Watch(viewer, {.subject = "ann"}, 5);
@@ -125,7 +125,7 @@ TEST_F(HubSubscribe, TheSameRequestAgainIsTheSameSubscription) {
   EXPECT_EQ(hub->num_subscriptions(), 2u);
 }
 
-TEST_F(HubSubscribe, ALateSubscriberGetsTheNewestPoseAtOnce) {
+TEST_F(SubscribersTest, ALateSubscriberReceivesTheNewestPose) {
   Publish(sender, "ann");
   Send(sender, Pose(0.5f), 1, 9);
   Watch(viewer, {.subject = "ann"});
@@ -135,7 +135,7 @@ TEST_F(HubSubscribe, ALateSubscriberGetsTheNewestPoseAtOnce) {
   EXPECT_EQ(frame->header.sequence, 9u);
 }
 
-TEST_F(HubSubscribe, EachHasItsOwnRateAndTheLastPoseIsNotLost) {
+TEST_F(SubscribersTest, EachSubscriptionHasItsRateAndReceivesTheLastPose) {
   Publish(sender, "ann");
   FakePeer slow;
   Connect(&slow);
@@ -154,7 +154,7 @@ TEST_F(HubSubscribe, EachHasItsOwnRateAndTheLastPoseIsNotLost) {
   EXPECT_EQ(slow.Take<protocol::WeightFrame>()->header.sequence, 59u);
 }
 
-TEST_F(HubSubscribe, UnsubscribingEndsItAndItsWaitingFrames) {
+TEST_F(SubscribersTest, UnsubscribingDropsQueuedFrames) {
   Publish(sender, "ann");
   const std::uint16_t id = Watch(viewer, {.subject = "ann"});
   Send(viewer, protocol::Unsubscribe{}, id);
@@ -164,7 +164,7 @@ TEST_F(HubSubscribe, UnsubscribingEndsItAndItsWaitingFrames) {
   EXPECT_EQ(hub->num_subscriptions(), 0u);
 }
 
-TEST_F(HubSubscribe, APeerThatLeavesTakesItsSubscriptionsAlong) {
+TEST_F(SubscribersTest, RemovingAPeerEndsItsSubscriptions) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});
   hub->RemovePeer(viewer.id);
@@ -173,7 +173,7 @@ TEST_F(HubSubscribe, APeerThatLeavesTakesItsSubscriptionsAlong) {
   EXPECT_TRUE(viewer.inbox.empty());
 }
 
-TEST_F(HubSubscribe, LimitsAreAnsweredNotExceeded) {
+TEST_F(SubscribersTest, LimitsAreEnforced) {
   Limits limits;
   limits.max_subscriptions = 2;
   limits.packet_burst = 6;
@@ -188,7 +188,7 @@ TEST_F(HubSubscribe, LimitsAreAnsweredNotExceeded) {
   EXPECT_EQ(Count(Counter::kMessagesThrottled), 7u);
 }
 
-TEST_F(HubSubscribe, AUdpAddressMustProveItselfAndNeverGetsMoreThanItSent) {
+TEST_F(SubscribersTest, AUdpAddressMustProveItselfBeforeSubscribing) {
   Publish(sender, "ann");
   FakePeer udp;
   Connect(&udp, Transport::kUdp);
@@ -206,7 +206,7 @@ TEST_F(HubSubscribe, AUdpAddressMustProveItselfAndNeverGetsMoreThanItSent) {
   EXPECT_NE(Watch(udp, {.subject = "ann"}), 0);
 }
 
-TEST_F(HubSubscribe, AForgedAddressGetsNoMoreBytesThanItSent) {
+TEST_F(SubscribersTest, AForgedAddressReceivesNoMoreBytesThanItSent) {
   FakePeer forged;
   Connect(&forged, Transport::kUdp);
   std::uint64_t sent = 0;
@@ -219,7 +219,7 @@ TEST_F(HubSubscribe, AForgedAddressGetsNoMoreBytesThanItSent) {
   }
 }
 
-TEST_F(HubSubscribe, AUdpSubscriptionLapsesWhenItsOwnerIsSilent) {
+TEST_F(SubscribersTest, AUdpSubscriptionExpiresWithItsLease) {
   Publish(sender, "ann");
   FakePeer udp;
   Connect(&udp, Transport::kUdp);
@@ -240,7 +240,7 @@ TEST_F(HubSubscribe, AUdpSubscriptionLapsesWhenItsOwnerIsSilent) {
   EXPECT_EQ(hub->num_subscriptions(), 0u);
 }
 
-TEST_F(HubSubscribe, MoreNamesThanASubscriptionHoldsAreAnErrorAndNotCut) {
+TEST_F(SubscribersTest, TooManyNamesAreAnError) {
   // 256 regions of nine maps: 2,304 weights, and eight of the maps are just as many as fit.
   wrinkle::Rig rig = MakeRig(false);
   wrinkle::Region region = rig.regions[0];

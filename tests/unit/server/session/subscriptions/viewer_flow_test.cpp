@@ -15,7 +15,7 @@ std::uint32_t Show(ViewerFlow& flow, Time now) {
   return flow.Send();
 }
 
-TEST(ViewerFlow, AtMostTwoPicturesAreUnderWay) {
+TEST(ViewerFlow, AtMostTwoPicturesAreUnacknowledged) {
   ViewerFlow flow;
   const Time now = FromSeconds(10);
   EXPECT_EQ(Show(flow, now), 1u);
@@ -29,7 +29,7 @@ TEST(ViewerFlow, AtMostTwoPicturesAreUnderWay) {
   EXPECT_EQ(flow.under_way(), 0u);
 }
 
-TEST(ViewerFlow, OneIsAskedForAtATime) {
+TEST(ViewerFlow, OnePictureIsRequestedAtATime) {
   ViewerFlow flow;
   flow.Request(false, FromSeconds(1));
   EXPECT_TRUE(flow.is_pending());
@@ -38,7 +38,7 @@ TEST(ViewerFlow, OneIsAskedForAtATime) {
   EXPECT_TRUE(flow.CanRequest(FromSeconds(9)));
 }
 
-TEST(ViewerFlow, WhatWasNeverSentCannotBeAcknowledged) {
+TEST(ViewerFlow, OnlySentPicturesCanBeAcknowledged) {
   ViewerFlow flow;
   EXPECT_FALSE(flow.Acknowledge(1));
   Show(flow, FromSeconds(1));
@@ -49,7 +49,7 @@ TEST(ViewerFlow, WhatWasNeverSentCannotBeAcknowledged) {
   EXPECT_EQ(flow.under_way(), 1u);
 }
 
-TEST(ViewerFlow, AStillAskedForBeforeTheViewChangedIsNone) {
+TEST(ViewerFlow, AStillOfAnOldViewDoesNotCount) {
   ViewerFlow flow;
   const Time asked = FromSeconds(5);
   flow.Request(true, asked);
@@ -59,7 +59,7 @@ TEST(ViewerFlow, AStillAskedForBeforeTheViewChangedIsNone) {
   EXPECT_FALSE(flow.HasStill(changed));
 }
 
-TEST(ViewerFlow, AFailedPictureIsTriedAgainAfterAWhile) {
+TEST(ViewerFlow, AFailedPictureIsRetriedLater) {
   ViewerFlow flow;
   const Time now = FromSeconds(5);
   flow.Request(true, now);
@@ -82,7 +82,7 @@ void Stream(ViewerFlow& flow, double seconds, bool acknowledges, Time* now) {
   }
 }
 
-TEST(ViewerFlow, WhoKeepsUpStaysAtTheBest) {
+TEST(ViewerFlow, AFastViewerKeepsTheBestTier) {
   ViewerFlow flow;
   Time now = FromSeconds(3);
   Stream(flow, 20, true, &now);
@@ -90,7 +90,7 @@ TEST(ViewerFlow, WhoKeepsUpStaysAtTheBest) {
   EXPECT_EQ(flow.dropped(), 0u);
 }
 
-TEST(ViewerFlow, WhoStallsFallsAndComesBackSlowly) {
+TEST(ViewerFlow, AStalledViewerFallsAtOnceAndRisesSlowly) {
   ViewerFlow flow;
   Time now = FromSeconds(3);
   Stream(flow, 1.5, false, &now);
@@ -107,7 +107,7 @@ TEST(ViewerFlow, WhoStallsFallsAndComesBackSlowly) {
   EXPECT_EQ(flow.tier(), 0);
 }
 
-TEST(ViewerFlow, GoingUpInVainTakesLongerTheNextTime) {
+TEST(ViewerFlow, AFailedRiseDoublesThePatience) {
   ViewerFlow flow;
   Time now = FromSeconds(3);
   double waited[2] = {0.0, 0.0};
