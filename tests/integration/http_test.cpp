@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The web side over real sockets: who is answered what, and who is cut off (docs/HTTP-API.md).
+// The web server over real sockets: replies, errors and closed connections (docs/HTTP-API.md).
 #include <fstream>
 #include <optional>
 #include <string>
@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::json;
 using server::Counter;
 
-// Two joints, four frames, a quarter of a second each.
+// Two joints and four frames of 0.25 s.
 constexpr char kNod[] = R"(HIERARCHY
 ROOT hips
 {
@@ -53,7 +53,7 @@ class Http : public testing::Test {
   }
   std::uint16_t port() const { return *daemon->ready().http; }
   WebClient::Answer Get(std::string_view target) { return WebClient(port()).Ask("GET", target); }
-  // A face called "ann" that has sent one pose, far from neutral.
+  // Publishes a face "ann" with one pose far from neutral.
   void PublishAnn() {
     const motion::Clip clip = ArkitClip(kFrame + 1);
     const protocol::SkeletonOffer offer = OfferOf(clip, "ann");
@@ -61,7 +61,7 @@ class Http : public testing::Test {
     Offer(*sender, offer);
     sender->Send(PoseOf(clip, kFrame, offer), 1, 0, 1000);
     sender->Send(protocol::Ping{1});
-    ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());  // the pose has been seen
+    ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());  // the pose has been processed
   }
 
   static constexpr int kFrame = 89;
@@ -123,7 +123,7 @@ TEST_F(Http, ARequestIsAnsweredOnce) {
   WebClient client(port());
   EXPECT_EQ(client.Ask("GET", "/healthz").status, 200);
   client.EndSending();
-  EXPECT_EQ(client.AskRaw("").status, 0);  // the end of the connection, and no second answer
+  EXPECT_EQ(client.AskRaw("").status, 0);  // the connection closes without a second reply
   EXPECT_EQ(daemon->Count(Counter::kHttpRequests), 1u);
 }
 
@@ -197,7 +197,7 @@ TEST_F(Http, SubjectsAndTheirWeightsAreExplained) {
   const Json why = Json::parse(Get("/api/explain?subject=ann&weight=" + weight).body);
   EXPECT_EQ(why["weight"], weight);
   EXPECT_GT(why["live"], 0.01);
-  // Of the first pose the filter changes nothing; only the sums are formed in another order.
+  // The filter does not change the first pose; only the order of summation differs.
   EXPECT_NEAR(why["result"].get<double>(), why["live"].get<double>(), 1e-6);
   EXPECT_FALSE(why["contributions"].empty());
   const auto unknown = Get("/api/explain?subject=ann&weight=nothing.at.all");
@@ -309,7 +309,7 @@ TEST_F(Http, AnInvalidWebSocketIsClosedAndOthersStay) {
 }
 
 TEST_F(Http, AWebSocketReceivesTheGoodbye) {
-  std::jthread stop;  // joined after the client has gone
+  std::jthread stop;  // joined after the client is destroyed
   WebClient client(port());
   ASSERT_EQ(client.Upgrade().status, 101);
   client.Send(protocol::Ping{1});

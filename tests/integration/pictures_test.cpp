@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures over TCP: drawn from the poses that crossed the socket. Needs an OpenGL 4.5 (llvmpipe
-// does).
+// Pictures over TCP, rendered from the received poses. Needs OpenGL 4.5 (llvmpipe is enough).
 #include <cstdint>
 #include <optional>
 

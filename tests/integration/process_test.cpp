@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// furrowd as a process: its ready line, its exit codes, its signals.
+// furrowd as a process: ready line, exit codes, signals.
 #include "process.h"
 
 #include <csignal>
@@ -27,7 +27,7 @@ std::vector<std::string> Command(std::vector<std::string> more = {}) {
   return command;
 }
 
-// The ports of the ready line; zeros where it is not one.
+// The ports in the ready line; 0 if the line is not one.
 std::pair<int, int> Ports(const std::string& line) {
   std::smatch match;
   const std::regex ready(
@@ -86,7 +86,7 @@ TEST(Furrowd, ContinuesWhenTheReaderOfItsLogLeaves) {
   Process daemon(Command({"--tcp", "0", "--udp", "0"}));
   daemon.CloseErrors();
   ASSERT_TRUE(daemon.ReadLine().has_value());
-  daemon.Signal(SIGTERM);  // which it logs
+  daemon.Signal(SIGTERM);  // the daemon logs it
   EXPECT_EQ(daemon.Wait(), 0);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Garbage, malformed streams, slow readers, taken ports: each costs itself and nobody else.
+// Garbage, malformed streams, slow readers and ports in use do not affect other clients.
 #include <array>
 #include <cstdint>
 #include <random>
@@ -33,7 +33,7 @@ TEST(Robustness, GarbageDatagramsLeaveARealStreamUnharmed) {
   std::vector<std::uint8_t> good;
   protocol::Encoder().Encode({1, 1, 1, 1}, PoseOf(clip, 0, offer), good);
   for (int frame = 0; frame < 200; ++frame) {
-    // At 60 Hz these are 12,000 a second: noise, truncated and damaged messages.
+    // 12,000 per second at 60 Hz: noise, truncated and damaged messages.
     for (int i = 0; i < 200; ++i) {
       std::vector<std::uint8_t> bytes(good.begin(), good.begin() + random() % good.size());
       if (i % 3 == 0) bytes.assign(random() % 1400, static_cast<std::uint8_t>(random()));
@@ -42,7 +42,7 @@ TEST(Robustness, GarbageDatagramsLeaveARealStreamUnharmed) {
         bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1 + random() % 255);
       }
       hostile.SendRaw(bytes);
-      // A slow machine must not fill the socket's buffer: that is not what is tested here.
+      // On a slow machine, the socket buffer must not overflow; this test is not about that.
       if (i % 50 == 0) {
         pacer.Send(protocol::Ping{i});
         ASSERT_TRUE(pacer.Await<protocol::Pong>().has_value());
@@ -122,7 +122,7 @@ TEST(Robustness, ASlowSubscriberLosesOldFramesAndDelaysNobody) {
   TcpClient slow(daemon.ready().tcp);
   TcpClient fast(daemon.ready().tcp);
   Offer(sender, offer);
-  // Many subscriptions of one peer that does not read, so that the socket's buffers fill soon.
+  // Many subscriptions of a peer that does not read fill the socket buffers quickly.
   for (std::uint32_t i = 0; i < 60; ++i) {
     ASSERT_TRUE(Watch(slow, {.subject = "ann", .source = protocol::WeightSource::kDriverValues}, i)
                     .has_value());
@@ -136,7 +136,7 @@ TEST(Robustness, ASlowSubscriberLosesOldFramesAndDelaysNobody) {
     ASSERT_EQ(header.sequence, sent++);
   }
   EXPECT_GE(daemon.Count(Counter::kWeightsDroppedSlow), 1000u);
-  // Once it reads again, it comes to the newest frame, in order.
+  // When it reads again, it receives frames in order up to the newest.
   std::int64_t newest = -1;
   while (newest + 1 < sent) {
     protocol::Header header;
@@ -159,7 +159,7 @@ TEST(Robustness, AnIdleConnectionIsClosed) {
 TEST(Robustness, AClientThatDoesNotReadRepliesIsClosed) {
   server::Config config = WeightsConfig("arkit.json");
   config.limits.packets_per_second = config.limits.packet_burst = 1e9;
-  config.limits.idle_seconds = 1e6;  // else it might be taken for idle on a slow machine
+  config.limits.idle_seconds = 1e6;  // a slow machine must not count as idle
   DaemonThread daemon(config);
   ASSERT_TRUE(daemon.serves());
   TcpClient asker(daemon.ready().tcp);
@@ -232,12 +232,12 @@ TEST(Robustness, MissingSettingsAreBadInput) {
   EXPECT_EQ(daemon.Stop(), server::ExitCode::kBadInput);
 }
 
-// More than the sockets hold: it waits in the daemon when the draining begins.
+// More than the socket buffers hold, so frames are queued in the daemon when draining begins.
 TEST(Robustness, SubscriptionsToEveryFrameCompleteBeforeTheGoodbye) {
   constexpr int kFrames = 20'000;
   server::Config config = WeightsConfig("arkit.json");
   config.limits.packet_burst = 2 * kFrames;
-  config.limits.drain_seconds = 60;  // a guard, never a measure
+  config.limits.drain_seconds = 60;  // only prevents hanging
   DaemonThread daemon(config);
   TcpClient publisher(daemon.ready().tcp);
   const motion::Clip clip = ArkitClip(50);
@@ -249,7 +249,7 @@ TEST(Robustness, SubscriptionsToEveryFrameCompleteBeforeTheGoodbye) {
     publisher.Send(PoseOf(clip, i % 50, offer), 1, static_cast<std::uint32_t>(i), 1 + i * 10'000);
   }
   publisher.Send(protocol::Ping{1});
-  ASSERT_TRUE(publisher.Await<protocol::Pong>().has_value());  // all of them were worked on
+  ASSERT_TRUE(publisher.Await<protocol::Pong>().has_value());  // all poses have been processed
   ASSERT_EQ(daemon.Count(server::Counter::kWeightsDroppedSlow), 0u);
 
   std::jthread stop([&] { EXPECT_EQ(daemon.Stop(), server::ExitCode::kOk); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A daemon of several network threads: what it sends is what one of a single thread would, whoever
-// hears it on which thread.
+// A daemon with several network threads sends the same as one with a single thread, whichever
+// thread serves a client.
 #include <cmath>
 #include <deque>
 #include <filesystem>
@@ -28,7 +28,7 @@ server::Config Threaded(int threads) {
   return config;
 }
 
-// Many who publish, a subject and a socket each, so that every thread has some of them.
+// Many publishers, each with a subject and a socket, so that every thread serves some.
 class Troupe {
  public:
   explicit Troupe(const server::Ready& ready) {
@@ -57,7 +57,7 @@ class Troupe {
       ASSERT_TRUE(reply.has_value());
     }
   }
-  // One frame of every subject, each once and right.
+  // Receives one correct frame of every subject, in any order.
   void Expect(RawClient& watcher, int frame) const {
     std::map<std::uint16_t, int> seen;
     for (int i = 0; i < kSubjects; ++i) {

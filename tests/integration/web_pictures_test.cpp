@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures over the web side: with flow control over a WebSocket, and plain ones for <img>.
+// Pictures over the web server: WebSocket with flow control, and plain HTTP.
 #include <charconv>
 #include <cstdint>
 #include <optional>
@@ -32,7 +32,7 @@ class WebPictures : public PicturesTest {
     EXPECT_TRUE(viewer.Take<protocol::SubscribeReply>(&header).has_value());
     return header.stream;
   }
-  // The refined picture of a pose at rest, with all before it acknowledged.
+  // Waits for the still of a pose at rest and acknowledges everything before it.
   std::optional<protocol::ImageFrame> AwaitStill(WebClient& viewer, std::uint16_t stream) {
     auto image = viewer.Await<protocol::ImageFrame>();
     while (image && !image->still) {
@@ -42,7 +42,7 @@ class WebPictures : public PicturesTest {
     if (image) viewer.Send(protocol::FrameAck{image->number}, stream);
     return image;
   }
-  // The length of the next part of a multipart stream, whose bytes come next.
+  // Reads the head of the next multipart part and returns its length.
   static std::size_t PartLength(WebClient& client) {
     client.ReadUntil("--furrow-picture\r\nContent-Type: image/jpeg\r\nContent-Length: ");
     const std::string length = client.ReadUntil("\r\n\r\n");
@@ -61,7 +61,7 @@ TEST_F(WebPictures, AStalledViewerReceivesTheNewestPicture) {
   EXPECT_EQ(image->number, 1u);
   EXPECT_EQ(image->view_request, 1u);
   SendPose(1);
-  image = viewer.Await<protocol::ImageFrame>();  // of this pose, or the still of the one before
+  image = viewer.Await<protocol::ImageFrame>();  // of this pose, or the still of the previous one
   ASSERT_TRUE(image.has_value());
   EXPECT_EQ(image->number, 2u);
   for (int frame = 2; frame < 10; ++frame) SendPose(frame);
@@ -84,7 +84,7 @@ TEST_F(WebPictures, APoseAtRestGetsExactlyOneStill) {
   const std::uint16_t stream = View(viewer);
   SendPose(3);
   ASSERT_TRUE(AwaitStill(viewer, stream).has_value());
-  sender->Send(PoseOf(clip, 3, offer), 1, 4, 4000);  // a pose anew, in which nothing has moved
+  sender->Send(PoseOf(clip, 3, offer), 1, 4, 4000);  // a new pose without movement
   sender->Send(protocol::Ping{1});
   ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());
   viewer.Send(protocol::Ping{2});
@@ -156,9 +156,9 @@ TEST_F(WebPictures, MjpegWaitsForASubjectThatHasLeft) {
   TcpClient watcher(daemon->ready().tcp);
   ASSERT_TRUE(Watch(watcher, {.subject = "ann"}).has_value());
   sender->Send(protocol::Goodbye{}, 1);
-  ASSERT_TRUE(watcher.Await<protocol::Goodbye>().has_value());  // it has decayed, and is gone
+  ASSERT_TRUE(watcher.Await<protocol::Goodbye>().has_value());  // the subject has decayed and left
   Offer(*sender, offer);
-  for (int frame = 10; frame < 16; ++frame) {  // more than were under way when it left
+  for (int frame = 10; frame < 16; ++frame) {  // more than were unacknowledged when it left
     SendPose(frame);
     ASSERT_FALSE(client.Take(PartLength(client)).empty()) << frame;
   }

@@ -31,7 +31,7 @@ TEST(SenderGate, TheFirstSenderHoldsThePortUntilItIsSilent) {
 
 TEST(SenderGate, InvalidDatagramsDoNotTakeThePort) {
   SenderGate gate({}, Policy::kOne);
-  EXPECT_TRUE(gate.Admits(kAnn, kStart));  // and no Hold(): it was garbage
+  EXPECT_TRUE(gate.Admits(kAnn, kStart));  // without Hold(): the datagram was invalid
   EXPECT_TRUE(gate.Admits(kBen, kStart));
   EXPECT_FALSE(gate.IsSuccessor(kBen)) << "there was nobody before";
   gate.Hold(kBen, kStart);

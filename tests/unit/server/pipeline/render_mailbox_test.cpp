@@ -83,10 +83,10 @@ TEST(RenderMailbox, MovementTurnsAStillIntoANormalPicture) {
   mailbox.Put(std::move(same));
   auto job = mailbox.Take(false);
   ASSERT_TRUE(job.has_value());
-  EXPECT_TRUE(job->IsStill());  // at rest, for somebody else beside it
+  EXPECT_TRUE(job->IsStill());  // a still for one of two subscriptions
   mailbox.Put(Still(1, 3, 100));
   RenderJob moved = Job(1, 4, 0);
-  moved.tickets.clear();  // a newer snapshot for whoever waits
+  moved.tickets.clear();  // only refreshes the snapshot
   moved.moved_at = FromSeconds(1);
   EXPECT_EQ(mailbox.Put(std::move(moved)), RenderMailbox::PutResult::kReplaced);
   job = mailbox.Take(false);
@@ -118,12 +118,12 @@ TEST(RenderMailbox, AWaitingStillCanBeWithdrawn) {
   mailbox.Put(Job(2, 1, 102));
   EXPECT_TRUE(mailbox.WithdrawStill(100));
   EXPECT_FALSE(mailbox.WithdrawStill(100));
-  EXPECT_FALSE(mailbox.WithdrawStill(102));  // what moves stays
+  EXPECT_FALSE(mailbox.WithdrawStill(102));  // not a still
   EXPECT_EQ(mailbox.Take(false)->subject, 2u);
   EXPECT_EQ(mailbox.Take(false)->tickets.size(), 1u);
   mailbox.Put(Still(1, 1, 100));
   EXPECT_TRUE(mailbox.WithdrawStill(100));
-  EXPECT_FALSE(mailbox.Take(false).has_value());  // and nothing of it
+  EXPECT_FALSE(mailbox.Take(false).has_value());  // the job is gone, too
 }
 
 TEST(RenderMailbox, IsBounded) {

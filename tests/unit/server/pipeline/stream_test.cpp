@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the wire's structs to a solved subject: adapter, shared definitions, pipeline.
+// From wire structs to a solved subject: adapter, shared definitions, pipeline.
 #include <cmath>
 #include <memory>
 #include <sstream>
@@ -22,7 +22,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-// A knee: straight along -Y at rest, full wrinkle at 150 degrees between the bones' continuations.
+// A knee, straight along -Y at rest, with full weight at a bend of 150 degrees.
 std::shared_ptr<const wrinkle::Rig> KneeRig(bool filter = false) {
   auto rig = std::make_shared<wrinkle::Rig>();
   rig->name = "knee";
@@ -146,8 +146,8 @@ TEST(StreamDefinitions, EqualStreamsShareADefinitionAndTheOldestIsEvicted) {
   const auto first = get(KneeOffer());
   EXPECT_EQ(first, get(KneeOffer()));
   EXPECT_NE(first, get(longer));
-  EXPECT_EQ(first, get(KneeOffer()));  // used again: now the newest
-  EXPECT_NE(first, get(shapes));       // pushes `longer` out
+  EXPECT_EQ(first, get(KneeOffer()));  // used again, so now the newest
+  EXPECT_NE(first, get(shapes));       // evicts `longer`
   EXPECT_EQ(first, get(KneeOffer()));
 }
 
@@ -159,7 +159,7 @@ TEST(StreamDefinitions, ASkeletonThatIsNotATreeIsRejected) {
   EXPECT_EQ(result.status().code(), StatusCode::kCyclic);
 }
 
-// What is logged while it lives.
+// Captures the log during its lifetime.
 class LogCapture {
  public:
   LogCapture() : before_(spdlog::default_logger()) {
@@ -221,7 +221,7 @@ wrinkle::Skeleton LegsCalled(const std::vector<std::string>& names) {
   return wrinkle::Skeleton::Create(std::move(joints)).value();
 }
 
-// The rig and the character say upper_leg_l, the stream mixamorig:LeftUpLeg.
+// The rig and the character use upper_leg_l, the stream mixamorig:LeftUpLeg.
 TEST(StreamDefinitions, AForeignStreamFeedsTheRigAndMovesTheCharacter) {
   setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/rig", 1);
   const auto matcher = character::SkeletonMatcher::Create("");

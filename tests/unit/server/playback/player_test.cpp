@@ -14,13 +14,13 @@
 namespace furrow::server {
 namespace {
 
-// A recording of eleven frames, ten a second, whose brow rises from 0 to 1.
+// A recording with 11 frames at 10 Hz; the brow rises from 0 to 1.
 motion::Clip RisingBrow() {
   motion::Clip clip;
   clip.name = "take";
   clip.blend_shape_names = {"brow", "nose"};
   for (int frame = 0; frame <= 10; ++frame) {
-    clip.times.push_back(5.0 + 0.1 * frame);  // its first frame need not be at 0
+    clip.times.push_back(5.0 + 0.1 * frame);  // the first frame need not be at 0
     clip.blend_shapes.insert(clip.blend_shapes.end(), {0.1f * static_cast<float>(frame), 0.0f});
   }
   return clip;
@@ -33,7 +33,7 @@ class PlayerTest : public HubTest {
     player = std::make_unique<Player>(RisingBrow(), "take.csv");
     player->Start(hub.get(), now);
   }
-  // Calls it whenever it wants to be called, for so long.
+  // Calls Advance() at the requested times for `seconds`.
   void PlayFor(double seconds) {
     const Time end = now + FromSeconds(seconds);
     for (Time due = player->Advance(now); due <= end; due = player->Advance(now)) {
@@ -51,7 +51,7 @@ class PlayerTest : public HubTest {
 
 TEST_F(PlayerTest, EveryFrameIsSentAtItsTime) {
   EXPECT_EQ(subject().pipeline->sequence(), 0u);
-  EXPECT_EQ(subject().pipeline->capture_time_us(), 1);  // 0 would be none
+  EXPECT_EQ(subject().pipeline->capture_time_us(), 1);  // 0 means no capture time
   PlayFor(0.5);
   EXPECT_NEAR(brow(), 0.5f, 1e-5f);
   EXPECT_EQ(subject().pipeline->capture_time_us(), 500'001);
@@ -62,13 +62,13 @@ TEST_F(PlayerTest, EveryFrameIsSentAtItsTime) {
 }
 
 TEST_F(PlayerTest, LoopsRestartAndOtherwisePlaybackStopsAtTheEnd) {
-  PlayFor(1.25);  // the last frame is shown for a tenth, too
+  PlayFor(1.25);  // the last frame is shown for 0.1 s, too
   EXPECT_NEAR(brow(), 0.1f, 1e-5f);
   ASSERT_TRUE(player->Apply({.loop = false}, now).ok());
   PlayFor(3.0);
   EXPECT_FALSE(player->state(now).playing);
   EXPECT_NEAR(brow(), 1.0f, 1e-5f);
-  ASSERT_TRUE(player->Apply({.playing = true}, now).ok());  // from its start
+  ASSERT_TRUE(player->Apply({.playing = true}, now).ok());  // from the start
   EXPECT_NEAR(brow(), 0.0f, 1e-5f);
 }
 
@@ -96,7 +96,7 @@ TEST_F(PlayerTest, SeekAndSpeedTakeEffectAtOnce) {
 
 TEST_F(PlayerTest, AForgottenSubjectIsOfferedAgain) {
   PlayFor(2.0);
-  Advance(60.0);  // as where the machine slept
+  Advance(60.0);  // as after suspending the machine
   hub->Tick(now);
   ASSERT_EQ(hub->num_subjects(), 0u);
   PlayFor(0.5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is sent bundles: those alone who ask for them from an address that is theirs.
+// Hello: bundles are sent only to proven addresses that ask for them.
 #include <optional>
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 class BundlePeer : public FakePeer {
  public:
   void SetTakesBundles(bool takes) override { takes_bundles = takes; }
-  std::optional<bool> takes_bundles;  // as it was told last
+  std::optional<bool> takes_bundles;  // the last call of SetTakesBundles()
 };
 
 class DispatcherHelloTest : public HubTest {
@@ -22,7 +22,7 @@ class DispatcherHelloTest : public HubTest {
     HubTest::SetUp();
     Connect(&udp, Transport::kUdp);
   }
-  // The token of the answer.
+  // The token in the reply.
   std::uint64_t Hello(std::uint64_t token, bool bundles) {
     Send(udp, protocol::Hello{"test", token, bundles});
     const auto welcome = udp.Take<protocol::Welcome>();
@@ -52,7 +52,7 @@ TEST_F(DispatcherHelloTest, AForgedHelloCanOnlyTurnBundlesOff) {
   EXPECT_EQ(udp.takes_bundles, false);
   Hello(token, true);
   EXPECT_EQ(udp.takes_bundles, true);
-  Hello(0, false);  // another client at that address, perhaps, which knows none
+  Hello(0, false);  // perhaps another client at this address, without bundles
   EXPECT_EQ(udp.takes_bundles, false);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is there: asked once, or followed.
+// ListSubjects: once, and with follow.
 #include <string>
 #include <vector>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of foreign wires: subjects like any other.
+// Frames of foreign mocap wires become subjects.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ TEST_F(MocapStreamsTest, FramesBecomeASubject) {
   EXPECT_THAT(viewer.Take<protocol::WeightFrame>()->message.values,
               ElementsAre(FloatEq(0.0f), FloatEq(0.5f)));
   frame.sequence = 1;
-  frame.layout = 2;  // another shape appears
+  frame.layout = 2;  // a new blend shape appears
   frame.blend_shapes.push_back({"brow", 1.0f});
   hub->OnMocapFrame(tracker.id, frame, now);
   EXPECT_THAT(viewer.Take<protocol::WeightFrame>()->message.values,

@@ -70,7 +70,7 @@ TEST(ShardMutexes, UnlockAllExceptKeepsOneShardLocked) {
   EXPECT_TRUE(has_locked_all);
 }
 
-// At least one of the two shards is locked at any moment, so a fair-weather LockAll() would starve.
+// At least one of the two shards is locked at almost any moment.
 TEST(ShardMutexes, BusyShardsDoNotStarveLockAll) {
   ShardMutexes mutexes(2);
   std::atomic<bool> done = false;

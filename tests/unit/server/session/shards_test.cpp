@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hub that several threads share, each in its shard.
+// A hub that several threads share, each with its shard.
 #include <algorithm>
 #include <map>
 #include <memory>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kShards = 3;
 
-// Of several threads at once: what came of each subscription, in order.
+// Collects frames from several threads, by subscription and in order.
 class SharedPeer : public Link {
  public:
   void SendReply(std::span<const std::uint8_t>) override {}
@@ -145,7 +145,7 @@ TEST_F(ShardsTest, BufferedMessagesLeaveBeforeALockIsReleased) {
   for (int shard = 0; shard < kShards; ++shard) hub->SetBufferedSender(shard, nullptr);
 }
 
-// A socket a shard: what waits in it leaves when the shard is flushed.
+// One socket per shard. Its messages leave when the shard is flushed.
 class Wire {
  public:
   class End : public Link {
@@ -211,11 +211,11 @@ TEST_F(ShardsTest, WeightsNeverOvertakeTheirNames) {
 }
 
 TEST_F(ShardsTest, ShardsPublishAtOnceWhileTheSessionChanges) {
-  constexpr int kSubjects = 4;  // of a shard
+  constexpr int kSubjects = 4;  // per shard
   constexpr std::uint32_t kPoses = 300;
   SharedPeer watcher;
   const PeerId watcher_id = hub->AddPeer(Transport::kTcp, "watcher", &watcher, now, 0);
-  std::map<int, std::unique_ptr<FakePeer>> senders;  // by shard; this thread's is shard 0
+  std::map<int, std::unique_ptr<FakePeer>> senders;  // by shard; this thread owns shard 0
   for (int shard = 1; shard < kShards; ++shard) {
     senders[shard] = std::make_unique<FakePeer>();
     ConnectIn(shard, senders[shard].get());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses that are evaluated together: nobody can tell from what goes out.
+// Solving poses in batches does not change the output.
 #include <array>
 #include <random>
 #include <string>
@@ -13,9 +13,9 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::uint16_t kStreams = 6;  // of each of two peers; the last was never offered
+constexpr std::uint16_t kStreams = 6;  // per peer; the last one is never offered
 
-// Keeps what it is told in words, but for datagrams, which the hub does not see.
+// Logs events as text, except datagrams, which do not pass the hub.
 class WordyTap : public RecordingTap {
  public:
   void OnOffer(const Subject& subject, const protocol::SkeletonOffer&, Time) override {
@@ -41,7 +41,7 @@ class WordyTap : public RecordingTap {
   }
 };
 
-// A hub with its peers: two that publish and watch, one of each transport.
+// A hub with two peers that publish and subscribe, one over TCP and one over UDP.
 struct World {
   explicit World(wrinkle::Rig rig) {
     Hub::Parts parts;
@@ -84,7 +84,7 @@ class StreamRouterTest : public HubTest {
     return "subject " + std::to_string(peer) + std::to_string(stream);
   }
 
-  // What makes both peers publish and watch.
+  // The offers and subscriptions of both peers.
   std::vector<Piece> Opening() {
     std::vector<Piece> script{Make(0, protocol::Hello{"test", 900}, {}),
                               Make(0, protocol::Hello{"test", 900}, {})};
@@ -100,8 +100,8 @@ class StreamRouterTest : public HubTest {
     }
     return script;
   }
-  // A pose, mostly the next of its stream; else late, twice, partial, of no stream, not its
-  // skeleton's.
+  // A pose: mostly the next one of its stream, else late, duplicate, partial, or of an unknown
+  // stream or skeleton.
   Piece AnyPose(std::size_t peer) {
     const auto stream = static_cast<std::uint16_t>(1 + Random(kStreams));
     std::uint32_t& next = next_sequence[peer][stream];
@@ -185,7 +185,7 @@ TEST_F(StreamRouterTest, BatchedPosesProduceTheSameOutputAsSinglePoses) {
   ExpectSame(one, many);
 }
 
-// Also when it is the address book that makes room for another.
+// Also if the peer is evicted to make room for another.
 TEST_F(StreamRouterTest, RemovingAPeerPublishesWaitingPosesFirst) {
   World world(MakeRig(/*filter=*/false));
   for (const auto& [peer, bytes] : Opening()) {

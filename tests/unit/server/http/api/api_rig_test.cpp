@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What /api/rig says of the rig in use.
+// GET /api/rig.
 #include <string>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a request may be: who asks, what it names, what its query says.
+// Parsing and checking of requests: Host and Origin, URL, query.
 #include <gtest/gtest.h>
 
 #include "server/http/pictures/picture_query.h"
@@ -32,7 +32,7 @@ TEST(RequestGuard, OriginMustMatchHost) {
   EXPECT_NE(guard.Check("localhost:7480", "http://localhost:3000"), "");
   EXPECT_NE(guard.Check("localhost:7480", "http://evil.example"), "");
   EXPECT_NE(guard.Check("localhost:7480", "null"), "");
-  // A stranger's name that points here: Origin and Host agree, and it is refused all the same.
+  // DNS rebinding: Origin and Host agree, but the name is foreign.
   EXPECT_NE(guard.Check("evil.example:7480", "http://evil.example:7480"), "");
 }
 

@@ -51,7 +51,7 @@ TEST_F(UdpBatchTest, CountsDatagramsLostInTheSocketBuffer) {
   for (int round = 0; round < 2; ++round) {
     for (int i = 0; i < 100; ++i) Send(1000);
     std::size_t received = ReceiveAll();
-    Send(1);  // brings the count of what was lost before it
+    Send(1);  // carries the count of the datagrams lost before
     received += ReceiveAll();
     EXPECT_LT(received, 101u);
     EXPECT_EQ(received + batch.TakeDropped(), 101u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages that share datagrams, as UdpSender packs them.
+// UdpSender packs messages into bundles.
 #include <algorithm>
 #include <map>
 #include <random>
@@ -28,7 +28,7 @@ class UdpBundlesTest : public testing::Test {
       end->non_blocking(true);
     }
   }
-  // A whole message of so many bytes, numbered.
+  // A whole message of the given size, with a number.
   Bytes Message(std::size_t bytes) {
     Bytes payload(bytes - protocol::kEnvelopeBytes);
     for (std::uint8_t& byte : payload) byte = static_cast<std::uint8_t>(random());
@@ -40,7 +40,7 @@ class UdpBundlesTest : public testing::Test {
     std::ranges::copy(message, sender.Prepare().begin());
     sender.Commit(to.native_handle(), to.local_endpoint(), message.size(), packing);
   }
-  // The messages of each datagram that came.
+  // The messages in each received datagram.
   static std::vector<std::vector<Bytes>> TakeAll(udp::socket& end) {
     std::vector<std::vector<Bytes>> datagrams;
     for (Bytes bytes(2000);; bytes.resize(2000)) {
@@ -109,7 +109,7 @@ TEST_F(UdpBundlesTest, RandomMessagesArriveUnchangedAndInOrder) {
   for (int round = 0; round < 50; ++round) {
     std::map<udp::socket*, std::vector<Bytes>> sent;
     std::map<udp::socket*, std::size_t> alone;
-    const bool equal_sizes = round % 2 == 0;  // which the system can be asked to cut
+    const bool equal_sizes = round % 2 == 0;  // equal sizes allow UDP_SEGMENT
     const std::size_t size = 40 + random() % 1161;
     for (int i = 0; i < 100; ++i) {
       udp::socket& end = random() % 2 == 0 ? a : b;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One port, several sockets with a thread each.
+// One port with several sockets and one thread each.
 #include "server/net/udp/udp_port.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace {
 using asio::ip::udp;
 
 constexpr int kShards = 3;
-constexpr int kSenders = 48;  // all of one shard: not once in 1e22 times
+constexpr int kSenders = 48;  // the chance that all map to one shard is below 1e-22
 
 class UdpPortTest : public HubTest {
  protected:

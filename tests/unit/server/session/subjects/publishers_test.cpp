@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Publishing: offers, poses in and out of order, restarts, loss.
+// Publishing: offers, poses in and out of order, restarts, losses.
 #include <algorithm>
 #include <random>
 
@@ -91,7 +91,7 @@ TEST_F(PublishersTest, NewSkeletonsAreThrottled) {
 
 TEST_F(PublishersTest, TheNeutralSurvivesARestartWithTheSameSkeleton) {
   Publish(sender, "ann");
-  ASSERT_NE(Watch(viewer, {.subject = "ann"}), 0);  // so that its weights are evaluated
+  ASSERT_NE(Watch(viewer, {.subject = "ann"}), 0);  // evaluates its weights
   Send(sender, Pose(0.25f), 1, 1);
   Subject& subject = *hub->RequireAllDrivers("ann");
   hub->SetNeutral(subject, subject.pipeline->pose(), now);
@@ -115,10 +115,10 @@ TEST_F(PublishersTest, EndlessRestartsUseBoundedMemory) {
     Publish(sender, "ann");
   }
   Advance(1);
-  sender.session = first + SubjectRegistry::kMaxRetired;  // the last but one: still known
+  sender.session = first + SubjectRegistry::kMaxRetired;  // the second oldest is still remembered
   Send(sender, Offer("ann"), 1);
   EXPECT_EQ(sender.Take<protocol::SkeletonReply>()->message.status, SkeletonStatus::kRejected);
-  sender.session = first;  // forgotten: as good as new
+  sender.session = first;  // forgotten, so treated as new
   Publish(sender, "ann");
 }
 
@@ -141,7 +141,7 @@ TEST_F(PublishersTest, APoseWithOtherCountsIsInvalid) {
   Send(sender, wrong, 1, 9);
   EXPECT_TRUE(viewer.inbox.empty());
   EXPECT_EQ(Count(Counter::kPosesInvalid), 1u);
-  Send(sender, Pose(1), 1, 0);  // the wrong one did not move the window
+  Send(sender, Pose(1), 1, 0);  // the invalid pose did not move the window
   EXPECT_EQ(viewer.inbox.size(), 1u);
 }
 
@@ -155,12 +155,12 @@ TEST_F(PublishersTest, ARestartedSenderTakesOverItsSubject) {
   Publish(restarted, "ann");
   Send(restarted, Pose(0.5f), 1, 0);
   EXPECT_EQ(viewer.inbox.size(), 2u);
-  Send(sender, Pose(1), 1, 501);  // a straggler of the old one
+  Send(sender, Pose(1), 1, 501);  // a late pose of the old sender
   EXPECT_EQ(viewer.inbox.size(), 2u);
   EXPECT_EQ(sender.Take<protocol::SkeletonReply>()->message.status, SkeletonStatus::kRejected);
   EXPECT_EQ(Count(Counter::kPosesRetiredSession), 1u);
   EXPECT_EQ(Count(Counter::kSubjectsRestarted), 1u);
-  // Its offers do not start a tug of war either.
+  // Its offers do not take the subject back either.
   Advance(0.1);
   Send(sender, Offer("ann"), 1);
   EXPECT_EQ(sender.Take<protocol::SkeletonReply>()->message.status, SkeletonStatus::kRejected);
@@ -242,7 +242,7 @@ TEST_F(PublishersTest, ASilentSubjectHoldsThenDecays) {
   }
   EXPECT_LT(last, 0.5f / 255.0f);
   EXPECT_EQ(Count(Counter::kSubjectsLost), 1u);
-  // And a pose that comes after all is welcome.
+  // A pose that arrives after all revives the subject.
   Send(sender, Pose(1), 1, 1);
   EXPECT_EQ(viewer.inbox.size(), 1u);
 }
@@ -268,8 +268,8 @@ TEST_F(PublishersTest, AGoodbyeDecaysTheSubjectThenInformsSubscribers) {
   EXPECT_EQ(hub->num_subscriptions(), 0u);
 }
 
-// A seeded network that loses, repeats and reorders: what comes out is in order, once each, and
-// everything that went in is accounted for.
+// A random network that loses, repeats and reorders poses. Output is in order and without
+// duplicates, and every input is counted.
 TEST_F(PublishersTest, ABadNetworkOnlyLosesFrames) {
   Publish(sender, "ann");
   Watch(viewer, {.subject = "ann"});

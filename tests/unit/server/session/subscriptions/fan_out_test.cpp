@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Subscribers that take nothing: they cost nothing, and the newest pose comes first when they do.
+// Stuck subscribers cost nothing and receive the newest pose first when they read again.
 #include <gtest/gtest.h>
 
 #include "tests/unit/server/session/hub_fixture.h"
@@ -17,7 +17,7 @@ class FanOutTest : public HubPeersTest {
     viewer.stuck = stuck;
     Tick();
   }
-  // Poses 1 to `last`, one a tick.
+  // Sends poses 1 to `last`, one per tick.
   void SendPoses(std::uint32_t last) {
     for (std::uint32_t i = 1; i <= last; ++i) {
       Send(sender, Pose(static_cast<float>(i) * 0.1f), 1, i);

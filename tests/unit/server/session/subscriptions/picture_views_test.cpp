@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Viewers with flow control, and views that change: what is asked of the renderer, and when.
+// Picture subscriptions: flow control, changing views, shared pictures, errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ class PictureViewsFlowTest : public HubPeersTest {
     const std::uint32_t number = sequence++;
     Send(sender, Pose(brow), 1, number, 1'000'000 + number * 16'667);
   }
-  // Draws every job that waits; each ticket's subscription gets its picture.
+  // Finishes every waiting job and delivers its pictures.
   void DrawAll() {
     const std::vector<RenderJob> jobs = std::move(pictures.jobs);
     pictures.jobs.clear();
@@ -82,7 +82,7 @@ TEST_F(PictureViewsFlowTest, AWaitingPictureShowsTheNewestPose) {
   Pose1(0.9f);
   ASSERT_EQ(pictures.jobs.size(), 2u);
   EXPECT_EQ(pictures.jobs[0].tickets.size(), 1u);
-  EXPECT_TRUE(pictures.jobs[1].tickets.empty());  // refreshes the first, asks for none
+  EXPECT_TRUE(pictures.jobs[1].tickets.empty());  // only refreshes the first job
   EXPECT_EQ(pictures.jobs[1].snapshot->sequence, 1u);
 }
 
@@ -110,7 +110,7 @@ TEST_F(PictureViewsFlowTest, APoseAtRestGetsOneStill) {
   Pose1(0.5f);
   const Time rest = now;
   for (int i = 0; i < 60; ++i) {
-    if (i > 0) Pose1(0.5f);  // the stream goes on, the performer holds still
+    if (i > 0) Pose1(0.5f);  // the stream continues while the performer rests
     hub->Tick(now);
     for (const RenderJob& job : pictures.jobs) {
       for (const PictureTicket& ticket : job.tickets) {
@@ -129,7 +129,7 @@ TEST_F(PictureViewsFlowTest, APoseAtRestGetsOneStill) {
   }
   EXPECT_EQ(stills, 1u);
   EXPECT_LE(still_after, 0.15);
-  EXPECT_LE(pictures_sent, 12u);  // a tenth of a second, and the still
+  EXPECT_LE(pictures_sent, 12u);  // 0.1 s of movement, and the still
   Pose1(0.7f);
   EXPECT_EQ(Tickets(), 1u);
   EXPECT_FALSE(pictures.jobs.front().tickets.front().still);
@@ -172,7 +172,7 @@ TEST_F(PictureViewsFlowTest, ANewViewDoesNotWaitForTheOldStill) {
   hub->Tick(now);
   ASSERT_EQ(Tickets(), 1u);
   ASSERT_TRUE(pictures.jobs.back().IsStill());
-  pictures.withdraws = true;  // it still waits
+  pictures.withdraws = true;  // the still waits for the renderer
   protocol::UpdatePictures update;
   update.pictures.width = 320;
   Send(viewer, update, stream, 21);
@@ -289,7 +289,7 @@ TEST_F(PictureViewsTest, EqualPicturesAreRenderedOnce) {
   EXPECT_EQ(image->header.capture_time_us, 777);
   EXPECT_THAT(image->message.bytes, ElementsAre(1, 2, 3));
   hub->RemovePeer(second.id);
-  hub->OnPicture(picture);  // too late: nobody is there, nothing happens
+  hub->OnPicture(picture);  // after the viewer has left, nothing happens
 }
 
 TEST_F(PictureViewsTest, AnOversizedPictureIsCountedAndNotSent) {
@@ -323,7 +323,7 @@ TEST_F(PictureViewsTest, InvalidPictureRequestsAreErrors) {
   ExpectError(viewer, ErrorCode::kBadPicture);
   protocol::SubscribePictures fisheye;
   fisheye.has_camera = true;
-  fisheye.camera.vertical_fov_degrees = 165.0f;  // the wire carries it, the renderer does not
+  fisheye.camera.vertical_fov_degrees = 165.0f;  // valid on the wire, not for the renderer
   Send(viewer, fisheye);
   ExpectError(viewer, ErrorCode::kBadPicture);
   FakePeer udp;

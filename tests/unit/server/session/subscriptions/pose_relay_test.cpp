@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses handed on: as they came, whole, to whom, and what a recorder is told.
+// Subscriptions to poses: unchanged payloads, whole poses, losses.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ using protocol::ErrorCode;
 using testing::ElementsAre;
 using testing::FloatEq;
 
-// Takes a frame of those who want every one only while there is room.
+// Accepts frames for subscriptions to every frame only while there is room.
 class SlowPeer : public FakePeer {
  public:
   int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message, std::size_t keep,
@@ -31,7 +31,7 @@ class PoseRelayTest : public HubTest {
     Connect(&sender);
     Connect(&viewer);
   }
-  // The subscription, after its reply and skeleton were taken.
+  // Subscribes, takes the reply and the skeleton, and returns the id.
   std::uint16_t Follow(const protocol::SubscribePoses& request) {
     Send(viewer, request, 0, 5);
     const auto reply = viewer.Take<protocol::SubscribeReply>();
@@ -234,7 +234,7 @@ TEST_F(PoseRelayTest, ASkeletonTooLargeForUdpIsRefused) {
   EXPECT_EQ(hub->num_subscriptions(), 0u);
 }
 
-// Their order is (sequence, age): what comes without a pose comes after it.
+// Frames are ordered by (sequence, age), so weights without a new pose follow the pose.
 TEST_F(PoseRelayTest, ChangedWeightsOfTheSamePoseAreNotRelayed) {
   Publish(sender, "ann");
   Follow({.subject = "ann"});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Of the rig only what somebody looks at is evaluated, and nobody sees a difference.
+// Only drivers that a subscription needs are evaluated, without a visible difference.
 #include <gtest/gtest.h>
 
 #include "tests/unit/server/session/hub_fixture.h"
@@ -10,14 +10,14 @@ namespace {
 
 using wrinkle::kAllDrivers;
 
-// The rig's drivers are brow and nose, in this order.
+// The rig has the drivers brow and nose, in this order.
 class DriverLevelTest : public HubPeersTest {
  protected:
   void SetUp() override {
     HubPeersTest::SetUp();
     Publish(sender, "ann");
   }
-  // Not by RequireAllDrivers(), which asks for all of it.
+  // Not through RequireAllDrivers(), which raises the level.
   std::size_t Level() const { return hub->subjects().all().front()->pipeline->level(); }
 };
 

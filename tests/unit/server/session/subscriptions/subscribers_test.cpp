@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Subscribing: patterns, rates, waiting, proof of address, limits.
+// Subscriptions: patterns, rates, waiting, proof of address, limits.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -66,7 +66,7 @@ TEST_F(SubscribersTest, ARepeatedGoodbyeDoesNotEndASubscription) {
   Publish(sender, "ben", id);
   Send(sender, protocol::Goodbye{}, id);
   hub->Tick(now);
-  Send(sender, protocol::Goodbye{}, id);  // the stream is gone by now
+  Send(sender, protocol::Goodbye{}, id);  // the stream has ended
   EXPECT_EQ(hub->num_subscriptions(), 1u);
 }
 
@@ -241,7 +241,7 @@ TEST_F(SubscribersTest, AUdpSubscriptionExpiresWithItsLease) {
 }
 
 TEST_F(SubscribersTest, TooManyNamesAreAnError) {
-  // 256 regions of nine maps: 2,304 weights, and eight of the maps are just as many as fit.
+  // 256 regions with 9 maps are 2,304 weights; 8 maps are the maximum of one subscription.
   wrinkle::Rig rig = MakeRig(false);
   wrinkle::Region region = rig.regions[0];
   const wrinkle::Feed feed = region.feeds[0];

@@ -8,7 +8,7 @@ namespace {
 
 constexpr Time kFrame = FromSeconds(1.0 / 60.0);
 
-// Draws and sends one picture; its number.
+// Requests and sends one picture. Returns its number.
 std::uint32_t Show(ViewerFlow& flow, Time now) {
   EXPECT_TRUE(flow.CanRequest(now));
   flow.Request(false, now);
@@ -25,7 +25,7 @@ TEST(ViewerFlow, AtMostTwoPicturesAreUnacknowledged) {
   EXPECT_EQ(flow.under_way(), 1u);
   EXPECT_EQ(Show(flow, now), 3u);
   EXPECT_FALSE(flow.CanRequest(now));
-  EXPECT_TRUE(flow.Acknowledge(3));  // and with it the one before
+  EXPECT_TRUE(flow.Acknowledge(3));  // acknowledges the previous one, too
   EXPECT_EQ(flow.under_way(), 0u);
 }
 
@@ -45,7 +45,7 @@ TEST(ViewerFlow, OnlySentPicturesCanBeAcknowledged) {
   EXPECT_FALSE(flow.Acknowledge(2));
   EXPECT_TRUE(flow.Acknowledge(1));
   Show(flow, FromSeconds(1));
-  EXPECT_TRUE(flow.Acknowledge(1));  // once more: nothing new
+  EXPECT_TRUE(flow.Acknowledge(1));  // a repetition changes nothing
   EXPECT_EQ(flow.under_way(), 1u);
 }
 
@@ -54,7 +54,7 @@ TEST(ViewerFlow, AStillOfAnOldViewDoesNotCount) {
   const Time asked = FromSeconds(5);
   flow.Request(true, asked);
   EXPECT_TRUE(flow.HasStill(asked));
-  const Time changed = asked + Time(1);  // while the still is being drawn
+  const Time changed = asked + Time(1);  // while the still is being rendered
   EXPECT_EQ(flow.Send(), 1u);
   EXPECT_FALSE(flow.HasStill(changed));
 }
@@ -70,7 +70,7 @@ TEST(ViewerFlow, AFailedPictureIsRetriedLater) {
   EXPECT_TRUE(flow.CanRequest(now + ViewerFlow::kRetry));
 }
 
-// Sixty poses a second for `seconds`; the viewer acknowledges at once or not at all.
+// 60 poses per second for `seconds`. The viewer acknowledges at once or not at all.
 void Stream(ViewerFlow& flow, double seconds, bool acknowledges, Time* now) {
   for (const Time end = *now + FromSeconds(seconds); *now < end; *now += kFrame) {
     flow.CountDue(*now);
@@ -97,7 +97,7 @@ TEST(ViewerFlow, AStalledViewerFallsAtOnceAndRisesSlowly) {
   EXPECT_EQ(flow.tier(), 1);
   EXPECT_GT(flow.dropped(), 50u);
   Stream(flow, 10, false, &now);
-  EXPECT_EQ(flow.tier(), ViewerFlow::kNumTiers - 1);  // and no further
+  EXPECT_EQ(flow.tier(), ViewerFlow::kNumTiers - 1);  // the worst tier
   EXPECT_TRUE(flow.Acknowledge(2));
   Stream(flow, 3, true, &now);
   EXPECT_EQ(flow.tier(), 2);
@@ -114,13 +114,13 @@ TEST(ViewerFlow, AFailedRiseDoublesThePatience) {
   for (double& seconds : waited) {
     Stream(flow, 1.5, false, &now);
     ASSERT_EQ(flow.tier(), 1);
-    // What is under way is shown after all.
+    // The viewer shows what it has received.
     for (std::uint32_t number = 1; flow.under_way() > 0; ++number) (void)flow.Acknowledge(number);
     const Time start = now;
     while (flow.tier() > 0 && now - start < FromSeconds(100)) Stream(flow, 0.5, true, &now);
     seconds = ToSeconds(now - start);
   }
-  EXPECT_LT(waited[0], 10.0);  // two tiers: the second window was half lost, too
+  EXPECT_LT(waited[0], 10.0);  // two tiers, because the second window was half lost
   EXPECT_GT(waited[1], waited[0] + 3.0);
 }
 
