@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The rig that goes with a character: the one asked for, or the one beside it, as LoadCharacter()
-// has it; empty where there is none or no character.
+// The rig of a character: the one given, or the one beside the character, as in LoadCharacter().
+// Empty if there is neither, or no character.
 fs::path RigOf(const fs::path& character, const fs::path& rig) {
   std::error_code error;
   if (!fs::exists(character, error)) return {};
@@ -35,11 +35,11 @@ Status LoadRigAlone(const fs::path& path, const wrinkle::PoseSource& poses, Asse
   return rig.status();
 }
 
-// Without the maps that ship all goes by equal names; only a map that is asked for must be there.
+// Shipped maps are optional; only a map that the user asks for must exist.
 Result<character::SkeletonMatcher> LoadMatcher(const std::string& map) {
   auto matcher = character::SkeletonMatcher::Create(map);
   if (matcher.ok() || !map.empty()) return matcher;
-  spdlog::warn("joints go by equal names alone: {}", matcher.status().ToString());
+  spdlog::warn("joints are matched by equal names only: {}", matcher.status().ToString());
   return character::SkeletonMatcher();
 }
 
@@ -65,12 +65,12 @@ Result<Assets> LoadAssets(const Config& config) {
     if (!shipped.ok()) {
       return Status(StatusCode::kNotFound, "there is no default character",
                     shipped.status().where(),
-                    shipped.status().todo() + ", or give --character or --rig");
+                    shipped.status().todo() + ", or use --character or --rig");
     }
     glb = *std::move(shipped);
   }
   const fs::path rig = RigOf(glb, config.rig);
-  if (!config.render && !rig.empty()) {  // mesh and pictures are a hundred times what weights need
+  if (!config.render && !rig.empty()) {  // weights need no mesh and no pictures, which are large
     FURROW_RETURN_IF_ERROR(LoadRigAlone(rig, poses, &assets));
     return assets;
   }

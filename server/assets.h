@@ -12,19 +12,21 @@
 
 namespace furrow::server {
 
-// What the daemon evaluates, and what it draws.
+// The files that a daemon works with.
 struct Assets {
   std::shared_ptr<const wrinkle::Rig> rig;
   std::shared_ptr<const character::Character> character;  // null: weights only
   character::SkeletonMatcher skeletons;
-  render::Settings settings;  // of pictures that do not say otherwise
+  render::Settings settings;  // defaults for all pictures
 };
 
-// Loads what `config` names, or the default character; where nothing is drawn its rig alone, as far
-// as it has one. Errors: those of LoadCharacter() and
-// LoadRig(), of render::LoadSettings(), and of SkeletonMatcher::Create() where a skeleton map is
-// asked for (without the maps that ship, joints go by equal names, with a warning); kNotFound where
-// there is no default character (says how to come by one).
+// Loads the files that `config` names, or the default character. With rendering off, loads only the
+// rig if there is one. Missing shipped skeleton maps cause a warning; joints are then matched by
+// equal names only.
+//
+// Errors: those of LoadCharacter(), LoadRig() and render::LoadSettings(), and of
+// SkeletonMatcher::Create() if `config` names a skeleton map; kNotFound if there is no default
+// character, with a hint how to get one.
 [[nodiscard]] Result<Assets> LoadAssets(const Config& config);
 
 }  // namespace furrow::server

@@ -13,12 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include <asio/experimental/as_tuple.hpp>
 #include <asio/io_context.hpp>
 #include <asio/post.hpp>
 #include <asio/signal_set.hpp>
 #include <asio/steady_timer.hpp>
-#include <asio/use_awaitable.hpp>
 #include <spdlog/spdlog.h>
 
 #include "base/status.h"
@@ -27,10 +25,11 @@
 #include "server/core/status_line.h"
 #include "server/http/api/api.h"
 #include "server/http/http_server.h"
+#include "server/net/await_tuple.h"
 #include "server/net/clock.h"
+#include "server/net/critical_task.h"
 #include "server/net/mocap_inputs.h"
 #include "server/net/osc_output.h"
-#include "server/net/spawn.h"
 #include "server/net/tcp/tcp_server.h"
 #include "server/net/udp/udp_port.h"
 #include "server/pipeline/render_thread.h"
@@ -41,12 +40,11 @@
 namespace furrow::server {
 namespace {
 
-constexpr auto kToken = asio::experimental::as_tuple(asio::use_awaitable);
 constexpr auto kTick = std::chrono::milliseconds(10);
 constexpr auto kSecond = std::chrono::seconds(1);
 constexpr auto kDrainPoll = std::chrono::milliseconds(5);
 
-// Unpredictable and never 0: session numbers, and the tokens that prove an address.
+// Returns unpredictable numbers, never 0, for session numbers and the tokens that prove an address.
 std::uint64_t RandomNumber() {
   std::random_device source;
   std::uint64_t number = 0;
@@ -54,7 +52,7 @@ std::uint64_t RandomNumber() {
   return number;
 }
 
-// One daemon: its parts, in the order in which they depend on each other.
+// The parts of one daemon. Members are declared in the order of their dependencies.
 class Daemon {
  public:
   Daemon(const Config& config, const RunOptions& options, Assets assets)
@@ -86,12 +84,12 @@ class Daemon {
   Metrics own_metrics_;
   Metrics* const metrics_;
   std::uint64_t session_ = 0;
-  asio::io_context io_{1};  // one thread runs it; in the hub, it is in lane 0
+  asio::io_context io_{1};  // run by the calling thread, which owns shard 0
   asio::signal_set signals_;
-  std::vector<std::unique_ptr<OscOutput>> osc_;  // by lane; none: nobody asked for it
+  std::vector<std::unique_ptr<OscOutput>> osc_;  // by shard; empty: OSC output is off
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<RenderThread> render_;
-  std::unique_ptr<Player> player_;  // a peer of the hub, which goes first
+  std::unique_ptr<Player> player_;  // a peer of the hub, so it outlives the hub
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<TcpServer> tcp_;
   std::unique_ptr<UdpPort> udp_;
@@ -118,7 +116,7 @@ Status Daemon::StartRendering() {
     return {};
   }
   if (config_.require_render) return started.status();
-  spdlog::error("no pictures will be drawn: {}", started.status().ToString());
+  spdlog::error("cannot render pictures: {}", started.status().ToString());
   return {};
 }
 
@@ -131,7 +129,7 @@ Status Daemon::StartRecording() {
                     .rotate_ns = static_cast<std::uint64_t>(record.rotate_seconds * 1e9),
                     .rig_json = character::RigToJson(*assets_.rig)};
   options.datagrams = record.datagrams;
-  // Read once: a system clock that is set while we record does not turn the takes' time back.
+  // Read once, so that setting the system clock during a recording does not move its time back.
   const Time now = ReadClock();
   options.wall_offset =
       std::chrono::duration_cast<Time>(std::chrono::system_clock::now().time_since_epoch()) - now;
@@ -153,12 +151,12 @@ void Daemon::MakeHub() {
   parts.metrics = metrics_;
   parts.make_token = RandomNumber;
   if (config_.osc_out) {
-    parts.on_weights = [this](const Subject& subject, int lane) {
-      osc_[static_cast<std::size_t>(lane)]->Send(subject);
+    parts.on_weights = [this](const Subject& subject, int shard) {
+      osc_[static_cast<std::size_t>(shard)]->Send(subject);
     };
   }
   parts.recording = recorder_.get();
-  parts.lanes = config_.threads;
+  parts.shards = config_.threads;
   hub_ = std::make_unique<Hub>(std::move(parts));
 }
 
@@ -170,11 +168,15 @@ Status Daemon::Listen() {
   udp_ = std::make_unique<UdpPort>(io_, config_.threads, config_.limits, hub_.get(), metrics_,
                                    recorder_.get());
   FURROW_RETURN_IF_ERROR(udp_->Open({address, config_.udp}));
-  for (int lane = 0; config_.osc_out && lane < config_.threads; ++lane) {
+  for (int shard = 0; config_.osc_out && shard < config_.threads; ++shard) {
     osc_.push_back(std::make_unique<OscOutput>(io_, metrics_));
     FURROW_RETURN_IF_ERROR(osc_.back()->Open(*config_.osc_out, config_.osc_prefix));
   }
-  FURROW_RETURN_IF_ERROR(mocap_.Open(config_, io_, hub_.get(), metrics_));
+  FURROW_RETURN_IF_ERROR(mocap_.Open({.bind = config_.bind,
+                                      .vmc = config_.vmc,
+                                      .livelink_face = config_.livelink_face,
+                                      .allow = config_.mocap_allow},
+                                     io_, hub_.get(), metrics_));
   return StartWeb();
 }
 
@@ -208,7 +210,7 @@ Status Daemon::StartWeb() {
            },
        .answer =
            [this](const ApiRequest& request, Hub& hub, Time now) {
-             const Hub::Alone alone(hub, 0);
+             const Hub::ExclusiveLock alone(hub, 0);
              return api_->Answer(request, hub, now);
            },
        .metrics = metrics_});
@@ -224,7 +226,7 @@ void Daemon::Announce() const {
   ready.render = render_ != nullptr;
   ready.vmc = mocap_.vmc_port();
   ready.livelink_face = mocap_.livelink_face_port();
-  // IPv6 addresses in brackets, as in a URL.
+  // IPv6 addresses need brackets, as in a URL.
   const std::string host =
       (config_.bind.find(':') == std::string::npos ? config_.bind : "[" + config_.bind + "]") + ":";
   std::string line = "furrowd ready tcp=" + host + std::to_string(ready.tcp) + " udp=" + host +
@@ -244,9 +246,9 @@ void Daemon::Serve() {
   tcp_->Start();
   udp_->Start();
   mocap_.Start();
-  SpawnVital(io_, TickLoop());
-  SpawnVital(io_, SecondLoop());
-  if (player_) SpawnVital(io_, PlayLoop());
+  StartCriticalTask(io_, TickLoop());
+  StartCriticalTask(io_, SecondLoop());
+  if (player_) StartCriticalTask(io_, PlayLoop());
   if (options_.handle_signals) {
     signals_.add(SIGTERM);
     signals_.add(SIGINT);
@@ -258,7 +260,7 @@ void Daemon::Serve() {
                                    [this] { asio::post(io_, [this] { RequestDrain(); }); });
   Announce();
   io_.run();
-  http_.reset();  // both before io_, to which they post
+  http_.reset();  // both post to io_, so they end first
   render_.reset();
 }
 
@@ -266,9 +268,9 @@ asio::awaitable<void> Daemon::TickLoop() {
   asio::steady_timer timer(io_);
   auto due = std::chrono::steady_clock::now();
   while (true) {
-    due = std::max(due + kTick, std::chrono::steady_clock::now());  // none to catch up with
+    due = std::max(due + kTick, std::chrono::steady_clock::now());  // skip missed ticks
     timer.expires_at(due);
-    co_await timer.async_wait(kToken);
+    co_await timer.async_wait(kAwaitTuple);
     const Time now = ReadClock();
     hub_->Tick(now);
     mocap_.Tick(now);
@@ -280,10 +282,10 @@ asio::awaitable<void> Daemon::SecondLoop() {
   StatusLine status_line(metrics_);
   while (true) {
     timer.expires_after(kSecond);
-    co_await timer.async_wait(kToken);
+    co_await timer.async_wait(kAwaitTuple);
     const Time now = ReadClock();
     if (config_.verbose) {
-      const Hub::Alone alone(*hub_, 0);
+      const Hub::ExclusiveLock alone(*hub_, 0);
       spdlog::info("{}", status_line.Next(hub_->num_subjects(), hub_->num_subscriptions(), now));
     }
   }
@@ -295,18 +297,19 @@ asio::awaitable<void> Daemon::PlayLoop() {
   while (true) {
     const Time now = ReadClock();
     timer.expires_after(player_->Advance(now) - now);
-    co_await timer.async_wait(kToken);
+    co_await timer.async_wait(kAwaitTuple);
   }
 }
 
 void Daemon::RequestDrain() {
   if (std::exchange(draining_, true)) return;
-  SpawnVital(io_, Drain());
+  StartCriticalTask(io_, Drain());
 }
 
-// Goodbye to everybody; what is queued may leave until the deadline; then the loop ends.
+// Says goodbye to all peers, lets queued messages leave until the deadline, then ends the event
+// loop.
 asio::awaitable<void> Daemon::Drain() {
-  spdlog::info("draining");
+  spdlog::info("shutting down");
   const Time deadline = ReadClock() + FromSeconds(config_.limits.drain_seconds);
   hub_->Drain();
   udp_->Close();
@@ -319,7 +322,7 @@ asio::awaitable<void> Daemon::Drain() {
   };
   while (is_awaited() && ReadClock() < deadline) {
     timer.expires_after(kDrainPoll);
-    co_await timer.async_wait(kToken);
+    co_await timer.async_wait(kAwaitTuple);
   }
   tcp_->CloseAll();
   io_.stop();
@@ -335,14 +338,15 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
   Result<Assets> assets = LoadAssets(config);
   if (!assets.ok()) return Fail(ExitCode::kBadInput, assets.status());
   if (assets->rig->regions.empty()) {
-    spdlog::warn("the character has no wrinkle rig: there will be no weights; see --rig");
+    spdlog::warn("the character has no wrinkle rig, so there are no weights; see --rig");
   }
   if (config.render && assets->character != nullptr) {
     for (const std::string& warning : assets->character->warnings) {
       spdlog::warn("character: {}", warning);
     }
     for (const std::string& name : assets->character->missing_rig_pictures) {
-      spdlog::warn("nobody has the rig's picture '{}': what needs it is not drawn", name);
+      spdlog::warn("picture '{}' of the rig is missing; wrinkles that need it are not rendered",
+                   name);
     }
   }
   Daemon daemon(config, options, *std::move(assets));
@@ -365,7 +369,7 @@ ExitCode LoadAndServe(const Config& config, const RunOptions& options) {
 ExitCode Run(const Config& config, const RunOptions& options) {
   try {
     return LoadAndServe(config, options);
-  } catch (const std::exception& error) {  // no memory, no threads: what no Status tells of
+  } catch (const std::exception& error) {  // such as out of memory or threads
     return Fail(ExitCode::kFailed, Status(StatusCode::kInternal, error.what(), "furrowd"));
   }
 }

@@ -12,28 +12,30 @@
 
 namespace furrow::server {
 
-// Where a daemon that serves is to be reached.
+// The ports of a running daemon.
 struct Ready {
   std::uint16_t tcp = 0;
   std::uint16_t udp = 0;
-  std::optional<std::uint16_t> vmc;
+  std::optional<std::uint16_t> vmc;  // absent: off
   std::optional<std::uint16_t> livelink_face;
   std::optional<std::uint16_t> http;
-  bool render = false;
+  bool render = false;  // a renderer is running
 };
 
 struct RunOptions {
-  std::stop_token stop;                        // asks for what SIGTERM asks for
-  bool handle_signals = false;                 // SIGTERM and SIGINT drain; for a process of its own
-  std::function<void(const Ready&)> on_ready;  // on the calling thread, once it serves
-  Metrics* metrics = nullptr;                  // counted into instead of a set of its own
+  std::stop_token stop;         // requests a shutdown, as SIGTERM does
+  bool handle_signals = false;  // shut down on SIGTERM and SIGINT
+  std::function<void(const Ready&)>
+      on_ready;                // called on the calling thread when the daemon serves
+  Metrics* metrics = nullptr;  // used instead of the daemon's own; optional
 };
 
-// The daemon, whole: loads, listens, prints 'furrowd ready ...' on stdout, serves until it is asked
-// to stop, drains, returns how it ended. Errors are logged before it returns.
+// Runs a daemon: loads its files, listens, prints 'furrowd ready ...' on stdout, serves until it is
+// asked to stop, and drains. Errors are logged before the function returns.
 //
-// The calling thread becomes the first network thread, Config::threads - 1 more take in datagrams;
-// the render thread is its own. Several daemons may run in one process.
+// The calling thread becomes the network thread of shard 0. Further threads: Config::threads - 1
+// that receive UDP, one that renders, one for the web server, one for the recorder. Several daemons
+// may run in one process.
 [[nodiscard]] ExitCode Run(const Config& config, const RunOptions& options = {});
 
 }  // namespace furrow::server

@@ -16,9 +16,9 @@ int main(int argc, char** argv) {
     std::fputs(line.text.c_str(), line.exit_code == ExitCode::kOk ? stdout : stderr);
     return static_cast<int>(line.exit_code);
   }
-  // Whoever read our log, or the ready line, may leave: the daemon goes on.
+  // The readers of the log and of the ready line may close their pipes. The daemon continues.
   std::signal(SIGPIPE, SIG_IGN);
-  const furrow::server::Log log(*line.config);
+  const furrow::server::Log log(line.config->log_json);
   furrow::server::RunOptions options;
   options.handle_signals = true;
   return static_cast<int>(furrow::server::Run(*line.config, options));

@@ -174,12 +174,12 @@ Outcome MeasureOne(int subjects, int weights, int repetitions) {
   const std::vector<Sampler> samplers = {
       sampler([&] { fan_out.SendPlain(); }),
       sampler([&] { fan_out.SendPlain(); }),
-      sampler([&] { fan_out.SendPacked(server::Packing::kAlone); }),
-      sampler([&] { fan_out.SendPacked(server::Packing::kShared); }),
+      sampler([&] { fan_out.SendPacked(server::Packing::kSeparate); }),
+      sampler([&] { fan_out.SendPacked(server::Packing::kBundled); }),
   };
   const auto samples = Interleave(samplers, repetitions);
   (void)fan_out.TakeDatagrams();
-  fan_out.SendPacked(server::Packing::kShared);
+  fan_out.SendPacked(server::Packing::kBundled);
   (void)fan_out.Drain();
   const double sets = static_cast<double>(kSubscribers) * subjects;
   return {.subjects = subjects,

@@ -12,15 +12,16 @@ namespace {
 constexpr char kVersion[] = "furrowd " FURROW_VERSION;
 
 constexpr char kFooter[] = R"(
-Ports may be 0: any free one; the line 'furrowd ready ...' says which.
-Without --character and --rig: the default character of $FURROW_DATA_DIR, else
-of ../share/furrow beside the program. With --rig alone: weights, no pictures.
+Port 0 selects any free port; the line 'furrowd ready ...' shows the ports.
+Without --character and --rig, furrowd uses the default character from
+$FURROW_DATA_DIR or from ../share/furrow beside the program. With --rig alone,
+it sends weights and renders no pictures.
 
-Exit codes: 0 stopped by SIGTERM or SIGINT, 1 failed at run time (a port is
-taken, GL is required and absent), 2 wrong usage, 3 bad input (config,
-character, rig).)";
+Exit codes: 0 stopped by SIGTERM or SIGINT, 1 failed at run time (for example a
+port is in use, or OpenGL is required and unavailable), 2 invalid command line,
+3 invalid input (config, character, rig).)";
 
-// What only flags can say until the file of --config is read under them.
+// Flags that are applied after the configuration file has been read.
 struct Flags {
   std::string config_file;
   std::string osc_out;
@@ -28,54 +29,62 @@ struct Flags {
   bool no_http = false;
 };
 
-// Declares every flag on `config`; parsing writes only those that were given.
+// Declares every flag on `config`. Parsing writes only the flags that are present.
 void Declare(CLI::App* app, Config* config, Flags* flags) {
-  app->add_option("--config", flags->config_file, "TOML file; flags win over it");
-  app->add_option("--character", config->character, "what is drawn (.glb), with its wrinkle rig");
-  app->add_option("--rig", config->rig, "wrinkle rig (JSON)");
+  app->add_option("--config", flags->config_file,
+                  "Read a TOML configuration file; flags override it");
+  app->add_option("--character", config->character,
+                  "Render this character (.glb) and use its wrinkle rig");
+  app->add_option("--rig", config->rig, "Use this wrinkle rig (JSON)");
   app->add_option("--skeleton-map", config->skeleton_map,
-                  "what streams call their joints: a map's name or file (the best that ships)");
-  app->add_option("--bind", config->bind, "address to listen on (default 127.0.0.1)");
-  app->add_option("--tcp", config->tcp, "TCP port: poses in, weights and pictures out (7400)");
-  app->add_option("--udp", config->udp, "UDP port: poses in, weights out (7401)");
+                  "Map joint names of streams with this map, by name or file\n"
+                  "(default: the best match of the shipped maps)");
+  app->add_option("--bind", config->bind, "Listen on this address (default: 127.0.0.1)");
+  app->add_option("--tcp", config->tcp, "TCP port for poses, weights and pictures (default: 7400)");
+  app->add_option("--udp", config->udp, "UDP port for poses and weights (default: 7401)");
   app->add_option("--threads", config->threads,
-                  "threads that take in UDP, each its share of the senders (1)")
+                  "Number of threads that receive UDP; senders are spread over them (default: 1)")
       ->type_name("N");
   app->add_option("--http", config->http.port,
-                  "port of the page (7480, or any free one where that is taken; 0: any)");
-  app->add_flag("--no-http", flags->no_http, "no page, no WebSocket, no JSON");
+                  "Port of the web page (default: 7480, or any free port if it is in use)");
+  app->add_flag("--no-http", flags->no_http, "Disable the web page, WebSocket and HTTP API");
   app->add_option("--play", config->play,
-                  "recording that plays inside the daemon, with a timeline on the page (none)");
-  app->add_flag("--no-render", flags->no_render, "weights only, no GL");
-  app->add_flag("--require-render", config->require_render, "end (1) where GL cannot be had");
+                  "Play this recording as a subject, with a timeline on the web page");
+  app->add_flag("--no-render", flags->no_render, "Send weights only; do not use OpenGL");
+  app->add_flag("--require-render", config->require_render, "Exit with 1 if OpenGL is unavailable");
   app->add_option("--render-device", config->render_device,
-                  "EGL device index or 'surfaceless' (the first that gives OpenGL 4.5)");
-  app->add_option(
-      "--render-settings", config->render_settings,
-      "TOML of the pictures' appearance, as 'furrow render --print-settings' writes it");
-  app->add_option("--vmc", config->vmc, "UDP port for VMC over OSC (none; 39539 is usual)");
+                  "EGL device index or 'surfaceless' (default: the first with OpenGL 4.5)");
+  app->add_option("--render-settings", config->render_settings,
+                  "Read picture settings from a TOML file, as written by\n"
+                  "'furrow render --print-settings'");
+  app->add_option("--vmc", config->vmc,
+                  "Receive VMC (OSC) on this UDP port, usually 39539 (default: off)");
   app->add_option("--livelink-face", config->livelink_face,
-                  "UDP port for Live Link Face (none; 11111 is usual)");
-  app->add_option("--mocap-allow", config->mocap_allow,
-                  "address that may send to those two, again for more (none: the first to come,\n"
-                  "until it is silent for 3 s; with them, --livelink-face takes all at once)")
+                  "Receive Live Link Face on this UDP port, usually 11111 (default: off)");
+  app->add_option(
+         "--mocap-allow", config->mocap_allow,
+         "Accept --vmc and --livelink-face from this address only (repeatable). Each port\n"
+         "accepts one sender until it has been silent for 3 s; with allowed addresses,\n"
+         "--livelink-face accepts all of them at once (default: any address)")
       ->type_name("ADDRESS")
       ->allow_extra_args(false);
-  app->add_option("--osc-out", flags->osc_out, "HOST:PORT that gets the weights as OSC (none)");
-  app->add_option("--osc-prefix", config->osc_prefix, "first part of the OSC addresses (furrow)");
+  app->add_option("--osc-out", flags->osc_out,
+                  "Send all weights as OSC to this HOST:PORT (default: off)");
+  app->add_option("--osc-prefix", config->osc_prefix,
+                  "First part of the OSC addresses (default: furrow)");
   app->add_option("--record", config->record.folder,
-                  "folder to record everything to, as MCAP files (none); see docs/RECORDING.md");
+                  "Record all streams to MCAP files in this folder (default: off)");
   app->add_option("--record-rotate-megabytes", config->record.rotate_megabytes,
-                  "the next file begins at this size (1024; 0: never)");
+                  "Start a new file at this size in MB (default: 1024; 0: never)");
   app->add_option("--record-rotate-seconds", config->record.rotate_seconds,
-                  "and when a file covers so much time (3600; 0: never)");
-  app->add_flag("--verbose", config->verbose, "one status line a second");
-  app->add_flag("--log-json", config->log_json, "log lines as JSON");
+                  "Start a new file after this time in seconds (default: 3600; 0: never)");
+  app->add_flag("--verbose", config->verbose, "Print a status line every second");
+  app->add_flag("--log-json", config->log_json, "Write log lines as JSON");
 }
 
 CommandLine Fail(ExitCode code, const std::string& text) { return {std::nullopt, code, text}; }
 
-// CLI11 parses from the back of a vector, and takes it by value.
+// CLI11 parses a vector from its back.
 std::vector<std::string> Reversed(std::span<const std::string> args) {
   return {args.rbegin(), args.rend()};
 }
@@ -85,7 +94,7 @@ std::vector<std::string> Reversed(std::span<const std::string> args) {
 CommandLine ParseCommandLine(std::span<const std::string> args) {
   Config config;
   Flags flags;
-  CLI::App first("Turns live poses into wrinkle weights and pictures.", "furrowd");
+  CLI::App first("Compute wrinkle weights and pictures from live poses.", "furrowd");
   first.footer(kFooter);
   first.set_version_flag("--version", kVersion);
   Declare(&first, &config, &flags);
@@ -97,8 +106,7 @@ CommandLine ParseCommandLine(std::span<const std::string> args) {
     return Fail(failed ? ExitCode::kUsage : ExitCode::kOk, out.str());
   }
   if (!flags.config_file.empty()) {
-    // The file comes under the flags: it is read into a fresh config, and the flags once more over
-    // it.
+    // Flags override the file: read the file into a fresh config, then parse the flags again.
     config = Config();
     if (Status status = LoadConfigFile(flags.config_file, &config); !status.ok()) {
       return Fail(ExitCode::kBadInput, status.ToString() + "\n");

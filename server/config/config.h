@@ -12,71 +12,52 @@
 #include "base/status.h"
 #include "server/config/http_config.h"
 #include "server/core/exit_code.h"
+#include "server/core/limits.h"
+#include "server/core/network_address.h"
 
 namespace furrow::server {
 
-// Where OSC goes to: a numeric address and a port.
-struct HostPort {
-  std::string host;
-  std::uint16_t port = 0;
-  friend bool operator==(const HostPort&, const HostPort&) = default;
-};
-
-// What one daemon takes on before it refuses or drops. All per daemon unless said otherwise.
-struct Limits {
-  int max_connections = 256;  // TCP
-  int max_udp_peers = 4096;   // addresses remembered; the longest silent one goes first
-  int max_subjects = 1024;
-  int max_skeletons = 256;            // offered skeletons kept
-  int max_subscriptions = 64;         // of one peer
-  double packets_per_second = 20000;  // of one peer: datagrams or TCP messages
-  double packet_burst = 4000;         // of one peer, at once
-  int outbox_messages = 64;           // of one TCP peer; frames beyond it replace older ones
-  double idle_seconds = 30;           // a peer that is silent and gets nothing is forgotten
-  double loss_seconds = 0.5;          // a subject without poses for so long is lost and decays
-  double drain_seconds = 2;           // after SIGTERM: what is queued may still leave
-  friend bool operator==(const Limits&, const Limits&) = default;
-};
-
-// Where everything that streams is recorded, and when the next file begins.
+// Where to record streams, and when to begin the next file.
 struct RecordConfig {
-  std::filesystem::path folder;    // made where it is absent; empty: nothing is recorded
-  double rotate_megabytes = 1024;  // 0: never for its size
-  double rotate_seconds = 3600;    // 0: never for its age
-  bool datagrams = true;           // with them as they came
+  std::filesystem::path folder;    // created if absent; empty: record nothing
+  double rotate_megabytes = 1024;  // maximum file size; 0: no limit
+  double rotate_seconds = 3600;    // maximum time span of a file; 0: no limit
+  bool datagrams = true;           // also record the datagrams as received
   friend bool operator==(const RecordConfig&, const RecordConfig&) = default;
 };
 
 inline constexpr int kMaxThreads = 64;
 
-// All that furrowd can be told, by flags or by a TOML file (furrow.example.toml shows every key).
+// The whole configuration of furrowd, from flags or a TOML file (furrow.example.toml lists every
+// key).
 struct Config {
-  std::filesystem::path character;  // both empty: the default character of FURROW_DATA_DIR
-  std::string skeleton_map;         // name or file; empty: the best of those that ship
-  std::filesystem::path rig;        // alone: weights only; with a character: instead of its own
+  // If both the character and the rig are empty, the default character is used.
+  std::filesystem::path character;  // .glb
+  std::string skeleton_map;         // name or file; empty: the best match of the shipped maps
+  std::filesystem::path rig;        // without a character: weights only; else replaces its rig
   std::string bind = "127.0.0.1";   // numeric, IPv4 or IPv6
-  std::uint16_t tcp = 7400;         // 0: any free port; the ready line says which
+  std::uint16_t tcp = 7400;         // 0: any free port; the ready line shows it
   std::uint16_t udp = 7401;
-  int threads = 1;  // that take in datagrams, [1, kMaxThreads]; see docs/CAPACITY.md
+  int threads = 1;  // threads that receive UDP, [1, kMaxThreads]; see docs/CAPACITY.md
   bool render = true;
-  bool require_render = false;            // no GL: end instead of going on without pictures
+  bool require_render = false;            // fail if OpenGL is unavailable
   std::string render_device;              // see render::RendererOptions::device
   std::filesystem::path render_settings;  // TOML (render::LoadSettings); empty: the defaults
   std::optional<std::uint16_t> vmc;
   std::optional<std::uint16_t> livelink_face;
-  std::vector<std::string> mocap_allow;  // numeric addresses that may feed those; none: anybody
+  std::vector<std::string> mocap_allow;  // numeric sender addresses; empty: any sender
   std::optional<HostPort> osc_out;
   std::string osc_prefix = "furrow";  // /<prefix>/<subject>/<wrinkle weight>
   RecordConfig record;
   HttpConfig http;
-  std::filesystem::path play;  // a recording that plays inside the daemon; empty: none
-  bool verbose = false;        // one status line a second
+  std::filesystem::path play;  // recording to play inside the daemon; empty: none
+  bool verbose = false;        // print a status line every second
   bool log_json = false;
   Limits limits;
   friend bool operator==(const Config&, const Config&) = default;
 };
 
-// Reads a TOML config over `config`: what the file does not say stays.
+// Reads a TOML file into `config`. Keys that the file does not set keep their values.
 //
 // Errors: kNotFound, kIo, kParse, kSchema (unknown key, wrong type), kInvalidArgument (out of
 // range); `where` is "file:line", the message names the key.
@@ -84,22 +65,20 @@ struct Config {
 [[nodiscard]] Status ParseConfig(std::string_view toml, std::string_view source_name,
                                  Config* config);
 
-// What is wrong with the whole, whoever said it: an address that is not numeric, a limit out of
-// range, two services on one port, --require-render with --no-render.
+// Checks values and their combination: addresses, ranges, conflicting ports and flags. Errors:
+// kInvalidArgument, naming the flag or the key.
 [[nodiscard]] Status ValidateConfig(const Config& config);
 
-// "127.0.0.1:9000" or "[::1]:9000".
-[[nodiscard]] Result<HostPort> ParseHostPort(std::string_view text);
-
-// The command line, parsed. No config: print `text` (help or version on kOk, else an error) and
-// end.
+// The result of parsing the command line. Without a config: print `text` (help or version if
+// `exit_code` is kOk, else an error) and exit.
 struct CommandLine {
   std::optional<Config> config;
   ExitCode exit_code = ExitCode::kOk;
   std::string text;
 };
 
-// Flags win over the file of --config, the file over the defaults. `args` without the program name.
+// Flags override the file of --config, and the file overrides the defaults. `args`: without the
+// program name.
 [[nodiscard]] CommandLine ParseCommandLine(std::span<const std::string> args);
 
 }  // namespace furrow::server

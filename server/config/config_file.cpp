@@ -18,8 +18,7 @@ namespace {
 
 constexpr std::uint64_t kMaxConfigBytes = 1 << 20;
 
-// One key of a table and what to do with its value; `assign` returns what is wrong, empty when
-// fine.
+// One key of a table. `assign` stores the value and returns an error, or an empty string.
 struct Key {
   std::string_view name;
   std::function<std::string(const toml::node&)> assign;
@@ -38,12 +37,12 @@ Key Path(std::string_view name, std::filesystem::path* target, std::filesystem::
   return {name, [target, folder = std::move(folder)](const toml::node& node) -> std::string {
             const auto value = node.value_exact<std::string>();
             if (!value) return "must be a string";
-            *target = folder / *value;  // an absolute path replaces the folder
+            *target = folder / *value;  // an absolute path stays as it is
             return {};
           }};
 }
 
-// A name as it stands; what looks like a file is relative to `folder`.
+// A name or a file. Values with a slash or the ending .json are files, relative to `folder`.
 Key NameOrFile(std::string_view name, std::string* target, std::filesystem::path folder) {
   return {name, [target, folder = std::move(folder)](const toml::node& node) -> std::string {
             const auto value = node.value_exact<std::string>();
@@ -67,7 +66,7 @@ template <class Target>
 Key Port(std::string_view name, Target* target) {
   return {name, [target](const toml::node& node) -> std::string {
             const auto value = node.value_exact<std::int64_t>();
-            if (!value || *value < 0 || *value > 65535) return "must be a port, 0 to 65535";
+            if (!value || *value < 0 || *value > 65535) return "must be a port number, 0 to 65535";
             *target = static_cast<std::uint16_t>(*value);
             return {};
           }};
@@ -117,7 +116,7 @@ Key Texts(std::string_view name, std::vector<std::string>* target) {
           }};
 }
 
-// A table's name, empty for the top of the file, and what may stand in it.
+// The name of a table (empty: the top level of the file) and its keys.
 using NamedKeys = std::pair<std::string_view, std::vector<Key>>;
 using Tables = std::vector<NamedKeys>;
 
@@ -125,7 +124,7 @@ class Reader {
  public:
   Reader(std::string_view source_name) : source_name_(source_name) {}
 
-  // The top of the file, which is the first of `tables`, and the tables in it.
+  // Reads the top level, which is the first of `tables`, and then the other tables.
   Status ReadFile(const toml::table& root, std::span<const NamedKeys> tables) const {
     Status status = ReadTable(root, "", tables.front().second, tables.subspan(1));
     for (const auto& [name, keys] : tables.subspan(1)) {
@@ -138,7 +137,7 @@ class Reader {
   }
 
  private:
-  // `subtables`: names that are no keys here but tables of their own.
+  // `subtables`: names at this level that are tables, not keys.
   Status ReadTable(const toml::table& table, std::string_view prefix, std::span<const Key> keys,
                    std::span<const NamedKeys> subtables) const {
     for (const auto& [key, node] : table) {
@@ -150,7 +149,7 @@ class Reader {
           return Error(StatusCode::kSchema, node, name + " " + fault);
         }
       } else if (subtable == subtables.end()) {
-        return Error(StatusCode::kSchema, node, "unknown key " + name);
+        return Error(StatusCode::kSchema, node, "unknown key '" + name + "'");
       } else if (!node.is_table()) {
         return Error(StatusCode::kSchema, node, name + " must be a table");
       }
@@ -224,6 +223,7 @@ Status ParseConfig(std::string_view text, std::string_view source_name, Config* 
                   std::string(source_name) + ":" + std::to_string(error.source().begin.line));
   }
   Config read = *config;
+  // Paths in the file are relative to the file.
   const std::filesystem::path folder = std::filesystem::path(source_name).parent_path();
   Tables tables = InputTables(&read, folder);
   std::ranges::move(OutputTables(&read, folder), std::back_inserter(tables));

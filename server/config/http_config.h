@@ -9,16 +9,17 @@
 
 namespace furrow::server {
 
-// The daemon's web side (docs/HTTP-API.md).
+// Configuration of the web server (docs/HTTP-API.md).
 struct HttpConfig {
   static constexpr std::uint16_t kDefaultPort = 7480;
   bool enabled = true;
-  // Absent: kDefaultPort, or any free one where that is taken. 0: any free one.
+  // Absent: kDefaultPort, or any free port if that is in use. 0: any free port.
   std::optional<std::uint16_t> port;
-  std::vector<std::string> allow_hosts;    // names that a request's Host may have
-  std::vector<std::string> allow_origins;  // "https://stage.example": pages of others that may ask
+  std::vector<std::string> allow_hosts;  // names accepted in the Host field
+  std::vector<std::string>
+      allow_origins;  // foreign pages that may connect: "https://stage.example"
   int max_connections = 128;
-  std::filesystem::path page;  // folder; empty: share/furrow/web
+  std::filesystem::path page;  // folder of the page; empty: share/furrow/web
   friend bool operator==(const HttpConfig&, const HttpConfig&) = default;
 };
 

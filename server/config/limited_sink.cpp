@@ -6,24 +6,24 @@
 
 namespace furrow::server {
 
-LimitedSink::~LimitedSink() { SayLeftOut(last_time_); }
+LimitedSink::~LimitedSink() { LogDropped(last_time_); }
 
 void LimitedSink::sink_it_(const spdlog::details::log_msg& message) {
   last_time_ = message.time;
   const Time now = std::chrono::duration_cast<Time>(message.time.time_since_epoch());
   const bool passes = bucket_.Take(now);
   if (!passes && message.level < spdlog::level::err) {
-    ++left_out_;
+    ++dropped_;
     return;
   }
-  if (passes) SayLeftOut(message.time);
+  if (passes) LogDropped(message.time);
   below_->log(message);
 }
 
-void LimitedSink::SayLeftOut(spdlog::log_clock::time_point time) {
-  if (left_out_ == 0) return;
-  const std::string text =
-      std::to_string(std::exchange(left_out_, 0)) + " log lines were left out: too many at once";
+void LimitedSink::LogDropped(spdlog::log_clock::time_point time) {
+  if (dropped_ == 0) return;
+  const std::string text = std::to_string(std::exchange(dropped_, 0)) +
+                           " log lines were dropped because of the rate limit";
   below_->log({time, spdlog::source_loc(), "furrowd", spdlog::level::warn, text});
 }
 

@@ -13,9 +13,9 @@
 
 namespace furrow::server {
 
-// Lets kLinesPerSecond through to the sink below, kBurst at once, so that no peer can fill a disk
-// by what it makes the daemon say. How many lines were left out is said with the next that passes.
-// Errors always pass. Time is the messages' own.
+// Limits log lines to kLinesPerSecond on average and kBurst at once, so that no peer can fill a
+// disk with log lines. The next line that passes is preceded by the number of dropped lines. Errors
+// always pass. Time comes from the messages.
 class LimitedSink : public spdlog::sinks::base_sink<std::mutex> {
  public:
   static constexpr double kLinesPerSecond = 100.0;
@@ -33,11 +33,11 @@ class LimitedSink : public spdlog::sinks::base_sink<std::mutex> {
   }
 
  private:
-  void SayLeftOut(spdlog::log_clock::time_point time);
+  void LogDropped(spdlog::log_clock::time_point time);
 
   const spdlog::sink_ptr below_;
   TokenBucket bucket_{kLinesPerSecond, kBurst};
-  std::uint64_t left_out_ = 0;
+  std::uint64_t dropped_ = 0;
   spdlog::log_clock::time_point last_time_{};
 };
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMaxWaitingLines = 4096;
 
-// The message as the inside of a JSON string.
+// Formats the message as the inside of a JSON string.
 class JsonText : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&,
@@ -43,13 +43,13 @@ class JsonText : public spdlog::custom_flag_formatter {
 
 }  // namespace
 
-Log::Log(const Config& config) {
+Log::Log(bool json) {
   spdlog::init_thread_pool(kMaxWaitingLines, /*threads=*/1);
   auto logger = std::make_shared<spdlog::async_logger>(
       "furrowd",
       std::make_shared<LimitedSink>(std::make_shared<spdlog::sinks::stderr_color_sink_mt>()),
       spdlog::thread_pool(), spdlog::async_overflow_policy::overrun_oldest);
-  if (config.log_json) {
+  if (json) {
     auto formatter = std::make_unique<spdlog::pattern_formatter>(spdlog::pattern_time_type::utc);
     formatter->add_flag<JsonText>('*').set_pattern(
         R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ","level":"%l","message":"%*"})");

@@ -3,25 +3,23 @@
 
 #include <memory>
 
-#include "server/config/config.h"
-
 namespace furrow::server {
 
-// The program's log, on stderr, a line a message: for people, or (--log-json) one JSON object a
-// line with "time", "level" and "message".
+// The log of furrowd on stderr, one line per message: plain text, or one JSON object with "time",
+// "level" and "message".
 //
-// A thread of its own writes, and where it cannot keep up the oldest lines go: whoever reads our
-// stderr slowly, or not at all, never blocks a network thread. How much is written in a second is
-// limited (LimitedSink). The destructor writes what still waits.
+// A background thread writes. If it cannot keep up, the oldest lines are dropped, so a reader of
+// stderr that is slow or stuck never blocks a network thread. LimitedSink limits the rate. The
+// destructor writes the remaining lines.
 class Log {
  public:
-  explicit Log(const Config& config);
+  explicit Log(bool json);
   ~Log();
   Log(const Log&) = delete;
   Log& operator=(const Log&) = delete;
 
  private:
-  std::shared_ptr<void> logger_;  // outlives the writing thread, which the destructor joins
+  std::shared_ptr<void> logger_;  // must outlive the background thread
 };
 
 }  // namespace furrow::server

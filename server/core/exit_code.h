@@ -3,12 +3,12 @@
 
 namespace furrow::server {
 
-// How furrowd ends. The numbers are those of `furrow`; --help prints them.
+// Exit codes of furrowd. `furrow` uses the same numbers; --help lists them.
 enum class ExitCode {
-  kOk = 0,        // served, drained and stopped
-  kFailed = 1,    // failed at run time: a port is taken, GL is required and cannot be had
-  kUsage = 2,     // the command line is wrong
-  kBadInput = 3,  // the config, the character or the rig is wrong
+  kOk = 0,        // drained and stopped
+  kFailed = 1,    // a run-time failure: a port in use, required OpenGL unavailable
+  kUsage = 2,     // an invalid command line
+  kBadInput = 3,  // an invalid configuration file, character or rig
 };
 
 }  // namespace furrow::server

@@ -1,75 +1,148 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/core/metrics.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace furrow::server {
+namespace {
+
+struct CounterInfo {
+  Counter counter;
+  std::string_view name;
+  std::string_view help;
+};
+
+// In the order of the enumeration, which the assertion below checks.
+constexpr CounterInfo kCounters[] = {
+    {Counter::kDatagramsReceived, "furrow_datagrams_received_total", "UDP datagrams received."},
+    {Counter::kDatagramsSent, "furrow_datagrams_sent_total", "UDP datagrams sent."},
+    {Counter::kDatagramsOverrun, "furrow_datagrams_overrun_total",
+     "Datagrams that the kernel lost because the socket buffer was full."},
+    {Counter::kDatagramsMalformed, "furrow_datagrams_malformed_total",
+     "Datagrams without a valid envelope."},
+    {Counter::kDatagramsUnsendable, "furrow_datagrams_unsendable_total",
+     "Datagrams that the kernel did not accept: full send buffer or unreachable address."},
+    {Counter::kDatagramsUnproven, "furrow_datagrams_unproven_total",
+     "Replies not sent because an unproven address had used up its credit."},
+    {Counter::kFragmentsMalformed, "furrow_fragments_malformed_total",
+     "Fragments with an invalid header."},
+    {Counter::kFragmentsRefused, "furrow_fragments_refused_total",
+     "Fragments over the limits of reassembly."},
+    {Counter::kFragmentsExpired, "furrow_fragments_expired_total",
+     "Messages dropped because some of their fragments never arrived."},
+    {Counter::kConnectionsAccepted, "furrow_connections_accepted_total",
+     "TCP connections accepted."},
+    {Counter::kConnectionsRefused, "furrow_connections_refused_total",
+     "Connections refused because of the connection limit."},
+    {Counter::kConnectionsMalformed, "furrow_connections_malformed_total",
+     "Connections closed because of an invalid frame."},
+    {Counter::kConnectionsOverrun, "furrow_connections_overrun_total",
+     "Connections closed because the client did not read its replies."},
+    {Counter::kConnectionsIdle, "furrow_connections_idle_total",
+     "Connections closed because of inactivity."},
+    {Counter::kMessagesBundled, "furrow_messages_bundled_total",
+     "Messages sent in a datagram together with others."},
+    {Counter::kMessagesReceived, "furrow_messages_received_total",
+     "Messages received on all transports."},
+    {Counter::kMessagesThrottled, "furrow_messages_throttled_total",
+     "Messages dropped unread because the peer exceeded its packet rate."},
+    {Counter::kMessagesMalformed, "furrow_messages_malformed_total",
+     "Messages with a valid magic number and invalid content."},
+    {Counter::kMessagesRefused, "furrow_messages_refused_total",
+     "Valid messages answered with an error."},
+    {Counter::kPosesReceived, "furrow_poses_received_total", "Poses received."},
+    {Counter::kPosesLate, "furrow_poses_late_total",
+     "Poses dropped because a newer one had been used."},
+    {Counter::kPosesDuplicate, "furrow_poses_duplicate_total", "Poses received more than once."},
+    {Counter::kPosesInvalid, "furrow_poses_invalid_total",
+     "Poses with wrong counts, non-finite numbers or unnormalised quaternions."},
+    {Counter::kPosesUnknownStream, "furrow_poses_unknown_stream_total",
+     "Poses of streams that have offered no skeleton."},
+    {Counter::kPosesRetiredSession, "furrow_poses_retired_session_total",
+     "Poses from senders that were replaced by another sender or a restart."},
+    {Counter::kSkeletonsOffered, "furrow_skeletons_offered_total", "Skeleton offers received."},
+    {Counter::kSkeletonsRejected, "furrow_skeletons_rejected_total", "Skeleton offers rejected."},
+    {Counter::kSkeletonsRequested, "furrow_skeletons_requested_total",
+     "Requests sent for the skeleton of an unknown stream."},
+    {Counter::kSkeletonsThrottled, "furrow_skeletons_throttled_total",
+     "New skeletons dropped because too many arrived per second; senders offer them again."},
+    {Counter::kSubjectsRestarted, "furrow_subjects_restarted_total",
+     "Subjects taken over by a new stream."},
+    {Counter::kSubjectsLost, "furrow_subjects_lost_total",
+     "Subjects that stopped sending and decayed to neutral."},
+    {Counter::kSubscriptionsAccepted, "furrow_subscriptions_accepted_total",
+     "Subscriptions accepted."},
+    {Counter::kSubscriptionsRefused, "furrow_subscriptions_refused_total",
+     "Subscriptions refused."},
+    {Counter::kWeightsSent, "furrow_weights_sent_total", "Weight frames sent or queued."},
+    {Counter::kFramesSkippedRate, "furrow_frames_skipped_rate_total",
+     "Frames skipped because of a subscription's maximum rate."},
+    {Counter::kWeightsDroppedSlow, "furrow_weights_dropped_slow_total",
+     "Weight frames dropped because a subscriber was slow."},
+    {Counter::kPosesRelayed, "furrow_poses_relayed_total",
+     "Pose frames sent or queued to subscribers of poses."},
+    {Counter::kPosesDroppedSlow, "furrow_poses_dropped_slow_total",
+     "Pose frames dropped because a subscriber was slow."},
+    {Counter::kPicturesRendered, "furrow_pictures_rendered_total", "Pictures rendered."},
+    {Counter::kPicturesEncoded, "furrow_pictures_encoded_total",
+     "Pictures encoded as JPEG or PNG."},
+    {Counter::kPicturesSent, "furrow_pictures_sent_total", "Pictures sent or queued."},
+    {Counter::kPicturesDroppedSlow, "furrow_pictures_dropped_slow_total",
+     "Pictures dropped because a viewer was slow."},
+    {Counter::kPicturesFailed, "furrow_pictures_failed_total",
+     "Pictures that could not be rendered, encoded or sent."},
+    {Counter::kSnapshotsReplaced, "furrow_snapshots_replaced_total",
+     "Render requests replaced by a newer pose before rendering started."},
+    {Counter::kRendererRestarts, "furrow_renderer_restarts_total",
+     "Renderers lost and created again."},
+    {Counter::kMocapPackets, "furrow_mocap_packets_total", "Packets received on mocap ports."},
+    {Counter::kMocapMalformed, "furrow_mocap_malformed_total",
+     "Mocap packets that could not be read."},
+    {Counter::kMocapReordered, "furrow_mocap_reordered_total",
+     "Mocap frames dropped because a newer one had been used."},
+    {Counter::kMocapIncomplete, "furrow_mocap_incomplete_total",
+     "Mocap frames used without an end-of-frame mark."},
+    {Counter::kMocapStale, "furrow_mocap_stale_total",
+     "Mocap frames from senders that reported no tracking."},
+    {Counter::kMocapFrames, "furrow_mocap_frames_total", "Mocap frames used."},
+    {Counter::kMocapLockedOut, "furrow_mocap_locked_out_total",
+     "Mocap packets from senders that the port does not accept."},
+    {Counter::kMocapRefused, "furrow_mocap_refused_total",
+     "Mocap frames of subjects that were refused."},
+    {Counter::kOscPacketsSent, "furrow_osc_packets_sent_total", "OSC packets sent."},
+    {Counter::kOscPacketsUnsendable, "furrow_osc_packets_unsendable_total",
+     "OSC packets that the kernel did not accept."},
+    {Counter::kHttpConnections, "furrow_http_connections_accepted_total",
+     "HTTP connections accepted."},
+    {Counter::kHttpRequests, "furrow_http_requests_total", "HTTP requests received."},
+    {Counter::kHttpRefused, "furrow_http_refused_total",
+     "HTTP requests refused: malformed, too large, or with a forbidden Host or Origin."},
+    {Counter::kWebSocketsAccepted, "furrow_web_sockets_accepted_total", "WebSockets accepted."},
+    {Counter::kRecordingMessages, "furrow_recording_messages_total", "Messages written to a take."},
+    {Counter::kRecordingDropped, "furrow_recording_dropped_total",
+     "Messages missing from a take because the disk was too slow."},
+    {Counter::kRecordingFailures, "furrow_recording_failures_total",
+     "Recordings ended by an error."},
+};
+
+constexpr bool IsInOrder() {
+  std::size_t index = 0;
+  return std::ranges::all_of(kCounters, [&](const CounterInfo& info) {
+    return static_cast<std::size_t>(info.counter) == index++;
+  });
+}
+static_assert(std::size(kCounters) == static_cast<std::size_t>(Counter::kCount));
+static_assert(IsInOrder());
+
+}  // namespace
 
 std::string_view CounterName(Counter counter) {
-  switch (counter) {
-    case Counter::kDatagramsReceived: return "furrow_datagrams_received_total";
-    case Counter::kDatagramsSent: return "furrow_datagrams_sent_total";
-    case Counter::kDatagramsOverrun: return "furrow_datagrams_overrun_total";
-    case Counter::kDatagramsMalformed: return "furrow_datagrams_malformed_total";
-    case Counter::kDatagramsUnsendable: return "furrow_datagrams_unsendable_total";
-    case Counter::kDatagramsUnproven: return "furrow_datagrams_unproven_total";
-    case Counter::kFragmentsMalformed: return "furrow_fragments_malformed_total";
-    case Counter::kFragmentsRefused: return "furrow_fragments_refused_total";
-    case Counter::kFragmentsExpired: return "furrow_fragments_expired_total";
-    case Counter::kConnectionsAccepted: return "furrow_connections_accepted_total";
-    case Counter::kConnectionsRefused: return "furrow_connections_refused_total";
-    case Counter::kConnectionsMalformed: return "furrow_connections_malformed_total";
-    case Counter::kConnectionsOverrun: return "furrow_connections_overrun_total";
-    case Counter::kConnectionsIdle: return "furrow_connections_idle_total";
-    case Counter::kMessagesBundled: return "furrow_messages_bundled_total";
-    case Counter::kMessagesReceived: return "furrow_messages_received_total";
-    case Counter::kMessagesThrottled: return "furrow_messages_throttled_total";
-    case Counter::kMessagesMalformed: return "furrow_messages_malformed_total";
-    case Counter::kMessagesRefused: return "furrow_messages_refused_total";
-    case Counter::kPosesReceived: return "furrow_poses_received_total";
-    case Counter::kPosesLate: return "furrow_poses_late_total";
-    case Counter::kPosesDuplicate: return "furrow_poses_duplicate_total";
-    case Counter::kPosesInvalid: return "furrow_poses_invalid_total";
-    case Counter::kPosesUnknownStream: return "furrow_poses_unknown_stream_total";
-    case Counter::kPosesRetiredSession: return "furrow_poses_retired_session_total";
-    case Counter::kSkeletonsOffered: return "furrow_skeletons_offered_total";
-    case Counter::kSkeletonsRejected: return "furrow_skeletons_rejected_total";
-    case Counter::kSkeletonsRequested: return "furrow_skeletons_requested_total";
-    case Counter::kSkeletonsThrottled: return "furrow_skeletons_throttled_total";
-    case Counter::kSubjectsRestarted: return "furrow_subjects_restarted_total";
-    case Counter::kSubjectsLost: return "furrow_subjects_lost_total";
-    case Counter::kSubscriptionsAccepted: return "furrow_subscriptions_accepted_total";
-    case Counter::kSubscriptionsRefused: return "furrow_subscriptions_refused_total";
-    case Counter::kWeightsSent: return "furrow_weights_sent_total";
-    case Counter::kFramesSkippedRate: return "furrow_frames_skipped_rate_total";
-    case Counter::kWeightsDroppedSlow: return "furrow_weights_dropped_slow_total";
-    case Counter::kPosesRelayed: return "furrow_poses_relayed_total";
-    case Counter::kPosesDroppedSlow: return "furrow_poses_dropped_slow_total";
-    case Counter::kPicturesRendered: return "furrow_pictures_rendered_total";
-    case Counter::kPicturesEncoded: return "furrow_pictures_encoded_total";
-    case Counter::kPicturesSent: return "furrow_pictures_sent_total";
-    case Counter::kPicturesDroppedSlow: return "furrow_pictures_dropped_slow_total";
-    case Counter::kPicturesFailed: return "furrow_pictures_failed_total";
-    case Counter::kSnapshotsReplaced: return "furrow_snapshots_replaced_total";
-    case Counter::kRendererRestarts: return "furrow_renderer_restarts_total";
-    case Counter::kMocapPackets: return "furrow_mocap_packets_total";
-    case Counter::kMocapMalformed: return "furrow_mocap_malformed_total";
-    case Counter::kMocapReordered: return "furrow_mocap_reordered_total";
-    case Counter::kMocapIncomplete: return "furrow_mocap_incomplete_total";
-    case Counter::kMocapStale: return "furrow_mocap_stale_total";
-    case Counter::kMocapFrames: return "furrow_mocap_frames_total";
-    case Counter::kMocapLockedOut: return "furrow_mocap_locked_out_total";
-    case Counter::kMocapRefused: return "furrow_mocap_refused_total";
-    case Counter::kOscPacketsSent: return "furrow_osc_packets_sent_total";
-    case Counter::kOscPacketsUnsendable: return "furrow_osc_packets_unsendable_total";
-    case Counter::kHttpConnections: return "furrow_http_connections_accepted_total";
-    case Counter::kHttpRequests: return "furrow_http_requests_total";
-    case Counter::kHttpRefused: return "furrow_http_refused_total";
-    case Counter::kWebSocketsAccepted: return "furrow_web_sockets_accepted_total";
-    case Counter::kRecordingMessages: return "furrow_recording_messages_total";
-    case Counter::kRecordingDropped: return "furrow_recording_dropped_total";
-    case Counter::kRecordingFailures: return "furrow_recording_failures_total";
-    case Counter::kCount: break;
-  }
-  return "";
+  return kCounters[static_cast<std::size_t>(counter)].name;
+}
+
+std::string_view CounterHelp(Counter counter) {
+  return kCounters[static_cast<std::size_t>(counter)].help;
 }
 
 }  // namespace furrow::server

@@ -15,16 +15,16 @@ constexpr std::pair<Counter, std::string_view> kRates[] = {
 };
 
 constexpr std::pair<Counter, std::string_view> kDrops[] = {
-    {Counter::kDatagramsOverrun, "datagrams that came too fast"},
+    {Counter::kDatagramsOverrun, "datagrams lost in the full socket buffer"},
     {Counter::kDatagramsMalformed, "malformed datagrams"},
     {Counter::kDatagramsUnsendable, "unsendable datagrams"},
-    {Counter::kDatagramsUnproven, "answers to unproven addresses"},
+    {Counter::kDatagramsUnproven, "replies to unproven addresses"},
     {Counter::kFragmentsMalformed, "malformed fragments"},
     {Counter::kFragmentsRefused, "fragments over the limits"},
-    {Counter::kFragmentsExpired, "messages without their last fragments"},
+    {Counter::kFragmentsExpired, "incomplete fragmented messages"},
     {Counter::kConnectionsRefused, "connections over the limit"},
     {Counter::kConnectionsMalformed, "malformed connections"},
-    {Counter::kConnectionsOverrun, "connections that do not read"},
+    {Counter::kConnectionsOverrun, "connections that did not read"},
     {Counter::kConnectionsIdle, "idle connections"},
     {Counter::kMessagesMalformed, "malformed messages"},
     {Counter::kMessagesThrottled, "throttled messages"},
@@ -35,22 +35,27 @@ constexpr std::pair<Counter, std::string_view> kDrops[] = {
     {Counter::kPosesLate, "late poses"},
     {Counter::kPosesDuplicate, "repeated poses"},
     {Counter::kPosesUnknownStream, "poses without a skeleton"},
-    {Counter::kPosesRetiredSession, "poses of replaced senders"},
+    {Counter::kPosesRetiredSession, "poses from replaced senders"},
     {Counter::kWeightsDroppedSlow, "weights to slow subscribers"},
     {Counter::kPicturesDroppedSlow, "pictures to slow subscribers"},
     {Counter::kPicturesFailed, "failed pictures"},
     {Counter::kMocapMalformed, "malformed mocap packets"},
     {Counter::kMocapReordered, "late mocap frames"},
     {Counter::kMocapStale, "mocap frames without tracking"},
-    {Counter::kMocapLockedOut, "mocap packets of locked-out senders"},
+    {Counter::kMocapLockedOut, "mocap packets from rejected senders"},
     {Counter::kMocapRefused, "frames of refused mocap subjects"},
     {Counter::kHttpRefused, "refused web requests"},
     {Counter::kOscPacketsUnsendable, "unsendable OSC packets"},
 };
 
+// "1 subject", "2 subjects".
+std::string Count(std::size_t count, const char* noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
 }  // namespace
 
-std::uint64_t StatusLine::Since(Counter counter) {
+std::uint64_t StatusLine::CountSinceLastLine(Counter counter) {
   std::uint64_t& last = last_[static_cast<std::size_t>(counter)];
   const std::uint64_t value = metrics_->Get(counter);
   return value - std::exchange(last, value);
@@ -59,15 +64,14 @@ std::uint64_t StatusLine::Since(Counter counter) {
 std::string StatusLine::Next(std::size_t subjects, std::size_t subscriptions, Time now) {
   const double seconds = last_time_ == Time{0} ? 1.0 : ToSeconds(now - last_time_);
   last_time_ = now;
-  std::string line =
-      std::to_string(subjects) + " subjects, " + std::to_string(subscriptions) + " subscriptions";
+  std::string line = Count(subjects, "subject") + ", " + Count(subscriptions, "subscription");
   for (const auto& [counter, name] : kRates) {
-    const double rate = static_cast<double>(Since(counter)) / seconds;
+    const double rate = static_cast<double>(CountSinceLastLine(counter)) / seconds;
     line += ", " + std::to_string(std::llround(rate)) + " " + std::string(name) + "/s";
   }
   std::string_view separator = "; dropped: ";
   for (const auto& [counter, name] : kDrops) {
-    const std::uint64_t count = Since(counter);
+    const std::uint64_t count = CountSinceLastLine(counter);
     if (count == 0) continue;
     line += std::string(separator) + std::to_string(count) + " " + std::string(name);
     separator = ", ";

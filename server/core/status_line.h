@@ -11,16 +11,17 @@
 
 namespace furrow::server {
 
-// What --verbose prints once a second: rates since the last line, and whatever was dropped.
+// Makes the line that --verbose prints every second: rates since the last line, and drop counts.
 class StatusLine {
  public:
   explicit StatusLine(const Metrics* metrics) : metrics_(metrics) {}
 
-  // "2 subjects, 3 subscriptions, 60 poses/s, 180 weights/s, 30 pictures/s; dropped: 4 late poses"
+  // For example "2 subjects, 3 subscriptions, 60 poses/s, 180 weights/s, 30 pictures/s; dropped: 4
+  // late poses". Counters that did not change are left out of the second part.
   [[nodiscard]] std::string Next(std::size_t subjects, std::size_t subscriptions, Time now);
 
  private:
-  std::uint64_t Since(Counter counter);
+  std::uint64_t CountSinceLastLine(Counter counter);
 
   const Metrics* metrics_;
   std::array<std::uint64_t, static_cast<std::size_t>(Counter::kCount)> last_{};

@@ -6,8 +6,8 @@
 
 namespace furrow::server {
 
-// A moment on the daemon's steady clock. Nothing below the main loop reads a clock: whoever needs
-// to know the time is given `now`.
+// A moment on the daemon's steady clock. Only the network layer reads the clock (net/clock.h); all
+// other code receives the time as a `now` argument, so tests choose it.
 using Time = std::chrono::nanoseconds;
 
 [[nodiscard]] constexpr double ToSeconds(Time time) {

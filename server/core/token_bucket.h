@@ -7,12 +7,14 @@
 
 namespace furrow::server {
 
-// At most `rate` things a second over time, `burst` at once. Full at the start.
+// A rate limiter: admits `rate` events per second on average and at most `burst` at once. The
+// bucket starts full.
 class TokenBucket {
  public:
   TokenBucket(double rate, double burst) : rate_(rate), burst_(burst), tokens_(burst) {}
 
-  // True when `cost` may pass at `now`. Time that runs backwards earns nothing.
+  // Takes `cost` tokens and returns true, or returns false if there are too few. A `now` earlier
+  // than the last one adds no tokens.
   [[nodiscard]] bool Take(Time now, double cost = 1.0) {
     if (started_ && now > last_) {
       tokens_ = std::min(burst_, tokens_ + rate_ * ToSeconds(now - last_));

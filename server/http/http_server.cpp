@@ -22,7 +22,7 @@ namespace {
 using net::ip::tcp;
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 
-// Says no and hangs up, without a session.
+// Answers with 429 and closes.
 void Refuse(tcp::socket socket) {
   static constexpr char kAnswer[] =
       "HTTP/1.1 429 Too Many Requests\r\nConnection: close\r\nContent-Length: 0\r\n\r\n";
@@ -41,7 +41,7 @@ Result<PageFiles> LoadPage(const HttpConfig& config) {
 PageFiles PageOrNone(const HttpConfig& config) {
   Result<PageFiles> page = LoadPage(config);
   if (page.ok()) return *std::move(page);
-  spdlog::warn("there is no page to serve: {}", page.status().ToString());
+  spdlog::warn("serving without a web page: {}", page.status().ToString());
   return {};
 }
 
@@ -65,7 +65,7 @@ struct HttpServer::Impl {
   net::awaitable<void> Serve(tcp::socket socket);
   void Run();
 
-  WebContext context;  // outlives the loop, whose connections use it
+  WebContext context;  // outlives the loop; its connections use it
   std::shared_ptr<net::io_context> loop = std::make_shared<net::io_context>(1);
   tcp::acceptor acceptor{*loop};
   std::uint16_t port = 0;
@@ -84,7 +84,7 @@ Status HttpServer::Impl::Listen(const std::string& bind, std::uint16_t wanted) {
     acceptor.close(ignored);
     return Status(StatusCode::kIo, "cannot listen: " + error.message(),
                   "http " + bind + " port " + std::to_string(wanted),
-                  "give another --http, or --no-http");
+                  "set another port with --http, or use --no-http");
   }
   port = acceptor.local_endpoint().port();
   return {};
@@ -95,7 +95,7 @@ net::awaitable<void> HttpServer::Impl::Accept() {
     beast::error_code error;
     auto socket = co_await acceptor.async_accept(Redirect(error));
     if (error == net::error::operation_aborted) co_return;
-    if (error) {  // no descriptors left, above all: they may come back
+    if (error) {  // usually no descriptors are left; try again later
       net::steady_timer pause(*loop, kAcceptPause);
       beast::error_code ignored;
       co_await pause.async_wait(Redirect(ignored));
@@ -113,14 +113,14 @@ net::awaitable<void> HttpServer::Impl::Serve(tcp::socket socket) {
   ++context.connections;
   try {
     co_await ServeConnection(beast::tcp_stream(std::move(socket)), &context);
-  } catch (const std::exception& error) {  // no memory: this connection's alone
-    spdlog::error("a web connection ended: {}", error.what());
+  } catch (const std::exception& error) {  // such as out of memory: affects this connection only
+    spdlog::error("a web connection failed: {}", error.what());
   }
   --context.connections;
 }
 
-// What the web's loop does not survive ends the hub's, too: no part may fall silent while the rest
-// goes on.
+// An exception that ends the web loop also ends the hub's loop, so that the daemon does not run on
+// without its web server.
 void HttpServer::Impl::Run() {
   try {
     loop->run();
@@ -136,7 +136,7 @@ Result<std::unique_ptr<HttpServer>> HttpServer::Start(Parts parts) {
   auto impl = std::make_unique<Impl>(std::move(parts));
   Status status = impl->Listen(bind, asked.value_or(HttpConfig::kDefaultPort));
   if (!status.ok() && !asked) {
-    spdlog::warn("{}: {}; taking any free port", status.where(), status.what());
+    spdlog::warn("{}: {}; using any free port", status.where(), status.what());
     status = impl->Listen(bind, 0);
   }
   if (!status.ok()) return status;

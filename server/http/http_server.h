@@ -11,9 +11,9 @@
 
 namespace furrow::server {
 
-// The web side of a daemon on a thread of its own: the page, WebSockets, pictures for plain HTTP,
-// and the JSON API (docs/HTTP-API.md). Whatever a client does there costs the hub's thread no more
-// than any other peer's messages.
+// The web server of a daemon: the page, WebSockets, pictures over plain HTTP, and the JSON API
+// (docs/HTTP-API.md). It runs on its own thread and exchanges messages with the hub's thread, so
+// web clients cost the hub no more than other peers.
 class HttpServer {
  public:
   struct Parts {
@@ -23,10 +23,11 @@ class HttpServer {
     AnswerApi answer;  // called on the hub's thread
     Metrics* metrics = nullptr;
   };
-  // Listens when it returns. Errors: kIo (names address and port). A page that is not there is
-  // logged; the rest is served without it.
+  // Starts listening. Errors: kIo, naming the address and the port. A missing page is only logged;
+  // everything else works without it.
   [[nodiscard]] static Result<std::unique_ptr<HttpServer>> Start(Parts parts);
-  // Cuts all connections and joins. On the hub's thread, or when that has ended.
+  // Closes all connections and joins the thread. Call it on the hub's thread or after that has
+  // ended.
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
@@ -34,7 +35,7 @@ class HttpServer {
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] int connections() const;
   [[nodiscard]] int viewers() const;
-  // No more connections.
+  // Stops accepting connections.
   void Drain();
 
  private:

@@ -12,52 +12,16 @@
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/span_body.hpp>
-#include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 
 #include "server/http/pictures/picture_stream.h"
+#include "server/http/request/reply_writer.h"
 #include "server/http/socket/web_socket.h"
 
 namespace furrow::server {
 namespace {
 
-// The page loads nothing from elsewhere, and nobody frames it. Its menu sets styles by script.
-constexpr char kContentPolicy[] =
-    "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; "
-    "connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
-
-template <class Message>
-void SetHeaders(const WebRequest& request, std::string_view type, Message* message) {
-  message->set(http::field::server, "furrowd");
-  message->set(http::field::content_type, beast::string_view(type.data(), type.size()));
-  message->set("X-Content-Type-Options", "nosniff");
-  message->set("Referrer-Policy", "no-referrer");
-  message->set("Content-Security-Policy", kContentPolicy);
-  message->keep_alive(request.keep_alive());
-}
-
-std::string_view View(beast::string_view text) { return {text.data(), text.size()}; }
-
-// With its body, unless only its head was asked for. False: the connection ends here.
-template <class Response>
-net::awaitable<bool> Write(beast::tcp_stream& stream, const WebRequest& request,
-                           Response& response) {
-  http::response_serializer<typename Response::body_type> serializer(response);
-  stream.expires_after(kWebDeadline);
-  beast::error_code failure;
-  if (request.method() == http::verb::head) {
-    beast::error_code error;
-    const std::size_t size = co_await http::async_write_header(stream, serializer, Redirect(error));
-    failure = error;
-  } else {
-    beast::error_code error;
-    const std::size_t size = co_await http::async_write(stream, serializer, Redirect(error));
-    failure = error;
-  }
-  co_return !failure && response.keep_alive();
-}
-
-// The hub's thread answers; where it does not within the deadline, that is what is said.
+// Asks the hub's thread for a reply, or replies with 503 after kWebDeadline.
 net::awaitable<ApiReply> AskHub(WebContext* context, ApiRequest request) {
   struct Pending {
     net::steady_timer timer;
@@ -66,7 +30,7 @@ net::awaitable<ApiReply> AskHub(WebContext* context, ApiRequest request) {
   const auto executor = co_await net::this_coro::executor;
   const auto pending =
       std::make_shared<Pending>(Pending{net::steady_timer(executor, kWebDeadline), std::nullopt});
-  // Weak: the hub's queue may outlive the loop that the timer is on.
+  // Weak, because the task in the hub's queue may outlive the event loop of the timer.
   context->post_to_hub([weak = std::weak_ptr(pending), answer = context->answer,
                         post_to_web = context->post_to_web,
                         request = std::move(request)](Hub& hub, Time now) {
@@ -80,7 +44,7 @@ net::awaitable<ApiReply> AskHub(WebContext* context, ApiRequest request) {
   beast::error_code ignored;
   co_await pending->timer.async_wait(Redirect(ignored));
   if (pending->reply) co_return *std::move(pending->reply);
-  co_return ErrorReply(503, "unavailable", "", "the daemon's loop does not answer");
+  co_return ErrorReply(503, "unavailable", "", "the daemon did not answer within 10 s");
 }
 
 net::awaitable<bool> WritePageFile(beast::tcp_stream& stream, const WebRequest& request,
@@ -91,7 +55,8 @@ net::awaitable<bool> WritePageFile(beast::tcp_stream& stream, const WebRequest& 
   const std::string& bytes = gzip ? file.gzip : file.bytes;
   http::response<http::span_body<const char>> response(
       known ? http::status::not_modified : http::status::ok, request.version());
-  SetHeaders(request, file.type, &response);
+  SetCommonHeaders(file.type, &response);
+  response.keep_alive(request.keep_alive());
   response.set(http::field::etag, file.etag);
   response.set(http::field::vary, "Accept-Encoding");
   response.set(http::field::cache_control,
@@ -101,25 +66,26 @@ net::awaitable<bool> WritePageFile(beast::tcp_stream& stream, const WebRequest& 
   if (!known && request.method() != http::verb::head) {
     response.body() = {bytes.data(), bytes.size()};
   }
-  co_return co_await Write(stream, request, response);
+  co_return co_await WriteResponse(stream, request, response);
 }
 
 bool IsPicture(const std::string& path) { return path == "/mjpeg" || path == "/snapshot.png"; }
 
-bool Reads(const WebRequest& request) {
+bool IsRead(const WebRequest& request) {
   return request.method() == http::verb::get || request.method() == http::verb::head;
 }
 
-ApiReply NotHere(const WebRequest& request, const std::string& path) {
+ApiReply NotFound(const WebRequest& request, const std::string& path) {
   if (path == "/") {
-    return {.status = 503,
-            .type = "text/plain; charset=utf-8",
-            .body =
-                "furrowd serves, but its page was not built: build the target furrow-web.\n"
-                "/mjpeg shows pictures without it.\n"};
+    return {
+        .status = 503,
+        .type = "text/plain; charset=utf-8",
+        .body =
+            "furrowd is running, but its web page is not installed. Build the target furrow-web.\n"
+            "/mjpeg shows pictures without the page.\n"};
   }
   return ErrorReply(404, "not_found", "",
-                    std::string(View(request.target())) + " is not served here");
+                    std::string(ToView(request.target())) + " does not exist");
 }
 
 class HttpSession {
@@ -129,7 +95,7 @@ class HttpSession {
 
   net::awaitable<void> Run() {
     bool goes_on = true;
-    while (goes_on) {  // in two steps: GCC 12 awaits both sides of an &&, whatever the left one is
+    while (goes_on) {  // two statements: GCC 12 awaits both operands of && in any case
       goes_on = co_await ReadRequest();
       if (goes_on) goes_on = co_await Answer();
     }
@@ -146,7 +112,7 @@ class HttpSession {
     parser.body_limit(kMaxWebMessageBytes);
     stream_.expires_after(kWebDeadline);
     beast::error_code error;
-    const std::size_t size = co_await http::async_read(stream_, buffer_, parser, Redirect(error));
+    co_await http::async_read(stream_, buffer_, parser, Redirect(error));
     if (!error) {
       request_ = parser.release();
       context_->metrics->Add(Counter::kHttpRequests);
@@ -154,70 +120,72 @@ class HttpSession {
     }
     if (error.category() == http::make_error_code(http::error::bad_method).category() &&
         error != http::error::end_of_stream && error != http::error::partial_message) {
-      co_await RefuseBytes(error);
+      co_await RejectBytes(error);
     }
     co_return false;
   }
 
-  // Bytes that are no request we take: one answer, then the connection ends.
-  net::awaitable<void> RefuseBytes(beast::error_code error) {
+  // Replies to invalid bytes. The connection closes afterwards.
+  net::awaitable<void> RejectBytes(beast::error_code error) {
     context_->metrics->Add(Counter::kHttpRefused);
     request_ = WebRequest(http::verb::get, "/", 11);
     request_.keep_alive(false);
     if (error == http::error::body_limit) {
       (void)co_await WriteReply(
-          stream_, request_,
-          ErrorReply(413, "limit", "", "a request's body has at most 65536 bytes"));
+          stream_, request_, ErrorReply(413, "limit", "", "the request body exceeds 65536 bytes"));
     } else if (error == http::error::header_limit) {
-      (void)co_await WriteReply(stream_, request_,
-                                ErrorReply(431, "limit", "", "too many header fields"));
+      (void)co_await WriteReply(
+          stream_, request_, ErrorReply(431, "limit", "", "the header fields exceed 8192 bytes"));
     } else {
-      (void)co_await WriteReply(stream_, request_, ErrorReply(400, "parse", "", "no HTTP request"));
+      (void)co_await WriteReply(stream_, request_,
+                                ErrorReply(400, "parse", "", "not a valid HTTP request"));
     }
   }
 
-  // False: the connection ends here.
+  // False: the connection must close.
   net::awaitable<bool> Answer() {
-    const std::string why = context_->guard.Check(View(request_[http::field::host]),
-                                                  View(request_[http::field::origin]));
+    const std::string why = context_->guard.Check(ToView(request_[http::field::host]),
+                                                  ToView(request_[http::field::origin]));
     if (!why.empty()) {
       context_->metrics->Add(Counter::kHttpRefused);
       co_return co_await WriteReply(stream_, request_, ErrorReply(403, "forbidden", "", why));
     }
-    std::optional<Url> url = ParseUrl(View(request_.target()));
+    std::optional<Url> url = ParseUrl(ToView(request_.target()));
     if (!url) {
-      co_return co_await WriteReply(stream_, request_,
-                                    ErrorReply(400, "parse", "", "a target that is no path"));
+      co_return co_await WriteReply(
+          stream_, request_,
+          ErrorReply(400, "parse", "", "the request target is not a valid path"));
     }
     if (url->path == "/ws") {
       if (beast::websocket::is_upgrade(request_)) {
         co_await ServeWebSocket(std::move(stream_), context_, std::move(request_));
         co_return false;
       }
-      co_return co_await WriteReply(stream_, request_,
-                                    ErrorReply(400, "upgrade", "", "/ws is a WebSocket"));
+      co_return co_await WriteReply(
+          stream_, request_,
+          ErrorReply(400, "upgrade", "", "/ws accepts WebSocket connections only"));
     }
-    if (IsPicture(url->path) && Reads(request_)) {
+    if (IsPicture(url->path) && IsRead(request_)) {
       co_return co_await ServePictures(&stream_, context_, request_, *url);
     }
-    co_return co_await AnswerPlain(*std::move(url));
+    co_return co_await AnswerPlainRequest(*std::move(url));
   }
 
-  net::awaitable<bool> AnswerPlain(Url url) {
+  net::awaitable<bool> AnswerPlainRequest(Url url) {
     const PageFile* file = context_->page.Find(url.path);
-    if (file != nullptr && Reads(request_)) {
+    if (file != nullptr && IsRead(request_)) {
       co_return co_await WritePageFile(stream_, request_, *file);
     }
     if (file != nullptr || IsPicture(url.path)) {
-      ApiReply reply = MethodReply(View(request_.method_string()), url.path, "GET, HEAD");
+      ApiReply reply = MethodReply(ToView(request_.method_string()), url.path, "GET, HEAD");
       co_return co_await WriteReply(stream_, request_, std::move(reply));
     }
     const bool is_api = url.path.starts_with("/api/") || url.path == "/metrics" ||
                         url.path == "/healthz" || url.path == "/readyz";
     if (!is_api) {
-      co_return co_await WriteReply(stream_, request_, NotHere(request_, url.path));
+      co_return co_await WriteReply(stream_, request_, NotFound(request_, url.path));
     }
-    ApiRequest request{std::string(View(request_.method_string())), std::move(url),
+    ApiRequest request{std::string(ToView(request_.method_string())), std::move(url),
                        std::move(request_.body())};
     if (request.method == "HEAD") request.method = "GET";
     ApiReply reply = co_await AskHub(context_, std::move(request));
@@ -231,24 +199,6 @@ class HttpSession {
 };
 
 }  // namespace
-
-net::awaitable<bool> WriteReply(beast::tcp_stream& stream, const WebRequest& request,
-                                ApiReply reply) {
-  http::response<http::string_body> response(static_cast<http::status>(reply.status),
-                                             request.version());
-  SetHeaders(request, reply.type, &response);
-  response.set(http::field::cache_control, "no-store");
-  if (!reply.file_name.empty()) {
-    response.set(http::field::content_disposition,
-                 "attachment; filename=\"" + reply.file_name + "\"");
-  }
-  if (!reply.allow.empty()) response.set(http::field::allow, reply.allow);
-  // The length of what was not made for a HEAD is left out.
-  const bool is_unmade = request.method() == http::verb::head && reply.body.empty();
-  response.body() = std::move(reply.body);
-  if (!is_unmade) response.prepare_payload();
-  co_return co_await Write(stream, request, response);
-}
 
 net::awaitable<void> ServeConnection(beast::tcp_stream stream, WebContext* context) {
   HttpSession session(std::move(stream), context);

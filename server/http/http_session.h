@@ -6,12 +6,8 @@
 
 namespace furrow::server {
 
-// One connection, from the first byte to the last: requests one after the other, each answered, or
-// handed on where it becomes a WebSocket or a stream of pictures.
+// Serves one connection until it closes: answers HTTP requests one after the other, and hands the
+// connection over if it becomes a WebSocket or a stream of pictures.
 [[nodiscard]] net::awaitable<void> ServeConnection(beast::tcp_stream stream, WebContext* context);
-
-// One whole answer. False: the client is gone, or did not take it in time.
-[[nodiscard]] net::awaitable<bool> WriteReply(beast::tcp_stream& stream, const WebRequest& request,
-                                              ApiReply reply);
 
 }  // namespace furrow::server

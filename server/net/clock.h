@@ -7,8 +7,8 @@
 
 namespace furrow::server {
 
-// The daemon's clock. Read here in net/ alone, once a batch of packets; everything below gets
-// `now`.
+// Reads the daemon's steady clock. Only the network layer and background threads call it, once per
+// batch of packets; all other code receives `now`.
 [[nodiscard]] inline Time ReadClock() {
   return std::chrono::duration_cast<Time>(std::chrono::steady_clock::now().time_since_epoch());
 }

@@ -3,12 +3,11 @@
 
 #include <utility>
 
-#include <asio/experimental/as_tuple.hpp>
-#include <asio/use_awaitable.hpp>
 #include <spdlog/spdlog.h>
 
+#include "server/net/await_tuple.h"
 #include "server/net/clock.h"
-#include "server/net/spawn.h"
+#include "server/net/critical_task.h"
 
 namespace furrow::server {
 
@@ -33,7 +32,7 @@ Status MocapInput::Open(const udp::endpoint& endpoint) {
   return Status(StatusCode::kUnavailable,
                 "cannot listen on UDP " + endpoint.address().to_string() + " port " +
                     std::to_string(endpoint.port()) + ": " + error.message(),
-                "", "end what uses the port, or choose another with " + flag_);
+                "", "stop the program that uses the port, or set another one with " + flag_);
 }
 
 std::uint16_t MocapInput::port() const {
@@ -43,7 +42,7 @@ std::uint16_t MocapInput::port() const {
 
 void MocapInput::Start() {
   peer_ = hub_->AddPeer(Transport::kMocap, flag_.substr(2), &link_, ReadClock());
-  SpawnVital(io_, Read());
+  StartCriticalTask(io_, Read());
 }
 
 void MocapInput::Close() {
@@ -54,10 +53,10 @@ void MocapInput::Close() {
 asio::awaitable<void> MocapInput::Read() {
   udp::endpoint sender;
   while (socket_.is_open()) {
-    const auto [error, size] = co_await socket_.async_receive_from(
-        asio::buffer(buffer_), sender, asio::experimental::as_tuple(asio::use_awaitable));
+    const auto [error, size] =
+        co_await socket_.async_receive_from(asio::buffer(buffer_), sender, kAwaitTuple);
     if (error == asio::error::operation_aborted || !socket_.is_open()) co_return;
-    if (error) continue;  // of the datagram, not of the socket
+    if (error) continue;  // an error of one datagram; the socket still works
     metrics_->Add(Counter::kMocapPackets);
     OnDatagram({buffer_.data(), size}, sender.address(), ReadClock());
   }
@@ -65,33 +64,33 @@ asio::awaitable<void> MocapInput::Read() {
 
 void MocapInput::OnDatagram(std::span<const std::uint8_t> bytes, const asio::ip::address& sender,
                             Time now) {
-  if (!gate_.Admits(sender, now)) return TurnAway(sender);
+  if (!gate_.Admits(sender, now)) return Reject(sender);
   if (gate_.IsSuccessor(sender)) adapter_->Forget();
   const std::uint64_t malformed = adapter_->counters().malformed;
   adapter_->Push(bytes, ToMicroseconds(now),
                  [&](const auto& frame) { hub_->OnMocapFrame(peer_, frame, now); });
-  const bool makes_sense = adapter_->counters().malformed == malformed;
-  if (makes_sense && gate_.Hold(sender, now)) {
-    spdlog::info("{} listens to {}", flag_, sender.to_string());
-    has_named_intruder_ = false;
+  const bool is_valid = adapter_->counters().malformed == malformed;
+  if (is_valid && gate_.Hold(sender, now)) {
+    spdlog::info("{} now accepts {}", flag_, sender.to_string());
+    has_logged_rejected_ = false;
   }
-  Count();
+  UpdateMetrics();
 }
 
-void MocapInput::TurnAway(const asio::ip::address& sender) {
+void MocapInput::Reject(const asio::ip::address& sender) {
   metrics_->Add(Counter::kMocapLockedOut);
-  if (std::exchange(has_named_intruder_, true)) return;
-  spdlog::warn("{} does not listen to {}: another sender has the port, or --mocap-allow lacks it",
+  if (std::exchange(has_logged_rejected_, true)) return;
+  spdlog::warn("{} rejects {}: another sender holds the port, or --mocap-allow does not list it",
                flag_, sender.to_string());
 }
 
 void MocapInput::Tick(Time now) {
   adapter_->Tick(ToMicroseconds(now),
                  [&](const auto& frame) { hub_->OnMocapFrame(peer_, frame, now); });
-  Count();
+  UpdateMetrics();
 }
 
-void MocapInput::Count() {
+void MocapInput::UpdateMetrics() {
   const protocol::mocap::AdapterCounters& counters = adapter_->counters();
   metrics_->Add(Counter::kMocapFrames, counters.accepted - counted_.accepted);
   metrics_->Add(Counter::kMocapMalformed, counters.malformed - counted_.malformed);

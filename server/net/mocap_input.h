@@ -19,12 +19,12 @@
 
 namespace furrow::server {
 
-// A UDP port that speaks a foreign wire: datagrams to an adapter, its frames to the hub, as poses
-// of a peer that nobody answers. Whom it listens to is the gate's matter; what that turns away is
-// counted, and named in the log once a holder.
+// A UDP port for a foreign mocap wire. An adapter turns datagrams into frames, and the hub receives
+// them as frames of a peer without replies. A SenderGate decides who may send; rejected datagrams
+// are counted and logged once per holder of the port.
 class MocapInput {
  public:
-  // `flag` names the port in errors ("--vmc").
+  // `flag`: names the port in messages, for example "--vmc".
   MocapInput(asio::io_context& io, std::string flag,
              std::unique_ptr<protocol::mocap::MocapAdapter> adapter, SenderGate gate, Hub* hub,
              Metrics* metrics);
@@ -34,11 +34,11 @@ class MocapInput {
   [[nodiscard]] std::uint16_t port() const;
   void Start();
   void Close();
-  // Gives out frames that wait for an end that does not come. About every 10 ms.
+  // Completes frames without an end-of-frame mark. Call it about every 10 ms.
   void Tick(Time now);
 
  private:
-  class NoLink : public Link {
+  class NullLink : public Link {
    public:
     void SendReply(std::span<const std::uint8_t>) override {}
     int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t, int) override {
@@ -49,20 +49,20 @@ class MocapInput {
 
   asio::awaitable<void> Read();
   void OnDatagram(std::span<const std::uint8_t> bytes, const asio::ip::address& sender, Time now);
-  void TurnAway(const asio::ip::address& sender);
-  void Count();
+  void Reject(const asio::ip::address& sender);
+  void UpdateMetrics();
 
   asio::io_context& io_;
   asio::ip::udp::socket socket_;
   const std::string flag_;
   const std::unique_ptr<protocol::mocap::MocapAdapter> adapter_;
   SenderGate gate_;
-  bool has_named_intruder_ = false;  // in the log, since the port changed hands
+  bool has_logged_rejected_ = false;  // since the port changed hands
   Hub* const hub_;
   Metrics* const metrics_;
-  NoLink link_;
+  NullLink link_;
   PeerId peer_ = 0;
-  protocol::mocap::AdapterCounters counted_;  // what the metrics have already
+  protocol::mocap::AdapterCounters counted_;  // already added to the metrics
   std::array<std::uint8_t, 65536> buffer_;
 };
 

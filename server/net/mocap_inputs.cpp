@@ -1,31 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/mocap_inputs.h"
 
-#include <string>
-#include <vector>
-
-#include "base/status.h"
 #include "protocol/mocap/livelink_face.h"
 #include "protocol/mocap/vmc.h"
 
 namespace furrow::server {
 
-Status MocapInputs::Open(const Config& config, asio::io_context& io, Hub* hub, Metrics* metrics) {
-  const auto address = asio::ip::make_address(config.bind);
+Status MocapInputs::Open(const Options& options, asio::io_context& io, Hub* hub, Metrics* metrics) {
+  const auto address = asio::ip::make_address(options.bind);
   std::vector<asio::ip::address> allowed;
-  for (const std::string& text : config.mocap_allow) {
+  for (const std::string& text : options.allow) {
     allowed.push_back(asio::ip::make_address(text));
   }
-  if (config.vmc) {
-    vmc_ = std::make_unique<MocapInput>(io, "--vmc", protocol::mocap::MakeVmcAdapter(),
-                                        SenderGate(allowed, SenderGate::Holds::kOne), hub, metrics);
-    FURROW_RETURN_IF_ERROR(vmc_->Open({address, *config.vmc}));
+  if (options.vmc) {
+    vmc_ =
+        std::make_unique<MocapInput>(io, "--vmc", protocol::mocap::MakeVmcAdapter(),
+                                     SenderGate(allowed, SenderGate::Policy::kOne), hub, metrics);
+    FURROW_RETURN_IF_ERROR(vmc_->Open({address, *options.vmc}));
   }
-  if (config.livelink_face) {
+  if (options.livelink_face) {
     livelink_face_ = std::make_unique<MocapInput>(
         io, "--livelink-face", protocol::mocap::MakeLiveLinkFaceAdapter(),
-        SenderGate(allowed, SenderGate::Holds::kEveryAllowed), hub, metrics);
-    return livelink_face_->Open({address, *config.livelink_face});
+        SenderGate(allowed, SenderGate::Policy::kAllAllowed), hub, metrics);
+    return livelink_face_->Open({address, *options.livelink_face});
   }
   return {};
 }

@@ -4,28 +4,37 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <asio/io_context.hpp>
 
 #include "base/status.h"
-#include "server/config/config.h"
 #include "server/core/metrics.h"
 #include "server/net/mocap_input.h"
 #include "server/session/hub.h"
 
 namespace furrow::server {
 
-// The ports of foreign wires that a daemon was asked for: --vmc, --livelink-face.
+// The mocap ports of a daemon: --vmc and --livelink-face.
 class MocapInputs {
  public:
+  struct Options {
+    std::string bind;                            // numeric address
+    std::optional<std::uint16_t> vmc;            // absent: off
+    std::optional<std::uint16_t> livelink_face;  // absent: off
+    std::vector<std::string> allow;              // numeric sender addresses; empty: any sender
+  };
+
   // Errors: those of MocapInput::Open().
-  [[nodiscard]] Status Open(const Config& config, asio::io_context& io, Hub* hub, Metrics* metrics);
+  [[nodiscard]] Status Open(const Options& options, asio::io_context& io, Hub* hub,
+                            Metrics* metrics);
   void Start();
-  // About every 10 ms.
+  // Call it about every 10 ms.
   void Tick(Time now);
   void Close();
 
-  // None: not asked for.
+  // Absent: the port is off.
   [[nodiscard]] std::optional<std::uint16_t> vmc_port() const { return PortOf(vmc_.get()); }
   [[nodiscard]] std::optional<std::uint16_t> livelink_face_port() const {
     return PortOf(livelink_face_.get());

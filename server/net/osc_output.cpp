@@ -6,7 +6,7 @@
 namespace furrow::server {
 namespace {
 
-// Subjects that left still hold a writer; they are all dropped when there are so many.
+// Writers of subjects that have left stay in the map. Clearing it now and then bounds the memory.
 constexpr std::size_t kMaxWriters = 2048;
 
 }  // namespace
@@ -21,7 +21,7 @@ Status OscOutput::Open(const HostPort& destination, const std::string& prefix) {
   if (!error) return {};
   return Status(StatusCode::kUnavailable,
                 "cannot send OSC to " + destination.host + ": " + error.message(), "",
-                "see --osc-out");
+                "check --osc-out");
 }
 
 OscOutput::Writer& OscOutput::WriterOf(const Subject& subject) {

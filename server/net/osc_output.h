@@ -11,25 +11,26 @@
 
 #include "base/status.h"
 #include "protocol/mocap/osc_out.h"
-#include "server/config/config.h"
 #include "server/core/metrics.h"
+#include "server/core/network_address.h"
 #include "server/session/subjects/subject_registry.h"
 
 namespace furrow::server {
 
-// Sends every subject's weights as OSC to one address (--osc-out), each pose as it comes.
+// Sends the weights of all subjects as OSC to one address (--osc-out), with every pose. One object
+// serves one network thread.
 class OscOutput {
  public:
   OscOutput(asio::io_context& io, Metrics* metrics) : socket_(io), metrics_(metrics) {}
 
-  // Errors: kUnavailable.
+  // `prefix`: without slashes. Errors: kUnavailable.
   [[nodiscard]] Status Open(const HostPort& destination, const std::string& prefix);
   void Send(const Subject& subject);
 
  private:
   struct Writer {
     protocol::mocap::OscWeightWriter osc;
-    const wrinkle::RigBinding* named_for = nullptr;  // whose names the writer has
+    const wrinkle::RigBinding* named_for = nullptr;  // the binding that SetNames() was called for
   };
   Writer& WriterOf(const Subject& subject);
 

@@ -7,7 +7,7 @@
 namespace furrow::server {
 namespace {
 
-// One spelling an address: a socket of both families shows IPv4 as ::ffff:a.b.c.d.
+// One form per address: a dual-stack socket shows IPv4 addresses as ::ffff:a.b.c.d.
 asio::ip::address Plain(const asio::ip::address& address) {
   if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
   return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
@@ -15,8 +15,8 @@ asio::ip::address Plain(const asio::ip::address& address) {
 
 }  // namespace
 
-SenderGate::SenderGate(std::span<const asio::ip::address> allowed, Holds holds)
-    : exclusive_(holds == Holds::kOne || allowed.empty()) {
+SenderGate::SenderGate(std::span<const asio::ip::address> allowed, Policy policy)
+    : exclusive_(policy == Policy::kOne || allowed.empty()) {
   std::ranges::transform(allowed, std::back_inserter(allowed_), Plain);
 }
 

@@ -12,27 +12,27 @@
 
 namespace furrow::server {
 
-// Who may feed a port of a foreign wire. Such wires prove nothing and most name nobody, so that two
-// senders at once would mix into one performance: the first whose datagrams make sense has the port
-// until it has been silent for kRelease. Addresses count without their ports, which senders change
-// as they like.
+// Decides which sender may use a mocap port. Foreign wires have no authentication and most of them
+// do not identify the sender, so two senders at once would mix into one performance. The first
+// sender with valid datagrams holds the port until it has been silent for kRelease. Senders are
+// told apart by address, not by port, because they change ports freely.
 class SenderGate {
  public:
   static constexpr Time kRelease = std::chrono::seconds(3);
 
-  // How many senders a port takes at a time.
-  enum class Holds { kOne, kEveryAllowed };
+  // kOne: one sender at a time. kAllAllowed: all allowed senders at once, for wires that identify
+  // their senders.
+  enum class Policy { kOne, kAllAllowed };
 
-  // `allowed`: nobody else passes; empty: anybody may. kEveryAllowed is for wires that tell their
-  // senders apart, and needs a list: without one it is kOne.
-  SenderGate(std::span<const asio::ip::address> allowed, Holds holds);
+  // `allowed`: the addresses that may send; empty: any address, and the policy is then kOne.
+  SenderGate(std::span<const asio::ip::address> allowed, Policy policy);
 
-  // Whether a datagram from there is to be read at all.
+  // True if a datagram from this address may be read.
   [[nodiscard]] bool Admits(const asio::ip::address& sender, Time now) const;
-  // Whether, once held, the port has changed hands: what the last sender said counts no more.
+  // True if this sender would replace another one, whose state must be discarded first.
   [[nodiscard]] bool IsSuccessor(const asio::ip::address& sender) const;
-  // A datagram that was admitted made sense: its sender has the port, or keeps it. True when it did
-  // not have it before. Where everybody allowed passes, nobody has it.
+  // Call after a valid datagram of an admitted sender, which then holds the port. True if it did
+  // not hold the port before. With kAllAllowed, nobody holds the port.
   bool Hold(const asio::ip::address& sender, Time now);
 
  private:

@@ -12,7 +12,7 @@
 
 namespace furrow::server {
 
-// A picture drawn and packed, and who waits for it. No bytes: it could not be drawn.
+// A rendered and encoded picture with its recipients. Empty `bytes`: rendering failed.
 struct FinishedPicture {
   std::uint32_t sequence = 0;
   std::int64_t capture_time_us = 0;
@@ -25,17 +25,18 @@ struct FinishedPicture {
   std::vector<PictureTicket> tickets;
 };
 
-// Where pictures come from, seen from the sessions: they ask here, and get a FinishedPicture back
-// through their own thread's queue. RenderThread is the one that draws.
+// The renderer as the session sees it. Submit() requests a picture; a FinishedPicture comes back
+// later through the session's own thread. RenderThread implements it.
 class PictureSource {
  public:
   virtual ~PictureSource() = default;
-  // From any thread; never blocks on drawing. The newest job of a subject and spec wins.
+  // Requests a picture. A newer job replaces a waiting one of the same subject and spec. May be
+  // called from any thread; never waits for rendering.
   virtual void Submit(RenderJob job) = 0;
-  // Takes back a still that waits to be drawn for this subscription. False: there is none, or it is
-  // being drawn.
+  // Cancels a still that waits to be rendered for this subscription. False: there is none, or its
+  // rendering has begun.
   virtual bool WithdrawStill(std::uint64_t subscription) = 0;
-  // A camera preset of the character; the error lists them.
+  // A camera preset of the character. Errors: kNotFound; the hint lists the presets.
   [[nodiscard]] virtual Result<render::Camera> Preset(std::string_view name) const = 0;
 };
 

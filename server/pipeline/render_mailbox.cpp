@@ -7,7 +7,7 @@
 namespace furrow::server {
 namespace {
 
-constexpr int kStillQuality = 92;  // from 90 on without subsampling
+constexpr int kStillQuality = 92;  // the encoder subsamples chroma below 90
 
 void MergeTickets(const RenderJob& from, RenderJob* into) {
   const bool rests = from.moved_at == into->moved_at;
@@ -44,16 +44,16 @@ Encoding EncodingOf(const PictureTicket& ticket) {
 
 bool RenderJob::IsStill() const { return std::ranges::any_of(tickets, &PictureTicket::still); }
 
-// Whoever changes its view faster than it is drawn takes no place but its own.
+// A viewer that changes its view faster than pictures are rendered occupies one place only.
 void RenderMailbox::DropOlderTickets(const RenderJob& job) {
   if (job.tickets.empty()) return;
-  const auto asks_anew = [&job](const PictureTicket& ticket) {
+  const auto is_superseded = [&job](const PictureTicket& ticket) {
     return std::ranges::find(job.tickets, ticket.subscription, &PictureTicket::subscription) !=
            job.tickets.end();
   };
   std::erase_if(jobs_, [&](RenderJob& other) {
     if (IsSamePicture(other, job)) return false;
-    return std::erase_if(other.tickets, asks_anew) > 0 && other.tickets.empty();
+    return std::erase_if(other.tickets, is_superseded) > 0 && other.tickets.empty();
   });
 }
 
@@ -90,11 +90,11 @@ std::optional<RenderJob> RenderMailbox::Take(bool wait) {
 
 bool RenderMailbox::WithdrawStill(std::uint64_t subscription) {
   const std::lock_guard lock(mutex_);
-  const auto is_it = [subscription](const PictureTicket& ticket) {
+  const auto is_still_of = [subscription](const PictureTicket& ticket) {
     return ticket.still && ticket.subscription == subscription;
   };
   for (auto job = jobs_.begin(); job != jobs_.end(); ++job) {
-    if (std::erase_if(job->tickets, is_it) == 0) continue;
+    if (std::erase_if(job->tickets, is_still_of) == 0) continue;
     if (job->tickets.empty()) jobs_.erase(job);
     return true;
   }

@@ -16,20 +16,20 @@
 
 namespace furrow::server {
 
-// What a picture shows, apart from the pose: equal ones of one subject are drawn once.
+// What a picture shows, apart from the pose. Equal specs of one subject are rendered once.
 struct PictureSpec {
   render::View view = render::View::kFinal;
   render::Camera camera;
   int width = 640;
   int height = 640;
-  // Of everything but the view; null: the renderer's defaults. Equal ones are one object
-  // (ViewSettings).
+  // All settings except the view; null: the renderer's defaults. Compared by address, because
+  // ViewSettings shares equal settings.
   std::shared_ptr<const render::Settings> settings;
 
   [[nodiscard]] bool operator==(const PictureSpec& other) const;
 };
 
-// How a drawn picture is packed: equal ones are encoded once.
+// How a picture is encoded. Equal encodings of one picture are made once.
 struct Encoding {
   render::ImageFormat format = render::ImageFormat::kJpeg;
   int quality = 85;  // JPEG: [1, 100]
@@ -37,34 +37,35 @@ struct Encoding {
   [[nodiscard]] bool operator==(const Encoding&) const = default;
 };
 
-// Who gets a picture, and packed how.
+// One recipient of a picture.
 struct PictureTicket {
   std::uint64_t subscription = 0;  // Subscription::uid
-  Encoding encoding;               // of a subject that moves
-  std::uint32_t view_request = 0;  // the request whose view it is
-  std::uint8_t tier = 0;           // what `encoding` stands for: ViewerFlow::tier()
+  Encoding encoding;               // while the subject moves; see EncodingOf()
+  std::uint32_t view_request = 0;  // sequence of the request that set the view
+  std::uint8_t tier = 0;           // ViewerFlow::tier() that chose the encoding
   bool still = false;              // the refined picture of a pose at rest
 };
 
-// How a ticket's picture is packed: a still as JPEG of quality 92, without subsampling.
+// The encoding to use for a ticket: for a still JPEG, quality 92 without chroma subsampling.
 [[nodiscard]] Encoding EncodingOf(const PictureTicket& ticket);
 
-// A picture to be drawn of one subject, for everybody who waits for this very one. Without tickets:
-// a newer snapshot for a job that still waits, and nothing where there is none.
+// A picture of one subject to render, with all its recipients. A job without tickets only refreshes
+// the snapshot of an equal job that still waits.
 struct RenderJob {
   std::uint64_t subject = 0;
   PictureSpec spec;
   std::shared_ptr<const Snapshot> snapshot;
   std::vector<PictureTicket> tickets;
-  Time moved_at{0};  // when the subject last moved, where somebody watches with flow control
+  Time moved_at{0};  // when the subject last moved; set if a viewer uses flow control
 
-  // Drawn with more care: it is a still for one of those who wait, at least.
+  // True if at least one ticket wants a still, which is rendered with more samples.
   [[nodiscard]] bool IsStill() const;
 };
 
-// The way from the network threads to the render thread: at most one job a (subject, spec) waits,
-// the newest snapshot wins, and no put ever blocks on drawing. Bounded by `capacity` keys; a
-// subscription has one ticket, of the spec that it asked for last.
+// Carries jobs from the network threads to the render thread. At most one job per subject and spec
+// waits, with the newest snapshot, and at most `capacity` jobs in total. A subscription has at most
+// one waiting ticket, for the spec that it requested last. Thread-safe; Put() never waits for
+// rendering.
 class RenderMailbox {
  public:
   explicit RenderMailbox(std::size_t capacity) : capacity_(capacity) {}
@@ -72,21 +73,25 @@ class RenderMailbox {
   static constexpr int kMaxPassedOver = 8;
 
   enum class PutResult { kQueued, kReplaced, kFull, kNotWanted };
-  // kReplaced: an older snapshot of the same subject and spec was dropped; its tickets join the new
-  // job's, one a subscription, and are stills no more where the subject moved. kNotWanted: a job
-  // without tickets found none to refresh. kFull: the job is as it was; else it is moved from.
-  // Tickets of the job's subscriptions that wait for another picture go, and with the last of its
-  // tickets a job.
+  // Adds a job. Waiting tickets of the same subscriptions for other pictures are removed, and so
+  // are jobs without tickets.
+  // - kQueued: a new job waits.
+  // - kReplaced: the job replaced one of the same subject and spec and took over its tickets.
+  // Tickets
+  //   for stills become normal ones if the subject has moved.
+  // - kNotWanted: the job has no tickets and there was no job to refresh.
+  // - kFull: `capacity` jobs wait, or the mailbox is closed. Only then `job` is left unchanged.
   PutResult Put(RenderJob&& job);
 
-  // The longest waiting job, those that move before stills (unless kMaxPassedOver of them went
-  // before the oldest job already). With `wait`, blocks until there is one or Close() was called.
+  // Removes and returns the oldest job. Moving subjects go before stills, but at most
+  // kMaxPassedOver jobs pass the oldest one. With `wait`, blocks until there is a job or Close()
+  // was called.
   [[nodiscard]] std::optional<RenderJob> Take(bool wait);
 
-  // Takes back a still that waits. False: none does, or it is being drawn.
+  // Cancels a waiting still. False: there is none, or its rendering has begun.
   bool WithdrawStill(std::uint64_t subscription);
 
-  // Take() no longer blocks, and what waits is dropped.
+  // Drops all jobs. Take() no longer blocks.
   void Close();
   [[nodiscard]] bool closed() const;
 
@@ -97,7 +102,7 @@ class RenderMailbox {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<RenderJob> jobs_;
-  int passed_over_ = 0;  // jobs taken since the oldest was at the front
+  int passed_over_ = 0;  // consecutive jobs that passed the oldest one
   bool closed_ = false;
 };
 

@@ -11,7 +11,7 @@ namespace furrow::server {
 namespace {
 
 constexpr std::size_t kMaxWaitingJobs = 256;
-constexpr int kMaxReadBacks = 2;  // render::Renderer's own limit
+constexpr int kMaxReadBacks = 2;  // the limit of render::Renderer
 
 }  // namespace
 
@@ -84,7 +84,7 @@ void RenderThread::Run(std::promise<Status> started) {
     }
     if (!in_flight_.empty()) Collect(/*wait=*/true);
   }
-  renderer_.reset();  // on the thread that owns the context
+  renderer_.reset();  // on this thread, which owns the context
 }
 
 void RenderThread::Draw(RenderJob job) {
@@ -109,7 +109,7 @@ void RenderThread::Draw(RenderJob job) {
   request.height = job.spec.height;
   if (Status status = renderer_->Submit(request); !status.ok()) {
     Fail(std::move(job));
-    // What the job itself gets wrong (a size, a pose) says nothing about the context.
+    // Other errors concern the job (its size, its pose), not the context.
     if (status.code() == StatusCode::kUnavailable || status.code() == StatusCode::kInternal) {
       Rebuild(status);
     }
@@ -146,18 +146,19 @@ void RenderThread::Finish(const render::Image& image, const RenderJob& job) {
     auto bytes = render::EncodeImage(image, encoding.format, encoding.quality);
     metrics_->Add(bytes.ok() ? Counter::kPicturesEncoded : Counter::kPicturesFailed);
     if (!bytes.ok()) {
-      spdlog::warn("a picture could not be encoded: {}", bytes.status().ToString());
+      spdlog::warn("cannot encode a picture: {}", bytes.status().ToString());
       bytes = std::vector<std::uint8_t>();
     }
-    FinishedPicture picture{.sequence = job.snapshot->sequence,
-                            .capture_time_us = job.snapshot->capture_time_us,
-                            .age_us = job.snapshot->age_us,
-                            .received_us = job.snapshot->received_us,
-                            .width = image.width,
-                            .height = image.height,
-                            .encoding = encoding,
-                            .bytes = {bytes->begin(), bytes->end()},  // without room to spare
-                            .tickets = {}};
+    FinishedPicture picture{
+        .sequence = job.snapshot->sequence,
+        .capture_time_us = job.snapshot->capture_time_us,
+        .age_us = job.snapshot->age_us,
+        .received_us = job.snapshot->received_us,
+        .width = image.width,
+        .height = image.height,
+        .encoding = encoding,
+        .bytes = {bytes->begin(), bytes->end()},  // exact capacity: the bytes may wait in queues
+        .tickets = {}};
     for (const PictureTicket& ticket : job.tickets) {
       if (EncodingOf(ticket) == encoding) picture.tickets.push_back(ticket);
     }
@@ -166,7 +167,7 @@ void RenderThread::Finish(const render::Image& image, const RenderJob& job) {
 }
 
 void RenderThread::Rebuild(const Status& reason) {
-  spdlog::error("the renderer failed and is made anew: {}", reason.ToString());
+  spdlog::error("the renderer failed and will be created again: {}", reason.ToString());
   metrics_->Add(Counter::kRendererRestarts);
   for (RenderJob& job : in_flight_) Fail(std::move(job));
   in_flight_.clear();
@@ -180,11 +181,11 @@ bool RenderThread::Revive() {
     return false;
   }
   if (Status status = CreateRenderer(); !status.ok()) {
-    spdlog::error("no pictures for now: {}", status.ToString());
+    spdlog::error("cannot create the renderer; pictures are paused: {}", status.ToString());
     BackOff();
     return false;
   }
-  spdlog::info("pictures are drawn again, on {}", renderer_->description());
+  spdlog::info("rendering again on {}", renderer_->description());
   return true;
 }
 

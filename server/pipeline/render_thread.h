@@ -22,32 +22,33 @@
 
 namespace furrow::server {
 
-// The thread that owns the EGL context: takes jobs from the mailbox, draws with two read-backs in
-// flight, encodes once an encoding, hands pictures to `deliver`. Stills are drawn with
-// kStillSamples a pixel where the settings leave it to the device: hair and lashes that speckle at
-// one sample, and may while they move, do not where the eye has time to look.
+// The thread that owns the EGL context. It takes jobs from the mailbox, renders with two read-backs
+// in flight, encodes each picture once per encoding, and passes the results to `deliver`. Without
+// viewers it sleeps.
 //
-// It sleeps while nobody watches. A context that is lost is rebuilt for the next job; while that
-// fails, jobs are dropped and counted, and twice as many each time before it is tried again (to
-// kMaxJobsSkipped), so that a GPU that is gone costs no core.
+// Stills use kStillSamples per pixel if the settings leave the number to the device: hair and
+// lashes speckle at one sample, which shows once they stop moving.
+//
+// A lost context is created again for the next job. While that fails, jobs are dropped and counted,
+// twice as many before each new attempt (up to kMaxJobsSkipped), so that a missing GPU does not
+// keep a core busy.
 class RenderThread : public PictureSource {
  public:
   static constexpr int kMaxJobsSkipped = 255;
   static constexpr int kStillSamples = 4;
 
-  // Called on the render thread, for a job that finds no room on the one that submits; must not
-  // block. Every ticket of every job comes back, with bytes or without.
+  // Receives finished pictures. Called on the render thread, or on the submitting thread if the
+  // mailbox is full. Must not block. Every ticket of every job comes back, with or without bytes.
   using Deliver = std::function<void(FinishedPicture)>;
 
-  // Makes the renderer of the character, at the start and whenever one was lost; called on the
-  // render thread. The daemon's is render::Renderer::Create.
+  // Creates the renderer, at the start and after each loss. Called on the render thread.
   using Factory = std::function<Result<std::unique_ptr<render::Renderer>>()>;
 
-  // `skeleton` is the character's and outlives the thread. Returns when the context stands. Errors:
-  // those of `make_renderer`.
+  // Starts the thread and waits for the first renderer. `skeleton`: the character's; outlives this
+  // object. Errors: those of `make_renderer`.
   [[nodiscard]] static Result<std::unique_ptr<RenderThread>> Start(
       const wrinkle::Skeleton* skeleton, Factory make_renderer, Metrics* metrics, Deliver deliver);
-  ~RenderThread() override;  // closes the mailbox and joins
+  ~RenderThread() override;  // drops waiting jobs and joins the thread
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
 
@@ -79,11 +80,11 @@ class RenderThread : public PictureSource {
   std::vector<std::pair<std::string, render::Camera>> presets_;  // written before Start() returns
   std::string description_;
 
-  // The render thread's own.
+  // Used by the render thread only.
   std::unique_ptr<render::Renderer> renderer_;  // null: lost
-  int jobs_to_skip_ = 0;                        // before it is made again
-  int next_skip_ = 0;                           // grows until a picture comes out
-  std::deque<RenderJob> in_flight_;             // as the renderer's read-backs, oldest first
+  int jobs_to_skip_ = 0;                        // before the next attempt to create it
+  int next_skip_ = 0;                           // doubles until a picture succeeds
+  std::deque<RenderJob> in_flight_;             // oldest first, in the order of the read-backs
   wrinkle::CharacterPose drawn_;
 
   std::thread thread_;

@@ -52,7 +52,7 @@ void StreamDefinitions::SetRig(std::shared_ptr<const wrinkle::Rig> rig) {
   known_.clear();
 }
 
-Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Remake(
+Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Rebind(
     const StreamDefinition& stream) {
   return FindOrMake(stream.skeleton, stream.blend_shapes, [] { return true; });
 }
@@ -73,7 +73,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::FindOrMake(
   auto made = Make(std::move(skeleton), std::move(blend_shapes));
   if (!made.ok()) return made;
   known_.push_front(*made);
-  if (known_.size() > capacity_) known_.pop_back();  // its subjects, if any, keep it alive
+  if (known_.size() > capacity_) known_.pop_back();  // subjects that use it keep it alive
   return made;
 }
 
@@ -103,7 +103,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
   return std::shared_ptr<const StreamDefinition>(std::move(definition));
 }
 
-// Once a definition, so that a sender that offers again and again does not fill the log.
+// Once per definition, so that repeated offers do not flood the log.
 void StreamDefinitions::Report(const StreamDefinition& stream,
                                const character::SkeletonMatch& match) const {
   if (const std::string text = character::Describe(match.stream); !text.empty()) {
@@ -112,12 +112,12 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
   const auto missing_joints = stream.binding->missing_joints();
   const auto missing_shapes = stream.binding->missing_blend_shapes();
   if (!missing_joints.empty()) {
-    spdlog::warn("the stream lacks joints of the rig, their drivers rest: {}",
+    spdlog::warn("the stream lacks joints that the rig uses; their drivers stay at rest: {}",
                  Join(missing_joints));
   }
-  // A stream of joints alone is not short of what trackers send.
+  // A stream without any blend shapes comes from a body tracker; nothing is missing.
   if (!missing_shapes.empty() && !stream.blend_shapes.empty()) {
-    spdlog::warn("the stream lacks blend shapes of the rig, their drivers rest: {}",
+    spdlog::warn("the stream lacks blend shapes that the rig uses; their drivers stay at rest: {}",
                  Join(missing_shapes));
   }
   std::vector<std::string> ignored;
@@ -138,16 +138,18 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
   feeds_any |= std::ranges::any_of(
       stream.blend_shapes, [this](const std::string& shape) { return Reads(*rig_, shape); });
   if (!ignored.empty()) {
-    spdlog::info("joints that neither rig nor character knows are ignored: {}", Join(ignored));
+    spdlog::info("joints that neither the rig nor the character has are ignored: {}", Join(ignored));
   }
   if (!feeds_any) {
-    spdlog::warn("the rig reads nothing of the stream: all weights rest; is it the right --rig?");
+    spdlog::warn(
+        "the rig uses no joint or blend shape of the stream, so all weights stay at rest; check "
+        "--rig");
   }
   draws_any |= stream.blend_shape_pose != nullptr && !stream.blend_shape_pose->empty();
   if (character_ != nullptr && !draws_any) {
     spdlog::warn(
-        "no joint of the stream is one of the character's: pictures show its rest pose; is it the "
-        "right --character?");
+        "the stream and the character have no joint in common, so pictures show the rest pose; "
+        "check --character");
   }
 }
 

@@ -21,31 +21,31 @@
 
 namespace furrow::server {
 
-// What a sender says of its stream before the first pose.
+// What a sender declares about its stream before the first pose.
 struct StreamOffer {
-  std::vector<wrinkle::JointDesc> joints;  // in wire order; none: blend shapes alone
+  std::vector<wrinkle::JointDesc> joints;  // in wire order; empty: blend shapes only
   std::vector<std::string> blend_shapes;
 };
 
-// A stream's skeleton bound to the daemon's rig, made once and shared by all its subjects.
+// A stream's skeleton bound to the daemon's rig. Equal streams share one definition.
 struct StreamDefinition {
   wrinkle::Skeleton skeleton;
   std::vector<std::string> blend_shapes;
   std::vector<std::int16_t> joint_of_wire;  // wire index -> index in `skeleton`
-  // (The rig's joint, the stream's), where a skeleton map knows them by other names.
+  // Pairs of (joint name in the rig, joint name in the stream) that a skeleton map has matched.
   std::vector<std::pair<std::string, std::string>> aliases;
   std::shared_ptr<const wrinkle::RigBinding> binding;
-  // What moves the character; null where nothing is drawn.
+  // Move the character; null if nothing is rendered.
   std::shared_ptr<const wrinkle::Retarget> retarget;
   std::shared_ptr<const wrinkle::BlendShapePose> blend_shape_pose;
 };
 
-// Makes stream definitions and keeps the newest `capacity` of them by skeleton and names: a sender
-// that restarts, or a second one like it, costs nothing.
+// Creates stream definitions and keeps the `capacity` most recently used ones, so that a sender
+// that restarts, or another one with the same skeleton, costs nothing.
 class StreamDefinitions {
  public:
-  // `character` (may be null: nothing is drawn) outlives this. `matcher` tells what the joints of
-  // skeletons are that call them otherwise than the rig and the character.
+  // `character`: outlives this object; null: nothing is rendered. `matcher` finds the joints of
+  // skeletons with other joint names than the rig and the character.
   StreamDefinitions(std::shared_ptr<const wrinkle::Rig> rig, const wrinkle::Skeleton* character,
                     std::size_t capacity, character::SkeletonMatcher matcher = {})
       : rig_(std::move(rig)),
@@ -54,21 +54,21 @@ class StreamDefinitions {
         matcher_(std::move(matcher)),
         rig_joints_(wrinkle::JointsOf(*rig_)) {}
 
-  // Errors: those of Skeleton::Create and RigBinding::Create. Logged, once a definition: the
-  // skeleton map that knows the stream and the roles it does not find; what the
-  // rig misses in the stream; joints that neither the rig nor the character knows, which are
-  // ignored; a stream that moves no weight, or not the picture, at all.
-  // `may_make` is asked before one is made that is not there yet; where it refuses, the answer is
-  // null.
+  // Returns the definition of a stream, creating it if needed. `may_make` is called before a new
+  // one is created; if it returns false, the result is null. Errors: those of Skeleton::Create()
+  // and RigBinding::Create().
+  //
+  // Logs once per definition: the matching skeleton map, joints and blend shapes that the rig needs
+  // and the stream lacks, joints that are ignored, and streams that move no weight or no picture.
   [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Get(
       StreamOffer offer, const std::function<bool()>& may_make = [] { return true; });
 
   [[nodiscard]] const wrinkle::Rig& rig() const { return *rig_; }
   [[nodiscard]] const std::shared_ptr<const wrinkle::Rig>& shared_rig() const { return rig_; }
-  // Another rig for what is made from now on.
+  // Uses another rig for definitions created from now on.
   void SetRig(std::shared_ptr<const wrinkle::Rig> rig);
-  // A stream that was made with another rig, with this one. Errors: as Get().
-  [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Remake(
+  // Binds the stream of an old definition to the current rig. Errors: those of Get().
+  [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Rebind(
       const StreamDefinition& stream);
 
  private:
@@ -83,7 +83,7 @@ class StreamDefinitions {
   const wrinkle::Skeleton* character_;
   std::size_t capacity_;
   character::SkeletonMatcher matcher_;
-  std::set<std::string> rig_joints_;                          // all that the rig reads
+  std::set<std::string> rig_joints_;                          // all joints that the rig reads
   std::list<std::shared_ptr<const StreamDefinition>> known_;  // most recently used first
 };
 

@@ -25,7 +25,7 @@ wrinkle::BatchUpdate SubjectPipeline::Prepare(std::uint32_t sequence,
   } else if (has_pose_) {
     solver_.Reset();
   }
-  if (neutral_pose_) MeasureFromNeutral();
+  if (neutral_pose_) SubtractNeutral();
   next_sequence_ = sequence;
   next_capture_time_us_ = capture_time_us;
   waits_ = true;
@@ -41,8 +41,8 @@ wrinkle::JobStatus SubjectPipeline::Finish(wrinkle::JobStatus status) {
   return status;
 }
 
-// Each joint's departure from the neutral pose, put upon the rest pose.
-void SubjectPipeline::MeasureFromNeutral() {
+// Applies each joint's difference from the neutral pose to the rest pose.
+void SubjectPipeline::SubtractNeutral() {
   const auto rest = stream_->skeleton.rest_pose();
   for (std::size_t joint = 0; joint < pose_.joints.size(); ++joint) {
     const wrinkle::Transform& now = pose_.joints[joint];
@@ -65,32 +65,32 @@ bool SubjectPipeline::SetNeutral(std::optional<wrinkle::LocalPose> neutral) {
   }
   neutral_pose_ = std::move(neutral);
   corrected_ = pose_;
-  SolveAnew();
+  SolveAgain();
   return true;
 }
 
 void SubjectPipeline::SetStream(std::shared_ptr<const StreamDefinition> stream) {
   stream_ = std::move(stream);
   solver_ = wrinkle::SubjectSolver(stream_->binding);
-  SolveAnew();
+  SolveAgain();
 }
 
-// A pose that was refused is refused again.
-void SubjectPipeline::SolveAnew() {
+// The status is not needed: a pose that was refused before is refused again.
+void SubjectPipeline::SolveAgain() {
   solver_.Reset();
   if (has_pose_) (void)Solve(sequence_, capture_time_us_);
 }
 
 void SubjectPipeline::SetLevel(std::size_t num_drivers) {
   if (num_drivers == level()) return;
-  // A pose that was refused is refused again.
+  // The status is not needed: a pose that was rejected before is rejected again.
   (void)solver_.SetLevel(solved_pose(), num_drivers);
 }
 
 wrinkle::JobStatus SubjectPipeline::Decay(double dt) { return solver_.Decay(dt); }
 
 bool SubjectPipeline::neutral() const {
-  // Below half a u8 step there is nothing left to see or to send.
+  // Half a step of an 8-bit weight: smaller values are neither visible nor sent.
   constexpr float kNothing = 0.5f / 255.0f;
   const auto is_nothing = [](float value) { return value < kNothing; };
   return std::ranges::all_of(solver_.filtered_values(), is_nothing) &&

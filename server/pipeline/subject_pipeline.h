@@ -14,15 +14,15 @@
 
 namespace furrow::server {
 
-// One subject's way from pose to wrinkle weights. Lives on one thread; allocates in the constructor
-// (and in TakeSnapshot) alone.
+// Turns the poses of one subject into wrinkle weights. Used by one thread at a time. Only the
+// constructor, TakeSnapshot() and the setters allocate.
 class SubjectPipeline {
  public:
   explicit SubjectPipeline(std::shared_ptr<const StreamDefinition> stream);
 
-  // The pose to fill before Solve(): joints in the skeleton's order. Joints and blend shapes that a
-  // partial pose leaves out keep what they had; before the first pose they rest. What Solve()
-  // refuses stays here all the same, until a pose that is not partial comes.
+  // The pose to fill before Solve(): local joint transforms in the skeleton's order, and blend
+  // shapes in the stream's order. It starts at rest and keeps the last values, including those that
+  // Solve() has refused, so that partial poses can build on them.
   [[nodiscard]] wrinkle::LocalPose* mutable_pose() { return &pose_; }
 
   [[nodiscard]] const wrinkle::LocalPose& pose() const { return pose_; }
@@ -31,37 +31,37 @@ class SubjectPipeline {
     return neutral_pose_ ? corrected_ : pose_;
   }
 
-  // The pose that counts as rest for the weights (a performer's own neutral face); none: the
-  // skeleton's. The picture shows the pose as it is. Evaluates the pose anew. False: it has not as
-  // many joints and blend shapes as the stream; nothing has changed.
+  // Measures weights from this pose (a performer's own neutral face) instead of the skeleton's rest
+  // pose; nullopt: from the rest pose. Pictures show the pose unchanged. Solves the current pose
+  // again. False: the counts differ from the stream's; nothing has changed.
   bool SetNeutral(std::optional<wrinkle::LocalPose> neutral);
   [[nodiscard]] const std::optional<wrinkle::LocalPose>& neutral_pose() const {
     return neutral_pose_;
   }
 
-  // The same stream with another rig: the pose stays, and is evaluated anew. Precondition: the
-  // skeleton and the blend shapes are those it has.
+  // Switches to another rig and solves the current pose again. Precondition: `stream` has the same
+  // skeleton and blend shapes.
   void SetStream(std::shared_ptr<const StreamDefinition> stream);
 
-  // Evaluates the pose. Time passes as the capture times say; one that goes back (a recording that
-  // loops, a clock that was set) starts the filter anew, as for a first pose.
+  // Solves the pose. The filter's time step is the difference of capture times. A capture time that
+  // goes back (a looping recording, a clock that was set) restarts the filter.
   [[nodiscard]] wrinkle::JobStatus Solve(std::uint32_t sequence, std::int64_t capture_time_us);
 
-  // Solve() in two halves, so that many subjects are evaluated as one batch in between. Until
-  // Finish() the pose must stay, and nothing else here be called but accessors.
+  // Solve() in two parts, between which BatchSolver solves many subjects together. Between them,
+  // the pose must not change and only accessors may be called.
   [[nodiscard]] wrinkle::BatchUpdate Prepare(std::uint32_t sequence, std::int64_t capture_time_us);
   wrinkle::JobStatus Finish(wrinkle::JobStatus status);
-  // Between the two.
+  // True between Prepare() and Finish().
   [[nodiscard]] bool waits() const { return waits_; }
 
-  // From the next pose on only so many of the rig's drivers count, in its order: those that
-  // somebody looks at. Drivers that join begin at the pose that is there.
+  // Evaluates only the first `num_drivers` drivers of the rig from the next pose on. Drivers that
+  // are added start at the current pose.
   void SetLevel(std::size_t num_drivers);
   [[nodiscard]] std::size_t level() const { return solver_.num_drivers(); }
 
-  // Nothing arrived for `dt` more seconds: hold, then decay to neutral. The pose stays as it was.
+  // No pose arrived for `dt` more seconds: weights hold, then decay to neutral. The pose stays.
   [[nodiscard]] wrinkle::JobStatus Decay(double dt);
-  // True once every weight has decayed to neutral.
+  // True if every weight has decayed below what is visible or sent.
   [[nodiscard]] bool neutral() const;
 
   [[nodiscard]] bool has_pose() const { return has_pose_; }
@@ -76,18 +76,18 @@ class SubjectPipeline {
                                                              std::int64_t received_us = 0) const;
 
  private:
-  void SolveAnew();
-  void MeasureFromNeutral();
+  void SolveAgain();
+  void SubtractNeutral();
 
   std::shared_ptr<const StreamDefinition> stream_;
   wrinkle::SubjectSolver solver_;
   wrinkle::LocalPose pose_;
   std::optional<wrinkle::LocalPose> neutral_pose_;
-  wrinkle::LocalPose corrected_;  // where there is a neutral pose
+  wrinkle::LocalPose corrected_;  // pose_ relative to neutral_pose_, if there is one
   std::uint32_t sequence_ = 0;
   std::int64_t capture_time_us_ = 0;
   bool has_pose_ = false;
-  // What Finish() makes of a pose that waits for its evaluation.
+  // From Prepare(); Finish() makes them current.
   std::uint32_t next_sequence_ = 0;
   std::int64_t next_capture_time_us_ = 0;
   bool waits_ = false;

@@ -10,7 +10,7 @@ namespace {
 
 glm::vec3 ToVec(const protocol::Vec3& v) { return {v.x, v.y, v.z}; }
 
-// The wire allows 1e-3 off unit length; the algorithm wants better.
+// The wire tolerates a length error of 1e-3; the algorithm needs unit quaternions.
 glm::quat ToUnitQuat(const protocol::Quat& q) {
   return glm::normalize(glm::quat(q.w, q.x, q.y, q.z));
 }
@@ -19,7 +19,7 @@ bool IndicesFit(std::span<const std::uint16_t> indices, std::size_t count) {
   return std::ranges::all_of(indices, [count](std::uint16_t index) { return index < count; });
 }
 
-// An empty list of indices beside values means all of them, in order.
+// An empty list of indices means that the values cover all elements in order.
 std::size_t IndexAt(std::span<const std::uint16_t> indices, std::size_t i) {
   return indices.empty() ? i : indices[i];
 }

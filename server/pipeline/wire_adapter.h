@@ -7,21 +7,21 @@
 
 namespace furrow::server {
 
-// The one place where the wire's structs become the algorithm's. Both sides are verified: protocol/
-// has checked counts, finite numbers and unit quaternions before anything comes here.
+// Converts the structs of the wire to those of the algorithm and back. Inputs are verified: the
+// codec has checked counts, finite numbers and unit quaternions.
 
 [[nodiscard]] StreamOffer ToStreamOffer(const protocol::SkeletonOffer& offer);
 
-// True when the frame's counts and indices are the stream's.
+// True if the counts and indices of the frame match the stream.
 [[nodiscard]] bool PoseFits(const protocol::PoseFrame& frame, const StreamDefinition& stream);
 
-// Fills `pose` (sized for `stream`) from a frame that fits: what the frame leaves out rests, or
-// stays as it is where the frame is partial. Does not allocate.
+// Fills `pose`, which is sized for `stream`, from a frame that fits. Values that the frame lacks
+// are at rest, or keep their values if the frame is partial. Does not allocate.
 void ApplyPose(const protocol::PoseFrame& frame, const StreamDefinition& stream,
                wrinkle::LocalPose* pose);
 
-// The other way: the whole pose, in the wire's order of joints. What is at rest is left out but for
-// rotations. The skeleton's hash is the caller's to fill in. Reuses `frame`'s memory.
+// Writes a whole pose in the joint order of the wire: all rotations, and the translations and
+// scales that differ from rest. The caller sets the skeleton hash. Reuses the memory of `frame`.
 void ToWholePose(const wrinkle::LocalPose& pose, const StreamDefinition& stream,
                  protocol::PoseFrame* frame);
 

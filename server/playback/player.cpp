@@ -19,10 +19,10 @@
 namespace furrow::server {
 namespace {
 
-constexpr std::uint64_t kSession = 1;  // one publisher a peer: any number does
+constexpr std::uint64_t kSession = 1;  // any number: the peer publishes only once
 constexpr std::uint16_t kStream = 1;
-constexpr std::int64_t kFirstCapture = 1;   // microseconds; 0 would be none on the wire
-constexpr Time kRepeat = FromSeconds(0.1);  // of the frame at which it stands
+constexpr std::int64_t kFirstCapture = 1;   // microseconds; 0 means "no capture time" on the wire
+constexpr Time kRepeat = FromSeconds(0.1);  // of the current frame
 constexpr Time kOfferAgain = FromSeconds(1.0);
 
 }  // namespace
@@ -73,13 +73,13 @@ void Player::SendReply(std::span<const std::uint8_t> message) {
   if (protocol::OpenMessage(message, view, protocol::kMaxReplyBytes) !=
           protocol::DecodeStatus::kOk ||
       protocol::Decode(view, reply) != protocol::DecodeStatus::kOk) {
-    return;  // goodbyes
+    return;  // a goodbye
   }
   needed_ |= reply.status == protocol::SkeletonStatus::kNeeded;
   if (reply.status == protocol::SkeletonStatus::kAccepted) refused_ = false;
   if (reply.status != protocol::SkeletonStatus::kRejected) return;
   if (!std::exchange(refused_, true)) {
-    spdlog::warn("'{}' plays unseen: {}", clip_.name, reply.message);
+    spdlog::warn("playback of '{}' has no effect: {}", clip_.name, reply.message);
   }
 }
 
@@ -88,7 +88,7 @@ double Player::PositionAt(Time now) const {
 }
 
 int Player::FrameAt(double position) const {
-  // A frame's own time, computed back and forth, is still its own.
+  // Tolerates the rounding of a frame time that was converted to a position and back.
   constexpr double kRounding = 1e-6;
   const auto next =
       std::ranges::upper_bound(clip_.times, clip_.times.front() + position + kRounding);
@@ -120,7 +120,7 @@ Time Player::Advance(Time now) {
   if (needed_ && now - offered_ >= kOfferAgain) Offer(now);
   double position = PositionAt(now);
   const double end = clip_.duration();
-  // The last frame is shown as long as the one before it was.
+  // The last frame is shown for the average frame time.
   const double last = clip_.num_frames() > 1 ? end / (clip_.num_frames() - 1) : ToSeconds(kRepeat);
   if (playing_ && loop_ && position >= end + last) {
     MoveTo(std::fmod(position, end + last), now);
@@ -136,7 +136,7 @@ Time Player::Advance(Time now) {
   const bool is_last = frame + 1 >= clip_.num_frames();
   const double next =
       is_last ? end + last : clip_.times[static_cast<std::size_t>(frame) + 1] - clip_.times.front();
-  // Never now: what is left may round to nothing.
+  // At least 1 ns: the remaining time may round to 0, which would spin.
   const Time left = std::max(Time{1}, FromSeconds((next - position) / speed_));
   return std::min(sent_ + kRepeat, now + left);
 }

@@ -13,14 +13,14 @@
 
 namespace furrow::server {
 
-// A recording that plays inside the daemon (furrowd --play): a peer of the hub that sends one
-// subject, with a timeline that may be paused, moved, looped and played at another speed.
+// Plays a recording inside the daemon (furrowd --play): a peer of the hub that publishes one
+// subject, with a timeline for pause, seek, loop and speed.
 //
-// Capture times are the recording's own, so that its weights are those of `furrow solve` while it
-// plays on from its start, whatever the speed; where it goes back, the filter begins anew. While it
-// is paused the frame is sent again now and then, so that the subject is not taken for lost. Where
-// another sender takes the subject over, the recording goes on unseen, which is said once in the
-// log, and has its subject back when that one has gone.
+// Poses carry the capture times of the recording, so from its start and at any speed the weights
+// equal those of `furrow solve`. Going back restarts the filter. While paused, the player repeats
+// the current frame, so that the subject does not count as lost. If another sender takes over the
+// subject, playback continues without effect, is logged once, and regains the subject when that
+// sender leaves.
 class Player : public Link {
  public:
   struct State {
@@ -30,12 +30,12 @@ class Player : public Link {
     double seconds = 0.0;  // from the first frame to the last
     double rate_hz = 0.0;
     double position = 0.0;  // seconds from the first frame
-    int frame = 0;          // what was sent last
+    int frame = 0;          // the last frame sent
     bool playing = true;
     bool loop = true;
     double speed = 1.0;
   };
-  // What is set is changed; the rest stays.
+  // A change of the timeline. Absent members stay as they are.
   struct Change {
     std::optional<bool> playing;
     std::optional<bool> loop;
@@ -45,20 +45,21 @@ class Player : public Link {
   static constexpr double kMinSpeed = 0.05;
   static constexpr double kMaxSpeed = 8.0;
 
-  // The subject is called as the file is. Errors: the readers'; kInvalidArgument: no frames, or
-  // what the wire cannot carry, such as more blend shapes or names that are not UTF-8.
+  // Reads a recording. The subject gets the name of the file. Errors: those of the readers;
+  // kInvalidArgument for a recording without frames or one that the wire cannot carry (too many
+  // blend shapes, names that are not UTF-8).
   [[nodiscard]] static Result<std::unique_ptr<Player>> Load(const std::filesystem::path& path);
   explicit Player(motion::Clip clip, std::string file);
 
   // Offers the subject and sends its first frame. The hub outlives this.
   void Start(Hub* hub, Time now);
-  // Sends the frame that is due, if any; when to call it next.
+  // Sends a frame if one is due. Returns when to call it next.
   Time Advance(Time now);
-  // Errors: kInvalidArgument, `where` is the field; then nothing has changed.
+  // Errors: kInvalidArgument, with the field as `where`; nothing has changed then.
   [[nodiscard]] Status Apply(const Change& change, Time now);
   [[nodiscard]] State state(Time now) const;
 
-  // Link: the answers to a publisher.
+  // Link: receives the replies to a publisher.
   void SendReply(std::span<const std::uint8_t> message) override;
   int SendFrame(std::uint64_t, std::span<const std::uint8_t>, std::size_t, int) override {
     return 0;
@@ -85,8 +86,8 @@ class Player : public Link {
   Time sent_{0};
   std::vector<std::uint8_t> offer_;  // encoded
   Time offered_{0};
-  bool needed_ = false;   // the daemon has asked for the offer again
-  bool refused_ = false;  // what it said last, and the log was told
+  bool needed_ = false;   // the hub has asked for the offer again
+  bool refused_ = false;  // the last offer was rejected, which has been logged
   std::uint32_t sequence_ = 0;
   protocol::Encoder encoder_;
   protocol::PoseFrame pose_;

@@ -19,11 +19,11 @@ namespace {
 
 using recording::TakeKind;
 
-// Together well below the second that a killed daemon may lose.
+// Their sum stays well below the second that a killed daemon may lose.
 constexpr auto kWait = std::chrono::milliseconds(200);
 constexpr Time kFlushInterval = std::chrono::milliseconds(400);
 
-// What a network thread encodes with, reused.
+// Reused memory of one network thread.
 struct Scratch {
   protocol::Encoder encoder;
   std::vector<std::uint8_t> buffer;
@@ -95,7 +95,8 @@ void Recorder::PushEncoded(TakeKind kind, const Subject& subject, const Message&
 void Recorder::OnOffer(const Subject& subject, const protocol::SkeletonOffer& offer, Time now) {
   PushEncoded(TakeKind::kSkeleton, subject, offer, now);
   const auto names = subject.pipeline->stream().binding->weight_names();
-  // More than a message of the wire can name: only poses are recorded then, as rigs say the rest.
+  // A message cannot list that many names. The poses alone are recorded; solving them with the rig
+  // gives the weights.
   if (names.empty() || names.size() > static_cast<std::size_t>(protocol::kMaxWeights)) return;
   protocol::SubscribeReply declared;
   declared.subject = subject.name;
@@ -106,7 +107,7 @@ void Recorder::OnOffer(const Subject& subject, const protocol::SkeletonOffer& of
 
 void Recorder::OnPose(const Subject& subject, std::span<const std::uint8_t> payload, Time now) {
   if (!payload.empty()) return Push(TakeKind::kPose, subject, payload, now);
-  // A pose that needs none before it, so that a take can be entered anywhere.
+  // Record a whole pose, so that playback can start anywhere.
   protocol::PoseFrame& pose = ScratchOfThread().pose;
   ToWholePose(subject.pipeline->pose(), subject.pipeline->stream(), &pose);
   pose.skeleton_hash = subject.skeleton_hash;
@@ -162,7 +163,7 @@ Status Recorder::WriteBatch(const RecordingBatch& batch) {
   });
   metrics_->Add(Counter::kRecordingMessages, folder_->num_messages() - before);
   if (status.ok() && folder_->num_files() != file)
-    spdlog::info("recording goes on in {}", folder_->path().string());
+    spdlog::info("recording continues in {}", folder_->path().string());
   return status;
 }
 
@@ -180,7 +181,7 @@ void Recorder::Write() {
   bool goes_on = true;
   while (goes_on) {
     goes_on = queue_.Take(&batch, kWait);
-    if (failed_) continue;  // what was pushed before the failure was seen
+    if (failed_) continue;  // drop what was queued before the error
     Status status = WriteBatch(batch);
     const Time now = ReadClock();
     if (status.ok() && now - flushed >= kFlushInterval) {
@@ -192,11 +193,11 @@ void Recorder::Write() {
     if (status.ok()) continue;
     failed_ = true;
     metrics_->Add(Counter::kRecordingFailures);
-    spdlog::error("the recording ends here: {}", status.ToString());
-    (void)folder_->Close();  // as far as it goes: the failure stands in the log
+    spdlog::error("recording stopped: {}", status.ToString());
+    (void)folder_->Close();  // best effort: the error is already logged
   }
   ReportDropped();
-  if (!failed_) spdlog::info("recorded to {}", folder_->path().string());
+  if (!failed_) spdlog::info("finished recording to {}", folder_->path().string());
 }
 
 }  // namespace furrow::server

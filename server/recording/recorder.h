@@ -20,23 +20,23 @@ namespace furrow::server {
 
 struct RecorderOptions {
   recording::TakeFolderOptions folder;
-  bool datagrams = true;                            // record them as they came, too
-  Time wall_offset{0};                              // system clock less steady clock
-  std::size_t queue_bytes = std::size_t{64} << 20;  // that may wait for the disk
+  bool datagrams = true;                            // also record the datagrams as received
+  Time wall_offset{0};                              // system clock minus steady clock
+  std::size_t queue_bytes = std::size_t{64} << 20;  // maximum of bytes that wait for the disk
 };
 
-// Records what the tap tells, on a thread of its own: the network threads only copy bytes.
+// Writes everything that the hub uses to MCAP files (docs/RECORDING.md). The network threads only
+// copy bytes into a queue; a background thread writes them.
 //
-// - What happened is on the way to the disk within a second, as a whole chunk: a killed daemon
-//   loses no more.
-// - A disk that is too slow costs messages of the recording, counted and logged, never a pose. A
-//   write that fails ends the recording with one line in the log, and the daemon goes on.
+// - Data is flushed as a whole chunk within a second, so a killed daemon loses at most that second.
+// - If the disk is too slow, messages are missing from the recording; they are counted and logged.
+//   Live poses are not affected. A write error ends the recording, and the daemon continues.
 class Recorder : public RecordingTap {
  public:
-  // Errors: TakeFolder::Open()'s.
+  // Errors: those of TakeFolder::Open().
   [[nodiscard]] static Result<std::unique_ptr<Recorder>> Start(RecorderOptions options, Time now,
                                                                Metrics* metrics);
-  ~Recorder() override;  // writes what waits and completes the file
+  ~Recorder() override;  // writes the queue and completes the file
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
@@ -66,12 +66,12 @@ class Recorder : public RecordingTap {
 
   const RecorderOptions options_;
   Metrics* const metrics_;
-  std::unique_ptr<recording::TakeFolder> folder_;  // the recording thread's
+  std::unique_ptr<recording::TakeFolder> folder_;  // used by the recording thread
   RecordingQueue queue_;
   std::atomic<bool> failed_ = false;
   std::uint64_t reported_dropped_ = 0;
 
-  // Of those whose weights are recorded; changes only while one thread is alone in the hub.
+  // Subjects with recorded weights. Changes only under the hub's exclusive lock.
   std::map<SubjectId, std::uint64_t> names_hashes_;
 
   std::thread thread_;

@@ -6,8 +6,8 @@
 namespace furrow::server {
 namespace {
 
-// So much waiting wakes the writer before its time.
-constexpr std::size_t kMuchBytes = 512 * 1024;
+// This much queued data wakes the recording thread early.
+constexpr std::size_t kWakeBytes = 512 * 1024;
 
 bool IsDeclaration(const RecordingBatch::Entry& entry) {
   return entry.event == RecordingBatch::Event::kGone ||
@@ -34,22 +34,22 @@ void RecordingBatch::Clear() {
 
 bool RecordingQueue::Push(const RecordingBatch::Entry& entry, std::string_view subject,
                           std::span<const std::uint8_t> payload) {
-  bool much = false;
+  bool wake = false;
   {
     const std::lock_guard lock(mutex_);
     const std::size_t after = waiting_.bytes() + subject.size() + payload.size();
     if (stopped_ || after > (IsDeclaration(entry) ? 2 * max_bytes_ : max_bytes_)) return false;
-    much = waiting_.bytes() < kMuchBytes && after >= kMuchBytes;
+    wake = waiting_.bytes() < kWakeBytes && after >= kWakeBytes;
     waiting_.Add(entry, subject, payload);
   }
-  if (much) changed_.notify_one();
+  if (wake) changed_.notify_one();
   return true;
 }
 
 bool RecordingQueue::Take(RecordingBatch* batch, std::chrono::milliseconds wait) {
   batch->Clear();
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, wait, [this] { return stopped_ || waiting_.bytes() >= kMuchBytes; });
+  changed_.wait_for(lock, wait, [this] { return stopped_ || waiting_.bytes() >= kWakeBytes; });
   std::swap(*batch, waiting_);
   return !stopped_;
 }

@@ -14,12 +14,12 @@
 
 namespace furrow::server {
 
-// What happened, in order, with all its bytes in one piece of memory that is used again and again.
+// A sequence of events. All their bytes are in one block of memory, which is reused.
 class RecordingBatch {
  public:
   enum class Event : std::uint8_t {
-    kMessage,   // of `kind`
-    kDatagram,  // `subject` holds the sender's bytes
+    kMessage,   // a message of `kind`
+    kDatagram,  // a datagram; `subject` holds the sender's address
     kGone,      // `subject` has left
   };
   struct Entry {
@@ -35,7 +35,7 @@ class RecordingBatch {
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
   [[nodiscard]] std::size_t bytes() const { return bytes_.size(); }
 
-  // Calls `use(entry, subject, payload)` for each, in order, until it returns false.
+  // Calls `use(entry, subject, payload)` for each event in order, until it returns false.
   template <class Use>
   void ForEach(const Use& use) const {
     std::size_t at = 0;
@@ -54,21 +54,21 @@ class RecordingBatch {
   std::vector<std::uint8_t> bytes_;
 };
 
-// Between the network threads and the one that writes to disk: bounded by bytes, and whoever pushes
-// never waits for the disk. Does not allocate once both batches have grown.
+// Carries events from the network threads to the recording thread. Bounded in bytes; Push() never
+// waits for the disk. Does not allocate once both batches have grown. Thread-safe.
 class RecordingQueue {
  public:
-  // Beyond `max_bytes` nothing is taken but declarations (skeletons and names, without which the
-  // rest means nothing) and departures, of which another `max_bytes` fit.
+  // Holds `max_bytes` of all events, and another `max_bytes` of skeletons, names and departures,
+  // which are needed to read the rest.
   explicit RecordingQueue(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  // False: full, what happened is not recorded.
+  // False: the queue is full or stopped; the event is lost.
   [[nodiscard]] bool Push(const RecordingBatch::Entry& entry, std::string_view subject,
                           std::span<const std::uint8_t> payload);
-  // Swaps what waits with `batch`, which is cleared first: at once where much waits or the queue is
-  // stopped, else after `wait`. False: stopped, and this was the last.
+  // Replaces `batch` with all queued events. Returns at once if 512 KiB are queued or the queue is
+  // stopped, otherwise after `wait`. False: the queue is stopped and this was the last batch.
   [[nodiscard]] bool Take(RecordingBatch* batch, std::chrono::milliseconds wait);
-  // No more is pushed; Take() ends.
+  // Refuses further events and ends Take().
   void Stop();
 
  private:

@@ -19,14 +19,14 @@
 
 namespace furrow::testing_net {
 
-// A daemon in a thread of this process, on ports that the system picked; drained when it goes.
-// Where the test does not say, FURROW_TEST_THREADS does how many network threads it has.
+// A daemon in a thread of this process, on free ports. The destructor drains it.
+// FURROW_TEST_THREADS sets the number of network threads unless the test does.
 class DaemonThread {
  public:
   explicit DaemonThread(server::Config config);
   ~DaemonThread();
 
-  // False: it ended before it served.
+  // False: the daemon ended before it served.
   [[nodiscard]] bool serves() const { return ready_.has_value(); }
   [[nodiscard]] const server::Ready& ready() const { return *ready_; }
   [[nodiscard]] std::uint64_t Count(server::Counter counter) const { return metrics_.Get(counter); }
@@ -42,24 +42,24 @@ class DaemonThread {
   std::jthread thread_;
 };
 
-// Weights only, on ephemeral ports, with the shipped rig of this name.
+// Weights only, on free ports, with the shipped rig of this name.
 [[nodiscard]] server::Config WeightsConfig(const std::string& rig);
 
-// What a publisher makes of a clip.
+// The offer and the poses of a clip.
 [[nodiscard]] protocol::SkeletonOffer OfferOf(const motion::Clip& clip, const std::string& subject);
 [[nodiscard]] protocol::PoseFrame PoseOf(const motion::Clip& clip, int frame,
                                          const protocol::SkeletonOffer& offer);
 
-// A face of the 52 shapes of arkit.json, moving smoothly; no joints.
+// A face with the 52 shapes of arkit.json, moving smoothly, without joints.
 [[nodiscard]] motion::Clip ArkitClip(int num_frames);
 
-// The weights of every frame, straight from the algorithm.
+// The weights of every frame, computed directly by the solver.
 [[nodiscard]] std::vector<std::vector<float>> Solve(const motion::Clip& clip,
                                                     const std::string& rig_name);
 
-// Offers until it is accepted.
+// Repeats the offer until it is accepted.
 void Offer(RawClient& client, const protocol::SkeletonOffer& offer, std::uint16_t stream = 1);
-// Subscribes; the reply, or none when an error came.
+// Subscribes and returns the reply; nullopt after an error.
 [[nodiscard]] std::optional<protocol::SubscribeReply> Watch(
     RawClient& client, const protocol::SubscribeWeights& request, std::uint32_t sequence = 1);
 

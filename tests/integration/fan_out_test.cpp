@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many subjects for many subscribers of a daemon over UDP.
+// Many subjects and many subscribers of a daemon over UDP.
 #include <cmath>
 #include <deque>
 #include <string>
@@ -17,7 +17,7 @@ constexpr int kSubscribers = 64;
 constexpr int kFrames = 20;
 constexpr int kShapes = 52;
 
-// The clip from a later frame on.
+// The clip starting at a later frame.
 motion::Clip From(const motion::Clip& clip, int frame) {
   motion::Clip rest = clip;
   rest.times.assign(clip.times.begin() + frame, clip.times.end());
@@ -44,7 +44,7 @@ std::vector<Performer> MakePerformers(UdpClient& sender) {
   return performers;
 }
 
-// The weights of one frame of every subject, in any order but each once.
+// Receives the weights of one frame of every subject once, in any order.
 void ExpectFrame(UdpClient& watcher, const std::vector<Performer>& performers, int frame) {
   std::vector<bool> seen(kSubjects);
   for (int i = 0; i < kSubjects; ++i) {
@@ -63,7 +63,7 @@ void ExpectFrame(UdpClient& watcher, const std::vector<Performer>& performers, i
   }
 }
 
-TEST(FanOut, EveryWeightArrivesRightAtEverySubscriberInFewerDatagrams) {
+TEST(FanOut, WeightsArriveAtEverySubscriberInFewerDatagrams) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   UdpClient sender(daemon.ready().udp);
@@ -71,7 +71,7 @@ TEST(FanOut, EveryWeightArrivesRightAtEverySubscriberInFewerDatagrams) {
   std::deque<UdpClient> watchers;
   for (int i = 0; i < kSubscribers; ++i) {
     UdpClient& watcher = watchers.emplace_back(daemon.ready().udp);
-    ASSERT_TRUE(watcher.Prove(/*bundles=*/i > 0));  // the first is a client of old
+    ASSERT_TRUE(watcher.Prove(/*bundles=*/i > 0));  // the first is an old client without bundles
     for (std::uint32_t k = 0; k < kSubjects; ++k) {
       const auto reply = Watch(watcher, {.subject = performers[k].offer.subject}, k + 1);
       ASSERT_TRUE(reply.has_value());
@@ -94,7 +94,8 @@ TEST(FanOut, EveryWeightArrivesRightAtEverySubscriberInFewerDatagrams) {
   EXPECT_EQ(daemon.Count(server::Counter::kWeightsSent),
             std::uint64_t{kSubscribers * kSubjects * kFrames});
   EXPECT_EQ(watchers[0].datagrams() - before, std::uint64_t{kSubjects * kFrames});
-  // While the first pose of a frame goes to 64 subscribers the rest comes: some share at least.
+  // While the first pose goes to 64 subscribers, the others arrive, so some messages share
+  // datagrams.
   EXPECT_GT(daemon.Count(server::Counter::kMessagesBundled), 0u);
   EXPECT_LT(daemon.Count(server::Counter::kDatagramsSent),
             daemon.Count(server::Counter::kWeightsSent));

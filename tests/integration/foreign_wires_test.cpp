@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// VMC and Live Link Face in, OSC out. The encoders here are written from the formats' descriptions,
-// apart from the decoders in protocol/; liblo's tools are the independent peers.
+// VMC and Live Link Face input, OSC output. The encoders here follow the published formats and do
+// not share code with protocol/; liblo's tools are independent peers.
 #include <array>
 #include <bit>
 #include <csignal>
@@ -32,7 +32,7 @@ void PutU32(Bytes* out, std::uint32_t value) {
 }
 void PutF32(Bytes* out, float value) { PutU32(out, std::bit_cast<std::uint32_t>(value)); }
 
-// OSC: NUL-terminated, padded to four.
+// An OSC string: NUL-terminated and padded to 4 bytes.
 void PutOscString(Bytes* out, std::string_view text) {
   out->insert(out->end(), text.begin(), text.end());
   do out->push_back(0);
@@ -55,7 +55,7 @@ Bytes BlendApply() {
   return out;
 }
 
-// Live Link Face, packet version 6: all 61 values 0 but those given by their place on the wire.
+// A Live Link Face packet, version 6. `values` sets some of the 61 values by index; others are 0.
 Bytes LiveLinkFace(std::string_view subject, std::uint32_t frame, std::map<int, float> values) {
   Bytes out = {6};
   const std::string device(36, 'A');
@@ -72,7 +72,7 @@ Bytes LiveLinkFace(std::string_view subject, std::uint32_t frame, std::map<int, 
   return out;
 }
 
-// A UDP socket on a free port of the loopback.
+// A UDP socket on a free loopback port.
 class Listener {
  public:
   Listener() : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
@@ -102,7 +102,7 @@ server::Config ForeignConfig() {
   return config;
 }
 
-// Values by name of one frame of weights.
+// The values of a weight frame by name.
 std::map<std::string, float> Named(const protocol::SubscribeReply& reply,
                                    const protocol::WeightFrame& frame) {
   std::map<std::string, float> named;
@@ -110,7 +110,7 @@ std::map<std::string, float> Named(const protocol::SubscribeReply& reply,
   return named;
 }
 
-// Subscribes before the subject is there; the reply that binds comes with the first frame.
+// Subscribes before the subject exists. The reply that binds arrives with the first frame.
 void AwaitSubject(TcpClient& viewer, const std::string& subject) {
   const auto waiting = Watch(viewer, {.subject = subject, .wait = true});
   ASSERT_TRUE(waiting.has_value());
@@ -145,7 +145,7 @@ TEST(ForeignWires, DamagedPacketsAreCountedAndChangeNothing) {
   UdpClient phone(*daemon.ready().livelink_face);
   Bytes packet = LiveLinkFace("phone", 1, {{41, 1.0f}});
   for (std::size_t size = 1; size < packet.size(); size += 13) {
-    if (size == packet.size() - 245) continue;  // the no-face packet ends just there
+    if (size == packet.size() - 245) continue;  // a packet without a face has this length
     phone.SendRaw(std::span(packet).first(size));
   }
   packet[0] = 5;
@@ -163,7 +163,7 @@ TEST(ForeignWires, VmcRaisesTheRightWeights) {
   TcpClient viewer(daemon.ready().tcp);
   AwaitSubject(viewer, "vmc");
   UdpClient performer(*daemon.ready().vmc);
-  performer.SendRaw(BlendVal("BrowInnerUp", 1.0f));  // names match whatever their case
+  performer.SendRaw(BlendVal("BrowInnerUp", 1.0f));  // names are case-insensitive
   performer.SendRaw(BlendVal("browOuterUpLeft", 1.0f));
   performer.SendRaw(BlendApply());
   const auto reply = viewer.Await<protocol::SubscribeReply>();
@@ -175,14 +175,14 @@ TEST(ForeignWires, VmcRaisesTheRightWeights) {
   EXPECT_LT(weights["brow_l.squash"], 0.05f);
 }
 
-TEST(ForeignWires, APortListensToItsFirstSenderAndCountsTheOthers) {
+TEST(ForeignWires, APortAcceptsItsFirstSenderAndCountsOthers) {
   DaemonThread daemon(ForeignConfig());
   ASSERT_TRUE(daemon.serves());
   TcpClient viewer(daemon.ready().tcp);
   AwaitSubject(viewer, "phone");
   UdpClient garbage(*daemon.ready().livelink_face, "127.0.0.2");
   UdpClient phone(*daemon.ready().livelink_face, "127.0.0.3");
-  garbage.SendRaw(Bytes(100, 0x11));  // does not take the port
+  garbage.SendRaw(Bytes(100, 0x11));  // does not hold the port
   phone.SendRaw(LiveLinkFace("phone", 1, {{41, 1.0f}}));
   garbage.SendRaw(LiveLinkFace("phone", 2, {{41, 0.0f}}));
   phone.SendRaw(LiveLinkFace("phone", 3, {{41, 1.0f}}));
@@ -229,7 +229,7 @@ TEST(ForeignWires, OscdumpOfLibloReadsWhatWeSend) {
   Offer(client, offer);
   const auto reply = Watch(client, {.subject = "ann"});
   ASSERT_TRUE(reply.has_value());
-  // oscdump may need a moment to listen: the pose goes on until the first line shows.
+  // oscdump needs a moment to start, so the pose repeats until the first line appears.
   std::jthread sender([&](std::stop_token stop) {
     for (std::uint32_t i = 0; !stop.stop_requested(); ++i) {
       client.Send(PoseOf(clip, 59, offer), 1, i, 1000 * i);

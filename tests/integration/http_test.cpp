@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The web side over real sockets: who is answered what, and who is cut off (docs/HTTP-API.md).
+// The web server over real sockets: replies, errors and closed connections (docs/HTTP-API.md).
 #include <fstream>
 #include <optional>
 #include <string>
@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::json;
 using server::Counter;
 
-// Two joints, four frames, a quarter of a second each.
+// Two joints and four frames of 0.25 s.
 constexpr char kNod[] = R"(HIERARCHY
 ROOT hips
 {
@@ -53,7 +53,7 @@ class Http : public testing::Test {
   }
   std::uint16_t port() const { return *daemon->ready().http; }
   WebClient::Answer Get(std::string_view target) { return WebClient(port()).Ask("GET", target); }
-  // A face called "ann" that has sent one pose, far from neutral.
+  // Publishes a face "ann" with one pose far from neutral.
   void PublishAnn() {
     const motion::Clip clip = ArkitClip(kFrame + 1);
     const protocol::SkeletonOffer offer = OfferOf(clip, "ann");
@@ -61,7 +61,7 @@ class Http : public testing::Test {
     Offer(*sender, offer);
     sender->Send(PoseOf(clip, kFrame, offer), 1, 0, 1000);
     sender->Send(protocol::Ping{1});
-    ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());  // the pose has been seen
+    ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());  // the pose has been processed
   }
 
   static constexpr int kFrame = 89;
@@ -69,7 +69,7 @@ class Http : public testing::Test {
   std::optional<TcpClient> sender;
 };
 
-TEST_F(Http, RoutesAnswerAndAConnectionServesMany) {
+TEST_F(Http, RoutesAnswerOnOneConnection) {
   WebClient client(port());
   EXPECT_EQ(client.Ask("GET", "/healthz").body, "{\"ok\":true}");
   EXPECT_EQ(client.Ask("GET", "/readyz").status, 200);
@@ -86,7 +86,7 @@ TEST_F(Http, RoutesAnswerAndAConnectionServesMany) {
   EXPECT_EQ(Json::parse(client.Ask("GET", "/api/status").body)["render"], false);
 }
 
-TEST_F(Http, AWrongMethodIsToldTheRightOnes) {
+TEST_F(Http, AWrongMethodGetsAllow) {
   WebClient client(port());
   const auto allowed = [&](std::string_view method, std::string_view path) {
     const auto answer = client.Ask(method, path);
@@ -106,7 +106,7 @@ TEST_F(Http, AWrongMethodIsToldTheRightOnes) {
   EXPECT_EQ(client.Ask("GET", "/healthz").status, 200);  // on the same connection
 }
 
-TEST_F(Http, TheHeadOfPicturesIsThatOfTheirAnswerAndNothingIsDrawnForIt) {
+TEST_F(Http, HeadOfPicturesRendersNothing) {
   WebClient client(port());
   const auto stream = client.Ask("HEAD", "/mjpeg?width=64");
   EXPECT_EQ(stream.status, 200);
@@ -123,11 +123,11 @@ TEST_F(Http, ARequestIsAnsweredOnce) {
   WebClient client(port());
   EXPECT_EQ(client.Ask("GET", "/healthz").status, 200);
   client.EndSending();
-  EXPECT_EQ(client.AskRaw("").status, 0);  // the end of the connection, and no second answer
+  EXPECT_EQ(client.AskRaw("").status, 0);  // the connection closes without a second reply
   EXPECT_EQ(daemon->Count(Counter::kHttpRequests), 1u);
 }
 
-TEST_F(Http, StrangersAreRefused) {
+TEST_F(Http, ForeignHostsAndOriginsAreForbidden) {
   WebClient client(port());
   const auto ask = [&](std::string_view headers) {
     return client.Ask("GET", "/api/status", {}, headers).status;
@@ -140,7 +140,7 @@ TEST_F(Http, StrangersAreRefused) {
   EXPECT_EQ(daemon->Count(Counter::kHttpRefused), 3u);
 }
 
-TEST_F(Http, WhatIsNoRequestOrTooLargeEndsItsConnectionAlone) {
+TEST_F(Http, InvalidOrLargeRequestsCloseOnlyTheirConnection) {
   WebClient other(port());
   EXPECT_EQ(other.Ask("GET", "/healthz").status, 200);
   EXPECT_EQ(WebClient(port()).AskRaw("\x16\x03\x01 what is this\r\n\r\n").status, 400);
@@ -197,7 +197,7 @@ TEST_F(Http, SubjectsAndTheirWeightsAreExplained) {
   const Json why = Json::parse(Get("/api/explain?subject=ann&weight=" + weight).body);
   EXPECT_EQ(why["weight"], weight);
   EXPECT_GT(why["live"], 0.01);
-  // Of the first pose the filter changes nothing; only the sums are formed in another order.
+  // The filter does not change the first pose; only the order of summation differs.
   EXPECT_NEAR(why["result"].get<double>(), why["live"].get<double>(), 1e-6);
   EXPECT_FALSE(why["contributions"].empty());
   const auto unknown = Get("/api/explain?subject=ann&weight=nothing.at.all");
@@ -205,7 +205,7 @@ TEST_F(Http, SubjectsAndTheirWeightsAreExplained) {
   EXPECT_EQ(Json::parse(unknown.body)["error"]["field"], "weight");
 }
 
-TEST_F(Http, ANeutralIsCapturedPreviewedAndTakenBack) {
+TEST_F(Http, ANeutralCanBePreviewedCapturedAndUndone) {
   PublishAnn();
   WebClient client(port());
   EXPECT_EQ(client.Ask("POST", "/api/capture/undo", "{}").status, 409);
@@ -227,7 +227,7 @@ TEST_F(Http, ANeutralIsCapturedPreviewedAndTakenBack) {
   EXPECT_EQ(largest("before", preview), before);
 }
 
-TEST_F(Http, WithoutPicturesThatIsWhatIsSaid) {
+TEST_F(Http, WithoutARendererPicturesAreUnavailable) {
   EXPECT_EQ(Get("/snapshot.png").status, 503);
   EXPECT_EQ(Get("/mjpeg").status, 503);
   EXPECT_EQ(Get("/api/cameras").status, 503);
@@ -291,7 +291,7 @@ TEST_F(Http, AWebSocketIsAPeerOfTheHub) {
   EXPECT_EQ(client.Take<protocol::ErrorMessage>()->code, protocol::ErrorCode::kNotRendering);
 }
 
-TEST_F(Http, AWebSocketThatBreaksTheRulesIsClosedAndNoOther) {
+TEST_F(Http, AnInvalidWebSocketIsClosedAndOthersStay) {
   WebClient good(port());
   ASSERT_EQ(good.Upgrade().status, 101);
   const auto close_code = [&](int opcode, const std::vector<std::uint8_t>& payload) {
@@ -308,8 +308,8 @@ TEST_F(Http, AWebSocketThatBreaksTheRulesIsClosedAndNoOther) {
   EXPECT_EQ(good.Take<protocol::Pong>()->time_us, 7);
 }
 
-TEST_F(Http, AWebSocketHearsOfTheEnd) {
-  std::jthread stop;  // joined after the client has gone
+TEST_F(Http, AWebSocketReceivesTheGoodbye) {
+  std::jthread stop;  // joined after the client is destroyed
   WebClient client(port());
   ASSERT_EQ(client.Upgrade().status, 101);
   client.Send(protocol::Ping{1});

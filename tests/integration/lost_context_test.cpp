@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The daemon's render thread over a real OpenGL context that is taken away while it draws.
+// The render thread with a real OpenGL context that is lost while rendering.
 #include "tests/unit/render/lost_context.h"
 
 #include <array>
@@ -24,7 +24,7 @@ namespace {
 
 using server::Counter;
 
-// A renderer whose context is destroyed before its second picture, as by a driver's restart.
+// A renderer that loses its context before its second picture, as after a driver restart.
 class ShortLived : public render::Renderer {
  public:
   explicit ShortLived(std::unique_ptr<render::Renderer> real) : real_(std::move(real)) {}
@@ -45,7 +45,7 @@ class ShortLived : public render::Renderer {
   int submitted_ = 0;
 };
 
-// What spdlog's default logger says, from now on.
+// Captures the lines of spdlog's default logger.
 class LogCapture {
  public:
   LogCapture() : before_(spdlog::default_logger()) {
@@ -98,12 +98,12 @@ class LostContext : public testing::Test {
   LogCapture log;
   server::Metrics metrics;
   std::array<std::promise<server::FinishedPicture>, 3> drawn;
-  std::size_t num_drawn = 0;  // these two: of the render thread
+  std::size_t num_drawn = 0;  // both used by the render thread
   int num_created = 0;
-  std::unique_ptr<server::RenderThread> thread;  // the first to go
+  std::unique_ptr<server::RenderThread> thread;  // destroyed first
 };
 
-TEST_F(LostContext, PicturesGoOnAndTheLossIsLoggedAndCounted) {
+TEST_F(LostContext, PicturesContinueAndTheLossIsLogged) {
   Submit(1);
   const server::FinishedPicture before = drawn[0].get_future().get();
   ASSERT_EQ(before.sequence, 1u);
@@ -114,13 +114,13 @@ TEST_F(LostContext, PicturesGoOnAndTheLossIsLoggedAndCounted) {
   Submit(3);
   const server::FinishedPicture after = drawn[2].get_future().get();
   EXPECT_EQ(after.sequence, 3u);
-  EXPECT_EQ(after.bytes, before.bytes);  // the same pose, the same picture
+  EXPECT_EQ(after.bytes, before.bytes);  // the same pose gives the same picture
   EXPECT_EQ(metrics.Get(Counter::kRendererRestarts), 1u);
   EXPECT_EQ(metrics.Get(Counter::kPicturesFailed), 1u);
   EXPECT_EQ(metrics.Get(Counter::kPicturesRendered), 2u);
   thread.reset();
-  EXPECT_NE(log.text().find("the renderer failed and is made anew"), std::string::npos);
-  EXPECT_NE(log.text().find("pictures are drawn again"), std::string::npos) << log.text();
+  EXPECT_NE(log.text().find("the renderer failed and will be created again"), std::string::npos);
+  EXPECT_NE(log.text().find("rendering again on"), std::string::npos) << log.text();
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 namespace furrow::testing_net {
 namespace {
 
-// A clip of the default character itself: its head nods on, frame by frame. (Cameras follow where a
-// subject goes and turns, so a turn of the whole body would not show.)
+// A clip of the default character: the head nods further with every frame. Cameras follow the
+// subject's body, so a turn of the whole body would not be visible.
 motion::Clip NoddingClip(const character::Character& character, int num_frames) {
   motion::Clip clip;
   clip.skeleton = character.skeleton;
@@ -42,7 +42,7 @@ void PicturesTest::SetUp() {
   config.character = glb;
   config.tcp = config.udp = 0;
   config.http.port = 0;
-  // However slowly pictures are drawn here, only poses ask for them, never a subject's decay.
+  // Rendering may be slow here, and the decay of a lost subject must not request pictures.
   config.limits.loss_seconds = config.limits.idle_seconds = 3600;
   auto loaded = character::LoadCharacter(glb, {}, motion::CachedPoseSource());
   ASSERT_TRUE(loaded.ok()) << loaded.status().ToString();

@@ -9,12 +9,12 @@
 
 namespace furrow::testing_net {
 
-// A daemon that draws the default character, and a sender whose subject "ann" nods. Skips where
-// there is no OpenGL 4.5 (llvmpipe does) or no character.
+// A daemon that renders the default character, and a sender whose subject "ann" nods. Skips the
+// test without OpenGL 4.5 (llvmpipe is enough) or without the character.
 class PicturesTest : public testing::Test {
  protected:
   void SetUp() override;
-  // Frames 0 to 19: the further, the deeper the nod.
+  // Frames 0 to 19; the nod deepens with the frame number.
   void SendPose(int frame);
 
   motion::Clip clip;

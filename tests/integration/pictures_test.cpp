@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures over TCP: drawn from the poses that crossed the socket. Needs an OpenGL 4.5 (llvmpipe
-// does).
+// Pictures over TCP, rendered from the received poses. Needs OpenGL 4.5 (llvmpipe is enough).
 #include <cstdint>
 #include <optional>
 
@@ -24,7 +23,7 @@ class Pictures : public PicturesTest {
   std::optional<TcpClient> viewer;
 };
 
-TEST_F(Pictures, AreOfTheSizeAndFormatAskedFor) {
+TEST_F(Pictures, HaveTheRequestedSizeAndFormat) {
   for (const auto format : {protocol::ImageFormat::kJpeg, protocol::ImageFormat::kPng}) {
     TcpClient client(daemon->ready().tcp);
     client.Send(
@@ -64,7 +63,7 @@ TEST_F(Pictures, ShowThePose) {
   }
 }
 
-TEST_F(Pictures, EqualWishesAreDrawnAndEncodedOnce) {
+TEST_F(Pictures, EqualRequestsAreRenderedOnce) {
   TcpClient second(daemon->ready().tcp);
   const protocol::SubscribePictures wish{.subject = "ann", .width = 64, .height = 64};
   for (TcpClient* client : {&*viewer, &second}) {
@@ -81,7 +80,7 @@ TEST_F(Pictures, EqualWishesAreDrawnAndEncodedOnce) {
   EXPECT_EQ(daemon->Count(Counter::kPicturesSent), 2u);
 }
 
-TEST_F(Pictures, EveryViewAndPresetDrawsAndWrongOnesAreErrors) {
+TEST_F(Pictures, EveryViewAndPresetRenders) {
   std::uint32_t request = 1;
   for (const char* view :
        {"final", "normal", "mask_dynamic", "mask_texture", "weights", "wireframe"}) {
@@ -100,7 +99,7 @@ TEST_F(Pictures, EveryViewAndPresetDrawsAndWrongOnesAreErrors) {
   EXPECT_EQ(viewer->Await<protocol::ErrorMessage>()->code, ErrorCode::kBadPicture);
 }
 
-TEST_F(Pictures, ABurstOfPosesIsAnsweredByTheNewest) {
+TEST_F(Pictures, ABurstOfPosesShowsTheNewest) {
   viewer->Send(protocol::SubscribePictures{.subject = "ann", .width = 640, .height = 480}, 0, 1);
   ASSERT_TRUE(viewer->Await<protocol::SubscribeReply>().has_value());
   for (int frame = 0; frame < 20; ++frame) SendPose(frame);

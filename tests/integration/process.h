@@ -9,20 +9,20 @@
 
 namespace furrow::testing_net {
 
-// A program run beside the test, its stdout and stderr in pipes.
+// A child process with pipes for stdout and stderr.
 class Process {
  public:
   explicit Process(std::vector<std::string> command);
-  ~Process();  // kills what still runs
+  ~Process();  // kills the process if it is running
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  // The next line of stdout without its end; none at the end of the stream.
+  // The next line of stdout without its line end; nullopt at the end.
   std::optional<std::string> ReadLine();
   void Signal(int signal) const;
-  // Nobody reads its stderr any more.
+  // Closes the reading end of stderr.
   void CloseErrors();
-  // Waits for the end: the exit code, or 128 + the signal that ended it.
+  // Waits for the process. Returns the exit code, or 128 + the signal number.
   int Wait();
   // All of stderr; call it after Wait().
   std::string ReadErrors();
@@ -34,7 +34,7 @@ class Process {
   std::string buffer_;
 };
 
-// Where a program of this name is on the PATH; empty when it is not there.
+// The path of a program on PATH; empty if it is not installed.
 [[nodiscard]] std::string FindProgram(const std::string& name);
 
 }  // namespace furrow::testing_net

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// furrowd as a process: its ready line, its exit codes, its signals.
+// furrowd as a process: ready line, exit codes, signals.
 #include "process.h"
 
 #include <csignal>
@@ -27,7 +27,7 @@ std::vector<std::string> Command(std::vector<std::string> more = {}) {
   return command;
 }
 
-// The ports of the ready line; zeros where it is not one.
+// The ports in the ready line; 0 if the line is not one.
 std::pair<int, int> Ports(const std::string& line) {
   std::smatch match;
   const std::regex ready(
@@ -36,7 +36,7 @@ std::pair<int, int> Ports(const std::string& line) {
   return {std::stoi(match[1]), std::stoi(match[2])};
 }
 
-TEST(Furrowd, SaysWhereItServesAndEndsWellOnSigterm) {
+TEST(Furrowd, PrintsItsPortsAndStopsOnSigterm) {
   for (const int signal : {SIGTERM, SIGINT}) {
     Process daemon(Command({"--tcp", "0", "--udp", "0"}));
     const auto [tcp, udp] = Ports(daemon.ReadLine().value_or(""));
@@ -50,7 +50,7 @@ TEST(Furrowd, SaysWhereItServesAndEndsWellOnSigterm) {
   }
 }
 
-TEST(Furrowd, ASecondOneOnTheSamePortSaysWhichAndFails) {
+TEST(Furrowd, ASecondDaemonOnAPortFailsAndNamesThePort) {
   Process first(Command({"--tcp", "0", "--udp", "0"}));
   const auto [tcp, udp] = Ports(first.ReadLine().value_or(""));
   ASSERT_NE(tcp, 0);
@@ -62,7 +62,7 @@ TEST(Furrowd, ASecondOneOnTheSamePortSaysWhichAndFails) {
   EXPECT_THAT(third.ReadErrors(), HasSubstr("port " + std::to_string(udp)));
 }
 
-TEST(Furrowd, WrongUsageIsTwoAndBadInputThree) {
+TEST(Furrowd, ExitsWithTwoForUsageAndThreeForInput) {
   Process usage({kProgram, "--nonsense"});
   EXPECT_EQ(usage.Wait(), 2);
   EXPECT_FALSE(usage.ReadErrors().empty());
@@ -74,7 +74,7 @@ TEST(Furrowd, WrongUsageIsTwoAndBadInputThree) {
   EXPECT_THAT(config.ReadErrors(), HasSubstr("/nowhere.toml"));
 }
 
-TEST(Furrowd, HelpEndsWellAndNamesTheExitCodes) {
+TEST(Furrowd, HelpSucceedsAndListsExitCodes) {
   Process help({kProgram, "--help"});
   std::string text;
   while (auto line = help.ReadLine()) text += *line + "\n";
@@ -82,11 +82,11 @@ TEST(Furrowd, HelpEndsWellAndNamesTheExitCodes) {
   EXPECT_THAT(text, HasSubstr("Exit codes"));
 }
 
-TEST(Furrowd, GoesOnWhenTheReaderOfItsLogHasLeft) {
+TEST(Furrowd, ContinuesWhenTheReaderOfItsLogLeaves) {
   Process daemon(Command({"--tcp", "0", "--udp", "0"}));
   daemon.CloseErrors();
   ASSERT_TRUE(daemon.ReadLine().has_value());
-  daemon.Signal(SIGTERM);  // which it logs
+  daemon.Signal(SIGTERM);  // the daemon logs it
   EXPECT_EQ(daemon.Wait(), 0);
 }
 
@@ -95,7 +95,7 @@ TEST(Furrowd, LogsAsJsonWhenAsked) {
   ASSERT_TRUE(daemon.ReadLine().has_value());
   daemon.Signal(SIGTERM);
   EXPECT_EQ(daemon.Wait(), 0);
-  EXPECT_THAT(daemon.ReadErrors(), HasSubstr(R"("level":"info","message":"draining"})"));
+  EXPECT_THAT(daemon.ReadErrors(), HasSubstr(R"("level":"info","message":"shutting down"})"));
 }
 
 }  // namespace

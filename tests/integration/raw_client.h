@@ -16,14 +16,14 @@
 
 namespace furrow::testing_net {
 
-// A message as it came: kept whole, decoded on demand.
+// A received message, decoded on demand.
 struct Received {
   std::vector<std::uint8_t> bytes;
   protocol::MessageView view;
 };
 
-// A client made of one blocking socket and protocol/ alone, for tests. Reads block until something
-// comes; the long timeout is a guard against hanging, never a measure.
+// A test client with one blocking socket, based on protocol/ only. Reads block until data arrives;
+// the long timeout only prevents hanging tests.
 class RawClient {
  public:
   virtual ~RawClient();
@@ -36,12 +36,12 @@ class RawClient {
     encoder_.Encode({session, stream, sequence, capture_time_us}, message, out_, encoding...);
     SendBytes(out_);
   }
-  // Raw bytes as they are: a datagram, or a piece of a TCP stream.
+  // Sends raw bytes: a datagram, or a part of a TCP stream.
   void SendRaw(std::span<const std::uint8_t> bytes);
 
-  // The next message of any kind; none when the peer has closed or the guard has run out.
+  // The next message of any kind; nullopt after the peer has closed or the timeout.
   std::optional<Received> Next();
-  // The next message of this kind; others that come before it are kept in `skipped`.
+  // The next message of this kind. Others before it are kept in `skipped`.
   template <class Message>
   std::optional<Message> Await(protocol::Header* header = nullptr) {
     while (auto received = Next()) {
@@ -54,7 +54,7 @@ class RawClient {
     }
     return std::nullopt;
   }
-  // True when the other end has closed the connection, after whatever it sent before.
+  // Reads until the peer closes. False: timeout.
   bool AwaitClose();
   [[nodiscard]] std::uint16_t local_port() const;
   [[nodiscard]] int socket() const { return socket_; }
@@ -65,7 +65,7 @@ class RawClient {
  protected:
   explicit RawClient(int socket) : socket_(socket) {}
   virtual void SendBytes(std::span<const std::uint8_t> message) = 0;
-  // Takes more bytes off the socket into `ready_`; false at the end.
+  // Reads more bytes into `ready_`. False: the stream has ended.
   virtual bool Fill() = 0;
   long ReadSome(std::span<std::uint8_t> buffer);
 
@@ -89,10 +89,10 @@ class TcpClient : public RawClient {
 
 class UdpClient : public RawClient {
  public:
-  // `from`: another address of the loopback than 127.0.0.1.
+  // `from`: a loopback address other than 127.0.0.1.
   explicit UdpClient(std::uint16_t port, const char* from = "127.0.0.1");
-  // Hello, Welcome, Hello: false when the daemon did not play along. `bundles`: and takes them;
-  // else one that came would be no message.
+  // Proves the address with Hello, Welcome, Hello. False: the daemon did not reply. `bundles`: also
+  // accepts bundles; otherwise a bundle fails to decode.
   bool Prove(bool bundles = false);
   // That came so far.
   [[nodiscard]] std::uint64_t datagrams() const { return datagrams_; }

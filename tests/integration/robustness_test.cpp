@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Garbage, malformed streams, slow readers, taken ports: each costs itself and nobody else.
+// Garbage, malformed streams, slow readers and ports in use do not affect other clients.
 #include <array>
 #include <cstdint>
 #include <random>
@@ -33,7 +33,7 @@ TEST(Robustness, GarbageDatagramsLeaveARealStreamUnharmed) {
   std::vector<std::uint8_t> good;
   protocol::Encoder().Encode({1, 1, 1, 1}, PoseOf(clip, 0, offer), good);
   for (int frame = 0; frame < 200; ++frame) {
-    // At 60 Hz these are 12,000 a second: noise, truncated and damaged messages.
+    // 12,000 per second at 60 Hz: noise, truncated and damaged messages.
     for (int i = 0; i < 200; ++i) {
       std::vector<std::uint8_t> bytes(good.begin(), good.begin() + random() % good.size());
       if (i % 3 == 0) bytes.assign(random() % 1400, static_cast<std::uint8_t>(random()));
@@ -42,7 +42,7 @@ TEST(Robustness, GarbageDatagramsLeaveARealStreamUnharmed) {
         bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1 + random() % 255);
       }
       hostile.SendRaw(bytes);
-      // A slow machine must not fill the socket's buffer: that is not what is tested here.
+      // On a slow machine, the socket buffer must not overflow; this test is not about that.
       if (i % 50 == 0) {
         pacer.Send(protocol::Ping{i});
         ASSERT_TRUE(pacer.Await<protocol::Pong>().has_value());
@@ -57,7 +57,7 @@ TEST(Robustness, GarbageDatagramsLeaveARealStreamUnharmed) {
   EXPECT_EQ(daemon.Count(Counter::kPosesLate), 0u);
 }
 
-TEST(Robustness, AFrameOfImpossibleLengthEndsThatConnectionAloneAndIsAnswered) {
+TEST(Robustness, AnInvalidFrameLengthClosesOnlyItsConnection) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   TcpClient other(daemon.ready().tcp);
@@ -75,7 +75,7 @@ TEST(Robustness, AFrameOfImpossibleLengthEndsThatConnectionAloneAndIsAnswered) {
   EXPECT_EQ(other.Await<protocol::Pong>()->time_us, 9);
 }
 
-TEST(Robustness, AMalformedMessageInAGoodFrameCostsOnlyItself) {
+TEST(Robustness, AMalformedMessageDoesNotCloseTheConnection) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   TcpClient client(daemon.ready().tcp);
@@ -87,7 +87,7 @@ TEST(Robustness, AMalformedMessageInAGoodFrameCostsOnlyItself) {
   EXPECT_EQ(client.Await<protocol::Pong>()->time_us, 3);
 }
 
-TEST(Robustness, AByteAtATimeIsStillAMessage) {
+TEST(Robustness, AMessageMayArriveByteByByte) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   TcpClient client(daemon.ready().tcp);
@@ -113,7 +113,7 @@ TEST(Robustness, UnknownSubjectsAndPicturesWithoutARendererAreErrors) {
   EXPECT_EQ(client.Await<protocol::ErrorMessage>()->code, protocol::ErrorCode::kNotRendering);
 }
 
-TEST(Robustness, ASlowSubscriberLosesOldFramesAndSlowsNobody) {
+TEST(Robustness, ASlowSubscriberLosesOldFramesAndDelaysNobody) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   const motion::Clip clip = ArkitClip(1);
@@ -122,7 +122,7 @@ TEST(Robustness, ASlowSubscriberLosesOldFramesAndSlowsNobody) {
   TcpClient slow(daemon.ready().tcp);
   TcpClient fast(daemon.ready().tcp);
   Offer(sender, offer);
-  // Many subscriptions of one peer that does not read, so that the socket's buffers fill soon.
+  // Many subscriptions of a peer that does not read fill the socket buffers quickly.
   for (std::uint32_t i = 0; i < 60; ++i) {
     ASSERT_TRUE(Watch(slow, {.subject = "ann", .source = protocol::WeightSource::kDriverValues}, i)
                     .has_value());
@@ -136,7 +136,7 @@ TEST(Robustness, ASlowSubscriberLosesOldFramesAndSlowsNobody) {
     ASSERT_EQ(header.sequence, sent++);
   }
   EXPECT_GE(daemon.Count(Counter::kWeightsDroppedSlow), 1000u);
-  // Once it reads again, it comes to the newest frame, in order.
+  // When it reads again, it receives frames in order up to the newest.
   std::int64_t newest = -1;
   while (newest + 1 < sent) {
     protocol::Header header;
@@ -146,7 +146,7 @@ TEST(Robustness, ASlowSubscriberLosesOldFramesAndSlowsNobody) {
   }
 }
 
-TEST(Robustness, AConnectionThatNeitherSendsNorWatchesIsClosed) {
+TEST(Robustness, AnIdleConnectionIsClosed) {
   server::Config config = WeightsConfig("arkit.json");
   config.limits.idle_seconds = 0.01;
   DaemonThread daemon(config);
@@ -156,10 +156,10 @@ TEST(Robustness, AConnectionThatNeitherSendsNorWatchesIsClosed) {
   EXPECT_EQ(daemon.Count(Counter::kConnectionsIdle), 1u);
 }
 
-TEST(Robustness, WhoAsksAndNeverReadsTheAnswersIsClosed) {
+TEST(Robustness, AClientThatDoesNotReadRepliesIsClosed) {
   server::Config config = WeightsConfig("arkit.json");
   config.limits.packets_per_second = config.limits.packet_burst = 1e9;
-  config.limits.idle_seconds = 1e6;  // else it might be taken for idle on a slow machine
+  config.limits.idle_seconds = 1e6;  // a slow machine must not count as idle
   DaemonThread daemon(config);
   ASSERT_TRUE(daemon.serves());
   TcpClient asker(daemon.ready().tcp);
@@ -179,13 +179,13 @@ TEST(Robustness, WhoAsksAndNeverReadsTheAnswersIsClosed) {
   EXPECT_EQ(other.Await<protocol::Pong>()->time_us, 9);
 }
 
-TEST(Robustness, WhatIsThrownIsAFailureAndNotACrash) {
+TEST(Robustness, AnExceptionIsAFailureAndNotACrash) {
   server::RunOptions options;
   options.on_ready = [](const server::Ready&) { throw std::runtime_error("no thread to be had"); };
   EXPECT_EQ(server::Run(WeightsConfig("arkit.json"), options), server::ExitCode::kFailed);
 }
 
-TEST(Robustness, ConnectionsBeyondTheLimitAreToldSoAndClosed) {
+TEST(Robustness, ConnectionsBeyondTheLimitAreRefused) {
   server::Config config = WeightsConfig("arkit.json");
   config.limits.max_connections = 2;
   DaemonThread daemon(config);
@@ -218,13 +218,13 @@ TEST(Robustness, ASecondDaemonOnAPortFails) {
   }
 }
 
-TEST(Robustness, ARigThatIsNotThereIsBadInput) {
+TEST(Robustness, AMissingRigIsBadInput) {
   DaemonThread daemon(WeightsConfig("nowhere.json"));
   EXPECT_FALSE(daemon.serves());
   EXPECT_EQ(daemon.Stop(), server::ExitCode::kBadInput);
 }
 
-TEST(Robustness, SettingsThatAreNotThereAreBadInput) {
+TEST(Robustness, MissingSettingsAreBadInput) {
   server::Config config = WeightsConfig("arkit.json");
   config.render_settings = "nowhere.toml";
   DaemonThread daemon(config);
@@ -232,12 +232,12 @@ TEST(Robustness, SettingsThatAreNotThereAreBadInput) {
   EXPECT_EQ(daemon.Stop(), server::ExitCode::kBadInput);
 }
 
-// More than the sockets hold: it waits in the daemon when the draining begins.
-TEST(Robustness, WhoAsksForEveryFrameHasThemAllBeforeTheGoodbye) {
+// More than the socket buffers hold, so frames are queued in the daemon when draining begins.
+TEST(Robustness, SubscriptionsToEveryFrameCompleteBeforeTheGoodbye) {
   constexpr int kFrames = 20'000;
   server::Config config = WeightsConfig("arkit.json");
   config.limits.packet_burst = 2 * kFrames;
-  config.limits.drain_seconds = 60;  // a guard, never a measure
+  config.limits.drain_seconds = 60;  // only prevents hanging
   DaemonThread daemon(config);
   TcpClient publisher(daemon.ready().tcp);
   const motion::Clip clip = ArkitClip(50);
@@ -249,7 +249,7 @@ TEST(Robustness, WhoAsksForEveryFrameHasThemAllBeforeTheGoodbye) {
     publisher.Send(PoseOf(clip, i % 50, offer), 1, static_cast<std::uint32_t>(i), 1 + i * 10'000);
   }
   publisher.Send(protocol::Ping{1});
-  ASSERT_TRUE(publisher.Await<protocol::Pong>().has_value());  // all of them were worked on
+  ASSERT_TRUE(publisher.Await<protocol::Pong>().has_value());  // all poses have been processed
   ASSERT_EQ(daemon.Count(server::Counter::kWeightsDroppedSlow), 0u);
 
   std::jthread stop([&] { EXPECT_EQ(daemon.Stop(), server::ExitCode::kOk); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A daemon of several network threads: what it sends is what one of a single thread would, whoever
-// hears it on which thread.
+// A daemon with several network threads sends the same as one with a single thread, whichever
+// thread serves a client.
 #include <cmath>
 #include <deque>
 #include <filesystem>
@@ -28,7 +28,7 @@ server::Config Threaded(int threads) {
   return config;
 }
 
-// Many who publish, a subject and a socket each, so that every thread has some of them.
+// Many publishers, each with a subject and a socket, so that every thread serves some.
 class Troupe {
  public:
   explicit Troupe(const server::Ready& ready) {
@@ -57,7 +57,7 @@ class Troupe {
       ASSERT_TRUE(reply.has_value());
     }
   }
-  // One frame of every subject, each once and right.
+  // Receives one correct frame of every subject, in any order.
   void Expect(RawClient& watcher, int frame) const {
     std::map<std::uint16_t, int> seen;
     for (int i = 0; i < kSubjects; ++i) {
@@ -84,7 +84,7 @@ class Troupe {
 class Threads : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Counts, Threads, testing::Values(1, 2, 3));
 
-TEST_P(Threads, EveryWatcherGetsEveryPoseOfEverybodyOnceAndInOrder) {
+TEST_P(Threads, EverySubscriberReceivesEveryPoseOnceAndInOrder) {
   DaemonThread daemon(Threaded(GetParam()));
   ASSERT_TRUE(daemon.serves());
   Troupe troupe(daemon.ready());
@@ -112,7 +112,7 @@ TEST_P(Threads, EveryWatcherGetsEveryPoseOfEverybodyOnceAndInOrder) {
             std::uint64_t{kWatchers * kSubjects * kFrames});
 }
 
-TEST_P(Threads, ASubjectGoesFromSenderToSender) {
+TEST_P(Threads, ASubjectMovesBetweenSenders) {
   DaemonThread daemon(Threaded(GetParam()));
   const motion::Clip clip = ArkitClip(kFrames);
   const protocol::SkeletonOffer offer = OfferOf(clip, "ann");
@@ -148,7 +148,7 @@ TEST_P(Threads, ASubjectGoesFromSenderToSender) {
   EXPECT_EQ(daemon.Count(server::Counter::kPosesRetiredSession), std::uint64_t{kSubjects - 1});
 }
 
-TEST_P(Threads, WhoWaitsIsToldWhoComesAndGoes) {
+TEST_P(Threads, AWaitingSubscriberFollowsItsSubject) {
   DaemonThread daemon(Threaded(GetParam()));
   std::deque<UdpClient> watchers;
   for (int i = 0; i < kSubjects; ++i) {
@@ -175,7 +175,7 @@ TEST_P(Threads, WhoWaitsIsToldWhoComesAndGoes) {
   }
 }
 
-TEST_P(Threads, ARecordingHasThePosesOfAll) {
+TEST_P(Threads, ARecordingHasThePosesOfAllThreads) {
   const TemporaryFolder folder;
   {
     server::Config config = Threaded(GetParam());
@@ -205,7 +205,7 @@ TEST_P(Threads, ARecordingHasThePosesOfAll) {
   }
 }
 
-TEST_P(Threads, EverybodyIsToldGoodbye) {
+TEST_P(Threads, EveryPeerReceivesAGoodbye) {
   DaemonThread daemon(Threaded(GetParam()));
   std::deque<UdpClient> peers;
   for (int i = 0; i < kSubjects; ++i) {

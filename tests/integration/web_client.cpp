@@ -32,7 +32,7 @@ WebClient::~WebClient() { close(socket_); }
 void WebClient::Write(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t sent = send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (sent <= 0) return;  // the other end has closed: what it said is still to be read
+    if (sent <= 0) return;  // the peer has closed; its last bytes can still be read
     bytes.remove_prefix(static_cast<std::size_t>(sent));
   }
 }
@@ -101,7 +101,7 @@ WebClient::Answer WebClient::Upgrade(std::string_view headers) {
   return ReadAnswer(true);
 }
 
-// Masked, as a client's frames are; with a mask of zeros the payload stays as it is.
+// Client frames must be masked; a mask of zeros leaves the payload unchanged.
 void WebClient::SendFrame(int opcode, std::span<const std::uint8_t> payload) {
   std::string frame(1, static_cast<char>(0x80 | opcode));
   const std::size_t size = payload.size();

@@ -12,8 +12,8 @@
 
 namespace furrow::testing_net {
 
-// A blocking socket that speaks as little HTTP and WebSocket as the tests need, and whatever wrong
-// bytes they want. The long timeout is a guard against hanging, never a measure.
+// A blocking socket with the minimum of HTTP and WebSocket that the tests need, including invalid
+// bytes. The long timeout only prevents hanging tests.
 class WebClient {
  public:
   explicit WebClient(std::uint16_t port);
@@ -22,18 +22,18 @@ class WebClient {
   WebClient& operator=(const WebClient&) = delete;
 
   struct Answer {
-    int status = 0;  // 0: the connection ended without one
+    int status = 0;  // 0: the connection closed without a reply
     std::string head;
     std::string body;
   };
-  // `headers`: whole lines, each with its end.
+  // `headers`: whole lines with their line ends.
   Answer Ask(std::string_view method, std::string_view target, std::string_view body = {},
              std::string_view headers = "Host: localhost\r\n");
   Answer AskRaw(std::string_view bytes);
-  // Nothing more will be asked; answers still come.
+  // Closes the sending side. Replies still arrive.
   void EndSending();
 
-  // The handshake of /ws. Its answer has no body.
+  // The handshake of /ws. The reply has no body.
   Answer Upgrade(std::string_view headers = "Host: localhost\r\n");
   static constexpr int kText = 1;
   static constexpr int kBinary = 2;
@@ -53,7 +53,7 @@ class WebClient {
     }
   };
   std::optional<Frame> Next();
-  // The next message, if it is one of this kind.
+  // The next message, if it is of this kind.
   template <class Message>
   std::optional<Message> Take(protocol::Header* header = nullptr) {
     Message message;
@@ -61,7 +61,7 @@ class WebClient {
     if (!frame || !DecodeFrame(*frame, &message, header)) return std::nullopt;
     return message;
   }
-  // The next message of this kind; what comes before it is let go.
+  // The next message of this kind. Other messages before it are dropped.
   template <class Message>
   std::optional<Message> Await(protocol::Header* header = nullptr) {
     Message message;
@@ -70,7 +70,7 @@ class WebClient {
     }
     return std::nullopt;
   }
-  // Bytes up to and with `end`; empty where the connection ends before.
+  // Bytes up to and including `end`; empty if the connection closes first.
   std::string ReadUntil(std::string_view end);
   std::string Take(std::size_t count);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Connections of the web side that end by an exception of the daemon's own: the hub hears of the
-// end.
+// Web connections that end with an internal exception: the hub removes their
+// peers.
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -21,7 +21,7 @@ namespace {
 using server::Hub;
 using server::Time;
 
-// The hub's loop, turned by the test: tasks wait here, and the door to it may fail.
+// The hub's event loop, run by the test. Posting to it may fail on demand.
 class Door {
  public:
   using Task = std::function<void(Hub&, Time)>;
@@ -32,7 +32,7 @@ class Door {
     tasks_.push_back(std::move(task));
     changed_.notify_one();
   }
-  // The post after so many fails.
+  // Lets the post after `count` posts fail.
   void FailAfter(int count) {
     const std::lock_guard lock(mutex_);
     fails_after_ = count;
@@ -77,7 +77,7 @@ class WebFailure : public testing::Test {
   std::unique_ptr<server::HttpServer> http;
 };
 
-TEST_F(WebFailure, AWebSocketThatEndsByAnExceptionLeavesNothingInTheHub) {
+TEST_F(WebFailure, AFailedWebSocketLeavesNothingInTheHub) {
   WebClient client(http->port());
   ASSERT_EQ(client.Upgrade().status, 101);
   door.RunNext(*hub);  // the peer
@@ -86,19 +86,19 @@ TEST_F(WebFailure, AWebSocketThatEndsByAnExceptionLeavesNothingInTheHub) {
   ASSERT_EQ(hub->num_subscriptions(), 1u);
   door.FailAfter(0);
   client.Send(protocol::Ping{1});
-  while (client.Next()) {  // to the end of the connection
+  while (client.Next()) {  // until the connection closes
   }
   door.RunNext(*hub);
   EXPECT_EQ(hub->num_subscriptions(), 0u);
-  hub->Drain();  // tells every link
+  hub->Drain();  // sends to every link
 }
 
-TEST_F(WebFailure, SoDoesAStreamOfPictures) {
+TEST_F(WebFailure, AFailedPictureStreamLeavesNothingInTheHub) {
   WebClient client(http->port());
-  door.FailAfter(1);  // the peer comes, what it asks for does not
+  door.FailAfter(1);  // adding the peer succeeds, its request fails
   EXPECT_EQ(client.Ask("GET", "/mjpeg").status, 0);
   door.RunNext(*hub);
-  door.RunNext(*hub);  // it goes
+  door.RunNext(*hub);  // removes the peer
   hub->Drain();
   EXPECT_EQ(WebClient(http->port()).Ask("HEAD", "/mjpeg").status, 200);  // others are served
 }

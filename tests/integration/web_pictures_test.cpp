@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures over the web side: with flow control over a WebSocket, and plain ones for <img>.
+// Pictures over the web server: WebSocket with flow control, and plain HTTP.
 #include <charconv>
 #include <cstdint>
 #include <optional>
@@ -32,7 +32,7 @@ class WebPictures : public PicturesTest {
     EXPECT_TRUE(viewer.Take<protocol::SubscribeReply>(&header).has_value());
     return header.stream;
   }
-  // The refined picture of a pose at rest, with all before it acknowledged.
+  // Waits for the still of a pose at rest and acknowledges everything before it.
   std::optional<protocol::ImageFrame> AwaitStill(WebClient& viewer, std::uint16_t stream) {
     auto image = viewer.Await<protocol::ImageFrame>();
     while (image && !image->still) {
@@ -42,7 +42,7 @@ class WebPictures : public PicturesTest {
     if (image) viewer.Send(protocol::FrameAck{image->number}, stream);
     return image;
   }
-  // The length of the next part of a multipart stream, whose bytes come next.
+  // Reads the head of the next multipart part and returns its length.
   static std::size_t PartLength(WebClient& client) {
     client.ReadUntil("--furrow-picture\r\nContent-Type: image/jpeg\r\nContent-Length: ");
     const std::string length = client.ReadUntil("\r\n\r\n");
@@ -52,7 +52,7 @@ class WebPictures : public PicturesTest {
   }
 };
 
-TEST_F(WebPictures, TwoAreUnderWayAndWhoStalledGetsTheNewest) {
+TEST_F(WebPictures, AStalledViewerReceivesTheNewestPicture) {
   WebClient viewer(port());
   const std::uint16_t stream = View(viewer);
   SendPose(0);
@@ -61,7 +61,7 @@ TEST_F(WebPictures, TwoAreUnderWayAndWhoStalledGetsTheNewest) {
   EXPECT_EQ(image->number, 1u);
   EXPECT_EQ(image->view_request, 1u);
   SendPose(1);
-  image = viewer.Await<protocol::ImageFrame>();  // of this pose, or the still of the one before
+  image = viewer.Await<protocol::ImageFrame>();  // of this pose, or the still of the previous one
   ASSERT_TRUE(image.has_value());
   EXPECT_EQ(image->number, 2u);
   for (int frame = 2; frame < 10; ++frame) SendPose(frame);
@@ -79,19 +79,19 @@ TEST_F(WebPictures, TwoAreUnderWayAndWhoStalledGetsTheNewest) {
   EXPECT_GT(image->received_us, 0);
 }
 
-TEST_F(WebPictures, APoseAtRestGetsOneStillAndThenNone) {
+TEST_F(WebPictures, APoseAtRestGetsExactlyOneStill) {
   WebClient viewer(port());
   const std::uint16_t stream = View(viewer);
   SendPose(3);
   ASSERT_TRUE(AwaitStill(viewer, stream).has_value());
-  sender->Send(PoseOf(clip, 3, offer), 1, 4, 4000);  // a pose anew, in which nothing has moved
+  sender->Send(PoseOf(clip, 3, offer), 1, 4, 4000);  // a new pose without movement
   sender->Send(protocol::Ping{1});
   ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());
   viewer.Send(protocol::Ping{2});
   EXPECT_TRUE(viewer.Take<protocol::Pong>().has_value());
 }
 
-TEST_F(WebPictures, AChangedViewIsShownWithoutAPoseAndAWrongOneChangesNothing) {
+TEST_F(WebPictures, AChangedViewIsShownWithoutANewPose) {
   WebClient viewer(port());
   const std::uint16_t stream = View(viewer);
   SendPose(0);
@@ -119,7 +119,7 @@ TEST_F(WebPictures, AChangedViewIsShownWithoutAPoseAndAWrongOneChangesNothing) {
   EXPECT_EQ(image->width, 96);
 }
 
-TEST_F(WebPictures, TheDaemonsOwnSettingsAreShownToWhoHasNoneOfTheirOwn) {
+TEST_F(WebPictures, TheDaemonsSettingsApplyToViewsWithoutOverrides) {
   WebClient viewer(port());
   const std::uint16_t stream = View(viewer);
   SendPose(0);
@@ -131,7 +131,7 @@ TEST_F(WebPictures, TheDaemonsOwnSettingsAreShownToWhoHasNoneOfTheirOwn) {
   EXPECT_NE(before->bytes, after->bytes);
 }
 
-TEST_F(WebPictures, MjpegGoesOnFromPoseToPose) {
+TEST_F(WebPictures, MjpegFollowsThePoses) {
   SendPose(0);
   WebClient client(port());
   const auto answer = client.Ask("GET", "/mjpeg?subject=ann&width=64&height=64&shading=diffuse");
@@ -156,15 +156,15 @@ TEST_F(WebPictures, MjpegWaitsForASubjectThatHasLeft) {
   TcpClient watcher(daemon->ready().tcp);
   ASSERT_TRUE(Watch(watcher, {.subject = "ann"}).has_value());
   sender->Send(protocol::Goodbye{}, 1);
-  ASSERT_TRUE(watcher.Await<protocol::Goodbye>().has_value());  // it has decayed, and is gone
+  ASSERT_TRUE(watcher.Await<protocol::Goodbye>().has_value());  // the subject has decayed and left
   Offer(*sender, offer);
-  for (int frame = 10; frame < 16; ++frame) {  // more than were under way when it left
+  for (int frame = 10; frame < 16; ++frame) {  // more than were unacknowledged when it left
     SendPose(frame);
     ASSERT_FALSE(client.Take(PartLength(client)).empty()) << frame;
   }
 }
 
-TEST_F(WebPictures, ASnapshotIsDrawnOfThePoseThereIs) {
+TEST_F(WebPictures, ASnapshotShowsTheCurrentPose) {
   SendPose(5);
   sender->Send(protocol::Ping{1});
   ASSERT_TRUE(sender->Await<protocol::Pong>().has_value());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses over real sockets come back as the weights that a solver gives for the same clip.
+// Poses over real sockets give the same weights as the solver.
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -17,7 +17,7 @@ namespace {
 
 std::int64_t Microseconds(double seconds) { return std::llround(seconds * 1e6); }
 
-// Sends the clip pose by pose, each after the weights of the one before came back.
+// Sends the clip pose by pose, each after receiving the weights of the previous one.
 void PlayAndCompare(RawClient& sender, RawClient& viewer, const motion::Clip& clip,
                     const std::vector<std::vector<float>>& expected, double tolerance,
                     const protocol::PoseEncoding& encoding) {
@@ -64,13 +64,13 @@ TEST(Weights, QuantisedOverTcpAreWithinTheWiresError) {
                  protocol::PoseEncoding::Small());
 }
 
-TEST(Weights, OfRealBodyCaptureEqualTheSolver) {
+TEST(Weights, OfBodyCaptureEqualTheSolver) {
   const auto path = std::filesystem::path(FURROW_SHARED_DATA) / "cmu" / "01_01.bvh";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
   auto loaded = motion::LoadClip(path);
   ASSERT_TRUE(loaded.ok()) << loaded.status().ToString();
   motion::Clip clip = *std::move(loaded);
-  clip.times.resize(300);  // knees and elbows bend early in it
+  clip.times.resize(300);  // knees and elbows bend early in the clip
   DaemonThread daemon(WeightsConfig("cmu.json"));
   ASSERT_TRUE(daemon.serves());
   UdpClient sender(daemon.ready().udp);
@@ -78,7 +78,7 @@ TEST(Weights, OfRealBodyCaptureEqualTheSolver) {
   PlayAndCompare(sender, viewer, clip, Solve(clip, "cmu.json"), 1e-4, {});
 }
 
-TEST(Weights, ARestartedSenderStartsTheSubjectAnew) {
+TEST(Weights, ARestartedSenderRestartsTheSubject) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   const motion::Clip clip = ArkitClip(30);
@@ -92,7 +92,7 @@ TEST(Weights, ARestartedSenderStartsTheSubjectAnew) {
   EXPECT_EQ(daemon.Count(server::Counter::kSubjectsRestarted), 2u);
 }
 
-TEST(Weights, PartialPosesBuildOnWhatWasUsed) {
+TEST(Weights, PartialPosesBuildOnEarlierPoses) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   motion::Clip clip = ArkitClip(40);
@@ -144,7 +144,7 @@ TEST(Weights, LateAndRepeatedDatagramsChangeNothing) {
     };
     send(frame);
     send(frame);                                     // twice
-    send(static_cast<int>(random() % (frame + 1)));  // or late
+    send(static_cast<int>(random() % (frame + 1)));  // late
     protocol::Header header;
     const auto weights = viewer.Await<protocol::WeightFrame>(&header);
     ASSERT_TRUE(weights.has_value());
@@ -152,7 +152,7 @@ TEST(Weights, LateAndRepeatedDatagramsChangeNothing) {
     ASSERT_NEAR(weights->values[0], expected[frame][0], 1e-5);
   }
   sender.Send(protocol::Ping{1});
-  ASSERT_TRUE(sender.Await<protocol::Pong>().has_value());  // all of them have been looked at
+  ASSERT_TRUE(sender.Await<protocol::Pong>().has_value());  // all poses have been processed
   EXPECT_EQ(daemon.Count(server::Counter::kPosesReceived), 180u);
   EXPECT_EQ(
       daemon.Count(server::Counter::kPosesLate) + daemon.Count(server::Counter::kPosesDuplicate),
@@ -186,7 +186,7 @@ TEST(Weights, TwoSubjectsTwoFormatsTwoPatterns) {
   }
 }
 
-TEST(Weights, ARateLimitLeavesPosesOut) {
+TEST(Weights, ARateLimitSkipsPoses) {
   DaemonThread daemon(WeightsConfig("arkit.json"));
   ASSERT_TRUE(daemon.serves());
   const motion::Clip clip = ArkitClip(1);

@@ -3,13 +3,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "server/http/api/json_reply.h"
+
 namespace furrow::server {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Kind = render::SettingInfo::Kind;
 
-std::string_view KindName(const render::SettingInfo& info) {
+std::string_view SettingKindName(const render::SettingInfo& info) {
   switch (info.kind) {
     case Kind::kNumber: return "number";
     case Kind::kCount: return info.choices.empty() ? "int" : "choice";
@@ -34,7 +35,7 @@ Json SettingJson(const render::SettingInfo& info, const std::string& value) {
                {"group", dot == std::string_view::npos ? "picture" : info.name.substr(0, dot)},
                {"unit", info.unit},
                {"help", info.help},
-               {"kind", KindName(info)},
+               {"kind", SettingKindName(info)},
                {"choices", info.choices},
                {"min", nullptr},
                {"max", nullptr},

@@ -14,8 +14,8 @@ namespace furrow::server {
 [[nodiscard]] nlohmann::ordered_json SettingJson(const render::SettingInfo& info,
                                                  const std::string& value);
 
-// What PATCH says of a setting as the text that render::SetSetting() takes: text, a number, a
-// boolean. Error: kSchema, `where` is the name.
+// Converts a value from PATCH (text, number or boolean) to the text that render::SetSetting()
+// takes. Errors: kSchema, with the name as `where`.
 [[nodiscard]] Result<std::string> SettingText(const std::string& name,
                                               const nlohmann::ordered_json& value);
 

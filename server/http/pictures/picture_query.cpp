@@ -20,7 +20,7 @@ Status Read(const std::string& name, const std::string& text, Number low, Number
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (code != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high)) {
     return Status(StatusCode::kInvalidArgument,
-                  "'" + text + "' is not allowed: [" + std::to_string(low) + ", " +
+                  "'" + text + "' is out of range [" + std::to_string(low) + ", " +
                       std::to_string(high) + "]",
                   name);
   }
@@ -28,16 +28,16 @@ Status Read(const std::string& name, const std::string& text, Number low, Number
   return {};
 }
 
-Status NotAllowed(const std::string& name, const Status& why) {
+Status AtName(const std::string& name, const Status& why) {
   return {StatusCode::kInvalidArgument, why.what(), name, why.todo()};
 }
 
-// That what is named is there: a view, a camera, or a setting with such a value.
+// Checks that the view, the camera, or the setting with this value exists.
 Status CheckName(const std::string& name, const std::string& value) {
   if (name == "subject") return {};
   if (name == "view") {
     const Result<render::View> view = render::ParseView(value);
-    return view.ok() ? Status() : NotAllowed(name, view.status());
+    return view.ok() ? Status() : AtName(name, view.status());
   }
   if (name == "camera") {
     const auto names = render::CameraPresetNames();
@@ -47,7 +47,7 @@ Status CheckName(const std::string& name, const std::string& value) {
   }
   render::Settings settings;
   const Status status = render::SetSetting(name, value, &settings);
-  return status.ok() ? Status() : NotAllowed(name, status);
+  return status.ok() ? Status() : AtName(name, status);
 }
 
 Status Set(const std::string& name, const std::string& value, protocol::SubscribePictures* out) {
@@ -80,7 +80,7 @@ Result<protocol::SubscribePictures> PicturesOf(const Url& url) {
   pictures.width = pictures.height = 640;
   for (const auto& [name, value] : url.values) {
     if (name.size() + value.size() + 1 > protocol::kMaxNameBytes) {
-      return Status(StatusCode::kInvalidArgument, "longer than 255 bytes", name);
+      return Status(StatusCode::kInvalidArgument, "name and value exceed 255 bytes", name);
     }
     FURROW_RETURN_IF_ERROR(Set(name, value, &pictures));
   }

@@ -7,9 +7,9 @@
 
 namespace furrow::server {
 
-// The pictures that the query of /mjpeg or /snapshot.png asks for: subject, width, height, view,
-// camera, rate, quality; every other name is a setting's. Errors: kInvalidArgument, `where` is the
-// name. Whom it names is for the hub to find.
+// Parses the query of /mjpeg and /snapshot.png: subject, width, height, view, camera, rate,
+// quality. Every other name is a setting. Errors: kInvalidArgument, with the name as `where`. Does
+// not check whether the subject exists.
 [[nodiscard]] Result<protocol::SubscribePictures> PicturesOf(const Url& url);
 
 }  // namespace furrow::server

@@ -12,8 +12,8 @@
 #include <boost/asio/write.hpp>
 
 #include "protocol/codec/codec.h"
-#include "server/http/http_session.h"
 #include "server/http/pictures/picture_query.h"
+#include "server/http/request/reply_writer.h"
 #include "server/http/socket/web_peer.h"
 
 namespace furrow::server {
@@ -22,9 +22,9 @@ namespace {
 constexpr char kBoundary[] = "furrow-picture";
 constexpr char kMjpegType[] = "multipart/x-mixed-replace; boundary=furrow-picture";
 constexpr char kSnapshotType[] = "image/png";
-// Small, so that what a slow client has not read yet is no more than a picture or two.
+// Small, so that a slow client is at most a picture or two behind.
 constexpr int kSendBufferBytes = 128 * 1024;
-constexpr std::uint64_t kSession = 1;  // one conversation a peer: any number does
+constexpr std::uint64_t kSession = 1;  // any number: the peer has only one session
 
 class PictureStream : public std::enable_shared_from_this<PictureStream> {
  public:
@@ -44,7 +44,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
     Send(0, pictures);
   }
 
-  // The next picture; an answer that says why there is none; neither: the client has gone.
+  // A picture, or a refusal that says why there is none. Neither: the stream has ended.
   struct Next {
     bool has_image = false;
     std::optional<ApiReply> refusal;
@@ -57,9 +57,9 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
       }
       if (deadline && std::chrono::steady_clock::now() >= *deadline) {
         co_return Next{false, ErrorReply(503, "unavailable", "subject",
-                                         "no picture within 10 s: no pose came, or what draws is "
-                                         "still being made ready",
-                                         "ask again")};
+                                         "no picture within 10 s: no pose arrived, or the renderer "
+                                         "is still preparing its shaders",
+                                         "try again")};
       }
       if (gone_) co_return Next{};
       wake_.expires_at(deadline.value_or(net::steady_timer::time_point::max()));
@@ -67,7 +67,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
       co_await wake_.async_wait(Redirect(ignored));
     }
   }
-  // A client of /mjpeg says nothing more: what can be read is its end.
+  // A client of /mjpeg sends nothing after its request, so readable data means that it has closed.
   void WatchForEnd() {
     stream_->socket().async_wait(net::ip::tcp::socket::wait_read,
                                  [weak = weak_from_this()](beast::error_code) {
@@ -101,7 +101,7 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
       return good ? std::optional(Next{true, std::nullopt}) : std::nullopt;
     }
     if (view.kind == protocol::MessageKind::kGoodbye) {
-      // Of the subject alone: it may come back.
+      // A goodbye on a stream concerns the subject, which may come back.
       const bool goes_on = waits_ && view.header.stream != 0;
       return goes_on ? std::nullopt : std::optional(Next{});
     }
@@ -124,11 +124,11 @@ class PictureStream : public std::enable_shared_from_this<PictureStream> {
   beast::tcp_stream* stream_;
   net::steady_timer wake_;
   WebContext* context_;
-  std::optional<WebPeer> peer_;  // from Open() on
+  std::optional<WebPeer> peer_;  // set by Open()
   protocol::Encoder encoder_;
   std::uint32_t requests_ = 0;
   std::uint16_t subscription_ = 0;
-  bool waits_ = false;  // for a subject that is not there
+  bool waits_ = false;  // stay while the subject is absent
   protocol::ImageFrame image_;
   bool gone_ = false;
 };
@@ -140,7 +140,7 @@ net::awaitable<bool> WriteAll(beast::tcp_stream* stream, std::string_view head,
                                                   net::buffer(tail.data(), tail.size())};
   stream->expires_after(kWebDeadline);
   beast::error_code error;
-  const std::size_t size = co_await net::async_write(*stream, parts, Redirect(error));
+  co_await net::async_write(*stream, parts, Redirect(error));
   co_return !error;
 }
 
@@ -193,7 +193,7 @@ net::awaitable<bool> ServePictures(beast::tcp_stream* stream, WebContext* contex
   Result<protocol::SubscribePictures> wanted = PicturesOf(url);
   if (!wanted.ok()) co_return co_await WriteReply(*stream, request, ErrorReply(wanted.status()));
   const bool once = url.path == "/snapshot.png";
-  if (request.method() == http::verb::head) {  // right as it is; nothing is drawn for it
+  if (request.method() == http::verb::head) {  // the query is valid; render nothing
     ApiReply reply{.type = once ? kSnapshotType : kMjpegType};
     co_return co_await WriteReply(*stream, request, std::move(reply));
   }

@@ -7,9 +7,9 @@
 
 namespace furrow::server {
 
-// /mjpeg and /snapshot.png: a peer of the hub that asks for pictures on behalf of a client that
-// speaks nothing but HTTP, and acknowledges each when its bytes have left. False: the connection
-// ends here.
+// Serves /mjpeg and /snapshot.png to clients that only speak HTTP: acts as a peer of the hub that
+// subscribes to pictures, and acknowledges each picture after its bytes were sent. False: the
+// connection must close.
 [[nodiscard]] net::awaitable<bool> ServePictures(beast::tcp_stream* stream, WebContext* context,
                                                  const WebRequest& request, const Url& url);
 

@@ -33,7 +33,7 @@ ApiReply ErrorReply(int status, std::string_view code, std::string_view field,
   const nlohmann::ordered_json json = {
       {"error", {{"code", code}, {"field", field}, {"message", message}, {"hint", hint}}}};
   using Json = nlohmann::ordered_json;
-  // What a client sent may come back in it, UTF-8 or not.
+  // The text may contain bytes from the client that are not UTF-8.
   return {.status = status, .body = json.dump(-1, ' ', false, Json::error_handler_t::replace)};
 }
 
@@ -44,7 +44,7 @@ ApiReply ErrorReply(const Status& status) {
 
 ApiReply MethodReply(std::string_view method, std::string_view path, std::string allow) {
   ApiReply reply =
-      ErrorReply(405, "method", "", std::string(method) + " means nothing to " + std::string(path),
+      ErrorReply(405, "method", "", std::string(path) + " does not support " + std::string(method),
                  "use " + allow);
   reply.allow = std::move(allow);
   return reply;

@@ -9,7 +9,7 @@
 
 namespace furrow::server {
 
-// A request and its answer, without the bytes of HTTP.
+// A request to the API and its reply, independent of HTTP syntax.
 struct ApiRequest {
   std::string method;  // "GET", "PATCH"
   Url url;
@@ -20,16 +20,16 @@ struct ApiReply {
   int status = 200;
   std::string type = "application/json";
   std::string body;
-  std::string file_name;  // offered for saving; empty: shown
-  std::string allow;      // of 405: "GET, PATCH"
+  std::string file_name;  // suggested name for saving; empty: none
+  std::string allow;      // status 405: the allowed methods, "GET, PATCH"
 };
 
-// {"error": {...}} of docs/HTTP-API.md. The overload takes HTTP's status from the code and the
+// The error object of docs/HTTP-API.md. The overload derives the HTTP status from the code and the
 // field from `where`.
 [[nodiscard]] ApiReply ErrorReply(int status, std::string_view code, std::string_view field,
                                   std::string_view message, std::string_view hint = {});
 [[nodiscard]] ApiReply ErrorReply(const Status& status);
-// 405. `allow`: what `path` is asked with instead, "GET, HEAD".
+// 405 Method Not Allowed. `allow`: the methods of the path, "GET, HEAD".
 [[nodiscard]] ApiReply MethodReply(std::string_view method, std::string_view path,
                                    std::string allow);
 

@@ -12,21 +12,23 @@
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
 
-// Boost for the few files that speak HTTP: dear to compile, so included by them alone. It brings
-// its own Asio; the rest of the daemon runs on the standalone one, on another thread.
+// The Boost headers and names that all files of the web server share. Compiling them is slow, so
+// only server/http includes them. Boost has its own Asio; the rest of the daemon uses standalone
+// Asio on other threads.
 namespace furrow::server {
 
 namespace net = boost::asio;
 namespace beast = boost::beast;
 namespace http = boost::beast::http;
 
-// The completion token of every asynchronous call: the coroutine continues with `error` set
-// instead of an exception. (Boost 1.74 has no as_tuple.)
+// The completion token of every asynchronous call: the coroutine resumes with `error` set instead
+// of an exception, and `error` is cleared on success. Boost 1.74 has no as_tuple.
 [[nodiscard]] inline auto Redirect(beast::error_code& error) {
   return net::redirect_error(net::use_awaitable, error);
 }
-inline constexpr auto kWebDeadline = std::chrono::seconds(10);  // to ask, and to take an answer
-inline constexpr auto kWebIdle = std::chrono::seconds(30);      // a WebSocket that says nothing
+inline constexpr auto kWebDeadline =
+    std::chrono::seconds(10);  // to send a request, or to read a response
+inline constexpr auto kWebIdle = std::chrono::seconds(30);  // a silent WebSocket
 
 using WebRequest = http::request<http::string_body>;
 

@@ -38,7 +38,7 @@ std::string_view TypeOf(const fs::path& path) {
   return "application/octet-stream";
 }
 
-// Empty where it gains nothing.
+// Empty if compression does not make the file smaller.
 std::string Gzip(const std::string& bytes) {
   z_stream stream{};
   constexpr int kGzipFormat = 15 + 16;
@@ -64,7 +64,8 @@ Result<PageFiles> PageFiles::Load(const fs::path& folder) {
        entry.increment(error)) {
     if (!entry->is_regular_file()) continue;
     total += entry->file_size();
-    if (total > kMaxBytes) return Status(StatusCode::kLimit, "too much for a page", folder);
+    if (total > kMaxBytes)
+      return Status(StatusCode::kLimit, "the files of the page exceed 64 MiB", folder);
     Result<std::string> bytes = ReadFile(entry->path(), kMaxBytes);
     FURROW_RETURN_IF_ERROR(bytes);
     const std::string name = "/" + fs::relative(entry->path(), folder).generic_string();
@@ -80,8 +81,8 @@ Result<PageFiles> PageFiles::Load(const fs::path& folder) {
     page.files_.emplace(name, std::move(file));
   }
   if (page.Find("/") == nullptr) {
-    return Status(StatusCode::kNotFound, "there is no page here", folder,
-                  "build the target furrow-web, or install nodejs and npm and build anew");
+    return Status(StatusCode::kNotFound, "the web page is not installed", folder,
+                  "build the target furrow-web, which needs nodejs and npm");
   }
   return page;
 }

@@ -13,21 +13,21 @@ namespace furrow::server {
 struct PageFile {
   std::string_view type;  // "text/html; charset=utf-8"
   std::string bytes;
-  std::string gzip;        // empty where it would not be smaller
-  std::string etag;        // with its quotation marks
-  bool immutable = false;  // its name changes with its content
+  std::string gzip;        // empty if it would not be smaller
+  std::string etag;        // with quotation marks
+  bool immutable = false;  // the name contains a hash of the content
 };
 
-// The page's files, read and compressed once: what a request names is looked up, never opened.
+// The files of the web page, read and compressed once. Requests never access the file system.
 class PageFiles {
  public:
   static constexpr std::uintmax_t kMaxBytes = 64u << 20;  // of all files together
 
-  // Every regular file under `folder`, as "/<path>"; "/" is index.html. Errors: kNotFound (no
-  // folder, or no index.html), kIo, kLimit.
+  // Reads every regular file under `folder` as "/<path>"; "/" is index.html. Errors: kNotFound (no
+  // folder or no index.html), kIo, kLimit.
   [[nodiscard]] static Result<PageFiles> Load(const std::filesystem::path& folder);
 
-  // Null: no such file.
+  // Null: there is no such file.
   [[nodiscard]] const PageFile* Find(std::string_view path) const;
 
  private:

@@ -8,17 +8,18 @@
 
 namespace furrow::server {
 
-// Keeps strangers' pages away from a daemon that listens on loopback or a private network.
+// Protects a daemon on loopback or a private network from foreign web pages.
 //
-// A page of evil.example can send requests here from the browser of whoever runs the daemon. Its
-// Origin tells on it; and where it points its own name at our address (DNS rebinding), so that
-// Origin and Host agree, the name in Host does.
+// A page of evil.example can send requests to the daemon from the operator's browser. The check of
+// Origin rejects them. If evil.example resolves to the daemon's address (DNS rebinding), Origin and
+// Host agree, and the check of the name in Host rejects them.
 class RequestGuard {
  public:
   explicit RequestGuard(const HttpConfig& config)
       : hosts_(config.allow_hosts), origins_(config.allow_origins) {}
 
-  // Empty: may pass. Else why not. `origin` is empty where the request has none (no browser).
+  // Returns an empty string, or why the request is forbidden. `origin`: empty if the request has
+  // none, as from clients other than browsers.
   [[nodiscard]] std::string Check(std::string_view host, std::string_view origin) const;
 
  private:
@@ -26,7 +27,8 @@ class RequestGuard {
   std::vector<std::string> origins_;
 };
 
-// "localhost" of "localhost:7480", "::1" of "[::1]:80".
+// The name or address without port and brackets: "localhost" for "localhost:7480", "::1" for
+// "[::1]:80".
 [[nodiscard]] std::string_view HostName(std::string_view host);
 
 }  // namespace furrow::server

@@ -9,16 +9,16 @@
 
 namespace furrow::server {
 
-// A request's target, taken apart and decoded.
+// A decoded request target.
 struct Url {
   std::string path;                                         // "/api/explain"
-  std::vector<std::pair<std::string, std::string>> values;  // of the query, in order
+  std::vector<std::pair<std::string, std::string>> values;  // the query, in order
 
-  // The last of that name; empty where there is none.
+  // The last value of that name; empty if there is none.
   [[nodiscard]] std::string_view Value(std::string_view name) const;
 };
 
-// "/mjpeg?subject=ann&camera=eyes". None: no path, or percent signs that mean nothing.
+// Parses "/mjpeg?subject=ann&camera=eyes". nullopt: not a path, or an invalid percent escape.
 [[nodiscard]] std::optional<Url> ParseUrl(std::string_view target);
 
 }  // namespace furrow::server

@@ -8,16 +8,16 @@
 #include "server/config/http_config.h"
 #include "server/core/metrics.h"
 #include "server/http/request/api_types.h"
-#include "server/http/request/hub_door.h"
 #include "server/http/request/page_files.h"
 #include "server/http/request/request_guard.h"
+#include "server/http/request/thread_handoff.h"
 
 namespace furrow::server {
 
-// Answers the JSON routes, and /metrics and /readyz; called on the hub's thread.
+// Answers the JSON routes, /metrics, /healthz and /readyz. Called on the hub's thread.
 using AnswerApi = std::function<ApiReply(const ApiRequest& request, Hub& hub, Time now)>;
 
-// What every connection of the web side shares. Outlives them.
+// The state that all connections of the web server share. Outlives them.
 struct WebContext {
   HttpConfig config;
   RequestGuard guard;
@@ -27,7 +27,7 @@ struct WebContext {
   AnswerApi answer;
   Metrics* metrics = nullptr;
   std::atomic<int> connections = 0;
-  std::atomic<int> viewers = 0;  // WebSockets and streams of pictures
+  std::atomic<int> viewers = 0;  // WebSockets and picture streams
 };
 
 inline constexpr std::size_t kMaxWebMessageBytes = 64 * 1024;

@@ -6,8 +6,8 @@
 
 namespace furrow::server {
 
-// Whether the bytes of a WebSocket message are one whole message of the wire, known or not: what
-// the hub may be bothered with. Cheap: nothing of the payload is read.
+// True if a WebSocket message is exactly one message of the wire, of a known or unknown kind. Only
+// such messages go to the hub. Does not read the payload.
 [[nodiscard]] bool IsWebMessage(std::span<const std::uint8_t> bytes);
 
 }  // namespace furrow::server

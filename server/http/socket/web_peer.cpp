@@ -11,18 +11,18 @@
 
 namespace furrow::server {
 
-// What both threads hold of a peer: Link is for the hub's.
+// The state that both threads share. The hub's thread uses the Link functions.
 class WebPeer::Connection : public Link {
  public:
   explicit Connection(std::function<void()> wake) : wake_(std::move(wake)) {}
 
   void SendReply(std::span<const std::uint8_t> message) override;
   int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message, std::size_t keep,
-                int lane) override;
+                int shard) override;
   void DropFrames(std::uint64_t key) override;
   bool Pop(std::vector<std::uint8_t>* out);
 
-  PeerId id = 0;  // the hub's thread
+  PeerId id = 0;  // used by the hub's thread only
   std::atomic<int> waiting = 0;
   std::atomic<bool> overrun = false;
 
@@ -46,7 +46,7 @@ void WebPeer::Connection::SendReply(std::span<const std::uint8_t> message) {
 }
 
 int WebPeer::Connection::SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
-                                   std::size_t keep, int /*lane*/) {
+                                   std::size_t keep, int /*shard*/) {
   int dropped = 0;
   bool is_first = false;
   {

@@ -7,32 +7,33 @@
 #include <string>
 #include <vector>
 
-#include "server/http/request/hub_door.h"
+#include "server/http/request/thread_handoff.h"
 
 namespace furrow::server {
 
-// A peer of the hub whose connection lives on the web's thread: messages cross by value, and what
-// goes out waits in a bounded outbox where the newest frame wins.
+// A peer of the hub with a connection on the web thread. Messages cross between the threads by
+// value; outgoing ones wait in a bounded outbox in which the newest frame wins.
 //
-// All of it is for the web's thread but for Link, which the hub calls on its own; it keeps that
-// link until it has heard of the end, however this side ended.
+// The web thread calls all functions. The hub's thread keeps its Link alive until it has processed
+// the end of the peer.
 class WebPeer {
  public:
-  static constexpr int kMaxWaiting = 64;  // messages on their way to the hub
+  static constexpr int kMaxWaiting = 64;  // messages queued for the hub
 
-  // A peer of the hub from here on. `wake` is called on the hub's thread when something waits to be
-  // sent that did not before, or the peer is overrun; it must hand over to the web's thread.
+  // Adds the peer to the hub. `wake` is called on the hub's thread when the outbox is no longer
+  // empty or the peer is overrun; it must post to the web thread.
   WebPeer(PostToHub post_to_hub, std::string name, std::function<void()> wake);
-  ~WebPeer();  // nothing comes or goes from here on
+  ~WebPeer();  // removes the peer from the hub
   WebPeer(const WebPeer&) = delete;
   WebPeer& operator=(const WebPeer&) = delete;
 
-  // A whole message of the client's. False: it sends faster than the daemon reads; cut it off.
+  // Passes a message from the client to the hub. False: the client sends faster than the hub reads;
+  // close the connection.
   [[nodiscard]] bool Send(std::vector<std::uint8_t> message);
 
-  // The next message for the client. False: none waits.
+  // Takes the next message for the client. False: there is none.
   [[nodiscard]] bool Pop(std::vector<std::uint8_t>* out);
-  // The client does not read its replies: cut it off.
+  // True if the client does not read its replies; close the connection.
   [[nodiscard]] bool overrun() const;
 
  private:

@@ -42,7 +42,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     auto wake = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) self->wake_.cancel();
     };
-    const Ending ending{this};  // by an exception, too
+    const AbortOnExit abort_on_exit{this};  // also after an exception
     peer_.emplace(context_->post_to_hub, name_,
                   [post_to_web = context_->post_to_web, wake] { post_to_web(wake); });
     net::co_spawn(
@@ -54,9 +54,9 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   }
 
  private:
-  struct Ending {
+  struct AbortOnExit {
     WebSocketSession* session;
-    ~Ending() {
+    ~AbortOnExit() {
       session->Abort();
       session->peer_.reset();
     }
@@ -68,7 +68,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     const auto remote = tcp.socket().remote_endpoint(ignored);
     name_ = "web " + remote.address().to_string() + " port " + std::to_string(remote.port());
     tcp.socket().set_option(net::ip::tcp::no_delay(true), ignored);
-    tcp.expires_never();  // the WebSocket has timeouts of its own
+    tcp.expires_never();  // the WebSocket has its own timeouts
     socket_.set_option(websocket::stream_base::timeout{kWebDeadline, kWebIdle, false});
     socket_.set_option(websocket::stream_base::decorator([&](websocket::response_type& response) {
       response.set(http::field::server, "furrowd");
@@ -89,8 +89,8 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     beast::flat_buffer buffer;
     while (!closed_) {
       beast::error_code error;
-      const std::size_t size = co_await socket_.async_read(buffer, Redirect(error));
-      if (error == websocket::error::message_too_big) {  // Beast has said 1009 already
+      co_await socket_.async_read(buffer, Redirect(error));
+      if (error == websocket::error::message_too_big) {  // Beast has sent close code 1009
         context_->metrics->Add(Counter::kConnectionsMalformed);
       }
       if (error) co_return;
@@ -110,7 +110,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     }
   }
 
-  // What is no message of the wire at all ends the connection; the hub answers the rest.
+  // Only messages that are not of this wire close the connection. The hub answers other errors.
   [[nodiscard]] websocket::close_code Refuse(const std::vector<std::uint8_t>& message) const {
     if (socket_.got_text()) return websocket::close_code::unknown_data;
     if (!IsWebMessage(message)) return websocket::close_code::protocol_error;
@@ -133,10 +133,10 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
       } else if (peer_->Pop(&out)) {
         WatchWrite();
         beast::error_code error;
-        const std::size_t size = co_await socket_.async_write(net::buffer(out), Redirect(error));
+        co_await socket_.async_write(net::buffer(out), Redirect(error));
         write_watch_.cancel();
         if (error) Abort();
-        if (EndsConversation(out)) {
+        if (IsFinalGoodbye(out)) {
           co_await CloseWith(websocket::close_code::going_away);
           co_return;
         }
@@ -148,15 +148,15 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     }
   }
 
-  // The hub's goodbye to the peer as a whole, not to one subscription: the daemon drains.
-  static bool EndsConversation(const std::vector<std::uint8_t>& message) {
+  // True for a goodbye to the whole peer: the daemon shuts down.
+  static bool IsFinalGoodbye(const std::vector<std::uint8_t>& message) {
     protocol::MessageView view;
     return protocol::OpenMessage(message, view, protocol::kMaxReplyBytes) ==
                protocol::DecodeStatus::kOk &&
            view.kind == protocol::MessageKind::kGoodbye && view.header.stream == 0;
   }
 
-  // A client that does not take what it asked for is cut off.
+  // Closes the connection if the client does not read a message within kWebDeadline.
   void WatchWrite() {
     write_watch_.expires_after(kWebDeadline);
     write_watch_.async_wait([weak = weak_from_this()](beast::error_code error) {
@@ -168,7 +168,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
     });
   }
 
-  // Ends both loops.
+  // Closes the socket, which ends both loops.
   void Abort() {
     closed_ = true;
     beast::error_code ignored;
@@ -182,9 +182,9 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   net::steady_timer write_watch_;
   WebContext* context_;
   std::string name_;
-  std::optional<WebPeer> peer_;  // while it lasts
+  std::optional<WebPeer> peer_;  // while the connection is open
   bool closed_ = false;
-  bool closing_ = false;  // the close frame is on its way
+  bool closing_ = false;  // the close frame is being sent
 };
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 namespace furrow::server {
 
-// Takes the upgrade and carries messages of the wire between the client and the hub until either
-// ends it, or the client breaks the rules of docs/HTTP-API.md.
+// Accepts the upgrade and carries messages between the client and the hub until one of them closes,
+// or the client violates docs/HTTP-API.md.
 [[nodiscard]] net::awaitable<void> ServeWebSocket(beast::tcp_stream stream, WebContext* context,
                                                   WebRequest request);
 

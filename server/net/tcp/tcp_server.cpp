@@ -7,26 +7,24 @@
 #include <utility>
 #include <vector>
 
-#include <asio/experimental/as_tuple.hpp>
 #include <asio/steady_timer.hpp>
-#include <asio/use_awaitable.hpp>
 #include <spdlog/spdlog.h>
 
 #include "protocol/framing/tcp_framing.h"
-#include "server/net/spawn.h"
+#include "server/net/await_tuple.h"
+#include "server/net/critical_task.h"
 
 namespace furrow::server {
 namespace {
 
 using asio::ip::tcp;
-constexpr auto kToken = asio::experimental::as_tuple(asio::use_awaitable);
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 
-// One answer on a connection that is closed at once. A fresh socket's buffer has room for it; where
-// not, the closing says enough.
-class LastWord : public Link {
+// Sends one reply on a connection that is refused. The buffer of a new socket has room for it. If
+// the send fails, the client only sees the connection close.
+class RefusalLink : public Link {
  public:
-  explicit LastWord(tcp::socket* socket) : socket_(socket) {}
+  explicit RefusalLink(tcp::socket* socket) : socket_(socket) {}
   void SendReply(std::span<const std::uint8_t> message) override {
     const auto prefix = protocol::FramePrefix(message.size());
     std::vector<std::uint8_t> frame(prefix.begin(), prefix.end());
@@ -53,7 +51,7 @@ TcpServer::TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metri
 Status TcpServer::Open(const tcp::endpoint& endpoint) {
   asio::error_code error;
   acceptor_.open(endpoint.protocol(), error);
-  // A port in TIME_WAIT may be taken again at once; one that somebody listens on may not.
+  // Allows a port in TIME_WAIT. A port with a listener stays an error.
   if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
   if (!error) acceptor_.bind(endpoint, error);
   if (!error) acceptor_.listen(tcp::acceptor::max_listen_connections, error);
@@ -61,7 +59,7 @@ Status TcpServer::Open(const tcp::endpoint& endpoint) {
   return Status(StatusCode::kUnavailable,
                 "cannot listen on TCP " + endpoint.address().to_string() + " port " +
                     std::to_string(endpoint.port()) + ": " + error.message(),
-                "", "end what uses the port, or choose another with --tcp");
+                "", "stop the program that uses the port, or set another one with --tcp");
 }
 
 std::uint16_t TcpServer::port() const {
@@ -69,17 +67,17 @@ std::uint16_t TcpServer::port() const {
   return acceptor_.local_endpoint(error).port();
 }
 
-void TcpServer::Start() { SpawnVital(io_, Accept()); }
+void TcpServer::Start() { StartCriticalTask(io_, Accept()); }
 
 asio::awaitable<void> TcpServer::Accept() {
   while (acceptor_.is_open()) {
-    auto [error, socket] = co_await acceptor_.async_accept(kToken);
+    auto [error, socket] = co_await acceptor_.async_accept(kAwaitTuple);
     if (!acceptor_.is_open()) co_return;
     if (error) {
-      // Out of descriptors, or the peer is gone already: a pause, so that the loop does not spin.
-      spdlog::warn("a connection could not be accepted: {}", error.message());
+      // No descriptors are left, or the peer has gone. The pause keeps the loop from spinning.
+      spdlog::warn("cannot accept a connection: {}", error.message());
       asio::steady_timer pause(io_, kAcceptPause);
-      co_await pause.async_wait(kToken);
+      co_await pause.async_wait(kAwaitTuple);
     } else if (sessions_.size() >= static_cast<std::size_t>(limits_.max_connections)) {
       Refuse(std::move(socket));
     } else {
@@ -95,8 +93,8 @@ asio::awaitable<void> TcpServer::Accept() {
 
 void TcpServer::Refuse(tcp::socket socket) {
   metrics_->Add(Counter::kConnectionsRefused);
-  LastWord last_word(&socket);
-  hub_->RefuseConnection(&last_word);
+  RefusalLink link(&socket);
+  hub_->RefuseConnection(&link);
 }
 
 void TcpServer::Drain() {

@@ -10,24 +10,24 @@
 #include <asio/ip/tcp.hpp>
 
 #include "base/status.h"
-#include "server/config/config.h"
+#include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/net/tcp/tcp_session.h"
 #include "server/session/hub.h"
 
 namespace furrow::server {
 
-// Accepts connections, at most Limits::max_connections at a time, and keeps their sessions.
+// Accepts TCP connections, at most Limits::max_connections at a time, and owns their sessions.
 class TcpServer {
  public:
   TcpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics);
 
-  // Errors: kUnavailable, naming address and port.
+  // Errors: kUnavailable; the message names the address and the port.
   [[nodiscard]] Status Open(const asio::ip::tcp::endpoint& endpoint);
   [[nodiscard]] std::uint16_t port() const;
   void Start();
 
-  // No more connections; those there are send what waits and close.
+  // Stops accepting. Open connections send what is queued and close.
   void Drain();
   void CloseAll();
   [[nodiscard]] std::size_t num_sessions() const { return sessions_.size(); }

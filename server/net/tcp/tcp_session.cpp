@@ -8,37 +8,34 @@
 
 #include <asio/buffer.hpp>
 #include <asio/co_spawn.hpp>
-#include <asio/experimental/as_tuple.hpp>
 #include <asio/post.hpp>
-#include <asio/use_awaitable.hpp>
 #include <asio/write.hpp>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 
 #include "protocol/framing/tcp_framing.h"
 #include "protocol/messages/limits.h"
+#include "server/net/await_tuple.h"
 #include "server/net/clock.h"
 
 namespace furrow::server {
 namespace {
 
-constexpr auto kToken = asio::experimental::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReadBytes = 64 * 1024;
-// What goes out by one call of the system, small messages together.
+// Bytes per write call; small messages leave together.
 constexpr std::size_t kWriteBytes = 16 * 1024;
-// How much the system keeps that the network has not taken. Left to itself it keeps megabytes:
-// whoever reads slowly would get seconds of what is long past, and each message for who does not
-// read at all would still be a call.
+// Unsent bytes that the kernel may queue (TCP_NOTSENT_LOWAT). By default it queues megabytes, so a
+// slow reader would receive poses that are seconds old.
 constexpr int kUnsentBytes = 32 * 1024;
 constexpr std::size_t kMaxReplies = 1024;
-// A write this old is of a peer that does not read, or hardly: it takes microseconds.
+// A write takes microseconds unless the peer does not read.
 constexpr Time kStuckAfter = std::chrono::milliseconds(100);
 constexpr auto kWatchInterval = std::chrono::milliseconds(500);
 
 std::string NameOf(const asio::ip::tcp::socket& socket) {
   asio::error_code error;
   const auto endpoint = socket.remote_endpoint(error);
-  if (error) return "tcp, already gone";
+  if (error) return "tcp, disconnected";
   return "tcp " + endpoint.address().to_string() + " port " + std::to_string(endpoint.port());
 }
 
@@ -61,14 +58,14 @@ TcpSession::TcpSession(asio::ip::tcp::socket socket, const Limits& limits, Hub* 
 void TcpSession::Start() {
   asio::error_code error;
   socket_.set_option(asio::ip::tcp::no_delay(true), error);
-  // Where it cannot be had, all works but for the freshness of what slow readers get.
+  // Optional: without it, slow readers only receive older frames.
   setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes,
              sizeof(kUnsentBytes));
   thread_ = std::this_thread::get_id();
   peer_ = hub_->AddPeer(Transport::kTcp, NameOf(socket_), this, ReadClock());
   const auto self = shared_from_this();
   const auto executor = socket_.get_executor();
-  // What a connection does not survive (no memory) is its own end, and nobody else's.
+  // An exception, such as out of memory, ends this connection only.
   const auto ended = [self](const std::exception_ptr& failed) {
     if (failed) self->Close();
   };
@@ -82,9 +79,9 @@ void TcpSession::Start() {
 
 asio::awaitable<void> TcpSession::Read() {
   while (state_ != State::kClosed) {
-    const auto [error, size] = co_await socket_.async_read_some(asio::buffer(in_), kToken);
+    const auto [error, size] = co_await socket_.async_read_some(asio::buffer(in_), kAwaitTuple);
     if (error) break;
-    if (state_ != State::kOpen) continue;  // ignored: only the end is waited for
+    if (state_ != State::kOpen) continue;  // ignore input; wait for the end of the stream
     if (!OnBytes({in_.data(), size}, ReadClock())) {
       metrics_->Add(Counter::kConnectionsMalformed);
       CloseAfterFlush(/*linger=*/true);
@@ -107,10 +104,11 @@ bool TcpSession::OnBytes(std::span<const std::uint8_t> bytes, Time now) {
 
 asio::awaitable<void> TcpSession::Write() {
   while (state_ == State::kOpen || state_ == State::kFlushing) {
-    if (TakeOut()) {
+    if (FillWriteBuffer()) {
       write_started_ = ReadClock();
       SetWriting(true);
-      const auto [error, size] = co_await asio::async_write(socket_, asio::buffer(out_), kToken);
+      const auto [error, size] =
+          co_await asio::async_write(socket_, asio::buffer(out_), kAwaitTuple);
       SetWriting(false);
       if (error) Close();
     } else if (state_ == State::kFlushing) {
@@ -123,20 +121,20 @@ asio::awaitable<void> TcpSession::Write() {
       socket_.shutdown(asio::ip::tcp::socket::shutdown_send, error);
     } else {
       wake_.expires_at(asio::steady_timer::time_point::max());
-      co_await wake_.async_wait(kToken);
+      co_await wake_.async_wait(kAwaitTuple);
     }
   }
 }
 
-// What waits, as far as it goes out together. False: nothing.
-bool TcpSession::TakeOut() {
+// Moves queued messages into out_, up to kWriteBytes. False: nothing is queued.
+bool TcpSession::FillWriteBuffer() {
   out_.clear();
   const std::lock_guard lock(mutex_);
   while (out_.size() < kWriteBytes && outbox_.Pop(&message_)) {
     const auto prefix = protocol::FramePrefix(message_.size());
     out_.insert(out_.end(), prefix.begin(), prefix.end());
     out_.insert(out_.end(), message_.begin(), message_.end());
-    if (message_.capacity() > kWriteBytes) message_ = {};  // a picture is not kept twice
+    if (message_.capacity() > kWriteBytes) message_ = {};  // release the memory of a picture
   }
   return !out_.empty();
 }
@@ -144,7 +142,7 @@ bool TcpSession::TakeOut() {
 asio::awaitable<void> TcpSession::Watch() {
   while (state_ != State::kClosed) {
     watch_.expires_after(kWatchInterval);
-    co_await watch_.async_wait(kToken);
+    co_await watch_.async_wait(kAwaitTuple);
     if (state_ != State::kClosed && IsOverdue(ReadClock())) {
       metrics_->Add(Counter::kConnectionsIdle);
       Close();
@@ -152,7 +150,7 @@ asio::awaitable<void> TcpSession::Watch() {
   }
 }
 
-// A peer that neither sends nor watches, one that does not read, one that does not hang up.
+// True for a peer that does not read, has gone idle, or does not close.
 bool TcpSession::IsOverdue(Time now) {
   if (writing_ && now - write_started_ > FromSeconds(limits_.idle_seconds)) return true;
   if (state_ == State::kOpen) return hub_->IsIdle(peer_, now);
@@ -164,9 +162,9 @@ void TcpSession::CloseAfterFlush(bool linger) {
   linger_ = linger;
   closing_since_ = ReadClock();
   {
-    const std::lock_guard lock(mutex_);  // so that no frame comes in behind it
+    const std::lock_guard lock(mutex_);  // no frame may follow the queued replies
     state_ = State::kFlushing;
-    outbox_.DropAllBehindTheLine();
+    outbox_.DropReplaceableFrames();
   }
   hub_->RemovePeer(peer_);
   wake_.cancel();
@@ -193,12 +191,12 @@ void TcpSession::SendReply(std::span<const std::uint8_t> message) {
     }
   }
   metrics_->Add(Counter::kConnectionsOverrun);
-  // Not here: the hub is at work with this very peer.
+  // Close later: the hub is using this peer right now.
   asio::post(socket_.get_executor(), [self = shared_from_this()] { self->Close(); });
 }
 
 int TcpSession::SendFrame(std::uint64_t key, std::span<const std::uint8_t> message,
-                          std::size_t keep, int /*lane*/) {
+                          std::size_t keep, int /*shard*/) {
   const std::lock_guard lock(mutex_);
   if (state_ != State::kOpen) return 0;
   const int dropped = outbox_.PushFrame(key, message, keep);
@@ -211,8 +209,7 @@ void TcpSession::SetWriting(bool writing) {
   writing_ = writing;
 }
 
-// Tells the writer that something waits. Another thread does so once, however much it pushes until
-// the writer's has its turn.
+// Wakes the writer. Another thread posts at most one wake-up until the writer has run.
 void TcpSession::Wake() {
   if (std::this_thread::get_id() == thread_) {
     wake_.cancel();
@@ -226,7 +223,7 @@ void TcpSession::Wake() {
 
 bool TcpSession::IsStuck(Time now) const { return writing_ && now - write_started_ > kStuckAfter; }
 
-// Of a peer that leaves, its subscriptions end; what was promised it still goes out.
+// A closing connection keeps its frames: kKeepAll frames queued before the goodbye still leave.
 void TcpSession::DropFrames(std::uint64_t key) {
   if (state_ != State::kOpen) return;
   const std::lock_guard lock(mutex_);

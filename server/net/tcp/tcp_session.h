@@ -15,31 +15,31 @@
 #include <asio/steady_timer.hpp>
 
 #include "protocol/framing/tcp_framing.h"
-#include "server/config/config.h"
+#include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/session/hub.h"
 #include "server/session/peers/outbox.h"
 
 namespace furrow::server {
 
-// One TCP connection: three coroutines, each with one concern (reader, writer, watchdog), and a
-// bounded outbox between the hub and the writer.
+// One TCP connection: a reader, a writer and a watchdog coroutine, and a bounded outbox between the
+// hub and the writer. Runs on one thread, except for the Link functions.
 class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> {
  public:
-  // `on_closed` is called once, when the connection has ended.
+  // `on_closed`: called once, after the connection has closed.
   TcpSession(asio::ip::tcp::socket socket, const Limits& limits, Hub* hub, Metrics* metrics,
              std::function<void(const std::shared_ptr<TcpSession>&)> on_closed);
 
   void Start();
-  // Sends what waits, then closes. `linger`: reads on (and ignores) until the peer has closed, so
-  // that the last answer is not lost to a reset.
+  // Sends what is queued, then closes. `linger`: first reads and ignores input until the peer
+  // closes, because closing with unread input would reset the connection and lose the last reply.
   void CloseAfterFlush(bool linger);
-  // Ends at once.
+  // Closes immediately.
   void Close();
 
   void SendReply(std::span<const std::uint8_t> message) override;
   int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message, std::size_t keep,
-                int lane) override;
+                int shard) override;
   void DropFrames(std::uint64_t key) override;
   [[nodiscard]] bool IsStuck(Time now) const override;
 
@@ -48,7 +48,7 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
 
   asio::awaitable<void> Read();
   asio::awaitable<void> Write();
-  bool TakeOut();
+  bool FillWriteBuffer();
   void SetWriting(bool writing);
   void Wake();
   asio::awaitable<void> Watch();
@@ -60,20 +60,20 @@ class TcpSession : public Link, public std::enable_shared_from_this<TcpSession> 
   Hub* const hub_;
   Metrics* const metrics_;
   std::function<void(const std::shared_ptr<TcpSession>&)> on_closed_;
-  asio::steady_timer wake_;  // the writer's: cancelled when there is something to do
+  asio::steady_timer wake_;  // cancelled to wake the writer
   asio::steady_timer watch_;
-  std::mutex mutex_;  // of what other threads that publish reach: what waits, and who writes it
+  std::mutex mutex_;  // guards outbox_ and writing_, which publishing threads use
   Outbox outbox_;
   protocol::FrameReader frames_;
   std::vector<std::uint8_t> in_;
   std::vector<std::uint8_t> message_;
-  std::vector<std::uint8_t> out_;  // frames that are being written
+  std::vector<std::uint8_t> out_;  // frames being written
   PeerId peer_ = 0;
   std::atomic<State> state_ = State::kOpen;
   bool linger_ = false;
   bool writing_ = false;
-  std::atomic<bool> woken_ = false;  // by another thread, which has posted so
-  std::thread::id thread_;           // that all runs on but Link
+  std::atomic<bool> woken_ = false;  // another thread has posted a wake-up
+  std::thread::id thread_;           // the thread that runs the coroutines
   Time write_started_{0};
   Time closing_since_{0};
 };

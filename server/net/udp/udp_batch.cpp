@@ -25,7 +25,8 @@ std::size_t UdpBatch::Receive(int socket) {
   do {
     received = recvmmsg(socket, headers_.data(), kSize, MSG_DONTWAIT, nullptr);
   } while (received < 0 && errno == EINTR);
-  // Any other error is of an earlier send (ICMP) and has been taken by asking: the socket lives.
+  // Other errors belong to an earlier send (ICMP). Reading them clears them; the socket still
+  // works.
   used_ = received > 0 ? static_cast<std::size_t>(received) : 0;
   if (received <= 0) return 0;
   ReadDropped(&headers_[static_cast<std::size_t>(received) - 1].msg_hdr);
@@ -33,11 +34,11 @@ std::size_t UdpBatch::Receive(int socket) {
 }
 
 void UdpBatch::CountDropped(int socket) {
-  const int on = 1;  // where it cannot be had, nothing is counted
+  const int on = 1;  // optional: without it nothing is counted
   setsockopt(socket, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof(on));
 }
 
-// The count comes with every datagram once there is one, and never goes back but by wrapping.
+// Once a datagram was lost, each datagram carries the total. It only decreases by wrapping around.
 void UdpBatch::ReadDropped(msghdr* header) {
   for (cmsghdr* item = CMSG_FIRSTHDR(header); item != nullptr; item = CMSG_NXTHDR(header, item)) {
     if (item->cmsg_level != SOL_SOCKET || item->cmsg_type != SO_RXQ_OVFL) continue;

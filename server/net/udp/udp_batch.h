@@ -15,7 +15,7 @@
 
 namespace furrow::server {
 
-// A batch of datagrams by one recvmmsg: the hot path's only system call per up to kSize packets.
+// Receives up to kSize datagrams with one recvmmsg call. Does not allocate after construction.
 class UdpBatch {
  public:
   static constexpr std::size_t kSize = 64;
@@ -24,15 +24,16 @@ class UdpBatch {
   UdpBatch(const UdpBatch&) = delete;
   UdpBatch& operator=(const UdpBatch&) = delete;
 
-  // Has the system count what this socket's buffer had no room for.
+  // Asks the kernel to count datagrams that the socket buffer had no room for.
   static void CountDropped(int socket);
 
-  // Fills the batch from a non-blocking socket; the number received, 0 when none waits.
+  // Fills the batch from a non-blocking socket. Returns the number of datagrams; 0: none is
+  // waiting.
   std::size_t Receive(int socket);
-  // Datagrams that were lost before those received, since the last call.
+  // Datagrams that the kernel lost since the last call.
   std::uint64_t TakeDropped() { return std::exchange(dropped_, 0); }
 
-  // Of datagram `i` of the last Receive(). A datagram longer than the wire allows shows as
+  // Datagram `i` of the last Receive(). A datagram above the limit of the wire is cut to
   // kMaxDatagramBytes + 1 bytes.
   [[nodiscard]] std::span<const std::uint8_t> bytes(std::size_t i) const;
   [[nodiscard]] asio::ip::udp::endpoint sender(std::size_t i) const;
@@ -49,8 +50,8 @@ class UdpBatch {
   std::array<iovec, kSize> slices_{};
   std::array<sockaddr_storage, kSize> senders_{};
   std::array<Control, kSize> controls_{};
-  std::size_t used_ = kSize;        // headers that the last call filled, to be set up again
-  std::uint32_t dropped_ever_ = 0;  // as the system counts
+  std::size_t used_ = kSize;        // headers to reset before the next call
+  std::uint32_t dropped_ever_ = 0;  // the kernel's count, modulo 2^32
   std::uint64_t dropped_ = 0;
 };
 

@@ -4,70 +4,69 @@
 #include <chrono>
 #include <exception>
 
-#include <asio/experimental/as_tuple.hpp>
 #include <asio/post.hpp>
 #include <asio/steady_timer.hpp>
-#include <asio/use_awaitable.hpp>
 
 #include "base/status.h"
+#include "server/net/await_tuple.h"
 #include "server/net/clock.h"
-#include "server/net/spawn.h"
+#include "server/net/critical_task.h"
 
 namespace furrow::server {
 namespace {
 
-constexpr auto kToken = asio::experimental::as_tuple(asio::use_awaitable);
 constexpr auto kExpireInterval = std::chrono::seconds(1);
 
-Limits ShareOf(Limits limits, int lanes) {
-  limits.max_udp_peers = (limits.max_udp_peers + lanes - 1) / lanes;
+Limits LimitsOfShard(Limits limits, int shards) {
+  limits.max_udp_peers = (limits.max_udp_peers + shards - 1) / shards;
   return limits;
 }
 
 }  // namespace
 
-UdpPort::UdpPort(asio::io_context& io, int lanes, const Limits& limits, Hub* hub, Metrics* metrics,
+UdpPort::UdpPort(asio::io_context& io, int shards, const Limits& limits, Hub* hub, Metrics* metrics,
                  RecordingTap* recording)
     : io_(io) {
-  std::vector<UdpServer*> by_lane;
-  for (int lane = 0; lane < lanes; ++lane) {
-    if (lane > 0) loops_.push_back(std::make_unique<asio::io_context>(1));
-    servers_.push_back(std::make_unique<UdpServer>(LoopOf(static_cast<std::size_t>(lane)),
-                                                   ShareOf(limits, lanes), hub, metrics, recording,
-                                                   lane));
-    by_lane.push_back(servers_.back().get());
+  std::vector<UdpServer*> by_shard;
+  for (int shard = 0; shard < shards; ++shard) {
+    if (shard > 0) loops_.push_back(std::make_unique<asio::io_context>(1));
+    servers_.push_back(std::make_unique<UdpServer>(LoopOf(static_cast<std::size_t>(shard)),
+                                                   LimitsOfShard(limits, shards), hub, metrics,
+                                                   recording, shard));
+    by_shard.push_back(servers_.back().get());
   }
-  for (UdpServer* server : by_lane) server->Join(by_lane);
+  for (UdpServer* server : by_shard) server->Join(by_shard);
 }
 
 UdpPort::~UdpPort() { Close(); }
 
-// The first opens the port as its own, so that whoever has it already, another daemon above all, is
-// an error and not a partner.
+// The first socket opens the port exclusively. If another daemon has the port, this is an error,
+// and the two do not share the port by accident.
 Status UdpPort::Open(const asio::ip::udp::endpoint& endpoint) {
   FURROW_RETURN_IF_ERROR(servers_.front()->Open(endpoint));
   if (servers_.size() == 1) return {};
   FURROW_RETURN_IF_ERROR(servers_.front()->Share());
-  for (std::size_t lane = 1; lane < servers_.size(); ++lane) {
+  for (std::size_t shard = 1; shard < servers_.size(); ++shard) {
     const Status status =
-        servers_[lane]->Open({endpoint.address(), port()}, UdpServer::Port::kShared);
+        servers_[shard]->Open({endpoint.address(), port()}, UdpServer::Port::kShared);
     if (!status.ok()) return status;
   }
-  // Who is spread over more sockets than there were when it sent this may be of another lane: it
-  // would be two peers, one of which takes the other's subject over.
+  // Adding sockets changes which socket a sender maps to. Datagrams that arrived before would
+  // create a second peer of the same sender in another shard, and the two would fight over a
+  // subject.
   for (const auto& server : servers_) server->DropWaiting();
   return {};
 }
 
 void UdpPort::Start() {
-  for (std::size_t lane = 0; lane < servers_.size(); ++lane) {
-    servers_[lane]->Start();
-    SpawnVital(LoopOf(lane), ExpireLoop(lane));
+  for (std::size_t shard = 0; shard < servers_.size(); ++shard) {
+    servers_[shard]->Start();
+    StartCriticalTask(LoopOf(shard), ExpireLoop(shard));
   }
   for (const auto& loop : loops_) threads_.emplace_back([this, &loop = *loop] { Run(loop); });
 }
 
-// What no loop survives ends the caller's, too.
+// An exception ends the caller's event loop, too.
 void UdpPort::Run(asio::io_context& loop) {
   try {
     loop.run();
@@ -76,12 +75,12 @@ void UdpPort::Run(asio::io_context& loop) {
   }
 }
 
-asio::awaitable<void> UdpPort::ExpireLoop(std::size_t lane) {
-  asio::steady_timer timer(LoopOf(lane));
+asio::awaitable<void> UdpPort::ExpireLoop(std::size_t shard) {
+  asio::steady_timer timer(LoopOf(shard));
   while (true) {
     timer.expires_after(kExpireInterval);
-    co_await timer.async_wait(kToken);
-    servers_[lane]->Expire(ReadClock());
+    co_await timer.async_wait(kAwaitTuple);
+    servers_[shard]->Expire(ReadClock());
   }
 }
 

@@ -24,7 +24,7 @@ void UdpSender::Open(int socket) {
   socket_ = socket;
   int size = 0;
   socklen_t length = sizeof(size);
-  can_cut_ = getsockopt(socket, SOL_UDP, UDP_SEGMENT, &size, &length) == 0;
+  can_segment_ = getsockopt(socket, SOL_UDP, UDP_SEGMENT, &size, &length) == 0;
 }
 
 std::span<std::uint8_t> UdpSender::Prepare() {
@@ -45,7 +45,7 @@ void UdpSender::Commit(std::uint64_t key, const asio::ip::udp::endpoint& to, std
   address.last = index;
 }
 
-// Keys are peers' numbers, given out one after the other: they seldom meet in a slot.
+// An open-addressed hash table. Keys are consecutive peer ids, so collisions are rare.
 UdpSender::Address& UdpSender::FindOrAdd(std::uint64_t key, const asio::ip::udp::endpoint& to) {
   std::size_t slot = key % kSlots;
   for (; slots_[slot] != 0; slot = (slot + 1) % kSlots) {
@@ -57,14 +57,14 @@ UdpSender::Address& UdpSender::FindOrAdd(std::uint64_t key, const asio::ip::udp:
   return addresses_[num_addresses_++];
 }
 
-// Makes datagrams of what goes to one address.
+// Packs the items for one address into datagrams.
 void UdpSender::Pack(std::size_t address) {
   const Item* before = nullptr;
   for (std::uint16_t i = addresses_[address].first; i != kNone; i = items_[i].next) {
     const Item& item = items_[i];
     const bool joins =
-        before != nullptr && before->packing == Packing::kShared &&
-        item.packing == Packing::kShared &&
+        before != nullptr && before->packing == Packing::kBundled &&
+        item.packing == Packing::kBundled &&
         datagrams_[num_datagrams_ - 1].size + item.size <= protocol::kMaxDatagramBytes;
     if (joins) {
       protocol::MarkFollowed(std::span(buffer_).subspan(before->offset, before->size));
@@ -89,15 +89,16 @@ void UdpSender::Append(Datagram& datagram, const Item& item) {
   ++datagram.items;
 }
 
-// How far from `first` one message goes: the same address, equal sizes, the last may be smaller.
+// The end of the run of datagrams that one message can carry. UDP_SEGMENT needs the same address
+// and equal sizes; only the last datagram may be smaller.
 std::size_t UdpSender::EndOfRun(std::size_t first) const {
   const Datagram& head = datagrams_[first];
   std::size_t bytes = head.size;
   std::size_t last = first + 1;
-  while (can_cut_ && last < num_datagrams_ && last - first < kMaxSegments) {
+  while (can_segment_ && last < num_datagrams_ && last - first < kMaxSegments) {
     const Datagram& next = datagrams_[last];
     bytes += next.size;
-    if (next.address != head.address || next.size > head.size || bytes > kMaxCutBytes ||
+    if (next.address != head.address || next.size > head.size || bytes > kMaxSegmentedBytes ||
         next.last - head.first > kMaxSlices) {
       break;
     }
@@ -163,12 +164,13 @@ void UdpSender::Send(std::size_t num_messages) {
   }
 }
 
-// A message that the system would not cut after all (the way out has no checksums): one by one, and
-// so from now on. False: that is not why it failed.
+// Sends the datagrams of a failed message one by one if the kernel refused to split it, which
+// happens on interfaces without checksum offload, and stops using UDP_SEGMENT. False: another
+// error.
 bool UdpSender::Retry(std::size_t message) {
   const auto [first, last] = messages_[message];
   if (last - first < 2 || (errno != EIO && errno != EINVAL && errno != EOPNOTSUPP)) return false;
-  can_cut_ = false;
+  can_segment_ = false;
   msghdr header = headers_[message].msg_hdr;
   header.msg_control = nullptr;
   header.msg_controllen = 0;

@@ -14,77 +14,77 @@
 
 namespace furrow::server {
 
-// Whether what is sent may share a datagram with what else goes to its address.
+// Whether a message may share a datagram with other messages to the same address.
 enum class Packing : std::uint8_t {
-  kAlone,
-  kShared,  // a whole message of the wire, to a peer that takes bundles (protocol/framing/bundle.h)
+  kSeparate,
+  kBundled,  // a whole message, to a peer that accepts bundles (protocol/framing/bundle.h)
 };
 
-// What leaves together: gathered while a batch of what came is worked on, then sent by sendmmsg,
-// messages for one address packed into bundles, and its datagrams as one that the system cuts
-// (UDP_SEGMENT). The hot path's other system call; does not allocate.
+// Collects outgoing messages and sends them with few system calls. Messages for one address are
+// packed into bundles; the datagrams for one address leave as one large message that the kernel
+// splits (UDP_SEGMENT); sendmmsg sends many of those at once. Does not allocate after construction.
 //
-// - What goes to one address keeps its order.
-// - A datagram that the system does not take (a full buffer, an address that is gone) is lost, as
-//   UDP may, and counted; the others leave.
+// - Messages to one address keep their order.
+// - A datagram that the kernel does not accept (full buffer, unreachable address) is lost and
+//   counted. The others are sent.
 class UdpSender {
  public:
   UdpSender();
   UdpSender(const UdpSender&) = delete;
   UdpSender& operator=(const UdpSender&) = delete;
 
-  // The non-blocking socket to send from. Asks whether the system cuts datagrams.
+  // Sets the non-blocking socket to send from and checks whether it supports UDP_SEGMENT.
   void Open(int socket);
 
-  // What is committed from here on is lost.
+  // Messages committed from now on are lost.
   void Close() { socket_ = -1; }
 
-  // Room for one more message or fragment of at most kMaxDatagramBytes. Sends what is there first
-  // where no more fits.
+  // Returns space for one message or fragment of at most kMaxDatagramBytes. Flushes first if there
+  // is no space left.
   [[nodiscard]] std::span<std::uint8_t> Prepare();
-  // `key` is the same for, and only for, the same address.
+  // Adds the `size` bytes written to the space from Prepare(). Equal keys mean equal addresses.
   void Commit(std::uint64_t key, const asio::ip::udp::endpoint& to, std::size_t size,
-              Packing packing = Packing::kAlone);
-  // Sends all that was committed.
+              Packing packing = Packing::kSeparate);
+  // Sends everything that was committed.
   void Flush();
 
   struct Counts {
     std::uint64_t sent = 0;     // datagrams
     std::uint64_t lost = 0;     // datagrams
-    std::uint64_t bundled = 0;  // messages that left in a datagram with others
-    std::uint64_t calls = 0;    // of the system
+    std::uint64_t bundled = 0;  // messages that shared a datagram
+    std::uint64_t calls = 0;    // system calls
   };
-  // Since the last call.
+  // The counts since the last call.
   [[nodiscard]] Counts TakeCounts();
 
  private:
-  // A subject's weights for a thousand subscribers, or those of sixty subjects for sixty: 1 MiB of
-  // them, which a processor's second cache still holds.
+  // Enough for the weights of one subject for a thousand subscribers, or of sixty subjects for
+  // sixty. 1 MiB of messages still fits into a second-level cache.
   static constexpr std::size_t kMaxItems = 4096;
   static constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
   static constexpr std::size_t kMaxAddresses = 1024;
   static constexpr std::size_t kSlots = 2 * kMaxAddresses;
-  static constexpr std::size_t kMaxMessages = 128;  // of one sendmmsg
-  static constexpr std::size_t kMaxSegments = 60;   // the system's own limit is 64
-  static constexpr std::size_t kMaxSlices = 1000;   // of a message; the system's own limit is 1,024
-  static constexpr std::size_t kMaxCutBytes = 60000;
+  static constexpr std::size_t kMaxMessages = 128;  // per sendmmsg call
+  static constexpr std::size_t kMaxSegments = 60;   // the kernel's limit is 64
+  static constexpr std::size_t kMaxSlices = 1000;   // per message; the kernel's limit is 1,024
+  static constexpr std::size_t kMaxSegmentedBytes = 60000;
   static constexpr std::uint16_t kNone = 0xFFFF;
 
-  // What was committed.
+  // A committed message or fragment.
   struct Item {
     std::uint32_t offset = 0;
     std::uint16_t size = 0;
-    std::uint16_t next = kNone;  // of the same address
-    Packing packing = Packing::kAlone;
+    std::uint16_t next = kNone;  // next item for the same address
+    Packing packing = Packing::kSeparate;
   };
   struct Address {
     std::uint64_t key = 0;
     std::size_t slot = 0;
-    std::uint16_t first = kNone;  // item
+    std::uint16_t first = kNone;  // first item
     std::uint16_t last = kNone;
     asio::ip::udp::endpoint to;
   };
-  // Slices [first, last), which are so many items.
+  // Slices [first, last), which hold `items` items.
   struct Datagram {
     std::size_t address = 0;
     std::size_t first = 0;
@@ -92,7 +92,7 @@ class UdpSender {
     std::size_t size = 0;
     std::size_t items = 0;
   };
-  // Datagrams [first, last) as one of sendmmsg's messages.
+  // Datagrams [first, last), one message of sendmmsg.
   struct Message {
     std::size_t first = 0;
     std::size_t last = 0;
@@ -111,7 +111,7 @@ class UdpSender {
   void CountSent(const Datagram& datagram);
 
   int socket_ = -1;
-  bool can_cut_ = false;
+  bool can_segment_ = false;
   std::vector<std::uint8_t> buffer_;
   std::size_t used_ = 0;
   std::size_t num_items_ = 0;

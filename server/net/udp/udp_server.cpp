@@ -6,24 +6,24 @@
 #include <cerrno>
 #include <string>
 
-#include <asio/experimental/as_tuple.hpp>
 #include <asio/post.hpp>
 #include <asio/use_awaitable.hpp>
 #include <sys/socket.h>
 
 #include "protocol/framing/envelope.h"
+#include "server/net/await_tuple.h"
 #include "server/net/clock.h"
-#include "server/net/spawn.h"
+#include "server/net/critical_task.h"
 
 namespace furrow::server {
 namespace {
 
 using asio::ip::udp;
 
-// A burst of a thousand subjects at once must fit while the thread is busy.
+// Holds a burst of a thousand subjects while the thread is busy.
 constexpr int kReceiveBufferBytes = 4 * 1024 * 1024;
-// Batches taken before other work of the thread gets its turn.
-constexpr int kBatchesPerTurn = 8;
+// Batches read before the event loop may run other work.
+constexpr int kMaxBatches = 8;
 constexpr int kEvictionCandidates = 16;
 
 asio::error_code AllowSharing(int socket) {
@@ -34,8 +34,8 @@ asio::error_code AllowSharing(int socket) {
 
 }  // namespace
 
-// One UDP address. What goes to it leaves with all else of the turn, in bundles to who takes them,
-// and does not block: a full socket buffer drops, as UDP may.
+// One UDP address. Its messages leave when the shard is flushed, as bundles if the peer accepts
+// them. Sending never blocks; if the socket buffer is full, datagrams are lost.
 class UdpServer::UdpPeer : public Link {
  public:
   UdpPeer(UdpServer* server, udp::endpoint endpoint) : server_(server), endpoint_(endpoint) {}
@@ -44,13 +44,14 @@ class UdpServer::UdpPeer : public Link {
     Send(message, server_->sender_);
   }
   int SendFrame(std::uint64_t, std::span<const std::uint8_t> message, std::size_t,
-                int lane) override {
-    UdpServer& by = lane == kAlone ? *server_ : *server_->by_lane_[static_cast<std::size_t>(lane)];
+                int shard) override {
+    UdpServer& by =
+        shard == kExclusive ? *server_ : *server_->by_shard_[static_cast<std::size_t>(shard)];
     Send(message, by.sender_);
     return 0;
   }
-  void TakesBundles(bool takes) override { takes_bundles_ = takes; }
-  void DropFrames(std::uint64_t) override {}  // nothing ever waits
+  void SetTakesBundles(bool takes) override { takes_bundles_ = takes; }
+  void DropFrames(std::uint64_t) override {}  // nothing is queued
 
   PeerId id = 0;
 
@@ -58,7 +59,7 @@ class UdpServer::UdpPeer : public Link {
   void Send(std::span<const std::uint8_t> message, UdpSender& sender) {
     const std::size_t count = protocol::NumDatagrams(message.size());
     const std::uint32_t message_id = count > 1 ? next_message_id_++ : 0;
-    const Packing packing = takes_bundles_ && count == 1 ? Packing::kShared : Packing::kAlone;
+    const Packing packing = takes_bundles_ && count == 1 ? Packing::kBundled : Packing::kSeparate;
     for (std::size_t index = 0; index < count; ++index) {
       const auto datagram = sender.Prepare();
       sender.Commit(id, endpoint_, protocol::WriteDatagram(message, message_id, index, datagram),
@@ -68,24 +69,24 @@ class UdpServer::UdpPeer : public Link {
 
   UdpServer* server_;
   udp::endpoint endpoint_;
-  std::atomic<std::uint32_t> next_message_id_ = 0;  // several lanes may send
+  std::atomic<std::uint32_t> next_message_id_ = 0;  // several shards may send
   bool takes_bundles_ = false;
 };
 
 UdpServer::UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
-                     RecordingTap* recording, int lane)
+                     RecordingTap* recording, int shard)
     : io_(io),
       socket_(io),
       limits_(limits),
       hub_(hub),
       metrics_(metrics),
       recording_(recording),
-      lane_(lane),
-      by_lane_(static_cast<std::size_t>(lane) + 1, this) {
-  hub_->SetOutlet(lane_, this);
+      shard_(shard),
+      by_shard_(static_cast<std::size_t>(shard) + 1, this) {
+  hub_->SetBufferedSender(shard_, this);
 }
 
-UdpServer::~UdpServer() { hub_->SetOutlet(lane_, nullptr); }
+UdpServer::~UdpServer() { hub_->SetBufferedSender(shard_, nullptr); }
 
 Status UdpServer::Open(const udp::endpoint& endpoint, Port port) {
   asio::error_code error;
@@ -97,11 +98,11 @@ Status UdpServer::Open(const udp::endpoint& endpoint, Port port) {
     return Status(StatusCode::kUnavailable,
                   "cannot listen on UDP " + endpoint.address().to_string() + " port " +
                       std::to_string(endpoint.port()) + ": " + error.message(),
-                  "", "end what uses the port, or choose another with --udp");
+                  "", "stop the program that uses the port, or set another one with --udp");
   }
   UdpBatch::CountDropped(socket_.native_handle());
   sender_.Open(socket_.native_handle());
-  // As much as the system allows; less only means earlier drops.
+  // The kernel may grant less; then drops begin earlier.
   socket_.set_option(asio::socket_base::receive_buffer_size(kReceiveBufferBytes), error);
   return {};
 }
@@ -110,7 +111,7 @@ Status UdpServer::Share() {
   const asio::error_code error = AllowSharing(socket_.native_handle());
   if (!error) return {};
   return Status(StatusCode::kUnavailable, "cannot share the UDP port: " + error.message(), "",
-                "start with --threads 1");
+                "use --threads 1");
 }
 
 std::uint16_t UdpServer::port() const {
@@ -118,7 +119,7 @@ std::uint16_t UdpServer::port() const {
   return socket_.local_endpoint(error).port();
 }
 
-void UdpServer::Start() { SpawnVital(io_, Read()); }
+void UdpServer::Start() { StartCriticalTask(io_, Read()); }
 
 void UdpServer::DropWaiting() {
   while (batch_.Receive(socket_.native_handle()) == UdpBatch::kSize) {
@@ -133,20 +134,19 @@ void UdpServer::Close() {
 
 asio::awaitable<void> UdpServer::Read() {
   while (socket_.is_open()) {
-    const auto [error] = co_await socket_.async_wait(
-        udp::socket::wait_read, asio::experimental::as_tuple(asio::use_awaitable));
+    const auto [error] = co_await socket_.async_wait(udp::socket::wait_read, kAwaitTuple);
     if (error) co_return;
     bool is_drained = false;
-    for (int turn = 0; turn < kBatchesPerTurn && !is_drained; ++turn) {
+    for (int batch = 0; batch < kMaxBatches && !is_drained; ++batch) {
       const std::size_t count = batch_.Receive(socket_.native_handle());
       const Time now = ReadClock();
       metrics_->Add(Counter::kDatagramsReceived, count);
       metrics_->Add(Counter::kDatagramsOverrun, batch_.TakeDropped());
-      const Hub::Turn turn_of_batch(*hub_, lane_);
+      const Hub::ShardLock lock(*hub_, shard_);
       for (std::size_t i = 0; i < count; ++i) OnDatagram(batch_.bytes(i), batch_.sender(i), now);
       is_drained = count < UdpBatch::kSize;
     }
-    // Let timers and TCP have their turn, however fast datagrams come.
+    // Lets timers and TCP run while datagrams keep arriving.
     if (!is_drained) co_await asio::post(io_, asio::use_awaitable);
   }
 }
@@ -172,7 +172,8 @@ void UdpServer::OnDatagram(std::span<const std::uint8_t> bytes, const udp::endpo
   hub_->OnBytesReceived(peer->id, bytes.size(), now);
   std::span<const std::uint8_t> message;
   switch (reassembler_.Push(peer->id, bytes, ToMicroseconds(now), message)) {
-    // The batch keeps its datagrams, the reassembler what it put together only for now.
+    // The batch keeps whole datagrams until the lock ends, so poses may wait. The reassembler
+    // reuses its buffer, so a reassembled message is handled at once.
     case protocol::FragmentStatus::kWhole: hub_->GatherMessage(peer->id, message, now); break;
     case protocol::FragmentStatus::kComplete: hub_->OnMessage(peer->id, message, now); break;
     case protocol::FragmentStatus::kPending:
@@ -198,12 +199,11 @@ UdpServer::UdpPeer* UdpServer::FindOrAdd(const udp::endpoint& sender, Time now) 
   auto found = peers_.find(address);
   if (found != peers_.end()) return found->second.get();
   if (peers_.size() >= static_cast<std::size_t>(limits_.max_udp_peers)) {
-    // The least worth of a few: a flood of forged addresses must not cost a walk over all peers
-    // each.
+    // Compares only a few peers, so that a flood of forged addresses stays cheap.
     auto victim = peers_.begin();
-    int looks = kEvictionCandidates;
-    for (auto it = peers_.begin(); it != peers_.end() && looks-- > 0; ++it) {
-      if (hub_->IsLessWorthKeeping(it->second->id, victim->second->id)) victim = it;
+    int candidates = kEvictionCandidates;
+    for (auto it = peers_.begin(); it != peers_.end() && candidates-- > 0; ++it) {
+      if (hub_->ShouldEvictBefore(it->second->id, victim->second->id)) victim = it;
     }
     hub_->RemovePeer(victim->second->id);
     reassembler_.ForgetPeer(victim->second->id);
@@ -212,12 +212,12 @@ UdpServer::UdpPeer* UdpServer::FindOrAdd(const udp::endpoint& sender, Time now) 
   auto peer = std::make_unique<UdpPeer>(this, sender);
   const std::string name =
       "udp " + sender.address().to_string() + " port " + std::to_string(sender.port());
-  peer->id = hub_->AddPeer(Transport::kUdp, name, peer.get(), now, lane_);
+  peer->id = hub_->AddPeer(Transport::kUdp, name, peer.get(), now, shard_);
   return peers_.emplace(address, std::move(peer)).first->second.get();
 }
 
 void UdpServer::Expire(Time now) {
-  const Hub::Turn turn(*hub_, lane_);
+  const Hub::ShardLock lock(*hub_, shard_);
   metrics_->Add(Counter::kFragmentsExpired, reassembler_.Expire(ToMicroseconds(now)));
   std::erase_if(peers_, [&](const auto& entry) {
     const PeerId id = entry.second->id;

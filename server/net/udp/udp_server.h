@@ -16,7 +16,7 @@
 
 #include "base/status.h"
 #include "protocol/framing/fragment.h"
-#include "server/config/config.h"
+#include "server/core/limits.h"
 #include "server/core/metrics.h"
 #include "server/net/udp/udp_batch.h"
 #include "server/net/udp/udp_sender.h"
@@ -24,42 +24,42 @@
 
 namespace furrow::server {
 
-// The UDP side of the wire, of one lane of the hub: datagrams in and out by batches, fragments put
-// together, peers by address.
+// The UDP socket of one shard: receives and sends datagrams in batches, reassembles fragments, and
+// keeps one peer per address.
 //
-// Garbage costs one look at an envelope: an address becomes a peer only with a well-formed one, and
-// at most Limits::max_udp_peers are remembered.
-class UdpServer : public Outlet {
+// An address becomes a peer only with a valid envelope, so garbage costs one look at 32 bytes. At
+// most Limits::max_udp_peers peers are remembered.
+class UdpServer : public BufferedSender {
  public:
-  // `recording` (may be null) is told of every datagram with an envelope of ours.
+  // `recording`: optional; receives every datagram with a valid envelope.
   UdpServer(asio::io_context& io, const Limits& limits, Hub* hub, Metrics* metrics,
-            RecordingTap* recording = nullptr, int lane = 0);
+            RecordingTap* recording = nullptr, int shard = 0);
   ~UdpServer() override;
   UdpServer(const UdpServer&) = delete;
   UdpServer& operator=(const UdpServer&) = delete;
 
-  // Whether the port is this socket's alone, or others of the group have it too: the system then
-  // spreads who sends over them, each to the same one always.
+  // kOwn: only this socket uses the port. kShared: other sockets of this daemon use it, too, and
+  // the kernel assigns each sender to one of them (SO_REUSEPORT).
   enum class Port { kOwn, kShared };
-  // Errors: kUnavailable, naming address and port; also where the port is to be shared and somebody
-  // has it who opened it otherwise.
+  // Errors: kUnavailable; the message names the address and the port. A kShared port must not be in
+  // use by a socket that does not share it.
   [[nodiscard]] Status Open(const asio::ip::udp::endpoint& endpoint, Port port = Port::kOwn);
-  // From here on others may open the port as kShared, until it is closed.
+  // Lets other sockets open the port as kShared from now on.
   [[nodiscard]] Status Share();
-  // The servers of all lanes, by lane: what a lane publishes leaves by its own socket, whichever
-  // the peer's datagrams come to. Before Start().
-  void Join(std::vector<UdpServer*> by_lane) { by_lane_ = std::move(by_lane); }
+  // Sets the servers of all shards. What a shard publishes leaves through the shard's own socket,
+  // even if the receiving peer belongs to another shard. Call it before Start().
+  void Join(std::vector<UdpServer*> by_shard) { by_shard_ = std::move(by_shard); }
   [[nodiscard]] std::uint16_t port() const;
-  // What came since Open() is lost. Before Start().
+  // Drops the datagrams that have arrived since Open(). Call it before Start().
   void DropWaiting();
-  // What nobody can go on from is thrown by the loop.
+  // Starts reading. Fatal errors propagate out of the event loop.
   void Start();
   void Close();
 
-  // Sends what the lane has for UDP peers.
+  // Sends the shard's messages to UDP peers.
   void Flush() override;
 
-  // Forgets idle peers and unfinished messages. Call it about once a second.
+  // Forgets idle peers and incomplete messages. Call it about once per second.
   void Expire(Time now);
 
  private:
@@ -84,8 +84,8 @@ class UdpServer : public Outlet {
   Hub* const hub_;
   Metrics* const metrics_;
   RecordingTap* const recording_;
-  const int lane_;
-  std::vector<UdpServer*> by_lane_;
+  const int shard_;
+  std::vector<UdpServer*> by_shard_;
   UdpBatch batch_;
   UdpSender sender_;
   protocol::Reassembler reassembler_;

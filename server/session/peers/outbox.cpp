@@ -9,7 +9,7 @@
 namespace furrow::server {
 namespace {
 
-// Pictures do not come back at the same size: their memory is not kept.
+// Pictures vary in size, so the memory of large messages is not kept.
 constexpr std::size_t kMaxSpareBytes = 16 * 1024;
 constexpr std::size_t kMaxSpare = 64;
 
@@ -18,7 +18,7 @@ constexpr std::size_t kMaxSpare = 64;
 void Outbox::Append(Queue& queue, std::uint64_t key, bool is_reply,
                     std::span<const std::uint8_t> bytes) {
   if (spare_.empty()) spare_.emplace_back();
-  Waiting& item = spare_.front();
+  Item& item = spare_.front();
   item.key = key;
   item.is_reply = is_reply;
   item.bytes.assign(bytes.begin(), bytes.end());
@@ -34,12 +34,12 @@ Outbox::Queue::iterator Outbox::Recycle(Queue& queue, Queue::iterator item) {
   return next;
 }
 
-void Outbox::Uncount(const Waiting& item) {
+void Outbox::Uncount(const Item& item) {
   if (item.is_reply) {
     --num_replies_;
     reply_bytes_ -= item.bytes.size();
   } else {
-    line_frame_bytes_ -= item.bytes.size();
+    ordered_frame_bytes_ -= item.bytes.size();
   }
 }
 
@@ -48,23 +48,24 @@ bool Outbox::PushReply(std::span<const std::uint8_t> bytes) {
   if (num_replies_ > 0 && reply_bytes_ + bytes.size() > max_reply_bytes_) return false;
   ++num_replies_;
   reply_bytes_ += bytes.size();
-  Append(line_, 0, true, bytes);
+  Append(ordered_, 0, true, bytes);
   return true;
 }
 
 int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, std::size_t keep) {
   if (keep == kKeepAll) {
-    if (line_frame_bytes_ + bytes.size() > protocol::kMaxWaitingFrameBytes) return 1;
-    line_frame_bytes_ += bytes.size();
-    Append(line_, key, false, bytes);
+    if (ordered_frame_bytes_ + bytes.size() > protocol::kMaxWaitingFrameBytes) return 1;
+    ordered_frame_bytes_ += bytes.size();
+    Append(ordered_, key, false, bytes);
     return 0;
   }
-  const auto is_same = [key](const Waiting& frame) { return frame.key == key; };
+  const auto is_same = [key](const Item& frame) { return frame.key == key; };
   int dropped = 0;
-  if (const auto found = of_key_.find(key); found != of_key_.end() && found->second >= keep) {
+  if (const auto found = num_of_key_.find(key);
+      found != num_of_key_.end() && found->second >= keep) {
     const auto oldest = std::ranges::find_if(frames_, is_same);
     if (keep == 1) {
-      oldest->bytes.assign(bytes.begin(), bytes.end());  // keeps its place in the line
+      oldest->bytes.assign(bytes.begin(), bytes.end());  // keeps its place in the queue
       return 1;
     }
     DropFrame(oldest);
@@ -73,30 +74,30 @@ int Outbox::PushFrame(std::uint64_t key, std::span<const std::uint8_t> bytes, st
     DropFrame(frames_.begin());
     dropped = 1;
   }
-  ++of_key_[key];
+  ++num_of_key_[key];
   Append(frames_, key, false, bytes);
   return dropped;
 }
 
 void Outbox::DropFrame(Queue::iterator frame) {
-  --of_key_[frame->key];
+  --num_of_key_[frame->key];
   Recycle(frames_, frame);
 }
 
 bool Outbox::Pop(std::vector<std::uint8_t>* out) {
   if (empty()) return false;
-  Queue& queue = line_.empty() ? frames_ : line_;
-  if (&queue == &line_) {
-    Uncount(line_.front());
+  Queue& queue = ordered_.empty() ? frames_ : ordered_;
+  if (&queue == &ordered_) {
+    Uncount(ordered_.front());
   } else {
-    --of_key_[frames_.front().key];
+    --num_of_key_[frames_.front().key];
   }
   out->swap(queue.front().bytes);
   Recycle(queue, queue.begin());
   return true;
 }
 
-void Outbox::DropAllBehindTheLine() {
+void Outbox::DropReplaceableFrames() {
   while (!frames_.empty()) DropFrame(frames_.begin());
 }
 
@@ -104,14 +105,14 @@ void Outbox::DropFrames(std::uint64_t key) {
   for (auto item = frames_.begin(); item != frames_.end();) {
     item = item->key == key ? Recycle(frames_, item) : std::next(item);
   }
-  of_key_.erase(key);
-  for (auto item = line_.begin(); item != line_.end();) {
+  num_of_key_.erase(key);
+  for (auto item = ordered_.begin(); item != ordered_.end();) {
     if (item->is_reply || item->key != key) {
       ++item;
       continue;
     }
     Uncount(*item);
-    item = Recycle(line_, item);
+    item = Recycle(ordered_, item);
   }
 }
 

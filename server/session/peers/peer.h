@@ -12,58 +12,59 @@
 #include "server/core/time.h"
 #include "server/core/token_bucket.h"
 #include "server/session/peers/send_credit.h"
-#include "server/session/peers/stray_limiter.h"
+#include "server/session/peers/skeleton_request_limiter.h"
 
 namespace furrow::server {
 
-using PeerId = std::uint64_t;  // never used twice in a run; 0 is nobody
+using PeerId = std::uint64_t;  // unique for the life of the daemon; 0: no peer
 
-// As SendFrame()'s `keep`: frames wait in line with the answers, and where there is no more room
-// the new one is left out. For those who want every frame.
+// SendFrame()'s `keep` for subscriptions to every frame: frames queue in order with the replies,
+// and if the queue is full the new frame is dropped.
 inline constexpr std::size_t kKeepAll = std::numeric_limits<std::size_t>::max();
 
 enum class Transport { kTcp, kUdp, kMocap, kWeb };
 
-// How bytes get to a peer. The net side implements it; tests do with a few lines.
+// Carries messages to one peer. The network layer implements it.
 //
-// Called by a thread that is alone in the hub; frames also by one that publishes in its own lane,
-// while others do in theirs.
+// The hub calls it under the exclusive lock. SendFrame() is also called under a shard's lock, by
+// several shards at once.
 class Link {
  public:
   virtual ~Link() = default;
-  // Answers: in order, never replaced by anything newer.
+  // Queues a reply. Replies keep their order and are never dropped for newer messages.
   virtual void SendReply(std::span<const std::uint8_t> message) = 0;
-  // Weights, poses and pictures: where the peer is slow, the newest `keep` of a key win. Returns
-  // how many frames were dropped. `lane`: of the thread that calls; kAlone: it is alone in the hub,
-  // and frames go the way of the answers, so that none overtakes the one that explains it.
-  static constexpr int kAlone = -1;
+  // Queues a frame of weights, a pose or a picture. If the peer is slow, only the newest `keep`
+  // frames of a `key` stay queued. Returns the number of dropped frames. `shard`: of the calling
+  // thread; kExclusive: the caller holds the exclusive lock and the frame must follow the replies
+  // sent before it, so that no frame overtakes the reply that explains it.
+  static constexpr int kExclusive = -1;
   virtual int SendFrame(std::uint64_t key, std::span<const std::uint8_t> message, std::size_t keep,
-                        int lane) = 0;
-  // Whether the peer takes several messages in a datagram; for links that have such.
-  virtual void TakesBundles(bool /*takes*/) {}
-  // The frames of a key are no longer wanted.
+                        int shard) = 0;
+  // Whether the peer accepts several messages per datagram. Only UDP links use it.
+  virtual void SetTakesBundles(bool /*takes_bundles*/) {}
+  // Drops the queued frames of a key.
   virtual void DropFrames(std::uint64_t key) = 0;
-  // The peer has not taken a byte for a while: what it is sent would only push out what waits.
+  // True if the peer has not read a byte for a while. Sending more would only displace what waits.
   [[nodiscard]] virtual bool IsStuck(Time /*now*/) const { return false; }
 };
 
-// Somebody at the other end of a connection or a UDP address.
+// The other end of a connection, or a UDP address.
 struct Peer {
   PeerId id = 0;
   Transport transport = Transport::kTcp;
-  std::string name;  // "udp 127.0.0.1:50112", for the log
+  std::string name;  // for the log: "udp 127.0.0.1 port 50112"
   Link* link = nullptr;
-  TokenBucket bucket{1.0, 1.0};
-  SendCredit credit;        // UDP: how much may be sent before the address is proven
-  std::uint64_t token = 0;  // UDP: what Hello must bring back
+  TokenBucket bucket{1.0, 1.0};  // limits incoming messages
+  SendCredit credit;             // UDP: bytes that may be sent before the address is proven
+  std::uint64_t token = 0;       // UDP: Hello must return it to prove the address; 0: none sent
   Time last_heard{0};
-  StrayLimiter strays;  // poses without an offer
+  SkeletonRequestLimiter skeleton_requests;
   int num_subscriptions = 0;
-  bool stuck = false;                            // its link was, at the last tick
-  bool publishes = false;                        // had an offer accepted
-  std::uint16_t last_subscription = 0;           // the id given out last
-  std::optional<protocol::Header> follows_list;  // the request to be told who comes and goes
-  std::uint64_t listed = 0;                      // the registry's version that it was told last
+  bool stuck = false;                            // Link::IsStuck() at the last tick
+  bool publishes = false;                        // the hub has accepted an offer of this peer
+  std::uint16_t last_subscription = 0;           // the newest subscription id
+  std::optional<protocol::Header> list_request;  // set while the peer follows the subject list
+  std::uint64_t listed_version = 0;              // SubjectRegistry::version() of the last list sent
 };
 
 }  // namespace furrow::server

@@ -12,14 +12,14 @@
 
 namespace furrow::server {
 
-// The peers of one network thread. A Peer's address is stable until Remove(). Of several tables,
-// each gives out every so manieth id, so that an id tells its table.
+// The peers of one shard. The address of a Peer is stable until Remove(). Table `table` of `tables`
+// assigns only ids with id % tables == table, so that an id names its table.
 class PeerTable {
  public:
   explicit PeerTable(int table = 0, int tables = 1)
       : step_(static_cast<PeerId>(tables)), next_id_(step_ + static_cast<PeerId>(table)) {}
 
-  // Which of `tables` tables gave it out.
+  // The table that assigned the id.
   [[nodiscard]] static std::size_t TableOf(PeerId id, std::size_t tables) { return id % tables; }
 
   Peer& Add(Transport transport, std::string name, Link* link, TokenBucket bucket, Time now) {

@@ -5,17 +5,17 @@
 
 namespace furrow::server {
 
-// Keeps a datagram with a forged source address from turning the daemon into an amplifier: until an
-// address has proved that it hears us, it gets at most as many bytes as it sent.
+// Prevents amplification attacks with forged source addresses: until a UDP address has proved that
+// it receives our messages, it is sent at most as many bytes as it has sent.
 class SendCredit {
  public:
   void Received(std::uint64_t bytes) { received_ += bytes; }
   void Prove() { proven_ = true; }
   [[nodiscard]] bool proven() const { return proven_; }
 
-  // True when `bytes` may go out now; they are then counted as sent, while that matters.
+  // Spends credit for `bytes`. False: there is not enough.
   [[nodiscard]] bool Spend(std::uint64_t bytes) {
-    if (proven_) return true;  // and nothing is counted: several threads may ask
+    if (proven_) return true;  // without a write: several threads may call this
     if (sent_ + bytes > received_) return false;
     sent_ += bytes;
     return true;

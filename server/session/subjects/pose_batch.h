@@ -13,28 +13,28 @@
 
 namespace furrow::server {
 
-// A pose that its subject has taken and that waits for its evaluation.
+// A pose that its subject has accepted and that waits to be solved.
 struct GatheredPose {
   Subject* subject = nullptr;
   protocol::Header header;
-  std::span<const std::uint8_t> payload;                // as RecordingTap::OnPose() takes it
-  Time now{0};                                          // of arrival
-  wrinkle::JobStatus status = wrinkle::JobStatus::kOk;  // of Solve()
+  std::span<const std::uint8_t> payload;  // the FlatBuffers payload; empty: not a whole pose
+  Time now{0};                            // arrival
+  wrinkle::JobStatus status = wrinkle::JobStatus::kOk;  // set by Solve()
 };
 
-// Poses of different subjects that arrived together, to be evaluated together. Does not allocate
-// in the long run.
+// Poses of different subjects that arrived together and are solved together, which is faster than
+// one by one. Does not allocate in the long run.
 class PoseBatch {
  public:
   static constexpr std::size_t kCapacity = 128;
 
   [[nodiscard]] bool empty() const { return size_ == 0; }
   [[nodiscard]] bool full() const { return size_ == kCapacity; }
-  // Precondition: not full; the subject's pipeline does not wait. It does from here on, and with
-  // the bytes of `pose.payload` stays as it is until Solve().
+  // Preconditions: not full(), and no other pose of the subject is in the batch. The subject's
+  // pipeline and the bytes of `pose.payload` must not change until Solve().
   void Add(const GatheredPose& pose);
-  // Evaluates what was added and empties the batch: the poses, in the order in which they came.
-  // Valid until the next Add().
+  // Solves the poses and empties the batch. Returns the poses in the order in which they were
+  // added; valid until the next Add().
   [[nodiscard]] std::span<const GatheredPose> Solve();
 
  private:

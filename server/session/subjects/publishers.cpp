@@ -2,6 +2,7 @@
 #include "server/session/subjects/publishers.h"
 
 #include <memory>
+#include <string>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -16,11 +17,11 @@ constexpr Time kDecayInterval = FromSeconds(1.0 / 60.0);
 }  // namespace
 
 Publishers::Publishers(const Limits& limits, StreamDefinitions* definitions,
-                       SubjectRegistry* subjects, Postman* postman, Metrics* metrics)
+                       SubjectRegistry* subjects, MessageSender* messages, Metrics* metrics)
     : limits_(limits),
       definitions_(definitions),
       subjects_(subjects),
-      postman_(postman),
+      messages_(messages),
       metrics_(metrics) {}
 
 Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
@@ -30,7 +31,7 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
   Subject* subject = subjects_->Find(offer.subject);
   const bool is_owner = subject != nullptr && subject->owner == key;
   if (is_owner && subject->skeleton_hash == offer.skeleton_hash) {
-    subject->ended = false;  // a resent offer, or one who said goodbye and is back
+    subject->ended = false;  // a repeated offer, or the sender is back after its goodbye
   } else if (!is_owner && subject != nullptr && subjects_->IsRetired(key) && !subject->lost &&
              !subject->ended) {
     Reject(peer, header, offer.skeleton_hash,
@@ -38,7 +39,9 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
     return nullptr;
   } else {
     if (subject == nullptr && subjects_->size() >= static_cast<std::size_t>(limits_.max_subjects)) {
-      Reject(peer, header, offer.skeleton_hash, "the daemon has its largest number of subjects",
+      Reject(peer, header, offer.skeleton_hash,
+             "the daemon has reached its limit of " + std::to_string(limits_.max_subjects) +
+                 " subjects; see limits.max_subjects",
              now);
       return nullptr;
     }
@@ -54,15 +57,15 @@ Subject* Publishers::OnOffer(Peer& peer, const protocol::Header& header,
     }
     subject = Accept(peer, key, offer, *std::move(definition), now);
   }
-  postman_->Reply(
-      peer, Postman::Answering(header),
+  messages_->SendReply(
+      peer, MessageSender::ReplyHeader(header),
       protocol::SkeletonReply{offer.skeleton_hash, protocol::SkeletonStatus::kAccepted, {}});
   return subject;
 }
 
 Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::SkeletonOffer& offer,
                             std::shared_ptr<const StreamDefinition> stream, Time now) {
-  // A stream has one subject: another name on it ends the former.
+  // A stream feeds one subject. A new name on the stream ends the old subject.
   if (Subject* former = subjects_->Find(key); former != nullptr && former->name != offer.subject) {
     former->ended = true;
     subjects_->Release(*former);
@@ -74,7 +77,7 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
                  offer.joints.size(), offer.blend_shape_names.size());
   } else if (subject->owner != key) {
     metrics_->Add(Counter::kSubjectsRestarted);
-    spdlog::info("subject '{}' is taken over by {}", offer.subject, peer.name);
+    spdlog::info("{} has taken over subject '{}'", peer.name, offer.subject);
   }
   if (subject->owner != key) subject->window = {};
   subjects_->SetOwner(*subject, key);
@@ -82,17 +85,17 @@ Subject* Publishers::Accept(Peer& peer, const StreamKey& key, const protocol::Sk
       subject->pipeline != nullptr && subject->skeleton_hash == offer.skeleton_hash;
   const auto former =
       std::exchange(subject->pipeline, std::make_unique<SubjectPipeline>(std::move(stream)));
-  // It is the performer's, not the sender's.
+  // The neutral pose belongs to the performer, so it survives a change of the sender.
   if (has_neutral) subject->pipeline->SetNeutral(former->neutral_pose());
   peer.publishes = true;
   subject->skeleton_hash = offer.skeleton_hash;
-  subject->offer = Share(offer);
+  subject->offer = ShareOffer(offer);
   subject->last_pose = subject->last_update = now;
   subject->ended = subject->lost = false;
   return subject;
 }
 
-std::shared_ptr<const protocol::SkeletonOffer> Publishers::Share(
+std::shared_ptr<const protocol::SkeletonOffer> Publishers::ShareOffer(
     const protocol::SkeletonOffer& offer) {
   protocol::SkeletonOffer nameless = offer;
   nameless.subject.clear();
@@ -107,22 +110,22 @@ std::shared_ptr<const protocol::SkeletonOffer> Publishers::Share(
 void Publishers::Reject(Peer& peer, const protocol::Header& header, std::uint64_t hash,
                         std::string why, Time now) {
   metrics_->Add(Counter::kSkeletonsRejected);
-  if (log_bucket_.Take(now)) spdlog::warn("a skeleton from {} is rejected: {}", peer.name, why);
-  postman_->Reply(peer, Postman::Answering(header),
-                  protocol::SkeletonReply{hash, protocol::SkeletonStatus::kRejected,
-                                          Postman::Clip(std::move(why))});
+  if (log_bucket_.Take(now)) spdlog::warn("rejected a skeleton from {}: {}", peer.name, why);
+  messages_->SendReply(peer, MessageSender::ReplyHeader(header),
+                       protocol::SkeletonReply{hash, protocol::SkeletonStatus::kRejected,
+                                               MessageSender::Truncate(std::move(why))});
 }
 
-Subject* Publishers::Find(const Peer& peer, const protocol::Header& header,
-                          const protocol::PoseFrame& pose) {
+Subject* Publishers::FindSubject(const Peer& peer, const protocol::Header& header,
+                                 const protocol::PoseFrame& pose) {
   metrics_->Add(Counter::kPosesReceived);
   Subject* subject = subjects_->Find(StreamKey{peer.id, header.session, header.stream});
   return subject != nullptr && subject->skeleton_hash == pose.skeleton_hash ? subject : nullptr;
 }
 
-bool Publishers::Take(Subject& subject, const protocol::Header& header,
-                      const protocol::PoseFrame& pose) {
-  if (subject.ended) {  // overtaken by its own goodbye
+bool Publishers::AcceptPose(Subject& subject, const protocol::Header& header,
+                            const protocol::PoseFrame& pose) {
+  if (subject.ended) {  // the goodbye has overtaken this pose
     metrics_->Add(Counter::kPosesLate);
     return false;
   }
@@ -160,37 +163,37 @@ bool Publishers::IsNew(Subject& subject, const protocol::Header& header) {
   return false;
 }
 
-void Publishers::OnStray(Peer& peer, const protocol::Header& header, std::uint64_t hash,
-                         Postman& postman, Time now) {
+void Publishers::OnUnknownStream(Peer& peer, const protocol::Header& header, std::uint64_t hash,
+                                 MessageSender& messages, Time now) {
   const bool retired = subjects_->IsRetired({peer.id, header.session, header.stream});
   metrics_->Add(retired ? Counter::kPosesRetiredSession : Counter::kPosesUnknownStream);
-  if (!peer.strays.Take(header.session, header.stream, now)) return;
+  if (!peer.skeleton_requests.Allow(header.session, header.stream, now)) return;
   protocol::SkeletonReply reply{hash, protocol::SkeletonStatus::kNeeded, {}};
   if (retired) {
     reply.status = protocol::SkeletonStatus::kRejected;
-    reply.message = "another sender has taken this subject over";
+    reply.message = "another sender has taken over this subject";
   } else {
     metrics_->Add(Counter::kSkeletonsRequested);
   }
-  postman.Reply(peer, Postman::Answering(header), reply);
+  messages.SendReply(peer, MessageSender::ReplyHeader(header), reply);
 }
 
 void Publishers::OnGoodbye(const Peer& peer, const protocol::Header& header, Time now) {
   Subject* subject = subjects_->Find(StreamKey{peer.id, header.session, header.stream});
   if (subject == nullptr) return;
-  spdlog::info("subject '{}' says goodbye", subject->name);
+  spdlog::info("subject '{}' ended its stream", subject->name);
   subject->ended = true;
   subject->last_update = now;
 }
 
-Publishers::Change Publishers::Age(Subject& subject, Time now) {
+Publishers::Change Publishers::AgeSubject(Subject& subject, Time now) {
   const Time silence = now - subject.last_pose;
   if (silence > FromSeconds(limits_.idle_seconds)) return Change::kGone;
   SubjectPipeline& pipeline = *subject.pipeline;
   if (!pipeline.has_pose()) return subject.ended ? Change::kGone : Change::kNone;
   if (!subject.ended && silence < FromSeconds(limits_.loss_seconds)) return Change::kNone;
   if (!subject.lost && !subject.ended) {
-    spdlog::warn("subject '{}' fell silent and decays to neutral", subject.name);
+    spdlog::warn("subject '{}' stopped sending and decays to neutral", subject.name);
     metrics_->Add(Counter::kSubjectsLost);
   }
   subject.lost = true;

@@ -11,12 +11,12 @@
 namespace furrow::server {
 namespace {
 
-constexpr float kRotation = 2e-4f;     // of a quaternion's component: 0.02 degrees
-constexpr float kTranslation = 2e-4f;  // of a length, and of a unit
-constexpr float kValue = 0.5f / 255.0f;
+constexpr float kRotation = 2e-4f;       // per quaternion component; about 0.02 degrees
+constexpr float kTranslation = 2e-4f;    // absolute, and relative to the length
+constexpr float kValue = 0.5f / 255.0f;  // half a step of an 8-bit weight
 
 bool IsNear(const wrinkle::Transform& a, const wrinkle::Transform& b) {
-  // q and -q are one rotation.
+  // q and -q are the same rotation.
   const bool opposite = glm::dot(a.rotation, b.rotation) < 0.0f;
   const glm::quat turn = a.rotation - (opposite ? -b.rotation : b.rotation);
   const float rotation = std::max(std::max(std::fabs(turn.x), std::fabs(turn.y)),

@@ -9,12 +9,12 @@
 
 namespace furrow::server {
 
-// Since when a subject shows the same: its pose and its wrinkle weights stayed within what no eye
-// sees of where they were when they last moved, so that slow creeping counts as moving.
+// Tracks when a subject last moved visibly. Poses and weights are compared with those of the last
+// movement, not with the previous pose, so slow drift counts as movement.
 class RestDetector {
  public:
   void Update(const wrinkle::LocalPose& pose, std::span<const float> wrinkle_weights, Time now);
-  // When it last moved; 0 before the first Update().
+  // Arrival time of the last pose that moved; 0 before the first Update().
   [[nodiscard]] Time moved_at() const { return moved_at_; }
 
  private:

@@ -51,8 +51,7 @@ void SubjectRegistry::SetOwner(Subject& subject, const StreamKey& key) {
   by_stream_[key] = &subject;
 }
 
-// One peer may restart a subject under a new session as often as it likes: what that leaves behind
-// is bounded.
+// A peer may restart a subject under new session numbers without end, so the memory is bounded.
 void SubjectRegistry::Retire(const StreamKey& key, SubjectId subject) {
   retired_[key] = {subject, ++num_retired_};
   retired_order_.emplace_back(key, num_retired_);

@@ -23,7 +23,8 @@
 
 namespace furrow::server {
 
-// Who publishes: a peer, the session it drew at its start, its number for the subject.
+// Identifies a stream: the peer, the random session number of its current run, and its number for
+// the subject.
 struct StreamKey {
   PeerId peer = 0;
   std::uint64_t session = 0;
@@ -31,7 +32,7 @@ struct StreamKey {
   friend auto operator<=>(const StreamKey&, const StreamKey&) = default;
 };
 
-// The session is random; streams of one session are apart.
+// The session number is random, so mixing in the other two needs little care.
 struct StreamKeyHash {
   std::size_t operator()(const StreamKey& key) const {
     constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15;
@@ -39,29 +40,28 @@ struct StreamKeyHash {
   }
 };
 
-using SubjectId = std::uint64_t;  // never used twice in a run; 0 is nobody
+using SubjectId = std::uint64_t;  // unique for the life of the daemon; 0: no subject
 
-// Somebody captured: a name, the stream that feeds it now, and what its poses come to.
+// A captured performer: a name, the stream that feeds it now, and its pipeline to wrinkle weights.
 struct Subject {
   SubjectId id = 0;
   std::string name;
   StreamKey owner;
   std::uint64_t skeleton_hash = 0;  // of the owner's offer
-  // The owner's offer without its subject's name: shared by all who offer the same.
+  // The owner's offer without the subject name, shared by all subjects with an equal offer.
   std::shared_ptr<const protocol::SkeletonOffer> offer;
   protocol::SequenceWindow window;
   std::unique_ptr<SubjectPipeline> pipeline;
-  Time last_pose{0};     // arrival
-  Time last_update{0};   // arrival or decay
-  bool ended = false;    // its publisher said goodbye: decays, then leaves
-  bool lost = false;     // no pose for too long: holds, decays
-  bool in_full = false;  // all of its weights are wanted, whoever subscribes to what
+  Time last_pose{0};               // arrival
+  Time last_update{0};             // arrival or decay
+  bool ended = false;              // the publisher said goodbye: the subject decays, then leaves
+  bool lost = false;               // no pose for Limits::loss_seconds: the subject decays
+  bool needs_all_drivers = false;  // evaluate all drivers, not only subscribed ones
   SubjectStats stats;
-  RestDetector rest;  // kept up while somebody watches with flow control
+  RestDetector rest;  // updated only while a viewer uses flow control
 };
 
-// All subjects of a daemon by name and by the stream that feeds them. In order of arrival: the
-// first is "the subject that has been there longest".
+// All subjects of a daemon, by name and by the stream that feeds them, in order of arrival.
 class SubjectRegistry {
  public:
   static constexpr std::size_t kMaxRetired = 4096;
@@ -69,27 +69,28 @@ class SubjectRegistry {
   [[nodiscard]] Subject* Find(std::string_view name);
   [[nodiscard]] Subject* Find(SubjectId id);
   [[nodiscard]] Subject* Find(const StreamKey& key);
+  // The oldest subject; null if there is none.
   [[nodiscard]] Subject* First();
 
-  // Precondition: no subject of this name.
+  // Precondition: there is no subject of this name.
   Subject& Add(std::string name, Time now);
-  // Makes `key` the stream that feeds `subject`; the one that did is retired.
+  // Makes `key` the stream that feeds `subject`. The previous stream is retired.
   void SetOwner(Subject& subject, const StreamKey& key);
-  // A stream that fed a subject before another took over: its stragglers are not answered. The last
-  // kMaxRetired are remembered.
+  // True if the stream fed a subject until another stream took over. The last kMaxRetired streams
+  // are remembered.
   [[nodiscard]] bool IsRetired(const StreamKey& key) const { return retired_.contains(key); }
-  // The subject is fed by nobody now.
+  // Detaches the subject from its stream.
   void Release(Subject& subject);
 
   void Remove(SubjectId id);
-  // Forgets whatever this peer's streams retired.
+  // Forgets the retired streams of a peer.
   void ForgetPeer(PeerId peer);
 
   [[nodiscard]] std::size_t size() const { return subjects_.size(); }
-  // Another number whenever somebody has come or gone; never 0.
+  // Changes whenever a subject is added or removed; never 0.
   [[nodiscard]] std::uint64_t version() const { return version_; }
   [[nodiscard]] const std::vector<std::unique_ptr<Subject>>& all() const { return subjects_; }
-  [[nodiscard]] std::string Names() const;  // "a, b, c", for messages
+  [[nodiscard]] std::string Names() const;  // the first few, for messages: "ann, bob"
 
  private:
   void Retire(const StreamKey& key, SubjectId subject);
@@ -99,10 +100,10 @@ class SubjectRegistry {
   std::map<std::string, Subject*, std::less<>> by_name_;
   struct Retired {
     SubjectId subject = 0;
-    std::uint64_t number = 0;  // of the retirements, from 1
+    std::uint64_t number = 0;  // counts retirements, from 1
   };
   std::map<StreamKey, Retired> retired_;
-  // By number, oldest first; may name what has been forgotten or retired anew since.
+  // Oldest first. An entry may be stale: the stream was forgotten or retired again since.
   std::deque<std::pair<StreamKey, std::uint64_t>> retired_order_;
   std::uint64_t num_retired_ = 0;
   SubjectId next_id_ = 1;

@@ -7,8 +7,8 @@ namespace furrow::server {
 namespace {
 
 constexpr Time kWindow = FromSeconds(1.0);
-constexpr std::uint32_t kLargestGap = 1000;  // beyond it the sender began anew
-constexpr double kSmoothing = 1.0 / 16.0;    // RFC 3550's
+constexpr std::uint32_t kLargestGap = 1000;  // a larger gap is a restart of the sender
+constexpr double kSmoothing = 1.0 / 16.0;    // as in RFC 3550
 
 }  // namespace
 
@@ -28,7 +28,7 @@ void SubjectStats::OnPose(std::uint32_t sequence, std::int64_t capture_time_us, 
     CountRate(now);
     const double captured = static_cast<double>(capture_time_us - capture_time_us_) * 1e-6;
     const bool has_both = has_time && capture_time_us_ != 0;
-    // Beyond that it was not waited for: a timeline was moved, or begins again.
+    // Other steps are jumps of a timeline, which say nothing about jitter.
     const bool is_step = captured > 0.0 && captured < ToSeconds(kWindow);
     if (has_both && is_step) MeasureJitter(ToSeconds(now - arrival_), captured);
   }
@@ -39,7 +39,7 @@ void SubjectStats::OnPose(std::uint32_t sequence, std::int64_t capture_time_us, 
 }
 
 void SubjectStats::CountLost(std::uint32_t sequence) {
-  const std::uint32_t step = sequence - sequence_;  // by subtraction: numbers wrap
+  const std::uint32_t step = sequence - sequence_;  // unsigned subtraction: numbers wrap around
   if (step > 0 && step <= kLargestGap) lost_ += step - 1;
 }
 

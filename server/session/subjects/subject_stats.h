@@ -7,26 +7,25 @@
 
 namespace furrow::server {
 
-// How a subject's poses come, for whoever looks at it: rate, gaps, jitter.
+// Statistics of a subject's stream: rate, losses and jitter.
 //
-// A pose with the capture time of the one before repeats it (a timeline that stands still says so
-// ten times a second): it counts as a pose, not as one more that was captured. Where nothing is
-// captured for a second, rate and jitter are 0 and begin anew.
+// A pose with the capture time of the previous pose repeats it, as a paused recording does. It
+// counts as a pose but not as a captured one. After a second without a captured pose, rate and
+// jitter are 0 and start again.
 class SubjectStats {
  public:
-  // A pose that was used. `capture_time_us` 0: it has none.
+  // Counts a pose that was used. `capture_time_us` 0: the pose has no capture time.
   void OnPose(std::uint32_t sequence, std::int64_t capture_time_us, Time now);
-  // One that came too late, or twice.
+  // Counts a late or duplicate pose.
   void OnLate() { ++late_; }
 
   [[nodiscard]] std::uint64_t poses() const { return poses_; }
-  [[nodiscard]] std::uint64_t lost() const { return lost_; }  // gaps in the sequence
+  [[nodiscard]] std::uint64_t lost() const { return lost_; }  // missing sequence numbers
   [[nodiscard]] std::uint64_t late() const { return late_; }
-  // Interarrival jitter as RFC 3550 section 6.4.1 estimates it: how unevenly poses arrive, measured
-  // against when they were captured. What is sent evenly at another pace than it was captured (slow
-  // motion) has none.
+  // Interarrival jitter in seconds, estimated as in RFC 3550 section 6.4.1: arrival intervals
+  // compared with capture intervals. Evenly played slow motion has no jitter.
   [[nodiscard]] double jitter_seconds(Time now) const { return IsSilent(now) ? 0.0 : jitter_; }
-  // Poses captured a second, over the last whole second.
+  // Captured poses per second, over the last whole second.
   [[nodiscard]] double rate_hz(Time now) const { return IsSilent(now) ? 0.0 : rate_; }
 
  private:
@@ -36,11 +35,11 @@ class SubjectStats {
   void MeasureJitter(double arrived, double captured);
 
   std::uint64_t poses_ = 0;
-  std::uint64_t captured_ = 0;  // of them, those that repeat none
+  std::uint64_t captured_ = 0;  // poses that did not repeat the previous one
   std::uint64_t lost_ = 0;
   std::uint64_t late_ = 0;
   std::uint32_t sequence_ = 0;
-  // Of the last pose that was captured.
+  // Of the last captured pose.
   std::int64_t capture_time_us_ = 0;
   Time arrival_{0};
 
@@ -48,7 +47,7 @@ class SubjectStats {
   Time window_{0};
   std::uint64_t in_window_ = 0;
 
-  // Smoothed seconds between poses; 0: none measured yet.
+  // Smoothed seconds between poses; 0: not measured yet.
   double arrives_every_ = 0.0;
   double captured_every_ = 0.0;
   double jitter_ = 0.0;

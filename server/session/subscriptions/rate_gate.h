@@ -7,14 +7,15 @@
 
 namespace furrow::server {
 
-// Lets at most `max_rate` events a second pass, evenly spaced, without drift: a 60 Hz stream gated
-// to 30 Hz passes every second frame even where arrival jitters. 0: everything passes. The slowest
-// rate is one an hour.
+// Passes at most `max_rate` events per second, evenly spaced and without drift: of a 60 Hz stream,
+// a gate of 30 Hz passes every second frame although arrival times jitter. Rate 0 passes
+// everything. The lowest rate is one event per hour.
 class RateGate {
  public:
   explicit RateGate(double max_rate = 0.0) : period_(PeriodOf(max_rate)) {}
 
-  // Another rate from the event on that passed last: asking again and again lets nothing more pass.
+  // Changes the rate, counted from the last event that passed. Repeated calls let nothing extra
+  // pass.
   void SetRate(double max_rate) {
     const Time period = PeriodOf(max_rate);
     due_ += period - period_;
@@ -23,10 +24,10 @@ class RateGate {
 
   [[nodiscard]] bool Pass(Time now) {
     if (period_ == Time{0}) return true;
-    // A tenth of a period of grace, so that jitter does not turn 30 of 60 into 20 of 60.
+    // Events may come a tenth of a period early. Without this tolerance, jitter would reduce 60 Hz
+    // to 20 Hz instead of 30 Hz.
     if (started_ && now + period_ / 10 < due_) return false;
-    // The next slot counts from this one's schedule, not from its lateness; after a pause it starts
-    // anew.
+    // The next slot follows the schedule, not the late event. A pause restarts the schedule.
     due_ = (started_ && now - due_ < period_) ? due_ + period_ : now + period_;
     started_ = true;
     return true;
@@ -34,7 +35,7 @@ class RateGate {
 
  private:
   static Time PeriodOf(double max_rate) {
-    constexpr double kMaxPeriod = 3600.0;  // seconds: what a Time surely holds
+    constexpr double kMaxPeriod = 3600.0;  // seconds
     return max_rate > 0.0 ? FromSeconds(std::min(1.0 / max_rate, kMaxPeriod)) : Time{0};
   }
 

@@ -2,8 +2,8 @@
 #include "server/session/subscriptions/subscribers.h"
 
 #include <algorithm>
-
-#include <spdlog/spdlog.h>
+#include <utility>
+#include <variant>
 
 #include "protocol/messages/hash.h"
 #include "protocol/messages/limits.h"
@@ -14,48 +14,49 @@ using protocol::ErrorCode;
 
 namespace {
 
-// Why so many names cannot be answered; empty where they can.
-std::string Oversize(const std::vector<std::string>& names, Transport transport) {
+// Why a reply cannot list the names; empty if it can.
+std::string WhyTooLarge(const std::vector<std::string>& names, Transport transport) {
   if (names.size() > protocol::kMaxWeights) {
-    return std::to_string(names.size()) + " weights, at most " +
-           std::to_string(protocol::kMaxWeights) + " go into a subscription: take several";
+    return std::to_string(names.size()) + " weights, more than the " +
+           std::to_string(protocol::kMaxWeights) +
+           " of one subscription; use several subscriptions";
   }
-  constexpr std::size_t kPerName = 12;  // offset, length, end and padding
+  constexpr std::size_t kPerName = 12;  // offset, length, terminator and padding
   std::size_t bytes = 0;
   for (const std::string& name : names) bytes += name.size() + kPerName;
   if (transport != Transport::kUdp || bytes + kPerName * 100 <= protocol::kMaxUdpMessageBytes) {
     return {};
   }
-  return "weights whose names have " + std::to_string(bytes) +
-         " bytes, more than UDP carries: take several subscriptions, or TCP";
+  return "weights with " + std::to_string(bytes) +
+         " bytes of names, more than a UDP message holds; use several subscriptions or TCP";
 }
 
 }  // namespace
 
 Subscribers::Subscribers(const Limits& limits, SubjectRegistry* subjects, PictureSource* pictures,
-                         const render::Settings& settings, bool all_drivers, Desk* desk,
-                         Metrics* metrics)
+                         const render::Settings& settings, bool all_drivers,
+                         PublishContext* context, Metrics* metrics)
     : limits_(limits),
       subjects_(subjects),
-      pictures_(pictures),
-      settings_(settings),
       all_drivers_(all_drivers),
-      desk_(desk),
-      postman_(&desk->postman),
-      metrics_(metrics) {}
+      messages_(&context->messages),
+      metrics_(metrics),
+      poses_(messages_),
+      pictures_(&table_, pictures, settings, messages_, metrics),
+      fan_out_(&table_, &poses_, &pictures_, context, metrics) {}
 
 void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
                             const protocol::SubscribeWeights& request) {
-  if (!MayAdd(peer, header)) return;
+  if (!CheckRequest(peer, header)) return;
   auto subscription = std::make_unique<Subscription>();
   subscription->subject_name = request.subject;
   subscription->wait = request.wait;
   subscription->gate = RateGate(request.max_rate_hz);
-  subscription->wish = WeightsWish{.pattern = request.pattern,
-                                   .format = request.format,
-                                   .source = request.source,
-                                   .indices = {},
-                                   .names_hash = 0};
+  subscription->request = WeightsRequest{.pattern = request.pattern,
+                                         .format = request.format,
+                                         .source = request.source,
+                                         .indices = {},
+                                         .names_hash = 0};
   subscription->every = request.every && peer.transport != Transport::kUdp;
   Add(peer, header, std::move(subscription));
 }
@@ -63,81 +64,74 @@ void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
 void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
                             const protocol::SubscribePictures& request) {
   if (peer.transport == Transport::kUdp) {
-    metrics_->Add(Counter::kSubscriptionsRefused);
-    postman_->Error(peer, header, ErrorCode::kNeedsTcp, "pictures go over TCP or a WebSocket");
-    return;
+    return RefuseRequest(peer, header, ErrorCode::kNeedsTcp,
+                         "pictures are available over TCP and WebSocket only");
   }
-  if (!MayAdd(peer, header)) return;
-  if (pictures_ == nullptr) {
-    metrics_->Add(Counter::kSubscriptionsRefused);
-    postman_->Error(peer, header, ErrorCode::kNotRendering,
-                    "this daemon draws no pictures: it has no character or no OpenGL");
-    return;
+  if (!CheckRequest(peer, header)) return;
+  if (!pictures_.can_render()) {
+    return RefuseRequest(peer, header, ErrorCode::kNotRendering,
+                         "this daemon renders no pictures: it has no character or no OpenGL");
   }
-  Result<PicturesWish> wish = MakeWish(request);
-  if (!wish.ok()) {
-    metrics_->Add(Counter::kSubscriptionsRefused);
-    postman_->Error(peer, header, ErrorCode::kBadPicture, wish.status().ToString());
-    return;
+  Result<PictureRequest> pictures = pictures_.MakeRequest(request);
+  if (!pictures.ok()) {
+    return RefuseRequest(peer, header, ErrorCode::kBadPicture, pictures.status().ToString());
   }
   auto subscription = std::make_unique<Subscription>();
   subscription->subject_name = request.subject;
   subscription->wait = request.wait;
   subscription->gate = RateGate(request.max_rate_hz);
-  wish->view_request = header.sequence;
-  if (request.acknowledged) wish->flow.emplace();
-  subscription->wish = *std::move(wish);
+  pictures->view_request = header.sequence;
+  if (request.acknowledged) pictures->flow.emplace();
+  subscription->request = *std::move(pictures);
   Add(peer, header, std::move(subscription));
 }
 
-// Proof of address, repetition, limits: what both kinds of request share. False: already answered.
-bool Subscribers::MayAdd(Peer& peer, const protocol::Header& header) {
+void Subscribers::Subscribe(Peer& peer, const protocol::Header& header,
+                            const protocol::SubscribePoses& request) {
+  if (!CheckRequest(peer, header)) return;
+  auto subscription = std::make_unique<Subscription>();
+  subscription->subject_name = request.subject;
+  subscription->wait = request.wait;
+  subscription->gate = RateGate(request.max_rate_hz);
+  subscription->request = PoseRequest();
+  subscription->every = request.every && peer.transport != Transport::kUdp;
+  Add(peer, header, std::move(subscription));
+}
+
+// The checks that all kinds of request share. False: the request has been answered.
+bool Subscribers::CheckRequest(Peer& peer, const protocol::Header& header) {
   if (peer.transport == Transport::kUdp && !peer.credit.proven()) {
-    metrics_->Add(Counter::kSubscriptionsRefused);
-    postman_->Error(peer, header, ErrorCode::kUnprovenAddress,
-                    "say Hello with the token of Welcome first");
+    RefuseRequest(peer, header, ErrorCode::kUnprovenAddress,
+                  "the address is not proven; send Hello with the token from Welcome first");
     return false;
   }
-  if (Subscription* known = FindRepeated(peer, header); known != nullptr) {
-    if (auto* wish = std::get_if<PosesWish>(&known->wish);
-        wish != nullptr && known->subject != nullptr) {
-      BindPoses(*known, *wish, *known->subject);
-      return false;
-    }
-    std::vector<std::string> names;
-    if (const auto* wish = std::get_if<WeightsWish>(&known->wish);
-        wish != nullptr && known->subject != nullptr) {
-      const auto all = wish->Names(*known->subject->pipeline->stream().binding);
-      for (const std::uint32_t index : wish->indices) names.push_back(all[index]);
-    }
-    Reply(*known, std::move(names));
+  if (Subscription* known = table_.FindRepeated(peer, header); known != nullptr) {
+    ReplyAgain(*known);
     return false;
   }
   if (peer.num_subscriptions >= limits_.max_subscriptions) {
-    metrics_->Add(Counter::kSubscriptionsRefused);
-    postman_->Error(peer, header, ErrorCode::kLimit,
-                    "at most " + std::to_string(limits_.max_subscriptions) + " subscriptions");
+    RefuseRequest(peer, header, ErrorCode::kLimit,
+                  "at most " + std::to_string(limits_.max_subscriptions) +
+                      " subscriptions per peer; see limits.max_subscriptions");
     return false;
   }
   return true;
 }
 
-Subscription* Subscribers::Find(const Peer& peer, std::uint16_t id) {
-  for (auto& [uid, subscription] : subscriptions_) {
-    if (subscription->peer == &peer && subscription->id == id) return subscription.get();
+// A UDP client repeats its request if the reply was lost.
+void Subscribers::ReplyAgain(Subscription& subscription) {
+  auto* poses = std::get_if<PoseRequest>(&subscription.request);
+  if (poses != nullptr && subscription.subject != nullptr) {
+    BindPoses(subscription, *poses, *subscription.subject);
+    return;
   }
-  return nullptr;
-}
-
-Subscription* Subscribers::FindRepeated(const Peer& peer, const protocol::Header& header) {
-  if (peer.num_subscriptions == 0) return nullptr;
-  for (auto& [uid, subscription] : subscriptions_) {
-    if (subscription->peer == &peer && subscription->session == header.session &&
-        subscription->request == header.sequence) {
-      return subscription.get();
-    }
+  std::vector<std::string> names;
+  if (const auto* weights = std::get_if<WeightsRequest>(&subscription.request);
+      weights != nullptr && subscription.subject != nullptr) {
+    const auto all = weights->Names(*subscription.subject->pipeline->stream().binding);
+    for (const std::uint32_t index : weights->indices) names.push_back(all[index]);
   }
-  return nullptr;
+  Reply(subscription, std::move(names));
 }
 
 void Subscribers::Add(Peer& peer, const protocol::Header& header,
@@ -145,21 +139,13 @@ void Subscribers::Add(Peer& peer, const protocol::Header& header,
   const std::string& name = subscription->subject_name;
   Subject* subject = name.empty() ? subjects_->First() : subjects_->Find(name);
   if (subject == nullptr && !subscription->wait) {
-    metrics_->Add(Counter::kSubscriptionsRefused);
     const std::string known = subjects_->Names();
-    postman_->Error(peer, header, ErrorCode::kUnknownSubject,
-                    (name.empty() ? "there is no subject" : "no subject '" + name + "'") +
-                        (known.empty() ? "; none is here" : "; here are: " + known));
-    return;
+    return RefuseRequest(
+        peer, header, ErrorCode::kUnknownSubject,
+        (name.empty() ? "there is no subject" : "no subject '" + name + "'") +
+            (known.empty() ? "; no subject is connected" : "; connected subjects: " + known));
   }
-  subscription->uid = next_uid_++;
-  subscription->peer = &peer;
-  subscription->id = NewId(peer);
-  subscription->session = header.session;
-  subscription->request = header.sequence;
-  Subscription& added = *subscription;
-  subscriptions_.emplace(added.uid, std::move(subscription));
-  ++peer.num_subscriptions;
+  Subscription& added = table_.Add(peer, header, std::move(subscription));
   if (subject == nullptr) {
     Reply(added, {});
   } else if (!Bind(added, *subject)) {
@@ -168,44 +154,21 @@ void Subscribers::Add(Peer& peer, const protocol::Header& header,
   metrics_->Add(Counter::kSubscriptionsAccepted);
 }
 
-std::uint16_t Subscribers::NewId(Peer& peer) {
-  const auto is_taken = [&](std::uint16_t id) {
-    return std::ranges::any_of(subscriptions_, [&](const auto& entry) {
-      return entry.second->peer == &peer && entry.second->id == id;
-    });
-  };
-  do {
-    ++peer.last_subscription;
-  } while (peer.last_subscription == 0 || is_taken(peer.last_subscription));
-  return peer.last_subscription;
-}
-
-void Subscribers::Reply(const Subscription& subscription, std::vector<std::string> names) {
-  protocol::SubscribeReply reply;
-  if (subscription.subject != nullptr) reply.subject = subscription.subject->name;
-  if (const auto* poses = std::get_if<PosesWish>(&subscription.wish)) {
-    reply.publisher_session = poses->publisher;
-  }
-  reply.names_hash = protocol::NamesHash(names);
-  reply.names = std::move(names);
-  postman_->Reply(*subscription.peer, {.stream = subscription.id, .sequence = subscription.request},
-                  reply);
-}
-
+// False: the subscription was refused and erased.
 bool Subscribers::Bind(Subscription& subscription, Subject& subject) {
-  if (auto* wish = std::get_if<PosesWish>(&subscription.wish); wish != nullptr) {
-    return BindPoses(subscription, *wish, subject);
+  if (auto* poses = std::get_if<PoseRequest>(&subscription.request); poses != nullptr) {
+    return BindPoses(subscription, *poses, subject);
   }
   std::vector<std::string> names;
-  if (auto* wish = std::get_if<WeightsWish>(&subscription.wish); wish != nullptr) {
-    names = wish->Bind(*subject.pipeline->stream().binding);
+  if (auto* weights = std::get_if<WeightsRequest>(&subscription.request); weights != nullptr) {
+    names = weights->Bind(*subject.pipeline->stream().binding);
     if (names.empty()) {
-      Refuse(subscription, ErrorCode::kNoMatch,
-             "'" + wish->pattern + "' names no weight of the rig");
+      RefuseAndErase(subscription, ErrorCode::kNoMatch,
+                     "'" + weights->pattern + "' matches no weight of the rig");
       return false;
     }
-    if (std::string why = Oversize(names, subscription.peer->transport); !why.empty()) {
-      Refuse(subscription, ErrorCode::kLimit, "'" + wish->pattern + "' names " + why);
+    if (std::string why = WhyTooLarge(names, subscription.peer->transport); !why.empty()) {
+      RefuseAndErase(subscription, ErrorCode::kLimit, "'" + weights->pattern + "' matches " + why);
       return false;
     }
   }
@@ -214,123 +177,177 @@ bool Subscribers::Bind(Subscription& subscription, Subject& subject) {
   return true;
 }
 
-void Subscribers::Attach(Subscription& subscription, Subject& subject) {
-  if (subscription.subject != &subject) {
-    subscription.subject = &subject;
-    by_subject_[subject.id].push_back(&subscription);
+bool Subscribers::BindPoses(Subscription& subscription, PoseRequest& request, Subject& subject) {
+  if (!poses_.Fits(subject, subscription.peer->transport)) {
+    RefuseAndErase(
+        subscription, ErrorCode::kLimit,
+        "the skeleton of '" + subject.name + "' does not fit into a UDP message; use TCP");
+    return false;
   }
-  UpdateLevel(subject);
-  subscription.owed = subject.pipeline->has_pose();  // the newest pose there is, at the next tick
+  request = {subject.owner.session, subject.skeleton_hash};
+  Attach(subscription, subject);
+  Reply(subscription, {});
+  poses_.SendSkeleton(subscription);
+  return true;
 }
 
-// The drivers that are needed, and no more, from the rig's first on.
-void Subscribers::UpdateLevel(Subject& subject) {
-  std::size_t needed = all_drivers_ || subject.in_full ? wrinkle::kAllDrivers : 0;
-  for (const Subscription* subscription : by_subject_[subject.id]) {
-    if (const auto* wish = std::get_if<WeightsWish>(&subscription->wish)) {
-      needed = std::max(needed, wish->num_drivers);
-    } else if (std::holds_alternative<PicturesWish>(subscription->wish)) {
+void Subscribers::Attach(Subscription& subscription, Subject& subject) {
+  table_.Attach(subscription, subject);
+  UpdateDriverLevel(subject);
+  subscription.owed = subject.pipeline->has_pose();  // the next tick sends the newest pose
+}
+
+// Evaluates as few drivers as the subscriptions need. Levels count drivers from the rig's first.
+void Subscribers::UpdateDriverLevel(Subject& subject) {
+  std::size_t needed = all_drivers_ || subject.needs_all_drivers ? wrinkle::kAllDrivers : 0;
+  for (const Subscription* subscription : table_.Of(subject.id)) {
+    if (const auto* weights = std::get_if<WeightsRequest>(&subscription->request)) {
+      needed = std::max(needed, weights->num_drivers);
+    } else if (std::holds_alternative<PictureRequest>(subscription->request)) {
       needed = wrinkle::kAllDrivers;
     }
   }
   subject.pipeline->SetLevel(needed);
 }
 
-void Subscribers::Refuse(Subscription& subscription, ErrorCode code, std::string why) {
+void Subscribers::UpdatePictures(Peer& peer, const protocol::Header& header,
+                                 const protocol::SubscribePictures& request, Time now) {
+  Subscription* subscription = table_.Find(peer, header.stream);
+  if (subscription == nullptr || !std::holds_alternative<PictureRequest>(subscription->request)) {
+    return messages_->SendError(
+        peer, header, ErrorCode::kBadPicture,
+        "there is no picture subscription " + std::to_string(header.stream));
+  }
+  Result<PictureRequest> view = pictures_.MakeRequest(request);
+  if (!view.ok()) {
+    return messages_->SendError(peer, header, ErrorCode::kBadPicture, view.status().ToString());
+  }
+  view->view_request = header.sequence;
+  subscription->gate.SetRate(request.max_rate_hz);
+  pictures_.SetView(*subscription, *std::move(view), now);
+  SendNow(*subscription, now);
+}
+
+void Subscribers::SetOwnSettings(const render::Settings& settings, Time now) {
+  for (Subscription* changed : pictures_.SetOwnSettings(settings, now)) SendNow(*changed, now);
+}
+
+void Subscribers::Acknowledge(Peer& peer, const protocol::Header& header, std::uint32_t number,
+                              Time now) {
+  Subscription* subscription = table_.Find(peer, header.stream);
+  PictureRequest* viewer =
+      subscription == nullptr ? nullptr : PictureViews::FlowControlled(*subscription);
+  if (viewer == nullptr) return;  // the subscription ended in the meantime
+  if (!viewer->flow->Acknowledge(number)) {
+    return messages_->SendError(peer, header, ErrorCode::kMalformed,
+                                "picture " + std::to_string(number) + " was never sent");
+  }
+  if (subscription->owed) SendNow(*subscription, now);
+}
+
+// Sends the newest pose now, or, if a limit forbids it, as soon as possible.
+void Subscribers::SendNow(Subscription& subscription, Time now) {
+  subscription.owed = subscription.subject != nullptr;
+  if (subscription.owed && subscription.subject->pipeline->has_pose()) {
+    fan_out_.SendOwed(subscription, now);
+  }
+}
+
+void Subscribers::Reply(const Subscription& subscription, std::vector<std::string> names) {
+  protocol::SubscribeReply reply;
+  if (subscription.subject != nullptr) reply.subject = subscription.subject->name;
+  if (const auto* poses = std::get_if<PoseRequest>(&subscription.request)) {
+    reply.publisher_session = poses->publisher;
+  }
+  reply.names_hash = protocol::NamesHash(names);
+  reply.names = std::move(names);
+  messages_->SendReply(*subscription.peer,
+                       {.stream = subscription.id, .sequence = subscription.request_sequence},
+                       reply);
+}
+
+void Subscribers::RefuseRequest(Peer& peer, const protocol::Header& header, ErrorCode code,
+                                std::string why) {
   metrics_->Add(Counter::kSubscriptionsRefused);
-  postman_->Error(*subscription.peer, {.stream = subscription.id, .sequence = subscription.request},
-                  code, std::move(why));
+  messages_->SendError(peer, header, code, std::move(why));
+}
+
+void Subscribers::RefuseAndErase(Subscription& subscription, ErrorCode code, std::string why) {
+  RefuseRequest(*subscription.peer,
+                {.stream = subscription.id, .sequence = subscription.request_sequence}, code,
+                std::move(why));
   Erase(subscription);
 }
 
 void Subscribers::Erase(Subscription& subscription) {
-  if (subscription.subject != nullptr) {
-    std::erase(by_subject_[subscription.subject->id], &subscription);
-    UpdateLevel(*subscription.subject);
-  }
-  subscription.peer->link->DropFrames(subscription.uid);
-  --subscription.peer->num_subscriptions;
-  subscriptions_.erase(subscription.uid);
+  Subject* const subject = subscription.subject;
+  table_.Erase(subscription);
+  if (subject != nullptr) UpdateDriverLevel(*subject);
 }
 
 bool Subscribers::Unsubscribe(Peer& peer, std::uint16_t id) {
-  Subscription* subscription = Find(peer, id);
+  Subscription* subscription = table_.Find(peer, id);
   if (subscription == nullptr) return false;
   Erase(*subscription);
   return true;
 }
 
 void Subscribers::RemovePeer(Peer& peer) {
-  // The way of every forged address that is evicted: it costs nothing.
+  // Peers without subscriptions are the usual case: a flood of forged addresses must stay cheap.
   if (peer.num_subscriptions == 0) return;
-  std::vector<Subscription*> ending;
-  for (auto& [uid, subscription] : subscriptions_) {
-    if (subscription->peer == &peer) ending.push_back(subscription.get());
-  }
-  for (Subscription* subscription : ending) Erase(*subscription);
+  const auto is_of_peer = [&peer](const Subscription& each) { return each.peer == &peer; };
+  for (Subscription* subscription : table_.Select(is_of_peer)) Erase(*subscription);
 }
 
 void Subscribers::RemovePeer(Peer& peer, protocol::GoodbyeReason goodbye) {
-  for (auto& [uid, subscription] : subscriptions_) {
-    if (subscription->peer != &peer) continue;
-    postman_->Reply(peer, {.stream = subscription->id, .sequence = subscription->request},
-                    protocol::Goodbye{goodbye});
-  }
+  table_.ForEach([&](const Subscription& subscription) {
+    if (subscription.peer != &peer) return;
+    messages_->SendReply(peer,
+                         {.stream = subscription.id, .sequence = subscription.request_sequence},
+                         protocol::Goodbye{goodbye});
+  });
   RemovePeer(peer);
 }
 
 void Subscribers::OnSubjectReady(Subject& subject) {
-  std::vector<Subscription*> to_bind;
-  for (auto& [uid, subscription] : subscriptions_) {
-    const bool waits =
-        subscription->subject == nullptr &&
-        (subscription->subject_name.empty() || subscription->subject_name == subject.name);
-    if (waits) to_bind.push_back(subscription.get());
-  }
-  for (Subscription* subscription : by_subject_[subject.id]) {
-    if (const auto* poses = std::get_if<PosesWish>(&subscription->wish)) {
-      const bool is_told = poses->publisher == subject.owner.session &&
-                           poses->skeleton_hash == subject.skeleton_hash;
-      if (!is_told) to_bind.push_back(subscription);
-      continue;
+  const auto needs_reply = [&subject](Subscription& subscription) {
+    if (subscription.subject == nullptr) {
+      return subscription.subject_name.empty() || subscription.subject_name == subject.name;
     }
-    auto* wish = std::get_if<WeightsWish>(&subscription->wish);
-    if (wish == nullptr) continue;
-    const std::uint64_t before = wish->names_hash;
-    wish->Bind(*subject.pipeline->stream().binding);
-    if (wish->names_hash != before) to_bind.push_back(subscription);
-  }
-  // In the order in which they were asked for, and so are their frames: a recorder that asks for
-  // poses before weights has each pose before what was made of it.
-  std::ranges::sort(to_bind, {}, &Subscription::uid);
-  for (Subscription* subscription : to_bind) Bind(*subscription, subject);
-  UpdateLevel(subject);
+    if (subscription.subject != &subject) return false;
+    if (const auto* poses = std::get_if<PoseRequest>(&subscription.request)) {
+      return !PoseRelay::IsCurrent(*poses, subject);
+    }
+    auto* weights = std::get_if<WeightsRequest>(&subscription.request);
+    if (weights == nullptr) return false;
+    const std::uint64_t before = weights->names_hash;
+    weights->Bind(*subject.pipeline->stream().binding);  // the indices may change, too
+    return weights->names_hash != before;
+  };
+  // In the order of their requests, and so are their frames later: a recorder that subscribes to
+  // poses before weights receives each pose before its weights.
+  for (Subscription* subscription : table_.Select(needs_reply)) Bind(*subscription, subject);
+  UpdateDriverLevel(subject);
 }
 
 void Subscribers::OnSubjectGone(Subject& subject) {
-  const std::vector<Subscription*> watching = std::move(by_subject_[subject.id]);
-  by_subject_.erase(subject.id);
-  for (Subscription* subscription : watching) {
-    postman_->Reply(*subscription->peer,
-                    {.stream = subscription->id, .sequence = subscription->request},
-                    protocol::Goodbye{protocol::GoodbyeReason::kSubjectGone});
-    subscription->subject = nullptr;
+  for (Subscription* subscription : table_.DetachAll(subject)) {
+    messages_->SendReply(*subscription->peer,
+                         {.stream = subscription->id, .sequence = subscription->request_sequence},
+                         protocol::Goodbye{protocol::GoodbyeReason::kSubjectGone});
     subscription->owed = false;
-    if (auto* poses = std::get_if<PosesWish>(&subscription->wish)) *poses = {};
+    if (auto* poses = std::get_if<PoseRequest>(&subscription->request)) *poses = {};
     if (!subscription->wait) Erase(*subscription);
   }
 }
 
 void Subscribers::BindWaiting() {
-  Subject* first = subjects_->First();
-  if (first == nullptr) return;
-  std::vector<Subscription*> waiting;
-  for (auto& [uid, subscription] : subscriptions_) {
-    const bool for_anybody = subscription->subject == nullptr && subscription->subject_name.empty();
-    if (for_anybody) waiting.push_back(subscription.get());
-  }
-  std::ranges::sort(waiting, {}, &Subscription::uid);
-  for (Subscription* subscription : waiting) Bind(*subscription, *first);
+  Subject* oldest = subjects_->First();
+  if (oldest == nullptr) return;
+  const auto waits_for_any = [](const Subscription& each) {
+    return each.subject == nullptr && each.subject_name.empty();
+  };
+  for (Subscription* subscription : table_.Select(waits_for_any)) Bind(*subscription, *oldest);
 }
 
 }  // namespace furrow::server

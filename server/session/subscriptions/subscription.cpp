@@ -7,12 +7,12 @@
 
 namespace furrow::server {
 
-std::span<const std::string> WeightsWish::Names(const wrinkle::RigBinding& binding) const {
+std::span<const std::string> WeightsRequest::Names(const wrinkle::RigBinding& binding) const {
   return source == protocol::WeightSource::kDriverValues ? binding.driver_value_names()
                                                          : binding.weight_names();
 }
 
-std::vector<std::string> WeightsWish::Bind(const wrinkle::RigBinding& binding) {
+std::vector<std::string> WeightsRequest::Bind(const wrinkle::RigBinding& binding) {
   const std::span<const std::string> all = Names(binding);
   std::vector<std::string> chosen;
   indices.clear();

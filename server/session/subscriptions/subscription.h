@@ -18,56 +18,58 @@
 
 namespace furrow::server {
 
-// Weights by pattern: which of the binding's values, in their order.
-struct WeightsWish {
+// A subscription to weights, selected by a name pattern. Bind() resolves the pattern against the
+// rig of the subject.
+struct WeightsRequest {
   std::string pattern;
   protocol::WeightFormat format = protocol::WeightFormat::kF32;
   protocol::WeightSource source = protocol::WeightSource::kWrinkleWeights;
-  std::vector<std::uint32_t> indices;  // of the bound subject's names that match
-  std::uint64_t names_hash = 0;
-  std::size_t num_drivers = 0;  // of the rig, in its order, that they come from
+  std::vector<std::uint32_t> indices;  // matching values, in the order of the binding
+  std::uint64_t names_hash = 0;        // of the matching names
+  std::size_t num_drivers = 0;         // leading drivers of the rig that the values depend on
 
-  // All names this wish picks from.
+  // All names of `source`, matching or not.
   [[nodiscard]] std::span<const std::string> Names(const wrinkle::RigBinding& binding) const;
-  // Picks the names that match; returns them, more than the wire carries too.
+  // Selects the matching names and returns them. The list may exceed the limits of the wire.
   std::vector<std::string> Bind(const wrinkle::RigBinding& binding);
 };
 
-struct PicturesWish {
+// A subscription to pictures.
+struct PictureRequest {
   PictureSpec spec;
-  Encoding encoding;                   // with flow control and JPEG, its tier decides
-  std::vector<std::string> overrides;  // of the daemon's settings, "name=value"
-  std::uint32_t view_request = 0;      // who asked for this view: a request's sequence
-  Time changed{0};                     // when the view became this one
-  std::optional<ViewerFlow> flow;      // none: not acknowledged
+  Encoding encoding;                   // JPEG with flow control: the tier replaces the quality
+  std::vector<std::string> overrides;  // "name=value" on top of the daemon's settings
+  std::uint32_t view_request = 0;      // sequence of the message that set this view
+  Time changed{0};                     // when the view was set
+  std::optional<ViewerFlow> flow;      // flow control; only for viewers that acknowledge
 };
 
-// Skeleton and poses as they were used.
-struct PosesWish {
-  // Who and what the peer was told last; 0: nobody.
+// A subscription to the skeleton and poses of a subject.
+struct PoseRequest {
+  // The publisher and skeleton last sent to the peer; 0: none yet.
   std::uint64_t publisher = 0;
   std::uint64_t skeleton_hash = 0;
 };
 
-// What one peer asked for, and when it is next due.
+// One subscription of one peer, with its delivery state.
 struct Subscription {
-  std::uint64_t uid = 0;      // never used twice in a run
-  Peer* peer = nullptr;       // outlives the subscription
-  std::uint16_t id = 0;       // the peer's name for it; never 0
-  std::uint64_t session = 0;  // with `request`: tells a repeated request from a new one
-  std::uint32_t request = 0;
-  std::string subject_name;  // as asked; empty: whoever has been there longest
-  bool wait = false;
-  Subject* subject = nullptr;  // null: waiting
+  std::uint64_t uid = 0;              // unique for the life of the daemon
+  Peer* peer = nullptr;               // outlives the subscription
+  std::uint16_t id = 0;               // the number that the peer knows; never 0
+  std::uint64_t request_session = 0;  // with `request_sequence`: identifies a repeated request
+  std::uint32_t request_sequence = 0;
+  std::string subject_name;    // as requested; empty: the oldest subject
+  bool wait = false;           // stay when the subject is absent
+  Subject* subject = nullptr;  // null: waiting for the subject
   RateGate gate;
-  // The newest pose was left out, for its rate or a stuck peer, and nothing newer has come.
+  // The newest pose was skipped and the next tick must send it.
   bool owed = false;
-  bool held_back = false;  // the peer is stuck, and nothing of this waits for it
-  std::variant<WeightsWish, PicturesWish, PosesWish> wish;
-  bool every = false;         // TCP: nothing gives way to newer frames
-  std::uint64_t dropped = 0;  // of every: frames left out, and how many the peer was told of
-  std::uint64_t told_dropped = 0;
-  Time told{0};
+  bool held_back = false;  // the peer is stuck and its queued frames were dropped
+  std::variant<WeightsRequest, PictureRequest, PoseRequest> request;
+  bool every = false;         // not over UDP: newer frames never replace older ones
+  std::uint64_t dropped = 0;  // frames lost, and the count last reported to the peer
+  std::uint64_t reported_dropped = 0;
+  Time reported{0};
 };
 
 }  // namespace furrow::server

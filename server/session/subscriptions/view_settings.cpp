@@ -15,7 +15,7 @@ Result<SharedSettings> ViewSettings::Get(std::span<const std::string> overrides)
     FURROW_RETURN_IF_ERROR(render::SetSetting(assignment, &settings));
   }
   FURROW_RETURN_IF_ERROR(render::CheckSettings(settings));
-  settings.view = render::View::kFinal;  // the request's own, beside its settings
+  settings.view = render::View::kFinal;  // PictureSpec holds the view
   std::string key = render::SettingsToToml(settings);
   if (const auto known = known_.find(key); known != known_.end()) {
     if (SharedSettings shared = known->second.lock(); shared != nullptr) return shared;

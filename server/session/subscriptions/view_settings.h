@@ -13,22 +13,23 @@ namespace furrow::server {
 
 using SharedSettings = std::shared_ptr<const render::Settings>;
 
-// How views are drawn: the daemon's own settings, and what a view says otherwise. Equal settings
-// are one object while anybody has them, so that views are compared by pointer at every pose.
+// The settings of picture views: the daemon's own settings plus each view's overrides. Equal
+// settings share one object while it is in use, so that comparing two views compares pointers.
 class ViewSettings {
  public:
   explicit ViewSettings(render::Settings own) : own_(std::move(own)) {}
 
   [[nodiscard]] const render::Settings& own() const { return own_; }
-  // What was handed out stays as it is: ask again.
+  // Settings returned by Get() before do not change; call Get() again.
   void SetOwn(render::Settings own) { own_ = std::move(own); }
 
-  // The own ones with `overrides`, each "name=value". Errors: render::SetSetting's.
+  // The daemon's settings with `overrides` applied, each "name=value". Errors: those of
+  // render::SetSetting() and render::CheckSettings().
   [[nodiscard]] Result<SharedSettings> Get(std::span<const std::string> overrides);
 
  private:
   render::Settings own_;
-  std::map<std::string, std::weak_ptr<const render::Settings>> known_;  // by their TOML
+  std::map<std::string, std::weak_ptr<const render::Settings>> known_;  // by their TOML text
 };
 
 }  // namespace furrow::server

@@ -8,24 +8,24 @@ namespace {
 
 constexpr Time kWindow = FromSeconds(1.0);
 constexpr Time kLongestPatience = FromSeconds(64.0);
-constexpr int kFewestDue = 4;  // of a window that says anything
+constexpr int kMinDue = 4;  // poses; a window with fewer decides nothing
 
 }  // namespace
 
-bool ViewerFlow::MayAsk(Time now) const {
-  if (asking_ || under_way() >= kMaxUnderWay) return false;
-  return !failed_ || now - asked_at_ >= kRetry;
+bool ViewerFlow::CanRequest(Time now) const {
+  if (pending_ || under_way() >= kMaxUnderWay) return false;
+  return !failed_ || now - requested_at_ >= kRetry;
 }
 
-void ViewerFlow::Ask(bool still, Time now) {
-  asking_ = true;
+void ViewerFlow::Request(bool still, Time now) {
+  pending_ = true;
   has_still_ = still;
   failed_ = false;
-  asked_at_ = now;
+  requested_at_ = now;
 }
 
 std::uint32_t ViewerFlow::Send() {
-  asking_ = false;
+  pending_ = false;
   return ++sent_;
 }
 
@@ -35,17 +35,17 @@ void ViewerFlow::Fail() {
 }
 
 void ViewerFlow::Withdraw() {
-  asking_ = false;
+  pending_ = false;
   has_still_ = false;
 }
 
 bool ViewerFlow::Acknowledge(std::uint32_t number) {
-  // By subtraction: numbers wrap.
+  // Unsigned subtraction, because numbers wrap around.
   if (number - acknowledged_ <= under_way()) {
     acknowledged_ = number;
     return true;
   }
-  return static_cast<std::int32_t>(number - sent_) < 0;  // an old one, again
+  return static_cast<std::int32_t>(number - sent_) < 0;  // a repeated acknowledgement
 }
 
 void ViewerFlow::CountDue(Time now) {
@@ -60,10 +60,11 @@ void ViewerFlow::CountDue(Time now) {
   ++dropped_;
 }
 
-// Down at once, up slowly, and more slowly each time that going up proved wrong: no to and fro.
+// Quality falls at once and rises slowly. Each rise that proves wrong doubles the wait before the
+// next one, so that the tier does not oscillate.
 void ViewerFlow::EndWindow(Time now) {
   if (missed_ > 0) good_since_ = now;
-  if (due_ >= kFewestDue && missed_ * 4 >= due_ && tier_ < kNumTiers - 1) {
+  if (due_ >= kMinDue && missed_ * 4 >= due_ && tier_ < kNumTiers - 1) {
     ++tier_;
     if (has_risen_) patience_ = std::min(2 * patience_, kLongestPatience);
     has_risen_ = false;

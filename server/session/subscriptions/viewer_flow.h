@@ -7,38 +7,41 @@
 
 namespace furrow::server {
 
-// How fast one viewer that acknowledges its pictures may be shown them, and how well
-// (STANDARD.md section 9): at most two under way, the newest wins, three tiers of quality.
+// Flow control of one viewer that acknowledges its pictures (STANDARD.md section 9). At most two
+// pictures are unacknowledged at a time, the newest pose wins, and three quality tiers adapt to the
+// viewer's speed.
 //
-// A picture goes through Ask() (of the renderer), then Send() or Fail(), then Acknowledge(). Only
-// one is asked for at a time: what is drawn next is the newest pose then. No clock: `now` comes in.
+// Each picture passes through Request(), then Send(), Fail() or Withdraw(), then Acknowledge().
+// Only one picture is requested from the renderer at a time. The caller supplies the time.
 class ViewerFlow {
  public:
   static constexpr std::uint32_t kMaxUnderWay = 2;
   static constexpr int kNumTiers = 3;
-  static constexpr Time kRetry = FromSeconds(0.25);  // after a picture that could not be drawn
+  static constexpr Time kRetry = FromSeconds(0.25);  // delay after a failed picture
 
-  [[nodiscard]] bool MayAsk(Time now) const;
-  [[nodiscard]] bool asking() const { return asking_; }
-  // `still`: the refined picture of a pose at rest; whatever is asked for later ends it.
-  void Ask(bool still, Time now);
-  // The picture that was asked for came: its number, from 1.
+  [[nodiscard]] bool CanRequest(Time now) const;
+  // True between Request() and Send(), Fail() or Withdraw().
+  [[nodiscard]] bool is_pending() const { return pending_; }
+  // A picture is requested from the renderer. `still`: the refined picture of a pose at rest.
+  void Request(bool still, Time now);
+  // The requested picture is ready. Returns its number; the first is 1.
   [[nodiscard]] std::uint32_t Send();
-  // ... or will not come.
+  // The requested picture could not be rendered.
   void Fail();
-  // ... or is no longer asked for, and was not begun.
+  // The request was cancelled before rendering began.
   void Withdraw();
-  // The viewer has shown this one and all before. False: it was never sent.
+  // The viewer has shown this picture and all before it. False: the picture was never sent.
   bool Acknowledge(std::uint32_t number);
 
-  // A pose this viewer was due: once for each, before it is asked for. Decides the tier.
+  // Call once for each pose that the viewer could be shown, before Request(). Updates the tier.
   void CountDue(Time now);
 
-  // The still of what has been shown `since`; one asked for before, say of another view, is none.
-  [[nodiscard]] bool HasStill(Time since) const { return has_still_ && asked_at_ >= since; }
+  // True if the newest request is a still made at or after `since`, when the view last changed.
+  [[nodiscard]] bool HasStill(Time since) const { return has_still_ && requested_at_ >= since; }
+  // The quality tier: 0 is best, kNumTiers - 1 is worst.
   [[nodiscard]] int tier() const { return tier_; }
   [[nodiscard]] std::uint32_t under_way() const { return sent_ - acknowledged_; }
-  // Poses that were due while two pictures were under way.
+  // Poses that were skipped because two pictures were unacknowledged.
   [[nodiscard]] std::uint32_t dropped() const { return dropped_; }
 
  private:
@@ -47,19 +50,20 @@ class ViewerFlow {
   std::uint32_t sent_ = 0;
   std::uint32_t acknowledged_ = 0;
   std::uint32_t dropped_ = 0;
-  bool asking_ = false;
+  bool pending_ = false;
   bool has_still_ = false;
   bool failed_ = false;
-  Time asked_at_{0};
+  Time requested_at_{0};
 
+  // The tier is decided once per window of a second.
   int tier_ = 0;
   bool has_window_ = false;
-  bool has_risen_ = false;  // since the last fall
-  Time window_{0};
-  Time good_since_{0};
+  bool has_risen_ = false;  // since the tier last fell
+  Time window_{0};          // when the window began
+  Time good_since_{0};      // no pose has been skipped since
   Time patience_ = FromSeconds(4.0);
-  int due_ = 0;
-  int missed_ = 0;
+  int due_ = 0;     // poses in this window
+  int missed_ = 0;  // of them, skipped
 };
 
 }  // namespace furrow::server

@@ -34,7 +34,7 @@ class ConfigFile {
   std::filesystem::path path_;
 };
 
-TEST(CommandLine, DefaultsListenOnLoopbackAlone) {
+TEST(CommandLine, DefaultsListenOnLoopbackOnly) {
   const CommandLine line = Parse({});
   ASSERT_TRUE(line.config.has_value()) << line.text;
   EXPECT_EQ(line.config->bind, "127.0.0.1");
@@ -104,7 +104,7 @@ TEST(CommandLine, EveryFlagReachesTheConfig) {
   EXPECT_EQ(config.render_device, "surfaceless");
 }
 
-TEST(CommandLine, HelpNamesTheExitCodesAndEndsWell) {
+TEST(CommandLine, HelpListsExitCodesAndSucceeds) {
   const CommandLine line = Parse({"--help"});
   EXPECT_FALSE(line.config.has_value());
   EXPECT_EQ(line.exit_code, ExitCode::kOk);
@@ -112,7 +112,7 @@ TEST(CommandLine, HelpNamesTheExitCodesAndEndsWell) {
   EXPECT_THAT(line.text, HasSubstr("--livelink-face"));
 }
 
-TEST(CommandLine, WrongUsageIsTwo) {
+TEST(CommandLine, InvalidUsageExitsWithTwo) {
   for (const std::vector<std::string>& args :
        std::vector<std::vector<std::string>>{{"--nonsense"},
                                              {"--tcp", "70000"},
@@ -131,7 +131,7 @@ TEST(CommandLine, WrongUsageIsTwo) {
   }
 }
 
-TEST(CommandLine, FlagsWinOverTheFileAndTheFileOverTheDefaults) {
+TEST(CommandLine, FlagsOverrideTheFileAndTheFileTheDefaults) {
   const ConfigFile file(
       "[listen]\ntcp = 100\nudp = 200\n[mocap]\nvmc = 300\n"
       "allow = ['10.0.0.1', '10.0.0.2']\n");
@@ -146,7 +146,7 @@ TEST(CommandLine, FlagsWinOverTheFileAndTheFileOverTheDefaults) {
   EXPECT_THAT(line.config->mocap_allow, testing::ElementsAre("10.0.0.3"));
 }
 
-TEST(CommandLine, AFaultInTheFileIsBadInputAndNamesTheLine) {
+TEST(CommandLine, AnErrorInTheFileNamesTheLine) {
   const ConfigFile file("[listen]\nbind = \"127.0.0.1\"\nport = 7\n");
   const CommandLine line = Parse({"--config", file.path()});
   EXPECT_EQ(line.exit_code, ExitCode::kBadInput);
@@ -195,7 +195,7 @@ TEST(ParseConfig, TheExampleShowsTheDefaults) {
   EXPECT_EQ(config, Config());
 }
 
-TEST(ParseConfig, ARecordingRotatesForwardsOrNever) {
+TEST(ParseConfig, RotationLimitsMustNotBeNegative) {
   Config config;
   config.record.rotate_seconds = -1.0;
   EXPECT_EQ(ValidateConfig(config).code(), StatusCode::kInvalidArgument);
@@ -211,7 +211,7 @@ TEST(ParseConfig, RelativeFilesAreRelativeToTheConfig) {
   EXPECT_EQ(config.skeleton_map, "/etc/furrow/my.json");
 }
 
-TEST(ParseConfig, AnErrorLeavesTheConfigAsItWas) {
+TEST(ParseConfig, AnErrorLeavesTheConfigUnchanged) {
   struct Case {
     const char* text;
     StatusCode code;
@@ -220,7 +220,7 @@ TEST(ParseConfig, AnErrorLeavesTheConfigAsItWas) {
   };
   for (const Case& fault :
        {Case{"[listen\n", StatusCode::kParse, ":1", ""},
-        Case{"a = 1", StatusCode::kSchema, ":1", "unknown key a"},
+        Case{"a = 1", StatusCode::kSchema, ":1", "unknown key 'a'"},
         Case{"listen = 3", StatusCode::kSchema, ":1", "listen"},
         Case{"[listen]\n\ntcp = -1", StatusCode::kSchema, ":3", "listen.tcp"},
         Case{"[listen]\nudp = 65536", StatusCode::kSchema, ":2", "listen.udp"},
@@ -253,14 +253,14 @@ TEST(ValidateConfig, NamesTheLimitThatIsOutOfRange) {
   EXPECT_THAT(ValidateConfig(config).what(), HasSubstr("osc.prefix"));
 }
 
-TEST(ValidateConfig, TwoServicesMayBothAskForAnyPort) {
+TEST(ValidateConfig, SeveralServicesMayUsePortZero) {
   Config config;
   config.udp = 0;
   config.vmc = 0;
   EXPECT_TRUE(ValidateConfig(config).ok());
 }
 
-TEST(ParseHostPort, TakesNumericAddresses) {
+TEST(ParseHostPort, AcceptsNumericAddressesOnly) {
   ASSERT_TRUE(ParseHostPort("10.0.0.1:80").ok());
   EXPECT_EQ(ParseHostPort("[fe80::1]:65535")->host, "fe80::1");
   for (const char* bad : {"", ":", "host:80", "1.2.3.4", "1.2.3.4:", "1.2.3.4:0", "1.2.3.4:65536",

@@ -36,29 +36,29 @@ class LimitedSinkTest : public testing::Test {
   std::unique_ptr<LimitedSink> sink;
 };
 
-TEST_F(LimitedSinkTest, WhatIsWithinTheLimitPassesUnchanged) {
+TEST_F(LimitedSinkTest, LinesWithinTheLimitPassUnchanged) {
   Log(0, "one");
   Log(0, "two", spdlog::level::warn);
   EXPECT_EQ(Take(), "info one\nwarning two\n");
 }
 
-TEST_F(LimitedSinkTest, AFloodIsCutAndTheNextLineSaysByHowMuch) {
+TEST_F(LimitedSinkTest, AFloodIsCutAndTheDropsAreReported) {
   for (int i = 0; i < 5000; ++i) Log(0, "flood");
   const std::string flood = Take();
   EXPECT_EQ(std::ranges::count(flood, '\n'), static_cast<long>(LimitedSink::kBurst));
   Log(0, "broken", spdlog::level::err);
   EXPECT_EQ(Take(), "error broken\n") << "errors pass";
   Log(1, "calm");
-  EXPECT_EQ(Take(), "warning 4000 log lines were left out: too many at once\ninfo calm\n");
+  EXPECT_EQ(Take(), "warning 4000 log lines were dropped because of the rate limit\ninfo calm\n");
   Log(1, "calm");
   EXPECT_EQ(Take(), "info calm\n");
 }
 
-TEST_F(LimitedSinkTest, WhatIsLeftOutAtTheEndIsSaidAtTheEnd) {
+TEST_F(LimitedSinkTest, DropsAtTheEndAreReportedAtTheEnd) {
   for (int i = 0; i < 1003; ++i) Log(0, "flood");
   Take();
   sink.reset();
-  EXPECT_EQ(Take(), "warning 3 log lines were left out: too many at once\n");
+  EXPECT_EQ(Take(), "warning 3 log lines were dropped because of the rate limit\n");
 }
 
 }  // namespace

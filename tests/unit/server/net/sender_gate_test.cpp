@@ -9,15 +9,15 @@ namespace furrow::server {
 namespace {
 
 using asio::ip::make_address;
-using Holds = SenderGate::Holds;
+using Policy = SenderGate::Policy;
 
 const auto kAnn = make_address("192.168.0.20");
 const auto kBen = make_address("192.168.0.21");
 constexpr Time kStart = FromSeconds(1000);
 constexpr Time kMoment{1};
 
-TEST(SenderGate, TheFirstHasThePortUntilItIsSilent) {
-  SenderGate gate({}, Holds::kOne);
+TEST(SenderGate, TheFirstSenderHoldsThePortUntilItIsSilent) {
+  SenderGate gate({}, Policy::kOne);
   EXPECT_TRUE(gate.Admits(kBen, kStart)) << "nobody has it yet";
   EXPECT_TRUE(gate.Hold(kAnn, kStart));
   EXPECT_FALSE(gate.Hold(kAnn, kStart + FromSeconds(1)));
@@ -29,9 +29,9 @@ TEST(SenderGate, TheFirstHasThePortUntilItIsSilent) {
   EXPECT_FALSE(gate.Admits(kAnn, silent + kMoment));
 }
 
-TEST(SenderGate, WhatMakesNoSenseDoesNotTakeThePort) {
-  SenderGate gate({}, Holds::kOne);
-  EXPECT_TRUE(gate.Admits(kAnn, kStart));  // and no Hold(): it was garbage
+TEST(SenderGate, InvalidDatagramsDoNotTakeThePort) {
+  SenderGate gate({}, Policy::kOne);
+  EXPECT_TRUE(gate.Admits(kAnn, kStart));  // without Hold(): the datagram was invalid
   EXPECT_TRUE(gate.Admits(kBen, kStart));
   EXPECT_FALSE(gate.IsSuccessor(kBen)) << "there was nobody before";
   gate.Hold(kBen, kStart);
@@ -39,25 +39,25 @@ TEST(SenderGate, WhatMakesNoSenseDoesNotTakeThePort) {
   EXPECT_TRUE(gate.IsSuccessor(kAnn));
 }
 
-TEST(SenderGate, AListAdmitsNobodyElse) {
-  SenderGate gate(std::vector{kAnn}, Holds::kOne);
+TEST(SenderGate, OnlyListedSendersAreAdmitted) {
+  SenderGate gate(std::vector{kAnn}, Policy::kOne);
   EXPECT_TRUE(gate.Admits(kAnn, kStart));
   EXPECT_FALSE(gate.Admits(kBen, kStart));
 }
 
-TEST(SenderGate, WiresThatTellTheirSendersApartTakeEveryListedOne) {
-  SenderGate gate(std::vector{kAnn, kBen}, Holds::kEveryAllowed);
+TEST(SenderGate, AllAllowedSendersMaySendAtOnceIfListed) {
+  SenderGate gate(std::vector{kAnn, kBen}, Policy::kAllAllowed);
   EXPECT_FALSE(gate.Hold(kAnn, kStart));
   EXPECT_TRUE(gate.Admits(kBen, kStart));
   EXPECT_FALSE(gate.IsSuccessor(kBen));
   EXPECT_FALSE(gate.Admits(make_address("192.168.0.22"), kStart));
-  SenderGate open({}, Holds::kEveryAllowed);
+  SenderGate open({}, Policy::kAllAllowed);
   EXPECT_TRUE(open.Hold(kAnn, kStart)) << "without a list, one at a time";
   EXPECT_FALSE(open.Admits(kBen, kStart));
 }
 
-TEST(SenderGate, Ipv4IsTheSameOnASocketOfBothFamilies) {
-  SenderGate gate(std::vector{make_address("::ffff:192.168.0.20")}, Holds::kOne);
+TEST(SenderGate, MappedIpv4AddressesMatch) {
+  SenderGate gate(std::vector{make_address("::ffff:192.168.0.20")}, Policy::kOne);
   EXPECT_TRUE(gate.Admits(kAnn, kStart));
   gate.Hold(make_address("::ffff:192.168.0.20"), kStart);
   EXPECT_FALSE(gate.IsSuccessor(kAnn));

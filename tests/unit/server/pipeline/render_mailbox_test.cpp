@@ -21,7 +21,7 @@ RenderJob Job(std::uint64_t subject, std::uint32_t sequence, std::uint64_t subsc
   return job;
 }
 
-TEST(RenderMailbox, TheNewestSnapshotWinsAndNobodyIsForgotten) {
+TEST(RenderMailbox, TheNewestSnapshotWinsAndKeepsAllTickets) {
   RenderMailbox mailbox(8);
   EXPECT_EQ(mailbox.Put(Job(1, 10, 100)), RenderMailbox::PutResult::kQueued);
   EXPECT_EQ(mailbox.Put(Job(1, 11, 101)), RenderMailbox::PutResult::kReplaced);
@@ -35,7 +35,7 @@ TEST(RenderMailbox, TheNewestSnapshotWinsAndNobodyIsForgotten) {
   EXPECT_FALSE(mailbox.Take(false).has_value());
 }
 
-TEST(RenderMailbox, OtherSubjectsAndOtherSpecsWaitForThemselves) {
+TEST(RenderMailbox, OtherSubjectsAndSpecsWaitSeparately) {
   RenderMailbox mailbox(8);
   EXPECT_EQ(mailbox.Put(Job(1, 1, 1)), RenderMailbox::PutResult::kQueued);
   EXPECT_EQ(mailbox.Put(Job(2, 2, 2)), RenderMailbox::PutResult::kQueued);
@@ -45,7 +45,7 @@ TEST(RenderMailbox, OtherSubjectsAndOtherSpecsWaitForThemselves) {
   EXPECT_EQ(mailbox.Take(false)->spec.width, 128);
 }
 
-TEST(RenderMailbox, WhoChangesItsViewAgainAndAgainTakesOnePlace) {
+TEST(RenderMailbox, AViewerThatChangesItsViewOccupiesOnePlace) {
   RenderMailbox mailbox(4);
   mailbox.Put(Job(1, 1, 200, 1000));
   mailbox.Put(Job(1, 2, 201, 1001));
@@ -67,7 +67,7 @@ RenderJob Still(std::uint64_t subject, std::uint32_t sequence, std::uint64_t sub
   return job;
 }
 
-TEST(RenderMailbox, AStillIsPackedBetterThanItsTier) {
+TEST(RenderMailbox, AStillHasHigherQualityThanItsTier) {
   PictureTicket ticket{.encoding = {render::ImageFormat::kJpeg, 45}, .tier = 2};
   EXPECT_EQ(EncodingOf(ticket).quality, 45);
   ticket.still = true;
@@ -76,17 +76,17 @@ TEST(RenderMailbox, AStillIsPackedBetterThanItsTier) {
   EXPECT_EQ(EncodingOf(ticket), ticket.encoding);
 }
 
-TEST(RenderMailbox, AStillIsNoneOnceTheSubjectMoves) {
+TEST(RenderMailbox, MovementTurnsAStillIntoANormalPicture) {
   RenderMailbox mailbox(8);
   mailbox.Put(Still(1, 1, 100));
   RenderJob same = Job(1, 2, 101);
   mailbox.Put(std::move(same));
   auto job = mailbox.Take(false);
   ASSERT_TRUE(job.has_value());
-  EXPECT_TRUE(job->IsStill());  // at rest, for somebody else beside it
+  EXPECT_TRUE(job->IsStill());  // a still for one of two subscriptions
   mailbox.Put(Still(1, 3, 100));
   RenderJob moved = Job(1, 4, 0);
-  moved.tickets.clear();  // a newer snapshot for whoever waits
+  moved.tickets.clear();  // only refreshes the snapshot
   moved.moved_at = FromSeconds(1);
   EXPECT_EQ(mailbox.Put(std::move(moved)), RenderMailbox::PutResult::kReplaced);
   job = mailbox.Take(false);
@@ -96,7 +96,7 @@ TEST(RenderMailbox, AStillIsNoneOnceTheSubjectMoves) {
   EXPECT_FALSE(job->IsStill());
 }
 
-TEST(RenderMailbox, WhatMovesGoesBeforeStillsButNotForEver) {
+TEST(RenderMailbox, MovingSubjectsGoBeforeStillsForAWhile) {
   RenderMailbox mailbox(64);
   mailbox.Put(Still(1, 0, 1));
   std::uint32_t passed = 0;
@@ -111,19 +111,19 @@ TEST(RenderMailbox, WhatMovesGoesBeforeStillsButNotForEver) {
   EXPECT_EQ(passed, static_cast<std::uint32_t>(RenderMailbox::kMaxPassedOver));
 }
 
-TEST(RenderMailbox, AStillThatWaitsIsTakenBack) {
+TEST(RenderMailbox, AWaitingStillCanBeWithdrawn) {
   RenderMailbox mailbox(8);
   mailbox.Put(Still(1, 1, 100));
   mailbox.Put(Still(1, 1, 101));
   mailbox.Put(Job(2, 1, 102));
   EXPECT_TRUE(mailbox.WithdrawStill(100));
   EXPECT_FALSE(mailbox.WithdrawStill(100));
-  EXPECT_FALSE(mailbox.WithdrawStill(102));  // what moves stays
+  EXPECT_FALSE(mailbox.WithdrawStill(102));  // not a still
   EXPECT_EQ(mailbox.Take(false)->subject, 2u);
   EXPECT_EQ(mailbox.Take(false)->tickets.size(), 1u);
   mailbox.Put(Still(1, 1, 100));
   EXPECT_TRUE(mailbox.WithdrawStill(100));
-  EXPECT_FALSE(mailbox.Take(false).has_value());  // and nothing of it
+  EXPECT_FALSE(mailbox.Take(false).has_value());  // the job is gone, too
 }
 
 TEST(RenderMailbox, IsBounded) {
@@ -134,7 +134,7 @@ TEST(RenderMailbox, IsBounded) {
   EXPECT_EQ(mailbox.Put(Job(2, 2, 2)), RenderMailbox::PutResult::kReplaced);
 }
 
-TEST(RenderMailbox, ClosingWakesWhoWaits) {
+TEST(RenderMailbox, ClosingWakesTake) {
   RenderMailbox mailbox(2);
   std::thread taker([&] { EXPECT_FALSE(mailbox.Take(true).has_value()); });
   mailbox.Close();

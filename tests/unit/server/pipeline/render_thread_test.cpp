@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The render thread over a renderer made of a few lines: what it does when the real one is lost.
+// The render thread with a fake renderer that fails on demand.
 #include "server/pipeline/render_thread.h"
 
 #include <condition_variable>
@@ -18,14 +18,14 @@ namespace {
 
 const Status kLost(StatusCode::kUnavailable, "the context was lost");
 
-// What the renderers are to answer, in the order of the calls; then all goes well. Of the render
-// thread alone once it runs.
+// The results of the fake renderers in the order of the calls; further calls succeed. Used by the
+// render thread only.
 struct Script {
   std::deque<Status> create;
   std::deque<Status> submit;
   std::deque<Status> poll;
   std::latch* hold_first_submit = nullptr;
-  std::deque<int> samples;  // of the requests that were drawn
+  std::deque<int> samples;  // of the rendered requests
   int num_created = 0;
 
   static Status Next(std::deque<Status>* of) {
@@ -62,7 +62,7 @@ class ScriptedRenderer : public render::Renderer {
   int in_flight_ = 0;
 };
 
-// Pictures as they are delivered; Take() blocks for the next that was drawn, and counts the others.
+// Receives pictures. Take() blocks until the next rendered one and counts the failed ones.
 class Pictures {
  public:
   void Put(FinishedPicture picture) {
@@ -108,7 +108,8 @@ class RenderThreadTest : public testing::Test {
     ++script.num_created;
     return std::unique_ptr<render::Renderer>(std::make_unique<ScriptedRenderer>(&script));
   }
-  // A job of a subject of its own, so that none replaces another; its pose has that number too.
+  // Submits a job with its own subject, so that no job replaces another. The pose has the same
+  // number.
   void Submit(std::uint32_t number) { Submit(number, {.subscription = number}, {}); }
   void Submit(std::uint32_t number, const PictureTicket& ticket, const render::Settings& settings) {
     auto snapshot = std::make_shared<Snapshot>();
@@ -128,10 +129,10 @@ class RenderThreadTest : public testing::Test {
   Script script;
   Metrics metrics;
   Pictures pictures;
-  std::unique_ptr<RenderThread> thread;  // the first to go
+  std::unique_ptr<RenderThread> thread;  // destroyed first
 };
 
-TEST_F(RenderThreadTest, ALostContextIsRebuiltAndDrawingGoesOn) {
+TEST_F(RenderThreadTest, ALostContextIsCreatedAgain) {
   script.submit = {Status(), kLost};
   Start();
   Submit(1);
@@ -145,7 +146,7 @@ TEST_F(RenderThreadTest, ALostContextIsRebuiltAndDrawingGoesOn) {
   EXPECT_EQ(Count(Counter::kPicturesRendered), 2u);
 }
 
-TEST_F(RenderThreadTest, WhatWasInFlightIsCountedWhenTheContextGoes) {
+TEST_F(RenderThreadTest, PicturesInFlightFailWithTheContext) {
   std::latch both_wait(1);
   script.hold_first_submit = &both_wait;
   script.poll = {kLost};
@@ -157,27 +158,28 @@ TEST_F(RenderThreadTest, WhatWasInFlightIsCountedWhenTheContextGoes) {
   EXPECT_EQ(pictures.Take().sequence, 3u);
   EXPECT_EQ(Count(Counter::kRendererRestarts), 1u);
   EXPECT_EQ(Count(Counter::kPicturesFailed), 2u);
-  EXPECT_EQ(pictures.num_failed_tickets(), 2u);  // who waits is told
+  EXPECT_EQ(pictures.num_failed_tickets(), 2u);  // failures are delivered
 }
 
-TEST_F(RenderThreadTest, WhileItCannotBeRebuiltJobsAreDroppedCountedAndTriedLessOften) {
+TEST_F(RenderThreadTest, AttemptsBecomeRarerWhileCreationFails) {
   script.create = {Status(), kLost, kLost};
   script.submit = {kLost};
   Start();
-  // 1 is lost; for 2 it cannot be made, 3 is left out; not for 4 either, three are left out.
+  // Job 1 loses the context. Creation fails for job 2, so job 3 is skipped; it fails again for job
+  // 4, so three more are skipped.
   for (std::uint32_t number = 1; number <= 8; ++number) Submit(number);
   EXPECT_EQ(pictures.Take().sequence, 8u);
   EXPECT_EQ(script.num_created, 2);
   EXPECT_EQ(Count(Counter::kRendererRestarts), 1u);
   EXPECT_EQ(Count(Counter::kPicturesFailed), 7u);
-  // A picture came out: the next loss is made good at once again.
+  // After a success, the next loss is repaired at once.
   script.submit = {kLost};
   Submit(9);
   Submit(10);
   EXPECT_EQ(pictures.Take().sequence, 10u);
 }
 
-TEST_F(RenderThreadTest, AJobThatCannotBeDrawnCostsOnlyItself) {
+TEST_F(RenderThreadTest, AFailedJobDoesNotAffectOthers) {
   script.submit = {Status(StatusCode::kInvalidArgument, "no such size")};
   Start();
   Submit(1);
@@ -188,7 +190,7 @@ TEST_F(RenderThreadTest, AJobThatCannotBeDrawnCostsOnlyItself) {
   EXPECT_EQ(Count(Counter::kPicturesFailed), 1u);
 }
 
-TEST_F(RenderThreadTest, StillsHaveSamplesWhereTheSettingsLeaveThemToTheDevice) {
+TEST_F(RenderThreadTest, StillsUseMoreSamplesIfTheSettingsAllow) {
   Start();
   render::Settings fixed;
   fixed.anti_aliasing.samples = 2;
@@ -202,7 +204,7 @@ TEST_F(RenderThreadTest, StillsHaveSamplesWhereTheSettingsLeaveThemToTheDevice) 
   EXPECT_EQ(script.samples, (std::deque<int>{0, RenderThread::kStillSamples, 2}));
 }
 
-TEST_F(RenderThreadTest, WithoutARendererItDoesNotStart) {
+TEST_F(RenderThreadTest, StartFailsWithoutARenderer) {
   script.create = {kLost};
   const auto started = RenderThread::Start(
       &skeleton, [this] { return Create(); }, &metrics, [](FinishedPicture) {});

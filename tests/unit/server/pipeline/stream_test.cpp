@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the wire's structs to a solved subject: adapter, shared definitions, pipeline.
+// From wire structs to a solved subject: adapter, shared definitions, pipeline.
 #include <cmath>
 #include <memory>
 #include <sstream>
@@ -22,7 +22,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-// A knee: straight along -Y at rest, full wrinkle at 150 degrees between the bones' continuations.
+// A knee, straight along -Y at rest, with full weight at a bend of 150 degrees.
 std::shared_ptr<const wrinkle::Rig> KneeRig(bool filter = false) {
   auto rig = std::make_shared<wrinkle::Rig>();
   rig->name = "knee";
@@ -74,7 +74,7 @@ std::shared_ptr<const StreamDefinition> Define(bool filter = false) {
   return *std::move(definition);
 }
 
-TEST(WireAdapter, TakesNamesParentsRestAndTails) {
+TEST(WireAdapter, ConvertsNamesParentsRestAndTails) {
   protocol::SkeletonOffer offer = KneeOffer();
   offer.joints[3].has_tail = true;
   offer.joints[3].tail = {0.0f, 0.0f, 0.2f};
@@ -90,7 +90,7 @@ TEST(WireAdapter, TakesNamesParentsRestAndTails) {
   EXPECT_EQ(result.blend_shapes.size(), 1u);
 }
 
-TEST(WireAdapter, TranslationsAreOffsetsFromRestAndTheUnlistedRests) {
+TEST(WireAdapter, TranslationsAreOffsetsFromRest) {
   const auto stream = Define();
   wrinkle::LocalPose pose;
   pose.SetRest(stream->skeleton);
@@ -117,7 +117,7 @@ TEST(WireAdapter, TranslationsAreOffsetsFromRestAndTheUnlistedRests) {
   EXPECT_FLOAT_EQ(pose.joints[0].translation.y, 1.0f);
 }
 
-TEST(WireAdapter, RefusesWhatIsNotOfTheStream) {
+TEST(WireAdapter, RejectsPosesOfOtherStreams) {
   const auto stream = Define();
   protocol::PoseFrame frame = Bend(1.0f);
   frame.num_joints = 5;
@@ -134,7 +134,7 @@ TEST(WireAdapter, RefusesWhatIsNotOfTheStream) {
   EXPECT_FALSE(PoseFits(frame, *stream));
 }
 
-TEST(StreamDefinitions, EqualStreamsShareOneAndTheOldestGoes) {
+TEST(StreamDefinitions, EqualStreamsShareADefinitionAndTheOldestIsEvicted) {
   StreamDefinitions definitions(KneeRig(), nullptr, 2);
   const auto get = [&](const protocol::SkeletonOffer& offer) {
     return definitions.Get(ToStreamOffer(offer)).value();
@@ -146,12 +146,12 @@ TEST(StreamDefinitions, EqualStreamsShareOneAndTheOldestGoes) {
   const auto first = get(KneeOffer());
   EXPECT_EQ(first, get(KneeOffer()));
   EXPECT_NE(first, get(longer));
-  EXPECT_EQ(first, get(KneeOffer()));  // used again: now the newest
-  EXPECT_NE(first, get(shapes));       // pushes `longer` out
+  EXPECT_EQ(first, get(KneeOffer()));  // used again, so now the newest
+  EXPECT_NE(first, get(shapes));       // evicts `longer`
   EXPECT_EQ(first, get(KneeOffer()));
 }
 
-TEST(StreamDefinitions, AStreamThatIsNoTreeIsRefused) {
+TEST(StreamDefinitions, ASkeletonThatIsNotATreeIsRejected) {
   StreamDefinitions definitions(KneeRig(), nullptr, 2);
   StreamOffer offer = ToStreamOffer(KneeOffer());
   offer.joints[1].parent = 2;
@@ -159,7 +159,7 @@ TEST(StreamDefinitions, AStreamThatIsNoTreeIsRefused) {
   EXPECT_EQ(result.status().code(), StatusCode::kCyclic);
 }
 
-// What is logged while it lives.
+// Captures the log during its lifetime.
 class LogCapture {
  public:
   LogCapture() : before_(spdlog::default_logger()) {
@@ -178,22 +178,22 @@ wrinkle::Skeleton Head(const char* joint) {
   return wrinkle::Skeleton::Create({{.name = joint, .parent = wrinkle::kNoJoint}}).value();
 }
 
-TEST(StreamDefinitions, AStreamThatFitsNothingIsSaidToOnceAndClearly) {
+TEST(StreamDefinitions, AStreamThatMatchesNothingIsLoggedOnce) {
   const wrinkle::Skeleton character = Head("head");
   StreamDefinitions definitions(KneeRig(), &character, 4);
   StreamOffer offer;
   offer.joints = {{.name = "tail_01", .parent = wrinkle::kNoJoint}};
   LogCapture log;
   ASSERT_TRUE(definitions.Get(offer).ok());
-  EXPECT_THAT(log.text(), HasSubstr("all weights rest"));
-  EXPECT_THAT(log.text(), HasSubstr("pictures show its rest pose"));
+  EXPECT_THAT(log.text(), HasSubstr("all weights stay at rest"));
+  EXPECT_THAT(log.text(), HasSubstr("pictures show the rest pose"));
   EXPECT_THAT(log.text(), HasSubstr("ignored: tail_01"));
   const std::string once = log.text();
   ASSERT_TRUE(definitions.Get(offer).ok());
   EXPECT_EQ(log.text(), once);
 }
 
-TEST(StreamDefinitions, JointsThatNobodyReadsAreNamedWithAndWithoutPictures) {
+TEST(StreamDefinitions, IgnoredJointsAreLogged) {
   const wrinkle::Skeleton character = Head("foot");
   for (const wrinkle::Skeleton* drawn :
        {static_cast<const wrinkle::Skeleton*>(nullptr), &character}) {
@@ -221,7 +221,7 @@ wrinkle::Skeleton LegsCalled(const std::vector<std::string>& names) {
   return wrinkle::Skeleton::Create(std::move(joints)).value();
 }
 
-// The rig and the character say upper_leg_l, the stream mixamorig:LeftUpLeg.
+// The rig and the character use upper_leg_l, the stream mixamorig:LeftUpLeg.
 TEST(StreamDefinitions, AForeignStreamFeedsTheRigAndMovesTheCharacter) {
   setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/rig", 1);
   const auto matcher = character::SkeletonMatcher::Create("");
@@ -277,7 +277,7 @@ TEST(SubjectPipeline, FollowsTheBend) {
   EXPECT_EQ(subject.capture_time_us(), 10'000);
 }
 
-TEST(SubjectPipeline, ACaptureTimeThatGoesBackStartsTheFilterAnew) {
+TEST(SubjectPipeline, ACaptureTimeThatGoesBackRestartsTheFilter) {
   SubjectPipeline subject(Define(/*filter=*/true));
   const auto solve = [&](float bend, std::uint32_t sequence, std::int64_t time_us) {
     ApplyPose(Bend(bend), subject.stream(), subject.mutable_pose());
@@ -289,7 +289,7 @@ TEST(SubjectPipeline, ACaptureTimeThatGoesBackStartsTheFilterAnew) {
   EXPECT_EQ(solve(2.0f, 2, 1'000), bent) << "a first pose passes unchanged";
 }
 
-TEST(SubjectPipeline, DecaysToNeutralAndTheSnapshotShowsIt) {
+TEST(SubjectPipeline, SnapshotsShowTheDecay) {
   SubjectPipeline subject(Define(/*filter=*/true));
   ApplyPose(Bend(2.0f), subject.stream(), subject.mutable_pose());
   ASSERT_EQ(subject.Solve(7, 0), wrinkle::JobStatus::kOk);

@@ -14,13 +14,13 @@
 namespace furrow::server {
 namespace {
 
-// A recording of eleven frames, ten a second, whose brow rises from 0 to 1.
+// A recording with 11 frames at 10 Hz; the brow rises from 0 to 1.
 motion::Clip RisingBrow() {
   motion::Clip clip;
   clip.name = "take";
   clip.blend_shape_names = {"brow", "nose"};
   for (int frame = 0; frame <= 10; ++frame) {
-    clip.times.push_back(5.0 + 0.1 * frame);  // its first frame need not be at 0
+    clip.times.push_back(5.0 + 0.1 * frame);  // the first frame need not be at 0
     clip.blend_shapes.insert(clip.blend_shapes.end(), {0.1f * static_cast<float>(frame), 0.0f});
   }
   return clip;
@@ -33,7 +33,7 @@ class PlayerTest : public HubTest {
     player = std::make_unique<Player>(RisingBrow(), "take.csv");
     player->Start(hub.get(), now);
   }
-  // Calls it whenever it wants to be called, for so long.
+  // Calls Advance() at the requested times for `seconds`.
   void PlayFor(double seconds) {
     const Time end = now + FromSeconds(seconds);
     for (Time due = player->Advance(now); due <= end; due = player->Advance(now)) {
@@ -43,7 +43,7 @@ class PlayerTest : public HubTest {
     now = end;
     player->Advance(now);
   }
-  Subject& subject() { return *hub->EvaluateInFull("take"); }
+  Subject& subject() { return *hub->RequireAllDrivers("take"); }
   float brow() { return subject().pipeline->wrinkle_weights()[0]; }
 
   std::unique_ptr<Player> player;
@@ -51,7 +51,7 @@ class PlayerTest : public HubTest {
 
 TEST_F(PlayerTest, EveryFrameIsSentAtItsTime) {
   EXPECT_EQ(subject().pipeline->sequence(), 0u);
-  EXPECT_EQ(subject().pipeline->capture_time_us(), 1);  // 0 would be none
+  EXPECT_EQ(subject().pipeline->capture_time_us(), 1);  // 0 means no capture time
   PlayFor(0.5);
   EXPECT_NEAR(brow(), 0.5f, 1e-5f);
   EXPECT_EQ(subject().pipeline->capture_time_us(), 500'001);
@@ -61,18 +61,18 @@ TEST_F(PlayerTest, EveryFrameIsSentAtItsTime) {
   EXPECT_EQ(Count(Counter::kPosesInvalid), 0u);
 }
 
-TEST_F(PlayerTest, ALoopBeginsAnewAndWithoutOneItStandsAtTheEnd) {
-  PlayFor(1.25);  // the last frame is shown for a tenth, too
+TEST_F(PlayerTest, LoopsRestartAndOtherwisePlaybackStopsAtTheEnd) {
+  PlayFor(1.25);  // the last frame is shown for 0.1 s, too
   EXPECT_NEAR(brow(), 0.1f, 1e-5f);
   ASSERT_TRUE(player->Apply({.loop = false}, now).ok());
   PlayFor(3.0);
   EXPECT_FALSE(player->state(now).playing);
   EXPECT_NEAR(brow(), 1.0f, 1e-5f);
-  ASSERT_TRUE(player->Apply({.playing = true}, now).ok());  // from its start
+  ASSERT_TRUE(player->Apply({.playing = true}, now).ok());  // from the start
   EXPECT_NEAR(brow(), 0.0f, 1e-5f);
 }
 
-TEST_F(PlayerTest, WhilePausedTheFrameStandsAndTheSubjectIsNotLost) {
+TEST_F(PlayerTest, APausedSubjectIsNotLost) {
   PlayFor(0.3);
   ASSERT_TRUE(player->Apply({.playing = false}, now).ok());
   for (int i = 0; i < 500; ++i) {
@@ -84,7 +84,7 @@ TEST_F(PlayerTest, WhilePausedTheFrameStandsAndTheSubjectIsNotLost) {
   EXPECT_EQ(subject().pipeline->capture_time_us(), 300'001);
 }
 
-TEST_F(PlayerTest, ItMovesAtOnceAndRunsAtAnotherSpeed) {
+TEST_F(PlayerTest, SeekAndSpeedTakeEffectAtOnce) {
   ASSERT_TRUE(player->Apply({.playing = false, .position = 0.82}, now).ok());
   EXPECT_NEAR(brow(), 0.8f, 1e-5f);
   ASSERT_TRUE(player->Apply({.playing = true, .speed = 0.5, .position = 0.0}, now).ok());
@@ -94,9 +94,9 @@ TEST_F(PlayerTest, ItMovesAtOnceAndRunsAtAnotherSpeed) {
   EXPECT_NEAR(player->state(now).position, 1.0, 1e-9);
 }
 
-TEST_F(PlayerTest, ASubjectThatWasForgottenIsOfferedAgain) {
+TEST_F(PlayerTest, AForgottenSubjectIsOfferedAgain) {
   PlayFor(2.0);
-  Advance(60.0);  // as where the machine slept
+  Advance(60.0);  // as after suspending the machine
   hub->Tick(now);
   ASSERT_EQ(hub->num_subjects(), 0u);
   PlayFor(0.5);
@@ -105,7 +105,7 @@ TEST_F(PlayerTest, ASubjectThatWasForgottenIsOfferedAgain) {
   EXPECT_NEAR(brow(), 0.1f * static_cast<float>(player->state(now).frame), 1e-5f);
 }
 
-TEST_F(PlayerTest, ASubjectThatAnotherTookIsPlayedAgainWhenThatOneHasGone) {
+TEST_F(PlayerTest, PlaybackRegainsItsSubjectWhenTheOtherSenderLeaves) {
   FakePeer other;
   Connect(&other);
   Publish(other, "take");
@@ -119,7 +119,7 @@ TEST_F(PlayerTest, ASubjectThatAnotherTookIsPlayedAgainWhenThatOneHasGone) {
   EXPECT_NE(subject().owner, taken);
 }
 
-TEST_F(PlayerTest, WhatTheWireCannotCarryIsSaidWhenItIsLoaded) {
+TEST_F(PlayerTest, LoadingRejectsWhatTheWireCannotCarry) {
   const auto path = std::filesystem::path(testing::TempDir()) / "furrow_player_latin1.bvh";
   std::ofstream(path, std::ios::binary)
       << "HIERARCHY\nROOT H\xFC"
@@ -134,7 +134,7 @@ TEST_F(PlayerTest, WhatTheWireCannotCarryIsSaidWhenItIsLoaded) {
       << loaded.status().ToString();
 }
 
-TEST_F(PlayerTest, AWrongChangeNamesItsFieldAndChangesNothing) {
+TEST_F(PlayerTest, AnInvalidChangeNamesItsFieldAndChangesNothing) {
   for (const double speed : {0.0, -1.0, 9.0, std::nan("")}) {
     const Status status = player->Apply({.playing = false, .speed = speed}, now);
     EXPECT_EQ(status.where(), "speed");

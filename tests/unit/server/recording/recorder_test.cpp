@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using recording::TakeKind;
 using recording::TakeMessage;
 
-// A hub that records, and what the take holds once it is closed.
+// A hub with a recorder, and the contents of the take after closing.
 class RecorderTest : public HubTest {
  protected:
   void SetUp() override {
@@ -36,7 +36,7 @@ class RecorderTest : public HubTest {
     Connect(&sender_);
   }
   void TearDown() override { recorder_.reset(); }
-  // Closes the recording; its only take.
+  // Closes the recording and reads its only take.
   std::unique_ptr<recording::TakeReader> Finish() {
     recorder_.reset();
     auto take = recording::TakeReader::Open(fs::directory_iterator(folder_.path())->path());
@@ -49,9 +49,9 @@ class RecorderTest : public HubTest {
   FakePeer sender_;
 };
 
-TEST_F(RecorderTest, APoseAndItsWeightsAreRecordedWithTheirTimes) {
+TEST_F(RecorderTest, PosesAndWeightsAreRecordedWithTheirTimes) {
   Publish(sender_, "ada");
-  Publish(sender_, "ada");  // again, as senders do until they are answered
+  Publish(sender_, "ada");  // repeated, as senders do until they receive the reply
   Send(sender_, Pose(0.25f, 1.0f), 1, 0, 7'000);
   const auto take = Finish();
   int seen = 0;
@@ -92,18 +92,18 @@ TEST_F(RecorderTest, APartialPoseIsRecordedWhole) {
   EXPECT_EQ(pose.blend_shapes, (std::vector<float>{0.5f, 1.0f}));
 }
 
-TEST_F(RecorderTest, WhatTheDaemonDoesNotUseIsNotRecorded) {
+TEST_F(RecorderTest, DroppedPosesAreNotRecorded) {
   Publish(sender_, "ada");
   Send(sender_, Pose(0.25f), 1, 5, 1'000);
   Send(sender_, Pose(0.75f), 1, 5, 1'000);  // twice
   Send(sender_, Pose(0.75f), 1, 4, 900);    // late
-  Send(sender_, Pose(0.75f), 2, 6, 1'000);  // of a stream without an offer
+  Send(sender_, Pose(0.75f), 2, 6, 1'000);  // from a stream without an offer
   const auto summary = recording::Summarise(*Finish());
   ASSERT_TRUE(summary.ok());
   EXPECT_EQ(summary->subjects.at("ada").poses, 1u);
 }
 
-TEST_F(RecorderTest, DatagramsAreRecordedAsTheyCame) {
+TEST_F(RecorderTest, DatagramsAreRecordedUnchanged) {
   recording::DatagramSender sender{};
   sender[15] = 1;
   sender[17] = 80;

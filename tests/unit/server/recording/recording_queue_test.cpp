@@ -42,7 +42,7 @@ TEST(RecordingQueue, KeepsTheOrderAndTheBytes) {
   EXPECT_EQ(batch.size(), 0u) << "each is taken once";
 }
 
-TEST(RecordingQueue, FullItRefusesPosesBeforeDeclarations) {
+TEST(RecordingQueue, AFullQueueRefusesPosesBeforeDeclarations) {
   RecordingQueue queue(100);
   const std::vector<std::uint8_t> payload(90);
   EXPECT_TRUE(queue.Push(EntryOf(TakeKind::kPose), "ada", payload));
@@ -56,7 +56,7 @@ TEST(RecordingQueue, FullItRefusesPosesBeforeDeclarations) {
   EXPECT_TRUE(queue.Push(EntryOf(TakeKind::kPose), "ada", payload)) << "there is room again";
 }
 
-TEST(RecordingQueue, StoppedItGivesWhatWaitsAndTakesNoMore) {
+TEST(RecordingQueue, AStoppedQueueReturnsTheRestAndAcceptsNothing) {
   RecordingQueue queue(100);
   EXPECT_TRUE(queue.Push(EntryOf(TakeKind::kPose), "ada", {}));
   queue.Stop();

@@ -17,7 +17,7 @@
 
 namespace furrow::server {
 
-// A peer made of memory: keeps what the hub sends, and makes what a client would send.
+// A peer in memory: keeps the messages that the hub sends.
 class FakePeer : public Link {
  public:
   void SendReply(std::span<const std::uint8_t> message) override { Receive(message); }
@@ -33,7 +33,7 @@ class FakePeer : public Link {
     protocol::Header header;
     Message message;
   };
-  // The next message if it is a `Message`, taken off the queue; a failure otherwise.
+  // Takes the next message, which must be a `Message`. nullopt: there is none.
   template <class Message>
   std::optional<Got<Message>> Take() {
     if (inbox.empty()) return std::nullopt;
@@ -78,11 +78,10 @@ class FakePictures : public PictureSource {
   }
   std::vector<RenderJob> jobs;
   std::vector<std::uint64_t> withdrawn;
-  bool withdraws = false;  // what it answers
+  bool withdraws = false;  // the result of WithdrawStill()
 };
 
-// A hub on a rig of two blend shapes and an unsigned hinge, filters off unless a test turns them
-// on.
+// A hub with a rig of two blend-shape drivers. The filter is off unless a test turns it on.
 class HubTest : public testing::Test {
  protected:
   void SetUp() override { Make({}); }
@@ -108,10 +107,10 @@ class HubTest : public testing::Test {
   }
 
   void Make(Limits limits, bool filter = false) { MakeWith(MakeRig(filter), limits); }
-  void MakeWith(wrinkle::Rig rig, Limits limits = {}, int lanes = 1) {
+  void MakeWith(wrinkle::Rig rig, Limits limits = {}, int shards = 1) {
     Hub::Parts parts;
     parts.limits = limits;
-    parts.lanes = lanes;
+    parts.shards = shards;
     parts.session = 4242;
     parts.rig = std::make_shared<const wrinkle::Rig>(std::move(rig));
     parts.pictures = &pictures;
@@ -155,7 +154,7 @@ class HubTest : public testing::Test {
     ASSERT_TRUE(reply.has_value());
     ASSERT_EQ(reply->message.status, protocol::SkeletonStatus::kAccepted) << reply->message.message;
   }
-  // The subscription's number; 0 where the answer is something else.
+  // The id of the new subscription; 0 if the reply is something else.
   std::uint16_t Watch(FakePeer& peer, const protocol::SubscribeWeights& request,
                       std::uint32_t sequence = 1) {
     Send(peer, request, 0, sequence);
@@ -173,7 +172,7 @@ class HubTest : public testing::Test {
   std::uint64_t last_token = 900;
 };
 
-// And two peers on it.
+// A hub with two peers.
 class HubPeersTest : public HubTest {
  protected:
   void SetUp() override {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Captures: what they change, what a preview does not, and what can be taken back.
+// Captures, previews and undo.
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -36,7 +36,7 @@ class ApiCaptureTest : public HubPeersTest {
     ++sequence;
     Send(sender, Pose(brow), 1, sequence, std::int64_t{10'000} * sequence);
   }
-  // The same sender with one blend shape more.
+  // Offers the same subject with one more blend shape.
   void OfferAnew() {
     protocol::SkeletonOffer offer = Offer("ann");
     offer.blend_shape_names.push_back("jaw");
@@ -44,14 +44,14 @@ class ApiCaptureTest : public HubPeersTest {
     Send(sender, offer, 1);
     ASSERT_TRUE(sender.Take<protocol::SkeletonReply>().has_value());
   }
-  SubjectPipeline& pipeline() { return *hub->EvaluateInFull("ann")->pipeline; }
+  SubjectPipeline& pipeline() { return *hub->RequireAllDrivers("ann")->pipeline; }
   float brow() { return pipeline().wrinkle_weights()[0]; }
 
   Api api{{}};
   std::uint32_t sequence = 0;
 };
 
-TEST_F(ApiCaptureTest, ANeutralIsTakenBackToTheOneBeforeIt) {
+TEST_F(ApiCaptureTest, UndoRestoresThePreviousNeutral) {
   Capture("neutral");
   SendPose(0.75f);
   EXPECT_NEAR(brow(), 0.25f, 1e-5f);
@@ -63,16 +63,16 @@ TEST_F(ApiCaptureTest, ANeutralIsTakenBackToTheOneBeforeIt) {
   EXPECT_NEAR(brow(), 0.75f, 1e-5f);
 }
 
-TEST_F(ApiCaptureTest, ANeutralOfAnotherSkeletonIsNotTakenBack) {
+TEST_F(ApiCaptureTest, UndoIgnoresTheNeutralOfAnotherSkeleton) {
   Capture("neutral");
   Capture("neutral");
-  OfferAnew();  // fewer values than it now has would be read from the former neutral
+  OfferAnew();  // the old neutral has fewer values than the new skeleton
   EXPECT_EQ(Undo()["captures"].size(), 1u);
   EXPECT_FALSE(pipeline().neutral_pose().has_value());
 }
 
-TEST_F(ApiCaptureTest, ABodyThatIsNestedWithoutEndIsRefused) {
-  constexpr std::size_t kDepth = 30'000;  // fits a request; each level copied is a call within one
+TEST_F(ApiCaptureTest, ADeeplyNestedBodyIsRejected) {
+  constexpr std::size_t kDepth = 30'000;  // fits into a request; copying recurses once per level
   const std::string body =
       R"({"subject":)" + std::string(kDepth, '[') + std::string(kDepth, ']') + "}";
   const ApiReply reply = api.Answer(
@@ -81,14 +81,14 @@ TEST_F(ApiCaptureTest, ABodyThatIsNestedWithoutEndIsRefused) {
   EXPECT_EQ(Json::parse(reply.body)["error"]["field"], "body");
 }
 
-TEST_F(ApiCaptureTest, ANeutralThatIsPreviewedLeavesTheSubjectAlone) {
+TEST_F(ApiCaptureTest, APreviewChangesNothing) {
   Make({}, /*filter=*/true);
   Connect(&sender);
   Connect(&viewer);
   Publish(sender, "ann");
-  ASSERT_NE(Watch(viewer, {.subject = "ann"}), 0);  // so that its weights are evaluated
+  ASSERT_NE(Watch(viewer, {.subject = "ann"}), 0);  // evaluates its weights
   SendPose(0.0f);
-  SendPose(1.0f);  // the filter is still on its way there
+  SendPose(1.0f);  // the filter has not reached it yet
   const float live = brow();
   ASSERT_LT(live, 0.99f);
   const Json weight = Capture("neutral", /*preview=*/true)["weights"][0];
@@ -100,8 +100,7 @@ TEST_F(ApiCaptureTest, ANeutralThatIsPreviewedLeavesTheSubjectAlone) {
   EXPECT_LT(brow(), 0.99f) << "its filter began anew";
 }
 
-// A hinge that calls its joints as the rig of a game engine does, and a stream that calls them as
-// Mixamo does.
+// A hinge with joint names of a game engine, and a stream with those of Mixamo.
 class ApiForeignCaptureTest : public HubTest {
  protected:
   void SetUp() override {
@@ -146,7 +145,7 @@ class ApiForeignCaptureTest : public HubTest {
   FakePeer sender;
 };
 
-TEST_F(ApiForeignCaptureTest, APoseIsStoredUnderTheJointsOfTheRig) {
+TEST_F(ApiForeignCaptureTest, APoseIsStoredWithTheJointNamesOfTheRig) {
   const protocol::SkeletonOffer offer = Legs();
   Send(sender, offer, 1);
   protocol::PoseFrame pose;
@@ -155,7 +154,7 @@ TEST_F(ApiForeignCaptureTest, APoseIsStoredUnderTheJointsOfTheRig) {
   pose.rotation_joints = {2};
   pose.rotations = {{std::sin(0.6f), 0.0f, 0.0f, std::cos(0.6f)}};
   Send(sender, pose, 1, 1);
-  Subject& subject = *hub->EvaluateInFull("ann");
+  Subject& subject = *hub->RequireAllDrivers("ann");
   const float bent = subject.pipeline->wrinkle_weights()[0];
   ASSERT_GT(bent, 0.1f);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What /api/rig says of the rig in use.
+// GET /api/rig.
 #include <string>
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ class ApiRigTest : public HubTest {
   FakePeer sender;
 };
 
-TEST_F(ApiRigTest, EveryKindOfMaskIsShownAsWhatItIs) {
+TEST_F(ApiRigTest, EveryKindOfMaskIsShown) {
   using Kind = wrinkle::Mask::Kind;
   wrinkle::Rig rig = MakeRig(/*filter=*/false);
   wrinkle::Driver& ball = rig.drivers.emplace_back();

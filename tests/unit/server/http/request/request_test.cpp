@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a request may be: who asks, what it names, what its query says.
+// Parsing and checking of requests: Host and Origin, URL, query.
 #include <gtest/gtest.h>
 
 #include "server/http/pictures/picture_query.h"
@@ -9,7 +9,7 @@
 namespace furrow::server {
 namespace {
 
-TEST(RequestGuard, NumbersAndLocalhostAreOurs) {
+TEST(RequestGuard, NumericHostsAndLocalhostAreAllowed) {
   const RequestGuard guard(HttpConfig{});
   for (const char* host :
        {"localhost", "LOCALHOST:7480", "127.0.0.1:7480", "[::1]:7480", "[::1]", "192.168.0.7:80"}) {
@@ -21,18 +21,18 @@ TEST(RequestGuard, NumbersAndLocalhostAreOurs) {
   }
 }
 
-TEST(RequestGuard, AnOriginIsThatOfTheHost) {
+TEST(RequestGuard, OriginMustMatchHost) {
   HttpConfig config;
   config.allow_hosts = {"stage.lan"};
-  config.allow_origins = {"https://desk.example"};
+  config.allow_origins = {"https://context.example"};
   const RequestGuard guard(config);
   EXPECT_EQ(guard.Check("localhost:7480", "http://localhost:7480"), "");
   EXPECT_EQ(guard.Check("stage.lan:7480", "http://stage.lan:7480"), "");
-  EXPECT_EQ(guard.Check("localhost:7480", "https://desk.example"), "");
+  EXPECT_EQ(guard.Check("localhost:7480", "https://context.example"), "");
   EXPECT_NE(guard.Check("localhost:7480", "http://localhost:3000"), "");
   EXPECT_NE(guard.Check("localhost:7480", "http://evil.example"), "");
   EXPECT_NE(guard.Check("localhost:7480", "null"), "");
-  // A stranger's name that points here: Origin and Host agree, and it is refused all the same.
+  // DNS rebinding: Origin and Host agree, but the name is foreign.
   EXPECT_NE(guard.Check("evil.example:7480", "http://evil.example:7480"), "");
 }
 
@@ -47,7 +47,7 @@ TEST(Url, PathAndQueryAreDecoded) {
   EXPECT_EQ(url->values.size(), 5u);
 }
 
-TEST(Url, WhatMeansNothingIsRefused) {
+TEST(Url, InvalidTargetsAreRejected) {
   for (const char* target : {"", "api", "*", "/%", "/%4", "/%zz", "/?a=%", "/?%g1=1"}) {
     EXPECT_FALSE(ParseUrl(target).has_value()) << target;
   }
@@ -55,7 +55,7 @@ TEST(Url, WhatMeansNothingIsRefused) {
   EXPECT_TRUE(ParseUrl("/?&&").has_value());
 }
 
-TEST(PictureQuery, NamesItsOwnFieldsAndPassesSettingsOn) {
+TEST(PictureQuery, ReadsItsFieldsAndPassesSettingsOn) {
   const auto url = ParseUrl("/mjpeg?camera=eyes&width=320&rate=12.5&shading=skin&wrinkles=off");
   const auto pictures = PicturesOf(*url);
   ASSERT_TRUE(pictures.ok());
@@ -76,7 +76,7 @@ TEST(PictureQuery, NumbersOutOfRangeNameTheirField) {
   EXPECT_FALSE(PicturesOf(*ParseUrl("/mjpeg?quality=0")).ok());
 }
 
-TEST(PictureQuery, WhatIsNotThereNamesItsField) {
+TEST(PictureQuery, UnknownNamesAreErrorsWithTheirField) {
   for (const auto& [query, field] :
        {std::pair("view=sideways", "view"), std::pair("camera=behind", "camera"),
         std::pair("shading=oil", "shading"), std::pair("subsurface.width=99", "subsurface.width"),

@@ -32,7 +32,7 @@ class UdpBatchTest : public testing::Test {
   UdpBatch batch;
 };
 
-TEST_F(UdpBatchTest, GivesBytesAndSendersAndShowsWhatIsTooLong) {
+TEST_F(UdpBatchTest, ReturnsBytesAndSendersAndMarksOversizedDatagrams) {
   Send(3);
   Send(protocol::kMaxDatagramBytes);
   Send(protocol::kMaxDatagramBytes + 500);
@@ -46,12 +46,12 @@ TEST_F(UdpBatchTest, GivesBytesAndSendersAndShowsWhatIsTooLong) {
   EXPECT_EQ(batch.TakeDropped(), 0u);
 }
 
-TEST_F(UdpBatchTest, CountsWhatTheBufferHadNoRoomFor) {
+TEST_F(UdpBatchTest, CountsDatagramsLostInTheSocketBuffer) {
   receiver.set_option(asio::socket_base::receive_buffer_size(4096));
   for (int round = 0; round < 2; ++round) {
     for (int i = 0; i < 100; ++i) Send(1000);
     std::size_t received = ReceiveAll();
-    Send(1);  // brings the count of what was lost before it
+    Send(1);  // carries the count of the datagrams lost before
     received += ReceiveAll();
     EXPECT_LT(received, 101u);
     EXPECT_EQ(received + batch.TakeDropped(), 101u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages that share datagrams, as UdpSender packs them.
+// UdpSender packs messages into bundles.
 #include <algorithm>
 #include <map>
 #include <random>
@@ -28,7 +28,7 @@ class UdpBundlesTest : public testing::Test {
       end->non_blocking(true);
     }
   }
-  // A whole message of so many bytes, numbered.
+  // A whole message of the given size, with a number.
   Bytes Message(std::size_t bytes) {
     Bytes payload(bytes - protocol::kEnvelopeBytes);
     for (std::uint8_t& byte : payload) byte = static_cast<std::uint8_t>(random());
@@ -40,7 +40,7 @@ class UdpBundlesTest : public testing::Test {
     std::ranges::copy(message, sender.Prepare().begin());
     sender.Commit(to.native_handle(), to.local_endpoint(), message.size(), packing);
   }
-  // The messages of each datagram that came.
+  // The messages in each received datagram.
   static std::vector<std::vector<Bytes>> TakeAll(udp::socket& end) {
     std::vector<std::vector<Bytes>> datagrams;
     for (Bytes bytes(2000);; bytes.resize(2000)) {
@@ -65,12 +65,12 @@ class UdpBundlesTest : public testing::Test {
   UdpSender sender;
 };
 
-TEST_F(UdpBundlesTest, WhatMayShareADatagramDoesUntilItIsFull) {
+TEST_F(UdpBundlesTest, MessagesShareADatagramUntilItIsFull) {
   std::vector<Bytes> messages;
   for (int i = 0; i < 7; ++i) {
     messages.push_back(Message(400));
-    Push(a, messages.back(), Packing::kShared);
-    Push(b, messages.back(), Packing::kAlone);
+    Push(a, messages.back(), Packing::kBundled);
+    Push(b, messages.back(), Packing::kSeparate);
   }
   sender.Flush();
   using Datagrams = std::vector<std::vector<Bytes>>;
@@ -85,9 +85,9 @@ TEST_F(UdpBundlesTest, WhatMayShareADatagramDoesUntilItIsFull) {
   EXPECT_EQ(counts.bundled, 6u);
 }
 
-TEST_F(UdpBundlesTest, OneMessageLeavesAsItIs) {
+TEST_F(UdpBundlesTest, ASingleMessageIsNotBundled) {
   const Bytes message = Message(300);
-  Push(a, message, Packing::kShared);
+  Push(a, message, Packing::kBundled);
   sender.Flush();
   Bytes got(2000);
   got.resize(a.receive(asio::buffer(got)));
@@ -95,29 +95,29 @@ TEST_F(UdpBundlesTest, OneMessageLeavesAsItIs) {
   EXPECT_EQ(sender.TakeCounts().bundled, 0u);
 }
 
-TEST_F(UdpBundlesTest, OneByteTooManyIsAnotherDatagram) {
-  Push(a, Message(600), Packing::kShared);
-  Push(a, Message(600), Packing::kShared);
-  Push(b, Message(600), Packing::kShared);
-  Push(b, Message(601), Packing::kShared);
+TEST_F(UdpBundlesTest, OneByteTooManyStartsAnotherDatagram) {
+  Push(a, Message(600), Packing::kBundled);
+  Push(a, Message(600), Packing::kBundled);
+  Push(b, Message(600), Packing::kBundled);
+  Push(b, Message(601), Packing::kBundled);
   sender.Flush();
   EXPECT_EQ(TakeAll(a).size(), 1u);
   EXPECT_EQ(TakeAll(b).size(), 2u);
 }
 
-TEST_F(UdpBundlesTest, AnythingOfAnySizeComesInOrderAndAsItWas) {
+TEST_F(UdpBundlesTest, RandomMessagesArriveUnchangedAndInOrder) {
   for (int round = 0; round < 50; ++round) {
     std::map<udp::socket*, std::vector<Bytes>> sent;
     std::map<udp::socket*, std::size_t> alone;
-    const bool equal_sizes = round % 2 == 0;  // which the system can be asked to cut
+    const bool equal_sizes = round % 2 == 0;  // equal sizes allow UDP_SEGMENT
     const std::size_t size = 40 + random() % 1161;
     for (int i = 0; i < 100; ++i) {
       udp::socket& end = random() % 2 == 0 ? a : b;
-      const Packing packing = random() % 8 == 0 ? Packing::kAlone : Packing::kShared;
+      const Packing packing = random() % 8 == 0 ? Packing::kSeparate : Packing::kBundled;
       const Bytes message = Message(equal_sizes ? size : 40 + random() % 1161);
       Push(end, message, packing);
       sent[&end].push_back(message);
-      if (packing == Packing::kAlone) ++alone[&end];
+      if (packing == Packing::kSeparate) ++alone[&end];
     }
     sender.Flush();
     std::size_t datagrams = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many subjects for many subscribers over real sockets: all of it comes, in fewer datagrams.
+// Many subjects and many subscribers over real sockets: every frame arrives, in fewer datagrams.
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,7 +24,7 @@ constexpr int kSubjects = 24;
 constexpr int kSubscribers = 64;
 constexpr int kRounds = 4;
 
-// A client's transport that does not take bundles apart, as those of old, or does.
+// A client that either splits bundles or, like old clients, does not.
 class Wire : public client::Transport {
  public:
   Wire(std::uint16_t port, bool takes_bundles)
@@ -64,14 +64,14 @@ class Wire : public client::Transport {
   protocol::Unbundler unbundler_;
 };
 
-// One who watches every subject.
+// A client that subscribes to every subject.
 struct Watcher {
   Wire* wire = nullptr;
   std::unique_ptr<client::Subscriber> subscriber;
   std::vector<int> subjects;  // by subscription
-  std::vector<int> rounds;    // weights so far, by subject
-  int decayed = 0;            // weights of no new pose
-  int others = 0;             // what came and was no weights
+  std::vector<int> rounds;    // weight frames so far, by subject
+  int decayed = 0;            // weight frames without a new pose
+  int others = 0;             // messages other than weights
 };
 
 class UdpFanOutTest : public HubTest {
@@ -103,7 +103,7 @@ class UdpFanOutTest : public HubTest {
     encoder.Encode(header, message, bytes);
     publisher.send_to(asio::buffer(bytes), {asio::ip::address_v4::loopback(), server->port()});
   }
-  // A pose of every subject, all of which the server finds at once.
+  // Sends a pose of every subject; the server reads all of them at once.
   void Play(int round) {
     for (int i = 0; i < kSubjects; ++i) {
       Say(Pose(BrowOf(i, round)), {.stream = static_cast<std::uint16_t>(i),
@@ -112,7 +112,7 @@ class UdpFanOutTest : public HubTest {
     }
     Work();
   }
-  // Meets the daemon and subscribes to everything.
+  // Proves its address and subscribes to every subject.
   Watcher Join(bool takes_bundles) {
     Watcher watcher;
     auto wire = std::make_unique<Wire>(server->port(), takes_bundles);
@@ -130,7 +130,7 @@ class UdpFanOutTest : public HubTest {
     EXPECT_EQ(watcher.others, kSubjects) << "answers";
     return watcher;
   }
-  // Takes what has come and checks it.
+  // Reads and checks the received messages.
   static void Read(Watcher& watcher) {
     for (;;) {
       const Event event = watcher.subscriber->Next(0, std::chrono::milliseconds(0));
@@ -160,7 +160,7 @@ class UdpFanOutTest : public HubTest {
   std::vector<std::uint8_t> bytes;
 };
 
-TEST_F(UdpFanOutTest, EveryWeightArrivesRightInFewerDatagramsAndNoBundleWhereNoneIsTaken) {
+TEST_F(UdpFanOutTest, WeightsArriveInFewerDatagramsAndBundlesOnlyWhereAccepted) {
   std::vector<Watcher> watchers;
   for (int i = 0; i < kSubscribers; ++i) watchers.push_back(Join(/*takes_bundles=*/i > 0));
   Watcher& old = watchers.front();
@@ -188,10 +188,10 @@ TEST_F(UdpFanOutTest, EveryWeightArrivesRightInFewerDatagramsAndNoBundleWhereNon
             std::uint64_t{(kSubscribers - 1) * kSubjects * kRounds});
 }
 
-TEST_F(UdpFanOutTest, WhatATickSendsSharesDatagramsToo) {
+TEST_F(UdpFanOutTest, FramesOfATickShareDatagrams) {
   Watcher watcher = Join(/*takes_bundles=*/true);
   Play(0);
-  Play(1);  // of which nobody is neutral
+  Play(1);  // every weight is above 0
   Read(watcher);
   watcher.wire->datagrams = 0;
   hub->Tick(ReadClock() + FromSeconds(1.5));

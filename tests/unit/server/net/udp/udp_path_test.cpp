@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From datagram to weight packet through real sockets, server and hub.
+// From datagram to weight packet through real sockets, the UDP server and the hub.
 #include <deque>
 #include <memory>
 #include <string>
@@ -18,11 +18,12 @@ namespace {
 
 using asio::ip::udp;
 
-// Subjects of joints and blend shapes, solved with the filter, each published from a socket of its
-// own and all of them watched by one, over UDP. The parameter: lanes, which here take turns.
+// Subjects with joints and blend shapes, solved with the filter, each published from a socket of
+// its own, and all watched by one UDP subscriber. Parameter: the number of shards, which run in
+// turn here.
 class UdpPathTest : public HubTest, public testing::WithParamInterface<int> {
  protected:
-  static constexpr int kJoints = 12;  // so that an offer fits a datagram
+  static constexpr int kJoints = 12;  // an offer must fit into a datagram
   static constexpr int kSubjects = 8;
 
   void SetUp() override {
@@ -37,18 +38,18 @@ class UdpPathTest : public HubTest, public testing::WithParamInterface<int> {
     io.run();
   }
 
-  // A socket a lane.
+  // One socket per shard.
   void OpenPort() {
-    std::vector<UdpServer*> by_lane;
-    for (int lane = 0; lane < GetParam(); ++lane) {
+    std::vector<UdpServer*> by_shard;
+    for (int shard = 0; shard < GetParam(); ++shard) {
       auto& server = servers.emplace_back(
-          std::make_unique<UdpServer>(io, Limits(), hub.get(), &metrics, nullptr, lane));
-      const std::uint16_t port = lane == 0 ? 0 : servers.front()->port();
+          std::make_unique<UdpServer>(io, Limits(), hub.get(), &metrics, nullptr, shard));
+      const std::uint16_t port = shard == 0 ? 0 : servers.front()->port();
       ASSERT_TRUE(
           server->Open({asio::ip::address_v4::loopback(), port}, UdpServer::Port::kShared).ok());
-      by_lane.push_back(server.get());
+      by_shard.push_back(server.get());
     }
-    for (const auto& server : servers) server->Join(by_lane);
+    for (const auto& server : servers) server->Join(by_shard);
     for (const auto& server : servers) server->Start();
   }
   void Connect(udp::socket& socket) {
@@ -65,7 +66,7 @@ class UdpPathTest : public HubTest, public testing::WithParamInterface<int> {
     io.restart();
     io.poll();
   }
-  // Takes what has come to the viewer; how many weights there are in it.
+  // Reads what the viewer has received and returns the number of weight frames.
   int TakeWeights() {
     int count = 0;
     for (;;) {
@@ -109,7 +110,7 @@ class UdpPathTest : public HubTest, public testing::WithParamInterface<int> {
     pose.num_joints = kJoints;
     pose.rotations.resize(kJoints);
   }
-  // One pose of every subject; the number of weights that came of them.
+  // Sends one pose of every subject and returns the number of weight frames received.
   int Round(std::uint32_t number) {
     for (int i = 0; i < kSubjects; ++i) {
       pose.blend_shapes[0] = static_cast<float>(number % 10) * 0.1f;
@@ -136,7 +137,7 @@ class UdpPathTest : public HubTest, public testing::WithParamInterface<int> {
   const protocol::PoseEncoding small = protocol::PoseEncoding::Small();
 };
 
-TEST_P(UdpPathTest, NothingIsAllocatedAPoseInTheLongRun) {
+TEST_P(UdpPathTest, PosesDoNotAllocate) {
   Meet();
   std::uint32_t number = 0;
   while (number < 20) Round(number++);
@@ -148,7 +149,7 @@ TEST_P(UdpPathTest, NothingIsAllocatedAPoseInTheLongRun) {
   EXPECT_EQ(Count(Counter::kDatagramsUnsendable), 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lanes, UdpPathTest, testing::Values(1, 3));
+INSTANTIATE_TEST_SUITE_P(Shards, UdpPathTest, testing::Values(1, 3));
 
 }  // namespace
 }  // namespace furrow::server

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One port, several sockets with a thread each.
+// One port with several sockets and one thread each.
 #include "server/net/udp/udp_port.h"
 
 #include <algorithm>
@@ -26,8 +26,8 @@ namespace {
 
 using asio::ip::udp;
 
-constexpr int kLanes = 3;
-constexpr int kSenders = 48;  // all of one lane: not once in 1e22 times
+constexpr int kShards = 3;
+constexpr int kSenders = 48;  // the chance that all map to one shard is below 1e-22
 
 class UdpPortTest : public HubTest {
  protected:
@@ -37,14 +37,14 @@ class UdpPortTest : public HubTest {
     parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(/*filter=*/false));
     parts.metrics = &metrics;
     parts.make_token = [] { return 900u; };
-    parts.lanes = kLanes;
-    parts.on_weights = [this](const Subject& subject, int lane) {
+    parts.shards = kShards;
+    parts.on_weights = [this](const Subject& subject, int shard) {
       const std::lock_guard lock(mutex_);
-      lanes_of_[subject.name].insert(lane);
+      shards_of_[subject.name].insert(shard);
       ++num_poses_;
     };
     hub = std::make_unique<Hub>(std::move(parts));
-    port_ = std::make_unique<UdpPort>(io_, kLanes, Limits(), hub.get(), &metrics, nullptr);
+    port_ = std::make_unique<UdpPort>(io_, kShards, Limits(), hub.get(), &metrics, nullptr);
     const Status status = port_->Open({asio::ip::address_v4::loopback(), 0});
     ASSERT_TRUE(status.ok()) << status.ToString();
     port_->Start();
@@ -60,11 +60,11 @@ class UdpPortTest : public HubTest {
   std::unique_ptr<UdpPort> port_;
   std::jthread thread_;
   std::mutex mutex_;
-  std::map<std::string, std::set<int>> lanes_of_;
+  std::map<std::string, std::set<int>> shards_of_;
   std::atomic<int> num_poses_ = 0;
 };
 
-TEST_F(UdpPortTest, SendersAreSpreadAndEachStaysInItsLane) {
+TEST_F(UdpPortTest, SendersAreSpreadOverShardsAndStayThere) {
   constexpr int kPoses = 5;
   asio::io_context io;
   std::deque<udp::socket> senders;
@@ -85,29 +85,29 @@ TEST_F(UdpPortTest, SendersAreSpreadAndEachStaysInItsLane) {
   }
   while (num_poses_ < kSenders * kPoses) std::this_thread::yield();
   const std::lock_guard lock(mutex_);
-  ASSERT_EQ(lanes_of_.size(), std::size_t{kSenders});
+  ASSERT_EQ(shards_of_.size(), std::size_t{kSenders});
   std::set<int> used;
-  for (const auto& [subject, lanes] : lanes_of_) {
-    EXPECT_EQ(lanes.size(), 1u) << subject;
-    used.insert(lanes.begin(), lanes.end());
+  for (const auto& [subject, shards] : shards_of_) {
+    EXPECT_EQ(shards.size(), 1u) << subject;
+    used.insert(shards.begin(), shards.end());
   }
   EXPECT_GT(used.size(), 1u);
   EXPECT_EQ(Count(Counter::kPosesReceived), std::uint64_t{kSenders * kPoses});
 }
 
-Hub::Parts TwoLanes(Metrics* metrics) {
+Hub::Parts TwoShards(Metrics* metrics) {
   Hub::Parts parts;
   parts.session = 1;
   parts.rig = std::make_shared<const wrinkle::Rig>();
   parts.metrics = metrics;
   parts.make_token = [] { return 1u; };
-  parts.lanes = 2;
+  parts.shards = 2;
   return parts;
 }
 
-TEST(UdpPortFailure, WhatALaneDoesNotSurviveEndsTheCallersLoop) {
+TEST(UdpPortFailure, AnExceptionInAShardEndsTheCallersLoop) {
   Metrics metrics;
-  Hub::Parts parts = TwoLanes(&metrics);
+  Hub::Parts parts = TwoShards(&metrics);
   parts.make_token = []() -> std::uint64_t { throw std::runtime_error("no more numbers"); };
   Hub hub(std::move(parts));
   asio::io_context io{1};
@@ -121,9 +121,9 @@ TEST(UdpPortFailure, WhatALaneDoesNotSurviveEndsTheCallersLoop) {
   EXPECT_THROW(io.run_for(std::chrono::seconds(20)), std::runtime_error);
 }
 
-TEST(UdpPortFailure, WhatCameBeforeAllSocketsWereThereIsDropped) {
+TEST(UdpPortFailure, DatagramsFromBeforeAllSocketsWereOpenAreDropped) {
   Metrics metrics;
-  Hub hub(TwoLanes(&metrics));
+  Hub hub(TwoShards(&metrics));
   asio::io_context io{1};
   UdpServer server(io, Limits(), &hub, &metrics);
   ASSERT_TRUE(server.Open({asio::ip::address_v4::loopback(), 0}).ok());
@@ -143,8 +143,8 @@ TEST(UdpPortFailure, WhatCameBeforeAllSocketsWereThereIsDropped) {
   server.Close();
 }
 
-TEST_F(UdpPortTest, ThePortIsNotSharedWithAStranger) {
-  Hub other(TwoLanes(&metrics));
+TEST_F(UdpPortTest, APortInUseIsAnError) {
+  Hub other(TwoShards(&metrics));
   asio::io_context io;
   UdpPort second(io, 2, Limits(), &other, &metrics, nullptr);
   const Status status = second.Open({asio::ip::address_v4::loopback(), port_->port()});

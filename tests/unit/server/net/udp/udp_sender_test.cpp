@@ -58,7 +58,7 @@ class UdpSenderTest : public testing::Test {
   UdpSender sender;
 };
 
-TEST_F(UdpSenderTest, EachAddressGetsItsDatagramsWholeAndInOrder) {
+TEST_F(UdpSenderTest, DatagramsArriveWholeAndInOrder) {
   Push(1, a, 100, 1);
   Push(2, b, 100, 2);
   Push(1, a, 100, 3);
@@ -79,8 +79,8 @@ TEST_F(UdpSenderTest, EachAddressGetsItsDatagramsWholeAndInOrder) {
   EXPECT_TRUE(a.TakeAll().empty());
 }
 
-TEST_F(UdpSenderTest, MoreThanFitsLeavesByItself) {
-  // As few bytes for each end as its buffer surely holds: all of them come in the end.
+TEST_F(UdpSenderTest, AFullBufferFlushes) {
+  // Few enough bytes for the socket buffers, so that all of them arrive.
   constexpr int kEach = 400;
   std::deque<FarEnd> ends;
   for (int i = 0; i < 16; ++i) ends.emplace_back(io);
@@ -98,10 +98,10 @@ TEST_F(UdpSenderTest, MoreThanFitsLeavesByItself) {
   }
 }
 
-TEST_F(UdpSenderTest, MoreAddressesThanItHoldsGetTheirsToo) {
-  constexpr std::uint64_t kAddresses = 3000;  // all of them one socket's: only keys count
+TEST_F(UdpSenderTest, AFullAddressTableFlushes) {
+  constexpr std::uint64_t kAddresses = 3000;  // all for one socket: only the keys differ
   for (std::uint64_t key = 0; key < kAddresses; ++key) {
-    Push(key << 20, key % 2 == 0 ? a : b, 40, 1);  // keys that meet in one slot
+    Push(key << 20, key % 2 == 0 ? a : b, 40, 1);  // keys that collide
     if (key % 200 == 0) sender.Flush();
     EXPECT_LE(a.TakeAll().size() + b.TakeAll().size(), 400u);
   }
@@ -109,10 +109,11 @@ TEST_F(UdpSenderTest, MoreAddressesThanItHoldsGetTheirsToo) {
   EXPECT_EQ(sender.TakeCounts().sent, kAddresses);
 }
 
-TEST_F(UdpSenderTest, WhatCannotBeSentIsCountedAndTheRestLeaves) {
-  Push(1, udp::endpoint(asio::ip::make_address_v4("255.255.255.255"), 9), 50, 1);  // not allowed
+TEST_F(UdpSenderTest, UnsendableDatagramsAreCountedAndOthersLeave) {
+  Push(1, udp::endpoint(asio::ip::make_address_v4("255.255.255.255"), 9), 50,
+       1);  // broadcast is not permitted
   Push(2, a, 60, 2);
-  Push(3, udp::endpoint(asio::ip::address_v6::loopback(), 9), 70, 3);  // another family
+  Push(3, udp::endpoint(asio::ip::address_v6::loopback(), 9), 70, 3);  // another address family
   Push(4, b, 80, 4);
   sender.Flush();
   EXPECT_EQ(a.TakeAll().size(), 1u);

@@ -30,7 +30,7 @@ TEST(Outbox, RepliesGoFirstAndInOrder) {
   EXPECT_TRUE(outbox.empty());
 }
 
-TEST(Outbox, RepliesAreBoundedByTheirBytesToo) {
+TEST(Outbox, RepliesAreAlsoBoundedInBytes) {
   Outbox outbox(100, 4, 1000);
   EXPECT_TRUE(outbox.PushReply(Bytes(2000))) << "one alone may always wait";
   EXPECT_FALSE(outbox.PushReply(Bytes(1)));
@@ -50,7 +50,7 @@ TEST(Outbox, TheNewestFrameOfAKeyWinsAndKeepsItsPlace) {
   EXPECT_THAT(PopAll(&outbox), ElementsAre(11, 20));
 }
 
-TEST(Outbox, ABurstOfAKeyMayWaitUpToItsLimit) {
+TEST(Outbox, ABurstOfOneKeyWaitsUpToItsLimit) {
   Outbox outbox(4, 8);
   for (std::uint8_t i = 0; i < 4; ++i) EXPECT_EQ(outbox.PushFrame(1, Bytes{i}, 4), 0);
   EXPECT_EQ(outbox.PushFrame(2, Bytes{20}, 4), 0);
@@ -58,7 +58,7 @@ TEST(Outbox, ABurstOfAKeyMayWaitUpToItsLimit) {
   EXPECT_THAT(PopAll(&outbox), ElementsAre(1, 2, 3, 20, 4));
 }
 
-TEST(Outbox, AStalledPeerHoldsAtMostSoManyFramesAndTheOldestGoes) {
+TEST(Outbox, TheOldestFrameIsDroppedAtTheFrameLimit) {
   Outbox outbox(4, 3);
   for (std::uint8_t key = 0; key < 3; ++key) EXPECT_EQ(outbox.PushFrame(key, Bytes{key}), 0);
   for (std::uint8_t key = 3; key < 10; ++key) EXPECT_EQ(outbox.PushFrame(key, Bytes{key}), 1);
@@ -66,7 +66,7 @@ TEST(Outbox, AStalledPeerHoldsAtMostSoManyFramesAndTheOldestGoes) {
   EXPECT_THAT(PopAll(&outbox), ElementsAre(7, 8, 9));
 }
 
-TEST(Outbox, RepliesAreNeverDroppedButRefused) {
+TEST(Outbox, AFullQueueRefusesReplies) {
   Outbox outbox(2, 1);
   EXPECT_TRUE(outbox.PushReply(Bytes{1}));
   EXPECT_TRUE(outbox.PushReply(Bytes{2}));
@@ -75,7 +75,7 @@ TEST(Outbox, RepliesAreNeverDroppedButRefused) {
   EXPECT_THAT(PopAll(&outbox), ElementsAre(1, 2, 9));
 }
 
-TEST(Outbox, AnEndedSubscriptionLeavesNothingBehind) {
+TEST(Outbox, DroppingAKeyRemovesAllItsFrames) {
   Outbox outbox(2, 4);
   outbox.PushFrame(1, Bytes{1});
   outbox.PushFrame(2, Bytes{2});
@@ -83,7 +83,7 @@ TEST(Outbox, AnEndedSubscriptionLeavesNothingBehind) {
   EXPECT_THAT(PopAll(&outbox), ElementsAre(2));
 }
 
-TEST(Outbox, FramesThatAreAllKeptStandInLineWithTheReplies) {
+TEST(Outbox, KeepAllFramesQueueWithTheReplies) {
   Outbox outbox(4, 4);
   outbox.PushFrame(1, Bytes{10});
   outbox.PushFrame(2, Bytes{20}, kKeepAll);
@@ -92,18 +92,18 @@ TEST(Outbox, FramesThatAreAllKeptStandInLineWithTheReplies) {
   EXPECT_THAT(PopAll(&outbox), ElementsAre(20, 1, 21, 22, 23, 24, 25, 26, 27, 28, 29, 10));
 }
 
-TEST(Outbox, WhoLeavesGetsTheLineAndNothingBehindIt) {
+TEST(Outbox, ALeavingPeerReceivesRepliesButNoReplaceableFrames) {
   Outbox outbox(4, 4);
   outbox.PushFrame(1, Bytes{10});
   outbox.PushFrame(2, Bytes{20}, kKeepAll);
   ASSERT_TRUE(outbox.PushReply(Bytes{1}));
-  outbox.DropAllBehindTheLine();
+  outbox.DropReplaceableFrames();
   EXPECT_EQ(outbox.num_frames(), 0u);
   EXPECT_THAT(PopAll(&outbox), ElementsAre(20, 1));
   EXPECT_EQ(outbox.PushFrame(1, Bytes{11}), 0) << "the key has room again";
 }
 
-TEST(Outbox, ALineThatIsFullTakesNoNewFrameUntilItMoves) {
+TEST(Outbox, KeepAllFramesAreBounded) {
   Outbox outbox(4, 4);
   const Bytes half(protocol::kMaxWaitingFrameBytes / 2, 1);
   EXPECT_EQ(outbox.PushFrame(1, half, kKeepAll), 0);

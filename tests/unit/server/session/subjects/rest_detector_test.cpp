@@ -7,7 +7,7 @@
 namespace furrow::server {
 namespace {
 
-TEST(RestDetector, WhatMovesIsSeenAndWhatTremblesLessThanAnybodySeesIsNot) {
+TEST(RestDetector, InvisibleTremorIsNotMovement) {
   wrinkle::LocalPose pose;
   pose.joints.resize(1);
   RestDetector rest;

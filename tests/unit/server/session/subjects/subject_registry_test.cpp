@@ -8,7 +8,7 @@ namespace {
 
 constexpr StreamKey Key(std::uint64_t session) { return {.peer = 1, .session = session}; }
 
-TEST(SubjectRegistry, TheNewestThatWereRetiredAreRemembered) {
+TEST(SubjectRegistry, TheNewestRetiredStreamsAreRemembered) {
   SubjectRegistry registry;
   Subject& subject = registry.Add("ann", Time{0});
   std::uint64_t session = 1;
@@ -21,7 +21,7 @@ TEST(SubjectRegistry, TheNewestThatWereRetiredAreRemembered) {
   EXPECT_FALSE(registry.IsRetired(Key(session - 1))) << "it feeds the subject";
 }
 
-TEST(SubjectRegistry, OneThatWasRetiredBeforeIsRememberedFromTheLastTime) {
+TEST(SubjectRegistry, RetiringAgainRenewsTheMemory) {
   SubjectRegistry registry;
   Subject& subject = registry.Add("ann", Time{0});
   for (const std::uint64_t session : {1, 2, 1, 3}) registry.SetOwner(subject, Key(session));

@@ -32,7 +32,7 @@ class SubjectStatsTest : public testing::Test {
   Time now = FromSeconds(100);
 };
 
-TEST_F(SubjectStatsTest, AnEvenStreamHasItsRateAndNoJitter) {
+TEST_F(SubjectStatsTest, AnEvenStreamHasNoJitter) {
   EXPECT_EQ(stats.rate_hz(now), 0.0);
   Stream(3.0);
   EXPECT_NEAR(stats.rate_hz(now), 60.0, 1.0);
@@ -40,25 +40,25 @@ TEST_F(SubjectStatsTest, AnEvenStreamHasItsRateAndNoJitter) {
   EXPECT_EQ(stats.lost(), 0u);
 }
 
-TEST_F(SubjectStatsTest, WhatComesUnevenlyHasJitter) {
+TEST_F(SubjectStatsTest, AnUnevenStreamHasJitter) {
   Stream(3.0, 1.0, 0.004);  // early by 4 ms, late by 4 ms, in turn
   EXPECT_NEAR(stats.jitter_seconds(now), 0.004, 0.0005);
 }
 
-TEST_F(SubjectStatsTest, SlowMotionHasItsRateAndNoJitter) {
+TEST_F(SubjectStatsTest, SlowMotionHasNoJitter) {
   Stream(3.0, 0.25);
   EXPECT_NEAR(stats.rate_hz(now), 15.0, 0.5);
   EXPECT_LT(stats.jitter_seconds(now), 1e-4);
 }
 
-TEST_F(SubjectStatsTest, NobodySends) {
+TEST_F(SubjectStatsTest, ASilentStreamHasNoRate) {
   Stream(3.0, 1.0, 0.004);
   now += FromSeconds(1.0);
   EXPECT_EQ(stats.rate_hz(now), 0.0);
   EXPECT_EQ(stats.jitter_seconds(now), 0.0);
 }
 
-TEST_F(SubjectStatsTest, ATimelineThatStandsStillSendsNothingNewAndGoesOnAsItWas) {
+TEST_F(SubjectStatsTest, RepeatedPosesCountAsPosesOnly) {
   Stream(3.0);
   const std::uint64_t streamed = stats.poses();
   Repeat(5.0);
@@ -71,7 +71,7 @@ TEST_F(SubjectStatsTest, ATimelineThatStandsStillSendsNothingNewAndGoesOnAsItWas
   EXPECT_EQ(stats.lost(), 0u);
 }
 
-TEST_F(SubjectStatsTest, AJumpInTheTimelineIsNoJitter) {
+TEST_F(SubjectStatsTest, AJumpInTheTimelineIsNotJitter) {
   Stream(2.0);
   capture_us += 30'000'000;
   Stream(0.5);
@@ -81,7 +81,7 @@ TEST_F(SubjectStatsTest, AJumpInTheTimelineIsNoJitter) {
   EXPECT_LT(stats.jitter_seconds(now), 1e-4);
 }
 
-TEST_F(SubjectStatsTest, PosesWithoutCaptureTimesHaveARateAndNoJitter) {
+TEST_F(SubjectStatsTest, PosesWithoutCaptureTimesHaveNoJitter) {
   for (int i = 0; i < 180; ++i, now += FromSeconds(1.0 / 60.0)) {
     stats.OnPose(sequence++, 0, now);
   }
@@ -89,7 +89,7 @@ TEST_F(SubjectStatsTest, PosesWithoutCaptureTimesHaveARateAndNoJitter) {
   EXPECT_EQ(stats.jitter_seconds(now), 0.0);
 }
 
-TEST_F(SubjectStatsTest, GapsAreLossAndANewBeginningIsNone) {
+TEST_F(SubjectStatsTest, GapsAreLossesAndRestartsAreNot) {
   Stream(0.5);
   sequence += 3;
   Stream(0.5);

@@ -8,73 +8,73 @@ namespace {
 
 constexpr Time kFrame = FromSeconds(1.0 / 60.0);
 
-// Draws and sends one picture; its number.
+// Requests and sends one picture. Returns its number.
 std::uint32_t Show(ViewerFlow& flow, Time now) {
-  EXPECT_TRUE(flow.MayAsk(now));
-  flow.Ask(false, now);
+  EXPECT_TRUE(flow.CanRequest(now));
+  flow.Request(false, now);
   return flow.Send();
 }
 
-TEST(ViewerFlow, AtMostTwoPicturesAreUnderWay) {
+TEST(ViewerFlow, AtMostTwoPicturesAreUnacknowledged) {
   ViewerFlow flow;
   const Time now = FromSeconds(10);
   EXPECT_EQ(Show(flow, now), 1u);
   EXPECT_EQ(Show(flow, now), 2u);
-  EXPECT_FALSE(flow.MayAsk(now));
+  EXPECT_FALSE(flow.CanRequest(now));
   EXPECT_TRUE(flow.Acknowledge(1));
   EXPECT_EQ(flow.under_way(), 1u);
   EXPECT_EQ(Show(flow, now), 3u);
-  EXPECT_FALSE(flow.MayAsk(now));
-  EXPECT_TRUE(flow.Acknowledge(3));  // and with it the one before
+  EXPECT_FALSE(flow.CanRequest(now));
+  EXPECT_TRUE(flow.Acknowledge(3));  // acknowledges the previous one, too
   EXPECT_EQ(flow.under_way(), 0u);
 }
 
-TEST(ViewerFlow, OneIsAskedForAtATime) {
+TEST(ViewerFlow, OnePictureIsRequestedAtATime) {
   ViewerFlow flow;
-  flow.Ask(false, FromSeconds(1));
-  EXPECT_TRUE(flow.asking());
-  EXPECT_FALSE(flow.MayAsk(FromSeconds(9)));
+  flow.Request(false, FromSeconds(1));
+  EXPECT_TRUE(flow.is_pending());
+  EXPECT_FALSE(flow.CanRequest(FromSeconds(9)));
   (void)flow.Send();
-  EXPECT_TRUE(flow.MayAsk(FromSeconds(9)));
+  EXPECT_TRUE(flow.CanRequest(FromSeconds(9)));
 }
 
-TEST(ViewerFlow, WhatWasNeverSentCannotBeAcknowledged) {
+TEST(ViewerFlow, OnlySentPicturesCanBeAcknowledged) {
   ViewerFlow flow;
   EXPECT_FALSE(flow.Acknowledge(1));
   Show(flow, FromSeconds(1));
   EXPECT_FALSE(flow.Acknowledge(2));
   EXPECT_TRUE(flow.Acknowledge(1));
   Show(flow, FromSeconds(1));
-  EXPECT_TRUE(flow.Acknowledge(1));  // once more: nothing new
+  EXPECT_TRUE(flow.Acknowledge(1));  // a repetition changes nothing
   EXPECT_EQ(flow.under_way(), 1u);
 }
 
-TEST(ViewerFlow, AStillAskedForBeforeTheViewChangedIsNone) {
+TEST(ViewerFlow, AStillOfAnOldViewDoesNotCount) {
   ViewerFlow flow;
   const Time asked = FromSeconds(5);
-  flow.Ask(true, asked);
+  flow.Request(true, asked);
   EXPECT_TRUE(flow.HasStill(asked));
-  const Time changed = asked + Time(1);  // while the still is being drawn
+  const Time changed = asked + Time(1);  // while the still is being rendered
   EXPECT_EQ(flow.Send(), 1u);
   EXPECT_FALSE(flow.HasStill(changed));
 }
 
-TEST(ViewerFlow, AFailedPictureIsTriedAgainAfterAWhile) {
+TEST(ViewerFlow, AFailedPictureIsRetriedLater) {
   ViewerFlow flow;
   const Time now = FromSeconds(5);
-  flow.Ask(true, now);
+  flow.Request(true, now);
   flow.Fail();
   EXPECT_FALSE(flow.HasStill(FromSeconds(0)));
   EXPECT_EQ(flow.under_way(), 0u);
-  EXPECT_FALSE(flow.MayAsk(now + ViewerFlow::kRetry - Time(1)));
-  EXPECT_TRUE(flow.MayAsk(now + ViewerFlow::kRetry));
+  EXPECT_FALSE(flow.CanRequest(now + ViewerFlow::kRetry - Time(1)));
+  EXPECT_TRUE(flow.CanRequest(now + ViewerFlow::kRetry));
 }
 
-// Sixty poses a second for `seconds`; the viewer acknowledges at once or not at all.
+// 60 poses per second for `seconds`. The viewer acknowledges at once or not at all.
 void Stream(ViewerFlow& flow, double seconds, bool acknowledges, Time* now) {
   for (const Time end = *now + FromSeconds(seconds); *now < end; *now += kFrame) {
     flow.CountDue(*now);
-    if (!flow.MayAsk(*now)) continue;
+    if (!flow.CanRequest(*now)) continue;
     const std::uint32_t number = Show(flow, *now);
     if (acknowledges) {
       EXPECT_TRUE(flow.Acknowledge(number));
@@ -82,7 +82,7 @@ void Stream(ViewerFlow& flow, double seconds, bool acknowledges, Time* now) {
   }
 }
 
-TEST(ViewerFlow, WhoKeepsUpStaysAtTheBest) {
+TEST(ViewerFlow, AFastViewerKeepsTheBestTier) {
   ViewerFlow flow;
   Time now = FromSeconds(3);
   Stream(flow, 20, true, &now);
@@ -90,14 +90,14 @@ TEST(ViewerFlow, WhoKeepsUpStaysAtTheBest) {
   EXPECT_EQ(flow.dropped(), 0u);
 }
 
-TEST(ViewerFlow, WhoStallsFallsAndComesBackSlowly) {
+TEST(ViewerFlow, AStalledViewerFallsAtOnceAndRisesSlowly) {
   ViewerFlow flow;
   Time now = FromSeconds(3);
   Stream(flow, 1.5, false, &now);
   EXPECT_EQ(flow.tier(), 1);
   EXPECT_GT(flow.dropped(), 50u);
   Stream(flow, 10, false, &now);
-  EXPECT_EQ(flow.tier(), ViewerFlow::kNumTiers - 1);  // and no further
+  EXPECT_EQ(flow.tier(), ViewerFlow::kNumTiers - 1);  // the worst tier
   EXPECT_TRUE(flow.Acknowledge(2));
   Stream(flow, 3, true, &now);
   EXPECT_EQ(flow.tier(), 2);
@@ -107,20 +107,20 @@ TEST(ViewerFlow, WhoStallsFallsAndComesBackSlowly) {
   EXPECT_EQ(flow.tier(), 0);
 }
 
-TEST(ViewerFlow, GoingUpInVainTakesLongerTheNextTime) {
+TEST(ViewerFlow, AFailedRiseDoublesThePatience) {
   ViewerFlow flow;
   Time now = FromSeconds(3);
   double waited[2] = {0.0, 0.0};
   for (double& seconds : waited) {
     Stream(flow, 1.5, false, &now);
     ASSERT_EQ(flow.tier(), 1);
-    // What is under way is shown after all.
+    // The viewer shows what it has received.
     for (std::uint32_t number = 1; flow.under_way() > 0; ++number) (void)flow.Acknowledge(number);
     const Time start = now;
     while (flow.tier() > 0 && now - start < FromSeconds(100)) Stream(flow, 0.5, true, &now);
     seconds = ToSeconds(now - start);
   }
-  EXPECT_LT(waited[0], 10.0);  // two tiers: the second window was half lost, too
+  EXPECT_LT(waited[0], 10.0);  // two tiers, because the second window was half lost
   EXPECT_GT(waited[1], waited[0] + 3.0);
 }
 

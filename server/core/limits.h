@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace furrow::server {
+
+// Upper bounds of one daemon ([limits] in furrow.example.toml). Counts are in [1, 1'000'000],
+// rates and times in (0, 1e9]; ValidateConfig() checks them. Each limit applies to the whole daemon
+// unless its comment names something smaller.
+struct Limits {
+  int max_connections = 256;          // TCP connections
+  int max_udp_peers = 4096;           // UDP addresses remembered; the longest idle one is evicted
+  int max_subjects = 1024;            // subjects published at a time
+  int max_skeletons = 256;            // bound skeletons kept for reuse
+  int max_subscriptions = 64;         // per peer
+  double packets_per_second = 20000;  // per peer: datagrams or TCP messages
+  double packet_burst = 4000;         // per peer: messages accepted at once
+  int outbox_messages = 64;   // per TCP peer: queued frames; newer frames replace older ones
+  double idle_seconds = 30;   // forget a peer without subscriptions after this silence
+  double loss_seconds = 0.5;  // a subject without a pose for this long decays to neutral
+  double drain_seconds = 2;   // after SIGTERM: time for queued messages to leave
+  friend bool operator==(const Limits&, const Limits&) = default;
+};
+
+}  // namespace furrow::server

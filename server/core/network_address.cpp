@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/core/network_address.h"
+
+#include <charconv>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+
+namespace furrow::server {
+
+Result<HostPort> ParseHostPort(std::string_view text) {
+  const Status error(StatusCode::kInvalidArgument,
+                     "'" + std::string(text) + "' is not a numeric HOST:PORT", "",
+                     "give an address and a port: 127.0.0.1:9000 or [::1]:9000");
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string_view::npos) return error;
+  std::string_view host = text.substr(0, colon);
+  const std::string_view port = text.substr(colon + 1);
+  if (host.size() >= 2 && host.front() == '[' && host.back() == ']') {
+    host = host.substr(1, host.size() - 2);
+  } else if (host.find(':') != std::string_view::npos) {
+    return error;
+  }
+  HostPort result{std::string(host), 0};
+  const auto [end, code] = std::from_chars(port.data(), port.data() + port.size(), result.port);
+  if (code != std::errc() || end != port.data() + port.size() || result.port == 0 ||
+      !IsNumericAddress(result.host)) {
+    return error;
+  }
+  return result;
+}
+
+bool IsNumericAddress(const std::string& address) {
+  in6_addr buffer;  // large enough for both families
+  return inet_pton(AF_INET, address.c_str(), &buffer) == 1 ||
+         inet_pton(AF_INET6, address.c_str(), &buffer) == 1;
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/http/api/capture_api.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "base/status.h"
+#include "rig/rig_reference_pose.h"
+
+namespace furrow::server {
+namespace {
+
+constexpr char kNeutral[] = "neutral";
+constexpr std::size_t kMaxUndo = 64;
+constexpr std::size_t kMaxPoseName = 64;
+
+using Values = std::vector<float>;
+
+Values WeightsOf(const Subject& subject) {
+  const auto weights = subject.pipeline->wrinkle_weights();
+  return {weights.begin(), weights.end()};
+}
+
+// The weights that the pose would have, solved in a pipeline of its own so that the live subject
+// and its filter do not change. nullopt: the solver refused the pose.
+std::optional<Values> SolvePreview(std::shared_ptr<const StreamDefinition> stream,
+                                   const wrinkle::LocalPose& pose,
+                                   const std::optional<wrinkle::LocalPose>& neutral) {
+  SubjectPipeline trial(std::move(stream));
+  *trial.mutable_pose() = pose;
+  if (!trial.SetNeutral(neutral) || trial.Solve(0, 0) != wrinkle::JobStatus::kOk) return {};
+  const auto weights = trial.wrinkle_weights();
+  return Values(weights.begin(), weights.end());
+}
+
+// All weights before and after a capture.
+Json ChangesJson(std::span<const std::string> names, const Values& before, const Values& after) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    list.push_back({{"name", names[i]}, {"before", before[i]}, {"after", after[i]}});
+  }
+  return list;
+}
+
+// Replaces joint names of the stream by those of the rig, which a rig file must contain.
+void UseJointNamesOfRig(const StreamDefinition& stream, wrinkle::ReferencePose* pose) {
+  for (wrinkle::JointDelta& delta : pose->joints) {
+    const auto alias = std::ranges::find(stream.aliases, delta.joint,
+                                         &std::pair<std::string, std::string>::second);
+    if (alias != stream.aliases.end()) delta.joint = alias->first;
+  }
+}
+
+// The rig with the subject's pose as the named reference pose. `added`: the rig had no such pose.
+Result<wrinkle::Rig> WithReferencePose(const wrinkle::Rig& rig, const Subject& subject,
+                                       const std::string& pose, bool* added) {
+  const SubjectPipeline& pipeline = *subject.pipeline;
+  auto captured =
+      character::ReferencePoseFromFrame(pose, {pipeline.stream().skeleton, pipeline.solved_pose()});
+  FURROW_RETURN_IF_ERROR(captured);
+  UseJointNamesOfRig(pipeline.stream(), &*captured);
+  wrinkle::Rig changed = rig;
+  const auto known =
+      std::ranges::find(changed.reference_poses, pose, &wrinkle::ReferencePose::name);
+  *added = known == changed.reference_poses.end();
+  if (*added) {
+    changed.reference_poses.push_back(*std::move(captured));
+  } else {
+    *known = *std::move(captured);
+  }
+  return changed;
+}
+
+bool IsPoseName(const std::string& name) {
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  };
+  return !name.empty() && name.size() <= kMaxPoseName && std::ranges::all_of(name, is_plain);
+}
+
+}  // namespace
+
+Json CaptureApi::History() const {
+  Json list = Json::array();
+  for (const Capture& capture : captures_) {
+    list.push_back({{"pose", capture.pose}, {"subject", capture.subject}});
+  }
+  return list;
+}
+
+bool CaptureApi::has_changed_rig() const {
+  return std::ranges::any_of(captures_,
+                             [](const Capture& capture) { return capture.rig != nullptr; });
+}
+
+void CaptureApi::Remember(Capture capture) {
+  if (captures_.size() >= kMaxUndo) captures_.erase(captures_.begin());
+  captures_.push_back(std::move(capture));
+}
+
+ApiReply CaptureApi::PostCapture(const ApiRequest& request, Hub& hub, Time now) {
+  const Result<Json> object = ParseObject(request);
+  if (!object.ok()) return ErrorReply(object.status());
+  const Json subject_name = object->value("subject", Json(""));
+  const Json pose = object->value("pose", Json());
+  const Json preview = object->value("preview", Json(false));
+  if (!subject_name.is_string()) return ErrorReply(400, "schema", "subject", "must be text");
+  if (!preview.is_boolean()) return ErrorReply(400, "schema", "preview", "must be true or false");
+  if (!pose.is_string() || !IsPoseName(pose.get<std::string>())) {
+    return ErrorReply(400, "schema", "pose",
+                      "must be 'neutral' or a name of letters, digits, '_' and '-'");
+  }
+  Subject* subject = hub.RequireAllDrivers(subject_name.get<std::string>());
+  if (subject == nullptr) return NoSuchSubject(hub, subject_name.get<std::string>());
+  if (!subject->pipeline->has_pose()) {
+    return ErrorReply(409, "conflict", "subject", "the subject has sent no pose yet");
+  }
+  if (pose == kNeutral) return CaptureNeutral(hub, *subject, preview.get<bool>(), now);
+  return CapturePose(hub, *subject, pose.get<std::string>(), preview.get<bool>(), now);
+}
+
+ApiReply CaptureApi::CaptureNeutral(Hub& hub, Subject& subject, bool preview, Time now) {
+  const SubjectPipeline& pipeline = *subject.pipeline;
+  const Values before = WeightsOf(subject);
+  const std::optional<Values> after =
+      SolvePreview(pipeline.shared_stream(), pipeline.pose(), pipeline.pose());
+  if (!after)
+    return ErrorReply(500, "internal", "", "the solver refused the pose as its own neutral pose");
+  if (!preview) {
+    std::optional<wrinkle::LocalPose> former = pipeline.neutral_pose();
+    hub.SetNeutral(subject, pipeline.pose(), now);
+    Remember({kNeutral, subject.name, subject.skeleton_hash, std::move(former), nullptr});
+  }
+  return JsonReply(
+      {{"pose", kNeutral},
+       {"preview", preview},
+       {"added", false},
+       {"weights", ChangesJson(pipeline.stream().binding->weight_names(), before, *after)},
+       {"captures", History()}});
+}
+
+ApiReply CaptureApi::CapturePose(Hub& hub, Subject& subject, const std::string& pose, bool preview,
+                                 Time now) {
+  bool added = false;
+  Result<wrinkle::Rig> changed = WithReferencePose(hub.rig(), subject, pose, &added);
+  if (!changed.ok()) return ErrorReply(changed.status());
+  const SubjectPipeline& pipeline = *subject.pipeline;
+  auto bound = wrinkle::RigBinding::Create(
+      *changed, pipeline.stream().skeleton, pipeline.stream().blend_shapes,
+      {.allow_missing = true, .aliases = pipeline.stream().aliases});
+  if (!bound.ok()) return ErrorReply(bound.status());
+  const Values before = WeightsOf(subject);
+  auto stream = std::make_shared<StreamDefinition>(pipeline.stream());
+  stream->binding = std::make_shared<const wrinkle::RigBinding>(*std::move(bound));
+  const auto after = SolvePreview(std::move(stream), pipeline.pose(), pipeline.neutral_pose());
+  if (!after) {
+    return ErrorReply(500, "internal", "", "the solver refused the pose with the changed rig");
+  }
+  Json changes = ChangesJson(pipeline.stream().binding->weight_names(), before, *after);
+  if (!preview) {
+    auto former = std::make_shared<const wrinkle::Rig>(hub.rig());
+    if (Status status = hub.SetRig(std::make_shared<const wrinkle::Rig>(*std::move(changed)), now);
+        !status.ok()) {
+      return ErrorReply(status);
+    }
+    spdlog::info("captured reference pose '{}' from '{}'", pose, subject.name);
+    Remember({pose, subject.name, subject.skeleton_hash, std::nullopt, std::move(former)});
+  }
+  return JsonReply({{"pose", pose},
+                    {"preview", preview},
+                    {"added", added},
+                    {"weights", std::move(changes)},
+                    {"captures", History()}});
+}
+
+ApiReply CaptureApi::Undo(Hub& hub, Time now) {
+  if (captures_.empty()) return ErrorReply(409, "conflict", "", "there is nothing to undo");
+  const Capture& last = captures_.back();
+  if (last.rig != nullptr) {
+    if (Status status = hub.SetRig(last.rig, now); !status.ok()) return ErrorReply(status);
+  } else if (Subject* subject = hub.RequireAllDrivers(last.subject);
+             subject != nullptr && subject->skeleton_hash == last.skeleton_hash) {
+    hub.SetNeutral(*subject, last.neutral, now);
+  }
+  captures_.pop_back();
+  return JsonReply({{"captures", History()}});
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "server/core/time.h"
+#include "server/http/api/json_reply.h"
+#include "server/http/request/api_types.h"
+#include "server/session/hub.h"
+
+namespace furrow::server {
+
+// Captures the live pose of a subject as its neutral pose or as a reference pose of the rig, and
+// undoes captures: POST /api/capture and /api/capture/undo.
+class CaptureApi {
+ public:
+  [[nodiscard]] ApiReply PostCapture(const ApiRequest& request, Hub& hub, Time now);
+  [[nodiscard]] ApiReply Undo(Hub& hub, Time now);
+
+  // The captures that Undo() can revert, oldest first, as JSON.
+  [[nodiscard]] Json History() const;
+  // True if a capture in the history has changed the rig.
+  [[nodiscard]] bool has_changed_rig() const;
+
+ private:
+  struct Capture {
+    std::string pose;                           // "neutral", or the name of the reference pose
+    std::string subject;                        // the captured subject
+    std::uint64_t skeleton_hash = 0;            // its skeleton at the time
+    std::optional<wrinkle::LocalPose> neutral;  // the neutral pose before
+    std::shared_ptr<const wrinkle::Rig> rig;    // the rig before; null: a neutral was captured
+  };
+
+  [[nodiscard]] ApiReply CaptureNeutral(Hub& hub, Subject& subject, bool preview, Time now);
+  [[nodiscard]] ApiReply CapturePose(Hub& hub, Subject& subject, const std::string& pose,
+                                     bool preview, Time now);
+  void Remember(Capture capture);
+
+  std::vector<Capture> captures_;  // newest last
+};
+
+}  // namespace furrow::server

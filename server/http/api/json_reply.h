@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "base/status.h"
+#include "server/http/request/api_types.h"
+#include "server/session/hub.h"
+
+namespace furrow::server {
+
+using Json = nlohmann::ordered_json;
+
+// A reply with status 200 and a document. Invalid UTF-8 is shown with replacement characters.
+[[nodiscard]] ApiReply JsonReply(const Json& json);
+
+// Parses the JSON object in the body of a request. Errors: kParse, kSchema; `where` is "body".
+[[nodiscard]] Result<Json> ParseObject(const ApiRequest& request);
+
+// Status 404 with a hint that lists the connected subjects. Requires the hub's exclusive lock.
+[[nodiscard]] ApiReply NoSuchSubject(const Hub& hub, std::string_view name);
+
+}  // namespace furrow::server

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/http/api/rig_api.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "rig/rig_file.h"
+#include "server/http/api/json_reply.h"
+#include "wrinkle/solver/explain.h"
+
+namespace furrow::server {
+namespace {
+
+using wrinkle::Driver;
+
+std::string_view CombineName(wrinkle::Combine combine) {
+  switch (combine) {
+    case wrinkle::Combine::kMax: return "max";
+    case wrinkle::Combine::kSum: return "sum";
+    case wrinkle::Combine::kMean: return "mean";
+  }
+  return "";
+}
+
+std::string_view ModulationName(wrinkle::Modulation modulation) {
+  switch (modulation) {
+    case wrinkle::Modulation::kLinear: return "linear";
+    case wrinkle::Modulation::kCosine: return "cosine";
+    case wrinkle::Modulation::kCubic: return "cubic";
+  }
+  return "";
+}
+
+Json MaskJson(const wrinkle::Mask& mask) {
+  switch (mask.kind) {
+    case wrinkle::Mask::Kind::kSkinning: return {{"kind", "skinning"}};
+    case wrinkle::Mask::Kind::kSliding: return {{"kind", "sliding"}, {"ball", mask.ball}};
+    case wrinkle::Mask::Kind::kTexture: break;
+  }
+  const auto channel = static_cast<std::size_t>(std::clamp(mask.channel, 0, 3));
+  return {
+      {"kind", "texture"}, {"texture", mask.texture}, {"channel", std::string(1, "rgba"[channel])}};
+}
+
+Json RegionJson(const wrinkle::Region& region) {
+  Json weights = Json::array();
+  for (const wrinkle::Feed& feed : region.feeds) {
+    Json sources = Json::array();
+    for (const auto& source : feed.sources) {
+      sources.push_back({{"value", source.driver + "." + source.value}, {"gain", source.gain}});
+    }
+    weights.push_back({{"name", region.name + "." + feed.map},
+                       {"map", feed.map},
+                       {"sources", std::move(sources)}});
+  }
+  return {{"name", region.name},
+          {"mask", MaskJson(region.mask)},
+          {"combine", CombineName(region.combine)},
+          {"modulation", ModulationName(region.modulation)},
+          {"neighbours", region.neighbours},
+          {"weights", std::move(weights)}};
+}
+
+// A rig does not list the values of a driver in one place. They are the values that a pose driver
+// defines and those that regions use.
+Json DriverJson(const Driver& driver, const wrinkle::Rig& rig) {
+  Json values = Json::array();
+  const auto add = [&](const std::string& value, const Json& reference_pose) {
+    const std::string name = driver.name + "." + value;
+    const auto is_known = [&](const Json& known) { return known["name"] == name; };
+    if (std::ranges::none_of(values, is_known)) {
+      values.push_back({{"name", name}, {"reference_pose", reference_pose}});
+    }
+  };
+  if (driver.kind == Driver::Kind::kPose) {
+    for (const auto& value : driver.pose.values) add(value.name, value.reference_pose);
+  }
+  for (const wrinkle::Region& region : rig.regions) {
+    for (const wrinkle::Feed& feed : region.feeds) {
+      for (const auto& source : feed.sources) {
+        if (source.driver == driver.name) add(source.value, nullptr);
+      }
+    }
+  }
+  return {
+      {"name", driver.name}, {"kind", DriverKindName(driver.kind)}, {"values", std::move(values)}};
+}
+
+const Driver* FindDriver(const wrinkle::Rig& rig, std::string_view driver_value) {
+  const std::string_view name = driver_value.substr(0, driver_value.rfind('.'));
+  const auto found = std::ranges::find(rig.drivers, name, &Driver::name);
+  return found == rig.drivers.end() ? nullptr : &*found;
+}
+
+Json ReferencePoseOf(const Driver& driver, std::string_view driver_value) {
+  const std::string_view value = driver_value.substr(driver_value.rfind('.') + 1);
+  for (const auto& known : driver.pose.values) {
+    if (driver.kind == Driver::Kind::kPose && known.name == value) return known.reference_pose;
+  }
+  return nullptr;
+}
+
+Json PoseJson(const wrinkle::Explanation& explanation, const std::string& driver_value) {
+  for (const auto& pose : explanation.pose_values) {
+    if (pose.driver_value != driver_value) continue;
+    return {
+        {"displacement", pose.displacement},   {"moved", pose.moved},     {"along", pose.along},
+        {"perpendicular", pose.perpendicular}, {"falloff", pose.falloff}, {"result", pose.result}};
+  }
+  return nullptr;
+}
+
+Json AnglesJson(const wrinkle::Explanation& explanation, const std::string& driver) {
+  Json angles = Json::array();
+  for (const auto& angle : explanation.angles) {
+    if (angle.driver != driver) continue;
+    angles.push_back({{"what", angle.what}, {"degrees", angle.degrees}});
+  }
+  if (angles.empty()) return nullptr;
+  return angles;
+}
+
+Json StrainJson(const wrinkle::Explanation& explanation, const std::string& driver) {
+  for (const auto& strain : explanation.strains) {
+    if (strain.driver != driver) continue;
+    return {
+        {"smallest", strain.smallest}, {"largest", strain.largest}, {"degrees", strain.degrees}};
+  }
+  return nullptr;
+}
+
+Json ContributionJson(const wrinkle::Explanation& explanation, const wrinkle::Rig& rig,
+                      const wrinkle::Explanation::Contribution& part) {
+  const Driver* driver = FindDriver(rig, part.driver_value);
+  Json json = {{"value", part.driver_value},
+               {"kind", driver == nullptr ? "" : DriverKindName(driver->kind)},
+               {"reference_pose", nullptr},
+               {"driver_value", part.value},
+               {"gain", part.gain},
+               {"product", part.product},
+               {"pose", PoseJson(explanation, part.driver_value)},
+               {"angles", nullptr},
+               {"strain", nullptr}};
+  if (driver != nullptr) {
+    json["reference_pose"] = ReferencePoseOf(*driver, part.driver_value);
+    json["angles"] = AnglesJson(explanation, driver->name);
+    json["strain"] = StrainJson(explanation, driver->name);
+  }
+  return json;
+}
+
+}  // namespace
+
+ApiReply RigApi::ShowRig(const Hub& hub) const {
+  const wrinkle::Rig& rig = hub.rig();
+  Json regions = Json::array();
+  for (const wrinkle::Region& region : rig.regions) regions.push_back(RegionJson(region));
+  Json drivers = Json::array();
+  for (const Driver& driver : rig.drivers) drivers.push_back(DriverJson(driver, rig));
+  Json poses = Json::array();
+  for (const auto& pose : rig.reference_poses) poses.push_back(pose.name);
+  return JsonReply({{"name", rig.name},
+                    {"anchor", rig.anchor},
+                    {"regions", std::move(regions)},
+                    {"drivers", std::move(drivers)},
+                    {"reference_poses", std::move(poses)},
+                    {"captures", captures_->History()},
+                    {"changed", captures_->has_changed_rig()}});
+}
+
+ApiReply RigApi::RigFile(const Hub& hub) const {
+  return {.body = character::RigToJson(hub.rig()), .file_name = "rig.json"};
+}
+
+ApiReply RigApi::Explain(const ApiRequest& request, Hub& hub) const {
+  const std::string_view name = request.url.Value("subject");
+  const Subject* subject = hub.RequireAllDrivers(name);
+  if (subject == nullptr) return NoSuchSubject(hub, name);
+  const SubjectPipeline& pipeline = *subject->pipeline;
+  const wrinkle::RigBinding& binding = *pipeline.stream().binding;
+  const std::string_view wanted = request.url.Value("weight");
+  const auto names = binding.weight_names();
+  const auto found = std::ranges::find(names, wanted);
+  if (found == names.end()) {
+    return ErrorReply(404, "not_found", "weight", "no weight '" + std::string(wanted) + "'",
+                      "see /api/rig for all weights");
+  }
+  const auto index = static_cast<std::size_t>(found - names.begin());
+  wrinkle::Explanation explanation;
+  if (wrinkle::Explain(binding, pipeline.solved_pose(), &explanation) != wrinkle::JobStatus::kOk) {
+    return ErrorReply(500, "internal", "", "the solver refused the pose");
+  }
+  const wrinkle::Explanation::Weight& weight = explanation.weights[index];
+  Json contributions = Json::array();
+  for (const auto& part : weight.contributions) {
+    contributions.push_back(ContributionJson(explanation, binding.rig(), part));
+  }
+  Json conflicts = Json::array();
+  for (const auto& conflict : weight.conflicts) {
+    conflicts.push_back(
+        {{"weight", conflict.weight}, {"other", conflict.other}, {"factor", conflict.factor}});
+  }
+  return JsonReply({{"subject", subject->name},
+                    {"sequence", pipeline.sequence()},
+                    {"weight", weight.name},
+                    {"live", pipeline.wrinkle_weights()[index]},
+                    {"result", weight.result},
+                    {"combined", weight.combined},
+                    {"modulated", weight.modulated},
+                    {"contributions", std::move(contributions)},
+                    {"conflicts", std::move(conflicts)}});
+}
+
+}  // namespace furrow::server

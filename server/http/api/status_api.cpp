@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/http/api/status_api.h"
+
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+#include <prometheus/metric_family.h>
+#include <prometheus/text_serializer.h>
+#include <spdlog/fmt/fmt.h>
+
+#include "server/http/api/json_reply.h"
+
+namespace furrow::server {
+namespace {
+
+std::string_view StateOf(const Subject& subject) {
+  if (subject.ended) return "ended";
+  if (!subject.pipeline->has_pose()) return "waiting";
+  return subject.lost ? "lost" : "live";
+}
+
+using prometheus::MetricType;
+
+prometheus::MetricFamily Family(std::string_view name, std::string_view help, MetricType type,
+                                double value) {
+  prometheus::MetricFamily family;
+  family.name = name;
+  family.help = help;
+  family.type = type;
+  prometheus::ClientMetric metric;
+  (type == MetricType::Counter ? metric.counter.value : metric.gauge.value) = value;
+  family.metric.push_back(metric);
+  return family;
+}
+
+}  // namespace
+
+ApiReply StatusApi::Subjects(Hub& hub, Time now) const {
+  Json list = Json::array();
+  for (const auto& subject : hub.subjects().all()) {
+    const SubjectPipeline& pipeline = *subject->pipeline;
+    const SubjectStats& stats = subject->stats;
+    list.push_back({{"name", subject->name},
+                    {"state", StateOf(*subject)},
+                    {"source", hub.SourceOf(*subject)},
+                    {"skeleton", fmt::format("{:016x}", subject->skeleton_hash)},
+                    {"joints", pipeline.stream().skeleton.num_joints()},
+                    {"blend_shapes", pipeline.stream().blend_shapes.size()},
+                    {"sequence", pipeline.sequence()},
+                    {"rate_hz", stats.rate_hz(now)},
+                    {"poses", stats.poses()},
+                    {"lost", stats.lost()},
+                    {"late", stats.late()},
+                    {"jitter_ms", stats.jitter_seconds(now) * 1e3},
+                    {"age_ms", ToSeconds(now - subject->last_pose) * 1e3},
+                    {"neutral", pipeline.neutral_pose().has_value()}});
+  }
+  return JsonReply({{"subjects", std::move(list)}});
+}
+
+ApiReply StatusApi::ShowStatus(const Hub& hub, Time now) const {
+  return JsonReply({{"version", FURROW_VERSION},
+                    {"session", fmt::format("{:016x}", parts_.session)},
+                    {"uptime_s", ToSeconds(now - parts_.started)},
+                    {"render", parts_.renders},
+                    {"renderer", parts_.renderer},
+                    {"viewers", parts_.viewers()},
+                    {"subscriptions", hub.num_subscriptions()},
+                    {"subjects", hub.num_subjects()},
+                    {"pictures_rendered", parts_.metrics->Get(Counter::kPicturesRendered)},
+                    {"pictures_encoded", parts_.metrics->Get(Counter::kPicturesEncoded)},
+                    {"pictures_dropped", parts_.metrics->Get(Counter::kPicturesDroppedSlow)},
+                    {"playback", parts_.plays},
+                    {"draining", hub.draining()}});
+}
+
+ApiReply StatusApi::Health() const { return JsonReply({{"ok", true}}); }
+
+ApiReply StatusApi::Ready(const Hub& hub) const {
+  if (hub.draining()) return ErrorReply(503, "unavailable", "", "the daemon is shutting down");
+  if (parts_.wants_pictures && !parts_.renders) {
+    return ErrorReply(503, "unavailable", "", "rendering is enabled but no renderer is available");
+  }
+  return JsonReply({{"ok", true}});
+}
+
+ApiReply StatusApi::MetricsText(const Hub& hub) const {
+  std::vector<prometheus::MetricFamily> families;
+  for (int i = 0; i < static_cast<int>(Counter::kCount); ++i) {
+    const auto counter = static_cast<Counter>(i);
+    families.push_back(Family(CounterName(counter), CounterHelp(counter), MetricType::Counter,
+                              static_cast<double>(parts_.metrics->Get(counter))));
+  }
+  const auto add_gauge = [&families](std::string_view name, std::string_view help, double value) {
+    families.push_back(Family(name, help, MetricType::Gauge, value));
+  };
+  add_gauge("furrow_subjects", "Connected subjects.", static_cast<double>(hub.num_subjects()));
+  add_gauge("furrow_subscriptions", "Active subscriptions.",
+            static_cast<double>(hub.num_subscriptions()));
+  add_gauge("furrow_http_connections", "Open HTTP connections.",
+            static_cast<double>(parts_.connections()));
+  add_gauge("furrow_http_viewers", "Open WebSockets and picture streams.",
+            static_cast<double>(parts_.viewers()));
+  return {.type = "text/plain; version=0.0.4; charset=utf-8",
+          .body = prometheus::TextSerializer().Serialize(families)};
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "server/core/metrics.h"
+#include "server/core/time.h"
+#include "server/http/request/api_types.h"
+#include "server/session/hub.h"
+
+namespace furrow::server {
+
+// Reports the state of the daemon: /api/subjects, /api/status, /healthz, /readyz and /metrics.
+class StatusApi {
+ public:
+  struct Parts {
+    std::uint64_t session = 0;
+    Time started{0};
+    const Metrics* metrics = nullptr;
+    bool renders = false;              // a renderer is running
+    bool wants_pictures = false;       // the configuration asks for pictures
+    bool plays = false;                // started with --play
+    std::string renderer;              // description of the renderer, for people
+    std::function<int()> connections;  // HTTP connections
+    std::function<int()> viewers;      // WebSockets and picture streams
+  };
+  explicit StatusApi(Parts parts) : parts_(std::move(parts)) {}
+
+  [[nodiscard]] ApiReply Subjects(Hub& hub, Time now) const;
+  [[nodiscard]] ApiReply ShowStatus(const Hub& hub, Time now) const;
+  // The reply itself shows that the hub's event loop runs.
+  [[nodiscard]] ApiReply Health() const;
+  [[nodiscard]] ApiReply Ready(const Hub& hub) const;
+  // Prometheus' text format.
+  [[nodiscard]] ApiReply MetricsText(const Hub& hub) const;
+
+ private:
+  const Parts parts_;
+};
+
+}  // namespace furrow::server

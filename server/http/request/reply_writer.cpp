@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/http/request/reply_writer.h"
+
+#include <utility>
+
+namespace furrow::server {
+namespace {
+
+// The page loads nothing from other hosts and must not be framed. Its menu sets styles from
+// scripts.
+constexpr char kContentPolicy[] =
+    "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; "
+    "connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+
+}  // namespace
+
+void SetCommonHeaders(std::string_view content_type, http::fields* fields) {
+  fields->set(http::field::server, "furrowd");
+  fields->set(http::field::content_type,
+              beast::string_view(content_type.data(), content_type.size()));
+  fields->set("X-Content-Type-Options", "nosniff");
+  fields->set("Referrer-Policy", "no-referrer");
+  fields->set("Content-Security-Policy", kContentPolicy);
+}
+
+net::awaitable<bool> WriteReply(beast::tcp_stream& stream, const WebRequest& request,
+                                ApiReply reply) {
+  http::response<http::string_body> response(static_cast<http::status>(reply.status),
+                                             request.version());
+  SetCommonHeaders(reply.type, &response);
+  response.keep_alive(request.keep_alive());
+  response.set(http::field::cache_control, "no-store");
+  if (!reply.file_name.empty()) {
+    response.set(http::field::content_disposition,
+                 "attachment; filename=\"" + reply.file_name + "\"");
+  }
+  if (!reply.allow.empty()) response.set(http::field::allow, reply.allow);
+  // A HEAD request for a picture renders none, so the length of the body is unknown.
+  const bool has_no_length = request.method() == http::verb::head && reply.body.empty();
+  response.body() = std::move(reply.body);
+  if (!has_no_length) response.prepare_payload();
+  co_return co_await WriteResponse(stream, request, response);
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+#include <boost/beast/http/serializer.hpp>
+#include <boost/beast/http/write.hpp>
+
+#include "server/http/request/api_types.h"
+#include "server/http/request/beast.h"
+
+namespace furrow::server {
+
+[[nodiscard]] inline std::string_view ToView(beast::string_view text) {
+  return {text.data(), text.size()};
+}
+
+// Sets the header fields that every response has: server, content type and security policies.
+void SetCommonHeaders(std::string_view content_type, http::fields* fields);
+
+// Sends a response, or only its head for a HEAD request. False: the connection must close, because
+// the client asked for it, has gone, or did not read the response within kWebDeadline.
+template <class Body>
+[[nodiscard]] net::awaitable<bool> WriteResponse(beast::tcp_stream& stream,
+                                                 const WebRequest& request,
+                                                 http::response<Body>& response) {
+  http::response_serializer<Body> serializer(response);
+  stream.expires_after(kWebDeadline);
+  beast::error_code error;
+  if (request.method() == http::verb::head) {
+    co_await http::async_write_header(stream, serializer, Redirect(error));
+  } else {
+    co_await http::async_write(stream, serializer, Redirect(error));
+  }
+  co_return !error && response.keep_alive();
+}
+
+// Sends a whole reply. Returns as WriteResponse().
+[[nodiscard]] net::awaitable<bool> WriteReply(beast::tcp_stream& stream, const WebRequest& request,
+                                              ApiReply reply);
+
+}  // namespace furrow::server

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "protocol/codec/codec.h"
+#include "protocol/messages/messages.h"
+#include "server/core/metrics.h"
+#include "server/session/peers/peer.h"
+
+namespace furrow::server {
+
+// Encodes messages and sends them to peers. Holds one encoder and one buffer, so each thread needs
+// its own. Every message carries the daemon's session number. Messages that exceed the credit of an
+// unproven UDP address are dropped and counted.
+class MessageSender {
+ public:
+  // `shard`: passed on to Link::SendFrame().
+  MessageSender(std::uint64_t session, Metrics* metrics, int shard = 0)
+      : session_(session), metrics_(metrics), shard_(shard) {}
+
+  template <class Message>
+  void SendReply(Peer& peer, protocol::Header header, const Message& message) {
+    if (!Encode(peer, header, message)) return;
+    peer.link->SendReply(buffer_);
+  }
+  // Sends one frame of the subscription `key`, counts it as `sent`, and counts the frames that it
+  // displaced as `dropped`. Returns the number of displaced frames. `keep`: see Link::SendFrame().
+  template <class Message>
+  std::uint64_t SendFrame(Peer& peer, std::uint64_t key, protocol::Header header,
+                          const Message& message, Counter sent, Counter dropped, std::size_t keep) {
+    if (!Encode(peer, header, message)) return 0;
+    return Push(peer, key, sent, dropped, keep);
+  }
+  // The same for a payload that is already encoded.
+  std::uint64_t SendEncodedFrame(Peer& peer, std::uint64_t key, protocol::Header header,
+                                 std::span<const std::uint8_t> payload, Counter sent,
+                                 Counter dropped, std::size_t keep) {
+    header.session = session_;
+    protocol::WriteMessage(header, payload, buffer_);
+    return SpendCredit(peer) ? Push(peer, key, sent, dropped, keep) : 0;
+  }
+  // Encodes a message without an addressee into `out`, envelope included.
+  template <class Message>
+  void Encode(const Message& message, std::vector<std::uint8_t>& out) {
+    encoder_.Encode({.session = session_}, message, out);
+  }
+  // Answers `request` with an error and counts it.
+  void SendError(Peer& peer, const protocol::Header& request, protocol::ErrorCode code,
+                 std::string text) {
+    metrics_->Add(Counter::kMessagesRefused);
+    SendReply(peer, ReplyHeader(request), protocol::ErrorMessage{code, Truncate(std::move(text))});
+  }
+
+  // The header of a reply: the stream and sequence of the request.
+  [[nodiscard]] static protocol::Header ReplyHeader(const protocol::Header& request) {
+    return {.session = 0, .stream = request.stream, .sequence = request.sequence};
+  }
+  // Shortens UTF-8 text to the wire's limit without cutting a character in two.
+  [[nodiscard]] static std::string Truncate(std::string text) {
+    if (text.size() <= protocol::kMaxTextBytes) return text;
+    std::size_t size = protocol::kMaxTextBytes;
+    while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xC0) == 0x80) --size;
+    text.resize(size);
+    return text;
+  }
+
+ private:
+  template <class Message>
+  bool Encode(Peer& peer, protocol::Header& header, const Message& message) {
+    header.session = session_;
+    encoder_.Encode(header, message, buffer_);
+    return SpendCredit(peer);
+  }
+  std::uint64_t Push(Peer& peer, std::uint64_t key, Counter sent, Counter dropped,
+                     std::size_t keep) {
+    metrics_->Add(sent);
+    const auto count = static_cast<std::uint64_t>(peer.link->SendFrame(key, buffer_, keep, shard_));
+    metrics_->Add(dropped, count);
+    return count;
+  }
+  bool SpendCredit(Peer& peer) {
+    if (peer.transport != Transport::kUdp || peer.credit.Spend(buffer_.size())) return true;
+    metrics_->Add(Counter::kDatagramsUnproven);
+    return false;
+  }
+
+  std::uint64_t session_;
+  Metrics* metrics_;
+  int shard_;
+  protocol::Encoder encoder_;
+  std::vector<std::uint8_t> buffer_;
+};
+
+}  // namespace furrow::server

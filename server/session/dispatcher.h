@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <utility>
+
+#include "protocol/codec/codec.h"
+#include "protocol/messages/messages.h"
+#include "server/core/metrics.h"
+#include "server/core/time.h"
+#include "server/session/delivery/message_sender.h"
+#include "server/session/peers/peer.h"
+#include "server/session/shards.h"
+#include "server/session/stream_router.h"
+#include "server/session/subjects/publishers.h"
+#include "server/session/subjects/subject_registry.h"
+#include "server/session/subscriptions/subscribers.h"
+
+namespace furrow::server {
+
+// Verifies and decodes messages and passes each on by its kind: poses to the StreamRouter, offers
+// to Publishers, requests to Subscribers. Answers messages about the connection itself (Hello,
+// Ping, ListSubjects). Invalid messages are counted and, except over UDP, answered with an error.
+class Dispatcher {
+ public:
+  struct Parts {
+    Shards* shards = nullptr;
+    StreamRouter* router = nullptr;
+    Publishers* publishers = nullptr;
+    Subscribers* subscribers = nullptr;
+    const SubjectRegistry* subjects = nullptr;
+    MessageSender* messages = nullptr;  // used under the exclusive lock
+    Metrics* metrics = nullptr;
+    std::function<std::uint64_t()> make_token;  // unpredictable and not 0
+  };
+  explicit Dispatcher(Parts parts) : parts_(std::move(parts)) {}
+
+  // Handles one whole message of `peer`. The caller holds the shard's lock. Only poses run under
+  // that lock alone; other messages take the exclusive lock. A pose may stay in the shard's batch,
+  // so `bytes` must stay valid until StreamRouter::PublishGathered().
+  void Dispatch(Shard& shard, Peer& peer, std::span<const std::uint8_t> bytes, Time now);
+
+  // Sends a list of the subjects to a peer that follows it, if the list has changed since.
+  void UpdateSubjectList(Peer& peer);
+  // Refuses all further subscriptions because the daemon shuts down.
+  void RefuseSubscriptions() { refuses_subscriptions_ = true; }
+
+ private:
+  void DispatchVerified(Shard& shard, Peer& peer, const protocol::MessageView& view, Time now);
+  void DispatchExclusive(Shard& shard, Peer& peer, const protocol::MessageView& view, Time now);
+  void DispatchRequest(Shard& shard, Peer& peer, const protocol::MessageView& view, Time now);
+  template <class Request>
+  void Subscribe(Shard& shard, Peer& peer, const protocol::MessageView& view, Request& request);
+  template <class Message, class Handler>
+  void Decode(Shard& shard, Peer& peer, const protocol::MessageView& view, Message& message,
+              const Handler& handler);
+  void RejectEnvelope(Shard& shard, Peer& peer, const protocol::MessageView& view,
+                      protocol::DecodeStatus status);
+  void OnHello(Peer& peer, const protocol::Header& header, const protocol::Hello& hello);
+  void OnListSubjects(Peer& peer, const protocol::Header& header,
+                      const protocol::ListSubjects& request);
+  void SendSubjectList(Peer& peer, const protocol::Header& request);
+
+  const Parts parts_;
+  bool refuses_subscriptions_ = false;
+};
+
+}  // namespace furrow::server

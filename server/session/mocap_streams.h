@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "protocol/messages/messages.h"
+#include "protocol/mocap/neutral_frame.h"
+#include "server/core/metrics.h"
+#include "server/core/time.h"
+#include "server/session/peers/peer.h"
+#include "server/session/shards.h"
+#include "server/session/stream_router.h"
+
+namespace furrow::server {
+
+// Turns the frames of foreign mocap wires (VMC, Live Link Face) into streams: offers a skeleton
+// when a subject appears or changes its layout, then routes its poses.
+//
+// All mocap peers belong to shard 0, so shard 0's lock guards this object.
+class MocapStreams {
+ public:
+  // A stream without poses is forgotten after `idle_seconds` if its offer was rejected.
+  MocapStreams(double idle_seconds, Shards* shards, StreamRouter* router, Metrics* metrics)
+      : idle_seconds_(idle_seconds), shards_(shards), router_(router), metrics_(metrics) {}
+
+  // Precondition: the caller holds the shard's lock. Frames of a rejected subject, and of more than
+  // 64 subjects, are counted as Counter::kMocapRefused.
+  void OnFrame(Shard& shard, Peer& peer, const protocol::mocap::NeutralFrame& frame, Time now);
+
+  // The subject has left: its next frame offers it again. Requires the exclusive lock.
+  void ForgetSubject(const std::string& name);
+  // Forgets rejected streams that have gone idle. Requires the exclusive lock.
+  void ForgetRejected(Time now);
+
+ private:
+  struct Stream {
+    std::uint16_t number = 0;
+    bool rejected = false;  // offered again every second, in case the reason has gone
+    Time offered{0};
+    Time last_frame{0};
+    std::uint32_t layout = 0;
+    protocol::SkeletonOffer offer;
+  };
+
+  [[nodiscard]] Stream* FindOrAdd(PeerId peer, const std::string& subject);
+  void Offer(Shard& shard, Peer& peer, const protocol::Header& header, Stream& stream,
+             const protocol::mocap::NeutralFrame& frame, Time now);
+
+  const double idle_seconds_;
+  Shards* const shards_;
+  StreamRouter* const router_;
+  Metrics* const metrics_;
+  std::map<std::pair<PeerId, std::string>, Stream> streams_;  // by peer and subject name
+  std::uint16_t next_number_ = 0;
+};
+
+}  // namespace furrow::server

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/shards.h"
+
+namespace furrow::server {
+
+Shards::Shards(int count, std::uint64_t session, Metrics* metrics, StreamRouter* router)
+    : mutexes_(count), router_(router) {
+  for (int i = 0; i < count; ++i) {
+    shards_.push_back(std::make_unique<Shard>(i, count, session, metrics));
+  }
+}
+
+void Shards::Flush(Shard& shard) {
+  if (shard.buffered_sender != nullptr) shard.buffered_sender->Flush();
+}
+
+Shards::Lock::Lock(Shards& shards, int index) : shards_(shards), shard_(shards.at(index)) {
+  if (shard_.shard_locks++ == 0 && shard_.exclusive_locks == 0) {
+    shards_.mutexes_.Lock(shard_.index);
+  }
+}
+
+Shards::Lock::~Lock() {
+  if (shard_.shard_locks == 1) {
+    shards_.router_->PublishGathered(shard_);
+    Flush(shard_);
+  }
+  if (--shard_.shard_locks == 0 && shard_.exclusive_locks == 0) {
+    shards_.mutexes_.Unlock(shard_.index);
+  }
+}
+
+Shards::ExclusiveLock::ExclusiveLock(Shards& shards, int index)
+    : shards_(shards), shard_(shards.at(index)) {
+  shards_.router_->PublishGathered(shard_);
+  if (shard_.exclusive_locks++ > 0 || shards_.size() == 1) return;
+  if (shard_.shard_locks > 0) {
+    // Another shard may publish the same subject as soon as this one is unlocked.
+    Flush(shard_);
+    shards_.mutexes_.Unlock(shard_.index);
+  }
+  shards_.mutexes_.LockAll();
+}
+
+Shards::ExclusiveLock::~ExclusiveLock() {
+  if (--shard_.exclusive_locks > 0) return;
+  const bool is_single = shards_.size() == 1;
+  if (is_single && shard_.shard_locks > 0) return;  // the end of the shard lock flushes
+  for (const auto& shard : shards_.shards_) Flush(*shard);
+  if (is_single) return;
+  if (shard_.shard_locks > 0) {
+    shards_.mutexes_.UnlockAllExcept(shard_.index);
+  } else {
+    shards_.mutexes_.UnlockAll();
+  }
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <utility>
+
+#include "protocol/framing/envelope.h"
+#include "protocol/messages/messages.h"
+#include "server/core/time.h"
+#include "server/session/delivery/publish_context.h"
+#include "server/session/recording_tap.h"
+#include "server/session/shard.h"
+#include "server/session/subjects/publishers.h"
+#include "server/session/subjects/subject_registry.h"
+#include "server/session/subscriptions/subscribers.h"
+
+namespace furrow::server {
+
+// Called with each new or decayed set of weights. `shard`: of the calling thread; 0 if that thread
+// holds the exclusive lock.
+using OnWeights = std::function<void(const Subject& subject, int shard)>;
+
+// Connects publishers to subscribers: takes skeleton offers and decoded poses, solves the poses in
+// batches, and hands each result to the subscriptions, the recorder and OSC.
+class StreamRouter {
+ public:
+  struct Parts {
+    Publishers* publishers = nullptr;
+    Subscribers* subscribers = nullptr;
+    PublishContext* exclusive_context = nullptr;  // used under the exclusive lock
+    RecordingTap* recording = nullptr;            // optional
+    OnWeights on_weights;                         // optional
+  };
+  explicit StreamRouter(Parts parts) : parts_(std::move(parts)) {}
+
+  // Starts or changes a subject. False: the offer was rejected, ignored or throttled. Requires the
+  // exclusive lock.
+  bool OnOffer(Peer& peer, const protocol::Header& header, const protocol::SkeletonOffer& offer,
+               Time now);
+
+  // Takes a pose up to its subject's local pose. The pose waits in the shard's batch for
+  // PublishGathered(), so `payload` must stay valid until then. `payload`: see GatheredPose.
+  void AcceptPose(Shard& shard, Peer& peer, const protocol::Header& header,
+                  const protocol::PoseFrame& pose, std::span<const std::uint8_t> payload, Time now);
+  // Solves the waiting poses of a shard together and publishes them in order of arrival.
+  void PublishGathered(Shard& shard);
+
+  // Publishes weights that changed without a new pose. `age_us`: time since the last pose, > 0.
+  // Requires the exclusive lock.
+  void PublishAged(Shard& shard, Subject& subject, std::int64_t age_us, Time now);
+
+  // Stops sending to subscribers, which have been sent a goodbye. Recorder and OSC go on.
+  void StopFanOut() { fans_out_ = false; }
+
+ private:
+  void Publish(Shard& shard, Subject& subject, std::span<const std::uint8_t> payload,
+               std::int64_t age_us, Time now);
+
+  const Parts parts_;
+  bool fans_out_ = true;
+};
+
+}  // namespace furrow::server

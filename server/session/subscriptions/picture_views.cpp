@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/subscriptions/picture_views.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <variant>
+
+#include <spdlog/spdlog.h>
+
+#include "protocol/messages/limits.h"
+#include "render/request_check.h"
+
+namespace furrow::server {
+namespace {
+
+// Pictures that may wait for a slow viewer without flow control.
+constexpr std::size_t kMaxQueuedPictures = 1;
+// The space in a message of kMaxReplyBytes beside the envelope and the table.
+constexpr std::size_t kMaxPictureBytes = protocol::kMaxReplyBytes - 1024;
+
+constexpr Time kAtRestAfter = FromSeconds(0.1);
+constexpr int kTierQualities[ViewerFlow::kNumTiers] = {85, 65, 45};  // JPEG
+
+Result<render::Camera> CameraOf(const protocol::SubscribePictures& request,
+                                const PictureSource& pictures) {
+  if (!request.has_camera) {
+    return pictures.Preset(request.camera_preset.empty() ? "face" : request.camera_preset);
+  }
+  render::Camera camera;
+  if (request.camera_follows) {
+    const Result<render::Camera> preset = pictures.Preset("face");
+    FURROW_RETURN_IF_ERROR(preset);
+    camera = *preset;
+  }
+  const protocol::Camera& given = request.camera;
+  camera.position = {given.eye.x, given.eye.y, given.eye.z};
+  camera.target = {given.target.x, given.target.y, given.target.z};
+  camera.fov_y_degrees = given.vertical_fov_degrees;
+  render::FrameRequest frame;
+  frame.camera = camera;
+  frame.camera.follow_joint = -1;  // the joint comes from the preset and needs no check
+  FURROW_RETURN_IF_ERROR(render::CheckRequest(frame, /*num_joints=*/0));
+  return camera;
+}
+
+// Since when the viewer has been shown the same: neither the subject nor the view has changed.
+Time UnchangedSince(const Subscription& subscription, const PictureRequest& request) {
+  return std::max(subscription.subject->rest.moved_at(), request.changed);
+}
+
+bool IsAtRest(const Subscription& subscription, const PictureRequest& request, Time now) {
+  return now - UnchangedSince(subscription, request) >= kAtRestAfter;
+}
+
+// The job of this spec, added if it is absent. All jobs of a list share one snapshot.
+RenderJob& FindOrAddJob(const Subscription& subscription, const PictureSpec& spec,
+                        std::int64_t age_us, std::vector<RenderJob>* jobs) {
+  const auto job = std::ranges::find(*jobs, spec, &RenderJob::spec);
+  if (job != jobs->end()) return *job;
+  const Subject& subject = *subscription.subject;
+  std::shared_ptr<const Snapshot> snapshot =
+      jobs->empty() ? subject.pipeline->TakeSnapshot(age_us, ToMicroseconds(subject.last_pose))
+                    : jobs->front().snapshot;
+  jobs->push_back({subject.id, spec, std::move(snapshot), {}, subject.rest.moved_at()});
+  return jobs->back();
+}
+
+}  // namespace
+
+Result<PictureRequest> PictureViews::MakeRequest(const protocol::SubscribePictures& request) {
+  PictureRequest result;
+  const Result<render::View> view = render::ParseView(request.view);
+  FURROW_RETURN_IF_ERROR(view);
+  Result<SharedSettings> settings = settings_.Get(request.settings);
+  FURROW_RETURN_IF_ERROR(settings);
+  const Result<render::Camera> camera = CameraOf(request, *pictures_);
+  FURROW_RETURN_IF_ERROR(camera);
+  result.spec = {.view = *view,
+                 .camera = *camera,
+                 .width = request.width,
+                 .height = request.height,
+                 .settings = *std::move(settings)};
+  result.overrides = request.settings;
+  const bool png = request.format == protocol::ImageFormat::kPng;
+  result.encoding.format = png ? render::ImageFormat::kPng : render::ImageFormat::kJpeg;
+  result.encoding.quality = png ? 0 : request.quality;
+  return result;
+}
+
+void PictureViews::SetView(Subscription& subscription, PictureRequest view, Time now) {
+  auto& request = std::get<PictureRequest>(subscription.request);
+  view.flow = std::move(request.flow);
+  request = std::move(view);
+  MarkChanged(subscription, request, now);
+}
+
+std::vector<Subscription*> PictureViews::SetOwnSettings(const render::Settings& settings,
+                                                        Time now) {
+  settings_.SetOwn(settings);
+  std::vector<Subscription*> changed;
+  table_->ForEach([&](Subscription& subscription) {
+    auto* request = std::get_if<PictureRequest>(&subscription.request);
+    if (request == nullptr) return;
+    // Overrides that were valid once are valid on top of any settings.
+    Result<SharedSettings> merged = settings_.Get(request->overrides);
+    if (!merged.ok()) return;
+    request->spec.settings = *std::move(merged);
+    MarkChanged(subscription, *request, now);
+    changed.push_back(&subscription);
+  });
+  return changed;
+}
+
+// A still of the old view that is not rendered yet would only delay the new view.
+void PictureViews::MarkChanged(const Subscription& subscription, PictureRequest& request,
+                               Time now) {
+  request.changed = now;
+  if (request.flow && request.flow->is_pending() && pictures_->WithdrawStill(subscription.uid)) {
+    request.flow->Withdraw();
+  }
+}
+
+PictureRequest* PictureViews::FlowControlled(Subscription& subscription) {
+  auto* request = std::get_if<PictureRequest>(&subscription.request);
+  return request != nullptr && request->flow ? request : nullptr;
+}
+
+bool PictureViews::NeedsStill(Subscription& subscription, Time now) {
+  const PictureRequest* viewer = FlowControlled(subscription);
+  return viewer != nullptr && !viewer->flow->HasStill(UnchangedSince(subscription, *viewer)) &&
+         IsAtRest(subscription, *viewer, now);
+}
+
+void PictureViews::AddJob(Subscription& subscription, PictureRequest& request, std::int64_t age_us,
+                          Time now, std::vector<RenderJob>* jobs) {
+  if (request.flow) return AddFlowControlledJob(subscription, request, age_us, now, jobs);
+  FindOrAddJob(subscription, request.spec, age_us, jobs)
+      .tickets.push_back({.subscription = subscription.uid,
+                          .encoding = request.encoding,
+                          .view_request = request.view_request});
+}
+
+void PictureViews::AddFlowControlledJob(Subscription& subscription, PictureRequest& request,
+                                        std::int64_t age_us, Time now,
+                                        std::vector<RenderJob>* jobs) {
+  ViewerFlow& flow = *request.flow;
+  const bool at_rest = IsAtRest(subscription, request, now);
+  subscription.owed = false;
+  // The viewer already has the refined picture of this pose and view.
+  if (at_rest && flow.HasStill(UnchangedSince(subscription, request))) return;
+  if (!flow.CanRequest(now)) {
+    subscription.owed = true;
+    // A job without tickets refreshes the pose of a picture that still waits for the renderer.
+    if (flow.is_pending()) FindOrAddJob(subscription, request.spec, age_us, jobs);
+    return;
+  }
+  flow.Request(at_rest, now);
+  PictureTicket ticket{.subscription = subscription.uid,
+                       .encoding = request.encoding,
+                       .view_request = request.view_request,
+                       .tier = static_cast<std::uint8_t>(flow.tier()),
+                       .still = at_rest};
+  if (request.encoding.format == render::ImageFormat::kJpeg) {
+    ticket.encoding.quality = kTierQualities[flow.tier()];
+  }
+  FindOrAddJob(subscription, request.spec, age_us, jobs).tickets.push_back(ticket);
+}
+
+void PictureViews::Submit(std::vector<RenderJob>* jobs) {
+  for (RenderJob& job : *jobs) pictures_->Submit(std::move(job));
+  jobs->clear();
+}
+
+void PictureViews::OnPicture(const FinishedPicture& picture) {
+  const bool too_large = picture.bytes.size() > kMaxPictureBytes;
+  if (too_large) {
+    metrics_->Add(Counter::kPicturesFailed, picture.tickets.size());
+    if (!std::exchange(has_logged_large_picture_, true)) {
+      spdlog::warn(
+          "a picture of {} x {} pixels has {} bytes, more than a message may hold; "
+          "request JPEG or a smaller size",
+          picture.width, picture.height, picture.bytes.size());
+    }
+  }
+  const bool failed = too_large || picture.bytes.empty();
+  if (!failed) FillImage(picture);
+  for (const PictureTicket& ticket : picture.tickets) {
+    Subscription* subscription = table_->Find(ticket.subscription);
+    if (subscription == nullptr) continue;  // it ended while the picture was rendered
+    if (!failed) {
+      SendPicture(*subscription, picture, ticket);
+    } else if (PictureRequest* viewer = FlowControlled(*subscription); viewer != nullptr) {
+      viewer->flow->Fail();
+      subscription->owed = subscription->subject != nullptr;
+    }
+  }
+}
+
+void PictureViews::FillImage(const FinishedPicture& picture) {
+  image_.width = static_cast<std::uint16_t>(picture.width);
+  image_.height = static_cast<std::uint16_t>(picture.height);
+  image_.format = picture.encoding.format == render::ImageFormat::kPng
+                      ? protocol::ImageFormat::kPng
+                      : protocol::ImageFormat::kJpeg;
+  image_.age_us = picture.age_us;
+  image_.received_us = picture.received_us;
+  image_.bytes = picture.bytes;
+}
+
+void PictureViews::SendPicture(Subscription& subscription, const FinishedPicture& picture,
+                               const PictureTicket& ticket) {
+  auto& request = std::get<PictureRequest>(subscription.request);
+  image_.view_request = ticket.view_request;
+  image_.tier = ticket.still ? 0 : ticket.tier;
+  image_.still = ticket.still;
+  image_.number = request.flow ? request.flow->Send() : 0;
+  image_.dropped = request.flow ? request.flow->dropped() : 0;
+  messages_->SendFrame(*subscription.peer, subscription.uid,
+                       {.stream = subscription.id,
+                        .sequence = picture.sequence,
+                        .capture_time_us = picture.capture_time_us},
+                       image_, Counter::kPicturesSent, Counter::kPicturesDroppedSlow,
+                       request.flow ? ViewerFlow::kMaxUnderWay : kMaxQueuedPictures);
+}
+
+}  // namespace furrow::server

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "protocol/messages/messages.h"
+#include "server/session/peers/peer.h"
+#include "server/session/subjects/subject_registry.h"
+#include "server/session/subscriptions/subscription.h"
+
+namespace furrow::server {
+
+// All subscriptions of a daemon, by uid and by the subject that they are bound to. Keeps
+// Peer::num_subscriptions up to date. The address of a subscription is stable until Erase().
+class SubscriptionTable {
+ public:
+  // Gives the subscription its peer, uid and id.
+  Subscription& Add(Peer& peer, const protocol::Header& request,
+                    std::unique_ptr<Subscription> subscription);
+  // Also drops the frames that are queued for it.
+  void Erase(Subscription& subscription);
+
+  // Null: no such subscription.
+  [[nodiscard]] Subscription* Find(std::uint64_t uid) const;
+  [[nodiscard]] Subscription* Find(const Peer& peer, std::uint16_t id) const;
+  // The subscription that this very request has created before.
+  [[nodiscard]] Subscription* FindRepeated(const Peer& peer, const protocol::Header& request) const;
+
+  // Binds a subscription to a subject. Binding twice changes nothing.
+  void Attach(Subscription& subscription, Subject& subject);
+  // Unbinds all subscriptions of a subject that leaves, and returns them.
+  [[nodiscard]] std::vector<Subscription*> DetachAll(const Subject& subject);
+
+  // The subscriptions bound to a subject, in the order in which they were attached. Does not
+  // allocate. Valid until the table changes.
+  [[nodiscard]] std::span<Subscription* const> Of(SubjectId subject) const;
+  // The subscriptions for which `matches` is true, in the order of their requests.
+  template <class Predicate>
+  [[nodiscard]] std::vector<Subscription*> Select(const Predicate& matches) const {
+    std::vector<Subscription*> selected;
+    for (const auto& [uid, subscription] : by_uid_) {
+      if (matches(*subscription)) selected.push_back(subscription.get());
+    }
+    SortByRequest(&selected);
+    return selected;
+  }
+  // In no particular order. `function` must not add or erase.
+  template <class Function>
+  void ForEach(const Function& function) const {
+    for (const auto& [uid, subscription] : by_uid_) function(*subscription);
+  }
+  [[nodiscard]] std::size_t size() const { return by_uid_.size(); }
+
+ private:
+  static void SortByRequest(std::vector<Subscription*>* subscriptions);
+  [[nodiscard]] std::uint16_t NewId(Peer& peer) const;
+
+  std::unordered_map<std::uint64_t, std::unique_ptr<Subscription>> by_uid_;
+  std::unordered_map<SubjectId, std::vector<Subscription*>> by_subject_;
+  std::uint64_t next_uid_ = 1;
+};
+
+}  // namespace furrow::server

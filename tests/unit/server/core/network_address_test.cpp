@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/core/network_address.h"
+
+#include <gtest/gtest.h>
+
+namespace furrow::server {
+namespace {
+
+TEST(NetworkAddress, OnlyNumericAddressesWithoutBracketsAreNumeric) {
+  EXPECT_TRUE(IsNumericAddress("127.0.0.1"));
+  EXPECT_TRUE(IsNumericAddress("::1"));
+  for (const char* other : {"", "localhost", "[::1]", "127.0.0.1:80", "256.0.0.1"}) {
+    EXPECT_FALSE(IsNumericAddress(other)) << other;
+  }
+}
+
+}  // namespace
+}  // namespace furrow::server

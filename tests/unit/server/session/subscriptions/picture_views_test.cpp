@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: Apache-2.0
+// Picture subscriptions: flow control, changing views, shared pictures, errors.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/server/session/hub_fixture.h"
+
+namespace furrow::server {
+namespace {
+
+using protocol::ErrorCode;
+using testing::ElementsAre;
+
+class PictureViewsFlowTest : public HubPeersTest {
+ protected:
+  std::uint16_t View(FakePeer& peer, std::uint32_t request = 1) {
+    Send(peer, protocol::SubscribePictures{.subject = "ann", .acknowledged = true}, 0, request);
+    const auto reply = peer.Take<protocol::SubscribeReply>();
+    return reply ? reply->header.stream : 0;
+  }
+  void Pose1(float brow) {
+    const std::uint32_t number = sequence++;
+    Send(sender, Pose(brow), 1, number, 1'000'000 + number * 16'667);
+  }
+  // Finishes every waiting job and delivers its pictures.
+  void DrawAll() {
+    const std::vector<RenderJob> jobs = std::move(pictures.jobs);
+    pictures.jobs.clear();
+    for (const RenderJob& job : jobs) {
+      if (job.tickets.empty()) continue;
+      hub->OnPicture({.sequence = job.snapshot->sequence,
+                      .received_us = job.snapshot->received_us,
+                      .width = job.spec.width,
+                      .height = job.spec.height,
+                      .encoding = job.tickets.front().encoding,
+                      .bytes = {1, 2, 3},
+                      .tickets = job.tickets});
+    }
+  }
+  std::size_t Tickets() const {
+    std::size_t count = 0;
+    for (const RenderJob& job : pictures.jobs) count += job.tickets.size();
+    return count;
+  }
+  std::uint32_t sequence = 0;
+};
+
+TEST_F(PictureViewsFlowTest, AStalledViewerContinuesWithTheNewestPose) {
+  Publish(sender, "ann");
+  const std::uint16_t stream = View(viewer);
+  for (int i = 0; i < 2; ++i) {
+    Pose1(0.1f * static_cast<float>(i));
+    ASSERT_EQ(Tickets(), 1u);
+    DrawAll();
+    Advance(0.016);
+  }
+  for (int i = 0; i < 50; ++i) {
+    Pose1(0.5f + 0.01f * static_cast<float>(i % 7));
+    Advance(0.016);
+    hub->Tick(now);
+  }
+  EXPECT_EQ(Tickets(), 0u);
+  EXPECT_EQ(viewer.Take<protocol::ImageFrame>()->message.number, 1u);
+  EXPECT_EQ(viewer.Take<protocol::ImageFrame>()->message.number, 2u);
+  EXPECT_TRUE(viewer.inbox.empty());
+  Send(viewer, protocol::FrameAck{2}, stream);
+  ASSERT_EQ(Tickets(), 1u);
+  EXPECT_EQ(pictures.jobs.back().snapshot->sequence, sequence - 1);
+  DrawAll();
+  const auto fresh = viewer.Take<protocol::ImageFrame>();
+  ASSERT_TRUE(fresh.has_value());
+  EXPECT_EQ(fresh->message.number, 3u);
+  EXPECT_EQ(fresh->message.dropped, 50u);
+  EXPECT_EQ(fresh->header.sequence, sequence - 1);
+}
+
+TEST_F(PictureViewsFlowTest, AWaitingPictureShowsTheNewestPose) {
+  Publish(sender, "ann");
+  View(viewer);
+  Pose1(0.1f);
+  Advance(0.016);
+  Pose1(0.9f);
+  ASSERT_EQ(pictures.jobs.size(), 2u);
+  EXPECT_EQ(pictures.jobs[0].tickets.size(), 1u);
+  EXPECT_TRUE(pictures.jobs[1].tickets.empty());  // only refreshes the first job
+  EXPECT_EQ(pictures.jobs[1].snapshot->sequence, 1u);
+}
+
+TEST_F(PictureViewsFlowTest, ViewersOfOneViewAndTierShareAnEncoding) {
+  Publish(sender, "ann");
+  std::vector<FakePeer> viewers(16);
+  for (FakePeer& peer : viewers) {
+    Connect(&peer, Transport::kWeb);
+    ASSERT_NE(View(peer), 0);
+  }
+  Pose1(0.5f);
+  ASSERT_EQ(pictures.jobs.size(), 1u);
+  ASSERT_EQ(pictures.jobs[0].tickets.size(), 16u);
+  for (const PictureTicket& ticket : pictures.jobs[0].tickets) {
+    EXPECT_EQ(ticket.encoding, pictures.jobs[0].tickets[0].encoding);
+  }
+}
+
+TEST_F(PictureViewsFlowTest, APoseAtRestGetsOneStill) {
+  Publish(sender, "ann");
+  const std::uint16_t stream = View(viewer);
+  std::uint32_t stills = 0;
+  std::uint32_t pictures_sent = 0;
+  double still_after = 0.0;
+  Pose1(0.5f);
+  const Time rest = now;
+  for (int i = 0; i < 60; ++i) {
+    if (i > 0) Pose1(0.5f);  // the stream continues while the performer rests
+    hub->Tick(now);
+    for (const RenderJob& job : pictures.jobs) {
+      for (const PictureTicket& ticket : job.tickets) {
+        if (!ticket.still) continue;
+        EXPECT_GE(EncodingOf(ticket).quality, 90);
+        still_after = ToSeconds(now - rest);
+      }
+    }
+    DrawAll();
+    while (const auto image = viewer.Take<protocol::ImageFrame>()) {
+      ++pictures_sent;
+      stills += image->message.still ? 1 : 0;
+      Send(viewer, protocol::FrameAck{image->message.number}, stream);
+    }
+    Advance(0.01);
+  }
+  EXPECT_EQ(stills, 1u);
+  EXPECT_LE(still_after, 0.15);
+  EXPECT_LE(pictures_sent, 12u);  // 0.1 s of movement, and the still
+  Pose1(0.7f);
+  EXPECT_EQ(Tickets(), 1u);
+  EXPECT_FALSE(pictures.jobs.front().tickets.front().still);
+}
+
+TEST_F(PictureViewsFlowTest, AnUpdateChangesTheViewAndAnInvalidOneDoesNot) {
+  Publish(sender, "ann");
+  const std::uint16_t stream = View(viewer);
+  Pose1(0.5f);
+  DrawAll();
+  Send(viewer, protocol::FrameAck{1}, stream);
+  viewer.inbox.clear();
+  protocol::UpdatePictures update;
+  update.pictures.width = 320;
+  update.pictures.settings = {"wrinkles=off"};
+  Send(viewer, update, stream, 21);
+  ASSERT_EQ(Tickets(), 1u);
+  EXPECT_EQ(pictures.jobs.back().spec.width, 320);
+  EXPECT_FALSE(pictures.jobs.back().spec.settings->wrinkles);
+  DrawAll();
+  EXPECT_EQ(viewer.Take<protocol::ImageFrame>()->message.view_request, 21u);
+  update.pictures.settings = {"subsurface.width=99"};
+  Send(viewer, update, stream, 22);
+  const auto error = viewer.Take<protocol::ErrorMessage>();
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->message.code, ErrorCode::kBadPicture);
+  EXPECT_EQ(error->header.sequence, 22u);
+  EXPECT_NE(error->message.message.find("subsurface.width"), std::string::npos);
+  Send(viewer, update, 99, 23);
+  ExpectError(viewer, ErrorCode::kBadPicture);
+}
+
+TEST_F(PictureViewsFlowTest, ANewViewDoesNotWaitForTheOldStill) {
+  Publish(sender, "ann");
+  const std::uint16_t stream = View(viewer);
+  Pose1(0.5f);
+  DrawAll();
+  Send(viewer, protocol::FrameAck{1}, stream);
+  Advance(0.2);
+  hub->Tick(now);
+  ASSERT_EQ(Tickets(), 1u);
+  ASSERT_TRUE(pictures.jobs.back().IsStill());
+  pictures.withdraws = true;  // the still waits for the renderer
+  protocol::UpdatePictures update;
+  update.pictures.width = 320;
+  Send(viewer, update, stream, 21);
+  EXPECT_EQ(pictures.withdrawn.size(), 1u);
+  ASSERT_EQ(pictures.jobs.back().spec.width, 320);
+  EXPECT_FALSE(pictures.jobs.back().IsStill());
+  EXPECT_EQ(pictures.jobs.back().tickets.size(), 1u);
+  pictures.jobs.erase(pictures.jobs.begin());
+  DrawAll();
+  Advance(0.2);
+  hub->Tick(now);
+  ASSERT_EQ(Tickets(), 1u);
+  EXPECT_TRUE(pictures.jobs.back().IsStill());  // of the new view
+}
+
+TEST_F(PictureViewsFlowTest, TheDaemonsSettingsReachViewsWithoutOverrides) {
+  Publish(sender, "ann");
+  FakePeer second;
+  Connect(&second);
+  View(viewer);
+  Send(second,
+       protocol::SubscribePictures{
+           .subject = "ann", .acknowledged = true, .settings = {"exposure=2"}},
+       0, 1);
+  Pose1(0.5f);
+  DrawAll();
+  render::Settings settings;
+  settings.exposure = 0.5f;
+  hub->SetOwnSettings(settings, now);
+  Advance(0.016);
+  Pose1(0.6f);
+  float least = 9.0f;
+  float most = 0.0f;
+  for (const RenderJob& job : pictures.jobs) {
+    least = std::min(least, job.spec.settings->exposure);
+    most = std::max(most, job.spec.settings->exposure);
+  }
+  EXPECT_EQ(least, 0.5f);
+  EXPECT_EQ(most, 2.0f);
+}
+
+TEST_F(PictureViewsFlowTest, AFailedPictureIsRequestedAgain) {
+  Publish(sender, "ann");
+  View(viewer);
+  Pose1(0.5f);
+  ASSERT_EQ(Tickets(), 1u);
+  hub->OnPicture({.tickets = pictures.jobs[0].tickets});
+  pictures.jobs.clear();
+  hub->Tick(now);
+  EXPECT_EQ(Tickets(), 0u);
+  Advance(0.3);
+  hub->Tick(now);
+  EXPECT_EQ(Tickets(), 1u);
+}
+
+TEST_F(PictureViewsFlowTest, AcknowledgingAnUnsentPictureIsAnError) {
+  Publish(sender, "ann");
+  const std::uint16_t stream = View(viewer);
+  Send(viewer, protocol::FrameAck{7}, stream);
+  ExpectError(viewer, ErrorCode::kMalformed);
+}
+
+TEST_F(PictureViewsFlowTest, ANeutralAndANewRigChangeTheLiveWeights) {
+  Publish(sender, "ann");
+  Pose1(0.5f);
+  Subject& subject = *hub->RequireAllDrivers("ann");
+  EXPECT_NEAR(subject.pipeline->wrinkle_weights()[0], 0.5f, 1e-6f);
+  hub->SetNeutral(subject, subject.pipeline->pose(), now);
+  EXPECT_NEAR(subject.pipeline->wrinkle_weights()[0], 0.0f, 1e-6f);
+  Pose1(0.75f);
+  EXPECT_NEAR(subject.pipeline->wrinkle_weights()[0], 0.25f, 1e-6f);
+  wrinkle::Rig doubled = hub->rig();
+  doubled.drivers[0].blend_shape.full = 0.5f;
+  ASSERT_TRUE(hub->SetRig(std::make_shared<const wrinkle::Rig>(std::move(doubled)), now).ok());
+  EXPECT_NEAR(subject.pipeline->wrinkle_weights()[0], 0.5f, 1e-6f);
+  hub->SetNeutral(subject, std::nullopt, now);
+  EXPECT_NEAR(subject.pipeline->wrinkle_weights()[0], 1.0f, 1e-6f);
+}
+
+class PictureViewsTest : public HubPeersTest {};
+
+TEST_F(PictureViewsTest, EqualPicturesAreRenderedOnce) {
+  Publish(sender, "ann");
+  FakePeer second;
+  Connect(&second);
+  protocol::SubscribePictures request{.subject = "ann", .width = 320, .height = 200};
+  Send(viewer, request, 0, 1);
+  Send(second, request, 0, 1);
+  request.view = "normal";
+  Send(second, request, 0, 2);
+  ASSERT_EQ(viewer.Take<protocol::SubscribeReply>()->message.names_hash, 0u);
+  second.Take<protocol::SubscribeReply>();
+  const std::uint16_t normal = second.Take<protocol::SubscribeReply>()->header.stream;
+  Send(sender, Pose(1), 1, 42, 777);
+  ASSERT_EQ(pictures.jobs.size(), 2u);
+  EXPECT_EQ(pictures.jobs[0].tickets.size() + pictures.jobs[1].tickets.size(), 3u);
+  const RenderJob& job = pictures.jobs[0].tickets.size() == 1 ? pictures.jobs[0] : pictures.jobs[1];
+  EXPECT_EQ(job.spec.view, render::View::kNormal);
+  EXPECT_EQ(job.spec.width, 320);
+  EXPECT_EQ(job.snapshot->sequence, 42u);
+
+  FinishedPicture picture;
+  picture.sequence = 42;
+  picture.capture_time_us = 777;
+  picture.width = 320;
+  picture.height = 200;
+  picture.bytes = {1, 2, 3};
+  picture.tickets = job.tickets;
+  hub->OnPicture(picture);
+  EXPECT_TRUE(viewer.inbox.empty());
+  const auto image = second.Take<protocol::ImageFrame>();
+  ASSERT_TRUE(image.has_value());
+  EXPECT_EQ(image->header.stream, normal);
+  EXPECT_EQ(image->header.capture_time_us, 777);
+  EXPECT_THAT(image->message.bytes, ElementsAre(1, 2, 3));
+  hub->RemovePeer(second.id);
+  hub->OnPicture(picture);  // after the viewer has left, nothing happens
+}
+
+TEST_F(PictureViewsTest, AnOversizedPictureIsCountedAndNotSent) {
+  Publish(sender, "ann");
+  Send(viewer, protocol::SubscribePictures{.subject = "ann"}, 0, 1);
+  viewer.Take<protocol::SubscribeReply>();
+  Send(sender, Pose(1), 1, 0);
+  ASSERT_EQ(pictures.jobs.size(), 1u);
+  FinishedPicture picture;
+  picture.width = picture.height = 4096;
+  picture.bytes.resize(protocol::kMaxReplyBytes);
+  picture.tickets = pictures.jobs[0].tickets;
+  hub->OnPicture(picture);
+  EXPECT_TRUE(viewer.inbox.empty());
+  EXPECT_EQ(Count(Counter::kPicturesFailed), 1u);
+  EXPECT_EQ(Count(Counter::kPicturesSent), 0u);
+}
+
+TEST_F(PictureViewsTest, NothingIsRenderedWithoutViewers) {
+  Publish(sender, "ann");
+  Watch(viewer, {.subject = "ann"});
+  Send(sender, Pose(1), 1, 0);
+  EXPECT_TRUE(pictures.jobs.empty());
+}
+
+TEST_F(PictureViewsTest, InvalidPictureRequestsAreErrors) {
+  Publish(sender, "ann");
+  Send(viewer, protocol::SubscribePictures{.view = "xray"});
+  ExpectError(viewer, ErrorCode::kBadPicture);
+  Send(viewer, protocol::SubscribePictures{.camera_preset = "moon"});
+  ExpectError(viewer, ErrorCode::kBadPicture);
+  protocol::SubscribePictures fisheye;
+  fisheye.has_camera = true;
+  fisheye.camera.vertical_fov_degrees = 165.0f;  // valid on the wire, not for the renderer
+  Send(viewer, fisheye);
+  ExpectError(viewer, ErrorCode::kBadPicture);
+  FakePeer udp;
+  Connect(&udp, Transport::kUdp);
+  hub->OnBytesReceived(udp.id, 1000, now);
+  Send(udp, protocol::SubscribePictures{});
+  ExpectError(udp, ErrorCode::kNeedsTcp);
+}
+
+TEST_F(PictureViewsTest, WithoutARendererPicturesAreRefused) {
+  Hub::Parts parts;
+  parts.rig = std::make_shared<const wrinkle::Rig>(MakeRig(false));
+  parts.metrics = &metrics;
+  parts.make_token = [] { return 1; };
+  hub = std::make_unique<Hub>(std::move(parts));
+  Connect(&viewer);
+  Send(viewer, protocol::SubscribePictures{.wait = true});
+  ExpectError(viewer, ErrorCode::kNotRendering);
+}
+
+}  // namespace
+}  // namespace furrow::server
