@@ -10,7 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "protocol/messages/limits.h"
-#include "render/request_check.h"
+#include "render/request/request_check.h"
 
 namespace furrow::server {
 namespace {
