@@ -3,7 +3,7 @@
 
 #include "bench/load/setting.h"
 #include "client/load/compare/comparison.h"
-#include "client/load/schedule/performance.h"
+#include "client/load/schedule/workload.h"
 
 namespace furrow::bench {
 
@@ -14,7 +14,7 @@ class Duel {
  public:
   // The servers stay the caller's. `searches`: of each for its highest rate, but no more than
   // rounds.
-  Duel(const Setting& setting, const load::Contestants& contestants, int searches);
+  Duel(const Setting& setting, const load::ComparisonTargets& contestants, int searches);
 
   // The setting's rounds at so many poses a second.
   [[nodiscard]] load::Comparison At(double rate);
@@ -24,12 +24,12 @@ class Duel {
  private:
   [[nodiscard]] load::Comparison Run(const load::ComparisonOptions& options);
 
-  load::Contestants contestants_;
+  load::ComparisonTargets contestants_;
   load::ComparisonOptions options_;
-  load::Performance performance_;
+  load::Workload performance_;
 };
 
 // Of one of its figures: a median ratio, and between what the middle half lies.
-[[nodiscard]] std::string Between(const load::Spread& ratio);
+[[nodiscard]] std::string Between(const load::Quartiles& ratio);
 
 }  // namespace furrow::bench

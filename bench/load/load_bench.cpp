@@ -21,7 +21,7 @@
 #include "bench/report/machine.h"
 #include "bench/report/results.h"
 #include "bench/report/take.h"
-#include "client/load/net/clock.h"
+#include "client/net/clock.h"
 #include "report/table.h"
 #include "report/words.h"
 

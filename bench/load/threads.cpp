@@ -7,7 +7,7 @@
 
 #include "bench/load/duel.h"
 #include "bench/report/take.h"
-#include "client/load/compare/comparison_report.h"
+#include "client/load/report/comparison_report.h"
 #include "report/table.h"
 
 namespace furrow::bench {

@@ -20,11 +20,13 @@ ALLOWED = {
     "character": {"wrinkle"},
     "render": {"wrinkle", "character"},
     "server": {"wrinkle", "protocol", "motion", "recording", "character", "render"},
-    "client/cpp": {"protocol"},
+    "client/cpp": {"base", "protocol"},
     "client/c": {"protocol", "client/cpp"},
-    "client/load": {"wrinkle", "protocol", "report", "client/cpp"},
+    "client/net": {"base", "protocol", "client/cpp"},
+    "client/chaos": {"base", "protocol", "report", "client/cpp", "client/net"},
+    "client/load": {"base", "wrinkle", "protocol", "report", "client/cpp", "client/net"},
     "client/cli": {"wrinkle", "protocol", "report", "motion", "recording", "character", "render", "client/cpp",
-                   "client/load"},
+                   "client/net", "client/chaos", "client/load"},
 }
 
 # foreign header -> where it may be included.
