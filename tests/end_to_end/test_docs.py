@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every command line that the documents show runs: fenced lines that begin with furrow or furrowd."""
+"""Runs every command line of the documents: fenced lines that start with furrow or furrowd."""
 import os
 import pathlib
 import subprocess
@@ -22,7 +22,7 @@ class DocumentTest(unittest.TestCase):
         (self.root / "hero.glb").symlink_to(SHARE / "default.glb")
 
     def run_here(self, words):
-        """Runs one command in a folder of its own; `>` works as in a shell."""
+        """Runs one command in the test folder; `>` redirects as in a shell."""
         out = None
         if ">" in words:
             at = words.index(">")
@@ -48,9 +48,9 @@ class DocumentTest(unittest.TestCase):
                 to = daemon.udp if words[1] == "play" else daemon.tcp
                 words = [to if w == "localhost" else w for w in words]
                 if words[1] in ("render", "frames"):
-                    words += ["--size", "160x160"]  # as quick as a test should be
+                    words += ["--size", "160x160"]  # small pictures keep the test quick
                 if words[1] in ("watch", "frames"):
-                    words += ["--frames", "2"]  # the stage goes on for ever
+                    words += ["--frames", "2"]  # the stage plays endlessly
                 if words[1] == "play":
                     words += ["--speed", "20"]
                 self.run_here(words)
@@ -93,13 +93,13 @@ class DocumentTest(unittest.TestCase):
         self.assertEqual(seen, {"record", "info", "play", "solve", "convert"})
 
     def test_rendering(self):
-        """A small picture of what each command would draw for a whole recording."""
+        """Draws one small picture per command instead of a whole recording."""
         for name in ("anger.bvh", "happiness.bvh", "sadness.bvh"):
             (self.root / name).symlink_to(SHARE / "recordings" / name)
         several = 0
         for words in commands("docs/RENDERING.md"):
             if "face.glb" in words:
-                continue  # baked first: docs/BAKE.md
+                continue  # needs a bake; test_bake.py covers docs/BAKE.md
             if "--print-settings" not in words:
                 at = words.index("--size") if "--size" in words else len(words)
                 words[at:at + 2] = ["--size", "64x64"]
@@ -111,7 +111,7 @@ class DocumentTest(unittest.TestCase):
         self.assertEqual(several, 2)
 
     def record_here(self, words, daemon):
-        """A recording of whom it names, or of somebody, ended after half a second."""
+        """Records the named subjects, or any subject, for half a second."""
         names = [words[i + 1] for i, word in enumerate(words) if word == "--subject"] or ["zoe"]
         stage = [spawn("play", PERFORMANCE, "--to", daemon.udp, "--loop", "--subject", name) for name in names]
         for player, name in zip(stage, names):
