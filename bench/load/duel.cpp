@@ -49,7 +49,7 @@ load::Comparison Duel::Run(const load::ComparisonOptions& options) {
       contestants_, options,
       {.keep_going = [] { return true; },
        .progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); },
-       .seconds = [] { return 1e-9 * static_cast<double>(load::SteadyNanoseconds()); }});
+       .seconds = [] { return 1e-9 * static_cast<double>(net::SteadyNanoseconds()); }});
   if (!comparison.failure.ok()) FailWith(comparison.failure);
   return comparison;
 }

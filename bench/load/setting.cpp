@@ -9,7 +9,7 @@ namespace furrow::bench {
 load::RunHooks Silently() {
   return {.keep_going = [] { return true; },
           .solving = [](double) {},
-          .settling = [](double) {},
+          .resolving = [](double) {},
           .second = [](double, const load::Tally&, const load::Histogram&) {}};
 }
 
