@@ -20,7 +20,7 @@
 #include "bench/report/command_line.h"
 #include "bench/report/interleave.h"
 #include "bench/report/results.h"
-#include "client/load/measure/spread.h"
+#include "client/load/measure/quartiles.h"
 #include "protocol/codec/codec.h"
 #include "protocol/framing/bundle.h"
 #include "report/table.h"
@@ -142,13 +142,13 @@ Sample SampleOf(FanOut& fan_out, int subjects, int batches, const std::function<
   return sum;
 }
 
-load::Spread Ratio(const std::vector<Sample>& samples, const std::vector<Sample>& plain) {
+load::Quartiles Ratio(const std::vector<Sample>& samples, const std::vector<Sample>& plain) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < samples.size(); ++i) ratios.push_back(samples[i].cpu / plain[i].cpu);
-  return load::SpreadOf(std::move(ratios));
+  return load::QuartilesOf(std::move(ratios));
 }
 
-std::string Text(const load::Spread& ratio) {
+std::string Text(const load::Quartiles& ratio) {
   return Between(ratio.median, ratio.low, ratio.high, 2) + "x";
 }
 
@@ -157,9 +157,9 @@ struct Outcome {
   int subjects = 0;
   std::size_t bytes = 0;   // per weight set
   double sendto_ns = 0.0;  // processor time per set
-  load::Spread again;      // ratios to sendto_ns
-  load::Spread cut;        // segmented by the kernel
-  load::Spread bundled;
+  load::Quartiles again;      // ratios to sendto_ns
+  load::Quartiles cut;        // segmented by the kernel
+  load::Quartiles bundled;
   double sets_a_datagram = 0.0;  // with bundles
 };
 
@@ -203,7 +203,7 @@ std::vector<std::string> Row(const Outcome& outcome) {
 }
 
 nlohmann::json ToJson(const Outcome& outcome) {
-  const auto spread = [](const load::Spread& ratio) {
+  const auto spread = [](const load::Quartiles& ratio) {
     return nlohmann::json{{"median", ratio.median}, {"low", ratio.low}, {"high", ratio.high}};
   };
   return {{"subjects", outcome.subjects},

@@ -6,7 +6,7 @@
 
 #include "bench/report/value_or_exit.h"
 #include "client/cli/load/load_input.h"
-#include "client/load/verdict.h"
+#include "client/load/run/verdict.h"
 #include "protocol/codec/codec.h"
 #include "report/table.h"
 
@@ -27,7 +27,7 @@ struct WireBytes {
 
 WireBytes Measure(const LoadSetup& setting) {
   const auto performance = ValueOrExit(
-      cli::LoadPerformance({.file = setting.recording, .rig = setting.rig, .quantise = true}));
+      cli::LoadWorkload({.file = setting.recording, .rig = setting.rig, .quantise = true}));
   protocol::WeightFrame frame;
   frame.values.resize(performance.binding->weight_names().size(), 0.5f);
   std::vector<std::uint8_t> weights;
@@ -46,7 +46,8 @@ std::string BudgetMarkdown(const Curve& subjects, const LoadSetup& setting) {
   const Curve::Point* few = nullptr;
   const Curve::Point* many = nullptr;
   for (const Curve::Point& point : subjects.points) {
-    if (!load::Held(point.run, 1e6 / kRate) || !point.run.usage || !point.run.cpu_seconds) continue;
+    if (!load::IsSustained(point.run, 1e6 / kRate) || !point.run.usage || !point.run.cpu_seconds)
+      continue;
     if (few == nullptr) few = &point;
     many = &point;
   }

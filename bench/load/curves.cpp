@@ -8,7 +8,7 @@
 
 #include "bench/load/variants.h"
 #include "bench/report/value_or_exit.h"
-#include "client/load/report.h"
+#include "client/load/report/run_report.h"
 #include "report/line_chart.h"
 #include "report/table.h"
 

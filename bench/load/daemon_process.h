@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "base/status.h"
-#include "client/load/run.h"
+#include "client/load/run/run.h"
 
 namespace furrow::bench {
 

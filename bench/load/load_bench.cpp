@@ -21,7 +21,7 @@
 #include "bench/report/machine.h"
 #include "bench/report/results.h"
 #include "bench/report/value_or_exit.h"
-#include "client/load/net/clock.h"
+#include "client/net/clock.h"
 #include "report/table.h"
 #include "report/words.h"
 
@@ -99,7 +99,7 @@ int Run(Options options) {
   setting.folder = fs::temp_directory_path() / ("bench_load-" + std::to_string(getpid()));
   MakeResultFolder(setting.folder);
   const Machine machine = ThisMachine();
-  const std::int64_t begin_ns = load::SteadyNanoseconds();
+  const std::int64_t begin_ns = net::SteadyNanoseconds();
   std::string markdown;
   nlohmann::json json = {{"measured", ToJson(machine)},
                          {"seconds_of_a_run", setting.seconds},
@@ -112,7 +112,7 @@ int Run(Options options) {
     markdown += part.markdown + "\n";
     json[name] = part.json;
   }
-  const double minutes = static_cast<double>(load::SteadyNanoseconds() - begin_ns) / 60e9;
+  const double minutes = static_cast<double>(net::SteadyNanoseconds() - begin_ns) / 60e9;
   json["minutes"] = minutes;
   const std::string stem = options.only.empty() ? "load" : "load-" + options.only;
   WriteResult(setting.out / (stem + ".md"), Heading(machine, setting, minutes) + markdown);

@@ -7,16 +7,16 @@
 namespace furrow::bench {
 
 load::RunHooks Silently() {
-  return {.go_on = [] { return true; },
+  return {.keep_going = [] { return true; },
           .solving = [](double) {},
-          .settling = [](double) {},
+          .resolving = [](double) {},
           .second = [](double, const load::Tally&, const load::Histogram&) {}};
 }
 
 Result<load::RunResult> RunFresh(const LoadSetup& setting, const std::filesystem::path& recording,
                                  const std::filesystem::path& rig,
                                  const load::RunOptions& options) {
-  const auto performance = cli::LoadPerformance({.file = recording, .rig = rig, .quantise = true});
+  const auto performance = cli::LoadWorkload({.file = recording, .rig = rig, .quantise = true});
   FURROW_RETURN_IF_ERROR(performance);
   const auto daemon = DaemonProcess::Start(setting.daemon, rig, setting.folder);
   FURROW_RETURN_IF_ERROR(daemon);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bench/load/daemon_process.h"
-#include "client/load/run.h"
+#include "client/load/run/run.h"
 
 namespace furrow::bench {
 

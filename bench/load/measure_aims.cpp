@@ -5,8 +5,8 @@
 
 #include "bench/load/paired_runs.h"
 #include "bench/report/value_or_exit.h"
-#include "client/load/net/echo.h"
-#include "client/load/verdict.h"
+#include "client/load/compare/echo_server.h"
+#include "client/load/run/verdict.h"
 #include "report/table.h"
 
 namespace furrow::bench {
@@ -66,7 +66,7 @@ Aim ThousandSubjects(const LoadSetup& setting) {
               " wrong, p99 " + Fixed(p99_ms, 2) + " ms",
           "",
           "0 lost, p99 < 16.7 ms",
-          load::Held(run, 1e6 / 60.0)};
+          load::IsSustained(run, 1e6 / 60.0)};
 }
 
 // The memory of 1,000 subjects at a low pose rate, compared with that of one subject.
@@ -96,13 +96,13 @@ std::vector<Aim> Stalled(const LoadSetup& setting) {
     std::fprintf(stderr, "stalled subscribers, round %d\n", round + 1);
     load::RunOptions options = At60Hz(64, setting.seconds);
     const auto without = ValueOrExit(RunFresh(setting, setting.recording, setting.rig, options));
-    options.burdens.stalled = 40;
+    options.misbehavior.stalled = 40;
     const auto with = ValueOrExit(RunFresh(setting, setting.recording, setting.rig, options));
     p50.push_back(with.p(50.0) / without.p(50.0));
     p90.push_back(with.p(90.0) / without.p(90.0));
   }
   const auto aim = [](const std::string& what, const std::vector<double>& ratios, double limit) {
-    const load::Spread spread = load::SpreadOf(ratios);
+    const load::Quartiles spread = load::QuartilesOf(ratios);
     return Aim{what,
                "none stalled",
                Between(spread) + "x",

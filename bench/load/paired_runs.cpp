@@ -7,7 +7,7 @@
 #include "bench/report/aims.h"
 #include "bench/report/value_or_exit.h"
 #include "client/cli/load/load_input.h"
-#include "client/load/net/clock.h"
+#include "client/net/clock.h"
 
 namespace furrow::bench {
 namespace {
@@ -16,9 +16,9 @@ constexpr int kSubjects = 256;
 
 }  // namespace
 
-PairedRuns::PairedRuns(const LoadSetup& setting, const load::Contestants& contestants, int searches)
+PairedRuns::PairedRuns(const LoadSetup& setting, const load::ComparisonTargets& contestants, int searches)
     : contestants_(contestants),
-      performance_(ValueOrExit(cli::LoadPerformance(
+      performance_(ValueOrExit(cli::LoadWorkload(
           {.file = setting.recording, .rig = setting.rig, .quantise = true}))) {
   options_.run = At60Hz(kSubjects, setting.seconds);
   options_.rounds = setting.rounds;
@@ -47,14 +47,14 @@ load::Comparison PairedRuns::Run(const load::ComparisonOptions& options) {
         return load::Run(performance_, target, run, Silently());
       },
       contestants_, options,
-      {.go_on = [] { return true; },
+      {.keep_going = [] { return true; },
        .progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); },
-       .seconds = [] { return 1e-9 * static_cast<double>(load::SteadyNanoseconds()); }});
+       .seconds = [] { return 1e-9 * static_cast<double>(net::SteadyNanoseconds()); }});
   if (!comparison.failure.ok()) FailWith(comparison.failure);
   return comparison;
 }
 
-std::string Between(const load::Spread& ratio) {
+std::string Between(const load::Quartiles& ratio) {
   return Between(ratio.median, ratio.low, ratio.high, 2);
 }
 

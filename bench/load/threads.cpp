@@ -7,7 +7,7 @@
 
 #include "bench/load/paired_runs.h"
 #include "bench/report/value_or_exit.h"
-#include "client/load/compare/comparison_report.h"
+#include "client/load/report/comparison_report.h"
 #include "report/table.h"
 
 namespace furrow::bench {

@@ -8,7 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "base/status.h"
-#include "client/cli/inputs.h"
+#include "client/cli/common/inputs.h"
 #include "client/cli/load/load_input.h"
 #include "motion/clip/clip.h"
 #include "motion/clip_file.h"
@@ -86,7 +86,7 @@ Status SavePaddedRecording(const std::filesystem::path& path, int num_joints,
 }
 
 Result<int> CountWeights(const std::filesystem::path& recording, const std::filesystem::path& rig) {
-  const auto performance = cli::LoadPerformance({.file = recording, .rig = rig});
+  const auto performance = cli::LoadWorkload({.file = recording, .rig = rig});
   FURROW_RETURN_IF_ERROR(performance);
   return static_cast<int>(performance->binding->weight_names().size());
 }

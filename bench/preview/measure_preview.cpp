@@ -47,7 +47,7 @@ Crowd MakeCrowd(const PreviewServer& house, const PreviewSetup& setting, bool ac
 void Sleep(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
 std::string Middle(const std::vector<double>& values, int digits) {
-  const load::Spread spread = load::SpreadOf(values);
+  const load::Quartiles spread = load::QuartilesOf(values);
   return Between(spread.median, spread.low, spread.high, digits);
 }
 
@@ -95,7 +95,7 @@ Aim DrawnToViewer(const PreviewSetup& setting) {
     ms.push_back(sent * 1e3);
     ratios.push_back(sent / packed);
   }
-  const double median = load::SpreadOf(ratios).median;
+  const double median = load::QuartilesOf(ratios).median;
   return {std::to_string(setting.picture.width) + " x " + std::to_string(setting.picture.height) +
               ", quality 80: from drawn to received",
           "libjpeg-turbo alone " + Middle(bare_ms, 2) + " ms",

@@ -9,7 +9,7 @@
 #include "client/chaos/tamper.h"
 #include "protocol/framing/envelope.h"
 
-namespace furrow::load {
+namespace furrow::chaos {
 namespace {
 
 // Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators" (2014).
@@ -20,8 +20,8 @@ std::uint64_t Mix(std::uint64_t value) {
   return value ^ (value >> 31);
 }
 
-// Into how many datagrams a packet that came or was put together goes. Nobody sends a larger
-// message as one, and what is no message passes as it came.
+// Number of datagrams that carry a packet. A reassembled message may need several; a packet that is
+// not a message passes unchanged.
 std::size_t NumDatagrams(std::span<const std::uint8_t> packet) {
   protocol::Envelope envelope;
   const bool is_message =
@@ -42,8 +42,8 @@ Result<BlackHole> ParseBlackHole(const std::string& text) {
       (fields == 3 && !(hole.every > hole.length))) {
     return Status(StatusCode::kParse,
                   "'" + text +
-                      "' is not START:LENGTH or START:LENGTH:EVERY in seconds, with EVERY "
-                      "above LENGTH");
+                      "' is not START:LENGTH or START:LENGTH:EVERY, in seconds, with EVERY "
+                      "greater than LENGTH");
   }
   return hole;
 }
@@ -56,7 +56,7 @@ bool InBlackHole(std::span<const BlackHole> holes, double seconds) {
   });
 }
 
-void ChaosCounts::Add(const ChaosCounts& other) {
+void FaultCounts::Add(const FaultCounts& other) {
   packets += other.packets;
   lost += other.lost;
   swallowed += other.swallowed;
@@ -67,7 +67,7 @@ void ChaosCounts::Add(const ChaosCounts& other) {
   swapped += other.swapped;
 }
 
-double ChaosLink::Roll(Dice dice) const {
+double Link::Roll(Dice dice) const {
   std::uint64_t bits = Mix(options_.seed);
   bits = Mix(bits ^ number_);
   bits = Mix(bits ^ counts_.packets);
@@ -75,7 +75,7 @@ double ChaosLink::Roll(Dice dice) const {
   return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
-std::int64_t ChaosLink::DueUs(std::int64_t now_us) {
+std::int64_t Link::DueUs(std::int64_t now_us) {
   if (Hits(Dice::kDelay, options_.delay)) {
     ++counts_.delayed;
     return now_us + std::llround(options_.delay_ms * 1e3);
@@ -83,7 +83,7 @@ std::int64_t ChaosLink::DueUs(std::int64_t now_us) {
   return now_us + std::llround(options_.jitter_ms * 1e3 * Roll(Dice::kJitter));
 }
 
-void ChaosLink::Push(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
+void Link::Push(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
   if (InBlackHole(options_.black_holes, static_cast<double>(now_us - start_us_) * 1e-6)) {
     ++counts_.swallowed;
   } else if (Hits(Dice::kLoss, options_.loss)) {
@@ -94,7 +94,7 @@ void ChaosLink::Push(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
   ++counts_.packets;
 }
 
-void ChaosLink::Take(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
+void Link::Take(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
   if (!options_.tampers()) return Handle(bytes, now_us);
   (void)gathered_.Expire(now_us);
   std::span<const std::uint8_t> message;
@@ -102,11 +102,11 @@ void ChaosLink::Take(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
     case protocol::FragmentStatus::kPending: return;
     case protocol::FragmentStatus::kWhole:
     case protocol::FragmentStatus::kComplete: return Handle(message, now_us);
-    default: return Handle(bytes, now_us);  // the receiver's to judge
+    default: return Handle(bytes, now_us);  // malformed: the receiver decides
   }
 }
 
-void ChaosLink::Handle(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
+void Link::Handle(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
   std::vector<std::uint8_t> packet(bytes.begin(), bytes.end());
   if (Hits(Dice::kFalsify, options_.falsify) && Falsify(&packet, Roll(Dice::kAmount)))
     ++counts_.falsified;
@@ -118,8 +118,8 @@ void ChaosLink::Handle(std::span<const std::uint8_t> bytes, std::int64_t now_us)
   Send(std::move(packet), now_us, due_us);
 }
 
-// On its way, unless it has to wait for the next one.
-void ChaosLink::Send(std::vector<std::uint8_t> packet, std::int64_t now_us, std::int64_t due_us) {
+// Queues the packet, or holds it back for the next packet.
+void Link::Send(std::vector<std::uint8_t> packet, std::int64_t now_us, std::int64_t due_us) {
   if (to_swap_ != waiting_.end() && SwapContents(&to_swap_->second, &packet)) {
     counts_.swapped += 2;
     Release(&to_swap_, due_us);
@@ -139,13 +139,13 @@ void ChaosLink::Send(std::vector<std::uint8_t> packet, std::int64_t now_us, std:
   }
 }
 
-void ChaosLink::Release(Waiting::iterator* held, std::int64_t due_us) {
+void Link::Release(Waiting::iterator* held, std::int64_t due_us) {
   auto node = waiting_.extract(std::exchange(*held, waiting_.end()));
   node.key() = due_us;
   waiting_.insert(std::move(node));
 }
 
-bool ChaosLink::Pop(std::int64_t now_us, std::vector<std::uint8_t>* packet) {
+bool Link::Pop(std::int64_t now_us, std::vector<std::uint8_t>* packet) {
   if (num_left_ == num_datagrams_ && !TakeFirst(now_us)) return false;
   if (num_datagrams_ == 1) {
     packet->swap(leaving_);
@@ -157,7 +157,7 @@ bool ChaosLink::Pop(std::int64_t now_us, std::vector<std::uint8_t>* packet) {
   return true;
 }
 
-bool ChaosLink::TakeFirst(std::int64_t now_us) {
+bool Link::TakeFirst(std::int64_t now_us) {
   const auto first = waiting_.begin();
   if (first == waiting_.end() || first->first > now_us) return false;
   if (first == to_swap_) to_swap_ = waiting_.end();
@@ -170,4 +170,4 @@ bool ChaosLink::TakeFirst(std::int64_t now_us) {
   return true;
 }
 
-}  // namespace furrow::load
+}  // namespace furrow::chaos

@@ -10,120 +10,119 @@
 #include "base/status.h"
 #include "protocol/framing/fragment.h"
 
-namespace furrow::load {
+namespace furrow::chaos {
 
-// A time in which nothing passes, once or again and again.
+// An outage: a time in which no packet passes, once or periodically.
 struct BlackHole {
-  double start = 0.0;   // seconds since the link's start
+  double start = 0.0;   // seconds since the start of the link
   double length = 0.0;  // seconds
-  double every = 0.0;   // from one start to the next; 0: once
+  double every = 0.0;   // seconds from one start to the next; 0: once
 };
 
-// "START:LENGTH" or "START:LENGTH:EVERY", seconds; kParse says what is wrong.
+// Parses "START:LENGTH" or "START:LENGTH:EVERY", in seconds. Errors: kParse.
 [[nodiscard]] Result<BlackHole> ParseBlackHole(const std::string& text);
 
-// Whether nothing passes so many seconds after the start.
+// True if one of `holes` covers the time `seconds` after the start of the link.
 [[nodiscard]] bool InBlackHole(std::span<const BlackHole> holes, double seconds);
 
-// What happens to packets, each by itself with a probability in [0, 1].
-struct ChaosOptions {
+// The faults to inject. Each fault is drawn independently per packet; probabilities are in [0, 1].
+struct Faults {
   std::uint64_t seed = 1;
   double loss = 0.0;
-  double reorder = 0.0;    // held back until the next one has passed
+  double reorder = 0.0;    // held back until the next packet has passed
   double duplicate = 0.0;  // sent twice
-  double delay = 0.0;      // held back for delay_ms
+  double delay = 0.0;      // held back for `delay_ms`
   double delay_ms = 1000.0;
-  double jitter_ms = 0.0;  // every packet is held back for up to so long
-  double falsify = 0.0;    // a value in a pose or in weights is changed, all else stays valid
-  double swap = 0.0;       // two poses or weights exchange their contents
+  double jitter_ms = 0.0;  // each packet is held back for a random time up to this
+  double falsify = 0.0;    // one number of a pose or weights message is changed
+  double swap = 0.0;       // two messages of one kind exchange their contents
   std::vector<BlackHole> black_holes;
 
   [[nodiscard]] bool any() const {
     return loss > 0.0 || reorder > 0.0 || duplicate > 0.0 || delay > 0.0 || jitter_ms > 0.0 ||
            tampers() || !black_holes.empty();
   }
-  // Whether contents are changed.
+  // True if message contents may change.
   [[nodiscard]] bool tampers() const { return falsify > 0.0 || swap > 0.0; }
 };
 
-// What was done to the packets of one link, or of several.
-struct ChaosCounts {
+// The faults injected into the packets of one or more links.
+struct FaultCounts {
   std::uint64_t packets = 0;
   std::uint64_t lost = 0;
-  std::uint64_t swallowed = 0;  // by a black hole
+  std::uint64_t swallowed = 0;  // lost in a black hole
   std::uint64_t reordered = 0;
   std::uint64_t duplicated = 0;
   std::uint64_t delayed = 0;
   std::uint64_t falsified = 0;
   std::uint64_t swapped = 0;
 
-  void Add(const ChaosCounts& other);
+  void Add(const FaultCounts& other);
 };
 
-// A link in one direction that mistreats what passes. What happens to the i-th packet follows from
-// the seed, the link's number and i alone, so a run can be repeated.
+// A one-way link that injects faults into the packets that pass. The fate of the i-th packet
+// depends only on the seed, the number of the link and i, so a run can be repeated.
 //
-// Where contents are changed, messages that come in fragments are put together first and leave in
-// fragments again: all but loss and black holes then befalls the message as its last fragment
-// comes, and one that lost a fragment, which nobody could read, goes no further.
+// If contents may change, the link reassembles fragmented messages and fragments them again on the
+// way out. Loss and black holes then apply to fragments, and all other faults apply to the message
+// when its last fragment arrives. A message that lost a fragment is not forwarded.
 //
-// Pure: time is a parameter (microseconds on any clock that does not go back).
-class ChaosLink {
+// No I/O and no clock: time is a parameter, in microseconds of any monotonic clock.
+class Link {
  public:
-  // A packet that waits for another goes on after this without it.
+  // A packet that waits for the next packet is released after this time at the latest.
   static constexpr std::int64_t kLongestHoldUs = 100'000;
 
-  // `number`: of the link, so that links of one seed differ. `start_us`: what black holes count
-  // from.
-  ChaosLink(const ChaosOptions& options, std::uint64_t number, std::int64_t start_us)
+  // `number`: identifies the link, so that links with the same seed differ. `start_us`: time 0 of
+  // the black holes.
+  Link(const Faults& options, std::uint64_t number, std::int64_t start_us)
       : options_(options), number_(number), start_us_(start_us) {}
-  ChaosLink(const ChaosLink&) = delete;
-  ChaosLink& operator=(const ChaosLink&) = delete;
+  Link(const Link&) = delete;
+  Link& operator=(const Link&) = delete;
 
-  // A packet comes in.
+  // Accepts a packet.
   void Push(std::span<const std::uint8_t> packet, std::int64_t now_us);
 
-  // The next packet that is due, in the order they are due; false when none is.
+  // Takes the next due packet, in due order. Returns false if none is due.
   [[nodiscard]] bool Pop(std::int64_t now_us, std::vector<std::uint8_t>* packet);
 
-  // When the next one is due; -1: none waits.
-  // Asked when Pop() has said false.
+  // Time at which the next packet is due; -1: none waits. Call it after Pop() returned false.
   [[nodiscard]] std::int64_t next_us() const {
     return waiting_.empty() ? -1 : waiting_.begin()->first;
   }
-  [[nodiscard]] const ChaosCounts& counts() const { return counts_; }
+  [[nodiscard]] const FaultCounts& counts() const { return counts_; }
 
  private:
-  using Waiting = std::multimap<std::int64_t, std::vector<std::uint8_t>>;  // by when it is due
+  using Waiting = std::multimap<std::int64_t, std::vector<std::uint8_t>>;  // keyed by due time
   enum class Dice { kLoss, kReorder, kDuplicate, kDelay, kJitter, kFalsify, kSwap, kAmount };
 
-  // In [0, 1), of the packet that comes now.
+  // A random number in [0, 1) for the current packet and one kind of fault.
   [[nodiscard]] double Roll(Dice dice) const;
   [[nodiscard]] bool Hits(Dice dice, double probability) const {
     return probability > 0.0 && Roll(dice) < probability;
   }
   [[nodiscard]] std::int64_t DueUs(std::int64_t now_us);
-  // A packet that was not lost, whole or as a fragment.
+  // Handles a packet, whole or a fragment, that was not lost.
   void Take(std::span<const std::uint8_t> bytes, std::int64_t now_us);
   void Handle(std::span<const std::uint8_t> bytes, std::int64_t now_us);
   void Send(std::vector<std::uint8_t> packet, std::int64_t now_us, std::int64_t due_us);
   [[nodiscard]] bool TakeFirst(std::int64_t now_us);
   void Release(Waiting::iterator* held, std::int64_t due_us);
 
-  ChaosOptions options_;
+  Faults options_;
   std::uint64_t number_;
   std::int64_t start_us_;
-  ChaosCounts counts_;
+  FaultCounts counts_;
   Waiting waiting_;
   protocol::Reassembler gathered_;
-  // What leaves now, and in how many datagrams, of which so many have left.
+  // The message that is leaving, the number of its datagrams, and the number already taken.
   std::vector<std::uint8_t> leaving_;
   std::size_t num_datagrams_ = 0;
   std::size_t num_left_ = 0;
   std::uint32_t message_id_ = 0;
-  // Those that wait for another packet; end(): none does.
+  // Packets that wait for the next packet; end(): none.
   Waiting::iterator to_reorder_ = waiting_.end();
   Waiting::iterator to_swap_ = waiting_.end();
 };
 
-}  // namespace furrow::load
+}  // namespace furrow::chaos

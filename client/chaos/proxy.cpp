@@ -11,19 +11,20 @@
 #include <netinet/tcp.h>
 
 #include "base/status.h"
-#include "client/load/net/clock.h"
+#include "client/net/clock.h"
+#include "client/net/open_socket.h"
 
-namespace furrow::load {
+namespace furrow::chaos {
 namespace {
 
 constexpr std::size_t kMaxFlows = 1024;
 constexpr std::int64_t kLongestWaitNs = 100'000'000;
 constexpr std::int64_t kMicrosecond = 1000;
 
-// Which descriptor is ready: of a flow, its address, which is beyond these.
-enum Token : std::uint64_t { kClients = 0, kListener = 1, kStream = 2, kFlow = 3 };
+// Tokens of the poller. The token of a flow is its address, which is larger than these.
+enum Token : std::uint64_t { kClients = 0, kListener = 1, kRelay = 2, kFlow = 3 };
 
-std::int64_t NowUs() { return SteadyNanoseconds() / kMicrosecond; }
+std::int64_t NowUs() { return net::SteadyNanoseconds() / kMicrosecond; }
 
 bool ParseAddress(const std::string& host, std::uint16_t port, sockaddr_storage* address,
                   socklen_t* size) {
@@ -43,15 +44,15 @@ bool ParseAddress(const std::string& host, std::uint16_t port, sockaddr_storage*
   return true;
 }
 
-// A socket bound to `port` (0: any free one) of `host`, and its port.
-Status Bind(const std::string& host, int type, Descriptor* bound, std::uint16_t* port) {
+// Binds a socket to `port` of `host` (0: any free port) and sets `port` to the actual port.
+Status Bind(const std::string& host, int type, net::Descriptor* bound, std::uint16_t* port) {
   sockaddr_storage address;
   socklen_t size = 0;
   const std::string where =
       host + ":" + std::to_string(*port) + (type == SOCK_STREAM ? " (TCP)" : " (UDP)");
   if (!ParseAddress(host, *port, &address, &size))
-    return {StatusCode::kInvalidArgument, "not a numeric address", where};
-  Descriptor made(socket(address.ss_family, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    return {StatusCode::kInvalidArgument, "not a numeric IP address", where};
+  net::Descriptor made(socket(address.ss_family, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int on = 1;
   if (type == SOCK_STREAM) setsockopt(made.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
   auto* const plain = reinterpret_cast<sockaddr*>(&address);
@@ -69,31 +70,29 @@ Status Bind(const std::string& host, int type, Descriptor* bound, std::uint16_t*
 
 }  // namespace
 
-struct ChaosProxy::Flow {
+struct Proxy::Flow {
   sockaddr_storage client{};
   socklen_t client_size = 0;
-  std::unique_ptr<Socket> server;
-  ChaosLink up;
-  ChaosLink down;
+  std::unique_ptr<net::Socket> server;
+  Link up;
+  Link down;
 
-  Flow(const ChaosProxyOptions& options, std::uint64_t number, std::int64_t start_us)
+  Flow(const ProxyOptions& options, std::uint64_t number, std::int64_t start_us)
       : up(options.up, 2 * number, start_us), down(options.down, 2 * number + 1, start_us) {}
 };
 
-ChaosProxy::ChaosProxy(ChaosProxyOptions options)
-    : options_(std::move(options)), buffer_(64 * 1024) {}
-ChaosProxy::~ChaosProxy() = default;
+Proxy::Proxy(ProxyOptions options) : options_(std::move(options)), buffer_(64 * 1024) {}
+Proxy::~Proxy() = default;
 
-Result<std::unique_ptr<ChaosProxy>> ChaosProxy::Open(const ChaosProxyOptions& options) {
-  std::unique_ptr<ChaosProxy> proxy(new ChaosProxy(options));
+Result<std::unique_ptr<Proxy>> Proxy::Open(const ProxyOptions& options) {
+  std::unique_ptr<Proxy> proxy(new Proxy(options));
   FURROW_RETURN_IF_ERROR(proxy->Listen());
-  std::string error;
-  if (!Socket::Open(client::TransportKind::kUdp, options.to_host, options.to_udp, &error))
-    return Status(StatusCode::kUnavailable, error);
+  FURROW_RETURN_IF_ERROR(
+      net::OpenSocket(client::TransportKind::kUdp, options.to_host, options.to_udp));
   return proxy;
 }
 
-Status ChaosProxy::Listen() {
+Status Proxy::Listen() {
   const std::string& host = options_.listen_host;
   udp_port_ = options_.listen_port;
   FURROW_RETURN_IF_ERROR(Bind(host, SOCK_DGRAM, &udp_, &udp_port_));
@@ -108,8 +107,8 @@ Status ChaosProxy::Listen() {
   return {};
 }
 
-void ChaosProxy::Run(const std::function<bool()>& go_on) {
-  while (go_on()) {
+void Proxy::Run(const std::function<bool()>& keep_going) {
+  while (keep_going()) {
     for (const epoll_event& event : poller_.Wait(WaitNs(NowUs()))) {
       const std::uint64_t token = event.data.u64;
       if (start_us_ < 0) start_us_ = NowUs();
@@ -119,34 +118,34 @@ void ChaosProxy::Run(const std::function<bool()>& go_on) {
     }
     const std::int64_t now_us = NowUs();
     ForwardDue(now_us);
-    PumpStreams(now_us);
+    PumpRelays(now_us);
     while (flows_.size() > kMaxFlows) ForgetOldest();
   }
   while (!flows_.empty()) ForgetOldest();
-  for (const ChaosStream& stream : streams_) ForgetStream(stream);
-  streams_.clear();
+  for (const TcpRelay& relay : relays_) ForgetRelay(relay);
+  relays_.clear();
 }
 
-void ChaosProxy::PumpStreams(std::int64_t now_us) {
-  std::erase_if(streams_, [&](ChaosStream& stream) {
-    const bool ended = !stream.Pump(now_us);
-    if (ended) ForgetStream(stream);
+void Proxy::PumpRelays(std::int64_t now_us) {
+  std::erase_if(relays_, [&](TcpRelay& relay) {
+    const bool ended = !relay.Pump(now_us);
+    if (ended) ForgetRelay(relay);
     return ended;
   });
 }
 
-void ChaosProxy::ForgetStream(const ChaosStream& stream) {
-  up_stream_counts_.Add(stream.up_counts());
-  down_stream_counts_.Add(stream.down_counts());
+void Proxy::ForgetRelay(const TcpRelay& relay) {
+  up_relay_counts_.Add(relay.up_counts());
+  down_relay_counts_.Add(relay.down_counts());
 }
 
-void ChaosProxy::ForgetOldest() {
+void Proxy::ForgetOldest() {
   up_counts_.Add(flows_.back()->up.counts());
   down_counts_.Add(flows_.back()->down.counts());
   flows_.pop_back();
 }
 
-std::int64_t ChaosProxy::WaitNs(std::int64_t now_us) const {
+std::int64_t Proxy::WaitNs(std::int64_t now_us) const {
   std::int64_t wait_ns = kLongestWaitNs;
   const auto not_beyond = [&](std::int64_t due_us) {
     if (due_us >= 0) wait_ns = std::min(wait_ns, (due_us - now_us) * kMicrosecond);
@@ -155,11 +154,11 @@ std::int64_t ChaosProxy::WaitNs(std::int64_t now_us) const {
     not_beyond(flow->up.next_us());
     not_beyond(flow->down.next_us());
   }
-  for (const ChaosStream& stream : streams_) not_beyond(stream.next_us(now_us));
+  for (const TcpRelay& relay : relays_) not_beyond(relay.next_us(now_us));
   return wait_ns;
 }
 
-void ChaosProxy::ReadClients(std::int64_t now_us) {
+void Proxy::ReadClients(std::int64_t now_us) {
   constexpr int kAtOnce = 256;
   for (int i = 0; i < kAtOnce; ++i) {
     sockaddr_storage from{};
@@ -173,7 +172,7 @@ void ChaosProxy::ReadClients(std::int64_t now_us) {
   }
 }
 
-ChaosProxy::Flow* ChaosProxy::FindFlow(const sockaddr_storage& from, socklen_t size) {
+Proxy::Flow* Proxy::FindFlow(const sockaddr_storage& from, socklen_t size) {
   const auto found = std::ranges::find_if(flows_, [&](const std::unique_ptr<Flow>& flow) {
     return flow->client_size == size && std::memcmp(&flow->client, &from, size) == 0;
   });
@@ -181,29 +180,28 @@ ChaosProxy::Flow* ChaosProxy::FindFlow(const sockaddr_storage& from, socklen_t s
     flows_.splice(flows_.begin(), flows_, found);
     return flows_.front().get();
   }
-  std::string error;
+  auto server = net::OpenSocket(client::TransportKind::kUdp, options_.to_host, options_.to_udp);
+  if (!server.ok()) return nullptr;
   auto flow = std::make_unique<Flow>(options_, next_number_++, start_us_);
   flow->client = from;
   flow->client_size = size;
-  flow->server =
-      Socket::Open(client::TransportKind::kUdp, options_.to_host, options_.to_udp, &error);
-  if (!flow->server) return nullptr;
+  flow->server = *std::move(server);
   poller_.Add(flow->server->descriptor(), reinterpret_cast<std::uint64_t>(flow.get()));
   flows_.push_front(std::move(flow));
   return flows_.front().get();
 }
 
-void ChaosProxy::ReadServer(Flow& flow, std::int64_t now_us) {
+void Proxy::ReadServer(Flow& flow, std::int64_t now_us) {
   constexpr int kAtOnce = 256;
   for (int i = 0; i < kAtOnce; ++i) {
     const ssize_t bytes =
         recv(flow.server->descriptor(), buffer_.data(), buffer_.size(), MSG_DONTWAIT);
-    if (bytes < 0) return;  // nothing, or a refusal: the server may come back
+    if (bytes < 0) return;  // no data, or a closed port: the server may come back
     flow.down.Push(std::span(buffer_).first(static_cast<std::size_t>(bytes)), now_us);
   }
 }
 
-void ChaosProxy::ForwardDue(std::int64_t now_us) {
+void Proxy::ForwardDue(std::int64_t now_us) {
   for (const auto& flow : flows_) {
     while (flow->up.Pop(now_us, &packet_))
       (void)send(flow->server->descriptor(), packet_.data(), packet_.size(), MSG_DONTWAIT);
@@ -214,21 +212,19 @@ void ChaosProxy::ForwardDue(std::int64_t now_us) {
   }
 }
 
-void ChaosProxy::Accept() {
-  Descriptor client(accept4(tcp_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+void Proxy::Accept() {
+  net::Descriptor client(accept4(tcp_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
   if (client.get() < 0) return;
   const int on = 1;
   setsockopt(client.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
-  std::string error;
-  auto server =
-      OpenDescriptor(client::TransportKind::kTcp, options_.to_host, options_.to_tcp, &error);
-  if (server.get() < 0) return;  // refused there: refused here
-  setsockopt(server.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
-  streams_.emplace_back(std::move(client), std::move(server), options_.up, options_.down,
-                        next_number_++, start_us_);
-  // Of what is held back nobody reads for a while, so only what is new may wake us.
-  poller_.Add(streams_.back().client(), kStream, Poller::When::kEdge);
-  poller_.Add(streams_.back().server(), kStream, Poller::When::kEdge);
+  auto server = net::OpenDescriptor(client::TransportKind::kTcp, options_.to_host, options_.to_tcp);
+  if (!server.ok()) return;  // closes the client's connection too
+  setsockopt(server->get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+  relays_.emplace_back(std::move(client), *std::move(server), options_.up, options_.down,
+                       next_number_++, start_us_);
+  // A relay that holds data back does not read for a while, so only new data may wake the poller.
+  poller_.Add(relays_.back().client(), kRelay, net::Poller::When::kEdge);
+  poller_.Add(relays_.back().server(), kRelay, net::Poller::When::kEdge);
 }
 
-}  // namespace furrow::load
+}  // namespace furrow::chaos

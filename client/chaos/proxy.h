@@ -13,77 +13,76 @@
 #include "base/status.h"
 #include "client/chaos/link.h"
 #include "client/chaos/report.h"
-#include "client/chaos/stream.h"
-#include "client/load/net/poller.h"
-#include "client/load/net/socket.h"
+#include "client/chaos/tcp_relay.h"
+#include "client/net/descriptor.h"
+#include "client/net/poller.h"
 
-namespace furrow::load {
+namespace furrow::chaos {
 
-struct ChaosProxyOptions {
-  std::string listen_host = "127.0.0.1";  // numeric
-  std::uint16_t listen_port = 0;          // UDP's; 0: any free one
-  std::uint16_t listen_tcp_port = 0;      // 0: any free one
+struct ProxyOptions {
+  std::string listen_host = "127.0.0.1";  // numeric address
+  std::uint16_t listen_port = 0;          // UDP; 0: any free port
+  std::uint16_t listen_tcp_port = 0;      // 0: any free port
   std::string to_host;
   std::uint16_t to_udp = 0;
-  std::uint16_t to_tcp = 0;  // 0: datagrams alone
-  ChaosOptions up;           // what comes from clients; of TCP: delays and black holes alone
-  ChaosOptions down;         // what goes to them
+  std::uint16_t to_tcp = 0;  // 0: do not proxy TCP
+  Faults up;                 // client to server; TCP honours jitter and black holes only
+  Faults down;               // server to client
 };
 
-// Stands between clients and a server and mistreats what passes: datagrams as their links say, TCP
-// connections by holding bytes back (black holes and jitter), since TCP loses nothing.
+// Forwards traffic between clients and a server and injects faults. Datagrams pass through a Link
+// per client and direction; TCP connections pass through a TcpRelay.
 //
-// One thread runs it. Memory is bounded by what the delays hold; 1,024 addresses are remembered.
-class ChaosProxy {
+// Single-threaded. Memory is bounded by the delayed packets and by 1,024 client addresses.
+class Proxy {
  public:
-  // kIo: the port cannot be had; kUnavailable: the server's name cannot be resolved.
-  [[nodiscard]] static Result<std::unique_ptr<ChaosProxy>> Open(const ChaosProxyOptions& options);
-  ~ChaosProxy();
+  // Binds the ports. Errors: kInvalidArgument (`listen_host` is not a numeric address), kIo (cannot
+  // bind), kUnavailable (the server's name does not resolve).
+  [[nodiscard]] static Result<std::unique_ptr<Proxy>> Open(const ProxyOptions& options);
+  ~Proxy();
 
   [[nodiscard]] std::uint16_t udp_port() const { return udp_port_; }
   [[nodiscard]] std::uint16_t tcp_port() const { return tcp_port_; }
 
-  // Forwards until `go_on` says false, which is asked several times a second.
-  void Run(const std::function<bool()>& go_on);
+  // Forwards until `keep_going` returns false; calls it at least ten times per second.
+  void Run(const std::function<bool()>& keep_going);
 
-  // Of all links and TCP connections, by direction, once Run() has ended.
-  [[nodiscard]] ChaosOutcome up() const { return {options_.up, up_counts_, up_stream_counts_}; }
-  [[nodiscard]] ChaosOutcome down() const {
-    return {options_.down, down_counts_, down_stream_counts_};
-  }
+  // Totals of all links and TCP connections, per direction. Valid after Run().
+  [[nodiscard]] Outcome up() const { return {options_.up, up_counts_, up_relay_counts_}; }
+  [[nodiscard]] Outcome down() const { return {options_.down, down_counts_, down_relay_counts_}; }
 
  private:
-  struct Flow;  // the datagrams of one client
+  struct Flow;  // the links of one client address
 
-  explicit ChaosProxy(ChaosProxyOptions options);
+  explicit Proxy(ProxyOptions options);
   [[nodiscard]] Status Listen();
   void ReadClients(std::int64_t now_us);
-  // Null where the server cannot be reached for it.
+  // Returns null if no socket to the server can be opened.
   [[nodiscard]] Flow* FindFlow(const sockaddr_storage& from, socklen_t size);
   void ReadServer(Flow& flow, std::int64_t now_us);
   void ForwardDue(std::int64_t now_us);
   void ForgetOldest();
   void Accept();
-  void PumpStreams(std::int64_t now_us);
-  void ForgetStream(const ChaosStream& stream);
+  void PumpRelays(std::int64_t now_us);
+  void ForgetRelay(const TcpRelay& relay);
   [[nodiscard]] std::int64_t WaitNs(std::int64_t now_us) const;
 
-  ChaosProxyOptions options_;
-  Descriptor udp_;
-  Descriptor tcp_;
+  ProxyOptions options_;
+  net::Descriptor udp_;
+  net::Descriptor tcp_;
   std::uint16_t udp_port_ = 0;
   std::uint16_t tcp_port_ = 0;
-  Poller poller_;
-  std::list<std::unique_ptr<Flow>> flows_;  // the one heard last first
-  std::list<ChaosStream> streams_;
-  std::int64_t start_us_ = -1;     // when the first packet came: what black holes count from
-  std::uint64_t next_number_ = 0;  // of a flow or stream
+  net::Poller poller_;
+  std::list<std::unique_ptr<Flow>> flows_;  // most recently active first
+  std::list<TcpRelay> relays_;
+  std::int64_t start_us_ = -1;     // arrival of the first packet: time 0 of the black holes
+  std::uint64_t next_number_ = 0;  // for the next flow or relay
   std::vector<std::uint8_t> buffer_;
   std::vector<std::uint8_t> packet_;
-  ChaosCounts up_counts_;
-  ChaosCounts down_counts_;
-  ChaosStreamCounts up_stream_counts_;
-  ChaosStreamCounts down_stream_counts_;
+  FaultCounts up_counts_;
+  FaultCounts down_counts_;
+  RelayCounts up_relay_counts_;
+  RelayCounts down_relay_counts_;
 };
 
-}  // namespace furrow::load
+}  // namespace furrow::chaos

@@ -7,37 +7,35 @@
 
 #include "report/words.h"
 
-namespace furrow::load {
+namespace furrow::chaos {
 namespace {
 
 using furrow::report::Counted;
 
-// What may befall a datagram, by an option of the same probability.
+// One kind of datagram fault, with its option and its fields.
 struct Fault {
   const char* option;
   const char* done;
-  double ChaosOptions::*probability;
-  std::uint64_t ChaosCounts::*count;
+  double Faults::*probability;
+  std::uint64_t FaultCounts::*count;
 };
 
 constexpr std::array kFaults = {
-    Fault{"--loss", "lost", &ChaosOptions::loss, &ChaosCounts::lost},
-    Fault{"--reorder", "reordered", &ChaosOptions::reorder, &ChaosCounts::reordered},
-    Fault{"--duplicate", "duplicated", &ChaosOptions::duplicate, &ChaosCounts::duplicated},
-    Fault{"--delay", "delayed", &ChaosOptions::delay, &ChaosCounts::delayed},
-    Fault{"--falsify", "falsified", &ChaosOptions::falsify, &ChaosCounts::falsified},
-    Fault{"--swap", "swapped", &ChaosOptions::swap, &ChaosCounts::swapped}};
+    Fault{"--loss", "lost", &Faults::loss, &FaultCounts::lost},
+    Fault{"--reorder", "reordered", &Faults::reorder, &FaultCounts::reordered},
+    Fault{"--duplicate", "duplicated", &Faults::duplicate, &FaultCounts::duplicated},
+    Fault{"--delay", "delayed", &Faults::delay, &FaultCounts::delayed},
+    Fault{"--falsify", "falsified", &Faults::falsify, &FaultCounts::falsified},
+    Fault{"--swap", "swapped", &Faults::swap, &FaultCounts::swapped}};
 
-bool Asked(const ChaosOptions& options, const Fault& fault) {
-  return options.*fault.probability > 0.0;
-}
+bool Asked(const Faults& options, const Fault& fault) { return options.*fault.probability > 0.0; }
 
 void AddToList(const char* word, std::string* list) {
   *list += (list->empty() ? "" : ", ") + std::string(word);
 }
 
-// Whether a black hole fell on nothing at all, of those directions that have one.
-bool NothingSwallowed(const ChaosOutcome& up, const ChaosOutcome& down) {
+// True if black holes were requested but affected neither datagrams nor TCP connections.
+bool NothingSwallowed(const Outcome& up, const Outcome& down) {
   if (up.options.black_holes.empty() && down.options.black_holes.empty()) return false;
   return up.counts.swallowed + down.counts.swallowed == 0 &&
          up.stream_counts.still_us + down.stream_counts.still_us == 0;
@@ -45,23 +43,23 @@ bool NothingSwallowed(const ChaosOutcome& up, const ChaosOutcome& down) {
 
 }  // namespace
 
-std::string ToText(const std::string& way, const ChaosOutcome& outcome) {
-  const ChaosCounts& counts = outcome.counts;
-  std::string text = way + ": " + Counted(counts.packets, "datagram");
+std::string ToText(const std::string& direction, const Outcome& outcome) {
+  const FaultCounts& counts = outcome.counts;
+  std::string text = direction + ": " + Counted(counts.packets, "datagram");
   for (const Fault& fault : kFaults) {
     if (Asked(outcome.options, fault))
       text += ", " + std::string(fault.done) + " " + std::to_string(counts.*fault.count);
   }
   if (!outcome.options.black_holes.empty())
     text += ", swallowed " + std::to_string(counts.swallowed);
-  const ChaosStreamCounts& stream = outcome.stream_counts;
+  const RelayCounts& stream = outcome.stream_counts;
   if (stream.connections == 0) return text;
-  return text + "\n" + way + " over TCP: " + Counted(stream.connections, "connection") + ", " +
-         Counted(stream.bytes, "byte") + ", held back " + Counted(stream.held, "time") +
-         ", stood still for " + std::to_string(stream.still_us / 1000) + " ms";
+  return text + "\n" + direction + " over TCP: " + Counted(stream.connections, "connection") +
+         ", " + Counted(stream.bytes, "byte") + ", held back " + Counted(stream.held, "time") +
+         ", stalled for " + std::to_string(stream.still_us / 1000) + " ms";
 }
 
-std::string NothingPlanted(const ChaosOutcome& up, const ChaosOutcome& down) {
+std::string NothingInjected(const Outcome& up, const Outcome& down) {
   std::string options;
   for (const Fault& fault : kFaults) {
     const bool asked = Asked(up.options, fault) || Asked(down.options, fault);
@@ -70,11 +68,11 @@ std::string NothingPlanted(const ChaosOutcome& up, const ChaosOutcome& down) {
   }
   if (NothingSwallowed(up, down)) AddToList("--black-hole", &options);
   if (options.empty()) return {};
-  return "Nothing was planted of " + options +
-         ": this run says nothing about it. Let more pass, or ask for more.\n";
+  return "No fault was injected for " + options +
+         ", so this run does not test it. Send more packets or raise the value.\n";
 }
 
-std::string DatagramFaults(const ChaosOptions& options) {
+std::string DatagramFaults(const Faults& options) {
   std::string list;
   for (const Fault& fault : kFaults) {
     if (Asked(options, fault)) AddToList(fault.option, &list);
@@ -82,7 +80,7 @@ std::string DatagramFaults(const ChaosOptions& options) {
   return list;
 }
 
-nlohmann::json ToJson(const ChaosOptions& options) {
+nlohmann::json ToJson(const Faults& options) {
   nlohmann::json holes = nlohmann::json::array();
   for (const BlackHole& hole : options.black_holes)
     holes.push_back({{"start", hole.start}, {"length", hole.length}, {"every", hole.every}});
@@ -93,7 +91,7 @@ nlohmann::json ToJson(const ChaosOptions& options) {
           {"swap", options.swap},           {"black_holes", holes}};
 }
 
-nlohmann::json ToJson(const ChaosOutcome& outcome) {
+nlohmann::json ToJson(const Outcome& outcome) {
   nlohmann::json json{{"datagrams", outcome.counts.packets},
                       {"swallowed", outcome.counts.swallowed},
                       {"tcp",
@@ -105,4 +103,4 @@ nlohmann::json ToJson(const ChaosOutcome& outcome) {
   return json;
 }
 
-}  // namespace furrow::load
+}  // namespace furrow::chaos

@@ -6,30 +6,30 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "client/chaos/link.h"
-#include "client/chaos/stream.h"
+#include "client/chaos/tcp_relay.h"
 
-namespace furrow::load {
+namespace furrow::chaos {
 
-// What a proxy was asked to do in one direction, and what it did.
-struct ChaosOutcome {
-  ChaosOptions options;
-  ChaosCounts counts;
-  ChaosStreamCounts stream_counts;
+// The requested and the injected faults of one direction.
+struct Outcome {
+  Faults options;
+  FaultCounts counts;
+  RelayCounts stream_counts;
 };
 
-// "up: 1000 datagrams, lost 3, ..." with all that was asked for, also where it befell none, and
-// where there were TCP connections a second line "up over TCP: 2 connections, 5000 bytes, ...".
-[[nodiscard]] std::string ToText(const std::string& way, const ChaosOutcome& outcome);
+// "up: 1000 datagrams, lost 3, ..." with a count for each requested fault. If there were TCP
+// connections, a second line follows: "up over TCP: 2 connections, 5000 bytes, ...".
+[[nodiscard]] std::string ToText(const std::string& direction, const Outcome& outcome);
 
-// A sentence about what was asked for and befell nothing, either way, with a line break; empty
-// where there is no such thing. Jitter befalls all.
-[[nodiscard]] std::string NothingPlanted(const ChaosOutcome& up, const ChaosOutcome& down);
+// A line about requested faults that were injected nowhere, in either direction; empty if there is
+// none. Jitter applies to every packet and is never listed.
+[[nodiscard]] std::string NothingInjected(const Outcome& up, const Outcome& down);
 
-// Those of `options` that only datagrams know, as the command line calls them: "--loss, --swap".
-[[nodiscard]] std::string DatagramFaults(const ChaosOptions& options);
+// The requested faults that apply to datagrams only, as command-line options: "--loss, --swap".
+[[nodiscard]] std::string DatagramFaults(const Faults& options);
 
-[[nodiscard]] nlohmann::json ToJson(const ChaosOptions& options);
-// The counts alone.
-[[nodiscard]] nlohmann::json ToJson(const ChaosOutcome& outcome);
+[[nodiscard]] nlohmann::json ToJson(const Faults& options);
+// The counts only.
+[[nodiscard]] nlohmann::json ToJson(const Outcome& outcome);
 
-}  // namespace furrow::load
+}  // namespace furrow::chaos

@@ -9,14 +9,14 @@
 #include "protocol/codec/codec.h"
 #include "protocol/framing/bundle.h"
 
-namespace furrow::load {
+namespace furrow::chaos {
 namespace {
 
 using protocol::DecodeStatus;
 using protocol::MessageKind;
 using Bytes = std::vector<std::uint8_t>;
 
-// Its message, or those of a bundle.
+// The message of a datagram, or the messages of a bundle.
 std::vector<Bytes> TakeApart(std::span<const std::uint8_t> datagram) {
   Bytes copy(datagram.begin(), datagram.end());
   protocol::Unbundler unbundler;
@@ -27,7 +27,7 @@ std::vector<Bytes> TakeApart(std::span<const std::uint8_t> datagram) {
   return messages;
 }
 
-// A single message may be larger than a datagram.
+// A single message may be larger than a datagram; a bundle may not.
 bool PutTogether(std::span<const Bytes> messages, Bytes* datagram) {
   Bytes bytes;
   if (messages.size() == 1) {
@@ -48,7 +48,7 @@ std::size_t Choose(std::size_t count, double share) {
   return static_cast<std::size_t>(share * static_cast<double>(count));
 }
 
-// By a half, within [0, 1] where it was.
+// Moves the value by 0.5. A value in [0, 1] stays in [0, 1].
 void FalsifyValue(float* value) { *value += *value < 0.5f ? 0.5f : -0.5f; }
 
 bool FalsifyWeights(const protocol::MessageView& view, double share,
@@ -60,7 +60,7 @@ bool FalsifyWeights(const protocol::MessageView& view, double share,
   return true;
 }
 
-// Multiplied by a turn about x of 120 degrees: (1/2 + sqrt(3)/2 i).
+// Multiplies by a rotation of 120 degrees about x: (1/2 + sqrt(3)/2 i).
 void FalsifyRotation(protocol::Quat* rotation) {
   constexpr float kCosine = 0.5f;
   constexpr float kSine = 0.86602540378f;
@@ -69,7 +69,8 @@ void FalsifyRotation(protocol::Quat* rotation) {
                kCosine * q.z - kSine * q.y, kCosine * q.w - kSine * q.x};
 }
 
-// Written as it was, so that nothing else changes: packed where that comes nearer to its size.
+// Writes the pose in its former encoding, so that only one number changes. The encoding whose size
+// is nearer to the former size wins.
 void WritePose(const protocol::MessageView& view, const protocol::PoseFrame& frame, Bytes* out) {
   Bytes packed;
   protocol::Encoder encoder;
@@ -156,4 +157,4 @@ bool SwapContents(Bytes* a, Bytes* b) {
   return false;
 }
 
-}  // namespace furrow::load
+}  // namespace furrow::chaos

@@ -5,23 +5,22 @@
 #include <span>
 #include <vector>
 
-namespace furrow::load {
+namespace furrow::chaos {
 
-// Of these a `datagram` may be larger than one that is sent: a message whose fragments were put
-// together.
+// In all functions a `datagram` may be larger than the wire allows: a reassembled message.
 
-// Whether a datagram is a whole Pose or Weights message, or a bundle with one, whose content can be
-// changed so that only the numbers tell.
+// True if `datagram` is a whole Pose or Weights message, or a bundle that contains one. The
+// functions below change such messages so that they stay valid and only their numbers are wrong.
 [[nodiscard]] bool IsTamperable(std::span<const std::uint8_t> datagram);
 
-// Changes one number of a pose or of weights, chosen by `share` in [0, 1); the message stays valid:
-// a weight or a blend shape moves by a half, a joint turns by a third of a circle. Of a bundle one
-// message. False, and nothing is changed, where it is neither or has no number.
+// Changes one number of one Pose or Weights message; `share` in [0, 1) selects the number. A weight
+// or blend shape moves by 0.5 within [0, 1]; a joint turns by 120 degrees. Returns false and
+// changes nothing if there is no such message or no number in it.
 [[nodiscard]] bool Falsify(std::vector<std::uint8_t>* datagram, double share);
 
-// Exchanges what two messages of one kind say, each keeping its envelope: stream, sequence, capture
-// time. Of bundles one message each. False, and nothing is changed, where none are of one kind, or
-// what comes of it does not fit a datagram.
+// Exchanges the payloads of two messages of the same kind, one from each datagram. Each keeps its
+// envelope: stream, sequence and capture time. Returns false and changes nothing if no two messages
+// are of the same kind, or if a result does not fit into a datagram.
 [[nodiscard]] bool SwapContents(std::vector<std::uint8_t>* a, std::vector<std::uint8_t>* b);
 
-}  // namespace furrow::load
+}  // namespace furrow::chaos

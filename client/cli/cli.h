@@ -3,7 +3,8 @@
 
 namespace furrow::cli {
 
-// The whole of `furrow`: parses, runs, returns the exit code. Never throws.
+// The program `furrow`: runs the command that the arguments name and returns the exit code. Helper
+// commands replace the process (common/helper_program.h). Never throws.
 int Run(int argc, const char* const* argv);
 
 }  // namespace furrow::cli

@@ -10,25 +10,26 @@ using Kind = Acceptance::Kind;
 
 Acceptance WaitUntilAccepted(Publisher& publisher, std::uint16_t stream,
                              const std::function<std::int64_t()>& now_us,
-                             const std::function<bool()>& go_on) {
-  constexpr std::int64_t kLongestUs = 5'000'000;
-  constexpr std::chrono::milliseconds kStep(20);  // until the next look at `go_on`
-  const std::int64_t deadline = now_us() + kLongestUs;
-  bool refused = false;  // rather than silent
-  while (go_on()) {
+                             const std::function<bool()>& keep_going) {
+  constexpr std::int64_t kTimeoutUs = 5'000'000;
+  constexpr std::chrono::milliseconds kStep(20);  // between two calls of `keep_going`
+  const std::int64_t deadline = now_us() + kTimeoutUs;
+  bool refused = false;
+  while (keep_going()) {
     const IoStatus status = publisher.Poll(now_us(), kStep);
-    // A refusal answers what was sent: between two offers there is silence.
+    // The system reports a closed port only after a send. Between two offers Poll() times out,
+    // which does not cancel the last report.
     if (status != IoStatus::kTimeout) refused = status == IoStatus::kNoConnection;
     if (publisher.accepted(stream)) return {Kind::kAccepted, {}};
     if (!publisher.rejection(stream).empty()) return {Kind::kRefused, publisher.rejection(stream)};
     if (status == IoStatus::kClosed || status == IoStatus::kMalformed || now_us() >= deadline) {
       if (!publisher.last_error().empty()) return {Kind::kError, publisher.last_error()};
-      return {refused ? Kind::kNoConnection : Kind::kNobody, {}};
+      return {refused ? Kind::kNoConnection : Kind::kNoAnswer, {}};
     }
-    // It comes at once.
+    // A refusal is reported at once, so the wait happens here.
     if (status == IoStatus::kNoConnection) std::this_thread::sleep_for(kStep);
   }
-  return {Kind::kGivenUp, {}};
+  return {Kind::kCancelled, {}};
 }
 
 }  // namespace furrow::client

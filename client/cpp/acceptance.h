@@ -9,25 +9,27 @@
 
 namespace furrow::client {
 
-// What came of an offer.
+// The daemon's answer to an offer.
 struct Acceptance {
   enum class Kind {
     kAccepted = 0,
-    kRefused,       // this skeleton or subject: `reason` says why
-    kError,         // the daemon complains instead of answering: `reason` is what it says
-    kNobody,        // no answer within the time, or the connection was closed
-    kNoConnection,  // the same, and at last nobody listened there
-    kGivenUp,       // `go_on` said so
+    kRefused,       // the daemon rejects the skeleton or the subject; see `reason`
+    kError,         // the daemon replied with an error; see `reason`
+    kNoAnswer,      // timeout, or the connection was closed
+    kNoConnection,  // as kNoAnswer, and the last attempt found the port closed
+    kCancelled,     // `keep_going` returned false
   };
-  Kind kind = Kind::kNobody;
+  Kind kind = Kind::kNoAnswer;
   std::string reason;
 };
 
-// Polls `publisher` until the offer of `stream` is answered: 5 seconds at the longest, and while
-// `go_on()`. Who refuses connections may be just starting and is tried again. `now_us` is the clock
-// that the publisher is used with, in microseconds.
+// Polls `publisher` until the daemon answers the offer of `stream`, for 5 seconds at most.
+//
+// A refused connection is tried again, because the daemon may be starting. `now_us` is the clock
+// that the publisher is used with, in microseconds. `keep_going` is called about 50 times per
+// second; it cancels the wait by returning false.
 [[nodiscard]] Acceptance WaitUntilAccepted(Publisher& publisher, std::uint16_t stream,
                                            const std::function<std::int64_t()>& now_us,
-                                           const std::function<bool()>& go_on);
+                                           const std::function<bool()>& keep_going);
 
 }  // namespace furrow::client

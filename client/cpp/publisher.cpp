@@ -24,7 +24,7 @@ std::uint16_t Publisher::AddSubject(const protocol::SkeletonOffer& offer, std::i
   Stream& stream = streams_.emplace_back();
   stream.skeleton_hash = protocol::SkeletonHash(offer);
   encoder_.Encode({.session = session_, .stream = number}, offer, stream.offer);
-  // A daemon does not answer malformed datagrams: who offers nonsense would wait in vain.
+  // A daemon does not answer malformed datagrams, so check the offer here.
   stream.rejection = protocol::FindOfferProblem(stream.offer);
   if (stream.rejection.empty()) SendOffer(stream, now_us);
   return number;
@@ -32,10 +32,10 @@ std::uint16_t Publisher::AddSubject(const protocol::SkeletonOffer& offer, std::i
 
 void Publisher::SendOffer(Stream& stream, std::int64_t now_us) {
   stream.offered_us = now_us;
-  // Sent again until it is answered, so that only what will never fit is an error.
+  // Poll() repeats the offer until it is answered, so other send failures do not matter.
   if (transport_->Send(stream.offer) == IoStatus::kTooLarge) {
-    stream.rejection = "it takes " + std::to_string(stream.offer.size()) +
-                       " bytes, more than UDP carries: send it over TCP";
+    stream.rejection = "the skeleton offer has " + std::to_string(stream.offer.size()) +
+                       " bytes, more than UDP carries; use TCP";
   }
 }
 
@@ -98,7 +98,7 @@ void Publisher::Close() {
                      .stream = static_cast<std::uint16_t>(i),
                      .sequence = streams_[i].next_sequence},
                     protocol::Goodbye{}, bytes_);
-    (void)transport_->Send(bytes_);  // the daemon notices silence too
+    (void)transport_->Send(bytes_);  // a lost goodbye is harmless: the daemon times out
   }
   streams_.clear();
 }

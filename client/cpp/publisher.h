@@ -18,31 +18,33 @@ namespace furrow::client {
 //   publisher.Poll(now_us, 100ms);                 // until accepted(stream)
 //   publisher.Send(stream, pose, capture_time_us);
 //
-// Time is a parameter (microseconds on any clock that does not go back); no thread, one thread.
+// Time is a parameter: microseconds of any monotonic clock. The class starts no thread and must be
+// used on one thread.
 class Publisher {
  public:
   explicit Publisher(std::unique_ptr<Transport> transport);
 
-  // Offers a subject and returns its stream number. The offer is sent again until it is answered,
-  // and whenever the daemon asks for it (it may have been restarted).
+  // Offers a subject and returns its stream number. Poll() repeats the offer until the daemon
+  // answers, and again whenever the daemon asks for it, for example after a restart.
   std::uint16_t AddSubject(const protocol::SkeletonOffer& offer, std::int64_t now_us);
 
-  // Sends one pose, numbered from 0 a stream. `pose.skeleton_hash` is filled in.
+  // Sends one pose. Poses are numbered from 0 per stream. Sets `pose.skeleton_hash`.
   [[nodiscard]] IoStatus Send(std::uint16_t stream, protocol::PoseFrame& pose,
                               std::int64_t capture_time_us,
                               const protocol::PoseEncoding& encoding = {});
 
-  // Reads answers for at most `wait` and sends offers again that are due. Call it between poses.
-  // kOk and kTimeout are both fine; kNoConnection on UDP means that nobody listens there now.
+  // Reads answers for up to `wait` and repeats unanswered offers. Call it between poses. kOk and
+  // kTimeout are both normal. kNoConnection over UDP means that the port is closed at present.
   IoStatus Poll(std::int64_t now_us, std::chrono::milliseconds wait);
 
-  // Says goodbye for every stream: subscribers hear it at once instead of waiting for silence.
+  // Sends a goodbye for every stream, so that subscribers learn at once that the subjects left.
   void Close();
 
   [[nodiscard]] bool accepted(std::uint16_t stream) const;
-  // Why the stream was refused, by the daemon or before it was sent; empty while it has not been.
+  // Why the daemon rejected the stream, or why the offer could not be sent; empty if neither
+  // happened.
   [[nodiscard]] const std::string& rejection(std::uint16_t stream) const;
-  // The last error message of the daemon, empty when there was none.
+  // The last error message of the daemon; empty if there was none.
   [[nodiscard]] const std::string& last_error() const { return last_error_; }
   [[nodiscard]] std::uint64_t session() const { return session_; }
 
@@ -69,7 +71,8 @@ class Publisher {
   std::string last_error_;
 };
 
-// A random session number, never 0: new at every start, so that a restart is told from a replay.
+// Returns a random session number, never 0. A new number at each start lets the daemon tell a
+// restart from a replay.
 [[nodiscard]] std::uint64_t NewSession();
 
 }  // namespace furrow::client

@@ -13,11 +13,11 @@ namespace {
 using protocol::DecodeStatus;
 using protocol::MessageKind;
 
-// While something is unanswered over UDP it is sent again this often; a settled lease is renewed
-// rarely, and so is a TCP connection asked whether it is still alive.
+// Interval for repeating unanswered messages over UDP. Interval for renewing a settled lease, and
+// for pinging a TCP connection.
 constexpr std::int64_t kResendMicroseconds = 200'000;
 constexpr std::int64_t kRenewMicroseconds = protocol::kUdpLeaseMicroseconds / 5;
-// What we ask goes unanswered for so long only where the network or the daemon is gone.
+// After this time without an answer the network or the daemon is considered gone.
 constexpr std::int64_t kSilenceMicroseconds = 3 * protocol::kUdpLeaseMicroseconds;
 
 }  // namespace
@@ -43,7 +43,7 @@ std::uint32_t Subscriber::Ask(const Message& message) {
   request.number = next_request_++;
   request.wait = message.wait;
   encoder_.Encode({.session = session_, .sequence = request.number}, message, request.bytes);
-  if (proven_) (void)transport_->Send(request.bytes);  // a closed connection shows in Next()
+  if (proven_) (void)transport_->Send(request.bytes);  // Next() reports a closed connection
   return request.number;
 }
 
@@ -80,7 +80,7 @@ void Subscriber::SendWaiting() {
   }
 }
 
-// The daemon does not know this address (any more): from the beginning, with all that was asked.
+// The daemon does not know this address, or forgot it: start over and repeat all requests.
 void Subscriber::ProveAgain() {
   proven_ = false;
   token_ = 0;
@@ -126,17 +126,17 @@ Event Subscriber::Next(std::int64_t now_us, std::chrono::milliseconds wait) {
       case IoStatus::kNoConnection: event.kind = Event::Kind::kNoConnection; return event;
       case IoStatus::kClosed:
       case IoStatus::kMalformed: event.kind = Event::Kind::kClosed; return event;
-      default: event.kind = Silence(now_us); return event;
+      default: event.kind = OnTimeout(now_us); return event;
     }
     if (Handle(message, event)) return event;
-    // Not for the caller (a pong, a welcome). What is already there may be: look, but do not wait
-    // on, since only the caller knows the time.
+    // That message (a pong or a welcome) is not for the caller. Look at what else has arrived, but
+    // do not wait again, because only the caller knows the time.
     wait = std::chrono::milliseconds(0);
   }
 }
 
-// What nothing to receive means: usually nothing.
-Event::Kind Subscriber::Silence(std::int64_t now_us) const {
+// The event of a receive timeout.
+Event::Kind Subscriber::OnTimeout(std::int64_t now_us) const {
   const bool lost = unanswered_since_us_ && now_us - *unanswered_since_us_ > kSilenceMicroseconds;
   if (!lost) return Event::Kind::kTimeout;
   return transport_->kind() == TransportKind::kTcp ? Event::Kind::kClosed
@@ -197,7 +197,7 @@ bool Subscriber::Handle(std::span<const std::uint8_t> message, Event& event) {
       if (status == DecodeStatus::kOk) OnGoodbye(view.header.stream);
       break;
     case MessageKind::kWelcome: return HandleWelcome(view);
-    default: return false;  // pongs, and what a newer daemon may say
+    default: return false;  // pongs, and messages of a newer protocol
   }
   if (status == DecodeStatus::kOk) return true;
   ++malformed_;
@@ -233,13 +233,13 @@ void Subscriber::OnSkeleton(std::uint16_t subscription) {
   if (found != requests_.end()) found->names_hash = skeleton_.skeleton_hash;
 }
 
-// Weights of names, or poses of a skeleton, that never came: the reply was lost.
+// Weights whose names, or poses whose skeleton, never arrived: the reply was lost, so ask again.
 void Subscriber::OnFrame(std::uint16_t subscription, std::uint64_t hash) {
   const auto found = std::ranges::find(requests_, subscription, &Request::subscription);
   if (found != requests_.end() && found->names_hash != hash) found->waiting = true;
 }
 
-// False: dealt with here, nothing for the caller.
+// Returns false if the error is handled here and not passed to the caller.
 bool Subscriber::OnError(const protocol::Header& header) {
   if (error_.code == protocol::ErrorCode::kUnprovenAddress &&
       transport_->kind() == TransportKind::kUdp) {
@@ -251,7 +251,7 @@ bool Subscriber::OnError(const protocol::Header& header) {
   return true;
 }
 
-// A subject that left may return to a subscription that waits; any other reason ends it.
+// A subscription with `wait` outlives its subject. Every other reason ends the subscription.
 void Subscriber::OnGoodbye(std::uint16_t subscription) {
   const bool may_return = goodbye_.reason == protocol::GoodbyeReason::kSubjectGone;
   std::erase_if(requests_, [=](const Request& request) {

@@ -13,46 +13,48 @@
 
 namespace furrow::client {
 
-// What Subscriber::Next() found. The message that `kind` names is valid until the next call.
+// What Subscriber::Next() received. The message of this kind is valid until the next call.
 struct Event {
   enum class Kind {
-    kTimeout,       // nothing in the time given
-    kReply,         // reply(): a subscription began, or its names changed
+    kTimeout,       // nothing arrived in time
+    kReply,         // reply(): a subscription started, or its names changed
     kWeights,       // weights()
     kPicture,       // picture()
-    kSkeleton,      // skeleton(): what the poses that follow mean
-    kPose,          // pose(), and payload() as it was published
-    kDropped,       // dropped(): of a subscription to every frame
-    kSubjects,      // subjects(): who is there
-    kError,         // error(): request `header.sequence`, or subscription `header.stream`, failed
+    kSkeleton,      // skeleton(): describes the poses that follow
+    kPose,          // pose(); payload() holds the published bytes
+    kDropped,       // dropped(): frames lost by a subscription to every frame
+    kSubjects,      // subjects(): the list of subjects
+    kError,         // error(): request `header.sequence` or subscription `header.stream` failed
     kGoodbye,       // goodbye()
-    kClosed,        // TCP: the daemon closed the connection, or answers nothing for 15 s
-    kNoConnection,  // UDP: nobody listens there, or answers for 15 s
+    kClosed,        // TCP: the daemon closed the connection, or sent nothing for 15 s
+    kNoConnection,  // UDP: the port is closed, or the daemon sent nothing for 15 s
   };
   Kind kind = Kind::kTimeout;
-  protocol::Header header;  // stream: the subscription; sequence and capture time: the pose's
+  protocol::Header header;  // `stream`: subscription; `sequence` and capture time: of the pose
 };
 
-// Receives weights, poses and pictures from a daemon; pictures over TCP alone.
+// Receives weights, poses and pictures from a daemon. Pictures need TCP.
 //
 //   Subscriber subscriber(std::move(transport), "my engine 1.0");
 //   subscriber.Subscribe(protocol::SubscribeWeights{.subject = "ada"});
 //   for (;;) { const Event event = subscriber.Next(now_us, 16ms); ... }
 //
-// Over UDP it proves its address first and keeps its lease; what was lost is asked for again: an
-// answer, the names of weights that came, or everything where the daemon was restarted. Time is a
-// parameter (microseconds on any clock that does not go back); no thread, one thread.
+// Over UDP it first proves its address, then renews its lease and repeats requests whose answers
+// were lost. After a restart of the daemon it repeats all requests.
+//
+// Time is a parameter: microseconds of any monotonic clock. The class starts no thread and must be
+// used on one thread.
 class Subscriber {
  public:
   Subscriber(std::unique_ptr<Transport> transport, std::string name);
 
-  // Ask, and get the request's number, which the answer repeats in header.sequence.
+  // Each returns the number of the request; the answer repeats the number in header.sequence.
   std::uint32_t Subscribe(const protocol::SubscribeWeights& request);
   std::uint32_t Subscribe(const protocol::SubscribePictures& request);
   std::uint32_t Subscribe(const protocol::SubscribePoses& request);
   void Unsubscribe(std::uint16_t subscription);
-  // Asks who is there; `follow`: again whenever somebody comes or goes. Over TCP (over UDP the
-  // daemon answers with an error).
+  // Requests the list of subjects. With `follow` the daemon sends the list again at every change.
+  // Needs TCP: over UDP the daemon answers with an error.
   std::uint32_t ListSubjects(bool follow);
 
   [[nodiscard]] Event Next(std::int64_t now_us, std::chrono::milliseconds wait);
@@ -70,17 +72,17 @@ class Subscriber {
   // The FlatBuffers buffer of the message that the last event names; valid until the next call.
   [[nodiscard]] std::span<const std::uint8_t> payload() const { return payload_; }
 
-  // Messages that could not be decoded, and so were dropped.
+  // Number of messages dropped because they could not be decoded.
   [[nodiscard]] std::uint64_t malformed() const { return malformed_; }
 
  private:
-  // Kept as long as its subscription, so that it can be repeated.
+  // A request is kept as long as its subscription, so that it can be repeated.
   struct Request {
     std::uint32_t number = 0;
     bool wait = false;
-    bool waiting = true;  // for an answer
+    bool waiting = true;  // no answer yet
     std::uint16_t subscription = 0;
-    std::uint64_t names_hash = 0;  // or the skeleton's
+    std::uint64_t names_hash = 0;  // hash of the names, or of the skeleton
     std::vector<std::uint8_t> bytes;
   };
 
@@ -89,8 +91,9 @@ class Subscriber {
   void SendHello();
   void SendWaiting();
   void ProveAgain();
-  void Maintain(std::int64_t now_us);  // pings; over UDP hello and requests without answer, too
-  [[nodiscard]] Event::Kind Silence(std::int64_t now_us) const;
+  // Sends pings; over UDP also repeats the hello and unanswered requests.
+  void Maintain(std::int64_t now_us);
+  [[nodiscard]] Event::Kind OnTimeout(std::int64_t now_us) const;
   void NoticeRestart(std::uint64_t server_session);
   bool Handle(std::span<const std::uint8_t> message, Event& event);
   bool HandleWelcome(const protocol::MessageView& view);
@@ -106,11 +109,11 @@ class Subscriber {
   std::uint64_t session_;
   std::uint32_t next_request_ = 1;
   std::vector<Request> requests_;
-  std::uint64_t server_session_ = 0;  // 0: not heard yet
+  std::uint64_t server_session_ = 0;  // 0: unknown
   bool proven_;
   std::uint64_t token_ = 0;
   std::int64_t last_sent_us_ = 0;
-  std::optional<std::int64_t> unanswered_since_us_;  // when something was sent, nothing heard since
+  std::optional<std::int64_t> unanswered_since_us_;  // oldest send without any message since
   bool started_ = false;
   std::uint64_t malformed_ = 0;
 

@@ -28,13 +28,13 @@ std::int64_t Microseconds(Clock::time_point time) {
   return std::chrono::duration_cast<std::chrono::microseconds>(time.time_since_epoch()).count();
 }
 
-// One read is always under way; waiting is running the context until it ends or time is up, so a
-// timeout loses nothing.
+// Keeps one asynchronous read pending. A wait runs the context until the read completes or the
+// deadline passes, so a timeout never loses data.
 class ReadPump {
  public:
   template <class Socket>
   void Start(Socket& socket, std::span<std::uint8_t> buffer) {
-    // Sending runs the context too: what it has read meanwhile is still to be taken.
+    // Send() runs the context too, so a completed read may still wait to be taken.
     if (pending_ || done_) return;
     pending_ = true;
     const auto on_read = [this](const asio::error_code& error, std::size_t bytes) {
@@ -50,7 +50,7 @@ class ReadPump {
     }
   }
 
-  // True when the read has ended; then error() and bytes() say how.
+  // Returns true when the read has completed; error() and bytes() then hold its result.
   bool Wait(asio::io_context& context, Clock::time_point deadline) {
     if (!done_) {
       context.restart();
@@ -106,7 +106,7 @@ class TcpTransport : public Transport {
     context_.restart();
     while (!result && context_.run_one_until(deadline) > 0) {
     }
-    if (!result) Close();  // half a frame may have left: nothing can follow it
+    if (!result) Close();  // part of a frame may have been sent, so no other frame can follow
     return *result ? IoStatus::kClosed : IoStatus::kOk;
   }
 
@@ -132,7 +132,7 @@ class TcpTransport : public Transport {
   }
 
  private:
-  // Handlers run to their end here: they must not outlive the frame that they refer to.
+  // Runs the pending handlers to their end, because they refer to variables of the caller's frame.
   void Close() {
     asio::error_code ignored;
     socket_.close(ignored);
@@ -158,7 +158,7 @@ class UdpTransport : public Transport {
     udp::resolver resolver(context_);
     const auto endpoints = resolver.resolve(host, std::to_string(port), error);
     if (error) return error;
-    // The first address that can be routed to; 127.0.0.1 before ::1, as the daemon's default binds.
+    // Picks the first routable address, IPv4 first, because the daemon binds to IPv4 by default.
     for (const bool want_v4 : {true, false}) {
       for (const auto& entry : endpoints) {
         if (entry.endpoint().address().is_v4() != want_v4) continue;
@@ -180,7 +180,7 @@ class UdpTransport : public Transport {
       const std::size_t bytes = protocol::WriteDatagram(message, id, i, datagram_);
       asio::error_code error;
       socket_.send(asio::buffer(datagram_.data(), bytes), 0, error);
-      // A refusal answers an earlier datagram. This one did not leave, so try it once more.
+      // The error reports an earlier datagram. This one was not sent, so send it once more.
       if (error == asio::error::connection_refused) {
         refused_ = true;
         socket_.send(asio::buffer(datagram_.data(), bytes), 0, error);
@@ -192,10 +192,10 @@ class UdpTransport : public Transport {
 
   IoStatus Receive(std::span<const std::uint8_t>& message,
                    std::chrono::milliseconds timeout) override {
-    constexpr int kMostPieces = 1024;  // a flood of pieces must not outlast the timeout
+    constexpr int kMaxPieces = 1024;  // a flood of fragments must not outlast the timeout
     const auto deadline = Clock::now() + timeout;
     (void)reassembler_.Expire(Microseconds(Clock::now()));
-    for (int piece = 0; piece < kMostPieces; ++piece) {
+    for (int piece = 0; piece < kMaxPieces; ++piece) {
       if (unbundler_.Next(message)) return IoStatus::kOk;
       if (std::exchange(refused_, false)) return IoStatus::kNoConnection;
       pump_.Start(socket_, buffer_);
@@ -205,7 +205,7 @@ class UdpTransport : public Transport {
       switch (reassembler_.Push(0, datagram, Microseconds(Clock::now()), message)) {
         case protocol::FragmentStatus::kWhole: (void)unbundler_.Open(datagram); break;
         case protocol::FragmentStatus::kComplete: return IoStatus::kOk;
-        default: break;  // a piece, or nothing of ours: wait on
+        default: break;  // an incomplete message or a foreign datagram
       }
     }
     return IoStatus::kTimeout;
@@ -219,7 +219,7 @@ class UdpTransport : public Transport {
   ReadPump pump_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(64 * 1024);
   std::array<std::uint8_t, protocol::kMaxDatagramBytes> datagram_{};
-  protocol::Unbundler unbundler_;  // of buffer_
+  protocol::Unbundler unbundler_;  // splits the datagram in buffer_
   protocol::Reassembler reassembler_;
   std::uint32_t next_message_id_ = 0;
   bool refused_ = false;
@@ -227,9 +227,9 @@ class UdpTransport : public Transport {
 
 }  // namespace
 
-std::unique_ptr<Transport> Transport::Open(TransportKind kind, const std::string& host,
-                                           std::uint16_t port, std::chrono::milliseconds timeout,
-                                           std::string* error) {
+Result<std::unique_ptr<Transport>> Transport::Open(TransportKind kind, const std::string& host,
+                                                   std::uint16_t port,
+                                                   std::chrono::milliseconds timeout) {
   asio::error_code code;
   std::unique_ptr<Transport> result;
   if (kind == TransportKind::kTcp) {
@@ -241,11 +241,20 @@ std::unique_ptr<Transport> Transport::Open(TransportKind kind, const std::string
     code = transport->Connect(host, port);
     result = std::move(transport);
   }
-  if (!code) return result;
-  const bool bare_v6 = host.find(':') != std::string::npos;
-  *error = "no connection to " + (bare_v6 ? "[" + host + "]" : host) + ":" + std::to_string(port) +
-           " over " + (kind == TransportKind::kTcp ? "TCP" : "UDP") + ": " + code.message();
-  return nullptr;
+  if (code) return ConnectionFailed(kind, host, port, code.message());
+  return result;
+}
+
+std::string AddressText(const std::string& host, std::uint16_t port) {
+  const bool is_v6 = host.find(':') != std::string::npos;
+  return (is_v6 ? "[" + host + "]" : host) + ":" + std::to_string(port);
+}
+
+Status ConnectionFailed(TransportKind kind, const std::string& host, std::uint16_t port,
+                        std::string_view reason) {
+  return {StatusCode::kUnavailable, "no connection to " + AddressText(host, port) + " over " +
+                                        (kind == TransportKind::kTcp ? "TCP: " : "UDP: ") +
+                                        std::string(reason)};
 }
 
 }  // namespace furrow::client

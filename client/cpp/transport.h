@@ -6,47 +6,53 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
+
+#include "base/status.h"
 
 namespace furrow::client {
 
 enum class TransportKind { kUdp, kTcp };
 
+// Outcome of one send or receive. A bare enum, because this is the packet path.
 enum class IoStatus {
   kOk = 0,
-  kTimeout,       // nothing came in time
-  kClosed,        // TCP: the other end closed; nothing more will come
-  kNoConnection,  // nobody there: refused, unreachable, or not resolved
-  kTooLarge,      // a message beyond what this transport carries
-  kMalformed,     // what came is not framed as it should be; TCP is closed then
+  kTimeout,       // nothing arrived in time
+  kClosed,        // TCP: the peer closed the connection; no more messages follow
+  kNoConnection,  // no peer: refused, unreachable or unresolved
+  kTooLarge,      // the message exceeds what this transport carries
+  kMalformed,     // the received framing is invalid; a TCP connection is closed then
 };
 
-// One connected socket that carries whole messages of the Furrow protocol (protocol/STANDARD.md):
-// length-prefixed over TCP; over UDP one a datagram or in fragments, and received in bundles, too.
+// One connected socket that carries whole messages of the Furrow protocol (protocol/STANDARD.md).
 //
-// Not thread-safe: one thread a transport. Waits never beyond the times given, except that the
-// system's resolver takes its own time over a name.
+// Over TCP each message has a length prefix. Over UDP a message is one datagram or several
+// fragments; received datagrams may also be bundles of messages.
+//
+// Not thread-safe: use each transport on one thread. No call blocks beyond the given timeout,
+// except that the system's name resolver takes its own time.
 class Transport {
  public:
-  // `host`: a name or a numeric address. `timeout`: for connecting, and over TCP for each Send()
-  // that the other end is slow to take. On failure null, and `error` says why in one sentence. UDP
-  // has no handshake: a missing server shows in Receive().
-  [[nodiscard]] static std::unique_ptr<Transport> Open(TransportKind kind, const std::string& host,
-                                                       std::uint16_t port,
-                                                       std::chrono::milliseconds timeout,
-                                                       std::string* error);
+  // Connects to `host`, a name or a numeric address. `timeout` limits the connect, and over TCP
+  // each later Send() to a slow peer. UDP has no handshake: Receive() reports a missing server.
+  //
+  // kUnavailable: the name does not resolve, or the peer does not accept the connection.
+  [[nodiscard]] static Result<std::unique_ptr<Transport>> Open(TransportKind kind,
+                                                               const std::string& host,
+                                                               std::uint16_t port,
+                                                               std::chrono::milliseconds timeout);
   virtual ~Transport() = default;
 
-  // `message` as protocol::Encoder makes it. kClosed over TCP also when the other end took too
-  // long; the connection is closed then.
+  // Sends `message`, as protocol::Encoder writes it. Over TCP kClosed also means that the peer took
+  // longer than the timeout; the connection is then closed.
   [[nodiscard]] virtual IoStatus Send(std::span<const std::uint8_t> message) = 0;
 
-  // Waits for one whole message, at most `timeout` (0: only what is there). `message` points into
-  // the transport and is valid until the next call.
+  // Waits up to `timeout` for one whole message (0: does not wait). `message` points into the
+  // transport and is valid until the next call.
   [[nodiscard]] virtual IoStatus Receive(std::span<const std::uint8_t>& message,
                                          std::chrono::milliseconds timeout) = 0;
 
-  // Whether Receive() takes bundles apart (protocol/framing/bundle.h), so that the daemon may send
-  // some.
+  // True if Receive() splits bundles (protocol/framing/bundle.h), so the daemon may send them.
   [[nodiscard]] virtual bool takes_bundles() const { return false; }
 
   [[nodiscard]] TransportKind kind() const { return kind_; }
@@ -57,5 +63,12 @@ class Transport {
  private:
   TransportKind kind_;
 };
+
+// "host:port", with brackets around an IPv6 address.
+[[nodiscard]] std::string AddressText(const std::string& host, std::uint16_t port);
+
+// The kUnavailable status of a failed connect: "no connection to host:port over TCP: reason".
+[[nodiscard]] Status ConnectionFailed(TransportKind kind, const std::string& host,
+                                      std::uint16_t port, std::string_view reason);
 
 }  // namespace furrow::client

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the end-to-end tests share: the programs, a daemon on free ports, tables of weights."""
+"""Shared by the end-to-end tests: running the programs, a daemon on free ports, tables of weights."""
 import csv
 import io
 import os
@@ -14,11 +14,11 @@ BIN = pathlib.Path(os.environ["FURROW_BIN"])
 SOURCE = pathlib.Path(os.environ["FURROW_SOURCE"])
 SHARED = pathlib.Path(os.environ.get("FURROW_SHARED_DATA", "/nonexistent"))
 SHARE = BIN.parent / "share" / "furrow"
-GUARD = 300  # seconds; only a failure takes so long
+GUARD = 300  # seconds; only a failing test takes this long
 
 
 def needs_shared(*parts):
-    """A file of the shared data, or the test says SKIPPED."""
+    """Returns a file of the shared data, or skips the test."""
     path = SHARED.joinpath(*parts)
     if not path.exists():
         raise unittest.SkipTest(f"{path} is absent")
@@ -26,7 +26,7 @@ def needs_shared(*parts):
 
 
 def commands(document):
-    """The command lines in the fenced blocks of a document, comments off, as lists of words."""
+    """Yields the command lines in the fenced blocks of a document as lists of words, without comments."""
     text = (SOURCE / document).read_text()
     for block in re.findall(r"^```\w*\n(.*?)^```", text, re.M | re.S):
         for line in block.splitlines():
@@ -35,7 +35,7 @@ def commands(document):
 
 
 def furrow(*args, env=None, check=None, stdin=None):
-    """Runs `furrow` to its end. `check`: the exit code it must have."""
+    """Runs `furrow` to its end. `check`: the required exit code."""
     result = subprocess.run([BIN / "furrow", *map(str, args)], capture_output=True, timeout=GUARD,
                             env={**os.environ, **(env or {})}, input=stdin)
     if check is not None:
@@ -44,13 +44,13 @@ def furrow(*args, env=None, check=None, stdin=None):
 
 
 def spawn(*args, env=None):
-    """Starts `furrow` and goes on."""
+    """Starts `furrow` in the background."""
     return subprocess.Popen([BIN / "furrow", *map(str, args)], stdout=subprocess.PIPE,
                             stderr=subprocess.PIPE, env={**os.environ, **(env or {})})
 
 
 def spawn_watch(daemon_address, subject, *args):
-    """A `furrow watch` that has its subscription: what is played from now on, it may see whole."""
+    """Starts `furrow watch` and waits for its subscription, so that it receives everything played later."""
     watcher = spawn("watch", daemon_address, "--subject", subject, "--wait", "--format", "csv", *args)
     line = watcher.stderr.readline().decode()
     assert "waiting" in line, line
@@ -76,7 +76,7 @@ def solve(*args, env=None):
 
 
 def worst_difference(a, b):
-    """The largest difference over the frames that both have, and how many those are."""
+    """Returns the largest difference over the common frames, and the number of common frames."""
     assert a.names == b.names, (a.names[:3], b.names[:3])
     common = sorted(a.rows.keys() & b.rows.keys())
     worst = max((abs(x - y) for f in common for x, y in zip(a.rows[f], b.rows[f])), default=None)
@@ -84,7 +84,7 @@ def worst_difference(a, b):
 
 
 class Daemon:
-    """A furrowd on free ports for the length of a with-block; ends by SIGTERM, and must exit 0."""
+    """Runs furrowd on free ports in a with-block. SIGTERM ends it, and it must exit with 0."""
 
     def __init__(self, *args, env=None):
         self.args = [BIN / "furrowd", "--tcp", "0", "--udp", "0", *map(str, args)]
@@ -111,13 +111,13 @@ class Daemon:
 
 
 def finish(process):
-    """Waits for a spawned program: (exit code, stdout, stderr)."""
+    """Waits for a spawned program and returns its exit code, stdout and stderr."""
     out, err = process.communicate(timeout=GUARD)
     return process.returncode, out, err.decode()
 
 
 def jpeg_size(data):
-    """Width and height in a JPEG's frame header; fails on what is no JPEG."""
+    """Returns the width and height from a JPEG's frame header. Fails if `data` is not a JPEG."""
     assert data[:2] == b"\xff\xd8" and data[-2:] == b"\xff\xd9", "not a whole JPEG"
     at = 2
     while True:

@@ -28,7 +28,7 @@ class Recording(Daemon):
 
 
 def missing_interop():
-    """What is not there for the independent reader to run; empty: nothing."""
+    """Says what the independent reader lacks to run; empty if nothing is missing."""
     if shutil.which("node") is None:
         return "node is absent: install what deploy/packages.txt lists"
     if not (INTEROP / "node_modules").exists():
@@ -43,12 +43,12 @@ def lines_of(*command):
 
 
 def our_messages(take):
-    """A line for each message and attachment that our reader finds."""
+    """Returns one line per message and attachment found by Furrow's reader."""
     return lines_of(BIN / "mcap-dump", take)
 
 
 def their_messages(take, *options):
-    """The same of npm's @mcap/core, written by others. "--cut": of a file whose writer died."""
+    """As our_messages(), by the independent reader @mcap/core. "--cut": the writer of the file was killed."""
     return lines_of("node", INTEROP / "read.mjs", *options, take)
 
 
@@ -59,7 +59,7 @@ class FolderTest(unittest.TestCase):
         self.root = pathlib.Path(folder.name)
 
     def record(self, *play, name="takes", recording=PERFORMANCE):
-        """Plays to a recording daemon that ends as it should; its only take."""
+        """Plays to a recording daemon, stops it cleanly and returns its only take."""
         with Recording(self.root / name) as daemon:
             furrow("play", recording, "--to", daemon.udp, "--subject", "ada", *play, check=0)
         takes = daemon.takes()
@@ -84,11 +84,11 @@ class FolderTest(unittest.TestCase):
         deadline = time.monotonic() + GUARD
         while not out.exists() and recorder.poll() is None and time.monotonic() < deadline:
             time.sleep(0.02)
-        self.assertIsNone(recorder.poll(), "it records")
+        self.assertIsNone(recorder.poll(), "the recorder is running")
         return recorder
 
     def end(self, recorder):
-        """Its words, after Ctrl-C."""
+        """Sends Ctrl-C and returns the standard error."""
         recorder.send_signal(signal.SIGINT)
         recorder.wait(timeout=GUARD)
         words = recorder.stderr.read().decode()
@@ -96,7 +96,7 @@ class FolderTest(unittest.TestCase):
         return words
 
     def kill_in_the_middle(self, recorder, take):
-        """Kills who records once a second's worth is on the disk."""
+        """Kills the recorder when about one second of data is on the disk."""
         begin = take.stat().st_size
         deadline = time.monotonic() + GUARD
         while take.stat().st_size < begin + 40000 and time.monotonic() < deadline:
@@ -105,7 +105,7 @@ class FolderTest(unittest.TestCase):
         recorder.communicate(timeout=GUARD)
 
     def what_a_killed_daemon_leaves(self):
-        """The take of a daemon that was killed while it recorded."""
+        """Returns the take of a daemon that was killed while recording."""
         daemon = Recording(self.root / "killed")
         daemon.__enter__()
         player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
@@ -115,7 +115,7 @@ class FolderTest(unittest.TestCase):
         return take
 
     def what_a_killed_recorder_leaves(self):
-        """The take of a `furrow record` that was killed."""
+        """Returns the take of a `furrow record` process that was killed."""
         take = self.root / "killed.mcap"
         with Daemon("--no-render") as daemon:
             player = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Bad input: one clear message, the right exit code, and nothing else harmed."""
+"""Bad input gives one clear message and the right exit code, and harms nothing else."""
 import json
 import pathlib
 import random
@@ -56,7 +56,7 @@ class BadFileTest(unittest.TestCase):
         return path
 
     def refuse(self, code, *args, says=()):
-        """`furrow ARGS` must exit with `code` and say each of `says` in one short message."""
+        """`furrow ARGS` must exit with `code` and a short message that contains each of `says`."""
         result = furrow(*args)
         message = result.stderr.decode()
         self.assertEqual(result.returncode, code, message)
@@ -70,7 +70,7 @@ class BadFileTest(unittest.TestCase):
             path = self.file("cut.bvh", BVH[:end])
             self.refuse(BAD_INPUT, "solve", path, "--rig", RIG, says=["cut.bvh"])
 
-    def test_bvh_with_fewer_frames_than_it_says_is_a_warning(self):
+    def test_bvh_with_fewer_frames_than_declared_is_a_warning(self):
         path = self.file("few.bvh", BVH[:BVH.index("0 0 0 0 0 0 0 10 0")])
         result = furrow("solve", path, "--rig", self.file("knee.json", json.dumps(KNEE_RIG)), "--drivers", check=DONE)
         self.assertIn("few.bvh", result.stderr.decode())
@@ -85,7 +85,7 @@ class BadFileTest(unittest.TestCase):
         path = self.file("nan.bvh", BVH.replace("10 0\n", "nan 0\n"))
         self.refuse(BAD_INPUT, "solve", path, "--rig", RIG, says=[f"nan.bvh:{BVH.count(chr(10))}"])
 
-    def test_rig_that_names_a_joint_that_is_not_there(self):
+    def test_rig_with_an_unknown_joint(self):
         rig = json.loads(json.dumps(KNEE_RIG))
         rig["drivers"][0]["hinge"]["joint"] = "elbow_of_nobody"
         self.refuse(BAD_INPUT, "solve", self.file("ok.bvh", BVH), "--rig", self.file("r.json", json.dumps(rig)),
@@ -138,7 +138,7 @@ class BadFileTest(unittest.TestCase):
         self.refuse(BAD_INPUT, "render", self.file("ok.bvh", BVH), "--out", self.root / "out", "--rig",
                     self.file("r.json", json.dumps(KNEE_RIG)), "--frames", "0:2", says=["no frame 2", "ok.bvh"])
 
-    def test_full_disk_behind_standard_output_is_said(self):
+    def test_full_disk_behind_standard_output_is_reported(self):
         with open("/dev/full", "wb") as full:
             result = subprocess.run([BIN / "furrow", "solve", self.file("ok.bvh", BVH), "--rig",
                                      self.file("r.json", json.dumps(KNEE_RIG))], stdout=full,
@@ -146,7 +146,7 @@ class BadFileTest(unittest.TestCase):
         self.assertEqual(result.returncode, FAILED)
         self.assertIn("No space left", result.stderr.decode())
 
-    def test_name_that_is_not_utf8_is_refused_before_it_is_sent(self):
+    def test_name_that_is_not_utf8_is_rejected_before_it_is_sent(self):
         path = self.file("latin.bvh", BVH.replace("knee", "caf\u00e9").encode("latin-1"))
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as nobody:
             nobody.bind(("127.0.0.1", 0))
@@ -168,7 +168,7 @@ class DaemonTest(unittest.TestCase):
             self.assertEqual(result.returncode, FAILED, result.stderr)
             self.assertIn(str(port), result.stderr.decode())
 
-    def test_bad_files_end_the_daemon_before_it_serves(self):
+    def test_bad_files_stop_the_daemon_before_it_is_ready(self):
         with tempfile.TemporaryDirectory() as folder:
             empty = pathlib.Path(folder, "empty.glb")
             empty.write_bytes(b"")
@@ -185,7 +185,7 @@ class DaemonTest(unittest.TestCase):
                 self.assertEqual(result.returncode, FAILED)
                 self.assertIn("nobody", result.stderr.decode())
 
-    def test_nobody_there(self):
+    def test_closed_port(self):
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]
@@ -194,14 +194,14 @@ class DaemonTest(unittest.TestCase):
                      ("play", PERFORMANCE, "--to", f"127.0.0.1:{port}", "--tcp")):
             self.assertEqual(furrow(*args).returncode, NO_CONNECTION, args)
 
-    def test_garbage_leaves_a_real_stream_unharmed(self):
+    def test_garbage_does_not_affect_a_stream(self):
         solved = solve(PERFORMANCE, "--rig", RIG)
         with Daemon("--no-render") as daemon:
             stop = threading.Event()
             sent = [0]
 
             def flood():
-                """Datagrams of every size, some with our magic, as fast as 10,000 a second."""
+                """Sends up to 10,000 datagrams per second, of various sizes, some with the magic of the protocol."""
                 rng = random.Random(1)
                 out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
                 out.connect(("127.0.0.1", daemon.ports["udp"]))
@@ -233,7 +233,7 @@ class DaemonTest(unittest.TestCase):
             self.assertGreater(frames, 0)
             self.assertLess(worst, 1e-3)
 
-    def test_interrupt_ends_well(self):
+    def test_interrupt_exits_with_0(self):
         with Daemon("--no-render") as daemon:
             daemon.process.send_signal(signal.SIGINT)
             self.assertEqual(daemon.process.wait(timeout=GUARD), 0)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""furrow bake: maps, a rig that names them and a report, or one clear error and nothing at all."""
+"""`furrow bake` writes maps, a rig that names them and a report, or one clear error and no files."""
 import json
 import pathlib
 import re
@@ -20,7 +20,7 @@ SIDE = 0.12  # metres
 
 
 def sheet(uv=lambda s, t: (s, t), weights=lambda t: (1 - t, t), extra_triangles=()):
-    """A square of skin, root at its foot and tip at its head: vertices and triangles by name."""
+    """Returns a square of skin with joint `root` at the bottom and `tip` at the top: named mesh arrays."""
     lines = [(x / CELLS, y / CELLS) for y in range(CELLS + 1) for x in range(CELLS + 1)]
     at = lambda x, y: y * (CELLS + 1) + x
     triangles = []
@@ -37,7 +37,7 @@ def sheet(uv=lambda s, t: (s, t), weights=lambda t: (1 - t, t), extra_triangles=
 
 
 def glb(mesh, lie=0):
-    """The sheet as a .glb whose root stands still and whose tip is SIDE above it."""
+    """Returns the sheet as a .glb with `tip` at the distance SIDE above `root`."""
     binary, views, accessors, places = b"", [], [], {}
     inverse_bind = [(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -y, 0, 1) for y in (0.0, SIDE)]
     arrays = dict(mesh, matrices=("MAT4", 5126, "16f", inverse_bind))
@@ -69,7 +69,7 @@ def glb(mesh, lie=0):
 
 
 def png(width, height, rows=b""):
-    """A PNG of RGBA8; with no rows, a header that promises more than it holds."""
+    """Returns an RGBA8 PNG. Without rows the header declares more pixels than the file contains."""
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
     return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)) +
@@ -80,7 +80,7 @@ WHITE = png(2, 2, b"\0" + b"\xff" * 8 + b"\0" + b"\xff" * 8)
 
 
 def rig(down=-0.3 * SIDE, joint="tip", map_name="squash"):
-    """Squashes the sheet by `down` metres."""
+    """Returns a rig with a pose that compresses the sheet by `down` metres."""
     return {"name": "sheet",
             "reference_poses": [{"name": "pressed", "joints": [{"joint": joint, "translation": [0, down, 0]}]}],
             "drivers": [{"name": "press", "pose": {"points": [{"joint": joint, "kind": "origin"}],
@@ -98,7 +98,7 @@ class BakeCase(unittest.TestCase):
         self.out = self.root / "out"
 
     def package(self, mesh=None, rig_json=None, lie=0, mask=WHITE):
-        """A character with its rig and mask beside it."""
+        """Writes a character with its rig and mask beside it."""
         path = self.root / "sheet.glb"
         path.write_bytes(glb(mesh or sheet(), lie))
         (self.root / "sheet.rig.json").write_text(json.dumps(rig_json or rig()))
@@ -109,7 +109,7 @@ class BakeCase(unittest.TestCase):
         return furrow("bake", *args, "--out", self.out, "--size", size, check=check)
 
     def refuse(self, code, *args, says):
-        """One message that says each of `says`, and nothing where the output would be."""
+        """The bake must fail with a message that contains each of `says`, and write no files."""
         before = sorted(p.name for p in self.root.iterdir())
         message = self.bake(*args, check=code).stderr.decode()
         for text in says:
@@ -149,7 +149,7 @@ class BadInputTest(BakeCase):
     def test_unknown_map(self):
         self.refuse(BAD_INPUT, self.package(), "--map", "folds", says=["no wrinkle map 'folds'", "squash"])
 
-    def test_map_on_a_surface_that_is_not_there(self):
+    def test_map_on_a_missing_surface(self):
         cloth = rig()
         cloth["wrinkle_maps"][0]["surface"] = "cloth"
         self.refuse(BAD_INPUT, self.package(rig_json=cloth), says=["is drawn on cloth", "no mesh is cloth"])
@@ -182,14 +182,14 @@ class BadInputTest(BakeCase):
     def test_folder_that_cannot_be_written(self):
         package = self.package()
         self.out.write_text("in the way")
-        self.refuse(FAILED, package, says=[str(self.out), "no folder"])
+        self.refuse(FAILED, package, says=[str(self.out), "not a folder"])
         result = furrow("bake", package, "--out", "/proc/furrow/out", check=FAILED)
         self.assertIn("/proc/furrow", result.stderr.decode())
 
     def test_interrupt_leaves_nothing(self):
         package = self.package()
         process = spawn("bake", package, "--out", self.out, "--size", 4096)
-        for _ in range(600):  # until it has begun: its temporary folder is there
+        for _ in range(600):  # until the bake has created its temporary folder
             if any(p.name.startswith(".out.") for p in self.root.iterdir()) or process.poll() is not None:
                 break
             time.sleep(0.05)
@@ -247,7 +247,7 @@ class SheetTest(BakeCase):
         self.assertEqual(entry["derivative"], "squash_derivative.exr")
         self.assertEqual((self.out / "squash_derivative.exr").read_bytes()[:4], b"\x76\x2f\x31\x01")
         again = ["--rig", self.out / "sheet.rig.json", "--out", self.root / "again", "--size", 64]
-        furrow("bake", self.root / "sheet.glb", *again, check=DONE)  # and can be read again
+        furrow("bake", self.root / "sheet.glb", *again, check=DONE)  # the baked rig can be read
 
     def test_suggested_masks_go_into_the_rig_when_asked(self):
         package = self.package()
@@ -269,11 +269,11 @@ class SheetTest(BakeCase):
         self.assertEqual(baked["regions"][0]["mask"]["texture"], "masks_skin_0.png")
         self.assertTrue((again / "suggested_masks_skin_0.png").exists())
 
-    def test_the_rig_it_is_made_from_stays(self):
+    def test_the_source_rig_is_not_overwritten(self):
         package = self.package()
         mine = (self.root / "sheet.rig.json").read_bytes()
         result = furrow("bake", package, "--out", self.root, "--size", 64, check=BAD_INPUT)
-        self.assertIn("would replace the one it is made from", result.stderr.decode())
+        self.assertIn("would replace the rig it is made from", result.stderr.decode())
         self.assertEqual((self.root / "sheet.rig.json").read_bytes(), mine)
         self.assertEqual(sorted(p.name for p in self.root.iterdir()), ["mask.png", "sheet.glb", "sheet.rig.json"])
 
@@ -285,12 +285,12 @@ class SheetTest(BakeCase):
         self.assertTrue((self.out / "report" / "squash_lit.png").exists())
         self.assertEqual([p.name for p in self.root.iterdir() if p.name.startswith(".")], [])
 
-    def test_triangles_without_area_are_counted_and_left_out(self):
+    def test_triangles_without_area_are_counted_and_skipped(self):
         package = self.package(sheet(extra_triangles=[(0, 1, 2), (5, 5, 5)]))
         self.assertIn("2 triangles of the skin have no area", self.bake(package).stderr.decode())
 
     def test_a_stroke_folds_what_no_pose_does(self):
-        still = rig(down=0.1 * SIDE)  # a stretch: no fold of its own
+        still = rig(down=0.1 * SIDE)  # a stretch, which makes no folds
         strokes = self.root / "s.json"
         strokes.write_text(json.dumps({"strokes": [
             {"name": "a", "maps": ["squash"], "depth_mm": 1, "width_mm": 4,
@@ -303,7 +303,7 @@ class SheetTest(BakeCase):
 
 class CharactersTest(BakeCase):
     def picture(self, character, *args):
-        """The bytes of `furrow render --pose squash`."""
+        """Returns the picture of `furrow render --pose squash`."""
         shots = self.root / "shots"
         furrow("render", "--character", character, "--pose", "squash", "--out", shots, "--size", "96x96", *args,
                check=DONE)
@@ -346,7 +346,7 @@ class CharactersTest(BakeCase):
         self.assertGreater(max(along.values()), 0.1)
         furrow("rig", "explain", pasted, recording, "--frame", "0", check=DONE)
 
-    def test_patch_says_what_is_wrong(self):
+    def test_patch_errors(self):
         glb_path = SHARE / "default.glb"
         for words, says in ((["--joint", "nobody"], "no joint 'nobody'"), (["--around", "9,9,9"], "the nearest is at"),
                             (["--joint", "jaw", "--mesh", "tail"], "no mesh 'tail'"),

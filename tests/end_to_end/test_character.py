@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Characters from outside: imported, checked, given a rig - and refused, each with one clear error."""
+"""Foreign characters are imported, checked and given a rig; invalid ones give one clear error."""
 import json
 import pathlib
 import struct
@@ -34,7 +34,7 @@ class CharacterTest(unittest.TestCase):
         cls.default = SHARE / "default.glb"
 
     def changed(self, change, name="changed.glb"):
-        """The default character with `change(root, binary)` made to it."""
+        """Writes the default character after applying `change(root, binary)`."""
         root, binary = read_glb(self.default)
         binary = bytearray(binary)
         change(root, binary)
@@ -43,7 +43,7 @@ class CharacterTest(unittest.TestCase):
         return path
 
     def refused(self, path, *says):
-        """Import exits 3 with one line that says what, where, and leaves nothing behind."""
+        """Import must exit with 3, print one line that contains `says`, and write no files."""
         out = self.root / "out" / "refused.glb"
         out.parent.mkdir(exist_ok=True)
         result = furrow("character", "import", path, "--out", out, check=3)
@@ -54,14 +54,14 @@ class CharacterTest(unittest.TestCase):
             self.assertIn(words, lines[0])
         self.assertEqual(list(out.parent.iterdir()), [])
 
-    def test_default_character_is_usable_and_strictly_so_for_scripts(self):
+    def test_default_character_passes_the_check(self):
         report = json.loads(furrow("character", "check", self.default, "--json", check=0).stdout)
         self.assertEqual(report["skeleton_map"], "default")
         self.assertEqual(report["axes"], "up +Y, facing +Z")
         self.assertFalse([f for f in report["findings"] if f["severity"] == "error"])
         self.assertIn("0 errors", furrow("character", "check", self.default, check=0).stdout.decode())
 
-    def test_strict_makes_warnings_count(self):
+    def test_strict_treats_warnings_as_errors(self):
         def forget_names(root, _):
             for node in root["nodes"][:3]:
                 del node["name"]
@@ -90,7 +90,7 @@ class CharacterTest(unittest.TestCase):
             self.assertGreater(max(b.values()), 0.2)
             self.assertLess(max(abs(a[f] - b[f]) for f in b), 0.01, limb)
 
-    def test_files_that_are_not_what_they_say(self):
+    def test_files_with_a_wrong_format(self):
         text = self.root / "text.fbx"
         text.write_text("this is no FBX\n" * 100)
         self.refused(text, "fbx")
@@ -160,7 +160,7 @@ class CharacterTest(unittest.TestCase):
                 furrow("character", "import", self.changed(change), "--repair", "--out",
                        self.root / "repaired.glb", check=0)
 
-    def test_pictures_too_large_are_refused_before_they_are_decoded(self):
+    def test_huge_pictures_are_rejected_before_decoding(self):
         def huge(root, binary):
             view = root["bufferViews"][root["images"][0]["bufferView"]]
             at = view["byteOffset"] + 16  # width and height of a PNG's header
@@ -168,7 +168,7 @@ class CharacterTest(unittest.TestCase):
             binary[at + 13:at + 17] = struct.pack(">I", zlib.crc32(bytes(binary[at - 4:at + 13])))
         self.refused(self.changed(huge), "images[0]")
 
-    def test_model_that_lies_on_its_back_in_centimetres_stands_up_in_metres(self):
+    def test_a_z_up_model_in_centimetres_is_converted(self):
         def lay(root, _):
             root["nodes"].append({"name": "armature", "children": root["scenes"][0]["nodes"],
                                   "rotation": [0.70710678, 0, 0, 0.70710678], "scale": [100, 100, 100]})

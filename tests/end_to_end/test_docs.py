@@ -23,7 +23,7 @@ class DocumentTest(unittest.TestCase):
         (self.root / "hero.glb").symlink_to(SHARE / "default.glb")
 
     def run_here(self, words):
-        """Runs one command in a folder of its own; `>` works as in a shell."""
+        """Runs one command in the test folder; `>` redirects as in a shell."""
         out = None
         if ">" in words:
             at = words.index(">")
@@ -69,13 +69,13 @@ class DocumentTest(unittest.TestCase):
         self.assertEqual(seen, {"record", "info", "play", "solve", "convert"})
 
     def test_rendering(self):
-        """A small picture of what each command would draw for a whole recording."""
+        """Draws one small picture per command instead of a whole recording."""
         for name in ("anger.bvh", "happiness.bvh", "sadness.bvh"):
             (self.root / name).symlink_to(SHARE / "recordings" / name)
         several = 0
         for words in commands("docs/RENDERING.md"):
             if "face.glb" in words:
-                continue  # baked first: docs/BAKE.md
+                continue  # needs a bake; test_bake.py covers docs/BAKE.md
             if "--print-settings" not in words:
                 at = words.index("--size") if "--size" in words else len(words)
                 words[at:at + 2] = ["--size", "64x64"]

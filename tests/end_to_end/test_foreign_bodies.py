@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Recordings of bodies that lack what a rig looks at: drawn with a warning, solved when asked to."""
+"""Recordings without some joints of a rig: drawn with a warning, solved with --allow-missing."""
 import pathlib
 import tempfile
 import unittest
@@ -9,7 +9,7 @@ from furrow_testing import SHARE, furrow, png_size
 
 DONE, BAD_INPUT = 0, 3
 RIG = SHARE / "default.rig.json"
-# CMU's body: name, parent, offset in inches. It has no face.
+# CMU's skeleton, which has no face: name, parent, offset in inches.
 JOINTS = (("Hips", None, (0, 17, 0)), ("LowerBack", "Hips", (0, 0.1, 0)), ("Spine", "LowerBack", (0, 2, 0)),
           ("Spine1", "Spine", (0, 2, 0)), ("Neck", "Spine1", (0, 3, 0)), ("Neck1", "Neck", (0, 1, 0)),
           ("Head", "Neck1", (0, 1.5, 0)),
@@ -23,7 +23,7 @@ JOINTS = (("Hips", None, (0, 17, 0)), ("LowerBack", "Hips", (0, 0.1, 0)), ("Spin
 
 
 def bvh(joints):
-    """A BVH of two frames in which the last joint but one turns."""
+    """Writes a BVH with two frames in which the second-last joint rotates."""
     lines = ["HIERARCHY"]
 
     def write(name, offset, root):
@@ -61,20 +61,20 @@ class ForeignBodiesTest(unittest.TestCase):
         self.assertEqual(png_size((self.root / "shots" / "000001.png").read_bytes()), (96, 96))
         warnings = [line for line in message.splitlines() if "warning" in line]
         self.assertEqual(len(warnings), 1, message)
-        self.assertRegex(warnings[0], r"the recording lacks \d+ joints of the rig, their drivers rest: \w+, .*\.\.\.")
+        self.assertRegex(warnings[0], r"the recording lacks \d+ joints of the rig, and their drivers stay at 0: \w+, .*\.\.\.")
 
-    def test_solve_says_what_to_do(self):
+    def test_solve_suggests_allow_missing(self):
         message = furrow("solve", self.walk, "--rig", RIG, check=BAD_INPUT).stderr.decode()
         self.assertIn("--allow-missing", message)
         result = furrow("solve", self.walk, "--rig", RIG, "--allow-missing", check=DONE)
         self.assertIn("the recording lacks", result.stderr.decode())
         self.assertEqual(len(result.stdout.splitlines()), 3)
 
-    def test_what_is_no_body_is_not_drawn(self):
+    def test_a_skeleton_without_known_joints_is_rejected(self):
         box = self.root / "box.bvh"
         box.write_text(bvh((("box", None, (0, 1, 0)), ("lid", "box", (0, 1, 0)))))
         message = self.render(box, BAD_INPUT)
-        self.assertIn("no joint of the recording is one of the character's", message)
+        self.assertIn("the recording and the character have no joint in common", message)
         self.assertIn("--skeleton-map", message)
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""VMC by oscsend, Live Link Face by an encoder of the test's own, and OSC out read by oscdump."""
+"""VMC input from oscsend, Live Link Face input from an encoder in this test, OSC output to oscdump."""
 import select
 import shutil
 import socket
@@ -11,7 +11,7 @@ import unittest
 from furrow_testing import SOURCE, Daemon, Table, finish, spawn
 
 ARKIT = SOURCE / "rig" / "rigs" / "arkit.json"
-# Live Link Face's order of curves, as the wire has it.
+# The order of the curves in a Live Link Face datagram.
 CURVES = """EyeBlinkLeft EyeLookDownLeft EyeLookInLeft EyeLookOutLeft EyeLookUpLeft EyeSquintLeft EyeWideLeft
 EyeBlinkRight EyeLookDownRight EyeLookInRight EyeLookOutRight EyeLookUpRight EyeSquintRight EyeWideRight
 JawForward JawLeft JawRight JawOpen MouthClose MouthFunnel MouthPucker MouthLeft MouthRight MouthSmileLeft
@@ -23,7 +23,7 @@ HeadRoll LeftEyeYaw LeftEyePitch LeftEyeRoll RightEyeYaw RightEyePitch RightEyeR
 
 
 def livelink_face(subject, frame, shapes):
-    """One datagram of version 6."""
+    """Returns one datagram of version 6."""
     device = b"12345678-1234-1234-1234-123456789ABC"
     name = subject.encode()
     packet = struct.pack(">B", 6)
@@ -35,7 +35,7 @@ def livelink_face(subject, frame, shapes):
 
 class ForeignWireTest(unittest.TestCase):
     def row_with(self, watcher, send, wanted):
-        """Sends until the watcher has printed a row in which `wanted(table)` holds; that table."""
+        """Sends until the watcher has printed a row for which `wanted(table)` is true, and returns the table."""
         lines = [watcher.stdout.readline().decode()]
         self.assertTrue(lines[0].startswith("frame,time"), lines)
         for _ in range(400):
@@ -71,7 +71,7 @@ class ForeignWireTest(unittest.TestCase):
         self.assertLess(row["glabella.squash"], 0.05)
 
     def keep_sending_until_header(self, watcher, send):
-        """The subject appears with its first frames; datagrams may come before the socket is read."""
+        """Sends first frames until the subject exists, because early datagrams may be lost."""
         for _ in range(2000):
             send()
             if select.select([watcher.stdout], [], [], 0.02)[0]:
@@ -99,7 +99,7 @@ class ForeignWireTest(unittest.TestCase):
         self.assertLess(row["mouth_l.squash"], 0.05)
 
     @unittest.skipUnless(shutil.which("oscdump"), "liblo-tools is not installed")
-    def test_oscdump_reads_what_we_send(self):
+    def test_oscdump_reads_our_osc_output(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]

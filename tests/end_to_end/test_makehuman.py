@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The real face: MakeHuman's character imported, five expressions played to the daemon."""
+"""Imports MakeHuman's character and plays five expressions to the daemon."""
 import math
 import pathlib
 import tempfile
@@ -10,7 +10,7 @@ from furrow_testing import (SOURCE, Daemon, Table, finish, furrow, jpeg_size, ne
                             spawn_watch, worst_difference)
 
 FACE = ("brow_l", "brow_r", "glabella", "nose", "eye_l", "eye_r", "mouth_l", "mouth_r")
-EXPRESSIONS = ("smile", "anger", "sadness", "disgust", "laugh")  # 120 frames each, at their height at 60
+EXPRESSIONS = ("smile", "anger", "sadness", "disgust", "laugh")  # 120 frames each, with the peak at frame 60
 
 
 def facial(names):
@@ -34,7 +34,7 @@ class MakeHumanTest(unittest.TestCase):
         seen = solve(self.recording, "--rig", self.package.with_suffix(".rig.json"))
         self.assertLess(worst_difference(seen, self.solved)[0], 1e-4)
 
-    def test_weights_lie_in_range_and_rest_at_neutral(self):
+    def test_weights_are_in_range_and_zero_at_neutral(self):
         for values in self.solved.rows.values():
             self.assertTrue(all(0.0 <= v <= 1.0 for v in values))
         for name in facial(self.solved.names):
@@ -54,10 +54,10 @@ class MakeHumanTest(unittest.TestCase):
         for i in range(5):
             for j in range(i):
                 if {EXPRESSIONS[i], EXPRESSIONS[j]} == {"smile", "laugh"}:
-                    continue  # cousins: a laugh is a smile with the jaw down
+                    continue  # too similar: a laugh is a smile with an open jaw
                 self.assertGreater(math.dist(heights[i], heights[j]), 0.3, (EXPRESSIONS[i], EXPRESSIONS[j]))
 
-    def test_root_that_turns_and_travels_changes_no_facial_weight(self):
+    def test_root_motion_changes_no_facial_weight(self):
         lines = self.recording.read_text().splitlines()
         first = lines.index(next(l for l in lines if l.strip().startswith("Frame Time"))) + 1
         for i in range(first, len(lines)):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""npm's @mcap/core, written by others, agrees with our reader on every message."""
+"""The independent reader @mcap/core (npm) and Furrow's reader agree on every message."""
 import subprocess
 import sys
 import unittest
@@ -45,15 +45,15 @@ class InteropTest(FolderTest):
         self.assertGreater(sum("/weights" in line for line in ours), 10)
         self.assertEqual(sorted(ours), sorted(theirs))
 
-    def test_it_finds_as_much_in_what_a_killed_daemon_leaves(self):
+    def test_it_finds_the_same_messages_after_a_killed_daemon(self):
         self.agree_on_what_is_left(self.what_a_killed_daemon_leaves())
 
-    def test_it_finds_as_much_in_what_a_killed_recorder_leaves(self):
+    def test_it_finds_the_same_messages_after_a_killed_recorder(self):
         self.agree_on_what_is_left(self.what_a_killed_recorder_leaves())
 
 
 if __name__ == "__main__":
     if missing_interop():
         print(f"SKIPPED: {missing_interop()}")
-        sys.exit(77)  # CTest's word for it: see CMakeLists.txt
+        sys.exit(77)  # SKIP_RETURN_CODE in CMakeLists.txt
     unittest.main()

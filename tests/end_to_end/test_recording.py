@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What streams through a daemon is recorded, survives its death, and plays again to the same weights."""
+"""Recordings contain all poses and weights, survive a killed process, and replay to the same weights."""
 import os
 import pty
 import re
@@ -17,7 +17,7 @@ HAPPINESS = SHARE / "recordings" / "happiness.bvh"
 
 
 class RecordTest(FolderTest):
-    def test_a_take_holds_every_pose_and_the_weights_that_were_sent(self):
+    def test_a_take_contains_every_pose_and_the_sent_weights(self):
         take = self.record("--speed", 4)
         solved = solve(PERFORMANCE, "--rig", RIG)
         recorded = self.weights(take)
@@ -26,21 +26,21 @@ class RecordTest(FolderTest):
         self.assertLess(worst, 1e-3)
         self.assertIn("complete", furrow("info", take, check=0).stdout.decode())
 
-    def test_a_replay_gives_the_recorded_weights_digit_for_digit(self):
+    def test_a_replay_gives_exactly_the_recorded_weights(self):
         first = self.record("--speed", 4, "--quantise")
         with Recording(self.root / "again") as daemon:
-            # At another speed: time is the recording's own.
+            # Another speed gives the same weights, because the capture times are those of the recording.
             played = furrow("play", first, "--to", daemon.tcp, "--tcp", "--speed", 8, check=0)
-        self.assertRegex(played.stderr.decode(), r"\d+ poses; spacing off by [\d.]+ ms on average")
+        self.assertRegex(played.stderr.decode(), r"\d+ poses; pacing error [\d.]+ ms on average")
         again = daemon.takes()[0]
         self.assertEqual(self.weights(first).rows, self.weights(again).rows)
         self.assertIn("subject     ada:", furrow("info", again, check=0).stdout.decode())
 
-    def test_a_session_of_several_replays_as_one(self):
+    def test_a_session_with_several_subjects_replays_together(self):
         both = {}
         with Recording(self.root / "first") as daemon:
             ada = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--speed", 2)
-            # Somebody else comes when ada is under way.
+            # Bob joins while ada is playing.
             furrow("watch", daemon.tcp, "--subject", "ada", "--wait", "--frames", 30, check=0)
             furrow("play", HAPPINESS, "--to", daemon.udp, "--subject", "bob", "--speed", 4, check=0)
             ada.communicate(timeout=GUARD)
@@ -55,11 +55,11 @@ class RecordTest(FolderTest):
             self.assertEqual(both[name].rows, self.weights(f"{again}#{name}").rows)
         self.assertNotEqual(both["ada"].rows, both["bob"].rows)
         nobody = furrow("info", f"{first}#eve", check=3)
-        self.assertIn("there is: ada, bob", nobody.stderr.decode())
+        self.assertIn("subjects: ada, bob", nobody.stderr.decode())
         renamed = furrow("play", first, "--to", daemon.tcp, "--subject", "eve", check=3)
         self.assertIn("ada, bob", renamed.stderr.decode())
 
-    def test_a_part_is_played_and_a_loop_goes_on_counting(self):
+    def test_from_plays_a_part_and_a_loop_continues_the_numbers(self):
         take = self.record("--speed", 8)
         total = self.count(take, "poses")
         with Recording(self.root / "part") as daemon:
@@ -72,7 +72,7 @@ class RecordTest(FolderTest):
             player.send_signal(signal.SIGINT)
             player.communicate(timeout=GUARD)
         frames = [int(row.split(",")[0]) for row in watcher.stdout.decode().splitlines()[1:]]
-        self.assertEqual(frames, sorted(set(frames)), "numbers go on")
+        self.assertEqual(frames, sorted(set(frames)), "the numbers continue")
         self.assertGreater(frames[-1], total)
         result = furrow("play", take, "--to", "127.0.0.1:9", "--from", 1e6, check=3)
         self.assertIn("ends after", result.stderr.decode())
@@ -85,9 +85,9 @@ class RecordTest(FolderTest):
         self.assertNotIn("damaged", info.stdout.decode())
         recorded = self.weights(take)
         self.assertGreater(len(recorded.rows), 0)
-        # Of each pose its weights, but perhaps for the last.
+        # Every pose has its weights, except possibly the last one.
         self.assertIn(self.count(take, "poses") - len(recorded.rows), (0, 1))
-        self.assertEqual(sorted(recorded.rows), list(range(len(recorded.rows))), "and none between")
+        self.assertEqual(sorted(recorded.rows), list(range(len(recorded.rows))), "no gap")
         worst, frames = worst_difference(recorded, solved)
         self.assertGreater(frames, 0)
         self.assertLess(worst, 1e-3)
@@ -96,7 +96,7 @@ class RecordTest(FolderTest):
         again = self.weights(second.takes()[0])
         self.assertEqual({frame: again.rows[frame] for frame in recorded.rows}, recorded.rows)
 
-    def test_rotation_loses_nothing_and_each_file_stands_alone(self):
+    def test_rotation_loses_nothing_and_every_file_is_complete(self):
         solved = solve(PERFORMANCE, "--rig", RIG)
         with Recording(self.root / "parts", "--record-rotate-seconds", 0.5) as daemon:
             furrow("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", check=0)
@@ -107,13 +107,13 @@ class RecordTest(FolderTest):
             text = furrow("info", take, check=0).stdout.decode()
             self.assertIn("complete", text)
             if not re.search(r"weights +[1-9]", text):
-                continue  # before the first pose, or after the last: decay alone
+                continue  # before the first pose or after the last one: only decaying weights
             for frame, row in self.weights(take).rows.items():
                 self.assertNotIn(frame, rows, "no pose is in two files")
                 rows[frame] = row
         self.assertEqual(rows.keys(), solved.rows.keys())
 
-    def test_a_full_disk_ends_the_recording_and_not_the_daemon(self):
+    def test_a_full_disk_ends_the_recording_but_not_the_daemon(self):
         def small_files():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
@@ -124,7 +124,7 @@ class RecordTest(FolderTest):
         self.addCleanup(process.kill)
         port = re.search(r"tcp=[^ ]*:(\d+)", process.stdout.readline().decode()).group(1)
         address = f"127.0.0.1:{port}"
-        for _ in range(2):  # poses go on being served
+        for _ in range(2):  # the daemon still serves poses
             furrow("play", PERFORMANCE, "--to", address, "--tcp", "--subject", "ada", "--speed", 8, check=0)
         process.send_signal(signal.SIGTERM)
         _, stderr = process.communicate(timeout=GUARD)
@@ -134,7 +134,7 @@ class RecordTest(FolderTest):
         self.assertLessEqual(take.stat().st_size, 100_000)
         self.assertGreater(self.count(take, "poses"), 0)
 
-    def test_a_folder_that_cannot_be_made_is_said_at_once(self):
+    def test_a_folder_that_cannot_be_created_is_reported_at_the_start(self):
         (self.root / "file").write_text("")
         result = subprocess.run([BIN / "furrowd", "--no-render", "--tcp", "0", "--udp", "0", "--record",
                                  self.root / "file" / "takes"], capture_output=True, timeout=GUARD)
@@ -142,16 +142,16 @@ class RecordTest(FolderTest):
         self.assertIn("cannot create the folder", result.stderr.decode())
 
 
-class ListeningTest(FolderTest):
-    """`furrow record HOST`: the same, from another computer."""
+class RemoteRecordTest(FolderTest):
+    """`furrow record HOST` records over the network."""
 
-    def test_it_gets_every_pose_and_weight_and_they_replay_digit_for_digit(self):
+    def test_it_receives_every_pose_and_weight_and_they_replay_exactly(self):
         take = self.root / "take.mcap"
         with Daemon("--no-render") as daemon:
             recorder = self.listen(daemon, take, "--subject", "ada", "--wait", "--rig", RIG)
             furrow("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--speed", 8, "--quantise",
                    check=0)
-            # The last pose is there when the subject has left, which the end of playing says.
+            # `play` ends after the subject has left, so the last pose has arrived.
             words = self.end(recorder)
         solved = solve(PERFORMANCE, "--rig", RIG)
         self.assertIn(f"{len(solved.rows)} poses", words)
@@ -160,7 +160,7 @@ class ListeningTest(FolderTest):
         self.assertEqual(recorded.rows.keys(), solved.rows.keys())
         worst, _ = worst_difference(recorded, solved)
         self.assertLess(worst, 1e-3)
-        # What its poses come to, and what they come to when they are played again.
+        # Solve the recorded poses, then play them again.
         worst, frames = worst_difference(solve(take, "--rig", RIG), recorded)
         self.assertEqual(frames, len(solved.rows))
         self.assertLess(worst, 2e-6)
@@ -177,10 +177,10 @@ class ListeningTest(FolderTest):
         recorded = self.weights(take)
         frames = sorted(recorded.rows)
         self.assertGreater(len(frames), 10)
-        self.assertEqual(frames, list(range(frames[0], frames[-1] + 1)), "and none between")
+        self.assertEqual(frames, list(range(frames[0], frames[-1] + 1)), "no gap")
         self.assertIn(self.count(take, "poses") - len(frames), (0, 1))
 
-    def test_several_subjects_rotation_and_an_end_of_its_own(self):
+    def test_several_subjects_rotation_and_duration(self):
         take = self.root / "several.mcap"
         with Daemon("--no-render") as daemon:
             recorder = self.listen(daemon, take, "--subject", "ada", "--subject", "bob", "--wait",
@@ -202,35 +202,35 @@ class ListeningTest(FolderTest):
                 poses[name] += int(count)
         self.assertEqual(set(poses.values()), {len(solve(PERFORMANCE, "--rig", RIG).rows)})
 
-    def test_without_names_it_records_everybody_who_comes_until_all_have_left(self):
+    def test_without_names_it_records_all_subjects_until_the_last_one_leaves(self):
         take = self.root / "everybody.mcap"
         with Daemon("--no-render") as daemon:
             ada = spawn("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "ada", "--loop")
             furrow("watch", daemon.tcp, "--subject", "ada", "--wait", "--frames", 1, check=0)
             recorder = self.listen(daemon, take)
             furrow("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", "bob", "--speed", 4, check=0)
-            self.assertIsNone(recorder.poll(), "ada is still there")
+            self.assertIsNone(recorder.poll(), "ada is still connected")
             ada.send_signal(signal.SIGINT)
             ada.communicate(timeout=GUARD)
             recorder.wait(timeout=GUARD)
             self.assertEqual(recorder.returncode, 0)
             self.assertIn("of ada, bob in", recorder.stderr.read().decode())
             nobody = furrow("record", daemon.tcp, "--out", self.root / "none.mcap", check=1)
-            self.assertIn("nobody is there", nobody.stderr.decode())
+            self.assertIn("no subject is connected", nobody.stderr.decode())
             self.assertFalse((self.root / "none.mcap").exists())
         text = furrow("info", take, check=0).stdout.decode()
         poses = {name: int(count) for name, _, count in re.findall(r"subject +(\w+):(.*\n)*? +poses +(\d+)", text)}
         self.assertEqual(poses.keys(), {"ada", "bob"})
         self.assertGreater(min(poses.values()), 0)
-        # Who comes meanwhile is asked for as soon as the daemon says so: from then on all is there.
+        # A late subject may lose its first poses; from the subscription on there is no gap.
         frames = sorted(self.weights(f"{take}#bob").rows)
         self.assertEqual(frames, list(range(frames[0], len(solve(PERFORMANCE, "--rig", RIG).rows))))
 
-    def test_what_cannot_be_is_said_at_once(self):
+    def test_impossible_requests_are_reported_at_the_start(self):
         there = self.root / "there.mcap"
         there.write_text("mine")
         result = furrow("record", "127.0.0.1:9", "--out", there, check=1)
-        self.assertIn("there already", result.stderr.decode())
+        self.assertIn("already exists", result.stderr.decode())
         self.assertEqual(there.read_text(), "mine")
         furrow("record", "127.0.0.1:9", "--out", self.root / "none.mcap", check=4)
         result = furrow("record", "127.0.0.1:9", "--out", self.root / "take", check=2)
@@ -239,12 +239,12 @@ class ListeningTest(FolderTest):
             result = furrow("record", daemon.tcp, "--out", self.root / "none.mcap", "--subject", "eve", check=1)
             nobody = furrow("record", daemon.tcp, "--out", self.root / "none.mcap", "--wait", "--duration", 0.2, check=1)
         self.assertIn("no subject 'eve'", result.stderr.decode())
-        self.assertIn("nobody came", nobody.stderr.decode())
-        self.assertFalse((self.root / "none.mcap").exists(), "nothing to record leaves no file")
+        self.assertIn("no subject connected", nobody.stderr.decode())
+        self.assertFalse((self.root / "none.mcap").exists(), "no file is written if there is nothing to record")
 
 
 class ConvertTest(FolderTest):
-    def test_recordings_go_through_takes_and_back(self):
+    def test_recordings_convert_to_takes_and_back(self):
         take = self.root / "made.mcap"
         furrow("convert", PERFORMANCE, take, check=0)
         solved = solve(PERFORMANCE, "--rig", RIG)
@@ -258,7 +258,7 @@ class ConvertTest(FolderTest):
             self.assertEqual(frames, len(solved.rows))
             self.assertLess(worst, 2e-3)
 
-    def test_one_of_several_subjects_is_named(self):
+    def test_a_command_must_name_one_of_several_subjects(self):
         with Recording(self.root / "two") as daemon:
             for name in ("ada", "bob"):
                 furrow("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--subject", name, "--speed", 8, check=0)
@@ -269,7 +269,7 @@ class ConvertTest(FolderTest):
         self.assertEqual(one.rows.keys(), solve(PERFORMANCE, "--rig", RIG).rows.keys())
         self.assertEqual(furrow("solve", f"{take}#eve", "--rig", RIG).returncode, 3)
 
-    def test_nothing_is_written_over_what_is_read_or_over_a_take(self):
+    def test_convert_never_overwrites_its_input_or_a_take(self):
         take = self.root / "take.mcap"
         furrow("convert", PERFORMANCE, take, check=0)
         other = self.root / "other.mcap"
@@ -295,7 +295,7 @@ class ConvertTest(FolderTest):
 
 
 class ReadingTest(FolderTest):
-    def test_a_terminal_shows_how_far_reading_is_and_a_pipe_does_not(self):
+    def test_progress_is_shown_on_a_terminal_and_not_in_a_pipe(self):
         take = self.root / "made.mcap"
         furrow("convert", PERFORMANCE, take, check=0)
         for command in (["info", take], ["solve", take, "--rig", RIG],
@@ -304,16 +304,16 @@ class ReadingTest(FolderTest):
                 self.assertNotIn(b"reading", furrow(*command, check=0).stderr)
                 shown = self.on_a_terminal(*command)
                 self.assertRegex(shown, r"\rreading \[#* *\] +\d+%")
-                self.assertIn("\r\x1b[K", shown, "and wiped")
+                self.assertIn("\r\x1b[K", shown, "the bar is erased")
 
-    def test_what_playing_came_to_stands_on_a_line_of_its_own(self):
+    def test_the_summary_of_play_is_on_its_own_line(self):
         with Daemon("--no-render") as daemon:
             shown = self.on_a_terminal("play", PERFORMANCE, "--to", daemon.tcp, "--tcp", "--speed", 20)
         self.assertRegex(shown, r"\rplaying \[#+ *\] +\d+%")
-        self.assertRegex(shown, r"\x1b\[Kfurrow: \d+ poses; spacing")
+        self.assertRegex(shown, r"\x1b\[Kfurrow: \d+ poses; pacing")
 
     def on_a_terminal(self, *command):
-        """What a command writes to standard error where that is a terminal."""
+        """Runs a command with a terminal as standard error and returns what it writes there."""
         ours, terminal = pty.openpty()
         self.addCleanup(os.close, ours)
         process = subprocess.Popen([BIN / "furrow", *map(str, command)], stdout=subprocess.DEVNULL, stderr=terminal)
@@ -322,7 +322,7 @@ class ReadingTest(FolderTest):
         try:
             while part := os.read(ours, 65536):
                 shown += part
-        except OSError:  # how a terminal says that its other end is gone
+        except OSError:  # the terminal reports its closed end as an error
             pass
         self.assertEqual(process.wait(timeout=GUARD), 0)
         return shown.decode()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures from the command line: settings that come back as they went, machines that cannot draw."""
+"""`furrow render`: settings that round-trip, and machines without OpenGL."""
 import pathlib
 import subprocess
 import tempfile
@@ -29,7 +29,7 @@ class RenderTest(unittest.TestCase):
         self.assertEqual(self.draw("as_printed", "--settings", look, "--shading", "skin"),
                          self.draw("by_default", "--shading", "skin"))
 
-    def test_what_is_not_allowed_is_wrong_usage_and_names_what_is(self):
+    def test_an_invalid_value_is_wrong_usage_and_lists_the_valid_ones(self):
         for args, says in ((("--set", "view=foo"), "mask_texture"), (("--view", "foo"), "mask_texture"),
                            (("--camera", "foo"), "three_quarter"), (("--set", "foo.bar=1"), "--print-settings"),
                            (("--set", "lights.keys=1,1,1"), "lights.key"), (("--set", "bloom.strength=nan"), "[0,")):
@@ -38,7 +38,7 @@ class RenderTest(unittest.TestCase):
                 self.assertIn(says, result.stderr.decode())
                 self.assertFalse((self.root / "none").exists())
 
-    def test_without_a_driver_nothing_is_drawn_and_weights_are_served(self):
+    def test_without_opengl_the_daemon_still_serves_weights(self):
         result = furrow("render", ANGER, "--out", self.root / "none", env=NO_DRIVER, check=1)
         self.assertIn("no EGL driver", result.stderr.decode())
         required = subprocess.run([BIN / "furrowd", "--tcp", "0", "--udp", "0", "--require-render"], env=NO_DRIVER,

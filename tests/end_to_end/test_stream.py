@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A recording crosses real sockets: weights equal `furrow solve`, pictures arrive and change."""
+"""Streams a recording over real sockets: weights equal `furrow solve`, pictures arrive and change."""
 import pathlib
 import shutil
 import subprocess
@@ -16,7 +16,7 @@ TOLERANCE = 1e-3
 
 class StreamTest(unittest.TestCase):
     def stream(self, recording, daemon, play=(), watch=()):
-        """Plays `recording` to `daemon`; what `watch` saw of it."""
+        """Plays `recording` to `daemon` and returns what `watch` received."""
         watcher = spawn_watch(daemon.udp if "--udp" in watch else daemon.tcp, "ada", *watch)
         target = daemon.tcp if "--tcp" in play else daemon.udp
         furrow("play", recording, "--to", target, "--subject", "ada", *play, check=0)
@@ -39,7 +39,7 @@ class StreamTest(unittest.TestCase):
         solved = solve(PERFORMANCE, "--rig", SHARE / "default.rig.json")
         with Daemon("--no-render") as daemon:
             seen = self.stream(PERFORMANCE, daemon, ["--tcp", "--quantise", "--speed", 4], ["--udp", "--u8"])
-            # Half a step of 1/255, and what 1.5e-4 rad a joint come to.
+            # Half a step of 1/255, plus the effect of 1.5e-4 rad per joint.
             self.assert_same(seen, solved, 1 / 510 + 0.02)
 
     def test_two_subjects_do_not_mix(self):
@@ -62,7 +62,7 @@ class StreamTest(unittest.TestCase):
             seen = self.stream(PERFORMANCE, daemon, ["--speed", 8], ["--drivers"])
             self.assert_same(seen, solve(PERFORMANCE, "--rig", SHARE / "default.rig.json", "--drivers"))
 
-    def test_pictures_arrive_and_change_as_the_pose_does(self):
+    def test_pictures_arrive_and_change_with_the_pose(self):
         with tempfile.TemporaryDirectory() as folder, Daemon() as daemon:
             jpegs = pathlib.Path(folder, "jpeg")
             pngs = pathlib.Path(folder, "png")
@@ -79,7 +79,7 @@ class StreamTest(unittest.TestCase):
             self.assertEqual({png_size(p.read_bytes()) for p in pngs.iterdir()}, {(96, 96)})
 
     @unittest.skipUnless(shutil.which("oiiotool"), "oiiotool is not installed")
-    def test_live_pictures_are_those_of_render(self):
+    def test_live_pictures_equal_those_of_render(self):
         look = ["--size", "96x96", "--camera", "three_quarter"]
         with tempfile.TemporaryDirectory() as folder, Daemon() as daemon:
             live, drawn = pathlib.Path(folder, "live"), pathlib.Path(folder, "drawn")
@@ -90,7 +90,7 @@ class StreamTest(unittest.TestCase):
             pictures = sorted(live.iterdir())
             for picture in (pictures[0], pictures[len(pictures) // 2], pictures[-1]):
                 furrow("render", PERFORMANCE, "--out", drawn, "--frames", int(picture.stem), *look, check=0)
-                # Capture times are whole microseconds on the wire: the filter may differ in the last digit.
+                # Capture times on the wire are whole microseconds, so the filter may differ in the last digit.
                 diff = subprocess.run(["oiiotool", "--fail", "0.02", "--failpercent", "0.5", "--diff", picture,
                                        drawn / picture.name], capture_output=True)
                 self.assertEqual(diff.returncode, 0, diff.stdout.decode())

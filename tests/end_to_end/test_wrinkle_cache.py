@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The default character's wrinkles by skin weights: composed in the texture, and in every fragment."""
+"""Wrinkles composed once in a texture look like wrinkles composed in every fragment."""
 import pathlib
 import tempfile
 import unittest
@@ -9,7 +9,7 @@ from furrow_testing import SHARE, furrow, png_size
 
 
 def pixels(path):
-    """The bytes of an RGB PNG, rows one after the other."""
+    """Returns the pixels of an RGB PNG, row by row."""
     data = path.read_bytes()
     width, height = png_size(data)
     packed, at = b"", 8
@@ -34,7 +34,7 @@ def pixels(path):
 
 
 def hold(recording, frame, path):
-    """A recording of one frame of another, twice: what is held is composed, at whatever size."""
+    """Writes a recording that repeats one frame of another: a held pose is composed at any picture size."""
     lines = (SHARE / "recordings" / recording).read_text().splitlines()
     motion = next(i for i, line in enumerate(lines) if line.startswith("Frames:"))
     pose = lines[motion + 2 + frame]
@@ -43,7 +43,7 @@ def hold(recording, frame, path):
 
 class WrinkleCacheTest(unittest.TestCase):
     def picture(self, recording, frame, camera, *settings):
-        """A frame, and whether wrinkles were composed for it."""
+        """Returns a picture, and whether wrinkles were composed in a texture for it."""
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             hold(recording, frame, folder / "held.bvh")

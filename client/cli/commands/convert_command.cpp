@@ -10,10 +10,10 @@
 
 #include "base/ascii.h"
 #include "base/files.h"
-#include "client/cli/command.h"
-#include "client/cli/exit_code.h"
-#include "client/cli/inputs.h"
-#include "client/cli/output/take_output.h"
+#include "client/cli/commands/commands.h"
+#include "client/cli/common/exit_code.h"
+#include "client/cli/common/inputs.h"
+#include "client/cli/output/take_conversion.h"
 #include "motion/clip/clip.h"
 #include "motion/clip_file.h"
 #include "recording/take_poses.h"
@@ -36,22 +36,23 @@ bool HasExtension(const std::string& path, std::initializer_list<std::string_vie
   return std::ranges::find(extensions, extension) != extensions.end();
 }
 
-// What is read stays as it was, and so does every take: there is no second one of it.
+// Protects the input file from being overwritten.
 Status CheckOut(const ConvertOptions& options) {
   if (options.weights && !HasExtension(options.out, {".csv"})) {
     return {StatusCode::kInvalidArgument, "weights are written as .csv", options.out,
-            "give a name that ends so"};
+            "choose a file name with this extension"};
   }
   if (!HasExtension(options.out, {".bvh", ".glb", ".csv", ".mcap"})) {
     return {StatusCode::kUnsupported, "recordings are written as .bvh, .glb, .csv or .mcap",
-            options.out, "give a name that ends so, without a subject"};
+            options.out, "choose a file name with one of these extensions, without a subject"};
   }
   std::string in;
   std::string subject;
   recording::SplitTakePath(options.in, &in, &subject);
   std::error_code error;
   if (std::filesystem::equivalent(in, options.out, error)) {
-    return {StatusCode::kInvalidArgument, "a recording is not written over itself", options.out,
+    return {StatusCode::kInvalidArgument,
+            "the output is the input file, which must not be written over itself", options.out,
             "choose another name"};
   }
   return {};
@@ -59,8 +60,8 @@ Status CheckOut(const ConvertOptions& options) {
 
 int ConvertWeights(const ConvertOptions& options) {
   if (!recording::IsTakePath(options.in))
-    return Fail({StatusCode::kInvalidArgument, "only takes (.mcap) hold weights", options.in,
-                 "'furrow solve' computes them from any recording"});
+    return Fail({StatusCode::kInvalidArgument, "only takes (.mcap) contain weights", options.in,
+                 "'furrow solve' computes weights from any recording"});
   std::string subject;
   const auto take = OpenTakeArgument(options.in, &subject);
   if (!take.ok()) return Fail(take.status());
@@ -96,32 +97,38 @@ int ConvertFile(const ConvertOptions& options) {
 void AddConvert(CLI::App& app, Action& action) {
   auto options = std::make_shared<ConvertOptions>();
   CLI::App* command =
-      app.add_subcommand("convert", "A recording in another format, by the files' extensions");
+      app.add_subcommand("convert", "Convert a recording to another format, by file extension");
   command
       ->add_option("IN", options->in,
-                   ".bvh, .glb, .gltf, .vrma, .csv (Live Link Face) or .mcap (FILE.mcap#SUBJECT)")
+                   "Recording to read: .bvh, .glb, .gltf, .vrma, .csv (Live Link Face) or .mcap "
+                   "(FILE.mcap#SUBJECT)")
       ->required();
-  command->add_option("OUT", options->out, ".bvh, .glb or .csv, which is replaced, or a new .mcap")
+  command
+      ->add_option(
+          "OUT", options->out,
+          "File to write: .bvh, .glb or .csv, which is replaced if it exists, or a new .mcap")
       ->required();
   command->add_flag(
       "--weights", options->weights,
-      "Of a take: write its recorded weights as CSV (frame,time,<names>) instead of poses");
-  command->add_option("--scale", options->load.scale, "Multiplies every length (BVH has no unit)")
+      "Write the recorded weights of a take as CSV (frame,time,<names>) instead of poses");
+  command
+      ->add_option("--scale", options->load.scale,
+                   "Factor for all lengths, because BVH has no unit")
       ->check(Within(1e-6, 1e6))
       ->capture_default_str();
   command
       ->add_option("--sample-rate", options->load.sample_rate,
-                   "Hz for formats made of curves; 0: the file's own keys")
+                   "Sample rate in Hz for formats with curves; 0 uses the keys of the file")
       ->check(Within(0.0, 1000.0))
       ->capture_default_str();
   const std::map<std::string, motion::BvhPositions> positions{
       {"replace", motion::BvhPositions::kReplace}, {"add", motion::BvhPositions::kAdd}};
   AddChoice(*command, "--bvh-positions", options->load.bvh_positions, positions,
-            "What a BVH joint's position channels do to its offset: replace (default) or add");
+            "Effect of a BVH joint's position channels on its offset: replace or add");
   const std::map<std::string, motion::UpAxis> axes{
       {"auto", motion::UpAxis::kAuto}, {"y", motion::UpAxis::kY}, {"z", motion::UpAxis::kZ}};
   AddChoice(*command, "--up-axis", options->load.up_axis, axes,
-            "Which axis points up in a BVH: auto (default), y or z");
+            "Axis that points up in a BVH file: auto, y or z");
   command->callback([options, &action] { action = [options] { return ConvertFile(*options); }; });
 }
 

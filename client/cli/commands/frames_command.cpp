@@ -7,11 +7,11 @@
 
 #include "base/files.h"
 #include "base/text.h"
-#include "client/cli/command.h"
-#include "client/cli/endpoint.h"
-#include "client/cli/exit_code.h"
-#include "client/cli/file_output.h"
-#include "client/cli/listen.h"
+#include "client/cli/commands/commands.h"
+#include "client/cli/common/endpoint.h"
+#include "client/cli/common/exit_code.h"
+#include "client/cli/common/standard_output.h"
+#include "client/cli/receive/receive_events.h"
 #include "client/cli/render/picture_settings.h"
 #include "render/renderer.h"
 
@@ -19,14 +19,14 @@ namespace furrow::cli {
 namespace {
 
 struct FramesOptions {
-  ListenOptions listen;
+  SubscriptionOptions listen;
   std::string out;
   std::string size = "640x640";
   int quality = 85;
   protocol::SubscribePictures request;
 };
 
-// Pictures into DIR/<sequence>.<ext>, or one after another into standard output.
+// Writes each picture to DIR/<sequence>.<ext>, or all to standard output.
 class PictureFiles {
  public:
   PictureFiles(const FramesOptions& options, client::Subscriber& subscriber)
@@ -35,7 +35,7 @@ class PictureFiles {
   bool operator()(const client::Event& event) {
     if (event.kind != client::Event::Kind::kPicture) return true;
     const protocol::ImageFrame& picture = subscriber_.picture();
-    if (picture.age_us > 0) return true;  // the pose before, decaying: already written
+    if (picture.age_us > 0) return true;  // weights decay without a new pose
     Status status;
     if (out_ == "-") {
       status = WriteStandardOutput(picture.bytes);
@@ -58,7 +58,7 @@ class PictureFiles {
  private:
   client::Subscriber& subscriber_;
   std::string out_;
-  std::int64_t left_;  // 0: without end
+  std::int64_t left_;  // pictures to receive; 0: unlimited
   int failure_ = kDone;
 };
 
@@ -81,7 +81,7 @@ int Frames(const FramesOptions& options) {
   request.quality = static_cast<std::uint8_t>(options.quality);
   subscriber.Subscribe(request);
   PictureFiles files(options, subscriber);
-  exit_code = Listen(subscriber, std::ref(files));
+  exit_code = ReceiveEvents(subscriber, std::ref(files));
   return files.failure() != kDone ? files.failure() : exit_code;
 }
 
@@ -90,22 +90,27 @@ int Frames(const FramesOptions& options) {
 void AddFrames(CLI::App& app, Action& action) {
   auto options = std::make_shared<FramesOptions>();
   CLI::App* command =
-      app.add_subcommand("frames", "Receives pictures of a subject, drawn by the daemon");
-  AddListenOptions(*command, options->listen, options->request, "as many as can be drawn");
-  command->add_option("--out", options->out, "Folder for <sequence>.jpg; - for standard output")
+      app.add_subcommand("frames", "Receive pictures of a subject, drawn by the daemon");
+  AddSubscriptionOptions(*command, options->listen, options->request, "pictures",
+                         "as many as the daemon can draw");
+  command
+      ->add_option("--out", options->out,
+                   "Folder for the pictures, <sequence>.jpg or .png; - for standard output")
       ->required();
-  command->add_option("--size", options->size, "WxH in pixels, 16 to 4096")
+  command->add_option("--size", options->size, "Width and height in pixels, 16 to 4096 each")
       ->check(SizeValidator())
       ->capture_default_str();
   const std::map<std::string, protocol::ImageFormat> formats{{"jpeg", protocol::ImageFormat::kJpeg},
                                                              {"png", protocol::ImageFormat::kPng}};
-  AddChoice(*command, "--format", options->request.format, formats, "jpeg (default) or png");
-  command->add_option("--quality", options->quality, "JPEG quality")
+  AddChoice(*command, "--format", options->request.format, formats, "Picture format");
+  command->add_option("--quality", options->quality, "JPEG quality in percent")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  command->add_option("--view", options->request.view, InfoOf("view").allowed)
+  command
+      ->add_option("--view", options->request.view, "View: " + std::string(InfoOf("view").allowed))
       ->capture_default_str();
-  command->add_option("--camera", options->request.camera_preset, render::ListCameraPresets());
+  command->add_option("--camera", options->request.camera_preset,
+                      "Camera: " + render::ListCameraPresets() + " (default: the daemon's)");
   command->callback([options, &action] { action = [options] { return Frames(*options); }; });
 }
 

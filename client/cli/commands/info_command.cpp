@@ -5,9 +5,9 @@
 #include <map>
 #include <memory>
 
-#include "client/cli/command.h"
-#include "client/cli/exit_code.h"
-#include "client/cli/inputs.h"
+#include "client/cli/commands/commands.h"
+#include "client/cli/common/exit_code.h"
+#include "client/cli/common/inputs.h"
 #include "motion/clip/clip.h"
 #include "recording/take_poses.h"
 #include "recording/take_summary.h"
@@ -47,13 +47,13 @@ void PrintFile(const TakeReader& take) {
   }
   std::printf("  file        %" PRIu64 " bytes, written by '%s', %s\n", file.file_bytes(),
               file.library().c_str(),
-              file.complete() ? "complete" : "cut short: read up to its last whole chunk");
+              file.complete() ? "complete" : "cut short, readable up to the last whole chunk");
   std::printf("  chunks      %zu", file.chunks().size());
   for (const auto& [name, count] : compressions) std::printf(", %d %s", count, name.c_str());
   if (file.warnings().empty()) {
-    std::printf("; all checksums are right\n");
+    std::printf("; all checksums are correct\n");
   } else {
-    std::printf("; %s, see below\n", file.complete() ? "damaged" : "what is lost");
+    std::printf("; %s, see below\n", file.complete() ? "damaged" : "incomplete");
   }
   for (const motion::mcap::AttachmentInfo& info : file.attachments())
     std::printf("  attachment  %s, %s, %" PRIu64 " bytes\n", info.name.c_str(),
@@ -85,12 +85,12 @@ int DescribeTake(const std::string& path) {
     std::string names;
     for (const auto& [name, subject] : summary->subjects)
       names += (names.empty() ? "" : ", ") + name;
-    return Fail({StatusCode::kNotFound, "there is nobody called '" + only + "' in it", file,
-                 "there is: " + (names.empty() ? "nobody" : names)});
+    return Fail({StatusCode::kNotFound, "the take has no subject '" + only + "'", file,
+                 "subjects: " + (names.empty() ? "none" : names)});
   }
   std::printf("%s\n", file.c_str());
   PrintFile(**take);
-  std::printf("  messages    %zu in %.3f s; of them datagrams: %zu\n", summary->messages,
+  std::printf("  messages    %zu in %.3f s; datagrams: %zu\n", summary->messages,
               summary->seconds(), summary->datagrams);
   for (const auto& [name, subject] : summary->subjects)
     if (only.empty() || only == name) PrintSubject(name, subject);
@@ -103,8 +103,8 @@ int DescribeTake(const std::string& path) {
 void AddInfo(CLI::App& app, Action& action) {
   auto path = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand(
-      "info", "What is in a recording: subjects, rates, gaps, duration, and whether it is whole");
-  command->add_option("FILE", *path, "Any recording: .bvh, .glb, .gltf, .vrma, .csv or .mcap")
+      "info", "Describe a recording: subjects, rates, gaps, duration and completeness");
+  command->add_option("FILE", *path, "Recording: .bvh, .glb, .gltf, .vrma, .csv or .mcap")
       ->required();
   command->callback([path, &action] {
     action = [path] {

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "client/cli/command.h"
-#include "client/cli/endpoint.h"
-#include "client/cli/exit_code.h"
-#include "client/cli/interrupt.h"
+#include "client/cli/commands/commands.h"
+#include "client/cli/common/endpoint.h"
+#include "client/cli/common/exit_code.h"
+#include "client/cli/common/interrupt.h"
 #include "client/cli/play/play_source.h"
 #include "client/cli/play/session_player.h"
 #include "client/cpp/acceptance.h"
@@ -24,7 +24,7 @@ struct PlayOptions {
   std::string file;
   std::string host;
   std::string subject;
-  bool udp = false;  // the default: said for clarity
+  bool udp = false;  // the default, so the value is not read
   bool tcp = false;
   bool loop = false;
   bool quantise = false;
@@ -34,26 +34,26 @@ struct PlayOptions {
   float scale = 1.0f;
 };
 
-// What to exit with where a skeleton is not accepted; prints why.
+// Prints why a skeleton was not accepted and returns the exit code.
 int NotAccepted(const client::Acceptance& answer, const std::string& host) {
   switch (answer.kind) {
     case Kind::kAccepted:
-    case Kind::kGivenUp: return kDone;
+    case Kind::kCancelled: return kDone;
     case Kind::kRefused:
-      std::fprintf(stderr, "furrow: this skeleton is refused: %s\n", answer.reason.c_str());
+      std::fprintf(stderr, "furrow: the daemon rejects the skeleton: %s\n", answer.reason.c_str());
       return kBadInput;
     case Kind::kError:
-      std::fprintf(stderr, "furrow: the daemon says: %s\n", answer.reason.c_str());
+      std::fprintf(stderr, "furrow: the daemon reports an error: %s\n", answer.reason.c_str());
       return kFailed;
-    case Kind::kNobody:
+    case Kind::kNoAnswer:
     case Kind::kNoConnection: break;
   }
-  std::fprintf(stderr, "furrow: nobody answers at %s%s (is furrowd running there?)\n", host.c_str(),
+  std::fprintf(stderr, "furrow: no answer from %s%s (is furrowd running there?)\n", host.c_str(),
                answer.kind == Kind::kNoConnection ? ": connection refused" : "");
   return kNoConnection;
 }
 
-// The subjects of the recording, under the name they are to have.
+// Loads the subjects of the recording. Only a single subject can be renamed.
 Result<std::vector<PlaySource>> LoadSources(const PlayOptions& options) {
   auto sources = PlaySource::Load(options.file);
   if (!sources.ok() || options.subject.empty() || sources->size() == 1) return sources;
@@ -61,7 +61,7 @@ Result<std::vector<PlaySource>> LoadSources(const PlayOptions& options) {
   for (const PlaySource& source : *sources) names += (names.empty() ? "" : ", ") + source.subject();
   return Status(StatusCode::kInvalidArgument, "the take has several subjects: " + names,
                 options.file,
-                "to play one under another name: " + options.file + "#" +
+                "to play one under another name, use: " + options.file + "#" +
                     sources->front().subject() + " --subject " + options.subject);
 }
 
@@ -110,31 +110,32 @@ int PlayFile(const PlayOptions& options) {
 
 void AddPlay(CLI::App& app, Action& action) {
   auto options = std::make_shared<PlayOptions>();
-  CLI::App* command = app.add_subcommand("play", "Sends a recording to a daemon, at its own pace");
+  CLI::App* command = app.add_subcommand("play", "Send a recording to a daemon in real time");
   command
-      ->add_option("FILE", options->file,
-                   "BVH, glTF/GLB, VRMA, Live Link Face CSV or a take (FILE.mcap: everybody in it; "
-                   "FILE.mcap#SUBJECT)")
+      ->add_option(
+          "FILE", options->file,
+          "Recording: BVH, glTF/GLB, VRMA, Live Link Face CSV or a take (FILE.mcap plays all "
+          "subjects, FILE.mcap#SUBJECT one)")
       ->required();
-  command->add_option("--to", options->host, "HOST, HOST:PORT or [IPV6]:PORT of furrowd")
-      ->required();
-  auto* udp = command->add_flag("--udp", options->udp, "Send datagrams (default; port 7401)");
-  command->add_flag("--tcp", options->tcp, "Send over a TCP connection (port 7400)")->excludes(udp);
+  command->add_option("--to", options->host, kHostHelp)->required();
+  auto* udp = command->add_flag("--udp", options->udp, "Send over UDP, port 7401 (default)");
+  command->add_flag("--tcp", options->tcp, "Send over TCP, port 7400")->excludes(udp);
   command->add_option("--subject", options->subject,
-                      "Who is captured; default: whom a take names, else the file's name");
-  command->add_option("--rate", options->rate, "Poses per second of recording; default: all it has")
+                      "Name of the subject (default: the name in a take, or the file name)");
+  command
+      ->add_option("--rate", options->rate, "Poses per second of recording (default: every frame)")
       ->check(Within(0.001, 100000.0));
-  command->add_option("--speed", options->speed, "How many times as fast as recorded")
+  command->add_option("--speed", options->speed, "Playback speed, as a multiple of real time")
       ->check(Within(0.001, 1000.0))
       ->capture_default_str();
-  command->add_option("--from", options->from, "Seconds of the recording to leave out at its start")
+  command->add_option("--from", options->from, "Seconds to skip at the start of the recording")
       ->check(Within(0.0, 1e9))
       ->capture_default_str();
-  command->add_flag("--loop", options->loop,
-                    "Begin again at the end, until Ctrl-C; the numbers go on");
-  command->add_flag("--quantise", options->quantise,
-                    "Send 6 bytes a rotation (off by at most 1.5e-4 rad) and a translation (off by "
-                    "1/65534 of the largest in the pose), 2 a blend shape (off by 1/32768)");
+  command->add_flag("--loop", options->loop, "Repeat until Ctrl-C; pose numbers continue");
+  command->add_flag(
+      "--quantise", options->quantise,
+      "Send packed poses: 6 bytes per rotation (error up to 1.5e-4 rad) and translation "
+      "(error 1/65534 of the largest in the pose), 2 per blend shape (error 1/32768)");
   command->add_option("--scale", options->scale, "Metres per unit of the recording's lengths")
       ->check(Within(1e-6, 1e6))
       ->capture_default_str();

@@ -10,14 +10,14 @@
 #include <unistd.h>
 
 #include "base/status.h"
-#include "client/cli/command.h"
-#include "client/cli/endpoint.h"
-#include "client/cli/exit_code.h"
-#include "client/cli/file_output.h"
-#include "client/cli/inputs.h"
-#include "client/cli/listen.h"
-#include "client/cli/output/take_listener.h"
-#include "client/cli/progress.h"
+#include "client/cli/commands/commands.h"
+#include "client/cli/common/endpoint.h"
+#include "client/cli/common/exit_code.h"
+#include "client/cli/common/inputs.h"
+#include "client/cli/common/progress.h"
+#include "client/cli/common/standard_output.h"
+#include "client/cli/receive/receive_events.h"
+#include "client/cli/receive/take_recorder.h"
 #include "recording/take_poses.h"
 #include "report/words.h"
 #include "rig/rig_file.h"
@@ -32,13 +32,13 @@ struct RecordOptions {
   std::filesystem::path out;
   std::vector<std::string> subjects;
   bool wait = false;
-  double duration = 0.0;  // seconds; 0: until it is interrupted
+  double duration = 0.0;  // seconds; 0: until an interrupt
   double rotate_megabytes = 0.0;
   double rotate_seconds = 0.0;
   std::string rig;
 };
 
-// How far it is: a bar where the end is known, else what there is so far. Silent in a pipe.
+// Progress on a terminal: a bar if the duration is known, otherwise the current counts.
 class RecordingLine {
  public:
   RecordingLine(std::int64_t start_us, std::int64_t duration_us) : start_us_(start_us) {
@@ -50,12 +50,12 @@ class RecordingLine {
   RecordingLine(const RecordingLine&) = delete;
   RecordingLine& operator=(const RecordingLine&) = delete;
 
-  void Show(const TakeListener& take, std::int64_t now_us) {
+  void Show(const TakeRecorder& take, std::int64_t now_us) {
     constexpr std::int64_t kInterval = 500'000;
     if (bar_) return bar_->Set(now_us - start_us_);
     if (!terminal_ || now_us - shown_us_ < kInterval) return;
     shown_us_ = now_us;
-    std::fprintf(stderr, "\rrecording %.1f s, %s, %" PRIu64 " left out",
+    std::fprintf(stderr, "\rrecording %.1f s, %s, %" PRIu64 " dropped",
                  static_cast<double>(now_us - start_us_) * 1e-6,
                  Counted(take.num_poses(), "pose").c_str(), take.num_dropped());
   }
@@ -81,12 +81,12 @@ Result<recording::TakeFolderOptions> FolderOptions(const RecordOptions& options)
   return folder;
 }
 
-// `failed`: not all of it could be written.
-void PrintSummary(const TakeListener& take, bool failed) {
+// `failed`: some data could not be written.
+void PrintSummary(const TakeRecorder& take, bool failed) {
   if (take.folder() == nullptr) return;
   std::fprintf(stderr, "furrow: %s and %s of %s %s %s", Counted(take.num_poses(), "pose").c_str(),
                Counted(take.num_weights(), "weight").c_str(), take.SubjectNames().c_str(),
-               failed ? "came; 'furrow info' tells how many are in" : "in",
+               failed ? "received; 'furrow info' shows how many are in" : "in",
                take.folder()->path().c_str());
   if (take.folder()->num_files() > 1) {
     std::fprintf(stderr, " and %s before it",
@@ -94,46 +94,46 @@ void PrintSummary(const TakeListener& take, bool failed) {
   }
   std::fputs("\n", stderr);
   if (take.num_dropped() == 0) return;
-  std::fprintf(stderr, "furrow: missing: %s; this computer or the network was too slow\n",
+  std::fprintf(stderr, "furrow: %s missing, because this computer or the network was too slow\n",
                Counted(take.num_dropped(), "frame").c_str());
 }
 
-// Whether there is something left to record of everybody: false once the last one has left.
-bool HasMore(const TakeListener& take, const RecordOptions& options, Status* status) {
+// When recording all subjects: returns false after the last one has left.
+bool HasMore(const TakeRecorder& take, const RecordOptions& options, Status* status) {
   if (!options.subjects.empty() || options.wait || take.num_present().value_or(1) > 0) return true;
   if (take.folder() == nullptr) {
-    *status = Status(StatusCode::kUnavailable, "nobody is there to be recorded", options.host,
-                     "start a publisher first, or wait for one: --wait");
+    *status = Status(StatusCode::kUnavailable, "no subject is connected", options.host,
+                     "start a publisher first, or use --wait");
   }
   return false;
 }
 
-// What listening comes to; the take is complete afterwards, whatever happened.
-int ListenInto(TakeListener& take, client::Subscriber& subscriber, const RecordOptions& options) {
+// Records until the end and completes the take, even after an error. Returns the exit code.
+int RecordInto(TakeRecorder& take, client::Subscriber& subscriber, const RecordOptions& options) {
   const std::int64_t start = SteadyMicroseconds();
   const auto duration = static_cast<std::int64_t>(options.duration * 1e6);
-  const bool everybody = options.subjects.empty();
+  const bool all_subjects = options.subjects.empty();
   RecordingLine line(start, duration);
   Status status;
-  ListenEnd end;
-  end.goodbyes = options.wait || everybody ? 0 : 2 * static_cast<int>(options.subjects.size());
-  // One that cannot be had does not end the recording of the others.
-  end.outlives_errors = [&] { return everybody && take.num_present(); };
-  end.lingers_us = 1'000'000;  // the weights of a pose that is recorded
-  end.goes_on = [&] {
+  StopConditions stop;
+  stop.goodbyes = options.wait || all_subjects ? 0 : 2 * static_cast<int>(options.subjects.size());
+  // A subject that is unavailable does not end the recording of the others.
+  stop.survives_errors = [&] { return all_subjects && take.num_present(); };
+  stop.drain_us = 1'000'000;  // wait for the weights of the last recorded pose
+  stop.keep_going = [&] {
     const std::int64_t now = SteadyMicroseconds();
     line.Show(take, now);
     status = take.Flush(now);
     return status.ok() && (duration == 0 || now - start < duration) &&
            HasMore(take, options, &status);
   };
-  const int exit_code = Listen(
+  const int exit_code = ReceiveEvents(
       subscriber,
       [&](const client::Event& event) {
         status = take.OnEvent(event, subscriber, SteadyMicroseconds());
         return status.ok();
       },
-      end);
+      stop);
   const Status closed = take.Close();
   if (!status.ok()) return Fail(status);
   return closed.ok() ? exit_code : Fail(closed);
@@ -141,13 +141,14 @@ int ListenInto(TakeListener& take, client::Subscriber& subscriber, const RecordO
 
 int Record(const RecordOptions& options) {
   if (!recording::IsTakePath(options.out.string())) {
-    std::fprintf(stderr, "furrow: --out %s: a take is called FILE.mcap\n", options.out.c_str());
+    std::fprintf(stderr, "furrow: --out %s: the name of a take must be FILE.mcap\n",
+                 options.out.c_str());
     return kUsage;
   }
   std::error_code error;
   if (std::filesystem::exists(options.out, error)) {
-    return Fail({StatusCode::kIo, "the file is there already", options.out.string(),
-                 "choose another --out: nothing is overwritten"});
+    return Fail({StatusCode::kIo, "the file already exists", options.out.string(),
+                 "choose another --out; takes are never overwritten"});
   }
   auto folder = FolderOptions(options);
   if (!folder.ok()) return Fail(folder.status());
@@ -155,14 +156,15 @@ int Record(const RecordOptions& options) {
   auto transport = OpenTransport(options.host, client::TransportKind::kTcp, &exit_code);
   if (!transport) return exit_code;
   client::Subscriber subscriber(std::move(transport), "furrow record " FURROW_VERSION);
-  TakeListener take(*std::move(folder), SystemMicroseconds() - SteadyMicroseconds());
-  for (const std::string& subject : options.subjects) take.Ask(subscriber, subject, options.wait);
-  if (options.subjects.empty()) take.AskForAll(subscriber);
-  exit_code = ListenInto(take, subscriber, options);
+  TakeRecorder take(*std::move(folder), SystemMicroseconds() - SteadyMicroseconds());
+  for (const std::string& subject : options.subjects)
+    take.Subscribe(subscriber, subject, options.wait);
+  if (options.subjects.empty()) take.SubscribeToAll(subscriber);
+  exit_code = RecordInto(take, subscriber, options);
   PrintSummary(take, exit_code == kFailed);
   if (exit_code == kDone && take.folder() == nullptr) {
-    return Fail({StatusCode::kUnavailable, "nobody came, so there is no file", options.host,
-                 "start a publisher, or wait longer: --duration"});
+    return Fail({StatusCode::kUnavailable, "no subject connected; no file was written",
+                 options.host, "start a publisher, or wait longer with --duration"});
   }
   return exit_code;
 }
@@ -172,28 +174,35 @@ int Record(const RecordOptions& options) {
 void AddRecord(CLI::App& app, Action& action) {
   auto options = std::make_shared<RecordOptions>();
   CLI::App* command =
-      app.add_subcommand("record", "Records poses and weights of a daemon's subjects as a take");
-  command->add_option("HOST", options->host, "HOST, HOST:PORT or [IPV6]:PORT of furrowd")
+      app.add_subcommand("record", "Record the poses and weights of a daemon's subjects as a take");
+  command->add_option("HOST", options->host, kHostHelp)->required();
+  command
+      ->add_option("--out", options->out,
+                   "Take to write, FILE.mcap; an existing file is never overwritten")
       ->required();
-  command->add_option("--out", options->out, "FILE.mcap; never overwritten")->required();
   command
       ->add_option("--subject", options->subjects,
-                   "Who; may be given several times; default: everybody, also who comes later")
+                   "Name of a subject (repeatable; default: all subjects, including later ones)")
       ->allow_extra_args(false);
-  command->add_flag("--wait", options->wait,
-                    "Wait where nobody is there yet, and go on when all have left");
-  command->add_option("--duration", options->duration, "Seconds; default: until Ctrl-C")
+  command->add_flag(
+      "--wait", options->wait,
+      "Wait for subjects that are not connected yet, and continue when all have left");
+  command
+      ->add_option("--duration", options->duration,
+                   "Length of the recording, in seconds (default: until Ctrl-C)")
       ->check(Within(0.001, 1e9));
   command
       ->add_option("--rotate-megabytes", options->rotate_megabytes,
-                   "The next file, FILE_2.mcap, begins at this size; default: never")
+                   "Start the next file, FILE_2.mcap, at this size in megabytes (default: never)")
       ->check(Within(0.001, 1e9));
   command
       ->add_option("--rotate-seconds", options->rotate_seconds,
-                   "And when a file covers so much time; default: never")
+                   "Start the next file after this time, in seconds (default: never)")
       ->check(Within(0.001, 1e9));
-  command->add_option("--rig", options->rig,
-                      "The daemon's wrinkle rig, to go with the take as an attachment");
+  command->add_option(
+      "--rig", options->rig,
+      "The daemon's wrinkle rig, by file or shipped name, to attach to the take (default: "
+      "none)");
   command->callback([options, &action] { action = [options] { return Record(*options); }; });
 }
 

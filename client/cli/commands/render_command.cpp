@@ -10,16 +10,17 @@
 #include "base/files.h"
 #include "base/status.h"
 #include "base/text.h"
-#include "client/cli/command.h"
-#include "client/cli/exit_code.h"
-#include "client/cli/inputs.h"
-#include "client/cli/progress.h"
-#include "client/cli/render/crowd.h"
+#include "client/cli/commands/commands.h"
+#include "client/cli/common/exit_code.h"
+#include "client/cli/common/inputs.h"
+#include "client/cli/common/progress.h"
 #include "client/cli/render/picture_settings.h"
 #include "client/cli/render/pose_clip.h"
+#include "client/cli/render/subject_group.h"
 #include "motion/clip/clip.h"
 #include "render/gl/pass_timer.h"
 #include "render/renderer.h"
+#include "report/words.h"
 
 namespace furrow::cli {
 namespace {
@@ -39,12 +40,12 @@ struct RenderOptions {
   std::string format = "png";
   std::string device;
   PictureOptions picture;
-  CrowdOptions crowd;
+  GroupOptions group;
   bool timings = false;
   int quality = 90;
 };
 
-// "A:B", both included, or "A".
+// Parses "A:B", both included, or "A".
 bool ParseRange(const std::string& text, int* first, int* last) {
   const char* const end = text.data() + text.size();
   const auto a = std::from_chars(text.data(), end, *first);
@@ -62,12 +63,12 @@ std::string CheckRange(std::string& text) {
   int first = 0;
   int last = 0;
   if (ParseRange(text, &first, &last)) return {};
-  return "'" + text + "' is not A:B, both included and counted from 0, nor a single A";
+  return "'" + text + "' is not A:B or A; frames are counted from 0, and B is included";
 }
 
 using Clips = std::vector<std::shared_ptr<const motion::Clip>>;
 
-// One a file; a pose is a recording of one frame.
+// Loads one clip per file. --pose gives a clip with one frame.
 Result<Clips> LoadClips(const RenderOptions& options, const character::Character& character) {
   Clips clips;
   const auto add = [&](Result<motion::Clip> clip) {
@@ -83,7 +84,8 @@ Result<Clips> LoadClips(const RenderOptions& options, const character::Character
   return clips;
 }
 
-// Writes pictures as they come back from the renderer: two stay in flight while the next is solved.
+// Writes pictures when the renderer returns them. Two pictures stay in flight while the next frame
+// is solved.
 class PictureSink {
  public:
   PictureSink(render::Renderer& renderer, const RenderOptions& options)
@@ -126,7 +128,7 @@ double TakeMedian(std::vector<double>* values) {
   return *middle;
 }
 
-// A table of the passes in their order: medians over the frames, and their sums.
+// Prints a table of the passes in their order: medians over the frames, and their sums.
 void PrintTimings(const std::vector<render::PassTime>& times) {
   struct Samples {
     std::vector<double> wall_ms;
@@ -153,38 +155,39 @@ void PrintTimings(const std::vector<render::PassTime>& times) {
   std::printf("%-16s %8.2f ms %8.2f ms\n", "frame", wall, cpu);
 }
 
-Result<std::unique_ptr<Crowd>> MakeCrowd(const RenderOptions& options,
-                                         const character::Character& character) {
+Result<std::unique_ptr<SubjectGroup>> MakeGroup(const RenderOptions& options,
+                                                const character::Character& character) {
   const auto clips = LoadClips(options, character);
   FURROW_RETURN_IF_ERROR(clips);
   const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
   FURROW_RETURN_IF_ERROR(matcher);
   const std::vector<std::string> names =
       options.files.empty() ? std::vector<std::string>{""} : options.files;
-  return Crowd::Create(character, *clips, names, *matcher, options.crowd);
+  return SubjectGroup::Create(character, *clips, names, *matcher, options.group);
 }
 
-// The frames to draw of those that there are.
+// The first and last frame to draw.
 Result<std::pair<int, int>> FramesOf(const RenderOptions& options, int num_frames) {
   int first = 0;
   int last = num_frames - 1;
   if (!options.frames.empty()) (void)ParseRange(options.frames, &first, &last);  // checked before
   if (last < num_frames && last >= 0) return std::pair(first, last);
   return Status(StatusCode::kInvalidArgument,
-                "there is no frame " + std::to_string(std::max(last, 0)) + ": the recording has " +
-                    std::to_string(num_frames) + ", counted from 0",
+                "there is no frame " + std::to_string(std::max(last, 0)) + "; the recording has " +
+                    report::Counted(num_frames, "frame") + ", counted from 0",
                 options.files.empty() ? "" : options.files.front());
 }
 
 Status DrawFrames(const RenderOptions& options, const render::Settings& settings,
-                  const std::pair<int, int>& frames, Crowd& crowd, render::Renderer& renderer) {
+                  const std::pair<int, int>& frames, SubjectGroup& group,
+                  render::Renderer& renderer) {
   PictureSink sink(renderer, options);
   Progress progress("rendering", frames.second + 1);
   for (int frame = 0; frame <= frames.second; ++frame) {
-    FURROW_RETURN_IF_ERROR(crowd.Advance(frame));
+    FURROW_RETURN_IF_ERROR(group.Advance(frame));
     progress.Set(frame + 1);
     if (frame < frames.first) continue;
-    render::FrameRequest request = crowd.Request();
+    render::FrameRequest request = group.Request();
     request.settings = settings;
     (void)ParseSize(options.size, &request.width, &request.height);  // checked while parsing
     request.token = static_cast<std::uint64_t>(frame);
@@ -198,9 +201,9 @@ int RenderFiles(const RenderOptions& options) {
   if (!settings.ok()) return Fail(settings.status());
   const auto character = LoadCharacterArgument(options.character, options.rig);
   if (!character.ok()) return Fail(character.status());
-  auto crowd = MakeCrowd(options, *character);
-  if (!crowd.ok()) return Fail(crowd.status());
-  const auto frames = FramesOf(options, (*crowd)->num_frames());
+  auto group = MakeGroup(options, *character);
+  if (!group.ok()) return Fail(group.status());
+  const auto frames = FramesOf(options, (*group)->num_frames());
   if (!frames.ok()) return Fail(frames.status());
   auto renderer = render::Renderer::Create(*character, {.device = options.device});
   if (!renderer.ok()) return Fail(renderer.status());
@@ -209,34 +212,36 @@ int RenderFiles(const RenderOptions& options) {
   int width = 0;
   int height = 0;
   (void)ParseSize(options.size, &width, &height);  // checked while parsing
-  (*crowd)->FrameBy(*camera, static_cast<float>(width) / static_cast<float>(height));
+  (*group)->FrameBy(*camera, static_cast<float>(width) / static_cast<float>(height));
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) return Fail({StatusCode::kIo, error.message(), options.out});
 
   render::PassTimer timer;
   if (options.timings) (*renderer)->SetObserver(&timer);
-  if (Status status = DrawFrames(options, *settings, *frames, **crowd, **renderer); !status.ok()) {
+  if (Status status = DrawFrames(options, *settings, *frames, **group, **renderer); !status.ok()) {
     return Fail(status);
   }
   if (options.timings) PrintTimings(timer.Take());
   return kDone;
 }
 
-void AddCrowdOptions(CLI::App& command, CrowdOptions* options) {
+void AddGroupOptions(CLI::App& command, GroupOptions* options) {
   command
-      .add_option("--subjects", options->subjects,
-                  "How many people to picture together; recordings are handed out in turn. "
-                  "Default: one a FILE")
+      .add_option(
+          "--subjects", options->subjects,
+          "Number of subjects in the picture, which take the recordings in turn (default: one "
+          "per FILE)")
       ->check(CLI::Range(1, render::kMaxSubjects));
   command
       .add_option("--spacing", options->spacing,
-                  "Metres from one to the next; default: by what the camera shows of one")
+                  "Distance between subjects, in metres (default: chosen from the camera)")
       ->check(Within(0.05, 100.0));
   command
-      .add_option("--offset-frames", options->offset_frames,
-                  "Each plays so many frames ahead of the one before; default: those who share a "
-                  "recording are spread evenly over it")
+      .add_option(
+          "--offset-frames", options->offset_frames,
+          "Frames by which each subject is ahead of the previous one (default: subjects with "
+          "the same recording are spread evenly)")
       ->check(CLI::Range(0, 1'000'000));
 }
 
@@ -245,46 +250,49 @@ void AddCrowdOptions(CLI::App& command, CrowdOptions* options) {
 void AddRender(CLI::App& app, Action& action) {
   auto options = std::make_shared<RenderOptions>();
   CLI::App* command = app.add_subcommand(
-      "render", "Pictures of a recording or a pose, no network: DIR/000123.png for frame 123");
-  CLI::Option* file =
-      command->add_option("FILE", options->files,
-                          "BVH, glTF/GLB, VRMA or Live Link Face CSV; several: one person each, "
-                          "pictured together");
-  CLI::Option* pose = command->add_option(
-      "--pose", options->pose,
-      "Instead of FILE, one picture of the rig's reference poses: NAME[=WEIGHT],... or neutral; a "
-      "wrinkle map's name stands for all poses that feed it");
+      "render", "Render pictures of a recording or a pose, offline: DIR/000123.png for frame 123");
+  CLI::Option* file = command->add_option(
+      "FILE", options->files,
+      "Recordings: BVH, glTF/GLB, VRMA, Live Link Face CSV or a take (.mcap); several "
+      "files are drawn as several subjects in one picture");
+  CLI::Option* pose =
+      command->add_option("--pose", options->pose,
+                          "Draw one picture of the rig's reference poses instead of FILE: "
+                          "NAME[=WEIGHT],... or neutral; "
+                          "the name of a wrinkle map stands for all poses that feed it");
   file->excludes(pose);
-  command->add_option("--out", options->out, "Folder for the pictures; made if it is not there")
+  command->add_option("--out", options->out, "Folder for the pictures, created if missing")
       ->required();
   command->add_option("--character", options->character,
-                      "Character package (.glb); default: the one that ships");
-  command->add_option("--rig", options->rig, "Wrinkle rig; default: the package's own");
+                      "Character package, .glb (default: the default character)");
+  command->add_option("--rig", options->rig,
+                      "Wrinkle rig, by file or shipped name (default: the package's own)");
   AddSkeletonMap(*command, options->skeleton_map);
-  command->add_option("--frames", options->frames, "A:B, both included, from 0; default: all")
+  command
+      ->add_option("--frames", options->frames,
+                   "Frames to draw, A:B or A, counted from 0, B included (default: all)")
       ->check(CLI::Validator(CheckRange, ""));
-  command->add_option("--size", options->size, "WxH in pixels, 16 to 4096")
+  command->add_option("--size", options->size, "Width and height in pixels, 16 to 4096 each")
       ->check(SizeValidator())
       ->capture_default_str();
   const auto names = render::CameraPresetNames();
   const std::vector<std::string> cameras(names.begin(), names.end());
-  command->add_option("--camera", options->camera, render::ListCameraPresets())
+  command->add_option("--camera", options->camera, "Camera: " + render::ListCameraPresets())
       ->check(CLI::IsMember(cameras))
       ->type_name("")
       ->capture_default_str();
-  command->add_option("--format", options->format, "png or jpeg")
+  command->add_option("--format", options->format, "Picture format: png or jpeg")
       ->check(CLI::IsMember({"png", "jpeg"}))
       ->capture_default_str();
-  command->add_option("--quality", options->quality, "JPEG quality")
+  command->add_option("--quality", options->quality, "JPEG quality in percent")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  AddCrowdOptions(*command, &options->crowd);
+  AddGroupOptions(*command, &options->group);
   AddPictureOptions(*command, &options->picture);
-  command->add_flag(
-      "--timings", options->timings,
-      "Print what each pass of a frame takes (medians); pictures take longer with it");
+  command->add_flag("--timings", options->timings,
+                    "Print the median time of each pass, in milliseconds; slows rendering down");
   command->add_option("--device", options->device,
-                      "EGL device index or 'surfaceless'; default: the first that works");
+                      "EGL device: an index or 'surfaceless' (default: the first that works)");
   command->callback([options, &action] {
     if (options->files.empty() && options->pose.empty()) throw CLI::RequiredError("FILE or --pose");
     action = [options] { return RenderFiles(*options); };

@@ -4,10 +4,11 @@
 #include <optional>
 
 #include "character/package/rig_report.h"
-#include "client/cli/command.h"
-#include "client/cli/exit_code.h"
-#include "client/cli/inputs.h"
-#include "client/cli/render/rig_explain.h"
+#include "client/cli/commands/commands.h"
+#include "client/cli/common/exit_code.h"
+#include "client/cli/common/helper_program.h"
+#include "client/cli/common/inputs.h"
+#include "client/cli/output/explanation_text.h"
 #include "motion/clip/clip.h"
 #include "wrinkle/solver/solver.h"
 
@@ -16,7 +17,7 @@ namespace {
 
 struct RigOptions {
   std::string rig;
-  std::string file;  // explain: the recording; check: a recording whose skeleton is meant
+  std::string file;  // a recording; `check` uses its skeleton only
   std::string skeleton_map;
   int frame = 0;
   float threshold = 0.01f;
@@ -29,8 +30,8 @@ int Explain(const RigOptions& options) {
   if (!clip.ok()) return Fail(clip.status());
   if (options.frame >= clip->num_frames()) {
     return Fail({StatusCode::kInvalidArgument,
-                 "there is no frame " + std::to_string(options.frame) + ", only 0 to " +
-                     std::to_string(clip->num_frames() - 1),
+                 "there is no frame " + std::to_string(options.frame) +
+                     "; the recording has frames 0 to " + std::to_string(clip->num_frames() - 1),
                  options.file});
   }
   const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
@@ -45,7 +46,7 @@ int Explain(const RigOptions& options) {
   if (wrinkle::Explain(*binding, pose, &explanation) != wrinkle::JobStatus::kOk) {
     return Fail({StatusCode::kInternal, "the frame could not be explained", options.file});
   }
-  std::printf("%s, frame %d, as it stands (no filter)\n", options.file.c_str(), options.frame);
+  std::printf("%s, frame %d, without filter\n", options.file.c_str(), options.frame);
   PrintExplanation(explanation, options.threshold, stdout);
   return kDone;
 }
@@ -77,12 +78,12 @@ int Check(const RigOptions& options) {
 
 void AddCheck(CLI::App& group, Action& action) {
   auto options = std::make_shared<RigOptions>();
-  CLI::App* command =
-      group.add_subcommand("check", "What is in a rig, and what is probably not meant");
-  command->add_option("RIG", options->rig, "Wrinkle rig (JSON), or the name of one that ships")
+  CLI::App* command = group.add_subcommand("check", "Validate a rig and report likely mistakes");
+  command->add_option("RIG", options->rig, "Wrinkle rig: a JSON file, or the name of a shipped rig")
       ->required();
-  command->add_option("--skeleton", options->file,
-                      "A recording: is every joint and blend shape there?");
+  command->add_option(
+      "--skeleton", options->file,
+      "Recording to check the rig's joints and blend shapes against (default: none)");
   AddSkeletonMap(*command, options->skeleton_map);
   command->callback([options, &action] { action = [options] { return Check(*options); }; });
 }
@@ -90,15 +91,20 @@ void AddCheck(CLI::App& group, Action& action) {
 void AddExplain(CLI::App& group, Action& action) {
   auto options = std::make_shared<RigOptions>();
   CLI::App* command =
-      group.add_subcommand("explain", "Which driver and which pose made each weight of a frame");
-  command->add_option("RIG", options->rig, "Wrinkle rig (JSON), or the name of one that ships")
+      group.add_subcommand("explain", "Show which driver and pose made each weight of a frame");
+  command->add_option("RIG", options->rig, "Wrinkle rig: a JSON file, or the name of a shipped rig")
       ->required();
-  command->add_option("FILE", options->file, "The recording")->required();
+  command
+      ->add_option("FILE", options->file,
+                   "Recording: BVH, glTF/GLB, VRMA, Live Link Face CSV or a take")
+      ->required();
   AddSkeletonMap(*command, options->skeleton_map);
-  command->add_option("--frame", options->frame, "Counted from 0")
+  command->add_option("--frame", options->frame, "Frame number, counted from 0")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--threshold", options->threshold, "Weights below are counted, not listed")
+  command
+      ->add_option("--threshold", options->threshold,
+                   "Smallest weight to list; smaller weights are counted only")
       ->check(Within(0.0, 1.0))
       ->capture_default_str();
   command->callback([options, &action] { action = [options] { return Explain(*options); }; });
@@ -108,11 +114,11 @@ void AddExplain(CLI::App& group, Action& action) {
 
 void AddRig(CLI::App& app, Action& action) {
   CLI::App* group =
-      app.add_subcommand("rig", "Wrinkle rigs: check one, explain its weights, cut a patch for it");
+      app.add_subcommand("rig", "Check wrinkle rigs, explain their weights and cut patches");
   group->require_subcommand(1);
   AddCheck(*group, action);
   AddExplain(*group, action);
-  AddRigPatch(*group, action);
+  AddHelperEntry(*group, "rig patch");
 }
 
 }  // namespace furrow::cli

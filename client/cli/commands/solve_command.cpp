@@ -2,12 +2,12 @@
 #include <map>
 #include <memory>
 
-#include "client/cli/command.h"
-#include "client/cli/exit_code.h"
-#include "client/cli/file_output.h"
-#include "client/cli/inputs.h"
+#include "client/cli/commands/commands.h"
+#include "client/cli/common/exit_code.h"
+#include "client/cli/common/inputs.h"
+#include "client/cli/common/progress.h"
+#include "client/cli/common/standard_output.h"
 #include "client/cli/output/weight_writer.h"
-#include "client/cli/progress.h"
 #include "motion/clip/clip.h"
 #include "wrinkle/solver/solver.h"
 
@@ -19,18 +19,18 @@ struct SolveOptions {
   std::string rig;
   std::string skeleton_map;
   TableFormat format = TableFormat::kCsv;
-  int level = 0;  // drivers; 0: all
+  int level = 0;  // number of drivers; 0: all
   bool drivers = false;
   bool no_filter = false;
   bool allow_missing = false;
 };
 
-// What the recording lacks may rest, but only where that is asked for.
+// Suggests --allow-missing if the recording lacks joints or blend shapes.
 Status BindingFailed(const Status& status, const SolveOptions& options) {
   if (status.code() != StatusCode::kNotFound || options.allow_missing)
     return status.At(options.rig);
   return {status.code(), status.what(), options.rig,
-          "with --allow-missing, drivers of what the recording lacks rest at 0"};
+          "with --allow-missing, the drivers of missing joints and blend shapes stay at 0"};
 }
 
 int SolveFile(const SolveOptions& options) {
@@ -45,7 +45,7 @@ int SolveFile(const SolveOptions& options) {
       *rig, clip->skeleton, clip->blend_shape_names,
       {.allow_missing = options.allow_missing, .aliases = match.aliases});
   if (!binding.ok()) return Fail(BindingFailed(binding.status(), options));
-  WarnOfMissing(*binding, *clip);
+  WarnAboutMissing(*binding, *clip);
 
   wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(std::move(*binding)),
                                 !options.no_filter);
@@ -76,29 +76,28 @@ int SolveFile(const SolveOptions& options) {
 void AddSolve(CLI::App& app, Action& action) {
   auto options = std::make_shared<SolveOptions>();
   CLI::App* command = app.add_subcommand(
-      "solve", "The weights of a recording, no network: what the daemon would send");
+      "solve", "Compute the weights of a recording offline, as the daemon would send them");
   command
       ->add_option("FILE", options->file,
-                   "BVH, glTF/GLB, VRMA, Live Link Face CSV or a take (.mcap)")
+                   "Recording: BVH, glTF/GLB, VRMA, Live Link Face CSV or a take (.mcap)")
       ->required();
   command
       ->add_option("--rig", options->rig,
-                   "Wrinkle rig (JSON), or the name of one that ships: cmu, arkit ...")
+                   "Wrinkle rig: a JSON file, or the name of a shipped rig (cmu, arkit, ...)")
       ->required();
   AddSkeletonMap(*command, options->skeleton_map);
   const std::map<std::string, TableFormat> formats{{"csv", TableFormat::kCsv},
                                                    {"jsonl", TableFormat::kJsonl}};
-  AddChoice(*command, "--format", options->format, formats, "csv (default) or jsonl");
+  AddChoice(*command, "--format", options->format, formats, "Output format");
   command->add_flag("--drivers", options->drivers,
-                    "Print driver values before modulation and filter");
+                    "Print driver values, before modulation and filter, instead of weights");
   command
       ->add_option("--level", options->level,
-                   "Level of detail: only the first N of the rig's drivers (default: all)")
+                   "Level of detail: use only the first N drivers of the rig (default: all)")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--no-filter", options->no_filter, "Leave the filter out");
-  command->add_flag(
-      "--allow-missing", options->allow_missing,
-      "Joints and blend shapes that the recording lacks rest at 0 instead of being an error");
+  command->add_flag("--no-filter", options->no_filter, "Do not filter the weights");
+  command->add_flag("--allow-missing", options->allow_missing,
+                    "Accept missing joints and blend shapes; their drivers stay at 0");
   command->callback([options, &action] { action = [options] { return SolveFile(*options); }; });
 }
 

@@ -4,12 +4,12 @@
 #include <memory>
 #include <optional>
 
-#include "client/cli/command.h"
-#include "client/cli/endpoint.h"
-#include "client/cli/exit_code.h"
-#include "client/cli/file_output.h"
-#include "client/cli/listen.h"
+#include "client/cli/commands/commands.h"
+#include "client/cli/common/endpoint.h"
+#include "client/cli/common/exit_code.h"
+#include "client/cli/common/standard_output.h"
 #include "client/cli/output/weight_writer.h"
+#include "client/cli/receive/receive_events.h"
 
 namespace furrow::cli {
 namespace {
@@ -17,16 +17,16 @@ namespace {
 using client::TransportKind;
 
 struct WatchOptions {
-  ListenOptions listen;
+  SubscriptionOptions listen;
   TableFormat format = TableFormat::kTable;
-  bool tcp = false;  // the default: said for clarity
+  bool tcp = false;  // the default, so the value is not read
   bool udp = false;
   bool u8 = false;
   bool drivers = false;
   protocol::SubscribeWeights request;
 };
 
-// Rows out of weight frames: names come first, and again when they change.
+// Converts weight frames to rows. Names arrive first, and again when they change.
 class WeightRows {
  public:
   WeightRows(const WatchOptions& options, client::Subscriber& subscriber)
@@ -40,7 +40,8 @@ class WeightRows {
       return true;
     }
     const protocol::WeightFrame& frame = subscriber_.weights();
-    // Weights that hold or decay carry no new pose; without names a frame cannot be read.
+    // Skip held or decaying weights, which belong to no new pose, and frames whose names are
+    // unknown.
     if (frame.age_us > 0 || !names_hash_ || frame.names_hash != *names_hash_) return true;
     if (!first_us_) first_us_ = event.header.capture_time_us;
     const double seconds = static_cast<double>(event.header.capture_time_us - *first_us_) * 1e-6;
@@ -66,7 +67,7 @@ class WeightRows {
 
   client::Subscriber& subscriber_;
   std::unique_ptr<WeightWriter> writer_;
-  std::int64_t left_;  // 0: without end
+  std::int64_t left_;  // rows to receive; 0: unlimited
   std::optional<std::uint64_t> names_hash_;
   std::optional<std::int64_t> first_us_;
   int failure_ = kDone;
@@ -83,7 +84,7 @@ int Watch(const WatchOptions& options) {
   if (options.drivers) request.source = protocol::WeightSource::kDriverValues;
   subscriber.Subscribe(request);
   WeightRows rows(options, subscriber);
-  exit_code = Listen(subscriber, std::ref(rows));
+  exit_code = ReceiveEvents(subscriber, std::ref(rows));
   return rows.failure() != kDone ? rows.failure() : exit_code;
 }
 
@@ -91,19 +92,21 @@ int Watch(const WatchOptions& options) {
 
 void AddWatch(CLI::App& app, Action& action) {
   auto options = std::make_shared<WatchOptions>();
-  CLI::App* command = app.add_subcommand("watch", "Prints a subject's weights as they arrive");
-  AddListenOptions(*command, options->listen, options->request, "every pose");
+  CLI::App* command = app.add_subcommand("watch", "Print the weights of a subject as they arrive");
+  AddSubscriptionOptions(*command, options->listen, options->request, "weight frames",
+                         "every pose");
   command
       ->add_option("--pattern", options->request.pattern,
-                   "Comma list of globs over weight names, as 'brow_*,knee_l_*'")
+                   "Weight names to receive, as comma-separated globs such as 'brow_*,knee_l_*'")
       ->capture_default_str();
   const std::map<std::string, TableFormat> formats{
       {"table", TableFormat::kTable}, {"csv", TableFormat::kCsv}, {"jsonl", TableFormat::kJsonl}};
-  AddChoice(*command, "--format", options->format, formats, "table (default), csv or jsonl");
-  auto* tcp = command->add_flag("--tcp", options->tcp, "Over TCP (default; port 7400)");
-  command->add_flag("--udp", options->udp, "Over UDP (port 7401)")->excludes(tcp);
-  command->add_flag("--u8", options->u8, "Ask for 8-bit weights (off by at most 1/510)");
-  command->add_flag("--drivers", options->drivers, "Driver values before modulation and filter");
+  AddChoice(*command, "--format", options->format, formats, "Output format");
+  auto* tcp = command->add_flag("--tcp", options->tcp, "Receive over TCP, port 7400 (default)");
+  command->add_flag("--udp", options->udp, "Receive over UDP, port 7401")->excludes(tcp);
+  command->add_flag("--u8", options->u8, "Receive 8-bit weights (error up to 1/510)");
+  command->add_flag("--drivers", options->drivers,
+                    "Receive driver values, before modulation and filter, instead of weights");
   command->callback([options, &action] { action = [options] { return Watch(*options); }; });
 }
 

@@ -10,19 +10,19 @@
 
 namespace furrow::cli {
 
-// Which way packets are mistreated.
+// The direction in which faults are injected: to the daemon (up), from it (down), or both.
 enum class ChaosWay { kUp, kDown, kBoth };
 
-// What `load` and `chaos` can be told to do to packets.
+// The parsed fault options of `load` and `chaos`.
 struct ChaosFlags {
-  load::ChaosOptions options;
-  std::vector<std::string> black_holes;  // as ParseBlackHole(), checked when parsed
+  chaos::Faults options;
+  std::vector<std::string> black_holes;  // validated arguments of chaos::ParseBlackHole()
   ChaosWay way = ChaosWay::kBoth;
 };
 
 void AddChaosFlags(CLI::App& command, ChaosFlags& flags);
 
-// The options of either way, black holes parsed.
-void ReadChaosFlags(const ChaosFlags& flags, load::ChaosOptions* up, load::ChaosOptions* down);
+// Sets the faults of each direction, with parsed black holes.
+void ReadChaosFlags(const ChaosFlags& flags, chaos::Faults* up, chaos::Faults* down);
 
 }  // namespace furrow::cli

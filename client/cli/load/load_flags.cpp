@@ -2,143 +2,165 @@
 #include "client/cli/load/load_flags.h"
 
 #include "client/chaos/report.h"
-#include "client/cli/command.h"
+#include "client/cli/common/command.h"
 #include "client/load/measure/process_usage.h"
 
 namespace furrow::cli {
 namespace {
 
-void AddWhat(CLI::App& command, LoadFlags& options) {
+void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
   command
-      .add_option("HOST", options.host,
-                  "HOST, HOST:PORT or [IPV6]:PORT of furrowd; PORT is UDP's, or TCP's with --tcp")
+      .add_option(
+          "HOST", options.host,
+          "Address of furrowd: HOST, HOST:PORT or [IPV6]:PORT; PORT is the UDP port, or the "
+          "TCP port with --tcp")
       ->required();
   command
       .add_option("FILE", options.input.file,
-                  "What all subjects perform: BVH, glTF/GLB, VRMA, Live Link CSV or a take (.mcap)")
+                  "Recording that all subjects send: BVH, glTF/GLB, VRMA, Live Link Face CSV or a "
+                  "take (.mcap)")
       ->required();
   command
       .add_option("--subjects", options.subjects,
-                  "How many send at once, each from another place of the recording; default 1, "
-                  "with --find-max 256")
+                  "Number of subjects, each with a different start frame (default: 1; 256 with "
+                  "--find-max)")
       ->check(CLI::Range(1, 65535));
   command
       .add_option("--rate", options.run.plan.rate,
-                  "Poses a second of each subject; default: the recording's own spacing")
+                  "Poses per second and subject (default: the recording's own rate)")
       ->check(Within(0.01, 100000.0));
-  command.add_option("--duration", options.run.plan.seconds, "Seconds of one run")
+  command.add_option("--duration", options.run.plan.seconds, "Length of the run, in seconds")
       ->check(Within(0.01, 1e6))
       ->capture_default_str();
-  auto* udp = command.add_flag("--udp", options.udp, "Poses and weights as datagrams (default)");
-  auto* tcp = command.add_flag("--tcp", options.tcp, "Over TCP")->excludes(udp);
-  command.add_flag("--both", options.both, "Half of the connections each")
+  auto* udp = command.add_flag("--udp", options.udp, "Use UDP (default)");
+  auto* tcp = command.add_flag("--tcp", options.tcp, "Use TCP")->excludes(udp);
+  command.add_flag("--both", options.both, "Use UDP for half of the connections and TCP for half")
       ->excludes(udp)
       ->excludes(tcp);
-  command.add_option(
-      "--other-port", options.other_port,
-      "furrowd's port of the transport that HOST does not name (7400 TCP, 7401 UDP)");
-  command.add_flag("--quantise", options.input.quantise, "Send packed poses, as play --quantise");
+  command.add_option("--other-port", options.other_port,
+                     "furrowd's port of the transport that HOST does not name (default: 7400 for "
+                     "TCP, 7401 for UDP)");
+  command.add_flag("--quantise", options.input.quantise,
+                   "Send packed poses, as 'furrow play --quantise' does");
   command.add_option("--scale", options.input.scale, "Metres per unit of the recording's lengths")
       ->check(Within(1e-6, 1e6))
       ->capture_default_str();
 }
 
-void AddWho(CLI::App& command, LoadFlags& options) {
+void AddSubscriberOptions(CLI::App& command, LoadFlags& options) {
   const auto count = [&](const char* name, int& value, int least, const char* help) {
     command.add_option(name, value, help)->check(CLI::Range(least, 4096))->capture_default_str();
   };
-  count("--subscribers", options.run.watchers, 1, "How many watch every subject, and are measured");
-  count("--slow", options.run.burdens.slow, 0,
-        "Further ones over TCP that read one message a second");
-  count("--stalled", options.run.burdens.stalled, 0, "... that never read");
-  count("--churn", options.run.burdens.churn, 0, "... that leave and come back all the time");
+  count("--subscribers", options.run.watchers, 1,
+        "Number of measured subscribers; each receives all subjects");
+  count("--slow", options.run.misbehavior.slow, 0,
+        "Number of extra TCP subscribers that read one message per second");
+  count("--stalled", options.run.misbehavior.stalled, 0,
+        "Number of extra TCP subscribers that never read");
+  count("--churn", options.run.misbehavior.churn, 0,
+        "Number of extra TCP subscribers that disconnect and reconnect every half second");
   command.add_option("--rig", options.input.rig,
-                     "The daemon's wrinkle rig, by which weights are checked; default: the default "
-                     "character's");
+                     "The daemon's wrinkle rig, by file or shipped name, to check the weights "
+                     "(default: the default character's rig)");
   AddSkeletonMap(command, options.input.skeleton_map);
-  command.add_option("--tolerance", options.run.tolerance, "Of a weight, before it is wrong")
+  command
+      .add_option("--tolerance", options.run.tolerance,
+                  "Largest accepted difference of a weight in [0, 1]")
       ->check(Within(0.0, 1.0))
       ->capture_default_str();
   command
       .add_option("--late", options.late_ms,
-                  "Milliseconds after which weights are late; --find-max keeps p99 below")
+                  "Latency limit of weights, in milliseconds; also the p99 limit of --find-max")
       ->check(Within(0.001, 1e6))
       ->capture_default_str();
   command
       .add_option("--drain", options.run.drain_seconds,
-                  "Seconds without weights after which what is missing is lost")
+                  "Time without weights after which missing weights count as lost, in seconds")
       ->check(Within(0.0, 3600.0))
       ->capture_default_str();
-  command.add_option("--pid", options.pid,
-                     "The daemon's process, for CPU and memory; default: who owns the port here");
+  command.add_option(
+      "--pid", options.pid,
+      "Process ID of the daemon, for CPU time and memory (default: the local process "
+      "that owns the port)");
 }
 
-void AddHow(CLI::App& command, LoadFlags& options) {
+void AddComparisonOptions(CLI::App& command, LoadFlags& options) {
   command.add_flag("--find-max", options.find_max,
-                   "First search the highest rate that loses nothing and holds p99 (--late)");
+                   "First search the highest rate without loss and with p99 below --late");
   command.add_flag("--baseline", options.baseline,
-                   "First run beside a raw UDP echo, in turn, and print ratios");
+                   "First compare the daemon with a raw UDP echo and print ratios");
   command
       .add_option("--time-limit", options.time_limit_minutes,
-                  "Minutes after which --find-max and --baseline begin nothing new")
+                  "Time after which --find-max and --baseline start no new run, in minutes")
       ->check(Within(0.01, 1e4))
       ->capture_default_str();
-  command.add_option("--rounds", options.comparison.rounds, "Runs of each, for --baseline")
+  command
+      .add_option("--rounds", options.comparison.rounds, "Number of runs per server for --baseline")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command
       .add_option("--round-time", options.round_seconds,
-                  "Seconds of one run of a round, at most --duration")
+                  "Length of one run of a round, in seconds, limited to --duration")
       ->check(Within(0.05, 3600.0))
       ->capture_default_str();
-  command.add_option("--searches", options.comparison.searches, "Searches of each, for --find-max")
+  command
+      .add_option("--searches", options.comparison.searches,
+                  "Number of searches per server for --find-max")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  command.add_option("--probe", options.comparison.probe_seconds, "Seconds of one run of a search")
+  command
+      .add_option("--probe", options.comparison.probe_seconds,
+                  "Length of one run of a search, in seconds")
       ->check(Within(0.05, 60.0))
       ->capture_default_str();
   command
       .add_option("--limit", options.comparison.search_limit,
-                  "Poses a second beyond which --find-max does not search")
+                  "Highest rate that --find-max tries, in poses per second")
       ->check(Within(1.0, 1e7))
       ->capture_default_str();
+}
+
+void AddOutputOptions(CLI::App& command, LoadFlags& options) {
   command.add_flag(
       "--strict", options.strict,
-      "Exit with 1 where anything was lost, late, wrong, not checked, not sent, or cut short");
-  command.add_option("--json", options.json, "Write all figures to this file");
+      "Exit with 1 if anything was lost, late, wrong, unchecked, not sent or cut short");
+  command.add_option("--json", options.json, "Write all figures to this JSON file (default: none)");
   command.add_option("--hgrm", options.hgrm,
-                     "Write the latencies (ms) in HdrHistogram's text format");
-  command.add_option("--plot", options.plot,
-                     "Write curves (SVG): latency by percentile, over time, by rate");
+                     "Write the latencies, in milliseconds, to this file in HdrHistogram's text "
+                     "format (default: none)");
+  command.add_option(
+      "--plot", options.plot,
+      "Write charts of the latency to this SVG file: by percentile, over time and by "
+      "rate (default: none)");
 }
 
 }  // namespace
 
 void AddLoadFlags(CLI::App& command, LoadFlags& flags) {
-  AddWhat(command, flags);
-  AddWho(command, flags);
-  AddHow(command, flags);
+  AddTrafficOptions(command, flags);
+  AddSubscriberOptions(command, flags);
+  AddComparisonOptions(command, flags);
+  AddOutputOptions(command, flags);
   AddChaosFlags(command, flags.chaos);
 }
 
-std::string WrongUsage(const LoadFlags& flags) {
-  load::ChaosOptions up;
-  load::ChaosOptions down;
+std::string FindConflict(const LoadFlags& flags) {
+  chaos::Faults up;
+  chaos::Faults down;
   ReadChaosFlags(flags.chaos, &up, &down);
   if ((flags.find_max || flags.baseline) && (up.any() || down.any())) {
-    return "--find-max and --baseline measure a network in peace: leave out --loss and the like, "
-           "or "
-           "load once more with them alone";
+    return "--find-max and --baseline need a network without injected faults; leave out --loss and "
+           "the other fault options, or run 'furrow load' again with those alone";
   }
-  if (const std::string faults = load::DatagramFaults(flags.chaos.options);
+  if (const std::string faults = chaos::DatagramFaults(flags.chaos.options);
       flags.tcp && !faults.empty()) {
     return faults +
-           ": this befalls datagrams, and --tcp sends none; leave out --tcp or take --both, or "
-           "plant --jitter and --black-hole, which TCP knows, too";
+           ": applies to datagrams only, and --tcp sends none; leave out --tcp, use --both, or use "
+           "--jitter and --black-hole, which also apply to TCP";
   }
   if (flags.pid != 0 && !load::ReadUsage(flags.pid)) {
     return "--pid " + std::to_string(flags.pid) +
-           ": there is no such process on this machine; leave it out where the daemon is elsewhere";
+           ": no such process on this machine; leave out --pid if the daemon runs elsewhere";
   }
   return {};
 }

@@ -9,17 +9,17 @@
 #include "client/cli/load/chaos_flags.h"
 #include "client/cli/load/load_input.h"
 #include "client/load/compare/comparison.h"
-#include "client/load/run.h"
+#include "client/load/run/run.h"
 
 namespace furrow::cli {
 
-// What `load` was told.
+// The parsed options of `load`.
 struct LoadFlags {
   std::string host;
   LoadInput input;
   load::RunOptions run;
-  int subjects = 0;  // 0: 1, or 256 for --find-max
-  bool udp = false;  // the default: said for clarity
+  int subjects = 0;  // 0: 1, or 256 with --find-max
+  bool udp = false;  // the default, so the value is not read
   bool tcp = false;
   bool both = false;
   std::uint16_t other_port = 0;
@@ -28,7 +28,7 @@ struct LoadFlags {
   bool find_max = false;
   bool baseline = false;
   bool strict = false;
-  load::ComparisonOptions comparison;  // without what is in `run`
+  load::ComparisonOptions comparison;  // its `run` is not used
   double round_seconds = 3.0;
   double time_limit_minutes = 7.0;
   ChaosFlags chaos;
@@ -39,7 +39,8 @@ struct LoadFlags {
 
 void AddLoadFlags(CLI::App& command, LoadFlags& flags);
 
-// What is wrong with options that are each right, and what to do; empty: nothing.
-[[nodiscard]] std::string WrongUsage(const LoadFlags& flags);
+// An error message about options that are valid alone and contradict each other; empty if there is
+// none.
+[[nodiscard]] std::string FindConflict(const LoadFlags& flags);
 
 }  // namespace furrow::cli

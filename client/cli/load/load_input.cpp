@@ -8,7 +8,7 @@
 #include "base/ascii.h"
 #include "base/data_dir.h"
 #include "base/status.h"
-#include "client/cli/inputs.h"
+#include "client/cli/common/inputs.h"
 #include "protocol/codec/codec.h"
 #include "protocol/messages/hash.h"
 #include "protocol/messages/quantise.h"
@@ -18,8 +18,8 @@
 namespace furrow::cli {
 namespace {
 
-// How far a frame's joints leave their rest at most, along any axis: the range that it is packed
-// with.
+// The largest offset of a joint from its rest pose along any axis. Packed translations use it as
+// their range.
 float Range(std::span<const wrinkle::Transform> locals, std::span<const wrinkle::Transform> rest) {
   float range = 0.0f;
   for (std::size_t j = 0; j < rest.size(); ++j) {
@@ -45,7 +45,7 @@ void QuantiseFrame(std::span<wrinkle::Transform> locals, std::span<const wrinkle
   }
 }
 
-// Whether the recording has nothing that the rig reads, by its own name or by an alias.
+// True if the recording has no joint and no blend shape that the rig reads, by name or by alias.
 bool NothingMatches(const wrinkle::Rig& rig, const motion::Clip& clip,
                     const character::SkeletonMatch& match) {
   const auto joints = wrinkle::JointsOf(rig);
@@ -77,12 +77,12 @@ Result<std::shared_ptr<const wrinkle::RigBinding>> BindRig(const LoadInput& inpu
                                              {.allow_missing = true, .aliases = match.aliases});
   if (!binding.ok()) return binding.status().At(rig_name);
   if (NothingMatches(*rig, clip, match)) {
-    return Status(StatusCode::kNotFound, "no joint and no blend shape of the rig is in it",
+    return Status(StatusCode::kNotFound, "the recording has no joint and no blend shape of the rig",
                   input.file,
-                  "weights that all rest prove nothing: choose a --rig for this "
-                  "recording, or name its joints with --skeleton-map");
+                  "all weights would stay at 0; choose a --rig for this recording, or map its "
+                  "joints with --skeleton-map");
   }
-  WarnOfMissing(*binding, clip);
+  WarnAboutMissing(*binding, clip);
   return std::make_shared<const wrinkle::RigBinding>(*std::move(binding));
 }
 
@@ -98,7 +98,7 @@ void QuantiseClip(motion::Clip* clip) {
     value = protocol::UnpackBlendShape(protocol::PackBlendShape(value));
 }
 
-Result<load::Performance> LoadPerformance(const LoadInput& input) {
+Result<load::Workload> LoadWorkload(const LoadInput& input) {
   auto loaded = LoadClipArgument(input.file);
   FURROW_RETURN_IF_ERROR(loaded);
   if (loaded->num_frames() == 0)
@@ -108,20 +108,20 @@ Result<load::Performance> LoadPerformance(const LoadInput& input) {
   auto binding = BindRig(input, *clip);
   FURROW_RETURN_IF_ERROR(binding);
 
-  load::Performance performance;
-  performance.offer = recording::OfferOf(*clip, clip->name, input.scale);
-  performance.times = clip->times;
-  performance.binding = *std::move(binding);
-  performance.pose = [clip](int frame, wrinkle::LocalPose* pose) { clip->GetPose(frame, pose); };
+  load::Workload workload;
+  workload.offer = recording::OfferOf(*clip, clip->name, input.scale);
+  workload.times = clip->times;
+  workload.binding = *std::move(binding);
+  workload.pose = [clip](int frame, wrinkle::LocalPose* pose) { clip->GetPose(frame, pose); };
   const auto encoding = input.quantise ? protocol::PoseEncoding::Small() : protocol::PoseEncoding{};
   protocol::Encoder encoder;
   protocol::PoseFrame pose;
-  pose.skeleton_hash = protocol::SkeletonHash(performance.offer);
+  pose.skeleton_hash = protocol::SkeletonHash(workload.offer);
   for (int frame = 0; frame < clip->num_frames(); ++frame) {
     recording::FillPose(*clip, frame, &pose);
-    encoder.Encode({.session = 1}, pose, performance.messages.emplace_back(), encoding);
+    encoder.Encode({.session = 1}, pose, workload.messages.emplace_back(), encoding);
   }
-  return performance;
+  return workload;
 }
 
 }  // namespace furrow::cli

@@ -4,27 +4,29 @@
 #include <string>
 
 #include "base/status.h"
-#include "client/load/schedule/performance.h"
+#include "client/load/schedule/workload.h"
 #include "motion/clip/clip.h"
 
 namespace furrow::cli {
 
-// What a load test sends, and by which rig it is checked.
+// The recording that a load test sends and the rig that checks the weights.
 struct LoadInput {
   std::string file;
-  std::string rig;  // as LoadRigArgument(); empty: the default character's
+  std::string rig;  // argument of LoadRigArgument(); empty: the default character's rig
   std::string skeleton_map;
-  bool quantise = false;
-  float scale = 1.0f;
+  bool quantise = false;  // send packed poses
+  float scale = 1.0f;     // metres per unit of the recording
 };
 
-// What the recording lacks of the rig is warned of on standard error. Errors: those of the
-// recording, the rig and the skeleton map; kInvalidArgument for a recording without frames;
-// kNotFound for one that has nothing that the rig reads.
-[[nodiscard]] Result<load::Performance> LoadPerformance(const LoadInput& input);
+// Loads the recording, binds the rig to it and encodes all poses. Prints warnings about joints and
+// blend shapes that the recording lacks.
+//
+// Errors: those of the recording, the rig and the skeleton map; kInvalidArgument (no frames);
+// kNotFound (the recording has nothing that the rig reads).
+[[nodiscard]] Result<load::Workload> LoadWorkload(const LoadInput& input);
 
-// Makes a clip's values those that its quantised poses have on the wire, so that both ends solve
-// the same numbers.
+// Replaces the values of a clip by their quantised wire values, so that the local solver and the
+// daemon solve the same numbers.
 void QuantiseClip(motion::Clip* clip);
 
 }  // namespace furrow::cli

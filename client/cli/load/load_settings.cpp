@@ -24,11 +24,11 @@ const char* NameOf(load::Path path) {
 }
 
 nlohmann::json ChaosOf(const ChaosFlags& flags) {
-  load::ChaosOptions up;
-  load::ChaosOptions down;
+  chaos::Faults up;
+  chaos::Faults down;
   ReadChaosFlags(flags, &up, &down);
-  return {{"up", up.any() ? load::ToJson(up) : nlohmann::json()},
-          {"down", down.any() ? load::ToJson(down) : nlohmann::json()}};
+  return {{"up", up.any() ? chaos::ToJson(up) : nlohmann::json()},
+          {"down", down.any() ? chaos::ToJson(down) : nlohmann::json()}};
 }
 
 nlohmann::json ComparisonOf(const LoadFlags& flags) {
@@ -60,9 +60,9 @@ nlohmann::json SettingsOf(const LoadFlags& flags) {
       {"rate", run.plan.rate > 0.0 ? nlohmann::json(run.plan.rate) : nlohmann::json()},
       {"duration_seconds", run.plan.seconds},
       {"subscribers", run.watchers},
-      {"slow", run.burdens.slow},
-      {"stalled", run.burdens.stalled},
-      {"churn", run.burdens.churn},
+      {"slow", run.misbehavior.slow},
+      {"stalled", run.misbehavior.stalled},
+      {"churn", run.misbehavior.churn},
       {"tolerance", run.tolerance},
       {"late_ms", flags.late_ms},
       {"drain_seconds", run.drain_seconds},

@@ -7,9 +7,9 @@
 
 namespace furrow::cli {
 
-// All that a load test's figures depend on, so that its report stands alone and can be repeated.
-// `flags`: as they are run, defaults filled in. What was left to the recording or the default
-// character is null.
+// All settings that the figures of a load test depend on, so that its JSON report is complete and
+// the test can be repeated. `flags` must contain the values of the run, with defaults filled in.
+// Settings that the recording or the default character decides are null.
 [[nodiscard]] nlohmann::json SettingsOf(const LoadFlags& flags);
 
 }  // namespace furrow::cli

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/status.h"
-#include "client/cli/inputs.h"
+#include "client/cli/common/inputs.h"
 #include "recording/wire_pose.h"
 
 namespace furrow::cli {

@@ -13,22 +13,21 @@
 
 namespace furrow::cli {
 
-// One subject of what is played: the frames of a clip, or a take's poses exactly as they were
-// received.
+// One subject to play: the frames of a clip, or the recorded poses of a take, unchanged.
 class PlaySource {
  public:
-  // All the subjects of a recording, or the one that `file` names ("take.mcap#ada"). Errors:
-  // LoadClipArgument()'s and TakePoses::LoadAll()'s; kInvalidArgument for a recording without
-  // frames. Warnings are printed.
+  // Loads all subjects of a recording, or the one that `file` names ("take.mcap#ada"). Prints
+  // warnings. Errors: those of LoadClipArgument() and TakePoses::LoadAll(); kInvalidArgument (no
+  // frames).
   [[nodiscard]] static Result<std::vector<PlaySource>> Load(const std::string& file);
 
-  // Of the frames: seconds, increasing.
+  // Frame times in seconds, increasing.
   [[nodiscard]] std::span<const double> times() const;
-  // When the first frame is due: seconds after that of the first subject.
+  // Time of the first frame, in seconds after the first frame of the session.
   [[nodiscard]] double start() const;
-  // Who was captured, as far as the recording says; else the file's name.
+  // The recorded name of the subject, or the name of the file without extension.
   [[nodiscard]] const std::string& subject() const { return subject_; }
-  // `metres_per_unit` counts on top of what a take says of its unit.
+  // The skeleton offer. `metres_per_unit` multiplies the unit of a take.
   [[nodiscard]] protocol::SkeletonOffer Offer(const std::string& subject,
                                               float metres_per_unit) const;
   void Fill(int frame, protocol::PoseFrame* pose) const;

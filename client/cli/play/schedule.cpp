@@ -7,7 +7,7 @@
 namespace furrow::cli {
 namespace {
 
-constexpr double kFrameOfAStill = 1.0 / 30.0;  // seconds that a recording of one frame takes
+constexpr double kSingleFrameSeconds = 1.0 / 30.0;  // length of a recording with one frame
 
 }  // namespace
 
@@ -18,8 +18,8 @@ Schedule::Schedule(std::span<const double> times, double rate) : times_(times), 
     return;
   }
   count_ = static_cast<std::int64_t>(times_.size());
-  round_seconds_ =
-      duration() + (count_ > 1 ? duration() / static_cast<double>(count_ - 1) : kFrameOfAStill);
+  round_seconds_ = duration() + (count_ > 1 ? duration() / static_cast<double>(count_ - 1)
+                                            : kSingleFrameSeconds);
 }
 
 double Schedule::SecondsInRound(std::int64_t pose) const {
@@ -30,7 +30,7 @@ double Schedule::SecondsInRound(std::int64_t pose) const {
 int Schedule::Frame(std::int64_t pose) const {
   const std::int64_t in_round = pose % count_;
   if (rate_ <= 0.0) return static_cast<int>(in_round);
-  // A hair late, so that a frame's own time is not missed by rounding.
+  // The offset keeps rounding from missing a frame at its own time.
   const double time = times_.front() + SecondsInRound(in_round) + 1e-9;
   const auto after = std::upper_bound(times_.begin(), times_.end(), time);
   return static_cast<int>(after - times_.begin()) - 1;

@@ -6,18 +6,18 @@
 
 namespace furrow::cli {
 
-// Which frame of a recording is sent as the i-th pose, and when. Poses count on beyond the end:
-// the recording begins again, a frame's time after its last.
+// The frame and time of the i-th pose of a recording that repeats. A new round starts one frame
+// interval after the last frame; pose numbers continue.
 class Schedule {
  public:
-  // `rate`: poses a second of recording, each the newest frame at its time; 0: the frames as they
-  // are. `times`: of the frames, seconds, increasing; at least one, and they outlive the schedule.
+  // `rate`: poses per second of recording, each with the newest frame at its time; 0: every frame.
+  // `times`: frame times in seconds, increasing, at least one; they must outlive the schedule.
   Schedule(std::span<const double> times, double rate);
 
-  // Poses of one round.
+  // Number of poses per round.
   [[nodiscard]] std::int64_t count() const { return count_; }
   [[nodiscard]] int Frame(std::int64_t pose) const;
-  // Of the recording's own time, since its start.
+  // Time of a pose in seconds since the start of the recording, over all rounds.
   [[nodiscard]] double Seconds(std::int64_t pose) const;
 
  private:

@@ -10,10 +10,10 @@
 #include <thread>
 #include <utility>
 
-#include "client/cli/endpoint.h"
-#include "client/cli/exit_code.h"
-#include "client/cli/interrupt.h"
-#include "client/cli/progress.h"
+#include "client/cli/common/endpoint.h"
+#include "client/cli/common/exit_code.h"
+#include "client/cli/common/interrupt.h"
+#include "client/cli/common/progress.h"
 #include "report/words.h"
 
 namespace furrow::cli {
@@ -30,7 +30,7 @@ SessionPlayer::SessionPlayer(client::Publisher& publisher, std::vector<Track> tr
       tracks_(std::move(tracks)),
       schedule_(std::move(schedule)),
       options_(options),
-      spacing_(tracks_.size()) {}
+      pacing_(tracks_.size()) {}
 
 int SessionPlayer::Run() {
   Play();
@@ -53,17 +53,17 @@ void SessionPlayer::Play() {
       continue;
     }
     track.source->Fill(next->frame, &pose);
-    spacing_[next->track].Sent(due, SteadyMicroseconds());
+    pacing_[next->track].Sent(due, SteadyMicroseconds());
     Note(publisher_.Send(track.stream, pose, capture_start + std::llround(next->seconds * 1e6),
                          options_.encoding));
     progress.Set(sent++ % schedule_.count() + 1);
   }
 }
 
-// Reads answers meanwhile: a daemon that was restarted asks for the skeletons again. False when
-// there is no use in going on.
+// Reads answers while waiting, because a restarted daemon asks for the skeletons again. Returns
+// false if the connection is closed or an interrupt arrived.
 bool SessionPlayer::WaitUntil(std::int64_t due_us) {
-  constexpr std::int64_t kLongestWait = 100'000;  // until the next look at interrupts
+  constexpr std::int64_t kLongestWait = 100'000;  // microseconds between checks for interrupts
   Note(publisher_.Poll(SteadyMicroseconds(), milliseconds(0)));
   for (;;) {
     if (closed_ || Interrupted()) return false;
@@ -73,7 +73,7 @@ bool SessionPlayer::WaitUntil(std::int64_t due_us) {
     const auto whole = std::chrono::duration_cast<milliseconds>(wait);
     const IoStatus status = whole.count() > 0 ? publisher_.Poll(now, whole) : IoStatus::kTimeout;
     Note(status);
-    // A refusal comes at once, and a rest of less than a millisecond cannot be polled.
+    // A refusal returns at once, and Poll() cannot wait for less than a millisecond.
     if (whole.count() == 0 || status == IoStatus::kNoConnection) std::this_thread::sleep_for(wait);
   }
 }
@@ -89,24 +89,24 @@ int SessionPlayer::Report() const {
     return kNoConnection;
   }
   int exit_code = kDone;
-  Spacing spacing;
+  PacingError pacing;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    spacing.Add(spacing_[i]);
+    pacing.Add(pacing_[i]);
     const std::string& why = publisher_.rejection(tracks_[i].stream);
     if (why.empty()) continue;
-    std::fprintf(stderr, "furrow: the daemon takes no more poses of '%s': %s\n",
+    std::fprintf(stderr, "furrow: the daemon rejects further poses of '%s': %s\n",
                  tracks_[i].source->subject().c_str(), why.c_str());
     exit_code = kFailed;
   }
   if (refused_ > 0) {
-    std::fprintf(stderr, "furrow: nobody listened for %" PRId64 " of %s\n",
-                 std::min(refused_, spacing.count()), Counted(spacing.count(), "pose").c_str());
+    std::fprintf(stderr, "furrow: the daemon's port was closed for %" PRId64 " of %s\n",
+                 std::min(refused_, pacing.count()), Counted(pacing.count(), "pose").c_str());
     return kNoConnection;
   }
-  std::string poses = Counted(spacing.count(), "pose");
+  std::string poses = Counted(pacing.count(), "pose");
   if (tracks_.size() > 1) poses += " of " + std::to_string(tracks_.size()) + " subjects";
-  std::fprintf(stderr, "furrow: %s; spacing off by %.3f ms on average, %.3f ms at most\n",
-               poses.c_str(), spacing.mean_ms(), spacing.largest_ms());
+  std::fprintf(stderr, "furrow: %s; pacing error %.3f ms on average, %.3f ms at most\n",
+               poses.c_str(), pacing.mean_ms(), pacing.largest_ms());
   return exit_code;
 }
 

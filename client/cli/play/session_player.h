@@ -4,15 +4,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "client/cli/play/pacing_error.h"
 #include "client/cli/play/play_source.h"
 #include "client/cli/play/session_schedule.h"
-#include "client/cli/play/spacing.h"
 #include "client/cpp/publisher.h"
 
 namespace furrow::cli {
 
-// Sends what the subjects of a session did, each pose at its time, over streams that a daemon has
-// accepted.
+// Sends the poses of a session in real time, over streams that the daemon has accepted.
 class SessionPlayer {
  public:
   struct Track {
@@ -24,12 +23,12 @@ class SessionPlayer {
     bool loop = false;
     protocol::PoseEncoding encoding;
   };
-  // `tracks` are those of the schedule, in its order.
+  // `tracks`: the tracks of the schedule, in the same order.
   SessionPlayer(client::Publisher& publisher, std::vector<Track> tracks, SessionSchedule schedule,
                 const Options& options);
 
-  // To the end, or an interrupt, or what makes going on useless. Prints how it went; returns the
-  // exit code. A subject that the daemon takes no more poses of does not stop the others.
+  // Plays to the end, an interrupt or a closed connection. Prints a summary and returns the exit
+  // code. A subject that the daemon rejects does not stop the others.
   [[nodiscard]] int Run();
 
  private:
@@ -42,8 +41,8 @@ class SessionPlayer {
   std::vector<Track> tracks_;
   SessionSchedule schedule_;
   Options options_;
-  std::vector<Spacing> spacing_;  // of each track
-  std::int64_t refused_ = 0;      // over UDP: answers that nobody listens at the port
+  std::vector<PacingError> pacing_;  // per track
+  std::int64_t refused_ = 0;         // UDP: number of reports that the port is closed
   bool closed_ = false;
 };
 

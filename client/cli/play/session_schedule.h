@@ -12,45 +12,47 @@
 
 namespace furrow::cli {
 
-// What is sent next, out of the recordings of one or several subjects that were captured together.
-// When all have ended they begin again together.
+// The order of the poses of one or more subjects that were captured together. When all recordings
+// have ended, all start again together.
 class SessionSchedule {
  public:
   struct Track {
-    std::span<const double> times;  // of its frames, seconds, increasing; outlive the schedule
-    double start = 0.0;             // of its first frame in the session, seconds, >= 0
+    std::span<const double> times;  // frame times, seconds, increasing; must outlive the schedule
+    double start = 0.0;             // session time of the first frame, seconds, >= 0
   };
   struct Due {
     std::size_t track = 0;
     int frame = 0;         // of the track
-    double seconds = 0.0;  // of the session since what comes first, >= 0; goes on in later rounds
+    double seconds = 0.0;  // since the first pose, over all rounds
     std::int64_t round = 0;
   };
 
-  // `rate`: as Schedule's. `from`: seconds of the session to leave out. At least one track.
+  // `rate`: as for Schedule. `from`: seconds of the session to skip. Precondition: at least one
+  // track.
   SessionSchedule(std::span<const Track> tracks, double rate, double from);
 
-  // Poses of one round; 0: the session ends before `from`.
+  // Number of poses per round; 0: the session ends before `from`.
   [[nodiscard]] std::int64_t count() const { return count_; }
-  // Seconds from the session's start to its last frame, whatever `from`.
+  // Seconds from the start of the session to its last frame, regardless of `from`.
   [[nodiscard]] double duration() const { return duration_; }
-  // The next one, ties by track; none where every track was dropped or ends before `from`.
+  // Returns the next pose; equal times are ordered by track. Returns nothing if all tracks were
+  // dropped or end before `from`.
   [[nodiscard]] std::optional<Due> Next();
-  // Leaves a track out from now on.
+  // Skips a track from now on.
   void Drop(std::size_t track) { tracks_[track].dropped = true; }
 
  private:
   struct State {
-    std::optional<Schedule> schedule;  // none: ends before `from`
-    int first = 0;                     // frame
-    double start = 0.0;                // in the round
+    std::optional<Schedule> schedule;  // none: the track ends before `from`
+    int first = 0;                     // first frame to send
+    double start = 0.0;                // within a round, seconds
     std::int64_t next = 0;
     bool dropped = false;
   };
   struct Waiting {
     double seconds = 0.0;
     std::size_t track = 0;
-    friend bool operator<(const Waiting& a, const Waiting& b) {  // the earliest on top
+    friend bool operator<(const Waiting& a, const Waiting& b) {  // the earliest is on top
       return a.seconds != b.seconds ? a.seconds > b.seconds : a.track > b.track;
     }
   };

@@ -21,7 +21,7 @@ CLI::Validator SettingValidator(std::string prefix) {
           ""};
 }
 
-// An option that sets one setting; its help and what it may be come from the setting itself.
+// Adds an option for one setting. Its help, values and default come from the setting's entry.
 void AddShorthand(CLI::App& command, const std::string& option, const std::string& setting,
                   PictureOptions* options) {
   const render::SettingInfo& info = InfoOf(setting);
@@ -31,12 +31,12 @@ void AddShorthand(CLI::App& command, const std::string& option, const std::strin
           [options, setting](const std::string& value) {
             options->shorthands.push_back(setting + "=" + value);
           },
-          std::string(info.help) + ": " + info.allowed + " (default " + info.default_value + ")")
+          std::string(info.help) + ": " + info.allowed + " (default: " + info.default_value + ")")
       ->check(SettingValidator(setting + "="))
       ->type_name("");
 }
 
-// Pictures that are kept may take their time on any device.
+// Pictures in files are worth more samples than live pictures, even on slow devices.
 render::Settings Defaults() {
   render::Settings settings;
   settings.anti_aliasing.samples = 4;
@@ -55,11 +55,14 @@ void AddPictureOptions(CLI::App& command, PictureOptions* options) {
   AddShorthand(command, "--lights", "lights.preset", options);
   AddShorthand(command, "--wrinkles", "wrinkles", options);
   AddShorthand(command, "--normal-blend", "normal_blend", options);
-  command.add_option("--settings", options->files,
-                     "TOML files of settings, as --print-settings writes them");
+  command.add_option(
+      "--settings", options->files,
+      "TOML files with settings, as --print-settings writes them (repeatable; default: none)");
   command
-      .add_option("--set", options->set,
-                  "NAME=VALUE, any setting: subsurface.method=burley; see --print-settings")
+      .add_option(
+          "--set", options->set,
+          "Any setting as NAME=VALUE, for example subsurface.method=burley; --print-settings lists "
+          "all (repeatable; default: none)")
       ->check(SettingValidator(""));
   command.add_flag_callback(
       "--print-settings",
@@ -67,7 +70,7 @@ void AddPictureOptions(CLI::App& command, PictureOptions* options) {
         std::fputs(render::SettingsToToml(Defaults()).c_str(), stdout);
         throw CLI::Success();
       },
-      "Print all settings as TOML, with their ranges and units, and end");
+      "Print all settings as TOML, with ranges and units, and exit");
 }
 
 Result<render::Settings> SettingsOf(const PictureOptions& options) {

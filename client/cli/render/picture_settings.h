@@ -10,21 +10,20 @@
 
 namespace furrow::cli {
 
-// What a command line says of the appearance: later ones win, in the order file, names, switches.
+// The options that set the appearance, in order of increasing priority.
 struct PictureOptions {
   std::vector<std::string> files;       // --settings FILE.toml
   std::vector<std::string> set;         // --set NAME=VALUE
   std::vector<std::string> shorthands;  // NAME=VALUE of --view, --shading, --lights, ...
 };
 
-// What render::AllSettings() says of one. Precondition: it has the name.
+// The entry of a setting in render::AllSettings(). Precondition: the setting exists.
 [[nodiscard]] const render::SettingInfo& InfoOf(const std::string& name);
 
-// Adds --settings, --set, --print-settings (prints the defaults and ends) and short names for the
-// settings most used.
+// Adds --settings, --set, --print-settings and options for the most used settings.
 void AddPictureOptions(CLI::App& command, PictureOptions* options);
 
-// The settings that the options ask for. Errors: of render::LoadSettings() and SetSetting().
+// The resulting settings. Errors: those of render::LoadSettings() and SetSetting().
 [[nodiscard]] Result<render::Settings> SettingsOf(const PictureOptions& options);
 
 }  // namespace furrow::cli

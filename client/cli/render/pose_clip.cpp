@@ -33,7 +33,8 @@ Result<Term> ParseTerm(std::string_view text) {
       term.weight <= kMaxWeight) {
     return term;
   }
-  return Status(StatusCode::kParse, "'" + std::string(text) + "' is not NAME=WEIGHT, -4 to 4");
+  return Status(StatusCode::kParse, "'" + std::string(text) +
+                                        "' is not NAME or NAME=WEIGHT with a weight from -4 to 4");
 }
 
 const wrinkle::ReferencePose* FindPose(const wrinkle::Rig& rig, std::string_view name) {
@@ -48,7 +49,7 @@ void AddOnce(const wrinkle::ReferencePose* pose, float weight, std::vector<Weigh
   if (pose != nullptr && !there) parts->push_back({pose, weight});
 }
 
-// Every reference pose that feeds wrinkle map `map` in some region.
+// All reference poses that feed wrinkle map `map` in any region.
 std::vector<WeightedPose> PosesOfMap(const wrinkle::Rig& rig, std::string_view map, float weight) {
   std::vector<WeightedPose> parts;
   for (const wrinkle::Region& region : rig.regions) {
@@ -83,7 +84,7 @@ Status Unknown(const wrinkle::Rig& rig, std::string_view name) {
   for (const wrinkle::ReferencePose& pose : rig.reference_poses) known += ", " + pose.name;
   return {StatusCode::kNotFound,
           "the rig has no reference pose '" + std::string(name) +
-              "' and no wrinkle map of that name that poses feed; there is " + known};
+              "' and no wrinkle map of this name that poses feed; valid names: " + known};
 }
 
 Result<std::vector<WeightedPose>> ParsePoses(const wrinkle::Rig& rig, std::string_view text) {

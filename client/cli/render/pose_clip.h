@@ -9,11 +9,12 @@
 
 namespace furrow::cli {
 
-// A clip of one frame on the character's own skeleton: its rig's reference poses, added up.
+// Returns a clip with one frame on the character's skeleton: a weighted sum of the rig's reference
+// poses.
 //
-// `text`: "NAME[=WEIGHT],..." with weights in [-4, 4], 1 where none is given; or "neutral". A NAME
-// is a reference pose; one that comes in two sides may leave out "_l" and "_r"; or a wrinkle map,
-// which stands for every pose that feeds it. Errors: kNotFound (lists what there is), kParse.
+// `text` is "neutral" or "NAME[=WEIGHT],..." with weights in [-4, 4] (default 1). NAME is a
+// reference pose; a pair of poses with the suffixes "_l" and "_r", without the suffix; or a wrinkle
+// map, which stands for all poses that feed it. Errors: kNotFound (lists the valid names), kParse.
 [[nodiscard]] Result<motion::Clip> PoseClip(const character::Character& character,
                                             const std::string& text);
 

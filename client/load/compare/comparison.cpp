@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "client/load/compare/rate_search.h"
-#include "client/load/verdict.h"
+#include "client/load/run/verdict.h"
 #include "report/statistics.h"
 #include "report/table.h"
 
@@ -16,9 +16,9 @@ namespace {
 using furrow::report::Fixed;
 using furrow::report::Median;
 
-constexpr double kSearchShare = 0.6;  // of the time, where rounds follow
+constexpr double kSearchShare = 0.6;  // of the time limit, if rounds follow the searches
 
-// What one contestant measured: one value a round, one a search.
+// The measurements of one target: one value per round or search.
 struct Series {
   using Values = std::vector<std::optional<double>>;
 
@@ -27,37 +27,39 @@ struct Series {
   Values p90_us;
   Values cpu_us;
   Values highest;
-  // The lowest rates that were given up: while this program fell behind, and while it did not.
+  // The lowest failed rates: with a load generator that fell behind, and with one that did not.
   std::optional<double> generator_behind_at;
   std::optional<double> own_limit_at;
 
-  void GiveUp(double rate, bool generator_behind) {
+  void AddFailedRate(double rate, bool generator_behind) {
     std::optional<double>& lowest = generator_behind ? generator_behind_at : own_limit_at;
     lowest = std::min(lowest.value_or(rate), rate);
   }
-  // Nothing where the target itself gave up as early.
-  [[nodiscard]] std::optional<double> LimitOfGenerator() const {
+  // The rate at which the generator became the limit; nothing if the target failed at a rate as
+  // low.
+  [[nodiscard]] std::optional<double> GeneratorLimit() const {
     if (own_limit_at && generator_behind_at && *own_limit_at <= *generator_behind_at) return {};
     return generator_behind_at;
   }
 };
 
-// Who is the i-th of `count` in turn `turn`: there and back, then from the next one on. Of three,
-// six turns are all orders.
+// The index of the target that runs i-th in turn `turn` of `count` targets. Every second turn
+// reverses the order, and every pair of turns starts with the next target. For three targets, six
+// turns cover all orders.
 std::size_t InTurn(std::size_t i, std::size_t turn, std::size_t count) {
   const std::size_t place = turn % 2 == 0 ? i : count - 1 - i;
   return (place + turn / 2) % count;
 }
 
-// The runs and searches of all contestants, in turn.
-class Contest {
+// Runs the rounds and searches of all targets alternately.
+class Comparer {
  public:
-  Contest(const RunTarget& run, const Contestants& contestants, const ComparisonOptions& options,
-          const ComparisonHooks& hooks)
+  Comparer(const RunTarget& run, const ComparisonTargets& targets, const ComparisonOptions& options,
+           const ComparisonHooks& hooks)
       : run_(run), options_(options), hooks_(hooks), begin_(hooks.seconds()) {
-    series_.push_back({.target = &contestants.server});
-    if (contestants.raw) series_.push_back({.target = &*contestants.raw});
-    if (contestants.control) series_.push_back({.target = &*contestants.control});
+    series_.push_back({.target = &targets.server});
+    if (targets.raw) series_.push_back({.target = &*targets.raw});
+    if (targets.control) series_.push_back({.target = &*targets.control});
   }
 
   void Searches();
@@ -65,10 +67,10 @@ class Contest {
   [[nodiscard]] Comparison Report();
 
  private:
-  // Whether another run may begin; `share` of the time limit is for what it belongs to.
+  // True if another run may start within `share` of the time limit.
   [[nodiscard]] bool MayGoOn(double share);
-  void Say(const std::string& what) const;
-  // Nothing where it was interrupted or failed twice.
+  void ReportProgress(const std::string& what) const;
+  // Returns nothing if the run was interrupted or failed twice.
   [[nodiscard]] std::optional<RunResult> Attempt(const Target& target, const RunOptions& options);
   void Search(double share);
   void Probe(Series& series, RateSearch* search);
@@ -84,14 +86,14 @@ class Contest {
   Comparison comparison_;
 };
 
-bool Contest::MayGoOn(double share) {
-  if (!hooks_.go_on() || !comparison_.failure.ok()) return false;
+bool Comparer::MayGoOn(double share) {
+  if (!hooks_.keep_going() || !comparison_.failure.ok()) return false;
   const bool in_time = hooks_.seconds() - begin_ < share * options_.time_limit_seconds;
   comparison_.out_of_time = comparison_.out_of_time || !in_time;
   return in_time;
 }
 
-void Contest::Say(const std::string& what) const {
+void Comparer::ReportProgress(const std::string& what) const {
   const double left = options_.time_limit_seconds - (hooks_.seconds() - begin_);
   if (!std::isfinite(left)) return hooks_.progress(what);
   const auto seconds = static_cast<int>(std::max(left, 0.0));
@@ -100,9 +102,9 @@ void Contest::Say(const std::string& what) const {
                   (rest.size() < 2 ? "0" : "") + rest + " left");
 }
 
-std::optional<RunResult> Contest::Attempt(const Target& target, const RunOptions& options) {
+std::optional<RunResult> Comparer::Attempt(const Target& target, const RunOptions& options) {
   auto result = run_(target, options);
-  if (!result.ok() && hooks_.go_on()) result = run_(target, options);
+  if (!result.ok() && hooks_.keep_going()) result = run_(target, options);
   if (!result.ok()) {
     comparison_.failure = result.status();
     return std::nullopt;
@@ -111,9 +113,9 @@ std::optional<RunResult> Contest::Attempt(const Target& target, const RunOptions
   return *std::move(result);
 }
 
-void Contest::Rounds() {
+void Comparer::Rounds() {
   for (int round = 0; round < options_.rounds && MayGoOn(1.0); ++round) {
-    Say("round " + std::to_string(round + 1) + " of " + std::to_string(options_.rounds));
+    ReportProgress("round " + std::to_string(round + 1) + " of " + std::to_string(options_.rounds));
     const std::size_t turn = turn_++;
     for (std::size_t i = 0; i < series_.size() && MayGoOn(1.0); ++i) {
       Series& series = series_[InTurn(i, turn, series_.size())];
@@ -131,12 +133,12 @@ void Contest::Rounds() {
   }
 }
 
-void Contest::Searches() {
+void Comparer::Searches() {
   const double share = series_.size() > 1 && options_.rounds > 0 ? kSearchShare : 1.0;
   for (int search = 0; search < options_.searches && MayGoOn(share); ++search) Search(share);
 }
 
-void Contest::Search(double share) {
+void Comparer::Search(double share) {
   constexpr int kTries = 2;
   std::vector<RateSearch> searches(
       series_.size(), RateSearch(std::min(options_.search_start, options_.search_limit),
@@ -152,9 +154,9 @@ void Contest::Search(double share) {
   EndSearch(searches, std::ranges::all_of(searches, done));
 }
 
-// One that was cut short counts where there is no other: what the server held then it held. But
-// only what was searched to its end is compared.
-void Contest::EndSearch(const std::vector<RateSearch>& searches, bool done) {
+// An unfinished search counts if it is the only one, because the server did sustain its rate. Only
+// finished searches are compared with the echoes.
+void Comparer::EndSearch(const std::vector<RateSearch>& searches, bool done) {
   if (!done && !(comparison_.out_of_time && series_[0].highest.empty())) return;
   comparison_.unfinished = !searches[0].done();
   for (std::size_t i = 0; i < series_.size(); ++i) {
@@ -165,20 +167,20 @@ void Contest::EndSearch(const std::vector<RateSearch>& searches, bool done) {
   comparison_.at_limit = comparison_.at_limit || searches[0].best() >= options_.search_limit;
 }
 
-void Contest::Probe(Series& series, RateSearch* search) {
+void Comparer::Probe(Series& series, RateSearch* search) {
   RunOptions run = options_.run;
   run.plan.rate = search->rate() / run.plan.subjects;
   run.plan.seconds = options_.probe_seconds;
   run.drain_seconds = 0.3;
-  Say(std::string(series.target->echo ? "raw echo" : "daemon") + " at " + Fixed(search->rate(), 0) +
-      " poses a second");
+  ReportProgress(std::string(series.target->echo ? "raw echo" : "daemon") + " at " +
+                 Fixed(search->rate(), 0) + " poses per second");
   const auto result = Attempt(*series.target, run);
   if (!result) return;
-  const bool held = Held(*result, options_.p99_limit_us);
+  const bool held = IsSustained(*result, options_.p99_limit_us);
   const bool behind = !held && GeneratorFellBehind(*result, options_.p99_limit_us);
   const double rate = search->rate();
-  search->Tried(held);
-  if (!held && search->rate() != rate) series.GiveUp(rate, behind);
+  search->Report(held);
+  if (!held && search->rate() != rate) series.AddFailedRate(rate, behind);
   if (series.target->echo) return;
   const Tally& tally = result->tally;
   comparison_.steps.push_back(
@@ -191,8 +193,8 @@ void Contest::Probe(Series& series, RateSearch* search) {
        .generator_behind = behind});
 }
 
-void Contest::AddFigure(const std::string& name, const std::string& unit,
-                        Series::Values Series::*values) {
+void Comparer::AddFigure(const std::string& name, const std::string& unit,
+                         Series::Values Series::*values) {
   if (series_.size() < 3) return;
   const std::vector<double> server = Measured(series_[0].*values);
   if (server.empty()) return;
@@ -203,18 +205,18 @@ void Contest::AddFigure(const std::string& name, const std::string& unit,
     return;
   }
   comparison_.figures.push_back({name, unit, Median(server), Median(Measured(series_[1].*values)),
-                                 SpreadOf(ratios), SpreadOf(control)});
+                                 QuartilesOf(ratios), QuartilesOf(control)});
 }
 
-Comparison Contest::Report() {
+Comparison Comparer::Report() {
   const Series& server = series_[0];
-  comparison_.interrupted = !hooks_.go_on();
+  comparison_.interrupted = !hooks_.keep_going();
   comparison_.rounds = static_cast<int>(server.p50_us.size());
   comparison_.highest_rates = Measured(server.highest);
   comparison_.no_cpu = !server.cpu_us.empty() && Measured(server.cpu_us).empty();
   comparison_.not_loopback = series_.size() > 1 && !server.target->loopback;
-  comparison_.generator_behind_at = server.LimitOfGenerator();
-  if (series_.size() > 1) comparison_.raw_generator_behind_at = series_[1].LimitOfGenerator();
+  comparison_.generator_behind_at = server.GeneratorLimit();
+  if (series_.size() > 1) comparison_.raw_generator_behind_at = series_[1].GeneratorLimit();
   AddFigure("p50", "us", &Series::p50_us);
   AddFigure("p90", "us", &Series::p90_us);
   AddFigure("CPU a pose", "us", &Series::cpu_us);
@@ -224,12 +226,12 @@ Comparison Contest::Report() {
 
 }  // namespace
 
-Comparison Compare(const RunTarget& run, const Contestants& contestants,
+Comparison Compare(const RunTarget& run, const ComparisonTargets& targets,
                    const ComparisonOptions& options, const ComparisonHooks& hooks) {
-  Contest contest(run, contestants, options, hooks);
-  if (options.find_max) contest.Searches();
-  if (contestants.raw) contest.Rounds();
-  return contest.Report();
+  Comparer comparer(run, targets, options, hooks);
+  if (options.find_max) comparer.Searches();
+  if (targets.raw) comparer.Rounds();
+  return comparer.Report();
 }
 
 }  // namespace furrow::load

@@ -8,90 +8,99 @@
 #include <vector>
 
 #include "base/status.h"
-#include "client/load/measure/spread.h"
-#include "client/load/report.h"
-#include "client/load/run.h"
+#include "client/load/measure/quartiles.h"
+#include "client/load/run/run.h"
 
 namespace furrow::load {
 
-// One figure of a server beside a raw echo's. Ratios are of runs that followed each other, so that
-// a machine that slows down slows both; the control is a second raw echo against the first: where
-// its spread is wide, the ratio says little.
+// The outcome of one run of a rate search.
+struct RateStep {
+  double rate = 0.0;  // poses per second
+  double p50_us = 0.0;
+  double p99_us = 0.0;
+  double lost_share = 0.0;
+  bool held = false;
+  bool generator_behind = false;  // not held, and the load generator itself was too slow
+};
+
+// One figure of a server and of a raw echo. Ratios compare runs of the same round, so that a
+// machine that slows down affects both. The control is the ratio of a second raw echo to the first;
+// if its quartiles are far apart, the machine is too noisy for the ratio to mean much.
 struct Figure {
   std::string name;
   std::string unit;
-  double server = 0.0;  // medians
-  double raw = 0.0;
-  Spread ratio;
-  Spread control;
+  double server = 0.0;  // median
+  double raw = 0.0;     // median
+  Quartiles ratio;
+  Quartiles control;
 };
 
-// One that was measured of the server, but not to its end of both echoes.
-struct LoneFigure {
+// A figure that lacks the measurements of an echo.
+struct UnpairedFigure {
   std::string name;
   std::string unit;
-  double server = 0.0;  // a median
+  double server = 0.0;  // median
 };
 
-// A search ends where the lowest rate that was not held is at most so many times the highest that
-// was: of no ratio of highest rates more is known.
+// Ratio of the lowest failed rate to the highest sustained rate at which a search ends. Ratios of
+// highest rates are no more precise than this.
 inline constexpr double kSearchPrecision = 1.05;
 
 struct ComparisonOptions {
-  RunOptions run;   // at which latency and processor time are compared
-  int rounds = 11;  // runs of each
+  RunOptions run;   // of the rounds, which compare latency and processor time
+  int rounds = 11;  // runs of each target
   bool find_max = false;
-  int searches = 3;              // of each, for the highest rate
-  double probe_seconds = 1.0;    // of one run of a search
-  double search_start = 4000.0;  // poses a second; the limit where that is lower
-  double search_limit = 400000.0;
-  double p99_limit_us = 16667.0;  // for Held()
-  // No run begins after so long; where searches and rounds are both wanted, no search's run after
-  // three fifths of it. What was measured by then is reported.
+  int searches = 3;                // of each target, for the highest rate
+  double probe_seconds = 1.0;      // length of one run of a search
+  double search_start = 4000.0;    // poses per second, limited to `search_limit`
+  double search_limit = 400000.0;  // poses per second
+  double p99_limit_us = 16667.0;   // for IsSustained()
+  // No run starts after this time. If rounds follow the searches, no run of a search starts after
+  // 60% of it. The report contains what was measured until then.
   double time_limit_seconds = std::numeric_limits<double>::infinity();
 };
 
-// What to measure: the server alone, or with the two echoes.
-struct Contestants {
+// The servers to measure: one alone, or with two raw echoes.
+struct ComparisonTargets {
   Target server;
   std::optional<Target> raw;
   std::optional<Target> control;
 };
 
-// What was measured, also where it ended before its time.
+// All measurements, even if they ended early.
 struct Comparison {
-  std::vector<Figure> figures;  // only those that were measured of all three
-  std::vector<LoneFigure> not_compared;
-  int rounds = 0;                     // runs of the server that were compared
-  std::vector<double> highest_rates;  // of the server: one a search; poses a second
+  std::vector<Figure> figures;  // measured on all three targets
+  std::vector<UnpairedFigure> not_compared;
+  int rounds = 0;                     // rounds of the server
+  std::vector<double> highest_rates;  // of the server, poses per second; one per search
   std::vector<RateStep> steps;        // of the server's searches
-  // The lowest rate that was given up while this program itself fell behind, where it is below all
-  // that were given up otherwise: it may be this program that limits the highest rate.
+  // The lowest failed rate with a load generator that fell behind, if it is below all other failed
+  // rates. The generator may then be what limits the highest rate.
   std::optional<double> generator_behind_at;
   std::optional<double> raw_generator_behind_at;
-  bool at_limit = false;      // a search ended at the limit: the server may take more
-  bool unfinished = false;    // the server's only search ran out of time: it may take more
-  bool out_of_time = false;   // not all of it was done within the time limit
-  bool no_cpu = false;        // rounds were run, but the server's processor time is not known
-  bool not_loopback = false;  // the server was compared with echoes that are nearer
+  bool at_limit = false;      // a search reached its limit; the server may handle more
+  bool unfinished = false;    // the only search of the server ran out of time
+  bool out_of_time = false;   // the time limit ended the measurement
+  bool no_cpu = false;        // rounds ran, but the server's processor time is unknown
+  bool not_loopback = false;  // the server is farther away than the echoes
   bool interrupted = false;
-  Status failure;  // what ended it; ok: nothing did
+  Status failure;  // the error that ended the measurement, or ok
 };
 
-// Runs one target once: in earnest Run() of a performance.
+// Runs one target once. Programs use Run() with a workload; tests use a fake.
 using RunTarget = std::function<Result<RunResult>(const Target& target, const RunOptions& options)>;
 
-// What the caller hears while it lasts; `what` says what is tried now, and what time is left.
+// Callbacks during a comparison. `what` names the current run and the time left.
 struct ComparisonHooks {
-  std::function<bool()> go_on;
+  std::function<bool()> keep_going;
   std::function<void(const std::string& what)> progress;
-  std::function<double()> seconds;  // of a clock that does not go back
+  std::function<double()> seconds;  // monotonic clock
 };
 
-// Runs all of it, the contestants in turn: in all orders, so that each follows each other equally
-// often and none is always measured behind the same. A run that cannot begin is tried once more;
-// what fails again, or a server that goes away in a round, ends it.
-[[nodiscard]] Comparison Compare(const RunTarget& run, const Contestants& contestants,
+// Runs all searches and rounds. The targets alternate in all orders, so that each follows each
+// other target equally often. A run that cannot start is tried once more. A second failure, or a
+// server that goes away during a round, ends the comparison.
+[[nodiscard]] Comparison Compare(const RunTarget& run, const ComparisonTargets& targets,
                                  const ComparisonOptions& options, const ComparisonHooks& hooks);
 
 }  // namespace furrow::load

@@ -6,9 +6,9 @@
 
 namespace furrow::load {
 
-void RateSearch::Tried(bool held) {
+void RateSearch::Report(bool sustained) {
   if (done_) return;
-  if (held) {
+  if (sustained) {
     best_ = rate_;
     failures_ = 0;
     Next();
@@ -24,7 +24,7 @@ void RateSearch::Next() {
     done_ = rate_ >= limit_;
     rate_ = std::min(rate_ * 2.0, limit_);
   } else if (best_ == 0.0) {
-    // Not even the start: down by halves, but not for ever.
+    // No rate was sustained yet: halve the rate, but stop below one pose per second.
     rate_ = worst_ / 2.0;
     done_ = rate_ < 1.0;
   } else {

@@ -3,15 +3,15 @@
 
 namespace furrow::load {
 
-// Finds the highest rate that a server holds: doubles until one is not held, then halves the gap
-// (by ratio) until it is at most `precision`. A rate that is not held is tried again, `tries` times
-// in all, since one hiccup of the machine says nothing about the server.
+// Searches the highest rate that a server sustains: doubles the rate until it fails, then bisects
+// the interval on a logarithmic scale until its ratio is at most `precision`. A rate counts as
+// failed after `tries` failures, because a single failure may be a hiccup of the machine.
 //
 //   RateSearch search(1000, 400000, 1.05, 2);
-//   while (!search.done()) search.Tried(Holds(search.rate()));
+//   while (!search.done()) search.Report(IsSustained(search.rate()));
 //   search.best();
 //
-// Pure: no clock, no sockets.
+// No clock and no sockets.
 class RateSearch {
  public:
   // `start` > 0, `limit` >= start, `precision` > 1, `tries` >= 1.
@@ -19,12 +19,13 @@ class RateSearch {
       : rate_(start), limit_(limit), precision_(precision), tries_(tries) {}
 
   [[nodiscard]] bool done() const { return done_; }
-  // What to try next.
+  // The rate to try next.
   [[nodiscard]] double rate() const { return rate_; }
-  // The highest rate that was held; 0 for none.
+  // The highest rate sustained so far; 0 for none.
   [[nodiscard]] double best() const { return best_; }
 
-  void Tried(bool held);
+  // Reports the outcome of a run at rate().
+  void Report(bool sustained);
 
  private:
   void Next();
@@ -33,9 +34,9 @@ class RateSearch {
   double limit_;
   double precision_;
   int tries_;
-  int failures_ = 0;    // at this rate
-  double best_ = 0.0;   // held
-  double worst_ = 0.0;  // lowest not held; 0: none yet
+  int failures_ = 0;    // at rate_
+  double best_ = 0.0;   // highest sustained rate
+  double worst_ = 0.0;  // lowest failed rate; 0: none yet
   bool done_ = false;
 };
 

@@ -10,17 +10,17 @@
 namespace furrow::load {
 namespace {
 
-// Rows beyond it are not settled but counted as unchecked: a server that is all wrong need not be
-// proved so a million times.
-constexpr std::size_t kMaxDisputedValues = std::size_t{8} << 20;
-// And so many wrong ones are looked for in the whole table.
+// Limit of the values kept of mismatches; later mismatches count as unchecked. It bounds memory and
+// time if every message of a server is wrong.
+constexpr std::size_t kMaxMismatchValues = std::size_t{8} << 20;
+// Number of wrong messages that are searched for in the whole table.
 constexpr std::uint64_t kMaxClassified = 10'000;
-// A replay that begins late is exact where it says what the table says to this.
+// A replay that starts late is exact if it agrees with the table within this difference.
 constexpr float kExact = 1e-6f;
 
 }  // namespace
 
-Checker::Checker(const Plan& plan, const Expected* expected, const CheckOptions& options)
+Checker::Checker(const Plan& plan, const ExpectedWeights* expected, const CheckOptions& options)
     : plan_(plan), expected_(expected), options_(options), windows_(kWindows) {
   const auto subjects = static_cast<std::size_t>(plan.num_subjects());
   sent_.resize(subjects);
@@ -33,9 +33,9 @@ Checker::Checker(const Plan& plan, const Expected* expected, const CheckOptions&
   }
 }
 
-void Checker::OnSent(std::uint32_t subject, std::uint32_t pose, bool left) {
+void Checker::OnDue(std::uint32_t subject, std::uint32_t pose, bool sent) {
   ++tally_.offered;
-  if (!left) return;
+  if (!sent) return;
   ++tally_.sent;
   tally_.expected += static_cast<std::uint64_t>(options_.watchers);
   sent_[subject][pose] = true;
@@ -81,18 +81,18 @@ void Checker::Compare(Track& track, std::uint32_t subject, std::uint32_t pose,
   } else if (difference <= options_.tolerance) {
     ++tally_.checked;
     tally_.largest_difference = std::max(tally_.largest_difference, difference);
-  } else if (dispute_values_.size() + values.size() > kMaxDisputedValues) {
+  } else if (mismatch_values_.size() + values.size() > kMaxMismatchValues) {
     ++tally_.unchecked;
     ++tally_.unfollowed;
     track.unfollowed.push_back(pose);
   } else {
-    track.disputes.push_back({pose, dispute_values_.size()});
-    dispute_values_.insert(dispute_values_.end(), values.begin(), values.end());
+    track.mismatches.push_back({pose, mismatch_values_.size()});
+    mismatch_values_.insert(mismatch_values_.end(), values.begin(), values.end());
   }
 }
 
-// `difference`: from the nearest that the solver could have said.
-void Checker::Judge(std::span<const float> values, float difference) {
+// `difference`: distance from the nearest weights that a correct server could have sent.
+void Checker::Classify(std::span<const float> values, float difference) {
   ++tally_.checked;
   if (difference <= options_.tolerance) {
     tally_.largest_difference = std::max(tally_.largest_difference, difference);
@@ -106,45 +106,43 @@ void Checker::Judge(std::span<const float> values, float difference) {
   }
 }
 
-// The replay of one track, from a while before what is disputed.
-class Checker::Settlement {
+// Replays one track up to each mismatch.
+class Checker::MismatchResolver {
  public:
-  Settlement(const Checker& checker, const Performance& performance, const Track& track)
+  MismatchResolver(const Checker& checker, const Workload& workload, const Track& track)
       : checker_(checker),
-        performance_(performance),
+        workload_(workload),
         track_(track),
         phase_(checker.plan_.phase_of(track.subject)),
         replay_(Begin(0)) {}
 
-  // How far these values of a disputed pose are from what is possible, as Replay::Disputed(). To be
-  // asked in the order of the poses.
-  std::optional<float> Judge(const Dispute& dispute, std::span<const float> values) {
-    while (next_ < dispute.pose) {
+  // Distance of the values of a mismatch from the possible weights, as Replay::Mismatched(). Call
+  // it in the order of the poses.
+  std::optional<float> Distance(const Mismatch& mismatch, std::span<const float> values) {
+    while (next_ < mismatch.pose) {
       if (track_.seen[next_]) {
-        Agree(NextGap(dispute.pose));
+        Agree(NextGap(mismatch.pose));
       } else {
         replay_->Missing(next_++);
       }
     }
-    return replay_->Disputed(next_++, values);
+    return replay_->Mismatched(next_++, values);
   }
 
  private:
   [[nodiscard]] Replay Begin(std::uint32_t first) const {
-    return {performance_,
-            checker_.plan_,
-            track_.subject,
-            *checker_.expected_,
-            checker_.options_.tolerance,
-            first};
+    return {
+        workload_, checker_.plan_, track_.subject, *checker_.expected_, checker_.options_.tolerance,
+        first};
   }
   [[nodiscard]] std::uint32_t NextGap(std::uint32_t end) const {
     std::uint32_t pose = next_;
     while (pose < end && track_.seen[pose]) ++pose;
     return pose;
   }
-  // All up to `end` came and were right. Where that is long enough for a filter to forget what was
-  // before, a new replay of the last seconds alone tells as much, if it proves to be exact.
+  // All weights before `end` arrived and were correct. If that span is longer than the memory of
+  // the filter, a new replay of its last seconds replaces the full replay, provided that it proves
+  // exact.
   void Agree(std::uint32_t end) {
     const Plan& plan = checker_.plan_;
     const std::int64_t from_us = plan.CaptureUs(phase_, end) - kFilterMemoryUs;
@@ -152,7 +150,7 @@ class Checker::Settlement {
       std::uint32_t pose = end;
       while (plan.CaptureUs(phase_, pose - 1) >= from_us) --pose;
       Replay late = Begin(pose);
-      float worst = 0.0f;  // of the last fifth
+      float worst = 0.0f;  // in the last fifth of the span
       for (; pose < end; ++pose) {
         const float difference = late.Agreed(pose);
         if (plan.CaptureUs(phase_, pose) > from_us + kFilterMemoryUs / 5 * 4)
@@ -168,7 +166,7 @@ class Checker::Settlement {
   }
 
   const Checker& checker_;
-  const Performance& performance_;
+  const Workload& workload_;
   const Track& track_;
   int phase_;
   std::optional<Replay> replay_;
@@ -176,27 +174,27 @@ class Checker::Settlement {
   bool forgets_ = true;
 };
 
-bool Checker::Settle(const Performance& performance,
-                     const std::function<bool(double share)>& progress) {
+bool Checker::ResolveMismatches(const Workload& workload,
+                                const std::function<bool(double share)>& progress) {
   std::size_t total = 0;
-  for (const Track& track : tracks_) total += track.disputes.size();
+  for (const Track& track : tracks_) total += track.mismatches.size();
   std::size_t done = 0;
   for (Track& track : tracks_) {
-    if (track.disputes.empty()) continue;
-    std::ranges::sort(track.disputes, {}, &Dispute::pose);
-    // What these said is not known any more, so they tell as little as if they had not come.
+    if (track.mismatches.empty()) continue;
+    std::ranges::sort(track.mismatches, {}, &Mismatch::pose);
+    // The values of these messages were not kept, so treat them as missing.
     for (const std::uint32_t pose : track.unfollowed) track.seen[pose] = false;
-    Settlement settlement(*this, performance, track);
-    for (const Dispute& dispute : track.disputes) {
+    MismatchResolver resolver(*this, workload, track);
+    for (const Mismatch& mismatch : track.mismatches) {
       if (!progress(static_cast<double>(done) / static_cast<double>(total))) {
         tally_.unchecked += total - done;
         return false;
       }
       const std::span<const float> values =
-          std::span(dispute_values_)
-              .subspan(dispute.row, performance.binding->weight_names().size());
-      if (const auto difference = settlement.Judge(dispute, values)) {
-        Judge(values, *difference);
+          std::span(mismatch_values_)
+              .subspan(mismatch.row, workload.binding->weight_names().size());
+      if (const auto difference = resolver.Distance(mismatch, values)) {
+        Classify(values, *difference);
       } else {
         ++tally_.unchecked;
       }

@@ -6,102 +6,104 @@
 #include <span>
 #include <vector>
 
-#include "client/load/measure/expected.h"
+#include "client/load/measure/expected_weights.h"
 #include "client/load/measure/histogram.h"
 #include "client/load/schedule/plan.h"
 
 namespace furrow::load {
 
-// What came back of what was sent, as far as it was told when it came.
+// Counts of poses and weights.
 struct Tally {
   std::uint64_t offered = 0;     // poses that were due
-  std::uint64_t sent = 0;        // of them, those that left
-  std::uint64_t expected = 0;    // weights: one a pose sent and watcher of its subject
-  std::uint64_t received = 0;    // of them, each once
-  std::uint64_t late = 0;        // of the received, those beyond the limit
-  std::uint64_t early = 0;       // of the received, those before their pose was due: see below
-  std::uint64_t duplicates = 0;  // came again
-  std::uint64_t reordered = 0;   // came after a newer one of their subject
-  std::uint64_t never_sent = 0;  // of poses that were not sent: a wrong sequence
-  std::uint64_t checked = 0;     // weights compared with the solver's
-  std::uint64_t unchecked = 0;   // received, but the solver cannot know (a long gap, another rig)
-  std::uint64_t unfollowed = 0;  // of the unchecked: differed, but were too many to be replayed
-  // Of the checked, those beyond the tolerance. Of them, those equal to another pose's or
-  // subject's, and those beyond the first 10,000, which are not looked for; the rest equals none.
-  std::uint64_t wrong = 0;
-  std::uint64_t swapped = 0;
-  std::uint64_t unclassified = 0;
-  float largest_difference = 0.0f;  // of the checked that are not wrong
+  std::uint64_t sent = 0;        // offered poses that were sent
+  std::uint64_t expected = 0;    // weights messages: one per sent pose and watcher
+  std::uint64_t received = 0;    // expected messages that arrived, each counted once
+  std::uint64_t late = 0;        // received messages beyond the latency limit
+  std::uint64_t early = 0;       // received messages that arrived before their pose was due
+  std::uint64_t duplicates = 0;  // repeated messages
+  std::uint64_t reordered = 0;   // messages that arrived after a newer one of their subject
+  std::uint64_t never_sent = 0;  // messages with a sequence number that was not sent
+  std::uint64_t checked = 0;     // messages compared with the solver's weights
+  std::uint64_t unchecked = 0;   // received, but not predictable: after a long gap, or another rig
+  std::uint64_t unfollowed = 0;  // unchecked because too many messages differed
+  std::uint64_t wrong = 0;       // checked messages beyond the tolerance
+  std::uint64_t swapped = 0;     // wrong messages that equal those of another pose or subject
+  std::uint64_t unclassified =
+      0;  // wrong messages after the first 10,000, not searched for a match
+  float largest_difference = 0.0f;  // of the checked messages that are not wrong
 
   [[nodiscard]] std::uint64_t lost() const { return expected - received; }
   [[nodiscard]] std::uint64_t falsified() const { return wrong - swapped - unclassified; }
 };
 
 struct CheckOptions {
-  int watchers = 1;          // each watches every subject
-  float tolerance = 1e-4f;   // of a weight
-  std::int64_t late_us = 0;  // beyond it a weight is late
-  double seconds = 10.0;     // of the run, for the windows of time
+  int watchers = 1;          // each receives every subject
+  float tolerance = 1e-4f;   // largest accepted difference of a weight
+  std::int64_t late_us = 0;  // latency limit
+  double seconds = 10.0;     // length of the run, for the time windows
 };
 
-// Judges each weight as it comes; what differs from the table is kept for Settle(), since a server
-// that lost a pose on the way in rightly sends other weights for a while.
+// Checks each weights message as it arrives against a precomputed table. Messages that differ from
+// the table are kept for ResolveMismatches(): a server that lost a pose on the way in correctly
+// sends other weights for a while, because its filter saw another time step.
 //
-// Latency counts from when a pose was due, not from when it left. No pose leaves before it is due,
-// so weights that come `early` say that clocks disagree: the latency counts as 0.
+// Latency counts from the due time of a pose, not from its send time. No pose is sent before it is
+// due, so an `early` message means that clocks disagree; its latency counts as 0.
 class Checker {
  public:
   static constexpr std::size_t kWindows = 50;
 
-  // `expected` null: values are not looked at. All outlive the checker.
-  Checker(const Plan& plan, const Expected* expected, const CheckOptions& options);
+  // `expected` null: do not check values. All arguments must outlive the checker.
+  Checker(const Plan& plan, const ExpectedWeights* expected, const CheckOptions& options);
 
-  // A pose was due; `left`: and went out.
-  void OnSent(std::uint32_t subject, std::uint32_t pose, bool left);
-  // `now_us` since the start of the run. `readable`: the names are those of the solver.
+  // A pose was due. `sent`: it was sent successfully.
+  void OnDue(std::uint32_t subject, std::uint32_t pose, bool sent);
+  // Weights arrived at `now_us` since the start of the run. `readable`: their names equal the
+  // solver's.
   void OnWeights(int watcher, std::uint32_t subject, std::uint32_t sequence,
                  std::span<const float> values, bool readable, std::int64_t now_us);
 
-  // Replays the solver for what differed. Call it once, in the end. `performance` is that of the
-  // expected table. `progress` is told the share done, several times a second, and ends the work by
-  // false: what is left is unchecked then, and false is returned.
-  [[nodiscard]] bool Settle(const Performance& performance,
-                            const std::function<bool(double share)>& progress);
+  // Decides which mismatches are wrong, by replaying the solver. Call it once, at the end, with the
+  // workload of the expected table. `progress` receives the completed share in [0, 1] several times
+  // per second. If it returns false, the remaining mismatches count as unchecked and the function
+  // returns false.
+  [[nodiscard]] bool ResolveMismatches(const Workload& workload,
+                                       const std::function<bool(double share)>& progress);
 
   [[nodiscard]] const Tally& tally() const { return tally_; }
   [[nodiscard]] const Histogram& latency_ns() const { return latency_; }
-  // By when the pose was due: equal parts of the run.
+  // Latency in equal parts of the run, by due time.
   [[nodiscard]] std::span<const Histogram> windows() const { return windows_; }
   [[nodiscard]] bool complete() const { return tally_.received == tally_.expected; }
 
  private:
-  struct Dispute {
+  struct Mismatch {
     std::uint32_t pose = 0;
-    std::size_t row = 0;  // in dispute_values_
+    std::size_t row = 0;  // index in mismatch_values_
   };
-  // One subject as one watcher sees it.
+  // What one watcher received of one subject.
   struct Track {
     std::uint32_t subject = 0;
     std::vector<bool> seen;
     std::int64_t newest = -1;
-    std::vector<Dispute> disputes;
-    std::vector<std::uint32_t> unfollowed;  // poses that differed
+    std::vector<Mismatch> mismatches;
+    std::vector<std::uint32_t> unfollowed;  // poses whose mismatch was not kept
   };
-  class Settlement;  // of one track
+  class MismatchResolver;  // works on one track
 
   void Compare(Track& track, std::uint32_t subject, std::uint32_t pose,
                std::span<const float> values);
-  void Judge(std::span<const float> values, float difference);
+  void Classify(std::span<const float> values, float difference);
 
   const Plan& plan_;
-  const Expected* expected_;
+  const ExpectedWeights* expected_;
   CheckOptions options_;
   Tally tally_;
   Histogram latency_;
   std::vector<Histogram> windows_;
-  std::vector<std::vector<bool>> sent_;  // of each subject
+  std::vector<std::vector<bool>> sent_;  // per subject
   std::vector<Track> tracks_;            // watcher-major
-  std::vector<float> dispute_values_;
+  std::vector<float> mismatch_values_;
 };
 
 }  // namespace furrow::load

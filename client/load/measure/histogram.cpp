@@ -9,9 +9,9 @@
 namespace furrow::load {
 namespace {
 
-constexpr int kHalfBits = 10;  // cells of one doubling
+constexpr int kHalfBits = 10;  // log2 of the cells per doubling
 constexpr std::uint64_t kHalf = std::uint64_t{1} << kHalfBits;
-constexpr std::uint64_t kLinear = 2 * kHalf;  // below it every value has its own cell
+constexpr std::uint64_t kLinear = 2 * kHalf;  // each value below has its own cell
 
 double Middle(std::size_t cell) {
   const std::uint64_t low = cell == 0 ? 0 : Histogram::UpperEnd(cell - 1) + 1;
@@ -72,7 +72,7 @@ double Histogram::StandardDeviation() const {
 
 std::int64_t Histogram::Percentile(double percentile) const {
   if (count_ == 0) return 0;
-  // 99.9 % of 1,000 is 999.0000000000001 in binary: what is a whole number stays it.
+  // In binary, 99.9% of 1,000 is 999.0000000000001. The factor keeps whole numbers whole.
   constexpr double kRounding = 1e-12;
   const double exact = percentile / 100.0 * static_cast<double>(count_);
   const double wanted = std::ceil(exact * (1.0 - kRounding));
@@ -85,13 +85,13 @@ std::int64_t Histogram::Percentile(double percentile) const {
   return max_;
 }
 
-// Five steps for each halving of what is left above, as HdrHistogram's own tools write it.
+// Writes five rows per halving of the remaining share, as HdrHistogram's own tools do.
 void Histogram::WriteHgrm(std::ostream& out, double unit) const {
   constexpr int kStepsPerHalving = 5;
   char line[128];
   out << "       Value     Percentile TotalCount 1/(1-Percentile)\n\n";
   std::uint64_t seen = 0;
-  double next = 0.0;  // percentile that is due
+  double next = 0.0;  // percentile of the next row
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     if (cells_[i] == 0) continue;
     seen += cells_[i];

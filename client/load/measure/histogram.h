@@ -8,15 +8,15 @@
 
 namespace furrow::load {
 
-// Counts of values in log-linear cells, as HdrHistogram's with three significant digits: exact
-// below 2,048, then 1,024 cells for each doubling, so a value is known to one part in 1,024.
+// A log-linear histogram, as HdrHistogram with three significant digits: exact below 2,048, then
+// 1,024 cells per doubling. The relative error of a value is at most 1/1,024.
 //
-// Values are whole numbers (we use nanoseconds); negative ones count as 0. Memory grows with the
-// largest value, to 440 KB at most; recording does not allocate once it has been that large.
+// Values are integers, here nanoseconds; negative values count as 0. Memory grows with the largest
+// value, up to 440 KB. Record() allocates only when a value exceeds all previous values.
 class Histogram {
  public:
   void Record(std::int64_t value);
-  // Adds all of the other's values.
+  // Adds all values of `other`.
   void Add(const Histogram& other);
 
   [[nodiscard]] std::uint64_t count() const { return count_; }
@@ -25,15 +25,15 @@ class Histogram {
   [[nodiscard]] double Mean() const;
   [[nodiscard]] double StandardDeviation() const;
 
-  // The smallest recorded value that `percentile` percent of all do not exceed, to the upper end of
-  // its cell and never above max(). 0 when empty. `percentile` in [0, 100].
+  // The smallest recorded value that `percentile` percent of all values do not exceed, rounded up
+  // to the end of its cell and limited to max(). `percentile` in [0, 100]. Returns 0 if empty.
   [[nodiscard]] std::int64_t Percentile(double percentile) const;
 
-  // The percentile distribution in HdrHistogram's text format (.hgrm), which its plotters read.
-  // Values are divided by `unit`.
+  // Writes the percentile distribution in HdrHistogram's text format (.hgrm). Values are divided by
+  // `unit`.
   void WriteHgrm(std::ostream& out, double unit) const;
 
-  // Where a value is counted, and the largest value that is counted there.
+  // The cell that counts a value, and the largest value of a cell.
   [[nodiscard]] static std::size_t Cell(std::uint64_t value);
   [[nodiscard]] static std::uint64_t UpperEnd(std::size_t cell);
 

@@ -12,13 +12,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Sockets of that port, by inode. A line is: number, local address:port, remote address:port,
-// state, four fields, timeout, inode; addresses in hexadecimal.
+// Adds the inodes of the sockets with that port. A line of the table holds: number, local
+// address:port, remote address:port, state, four other fields, timeout, inode. Addresses and ports
+// are hexadecimal. State 0A is "listening".
 void AddInodes(const fs::path& table, std::uint16_t port, bool listening,
                std::set<std::string>* inodes) {
   std::ifstream file(table);
   std::string line;
-  std::getline(file, line);  // the header
+  std::getline(file, line);  // skip the header
   while (std::getline(file, line)) {
     std::istringstream fields(line);
     std::string number, local, remote, state, queues, timer, retransmits, user, timeout, inode;
@@ -42,7 +43,7 @@ bool OwnsAny(const fs::path& process, const std::set<std::string>& inodes) {
   return false;
 }
 
-// Of one thread, to the nanosecond: the first number of schedstat.
+// Processor time of one thread: the first number of schedstat, in nanoseconds.
 double ThreadSeconds(const fs::path& thread) {
   std::ifstream file(thread / "schedstat");
   std::uint64_t nanoseconds = 0;

@@ -7,19 +7,19 @@
 
 namespace furrow::load {
 
-// What a process of this machine has used, as /proc tells.
+// Resources used by a process on this machine, from /proc.
 struct ProcessUsage {
-  double cpu_seconds = 0.0;  // of all its threads, since it started
+  double cpu_seconds = 0.0;  // of all threads, since the start of the process
   std::uint64_t resident_bytes = 0;
   std::uint64_t peak_resident_bytes = 0;
 };
 
-// Nothing where there is no such process, or it is not ours to ask.
+// Returns nothing if the process does not exist or is not readable.
 [[nodiscard]] std::optional<ProcessUsage> ReadUsage(int pid,
                                                     const std::filesystem::path& proc = "/proc");
 
-// The process of this machine that owns a port: `table` is "udp" or "tcp" (a listener). Nothing
-// where none does, or it belongs to another user. Both families are looked through.
+// Finds the process on this machine that owns an IPv4 or IPv6 port. `table` is "udp", or "tcp" for
+// a listening socket. Returns nothing if there is none or if it belongs to another user.
 [[nodiscard]] std::optional<int> FindPortOwner(const char* table, std::uint16_t port,
                                                const std::filesystem::path& proc = "/proc");
 

@@ -7,37 +7,38 @@
 namespace furrow::load {
 namespace {
 
-// More possibilities than this are not followed up at once.
+// Largest number of possibilities that are followed at the same time.
 constexpr std::size_t kMaxBranches = 16;
-// A server that hears nothing for so long may have begun to hold and decay (furrowd: 0.5 s).
+// After this time without poses a server may hold and decay the weights (furrowd: after 0.5 s).
 constexpr std::int64_t kDecayUs = 400'000;
-// And so long after it the filter has forgotten.
+// Time after which the filter no longer depends on the decay.
 constexpr std::int64_t kForgottenUs = 2'000'000;
-// Branches as near as this are the same.
+// Branches that differ by at most this are merged.
 constexpr float kSame = 1e-6f;
 
 }  // namespace
 
-Replay::Replay(const Performance& performance, const Plan& plan, std::uint32_t subject,
-               const Expected& expected, float tolerance, std::uint32_t first)
-    : performance_(performance),
+Replay::Replay(const Workload& workload, const Plan& plan, std::uint32_t subject,
+               const ExpectedWeights& expected, float tolerance, std::uint32_t first)
+    : workload_(workload),
       plan_(plan),
       expected_(expected),
       phase_(plan.phase_of(subject)),
       tolerance_(tolerance),
       last_seen_us_(plan.CaptureUs(phase_, first)) {
-  branches_.push_back({wrinkle::SubjectSolver(performance.binding), -1});
+  branches_.push_back({wrinkle::SubjectSolver(workload.binding), -1});
 }
 
 void Replay::Use(Branch& branch, std::uint32_t pose) {
   const std::int64_t now = plan_.CaptureUs(phase_, pose);
   const std::int64_t step = branch.last_us < 0 ? 0 : now - branch.last_us;
   branch.last_us = now;
-  performance_.pose(plan_.Frame(phase_, pose), &pose_);
+  workload_.pose(plan_.Frame(phase_, pose), &pose_);
   (void)branch.solver.Update(pose_, static_cast<double>(step) * 1e-6);
 }
 
-// The last branch is the one in which all poses were used; it is followed through any gap.
+// Doubles the branches: without this pose, and with it. The last branch is the one that received
+// all poses; it is followed through gaps of any length.
 void Replay::Missing(std::uint32_t pose) {
   const std::size_t before = branches_.size();
   if (2 * before > kMaxBranches) {
@@ -52,7 +53,7 @@ void Replay::Missing(std::uint32_t pose) {
 
 float Replay::Agreed(std::uint32_t pose) { return Observe(pose, expected_.Row(phase_, pose)); }
 
-std::optional<float> Replay::Disputed(std::uint32_t pose, std::span<const float> values) {
+std::optional<float> Replay::Mismatched(std::uint32_t pose, std::span<const float> values) {
   const float difference = Observe(pose, values);
   if (plan_.CaptureUs(phase_, pose) < unsettled_until_us_) return std::nullopt;
   return difference;

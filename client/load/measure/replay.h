@@ -6,53 +6,56 @@
 #include <span>
 #include <vector>
 
-#include "client/load/measure/expected.h"
-#include "client/load/schedule/performance.h"
+#include "client/load/measure/expected_weights.h"
 #include "client/load/schedule/plan.h"
+#include "client/load/schedule/workload.h"
 #include "wrinkle/solver/solver.h"
 
 namespace furrow::load {
 
-// What a server could rightly have sent for one subject, where some weights are missing: whether a
-// pose was lost on the way in (then the filter never saw it) or its weights on the way out (then it
-// did) cannot be told, so both are followed up, and what comes next tells which were possible.
+// The weights that a correct server may send for one subject when some weights are missing.
 //
-// Poses are given in order, each once, by one of three calls.
+// A missing message has two possible causes. If the pose was lost on the way in, the filter of the
+// server never saw it. If the weights were lost on the way out, the filter did. The replay follows
+// both possibilities as branches; later messages rule branches out.
+//
+// Report the poses in order, each once, by one of the three functions.
 class Replay {
  public:
-  // `first`: the pose it begins with, as if the filter had known none before.
-  Replay(const Performance& performance, const Plan& plan, std::uint32_t subject,
-         const Expected& expected, float tolerance, std::uint32_t first = 0);
+  // `first`: the pose to start with, with a filter in its initial state.
+  Replay(const Workload& workload, const Plan& plan, std::uint32_t subject,
+         const ExpectedWeights& expected, float tolerance, std::uint32_t first = 0);
 
-  // No weights came of this pose.
+  // No weights arrived for this pose.
   void Missing(std::uint32_t pose);
-  // They came and were those of the expected table: how far that is from the nearest possible.
+  // Weights equal to the expected table arrived. Returns their distance from the nearest branch.
   float Agreed(std::uint32_t pose);
-  // They came and were others: how far they are from the nearest that is possible. Nothing where
-  // that cannot be said: after a gap in which the server held and decayed by its own clock, or one
-  // with more possibilities than were followed up, none of which fits.
-  [[nodiscard]] std::optional<float> Disputed(std::uint32_t pose, std::span<const float> values);
+  // Other weights arrived. Returns their distance from the nearest branch, or nothing if that is
+  // unknown: after a gap in which the server may have held and decayed the weights by its own
+  // clock, or after a gap with more possibilities than branches if no branch fits.
+  [[nodiscard]] std::optional<float> Mismatched(std::uint32_t pose, std::span<const float> values);
 
  private:
   struct Branch {
     wrinkle::SubjectSolver solver;
-    std::int64_t last_us = -1;  // capture time of the last pose used; -1: none
+    std::int64_t last_us = -1;  // capture time of the last solved pose; -1: none
   };
 
   void Use(Branch& branch, std::uint32_t pose);
-  // Solves this pose in all branches and keeps those that say `values`; all if none does.
+  // Solves this pose in all branches and keeps the branches that give `values`, or all if none
+  // does.
   float Observe(std::uint32_t pose, std::span<const float> values);
   void Prune();
 
-  const Performance& performance_;
+  const Workload& workload_;
   const Plan& plan_;
-  const Expected& expected_;
+  const ExpectedWeights& expected_;
   int phase_;
   float tolerance_;
   std::vector<Branch> branches_;
   std::int64_t last_seen_us_ = 0;
   std::int64_t unsettled_until_us_ = -1;
-  bool overflowed_ = false;  // not all possibilities are in `branches_`
+  bool overflowed_ = false;  // `branches_` does not hold all possibilities
   wrinkle::LocalPose pose_;
 };
 

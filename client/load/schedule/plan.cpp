@@ -9,7 +9,7 @@
 namespace furrow::load {
 namespace {
 
-// A recording of one frame rests: it is sent as often as most cameras would.
+// Seconds between poses of a recording with a single frame.
 constexpr double kRestInterval = 1.0 / 60.0;
 
 bool IsLater(const Plan::Slot& a, const Plan::Slot& b) {
@@ -39,10 +39,10 @@ Plan::Plan(std::span<const double> times, const PlanOptions& options)
   }
 }
 
-// Poses of a subject are due one after the other, so the first one that is too late is searched.
+// Due times of a subject increase, so a binary search finds the first pose at or after the end.
 std::uint32_t Plan::CountBefore(std::uint32_t subject, std::int64_t end_us) const {
   std::uint32_t low = 0;
-  std::uint32_t high = std::numeric_limits<std::uint32_t>::max();  // as far as sequences count
+  std::uint32_t high = std::numeric_limits<std::uint32_t>::max();  // the largest sequence number
   while (low < high) {
     const std::uint32_t middle = low + (high - low) / 2;
     if (DueUs(subject, middle) < end_us) {

@@ -10,7 +10,7 @@
 
 #include "protocol/codec/codec.h"
 
-namespace furrow::load {
+namespace furrow::chaos {
 
 using Packet = std::vector<std::uint8_t>;
 
@@ -31,7 +31,7 @@ inline std::vector<float> ValuesOf(const Packet& packet, std::uint32_t* sequence
   return frame.values;
 }
 
-// Each joint with a rotation of its own.
+// Each joint has a different rotation.
 inline protocol::PoseFrame WholeBody(int joints) {
   protocol::PoseFrame pose{.skeleton_hash = 1, .num_joints = static_cast<std::uint16_t>(joints)};
   for (int i = 0; i < joints; ++i) {
@@ -50,4 +50,4 @@ inline protocol::PoseFrame PoseOf(const Packet& packet) {
   return frame;
 }
 
-}  // namespace furrow::load
+}  // namespace furrow::chaos

@@ -8,7 +8,7 @@
 #include "chaos_testing.h"
 #include "protocol/framing/fragment.h"
 
-namespace furrow::load {
+namespace furrow::chaos {
 namespace {
 
 Packet Numbered(int number) {
@@ -16,8 +16,8 @@ Packet Numbered(int number) {
 }
 int Number(const Packet& packet) { return packet[0] + 256 * packet[1]; }
 
-// What comes out of `count` packets, one a millisecond, and all that is left a minute later.
-std::vector<int> Pass(ChaosLink& link, int count) {
+// Pushes `count` packets, one per millisecond, and returns all packets that leave within a minute.
+std::vector<int> Pass(Link& link, int count) {
   std::vector<int> out;
   Packet packet;
   for (int i = 0; i < count; ++i) {
@@ -29,18 +29,17 @@ std::vector<int> Pass(ChaosLink& link, int count) {
   return out;
 }
 
-TEST(ChaosLink, WithoutChaosAllPassAtOnceAndInOrder) {
-  ChaosLink link({}, 0, 0);
+TEST(Link, WithoutFaultsAllPacketsPassAtOnceInOrder) {
+  Link link({}, 0, 0);
   const auto out = Pass(link, 100);
   for (int i = 0; i < 100; ++i) EXPECT_EQ(out[static_cast<std::size_t>(i)], i);
 }
 
-TEST(ChaosLink, TheSameSeedDoesTheSameAndAnotherDoesNot) {
-  const ChaosOptions options{
-      .seed = 3, .loss = 0.1, .reorder = 0.1, .duplicate = 0.1, .jitter_ms = 5.0};
-  const auto run = [](ChaosOptions with, std::uint64_t seed, std::uint64_t number) {
+TEST(Link, TheSameSeedRepeatsTheFaultsAndAnotherDoesNot) {
+  const Faults options{.seed = 3, .loss = 0.1, .reorder = 0.1, .duplicate = 0.1, .jitter_ms = 5.0};
+  const auto run = [](Faults with, std::uint64_t seed, std::uint64_t number) {
     with.seed = seed;
-    ChaosLink link(with, number, 0);
+    Link link(with, number, 0);
     return Pass(link, 500);
   };
   EXPECT_EQ(run(options, 3, 0), run(options, 3, 0));
@@ -48,16 +47,16 @@ TEST(ChaosLink, TheSameSeedDoesTheSameAndAnotherDoesNot) {
   EXPECT_NE(run(options, 3, 0), run(options, 3, 1));
 }
 
-TEST(ChaosLink, LosesItsShare) {
-  ChaosLink link({.loss = 0.2}, 0, 0);
+TEST(Link, LosesTheRequestedShare) {
+  Link link({.loss = 0.2}, 0, 0);
   const auto out = Pass(link, 10000);
-  // Four standard deviations of a binomial.
+  // Four standard deviations of the binomial distribution.
   EXPECT_NEAR(static_cast<double>(link.counts().lost), 2000.0, 4.0 * std::sqrt(1600.0));
   EXPECT_EQ(out.size() + link.counts().lost, 10000u);
 }
 
-TEST(ChaosLink, AReorderedPacketGoesAfterItsNext) {
-  ChaosLink link({.reorder = 0.05}, 0, 0);
+TEST(Link, AReorderedPacketFollowsTheNextPacket) {
+  Link link({.reorder = 0.05}, 0, 0);
   const auto out = Pass(link, 2000);
   ASSERT_EQ(out.size(), 2000u);
   std::uint64_t descents = 0;
@@ -70,18 +69,18 @@ TEST(ChaosLink, AReorderedPacketGoesAfterItsNext) {
   EXPECT_EQ(descents, link.counts().reordered);
 }
 
-TEST(ChaosLink, ALonelyReorderedPacketDoesNotWaitForEver) {
-  ChaosLink link({.reorder = 1.0}, 0, 0);
+TEST(Link, AReorderedPacketWithoutASuccessorIsReleased) {
+  Link link({.reorder = 1.0}, 0, 0);
   link.Push(Numbered(7), 0);
   Packet packet;
-  EXPECT_FALSE(link.Pop(ChaosLink::kLongestHoldUs - 1, &packet));
-  ASSERT_TRUE(link.Pop(ChaosLink::kLongestHoldUs, &packet));
+  EXPECT_FALSE(link.Pop(Link::kLongestHoldUs - 1, &packet));
+  ASSERT_TRUE(link.Pop(Link::kLongestHoldUs, &packet));
   EXPECT_EQ(Number(packet), 7);
   EXPECT_EQ(link.counts().reordered, 0u);
 }
 
-TEST(ChaosLink, DelayHoldsBackWhatItHits) {
-  ChaosLink link({.delay = 1.0, .delay_ms = 20.0}, 0, 0);
+TEST(Link, DelayHoldsBackTheSelectedPackets) {
+  Link link({.delay = 1.0, .delay_ms = 20.0}, 0, 0);
   link.Push(Numbered(1), 1000);
   Packet packet;
   EXPECT_EQ(link.next_us(), 21000);
@@ -90,13 +89,13 @@ TEST(ChaosLink, DelayHoldsBackWhatItHits) {
   EXPECT_EQ(link.counts().delayed, 1u);
 }
 
-TEST(ChaosLink, DuplicatesComeTwice) {
-  ChaosLink link({.duplicate = 1.0}, 0, 0);
+TEST(Link, ADuplicatedPacketLeavesTwice) {
+  Link link({.duplicate = 1.0}, 0, 0);
   EXPECT_EQ(Pass(link, 3), (std::vector<int>{0, 0, 1, 1, 2, 2}));
 }
 
-TEST(ChaosLink, ABlackHoleSwallowsItsTimeAgainAndAgain) {
-  ChaosLink link({.black_holes = {{.start = 0.0095, .length = 0.005, .every = 0.020}}}, 0, 0);
+TEST(Link, APeriodicBlackHoleSwallowsPackets) {
+  Link link({.black_holes = {{.start = 0.0095, .length = 0.005, .every = 0.020}}}, 0, 0);
   const auto out = Pass(link, 40);
   std::vector<int> expected;
   for (int i = 0; i < 40; ++i) {
@@ -107,8 +106,8 @@ TEST(ChaosLink, ABlackHoleSwallowsItsTimeAgainAndAgain) {
   EXPECT_EQ(link.counts().swallowed, 10u);
 }
 
-TEST(ChaosLink, FalsifiesOneWeightAndLeavesTheMessageValid) {
-  ChaosLink link({.falsify = 1.0}, 0, 0);
+TEST(Link, FalsifiesOneWeightAndLeavesTheMessageValid) {
+  Link link({.falsify = 1.0}, 0, 0);
   link.Push(Weights(4, {0.1f, 0.2f, 0.9f}), 0);
   Packet packet;
   ASSERT_TRUE(link.Pop(0, &packet));
@@ -125,12 +124,12 @@ TEST(ChaosLink, FalsifiesOneWeightAndLeavesTheMessageValid) {
   EXPECT_EQ(changed, 1);
 }
 
-TEST(ChaosLink, SwapsContentsButNotEnvelopes) {
-  ChaosLink link({.swap = 1.0}, 0, 0);
+TEST(Link, SwapsContentsButNotEnvelopes) {
+  Link link({.swap = 1.0}, 0, 0);
   link.Push(Weights(1, {0.1f}), 0);
   Packet packet;
   EXPECT_FALSE(link.Pop(0, &packet));
-  link.Push(Numbered(9), 1);  // no message: passes
+  link.Push(Numbered(9), 1);  // not a message, so it passes
   ASSERT_TRUE(link.Pop(1, &packet));
   EXPECT_EQ(Number(packet), 9);
   link.Push(Weights(2, {0.2f}), 2);
@@ -144,7 +143,7 @@ TEST(ChaosLink, SwapsContentsButNotEnvelopes) {
   EXPECT_EQ(link.counts().swapped, 2u);
 }
 
-// A pose of two datagrams.
+// A pose message that takes two datagrams.
 std::vector<Packet> Fragments(std::uint32_t sequence, int joints = 100) {
   Packet message;
   protocol::Encoder().Encode({.session = 5, .stream = 1, .sequence = sequence}, WholeBody(joints),
@@ -158,8 +157,8 @@ std::vector<Packet> Fragments(std::uint32_t sequence, int joints = 100) {
   return fragments;
 }
 
-// All that leaves a link now, put together again.
-std::vector<Packet> Leave(ChaosLink& link, std::int64_t now_us) {
+// Reassembles all messages that leave a link now.
+std::vector<Packet> Leave(Link& link, std::int64_t now_us) {
   protocol::Reassembler reassembler;
   std::vector<Packet> messages;
   std::span<const std::uint8_t> message;
@@ -184,8 +183,8 @@ int NumTurned(const protocol::PoseFrame& pose) {
   return turned;
 }
 
-TEST(ChaosLink, APoseInFragmentsIsFalsifiedToo) {
-  ChaosLink link({.falsify = 1.0}, 0, 0);
+TEST(Link, AFragmentedPoseIsFalsified) {
+  Link link({.falsify = 1.0}, 0, 0);
   const auto fragments = Fragments(4);
   link.Push(fragments[0], 0);
   EXPECT_TRUE(Leave(link, 0).empty());
@@ -197,8 +196,8 @@ TEST(ChaosLink, APoseInFragmentsIsFalsifiedToo) {
   EXPECT_EQ(link.counts().falsified, 1u);
 }
 
-TEST(ChaosLink, PosesInFragmentsSwapTheirContents) {
-  ChaosLink link({.swap = 1.0}, 0, 0);
+TEST(Link, FragmentedPosesSwapContents) {
+  Link link({.swap = 1.0}, 0, 0);
   for (const Packet& fragment : Fragments(1, 100)) link.Push(fragment, 0);
   EXPECT_TRUE(Leave(link, 0).empty());
   for (const Packet& fragment : Fragments(2, 110)) link.Push(fragment, 1);
@@ -209,8 +208,8 @@ TEST(ChaosLink, PosesInFragmentsSwapTheirContents) {
   EXPECT_EQ(link.counts().swapped, 2u);
 }
 
-TEST(ChaosLink, WhatLostAFragmentGoesNoFurtherAndKeepsNobody) {
-  ChaosLink link({.falsify = 1e-9}, 0, 0);
+TEST(Link, AMessageThatLostAFragmentIsDropped) {
+  Link link({.falsify = 1e-9}, 0, 0);
   for (std::uint32_t i = 0; i < 20; ++i) link.Push(Fragments(i)[0], 0);
   for (const Packet& fragment : Fragments(20)) link.Push(fragment, 1);
   const auto messages = Leave(link, 60'000'000);
@@ -218,8 +217,8 @@ TEST(ChaosLink, WhatLostAFragmentGoesNoFurtherAndKeepsNobody) {
   EXPECT_EQ(NumTurned(PoseOf(messages[0])), 0);
 }
 
-TEST(ChaosLink, FragmentsPassAsTheyComeWhereNoContentIsChanged) {
-  ChaosLink link({.duplicate = 1e-9}, 0, 0);
+TEST(Link, FragmentsPassUnchangedIfNoContentChanges) {
+  Link link({.duplicate = 1e-9}, 0, 0);
   const auto fragments = Fragments(1);
   Packet packet;
   for (const Packet& fragment : fragments) {
@@ -229,8 +228,8 @@ TEST(ChaosLink, FragmentsPassAsTheyComeWhereNoContentIsChanged) {
   }
 }
 
-TEST(ChaosLink, WhatIsNoMessagePassesUncutHoweverLarge) {
-  ChaosLink link({.falsify = 1.0, .swap = 1.0}, 0, 0);
+TEST(Link, ALargePacketThatIsNotAMessagePassesWhole) {
+  Link link({.falsify = 1.0, .swap = 1.0}, 0, 0);
   const Packet large(5000, 7);
   link.Push(large, 0);
   Packet packet;
@@ -238,7 +237,7 @@ TEST(ChaosLink, WhatIsNoMessagePassesUncutHoweverLarge) {
   EXPECT_EQ(packet, large);
 }
 
-TEST(BlackHole, IsParsedOrRefused) {
+TEST(BlackHole, IsParsedOrRejected) {
   const auto once = ParseBlackHole("1.5:2");
   ASSERT_TRUE(once.ok());
   EXPECT_EQ(once->start, 1.5);
@@ -251,4 +250,4 @@ TEST(BlackHole, IsParsedOrRefused) {
 }
 
 }  // namespace
-}  // namespace furrow::load
+}  // namespace furrow::chaos

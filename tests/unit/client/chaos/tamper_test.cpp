@@ -8,10 +8,10 @@
 #include "chaos_testing.h"
 #include "protocol/framing/bundle.h"
 
-namespace furrow::load {
+namespace furrow::chaos {
 namespace {
 
-TEST(ChaosTamper, APoseTurnsAJointAndStaysAPose) {
+TEST(ChaosTamper, AFalsifiedPoseHasATurnedJointAndStaysValid) {
   protocol::PoseFrame pose{.skeleton_hash = 1, .num_joints = 2, .rotation_joints = {0, 1}};
   pose.rotations = {{0, 0, 0, 1}, {0, 0, 0, 1}};
   Packet packet;
@@ -23,7 +23,7 @@ TEST(ChaosTamper, APoseTurnsAJointAndStaysAPose) {
   EXPECT_NEAR(std::abs(decoded.rotations[1].x), 0.8660254f, 1e-4f);
 }
 
-TEST(ChaosTamper, AFaceWithoutJointsHasABlendShapeFalsified) {
+TEST(ChaosTamper, APoseWithoutJointsHasABlendShapeFalsified) {
   protocol::PoseFrame face{.skeleton_hash = 1, .num_blend_shapes = 2};
   face.blend_shape_indices = {0, 1};
   face.blend_shapes = {0.25f, 0.75f};
@@ -33,7 +33,7 @@ TEST(ChaosTamper, AFaceWithoutJointsHasABlendShapeFalsified) {
   EXPECT_EQ(PoseOf(packet).blend_shapes, (std::vector<float>{0.25f, 0.25f}));
 }
 
-TEST(ChaosTamper, APoseStaysAsPackedAsItWas) {
+TEST(ChaosTamper, AFalsifiedPoseKeepsItsEncoding) {
   const protocol::PoseFrame pose = WholeBody(60);
   for (const auto& encoding : {protocol::PoseEncoding{}, protocol::PoseEncoding::Small()}) {
     Packet packet;
@@ -44,7 +44,7 @@ TEST(ChaosTamper, APoseStaysAsPackedAsItWas) {
   }
 }
 
-TEST(ChaosTamper, NothingElseIsTouched) {
+TEST(ChaosTamper, OtherMessagesAreUnchanged) {
   Packet hello;
   protocol::Encoder().Encode({.session = 5}, protocol::Hello{.client = "x"}, hello);
   const Packet before = hello;
@@ -58,7 +58,7 @@ TEST(ChaosTamper, NothingElseIsTouched) {
   }
 }
 
-// The values of each message of a bundle.
+// Returns the values of each message of a bundle.
 std::vector<std::vector<float>> ValuesOfBundle(Packet bundle) {
   protocol::Unbundler unbundler;
   EXPECT_EQ(unbundler.Open(bundle), protocol::BundleStatus::kOk);
@@ -70,7 +70,7 @@ std::vector<std::vector<float>> ValuesOfBundle(Packet bundle) {
   return values;
 }
 
-TEST(ChaosTamper, OfABundleOneMessageIsFalsified) {
+TEST(ChaosTamper, OneMessageOfABundleIsFalsified) {
   const std::vector<Packet> messages = {Weights(1, {0.1f, 0.2f}), Weights(2, {0.3f, 0.4f})};
   for (const double share : {0.0, 0.3, 0.6, 0.99}) {
     Packet bundle;
@@ -83,7 +83,7 @@ TEST(ChaosTamper, OfABundleOneMessageIsFalsified) {
   }
 }
 
-TEST(ChaosTamper, BundlesSwapOneMessageWhereBothStillFit) {
+TEST(ChaosTamper, BundlesSwapOneMessageIfBothStillFit) {
   Packet ping;
   protocol::Encoder().Encode({.session = 5}, protocol::Ping{}, ping);
   Packet a;
@@ -103,7 +103,7 @@ TEST(ChaosTamper, BundlesSwapOneMessageWhereBothStillFit) {
   EXPECT_EQ(ValuesOf(Packet(message.begin(), message.end()), &sequence), std::vector<float>{0.9f});
   EXPECT_EQ(sequence, 1u);
 
-  // A full one has no room for another's larger content.
+  // A full bundle has no room for a larger message.
   Packet full;
   std::vector<Packet> messages;
   while (protocol::WriteBundle(messages, full) || messages.empty())
@@ -118,4 +118,4 @@ TEST(ChaosTamper, BundlesSwapOneMessageWhereBothStillFit) {
 }
 
 }  // namespace
-}  // namespace furrow::load
+}  // namespace furrow::chaos

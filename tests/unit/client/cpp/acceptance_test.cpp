@@ -25,7 +25,7 @@ class AcceptanceTest : public ::testing::Test {
         protocol::SkeletonReply{
             .skeleton_hash = protocol::SkeletonHash(offer_), .status = status, .message = message});
   }
-  // With a clock that goes on by `step_us` whenever it is looked at.
+  // Uses a clock that advances by `step_us` at every call.
   Acceptance Wait(std::int64_t step_us) {
     return WaitUntilAccepted(
         publisher_, stream_, [&] { return now_us_ += step_us; }, [&] { return go_on_; });
@@ -39,26 +39,26 @@ class AcceptanceTest : public ::testing::Test {
   std::uint16_t stream_ = 0;
 };
 
-TEST_F(AcceptanceTest, AnAnswerEndsIt) {
+TEST_F(AcceptanceTest, AnAnswerEndsTheWait) {
   Answer(SkeletonStatus::kAccepted);
   EXPECT_EQ(Wait(1).kind, Kind::kAccepted);
 }
 
-TEST_F(AcceptanceTest, ARefusalSaysWhy) {
+TEST_F(AcceptanceTest, ARejectionHasAReason) {
   Answer(SkeletonStatus::kRejected, "no such joint");
   const Acceptance answer = Wait(1);
   EXPECT_EQ(answer.kind, Kind::kRefused);
   EXPECT_EQ(answer.reason, "no such joint");
 }
 
-TEST_F(AcceptanceTest, SilenceLastsFiveSecondsWhileTheOfferIsRepeated) {
-  EXPECT_EQ(Wait(10'000).kind, Kind::kNobody);
+TEST_F(AcceptanceTest, WithoutAnAnswerTheOfferIsRepeatedForFiveSeconds) {
+  EXPECT_EQ(Wait(10'000).kind, Kind::kNoAnswer);
   EXPECT_GE(now_us_, 5'000'000);
   EXPECT_LT(now_us_, 5'100'000);
-  EXPECT_GE(far_->sent.size(), 20u) << "five a second";
+  EXPECT_GE(far_->sent.size(), 20u) << "five per second";
 }
 
-TEST_F(AcceptanceTest, WhatTheDaemonComplainsOfIsPassedOn) {
+TEST_F(AcceptanceTest, AnErrorOfTheDaemonIsReported) {
   far_->Answer({.session = 7},
                protocol::ErrorMessage{.code = protocol::ErrorCode::kLimit, .message = "full"});
   const Acceptance answer = Wait(10'000);
@@ -66,28 +66,28 @@ TEST_F(AcceptanceTest, WhatTheDaemonComplainsOfIsPassedOn) {
   EXPECT_EQ(answer.reason, "full");
 }
 
-TEST_F(AcceptanceTest, NobodyThereIsToldFromSilence) {
+TEST_F(AcceptanceTest, AClosedPortIsDistinguishedFromATimeout) {
   far_->when_empty = IoStatus::kNoConnection;
   EXPECT_EQ(Wait(5'000'000).kind, Kind::kNoConnection);
-  // A refusal answers an offer; until the next one nothing comes.
+  // The port is reported as closed once per offer; in between Receive() times out.
   int looks = 0;
-  const auto go_on = [&] {
+  const auto keep_going = [&] {
     far_->when_empty = looks++ == 0 ? IoStatus::kNoConnection : IoStatus::kTimeout;
     return true;
   };
   const auto clock = [&] { return now_us_ += 1'000'000; };
-  EXPECT_EQ(WaitUntilAccepted(publisher_, stream_, clock, go_on).kind, Kind::kNoConnection);
+  EXPECT_EQ(WaitUntilAccepted(publisher_, stream_, clock, keep_going).kind, Kind::kNoConnection);
 }
 
-TEST_F(AcceptanceTest, AClosedConnectionIsNotWaitedFor) {
+TEST_F(AcceptanceTest, AClosedConnectionEndsTheWait) {
   far_->when_empty = IoStatus::kClosed;
-  EXPECT_EQ(Wait(1).kind, Kind::kNobody);
+  EXPECT_EQ(Wait(1).kind, Kind::kNoAnswer);
   EXPECT_LT(now_us_, 10);
 }
 
-TEST_F(AcceptanceTest, WhoeverGivesUpIsNotHeld) {
+TEST_F(AcceptanceTest, TheCallerCanCancelTheWait) {
   go_on_ = false;
-  EXPECT_EQ(Wait(1).kind, Kind::kGivenUp);
+  EXPECT_EQ(Wait(1).kind, Kind::kCancelled);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 namespace furrow::client {
 
-// The far end, played by a test: what was sent, and what will be received next.
+// The peer of a FakeTransport, controlled by the test: sent messages, and messages to receive next.
 struct FarEnd {
   std::vector<std::vector<std::uint8_t>> sent;
   std::deque<std::vector<std::uint8_t>> to_receive;
@@ -24,7 +24,7 @@ struct FarEnd {
     encoder.Encode(header, message, to_receive.emplace_back());
   }
 
-  // The kind of every message sent since the last call.
+  // Returns the kinds of all messages sent since the last call.
   std::vector<protocol::MessageKind> TakeKinds() {
     std::vector<protocol::MessageKind> kinds;
     for (const auto& bytes : sent) {

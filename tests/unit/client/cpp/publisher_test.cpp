@@ -35,11 +35,11 @@ class PublisherTest : public ::testing::Test {
   }
 };
 
-TEST_F(PublisherTest, OfferIsSentAgainUntilItIsAnswered) {
+TEST_F(PublisherTest, OfferIsRepeatedUntilItIsAnswered) {
   const auto stream = publisher_.AddSubject(OneJoint(), 0);
   EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSkeletonOffer});
   publisher_.Poll(100'000, milliseconds(0));
-  EXPECT_TRUE(far_->sent.empty()) << "not yet due";
+  EXPECT_TRUE(far_->sent.empty()) << "not due yet";
   publisher_.Poll(200'000, milliseconds(0));
   EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSkeletonOffer});
   Reply(stream, SkeletonStatus::kAccepted);
@@ -49,7 +49,7 @@ TEST_F(PublisherTest, OfferIsSentAgainUntilItIsAnswered) {
   EXPECT_TRUE(far_->sent.empty());
 }
 
-TEST_F(PublisherTest, DaemonThatForgotGetsTheOfferAtOnce) {
+TEST_F(PublisherTest, ADaemonThatAsksGetsTheOfferAtOnce) {
   const auto stream = publisher_.AddSubject(OneJoint(), 0);
   Reply(stream, SkeletonStatus::kAccepted);
   publisher_.Poll(1, milliseconds(0));
@@ -60,7 +60,7 @@ TEST_F(PublisherTest, DaemonThatForgotGetsTheOfferAtOnce) {
   EXPECT_FALSE(publisher_.accepted(stream));
 }
 
-TEST_F(PublisherTest, RejectionIsFinalAndSaysWhy) {
+TEST_F(PublisherTest, RejectionIsFinalAndHasAReason) {
   const auto stream = publisher_.AddSubject(OneJoint(), 0);
   (void)far_->TakeKinds();
   Reply(stream, SkeletonStatus::kRejected, "no joint of the rig");
@@ -70,7 +70,7 @@ TEST_F(PublisherTest, RejectionIsFinalAndSaysWhy) {
   EXPECT_TRUE(far_->sent.empty());
 }
 
-TEST_F(PublisherTest, WhatTheWireCannotCarryIsRejectedWithoutAsking) {
+TEST_F(PublisherTest, AnOfferThatTheWireCannotCarryIsRejectedLocally) {
   protocol::SkeletonOffer offer = OneJoint();
   offer.joints[0].name = "caf\xe9";  // Latin-1
   EXPECT_NE(publisher_.rejection(publisher_.AddSubject(offer, 0)).find("UTF-8"), std::string::npos);
@@ -119,7 +119,7 @@ TEST_F(PublisherTest, PosesAreNumberedByStreamAndCarryTheHash) {
   EXPECT_EQ(sequences, (std::vector<std::uint32_t>{0, 1, 0}));
 }
 
-TEST_F(PublisherTest, CloseSaysGoodbyeForEveryStream) {
+TEST_F(PublisherTest, CloseSendsAGoodbyeForEveryStream) {
   publisher_.AddSubject(OneJoint(), 0);
   publisher_.AddSubject(OneJoint(), 0);
   far_->sent.clear();
@@ -127,7 +127,7 @@ TEST_F(PublisherTest, CloseSaysGoodbyeForEveryStream) {
   EXPECT_EQ(far_->TakeKinds(), (std::vector{MessageKind::kGoodbye, MessageKind::kGoodbye}));
 }
 
-TEST(NewSessionTest, IsNeverZeroAndNeverTwiceTheSame) {
+TEST(NewSessionTest, IsNeverZeroAndNeverRepeats) {
   std::set<std::uint64_t> seen;
   for (int i = 0; i < 1000; ++i) seen.insert(NewSession());
   EXPECT_EQ(seen.size(), 1000u);

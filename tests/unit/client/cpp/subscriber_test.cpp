@@ -23,7 +23,7 @@ class SubscriberTest : public ::testing::Test {
   }
 };
 
-TEST_F(SubscriberTest, OverTcpRequestsGoOutAtOnce) {
+TEST_F(SubscriberTest, OverTcpRequestsAreSentAtOnce) {
   Subscriber subscriber = Make(TransportKind::kTcp);
   subscriber.Subscribe(protocol::SubscribeWeights{});
   subscriber.Subscribe(protocol::SubscribePictures{});
@@ -51,7 +51,7 @@ TEST_F(SubscriberTest, OverUdpTheAddressIsProvenFirst) {
   EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSubscribeWeights});
 }
 
-TEST_F(SubscriberTest, BundlesAreAskedForWhereTheTransportTakesThemApart) {
+TEST_F(SubscriberTest, BundlesAreRequestedIfTheTransportSplitsThem) {
   for (const bool takes : {false, true}) {
     far_->takes_bundles = takes;
     Subscriber subscriber = Make(TransportKind::kUdp);
@@ -69,7 +69,7 @@ TEST_F(SubscriberTest, BundlesAreAskedForWhereTheTransportTakesThemApart) {
   }
 }
 
-TEST_F(SubscriberTest, LostUdpRequestsAreSentAgainAndTheLeaseIsKept) {
+TEST_F(SubscriberTest, LostUdpRequestsAreRepeatedAndTheLeaseIsRenewed) {
   Subscriber subscriber = Make(TransportKind::kUdp);
   far_->Answer({.session = 5}, protocol::Welcome{.server = "furrowd", .token = 0});
   (void)subscriber.Next(0, milliseconds(0));
@@ -84,12 +84,12 @@ TEST_F(SubscriberTest, LostUdpRequestsAreSentAgainAndTheLeaseIsKept) {
   EXPECT_EQ(event.kind, Kind::kReply);
   EXPECT_EQ(event.header.stream, 3);
   (void)subscriber.Next(700'000, milliseconds(0));
-  EXPECT_TRUE(far_->sent.empty()) << "answered, and the lease is fresh";
+  EXPECT_TRUE(far_->sent.empty()) << "the request is answered and the lease is fresh";
   (void)subscriber.Next(250'000 + protocol::kUdpLeaseMicroseconds / 2, milliseconds(0));
   EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kPing});
 }
 
-TEST_F(SubscriberTest, PosesComeWithTheirSkeletonAndAsTheyWerePublished) {
+TEST_F(SubscriberTest, PosesArriveUnchangedWithTheirSkeleton) {
   Subscriber subscriber = Make(TransportKind::kUdp);
   far_->Answer({.session = 5}, protocol::Welcome{.server = "furrowd", .token = 0});
   (void)subscriber.Next(0, milliseconds(0));
@@ -103,7 +103,7 @@ TEST_F(SubscriberTest, PosesComeWithTheirSkeletonAndAsTheyWerePublished) {
   pose.num_blend_shapes = 1;
   pose.blend_shapes = {0.5f};
 
-  // The skeleton was lost: its poses are handed out, and it is asked for again.
+  // The skeleton was lost: its poses are delivered, and the skeleton is requested again.
   far_->Answer({.session = 5, .stream = 3, .sequence = request},
                protocol::SubscribeReply{.subject = "ada", .publisher_session = 9});
   far_->Answer({.session = 5, .stream = 3, .sequence = 40}, pose);
@@ -135,7 +135,7 @@ TEST_F(SubscriberTest, PosesComeWithTheirSkeletonAndAsTheyWerePublished) {
   EXPECT_TRUE(far_->sent.empty()) << "nothing is missing";
 }
 
-TEST_F(SubscriberTest, NamesThatWereLostAreAskedForAgain) {
+TEST_F(SubscriberTest, LostNamesAreRequestedAgain) {
   Subscriber subscriber = Make(TransportKind::kUdp);
   far_->Answer({.session = 5}, protocol::Welcome{.server = "furrowd", .token = 0});
   (void)subscriber.Next(0, milliseconds(0));
@@ -144,7 +144,7 @@ TEST_F(SubscriberTest, NamesThatWereLostAreAskedForAgain) {
   EXPECT_EQ(subscriber.Next(10, milliseconds(0)).kind, Kind::kReply);
   (void)far_->TakeKinds();
 
-  // The subject came, but the reply with its names did not.
+  // The subject connected, but the reply with its names was lost.
   const std::vector<std::string> names{"a.x"};
   protocol::WeightFrame weights;
   weights.names_hash = protocol::NamesHash(names);
@@ -163,7 +163,7 @@ TEST_F(SubscriberTest, NamesThatWereLostAreAskedForAgain) {
   EXPECT_TRUE(far_->sent.empty());
 }
 
-TEST_F(SubscriberTest, ADaemonThatWasRestartedIsAskedAnewOverUdp) {
+TEST_F(SubscriberTest, AfterARestartOverUdpAllRequestsAreRepeated) {
   Subscriber subscriber = Make(TransportKind::kUdp);
   far_->Answer({.session = 5}, protocol::Welcome{.server = "furrowd", .token = 0});
   (void)subscriber.Next(0, milliseconds(0));
@@ -179,7 +179,7 @@ TEST_F(SubscriberTest, ADaemonThatWasRestartedIsAskedAnewOverUdp) {
   EXPECT_EQ(subscriber.Next(30, milliseconds(0)).kind, Kind::kTimeout);
   EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kSubscribeWeights});
 
-  // It forgot the address alone: the same again, and no error for the caller.
+  // The daemon forgot only the address: all requests are repeated, without an error for the caller.
   far_->Answer({.session = 6, .sequence = request},
                protocol::ErrorMessage{.code = protocol::ErrorCode::kUnprovenAddress});
   EXPECT_EQ(subscriber.Next(40, milliseconds(0)).kind, Kind::kTimeout);
@@ -211,7 +211,7 @@ TEST_F(SubscriberTest, WeightsPicturesErrorsAndGoodbyesReachTheCaller) {
   EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kTimeout);
 }
 
-TEST_F(SubscriberTest, GarbageIsCountedAndPassedOver) {
+TEST_F(SubscriberTest, GarbageIsCountedAndSkipped) {
   Subscriber subscriber = Make(TransportKind::kTcp);
   far_->to_receive.push_back({});
   far_->to_receive.push_back(std::vector<std::uint8_t>(100, 0xAB));
@@ -220,20 +220,20 @@ TEST_F(SubscriberTest, GarbageIsCountedAndPassedOver) {
   EXPECT_EQ(subscriber.malformed(), 2u);
 }
 
-TEST_F(SubscriberTest, ANetworkThatIsGoneShowsInPingsWithoutAnswer) {
+TEST_F(SubscriberTest, UnansweredPingsReportALostNetwork) {
   constexpr std::int64_t kSecond = 1'000'000;
   Subscriber subscriber = Make(TransportKind::kTcp);
   (void)far_->TakeKinds();
   EXPECT_EQ(subscriber.Next(0, milliseconds(0)).kind, Kind::kTimeout);
-  // A caller that was away for an hour has asked nothing meanwhile: silence proves nothing.
+  // A caller that paused for an hour sent no pings, so the missing answers mean nothing.
   std::int64_t now = 3600 * kSecond;
   EXPECT_EQ(subscriber.Next(now, milliseconds(0)).kind, Kind::kTimeout);
   EXPECT_EQ(far_->TakeKinds(), std::vector{MessageKind::kPing});
-  // Answered: the connection lives, however quiet the subject is.
+  // An answer proves that the connection is alive, even without weights.
   far_->Answer({.session = 5}, protocol::Pong{});
   now += 14 * kSecond;
   EXPECT_EQ(subscriber.Next(now, milliseconds(0)).kind, Kind::kTimeout);
-  // That call pinged as well and got its answer; from the next on nothing comes back.
+  // That call sent a ping and received its answer. Later pings are not answered.
   now += 2 * kSecond;
   EXPECT_EQ(subscriber.Next(now, milliseconds(0)).kind, Kind::kTimeout);
   EXPECT_EQ(subscriber.Next(now + 15 * kSecond, milliseconds(0)).kind, Kind::kTimeout);

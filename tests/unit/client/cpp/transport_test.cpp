@@ -20,9 +20,9 @@ namespace furrow::client {
 namespace {
 
 using std::chrono::milliseconds;
-constexpr milliseconds kGuard{10'000};  // only a failure takes so long
+constexpr milliseconds kGuard{10'000};  // only a failing test takes this long
 
-// A bare socket of the operating system's as the other end, on a free port of the loopback.
+// A plain system socket as the peer, on a free loopback port.
 class Socket {
  public:
   explicit Socket(int type) : fd_(::socket(AF_INET, type, 0)) {
@@ -63,13 +63,12 @@ std::vector<std::uint8_t> BigMessage() {
 
 std::unique_ptr<Transport> Open(TransportKind kind, std::uint16_t port,
                                 milliseconds timeout = kGuard) {
-  std::string error;
-  auto transport = Transport::Open(kind, "localhost", port, timeout, &error);
-  EXPECT_NE(transport, nullptr) << error;
-  return transport;
+  auto transport = Transport::Open(kind, "localhost", port, timeout);
+  EXPECT_TRUE(transport.ok()) << transport.status().ToString();
+  return transport.ok() ? *std::move(transport) : nullptr;
 }
 
-// A transport over TCP, and the other end of its connection.
+// A TCP transport and the other end of its connection.
 class TcpTransportTest : public testing::Test {
  protected:
   void SetUp() override { Connect(kGuard); }
@@ -85,7 +84,7 @@ class TcpTransportTest : public testing::Test {
   void HangUp() {
     if (peer_ >= 0) ::close(std::exchange(peer_, -1));
   }
-  // What the transport sends for a message, framed.
+  // Returns the framed bytes that the transport sends for a message.
   [[nodiscard]] std::vector<std::uint8_t> SendAndTake(std::span<const std::uint8_t> message) {
     EXPECT_EQ(transport_->Send(message), IoStatus::kOk);
     std::vector<std::uint8_t> wire(message.size() + protocol::kFramePrefixBytes);
@@ -111,12 +110,12 @@ class TcpTransportTest : public testing::Test {
   int peer_ = -1;
 };
 
-TEST_F(TcpTransportTest, FramesCrossInBothDirectionsHoweverTheyAreCut) {
+TEST_F(TcpTransportTest, FramesPassInBothDirectionsInPieces) {
   const auto message = BigMessage();
   const auto wire = SendAndTake(message);
   EXPECT_TRUE(std::ranges::equal(message, std::span(wire).subspan(protocol::kFramePrefixBytes)));
 
-  // Sent back in two pieces, with a second frame behind: two messages, nothing between them.
+  // The answer arrives in two pieces with a second frame attached: exactly two messages.
   SendBack(std::span(wire).first(wire.size() / 3));
   EXPECT_EQ(ReceiveNothing(milliseconds(1)), IoStatus::kTimeout);
   SendBack(std::span(wire).subspan(wire.size() / 3));
@@ -126,7 +125,7 @@ TEST_F(TcpTransportTest, FramesCrossInBothDirectionsHoweverTheyAreCut) {
   EXPECT_EQ(ReceiveNothing(kGuard), IoStatus::kClosed);
 }
 
-TEST_F(TcpTransportTest, WhatComesWhileSendingIsNotLost) {
+TEST_F(TcpTransportTest, MessagesThatArriveDuringASendAreNotLost) {
   const auto message = BigMessage();
   const auto wire = SendAndTake(message);
   for (int round = 0; round < 3; ++round) {
@@ -137,14 +136,14 @@ TEST_F(TcpTransportTest, WhatComesWhileSendingIsNotLost) {
   }
 }
 
-TEST_F(TcpTransportTest, LengthThatCannotBeIsMalformed) {
+TEST_F(TcpTransportTest, AnInvalidLengthIsMalformed) {
   SendBack(std::vector<std::uint8_t>(4, 0xff));
   EXPECT_EQ(ReceiveNothing(kGuard), IoStatus::kMalformed);
   EXPECT_EQ(ReceiveNothing(kGuard), IoStatus::kClosed);
   EXPECT_EQ(transport_->Send(BigMessage()), IoStatus::kClosed);
 }
 
-TEST_F(TcpTransportTest, AnEndThatTakesNothingDoesNotBlockForEver) {
+TEST_F(TcpTransportTest, APeerThatDoesNotReadBlocksASendOnlyUntilTheTimeout) {
   Connect(milliseconds(50));
   const std::vector<std::uint8_t> message(protocol::kMaxRequestBytes);
   IoStatus status = IoStatus::kOk;
@@ -153,15 +152,22 @@ TEST_F(TcpTransportTest, AnEndThatTakesNothingDoesNotBlockForEver) {
   EXPECT_EQ(ReceiveNothing(kGuard), IoStatus::kClosed);
 }
 
-TEST(TcpAddressTest, NobodyThereIsAnErrorThatNamesTheAddress) {
+TEST(TcpAddressTest, AClosedPortIsAnErrorThatNamesTheAddress) {
   std::uint16_t port = 0;
   { port = Socket(SOCK_STREAM).port(); }
-  std::string error;
-  EXPECT_EQ(Transport::Open(TransportKind::kTcp, "127.0.0.1", port, kGuard, &error), nullptr);
+  const auto transport = Transport::Open(TransportKind::kTcp, "127.0.0.1", port, kGuard);
+  ASSERT_FALSE(transport.ok());
+  EXPECT_EQ(transport.status().code(), StatusCode::kUnavailable);
+  const std::string error = transport.status().what();
   EXPECT_NE(error.find("127.0.0.1:" + std::to_string(port)), std::string::npos) << error;
 }
 
-TEST(UdpTransportTest, LargeMessagesCrossInFragments) {
+TEST(TcpAddressTest, AnIpv6AddressIsWrittenInBrackets) {
+  EXPECT_EQ(AddressText("::1", 7400), "[::1]:7400");
+  EXPECT_EQ(AddressText("stage-7", 7401), "stage-7:7401");
+}
+
+TEST(UdpTransportTest, LargeMessagesPassInFragments) {
   Socket peer(SOCK_DGRAM);
   auto transport = Open(TransportKind::kUdp, peer.port());
   ASSERT_NE(transport, nullptr);
@@ -169,7 +175,7 @@ TEST(UdpTransportTest, LargeMessagesCrossInFragments) {
   ASSERT_GT(protocol::NumDatagrams(message.size()), 2u);
   ASSERT_EQ(transport->Send(message), IoStatus::kOk);
 
-  // Sent back as it came, last fragment first.
+  // The fragments return unchanged, the last one first.
   std::vector<std::vector<std::uint8_t>> datagrams;
   sockaddr_in from{};
   for (std::size_t i = 0; i < protocol::NumDatagrams(message.size()); ++i) {
@@ -191,7 +197,7 @@ TEST(UdpTransportTest, LargeMessagesCrossInFragments) {
   EXPECT_TRUE(std::equal(received.begin(), received.end(), message.begin(), message.end()));
 }
 
-TEST(UdpTransportTest, BundlesAreTakenApartAndMalformedOnesGivenOutAsTheyCame) {
+TEST(UdpTransportTest, BundlesAreSplitAndMalformedOnesReturnedWhole) {
   Socket peer(SOCK_DGRAM);
   auto transport = Open(TransportKind::kUdp, peer.port());
   ASSERT_NE(transport, nullptr);
@@ -222,7 +228,7 @@ TEST(UdpTransportTest, BundlesAreTakenApartAndMalformedOnesGivenOutAsTheyCame) {
   EXPECT_EQ(transport->Receive(received, milliseconds(0)), IoStatus::kTimeout);
 }
 
-TEST(UdpTransportTest, NobodyThereShowsWhenReceiving) {
+TEST(UdpTransportTest, AClosedPortIsReportedByReceive) {
   std::uint16_t port = 0;
   { port = Socket(SOCK_DGRAM).port(); }
   auto transport = Open(TransportKind::kUdp, port);
@@ -234,7 +240,7 @@ TEST(UdpTransportTest, NobodyThereShowsWhenReceiving) {
   EXPECT_EQ(transport->Receive(received, kGuard), IoStatus::kNoConnection);
 }
 
-TEST(TransportTest, MessagesBeyondTheLimitAreRefused) {
+TEST(TransportTest, MessagesBeyondTheLimitAreRejected) {
   Socket peer(SOCK_DGRAM);
   auto transport = Open(TransportKind::kUdp, peer.port());
   ASSERT_NE(transport, nullptr);

@@ -10,35 +10,36 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string WrongUsageOf(const std::string& options) {
+std::string ConflictOf(const std::string& options) {
   CLI::App app;
   LoadFlags flags;
   AddLoadFlags(app, flags);
   app.parse("localhost performance.bvh " + options);
-  return WrongUsage(flags);
+  return FindConflict(flags);
 }
 
-TEST(LoadFlags, WhatDatagramsAloneKnowIsWrongOverTcpAlone) {
+TEST(LoadFlags, DatagramFaultsConflictWithTcpOnly) {
   for (const char* fault :
        {"--loss", "--reorder", "--duplicate", "--delay", "--falsify", "--swap"}) {
     const std::string asked = std::string(fault) + " 0.2";
-    EXPECT_THAT(WrongUsageOf("--tcp " + asked), HasSubstr(fault + std::string(": this befalls")));
-    EXPECT_EQ(WrongUsageOf("--both " + asked), "");
-    EXPECT_EQ(WrongUsageOf("--udp " + asked), "");
+    EXPECT_THAT(ConflictOf("--tcp " + asked),
+                HasSubstr(fault + std::string(": applies to datagrams only")));
+    EXPECT_EQ(ConflictOf("--both " + asked), "");
+    EXPECT_EQ(ConflictOf("--udp " + asked), "");
   }
-  EXPECT_THAT(WrongUsageOf("--tcp --loss 0.1 --falsify 0.1"), HasSubstr("--loss, --falsify: "));
-  EXPECT_EQ(WrongUsageOf("--tcp --jitter 3 --black-hole 1:1"), "");
+  EXPECT_THAT(ConflictOf("--tcp --loss 0.1 --falsify 0.1"), HasSubstr("--loss, --falsify: "));
+  EXPECT_EQ(ConflictOf("--tcp --jitter 3 --black-hole 1:1"), "");
 }
 
-TEST(LoadFlags, ComparisonsAreMadeInPeace) {
-  EXPECT_THAT(WrongUsageOf("--find-max --loss 0.1"), HasSubstr("in peace"));
-  EXPECT_THAT(WrongUsageOf("--baseline --jitter 3"), HasSubstr("in peace"));
-  EXPECT_EQ(WrongUsageOf("--find-max --baseline"), "");
+TEST(LoadFlags, ComparisonsConflictWithFaults) {
+  EXPECT_THAT(ConflictOf("--find-max --loss 0.1"), HasSubstr("without injected faults"));
+  EXPECT_THAT(ConflictOf("--baseline --jitter 3"), HasSubstr("without injected faults"));
+  EXPECT_EQ(ConflictOf("--find-max --baseline"), "");
 }
 
-TEST(LoadFlags, AProcessThatIsNotThereIsWrong) {
-  EXPECT_EQ(WrongUsageOf("--pid " + std::to_string(getpid())), "");
-  EXPECT_THAT(WrongUsageOf("--pid 2147483647"), HasSubstr("no such process"));
+TEST(LoadFlags, AMissingProcessIsAnError) {
+  EXPECT_EQ(ConflictOf("--pid " + std::to_string(getpid())), "");
+  EXPECT_THAT(ConflictOf("--pid 2147483647"), HasSubstr("no such process"));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ nlohmann::json SettingsOf(const std::string& options) {
   return cli::SettingsOf(flags);
 }
 
-TEST(LoadSettings, WhatIsLeftToOthersIsNull) {
+TEST(LoadSettings, UnsetValuesAreNull) {
   const nlohmann::json settings = SettingsOf("");
   EXPECT_EQ(settings["host"], "localhost:7401");
   EXPECT_EQ(settings["file"], "performance.bvh");
@@ -26,7 +26,7 @@ TEST(LoadSettings, WhatIsLeftToOthersIsNull) {
   EXPECT_FALSE(settings.contains("comparison"));
 }
 
-TEST(LoadSettings, HoldWhatFiguresDependOn) {
+TEST(LoadSettings, ContainAllSettingsOfTheFigures) {
   const nlohmann::json settings = SettingsOf(
       "--rate 25 --subscribers 3 --stalled 2 --churn 1 --late 5 --seed 9 --loss 0.5 --way down "
       "--black-hole 1:2:4 --rig face.json");
@@ -42,7 +42,7 @@ TEST(LoadSettings, HoldWhatFiguresDependOn) {
   EXPECT_EQ(settings["chaos"]["down"]["black_holes"][0]["every"], 4.0);
 }
 
-TEST(LoadSettings, OfComparisonsHoldTheirOwn) {
+TEST(LoadSettings, ContainTheSettingsOfComparisons) {
   const nlohmann::json settings = SettingsOf("--baseline --rounds 5 --round-time 0.5");
   EXPECT_EQ(settings["comparison"]["baseline"], true);
   EXPECT_EQ(settings["comparison"]["find_max"], false);

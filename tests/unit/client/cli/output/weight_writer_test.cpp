@@ -20,7 +20,7 @@ std::string Write(TableFormat format) {
   return ::testing::internal::GetCapturedStdout();
 }
 
-TEST(WeightWriterTest, CsvIsTheContractOfTheCommandLine) {
+TEST(WeightWriterTest, CsvHasTheDocumentedFormat) {
   EXPECT_EQ(Write(TableFormat::kCsv),
             "frame,time,brow_l.squash,knee_l_inner.folds\n7,1.500000,0.250000,1.000000\n");
 }
@@ -33,7 +33,7 @@ TEST(WeightWriterTest, JsonLinesParse) {
   EXPECT_EQ(row["weights"].size(), 2u);
 }
 
-TEST(WeightWriterTest, TableShowsTheLargestFirst) {
+TEST(WeightWriterTest, TableShowsTheLargestWeightsFirst) {
   const std::string text = Write(TableFormat::kTable);
   const std::size_t knee = text.find("knee_l_inner.folds");
   const std::size_t brow = text.find("brow_l.squash");

@@ -15,7 +15,7 @@ using Track = SessionSchedule::Track;
 const std::vector<double> kAda({0.0, 0.1, 0.2, 0.3});
 const std::vector<double> kBob({7.0, 7.05, 7.1});
 
-TEST(SessionScheduleTest, EachFrameAtItsTimeOfTheSession) {
+TEST(SessionScheduleTest, EachFrameIsDueAtItsSessionTime) {
   const std::vector<Track> tracks({{kAda, 0.0}, {kBob, 0.17}});
   SessionSchedule schedule(tracks, 0.0, 0.0);
   ASSERT_EQ(schedule.count(), 7);
@@ -37,7 +37,7 @@ TEST(SessionScheduleTest, EachFrameAtItsTimeOfTheSession) {
   }
 }
 
-TEST(SessionScheduleTest, RoundsBeginTogetherAndTimeNeverGoesBack) {
+TEST(SessionScheduleTest, RoundsStartTogetherAndTimeNeverDecreases) {
   const std::vector<Track> tracks({{kAda, 0.0}, {kBob, 0.17}});
   SessionSchedule schedule(tracks, 0.0, 0.0);
   double last = 0.0;
@@ -47,17 +47,17 @@ TEST(SessionScheduleTest, RoundsBeginTogetherAndTimeNeverGoesBack) {
     EXPECT_EQ(due->round, i / 7);
     EXPECT_GE(due->seconds, last);
     last = due->seconds;
-    // ada's four frames take 0.4 s, bob ends at 0.17 + 0.15 s.
+    // The four frames of ada take 0.4 s; bob ends at 0.17 + 0.15 s.
     if (i % 7 == 0) {
       EXPECT_NEAR(due->seconds, 0.4 * (i / 7), 1e-9);
     }
   }
 }
 
-TEST(SessionScheduleTest, FromLeavesOutTheBeginningOfAll) {
+TEST(SessionScheduleTest, FromSkipsTheStartOfAllTracks) {
   const std::vector<Track> tracks({{kAda, 0.0}, {kBob, 0.17}});
   SessionSchedule late(tracks, 0.0, 0.21);
-  ASSERT_EQ(late.count(), 3);  // bob 0.22 and 0.27, ada 0.3
+  ASSERT_EQ(late.count(), 3);  // bob at 0.22 and 0.27 s, ada at 0.3 s
   EXPECT_EQ(late.Next()->track, 1u);
   EXPECT_NEAR(late.Next()->seconds, 0.05, 1e-12);
   const auto last = late.Next();
@@ -71,7 +71,7 @@ TEST(SessionScheduleTest, FromLeavesOutTheBeginningOfAll) {
   EXPECT_FALSE(over.Next());
 }
 
-TEST(SessionScheduleTest, OneSubjectIsItsOwnSchedule) {
+TEST(SessionScheduleTest, ASessionWithOneSubjectEqualsItsSchedule) {
   for (const double rate : {0.0, 7.0, 120.0}) {
     const std::vector<Track> tracks({{kBob, 0.0}});
     SessionSchedule session(tracks, rate, 0.0);
@@ -85,7 +85,7 @@ TEST(SessionScheduleTest, OneSubjectIsItsOwnSchedule) {
   }
 }
 
-TEST(SessionScheduleTest, OneThatIsDroppedDoesNotStopTheOthers) {
+TEST(SessionScheduleTest, ADroppedTrackDoesNotStopTheOthers) {
   const std::vector<Track> tracks({{kAda, 0.0}, {kBob, 0.0}});
   SessionSchedule schedule(tracks, 0.0, 0.0);
   schedule.Drop(0);

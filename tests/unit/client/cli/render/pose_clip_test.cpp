@@ -8,7 +8,7 @@ namespace {
 
 using wrinkle::kNoJoint;
 
-// A head with a brow on either side; map `squash` is fed by both brows' lowering.
+// A head with two brows. Lowering either brow feeds map `squash`.
 character::Character Brows() {
   character::Character character;
   auto skeleton =
@@ -40,7 +40,7 @@ TEST(PoseClip, NeutralIsTheRestPose) {
     EXPECT_EQ(local.translation, glm::vec3(0.0f));
 }
 
-TEST(PoseClip, WeightsScaleAndPosesAddUp) {
+TEST(PoseClip, WeightsScalePosesAndPosesAddUp) {
   const auto clip = PoseClip(Brows(), "lower_l=0.5,nod,nod=-0.25");
   ASSERT_TRUE(clip.ok()) << clip.status().ToString();
   EXPECT_FLOAT_EQ(clip->locals[1].translation.y, -0.5f);
@@ -48,7 +48,7 @@ TEST(PoseClip, WeightsScaleAndPosesAddUp) {
   EXPECT_FLOAT_EQ(clip->locals[2].translation.y, 0.0f);
 }
 
-TEST(PoseClip, NeutralAddsNothingToOthers) {
+TEST(PoseClip, NeutralAddsNothing) {
   for (const char* text : {"neutral,nod", "nod,neutral"}) {
     const auto clip = PoseClip(Brows(), text);
     ASSERT_TRUE(clip.ok()) << clip.status().ToString();
@@ -56,7 +56,7 @@ TEST(PoseClip, NeutralAddsNothingToOthers) {
   }
 }
 
-TEST(PoseClip, ANameWithoutSideMeansBothAndAMapAllThatFeedsIt) {
+TEST(PoseClip, ANameWithoutSideMeansBothSidesAndAMapAllItsPoses) {
   for (const char* text : {"lower", "squash"}) {
     const auto clip = PoseClip(Brows(), text);
     ASSERT_TRUE(clip.ok()) << text;
@@ -65,7 +65,7 @@ TEST(PoseClip, ANameWithoutSideMeansBothAndAMapAllThatFeedsIt) {
   }
 }
 
-TEST(PoseClip, WhatIsNotThereIsAnErrorThatListsWhatIs) {
+TEST(PoseClip, AnUnknownNameIsAnErrorThatListsTheValidNames) {
   const auto unknown = PoseClip(Brows(), "lower_l,smirk");
   EXPECT_EQ(unknown.status().code(), StatusCode::kNotFound);
   EXPECT_NE(unknown.status().ToString().find("lower_l, lower_r, nod"), std::string::npos);

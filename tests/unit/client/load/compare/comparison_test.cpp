@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "client/load/compare/comparison_report.h"
+#include "client/load/report/comparison_report.h"
 
 namespace furrow::load {
 namespace {
@@ -17,24 +17,25 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-// Contestants in miniature: each has a latency and a highest rate, and time passes as runs say.
+// Simulated targets, each with a latency and a highest rate. The clock advances by the length of
+// each run.
 class ComparisonTest : public testing::Test {
  protected:
   static constexpr double kServerLimit = 20000.0;
 
   void SetUp() override {
-    contestants_.server = {.host = "daemon", .pid = 1};
+    targets_.server = {.host = "daemon", .pid = 1};
     options_.run.plan.subjects = 10;
     options_.run.plan.seconds = 3.0;
     options_.rounds = 5;
     options_.searches = 2;
   }
   void AddEchoes() {
-    contestants_.raw = Target{.host = "raw", .echo = true, .pid = 2};
-    contestants_.control = Target{.host = "control", .echo = true, .pid = 3};
+    targets_.raw = Target{.host = "raw", .echo = true, .pid = 2};
+    targets_.control = Target{.host = "control", .echo = true, .pid = 3};
   }
 
-  // One run, which `change_` may spoil.
+  // Simulates one run, which `change_` may modify.
   Result<RunResult> Run(const Target& target, const RunOptions& options) {
     runs_.push_back(target.host);
     now_ += options.plan.seconds;
@@ -56,8 +57,8 @@ class ComparisonTest : public testing::Test {
   Comparison Compare() {
     return load::Compare(
         [this](const Target& target, const RunOptions& options) { return Run(target, options); },
-        contestants_, options_,
-        {.go_on = [this] { return runs_.size() < interrupt_after_; },
+        targets_, options_,
+        {.keep_going = [this] { return runs_.size() < interrupt_after_; },
          .progress = [this](const std::string& what) { said_.push_back(what); },
          .seconds = [this] { return now_; }});
   }
@@ -65,7 +66,7 @@ class ComparisonTest : public testing::Test {
     return std::ranges::count(runs_, host);
   }
 
-  Contestants contestants_;
+  ComparisonTargets targets_;
   ComparisonOptions options_;
   std::function<Result<RunResult>(const Target&, RunResult)> change_ =
       [](const Target&, RunResult result) { return Result<RunResult>(std::move(result)); };
@@ -76,7 +77,7 @@ class ComparisonTest : public testing::Test {
   std::vector<std::string> said_;
 };
 
-TEST_F(ComparisonTest, RoundsAreOfAllInTurnAndGiveRatios) {
+TEST_F(ComparisonTest, RoundsAlternateAndGiveRatios) {
   AddEchoes();
   options_.run.plan.rate = 100.0;
   const Comparison comparison = Compare();
@@ -93,7 +94,7 @@ TEST_F(ComparisonTest, RoundsAreOfAllInTurnAndGiveRatios) {
   EXPECT_FALSE(comparison.no_cpu || comparison.out_of_time || comparison.interrupted);
 }
 
-TEST_F(ComparisonTest, EachFollowsEachOtherEquallyOften) {
+TEST_F(ComparisonTest, EachTargetFollowsEachOtherEquallyOften) {
   AddEchoes();
   options_.rounds = 6;
   (void)Compare();
@@ -106,7 +107,7 @@ TEST_F(ComparisonTest, EachFollowsEachOtherEquallyOften) {
   for (const auto& [pair, count] : follows) EXPECT_EQ(count, 2) << pair.first << pair.second;
 }
 
-TEST_F(ComparisonTest, ASearchCutShortIsNotCompared) {
+TEST_F(ComparisonTest, AnUnfinishedSearchIsNotCompared) {
   AddEchoes();
   options_.find_max = true;
   options_.rounds = 0;
@@ -120,12 +121,12 @@ TEST_F(ComparisonTest, ASearchCutShortIsNotCompared) {
               testing::ContainsRegex("highest rate, poses/s [|] [0-9.]+ +[|] - "));
   EXPECT_TRUE(ToJson(comparison)["figures"][0]["ratio"].is_null());
   EXPECT_TRUE(ToJson(comparison)["figures"][0]["raw"].is_null());
-  EXPECT_THAT(ToText(comparison), HasSubstr("Beside a raw UDP echo\n"));
-  EXPECT_THAT(ToText(comparison), HasSubstr(" poses a second.\n"));
+  EXPECT_THAT(ToText(comparison), HasSubstr("Comparison with a raw UDP echo\n"));
+  EXPECT_THAT(ToText(comparison), HasSubstr(" poses per second.\n"));
 }
 
-// Where nothing was tried at all, nothing is known.
-TEST_F(ComparisonTest, ASearchThatHeldNothingYetHasNoHighestRate) {
+// Without a sustained rate there is no result.
+TEST_F(ComparisonTest, ASearchWithoutASustainedRateHasNoHighestRate) {
   options_.find_max = true;
   options_.time_limit_seconds = 0.5;
   change_ = [](const Target&, RunResult result) {
@@ -138,7 +139,7 @@ TEST_F(ComparisonTest, ASearchThatHeldNothingYetHasNoHighestRate) {
   EXPECT_THAT(ToText(comparison), Not(HasSubstr("Highest rate")));
 }
 
-TEST_F(ComparisonTest, ARoundThatBroughtNothingIsNoLatency) {
+TEST_F(ComparisonTest, ARoundWithoutWeightsHasNoLatency) {
   AddEchoes();
   change_ = [this](const Target&, RunResult result) {
     if (runs_.size() == 1) result.latency_ns = {};
@@ -147,9 +148,9 @@ TEST_F(ComparisonTest, ARoundThatBroughtNothingIsNoLatency) {
   EXPECT_NEAR(Compare().figures[0].ratio.low, 1.5, 0.01);
 }
 
-TEST_F(ComparisonTest, AnUnknownProcessTimeIsNotComparedAsZero) {
+TEST_F(ComparisonTest, AnUnknownProcessorTimeIsNotCompared) {
   AddEchoes();
-  contestants_.server.pid.reset();
+  targets_.server.pid.reset();
   const Comparison comparison = Compare();
   EXPECT_EQ(comparison.figures.size(), 2u);
   EXPECT_TRUE(comparison.no_cpu);
@@ -157,14 +158,14 @@ TEST_F(ComparisonTest, AnUnknownProcessTimeIsNotComparedAsZero) {
   EXPECT_THAT(ToText(comparison), Not(HasSubstr("CPU a pose")));
 }
 
-TEST_F(ComparisonTest, ARemoteDaemonBesideEchoesOfThisMachineIsRemarkedOn) {
+TEST_F(ComparisonTest, ARemoteDaemonGivesARemark) {
   AddEchoes();
   EXPECT_THAT(ToText(Compare()), Not(HasSubstr("loopback")));
-  contestants_.server.loopback = false;
+  targets_.server.loopback = false;
   EXPECT_THAT(ToText(Compare()), HasSubstr("not a loopback address"));
 }
 
-TEST_F(ComparisonTest, TheHighestRateIsFound) {
+TEST_F(ComparisonTest, FindsTheHighestRate) {
   options_.find_max = true;
   const Comparison comparison = Compare();
   EXPECT_EQ(comparison.highest_rates.size(), 2u);
@@ -177,13 +178,13 @@ TEST_F(ComparisonTest, TheHighestRateIsFound) {
   EXPECT_THAT(ToText(comparison), Not(HasSubstr("at least")));
 }
 
-TEST_F(ComparisonTest, OneSearchIsCalledOne) {
+TEST_F(ComparisonTest, OneSearchIsWrittenInTheSingular) {
   options_.find_max = true;
   options_.searches = 1;
-  EXPECT_THAT(ToText(Compare()), HasSubstr(" poses a second (1 search, "));
+  EXPECT_THAT(ToText(Compare()), HasSubstr(" poses per second (1 search, "));
 }
 
-TEST_F(ComparisonTest, ALimitBelowTheStartIsNotExceededAndSaysAtLeast) {
+TEST_F(ComparisonTest, ALimitBelowTheStartIsNotExceededAndGivesAtLeast) {
   options_.find_max = true;
   options_.search_limit = 1000.0;
   const Comparison comparison = Compare();
@@ -192,7 +193,7 @@ TEST_F(ComparisonTest, ALimitBelowTheStartIsNotExceededAndSaysAtLeast) {
   EXPECT_THAT(ToText(comparison), HasSubstr("at least 1000 poses"));
 }
 
-TEST_F(ComparisonTest, TheGeneratorsLimitIsNotCalledTheDaemons) {
+TEST_F(ComparisonTest, TheLimitOfTheGeneratorGivesAtLeast) {
   options_.find_max = true;
   change_ = [](const Target&, RunResult result) {
     if (result.planned_rate > 10000.0) {
@@ -205,14 +206,14 @@ TEST_F(ComparisonTest, TheGeneratorsLimitIsNotCalledTheDaemons) {
   ASSERT_TRUE(comparison.generator_behind_at);
   EXPECT_GT(*comparison.generator_behind_at, 10000.0);
   EXPECT_LT(*comparison.generator_behind_at, 10500.0);
-  EXPECT_THAT(ToText(comparison), HasSubstr("The generator could not keep up at 10"));
+  EXPECT_THAT(ToText(comparison), HasSubstr("The load generator could not keep up at 10"));
   EXPECT_THAT(ToText(comparison), HasSubstr("at least"));
   const auto marked = [](const RateStep& step) { return step.generator_behind != step.held; };
   EXPECT_TRUE(std::ranges::all_of(comparison.steps, marked));
 }
 
-// Only far beyond what the daemon holds anyway: its limit is its own.
-TEST_F(ComparisonTest, AGeneratorThatFallsBehindLaterIsNoLimit) {
+// The generator falls behind only at rates above the daemon's own limit.
+TEST_F(ComparisonTest, AGeneratorThatFallsBehindLaterIsNotTheLimit) {
   options_.find_max = true;
   change_ = [](const Target&, RunResult result) {
     result.overrun = result.planned_rate > 1.5 * kServerLimit ? 1 : 0;
@@ -221,7 +222,7 @@ TEST_F(ComparisonTest, AGeneratorThatFallsBehindLaterIsNoLimit) {
   EXPECT_FALSE(Compare().generator_behind_at);
 }
 
-TEST_F(ComparisonTest, AnErrorEndsItButNothingIsForgotten) {
+TEST_F(ComparisonTest, AnErrorEndsTheComparisonAndKeepsTheFigures) {
   AddEchoes();
   change_ = [this](const Target&, RunResult result) {
     if (runs_.size() > 9)
@@ -229,15 +230,15 @@ TEST_F(ComparisonTest, AnErrorEndsItButNothingIsForgotten) {
     return Result<RunResult>(std::move(result));
   };
   const Comparison comparison = Compare();
-  EXPECT_EQ(runs_.size(), 11u);  // the tenth was tried again
+  EXPECT_EQ(runs_.size(), 11u);  // the tenth run was tried again
   EXPECT_EQ(comparison.rounds, 3);
   EXPECT_EQ(comparison.figures.size(), 3u);
   EXPECT_EQ(comparison.failure.code(), StatusCode::kUnavailable);
-  EXPECT_THAT(ToText(comparison), HasSubstr("Ended before its time: nobody answers"));
+  EXPECT_THAT(ToText(comparison), HasSubstr("The measurement ended early: nobody answers"));
   EXPECT_EQ(ToJson(comparison)["failure"], "nobody answers");
 }
 
-TEST_F(ComparisonTest, AFailureThatPassesCostsNothing) {
+TEST_F(ComparisonTest, ATransientFailureIsTriedAgain) {
   AddEchoes();
   change_ = [this](const Target&, RunResult result) {
     if (runs_.size() == 5)
@@ -249,7 +250,7 @@ TEST_F(ComparisonTest, AFailureThatPassesCostsNothing) {
   EXPECT_TRUE(comparison.failure.ok());
 }
 
-TEST_F(ComparisonTest, ADaemonThatGoesAwayEndsTheRoundsButIsNotHeldInASearch) {
+TEST_F(ComparisonTest, ADaemonThatGoesAwayEndsTheRoundsAndFailsTheSearch) {
   AddEchoes();
   options_.find_max = true;
   change_ = [this](const Target& target, RunResult result) {
@@ -267,7 +268,7 @@ TEST_F(ComparisonTest, ADaemonThatGoesAwayEndsTheRoundsButIsNotHeldInASearch) {
   EXPECT_THAT(ToText(ended), HasSubstr("gone"));
 }
 
-TEST_F(ComparisonTest, NoRunBeginsBeyondTheTimeAndSearchesLeaveSomeForRounds) {
+TEST_F(ComparisonTest, NoRunStartsAfterTheTimeLimitAndSearchesLeaveTimeForRounds) {
   AddEchoes();
   options_.find_max = true;
   options_.searches = 100;
@@ -277,13 +278,13 @@ TEST_F(ComparisonTest, NoRunBeginsBeyondTheTimeAndSearchesLeaveSomeForRounds) {
   EXPECT_TRUE(comparison.out_of_time);
   EXPECT_LE(now_ - 100.0, 200.0 + options_.run.plan.seconds);
   EXPECT_GE(now_ - 100.0, 200.0);
-  EXPECT_GE(comparison.rounds, 8);  // 80 s of runs of 3 s
+  EXPECT_GE(comparison.rounds, 8);  // 80 s, 3 s per run
   EXPECT_GE(comparison.highest_rates.size(), 1u);
   EXPECT_THAT(said_.front(), HasSubstr("at most 3:20 left"));
   EXPECT_THAT(ToText(comparison), HasSubstr("--time-limit"));
 }
 
-TEST_F(ComparisonTest, TheOnlySearchCountsAlsoWhenItWasCutShort) {
+TEST_F(ComparisonTest, TheOnlySearchCountsEvenIfUnfinished) {
   options_.find_max = true;
   options_.time_limit_seconds = 4.0;
   const Comparison comparison = Compare();
@@ -292,7 +293,7 @@ TEST_F(ComparisonTest, TheOnlySearchCountsAlsoWhenItWasCutShort) {
   EXPECT_THAT(ToText(comparison), HasSubstr("at least 16000"));
 }
 
-TEST_F(ComparisonTest, AnInterruptLeavesTheFiguresSoFar) {
+TEST_F(ComparisonTest, AnInterruptKeepsTheFiguresSoFar) {
   AddEchoes();
   interrupt_after_ = 7;
   const Comparison comparison = Compare();

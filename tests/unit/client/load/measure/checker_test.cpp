@@ -5,20 +5,19 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/client/load/performance_testing.h"
+#include "tests/unit/client/load/workload_testing.h"
 
 namespace furrow::load {
 namespace {
 
 constexpr std::int64_t kLatencyUs = 300;
 
-// A server in miniature: solves what it is given, subject by subject.
+// A simulated server that solves the poses it receives, per subject.
 class Server {
  public:
-  Server(const Performance& performance, const Plan& plan)
-      : performance_(performance), plan_(plan) {
+  Server(const Workload& workload, const Plan& plan) : workload_(workload), plan_(plan) {
     for (int i = 0; i < plan.num_subjects(); ++i)
-      subjects_.push_back({wrinkle::SubjectSolver(performance.binding), -1});
+      subjects_.push_back({wrinkle::SubjectSolver(workload.binding), -1});
   }
 
   std::vector<float> Use(const Plan::Slot& slot) {
@@ -28,7 +27,7 @@ class Server {
     const double dt = subject.last_us < 0 ? 0.0 : static_cast<double>(now - subject.last_us) * 1e-6;
     subject.last_us = now;
     wrinkle::LocalPose pose;
-    performance_.pose(plan_.Frame(phase, slot.pose), &pose);
+    workload_.pose(plan_.Frame(phase, slot.pose), &pose);
     EXPECT_EQ(subject.solver.Update(pose, dt), wrinkle::JobStatus::kOk);
     const auto weights = subject.solver.wrinkle_weights();
     return {weights.begin(), weights.end()};
@@ -39,37 +38,37 @@ class Server {
     wrinkle::SubjectSolver solver;
     std::int64_t last_us;
   };
-  const Performance& performance_;
+  const Workload& workload_;
   const Plan& plan_;
   std::vector<Subject> subjects_;
 };
 
 class CheckerTest : public testing::Test {
  protected:
-  const Performance performance_ = MakePerformance();
-  const Plan plan_{performance_.times, {.subjects = 5, .phases = 4, .rate = 50.0, .seconds = 8.0}};
-  const Expected expected_{performance_, plan_, [](double) { return true; }};
+  const Workload workload_ = MakePerformance();
+  const Plan plan_{workload_.times, {.subjects = 5, .phases = 4, .rate = 50.0, .seconds = 8.0}};
+  const ExpectedWeights expected_{workload_, plan_, [](double) { return true; }};
   Checker checker_{plan_, &expected_, {.watchers = 1, .late_us = 1000, .seconds = 8.0}};
-  Server server_{performance_, plan_};
+  Server server_{workload_, plan_};
 
   void Arrive(const Plan::Slot& slot, const std::vector<float>& values,
               std::int64_t latency_us = kLatencyUs) {
     checker_.OnWeights(0, slot.subject, slot.pose, values, true, slot.due_us + latency_us);
   }
-  // Everything is sent; `on_way(i, slot)` says what becomes of the i-th.
+  // Sends all poses; `on_way(i, slot)` decides the fate of the i-th pose.
   template <class OnWay>
   const Tally& Run(const OnWay& on_way) {
     std::size_t i = 0;
     for (const Plan::Slot& slot : SlotsOf(plan_)) {
-      checker_.OnSent(slot.subject, slot.pose, true);
+      checker_.OnDue(slot.subject, slot.pose, true);
       on_way(i++, slot);
     }
-    EXPECT_TRUE(checker_.Settle(performance_, [](double) { return true; }));
+    EXPECT_TRUE(checker_.ResolveMismatches(workload_, [](double) { return true; }));
     return checker_.tally();
   }
 };
 
-TEST_F(CheckerTest, WhatIsRightIsRight) {
+TEST_F(CheckerTest, CorrectWeightsPass) {
   const Tally& tally = Run([&](std::size_t, const auto& slot) { Arrive(slot, server_.Use(slot)); });
   EXPECT_EQ(tally.offered, 2000u);
   EXPECT_EQ(tally.received, 2000u);
@@ -79,9 +78,9 @@ TEST_F(CheckerTest, WhatIsRightIsRight) {
   EXPECT_NEAR(static_cast<double>(checker_.latency_ns().max()), 1e3 * kLatencyUs, 1e3);
 }
 
-TEST_F(CheckerTest, WhatComesBeforeItIsDueIsToldAndNotOnlyCountedAsZero) {
+TEST_F(CheckerTest, EarlyArrivalsAreCountedWithALatencyOfZero) {
   const Plan::Slot slot = SlotsOf(plan_)[100];
-  checker_.OnSent(slot.subject, slot.pose, true);
+  checker_.OnDue(slot.subject, slot.pose, true);
   checker_.OnWeights(0, slot.subject, slot.pose, server_.Use(slot), true, slot.due_us - 1);
   EXPECT_EQ(checker_.tally().received, 1u);
   EXPECT_EQ(checker_.tally().early, 1u);
@@ -98,7 +97,7 @@ TEST_F(CheckerTest, OneFalsifiedWeightIsWrong) {
   EXPECT_EQ(tally.swapped, 0u);
 }
 
-TEST_F(CheckerTest, TwoThatAreExchangedAreSwapped) {
+TEST_F(CheckerTest, ExchangedWeightsAreSwapped) {
   std::vector<float> kept;
   Plan::Slot first;
   const Tally& tally = Run([&](std::size_t i, const auto& slot) {
@@ -117,9 +116,9 @@ TEST_F(CheckerTest, TwoThatAreExchangedAreSwapped) {
   EXPECT_EQ(tally.swapped, 2u);
 }
 
-// The filter of the server sees another time step then: its weights differ from the table's, but
-// they are what a right server sends.
-TEST_F(CheckerTest, PosesLostOnTheWayInAreLostAndNothingIsWrong) {
+// The server's filter then sees another time step, so its weights differ from the table although
+// the server is correct.
+TEST_F(CheckerTest, PosesLostOnTheWayInMakeNothingWrong) {
   const std::set<std::size_t> lost = {0, 3, 500, 501, 502, 600, 605, 1500};
   const Tally& tally = Run([&](std::size_t i, const auto& slot) {
     if (!lost.contains(i)) Arrive(slot, server_.Use(slot));
@@ -130,7 +129,7 @@ TEST_F(CheckerTest, PosesLostOnTheWayInAreLostAndNothingIsWrong) {
   EXPECT_GT(tally.largest_difference, 0.0f);
 }
 
-TEST_F(CheckerTest, WeightsLostOnTheWayOutAreLostAndNothingIsWrong) {
+TEST_F(CheckerTest, WeightsLostOnTheWayOutMakeNothingWrong) {
   const Tally& tally = Run([&](std::size_t i, const auto& slot) {
     const auto values = server_.Use(slot);
     if (i % 97 != 0) Arrive(slot, values);
@@ -139,7 +138,7 @@ TEST_F(CheckerTest, WeightsLostOnTheWayOutAreLostAndNothingIsWrong) {
   EXPECT_EQ(tally.wrong, 0u);
 }
 
-TEST_F(CheckerTest, AWrongOneIsFoundAmongLostOnes) {
+TEST_F(CheckerTest, AWrongWeightIsFoundAmongLostOnes) {
   const Tally& tally = Run([&](std::size_t i, const auto& slot) {
     if (i % 50 == 3) return;  // lost on the way in
     auto values = server_.Use(slot);
@@ -150,8 +149,8 @@ TEST_F(CheckerTest, AWrongOneIsFoundAmongLostOnes) {
   EXPECT_EQ(tally.wrong, 1u);
 }
 
-// Half of a second's poses lost at random: too many histories to follow, but none is a fault.
-TEST_F(CheckerTest, HeavyLossOnBothWaysIsNotCalledWrong) {
+// Half of the poses of a second are lost at random: too many possibilities to follow, and no fault.
+TEST_F(CheckerTest, HeavyLossInBothDirectionsMakesNothingWrong) {
   const Tally& tally = Run([&](std::size_t i, const auto& slot) {
     const std::size_t dice = (i * 2654435761u >> 7) % 100;
     if (dice < 45) return;
@@ -162,8 +161,8 @@ TEST_F(CheckerTest, HeavyLossOnBothWaysIsNotCalledWrong) {
   EXPECT_EQ(tally.wrong, 0u);
 }
 
-// After half a second without poses a server holds and decays by its own clock.
-TEST_F(CheckerTest, AfterALongGapTheSolverDoesNotPretendToKnow) {
+// After half a second without poses a server holds and decays weights by its own clock.
+TEST_F(CheckerTest, AfterALongGapWeightsAreUnchecked) {
   const Tally& tally = Run([&](std::size_t, const auto& slot) {
     if (slot.subject == 2 && slot.pose >= 100 && slot.pose < 140) return;
     auto values = server_.Use(slot);
@@ -175,7 +174,7 @@ TEST_F(CheckerTest, AfterALongGapTheSolverDoesNotPretendToKnow) {
   EXPECT_GT(tally.unchecked, 0u);
 }
 
-TEST_F(CheckerTest, LateTwiceOutOfOrderAndNeverSent) {
+TEST_F(CheckerTest, CountsLateDuplicateReorderedAndNeverSent) {
   std::vector<float> kept;
   Plan::Slot first;
   const Tally& tally = Run([&](std::size_t i, const auto& slot) {
@@ -198,35 +197,35 @@ TEST_F(CheckerTest, LateTwiceOutOfOrderAndNeverSent) {
   EXPECT_EQ(tally.wrong, 0u);
 }
 
-TEST_F(CheckerTest, WhatDidNotLeaveIsNotExpected) {
+TEST_F(CheckerTest, AnUnsentPoseIsNotExpected) {
   const Plan::Slot slot = SlotsOf(plan_)[0];
-  checker_.OnSent(slot.subject, slot.pose, false);
+  checker_.OnDue(slot.subject, slot.pose, false);
   EXPECT_EQ(checker_.tally().expected, 0u);
   EXPECT_EQ(checker_.tally().offered, 1u);
   Arrive(slot, server_.Use(slot));
   EXPECT_EQ(checker_.tally().never_sent, 1u);
 }
 
-TEST_F(CheckerTest, ASubjectThatNobodyHasIsNeverSent) {
+TEST_F(CheckerTest, AnUnknownSubjectIsNeverSent) {
   checker_.OnWeights(0, 5, 0, {}, false, 100);
   checker_.OnWeights(0, 65535, 0, {}, false, 100);
   EXPECT_EQ(checker_.tally().never_sent, 2u);
 }
 
 TEST_F(CheckerTest, ARowOfAnotherLengthIsWrong) {
-  checker_.OnSent(0, 0, true);
+  checker_.OnDue(0, 0, true);
   checker_.OnWeights(0, 0, 0, std::vector<float>{0.5f}, true, 100);
   EXPECT_EQ(checker_.tally().wrong, 1u);
 }
 
-TEST_F(CheckerTest, WhoeverEndsTheSettlingIsToldWhatWasNotChecked) {
+TEST_F(CheckerTest, ACancelledResolutionCountsTheRestAsUnchecked) {
   for (const Plan::Slot& slot : SlotsOf(plan_)) {
-    checker_.OnSent(slot.subject, slot.pose, true);
+    checker_.OnDue(slot.subject, slot.pose, true);
     if (slot.pose % 10 != 3) Arrive(slot, {0.2f, 0.3f, 0.4f});
   }
   int asked = 0;
   double share = 0.0;
-  EXPECT_FALSE(checker_.Settle(performance_, [&](double done) {
+  EXPECT_FALSE(checker_.ResolveMismatches(workload_, [&](double done) {
     EXPECT_GE(done, share);
     share = done;
     return ++asked <= 100;
@@ -237,43 +236,43 @@ TEST_F(CheckerTest, WhoeverEndsTheSettlingIsToldWhatWasNotChecked) {
   EXPECT_GE(tally.unchecked, 1700u);
 }
 
-// A server that is all wrong is wrong to the last weight, but not looked for to the last.
-TEST(Checker, OnlySoManyWrongOnesAreLookedForInTheWholeTable) {
-  const Performance performance = MakePerformance();
-  const Plan plan(performance.times, {.subjects = 5, .phases = 4, .rate = 50.0, .seconds = 50.0});
-  const Expected expected(performance, plan, [](double) { return true; });
+// If all weights are wrong, all are counted and only the first ones are classified.
+TEST(Checker, ClassifiesALimitedNumberOfWrongWeights) {
+  const Workload workload = MakePerformance();
+  const Plan plan(workload.times, {.subjects = 5, .phases = 4, .rate = 50.0, .seconds = 50.0});
+  const ExpectedWeights expected(workload, plan, [](double) { return true; });
   Checker checker(plan, &expected, {.late_us = 1000, .seconds = 50.0});
   for (const Plan::Slot& slot : SlotsOf(plan)) {
-    checker.OnSent(slot.subject, slot.pose, true);
+    checker.OnDue(slot.subject, slot.pose, true);
     checker.OnWeights(0, slot.subject, slot.pose, std::vector<float>{2.0f, 2.0f, 2.0f}, true,
                       slot.due_us + kLatencyUs);
   }
-  EXPECT_TRUE(checker.Settle(performance, [](double) { return true; }));
+  EXPECT_TRUE(checker.ResolveMismatches(workload, [](double) { return true; }));
   EXPECT_EQ(checker.tally().wrong, 12500u);
   EXPECT_EQ(checker.tally().unclassified, 2500u);
   EXPECT_EQ(checker.tally().falsified(), 10000u);
 }
 
-// Some minutes with one lost pose on the way in, near the end.
-class LateLoss : public testing::TestWithParam<float> {};  // cut-off of a filter, Hz
+// A run of several minutes with one pose lost on the way in, near the end.
+class LateLoss : public testing::TestWithParam<float> {};  // cut-off frequency of the filter, Hz
 
-TEST_P(LateLoss, IsReplayedFromAWhileBeforeWhereTheFilterForgets) {
-  Performance performance = MakePerformance({.min_cutoff_hz = GetParam(), .beta = 0.0f});
-  const Plan plan(performance.times, {.subjects = 1, .phases = 1, .rate = 0.0, .seconds = 120.0});
-  const Expected expected(performance, plan, [](double) { return true; });
+TEST_P(LateLoss, IsReplayedCorrectly) {
+  Workload workload = MakePerformance({.min_cutoff_hz = GetParam(), .beta = 0.0f});
+  const Plan plan(workload.times, {.subjects = 1, .phases = 1, .rate = 0.0, .seconds = 120.0});
+  const ExpectedWeights expected(workload, plan, [](double) { return true; });
   Checker checker(plan, &expected, {.late_us = 1000, .seconds = 120.0});
-  Server server(performance, plan);
+  Server server(workload, plan);
   for (const Plan::Slot& slot : SlotsOf(plan)) {
-    checker.OnSent(slot.subject, slot.pose, true);
+    checker.OnDue(slot.subject, slot.pose, true);
     if (slot.pose == 5500) continue;
     checker.OnWeights(0, 0, slot.pose, server.Use(slot), true, slot.due_us + kLatencyUs);
   }
   int solved = 0;
-  performance.pose = [&solved, pose = performance.pose](int frame, wrinkle::LocalPose* out) {
+  workload.pose = [&solved, pose = workload.pose](int frame, wrinkle::LocalPose* out) {
     ++solved;
     pose(frame, out);
   };
-  EXPECT_TRUE(checker.Settle(performance, [](double) { return true; }));
+  EXPECT_TRUE(checker.ResolveMismatches(workload, [](double) { return true; }));
   EXPECT_EQ(checker.tally().lost(), 1u);
   EXPECT_EQ(checker.tally().wrong, 0u);
   EXPECT_EQ(checker.tally().checked, plan.num_slots() - 1);
@@ -281,21 +280,21 @@ TEST_P(LateLoss, IsReplayedFromAWhileBeforeWhereTheFilterForgets) {
   EXPECT_EQ(solved < 1000, forgets) << solved;
 }
 
-// The default, and one whose memory is longer than what a late replay goes back.
+// The default cut-off, and one with a memory longer than a late replay.
 INSTANTIATE_TEST_SUITE_P(Filters, LateLoss, testing::Values(4.0f, 0.05f));
 
 TEST_F(CheckerTest, OtherNamesAreNotChecked) {
-  checker_.OnSent(0, 0, true);
+  checker_.OnDue(0, 0, true);
   checker_.OnWeights(0, 0, 0, std::vector<float>{1.0f}, false, 100);
   EXPECT_EQ(checker_.tally().unchecked, 1u);
 }
 
-// The table is as long as the filter's memory, the run is not.
-TEST(Expected, RepeatsOnceTheFilterHasSettled) {
-  const Performance performance = MakePerformance();
-  const Plan plan(performance.times, {.subjects = 1, .phases = 1, .rate = 0.0, .seconds = 60.0});
-  const Expected expected(performance, plan, [](double) { return true; });
-  Server server(performance, plan);
+// The table covers the memory of the filter; the run is longer.
+TEST(ExpectedWeights, RepeatsOnceTheFilterHasSettled) {
+  const Workload workload = MakePerformance();
+  const Plan plan(workload.times, {.subjects = 1, .phases = 1, .rate = 0.0, .seconds = 60.0});
+  const ExpectedWeights expected(workload, plan, [](double) { return true; });
+  Server server(workload, plan);
   for (const Plan::Slot& slot : SlotsOf(plan))
     EXPECT_LE(Distance(expected.Row(0, slot.pose), server.Use(slot)), 1e-6f) << slot.pose;
 }

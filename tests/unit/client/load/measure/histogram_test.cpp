@@ -11,7 +11,7 @@
 namespace furrow::load {
 namespace {
 
-// What sorting says: the value of that rank. `percentile` in whole hundredths.
+// The exact percentile from a sorted list. `percentile` in whole hundredths.
 std::int64_t Sorted(std::vector<std::int64_t> values, double percentile) {
   std::ranges::sort(values);
   const auto hundredths = static_cast<std::size_t>(std::llround(percentile * 100.0));
@@ -19,9 +19,9 @@ std::int64_t Sorted(std::vector<std::int64_t> values, double percentile) {
   return values[std::max<std::size_t>(rank, 1) - 1];
 }
 
-TEST(Histogram, PercentilesAreThoseOfSortingToOnePartInAThousand) {
+TEST(Histogram, PercentilesEqualThoseOfSortingWithinOnePartInAThousand) {
   std::mt19937_64 random(7);
-  std::lognormal_distribution<> latency(11.0, 1.7);  // 60 us and a long tail
+  std::lognormal_distribution<> latency(11.0, 1.7);  // median 60 us, with a long tail
   Histogram histogram;
   std::vector<std::int64_t> values;
   for (int i = 0; i < 20000; ++i) {
@@ -49,7 +49,7 @@ TEST(Histogram, SmallValuesAreExact) {
     EXPECT_EQ(histogram.Percentile(percentile), Sorted(values, percentile)) << percentile;
 }
 
-// In binary 99.9 % of 1,000 is a little more than 999.
+// In binary, 99.9% of 1,000 is slightly more than 999.
 TEST(Histogram, AWholeRankIsNotRoundedUp) {
   Histogram histogram;
   for (std::int64_t i = 1; i <= 1000; ++i) histogram.Record(i);
@@ -58,11 +58,11 @@ TEST(Histogram, AWholeRankIsNotRoundedUp) {
   EXPECT_EQ(histogram.Percentile(99.91), 1000);
   EXPECT_EQ(histogram.Percentile(100.0), 1000);
   for (std::int64_t i = 1001; i <= 10000; ++i) histogram.Record(i);
-  EXPECT_EQ(histogram.Percentile(99.9), 9990 | 7);  // to the upper end of its cell
+  EXPECT_EQ(histogram.Percentile(99.9), 9990 | 7);  // the upper end of its cell
   EXPECT_EQ(histogram.Percentile(0.01), 1);
 }
 
-TEST(Histogram, CellsFollowEachOtherWithoutGapOrOverlap) {
+TEST(Histogram, CellsHaveNoGapsAndNoOverlaps) {
   EXPECT_EQ(Histogram::Cell(0), 0u);
   for (std::size_t cell = 0; cell < 40000; ++cell) {
     EXPECT_EQ(Histogram::Cell(Histogram::UpperEnd(cell)), cell);
@@ -70,7 +70,7 @@ TEST(Histogram, CellsFollowEachOtherWithoutGapOrOverlap) {
   }
 }
 
-TEST(Histogram, AddingIsRecordingBoth) {
+TEST(Histogram, AddEqualsRecordingAllValues) {
   Histogram a;
   Histogram b;
   Histogram both;
@@ -87,7 +87,7 @@ TEST(Histogram, AddingIsRecordingBoth) {
   EXPECT_DOUBLE_EQ(a.Mean(), both.Mean());
 }
 
-TEST(Histogram, EmptyAndNegativeAreZero) {
+TEST(Histogram, EmptyHistogramsAndNegativeValuesGiveZero) {
   Histogram histogram;
   EXPECT_EQ(histogram.Percentile(99.0), 0);
   EXPECT_EQ(histogram.Mean(), 0.0);
@@ -96,8 +96,8 @@ TEST(Histogram, EmptyAndNegativeAreZero) {
   EXPECT_EQ(histogram.count(), 1u);
 }
 
-// A line each: value, share, count, 1/(1-share); the last has no fourth column.
-TEST(Histogram, HgrmCountsUpToAllOfThem) {
+// Each line holds value, share, count and 1/(1-share). The last line has no fourth column.
+TEST(Histogram, HgrmCountsUpToTheTotal) {
   Histogram histogram;
   for (std::int64_t i = 1; i <= 1000; ++i) histogram.Record(i * 1000);
   std::ostringstream out;

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A /proc of our own: two threads, one socket.
+// A fake /proc with two threads and one socket.
 class ProcTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -53,14 +53,14 @@ TEST_F(ProcTest, AddsUpThreadsAndReadsMemory) {
   EXPECT_FALSE(ReadUsage(44, proc_));
 }
 
-TEST_F(ProcTest, FindsWhoOwnsAPort) {
+TEST_F(ProcTest, FindsTheOwnerOfAPort) {
   EXPECT_EQ(FindPortOwner("udp", 0x1CE9, proc_), 42);
-  EXPECT_EQ(FindPortOwner("tcp", 0x1CE8, proc_), 43);            // the listener, not the connection
-  EXPECT_EQ(FindPortOwner("udp", 0x1CEA, proc_), std::nullopt);  // nobody's of ours
+  EXPECT_EQ(FindPortOwner("tcp", 0x1CE8, proc_), 43);  // the listener and not the connection
+  EXPECT_EQ(FindPortOwner("udp", 0x1CEA, proc_), std::nullopt);  // owned by no visible process
   EXPECT_EQ(FindPortOwner("udp", 0x1CEB, proc_), std::nullopt);
 }
 
-TEST(ReadUsage, KnowsThisVeryProcess) {
+TEST(ReadUsage, ReadsThisProcess) {
   const auto usage = ReadUsage(getpid());
   ASSERT_TRUE(usage);
   EXPECT_GT(usage->resident_bytes, 100'000u);

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/client/load/performance_testing.h"
+#include "tests/unit/client/load/workload_testing.h"
 
 namespace furrow::load {
 namespace {
@@ -12,19 +12,19 @@ constexpr float kTolerance = 1e-4f;
 
 class ReplayTest : public testing::Test {
  protected:
-  const Performance performance_ = MakePerformance();
-  const Plan plan_{performance_.times, {.subjects = 1, .phases = 1, .rate = 0.0, .seconds = 4.0}};
-  const Expected expected_{performance_, plan_, [](double) { return true; }};
-  Replay replay_{performance_, plan_, 0, expected_, kTolerance};
+  const Workload workload_ = MakePerformance();
+  const Plan plan_{workload_.times, {.subjects = 1, .phases = 1, .rate = 0.0, .seconds = 4.0}};
+  const ExpectedWeights expected_{workload_, plan_, [](double) { return true; }};
+  Replay replay_{workload_, plan_, 0, expected_, kTolerance};
 
-  // What a server sends for `pose` that used all poses before it but `lost`, as far from its start.
+  // The weights of a server for `pose` that received all earlier poses except `lost`.
   std::vector<float> Without(std::uint32_t lost, std::uint32_t pose) const {
-    wrinkle::SubjectSolver solver(performance_.binding);
+    wrinkle::SubjectSolver solver(workload_.binding);
     wrinkle::LocalPose local;
     std::int64_t last_us = 0;
     for (std::uint32_t i = 0; i <= pose; ++i) {
       if (i == lost) continue;
-      performance_.pose(plan_.Frame(0, i), &local);
+      workload_.pose(plan_.Frame(0, i), &local);
       const std::int64_t now_us = plan_.CaptureUs(0, i);
       (void)solver.Update(local, static_cast<double>(now_us - last_us) * 1e-6);
       last_us = now_us;
@@ -36,48 +36,48 @@ class ReplayTest : public testing::Test {
   }
 };
 
-TEST_F(ReplayTest, APoseLostOnTheWayInExplainsOtherWeights) {
+TEST_F(ReplayTest, APoseLostOnTheWayInExplainsDifferentWeights) {
   AgreeUntil(50);
   replay_.Missing(50);
   const auto values = Without(50, 51);
   EXPECT_GT(Distance(values, expected_.Row(0, 51)), kTolerance);
-  const auto difference = replay_.Disputed(51, values);
+  const auto difference = replay_.Mismatched(51, values);
   ASSERT_TRUE(difference);
   EXPECT_LE(*difference, 1e-6f);
 }
 
-TEST_F(ReplayTest, WeightsLostOnTheWayOutExplainThoseOfTheTable) {
+TEST_F(ReplayTest, WeightsLostOnTheWayOutExplainTheExpectedWeights) {
   AgreeUntil(50);
   replay_.Missing(50);
   EXPECT_LE(replay_.Agreed(51), 1e-6f);
-  // Now it is known that the server used the pose: what it would say without it is wrong.
-  const auto difference = replay_.Disputed(52, Without(50, 52));
+  // The server received the pose, so weights without it are wrong.
+  const auto difference = replay_.Mismatched(52, Without(50, 52));
   ASSERT_TRUE(difference);
   EXPECT_GT(*difference, kTolerance);
 }
 
-TEST_F(ReplayTest, NothingExplainsANumberThatWasMadeUp) {
+TEST_F(ReplayTest, NothingExplainsAnInventedNumber) {
   AgreeUntil(50);
   replay_.Missing(50);
-  const auto difference = replay_.Disputed(51, std::vector<float>{0.9f, 0.0f, 0.9f});
+  const auto difference = replay_.Mismatched(51, std::vector<float>{0.9f, 0.0f, 0.9f});
   ASSERT_TRUE(difference);
   EXPECT_GT(*difference, 0.1f);
 }
 
-TEST_F(ReplayTest, AfterASilenceNobodyCanTell) {
+TEST_F(ReplayTest, AfterALongGapNothingIsKnown) {
   AgreeUntil(50);
   for (std::uint32_t pose = 50; pose < 75; ++pose) replay_.Missing(pose);  // half a second
-  EXPECT_FALSE(replay_.Disputed(75, std::vector<float>{0.9f, 0.0f, 0.9f}));
+  EXPECT_FALSE(replay_.Mismatched(75, std::vector<float>{0.9f, 0.0f, 0.9f}));
 }
 
-// A while later it is as if it had begun with the first pose, and its first is no silence.
-TEST_F(ReplayTest, ALateBeginIsForgotten) {
-  Replay late(performance_, plan_, 0, expected_, kTolerance, 40);
+// A replay that starts late converges to one that started with the first pose, without a gap.
+TEST_F(ReplayTest, ALateStartIsForgotten) {
+  Replay late(workload_, plan_, 0, expected_, kTolerance, 40);
   float difference = 1.0f;
   for (std::uint32_t pose = 40; pose < 190; ++pose) difference = late.Agreed(pose);
   EXPECT_LE(difference, 1e-6f);
   late.Missing(190);
-  const auto explained = late.Disputed(191, Without(190, 191));
+  const auto explained = late.Mismatched(191, Without(190, 191));
   ASSERT_TRUE(explained);
   EXPECT_LE(*explained, 1e-6f);
 }

@@ -7,12 +7,12 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/client/load/performance_testing.h"
+#include "tests/unit/client/load/workload_testing.h"
 
 namespace furrow::load {
 namespace {
 
-TEST(Plan, SendsEachSubjectsPosesAtItsRateAndInOrder) {
+TEST(Plan, PosesOfEachSubjectAreDueInOrderAtItsRate) {
   const std::vector<double> times = {0.0, 0.1, 0.2, 0.3};
   const Plan plan(times, {.subjects = 3, .phases = 2, .rate = 50.0, .seconds = 2.0});
   EXPECT_EQ(plan.num_slots(), 300u);
@@ -29,8 +29,8 @@ TEST(Plan, SendsEachSubjectsPosesAtItsRateAndInOrder) {
   for (std::uint32_t i = 0; i < 3; ++i) EXPECT_EQ(next[i], plan.count(i));
 }
 
-// Merged as they are used, slots are those that sorting all of them gives.
-TEST(Plan, SlotsAreThoseOfSorting) {
+// The merged slots equal the sorted list of all slots.
+TEST(Plan, SlotsEqualTheSortedList) {
   const std::vector<double> times = {0.0, 0.1, 0.1004, 0.1004003, 0.3};
   for (const double rate : {0.0, 30.0, 100000.0}) {
     for (const int subjects : {1, 7, 60}) {
@@ -56,7 +56,7 @@ TEST(Plan, SlotsAreThoseOfSorting) {
   }
 }
 
-TEST(Plan, HoursOfManySubjectsTakeNoTimeToMake) {
+TEST(Plan, ALongPlanOfManySubjectsIsCheapToCreate) {
   std::vector<double> times;
   for (int i = 0; i < 60; ++i) times.push_back(i / 60.0);
   const Plan plan(times, {.subjects = 100, .phases = 16, .rate = 0.0, .seconds = 8.0 * 3600.0});
@@ -75,7 +75,7 @@ TEST(Plan, SubjectsDoNotSendInBursts) {
     EXPECT_EQ(slots[i].due_us - slots[i - 1].due_us, 200);
 }
 
-TEST(Plan, KeepsTheRecordingsOwnSpacingAcrossRounds) {
+TEST(Plan, KeepsTheRecordedSpacingAcrossRounds) {
   const std::vector<double> times = {5.0, 5.01, 5.05, 5.06};
   const Plan plan(times, {.subjects = 1, .phases = 1, .rate = 0.0, .seconds = 0.3});
   const std::int64_t expected[] = {0, 10'000, 50'000, 60'000, 80'000, 90'000, 130'000, 140'000};
@@ -85,7 +85,7 @@ TEST(Plan, KeepsTheRecordingsOwnSpacingAcrossRounds) {
   }
 }
 
-TEST(Plan, PhasesBeginAtOtherFramesAndCountFromTheirOwnFirst) {
+TEST(Plan, PhasesStartAtDifferentFramesAtCaptureTimeZero) {
   std::vector<double> times;
   for (int i = 0; i < 60; ++i) times.push_back(i / 30.0);
   const Plan plan(times, {.subjects = 8, .phases = 4, .rate = 0.0, .seconds = 4.0});
@@ -94,7 +94,7 @@ TEST(Plan, PhasesBeginAtOtherFramesAndCountFromTheirOwnFirst) {
     const int phase = plan.phase_of(subject);
     first.insert(plan.Frame(phase, 0));
     EXPECT_EQ(plan.CaptureUs(phase, 0), 0);
-    // Steps are the same in every round, to the microsecond.
+    // Capture-time steps repeat exactly in every round.
     for (std::uint32_t pose = 1; pose < 60; ++pose) {
       EXPECT_EQ(plan.CaptureUs(phase, pose) - plan.CaptureUs(phase, pose - 1),
                 plan.CaptureUs(phase, pose + 60) - plan.CaptureUs(phase, pose + 59));
@@ -103,7 +103,7 @@ TEST(Plan, PhasesBeginAtOtherFramesAndCountFromTheirOwnFirst) {
   EXPECT_EQ(first, (std::set<int>{0, 15, 30, 45}));
 }
 
-TEST(Plan, AStillPictureIsSentSixtyTimesASecond) {
+TEST(Plan, ARecordingWithOneFrameIsSentAt60Hz) {
   const std::vector<double> times = {3.0};
   const Plan plan(times, {.subjects = 1, .phases = 16, .rate = 0.0, .seconds = 1.0});
   EXPECT_EQ(plan.num_slots(), 60u);

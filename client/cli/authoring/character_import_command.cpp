@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <system_error>
+
+#include "authoring/import/character_package.h"
+#include "authoring/import/makehuman/makehuman.h"
+#include "authoring/import/model/import_model.h"
+#include "base/status.h"
+#include "character/package/package.h"
+#include "client/cli/authoring/character_command.h"
+#include "client/cli/common/exit_code.h"
+#include "client/cli/common/inputs.h"
+#include "client/cli/common/progress.h"
+#include "motion/pose_source.h"
+#include "report/words.h"
+
+namespace furrow::cli {
+namespace {
+
+using report::Counted;
+
+struct ImportArguments {
+  std::string in;
+  std::string out;
+  std::string rig;
+  std::string map;
+  authoring::ImportOptions makehuman;
+  authoring::ModelOptions model;
+};
+
+int ImportFolder(const ImportArguments& arguments) {
+  authoring::ImportOptions options = arguments.makehuman;
+  options.rig = arguments.rig.empty() ? std::filesystem::path() : ResolveRigPath(arguments.rig);
+  options.poses = motion::CachedPoseSource();
+  Progress progress("importing", 100);
+  options.progress = [&](float done) {
+    progress.Set(std::lround(100.0f * done));
+    return true;
+  };
+  authoring::ImportReport report;
+  const auto character = authoring::ImportMakeHuman(arguments.in, options, &report);
+  if (!character.ok()) return Fail(character.status());
+  if (Status status = authoring::WriteCharacterPackage(*character, arguments.out); !status.ok())
+    return Fail(status);
+  PrintWarnings(report.warnings);
+  std::fprintf(
+      stderr,
+      "furrow: %s: %s, %s, %s; %s hidden under clothes, %s without weights, %d with more than "
+      "four weights\n",
+      arguments.out.c_str(), Counted(report.joints, "joint").c_str(),
+      Counted(report.vertices, "vertex", "vertices").c_str(),
+      Counted(report.triangles, "triangle").c_str(),
+      Counted(report.hidden_faces, "body face").c_str(),
+      Counted(report.unweighted_vertices, "vertex", "vertices").c_str(), report.truncated_vertices);
+  return kDone;
+}
+
+// Attaches the requested rig, or a proposed one.
+Status AttachRigTo(const ImportArguments& arguments, character::Character* character) {
+  if (!arguments.rig.empty()) {
+    auto rig = LoadRigArgument(arguments.rig);
+    FURROW_RETURN_IF_ERROR(rig);
+    return character::AttachRig(std::move(*rig), ResolveRigPath(arguments.rig).parent_path(),
+                                character);
+  }
+  auto proposal = ProposeFromDefault(character->skeleton, arguments.map);
+  if (proposal.status().code() == StatusCode::kNotFound) {
+    PrintWarnings({"no rig could be proposed: " + proposal.status().ToString()});
+    return {};
+  }
+  FURROW_RETURN_IF_ERROR(proposal);
+  PrintNotes(proposal->remarks);
+  return character::AttachRig(std::move(proposal->rig), character->folder, character);
+}
+
+int ImportFile(const ImportArguments& arguments) {
+  const auto maps = character::SkeletonMaps::Load(arguments.map);
+  if (!maps.ok()) return Fail(maps.status());
+  auto imported = authoring::ImportModel(arguments.in, *maps, arguments.model);
+  if (!imported.ok()) return Fail(imported.status());
+  character::Character& character = imported->character;
+  PrintNotes(imported->remarks);
+  PrintWarnings(imported->warnings);
+  if (Status status = AttachRigTo(arguments, &character); !status.ok()) return Fail(status);
+  const Status written = character.rig.drivers.empty()
+                             ? character::SaveCharacterGlb(character, arguments.out)
+                             : authoring::WriteCharacterPackage(character, arguments.out);
+  if (!written.ok()) return Fail(written);
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  for (const character::Mesh& mesh : character.meshes) {
+    vertices += mesh.vertices.size();
+    triangles += mesh.indices.size() / 3;
+  }
+  std::fprintf(stderr, "furrow: %s: %s, %s, %s, %s, %s\n", arguments.out.c_str(),
+               Counted(character.skeleton.num_joints(), "joint").c_str(),
+               Counted(vertices, "vertex", "vertices").c_str(),
+               Counted(triangles, "triangle").c_str(),
+               Counted(character.rig.drivers.size(), "driver").c_str(),
+               Counted(character.rig.regions.size(), "region").c_str());
+  return kDone;
+}
+
+int Import(const ImportArguments& arguments) {
+  std::error_code error;
+  return std::filesystem::is_directory(arguments.in, error) ? ImportFolder(arguments)
+                                                            : ImportFile(arguments);
+}
+
+}  // namespace
+
+void AddCharacterImport(CLI::App& group, Action& action) {
+  auto arguments = std::make_shared<ImportArguments>();
+  CLI::App* command = group.add_subcommand(
+      "import",
+      "Make a character package from a skinned model (glTF, VRM, FBX, Collada, ...) or from "
+      "MakeHuman's data folder");
+  command
+      ->add_option(
+          "IN", arguments->in,
+          "Model file, or the MakeHuman folder with 3dobjs/, rigs/, poseunits/ and clothes/")
+      ->required();
+  command
+      ->add_option("--out", arguments->out,
+                   "Package to write, FILE.glb; FILE.rig.json is written beside it")
+      ->required();
+  command->add_option(
+      "--rig", arguments->rig,
+      "Wrinkle rig for the package, by file or shipped name (default: a rig proposed "
+      "from the joints; for MakeHuman, the shipped rig makehuman)");
+  command->add_option("--map", arguments->map,
+                      "Skeleton map of the joint names, by name or file (default: the best match)");
+  command->add_flag(
+      "--repair", arguments->model.repair,
+      "Remove triangles without area, and bind unskinned vertices like their neighbours");
+  command->add_option("--scale", arguments->model.scale,
+                      "Metres per unit of the model (default: derived from its height)");
+  command->add_option("--clothes", arguments->makehuman.clothes,
+                      "MakeHuman: folder in clothes/ (default: the first by name)");
+  command
+      ->add_option("--texture-size", arguments->makehuman.texture_size,
+                   "MakeHuman: texels per side of the textures")
+      ->check(CLI::Range(64, 4096))
+      ->capture_default_str();
+  command->callback([arguments, &action] { action = [arguments] { return Import(*arguments); }; });
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "client/cli/common/command.h"
+
+namespace furrow::cli {
+
+// The commands of the program `furrow-author`. Each function adds one subcommand to `app`.
+void AddCharacter(CLI::App& app, Action& action);  // import, check and propose-rig
+void AddBake(CLI::App& app, Action& action);
+void AddRigPatch(CLI::App& app, Action& action);  // `rig patch`, in a group `rig` of its own
+
+}  // namespace furrow::cli

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/common/command.h"
+
+#include <charconv>
+
+namespace furrow::cli {
+
+void AddSkeletonMap(CLI::App& command, std::string& value) {
+  command.add_option("--skeleton-map", value,
+                     "Map of the recording's joint names, by name (cmu, mixamo, vrm, ...) or file "
+                     "(default: the best match of the shipped maps)");
+}
+
+bool ParseSize(const std::string& text, int* width, int* height) {
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, *width);
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != 'x') return false;
+  const auto second = std::from_chars(first.ptr + 1, end, *height);
+  const auto in_range = [](int value) { return value >= 16 && value <= 4096; };
+  return second.ec == std::errc() && second.ptr == end && in_range(*width) && in_range(*height);
+}
+
+CLI::Validator SizeValidator() {
+  return {[](std::string& text) {
+            int width = 0;
+            int height = 0;
+            if (ParseSize(text, &width, &height)) return std::string();
+            return "'" + text + "' is not WIDTHxHEIGHT with both in 16..4096, such as 640x480";
+          },
+          "WxH"};
+}
+
+CLI::Validator Within(double least, double most) {
+  const std::string range = CLI::Range(least, most).get_description();
+  return {[=](std::string& text) {
+            double number = 0.0;
+            const bool is_number = CLI::detail::lexical_cast(text, number);
+            if (is_number && number >= least && number <= most) return std::string();
+            return "'" + text + "' is not in " + range;
+          },
+          range};
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace furrow::cli {
+
+// The work of a command with its parsed options; returns the exit code. It runs after CLI11 has
+// checked the whole command line.
+using Action = std::function<int()>;
+
+// Adds an option that takes one of a set of words, in any case. Help shows "csv|jsonl|table" and
+// the default, which is the initial `value`.
+template <class T>
+CLI::Option* AddChoice(CLI::App& app, const std::string& name, T& value,
+                       const std::map<std::string, T>& choices, const std::string& help) {
+  std::string words;
+  std::string default_word;
+  for (const auto& [word, meaning] : choices) {
+    words += (words.empty() ? "" : "|") + word;
+    if (meaning == value) default_word = word;
+  }
+  const auto to_number = [choices, words](std::string& text) {
+    const auto found = choices.find(CLI::detail::to_lower(text));
+    if (found == choices.end()) return "'" + text + "' is not one of " + words;
+    text = std::to_string(static_cast<int>(found->second));
+    return std::string();
+  };
+  return app.add_option(name, value, help)
+      ->transform(CLI::Validator(to_number, ""))
+      ->type_name(words)
+      ->default_str(default_word);
+}
+
+// A validator for numbers in [least, most]. Unlike CLI::Range it rejects NaN.
+[[nodiscard]] CLI::Validator Within(double least, double most);
+
+// Adds --skeleton-map. `value` receives the argument of LoadSkeletonMatcher().
+void AddSkeletonMap(CLI::App& command, std::string& value);
+
+// Parses "WxH", both in [16, 4096].
+[[nodiscard]] bool ParseSize(const std::string& text, int* width, int* height);
+// The validator of ParseSize().
+[[nodiscard]] CLI::Validator SizeValidator();
+
+// The help text of an argument that ParseEndpoint() reads.
+inline constexpr char kHostHelp[] = "Address of furrowd: HOST, HOST:PORT or [IPV6]:PORT";
+
+}  // namespace furrow::cli

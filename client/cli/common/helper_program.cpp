@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/common/helper_program.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+#include <system_error>
+
+#include <unistd.h>
+
+#include "client/cli/common/exit_code.h"
+
+namespace furrow::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kLoadProgram = "furrow-load";
+constexpr const char* kAuthorProgram = "furrow-author";
+
+constexpr std::array kHelperCommands = {
+    HelperCommand{"load", "Load-test a daemon: send many subjects, measure and check the weights",
+                  kLoadProgram},
+    HelperCommand{"chaos", "Run a proxy that injects network faults, repeatable by a seed",
+                  kLoadProgram},
+    HelperCommand{"character", "Import and check character packages (.glb with a wrinkle rig)",
+                  kAuthorProgram},
+    HelperCommand{"bake", "Bake wrinkle maps from the strain of a character's own poses",
+                  kAuthorProgram},
+    HelperCommand{"rig patch", "Cut a surface patch from a character: a strain driver for a rig",
+                  kAuthorProgram}};
+
+const HelperCommand& Get(std::string_view name) {
+  return *std::ranges::find(kHelperCommands, name, &HelperCommand::name);
+}
+
+}  // namespace
+
+std::span<const HelperCommand> HelperCommands() { return kHelperCommands; }
+
+const char* HelpOf(const std::string& name) { return Get(name).help; }
+
+void AddHelperEntry(CLI::App& parent, const std::string& name) {
+  const std::size_t space = name.rfind(' ');
+  parent.add_subcommand(space == std::string::npos ? name : name.substr(space + 1), HelpOf(name));
+}
+
+const HelperCommand* FindHelperCommand(int argc, const char* const* argv) {
+  std::string words;
+  for (int i = 1; i < std::min(argc, 3); ++i) {
+    words += (i > 1 ? " " : "") + std::string(argv[i]);
+    const auto found = std::ranges::find(kHelperCommands, words, &HelperCommand::name);
+    if (found != kHelperCommands.end()) return &*found;
+  }
+  return nullptr;
+}
+
+Result<fs::path> FindHelperProgram(const std::string& program, const fs::path& folder) {
+  for (const fs::path& place : {folder, folder.parent_path() / "libexec" / "furrow"}) {
+    if (access((place / program).c_str(), X_OK) == 0) return place / program;
+  }
+  return Status(StatusCode::kNotFound, "this command needs the program " + program, folder.string(),
+                "build it with 'cmake --build <build folder> --target " + program +
+                    "', or install the complete furrow package");
+}
+
+int RunHelperProgram(const HelperCommand& command, const char* const* argv) {
+  std::error_code error;
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  const auto program = FindHelperProgram(command.program, self.parent_path());
+  if (!program.ok()) {
+    (void)Fail(program.status());
+    return kFailed;
+  }
+  execv(program->c_str(), const_cast<char* const*>(argv));
+  return Fail({StatusCode::kIo, std::string("cannot start the program: ") + std::strerror(errno),
+               program->string()});
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "base/status.h"
+#include "client/cli/common/command.h"
+
+namespace furrow::cli {
+
+// A command of `furrow` that a separate program implements. Helper programs keep the load tester
+// and the authoring tools out of `furrow`, so that a build may leave them out.
+struct HelperCommand {
+  const char* name;     // "load", or "rig patch" for a command in a group
+  const char* help;     // one line, as `furrow --help` lists it
+  const char* program;  // file name of the executable, which is also its CMake target
+};
+
+// All helper commands, in the order of `furrow --help`.
+[[nodiscard]] std::span<const HelperCommand> HelperCommands();
+
+// The help line of one helper command. Precondition: `name` is in HelperCommands().
+[[nodiscard]] const char* HelpOf(const std::string& name);
+
+// Adds an entry for helper command `name` to `parent`, which lists it in --help. `parent` is the
+// application, or the group of the command.
+void AddHelperEntry(CLI::App& parent, const std::string& name);
+
+// The helper command that a command line asks for, or null.
+[[nodiscard]] const HelperCommand* FindHelperCommand(int argc, const char* const* argv);
+
+// The path of helper program `program` for an executable in `folder`: beside it, else in
+// ../libexec/furrow. kNotFound says what to build or install.
+[[nodiscard]] Result<std::filesystem::path> FindHelperProgram(const std::string& program,
+                                                              const std::filesystem::path& folder);
+
+// Replaces this process by the helper program of `command`, with unchanged arguments. Signals,
+// standard streams and the exit code are then those of the helper. Returns only on failure: prints
+// why and returns an exit code.
+[[nodiscard]] int RunHelperProgram(const HelperCommand& command, const char* const* argv);
+
+}  // namespace furrow::cli

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/common/inputs.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+#include <span>
+
+#include "base/data_dir.h"
+#include "base/status.h"
+#include "character/package/package.h"
+#include "client/cli/common/progress.h"
+#include "motion/clip_file.h"
+#include "motion/pose_source.h"
+#include "recording/take_clip.h"
+#include "report/words.h"
+#include "rig/rig_file.h"
+
+namespace furrow::cli {
+
+namespace fs = std::filesystem;
+
+void PrintWarnings(const std::vector<std::string>& warnings) {
+  for (const std::string& text : warnings)
+    std::fprintf(stderr, "furrow: warning: %s\n", text.c_str());
+}
+
+recording::ReadProgress ReadingBar() {
+  return
+      [bar = std::make_shared<std::optional<Progress>>()](std::uint64_t done, std::uint64_t total) {
+        if (done >= total) return bar->reset();
+        if (!*bar) bar->emplace("reading", static_cast<std::int64_t>(total));
+        (*bar)->Set(static_cast<std::int64_t>(done));
+      };
+}
+
+Result<std::unique_ptr<recording::TakeReader>> OpenTakeArgument(const std::string& path,
+                                                                std::string* subject) {
+  std::string file;
+  recording::SplitTakePath(path, &file, subject);
+  auto take = recording::TakeReader::Open(file);
+  if (take.ok()) (*take)->set_progress(ReadingBar());
+  return take;
+}
+
+Result<motion::Clip> LoadClipArgument(const std::string& path, const motion::LoadOptions& options) {
+  motion::ClipReport report;
+  auto clip = recording::IsTakePath(path)
+                  ? recording::LoadTakeClip(path, options.scale, &report, ReadingBar())
+                  : motion::LoadClip(path, options, &report);
+  PrintWarnings(report.warnings);
+  return clip;
+}
+
+fs::path ResolveRigPath(const std::string& argument) {
+  std::error_code error;
+  if (fs::exists(argument, error) || argument.find('/') != std::string::npos) return argument;
+  const std::string file = argument.ends_with(".json") ? argument : argument + ".json";
+  const auto shipped = furrow::FindDataFile("rigs/" + file);
+  return shipped.ok() ? *shipped : fs::path(argument);
+}
+
+Result<wrinkle::Rig> LoadRigArgument(const std::string& argument) {
+  return character::LoadRig(ResolveRigPath(argument), motion::CachedPoseSource());
+}
+
+Result<character::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map) {
+  auto matcher = character::SkeletonMatcher::Create(map);
+  if (matcher.ok()) return matcher;
+  if (!map.empty()) return matcher.status().At("--skeleton-map");
+  PrintWarnings({"joints are matched by equal names only: " + matcher.status().ToString()});
+  return character::SkeletonMatcher();
+}
+
+void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& clip) {
+  static constexpr std::size_t kNamed = 4;
+  const auto warn = [](std::span<const std::string> names, const std::string& one) {
+    if (names.empty()) return;
+    std::string text = "the recording lacks " + report::Counted(names.size(), one) +
+                       " of the rig, and their drivers stay at 0: " + names[0];
+    for (std::size_t i = 1; i < std::min(names.size(), kNamed); ++i) text += ", " + names[i];
+    PrintWarnings({text + (names.size() > kNamed ? ", ..." : "")});
+  };
+  warn(binding.missing_joints(), "joint");
+  if (!clip.blend_shape_names.empty()) warn(binding.missing_blend_shapes(), "blend shape");
+}
+
+Result<character::Character> LoadCharacterArgument(const std::string& glb, const std::string& rig) {
+  fs::path package = glb;
+  if (glb.empty()) {
+    const auto shipped = furrow::FindDataFile("default.glb");
+    FURROW_RETURN_IF_ERROR(shipped);
+    package = *shipped;
+  }
+  auto character = character::LoadCharacter(package, rig.empty() ? fs::path() : ResolveRigPath(rig),
+                                            motion::CachedPoseSource());
+  if (!character.ok()) return character;
+  PrintWarnings(character->warnings);
+  for (const std::string& name : character->missing_rig_pictures) {
+    PrintWarnings(
+        {"the rig's picture '" + name + "' was not found; wrinkles that need it are not drawn"});
+  }
+  return character;
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/status.h"
+#include "character/character.h"
+#include "motion/clip/clip.h"
+#include "recording/take_reader.h"
+#include "rig/skeleton_match.h"
+#include "wrinkle/rig/rig.h"
+#include "wrinkle/solver/solver.h"
+
+namespace furrow::cli {
+
+// Loads a recording. "take.mcap#NAME" selects a subject of a take with several subjects. Prints the
+// reader's warnings to standard error.
+[[nodiscard]] Result<motion::Clip> LoadClipArgument(const std::string& path,
+                                                    const motion::LoadOptions& options = {});
+
+// A progress bar for reading takes, erased at the end of each read.
+[[nodiscard]] recording::ReadProgress ReadingBar();
+
+// Opens a take, "take.mcap" or "take.mcap#NAME", with a progress bar. Sets `subject` to NAME, or to
+// an empty string without one.
+[[nodiscard]] Result<std::unique_ptr<recording::TakeReader>> OpenTakeArgument(
+    const std::string& path, std::string* subject);
+
+// Prints "furrow: warning: <text>" for each warning.
+void PrintWarnings(const std::vector<std::string>& warnings);
+
+// Resolves a --rig argument: an existing path, else the path of the shipped rig of this name. An
+// argument that is neither is returned unchanged, so that the loader reports the error.
+[[nodiscard]] std::filesystem::path ResolveRigPath(const std::string& argument);
+
+// Loads a rig by path, or a shipped rig by name ("cmu" or "cmu.json").
+[[nodiscard]] Result<wrinkle::Rig> LoadRigArgument(const std::string& argument);
+
+// Loads the skeleton map of --skeleton-map, by name or file. An empty `map` selects the best
+// shipped map per skeleton. Without shipped maps, joints match by equal names and a warning is
+// printed.
+[[nodiscard]] Result<character::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map);
+
+// Prints one warning for the joints and one for the blend shapes that the rig reads and the
+// recording lacks, with their number and the first few names. A recording without any blend shapes
+// gives no warning about blend shapes.
+void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& clip);
+
+// Loads a character package (empty `glb`: the default character) with a rig as LoadRigArgument()
+// takes it (empty `rig`: the package's own).
+[[nodiscard]] Result<character::Character> LoadCharacterArgument(const std::string& glb,
+                                                                 const std::string& rig);
+
+}  // namespace furrow::cli

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "base/status.h"
+
+namespace furrow::cli {
+
+// Writes to standard output and flushes it. Errors: kIo.
+[[nodiscard]] Status WriteStandardOutput(std::span<const std::uint8_t> bytes);
+
+// Returns the exit code after a failed write to standard output; call it while errno is unchanged.
+// A reader that closed the pipe (`... | head`) gives kDone; any other error is printed and gives
+// kFailed.
+[[nodiscard]] int StandardOutputFailed();
+
+}  // namespace furrow::cli

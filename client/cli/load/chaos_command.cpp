@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <memory>
+
+#include "client/chaos/proxy.h"
+#include "client/cli/common/endpoint.h"
+#include "client/cli/common/exit_code.h"
+#include "client/cli/common/helper_program.h"
+#include "client/cli/common/interrupt.h"
+#include "client/cli/load/chaos_flags.h"
+#include "client/cli/load/commands.h"
+#include "client/net/descriptor_limit.h"
+
+namespace furrow::cli {
+namespace {
+
+struct ChaosCommand {
+  std::string to;
+  chaos::ProxyOptions proxy;
+  std::uint16_t to_tcp = 0;
+  ChaosFlags flags;
+};
+
+int RunChaos(const ChaosCommand& command) {
+  chaos::ProxyOptions options = command.proxy;
+  ReadChaosFlags(command.flags, &options.up, &options.down);
+  Endpoint endpoint;
+  if (!ParseEndpoint(command.to, client::TransportKind::kUdp, &endpoint)) {
+    std::fprintf(stderr, "furrow: --to: '%s' is not HOST, HOST:PORT or [IPV6]:PORT\n",
+                 command.to.c_str());
+    return kUsage;
+  }
+  options.to_host = endpoint.host;
+  options.to_udp = endpoint.port;
+  options.to_tcp = command.to_tcp;
+  const auto proxy = chaos::Proxy::Open(options);
+  if (!proxy.ok()) {
+    const int code = Fail(proxy.status());
+    switch (proxy.status().code()) {
+      case StatusCode::kUnavailable: return kNoConnection;
+      case StatusCode::kInvalidArgument: return kUsage;
+      default: return code;
+    }
+  }
+  CatchInterrupts();
+  net::RaiseDescriptorLimit();
+  std::printf("furrow chaos ready udp=%s:%u", options.listen_host.c_str(), (*proxy)->udp_port());
+  if (options.to_tcp != 0)
+    std::printf(" tcp=%s:%u", options.listen_host.c_str(), (*proxy)->tcp_port());
+  std::printf("\n");
+  std::fflush(stdout);
+  (*proxy)->Run([] { return !Interrupted(); });
+  const chaos::Outcome up = (*proxy)->up();
+  const chaos::Outcome down = (*proxy)->down();
+  std::printf("%s\n%s\n%s", ToText("up", up).c_str(), ToText("down", down).c_str(),
+              chaos::NothingInjected(up, down).c_str());
+  return kDone;
+}
+
+}  // namespace
+
+void AddChaos(CLI::App& app, Action& action) {
+  auto options = std::make_shared<ChaosCommand>();
+  CLI::App* command = app.add_subcommand("chaos", HelpOf("chaos"));
+  command
+      ->add_option("--listen", options->proxy.listen_port,
+                   "UDP port for clients; 0 picks a free port, which the line 'furrow chaos ready' "
+                   "names")
+      ->required();
+  command->add_option("--bind", options->proxy.listen_host, "Numeric address to listen on")
+      ->capture_default_str();
+  command
+      ->add_option("--to", options->to,
+                   "UDP address of furrowd: HOST, HOST:PORT or [IPV6]:PORT; the port defaults to "
+                   "7401")
+      ->required();
+  auto* to_tcp =
+      command->add_option("--to-tcp", options->to_tcp,
+                          "TCP port of furrowd, to proxy TCP too; only --jitter and --black-hole "
+                          "apply to TCP (default: UDP only)");
+  command
+      ->add_option("--listen-tcp", options->proxy.listen_tcp_port,
+                   "TCP port for clients (default: a free port, named by the ready line)")
+      ->needs(to_tcp);
+  AddChaosFlags(*command, options->flags);
+  command->callback([options, &action] { action = [options] { return RunChaos(*options); }; });
+}
+
+}  // namespace furrow::cli

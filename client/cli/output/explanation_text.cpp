@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/output/explanation_text.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace furrow::cli {
+namespace {
+
+using wrinkle::Explanation;
+
+std::string_view DriverOf(std::string_view driver_value) {
+  return driver_value.substr(0, driver_value.rfind('.'));
+}
+
+void PrintGeometry(const Explanation& explanation, std::string_view driver_value, std::FILE* out) {
+  for (const auto& pose : explanation.pose_values) {
+    if (pose.driver_value != driver_value) continue;
+    std::fprintf(out, "      moved %.4g of %.4g; %.3f along the path, %.4g off the path",
+                 double{pose.moved}, double{pose.displacement}, double{pose.along},
+                 double{pose.perpendicular});
+    if (pose.falloff != 1.0f) std::fprintf(out, ", falloff %.3f", double{pose.falloff});
+    std::fputc('\n', out);
+  }
+  for (const auto& angle : explanation.angles) {
+    if (angle.driver != DriverOf(driver_value)) continue;
+    std::fprintf(out, "      %s %.1f degrees\n", angle.what.c_str(), double{angle.degrees});
+  }
+  for (const auto& strain : explanation.strains) {
+    if (strain.driver != DriverOf(driver_value)) continue;
+    std::fprintf(out, "      compressed to %.3f at %.1f degrees, %.3f across\n",
+                 double{strain.smallest}, double{strain.degrees}, double{strain.largest});
+  }
+}
+
+void PrintWeight(const Explanation& explanation, const Explanation::Weight& weight,
+                 std::FILE* out) {
+  std::fprintf(out, "%-28s %.3f  = combined %.3f, modulated %.3f\n", weight.name.c_str(),
+               double{weight.result}, double{weight.combined}, double{weight.modulated});
+  for (const auto& part : weight.contributions) {
+    std::fprintf(out, "    %-26s %.3f x %.2f\n", part.driver_value.c_str(), double{part.value},
+                 double{part.gain});
+    if (part.value > 0.0f) PrintGeometry(explanation, part.driver_value, out);
+  }
+  for (const auto& conflict : weight.conflicts) {
+    if (conflict.factor == 1.0f) continue;
+    std::fprintf(out, "    conflict with %s (%.3f): x %.3f\n", conflict.weight.c_str(),
+                 double{conflict.other}, double{conflict.factor});
+  }
+}
+
+}  // namespace
+
+void PrintExplanation(const Explanation& explanation, float threshold, std::FILE* out) {
+  std::vector<const Explanation::Weight*> order;
+  for (const auto& weight : explanation.weights) {
+    if (weight.result >= threshold) order.push_back(&weight);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto* a, const auto* b) { return a->result > b->result; });
+  for (const auto* weight : order) PrintWeight(explanation, *weight, out);
+  std::fprintf(out, "%zu more below %.3f\n", explanation.weights.size() - order.size(),
+               double{threshold});
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/receive/receive_events.h"
+
+#include <cstdio>
+
+#include "client/cli/common/endpoint.h"
+#include "client/cli/common/exit_code.h"
+#include "client/cli/common/interrupt.h"
+
+namespace furrow::cli {
+namespace {
+
+const char* GoodbyeText(protocol::GoodbyeReason reason) {
+  switch (reason) {
+    case protocol::GoodbyeReason::kSubjectGone: return "the subject left";
+    case protocol::GoodbyeReason::kDraining: return "the daemon is shutting down";
+    case protocol::GoodbyeReason::kTimedOut: return "the daemon timed out waiting for this client";
+    case protocol::GoodbyeReason::kDone: break;
+  }
+  return "the subscription ended";
+}
+
+int ReportNoConnection(client::Event::Kind kind) {
+  std::fprintf(stderr, "furrow: %s\n",
+               kind == client::Event::Kind::kNoConnection
+                   ? "the port is closed (is furrowd running there?)"
+                   : "no answer (is furrowd running there?)");
+  return kNoConnection;
+}
+
+int OnGoodbye(protocol::GoodbyeReason reason) {
+  std::fprintf(stderr, "furrow: %s\n", GoodbyeText(reason));
+  return reason == protocol::GoodbyeReason::kTimedOut ? kNoConnection : kDone;
+}
+
+}  // namespace
+
+int ReceiveEvents(client::Subscriber& subscriber,
+                  const std::function<bool(const client::Event&)>& on_event,
+                  const StopConditions& stop) {
+  constexpr std::int64_t kFirstAnswerTimeoutUs = 5'000'000;
+  using Kind = client::Event::Kind;
+  CatchInterrupts();
+  const std::int64_t start = SteadyMicroseconds();
+  bool heard = false;
+  int goodbyes = 0;
+  int exit_code = kDone;
+  std::int64_t ends_at = 0;  // 0: not interrupted
+  while (!stop.keep_going || stop.keep_going()) {
+    const std::int64_t now = SteadyMicroseconds();
+    if (Interrupted() && ends_at == 0) ends_at = now + stop.drain_us;
+    if (ends_at != 0 && now >= ends_at) break;
+    const client::Event event = subscriber.Next(now, std::chrono::milliseconds(100));
+    switch (event.kind) {
+      case Kind::kTimeout:
+      case Kind::kNoConnection:
+        if (ends_at != 0) return exit_code;
+        if (heard ? event.kind == Kind::kTimeout : now - start < kFirstAnswerTimeoutUs) continue;
+        return ReportNoConnection(event.kind);
+      case Kind::kClosed:
+        std::fprintf(stderr, "furrow: the daemon closed the connection\n");
+        return kNoConnection;
+      case Kind::kError:
+        std::fprintf(stderr, "furrow: the daemon reports an error: %s\n",
+                     subscriber.error().message.c_str());
+        exit_code = kFailed;
+        if (stop.survives_errors && stop.survives_errors()) continue;
+        return exit_code;
+      case Kind::kGoodbye: {
+        const protocol::GoodbyeReason reason = subscriber.goodbye().reason;
+        if (reason == protocol::GoodbyeReason::kSubjectGone && ++goodbyes != stop.goodbyes)
+          continue;
+        return OnGoodbye(reason);
+      }
+      default:
+        heard = true;
+        if (!on_event(event)) return exit_code;
+    }
+  }
+  return exit_code;
+}
+
+}  // namespace furrow::cli

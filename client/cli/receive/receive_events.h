@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "client/cli/common/command.h"
+#include "client/cpp/subscriber.h"
+#include "protocol/messages/limits.h"
+
+namespace furrow::cli {
+
+// Options common to all subscribing commands.
+struct SubscriptionOptions {
+  std::string host;
+  std::int64_t frames = 0;  // stop after this number; 0: when the subject leaves
+};
+
+// Adds HOST, --subject, --wait, --rate and --frames to `command`. `Request` is SubscribeWeights or
+// SubscribePictures. `unit` is what is counted, in the plural; `default_rate` describes the rate
+// without --rate.
+template <class Request>
+void AddSubscriptionOptions(CLI::App& command, SubscriptionOptions& options, Request& request,
+                            const std::string& unit, const std::string& default_rate) {
+  command.add_option("HOST", options.host, kHostHelp)->required();
+  command.add_option("--subject", request.subject,
+                     "Name of the subject (default: the oldest live subject)");
+  command.add_flag("--wait", request.wait, "Wait for the subject if it is not connected yet");
+  command
+      .add_option("--rate", request.max_rate_hz,
+                  "Maximum " + unit + " per second (default: " + default_rate + ")")
+      ->check(CLI::Range(0.001f, protocol::kMaxRateHz));
+  command
+      .add_option("--frames", options.frames,
+                  "Number of " + unit + " to receive (default: until the subject leaves)")
+      ->check(CLI::PositiveNumber);
+}
+
+// When ReceiveEvents() stops successfully.
+struct StopConditions {
+  // Number of subscriptions whose subject must have left; 0: do not stop, because subjects may
+  // return.
+  int goodbyes = 1;
+  // Returns true if an error of the daemon does not end the reception. The exit code still reports
+  // the error. Empty: every error ends the reception.
+  std::function<bool()> survives_errors;
+  // Called between events, at least ten times per second; returning false stops. Optional.
+  std::function<bool()> keep_going;
+  // After an interrupt, events that are still in flight are received until none arrives for 100 ms,
+  // for this time at most.
+  std::int64_t drain_us = 0;
+};
+
+// The event loop of `watch`, `frames` and `record`. Calls `on_event` for each message; returning
+// false stops successfully. Prints the reason of every other end and returns the exit code.
+//
+// It also stops on SIGINT and SIGTERM, on a goodbye, on an error of the daemon, and with
+// kNoConnection if nothing arrives within five seconds of the start.
+int ReceiveEvents(client::Subscriber& subscriber,
+                  const std::function<bool(const client::Event&)>& on_event,
+                  const StopConditions& stop = {});
+
+}  // namespace furrow::cli

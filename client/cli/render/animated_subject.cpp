@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/render/animated_subject.h"
+
+#include "base/status.h"
+#include "client/cli/common/inputs.h"
+
+namespace furrow::cli {
+
+Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
+    const character::Character& character, std::shared_ptr<const motion::Clip> clip,
+    const character::SkeletonMatcher& matcher, const std::string& file) {
+  auto self = std::make_unique<AnimatedSubject>();
+  self->clip_ = std::move(clip);
+  const motion::Clip& take = *self->clip_;
+  const auto match = matcher.Match(take.skeleton, character.rig, &character.skeleton);
+  auto binding = wrinkle::RigBinding::Create(character.rig, take.skeleton, take.blend_shape_names,
+                                             {.allow_missing = true, .aliases = match.aliases});
+  FURROW_RETURN_IF_ERROR(binding);
+  WarnAboutMissing(*binding, take);
+  self->solver_ = std::make_unique<wrinkle::SubjectSolver>(
+      std::make_shared<const wrinkle::RigBinding>(std::move(*binding)));
+  self->retarget_ = character::MakeRetarget(match, take.skeleton, character.skeleton);
+  self->blend_shape_pose_ =
+      wrinkle::BlendShapePose::Create(character.rig, character.skeleton, take.blend_shape_names);
+  if (take.blend_shape_names.empty() &&
+      self->retarget_.unmatched_source().size() == take.skeleton.joint_names().size()) {
+    return Status(StatusCode::kNotFound, "the recording and the character have no joint in common",
+                  file, "map the joints with --skeleton-map, or choose another --character");
+  }
+  self->drawn_.emplace(&character.skeleton);
+  return self;
+}
+
+Status AnimatedSubject::Advance(int frame) {
+  clip_->GetPose(frame, &pose_);
+  const double dt = frame == 0 ? 0.0 : clip_->times[frame] - clip_->times[frame - 1];
+  const bool solved = solver_->Update(pose_, dt) == wrinkle::JobStatus::kOk &&
+                      drawn_->Run(retarget_, blend_shape_pose_, pose_.joints, pose_.blend_shapes) ==
+                          wrinkle::JobStatus::kOk;
+  if (!solved)
+    return {StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved"};
+  return {};
+}
+
+render::PosedSubject AnimatedSubject::subject() const {
+  return {.model = drawn_->model(),
+          .binding = &solver_->binding(),
+          .wrinkle_weights = solver_->wrinkle_weights(),
+          .filtered_values = solver_->filtered_values()};
+}
+
+}  // namespace furrow::cli

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/load/compare/echo_server.h"
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <utility>
+
+#include <netinet/in.h>
+#include <sched.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "client/net/descriptor.h"
+
+namespace furrow::load {
+namespace {
+
+Status SystemError(const char* what) {
+  return {StatusCode::kIo, std::string(what) + ": " + std::strerror(errno), "echo server"};
+}
+
+[[noreturn]] void Serve(int socket) {
+  std::array<char, 2048> buffer{};
+  for (;;) {
+    sockaddr_storage from{};
+    socklen_t size = sizeof(from);
+    const ssize_t bytes = recvfrom(socket, buffer.data(), buffer.size(), 0,
+                                   reinterpret_cast<sockaddr*>(&from), &size);
+    if (bytes < 0) continue;  // an earlier answer was refused
+    (void)sendto(socket, buffer.data(), static_cast<std::size_t>(bytes), 0,
+                 reinterpret_cast<const sockaddr*>(&from), size);
+  }
+}
+
+}  // namespace
+
+Result<EchoServer> EchoServer::Start(std::optional<int> same_cores_as) {
+  net::Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  auto* const plain = reinterpret_cast<sockaddr*>(&address);
+  if (socket.get() < 0 || bind(socket.get(), plain, size) != 0 ||
+      getsockname(socket.get(), plain, &size) != 0) {
+    return SystemError("cannot open a socket");
+  }
+  const int bytes = 4 << 20;
+  setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof(bytes));
+  setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof(bytes));
+  const int parent = getpid();
+  const int pid = fork();
+  if (pid < 0) return SystemError("cannot start a process");
+  if (pid == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(0);
+    std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches all processes; the parent ends this one
+    cpu_set_t cores;
+    if (same_cores_as && sched_getaffinity(*same_cores_as, sizeof(cores), &cores) == 0)
+      sched_setaffinity(0, sizeof(cores), &cores);
+    Serve(socket.get());
+  }
+  return EchoServer(pid, ntohs(address.sin_port));
+}
+
+EchoServer::EchoServer(EchoServer&& other) noexcept
+    : pid_(std::exchange(other.pid_, 0)), port_(other.port_) {}
+
+EchoServer::~EchoServer() {
+  if (pid_ <= 0) return;
+  kill(pid_, SIGKILL);
+  waitpid(pid_, nullptr, 0);
+}
+
+}  // namespace furrow::load

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "base/status.h"
+#include "client/cpp/subscriber.h"
+#include "client/load/run/senders.h"
+
+namespace furrow::load {
+
+// Numbers of misbehaving subscribers. All of them use TCP.
+struct MisbehaviorOptions {
+  int slow = 0;     // read one message per second
+  int stalled = 0;  // subscribe and never read
+  int churn = 0;    // repeatedly subscribe, stay for half a second, and disconnect
+  [[nodiscard]] int total() const { return slow + stalled + churn; }
+};
+
+// Subscribers that are not measured and put stress on the server. Each subscribes to up to 64
+// subjects. Subscribers that the server disconnects connect again.
+//
+// Tick() does not block, except for one round trip when a subscriber connects again.
+class MisbehavingSubscribers {
+ public:
+  // Errors: those of `open`.
+  [[nodiscard]] static Result<MisbehavingSubscribers> Open(SocketOpener open,
+                                                           const MisbehaviorOptions& options,
+                                                           int subjects);
+
+  // Lets each subscriber do what is due. Call it often.
+  void Tick(std::int64_t now_us);
+
+  // Number of times that a churning subscriber connected again.
+  [[nodiscard]] std::uint64_t returns() const { return returns_; }
+  // Number of observed disconnects of slow and stalled subscribers. The server may have
+  // disconnected more, because a subscriber that does not read may miss the end of its connection.
+  [[nodiscard]] std::uint64_t cut() const { return cut_; }
+
+ private:
+  enum class Kind { kSlow, kStalled, kChurn };
+  struct Member {
+    Kind kind = Kind::kStalled;
+    std::int64_t due_us = 0;
+    int descriptor = -1;                             // owned by `subscriber`
+    std::unique_ptr<client::Subscriber> subscriber;  // null: disconnected
+  };
+
+  MisbehavingSubscribers(SocketOpener open, int subjects)
+      : open_(std::move(open)), subjects_(subjects) {}
+  [[nodiscard]] Status Connect(Member& member);
+  void Churn(Member& member);
+  void ReadLittle(Member& member, std::int64_t now_us);
+
+  SocketOpener open_;
+  int subjects_;
+  std::vector<Member> members_;
+  std::uint64_t returns_ = 0;
+  std::uint64_t cut_ = 0;
+};
+
+}  // namespace furrow::load

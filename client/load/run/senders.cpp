@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/load/run/senders.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <utility>
+
+#include "base/status.h"
+#include "client/cpp/acceptance.h"
+#include "client/net/clock.h"
+#include "protocol/framing/envelope.h"
+
+namespace furrow::load {
+
+using client::IoStatus;
+using std::chrono::milliseconds;
+
+std::string SubjectName(std::uint32_t subject) {
+  char name[32];
+  std::snprintf(name, sizeof(name), "load-%06u", subject);
+  return name;
+}
+
+namespace {
+
+std::int64_t SteadyMicroseconds() { return net::SteadyNanoseconds() / 1000; }
+
+Status ToStatus(const client::Acceptance& answer) {
+  using Kind = client::Acceptance::Kind;
+  switch (answer.kind) {
+    case Kind::kAccepted:
+    case Kind::kCancelled: return {};
+    case Kind::kRefused:
+      return {StatusCode::kInvalidArgument, "the daemon rejects the skeleton: " + answer.reason};
+    case Kind::kError:
+      return {StatusCode::kInvalidArgument, "the daemon reports an error: " + answer.reason};
+    case Kind::kNoAnswer:
+    case Kind::kNoConnection: break;
+  }
+  return {StatusCode::kUnavailable, "no answer"};
+}
+
+}  // namespace
+
+Result<Senders> Senders::Open(const SocketOpener& open, int sockets, const Workload& workload) {
+  Senders senders(workload);
+  for (int i = 0; i < sockets; ++i) {
+    auto socket = open(i);
+    FURROW_RETURN_IF_ERROR(socket);
+    Sender& sender = senders.senders_.emplace_back();
+    sender.socket = socket->get();
+    sender.publisher = std::make_unique<client::Publisher>(*std::move(socket));
+  }
+  return senders;
+}
+
+Status Senders::Offer(int count, const std::function<bool()>& keep_going) {
+  protocol::SkeletonOffer offer = workload_->offer;
+  for (int subject = 0; subject < count && keep_going(); ++subject) {
+    const auto number = static_cast<std::uint32_t>(subject);
+    offer.subject = SubjectName(number);
+    Sender& sender = senders_[number % senders_.size()];
+    const std::uint16_t stream = sender.publisher->AddSubject(offer, SteadyMicroseconds());
+    // Offers one skeleton at a time; a thousand at once would overflow the server's receive buffer.
+    const client::Acceptance answer =
+        client::WaitUntilAccepted(*sender.publisher, stream, SteadyMicroseconds, keep_going);
+    FURROW_RETURN_IF_ERROR(ToStatus(answer));
+  }
+  return {};
+}
+
+IoStatus Senders::Send(std::uint32_t subject, std::uint32_t pose, int frame,
+                       std::int64_t capture_time_us) {
+  const std::size_t i = subject % senders_.size();
+  std::vector<std::uint8_t>& message = messages_[static_cast<std::size_t>(frame)];
+  const protocol::Envelope envelope{
+      .header = {.session = senders_[i].publisher->session(),
+                 .stream = static_cast<std::uint16_t>(subject / senders_.size()),
+                 .sequence = pose,
+                 .capture_time_us = capture_time_us},
+      .payload_bytes = static_cast<std::uint32_t>(message.size() - protocol::kEnvelopeBytes)};
+  protocol::WriteEnvelope(envelope,
+                          std::span<std::uint8_t>(message).first<protocol::kEnvelopeBytes>());
+  return senders_[i].socket->Send(message);
+}
+
+IoStatus Senders::Read(std::size_t i) {
+  return senders_[i].publisher->Poll(SteadyMicroseconds(), milliseconds(0));
+}
+
+void Senders::Close() {
+  for (Sender& sender : senders_) sender.publisher->Close();
+}
+
+}  // namespace furrow::load

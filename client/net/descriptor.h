@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace furrow::net {
+
+// Owns a file descriptor and closes it on destruction. -1 means none.
+class Descriptor {
+ public:
+  explicit Descriptor(int value = -1) : value_(value) {}
+  ~Descriptor();
+  Descriptor(Descriptor&& other) noexcept;
+  Descriptor& operator=(Descriptor&& other) noexcept;
+  [[nodiscard]] int get() const { return value_; }
+
+ private:
+  int value_;
+};
+
+// Returns the numeric address of a connected socket's peer, or an empty string if the socket is not
+// connected.
+[[nodiscard]] std::string PeerHost(int descriptor);
+
+// Waits until `descriptor` has one of poll()'s `events`. Returns false on timeout.
+bool WaitFor(int descriptor, short events, std::chrono::milliseconds timeout);
+
+}  // namespace furrow::net

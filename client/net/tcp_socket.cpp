@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/net/tcp_socket.h"
+
+#include <cerrno>
+#include <utility>
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include "client/net/clock.h"
+
+namespace furrow::net {
+
+using client::IoStatus;
+
+namespace {
+
+constexpr std::chrono::milliseconds kSendTimeout{5000};
+
+}  // namespace
+
+TcpSocket::TcpSocket(Descriptor descriptor)
+    : Socket(client::TransportKind::kTcp), descriptor_(std::move(descriptor)) {
+  const int on = 1;
+  setsockopt(descriptor_.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+}
+
+IoStatus TcpSocket::Send(std::span<const std::uint8_t> message) {
+  if (message.size() > protocol::kMaxRequestBytes) return IoStatus::kTooLarge;
+  const auto prefix = protocol::FramePrefix(message.size());
+  outgoing_.assign(prefix.begin(), prefix.end());
+  outgoing_.insert(outgoing_.end(), message.begin(), message.end());
+  std::size_t sent = 0;
+  while (sent < outgoing_.size()) {
+    const ssize_t taken =
+        send(descriptor_.get(), outgoing_.data() + sent, outgoing_.size() - sent, MSG_NOSIGNAL);
+    if (taken >= 0) {
+      sent += static_cast<std::size_t>(taken);
+    } else if (errno != EAGAIN && errno != EINTR) {
+      return IoStatus::kClosed;
+    } else if (!WaitFor(descriptor_.get(), POLLOUT, kSendTimeout)) {
+      return IoStatus::kClosed;
+    }
+  }
+  return IoStatus::kOk;
+}
+
+IoStatus TcpSocket::Receive(std::span<const std::uint8_t>& message,
+                            std::chrono::milliseconds timeout) {
+  for (;;) {
+    if (!unread_.empty()) {
+      switch (frames_.Push(unread_, message)) {
+        case protocol::FrameStatus::kFrame: return IoStatus::kOk;
+        case protocol::FrameStatus::kBadLength: return IoStatus::kMalformed;
+        case protocol::FrameStatus::kNeedMore: break;
+      }
+    }
+    if (std::exchange(drained_, false)) return IoStatus::kTimeout;
+    const IoStatus status = Fill(std::exchange(timeout, {}));
+    if (status != IoStatus::kOk) return status;
+  }
+}
+
+IoStatus TcpSocket::Fill(std::chrono::milliseconds timeout) {
+  if (timeout.count() > 0) WaitFor(descriptor_.get(), POLLIN, timeout);
+  const ssize_t received = recv(descriptor_.get(), buffer_.data(), buffer_.size(), 0);
+  if (received < 0 && (errno == EAGAIN || errno == EINTR)) return IoStatus::kTimeout;
+  if (received <= 0) return IoStatus::kClosed;
+  read_ns_ = SteadyNanoseconds();
+  const auto bytes = static_cast<std::size_t>(received);
+  unread_ = std::span<const std::uint8_t>(buffer_).first(bytes);
+  drained_ = bytes < buffer_.size();
+  return IoStatus::kOk;
+}
+
+}  // namespace furrow::net

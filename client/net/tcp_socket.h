@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "client/net/descriptor.h"
+#include "client/net/socket.h"
+#include "protocol/framing/tcp_framing.h"
+#include "protocol/messages/limits.h"
+
+namespace furrow::net {
+
+// A connected TCP socket. Send() blocks while the peer's buffer is full, for 5 seconds at most, and
+// then returns kClosed.
+class TcpSocket : public Socket {
+ public:
+  explicit TcpSocket(Descriptor descriptor);
+
+  [[nodiscard]] client::IoStatus Send(std::span<const std::uint8_t> message) override;
+  [[nodiscard]] client::IoStatus Receive(std::span<const std::uint8_t>& message,
+                                         std::chrono::milliseconds timeout) override;
+  [[nodiscard]] int descriptor() const override { return descriptor_.get(); }
+  [[nodiscard]] bool holds() const override { return !unread_.empty(); }
+  [[nodiscard]] std::int64_t arrived_ns() const override { return read_ns_; }
+
+ private:
+  [[nodiscard]] client::IoStatus Fill(std::chrono::milliseconds timeout);
+
+  Descriptor descriptor_;
+  std::vector<std::uint8_t> outgoing_;
+  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(64 * 1024);
+  std::span<const std::uint8_t> unread_;
+  std::int64_t read_ns_ = 0;  // time of the last read
+  bool drained_ = false;      // the last read did not fill the buffer, so no data is left for now
+  protocol::FrameReader frames_{protocol::kMaxReplyBytes};
+};
+
+}  // namespace furrow::net

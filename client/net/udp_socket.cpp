@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/net/udp_socket.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <poll.h>
+
+#include "client/net/clock.h"
+
+namespace furrow::net {
+
+using client::IoStatus;
+
+UdpSocket::UdpSocket(Descriptor descriptor)
+    : Socket(client::TransportKind::kUdp),
+      descriptor_(std::move(descriptor)),
+      buffer_(kBatch * kBufferBytes) {
+  const int bytes = 4 << 20;  // the system may grant less
+  setsockopt(descriptor_.get(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof(bytes));
+  setsockopt(descriptor_.get(), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof(bytes));
+  const int on = 1;
+  setsockopt(descriptor_.get(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof(on));
+  ArrivalClock::Enable(descriptor_.get());
+  for (std::size_t i = 0; i < kBatch; ++i) {
+    slices_[i] = {buffer_.data() + i * kBufferBytes, kBufferBytes};
+    headers_[i].msg_hdr.msg_iov = &slices_[i];
+    headers_[i].msg_hdr.msg_iovlen = 1;
+    headers_[i].msg_hdr.msg_control = &controls_[i];
+  }
+}
+
+IoStatus UdpSocket::Send(std::span<const std::uint8_t> message) {
+  if (message.size() > protocol::kMaxUdpMessageBytes) return IoStatus::kTooLarge;
+  if (message.size() <= protocol::kMaxDatagramBytes) return SendDatagram(message);
+  const std::size_t count = protocol::NumDatagrams(message.size());
+  const std::uint32_t id = next_message_id_++;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t bytes = protocol::WriteDatagram(message, id, i, datagram_);
+    const IoStatus status = SendDatagram(std::span<const std::uint8_t>(datagram_).first(bytes));
+    if (status != IoStatus::kOk) return status;
+  }
+  return IoStatus::kOk;
+}
+
+// ECONNREFUSED reports the fate of an earlier datagram, so this datagram is sent once more.
+IoStatus UdpSocket::SendDatagram(std::span<const std::uint8_t> datagram) {
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    if (send(descriptor_.get(), datagram.data(), datagram.size(), 0) >= 0) return IoStatus::kOk;
+    if (errno == EAGAIN || errno == ENOBUFS) return IoStatus::kTimeout;
+  }
+  return IoStatus::kNoConnection;
+}
+
+IoStatus UdpSocket::Receive(std::span<const std::uint8_t>& message,
+                            std::chrono::milliseconds timeout) {
+  while (!unbundler_.Next(message)) {
+    if (taken_ == filled_) {
+      if (std::exchange(drained_, false)) return IoStatus::kTimeout;
+      if (timeout.count() > 0) WaitFor(descriptor_.get(), POLLIN, std::exchange(timeout, {}));
+      const IoStatus status = Fill();
+      if (status != IoStatus::kOk) return status;
+    }
+    const std::size_t i = taken_++;
+    arrived_ns_ = clock_.Arrival(&headers_[i].msg_hdr);
+    const std::span datagram(buffer_.data() + i * kBufferBytes, headers_[i].msg_len);
+    switch (reassembler_.Push(0, datagram, SteadyNanoseconds() / 1000, message)) {
+      case protocol::FragmentStatus::kWhole: (void)unbundler_.Open(datagram); break;
+      case protocol::FragmentStatus::kComplete: return IoStatus::kOk;
+      default: break;  // an incomplete message or a foreign datagram
+    }
+  }
+  return IoStatus::kOk;
+}
+
+IoStatus UdpSocket::Fill() {
+  taken_ = 0;
+  filled_ = 0;
+  for (mmsghdr& header : headers_) header.msg_hdr.msg_controllen = sizeof(Control);
+  const int received = recvmmsg(descriptor_.get(), headers_.data(), kBatch, MSG_DONTWAIT, nullptr);
+  if (received <= 0) {
+    return received < 0 && errno == ECONNREFUSED ? IoStatus::kNoConnection : IoStatus::kTimeout;
+  }
+  clock_.Read();
+  filled_ = static_cast<std::size_t>(received);
+  drained_ = filled_ < kBatch;
+  ReadOverrun(&headers_[filled_ - 1].msg_hdr);
+  (void)reassembler_.Expire(SteadyNanoseconds() / 1000);
+  return IoStatus::kOk;
+}
+
+// SO_RXQ_OVFL: after the first loss every datagram carries the total of losses as a 32-bit counter,
+// which wraps. The unsigned difference is correct across a wrap.
+void UdpSocket::ReadOverrun(msghdr* header) {
+  for (cmsghdr* item = CMSG_FIRSTHDR(header); item != nullptr; item = CMSG_NXTHDR(header, item)) {
+    if (item->cmsg_level != SOL_SOCKET || item->cmsg_type != SO_RXQ_OVFL) continue;
+    std::uint32_t ever = 0;
+    std::memcpy(&ever, CMSG_DATA(item), sizeof(ever));
+    overrun_ += ever - std::exchange(overrun_ever_, ever);
+  }
+}
+
+}  // namespace furrow::net

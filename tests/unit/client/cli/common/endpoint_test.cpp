@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/common/endpoint.h"
+
+#include <gtest/gtest.h>
+
+#include "client/cli/common/command.h"
+
+namespace furrow::cli {
+namespace {
+
+using client::TransportKind;
+
+TEST(ParseEndpointTest, AcceptsHostsWithAndWithoutPorts) {
+  struct Case {
+    const char* text;
+    const char* host;
+    int port;
+  };
+  for (const Case& c :
+       {Case{"localhost", "localhost", 7400}, Case{"10.0.0.1:80", "10.0.0.1", 80},
+        Case{"::1", "::1", 7400}, Case{"[::1]", "::1", 7400}, Case{"[::1]:9", "::1", 9}}) {
+    Endpoint endpoint;
+    ASSERT_TRUE(ParseEndpoint(c.text, TransportKind::kTcp, &endpoint)) << c.text;
+    EXPECT_EQ(endpoint.host, c.host);
+    EXPECT_EQ(endpoint.port, c.port);
+  }
+  Endpoint endpoint;
+  ASSERT_TRUE(ParseEndpoint("a", TransportKind::kUdp, &endpoint));
+  EXPECT_EQ(endpoint.port, 7401);
+}
+
+TEST(ParseEndpointTest, RejectsInvalidText) {
+  for (const char* text :
+       {"", ":80", "a:", "a:0", "a:65536", "a:80x", "a:-1", "[::1", "[::1]9", "[::1]:"}) {
+    Endpoint endpoint;
+    EXPECT_FALSE(ParseEndpoint(text, TransportKind::kTcp, &endpoint)) << text;
+  }
+}
+
+TEST(ParseSizeTest, AcceptsOnlySizesInTheRange) {
+  int width = 0;
+  int height = 0;
+  EXPECT_TRUE(ParseSize("640x480", &width, &height));
+  EXPECT_EQ(width, 640);
+  EXPECT_EQ(height, 480);
+  for (const char* text :
+       {"", "640", "640x", "x480", "15x480", "640x4097", "640x480x", "-16x20", "1e2x99"}) {
+    EXPECT_FALSE(ParseSize(text, &width, &height)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace furrow::cli
