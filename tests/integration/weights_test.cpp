@@ -178,7 +178,7 @@ TEST(Weights, TwoSubjectsTwoFormatsTwoPatterns) {
   protocol::Header header;
   const auto weights = viewer.Await<protocol::WeightFrame>(&header);
   ASSERT_TRUE(weights.has_value());
-  EXPECT_EQ(header.sequence, 77u) << "ann's pose must not reach who watches ben";
+  EXPECT_EQ(header.sequence, 77u) << "ann's pose must not reach subscribers of ben";
   EXPECT_EQ(weights->format, protocol::WeightFormat::kU8);
   EXPECT_EQ(weights->values.size(), brows->names.size());
   for (const float value : weights->values) {

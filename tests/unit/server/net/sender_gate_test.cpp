@@ -18,7 +18,7 @@ constexpr Time kMoment{1};
 
 TEST(SenderGate, TheFirstSenderHoldsThePortUntilItIsSilent) {
   SenderGate gate({}, Policy::kOne);
-  EXPECT_TRUE(gate.Admits(kBen, kStart)) << "nobody has it yet";
+  EXPECT_TRUE(gate.Admits(kBen, kStart)) << "no sender holds the port yet";
   EXPECT_TRUE(gate.Hold(kAnn, kStart));
   EXPECT_FALSE(gate.Hold(kAnn, kStart + FromSeconds(1)));
   const Time silent = kStart + FromSeconds(1) + SenderGate::kRelease;
@@ -33,7 +33,7 @@ TEST(SenderGate, InvalidDatagramsDoNotTakeThePort) {
   SenderGate gate({}, Policy::kOne);
   EXPECT_TRUE(gate.Admits(kAnn, kStart));  // without Hold(): the datagram was invalid
   EXPECT_TRUE(gate.Admits(kBen, kStart));
-  EXPECT_FALSE(gate.IsSuccessor(kBen)) << "there was nobody before";
+  EXPECT_FALSE(gate.IsSuccessor(kBen)) << "no sender held the port before";
   gate.Hold(kBen, kStart);
   EXPECT_FALSE(gate.IsSuccessor(kBen));
   EXPECT_TRUE(gate.IsSuccessor(kAnn));

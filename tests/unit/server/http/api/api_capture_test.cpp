@@ -97,7 +97,7 @@ TEST_F(ApiCaptureTest, APreviewChangesNothing) {
   EXPECT_EQ(weight["after"].get<float>(), 0.0f);
   EXPECT_EQ(brow(), live);
   SendPose(1.0f);
-  EXPECT_LT(brow(), 0.99f) << "its filter began anew";
+  EXPECT_LT(brow(), 0.99f) << "its filter has restarted";
 }
 
 // A hinge with joint names of a game engine, and a stream with those of Mixamo.
