@@ -3,7 +3,7 @@
 
 #include "bench/load/load_setup.h"
 #include "client/load/compare/comparison.h"
-#include "client/load/schedule/performance.h"
+#include "client/load/schedule/workload.h"
 
 namespace furrow::bench {
 
@@ -14,7 +14,7 @@ class PairedRuns {
  public:
   // The caller owns the servers. `searches`: searches for the highest rate of each server, at most
   // the number of rounds.
-  PairedRuns(const LoadSetup& setting, const load::Contestants& contestants, int searches);
+  PairedRuns(const LoadSetup& setting, const load::ComparisonTargets& contestants, int searches);
 
   // Runs the rounds of the setting at `rate` poses per second.
   [[nodiscard]] load::Comparison At(double rate);
@@ -24,12 +24,12 @@ class PairedRuns {
  private:
   [[nodiscard]] load::Comparison Run(const load::ComparisonOptions& options);
 
-  load::Contestants contestants_;
+  load::ComparisonTargets contestants_;
   load::ComparisonOptions options_;
-  load::Performance performance_;
+  load::Workload performance_;
 };
 
 // Formats a ratio as median and interquartile range.
-[[nodiscard]] std::string Between(const load::Spread& ratio);
+[[nodiscard]] std::string Between(const load::Quartiles& ratio);
 
 }  // namespace furrow::bench
