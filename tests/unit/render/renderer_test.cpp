@@ -232,7 +232,7 @@ TEST_F(RendererTest, ALostContextIsReportedAndANewRendererDrawsTheSame) {
   }
   renderer_.reset();
   auto recreated = Renderer::Create(head_);
-  ASSERT_TRUE(recreated.ok()) << anew.status().ToString();
+  ASSERT_TRUE(recreated.ok()) << recreated.status().ToString();
   renderer_ = std::move(*recreated);
   EXPECT_EQ(Render(request).rgb, before.rgb);
 }
