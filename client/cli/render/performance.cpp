@@ -3,6 +3,7 @@
 
 #include "base/status.h"
 #include "client/cli/inputs.h"
+#include "motion/clip/capture_time.h"
 
 namespace furrow::cli {
 
@@ -34,8 +35,7 @@ Result<std::unique_ptr<Performance>> Performance::Create(const character::Charac
 
 Status Performance::Advance(int frame) {
   clip_->GetPose(frame, &pose_);
-  const double dt = frame == 0 ? 0.0 : clip_->times[frame] - clip_->times[frame - 1];
-  const bool solved = solver_->Update(pose_, dt) == wrinkle::JobStatus::kOk &&
+  const bool solved = solver_->Update(pose_, motion::CaptureStep(*clip_, frame)) == wrinkle::JobStatus::kOk &&
                       drawn_->Run(retarget_, blend_shape_pose_, pose_.joints, pose_.blend_shapes) ==
                           wrinkle::JobStatus::kOk;
   if (!solved)
