@@ -2,6 +2,7 @@
 #include "server/pipeline/wire_adapter.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <span>
 
@@ -10,9 +11,18 @@ namespace {
 
 glm::vec3 ToVec(const protocol::Vec3& v) { return {v.x, v.y, v.z}; }
 
+<<<<<<< HEAD
 // The wire tolerates a length error of 1e-3; the algorithm needs unit quaternions.
+=======
+// The wire allows lengths within 1e-3 of 1; the solver needs unit quaternions. A quaternion that is
+// already a unit one to float precision passes unchanged, since normalizing it again would change
+// its last bits, and with them the weights that `furrow solve` gives for the same recording.
+>>>>>>> w-solver
 glm::quat ToUnitQuat(const protocol::Quat& q) {
-  return glm::normalize(glm::quat(q.w, q.x, q.y, q.z));
+  constexpr float kUnit = 1e-6f;
+  const glm::quat rotation(q.w, q.x, q.y, q.z);
+  return std::abs(glm::dot(rotation, rotation) - 1.0f) <= kUnit ? rotation
+                                                                : glm::normalize(rotation);
 }
 
 bool IndicesFit(std::span<const std::uint16_t> indices, std::size_t count) {

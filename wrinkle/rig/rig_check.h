@@ -25,8 +25,7 @@ inline constexpr float kMaxDerivativeScale = 100.0f;  // steeper than any surfac
 // and in range (ranges: rig.h and the kinds' fields). RigBinding::Create() calls it for every rig.
 //
 // - Names of drivers, values, regions and maps make up the names of wrinkle weights, which appear
-// in
-//   CSV headers, patterns and OSC addresses: CheckName().
+//   in CSV headers, patterns and OSC addresses: CheckName().
 // - References between poses, drivers, maps and regions are checked when they are resolved.
 //
 // Errors: kInvalidArgument, kNonFinite and kLimit. `where` is the path of the field:

@@ -16,7 +16,6 @@ namespace {
 using enum JointRole;
 
 const glm::quat kNoTurn(1.0f, 0.0f, 0.0f, 0.0f);
-constexpr float kLeastLength = 1e-6f;
 // Hips closer to their rest than this distance, in leg lengths, have not moved. The distance covers
 // the rounding of a file's text and of the joints above.
 constexpr float kStill = 1e-5f;
@@ -216,7 +215,7 @@ glm::quat BodyRetarget::TurnOf(const Joint& joint, const Rotations& rotations) c
   if (joint.between < 1.0f) turn = glm::slerp(Turn(joint.from, rotations), turn, joint.between);
   if (joint.end != kNoJoint) {
     const glm::vec3 bone = BoneVector(joint, rotations);
-    if (glm::length(bone) > kLeastLength) turn = Swing(turn * joint.direction, bone) * turn;
+    if (glm::length(bone) > kMinBoneLength) turn = Swing(turn * joint.direction, bone) * turn;
   }
   if (joint.twist < 1.0f) {
     const glm::quat relative = glm::conjugate(Turn(joint.from, rotations)) * turn;

@@ -12,7 +12,6 @@ namespace {
 
 using enum JointRole;
 
-constexpr float kLeastLength = 1e-6f;
 // Sine of the steepest slope of a foot that counts as flat on the floor at rest.
 constexpr float kSteepFoot = 0.8f;
 
@@ -149,7 +148,7 @@ std::optional<glm::vec3> Body::RestSpan(JointRole from, JointRole to) const {
   const int b = First(to);
   if (a == kNoJoint || b == kNoJoint) return std::nullopt;
   const glm::vec3 span = RestOrigin(b) - RestOrigin(a);
-  if (glm::length(span) < kLeastLength) return std::nullopt;
+  if (glm::length(span) < kMinBoneLength) return std::nullopt;
   return span;
 }
 

@@ -13,6 +13,8 @@
 // Private to wrinkle/.
 namespace furrow::wrinkle {
 
+inline constexpr float kMinBoneLength = 1e-6f;  // shorter bones have no direction
+
 // A skeleton with joint roles.
 class Body {
  public:

@@ -14,14 +14,14 @@ bool Lists(const std::vector<std::string>& names, const std::string& name) {
 }
 
 // A rig without maps only computes weights and accepts any map name.
-Status CheckMapName(const Rig& rig, const std::string& whose, const std::string& map) {
+Status CheckMapName(const Rig& rig, const std::string& owner, const std::string& map) {
   const bool known =
       rig.wrinkle_maps.empty() ||
       std::any_of(rig.wrinkle_maps.begin(), rig.wrinkle_maps.end(),
                   [&](const WrinkleMap& candidate) { return candidate.name == map; });
   if (known) return {};
   return {StatusCode::kNotFound,
-          whose + " names wrinkle map '" + map + "', which the rig does not have"};
+          owner + " names wrinkle map '" + map + "', which the rig does not have"};
 }
 
 Status CheckNeighbours(const Rig& rig, const Region& region) {
@@ -57,14 +57,14 @@ bool Adjacent(const Region& a, const Region& b) {
 Status WeightTable::Bind(const Rig& rig, const std::unordered_map<std::string, int>& value_index) {
   for (const WrinkleMap& map : rig.wrinkle_maps) {
     if (map.opposes.empty()) continue;
-    const std::string whose = "wrinkle map '" + map.name + "': opposes";
-    FURROW_RETURN_IF_ERROR(CheckMapName(rig, whose, map.opposes));
+    const std::string owner = "wrinkle map '" + map.name + "': opposes";
+    FURROW_RETURN_IF_ERROR(CheckMapName(rig, owner, map.opposes));
   }
   for (const Region& region : rig.regions) {
     FURROW_RETURN_IF_ERROR(CheckNeighbours(rig, region));
     for (const Feed& feed : region.feeds) {
-      const std::string whose = "region '" + region.name + "': a feed";
-      FURROW_RETURN_IF_ERROR(CheckMapName(rig, whose, feed.map));
+      const std::string owner = "region '" + region.name + "': a feed";
+      FURROW_RETURN_IF_ERROR(CheckMapName(rig, owner, feed.map));
       FURROW_RETURN_IF_ERROR(BindFeed(region, feed, value_index));
     }
   }

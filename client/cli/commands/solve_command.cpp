@@ -8,6 +8,11 @@
 #include "client/cli/common/progress.h"
 #include "client/cli/common/standard_output.h"
 #include "client/cli/output/weight_writer.h"
+<<<<<<< HEAD
+=======
+#include "client/cli/progress.h"
+#include "motion/clip/capture_time.h"
+>>>>>>> w-solver
 #include "motion/clip/clip.h"
 #include "wrinkle/solver/solver.h"
 
@@ -57,8 +62,7 @@ int SolveFile(const SolveOptions& options) {
   wrinkle::LocalPose pose;
   for (int frame = 0; frame < clip->num_frames(); ++frame) {
     clip->GetPose(frame, &pose);
-    const double dt = frame == 0 ? 0.0 : clip->times[frame] - clip->times[frame - 1];
-    if (solver.Update(pose, dt) != wrinkle::JobStatus::kOk) {
+    if (solver.Update(pose, motion::CaptureStep(*clip, frame)) != wrinkle::JobStatus::kOk) {
       return Fail({StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved",
                    options.file, "please report this file"});
     }

@@ -2,7 +2,12 @@
 #include "client/cli/render/animated_subject.h"
 
 #include "base/status.h"
+<<<<<<< HEAD:client/cli/render/animated_subject.cpp
 #include "client/cli/common/inputs.h"
+=======
+#include "client/cli/inputs.h"
+#include "motion/clip/capture_time.h"
+>>>>>>> w-solver:client/cli/render/performance.cpp
 
 namespace furrow::cli {
 
@@ -33,8 +38,7 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
 
 Status AnimatedSubject::Advance(int frame) {
   clip_->GetPose(frame, &pose_);
-  const double dt = frame == 0 ? 0.0 : clip_->times[frame] - clip_->times[frame - 1];
-  const bool solved = solver_->Update(pose_, dt) == wrinkle::JobStatus::kOk &&
+  const bool solved = solver_->Update(pose_, motion::CaptureStep(*clip_, frame)) == wrinkle::JobStatus::kOk &&
                       drawn_->Run(retarget_, blend_shape_pose_, pose_.joints, pose_.blend_shapes) ==
                           wrinkle::JobStatus::kOk;
   if (!solved)

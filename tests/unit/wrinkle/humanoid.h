@@ -9,7 +9,7 @@
 
 namespace furrow::wrinkle {
 
-// A body whose joints have roles, to be taken apart: leave joints out, split them, bend its rest.
+// A body with joint roles that tests can change: remove and split joints, bend the rest pose.
 struct Humanoid {
   struct Joint {
     JointRole role;
@@ -19,7 +19,7 @@ struct Humanoid {
 
   // Turns `joint` and all below it about its origin, by degrees about `axis`.
   void Turn(const std::string& joint, float degrees, const glm::vec3& axis);
-  // Takes a joint out; its children hang from its parent.
+  // Removes a joint; its parent becomes the parent of its children.
   void Remove(const std::string& joint);
   // A new joint of the same role right below `joint`, `share` of the way to `end`.
   void Split(const std::string& joint, const std::string& end, float share);

@@ -14,7 +14,7 @@
 
 namespace furrow::wrinkle {
 
-// A joint as one would draw it: where it is in model space.
+// A joint by its position in model space.
 struct ModelJoint {
   std::string name;
   std::string parent;  // empty: a root
@@ -22,8 +22,8 @@ struct ModelJoint {
   std::optional<glm::vec3> tail;
 };
 
-// `frame_seed` 0: all rest rotations are the identity (BVH); else every joint has a local frame of
-// its own, by chance, while shape and stance stay the same.
+// `frame_seed` 0: all rest rotations are the identity (BVH); otherwise every joint has
+// a random local frame of its own; shape and stance stay the same.
 Skeleton MakeSkeleton(const std::vector<ModelJoint>& joints, unsigned frame_seed = 0);
 
 // Hips, spine, neck, head with brows and cheeks, a left arm

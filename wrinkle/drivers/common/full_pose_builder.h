@@ -55,7 +55,7 @@ class FullPoseBuilder {
   std::span<const ReferencePose> reference_poses_;
 };
 
-// Bones whose directions have a larger cosine are too close to parallel to define a way to bend.
+// Two bones with a larger cosine between them are too close to parallel to define a way to bend.
 inline constexpr float kAlmostStraight = 0.9998f;  // about 1 degree
 
 // The unit part of `direction` across `bone`; zero if it lies within 6 degrees of the bone.

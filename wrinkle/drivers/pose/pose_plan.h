@@ -37,8 +37,8 @@ struct PoseBlock : Block {
   bool has_falloff = false;
 };
 
-// Projections without falloff of drivers with one control point on a joint whose parent is the
-// anchor: most drivers of a face.
+// Projections without falloff, of drivers with one control point on a child joint of the anchor.
+// Most drivers of a face are such.
 struct LeafBlock : Block {
   std::uint32_t num_values = 0;
   IntRow joints;

@@ -16,11 +16,11 @@ namespace furrow::wrinkle {
 // any pose space.
 //
 // - Lengths are in any unit, the same at rest and posed. Stretches are ratios, posed over rest
-// length.
+//   length.
 // - Rigid motions and mirroring of the posed triangle change nothing.
 // - Source: the right Cauchy-Green tensor C = F^T F of continuum mechanics (Bonet and Wood,
-// Nonlinear
-//   Continuum Mechanics, 2008, 4.5). Its eigenvalues are the squared principal stretches.
+//   Nonlinear Continuum Mechanics, 2008, 4.5). Its eigenvalues are the squared principal
+//   stretches.
 
 // Orthonormal axes in the plane of a rest triangle, right-handed with its normal (counter-clockwise
 // from outside): seen from outside, y lies a quarter turn to the left of x.
@@ -34,7 +34,7 @@ struct SurfaceAxes {
 struct RestTriangle {
   SurfaceAxes axes;
   float area = 0.0f;
-  glm::mat2 inverse_edges{1.0f};  // of the matrix whose columns are b - a and c - a in the axes
+  glm::mat2 inverse_edges{1.0f};  // of the matrix with the columns b - a and c - a in the axes
 };
 
 // The images of the unit vectors along the rest axes: the columns of the 3x2 deformation gradient

@@ -55,8 +55,8 @@ TEST(Ball, ZeroProjectionGivesNothing) {
   }
 }
 
-// C0: no share changes by more than the bend times the steepest slope of cos^2 (1 per radian). C1:
-// nor does its slope, whose own slope is at most 2 per radian squared.
+// C0: a share changes by at most the bend times the steepest slope of cos^2 (1 per radian). C1: the
+// slope changes by at most 2 per radian squared.
 TEST(Ball, SmoothIsC1AroundTheBone) {
   const auto front = [](int step) {
     return At(BallMode::kSmooth, static_cast<float>(step) * 0.1f).front;

@@ -8,7 +8,7 @@
 
 namespace furrow::wrinkle {
 
-// Thesis 4.6 without SIMD, to compare the solver with.
+// Thesis 4.6 without SIMD, for comparison with the solver.
 
 // How far a joint is bent, in [0, 1], from the cosine between its two bones, both pointing away
 // from the trunk. Straight (1) gives 0; fully flexed (cos(180 - beta)) gives 1.
@@ -19,8 +19,7 @@ namespace furrow::wrinkle {
 //
 // - `upper`, `lower`, `axis` unit vectors of one space, `axis` across `upper`.
 // - Sideways bending fades out from 60 to 90 degrees off the axis, so the value is continuous. It
-// only
-//   jumps where the bones fold onto each other exactly (180 degrees).
+//   only jumps where the bones fold onto each other exactly (180 degrees).
 [[nodiscard]] float SignedBend(const glm::vec3& upper, const glm::vec3& lower,
                                const glm::vec3& axis, float bend_scale);
 

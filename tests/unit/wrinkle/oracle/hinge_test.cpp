@@ -89,7 +89,7 @@ TEST(Hinge, SweepIsContinuous) {
   EXPECT_LE(worst, 0.00094f);
 }
 
-// Round the bone at a fixed bend: the sign is no switch.
+// Around the bone at a fixed bend: the sign does not switch abruptly.
 TEST(Hinge, SweepAroundTheBoneIsContinuous) {
   const float scale = BendScale(30.0f);
   const auto at = [&](int step) {

@@ -3,12 +3,11 @@
 
 namespace furrow::wrinkle {
 
-// What remains of a wrinkle weight beside the opposed weight of a neighbouring region, as a factor
-// in [0, 1]: smoothstep(-1/2, 1/2, (own - other) / (own + other)).
+// The factor in [0, 1] that the opposed weight of a neighbouring region leaves of a wrinkle weight:
+// smoothstep(-1/2, 1/2, (own - other) / (own + other)).
 //
-// - 1 where the other is at most a third of it, 0 where it is at most a third of the other, 1/2 at
-//   a tie: the weaker is attenuated by their difference relative to their sum, so that a weight
-//   without an opponent is never touched, however small.
+// - 1 if `other` is at most a third of `own`, 0 if `own` is at most a third of `other`, 1/2 if both
+//   are equal. The difference is relative to the sum, so an opponent of 0 changes nothing.
 // - The factors of a pair sum to 1, so at most one of the two stays above 1/2.
 // - own * factor is continuous in both weights (also at 0, 0), hence in time.
 // - Source: docs/ALGORITHM.md; the thesis leaves it open (6.2.3).

@@ -7,8 +7,8 @@ namespace furrow::wrinkle {
 // 1 / (1 + tau / dt) with tau = 1 / (2 pi cutoff). 0 at dt = 0, towards 1 for a long dt.
 [[nodiscard]] double LowPassShare(double cutoff_hz, double dt);
 
-// One step of the One-Euro filter: a low-pass whose cut-off rises with the signal's own speed, so
-// that rest is steady and motion is not late.
+// One step of the One-Euro filter: a low-pass with a cut-off that rises with the signal's speed, so
+// that rest is steady and motion has little lag.
 //
 // - `speed` is the low-passed derivative, 1/s, updated in place; `raw_slope` the derivative of the
 //   raw signal over the last step. `dt` > 0.

@@ -27,7 +27,7 @@ glm::vec3 Projection(const glm::vec3& d, float squared_displacement) {
   return glm::dvec3(d) / double{squared_displacement};
 }
 
-// In single precision: the points are known no better.
+// In single precision, like the points.
 float ProjectionAlong(StackedPoints moved, StackedPoints projection) {
   float sum = 0.0f;
   for (std::size_t i = 0; i < moved.size(); ++i) sum += glm::dot(moved[i], projection[i]);

@@ -74,7 +74,7 @@ LocalPose RandomTurns(const Skeleton& skeleton, std::mt19937* random) {
   return pose;
 }
 
-// Every role whose bone both have.
+// Every role with a bone in both bodies.
 std::vector<JointRole> Bones(const Humanoid& a, const Humanoid& b) {
   std::vector<JointRole> bones;
   const auto has = [](const Humanoid& body, JointRole role) {
@@ -168,7 +168,7 @@ TEST(BodyRetarget, RestPosesInAnotherStanceGiveTheSameDirections) {
   }
 }
 
-// What hangs from a hand turns with it whichever way the palm looks at rest.
+// Joints below a hand turn with it, whatever the palm's direction at rest.
 TEST(BodyRetarget, PalmsFaceTheSameWay) {
   Humanoid supine = MakeHumanoid();
   supine.Turn("leftHand", 90.0f, {1, 0, 0});  // palm forward at rest
@@ -214,7 +214,7 @@ TEST(BodyRetarget, HipsTravelAsFarAsLegsAreLongAndStandOnTheFloor) {
   }
 }
 
-// A BVH file's root rests at the origin; where it is, only its motion says.
+// A BVH file's root rests at the origin; only its motion states the position.
 TEST(BodyRetarget, ASourceThatRestsAtTheOriginIsPutOnTheFloor) {
   Humanoid bvh = MakeHumanoid();
   bvh.Transform(AngleAxis(0.0f, {0, 1, 0}), 20.0f, {0.0f, -19.0f, 0.0f});
@@ -224,7 +224,7 @@ TEST(BodyRetarget, ASourceThatRestsAtTheOriginIsPutOnTheFloor) {
   carrier.Run(pose);  // no place at all: where the target rests
   EXPECT_LT(glm::distance(carrier.To(JointRole::kHips), glm::vec3(0.0f, 0.95f, 0.0f)), 1e-5f);
   const glm::vec3 rest = pose.joints[0].translation;
-  pose.joints[0].translation = rest + glm::vec3(1e-4f, -1e-4f, 0.0f);  // rounding is no place
+  pose.joints[0].translation = rest + glm::vec3(1e-4f, -1e-4f, 0.0f);  // rounding, not a position
   carrier.Run(pose);
   EXPECT_LT(glm::distance(carrier.To(JointRole::kHips), glm::vec3(0.0f, 0.95f, 0.0f)), 1e-5f);
   pose.joints[0].translation = rest + glm::vec3(0.0f, 0.02f, 0.0f);  // this is: under the floor

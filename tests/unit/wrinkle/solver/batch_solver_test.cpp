@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The solver, by itself and in batches, against the oracle: on chance rigs, poses and times, with
+// The solver, by itself and in batches, against the oracle: on random rigs, poses and times, with
 // every instruction set of this processor.
 #include "wrinkle/solver/batch_solver.h"
 
@@ -28,7 +28,7 @@ int Pick(std::mt19937* random, int count) {
   return std::uniform_int_distribution<int>(0, count - 1)(*random);
 }
 
-// Drivers of every kind with parameters by chance, in an order by chance.
+// Drivers of every kind with random parameters, in random order.
 Rig RandomRig(std::mt19937* random) {
   Rig rig = MakeRig();
   if (Pick(random, 4) == 0) rig.anchor.clear();
@@ -57,7 +57,7 @@ Rig RandomRig(std::mt19937* random) {
   return rig;
 }
 
-// Anything from rest to a pose that nobody could take.
+// Any pose from rest to the impossible.
 void NextPose(const Skeleton& skeleton, std::mt19937* random, LocalPose* pose) {
   const float share = Pick(random, 4) == 0 ? 1.0f : Uniform(random, 0.0f, 0.2f);
   LocalPose wild;
@@ -81,7 +81,7 @@ std::shared_ptr<const RigBinding> Bind(const Rig& rig, unsigned frame_seed = 0) 
   return BoundRig(rig, MakeBody(frame_seed)).binding();
 }
 
-// One run of the tests below an instruction set.
+// Runs each test once per instruction set.
 class BatchSolverTest : public testing::TestWithParam<std::int64_t> {
  protected:
   BatchSolverTest() {
@@ -227,7 +227,7 @@ TEST_P(BatchSolverTest, ResultsHaveTheSameBitsAtAnyPlaceInAnyBatch) {
   }
 }
 
-// Broken updates get their statuses, change nothing of theirs, and disturb nobody.
+// Updates that fail report their status, change nothing, and do not affect other subjects.
 TEST_P(BatchSolverTest, BadUpdatesFailAlone) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -270,7 +270,7 @@ TEST_P(BatchSolverTest, BadUpdatesFailAlone) {
   }
 }
 
-// Numbers that overflow on the way are no reason to refuse a pose, alone or beside others.
+// A pose with intermediate results that overflow is still solved.
 TEST_P(BatchSolverTest, SurvivesDegeneratePoses) {
   const auto binding = Bind(MakeRig(), 5);
   std::mt19937 random(76);

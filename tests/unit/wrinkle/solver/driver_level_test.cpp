@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Levels of detail by who looks: what is asked for is as if everything were evaluated.
+// Levels of detail: requested outputs are the same as with all drivers.
 #include "wrinkle/solver/driver_level.h"
 
 #include <algorithm>
@@ -117,7 +117,7 @@ class LevelChange : public testing::Test {
 TEST_F(LevelChange, DriversThatJoinBeginAtThePoseAndTheOthersStay) {
   const std::vector<float> before = Filtered();
   SetLevel(kAllDrivers);
-  SubjectSolver fresh(binding_);  // whose first pose this is
+  SubjectSolver fresh(binding_);  // this is its first pose
   ASSERT_EQ(Update(&fresh, poses_.back(), 0.0), JobStatus::kOk);
   float joined = 0.0f;
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -125,7 +125,7 @@ TEST_F(LevelChange, DriversThatJoinBeginAtThePoseAndTheOthersStay) {
     if (i >= 4) joined += fresh.filtered_values()[i];
   }
   EXPECT_GT(joined, 0.1f) << "the pose moves none of them";
-  // They stay there while the pose does.
+  // They stay while the pose stays.
   const std::vector<float> after = Filtered();
   ASSERT_EQ(Update(&solver_, poses_.back(), kFrame), JobStatus::kOk);
   for (std::size_t i = 4; i < after.size(); ++i) {
@@ -133,7 +133,7 @@ TEST_F(LevelChange, DriversThatJoinBeginAtThePoseAndTheOthersStay) {
   }
 }
 
-// A subject that was always evaluated in full and stood in its pose has the same, to the bit.
+// A subject that was always evaluated in full has the same bits in the same pose.
 TEST_F(LevelChange, TheWeightsAreThoseOfTheNewValues) {
   solver_.Reset();
   ASSERT_EQ(Update(&solver_, poses_.back(), 0.0), JobStatus::kOk);
@@ -144,7 +144,7 @@ TEST_F(LevelChange, TheWeightsAreThoseOfTheNewValues) {
   EXPECT_TRUE(std::ranges::equal(whole.driver_values(), solver_.driver_values()));
 }
 
-TEST_F(LevelChange, WhoGetsNoPosesDecaysOnAsItWas) {
+TEST_F(LevelChange, WithoutPosesASubjectKeepsDecaying) {
   ASSERT_EQ(solver_.Decay(0.1), JobStatus::kOk);
   const std::vector<float> before = Filtered();
   SetLevel(kAllDrivers);

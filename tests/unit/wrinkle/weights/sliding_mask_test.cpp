@@ -42,7 +42,7 @@ TEST(BendDirection, IsWhereTheJointBendsToHoweverFar) {
   EXPECT_EQ(BendDirection(kHip, 0.0f, 0.0f, 0.0f, 0.0f), glm::vec3(0.0f));
 }
 
-// What fixed masks cannot do: turned with the bend, it is the same mask.
+// Unlike fixed masks, the mask keeps its shape when it turns with the bend.
 TEST(SlidingMaskAt, MovesRoundWithTheJoint) {
   for (const float turn : {10.0f, 77.0f, 180.0f, -120.0f}) {
     for (float degrees = -180.0f; degrees < 180.0f; degrees += 20.0f) {

@@ -183,7 +183,7 @@ TEST(JointInfluence, ReachesTheJointsOfSkinningRegions) {
             4);
 }
 
-// A region's lambda is its own, also where another one folds the same map.
+// Each region has its own lambda, even if another region uses the same map.
 TEST(JointInfluence, HasAColumnForEveryMapAndLambda) {
   Rig rig = MakeRig();
   const auto region = [&](const char* name) {

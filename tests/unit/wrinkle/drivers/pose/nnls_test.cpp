@@ -127,7 +127,7 @@ TEST(Nnls, AgreesWithEveryActiveSetTried) {
   }
 }
 
-// What is kept of a matrix gives what the matrix gives, at and around ties too.
+// The table gives the same solutions as the matrix, at and around ties too.
 TEST(NnlsTable, AgreesWithTheSolver) {
   std::mt19937 random(11);
   std::normal_distribution<double> normal;

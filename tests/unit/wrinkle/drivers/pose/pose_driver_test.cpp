@@ -14,7 +14,7 @@
 namespace furrow::wrinkle {
 namespace {
 
-// A pole of length 1 on a ground joint, as anchor, whose tail is looked at.
+// A pole of length 1 on a ground joint, which is the anchor. Drivers measure the pole's tail.
 Skeleton Pole(unsigned frame_seed = 0) {
   return MakeSkeleton(
       {{"ground", "", {0, 0, 0}, {}}, {"pole", "ground", {0, 0, 0}, glm::vec3(0, 1, 0)}},
@@ -95,7 +95,7 @@ TEST(PoseDriver, NnlsFalloffMeasuresWhatTheFitLeavesOver) {
   EXPECT_NEAR(rig.values()[0], std::exp(-0.5f), 1e-5f);  // |left over| = |d| = 2
 }
 
-// However their lengths round: a product of floats may exceed the product of the lengths.
+// Holds for any rounding of the lengths: a product of floats may exceed the product of the lengths.
 TEST(PoseDriver, PosesThatCoincideShare) {
   const Skeleton pole = Pole();
   std::mt19937 random(12);

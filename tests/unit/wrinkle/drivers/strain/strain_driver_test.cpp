@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strain drivers on a patch whose skin weights run linearly from one joint to another: moving that
-// joint deforms it evenly, so that textbook strains come out, whatever the joints' local frames.
+// Strain drivers on a patch with skin weights that run linearly from one joint to another. Moving a
+// joint deforms the patch evenly and gives textbook strains, for any local frames of the joints.
 #include "wrinkle/drivers/strain/strain_driver.h"
 
 #include <algorithm>

@@ -44,7 +44,7 @@ TEST(RigBinding, BindsAGoodRig) {
                           "cheek_patch.diagonal_right", "jaw.value"));
 }
 
-// One thing wrong with a good rig, and what the message must say.
+// One mistake in a valid rig, and the expected message.
 struct Fault {
   const char* name;
   std::function<void(Rig*)> make;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "wrinkle/solver/solver.h"
+#include "wrinkle/solver/subject_solver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +64,7 @@ TEST(Solver, NoddingMakesNoFacialWrinkles) {
   }
 }
 
-// A character's scale is its own: the same pose of one twice as large gives the same values.
+// The same pose of a larger character gives the same values.
 TEST(Solver, ScaleOfTheWholeCharacterChangesNothing) {
   BoundRig rig(MakeRig(), MakeBody(5));
   LocalPose pose = Expressive(rig.skeleton());
@@ -224,7 +224,7 @@ TEST(SubjectSolver, AFailedUpdateChangesNothing) {
   EXPECT_TRUE(std::equal(values.begin(), values.end(), solver.driver_values().begin()));
 }
 
-TEST(SubjectSolver, ResetStartsAnew) {
+TEST(SubjectSolver, ResetRestoresTheInitialState) {
   BoundRig rig(MakeRig(), MakeBody());
   const LocalPose pose = Expressive(rig.skeleton());
   SubjectSolver solver(rig.binding());
