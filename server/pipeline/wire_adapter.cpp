@@ -11,13 +11,9 @@ namespace {
 
 glm::vec3 ToVec(const protocol::Vec3& v) { return {v.x, v.y, v.z}; }
 
-<<<<<<< HEAD
-// The wire tolerates a length error of 1e-3; the algorithm needs unit quaternions.
-=======
 // The wire allows lengths within 1e-3 of 1; the solver needs unit quaternions. A quaternion that is
 // already a unit one to float precision passes unchanged, since normalizing it again would change
 // its last bits, and with them the weights that `furrow solve` gives for the same recording.
->>>>>>> w-solver
 glm::quat ToUnitQuat(const protocol::Quat& q) {
   constexpr float kUnit = 1e-6f;
   const glm::quat rotation(q.w, q.x, q.y, q.z);

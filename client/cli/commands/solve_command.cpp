@@ -8,11 +8,7 @@
 #include "client/cli/common/progress.h"
 #include "client/cli/common/standard_output.h"
 #include "client/cli/output/weight_writer.h"
-<<<<<<< HEAD
-=======
-#include "client/cli/progress.h"
 #include "motion/clip/capture_time.h"
->>>>>>> w-solver
 #include "motion/clip/clip.h"
 #include "wrinkle/solver/solver.h"
 

@@ -2,12 +2,8 @@
 #include "client/cli/render/animated_subject.h"
 
 #include "base/status.h"
-<<<<<<< HEAD:client/cli/render/animated_subject.cpp
 #include "client/cli/common/inputs.h"
-=======
-#include "client/cli/inputs.h"
 #include "motion/clip/capture_time.h"
->>>>>>> w-solver:client/cli/render/performance.cpp
 
 namespace furrow::cli {
 
@@ -38,9 +34,10 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
 
 Status AnimatedSubject::Advance(int frame) {
   clip_->GetPose(frame, &pose_);
-  const bool solved = solver_->Update(pose_, motion::CaptureStep(*clip_, frame)) == wrinkle::JobStatus::kOk &&
-                      drawn_->Run(retarget_, blend_shape_pose_, pose_.joints, pose_.blend_shapes) ==
-                          wrinkle::JobStatus::kOk;
+  const bool solved =
+      solver_->Update(pose_, motion::CaptureStep(*clip_, frame)) == wrinkle::JobStatus::kOk &&
+      drawn_->Run(retarget_, blend_shape_pose_, pose_.joints, pose_.blend_shapes) ==
+          wrinkle::JobStatus::kOk;
   if (!solved)
     return {StatusCode::kInternal, "frame " + std::to_string(frame) + " could not be solved"};
   return {};
