@@ -35,8 +35,9 @@ function(furrow_precompile_tests target)
     return()
   endif()
   if(NOT TARGET furrow_test_headers)
-    file(WRITE "${CMAKE_BINARY_DIR}/test_headers.cpp" "// Carries the tests' precompiled header.\n")
-    add_library(furrow_test_headers OBJECT "${CMAKE_BINARY_DIR}/test_headers.cpp")
+    # An executable, since the header must be compiled with the tests' -fPIE.
+    file(WRITE "${CMAKE_BINARY_DIR}/test_headers.cpp" "// Carries the tests' precompiled header.\nint main() {}\n")
+    add_executable(furrow_test_headers "${CMAKE_BINARY_DIR}/test_headers.cpp")
     target_link_libraries(furrow_test_headers PRIVATE GTest::gtest GTest::gmock)
     target_precompile_headers(furrow_test_headers PRIVATE
       <gmock/gmock.h> <gtest/gtest.h> <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map>

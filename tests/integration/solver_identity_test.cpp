@@ -13,7 +13,7 @@
 
 #include "daemon_fixture.h"
 #include "motion/clip/capture_time.h"
-#include "motion/clip/pose_source.h"
+#include "motion/pose_source.h"
 #include "rig/rig_file.h"
 #include "wrinkle/solver/solver.h"
 
