@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/mesh/displacement_patches.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>

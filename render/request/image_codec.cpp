@@ -7,7 +7,7 @@
 #include <turbojpeg.h>
 
 #include "base/status.h"
-#include "character/pictures/picture_codec.h"
+#include "character/pictures/picture_file.h"
 
 namespace furrow::render {
 namespace {
