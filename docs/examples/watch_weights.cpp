@@ -16,15 +16,13 @@ using namespace std::chrono_literals;
 
 int main(int argc, char** argv) {
   if (argc != 4) return 2;
-  std::string error;
-  auto transport =
-      client::Transport::Open(client::TransportKind::kUdp, argv[1],
-                              static_cast<std::uint16_t>(std::atoi(argv[2])), 3s, &error);
-  if (transport == nullptr) {
-    std::fprintf(stderr, "%s\n", error.c_str());
+  auto transport = client::Transport::Open(client::TransportKind::kUdp, argv[1],
+                                           static_cast<std::uint16_t>(std::atoi(argv[2])), 3s);
+  if (!transport.ok()) {
+    std::fprintf(stderr, "%s\n", transport.status().ToString().c_str());
     return 4;
   }
-  client::Subscriber subscriber(std::move(transport), "my engine 1.0");
+  client::Subscriber subscriber(*std::move(transport), "my engine 1.0");
   // An empty subject means any performer; `wait` accepts one that connects later.
   subscriber.Subscribe(protocol::SubscribeWeights{.wait = true, .pattern = "brow_*,mouth_*"});
 

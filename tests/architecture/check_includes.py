@@ -71,7 +71,7 @@ CONFINED = [
 
 MAX_FILES = 25
 CODE = {".h", ".hpp", ".cpp", ".cc"}
-NOT_CODE = ("build/", "tests/", "bench/", "third_party/", ".git/")
+NOT_CODE = ("build/", "tests/", "bench/", "docs/", "third_party/", ".git/")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 
 
