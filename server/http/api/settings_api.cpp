@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "render/settings/settings_file.h"
-#include "server/http/api/api.h"
 #include "server/http/api/json_reply.h"
 #include "server/http/api/setting_json.h"
 
