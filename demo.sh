@@ -31,7 +31,7 @@ if [[ ! -f build/release/build.ninja ]]; then
   cmake --preset release -DFURROW_BUILD_TESTS=OFF >build/release-configure.log 2>&1 ||
     { cat build/release-configure.log >&2; exit 1; }
 fi
-cmake --build --preset release -j "$(nproc)"
+cmake --build --preset release -j "$(nproc)" --target furrow_demo
 
 bin=$PWD/build/release/bin
 share=$PWD/build/release/share/furrow
