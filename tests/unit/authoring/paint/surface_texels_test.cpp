@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "authoring/paint/dilate.h"
 #include "character/mesh/tangents.h"
 
 namespace furrow::authoring {
