@@ -13,6 +13,7 @@
 
 #include "daemon_fixture.h"
 #include "motion/clip/capture_time.h"
+#include "motion/clip_file.h"
 #include "motion/pose_source.h"
 #include "rig/rig_file.h"
 #include "wrinkle/solver/solver.h"
