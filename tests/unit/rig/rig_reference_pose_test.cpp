@@ -27,14 +27,14 @@ PoseFrame TurnedRoot() {
   return frame;
 }
 
-TEST(RigReferencePose, RestMovesNothing) {
+TEST(RigReferencePose, RestPoseMovesNoJoints) {
   const auto pose = ReferencePoseFromFrame("rest", TurnedRoot());
   ASSERT_TRUE(pose.ok());
   EXPECT_TRUE(pose->joints.empty());
   EXPECT_GT(pose->source_size, 0.0f);
 }
 
-TEST(RigReferencePose, SpeaksInModelAxes) {
+TEST(RigReferencePose, UsesModelAxes) {
   PoseFrame frame = TurnedRoot();
   // About the child's own X, which is the model's Y; moved along the root's own X, the model's Y.
   frame.pose.joints[1].rotation = Turn(30, {1, 0, 0});
@@ -48,7 +48,7 @@ TEST(RigReferencePose, SpeaksInModelAxes) {
   EXPECT_NEAR(pose->joints[0].translation.x, 0.0f, 1e-6);
 }
 
-TEST(RigReferencePose, AnotherFrameMayCountAsRest) {
+TEST(RigReferencePose, AcceptsAnotherFrameAsRest) {
   PoseFrame rest = TurnedRoot();
   PoseFrame frame = TurnedRoot();
   rest.pose.joints[1].rotation = Turn(10, {0, 1, 0});
@@ -62,7 +62,7 @@ TEST(RigReferencePose, AnotherFrameMayCountAsRest) {
   EXPECT_NEAR(pose->joints[0].rotation.w, std::cos(7.5f * kPi / 180.0f), 1e-6);
 }
 
-TEST(RigReferencePose, RefusesPosesThatDoNotFit) {
+TEST(RigReferencePose, RejectsPosesThatDoNotFitTheSkeleton) {
   PoseFrame frame = TurnedRoot();
   frame.pose.joints.pop_back();
   EXPECT_EQ(ReferencePoseFromFrame("p", frame).status().code(), StatusCode::kInvalidArgument);

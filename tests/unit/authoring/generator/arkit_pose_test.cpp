@@ -77,7 +77,7 @@ TEST_F(ArkitPoseTest, EachOfThe52MovesTheFace) {
   }
 }
 
-TEST_F(ArkitPoseTest, SidesAreTheSubjects) {
+TEST_F(ArkitPoseTest, LeftIsTheSubjectsLeft) {
   for (const std::string& name : ArkitNames()) {
     if (name.starts_with("jaw") || name == "mouthLeft" || name == "mouthRight") continue;
     const bool left = name.ends_with("Left"), right = name.ends_with("Right");
@@ -92,7 +92,7 @@ TEST_F(ArkitPoseTest, SidesAreTheSubjects) {
   EXPECT_GT(Moved("mouthLeft", "risorius_l").x, 0.004f);
 }
 
-TEST_F(ArkitPoseTest, ShapesGoWhereTheirNamesSay) {
+TEST_F(ArkitPoseTest, ShapesMoveInTheNamedDirections) {
   EXPECT_LT(Moved("jawOpen", "orbicularis_oris_lower_l").y, -0.015f);
   EXPECT_GT(Moved("mouthSmileLeft", "risorius_l").y, 0.005f);
   EXPECT_LT(Moved("mouthFrownRight", "risorius_r").y, -0.005f);

@@ -86,7 +86,7 @@ class BodyMotion : public testing::Test {
   std::vector<glm::mat4> to_;
 };
 
-TEST_F(BodyMotion, CmuWalksWithTheSameLimbs) {
+TEST_F(BodyMotion, CmuWalkKeepsItsLimbDirections) {
   if (!Load("cmu/01_01.bvh")) GTEST_SKIP() << "CMU's recording is not here";
   EXPECT_EQ(match_.stream.map, "cmu");
   EXPECT_TRUE(match_.stream.missing.empty());
@@ -117,7 +117,7 @@ TEST_F(BodyMotion, CmuStandsOnTheFloor) {
   EXPECT_GT(lowest.front(), -0.05f);
 }
 
-TEST_F(BodyMotion, AVrmAnimationMovesItAndItsArms) {
+TEST_F(BodyMotion, VrmAnimationMovesTheBodyAndItsArms) {
   if (!Load("vrma/test.vrma")) GTEST_SKIP() << "the VRM animation is not here";
   EXPECT_EQ(match_.stream.map, "vrm");
   ASSERT_GT(clip_.num_frames(), 1);
@@ -136,7 +136,7 @@ TEST_F(BodyMotion, AVrmAnimationMovesItAndItsArms) {
 }
 
 // MakeHuman's rig has two joints to a limb, five in the spine and a stance of its own.
-TEST_F(BodyMotion, MakeHumansPosesKeepTheirLimbs) {
+TEST_F(BodyMotion, MakeHumanPosesKeepTheirLimbDirections) {
   // Its positions are departures from rest.
   if (!Load("makehuman/poses/benchmark.bvh", {.bvh_positions = motion::BvhPositions::kAdd}))
     GTEST_SKIP() << "MakeHuman's pose is not here";

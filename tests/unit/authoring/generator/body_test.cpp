@@ -82,7 +82,7 @@ TEST_P(BodyTest, TrousersAreSewnBetweenTheLegs) {
 }
 
 // Singular values of the map from cloth to atlas, of every triangle, relative to its scale.
-TEST_P(BodyTest, ClothIsCutWithLittleStretch) {
+TEST_P(BodyTest, ClothUnwrapsWithLittleStretch) {
   const BodyShape shape = Shape();
   QuadNet net = MakeShirt(shape);
   Join(MakeTrousers(shape), &net);
@@ -112,7 +112,7 @@ TEST_P(BodyTest, ClothIsCutWithLittleStretch) {
   EXPECT_LT(stretched, 0.05 * area);
 }
 
-TEST_P(BodyTest, NothingComesApartAtASeam) {
+TEST_P(BodyTest, SeamsStayClosed) {
   const Clothes clothes = MakeClothes(Shape());
   ASSERT_EQ(clothes.vertex_panels.size(), clothes.mesh.vertices.size());
   ASSERT_EQ(clothes.panels.size(), static_cast<std::size_t>(kNumClothPanels));
@@ -139,7 +139,7 @@ float ShareOf(const Influences& skin, int joint) {
 
 // Along an edge of the clothes no joint gains or loses more than a part: cloth bends, it does not
 // break.
-TEST_P(BodyTest, WeightsOfClothAreSmooth) {
+TEST_P(BodyTest, ClothSkinWeightsAreSmooth) {
   const BodyShape shape = Shape();
   for (const QuadNet& net : {MakeShirt(shape), MakeTrousers(shape)}) {
     const std::vector<std::vector<int>> neighbours = Neighbours(net);
@@ -157,7 +157,7 @@ TEST_P(BodyTest, WeightsOfClothAreSmooth) {
 }
 
 // Rings of edges across a bend: at least eight within 10 cm of elbow and knee.
-TEST_P(BodyTest, LimbsHaveRingsWhereTheyBend) {
+TEST_P(BodyTest, LimbsHaveEdgeRingsAtTheirBends) {
   const BodyShape shape = Shape();
   const Clothes clothes = MakeClothes(shape);
   std::set<long> elbow, knee;
@@ -208,7 +208,7 @@ TEST_P(BodyTest, FingersClose) {
   }
 }
 
-TEST_P(BodyTest, HandsAreClosedButAtTheWrist) {
+TEST_P(BodyTest, HandsAreOpenOnlyAtTheWrist) {
   character::Mesh hand;
   AppendNet(MakeHand(skeleton_, 1.0f, 0, GetParam()), &hand);
   for (const auto& [place, count] : Rims(hand)) EXPECT_LT(place[0], 70000);  // inside the cuff
@@ -227,7 +227,7 @@ TEST(GeneratorBody, BaseLevelHasAboutEightThousandTriangles) {
   EXPECT_LT(indices / 3, 10000u);
 }
 
-TEST(GeneratorBody, ParametersMakeAnotherBody) {
+TEST(GeneratorBody, ParametersChangeTheBody) {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   const BodyShape man({.level = 0}, skeleton, DefaultHead());
   const BodyShape other({.waist = 1.1f, .hips = 1.12f, .bust = 0.03f, .level = 0}, skeleton,
@@ -240,7 +240,7 @@ TEST(GeneratorBody, ParametersMakeAnotherBody) {
 }
 
 // The two sides of a bend have masks of their own, and either is somewhere full.
-TEST(GeneratorBody, MasksTellInnerFromOuter) {
+TEST(GeneratorBody, MasksDistinguishInnerFromOuter) {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   const BodyShape shape({.level = 0}, skeleton, DefaultHead());
   const std::array<character::Picture, 6> masks = PaintClothMasks(MakeClothes(shape), 256);

@@ -64,7 +64,7 @@ TEST(GeneratorMesh, HasNoDegenerateTrianglesAndUnitFrames) {
   }
 }
 
-TEST(GeneratorMesh, TheTongueLiesBehindTheLowerTeethAndGoesWithTheJaw) {
+TEST(GeneratorMesh, TongueLiesBehindTheLowerTeethAndMovesWithTheJaw) {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   HeadMesh tongue = MakeTongue();
   SkinHead(skeleton, &tongue);
@@ -164,7 +164,7 @@ TEST(GeneratorMesh, UvsLieInTheUnitSquareAndDoNotOverlap) {
 }
 
 // Far away a lash is gone: its last mip level is below the cut-off, and near by all of it is drawn.
-TEST(GeneratorMesh, LashesFadeBeforeTheyAreDots) {
+TEST(GeneratorMesh, LashesFadeInTheDistance) {
   const character::Picture lash = PaintLash();
   double sum = 0.0;
   int drawn = 0;
@@ -184,7 +184,7 @@ TEST(GeneratorMesh, LashesFadeBeforeTheyAreDots) {
 
 // Every edge, by place, is used at most once in each direction: neighbours agree on what is
 // outside.
-TEST(GeneratorMesh, NeighbouringTrianglesWindAlike) {
+TEST(GeneratorMesh, NeighbouringTrianglesHaveTheSameWinding) {
   const character::Mesh skin = MakeSkin(MakeSkeleton());
   using Place = std::array<long, 3>;
   const auto place = [&](std::uint32_t i) {
@@ -235,7 +235,7 @@ TEST(GeneratorMesh, EarsFaceOutward) {
   EXPECT_GT(volume[1], 1.0f);
 }
 
-TEST(GeneratorMesh, ProportionsAreThoseOfAnAdult) {
+TEST(GeneratorMesh, HasAdultProportions) {
   const HeadMesh head = MakeHeadSkin();
   glm::vec3 low(1e9f), high(-1e9f);
   for (const HeadVertex& info : head.info) {
@@ -289,7 +289,7 @@ TEST(GeneratorMesh, LipsPartWithTheJaw) {
 
 // Vertices that lie on each other at rest stay together, or the background would show between them:
 // at the seam of the unwrapping, and where the lining of the mouth is sewn to the lips.
-TEST(GeneratorMesh, NothingComesApartAtASeam) {
+TEST(GeneratorMesh, SeamsStayClosed) {
   HeadMesh head = MakeHeadSkin();
   SkinHead(MakeSkeleton(), &head);
   // What lies above and what lies below an opening touch while it is closed, and part with it.
@@ -311,7 +311,7 @@ TEST(GeneratorMesh, NothingComesApartAtASeam) {
   EXPECT_GT(pairs, 40);
 }
 
-TEST(GeneratorSkeleton, StandsOnTheFloorAndMirrors) {
+TEST(GeneratorSkeleton, StandsOnTheFloorAndIsSymmetric) {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   ASSERT_EQ(skeleton.num_joints(), static_cast<int>(JointPlaces().size()));
   for (int j = 0; j < skeleton.num_joints(); ++j) {

@@ -122,7 +122,7 @@ TEST_F(DefaultRigTest, ReferencePosesReachTheirDrivers) {
   EXPECT_GT(checked, 20);
 }
 
-TEST_F(DefaultRigTest, EveryReferencePoseMovesJointsThatExist) {
+TEST_F(DefaultRigTest, ReferencePosesMoveOnlyExistingJoints) {
   for (const wrinkle::ReferencePose& pose : rig_.reference_poses) {
     EXPECT_FALSE(pose.joints.empty()) << pose.name;
     for (const wrinkle::JointDelta& delta : pose.joints) {
@@ -131,7 +131,7 @@ TEST_F(DefaultRigTest, EveryReferencePoseMovesJointsThatExist) {
   }
 }
 
-TEST_F(DefaultRigTest, EmotionsWrinkleWhereTheyShould) {
+TEST_F(DefaultRigTest, EmotionsRaiseTheExpectedWeights) {
   const struct {
     const char* recording;
     int frame;
@@ -156,7 +156,7 @@ TEST_F(DefaultRigTest, EmotionsWrinkleWhereTheyShould) {
   }
 }
 
-TEST_F(DefaultRigTest, WalkBendsKneesInTurn) {
+TEST_F(DefaultRigTest, WalkBendsKneesAlternately) {
   Result<Recording> walk = MakeRecording("walk", rig_, skeleton_);
   ASSERT_TRUE(walk.ok());
   float most_left = 0.0f, most_right = 0.0f, both = 0.0f;
@@ -201,7 +201,7 @@ TEST(GeneratorRecordings, BvhReadsBackEqual) {
 }
 
 // No joint jumps: eased onsets keep steps of a frame small, blinks of lids being the quickest.
-TEST(GeneratorRecordings, MoveWithoutJumps) {
+TEST(GeneratorRecordings, MoveSmoothly) {
   const wrinkle::Rig rig = DefaultRig();
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   for (const std::string& name : RecordingNames()) {
@@ -232,7 +232,7 @@ class PackageTest : public ::testing::Test {
 };
 character::Character* PackageTest::character_ = nullptr;
 
-TEST_F(PackageTest, HoldsEveryPictureThatTheRigNames) {
+TEST_F(PackageTest, ContainsEveryPictureOfTheRig) {
   const character::Character& c = *character_;
   for (const wrinkle::Region& region : c.rig.regions) {
     if (region.mask.kind != wrinkle::Mask::Kind::kTexture) continue;
@@ -248,7 +248,7 @@ TEST_F(PackageTest, HoldsEveryPictureThatTheRigNames) {
 }
 
 // Skin pales and reddens, and keeps its colour where nothing moves it: at the back of the head.
-TEST_F(PackageTest, BloodComesAndGoes) {
+TEST_F(PackageTest, SkinPalesAndReddens) {
   for (const char* name : {"face_stretch_colour", "face_squash_colour"}) {
     const character::Picture& colour = character_->pictures[character_->FindRigPicture(name)];
     int least = 255, most = 0, still = 0;
@@ -286,7 +286,7 @@ struct Relief {
 
 // Steps from texel to texel go with the slopes on either side, one for one. The finest folds are
 // three texels wide, where the two slopes miss some of what lies between them.
-TEST(WrinkleMaps, HeightsAreThoseOfTheNormals) {
+TEST(WrinkleMaps, HeightsMatchNormals) {
   constexpr int kSize = 512;
   const character::Character character = WholeCharacter(kSize);
   const character::Mesh& skin = character.meshes[0];
@@ -316,7 +316,7 @@ TEST(WrinkleMaps, HeightsAreThoseOfTheNormals) {
   }
 }
 
-TEST_F(PackageTest, MasksAreSoftAndEachRegionIsSomewhere) {
+TEST_F(PackageTest, MasksAreSoftAndNotEmpty) {
   for (const char* name : {"face_masks_a", "face_masks_b"}) {
     const character::Picture& mask = character_->pictures[character_->FindRigPicture(name)];
     ASSERT_EQ(mask.channels, 4);
@@ -330,7 +330,7 @@ TEST_F(PackageTest, MasksAreSoftAndEachRegionIsSomewhere) {
   }
 }
 
-TEST_F(PackageTest, SameBytesOnEveryRun) {
+TEST_F(PackageTest, IsReproducible) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "furrow_package";
   std::filesystem::create_directories(folder);
   const character::Character again = WholeCharacter();
@@ -344,7 +344,7 @@ TEST_F(PackageTest, SameBytesOnEveryRun) {
   std::filesystem::remove_all(folder);
 }
 
-TEST_F(PackageTest, SurvivesWritingAndReading) {
+TEST_F(PackageTest, ReadsBackEqual) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "furrow_share";
   std::filesystem::create_directories(folder);
   ASSERT_TRUE(character::SaveCharacterGlb(*character_, folder / "c.glb").ok());

@@ -72,7 +72,7 @@ TEST_F(RecordingTest, WalkingFeetDoNotSlide) {
 }
 
 // The last frame leads on to the first: nine whole cycles.
-TEST_F(RecordingTest, WalkIsALoopOfTheLegs) {
+TEST_F(RecordingTest, WalkLoops) {
   const Recording walk = Make("walk");
   const auto& last = walk.frames.back();
   const auto& first = walk.frames.front();
@@ -82,7 +82,7 @@ TEST_F(RecordingTest, WalkIsALoopOfTheLegs) {
   }
 }
 
-TEST_F(RecordingTest, SquatGoesDownWithTheFeetOnTheFloor) {
+TEST_F(RecordingTest, SquatKeepsTheFeetOnTheFloor) {
   const Recording squat = Make("squat");
   float lowest = 1.0f, highest_hand = 0.0f;
   for (const auto& frame : squat.frames) {
@@ -98,7 +98,7 @@ TEST_F(RecordingTest, SquatGoesDownWithTheFeetOnTheFloor) {
 }
 
 // Bending hip and knee brings the ankle to where it is wanted, for any turn of the hips.
-TEST_F(RecordingTest, PlantFootReachesWhereItCan) {
+TEST_F(RecordingTest, PlantFootReachesItsTarget) {
   for (const float turn : {0.0f, 15.0f, -30.0f}) {
     FramePose pose(rig_.value(), skeleton_);
     pose.Turn("hips", 0.5f * turn, turn, 0.3f * turn);
@@ -113,7 +113,7 @@ TEST_F(RecordingTest, PlantFootReachesWhereItCan) {
 }
 
 // Left and right are not the same, and neither leads by much.
-TEST_F(RecordingTest, FacesAreNotMirrors) {
+TEST_F(RecordingTest, FacesAreNotSymmetric) {
   const Recording smile = Make("happiness");
   const int left = skeleton_.Find("risorius_l"), right = skeleton_.Find("risorius_r");
   float most = 0.0f;

@@ -103,7 +103,7 @@ void PutFloat(std::string* binary, std::size_t at, float value) {
   binary->replace(at, 4, reinterpret_cast<const char*>(&value), 4);
 }
 
-TEST(Character, ReadsBackWhatItWrote) {
+TEST(Character, WrittenCharactersReadBackEqual) {
   const Character square = Square();
   const auto again = ParseCharacter(GlbOf(square), ".");
   ASSERT_TRUE(again.ok()) << again.status().ToString();
@@ -139,7 +139,7 @@ TEST(Character, WritesEqualBytesForEqualCharacters) {
   EXPECT_EQ(first, GlbOf(*ParseCharacter(first, ".")));
 }
 
-TEST(Character, WillNotWriteWhatItCouldNotRead) {
+TEST(Character, RejectsInvalidCharactersOnSave) {
   const TemporaryFolder folder;
   const fs::path path = folder / "broken.glb";
   Character broken = Square();
@@ -156,7 +156,7 @@ TEST(Character, WillNotWriteWhatItCouldNotRead) {
   EXPECT_FALSE(fs::exists(path));
 }
 
-TEST(Character, RefusesEveryTruncation) {
+TEST(Character, RejectsEveryTruncation) {
   const std::string whole = GlbOf(Square());
   for (std::size_t length = 0; length < whole.size(); ++length) {
     const std::string part(whole.data(), length);  // a buffer of its own
@@ -304,7 +304,7 @@ TEST(Character, KeepsTheStrongestFourInfluences) {
   EXPECT_NEAR(vertex.skin_weights[3], 0.3 / 1.4, 1e-6);
 }
 
-TEST(Character, ComputesNormalsAndTangentsThatAreMissing) {
+TEST(Character, ComputesMissingNormalsAndTangents) {
   const auto character = ParseCharacter(Changed([](json& r, std::string&) {
                                           auto& attributes =
                                               r["meshes"][0]["primitives"][0]["attributes"];
@@ -320,7 +320,7 @@ TEST(Character, ComputesNormalsAndTangentsThatAreMissing) {
   }
 }
 
-TEST(Character, FindsTheRigsPictures) {
+TEST(Character, FindsThePicturesOfTheRig) {
   const fs::path folder = fs::temp_directory_path() / "furrow_character_rig";
   fs::create_directories(folder);
   ASSERT_TRUE(SaveCharacterGlb(Square(), folder / "square.glb").ok());

@@ -55,7 +55,7 @@ PatchOptions Middle(float radius = 0.025f) {
   return {.name = "p", .centre = {0.05f, 0.05f, 0.0f}, .radius = radius};
 }
 
-TEST(RigPatch, MeasuresTheStrainOfTheSurfaceItWasCutFrom) {
+TEST(RigPatch, MeasuresTheStrainOfItsSurface) {
   const Character sheets = Sheets();
   const auto driver = CutPatch(sheets, Middle());
   ASSERT_TRUE(driver.ok()) << driver.status().ToString();
@@ -74,7 +74,7 @@ TEST(RigPatch, MeasuresTheStrainOfTheSurfaceItWasCutFrom) {
   EXPECT_NEAR(values[1] + values[2] + values[3], 0.0f, 2e-3f);
 }
 
-TEST(RigPatch, KeepsToTheSurfaceThatIsNearest) {
+TEST(RigPatch, CutsOnlyTheNearestSurface) {
   const Character sheets = Sheets();
   const auto driver = CutPatch(sheets, Middle());
   ASSERT_TRUE(driver.ok());
@@ -86,7 +86,7 @@ TEST(RigPatch, KeepsToTheSurfaceThatIsNearest) {
   for (const auto& vertex : other->strain.vertices) EXPECT_NEAR(vertex.position.z, 0.001f, 1e-6f);
 }
 
-TEST(RigPatch, TwoSheetsInOnePlaceStayTwo) {
+TEST(RigPatch, CoincidentSheetsStaySeparate) {
   Character sheets = Sheets();
   for (Vertex& vertex : sheets.meshes[1].vertices) vertex.position.z = 0.0f;
   const auto whole = CutPatch(sheets, Middle(1.0f));
@@ -113,7 +113,7 @@ TEST(RigPatch, TwoSheetsInOnePlaceStayTwo) {
   EXPECT_EQ(lip->strain.vertices.size(), 11u * 11);
 }
 
-TEST(RigPatch, UvSeamsAreNoBorder) {
+TEST(RigPatch, CrossesUvSeams) {
   Character sheets = Sheets();
   Mesh& sheet = sheets.meshes[0];
   for (std::uint32_t& index : sheet.indices) {  // every corner a vertex of its own
@@ -136,7 +136,7 @@ TEST(RigPatch, GrowsWithTheRadiusToTheWholeSheet) {
   EXPECT_EQ(whole->strain.vertices.size(), 11u * 11);
 }
 
-TEST(RigPatch, SaysWhyThereIsNone) {
+TEST(RigPatch, ExplainsWhyNoPatchWasCut) {
   Character sheets = Sheets();
   PatchOptions far = Middle();
   far.centre = {3, 0, 0};

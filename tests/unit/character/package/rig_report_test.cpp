@@ -47,7 +47,7 @@ TEST(RigReport, EveryBlendShapeOfArkitFeedsARegion) {
               Contains(HasSubstr("picture 'face_masks_a'")));
 }
 
-TEST(RigReport, SaysWhatLeadsNowhere) {
+TEST(RigReport, WarnsOfUnusedPartsAndMissingReferences) {
   const auto rig = ParseRig(R"({"name": "r", "reference_poses": [
       {"name": "used", "joints": [{"joint": "other", "euler_degrees": [9, 0, 0]}]},
       {"name": "unused", "joints": []}],
@@ -79,7 +79,7 @@ TEST(RigReport, SaysWhatLeadsNowhere) {
   EXPECT_FALSE(ReportOnRig(*rig, options).binding.ok()) << "one is missing among those that come";
 }
 
-TEST(RigReport, CmuFollowsKneesAndElbowsOfARealClip) {
+TEST(RigReport, CmuFollowsKneesAndElbowsOfARecording) {
   const std::string path = FURROW_SHARED_DATA "/cmu/01_01.bvh";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
   const auto clip = motion::LoadClip(path);

@@ -71,7 +71,7 @@ TEST(Picture, KeepsHalfFloats) {
   EXPECT_EQ(EncodePng(picture).status().code(), StatusCode::kUnsupported);
 }
 
-TEST(Picture, RefusesTexelsThatAreNoNumbers) {
+TEST(Picture, RejectsNonFiniteTexels) {
   Picture picture;
   picture.width = 1;
   picture.height = 1;
@@ -81,7 +81,7 @@ TEST(Picture, RefusesTexelsThatAreNoNumbers) {
   EXPECT_EQ(again.status().code(), StatusCode::kNonFinite);
 }
 
-TEST(Picture, RefusesEveryTruncationOfAnExr) {
+TEST(Picture, RejectsEveryTruncationOfAnExr) {
   Picture picture;
   picture.width = 4;
   picture.height = 4;
@@ -94,7 +94,7 @@ TEST(Picture, RefusesEveryTruncationOfAnExr) {
   }
 }
 
-TEST(Picture, RefusesEveryTruncation) {
+TEST(Picture, RejectsEveryTruncation) {
   Picture picture;
   picture.width = 4;
   picture.height = 4;
@@ -107,7 +107,7 @@ TEST(Picture, RefusesEveryTruncation) {
   }
 }
 
-TEST(Picture, RefusesWhatIsTooLargeBeforeReadingIt) {
+TEST(Picture, RejectsHugePicturesBeforeDecoding) {
   Picture picture;
   picture.width = 1;
   picture.height = 1;

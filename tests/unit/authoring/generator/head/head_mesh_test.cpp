@@ -19,7 +19,7 @@ namespace {
 
 std::size_t Triangles(const HeadMesh& head) { return head.mesh.indices.size() / 3; }
 
-TEST(HeadMesh, LevelsAreOfOneForm) {
+TEST(HeadMesh, LevelsShareOneShape) {
   const HeadMesh coarse = MakeHeadSkin(DefaultHead(), 0);
   const HeadMesh middle = MakeHeadSkin(DefaultHead(), 1);
   const HeadMesh fine = MakeHeadSkin(DefaultHead(), 2);
@@ -116,7 +116,7 @@ TEST(HeadMesh, SkinWeightsAreSmooth) {
   EXPECT_LT(changes[changes.size() * 99 / 100], 2.0f);
 }
 
-TEST(HeadMesh, HairCoversTheScalpAndLeavesTheFace) {
+TEST(HeadMesh, HairCoversTheScalpButNotTheFace) {
   for (const float sex : {1.0f, -1.0f}) {
     const HeadShape shape({.sex = sex});
     const HeadMesh hair = MakeHair(shape);

@@ -43,7 +43,7 @@ std::vector<FaceParameters> Faces() {
 }
 
 // Averages of adults, in centimetres; what FaceParameters change stays within the spread of people.
-TEST(HeadShape, HasAnAdultsProportions) {
+TEST(HeadShape, HasAdultProportions) {
   for (const FaceParameters& face : Faces()) {
     SCOPED_TRACE(testing::Message() << "sex " << face.sex << " age " << face.age);
     const HeadShape shape(face);
@@ -66,7 +66,7 @@ TEST(HeadShape, HasAnAdultsProportions) {
   }
 }
 
-TEST(HeadShape, EyesAndMouthLieWhereFacesHaveThem) {
+TEST(HeadShape, EyesAndMouthAreInPlace) {
   EXPECT_NEAR(2.0f * kEyeCentre.x, 6.3f, 0.2f);  // between the pupils
   const float eye_width = kOuterCanthusX - kInnerCanthusX;
   EXPECT_NEAR(eye_width, 3.1f, 0.3f);
@@ -76,7 +76,7 @@ TEST(HeadShape, EyesAndMouthLieWhereFacesHaveThem) {
   EXPECT_NEAR(kEyeRadius, 1.2f, 0.01f);
 }
 
-TEST(HeadShape, HasAProfile) {
+TEST(HeadShape, HasAnAdultProfile) {
   for (const FaceParameters& face : Faces()) {
     SCOPED_TRACE(testing::Message() << "sex " << face.sex << " age " << face.age);
     const HeadShape shape(face);
@@ -101,7 +101,7 @@ TEST(HeadShape, HasAProfile) {
   }
 }
 
-TEST(HeadShape, SexAndAgeShowWhereTheyShould) {
+TEST(HeadShape, SexAndAgeChangeTheExpectedFeatures) {
   const HeadShape man({.sex = 1.0f, .age = 25.0f}), woman({.sex = -1.0f, .age = 25.0f});
   const HeadShape old({.sex = 1.0f, .age = 75.0f});
   const auto jaw = [](const HeadShape& shape) {
@@ -127,7 +127,7 @@ TEST(HeadShape, IsSlightlyAsymmetric) {
   EXPECT_LT(most, 0.6f);
 }
 
-TEST(HeadShape, DistanceGrowsByAboutOneACentimetre) {
+TEST(HeadShape, DistanceGrowsByAboutOnePerCentimetre) {
   const HeadShape shape;
   for (const vec3& from : {vec3(0, 4, 20), vec3(3, -4, 20), vec3(0, -10, 20), vec3(-5, 1, 15)}) {
     const vec3 on = shape.Cast(from, {0, 0, -1}, 20);
