@@ -19,7 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-// One field a line, so that an error's line is easy to foretell.
+// One field per line, so that tests can predict the line of an error.
 constexpr char kSmallRig[] = R"({
   "name": "small",
   "anchor": "head",
@@ -58,7 +58,7 @@ std::string Replaced(std::string text, std::string_view from, std::string_view t
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-// The pose of a source with two joints whose second is turned by the frame's number in degrees.
+// A source with two joints. Frame n turns the second joint by n degrees.
 Result<wrinkle::PoseFrame> TurningSource(const std::filesystem::path& path, int frame) {
   if (frame > 10) return Status(StatusCode::kInvalidArgument, "11 frames", path.string());
   wrinkle::PoseFrame result;
@@ -174,7 +174,7 @@ TEST(RigFile, KeepsEveryFieldOfAStrainDriver) {
   EXPECT_EQ(strain.size, 1.7f);
 }
 
-// Every way to be wrong, one at a time: what is changed, and the code, line and field it must give.
+// One change to kSmallRig, and the code, line and field of the expected error.
 struct Wrong {
   const char* from;
   const char* to;
@@ -279,7 +279,7 @@ TEST(RigFile, RejectsTooManyValuesForNnls) {
 TEST(RigFile, RejectsEveryTruncation) {
   const std::string whole(kSmallRig, std::string_view(kSmallRig).find_last_of('}'));
   for (std::size_t length = 0; length <= whole.size(); ++length) {
-    const std::string part(whole.data(), length);  // a buffer of its own: sanitizers see its end
+    const std::string part(whole.data(), length);  // exact size, for the sanitizers
     const auto rig = Parse(part);
     ASSERT_FALSE(rig.ok()) << length;
     EXPECT_EQ(rig.status().code(), StatusCode::kParse) << length << rig.status().ToString();
@@ -301,7 +301,7 @@ TEST(RigFile, RejectsInvalidText) {
   EXPECT_FALSE(Parse("{\"name\": \"\xff\xfe\"}").ok());
   EXPECT_EQ(Parse("{\"name\": \"a\nb\"}").status().code(), StatusCode::kParse);
   EXPECT_EQ(Parse("[]").status().where(), "a.rig.json:1");
-  // FlatBuffers' parser reads schemas, too; nothing of a rig may reach that.
+  // FlatBuffers' parser also reads schemas. A rig must not use that.
   EXPECT_EQ(Parse("include \"/etc/passwd\"; {}").status().code(), StatusCode::kParse);
 }
 
@@ -314,7 +314,7 @@ TEST(RigFile, ReadsPosesFromFramesAndMixes) {
     {"name": "up", "mix": [{"pose": "unit", "weight": 0.5}, {"pose": "from_2"}]})");
   const auto rig = ParseRig(json, "a.rig.json", FURROW_SOURCE_DIR "/tests/unit/rig", TurningSource);
   ASSERT_TRUE(rig.ok()) << rig.status().ToString();
-  ASSERT_EQ(rig->reference_poses.size(), 1u) << "building blocks are left out";
+  ASSERT_EQ(rig->reference_poses.size(), 1u) << "building blocks are omitted";
   ASSERT_EQ(rig->reference_poses[0].joints.size(), 1u) << "the root does not move";
   EXPECT_EQ(rig->reference_poses[0].joints[0].joint, "brow");
   // 10 * 0.5 + (10 - 4) degrees about X.

@@ -17,7 +17,8 @@ glm::quat Turn(float degrees, glm::vec3 axis) {
   return glm::angleAxis(degrees * kPi / 180.0f, axis);
 }
 
-// A root turned by 90 degrees about Z at rest, and a child one unit along the root's own X.
+// A root that is turned by 90 degrees about Z at rest, and a child at 1 unit along the root's X
+// axis.
 PoseFrame TurnedRoot() {
   PoseFrame frame;
   frame.skeleton =
@@ -36,7 +37,8 @@ TEST(RigReferencePose, RestPoseMovesNoJoints) {
 
 TEST(RigReferencePose, UsesModelAxes) {
   PoseFrame frame = TurnedRoot();
-  // About the child's own X, which is the model's Y; moved along the root's own X, the model's Y.
+  // A turn about the child's X axis and a move along the root's X axis; both are the model's Y
+  // axis.
   frame.pose.joints[1].rotation = Turn(30, {1, 0, 0});
   frame.pose.joints[1].translation += glm::vec3(0.25f, 0, 0);
   const auto pose = ReferencePoseFromFrame("p", frame);

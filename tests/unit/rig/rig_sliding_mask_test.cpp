@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Masks that slide about a ball joint, in the rig file.
+// Reads and writes masks that slide around a ball joint.
 #include <string>
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace furrow::character {
 namespace {
 
-// A hip whose mask slides; `mask`: what its object says besides its kind.
+// A rig for a hip with a sliding mask. `mask`: more fields of the mask, each after a comma.
 Result<wrinkle::Rig> Parse(const std::string& mask) {
   const std::string json = R"({"name": "hip", "drivers": [
       {"name": "hip_l", "ball": {"parent": "hips", "joint": "thigh_l"}},

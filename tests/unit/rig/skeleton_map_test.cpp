@@ -30,7 +30,7 @@ constexpr char kToy[] = R"({
 
 SkeletonMap Toy() { return ParseSkeletonMap(kToy, "toy.json").value(); }
 
-// The shipped files as they stand in the source tree.
+// The shipped maps, read from the source tree.
 SkeletonMaps Shipped() {
   std::vector<SkeletonMap> maps;
   for (const auto& file :
@@ -115,7 +115,7 @@ TEST(SkeletonMap, ReportsEveryFault) {
       {"\"sides\": {\"left\": \"L\", \"right\": \"R\"},", "", StatusCode::kSchema},
       {"\"hips\"", "\"hip\"", StatusCode::kSchema},
       {"\"hips\"", "\"none\"", StatusCode::kSchema},
-      {"\"hips\"", "\"leftHand\"", StatusCode::kSchema},  // twice, by "*Hand"
+      {"\"hips\"", "\"leftHand\"", StatusCode::kSchema},  // duplicate, because of "*Hand"
       {"Root|Pelvis", "Root|", StatusCode::kSchema},
       {"Root|Pelvis", "Ro*t", StatusCode::kSchema},
       {"[\"N1\", \"N2\"]", "[]", StatusCode::kSchema},
@@ -146,7 +146,7 @@ TEST(SkeletonMap, RejectsTruncatedAndOversizedInput) {
   std::string many = whole;
   many.replace(many.find("\"N1\""), 4, "\"" + std::string(256, 'x') + "\"");
   EXPECT_EQ(ParseSkeletonMap(many, "toy").status().code(), StatusCode::kLimit);
-  // So deep that a walk down to the bottom would overflow the stack, wherever a value stands.
+  // Nested so deeply that recursion would overflow the stack. Tried at every value.
   const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
   for (const char* value : {"1,", "\"toy\"", "\"Toys\"", "\"toy_\"", "\"L\"", "\"Root|Pelvis\"",
                             "[\"N1\", \"N2\"]", "\"N1\"", "\"Hand.*\""}) {
@@ -168,7 +168,7 @@ TEST(SkeletonMaps, RequiresAMinimumNumberOfRoles) {
   EXPECT_EQ(chosen.RolesOf(Names{"head"}).map, one[0].name);
 }
 
-// For every shipped map: a skeleton of all its first names is recognised as itself, whole.
+// For every shipped map: a skeleton with the first name of each place matches that map completely.
 TEST(SkeletonMaps, EveryShippedMapRecognisesItsOwnFamily) {
   const SkeletonMaps maps = Shipped();
   EXPECT_GE(maps.maps().size(), 11u);
@@ -210,7 +210,7 @@ TEST(SkeletonMaps, LoadsByNameByFileOrAll) {
   EXPECT_EQ(SkeletonMaps::Load("cmu").value().maps()[0].name, "cmu");
   const std::string file = std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/vrm.json";
   EXPECT_EQ(SkeletonMaps::Load(file).value().maps()[0].name, "vrm");
-  // A folder of that name hides nothing.
+  // A folder with the name of a map does not hide the map.
   const fs::path before = fs::current_path();
   const TemporaryFolder folder;
   fs::create_directory(folder / "cmu");

@@ -84,7 +84,7 @@ TEST(WrinkleMapPictures, MakesThePicturesThatTheRigNames) {
   auto some = WrinkleMapPictures(map, named);
   ASSERT_TRUE(some.ok());
   EXPECT_EQ(Names(*some), (std::vector<std::string>{"n", "h"}));
-  EXPECT_EQ((*some)[1].pixels16[0], 40959);  // 0.5 mm of 2 mm, as a signed value
+  EXPECT_EQ((*some)[1].pixels16[0], 40959);  // 0.25 in a signed texel
   named.colour = "c";
   named.cavity = "v";
   const auto all = WrinkleMapPictures(map, named);

@@ -23,7 +23,7 @@ struct ToyJoint {
   glm::vec3 tail;
 };
 
-// Landmarks of a face on a ball of radius 1 around (0, 3, 0), in decimetres.
+// Joints in decimetres. The face lies on a ball of radius 1 around (0, 3, 0).
 std::vector<ToyJoint> ToyJoints() {
   std::vector<ToyJoint> joints{
       {"root", "", {0, 1, 0}, {0, 2, 0}},
