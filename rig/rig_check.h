@@ -8,7 +8,8 @@
 
 namespace furrow::character {
 
-inline constexpr std::size_t kMaxExports = 4096;  // names; other limits: wrinkle/rig/rig_check.h
+// The largest number of exported names. wrinkle/rig/rig_check.h has the other limits.
+inline constexpr std::size_t kMaxExports = 4096;
 
 // Checks everything that needs no skeleton: the fields (wrinkle::CheckRigFields()), references
 // between fields, and file names, which must not leave their folders. The error's `where` is the
