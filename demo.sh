@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# From nothing to a face that wrinkles: installs what is missing, builds, starts furrowd with the default
-# character, plays a performance to it over UDP, prints the weights as they arrive, and leaves demo-out/:
-# weights.csv, pictures/, contact-sheet.jpg. Then the performance goes on, and the page's address stands
-# last; it stays up until Ctrl-C.
+# Demonstrates Furrow on a new machine: installs missing packages, builds, starts furrowd with the default
+# character, plays a performance to it over UDP and prints the weights as they arrive. Writes to demo-out/:
+# weights.csv, pictures/, contact-sheet.jpg. Then repeats the performance, prints the address of the preview
+# page, and runs until Ctrl-C.
 #
 # usage: ./demo.sh [--once]
-#   --once   end after the performance (also without a terminal)
+#   --once   Exit after the performance (default if standard output is not a terminal)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -22,7 +22,7 @@ done
 
 say() { printf '\n== %s\n' "$*"; }
 
-say "what is needed from Debian"
+say "Debian packages"
 deploy/install-deps.sh build
 
 say "build (preset release)"
@@ -64,7 +64,7 @@ tcp=$(sed -n 's/.* tcp=[^ ]*:\([0-9]*\).*/\1/p' "$out/furrowd.out")
 udp=$(sed -n 's/.* udp=[^ ]*:\([0-9]*\).*/\1/p' "$out/furrowd.out")
 http=$(sed -n 's/.* http=[^ ]*:\([0-9]*\).*/\1/p' "$out/furrowd.out")
 
-say "a performance over UDP: weights as they arrive (all of them in demo-out/weights.csv)"
+say "a performance over UDP; one row of weights per second (all rows: demo-out/weights.csv)"
 "$bin/furrow" watch "localhost:$tcp" --subject demo --wait --format csv >"$out/weights.csv" &
 watchers+=($!)
 "$bin/furrow" watch "localhost:$tcp" --subject demo --wait --format table --rate 1 &
@@ -78,7 +78,7 @@ watchers=()
 
 pictures=$(find "$out/pictures" -name '*.jpg' | wc -l)
 rows=$(($(wc -l <"$out/weights.csv") - 1))
-[[ $rows -gt 0 && $pictures -gt 0 ]] || { echo "demo.sh: $rows rows, $pictures pictures: see demo-out/furrowd.log" >&2; exit 1; }
+[[ $rows -gt 0 && $pictures -gt 0 ]] || { echo "demo.sh: received $rows rows of weights and $pictures pictures; see demo-out/furrowd.log" >&2; exit 1; }
 
 say "contact sheet"
 mapfile -t all < <(find "$out/pictures" -name '*.jpg' | sort)
@@ -89,7 +89,7 @@ oiiotool "${chosen[@]}" --mosaic:pad=4 4x3 --resize 1280x0 -o "$out/contact-shee
 echo "demo-out/: weights.csv ($rows rows), pictures/ ($pictures), contact-sheet.jpg"
 if [[ $once == yes ]]; then exit 0; fi
 
-say "the performance goes on; watch and direct it in a browser (Ctrl-C ends everything):"
+say "the performance repeats; watch and control it in a browser (stop with Ctrl-C):"
 "$bin/furrow" play "$performance" --to "localhost:$udp" --udp --subject demo --loop &
 watchers+=($!)
 echo "  weights in a terminal:  build/release/bin/furrow watch localhost:$tcp"

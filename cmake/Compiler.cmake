@@ -12,8 +12,8 @@ set(FURROW_COVERAGE OFF CACHE BOOL "Instrument for gcov")
 
 find_program(FURROW_CCACHE ccache)
 if(FURROW_CCACHE)
-  # ccache handles precompiled headers only with these two kinds of sloppiness (its manual, "Precompiled
-  # headers"); -fpch-preprocess lets it see which header a unit used.
+  # ccache supports precompiled headers only with these two settings (see "Precompiled headers" in its
+  # manual). With -fpch-preprocess it sees which header a unit used.
   set(launcher "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${FURROW_CCACHE}")
   set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
   set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
@@ -28,7 +28,7 @@ add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wimpli
 if(FURROW_SANITIZE)
   set(_sanitize "${FURROW_SANITIZE}")
   if(_sanitize MATCHES "fuzzer")
-    # Libraries get coverage instrumentation alone; the targets link the fuzzer's main.
+    # Libraries get only coverage instrumentation. The fuzz targets link the fuzzer's main function.
     string(REPLACE "fuzzer" "fuzzer-no-link" _sanitize "${_sanitize}")
   endif()
   add_compile_options(-fsanitize=${_sanitize} -fno-omit-frame-pointer)

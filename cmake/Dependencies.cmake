@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Debian's libraries as imported targets (deploy/install-deps.sh installs them). Nothing is downloaded.
+# Imports Debian's libraries as targets (deploy/install-deps.sh installs them). Downloads nothing.
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 
@@ -10,7 +10,8 @@ find_package(tomlplusplus REQUIRED)
 
 pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(EGL REQUIRED IMPORTED_TARGET egl)
-# By pkg-config: the CMake package drags in Imath's Python targets, which Debian ships apart.
+# Found with pkg-config, because the CMake package needs Imath's Python targets, which Debian packages
+# separately.
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 pkg_check_modules(ASSIMP REQUIRED IMPORTED_TARGET assimp)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
@@ -21,7 +22,7 @@ pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
 
 find_program(FURROW_FLATC flatc REQUIRED)
 
-# Header-only libraries that come without a usable CMake package.
+# Header-only libraries without a usable CMake package.
 add_library(furrow_glm INTERFACE)
 find_path(FURROW_GLM_INCLUDE glm/glm.hpp REQUIRED)
 target_include_directories(furrow_glm SYSTEM INTERFACE "${FURROW_GLM_INCLUDE}")
@@ -32,20 +33,19 @@ target_include_directories(furrow_asio SYSTEM INTERFACE "${FURROW_ASIO_INCLUDE}"
 target_compile_definitions(furrow_asio INTERFACE ASIO_STANDALONE ASIO_NO_DEPRECATED)
 target_link_libraries(furrow_asio INTERFACE Threads::Threads)
 
-# Beast and the Asio that it brings, headers alone (libboost1.81-dev: Debian's default, 1.74, clashes
-# with the standalone Asio).
+# Boost.Beast with Boost.Asio, headers only. Debian's default version, 1.74, is sufficient.
 add_library(furrow_beast INTERFACE)
 find_path(FURROW_BOOST_INCLUDE boost/beast.hpp REQUIRED)
 target_include_directories(furrow_beast SYSTEM INTERFACE "${FURROW_BOOST_INCLUDE}")
 target_link_libraries(furrow_beast INTERFACE Threads::Threads)
-# By pkg-config: the CMake package wants the libraries of its pusher too.
+# Found with pkg-config, because the CMake package also needs the libraries of the push client.
 pkg_check_modules(PROMETHEUS REQUIRED IMPORTED_TARGET prometheus-cpp-core)
 
 add_library(furrow_cli11 INTERFACE)
 find_path(FURROW_CLI11_INCLUDE CLI/CLI.hpp REQUIRED)
 target_include_directories(furrow_cli11 SYSTEM INTERFACE "${FURROW_CLI11_INCLUDE}")
 
-# bench_preview has the web tests' client.
+# bench_preview uses the web client of the tests, which needs GoogleTest.
 if(FURROW_BUILD_TESTS OR FURROW_BUILD_BENCH)
   find_package(GTest REQUIRED)
 endif()

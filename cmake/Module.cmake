@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# How a folder becomes a library, a schema becomes code, and a test folder becomes a test program.
+# Functions that add libraries, generated FlatBuffers code and test programs.
 include(GoogleTest)
 include(Unity)
 
-# furrow_library(NAME SOURCES... LINK libs... PRIVATE_LINK libs...): a static library. Headers are included
-# by their path from the root.
+# furrow_library(NAME SOURCES... LINK libs... PRIVATE_LINK libs...): adds a static library. Headers are
+# included by their path from the root.
 function(furrow_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
@@ -13,7 +13,7 @@ function(furrow_library name)
   furrow_unity(${name})
 endfunction()
 
-# furrow_flatbuffers(TARGET SCHEMAS...): generated headers, included as "<folder>/<name>_generated.h".
+# furrow_flatbuffers(TARGET SCHEMAS...): generates headers, included as "<folder>/<name>_generated.h".
 function(furrow_flatbuffers target)
   set(outputs)
   foreach(schema IN LISTS ARGN)
@@ -35,9 +35,9 @@ function(furrow_flatbuffers target)
   target_include_directories(${target} SYSTEM PRIVATE "${CMAKE_BINARY_DIR}/generated")
 endfunction()
 
-# furrow_test(NAME SOURCES... LINK libs... [ONE_PROCESS] [LABEL l]): a GoogleTest program. Each test is a
-# CTest test. ONE_PROCESS runs the whole program as one CTest test, for programs with a costly set-up (GL
-# contexts, whole characters). The label `all` keeps a program out of the default tier (test.sh --all).
+# furrow_test(NAME SOURCES... LINK libs... [ONE_PROCESS] [LABEL l]): adds a GoogleTest program. Each test is
+# a CTest test. ONE_PROCESS runs the program as one CTest test; use it for programs with an expensive set-up
+# (GL contexts, whole characters). Programs with the label `all` run only with test.sh --all.
 function(furrow_test name)
   cmake_parse_arguments(ARG "ONE_PROCESS" "LABEL" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})

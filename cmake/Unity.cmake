@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# Fewer and cheaper translation units. Most of a clean build's time goes into parsing the same headers
-# again, so each folder of a library is compiled as one unit, and test programs share a precompiled header.
+# Makes clean builds faster. They spend most of their time on parsing the same headers again and again, so each
+# folder of a library is compiled as one translation unit, and test programs share a precompiled header.
 option(FURROW_UNITY "Compile each folder of a library as one unit, and precompile the tests' headers" ON)
 
-# furrow_unity(TARGET): the sources of one folder become one translation unit. Sources with the property
-# SKIP_UNITY_BUILD_INCLUSION stay on their own.
+# furrow_unity(TARGET): compiles the sources of each folder as one translation unit. Sources with the
+# property SKIP_UNITY_BUILD_INCLUSION are compiled separately.
 function(furrow_unity target)
   if(NOT FURROW_UNITY)
     return()
@@ -23,13 +23,13 @@ function(furrow_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# furrow_compile_alone(SOURCES...): keeps sources out of the unity files. Highway includes a kernel's source
-# once per instruction set, so it cannot share a unit. Call it before furrow_library().
+# furrow_compile_alone(SOURCES...): compiles sources separately. Highway includes the source of a kernel once
+# per instruction set, so a kernel cannot share a unit. Call this before furrow_library().
 function(furrow_compile_alone)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# furrow_precompile_tests(TARGET): GoogleTest and the standard library, parsed once for all test programs.
+# furrow_precompile_tests(TARGET): precompiles GoogleTest and the standard library once for all test programs.
 function(furrow_precompile_tests target)
   if(NOT FURROW_UNITY)
     return()

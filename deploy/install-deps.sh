@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what Furrow needs on Debian 12. Prints nothing when nothing is missing, can be run twice,
-# uses sudo only when a package is missing, and never removes a package.
+# Installs the packages that Furrow needs on Debian 12. Prints nothing if all are installed, uses sudo only
+# if a package is missing, and never removes a package. It is safe to run it again.
 #
 # usage: deploy/install-deps.sh [build|test|all|full]   (default: test; each set includes the sets before it)
 #   build  build and run the demo
@@ -21,7 +21,7 @@ case "$want" in
 esac
 
 if ! command -v dpkg-query >/dev/null; then
-  echo "install-deps: this is not a Debian system; install the packages of deploy/packages.txt by hand" >&2
+  echo "install-deps: this is not a Debian system; install the packages in deploy/packages.txt by hand" >&2
   exit 1
 fi
 
@@ -37,8 +37,8 @@ while read -r set package; do
   [[ $state == installed ]] || grep -qxF -- "$package" <<<"$provided" || missing+=("$package")
 done < "$here/packages.txt"
 
-# npm_ci FOLDER CONSEQUENCE: installs the packages of FOLDER's lock file unless they are installed
-# already. CONSEQUENCE says what is left out when that fails.
+# npm_ci FOLDER CONSEQUENCE: installs the packages in FOLDER's lock file unless they are installed.
+# CONSEQUENCE is the second half of the error message.
 npm_ci() {
   local folder=$here/../$1
   command -v npm >/dev/null || return 0
@@ -51,10 +51,10 @@ npm_ci() {
   fi
 }
 install_npm_packages() {
-  npm_ci web 'the preview page will be left out'
+  npm_ci web 'the preview page will not be built'
   [[ $want != build ]] || return 0
   npm_ci tests/mcap_interop 'the tests that need @mcap/core will be skipped'
-  npm_ci tests/browser 'the tests in a browser will be skipped'
+  npm_ci tests/browser 'the browser tests will be skipped'
 }
 if [[ ${#missing[@]} -eq 0 ]]; then
   install_npm_packages
@@ -74,7 +74,7 @@ export DEBIAN_FRONTEND=noninteractive
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 
-# fail MESSAGE: the end of apt-get's output, then MESSAGE.
+# fail MESSAGE: prints the end of apt-get's output and MESSAGE, and exits.
 fail() {
   tail -n 30 "$log" >&2
   echo "install-deps: $1" >&2
@@ -84,16 +84,16 @@ fail() {
 echo "install-deps: installing ${missing[*]}"
 "${sudo[@]}" apt-get update >"$log" 2>&1 || fail 'apt-get update failed (output above)'
 
-# Installing never removes a package: stop before it, and name what is in the way.
+# Stops before an installation that would remove packages, and lists those packages.
 "${sudo[@]}" apt-get install --simulate --no-install-recommends "${missing[@]}" >"$log" 2>&1 ||
   fail "apt-get cannot install: ${missing[*]} (reason above)"
 removed=$(sed -n 's/^Remv \([^ ]*\).*/\1/p' "$log" | tr '\n' ' ')
 if [[ -n $removed ]]; then
   cat >&2 <<MESSAGE
 install-deps: nothing was installed, because apt would remove: $removed
-  To go on, remove those packages yourself and run this again:
+  Either remove those packages yourself and install the missing ones:
     apt-get install --no-install-recommends ${missing[*]}
-  or build in a container or chroot of Debian 12.
+  or build in a container or chroot with Debian 12.
 MESSAGE
   exit 1
 fi

@@ -31,7 +31,7 @@ std::unordered_set<std::string_view> NamesOf(const std::vector<Item>& items) {
   return names;
 }
 
-// What the fields of one rig say of each other, and of files.
+// Checks the references between the fields of a rig, and the names of its files.
 class References {
  public:
   explicit References(const Rig& rig)
@@ -83,7 +83,7 @@ class References {
       if (Status s = CheckAssetName(*file); !s.ok()) return s.At(at + field);
     }
     if (!map.normal.empty() && !map.derivative.empty()) {
-      return InvalidField("a map has a normal map or a derivative map, not both",
+      return InvalidField("a map cannot have both a normal map and a derivative map",
                           at + ".derivative");
     }
     if (!map.opposes.empty() && !maps_.contains(map.opposes)) {
@@ -98,7 +98,7 @@ class References {
   }
 
   Status CheckFeeds(const Region& region, const std::string& list) {
-    if (region.feeds.empty()) return InvalidField("a region needs a feed", list);
+    if (region.feeds.empty()) return InvalidField("a region needs at least one feed", list);
     for (std::size_t i = 0; i < region.feeds.size(); ++i) {
       const wrinkle::Feed& feed = region.feeds[i];
       const std::string at = FieldAt(list, i);
@@ -134,7 +134,7 @@ class References {
     for (std::size_t i = 0; i < region.neighbours.size(); ++i) {
       const std::string& name = region.neighbours[i];
       if (name == region.name)
-        return InvalidField("a region is not its own neighbour", FieldAt(list, i));
+        return InvalidField("a region cannot be its own neighbour", FieldAt(list, i));
       if (!regions_.contains(name))
         return InvalidField("there is no region '" + name + "'", FieldAt(list, i));
     }
@@ -146,7 +146,7 @@ class References {
     if (exports.size() > kMaxExports) {
       return {StatusCode::kLimit, "more than " + std::to_string(kMaxExports) + " names", "export"};
     }
-    // In the file exports stand in groups of one profile.
+    // The file groups the exports by profile.
     int group = -1;
     int place = 0;
     for (std::size_t i = 0; i < exports.size(); ++i) {

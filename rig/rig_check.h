@@ -8,12 +8,12 @@
 
 namespace furrow::character {
 
-inline constexpr std::size_t kMaxExports =
-    4096;  // names; the other limits: wrinkle/rig/rig_check.h
+// The largest number of exported names. wrinkle/rig/rig_check.h has the other limits.
+inline constexpr std::size_t kMaxExports = 4096;
 
-// Everything that can be said of a rig without a skeleton: wrinkle::CheckRigFields(), references
-// that lead somewhere, names of files that stay in their folders. The error's `where` is the field
-// as a path: "drivers[3].hinge.beta_degrees".
+// Checks everything that needs no skeleton: the fields (wrinkle::CheckRigFields()), references
+// between fields, and file names, which must not leave their folders. The error's `where` is the
+// path of the field: "drivers[3].hinge.beta_degrees".
 [[nodiscard]] Status CheckRig(const wrinkle::Rig& rig);
 
 }  // namespace furrow::character

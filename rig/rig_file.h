@@ -12,32 +12,32 @@
 
 namespace furrow::character {
 
-// The text of rig/rig.fbs, which rigs are checked against.
+// The text of rig/rig.fbs. Rigs are checked against it.
 [[nodiscard]] std::string_view RigSchemaText();
 
 // Reads a wrinkle rig (JSON, checked against rig/rig.fbs; docs/RIG.md is the manual).
 //
-// - Reference poses that name a file and frame are looked up beside the rig, then in the folders of
-//   FURROW_ASSET_PATH, and read by `poses` (see motion/pose_source.h). Without a source such a
-//   rig is kUnsupported. Mixes are resolved; a pose that only mixes use is left out.
-// - Names are checked within the rig: unique, and what refers to them exists. Joints are not: that
-//   is RigBinding's, once a skeleton is known. Textures are not opened.
-// - Errors: kNotFound, kIo, kLimit (size, depth, counts), kParse (not JSON), kSchema (a field
-//   unknown, missing or of the wrong type), kInvalidArgument (out of range, unknown name),
-//   kNonFinite, kCyclic (mixes). `where` is "file:line: field", the field as a path:
+// - The files of reference poses are searched in the rig's folder, then in the folders of
+//   FURROW_ASSET_PATH. `poses` reads them (see motion/pose_source.h). If `poses` is empty, a rig
+//   with such poses is kUnsupported. Mixes are resolved; poses that only mixes use are omitted.
+// - Names must be unique and references must exist within the rig. RigBinding checks the joints,
+//   because it knows the skeleton. Textures are not opened.
+// - Errors: kNotFound, kIo, kLimit (size, depth, counts), kParse (not JSON), kSchema (unknown or
+//   missing field, wrong type), kInvalidArgument (out of range, unknown name), kNonFinite,
+//   kCyclic (mixes). `where` is "file:line: field" with the path of the field:
 //   "drivers[3].hinge.axis".
 [[nodiscard]] Result<wrinkle::Rig> LoadRig(const std::filesystem::path& path,
                                            const wrinkle::PoseSource& poses = {});
-// `source_name` stands for the file in errors; `folder` is where files are looked up first.
+// `source_name`: the file name in errors. `folder`: the first folder in which files are searched.
 [[nodiscard]] Result<wrinkle::Rig> ParseRig(std::string_view json, std::string_view source_name,
                                             const std::filesystem::path& folder,
                                             const wrinkle::PoseSource& poses = {});
 
-// The rig as JSON that ParseRig() reads back equal; reference poses are written inline.
+// The rig as JSON that ParseRig() reads back unchanged. Reference poses are written as joints.
 [[nodiscard]] std::string RigToJson(const wrinkle::Rig& rig);
-// One entry of `drivers`, to be pasted into a rig.
+// Converts a driver to JSON, to paste into `drivers` of a rig.
 [[nodiscard]] std::string DriverToJson(const wrinkle::Driver& driver);
-// RigToJson() into a file, atomically.
+// Writes RigToJson() to a file atomically. Invalid rigs are rejected, see CheckRig().
 [[nodiscard]] Status SaveRig(const wrinkle::Rig& rig, const std::filesystem::path& path);
 
 }  // namespace furrow::character

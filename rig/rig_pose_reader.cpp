@@ -19,7 +19,7 @@ namespace {
 using wrinkle::FieldAt;
 using wrinkle::InvalidField;
 
-// Reference poses in the order of the file; mixes wait until their parts are known.
+// Reads reference poses in the order of the file. A mix first reads its parts, recursively.
 class PoseReader {
  public:
   PoseReader(const TableList<schema::ReferencePose>* list, const std::filesystem::path& folder,
@@ -60,7 +60,7 @@ class PoseReader {
         (pose.joints() != nullptr) + (pose.file() != nullptr) + (pose.mix() != nullptr);
     if (ways != 1) {
       return InvalidField(
-          "a reference pose has exactly one of joints, file and mix, not " + std::to_string(ways),
+          "a reference pose needs exactly one of joints, file and mix, not " + std::to_string(ways),
           at);
     }
     Status status = pose.joints() != nullptr ? ReadJoints(pose, at, &poses_[i])
@@ -79,14 +79,15 @@ class PoseReader {
                      wrinkle::JointDelta delta;
                      delta.joint = joint.joint()->str();
                      if (joint.rotation() != nullptr && joint.euler_degrees() != nullptr) {
-                       return InvalidField("rotation and euler_degrees are both stated",
-                                           where + ".euler_degrees", "leave one out");
+                       return InvalidField("rotation and euler_degrees are both set",
+                                           where + ".euler_degrees", "remove one of them");
                      }
                      if (const schema::Quat* q = joint.rotation()) {
                        delta.rotation = glm::quat(q->w(), q->x(), q->y(), q->z());
                        const float square = glm::dot(delta.rotation, delta.rotation);
                        const bool hand_rounded = std::abs(square - 1.0f) > 1e-6f;
-                       // Near enough to a unit is made one, else CheckRig() judges.
+                       // Removes rounding errors of numbers written by hand. CheckRig() rejects
+                       // larger ones.
                        if (hand_rounded && std::abs(square - 1.0f) < 2e-3f) {
                          delta.rotation = glm::normalize(delta.rotation);
                        }
@@ -104,7 +105,7 @@ class PoseReader {
 
   Result<wrinkle::PoseFrame> Frame(const std::filesystem::path& path, int frame,
                                    const std::string& where) {
-    if (frame < 0) return InvalidField("frames count from 0", where);
+    if (frame < 0) return InvalidField("negative frame; frames are counted from 0", where);
     Result<wrinkle::PoseFrame> result = source_(path, frame);
     if (result.ok()) return result;
     const Status s = result.status();
@@ -115,8 +116,8 @@ class PoseReader {
   Status ReadFrame(const schema::ReferencePose& from, const std::string& at,
                    wrinkle::ReferencePose* to) {
     if (!source_) {
-      return {StatusCode::kUnsupported, "this program reads no recordings, so no pose from a file",
-              at + ".file", "write the pose out as joints"};
+      return {StatusCode::kUnsupported, "this program cannot read poses from recordings",
+              at + ".file", "write the pose as joints"};
     }
     const Result<std::filesystem::path> path = FindAsset(from.file()->string_view(), folder_);
     if (!path.ok()) {
@@ -148,18 +149,18 @@ class PoseReader {
                             where + ".pose");
       }
       if (state_[found->second] == State::kOpen) {
-        return {StatusCode::kCyclic,
-                "the mix contains itself, by way of '" + part.pose()->str() + "'", where + ".pose"};
+        return {StatusCode::kCyclic, "the mix contains itself through '" + part.pose()->str() + "'",
+                where + ".pose"};
       }
       if (!(std::abs(part.weight()) <= 10.0f)) {
-        return InvalidField("the weight is not a number in [-10, 10]", where + ".weight");
+        return InvalidField("the weight must be a number in [-10, 10]", where + ".weight");
       }
       parts.push_back(found->second);
       weights.push_back(part.weight());
       return Resolve(found->second);
     };
     FURROW_RETURN_IF_ERROR(ForEach(from.mix(), at + ".mix", resolve));
-    if (parts.empty()) return InvalidField("a mix needs a part", at + ".mix");
+    if (parts.empty()) return InvalidField("a mix needs at least one part", at + ".mix");
     std::vector<WeightedPose> weighted;
     for (std::size_t i = 0; i < parts.size(); ++i) {
       weighted.push_back({&poses_[parts[i]], weights[i]});

@@ -10,10 +10,10 @@
 
 namespace furrow::character {
 
-// The reference poses of a rig in the order of the file: written out, taken from recordings (which
-// are looked up beside `folder`, then by FURROW_ASSET_PATH) or mixed from others, whatever order
-// they stand in. Errors: kLimit, kCyclic (a mix that contains itself), kInvalidArgument,
-// kUnsupported (a recording, and `source` is empty), those of `source`; `where` is the field.
+// Reads the reference poses of a rig in the order of the file: lists of joints, frames of
+// recordings (searched in `folder`, then in FURROW_ASSET_PATH) and mixes, which may precede their
+// parts. Errors: kLimit, kCyclic (a mix that contains itself), kInvalidArgument, kUnsupported (a
+// recording with an empty `source`), and those of `source`; `where` is the field.
 [[nodiscard]] Status ReadReferencePoses(const TableList<schema::ReferencePose>* list,
                                         const std::filesystem::path& folder,
                                         const wrinkle::PoseSource& source,

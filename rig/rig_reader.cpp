@@ -17,7 +17,7 @@ namespace {
 using flatbuffers::String;
 using wrinkle::InvalidField;
 
-// The kinds for an error message: "pose, hinge, ball, twist, blend_shape and strain".
+// Lists the driver kinds for an error message: "pose, hinge, ball, twist, blend_shape and strain".
 std::string ListOfKinds() {
   std::vector<std::string_view> names;
 #define FURROW_KIND_LIST(Name, field) names.push_back(#field);
@@ -39,7 +39,7 @@ Status ReadDriver(const schema::Driver& from, const std::string& at, wrinkle::Dr
 #undef FURROW_KIND_COUNT
   if (kinds != 1) {
     return InvalidField(
-        "a driver has exactly one of " + ListOfKinds() + ", not " + std::to_string(kinds), at);
+        "a driver needs exactly one of " + ListOfKinds() + ", not " + std::to_string(kinds), at);
   }
 #define FURROW_KIND_READ(Name, field)                              \
   if (from.field() != nullptr) {                                   \
@@ -59,7 +59,7 @@ Status ReadFeed(const schema::Feed& from, const std::string& at, wrinkle::Feed* 
         const std::string name = source.from()->str();
         const std::size_t dot = name.rfind('.');
         if (dot == std::string::npos) {
-          return InvalidField("'" + name + "' is not a driver's value", where + ".from",
+          return InvalidField("'" + name + "' is not a driver value", where + ".from",
                               "write \"<driver>.<value>\"");
         }
         to->sources.push_back({name.substr(0, dot), name.substr(dot + 1), source.gain()});
@@ -101,7 +101,7 @@ Status ReadExports(const TableList<schema::ExportProfile>* list,
                               where + ".profile");
         }
         if (from.names()->size() == 0) {
-          return InvalidField("a profile needs a name", where + ".names");
+          return InvalidField("a profile needs at least one name", where + ".names");
         }
         for (const schema::ExportName* name : *from.names()) {
           exports->push_back({from.profile()->str(), name->weight()->str(), name->name()->str()});
@@ -141,10 +141,10 @@ Status ReadMap(const schema::WrinkleMap& from, const std::string& at, wrinkle::W
 Result<wrinkle::Rig> ReadRigTables(const schema::Rig& tables, const std::filesystem::path& folder,
                                    const wrinkle::PoseSource& poses) {
   if (tables.version() != 1) {
-    return Status(
-        StatusCode::kUnsupported,
-        "the rig is of version " + std::to_string(tables.version()) + ", this is version 1",
-        "version");
+    return Status(StatusCode::kUnsupported,
+                  "unsupported version " + std::to_string(tables.version()) +
+                      "; this program reads version 1",
+                  "version");
   }
   wrinkle::Rig rig;
   rig.name = tables.name()->str();

@@ -13,14 +13,14 @@ namespace schema {
 struct Rig;
 }
 
-// From the schema's tables (rig.fbs) to wrinkle::Rig, field by field; reference poses are read and
-// mixed, building blocks still included. Enumerations and what one table must hold exactly one of
-// are checked here, all else by CheckRig(). The error's `where` is the field as a path.
+// Converts the schema's tables (rig.fbs) to wrinkle::Rig. Reference poses are read and mixed; poses
+// that only mixes use are still included. Checks enumerations and alternatives ("exactly one of");
+// CheckRig() checks everything else. The error's `where` is the path of the field.
 [[nodiscard]] Result<wrinkle::Rig> ReadRigTables(const schema::Rig& tables,
                                                  const std::filesystem::path& folder,
                                                  const wrinkle::PoseSource& poses);
 
-// Leaves out the reference poses that are parts of mixes and that no driver names.
+// Removes the reference poses that are parts of mixes and that no driver uses.
 void DropBuildingBlocks(const schema::Rig& tables, wrinkle::Rig* rig);
 
 }  // namespace furrow::character

@@ -30,7 +30,7 @@ float Angle(const glm::quat& q) {
 
 glm::quat ShorterWay(const glm::quat& q) { return q.w < 0.0f ? -q : q; }
 
-// exp(weight * log(q)), the shorter way round.
+// exp(weight * log(q)), by the shorter rotation.
 glm::quat Scaled(const glm::quat& rotation, float weight) {
   const glm::quat q = ShorterWay(rotation);
   const glm::vec3 v(q.x, q.y, q.z);
@@ -43,13 +43,13 @@ glm::quat Scaled(const glm::quat& rotation, float weight) {
 Status CheckPose(const PoseFrame& frame, const Skeleton& skeleton) {
   if (static_cast<int>(frame.pose.joints.size()) != skeleton.num_joints()) {
     return {StatusCode::kInvalidArgument,
-            "the frame has " + std::to_string(frame.pose.joints.size()) + " joints, its skeleton " +
-                std::to_string(skeleton.num_joints())};
+            "the frame has " + std::to_string(frame.pose.joints.size()) +
+                " joints, but its skeleton has " + std::to_string(skeleton.num_joints())};
   }
   for (int j = 0; j < skeleton.num_joints(); ++j) {
     if (!wrinkle::IsValid(frame.pose.joints[j])) {
       return {StatusCode::kNonFinite,
-              "the frame's transform of joint '" + skeleton.joint_names()[j] + "' is not valid"};
+              "the transform of joint '" + skeleton.joint_names()[j] + "' is invalid"};
     }
   }
   return {};
@@ -75,7 +75,7 @@ Result<ReferencePose> ReferencePoseFromFrame(std::string name, const PoseFrame& 
   pose.name = std::move(name);
   pose.source_size = wrinkle::SkeletonSize(skeleton);
 
-  // Model rotations of the pose that counts as rest; parents come first.
+  // Model rotations of the rest pose. Parents precede their children.
   std::vector<glm::quat> model(static_cast<std::size_t>(skeleton.num_joints()));
   for (int j = 0; j < skeleton.num_joints(); ++j) {
     const Transform& still = rest != nullptr ? rest->pose.joints[j] : skeleton.rest_pose()[j];

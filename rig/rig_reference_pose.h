@@ -10,15 +10,15 @@
 
 namespace furrow::character {
 
-// Rotations about the fixed model axes, x first, then y, then z.
+// Converts rotations about the fixed model axes, applied in the order x, y, z.
 [[nodiscard]] glm::quat FromEulerDegrees(const glm::vec3& degrees);
 
-// A frame of a recording as departures from rest, in model axes (see wrinkle::JointDelta).
+// Converts a frame of a recording to departures from rest, in model axes (see wrinkle::JointDelta).
 //
-// - `rest`: the frame that counts as rest, on the same skeleton; null: its own rest pose.
-// - Joints that do not move (by less than 1e-5 radians and 1e-6 of the skeleton's size) are left
-//   out.
-// - Errors: kInvalidArgument (poses that do not fit the skeleton), kNonFinite (names the joint).
+// - `rest`: the rest pose, a frame on the same skeleton; null: the skeleton's own rest pose.
+// - Joints that move by less than 1e-5 radians and by less than 1e-6 of the skeleton's size are
+//   omitted.
+// - Errors: kInvalidArgument (a pose does not fit the skeleton), kNonFinite (names the joint).
 [[nodiscard]] Result<wrinkle::ReferencePose> ReferencePoseFromFrame(
     std::string name, const wrinkle::PoseFrame& frame, const wrinkle::PoseFrame* rest = nullptr);
 
@@ -27,8 +27,8 @@ struct WeightedPose {
   float weight = 1.0f;
 };
 
-// Poses added up in the order given: a joint's rotations, each scaled as a rotation vector, follow
-// one another; translations are summed in units of the first pose that states its size.
+// Adds poses in the given order. Rotations are scaled as rotation vectors and applied one after the
+// other. Translations are summed in the units of the first pose that states its size.
 [[nodiscard]] wrinkle::ReferencePose MixReferencePoses(std::string name,
                                                        std::span<const WeightedPose> parts);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// RigToJson(): what a person would have written: defaults left out, small things on one line.
+// RigToJson(): omits defaults and writes small objects on one line, as a person would.
 #include <array>
 #include <string>
 #include <vector>
@@ -101,7 +101,7 @@ std::string ToJson(const wrinkle::Filter& filter) {
       .str();
 }
 
-// Neighbours of one profile stand together in a group.
+// Groups consecutive exports of the same profile.
 std::vector<std::vector<wrinkle::Export>> Groups(const std::vector<wrinkle::Export>& exports) {
   std::vector<std::vector<wrinkle::Export>> groups;
   for (const wrinkle::Export& entry : exports) {

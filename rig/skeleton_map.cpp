@@ -32,7 +32,8 @@ std::string_view WithoutNamespace(std::string_view name) {
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
 
-// Removes `prefix` from `name`, both already folded to one case. Other names stay as they are.
+// Removes `prefix` from `name`. Both have been folded to one case. Other names are returned
+// unchanged.
 std::string_view WithoutPrefix(std::string_view name, std::string_view prefix) {
   if (prefix.starts_with('*')) {
     const std::string_view mark = prefix.substr(1);
@@ -42,7 +43,7 @@ std::string_view WithoutPrefix(std::string_view name, std::string_view prefix) {
   return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
 }
 
-// A map indexed by joint name: the entry and the place in its chain that a name fills.
+// Index of a map by joint name: the entry, and the place in its chain that the name fills.
 struct Place {
   std::size_t entry;
   std::size_t of_chain;

@@ -13,7 +13,7 @@
 
 namespace furrow::character {
 
-// A map must find this many roles to be believed: a few common names may be chance.
+// A map fits a skeleton if it finds this many roles. Fewer matches may be coincidence.
 inline constexpr int kMinRoles = 6;
 
 // The joint names of one family of skeletons. docs/SKELETONS.md describes the file format.
@@ -24,7 +24,7 @@ struct SkeletonMap {
     // counts.
     std::vector<std::vector<std::string>> chain;
   };
-  std::string name;   // as options and logs show it, such as "mixamo"
+  std::string name;   // as shown in options and logs, such as "mixamo"
   std::string title;  // for display
   // Optional prefixes of every name: a literal, or "*" and a literal, which matches everything up
   // to the literal's last occurrence. A namespace, everything up to the last ':' ("mixamorig:"), is
@@ -55,7 +55,7 @@ struct SkeletonRoles {
 [[nodiscard]] SkeletonRoles ApplySkeletonMap(const SkeletonMap& map,
                                              std::span<const std::string> joint_names);
 
-// A set of maps to find the roles of a skeleton's joints with.
+// A set of maps that finds the roles of a skeleton's joints.
 class SkeletonMaps {
  public:
   SkeletonMaps() = default;  // no maps: every skeleton is unknown

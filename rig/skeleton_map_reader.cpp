@@ -110,12 +110,12 @@ Status MapReader::ReadSides(const Json& root) {
   const Json& sides = root["sides"];
   if (!sides.is_object() || sides.size() != 2 || !sides.contains("left") ||
       !sides.contains("right")) {
-    return Error("sides", "is not {\"left\": ..., \"right\": ...}");
+    return Error("sides", "expected {\"left\": ..., \"right\": ...}");
   }
   FURROW_RETURN_IF_ERROR(ReadText(sides["left"], "sides.left", &left_));
   FURROW_RETURN_IF_ERROR(ReadText(sides["right"], "sides.right", &right_));
   if (left_ == right_ || left_.empty() || right_.empty()) {
-    return Error("sides", "left and right must differ");
+    return Error("sides", "left and right must differ and must not be empty");
   }
   return {};
 }
@@ -134,7 +134,7 @@ Status MapReader::AddPlace(const Json& value, const std::string& side, const std
   return {};
 }
 
-// `value` is read in place: copying JSON recurses as deeply as it is nested.
+// Reads `value` in place, because copying deeply nested JSON would overflow the stack.
 Status MapReader::AddEntry(const std::string& role, const Json& value, const std::string& side,
                            const std::string& field, SkeletonMap* map) {
   SkeletonMap::Entry entry;
@@ -146,7 +146,7 @@ Status MapReader::AddEntry(const std::string& role, const Json& value, const std
   if (!value.is_array()) {
     FURROW_RETURN_IF_ERROR(AddPlace(value, side, field, &entry));
   } else if (value.empty()) {
-    return Error(field, "lists no joint");
+    return Error(field, "expected at least one joint");
   } else if (value.size() > kMaxChain) {
     return Error(field, "has more than 16 joints", StatusCode::kLimit);
   } else {
@@ -175,7 +175,7 @@ Status MapReader::ReadJoints(const Json& root, SkeletonMap* map) {
   for (const auto& [key, value] : joints.items()) {
     FURROW_RETURN_IF_ERROR(ReadRole(key, value, map));
   }
-  // Entries are kept in the body's order, whatever the order in the file.
+  // Sorts the entries by role, so that their order in the file does not matter.
   std::ranges::sort(map->entries, {}, &SkeletonMap::Entry::role);
   return {};
 }
@@ -209,7 +209,7 @@ Status MapReader::Read(const Json& root, SkeletonMap* map) {
 
 Result<SkeletonMap> ParseSkeletonMap(std::string_view json, std::string_view source_name) {
   if (json.size() > kMaxBytes) {
-    return Status(StatusCode::kLimit, "over 1 MiB", std::string(source_name));
+    return Status(StatusCode::kLimit, "larger than 1 MiB", std::string(source_name));
   }
   Json root;
   try {

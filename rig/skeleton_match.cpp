@@ -26,7 +26,7 @@ bool IsOfFace(JointRole role) {
   return role == JointRole::kJaw || role == JointRole::kLeftEye || role == JointRole::kRightEye;
 }
 
-// The joint that a rig means by a role: the first of the role's chain.
+// The joint that a role stands for in a rig: the first joint of the role's chain.
 const std::string* FirstOf(JointRole role, const wrinkle::JointRoles& roles,
                            std::span<const std::string> names) {
   const auto found = std::ranges::find(roles, role);

@@ -29,8 +29,8 @@ class SkeletonMatcher {
   [[nodiscard]] static Result<SkeletonMatcher> Create(const std::string& name_or_file);
 
   // `character` may be null. It does not affect the aliases, so weights are the same with and
-  // without pictures. The map that explains most of the rig's joint names gives their roles. Joints
-  // that the stream has under the rig's own name get no alias.
+  // without pictures. The map that explains the most joint names of the rig gives their roles.
+  // Joints that have the same name in the stream and in the rig get no alias.
   [[nodiscard]] SkeletonMatch Match(const wrinkle::Skeleton& stream, const wrinkle::Rig& rig,
                                     const wrinkle::Skeleton* character) const;
 

@@ -7,12 +7,12 @@
 #include "rig/json/rig_tables.h"
 #include "wrinkle/drivers/driver.h"
 
-// The JSON of each driver kind's fields. <kind>_json.cpp defines both functions; rig.fbs has the
-// kind's table.
+// Reads and writes the fields of each driver kind. <kind>_json.cpp defines both functions; the
+// table of the kind is in rig.fbs.
 namespace furrow::character {
 
-// From the schema's table. `at` is the path of the fields: "drivers[3].hinge".
-// Writes all fields that differ from their defaults.
+// ReadFields() reads the schema's table. `at` is the path of the fields: "drivers[3].hinge".
+// FieldsToJson() writes the fields that differ from their defaults.
 #define FURROW_KIND_JSON(Name, field)                                                      \
   [[nodiscard]] Status ReadFields(const schema::Name##Driver& from, const std::string& at, \
                                   wrinkle::Name##Driver* to);                              \

@@ -9,15 +9,15 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
-// Writes JSON the way a person would: defaults are left out, and small objects take one line.
+// Writes compact, readable JSON: default values are omitted, and small objects take one line.
 namespace furrow::character {
 
 [[nodiscard]] std::string Quote(std::string_view text);
-// The shortest decimal that reads back as the same float.
+// The shortest decimal number that reads back as the same float.
 [[nodiscard]] std::string Number(float value);
 [[nodiscard]] std::string Numbers(const glm::vec3& v);
 [[nodiscard]] std::string Numbers(const glm::quat& q);  // [x, y, z, w]
-// Items between two brackets, on one line if they are short.
+// Encloses items in brackets, on one line if they are short.
 [[nodiscard]] std::string Bracketed(char open, const std::vector<std::string>& items, char close);
 
 template <class T, class Each>
@@ -27,7 +27,7 @@ std::string OnOneLine(const std::vector<T>& list, Each each) {
   return text + "]";
 }
 
-// The fields of one object. Fields with their default value are left out.
+// The fields of one JSON object. Fields with their default value are omitted.
 class Object {
  public:
   Object& Raw(const char* name, const std::string& value) {
@@ -40,7 +40,7 @@ class Object {
   Object& Float(const char* name, float value, float otherwise) {
     return value == otherwise ? *this : Raw(name, Number(value));
   }
-  // `names` in the enumeration's order. `otherwise` is the default.
+  // `names`: in the order of the enumeration. `otherwise`: the default.
   template <class T>
   Object& Choice(const char* name, T value, std::initializer_list<const char*> names,
                  T otherwise = T{}) {

@@ -9,7 +9,7 @@
 #include "rig/rig_generated.h"
 #include "wrinkle/fields/rig_field.h"
 
-// Helpers for the readers of a rig's FlatBuffers tables.
+// Helpers to read the FlatBuffers tables of a rig.
 namespace furrow::character {
 
 template <class T>
@@ -22,18 +22,18 @@ using TableList = flatbuffers::Vector<flatbuffers::Offset<T>>;
 
 [[nodiscard]] inline glm::vec3 ToVec3(const schema::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-// Converts an enumeration. The schema's enumerations have the same entries in the same order as the
-// wrinkle rig's. JSON may state an entry by number, so the range is checked here.
+// Converts an enumeration. The enumerations of the schema and of wrinkle::Rig have the same entries
+// in the same order. JSON may give an entry as a number, so the range is checked here.
 template <class To, class From>
 [[nodiscard]] Status ReadEnum(From from, To* to, const std::string& where) {
   if (from < From::MIN || from > From::MAX) {
-    return wrinkle::InvalidField("there is no such choice", where);
+    return wrinkle::InvalidField("invalid choice", where);
   }
   *to = static_cast<To>(from);
   return {};
 }
 
-// Calls `each(entry, path)` for the entries of an optional list; stops at the first failure.
+// Calls `each(entry, path)` for each entry of an optional list; stops at the first error.
 template <class T, class Each>
 [[nodiscard]] Status ForEach(const TableList<T>* list, const std::string& path, Each each) {
   if (list == nullptr) return {};

@@ -21,7 +21,7 @@ def needs_shared(*parts):
     """Returns a file of the shared data, or skips the test."""
     path = SHARED.joinpath(*parts)
     if not path.exists():
-        raise unittest.SkipTest(f"{path} is absent")
+        raise unittest.SkipTest(f"{path} is missing")
     return path
 
 
@@ -35,7 +35,7 @@ def commands(document):
 
 
 def furrow(*args, env=None, check=None, stdin=None):
-    """Runs `furrow` to its end. `check`: the required exit code."""
+    """Runs `furrow` and waits for its end. `check`: the required exit code."""
     result = subprocess.run([BIN / "furrow", *map(str, args)], capture_output=True, timeout=GUARD,
                             env={**os.environ, **(env or {})}, input=stdin)
     if check is not None:
@@ -58,7 +58,7 @@ def spawn_watch(daemon_address, subject, *args):
 
 
 class Table:
-    """Weights as CSV: names, and rows by frame."""
+    """Weights read from CSV: their names, and rows by frame."""
 
     def __init__(self, text):
         rows = list(csv.reader(io.StringIO(text)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of recordings share: a daemon that records, takes in a folder, the independent reader."""
+"""Shared by the recording tests: a daemon that records, takes in a folder, the independent reader."""
 import pathlib
 import re
 import shutil
@@ -28,7 +28,7 @@ class Recording(Daemon):
 
 
 def missing_interop():
-    """Says what the independent reader lacks to run; empty if nothing is missing."""
+    """Returns what is missing to run the independent reader; empty if nothing is missing."""
     if shutil.which("node") is None:
         return "node is absent: install what deploy/packages.txt lists"
     if not (INTEROP / "node_modules").exists():
@@ -48,7 +48,7 @@ def our_messages(take):
 
 
 def their_messages(take, *options):
-    """As our_messages(), by the independent reader @mcap/core. "--cut": the writer of the file was killed."""
+    """Like our_messages(), with the independent reader @mcap/core. "--cut": the writer was killed."""
     return lines_of("node", INTEROP / "read.mjs", *options, take)
 
 

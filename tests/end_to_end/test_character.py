@@ -92,7 +92,7 @@ class CharacterTest(unittest.TestCase):
 
     def test_files_with_a_wrong_format(self):
         text = self.root / "text.fbx"
-        text.write_text("this is no FBX\n" * 100)
+        text.write_text("this is not FBX\n" * 100)
         self.refused(text, "fbx")
         cut = self.root / "cut.glb"
         cut.write_bytes(self.default.read_bytes()[:5000])

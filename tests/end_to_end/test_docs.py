@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The command lines of the guides run: fenced lines that begin with furrow or furrowd. The quick starts run in
+"""Runs the command lines of the guides: fenced lines that begin with furrow or furrowd. The quick starts run in
 tests/docs/check_commands.py."""
 import os
 import pathlib
@@ -37,7 +37,7 @@ class DocumentTest(unittest.TestCase):
 
     def test_import_howto(self):
         if not SHARED.exists():
-            self.skipTest(f"{SHARED} is absent")
+            self.skipTest(f"{SHARED} is missing")
         seen = []
         for words in commands("docs/HOWTO-import.md"):
             words = [str(SHARED / "makehuman") if w == "path/to/makehuman" else w for w in words]

@@ -76,7 +76,7 @@ class ForeignWireTest(unittest.TestCase):
             send()
             if select.select([watcher.stdout], [], [], 0.02)[0]:
                 return
-        self.fail("no subject")
+        self.fail("the subject never appeared")
 
     @unittest.skipUnless(shutil.which("oscsend"), "liblo-tools is not installed")
     def test_oscsend_into_vmc(self):

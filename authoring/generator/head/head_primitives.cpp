@@ -63,7 +63,7 @@ constexpr HeadPrimitive kPrimitives[] = {
     Add("face", {0.00f, -1.30f, 3.48f}, {6.80f, 7.31f, 5.85f}, 2.50f, {0.00f, 0.07f}),
     Add("maxilla", {0.00f, -6.49f, 3.62f}, {3.23f, 4.68f, 4.52f}, 1.97f, {0.00f, 0.01f}),
     Add("occiput", {0.00f, -0.64f, -4.83f}, {5.59f, 5.95f, 3.80f}, 2.49f, {0.00f, -0.14f}),
-    AddLimb("jaw primitive", {4.44f, -6.22f, 0.45f}, {1.72f, -9.27f, 6.63f}, 0.97f, 1.31f, 1.68f),
+    AddLimb("jaw body", {4.44f, -6.22f, 0.45f}, {1.72f, -9.27f, 6.63f}, 0.97f, 1.31f, 1.68f),
     AddLimb("jaw branch", {5.60f, -1.01f, -0.66f}, {4.48f, -6.27f, 0.17f}, 1.01f, 0.98f, 1.35f),
     Add("chin", {0.00f, -9.74f, 7.61f}, {1.74f, 1.45f, 1.68f}, 1.57f, {0.00f, -0.02f}),
     Add("floor of the mouth", {0.00f, -7.85f, 3.71f}, {4.35f, 2.16f, 5.19f}, 1.71f, {0.00f, 0.03f}),

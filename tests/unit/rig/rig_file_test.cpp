@@ -19,7 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-// One field a line, so that an error's line is easy to foretell.
+// One field per line, so that tests can predict the line of an error.
 constexpr char kSmallRig[] = R"({
   "name": "small",
   "anchor": "head",
@@ -58,7 +58,7 @@ std::string Replaced(std::string text, std::string_view from, std::string_view t
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-// The pose of a source with two joints whose second is turned by the frame's number in degrees.
+// A source with two joints. Frame n turns the second joint by n degrees.
 Result<wrinkle::PoseFrame> TurningSource(const std::filesystem::path& path, int frame) {
   if (frame > 10) return Status(StatusCode::kInvalidArgument, "11 frames", path.string());
   wrinkle::PoseFrame result;
@@ -90,7 +90,7 @@ TEST(RigFile, ReadsEveryPart) {
   EXPECT_EQ(rig->exports[0].name, "Knee");
 }
 
-TEST(RigFile, WritesWhatItReads) {
+TEST(RigFile, WrittenRigsReadBackEqual) {
   for (const char* file : {"arkit.json", "cmu.json"}) {
     const auto rig = LoadRig(std::string(FURROW_SOURCE_DIR "/rig/rigs/") + file);
     ASSERT_TRUE(rig.ok()) << rig.status().ToString();
@@ -144,7 +144,7 @@ TEST(RigFile, KeepsEveryFieldOfAMap) {
   EXPECT_EQ(map.surface, wrinkle::WrinkleMap::Surface::kCloth);
 }
 
-TEST(RigFile, KeepsAPatchOfStrain) {
+TEST(RigFile, KeepsEveryFieldOfAStrainDriver) {
   auto rig = *Parse(kSmallRig);
   wrinkle::Driver& driver = rig.drivers.emplace_back();
   driver.name = "cheek";
@@ -174,7 +174,7 @@ TEST(RigFile, KeepsAPatchOfStrain) {
   EXPECT_EQ(strain.size, 1.7f);
 }
 
-// Every way to be wrong, one at a time: what is changed, and the code, line and field it must give.
+// One change to kSmallRig, and the code, line and field of the expected error.
 struct Wrong {
   const char* from;
   const char* to;
@@ -264,7 +264,7 @@ INSTANTIATE_TEST_SUITE_P(
               kSchema, "15: drivers[2].strain.joint"},
         Wrong{"\"kind\": \"skinning\"", "\"kind\": 7", kInvalid, "23: regions[1].mask.kind"}));
 
-TEST(RigFile, RefusesMoreValuesThanNnlsSolves) {
+TEST(RigFile, RejectsTooManyValuesForNnls) {
   std::string values = "\"solve\": \"nnls\", \"values\": [";
   for (int i = 0; i < 17; ++i) {
     values += (i == 0 ? "" : ", ") + std::string("{\"name\": \"v") + std::to_string(i) +
@@ -276,10 +276,10 @@ TEST(RigFile, RefusesMoreValuesThanNnlsSolves) {
   EXPECT_EQ(rig.status().where(), "a.rig.json:12: drivers[0].pose.values");
 }
 
-TEST(RigFile, RefusesEveryTruncation) {
+TEST(RigFile, RejectsEveryTruncation) {
   const std::string whole(kSmallRig, std::string_view(kSmallRig).find_last_of('}'));
   for (std::size_t length = 0; length <= whole.size(); ++length) {
-    const std::string part(whole.data(), length);  // a buffer of its own: sanitizers see its end
+    const std::string part(whole.data(), length);  // exact size, for the sanitizers
     const auto rig = Parse(part);
     ASSERT_FALSE(rig.ok()) << length;
     EXPECT_EQ(rig.status().code(), StatusCode::kParse) << length << rig.status().ToString();
@@ -287,7 +287,7 @@ TEST(RigFile, RefusesEveryTruncation) {
   }
 }
 
-TEST(RigFile, RefusesWhatIsTooMuch) {
+TEST(RigFile, RejectsInputOverTheLimits) {
   EXPECT_EQ(Parse(std::string(JsonIndex::kMaxBytes + 1, ' ')).status().code(), StatusCode::kLimit);
   const std::string deep = "{\"name\": " + std::string(1000, '[');
   EXPECT_EQ(Parse(deep).status().code(), StatusCode::kLimit);
@@ -296,26 +296,25 @@ TEST(RigFile, RefusesWhatIsTooMuch) {
   EXPECT_EQ(Parse(many).status().code(), StatusCode::kLimit);
 }
 
-TEST(RigFile, RefusesBytesThatAreNoText) {
+TEST(RigFile, RejectsInvalidText) {
   EXPECT_EQ(Parse(std::string_view("{\0}", 3)).status().code(), StatusCode::kParse);
   EXPECT_FALSE(Parse("{\"name\": \"\xff\xfe\"}").ok());
   EXPECT_EQ(Parse("{\"name\": \"a\nb\"}").status().code(), StatusCode::kParse);
   EXPECT_EQ(Parse("[]").status().where(), "a.rig.json:1");
-  // FlatBuffers' parser reads schemas, too; nothing of a rig may reach that.
+  // FlatBuffers' parser also reads schemas. A rig must not use that.
   EXPECT_EQ(Parse("include \"/etc/passwd\"; {}").status().code(), StatusCode::kParse);
 }
 
-TEST(RigFile, TakesPosesFromFramesAndMixes) {
+TEST(RigFile, ReadsPosesFromFramesAndMixes) {
   const std::string json = Replaced(kSmallRig, R"({"name": "up",
      "joints": [{"joint": "brow",
                  "euler_degrees": [-20, 0, 0]}]})",
                                     R"({"name": "unit", "file": "rig_file_test.cpp", "frame": 10},
     {"name": "from_2", "file": "rig_file_test.cpp", "frame": 10, "rest_frame": 4},
     {"name": "up", "mix": [{"pose": "unit", "weight": 0.5}, {"pose": "from_2"}]})");
-  const auto rig =
-      ParseRig(json, "a.rig.json", FURROW_SOURCE_DIR "/tests/unit/rig", TurningSource);
+  const auto rig = ParseRig(json, "a.rig.json", FURROW_SOURCE_DIR "/tests/unit/rig", TurningSource);
   ASSERT_TRUE(rig.ok()) << rig.status().ToString();
-  ASSERT_EQ(rig->reference_poses.size(), 1u) << "building blocks are left out";
+  ASSERT_EQ(rig->reference_poses.size(), 1u) << "building blocks are omitted";
   ASSERT_EQ(rig->reference_poses[0].joints.size(), 1u) << "the root does not move";
   EXPECT_EQ(rig->reference_poses[0].joints[0].joint, "brow");
   // 10 * 0.5 + (10 - 4) degrees about X.
@@ -323,7 +322,7 @@ TEST(RigFile, TakesPosesFromFramesAndMixes) {
   EXPECT_GT(rig->reference_poses[0].source_size, 0.0f);
 }
 
-TEST(RigFile, SaysWhatIsWrongWithAFrame) {
+TEST(RigFile, ReportsErrorsInFramesAndMixes) {
   const auto parse = [](const char* pose, const wrinkle::PoseSource& source) {
     return ParseRig(Replaced(kSmallRig, R"({"name": "up",
      "joints": [{"joint": "brow",
@@ -350,7 +349,7 @@ TEST(RigFile, SaysWhatIsWrongWithAFrame) {
   EXPECT_EQ(cycle.where(), "a.rig.json:6: reference_poses[1].mix[0].pose");
 }
 
-TEST(RigFile, NamesTheFileThatIsNotThere) {
+TEST(RigFile, NamesTheMissingFile) {
   const Status status = LoadRig("no/such/rig.json").status();
   EXPECT_EQ(status.code(), StatusCode::kNotFound);
   EXPECT_EQ(status.where(), "no/such/rig.json");
@@ -371,7 +370,7 @@ TEST(RigFile, SavesAndLoads) {
   EXPECT_FALSE(std::filesystem::exists(nowhere));
 }
 
-TEST(RigFile, ReadsTheExampleOfItsManual) {
+TEST(RigFile, ReadsTheExampleInTheManual) {
   std::ifstream stream(FURROW_SOURCE_DIR "/docs/RIG.md");
   std::stringstream text;
   text << stream.rdbuf();

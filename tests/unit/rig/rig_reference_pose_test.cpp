@@ -17,7 +17,8 @@ glm::quat Turn(float degrees, glm::vec3 axis) {
   return glm::angleAxis(degrees * kPi / 180.0f, axis);
 }
 
-// A root turned by 90 degrees about Z at rest, and a child one unit along the root's own X.
+// A root that is turned by 90 degrees about Z at rest, and a child at 1 unit along the root's X
+// axis.
 PoseFrame TurnedRoot() {
   PoseFrame frame;
   frame.skeleton =
@@ -27,16 +28,17 @@ PoseFrame TurnedRoot() {
   return frame;
 }
 
-TEST(RigReferencePose, RestMovesNothing) {
+TEST(RigReferencePose, RestPoseMovesNoJoints) {
   const auto pose = ReferencePoseFromFrame("rest", TurnedRoot());
   ASSERT_TRUE(pose.ok());
   EXPECT_TRUE(pose->joints.empty());
   EXPECT_GT(pose->source_size, 0.0f);
 }
 
-TEST(RigReferencePose, SpeaksInModelAxes) {
+TEST(RigReferencePose, UsesModelAxes) {
   PoseFrame frame = TurnedRoot();
-  // About the child's own X, which is the model's Y; moved along the root's own X, the model's Y.
+  // A turn about the child's X axis and a move along the root's X axis; both are the model's Y
+  // axis.
   frame.pose.joints[1].rotation = Turn(30, {1, 0, 0});
   frame.pose.joints[1].translation += glm::vec3(0.25f, 0, 0);
   const auto pose = ReferencePoseFromFrame("p", frame);
@@ -48,7 +50,7 @@ TEST(RigReferencePose, SpeaksInModelAxes) {
   EXPECT_NEAR(pose->joints[0].translation.x, 0.0f, 1e-6);
 }
 
-TEST(RigReferencePose, AnotherFrameMayCountAsRest) {
+TEST(RigReferencePose, AcceptsAnotherFrameAsRest) {
   PoseFrame rest = TurnedRoot();
   PoseFrame frame = TurnedRoot();
   rest.pose.joints[1].rotation = Turn(10, {0, 1, 0});
@@ -62,7 +64,7 @@ TEST(RigReferencePose, AnotherFrameMayCountAsRest) {
   EXPECT_NEAR(pose->joints[0].rotation.w, std::cos(7.5f * kPi / 180.0f), 1e-6);
 }
 
-TEST(RigReferencePose, RefusesPosesThatDoNotFit) {
+TEST(RigReferencePose, RejectsPosesThatDoNotFitTheSkeleton) {
   PoseFrame frame = TurnedRoot();
   frame.pose.joints.pop_back();
   EXPECT_EQ(ReferencePoseFromFrame("p", frame).status().code(), StatusCode::kInvalidArgument);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Masks that slide about a ball joint, in the rig file.
+// Reads and writes masks that slide around a ball joint.
 #include <string>
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace furrow::character {
 namespace {
 
-// A hip whose mask slides; `mask`: what its object says besides its kind.
+// A rig for a hip with a sliding mask. `mask`: more fields of the mask, each after a comma.
 Result<wrinkle::Rig> Parse(const std::string& mask) {
   const std::string json = R"({"name": "hip", "drivers": [
       {"name": "hip_l", "ball": {"parent": "hips", "joint": "thigh_l"}},
@@ -21,7 +21,7 @@ Result<wrinkle::Rig> Parse(const std::string& mask) {
   return ParseRig(json, "hip.rig.json", ".");
 }
 
-TEST(SlidingMaskInARig, IsReadWithItsDefaultsAndWrittenBack) {
+TEST(SlidingMaskInARig, ReadsDefaultsAndWritesBack) {
   const auto rig = Parse(R"(, "ball": "hip_l", "spread_degrees": 70, "radius": 0.6)");
   ASSERT_TRUE(rig.ok()) << rig.status().ToString();
   const wrinkle::Mask& mask = rig->regions[0].mask;
@@ -38,7 +38,7 @@ TEST(SlidingMaskInARig, IsReadWithItsDefaultsAndWrittenBack) {
   EXPECT_EQ(again->regions[0].mask.radius, 0.6f);
 }
 
-TEST(SlidingMaskInARig, MustNameABallAndHaveAnExtent) {
+TEST(SlidingMaskInARig, RequiresABallDriverAndAnExtent) {
   for (const char* mask :
        {"", R"(, "ball": "waist")", R"(, "ball": "knee_l")", R"(, "ball": "hip_l", "radius": 0)",
         R"(, "ball": "hip_l", "spread_degrees": 181)",

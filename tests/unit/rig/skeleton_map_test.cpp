@@ -30,7 +30,7 @@ constexpr char kToy[] = R"({
 
 SkeletonMap Toy() { return ParseSkeletonMap(kToy, "toy.json").value(); }
 
-// The shipped files as they stand in the source tree.
+// The shipped maps, read from the source tree.
 SkeletonMaps Shipped() {
   std::vector<SkeletonMap> maps;
   for (const auto& file :
@@ -44,7 +44,7 @@ SkeletonMaps Shipped() {
   return SkeletonMaps(std::move(maps));
 }
 
-TEST(JointRole, NamesParentsAndMirrorsAgree) {
+TEST(JointRole, NamesParentsAndMirrorsAreConsistent) {
   std::set<std::string_view> names;
   for (int i = 1; i < wrinkle::kNumJointRoles; ++i) {
     const auto role = static_cast<JointRole>(i);
@@ -62,7 +62,7 @@ TEST(JointRole, NamesParentsAndMirrorsAgree) {
   EXPECT_EQ(ParentOf(kRightHand), kRightLowerArm);
 }
 
-TEST(SkeletonMap, FindsRolesChainsAndWhatIsMissing) {
+TEST(SkeletonMap, FindsRolesChainsAndMissingRoles) {
   const Names names = {"root", "n2", "Hand.L", "tail", "n1"};
   const SkeletonRoles found = ApplySkeletonMap(Toy(), names);
   EXPECT_EQ(found.map, "toy");
@@ -79,7 +79,7 @@ TEST(SkeletonMap, TheFirstAlternativeAndTheFirstJointWin) {
   EXPECT_THAT(ApplySkeletonMap(Toy(), Names{"Pelvis"}).roles, testing::ElementsAre(kHips));
 }
 
-TEST(SkeletonMap, NamespacesAndPrefixesAreSeenThrough) {
+TEST(SkeletonMap, IgnoresNamespacesAndPrefixes) {
   for (const char* prefix : {"", "any:", "a:b:", "toy_", "x:TOY_", "Take#1#"}) {
     const Names names = {prefix + std::string("Root"), prefix + std::string("Hand.R")};
     EXPECT_THAT(ApplySkeletonMap(Toy(), names).roles, testing::ElementsAre(kHips, kRightHand))
@@ -88,7 +88,7 @@ TEST(SkeletonMap, NamespacesAndPrefixesAreSeenThrough) {
   EXPECT_EQ(ApplySkeletonMap(Toy(), Names{"toyRoot"}).num_roles, 0);
 }
 
-TEST(SkeletonMap, CaseCountsWhereTheMapSaysSo) {
+TEST(SkeletonMap, RespectsIgnoreCase) {
   SkeletonMap map = Toy();
   map.ignore_case = false;
   EXPECT_EQ(ApplySkeletonMap(map, Names{"root"}).num_roles, 0);
@@ -101,7 +101,7 @@ struct Bad {
   StatusCode code;
 };
 
-TEST(SkeletonMap, EveryFaultIsNamed) {
+TEST(SkeletonMap, ReportsEveryFault) {
   const Bad kBad[] = {
       {"\"version\": 1", "\"version\": 2", StatusCode::kUnsupported},
       {"\"version\": 1,", "", StatusCode::kSchema},
@@ -115,7 +115,7 @@ TEST(SkeletonMap, EveryFaultIsNamed) {
       {"\"sides\": {\"left\": \"L\", \"right\": \"R\"},", "", StatusCode::kSchema},
       {"\"hips\"", "\"hip\"", StatusCode::kSchema},
       {"\"hips\"", "\"none\"", StatusCode::kSchema},
-      {"\"hips\"", "\"leftHand\"", StatusCode::kSchema},  // twice, by "*Hand"
+      {"\"hips\"", "\"leftHand\"", StatusCode::kSchema},  // duplicate, because of "*Hand"
       {"Root|Pelvis", "Root|", StatusCode::kSchema},
       {"Root|Pelvis", "Ro*t", StatusCode::kSchema},
       {"[\"N1\", \"N2\"]", "[]", StatusCode::kSchema},
@@ -136,7 +136,7 @@ TEST(SkeletonMap, EveryFaultIsNamed) {
   }
 }
 
-TEST(SkeletonMap, EveryTruncationAndOversizeIsRefused) {
+TEST(SkeletonMap, RejectsTruncatedAndOversizedInput) {
   const std::string whole = kToy;
   for (std::size_t length = 0; length < whole.size(); ++length) {
     EXPECT_FALSE(ParseSkeletonMap(whole.substr(0, length), "toy").ok()) << length;
@@ -146,7 +146,7 @@ TEST(SkeletonMap, EveryTruncationAndOversizeIsRefused) {
   std::string many = whole;
   many.replace(many.find("\"N1\""), 4, "\"" + std::string(256, 'x') + "\"");
   EXPECT_EQ(ParseSkeletonMap(many, "toy").status().code(), StatusCode::kLimit);
-  // So deep that a walk down to the bottom would overflow the stack, wherever a value stands.
+  // Nested so deeply that recursion would overflow the stack. Tried at every value.
   const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
   for (const char* value : {"1,", "\"toy\"", "\"Toys\"", "\"toy_\"", "\"L\"", "\"Root|Pelvis\"",
                             "[\"N1\", \"N2\"]", "\"N1\"", "\"Hand.*\""}) {
@@ -159,7 +159,7 @@ TEST(SkeletonMap, EveryTruncationAndOversizeIsRefused) {
   }
 }
 
-TEST(SkeletonMaps, OnlyACertainNumberOfRolesProvesAFamily) {
+TEST(SkeletonMaps, RequiresAMinimumNumberOfRoles) {
   const SkeletonMaps maps = Shipped();
   EXPECT_TRUE(maps.RolesOf(Names{"head", "neck", "jaw"}).map.empty());
   EXPECT_TRUE(maps.RolesOf(Names{"head", "neck", "jaw"}).roles.empty());
@@ -168,7 +168,7 @@ TEST(SkeletonMaps, OnlyACertainNumberOfRolesProvesAFamily) {
   EXPECT_EQ(chosen.RolesOf(Names{"head"}).map, one[0].name);
 }
 
-// For every shipped map: a skeleton of all its first names is recognised as itself, whole.
+// For every shipped map: a skeleton with the first name of each place matches that map completely.
 TEST(SkeletonMaps, EveryShippedMapRecognisesItsOwnFamily) {
   const SkeletonMaps maps = Shipped();
   EXPECT_GE(maps.maps().size(), 11u);
@@ -187,7 +187,7 @@ TEST(SkeletonMaps, EveryShippedMapRecognisesItsOwnFamily) {
   }
 }
 
-TEST(SkeletonMaps, MixamoUnderAnyOfItsPrefixes) {
+TEST(SkeletonMaps, RecognisesMixamoWithAnyPrefix) {
   const SkeletonMaps maps = Shipped();
   for (const char* prefix : {"mixamorig:", "mixamorig12:", "mixamorig", "mixamorig_", ""}) {
     Names names;
@@ -204,13 +204,13 @@ TEST(SkeletonMaps, MixamoUnderAnyOfItsPrefixes) {
   }
 }
 
-TEST(SkeletonMaps, AreLoadedByNameByFileOrAllAtOnce) {
+TEST(SkeletonMaps, LoadsByNameByFileOrAll) {
   setenv("FURROW_DATA_DIR", (std::string(FURROW_SOURCE_DIR) + "/rig").c_str(), 1);
   EXPECT_GE(SkeletonMaps::Load("").value().maps().size(), 11u);
   EXPECT_EQ(SkeletonMaps::Load("cmu").value().maps()[0].name, "cmu");
   const std::string file = std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/vrm.json";
   EXPECT_EQ(SkeletonMaps::Load(file).value().maps()[0].name, "vrm");
-  // A folder of that name hides nothing.
+  // A folder with the name of a map does not hide the map.
   const fs::path before = fs::current_path();
   const TemporaryFolder folder;
   fs::create_directory(folder / "cmu");

@@ -9,7 +9,7 @@
 namespace furrow::authoring {
 namespace {
 
-// One texel high, four wide: a map, and masks of five regions, half as wide.
+// A map of 4 x 1 texels, and masks of five regions of half that width.
 character::Character Rigged(BakedMaps* maps) {
   character::Character character;
   character.rig.name = "toy";
@@ -48,7 +48,7 @@ character::Picture Decoded(const BakedFiles& files, const std::string& name) {
   return {};
 }
 
-TEST(BakePackage, SixteenBitsAndAScaleGiveTheNumbersBack) {
+TEST(BakePackage, SixteenBitsAndAScaleRestoreTheValues) {
   BakedMaps maps;
   const character::Character character = Rigged(&maps);
   const auto files = PackageMaps(character, maps, {});
@@ -75,7 +75,7 @@ TEST(BakePackage, SixteenBitsAndAScaleGiveTheNumbersBack) {
   EXPECT_EQ(map.colour, "squash_colour.png");
   EXPECT_EQ(map.colour_scale, kBloodTintScale);
   const character::Picture colour = Decoded(*files, map.colour);
-  EXPECT_EQ(colour.pixels[0], 230);  // as at rest
+  EXPECT_EQ(colour.pixels[0], 230);  // the colour at rest
   EXPECT_LT(colour.pixels[3 + 1], 225);
   EXPECT_GT(colour.pixels[6 + 1], 232);
 }
@@ -91,7 +91,7 @@ TEST(BakePackage, ClothHasNoBloodAndKeepsItsColour) {
   EXPECT_EQ(files->rig.wrinkle_maps[0].colour_scale, 1.0f);
 }
 
-TEST(BakePackage, ExrHoldsThemAsTheyAre) {
+TEST(BakePackage, ExrContainsTheValuesThemselves) {
   BakedMaps maps;
   const character::Character character = Rigged(&maps);
   const auto files = PackageMaps(character, maps, {.exr = true});
@@ -104,7 +104,7 @@ TEST(BakePackage, ExrHoldsThemAsTheyAre) {
   EXPECT_NEAR(Decoded(*files, "squash_height.exr").pixels_float[1], -1.23f, 1e-3f);
 }
 
-TEST(BakePackage, PacksFourRegionsAPicture) {
+TEST(BakePackage, PacksFourRegionsPerPicture) {
   BakedMaps maps;
   const character::Character character = Rigged(&maps);
   const auto files = PackageMaps(character, maps, {.masks = true});
@@ -121,10 +121,10 @@ TEST(BakePackage, PacksFourRegionsAPicture) {
   EXPECT_EQ(Decoded(*own, "suggested_masks_skin_1.png").pixels[0], 204);
 }
 
-TEST(BakePackage, WritesOverNoMaskThatARegionKeeps) {
+TEST(BakePackage, DoesNotOverwriteMasksInUse) {
   BakedMaps maps;
   character::Character character = Rigged(&maps);
-  // Region 4 is not baked this time: its mask is the blue of what an earlier bake wrote.
+  // This bake leaves out region 4, which uses the blue channel of a picture from an earlier bake.
   maps.maps[0].masks.pop_back();
   wrinkle::Mask& mask = character.rig.regions[4].mask;
   mask = {.kind = wrinkle::Mask::Kind::kTexture, .texture = "masks_skin_0.png", .channel = 2};
@@ -136,7 +136,7 @@ TEST(BakePackage, WritesOverNoMaskThatARegionKeeps) {
   for (const BakedFiles::File& file : files->files) EXPECT_NE(file.name, "masks_skin_0.png");
 }
 
-TEST(BakePackage, ARegionOfTwoAtlasesKeepsItsMask) {
+TEST(BakePackage, RegionOfTwoAtlasesKeepsItsMask) {
   BakedMaps maps;
   character::Character character = Rigged(&maps);
   character.rig.regions[1].mask.texture = "mine.png";
@@ -154,7 +154,7 @@ TEST(BakePackage, ARegionOfTwoAtlasesKeepsItsMask) {
   EXPECT_NE(files->notes[0].find("region 'r1'"), std::string::npos);
 }
 
-TEST(BakePackage, RefusesWhatARigCannotState) {
+TEST(BakePackage, RejectsValuesThatARigCannotContain) {
   BakedMaps maps;
   const character::Character character = Rigged(&maps);
   maps.maps[0].derivative[0] = 700.0f;

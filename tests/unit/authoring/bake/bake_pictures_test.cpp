@@ -34,7 +34,7 @@ std::vector<std::string> Names(const std::vector<character::Picture>& pictures) 
   return names;
 }
 
-TEST(NormalPicture, HoldsTheNormalOfTheDerivative) {
+TEST(NormalPicture, ContainsTheNormalOfTheDerivative) {
   BakedMap map;
   map.width = 2;
   map.height = 1;
@@ -48,7 +48,7 @@ TEST(NormalPicture, HoldsTheNormalOfTheDerivative) {
   EXPECT_NEAR(value(1) / value(2), -1.0f, 1e-3f);
 }
 
-TEST(ColourPicture, LeavesSkinAtRestAsItIs) {
+TEST(ColourPicture, LeavesSkinAtRestUnchanged) {
   BakedMap map = Square(1);
   map.width = 3;
   map.blood = {1.0f, 1.5f, 0.6f};
@@ -62,7 +62,7 @@ TEST(ColourPicture, LeavesSkinAtRestAsItIs) {
   }
 }
 
-TEST(Halved, IsTheMeanOfFour) {
+TEST(Halved, AveragesFourTexels) {
   BakedMap map = Square(4);
   for (std::size_t i = 0; i < 16; ++i) {
     map.height_mm[i] = static_cast<float>(i);
@@ -78,13 +78,13 @@ TEST(Halved, IsTheMeanOfFour) {
   EXPECT_EQ(half.blood.size(), 4u);
 }
 
-TEST(WrinkleMapPictures, MakesThoseThatTheRigNames) {
+TEST(WrinkleMapPictures, MakesThePicturesThatTheRigNames) {
   const BakedMap map = Square(64);
   wrinkle::WrinkleMap named{.name = "squash", .normal = "n", .height = "h", .height_mm = 2.0f};
   auto some = WrinkleMapPictures(map, named);
   ASSERT_TRUE(some.ok());
   EXPECT_EQ(Names(*some), (std::vector<std::string>{"n", "h"}));
-  EXPECT_EQ((*some)[1].pixels16[0], 40959);  // 0.5 of 2 mm, about the middle
+  EXPECT_EQ((*some)[1].pixels16[0], 40959);  // 0.25 in a signed texel
   named.colour = "c";
   named.cavity = "v";
   const auto all = WrinkleMapPictures(map, named);
@@ -93,7 +93,7 @@ TEST(WrinkleMapPictures, MakesThoseThatTheRigNames) {
   for (const character::Picture& picture : *all) EXPECT_EQ(picture.width, 64) << picture.name;
 }
 
-TEST(WrinkleMapPictures, HalvesAllButNormalsWhereEnoughIsLeft) {
+TEST(WrinkleMapPictures, HalvesLargePicturesExceptNormals) {
   const wrinkle::WrinkleMap named{
       .name = "squash", .normal = "n", .height = "h", .colour = "c", .cavity = "v"};
   const auto pictures = WrinkleMapPictures(Square(2 * kSmallestHalf), named);
@@ -106,7 +106,7 @@ TEST(WrinkleMapPictures, HalvesAllButNormalsWhereEnoughIsLeft) {
   for (const character::Picture& picture : *odd) EXPECT_EQ(picture.width, 2 * kSmallestHalf + 1);
 }
 
-TEST(WrinkleMapPictures, RefusesFoldsThatTheRigCannotHold) {
+TEST(WrinkleMapPictures, RejectsFoldsBeyondTheRangeOfTheRig) {
   const wrinkle::WrinkleMap named{.name = "squash", .height = "h", .height_mm = 0.4f};
   const Status status = WrinkleMapPictures(Square(8), named).status();
   EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);

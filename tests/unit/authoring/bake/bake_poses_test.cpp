@@ -10,7 +10,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// A leg and a brow: hip at 1 m, knee at 0.5 m; the bind pose is the rest pose.
+// A leg and a brow, with the hip at 1 m and the knee at 0.5 m. The bind pose is the rest pose.
 character::Character Body() {
   character::Character body;
   body.skeleton =
@@ -41,16 +41,16 @@ character::Character Body() {
   return body;
 }
 
-TEST(BakePoses, PosesEveryDriverThatJointsRaise) {
+TEST(BakePoses, PosesEveryJointDriver) {
   const auto found = CollectBakePoses(Body());
   ASSERT_TRUE(found.ok()) << found.status().ToString();
   ASSERT_EQ(found->poses.size(), 2u);
   const BakePose& knee = found->poses[0];
   EXPECT_EQ(knee.map, "folds");
   EXPECT_EQ(knee.region, "knee");
-  EXPECT_EQ(knee.weight, 1.0f);  // a gain above 1 is no deeper fold
+  EXPECT_EQ(knee.weight, 1.0f);  // a gain above 1 does not deepen folds
   ASSERT_EQ(knee.skin_matrices.size(), 3u);
-  // Bent by a right angle: the foot, half a metre below the knee, points back.
+  // Bent by 90 degrees: the foot, at rest 0.5 m below the knee, is behind it.
   const glm::vec3 foot = knee.skin_matrices[1] * glm::vec4(0, 0, 0, 1);
   EXPECT_NEAR(glm::distance(foot, glm::vec3(0, 0.5f, -0.5f)), 0.0f, 1e-5f);
   const glm::vec3 hip = knee.skin_matrices[0] * glm::vec4(0, 1, 0, 1);
@@ -60,7 +60,7 @@ TEST(BakePoses, PosesEveryDriverThatJointsRaise) {
                                         HasSubstr("blink.value has no joint pose")));
 }
 
-TEST(BakePoses, TakesTheMapsThatAreWanted) {
+TEST(BakePoses, UsesOnlyTheRequestedMaps) {
   const std::string wanted[] = {"stretch"};
   const auto found = CollectBakePoses(Body(), wanted);
   ASSERT_TRUE(found.ok());
@@ -72,7 +72,7 @@ TEST(BakePoses, TakesTheMapsThatAreWanted) {
   EXPECT_THAT(status.todo(), HasSubstr("folds, stretch"));
 }
 
-TEST(BakePoses, RefusesAReferencePoseThatIsRest) {
+TEST(BakePoses, RejectsAReferencePoseEqualToRest) {
   character::Character body = Body();
   body.rig.reference_poses[0].joints[0].translation = glm::vec3(0.0f);
   const Status status = CollectBakePoses(body).status();
@@ -81,7 +81,7 @@ TEST(BakePoses, RefusesAReferencePoseThatIsRest) {
   EXPECT_EQ(status.where(), "regions[1].feeds[0].sources[0]");
 }
 
-TEST(BakePoses, NamesWhatIsMissing) {
+TEST(BakePoses, ReportsMissingJointsAndRigs) {
   character::Character body = Body();
   body.rig.drivers[0].hinge.joint = "shin";
   EXPECT_THAT(CollectBakePoses(body).status().what(), HasSubstr("'shin'"));

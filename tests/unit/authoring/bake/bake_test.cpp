@@ -21,7 +21,7 @@ BakeOptions Small() {
   return options;
 }
 
-// One thing wrong at a time.
+// A valid request. Each test makes one thing wrong.
 struct Request {
   character::Character character = Sheet();
   std::vector<BakePose> poses = {toys::Pose(toys::Squeeze(0.2f, 0.0f))};
@@ -40,7 +40,7 @@ BakeStroke Line() {
   return stroke;
 }
 
-TEST(Bake, RefusesWhatIsOutOfRange) {
+TEST(Bake, RejectsInvalidRequests) {
   EXPECT_EQ(Request().Code(), StatusCode::kOk);
   const std::vector<std::function<void(Request*)>> kWrong = {
       [](Request* r) { r->poses[0].map = "none"; },
@@ -78,7 +78,7 @@ TEST(Bake, RefusesWhatIsOutOfRange) {
   }
 }
 
-TEST(Bake, RefusesNumbersThatAreNone) {
+TEST(Bake, RejectsNonFiniteNumbers) {
   Request request;
   request.poses[0].skin_matrices[1][2][0] = std::numeric_limits<float>::infinity();
   EXPECT_EQ(request.Code(), StatusCode::kNonFinite);
@@ -88,20 +88,20 @@ TEST(Bake, RefusesNumbersThatAreNone) {
   EXPECT_EQ(request.Code(), StatusCode::kNonFinite);
 }
 
-TEST(Bake, RefusesSurfacesThatCannotHoldAMap) {
+TEST(Bake, RejectsUnsuitableSurfaces) {
   Request request;
   request.character.rig.wrinkle_maps[0].surface = wrinkle::WrinkleMap::Surface::kCloth;
-  EXPECT_EQ(request.Code(), StatusCode::kInvalidArgument);  // nothing is cloth
+  EXPECT_EQ(request.Code(), StatusCode::kInvalidArgument);  // no mesh is cloth
   request = Request();
   for (character::Vertex& vertex : request.character.meshes[0].vertices)
     vertex.uv = glm::vec2(0.5f);
   EXPECT_EQ(request.Code(), StatusCode::kInvalidArgument);  // no UVs
   request = Request();
   for (character::Vertex& vertex : request.character.meshes[0].vertices) vertex.position.y = 0.0f;
-  EXPECT_EQ(request.Code(), StatusCode::kInvalidArgument);  // no extent
+  EXPECT_EQ(request.Code(), StatusCode::kInvalidArgument);  // no area
 }
 
-TEST(Bake, MakesOnlyMapsThatAreFed) {
+TEST(Bake, BakesOnlyMapsWithPoses) {
   Request request;
   wrinkle::WrinkleMap other = request.character.rig.wrinkle_maps[0];
   other.name = "other";
@@ -116,10 +116,10 @@ TEST(Bake, MakesOnlyMapsThatAreFed) {
   Result<BakedMaps> two = Bake(request.character, request.poses, strokes, request.options);
   ASSERT_TRUE(two.ok());
   ASSERT_EQ(two.value().maps.size(), 2u);
-  EXPECT_EQ(two.value().maps[0].map, "other");  // the rig's order
+  EXPECT_EQ(two.value().maps[0].map, "other");  // in the order of the rig
 }
 
-TEST(Bake, TellsItsProgressAndCanBeStopped) {
+TEST(Bake, ReportsProgressAndCanBeCancelled) {
   Request request;
   std::vector<float> told;
   const auto listen = [&](float done) {
@@ -140,7 +140,7 @@ TEST(Bake, TellsItsProgressAndCanBeStopped) {
   }
 }
 
-TEST(Bake, TakesAPoseWhereTheRegionsMaskIs) {
+TEST(Bake, AppliesAPoseOnlyUnderItsRegionsMask) {
   Request request;
   character::Picture mask;
   mask.name = "mask";
@@ -165,14 +165,14 @@ TEST(Bake, TakesAPoseWhereTheRegionsMaskIs) {
   }
   EXPECT_GT(left, 0.3f);
   EXPECT_EQ(right, 0.0f);
-  EXPECT_NEAR(valleys, 8, 1);  // 39 mm of the region's own 5 mm folds
+  EXPECT_NEAR(valleys, 8, 1);  // 39 mm with the region's own folds of 5 mm
   ASSERT_EQ(map.masks.size(), 1u);
   EXPECT_EQ(map.masks[0].region, "patch");
   EXPECT_EQ(map.masks[0].width, 64);
   EXPECT_NEAR(map.masks[0].texels[32 * 64 + 10], 1.0f, 1e-3f);
 }
 
-TEST(Bake, CountsTexelsThatTwoTrianglesClaim) {
+TEST(Bake, CountsTexelsOfOverlappingTriangles) {
   Request request;
   EXPECT_EQ(toys::BakeFolds(request.character, request.poses, request.options)
                 .statistics.overlapping_texels,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What folds_test.cpp asks of toys, asked of whole characters' own surfaces and poses: the default
-// one, and MakeHuman's where its data is there.
+// Repeats checks of folds_test.cpp with the surfaces and poses of whole characters: the default
+// character, and MakeHuman's if its data is available.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -60,7 +60,7 @@ Result<character::Character> MakeHumanCharacter() {
   return ImportMakeHuman(kMakeHuman, options);
 }
 
-// A character's skin, one of its poses taken wherever that strains, and the map of it.
+// The skin of a character, the strain of one pose on all of it, and the map baked from that pose.
 struct Folded {
   std::unique_ptr<character::Character> character;
   std::unique_ptr<BakeSurface> surface;
@@ -91,7 +91,7 @@ Result<Folded> Fold(character::Character character) {
 struct Subject {
   const char* name;
   Result<character::Character> (*make)();
-  std::filesystem::path needs;  // empty: nothing
+  std::filesystem::path needs;  // empty if no files are needed
 };
 
 class CharacterFolds : public ::testing::TestWithParam<Subject> {
@@ -99,8 +99,8 @@ class CharacterFolds : public ::testing::TestWithParam<Subject> {
   void SetUp() override {
     const Subject& subject = GetParam();
     if (!subject.needs.empty() && !std::filesystem::exists(subject.needs))
-      GTEST_SKIP() << "needs " << subject.needs;
-    // Made once: a bake takes seconds.
+      GTEST_SKIP() << subject.needs << " is missing";
+    // Cached, because a bake takes seconds.
     static std::map<std::string, Folded> made;
     auto found = made.find(subject.name);
     if (found == made.end()) {
@@ -113,11 +113,11 @@ class CharacterFolds : public ::testing::TestWithParam<Subject> {
     folded_ = &found->second;
   }
 
-  // Where folds have set in fully.
+  // A texel at which folds are fully developed.
   struct Place {
     float compression;
-    vec3 across;  // unit
-    vec3 slope;   // of the height, in the surface
+    vec3 across;  // unit vector
+    vec3 slope;   // gradient of the height, in the surface
   };
   [[nodiscard]] std::vector<Place> FoldedPlaces() const {
     const Surface& surface = folded_->surface->surface();
@@ -135,7 +135,7 @@ class CharacterFolds : public ::testing::TestWithParam<Subject> {
     return places;
   }
 
-  // The height at a UV, between its four texels.
+  // The height at a UV, interpolated between four texels.
   [[nodiscard]] float HeightAt(const vec2& uv) const {
     const vec2 at = uv * static_cast<float>(kSize) - 0.5f;
     const vec2 low = glm::floor(at), part = at - low;
@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(Of, CharacterFolds,
                                            Subject{"makehuman", MakeHumanCharacter, kMakeHuman}),
                          [](const auto& subject) { return std::string(subject.param.name); });
 
-TEST_P(CharacterFolds, KeepTheLengthAcrossThem) {
+TEST_P(CharacterFolds, KeepTheArcLength) {
   double arc = 0.0;
   const std::vector<Place> places = FoldedPlaces();
   for (const Place& place : places) {
@@ -188,7 +188,7 @@ float Largest(std::vector<float> jumps, double share) {
   return *place;
 }
 
-TEST_P(CharacterFolds, DoNotJumpOverUvSeams) {
+TEST_P(CharacterFolds, AreContinuousAcrossUvSeams) {
   const character::Mesh& mesh = folded_->surface->surface().mesh();
   const auto triangles = folded_->surface->surface().triangles();
   std::vector<float> seam, interior;
@@ -207,7 +207,7 @@ TEST_P(CharacterFolds, DoNotJumpOverUvSeams) {
         const vec2 here = glm::mix(corner(t, a), corner(t, b), at);
         const float height = HeightAt(here);
         if (std::abs(height) < 0.002f) continue;
-        // Inside: to the next texel.
+        // Inside an island, compare with the next texel.
         const vec2 there = is_seam ? glm::mix(corner(n, a), corner(n, b), at)
                                    : here + vec2(1.0f / static_cast<float>(kSize), 0.0f);
         (is_seam ? seam : interior).push_back(std::abs(height - HeightAt(there)));

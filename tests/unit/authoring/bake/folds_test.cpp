@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What folds of strain must be: as long as the surface was, across its compression, whole over UV
-// seams, and nowhere else.
+// Folds from strain must keep the length of the surface, run across its compression, be continuous
+// across UV seams, and be absent without compression.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -20,10 +20,10 @@ namespace {
 using glm::vec2;
 using glm::vec3;
 
-constexpr float kWidth = 0.1f;  // of the sheet, metres
+constexpr float kWidth = 0.1f;  // width of the sheet, metres
 
-// The mean length of the displaced, squeezed rows of a sheet, as a fraction of their length at rest
-// (`compression` along x). From heights alone. A border of a wavelength and a half is left out.
+// The mean length of the displaced rows of a compressed sheet, as a fraction of their length at
+// rest. `compression` is along x. Uses only the heights, and excludes a border of 1.5 wavelengths.
 float ArcOverRest(const BakedMap& map, float compression) {
   const float texel = kWidth / static_cast<float>(map.width);
   const int border = static_cast<int>(0.015f / texel);
@@ -41,7 +41,7 @@ float ArcOverRest(const BakedMap& map, float compression) {
 
 class ArcLength : public ::testing::TestWithParam<float> {};
 
-TEST_P(ArcLength, OfTheDisplacedSurfaceIsThatAtRest) {
+TEST_P(ArcLength, DisplacedSurfaceIsAsLongAsAtRest) {
   const float compression = GetParam();
   const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
   for (const float sharpness : {0.0f, 0.7f}) {
@@ -56,7 +56,7 @@ TEST_P(ArcLength, OfTheDisplacedSurfaceIsThatAtRest) {
 INSTANTIATE_TEST_SUITE_P(Compressions, ArcLength,
                          ::testing::Values(0.02f, 0.1f, 0.25f, 0.4f, 0.6f));
 
-TEST(Folds, OfUnevenDepthStillKeepTheLengthOnTheWhole) {
+TEST(Folds, KeepTheMeanLengthWithVaryingDepth) {
   const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
   BakeOptions options = toys::Exact();
   options.skin.variation = 0.4f;
@@ -66,7 +66,7 @@ TEST(Folds, OfUnevenDepthStillKeepTheLengthOnTheWhole) {
   EXPECT_NEAR(ArcOverRest(map, 0.2f), 1.0f, 0.05f);
 }
 
-TEST(Folds, OfHalfTheShareTakeUpHalfTheCompression) {
+TEST(Folds, TakeUpTheirShareOfTheCompression) {
   const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
   BakeOptions options = toys::Exact();
   options.skin.share = 0.5f;
@@ -74,7 +74,7 @@ TEST(Folds, OfHalfTheShareTakeUpHalfTheCompression) {
   EXPECT_NEAR(ArcOverRest(map, 0.15f), 1.0f, 0.02f);
 }
 
-TEST(Folds, StandAWavelengthApart) {
+TEST(Folds, AreOneWavelengthApart) {
   const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
   const BakedMap map =
       toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(0.2f, 0.0f))}, toys::Exact());
@@ -85,11 +85,12 @@ TEST(Folds, StandAWavelengthApart) {
     const float next = map.height_mm[toys::At(map, x + 1, middle)];
     crossings += here < 0.0f && next >= 0.0f ? 1 : 0;
   }
-  EXPECT_NEAR(crossings, 10, 1);  // 100 mm of 10 mm folds
+  EXPECT_NEAR(crossings, 10, 1);  // 10 mm folds on 100 mm
 }
 
-TEST(Folds, AreNoFinerThanTheTexelsThere) {
-  // The right half of the sheet has a fifth of the picture: 7.8 mm a texel, and 1.95 on the left.
+TEST(Folds, AreNotFinerThanLocalTexels) {
+  // The right half of the sheet fills a fifth of the picture: 7.8 mm per texel, 1.95 mm on the
+  // left.
   character::Mesh mesh = toys::Grid(40, 20, [](float u, float v) {
     const float right = std::max(u - 0.5f, 0.0f);
     return toys::Point{
@@ -109,11 +110,11 @@ TEST(Folds, AreNoFinerThanTheTexelsThere) {
     return count;
   };
   EXPECT_GE(valleys(5, 95), 15);
-  EXPECT_LE(valleys(5, 95), 30);  // three texels each
+  EXPECT_LE(valleys(5, 95), 30);  // at least three texels each
   EXPECT_LE(valleys(106, 125), 7);
 }
 
-// The median angle between the slopes of a map and a direction of its plane, degrees.
+// The median angle in degrees between the slopes of a map and a direction in its plane.
 float MedianAngle(const BakedMap& map, float degrees) {
   const vec2 across(std::cos(glm::radians(degrees)), std::sin(glm::radians(degrees)));
   std::vector<float> angles;
@@ -129,10 +130,10 @@ float MedianAngle(const BakedMap& map, float degrees) {
   return angles[angles.size() / 2];
 }
 
-TEST(Folds, RunAcrossTheCompressionWhateverItsDirection) {
+TEST(Folds, RunAcrossTheCompressionInAnyDirection) {
   const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 14, 14));
   BakeOptions options = toys::Exact();
-  options.skin.variation = BakeMaterial().variation;  // as uneven as by default
+  options.skin.variation = BakeMaterial().variation;  // the default variation
   for (const float degrees : {0.0f, 33.0f, 90.0f, 145.0f}) {
     const BakedMap map =
         toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(0.25f, degrees))}, options);
@@ -151,7 +152,7 @@ TEST(Folds, DerivativeIsMinusTheSlopeOfTheHeight) {
   for (int y = 1; y + 1 < map.height; ++y) {
     for (int x = 1; x + 1 < map.width; ++x) {
       const auto h = [&](int dx, int dy) { return map.height_mm[toys::At(map, x + dx, y + dy)]; };
-      // The bitangent points up the picture, against y.
+      // The bitangent points up in the picture, opposite to y.
       const vec2 slope((h(1, 0) - h(-1, 0)) / (2.0f * texel_mm),
                        (h(0, -1) - h(0, 1)) / (2.0f * texel_mm));
       const std::size_t i = toys::At(map, x, y);
@@ -163,7 +164,7 @@ TEST(Folds, DerivativeIsMinusTheSlopeOfTheHeight) {
   EXPECT_LT(error, 0.06 * size);
 }
 
-TEST(Folds, AreNowhereWhereNothingIsCompressed) {
+TEST(Folds, AreAbsentWithoutCompression) {
   const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 10, 10));
   BakeOptions options;
   options.size = 128;
@@ -180,8 +181,8 @@ TEST(Folds, AreNowhereWhereNothingIsCompressed) {
   }
 }
 
-TEST(Folds, RunOutTowardsWhatIsNotCompressed) {
-  // The right half hangs on joint 1, which stays; the weights change over the middle third.
+TEST(Folds, FadeTowardsUncompressedSurface) {
+  // The right half follows joint 1, which does not move. The weights change in the middle third.
   character::Mesh mesh = toys::Grid(30, 10, [](float u, float v) {
     const float t = std::clamp(3.0f * u - 1.0f, 0.0f, 1.0f);
     return toys::Point{{0.2f * u, 0.1f * v, 0.0f}, {u, 1.0f - v}, t};
@@ -205,7 +206,7 @@ TEST(Folds, RunOutTowardsWhatIsNotCompressed) {
   EXPECT_EQ(highest(0.8f, 1.0f), 0.0f);
 }
 
-// A sheet that is unwrapped in two islands, the right one turned by a right angle.
+// A sheet unwrapped in two islands. The right island is turned by 90 degrees.
 character::Mesh SeamedSheet() {
   character::Mesh mesh = toys::Grid(10, 20, [](float u, float v) {
     return toys::Point{{0.05f * u, 0.1f * v, 0.0f}, {0.02f + 0.4f * u, 0.98f - 0.8f * v}, 0.0f};
@@ -220,7 +221,7 @@ character::Mesh SeamedSheet() {
   return mesh;
 }
 
-TEST(Folds, DoNotKnowOfUvSeams) {
+TEST(Folds, AreContinuousAcrossUvSeams) {
   const character::Character sheet = toys::Wearing(SeamedSheet());
   BakeOptions options = toys::Exact();
   options.size = 512;
@@ -228,7 +229,8 @@ TEST(Folds, DoNotKnowOfUvSeams) {
   const BakedMap map = toys::BakeFolds(sheet, {toys::Pose(toys::Squeeze(0.25f, 25.0f))}, options);
   const std::vector<SurfaceTexel> texels = RasterizeSurface(sheet.meshes[0], 512, 512);
   const auto height = [&](const SurfaceTexel& t) { return map.height_mm[toys::At(map, t.x, t.y)]; };
-  // Neighbours on the sheet: within a texel of each other. Over the seam they lie in two islands.
+  // Neighbours on the sheet are within a texel of each other. Across the seam they lie in two
+  // islands.
   constexpr float kNear = 0.0004f;
   const auto is_left = [](const SurfaceTexel& t) { return t.position.x < 0.05f; };
   float over_seam = 0.0f, inside = 0.0f;
@@ -251,7 +253,7 @@ TEST(Folds, DoNotKnowOfUvSeams) {
   EXPECT_LE(over_seam, 2.0f * inside);
 }
 
-TEST(Folds, AreTheSameBytesOnAnyNumberOfThreads) {
+TEST(Folds, DoNotDependOnTheNumberOfThreads) {
   const character::Character sheet = toys::Wearing(SeamedSheet());
   BakeOptions options;
   options.size = 256;
@@ -270,7 +272,7 @@ TEST(Folds, AreTheSameBytesOnAnyNumberOfThreads) {
 }
 
 TEST(Folds, DoNotLeakFromOneLipToTheOther) {
-  // Two sheets in one place. Joint 0 squeezes the first; the second hangs on joint 1, which rests.
+  // Two coincident sheets. Joint 0 compresses the first. The second follows joint 1, which rests.
   character::Mesh mesh = toys::Grid(12, 12, [](float u, float v) {
     return toys::Point{{0.05f * u, 0.05f * v, 0.0f}, {0.45f * u, 1.0f - v}, 0.0f};
   });
@@ -283,7 +285,7 @@ TEST(Folds, DoNotLeakFromOneLipToTheOther) {
       &mesh);
   const character::Character lips = toys::Wearing(std::move(mesh));
   BakeOptions options = toys::Exact();
-  options.skin.threshold = 0.01f;  // no fold of the last digit of an unmoved triangle's sides
+  options.skin.threshold = 0.01f;  // ignores rounding errors in the sides of unmoved triangles
   const BakedMap map =
       toys::BakeFolds(lips, {toys::Pose(toys::Squeeze(0.3f, 0.0f), glm::mat4(1.0f))}, options);
   float first = 0.0f, second = 0.0f;
@@ -298,7 +300,7 @@ TEST(Folds, DoNotLeakFromOneLipToTheOther) {
   EXPECT_EQ(second, 0.0f);
 }
 
-TEST(Folds, TooFineForASheetSoLargeAreRefusedAndNotDropped) {
+TEST(Folds, TooFineForTheSurfaceAreRejected) {
   const character::Character sheet = toys::Wearing(toys::Sheet(2.0f, 2.0f, 10, 10));
   BakeOptions options = toys::Exact();
   options.size = 2048;
@@ -310,12 +312,12 @@ TEST(Folds, TooFineForASheetSoLargeAreRefusedAndNotDropped) {
   EXPECT_NE(refused.ToString().find("--size"), std::string::npos);
 }
 
-TEST(CompressionSolver, KeepsItsMemoryOnFineMeshes) {
+TEST(CompressionSolver, LimitsItsMemoryOnFineMeshes) {
   const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 60, 60));
   const character::Mesh* meshes[] = {&sheet.meshes[0]};
   const Surface surface(meshes);
   BakeProgress progress({});
-  const CompressionSolver solver(surface, 0.02f, &progress);  // some 900 triangles round a vertex
+  const CompressionSolver solver(surface, 0.02f, &progress);  // about 900 triangles around a vertex
   EXPECT_LE(solver.num_terms(), 64 * surface.positions().size());
   const glm::mat4 squeeze[] = {toys::Squeeze(0.2f, 0.0f), toys::Squeeze(0.2f, 0.0f)};
   for (const Tensor2& tensor : solver.Solve(squeeze, 0.5f).tensors) {
@@ -323,7 +325,7 @@ TEST(CompressionSolver, KeepsItsMemoryOnFineMeshes) {
   }
 }
 
-// Valleys along the middle row.
+// Counts the valleys along the middle row.
 int Valleys(const BakedMap& map) {
   int valleys = 0;
   for (int x = 0; x + 1 < map.width; ++x) {
@@ -333,7 +335,7 @@ int Valleys(const BakedMap& map) {
   return valleys;
 }
 
-TEST(Folds, HaveFineLinesAThirdApartWhereTheSkinHasThem) {
+TEST(Folds, HaveFineLinesAThirdOfAWavelengthApart) {
   const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
   BakeOptions options = toys::Exact();
   options.size = 512;
@@ -348,10 +350,10 @@ TEST(Folds, HaveFineLinesAThirdApartWhereTheSkinHasThem) {
   EXPECT_NEAR(lined.statistics.coarsest_mm, 10.0f, 1e-3f);
 }
 
-TEST(Folds, SayWhatWasWidenedForTheTexels) {
+TEST(Folds, ReportFoldsWidenedForTheTexels) {
   const character::Character sheet = toys::Wearing(toys::Sheet(kWidth, kWidth, 20, 20));
   BakeOptions options = toys::Exact();  // texels of 0.39 mm
-  // Of a region that this rig lacks: nobody's business.
+  // Wavelengths of regions that the rig lacks are ignored.
   options.wavelengths = {{"nose", 0.5f}};
   const std::vector<BakePose> poses = {toys::Pose(toys::Squeeze(0.2f, 0.0f))};
   EXPECT_EQ(toys::BakeFolds(sheet, poses, options).statistics.widened_texels, 0);

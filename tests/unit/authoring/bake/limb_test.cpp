@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A bent tube: the knee.
+// Folds on a bent tube, a simple knee.
 #include <algorithm>
 #include <cmath>
 
@@ -18,15 +18,15 @@ using glm::vec3;
 
 constexpr float kRadius = 0.06f;
 
-// A limb along -y with its joint at the origin, seam at the back; joint 1 is the lower half. u goes
-// round it, v up.
+// A limb along -y with its joint at the origin and its seam at the back. Joint 1 moves the lower
+// half. u goes around the limb, v goes up.
 character::Mesh Limb() {
   return toys::Grid(40, 40, [](float u, float v) {
     const float angle = 2.0f * 3.14159265f * u;
     const float y = 0.25f * (2.0f * v - 1.0f);
     toys::Point point;
     point.position = {-kRadius * std::sin(angle), y, -kRadius * std::cos(angle)};
-    if (u == 1.0f) point.position = {0.0f, y, -kRadius};  // the seam closes to the bit
+    if (u == 1.0f) point.position = {0.0f, y, -kRadius};  // the seam closes exactly
     if (u == 0.0f) point.position = {0.0f, y, -kRadius};
     point.uv = {0.02f + 0.45f * u, 0.98f - 0.9f * v};
     const float t = std::clamp(0.5f - y / 0.12f, 0.0f, 1.0f);
@@ -38,7 +38,7 @@ character::Mesh Limb() {
 BakedMap BendKnee(const character::Character& limb, float degrees) {
   BakeOptions options;
   options.size = 512;
-  options.skin = options.cloth;  // trousers
+  options.skin = options.cloth;  // as for trousers
   const glm::mat4 bend =
       glm::rotate(glm::mat4(1.0f), glm::radians(degrees), vec3(1.0f, 0.0f, 0.0f));
   return toys::BakeFolds(limb, {toys::Pose(glm::mat4(1.0f), bend)}, options);
@@ -46,7 +46,7 @@ BakedMap BendKnee(const character::Character& limb, float degrees) {
 
 TEST(Knee, FoldsInsideAndNotOutside) {
   const character::Character limb = toys::Wearing(Limb());
-  // About +x, the lower half swings to the back: the inside is where z < 0.
+  // The turn about +x swings the lower half to the back, so the inside has z < 0.
   for (const float degrees : {50.0f, 90.0f, 130.0f}) {
     const BakedMap map = BendKnee(limb, degrees);
     float inside = 0.0f, outside = 0.0f, far = 0.0f;
@@ -76,10 +76,10 @@ TEST(Knee, FoldsRunAcrossTheLimb) {
   EXPECT_GT(along, 4.0 * across);
 }
 
-TEST(Knee, SeamAtTheBackCannotBeSeen) {
+TEST(Knee, SeamAtTheBackIsInvisible) {
   const character::Character limb = toys::Wearing(Limb());
   const BakedMap map = BendKnee(limb, 110.0f);
-  int first = map.width, last = 0;  // columns of the limb's island
+  int first = map.width, last = 0;  // columns of the island
   for (int x = 0; x < map.width; ++x) {
     if (!map.covered[toys::At(map, x, map.height / 2)]) continue;
     first = std::min(first, x);

@@ -17,7 +17,7 @@ wrinkle::Rig SmallRig() {
   return rig;
 }
 
-// One field a line.
+// One field per line.
 constexpr char kStrokes[] = R"({
   "strokes": [
     // frontalis
@@ -70,8 +70,8 @@ TEST(StrokesFile, MirrorsToTheOtherSide) {
   EXPECT_EQ(mirrored.width_mm, 3.0f);
 }
 
-// What the schema defaults to is what bake.h defaults to.
-TEST(StrokesFile, DefaultsAreTheBakesOwn) {
+// The schema and bake.h have the same defaults.
+TEST(StrokesFile, DefaultsEqualThoseOfTheBake) {
   const auto strokes =
       Parse(R"({"strokes": [{"name": "s", "maps": ["squash"], "points": [[0,0,0], [1,0,0]]}]})");
   ASSERT_TRUE(strokes.ok()) << strokes.status().ToString();
@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"\"strokes\": [\n", "\"version\": 2, \"strokes\": [\n", StatusCode::kUnsupported,
               "2: version"}));
 
-TEST(StrokesFile, ReadsTheExampleOfItsManual) {
+TEST(StrokesFile, ReadsTheExampleInTheManual) {
   const auto manual = ReadFile(FURROW_SOURCE_DIR "/docs/BAKE.md", 1u << 20);
   ASSERT_TRUE(manual.ok());
   const std::string fence = "```json\n";
@@ -149,7 +149,7 @@ TEST(StrokesFile, ReadsTheExampleOfItsManual) {
   EXPECT_EQ(strokes->size(), 4u);
 }
 
-TEST(StrokesFile, RefusesEveryTruncation) {
+TEST(StrokesFile, RejectsEveryTruncation) {
   const std::string text = kStrokes;
   const std::size_t end = text.rfind('}');
   for (std::size_t length = 0; length < end; ++length) {
@@ -157,13 +157,13 @@ TEST(StrokesFile, RefusesEveryTruncation) {
   }
 }
 
-TEST(StrokesFile, NamesTheFileThatIsNotThere) {
+TEST(StrokesFile, NamesTheMissingFile) {
   const auto strokes = LoadStrokes("/nowhere/strokes.json", SmallRig());
   EXPECT_EQ(strokes.status().code(), StatusCode::kNotFound);
   EXPECT_EQ(strokes.status().where(), "/nowhere/strokes.json");
 }
 
-TEST(StrokesFile, RefusesFoldsThatNoSurfaceMakes) {
+TEST(StrokesFile, RejectsFoldsThatAreTooDeep) {
   const auto fold = [](const std::string& fields) {
     return Parse(R"({"strokes": [{"name": "a", "maps": ["squash"], "points": [[0, 0, 0], [0, 1, 0]],
 )" + fields + "}]}");

@@ -108,7 +108,7 @@ BakedMap BakeFolds(const character::Character& character, std::vector<BakePose> 
   Result<BakedMaps> maps = Bake(character, poses, strokes, options);
   EXPECT_TRUE(maps.ok()) << maps.status().ToString();
   if (!maps.ok() || maps.value().maps.size() != 1) {
-    ADD_FAILURE() << "one map expected";
+    ADD_FAILURE() << "expected one map";
     return {};
   }
   return std::move(maps.value().maps.front());

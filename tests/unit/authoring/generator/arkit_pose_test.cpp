@@ -77,7 +77,7 @@ TEST_F(ArkitPoseTest, EachOfThe52MovesTheFace) {
   }
 }
 
-TEST_F(ArkitPoseTest, SidesAreTheSubjects) {
+TEST_F(ArkitPoseTest, LeftIsTheSubjectsLeft) {
   for (const std::string& name : ArkitNames()) {
     if (name.starts_with("jaw") || name == "mouthLeft" || name == "mouthRight") continue;
     const bool left = name.ends_with("Left"), right = name.ends_with("Right");
@@ -92,22 +92,22 @@ TEST_F(ArkitPoseTest, SidesAreTheSubjects) {
   EXPECT_GT(Moved("mouthLeft", "risorius_l").x, 0.004f);
 }
 
-TEST_F(ArkitPoseTest, ShapesGoWhereTheirNamesSay) {
+TEST_F(ArkitPoseTest, ShapesMoveInTheNamedDirections) {
   EXPECT_LT(Moved("jawOpen", "orbicularis_oris_lower_l").y, -0.015f);
   EXPECT_GT(Moved("mouthSmileLeft", "risorius_l").y, 0.005f);
   EXPECT_LT(Moved("mouthFrownRight", "risorius_r").y, -0.005f);
   EXPECT_GT(Moved("mouthFunnel", "orbicularis_oris_upper_l").z, 0.004f);
   EXPECT_GT(Moved("browInnerUp", "frontalis_inner_r").y, 0.005f);
   EXPECT_LT(Moved("browDownLeft", "corrugator_l").y, -0.002f);
-  // Lips closed over an open jaw: what one lowers, the other raises.
+  // mouthClose raises the lower lip as far as jawOpen lowers it.
   const float open = Moved("jawOpen", "orbicularis_oris_lower_l").y;
   const float close = Moved("mouthClose", "orbicularis_oris_lower_l").y -
                       Moved("mouthClose", "orbicularis_oris_upper_l").y;
   EXPECT_NEAR(open + close, 0.0f, 0.012f);
 }
 
-// A tracker's stream has no joints, yet it wrinkles the face; a stream of joints alone binds
-// strictly, though it has no blend shapes.
+// A tracker's stream without joints wrinkles the face. A stream of joints without blend shapes
+// binds in strict mode.
 TEST_F(ArkitPoseTest, CoefficientsWrinkleTheFace) {
   const std::vector<std::string> names = ArkitNames();
   auto binding =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real recordings of foreign skeletons on the default character's body.
+// Plays recordings of foreign skeletons on the default character's body.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -28,7 +28,7 @@ constexpr JointRole kLimbs[][2] = {
     {kRightUpperLeg, kRightLowerLeg}, {kRightLowerLeg, kRightFoot},
 };
 
-// A recording, frame by frame beside what the default body does.
+// Compares a recording with the default body, frame by frame.
 class BodyMotion : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -36,7 +36,7 @@ class BodyMotion : public testing::Test {
   }
   static void TearDownTestSuite() { unsetenv("FURROW_DATA_DIR"); }
 
-  // False where the recording is not here.
+  // Returns false if the recording is missing.
   bool Load(const char* recording, const motion::LoadOptions& options = {}) {
     const fs::path path = fs::path(FURROW_SHARED_DATA) / recording;
     if (!fs::exists(path)) return false;
@@ -86,8 +86,8 @@ class BodyMotion : public testing::Test {
   std::vector<glm::mat4> to_;
 };
 
-TEST_F(BodyMotion, CmuWalksWithTheSameLimbs) {
-  if (!Load("cmu/01_01.bvh")) GTEST_SKIP() << "CMU's recording is not here";
+TEST_F(BodyMotion, CmuWalkKeepsItsLimbDirections) {
+  if (!Load("cmu/01_01.bvh")) GTEST_SKIP() << "the CMU recording is missing";
   EXPECT_EQ(match_.stream.map, "cmu");
   EXPECT_TRUE(match_.stream.missing.empty());
   for (int frame = 0; frame < clip_.num_frames(); frame += 10) {
@@ -101,10 +101,10 @@ TEST_F(BodyMotion, CmuWalksWithTheSameLimbs) {
   }
 }
 
-// The lowest toe is the stance foot's, or in a jump no lower than the source's.
+// The lowest toe is on the floor, or in a jump at the height of the recording's lowest toe.
 TEST_F(BodyMotion, CmuStandsOnTheFloor) {
-  if (!Load("cmu/01_01.bvh")) GTEST_SKIP() << "CMU's recording is not here";
-  const float scale = 0.93f / 16.9f;  // metres a unit of CMU's, by the legs
+  if (!Load("cmu/01_01.bvh")) GTEST_SKIP() << "the CMU recording is missing";
+  const float scale = 0.93f / 16.9f;  // metres per CMU unit, from the leg lengths
   std::vector<float> lowest;
   for (int frame = 0; frame < clip_.num_frames(); frame += 10) {
     Show(frame);
@@ -117,8 +117,8 @@ TEST_F(BodyMotion, CmuStandsOnTheFloor) {
   EXPECT_GT(lowest.front(), -0.05f);
 }
 
-TEST_F(BodyMotion, AVrmAnimationMovesItAndItsArms) {
-  if (!Load("vrma/test.vrma")) GTEST_SKIP() << "the VRM animation is not here";
+TEST_F(BodyMotion, VrmAnimationMovesTheBodyAndItsArms) {
+  if (!Load("vrma/test.vrma")) GTEST_SKIP() << "the VRM animation is missing";
   EXPECT_EQ(match_.stream.map, "vrm");
   ASSERT_GT(clip_.num_frames(), 1);
   float most = 0.0f;
@@ -135,11 +135,11 @@ TEST_F(BodyMotion, AVrmAnimationMovesItAndItsArms) {
   EXPECT_GT(most, 0.05f);
 }
 
-// MakeHuman's rig has two joints to a limb, five in the spine and a stance of its own.
-TEST_F(BodyMotion, MakeHumansPosesKeepTheirLimbs) {
-  // Its positions are departures from rest.
+// MakeHuman's rig has two joints per limb segment, five in the spine, and another rest pose.
+TEST_F(BodyMotion, MakeHumanPosesKeepTheirLimbDirections) {
+  // The file's positions are offsets from rest.
   if (!Load("makehuman/poses/benchmark.bvh", {.bvh_positions = motion::BvhPositions::kAdd}))
-    GTEST_SKIP() << "MakeHuman's pose is not here";
+    GTEST_SKIP() << "MakeHuman's pose is missing";
   EXPECT_EQ(match_.stream.map, "makehuman");
   for (int frame = 0; frame < clip_.num_frames(); ++frame) {
     Show(frame);

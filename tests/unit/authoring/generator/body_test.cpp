@@ -40,7 +40,7 @@ class BodyTest : public ::testing::TestWithParam<int> {
   wrinkle::Skeleton skeleton_ = MakeSkeleton();
 };
 
-// Edges that only one triangle has, by place: the rims of a surface.
+// The rims of a surface: the positions of edges that belong to one triangle only, with counts.
 std::map<Place, int> Rims(const character::Mesh& mesh) {
   std::map<std::pair<Place, Place>, int> uses;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
@@ -61,8 +61,8 @@ TEST_P(BodyTest, ShirtAndSleevesAreOneSurface) {
   const BodyShape shape = Shape();
   character::Mesh shirt;
   AppendNet(MakeShirt(shape), &shirt);
-  // Trunk and sleeves are open at the hem and at the cuffs and nowhere else; the collar has rims
-  // over the neckline.
+  // Trunk and sleeves are open only at the hem and the cuffs. The collar has rims above the
+  // neckline.
   for (const auto& [place, count] : Rims(shirt)) {
     const vec3 p = vec3(place[0], place[1], place[2]) * 1e-5f;
     const bool hem = p.y < 1.0f && std::abs(p.x) < 0.2f;
@@ -81,8 +81,8 @@ TEST_P(BodyTest, TrousersAreSewnBetweenTheLegs) {
   }
 }
 
-// Singular values of the map from cloth to atlas, of every triangle, relative to its scale.
-TEST_P(BodyTest, ClothIsCutWithLittleStretch) {
+// Singular values of each triangle's map from cloth to atlas, relative to its scale.
+TEST_P(BodyTest, ClothUnwrapsWithLittleStretch) {
   const BodyShape shape = Shape();
   QuadNet net = MakeShirt(shape);
   Join(MakeTrousers(shape), &net);
@@ -112,7 +112,7 @@ TEST_P(BodyTest, ClothIsCutWithLittleStretch) {
   EXPECT_LT(stretched, 0.05 * area);
 }
 
-TEST_P(BodyTest, NothingComesApartAtASeam) {
+TEST_P(BodyTest, SeamsStayClosed) {
   const Clothes clothes = MakeClothes(Shape());
   ASSERT_EQ(clothes.vertex_panels.size(), clothes.mesh.vertices.size());
   ASSERT_EQ(clothes.panels.size(), static_cast<std::size_t>(kNumClothPanels));
@@ -130,16 +130,16 @@ TEST_P(BodyTest, NothingComesApartAtASeam) {
   EXPECT_GT(pairs, 100);
 }
 
-// Share of a joint in a point.
+// The skin weight of a joint at a point.
 float ShareOf(const Influences& skin, int joint) {
   float share = 0.0f;
   for (int k = 0; k < 4; ++k) share += skin.joints[k] == joint ? skin.weights[k] : 0.0f;
   return share;
 }
 
-// Along an edge of the clothes no joint gains or loses more than a part: cloth bends, it does not
-// break.
-TEST_P(BodyTest, WeightsOfClothAreSmooth) {
+// Along each edge of the clothes the weight of a joint changes only by a fraction, so that the
+// cloth bends smoothly.
+TEST_P(BodyTest, ClothSkinWeightsAreSmooth) {
   const BodyShape shape = Shape();
   for (const QuadNet& net : {MakeShirt(shape), MakeTrousers(shape)}) {
     const std::vector<std::vector<int>> neighbours = Neighbours(net);
@@ -156,8 +156,8 @@ TEST_P(BodyTest, WeightsOfClothAreSmooth) {
   }
 }
 
-// Rings of edges across a bend: at least eight within 10 cm of elbow and knee.
-TEST_P(BodyTest, LimbsHaveRingsWhereTheyBend) {
+// At least eight rings of edges lie within 10 cm of each elbow and knee.
+TEST_P(BodyTest, LimbsHaveEdgeRingsAtTheirBends) {
   const BodyShape shape = Shape();
   const Clothes clothes = MakeClothes(shape);
   std::set<long> elbow, knee;
@@ -171,7 +171,7 @@ TEST_P(BodyTest, LimbsHaveRingsWhereTheyBend) {
   EXPECT_GE(knee.size(), 8u);
 }
 
-// A fist: every finger bends at its three joints until its tip lies near the palm.
+// In a fist every finger bends at its three joints until its tip is near the palm.
 TEST_P(BodyTest, FingersClose) {
   for (const float side : {1.0f, -1.0f}) {
     const std::string suffix = side > 0.0f ? "_l" : "_r";
@@ -204,11 +204,11 @@ TEST_P(BodyTest, FingersClose) {
       closed = std::max(closed, side * (posed.x - wrist.x));
     }
     EXPECT_GT(stretched, 0.17f);
-    EXPECT_LT(closed, 0.135f);  // knuckles and first bones' width are what is left
+    EXPECT_LT(closed, 0.135f);  // knuckles and the width of the first bones remain
   }
 }
 
-TEST_P(BodyTest, HandsAreClosedButAtTheWrist) {
+TEST_P(BodyTest, HandsAreOpenOnlyAtTheWrist) {
   character::Mesh hand;
   AppendNet(MakeHand(skeleton_, 1.0f, 0, GetParam()), &hand);
   for (const auto& [place, count] : Rims(hand)) EXPECT_LT(place[0], 70000);  // inside the cuff
@@ -227,7 +227,7 @@ TEST(GeneratorBody, BaseLevelHasAboutEightThousandTriangles) {
   EXPECT_LT(indices / 3, 10000u);
 }
 
-TEST(GeneratorBody, ParametersMakeAnotherBody) {
+TEST(GeneratorBody, ParametersChangeTheBody) {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   const BodyShape man({.level = 0}, skeleton, DefaultHead());
   const BodyShape other({.waist = 1.1f, .hips = 1.12f, .bust = 0.03f, .level = 0}, skeleton,
@@ -239,8 +239,8 @@ TEST(GeneratorBody, ParametersMakeAnotherBody) {
   EXPECT_LT(other.Trousers({0.18f, 0.9f, 0.0f}), man.Trousers({0.18f, 0.9f, 0.0f}));
 }
 
-// The two sides of a bend have masks of their own, and either is somewhere full.
-TEST(GeneratorBody, MasksTellInnerFromOuter) {
+// The two sides of a bend have separate masks, and each mask is full somewhere.
+TEST(GeneratorBody, MasksDistinguishInnerFromOuter) {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   const BodyShape shape({.level = 0}, skeleton, DefaultHead());
   const std::array<character::Picture, 6> masks = PaintClothMasks(MakeClothes(shape), 256);
@@ -254,7 +254,7 @@ TEST(GeneratorBody, MasksTellInnerFromOuter) {
         most[c] = std::max<int>(most[c], mask.pixels[t + c]);
         sum += mask.pixels[t + c];
       }
-      EXPECT_LE(sum, 258);  // shares of one surface, but for rounding
+      EXPECT_LE(sum, 258);  // the masks share the surface; 3 for rounding
     }
     for (int c = 0; c < (i == 5 ? 2 : 4); ++c) EXPECT_GT(most[c], 200) << mask.name << " " << c;
   }

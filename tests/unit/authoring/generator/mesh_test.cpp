@@ -64,7 +64,7 @@ TEST(GeneratorMesh, HasNoDegenerateTrianglesAndUnitFrames) {
   }
 }
 
-TEST(GeneratorMesh, TheTongueLiesBehindTheLowerTeethAndGoesWithTheJaw) {
+TEST(GeneratorMesh, TongueLiesBehindTheLowerTeethAndMovesWithTheJaw) {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   HeadMesh tongue = MakeTongue();
   SkinHead(skeleton, &tongue);
@@ -73,7 +73,7 @@ TEST(GeneratorMesh, TheTongueLiesBehindTheLowerTeethAndGoesWithTheJaw) {
     if (tooth.mouth_side < 0.0f) lower_teeth.push_back(tooth.place);
   }
   for (const glm::vec3& tooth : lower_teeth) {
-    for (const HeadVertex& v : tongue.info) {  // nowhere farther out than a tooth beside it
+    for (const HeadVertex& v : tongue.info) {  // behind the teeth next to it
       if (std::abs(v.place.x - tooth.x) < 0.2f) ASSERT_LT(v.place.z, tooth.z);
     }
   }
@@ -104,7 +104,7 @@ double Edge(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) {
   return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
-// How many texel centres lie well inside more than one triangle of the unwrapping.
+// The number of texel centres that lie inside more than one triangle of the unwrapping.
 int CountOverlap(const character::Mesh& mesh, int size) {
   std::vector<int> hits(static_cast<std::size_t>(size) * size, 0);
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
@@ -132,8 +132,8 @@ int CountOverlap(const character::Mesh& mesh, int size) {
   return overlap;
 }
 
-// Locks of hair share the tiles of strands; what lies below them has texels of its own. No triangle
-// is of both.
+// The part of the hair below the tiles of strands. Locks share those tiles, and the cap has its own
+// texels. No triangle uses both.
 character::Mesh CapOf(const character::Mesh& hair) {
   character::Mesh cap = hair;
   cap.indices.clear();
@@ -158,13 +158,13 @@ TEST(GeneratorMesh, UvsLieInTheUnitSquareAndDoNotOverlap) {
       ASSERT_GE(vertex.uv.y, 0.0f);
       ASSERT_LE(vertex.uv.y, 1.0f);
     }
-    if (mesh.name == "lashes") continue;  // all show the same one
+    if (mesh.name == "lashes") continue;  // all lashes show the same texels
     EXPECT_EQ(CountOverlap(mesh.name == "hair" ? CapOf(mesh) : mesh, 1024), 0);
   }
 }
 
-// Far away a lash is gone: its last mip level is below the cut-off, and near by all of it is drawn.
-TEST(GeneratorMesh, LashesFadeBeforeTheyAreDots) {
+// The last mip level of a lash is below the cut-off, and the first level shows all of the lash.
+TEST(GeneratorMesh, LashesFadeInTheDistance) {
   const character::Picture lash = PaintLash();
   double sum = 0.0;
   int drawn = 0;
@@ -182,9 +182,9 @@ TEST(GeneratorMesh, LashesFadeBeforeTheyAreDots) {
   EXPECT_EQ(drawn, lash.height);
 }
 
-// Every edge, by place, is used at most once in each direction: neighbours agree on what is
-// outside.
-TEST(GeneratorMesh, NeighbouringTrianglesWindAlike) {
+// Every edge (by position) is used at most once in each direction, so neighbouring triangles have
+// the same outside.
+TEST(GeneratorMesh, NeighbouringTrianglesHaveTheSameWinding) {
   const character::Mesh skin = MakeSkin(MakeSkeleton());
   using Place = std::array<long, 3>;
   const auto place = [&](std::uint32_t i) {
@@ -202,7 +202,7 @@ TEST(GeneratorMesh, NeighbouringTrianglesWindAlike) {
   EXPECT_EQ(twice, 0);
 }
 
-// The face looks along +Z: triangles of its front wind so that their normals do.
+// The face looks along +Z, and the normals of its front point outwards.
 TEST(GeneratorMesh, NormalsPointOutOfTheHead) {
   const HeadMesh head = MakeHeadSkin();
   int outward = 0;
@@ -217,7 +217,7 @@ TEST(GeneratorMesh, NormalsPointOutOfTheHead) {
   EXPECT_GT(outward, front * 99 / 100);
 }
 
-// An ear is closed but for where it sinks into the head: wound outward, it has a positive volume.
+// An ear is closed except at the head. With outward winding its volume is positive.
 TEST(GeneratorMesh, EarsFaceOutward) {
   const HeadMesh head = MakeHeadSkin();
   float volume[2] = {0.0f, 0.0f};  // cubic centimetres; right, left
@@ -235,7 +235,7 @@ TEST(GeneratorMesh, EarsFaceOutward) {
   EXPECT_GT(volume[1], 1.0f);
 }
 
-TEST(GeneratorMesh, ProportionsAreThoseOfAnAdult) {
+TEST(GeneratorMesh, HasAdultProportions) {
   const HeadMesh head = MakeHeadSkin();
   glm::vec3 low(1e9f), high(-1e9f);
   for (const HeadVertex& info : head.info) {
@@ -243,11 +243,11 @@ TEST(GeneratorMesh, ProportionsAreThoseOfAnAdult) {
     low = glm::min(low, info.place);
     high = glm::max(high, info.place);
   }
-  EXPECT_NEAR(high.y, 11.5f, 0.6f);                         // crown over the eyes: half of 23 cm
+  EXPECT_NEAR(high.y, 11.5f, 0.6f);                         // crown above the eyes: half of 23 cm
   EXPECT_NEAR(high.x - low.x, 15.2f, 1.0f);                 // width of the skull
   EXPECT_GT(EyeCentre(1.0f).x - EyeCentre(-1.0f).x, 6.0f);  // pupils 63 mm apart
   EXPECT_LT(EyeCentre(1.0f).x - EyeCentre(-1.0f).x, 6.6f);
-  // Eyelids touch the ball: the nearest skin is within 1 mm of it, and none lies inside.
+  // The eyelids touch the eyeball: the nearest skin is within 1 mm of it, and no skin is inside it.
   float nearest = 1e9f;
   for (const HeadVertex& info : head.info) {
     nearest = std::min(nearest, glm::distance(info.place, EyeCentre(1.0f)) - kEyeRadius);
@@ -256,7 +256,7 @@ TEST(GeneratorMesh, ProportionsAreThoseOfAnAdult) {
   EXPECT_GT(nearest, 0.0f);
 }
 
-// Lips that lie upon each other part: the lower one follows the jaw, the upper one does not.
+// Closed lips separate when the jaw opens, because only the lower lip follows the jaw.
 TEST(GeneratorMesh, LipsPartWithTheJaw) {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   HeadMesh head = MakeHeadSkin();
@@ -287,12 +287,13 @@ TEST(GeneratorMesh, LipsPartWithTheJaw) {
   EXPECT_GE(lower, 5);
 }
 
-// Vertices that lie on each other at rest stay together, or the background would show between them:
-// at the seam of the unwrapping, and where the lining of the mouth is sewn to the lips.
-TEST(GeneratorMesh, NothingComesApartAtASeam) {
+// Coincident vertices have equal skin weights, so that no gap opens at the UV seam or between the
+// lips and the lining of the mouth.
+TEST(GeneratorMesh, SeamsStayClosed) {
   HeadMesh head = MakeHeadSkin();
   SkinHead(MakeSkeleton(), &head);
-  // What lies above and what lies below an opening touch while it is closed, and part with it.
+  // The key includes the side of the opening: the two lips and the two lids touch but must
+  // separate.
   using Place = std::tuple<float, float, float, float, float>;
   std::map<Place, const character::Vertex*> first;
   int pairs = 0;
@@ -311,7 +312,7 @@ TEST(GeneratorMesh, NothingComesApartAtASeam) {
   EXPECT_GT(pairs, 40);
 }
 
-TEST(GeneratorSkeleton, StandsOnTheFloorAndMirrors) {
+TEST(GeneratorSkeleton, StandsOnTheFloorAndIsSymmetric) {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   ASSERT_EQ(skeleton.num_joints(), static_cast<int>(JointPlaces().size()));
   for (int j = 0; j < skeleton.num_joints(); ++j) {
@@ -331,7 +332,7 @@ TEST(GeneratorSkeleton, StandsOnTheFloorAndMirrors) {
     }
   }
   EXPECT_NEAR(low, 0.0f, 0.005f);
-  EXPECT_NEAR(high, 1.77f, 0.03f);  // 1.75 m and the hair
+  EXPECT_NEAR(high, 1.77f, 0.03f);  // 1.75 m plus the hair
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ Painted Paint(const StrandLook& look) {
   return painted;
 }
 
-// Share of a tile's texels between `from` and `to` (root 0, tip 1) that are not cut away.
+// Fraction of opaque texels in a tile between `from` and `to` (0 is the root, 1 the tip).
 float Coverage(Painted* painted, int tile, float from, float to) {
   int covered = 0, all = 0;
   const auto low = StrandUv(tile, -1.0f, from), high = StrandUv(tile, 1.0f, to);
@@ -37,7 +37,7 @@ float Coverage(Painted* painted, int tile, float from, float to) {
   return static_cast<float>(covered) / static_cast<float>(all);
 }
 
-TEST(HairStrands, AreDenseInTheMiddleAndThinOutAtTheTips) {
+TEST(HairStrands, AreDensestInTheMiddle) {
   Painted painted = Paint({});
   for (int tile = 0; tile < kFullTiles + kSparseTiles; ++tile) {
     SCOPED_TRACE(tile);
@@ -53,7 +53,7 @@ TEST(HairStrands, AreDenseInTheMiddleAndThinOutAtTheTips) {
   }
 }
 
-TEST(HairStrands, LeaveTheCallersRowsAlone) {
+TEST(HairStrands, DoNotChangeOtherRows) {
   Painted painted = Paint({});
   for (int y = static_cast<int>(std::ceil(kStrandBottom * kSize)); y < kSize; ++y) {
     for (int x = 0; x < kSize; ++x) {
@@ -63,7 +63,7 @@ TEST(HairStrands, LeaveTheCallersRowsAlone) {
   }
 }
 
-TEST(HairStrands, AreLitAcrossAndNotAlong) {
+TEST(HairStrands, NormalsVaryOnlyAcrossStrands) {
   Painted painted = Paint({});
   int left = 255, right = 0;
   for (int y = 0; y < static_cast<int>(kStrandBottom * kSize); ++y) {
@@ -78,7 +78,7 @@ TEST(HairStrands, AreLitAcrossAndNotAlong) {
   EXPECT_GT(right, 165);
 }
 
-TEST(HairStrands, GreyIsBrighterAndLessColourful) {
+TEST(HairStrands, GreyIsBrighterAndLessSaturated) {
   Painted brown = Paint({}), grey = Paint({.grey_share = 1.0f});
   const auto uv = StrandUv(0, 0.0f, 0.5f);
   const int x = static_cast<int>(uv.x * kSize), y = static_cast<int>(uv.y * kSize);

@@ -12,7 +12,7 @@
 namespace furrow::authoring {
 namespace {
 
-// A square of 10 cm in the plane z = 0, facing +Z, unwrapped whole: u along x, v down.
+// A square of 10 cm in the plane z = 0, facing +Z. Its UVs fill the picture: u along x, v down.
 character::Mesh Square() {
   character::Mesh mesh;
   for (const glm::vec2 corner :
@@ -31,11 +31,11 @@ TEST(PaintTangents, FollowTheTexture) {
   const character::Mesh mesh = Square();
   for (const character::Vertex& vertex : mesh.vertices) {
     EXPECT_NEAR(vertex.tangent.x, 1.0f, 1e-6f);
-    EXPECT_EQ(vertex.tangent.w, 1.0f);  // the bitangent points up the picture
+    EXPECT_EQ(vertex.tangent.w, 1.0f);  // the bitangent points up in the picture
   }
 }
 
-TEST(PaintTangents, MirroredUvsTurnTheBitangent) {
+TEST(PaintTangents, MirroredUvsFlipTheBitangent) {
   character::Mesh mesh = Square();
   for (character::Vertex& vertex : mesh.vertices) vertex.uv.x = 1.0f - vertex.uv.x;
   character::paint::ComputeTangents(mesh.vertices, mesh.indices);
@@ -46,7 +46,7 @@ TEST(PaintTangents, MirroredUvsTurnTheBitangent) {
 }
 
 TEST(PaintStrokes, FoldIsAValleyBetweenTwoRidges) {
-  // The far foot of the ridge reaches the line: ridge * exp(-4) of the depth.
+  // The ridge still adds ridge * exp(-4) of the depth at the line.
   EXPECT_NEAR(FoldShapeAt(0.0f, 0.35f).height, 0.35f * std::exp(-4.0f) - 1.0f, 1e-6f);
   EXPECT_GT(FoldShapeAt(1.0f, 0.35f).height, 0.2f);
   EXPECT_LT(FoldShapeAt(1.0f, 0.0f).height, 0.0f);
@@ -62,12 +62,12 @@ TEST(PaintStrokes, TaperToNothingAtBothEnds) {
   EXPECT_EQ(StrokeTaper(0.0f, 0.6f), 0.0f);
   EXPECT_EQ(StrokeTaper(1.0f, 0.6f), 0.0f);
   EXPECT_EQ(StrokeTaper(0.5f, 0.6f), 1.0f);
-  EXPECT_EQ(StrokeTaper(0.3f, 0.6f), 1.0f);  // ends fade over 0.3 of the length each
+  EXPECT_EQ(StrokeTaper(0.3f, 0.6f), 1.0f);  // each end fades over 0.3 of the length
   EXPECT_NEAR(StrokeTaper(0.15f, 0.6f), 0.5f, 1e-6f);
   EXPECT_NEAR(StrokeTaper(0.15f, 0.6f), StrokeTaper(0.85f, 0.6f), 1e-6f);
 }
 
-TEST(PaintStrokes, LineKnowsItsNearestPoint) {
+TEST(PaintStrokes, LineFindsItsNearestPoint) {
   const StrokeLine line({{0, 0, 0}, {1, 0, 0}, {1, 3, 0}});
   EXPECT_EQ(line.length(), 4.0f);
   const StrokeLine::Nearest side = line.FindNearest({3, 1, 0});
@@ -81,13 +81,13 @@ TEST(PaintStrokes, LineKnowsItsNearestPoint) {
   EXPECT_EQ(line.FindNearest({0.5f, 0, 0}).away, glm::vec3(0.0f));
 }
 
-TEST(PaintStrokes, NormalMapSaysTheSlope) {
+TEST(PaintStrokes, NormalMapContainsTheSlope) {
   const std::vector<SurfaceTexel> texels = RasterizeSurface(Square(), 8, 8);
   const std::vector<glm::vec2> slopes(texels.size(), glm::vec2(0.5f, -0.25f));
   const character::Picture map = EncodeNormals(texels, slopes, 8, 8, 11);
   ASSERT_EQ(map.pixels16.size(), 8u * 8u * 3u);
   const auto decode = [&](int c) { return static_cast<float>(map.pixels16[c]) / 65535.0f * 2 - 1; };
-  // Half a step of x and y, and of z's, which are four times as wide.
+  // Half a step of x and y, and half a step of z, which is four times as large.
   const float step = 2.0f / 2048.0f;
   EXPECT_NEAR(decode(0) / decode(2), 0.5f, (0.5f * step + 2.0f * step * 0.5f) / 0.85f);
   EXPECT_NEAR(decode(1) / decode(2), -0.25f, (0.5f * step + 2.0f * step * 0.25f) / 0.85f);
@@ -96,7 +96,7 @@ TEST(PaintStrokes, NormalMapSaysTheSlope) {
     EXPECT_TRUE(value % (i % 3 == 2 ? 128 : 32) == 0 || value == 65535) << i;
   }
   const character::Picture flat = EncodeNormals(texels, {}, 8, 8, 8);
-  EXPECT_EQ(flat.pixels16[0], 32768);  // no slope is said exactly
+  EXPECT_EQ(flat.pixels16[0], 32768);  // zero slope is exact
   EXPECT_EQ(flat.pixels16[2], 65535);
 }
 

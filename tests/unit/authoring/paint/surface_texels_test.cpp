@@ -12,7 +12,7 @@
 namespace furrow::authoring {
 namespace {
 
-// A square of 2 x 2 metres in the plane z = 0 whose UVs fill [low, high].
+// A square of 2 x 2 metres in the plane z = 0. Its UVs fill [low, high].
 character::Mesh TexelSquare(glm::vec2 low, glm::vec2 high) {
   character::Mesh mesh;
   for (const glm::vec2 corner : {glm::vec2(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
@@ -26,7 +26,7 @@ character::Mesh TexelSquare(glm::vec2 low, glm::vec2 high) {
   return mesh;
 }
 
-TEST(UvRaster, CoversEachTexelOnceWithItsPlace) {
+TEST(UvRaster, CoversEachTexelOnceWithItsPosition) {
   const std::vector<SurfaceTexel> texels = RasterizeSurface(TexelSquare({0, 0}, {1, 1}), 8, 4);
   ASSERT_EQ(texels.size(), 32u);
   for (std::size_t i = 0; i < texels.size(); ++i) {
@@ -36,16 +36,17 @@ TEST(UvRaster, CoversEachTexelOnceWithItsPlace) {
     EXPECT_NEAR(t.position.x, 2.0f * (static_cast<float>(t.x) + 0.5f) / 8.0f, 1e-5f);
     EXPECT_NEAR(t.position.y, 2.0f - 2.0f * (static_cast<float>(t.y) + 0.5f) / 4.0f, 1e-5f);
     EXPECT_NEAR(glm::distance(t.tangent, glm::vec3(1, 0, 0)), 0.0f, 1e-5f);
-    EXPECT_NEAR(glm::distance(t.bitangent, glm::vec3(0, 1, 0)), 0.0f, 1e-5f);  // up the picture
+    EXPECT_NEAR(glm::distance(t.bitangent, glm::vec3(0, 1, 0)), 0.0f,
+                1e-5f);  // upwards in the picture
   }
 }
 
 TEST(UvRaster, WrapsAroundAndTheFirstTriangleWins) {
   EXPECT_EQ(RasterizeSurface(TexelSquare({-0.5f, 0}, {0.5f, 1}), 8, 8).size(), 64u);
-  EXPECT_EQ(RasterizeSurface(TexelSquare({0, 0}, {3, 1}), 8, 8).size(), 64u);  // three times round
+  EXPECT_EQ(RasterizeSurface(TexelSquare({0, 0}, {3, 1}), 8, 8).size(), 64u);  // wraps three times
   EXPECT_TRUE(RasterizeSurface(TexelSquare({0.5f, 0}, {0.5f, 1}), 8, 8).empty());  // no area
   EXPECT_TRUE(
-      RasterizeSurface(TexelSquare({0, 0}, {1e30f, 1}), 8, 8).empty());  // no place to count
+      RasterizeSurface(TexelSquare({0, 0}, {1e30f, 1}), 8, 8).empty());  // too large to rasterise
 }
 
 TEST(UvRaster, DilationGrowsRingByRing) {

@@ -19,14 +19,14 @@ TEST(Teeth, StandOnTheArch) {
       const glm::vec3 from = p - arch.front;
       const float angle =
           std::hypot(from.x / arch.half_width, (from.z + arch.half_depth) / arch.half_depth);
-      EXPECT_NEAR(angle, 1.0f, 0.08f);  // of the ellipse; crowns and gums stand out by millimetres
+      EXPECT_NEAR(angle, 1.0f, 0.08f);  // on the ellipse; crowns and gums protrude by millimetres
     }
   }
 }
 
 TEST(Teeth, AreTheSameOnBothSides) {
   const ToothRow row = MakeToothRow(kUpper);
-  const std::size_t column = 8;  // points from the edge to the gum's top
+  const std::size_t column = 8;  // points from the edge of the crown to the top of the gum
   ASSERT_EQ(row.positions.size() % column, 0u);
   const std::size_t last = row.positions.size() / column - 1;
   for (std::size_t i = 0; i <= last; ++i) {
@@ -38,7 +38,7 @@ TEST(Teeth, AreTheSameOnBothSides) {
   }
 }
 
-TEST(Teeth, FaceOutwardsAndKeepApartInThePicture) {
+TEST(Teeth, FaceOutwardsAndAreSeparateInThePicture) {
   for (const ToothArch& arch : {kUpper, kLower}) {
     const ToothRow row = MakeToothRow(arch);
     ASSERT_EQ(row.quads.size() % 4, 0u);
@@ -49,12 +49,12 @@ TEST(Teeth, FaceOutwardsAndKeepApartInThePicture) {
       const glm::vec3 out = (a - arch.front) * glm::vec3(1, 0, 1) + glm::vec3(0, 0, 4.2f);
       (glm::dot(glm::cross(b - a, c - a), out) > 0.0f ? outward : inward)++;
     }
-    EXPECT_GT(outward, 9 * inward);  // what lies under the edge of a crown looks down
+    EXPECT_GT(outward, 9 * inward);  // surfaces under the edge of a crown face down
     for (const glm::vec2& uv : row.uvs) EXPECT_TRUE(arch.upper ? uv.y < 0.5f : uv.y > 0.5f);
   }
 }
 
-TEST(Teeth, GumsAreRedAndAgeIsYellow) {
+TEST(Teeth, GumsAreRedAndOldTeethAreYellow) {
   constexpr int kSize = 256;
   const character::Picture young = PaintTeeth(0.0f, kSize), old = PaintTeeth(1.0f, kSize);
   const auto at = [](const character::Picture& picture, float u, float v) {
@@ -67,7 +67,7 @@ TEST(Teeth, GumsAreRedAndAgeIsYellow) {
   EXPECT_GT(gum[0] - gum[1], 60);
   const std::uint8_t* aged = at(old, 0.55f, 0.40f);
   EXPECT_GT(aged[0] - aged[2], crown[0] - crown[2] + 10);
-  // Between two teeth it is darker than on either.
+  // The gap between two teeth is darker than both teeth.
   EXPECT_LT(at(young, 0.5f, 0.40f)[0], crown[0] - 30);
 }
 

@@ -33,7 +33,7 @@ Vertex At(glm::vec3 position, glm::vec2 uv) {
   return vertex;
 }
 
-// A square on two joints, with a picture of two pixels.
+// A square with two joints and a picture of two pixels.
 Character Square() {
   Character c;
   c.name = "square";
@@ -80,7 +80,7 @@ std::string Words(std::initializer_list<std::size_t> words) {
   return bytes;
 }
 
-// The square's file with its JSON, and its buffer, changed.
+// The square's file after `change` to its JSON and its buffer.
 std::string Changed(const std::function<void(json&, std::string&)>& change) {
   const std::string glb = GlbOf(Square());
   const gltf::Container parts = *gltf::SplitContainer(glb);
@@ -93,7 +93,7 @@ std::string Changed(const std::function<void(json&, std::string&)>& change) {
          text + Words({binary.size()}) + std::string("BIN\0", 4) + binary;
 }
 
-// Where the data of one of the first primitive's attributes begins in the buffer.
+// The offset in the buffer of an attribute of the first primitive.
 std::size_t OffsetOf(const json& root, const char* attribute) {
   const int accessor = root["meshes"][0]["primitives"][0]["attributes"][attribute];
   return root["bufferViews"][root["accessors"][accessor]["bufferView"].get<int>()]["byteOffset"];
@@ -103,7 +103,7 @@ void PutFloat(std::string* binary, std::size_t at, float value) {
   binary->replace(at, 4, reinterpret_cast<const char*>(&value), 4);
 }
 
-TEST(Character, ReadsBackWhatItWrote) {
+TEST(Character, WrittenCharactersReadBackEqual) {
   const Character square = Square();
   const auto again = ParseCharacter(GlbOf(square), ".");
   ASSERT_TRUE(again.ok()) << again.status().ToString();
@@ -130,7 +130,8 @@ TEST(Character, ReadsBackWhatItWrote) {
   EXPECT_TRUE(again->materials[0].double_sided);
   ASSERT_EQ(again->pictures.size(), 1u);
   EXPECT_EQ(again->pictures[0].name, "mask.png");
-  EXPECT_EQ(again->pictures[0].pixels, square.pictures[0].pixels) << "alpha 0 keeps its colours";
+  EXPECT_EQ(again->pictures[0].pixels, square.pictures[0].pixels)
+      << "texels with alpha 0 keep their colours";
 }
 
 TEST(Character, WritesEqualBytesForEqualCharacters) {
@@ -139,7 +140,7 @@ TEST(Character, WritesEqualBytesForEqualCharacters) {
   EXPECT_EQ(first, GlbOf(*ParseCharacter(first, ".")));
 }
 
-TEST(Character, WillNotWriteWhatItCouldNotRead) {
+TEST(Character, RejectsInvalidCharactersOnSave) {
   const TemporaryFolder folder;
   const fs::path path = folder / "broken.glb";
   Character broken = Square();
@@ -156,10 +157,10 @@ TEST(Character, WillNotWriteWhatItCouldNotRead) {
   EXPECT_FALSE(fs::exists(path));
 }
 
-TEST(Character, RefusesEveryTruncation) {
+TEST(Character, RejectsEveryTruncation) {
   const std::string whole = GlbOf(Square());
   for (std::size_t length = 0; length < whole.size(); ++length) {
-    const std::string part(whole.data(), length);  // a buffer of its own
+    const std::string part(whole.data(), length);  // exact size, for the sanitizers
     const auto character = ParseCharacter(part, ".");
     ASSERT_FALSE(character.ok()) << length;
     ASSERT_EQ(character.status().code(), StatusCode::kParse) << character.status().ToString();
@@ -284,7 +285,7 @@ TEST(Character, LoadsDeviatingFilesWithWarnings) {
 }
 
 TEST(Character, KeepsTheStrongestFourInfluences) {
-  // A second set of influences: the first set's data again, with other weights.
+  // Adds a second set of influences equal to the first.
   const auto character = ParseCharacter(Changed([](json& r, std::string& b) {
                                           const auto offset = OffsetOf(r, "WEIGHTS_0");
                                           for (int v = 0; v < 4; ++v) {
@@ -304,7 +305,7 @@ TEST(Character, KeepsTheStrongestFourInfluences) {
   EXPECT_NEAR(vertex.skin_weights[3], 0.3 / 1.4, 1e-6);
 }
 
-TEST(Character, ComputesNormalsAndTangentsThatAreMissing) {
+TEST(Character, ComputesMissingNormalsAndTangents) {
   const auto character = ParseCharacter(Changed([](json& r, std::string&) {
                                           auto& attributes =
                                               r["meshes"][0]["primitives"][0]["attributes"];
@@ -315,12 +316,12 @@ TEST(Character, ComputesNormalsAndTangentsThatAreMissing) {
   ASSERT_TRUE(character.ok()) << character.status().ToString();
   for (const Vertex& vertex : character->meshes[0].vertices) {
     EXPECT_EQ(vertex.normal, glm::vec3(0, 0, 1));
-    // u grows along +X, v shrinks along +Y: a square seen upright is not mirrored.
+    // u increases along +X and v decreases along +Y, so the texture is not mirrored.
     EXPECT_EQ(vertex.tangent, glm::vec4(1, 0, 0, 1));
   }
 }
 
-TEST(Character, FindsTheRigsPictures) {
+TEST(Character, FindsThePicturesOfTheRig) {
   const fs::path folder = fs::temp_directory_path() / "furrow_character_rig";
   fs::create_directories(folder);
   ASSERT_TRUE(SaveCharacterGlb(Square(), folder / "square.glb").ok());
@@ -335,7 +336,7 @@ TEST(Character, FindsTheRigsPictures) {
   const auto character = LoadCharacter(folder / "square.glb");
   ASSERT_TRUE(character.ok()) << character.status().ToString();
   EXPECT_EQ(character->rig.name, "r");
-  EXPECT_EQ(character->FindRigPicture("mask.png"), 0) << "the one inside the file";
+  EXPECT_EQ(character->FindRigPicture("mask.png"), 0) << "expected the picture inside the file";
   EXPECT_EQ(character->FindRigPicture("beside.png"), 1);
   EXPECT_EQ(character->FindRigPicture("nowhere.png"), -1);
   EXPECT_THAT(character->missing_rig_pictures, ::testing::ElementsAre("nowhere.png"));

@@ -18,8 +18,8 @@ using ::testing::HasSubstr;
 constexpr int kCells = 10;
 constexpr float kSide = 0.1f;
 
-// A square sheet of skin, 10 cells a side, moved by `low` at its foot and `high` at its head; and a
-// second sheet one millimetre in front of it that hangs on neither of its vertices.
+// A square sheet of skin with 10 cells per side, moved by `low` at the bottom and by `high` at the
+// top, and a second sheet 1 mm in front of it that shares no vertices with it.
 Character Sheets() {
   Character character;
   character.name = "sheets";
@@ -55,7 +55,7 @@ PatchOptions Middle(float radius = 0.025f) {
   return {.name = "p", .centre = {0.05f, 0.05f, 0.0f}, .radius = radius};
 }
 
-TEST(RigPatch, MeasuresTheStrainOfTheSurfaceItWasCutFrom) {
+TEST(RigPatch, MeasuresTheStrainOfItsSurface) {
   const Character sheets = Sheets();
   const auto driver = CutPatch(sheets, Middle());
   ASSERT_TRUE(driver.ok()) << driver.status().ToString();
@@ -66,15 +66,15 @@ TEST(RigPatch, MeasuresTheStrainOfTheSurfaceItWasCutFrom) {
   ASSERT_TRUE(binding.ok()) << binding.status().ToString();
   wrinkle::LocalPose pose;
   pose.SetRest(sheets.skeleton);
-  pose.joints[2].translation.y -= 0.1f * kSide;  // the sheet is nine tenths as high
+  pose.joints[2].translation.y -= 0.1f * kSide;  // 9/10 of the height
   wrinkle::SubjectSolver solver(std::make_shared<const wrinkle::RigBinding>(*std::move(binding)));
   ASSERT_EQ(solver.Update(pose, 0.0), wrinkle::JobStatus::kOk);
   const std::span<const float> values = solver.driver_values();
-  EXPECT_NEAR(values[0], 0.4f, 2e-3f);  // along; 0.25 is full
+  EXPECT_NEAR(values[0], 0.4f, 2e-3f);  // along; a compression of 0.25 gives 1
   EXPECT_NEAR(values[1] + values[2] + values[3], 0.0f, 2e-3f);
 }
 
-TEST(RigPatch, KeepsToTheSurfaceThatIsNearest) {
+TEST(RigPatch, CutsOnlyTheNearestSurface) {
   const Character sheets = Sheets();
   const auto driver = CutPatch(sheets, Middle());
   ASSERT_TRUE(driver.ok());
@@ -86,13 +86,13 @@ TEST(RigPatch, KeepsToTheSurfaceThatIsNearest) {
   for (const auto& vertex : other->strain.vertices) EXPECT_NEAR(vertex.position.z, 0.001f, 1e-6f);
 }
 
-TEST(RigPatch, TwoSheetsInOnePlaceStayTwo) {
+TEST(RigPatch, CoincidentSheetsStaySeparate) {
   Character sheets = Sheets();
   for (Vertex& vertex : sheets.meshes[1].vertices) vertex.position.z = 0.0f;
   const auto whole = CutPatch(sheets, Middle(1.0f));
   ASSERT_TRUE(whole.ok()) << whole.status().ToString();
   EXPECT_EQ(whole->strain.triangles.size(), 3u * 2 * kCells * kCells);
-  // One mesh whose halves lie upon each other and move apart, as closed lips do.
+  // One mesh with two coincident halves that can move apart, like closed lips.
   Mesh lips = sheets.meshes[0];
   const auto half = static_cast<std::uint32_t>(lips.vertices.size());
   for (Vertex vertex : sheets.meshes[1].vertices) {
@@ -102,7 +102,7 @@ TEST(RigPatch, TwoSheetsInOnePlaceStayTwo) {
   }
   for (const std::uint32_t index : sheets.meshes[1].indices) lips.indices.push_back(half + index);
   sheets.meshes = {lips};
-  // The head's row is moved by `high` alone on both: nothing else may join them.
+  // Gives the top rows different weights. Both followed `high` alone and would be joined.
   for (std::size_t i = half - kCells - 1; i < half; ++i) {
     sheets.meshes[0].vertices[i].skin_weights[1] = 0.9f;
     sheets.meshes[0].vertices[i].skin_weights[0] = 0.1f;
@@ -113,10 +113,10 @@ TEST(RigPatch, TwoSheetsInOnePlaceStayTwo) {
   EXPECT_EQ(lip->strain.vertices.size(), 11u * 11);
 }
 
-TEST(RigPatch, UvSeamsAreNoBorder) {
+TEST(RigPatch, CrossesUvSeams) {
   Character sheets = Sheets();
   Mesh& sheet = sheets.meshes[0];
-  for (std::uint32_t& index : sheet.indices) {  // every corner a vertex of its own
+  for (std::uint32_t& index : sheet.indices) {  // gives every corner its own vertex
     sheet.vertices.push_back(Vertex(sheet.vertices[index]));
     index = static_cast<std::uint32_t>(sheet.vertices.size()) - 1;
   }
@@ -136,7 +136,7 @@ TEST(RigPatch, GrowsWithTheRadiusToTheWholeSheet) {
   EXPECT_EQ(whole->strain.vertices.size(), 11u * 11);
 }
 
-TEST(RigPatch, SaysWhyThereIsNone) {
+TEST(RigPatch, ExplainsWhyNoPatchWasCut) {
   Character sheets = Sheets();
   PatchOptions far = Middle();
   far.centre = {3, 0, 0};
@@ -160,7 +160,7 @@ TEST(RigPatch, FindsJointsAndRegions) {
   Character sheets = Sheets();
   EXPECT_EQ(*JointPosition(sheets, "high"), glm::vec3(0.0f, kSide, 0.0f));
   EXPECT_EQ(JointPosition(sheets, "tail").status().code(), StatusCode::kNotFound);
-  // A mask of the left half: UVs run with x.
+  // A mask that covers the left half. u increases with x.
   for (Mesh& mesh : sheets.meshes) {
     for (Vertex& vertex : mesh.vertices) vertex.uv = {0.99f * vertex.position.x / kSide, 0.5f};
   }
@@ -176,7 +176,7 @@ TEST(RigPatch, FindsJointsAndRegions) {
   region.mask.texture = "mask.png";
   const auto place = RegionPosition(sheets, "left");
   ASSERT_TRUE(place.ok()) << place.status().ToString();
-  EXPECT_NEAR(place->x, 0.025f, 0.006f);  // the vertex that is nearest to the middle
+  EXPECT_NEAR(place->x, 0.025f, 0.006f);  // the vertex nearest to the centre
   EXPECT_NEAR(place->y, 0.05f, 1e-3f);
   EXPECT_EQ(RegionPosition(sheets, "right").status().code(), StatusCode::kNotFound);
   sheets.pictures[0].pixels = {0, 0};

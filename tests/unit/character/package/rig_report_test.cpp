@@ -47,7 +47,7 @@ TEST(RigReport, EveryBlendShapeOfArkitFeedsARegion) {
               Contains(HasSubstr("picture 'face_masks_a'")));
 }
 
-TEST(RigReport, SaysWhatLeadsNowhere) {
+TEST(RigReport, WarnsOfUnusedPartsAndMissingReferences) {
   const auto rig = ParseRig(R"({"name": "r", "reference_poses": [
       {"name": "used", "joints": [{"joint": "other", "euler_degrees": [9, 0, 0]}]},
       {"name": "unused", "joints": []}],
@@ -70,18 +70,19 @@ TEST(RigReport, SaysWhatLeadsNowhere) {
   EXPECT_THAT(report.warnings, Contains("no region uses wrinkle map 'spare'"));
   EXPECT_THAT(report.warnings, Contains(HasSubstr("d.v stays 0")));
   EXPECT_THAT(report.warnings, Contains(HasSubstr("picture 'm.png'")));
-  // A skeleton that comes with no blend shapes at all lets a rig that reads joints bind.
+  // A rig that reads joints binds to a skeleton without any blend shapes.
   EXPECT_TRUE(report.binding.ok()) << report.binding.ToString();
   EXPECT_THAT(report.warnings, Contains("no blend shape 'jawOpen' comes with the skeleton"));
   EXPECT_GT(report.skeleton_size, 0.0f);
   const std::string others[] = {"eyeBlinkLeft"};
   options.blend_shape_names = others;
-  EXPECT_FALSE(ReportOnRig(*rig, options).binding.ok()) << "one is missing among those that come";
+  EXPECT_FALSE(ReportOnRig(*rig, options).binding.ok())
+      << "the rig needs a blend shape that the list lacks";
 }
 
-TEST(RigReport, CmuFollowsKneesAndElbowsOfARealClip) {
+TEST(RigReport, CmuFollowsKneesAndElbowsOfARecording) {
   const std::string path = FURROW_SHARED_DATA "/cmu/01_01.bvh";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is missing";
   const auto clip = motion::LoadClip(path);
   ASSERT_TRUE(clip.ok()) << clip.status().ToString();
   const wrinkle::Rig rig = Shipped("cmu.json");

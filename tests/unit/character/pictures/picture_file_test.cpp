@@ -71,7 +71,7 @@ TEST(Picture, KeepsHalfFloats) {
   EXPECT_EQ(EncodePng(picture).status().code(), StatusCode::kUnsupported);
 }
 
-TEST(Picture, RefusesTexelsThatAreNoNumbers) {
+TEST(Picture, RejectsNonFiniteTexels) {
   Picture picture;
   picture.width = 1;
   picture.height = 1;
@@ -81,7 +81,7 @@ TEST(Picture, RefusesTexelsThatAreNoNumbers) {
   EXPECT_EQ(again.status().code(), StatusCode::kNonFinite);
 }
 
-TEST(Picture, RefusesEveryTruncationOfAnExr) {
+TEST(Picture, RejectsEveryTruncationOfAnExr) {
   Picture picture;
   picture.width = 4;
   picture.height = 4;
@@ -94,26 +94,27 @@ TEST(Picture, RefusesEveryTruncationOfAnExr) {
   }
 }
 
-TEST(Picture, RefusesEveryTruncation) {
+TEST(Picture, RejectsEveryTruncation) {
   Picture picture;
   picture.width = 4;
   picture.height = 4;
   picture.pixels.assign(64, 77);
   const std::string png = *EncodePng(picture);
-  // The last 12 bytes are the end chunk, which says nothing about pixels.
+  // The last 12 bytes are the end chunk, which contains no pixels.
   for (std::size_t length = 0; length + 16 < png.size(); ++length) {
     const std::string part(png.data(), length);
     EXPECT_FALSE(DecodePicture("p", Bytes(part)).ok()) << length;
   }
 }
 
-TEST(Picture, RefusesWhatIsTooLargeBeforeReadingIt) {
+TEST(Picture, RejectsHugePicturesBeforeDecoding) {
   Picture picture;
   picture.width = 1;
   picture.height = 1;
   picture.pixels.assign(4, 0);
   std::string png = *EncodePng(picture);
-  // The header's width and height: 0x7fff each. Its checksum is wrong then, which is as well.
+  // Sets width and height in the header to 0x7fff. The wrong checksum is also a valid reason to
+  // fail.
   png.replace(16, 8, std::string("\0\0\x7f\xff\0\0\x7f\xff", 8));
   const auto result = DecodePicture("p", Bytes(png));
   ASSERT_FALSE(result.ok());

@@ -18,14 +18,14 @@ std::vector<float> Sum(const std::vector<std::vector<float>>& poses,
   return sum.Take();
 }
 
-TEST(Blood, StaysWhileTheAreaChanges) {
+TEST(Blood, AmountIsIndependentOfTheArea) {
   const std::vector<float> blood = Sum({{1.0f, 0.8f, 1.25f}}, {1.0f, 1.0f, 1.0f});
   EXPECT_FLOAT_EQ(blood[0], 1.0f);
   EXPECT_NEAR(blood[1], 1.25f, 1e-5f);
   EXPECT_NEAR(blood[2], 0.8f, 1e-5f);
 }
 
-TEST(Blood, CountsWhereThePoseDoesAndNoMoreThanTwofold) {
+TEST(Blood, FollowsThePoseWeightWithinLimits) {
   const std::vector<float> blood = Sum({{0.8f, 0.8f, 0.0f, 9.0f}}, {0.0f, 0.5f, 1.0f, 1.0f});
   EXPECT_FLOAT_EQ(blood[0], 1.0f);
   EXPECT_NEAR(blood[1], std::sqrt(1.25f), 1e-5f);
@@ -33,13 +33,13 @@ TEST(Blood, CountsWhereThePoseDoesAndNoMoreThanTwofold) {
   EXPECT_NEAR(blood[3], 0.5f, 1e-5f);
 }
 
-TEST(Blood, OfSeveralPosesTheLargestChangeWins) {
+TEST(Blood, LargestChangeOfSeveralPosesWins) {
   const std::vector<float> blood = Sum({{0.8f, 0.8f}, {1.0f / 0.8f, 1.05f}}, {1.0f, 1.0f});
-  EXPECT_NEAR(blood[0], 1.0f, 0.01f);  // as much one way as the other
+  EXPECT_NEAR(blood[0], 1.0f, 0.01f);  // the two changes cancel
   EXPECT_NEAR(blood[1], 1.25f, 1e-3f);
 }
 
-TEST(Blood, TintsAsMuchAsThereIsOfIt) {
+TEST(Blood, TintGrowsWithTheAmount) {
   EXPECT_EQ(BloodTint(1.0f), glm::vec3(1.0f));
   glm::vec3 before = BloodTint(0.5f);
   for (float blood = 0.6f; blood <= 2.0f; blood += 0.1f) {
@@ -60,8 +60,8 @@ TEST(Blood, IsPressedOutOfFurrows) {
   EXPECT_GT(BloodInFurrow(1.5f, 0.0f), 0.0f);
 }
 
-// A sheet that a pose makes a fifth narrower.
-TEST(Blood, OfABakedMapIsThatOfItsPoses) {
+// The pose makes the sheet narrower by a fifth.
+TEST(Blood, BakedMapHasTheBloodOfItsPoses) {
   const character::Character sheet = toys::Wearing(toys::Sheet(0.1f, 0.1f, 10, 10));
   BakeOptions flat = toys::Exact();
   flat.skin.share = 0.0f;  // no folds

@@ -53,8 +53,8 @@ TEST(FoldProfile, SharpValleysAreNarrowerThanTheirRidges) {
   EXPECT_LT(below(0.9f), below(0.5f));
 }
 
-TEST(FoldProfile, AmplitudeOfABluntFoldIsThatOfASine) {
-  // A = (lambda / pi) sqrt(e), in wavelengths over 2 pi: 2 sqrt(e), for small e.
+TEST(FoldProfile, BluntFoldHasTheAmplitudeOfASine) {
+  // For small e: A = (lambda / pi) sqrt(e), which is 2 sqrt(e) in units of lambda / (2 pi).
   const FoldProfile profile(0.0f);
   for (const float e : {0.005f, 0.01f, 0.02f}) {
     EXPECT_NEAR(profile.Amplitude(e), 2.0f * std::sqrt(e), 0.04f * 2.0f * std::sqrt(e)) << e;
@@ -62,7 +62,7 @@ TEST(FoldProfile, AmplitudeOfABluntFoldIsThatOfASine) {
   EXPECT_EQ(profile.Amplitude(0.0f), 0.0f);
 }
 
-TEST(FoldProfile, AmplitudeKeepsTheArc) {
+TEST(FoldProfile, AmplitudeKeepsTheArcLength) {
   for (const float sharpness : {0.0f, 0.7f}) {
     const FoldProfile profile(sharpness);
     for (const float e : {0.001f, 0.03f, 0.2f, 0.5f, 0.9f}) {

@@ -16,7 +16,7 @@ using glm::vec3;
 
 const vec3 kA(0.0f), kB(1.0f, 0.0f, 0.0f), kC(0.0f, 1.0f, 0.0f);
 
-TEST(NearestInTriangle, IsInsideOnAnEdgeOrACorner) {
+TEST(NearestInTriangle, FindsPointsInsideOnEdgesAndAtCorners) {
   EXPECT_EQ(NearestInTriangle({0.25f, 0.25f, 3.0f}, kA, kB, kC), vec3(0.25f, 0.25f, 0.0f));
   EXPECT_EQ(NearestInTriangle({0.5f, -2.0f, 1.0f}, kA, kB, kC), vec3(0.5f, 0.0f, 0.0f));
   EXPECT_EQ(NearestInTriangle({-1.0f, 0.5f, 1.0f}, kA, kB, kC), vec3(0.0f, 0.5f, 0.0f));
@@ -27,16 +27,16 @@ TEST(NearestInTriangle, IsInsideOnAnEdgeOrACorner) {
   EXPECT_EQ(NearestInTriangle({-1.0f, 3.0f, 0.0f}, kA, kB, kC), kC);
 }
 
-TEST(NearestInTriangle, TakesTrianglesWithoutExtentForLinesAndPoints) {
+TEST(NearestInTriangle, TreatsDegenerateTrianglesAsLinesAndPoints) {
   const vec3 p(0.5f, 1.0f, 0.0f), on_line(0.5f, 0.0f, 0.0f);
   EXPECT_EQ(NearestInTriangle(p, kA, kA, kB), on_line);
   EXPECT_EQ(NearestInTriangle(p, kA, kB, kA), on_line);
   EXPECT_EQ(NearestInTriangle(p, kB, kA, kA), on_line);
-  EXPECT_EQ(NearestInTriangle(p, kA, on_line, kB), on_line);  // in a row
+  EXPECT_EQ(NearestInTriangle(p, kA, on_line, kB), on_line);  // collinear
   EXPECT_EQ(NearestInTriangle(p, kB, kB, kB), kB);
 }
 
-TEST(TriangleTree, FindsWhatALookAtAllFinds) {
+TEST(TriangleTree, AgreesWithExhaustiveSearch) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> place(-1.0f, 1.0f), size(-0.1f, 0.1f);
   const auto any = [&](auto& from) { return vec3(from(random), from(random), from(random)); };

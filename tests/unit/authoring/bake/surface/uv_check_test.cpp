@@ -9,7 +9,7 @@
 namespace furrow::authoring {
 namespace {
 
-// A square of `cells` x `cells` quads, one metre wide, whose UVs fill [u0, u1] x [v0, v1].
+// A square of `cells` x `cells` quads, 1 m wide. Its UVs fill [u0, u1] x [v0, v1].
 character::Mesh UvSquare(int cells, float u0, float v0, float u1, float v1) {
   character::Mesh mesh;
   for (int y = 0; y <= cells; ++y) {
@@ -41,8 +41,8 @@ UvReport Check(std::vector<character::Mesh> meshes) {
   return CheckUvs(character, all, 256);
 }
 
-TEST(UvCheck, NeighboursShareNoSample) {
-  // 7 cells: corners fall between samples, edges through them.
+TEST(UvCheck, NeighboursShareNoSamples) {
+  // With 7 cells, corners lie between samples and edges pass through samples.
   const UvReport report = Check({UvSquare(7, 0.0f, 0.0f, 1.0f, 1.0f)});
   EXPECT_EQ(report.triangles, 98);
   EXPECT_EQ(report.islands, 1);
@@ -60,7 +60,7 @@ TEST(UvCheck, IslandsSideBySideDoNotOverlap) {
   EXPECT_NEAR(report.covered, 0.32f, 0.01f);
 }
 
-TEST(UvCheck, MeasuresWhatOverlapsAndSaysWhere) {
+TEST(UvCheck, MeasuresAndLocatesOverlaps) {
   const UvReport report =
       Check({UvSquare(2, 0.0f, 0.0f, 0.5f, 0.5f), UvSquare(2, 0.25f, 0.0f, 0.75f, 0.5f)});
   EXPECT_NEAR(report.covered, 0.375f, 0.01f);
@@ -72,15 +72,15 @@ TEST(UvCheck, MeasuresWhatOverlapsAndSaysWhere) {
   EXPECT_LT(report.example->uv.x, 0.5f);
 }
 
-// Both halves of a face on one half of the picture: drawn the other way round.
-TEST(UvCheck, SeesMirroredHalves) {
+// Both halves of a face share one half of the picture, with opposite winding.
+TEST(UvCheck, DetectsMirroredHalves) {
   character::Mesh both = UvSquare(4, 0.0f, 0.0f, 1.0f, 1.0f);
   for (character::Vertex& vertex : both.vertices)
     vertex.uv.x = std::min(vertex.uv.x, 1.0f - vertex.uv.x);
   EXPECT_NEAR(Check({both}).overlapping, 1.0f, 0.01f);
 }
 
-TEST(UvCheck, TellsNoUvsFromUnmappedPieces) {
+TEST(UvCheck, DistinguishesMissingUvsFromUnmappedPieces) {
   character::Mesh none = UvSquare(2, 0, 0, 1, 1);
   for (character::Vertex& vertex : none.vertices) vertex.uv = {};
   const UvReport without = Check({none});
@@ -94,14 +94,14 @@ TEST(UvCheck, TellsNoUvsFromUnmappedPieces) {
 
 TEST(UvCheck, CountsTrianglesWithoutArea) {
   character::Mesh mesh = UvSquare(2, 0, 0, 1, 1);
-  mesh.indices.insert(mesh.indices.end(), {0, 1, 2});  // in one line
+  mesh.indices.insert(mesh.indices.end(), {0, 1, 2});  // collinear vertices
   mesh.indices.insert(mesh.indices.end(), {4, 4, 4});
   const UvReport report = Check({mesh});
   EXPECT_EQ(report.degenerate_triangles, 2);
   EXPECT_EQ(report.unmapped_triangles, 0);
 }
 
-TEST(UvCheck, WrapsRoundAsASamplerDoes) {
+TEST(UvCheck, WrapsLikeASampler) {
   const UvReport apart = Check({UvSquare(2, 0.75f, 0.0f, 1.25f, 0.5f)});
   EXPECT_EQ(apart.overlapping, 0.0f);
   EXPECT_EQ(apart.outside_triangles, 4);  // the right half
@@ -110,7 +110,7 @@ TEST(UvCheck, WrapsRoundAsASamplerDoes) {
   EXPECT_NEAR(twice.overlapping, 1.0f, 1e-6f);
 }
 
-TEST(UvCheck, HostileUvsCostNoMoreThanOthers) {
+TEST(UvCheck, HostileUvsAreNotSlow) {
   character::Mesh mesh = UvSquare(40, -900.0f, -900.0f, 900.0f, 900.0f);
   mesh.vertices[0].uv.x = std::numeric_limits<float>::quiet_NaN();
   mesh.vertices[3].uv.y = std::numeric_limits<float>::infinity();

@@ -19,14 +19,14 @@ namespace {
 
 std::size_t Triangles(const HeadMesh& head) { return head.mesh.indices.size() / 3; }
 
-TEST(HeadMesh, LevelsAreOfOneForm) {
+TEST(HeadMesh, LevelsShareOneShape) {
   const HeadMesh coarse = MakeHeadSkin(DefaultHead(), 0);
   const HeadMesh middle = MakeHeadSkin(DefaultHead(), 1);
   const HeadMesh fine = MakeHeadSkin(DefaultHead(), 2);
   EXPECT_NEAR(static_cast<double>(Triangles(coarse)), 3000.0, 400.0);
   EXPECT_GT(Triangles(middle), 2 * Triangles(coarse));
   EXPECT_GT(Triangles(fine), 2 * Triangles(middle));
-  // Vertices of the coarse grid are vertices of the finer ones.
+  // Vertices of the coarse grid are also vertices of the finer grids.
   int kept = 0, all = 0;
   for (std::size_t i = 0; i < coarse.info.size(); i += 7) {
     if (coarse.info[i].part != kFacePart) continue;
@@ -40,8 +40,8 @@ TEST(HeadMesh, LevelsAreOfOneForm) {
   EXPECT_GT(kept, all * 9 / 10);
 }
 
-// How much longer or shorter the unwrapping makes a triangle's sides against the island's median:
-// the larger and the smaller of the two stretches that area and shape imply.
+// The larger and the smaller principal stretch of a triangle in the unwrapping: surface length per
+// texture length.
 struct Stretch {
   double large;
   double small;
@@ -54,7 +54,7 @@ std::vector<Stretch> Stretches(const HeadMesh& head) {
     if (head.info[t[0]].part != kFacePart) continue;
     const glm::vec3 middle =
         (head.info[t[0]].place + head.info[t[1]].place + head.info[t[2]].place) / 3.0f;
-    if (middle.z < 3.0f || middle.y > 6.0f || middle.y < -10.0f) continue;  // the face
+    if (middle.z < 3.0f || middle.y > 6.0f || middle.y < -10.0f) continue;  // outside the face
     const character::Vertex& a = head.mesh.vertices[t[0]];
     const character::Vertex& b = head.mesh.vertices[t[1]];
     const character::Vertex& c = head.mesh.vertices[t[2]];
@@ -83,7 +83,7 @@ TEST(HeadMesh, UnwrapsTheFaceWithLittleStretch) {
   EXPECT_LT(ratios[ratios.size() * 9 / 10], 4.0);
 }
 
-// Weights change little from a vertex to the next, but across the openings.
+// Weights change little between neighbouring vertices, except across the mouth and the eyes.
 TEST(HeadMesh, SkinWeightsAreSmooth) {
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   HeadMesh head = MakeHeadSkin(DefaultHead(), kFinestLevel);
@@ -116,7 +116,7 @@ TEST(HeadMesh, SkinWeightsAreSmooth) {
   EXPECT_LT(changes[changes.size() * 99 / 100], 2.0f);
 }
 
-TEST(HeadMesh, HairCoversTheScalpAndLeavesTheFace) {
+TEST(HeadMesh, HairCoversTheScalpButNotTheFace) {
   for (const float sex : {1.0f, -1.0f}) {
     const HeadShape shape({.sex = sex});
     const HeadMesh hair = MakeHair(shape);

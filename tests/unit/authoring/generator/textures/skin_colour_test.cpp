@@ -18,7 +18,7 @@
 namespace furrow::authoring {
 namespace {
 
-// Mean of the green channel over the texels that `where` picks, [0, 1].
+// Mean of the green channel over the texels for which `where` is true, in [0, 1].
 template <typename Where>
 float MeanGreen(const character::Mesh& skin, character::Picture* picture, const Where& where) {
   double sum = 0.0;
@@ -35,14 +35,14 @@ float MeanGreen(const character::Mesh& skin, character::Picture* picture, const 
 bool OnEar(const glm::vec3& p) { return std::abs(p.x) > 8.6f && std::abs(p.y) < 3.0f; }
 bool OnForehead(const glm::vec3& p) { return std::abs(p.x) < 2.0f && p.y > 3.5f && p.y < 5.0f; }
 
-TEST(SkinPaint, EarsAreThinAndTheSkullIsNot) {
+TEST(SkinPaint, EarsAreThinnerThanTheSkull) {
   const character::Mesh skin = MakeHeadSkin().mesh;
   character::Picture thickness = PaintSkinThickness(skin, DefaultHead(), 256);
-  EXPECT_LT(MeanGreen(skin, &thickness, OnEar), 0.3f);  // of kFullThickness
+  EXPECT_LT(MeanGreen(skin, &thickness, OnEar), 0.3f);  // fraction of kFullThickness
   EXPECT_GT(MeanGreen(skin, &thickness, OnForehead), 0.9f);
 }
 
-TEST(SkinPaint, LipsAreMoist) {
+TEST(SkinPaint, LipsAreSmootherThanCheeks) {
   const character::Mesh skin = MakeHeadSkin().mesh;
   character::Picture roughness = PaintSkinRoughness(skin, 256);
   const auto on_lip = [](const glm::vec3& p) {
@@ -54,7 +54,7 @@ TEST(SkinPaint, LipsAreMoist) {
   EXPECT_LT(MeanGreen(skin, &roughness, on_lip) + 0.08f, MeanGreen(skin, &roughness, on_cheek));
 }
 
-TEST(SkinPaint, BrowsAndLipsLieWhereTheyShould) {
+TEST(SkinPaint, BrowsAndLipsAreInPlace) {
   EXPECT_GT(LipShare({0.5f, kMouthY - 0.4f, 9.5f}), 0.9f);
   EXPECT_EQ(LipShare({0.5f, kMouthY - 2.0f, 9.0f}), 0.0f);
   EXPECT_EQ(LipShare({4.0f, kMouthY, 7.0f}), 0.0f);
@@ -65,8 +65,8 @@ TEST(SkinPaint, BrowsAndLipsLieWhereTheyShould) {
   EXPECT_EQ(BrowShare({3.0f, 4.0f, 8.0f}, {}), 0.0f);
 }
 
-// What a material says of thickness outlives a file (KHR_materials_volume).
-TEST(SkinPaint, ThicknessSurvivesWritingAndReading) {
+// A file keeps the thickness of a material (KHR_materials_volume).
+TEST(SkinPaint, ThicknessReadsBackEqual) {
   character::Character character;
   character.name = "slab";
   Result<wrinkle::Skeleton> skeleton = wrinkle::Skeleton::Create({{.name = "root"}});

@@ -11,7 +11,7 @@
 namespace furrow::authoring {
 namespace {
 
-TEST(Confined, BringsBackWhatWasReturned) {
+TEST(Confined, ReturnsTheResult) {
   const std::string long_text(3u << 20, 'a');
   const auto result =
       RunInChildProcess({}, [&]() -> Result<std::string> { return long_text + "b"; });
@@ -19,7 +19,7 @@ TEST(Confined, BringsBackWhatWasReturned) {
   EXPECT_EQ(*result, long_text + "b");
 }
 
-TEST(Confined, BringsBackErrorsWhole) {
+TEST(Confined, ReturnsErrorsUnchanged) {
   const auto result = RunInChildProcess({}, []() -> Result<std::string> {
     return Status(StatusCode::kUnsupported, "what", "where", "todo");
   });
@@ -27,7 +27,7 @@ TEST(Confined, BringsBackErrorsWhole) {
   EXPECT_EQ(result.status().ToString(), "where: what (todo)");
 }
 
-TEST(Confined, ChangesNothingHere) {
+TEST(Confined, DoesNotAffectTheParentProcess) {
   int value = 1;
   ASSERT_TRUE(RunInChildProcess({}, [&]() -> Result<std::string> {
                 value = 2;
@@ -36,7 +36,7 @@ TEST(Confined, ChangesNothingHere) {
   EXPECT_EQ(value, 1);
 }
 
-TEST(Confined, ACrashIsAParseError) {
+TEST(Confined, CrashIsAParseError) {
   const auto result = RunInChildProcess({}, []() -> Result<std::string> {
     std::signal(SIGSEGV, SIG_DFL);
     std::raise(SIGSEGV);
@@ -45,14 +45,14 @@ TEST(Confined, ACrashIsAParseError) {
   EXPECT_EQ(result.status().code(), StatusCode::kParse);
 }
 
-TEST(Confined, AnExceptionIsAParseError) {
+TEST(Confined, ExceptionIsAParseError) {
   const auto result =
       RunInChildProcess({}, []() -> Result<std::string> { throw std::runtime_error("odd"); });
   EXPECT_EQ(result.status().code(), StatusCode::kParse);
   EXPECT_EQ(result.status().what(), "odd");
 }
 
-TEST(Confined, WorkWithoutEndIsALimit) {
+TEST(Confined, EndlessWorkIsALimit) {
   const auto result = RunInChildProcess({.max_cpu_seconds = 1}, []() -> Result<std::string> {
     for (volatile int i = 0;; i = i + 1) {
     }
@@ -60,7 +60,7 @@ TEST(Confined, WorkWithoutEndIsALimit) {
   EXPECT_EQ(result.status().code(), StatusCode::kLimit);
 }
 
-TEST(Confined, TooLongAResultIsALimit) {
+TEST(Confined, OversizedResultIsALimit) {
   const auto result = RunInChildProcess({.max_result_bytes = 100}, []() -> Result<std::string> {
     return std::string(1u << 20, 'x');
   });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The rig that ships for MakeHuman, on the real skeleton, poses and performance.
+// Tests the shipped MakeHuman rig with the real skeleton, poses and performance.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -32,7 +32,7 @@ const fs::path kShared = FURROW_SHARED_DATA;
 const fs::path kMakeHuman = kShared / "makehuman";
 const fs::path kRig = fs::path(FURROW_SOURCE_DIR) / "rig/rigs/makehuman.json";
 
-// emotions.bvh holds five expressions of 120 frames; each is full in its middle.
+// emotions.bvh contains five expressions of 120 frames each, with the peak in the middle.
 constexpr std::array<const char*, 6> kNames{"neutral", "smile",   "anger",
                                             "sadness", "disgust", "laugh"};
 constexpr std::array<int, 6> kFrames{0, 60, 180, 300, 420, 540};
@@ -65,7 +65,7 @@ class MakeHumanExpressions : public testing::Test {
   }
 
   void SetUp() override {
-    if (!fs::exists(kMakeHuman)) GTEST_SKIP() << "no " << kMakeHuman;
+    if (!fs::exists(kMakeHuman)) GTEST_SKIP() << kMakeHuman << " is missing";
     ASSERT_EQ(weights_.size(), kNames.size());
   }
 
@@ -80,14 +80,14 @@ class MakeHumanExpressions : public testing::Test {
   static inline std::map<std::string, Weights> weights_;
 };
 
-TEST_F(MakeHumanExpressions, NeutralFaceHasNone) {
+TEST_F(MakeHumanExpressions, NeutralFaceHasNoWrinkles) {
   for (const auto& [name, weight] : weights_["neutral"]) {
     if (!IsFacial(name)) continue;
     EXPECT_LT(weight, 0.02f) << name;
   }
 }
 
-TEST_F(MakeHumanExpressions, AllFoldWhatTheirMusclesFold) {
+TEST_F(MakeHumanExpressions, RaiseTheExpectedWeights) {
   std::printf("%-18s", "");
   for (const char* name : kNames) std::printf("%9s", name);
   std::printf("\n");
@@ -98,7 +98,7 @@ TEST_F(MakeHumanExpressions, AllFoldWhatTheirMusclesFold) {
     std::printf("\n");
   }
   EXPECT_GT(Get("smile", "mouth_l.squash"), 0.7f);
-  EXPECT_GT(Get("smile", "mouth_r.squash"), 0.3f);  // this smile is lopsided
+  EXPECT_GT(Get("smile", "mouth_r.squash"), 0.3f);  // this smile is asymmetric
   EXPECT_GT(Get("smile", "eye_l.squash"), 0.4f);
   EXPECT_LT(Get("smile", "glabella.squash"), 0.1f);
   EXPECT_GT(Get("anger", "glabella.squash"), 0.9f);
@@ -114,8 +114,8 @@ TEST_F(MakeHumanExpressions, AllFoldWhatTheirMusclesFold) {
   EXPECT_LT(Get("laugh", "brow_l.squash"), 0.05f);
 }
 
-// No two expressions look alike: some facial weight tells each pair apart.
-TEST_F(MakeHumanExpressions, AreDifferent) {
+// For each pair of expressions at least one facial weight differs.
+TEST_F(MakeHumanExpressions, DifferFromEachOther) {
   for (std::size_t a = 0; a < kNames.size(); ++a) {
     for (std::size_t b = a + 1; b < kNames.size(); ++b) {
       float most = 0.0f;
@@ -127,10 +127,10 @@ TEST_F(MakeHumanExpressions, AreDifferent) {
   }
 }
 
-// MakeHuman's BVH files were written for a person, base.obj is the mesh before its shape is set:
-// the same joints and parents, and bones that point the same way, but lengths differ by up to 5 cm.
+// MakeHuman's BVH files were made for a specific person, and base.obj is the mesh before it is
+// shaped. They have the same joints, parents and bone directions, but lengths differ by up to 5 cm.
 TEST(MakeHumanSkeleton, AgreesWithThePoseUnits) {
-  if (!fs::exists(kMakeHuman)) GTEST_SKIP() << "no " << kMakeHuman;
+  if (!fs::exists(kMakeHuman)) GTEST_SKIP() << kMakeHuman << " is missing";
   const Result<std::string> obj_text = ReadFile(kMakeHuman / "3dobjs/base.obj", kMaxTextFileBytes);
   const Result<std::string> skel_text =
       ReadFile(kMakeHuman / "rigs/default.mhskel", kMaxTextFileBytes);

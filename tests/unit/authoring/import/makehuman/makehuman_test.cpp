@@ -25,15 +25,15 @@ ImportOptions ToyOptions(const ToyFolder& folder) {
   return options;
 }
 
-TEST(ImportMakeHuman, MakesACharacterOfTheToyFolder) {
+TEST(ImportMakeHuman, ImportsTheToyFolder) {
   const ToyFolder folder;
   ImportReport report;
   const Result<character::Character> character =
       ImportMakeHuman(folder.path(), ToyOptions(folder), &report);
   ASSERT_TRUE(character.ok()) << character.status().ToString();
   EXPECT_EQ(report.joints, character->skeleton.num_joints());
-  EXPECT_EQ(report.hidden_faces, 2 * 24);  // three rows of vertices are two of faces
-  // The cap's and the ball's vertices have weights; joints' and eyes' helpers have none.
+  EXPECT_EQ(report.hidden_faces, 2 * 24);  // three rows of vertices enclose two rows of faces
+  // The vertices of the cap and the ball have weights. Helpers of joints and eyes have none.
   EXPECT_EQ(report.unweighted_vertices, 2 * report.joints + 16);
   ASSERT_EQ(character->meshes.size(), 5u);
   EXPECT_EQ(character->meshes[0].name, "skin");
@@ -46,7 +46,7 @@ TEST(ImportMakeHuman, MakesACharacterOfTheToyFolder) {
   EXPECT_GE(character->FindRigPicture("face_squash"), 0);
 }
 
-// Locks lie close over the scalp, follow the head, and are the same in every import.
+// Locks lie close to the scalp, follow the head, and are the same in every import.
 TEST(ImportMakeHuman, HairGrowsFromTheScalp) {
   const ToyFolder folder;
   const Result<character::Character> first = ImportMakeHuman(folder.path(), ToyOptions(folder));
@@ -65,7 +65,7 @@ TEST(ImportMakeHuman, HairGrowsFromTheScalp) {
     }
     EXPECT_LT(nearest, 0.05f);
   }
-  // A lock that is wound the other way round is lit from inside the head.
+  // With the opposite winding, locks would be lit from inside the head.
   for (std::size_t i = 0; i < hair.indices.size(); i += 3) {
     const character::Vertex& a = hair.vertices[hair.indices[i]];
     const character::Vertex& b = hair.vertices[hair.indices[i + 1]];
@@ -105,7 +105,7 @@ TEST(ImportMakeHuman, VerticesAreMetresUnitAndFaceOutwards) {
   }
 }
 
-TEST(ImportMakeHuman, NormalsDoNotBreakAtUvSeams) {
+TEST(ImportMakeHuman, NormalsAreContinuousAcrossUvSeams) {
   const ToyFolder folder;
   const Result<character::Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
   ASSERT_TRUE(character.ok());
@@ -118,8 +118,8 @@ TEST(ImportMakeHuman, NormalsDoNotBreakAtUvSeams) {
   EXPECT_EQ(normals.size(), positions.size());
 }
 
-// The picture's region lies over its place on the face, and not on the other side.
-TEST(ImportMakeHuman, MasksLieOnTheirSide) {
+// In the picture, each region covers its side of the face and not the other side.
+TEST(ImportMakeHuman, MasksAreOnTheCorrectSide) {
   const ToyFolder folder;
   const Result<character::Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
   ASSERT_TRUE(character.ok());
@@ -139,7 +139,7 @@ TEST(ImportMakeHuman, MasksLieOnTheirSide) {
   EXPECT_EQ(sum_over, 0);
 }
 
-TEST(ImportMakeHuman, WithoutClothesTheBodyIsBareAndSaidSo) {
+TEST(ImportMakeHuman, MissingClothesAreAWarning) {
   const ToyFolder folder;
   folder.Remove("clothes/cap/cap.mhclo");
   ImportReport report;
@@ -173,7 +173,7 @@ TEST(ImportMakeHuman, EachGarbledFileIsNamed) {
   }
 }
 
-TEST(ImportMakeHuman, FilesThatDoNotFitOneAnother) {
+TEST(ImportMakeHuman, RejectsInconsistentFiles) {
   const ToyFolder folder;
   folder.Write("clothes/cap/cap.mhclo", "obj_file cap.obj\nverts 0\n1\n2\n");
   Status status = ImportMakeHuman(folder.path(), ToyOptions(folder)).status();
@@ -190,7 +190,7 @@ TEST(ImportMakeHuman, FilesThatDoNotFitOneAnother) {
   EXPECT_NE(status.ToString().find("tail"), std::string::npos);
 }
 
-TEST(ImportMakeHuman, NumbersThatAreTooLarge) {
+TEST(ImportMakeHuman, RejectsNumbersThatAreTooLarge) {
   const ToyFolder folder;
   folder.Write("clothes/cap/cap.obj",
                "v 0 0 0\nv 0 0 0\nv 0 0 0\nvt 0 0\nvt 1e30 0\nvt 0 1\nf 1/1 2/2 3/3\n");
@@ -205,7 +205,7 @@ TEST(ImportMakeHuman, NumbersThatAreTooLarge) {
   EXPECT_NE(status.what().find("away from the body"), std::string::npos);
 }
 
-TEST(ImportMakeHuman, AFaceJointThatIsMissing) {
+TEST(ImportMakeHuman, RejectsAMissingFaceJoint) {
   const ToyFolder folder;
   std::string skeleton = folder.Read("rigs/default.mhskel");
   skeleton.replace(skeleton.find("\"levator05.R\""), 13, "\"levator99.R\"");
@@ -225,7 +225,7 @@ TEST(ImportMakeHuman, TextureSizeIsChecked) {
   }
 }
 
-TEST(ImportMakeHuman, APackageIsWrittenWholeOrNotAtAll) {
+TEST(ImportMakeHuman, PackageIsWrittenAtomically) {
   const ToyFolder folder;
   Result<character::Character> character = ImportMakeHuman(folder.path(), ToyOptions(folder));
   ASSERT_TRUE(character.ok());
@@ -248,7 +248,7 @@ TEST(ImportMakeHuman, PackageReadsBackWithTheSameRig) {
   const std::filesystem::path glb = folder.path() / "toy.glb";
   const Status written = WriteCharacterPackage(*character, glb);
   ASSERT_TRUE(written.ok()) << written.ToString();
-  std::filesystem::remove(folder.rig());  // shares its name with the package's
+  std::filesystem::remove(folder.rig());  // has the same name as the rig of the package
   ASSERT_TRUE(WriteCharacterPackage(*character, glb).ok());
   const Result<character::Character> loaded = character::LoadCharacter(glb);
   ASSERT_TRUE(loaded.ok()) << loaded.status().ToString();

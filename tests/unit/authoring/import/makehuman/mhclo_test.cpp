@@ -33,7 +33,7 @@ TEST(ImportMhclo, FitsByBarycentricWeightsAndScaledOffsets) {
   EXPECT_EQ(garment->deleted, (std::vector<bool>{true, false, true, true}));
   const std::vector<glm::vec3> fitted = FitGarment(*garment, kBase);
   ASSERT_EQ(fitted.size(), 2u);
-  // -0.5 + 0.25 + offset 1 scaled by |-1 - 1| / 4; y = 0.25 * 4 + 1; z = 1.
+  // x = -0.5 + 0.25 + offset 1 scaled by |-1 - 1| / 4; y = 0.25 * 4 + 1; z = 1.
   EXPECT_EQ(fitted[0], glm::vec3(0.25f, 2.0f, 1.0f));
   EXPECT_EQ(fitted[1], kBase[3]);
 }
@@ -89,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadGarment{"delete_verts\n3 - 1\n", StatusCode::kInvalidArgument, "g:2"},
                     BadGarment{"delete_verts\n0 - 4\n", StatusCode::kInvalidArgument, "g:2"}));
 
-TEST(ImportMhclo, TruncatedAnywhereIsReadOrRefused) {
+TEST(ImportMhclo, TruncatedInputIsReadOrRejected) {
   const std::string text = kGarment;
   for (std::size_t length = 0; length <= text.size(); ++length) {
     const std::unique_ptr<char[]> copy(new char[length]);
@@ -112,7 +112,7 @@ wrinkle::Skeleton SixJoints() {
   return *wrinkle::Skeleton::Create(joints);
 }
 
-TEST(ImportSkinWeights, KeepsTheFourStrongestNormalised) {
+TEST(ImportSkinWeights, KeepsAndNormalisesTheFourStrongest) {
   MhWeights weights;
   weights.joints = {{"a", {{0, 0.1f}}},
                     {"b", {{0, 0.2f}}},
@@ -128,13 +128,13 @@ TEST(ImportSkinWeights, KeepsTheFourStrongestNormalised) {
   EXPECT_EQ(first.joints[3], 0);
   EXPECT_FLOAT_EQ(first.weights[0], 0.4f);
   EXPECT_FLOAT_EQ(first.weights[3], 0.1f);
-  EXPECT_EQ(skin->vertices[1].joints[0], 0);  // nothing: the root
+  EXPECT_EQ(skin->vertices[1].joints[0], 0);  // without weights: the root
   EXPECT_EQ(skin->vertices[1].weights[0], 1.0f);
   EXPECT_EQ(skin->vertices[2].joints[0], 2);
   EXPECT_EQ(skin->vertices[2].weights[0], 1.0f);
 }
 
-TEST(ImportSkinWeights, UnknownJointAndVertex) {
+TEST(ImportSkinWeights, RejectsUnknownJointsAndVertices) {
   MhWeights weights;
   weights.joints = {{"z", {{0, 1.0f}}}};
   EXPECT_EQ(BindBaseMesh(weights, SixJoints(), 1, "w").status().code(), StatusCode::kNotFound);
@@ -152,7 +152,7 @@ TEST(ImportSkinWeights, GarmentMixesItsBaseVertices) {
   Mhclo garment;
   garment.vertices.resize(2);
   garment.vertices[0].base = {0, 1, 2};
-  garment.vertices[0].weights = {0.5f, 0.75f, -0.25f};  // the third does not pull backwards
+  garment.vertices[0].weights = {0.5f, 0.75f, -0.25f};  // negative weights are ignored
   garment.vertices[1].base = {2, 3, 0};
   garment.vertices[1].weights = {0.25f, 0.5f, 0.25f};
   const SkinWeights skin = BindGarment(garment, *base);

@@ -9,7 +9,7 @@
 namespace furrow::authoring {
 namespace {
 
-// "a.tip" stands before its parent, as MakeHuman's alphabetical files have it.
+// "a.tip" precedes its parent, because MakeHuman's files are in alphabetical order.
 constexpr char kSkeleton[] = R"({
   "bones": {
     "a.tip": {"parent": "root", "head": "mid", "tail": "top"},
@@ -19,7 +19,7 @@ constexpr char kSkeleton[] = R"({
 })";
 const std::vector<glm::vec3> kPositions{{-1, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 3, 1}};
 
-TEST(ImportMhskel, HeadsAreMeansAndAxesAreTheModels) {
+TEST(ImportMhskel, HeadsAreMeansAndAxesAreModelAxes) {
   const Result<MhSkeleton> parsed = ParseMhskel(kSkeleton, "toy.mhskel");
   ASSERT_TRUE(parsed.ok()) << parsed.status().ToString();
   const Result<wrinkle::Skeleton> skeleton = BuildSkeleton(*parsed, kPositions, "toy.mhskel");
@@ -34,7 +34,7 @@ TEST(ImportMhskel, HeadsAreMeansAndAxesAreTheModels) {
   EXPECT_EQ(skeleton->tails()[1], glm::vec3(0, 1, 1));
 }
 
-TEST(ImportMhskel, VertexOfAnotherMesh) {
+TEST(ImportMhskel, RejectsVerticesOfAnotherMesh) {
   const Result<MhSkeleton> parsed = ParseMhskel(kSkeleton, "toy.mhskel");
   ASSERT_TRUE(parsed.ok());
   const Status status =
@@ -43,7 +43,7 @@ TEST(ImportMhskel, VertexOfAnotherMesh) {
   EXPECT_EQ(status.where(), "toy.mhskel: a.tip");
 }
 
-TEST(ImportMhskel, ParentsMustExistAndNotCircle) {
+TEST(ImportMhskel, RejectsMissingAndCyclicParents) {
   MhSkeleton skeleton;
   skeleton.joints = {{"a", "b", {0}, {1}}, {"b", "a", {0}, {1}}};
   EXPECT_EQ(BuildSkeleton(skeleton, kPositions, "x").status().code(), StatusCode::kCyclic);
@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(
             R"({"bones": {"a": {"parent": null, "head": "h"}}, "joints": {"h": [4294967296]}})",
             StatusCode::kSchema, "s: joints.h"}));
 
-TEST(ImportMhw, ReadsWeightsAndRefusesOthers) {
+TEST(ImportMhw, ReadsWeightsAndRejectsInvalidOnes) {
   const Result<MhWeights> weights = ParseMhw(R"({"weights": {"a": [[3, 0.25], [7, 1]]}})", "w");
   ASSERT_TRUE(weights.ok()) << weights.status().ToString();
   ASSERT_EQ(weights->joints.size(), 1u);
@@ -110,7 +110,7 @@ TEST(ImportMhw, ReadsWeightsAndRefusesOthers) {
   EXPECT_EQ(ParseMhw("{}", "w").status().where(), "w: weights");
 }
 
-TEST(ImportMhskel, TruncatedAnywhereIsRefused) {
+TEST(ImportMhskel, RejectsEveryTruncation) {
   const std::string text = kSkeleton;
   for (std::size_t length = 0; length < text.size(); ++length) {
     const std::unique_ptr<char[]> copy(new char[length]);
@@ -120,7 +120,7 @@ TEST(ImportMhskel, TruncatedAnywhereIsRefused) {
   }
 }
 
-TEST(ImportMhskel, DeepNestingIsRefusedNotFollowed) {
+TEST(ImportMhskel, RejectsDeepNesting) {
   EXPECT_EQ(ParseMhskel(std::string(200'000, '['), "deep").status().code(), StatusCode::kParse);
 }
 

@@ -33,7 +33,7 @@ TEST(ImportObj, ReadsFacesByGroup) {
   EXPECT_EQ(mesh->FindGroup("tail"), -1);
   EXPECT_EQ(mesh->faces[0].group, 0);
   EXPECT_EQ(mesh->faces[1].num_corners, 4);
-  EXPECT_EQ(mesh->faces[3].group, 1);  // a group may be taken up again
+  EXPECT_EQ(mesh->faces[3].group, 1);  // a group may continue later
   const ObjMesh::Corner& last = mesh->corners[mesh->faces[1].first_corner + 3u];
   EXPECT_EQ(last.position, 3u);
   EXPECT_EQ(last.uv, 3);
@@ -73,14 +73,15 @@ INSTANTIATE_TEST_SUITE_P(
                            "bad.obj:2"},
                     BadObj{"v 0 0 0\nf 1 1 x\n", StatusCode::kParse, "bad.obj:2"}));
 
-TEST(ImportObj, FacesOfManyCornersAreRefused) {
+TEST(ImportObj, RejectsFacesWithManyCorners) {
   std::string text = "v 0 0 0\nf";
   for (int i = 0; i < 65; ++i) text += " 1";
   EXPECT_EQ(ParseObj(text, "x").status().code(), StatusCode::kParse);
 }
 
-// Every length of a good file, in a buffer of exactly that size: sanitizers see a byte too far.
-TEST(ImportObj, TruncatedAnywhereIsReadOrRefused) {
+// Reads every prefix of a valid file from a buffer of exactly its size, so that sanitizers detect
+// reads past the end.
+TEST(ImportObj, TruncatedInputIsReadOrRejected) {
   const std::string text = kTwoFaces;
   int good = 0;
   for (std::size_t length = 0; length <= text.size(); ++length) {

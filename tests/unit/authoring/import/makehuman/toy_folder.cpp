@@ -23,7 +23,7 @@ struct ToyJoint {
   glm::vec3 tail;
 };
 
-// Decimetres; the face of a ball of radius 1 around (0, 3, 0), drawn by hand.
+// Joints in decimetres. The face lies on a ball of radius 1 around (0, 3, 0).
 std::vector<ToyJoint> ToyJoints() {
   std::vector<ToyJoint> joints{
       {"root", "", {0, 1, 0}, {0, 2, 0}},
@@ -59,7 +59,7 @@ void Line(std::ostringstream* out, const char* keyword, const glm::vec3& p) {
   *out << keyword << ' ' << p.x << ' ' << p.y << ' ' << p.z << '\n';
 }
 
-// A ball: (kColumns + 1) x (kRows + 1) UVs, rings of kColumns positions.
+// A ball with (kColumns + 1) x (kRows + 1) UVs and rings of kColumns positions.
 void AddBall(std::ostringstream* out) {
   for (int row = 0; row <= kRows; ++row) {
     const float down = std::numbers::pi_v<float> * (static_cast<float>(row) + 0.5f) / (kRows + 1);
@@ -142,7 +142,7 @@ ToyFolder::ToyFolder() {
   Write("rigs/default_weights.mhw", weights.str() + "]}}");
   Write("clothes/cap/cap.obj",
         "v 0 0 0\nv 0 0 0\nv 0 0 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
-  // Over the first rows of the ball, which it hides.
+  // The cap covers and hides the first rows of the ball.
   Write("clothes/cap/cap.mhclo",
         "name cap\nobj_file cap.obj\nverts 0\n0 8 16 1 0 0 0 0.1 0\n"
         "0 8 16 0 1 0 0 0.1 0\n16\ndelete_verts\n0 - 71\n");

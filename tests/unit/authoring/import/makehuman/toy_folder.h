@@ -8,16 +8,15 @@
 
 namespace furrow::authoring {
 
-// A folder in MakeHuman's layout with a head of 24 x 16 quads, a helper cube for each eye, the face
-// joints that landmarks need, and a cap to wear: as small as an import can be. Removed on
-// destruction.
+// A minimal folder in MakeHuman's layout: a head of 24 x 16 quads, a helper cube for each eye, the
+// face joints that landmarks need, and a cap. The destructor removes it.
 class ToyFolder {
  public:
   ToyFolder();
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
   [[nodiscard]] std::filesystem::path rig() const { return folder_ / "toy.rig.json"; }
-  // Relative to the folder.
+  // Paths are relative to the folder.
   void Write(const std::string& file, const std::string& text) const;
   [[nodiscard]] std::string Read(const std::string& file) const;
   void Remove(const std::string& file) const;

@@ -23,7 +23,7 @@ character::SkeletonMaps Maps() {
                                         "/rig/skeleton_maps/vrm.json");
 }
 
-// What a reader notes of a file with nothing wrong.
+// The reader's notes on a valid file.
 character::SourceNotes GoodNotes() {
   character::SourceNotes notes;
   notes.meshes.push_back(
@@ -37,7 +37,7 @@ const Finding* FindFinding(const CharacterReport& report, const std::string& cod
   return found == report.findings.end() ? nullptr : &*found;
 }
 
-TEST(CharacterCheck, AGoodBodyLacksFaceAndRigAlone) {
+TEST(CharacterCheck, GoodBodyLacksOnlyFaceAndRig) {
   const CharacterReport report = CheckCharacter(ToyBody(), GoodNotes(), Maps(), false);
   EXPECT_EQ(report.Count(Severity::kError), 0u) << ToText(report);
   EXPECT_EQ(report.Count(Severity::kWarning), 0u) << ToText(report);
@@ -57,7 +57,7 @@ struct Fault {
 
 class CharacterFaults : public ::testing::TestWithParam<Fault> {};
 
-TEST_P(CharacterFaults, IsFound) {
+TEST_P(CharacterFaults, AreReported) {
   character::Character body = ToyBody();
   character::SourceNotes notes = GoodNotes();
   GetParam().make(&body, &notes);
@@ -130,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(
                 ASSERT_TRUE(MoveToSpace(glm::mat3(1, 0, 0, 0, 0, 1, 0, -1, 0), 1.0f, c).ok());
               }}));
 
-TEST(CharacterCheck, JsonSaysTheSame) {
+TEST(CharacterCheck, JsonContainsTheSameFindings) {
   character::SourceNotes notes = GoodNotes();
   notes.meshes[0].unskinned_vertices = 1;
   const CharacterReport report = CheckCharacter(ToyBody(), notes, Maps(), false);

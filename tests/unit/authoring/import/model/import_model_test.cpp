@@ -36,7 +36,8 @@ character::SkeletonMaps Maps() {
                                         "/rig/skeleton_maps/vrm.json");
 }
 
-// Model-space positions of all vertices with some joints turned, keyed by UV: importers reorder.
+// Model-space positions of all vertices with some joints turned. The key is the UV, because
+// importers reorder vertices.
 std::map<std::pair<int, int>, glm::vec3> Posed(const character::Character& character) {
   const auto turn = [](const std::string& name) {
     const glm::vec3 x(1, 0, 0), z(0, 0, 1);
@@ -49,7 +50,7 @@ std::map<std::pair<int, int>, glm::vec3> Posed(const character::Character& chara
   std::vector<glm::mat4> model(skeleton.num_joints());
   std::vector<glm::mat4> skin(skeleton.num_joints());
   for (int j = 0; j < skeleton.num_joints(); ++j) {
-    // About model axes, whatever the joint's own are.
+    // About model axes, not the joint's own axes.
     const glm::quat rest = skeleton.rest_model_rotations()[j];
     wrinkle::Transform local = skeleton.rest_pose()[j];
     local.rotation = local.rotation * glm::inverse(rest) * turn(skeleton.joint_names()[j]) * rest;
@@ -87,7 +88,7 @@ void ExpectSamePoses(const character::Character& seen, const character::Characte
 
 class ForeignFormat : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
 
-TEST_P(ForeignFormat, BendsAsTheOriginalDoes) {
+TEST_P(ForeignFormat, BendsLikeTheOriginal) {
   const auto& [format, file] = GetParam();
   const character::Character body = ToyBody();
   const Folder folder;
@@ -112,17 +113,17 @@ INSTANTIATE_TEST_SUITE_P(Formats, ForeignFormat,
                                            std::pair("glb2", "other.glb")),
                          [](const auto& format) { return std::string(format.param.first); });
 
-TEST(ImportModel, AGlbByAnyNameIsReadAsOne) {
+TEST(ImportModel, RecognisesGlbByContent) {
   const Folder folder;
   const auto imported = ImportModel(folder.Write("body.fbx", GlbOf(ToyBody())), Maps());
   ASSERT_TRUE(imported.ok()) << imported.status().ToString();
   ExpectSamePoses(imported->character, ToyBody());
 }
 
-// A turned, scaled body stands up again, and poses as before.
+// A turned and scaled body is converted to Furrow's axes and units and poses as before.
 class Space : public ::testing::TestWithParam<std::tuple<glm::mat3, float>> {};
 
-TEST_P(Space, IsMadeOurs) {
+TEST_P(Space, IsConverted) {
   character::Character body = ToyBody();
   const auto& [turn, scale] = GetParam();
   ASSERT_TRUE(MoveToSpace(turn, scale, &body).ok());
@@ -140,7 +141,7 @@ INSTANTIATE_TEST_SUITE_P(
                       std::tuple(glm::mat3(1.0f), 100.0f),                       // centimetres
                       std::tuple(glm::mat3(0, 1, 0, 0, 0, 1, 1, 0, 0), 1000.0f)));
 
-TEST(ImportModel, ScaleCanBeSaid) {
+TEST(ImportModel, AcceptsAScale) {
   const Folder folder;
   const auto imported =
       ImportModel(folder.Write("body.glb", GlbOf(ToyBody())), Maps(), {.scale = 2.0f});
@@ -154,7 +155,7 @@ Status StatusOf(const character::Character& character, const ModelOptions& optio
   return ImportModel(folder.Write("bad.glb", GlbOf(character)), Maps(), options).status();
 }
 
-TEST(ImportModel, TrianglesWithoutAreaAreAnErrorOrLeftOut) {
+TEST(ImportModel, TrianglesWithoutAreaAreAnErrorOrSkipped) {
   character::Character body = ToyBody();
   body.meshes[0].vertices[1].position = body.meshes[0].vertices[0].position;
   const Status status = StatusOf(body);
@@ -167,7 +168,7 @@ TEST(ImportModel, TrianglesWithoutAreaAreAnErrorOrLeftOut) {
 
 TEST(ImportModel, UnskinnedVerticesAreAnErrorOrFollowTheirNeighbours) {
   character::Character body = ToyBody();
-  const int vertex = 24 * 7 + 2;  // of the left hand
+  const int vertex = 24 * 7 + 2;  // on the left hand
   for (float& weight : body.meshes[0].vertices[vertex].skin_weights) weight = 0.0f;
   const Status status = StatusOf(body);
   EXPECT_EQ(status.code(), StatusCode::kUnsupported);
@@ -190,7 +191,7 @@ TEST(ImportModel, OverlappingUvsAreAWarning) {
   EXPECT_THAT(imported->warnings, Contains(HasSubstr("used twice")));
 }
 
-TEST(ImportModel, FilesOfOtherKindsAreRefusedInOneSentence) {
+TEST(ImportModel, OtherFileTypesGiveOneClearError) {
   const Folder folder;
   const std::string fbx = ConvertByAssimp(GlbOf(ToyBody()), "fbxa");
   ASSERT_FALSE(fbx.empty());
@@ -210,8 +211,8 @@ TEST(ImportModel, FilesOfOtherKindsAreRefusedInOneSentence) {
   EXPECT_EQ(ImportModel("/no/such.fbx", Maps()).status().code(), StatusCode::kNotFound);
 }
 
-// Every length of a cut FBX ends in a status, never in a crash of this process.
-TEST(ImportModel, CutFilesEndInAStatus) {
+// Truncated FBX files of every length return a status and never crash this process.
+TEST(ImportModel, TruncatedFilesReturnAStatus) {
   const Folder folder;
   const std::string fbx = ConvertByAssimp(GlbOf(ToyBody()), "fbxa");
   for (std::size_t length = 0; length < fbx.size(); length += fbx.size() / 40 + 1) {

@@ -26,7 +26,7 @@ character::SkeletonMaps Map(const std::string& name) {
                                         name + ".json");
 }
 
-// A rig for the body of boxes: the one that is carried over in these tests.
+// The template rig of these tests, made for the body of boxes.
 wrinkle::Rig ToyRig() {
   const char* kText = R"({"version": 1, "name": "toy", "drivers": [
     {"name": "knee_l", "hinge": {"parent": "leftUpperLeg", "joint": "leftLowerLeg",
@@ -55,7 +55,7 @@ class CmuProposal : public ::testing::Test {
  protected:
   void SetUp() override {
     const auto clip = motion::LoadClip(std::string(FURROW_SHARED_DATA) + "/cmu/01_01.bvh");
-    if (!clip.ok()) GTEST_SKIP() << "the CMU recording is absent";
+    if (!clip.ok()) GTEST_SKIP() << "the CMU recording is missing";
     skeleton_ = clip->skeleton;
     joints_ = FindJoints(skeleton_, Map("cmu"));
     const character::Character body = ToyBody();
@@ -71,7 +71,8 @@ class CmuProposal : public ::testing::Test {
   wrinkle::Rig rig_;
 };
 
-// The axes that a person wrote into the shipped rig cmu.json, from what the recordings do.
+// The proposed axes must equal those in the shipped rig cmu.json, which were chosen by hand from
+// the recordings.
 TEST_F(CmuProposal, HingesTurnAboutTheAxesOfTheShippedRig) {
   const wrinkle::Driver* knee = Find(rig_, "knee_l");
   ASSERT_NE(knee, nullptr);
@@ -92,14 +93,14 @@ TEST_F(CmuProposal, BindsStrictlyAndChecks) {
   EXPECT_EQ(rig_.anchor, "Head");
 }
 
-TEST_F(CmuProposal, ATwistAddsUpTheWholeNeck) {
+TEST_F(CmuProposal, TwistIncludesTheWholeNeck) {
   const wrinkle::Driver* neck = Find(rig_, "neck");
   ASSERT_NE(neck, nullptr);
   EXPECT_EQ(neck->twist.joint, "Neck");
   EXPECT_EQ(neck->twist.through, (std::vector<std::string>{"Neck1", "Head"}));
 }
 
-TEST_F(CmuProposal, MasksBecomeSkinWeightsAndMapsLoseTheirPictures) {
+TEST_F(CmuProposal, UsesSkinningMasksAndMapsWithoutPictures) {
   for (const wrinkle::Region& region : rig_.regions) {
     EXPECT_EQ(region.mask.kind, wrinkle::Mask::Kind::kSkinning);
   }
@@ -107,10 +108,10 @@ TEST_F(CmuProposal, MasksBecomeSkinWeightsAndMapsLoseTheirPictures) {
   EXPECT_TRUE(rig_.wrinkle_maps[0].normal.empty());
 }
 
-TEST(RigProposal, WhatHasNoJointIsLeftOutWithAllThatNamesIt) {
+TEST(RigProposal, OmitsPartsWithoutJointsAndTheirReferences) {
   const character::Character body = ToyBody();
   const FoundJoints body_joints = FindJoints(body.skeleton, Map("vrm"));
-  // A bust: no legs.
+  // A bust has no legs.
   std::vector<wrinkle::JointDesc> descs;
   for (const char* name :
        {"hips", "spine", "chest", "neck", "head", "rightUpperArm", "rightLowerArm", "rightHand"}) {
@@ -131,7 +132,7 @@ TEST(RigProposal, WhatHasNoJointIsLeftOutWithAllThatNamesIt) {
   EXPECT_TRUE(character::CheckRig(proposal->rig).ok());
 }
 
-TEST(RigProposal, AnUnknownSkeletonIsNotFound) {
+TEST(RigProposal, UnknownSkeletonIsNotFound) {
   const character::Character body = ToyBody();
   const FoundJoints body_joints = FindJoints(body.skeleton, Map("vrm"));
   const auto rope = *wrinkle::Skeleton::Create(
@@ -141,10 +142,10 @@ TEST(RigProposal, AnUnknownSkeletonIsNotFound) {
   EXPECT_EQ(proposal.status().code(), StatusCode::kNotFound);
 }
 
-// The body of boxes under names that nobody knows, turned about: roles come from its shape alone.
+// A turned body of boxes with unknown joint names. Its roles come only from its shape.
 class Hierarchy : public ::testing::TestWithParam<glm::vec3> {};
 
-TEST_P(Hierarchy, TellsTheRolesThatTheNamesWouldHaveTold) {
+TEST_P(Hierarchy, GivesTheSameRolesAsTheNames) {
   character::Character body = ToyBody();
   const FoundJoints by_name = FindJoints(body.skeleton, Map("vrm"));
   ASSERT_EQ(by_name.map, "vrm");

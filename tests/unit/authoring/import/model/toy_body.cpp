@@ -46,9 +46,9 @@ const std::array<ToyJoint, 19> kJoints = {{{"hips", -1, {0, 0.95f, 0}},
                                            {"rightFoot", 16, {-0.1f, 0.08f, 0}},
                                            {"rightToes", 17, {-0.1f, 0.05f, 0.12f}}}};
 
-// The six faces of a box, each in a cell of its own of the picture.
+// The six faces of a box. Each face has its own cell of the picture.
 void AddBox(int joint, const glm::vec3& centre, float half, character::Mesh* mesh) {
-  constexpr int kCells = 11;  // a side: 121 for 114 faces
+  constexpr int kCells = 11;  // per side: 121 cells for 114 faces
   for (int face = 0; face < 6; ++face) {
     const int axis = face / 2;
     const float side = face % 2 == 0 ? 1.0f : -1.0f;
@@ -79,7 +79,7 @@ void AddBox(int joint, const glm::vec3& centre, float half, character::Mesh* mes
   }
 }
 
-// Our tails are metadata, which assimp reads and cannot copy.
+// Removes the tails of joints: they are metadata, which assimp reads but cannot copy.
 void DropMetadata(aiNode* node) {
   delete node->mMetaData;
   node->mMetaData = nullptr;

@@ -8,15 +8,15 @@
 
 namespace furrow::authoring {
 
-// A body of boxes, 1.7 m high in a T-pose, +Y up and facing +Z: 19 joints with VRM's names, a box
-// around each, half of whose vertices follow the joint above, too; UVs without overlap.
+// A body of boxes, 1.7 m high in a T-pose, +Y up and facing +Z: 19 joints with VRM's names, and a
+// box around each joint. Half of a box's vertices also follow the parent joint. UVs do not overlap.
 [[nodiscard]] character::Character ToyBody();
 
-// A character as a .glb.
+// Returns a character as a .glb file.
 [[nodiscard]] std::string GlbOf(const character::Character& character);
 
-// A .glb converted by assimp: `format` is its exporter ("fbxa" for ASCII FBX, "collada"; the
-// binary FBX that assimp 5.2 writes cannot be read by itself).
+// Converts a .glb with assimp. `format` is the name of assimp's exporter: "fbxa" (ASCII FBX) or
+// "collada". assimp 5.2 cannot read the binary FBX files that it writes.
 [[nodiscard]] std::string ConvertByAssimp(std::string_view glb, const std::string& format);
 
 }  // namespace furrow::authoring

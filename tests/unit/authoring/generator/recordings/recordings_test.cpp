@@ -29,7 +29,7 @@ class RecordingTest : public ::testing::Test {
     return recording.ok() ? std::move(recording).value() : Recording();
   }
 
-  // A point fixed to a joint at rest, given in model space, as it lies in a frame.
+  // The position in `frame` of a point fixed to a joint. `at` is its rest position in model space.
   vec3 PlaceOf(const std::vector<wrinkle::Transform>& frame, const char* joint, const vec3& at) {
     const int index = skeleton_.Find(joint);
     vec3 place = at - vec3(skeleton_.rest_model()[index][3]);
@@ -44,7 +44,7 @@ class RecordingTest : public ::testing::Test {
   wrinkle::Skeleton skeleton_ = MakeSkeleton();
 };
 
-// While the whole sole is down, that is heel and ball are both near the floor, it does not slide.
+// The foot does not slide while its heel and ball are both near the floor.
 TEST_F(RecordingTest, WalkingFeetDoNotSlide) {
   const Recording walk = Make("walk");
   int standing = 0;
@@ -55,7 +55,7 @@ TEST_F(RecordingTest, WalkingFeetDoNotSlide) {
     for (std::size_t f = 0; f < walk.frames.size(); ++f) {
       const vec3 h = PlaceOf(walk.frames[f], foot, heel);
       const vec3 b = PlaceOf(walk.frames[f], foot, ball);
-      EXPECT_GT(std::min(h.y, b.y), -0.012f) << foot << " frame " << f;  // not through the floor
+      EXPECT_GT(std::min(h.y, b.y), -0.012f) << foot << " frame " << f;  // not below the floor
       const bool is_down = h.y < 0.004f && b.y < 0.026f;
       if (is_down && was_down) {
         ++standing;
@@ -66,13 +66,13 @@ TEST_F(RecordingTest, WalkingFeetDoNotSlide) {
     }
   }
   EXPECT_GT(standing, 100);
-  // It gets somewhere: a metre a second.
+  // The walk covers about 1 m per second.
   const float way = walk.frames.back()[0].translation.z - walk.frames.front()[0].translation.z;
   EXPECT_NEAR(way, 10.3f, 0.3f);
 }
 
-// The last frame leads on to the first: nine whole cycles.
-TEST_F(RecordingTest, WalkIsALoopOfTheLegs) {
+// The walk has nine whole cycles, so the last frame continues with the first.
+TEST_F(RecordingTest, WalkLoops) {
   const Recording walk = Make("walk");
   const auto& last = walk.frames.back();
   const auto& first = walk.frames.front();
@@ -82,7 +82,7 @@ TEST_F(RecordingTest, WalkIsALoopOfTheLegs) {
   }
 }
 
-TEST_F(RecordingTest, SquatGoesDownWithTheFeetOnTheFloor) {
+TEST_F(RecordingTest, SquatKeepsTheFeetOnTheFloor) {
   const Recording squat = Make("squat");
   float lowest = 1.0f, highest_hand = 0.0f;
   for (const auto& frame : squat.frames) {
@@ -97,8 +97,8 @@ TEST_F(RecordingTest, SquatGoesDownWithTheFeetOnTheFloor) {
   EXPECT_GT(highest_hand, 1.75f);
 }
 
-// Bending hip and knee brings the ankle to where it is wanted, for any turn of the hips.
-TEST_F(RecordingTest, PlantFootReachesWhereItCan) {
+// Bending the hip and the knee moves the ankle to its target for any turn of the hips.
+TEST_F(RecordingTest, PlantFootReachesItsTarget) {
   for (const float turn : {0.0f, 15.0f, -30.0f}) {
     FramePose pose(rig_.value(), skeleton_);
     pose.Turn("hips", 0.5f * turn, turn, 0.3f * turn);
@@ -108,12 +108,12 @@ TEST_F(RecordingTest, PlantFootReachesWhereItCan) {
     EXPECT_LT(glm::distance(pose.PlaceOf("foot_l"), want), 1e-4f) << turn;
   }
   FramePose pose(rig_.value(), skeleton_);
-  pose.PlantFoot(-1.0f, {-0.1f, -1.0f, 0.0f}, 0.0f, 0.0f);  // out of reach: as near as it gets
+  pose.PlantFoot(-1.0f, {-0.1f, -1.0f, 0.0f}, 0.0f, 0.0f);  // out of reach: as near as possible
   EXPECT_NEAR(glm::distance(pose.PlaceOf("foot_r"), pose.PlaceOf("upper_leg_r")), 0.826f, 0.004f);
 }
 
-// Left and right are not the same, and neither leads by much.
-TEST_F(RecordingTest, FacesAreNotMirrors) {
+// Left and right differ, but only slightly.
+TEST_F(RecordingTest, FacesAreNotSymmetric) {
   const Recording smile = Make("happiness");
   const int left = skeleton_.Find("risorius_l"), right = skeleton_.Find("risorius_r");
   float most = 0.0f;
@@ -126,7 +126,7 @@ TEST_F(RecordingTest, FacesAreNotMirrors) {
   EXPECT_LT(most, 0.006f);
 }
 
-// Talk: the jaw opens and closes several times a second.
+// The jaw opens and closes several times per second.
 TEST_F(RecordingTest, ConversationMovesTheMouth) {
   const Recording talk = Make("conversation");
   const int jaw = skeleton_.Find("jaw");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "character/package/package.h"
+#include "authoring/generator/default_character.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,12 +14,12 @@
 
 #include "authoring/bake/strokes_file.h"
 #include "authoring/generator/body/body_skeleton.h"
-#include "authoring/generator/default_character.h"
 #include "authoring/generator/recordings/recording_bvh.h"
 #include "authoring/generator/recordings/recordings.h"
 #include "authoring/generator/textures/wrinkle_maps.h"
 #include "authoring/paint/surface_texels.h"
 #include "base/files.h"
+#include "character/package/package.h"
 #include "motion/bvh/bvh.h"
 #include "rig/rig_file.h"
 #include "wrinkle/solver/solver.h"
@@ -34,7 +34,7 @@ wrinkle::Rig DefaultRig() {
   return rig.ok() ? std::move(rig).value() : wrinkle::Rig();
 }
 
-// The default character with his wrinkle maps, small.
+// The default character with small wrinkle maps.
 character::Character WholeCharacter(int maps = 256) {
   const std::filesystem::path file =
       std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.strokes.json";
@@ -47,7 +47,7 @@ character::Character WholeCharacter(int maps = 256) {
   return character;
 }
 
-// Solves poses of the default skeleton against its rig, unfiltered.
+// Solves poses of the default skeleton with its rig, without the filter.
 class DefaultRigTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -86,7 +86,7 @@ class DefaultRigTest : public ::testing::Test {
     return found == names.end() ? -1.0f : solver_->driver_values()[found - names.begin()];
   }
 
-  // Largest weight among `region` and any others that begin like it.
+  // The wrinkle weight named `name`, "<region>.<map>".
   float Weight(const std::string& name) const {
     const auto names = binding_->weight_names();
     const auto found = std::find(names.begin(), names.end(), name);
@@ -104,7 +104,7 @@ TEST_F(DefaultRigTest, NeutralFaceHasNoWrinkles) {
   Solve(Rest());
   for (std::size_t i = 0; i < binding_->weight_names().size(); ++i) {
     const std::string& name = binding_->weight_names()[i];
-    if (name.ends_with(".folds")) continue;  // cloth is slack where limbs are straight
+    if (name.ends_with(".folds")) continue;  // cloth is slack at straight limbs
     EXPECT_LT(solver_->wrinkle_weights()[i], 0.02f) << name;
   }
 }
@@ -122,7 +122,7 @@ TEST_F(DefaultRigTest, ReferencePosesReachTheirDrivers) {
   EXPECT_GT(checked, 20);
 }
 
-TEST_F(DefaultRigTest, EveryReferencePoseMovesJointsThatExist) {
+TEST_F(DefaultRigTest, ReferencePosesMoveOnlyExistingJoints) {
   for (const wrinkle::ReferencePose& pose : rig_.reference_poses) {
     EXPECT_FALSE(pose.joints.empty()) << pose.name;
     for (const wrinkle::JointDelta& delta : pose.joints) {
@@ -131,7 +131,7 @@ TEST_F(DefaultRigTest, EveryReferencePoseMovesJointsThatExist) {
   }
 }
 
-TEST_F(DefaultRigTest, EmotionsWrinkleWhereTheyShould) {
+TEST_F(DefaultRigTest, EmotionsRaiseTheExpectedWeights) {
   const struct {
     const char* recording;
     int frame;
@@ -150,13 +150,13 @@ TEST_F(DefaultRigTest, EmotionsWrinkleWhereTheyShould) {
     Solve(recording.value().frames[c.frame]);
     for (const char* name : c.strong) EXPECT_GT(Weight(name), 0.5f) << name;
     for (const char* name : c.absent) EXPECT_LT(Weight(name), 0.1f) << name;
-    // The first frame is a neutral face, arms down.
+    // The first frame has a neutral face and lowered arms.
     Solve(recording.value().frames[0]);
     for (const char* name : c.strong) EXPECT_LT(Weight(name), 0.02f) << name;
   }
 }
 
-TEST_F(DefaultRigTest, WalkBendsKneesInTurn) {
+TEST_F(DefaultRigTest, WalkBendsKneesAlternately) {
   Result<Recording> walk = MakeRecording("walk", rig_, skeleton_);
   ASSERT_TRUE(walk.ok());
   float most_left = 0.0f, most_right = 0.0f, both = 0.0f;
@@ -200,8 +200,8 @@ TEST(GeneratorRecordings, BvhReadsBackEqual) {
   }
 }
 
-// No joint jumps: eased onsets keep steps of a frame small, blinks of lids being the quickest.
-TEST(GeneratorRecordings, MoveWithoutJumps) {
+// Joints never jump. Blinks are the fastest movements.
+TEST(GeneratorRecordings, MoveSmoothly) {
   const wrinkle::Rig rig = DefaultRig();
   const wrinkle::Skeleton skeleton = MakeSkeleton();
   for (const std::string& name : RecordingNames()) {
@@ -232,7 +232,7 @@ class PackageTest : public ::testing::Test {
 };
 character::Character* PackageTest::character_ = nullptr;
 
-TEST_F(PackageTest, HoldsEveryPictureThatTheRigNames) {
+TEST_F(PackageTest, ContainsEveryPictureOfTheRig) {
   const character::Character& c = *character_;
   for (const wrinkle::Region& region : c.rig.regions) {
     if (region.mask.kind != wrinkle::Mask::Kind::kTexture) continue;
@@ -247,8 +247,8 @@ TEST_F(PackageTest, HoldsEveryPictureThatTheRigNames) {
   }
 }
 
-// Skin pales and reddens, and keeps its colour where nothing moves it: at the back of the head.
-TEST_F(PackageTest, BloodComesAndGoes) {
+// Skin becomes paler and redder, but keeps its colour where it does not move (back of the head).
+TEST_F(PackageTest, SkinPalesAndReddens) {
   for (const char* name : {"face_stretch_colour", "face_squash_colour"}) {
     const character::Picture& colour = character_->pictures[character_->FindRigPicture(name)];
     int least = 255, most = 0, still = 0;
@@ -263,7 +263,7 @@ TEST_F(PackageTest, BloodComesAndGoes) {
   }
 }
 
-// A map's normals and heights where the skin is, in millimetres.
+// The normals and heights of a map. Heights are in millimetres.
 struct Relief {
   const character::Picture& normals;
   const character::Picture& heights;
@@ -276,7 +276,7 @@ struct Relief {
   [[nodiscard]] float Height(const SurfaceTexel& t) const {
     return height_mm * (2.0f * static_cast<float>(heights.pixels16[At(t)]) / 65535.0f - 1.0f);
   }
-  // What the normal says that a step rises by.
+  // The change of height over `step`, computed from the normal.
   [[nodiscard]] float Rise(const SurfaceTexel& t, const glm::vec3& step) const {
     glm::vec3 n;
     for (int c = 0; c < 3; ++c) n[c] = 2.0f * normals.pixels16[3 * At(t) + c] / 65535.0f - 1.0f;
@@ -284,9 +284,9 @@ struct Relief {
   }
 };
 
-// Steps from texel to texel go with the slopes on either side, one for one. The finest folds are
-// three texels wide, where the two slopes miss some of what lies between them.
-TEST(WrinkleMaps, HeightsAreThoseOfTheNormals) {
+// Height differences between texels correlate with the slopes of both texels. The ratio is not
+// exactly 1, because the finest folds are only three texels wide.
+TEST(WrinkleMaps, HeightsMatchNormals) {
   constexpr int kSize = 512;
   const character::Character character = WholeCharacter(kSize);
   const character::Mesh& skin = character.meshes[0];
@@ -316,7 +316,7 @@ TEST(WrinkleMaps, HeightsAreThoseOfTheNormals) {
   }
 }
 
-TEST_F(PackageTest, MasksAreSoftAndEachRegionIsSomewhere) {
+TEST_F(PackageTest, MasksAreSoftAndNotEmpty) {
   for (const char* name : {"face_masks_a", "face_masks_b"}) {
     const character::Picture& mask = character_->pictures[character_->FindRigPicture(name)];
     ASSERT_EQ(mask.channels, 4);
@@ -330,7 +330,7 @@ TEST_F(PackageTest, MasksAreSoftAndEachRegionIsSomewhere) {
   }
 }
 
-TEST_F(PackageTest, SameBytesOnEveryRun) {
+TEST_F(PackageTest, IsReproducible) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "furrow_package";
   std::filesystem::create_directories(folder);
   const character::Character again = WholeCharacter();
@@ -344,7 +344,7 @@ TEST_F(PackageTest, SameBytesOnEveryRun) {
   std::filesystem::remove_all(folder);
 }
 
-TEST_F(PackageTest, SurvivesWritingAndReading) {
+TEST_F(PackageTest, ReadsBackEqual) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "furrow_share";
   std::filesystem::create_directories(folder);
   ASSERT_TRUE(character::SaveCharacterGlb(*character_, folder / "c.glb").ok());

@@ -17,7 +17,7 @@ BakeStroke Across(BakeStroke::Kind kind) {
   stroke.name = "line";
   stroke.kind = kind;
   stroke.maps = {"folds"};
-  // Through the middle of the sheet, upright; a little above it.
+  // A vertical line through the middle of the sheet, slightly above its surface.
   stroke.points = {{0.05f, 0.02f, 0.004f}, {0.05f, 0.05f, 0.004f}, {0.05f, 0.08f, 0.004f}};
   stroke.width_mm = 3.0f;
   stroke.depth_mm = 0.8f;
@@ -34,11 +34,11 @@ TEST(Strokes, FoldWithoutAnyPose) {
   EXPECT_NEAR(map.height_mm[toys::At(map, 128, 128)], -0.8f, 0.08f);
   EXPECT_LT(map.cavity[toys::At(map, 128, 128)], 0.95f);
   EXPECT_EQ(map.height_mm[toys::At(map, 20, 128)], 0.0f);
-  // Tapered to nothing at its ends, which lie at a fifth and four fifths of the height.
+  // The depth tapers to zero at the ends, at 1/5 and 4/5 of the height.
   EXPECT_NEAR(map.height_mm[toys::At(map, 128, 52)], 0.0f, 0.05f);
 }
 
-TEST(Strokes, WinOverStrainWhereTheyAreAndLeaveItAloneElsewhere) {
+TEST(Strokes, OverrideStrainOnlyWhereTheyLie) {
   const std::vector<BakePose> poses = {toys::Pose(toys::Squeeze(0.2f, 90.0f))};
   const BakedMap strain = toys::BakeFolds(StrokeSheet(), poses, toys::Exact());
   BakeStroke stroke = Across(BakeStroke::Kind::kFold);
@@ -71,10 +71,10 @@ TEST(Strokes, ExcludeStrain) {
   EXPECT_EQ(map.statistics.strokes, 0);
 }
 
-TEST(Strokes, DirectFoldsAlongThemselves) {
+TEST(Strokes, DirectFoldsAlongTheStroke) {
   BakeStroke stroke = Across(BakeStroke::Kind::kDirection);
   stroke.width_mm = 30.0f;
-  // Compressed upright, folds would lie level; the stroke stands upright.
+  // With vertical compression folds would be horizontal. The stroke is vertical.
   const BakedMap map = toys::BakeFolds(StrokeSheet(), {toys::Pose(toys::Squeeze(0.2f, 90.0f))},
                                        toys::Exact(), {stroke});
   double level = 0.0, upright = 0.0;
@@ -88,8 +88,8 @@ TEST(Strokes, DirectFoldsAlongThemselves) {
   EXPECT_GT(upright, 3.0 * level);
 }
 
-TEST(Strokes, ReachNoFurtherThanOverTheSurface) {
-  // Two sheets a millimetre apart: the line is drawn on the upper one.
+TEST(Strokes, MeasureDistanceAlongTheSurface) {
+  // Two sheets 1 mm apart. The line lies on the upper sheet.
   character::Mesh mesh = toys::Grid(10, 10, [](float u, float v) {
     return toys::Point{{0.05f * u, 0.05f * v, 0.001f}, {0.45f * u, 1.0f - v}, 0.0f};
   });
@@ -115,11 +115,11 @@ TEST(Strokes, ReachNoFurtherThanOverTheSurface) {
   EXPECT_EQ(lower, 0.0f);
 }
 
-// A fan often leaves triangles of two equal corners behind; they are no place for a stroke.
-TEST(Strokes, DoNotFallForTrianglesWithoutExtent) {
+// Fans often contain triangles with two equal corners. Strokes must not be placed on them.
+TEST(Strokes, IgnoreTrianglesWithoutArea) {
   const BakeStroke stroke = Across(BakeStroke::Kind::kFold);
   const BakedMap whole = toys::BakeFolds(StrokeSheet(), {}, toys::Exact(), {stroke});
-  const std::uint32_t a = 0, b = 220;  // far corner, and right beside the line
+  const std::uint32_t a = 0, b = 220;  // a far corner, and a vertex beside the line
   const std::uint32_t kCorners[][3] = {{a, a, b}, {a, b, a}, {b, a, a}, {b, b, b}};
   for (const auto& corners : kCorners) {
     for (const std::size_t place : {0u, 300u, 1200u}) {
@@ -132,7 +132,7 @@ TEST(Strokes, DoNotFallForTrianglesWithoutExtent) {
   }
 }
 
-TEST(Strokes, FarFromTheSurfaceAreRefusedByName) {
+TEST(Strokes, FarFromTheSurfaceAreRejectedByName) {
   BakeStroke stroke = Across(BakeStroke::Kind::kFold);
   for (glm::vec3& point : stroke.points) point.z = 0.019f;
   EXPECT_TRUE(Bake(StrokeSheet(), {}, {&stroke, 1}, toys::Exact()).ok());
@@ -140,14 +140,14 @@ TEST(Strokes, FarFromTheSurfaceAreRefusedByName) {
   const Status refused = Bake(StrokeSheet(), {}, {&stroke, 1}, toys::Exact()).status();
   EXPECT_EQ(refused.code(), StatusCode::kInvalidArgument);
   EXPECT_EQ(refused.where(), "stroke 'line'");
-  stroke.width_mm = 20.0f;  // a broad one may lie four widths off
+  stroke.width_mm = 20.0f;  // a stroke may lie up to four widths from the surface
   EXPECT_TRUE(Bake(StrokeSheet(), {}, {&stroke, 1}, toys::Exact()).ok());
 }
 
-TEST(Strokes, CountOnlyWhereTheyCoverTexels) {
+TEST(Strokes, CountOnlyIfTheyCoverTexels) {
   character::Character sheet = StrokeSheet();
   for (character::Vertex& vertex : sheet.meshes[0].vertices)
-    vertex.uv.x *= 2.0f;  // half lies off the picture
+    vertex.uv.x *= 2.0f;  // half of the sheet is outside the picture
   BakeStroke off = Across(BakeStroke::Kind::kFold);
   for (glm::vec3& point : off.points) point.x = 0.08f;
   BakeStroke on = off;
@@ -156,7 +156,7 @@ TEST(Strokes, CountOnlyWhereTheyCoverTexels) {
   EXPECT_EQ(toys::BakeFolds(sheet, {}, toys::Exact(), {on, off}).statistics.strokes, 1);
 }
 
-TEST(Strokes, OfTooManyPiecesAreALimit) {
+TEST(Strokes, TooManyPiecesExceedTheLimit) {
   BakeStroke stroke = Across(BakeStroke::Kind::kFold);
   stroke.width_mm = 0.1f;
   stroke.depth_mm = 0.1f;
