@@ -131,7 +131,8 @@ Result<std::vector<float>> ReadFloats(const Document& document, int accessor, El
   }
   const int components = ComponentsOf(type);
   const std::size_t count = from->size() * static_cast<std::size_t>(components);
-  if (count > *budget) return Status(StatusCode::kLimit, "the file has too many numbers", where);
+  if (count > *budget)
+    return Status(StatusCode::kLimit, "the file has too many accessor values", where);
   *budget -= count;
   std::vector<float> values;
   values.reserve(count);

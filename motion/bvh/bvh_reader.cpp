@@ -159,8 +159,9 @@ class FrameReader {
                                   options_.bvh_positions);
       local.translation *= options_.scale;
       if (!wrinkle::IsValid(local)) {
-        return cursor_.Error(StatusCode::kNonFinite,
-                             "joint '" + hierarchy_.joints[j].name + "' is out of range");
+        return cursor_.Error(
+            StatusCode::kNonFinite,
+            "the values of joint '" + hierarchy_.joints[j].name + "' are out of range");
       }
       KeepSign(*clip, num_joints, &local.rotation);
       clip->locals.push_back(local);

@@ -461,7 +461,7 @@ Result<Bytes> Reader::LoadChunk(const ChunkInfo& info) {
   const auto crc = content.Get<std::uint32_t>();
   const std::string compression = content.GetText();
   const auto packed = content.GetBytes(content.Get<std::uint64_t>());
-  if (!content.ok()) return Status(StatusCode::kParse, "its lengths are wrong");
+  if (!content.ok()) return Status(StatusCode::kParse, "its length fields are wrong");
   if (size > limits_.record_bytes)
     return Status(StatusCode::kLimit,
                   "its decompressed size of " + std::to_string(size) + " bytes exceeds the limit");
@@ -566,7 +566,8 @@ Result<Bytes> Reader::ReadAttachment(const AttachmentInfo& info) const {
   const auto data = content.GetBytes(content.Get<std::uint64_t>());
   const auto crc = content.Get<std::uint32_t>();
   const std::string where = path_.string() + ": attachment '" + info.name + "'";
-  if (!right || !content.ok()) return Status(StatusCode::kParse, "its lengths are wrong", where);
+  if (!right || !content.ok())
+    return Status(StatusCode::kParse, "its length fields are wrong", where);
   const auto covered =
       std::span(*record).subspan(kRecordHeaderBytes, record->size() - kRecordHeaderBytes - 4);
   if (crc != 0 && Crc32(covered) != crc)

@@ -54,13 +54,13 @@ struct MessageView {
 };
 
 // The first of two decoding steps: checks the envelope and finds the kind. Cheap enough to reject
-// garbage at line rate. `bytes` is one whole message (a datagram, a reassembled message or a TCP
-// frame) of at most `max_bytes`. Decode() (codec.h) is the second step.
+// garbage as fast as it arrives. `bytes` is one whole message (a datagram, a reassembled message or
+// a TCP frame) of at most `max_bytes`. Decode() (codec.h) is the second step.
 [[nodiscard]] DecodeStatus OpenMessage(std::span<const std::uint8_t> bytes, MessageView& view,
                                        std::size_t max_bytes = kMaxRequestBytes);
 
-// Writes an envelope and a payload that is already encoded. Replaces the content of `out`. The
-// result equals the result of Encoder::Encode() for that payload.
+// Replaces the contents of `out` with an envelope and a payload that is already encoded: the same
+// bytes that Encoder::Encode() writes for the message.
 void WriteMessage(const Header& header, std::span<const std::uint8_t> payload,
                   std::vector<std::uint8_t>& out);
 

@@ -7,7 +7,7 @@
 #include "protocol/schema/skeleton_offer_generated.h"
 #include "protocol/schema/skeleton_reply_generated.h"
 
-// Skeletons of publishers: STANDARD.md section 6.
+// The skeletons that publishers offer: STANDARD.md section 6.
 namespace furrow::protocol::internal {
 
 [[nodiscard]] DecodeStatus ReadTable(const wire::SkeletonOffer& table, SkeletonOffer& message);

@@ -104,9 +104,9 @@ Status PosedMeshes::Pose(const Source& source, const PoseShader& shader,
   const std::size_t count = static_cast<std::size_t>(source.num_vertices) * subjects.size();
   if (count > kMaxVertices) {
     return {StatusCode::kLimit,
-            std::to_string(subjects.size()) + " subjects of a mesh of " +
-                std::to_string(source.num_vertices) + " vertices; at most " +
-                std::to_string(kMaxVertices) + " vertices are posed of a mesh",
+            std::to_string(subjects.size()) + " subjects with a mesh of " +
+                std::to_string(source.num_vertices) + " vertices exceed the limit of " +
+                std::to_string(kMaxVertices) + " posed vertices per mesh",
             "others"};
   }
   const Result<GLuint> program = shaders_->Get(shader);

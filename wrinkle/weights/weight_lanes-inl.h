@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Driver values to wrinkle weights, one weight per lane: combine, modulate (4.3, 4.4), resolve
-// incongruence (docs/ALGORITHM.md).
+// Turns driver values into wrinkle weights, one weight per lane: combines and
+// modulates (thesis 4.3, 4.4), then resolves incongruence (docs/ALGORITHM.md).
 #if defined(FURROW_WRINKLE_WEIGHT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef FURROW_WRINKLE_WEIGHT_LANES_INL_H_
 #undef FURROW_WRINKLE_WEIGHT_LANES_INL_H_
@@ -70,7 +70,7 @@ inline void ModulateAll(const WeightPlan& plan, const float* values, float* modu
   }
 }
 
-// The share of a weight that an opposed weight of a neighbouring region leaves:
+// The factor by which an opposed weight of a neighbouring region reduces a weight:
 // smoothstep(-1/2, 1/2, (own - other) / (own + other)); 1 if both are 0.
 HWY_INLINE Float CongruenceFactor(Float own, Float other) {
   const Float sum = hn::Add(own, other);

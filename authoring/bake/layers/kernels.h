@@ -19,9 +19,9 @@ namespace furrow::authoring {
 // dot(frequency, p - position).
 struct FoldKernel {
   SurfacePoint place;
-  glm::vec3 frequency{
-      0.0f};           // radians per metre, in the surface, across the fold; the sign is arbitrary
-  float phase = 0.0f;  // at `place`, radians
+  // Radians per metre, tangent to the surface and across the fold; the sign is arbitrary.
+  glm::vec3 frequency{0.0f};
+  float phase = 0.0f;      // at `place`, radians
   float amplitude = 0.0f;  // half the height from valley to ridge, metres
   float reach = 0.0f;      // metres
 
@@ -33,23 +33,25 @@ struct FoldKernel {
   }
 };
 
-// The kernels of one set of folds, with a list per triangle of the kernels that reach it.
+// The kernels of one set of folds and, for each triangle, a list of the kernels that reach it.
 class KernelSet {
  public:
   struct Options {
     float wavelength_scale = 1.0f;  // factor of the field's wavelength
-    bool crossing =
-        false;  // folds run along the field's `across` and answer to its weaker compression
-    float threshold = 0.02f;  // no kernels far from places with at least half this compression
-    float variation = 0.0f;   // of the wavelength over the surface, as in BakeMaterial
+    // If true, folds run along the field's `across`, as high as its weaker compression makes them.
+    bool crossing = false;
+    // Kernels are placed only where the compression is at least half of this, and within reach of
+    // such places.
+    float threshold = 0.02f;
+    float variation = 0.0f;  // of the wavelength over the surface, as in BakeMaterial
     std::uint32_t seed = 1;
   };
   // Half the height of a fold in metres, for a compression and a wavelength in metres.
   using Amplitude = std::function<float(float compression, float wavelength)>;
 
-  // Places kernels about half a wavelength apart wherever there are folds and as far as folds can
-  // fade out. All phases are 0. Errors: kLimit (folds so fine on such a large surface need millions
-  // of kernels), kUnavailable (cancelled).
+  // Places kernels about half a wavelength apart wherever there are folds, and far enough around
+  // them for the folds to fade out. All phases are 0. Errors: kLimit (the folds are too fine for
+  // the size of the surface and would need millions of kernels), kUnavailable (cancelled).
   [[nodiscard]] static Result<KernelSet> Create(const FoldField& field, const Options& options,
                                                 const Amplitude& amplitude, BakeProgress* progress);
 

@@ -19,7 +19,8 @@
 
 namespace furrow::authoring {
 
-// Bakes one map of one surface: the strain of the poses, then strokes and folds, then texels.
+// Bakes one map of one surface: combines the strain of the poses, lays out strokes and folds, then
+// fills the texels.
 class MapBaker {
  public:
   // All references must outlive the baker.
@@ -36,7 +37,7 @@ class MapBaker {
  private:
   struct RegionFolds {
     std::string region;
-    std::vector<float> compression;  // per welded vertex, the largest of the region's poses
+    std::vector<float> compression;  // per welded vertex: the largest over the region's poses
   };
 
   [[nodiscard]] std::vector<float> MaskOf(const std::string& region) const;

@@ -10,21 +10,21 @@
 namespace furrow::authoring {
 
 // Aligns the waves of neighbouring kernels. Phases propagate outward from the strongest folds: each
-// kernel takes the phase that its known neighbours predict. Then all phases are relaxed. Folds
-// branch or end where the lengths do not match. Sources: phasor noise (Tricard et al. 2019) and
-// stripe patterns (Knoeppel et al. 2015).
+// kernel takes the phase that its already solved neighbours predict. Then all phases are relaxed.
+// Where neighbouring waves cannot be aligned, folds branch or end. Sources: phasor noise (Tricard
+// et al. 2019) and stripe patterns (Knoeppel et al. 2015).
 //
 // - Directions have no sign: the phase of a neighbour with the opposite direction is negated.
-// - Deterministic: the order of the kernels decides ties.
+// - Deterministic: ties are broken by the order of the kernels.
 class PhaseSolver {
  public:
   PhaseSolver(const Surface& surface, KernelSet* set);
 
-  // Incomplete if `progress` was cancelled.
+  // Stops early if `progress` is cancelled.
   void Align(BakeProgress* progress);
 
-  // Varies the depth and length of folds: scales amplitudes by noise that is long along folds and
-  // narrow across them, between 1 - 2 * `variation` and 1 + 2 * `variation`.
+  // Varies the depth and length of folds: multiplies each amplitude by a factor between
+  // 1 - 2 * `variation` and 1 + 2 * `variation`. The factors are noise, stretched along the folds.
   void VaryDepth(float variation, std::uint32_t seed);
 
  private:

@@ -96,7 +96,7 @@ Status StrokeLayer::Place(const BakeStroke& stroke, std::vector<float> mask, Sur
   if (num_points_ > kMaxPoints) {
     return {StatusCode::kLimit,
             "the strokes of one map have more than " + std::to_string(kMaxPoints) +
-                " pieces, each as long as the width of its stroke",
+                " pieces (a piece is as long as its stroke is wide)",
             NameOf(stroke), "make strokes wider or shorter"};
   }
   const auto index = static_cast<std::uint32_t>(strokes_.size());

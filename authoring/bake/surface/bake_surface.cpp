@@ -89,7 +89,7 @@ Result<std::unique_ptr<BakeSurface>> BakeSurface::Create(const character::Charac
   const bool extent = std::any_of(triangles.begin(), triangles.end(),
                                   [](const auto& t) { return t.strain.has_value(); });
   if (!extent || made->texels_.empty()) {
-    return Status(StatusCode::kInvalidArgument, "no triangle of the " + kind + " has an area",
+    return Status(StatusCode::kInvalidArgument, "no triangle of the " + kind + " has any area",
                   character.name);
   }
   return made;

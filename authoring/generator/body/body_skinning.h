@@ -14,21 +14,22 @@ namespace furrow::authoring {
 // The weights of the shirt's trunk, which blends into the arms around the armholes.
 [[nodiscard]] Influences TorsoInfluences(const BodyShape& shape, const glm::vec3& place);
 
-// The weights of a sleeve. `side`: +1 left, -1 right; `hole`: the influences of the sleeve's edge
-// at the armhole; `from_hole`: distance from that edge, metres.
+// The weights of a sleeve. `side`: +1 left, -1 right; `hole`: the influences at the sleeve's
+// armhole edge; `from_hole`: distance from that edge, metres.
 [[nodiscard]] Influences SleeveInfluences(const BodyShape& shape, float side,
                                           const glm::vec3& place, const Influences& hole,
                                           float from_hole);
 
 [[nodiscard]] Influences TrouserInfluences(const BodyShape& shape, const glm::vec3& place);
 
-// The weights of a shoe: the foot, and the toes from the ball on.
+// The weights of a shoe, which follows the foot joint up to the ball of the foot and the toes joint
+// from there on.
 [[nodiscard]] Influences ShoeInfluences(const BodyShape& shape, const glm::vec3& place);
 
-// The full weight on one joint.
+// A weight of 1 on a single joint.
 [[nodiscard]] Influences InfluenceOf(const wrinkle::Skeleton& skeleton, const std::string& joint);
 
-// Moves every point from the modelling pose to rest, by its influences.
+// Moves every point from the modelling pose to the rest pose, as its influences say.
 void CarryToRest(const BodyShape& shape, QuadNet* net);
 
 }  // namespace furrow::authoring

@@ -11,11 +11,11 @@
 namespace furrow::authoring {
 
 // Head space: centimetres. The origin is between the eyes, at half the height and half the depth of
-// the head; +Y up, +Z out of the face, +X the subject's left. Model space, metres: (p +
-// kHeadOrigin) / 100.
+// the head; +Y up, +Z out of the face, +X the subject's left. A point `p` is at
+// (p + kHeadOrigin) / 100 in model space, which is in metres.
 inline constexpr glm::vec3 kHeadOrigin{0.0f, 163.5f, 1.0f};
 
-// Landmarks of the left side: averages of adult heads (docs/DEFAULT-CHARACTER.md).
+// Landmarks on the left side, averaged over adult heads (docs/DEFAULT-CHARACTER.md).
 inline constexpr glm::vec3 kEyeCentre{3.2f, 0.0f, 7.22f};
 inline constexpr float kEyeRadius = 1.2f;
 inline constexpr float kInnerCanthusX = 1.72f;
@@ -27,9 +27,8 @@ inline constexpr float kMouthY = -6.90f;
 [[nodiscard]] glm::vec3 ModelToHead(const glm::vec3& p);
 
 // The shape of one head as a signed distance, negative inside, with a gradient of about 1 per
-// centimetre: skull, face and neck in one piece, slightly asymmetric. The lids cover the eyes up to
-// the openings; the lips meet at the line of the mouth. Ears, eyeballs and hair are separate
-// meshes.
+// centimetre: skull, face and neck in one piece, slightly asymmetric. The eyelids leave an
+// opening for each eye; the lips are closed. Ears, eyeballs and hair are separate meshes.
 class HeadShape {
  public:
   explicit HeadShape(const FaceParameters& face = {});

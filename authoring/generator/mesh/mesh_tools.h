@@ -10,18 +10,18 @@
 
 namespace furrow::authoring {
 
-// Appends the two triangles of a quad, counter-clockwise from outside. Corners that coincide (a
-// pole, a canthus) leave one triangle or none.
+// Appends the two triangles of a quad, counter-clockwise from outside. Degenerate triangles
+// are left out: a quad whose corners coincide (at a pole or a canthus) adds one triangle or none.
 void AddQuad(character::Mesh* mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c,
              std::uint32_t d);
 
 // Computes smooth normals, weighted by area and shared by vertices at the same position, so that UV
-// seams are invisible. Then computes tangents from the UVs.
+// seams do not show. Then computes tangents from the UVs.
 void FinishSurface(character::Mesh* mesh);
 
 // One point (x, y) of a piecewise linear function; x increases.
 using Knot = std::pair<float, float>;
-// Constant beyond both ends.
+// The function's value at `x`; constant beyond both ends.
 [[nodiscard]] float Interpolate(std::span<const Knot> knots, float x);
 
 // A bell curve: exp(-(x / width)^2).

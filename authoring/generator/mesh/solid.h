@@ -23,28 +23,29 @@ using Solid = std::function<float(const glm::vec3&)>;
 struct Section {
   float height;  // y
   float half_width;
-  float front;  // depth from the middle to the front; `back` likewise
-  float back;
-  float x;  // the middle
+  float front;  // depth in front of the centre
+  float back;   // depth behind it
+  float x;      // the centre
   float z;
 };
 
-// The section at a height, interpolated smoothly. `sections`: sorted by height, rising or falling.
-// Constant beyond both ends.
+// The section at `height`, interpolated smoothly between `sections` and constant beyond both ends.
+// Precondition: `sections` are sorted by height, in either direction.
 [[nodiscard]] Section SectionAt(std::span<const Section> sections, float height);
 
-// A solid of sections with rounded ends. `power`: 2 for ovals, more for squarer shapes.
+// A trunk through `sections`, with rounded ends. `power`: 2 for oval sections, more for squarer
+// ones.
 [[nodiscard]] float TrunkDistance(const glm::vec3& p, std::span<const Section> sections,
                                   float power);
 
-// The unit gradient by differences.
+// The unit gradient, from central differences.
 [[nodiscard]] glm::vec3 SolidNormal(const Solid& solid, const glm::vec3& p);
 
 // The surface point near `p`, by Newton steps along the gradient.
 [[nodiscard]] glm::vec3 OnSurface(const Solid& solid, const glm::vec3& p);
 
 // The point at which the ray from `from` (inside) along the unit vector `direction` first leaves
-// the solid, at most `reach` away.
+// the solid, or the point at distance `reach` if it is still inside there.
 [[nodiscard]] glm::vec3 CastOut(const Solid& solid, const glm::vec3& from,
                                 const glm::vec3& direction, float reach);
 

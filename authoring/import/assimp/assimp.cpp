@@ -388,7 +388,8 @@ Result<ForeignModel> ReadWithAssimp(std::string_view bytes, const std::string& e
   ForeignModel model;
   std::size_t at = 0;
   for (std::size_t end; (end = message->find('\n', at)) != at; at = end + 1) {
-    if (end == std::string::npos) return Status(StatusCode::kInternal, "an unfinished conversion");
+    if (end == std::string::npos)
+      return Status(StatusCode::kInternal, "the conversion ended early");
     model.remarks.push_back(message->substr(at, end - at));
   }
   model.glb = message->substr(at + 1);

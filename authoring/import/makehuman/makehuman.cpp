@@ -46,7 +46,7 @@ class MakeHumanImport {
 
   Result<character::Character> Run(ImportReport* report) {
     if (options_.texture_size < 64 || options_.texture_size > 4096)
-      return Status(StatusCode::kInvalidArgument, "texture_size is not in [64, 4096]");
+      return Status(StatusCode::kInvalidArgument, "texture_size must be in [64, 4096]");
     character_.name = "makehuman";
     using Step = Status (MakeHumanImport::*)();
     for (const Step step : {&MakeHumanImport::ReadBase, &MakeHumanImport::ReadGarment,
@@ -150,7 +150,7 @@ class MakeHumanImport {
     FURROW_RETURN_IF_ERROR(obj);
     if (obj->positions.size() != garment->vertices.size())
       return Status(StatusCode::kSchema,
-                    "fits " + std::to_string(garment->vertices.size()) + " vertices, but " +
+                    "lists " + std::to_string(garment->vertices.size()) + " vertices, but " +
                         garment->obj_file + " has " + std::to_string(obj->positions.size()),
                     path->string());
     garment_ = std::move(*garment);
@@ -254,8 +254,8 @@ class MakeHumanImport {
       constexpr float kFar = 100.0f;  // metres
       if (!(glm::length(p) < kFar))
         return Status(StatusCode::kInvalidArgument,
-                      "the garment '" + garment_->name + "' is 100 m away from the body",
-                      garment_->obj_file, "check its scales and offsets");
+                      "the garment '" + garment_->name + "' is 100 m or more away from the body",
+                      garment_->obj_file, "check the scales and offsets in its .mhclo file");
     }
     const SkinWeights skin = BindGarment(*garment_, base_.skin);
     std::vector<std::uint32_t> faces(garment_obj_.faces.size());

@@ -101,7 +101,8 @@ class MhcloParser {
     FURROW_RETURN_IF_ERROR(BaseIndex(words_[1], &scale.first));
     FURROW_RETURN_IF_ERROR(BaseIndex(words_[2], &scale.second));
     FURROW_RETURN_IF_ERROR(Number(words_[3], &scale.extent));
-    if (!(std::abs(scale.extent) > 1e-6f)) return Error(StatusCode::kSchema, "a scale of zero");
+    if (!(std::abs(scale.extent) > 1e-6f))
+      return Error(StatusCode::kSchema, "a scale's length must not be zero");
     garment_.scales[axis] = scale;
     return {};
   }
@@ -137,9 +138,10 @@ class MhcloParser {
       FURROW_RETURN_IF_ERROR(BaseIndex(words_[i], &first));
       std::uint32_t last = first;
       if (i + 1 < words_.size() && words_[i + 1] == "-") {
-        if (i + 2 >= words_.size()) return Error(StatusCode::kParse, "a range without an end");
+        if (i + 2 >= words_.size()) return Error(StatusCode::kParse, "a range has no end");
         FURROW_RETURN_IF_ERROR(BaseIndex(words_[i + 2], &last));
-        if (last < first) return Error(StatusCode::kInvalidArgument, "a reversed range");
+        if (last < first)
+          return Error(StatusCode::kInvalidArgument, "a range ends before it starts");
         i += 2;
       }
       for (std::uint32_t vertex = first; vertex <= last; ++vertex) garment_.deleted[vertex] = true;

@@ -41,8 +41,9 @@ struct Mhclo {
 
 // Parses a .mhclo file. `num_base_vertices`: size of the base mesh; every index is checked.
 //
-// Errors name "source:line": kParse, kInvalidArgument (index out of range, reversed range),
-// kNonFinite, kSchema (missing obj_file or verts, a scale of zero, a file name with a folder).
+// Errors name "source:line": kParse, kInvalidArgument (index out of range, a range that ends before
+// it starts), kNonFinite, kSchema (missing obj_file or verts, a scale of length zero, a file name
+// with a folder).
 [[nodiscard]] Result<Mhclo> ParseMhclo(std::string_view text, std::string_view source,
                                        std::size_t num_base_vertices);
 

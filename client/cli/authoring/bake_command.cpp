@@ -71,7 +71,8 @@ Status CheckOutput(const BakeArguments& arguments) {
 }
 
 // Removes the strokes of maps that were not requested.
-void KeepRequested(const std::vector<std::string>& maps, std::vector<authoring::BakeStroke>* strokes) {
+void KeepRequested(const std::vector<std::string>& maps,
+                   std::vector<authoring::BakeStroke>* strokes) {
   if (maps.empty()) return;
   for (authoring::BakeStroke& stroke : *strokes) {
     std::erase_if(stroke.maps, [&](const std::string& map) {
@@ -203,8 +204,8 @@ void AddMaterialOptions(CLI::App& command, authoring::BakeOptions& options) {
   command
       .add_option_function<float>(
           "--share", share,
-          "Share of the compression that folds absorb; the material shortens "
-          "by the rest (default: 0.3 on skin, 0.4 on cloth)")
+          "Share of the compression that goes into folds; the rest shortens the "
+          "material (default: 0.3 on skin, 0.4 on cloth)")
       ->check(Within(0.0, 1.0));
   command
       .add_option("--skin-wavelength", options.skin.wavelength_mm,
@@ -217,13 +218,15 @@ void AddMaterialOptions(CLI::App& command, authoring::BakeOptions& options) {
       ->check(Within(0.2, 200.0))
       ->capture_default_str();
   command
-      .add_option("--fine-lines", options.skin.fine_lines,
-                  "Height of lines at a third of the wavelength on skin, as a share of their full "
-                  "height, for dry and old skin")
+      .add_option(
+          "--fine-lines", options.skin.fine_lines,
+          "Height of the fine lines of dry or old skin, as a fraction of their full height; they "
+          "have a third of the wavelength")
       ->check(Within(0.0, 1.0))
       ->capture_default_str();
   command
-      .add_option("--seed", options.seed, "Seed; another seed gives other folds of the same kind")
+      .add_option("--seed", options.seed,
+                  "Random seed; a different seed gives different folds of the same kind")
       ->capture_default_str();
   command
       .add_option("--threads", options.threads,
@@ -259,7 +262,7 @@ void AddBake(CLI::App& app, Action& action) {
                        {{"png", MapFormat::kPng}, {"exr", MapFormat::kExr}},
                        "File format: 16-bit PNG with a scale in the rig, or half-float EXR");
   command->add_flag("--masks", arguments->masks,
-                    "Assign the masks that the poses suggest to the rig's regions");
+                    "Give each region of the rig the mask that its poses suggest");
   AddMaterialOptions(*command, arguments->options);
   command->callback([arguments, &action] { action = [arguments] { return Bake(*arguments); }; });
 }

@@ -107,7 +107,7 @@ void AddRigPatch(CLI::App& app, Action& action) {
   command
       ->add_option(
           "--direction", arguments->direction,
-          "Direction of \"along\" in model axes at rest; its component in the surface counts")
+          "Direction of \"along\", in model axes at rest; it is projected onto the surface")
       ->check(VectorValidator())
       ->capture_default_str();
   command

@@ -113,12 +113,13 @@ void AddConvert(CLI::App& app, Action& action) {
       "Write the recorded weights of a take as CSV (frame,time,<names>) instead of poses");
   command
       ->add_option("--scale", options->load.scale,
-                   "Factor for all lengths, because BVH has no unit")
+                   "Factor for all lengths; BVH files do not state their unit")
       ->check(Within(1e-6, 1e6))
       ->capture_default_str();
   command
-      ->add_option("--sample-rate", options->load.sample_rate,
-                   "Sample rate in Hz for formats with curves; 0 uses the keys of the file")
+      ->add_option(
+          "--sample-rate", options->load.sample_rate,
+          "Sample rate in Hz for formats that store curves; 0 uses the file's own key times")
       ->check(Within(0.0, 1000.0))
       ->capture_default_str();
   const std::map<std::string, motion::BvhPositions> positions{

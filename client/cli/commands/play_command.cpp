@@ -134,8 +134,9 @@ void AddPlay(CLI::App& app, Action& action) {
   command->add_flag("--loop", options->loop, "Repeat until Ctrl-C; pose numbers continue");
   command->add_flag(
       "--quantise", options->quantise,
-      "Send packed poses: 6 bytes per rotation (error up to 1.5e-4 rad) and translation "
-      "(error 1/65534 of the largest in the pose), 2 per blend shape (error 1/32768)");
+      "Send packed poses: 6 bytes per rotation (error up to 1.5e-4 rad), 6 per translation "
+      "(error up to 1/65534 of the largest in the pose) and 2 per blend shape (error up to "
+      "1/32768)");
   command->add_option("--scale", options->scale, "Metres per unit of the recording's lengths")
       ->check(Within(1e-6, 1e6))
       ->capture_default_str();

@@ -64,8 +64,8 @@ void AddChaos(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("chaos", HelpOf("chaos"));
   command
       ->add_option("--listen", options->proxy.listen_port,
-                   "UDP port for clients; 0 picks a free port, which the line 'furrow chaos ready' "
-                   "names")
+                   "UDP port for clients; 0 picks a free port and prints it in the line "
+                   "'furrow chaos ready'")
       ->required();
   command->add_option("--bind", options->proxy.listen_host, "Numeric address to listen on")
       ->capture_default_str();

@@ -17,7 +17,7 @@ void AddChaosFlags(CLI::App& command, ChaosFlags& flags) {
   };
   command
       .add_option("--seed", options.seed,
-                  "Seed of the faults; the same seed repeats the same faults per packet number")
+                  "Random seed; the same seed gives each packet number the same faults again")
       ->capture_default_str();
   probability("--loss", options.loss, "Probability that a datagram is lost");
   probability("--reorder", options.reorder,

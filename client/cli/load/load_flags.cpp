@@ -27,7 +27,7 @@ void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
       ->check(CLI::Range(1, 65535));
   command
       .add_option("--rate", options.run.plan.rate,
-                  "Poses per second and subject (default: the recording's own rate)")
+                  "Poses per second for each subject (default: the recording's own rate)")
       ->check(Within(0.01, 100000.0));
   command.add_option("--duration", options.run.plan.seconds, "Length of the run, in seconds")
       ->check(Within(0.01, 1e6))
@@ -37,9 +37,10 @@ void AddTrafficOptions(CLI::App& command, LoadFlags& options) {
   command.add_flag("--both", options.both, "Use UDP for half of the connections and TCP for half")
       ->excludes(udp)
       ->excludes(tcp);
-  command.add_option("--other-port", options.other_port,
-                     "furrowd's port of the transport that HOST does not name (default: 7400 for "
-                     "TCP, 7401 for UDP)");
+  command.add_option(
+      "--other-port", options.other_port,
+      "furrowd's port for the other transport, which PORT does not give (default: 7400 for "
+      "TCP, 7401 for UDP)");
   command.add_flag("--quantise", options.input.quantise,
                    "Send packed poses, as 'furrow play --quantise' does");
   command.add_option("--scale", options.input.scale, "Metres per unit of the recording's lengths")
@@ -65,12 +66,14 @@ void AddSubscriberOptions(CLI::App& command, LoadFlags& options) {
   AddSkeletonMap(command, options.input.skeleton_map);
   command
       .add_option("--tolerance", options.run.tolerance,
-                  "Largest accepted difference of a weight in [0, 1]")
+                  "Largest accepted error of a weight, which is in [0, 1]")
       ->check(Within(0.0, 1.0))
       ->capture_default_str();
   command
-      .add_option("--late", options.late_ms,
-                  "Latency limit of weights, in milliseconds; also the p99 limit of --find-max")
+      .add_option(
+          "--late", options.late_ms,
+          "Latency above which a weight message counts as late, in milliseconds; also the limit "
+          "on p99 for --find-max")
       ->check(Within(0.001, 1e6))
       ->capture_default_str();
   command

@@ -72,7 +72,7 @@ Status FullPoseBuilder::MissingJoint(const std::string& joint) const {
 
 Status FullPoseBuilder::Unsupported() const {
   return {StatusCode::kUnsupported,
-          "driver '" + std::string(driver_) + "' is not raised by a pose of joints"};
+          "no pose of the joints raises driver '" + std::string(driver_) + "'"};
 }
 
 glm::vec3 AcrossBone(const glm::vec3& direction, const glm::vec3& bone) {
