@@ -45,7 +45,7 @@ run_tests() {
   ctest --preset "$1" -j "$jobs" "${exclude[@]}" "${@:2}"
 }
 
-# fuzz_all SECONDS: every fuzz target for so many seconds, with the committed seeds.
+# fuzz_all SECONDS: runs every fuzz target for SECONDS, with the committed seeds.
 fuzz_all() {
   build fuzz fuzz_targets
   local target name corpus log

@@ -19,8 +19,7 @@ namespace furrow::recording {
 // Writes one take to one file.
 //
 // - Write messages in order of log time, a subject's skeleton before its poses, and its names
-// before
-//   its weights.
+//   before its weights.
 // - Each (kind, subject, session) gets a channel on first use.
 // - Errors are mcap::Writer's. After the first error nothing more is written, and Close() still
 //   leaves a file that is readable up to that point.

@@ -210,7 +210,7 @@ Status Daemon::StartWeb() {
            },
        .answer =
            [this](const ApiRequest& request, Hub& hub, Time now) {
-             const Hub::ExclusiveLock alone(hub, 0);
+             const Hub::ExclusiveLock lock(hub, 0);
              return api_->Answer(request, hub, now);
            },
        .metrics = metrics_});
@@ -285,7 +285,7 @@ asio::awaitable<void> Daemon::SecondLoop() {
     co_await timer.async_wait(kAwaitTuple);
     const Time now = ReadClock();
     if (config_.verbose) {
-      const Hub::ExclusiveLock alone(*hub_, 0);
+      const Hub::ExclusiveLock lock(*hub_, 0);
       spdlog::info("{}", status_line.Next(hub_->num_subjects(), hub_->num_subscriptions(), now));
     }
   }

@@ -21,13 +21,11 @@ struct PatchOptions {
 // into a rig.
 //
 // - If the radius holds more triangles than a driver may have (wrinkle/rig/rig_check.h), the
-// nearest
-//   ones are taken.
+//   nearest ones are taken.
 // - Only triangles connected to the nearest one (weld.h) are taken, so a patch on one lip never
 //   includes the other lip.
 // - Positions are relative to the rig's anchor if the anchor moves the patch or is an ancestor of
-// the
-//   joints that do, and otherwise to the joint that moves the patch most. Skin weights below 0.001
+//   the joints that do, and otherwise to the joint that moves the patch most. Skin weights below 0.001
 //   are dropped.
 //
 // Errors: kNotFound (no such mesh, or no triangle within the radius; the message names the

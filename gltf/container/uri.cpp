@@ -61,7 +61,7 @@ Result<std::vector<std::uint8_t>> DecodeDataUri(std::string_view uri) {
   if (!IsDataUri(uri) || marker == std::string_view::npos) return broken;
   std::string_view text = uri.substr(marker + kBase64Marker.size());
   for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
-  if (text.size() % 4 == 1) return broken;  // 6 bits are no byte
+  if (text.size() % 4 == 1) return broken;  // 6 bits do not make a byte
   std::vector<std::uint8_t> bytes;
   bytes.reserve(text.size() / 4 * 3 + 2);
   std::uint32_t bits = 0;

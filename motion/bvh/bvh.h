@@ -14,8 +14,7 @@ namespace furrow::motion {
 // Reads a BVH text.
 //
 // - Accepted: several ROOTs, keywords in any case, names with blanks, LF, CRLF or CR, tabs, lines
-// of
-//   any length, a UTF-8 byte order mark. The locale has no effect.
+//   of any length, a UTF-8 byte order mark. The locale has no effect.
 // - CHANNELS: 0 to 6 per joint, in the joint's own order. Rotations are in degrees and multiply in
 //   that order, R = R1 * R2 * R3 (column vectors). The rest pose is OFFSET without rotation.
 //   BvhPositions explains position channels.

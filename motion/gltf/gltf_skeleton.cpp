@@ -17,7 +17,7 @@ using wrinkle::kNoJoint;
 static_assert(gltf::kNone == kNoJoint);
 
 // Without a skin: the trees that move. The nodes of VRM's expressions and look-at carry values, so
-// they are no joints unless joints hang below them.
+// they are joints only if joints hang below them.
 void AddMovingTrees(const gltf::NodeForest& forest, const gltf::VrmAnimation& vrm,
                     const gltf::Animation& animation, gltf::NodeSet* joints) {
   const auto carries_value = [&vrm](int node) {

@@ -18,8 +18,7 @@ inline constexpr int kNumLiveLinkFaceShapes = 61;
 // Epic's Live Link Face (ARKit mode, packet version 6), several phones on one port.
 //
 // - A frame has no joints and 61 blend shapes. 52 are in [0, 1]; the nine of head and eyes are
-// small
-//   signed numbers. All are passed on unchanged.
+//   small signed numbers. All are passed on unchanged.
 // - A datagram without a face yields a frame with tracked = false and the last values.
 // - The capture time follows from the sender's frame number, subframe and frame rate. A frame that
 //   is not newer than the last one is dropped as reordered, unless it is more than 5 s older: then

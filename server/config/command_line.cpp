@@ -18,8 +18,8 @@ $FURROW_DATA_DIR or from ../share/furrow beside the program. With --rig alone,
 it sends weights and renders no pictures.
 
 Exit codes: 0 stopped by SIGTERM or SIGINT, 1 failed at run time (for example a
-port is in use, or OpenGL is required and unavailable), 2 invalid command line,
-3 invalid input (config, character, rig).)";
+port is in use, or OpenGL is required and unavailable), 2 wrong usage,
+3 bad input (config, character, rig).)";
 
 // Flags that are applied after the configuration file has been read.
 struct Flags {

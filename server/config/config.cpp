@@ -16,11 +16,15 @@ Status ValidateLimits(const Limits& limits) {
   const std::pair<const char*, int> counts[] = {
       {"max_connections", limits.max_connections},     {"max_udp_peers", limits.max_udp_peers},
       {"max_subjects", limits.max_subjects},           {"max_skeletons", limits.max_skeletons},
-      {"max_subscriptions", limits.max_subscriptions}, {"outbox_messages", limits.outbox_messages}};
+      {"outbox_messages", limits.outbox_messages}};
   for (const auto& [name, value] : counts) {
     if (value < 1 || value > 1'000'000) {
       return Invalid(std::string("limits.") + name + " must be 1 to 1000000");
     }
+  }
+  // A peer's subscription ids are 16 bits and not 0.
+  if (limits.max_subscriptions < 1 || limits.max_subscriptions > 65'535) {
+    return Invalid("limits.max_subscriptions must be 1 to 65535");
   }
   const std::pair<const char*, double> numbers[] = {
       {"packets_per_second", limits.packets_per_second},

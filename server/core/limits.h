@@ -11,7 +11,7 @@ struct Limits {
   int max_udp_peers = 4096;           // UDP addresses remembered; the longest idle one is evicted
   int max_subjects = 1024;            // subjects published at a time
   int max_skeletons = 256;            // bound skeletons kept for reuse
-  int max_subscriptions = 64;         // per peer
+  int max_subscriptions = 64;         // per peer, at most 65,535
   double packets_per_second = 20000;  // per peer: datagrams or TCP messages
   double packet_burst = 4000;         // per peer: messages accepted at once
   int outbox_messages = 64;   // per TCP peer: queued frames; newer frames replace older ones

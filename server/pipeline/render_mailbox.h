@@ -76,9 +76,8 @@ class RenderMailbox {
   // Adds a job. Waiting tickets of the same subscriptions for other pictures are removed, and so
   // are jobs without tickets.
   // - kQueued: a new job waits.
-  // - kReplaced: the job replaced one of the same subject and spec and took over its tickets.
-  // Tickets
-  //   for stills become normal ones if the subject has moved.
+  // - kReplaced: the job replaced one of the same subject and spec and took over its tickets. If the
+  //   subject has moved, tickets for stills become normal ones.
   // - kNotWanted: the job has no tickets and there was no job to refresh.
   // - kFull: `capacity` jobs wait, or the mailbox is closed. Only then `job` is left unchanged.
   PutResult Put(RenderJob&& job);

@@ -103,7 +103,7 @@ class Hub {
   // A frame of a foreign mocap wire. The peer was added to shard 0 as Transport::kMocap.
   void OnMocapFrame(PeerId id, const protocol::mocap::NeutralFrame& frame, Time now);
 
-  // The remaining functions are called by the thread of shard 0.
+  // Shard 0's thread calls the remaining functions.
 
   void OnPicture(const FinishedPicture& picture);
   // Handles lost and decaying subjects, leases, and frames held back by rates. Call it about every

@@ -82,7 +82,7 @@ test('capture: preview changes nothing, capture changes the rig, undo reverts it
   await still(page);
   const file = () => fetch(`${daemon.address}api/rig.json`).then((response) => response.text());
   const before = await file();
-  await page.selectOption('select[aria-label="What the pose becomes"]', 'brow_lower_l');
+  await page.selectOption('select[aria-label="Save the pose as"]', 'brow_lower_l');
   await page.getByRole('button', { name: 'Preview' }).click();
   await page.getByText('Preview: weights with this pose').waitFor();
   assert.equal(await file(), before);

@@ -38,7 +38,7 @@ test('each condition has its own sentence', () => {
 });
 
 test('an API error names field and remedy', () => {
-  assert.equal(new ApiError(400, 'subsurface.width', '12 is not allowed: [0, 8]').words(), 'subsurface.width: 12 is not allowed: [0, 8]');
+  assert.equal(new ApiError(400, 'subsurface.width', '12 is invalid (valid: [0, 8])').words(), 'subsurface.width: 12 is invalid (valid: [0, 8])');
   assert.equal(new ApiError(409, '', 'nothing to undo', 'capture first').words(), 'nothing to undo (capture first)');
 });
 

@@ -34,7 +34,7 @@ class TakeRecorder {
   // Records one event. Errors: those of TakeFolder.
   [[nodiscard]] Status OnEvent(const client::Event& event, client::Subscriber& subscriber,
                                std::int64_t now_us);
-  // Flushes buffered data if it is due. Call it several times per second.
+  // Flushes buffered data if the flush interval has passed. Call it several times per second.
   [[nodiscard]] Status Flush(std::int64_t now_us);
   // Completes the file, if there is one.
   [[nodiscard]] Status Close();

@@ -63,7 +63,7 @@ std::vector<glm::vec3> ArrangeGroup(int subjects, float spacing, float around, f
     const int in_row = std::min(columns, subjects - row * columns);
     const float before = left;
     left = -0.5f * static_cast<float>(in_row - 1);
-    // Shift by half a place, so that the row stands in the gaps of the previous row.
+    // Shift by half a place, so that the row fills the gaps of the previous row.
     const float shift = left - before - std::floor(left - before);
     if (row > 0 && std::abs(shift - 0.5f) > 0.25f) left += row % 2 == 1 ? 0.5f : -0.5f;
     for (int i = 0; i < in_row; ++i) {

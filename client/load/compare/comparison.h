@@ -43,7 +43,7 @@ struct UnpairedFigure {
 };
 
 // Ratio of the lowest failed rate to the highest sustained rate at which a search ends. Ratios of
-// highest rates are no more precise than this.
+// highest rates are only this precise.
 inline constexpr double kSearchPrecision = 1.05;
 
 struct ComparisonOptions {

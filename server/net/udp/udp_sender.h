@@ -39,8 +39,8 @@ class UdpSender {
   // Messages committed from now on are lost.
   void Close() { socket_ = -1; }
 
-  // Returns space for one message or fragment of at most kMaxDatagramBytes. Flushes first if there
-  // is no space left.
+  // Returns space for one message or fragment of at most kMaxDatagramBytes. Flushes first if the
+  // buffer is full.
   [[nodiscard]] std::span<std::uint8_t> Prepare();
   // Adds the `size` bytes written to the space from Prepare(). Equal keys mean equal addresses.
   void Commit(std::uint64_t key, const asio::ip::udp::endpoint& to, std::size_t size,

@@ -14,9 +14,8 @@ namespace furrow::server {
 
 // The bounded send queue of one peer. A slow peer loses old frames and delays nobody else.
 //
-// - Replies are never dropped. A peer with `max_replies` or `max_reply_bytes` of queued replies
-// does
-//   not read; the caller closes it.
+// - Replies are never dropped. A peer with `max_replies` or `max_reply_bytes` of queued replies is
+//   not reading; the caller closes it.
 // - Frames have a key, their subscription. At most `keep` frames of a key are queued; a new frame
 //   then replaces the oldest. Pictures keep 1; weights keep a few, so that a burst of poses is not
 //   lost to a peer that keeps up.

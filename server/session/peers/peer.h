@@ -26,8 +26,8 @@ enum class Transport { kTcp, kUdp, kMocap, kWeb };
 
 // Carries messages to one peer. The network layer implements it.
 //
-// The hub calls it under the exclusive lock. SendFrame() is also called under a shard's lock, by
-// several shards at once.
+// The hub calls it under the exclusive lock. SendReply() is also called under the lock of the peer's
+// own shard; SendFrame() and DropFrames() under the lock of any shard, by several at once.
 class Link {
  public:
   virtual ~Link() = default;

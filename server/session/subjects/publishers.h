@@ -55,8 +55,9 @@ class Publishers {
   void OnGoodbye(const Peer& peer, const protocol::Header& header, Time now);
 
   enum class Change { kNone, kDecayed, kGone };
-  // Decays a subject without poses. kDecayed: its weights have changed. kGone: it is neutral and
-  // its publisher has left; the caller notifies subscribers and removes it from the registry.
+  // Decays a subject without poses. kDecayed: its weights have changed. kGone: its publisher
+  // has left and it is neutral, or it has been idle for Limits::idle_seconds; the caller notifies
+  // subscribers and removes it from the registry.
   Change AgeSubject(Subject& subject, Time now);
 
  private:

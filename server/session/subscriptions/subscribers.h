@@ -35,6 +35,8 @@ class Subscribers {
   Subscribers(const Limits& limits, SubjectRegistry* subjects, PictureSource* pictures,
               const render::Settings& settings, bool all_drivers, PublishContext* context,
               Metrics* metrics);
+  Subscribers(const Subscribers&) = delete;  // its parts point at each other
+  Subscribers& operator=(const Subscribers&) = delete;
 
   // Replies with SubscribeReply or an error.
   void Subscribe(Peer& peer, const protocol::Header& header,

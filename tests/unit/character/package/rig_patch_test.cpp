@@ -143,7 +143,7 @@ TEST(RigPatch, ExplainsWhyNoPatchWasCut) {
   EXPECT_THAT(CutPatch(sheets, far).status().what(), HasSubstr("nearest is at 0.1000,0.0000"));
   const Status small = CutPatch(sheets, Middle(0.001f)).status();
   EXPECT_EQ(small.code(), StatusCode::kNotFound);
-  EXPECT_THAT(small.what(), HasSubstr("within 1.0 mm; the nearest lies at 4.7 mm"));
+  EXPECT_THAT(small.what(), HasSubstr("within 1.0 mm; the nearest is 4.7 mm away"));
   PatchOptions nowhere = Middle();
   nowhere.mesh = "tail";
   EXPECT_EQ(CutPatch(sheets, nowhere).status().code(), StatusCode::kNotFound);

@@ -11,7 +11,7 @@
 namespace furrow::chaos {
 namespace {
 
-// A connection through a relay. Data written at one end arrives at the other when it is due.
+// A connection through a relay. Data written at one end arrives at the other end at its scheduled time.
 class TcpRelayTest : public testing::Test {
  protected:
   void Open(const Faults& up, const Faults& down = {}) {

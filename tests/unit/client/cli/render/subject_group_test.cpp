@@ -24,7 +24,7 @@ TEST(ArrangeGroup, NoSubjectHidesAnother) {
       ASSERT_EQ(spots.size(), static_cast<std::size_t>(people));
       for (std::size_t i = 0; i < spots.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
-          // Neighbours in a row are one spacing apart. The next row stands in the gaps, higher and
+          // Neighbours in a row are one spacing apart. The next row fills the gaps, higher and
           // behind.
           const glm::vec3 apart = spots[i] - spots[j];
           EXPECT_LE(apart.z, 0.0f);

@@ -43,7 +43,7 @@ class RunTest : public testing::Test {
   RunOptions options_;
 };
 
-// A pose that is sent early would return before it is due.
+// A pose that is sent early would return before its scheduled time.
 TEST_F(RunTest, NoPoseIsSentBeforeItIsDue) {
   const RunResult result = Run([] { return true; });
   EXPECT_EQ(result.tally.sent, 40u);
