@@ -25,8 +25,8 @@ struct PatchOptions {
 // - Only triangles connected to the nearest one (weld.h) are taken, so a patch on one lip never
 //   includes the other lip.
 // - Positions are relative to the rig's anchor if the anchor moves the patch or is an ancestor of
-//   the joints that do, and otherwise to the joint that moves the patch most. Skin weights below 0.001
-//   are dropped.
+//   the joints that do, and otherwise to the joint that moves the patch most. Skin weights below
+//   0.001 are dropped.
 //
 // Errors: kNotFound (no such mesh, or no triangle within the radius; the message names the
 // nearest), kInvalidArgument (a driver that CheckRigFields() rejects, or a patch that a single
