@@ -93,6 +93,7 @@ class PageRun:
         self.folder = folder
         self.daemon = None
         self.performer = None
+        self.plays = False  # the daemon plays a recording itself
         built = documents.programs().resolve().parent
         self.share = built / "share" / "furrow"
         performance = self.share / "recordings" / "performance.bvh"
@@ -110,6 +111,7 @@ class PageRun:
             self.performer.__exit__()
         code = self.daemon.stop() if self.daemon else 0
         self.performer = self.daemon = None
+        self.plays = False
         return [f"furrowd ended with exit code {code}"] if code else []
 
     def write_file(self, block):
@@ -123,9 +125,9 @@ class PageRun:
             self.daemon = documents.Daemon(*([] if pictures else ["--no-render"]), cwd=self.folder)
 
     def require_subject(self):
-        with urllib.request.urlopen(f"http://{self.daemon.address('http')}/api/subjects") as answer:
-            is_empty = b'"name"' not in answer.read()
-        if is_empty:
+        # A subject of an earlier `furrow play` is listed for a while after it ended, so the list alone does not
+        # tell whether somebody performs.
+        if self.performer is None and not self.plays:
             self.performer = documents.Performer(self.daemon, self.folder / "take.bvh", "stage")
 
     def run(self, line):
@@ -134,6 +136,7 @@ class PageRun:
         if words[0] == "furrowd":
             self.close()
             self.daemon = documents.Daemon(*words[1:], cwd=self.folder)
+            self.plays = "--play" in words
         elif words[0] == "curl":
             self.require_daemon(False)
             address = words[-1].replace("localhost:7480", self.daemon.address("http"))
