@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "base/data_dir.h"
+#include "base/text.h"
 #include "bench/load/budget.h"
 #include "bench/load/curves.h"
 #include "bench/load/measure_aims.h"
@@ -23,7 +24,6 @@
 #include "bench/report/value_or_exit.h"
 #include "client/net/clock.h"
 #include "report/table.h"
-#include "report/words.h"
 
 namespace furrow::bench {
 namespace {
@@ -87,7 +87,7 @@ std::string Heading(const Machine& machine, const LoadSetup& setting, double min
   return "Measured by `bench_load`: " + ToText(machine) + ", load " +
          report::Fixed(machine.load, 1) + " before it began. Runs of " +
          report::Fixed(setting.seconds, 1) + " s, " +
-         report::Counted(static_cast<std::uint64_t>(setting.rounds), "round") +
+         Counted(static_cast<std::uint64_t>(setting.rounds), "round") +
          " where runs are paired; it took " + report::Fixed(minutes, 1) + " minutes.\n\n";
 }
 

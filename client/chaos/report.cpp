@@ -5,12 +5,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report/words.h"
+#include "base/text.h"
 
 namespace furrow::chaos {
 namespace {
 
-using furrow::report::Counted;
+using furrow::Counted;
 
 // One kind of datagram fault, with its option and its fields.
 struct Fault {

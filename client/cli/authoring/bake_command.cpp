@@ -14,6 +14,7 @@
 #include "authoring/bake/strokes_file.h"
 #include "authoring/bake/surface/surface_check.h"
 #include "base/status.h"
+#include "base/text.h"
 #include "character/pictures/picture_file.h"
 #include "client/cli/authoring/commands.h"
 #include "client/cli/authoring/staged_folder.h"
@@ -23,7 +24,6 @@
 #include "client/cli/common/inputs.h"
 #include "client/cli/common/interrupt.h"
 #include "client/cli/common/progress.h"
-#include "report/words.h"
 #include "rig/rig_file.h"
 
 namespace furrow::cli {
@@ -166,7 +166,7 @@ void PrintSummary(const BakeArguments& arguments, const BakeJob& job,
   }
   if (!job.poses.notes.empty()) {
     std::fprintf(stderr, "furrow: %s not baked; see report.html\n",
-                 report::Counted(job.poses.notes.size(), "source").c_str());
+                 Counted(job.poses.notes.size(), "source").c_str());
   }
   std::fprintf(stderr, "furrow: %s in %.1f s; open %s/report.html, and render it with --rig %s\n",
                arguments.out.c_str(), seconds, arguments.out.c_str(), NewRig(arguments).c_str());

@@ -10,18 +10,16 @@
 #include "authoring/import/makehuman/makehuman.h"
 #include "authoring/import/model/import_model.h"
 #include "base/status.h"
+#include "base/text.h"
 #include "character/package/package.h"
 #include "client/cli/authoring/character_command.h"
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/inputs.h"
 #include "client/cli/common/progress.h"
 #include "motion/pose_source.h"
-#include "report/words.h"
 
 namespace furrow::cli {
 namespace {
-
-using report::Counted;
 
 struct ImportArguments {
   std::string in;

@@ -6,16 +6,14 @@
 
 #include "authoring/import/model/import_model.h"
 #include "base/status.h"
+#include "base/text.h"
 #include "client/cli/authoring/character_command.h"
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/inputs.h"
-#include "report/words.h"
 #include "rig/rig_file.h"
 
 namespace furrow::cli {
 namespace {
-
-using report::Counted;
 
 struct ProposeArguments {
   std::string file;

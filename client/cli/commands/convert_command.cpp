@@ -10,6 +10,7 @@
 
 #include "base/ascii.h"
 #include "base/files.h"
+#include "base/text.h"
 #include "client/cli/commands/commands.h"
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/inputs.h"
@@ -17,12 +18,9 @@
 #include "motion/clip/clip.h"
 #include "motion/clip_file.h"
 #include "recording/take_poses.h"
-#include "report/words.h"
 
 namespace furrow::cli {
 namespace {
-
-using report::Counted;
 
 struct ConvertOptions {
   std::string in;

@@ -5,18 +5,16 @@
 #include <map>
 #include <memory>
 
+#include "base/text.h"
 #include "client/cli/commands/commands.h"
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/inputs.h"
 #include "motion/clip/clip.h"
 #include "recording/take_poses.h"
 #include "recording/take_summary.h"
-#include "report/words.h"
 
 namespace furrow::cli {
 namespace {
-
-using report::Counted;
 
 using recording::SubjectSummary;
 using recording::TakeReader;

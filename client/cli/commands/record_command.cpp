@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/status.h"
+#include "base/text.h"
 #include "client/cli/commands/commands.h"
 #include "client/cli/common/endpoint.h"
 #include "client/cli/common/exit_code.h"
@@ -19,13 +20,10 @@
 #include "client/cli/receive/receive_events.h"
 #include "client/cli/receive/take_recorder.h"
 #include "recording/take_poses.h"
-#include "report/words.h"
 #include "rig/rig_file.h"
 
 namespace furrow::cli {
 namespace {
-
-using report::Counted;
 
 struct RecordOptions {
   std::string host;

@@ -20,7 +20,6 @@
 #include "motion/clip/clip.h"
 #include "render/gl/pass_timer.h"
 #include "render/renderer.h"
-#include "report/words.h"
 
 namespace furrow::cli {
 namespace {
@@ -174,7 +173,7 @@ Result<std::pair<int, int>> FramesOf(const RenderOptions& options, int num_frame
   if (last < num_frames && last >= 0) return std::pair(first, last);
   return Status(StatusCode::kInvalidArgument,
                 "there is no frame " + std::to_string(std::max(last, 0)) + "; the recording has " +
-                    report::Counted(num_frames, "frame") + ", counted from 0",
+                    Counted(num_frames, "frame") + ", counted from 0",
                 options.files.empty() ? "" : options.files.front());
 }
 

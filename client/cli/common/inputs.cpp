@@ -8,12 +8,12 @@
 
 #include "base/data_dir.h"
 #include "base/status.h"
+#include "base/text.h"
 #include "character/package/package.h"
 #include "client/cli/common/progress.h"
 #include "motion/clip_file.h"
 #include "motion/pose_source.h"
 #include "recording/take_clip.h"
-#include "report/words.h"
 #include "rig/rig_file.h"
 
 namespace furrow::cli {
@@ -76,7 +76,7 @@ void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& cl
   static constexpr std::size_t kNamed = 4;
   const auto warn = [](std::span<const std::string> names, const std::string& one) {
     if (names.empty()) return;
-    std::string text = "the recording lacks " + report::Counted(names.size(), one) +
+    std::string text = "the recording lacks " + Counted(names.size(), one) +
                        " of the rig, and their drivers stay at 0: " + names[0];
     for (std::size_t i = 1; i < std::min(names.size(), kNamed); ++i) text += ", " + names[i];
     PrintWarnings({text + (names.size() > kNamed ? ", ..." : "")});

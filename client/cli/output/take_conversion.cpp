@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "base/status.h"
+#include "base/text.h"
 #include "client/cli/common/progress.h"
 #include "protocol/codec/codec.h"
 #include "protocol/messages/hash.h"
 #include "recording/take_writer.h"
 #include "recording/wire_pose.h"
-#include "report/words.h"
 
 namespace furrow::cli {
 namespace {
@@ -160,7 +160,7 @@ Result<std::string> WeightsToCsv(recording::TakeReader& take, const std::string&
                   file, "'furrow solve' computes weights from the poses");
   }
   if (table.foreign() > 0) {
-    report->warnings.push_back(file + ": skipped " + report::Counted(table.foreign(), "frame") +
+    report->warnings.push_back(file + ": skipped " + Counted(table.foreign(), "frame") +
                                " with weight names that differ from the first");
   }
   return table.csv();

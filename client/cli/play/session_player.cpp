@@ -10,15 +10,13 @@
 #include <thread>
 #include <utility>
 
+#include "base/text.h"
 #include "client/cli/common/endpoint.h"
 #include "client/cli/common/exit_code.h"
 #include "client/cli/common/interrupt.h"
 #include "client/cli/common/progress.h"
-#include "report/words.h"
 
 namespace furrow::cli {
-
-using report::Counted;
 
 using client::IoStatus;
 using std::chrono::microseconds;

@@ -5,13 +5,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/text.h"
 #include "report/table.h"
-#include "report/words.h"
 
 namespace furrow::load {
 namespace {
 
-using furrow::report::Counted;
+using furrow::Counted;
 using furrow::report::Fixed;
 using furrow::report::Table;
 

@@ -21,6 +21,14 @@ TEST(Quoted, CutsAfterFortyBytes) {
   EXPECT_EQ(Quoted(std::string(41, 'x')), "'" + std::string(40, 'x') + "...'");
 }
 
+TEST(Counted, OnlyOneIsSingular) {
+  EXPECT_EQ(Counted(0, "pose"), "0 poses");
+  EXPECT_EQ(Counted(1, "pose"), "1 pose");
+  EXPECT_EQ(Counted(21, "pose"), "21 poses");
+  EXPECT_EQ(Counted(1, "search", "searches"), "1 search");
+  EXPECT_EQ(Counted(2, "search", "searches"), "2 searches");
+}
+
 TEST(LineOf, CountsFromOne) {
   constexpr std::string_view kText = "a\nbc\n\nd";
   EXPECT_EQ(LineOf(kText, 0), 1u);
