@@ -3,6 +3,9 @@
 # folder of a library is compiled as one translation unit, and test programs share a precompiled header.
 option(FURROW_UNITY "Compile each folder of a library as one unit, and precompile the tests' headers" ON)
 
+# Folders whose rooms share one unit, because all of them parse the same heavy headers (CLI11, Beast).
+set(FURROW_UNITY_SHARED client/cli server/http)
+
 # furrow_unity(TARGET): compiles the sources of each folder as one translation unit. Sources with the
 # property SKIP_UNITY_BUILD_INCLUSION are compiled separately.
 function(furrow_unity target)
@@ -16,6 +19,12 @@ function(furrow_unity target)
     if(NOT generated)
       cmake_path(GET source PARENT_PATH folder)
       file(RELATIVE_PATH folder "${CMAKE_SOURCE_DIR}" "${folder}")
+      foreach(shared IN LISTS FURROW_UNITY_SHARED)
+        cmake_path(IS_PREFIX shared "${folder}" is_shared)
+        if(is_shared)
+          set(folder "${shared}")
+        endif()
+      endforeach()
       string(REPLACE "/" "_" group "${folder}")
       set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${group}")
     endif()
