@@ -15,7 +15,7 @@
 #include "wrinkle/rig/driver_values.h"
 #include "wrinkle/rig/rig_check.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 namespace {
 
 using wrinkle::Driver;
@@ -184,4 +184,4 @@ Status CheckRig(const Rig& rig) {
   return References(rig).Check();
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

@@ -6,7 +6,7 @@
 #include "base/status.h"
 #include "wrinkle/rig/rig.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 
 // The largest number of exported names. wrinkle/rig/rig_check.h has the other limits.
 inline constexpr std::size_t kMaxExports = 4096;
@@ -16,4 +16,4 @@ inline constexpr std::size_t kMaxExports = 4096;
 // path of the field: "drivers[3].hinge.beta_degrees".
 [[nodiscard]] Status CheckRig(const wrinkle::Rig& rig);
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

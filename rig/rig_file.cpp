@@ -12,7 +12,7 @@
 #include "rig/rig_reader.h"
 #include "rig/rig_schema_text.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 
 std::string_view RigSchemaText() { return kRigSchemaText; }
 
@@ -43,4 +43,4 @@ Status SaveRig(const wrinkle::Rig& rig, const std::filesystem::path& path) {
   return WriteFileAtomically(path, RigToJson(rig));
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

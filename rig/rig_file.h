@@ -10,7 +10,7 @@
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/skeleton/pose_frame.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 
 // The text of rig/rig.fbs. Rigs are checked against it.
 [[nodiscard]] std::string_view RigSchemaText();
@@ -40,4 +40,4 @@ namespace furrow::character {
 // Writes RigToJson() to a file atomically. Invalid rigs are rejected, see CheckRig().
 [[nodiscard]] Status SaveRig(const wrinkle::Rig& rig, const std::filesystem::path& path);
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

@@ -13,7 +13,7 @@
 #include "rig/rig_reference_pose.h"
 #include "wrinkle/rig/rig_check.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 namespace {
 
 using wrinkle::FieldAt;
@@ -185,4 +185,4 @@ Status ReadReferencePoses(const TableList<schema::ReferencePose>* list,
   return PoseReader(list, folder, source).Run(poses);
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

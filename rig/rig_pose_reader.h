@@ -8,7 +8,7 @@
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/skeleton/pose_frame.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 
 // Reads the reference poses of a rig in the order of the file: lists of joints, frames of
 // recordings (searched in `folder`, then in FURROW_ASSET_PATH) and mixes, which may precede their
@@ -19,4 +19,4 @@ namespace furrow::character {
                                         const wrinkle::PoseSource& source,
                                         std::vector<wrinkle::ReferencePose>* poses);
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

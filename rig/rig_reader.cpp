@@ -11,7 +11,7 @@
 #include "rig/json/rig_tables.h"
 #include "rig/rig_pose_reader.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 namespace {
 
 using flatbuffers::String;
@@ -186,4 +186,4 @@ void DropBuildingBlocks(const schema::Rig& tables, wrinkle::Rig* rig) {
                 [&](const wrinkle::ReferencePose& pose) { return blocks.count(pose.name) > 0; });
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

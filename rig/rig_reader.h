@@ -7,7 +7,7 @@
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/skeleton/pose_frame.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 
 namespace schema {
 struct Rig;
@@ -23,4 +23,4 @@ struct Rig;
 // Removes the reference poses that are parts of mixes and that no driver uses.
 void DropBuildingBlocks(const schema::Rig& tables, wrinkle::Rig* rig);
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

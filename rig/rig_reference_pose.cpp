@@ -12,7 +12,7 @@
 #include "base/status.h"
 #include "wrinkle/skeleton/retarget.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 namespace {
 
 using wrinkle::JointDelta;
@@ -120,4 +120,4 @@ ReferencePose MixReferencePoses(std::string name, std::span<const WeightedPose> 
   return mix;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

@@ -8,7 +8,7 @@
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/skeleton/pose_frame.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 
 // Converts rotations about the fixed model axes, applied in the order x, y, z.
 [[nodiscard]] glm::quat FromEulerDegrees(const glm::vec3& degrees);
@@ -32,4 +32,4 @@ struct WeightedPose {
 [[nodiscard]] wrinkle::ReferencePose MixReferencePoses(std::string name,
                                                        std::span<const WeightedPose> parts);
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

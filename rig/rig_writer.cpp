@@ -8,7 +8,7 @@
 #include "rig/json/json_object.h"
 #include "rig/rig_file.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 namespace {
 
 using wrinkle::Rig;
@@ -135,4 +135,4 @@ std::string RigToJson(const Rig& rig) {
   return object.str() + "\n";
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

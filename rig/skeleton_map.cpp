@@ -13,7 +13,7 @@
 #include "base/files.h"
 #include "base/status.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 namespace {
 
 namespace fs = std::filesystem;
@@ -185,4 +185,4 @@ std::string JoinRoles(std::span<const JointRole> roles) {
   return text;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

@@ -11,7 +11,7 @@
 #include "wrinkle/skeleton/joint_role.h"
 #include "wrinkle/skeleton/skeleton.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 
 // A map fits a skeleton if it finds this many roles. Fewer matches may be coincidence.
 inline constexpr int kMinRoles = 6;
@@ -84,4 +84,4 @@ class SkeletonMaps {
 // Joins role names for messages: "leftToes, rightToes".
 [[nodiscard]] std::string JoinRoles(std::span<const wrinkle::JointRole> roles);
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

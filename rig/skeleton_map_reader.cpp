@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "rig/skeleton_map.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 namespace {
 
 using Json = nlohmann::json;
@@ -223,4 +223,4 @@ Result<SkeletonMap> ParseSkeletonMap(std::string_view json, std::string_view sou
   return map;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

@@ -8,7 +8,7 @@
 #include "base/status.h"
 #include "wrinkle/rig/rig_joints.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 namespace {
 
 using wrinkle::JointRole;
@@ -90,4 +90,4 @@ std::string Describe(const SkeletonRoles& roles) {
   return text;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

@@ -9,7 +9,7 @@
 #include "wrinkle/rig/rig.h"
 #include "wrinkle/skeleton/retarget.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 
 // How the joints of a stream or recording correspond to a rig and to a character.
 struct SkeletonMatch {
@@ -49,4 +49,4 @@ class SkeletonMatcher {
 // skeleton.
 [[nodiscard]] std::string Describe(const SkeletonRoles& roles);
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

@@ -30,17 +30,17 @@ fs::path RigOf(const fs::path& character, const fs::path& rig) {
 }
 
 Status LoadRigAlone(const fs::path& path, const wrinkle::PoseSource& poses, Assets* assets) {
-  auto rig = character::LoadRig(path, poses);
+  auto rig = rig::LoadRig(path, poses);
   if (rig.ok()) assets->rig = std::make_shared<const wrinkle::Rig>(*std::move(rig));
   return rig.status();
 }
 
 // Shipped maps are optional; only a map that the user asks for must exist.
-Result<character::SkeletonMatcher> LoadMatcher(const std::string& map) {
-  auto matcher = character::SkeletonMatcher::Create(map);
+Result<rig::SkeletonMatcher> LoadMatcher(const std::string& map) {
+  auto matcher = rig::SkeletonMatcher::Create(map);
   if (matcher.ok() || !map.empty()) return matcher;
   spdlog::warn("joints are matched by equal names only: {}", matcher.status().ToString());
-  return character::SkeletonMatcher();
+  return rig::SkeletonMatcher();
 }
 
 }  // namespace

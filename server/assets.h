@@ -16,7 +16,7 @@ namespace furrow::server {
 struct Assets {
   std::shared_ptr<const wrinkle::Rig> rig;
   std::shared_ptr<const character::Character> character;  // null: weights only
-  character::SkeletonMatcher skeletons;
+  rig::SkeletonMatcher skeletons;
   render::Settings settings;  // defaults for all pictures
 };
 

@@ -127,7 +127,7 @@ Status Daemon::StartRecording() {
   options.folder = {.folder = record.folder,
                     .rotate_bytes = static_cast<std::uint64_t>(record.rotate_megabytes * 1e6),
                     .rotate_ns = static_cast<std::uint64_t>(record.rotate_seconds * 1e9),
-                    .rig_json = character::RigToJson(*assets_.rig)};
+                    .rig_json = rig::RigToJson(*assets_.rig)};
   options.datagrams = record.datagrams;
   // Read once, so that setting the system clock during a recording does not move its time back.
   const Time now = ReadClock();

@@ -48,7 +48,7 @@ class Packager {
     for (const bool cloth : {false, true}) {
       FURROW_RETURN_IF_ERROR(AddMasks(cloth));
     }
-    FURROW_RETURN_IF_ERROR(character::CheckRig(out_.rig));
+    FURROW_RETURN_IF_ERROR(rig::CheckRig(out_.rig));
     FURROW_RETURN_IF_ERROR(CopyPictures());
     return std::move(out_);
   }

@@ -190,7 +190,7 @@ character::Character MakeDefaultCharacter(const wrinkle::Rig& rig,
 
 Status WriteCharacter(const std::filesystem::path& rigs, const CharacterOptions& options,
                       const std::filesystem::path& glb) {
-  Result<wrinkle::Rig> rig = character::LoadRig(rigs / "default.json");
+  Result<wrinkle::Rig> rig = rig::LoadRig(rigs / "default.json");
   FURROW_RETURN_IF_ERROR(rig);
   Result<std::vector<BakeStroke>> strokes = LoadStrokes(rigs / "default.strokes.json", rig.value());
   FURROW_RETURN_IF_ERROR(strokes);
@@ -227,7 +227,7 @@ Status WriteShare(const std::filesystem::path& rigs, const std::filesystem::path
   elder.texture_size = 512;
   FURROW_RETURN_IF_ERROR(WriteCharacter(rigs, elder, share / "elder.glb"));
   FURROW_RETURN_IF_ERROR(CopyRigs(rigs, share));
-  Result<wrinkle::Rig> rig = character::LoadRig(rigs / "default.json");
+  Result<wrinkle::Rig> rig = rig::LoadRig(rigs / "default.json");
   FURROW_RETURN_IF_ERROR(rig);
   return WriteRecordings(rig.value(), MakeSkeleton(), share / "recordings");
 }

@@ -14,10 +14,10 @@ Status WriteCharacterPackage(const character::Character& character,
                              const std::filesystem::path& glb) {
   std::filesystem::path rig = glb;
   rig.replace_extension(".rig.json");
-  if (const Status s = character::CheckRig(character.rig); !s.ok()) return s.Within(rig.string());
+  if (const Status s = rig::CheckRig(character.rig); !s.ok()) return s.Within(rig.string());
   const Result<std::string> bytes = character::CharacterGlb(character);
   if (!bytes.ok()) return bytes.status().Within(glb.string());
-  const std::string json = character::RigToJson(character.rig);
+  const std::string json = rig::RigToJson(character.rig);
   const FileToWrite files[] = {{glb, *bytes}, {rig, json}};
   return WriteFilesAtomically(files);
 }

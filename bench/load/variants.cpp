@@ -53,7 +53,7 @@ Status SaveMultipliedRig(const std::filesystem::path& path, int copies,
     }
     for (const wrinkle::Region& region : regions) rig->regions.push_back(Renamed(region, suffix));
   }
-  return character::SaveRig(*rig, out);
+  return rig::SaveRig(*rig, out);
 }
 
 Status SavePaddedRecording(const std::filesystem::path& path, int num_joints,

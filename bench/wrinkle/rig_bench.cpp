@@ -25,8 +25,8 @@ using bench::ValueOrExit;
 // Loaded once for all benchmarks.
 struct Performance {
   Performance() {
-    const Rig rig = ValueOrExit(character::LoadRig(
-        ValueOrExit(furrow::FindDataFile("rigs/default.json")), motion::CachedPoseSource()));
+    const Rig rig = ValueOrExit(rig::LoadRig(ValueOrExit(furrow::FindDataFile("rigs/default.json")),
+                                             motion::CachedPoseSource()));
     const auto clip = ValueOrExit(
         motion::LoadClip(ValueOrExit(furrow::FindDataFile("recordings/performance.bvh"))));
     binding = std::make_shared<const RigBinding>(ValueOrExit(

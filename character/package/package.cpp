@@ -90,7 +90,7 @@ Result<Character> LoadCharacter(const fs::path& glb, const fs::path& rig,
     std::error_code error;
     if (!fs::exists(rig_path, error)) return character;  // a character that does not wrinkle
   }
-  Result<wrinkle::Rig> loaded = LoadRig(rig_path, poses);
+  Result<wrinkle::Rig> loaded = rig::LoadRig(rig_path, poses);
   FURROW_RETURN_IF_ERROR(loaded);
   if (Status status = AttachRig(std::move(*loaded), rig_path.parent_path(), &*character);
       !status.ok()) {

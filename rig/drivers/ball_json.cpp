@@ -2,7 +2,7 @@
 #include "rig/drivers/driver_json.h"
 #include "rig/json/json_object.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 
 Status ReadFields(const schema::BallDriver& from, const std::string& at, wrinkle::BallDriver* to) {
   to->parent = from.parent()->str();
@@ -24,4 +24,4 @@ std::string FieldsToJson(const wrinkle::BallDriver& ball) {
       .str();
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

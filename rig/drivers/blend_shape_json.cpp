@@ -2,7 +2,7 @@
 #include "rig/drivers/driver_json.h"
 #include "rig/json/json_object.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 
 Status ReadFields(const schema::BlendShapeDriver& from, const std::string&,
                   wrinkle::BlendShapeDriver* to) {
@@ -20,4 +20,4 @@ std::string FieldsToJson(const wrinkle::BlendShapeDriver& shape) {
       .str();
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

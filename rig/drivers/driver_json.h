@@ -9,7 +9,7 @@
 
 // Reads and writes the fields of each driver kind. <kind>_json.cpp defines both functions; the
 // table of the kind is in rig.fbs.
-namespace furrow::character {
+namespace furrow::rig {
 
 // ReadFields() reads the schema's table. `at` is the path of the fields: "drivers[3].hinge".
 // FieldsToJson() writes the fields that differ from their defaults.
@@ -20,4 +20,4 @@ namespace furrow::character {
 FURROW_DRIVER_KINDS(FURROW_KIND_JSON)
 #undef FURROW_KIND_JSON
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

@@ -2,7 +2,7 @@
 #include "rig/drivers/driver_json.h"
 #include "rig/json/json_object.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 
 Status ReadFields(const schema::HingeDriver& from, const std::string&, wrinkle::HingeDriver* to) {
   to->parent = from.parent()->str();
@@ -20,4 +20,4 @@ std::string FieldsToJson(const wrinkle::HingeDriver& hinge) {
   return object.Float("beta_degrees", hinge.beta_degrees, 30.0f).str();
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

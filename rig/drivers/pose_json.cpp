@@ -2,7 +2,7 @@
 #include "rig/drivers/driver_json.h"
 #include "rig/json/json_object.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 namespace {
 
 std::string PointToJson(const wrinkle::ControlPoint& point) {
@@ -42,4 +42,4 @@ std::string FieldsToJson(const wrinkle::PoseDriver& pose) {
       .str();
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

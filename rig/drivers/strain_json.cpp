@@ -2,7 +2,7 @@
 #include "rig/drivers/driver_json.h"
 #include "rig/json/json_object.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 
 Status ReadFields(const schema::StrainDriver& from, const std::string&, wrinkle::StrainDriver* to) {
   to->joint = from.joint()->str();
@@ -39,4 +39,4 @@ std::string FieldsToJson(const wrinkle::StrainDriver& strain) {
       .str();
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

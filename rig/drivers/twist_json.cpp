@@ -2,7 +2,7 @@
 #include "rig/drivers/driver_json.h"
 #include "rig/json/json_object.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 
 Status ReadFields(const schema::TwistDriver& from, const std::string&, wrinkle::TwistDriver* to) {
   to->joint = from.joint()->str();
@@ -22,4 +22,4 @@ std::string FieldsToJson(const wrinkle::TwistDriver& twist) {
       .str();
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

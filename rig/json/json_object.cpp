@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 
-namespace furrow::character {
+namespace furrow::rig {
 namespace {
 
 std::string Indented(std::string_view text) {
@@ -66,4 +66,4 @@ std::string Bracketed(char open, const std::vector<std::string>& items, char clo
   return text + (one_line ? "" : "\n") + close;
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

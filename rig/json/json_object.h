@@ -10,7 +10,7 @@
 #include <glm/vec3.hpp>
 
 // Writes compact, readable JSON: default values are omitted, and small objects take one line.
-namespace furrow::character {
+namespace furrow::rig {
 
 [[nodiscard]] std::string Quote(std::string_view text);
 // The shortest decimal number that reads back as the same float.
@@ -63,4 +63,4 @@ class Object {
   std::vector<std::string> fields_;
 };
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

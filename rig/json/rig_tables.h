@@ -10,7 +10,7 @@
 #include "wrinkle/fields/rig_field.h"
 
 // Helpers to read the FlatBuffers tables of a rig.
-namespace furrow::character {
+namespace furrow::rig {
 
 template <class T>
 using TableList = flatbuffers::Vector<flatbuffers::Offset<T>>;
@@ -43,4 +43,4 @@ template <class T, class Each>
   return {};
 }
 
-}  // namespace furrow::character
+}  // namespace furrow::rig

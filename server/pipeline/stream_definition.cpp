@@ -79,7 +79,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::FindOrMake(
 
 Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
     wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes) {
-  character::SkeletonMatch match = matcher_.Match(skeleton, *rig_, character_);
+  rig::SkeletonMatch match = matcher_.Match(skeleton, *rig_, character_);
   auto binding = wrinkle::RigBinding::Create(*rig_, skeleton, blend_shapes,
                                              {.allow_missing = true, .aliases = match.aliases});
   FURROW_RETURN_IF_ERROR(binding);
@@ -90,8 +90,8 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
         static_cast<std::int16_t>(joint);
   }
   if (character_ != nullptr) {
-    definition->retarget = std::make_shared<const wrinkle::Retarget>(
-        character::MakeRetarget(match, skeleton, *character_));
+    definition->retarget =
+        std::make_shared<const wrinkle::Retarget>(rig::MakeRetarget(match, skeleton, *character_));
     definition->blend_shape_pose = std::make_shared<const wrinkle::BlendShapePose>(
         wrinkle::BlendShapePose::Create(*rig_, *character_, blend_shapes));
   }
@@ -105,7 +105,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
 
 // Once per definition, so that repeated offers do not flood the log.
 void StreamDefinitions::Report(const StreamDefinition& stream,
-                               const character::SkeletonMatch& match) const {
+                               const rig::SkeletonMatch& match) const {
   if (const std::string text = character::Describe(match.stream); !text.empty()) {
     spdlog::info("{}", text);
   }
@@ -138,7 +138,8 @@ void StreamDefinitions::Report(const StreamDefinition& stream,
   feeds_any |= std::ranges::any_of(
       stream.blend_shapes, [this](const std::string& shape) { return Reads(*rig_, shape); });
   if (!ignored.empty()) {
-    spdlog::info("joints that neither the rig nor the character has are ignored: {}", Join(ignored));
+    spdlog::info("joints that neither the rig nor the character has are ignored: {}",
+                 Join(ignored));
   }
   if (!feeds_any) {
     spdlog::warn(

@@ -47,7 +47,7 @@ class StreamDefinitions {
   // `character`: outlives this object; null: nothing is rendered. `matcher` finds the joints of
   // skeletons with other joint names than the rig and the character.
   StreamDefinitions(std::shared_ptr<const wrinkle::Rig> rig, const wrinkle::Skeleton* character,
-                    std::size_t capacity, character::SkeletonMatcher matcher = {})
+                    std::size_t capacity, rig::SkeletonMatcher matcher = {})
       : rig_(std::move(rig)),
         character_(character),
         capacity_(capacity),
@@ -77,12 +77,12 @@ class StreamDefinitions {
       const std::function<bool()>& may_make);
   [[nodiscard]] Result<std::shared_ptr<const StreamDefinition>> Make(
       wrinkle::Skeleton skeleton, std::vector<std::string> blend_shapes);
-  void Report(const StreamDefinition& stream, const character::SkeletonMatch& match) const;
+  void Report(const StreamDefinition& stream, const rig::SkeletonMatch& match) const;
 
   std::shared_ptr<const wrinkle::Rig> rig_;
   const wrinkle::Skeleton* character_;
   std::size_t capacity_;
-  character::SkeletonMatcher matcher_;
+  rig::SkeletonMatcher matcher_;
   std::set<std::string> rig_joints_;                          // all joints that the rig reads
   std::list<std::shared_ptr<const StreamDefinition>> known_;  // most recently used first
 };

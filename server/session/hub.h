@@ -46,7 +46,7 @@ class Hub {
     Limits limits;
     std::uint64_t session = 1;  // random, not 0
     std::shared_ptr<const wrinkle::Rig> rig;
-    character::SkeletonMatcher skeletons;          // finds the rig's joints in foreign skeletons
+    rig::SkeletonMatcher skeletons;                // finds the rig's joints in foreign skeletons
     const wrinkle::Skeleton* character = nullptr;  // null: render nothing
     PictureSource* pictures = nullptr;             // null: render nothing
     render::Settings settings;                     // defaults for all pictures

@@ -12,14 +12,14 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace furrow::character;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const auto rig = ParseRig(text, "fuzz.json", "no/such/folder");
+  const auto rig = rig::ParseRig(text, "fuzz.json", "no/such/folder");
   if (!rig.ok()) {
     if (!rig.status().where().starts_with("fuzz.json:")) std::abort();
     return 0;
   }
-  const std::string written = RigToJson(*rig);
-  const auto again = ParseRig(written, "written.json", "no/such/folder");
-  if (!again.ok() || RigToJson(*again) != written) std::abort();
+  const std::string written = rig::RigToJson(*rig);
+  const auto again = rig::ParseRig(written, "written.json", "no/such/folder");
+  if (!again.ok() || rig::RigToJson(*again) != written) std::abort();
   if (ReportOnRig(*rig).name != rig->name) std::abort();
   return 0;
 }

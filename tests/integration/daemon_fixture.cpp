@@ -128,7 +128,7 @@ motion::Clip ArkitClip(int num_frames) {
 
 std::vector<std::vector<float>> Solve(const motion::Clip& clip, const std::string& rig_name) {
   const auto path = std::filesystem::path(FURROW_SOURCE_DIR) / "rig" / "rigs" / rig_name;
-  auto rig = character::LoadRig(path, motion::CachedPoseSource());
+  auto rig = rig::LoadRig(path, motion::CachedPoseSource());
   EXPECT_TRUE(rig.ok()) << rig.status().ToString();
   auto binding = wrinkle::RigBinding::Create(*rig, clip.skeleton, clip.blend_shape_names,
                                              {.allow_missing = true});

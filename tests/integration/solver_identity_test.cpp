@@ -25,7 +25,7 @@ namespace {
 std::vector<std::vector<float>> SolveAsTheCommandLine(const motion::Clip& clip,
                                                       const std::string& rig_name) {
   const auto path = std::filesystem::path(FURROW_SOURCE_DIR) / "rig" / "rigs" / rig_name;
-  const auto rig = character::LoadRig(path, motion::CachedPoseSource());
+  const auto rig = rig::LoadRig(path, motion::CachedPoseSource());
   EXPECT_TRUE(rig.ok()) << rig.status().ToString();
   auto binding = wrinkle::RigBinding::Create(*rig, clip.skeleton, clip.blend_shape_names,
                                              {.allow_missing = true});

@@ -168,7 +168,7 @@ class MakeHumanImport {
     const Result<std::string> text = ReadFile(path, kMaxTextFileBytes);
     FURROW_RETURN_IF_ERROR(text);
     Result<wrinkle::Rig> rig =
-        character::ParseRig(*text, path.string(), folder_ / "poseunits", options_.poses);
+        rig::ParseRig(*text, path.string(), folder_ / "poseunits", options_.poses);
     FURROW_RETURN_IF_ERROR(rig);
     const Result<wrinkle::RigBinding> binding =
         wrinkle::RigBinding::Create(*rig, character_.skeleton, {});

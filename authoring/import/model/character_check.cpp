@@ -46,7 +46,7 @@ class Checker {
           bool rig_given)
       : character_(character), notes_(notes), rig_given_(rig_given) {}
 
-  CharacterReport Run(const character::SkeletonMaps& maps) {
+  CharacterReport Run(const rig::SkeletonMaps& maps) {
     report_.name = character_.name;
     report_.joints = FindJoints(character_.skeleton, maps);
     report_.space = FindCharacterSpace(character_, report_.joints);
@@ -287,8 +287,8 @@ std::size_t CharacterReport::Count(Severity severity) const {
 }
 
 CharacterReport CheckCharacter(const character::Character& character,
-                               const character::SourceNotes& notes,
-                               const character::SkeletonMaps& maps, bool rig_given) {
+                               const character::SourceNotes& notes, const rig::SkeletonMaps& maps,
+                               bool rig_given) {
   return Checker(character, notes, rig_given).Run(maps);
 }
 

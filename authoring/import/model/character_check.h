@@ -53,7 +53,7 @@ struct CharacterReport {
 //             no-face-joints, no-rig
 [[nodiscard]] CharacterReport CheckCharacter(const character::Character& character,
                                              const character::SourceNotes& notes,
-                                             const character::SkeletonMaps& maps, bool rig_given);
+                                             const rig::SkeletonMaps& maps, bool rig_given);
 
 // Counts triangles without area: coinciding corners or corners on one line.
 [[nodiscard]] std::size_t CountDegenerateTriangles(const character::Mesh& mesh);

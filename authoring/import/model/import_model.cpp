@@ -94,7 +94,7 @@ Result<OpenedModel> OpenModel(const fs::path& path) {
   return model;
 }
 
-Result<ImportedModel> ImportModel(const fs::path& path, const character::SkeletonMaps& maps,
+Result<ImportedModel> ImportModel(const fs::path& path, const rig::SkeletonMaps& maps,
                                   const ModelOptions& options) {
   Result<OpenedModel> opened = OpenModel(path);
   FURROW_RETURN_IF_ERROR(opened);

@@ -46,7 +46,7 @@ struct ImportedModel {
 // Errors: those of OpenModel(), and kUnsupported for the first error of CheckCharacter() (no skin,
 // no UVs, unskinned vertices, degenerate triangles).
 [[nodiscard]] Result<ImportedModel> ImportModel(const std::filesystem::path& path,
-                                                const character::SkeletonMaps& maps,
+                                                const rig::SkeletonMaps& maps,
                                                 const ModelOptions& options = {});
 
 }  // namespace furrow::authoring

@@ -194,8 +194,8 @@ int FoundJoints::Last(JointRole role) const {
   return found == roles.rend() ? kNoJoint : static_cast<int>(roles.rend() - found) - 1;
 }
 
-FoundJoints FindJoints(const Skeleton& skeleton, const character::SkeletonMaps& maps) {
-  character::SkeletonRoles known = maps.RolesOf(skeleton);
+FoundJoints FindJoints(const Skeleton& skeleton, const rig::SkeletonMaps& maps) {
+  rig::SkeletonRoles known = maps.RolesOf(skeleton);
   FoundJoints found;
   found.map = std::move(known.map);
   found.roles = found.map.empty() ? HierarchyReader(skeleton).Run() : std::move(known.roles);

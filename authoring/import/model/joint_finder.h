@@ -24,6 +24,6 @@ struct FoundJoints {
 // one fork with two legs and a spine, another with two arms and a neck, and the direction of the
 // toes for the sides. That is a guess which a person should check.
 [[nodiscard]] FoundJoints FindJoints(const wrinkle::Skeleton& skeleton,
-                                     const character::SkeletonMaps& maps);
+                                     const rig::SkeletonMaps& maps);
 
 }  // namespace furrow::authoring

@@ -148,7 +148,7 @@ Status WriteAll(const BakeArguments& arguments, const authoring::BakedMaps& maps
                                        .options = arguments.options,
                                        .seconds = seconds};
   FURROW_RETURN_IF_ERROR(folder->Write("report.html", authoring::ReportHtml(maps, facts)));
-  return folder->Write(NewRig(arguments).filename().string(), character::RigToJson(package->rig));
+  return folder->Write(NewRig(arguments).filename().string(), rig::RigToJson(package->rig));
 }
 
 void PrintSummary(const BakeArguments& arguments, const BakeJob& job,

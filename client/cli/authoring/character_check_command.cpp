@@ -45,7 +45,7 @@ Result<bool> AttachOptionalRig(const CheckArguments& arguments, character::Chara
 }
 
 int Check(const CheckArguments& arguments) {
-  const auto maps = character::SkeletonMaps::Load(arguments.map);
+  const auto maps = rig::SkeletonMaps::Load(arguments.map);
   if (!maps.ok()) return Fail(maps.status());
   auto opened = authoring::OpenModel(arguments.file);
   if (!opened.ok()) return Fail(opened.status());

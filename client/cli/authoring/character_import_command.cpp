@@ -76,7 +76,7 @@ Status AttachRigTo(const ImportArguments& arguments, character::Character* chara
 }
 
 int ImportFile(const ImportArguments& arguments) {
-  const auto maps = character::SkeletonMaps::Load(arguments.map);
+  const auto maps = rig::SkeletonMaps::Load(arguments.map);
   if (!maps.ok()) return Fail(maps.status());
   auto imported = authoring::ImportModel(arguments.in, *maps, arguments.model);
   if (!imported.ok()) return Fail(imported.status());

@@ -39,7 +39,7 @@ int Propose(const ProposeArguments& arguments) {
   if (!skeleton.ok()) return Fail(skeleton.status());
   const auto proposal = ProposeFromDefault(*skeleton, arguments.map);
   if (!proposal.ok()) return Fail(proposal.status().At(arguments.file));
-  if (Status s = character::SaveRig(proposal->rig, arguments.out); !s.ok()) return Fail(s);
+  if (Status s = rig::SaveRig(proposal->rig, arguments.out); !s.ok()) return Fail(s);
   PrintNotes(proposal->remarks);
   std::fprintf(stderr, "furrow: %s: %s, %s, %s; edit it, then run 'furrow rig check'\n",
                arguments.out.c_str(), Counted(proposal->rig.drivers.size(), "driver").c_str(),
@@ -52,9 +52,9 @@ int Propose(const ProposeArguments& arguments) {
 
 Result<authoring::RigProposal> ProposeFromDefault(const wrinkle::Skeleton& skeleton,
                                                   const std::string& map) {
-  const auto maps = character::SkeletonMaps::Load(map);
+  const auto maps = rig::SkeletonMaps::Load(map);
   FURROW_RETURN_IF_ERROR(maps);
-  const auto shipped = character::SkeletonMaps::LoadShipped();
+  const auto shipped = rig::SkeletonMaps::LoadShipped();
   FURROW_RETURN_IF_ERROR(shipped);
   const auto model = LoadCharacterArgument({}, {});
   FURROW_RETURN_IF_ERROR(model);

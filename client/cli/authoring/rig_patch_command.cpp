@@ -70,7 +70,7 @@ int Patch(const PatchArguments& arguments) {
   ParseVector(arguments.direction, &options.direction);
   const auto driver = character::CutPatch(*character, options);
   if (!driver.ok()) return Fail(driver.status());
-  const std::string json = character::DriverToJson(*driver);
+  const std::string json = rig::DriverToJson(*driver);
   const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(json.data()),
                                             json.size());
   if (!arguments.out.empty()) {

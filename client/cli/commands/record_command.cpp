@@ -75,7 +75,7 @@ Result<recording::TakeFolderOptions> FolderOptions(const RecordOptions& options)
   if (options.rig.empty()) return folder;
   const auto rig = LoadRigArgument(options.rig);
   FURROW_RETURN_IF_ERROR(rig);
-  folder.rig_json = character::RigToJson(*rig);
+  folder.rig_json = rig::RigToJson(*rig);
   return folder;
 }
 

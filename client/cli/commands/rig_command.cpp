@@ -64,7 +64,7 @@ int Check(const RigOptions& options) {
     report_options.skeleton = &clip->skeleton;
     report_options.blend_shape_names = clip->blend_shape_names;
   }
-  character::SkeletonMatch match;
+  rig::SkeletonMatch match;
   if (clip) {
     const auto matcher = LoadSkeletonMatcher(options.skeleton_map);
     if (!matcher.ok()) return Fail(matcher.status());

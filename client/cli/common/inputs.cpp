@@ -61,15 +61,15 @@ fs::path ResolveRigPath(const std::string& argument) {
 }
 
 Result<wrinkle::Rig> LoadRigArgument(const std::string& argument) {
-  return character::LoadRig(ResolveRigPath(argument), motion::CachedPoseSource());
+  return rig::LoadRig(ResolveRigPath(argument), motion::CachedPoseSource());
 }
 
-Result<character::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map) {
-  auto matcher = character::SkeletonMatcher::Create(map);
+Result<rig::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map) {
+  auto matcher = rig::SkeletonMatcher::Create(map);
   if (matcher.ok()) return matcher;
   if (!map.empty()) return matcher.status().At("--skeleton-map");
   PrintWarnings({"joints are matched by equal names only: " + matcher.status().ToString()});
-  return character::SkeletonMatcher();
+  return rig::SkeletonMatcher();
 }
 
 void WarnAboutMissing(const wrinkle::RigBinding& binding, const motion::Clip& clip) {

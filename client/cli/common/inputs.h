@@ -42,7 +42,7 @@ void PrintWarnings(const std::vector<std::string>& warnings);
 // Loads the skeleton map of --skeleton-map, by name or file. An empty `map` selects the best
 // shipped map per skeleton. Without shipped maps, joints match by equal names and a warning is
 // printed.
-[[nodiscard]] Result<character::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map);
+[[nodiscard]] Result<rig::SkeletonMatcher> LoadSkeletonMatcher(const std::string& map);
 
 // Prints one warning for the joints and one for the blend shapes that the rig reads and the
 // recording lacks, with their number and the first few names. A recording without any blend shapes

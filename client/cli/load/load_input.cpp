@@ -47,7 +47,7 @@ void QuantiseFrame(std::span<wrinkle::Transform> locals, std::span<const wrinkle
 
 // True if the recording has no joint and no blend shape that the rig reads, by name or by alias.
 bool NothingMatches(const wrinkle::Rig& rig, const motion::Clip& clip,
-                    const character::SkeletonMatch& match) {
+                    const rig::SkeletonMatch& match) {
   const auto joints = wrinkle::JointsOf(rig);
   const auto has_joint = [&](const std::string& name) { return joints.contains(name); };
   const auto has_blend_shape = [&](const wrinkle::Driver& driver) {

@@ -9,7 +9,7 @@ namespace furrow::cli {
 
 Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
     const character::Character& character, std::shared_ptr<const motion::Clip> clip,
-    const character::SkeletonMatcher& matcher, const std::string& file) {
+    const rig::SkeletonMatcher& matcher, const std::string& file) {
   auto self = std::make_unique<AnimatedSubject>();
   self->clip_ = std::move(clip);
   const motion::Clip& take = *self->clip_;
@@ -20,7 +20,7 @@ Result<std::unique_ptr<AnimatedSubject>> AnimatedSubject::Create(
   WarnAboutMissing(*binding, take);
   self->solver_ = std::make_unique<wrinkle::SubjectSolver>(
       std::make_shared<const wrinkle::RigBinding>(std::move(*binding)));
-  self->retarget_ = character::MakeRetarget(match, take.skeleton, character.skeleton);
+  self->retarget_ = rig::MakeRetarget(match, take.skeleton, character.skeleton);
   self->blend_shape_pose_ =
       wrinkle::BlendShapePose::Create(character.rig, character.skeleton, take.blend_shape_names);
   if (take.blend_shape_names.empty() &&

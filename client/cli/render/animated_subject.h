@@ -22,7 +22,7 @@ class AnimatedSubject {
   // kNotFound (the recording and the character have no joint in common).
   [[nodiscard]] static Result<std::unique_ptr<AnimatedSubject>> Create(
       const character::Character& character, std::shared_ptr<const motion::Clip> clip,
-      const character::SkeletonMatcher& matcher, const std::string& file);
+      const rig::SkeletonMatcher& matcher, const std::string& file);
 
   [[nodiscard]] int num_frames() const { return clip_->num_frames(); }
   // Solves frame `frame` in [0, num_frames). The filter has a memory, so call it for consecutive

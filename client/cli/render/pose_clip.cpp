@@ -13,7 +13,7 @@
 namespace furrow::cli {
 namespace {
 
-using character::WeightedPose;
+using rig::WeightedPose;
 
 constexpr float kMaxWeight = 4.0f;
 
@@ -112,7 +112,7 @@ Result<motion::Clip> PoseClip(const character::Character& character, const std::
   clip.skeleton = character.skeleton;
   clip.times = {0.0};
   clip.locals.assign(clip.skeleton.rest_pose().begin(), clip.skeleton.rest_pose().end());
-  const wrinkle::ReferencePose mix = character::MixReferencePoses(text, *parts);
+  const wrinkle::ReferencePose mix = rig::MixReferencePoses(text, *parts);
   FURROW_RETURN_IF_ERROR(wrinkle::ApplyReferencePose(mix, clip.skeleton, clip.locals));
   return clip;
 }

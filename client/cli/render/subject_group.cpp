@@ -102,7 +102,7 @@ render::Camera FrameGroup(const render::Camera& camera, const std::vector<glm::v
 Result<std::unique_ptr<SubjectGroup>> SubjectGroup::Create(
     const character::Character& character,
     const std::vector<std::shared_ptr<const motion::Clip>>& clips,
-    const std::vector<std::string>& files, const character::SkeletonMatcher& matcher,
+    const std::vector<std::string>& files, const rig::SkeletonMatcher& matcher,
     const GroupOptions& options) {
   auto self = std::make_unique<SubjectGroup>();
   self->character_ = &character;

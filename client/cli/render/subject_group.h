@@ -39,7 +39,7 @@ class SubjectGroup {
   [[nodiscard]] static Result<std::unique_ptr<SubjectGroup>> Create(
       const character::Character& character,
       const std::vector<std::shared_ptr<const motion::Clip>>& clips,
-      const std::vector<std::string>& files, const character::SkeletonMatcher& matcher,
+      const std::vector<std::string>& files, const rig::SkeletonMatcher& matcher,
       const GroupOptions& options);
 
   // Number of frames of the longest clip.

@@ -61,7 +61,7 @@ Result<wrinkle::Rig> WithReferencePose(const wrinkle::Rig& rig, const Subject& s
                                        const std::string& pose, bool* added) {
   const SubjectPipeline& pipeline = *subject.pipeline;
   auto captured =
-      character::ReferencePoseFromFrame(pose, {pipeline.stream().skeleton, pipeline.solved_pose()});
+      rig::ReferencePoseFromFrame(pose, {pipeline.stream().skeleton, pipeline.solved_pose()});
   FURROW_RETURN_IF_ERROR(captured);
   UseJointNamesOfRig(pipeline.stream(), &*captured);
   wrinkle::Rig changed = rig;

@@ -171,7 +171,7 @@ ApiReply RigApi::ShowRig(const Hub& hub) const {
 }
 
 ApiReply RigApi::RigFile(const Hub& hub) const {
-  return {.body = character::RigToJson(hub.rig()), .file_name = "rig.json"};
+  return {.body = rig::RigToJson(hub.rig()), .file_name = "rig.json"};
 }
 
 ApiReply RigApi::Explain(const ApiRequest& request, Hub& hub) const {

@@ -13,7 +13,7 @@
 #include "base/json_index.h"
 #include "tests/temporary_folder.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 namespace {
 
 using ::testing::HasSubstr;
@@ -384,4 +384,4 @@ TEST(RigFile, ReadsTheExampleInTheManual) {
 }
 
 }  // namespace
-}  // namespace furrow::character
+}  // namespace furrow::rig

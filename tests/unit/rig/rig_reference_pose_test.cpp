@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace furrow::character {
+namespace furrow::rig {
 namespace {
 
 using wrinkle::PoseFrame;
@@ -96,4 +96,4 @@ TEST(RigReferencePose, EulerAnglesTurnAboutFixedAxesInOrder) {
 }
 
 }  // namespace
-}  // namespace furrow::character
+}  // namespace furrow::rig

@@ -6,7 +6,7 @@
 
 #include "rig/rig_file.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 namespace {
 
 // A rig for a hip with a sliding mask. `mask`: more fields of the mask, each after a comma.
@@ -50,4 +50,4 @@ TEST(SlidingMaskInARig, RequiresABallDriverAndAnExtent) {
 }
 
 }  // namespace
-}  // namespace furrow::character
+}  // namespace furrow::rig

@@ -13,7 +13,7 @@
 #include "base/data_dir.h"
 #include "tests/temporary_folder.h"
 
-namespace furrow::character {
+namespace furrow::rig {
 namespace {
 
 namespace fs = std::filesystem;
@@ -223,4 +223,4 @@ TEST(SkeletonMaps, LoadsByNameByFileOrAll) {
 }
 
 }  // namespace
-}  // namespace furrow::character
+}  // namespace furrow::rig

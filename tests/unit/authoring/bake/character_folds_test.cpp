@@ -47,7 +47,7 @@ BakeOptions Exact() {
 }
 
 Result<character::Character> DefaultCharacter() {
-  auto rig = character::LoadRig(kRigs / "default.json");
+  auto rig = rig::LoadRig(kRigs / "default.json");
   FURROW_RETURN_IF_ERROR(rig);
   return MakeDefaultCharacter(*rig, {.texture_size = kTextureSize});
 }

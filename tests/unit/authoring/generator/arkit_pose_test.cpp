@@ -36,7 +36,7 @@ class ArkitPoseTest : public ::testing::Test {
  protected:
   static wrinkle::Rig LoadDefault() {
     Result<wrinkle::Rig> rig =
-        character::LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.json");
+        rig::LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.json");
     EXPECT_TRUE(rig.ok()) << rig.status().ToString();
     return rig.ok() ? std::move(rig).value() : wrinkle::Rig();
   }

@@ -43,10 +43,10 @@ class BodyMotion : public testing::Test {
     auto clip = motion::LoadClip(path, options);
     EXPECT_TRUE(clip.ok()) << clip.status().ToString();
     clip_ = *std::move(clip);
-    const auto matcher = character::SkeletonMatcher::Create("");
+    const auto matcher = rig::SkeletonMatcher::Create("");
     EXPECT_TRUE(matcher.ok()) << matcher.status().ToString();
     match_ = matcher->Match(clip_.skeleton, {}, &body_);
-    retarget_ = character::MakeRetarget(match_, clip_.skeleton, body_);
+    retarget_ = rig::MakeRetarget(match_, clip_.skeleton, body_);
     EXPECT_TRUE(retarget_.by_role());
     from_.resize(static_cast<std::size_t>(clip_.skeleton.num_joints()));
     to_.resize(static_cast<std::size_t>(body_.num_joints()));
@@ -79,7 +79,7 @@ class BodyMotion : public testing::Test {
 
   wrinkle::Skeleton body_ = MakeSkeleton();
   motion::Clip clip_;
-  character::SkeletonMatch match_;
+  rig::SkeletonMatch match_;
   wrinkle::Retarget retarget_;
   std::vector<wrinkle::Transform> local_;
   std::vector<glm::mat4> from_;

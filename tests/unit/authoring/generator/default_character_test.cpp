@@ -29,7 +29,7 @@ namespace {
 
 wrinkle::Rig DefaultRig() {
   Result<wrinkle::Rig> rig =
-      character::LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.json");
+      rig::LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.json");
   EXPECT_TRUE(rig.ok()) << rig.status().ToString();
   return rig.ok() ? std::move(rig).value() : wrinkle::Rig();
 }
@@ -348,7 +348,7 @@ TEST_F(PackageTest, ReadsBackEqual) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "furrow_share";
   std::filesystem::create_directories(folder);
   ASSERT_TRUE(character::SaveCharacterGlb(*character_, folder / "c.glb").ok());
-  ASSERT_TRUE(character::SaveRig(character_->rig, folder / "c.rig.json").ok());
+  ASSERT_TRUE(rig::SaveRig(character_->rig, folder / "c.rig.json").ok());
   Result<character::Character> read = character::LoadCharacter(folder / "c.glb");
   ASSERT_TRUE(read.ok()) << read.status().ToString();
   ASSERT_EQ(read.value().meshes.size(), character_->meshes.size());

@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 wrinkle::Rig Shipped(const char* name) {
-  return *LoadRig(std::string(FURROW_SOURCE_DIR "/rig/rigs/") + name);
+  return *rig::LoadRig(std::string(FURROW_SOURCE_DIR "/rig/rigs/") + name);
 }
 
 TEST(RigReport, CountsAndNames) {
@@ -48,7 +48,7 @@ TEST(RigReport, EveryBlendShapeOfArkitFeedsARegion) {
 }
 
 TEST(RigReport, WarnsOfUnusedPartsAndMissingReferences) {
-  const auto rig = ParseRig(R"({"name": "r", "reference_poses": [
+  const auto rig = rig::ParseRig(R"({"name": "r", "reference_poses": [
       {"name": "used", "joints": [{"joint": "other", "euler_degrees": [9, 0, 0]}]},
       {"name": "unused", "joints": []}],
     "drivers": [{"name": "d", "pose": {"points": [{"joint": "tip"}],
@@ -57,7 +57,7 @@ TEST(RigReport, WarnsOfUnusedPartsAndMissingReferences) {
     "regions": [{"name": "a", "mask": {"texture": "m.png"},
                  "feeds": [{"map": "m", "sources": [{"from": "d.v"}]}]}],
     "wrinkle_maps": [{"name": "m"}, {"name": "spare"}]})",
-                            "r", ".");
+                                 "r", ".");
   ASSERT_TRUE(rig.ok()) << rig.status().ToString();
   const auto skeleton = *wrinkle::Skeleton::Create({{"root", -1, {}, {}},
                                                     {"tip", 0, {glm::vec3(0, 1, 0)}, {}},

@@ -224,7 +224,7 @@ wrinkle::Skeleton LegsCalled(const std::vector<std::string>& names) {
 // The rig and the character use upper_leg_l, the stream mixamorig:LeftUpLeg.
 TEST(StreamDefinitions, AForeignStreamFeedsTheRigAndMovesTheCharacter) {
   setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/rig", 1);
-  const auto matcher = character::SkeletonMatcher::Create("");
+  const auto matcher = rig::SkeletonMatcher::Create("");
   unsetenv("FURROW_DATA_DIR");
   ASSERT_TRUE(matcher.ok()) << matcher.status().ToString();
   auto rig = std::make_shared<wrinkle::Rig>(*KneeRig());

@@ -40,7 +40,7 @@ class RecordingTest : public ::testing::Test {
   }
 
   Result<wrinkle::Rig> rig_ =
-      character::LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.json");
+      rig::LoadRig(std::filesystem::path(FURROW_SOURCE_DIR) / "rig/rigs/default.json");
   wrinkle::Skeleton skeleton_ = MakeSkeleton();
 };
 

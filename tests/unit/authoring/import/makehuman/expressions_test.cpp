@@ -45,8 +45,8 @@ class MakeHumanExpressions : public testing::Test {
     if (!fs::exists(kMakeHuman)) return;
     const Result<std::string> text = ReadFile(kRig, kMaxTextFileBytes);
     ASSERT_TRUE(text.ok()) << text.status().ToString();
-    const Result<wrinkle::Rig> rig = character::ParseRig(
-        *text, kRig.string(), kMakeHuman / "poseunits", motion::CachedPoseSource());
+    const Result<wrinkle::Rig> rig =
+        rig::ParseRig(*text, kRig.string(), kMakeHuman / "poseunits", motion::CachedPoseSource());
     ASSERT_TRUE(rig.ok()) << rig.status().ToString();
     const Result<motion::Clip> clip = motion::LoadClip(kShared / "performances/emotions.bvh");
     ASSERT_TRUE(clip.ok()) << clip.status().ToString();

@@ -252,7 +252,7 @@ TEST(ImportMakeHuman, PackageReadsBackWithTheSameRig) {
   ASSERT_TRUE(WriteCharacterPackage(*character, glb).ok());
   const Result<character::Character> loaded = character::LoadCharacter(glb);
   ASSERT_TRUE(loaded.ok()) << loaded.status().ToString();
-  EXPECT_EQ(character::RigToJson(loaded->rig), character::RigToJson(character->rig));
+  EXPECT_EQ(rig::RigToJson(loaded->rig), rig::RigToJson(character->rig));
   EXPECT_EQ(loaded->skeleton.num_joints(), character->skeleton.num_joints());
   EXPECT_EQ(loaded->meshes.size(), character->meshes.size());
   EXPECT_GE(loaded->FindRigPicture("face_masks_a"), 0);

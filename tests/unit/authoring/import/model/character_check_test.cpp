@@ -18,9 +18,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-character::SkeletonMaps Maps() {
-  return *character::SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) +
-                                        "/rig/skeleton_maps/vrm.json");
+rig::SkeletonMaps Maps() {
+  return *rig::SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/vrm.json");
 }
 
 // The reader's notes on a valid file.

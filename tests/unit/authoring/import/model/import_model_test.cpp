@@ -31,9 +31,8 @@ class Folder : public TemporaryFolder {
   }
 };
 
-character::SkeletonMaps Maps() {
-  return *character::SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) +
-                                        "/rig/skeleton_maps/vrm.json");
+rig::SkeletonMaps Maps() {
+  return *rig::SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/vrm.json");
 }
 
 // Model-space positions of all vertices with some joints turned. The key is the UV, because

@@ -21,9 +21,9 @@ namespace {
 
 using wrinkle::JointRole;
 
-character::SkeletonMaps Map(const std::string& name) {
-  return *character::SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/" +
-                                        name + ".json");
+rig::SkeletonMaps Map(const std::string& name) {
+  return *rig::SkeletonMaps::Load(std::string(FURROW_SOURCE_DIR) + "/rig/skeleton_maps/" + name +
+                                  ".json");
 }
 
 // The template rig of these tests, made for the body of boxes.
@@ -42,7 +42,7 @@ wrinkle::Rig ToyRig() {
     {"name": "elbow", "mask": {"texture": "painted", "channel": "r"},
      "feeds": [{"map": "folds", "sources": [{"from": "elbow_r.flexed"}]}]}],
    "wrinkle_maps": [{"name": "folds", "normal": "folds"}]})";
-  return *character::ParseRig(kText, "toy", ".");
+  return *rig::ParseRig(kText, "toy", ".");
 }
 
 const wrinkle::Driver* Find(const wrinkle::Rig& rig, const std::string& name) {
@@ -87,7 +87,7 @@ TEST_F(CmuProposal, HingesTurnAboutTheAxesOfTheShippedRig) {
 }
 
 TEST_F(CmuProposal, BindsStrictlyAndChecks) {
-  EXPECT_TRUE(character::CheckRig(rig_).ok()) << character::CheckRig(rig_).ToString();
+  EXPECT_TRUE(rig::CheckRig(rig_).ok()) << rig::CheckRig(rig_).ToString();
   const auto binding = wrinkle::RigBinding::Create(rig_, skeleton_, {});
   EXPECT_TRUE(binding.ok()) << binding.status().ToString();
   EXPECT_EQ(rig_.anchor, "Head");
@@ -129,7 +129,7 @@ TEST(RigProposal, OmitsPartsWithoutJointsAndTheirReferences) {
   EXPECT_NE(Find(proposal->rig, "elbow_r"), nullptr);
   ASSERT_EQ(proposal->rig.regions.size(), 1u);
   EXPECT_EQ(proposal->rig.regions[0].name, "elbow");
-  EXPECT_TRUE(character::CheckRig(proposal->rig).ok());
+  EXPECT_TRUE(rig::CheckRig(proposal->rig).ok());
 }
 
 TEST(RigProposal, UnknownSkeletonIsNotFound) {
@@ -157,8 +157,7 @@ TEST_P(Hierarchy, GivesTheSameRolesAsTheNames) {
     descs.push_back({"bone" + std::to_string(j), body.skeleton.joint_parents()[j],
                      body.skeleton.rest_pose()[j], body.skeleton.tails()[j]});
   }
-  const FoundJoints found =
-      FindJoints(*wrinkle::Skeleton::Create(descs), character::SkeletonMaps());
+  const FoundJoints found = FindJoints(*wrinkle::Skeleton::Create(descs), rig::SkeletonMaps());
   EXPECT_TRUE(found.map.empty());
   for (int j = 0; j < body.skeleton.num_joints(); ++j) {
     EXPECT_EQ(wrinkle::ToString(found.roles[j]), wrinkle::ToString(by_name.roles[j]))

@@ -105,7 +105,7 @@ class ApiForeignCaptureTest : public HubTest {
  protected:
   void SetUp() override {
     setenv("FURROW_DATA_DIR", FURROW_SOURCE_DIR "/rig", 1);
-    auto matcher = character::SkeletonMatcher::Create("");
+    auto matcher = rig::SkeletonMatcher::Create("");
     unsetenv("FURROW_DATA_DIR");
     ASSERT_TRUE(matcher.ok()) << matcher.status().ToString();
     wrinkle::Rig rig = MakeRig(/*filter=*/false);
