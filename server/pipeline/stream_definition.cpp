@@ -106,7 +106,7 @@ Result<std::shared_ptr<const StreamDefinition>> StreamDefinitions::Make(
 // Once per definition, so that repeated offers do not flood the log.
 void StreamDefinitions::Report(const StreamDefinition& stream,
                                const rig::SkeletonMatch& match) const {
-  if (const std::string text = character::Describe(match.stream); !text.empty()) {
+  if (const std::string text = rig::Describe(match.stream); !text.empty()) {
     spdlog::info("{}", text);
   }
   const auto missing_joints = stream.binding->missing_joints();
