@@ -32,6 +32,8 @@ Status CheckLabel(std::string_view label, const std::string& where) {
   return printable ? Status() : InvalidField("the name holds a control byte", where);
 }
 
+// Names become parts of "<region>.<map>", of subscription patterns and of OSC addresses. The
+// characters excluded here have a meaning there.
 Status CheckName(std::string_view name, const std::string& where) {
   FURROW_RETURN_IF_ERROR(CheckLabel(name, where));
   if (name.find_first_of(" .,;:*?\"'/\\[]{}#") == std::string_view::npos) return {};
@@ -86,6 +88,7 @@ void FieldCheck::Require(bool holds, const std::string& at, std::string_view fie
   if (!holds) Set({StatusCode::kInvalidArgument, otherwise, {}, todo}, at, field);
 }
 
+// Keeps the first failure. Later ones are often its consequences.
 void FieldCheck::Set(const Status& error, const std::string& at, std::string_view field) {
   if (first_.ok() && !error.ok()) first_ = error.At(at + std::string(field));
 }

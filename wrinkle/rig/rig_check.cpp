@@ -38,6 +38,7 @@ void CheckDriver(const Driver& driver, const std::string& at, FieldCheck* check)
   VisitFields(driver, [&](const auto& kind) { CheckFields(kind, fields, check); });
 }
 
+// Gains are not negative, so a sum of 0 means that all of them are 0.
 void CheckFeed(const Feed& feed, const std::string& at, Combine combine, FieldCheck* check) {
   check->Require(!feed.sources.empty(), at, ".sources", "a feed needs a source");
   check->Count(at, ".sources", feed.sources.size(), kMaxSources);

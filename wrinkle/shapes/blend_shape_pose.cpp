@@ -29,6 +29,7 @@ BlendShapePose BlendShapePose::Create(const Rig& rig, const Skeleton& skeleton,
       const Transform& rest = skeleton.rest_pose()[joint];
       Transform moved = rest;
       ApplyJointDelta(delta, skeleton, joint, scale, &moved);
+      // Stored as axis and angle of the shorter turn, because a coefficient scales the angle.
       glm::quat turn = glm::normalize(glm::conjugate(rest.rotation) * moved.rotation);
       if (turn.w < 0.0f) turn = -turn;
       const glm::vec3 vector(turn.x, turn.y, turn.z);
@@ -36,6 +37,7 @@ BlendShapePose BlendShapePose::Create(const Rig& rig, const Skeleton& skeleton,
       result.moves_.push_back({.blend_shape = static_cast<int>(shape),
                                .joint = joint,
                                .translation = moved.translation - rest.translation,
+                               // Turns too small for an axis keep any axis and an angle near 0.
                                .axis = sine > 1e-7f ? vector / sine : glm::vec3(1, 0, 0),
                                .angle = 2.0f * std::atan2(sine, turn.w)});
     }

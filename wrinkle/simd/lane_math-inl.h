@@ -52,6 +52,7 @@ HWY_INLINE Float Exponential(Float x) {
   const Float p = Polynomial(r, 1.9875691500e-4f, 1.3981999507e-3f, 8.3334519073e-3f,
                              4.1665795894e-2f, 1.6666665459e-1f, 5.0000001201e-1f);
   const Float mantissa = hn::Add(hn::MulAdd(p, hn::Mul(r, r), r), Splat(1.0f));
+  // n is at least -126 after the clamp, so n + 127 is the biased exponent of a normal float.
   const auto exponent = hn::ShiftLeft<23>(hn::Add(hn::ConvertTo(ints, n), hn::Set(ints, 127)));
   return hn::IfThenElseZero(hn::Ge(x, Splat(-87.0f)),
                             hn::Mul(mantissa, hn::BitCast(Floats(), exponent)));

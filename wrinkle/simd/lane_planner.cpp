@@ -7,6 +7,7 @@ namespace furrow::wrinkle {
 
 void SetJoint(int joint, std::size_t lane, JointStep* step) {
   const bool active = joint != kNoJoint;
+  // The kernel reads a pose as one list of floats, so joints are stored as indices into that list.
   constexpr auto kNumbers = static_cast<std::int32_t>(sizeof(Transform) / sizeof(float));
   step->joints.at[lane] = active ? joint * kNumbers : 0;
   step->active.at[lane] = active ? kLaneYes : kLaneNo;
@@ -17,6 +18,8 @@ void LanePlanner::Place(int first_value, std::size_t num_values, std::size_t lan
   const auto first = static_cast<std::uint32_t>(first_value);
   block->num_lanes = static_cast<std::uint32_t>(lane + 1);
   block->first_value = lane == 0 ? first : std::min(block->first_value, first);
+  // Value i of a driver is in row first_row + i. RowGather later brings the values into the order
+  // of the rig.
   for (std::size_t i = 0; i < num_values; ++i) {
     places_[first + i] = static_cast<std::uint32_t>((block->first_row + i) * kRowLanes + lane);
   }
@@ -32,6 +35,9 @@ void LanePlanner::PlaceSingle(SingleDriver* driver) {
 std::uint32_t LanePlanner::AddPoints(const Lanes& points) {
   PointRow row;
   row.first_step = static_cast<std::uint32_t>(plan_.steps.size());
+  // A point at its joint's origin ignores the joint's rotation and scale, so the kernel starts with
+  // the joint's translation. Every lane must have such a joint, because that first step has no
+  // mask.
   row.is_origin = true;
   std::size_t num_up = 0;
   std::size_t num_down = 0;

@@ -17,6 +17,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
+// Loads take four or eight numbers at once and rely on this layout: translation 0 to 2, rotation 3
+// to 6 (x, y, z, w), scale 7 to 9.
 constexpr std::size_t kJointFloats = sizeof(Transform) / sizeof(float);
 constexpr std::size_t kRotationFloat = offsetof(Transform, rotation) / sizeof(float);
 constexpr std::size_t kScaleFloat = offsetof(Transform, scale) / sizeof(float);
@@ -35,6 +37,7 @@ struct JointLanes {
   FloatQuat rotation;
 };
 
+// The fourth column is the rotation's x, which is ignored.
 HWY_INLINE Float3 LoadTranslation(const float* numbers, const std::int32_t* joints) {
   const Columns columns = LoadColumns(numbers, joints);
   return {columns.c0, columns.c1, columns.c2};
@@ -51,6 +54,7 @@ HWY_INLINE Float3 LoadScale(const float* numbers, const std::int32_t* joints) {
   return {columns.c1, columns.c2, columns.c3};
 }
 
+// The eighth number is the scale's x, which is ignored.
 HWY_INLINE JointLanes LoadJoint(const float* numbers, const std::int32_t* joints) {
   const TwoColumns both = LoadTwoColumns(numbers, joints);
   return {{both.begin.c0, both.begin.c1, both.begin.c2},
@@ -79,6 +83,8 @@ HWY_INLINE Float3 WhereActive(const JointStep& step, std::size_t lane, Float3 mo
   return step.all_active ? moved : IfThenElse(LoadMask(step.active, lane), moved, v);
 }
 
+// Follows each lane's chain: up from the point's joint to a shared ancestor, then down to the space
+// in which the point is measured. Lanes with shorter chains wait at their last position.
 template <bool kScaled>
 HWY_INLINE Float3 EvaluatePoint(const PointPlan& plan, const PointRow& row, LanePose<kScaled> pose,
                                 std::size_t lane) {
@@ -118,6 +124,7 @@ FourPoints EvaluateFour(const PointPlan& plan, const PointRow* rows, LanePose<kS
     const std::int32_t* const joints = step->joints.at + lane;
     const JointLanes joint = LoadJoint(pose.numbers, joints);
     for (Float3& v : points.at) {
+      // All four points have the chains of the first row; only their offsets differ.
       const bool is_up = i < rows->num_up;
       const Float3 moved = is_up ? Up(pose, joints, joint, v) : Down(pose, joints, joint, v);
       v = WhereActive(*step, lane, moved, v);

@@ -34,6 +34,8 @@ constexpr std::size_t kLanes = HWY_MIN(HWY_MAX_BYTES / sizeof(float), kRowLanes)
 using Float = hn::Vec<Floats>;
 using Mask = hn::Mask<Floats>;
 
+// A component per vector (structure of arrays): every operation works on all lanes, without
+// shuffles.
 struct Float3 {
   Float x, y, z;
 };
@@ -105,6 +107,7 @@ HWY_INLINE Float SaturateNumber(Float x) {
   return hn::BitCast(Floats(), hn::Min(least, hn::BitCast(ints, Splat(1.0f))));
 }
 
+// base/scalar.h's Smoothstep() per lane.
 HWY_INLINE Float Smoothstep(float from, float to, Float x) {
   const Float t = Saturate(hn::Div(hn::Sub(x, Splat(from)), Splat(to - from)));
   return hn::Mul(hn::Mul(t, t), hn::NegMulAdd(Splat(2.0f), t, Splat(3.0f)));
@@ -131,6 +134,8 @@ HWY_INLINE Columns LoadColumns(const float* numbers, const std::int32_t* places)
 
 // Transposes four vectors within each block of four lanes.
 HWY_INLINE Columns Transpose(Columns in) {
+  // Two rounds of interleaving. The first pairs vectors 0 with 2 and 1 with 3; the second then
+  // restores the order of the lanes.
   const Floats d;
   const Float low02 = hn::InterleaveLower(d, in.c0, in.c2);
   const Float high02 = hn::InterleaveUpper(d, in.c0, in.c2);
@@ -145,6 +150,8 @@ template <std::size_t kN>
 HWY_INLINE hn::Vec<hn::FixedTag<float, kN>> LoadFours(const float* numbers,
                                                       const std::int32_t* places,
                                                       std::size_t first) {
+  // Block b of the vector holds the numbers of place first + 4 b. A transposition within blocks of
+  // 128 bits, which every instruction set has, then leaves the lanes in order.
   const hn::FixedTag<float, kN> lanes;
   if constexpr (kN == 4) {
     return hn::LoadU(lanes, numbers + places[first]);
@@ -211,6 +218,8 @@ class Gatherer {
   using Ints = hn::RebindToSigned<Floats>;
   using Int = hn::Vec<Ints>;
 
+  // Adds the lanes that come from further pairs of rows. A negative code marks a lane that another
+  // step fills.
   HWY_INLINE Float More(const RowGather::Step& first, std::size_t lane, const float* list,
                         Float out) const {
     const RowGather::Step* step = more_ + first.first_more;
@@ -224,6 +233,8 @@ class Gatherer {
 
 #if HWY_MAX_BYTES >= 64
 
+  // The codes of a step are this instruction's indices: bits 0 to 3 select the lane, bit 4 selects
+  // the second row.
   static HWY_INLINE Float Take(const RowGather::Step& step, Int from, const float* list) {
     const Float first = LoadLanes(list + step.first);
     const Float second = LoadLanes(list + step.second);
@@ -232,6 +243,8 @@ class Gatherer {
 
 #else
 
+  // With eight lanes, a row is two vectors. In a step's code, bits 0 to 2 select the lane, bit 3
+  // the half of the row, bit 4 the second row.
   static HWY_INLINE Float Take(const RowGather::Step& step, Int from, const float* list) {
     const Float first = TakeRow(list + step.first, from);
     const Float second = TakeRow(list + step.second, from);

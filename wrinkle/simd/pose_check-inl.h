@@ -20,6 +20,7 @@ namespace furrow::wrinkle::HWY_NAMESPACE {
 // AllFinite() of finite.h.
 HWY_INLINE bool AllFiniteLanes(std::span<const float> numbers) {
   const Floats d;
+  // 0 times NaN or infinity is NaN, and NaN stays in the sum.
   Float zero = hn::Zero(d);
   std::size_t i = 0;
   for (; i + kLanes <= numbers.size(); i += kLanes) {
@@ -73,6 +74,8 @@ HWY_INLINE PoseCheck CheckPose(std::span<const Transform> joints) {
   static constexpr UnscaledJoints kUnscaled = MakeUnscaledJoints();
   const Floats d;
   const float* numbers = &joints.front().translation.x;
+  // Five sums, one per vector of a block, so that each lane of a sum always has the same kind of
+  // number. They also run in parallel, because none waits for another.
   Float s0 = hn::Zero(d), s1 = s0, s2 = s0, s3 = s0, s4 = s0;
   const auto add = [&](std::size_t i, Float* sum) HWY_ATTR {
     const Float v = hn::LoadU(d, numbers + i * kLanes);

@@ -12,6 +12,7 @@ constexpr std::uint32_t kLane =
 constexpr auto kSecond = static_cast<std::int32_t>(kRowLanes);
 constexpr auto kOther = std::numeric_limits<std::int32_t>::min();
 
+// One step from two rows of the list, in the codes of RowGather::Step.
 RowGather::Step MakeStep(std::span<const std::uint32_t> wanted, std::uint32_t first,
                          std::uint32_t second) {
   RowGather::Step step{.first = first, .second = second};
@@ -34,6 +35,7 @@ RowGather::RowGather(std::span<const std::uint32_t> indices, std::uint32_t fille
 }
 
 void RowGather::AddRow(std::span<const std::uint32_t> wanted) {
+  // The rows that the output needs, taken two per step.
   std::vector<std::uint32_t> rows;
   for (const std::uint32_t index : wanted) rows.push_back(index & ~kLane);
   std::ranges::sort(rows);

@@ -30,6 +30,7 @@ int JointAbove(const Body& body, JointRole role) {
   return kNoJoint;
 }
 
+// The joints of several roles as one chain, parents first.
 std::vector<int> JointsOf(const Body& body, std::span<const JointRole> roles) {
   std::vector<int> joints;
   for (const JointRole role : roles) {
@@ -39,6 +40,7 @@ std::vector<int> JointsOf(const Body& body, std::span<const JointRole> roles) {
   return joints;
 }
 
+// Limbs are long bones: their direction must match, and their twist is spread over twist joints.
 bool IsLimb(JointRole role) {
   switch (role) {
     case kLeftUpperArm:
@@ -53,6 +55,7 @@ bool IsLimb(JointRole role) {
   }
 }
 
+// Model space of one joint, without the cost of the whole skeleton.
 glm::mat4 ModelOf(int joint, std::span<const std::int16_t> parents,
                   std::span<const Transform> pose) {
   glm::mat4 model(1.0f);
@@ -96,12 +99,14 @@ std::vector<bool> BodyRetarget::ReadJoints() const {
     read[At(joint.to)] = true;
     if (joint.from != kNoJoint) read[At(joint.from)] = true;
   }
+  // Parents precede children, so one pass from the end reaches all ancestors.
   for (std::size_t i = read.size(); i-- > 0;) {
     if (read[i] && source_parents_[i] != kNoJoint) read[At(source_parents_[i])] = true;
   }
   return read;
 }
 
+// Joints with equal places in the chains of a role correspond.
 void BodyRetarget::PlanPairs(const Body& source, const Body& target) {
   for (int i = 1; i < kNumJointRoles; ++i) {
     const auto from = source.Chain(static_cast<JointRole>(i));
@@ -113,6 +118,7 @@ void BodyRetarget::PlanPairs(const Body& source, const Body& target) {
 }
 
 void BodyRetarget::PlanTree(const Body& source, const Body& target) {
+  // Rigs divide the spine and the neck differently, so their roles form one chain each.
   constexpr JointRole kTorso[] = {kSpine, kChest, kUpperChest};
   constexpr JointRole kTop[] = {kNeck, kHead};
   PlanChain(source, target, kTorso);
@@ -161,6 +167,8 @@ void BodyRetarget::PlanBone(const Body& source, const Body& target, JointRole ro
     if (!bone) continue;
     joint.direction = turn_ * glm::normalize(*bone);
     joint.twist = static_cast<float>(i + 1) / static_cast<float>(to.size());
+    // Joints between the ends of the source's bone (twist joints, for example) may bend it. Then
+    // the direction is measured from end to end.
     const bool direct = source_parents_[At(end)] == from.front();
     if (!direct && source.skeleton().IsAncestor(from.front(), end)) {
       joint.first = from.front();
@@ -174,6 +182,7 @@ void BodyRetarget::PlanHips(const Body& source, const Body& target,
   source_hips_ = source.First(kHips);
   target_hips_ = target.First(kHips);
   if (source_hips_ == kNoJoint || target_hips_ == kNoJoint) return;
+  // By default, rest corresponds to rest.
   source_rest_place_ = source.RestOrigin(source_hips_);
   target_rest_place_ = target.RestOrigin(target_hips_);
   source_origin_ = source_rest_place_;
@@ -186,6 +195,8 @@ void BodyRetarget::PlanHips(const Body& source, const Body& target,
   still_ = kStill * source_leg;
   // Both bodies share the floor: the source's standing hips correspond to the target's resting
   // hips.
+  // The leg's length ends at the toes. `toes_height`, in leg lengths, adds their height above the
+  // floor.
   const glm::vec3 up = UpAxis(target);
   const float target_height = glm::dot(target_rest_place_, up);
   const float source_height =
@@ -198,6 +209,7 @@ glm::quat BodyRetarget::Turn(int source_joint, const Rotations& rotations) const
   if (source_joint == kNoJoint) return kNoTurn;
   const glm::quat turn =
       rotations[At(source_joint)] * glm::conjugate(source_rest_[At(source_joint)]);
+  // The same turn, expressed in the target's model space.
   return turn_ * turn * glm::conjugate(turn_);
 }
 
@@ -213,11 +225,14 @@ glm::vec3 BodyRetarget::BoneVector(const Joint& joint, const Rotations& rotation
 glm::quat BodyRetarget::TurnOf(const Joint& joint, const Rotations& rotations) const {
   glm::quat turn = Turn(joint.to, rotations);
   if (joint.between < 1.0f) turn = glm::slerp(Turn(joint.from, rotations), turn, joint.between);
+  // The swing comes first: the twist below turns about the bone and keeps its direction.
   if (joint.end != kNoJoint) {
     const glm::vec3 bone = BoneVector(joint, rotations);
     if (glm::length(bone) > kMinBoneLength) turn = Swing(turn * joint.direction, bone) * turn;
   }
   if (joint.twist < 1.0f) {
+    // The twist relative to the joint above: shoulders and hips must not add theirs. Removes the
+    // share that belongs to joints further down the bone.
     const glm::quat relative = glm::conjugate(Turn(joint.from, rotations)) * turn;
     const float angle = TwistAngle(relative, joint.direction);
     turn = turn * glm::angleAxis((joint.twist - 1.0f) * angle, joint.direction);
@@ -234,6 +249,8 @@ glm::vec3 BodyRetarget::HipsPlace(std::span<const Transform> pose) const {
   return target_origin_ + scale_ * (turn_ * (place - source_origin_));
 }
 
+// The joints above the hips already have their pose, so a position in model space can be expressed
+// in the space of the hips' parent.
 void BodyRetarget::PlaceHips(std::span<const Transform> source, std::span<Transform> target) const {
   const glm::vec3 place = HipsPlace(source);
   const glm::mat4 above = ModelOf(target_parents_[At(target_hips_)], target_parents_, target);
@@ -241,6 +258,8 @@ void BodyRetarget::PlaceHips(std::span<const Transform> source, std::span<Transf
 }
 
 void BodyRetarget::Run(std::span<const Transform> source, std::span<Transform> target) const {
+  // Model-space rotations of both skeletons. Fixed arrays on the stack keep this free of
+  // allocations.
   Rotations from;
   for (std::size_t i = 0; i < source_parents_.size(); ++i) {
     const int parent = source_parents_[i];

@@ -23,6 +23,7 @@ std::optional<glm::mat3> Frame(const std::optional<glm::vec3>& along,
   if (!along || !aside) return std::nullopt;
   const glm::vec3 x = glm::normalize(*along);
   const glm::vec3 across = *aside - glm::dot(*aside, x) * x;
+  // Within 6 degrees of parallel: the second direction would only add noise.
   if (glm::length(across) < 0.1f * glm::length(*aside)) return std::nullopt;
   const glm::vec3 y = glm::normalize(across);
   return glm::mat3(x, y, glm::cross(x, y));
@@ -39,6 +40,7 @@ glm::vec3 NearestAxis(const glm::vec3& v, int but = -1) {
   return result;
 }
 
+// From the hips to the highest joint of the trunk that exists.
 std::optional<glm::vec3> Up(const Body& body) {
   for (const JointRole top : {kHead, kNeck, kUpperChest, kChest, kSpine}) {
     if (const auto span = body.RestSpan(kHips, top)) return span;
@@ -46,6 +48,7 @@ std::optional<glm::vec3> Up(const Body& body) {
   return std::nullopt;
 }
 
+// From right to left, by the first pair of joints that exists on both sides.
 std::optional<glm::vec3> Leftward(const Body& body) {
   for (const JointRole role : {kRightUpperLeg, kRightUpperArm, kRightShoulder}) {
     if (const auto span = body.RestSpan(role, MirrorOf(role))) return span;
@@ -58,6 +61,8 @@ std::optional<glm::mat3> BodyAxes(const Body& body) {
   const auto up = Up(body);
   const auto left = Leftward(body);
   if (!up || !left) return std::nullopt;
+  // Snapping to axes ignores a lean of the rest pose: only files with other axes are turned, never
+  // stances.
   const glm::vec3 y = NearestAxis(*up);
   int up_axis = 0;
   while (y[up_axis] == 0.0f) ++up_axis;
@@ -108,6 +113,9 @@ glm::quat AlignFoot(const Body& source, const Body& target, JointRole foot, cons
 glm::quat Swing(const glm::vec3& from, const glm::vec3& to) {
   const glm::vec3 a = glm::normalize(from);
   const glm::vec3 b = glm::normalize(to);
+  // (1 + cos, sin * axis) is twice cos(angle / 2) times the quaternion of the angle, so a
+  // normalisation replaces all trigonometry. It fails for opposite directions, where any axis
+  // across will do.
   const float cosine = glm::dot(a, b);
   if (cosine > -0.999999f) {
     const glm::vec3 axis = glm::cross(a, b);
@@ -189,6 +197,7 @@ std::vector<glm::quat> AlignedStance(const Body& source, const Body& target,
   std::vector<glm::quat> aligned;  // the turn away from target's rest pose, model space
   std::vector<glm::quat> stance;
   for (int joint = 0; joint < skeleton.num_joints(); ++joint) {
+    // A joint without a role follows its parent's alignment.
     const int parent = skeleton.joint_parents()[static_cast<std::size_t>(joint)];
     glm::quat turned = parent == kNoJoint ? glm::quat(1.0f, 0.0f, 0.0f, 0.0f)
                                           : aligned[static_cast<std::size_t>(parent)];

@@ -9,6 +9,8 @@ int JointChains::Add(const Skeleton& skeleton, int joint, const glm::vec3& offse
   Point point;
   point.offset = offset;
   point.first = static_cast<std::uint32_t>(joints_.size());
+  // Climbs to the lowest joint that is the base or above it. Transforms above this shared joint
+  // cancel out, so points do not depend on the character's place.
   int shared = joint;
   while (shared != kNoJoint && (base == kNoJoint || !skeleton.IsAncestor(shared, base))) {
     joints_.push_back(static_cast<std::int16_t>(shared));
@@ -25,6 +27,7 @@ int JointChains::Add(const Skeleton& skeleton, int joint, const glm::vec3& offse
 }
 
 glm::vec3 JointChains::Evaluate(std::span<const Transform> local, int point) const {
+  // lane_points-inl.h has the same order of operations, so that both give the same bits.
   const Point& chain = points_[point];
   const std::int16_t* joint = joints_.data() + chain.first;
   glm::vec3 position = chain.offset;

@@ -8,6 +8,8 @@ namespace {
 
 using enum JointRole;
 
+// Roles are numbered: the middle of the body, then the left side, then the right side in the same
+// order. Mirroring is therefore an addition.
 constexpr int kFirstLeft = static_cast<int>(kLeftEye);
 constexpr int kFirstRight = static_cast<int>(kRightEye);
 constexpr int kNumOfASide = kFirstRight - kFirstLeft;

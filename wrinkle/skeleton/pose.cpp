@@ -22,6 +22,7 @@ JobStatus LocalToModelJob::Validate() const {
 JobStatus LocalToModelJob::Run() const {
   if (const JobStatus status = Validate(); status != JobStatus::kOk) return status;
   const std::span<const std::int16_t> parents = skeleton->joint_parents();
+  // Parents precede children, so the parent's matrix is always ready.
   for (std::size_t i = 0; i < parents.size(); ++i) {
     const glm::mat4 matrix = ToMatrix(local[i]);
     model[i] = parents[i] == kNoJoint ? matrix : model[parents[i]] * matrix;

@@ -21,6 +21,8 @@ bool IsRest(const JointDelta& delta) {
 void ApplyJointDelta(const JointDelta& delta, const Skeleton& skeleton, int joint, float scale,
                      Transform* local) {
   const glm::quat& rest_model = skeleton.rest_model_rotations()[joint];
+  // `delta` turns about model axes at rest. Conjugation with the rest rotation expresses it in the
+  // joint's own axes, where it is applied after the pose so far.
   local->rotation =
       glm::normalize(local->rotation * glm::conjugate(rest_model) * delta.rotation * rest_model);
   local->translation +=

@@ -23,6 +23,7 @@ glm::quat RestRotation(const Skeleton& skeleton, int joint) {
                            : skeleton.rest_model_rotations()[joint];
 }
 
+// The lengths of all bones, or of those to joints that `other` has too.
 float SumOfBones(const Skeleton& skeleton, const Skeleton* other) {
   float sum = 0.0f;
   for (int joint = 0; joint < skeleton.num_joints(); ++joint) {
@@ -34,6 +35,7 @@ float SumOfBones(const Skeleton& skeleton, const Skeleton* other) {
   return sum;
 }
 
+// A skeleton of roots alone has no bones, but it may have tails.
 float SumOfTails(const Skeleton& skeleton) {
   float sum = 0.0f;
   for (int joint = 0; joint < skeleton.num_joints(); ++joint) {
@@ -70,6 +72,7 @@ float SizeRatio(const Skeleton& source, const Skeleton& target, std::span<const 
     source_sum += glm::distance(RestOrigin(source, match[joint]), RestOrigin(source, match[above]));
     target_sum += glm::distance(RestOrigin(target, joint), RestOrigin(target, above));
   }
+  // No two matched joints are related, so whole sizes must do.
   if (source_sum <= 0.0f || target_sum <= 0.0f) {
     source_sum = SkeletonSize(source, &target);
     target_sum = SkeletonSize(target, &source);
@@ -137,6 +140,7 @@ float SkeletonSize(const Skeleton& skeleton, const Skeleton* other) {
 void Retarget::Plan(const Skeleton& source, const Skeleton& target, std::span<const int> match,
                     std::span<const glm::quat> stance, const glm::quat& turn) {
   num_source_ = static_cast<std::size_t>(source.num_joints());
+  // Translations are relative to the parent, so they need the parent's axes.
   const auto above = [&](int joint) {
     const int parent = target.joint_parents()[joint];
     return parent == kNoJoint ? glm::quat(1.0f, 0.0f, 0.0f, 0.0f) : stance[parent];
@@ -181,6 +185,7 @@ Retarget Retarget::Create(const Skeleton& source, const JointRoles& source_roles
   const Body to(target, target_roles);
   BodyRetarget::Fit fit;
   fit.turn = QuarterTurn(from, to);
+  // The stance depends on the quarter turn, the shape on the scale: the order matters.
   fit.stance = AlignedStance(from, to, fit.turn);
   fit.toes_height = toes_height;
 
@@ -193,6 +198,8 @@ Retarget Retarget::Create(const Skeleton& source, const JointRoles& source_roles
   fit.scale = retarget.scale_;
   fit.same_shape = HaveSameShape(from, to, paired, retarget.scale_);
   const auto body = std::make_shared<const BodyRetarget>(from, to, fit);
+  // BodyRetarget sets the joints that it carries, so Carry() leaves them at rest. In bodies of the
+  // same shape, Carry() still moves their translations and scales.
   std::vector<int> match = paired;
   for (int i = 0; i < target.num_joints(); ++i) {
     if (!fit.same_shape && body->Carries(i)) match[i] = kNoJoint;
@@ -205,6 +212,8 @@ Retarget Retarget::Create(const Skeleton& source, const JointRoles& source_roles
 
 Transform Retarget::Carry(const Joint& joint, const Transform& source) const {
   Transform result = joint.rest;
+  // The departure from rest in the source joint's own axes. `to_target` expresses it in the
+  // target's axes.
   const glm::quat departure = joint.source_rest_inverse * source.rotation;
   result.rotation = glm::normalize(joint.rest.rotation * joint.to_target * departure *
                                    glm::conjugate(joint.to_target));

@@ -92,6 +92,7 @@ Status CheckJoints(const std::vector<JointDesc>& joints) {
 }
 
 // A joint on the cycle above `start`, which no root reaches.
+// After as many steps as there are joints, a walk that never ends at a root is on the cycle.
 int JointOnCycle(const std::vector<JointDesc>& joints, int start) {
   for (std::size_t step = 0; step < joints.size(); ++step) start = joints[start].parent;
   return start;
@@ -101,6 +102,7 @@ int JointOnCycle(const std::vector<JointDesc>& joints, int start) {
 Result<std::vector<int>> SortParentsFirst(const std::vector<JointDesc>& joints) {
   const int count = static_cast<int>(joints.size());
   std::vector<std::vector<int>> children(joints.size());
+  // The smallest index first, so that sorting is deterministic and stable for sorted input.
   std::priority_queue<int, std::vector<int>, std::greater<>> ready;
   for (int i = 0; i < count; ++i) {
     if (joints[i].parent == kNoJoint) {
@@ -154,6 +156,7 @@ Result<Skeleton> Skeleton::Create(std::vector<JointDesc> joints) {
 
 void Skeleton::Finish(std::span<const std::optional<glm::vec3>> stated_tails) {
   const std::size_t count = names_.size();
+  // One forward loop suffices because parents precede children.
   std::vector<glm::vec3> child_sum(count, glm::vec3(0.0f));
   std::vector<int> child_count(count, 0);
   for (std::size_t i = 0; i < count; ++i) {
@@ -175,6 +178,7 @@ void Skeleton::Finish(std::span<const std::optional<glm::vec3>> stated_tails) {
     } else if (child_count[i] > 0) {
       tails_.push_back(child_sum[i] / static_cast<float>(child_count[i]));
     } else {
+      // The joint's translation is in its parent's axes; tails are in the joint's own.
       tails_.push_back(glm::conjugate(glm::normalize(rest_[i].rotation)) * rest_[i].translation);
     }
     by_name_.emplace_back(names_[i], static_cast<std::int16_t>(i));
@@ -184,6 +188,7 @@ void Skeleton::Finish(std::span<const std::optional<glm::vec3>> stated_tails) {
   Fnv1a hash;
   for (std::size_t i = 0; i < count; ++i) {
     hash.Add(names_[i]);
+    // A root's parent (-1) becomes 0.
     hash.Add(static_cast<std::uint32_t>(parents_[i] + 1));
     hash.Add(rest_[i].translation);
     hash.Add(rest_[i].rotation);

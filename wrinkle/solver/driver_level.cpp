@@ -14,6 +14,8 @@ std::size_t DriversUpTo(const BindingData& data, int value) {
   return static_cast<std::size_t>(after - data.first_values.begin());
 }
 
+// A level of detail is a prefix of the rig's drivers, so the last driver that a weight reads
+// decides.
 std::size_t DriversOfSources(const BindingData& data, int weight) {
   std::size_t drivers = 0;
   for (const WeightSource& source : data.weights.sources(weight)) {

@@ -68,8 +68,10 @@ Explanation::Weight ExplainWeight(const BindingData& data, int weight, const Ste
 JobStatus Explain(const RigBinding& binding, const LocalPose& pose, Explanation* explanation) {
   const BindingData& data = binding.data();
   // The binding outlives this call, so the pointer need not own it.
+  // Unfiltered, so that one pose explains itself without a history.
   SubjectSolver solver(std::shared_ptr<const RigBinding>(std::shared_ptr<void>(), &binding), false);
   if (const JobStatus status = solver.Update(pose, 0.0); status != JobStatus::kOk) return status;
+  // The kernel reads whole rows, the accessor is cut to size.
   const std::span<const float> values = solver.driver_values();
   RowList rows(NumRows(values.size()) * kRowLanes, 0.0f);
   std::ranges::copy(values, rows.begin());

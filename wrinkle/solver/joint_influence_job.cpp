@@ -10,6 +10,7 @@ namespace furrow::wrinkle {
 
 JobStatus JointInfluenceJob::Validate() const {
   if (binding == nullptr) return JobStatus::kNullPointer;
+  // One number per joint and mask, joint by joint.
   const std::size_t needed =
       static_cast<std::size_t>(binding->skeleton().num_joints()) * binding->dynamic_masks().size();
   if (driver_values.size() < binding->driver_value_names().size()) return JobStatus::kSizeMismatch;

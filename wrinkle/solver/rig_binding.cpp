@@ -11,6 +11,8 @@
 namespace furrow::wrinkle {
 namespace {
 
+// What drivers of this rig need: an anchor only if a driver measures from it, joints only if a
+// driver reads them. Streams of blend shapes alone thus bind to rigs without joints.
 BindSource SourceOf(const Rig& rig, std::span<const std::string> blend_shape_names) {
   BindSource source{.reference_poses = rig.reference_poses, .blend_shape_names = blend_shape_names};
   for (const Driver& driver : rig.drivers) {
@@ -36,6 +38,8 @@ Status BindDriver(const Driver& driver, int first_value, BindContext* context,
 
 using ValueIndex = std::unordered_map<std::string, int>;
 
+// The values of a driver are neighbours in the list of values, in the order of the rig.
+// `first_values` ends with the total.
 Status BindDrivers(const Rig& rig, BindContext* context, BindingData* data, ValueIndex* index) {
   for (const Driver& driver : rig.drivers) {
     const int first_value = static_cast<int>(data->driver_value_names.size());
@@ -51,6 +55,8 @@ Status BindDrivers(const Rig& rig, BindContext* context, BindingData* data, Valu
   return {};
 }
 
+// The layout for the kernel. All points must be in the chains before, because planning sorts
+// drivers by the lengths of their chains.
 void PlanLanes(BindingData* data) {
   LanePlanner planner(data->chains, data->driver_value_names.size(), &data->points);
   VisitDriverSets(data->drivers, [&](auto& drivers) { drivers.Plan(&planner); });
@@ -73,6 +79,7 @@ Result<RigBinding> RigBinding::Create(const Rig& rig, const Skeleton& skeleton,
   FURROW_RETURN_IF_ERROR(context.ResolveAnchorAndPoses());
   ValueIndex value_index;
   FURROW_RETURN_IF_ERROR(BindDrivers(rig, &context, data.get(), &value_index));
+  // WeightTable checks the names in feeds; InfluenceTable relies on them.
   FURROW_RETURN_IF_ERROR(data->weights.Bind(rig, value_index));
   data->influences.Bind(rig, skeleton, value_index);
   PlanLanes(data.get());

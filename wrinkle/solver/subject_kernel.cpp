@@ -34,7 +34,9 @@ bool Solve(const SubjectJob& job, float* scratch) {
   const FilterLanes filter = MakeFilterLanes(*job.filter, job.context->since_input, job.dt);
   const PoseCheck check = CheckPose(job.pose);
   if (!check.is_finite || !AllFiniteLanes(job.blend_shapes)) return false;
+  // The kernel reads the joints as one list of floats (lane_points-inl.h).
   const float* const numbers = job.pose.empty() ? nullptr : &job.pose.front().translation.x;
+  // Two instances of the evaluator: most streams have no scales and skip their loads and products.
   if (check.is_scaled) {
     EvaluateAllDrivers(job, LanePose<true>{numbers}, scratch);
   } else {
@@ -50,6 +52,8 @@ bool Solve(const SubjectJob& job, float* scratch) {
                 .raw_values = job.raw_values,
                 .is_apart = job.is_apart},
                scratch);
+  // The scratch memory holds the rows of driver values, then the rows of modulated weights. The
+  // weights read the filtered values, because filtering before modulation does not amplify noise.
   EvaluateWeights(data.weight_plan, job.context->value.data(),
                   scratch + data.num_value_rows * kRowLanes, job.weights);
   return true;
@@ -72,6 +76,8 @@ namespace furrow::wrinkle {
 
 HWY_EXPORT(Kernel);
 
+// Row 0 holds zeros for drivers that rest. No binding writes to it, so one list serves all
+// bindings.
 std::size_t ScratchSize(const BindingData& binding) {
   return (binding.num_value_rows + binding.weight_plan.num_rows()) * kRowLanes;
 }

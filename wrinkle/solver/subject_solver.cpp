@@ -17,6 +17,8 @@ RowList& ScratchOfThread() {
   return scratch;
 }
 
+// Never shrinks, so a thread allocates only for a binding larger than any before. New numbers are
+// 0.
 void Grow(std::size_t size, RowList* scratch) {
   if (scratch->size() < size) scratch->resize(size);
 }
@@ -32,6 +34,7 @@ SubjectSolver::SubjectSolver(std::shared_ptr<const RigBinding> binding, bool fil
   filter_context_.Resize(num_values);
   raw_values_.assign(num_values, 0.0f);
   weights_.assign(NumRows(binding_->weight_names().size()) * kRowLanes, 0.0f);
+  // Here rather than in the first update: Update() on this thread then does not allocate.
   Grow(ScratchSize(binding_->data()), &ScratchOfThread());
 }
 
@@ -61,6 +64,7 @@ JobStatus SubjectSolver::Solve(const LocalPose& pose, double dt, const SubjectKe
 
 JobStatus SubjectSolver::Decay(double dt) {
   if (!IsDuration(dt)) return JobStatus::kBadTime;
+  // Only the second half of the kernel: there is no pose to evaluate.
   HoldAndDecay(filter_, dt, &filter_context_);
   const BindingData& data = binding_->data();
   RowList& scratch = ScratchOfThread();
@@ -83,6 +87,8 @@ JobStatus SubjectSolver::SetLevel(const LocalPose& pose, std::size_t num_drivers
   const auto last = static_cast<std::ptrdiff_t>(data.NumValues(num_drivers));
   num_drivers_ = num_drivers;
   FilterContext& filter = filter_context_;
+  // Drivers that leave fade through the filter. After a decay there is no current pose to join
+  // with.
   if (last <= first || !filter.started || filter.since_input > 0.0) return JobStatus::kOk;
   // A second subject that sees `pose` as its first pose has the unfiltered values.
   SubjectSolver newcomer(binding_);

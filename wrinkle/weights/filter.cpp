@@ -10,6 +10,7 @@ namespace {
 constexpr double kLeastStep = 1e-6;  // seconds; closer inputs count as simultaneous
 constexpr float kNeutral = 1e-5f;    // a decaying value below this becomes 0
 
+// Moves from `previous` towards `wanted` by at most the slew limit. A limit of 0 means none.
 float LimitFall(float previous, float wanted, float slew_per_second, double dt) {
   if (slew_per_second <= 0.0f) return wanted;
   const double most = double{slew_per_second} * dt;
@@ -37,6 +38,7 @@ FilterMove MoveOn(const Filter& filter, const FilterContext& context, double dt)
 void HoldAndDecay(const Filter& filter, double dt, FilterContext* context) {
   if (!context->started) return;
   context->since_input += dt;
+  // The step may begin within the hold. Only the rest of it decays.
   const double decaying = std::min(dt, context->since_input - double{filter.hold_seconds});
   if (decaying <= 0.0) return;
   const double share =
@@ -44,6 +46,7 @@ void HoldAndDecay(const Filter& filter, double dt, FilterContext* context) {
   for (std::size_t i = 0; i < context->value.size(); ++i) {
     const float target = static_cast<float>(context->value[i] * share);
     const float next = LimitFall(context->value[i], target, filter.slew_per_second, dt);
+    // An exponential never reaches 0 by itself.
     context->value[i] = next < kNeutral ? 0.0f : next;
     context->derivative[i] = 0.0f;
   }

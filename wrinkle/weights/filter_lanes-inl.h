@@ -28,8 +28,11 @@ struct FilterLanes {
 HWY_INLINE FilterLanes MakeFilterLanes(const Filter& filter, double since_input, double dt) {
   const double angle = 2.0 * double{kPi} * std::min(dt, 1e20);  // c / (1 + c) is 1 long before
   const double derivative = angle * double{filter.derivative_cutoff_hz};
+  // The slope is measured over all time since the last input, including time without input. If it
+  // is 0, the infinite share stays unused: MoveOn() returns kStay.
   const double since = since_input + dt;
   const bool limited = filter.slew_per_second > 0.0f;
+  // Values are in [0, 1], so a limit of 2 never acts.
   const double largest_change = limited ? double{filter.slew_per_second} * dt : 2.0;
   const auto splat = [](double x) HWY_ATTR { return Splat(static_cast<float>(x)); };
   return {.slope_share = splat(derivative / ((1.0 + derivative) * since)),
@@ -48,6 +51,7 @@ struct FilterState {
 // One step of One-Euro and the slew limit.
 HWY_INLINE FilterState Follow(const FilterLanes& f, FilterState old, Float input) {
   const Float slope = hn::Mul(f.slope_share, hn::Sub(input, old.raw));
+  // `speed` low-passes the slope; `c` is 2 pi dt times the cut-off that follows from it.
   const Float speed = hn::MulAdd(f.speed_left, old.derivative, slope);
   const Float c = hn::MulAdd(f.c_of_speed, hn::Abs(speed), f.c_least);
   const Float most = hn::Mul(c, hn::Sub(input, old.value));
@@ -80,6 +84,7 @@ HWY_INLINE void ForEachInput(const FilterStep& step, const float* rows, Function
       const std::size_t first = row * kRowLanes + lane;
       Float values = hn::Zero(d);
       if (first < num_values) values = gatherer.Row(row, lane, rows);
+      // The vector in which the level of detail ends: clear the lanes behind it.
       if (first + kLanes > num_values && first < num_values) {
         values = hn::IfThenElseZero(hn::FirstN(d, num_values - first), values);
       }
@@ -100,6 +105,8 @@ inline void FilterValues(const FilterStep& step, const float* rows) {
   *step.is_apart = move == FilterMove::kStay;
   switch (move) {
     case FilterMove::kStay:
+      // The filter has seen this instant, so it keeps its state. SubjectSolver::driver_values()
+      // reads the new values.
       ForEachInput(step, rows,
                    [=](Float input, std::size_t i) HWY_ATTR { StoreLanes(input, apart + i); });
       return;

@@ -18,6 +18,7 @@ std::size_t IndexByName(const std::vector<Item>& items, const std::string& name)
 }  // namespace
 
 std::size_t InfluenceTable::MaskOf(int map, const Mask& mask) {
+  // Only kSmooth reads the width. Other modes get the default, so that they share a mask.
   const bool smooth = mask.lambda == LambdaMode::kSmooth;
   const DynamicMask wanted{map, mask.lambda,
                            smooth ? mask.smooth_width : DynamicMask().smooth_width};
@@ -52,6 +53,7 @@ void InfluenceTable::Bind(const Rig& rig, const Skeleton& skeleton,
       }
     }
   }
+  // Sixteen entries per block, because the kernel modulates a row at a time.
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const std::size_t lane = i % kRowLanes;
     if (lane == 0) blocks_.emplace_back();

@@ -51,10 +51,12 @@ glm::vec3 BendDirection(const BallFrame& frame, float front, float back, float l
 float SlidingMaskAt(const BallFrame& frame, const Mask& mask, const glm::vec3& towards,
                     const glm::vec3& point) {
   if (towards == glm::vec3(0.0f)) return 0.0f;
+  // In bone lengths, so that one rig fits characters of any size.
   const glm::vec3 offset = (point - frame.origin) / frame.length;
   const float along = glm::dot(offset, frame.bone);
   const glm::vec3 across = offset - along * frame.bone;
   const float distance = glm::length(across);
+  // Points on the bone have no side: they count as 90 degrees from `towards`.
   const float cosine = distance > 1e-6f ? glm::dot(across, towards) / distance : 0.0f;
   const float edge = std::cos(glm::radians(mask.spread_degrees));
   const float soft = kSoftEnd * (mask.above + mask.below);

@@ -7,6 +7,7 @@ namespace furrow::wrinkle {
 
 float Lambda(LambdaMode mode, float skin_weight, float smooth_width) {
   switch (mode) {
+    // The thesis's form. A weight of 1e-6 already counts fully, which shows as a seam.
     case LambdaMode::kBinary: return skin_weight > 0.0f ? 1.0f : 0.0f;
     case LambdaMode::kSmooth: return Smoothstep(0.0f, smooth_width, skin_weight);
     case LambdaMode::kLinear: return Saturate(skin_weight);

@@ -73,6 +73,7 @@ inline void ModulateAll(const WeightPlan& plan, const float* values, float* modu
 // The factor by which an opposed weight of a neighbouring region reduces a weight:
 // smoothstep(-1/2, 1/2, (own - other) / (own + other)); 1 if both are 0.
 HWY_INLINE Float CongruenceFactor(Float own, Float other) {
+  // 0 / 0 is NaN where both weights are 0; the last line replaces it.
   const Float sum = hn::Add(own, other);
   const Float factor = Smoothstep(-0.5f, 0.5f, hn::Div(hn::Sub(own, other), sum));
   return hn::IfThenElse(hn::Gt(sum, hn::Zero(Floats())), factor, Splat(1.0f));
@@ -94,6 +95,8 @@ inline void EvaluateWeights(const WeightPlan& plan, const float* values, float* 
   if (plan.opponents.num_rows() == 0) return ModulateAll(plan, values, weights);
   ModulateAll(plan, values, modulated);
   const std::span<const WeightBlock> blocks = plan.blocks;
+  // The row of zeros behind the last weight stands for no opponent. Against 0, CongruenceFactor()
+  // is 1.
   std::fill_n(modulated + blocks.size() * kRowLanes, kRowLanes, 0.0f);
   const Gatherer opponents(plan.opponents);
   const float* own = modulated;

@@ -79,6 +79,8 @@ void WeightPlanner::AddSources(WeightBlock* block) {
   }
   for (std::size_t i = 0; i < block->num_sources; ++i) {
     FloatRow& gains = plan_.gains.emplace_back();
+    // Source i of every weight of the block. Places of weights without sources, and of unused
+    // lanes, are 0 with a gain of 0.
     std::vector<std::uint32_t> row(kRowLanes, 0);
     for (int lane = 0; lane < num_lanes_; ++lane) {
       const auto sources = table_.sources(first_ + lane);
@@ -93,6 +95,7 @@ void WeightPlanner::AddSources(WeightBlock* block) {
 }
 
 void WeightPlanner::AddOpponents(WeightBlock* block) {
+  // The first number of the row of zeros that EvaluateWeights() appends.
   const auto none =
       static_cast<std::uint32_t>(NumRows(static_cast<std::size_t>(count_)) * kRowLanes);
   block->first_opponent = static_cast<std::uint32_t>(opponents_.size() / kRowLanes);

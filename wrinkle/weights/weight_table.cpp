@@ -99,6 +99,8 @@ Status WeightTable::BindFeed(const Region& region, const Feed& feed,
 }
 
 void WeightTable::BindOpponents(const Rig& rig) {
+  // Weights are numbered region by region and feed by feed, in the order in which Bind() added
+  // them.
   std::size_t weight = 0;
   for (const Region& own : rig.regions) {
     std::vector<std::pair<const Feed*, std::uint16_t>> neighbours;  // their feeds and weights

@@ -11,6 +11,8 @@ Status BallDriverSet::Bind(const std::string& name, const BallDriver& driver, in
                            BindContext* context) {
   const std::string owner = "driver '" + name + "'";
   const Skeleton& skeleton = context->skeleton();
+  // Without a stated bone, the posed upper bone counts as straight. The rest pose then serves only
+  // to find `forward` and `right` across it.
   const bool own_direction = driver.bone == glm::vec3(0.0f);
   Entry entry;
   entry.first_value = first_value;
@@ -28,6 +30,8 @@ Status BallDriverSet::Bind(const std::string& name, const BallDriver& driver, in
   } else {
     entry.straight = ToJointAxes(skeleton, parent, bone);
   }
+  // The evaluator projects the lower bone onto `forward` and `right`, so both must lie across the
+  // straight direction. All three are kept in the parent's axes, as the points are.
   const glm::vec3 forward = Direction(driver.forward);
   const glm::vec3 across = forward - glm::dot(forward, bone) * bone;
   if (glm::length(across) < kLeastAcross) {
@@ -41,6 +45,7 @@ Status BallDriverSet::Bind(const std::string& name, const BallDriver& driver, in
 
 void BallDriverSet::Plan(LanePlanner* planner) {
   const auto mode = [&](int i) { return entries_[static_cast<std::size_t>(i)].mode; };
+  // All lanes of a block share one mode, because the mode is a branch in the kernel.
   const auto length = LengthOfBones(entries(), planner->chains());
   for (const Lanes& lanes : InBlocks(entries_.size(), mode, length)) {
     BallBlock& block = blocks_.emplace_back();
@@ -61,6 +66,7 @@ void BallDriverSet::Plan(LanePlanner* planner) {
 void BallDriverSet::Explain(const SolvedPose& pose, DriverExplanation* explanation) const {
   const glm::vec3 none(0.0f);
   for (const Entry& entry : entries_) {
+    // The same geometry as the kernel's, measured again in scalars: the kernel stores no angles.
     const glm::vec3 straight =
         entry.straight == none ? entry.bones.Upper(pose.local, pose.chains) : entry.straight;
     const glm::vec3 lower = entry.bones.Lower(pose.local, pose.chains);

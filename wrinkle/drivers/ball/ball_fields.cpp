@@ -33,6 +33,7 @@ Result<ReferencePose> FullPose(const BallDriver& driver, const FullPoseBuilder& 
   FURROW_RETURN_IF_ERROR(limb);
   const glm::vec3 straight = driver.bone == glm::vec3(0.0f) ? limb->upper : Direction(driver.bone);
   const glm::vec3 front = AcrossBone(driver.forward, straight);
+  // Bind() rejects the same directions (kLeastAcross).
   if (straight == glm::vec3(0.0f) || front == glm::vec3(0.0f)) {
     return builder.CannotPose("forward lies along the straight direction");
   }
@@ -46,6 +47,8 @@ Result<ReferencePose> FullPose(const BallDriver& driver, const FullPoseBuilder& 
 }
 
 glm::vec3 SubjectsRight(const glm::vec3& bone, const glm::vec3& forward) {
+  // A character faces +Z with Y up, so its right is -X. The sides of a bone along X (an arm in a
+  // T-pose) have no X, so the upper side counts as right there.
   const glm::vec3 side = Direction(glm::cross(bone, forward));
   const float towards_right = -side.x;
   const float decisive = std::abs(towards_right) > kLeastAcross ? towards_right : side.y;

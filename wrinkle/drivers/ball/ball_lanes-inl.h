@@ -52,6 +52,7 @@ void EvaluateDrivers(const BallDriverSet& drivers, const PointPlan& plan, LanePo
   const auto evaluate = [&](const BallBlock& block, std::size_t lane, float* to) HWY_ATTR {
     const BoneLanes bones = EvaluateBones(plan, block, pose, lane);
     const Mask fixed = LoadMask(block.has_straight, lane);
+    // Lanes with and without a stated bone share a block; each lane selects its own.
     const Float3 straight = IfThenElse(fixed, LoadRows(block.straight, lane), bones.upper.unit);
     const Float3& lower = bones.lower.unit;
     const Float cosine = Dot(straight, lower);

@@ -19,6 +19,8 @@ void BlendShapeDriverSet::Plan(LanePlanner* planner) {
   for (const Lanes& lanes : InBlocks(entries_.size(), kOneKind, kOneKind)) {
     BlendShapeBlock& block = blocks_.emplace_back();
     block.first_row = planner->AddRows(1);
+    // Idle lanes copy the block's first driver, so that they divide by a valid range. Only lanes in
+    // use get a place.
     for (std::size_t lane = 0; lane < kRowLanes; ++lane) {
       const Entry& entry = entries_[static_cast<std::size_t>(lanes[lane])];
       if (lane < lanes.count) planner->Place(entry.first_value, 1, lane, &block);

@@ -15,6 +15,7 @@ void CheckFields(const BlendShapeDriver& driver, const std::string& at, FieldChe
   check->Label(at, ".blend_shape", driver.blend_shape);
   check->Range(at, ".neutral", driver.neutral, -kMaxCoefficient, kMaxCoefficient);
   check->Range(at, ".full", driver.full, -kMaxCoefficient, kMaxCoefficient);
+  // The kernel divides by the difference.
   check->Require(std::abs(driver.full - driver.neutral) >= 1e-4f, at, ".full",
                  "full and neutral are the same coefficient");
 }

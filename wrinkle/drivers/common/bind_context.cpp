@@ -31,6 +31,8 @@ Status BindContext::ResolveAnchorAndPoses() {
     anchor_ = *anchor;
     anchor_missing_ = anchor_ == kNoJoint;
   }
+  // Every reference pose is a full local pose on this skeleton, so drivers can measure it like a
+  // live pose.
   for (const ReferencePose& pose : source_.reference_poses) {
     std::vector<Transform> locals(skeleton_.rest_pose().begin(), skeleton_.rest_pose().end());
     FURROW_RETURN_IF_ERROR(ApplyPose(pose, &locals));
@@ -53,6 +55,8 @@ Status BindContext::ApplyPose(const ReferencePose& pose, std::vector<Transform>*
 
 Result<int> BindContext::Joint(std::string_view owner, std::string_view field,
                                const std::string& name) {
+  // The rig's own name wins over aliases, so that a stream with the rig's joints never depends on a
+  // skeleton map.
   int joint = skeleton_.Find(name);
   for (const auto& [own, theirs] : options_.aliases) {
     if (joint == kNoJoint && own == name) joint = skeleton_.Find(theirs);
@@ -83,6 +87,8 @@ Result<int> BindContext::BlendShape(std::string_view owner, const std::string& n
 
 Status BindContext::Unusable(std::string_view owner, std::string_view why) {
   std::string what = std::string(owner) + ": " + std::string(why);
+  // A daemon binds whatever stream arrives and goes on without the driver. Checks of a rig fail
+  // instead.
   if (!options_.allow_missing) return {StatusCode::kInvalidArgument, std::move(what)};
   Warn(std::move(what) + "; it rests at 0");
   return {};

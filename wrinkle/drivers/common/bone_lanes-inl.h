@@ -20,6 +20,8 @@ struct LaneDirection {
 };
 HWY_INLINE LaneDirection DirectionOf(Float3 v) {
   const Float length = hn::Sqrt(Dot(v, v));
+  // The squares of long vectors overflow to infinity. Such vectors count as without length, because
+  // their quotient would be 0 and not a unit vector.
   const Float infinity = hn::Inf(Floats());
   const auto has_length = hn::And(hn::Gt(length, Splat(kLeastLength)), hn::Lt(length, infinity));
   const Float3 unit = v / Float3{length, length, length};

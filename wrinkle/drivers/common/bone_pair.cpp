@@ -48,6 +48,7 @@ Status BindBonePair(std::string_view owner, const std::string& parent, const std
     return context->Unusable(owner, "end '" + end + "' is not below joint '" + joint + "'");
   }
 
+  // Both points are measured in the parent's space. The parent's own motion therefore cancels out.
   const glm::vec3 end_offset = end.empty() ? skeleton.tails()[pair->joint] : glm::vec3(0.0f);
   JointChains& chains = context->chains();
   pair->joint_point = chains.Add(skeleton, pair->joint, glm::vec3(0.0f), pair->parent);
@@ -64,6 +65,7 @@ Status BindBonePair(std::string_view owner, const std::string& parent, const std
   return {};
 }
 
+// Rows of one driver kind: a row per value, a lane per driver. `entries` fills the lanes from 0.
 void PlanBones(std::span<const BoneEntry> entries, std::size_t num_values, LanePlanner* planner,
                BoneBlock* block) {
   Lanes joints;

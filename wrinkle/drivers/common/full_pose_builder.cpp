@@ -44,6 +44,8 @@ Result<Limb> FullPoseBuilder::FindLimb(const std::string& parent, const std::str
 
 ReferencePose FullPoseBuilder::Bent(const Limb& limb, const glm::vec3& straight,
                                     const glm::vec3& side, float beta_degrees) const {
+  // Both directions point away from the trunk: with beta between the bones, they differ by pi -
+  // beta.
   const float angle = kPi - beta_degrees * kDegrees;
   return Turned(limb, std::cos(angle) * straight + std::sin(angle) * side, side);
 }
@@ -51,6 +53,8 @@ ReferencePose FullPoseBuilder::Bent(const Limb& limb, const glm::vec3& straight,
 ReferencePose FullPoseBuilder::Turned(const Limb& limb, const glm::vec3& target,
                                       const glm::vec3& side) const {
   ReferencePose pose = Empty();
+  // glm::rotation() picks an arbitrary axis for opposite directions, which could bend an elbow
+  // backwards. The half turn by way of `side` is the meant one.
   glm::quat turn = glm::rotation(limb.lower, target);
   if (glm::dot(limb.lower, target) < -kAlmostStraight) {
     const glm::vec3 axis = Direction(glm::cross(limb.lower, side));

@@ -17,6 +17,8 @@ Status HingeDriverSet::Bind(const std::string& name, const HingeDriver& driver, 
   FURROW_RETURN_IF_ERROR(BindBonePair(owner, driver.parent, driver.joint, driver.end, true, context,
                                       &entry.bones, &usable));
   if (!usable) return {};
+  // The axis is stated in model axes at rest. Only its part across the upper bone tells flexion
+  // from hyperextension.
   if (driver.axis) {
     const Skeleton& skeleton = context->skeleton();
     const glm::vec3 axis = Direction(ToJointAxes(skeleton, entry.bones.parent, *driver.axis));
@@ -50,6 +52,8 @@ void HingeDriverSet::Explain(const SolvedPose& pose, DriverExplanation* explanat
   for (const Entry& entry : entries_) {
     const glm::vec3 upper = entry.bones.Upper(pose.local, pose.chains);
     const glm::vec3 lower = entry.bones.Lower(pose.local, pose.chains);
+    // atan2 of sine and cosine stays accurate near 0 and 180 degrees, where acos loses half its
+    // digits.
     const glm::vec3 normal = glm::cross(upper, lower);
     const float angle = std::atan2(glm::length(normal), glm::dot(upper, lower)) / kDegrees;
     explanation->angles.push_back(

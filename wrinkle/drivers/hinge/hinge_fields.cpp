@@ -28,6 +28,7 @@ Result<ReferencePose> FullPose(const HingeDriver& driver, const FullPoseBuilder&
   FURROW_RETURN_IF_ERROR(limb);
   if (limb->upper == glm::vec3(0.0f)) return builder.CannotPose("its upper bone has no length");
   if (builder.value() == "extended") return builder.Turned(*limb, limb->upper, limb->upper);
+  // Without an axis, the bend at rest shows in which direction the limb bends.
   const glm::vec3 given = driver.axis.value_or(glm::cross(limb->upper, limb->lower));
   const bool straight = glm::dot(limb->upper, limb->lower) > kAlmostStraight;
   if (!driver.axis && straight) {

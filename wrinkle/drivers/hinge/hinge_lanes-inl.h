@@ -25,6 +25,8 @@ void EvaluateDrivers(const HingeDriverSet& drivers, const PointPlan& plan, LaneP
     const Float bend = Bend(Dot(upper, lower), LoadRow(block.bend_scale, lane));
     const Float3 normal = Cross(upper, lower);
     const Float sine = hn::Sqrt(Dot(normal, normal));
+    // NaN or infinite for parallel bones, whose plane is undefined. `is_signed` excludes these
+    // lanes.
     const Float along = hn::Div(Dot(normal, LoadRows(block.axis, lane)), sine);
     const Float share = Smoothstep(0.0f, kFullAlongAxis, along);
     const Mask is_signed = hn::And(LoadMask(block.has_axis, lane), hn::Gt(sine, Splat(kLeastSine)));

@@ -43,6 +43,7 @@ bool SolvePassive(std::span<const double> gram, std::span<const double> rhs, int
       } else if (sum > 0.0) {
         lower[i][i] = std::sqrt(sum);
       } else {
+        // The columns of the set depend on one another within rounding.
         return false;
       }
     }
@@ -50,6 +51,7 @@ bool SolvePassive(std::span<const double> gram, std::span<const double> rhs, int
     for (int k = 0; k < i; ++k) sum -= lower[i][k] * z[k];
     z[i] = sum / lower[i][i];
   }
+  // Back substitution with the transposed factor.
   for (int i = set.size - 1; i >= 0; --i) {
     for (int k = i + 1; k < set.size; ++k) z[i] -= lower[k][i] * z[k];
     z[i] /= lower[i][i];
@@ -84,6 +86,7 @@ bool StepTowards(const Vector& solution, PassiveSet* set, std::span<double> x) {
   for (int i = 0; i < set->size; ++i) {
     const int value = set->members[i];
     if (solution[value] > 0.0) continue;
+    // The share of the step at which this unknown becomes 0.
     const double reach = x[value] / (x[value] - solution[value]);
     if (blocking < 0 || reach < step) {
       step = std::isfinite(reach) ? reach : 0.0;
@@ -91,6 +94,7 @@ bool StepTowards(const Vector& solution, PassiveSet* set, std::span<double> x) {
     }
   }
   for (int i = 0; i < set->size; ++i) {
+    // max() removes the rounding of unknowns that stop at 0.
     const int value = set->members[i];
     x[value] = std::max(0.0, x[value] + step * (solution[value] - x[value]));
   }
@@ -100,6 +104,7 @@ bool StepTowards(const Vector& solution, PassiveSet* set, std::span<double> x) {
   return false;
 }
 
+// solution = inverse * rhs, for a row-major matrix.
 void Multiply(const double* inverse, std::span<const double> rhs, Vector* solution) {
   for (std::size_t i = 0; i < rhs.size(); ++i, inverse += rhs.size()) {
     double sum = 0.0;
@@ -108,6 +113,8 @@ void Multiply(const double* inverse, std::span<const double> rhs, Vector* soluti
   }
 }
 
+// Slopes below this share of the largest number are rounding errors. They would let unknowns enter
+// and leave the set forever.
 double Tolerance(std::span<const double> rhs) {
   double largest = 0.0;
   for (const double value : rhs) largest = std::max(largest, std::abs(value));
@@ -121,6 +128,8 @@ void SolveNnls(std::span<const double> gram, std::span<const double> rhs, std::s
   std::fill(x.begin(), x.end(), 0.0);
   const double tolerance = Tolerance(rhs);
   PassiveSet set;
+  // The algorithm ends by itself in exact arithmetic. The limit of 3 n rounds, as in Lawson and
+  // Hanson's program, ends cycles that rounding causes.
   for (int round = 0; round < 3 * n; ++round) {
     const int entering = SteepestOutside(gram, rhs, x, set, tolerance);
     if (entering < 0) return;
@@ -153,6 +162,7 @@ void NnlsTable::Tabulate() {
       Vector unit{};
       Vector solution{};
       unit[static_cast<std::size_t>(column)] = 1.0;
+      // One set without an inverse disables the table: Solve() then factorises for every pose.
       if (!SolvePassive(gram_, std::span(unit).first(n), n_, set, &solution)) {
         inverses_.clear();
         return;
@@ -175,6 +185,7 @@ void NnlsTable::SolveByTable(std::span<const double> rhs, std::span<double> x) c
   const double tolerance = Tolerance(rhs);
   PassiveSet set;
   Vector solution;
+  // The same steps as SolveNnls(), with a table look-up in place of the factorisation.
   for (int round = 0; round < 3 * n_; ++round) {
     const int entering = SteepestOutside(gram_, rhs, x, set, tolerance);
     if (entering < 0) return;

@@ -32,6 +32,8 @@ glm::vec3 Projection(const glm::vec3& d, float square) {
   return square > 0.0f ? glm::vec3(glm::dvec3(d) / double{square}) : glm::vec3(0.0f);
 }
 
+// The control point in its joint's space. Offsets that state the size of their skeleton scale with
+// this one, of size `size`.
 glm::vec3 LocalOffset(const ControlPoint& point, const Skeleton& skeleton, int joint, float size) {
   switch (point.kind) {
     case ControlPoint::Kind::kTail: return skeleton.tails()[joint];
@@ -77,6 +79,8 @@ Status PoseDriverSet::BindPoints(const std::string& name, const PoseDriver& driv
     *usable = *usable && *joint != kNoJoint;
   }
   if (!*usable) return {};
+  // Points are measured in the anchor's space, so that a nod of the head makes no wrinkle (thesis
+  // 4.1 leaves the space open).
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (context->anchor() != kNoJoint && !skeleton.IsAncestor(context->anchor(), joints[i])) {
       context->Warn(OwnerOf(name) + ": joint '" + driver.points[i].joint +
@@ -97,6 +101,7 @@ Status PoseDriverSet::BindValue(const std::string& name, const PoseDriver::Value
                                        "' names reference pose '" + value.reference_pose +
                                        "', which the rig does not have"};
   }
+  // d of thesis 4.1, stacked over all control points: one vector of 3 P numbers per value.
   const std::size_t first = displacements_.size();
   for (const MeasuredPoint& point : points(entry)) {
     displacements_.push_back(context->chains().Evaluate(*locals, point.point) - point.rest);
@@ -116,6 +121,7 @@ Status PoseDriverSet::BindValue(const std::string& name, const PoseDriver::Value
   return {};
 }
 
+// The Gram matrix of unit displacements. One ridge then suits large and small poses alike.
 void PoseDriverSet::BindGram(Entry* entry) {
   std::vector<double> gram;
   for (int row = 0; row < entry->num_values; ++row) {
@@ -134,6 +140,8 @@ void PoseDriverSet::BindGram(Entry* entry) {
 
 BoundPose PoseDriverSet::Bound(const Entry& entry) const {
   const auto num_values = static_cast<std::size_t>(entry.num_values);
+  // Displacements and projections have one vector per value and point; squares have one number per
+  // value.
   const std::size_t num_vectors = num_values * entry.num_points;
   return {.first_value = entry.first_value,
           .points = points(entry),
@@ -155,6 +163,8 @@ void PoseDriverSet::Plan(LanePlanner* planner) {
       projections.push_back(Bound(entries_[i]));
     }
   }
+  // Projections share lanes. An nnls driver branches on its own data, so only its points are
+  // evaluated in lanes.
   PlanProjections(projections, planner, &plan_);
   PlanNnls(nnls, nnls_entries, planner, &plan_);
 }
@@ -169,6 +179,7 @@ void PoseDriverSet::SolveNnls(int entry, StackedPoints moved, std::span<float> a
   const Entry& e = entries_[static_cast<std::size_t>(entry)];
   const auto count = static_cast<std::size_t>(e.num_values);
   const double* inverse_lengths = inverse_lengths_.data() + e.first_square;
+  // Fixed arrays: this runs per pose and must not allocate.
   std::array<double, kMaxNnlsValues> rhs;
   std::array<double, kMaxNnlsValues> lengths;  // the unknowns: along unit displacements
   for (int k = 0; k < e.num_values; ++k) {

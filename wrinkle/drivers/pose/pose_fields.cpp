@@ -22,6 +22,8 @@ void CheckFields(const PoseDriver& driver, const std::string& at, FieldCheck* ch
   check->Require(!driver.points.empty(), at, ".points", "a pose driver needs a control point");
   check->Require(!driver.values.empty(), at, ".values", "a pose driver needs a value");
   check->Count(at, ".points", driver.points.size(), kMaxControlPoints);
+  // nnls works on fixed arrays and its cost grows with the cube of the number of values, hence its
+  // lower limit.
   check->Count(at, ".values", driver.values.size(), nnls ? kMaxNnlsValues : kMaxPoseValues);
   check->Range(at, ".falloff", driver.falloff, 0.0f, 1000.0f);
   for (std::size_t i = 0; i < driver.points.size(); ++i) {

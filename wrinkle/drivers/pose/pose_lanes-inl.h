@@ -42,12 +42,15 @@ void EvaluateLeaves(const PosePlan& plan, LanePose<kScaled> pose, std::size_t nu
                     float* rows) {
   const FloatRow* const projections = plan.projections.data();
   const LeafBlock* const end = plan.leaves.data() + plan.leaves.size();
+  // Skips the blocks beyond the level of detail, so that the load ahead never touches them.
   const auto reached = [=](const LeafBlock* leaf) {
     while (leaf != end && leaf->first_value >= num_values) ++leaf;
     return leaf;
   };
   const LeafBlock* const first = reached(plan.leaves.data());
   if (first == end) return;
+  // Computes whole rows without a mask: idle lanes repeat the block's first driver, and nothing
+  // reads their values.
   for (std::size_t lane = 0; lane < kRowLanes; lane += kLanes) {
     JointLanes next = LoadJoint(pose.numbers, first->joints.at + lane);
     for (const LeafBlock* leaf = first; leaf != end;) {
@@ -78,6 +81,7 @@ inline Float Falloff(std::span<const Float3> moved, const FloatRow* rows, Float 
   return Exponential(hn::Div(hn::Neg(sum), LoadRow(*rows, lane)));
 }
 
+// The general case: several points, or a falloff. The points are measured once for all values.
 template <bool kScaled>
 void EvaluatePoints(const PosePlan& plan, const PointPlan& points, const PoseBlock& block,
                     LanePose<kScaled> pose, std::size_t lane, float* values) {
@@ -107,11 +111,15 @@ void EvaluatePoints(const PosePlan& plan, const PointPlan& points, const PoseBlo
 inline void EvaluateNnls(const PoseDriverSet& drivers, const NnlsDriver& driver, float* rows) {
   const PosePlan& plan = drivers.plan();
   std::array<glm::vec3, kMaxControlPoints> points;
+  // Lanes of nnls points are counted over all blocks, because one driver's points may straddle two
+  // blocks.
   for (std::size_t i = 0; i < driver.num_lanes; ++i) {
     const std::size_t lane = driver.first_lane + i;
     points[i] = StoredPoint(plan.nnls_points[lane / kRowLanes], lane % kRowLanes, 0, rows);
   }
   const std::span<const glm::vec3> moved = std::span(points).first(driver.num_lanes);
+  // The solver writes to the driver's own rows, and the loop below reads whole vectors from there.
+  // Lanes past num_values are padding of these rows.
   float* const values = rows + driver.first_number;
   const std::span<float> along(values, driver.num_values);
   drivers.SolveNnls(driver.entry, moved, along);
@@ -145,6 +153,7 @@ void EvaluateDrivers(const PoseDriverSet& drivers, const PointPlan& points, Lane
                [&](const SinglePoints& block, std::size_t lane, float* to) HWY_ATTR {
                  StoreRows(MovePoint(points, points.points[block.first_point], pose, lane), to);
                });
+  // After all points are stored.
   for (const NnlsDriver& driver : plan.nnls) {
     if (driver.first_value < input.num_values) EvaluateNnls(drivers, driver, rows);
   }

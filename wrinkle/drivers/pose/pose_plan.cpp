@@ -41,12 +41,15 @@ void AddProjections(BlockDrivers drivers, PosePlan* plan, PoseBlock* block) {
     const BoundPose& driver = *drivers[lane];
     const std::size_t num_points = driver.points.size();
     for (std::size_t i = 0; i < driver.projections.size(); ++i) {
+      // A driver's table is dense, the block's table is padded to the block's number of points.
       const std::size_t row = i / num_points * per_value + i % num_points * 3;
       SetLane(driver.projections[i], lane, &plan->projections[block->first_projection + row]);
     }
   }
 }
 
+// Per value: a row of widths, then three rows of d per point. Unused lanes get the width 1, because
+// the kernel divides by it.
 void AddFalloffs(BlockDrivers drivers, PosePlan* plan, PoseBlock* block) {
   block->first_falloff = static_cast<std::uint32_t>(plan->falloffs.size());
   const std::size_t per_value = std::size_t{block->num_points} * 3 + 1;
@@ -113,6 +116,8 @@ void AddBlock(BlockDrivers drivers, LanePlanner* planner, PosePlan* plan) {
 
 void PlanProjections(std::span<const BoundPose> drivers, LanePlanner* planner, PosePlan* plan) {
   const auto at = [&](int i) -> const BoundPose& { return drivers[static_cast<std::size_t>(i)]; };
+  // A block does the work of its largest driver in every lane, so drivers of equal size share a
+  // block.
   const auto length = [&](int i) {
     const JointChains::Chain chain = planner->chains().chain(at(i).points.front().point);
     return std::array{at(i).points.size(), at(i).squares.size(), chain.down.size(),

@@ -44,6 +44,7 @@ std::optional<RestTriangle> MakeRestTriangle(const glm::vec3& a, const glm::vec3
   }
   const glm::vec3 cross = glm::cross(edges[0], edges[1]);
   const float twice_area = glm::length(cross);
+  // Relative to the edges, so that the test works in any unit. The negation also rejects NaN.
   if (!(0.5f * twice_area > kLeastShape * longest_square) || !std::isfinite(longest_square)) {
     return std::nullopt;
   }
@@ -60,6 +61,7 @@ std::optional<RestTriangle> MakeRestTriangle(const glm::vec3& a, const glm::vec3
 }
 
 PrincipalStretches Principal(const CauchyGreen& tensor) {
+  // In double: for small strains, mean and radius nearly cancel in the smallest stretch.
   const double mean = 0.5 * (double{tensor.xx} + double{tensor.yy});
   const double difference = 0.5 * (double{tensor.xx} - double{tensor.yy});
   const double shear = tensor.xy;
@@ -88,6 +90,9 @@ glm::vec3 ToPosedSpace(const DeformationGradient& f, const glm::vec2& direction)
 }
 
 CompressionShares ShareCompression(const PrincipalStretches& stretches) {
+  // `less` is the compression that both principal directions share. It has no direction, so each
+  // share gets a quarter. The excess is split by the squares of cos(2 phi) and sin(2 phi), which
+  // sum to 1.
   const float more = std::max(0.0f, 1.0f - stretches.smallest);
   const float less = std::max(0.0f, 1.0f - stretches.largest);
   const glm::dvec2 d = stretches.smallest_direction;

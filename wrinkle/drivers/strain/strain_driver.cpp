@@ -20,6 +20,7 @@ struct PatchFrame {
   float radius = 1.0f;
 };
 
+// The centroid and the largest distance from it. A patch in one point keeps the radius 1.
 PatchFrame FrameOf(std::span<const glm::vec3> places) {
   PatchFrame frame;
   for (const glm::vec3& place : places) frame.centre += place / static_cast<float>(places.size());
@@ -33,6 +34,8 @@ PatchFrame FrameOf(std::span<const glm::vec3> places) {
 
 // The patch's vertices at rest, in the base joint's space.
 std::vector<glm::vec3> RestPlaces(const StrainDriver& strain, const Skeleton& skeleton, int base) {
+  // `position` is an offset from the base joint along model axes, on a skeleton of size
+  // `strain.size`.
   const float scale = strain.size > 0.0f ? SkeletonSize(skeleton) / strain.size : 1.0f;
   const glm::mat4& model = skeleton.rest_model()[base];
   const glm::mat4 to_base = glm::inverse(model);
@@ -62,6 +65,9 @@ Status StrainDriverSet::Bind(const std::string& name, const StrainDriver& strain
   entry.num_joints = static_cast<std::uint32_t>(joints.size());
   const std::vector<glm::vec3> places = RestPlaces(strain, skeleton, base);
   const PatchFrame frame = FrameOf(places);
+  // Skinning needs each joint's affine motion relative to the base. Four points determine it: the
+  // patch's centre, and one point along each axis at the distance of the radius. Points near the
+  // patch keep the digits that points near a distant joint would lose.
   for (const int joint : joints) {
     const glm::mat4 base_to_joint =
         glm::inverse(skeleton.rest_model()[joint]) * skeleton.rest_model()[base];
@@ -73,6 +79,7 @@ Status StrainDriverSet::Bind(const std::string& name, const StrainDriver& strain
     }
   }
   entry.first_vertex = static_cast<std::uint32_t>(vertices_.size());
+  // BindTriangles() skins the vertices, so it needs their places first.
   BindVertices(strain, &entry);
   for (std::size_t i = 0; i < places.size(); ++i) {
     vertices_[entry.first_vertex + i].place = (places[i] - frame.centre) / frame.radius;
@@ -104,6 +111,8 @@ void StrainDriverSet::BindVertices(const StrainDriver& strain, Entry* entry) {
   entry->num_vertices = static_cast<std::uint32_t>(strain.vertices.size());
   for (const StrainDriver::Vertex& from : strain.vertices) {
     Vertex vertex;
+    // The check accepts sums within 1% of 1. Skinning needs a sum of exactly 1, or else plain
+    // motion would look like strain.
     float sum = 0.0f;
     for (const float skin_weight : from.skin_weights) sum += skin_weight;
     for (std::size_t i = 0; i < from.joints.size(); ++i) {
@@ -116,6 +125,8 @@ void StrainDriverSet::BindVertices(const StrainDriver& strain, Entry* entry) {
 
 void StrainDriverSet::BindTriangles(const StrainDriver& strain, const Skeleton& skeleton, int base,
                                     const JointChains& chains, Entry* entry) {
+  // The rest shape goes through the same skinning as every pose, so the rest pose has no strain,
+  // whatever was rounded in the file.
   std::array<Frame, kMaxPatchJoints> frames;
   std::array<glm::vec3, kMaxPatchVertices> rest;
   EvaluatePoints(*entry, skeleton.rest_pose(), chains, frames);
@@ -186,6 +197,8 @@ StrainDriverSet::Measured StrainDriverSet::MeasureFrames(const Entry& e,
                                                          std::span<const Frame> frames) const {
   std::array<glm::vec3, kMaxPatchVertices> positions;
   Skin(e, frames, positions);
+  // Tensors in axes of one direction may be averaged; stretches and angles may not. Large triangles
+  // count more.
   CauchyGreen mean{0.0f, 0.0f, 0.0f};
   for (std::uint32_t i = e.first_triangle; i < e.first_triangle + e.num_triangles; ++i) {
     const Triangle& triangle = triangles_[i];
@@ -230,6 +243,8 @@ void StrainDriverSet::Plan(LanePlanner* planner) {
       frames.emplace_back(&points_[entry.first_point + k * kFramePoints], driver.first_value);
     }
   }
+  // Drivers are in the order of the rig, so the first driver of a block has its lowest value. A
+  // level of detail that skips the block needs none of its points.
   for (std::size_t first = 0; first < frames.size(); first += kRowLanes) {
     StrainFrameBlock& block = frame_blocks_.emplace_back();
     block.first_value = frames[first].second;
@@ -249,6 +264,7 @@ void StrainDriverSet::Plan(LanePlanner* planner) {
 void StrainDriverSet::Explain(const SolvedPose& pose, DriverExplanation* explanation) const {
   for (int i = 0; i < num_entries(); ++i) {
     const PrincipalStretches stretches = Measure(i, pose.local, pose.chains).stretches;
+    // Directions are axes: both signs mean the same fold. Reports use angles in (-90, 90].
     glm::vec2 direction = stretches.smallest_direction;
     if (direction.x < 0.0f || (direction.x == 0.0f && direction.y < 0.0f)) direction = -direction;
     explanation->strains.push_back({.driver = pose.DriverName(first_value(i)),

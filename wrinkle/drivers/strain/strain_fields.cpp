@@ -73,6 +73,7 @@ void CheckFields(const StrainDriver& driver, const std::string& at, FieldCheck* 
   check->Direction(at, ".direction", driver.direction);
   check->Range(at, ".full_compression", driver.full_compression, 0.01f, 1.0f);
   check->Range(at, ".size", driver.size, 0.0f, kMaxSkeletonSize);
+  // HasArea() indexes the vertices, so it runs only if all indices are in range.
   check->Require(!in_range || HasArea(driver), at, ".triangles",
                  "no triangle has an area that could be compressed");
 }

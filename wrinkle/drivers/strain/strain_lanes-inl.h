@@ -36,6 +36,7 @@ inline void EvaluateStrain(const StrainDriverSet& drivers, const SingleDriver& d
 template <bool kScaled>
 void EvaluateDrivers(const StrainDriverSet& drivers, const PointPlan& plan, LanePose<kScaled> pose,
                      const DriverInput& input, float* rows) {
+  // Twelve rows per block: x, y and z of each of the four points.
   const auto evaluate = [&](const StrainFrameBlock& block, std::size_t lane, float* to) HWY_ATTR {
     const FourPoints four = EvaluateFour(plan, &plan.points[block.first_point], pose, lane);
     for (const Float3& point : four.at) {

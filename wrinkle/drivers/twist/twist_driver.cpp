@@ -12,6 +12,8 @@ Status TwistDriverSet::Bind(const std::string& name, const TwistDriver& driver, 
                             BindContext* context) {
   const std::string owner = "driver '" + name + "'";
   const Skeleton& skeleton = context->skeleton();
+  // The twist of a forearm or neck is often spread over several joints, so the driver sums all of
+  // them. The driver rests if one is missing: a part of the sum would look like a smaller twist.
   const std::vector<std::string> names = JointsRead(driver);
   std::vector<TwistJoint> joints;
   bool usable = true;
@@ -57,6 +59,8 @@ void TwistDriverSet::Plan(LanePlanner* planner) {
   }
 }
 
+// Lanes with fewer joints than the block are inactive in its last steps. Their angle does not
+// count.
 void TwistDriverSet::PlanStep(const Lanes& lanes, std::size_t index) {
   TwistStep& step = steps_.emplace_back();
   for (std::size_t lane = 0; lane < kRowLanes; ++lane) {

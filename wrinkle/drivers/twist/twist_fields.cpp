@@ -34,6 +34,7 @@ Result<ReferencePose> FullPose(const TwistDriver& driver, const FullPoseBuilder&
   const Skeleton& skeleton = builder.skeleton();
   const std::vector<std::string> names = JointsRead(driver);
   const float sign = builder.value() == "twist_left" ? 1.0f : -1.0f;
+  // Every joint takes an equal part, because the driver reads the sum.
   const float angle = sign * driver.full_degrees * kDegrees / static_cast<float>(names.size());
   ReferencePose pose = builder.Empty();
   for (const std::string& name : names) {

@@ -15,6 +15,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace furrow::wrinkle::HWY_NAMESPACE {
 
+// The product p q in glm's order of operations and without fused sums, like the operations in
+// lanes-inl.h.
 HWY_INLINE FloatQuat Multiply(FloatQuat p, FloatQuat q) {
   const auto sum = [](Float a, Float b, Float c, Float e)
                        HWY_ATTR { return hn::Sub(hn::Add(hn::Add(a, b), c), e); };
@@ -26,6 +28,8 @@ HWY_INLINE FloatQuat Multiply(FloatQuat p, FloatQuat q) {
 }
 
 // TwistAngle(), per lane.
+// q and -q are the same rotation. The one with a w of 0 or more has the shorter turn, and
+// ArcTangent() requires it.
 HWY_INLINE Float TwistOf(FloatQuat q, Float3 axis) {
   const Float sine = Dot({q.x, q.y, q.z}, axis);
   const Float square = hn::Add(hn::Mul(sine, sine), hn::Mul(q.w, q.w));
