@@ -24,6 +24,7 @@ using wrinkle::InvalidField;
 using wrinkle::Region;
 using wrinkle::Rig;
 
+// Views into the rig, which outlives the checker.
 template <class Item>
 std::unordered_set<std::string_view> NamesOf(const std::vector<Item>& items) {
   std::unordered_set<std::string_view> names;
@@ -41,6 +42,8 @@ class References {
         regions_(NamesOf(rig.regions)) {}
 
   Status Check() {
+    // The order matters: feeds refer to the values that CheckDrivers() lists, exports refer to the
+    // weights that CheckFeeds() lists.
     FURROW_RETURN_IF_ERROR(CheckDrivers());
     for (std::size_t i = 0; i < rig_.wrinkle_maps.size(); ++i) {
       FURROW_RETURN_IF_ERROR(CheckMap(rig_.wrinkle_maps[i], FieldAt("wrinkle_maps", i)));
@@ -79,9 +82,11 @@ class References {
                                                                 {&map.colour, ".colour"},
                                                                 {&map.cavity, ".cavity"}};
     for (const auto& [file, field] : files) {
+      // Checks the name only. The file may be missing: weights need no pictures.
       if (file->empty()) continue;
       if (Status s = CheckAssetName(*file); !s.ok()) return s.At(at + field);
     }
+    // Both state the same slopes, so one would have to be ignored silently.
     if (!map.normal.empty() && !map.derivative.empty()) {
       return InvalidField("a map cannot have both a normal map and a derivative map",
                           at + ".derivative");
@@ -99,6 +104,7 @@ class References {
 
   Status CheckFeeds(const Region& region, const std::string& list) {
     if (region.feeds.empty()) return InvalidField("a region needs at least one feed", list);
+    // Fields are named "<list>[<index>].<field>", the paths that CheckedJson::Located() knows.
     for (std::size_t i = 0; i < region.feeds.size(); ++i) {
       const wrinkle::Feed& feed = region.feeds[i];
       const std::string at = FieldAt(list, i);
@@ -180,6 +186,7 @@ Status CheckRig(const Rig& rig) {
   if (!rig.anchor.empty()) {
     FURROW_RETURN_IF_ERROR(wrinkle::CheckLabel(rig.anchor, "anchor"));
   }
+  // References are looked up by name, so names must be valid and unique first.
   FURROW_RETURN_IF_ERROR(wrinkle::CheckRigFields(rig));
   return References(rig).Check();
 }

@@ -23,14 +23,17 @@ Result<wrinkle::Rig> ParseRig(std::string_view json, std::string_view source_nam
       CheckedJson::Parse(json, source_name, {kRigSchemaText, "Rig", "rig/rig.fbs"});
   FURROW_RETURN_IF_ERROR(checked);
   const auto* tables = flatbuffers::GetRoot<schema::Rig>(checked->buffer());
+  // The tables give errors by field; Located() adds file and line from the text.
   Result<wrinkle::Rig> rig = ReadRigTables(*tables, folder, poses);
   if (!rig.ok()) return checked->Located(rig.status());
   if (Status status = CheckRig(*rig); !status.ok()) return checked->Located(status);
+  // After the check, because errors name reference poses by their place in the file.
   DropBuildingBlocks(*tables, &*rig);
   return rig;
 }
 
 Result<wrinkle::Rig> LoadRig(const std::filesystem::path& path, const wrinkle::PoseSource& poses) {
+  // The same limit as the parser's, so that a larger file is never read into memory.
   const Result<std::string> text = ReadFile(path, JsonIndex::kMaxBytes);
   FURROW_RETURN_IF_ERROR(text);
   return ParseRig(*text, path.string(), path.parent_path(), poses);

@@ -27,12 +27,15 @@ class PoseReader {
       : list_(list), folder_(folder), source_(source) {}
 
   Status Run(std::vector<wrinkle::ReferencePose>* poses) {
+    // The limit comes before any reading, so that a hostile file cannot make this load thousands of
+    // recordings.
     const std::size_t count = list_ == nullptr ? 0 : list_->size();
     if (count > wrinkle::kMaxReferencePoses) {
       return {StatusCode::kLimit,
               "more than " + std::to_string(wrinkle::kMaxReferencePoses) + " poses",
               "reference_poses"};
     }
+    // All names first: a mix may precede its parts.
     for (std::size_t i = 0; i < count; ++i) {
       if (!index_.emplace(list_->Get(i)->name()->str(), i).second) {
         return InvalidField("the name '" + list_->Get(i)->name()->str() + "' is given twice",
@@ -49,6 +52,8 @@ class PoseReader {
   }
 
  private:
+  // kOpen marks the poses on the current path of mixes. A part in this state closes a cycle. A path
+  // is at most as deep as the number of poses.
   enum class State { kUntouched, kOpen, kDone };
 
   Status Resolve(std::size_t i) {
@@ -74,6 +79,8 @@ class PoseReader {
                            wrinkle::ReferencePose* to) {
     to->name = from.name()->str();
     to->source_size = from.source_size();
+    // A rotation is a quaternion or Euler angles, never both. Without either, the joint keeps its
+    // rest rotation.
     return ForEach(from.joints(), at + ".joints",
                    [&](const schema::JointPose& joint, const std::string& where) -> Status {
                      wrinkle::JointDelta delta;
@@ -82,6 +89,7 @@ class PoseReader {
                        return InvalidField("rotation and euler_degrees are both set",
                                            where + ".euler_degrees", "remove one of them");
                      }
+                     // The file has x, y, z, w; glm's constructor takes w first.
                      if (const schema::Quat* q = joint.rotation()) {
                        delta.rotation = glm::quat(q->w(), q->x(), q->y(), q->z());
                        const float square = glm::dot(delta.rotation, delta.rotation);
@@ -103,6 +111,8 @@ class PoseReader {
                    });
   }
 
+  // Reads one frame. The error's `where` becomes the rig's field, so the recording's own place
+  // moves into the text.
   Result<wrinkle::PoseFrame> Frame(const std::filesystem::path& path, int frame,
                                    const std::string& where) {
     if (frame < 0) return InvalidField("negative frame; frames are counted from 0", where);
@@ -126,6 +136,7 @@ class PoseReader {
     }
     const Result<wrinkle::PoseFrame> frame = Frame(*path, from.frame(), at + ".frame");
     FURROW_RETURN_IF_ERROR(frame);
+    // A negative rest_frame means the skeleton's own rest pose.
     Result<wrinkle::PoseFrame> rest = Status(StatusCode::kNotFound, {});
     if (from.rest_frame() >= 0) {
       rest = Frame(*path, from.rest_frame(), at + ".rest_frame");
@@ -152,6 +163,7 @@ class PoseReader {
         return {StatusCode::kCyclic, "the mix contains itself through '" + part.pose()->str() + "'",
                 where + ".pose"};
       }
+      // The negation also rejects NaN.
       if (!(std::abs(part.weight()) <= 10.0f)) {
         return InvalidField("the weight must be a number in [-10, 10]", where + ".weight");
       }
@@ -161,6 +173,7 @@ class PoseReader {
     };
     FURROW_RETURN_IF_ERROR(ForEach(from.mix(), at + ".mix", resolve));
     if (parts.empty()) return InvalidField("a mix needs at least one part", at + ".mix");
+    // Pointers into poses_ stay valid: the list has its final size.
     std::vector<WeightedPose> weighted;
     for (std::size_t i = 0; i < parts.size(); ++i) {
       weighted.push_back({&poses_[parts[i]], weights[i]});

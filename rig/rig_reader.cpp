@@ -31,6 +31,8 @@ std::string ListOfKinds() {
   return list;
 }
 
+// A driver's kind is the one field that is present. FlatBuffers unions would need a second field in
+// the JSON.
 Status ReadDriver(const schema::Driver& from, const std::string& at, wrinkle::Driver* to) {
   to->name = from.name()->str();
   int kinds = 0;
@@ -57,6 +59,7 @@ Status ReadFeed(const schema::Feed& from, const std::string& at, wrinkle::Feed* 
       from.sources(), at + ".sources",
       [&](const schema::Source& source, const std::string& where) -> Status {
         const std::string name = source.from()->str();
+        // The last dot, because neither names of drivers nor names of values contain one.
         const std::size_t dot = name.rfind('.');
         if (dot == std::string::npos) {
           return InvalidField("'" + name + "' is not a driver value", where + ".from",
@@ -69,6 +72,7 @@ Status ReadFeed(const schema::Feed& from, const std::string& at, wrinkle::Feed* 
 
 Status ReadRegion(const schema::Region& from, const std::string& at, wrinkle::Region* to) {
   to->name = from.name()->str();
+  // CheckedJson guarantees the fields that rig.fbs marks as required.
   const schema::Mask& mask = *from.mask();
   to->mask.texture = Text(mask.texture());
   to->mask.smooth_width = mask.smooth_width();
@@ -172,6 +176,8 @@ Result<wrinkle::Rig> ReadRigTables(const schema::Rig& tables, const std::filesys
   return rig;
 }
 
+// A part of a mix is usually a recorded unit pose that no driver reads itself. Binding would apply
+// it to every skeleton for nothing.
 void DropBuildingBlocks(const schema::Rig& tables, wrinkle::Rig* rig) {
   if (tables.reference_poses() == nullptr) return;
   std::unordered_set<std::string> blocks;

@@ -24,10 +24,12 @@ using wrinkle::Transform;
 constexpr float kLeastRadians = 1e-5f;
 constexpr float kLeastTranslation = 1e-6f;  // of the skeleton's size
 
+// The angle of the shorter turn, in radians.
 float Angle(const glm::quat& q) {
   return 2.0f * std::atan2(glm::length(glm::vec3(q.x, q.y, q.z)), std::abs(q.w));
 }
 
+// q and -q are the same rotation. A w of 0 or more gives the shorter turn.
 glm::quat ShorterWay(const glm::quat& q) { return q.w < 0.0f ? -q : q; }
 
 // exp(weight * log(q)), by the shorter rotation.
@@ -35,11 +37,13 @@ glm::quat Scaled(const glm::quat& rotation, float weight) {
   const glm::quat q = ShorterWay(rotation);
   const glm::vec3 v(q.x, q.y, q.z);
   const float sine = glm::length(v);
+  // Too small a turn for an axis.
   if (sine < 1e-9f) return {1.0f, 0.0f, 0.0f, 0.0f};
   const float half = std::atan2(sine, q.w) * weight;
   return {std::cos(half), v * (std::sin(half) / sine)};
 }
 
+// Frames come from recordings. Every number must be finite before it enters a rig.
 Status CheckPose(const PoseFrame& frame, const Skeleton& skeleton) {
   if (static_cast<int>(frame.pose.joints.size()) != skeleton.num_joints()) {
     return {StatusCode::kInvalidArgument,
@@ -82,6 +86,8 @@ Result<ReferencePose> ReferencePoseFromFrame(std::string name, const PoseFrame& 
     const Transform& moved = frame.pose.joints[j];
     const int parent = skeleton.joint_parents()[j];
     const glm::quat above = parent < 0 ? glm::quat(1, 0, 0, 0) : model[parent];
+    // With G, the joint's model rotation at rest, the departure in model axes is G * inverse(rest)
+    // * moved * inverse(G).
     const glm::quat g = glm::normalize(above * still.rotation);
     model[j] = g;
     JointDelta delta;
@@ -89,6 +95,8 @@ Result<ReferencePose> ReferencePoseFromFrame(std::string name, const PoseFrame& 
     delta.rotation = ShorterWay(
         glm::normalize(g * glm::inverse(still.rotation) * moved.rotation * glm::inverse(g)));
     delta.translation = above * (moved.translation - still.translation);
+    // Recordings repeat the rest pose in rounded numbers. Joints that only differ by rounding stay
+    // out of the pose, so that rigs stay small and blends exact.
     const bool turns = Angle(delta.rotation) > kLeastRadians;
     const bool shifts = glm::length(delta.translation) > kLeastTranslation * pose.source_size;
     if (!turns) delta.rotation = {1.0f, 0.0f, 0.0f, 0.0f};
@@ -101,6 +109,7 @@ Result<ReferencePose> ReferencePoseFromFrame(std::string name, const PoseFrame& 
 ReferencePose MixReferencePoses(std::string name, std::span<const WeightedPose> parts) {
   ReferencePose mix;
   mix.name = std::move(name);
+  // The units of the first part that states a size. Parts without a size keep their translations.
   for (const WeightedPose& part : parts) {
     if (mix.source_size == 0.0f) mix.source_size = part.pose->source_size;
   }
@@ -109,6 +118,7 @@ ReferencePose MixReferencePoses(std::string name, std::span<const WeightedPose> 
     const float size = part.pose->source_size;
     const float scale = size > 0.0f ? mix.source_size / size : 1.0f;
     for (const JointDelta& delta : part.pose->joints) {
+      // Joints keep the order of their first appearance, so that files do not change between runs.
       const auto [place, added] = places.emplace(delta.joint, mix.joints.size());
       if (added) mix.joints.push_back({delta.joint, glm::quat(1, 0, 0, 0), glm::vec3(0.0f)});
       JointDelta& sum = mix.joints[place->second];

@@ -37,6 +37,7 @@ std::string ToJson(const wrinkle::Driver& driver) {
 }
 
 std::string ToJson(const wrinkle::Mask& mask) {
+  // CheckRigFields() limits the channel to 0 to 3.
   constexpr std::array kChannels = {"r", "g", "b", "a"};
   Object object;
   object.Choice("kind", mask.kind, {"texture", "skinning", "sliding"})
@@ -89,6 +90,7 @@ std::string ToJson(const wrinkle::WrinkleMap& map) {
 }
 
 std::string ToJson(const wrinkle::Filter& filter) {
+  // The defaults of the struct and of rig.fbs are the same.
   const wrinkle::Filter usual;
   Object object;
   if (!filter.enabled) object.Raw("enabled", "false");

@@ -21,12 +21,14 @@ using wrinkle::JointRole;
 
 constexpr char kFolder[] = "skeleton_maps";
 
+// Lowercase if the map ignores case, so that names compare byte by byte.
 std::string Folded(std::string_view name, bool ignore_case) {
   std::string folded(name);
   if (ignore_case) folded = AsciiLower(std::move(folded));
   return folded;
 }
 
+// Maya writes "namespace:joint". The last colon ends the namespace.
 std::string_view WithoutNamespace(std::string_view name) {
   const std::size_t colon = name.rfind(':');
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
@@ -35,6 +37,7 @@ std::string_view WithoutNamespace(std::string_view name) {
 // Removes `prefix` from `name`. Both have been folded to one case. Other names are returned
 // unchanged.
 std::string_view WithoutPrefix(std::string_view name, std::string_view prefix) {
+  // "*_" and the like match anything up to the last occurrence of the mark.
   if (prefix.starts_with('*')) {
     const std::string_view mark = prefix.substr(1);
     const std::size_t at = name.rfind(mark);
@@ -51,6 +54,7 @@ struct Place {
 };
 using Places = std::unordered_multimap<std::string, Place>;
 
+// A name may fill places of several entries, hence the multimap.
 Places PlacesOf(const SkeletonMap& map) {
   Places places;
   for (std::size_t e = 0; e < map.entries.size(); ++e) {
@@ -70,6 +74,7 @@ std::vector<std::vector<std::pair<int, std::size_t>>> FillPlaces(
     const SkeletonMap& map, const Places& places, std::string_view prefix,
     std::span<const std::string> joint_names) {
   std::vector<std::vector<std::pair<int, std::size_t>>> filled;
+  // -1: no joint yet.
   for (const auto& entry : map.entries) filled.emplace_back(entry.chain.size(), std::pair(-1, 0));
   for (std::size_t j = 0; j < joint_names.size(); ++j) {
     const std::string name = Folded(WithoutNamespace(joint_names[j]), map.ignore_case);
@@ -89,6 +94,7 @@ SkeletonRoles ApplyWithPrefix(const SkeletonMap& map, const Places& places, std:
   SkeletonRoles result;
   result.map = map.name;
   result.toes_height = map.toes_height;
+  // One role per joint. The first entry that claims a joint keeps it.
   result.roles.assign(joint_names.size(), JointRole::kNone);
   const auto filled = FillPlaces(map, places, prefix, joint_names);
   for (std::size_t e = 0; e < filled.size(); ++e) {
@@ -118,6 +124,8 @@ Result<SkeletonMap> LoadFile(const fs::path& path) {
 
 SkeletonRoles ApplySkeletonMap(const SkeletonMap& map, std::span<const std::string> joint_names) {
   const Places places = PlacesOf(map);
+  // All joints of a skeleton share a prefix, so one prefix is tried on all of them. On a tie, the
+  // earlier one wins.
   SkeletonRoles best = ApplyWithPrefix(map, places, "", joint_names);
   for (const std::string& prefix : map.prefixes) {
     SkeletonRoles found =
@@ -129,6 +137,7 @@ SkeletonRoles ApplySkeletonMap(const SkeletonMap& map, std::span<const std::stri
 
 SkeletonMaps::SkeletonMaps(std::vector<SkeletonMap> maps, bool chosen)
     : maps_(std::move(maps)), chosen_(chosen) {
+  // Directories list files in any order; a tie between maps must not depend on it.
   std::ranges::sort(maps_, {}, &SkeletonMap::name);
 }
 
@@ -151,6 +160,7 @@ Result<SkeletonMaps> SkeletonMaps::Load(const std::string& name_or_file) {
   if (name_or_file.empty()) return LoadShipped();
   std::error_code error;
   fs::path path = name_or_file;
+  // A slash marks a path, so a missing file is not mistaken for the name of a shipped map.
   if (!fs::is_regular_file(path, error) && name_or_file.find('/') == std::string::npos) {
     const auto shipped = FindDataFile(std::string(kFolder) + "/" + name_or_file + ".json");
     FURROW_RETURN_IF_ERROR(shipped);
@@ -171,6 +181,8 @@ SkeletonRoles SkeletonMaps::RolesOf(std::span<const std::string> joint_names) co
   SkeletonRoles best;
   for (const SkeletonMap& map : maps_) {
     SkeletonRoles found = ApplySkeletonMap(map, joint_names);
+    // A map that the user chose needs no minimum. For shipped maps, a few matches may be
+    // coincidence.
     const bool enough = chosen_ || found.num_roles >= kMinRoles;
     if (enough && (best.map.empty() || found.num_joints > best.num_joints)) best = std::move(found);
   }

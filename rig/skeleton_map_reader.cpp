@@ -15,6 +15,7 @@ namespace {
 using Json = nlohmann::json;
 using wrinkle::JointRole;
 
+// Limits on hostile files. The largest map that ships is far below all of them.
 constexpr std::size_t kMaxBytes = 1 << 20;
 constexpr std::size_t kMaxPrefixes = 64;
 constexpr std::size_t kMaxChain = 16;
@@ -50,6 +51,7 @@ class MapReader {
   std::set<JointRole> seen_;
 };
 
+// Continues behind each replacement, so a side that contains '*' cannot loop.
 std::string Replaced(std::string text, const std::string& by) {
   for (std::size_t at = text.find('*'); at != std::string::npos;
        at = text.find('*', at + by.size())) {
@@ -72,6 +74,7 @@ Status MapReader::CheckFields(const Json& root) const {
   if (!root.is_object()) return Error("(root)", "expected an object");
   static const std::set<std::string> kKnown = {"version",     "name",  "title",  "prefixes",
                                                "ignore_case", "sides", "joints", "toes_height"};
+  // Unknown fields are errors: a misspelled field would otherwise have no effect.
   for (const auto& [key, value] : root.items()) {
     if (!kKnown.contains(key)) return Error(Quoted(key), "unknown field");
   }
@@ -124,10 +127,12 @@ Status MapReader::AddPlace(const Json& value, const std::string& side, const std
                            SkeletonMap::Entry* entry) const {
   std::string text;
   FURROW_RETURN_IF_ERROR(ReadText(value, field, &text));
+  // A '*' in a name stands for the side, and only entries with a '*' in the role have one.
   if (text.find('*') != std::string::npos && side.empty()) {
     return Error(field, "a '*' in a name requires a '*' in its role, and \"sides\"");
   }
   std::vector<std::string> names = Alternatives(Replaced(text, side));
+  // An empty name could match a joint that consists of a prefix alone.
   if (std::ranges::any_of(names, &std::string::empty))
     return Error(field, "contains an empty name");
   entry->chain.push_back(std::move(names));
@@ -195,12 +200,14 @@ Status MapReader::Read(const Json& root, SkeletonMap* map) {
     const Json& height = root["toes_height"];
     if (!height.is_number()) return Error("toes_height", "expected a number");
     map->toes_height = height.get<float>();
+    // Leg lengths. The negation also rejects NaN.
     if (!(*map->toes_height >= 0.0f && *map->toes_height <= 0.5f)) {
       return Error("toes_height", "must be between 0 and 0.5 leg lengths",
                    StatusCode::kInvalidArgument);
     }
   }
   FURROW_RETURN_IF_ERROR(ReadPrefixes(root, map));
+  // Before the joints, whose names refer to the sides.
   FURROW_RETURN_IF_ERROR(ReadSides(root));
   return ReadJoints(root, map);
 }
@@ -212,6 +219,8 @@ Result<SkeletonMap> ParseSkeletonMap(std::string_view json, std::string_view sou
     return Status(StatusCode::kLimit, "larger than 1 MiB", std::string(source_name));
   }
   Json root;
+  // Comments are allowed, as in rigs. The parser throws on malformed text, and nothing here lets an
+  // exception out.
   try {
     root = Json::parse(json.begin(), json.end(), nullptr, true, /*ignore_comments=*/true);
   } catch (const Json::exception& error) {

@@ -15,6 +15,7 @@ using wrinkle::JointRole;
 
 std::string_view NameOf(JointRole role) { return wrinkle::ToString(role); }
 
+// By name, because the fingers of the two sides are apart in the enumeration.
 bool IsFinger(JointRole role) {
   const std::string_view name = NameOf(role);
   return std::ranges::any_of(
@@ -44,6 +45,8 @@ Result<SkeletonMatcher> SkeletonMatcher::Create(const std::string& name_or_file)
   if (name_or_file.empty()) return matcher;
   auto chosen = SkeletonMaps::Load(name_or_file);
   FURROW_RETURN_IF_ERROR(chosen);
+  // A chosen map may also describe the user's own character, so it joins the maps for characters.
+  // For streams it replaces them.
   const auto known = matcher.characters_.maps();
   std::vector<SkeletonMap> all(known.begin(), known.end());
   all.push_back(chosen->maps().front());
@@ -59,10 +62,12 @@ SkeletonMatch SkeletonMatcher::Match(const wrinkle::Skeleton& stream, const wrin
   if (character != nullptr) match.character = characters_.RolesOf(*character);
   if (match.stream.roles.empty()) return match;
 
+  // The roles of a rig's joints follow from their names alone, since a rig has no skeleton.
   const std::set<std::string> joints = wrinkle::JointsOf(rig);
   const std::vector<std::string> names(joints.begin(), joints.end());
   const SkeletonRoles own = characters_.RolesOf(names);
   for (std::size_t i = 0; i < own.roles.size(); ++i) {
+    // Equal names need no alias.
     if (stream.Find(names[i]) != wrinkle::kNoJoint) continue;
     const JointRole role = own.roles[i];
     if (role == JointRole::kNone) continue;
@@ -82,6 +87,8 @@ std::string Describe(const SkeletonRoles& roles) {
   if (roles.map.empty()) return {};
   std::string text =
       "skeleton map '" + roles.map + "': " + std::to_string(roles.num_roles) + " roles";
+  // Body captures without fingers or a face are usual; listing all of these roles would bury the
+  // rest.
   std::vector<JointRole> missing = roles.missing;
   for (const auto& kind : {IsFinger, IsOfFace}) {
     if (std::ranges::none_of(roles.roles, kind)) std::erase_if(missing, kind);

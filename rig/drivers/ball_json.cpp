@@ -17,6 +17,7 @@ Status ReadFields(const schema::BallDriver& from, const std::string& at, wrinkle
 std::string FieldsToJson(const wrinkle::BallDriver& ball) {
   Object object;
   object.Text("parent", ball.parent).Text("joint", ball.joint).Text("end", ball.end);
+  // Defaults stay out of the file: the reader supplies them again.
   if (ball.bone != glm::vec3(0)) object.Raw("bone", Numbers(ball.bone));
   if (ball.forward != glm::vec3(0, 0, 1)) object.Raw("forward", Numbers(ball.forward));
   return object.Float("beta_degrees", ball.beta_degrees, 30.0f)

@@ -16,6 +16,7 @@ std::string PointToJson(const wrinkle::ControlPoint& point) {
 
 Status ReadFields(const schema::PoseDriver& from, const std::string& at, wrinkle::PoseDriver* to) {
   to->falloff = from.falloff();
+  // The schema requires `values`, so the pointer is not null (rig.fbs).
   for (const schema::PoseValue* value : *from.values()) {
     to->values.push_back({value->name()->str(), value->reference_pose()->str()});
   }

@@ -6,6 +6,8 @@ namespace furrow::rig {
 
 Status ReadFields(const schema::StrainDriver& from, const std::string&, wrinkle::StrainDriver* to) {
   to->joint = from.joint()->str();
+  // All fields read through pointers here are required by the schema. CheckFields() compares their
+  // sizes.
   for (const flatbuffers::String* joint : *from.joints()) to->joints.push_back(joint->str());
   for (const schema::PatchVertex* vertex : *from.vertices()) {
     wrinkle::StrainDriver::Vertex& added = to->vertices.emplace_back();

@@ -7,6 +7,7 @@
 namespace furrow::rig {
 namespace {
 
+// A nested value moves right by two columns; its first line follows the field's name.
 std::string Indented(std::string_view text) {
   std::string indented;
   for (const char c : text) {
@@ -18,6 +19,7 @@ std::string Indented(std::string_view text) {
 
 }  // namespace
 
+// Bytes above 0x7f pass unchanged: JSON is UTF-8.
 std::string Quote(std::string_view text) {
   constexpr char kHex[] = "0123456789abcdef";
   std::string quoted = "\"";
@@ -34,6 +36,7 @@ std::string Quote(std::string_view text) {
   return quoted + '"';
 }
 
+// The shortest text that reads back as the same float, whatever the locale.
 std::string Number(float value) {
   std::array<char, 32> text{};
   const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
