@@ -13,6 +13,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxNameBytes = 1024;
 
+// The folders to search, in order: beside the rig first, so that a local file wins.
 std::vector<fs::path> AssetFolders(const fs::path& folder) {
   std::vector<fs::path> folders = {folder.empty() ? fs::path(".") : folder};
   const char* variable = std::getenv("FURROW_ASSET_PATH");
@@ -27,6 +28,8 @@ std::vector<fs::path> AssetFolders(const fs::path& folder) {
 
 }  // namespace
 
+// Names come from rigs of strangers. They must not reach a file outside the search folders, so
+// absolute paths, "..", drive letters and backslashes are refused on every system.
 Status CheckAssetName(std::string_view name) {
   const auto refuse = [&](const char* why) {
     return Status(StatusCode::kInvalidArgument, "file name '" + std::string(name) + "' " + why, {},
@@ -51,6 +54,7 @@ Status CheckAssetName(std::string_view name) {
 }
 
 Result<fs::path> FindAsset(std::string_view name, const fs::path& folder) {
+  // Here as well: the glTF reader passes URIs that no rig check has seen.
   FURROW_RETURN_IF_ERROR(CheckAssetName(name));
   std::string tried;
   for (const fs::path& candidate : AssetFolders(folder)) {

@@ -17,6 +17,7 @@ struct ParserError {
   std::string what;
 };
 
+// Splits "line: column: error: what, originally at: ..." and ignores the parts that are absent.
 ParserError SplitParserError(std::string_view text) {
   ParserError result;
   const auto number = [&](int* value) {
@@ -33,6 +34,8 @@ ParserError SplitParserError(std::string_view text) {
   return result;
 }
 
+// Turns the parser's place into a field. The parser notices a missing field at the end of its
+// object, so the object that closed last lacks it.
 Status FromParser(const std::string& error, const JsonIndex& index, const std::string& source,
                   const JsonSchema& schema) {
   const ParserError parsed = SplitParserError(error);
@@ -49,6 +52,8 @@ Status FromParser(const std::string& error, const JsonIndex& index, const std::s
   } else {
     path = index.PathAt(parsed.line, parsed.column);
   }
+  // The parser's message for a struct, such as a vector, with too many or too few numbers. The
+  // place is inside the list.
   if (what == "wrong number of unnamed fields in table vector") {
     what = "the list has the wrong number of entries";
     path = path.substr(0, path.rfind('['));
@@ -69,6 +74,7 @@ struct CheckedJson::Parsed {
 
 Result<CheckedJson> CheckedJson::Parse(std::string_view json, std::string_view source,
                                        const JsonSchema& schema) {
+  // The index comes first. It bounds size and depth, which the FlatBuffers parser does not.
   Result<JsonIndex> index = JsonIndex::Create(json);
   if (!index.ok()) {
     const Status s = index.status();
@@ -81,6 +87,7 @@ Result<CheckedJson> CheckedJson::Parse(std::string_view json, std::string_view s
     return Status(StatusCode::kInternal,
                   std::string(schema.file) + " does not parse: " + parsed->parser.error_);
   }
+  // The copy ends with a zero byte, which the parser requires.
   if (!parsed->parser.ParseJson(std::string(json).c_str())) {
     return FromParser(parsed->parser.error_, parsed->index, parsed->source, schema);
   }

@@ -13,6 +13,7 @@ Result<std::filesystem::path> FindDataFile(std::string_view name) {
   if (const char* set = std::getenv("FURROW_DATA_DIR"); set != nullptr && *set != '\0') {
     folder = set;
   } else {
+    // bin/ and share/ are neighbours, in the build folder and after an installation.
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     folder = program.parent_path().parent_path() / "share" / "furrow";
   }

@@ -38,6 +38,7 @@ int WriteAll(int descriptor, std::string_view bytes) {
 
 // mkstemp() creates files that only their owner can read; output files get the usual mode.
 int ApplyUmask(int descriptor) {
+  // umask() can only be read by setting it.
   const mode_t mask = ::umask(0);
   ::umask(mask);
   return ::fchmod(descriptor, 0666 & ~mask) == 0 ? 0 : errno;
@@ -66,15 +67,19 @@ class PendingFile {
     if (fs::is_directory(file.path, ignored)) {
       return {StatusCode::kIo, "cannot write: the path is a folder", file.path.string()};
     }
+    // A rename would replace the device or pipe by a file: `--out /dev/stdout` must stay usable.
     if (IsDeviceOrPipe(file.path)) return WriteInPlace(file);
+    // A rename onto a symbolic link would replace the link, so the file behind it is replaced.
     target_ =
         fs::is_symlink(file.path, ignored) ? fs::weakly_canonical(file.path, ignored) : fs::path();
     if (target_.empty()) target_ = file.path;
+    // In the same folder as the target: a rename across file systems is impossible.
     std::string name = target_.string() + ".XXXXXX";
     const int descriptor = ::mkstemp(name.data());
     if (descriptor < 0) return SystemError("cannot create a file there", file.path, errno);
     temporary_ = std::move(name);
     int error = ApplyUmask(descriptor);
+    // Keeps the first error. close() runs in any case, and reports late write errors (NFS, quotas).
     if (error == 0) error = WriteAll(descriptor, file.bytes);
     if (error == 0 && flush == Flush::kDisk && ::fsync(descriptor) != 0) error = errno;
     if (::close(descriptor) != 0 && error == 0) error = errno;
@@ -107,6 +112,7 @@ class PendingFile {
 
 Result<std::string> ReadFile(const fs::path& path, std::uint64_t max_bytes) {
   std::error_code error;
+  // Opening a pipe or device could block forever, so the kind is checked before.
   const fs::file_status kind = fs::status(path, error);
   if (kind.type() == fs::file_type::not_found) {
     return Status(StatusCode::kNotFound, "no such file", path.string());
@@ -140,6 +146,7 @@ Status WriteFileAtomically(const fs::path& path, std::string_view bytes, Flush f
 }
 
 Status WriteFilesAtomically(std::span<const FileToWrite> files, Flush flush) {
+  // All files are written before the first is renamed, so that a full disk changes none of them.
   std::vector<PendingFile> pending(files.size());
   for (std::size_t i = 0; i < files.size(); ++i) {
     FURROW_RETURN_IF_ERROR(pending[i].Write(files[i], flush));
@@ -152,6 +159,7 @@ Status CheckWritable(const fs::path& path) {
   std::error_code ignored;
   const bool existed = fs::exists(path, ignored);
   errno = 0;
+  // Opening for appending tests permissions without a change to an existing file.
   const bool opened = std::ofstream(path, std::ios::binary | std::ios::app).is_open();
   if (!opened) return SystemError("cannot write", path, errno);
   if (!existed) fs::remove(path, ignored);

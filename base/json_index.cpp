@@ -34,6 +34,7 @@ bool IsNumber(std::string_view token) {
   return i == token.size();
 }
 
+// False for finite numbers that a float cannot hold, which would become infinite later.
 bool FitsFloat(std::string_view number) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
@@ -47,6 +48,7 @@ bool FitsFloat(std::string_view number) {
          std::abs(value) <= std::numeric_limits<float>::max();
 }
 
+// The bytes that make up a word, so that an error message can quote the whole of it.
 bool IsWordByte(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' ||
          c == '+' || c == '.' || c == '_';
@@ -66,6 +68,7 @@ class JsonScanner {
               "the text has more than " + std::to_string(JsonIndex::kMaxBytes) + " bytes", "1"};
     }
     FURROW_RETURN_IF_ERROR(SkipSpace());
+    // Element 0 is the root. Parents have smaller indices than their children.
     Enter(-1, -1, {});
     if (AtEnd()) return Fail("the text is empty; expected a JSON object");
     if (Peek() != '{') return Fail("expected a JSON object, which begins with '{'");
@@ -79,6 +82,7 @@ class JsonScanner {
   [[nodiscard]] bool AtEnd() const { return at_ >= text_.size(); }
   [[nodiscard]] char Peek() const { return text_[at_]; }
 
+  // An error at the current place: "<line>: <path>".
   Status Fail(std::string what, StatusCode code = StatusCode::kParse) {
     const std::string path = current_ < 0 ? std::string() : index_->PathOf(current_);
     return {code, std::move(what), std::to_string(line_) + (path.empty() ? "" : ": " + path)};
@@ -115,12 +119,14 @@ class JsonScanner {
     return {};
   }
 
+  // Finds the end of a string, without decoding it. Paths show keys as they are written.
   Status String(std::string_view* content) {
     const std::size_t begin = ++at_;
     while (!AtEnd() && Peek() != '"') {
       if (static_cast<unsigned char>(Peek()) < 0x20) {
         return Fail("unterminated string, or a control character inside a string");
       }
+      // An escaped quote does not end the string.
       at_ += Peek() == '\\' ? 2 : 1;
     }
     if (AtEnd()) return Fail("unterminated string");
@@ -160,6 +166,8 @@ class JsonScanner {
     return status;
   }
 
+  // Limits against hostile texts: the depth bounds the call stack, the number of elements bounds
+  // memory.
   Status CheckRoom(int depth) {
     if (depth > JsonIndex::kMaxDepth) {
       return Fail("nested deeper than " + std::to_string(JsonIndex::kMaxDepth), StatusCode::kLimit);
@@ -191,6 +199,7 @@ class JsonScanner {
     std::string_view key;
     FURROW_RETURN_IF_ERROR(String(&key));
     index_->elements_[element].key = key;
+    // A linear search, which the limit of 64 fields per object bounds.
     if (std::find(keys->begin(), keys->end(), key) != keys->end()) {
       return Fail("the field appears twice", StatusCode::kSchema);
     }
@@ -249,6 +258,7 @@ Result<JsonIndex> JsonIndex::Create(std::string_view text) {
 
 std::string JsonIndex::PathOf(int element) const {
   std::string path;
+  // From the element to the root, hence the insertion at the front.
   for (int i = element; i > 0; i = elements_[i].parent) {
     const Element& e = elements_[i];
     const std::string step =
@@ -261,6 +271,7 @@ std::string JsonIndex::PathOf(int element) const {
 int JsonIndex::Find(std::string_view path) const {
   for (int i = 0; i < static_cast<int>(elements_.size()); ++i) {
     const Element& e = elements_[i];
+    // Most fields fail this cheap test, which saves building their paths.
     if (e.position < 0 && !path.ends_with(e.key)) continue;
     if (PathOf(i) == path) return i;
   }
@@ -270,6 +281,8 @@ int JsonIndex::Find(std::string_view path) const {
 std::string JsonIndex::Where(std::string_view path) const {
   std::string_view known = path;
   int element = Find(known);
+  // A missing field has no line. Its object does, or the object above; the root (path "") always
+  // exists.
   while (element < 0) {
     const std::size_t cut = known.find_last_of(".[");
     known = cut == std::string_view::npos ? std::string_view() : known.substr(0, cut);
@@ -281,6 +294,7 @@ std::string JsonIndex::Where(std::string_view path) const {
 
 std::size_t JsonIndex::OffsetOf(int line, int column) const {
   const int last = static_cast<int>(line_begins_.size());
+  // The parser may report a line past the end.
   return line_begins_[std::clamp(line, 1, last) - 1] +
          static_cast<std::size_t>(std::max(column, 0));
 }

@@ -37,6 +37,7 @@ enum class Outcome { kNumber, kNonFinite, kNoNumber };
 
 Outcome Convert(std::string_view token, double* value) {
   std::string_view digits = token;
+  // from_chars() refuses a plus sign. "+-1" stays malformed.
   if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
   const char* end = digits.data() + digits.size();
   const auto [rest, error] = std::from_chars(digits.data(), end, *value);

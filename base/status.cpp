@@ -16,6 +16,7 @@ std::string Status::ToString() const {
 }
 
 Status Status::At(std::string_view where) const {
+  // The innermost place is the most precise one, so it stays.
   if (ok() || !where_.empty()) return *this;
   return {code_, what_, std::string(where), todo_};
 }

@@ -10,6 +10,7 @@ constexpr std::string_view kBlanks = " \t\v\f";
 
 }  // namespace
 
+// For messages about hostile input: short, on one line, without control sequences for the terminal.
 std::string Quoted(std::string_view text) {
   constexpr std::size_t kShown = 40;
   std::string quoted = "'";
@@ -28,6 +29,7 @@ std::size_t LineOf(std::string_view text, std::size_t offset) {
 
 void SplitWords(std::string_view line, std::vector<std::string_view>* words) {
   words->clear();
+  // '#' begins a comment.
   line = line.substr(0, line.find('#'));
   while (true) {
     const std::string_view word = TakeToken(&line);

@@ -23,6 +23,7 @@ TextCursor::TextCursor(std::string_view text, std::string_view source_name)
 }
 
 void TextCursor::SkipLineEnd() {
+  // LF, CRLF and CR alone each count as one line, as editors count them.
   const bool crlf =
       text_[position_] == '\r' && position_ + 1 < text_.size() && text_[position_ + 1] == '\n';
   position_ += crlf ? 2 : 1;
@@ -44,6 +45,7 @@ std::string_view TextCursor::NextToken() {
   while (position_ < text_.size()) {
     const char c = text_[position_];
     if (IsLineEnd(c) || IsBlank(c)) break;
+    // Braces are tokens of their own, even without blanks around them ("ROOT Hips{").
     if (IsBrace(c)) {
       if (position_ == begin) ++position_;
       break;
@@ -71,6 +73,8 @@ std::string_view TextCursor::RestOfLine() {
 
 bool TextCursor::NextLine(std::string_view* line) {
   while (true) {
+    // The line's end is consumed by the next call, so that Where() still names this line while the
+    // caller reports an error in it.
     if (pending_line_end_) SkipLineEnd();
     pending_line_end_ = false;
     if (position_ >= text_.size()) return false;
