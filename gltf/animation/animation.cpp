@@ -36,6 +36,8 @@ ElementType ElementTypeOf(TrackTarget target) {
   }
 }
 
+// Reads the first animation: tracks of one node and property each, bounded by kMaxAnimationNumbers
+// in total, because many channels may share one large accessor.
 class AnimationReader {
  public:
   AnimationReader(Document* document, const NodeForest& forest)
@@ -69,6 +71,7 @@ class AnimationReader {
       return {StatusCode::kSchema, "sampler " + std::to_string(channel.sampler) + " does not exist",
               field + ".sampler"};
     }
+    // Extensions may animate other things; glTF 2.0 then omits the node.
     if (channel.target_node == kNone) return {};
     if (channel.target_node < 0 || channel.target_node >= static_cast<int>(forest_.nodes.size())) {
       return {StatusCode::kSchema,
@@ -81,6 +84,8 @@ class AnimationReader {
                      Quoted(channel.target_path) + " is not supported and is ignored");
       return {};
     }
+    // glTF 2.0 forbids two channels with the same target. A node has four properties, hence the
+    // key.
     NodeTrack track{channel.target_node, *target, {}};
     const std::size_t key =
         static_cast<std::size_t>(track.node) * 4 + static_cast<std::size_t>(track.target);
@@ -125,6 +130,8 @@ class AnimationReader {
       Result<std::vector<float>> read =
           ReadFloats(document_, accessor, ElementType::kScalar, where, &budget_);
       FURROW_RETURN_IF_ERROR(read);
+      // Strictly increasing, as glTF requires: interpolation divides by the difference of two
+      // times.
       if (!std::is_sorted(read->begin(), read->end(), std::less_equal<>())) {
         return {StatusCode::kSchema, "the times do not increase", where};
       }
@@ -135,6 +142,7 @@ class AnimationReader {
   }
 
   static Status CheckValues(const Track& track, const std::string& where) {
+    // A cubic spline has an in-tangent, a value and an out-tangent per key.
     const bool cubic = track.interpolation == Track::Interpolation::kCubicSpline;
     const std::size_t expected = track.times->size() * track.width * (cubic ? 3 : 1);
     if (track.width == 0 || track.values.size() != expected) {
@@ -146,6 +154,8 @@ class AnimationReader {
     for (std::size_t key = 0; track.is_rotation && key < track.times->size(); ++key) {
       const float* q = track.Value(key);
       const float length2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+      // Quantised quaternions are slightly off 1. Evaluation normalises them; a far length is
+      // another error.
       if (length2 < 0.25f || length2 > 4.0f) {
         return {StatusCode::kSchema, "key " + std::to_string(key) + " is not a unit quaternion",
                 where};

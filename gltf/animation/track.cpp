@@ -21,6 +21,7 @@ void StoreUnit(const glm::quat& q, float* xyzw) {
 }  // namespace
 
 const float* Track::Value(std::size_t key) const {
+  // The value of a spline's key is the second of its three elements.
   const bool cubic = interpolation == Interpolation::kCubicSpline;
   return values.data() + (cubic ? key * 3 + 1 : key) * width;
 }
@@ -35,6 +36,8 @@ void Track::Interpolate(std::size_t key, float t, float* out) const {
   for (std::size_t i = 0; i < width; ++i) out[i] = std::lerp(a[i], b[i], t);
 }
 
+// The cubic Hermite spline of glTF 2.0, appendix C.5. Tangents are per second, hence the factor
+// `span`.
 void Track::EvaluateSpline(std::size_t key, float t, float span, float* out) const {
   const float t2 = t * t;
   const float t3 = t2 * t;
@@ -53,11 +56,13 @@ void Track::Evaluate(double time, float* out) const {
   const auto after = std::upper_bound(keys.begin(), keys.end(), time,
                                       [](double t, float key) { return t < double{key}; });
   const auto next = static_cast<std::size_t>(after - keys.begin());
+  // Before the first key and after the last one, the nearest key holds.
   if (next == 0 || next == keys.size() || interpolation == Interpolation::kStep) {
     std::copy_n(Value(next == 0 ? 0 : next - 1), width, out);
     if (is_rotation) StoreUnit(LoadQuat(out), out);
     return;
   }
+  // Above 0, because the times increase strictly.
   const float span = keys[next] - keys[next - 1];
   const auto t = static_cast<float>((time - double{keys[next - 1]}) / double{span});
   if (interpolation == Interpolation::kLinear) {

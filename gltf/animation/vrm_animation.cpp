@@ -25,6 +25,7 @@ Result<int> NodeOf(const Document& document, const tinygltf::Value& object,
   return node.GetNumberAsInt();
 }
 
+// Reads {"hips": {"node": 3}, ...}, the form of human bones and of expressions.
 Status ReadNamedNodes(const Document& document, const tinygltf::Value& map,
                       const std::string& field, std::vector<std::pair<std::string, int>>* named) {
   const std::vector<std::string> names = map.Keys();

@@ -31,12 +31,14 @@ std::string ChunkField(std::size_t chunk, const char* member) {
   return "chunks[" + std::to_string(chunk) + "]" + member;
 }
 
+// The layout of a chunk: u32 length, u32 type, then `length` bytes.
 Status ReadChunks(std::string_view bytes, Container* container) {
   std::size_t at = kHeaderBytes;
   for (std::size_t chunk = 0; bytes.size() - at >= kChunkHeaderBytes; ++chunk) {
     const std::size_t size = ReadU32(bytes, at);
     const std::uint32_t type = ReadU32(bytes, at + 4);
     at += kChunkHeaderBytes;
+    // The subtraction cannot wrap: `at` never passes the end.
     if (size > bytes.size() - at) {
       return ParseError("the chunk is longer than the file", ChunkField(chunk, ".length"));
     }

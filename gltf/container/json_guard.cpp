@@ -9,12 +9,16 @@
 namespace furrow::gltf {
 
 Status CheckJsonSize(std::string_view json) {
+  // A scan without allocation, before any parser: a parser would exhaust the stack on deep nesting
+  // and the memory on many values. Malformed text needs no care here, because the parser stops at
+  // its first fault.
   int depth = 0;
   std::size_t values = 1;
   bool in_string = false;
   for (std::size_t i = 0; i < json.size(); ++i) {
     const char c = json[i];
     if (in_string) {
+      // An escaped quote does not end the string.
       if (c == '\\') ++i;
       in_string = c != '"';
       continue;

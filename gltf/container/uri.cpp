@@ -31,6 +31,8 @@ int HexDigit(char c) {
   return -1;
 }
 
+// The text of a URI without %xx escapes. Decoding comes before the check of the name, so that
+// "%2e%2e/" cannot pass it.
 Result<std::string> DecodePercentEscapes(std::string_view uri) {
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -60,6 +62,7 @@ Result<std::vector<std::uint8_t>> DecodeDataUri(std::string_view uri) {
   const std::size_t marker = uri.find(kBase64Marker);
   if (!IsDataUri(uri) || marker == std::string_view::npos) return broken;
   std::string_view text = uri.substr(marker + kBase64Marker.size());
+  // Padding is optional: some exporters leave it out.
   for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
   if (text.size() % 4 == 1) return broken;  // 6 bits do not make a byte
   std::vector<std::uint8_t> bytes;
@@ -69,6 +72,7 @@ Result<std::vector<std::uint8_t>> DecodeDataUri(std::string_view uri) {
   for (const char c : text) {
     const int value = kTable[static_cast<unsigned char>(c)];
     if (value < 0) return broken;
+    // At most 13 bits are pending; the mask keeps the shift from overflowing.
     bits = (bits << 6 | static_cast<std::uint32_t>(value)) & 0xFFFF;
     num_bits += 6;
     if (num_bits < 8) continue;

@@ -11,6 +11,7 @@
 
 namespace furrow::gltf {
 
+// ElementType is cast to tinygltf's constants.
 static_assert(static_cast<int>(ElementType::kScalar) == TINYGLTF_TYPE_SCALAR);
 static_assert(static_cast<int>(ElementType::kVec2) == TINYGLTF_TYPE_VEC2);
 static_assert(static_cast<int>(ElementType::kVec3) == TINYGLTF_TYPE_VEC3);
@@ -21,6 +22,7 @@ int ComponentsOf(ElementType type) {
   return tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type));
 }
 
+// Checks every index, count and offset once, so that the loads below need no checks.
 Result<Accessor> Accessor::Create(const Document& document, int accessor, ElementType type,
                                   const std::string& where) {
   const auto schema_error = [&](std::string what) {
@@ -77,6 +79,8 @@ T Accessor::Load(std::size_t element, int component) const {
 }
 
 float Accessor::Float(std::size_t element, int component) const {
+  // glTF 2.0, section 3.11: c / 127 and so on. The lowest signed value would fall below -1, hence
+  // max().
   const auto scaled = [&](auto value, float range) {
     const auto number = static_cast<float>(value);
     return normalized_ ? std::max(number / range, -1.0f) : number;
@@ -131,6 +135,7 @@ Result<std::vector<float>> ReadFloats(const Document& document, int accessor, El
   }
   const int components = ComponentsOf(type);
   const std::size_t count = from->size() * static_cast<std::size_t>(components);
+  // Many accessors may share one buffer view, so the size of the file does not bound the sum.
   if (count > *budget)
     return Status(StatusCode::kLimit, "the file has too many accessor values", where);
   *budget -= count;

@@ -48,6 +48,7 @@ Result<Document> Document::Open(std::string_view bytes, const OpenOptions& optio
   FURROW_RETURN_IF_ERROR(raw);
   Document document(std::move(*raw), options);
   FURROW_RETURN_IF_ERROR(ParseModel(document.raw_.json, document.model_.get()));
+  // Frees the memory; clear() would keep it.
   std::string().swap(document.raw_.json);
   return document;
 }
@@ -61,6 +62,7 @@ std::vector<std::string> Document::MorphTargetNames(int mesh) const {
   std::vector<std::string> names;
   if (NumMorphTargets(mesh) == 0) return names;
   const MorphTargetSource& source = raw_.morph_targets[static_cast<std::size_t>(mesh)];
+  // Blend shapes need names; unnamed ones are numbered per mesh.
   const std::string prefix = source.mesh_name.empty() ? "mesh_" + std::to_string(mesh)
                                                       : source.mesh_name.substr(0, kMaxNameBytes);
   for (std::size_t i = 0; i < source.count; ++i) {

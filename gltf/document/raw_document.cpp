@@ -36,12 +36,14 @@ constexpr RefusedExtension kRefused[] = {{"EXT_meshopt_compression", false},
                                          {"KHR_meshopt_compression", false},
                                          {"KHR_draco_mesh_compression", true}};
 
+// The member, or null. Also null if `object` is none, because the file decides about types.
 const Json* Find(const Json& object, const char* key) {
   if (!object.is_object()) return nullptr;
   const auto found = object.find(key);
   return found == object.end() ? nullptr : &*found;
 }
 
+// The member if it is an array, else an empty one.
 const Json& Array(const Json& object, const char* key) {
   static const Json kEmpty = Json::array();
   const Json* found = Find(object, key);
@@ -68,6 +70,8 @@ std::string Entry(const char* list, std::size_t index) {
   return list + ("[" + std::to_string(index) + "]");
 }
 
+// Reads buffers and views itself, and leaves a reduced JSON for tinygltf, which trusts sizes and
+// opens files that a document names.
 class RawReader {
  public:
   RawReader(const Container& container, const OpenOptions& options)
@@ -75,6 +79,7 @@ class RawReader {
 
   Result<RawDocument> Run() {
     result_.warnings = container_.warnings;
+    // Buffers come before views, and views before images: each refers to the one before.
     FURROW_RETURN_IF_ERROR(ParseJson());
     FURROW_RETURN_IF_ERROR(CheckVersion());
     FURROW_RETURN_IF_ERROR(CheckRequiredExtensions());
@@ -151,10 +156,12 @@ class RawReader {
                     Counted(bytes->size(), "byte"),
                 field + ".byteLength"};
       }
+      // Counts the loaded bytes, not the stated ones: many buffers may name the same large file.
       total += bytes->size();
       if (total > kMaxFileBytes) {
         return {StatusCode::kLimit, "the buffers are larger than 1 GiB together", field};
       }
+      // The rest is padding. A GLB's binary chunk may be up to 3 bytes longer than its buffer.
       buffers_.push_back(bytes->first(length));
     }
     return {};
@@ -173,6 +180,7 @@ class RawReader {
     Result<std::vector<std::uint8_t>> bytes =
         IsDataUri(uri) ? DecodeDataUri(uri) : ReadExternal(uri);
     if (!bytes.ok()) return bytes.status().At(field + ".uri");
+    // The spans point into the vectors' memory, which stays in place when the outer list grows.
     result_.owned_buffers.push_back(std::move(*bytes));
     return std::span<const std::uint8_t>(result_.owned_buffers.back());
   }
@@ -207,11 +215,13 @@ class RawReader {
     if (!ReadUnsigned(view, "byteLength", 0, &length) || length == 0) {
       return {StatusCode::kSchema, "expected a length of at least 1 byte", field + ".byteLength"};
     }
+    // glTF 2.0 limits the stride to 252 bytes.
     if (!ReadUnsigned(view, "byteStride", 0, &stride) || stride > kMaxByteStride) {
       return {StatusCode::kSchema, "expected an unsigned integer of at most 252",
               field + ".byteStride"};
     }
     const std::span<const std::uint8_t> bytes = buffers_[buffer];
+    // In this order, neither side can overflow.
     if (offset > bytes.size() || length > bytes.size() - offset) {
       return {StatusCode::kSchema, "the view ends after the end of its buffer",
               field + ".byteLength"};
@@ -244,6 +254,7 @@ class RawReader {
     for (const Json& mesh : Array(json_, "meshes")) {
       MorphTargetSource source;
       for (const Json& primitive : Array(mesh, "primitives")) {
+        // Valid files have equally many targets in every primitive of a mesh.
         source.count = std::max(source.count, Array(primitive, "targets").size());
       }
       if (source.count > kMaxMorphTargets) {
@@ -253,6 +264,8 @@ class RawReader {
       }
       source.mesh_name = Text(mesh, "name");
       const Json* extras = Find(mesh, "extras");
+      // Names are in extras.targetNames by convention; some exporters write them into the mesh
+      // itself.
       for (const Json& name : Array(extras != nullptr ? *extras : mesh, "targetNames")) {
         if (source.names.size() == source.count) break;
         source.names.push_back(name.is_string() ? name.get<std::string>() : std::string());
@@ -286,6 +299,7 @@ class RawReader {
         extensions != nullptr && animation ? Find(*extensions, "VRMC_vrm_animation") : nullptr;
     if (vrm != nullptr) reduced["extensions"]["VRMC_vrm_animation"] = *vrm;
     AddViewStandIns(&reduced);
+    // Replaces malformed UTF-8, for which dump() would throw.
     result_.json = reduced.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
 

@@ -19,6 +19,8 @@ std::string CutText(const std::string& text, std::size_t most) {
   return text.substr(0, most);
 }
 
+// Unique names for joints, which skeletons require and glTF does not. Names that VRM gives come
+// first, and no other joint may take them.
 class JointNames {
  public:
   JointNames(std::span<const std::pair<std::string, int>> names, Document* document)
@@ -59,6 +61,7 @@ class JointNames {
 
 }  // namespace
 
+// Ancestors of a node in the set are in it already, so the walk ends there.
 void NodeSet::AddWithAncestors(int node) {
   while (node != kNone && !Has(node)) {
     in_[static_cast<std::size_t>(node)] = true;
@@ -66,6 +69,8 @@ void NodeSet::AddWithAncestors(int node) {
   }
 }
 
+// The whole tree of a node, from its root. If the node is in the set, so is its tree, which keeps
+// many tracks of one tree linear.
 void NodeSet::AddTree(int node) {
   const auto parent = [this](int of) { return forest_.nodes[static_cast<std::size_t>(of)].parent; };
   while (parent(node) != kNone) node = parent(node);
@@ -92,6 +97,7 @@ JointList ListJoints(const NodeForest& forest, const NodeSet& set,
     list.num_nameless += node.name.empty() ? 1 : 0;
     list.joints.push_back({namer.NameOf(node, index), kNone, node.local, node.tail, index});
   }
+  // A second pass, because a parent may have a larger index than its child.
   for (Joint& joint : list.joints) {
     const int parent = forest.nodes[static_cast<std::size_t>(joint.node)].parent;
     if (parent != kNone) joint.parent = list.joint_of_node[static_cast<std::size_t>(parent)];

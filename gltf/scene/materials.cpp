@@ -13,6 +13,7 @@
 namespace furrow::gltf {
 namespace {
 
+// Only what the renderer draws: metalness, emission and occlusion are ignored.
 class MaterialReader {
  public:
   MaterialReader(const Document& document, const tinygltf::Material& from, std::string field)
@@ -33,6 +34,7 @@ class MaterialReader {
       }
       to.base_colour[static_cast<int>(i)] = std::clamp(factor, 0.0f, 1.0f);
     }
+    // std::clamp leaves a NaN as it is; JSON cannot express one.
     to.roughness = std::clamp(static_cast<float>(pbr.roughnessFactor), 0.0f, 1.0f);
     to.double_sided = from_.doubleSided;
     // Blended surfaces would have to be sorted; a cut-out comes near enough.
@@ -66,6 +68,7 @@ class MaterialReader {
               field_ + member + ".texCoord"};
     }
     const int source = model.textures[static_cast<std::size_t>(texture)].source;
+    // -1 is a texture whose image only an extension states.
     if (source < kNone || source >= static_cast<int>(document_.images().size())) {
       return {StatusCode::kSchema, "image " + std::to_string(source) + " does not exist",
               "textures[" + std::to_string(texture) + "].source"};

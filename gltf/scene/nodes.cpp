@@ -36,6 +36,8 @@ class NodeCount {
   std::size_t first_ = 0;
 };
 
+// Copies `size` numbers and leaves `to` unchanged if there are none. JSON numbers are doubles,
+// which may exceed a float.
 Status ReadNumbers(const std::vector<double>& from, int size, const std::string& where, float* to) {
   if (from.empty()) return {};
   if (from.size() != static_cast<std::size_t>(size)) {
@@ -50,6 +52,7 @@ Status ReadNumbers(const std::vector<double>& from, int size, const std::string&
   return {};
 }
 
+// Furrow's own extra. Another tool's extra of the same name is ignored, not an error.
 std::optional<glm::vec3> ReadTail(const tinygltf::Node& node) {
   if (!node.extras.IsObject()) return std::nullopt;
   const tinygltf::Value& tail = node.extras.Get(kTailExtra);
@@ -64,6 +67,7 @@ std::optional<glm::vec3> ReadTail(const tinygltf::Node& node) {
   return value;
 }
 
+// Builds a forest with every parent before its children in `order`.
 class NodeReader {
  public:
   explicit NodeReader(Document* document) : document_(*document) {}
@@ -106,6 +110,7 @@ class NodeReader {
   }
 
   Status ReadMatrix(const tinygltf::Node& from, std::size_t index, Transform* to) {
+    // Decomposed in double, so that a matrix with small scales keeps the digits of its rotation.
     glm::mat4 checked;  // in the range of floats
     FURROW_RETURN_IF_ERROR(
         ReadNumbers(from.matrix, 16, NodeField(index, ".matrix"), glm::value_ptr(checked)));
@@ -129,6 +134,8 @@ class NodeReader {
     FURROW_RETURN_IF_ERROR(
         ReadNumbers(from.scale, 3, NodeField(index, ".scale"), glm::value_ptr(to->scale)));
     to->rotation = glm::quat(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
+    // In double: the square of a tiny or huge quaternion leaves a float's range. Unit quaternions
+    // keep their bits.
     const double length = glm::length(glm::dquat(to->rotation));
     if (length < 1e-6) {
       return {StatusCode::kSchema, "the rotation has length 0", NodeField(index, ".rotation")};
@@ -157,6 +164,7 @@ class NodeReader {
     return {};
   }
 
+  // Breadth first, with the list itself as the queue.
   Status SortParentsFirst() {
     std::vector<Node>& nodes = forest_.nodes;
     std::vector<bool> reached(nodes.size(), false);

@@ -35,6 +35,7 @@ Result<std::vector<int>> ReadSkinJoints(const Document& document, std::size_t sk
 Result<std::vector<glm::mat4>> ReadInverseBindMatrices(const Document& document, std::size_t skin) {
   const std::string where = SkinField(skin, ".inverseBindMatrices");
   const tinygltf::Skin& from = document.model().skins[skin];
+  // Identity matrices are glTF's default.
   std::vector<glm::mat4> matrices(from.joints.size(), glm::mat4(1.0f));
   if (from.inverseBindMatrices < 0) return matrices;
   const Result<Accessor> accessor =

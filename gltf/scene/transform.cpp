@@ -10,9 +10,11 @@
 namespace furrow::gltf {
 namespace {
 
+// kFlat is a length in the file's units, kShear the cosine between two axes.
 constexpr double kFlat = 1e-9;
 constexpr double kShear = 1e-3;
 
+// A unit vector across `unit`, from the axis that is far from parallel to it.
 glm::dvec3 AnyPerpendicular(const glm::dvec3& unit) {
   const glm::dvec3 other = std::abs(unit.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   return glm::normalize(glm::cross(unit, other));
@@ -20,6 +22,7 @@ glm::dvec3 AnyPerpendicular(const glm::dvec3& unit) {
 
 // Gives the axes that are zero a direction, so that the three span space.
 void CompleteAxes(glm::dmat3* axes) {
+  // A round may complete an axis that another one needs. Three rounds suffice for three axes.
   for (int round = 0; round < 3; ++round) {
     for (int i = 0; i < 3; ++i) {
       glm::dvec3& axis = (*axes)[i];
@@ -62,6 +65,7 @@ Decomposition Decompose(const glm::dmat4& matrix) {
                 std::abs(glm::dot(axes[1], axes[2]))});
   result.has_shear = shear > kShear;
   if (result.is_flat) CompleteAxes(&axes);
+  // A mirrored matrix has no rotation. A negative scale of one axis carries the mirroring.
   if (glm::determinant(axes) < 0.0) {
     result.transform.scale.x = -result.transform.scale.x;
     axes[0] = -axes[0];

@@ -11,6 +11,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian");
 
+// The low 32 bits, little-endian.
 void AppendWord(std::uint64_t word, std::string* bytes) {
   for (int shift = 0; shift < 32; shift += 8) *bytes += static_cast<char>((word >> shift) & 0xff);
 }
@@ -23,6 +24,7 @@ Builder::Builder() {
 }
 
 int Builder::AddView(const void* bytes, std::size_t size, Target target) {
+  // Accessors must begin at a multiple of their component's size, at most 4 bytes here.
   binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
   Json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", size}};
   if (target != kNoTarget) view["target"] = static_cast<int>(target);
@@ -44,8 +46,10 @@ Result<std::string> Builder::Finish() {
   root_["bufferViews"] = std::move(views_);
   root_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
   std::string text = root_.dump(-1, ' ', false, Json::error_handler_t::replace);
+  // GLB pads chunks to 4 bytes: JSON with spaces, binary data with zeros.
   text.resize((text.size() + 3) / 4 * 4, ' ');
   binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
+  // The file's header, then the header and the bytes of each chunk.
   const std::uint64_t total = 12 + 8 + text.size() + 8 + binary_.size();
   if (total > std::numeric_limits<std::uint32_t>::max()) {
     return Status(StatusCode::kLimit, "a GLB holds at most 4 GiB");

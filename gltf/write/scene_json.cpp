@@ -22,6 +22,7 @@ Json NodeJson(const std::string& name, const Transform& local) {
 }
 
 void AddJointNodes(std::span<const Joint> joints, Json* nodes, Json* roots) {
+  // Children are stated at the parent, so they are collected before any node is written.
   std::vector<Json> children(joints.size(), Json::array());
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const int parent = joints[j].parent;
