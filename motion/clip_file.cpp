@@ -40,6 +40,7 @@ Status UnknownFormat(const std::filesystem::path& path, std::string todo) {
           path.string(), std::move(todo)};
 }
 
+// By the extension alone: BVH and CSV have no magic bytes.
 Result<Clip> Parse(Format format, std::string_view bytes, const std::filesystem::path& path,
                    const LoadOptions& options, ClipReport* report) {
   const std::string name = path.string();
@@ -59,8 +60,8 @@ Status SetUpright(UpAxis up, Clip* clip) {
   return up == UpAxis::kZ ? TurnZUpToYUp(clip) : Status();
 }
 
-// Moves roots to their OFFSET if their position is 0 in every frame. MakeHuman writes such files: its
-// position channels add to the OFFSET.
+// Moves roots to their OFFSET if their position is 0 in every frame. MakeHuman writes such files:
+// its position channels add to the OFFSET.
 void KeepRootsAtOffset(Clip* clip) {
   const auto joints = static_cast<std::size_t>(clip->skeleton.num_joints());
   for (std::size_t j = 0; j < joints; ++j) {

@@ -47,6 +47,8 @@ Result<wrinkle::PoseFrame> CachedPoseSource::operator()(const std::filesystem::p
   std::error_code error;  // ignored: LoadClip() reports what is wrong with the file
   const auto time = std::filesystem::last_write_time(path, error);
   const std::uintmax_t size = std::filesystem::file_size(path, error);
+  // A rig names many frames of one file, so the last file stays loaded. Time and size tell whether
+  // it changed on disk.
   const bool fresh =
       entry_->clip && entry_->path == path && entry_->time == time && entry_->size == size;
   if (!fresh) {

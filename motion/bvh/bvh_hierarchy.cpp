@@ -42,6 +42,8 @@ class HierarchyParser {
     while (true) {
       const std::string_view token = cursor_.NextToken();
       Status status;
+      // `open_` is the path from the root to the current joint. Properties are valid inside a joint
+      // only, MOTION outside only.
       if (token == "}") {
         status = CloseJoint();
       } else if (open_.empty() && EqualsIgnoreCase(token, "MOTION")) {
@@ -103,6 +105,7 @@ class HierarchyParser {
     return {};
   }
 
+  // Without an OFFSET the bone's length would silently be 0.
   Status CloseJoint() {
     if (open_.empty()) return Unexpected("}", "ROOT or MOTION");
     if (!open_.back().has_offset) {
@@ -142,6 +145,7 @@ class HierarchyParser {
     const std::string_view token = cursor_.NextToken();
     const Result<double> count = ParseNumber(token, cursor_.Where());
     FURROW_RETURN_IF_ERROR(count);
+    // The bounds come first: a cast of a number beyond an int is undefined.
     if (*count < 0.0 || *count > 6.0 || *count != static_cast<int>(*count)) {
       return cursor_.Error(StatusCode::kParse, "a joint has 0 to 6 channels, not " + Quoted(token));
     }
@@ -153,6 +157,7 @@ class HierarchyParser {
     for (int i = 0; i < static_cast<int>(*count); ++i) {
       FURROW_RETURN_IF_ERROR(ReadChannel(&channels));
     }
+    // An understated count would shift every number of every frame.
     if (FindChannel(cursor_.PeekToken())) {
       return cursor_.Error(StatusCode::kParse, "there are more channel names than CHANNELS states");
     }

@@ -54,6 +54,8 @@ Result<double> ReadHeaderNumber(TextCursor* cursor, std::string_view keyword) {
 // Files with a single pose often state no frame time. Files with motion must.
 constexpr double kDefaultFrameTime = 1.0 / 30.0;
 
+// The two lines after MOTION. The count of frames is only a claim: memory grows with the frames
+// that are read.
 Result<MotionHeader> ReadMotionHeader(TextCursor* cursor, ClipReport* report) {
   MotionHeader header;
   const Result<double> frames = ReadHeaderNumber(cursor, "Frames");
@@ -80,6 +82,8 @@ Result<MotionHeader> ReadMotionHeader(TextCursor* cursor, ClipReport* report) {
   return header;
 }
 
+// The quaternion of a turn about a coordinate axis (0 to 2). Double, because up to three are
+// multiplied per joint.
 glm::dquat AxisRotation(int axis, double degrees) {
   const double half = degrees * (std::numbers::pi / 360.0);
   glm::dquat rotation(std::cos(half), 0.0, 0.0, 0.0);
@@ -97,6 +101,8 @@ Transform MakeLocal(const BvhJointChannels& channels, const double* values, cons
     if (channel < 3) {
       translation[channel] = values[i] + (positions == BvhPositions::kAdd ? offset[channel] : 0.0);
     } else {
+      // Channels apply in the order of the file, each about the axes that the ones before have
+      // turned.
       rotation = rotation * AxisRotation(channel - 3, values[i]);
     }
   }
@@ -157,6 +163,7 @@ class FrameReader {
       const BvhJointChannels& channels = hierarchy_.channels[j];
       Transform local = MakeLocal(channels, values, hierarchy_.joints[j].rest.translation,
                                   options_.bvh_positions);
+      // Finite numbers can leave the range of a float when they are added or scaled.
       local.translation *= options_.scale;
       if (!wrinkle::IsValid(local)) {
         return cursor_.Error(
@@ -182,6 +189,8 @@ class FrameReader {
   Status CheckCount(const MotionHeader& header, std::size_t frames, ClipReport* report) const {
     const std::string difference = "'Frames:' states " + std::to_string(header.stated_frames) +
                                    ", the file holds " + std::to_string(frames);
+    // A file that ends within a line was cut off. A wrong count in a complete file is a common
+    // error of exporters.
     if (frames == 0 || (frames < header.stated_frames && !cursor_.line_was_ended())) {
       return cursor_.Error(StatusCode::kParse, difference, "the file seems to be cut off");
     }
@@ -199,6 +208,7 @@ class FrameReader {
 
 Result<wrinkle::Skeleton> MakeSkeleton(const BvhHierarchy& hierarchy, float scale,
                                        std::string_view source_name) {
+  // The frames use the unscaled offsets, so the scale applies to a copy.
   std::vector<wrinkle::JointDesc> joints = hierarchy.joints;
   for (wrinkle::JointDesc& joint : joints) {
     joint.rest.translation *= scale;

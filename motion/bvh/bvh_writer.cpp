@@ -30,6 +30,7 @@ struct Euler {
   double z = 0.0, y = 0.0, x = 0.0;  // degrees; R = Rz * Ry * Rx
 };
 
+// `angle` plus the multiple of 360 degrees that brings it closest to `previous`.
 double Nearest(double angle, double previous) {
   return angle + 360.0 * std::round((previous - angle) / 360.0);
 }
@@ -56,10 +57,12 @@ Euler ToEuler(const glm::quat& rotation, const Euler& previous) {
     return std::abs(e.z - previous.z) + std::abs(e.y - previous.y) + std::abs(e.x - previous.x);
   };
   const Euler first = near(a);
+  // Every rotation has a second set of angles, beyond 90 degrees of y.
   const Euler second = near({a.z + 180.0, 180.0 - a.y, a.x + 180.0});
   return distance(first) <= distance(second) ? first : second;
 }
 
+// The format has no quotes: a name ends at a brace or at the end of its line.
 Status CheckName(const std::string& name) {
   bool good = !name.empty() && name.front() != ' ' && name.back() != ' ';
   for (const char c : name) {
@@ -119,6 +122,8 @@ class BvhWriter {
     return {};
   }
 
+  // Only positive uniform scales become lengths. Others would shear or mirror, which BVH cannot
+  // express.
   static bool IsUniform(const glm::vec3& scale, float value) {
     const float bound = kScaleTolerance * std::abs(value);
     return value > 0.0f && std::abs(scale.x - value) <= bound &&
@@ -128,6 +133,8 @@ class BvhWriter {
   void FindChildrenAndMoves() {
     for (std::size_t j = 0; j < num_joints_; ++j) {
       if (Parent(j) != kNoJoint) children_[static_cast<std::size_t>(Parent(j))].push_back(j);
+      // Position channels only where a joint leaves its offset, beyond rounding. Roots always have
+      // them.
       const glm::vec3 rest = skeleton_.rest_pose()[j].translation;
       const float bound = 1e-6f * (1.0f + glm::length(rest));
       moves_[j] = Parent(j) == kNoJoint;
@@ -145,6 +152,8 @@ class BvhWriter {
     return skeleton_.rest_model_rotations()[parent] * (scale_[parent] * translation);
   }
 
+  // BVH has no rest rotations: the rest pose has all angles 0. Each local rotation is expressed in
+  // model axes at rest.
   [[nodiscard]] glm::quat Rotation(std::size_t frame, std::size_t j) const {
     const auto rest = skeleton_.rest_model_rotations();
     const glm::quat turned = Local(frame, j).rotation * glm::inverse(rest[j]);
@@ -204,6 +213,7 @@ class BvhWriter {
     std::vector<Euler> previous(num_joints_);
     for (std::size_t f = 0; f < clip_.times.size(); ++f) {
       for (const std::size_t j : order_) WriteJoint(f, j, &previous[j]);
+      // Replaces the blank behind the last number.
       text_.back() = '\n';
     }
   }

@@ -12,6 +12,7 @@ namespace {
 
 using wrinkle::Transform;
 
+// Interpolates translation and scale linearly, and the rotation along the shorter arc.
 Transform Mix(const Transform& a, const Transform& b, float t) {
   Transform mixed;
   mixed.translation = glm::mix(a.translation, b.translation, t);
@@ -29,6 +30,7 @@ double MeanFrameTime(const Clip& clip) {
 bool IsEvenlySpaced(const Clip& clip) {
   const double step = MeanFrameTime(clip);
   for (std::size_t i = 0; i < clip.times.size(); ++i) {
+    // 1% of a frame: recorders round their times.
     const double even = clip.times.front() + static_cast<double>(i) * step;
     if (std::abs(clip.times[i] - even) > 0.01 * step) return false;
   }
@@ -48,6 +50,7 @@ Clip Resample(const Clip& clip, double rate) {
   for (std::size_t i = 0; i < count; ++i) {
     const double time =
         std::min(clip.times.front() + static_cast<double>(i) / rate, clip.times.back());
+    // Times increase, so the search goes on from the last frame.
     while (before + 2 < clip.times.size() && clip.times[before + 1] <= time) ++before;
     const double span = clip.times[before + 1] - clip.times[before];
     const auto t = static_cast<float>((time - clip.times[before]) / span);

@@ -12,6 +12,7 @@
 namespace furrow::motion {
 namespace {
 
+// Nearly all skeletons name a head, and it is above the root in a rest pose.
 bool NamesHead(std::string name) {
   name = AsciiLower(std::move(name));
   return name.find("head") != std::string::npos;
@@ -48,6 +49,8 @@ UpAxis FindUpAxis(const wrinkle::Skeleton& skeleton) {
 
 Status TurnZUpToYUp(Clip* clip) {
   const wrinkle::Skeleton& skeleton = clip->skeleton;
+  // Every local transform is turned by conjugation. The turns of parent and child cancel in
+  // between, so all joints turn together.
   std::vector<wrinkle::JointDesc> joints;
   for (int j = 0; j < skeleton.num_joints(); ++j) {
     const auto index = static_cast<std::size_t>(j);

@@ -43,6 +43,8 @@ struct ShapeSource {
   float rest = 0.0f;
 };
 
+// Samples all tracks at all times of any key. Keys stay exact, and frames are as uneven as the
+// keys.
 class ClipSampler {
  public:
   ClipSampler(gltf::Document* document, const GltfOptions& options)
@@ -76,6 +78,7 @@ class ClipSampler {
   }
 
  private:
+  // Several meshes (face, teeth) often share shapes of one name; the first one counts.
   void AddShape(const std::string& name, const ShapeSource& source) {
     std::vector<std::string>& names = clip_.blend_shape_names;
     if (names.size() >= kMaxBlendShapes || !shape_names_.insert(name).second) return;
@@ -86,6 +89,7 @@ class ClipSampler {
   void ListShapes(const gltf::VrmAnimation& vrm) {
     for (const auto& [name, node] : vrm.expressions) {
       ShapeSource source;
+      // VRM stores an expression's weight in the node's translation along x.
       source.rest = forest_.nodes[static_cast<std::size_t>(node)].local.translation.x;
       for (const NodeTrack& track : animation_.tracks) {
         if (track.node == node && track.target == TrackTarget::kTranslation) {
@@ -106,6 +110,7 @@ class ClipSampler {
     std::vector<double> all;
     std::unordered_set<const void*> seen;
     for (const NodeTrack& track : animation_.tracks) {
+      // Samplers share lists of times; each list is added once.
       if (!seen.insert(track.track.times.get()).second) continue;
       all.insert(all.end(), track.track.times->begin(), track.track.times->end());
     }
@@ -121,6 +126,8 @@ class ClipSampler {
   }
 
   Status ListEvenTimes(double first, double last) {
+    // In double, and compared before the cast, because the rate comes from the caller and the times
+    // from the file.
     const double count = std::floor((last - first) * options_.load.sample_rate + kSameTime) + 1.0;
     if (!(count <= static_cast<double>(kMaxFrames))) {
       return {StatusCode::kLimit, "too many frames at this sample rate", kAnimationField};

@@ -35,6 +35,8 @@ void AddMovingTrees(const gltf::NodeForest& forest, const gltf::VrmAnimation& vr
   }
 }
 
+// By preference: VRM's humanoid bones, the joints of skins, and else the trees that move. Ancestors
+// are included, because their transforms move the joints.
 Status ChooseJoints(const gltf::Document& document, const gltf::NodeForest& forest,
                     const gltf::VrmAnimation& vrm, const gltf::Animation& animation,
                     gltf::NodeSet* joints) {
@@ -77,6 +79,7 @@ Result<GltfSkeleton> BuildGltfSkeleton(gltf::Document* document, const gltf::Nod
   Result<wrinkle::Skeleton> skeleton = wrinkle::Skeleton::Create(std::move(joints));
   if (!skeleton.ok()) return skeleton.status().At("nodes");
   result.skeleton = std::move(*skeleton);
+  // Skeleton::Create() may reorder joints; source_index() leads back to the node.
   for (int joint = 0; joint < result.skeleton.num_joints(); ++joint) {
     const auto source =
         static_cast<std::size_t>(result.skeleton.source_index()[static_cast<std::size_t>(joint)]);

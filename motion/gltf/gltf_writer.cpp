@@ -20,6 +20,7 @@ using gltf::Builder;
 using wrinkle::Transform;
 using Json = Builder::Json;
 
+// Joints are nodes 0 to num_joints - 1, so tracks address a joint by its index.
 class ClipWriter {
  public:
   explicit ClipWriter(const Clip& clip)
@@ -48,6 +49,7 @@ class ClipWriter {
   Status AddTimes() {
     std::vector<float> times;
     for (const double time : clip_.times) {
+      // glTF stores times as floats. Starting at 0 keeps their digits.
       times.push_back(static_cast<float>(time - clip_.times.front()));
     }
     if (times.empty()) return {StatusCode::kInvalidArgument, "the clip has no frames"};
@@ -55,6 +57,7 @@ class ClipWriter {
       return {StatusCode::kInvalidArgument, "two frames are too close for glTF's float times"};
     }
     times_ = builder_.AddAccessor(times, Builder::kFloat, "SCALAR", Builder::kNoTarget);
+    // glTF requires min and max for the times of a sampler.
     builder_.accessor(times_)["min"] = {times.front()};
     builder_.accessor(times_)["max"] = {times.back()};
     return {};
@@ -77,6 +80,7 @@ class ClipWriter {
     builder_.root()["skins"] = Json::array({{{"joints", std::move(indices)}}});
   }
 
+  // Properties that never leave rest need no track: the node's transform states them.
   template <class Member>
   [[nodiscard]] bool LeavesRest(std::size_t joint, Member Transform::*member) const {
     const Member& rest = clip_.skeleton.rest_pose()[joint].*member;

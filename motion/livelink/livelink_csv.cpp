@@ -21,6 +21,8 @@
 namespace furrow::motion {
 namespace {
 
+// Frame rates of cameras, in ascending order. The timecode does not state its rate; the highest
+// frame number of a second reveals it.
 constexpr int kRates[] = {24, 25, 30, 48, 50, 60, 100, 120, 240};
 constexpr double kDefaultRate = 60.0;  // the app's default
 constexpr double kSecondsADay = 86400.0;
@@ -52,6 +54,7 @@ std::vector<std::string_view> SplitCells(std::string_view line, std::size_t most
   return cells;
 }
 
+// "HH:MM:SS:FF.mmm"; drop-frame timecodes have a ';' before the frames.
 Result<Timecode> ParseTimecode(std::string_view text, const TextCursor& cursor) {
   double field[4] = {};
   std::string_view rest = text;
@@ -94,6 +97,7 @@ class TakeReader {
   }
 
  private:
+  // Columns without a blend shape, below all indices.
   static constexpr int kIgnored = -1;
   static constexpr int kTimecode = -2;
   static constexpr int kCount = -3;
@@ -130,6 +134,8 @@ class TakeReader {
   }
 
   Status ReadRow(std::string_view line) {
+    // A row without a face may be shorter than the header, so its cells are counted only
+    // afterwards.
     const std::vector<std::string_view> cells = SplitCells(line, columns_.size());
     const std::string_view timecode = cells[TimecodeColumn(cells.size())];
     if (HasNoFace(cells)) {
@@ -184,6 +190,7 @@ class TakeReader {
     bool second_ended = false;
     for (std::size_t i = 0; i < timecodes_.size(); ++i) {
       highest = std::max(highest, timecodes_[i].frames);
+      // Only a second that ended shows all of its frame numbers.
       second_ended = second_ended || timecodes_[i].seconds != timecodes_[0].seconds;
     }
     if (!second_ended && highest < kDefaultRate) {
@@ -207,10 +214,12 @@ class TakeReader {
     const double first = timecodes_[0].seconds + timecodes_[0].frames / rate;
     for (std::size_t i = 0; i < timecodes_.size(); ++i) {
       double time = timecodes_[i].seconds + timecodes_[i].frames / rate - first + midnight;
+      // A jump back by more than half a day is midnight.
       if (time < previous - kSecondsADay / 2) {
         midnight += kSecondsADay;
         time += kSecondsADay;
       }
+      // A step back of at most 1 second counts as a repetition, and the row is skipped.
       if (i > 0 && time <= previous) {
         if (time < previous - 1.0) {
           return Status(StatusCode::kParse, "the timecode goes backwards", WhereOf(lines_[i]));
@@ -218,6 +227,7 @@ class TakeReader {
         ++rows_repeated_;
         continue;
       }
+      // Moves the row to the front, over skipped rows.
       previous = clip_.times[kept] = time;
       std::copy_n(clip_.blend_shapes.begin() + static_cast<std::ptrdiff_t>(i * num_shapes),
                   num_shapes,

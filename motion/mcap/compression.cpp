@@ -56,6 +56,8 @@ Result<std::vector<std::uint8_t>> DecompressZstd(std::span<const std::uint8_t> b
     ZSTD_outBuffer to{room.data(), room.size(), 0};
     const std::size_t before = in.pos;
     hint = ZSTD_decompressStream(context.get(), &to, &in);
+    // A step that neither reads nor writes would loop forever: the data is cut off, or larger than
+    // stated.
     const bool moves = in.pos > before || to.pos > 0;
     if (ZSTD_isError(hint) != 0 || (!moves && hint != 0)) return Damaged("zstd");
     out.Wrote(to.pos);

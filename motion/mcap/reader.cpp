@@ -39,6 +39,7 @@ template <class Use>
 bool ForEachRecord(std::span<const std::uint8_t> bytes, const Use& use) {
   ByteReader records(bytes);
   while (records.ok() && !records.at_end()) {
+    // A record: u8 opcode, u64 length, then `length` bytes.
     const auto opcode = static_cast<Opcode>(records.Get<std::uint8_t>());
     ByteReader content(records.GetBytes(records.Get<std::uint64_t>()));
     if (!records.ok() || !use(opcode, content)) return false;
@@ -75,6 +76,7 @@ Status Reader::Open() {
   if (!magic.ok() || !std::equal(magic->begin(), magic->end(), kMagic))
     return {StatusCode::kParse, "not an MCAP file: it does not begin with MCAP's magic bytes"};
   const auto header = RecordAt(sizeof kMagic);
+  // MCAP requires the header as the first record.
   if (header && header->opcode == Opcode::kHeader && header->length <= limits_.record_bytes) {
     const auto bytes = ReadAt(header->offset + kRecordHeaderBytes, header->length);
     FURROW_RETURN_IF_ERROR(bytes);
@@ -86,6 +88,7 @@ Status Reader::Open() {
   }
   complete_ = ReadSummary();
   if (complete_) return {};
+  // A half-read index may be wrong, so the scan starts without any.
   ForgetIndex();
   return Scan();
 }
@@ -101,6 +104,7 @@ void Reader::ForgetIndex() {
 }
 
 bool Reader::Keep(std::uint64_t bytes) {
+  // The subtraction cannot wrap, unlike a sum of two hostile numbers.
   if (bytes > limits_.kept_bytes - kept_bytes_) return false;
   kept_bytes_ += bytes;
   return true;
@@ -116,6 +120,7 @@ Result<std::vector<std::uint8_t>> Reader::ReadAt(std::uint64_t offset, std::uint
                   path_.string());
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
   std::size_t done = 0;
+  // pread() may return fewer bytes. It needs no file position, so const functions can read.
   while (done < bytes.size()) {
     const ssize_t got =
         ::pread(file_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
@@ -151,6 +156,7 @@ void Reader::Warn(std::uint64_t offset, std::string_view what) {
 
 bool Reader::ReadSummary() {
   constexpr std::uint64_t kTail = kFooterBytes + sizeof kMagic;
+  // The end of a complete file: a footer of fixed size, then the magic bytes again.
   if (file_bytes_ < sizeof kMagic + kTail) return false;
   const std::uint64_t footer_at = file_bytes_ - kTail;
   const auto tail = ReadAt(footer_at, kTail);
@@ -165,6 +171,7 @@ bool Reader::ReadSummary() {
   const auto summary = ReadAt(start, footer_at - start);
   if (!summary.ok()) return false;
   const std::span<const std::uint8_t> covered(tail->data(), kFooterBytes - sizeof crc);
+  // 0 means that the writer stated no checksum.
   if (crc != 0 && Crc32(covered, Crc32(*summary)) != crc) {
     Warn(start, "the summary is damaged; the whole file was scanned instead");
     return false;
@@ -188,6 +195,7 @@ bool Reader::ReadSummaryRecords(std::span<const std::uint8_t> summary) {
     }
   }
   // No index lists messages outside chunks. Only the statistics reveal that there are none.
+  // Every byte of the file may be listed once only (ExtentsAreApart).
   return records.ok() && has_statistics && (num_messages == 0 || !chunks_.empty()) &&
          ExtentsAreApart();
 }
@@ -229,6 +237,7 @@ bool Reader::AddSchema(ByteReader content) {
   const auto data = content.GetBytes(content.Get<std::uint32_t>());
   schema.data.assign(data.begin(), data.end());
   if (!content.ok() || schema.id == 0) return false;
+  // Chunks and summary repeat declarations; the first one counts and repetitions cost nothing.
   if (schemas_.contains(schema.id)) return true;
   if (!Keep(size)) return false;
   schemas_.emplace(schema.id, std::move(schema));
@@ -261,6 +270,7 @@ bool Reader::AddMetadata(ByteReader content) {
   return true;
 }
 
+// Positions and sizes are claims; LoadChunk() compares them with the chunk itself.
 bool Reader::AddChunkIndex(ByteReader content) {
   ChunkInfo info;
   info.start_time = content.Get<std::uint64_t>();
@@ -385,6 +395,8 @@ bool Reader::AddLooseMessage(ByteReader content, const Record& record) {
   if (!content.ok()) return false;
   const std::uint64_t length = record.length + kRecordHeaderBytes;
   ChunkInfo* last = chunks_.empty() ? nullptr : &chunks_.back();
+  // Messages outside chunks are grouped into runs of up to 1 MiB, which ForEach() then treats as
+  // uncompressed chunks.
   constexpr std::uint64_t kRunBytes = 1u << 20;
   if (last != nullptr && last->compression == kLooseMessages &&
       last->offset + last->length == record.offset && last->length < kRunBytes) {
@@ -465,6 +477,7 @@ Result<Bytes> Reader::LoadChunk(const ChunkInfo& info) {
   if (size > limits_.record_bytes)
     return Status(StatusCode::kLimit,
                   "its decompressed size of " + std::to_string(size) + " bytes exceeds the limit");
+  // `size` agrees with the index and is within the limit, so the output is bounded.
   auto records = Decompress(compression, packed, size);
   if (!records.ok()) return records;
   if (crc != 0 && Crc32(*records) != crc)
@@ -500,6 +513,7 @@ Result<std::unique_ptr<Reader::Run>> Reader::LoadRun(const ChunkInfo& info, cons
   auto run = std::make_unique<Run>(info.offset, std::move(*records));
   bool fits = true;
   const bool whole = ForEachRecord(run->records(), [&](Opcode opcode, const ByteReader& content) {
+    // Messages point into the run's records, which do not move while the run lives.
     Message message;
     if (opcode != Opcode::kMessage) return true;
     if (!ParseMessage(content, &message)) return false;
@@ -519,6 +533,8 @@ Status Reader::ForEach(const Range& range, const std::function<bool(const Messag
   std::vector<const ChunkInfo*> chunks;
   for (const ChunkInfo& chunk : chunks_)
     if (chunk.end_time >= range.from && chunk.start_time <= range.to) chunks.push_back(&chunk);
+  // A merge over chunks that may overlap in time. Only chunks with a message that may be next are
+  // in memory.
   std::ranges::stable_sort(chunks, {}, &ChunkInfo::start_time);
 
   const auto later = [](const std::unique_ptr<Run>& a, const std::unique_ptr<Run>& b) {
@@ -539,6 +555,7 @@ Status Reader::ForEach(const Range& range, const std::function<bool(const Messag
       std::ranges::push_heap(runs, later);
       continue;
     }
+    // The earliest run leaves the heap while its next message changes.
     std::ranges::pop_heap(runs, later);
     Run& first = *runs.back();
     if (!visit(first.front())) return {};
@@ -568,6 +585,7 @@ Result<Bytes> Reader::ReadAttachment(const AttachmentInfo& info) const {
   const std::string where = path_.string() + ": attachment '" + info.name + "'";
   if (!right || !content.ok())
     return Status(StatusCode::kParse, "its length fields are wrong", where);
+  // The checksum covers the record's content except for itself (4 bytes).
   const auto covered =
       std::span(*record).subspan(kRecordHeaderBytes, record->size() - kRecordHeaderBytes - 4);
   if (crc != 0 && Crc32(covered) != crc)

@@ -80,6 +80,7 @@ class SummaryBuilder {
 
 Result<std::unique_ptr<Writer>> Writer::Create(const std::filesystem::path& path,
                                                const WriterOptions& options) {
+  // O_EXCL makes "never overwrites" hold even between two processes.
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (file < 0) {
     const int error = errno;
@@ -129,6 +130,7 @@ Status Writer::Append(std::span<const std::uint8_t> bytes) {
       failure_ = {StatusCode::kIo, std::strerror(error), path_.string(),
                   "what was written before stays readable"};
       // If even this fails, readers stop at the torn record.
+      // A torn record would hide all records after it.
       if (::ftruncate(file_, static_cast<off_t>(offset_)) == 0)
         ::lseek(file_, static_cast<off_t>(offset_), SEEK_SET);
       return failure_;
@@ -146,6 +148,7 @@ Status Writer::AppendRecord(Opcode opcode, const ByteWriter& content) {
   return Append(record.bytes());
 }
 
+// Every chunk declares what it uses, so that it is readable without the rest of the file.
 void Writer::DeclareInChunk(const Channel& channel) {
   if (!declared_.insert(channel.id).second) return;
   if (channel.schema_id != 0 && declared_schemas_.insert(channel.schema_id).second)
@@ -161,6 +164,7 @@ Status Writer::Write(const Message& message) {
   DeclareInChunk(channels_[message.channel_id - 1u]);
   const std::uint64_t place = chunk_.size();
   chunk_.Put(static_cast<std::uint8_t>(Opcode::kMessage));
+  // 22 bytes: u16 channel, u32 sequence, two u64 times.
   chunk_.Put(static_cast<std::uint64_t>(22 + message.data.size()));
   chunk_.Put(message.channel_id).Put(message.sequence);
   chunk_.Put(message.log_time).Put(message.publish_time).PutBytes(message.data);
@@ -193,6 +197,7 @@ Status Writer::FlushChunk() {
   info.uncompressed_bytes = chunk_.size();
   Status status = AppendRecord(Opcode::kChunk, record);
   if (status.ok()) {
+    // Statistics and index only list chunks that are in the file.
     CountChunk();
     chunk_index_.push_back(IndexChunk(info));
     status = failure_;
@@ -266,6 +271,7 @@ Status Writer::WriteMetadata(const Metadata& metadata) {
 Status Writer::Close() {
   if (closed_) return failure_;
   closed_ = true;
+  // The first failure is reported, even if the summary succeeds.
   Status before = failure_.ok() ? FlushChunk() : failure_;
   // A failure cut the file back to a whole record, so the summary may still fit.
   failure_ = {};
@@ -289,6 +295,7 @@ ByteWriter Writer::Statistics() const {
 }
 
 Status Writer::WriteSummary() {
+  // The checksum of all bytes so far ends the data section.
   ByteWriter end;
   end.Put(crc_);
   FURROW_RETURN_IF_ERROR(AppendRecord(Opcode::kDataEnd, end));
