@@ -63,6 +63,8 @@ const std::uint8_t* AlignedPayload(std::span<const std::uint8_t> payload) {
   return reinterpret_cast<const std::uint8_t*>(copy.data());
 }
 
+// The order matters: kind, alignment, verification, and only then access. Each limit of the
+// verifier bounds the work that a hostile payload can cause.
 template <class Message>
 DecodeStatus DecodeMessage(const MessageView& view, Message& message) {
   using Table = typename EntryOf<Message>::Table;
@@ -98,6 +100,8 @@ void Encoder::Encode(const Header& header, const Hello& message, std::vector<std
   // shows how many bytes are missing.
   std::size_t padding = 0;
   do {
+    // kHelloBytes is a minimum, so that a server's answer to an unknown address is never larger
+    // than the request.
     EncodeMessage(state_->payload, header, message, out, padding);
     padding += kHelloBytes - std::min(kHelloBytes, out.size());
   } while (out.size() < kHelloBytes);

@@ -12,6 +12,7 @@ DecodeStatus ReadTable(const wire::Hello& table, Hello& message) {
 flatbuffers::Offset<wire::Hello> WriteTable(PayloadBuilder& payload, const Hello& message,
                                             std::size_t padding) {
   const auto client = WriteText(payload, message.client);
+  // Reuses the scratch bytes for the padding.
   payload.mask.assign(padding, 0);
   const auto zeros = padding > 0 ? payload.builder.CreateVector(payload.mask) : 0;
   return wire::CreateHello(payload.builder, client, message.token, zeros, message.bundles);
@@ -47,6 +48,7 @@ flatbuffers::Offset<wire::Pong> WriteTable(PayloadBuilder& payload, const Pong& 
 }
 
 DecodeStatus ReadTable(const wire::Goodbye& table, Goodbye& message) {
+  // The verifier checks offsets and sizes but no enumerations.
   if (table.reason() > wire::GoodbyeReason::MAX) return DecodeStatus::kBadValue;
   message.reason = static_cast<GoodbyeReason>(table.reason());
   return DecodeStatus::kOk;

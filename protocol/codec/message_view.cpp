@@ -73,11 +73,13 @@ DecodeStatus OpenMessage(std::span<const std::uint8_t> bytes, MessageView& view,
                          std::size_t max_bytes) {
   Envelope envelope;
   FURROW_CHECK_DECODE(FromEnvelope(ReadEnvelope(bytes, envelope)));
+  // Callers reassemble fragments and split bundles before, so a flag that is left is a fault.
   if (envelope.flags != 0) return DecodeStatus::kBadFlags;
   const std::int64_t time = envelope.header.capture_time_us;
   if (time <= -kCaptureTimeBound || time >= kCaptureTimeBound) return DecodeStatus::kBadValue;
   view.header = envelope.header;
   view.payload = bytes.subspan(kEnvelopeBytes);
+  // The payload must fill the rest exactly: bytes behind it would be unverified.
   if (bytes.size() > max_bytes || view.payload.size() != envelope.payload_bytes ||
       view.payload.size() < kMinPayloadBytes) {
     return DecodeStatus::kBadLength;

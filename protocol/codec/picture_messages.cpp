@@ -9,6 +9,7 @@ bool IsRequestSize(int pixels) { return pixels >= kMinImageSize && pixels <= kMa
 // A server may answer with any size, even a smaller one than a client may request.
 bool IsImageSize(int pixels) { return pixels > 0 && pixels <= kMaxImageSize; }
 
+// An eye at its target has no direction, and extreme angles have no usable projection.
 DecodeStatus ReadCamera(const wire::Camera& wire_camera, Camera& camera) {
   camera.eye = FromWire(wire_camera.eye());
   camera.target = FromWire(wire_camera.target());
@@ -51,6 +52,7 @@ DecodeStatus ReadTable(const wire::SubscribePictures& table, SubscribePictures& 
   FURROW_CHECK_DECODE(ReadSettings(table.settings(), message.settings));
   message.has_camera = table.camera() != nullptr;
   if (message.has_camera) {
+    // A camera and a preset contradict each other.
     if (!message.camera_preset.empty()) return DecodeStatus::kBadValue;
     FURROW_CHECK_DECODE(ReadCamera(*table.camera(), message.camera));
   }

@@ -33,6 +33,7 @@ DecodeStatus ReadPackedRotations(const Vector<const wire::PackedQuat*>& packed,
 DecodeStatus ReadRotations(const wire::Pose& table, PoseFrame& pose) {
   std::size_t count = 0;
   FURROW_CHECK_DECODE(CountValues(table.rotations(), table.packed_rotations(), count));
+  // The mask states which joints have values. Without a mask, all have one or none has.
   FURROW_CHECK_DECODE(
       ReadMask(table.rotation_mask(), pose.num_joints, count, pose.rotation_joints));
   pose.rotations.resize(count);
@@ -56,6 +57,7 @@ DecodeStatus ReadTranslations(const wire::Pose& table, PoseFrame& pose) {
   FURROW_CHECK_DECODE(
       ReadMask(table.translation_mask(), pose.num_joints, count, pose.translation_joints));
   const float range = table.translation_range();
+  // The range scales the packed numbers, so they are finite if the range is.
   FURROW_CHECK_DECODE(CheckNumber(range));
   if (range < 0.0f) return DecodeStatus::kBadValue;
   pose.translations.resize(count);
@@ -106,6 +108,7 @@ DecodeStatus ReadBlendShapes(const wire::Pose& table, PoseFrame& pose) {
   return DecodeStatus::kOk;
 }
 
+// The range for packed translations: the largest magnitude of any component.
 float LargestOffset(std::span<const Vec3> offsets) {
   float largest = 0.0f;
   for (const Vec3& v : offsets) {
@@ -152,6 +155,7 @@ DecodeStatus ReadTable(const wire::Pose& table, PoseFrame& message) {
   message.partial = table.partial();
   message.num_joints = table.num_joints();
   message.num_blend_shapes = table.num_blend_shapes();
+  // The counts come from the sender and size the masks, so they are checked first.
   if (message.num_joints > kMaxJoints || message.num_blend_shapes > kMaxBlendShapes) {
     return DecodeStatus::kLimit;
   }
@@ -194,6 +198,7 @@ flatbuffers::Offset<wire::Pose> WriteTable(PayloadBuilder& payload, const PoseFr
   } else if (!message.blend_shapes.empty()) {
     shapes = builder.CreateVector(message.blend_shapes);
   }
+  // All vectors must be finished before the table begins: FlatBuffers cannot nest.
   const auto rotation_mask = WriteMask(payload, message.rotation_joints, joints);
   const auto translation_mask = WriteMask(payload, message.translation_joints, joints);
   const auto scale_mask = WriteMask(payload, message.scale_joints, joints);

@@ -10,6 +10,7 @@ namespace {
 
 using flatbuffers::uoffset_t;
 
+// Parallel vectors must agree in size before any is indexed.
 DecodeStatus CheckCounts(const wire::SkeletonOffer& table) {
   const std::size_t joints = SizeOf(table.names());
   if (joints > kMaxJoints) return DecodeStatus::kLimit;
@@ -24,6 +25,7 @@ DecodeStatus CheckCounts(const wire::SkeletonOffer& table) {
 DecodeStatus ReadJoint(const wire::SkeletonOffer& table, uoffset_t i, OfferedJoint& joint) {
   joint.name.assign(table.names()->Get(i)->c_str(), table.names()->Get(i)->size());
   joint.parent = table.parents()->Get(i);
+  // Parents come first on the wire, which also rules out cycles.
   if (joint.parent < -1 || joint.parent >= static_cast<int>(i)) return DecodeStatus::kBadValue;
   joint.rest_translation = FromWire(*table.rest_translations()->Get(i));
   joint.rest_rotation = FromWire(*table.rest_rotations()->Get(i));
@@ -97,6 +99,7 @@ DecodeStatus ReadTable(const wire::SkeletonOffer& table, SkeletonOffer& message)
   FURROW_CHECK_DECODE(
       ReadNames(table.blend_shape_names(), kMaxBlendShapes, message.blend_shape_names));
   message.skeleton_hash = table.skeleton_hash();
+  // A wrong hash would bind later poses, which only state the hash, to another skeleton.
   return SkeletonHash(message) == message.skeleton_hash ? DecodeStatus::kOk
                                                         : DecodeStatus::kBadHash;
 }

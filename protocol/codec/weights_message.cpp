@@ -9,6 +9,7 @@
 namespace furrow::protocol::internal {
 namespace {
 
+// Packed weights are in [0, 1] by construction; floats are checked.
 DecodeStatus ReadValues(const wire::Weights& table, std::vector<float>& values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto at = static_cast<flatbuffers::uoffset_t>(i);

@@ -28,6 +28,7 @@ TextOffset WriteText(PayloadBuilder& payload, std::string_view text) {
 DecodeStatus CheckNames(const TextVector* names, int max_names) {
   if (names == nullptr) return DecodeStatus::kOk;
   if (names->size() > static_cast<std::size_t>(max_names)) return DecodeStatus::kLimit;
+  // Sorting finds duplicates in n log n steps, whatever names a hostile sender chooses.
   std::vector<std::string_view> sorted;
   sorted.reserve(names->size());
   for (const flatbuffers::String* name : *names) {
@@ -69,6 +70,7 @@ DecodeStatus CheckVector(const Vec3& value) {
 }
 
 DecodeStatus CheckRotation(const Quat& q) {
+  // Finite components can have an infinite square, which the comparison with 1 rejects.
   const float squared = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
   if (!std::isfinite(q.x) || !std::isfinite(q.y) || !std::isfinite(q.z) || !std::isfinite(q.w)) {
     return DecodeStatus::kNonFinite;
@@ -85,13 +87,16 @@ DecodeStatus ReadMask(const flatbuffers::Vector<std::uint8_t>* mask, std::size_t
                       std::size_t num_values, std::vector<std::uint16_t>& indices) {
   indices.clear();
   if (mask == nullptr) {
+    // An absent mask is the common case of whole poses; it saves bytes.
     if (num_values != 0 && num_values != n) return DecodeStatus::kBadCount;
     for (std::size_t i = 0; i < num_values; ++i) indices.push_back(static_cast<std::uint16_t>(i));
     return DecodeStatus::kOk;
   }
+  // Bit i % 8 of byte i / 8 is entry i.
   if (mask->size() != (n + 7) / 8) return DecodeStatus::kBadCount;
   for (std::size_t i = 0; i < mask->size() * std::size_t{8}; ++i) {
     if ((mask->Get(static_cast<flatbuffers::uoffset_t>(i / 8)) >> (i % 8) & 1) == 0) continue;
+    // Bits behind the last joint must be 0.
     if (i >= n || indices.size() == num_values) return DecodeStatus::kBadCount;
     indices.push_back(static_cast<std::uint16_t>(i));
   }

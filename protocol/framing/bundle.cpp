@@ -9,6 +9,7 @@
 namespace furrow::protocol {
 namespace {
 
+// Byte 5 of the envelope holds the flags, bytes 20 to 23 the size of the payload (envelope.cpp).
 bool IsFollowed(std::span<const std::uint8_t> message) { return (message[5] & kFlagFollowed) != 0; }
 
 std::size_t MessageBytes(std::span<const std::uint8_t> message) {
@@ -30,6 +31,8 @@ BundleStatus CheckMessage(std::span<const std::uint8_t> rest, std::uint64_t sess
   return BundleStatus::kOk;
 }
 
+// Checks all messages before the first is used, so that a malformed bundle has no effect. Each
+// round consumes at least an envelope, which bounds the loop.
 BundleStatus CheckBundle(std::span<const std::uint8_t> datagram, std::uint64_t session) {
   if (datagram.size() > kMaxDatagramBytes) return BundleStatus::kTooLarge;
   for (bool is_last = false; !is_last;) {
@@ -74,6 +77,7 @@ bool Unbundler::Next(std::span<const std::uint8_t>& message) {
     return true;
   }
   const std::size_t bytes = MessageBytes(rest_);
+  // The message is then byte for byte what Encode() wrote.
   rest_[5] = static_cast<std::uint8_t>(rest_[5] & ~kFlagFollowed);
   message = rest_.first(bytes);
   rest_ = rest_.subspan(bytes);

@@ -9,6 +9,8 @@ namespace furrow::protocol {
 
 EnvelopeStatus ReadEnvelope(std::span<const std::uint8_t> bytes, Envelope& envelope) {
   if (bytes.size() < kEnvelopeBytes) return EnvelopeStatus::kTooShort;
+  // Offsets: magic 0, version 4, flags 5, stream 6, session 8, sequence 16, payload size 20,
+  // capture time 24; all numbers are little-endian (STANDARD.md).
   const std::uint8_t* at = bytes.data();
   if (!std::equal(kMagic.begin(), kMagic.end(), at)) return EnvelopeStatus::kBadMagic;
   if (at[4] != kVersion) return EnvelopeStatus::kBadVersion;

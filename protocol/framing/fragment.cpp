@@ -33,7 +33,9 @@ bool ReadSlice(std::span<const std::uint8_t> datagram, const Envelope& envelope,
                std::size_t max_message_bytes, Slice& slice) {
   const std::size_t payload = envelope.payload_bytes;
   if (datagram.size() < kSliceOffset) return false;
+  // A message that fits one datagram must not be fragmented: one form per message.
   if (payload + kEnvelopeBytes <= kMaxDatagramBytes) return false;
+  // Before any allocation, because the size is only a claim.
   if (payload > max_message_bytes - kEnvelopeBytes) return false;
   const std::uint8_t* at = datagram.data() + kEnvelopeBytes;
   slice.message_id = LoadLittle<std::uint32_t>(at);
@@ -89,6 +91,8 @@ FragmentStatus Reassembler::Push(std::uint64_t peer, std::span<const std::uint8_
   const auto found = pending_.find(key);
   Pending& pending =
       found != pending_.end() ? found->second : Begin(key, envelope, slice.count, now_us);
+  // Fragments of one message repeat its envelope. Another envelope under the same id is a fault or
+  // an attack.
   if (pending.envelope.header != envelope.header ||
       pending.envelope.payload_bytes != envelope.payload_bytes) {
     return FragmentStatus::kMalformed;
@@ -98,6 +102,7 @@ FragmentStatus Reassembler::Push(std::uint64_t peer, std::span<const std::uint8_
   std::memcpy(&pending.bytes[kEnvelopeBytes + slice.index * kFragmentPayloadBytes],
               slice.bytes.data(), slice.bytes.size());
   if (--pending.missing > 0) return FragmentStatus::kPending;
+  // The bytes become the result without a copy. Remove() then finds nothing to subtract.
   pending_bytes_ -= pending.bytes.size();
   done_.swap(pending.bytes);
   pending.bytes.clear();
@@ -117,6 +122,7 @@ Reassembler::Pending& Reassembler::Begin(const Key& key, const Envelope& envelop
   pending.missing = count;
   pending.have.resize(count);
   pending.bytes.resize(bytes);
+  // The assembled message has the envelope of an unfragmented one.
   Envelope whole = envelope;
   whole.flags = 0;
   WriteEnvelope(whole,
@@ -132,6 +138,7 @@ Reassembler::Pending& Reassembler::Begin(const Key& key, const Envelope& envelop
 void Reassembler::MakeRoom(std::uint64_t peer, std::size_t bytes) {
   std::size_t count = 0;
   auto oldest = pending_.end();
+  // Keys are sorted by peer, so one peer's messages are neighbours.
   for (auto it = pending_.lower_bound(Key{peer, 0, 0});
        it != pending_.end() && it->first.peer == peer; ++it, ++count) {
     if (oldest == pending_.end() || it->second.first_us < oldest->second.first_us) oldest = it;

@@ -7,12 +7,15 @@ namespace furrow::protocol {
 
 SequenceStatus SequenceWindow::Accept(std::uint64_t session, std::uint32_t sequence) {
   if (!started_ || session != session_) {
+    // A late datagram of a replaced session must not take the stream back. A few sessions are
+    // remembered.
     if (std::find(old_sessions_.begin(), old_sessions_.end(), session) != old_sessions_.end()) {
       return SequenceStatus::kOldSession;
     }
     Start(session, sequence);
     return SequenceStatus::kRestart;
   }
+  // The difference as a signed number orders sequences across the wrap at 2^32.
   const auto ahead = static_cast<std::int32_t>(sequence - newest_);
   if (ahead > 0) {
     Advance(sequence);
@@ -47,6 +50,8 @@ bool SequenceWindow::TestAndSet(std::uint32_t sequence) {
 void SequenceWindow::Advance(std::uint32_t sequence) {
   const std::uint32_t skipped = sequence - newest_ - 1;
   lost_ += skipped;
+  // Skipped sequences have not been seen. Their slots still hold the bits of sequences one window
+  // ago.
   if (skipped + 1 >= kWindow) {
     seen_.fill(0);
   } else {

@@ -27,6 +27,7 @@ FrameStatus FrameReader::Push(std::span<const std::uint8_t>& bytes,
     if (prefix_bytes_ < kFramePrefixBytes) return FrameStatus::kNeedMore;
     frame_bytes_ = LoadLittle<std::uint32_t>(prefix_.data());
     frame_.clear();
+    // After a bad length the stream has no boundaries any more, so the error is final.
     if (frame_bytes_ < kEnvelopeBytes || frame_bytes_ > max_frame_bytes_) {
       bad_ = true;
       return FrameStatus::kBadLength;
@@ -34,6 +35,7 @@ FrameStatus FrameReader::Push(std::span<const std::uint8_t>& bytes,
   }
   const std::size_t take = std::min(frame_bytes_ - frame_.size(), bytes.size());
   const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(take);
+  // Memory grows with the bytes that arrive, not with the length that the peer claims.
   frame_.insert(frame_.end(), bytes.begin(), end);
   bytes = bytes.subspan(take);
   if (frame_.size() < frame_bytes_) return FrameStatus::kNeedMore;

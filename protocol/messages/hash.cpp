@@ -5,10 +5,12 @@
 
 namespace furrow::protocol {
 
+// 64-bit FNV-1a.
 void Hasher::Byte(std::uint8_t byte) { value_ = (value_ ^ byte) * 0x100000001b3ULL; }
 
 void Hasher::String(std::string_view text) {
   for (const char c : text) Byte(static_cast<std::uint8_t>(c));
+  // Ends the text, so that "ab", "c" and "a", "bc" differ. Names hold no zero bytes.
   Byte(0);
 }
 

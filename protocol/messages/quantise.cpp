@@ -12,6 +12,7 @@ constexpr int kQuatSteps = 32766;  // even, so that 0 has an exact code
 constexpr int kOffsetSteps = 32767;
 constexpr float kBlendShapeSteps = 16384.0f;
 
+// Maps [-1/sqrt(2), 1/sqrt(2)] to the codes 0 to 32766.
 std::uint64_t PackComponent(float value) {
   const float scaled = std::round((value * kSqrt2 + 1.0f) * 0.5f * kQuatSteps);
   return static_cast<std::uint64_t>(std::clamp(scaled, 0.0f, static_cast<float>(kQuatSteps)));
@@ -33,6 +34,7 @@ PackedQuat PackQuat(const Quat& rotation) {
     length_squared += q[i] * q[i];
     if (std::fabs(q[i]) > std::fabs(q[largest])) largest = i;
   }
+  // q and -q are the same rotation. A positive largest component needs no sign on the wire.
   const float scale = (q[largest] < 0.0f ? -1.0f : 1.0f) / std::sqrt(length_squared);
   std::uint64_t bits = static_cast<std::uint64_t>(largest) << 45;
   int shift = 0;
@@ -58,6 +60,7 @@ bool UnpackQuat(const PackedQuat& packed, Quat& rotation) {
   const float b = UnpackComponent(second);
   const float c = UnpackComponent(third);
   const float sum = a * a + b * b + c * c;
+  // No unit quaternion has such components.
   if (sum > 1.0f) return false;
   const float largest = std::sqrt(1.0f - sum);
   switch (bits >> 45) {
@@ -70,6 +73,7 @@ bool UnpackQuat(const PackedQuat& packed, Quat& rotation) {
 }
 
 std::int16_t PackOffset(float value, float range) {
+  // All offsets are 0 then; the division would give NaN.
   if (!(range > 0.0f)) return 0;
   const float scaled = std::round(std::clamp(value / range, -1.0f, 1.0f) * kOffsetSteps);
   return static_cast<std::int16_t>(scaled);

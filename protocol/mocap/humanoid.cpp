@@ -6,6 +6,8 @@
 namespace furrow::protocol::mocap {
 namespace {
 
+// Name, index of the parent, rest offset from the parent in metres (Y up, facing +Z) in a T-pose.
+// Parents come first.
 constexpr std::array<HumanoidJoint, kNumHumanoidJoints> kJoints = {{
     {"Hips", -1, {0.0f, 0.95f, 0.0f}},
     {"Spine", 0, {0.0f, 0.1f, 0.0f}},

@@ -65,6 +65,7 @@ class Cursor {
 
   std::string_view TakeText() {
     const auto size = Take<std::int32_t>();
+    // The size is signed on the wire, so negative sizes are possible.
     if (!ok_ || size < 1 || size > kMaxNameBytes ||
         bytes_.size() < static_cast<std::size_t>(size)) {
       ok_ = false;
@@ -92,6 +93,7 @@ bool ReadTime(Cursor& cursor, Packet& packet) {
   const auto denominator = cursor.Take<std::int32_t>();
   const bool good = cursor.ok() && std::isfinite(subframe) && std::fabs(subframe) <= 1.0f &&
                     frame >= 0 && numerator > 0 && denominator > 0;
+  // The rate is numerator / denominator frames per second.
   if (good) packet.seconds = (frame + double{subframe}) * denominator / numerator;
   return good && packet.seconds < 1e9;
 }
@@ -108,6 +110,7 @@ bool ReadPacket(std::span<const std::uint8_t> bytes, Packet& packet) {
   if (cursor.Take<std::uint8_t>() != kNumLiveLinkFaceShapes) return false;
   for (float& value : packet.values) {
     value = cursor.TakeFloat();
+    // The negation also rejects NaN.
     if (!(std::fabs(value) <= kMaxMagnitude)) return false;
   }
   return cursor.ok() && cursor.at_end();
@@ -160,6 +163,7 @@ class LiveLinkFaceAdapter final : public MocapAdapter {
     };
     const auto found = std::find_if(senders_.begin(), senders_.end(), same);
     if (found != senders_.end()) return *found;
+    // Spoofed device names would otherwise use memory without bound.
     if (senders_.size() == kMaxSubjects) {
       senders_.erase(std::min_element(
           senders_.begin(), senders_.end(),

@@ -42,6 +42,7 @@ void MakePose(const NeutralFrame& frame, const SkeletonOffer& offer, PoseFrame& 
     const Vec3& now = frame.joints[i].translation;
     pose.rotation_joints[i] = pose.translation_joints[i] = static_cast<std::uint16_t>(i);
     pose.rotations[i] = frame.joints[i].rotation;
+    // The wire carries translations as offsets from rest.
     pose.translations[i] = {now.x - rest.x, now.y - rest.y, now.z - rest.z};
   }
   pose.blend_shape_indices.resize(shapes);

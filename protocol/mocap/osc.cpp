@@ -27,6 +27,7 @@ bool TakeString(Bytes& bytes, std::string_view& text) {
   return true;
 }
 
+// Every Take function consumes its argument, or returns false if the packet is too short.
 bool TakeFixed(Bytes& bytes, std::size_t size) {
   if (bytes.size() < size) return false;
   bytes = bytes.subspan(size);
@@ -40,6 +41,7 @@ bool TakeBlob(Bytes& bytes) {
   return TakeFixed(bytes, 4 + (size + 3) / 4 * 4);
 }
 
+// The sizes of OSC 1.0's types. Unknown types have unknown sizes, so the rest could not be read.
 bool TakeArgument(Bytes& bytes, char tag) {
   std::string_view text;
   switch (tag) {
@@ -157,6 +159,7 @@ bool OscArguments::String(std::string_view& value) {
 
 OscStatus VisitOsc(std::span<const std::uint8_t> packet, const OscVisitor& visit) {
   if (packet.empty() || packet.size() % 4 != 0) return OscStatus::kMalformed;
+  // Two walks: the first only checks, so that no message of a malformed packet has an effect.
   const OscStatus status = Walker(nullptr).Walk(packet, 0);
   return status == OscStatus::kOk ? Walker(&visit).Walk(packet, 0) : status;
 }
@@ -165,11 +168,13 @@ OscWriter::OscWriter(std::vector<std::uint8_t>& out) : out_(out) { out_.clear();
 
 void OscWriter::BeginBundle() {
   out_.insert(out_.end(), kBundleTag.begin(), kBundleTag.end());
+  // The time tag 1 means "immediately".
   AppendBig(out_, std::uint64_t{1});
   in_bundle_ = true;
 }
 
 void OscWriter::BeginMessage(std::string_view address, std::string_view tags) {
+  // Room for the size, which EndMessage() fills in.
   if (in_bundle_) AppendBig(out_, std::uint32_t{0});
   size_at_ = out_.size();
   AppendString(out_, address);

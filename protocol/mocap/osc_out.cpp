@@ -61,6 +61,7 @@ void OscWeightWriter::Write(std::uint32_t sequence, std::int64_t capture_time_us
   const bool vmc = profile_ == OscProfile::kVmc;
   OscWriter writer(datagram_);
   writer.BeginBundle();
+  // Sizes are computed before writing, because a message cannot be split over two bundles.
   const auto make_room = [&](std::size_t bytes) {
     if (datagram_.size() + bytes <= kMaxDatagramBytes) return;
     emit(datagram_);

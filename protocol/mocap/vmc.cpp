@@ -36,6 +36,7 @@ class VmcAdapter final : public MocapAdapter {
   explicit VmcAdapter(const VmcOptions& options)
       : timeout_us_(options.timeout_us), state_(options.subject) {}
 
+  // The sink belongs to the caller, so it is kept for the duration of a call only.
   void Push(std::span<const std::uint8_t> datagram, std::int64_t now_us,
             const FrameSink& sink) override {
     now_us_ = now_us;
@@ -95,6 +96,7 @@ class VmcAdapter final : public MocapAdapter {
     }
     const int joint = state_.FindOrAddJoint(name);
     if (joint < 0) return Read::kMalformed;
+    // A joint that repeats starts the next frame, for senders without end marks.
     if (state_.HasInFrame(joint) && !Recent(last_time_us_) && !Recent(last_apply_us_)) {
       ++counters_.incomplete;
       Commit();
@@ -127,6 +129,7 @@ class VmcAdapter final : public MocapAdapter {
 
   Read BlendApply() {
     last_apply_us_ = now_us_;
+    // A sender of /T ends its frames with that instead.
     if (pending_ && !Recent(last_time_us_)) Commit();
     return Read::kUsed;
   }
@@ -196,6 +199,7 @@ class VmcAdapter final : public MocapAdapter {
       ++counters_.stale;
       return;
     }
+    // Without a sender's clock, the time of arrival must do.
     if (!Recent(last_time_us_)) clock_.AdvanceByArrival(now_us_);
     ++counters_.accepted;
     (*sink_)(state_.Frame(clock_.time_us(), tracked_));

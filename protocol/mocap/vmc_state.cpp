@@ -77,6 +77,8 @@ bool VmcState::HasInFrame(int joint) const {
 void VmcState::SetJoint(int index, const Vec3& translation, const Quat& rotation) {
   if (index < 0) return;
   Joint& joint = joints_[static_cast<std::size_t>(index)];
+  // The first non-zero translation becomes rest. It stays: a new rest means a new layout, hence a
+  // new skeleton offer.
   if (!joint.has_length && !joint.is_root && !IsZero(translation)) {
     joint.has_length = true;
     joint.rest_translation = translation;
