@@ -40,6 +40,7 @@ void ForEachIndexed(std::span<const std::uint16_t> indices, std::span<const Valu
 }
 
 // The current pose of a stream, with joints in the skeleton's order.
+// Wire poses may be partial, clips hold whole poses, so this keeps the last value of every joint.
 class RunningPose {
  public:
   RunningPose(const wrinkle::Skeleton& skeleton, std::size_t num_shapes, float scale)
@@ -48,6 +49,7 @@ class RunningPose {
         place_(static_cast<std::size_t>(skeleton.num_joints())),
         joints_(skeleton.rest_pose().begin(), skeleton.rest_pose().end()),
         shapes_(num_shapes, 0.0f) {
+    // The skeleton may order joints differently than the offer, which the wire's indices refer to.
     for (std::size_t j = 0; j < place_.size(); ++j)
       place_[static_cast<std::size_t>(skeleton.source_index()[j])] = j;
   }
@@ -91,6 +93,7 @@ class RunningPose {
 
 Result<motion::Clip> ToClip(const TakePoses& poses, float scale) {
   const protocol::SkeletonOffer& offer = poses.offer();
+  // Before any allocation: a take of small partial poses expands to whole ones.
   if (poses.size() * std::max<std::size_t>(offer.joints.size(), 1) > motion::kMaxTransforms ||
       poses.size() * offer.blend_shape_names.size() > motion::kMaxBlendShapeValues) {
     return Status(StatusCode::kLimit, "the take has too many poses for one clip");

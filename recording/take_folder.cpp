@@ -46,6 +46,7 @@ std::filesystem::path TakeFolder::NextPath(std::uint64_t now_ns) const {
   std::filesystem::path path = options_.folder / (stem + extension);
   if (is_named && num_files_ == 0) return path;
   std::error_code error;
+  // Bounded, so that a folder full of equal names ends in an error of Create().
   for (int i = 2; std::filesystem::exists(path, error) && i < kMaxSameName; ++i)
     path = options_.folder / (stem + "_" + std::to_string(i) + extension);
   return path;
@@ -59,6 +60,8 @@ Status TakeFolder::Begin(std::uint64_t now_ns) {
   take_ = *std::move(take);
   begun_ns_ = now_ns;
   ++num_files_;
+  // Every file is complete in itself, so it repeats the declarations of live subjects, stamped with
+  // its own start.
   for (const auto& [subject, state] : subjects_) {
     for (const auto& [kind, declaration] : {std::pair(TakeKind::kSkeleton, &state.skeleton),
                                             std::pair(TakeKind::kNames, &state.names)}) {
@@ -68,6 +71,7 @@ Status TakeFolder::Begin(std::uint64_t now_ns) {
       FURROW_RETURN_IF_ERROR(take_->Write(kind, subject, stamp, declaration->payload));
     }
   }
+  // Not counted towards rotate_bytes, or else large skeletons would rotate files forever.
   begun_bytes_ = take_->bytes_written();
   return {};
 }
@@ -93,6 +97,7 @@ bool TakeFolder::IsRepeated(TakeKind kind, std::string_view subject, const TakeS
   if (state == subjects_.end())
     state = subjects_.emplace(std::string(subject), SubjectState()).first;
   Declaration& last = kind == TakeKind::kSkeleton ? state->second.skeleton : state->second.names;
+  // Channels belong to a session, so a new session declares again.
   if (last.stamp.session == stamp.session && std::ranges::equal(last.payload, payload)) return true;
   last = {stamp, {payload.begin(), payload.end()}};
   return false;

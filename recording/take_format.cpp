@@ -48,8 +48,10 @@ bool ParseTopic(std::string_view topic, TakeKind* kind, std::string* subject) {
     subject->clear();
     return true;
   }
+  // The last slash, because subjects may contain slashes.
   const std::size_t slash = topic.rfind('/');
   if (slash == std::string_view::npos || slash < 2 || topic.front() != '/') return false;
+  // In the order of TakeKind, without the datagrams.
   for (int i = 0; i < static_cast<int>(TakeKind::kDatagram); ++i) {
     if (RowOf(static_cast<TakeKind>(i)).topic != topic.substr(slash + 1)) continue;
     *kind = static_cast<TakeKind>(i);
@@ -69,6 +71,7 @@ std::size_t MaxPayloadBytes(TakeKind kind) {
 }
 
 std::uint64_t ToPublishTime(std::int64_t capture_time_us) {
+  // Clamped before the product, which would overflow.
   constexpr std::int64_t kFurthest = std::numeric_limits<std::int64_t>::max() / 1000;
   return static_cast<std::uint64_t>(std::clamp(capture_time_us, -kFurthest, kFurthest) * 1000);
 }

@@ -56,6 +56,8 @@ void WarnSkipped(motion::ClipReport* report, const TakeReader& take, std::size_t
 
 // Microseconds from the last pose to the pose with `stamp`, at least 1.
 std::int64_t TakePoses::StepTo(const TakeStamp& stamp) const {
+  // Microseconds. A longer step counts as a leap of the sender's clock, unless at least a
+  // thousandth of it (kFastest) passed at arrival.
   constexpr std::int64_t kLeap = 60'000'000;
   constexpr std::int64_t kFastest = 1000;               // maximum of `furrow play --speed`
   constexpr std::int64_t kLongest = 1'000'000'000'000;  // 11 days, so that sums cannot overflow
@@ -85,6 +87,7 @@ class TakePoses::Loader {
   // Returns false if the poses exceed the limits.
   bool Add(const TakeMessage& message) {
     if (message.kind != TakeKind::kSkeleton && message.kind != TakeKind::kPose) return true;
+    // Collected even for other subjects: errors list them.
     if (message.kind == TakeKind::kPose && !names_.contains(message.subject))
       names_.emplace(message.subject);
     if (is_ambiguous() || (!subject_.empty() && message.subject != subject_)) return true;
@@ -93,6 +96,7 @@ class TakePoses::Loader {
       found = tracks_.emplace(std::string(message.subject), Track()).first;
     Track& track = found->second;
     if (message.kind == TakeKind::kPose) return AddPose(message, &track);
+    // The first skeleton counts. Poses of a later one are counted as foreign.
     if (track.has_offer) return true;
     track.has_offer = protocol::Decode(message.View(), track.poses.offer_) == DecodeStatus::kOk;
     track.unreadable += track.has_offer ? 0 : 1;

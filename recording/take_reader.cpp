@@ -37,6 +37,7 @@ const TakeReader::ChannelInfo* TakeReader::InfoOf(std::uint16_t id) {
         ParseTopic(channel->second.topic, &info.kind, &info.subject)) {
       const Channel& about = channel->second;
       const bool raw = info.kind == TakeKind::kDatagram;
+      // A foreign or damaged session reads as 0.
       if (const auto text = about.metadata.find("session"); text != about.metadata.end()) {
         const std::string& digits = text->second;
         (void)std::from_chars(digits.data(), digits.data() + digits.size(), info.session);
@@ -49,6 +50,7 @@ const TakeReader::ChannelInfo* TakeReader::InfoOf(std::uint16_t id) {
 }
 
 Status TakeReader::ForEach(const std::function<bool(const TakeMessage&)>& visit) {
+  // An estimate for progress: chunks also hold records other than messages. 1 avoids a total of 0.
   std::uint64_t num_bytes = 1;
   for (const motion::mcap::ChunkInfo& chunk : file_->chunks())
     num_bytes += chunk.uncompressed_bytes;
@@ -70,6 +72,7 @@ Status TakeReader::VisitAll(const std::function<bool(const TakeMessage&)>& visit
     known.subject = info->subject;
     known.stamp = {info->session, message.sequence, FromPublishTime(message.publish_time),
                    message.log_time};
+    // Oversized payloads stay empty, which no decoder accepts.
     if (message.data.size() <= MaxPayloadBytes(info->kind)) known.payload = message.data;
     return visit(known);
   });

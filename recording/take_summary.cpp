@@ -78,6 +78,7 @@ class Summariser {
   }
 
   TakeSummary summary_;
+  // Keyed by address: entries of a std::map do not move.
   std::map<const SubjectSummary*, std::set<std::uint64_t>> hashes_;
   std::map<const SubjectSummary*, TakeStamp> last_;
   protocol::SkeletonOffer offer_;

@@ -32,6 +32,7 @@ std::uint16_t TakeWriter::SchemaOf(TakeKind kind) {
 
 std::uint16_t TakeWriter::ChannelOf(TakeKind kind, std::string_view subject,
                                     std::uint64_t session) {
+  // A reused key: the look-up per message then does not allocate.
   std::get<0>(key_).assign(subject);
   std::get<1>(key_) = session;
   std::get<2>(key_) = kind;

@@ -39,6 +39,8 @@ void FillPose(const motion::Clip& clip, int frame, protocol::PoseFrame* pose) {
       std::span(clip.locals).subspan(rest.size() * static_cast<std::size_t>(frame), rest.size());
   pose->partial = false;
   pose->num_joints = static_cast<std::uint16_t>(rest.size());
+  // All rotations are sent, but translations and scales only where they leave rest. Receivers of
+  // whole poses put the others at rest.
   pose->rotation_joints.resize(rest.size());
   std::iota(pose->rotation_joints.begin(), pose->rotation_joints.end(), std::uint16_t{0});
   pose->rotations.clear();
