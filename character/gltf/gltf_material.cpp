@@ -43,6 +43,7 @@ Result<Picture> ReadPicture(const gltf::Document& document, std::size_t index,
   return image->file.empty() ? DecodePicture(name, image->bytes()) : LoadPicture(name, image->file);
 }
 
+// Furrow's own files state the kind; for others, the name is the only hint.
 Kind KindOf(const gltf::Material& material) {
   for (const auto& [name, kind] : kKindNames) {
     if (material.kind == name) return kind;
@@ -87,6 +88,7 @@ Result<std::vector<Picture>> ReadGltfPictures(const gltf::Document& document,
                     s.todo());
     }
     pixels += static_cast<std::int64_t>(picture->width) * picture->height;
+    // Small files can decode to huge pictures, so the sum is bounded too.
     if (pixels > 4 * kMaxPicturePixels) {
       return Status(StatusCode::kLimit, "the pictures have too many pixels together", where);
     }

@@ -53,6 +53,8 @@ class PrimitiveReader {
     notes_->has_normals = normal.has_value();
     notes_->has_tangents = tangent.has_value();
     notes_->morph_targets = static_cast<int>(primitive_.num_morph_targets);
+    // One unusable vector discards the attribute of the whole mesh: mixing stated and computed
+    // vectors would show as a seam.
     bool normals_usable = normal.has_value();
     bool tangents_usable = tangent.has_value();
     for (std::size_t v = 0; v < mesh_->vertices.size(); ++v) {
@@ -69,10 +71,12 @@ class PrimitiveReader {
         FURROW_RETURN_IF_ERROR(Vector(*tangent, v, "TANGENT", &vertex.tangent));
         glm::vec3 direction(vertex.tangent);
         tangents_usable = tangents_usable && MakeUnit(&direction);
+        // w is the sign of the bitangent.
         vertex.tangent = glm::vec4(direction, vertex.tangent.w < 0.0f ? -1.0f : 1.0f);
       }
     }
     FURROW_RETURN_IF_ERROR(ReadIndices());
+    // Tangents are orthogonal to normals, so new normals need new tangents.
     if (!normals_usable) paint::ComputeNormals(mesh_->vertices, mesh_->indices);
     if (!tangents_usable || !normals_usable)
       paint::ComputeTangents(mesh_->vertices, mesh_->indices);
@@ -98,6 +102,7 @@ class PrimitiveReader {
         break;
       }
     }
+    // Weights of 0 are padding. Their joints may be anything, so they are skipped before the check.
     for (std::size_t v = 0; v < mesh_->vertices.size(); ++v) {
       std::vector<std::pair<float, int>> influences;
       for (std::size_t set = 0; set < sets.size(); ++set) {
@@ -164,6 +169,7 @@ class PrimitiveReader {
     }
     const Result<Accessor> result = Accessor::Create(document_, found->second, type, Field(name));
     FURROW_RETURN_IF_ERROR(result);
+    // POSITION is read first and states the number of vertices.
     if (!mesh_->vertices.empty() && result->size() != mesh_->vertices.size()) {
       return {StatusCode::kSchema,
               std::to_string(result->size()) + " elements for " +
@@ -227,6 +233,7 @@ class PrimitiveReader {
               "the skin weights of vertex " + std::to_string(v) + " sum to 0", Field("WEIGHTS_0"),
               "bind every vertex to a joint"};
     }
+    // Sums near 1 stay as they are, so that writing and reading a file keeps its bits.
     const bool unit = std::abs(sum - 1.0f) <= 1e-6f;
     Vertex& vertex = mesh_->vertices[v];
     for (std::size_t i = 0; i < 4; ++i) {
@@ -260,6 +267,7 @@ class PrimitiveReader {
 void Place(const glm::mat4& node_model, Mesh* mesh) {
   const glm::mat3 axes(node_model);
   const float determinant = glm::determinant(axes);
+  // Normals transform by the inverse transpose. A flat matrix has none.
   const glm::mat3 normals =
       std::abs(determinant) > 1e-20f ? glm::transpose(glm::inverse(axes)) : glm::mat3(1.0f);
   for (Vertex& vertex : mesh->vertices) {

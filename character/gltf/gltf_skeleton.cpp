@@ -49,6 +49,7 @@ class SkeletonReader {
  private:
   Status ChooseJoints() {
     const std::size_t num_skins = gltf::NumSkins(document_);
+    // Without skins, every node is a joint that meshes may follow.
     if (num_skins == 0) chosen_.AddAll();
     for (std::size_t skin = 0; skin < num_skins; ++skin) {
       Result<std::vector<int>> nodes = gltf::ReadSkinJoints(document_, skin);
@@ -81,6 +82,8 @@ class SkeletonReader {
     return {};
   }
 
+  // Meshes on nodes that are not joints follow the nearest joint above; without one, they follow
+  // the first joint.
   void MapNodes() {
     std::vector<int> nearest = joint_at_;
     for (const int node : forest_.order) {
@@ -102,6 +105,8 @@ class SkeletonReader {
     std::vector<glm::mat4>& known = result_.inverse_bind_matrices;
     for (const glm::mat4& rest : result_.skeleton.rest_model()) {
       const glm::mat4 inverse = glm::inverse(rest);
+      // Joints that no skin states get the inverse of their rest pose. A flat rest pose has no
+      // inverse.
       known.push_back(IsFinite(inverse) ? inverse : glm::mat4(1.0f));
     }
     std::vector<bool> is_stated(known.size(), false);

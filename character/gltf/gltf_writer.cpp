@@ -41,6 +41,8 @@ class CharacterWriter {
   }
 
  private:
+  // Everything that the writer indexes by, so that an inconsistent character cannot make an invalid
+  // file.
   Status CheckSizes() const {
     const int joints = character_.skeleton.num_joints();
     if (joints == 0)
@@ -129,6 +131,7 @@ class CharacterWriter {
     std::vector<glm::vec4> tangents, weights;
     std::vector<glm::vec2> uvs;
     std::vector<glm::u16vec4> joints;
+    // glTF requires min and max for positions.
     glm::vec3 low(std::numeric_limits<float>::max());
     glm::vec3 high(-std::numeric_limits<float>::max());
     for (const Vertex& v : mesh.vertices) {

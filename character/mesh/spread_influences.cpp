@@ -15,6 +15,7 @@ class VertexGraph {
   explicit VertexGraph(const Mesh& mesh) : place_(mesh.vertices.size()) {
     JoinPlaces(mesh);
     first_.assign(mesh.vertices.size() + 1, 0);
+    // Compressed adjacency lists: count the edges per vertex, sum to offsets, then fill in.
     for (const std::uint32_t index : mesh.indices) first_[place_[index] + 1] += 2;
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     to_.resize(first_.back());
@@ -76,6 +77,8 @@ void SpreadInfluences(std::vector<bool> unskinned, int joint, Mesh* mesh) {
     from = v;
     queue.push_back(graph.place(v));
   }
+  // Breadth first from all skinned vertices at once: each vertex gets the influences of the skinned
+  // vertex that is the fewest edges away.
   for (std::size_t i = 0; i < queue.size(); ++i) {
     graph.ForNeighbours(queue[i], [&](std::uint32_t neighbour) {
       if (source[neighbour] != kNone) return;
@@ -83,6 +86,7 @@ void SpreadInfluences(std::vector<bool> unskinned, int joint, Mesh* mesh) {
       queue.push_back(neighbour);
     });
   }
+  // For islands without any skinned vertex.
   Vertex alone;
   alone.joints[0] = static_cast<std::uint16_t>(joint);
   for (std::size_t v = 0; v < source.size(); ++v) {

@@ -9,6 +9,7 @@
 namespace furrow::character::paint {
 namespace {
 
+// Any unit vector across the normal, for vertices without usable UVs.
 glm::vec3 AcrossOf(const glm::vec3& normal) {
   const glm::vec3 helper = std::abs(normal.x) < 0.8f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
   return glm::normalize(helper - normal * glm::dot(normal, helper));
@@ -45,6 +46,7 @@ void ComputeTangents(std::span<Vertex> vertices, std::span<const std::uint32_t> 
     const glm::vec3 e2 = c.position - a.position;
     const glm::vec2 d1 = b.uv - a.uv;
     const glm::vec2 d2 = c.uv - a.uv;
+    // Twice the triangle's area in UV space. Without it, the triangle has no tangent.
     const float det = d1.x * d2.y - d2.x * d1.y;
     if (!(std::abs(det) > 1e-20f)) continue;
     const float area = glm::length(glm::cross(e1, e2));
@@ -54,12 +56,14 @@ void ComputeTangents(std::span<Vertex> vertices, std::span<const std::uint32_t> 
     const float v_length = glm::length(against_v);
     if (!(u_length > 1e-20f && v_length > 1e-20f && std::isfinite(u_length + v_length))) continue;
     for (int k = 0; k < 3; ++k) {
+      // Directions weighted by area, so that UV scale has no influence.
       right[corner[k]] += along_u * (area / u_length);
       up[corner[k]] += against_v * (area / v_length);
     }
   }
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     Vertex& vertex = vertices[i];
+    // Gram-Schmidt: the tangent is orthogonal to the vertex's own normal.
     const glm::vec3 flat = right[i] - vertex.normal * glm::dot(vertex.normal, right[i]);
     const float length = glm::length(flat);
     const bool usable = length > 1e-20f && std::isfinite(length);

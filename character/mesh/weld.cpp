@@ -31,6 +31,7 @@ PlaceKey KeyOf(const glm::vec3& position) {
   return key;
 }
 
+// Summed, because a joint may occur in several of a vertex's four influences.
 float WeightOf(const Vertex& vertex, std::uint16_t joint) {
   float sum = 0.0f;
   for (int k = 0; k < 4; ++k) sum += vertex.joints[k] == joint ? vertex.skin_weights[k] : 0.0f;

@@ -31,8 +31,11 @@ Status AddRigPicture(const std::string& name, Character* character) {
   const bool known = character->FindRigPicture(name) >= 0 ||
                      std::find(missing.begin(), missing.end(), name) != missing.end();
   if (name.empty() || known) return {};
+  // Embedded pictures win over files, so that a package renders the same everywhere.
   int index = FindEmbedded(*character, name);
   if (index < 0) {
+    // A missing picture is noted only, because weights do not need it. A damaged picture is an
+    // error.
     const Result<fs::path> path = FindAsset(name, character->folder);
     if (!path.ok() && path.status().code() == StatusCode::kNotFound) {
       character->missing_rig_pictures.push_back(name);

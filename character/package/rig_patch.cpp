@@ -103,6 +103,7 @@ class PatchCutter {
                                     : "no mesh '" + options_.mesh + "'",
               character_.name};
     }
+    // Metres: even a small radius accepts a point within 2 cm of the surface.
     if (nearest <= std::max(options_.radius, 0.02f)) return {};
     char text[96];
     std::snprintf(text, sizeof(text), "no surface at that point; the nearest is at %.4f,%.4f,%.4f",
@@ -148,6 +149,8 @@ class PatchCutter {
     std::vector<Piece> kept;
     std::set<Point> points;
     std::vector<bool> taken(pieces_.size());
+    // Repeats because a far triangle may only connect after a later one was added. Both limits
+    // bound the loop.
     for (bool grew = true; grew && kept.size() < wrinkle::kMaxPatchTriangles;) {
       grew = false;
       for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -188,6 +191,7 @@ class PatchCutter {
       pull_[from.joints[i]] += from.skin_weights[i];
       sum += from.skin_weights[i];
     }
+    // Dropped influences leave a sum below 1.
     for (float& skin_weight : to.skin_weights) skin_weight = Rounded(skin_weight / sum, 1e4f);
   }
 

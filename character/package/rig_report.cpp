@@ -120,6 +120,8 @@ void TryBinding(const Rig& rig, const RigReportOptions& options, RigReport* repo
     how.aliases = options.aliases;
     return wrinkle::RigBinding::Create(rig, *options.skeleton, options.blend_shape_names, how);
   };
+  // Strict first, to say whether the rig fits. Lenient second, to list everything that is missing
+  // at once.
   report->binding = bind(false).status();
   const auto lenient = bind(true);
   if (!lenient.ok()) return;

@@ -9,6 +9,7 @@ namespace furrow::character {
 float ChannelAt(const Picture& picture, const glm::vec2& uv, int channel) {
   if (channel >= picture.channels) return 0.0f;
   const auto place = [](float t, int size) {
+    // Repeats outside [0, 1], which is glTF's default. 1 itself is the last texel.
     const float wrapped = t >= 0.0f && t <= 1.0f ? t : t - std::floor(t);
     return std::min(static_cast<int>(wrapped * static_cast<float>(size)), size - 1);
   };

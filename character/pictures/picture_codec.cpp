@@ -9,6 +9,7 @@
 namespace furrow::character {
 namespace {
 
+// lib/furrow beside the program's bin/, in the build folder and after an installation.
 std::filesystem::path ModulePath() {
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -32,6 +33,8 @@ Result<const PictureCodec*> LoadModule() {
 }  // namespace
 
 Result<const PictureCodec*> GetPictureCodec() {
+  // Loaded once, on first use and safely from any thread. A program without pictures never loads
+  // it.
   static const Result<const PictureCodec*> codec = LoadModule();
   return codec;
 }

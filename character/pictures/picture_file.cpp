@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxEncodedBytes = 256u << 20;
 
+// The codec reads width * height * channels values without further checks.
 bool PixelsFit(const Picture& picture) {
   const std::size_t values =
       std::max({picture.pixels_float.size(), picture.pixels16.size(), picture.pixels.size()});

@@ -93,6 +93,7 @@ StatusCode Decode(std::span<const std::uint8_t> bytes, Picture* picture, std::st
     *why = "the picture is not a PNG, JPEG or OpenEXR file";
     return StatusCode::kUnsupported;
   }
+  // The reader never writes; its interface lacks const.
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
   OIIO::Filesystem::IOProxy* proxy = &memory;
   OIIO::ImageSpec config;
@@ -105,6 +106,7 @@ StatusCode Decode(std::span<const std::uint8_t> bytes, Picture* picture, std::st
            OneLine(input == nullptr ? OIIO::geterror() : input->geterror());
     return StatusCode::kParse;
   }
+  // After the header and before the pixels, so that a small file cannot claim a huge picture.
   if (const StatusCode code = CheckSize(spec, why); code != StatusCode::kOk) return code;
   picture->width = spec.width;
   picture->height = spec.height;
