@@ -29,6 +29,7 @@ constexpr std::size_t kBlock = 256;  // texels per block; its planes fit the fir
 static_assert(kPlane % kBlock == 0);
 using Numbers = std::array<float, kBlock>;
 
+// Half floats stay 16-bit words in memory, because C++20 has no type for them.
 HWY_INLINE Float LoadHalves(const std::uint16_t* from) {
   return hn::PromoteTo(Floats(),
                        hn::LoadU(Halves(), reinterpret_cast<const hwy::float16_t*>(from)));
@@ -70,6 +71,8 @@ bool AddMasks(const ComposeJob& job, const std::vector<ComposeTile::Mask>& masks
 }
 
 // Computes the coefficients of a map in a block. False: they are all 0.
+// The clamp to 1 applies to the masks by skin weight alone, before painted masks are added, as in
+// the fragment shader.
 bool Coefficients(const ComposeJob& job, std::size_t map, std::size_t first, Numbers* sums) {
   sums->fill(0.0f);
   bool is_at_work = AddMasks(job, job.tile->skinned, map, first, sums);
@@ -116,6 +119,8 @@ void AddSlopes(const ComposeJob& job, std::size_t map, std::size_t first,
   });
 }
 
+// Multiplies colour and cavity by 1 + w (look - 1), which is neutral at w = 0. Sums of masks times
+// the strength may exceed 1, hence the clamp at 0.
 void MultiplyLooks(const ComposeJob& job, std::size_t map, std::size_t first,
                    const Numbers& coefficients, Looks* looks) {
   const std::vector<std::uint16_t>& from = job.tile->maps[map].looks;
@@ -152,6 +157,8 @@ HWY_INLINE std::size_t Place(const ComposeJob& job, std::size_t texel) {
   return 4 * (texel / ComposeTile::kSide * job.stride + texel % ComposeTile::kSide);
 }
 
+// Stores first and second moments, x, y, E[x^2] and E[y^2], like WithMoments(). Filtering keeps
+// moments exact, and the shader recovers the variance from them.
 void StoreSlopes(const ComposeJob& job, std::size_t first, const Slopes& sums) {
   ForLanes([&](std::size_t i) HWY_ATTR {
     const Floats d;

@@ -13,6 +13,7 @@ namespace {
 
 using Texels = std::vector<glm::vec4>;
 
+// GpuCharacter keeps no sizes, so the driver is asked.
 glm::ivec2 LevelSize(GLuint texture, int level) {
   glm::ivec2 size(0);
   glGetTextureLevelParameteriv(texture, level, GL_TEXTURE_WIDTH, &size.x);
@@ -29,6 +30,8 @@ float SrgbToLinear(float value) {
 }
 
 // Decodes sRGB through a table of all 256 byte values.
+// Reading back returns the stored sRGB bytes. They are decoded before any resampling, as a sampler
+// does, because filtering is correct in linear light only.
 void DecodeSrgb(Texels* texels) {
   static const std::vector<float> decoded = [] {
     std::vector<float> table;
@@ -72,6 +75,7 @@ class LayerReader {
   LayerReader(GLuint texture, int layer, bool is_srgb, glm::ivec2 size)
       : texture_(texture), layer_(layer), is_srgb_(is_srgb), size_(size) {
     glm::ivec2 source = LevelSize(texture, 0);
+    // Stops before a level that is smaller than requested, so resampling never invents detail.
     while (source.x / 2 >= size.x && source.y / 2 >= size.y) {
       source = LevelSize(texture, ++level_);
     }
@@ -172,6 +176,7 @@ std::vector<ComposeTile> ReadMasks(const GpuCharacter& gpu, const ComposeSelecti
   int layer = -1;
   Texels texels;
   for (std::size_t i = 0; i < channels.size(); ++i) {
+    // Channels are ascending, so each layer is read once.
     if (channels[i] / 4 != layer) {
       layer = channels[i] / 4;
       texels = LayerReader(gpu.masks(), layer, false, size).ReadAll();
@@ -213,6 +218,7 @@ void ReadSurface(const GpuCharacter& gpu, const GpuMaterial& material, glm::ivec
 // Every tile gets every map of the selection, so that positions in `maps` agree with
 // ComposeStrengths.
 void ReadMap(const GpuCharacter& gpu, int map, glm::ivec2 size, std::vector<ComposeTile>* tiles) {
+  // A map without a texture has amplitude 0, so any layer serves.
   const int layer = std::max(gpu.layout().map_layers[static_cast<std::size_t>(map)], 0);
   const LayerReader slopes(gpu.wrinkle_derivatives(), layer, false, size);
   for (ComposeTile& tile : *tiles) {
@@ -225,6 +231,7 @@ void ReadMap(const GpuCharacter& gpu, int map, glm::ivec2 size, std::vector<Comp
   }
 }
 
+// RGBA texel by texel, the layout of an upload. ComposeJob needs planes instead.
 std::vector<std::uint16_t> Interleaved(const Texels& texels) {
   std::vector<std::uint16_t> halves;
   halves.reserve(4 * texels.size());

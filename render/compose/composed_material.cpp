@@ -16,6 +16,9 @@ constexpr float kUnknown = -1.0f;  // weight of unknown state, which counts as c
 // to paint on finer levels.
 constexpr int kEstimateSide = 256;
 
+// A texture with storage for all levels. Each level is painted from the masks and maps of its own
+// size and never generated from the finest one, because a mean of composed products is not the
+// product of the means that a fragment would sample.
 gl::Texture MakeLevels(glm::ivec2 size, std::size_t levels) {
   gl::Texture texture = gl::MakeTexture(GL_TEXTURE_2D);
   glTextureStorage2D(texture.name(), static_cast<GLsizei>(levels), GL_RGBA16F, size.x, size.y);
@@ -51,6 +54,8 @@ ComposedMaterial::ComposedMaterial(const GpuCharacter& gpu, ComposeSelection sel
 ComposedMaterial::Copy ComposedMaterial::MakeCopy() const {
   Copy copy;
   copy.derivatives = MakeLevels(size_, levels_.size());
+  // Without looks, no map changes the colour, and fragments keep sampling the material's own
+  // texture.
   if (gpu_.wrinkle_looks() != 0) copy.colour = MakeLevels(size_, levels_.size());
   copy.textures = {copy.derivatives.name(), copy.colour.name()};
   const std::size_t maps = selection_.maps.size();
@@ -196,6 +201,10 @@ std::size_t ComposedMaterial::NumStale(const Needs& needs) const {
   return texels;
 }
 
+// An invisible channel keeps its painted weight, so nothing needs to be repainted when it comes
+// into view unchanged. If the settings changed under a painted weight, the weight no longer
+// describes the texels. kUnknown then differs from every real weight, and ComposeJob paints nothing
+// for it.
 ComposeStrengths ComposedMaterial::Merged(const ComposeStrengths& painted,
                                           const Needs& needs) const {
   ComposeStrengths strengths = needs.strengths;
@@ -253,6 +262,8 @@ void ComposedMaterial::Paint(const Needs& needs) {
     stale.push_back(StaleChannels(back, needs, changed, i));
   }
   back.strengths = Merged(back.strengths, needs);
+  // A channel that did not change and needs no finer level keeps its finest painted level, so
+  // moving away and back repaints nothing.
   for (std::size_t i = 0; i < changed.size(); ++i) {
     const int first = needs.first_levels[i];
     if (needs.is_seen[i] && (changed[i] || first < back.first_levels[i])) {
@@ -262,6 +273,7 @@ void ComposedMaterial::Paint(const Needs& needs) {
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     if (std::ranges::find(stale[i], true) != stale[i].end()) PaintLevel(i, stale[i], &back);
   }
+  // Only now: until all levels are painted, draw calls must sample the other copy.
   front_ = 1 - front_;
 }
 
@@ -295,6 +307,8 @@ void ComposedMaterial::PaintRun(const Copy& copy, const ComposeStrengths& streng
   const glm::ivec2 first = run.front()->place * ComposeTile::kSide;
   const glm::ivec2 size = glm::min(levels_[level].size - first,
                                    glm::ivec2(static_cast<int>(stride), ComposeTile::kSide));
+  // The buffer's rows are whole tiles, but a run at the edge of the level uploads fewer texels per
+  // row. The setting is global state and is reset, because all other uploads are tightly packed.
   glPixelStorei(GL_UNPACK_ROW_LENGTH, static_cast<GLint>(stride));
   Upload(copy.textures.derivatives, number, first, size, slopes_);
   if (copy.colour) Upload(copy.textures.colour, number, first, size, colours_);

@@ -50,6 +50,9 @@ SkinnedMasks::SkinnedMasks(std::span<const character::Mesh> meshes,
   }
 }
 
+// Joints and skin weights come from a file: a vertex may name joints that no share mentions, and a
+// rig may put many shares on one joint. Both limits are checked per vertex, so memory stays bounded
+// before the total is known.
 bool SkinnedMasks::AddParts(std::span<const character::Mesh> meshes,
                             std::span<const SkinnedShare> shares) {
   std::vector<std::vector<std::uint32_t>> of_joint;  // indices of the shares of each joint
@@ -79,6 +82,8 @@ bool SkinnedMasks::AddParts(std::span<const character::Mesh> meshes,
   return true;
 }
 
+// Corners are numbered over all meshes. The last entry of first_parts_ is the end of the parts so
+// far, so its index is the number of vertices before this mesh.
 void SkinnedMasks::AddTriangles(const character::Mesh& mesh) {
   const auto first = static_cast<std::uint32_t>(first_parts_.size() - 1);
   for (const std::uint32_t index : mesh.indices) corners_.push_back(first + index);
@@ -99,6 +104,8 @@ void SkinnedMasks::FindChannels(std::span<const SkinnedShare> shares) {
   for (Part& part : parts_) part.channel = numbers[part.channel];
 }
 
+// A channel's region consists of all triangles with at least one affected corner. Corners of a
+// triangle are visited in a row, so comparing with the last entry is enough to list it once.
 void SkinnedMasks::FindRegions(std::span<const character::Mesh> meshes,
                                std::span<const glm::mat4> inverse_bind_matrices, int material) {
   std::vector<const character::Vertex*> vertices;
@@ -147,6 +154,8 @@ void SkinnedMasks::AddValues(const Place& place, float factor, std::vector<float
 bool SkinnedMasks::IsAlike(const Place& a, const Place& b, std::vector<float>* difference) const {
   AddValues(a, 1.0f, difference);
   AddValues(b, -1.0f, difference);
+  // The exchange counts a channel once even if both points use it, and returns the scratch memory
+  // to zeros.
   float sum = 0.0f;
   for (const Place* place : {&a, &b}) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -169,6 +178,9 @@ bool SkinnedMasks::IsFlat(std::size_t triangle, std::vector<float>* difference) 
          !IsAlike(corner, {number, 0.0f, {0.0f, 0.0f, 1.0f}}, difference);
 }
 
+// Rasterizes the atlas at a fixed size and compares every texel's second visitor with the first.
+// Stops as soon as the limit is exceeded, so broken atlases are rejected quickly. IsAtlas() has
+// bounded the number of texels before.
 bool SkinnedMasks::FindUnique() const {
   const glm::ivec2 size(kUniqueSide);
   std::vector<Place> places(std::size_t{kUniqueSide} * kUniqueSide);
@@ -221,6 +233,8 @@ void SkinnedMasks::FillTile(const std::vector<Place>& places, glm::ivec2 size,
   const glm::ivec2 part = glm::min(size - first, glm::ivec2(ComposeTile::kSide));
   std::vector<std::vector<std::uint8_t>> planes(channels_.size());
   std::vector<float> values(channels_.size(), 0.0f);
+  // Moves the sums of one texel to the planes of their channels and clears them for the next texel.
+  // Planes are allocated on first use, because most tiles have few channels.
   const auto store = [&](std::size_t texel, std::uint32_t vertex) {
     for (const Part& taken : PartsOf(vertex)) {
       const float value = std::exchange(values[taken.channel], 0.0f);

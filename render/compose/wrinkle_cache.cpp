@@ -78,6 +78,8 @@ std::unique_ptr<SkinnedMasks> WrinkleCache::FindSkinned(int material) const {
   return std::make_unique<SkinnedMasks>(meshes, shares, inverse_bind_matrices_, material);
 }
 
+// The finest resolution that any mesh of the material needs, and an estimate of the pixels that it
+// covers, including hidden ones.
 WrinkleCache::Sight WrinkleCache::Look(int material, const View& view) const {
   Sight sight;
   for (std::size_t index = 0; index < gpu_->meshes().size(); ++index) {
@@ -120,6 +122,8 @@ void WrinkleCache::AddVisibleRegion(const MaskRegion& region, std::size_t channe
       region.bounds.Look(subject.model, view.projection * subject.placement);
   if (!extent.is_seen()) return;
   needs->is_seen[channel] = true;
+  // The columns of a placement have the length of its scale. Bounds and UV densities are in the
+  // character's own metres.
   const float pixels = view.pixels * glm::length(glm::vec3(subject.placement[0]));
   const auto side = static_cast<float>(std::max(composed.size().x, composed.size().y));
   // log2 of texels per pixel where the region is nearest and most stretched.
@@ -149,6 +153,7 @@ void WrinkleCache::PlanMaterial(int index, const Settings& settings, const View&
   entry->needs = std::move(needs);
 }
 
+// Creates or keeps the textures. Returns false if the material should be drawn without them.
 bool WrinkleCache::Prepare(const GpuMaterial& material, const Sight& sight, Entry* entry) const {
   const glm::ivec2 size = SizeFor(material, sight);
   // Limits memory and painting time.
@@ -157,6 +162,7 @@ bool WrinkleCache::Prepare(const GpuMaterial& material, const Sight& sight, Entr
     const float finer =
         std::log2(static_cast<float>(entry->composed->size().x) / static_cast<float>(size.x));
     entry->num_too_fine = finer < kMaxExcessLevels ? 0 : entry->num_too_fine + 1;
+    // Too coarse a texture is replaced at once, because the loss of detail would be visible.
     if (finer >= 0.0f && entry->num_too_fine < kExcessPictures) return true;
   }
   entry->num_too_fine = 0;
