@@ -21,12 +21,15 @@ struct Candidate {
   bool software = false;
 };
 
+// eglGetError() clears the error, so this must be the first EGL call after the failed one.
 std::string EglError(std::string_view call) {
   std::array<char, 16> code{};
   const auto end = std::to_chars(code.data(), code.data() + code.size(), eglGetError(), 16).ptr;
   return std::string(call) + " failed, EGL error 0x" + std::string(code.data(), end);
 }
 
+// All devices in EGL's order; none if the driver cannot enumerate them. Client extensions are
+// queried without a display.
 std::vector<Candidate> EnumerateDevices() {
   std::vector<Candidate> candidates;
   if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") ||
@@ -47,6 +50,8 @@ std::vector<Candidate> EnumerateDevices() {
   return candidates;
 }
 
+// The devices to try, best first. A stable sort keeps EGL's order within hardware and software
+// devices.
 Result<std::vector<Candidate>> ChooseCandidates(std::string_view device) {
   const Candidate surfaceless{"surfaceless", EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY,
                               true};
@@ -86,6 +91,8 @@ EGLContext CreateCoreContext(EGLDisplay display, bool reset_notification) {
   return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
 }
 
+// An initialised display that allows contexts without config and surface. It stays initialised on
+// failure; see the class comment.
 Result<EGLDisplay> OpenDisplay(const Candidate& candidate) {
   // epoxy ends the process when it calls a function that no driver provides, so check first.
   if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base")) {
@@ -108,6 +115,8 @@ Result<EGLDisplay> OpenDisplay(const Candidate& candidate) {
   return display;
 }
 
+// Returns a context that is current on this thread. The bound API is state of the thread, and EGL's
+// default is OpenGL ES.
 Result<EGLContext> OpenContext(EGLDisplay display) {
   if (!eglBindAPI(EGL_OPENGL_API)) return Status(StatusCode::kUnavailable, EglError("eglBindAPI"));
   EGLContext context = CreateCoreContext(display, true);
@@ -157,6 +166,7 @@ Result<std::unique_ptr<EglContext>> EglContext::Create(std::string_view device) 
 }
 
 EglContext::~EglContext() {
+  // A current context would only be marked for destruction and live on.
   if (eglGetCurrentContext() == context_) {
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   }
@@ -173,6 +183,7 @@ Status EglContext::MakeCurrent() {
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     return lost;
   }
+  // Needs a current context, so it follows eglMakeCurrent().
   if (glGetGraphicsResetStatus() != GL_NO_ERROR) {
     return {StatusCode::kUnavailable, "the OpenGL context was lost to a device reset", description_,
             "create a new renderer"};

@@ -24,6 +24,7 @@ TextureId GlDevice::CreateTexture(const TextureDesc& desc) {
   const GLenum target = desc.samples > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
   gl::Texture texture = gl::MakeTexture(target);
   if (desc.samples > 1) {
+    // Fixed sample locations (GL_TRUE): all attachments of a framebuffer must agree on them.
     glTextureStorage2DMultisample(texture.name(), desc.samples, InternalFormat(desc.format),
                                   desc.width, desc.height, GL_TRUE);
   } else {
@@ -54,6 +55,7 @@ GLuint GlDevice::Framebuffer(std::span<const TextureId> colours, TextureId depth
       glNamedFramebufferTexture(framebuffer.name(), attachment, colour, 0);
       buffers.push_back(attachment);
     }
+    // A shadow map has depth only: nothing may be written to the default colour attachment.
     if (buffers.empty()) {
       glNamedFramebufferDrawBuffer(framebuffer.name(), GL_NONE);
     } else {

@@ -6,6 +6,8 @@
 namespace furrow::render::gl {
 namespace {
 
+// Contents of empty buffers: OpenGL rejects immutable storage of 0 bytes, and a shader block needs
+// storage behind it even if the shader never reads it.
 constexpr float kZeros[4] = {0.0f, 0.0f, 0.0f, 0.0f};
 
 }  // namespace

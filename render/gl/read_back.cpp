@@ -23,6 +23,7 @@ std::vector<std::uint8_t> DropAlpha(const std::uint8_t* rgba, std::size_t num_pi
 
 ReadBack::~ReadBack() {
   for (const Slot& slot : slots_) {
+    // A lost context has already freed its fences.
     if (slot.fence != nullptr && gl::HasContext()) glDeleteSync(slot.fence);
   }
 }
@@ -30,6 +31,8 @@ ReadBack::~ReadBack() {
 void ReadBack::Start(GLuint framebuffer, int width, int height, std::uint64_t token) {
   Slot& slot = slots_[static_cast<std::size_t>((oldest_ + count_) % kCapacity)];
   const std::size_t bytes = static_cast<std::size_t>(width) * height * 4;
+  // Storage is immutable, so a larger picture needs a new buffer. Smaller pictures reuse it. Client
+  // storage asks the driver for memory that the CPU reads fast.
   if (slot.capacity < bytes) {
     slot.pixels = gl::MakeBuffer();
     glNamedBufferStorage(slot.pixels.name(), static_cast<GLsizeiptr>(bytes), nullptr,
@@ -39,12 +42,17 @@ void ReadBack::Start(GLuint framebuffer, int width, int height, std::uint64_t to
   slot.width = width;
   slot.height = height;
   slot.token = token;
+  // With a bound pack buffer, glReadPixels() only queues the copy and returns. The last argument is
+  // an offset then, not a pointer. The buffer is unbound again because other reads expect a
+  // pointer.
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.pixels.name());
   glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   slot.fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  // Submits the fence. Take() without waiting does not flush, so an unsubmitted fence would never
+  // signal.
   glFlush();
   ++count_;
 }
@@ -54,6 +62,8 @@ Result<std::optional<Image>> ReadBack::Take(bool wait) {
   Slot& slot = slots_[static_cast<std::size_t>(oldest_)];
   const GLenum state = glClientWaitSync(slot.fence, 0, wait ? kLongestWait : 0);
   if (state == GL_TIMEOUT_EXPIRED && !wait) return std::optional<Image>();
+  // The slot is free from here on, whether the picture arrived or not. Otherwise a lost context
+  // would block the ring forever.
   glDeleteSync(slot.fence);
   slot.fence = nullptr;
   oldest_ = (oldest_ + 1) % kCapacity;

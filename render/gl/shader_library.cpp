@@ -101,6 +101,8 @@ Result<GLuint> ShaderLibrary::GetFullscreen(std::string_view fragment,
 
 Result<GLuint> ShaderLibrary::GetNamed(std::string_view vertex, std::string_view fragment,
                                        const std::vector<std::string>& defines) {
+  // Callers pair each fragment shader with one vertex shader, so the vertex shader is not part of
+  // the key.
   std::string key(fragment);
   for (const std::string& define : defines) key += ";" + define;
   if (const auto found = named_.find(key); found != named_.end()) return found->second.name();

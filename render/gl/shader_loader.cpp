@@ -17,6 +17,8 @@ std::string_view TakeLine(std::string_view* text) {
   return line;
 }
 
+// Replaces #include lines by the files that they name. Each file is included once, which also ends
+// include cycles.
 class Expander {
  public:
   Expander(std::span<const ShaderFile> files, ShaderSource* out) : files_(files), out_(out) {}
@@ -55,6 +57,8 @@ class Expander {
     return Append(line.substr(first + 1, last - first - 1), place);
   }
 
+  // Makes the driver's messages refer to the line and the number of the original file.
+  // NameSources() replaces the number by the name.
   void AppendLineDirective(int line, std::size_t source) {
     out_->text += "#line " + std::to_string(line) + " " + std::to_string(source) + "\n";
   }

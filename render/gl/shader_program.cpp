@@ -6,6 +6,7 @@
 namespace furrow::render {
 namespace {
 
+// Compiles one stage. The driver's log, with file names instead of numbers, becomes the error.
 Result<gl::Shader> Compile(GLenum stage, std::string_view name,
                            std::span<const std::string> defines,
                            std::span<const ShaderFile> files) {

@@ -45,6 +45,8 @@ const TextureDesc& FrameGraph::Resources::Desc(Handle handle) const {
   return graph_->textures_[graph_->versions_[handle.version].texture].desc;
 }
 
+// A handle names a version of a texture. The first version has no writer, so a pass may write it
+// but not read it.
 FrameGraph::Handle FrameGraph::Builder::Create(std::string_view name, const TextureDesc& desc) {
   const int version = static_cast<int>(graph_->versions_.size());
   graph_->versions_.push_back({static_cast<int>(graph_->textures_.size()), -1, -1});
@@ -85,6 +87,8 @@ FrameGraph::Handle FrameGraph::Builder::Write(Handle handle) {
 
 void FrameGraph::Builder::SideEffect() { graph_->passes_[pass_].side_effect = true; }
 
+// The caller owns the texture, which has contents already: reading it is allowed before any pass
+// writes it, and the pool never touches it.
 FrameGraph::Handle FrameGraph::Import(std::string_view name, const TextureDesc& desc,
                                       TextureId texture) {
   const int version = static_cast<int>(versions_.size());

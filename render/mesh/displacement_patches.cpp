@@ -22,6 +22,8 @@ struct EdgeOwner {
   int triangles = 0;
 };
 
+// Finds for each edge of the welded mesh the triangle that owns it, and the edges that only one
+// triangle has: the border.
 class EdgeOwners {
  public:
   EdgeOwners(const character::Mesh& mesh, const std::vector<std::uint32_t>& weld) : weld_(weld) {
@@ -36,6 +38,8 @@ class EdgeOwners {
     const Edge owner = owners_.at(Key(edge)).vertices;
     return weld_[owner.first] == weld_[edge.first] ? owner : Edge{owner.second, owner.first};
   }
+  // Welded vertices share the value of the first of them, so that both sides of a UV seam move
+  // alike.
   [[nodiscard]] std::vector<float> Shares() const {
     std::vector<bool> is_border(weld_.size());
     for (const auto& [key, owner] : owners_) {
@@ -62,6 +66,8 @@ class EdgeOwners {
   std::map<Edge, EdgeOwner> owners_;
 };
 
+// The cross products are twice the areas on both sides of the quotient. Summed in double, because a
+// mesh has very many small triangles.
 float MetresPerUv(const character::Mesh& mesh) {
   double surface = 0.0;
   double atlas = 0.0;

@@ -55,6 +55,7 @@ float MeanEdge(const character::Mesh& mesh) {
                               : static_cast<float>(sum / static_cast<double>(mesh.indices.size()));
 }
 
+// Square metres at rest.
 float Surface(const character::Mesh& mesh) {
   double sum = 0.0;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {

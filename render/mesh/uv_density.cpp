@@ -22,6 +22,8 @@ float UvPerMetre(const character::Vertex& a, const character::Vertex& b,
   const float along = glm::dot(other, x);
   const float across = glm::length(other - along * x);
   if (!(across > 0.0f)) return 0.0f;
+  // Derivatives of the UV along the triangle's orthonormal axes: along its first side, and across
+  // it.
   const glm::vec2 du = (b.uv - a.uv) / length;
   const glm::vec2 dv = (c.uv - a.uv - along * du) / across;
   // The larger singular value of (du dv).
@@ -34,6 +36,8 @@ float UvPerMetre(const character::Vertex& a, const character::Vertex& b,
 }  // namespace
 
 float MinUvPerMetre(const character::Mesh& mesh) {
+  // Share of the area that may have less UV per metre than the result: a few triangles that are
+  // stretched in the texture must not decide for the whole mesh.
   constexpr double kOutliers = 0.05;
   std::vector<std::pair<float, double>> triangles;  // UV per metre, area
   double surface = 0.0;
