@@ -56,6 +56,7 @@ Handle Pipeline::Add(FrameGraph* graph, const FrameRequest& request, View view, 
   Handle shown;
   Handle bloom;
   const bool casts = settings.shadow.filter != ShadowFilter::kOff && settings.shadow.lamps > 0;
+  // The picture and all tiles of its strip share the maps, so only the first view adds the pass.
   if (casts && NeedsSkinPipeline(view, settings) && shadows->version < 0) {
     *shadows = shadow_pass_.Add(graph, request);
   }
@@ -120,6 +121,9 @@ Handle Pipeline::AddSkin(FrameGraph* graph, const FrameRequest& request, const S
   }
 }
 
+// Two orders of the same steps. With one sample, facets are stored, occlusion is found, and each
+// visible pixel is lit once, already occluded. With several samples, the scene is lit while it is
+// drawn, and the occluded light is removed after resolving.
 Pipeline::Surface Pipeline::AddSurface(FrameGraph* graph, const Settings& settings,
                                        const TextureDesc& desc, Handle shadows,
                                        const OcclusionGeometry& view) {
@@ -154,6 +158,8 @@ Handle Pipeline::AddShown(FrameGraph* graph, const Surface& surface, View view,
   ShowTarget show;
   Handle target = surface.lit.depth;
   if (view == View::kDepth) {
+    // The greys span the depth of the subject around the focus, not the whole range of the depth
+    // buffer.
     const float radius = 0.5f * camera.StageRadius(1.0f);
     show = {.kind = ShowTarget::Kind::kMetres,
             .near_metres = camera.focus_distance() - radius,

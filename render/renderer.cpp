@@ -22,6 +22,7 @@ class GlRenderer final : public Renderer {
  public:
   static Result<std::unique_ptr<Renderer>> Create(const character::Character& character,
                                                   std::string_view device) {
+    // The context is current from here on, as the uploads below require.
     Result<std::unique_ptr<EglContext>> context = EglContext::Create(device);
     FURROW_RETURN_IF_ERROR(context);
     Result<std::unique_ptr<GpuCharacter>> gpu = GpuCharacter::Create(character);
@@ -85,6 +86,8 @@ class GlRenderer final : public Renderer {
                context_->is_software()),
         pipeline_(character, &scene_, &shaders_, &device_, context_->is_software()) {}
 
+  // Uploads the frame's data once, and then declares the passes of the picture and of each tile.
+  // Nothing is drawn before the graph has been compiled.
   Status BuildFrame(const FrameRequest& request, FrameGraph* graph) {
     FURROW_RETURN_IF_ERROR(scene_.Update(request));
     FrameGraph::Handle shadows;

@@ -11,6 +11,8 @@ namespace {
 constexpr GLint kLook = 0;      // in post/bloom.frag.glsl and post/show.frag.glsl
 constexpr int kTileMargin = 4;  // pixels around each tile of the strip
 
+// Bloom is wide and smooth, so a sixteenth of the pixels shows no difference. Tiny pictures keep
+// one.
 TextureDesc BloomDesc(const TextureDesc& desc) {
   return {std::max(desc.width / kBloomScale, 1), std::max(desc.height / kBloomScale, 1),
           PixelFormat::kRgba16F, 1};
@@ -38,6 +40,8 @@ FrameGraph::Handle AddBloomPass(FrameGraph* graph, FrameGraph::Handle colour,
   };
   const FrameGraph::Handle bright = add("bloom bright", "bloom bright", colour, true,
                                         {settings.bloom.threshold, settings.exposure, 0.0f, 0.0f});
+  // The radius is a share of the picture's height, so that bloom looks the same at every size. The
+  // shader divides by the square of sigma, hence the lower limit.
   const float sigma = std::max(settings.bloom.radius * static_cast<float>(small.height), 0.3f);
   const FrameGraph::Handle across =
       add("bloom x", "bloom x", bright, false, {1.0f, 0.0f, sigma, 0.0f});
@@ -90,6 +94,8 @@ FrameGraph::Handle AddStripPass(FrameGraph* graph, FrameGraph::Handle picture,
           [device](const FrameGraph::Resources& resources, const Data& pass) {
             const GLuint target = device->Framebuffer(resources.Get(pass.picture), 0);
             const TextureDesc& whole = resources.Desc(pass.picture);
+            // Row 0 is the top of the picture: the composite pass has flipped it. Tiles that do not
+            // fit are left out.
             int top = kTileMargin;
             for (const FrameGraph::Handle tile : pass.tiles) {
               const TextureDesc& desc = resources.Desc(tile);

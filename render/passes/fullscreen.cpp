@@ -62,6 +62,7 @@ Status Fullscreen::Begin(std::string_view fragment, const std::vector<std::strin
     glBindSampler(unit, 0);
     glBindTextureUnit(unit++, texture.version < 0 ? 0 : resources.Get(texture));
   }
+  // The core profile draws nothing without a vertex array, even if the shader makes the vertices.
   glBindVertexArray(no_attributes_.name());
   return {};
 }

@@ -21,6 +21,8 @@ SkinTargets AddLightPass(FrameGraph* graph, const FacetTargets& facets, FrameGra
   defines.push_back(Define("SCALE", open.scale));
   std::vector<FrameGraph::Handle> reads = {facets.colour, facets.normal, facets.geometric,
                                            facets.matter, facets.depth};
+  // The index is the texture unit. Units without a handle stay free for the look-up tables of
+  // SceneDraw.
   reads.resize(kOpenUnit + 1);
   for (const GLuint unit : SceneDraw::kShadowUnits) reads[unit] = shadows;
   reads[kOpenUnit] = open.target;
@@ -39,6 +41,7 @@ SkinTargets AddLightPass(FrameGraph* graph, const FacetTargets& facets, FrameGra
        .surface_z = facets.z},
       [settings, geometry, scene, fullscreen] {
         const glm::vec3& back = geometry.background;
+        // After the pass has bound its textures, which unbinds all units without a handle.
         scene->BindLights(settings);
         glUniformMatrix3fv(kLightViewRotation, 1, GL_FALSE, &geometry.view_rotation[0].x);
         glUniform4f(kLightLens, geometry.pixels_per_slope,

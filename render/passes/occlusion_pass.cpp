@@ -16,14 +16,17 @@ constexpr GLint kOcclusionRange = 0;  // in occlusion_blur.frag.glsl and occlude
 // As a share of the radius. Surfaces with a larger depth difference do not share their openness.
 constexpr float kRangeOfRadius = 0.5f;
 
+// Scene pixels per target pixel, along each axis.
 int ScaleOf(const OcclusionSettings& settings) { return settings.half_resolution ? 2 : 1; }
 
+// Rounds up, so that the last column and row of an odd size are covered.
 TextureDesc TargetOf(const OcclusionSettings& settings, const OcclusionGeometry& geometry) {
   const int scale = ScaleOf(settings);
   return {(geometry.width + scale - 1) / scale, (geometry.height + scale - 1) / scale,
           PixelFormat::kR8, 1};
 }
 
+// Rounds outwards, so that the smaller rectangle covers all pixels of the larger one.
 ScreenRect Scaled(const ScreenRect& rect, int scale) {
   return {rect.x0 / scale, rect.y0 / scale, (rect.x1 + scale - 1) / scale,
           (rect.y1 + scale - 1) / scale};
@@ -70,6 +73,7 @@ FrameGraph::Handle OcclusionPass::AddBlur(FrameGraph* graph, FrameGraph::Handle 
                                     });
 }
 
+// Pixels outside the bounds are cleared to 1: open sky.
 void OcclusionPass::DrawBounds(const OcclusionSettings& settings,
                                const OcclusionGeometry& geometry) {
   fullscreen_->Clear(0, 1.0f, 1.0f, 1.0f, 1.0f);
@@ -100,6 +104,8 @@ SkinTargets OcclusionPass::AddOcclude(FrameGraph* graph, const SkinTargets& lit,
       [this, settings, geometry] {
         glUniform1f(kOcclusionRange, RangeOf(settings));
         const glm::vec3& back = geometry.background;
+        // The same values as in the scene pass: no skin in the first target, the background in the
+        // second.
         fullscreen_->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
         fullscreen_->Clear(1, back.r, back.g, back.b, 0.0f);
         fullscreen_->Draw(geometry.bounds);

@@ -19,6 +19,7 @@ SkinTargets AddResolvePass(FrameGraph* graph, const SkinTargets& scene, const Te
                   target("radiance", PixelFormat::kRgba16F), target("albedo", PixelFormat::kRgba8),
                   target("normal", PixelFormat::kRgba16F), target("depth", PixelFormat::kR32F)}},
       [fullscreen] { fullscreen->Draw(); });
+  // No depth buffer: a multisampled one cannot be attached beside the resolved targets.
   return {out[0], out[1], out[2], out[3], out[4], {}};
 }
 

@@ -27,6 +27,7 @@ enum TextureUnit : GLuint {
 constexpr GLint kLightLocation = 0;        // of shadow.vert.glsl and displace.tese.glsl
 constexpr GLint kHeightTexelLocation = 1;  // of displace.tese.glsl
 
+// Culling is state of the context, so every draw sets it. Cloth and hair cards may be double-sided.
 void SetCulling(bool cull) {
   if (cull) {
     glEnable(GL_CULL_FACE);
@@ -35,6 +36,8 @@ void SetCulling(bool cull) {
   }
 }
 
+// With `compare`, each look-up returns the share of four texels that the lamp reaches. Without, it
+// returns a depth, which must not be filtered: the mean of two surfaces' depths lies on neither.
 gl::Sampler MakeShadowSampler(bool compare) {
   gl::Sampler sampler = gl::MakeSampler();
   const GLint filter = compare ? GL_LINEAR : GL_NEAREST;
@@ -81,6 +84,7 @@ View SkinView(View view) {
   }
 }
 
+// Translucency takes the thickness from shadow maps, so it needs them.
 bool CanShineThrough(const Settings& settings) {
   return settings.translucency.enabled && settings.shadow.filter != ShadowFilter::kOff;
 }
@@ -119,6 +123,8 @@ Status SceneDraw::Update(const FrameRequest& request) {
   FURROW_RETURN_IF_ERROR(tables_->Update(request));
   setup_ = SetUpFrame(request, skeleton_, &ambient_);
   const Settings& settings = request.settings;
+  // Bounds of the skinned surface must be enlarged by the highest possible fold. The height map's
+  // unit is millimetres.
   displacement_reach_ = settings.displacement.enabled
                             ? 0.001f * settings.displacement.strength * settings.wrinkle_strength *
                                   gpu_->heights().max_mm
@@ -133,6 +139,7 @@ Status SceneDraw::Update(const FrameRequest& request) {
   return {};
 }
 
+// A composed texture shows one subject's weights, so crowds evaluate wrinkles per fragment.
 void SceneDraw::PlanComposing(const FrameRequest& request) {
   if (is_crowd_ || !SomeViewTakesComposed(request.settings)) return cache_.Disable();
   cache_.Plan(request.settings,
@@ -197,6 +204,8 @@ void SceneDraw::BindLights(const Settings& settings) {
   }
 }
 
+// One texture of shadow maps is bound to two units, because a sampler either compares or returns
+// depth.
 void SceneDraw::BindLookUps() {
   glBindSampler(kShadowUnits[0], shadow_compare_.name());
   glBindSampler(kShadowUnits[1], shadow_depth_.name());
@@ -216,6 +225,8 @@ Result<PosedMeshes::Vertices> SceneDraw::Pose(std::size_t index, PosedMeshes::Fo
   return posed_.Get(index, form, shader, part, draw_list_.subjects(index));
 }
 
+// The posed vertices of all subjects lie one after another in one buffer. Each subject is one entry
+// of a multi-draw with its own base vertex and its own level of detail.
 void SceneDraw::DrawSubjects(const PosedMeshes::Vertices& posed, std::size_t index,
                              PosedMeshes::Form form, int view) {
   const auto seen = draw_list_.seen(view, index);
@@ -258,6 +269,7 @@ GpuMesh::Level SceneDraw::LevelOf(std::size_t index, PosedMeshes::Form form, int
 Status SceneDraw::DrawShadow(const Settings& settings, int light) {
   buffers_.Bind();
   BindMasks();
+  // A bound sampler overrides the texture's filtering until it is unbound, also in later passes.
   glBindSampler(kBaseColourUnit, cut_out_.name());
   Status status;
   for (std::size_t index = 0; index < gpu_->meshes().size() && status.ok(); ++index) {
@@ -367,6 +379,7 @@ SceneShader SceneDraw::ShaderFor(const GpuMaterial& material,
   return shader;
 }
 
+// One program lights all facets, so it must support skin and select by the stored material.
 SceneShader SceneDraw::LightShader(const Settings& settings) {
   SceneShader shader;
   shader.shading = Shading::kSkin;

@@ -18,6 +18,7 @@ void BeginScene(GLuint framebuffer, int width, int height) {
   const float clear_depth = 1.0f;
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
   glViewport(0, 0, width, height);
+  // Clearing obeys the depth mask, which fullscreen passes turn off.
   glDepthMask(GL_TRUE);
   glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &clear_depth);
   glEnable(GL_DEPTH_TEST);

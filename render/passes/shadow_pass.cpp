@@ -45,6 +45,8 @@ FrameGraph::Handle ShadowPass::Add(FrameGraph* graph, const FrameRequest& reques
     desc_ = desc;
     drawn_.clear();
   }
+  // Imported, because the maps outlive the frame. The pool would hand a transient texture to other
+  // passes.
   const FrameGraph::Handle maps = graph->Import("shadow maps", desc, maps_);
   std::vector<float> inputs = Inputs(request);
   // The subdivision of displaced patches depends on the camera, and their position on wrinkle
@@ -81,6 +83,7 @@ Status ShadowPass::Draw(const Settings& settings, TextureId maps) {
   glEnable(GL_DEPTH_CLAMP);  // objects nearer to the lamp than the stage cast shadows too
   Status status;
   for (int light = 0; light < settings.shadow.lamps && status.ok(); ++light) {
+    // The viewport confines each lamp to its own square of the shared texture.
     glViewport(light * resolution, 0, resolution, resolution);
     status = scene_->DrawShadow(settings, light);
   }

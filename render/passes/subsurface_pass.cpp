@@ -46,6 +46,7 @@ PixelTaps AlongY(PixelTaps kernel) {
 FrameGraph::Handle SubsurfacePass::Add(FrameGraph* graph, FrameGraph::Handle irradiance,
                                        const SubsurfaceSettings& settings,
                                        const SkinGeometry& geometry) {
+  // Returning the input adds no pass. Later passes then read the unscattered light.
   const bool nothing_scatters =
       settings.strength <= 0.0f || settings.width < kMinWidth || geometry.bounds.empty();
   if (nothing_scatters) return irradiance;
@@ -85,6 +86,8 @@ FrameGraph::Handle SubsurfacePass::AddAxis(FrameGraph* graph, const AxisPass& wh
       });
 }
 
+// `strength` applies once, in the second pass, which mixes the result with the unscattered light.
+// Applied in both passes, it would act twice.
 FrameGraph::Handle SubsurfacePass::AddSeparable(FrameGraph* graph, FrameGraph::Handle irradiance,
                                                 const SubsurfaceSettings& settings,
                                                 const SkinGeometry& geometry) {
@@ -96,6 +99,9 @@ FrameGraph::Handle SubsurfacePass::AddSeparable(FrameGraph* graph, FrameGraph::H
                  kernel, settings, geometry);
 }
 
+// Each blur continues from the result of the one before, and variances add. Seven taps per axis are
+// therefore enough for each of them (GPU Gems 3, chapter 14). A blur below a third of a pixel has
+// one tap and no pass; its result is its input.
 FrameGraph::Handle SubsurfacePass::AddGaussians(FrameGraph* graph, FrameGraph::Handle irradiance,
                                                 const SubsurfaceSettings& settings,
                                                 const SkinGeometry& geometry) {
@@ -136,6 +142,7 @@ FrameGraph::Handle SubsurfacePass::AddGaussians(FrameGraph* graph, FrameGraph::H
 FrameGraph::Handle SubsurfacePass::AddBurley(FrameGraph* graph, FrameGraph::Handle irradiance,
                                              const SubsurfaceSettings& settings,
                                              const SkinGeometry& geometry) {
+  // The fit depends on the profile only and takes many evaluations, so the process does it once.
   static const glm::vec3 distances = FitBurley(HumanSkin());
   return fullscreen_->AddSimplePass(
       graph,
@@ -162,6 +169,8 @@ FrameGraph::Handle SubsurfacePass::AddBurley(FrameGraph* graph, FrameGraph::Hand
       });
 }
 
+// Outside the skin, the targets must read as "no skin", because the taps of nearby pixels reach
+// there.
 void SubsurfacePass::DrawSkin(const SkinGeometry& geometry) {
   fullscreen_->Clear(0, 0.0f, 0.0f, 0.0f, kFarAway);
   fullscreen_->Draw(geometry.bounds);
