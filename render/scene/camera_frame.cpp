@@ -25,6 +25,8 @@ glm::mat4 FollowTransform(const Camera& camera, const wrinkle::Skeleton& skeleto
                           std::span<const glm::mat4> model) {
   const int joint = camera.follow_joint;
   if (joint < 0 || joint >= skeleton.num_joints()) return glm::mat4(1.0f);
+  // The camera takes the joint's movement but only the root's turn. Following the joint's own
+  // rotation would hide nods and shake the picture.
   int root = joint;
   while (skeleton.joint_parents()[root] != wrinkle::kNoJoint) root = skeleton.joint_parents()[root];
   const float turn = Heading(model[root] * glm::inverse(skeleton.rest_model()[root]));
@@ -49,6 +51,8 @@ CameraFrame ComputeCamera(const Camera& camera, const wrinkle::Skeleton& skeleto
   const glm::mat4 view = glm::lookAt(position, target, steep ? glm::vec3(0, 0, -1) : kUp);
   const float narrow = camera.fit_shorter_side ? std::min(aspect, 1.0f) : 1.0f;
   const float half_height = std::tan(glm::radians(0.5f * camera.fov_y_degrees)) / narrow;
+  // Planes relative to the distance: close-ups are not cut off, and depth stays precise for whole
+  // bodies.
   const float near_plane = 0.05f * distance;
   const float far_plane = 20.0f * distance;
   const glm::mat4 projection =

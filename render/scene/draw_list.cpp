@@ -25,6 +25,8 @@ float Covered(const JointBounds::Extent& extent) {
   return 0.25f * size.x * size.y;
 }
 
+// Projects the mesh's bounds into all views. The level of detail follows from the camera, or, for a
+// subject that only casts shadows into the picture, from the lamp that sees it largest.
 Look LookAt(const JointBounds& bounds, const PosedSubject& subject,
             std::span<const DrawList::View> views, float reach) {
   Look look;
@@ -68,6 +70,8 @@ void DrawList::Build(GpuCharacter* gpu, std::span<const NamedSubject> subjects,
         list.sight.covered += look.covered;
       }
       list.subjects.push_back(static_cast<std::uint32_t>(subject));
+      // Allowed error in metres. An infinite number of pixels (a box reaches behind the camera)
+      // allows none.
       const int level = gpu->Level(mesh, tolerance.error_pixels / look.pixels);
       list.levels.push_back(level);
       const float scale = glm::length(glm::vec3(subjects[subject].subject->placement[0]));

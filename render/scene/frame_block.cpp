@@ -10,6 +10,8 @@ namespace {
 
 constexpr float kMetresPerMm = 0.001f;
 
+// The shader receives the reciprocal of the range and the squared reach, because it needs only
+// these, per pixel.
 LightBlock MakeLightBlock(const LightSource& light, const ShadowView& shadow) {
   const bool placed = light.kind != LightKind::kDirectional;
   const bool spot = light.kind == LightKind::kSpot;

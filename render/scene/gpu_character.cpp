@@ -63,6 +63,7 @@ float RoughnessOf(const Material& material) {
                                                : material.roughness;
 }
 
+// Levels of a full chain: down to 1 x 1.
 int NumMips(int width, int height) {
   return std::bit_width(static_cast<unsigned>(std::max(width, height)));
 }
@@ -74,6 +75,8 @@ void SetFiltering(const gl::Texture& texture, GLenum wrap) {
   glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_T, static_cast<GLint>(wrap));
 }
 
+// Characters come from files. The GPU would read out of bounds on indices that are not checked
+// here.
 Status CheckMesh(const character::Mesh& mesh, const Character& character) {
   const auto fail = [&](const char* what) {
     return Status(StatusCode::kInvalidArgument, what, "mesh '" + mesh.name + "'");
@@ -94,6 +97,8 @@ Status CheckMesh(const character::Mesh& mesh, const Character& character) {
   return {};
 }
 
+// Each picture must hold exactly as many samples as its size says, in one of its three formats,
+// before the driver reads them.
 Status CheckPicture(const Picture& picture) {
   GLint limit = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
@@ -127,6 +132,7 @@ std::vector<std::uint8_t> ResizeRgba8(const Picture& picture, int width, int hei
   return result;
 }
 
+// All layers of an array have one size, so smaller pictures are resized to the largest.
 gl::Texture MakeArray(GLenum format, int width, int height, int layers) {
   gl::Texture texture = gl::MakeTexture(GL_TEXTURE_2D_ARRAY);
   glTextureStorage3D(texture.name(), NumMips(width, height), format, width, height, layers);
@@ -168,6 +174,7 @@ Status CheckBlock(const WrinkleLayout& layout) {
 
 Result<std::unique_ptr<GpuCharacter>> GpuCharacter::Create(const Character& character) {
   std::unique_ptr<GpuCharacter> gpu(new GpuCharacter());
+  // Rows of pictures are not padded to four bytes.
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   for (const Picture& picture : character.pictures) {
     FURROW_RETURN_IF_ERROR(CheckPicture(picture));
@@ -238,6 +245,7 @@ int GpuCharacter::Level(std::size_t index, float metres) {
     const bool is_hair = material(mesh.material).kind == Material::Kind::kHair;
     AddLevels(&mesh, is_hair ? Borders::kSimplify : Borders::kKeep);
   }
+  // Errors ascend from level to level; take the coarsest one that is good enough.
   int level = static_cast<int>(mesh.levels.size()) - 1;
   while (level > 0 && mesh.levels[static_cast<std::size_t>(level)].error > metres) --level;
   return level;
@@ -253,6 +261,8 @@ const GpuPatches& GpuCharacter::Patches(std::size_t mesh) {
   return patches_.at(mesh);
 }
 
+// Textures are shared by all materials that use a picture. A picture that is used as colour and as
+// data gets two, because only colour is decoded from sRGB.
 GLuint GpuCharacter::ColourTexture(const Character& character, int picture, bool srgb) {
   if (picture < 0) return 0;
   gl::Texture& texture = colour_textures_[{picture, srgb}];
@@ -332,6 +342,7 @@ Status GpuCharacter::AddWrinkleMaps(const Character& character) {
   FURROW_RETURN_IF_ERROR(CheckBlock(layout_));
   const int layers = std::max(1, static_cast<int>(maps.size()));
   wrinkle_derivatives_ = MakeArray(GL_RGBA16F, width, height, layers);
+  // Moments are taken after resampling, so that they describe the texels that are stored.
   for (std::size_t layer = 0; layer < maps.size(); ++layer) {
     const DerivativeMap map = Resample(maps[layer], width, height);
     glTextureSubImage3D(wrinkle_derivatives_.name(), 0, 0, 0, static_cast<GLint>(layer), width,

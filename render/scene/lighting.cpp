@@ -59,6 +59,8 @@ Lighting MakeLighting(const LightSettings& settings, const Stage& stage) {
   Lighting lighting;
   switch (settings.preset) {
     case LightPreset::kStudio:
+      // Soft key from the left, weak cool fill opposite, and a rim light from behind. Radiance is
+      // linear.
       lighting.lights = {place.Spot({-0.80f, 0.72f, 0.72f}, {1.22f, 1.06f, 0.90f}, 24.0f),
                          place.Point({0.90f, 0.12f, 0.60f}, {0.13f, 0.16f, 0.21f}),
                          place.Directional({0.72f, 0.42f, -0.75f}, {0.42f, 0.48f, 0.57f})};
@@ -80,6 +82,7 @@ Lighting MakeLighting(const LightSettings& settings, const Stage& stage) {
   for (glm::vec3* colour : {&lighting.sky.zenith, &lighting.sky.horizon, &lighting.sky.ground}) {
     *colour *= settings.ambient * settings.sky;
   }
+  // A filter of 0 turns a lamp off; dark lamps get no shadow map.
   const glm::vec3 filters[] = {settings.key, settings.fill, settings.rim};
   for (std::size_t i = 0; i < lighting.lights.size(); ++i)
     lighting.lights[i].radiance *= filters[i];

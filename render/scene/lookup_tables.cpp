@@ -8,6 +8,8 @@
 namespace furrow::render {
 namespace {
 
+// A square table, filtered linearly between texel centres and clamped at its edges. The tables are
+// computed once per process, but each context needs its own texture.
 gl::Texture MakeTable(int size, GLenum internal, GLenum format, GLenum type, const void* texels) {
   gl::Texture texture = gl::MakeTexture(GL_TEXTURE_2D);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);

@@ -93,6 +93,7 @@ void PosedMeshes::Reserve(std::size_t bytes, Posed* posed) {
     posed->vertices = gl::MakeBuffer();
     posed->subjects = gl::MakeBuffer();
   }
+  // Also shrinks: after a crowd, storage of more than four times the need is given back.
   if (posed->capacity >= bytes && posed->capacity / 4 <= bytes) return;
   glNamedBufferData(posed->vertices.name(), static_cast<GLsizeiptr>(bytes), nullptr,
                     GL_DYNAMIC_COPY);
@@ -113,6 +114,7 @@ Status PosedMeshes::Pose(const Source& source, const PoseShader& shader,
   FURROW_RETURN_IF_ERROR(program);
   Reserve(count * Layout(shader).stride, posed);
   gl::Upload(posed->subjects, subjects.data(), subjects.size_bytes());
+  // One instance per subject: the divisor advances the subject's number once per instance.
   glVertexArrayVertexBuffer(source.vertex_array, kSubjectBinding, posed->subjects.name(), 0,
                             sizeof(std::uint32_t));
   glVertexArrayBindingDivisor(source.vertex_array, kSubjectBinding, 1);
@@ -123,11 +125,14 @@ Status PosedMeshes::Pose(const Source& source, const PoseShader& shader,
   glUseProgram(*program);
   glBindVertexArray(source.vertex_array);
   glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, posed->vertices.name());
+  // Points make transform feedback write each vertex once, in order, whatever the triangles share.
+  // Nothing is rasterized.
   glEnable(GL_RASTERIZER_DISCARD);
   glBeginTransformFeedback(GL_POINTS);
   glDrawArraysInstanced(GL_POINTS, 0, source.num_vertices, static_cast<GLsizei>(subjects.size()));
   glEndTransformFeedback();
   glDisable(GL_RASTERIZER_DISCARD);
+  // Later passes read the buffer as vertices, so it must not stay bound for feedback.
   glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
 
   DescribePosed(posed->vertex_array.name(), posed->vertices, shader);

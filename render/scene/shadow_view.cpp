@@ -9,9 +9,11 @@
 namespace furrow::render {
 namespace {
 
+// Texels. See ShadowResolution().
 constexpr int kResolutionStep = 128;
 constexpr float kMaxTangent = 1.0f;  // largest tangent of half the angle of a perspective view
 
+// lookAt() needs an up direction that is not parallel to the view.
 glm::vec3 UpFor(const glm::vec3& direction) {
   return std::abs(direction.y) > 0.99f ? glm::vec3(0.0f, 0.0f, 1.0f) : glm::vec3(0.0f, 1.0f, 0.0f);
 }
@@ -49,6 +51,7 @@ glm::mat4 FlatProjection(const ShadowView& view) {
 int ShadowResolution(const ShadowSettings& settings, float radius, float pixel_metres) {
   if (!settings.fit) return settings.resolution;
   const float filter = settings.filter == ShadowFilter::kPcf ? 0.001f * settings.softness_mm : 0.0f;
+  // Metres per texel that are fine enough for the picture.
   const float texel = std::max(pixel_metres, 0.5f * filter);
   const float steps = std::ceil(2.0f * radius / (texel * kResolutionStep));
   return std::min(settings.resolution, static_cast<int>(steps) * kResolutionStep);
@@ -60,6 +63,7 @@ ShadowView FitShadow(const LightSource& light, const glm::vec3& centre, float ra
     return FitOrthographic(light.direction, centre, radius, resolution);
   }
   ShadowView fitted;
+  // A lamp at the centre has no direction; 1 mm keeps the division finite.
   const float distance = std::max(glm::distance(light.position, centre), 1e-3f);
   const glm::vec3 towards = (light.position - centre) / distance;
   fitted.view = glm::lookAt(light.position, centre, UpFor(towards));
@@ -69,6 +73,8 @@ ShadowView FitShadow(const LightSource& light, const glm::vec3& centre, float ra
                             ? radius / std::sqrt(distance * distance - radius * radius)
                             : kMaxTangent;
   fitted.scale = 1.0f / std::min(tangent, kMaxTangent);
+  // The sphere's near side. For a lamp inside or close to the sphere, a small share of the distance
+  // keeps the plane in front of the lamp.
   fitted.near_plane = std::max(distance - radius, 0.01f * distance);
   fitted.range = distance + radius - fitted.near_plane;
   fitted.texel = 2.0f * distance / (fitted.scale * static_cast<float>(resolution));

@@ -47,6 +47,8 @@ SphericalHarmonics ProjectRadiance(const std::function<glm::vec3(const glm::vec3
   const std::array<double, 9> constants = Constants();
   std::array<glm::dvec3, 9> sums{};
   for (int i = 0; i < kHeights; ++i) {
+    // Bands of equal height on a sphere have equal areas (Archimedes), so all samples have the same
+    // weight.
     const double y = 2.0 * (i + 0.5) / kHeights - 1.0;
     const double radius = std::sqrt(1.0 - y * y);
     for (int j = 0; j < kAzimuths; ++j) {
