@@ -101,6 +101,8 @@ std::vector<glm::vec4> TwoLobeAlbedoTable(int size) {
   const std::vector<glm::vec2> one = SpecularAlbedoTable(size);
   std::vector<glm::vec4> both;
   both.reserve(one.size());
+  // In rows. The shader looks up m / 2 in the same row as m, so the second lobe is resampled to
+  // rows of m.
   const float least = static_cast<float>(kMinBeckmannM) * static_cast<float>(size - 1);
   for (int row = 0; row < size; ++row) {
     const float half = std::max(0.5f * static_cast<float>(row), least);

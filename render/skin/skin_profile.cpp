@@ -21,6 +21,7 @@ glm::vec3 WeighedSum(const SkinProfile& profile, const std::function<double(doub
 // The minimum in [low, high] of `cost`, which falls and then rises, by golden-section search.
 double Minimise(const std::function<double(double)>& cost, double low, double high) {
   const double shrink = 1.0 / std::numbers::phi;
+  // Each step keeps 0.62 of the interval; 60 steps leave less than 1e-12 of it.
   for (int step = 0; step < 60; ++step) {
     const double a = high - shrink * (high - low);
     const double b = low + shrink * (high - low);
@@ -111,6 +112,7 @@ double BurleyRadius(double d, double share) {
   return std::max(-3.0 * d * std::log(e), 0.0);
 }
 
+// The search interval, in mm, encloses the standard deviations of the Gaussians (0.08 to 2.7 mm).
 glm::vec3 FitBurley(const SkinProfile& profile) {
   glm::vec3 fit;
   for (int channel = 0; channel < 3; ++channel) {

@@ -25,6 +25,8 @@ double RingIrradiance(double cos_theta, double sin_theta, double phi) {
 glm::dvec2 SphereIntegral(double variance, double cos_theta, double radius) {
   constexpr int kSteps = 96;
   const double sin_theta = std::sqrt(std::max(0.0, 1.0 - cos_theta * cos_theta));
+  // No chord is longer than the diameter, and a Gaussian is negligible beyond six standard
+  // deviations.
   const double reach = std::min(2.0 * radius, 6.0 * std::sqrt(variance));
   glm::dvec2 sum(0.0);
   for (int step = 0; step < kSteps; ++step) {

@@ -24,6 +24,7 @@ DerivativeMap MapTexels(const character::Picture& picture, const Function& funct
   return map;
 }
 
+// Clamps to the edge. Resampling does not wrap around, unlike the sampler.
 glm::vec2 At(const DerivativeMap& map, int x, int y) {
   x = std::clamp(x, 0, map.width - 1);
   y = std::clamp(y, 0, map.height - 1);
@@ -46,6 +47,8 @@ DerivativeMap DerivativesFromNormalMap(const character::Picture& picture) {
   return MapTexels(picture, [&](int x, int y) {
     const glm::vec3 n(2.0f * Texel(picture, x, y, 0) - 1.0f, 2.0f * Texel(picture, x, y, 1) - 1.0f,
                       2.0f * Texel(picture, x, y, 2) - 1.0f);
+    // A normal map from a file may hold normals that lie in or below the surface. Slopes stay
+    // finite and within the range of half floats.
     const glm::vec2 derivative = glm::vec2(n) / std::max(n.z, 1e-3f);
     return glm::clamp(derivative, -kMaxDerivative, kMaxDerivative);
   });
@@ -61,6 +64,8 @@ DerivativeMap DerivativesFromDerivativeMap(const character::Picture& picture, fl
   });
 }
 
+// Mip levels average all four channels. The difference between the mean square and the square of
+// the mean is the roughness that the averaging hides (LEAN mapping, Olano and Baker 2010).
 std::vector<float> WithMoments(const DerivativeMap& map) {
   std::vector<float> texels;
   texels.reserve(map.texels.size() * 2);
@@ -77,6 +82,7 @@ DerivativeMap Resample(const DerivativeMap& map, int width, int height) {
   DerivativeMap result{width, height, {}};
   result.texels.reserve(static_cast<std::size_t>(width) * height * 2);
   for (int y = 0; y < height; ++y) {
+    // Texel centres are at halves.
     const float source_y = (y + 0.5f) * map.height / height - 0.5f;
     const int y0 = static_cast<int>(std::floor(source_y));
     for (int x = 0; x < width; ++x) {

@@ -22,6 +22,8 @@ int IndexByName(const std::vector<Item>& items, const std::string& name) {
 
 }  // namespace
 
+// A header of 16 bytes, as std430 aligns the array behind it, and at least one mask, because a
+// bound block must not be smaller than its declaration.
 std::vector<std::uint8_t> DynamicMasksBlock(std::span<const DynamicMaskBlock> masks,
                                             int num_columns) {
   const std::int32_t head[4] = {num_columns, 0, 0, 0};
@@ -43,6 +45,7 @@ void DynamicMasks::FindSlides(const wrinkle::RigBinding& binding) {
   std::size_t weight = 0;
   for (const wrinkle::Region& region : rig.regions) {
     for (const wrinkle::Feed& feed : region.feeds) {
+      // Counts every feed, also those that are skipped: the position is the one in weight_names().
       const std::size_t index = weight++;
       if (region.mask.kind != wrinkle::Mask::Kind::kSliding) continue;
       const wrinkle::Driver& driver =

@@ -34,6 +34,8 @@ class Coverage {
   // Returns true if a filtered look-up in the rectangle may return more than 0. UV beyond [0, 1]
   // repeats.
   [[nodiscard]] bool Touches(const glm::vec2& low, const glm::vec2& high) {
+    // Moves the rectangle by whole repeats into [0, 1], and grows it by a texel, because filtering
+    // reads neighbours.
     const glm::vec2 turn = glm::floor(low);
     const glm::ivec2 first(glm::floor((low - turn) * glm::vec2(size_)) - 1.0f);
     const glm::ivec2 last(glm::floor((high - turn) * glm::vec2(size_)) + 2.0f);

@@ -12,6 +12,7 @@ namespace {
 
 float Cross(const glm::vec2& a, const glm::vec2& b) { return a.x * b.y - a.y * b.x; }
 
+// The remainder of a negative number is negative in C++.
 int Wrapped(int value, int size) { return ((value % size) + size) % size; }
 
 // A triangle in texel coordinates.
@@ -29,6 +30,8 @@ class TexelTriangle {
     return glm::max(glm::max(corners_[0], corners_[1]), corners_[2]);
   }
 
+  // Shares are ratios of signed areas, so triangles of both orientations work. A triangle without
+  // area has only its edges.
   [[nodiscard]] UvTexel At(const glm::vec2& point) const {
     UvTexel texel;
     if (area_ != 0.0f) {

@@ -303,6 +303,8 @@ Status WrinkleTables::Update(const FrameRequest& request) {
   return {};
 }
 
+// Adds the weights of one subject to a row of mask layers per map: regions that share a map add up
+// where their masks overlap.
 void WrinkleTables::AddSubject(MaskMode mode) {
   SubjectWrinkles& subject = subjects_.emplace_back();
   const auto layers = static_cast<std::size_t>(layout_.num_mask_layers);
@@ -326,6 +328,8 @@ bool WrinkleTables::IsTextured(std::size_t map) const {
       subjects_, [&](const SubjectWrinkles& subject) { return bool(subject.textured[map]); });
 }
 
+// The order of Source decides: a map with several kinds of masks belongs to the kind that is
+// hardest to compose.
 void WrinkleTables::FindSources() {
   sources_.assign(maps_.size(), Source::kPainted);
   for (const SubjectWrinkles& subject : subjects_) {
@@ -353,6 +357,8 @@ void WrinkleTables::ListMaps(int group, float strength, Source source, std::vect
   }
 }
 
+// Lists sliding maps first, then skinned and painted ones, so that the part that fragments must
+// evaluate is a prefix (NeedsOf()).
 void WrinkleTables::FillTable(int group, float strength) {
   WrinkleTable& table = tables_[group];
   table = {};
