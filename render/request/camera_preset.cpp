@@ -107,6 +107,8 @@ Camera Frame(const glm::vec3& target, float height, float depth, float azimuth, 
   return camera;
 }
 
+// The head without hair and clothes; the whole character if no vertex belongs to the head joint; a
+// point if there are no vertices. The presets therefore work for any mesh.
 Bounds HeadBounds(const Character& character, int head) {
   const auto in_head = [&](int joint) {
     return head == wrinkle::kNoJoint || character.skeleton.IsAncestor(head, joint);
@@ -122,6 +124,7 @@ Bounds HeadBounds(const Character& character, int head) {
   return bounds;
 }
 
+// The largest dimension counts, so a turned view shows the same head at the same size.
 Camera HeadPreset(const Bounds& head, int joint, float azimuth) {
   const glm::vec3 size = head.size();
   const float radius = 0.5f * std::max(size.x, size.z);

@@ -17,7 +17,10 @@ Result<std::vector<std::uint8_t>> EncodeJpeg(const Image& image, int quality) {
     void operator()(void* handle) const { tjDestroy(handle); }
   };
   const std::unique_ptr<void, Close> compressor(tjInitCompress());
+  // Chroma at half the resolution makes smaller files, but its colour fringes would show at high
+  // quality.
   const int subsampling = quality < 90 ? TJSAMP_420 : TJSAMP_444;
+  // The largest possible size, so that TurboJPEG never reallocates a buffer that it does not own.
   std::vector<std::uint8_t> bytes(tjBufSize(image.width, image.height, subsampling));
   unsigned char* data = bytes.data();
   unsigned long size = bytes.size();

@@ -28,6 +28,7 @@ Status CheckSize(const char* field, int size) {
                             std::to_string(kMaxSize) + "]");
 }
 
+// NaN fails every comparison, so the tests ask for valid values.
 Status CheckCamera(const Camera& camera, int num_joints) {
   if (!IsFinite(camera.position)) return Invalid("camera.position", "is not finite");
   if (!IsFinite(camera.target)) return Invalid("camera.target", "is not finite");
@@ -46,6 +47,7 @@ Status CheckCamera(const Camera& camera, int num_joints) {
 }
 
 // `field`: prefix of the subject, "" or "others[3].".
+// Infinite numbers would reach bounds, levels of detail and the camera.
 Status CheckModel(const std::string& field, std::span<const glm::mat4> model, int num_joints) {
   if (model.size() < static_cast<std::size_t>(num_joints)) {
     return {

@@ -262,6 +262,7 @@ Status SetSetting(std::string_view assignment, Settings* settings) {
   return SetSetting(assignment.substr(0, equals), assignment.substr(equals + 1), settings);
 }
 
+// The accessors of the table take a mutable Settings. Getter and Checker only read through them.
 std::string GetSetting(std::string_view name, const Settings& settings) {
   return std::visit(Getter{const_cast<Settings&>(settings)}, FindSetting(name)->field);
 }

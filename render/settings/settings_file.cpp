@@ -23,6 +23,7 @@ struct NodeText {
   std::optional<std::string> operator()(const NumberField&) const {
     const auto number = node.is_number() ? node.value<double>() : std::nullopt;
     if (!number) return std::nullopt;
+    // Nine digits represent every float exactly.
     std::ostringstream text;
     text.precision(9);
     text << *number;
@@ -77,6 +78,7 @@ class TomlReader {
   TomlReader(std::string_view source_name, Settings* settings)
       : source_name_(source_name), settings_(settings) {}
 
+  // Tables that are not settings are groups: their keys continue the dotted name.
   Status Read(const toml::table& table, const std::string& prefix) {
     for (const auto& [key, node] : table) {
       const std::string name = prefix + std::string(key.str());
@@ -133,6 +135,7 @@ struct TomlText {
 }  // namespace
 
 Status ParseSettings(std::string_view text, std::string_view source_name, Settings* settings) {
+  // Works on a copy, so that an invalid file changes nothing.
   Settings changed = *settings;
   try {
     const toml::table table = toml::parse(text, source_name);
