@@ -20,6 +20,7 @@ bool Names(const BakeStroke& stroke, const std::string& map) {
   return std::find(stroke.maps.begin(), stroke.maps.end(), map) != stroke.maps.end();
 }
 
+// A map that no pose and no stroke feeds is not baked.
 bool IsFed(const std::string& map, std::span<const BakePose> poses,
            std::span<const BakeStroke> strokes) {
   return std::any_of(poses.begin(), poses.end(), [&](const auto& p) { return p.map == map; }) ||
@@ -46,6 +47,7 @@ Result<BakedMaps> Bake(const character::Character& character, std::span<const Ba
     const bool last = map == fed.back();
     progress.BeginPart(from, from + kSurface * share);
     const bool cloth = GoesOnCloth(character, *map);
+    // Built on first use and shared by all maps of the surface.
     std::unique_ptr<BakeSurface>& surface = surfaces[cloth ? 1 : 0];
     if (surface == nullptr) {
       Result<std::unique_ptr<BakeSurface>> made =

@@ -22,6 +22,7 @@
 namespace furrow::authoring {
 namespace {
 
+// Of one picture that the rig keeps.
 constexpr std::size_t kMaxCopiedBytes = 256u << 20;
 
 wrinkle::WrinkleMap* FindMap(wrinkle::Rig* rig, const std::string& name) {
@@ -140,6 +141,8 @@ class Packager {
     return {};
   }
 
+  // Copies the pictures that the rig still names, so that the folder is complete without the
+  // original character.
   Status CopyPictures() {
     for (const std::string& name : character::RigPictureNames(out_.rig)) {
       const auto named = [&](const BakedFiles::File& file) { return file.name == name; };
@@ -177,6 +180,8 @@ class Packager {
 
   Status AddDerivative(const BakedMap& baked, wrinkle::WrinkleMap* map) {
     map->derivative = Free(baked.map + "_derivative", Extension());
+    // Floats store slopes directly. Integers need a scale just above the largest slope, to lose few
+    // steps.
     map->derivative_scale = options_.exr ? 1.0f : RoundScale(baked.derivative, 0.25f);
     if (map->derivative_scale > wrinkle::kMaxDerivativeScale) return TooSteep(*map);
     if (!options_.exr) return Add(DerivativePicture(baked, map->derivative_scale, map->derivative));
@@ -190,6 +195,7 @@ class Packager {
     return Add(FloatPicture(baked, baked.height_mm, map->height));
   }
 
+  // Two maps may suggest masks for the same region: the larger value counts.
   static void Unite(const std::vector<float>& mask, std::vector<float>* all) {
     for (std::size_t i = 0; i < mask.size(); ++i) (*all)[i] = std::max((*all)[i], mask[i]);
   }
@@ -214,7 +220,7 @@ class Packager {
   const BakedMaps& maps_;
   PackageOptions options_;
   std::set<std::string> masked_;  // regions that take a suggested mask
-  std::set<std::string> taken_;   // names of pictures in use in use
+  std::set<std::string> taken_;   // names of pictures in use
   BakedFiles out_;
 };
 

@@ -58,6 +58,7 @@ std::vector<float> HalvedPlane(const std::vector<float>& plane, int width, int h
   return half;
 }
 
+// A height above the rig's limit would be cut off without notice.
 Status CheckHeights(const BakedMap& map, float height_mm) {
   float most = 0.0f;
   for (const float mm : map.height_mm) most = std::max(most, std::abs(mm));

@@ -35,6 +35,7 @@ const Driver* FindDriver(const Rig& rig, const std::string& name) {
   return found == rig.drivers.end() ? nullptr : &*found;
 }
 
+// The vector part of a quaternion is the sine of half the angle, hence the factor 0.5.
 bool IsRest(std::span<const Transform> locals, const wrinkle::Skeleton& skeleton) {
   const float least = kLeastMove * wrinkle::SkeletonSize(skeleton);
   for (std::size_t i = 0; i < locals.size(); ++i) {
@@ -46,6 +47,7 @@ bool IsRest(std::span<const Transform> locals, const wrinkle::Skeleton& skeleton
   return true;
 }
 
+// Turns the driver values that feed a map into full poses of the character's own skeleton.
 class PoseCollector {
  public:
   explicit PoseCollector(const character::Character& character) : character_(character) {}
@@ -76,6 +78,8 @@ class PoseCollector {
   CollectedPoses Take() { return std::move(found_); }
 
  private:
+  // A pose driver at rest is a mistake of the rig. Other drivers have values without a pose, for
+  // which folds must be drawn.
   Status AtRest(const Driver& driver, const std::string& value, const std::string& pose) {
     if (driver.kind == Driver::Kind::kPose) {
       return {StatusCode::kInvalidArgument,
@@ -87,6 +91,7 @@ class PoseCollector {
     return {};
   }
 
+  // Parents precede children, so one pass in place turns local into model matrices.
   std::vector<glm::mat4> SkinMatrices(std::span<const Transform> locals) const {
     std::vector<glm::mat4> matrices(locals.size());
     for (std::size_t i = 0; i < locals.size(); ++i) {
@@ -100,6 +105,7 @@ class PoseCollector {
     return matrices;
   }
 
+  // Many feeds share a driver; each note appears once.
   void Note(const std::string& note) {
     if (std::find(found_.notes.begin(), found_.notes.end(), note) == found_.notes.end()) {
       found_.notes.push_back(note);

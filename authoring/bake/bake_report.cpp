@@ -21,6 +21,7 @@ std::string Number(double value, int digits = 2) {
   return text;
 }
 
+// Names come from files and must not become markup.
 std::string Escaped(const std::string& text) {
   std::string safe;
   for (const char c : text) {
@@ -35,6 +36,7 @@ std::string Escaped(const std::string& text) {
   return safe;
 }
 
+// 0 if the whole is empty.
 float Share(std::int64_t part, std::int64_t whole) {
   return whole > 0 ? static_cast<float>(part) / static_cast<float>(whole) : 0.0f;
 }
@@ -63,6 +65,7 @@ character::Picture Preview(const BakedMap& map, std::string name,
   return picture;
 }
 
+// The relief as it would look on a flat surface, in the light of one lamp.
 character::Picture Lit(const BakedMap& map) {
   const glm::vec3 light = glm::normalize(glm::vec3(-0.5f, 0.6f, 0.62f));
   return Preview(map, "report/" + map.map + "_lit.png", [&, light](std::size_t i) {
@@ -72,6 +75,7 @@ character::Picture Lit(const BakedMap& map) {
   });
 }
 
+// Blue valleys and red ridges, scaled to the largest height of this map.
 character::Picture Heights(const BakedMap& map) {
   const float scale = std::max({map.statistics.deepest_mm, map.statistics.highest_mm, 1e-3f});
   return Preview(map, "report/" + map.map + "_height.png", [&, scale](std::size_t i) {
@@ -91,6 +95,7 @@ glm::vec3 Hue(std::size_t index) {
   return {channel(0.0f), channel(2.0f / 3.0f), channel(1.0f / 3.0f)};
 }
 
+// Masks are smaller than the map, so coordinates are scaled. Overlapping regions add their colours.
 character::Picture Masks(const BakedMap& map) {
   return Preview(map, "report/" + map.map + "_masks.png", [&](std::size_t i) {
     glm::vec3 sum(0.05f);
@@ -153,6 +158,7 @@ figcaption{color:#666;font-size:.9em}
 </style></head><body>
 )";
 
+// Warns about what a user can change: poses, skinning or the size of the maps.
 void AddMapWarnings(const BakedMap& map, const BakeOptions& options,
                     std::vector<std::string>* doubts) {
   const BakedMap::Statistics& s = map.statistics;

@@ -34,6 +34,7 @@ bool IsNameOf(const std::vector<Item>& items, std::string_view name) {
                      [&](const Item& item) { return item.name == name; });
 }
 
+// Names must exist in the rig: a misspelt map would silently get no fold.
 Status CheckNames(const BakeStroke& stroke, const wrinkle::Rig& rig, const std::string& at) {
   FURROW_RETURN_IF_ERROR(wrinkle::CheckLabel(stroke.name, at + ".name"));
   if (stroke.maps.empty()) return InvalidField("a stroke needs at least one map", at + ".maps");
@@ -46,6 +47,8 @@ Status CheckNames(const BakeStroke& stroke, const wrinkle::Rig& rig, const std::
   return InvalidField("the rig has no region '" + stroke.region + "'", at + ".region");
 }
 
+// The schema cannot bound numbers. The far limit catches centimetres and millimetres given as
+// metres.
 Status ReadPoints(const flatbuffers::Vector<const schema::Vec3*>& from, const std::string& at,
                   std::vector<glm::vec3>* points) {
   if (from.size() < 2) return InvalidField("a stroke needs at least two points", at);
@@ -67,8 +70,10 @@ Status ReadPoints(const flatbuffers::Vector<const schema::Vec3*>& from, const st
   return {};
 }
 
+// The schema check has verified that required fields exist, so only optional ones may be null.
 Status ReadStroke(const schema::Stroke& from, const wrinkle::Rig& rig, const std::string& at,
                   BakeStroke* to) {
+  // JSON may give an enumerator as any number.
   if (from.kind() < schema::Kind::MIN || from.kind() > schema::Kind::MAX) {
     return InvalidField("invalid value", at + ".kind");
   }
@@ -98,6 +103,7 @@ std::string OtherSide(std::string name) {
   return name;
 }
 
+// The character faces +Z, so x = 0 is its plane of symmetry.
 BakeStroke Mirrored(BakeStroke stroke) {
   const std::string other = OtherSide(stroke.name);
   stroke.name = other == stroke.name ? other + "_mirrored" : other;

@@ -23,6 +23,8 @@ const glm::vec3 kBlood(0.30f, 1.0f,
 void BloodSum::Add(std::span<const float> growth, std::span<const float> weights) {
   for (std::size_t i = 0; i < sums_.size(); ++i) {
     const float area = std::clamp(growth[i], 1.0f / kMaxChange, kMaxChange);
+    // The logarithm treats growth and shrinkage alike. The sum of fourth powers, with the root in
+    // Take(), approximates the largest change but stays smooth where two poses are equally strong.
     const float change = -weights[i] * std::log(area);
     sums_[i] += change * std::abs(change) * change * change;
   }

@@ -40,6 +40,8 @@ FoldField::FoldField(const Surface& surface, const StrokeLayer& strokes,
       wavelengths_(std::move(wavelengths)),
       smallest_(std::move(smallest)) {}
 
+// Everything at one point is in the axes of the point's triangle: the tensors are carried there,
+// and the guidance is projected.
 FoldParameters FoldField::At(const SurfacePoint& point) const {
   const wrinkle::SurfaceAxes& axes = surface_.triangles()[point.triangle].axes;
   const StrokeLayer::Guidance guidance = strokes_.GuidanceAt(point);
@@ -56,6 +58,8 @@ FoldParameters FoldField::At(const SurfacePoint& point) const {
   return fold;
 }
 
+// For the larger compression this is a bound: an interpolated tensor is never stronger than the
+// strongest at the corners.
 float FoldField::Strongest(std::uint32_t triangle, bool crossing) const {
   float strongest = 0.0f;
   for (const std::uint32_t vertex : surface_.triangles()[triangle].vertices) {

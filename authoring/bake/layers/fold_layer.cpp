@@ -114,6 +114,9 @@ struct WaveSum {
   }
 };
 
+// Turns the sum of waves into a fold. Direction (x, y) of the sum is the phase, which the profile
+// shapes; its length measures how well the waves agree. Where they cancel, the phase has no
+// direction and the fold vanishes.
 FoldSample ToFold(const WaveSum& sum, const FoldProfile& profile, float scale) {
   FoldSample fold;
   const float length = std::hypot(sum.x.value, sum.y.value);
@@ -166,6 +169,7 @@ float FoldLayer::HeightCorrection(const FoldField& field, const Options& options
       continue;
     }
     const float wavelength = field.Wavelength(surface.PointOf(t, vec3(1.0f / 3.0f)), 1.0f);
+    // About 32 samples per square wavelength. The cap bounds the work on large triangles.
     const float wanted = 32.0f * triangles[t].area / (wavelength * wavelength);
     const int count = std::clamp(static_cast<int>(std::ceil(wanted)), 1, kMaxPoints);
     for (int i = 0; i < count; ++i) {
@@ -180,6 +184,7 @@ float FoldLayer::HeightCorrection(const FoldField& field, const Options& options
     }
   }
   if (slopes.empty() || MeanArc(slopes, 1.0f) >= 1.0) return 1.0f;
+  // Bisection: the arc grows with the height.
   float low = 1.0f, high = kMax;
   for (int step = 0; step < 20; ++step) {
     const float middle = 0.5f * (low + high);
@@ -209,10 +214,13 @@ FoldSample FoldLayer::At(const SurfacePoint& point, const vec3& tangent,
   for (const std::uint32_t k : reaching) {
     const FoldKernel& kernel = all[k];
     const vec3 step = point.position - kernel.place.position;
+    // The kernel's ShareAt(), q^3, written out here because its derivative is needed too.
     const float q = 1.0f - glm::dot(step, step) / (kernel.reach * kernel.reach);
     if (q <= 0.0f) continue;
     const vec2 f(glm::dot(kernel.frequency, tangent), glm::dot(kernel.frequency, bitangent));
     const float lead = glm::dot(f, leading);
+    // Waves across the leading direction fade out, so that their arbitrary sign cannot tear the
+    // surface.
     const float alignment = lead * lead / std::max(glm::dot(f, f), 1e-12f);
     const vec2 step2(glm::dot(step, tangent), glm::dot(step, bitangent));
     const Dual weight{alignment * q * q * q,

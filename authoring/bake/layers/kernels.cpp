@@ -25,6 +25,8 @@ constexpr float kReach = 1.7f;       // of a kernel, wavelengths
 constexpr float kCandidates = 5.0f;  // candidates tried per kernel that fits
 constexpr double kMaxCandidates = 6e6;
 
+// A repeatable number in [0, 1) from a hash, so that a bake does not depend on threads or
+// platforms.
 float Random(std::uint32_t seed, std::uint32_t a, std::uint32_t b) {
   return HashLattice(static_cast<int>(seed * 7919u + 13u), static_cast<int>(a),
                      static_cast<int>(b));
@@ -91,6 +93,8 @@ std::vector<float> CandidatesWanted(const FoldField& field, const KernelSet::Opt
   return wanted;
 }
 
+// Bounds memory and time before any candidate is made: a tiny wavelength on a large surface has no
+// natural limit.
 Status CheckCount(const std::vector<float>& wanted) {
   double sum = 0.0;
   for (const float count : wanted) sum += static_cast<double>(count);
@@ -105,6 +109,8 @@ Status CheckCount(const std::vector<float>& wanted) {
           "increase the wavelength (--skin-wavelength, --cloth-wavelength) or reduce --size"};
 }
 
+// Dart throwing: candidates in random order, from which PlaceKernels() keeps those that are far
+// enough from the kernels before them. Ties are ordered by index, so that sorting is repeatable.
 std::vector<Candidate> Candidates(const Surface& surface, const std::vector<float>& wanted,
                                   const KernelSet::Options& options) {
   std::vector<Candidate> candidates;
@@ -113,6 +119,7 @@ std::vector<Candidate> Candidates(const Surface& surface, const std::vector<floa
     const auto count = static_cast<std::uint32_t>(wanted[t] + Random(options.seed, t, 0xffffu));
     for (std::uint32_t k = 0; k < count; ++k) {
       float u = Random(options.seed, t, 3 * k), v = Random(options.seed, t, 3 * k + 1);
+      // Folds the unit square onto the triangle, which keeps the density even.
       if (u + v > 1.0f) {
         u = 1.0f - u;
         v = 1.0f - v;
@@ -154,6 +161,8 @@ class Grid {
 
  private:
   [[nodiscard]] glm::ivec3 Cell(const vec3& p) const { return glm::ivec3(glm::floor(p / cell_)); }
+  // 21 bits per axis. Cells that differ by a multiple of 2^21 share a list, which costs time but no
+  // correctness, because callers test distances.
   static std::uint64_t Key(const glm::ivec3& c) {
     const auto part = [](int x) { return static_cast<std::uint64_t>(x + (1 << 20)) & 0x1fffffu; };
     return part(c.x) | part(c.y) << 21 | part(c.z) << 42;
@@ -188,6 +197,8 @@ Status KernelSet::PlaceKernels(const FoldField& field, const Options& options,
     wavelengths.push_back(WavelengthAt(field.At(candidate.place), candidate.place, options));
     longest = std::max(longest, wavelengths.back());
   }
+  // Cells of the largest spacing: all kernels that may be too close lie in the 27 cells around a
+  // point.
   Grid grid(std::max(kSpacing * longest, 1e-6f));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (!progress->ReportStep(i, candidates.size())) return BakeProgress::CancelledStatus();
@@ -216,6 +227,9 @@ Status KernelSet::PlaceKernels(const FoldField& field, const Options& options,
   return {};
 }
 
+// Lists the kernels by triangle in one array with starts, so that texels find them without
+// searching. The search runs over the surface, so a kernel does not reach from one lip to the
+// other.
 void KernelSet::Connect(const Surface& surface, BakeProgress* progress) {
   std::vector<std::vector<std::uint32_t>> lists(surface.triangles().size());
   SurfaceSearch reach(surface);

@@ -59,6 +59,7 @@ MapBaker::MapBaker(const character::Character& character, const BakeSurface& sur
       sum_(surface.surface().positions().size()),
       blood_(surface.surface().positions().size()) {}
 
+// The region's mask per welded vertex; empty if the mask is 1 everywhere.
 std::vector<float> MapBaker::MaskOf(const std::string& region) const {
   const wrinkle::Region* found = FindRegion(character_.rig, region);
   if (found == nullptr) return {};
@@ -71,6 +72,7 @@ void MapBaker::AddPose(const BakePose& pose) {
   const CompressionSolver::Field field =
       surface_.solver().Solve(pose.skin_matrices, material_.max_compression);
   worst_ = std::max(worst_, field.worst);
+  // A pose may move the whole body but feeds only its own region.
   std::vector<float> weights = MaskOf(pose.region);
   if (weights.empty()) weights.assign(field.tensors.size(), 1.0f);
   for (float& weight : weights) weight *= pose.weight;
@@ -84,6 +86,7 @@ void MapBaker::AddPose(const BakePose& pose) {
     region = regions_.end() - 1;
   }
   for (std::size_t v = 0; v < field.tensors.size(); ++v) {
+    // Without the region's current mask, because the suggested mask may replace it.
     region->compression[v] =
         std::max(region->compression[v], pose.weight * PrincipalOf(field.tensors[v]).large);
   }
@@ -91,6 +94,8 @@ void MapBaker::AddPose(const BakePose& pose) {
 
 void MapBaker::AddStroke(const BakeStroke& stroke) { strokes_.push_back(&stroke); }
 
+// Metres per welded vertex. Regions mix by their masks in the logarithm, so 4 mm and 16 mm meet at
+// 8 mm. What the masks leave over counts as the material's own wavelength.
 std::vector<float> MapBaker::Wavelengths() const {
   const std::size_t count = surface_.surface().positions().size();
   const float base = std::log(material_.wavelength_mm * kMetresPerMillimetre);
@@ -112,6 +117,7 @@ std::vector<float> MapBaker::Wavelengths() const {
   return sums;
 }
 
+// Metres per welded vertex: a shorter wave would have too few texels and alias.
 std::vector<float> MapBaker::Smallest() const {
   std::vector<float> smallest(surface_.texel_metres().begin(), surface_.texel_metres().end());
   for (float& side : smallest) side *= kTexelsPerWave;
@@ -128,6 +134,7 @@ Status MapBaker::MakeLayers(const FoldField& field, BakeProgress* progress) {
   if (material_.crossing > 0.0f) {
     options.crossing = true;
     options.height = Depth() * material_.crossing;
+    // Other seeds, so that layers do not place their kernels at the same points.
     options.seed = options_.seed + 101;
     wanted.push_back(options);
   }
@@ -146,6 +153,8 @@ Status MapBaker::MakeLayers(const FoldField& field, BakeProgress* progress) {
   return {};
 }
 
+// Layers add up. A stroke fades them out by `keep`; the product rule gives the slope where `keep`
+// changes.
 FoldSample MapBaker::FoldsAt(const SurfacePoint& point, const glm::vec3& tangent,
                              const glm::vec3& bitangent, const StrokeLayer& strokes) const {
   FoldSample sum;
@@ -162,6 +171,7 @@ FoldSample MapBaker::FoldsAt(const SurfacePoint& point, const glm::vec3& tangent
   return sum;
 }
 
+// Every texel belongs to one triangle, so threads write to separate places and need no lock.
 bool MapBaker::FillTexels(const StrokeLayer& strokes, BakeProgress* progress, BakedMap* map) const {
   const std::size_t count =
       static_cast<std::size_t>(map->width) * static_cast<std::size_t>(map->height);
@@ -178,6 +188,7 @@ bool MapBaker::FillTexels(const StrokeLayer& strokes, BakeProgress* progress, Ba
           static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(map->width) +
           static_cast<std::size_t>(texel.x);
       map->height_mm[at] = fold.height / kMetresPerMillimetre;
+      // A normal map's x / z is minus the slope of the height.
       map->derivative[2 * at] = -fold.slope.x;
       map->derivative[2 * at + 1] = -fold.slope.y;
       map->cavity[at] = fold.cavity;
@@ -188,6 +199,7 @@ bool MapBaker::FillTexels(const StrokeLayer& strokes, BakeProgress* progress, Ba
                      [&](float done) { return progress->Report(done); });
 }
 
+// After the cavities, because a furrow presses the blood out.
 void MapBaker::FillBlood(BakedMap* map) const {
   const std::vector<float> blood = blood_.Take();
   map->blood.assign(map->cavity.size(), 1.0f);
@@ -313,6 +325,7 @@ Result<std::unique_ptr<BakedMap>> MapBaker::Bake(float from, float to, BakeProgr
   FillBlood(map.get());
   Measure(compression, **strokes, map.get());
   MeasureWavelengths(map.get());
+  // Grows the planes beyond UV borders, where filtering and mip levels read them.
   const Dilation dilation(map->covered, map->width, map->height, kGutter);
   dilation.Apply(1, &map->height_mm);
   dilation.Apply(2, &map->derivative);

@@ -18,6 +18,7 @@ bool ParallelFor(std::size_t count, int threads,
                  const std::function<bool(float)>& progress) {
   std::atomic<std::size_t> next{0};
   std::atomic<bool> stopped{false};
+  // Threads take ranges from a common counter, so a slow range does not hold up the others.
   const auto run_one_range = [&] {
     const std::size_t first = next.fetch_add(kRangeLength);
     if (first >= count || stopped) return false;

@@ -19,6 +19,7 @@ constexpr int kRelaxations = 24;
 
 }  // namespace
 
+// Lists for each kernel the kernels that reach it, and what their waves predict for its phase.
 PhaseSolver::PhaseSolver(const Surface& surface, KernelSet* set) : set_(*set) {
   const auto kernels = set_.kernels();
   float strongest = 1e-12f;
@@ -49,6 +50,8 @@ PhaseSolver::PhaseSolver(const Surface& surface, KernelSet* set) : set_(*set) {
   }
 }
 
+// The mean of the known neighbours' predictions as a direction, because angles wrap around. False:
+// no neighbour is known.
 bool PhaseSolver::PredictPhase(std::size_t kernel, const std::vector<char>& known,
                                float* phase) const {
   float x = 0.0f, y = 0.0f;
@@ -81,6 +84,7 @@ void PhaseSolver::Grow() {
   while (!front.empty()) {
     const std::uint32_t i = front.top().kernel;
     front.pop();
+    // A kernel is queued again whenever its support grows; only its first entry out counts.
     if (known[i]) continue;
     float phase = 0.0f;
     if (PredictPhase(i, known, &phase)) kernels[i].phase = phase;
@@ -107,6 +111,8 @@ void PhaseSolver::Align(BakeProgress* progress) {
   }
 }
 
+// Noise that is smooth along a fold but not across it: neighbouring folds differ in depth, and no
+// single fold is beaded.
 void PhaseSolver::VaryDepth(float variation, std::uint32_t seed) {
   constexpr int kPasses = 5;
   std::vector<FoldKernel>& kernels = set_.kernels();

@@ -29,6 +29,8 @@ FoldProfile::FoldProfile(float sharpness) {
   scale_ = 2.0f * (1.0f + w2_);
   amplitudes_.resize(kTable + 1);
   for (int i = 1; i <= kTable; ++i) {
+    // The amplitude grows like the root of the compression, so even steps of the root keep the
+    // table precise near 0.
     const float root = static_cast<float>(i) / kTable;
     amplitudes_[static_cast<std::size_t>(i)] = SolveAmplitude(root * root * kMax);
   }
@@ -47,6 +49,8 @@ float FoldProfile::Amplitude(float compression) const {
   return amplitudes_[cell] + (amplitudes_[cell + 1] - amplitudes_[cell]) * within;
 }
 
+// Finds the amplitude for which the fold's arc is as long as the uncompressed surface: compressed
+// skin buckles and keeps its length.
 float FoldProfile::SolveAmplitude(float compression) const {
   const float along = (1.0f - compression) * (1.0f - compression);
   const auto arc = [&](float amplitude) {

@@ -57,6 +57,7 @@ std::vector<vec3> Densify(const BakeStroke& stroke) {
   return dense;
 }
 
+// How far a stroke acts, metres. Folds also steer the strain folds beside them.
 float ReachOf(const BakeStroke& stroke) {
   const float width = stroke.width_mm * kMetresPerMillimetre;
   return stroke.kind == BakeStroke::Kind::kFold ? kSteerWidths * width : width;
@@ -110,9 +111,11 @@ Status StrokeLayer::Place(const BakeStroke& stroke, std::vector<float> mask, Sur
     const float reached = radius + 0.5f * PieceOf(stroke);
     for (const std::uint32_t t : reach->Find(place.position, {&place.triangle, 1}, reached)) {
       std::vector<std::uint32_t>& list = (*lists)[t];
+      // Strokes are placed one after another, so comparing with the last entry lists each once.
       if (list.empty() || list.back() != index) list.push_back(index);
     }
   }
+  // Points in the wrong unit or space would otherwise bake onto some distant triangle.
   if (farthest > std::max(kFarthest, kSteerWidths * stroke.width_mm * kMetresPerMillimetre)) {
     return {StatusCode::kInvalidArgument,
             "the stroke lies " + std::to_string(std::lround(farthest / kMetresPerMillimetre)) +
@@ -123,6 +126,7 @@ Status StrokeLayer::Place(const BakeStroke& stroke, std::vector<float> mask, Sur
   return {};
 }
 
+// For statistics: which fold strokes touch at least one texel of this map.
 void StrokeLayer::MarkFolds(const SurfacePoint& point, std::vector<char>* seen) const {
   for (const std::uint32_t index : Near(point.triangle)) {
     const PlacedStroke& placed = strokes_[index];
@@ -153,6 +157,7 @@ StrokeLayer::Guidance StrokeLayer::GuidanceAt(const SurfacePoint& point) const {
     const float length = glm::length(nearest.along);
     if (length > 1e-9f) {
       const vec3 along = nearest.along / length;
+      // A line has no sign: add whichever direction agrees with the sum so far.
       sum += (glm::dot(along, sum) < 0.0f ? -weight : weight) * along;
     }
     if (stroke.kind == BakeStroke::Kind::kDirection && stroke.wavelength_mm > 0.0f) {
@@ -188,6 +193,7 @@ StrokeLayer::Sample StrokeLayer::At(const SurfacePoint& point, const vec3& tange
     drawn.fold.cavity *= CavityOf(shape.height * depth, 2.0f * width);
     const Falloff cover = FalloffAt(nearest.distance, kStrokeReach * width);
     const float keep = 1.0f - cover.value * strength;
+    // Several strokes multiply; this is the product rule.
     drawn.keep_slope = drawn.keep_slope * keep - away * (cover.slope * strength * drawn.keep);
     drawn.keep *= keep;
   }

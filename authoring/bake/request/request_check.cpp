@@ -36,6 +36,7 @@ Status CheckNames(const wrinkle::Rig& rig, const std::string& map, const std::st
   return Status();
 }
 
+// Numbers are checked once here, before any solver sees them.
 Status CheckPose(const character::Character& character, const BakePose& pose,
                  const std::string& where) {
   FURROW_RETURN_IF_ERROR(CheckNames(character.rig, pose.map, pose.region, where));
@@ -115,6 +116,7 @@ Status CheckStrokeNumbers(const BakeStroke& stroke, const std::string& at) {
   constexpr float kAboveZero = 1e-3f;
   constexpr float kDeepest =
       4.0f;  // maximum depth of a fold in widths; the walls then rise at 85 degrees
+  // 0 means unset; any valid value passes the check below.
   const float wavelength = stroke.wavelength_mm == 0.0f ? 1.0f : stroke.wavelength_mm;
   const struct {
     const char* field;

@@ -23,6 +23,7 @@ character::Material::Kind KindOf(const character::Character& character,
   return character.materials[static_cast<std::size_t>(mesh.material)].kind;
 }
 
+// Unmarked materials count as skin if no material is marked as skin, as in the renderer.
 bool Belongs(const character::Character& character, const character::Mesh& mesh, bool cloth) {
   switch (KindOf(character, mesh)) {
     case character::Material::Kind::kSkin: return !cloth;
@@ -77,6 +78,7 @@ Result<std::unique_ptr<BakeSurface>> BakeSurface::Create(const character::Charac
     return Status(StatusCode::kInvalidArgument, "no mesh is " + kind, character.name,
                   "name a material '" + kind + "' or change the map's surface in the rig");
   }
+  // Also true for NaN.
   if (!(area > 1e-9f)) {
     return Status(StatusCode::kInvalidArgument, "the " + kind + " has no UVs", character.name,
                   "unwrap the mesh; wrinkle maps use its UV atlas");
@@ -102,6 +104,7 @@ BakeSurface::BakeSurface(std::span<const character::Mesh* const> meshes, float s
       texels_(RasterizeSurface(surface_.mesh(), size, size, &overlaps_)),
       texel_metres_(TexelSides(size)) {}
 
+// The root of the ratio of areas around a vertex, on the surface and in the atlas. 0 without UVs.
 std::vector<float> BakeSurface::TexelSides(int size) const {
   const character::Mesh& mesh = surface_.mesh();
   const auto uv_area = [&](std::size_t t) {

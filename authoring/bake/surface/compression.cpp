@@ -14,6 +14,7 @@ namespace {
 using glm::vec3;
 using wrinkle::PrincipalStretches;
 
+// The tensor with the eigenvalue `large` along the unit vector `direction` and `small` across it.
 Tensor2 Compose(float large, float small, const glm::vec2& direction) {
   const glm::vec2 d = direction;
   return {large * d.x * d.x + small * d.y * d.y, (large - small) * d.x * d.y,
@@ -62,6 +63,7 @@ std::optional<std::vector<RigidMotion>> RigidMotions(std::span<const glm::mat4> 
   return motions;
 }
 
+// Dual quaternion linear blending: the weighted sum, normalised to a rigid motion.
 RigidMotion Blend(const std::vector<RigidMotion>& motions, const character::Vertex& vertex) {
   const glm::quat pivot = motions[vertex.joints[0]].rotation;  // the strongest influence
   RigidMotion sum{glm::quat(0.0f, 0.0f, 0.0f, 0.0f), glm::quat(0.0f, 0.0f, 0.0f, 0.0f)};
@@ -74,9 +76,11 @@ RigidMotion Blend(const std::vector<RigidMotion>& motions, const character::Vert
     sum.dual = sum.dual + motion.dual * weight;
   }
   const float length = glm::length(sum.rotation);
+  // Opposite rotations may cancel out; the strongest joint then decides.
   if (!(length > 1e-6f)) return motions[vertex.joints[0]];
   sum.rotation = sum.rotation * (1.0f / length);
   sum.dual = sum.dual * (1.0f / length);
+  // Makes the dual part orthogonal to the rotation again. Otherwise the blend would not be rigid.
   sum.dual = sum.dual - sum.rotation * glm::dot(sum.rotation, sum.dual);
   return sum;
 }
@@ -133,6 +137,8 @@ void CompressionSolver::LimitTerms(std::vector<Term>* terms) {
   terms->swap(kept);
 }
 
+// Lists the triangles that a vertex averages, with normalised shares and the rotation that carries
+// their tensors to the vertex. This depends on the rest pose only and is done once for all poses.
 void CompressionSolver::Gather(std::size_t vertex, float radius, SurfaceSearch* reach,
                                std::vector<Term>* terms) {
   terms->clear();
@@ -185,6 +191,8 @@ Tensor2 CompressionSolver::StretchOf(std::size_t triangle, std::span<const Posed
       wrinkle::Deform(*t.strain, a.position, b.position, c.position);
   const PrincipalStretches stretch = wrinkle::Principal(wrinkle::RightCauchyGreen(f));
   const glm::mat3 turn = a.turn + b.turn + c.turn;
+  // A principal direction that points against the skinned rotation means that the triangle has
+  // turned inside out in this direction.
   const auto is_flipped = [&](const glm::vec2& direction) {
     return glm::dot(wrinkle::ToPosedSpace(f, direction),
                     turn * wrinkle::ToRestSpace(t.axes, direction)) < 0.0f;
@@ -216,11 +224,14 @@ CompressionSolver::Field CompressionSolver::Solve(std::span<const glm::mat4> ski
       mean = mean + terms_[k].share * Carry(stretches[terms_[k].triangle], terms_[k].turn);
     }
     field.tensors[i] = CompressionOf(mean, limit);
+    // The determinant of the mean stretch is the change of area.
     field.growth[i] = std::max(mean.xx * mean.yy - mean.xy * mean.xy, 0.0f);
   }
   return field;
 }
 
+// Fourth powers and a fourth root in Take(): close to the largest compression over all poses, but
+// smooth, and directions blend instead of jumping.
 void CompressionSum::Add(std::span<const Tensor2> tensors, std::span<const float> weights) {
   for (std::size_t i = 0; i < sums_.size(); ++i) {
     const Principal2 principal = PrincipalOf(weights[i] * tensors[i]);

@@ -15,6 +15,7 @@ namespace furrow::authoring {
 using glm::vec3;
 using wrinkle::SurfaceAxes;
 
+// Any x axis in the plane will do. The helper is never nearly parallel to the normal.
 SurfaceAxes AxesAcross(const vec3& normal) {
   const vec3 helper = std::abs(normal.x) < 0.8f ? vec3(1, 0, 0) : vec3(0, 1, 0);
   SurfaceAxes axes;
@@ -27,6 +28,7 @@ SurfaceAxes AxesAcross(const vec3& normal) {
 PlaneRotation Transport(const SurfaceAxes& from, const SurfaceAxes& to) {
   // Applies the shortest rotation from one normal to the other to the x axis.
   const float along = 1.0f + glm::dot(from.normal, to.normal);
+  // Opposite normals have no shortest rotation.
   if (along < 1e-4f) return {};
   const vec3 sum = from.normal + to.normal;
   const vec3 x = from.x - sum * (glm::dot(to.normal, from.x) / along);
@@ -50,6 +52,8 @@ Surface::Surface(std::span<const character::Mesh* const> meshes) {
   MakeTree();
 }
 
+// Welds vertices at seams, so that strain and searches cross them. The original vertices stay in
+// mesh_ for rasterizing.
 void Surface::Append(const character::Mesh& mesh) {
   const auto base = static_cast<std::uint32_t>(mesh_.vertices.size());
   const std::vector<std::uint32_t> first = character::WeldVertices(mesh);
@@ -74,6 +78,9 @@ void Surface::Append(const character::Mesh& mesh) {
   }
 }
 
+// Pairs triangles by their welded edges. A third triangle on an edge stays unpaired, so
+// non-manifold input still has at most one neighbour per edge. The fans list the triangles around
+// each vertex.
 void Surface::Connect() {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::uint32_t, int>> open;
   fan_starts_.assign(positions_.size() + 1, 0);
@@ -98,6 +105,7 @@ void Surface::Connect() {
   }
 }
 
+// Vertex normals are weighted by area, since the cross product's length is the area.
 void Surface::MakeAxes() {
   std::vector<vec3> normals(positions_.size(), vec3(0.0f));
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
@@ -146,6 +154,7 @@ SurfacePoint Surface::Nearest(const vec3& p) const {
   const auto [a, b, c] = Corners(best.triangle);
   const vec3 normal = glm::cross(b - a, c - a);
   const float square = std::max(glm::dot(normal, normal), 1e-30f);
+  // Barycentric coordinates as ratios of areas. The guard is for degenerate triangles.
   best.corners.x = glm::dot(glm::cross(c - b, best.position - b), normal) / square;
   best.corners.y = glm::dot(glm::cross(a - c, best.position - c), normal) / square;
   best.corners.z = 1.0f - best.corners.x - best.corners.y;
@@ -165,6 +174,8 @@ Tensor2 Surface::Interpolate(std::span<const Tensor2> tensors, const SurfacePoin
 SurfaceSearch::SurfaceSearch(const Surface& surface)
     : surface_(surface), stamps_(surface.triangles().size(), 0) {}
 
+// Dijkstra's algorithm over triangles. Stamps mark visited triangles without clearing an array for
+// each search. Ties go to the lower index, so that results are repeatable.
 std::span<const std::uint32_t> SurfaceSearch::Find(const vec3& centre,
                                                    std::span<const std::uint32_t> seeds,
                                                    float radius) {

@@ -26,6 +26,7 @@ Status Refuse(std::string what, std::string where, std::string todo) {
   return {StatusCode::kInvalidArgument, std::move(what), std::move(where), std::move(todo)};
 }
 
+// A texel that two triangles share can hold the folds of one of them only.
 Status CheckOverlap(const character::Character& character, const UvReport& uvs) {
   if (!(uvs.overlapping > kTolerableUvOverlap) || !uvs.example) return {};
   const UvReport::Overlap& at = *uvs.example;

@@ -25,6 +25,7 @@ vec3 NearestOnBorder(const vec3& p, const vec3& a, const vec3& b, const vec3& c)
   return best;
 }
 
+// 0 inside the box.
 float SquareToBox(const vec3& p, const vec3& low, const vec3& high) {
   return SquareOf(p - glm::clamp(p, low, high));
 }
@@ -60,6 +61,8 @@ TriangleTree::TriangleTree(std::span<const Corners> triangles, std::vector<std::
   if (!names_.empty()) Build(0, static_cast<std::uint32_t>(names_.size()));
 }
 
+// Splits at the median, so the depth is logarithmic for any input. Equal middles are ordered by
+// index, so the tree is repeatable.
 std::uint32_t TriangleTree::Build(std::uint32_t first, std::uint32_t count) {
   const auto index = static_cast<std::uint32_t>(nodes_.size());
   Node node;
@@ -105,6 +108,7 @@ void TriangleTree::Search(std::uint32_t index, const vec3& p, Best* best) const 
     *best = {square, {t, position}};
   }
   if (node.count > 0) return;
+  // The nearer child first: the distance found there usually excludes the other one.
   std::uint32_t near = index + 1, far = node.first;
   const auto distance = [&](std::uint32_t child) {
     return SquareToBox(p, nodes_[child].low, nodes_[child].high);

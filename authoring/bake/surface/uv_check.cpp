@@ -43,6 +43,7 @@ bool Covers(const Corners& t, const Corner& sample) {
   return true;
 }
 
+// C++ rounds towards zero, which is wrong for negative coordinates.
 std::int64_t FloorDivide(std::int64_t a, std::int64_t b) {
   return a / b - (a % b != 0 && (a < 0) != (b < 0) ? 1 : 0);
 }
@@ -131,6 +132,7 @@ int CountIslands(const character::Mesh& mesh) {
     parent[i] = first.emplace(key, i).first->second;
   }
   const auto root = [&](std::uint32_t i) {
+    // Union-find with path halving.
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
