@@ -11,6 +11,8 @@ constexpr std::uint8_t kOutside = 255;
 
 }  // namespace
 
+// Numbers the texels around the covered area ring by ring, once for all planes. Neighbours wrap
+// around the edges, as the sampler does.
 Dilation::Dilation(const std::vector<std::uint8_t>& covered, int width, int height, int rings)
     : width_(width), height_(height), ring_(covered.size(), kOutside) {
   for (std::size_t i = 0; i < covered.size(); ++i) {
@@ -54,6 +56,8 @@ void Dilation::VisitNeighbours(std::size_t texel, const Visit& visit) const {
   }
 }
 
+// A texel becomes the mean of its neighbours on inner rings. Rings run outward, so these are
+// complete. Each has at least one, because a neighbour put the texel on its ring.
 template <class T>
 void Dilation::Apply(int channels, std::vector<T>* plane) const {
   using Sum = std::conditional_t<std::is_floating_point_v<T>, T, std::uint32_t>;
@@ -71,6 +75,7 @@ void Dilation::Apply(int channels, std::vector<T>* plane) const {
         if constexpr (std::is_floating_point_v<T>) {
           (*plane)[texel * stride + c] = sum / static_cast<T>(count);
         } else {
+          // Rounds to the nearest integer.
           (*plane)[texel * stride + c] = static_cast<T>((sum + count / 2) / count);
         }
       }

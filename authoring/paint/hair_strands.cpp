@@ -96,6 +96,7 @@ class TilePainter {
       const float t = (static_cast<float>(y) + 0.5f) / static_cast<float>(rows_);
       if (t < strand.begin || t > strand.end) continue;
       const float x = left_ + width_ * strand.Across(t);
+      // A thinner strand would miss the centres of some texels and break.
       const float half = std::max(width_ * strand.HalfWidth(t), 0.35f);
       // Roots are in the shade of the strands above them.
       const vec3 colour = strand.colour * glm::mix(0.90f, 1.0f, glm::smoothstep(0.05f, 0.5f, t));

@@ -30,6 +30,7 @@ float InterpolateLattice(const glm::vec3& p, const Corner& corner, const Mix& mi
 
 }  // namespace
 
+// A 32-bit integer hash by multiplications and shifted xors (Wellons' lowbias32).
 float RandomFromBits(std::uint32_t seed) {
   std::uint32_t h = seed;
   h = (h ^ (h >> 16)) * 0x7feb352du;
@@ -57,6 +58,8 @@ float SignedNoise(const glm::vec3& p) {
   return InterpolateLattice(p, RandomAt, mix) * 2.0f - 1.0f;
 }
 
+// Three octaves. The factors are not exactly 2 and 4, and the offsets differ, so that lattice
+// points do not coincide. The weights sum to 1.
 float FractalNoise(const glm::vec3& p) {
   return 0.57f * SignedNoise(p) + 0.29f * SignedNoise(p * 2.03f + 17.0f) +
          0.14f * SignedNoise(p * 4.11f + 31.0f);

@@ -50,6 +50,7 @@ StrokeLine::Nearest StrokeLine::FindNearest(const vec3& p) const {
 }
 
 float StrokeTaper(float place, float taper) {
+  // Distance from the nearer end, in units of the tapered part.
   const float end = std::min(place, 1.0f - place) / std::max(0.5f * taper, 1e-3f);
   const float x = std::clamp(end, 0.0f, 1.0f);
   return x * x * (3.0f - 2.0f * x);
@@ -98,6 +99,7 @@ void RoundNormals(int bits, character::Picture* normals) {
   }
 }
 
+// A uniform Catmull-Rom spline through all points. End points count twice.
 std::vector<glm::vec3> Smooth(std::span<const glm::vec3> points, int per_segment) {
   std::vector<glm::vec3> line;
   const int count = static_cast<int>(points.size());

@@ -17,6 +17,8 @@ int Wrap(int value, int size) {
 
 float Cross(glm::vec2 a, glm::vec2 b) { return a.x * b.y - a.y * b.x; }
 
+// Normal and tangent are made orthonormal again, because interpolation shortens and tilts them. The
+// handedness is the same for the whole triangle.
 SurfaceTexel Interpolate(const character::Vertex& a, const character::Vertex& b,
                          const character::Vertex& c, glm::vec3 w) {
   SurfaceTexel texel;
@@ -54,6 +56,8 @@ class TriangleFill {
     constexpr float kFarthest = 1e6f;  // texels; an int could not count more
     if (!(std::max({-low.x, -low.y, high.x, high.y}) < kFarthest)) return;
     const int first_y = static_cast<int>(std::ceil(low.y - 0.5f));
+    // A triangle covers each texel at most once: beyond one repeat of the texture it would only
+    // overlap itself.
     const int last_y = std::min(static_cast<int>(std::floor(high.y - 0.5f)), first_y + height_ - 1);
     const int first_x = static_cast<int>(std::ceil(low.x - 0.5f));
     const int last_x = std::min(static_cast<int>(std::floor(high.x - 0.5f)), first_x + width_ - 1);
@@ -110,6 +114,7 @@ std::vector<SurfaceTexel> RasterizeSurface(const character::Mesh& mesh, int widt
               mesh.vertices[mesh.indices[i + 1]], mesh.vertices[mesh.indices[i + 2]]);
   }
   if (overlaps != nullptr) *overlaps = fill.overlaps();
+  // Row order is independent of the order of triangles and suits pictures.
   std::sort(texels.begin(), texels.end(), [](const SurfaceTexel& a, const SurfaceTexel& b) {
     return a.y != b.y ? a.y < b.y : a.x < b.x;
   });

@@ -28,6 +28,8 @@ void InfluenceSum::Add(const Influences& influences, float share) {
 
 Influences InfluenceSum::Strongest() const {
   std::vector<JointWeight> order = sums_;
+  // Equal weights are ordered by joint, so the choice of four does not depend on the order of
+  // Add().
   std::sort(order.begin(), order.end(), [](const JointWeight& a, const JointWeight& b) {
     return a.weight != b.weight ? a.weight > b.weight : a.joint < b.joint;
   });
