@@ -38,11 +38,13 @@
 namespace furrow::authoring {
 namespace {
 
+// Returns the index by which materials refer to the picture.
 int AddPicture(character::Character* character, character::Picture picture) {
   character->pictures.push_back(std::move(picture));
   return static_cast<int>(character->pictures.size()) - 1;
 }
 
+// The rig finds the picture by name.
 void AddRigPicture(character::Character* character, const char* name, character::Picture picture) {
   picture.name = name;
   const int index = AddPicture(character, std::move(picture));
@@ -69,6 +71,8 @@ character::Mesh SkinnedPart(const wrinkle::Skeleton& skeleton, HeadMesh part) {
   return std::move(part.mesh);
 }
 
+// Head and hands are one mesh and one atlas, so that they share pictures and the skin shader.
+// Masks, roughness and thickness vary slowly and need fewer texels.
 void AddSkin(const CharacterOptions& options, const HeadShape& shape, const BodyShape& body,
              character::Character* character) {
   character::Mesh skin = SkinnedPart(character->skeleton, MakeHeadSkin(shape, options.level));
@@ -86,6 +90,7 @@ void AddSkin(const CharacterOptions& options, const HeadShape& shape, const Body
   AddMesh(character, std::move(skin), std::move(material));
 }
 
+// Parts without wrinkles, each with its own material.
 void AddHeadParts(const CharacterOptions& options, const HeadShape& shape,
                   character::Character* character) {
   character::Material eyes = MakeMaterial("eyes", character::Material::Kind::kEye, 0.12f);
@@ -177,6 +182,7 @@ character::Character MakeDefaultCharacter(const wrinkle::Rig& rig,
   character.skeleton = MakeSkeleton();
   character.rig = rig;
   for (const glm::mat4& model : character.skeleton.rest_model()) {
+    // Joints are not rotated at rest, so the inverse is a translation.
     character.inverse_bind_matrices.push_back(
         glm::translate(glm::mat4(1.0f), -glm::vec3(model[3])));
   }

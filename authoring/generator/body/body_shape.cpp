@@ -57,6 +57,7 @@ constexpr Knot kSleeve[] = {
     {0.33f, 0.0465f},  {0.38f, 0.0450f},  {0.43f, 0.0430f}, {0.455f, 0.0415f},
     {0.466f, 0.0400f}, {0.472f, 0.0370f}, {0.50f, 0.0362f}, {0.535f, 0.0358f}};
 
+// A copy of a table, fitted to the parameters of a body.
 std::vector<Section> Fitted(std::span<const Section> sections, const auto& fit) {
   std::vector<Section> fitted(sections.begin(), sections.end());
   for (Section& section : fitted) fit(&section);
@@ -69,6 +70,7 @@ void Widen(float factor, Section* s) {
   s->back *= factor;
 }
 
+// The body is symmetric, so solids describe the left half only.
 vec3 Mirrored(const vec3& p) { return {std::abs(p.x), p.y, p.z}; }
 
 }  // namespace
@@ -76,6 +78,8 @@ vec3 Mirrored(const vec3& p) { return {std::abs(p.x), p.y, p.z}; }
 BodyShape::BodyShape(const BodyParameters& parameters, const wrinkle::Skeleton& skeleton,
                      const HeadShape& head)
     : parameters_(parameters), skeleton_(skeleton), head_(&head) {
+  // Clothes are modelled with lowered arms. The skin matrices lead from the rest pose to this
+  // modelling pose, and CarryToRest() leads back.
   std::vector<mat4> model(skeleton.num_joints());
   for (int j = 0; j < skeleton.num_joints(); ++j) {
     const std::string& name = skeleton.joint_names()[j];
@@ -149,6 +153,7 @@ float BodyShape::Trousers(const vec3& p) const {
   return SmoothMin(TrunkDistance(q, pelvis_, 2.25f), TrouserLeg(q), 0.035f);
 }
 
+// The head's solid is in centimetres. The surface lies 7 mm outside the skin.
 float BodyShape::Neck(const vec3& p) const {
   return head_->Distance(ModelToHead(p)) * 0.01f - 0.007f;
 }

@@ -89,11 +89,13 @@ const Entry kFace[] = {
     {"platysma*", "neck", {3.0f, -13.0f, 2.4f}},
 };
 
+// The name with a suffix in place of the star.
 std::string Named(const std::string& pattern, const char* suffix) {
   const std::size_t star = pattern.find('*');
   return star == std::string::npos ? pattern : pattern.substr(0, star) + suffix;
 }
 
+// Adds one joint, or the left and right one of a pair, after its parent.
 void Append(const Entry& entry, bool face, std::vector<JointPlace>* places) {
   const vec3 place = face ? HeadToModel(entry.place) : entry.place;
   const std::string name = entry.name;
@@ -103,6 +105,7 @@ void Append(const Entry& entry, bool face, std::vector<JointPlace>* places) {
   }
   for (const auto& [suffix, side] : {std::pair("_l", 1.0f), std::pair("_r", -1.0f)}) {
     vec3 at(place.x * side, place.y, place.z);
+    // The eyes are not mirror images of each other; see EyeCentre().
     if (name == "eye*" || name == "orbicularis_oculi_upper*") at = HeadToModel(EyeCentre(side));
     places->push_back({Named(name, suffix), Named(entry.parent, suffix), at});
   }

@@ -37,6 +37,8 @@ class Shares {
   // Distributes `share` over the joints of a limb. `borders` has one entry fewer than `joints`.
   void AddChain(std::span<const std::string> joints, std::span<const Border> borders, float place,
                 float share) {
+    // Each border passes on what the joints before it have left, so the shares always sum to
+    // `share`.
     float rest = share;
     for (std::size_t i = 0; i < joints.size(); ++i) {
       float beyond = 0.0f;
@@ -87,6 +89,8 @@ Influences SleeveInfluences(const BodyShape& shape, float side, const vec3& plac
   const float elbow =
       glm::distance(vec3(shape.skeleton().rest_model()[shape.skeleton().Find("lower_arm_l")][3]),
                     vec3(shape.skeleton().rest_model()[shape.skeleton().Find("upper_arm_l")][3]));
+  // At the armhole, the sleeve must move exactly like the torso that it is sewn to. It becomes free
+  // within 10 cm.
   const float free = Smoothstep(0.0f, 0.10f, from_hole);
   Shares shares(shape.skeleton());
   shares.Add(hole, 1.0f - free);
@@ -136,6 +140,8 @@ Influences InfluenceOf(const wrinkle::Skeleton& skeleton, const std::string& joi
   return shares.Strongest();
 }
 
+// Inverts linear blend skinning per point: the renderer's skinning of the result gives back the
+// modelled surface in the modelling pose.
 void CarryToRest(const BodyShape& shape, QuadNet* net) {
   for (QuadNet::Point& point : net->points) {
     glm::mat4 blended(0.0f);

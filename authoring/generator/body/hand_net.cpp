@@ -37,6 +37,7 @@ struct Digit {
   std::array<int, 3> joints;
 };
 
+// The last rod ends one radius before the tip, so that its round end reaches the tip.
 float DigitDistance(const Digit& digit, const vec3& p) {
   float d = 1.0f;
   for (int i = 0; i < 3; ++i) {
@@ -145,6 +146,8 @@ class HandMaker {
     return 0.5f * (at(k / 2 - 1) + at(k / 2));
   }
 
+  // The palm is a box of rows from wrist to webs: rays from its middle surface up, down and to both
+  // sides find the skin. The thumb's opening is left out.
   void MakePalm() {
     for (int r = 0; r <= kPalmRows; ++r) {
       const float t = static_cast<float>(r) / kPalmRows;
@@ -183,6 +186,7 @@ class HandMaker {
     }
   }
 
+  // The first row is hidden in the cuff and must not move.
   static float Slack(int row) { return row == 0 ? 0.0f : 0.8f; }
 
   // Adds rings from `ring` to the tip. Each stop names a joint and a fraction of the way to the

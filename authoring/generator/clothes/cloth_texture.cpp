@@ -33,6 +33,8 @@ struct ClothPlace {
   vec3 p;    // metres, at rest
 };
 
+// Finds the place of a texel in its flat panel, so that weave and seams follow the cut of the
+// cloth.
 class ClothAtlas {
  public:
   ClothAtlas(const Clothes& clothes, int size)
@@ -89,6 +91,7 @@ float PocketInside(const ClothPlace& at) {
 }
 
 // The distance from the nearest seam that shows as a line.
+// Returns the depth of the groove, [0, 1], and raises `stitches` where a seam is stitched.
 float SeamLines(const ClothPlace& at, float* stitches) {
   const vec3& p = at.p;
   const float x = std::abs(p.x);

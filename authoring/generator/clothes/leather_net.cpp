@@ -179,6 +179,7 @@ QuadNet MakeBelt(const BodyShape& shape, int panel) {
     float y;
     float out;
   };
+  // Bottom to top: the belt rises from the cloth, is flat outside and returns to the cloth.
   constexpr Row kRows[] = {
       {1.006f, 0.0005f}, {1.0065f, 0.0042f}, {1.037f, 0.0045f}, {1.0375f, 0.0f}};
   PointGrid grid(4, columns + 1);

@@ -71,6 +71,8 @@ class TrouserMaker {
 
   // The middle of the front (`ahead` +1) or the back (-1), from the crotch to the waist in equal
   // steps.
+  // Rays fan out from a focus in the pelvis, from the crotch to straight ahead, and then rise to
+  // the waist. The line is cut into steps of equal length.
   std::vector<vec3> Middle(float ahead) const {
     constexpr int kFine = 64;
     constexpr float kFocus = 0.90f;

@@ -34,6 +34,7 @@ std::vector<vec3> LidEdge(const HeadGrid& grid, float side, bool upper) {
   return edge;
 }
 
+// The point at the share `t` of the vertices of a line.
 vec3 Along(const std::vector<vec3>& line, float t) {
   const float at = t * static_cast<float>(line.size() - 1);
   const auto i = std::min(static_cast<std::size_t>(at), line.size() - 2);
@@ -86,6 +87,7 @@ void AddLashRow(const HeadGrid& grid, float side, bool upper, HeadMesh* lashes) 
   }
 }
 
+// Teeth belong to the skull or to the jaw; mouth_side says which.
 void AddTeethRow(const ToothArch& arch, HeadMesh* teeth) {
   const ToothRow row = MakeToothRow(arch);
   const auto first = static_cast<std::uint32_t>(teeth->mesh.vertices.size());
@@ -102,6 +104,8 @@ void AddTeethRow(const ToothArch& arch, HeadMesh* teeth) {
   }
 }
 
+// A sphere with a bulge for the cornea. Rings are dense at the edge of the bulge, at 31 degrees.
+// The sphere ends behind the lids, at 112 degrees. Left and right eye share one picture.
 void AddEye(float side, HeadMesh* eyes) {
   constexpr int kSegments = 28;
   constexpr float kAngles[] = {0, 5, 10, 15, 20, 24, 27.5f, 31, 36, 44, 56, 72, 90, 112};

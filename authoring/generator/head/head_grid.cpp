@@ -39,6 +39,8 @@ std::vector<glm::vec2> LidPoints(int count, bool upper) {
   std::vector<glm::vec2> points;
   std::size_t at = 0;
   for (int i = 0; i <= count; ++i) {
+    // Even distances along the lid and not even parameters, so that quads do not bunch up at the
+    // corners.
     const float want = length.back() * static_cast<float>(i) / static_cast<float>(count);
     while (at + 1 < fine.size() && length[at] < want) ++at;
     points.push_back(fine[at]);
@@ -115,6 +117,8 @@ std::vector<glm::ivec2> HeadGrid::MouthOutline(int stride) const {
 
 void HeadGrid::DrawToOutlines() {
   std::vector<char> fixed(offset_.size(), 0);
+  // Fixes a grid point to a place on the outline of an opening. Offsets are relative to the plain
+  // grid.
   const auto pin = [&](const glm::ivec2& vertex, float x, float y) {
     const std::size_t i = static_cast<std::size_t>(vertex.x) * (num_fine_rows_ + 1) + vertex.y;
     offset_[i] = HeadPlaceAt(*shape_, x, y) - glm::vec2(vertex) / static_cast<float>(kFine);
@@ -140,6 +144,8 @@ void HeadGrid::DrawToOutlines() {
   Relax(fixed);
 }
 
+// Gauss-Seidel sweeps: each free point takes the mean of its neighbours and thus follows the pinned
+// outlines smoothly. The first and last row and the last column stay in place.
 void HeadGrid::Relax(const std::vector<char>& fixed) {
   constexpr float kHold =
       0.982f;  // pulls toward the plain grid, so that distant points do not move

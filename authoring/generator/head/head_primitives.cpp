@@ -17,6 +17,8 @@ float Join(float a, float b, float k) {
   return std::min(a, b) - h * h * k * 0.25f;
 }
 
+// Distance to first order: the implicit function over the length of its gradient (Quilez). The
+// exact distance has no closed form.
 float Ellipsoid(const vec3& p, const HeadPrimitive& primitive) {
   const vec3 d = p - primitive.a;
   const float cy = std::cos(primitive.r.x), sy = std::sin(primitive.r.x);

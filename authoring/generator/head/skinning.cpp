@@ -61,6 +61,7 @@ const Muscle kMuscles[] = {
     {"platysma*", {3.2f, -13.0f, 2.4f}, {3.0f, 3.2f, 3.5f}, 0.7f, 0},
 };
 
+// Smooth at the centre and at the border, so that neither shows when the muscle moves.
 float Field(const Muscle& muscle, const vec3& p, float side) {
   const vec3 centre(muscle.centre.x * side, muscle.centre.y, muscle.centre.z);
   const float d = glm::length((p - centre) / muscle.radii);
@@ -74,6 +75,7 @@ float NeckShare(const vec3& p) {
   return Smoothstep(top, top - 6.0f, p.y);
 }
 
+// Skin follows the jaw gradually. Lips follow it or the skull alone, so that the mouth can open.
 float JawShare(const HeadVertex& v) {
   const vec3& p = v.place;
   // The border runs from the corner of the mouth to the joint of the jaw.
@@ -84,6 +86,7 @@ float JawShare(const HeadVertex& v) {
   return soft + (hard - soft) * lips;
 }
 
+// How far the vertex belongs to the upper lid: 1 at its edge, 0 at the brow and at both corners.
 float UpperLid(const HeadVertex& v, float side) {
   const vec3 d = v.place - EyeCentre(side);
   if (v.eye_side <= 0.0f || d.z < -0.2f) return 0.0f;
@@ -140,6 +143,7 @@ void WeighLips(const HeadVertex& v, float share, Weights* weights) {
 // Face and neck. Lids come first, then lips and muscles; chest, neck and jaw share the rest.
 void WeighSkin(const HeadVertex& v, Weights* weights) {
   float rest = 1.0f;
+  // Takes a share of what is left, so the weights always sum to 1.
   const auto take = [&](const std::string& joint, float share) {
     weights->Add(joint, rest * share);
     rest *= 1.0f - share;
@@ -147,6 +151,7 @@ void WeighSkin(const HeadVertex& v, Weights* weights) {
   const bool left = v.place.x >= 0.0f;
   take(left ? "orbicularis_oculi_upper_l" : "orbicularis_oculi_upper_r",
        UpperLid(v, left ? 1.0f : -1.0f));
+  // Deep inside the mouth nothing follows the face's muscles.
   const float hold = v.part == kMouthInside ? Smoothstep(5.5f, 8.5f, v.place.z) : 1.0f;
   const float lips = hold * LipZone(v);
   WeighLips(v, rest * lips, weights);

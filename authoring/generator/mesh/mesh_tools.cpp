@@ -24,6 +24,7 @@ void AddTriangle(character::Mesh* mesh, std::uint32_t a, std::uint32_t b, std::u
   mesh->indices.insert(mesh->indices.end(), {a, b, c});
 }
 
+// A key for vertices at the same position. They share a normal across UV seams.
 std::array<long, 3> Place(const glm::vec3& p) {
   return {std::lround(p.x / kSamePlace), std::lround(p.y / kSamePlace),
           std::lround(p.z / kSamePlace)};

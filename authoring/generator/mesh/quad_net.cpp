@@ -34,6 +34,8 @@ class Divider {
  public:
   Divider(const Solid& solid, QuadNet* net) : solid_(solid), net_(net) {}
 
+  // The key is the sorted corners, so both quads of an edge get the same midpoint. Corners are
+  // separate per panel, but their points are shared, so seams stay closed.
   int Middle(std::vector<int> corners) {
     std::sort(corners.begin(), corners.end());
     const auto [found, is_new] = corners_.emplace(corners, static_cast<int>(net_->corners.size()));
@@ -50,6 +52,7 @@ class Divider {
   }
 
  private:
+  // The midpoint of a chord lies inside the solid, so it is moved out to the surface.
   int MiddlePoint(std::vector<int> points) {
     std::sort(points.begin(), points.end());
     const auto [found, is_new] = points_.emplace(points, static_cast<int>(net_->points.size()));
@@ -86,6 +89,7 @@ void AddPatch(const PointGrid& grid, int panel, bool mirrored,
   for (int r = 0; r + 1 < grid.rows; ++r) vs.push_back(vs[r] - MeanStep(grid, *net, true, r));
   std::vector<int> corner_at(grid.points.size(), -1);
   const auto corner = [&](int row, int column) {
+    // A grid point that several cells share becomes one corner.
     int& index = corner_at[row * grid.columns + column];
     if (index < 0) {
       index = static_cast<int>(net->corners.size());
@@ -99,6 +103,7 @@ void AddPatch(const PointGrid& grid, int panel, bool mirrored,
       if (skip && skip(r, c)) continue;
       std::array<int, 4> quad = {corner(r, c), corner(r, c + 1), corner(r + 1, c + 1),
                                  corner(r + 1, c)};
+      // Mirroring reverses the winding; swapping restores it.
       if (mirrored) std::swap(quad[1], quad[3]);
       net->quads.push_back(quad);
     }
@@ -123,6 +128,8 @@ std::vector<std::vector<int>> Neighbours(const QuadNet& net) {
   return neighbours;
 }
 
+// All points move at once, from the positions of the round before, so the result does not depend on
+// their order.
 void Relax(const Solid& solid, int rounds, QuadNet* net) {
   const std::vector<std::vector<int>> neighbours = Neighbours(*net);
   std::vector<vec3> next(net->points.size());

@@ -26,6 +26,7 @@ float Cubic(const float (&at)[4], float a, float b, float c, float d, float x) {
 
 }  // namespace
 
+// Quilez's polynomial smooth minimum: exact where the distances differ by more than `radius`.
 float SmoothMin(float a, float b, float radius) {
   const float h = std::max(radius - std::abs(a - b), 0.0f) / radius;
   return std::min(a, b) - h * h * radius * 0.25f;
@@ -58,6 +59,8 @@ float TrunkDistance(const vec3& p, std::span<const Section> sections, float powe
   const Section s = SectionAt(sections, p.y);
   const glm::vec2 q(p.x - s.x, p.z - s.z);
   const float depth = q.y > 0.0f ? s.front : s.back;
+  // A superellipse: r is 1 on its outline. The distance is measured along the ray from the centre,
+  // and near the centre, where the ray has no direction, by the smaller half axis.
   const float r = std::pow(
       std::pow(std::abs(q.x) / s.half_width, power) + std::pow(std::abs(q.y) / depth, power),
       1.0f / power);
@@ -81,12 +84,14 @@ vec3 SolidNormal(const Solid& solid, const vec3& p) {
   return length > 0.0f ? gradient / length : vec3(0, 1, 0);
 }
 
+// Newton steps, slightly damped, because the gradient's length is only about 1.
 vec3 OnSurface(const Solid& solid, const vec3& p) {
   vec3 at = p;
   for (int i = 0; i < 4; ++i) at -= SolidNormal(solid, at) * (0.9f * solid(at));
   return at;
 }
 
+// Sphere tracing with a safety factor, because distances are approximate, and then bisection.
 vec3 CastOut(const Solid& solid, const vec3& from, const vec3& direction, float reach) {
   constexpr float kLeast = 5e-4f;
   float inside = 0.0f;

@@ -26,6 +26,7 @@ struct FlatTriangle {
 
 float Cross(const vec2& a, const vec2& b) { return a.x * b.y - a.y * b.x; }
 
+// Lays a triangle into its own plane without distortion: the shape that the fit tries to keep.
 FlatTriangle Flatten(const QuadNet& net, const std::array<int, 3>& corner) {
   FlatTriangle t;
   t.corner = corner;
@@ -61,6 +62,9 @@ class Fit {
     }
   }
 
+  // Both steps of the method: Residual() finds the best rotation of each triangle, and conjugate
+  // gradients with a diagonal preconditioner fit the corners to the rotated triangles. A fit that
+  // stops early is improved by the next step.
   void Step() {
     const std::size_t n = corners_->size();
     std::vector<vec2> x(n), r(n), d(n);
@@ -90,6 +94,8 @@ class Fit {
   }
 
  private:
+  // The matrix of the fit times `x`, without storing the matrix. It does not depend on rotations.
+  // Moving a whole panel changes nothing, so each panel stays where it starts.
   std::vector<vec2> Laplacian(const std::vector<vec2>& x) const {
     std::vector<vec2> out(x.size(), vec2(0.0f));
     for (const FlatTriangle& t : triangles_) {
@@ -184,6 +190,7 @@ std::vector<PanelPlace> PackPanels(float margin, QuadNet* net) {
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return boxes[a].size().y > boxes[b].size().y; });
+  // Bisection for the largest common scale, so that all panels have the same texel density.
   float fits = 0.0f;
   float too_large = 10.0f;
   std::vector<vec2> places;
