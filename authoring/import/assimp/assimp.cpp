@@ -42,6 +42,7 @@ class NoFiles : public Assimp::IOSystem {
   void Close(Assimp::IOStream*) override {}
 };
 
+// assimp stores rows, GLM columns.
 glm::mat4 ToGlm(const aiMatrix4x4& m) { return glm::transpose(glm::make_mat4(&m.a1)); }
 glm::vec3 ToGlm(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
@@ -187,6 +188,7 @@ class SceneWriter {
           {"joints", std::move(joints)}}});
   }
 
+  // Counts before converting: one mesh may be instanced many times.
   Status AddMeshes() {
     std::size_t vertices = 0;
     std::size_t indices = 0;
@@ -213,6 +215,7 @@ class SceneWriter {
       const std::size_t joint = JointOf(bone);
       for (unsigned w = 0; w < bone.mNumWeights; ++w) {
         const aiVertexWeight& weight = bone.mWeights[w];
+        // Files may name missing vertices. NaN counts as no weight.
         if (weight.mVertexId >= mesh.mNumVertices || !(weight.mWeight > 0.0f)) continue;
         influences[weight.mVertexId].push_back({joint, weight.mWeight});
       }
@@ -302,6 +305,7 @@ class SceneWriter {
     if (name.empty()) name = "mesh_" + std::to_string(root_["meshes"].size());
     GltfJson holder = {{"name", "mesh:" + name}, {"mesh", root_["meshes"].size()}};
     if (skinned) holder["skin"] = 0;
+    // glTF ignores the transform of a skinned mesh's node, so the node goes to the root.
     const int kept = skinned ? -1 : Kept(static_cast<int>(source));
     (kept < 0 ? roots_ : nodes_[sources_[kept].written]["children"]).push_back(nodes_.size());
     nodes_.push_back(std::move(holder));
@@ -309,6 +313,7 @@ class SceneWriter {
         {{"name", std::move(name)}, {"primitives", GltfJson::array({std::move(primitive)})}});
   }
 
+  // assimp has triangulated. Faces with fewer corners are points and lines.
   static std::vector<std::uint32_t> TrianglesOf(const aiMesh& mesh) {
     std::vector<std::uint32_t> indices;
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {

@@ -37,6 +37,7 @@ constexpr bool kMemoryCanBeLimited = true;
 // The child sends a StatusCode. The result follows, or the fields of the status with their lengths.
 constexpr std::size_t kMaxErrorBytes = 1u << 16;
 
+// Both processes run the same program, so lengths need no fixed byte order.
 std::string ErrorMessage(const Status& status) {
   std::string message(1, static_cast<char>(status.code()));
   for (const std::string* text : {&status.what(), &status.where(), &status.todo()}) {
@@ -47,6 +48,8 @@ std::string ErrorMessage(const Status& status) {
   return message;
 }
 
+// The child may have been taken over by a hostile file: every length is checked against what is
+// left.
 Status ParseError(std::string_view message) {
   const auto code = static_cast<StatusCode>(message.front());
   message.remove_prefix(1);
@@ -62,6 +65,7 @@ Status ParseError(std::string_view message) {
   return {code, texts[0], texts[1], texts[2]};
 }
 
+// The limit on address space counts what the parent had mapped before the fork.
 std::size_t AddressSpaceInUse() {
   std::ifstream stat("/proc/self/statm");
   std::size_t pages = 0;
@@ -84,12 +88,15 @@ bool WriteAll(int pipe, std::string_view bytes) {
   return true;
 }
 
+// Limits come first, before the child touches the file. _exit() skips destructors and exit
+// handlers, which belong to the parent.
 [[noreturn]] void RunChild(const ChildProcessLimits& limits, int pipe,
                            const std::function<Result<std::string>()>& work) {
   Limit(RLIMIT_CORE, 0);
   Limit(RLIMIT_FSIZE, 0);  // readers never write files
   Limit(RLIMIT_CPU, limits.max_cpu_seconds);
   if (kMemoryCanBeLimited) Limit(RLIMIT_AS, AddressSpaceInUse() + limits.max_memory_bytes);
+  // The parent's handlers must not run here.
   for (const int fatal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) std::signal(fatal, SIG_DFL);
   if (const int null = open("/dev/null", O_WRONLY); null >= 0) dup2(null, STDERR_FILENO);
   std::string message;
@@ -118,6 +125,7 @@ bool ReadAll(int pipe, std::size_t max_bytes, std::string* bytes) {
   }
 }
 
+// Why a child ended without a result. The kernel sends SIGXCPU at the limit of CPU time.
 Status EndOf(int exit_status) {
   if (WIFSIGNALED(exit_status)) {
     const int signal = WTERMSIG(exit_status);

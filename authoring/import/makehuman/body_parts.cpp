@@ -57,6 +57,7 @@ void ArrangeIslands(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
   if (num_islands == 0) return;
   const std::vector<Island> islands =
       DescribeIslands(base, skeleton, faces, island_of_uv, num_islands);
+  // The island with the most faces that move with the head. It gets most of the picture.
   const auto face = std::max_element(
       islands.begin(), islands.end(),
       [](const Island& a, const Island& b) { return a.head_faces < b.head_faces; });
@@ -76,6 +77,7 @@ void ArrangeIslands(const BaseMesh& base, const wrinkle::Skeleton& skeleton,
   }
 }
 
+// A face at the border of a garment has corners that stay visible, so it is kept.
 bool AllDeleted(const ObjMesh& obj, const ObjMesh::Face& face, const std::vector<bool>& deleted) {
   for (std::size_t i = 0; i < face.num_corners; ++i) {
     if (!deleted[obj.corners[face.first_corner + i].position]) return false;
@@ -164,6 +166,7 @@ character::Mesh BuildTeeth(const BaseMesh& base, std::string_view group, bool up
   if (box.low.x > box.high.x) return mesh;
   constexpr float kCentimetres = 100.0f;
   constexpr float kFront = 0.007f;  // depth of the incisors behind the foremost point, metres
+  // Only the front teeth give the height of the biting edge; molars may be higher or lower.
   const Bounds incisors = BoundsOf(base, group, box.high.z - kFront);
   const glm::vec3 front(0.5f * (box.low.x + box.high.x), upper ? incisors.low.y : incisors.high.y,
                         box.high.z);
@@ -223,6 +226,7 @@ character::Mesh BuildEye(const BaseMesh& base, std::string_view group, int joint
     for (int segment = 0; segment < kSegments; ++segment) {
       const auto a = static_cast<std::uint32_t>(ring * (kSegments + 1) + segment);
       const std::uint32_t below = a + kSegments + 1;
+      // At each pole one triangle of the quad has no area.
       if (ring + 1 < kRings) mesh.indices.insert(mesh.indices.end(), {a, below, below + 1});
       if (ring > 0) mesh.indices.insert(mesh.indices.end(), {a, below + 1, a + 1});
     }

@@ -9,8 +9,11 @@
 namespace furrow::authoring {
 namespace {
 
+// Metres; an adult's.
 constexpr float kUsualPupilDistance = 0.062f;
 
+// Looks up joints and remembers the first missing name, so that one check at the end covers all of
+// them.
 class JointPoints {
  public:
   explicit JointPoints(const wrinkle::Skeleton& skeleton) : skeleton_(skeleton) {}

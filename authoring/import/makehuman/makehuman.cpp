@@ -60,6 +60,7 @@ class MakeHumanImport {
   }
 
  private:
+  // The skeleton needs the positions, and the skin weights need the joints, hence the order.
   Status ReadBase() {
     const fs::path obj_path = folder_ / "3dobjs" / "base.obj";
     const Result<std::string> obj_text = ReadFile(obj_path, kMaxTextFileBytes);
@@ -177,6 +178,7 @@ class MakeHumanImport {
     return {};
   }
 
+  // Pictures are painted per texel of the finished mesh, so the mesh comes first.
   Status BuildBody() {
     const int size = options_.texture_size;
     character::Material skin{
@@ -251,6 +253,7 @@ class MakeHumanImport {
     if (!garment_) return {};
     const std::vector<glm::vec3> positions = FitGarment(*garment_, base_.positions);
     for (const glm::vec3& p : positions) {
+      // Finite factors and offsets may still multiply to anything. The comparison is false for NaN.
       constexpr float kFar = 100.0f;  // metres
       if (!(glm::length(p) < kFar))
         return Status(StatusCode::kInvalidArgument,

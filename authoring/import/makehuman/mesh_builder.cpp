@@ -18,6 +18,7 @@ glm::vec3 NormalizeOr(glm::vec3 v, glm::vec3 fallback) {
   return length > 1e-12f ? v / length : fallback;
 }
 
+// Splits positions at UV seams: one vertex per combination of position and UV. Normals stay shared.
 class SplitMesh {
  public:
   SplitMesh(const MeshSource& source, character::Mesh* mesh) : source_(source), mesh_(*mesh) {}
@@ -43,6 +44,7 @@ class SplitMesh {
       const int move = source_.uv_move.empty() ? -1 : source_.uv_move[index];
       if (move >= 0) uv = source_.uv_moves[static_cast<std::size_t>(move)].Apply(uv);
     }
+    // v grows upward in OBJ and downward here.
     vertex.uv = glm::vec2(uv.x, 1.0f - uv.y);
     return vertex;
   }
@@ -72,6 +74,8 @@ std::vector<glm::vec3> SmoothNormals(const ObjMesh& obj, std::span<const glm::ve
       const glm::vec3 to_next = positions[corner(i + 1)] - here;
       const glm::vec3 to_last = positions[corner(i + face.num_corners - 1)] - here;
       const glm::vec3 across = glm::cross(to_next, to_last);
+      // Weights by the angle at the corner, so that the normal does not depend on how faces are
+      // divided.
       const float angle = std::atan2(glm::length(across), glm::dot(to_next, to_last));
       normals[corner(i)] += NormalizeOr(across, glm::vec3(0.0f)) * angle;
     }

@@ -12,6 +12,8 @@
 namespace furrow::authoring {
 namespace {
 
+// Reads a garment line by line. Every index is checked against the base mesh, so fitting needs no
+// checks.
 class MhcloParser {
  public:
   MhcloParser(std::string_view text, std::string_view source, std::size_t num_base)
@@ -66,6 +68,7 @@ class MhcloParser {
     return cursor_.Error(code, std::move(what));
   }
 
+  // A path would let a garment read files outside its folder.
   Status ObjFile() {
     if (words_.size() != 2 || words_[1].find_first_of("/\\") != std::string_view::npos ||
         words_[1] == "..")
@@ -101,6 +104,7 @@ class MhcloParser {
     FURROW_RETURN_IF_ERROR(BaseIndex(words_[1], &scale.first));
     FURROW_RETURN_IF_ERROR(BaseIndex(words_[2], &scale.second));
     FURROW_RETURN_IF_ERROR(Number(words_[3], &scale.extent));
+    // FitGarment() divides by it.
     if (!(std::abs(scale.extent) > 1e-6f))
       return Error(StatusCode::kSchema, "a scale's length must not be zero");
     garment_.scales[axis] = scale;

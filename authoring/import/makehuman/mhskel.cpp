@@ -18,6 +18,7 @@ using Json = nlohmann::json;
 constexpr std::size_t kMaxJointVertices = 65'536;
 constexpr std::size_t kMaxWeights = 8'000'000;
 
+// The library throws; all of its errors become a status with the line.
 Result<Json> ParseJson(std::string_view text, std::string_view source) {
   try {
     return Json::parse(text.begin(), text.end());
@@ -33,6 +34,7 @@ Status SchemaError(std::string_view source, const std::string& field, const std:
   return Status(StatusCode::kSchema, what, std::string(source) + ": " + field);
 }
 
+// A member of the required type. The pointer is valid as long as `object`.
 Result<const Json*> Member(const Json& object, const char* name, Json::value_t type,
                            std::string_view source, const std::string& field) {
   const auto it = object.find(name);
@@ -43,6 +45,7 @@ Result<const Json*> Member(const Json& object, const char* name, Json::value_t t
   return &*it;
 }
 
+// Indices are checked against the mesh later, because this file does not know its size.
 Status ReadVertices(const Json& list, std::string_view source, const std::string& field,
                     std::vector<std::uint32_t>* vertices) {
   if (!list.is_array() || list.empty())
@@ -58,6 +61,7 @@ Status ReadVertices(const Json& list, std::string_view source, const std::string
   return {};
 }
 
+// Reads the vertices at one end of a bone. Ends name an entry of "joints".
 Status ReadEnd(const Json& bone, const char* end, const Json& positions, std::string_view source,
                const std::string& field, std::vector<std::uint32_t>* vertices) {
   const Result<const Json*> name =
@@ -71,6 +75,7 @@ Status ReadEnd(const Json& bone, const char* end, const Json& positions, std::st
   return ReadVertices(*list, source, "joints." + key, vertices);
 }
 
+// A joint lies at the mean of its vertices, so it follows the body's shape.
 Result<glm::vec3> MeanOf(std::span<const std::uint32_t> vertices,
                          std::span<const glm::vec3> positions, const std::string& joint,
                          std::string_view source) {
@@ -162,6 +167,7 @@ Result<MhWeights> ParseMhw(std::string_view text, std::string_view source) {
 Result<wrinkle::Skeleton> BuildSkeleton(const MhSkeleton& skeleton,
                                         std::span<const glm::vec3> positions,
                                         std::string_view source) {
+  // Bones may be listed before their parents, so all names are collected first.
   std::unordered_map<std::string_view, int> index;
   for (const MhSkeleton::Joint& joint : skeleton.joints)
     index.emplace(joint.name, static_cast<int>(index.size()));

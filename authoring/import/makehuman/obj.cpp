@@ -19,10 +19,13 @@ constexpr float kMaxCoordinate = 1e6f;
 constexpr std::size_t kMaxCorners = 64;
 constexpr std::size_t kMaxGroups = 65'535;
 
+// Reads positions, UVs, faces and groups, and skips all other statements. Faces keep their corners;
+// triangulation comes later.
 class ObjParser {
  public:
   ObjParser(std::string_view text, std::string_view source)
       : cursor_(text, source), source_(source) {
+    // Faces before the first group belong to the unnamed one.
     mesh_.groups.emplace_back();
     group_index_.emplace("", 0);
   }

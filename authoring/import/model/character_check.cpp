@@ -32,6 +32,7 @@ std::string Number(float value) {
   return text;
 }
 
+// Relative to the longest edge, so that the test does not depend on the file's unit. True for NaN.
 bool IsDegenerate(const character::Mesh& mesh, std::size_t triangle) {
   const glm::vec3& a = mesh.vertices[mesh.indices[triangle]].position;
   const glm::vec3& b = mesh.vertices[mesh.indices[triangle + 1]].position;
@@ -40,6 +41,8 @@ bool IsDegenerate(const character::Mesh& mesh, std::size_t triangle) {
   return !(glm::length(glm::cross(b - a, c - a)) > 1e-6f * longest * longest);
 }
 
+// Collects findings in one pass over the character. Checks are independent, so one report shows all
+// faults of a file.
 class Checker {
  public:
   Checker(const character::Character& character, const character::SourceNotes& notes,
@@ -149,6 +152,7 @@ class Checker {
   void CheckAtlases() {
     std::map<int, std::vector<int>> meshes_of;
     for (std::size_t m = 0; m < character_.meshes.size(); ++m) {
+      // Already reported by CheckMesh().
       if (m < notes_.meshes.size() && !notes_.meshes[m].has_uvs) continue;
       meshes_of[character_.meshes[m].material].push_back(static_cast<int>(m));
     }
@@ -214,6 +218,7 @@ class Checker {
            Count(notes_.nameless_joints, "joint has", "joints have") + " no name",
            "poses address joints by name; name them before exporting");
     }
+    // Without any role, a list of all missing roles would not help.
     if (report_.joints.num_roles == 0) {
       Find(Severity::kWarning, "no-roles", {},
            "neither names nor hierarchy identify the arms, the legs and the head",

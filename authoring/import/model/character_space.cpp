@@ -38,6 +38,7 @@ glm::vec3 Across(const wrinkle::Skeleton& skeleton, const FoundJoints& joints) {
   return sum;
 }
 
+// From the lowest to the highest known joint of the trunk; zero if fewer than two are known.
 glm::vec3 Up(const wrinkle::Skeleton& skeleton, const FoundJoints& joints) {
   constexpr std::array kTrunk = {JointRole::kHips,       JointRole::kSpine, JointRole::kChest,
                                  JointRole::kUpperChest, JointRole::kNeck,  JointRole::kHead};
@@ -53,6 +54,7 @@ glm::vec3 Up(const wrinkle::Skeleton& skeleton, const FoundJoints& joints) {
                            : RestPlace(skeleton, highest) - RestPlace(skeleton, lowest);
 }
 
+// The axis of the largest component other than `except` (-1: none excepted).
 int LargestComponent(const glm::vec3& v, int except) {
   int largest = except == 0 ? 1 : 0;
   for (int i = 0; i < 3; ++i) {
@@ -87,6 +89,7 @@ glm::mat4 RestMatrix(const character::Vertex& vertex, std::span<const glm::mat4>
   return blend;
 }
 
+// Where the file's own bind pose differs from its rest pose, these are not the identity.
 std::vector<glm::mat4> RestSkinMatrices(const character::Character& character) {
   std::vector<glm::mat4> matrices;
   for (std::size_t j = 0; j < character.inverse_bind_matrices.size(); ++j) {
@@ -95,6 +98,7 @@ std::vector<glm::mat4> RestSkinMatrices(const character::Character& character) {
   return matrices;
 }
 
+// `otherwise` replaces vectors that have no direction.
 glm::vec3 UnitOr(const glm::vec3& v, const glm::vec3& otherwise) {
   const float length = glm::length(v);
   return length > 1e-12f ? v / length : otherwise;
@@ -135,6 +139,7 @@ Result<wrinkle::Skeleton> Rebuild(const wrinkle::Skeleton& from, const glm::mat3
   return wrinkle::Skeleton::Create(std::move(joints));
 }
 
+// False for NaN.
 bool IsNearIdentity(const glm::mat4& m) {
   const glm::mat4 identity(1.0f);
   for (int i = 0; i < 16; ++i) {
@@ -143,6 +148,7 @@ bool IsNearIdentity(const glm::mat4& m) {
   return true;
 }
 
+// The vertices are in the rest pose now, so the inverse bind matrices follow from the skeleton.
 Status ReplaceSkeleton(const glm::mat3& turn, float scale, character::Character* character) {
   Result<wrinkle::Skeleton> skeleton = Rebuild(character->skeleton, turn, scale);
   FURROW_RETURN_IF_ERROR(skeleton);
@@ -167,6 +173,7 @@ CharacterSpace FindCharacterSpace(const character::Character& character,
   if (glm::length(trunk) > 0.0f && glm::length(across) > 0.0f) {
     glm::vec3 left(0.0f);
     up = glm::vec3(0.0f);
+    // Files differ by whole axes. Snapping to axes ignores the slight lean of a posed trunk.
     const int up_axis = LargestComponent(trunk, -1);
     const int left_axis = LargestComponent(across, up_axis);
     up[up_axis] = trunk[up_axis] < 0.0f ? -1.0f : 1.0f;
@@ -212,6 +219,7 @@ Status BringToRestPose(character::Character* character) {
     for (character::Vertex& vertex : mesh.vertices) {
       const glm::mat4 m = RestMatrix(vertex, skin);
       const float determinant = glm::determinant(glm::mat3(m));
+      // Normals transform with the inverse transpose, which a singular matrix does not have.
       const bool flat = std::abs(determinant) < 1e-30f;
       mirrored = mirrored || determinant < 0.0f;
       MoveVertex(m, flat ? glm::mat3(m) : glm::transpose(glm::inverse(glm::mat3(m))), &vertex);

@@ -20,6 +20,8 @@ struct FaceFrame {
   float unit;  // distance between the eyes
 };
 
+// The eyes give the face an origin and a unit, so that faces of different size and place can be
+// compared. Nothing without two separate eyes.
 std::optional<FaceFrame> FrameOf(const Skeleton& skeleton, const FoundJoints& joints) {
   const int l = joints.First(JointRole::kLeftEye);
   const int r = joints.First(JointRole::kRightEye);
@@ -38,6 +40,7 @@ struct Place {
   bool is_tail;
 };
 
+// The joint's origin, and for a leaf also its tail, where a virtual muscle ends.
 void AddPlaces(const Skeleton& skeleton, const FaceFrame& frame, int joint,
                std::vector<Place>* places) {
   const auto index = static_cast<std::size_t>(joint);
@@ -49,6 +52,7 @@ void AddPlaces(const Skeleton& skeleton, const FaceFrame& frame, int joint,
   places->push_back({(tail - frame.middle) / frame.unit, joint, true});
 }
 
+// The nearest place within kFar; null if there is none.
 const Place* Nearest(const glm::vec3& at, const std::vector<Place>& among) {
   const Place* nearest = nullptr;
   float least = kFar;
@@ -106,6 +110,7 @@ FaceMatch MatchFaces(const Skeleton& model, const FoundJoints& model_joints,
     match.joint[from] = target.Find(model.joint_names()[from]);
     if (match.joint[from] != kNoJoint) continue;
     const Place* nearest = Nearest(place.at, target_places);
+    // A match must be mutual. Otherwise a sparse face would map many muscles to one joint.
     const Place* back = nearest == nullptr ? nullptr : Nearest(nearest->at, model_places);
     if (back != &place) continue;
     match.joint[from] = nearest->joint;

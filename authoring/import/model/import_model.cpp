@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 
 std::string Extension(const fs::path& path) { return AsciiLower(path.extension().string()); }
 
+// The content counts first: binary glTF may have any extension.
 bool IsGltf(std::string_view bytes, const std::string& extension) {
   return bytes.starts_with("glTF") || extension == ".glb" || extension == ".gltf" ||
          extension == ".vrm";
@@ -49,6 +50,7 @@ Status Parse(std::string_view bytes, const fs::path& path, OpenedModel* model) {
   return BringToRestPose(&model->character);
 }
 
+// One line: where, what, and in brackets what to do.
 std::string Sentence(const Finding& finding) {
   return (finding.where.empty() ? "" : finding.where + ": ") + finding.what +
          (finding.todo.empty() ? "" : " (" + finding.todo + ")");
@@ -73,6 +75,7 @@ void DropDegenerates(OpenedModel* model) {
   }
 }
 
+// The lenient reader has already bound these vertices. Without --repair, they are an error.
 void BindUnskinned(OpenedModel* model) {
   int bound = 0;
   for (character::MeshNotes& notes : model->notes.meshes)
@@ -107,6 +110,7 @@ Result<ImportedModel> ImportModel(const fs::path& path, const rig::SkeletonMaps&
   imported.remarks = std::move(opened->remarks);
   imported.warnings = opened->character.warnings;
   for (const Finding& finding : report.findings) {
+    // The import corrects these two itself, so they are remarks and not warnings.
     const bool settled = finding.code == "up-axis" || finding.code == "units";
     if (finding.severity == Severity::kError) {
       return Status(StatusCode::kUnsupported, finding.what,
@@ -118,6 +122,7 @@ Result<ImportedModel> ImportModel(const fs::path& path, const rig::SkeletonMaps&
     if (finding.code != "no-rig") list.push_back(Sentence(finding));
   }
   const float scale = options.scale.value_or(report.space.scale);
+  // After the check, which reports the space of the file as it is.
   if (report.space.rotation != glm::mat3(1.0f) || scale != 1.0f) {
     if (Status s = MoveToSpace(report.space.rotation, scale, &opened->character); !s.ok()) {
       return s.Within(path.string());
