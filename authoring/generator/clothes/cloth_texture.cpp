@@ -90,8 +90,7 @@ float PocketInside(const ClothPlace& at) {
   return -std::max({d.x, d.y, corner > 0.0f ? corner : -1.0f});
 }
 
-// The distance from the nearest seam that shows as a line.
-// Returns the depth of the groove, [0, 1], and raises `stitches` where a seam is stitched.
+// The depth of the groove along seams, [0, 1]. Raises `stitches` where a seam is stitched.
 float SeamLines(const ClothPlace& at, float* stitches) {
   const vec3& p = at.p;
   const float x = std::abs(p.x);
