@@ -24,8 +24,8 @@ std::string BesideCopy(double nanoseconds, double copy) {
 report::Table Synthetic(const MicroResults& results, const std::string& solve,
                         const std::string& name) {
   report::Table table{"60 pose drivers, " + name + ": ns of processor time per subject and frame",
-                      {"subjects", "copy the poses", "scalar, 2 poses", "batch, 2 poses",
-                       "scalar, 8 poses", "batch, 8 poses"},
+                      {"subjects", "copy the poses", "one by one, 2 poses", "batch, 2 poses",
+                       "one by one, 8 poses", "batch, 8 poses"},
                       {}};
   for (const int subjects : {1, 100, 10000}) {
     const double copy = ASubject(results, "BM_CopyPoses", subjects);
@@ -43,13 +43,13 @@ report::Table Synthetic(const MicroResults& results, const std::string& solve,
 
 report::Table Shipped(const MicroResults& results) {
   report::Table table{"The default rig with poses of its recording: ns per subject and frame",
-                      {"subjects", "scalar", "batch", "batch of scalar"},
+                      {"subjects", "one by one", "batch", "batch / one by one"},
                       {}};
   for (const int subjects : {1, 16, 100}) {
-    const double scalar = ASubject(results, "BM_SolveShippedRig", subjects);
+    const double single = ASubject(results, "BM_SolveShippedRig", subjects);
     const double batch = ASubject(results, "BM_BatchShippedRig", subjects);
-    table.rows.push_back({std::to_string(subjects), Fixed(scalar, 0), Fixed(batch, 0),
-                          Fixed(batch / scalar, 2) + "x"});
+    table.rows.push_back({std::to_string(subjects), Fixed(single, 0), Fixed(batch, 0),
+                          Fixed(batch / single, 2) + "x"});
   }
   return table;
 }
